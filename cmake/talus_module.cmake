@@ -1,0 +1,44 @@
+# talus_warnings(TARGET): warnings and instrumentation, on our own targets only.
+function(talus_warnings target)
+  target_compile_options(${target} PRIVATE
+    -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wnon-virtual-dtor -Wold-style-cast
+    -Woverloaded-virtual -Wdouble-promotion
+    $<$<BOOL:${TALUS_WARNINGS_AS_ERRORS}>:-Werror>
+    # Same bits from every kernel twin: no contraction into fused multiply-add, and never -ffast-math.
+    -ffp-contract=off -fno-math-errno -fno-trapping-math)
+  if(TALUS_SANITIZE)
+    target_compile_options(${target} PRIVATE -fsanitize=${TALUS_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+    target_link_options(${target} PUBLIC -fsanitize=${TALUS_SANITIZE})
+  endif()
+  if(TALUS_COVERAGE)
+    target_compile_options(${target} PRIVATE --coverage)
+    target_link_options(${target} PUBLIC --coverage)
+  endif()
+endfunction()
+
+# talus_module(NAME HEADERS ... SOURCES ... [DEPENDS ...] [PRIVATE_DEPENDS ...])
+# One library target talus::NAME of a room; public headers are a verified file set installed under include/talus.
+# Paths are relative to the calling room.
+function(talus_module name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "HEADERS;SOURCES;DEPENDS;PRIVATE_DEPENDS")
+  add_library(talus_${name} ${arg_SOURCES})
+  add_library(talus::${name} ALIAS talus_${name})
+  set_target_properties(talus_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON
+                        CXX_EXTENSIONS OFF VERIFY_INTERFACE_HEADER_SETS ON)
+  target_sources(talus_${name} PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${arg_HEADERS})
+  target_link_libraries(talus_${name} PUBLIC talus::common ${arg_DEPENDS} PRIVATE ${arg_PRIVATE_DEPENDS})
+  talus_warnings(talus_${name})
+  install(TARGETS talus_${name} EXPORT talus FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/talus)
+endfunction()
+
+# talus_test(NAME SOURCES ... DEPENDS ...): one GoogleTest program; each of its tests is a ctest case.
+function(talus_test name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;DEPENDS")
+  add_executable(${name} ${arg_SOURCES})
+  set_target_properties(${name} PROPERTIES CXX_EXTENSIONS OFF)
+  target_link_libraries(${name} PRIVATE ${arg_DEPENDS} GTest::gmock_main)
+  target_compile_definitions(${name} PRIVATE TALUS_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  target_precompile_headers(${name} PRIVATE <gmock/gmock.h> <gtest/gtest.h>)
+  talus_warnings(${name})
+  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT 300)
+endfunction()

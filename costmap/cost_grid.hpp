@@ -1,0 +1,55 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <costmap/drive_cost.hpp>
+#include <maps/grid.hpp>
+
+namespace talus::costmap {
+
+/// 64x64 cells, row-major from the south-west corner.
+struct CostTile {
+  static constexpr int kSide = 64;
+  std::array<CellCode, kSide * kSide> cells;
+};
+
+/// One version of the map as planners read it: immutable, so readers never wait and writers never wait for readers.
+/// Versions share the tiles that did not change.
+class CostGrid {
+ public:
+  using Tiles = std::vector<std::shared_ptr<const CostTile>>;  ///< row-major; tiles over the east and north edge are padded
+
+  /// The content of one version.
+  struct Content {
+    maps::Grid grid;
+    Tiles tiles;
+    std::shared_ptr<const DriveCost> cost;
+    std::uint64_t version = 0;
+  };
+
+  explicit CostGrid(Content content);
+
+  const maps::Grid& grid() const noexcept { return content_.grid; }
+  const DriveCost& cost() const noexcept { return *content_.cost; }
+  const Content& content() const noexcept { return content_; }
+  std::uint64_t version() const noexcept { return content_.version; }
+  int tileColumns() const noexcept { return tile_columns_; }
+
+  /// The cell's code; the cell must lie inside the grid.
+  CellCode at(maps::Cell c) const noexcept {
+    const auto tile = static_cast<std::size_t>((c.row >> 6) * tile_columns_ + (c.column >> 6));
+    return content_.tiles[tile]->cells[static_cast<std::size_t>((c.row & 63) << 6 | (c.column & 63))];
+  }
+
+ private:
+  Content content_;
+  int tile_columns_;
+};
+
+/// Cuts a raster of cell codes into a first version.
+CostGrid flattened(const maps::Raster<CellCode>& cells, std::shared_ptr<const DriveCost> cost);
+
+}  // namespace talus::costmap

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace talus::costmap {
+
+/// A heading as a unit vector in the map frame (x east, y north).
+struct Direction {
+  double x = 1.0;
+  double y = 0.0;
+};
+
+/// One cell as planners read it, in 4 bytes: the gradient of the plane under the rover and the number of a drive curve.
+/// dz/dx and dz/dy are stored in steps of 1/1024 (rise over run, at most half a step off), clamped to [-2, 2).
+class CellCode {
+ public:
+  static constexpr std::uint8_t kUnknown = 254;  ///< curve number of a cell nobody has seen
+  static constexpr std::uint8_t kBlocked = 255;  ///< curve number of a cell no heading may enter
+
+  /// The parts that are packed.
+  struct Parts {
+    double dz_dx = 0.0;  ///< rise over run eastwards [-]
+    double dz_dy = 0.0;  ///< rise over run northwards [-]
+    std::uint8_t curve = kUnknown;
+  };
+
+  CellCode() : CellCode(Parts{}) {}
+  explicit CellCode(const Parts& parts)
+      : bits_(quantised(parts.dz_dx) << 20 | quantised(parts.dz_dy) << 8 | parts.curve) {}
+
+  double dzDx() const noexcept { return static_cast<double>(stepsX()) * kStep; }
+  double dzDy() const noexcept { return static_cast<double>(stepsY()) * kStep; }
+  int stepsX() const noexcept { return static_cast<std::int32_t>(bits_) >> 20; }
+  int stepsY() const noexcept { return static_cast<std::int32_t>(bits_ << 12) >> 20; }
+  std::uint8_t curve() const noexcept { return static_cast<std::uint8_t>(bits_); }
+  std::uint32_t bits() const noexcept { return bits_; }
+
+  friend bool operator==(CellCode, CellCode) = default;
+
+  static constexpr double kStep = 1.0 / 1024.0;
+
+ private:
+  static std::uint32_t quantised(double gradient) noexcept;
+
+  std::uint32_t bits_;
+};
+
+/// What one horizontal metre costs on one kind of ground, tabulated over the gradient along the heading
+/// (rise over run, climbing > 0) in kBins bins of width 1/256 centred on k/256, k = -256..255; infinite where the motion
+/// is not allowed.
+struct DriveCurve {
+  static constexpr int kBins = 512;
+  std::array<float, kBins> cost_J_per_m;  ///< energy + weighted time + weighted risk, in joules
+};
+
+/// The one cost function: what grid search, sampling planners, the final check and the reports all call.
+/// Immutable; safe to share between threads.
+class DriveCost {
+ public:
+  /// Limits that hold on every ground, as rise over run.
+  struct Limits {
+    double max_along = 0.36;   ///< steepest gradient along the heading, tan(max pitch)
+    double max_across = 0.36;  ///< steepest gradient across the heading, tan(max roll)
+  };
+
+  DriveCost(const Limits& limits, std::vector<DriveCurve> curves);
+
+  /// Cost of driving one horizontal metre over the cell in a direction, in joules; infinite when not allowed.
+  float costPerMetre(CellCode cell, Direction heading) const noexcept;
+
+  const Limits& limits() const noexcept { return limits_; }
+  const std::vector<DriveCurve>& curves() const noexcept { return curves_; }
+
+ private:
+  Limits limits_;
+  std::vector<DriveCurve> curves_;
+};
+
+}  // namespace talus::costmap
