@@ -16,11 +16,12 @@ struct CostTile {
   std::array<CellCode, kSide * kSide> cells;
 };
 
-/// One version of the map as planners read it: immutable, so readers never wait and writers never wait for readers.
-/// Versions share the tiles that did not change.
+/// One version of the map as planners read it: immutable, so readers never wait and writers never wait for
+/// readers. Versions share the tiles that did not change.
 class CostGrid {
  public:
-  using Tiles = std::vector<std::shared_ptr<const CostTile>>;  ///< row-major; tiles over the east and north edge are padded
+  using Tiles = std::vector<std::shared_ptr<const CostTile>>;  ///< row-major; tiles over the east and north
+                                                               ///< edge are padded
 
   /// The content of one version.
   struct Content {

@@ -1,10 +1,10 @@
-#include <costmap/drive_cost.hpp>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <utility>
+
+#include <costmap/drive_cost.hpp>
 
 namespace talus::costmap {
 
@@ -16,7 +16,8 @@ std::uint32_t CellCode::quantised(double gradient) noexcept {
 DriveCost::DriveCost(const Limits& limits, std::vector<DriveCurve> curves)
     : limits_(limits), curves_(std::move(curves)) {
   if (curves_.size() > CellCode::kUnknown)
-    throw std::invalid_argument("DriveCost: " + std::to_string(curves_.size()) + " drive curves, must be <= 254");
+    throw std::invalid_argument("DriveCost: " + std::to_string(curves_.size()) +
+                                " drive curves, must be <= 254");
 }
 
 float DriveCost::costPerMetre(CellCode cell, Direction heading) const noexcept {

@@ -13,8 +13,9 @@ struct Direction {
   double y = 0.0;
 };
 
-/// One cell as planners read it, in 4 bytes: the gradient of the plane under the rover and the number of a drive curve.
-/// dz/dx and dz/dy are stored in steps of 1/1024 (rise over run, at most half a step off), clamped to [-2, 2).
+/// One cell as planners read it, in 4 bytes: the gradient of the plane under the rover and the number of a
+/// drive curve. dz/dx and dz/dy are stored in steps of 1/1024 (rise over run, at most half a step off),
+/// clamped to [-2, 2).
 class CellCode {
  public:
   static constexpr std::uint8_t kUnknown = 254;  ///< curve number of a cell nobody has seen
@@ -49,8 +50,8 @@ class CellCode {
 };
 
 /// What one horizontal metre costs on one kind of ground, tabulated over the gradient along the heading
-/// (rise over run, climbing > 0) in kBins bins of width 1/256 centred on k/256, k = -256..255; infinite where the motion
-/// is not allowed.
+/// (rise over run, climbing > 0) in kBins bins of width 1/256 centred on k/256, k = -256..255; infinite where
+/// the motion is not allowed.
 struct DriveCurve {
   static constexpr int kBins = 512;
   std::array<float, kBins> cost_J_per_m;  ///< energy + weighted time + weighted risk, in joules

@@ -1,0 +1,264 @@
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cstring>
+#include <istream>
+#include <iterator>
+#include <memory>
+#include <ostream>
+#include <sstream>
+
+#include <costmap/traversability_tree.hpp>
+#include <talus.hpp>
+
+namespace talus::costmap {
+namespace {
+
+using octomap::OcTreeKey;
+
+constexpr unsigned kDepth = 16;
+constexpr std::size_t kPayloadBytes = 36;
+using Payload = std::array<char, kPayloadBytes>;
+constexpr std::array<char, 8> kPreamble{'T', 'A', 'L', 'U',
+                                        'S', 'T', 1,   0};  // last two: version 1, little-endian
+
+template <typename T>
+T littleEndian(T value) noexcept {
+  if constexpr (std::endian::native == std::endian::big) {
+    auto bytes = std::bit_cast<std::array<char, sizeof(T)>>(value);
+    return std::bit_cast<T>(std::array<char, sizeof(T)>{bytes[3], bytes[2], bytes[1], bytes[0]});
+  }
+  return value;
+}
+
+template <typename T>
+char* put(char* out, T value) noexcept {
+  value = littleEndian(value);
+  std::memcpy(out, &value, sizeof value);
+  return out + sizeof value;
+}
+
+template <typename T>
+const char* take(const char* in, T& value) noexcept {
+  std::memcpy(&value, in, sizeof value);
+  value = littleEndian(value);
+  return in + sizeof value;
+}
+
+Payload packed(const CellBelief& b) noexcept {
+  Payload bytes{};
+  char* out = bytes.data();
+  for (const float value : {b.pull_mean, b.pull_std, b.sinkage_mean, b.sinkage_std, b.evidence,
+                            b.evidence_pull, b.evidence_sinkage})
+    out = put(out, value);
+  out = put(out, b.updated_s);
+  const std::array<std::uint8_t, 4> tail{b.terrain_class, b.category, b.confidence,
+                                         static_cast<std::uint8_t>(b.hazards)};
+  std::memcpy(out, tail.data(), tail.size());
+  return bytes;
+}
+
+CellBelief unpacked(const Payload& bytes) noexcept {
+  CellBelief b;
+  const char* in = bytes.data();
+  for (float* value : {&b.pull_mean, &b.pull_std, &b.sinkage_mean, &b.sinkage_std, &b.evidence,
+                       &b.evidence_pull, &b.evidence_sinkage})
+    in = take(in, *value);
+  in = take(in, b.updated_s);
+  std::array<std::uint8_t, 4> tail{};
+  std::memcpy(tail.data(), in, tail.size());
+  b.terrain_class = tail[0];
+  b.category = tail[1];
+  b.confidence = tail[2];
+  b.hazards = static_cast<Hazard>(tail[3]);
+  return b;
+}
+
+bool plausible(const CellBelief& b) noexcept {
+  return b.category <= 3 && b.confidence <= 16 && b.pull_std >= 0 && b.sinkage_std >= 0 && b.evidence >= 0;
+}
+
+}  // namespace
+
+TraversabilityNode::TraversabilityNode(const TraversabilityNode& other) : OcTreeDataNode(other.value) {
+  if (!other.children) return;
+  allocChildren();
+  for (int i = 0; i < 8; ++i)
+    if (other.children[i])
+      children[i] = new TraversabilityNode(*static_cast<TraversabilityNode*>(other.children[i]));
+}
+
+std::ostream& TraversabilityNode::writeData(std::ostream& stream) const {
+  return stream.write(packed(value).data(), kPayloadBytes);
+}
+
+std::istream& TraversabilityNode::readData(std::istream& stream) {
+  Payload bytes{};
+  if (!stream.read(bytes.data(), kPayloadBytes)) return stream;
+  value = unpacked(bytes);
+  if (!plausible(value)) stream.setstate(std::ios::failbit);
+  return stream;
+}
+
+void TraversabilityNode::forgetChildren() noexcept {
+  delete[] children;
+  children = nullptr;
+}
+
+TraversabilityTree::Registration::Registration() {
+  auto* prototype = new TraversabilityTree(1.0);
+  prototype->clearKeyRays();
+  AbstractOcTree::registerTreeType(prototype);
+}
+
+const TraversabilityTree::Registration TraversabilityTree::registration_;
+
+TraversabilityTree::TraversabilityTree(double resolution_m) : OcTreeBaseImpl(resolution_m) {
+  registration_.touch();
+}
+
+const CellBelief* TraversabilityTree::find(const OcTreeKey& key) const {
+  const TraversabilityNode* node = root;
+  for (unsigned depth = 0; node && nodeHasChildren(node); ++depth) {
+    const unsigned child = octomap::computeChildIdx(key, static_cast<int>(kDepth - 1 - depth));
+    node = nodeChildExists(node, child) ? getNodeChild(node, child) : nullptr;
+  }
+  return node ? &node->belief() : nullptr;
+}
+
+CellBelief& TraversabilityTree::at(const OcTreeKey& key) {
+  bool inherits = root != nullptr;
+  if (!root) {
+    root = new TraversabilityNode;
+    ++tree_size;
+    size_changed = true;
+  }
+  TraversabilityNode* node = root;
+  for (unsigned depth = 0; depth < kDepth; ++depth) {
+    if (inherits && !nodeHasChildren(node)) expandNode(node);
+    const unsigned child = octomap::computeChildIdx(key, static_cast<int>(kDepth - 1 - depth));
+    inherits = nodeChildExists(node, child);
+    node = inherits ? getNodeChild(node, child) : createNodeChild(node, child);
+  }
+  return node->belief();
+}
+
+std::ostream& TraversabilityTree::writeData(std::ostream& stream) const {
+  stream.write(kPreamble.data(), kPreamble.size());
+  return OcTreeBaseImpl::writeData(stream);
+}
+
+std::istream& TraversabilityTree::readData(std::istream& stream) {
+  clear();
+  std::array<char, kPreamble.size()> preamble{};
+  stream.read(preamble.data(), preamble.size());
+  if (preamble != kPreamble) stream.setstate(std::ios::failbit);
+  if (!stream) return stream;
+  root = new TraversabilityNode;
+  tree_size = 1;
+  size_changed = true;
+  if (!readNode(root, stream, 0)) {
+    clear();
+    stream.setstate(std::ios::failbit);
+  }
+  return stream;
+}
+
+bool TraversabilityTree::readNode(TraversabilityNode* node, std::istream& stream, unsigned depth) {
+  char children = 0;
+  if (!node->readData(stream) || !stream.get(children)) return false;
+  if (depth == kDepth && children != 0) return false;
+  for (unsigned i = 0; i < 8; ++i)
+    if ((static_cast<unsigned char>(children) >> i & 1U) &&
+        !readNode(createNodeChild(node, i), stream, depth + 1))
+      return false;
+  return true;
+}
+
+bool TraversabilityTree::isNodeCollapsible(const TraversabilityNode* node) const {
+  const TraversabilityNode* first = nullptr;
+  for (unsigned i = 0; i < 8; ++i) {
+    if (!nodeChildExists(node, i)) continue;
+    const TraversabilityNode* child = getNodeChild(node, i);
+    if (nodeHasChildren(child)) return false;
+    if (!first) first = child;
+    if (!(child->belief() == first->belief())) return false;
+  }
+  return first != nullptr;
+}
+
+bool TraversabilityTree::pruneNode(TraversabilityNode* node) {
+  if (!isNodeCollapsible(node)) return false;
+  for (unsigned i = 0; i < 8; ++i) {
+    if (!nodeChildExists(node, i)) continue;
+    node->copyData(*getNodeChild(node, i));
+    deleteNodeChild(node, i);
+  }
+  node->forgetChildren();
+  return true;
+}
+
+void TraversabilityTree::pruneBelow(TraversabilityNode* node) {
+  for (unsigned i = 0; i < 8; ++i)
+    if (nodeChildExists(node, i) && nodeHasChildren(getNodeChild(node, i))) pruneBelow(getNodeChild(node, i));
+  pruneNode(node);
+}
+
+void TraversabilityTree::prune() {
+  if (root && nodeHasChildren(root)) pruneBelow(root);
+}
+
+void writeTree(const TraversabilityTree& tree, std::ostream& stream) {
+  std::array<char, 32> resolution{};
+  const auto end = std::to_chars(resolution.begin(), resolution.end(), tree.getResolution()).ptr;
+  stream << "# Octomap OcTree file\n# payload and trailer: costmap/README.md of Talus\nid "
+            "TraversabilityTree\nsize "
+         << std::to_string(tree.size()) << "\nres " << std::string(resolution.begin(), end) << "\ndata\n";
+  if (tree.getRoot()) tree.writeData(stream);
+}
+
+namespace {
+
+struct Header {
+  std::string id;
+  std::size_t size = 0;
+  double resolution_m = 0.0;
+};
+
+// The text lines up to "data"; false when they are not an OctoMap header.
+bool readHeader(std::istream& stream, Header& header) {
+  std::string line;
+  if (!std::getline(stream, line) || line.compare(0, 21, "# Octomap OcTree file") != 0) return false;
+  for (int lines = 0; lines < 100 && std::getline(stream, line); ++lines) {
+    std::istringstream words(line);
+    std::string word;
+    words >> word;
+    if (word == "data") return header.resolution_m > 0.0;
+    if (word == "id") words >> header.id;
+    if (word == "size") words >> header.size;
+    if (word == "res") words >> header.resolution_m;
+  }
+  return false;
+}
+
+}  // namespace
+
+TraversabilityTree readTree(std::istream& stream, const std::string& name) {
+  Header header;
+  if (!readHeader(stream, header))
+    throw InputError({name, "not an OctoMap .ot file", "write one with talus costmap -o"});
+  if (header.id != "TraversabilityTree")
+    throw InputError({name, "OctoMap tree of type '" + header.id + "', not TraversabilityTree",
+                      "a point-cloud OctoMap is read as a DEM"});
+  TraversabilityTree tree(header.resolution_m);
+  if (header.size > 0 && !tree.readData(stream))
+    throw InputError({name, "truncated or damaged: its nodes cannot be read", "write the map again"});
+  if (tree.size() != header.size)
+    throw InputError(
+        {name,
+         "damaged: " + std::to_string(tree.size()) + " nodes, its header says " + std::to_string(header.size),
+         "write the map again"});
+  return tree;
+}
+
+}  // namespace talus::costmap
