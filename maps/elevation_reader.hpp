@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <maps/elevation_map.hpp>
+#include <maps/place.hpp>
+
+namespace talus::maps {
+
+/// Two opposite corners of the part to read, in any order.
+struct Window {
+  Place first;
+  Place second;
+};
+
+/// How a raster file is read.
+struct ReadOptions {
+  std::optional<int> band;                ///< from 1; unset: the band named like elevation, else the first
+  std::optional<double> resolution_m;     ///< cell side; must be given without a CRS, resamples with one
+  std::optional<Window> window;           ///< part of the file, in the file's map metres or degrees
+  std::optional<double> nodata;           ///< value that means no data, over what the file says
+  double vertical_scale = 1.0;            ///< metres per unit of the file, on top of the unit it states
+  bool ignore_crs = false;                ///< the file's CRS is wrong: read as local metres
+  std::uint64_t max_cells = 400'000'000;  ///< refuse larger maps (1.6 GB as float)
+};
+
+/// Reads a DEM: whatever GDAL opens, or a NumPy .npz archive with the arrays elevation, xmin, xmax, ymin,
+/// ymax (degrees), as matplotlib ships one. Degrees, rotated and non-square pixels are resampled to square
+/// cells in metres (the map's notes say so).
+/// @throws InputError naming file, reason and remedy
+ElevationMap readElevation(const std::string& path, const ReadOptions& options = {});
+
+/// "x0,y0,x1,y1" in map metres or "lat,lon,lat,lon" with a trailing d on each. @throws InputError
+Window parseWindow(std::string_view text);
+
+}  // namespace talus::maps

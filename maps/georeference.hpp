@@ -1,0 +1,80 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include <maps/ellipsoid.hpp>
+#include <maps/grid.hpp>
+
+namespace talus::maps {
+
+/// The map projections that Georeference knows.
+enum class ProjectionMethod {
+  TransverseMercator,
+  Mercator,               ///< one standard parallel (standard_parallel_1_rad), scale there
+  Equirectangular,        ///< on the sphere of the equatorial radius, as PROJ has it; true along
+                          ///< standard_parallel_1_rad
+  PolarStereographic,     ///< latitude_of_origin_rad is +-pi/2; scale at the pole
+  Stereographic,          ///< oblique, on the conformal sphere [snyder1987]
+  LambertConformalConic,  ///< standard parallels 1 and 2 (equal for one)
+  AlbersEqualArea,        ///< standard parallels 1 and 2
+  CylindricalEqualArea,   ///< standard_parallel_1_rad
+  LambertAzimuthalEqualArea,
+  AzimuthalEquidistant,
+  Orthographic,
+  Sinusoidal,
+};
+
+/// A projection's parameters; those that the method does not use are ignored.
+struct Projection {
+  ProjectionMethod method = ProjectionMethod::TransverseMercator;
+  double latitude_of_origin_rad = 0.0;
+  double central_meridian_rad = 0.0;  ///< from the body's prime meridian, east positive
+  double standard_parallel_1_rad = 0.0;
+  double standard_parallel_2_rad = 0.0;
+  double scale = 1.0;  ///< scale factor at the origin [-], > 0
+  double false_easting_m = 0.0;
+  double false_northing_m = 0.0;
+};
+
+/// What a file says of its coordinates.
+struct CoordinateSystem {
+  std::string name;  ///< "WGS 84 / UTM zone 10N"
+  Ellipsoid ellipsoid;
+  Projection projection;
+  std::string wkt;  ///< the file's own words, written back into the layers made from it; may be empty
+};
+
+/// Carries places between map metres and latitude, longitude on the body's own ellipsoid.
+/// Through GeographicLib [karney2013] where it has the projection; agrees with PROJ to a millimetre.
+/// Immutable, cheap to copy, safe to share between threads.
+class Georeference {
+ public:
+  /// @throws std::invalid_argument when a parameter is out of its range
+  explicit Georeference(CoordinateSystem system);
+
+  const CoordinateSystem& system() const noexcept;
+
+  /// Map metres of a place; NaN where the projection does not reach.
+  Point forward(GeoPoint place) const;
+
+  /// Place of map metres, longitude in [-pi, pi]; NaN outside the projection's range.
+  GeoPoint reverse(Point point) const;
+
+  /// Length [m] of the shortest way on the ellipsoid between two points of the map.
+  double distance_m(Point from, Point to) const;
+
+  /// Ground metres per map metre eastward and northward at a point (1 where the map is true).
+  Point groundScale(Point at) const;
+
+  std::string body() const { return bodyName(system().ellipsoid); }
+
+  /// Forward and reverse of one projection, false origin left out. Defined in projection.hpp.
+  class Transform;
+
+ private:
+  CoordinateSystem system_;
+  std::shared_ptr<const Transform> transform_;
+};
+
+}  // namespace talus::maps

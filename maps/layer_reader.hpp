@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include <maps/elevation_map.hpp>
+
+namespace talus::maps {
+
+/// Class number of a cell that the class raster does not cover.
+inline constexpr std::uint8_t kNoClass = 255;
+
+/// A layer's file and the band to take from it.
+struct LayerSource {
+  std::string path;
+  std::optional<int> band;  ///< from 1; unset: the first, or for rock abundance the band so named
+};
+
+/// Terrain classes (whole numbers 0 to 254) on the map's grid, nearest cell; kNoClass where the file has
+/// none.
+/// @throws InputError, also when the file and the map do not overlap or a value is no class number
+Raster<std::uint8_t> readTerrainClasses(const LayerSource& source, const ElevationMap& map);
+
+/// Share of the ground covered by rocks [-], 0 to 1, on the map's grid, bilinear; NaN where the file has
+/// none.
+/// @throws InputError, also when the file and the map do not overlap or a value lies outside 0 to 1
+Raster<float> readRockAbundance(const LayerSource& source, const ElevationMap& map);
+
+/// 1 in every cell that a keep-out polygon of a vector file (GeoJSON: longitude, latitude; or map metres
+/// where the map has no CRS or the file says "crs": "local") touches, else 0.
+/// @throws InputError, also when the file holds no polygon or none meets the map
+Raster<std::uint8_t> readKeepOut(const std::string& path, const ElevationMap& map);
+
+}  // namespace talus::maps
