@@ -1,0 +1,62 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+namespace talus::terramech {
+
+/// Nodes on (0, 1) in ascending order and their weights, which add up to 1: exact for polynomials of degree 2
+/// N - 1.
+template <std::size_t N>
+struct GaussLegendre {
+  std::array<double, N> node{};
+  std::array<double, N> weight{};
+};
+
+namespace detail {
+
+constexpr double cosine(double x) {  // |x| <= pi; only starts the Newton iteration below
+  double term = 1.0, sum = 1.0;
+  for (int k = 1; k < 16; ++k) sum += term *= -x * x / ((2.0 * k - 1.0) * (2.0 * k));
+  return sum;
+}
+
+/// Legendre polynomial P_N and its derivative at x, by the three-term recurrence.
+struct LegendreValue {
+  double value;
+  double slope;
+};
+
+constexpr LegendreValue legendre(std::size_t order, double x) {
+  double previous = 1.0, current = x;
+  for (std::size_t k = 2; k <= order; ++k) {
+    const auto n = static_cast<double>(k);
+    const double next = ((2.0 * n - 1.0) * x * current - (n - 1.0) * previous) / n;
+    previous = current;
+    current = next;
+  }
+  return {current, static_cast<double>(order) * (x * current - previous) / (x * x - 1.0)};
+}
+
+}  // namespace detail
+
+/// The rule of order N, by Newton's method on P_N from the cosine estimate of its roots.
+template <std::size_t N>
+constexpr GaussLegendre<N> gaussLegendre() {
+  static_assert(N >= 2);
+  constexpr double kPi = 3.14159265358979323846;
+  GaussLegendre<N> rule;
+  for (std::size_t k = 0; k < N; ++k) {
+    double x = detail::cosine(kPi * (static_cast<double>(k) + 0.75) / (static_cast<double>(N) + 0.5));
+    for (int step = 0; step < 8; ++step) {
+      const auto p = detail::legendre(N, x);
+      x -= p.value / p.slope;
+    }
+    const double slope = detail::legendre(N, x).slope;
+    rule.node[k] = 0.5 * (1.0 - x);
+    rule.weight[k] = 1.0 / ((1.0 - x * x) * slope * slope);
+  }
+  return rule;
+}
+
+}  // namespace talus::terramech

@@ -1,0 +1,19 @@
+#include <terramech/shear_displacement.hpp>
+
+namespace talus::terramech {
+
+double ShearDisplacement::signChange_rad(double lowest_rad) const {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  // j grows from 0 at the entry only if q cos theta_1 < 1, is largest where q cos theta = 1, and falls below
+  // that.
+  if (p_.slip >= 0.0 || !(travel_ * std::cos(p_.entry_angle_rad) < 1.0)) return kNone;
+  double positive = std::acos(1.0 / travel_), negative = lowest_rad;
+  if (at_m(negative) >= 0.0) return kNone;
+  for (int step = 0; step < 60; ++step) {
+    const double middle = 0.5 * (positive + negative);
+    (at_m(middle) > 0.0 ? positive : negative) = middle;
+  }
+  return 0.5 * (positive + negative);
+}
+
+}  // namespace talus::terramech

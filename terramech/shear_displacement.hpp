@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+namespace talus::terramech {
+
+/// Wheel travel per rolled arc, v / (r omega) [-], at a slip in [-1, 1]:
+///   driven (slip >= 0): slip = 1 - v/(r omega), so 1 - slip; 0 for a wheel that spins in place;
+///   braked (slip < 0):  slip = r omega/v - 1,   so 1/(1 + slip); infinite for a locked wheel.
+/// Both agree at slip 0. (wong_2008, driven slip and skid)
+inline double travelRatio(double slip) {
+  if (slip >= 0.0) return 1.0 - slip;
+  return slip > -1.0 ? 1.0 / (1.0 + slip) : std::numeric_limits<double>::infinity();
+}
+
+/// Shear displacement of the soil along a rim (thesis C.6, with travelRatio() in place of 1 - i so that it
+/// holds for braked wheels too): j(theta) = r [(theta_1 - theta) - q (sin theta_1 - sin theta)], the path of
+/// a rim point over the soil since it entered at theta_1. Positive where the rim drags the soil backwards.
+class ShearDisplacement {
+ public:
+  /// What it depends on.
+  struct Parameters {
+    double radius_m;         ///< > 0
+    double slip;             ///< [-1, 1]
+    double entry_angle_rad;  ///< theta_1 in (0, pi/2]
+  };
+
+  explicit ShearDisplacement(const Parameters& p)
+      : p_(p), travel_(travelRatio(p.slip)), sin_entry_(std::sin(p.entry_angle_rad)) {}
+
+  double radius_m() const { return p_.radius_m; }
+  double entryAngle_rad() const { return p_.entry_angle_rad; }
+
+  /// j [m] at theta < theta_1; minus infinity everywhere behind the entry of a locked wheel.
+  double at_m(double theta_rad) const {
+    return p_.radius_m * ((p_.entry_angle_rad - theta_rad) - travel_ * (sin_entry_ - std::sin(theta_rad)));
+  }
+
+  /// The angle in (lowest_rad, theta_1) where j passes zero, or NaN where it keeps its sign. Only a braked or
+  /// towed wheel has one: its rim runs ahead of the soil at the entry and lags behind it below.
+  double signChange_rad(double lowest_rad) const;
+
+ private:
+  Parameters p_;
+  double travel_;
+  double sin_entry_;
+};
+
+}  // namespace talus::terramech
