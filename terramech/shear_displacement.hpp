@@ -8,7 +8,7 @@ namespace talus::terramech {
 /// Wheel travel per rolled arc, v / (r omega) [-], at a slip in [-1, 1]:
 ///   driven (slip >= 0): slip = 1 - v/(r omega), so 1 - slip; 0 for a wheel that spins in place;
 ///   braked (slip < 0):  slip = r omega/v - 1,   so 1/(1 + slip); infinite for a locked wheel.
-/// Both agree at slip 0. (wong_2008, driven slip and skid)
+/// Both agree at slip 0. (wong_2001, driven slip and skid)
 inline double travelRatio(double slip) {
   if (slip >= 0.0) return 1.0 - slip;
   return slip > -1.0 ? 1.0 / (1.0 + slip) : std::numeric_limits<double>::infinity();
