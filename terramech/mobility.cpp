@@ -1,0 +1,161 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <stdexcept>
+#include <vector>
+
+#include <terramech/mobility.hpp>
+#include <terramech/range.hpp>
+#include <terramech/wong_reece.hpp>
+
+namespace talus::terramech {
+namespace {
+
+/// One steady drive: the slope that a slip holds on.
+struct Drive {
+  double slip;
+  double slope_rad;
+  WheelForces wheel;
+};
+
+/// The slope on which a wheel at this slip drives steadily: DP(i, W cos alpha) = W sin alpha. A fixed point,
+/// since DP/N hardly depends on the load N. None where the soil cannot carry the wheel.
+std::optional<Drive> driveAt(const Soil& soil, const Rover& rover, double slip) {
+  const double weight_N = wheelLoad_N(rover);
+  Drive drive{slip, 0.0, {}};
+  try {
+    for (int iteration = 0; iteration < 60; ++iteration) {
+      const double load_N = weight_N * std::cos(drive.slope_rad);
+      drive.wheel = equilibrium(soil, rover.wheel, {.load_N = load_N, .slip = slip});
+      const double slope = std::atan(drive.wheel.drawbar_pull_N / load_N);
+      const double change = std::abs(slope - drive.slope_rad);
+      drive.slope_rad = slope;
+      if (change < 1e-10) break;
+    }
+  } catch (const std::domain_error&) {
+    return std::nullopt;
+  }
+  return drive;
+}
+
+/// Drives at rising slip from a start, as long as the slope keeps rising (sign 1) or falling (sign -1).
+void follow(const Soil& soil, const Rover& rover, const std::vector<double>& slips, double sign,
+            std::vector<Drive>& drives) {
+  for (const double slip : slips) {
+    const auto drive = driveAt(soil, rover, slip);
+    if (!drive) return;
+    if (drives.empty() || sign * (drive->slope_rad - drives.back().slope_rad) > 1e-9)
+      drives.push_back(*drive);
+  }
+}
+
+/// Slips of the table: closer near 0, where slope changes fastest with slip, and near 1.
+std::vector<double> drivenSlips() {
+  std::vector<double> slips;
+  for (int k = 0; k <= 40; ++k) slips.push_back(0.5 * (1.0 - std::cos(std::numbers::pi * k / 40.0)));
+  return slips;
+}
+
+std::vector<double> brakedSlips() {
+  std::vector<double> slips;
+  for (int k = 0; k <= 24; ++k) slips.push_back(-0.5 * (1.0 - std::cos(std::numbers::pi * k / 24.0)));
+  return slips;
+}
+
+/// All steady drives, slope strictly rising.
+std::vector<Drive> steadyDrives(const Soil& soil, const Rover& rover) {
+  std::vector<Drive> up, down;
+  follow(soil, rover, drivenSlips(), 1.0, up);
+  follow(soil, rover, brakedSlips(), -1.0, down);
+  if (!down.empty()) up.insert(up.begin(), down.rbegin(), down.rend() - 1);
+  return up;
+}
+
+MobilityReference flatAt(const Soil& soil, const Rover& rover, double slip) {
+  const WheelOperation operation{.load_N = wheelLoad_N(rover), .slip = slip};
+  const auto over = [&](const WheelForces& f, double load_N) {
+    return MobilityReference{slip, f.drawbar_pull_N / load_N, f.sinkage_m / rover.wheel.radius_m,
+                             f.torque_Nm / (load_N * rover.wheel.radius_m)};
+  };
+  try {
+    return over(equilibrium(soil, rover.wheel, operation), operation.load_N);
+  } catch (const std::domain_error&) {
+    const auto axle = forcesAtEntry(soil, rover.wheel, operation, 0.5 * std::numbers::pi);
+    return over(axle.forces, operation.load_N);
+  }
+}
+
+}  // namespace
+
+MobilityCurve::MobilityCurve(const Soil& soil, const Rover& rover, const MobilityOptions& options)
+    : rover_(rover), options_(options) {
+  validate(soil);
+  validate(rover);
+  const RangeCheck check{"mobility options"};
+  check.within("reference_slip", options.reference_slip, {1e-6, 1.0 - 1e-6});
+  check.within("max_slip", options.max_slip, {1e-6, 1.0});
+  reference_ = strongest_ = flatAt(soil, rover, options.reference_slip);
+  const std::vector<Drive> drives = steadyDrives(soil, rover);
+  if (drives.size() < 2) return;
+  std::vector<double> slope, slip, sinkage, torque;
+  for (const Drive& drive : drives) {
+    slope.push_back(drive.slope_rad);
+    slip.push_back(drive.slip);
+    sinkage.push_back(drive.wheel.sinkage_m);
+    torque.push_back(drive.wheel.torque_Nm);
+  }
+  min_slope_rad_ = slope.front();
+  max_slope_rad_ = slope.back();
+  locked_pull_ = std::tan(min_slope_rad_);
+  strongest_ = flatAt(soil, rover, drives.back().slip);
+  slip_ = {slope, slip};
+  sinkage_m_ = {slope, sinkage};
+  torque_Nm_ = {slope, torque};
+}
+
+MobilityState MobilityCurve::at(double slope_rad) const noexcept {
+  MobilityState state;
+  const double demand = std::tan(slope_rad);
+  state.drawbar_pull_margin = reference_.drawbar_pull_over_load - demand;
+  if (max_slope_rad_ < min_slope_rad_) {
+    state.slip = 1.0;
+    state.sinkage_m = rover_.wheel.radius_m;
+    return state;
+  }
+  state.drawbar_pull_margin = std::min(state.drawbar_pull_margin, demand - locked_pull_);
+  state.slip = slip_.at(slope_rad);
+  state.sinkage_m = sinkage_m_.at(slope_rad);
+  state.torque_Nm = torque_Nm_.at(slope_rad);
+  state.speed_mps = rover_.max_speed_mps * (1.0 - std::max(state.slip, 0.0));
+  // P = count T omega + P_hotel with omega = v / (r (1 - i)); a braking wheel gives nothing back.
+  const double drive_J_per_m = std::max(state.torque_Nm, 0.0) * rover_.wheel_count *
+                               (state.slip < 0.0 ? 1.0 + state.slip : 1.0 / (1.0 - state.slip)) /
+                               rover_.wheel.radius_m;
+  state.energy_J_per_m = drive_J_per_m + rover_.hotel_power_W / state.speed_mps;
+  state.feasible = slope_rad >= min_slope_rad_ && slope_rad <= max_slope_rad_ &&
+                   state.slip <= options_.max_slip && std::abs(state.torque_Nm) <= rover_.max_torque_Nm;
+  return state;
+}
+
+double slipOnSlope(const Soil& soil, const Rover& rover, double slope_rad) {
+  const double load_N = wheelLoad_N(rover) * std::cos(slope_rad);
+  const auto excess = [&](double slip) {
+    return equilibrium(soil, rover.wheel, {.load_N = load_N, .slip = slip}).drawbar_pull_N / load_N -
+           std::tan(slope_rad);
+  };
+  double low = excess(0.0) > 0.0 ? -1.0 : 0.0, high = low < 0.0 ? 0.0 : 0.01;
+  if (low < 0.0 && excess(-1.0) > 0.0) throw std::domain_error("locked wheels slide down this slope");
+  while (excess(high) < 0.0) {
+    if (high >= 1.0) throw std::domain_error("no slip pulls the rover up this slope");
+    low = high;
+    high = std::min(1.0, high + 0.01);
+  }
+  for (int step = 0; step < 50; ++step) {
+    const double middle = 0.5 * (low + high);
+    (excess(middle) < 0.0 ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+}  // namespace talus::terramech
