@@ -1,0 +1,183 @@
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <terramech/contact_geometry.hpp>
+#include <terramech/linear_offset.hpp>
+#include <terramech/linear_stress.hpp>
+#include <terramech/scalar_minimum.hpp>
+#include <terramech/shear_modulus.hpp>
+
+namespace talus::terramech {
+namespace {
+
+void require(std::size_t samples, std::size_t least) {
+  if (samples >= least) return;
+  throw std::domain_error("shear modulus: " + std::to_string(least) + " samples at least, got " +
+                          std::to_string(samples));
+}
+
+bool atBound(double modulus, ModulusRange range) {
+  return modulus < 1.001 * range.low_m || modulus > 0.999 * range.high_m;
+}
+
+// (M3, M4) and the weight that turns a residual in M4 into one in relative torque: residual = w (M4 - c - M3
+// t)/M4.
+struct WeightedPair {
+  StressPair pair;
+  double weight;
+};
+
+WeightedPair torqueWeighted(const Wheel& wheel, const WheelSample& sample, double modulus) {
+  const StressPair pair = linearOffset(wheel, sample, modulus).pair();
+  return {.pair = pair, .weight = 1.0 / (pair.shear_Pa * pair.shear_Pa)};
+}
+
+double relativeTorqueError(const Wheel& wheel, std::span<const WheelSample> samples, double modulus) {
+  MohrCoulombLine line;
+  for (const WheelSample& s : samples) {
+    const auto [pair, weight] = torqueWeighted(wheel, s, modulus);
+    line.add(pair, weight);
+  }
+  return line.relativeResidual();
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+ModulusEstimate medianModulus(const std::vector<double>& values) {
+  if (values.empty()) {
+    throw std::domain_error(
+        "shear modulus by effective torque: no sample slips less, at less torque per load, than the "
+        "one at the highest slip; vary the slip");
+  }
+  const double middle = median(values);
+  std::vector<double> spread;
+  for (const double v : values) spread.push_back(std::abs(v - middle));
+  return {.shear_modulus_m = middle, .error = median(std::move(spread))};
+}
+
+const WheelSample& highestSlip(std::span<const WheelSample> samples) {
+  require(samples.size(), 2);
+  return *std::ranges::max_element(samples, {}, &WheelSample::slip);
+}
+
+double torquePerLoad(const WheelSample& s) {
+  return s.torque_Nm / s.load_N;
+}
+
+// A(K)/A_max(K) falls from 1 at K = 0 to j/j_max: bisection in log K.
+std::optional<double> solveRatio(double ratio, double j, double j_max, ModulusRange range) {
+  const auto excess = [&](double k) { return std::expm1(-j / k) / std::expm1(-j_max / k) - ratio; };
+  double low = range.low_m;
+  double high = range.high_m;
+  if (!(excess(low) > 0.0) || !(excess(high) < 0.0)) return std::nullopt;
+  while (high > low * (1.0 + 1e-12)) {
+    const double middle = std::sqrt(low * high);
+    (excess(middle) > 0.0 ? low : high) = middle;
+  }
+  return low;
+}
+
+}  // namespace
+
+double modulusError_Pa(const Wheel& wheel, std::span<const WheelSample> samples, double shear_modulus_m) {
+  std::vector<StressPair> points;
+  MohrCoulombLine line;
+  for (const WheelSample& s : samples) {
+    points.push_back(linearOffset(wheel, s, shear_modulus_m).pair());
+    line.add(points.back());
+  }
+  const ShearStrength fit = line.estimate();
+  double sum = 0.0;
+  for (const auto& [x, y] : points) sum += std::abs(y - fit.cohesion_Pa - fit.tan_friction * x);
+  return sum / std::hypot(1.0, fit.tan_friction);
+}
+
+ModulusEstimate modulusByErrorMinimisation(const Wheel& wheel, std::span<const WheelSample> samples,
+                                           ModulusRange range) {
+  require(samples.size(), 3);
+  const auto error = [&](double k) { return modulusError_Pa(wheel, samples, k); };
+  const Minimum best = globalMinimum(error, range.low_m, range.high_m);
+  return {.shear_modulus_m = best.at, .error = best.value, .at_bound = atBound(best.at, range)};
+}
+
+ModulusEstimate modulusByEffectiveTorque(const Wheel& wheel, std::span<const WheelSample> samples) {
+  const WheelSample& fastest = highestSlip(samples);
+  std::vector<double> values;
+  for (const WheelSample& s : samples) {
+    const double ratio = torquePerLoad(s) / torquePerLoad(fastest);
+    const double j = peakShearDisplacement_m(wheel, s);
+    if (s.slip < fastest.slip && ratio > 0.0 && ratio < 1.0 && j > 0.0)
+      values.push_back(-j / std::log1p(-ratio));
+  }
+  return medianModulus(values);
+}
+
+ModulusEstimate modulusByTorqueRatio(const Wheel& wheel, std::span<const WheelSample> samples,
+                                     ModulusRange range) {
+  const WheelSample& fastest = highestSlip(samples);
+  const double j_max = peakShearDisplacement_m(wheel, fastest);
+  std::vector<double> values;
+  for (const WheelSample& s : samples) {
+    const double j = peakShearDisplacement_m(wheel, s);
+    if (!(s.slip < fastest.slip) || !(j > 0.0)) continue;
+    if (const auto k = solveRatio(torquePerLoad(s) / torquePerLoad(fastest), j, j_max, range))
+      values.push_back(*k);
+  }
+  return medianModulus(values);
+}
+
+ModulusEstimate modulusJointly(const Wheel& wheel, std::span<const WheelSample> samples, ModulusRange range) {
+  require(samples.size(), 4);
+  const auto error = [&](double k) { return relativeTorqueError(wheel, samples, k); };
+  const Minimum best = globalMinimum(error, range.low_m, range.high_m);
+  return {.shear_modulus_m = best.at, .error = best.value, .at_bound = atBound(best.at, range)};
+}
+
+ModulusLadder::ModulusLadder(const Wheel& wheel, ModulusRange range) : wheel_(wheel), range_(range) {}
+
+double ModulusLadder::rung_m(std::size_t index) const {
+  return range_.low_m *
+         std::pow(range_.high_m / range_.low_m, static_cast<double>(index) / static_cast<double>(kRungs - 1));
+}
+
+bool ModulusLadder::add(const WheelSample& sample) {
+  if (!(sample.torque_Nm > 0.0) || !(peakShearDisplacement_m(wheel_, sample) > 0.0)) return false;
+  for (std::size_t i = 0; i < kRungs; ++i) {
+    const auto [pair, weight] = torqueWeighted(wheel_, sample, rung_m(i));
+    lines_[i].add(pair, weight);
+  }
+  return true;
+}
+
+std::size_t ModulusLadder::best() const {
+  require(lines_.front().samples(), 4);
+  std::size_t index = 0;
+  for (std::size_t i = 1; i < kRungs; ++i) {
+    if (lines_[i].relativeResidual() < lines_[index].relativeResidual()) index = i;
+  }
+  return index;
+}
+
+ModulusEstimate ModulusLadder::modulus() const {
+  const std::size_t i = best();
+  const double error = lines_[i].relativeResidual();
+  if (i == 0 || i + 1 == kRungs) return {.shear_modulus_m = rung_m(i), .error = error, .at_bound = true};
+  const double before = std::pow(lines_[i - 1].relativeResidual(), 2);
+  const double after = std::pow(lines_[i + 1].relativeResidual(), 2);
+  const double shift = 0.5 * (before - after) / (before - 2.0 * error * error + after);
+  return {.shear_modulus_m = rung_m(i) * std::pow(rung_m(1) / rung_m(0), shift), .error = error};
+}
+
+ShearStrength ModulusLadder::strength() const {
+  return lines_[best()].estimate();
+}
+
+}  // namespace talus::terramech
