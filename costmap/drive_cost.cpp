@@ -13,22 +13,69 @@ std::uint32_t CellCode::quantised(double gradient) noexcept {
   return static_cast<std::uint32_t>(static_cast<int>(std::isnan(steps) ? 0.0 : steps)) & 0xfffu;
 }
 
+int DriveCurve::bin(double gradient) noexcept {
+  return static_cast<int>(std::lround(gradient * 256.0)) + kBins / 2;
+}
+
+namespace {
+
+struct Demand {
+  double along;
+  double across;
+};
+
+Demand demand(CellCode cell, Direction heading) noexcept {
+  return {cell.dzDx() * heading.x + cell.dzDy() * heading.y,
+          cell.dzDy() * heading.x - cell.dzDx() * heading.y};
+}
+
+std::vector<DriveCurve> curvesOf(const std::vector<DriveGround>& grounds) {
+  std::vector<DriveCurve> curves;
+  for (const DriveGround& ground : grounds) curves.push_back(ground.curve);
+  return curves;
+}
+
+DriveState refused(Refusal reason) noexcept {
+  DriveState state;
+  state.refusal = reason;
+  return state;
+}
+
+}  // namespace
+
 DriveCost::DriveCost(const Limits& limits, std::vector<DriveCurve> curves)
-    : limits_(limits), curves_(std::move(curves)) {
+    : limits_(limits), curves_(std::move(curves)), states_(curves_.size()) {
   if (curves_.size() > CellCode::kUnknown)
     throw std::invalid_argument("DriveCost: " + std::to_string(curves_.size()) +
                                 " drive curves, must be <= 254");
 }
 
+DriveCost::DriveCost(const Limits& limits, const std::vector<DriveGround>& grounds)
+    : DriveCost(limits, curvesOf(grounds)) {
+  for (std::size_t i = 0; i < grounds.size(); ++i) states_[i] = grounds[i].states;
+}
+
 float DriveCost::costPerMetre(CellCode cell, Direction heading) const noexcept {
   constexpr float blocked = std::numeric_limits<float>::infinity();
   if (cell.curve() >= curves_.size()) return blocked;
-  const double along = cell.dzDx() * heading.x + cell.dzDy() * heading.y;
-  const double across = cell.dzDy() * heading.x - cell.dzDx() * heading.y;
-  if (std::abs(along) > limits_.max_along || std::abs(across) > limits_.max_across) return blocked;
-  const int bin = static_cast<int>(std::lround(along * 256.0)) + DriveCurve::kBins / 2;
+  const Demand d = demand(cell, heading);
+  if (std::abs(d.along) > limits_.max_along || std::abs(d.across) > limits_.max_across) return blocked;
+  const int bin = DriveCurve::bin(d.along);
   if (bin < 0 || bin >= DriveCurve::kBins) return blocked;
   return curves_[cell.curve()].cost_J_per_m[static_cast<std::size_t>(bin)];
+}
+
+DriveState DriveCost::detail(CellCode cell, Direction heading) const noexcept {
+  if (cell.curve() == CellCode::kBlocked) return refused(Refusal::Blocked);
+  if (cell.curve() >= curves_.size()) return refused(Refusal::Unknown);
+  const Demand d = demand(cell, heading);
+  const int bin = std::clamp(DriveCurve::bin(d.along), 0, DriveCurve::kBins - 1);
+  const auto& table = states_[cell.curve()];
+  DriveState state = table ? (*table)[static_cast<std::size_t>(bin)] : DriveState{};
+  if (std::abs(d.across) > limits_.max_across) state.refusal = Refusal::Roll;
+  if (std::abs(d.along) > limits_.max_along || bin != DriveCurve::bin(d.along))
+    state.refusal = Refusal::Pitch;
+  return state;
 }
 
 }  // namespace talus::costmap

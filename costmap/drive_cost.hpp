@@ -5,6 +5,8 @@
 #include <memory>
 #include <vector>
 
+#include <costmap/drive_state.hpp>
+
 namespace talus::costmap {
 
 /// A heading as a unit vector in the map frame (x east, y north).
@@ -55,6 +57,17 @@ class CellCode {
 struct DriveCurve {
   static constexpr int kBins = 512;
   std::array<float, kBins> cost_J_per_m;  ///< energy + weighted time + weighted risk, in joules
+
+  /// The bin of a gradient; outside 0..kBins-1 when the gradient leaves the table.
+  static int bin(double gradient) noexcept;
+  /// The gradient at the middle of a bin.
+  static constexpr double gradient(int bin) noexcept { return (bin - kBins / 2) / 256.0; }
+};
+
+/// One kind of ground: what a metre costs for the hot loop, and the numbers behind it.
+struct DriveGround {
+  DriveCurve curve;
+  std::shared_ptr<const DriveTable> states;  ///< may be null where nobody asks for details (tests)
 };
 
 /// The one cost function: what grid search, sampling planners, the final check and the reports all call.
@@ -67,10 +80,16 @@ class DriveCost {
     double max_across = 0.36;  ///< steepest gradient across the heading, tan(max roll)
   };
 
+  /// Throws std::invalid_argument for more than 254 curves.
   DriveCost(const Limits& limits, std::vector<DriveCurve> curves);
+  DriveCost(const Limits& limits, const std::vector<DriveGround>& grounds);
 
   /// Cost of driving one horizontal metre over the cell in a direction, in joules; infinite when not allowed.
   float costPerMetre(CellCode cell, Direction heading) const noexcept;
+
+  /// The numbers behind costPerMetre: finite cost exactly where refusal is None. Zeros, with the category
+  /// Unknown, where the curve has no table.
+  DriveState detail(CellCode cell, Direction heading) const noexcept;
 
   const Limits& limits() const noexcept { return limits_; }
   const std::vector<DriveCurve>& curves() const noexcept { return curves_; }
@@ -78,6 +97,7 @@ class DriveCost {
  private:
   Limits limits_;
   std::vector<DriveCurve> curves_;
+  std::vector<std::shared_ptr<const DriveTable>> states_;
 };
 
 }  // namespace talus::costmap

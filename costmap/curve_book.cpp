@@ -1,0 +1,75 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <utility>
+
+#include <costmap/curve_book.hpp>
+
+namespace talus::costmap {
+namespace {
+
+constexpr double kPullStep = 0.02;
+constexpr double kPullStdUnit = 0.02;
+constexpr double kSinkageStep = 0.1;
+
+int stepsOf(double value, double step) {
+  return static_cast<int>(std::lround(value / step));
+}
+
+// Power of two of the unit that is nearest above: a doubt is never rounded down.
+int octave(double value, double unit) {
+  return std::clamp(static_cast<int>(std::ceil(std::log2(std::max(value, 1e-6) / unit))), -1, 4);
+}
+
+}  // namespace
+
+CurveBook::CurveBook(std::shared_ptr<const GroundModel> model) : model_(std::move(model)) {
+  const int classes = static_cast<int>(model_->parts().classes.size());
+  for (int i = 0; i < classes; ++i) grounds_.push_back(model_->ground(i, model_->prior(i)));
+}
+
+CurveBook::Key CurveBook::rounded(int class_index, const GroundBelief& belief) noexcept {
+  return {.class_index = class_index,
+          .pull = stepsOf(belief.pull.mean, kPullStep),
+          .pull_std = octave(belief.pull.std, kPullStdUnit),
+          .sinkage = stepsOf(belief.sinkage.mean, kSinkageStep)};
+}
+
+std::uint8_t CurveBook::learned(int class_index, const GroundBelief& belief) {
+  const Key key = rounded(class_index, belief);
+  if (const auto known = numbers_.find(key); known != numbers_.end()) return known->second;
+  if (grounds_.size() >= CellCode::kUnknown) return nearest(key);
+  const GroundBelief middle{.pull = {key.pull * kPullStep, std::ldexp(kPullStdUnit, key.pull_std)},
+                            .sinkage = {std::max(key.sinkage * kSinkageStep, 0.0), belief.sinkage.std}};
+  const auto number = static_cast<std::uint8_t>(grounds_.size());
+  grounds_.push_back(model_->ground(class_index, middle));
+  numbers_.emplace(key, number);
+  cost_.reset();
+  return number;
+}
+
+std::uint8_t CurveBook::nearest(const Key& key) const noexcept {
+  std::uint8_t best = prior(key.class_index);
+  int least = std::numeric_limits<int>::max();
+  for (const auto& [known, number] : numbers_) {
+    const int distance = 4 * std::abs(known.pull - key.pull) + 2 * std::abs(known.pull_std - key.pull_std) +
+                         3 * std::abs(known.sinkage - key.sinkage);
+    if (known.class_index != key.class_index || distance >= least) continue;
+    least = distance;
+    best = number;
+  }
+  return best;
+}
+
+void CurveBook::setPrior(int class_index, const GroundBelief& belief) {
+  grounds_[static_cast<std::size_t>(class_index)] = model_->ground(class_index, belief);
+  cost_.reset();
+}
+
+std::shared_ptr<const DriveCost> CurveBook::cost() const {
+  if (!cost_) cost_ = std::make_shared<DriveCost>(model_->limits(), grounds_);
+  return cost_;
+}
+
+}  // namespace talus::costmap

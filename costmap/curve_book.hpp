@@ -1,0 +1,50 @@
+#pragma once
+
+#include <compare>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include <costmap/ground_model.hpp>
+
+namespace talus::costmap {
+
+/// Gives curve numbers to beliefs. The priors of the classes are numbers 0 .. classes-1, exactly; a learned
+/// belief is rounded (pull 0.02, sinkage 0.1, standard deviations to a power of two of 0.02 and 0.05) and
+/// gets its number when it first occurs. When the 254 numbers are used up, the nearest belief of the same
+/// class stands in. Not thread-safe.
+class CurveBook {
+ public:
+  explicit CurveBook(std::shared_ptr<const GroundModel> model);
+
+  /// Number of ground of a class that nobody drove on.
+  std::uint8_t prior(int class_index) const noexcept { return static_cast<std::uint8_t>(class_index); }
+  /// Number of ground under a learned belief.
+  std::uint8_t learned(int class_index, const GroundBelief& belief);
+
+  /// Replaces the belief of a class prior, after its soil was learned.
+  void setPrior(int class_index, const GroundBelief& belief);
+
+  /// The cost function over all numbers given so far; the same object until one is added.
+  std::shared_ptr<const DriveCost> cost() const;
+
+ private:
+  struct Key {
+    int class_index;
+    int pull;
+    int pull_std;
+    int sinkage;
+    auto operator<=>(const Key&) const = default;
+  };
+
+  static Key rounded(int class_index, const GroundBelief& belief) noexcept;
+  std::uint8_t nearest(const Key& key) const noexcept;
+
+  std::shared_ptr<const GroundModel> model_;
+  std::vector<DriveGround> grounds_;
+  std::map<Key, std::uint8_t> numbers_;
+  mutable std::shared_ptr<const DriveCost> cost_;
+};
+
+}  // namespace talus::costmap

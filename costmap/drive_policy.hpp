@@ -1,0 +1,26 @@
+#pragma once
+
+#include <numbers>
+
+namespace talus::costmap {
+
+/// What a mission allows and what its cost weighs. Plain data.
+struct DrivePolicy {
+  bool allow_marginal = true;    ///< drive ground whose category at the slope along the heading is marginal
+  bool allow_dangerous = false;  ///< drive dangerous ground too, as long as the soil can give the pull
+  bool allow_unknown = false;    ///< treat cells without elevation as flat ground of the default class
+
+  double slope_margin_rad =
+      5.0 * std::numbers::pi / 180.0;  ///< category edges: tan(slope -+ margin), thesis 3.5: 5 deg
+  double sinkage_threshold = 0.5;      ///< sinkage over radius below which the category stays, thesis 3.5 [-]
+  double sinkage_critical =
+      0.0;  ///< above which ground is dangerous [-]; 0: the rover's clearance over wheel radius
+  double max_immobilisation =
+      0.5;  ///< refuse where the soil's pull falls short of the demand with more than this P [-]
+
+  double time_weight_W = 1.0;         ///< joules that one second is worth
+  double risk_weight_J = 1e7;         ///< joules that the loss of the rover is worth
+  double correlation_length_m = 5.0;  ///< over which the soil of one class stays alike
+};
+
+}  // namespace talus::costmap

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include <terramech/category.hpp>
+
+namespace talus::costmap {
+
+/// Why a motion over a cell is refused.
+enum class Refusal : std::uint8_t {
+  None,      ///< allowed
+  Unknown,   ///< nobody has seen the cell
+  Blocked,   ///< a hazard that no heading avoids; the map knows which
+  Pitch,     ///< steeper along the heading than the rover may pitch
+  Roll,      ///< steeper across the heading than the rover may roll
+  Pull,      ///< the soil cannot give the pull that the slope asks for
+  Torque,    ///< the motors cannot give the torque
+  Sinkage,   ///< the wheels sink to where the belly touches
+  Category,  ///< the category at this slope is refused by the policy
+};
+
+/// The refusal in words for a person: "the soil cannot give the pull that the slope asks for".
+const char* toText(Refusal refusal) noexcept;
+
+/// What driving over one kind of ground at one gradient is like: the numbers behind a cost. A wheel's worth
+/// where it says wheel, else the rover's. Metres are horizontal.
+struct DriveState {
+  float slip = 0.0F;            ///< [-], driven > 0, braked < 0
+  float sinkage_m = 0.0F;       ///< of a wheel
+  float torque_Nm = 0.0F;       ///< on a wheel
+  float energy_J_per_m = 0.0F;  ///< drive and hotel, expected over the belief
+  float time_s_per_m = 0.0F;    ///< expected over the belief
+  float risk_per_m = 0.0F;      ///< hazard rate of immobilisation: P over d metres = 1 - exp(-risk_per_m d)
+  float pull_margin = 0.0F;     ///< drawbar pull over load at the reference slip minus the slope's demand [-]
+  terramech::Category category = terramech::Category::Unknown;  ///< at this gradient along the heading
+  Refusal refusal = Refusal::None;
+};
+
+/// A curve's numbers over the gradient, the bins of DriveCurve.
+using DriveTable = std::array<DriveState, 512>;
+
+}  // namespace talus::costmap

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <costmap/drive_cost.hpp>
+#include <costmap/drive_policy.hpp>
+#include <terramech/category.hpp>
+#include <terramech/mobility.hpp>
+#include <terramech/rover.hpp>
+#include <terramech/soil.hpp>
+
+namespace talus::costmap {
+
+/// A number and how far it may be off.
+struct Estimate {
+  double mean = 0.0;
+  double std = 0.0;
+};
+
+/// A terrain class as a prior for the ground of its cells. Plain data.
+struct GroundClass {
+  int number = 0;            ///< in the terrain-class raster
+  terramech::Soil soil;      ///< its mean soil
+  double pull_std = 0.05;    ///< how drawbar pull over load differs from place to place within the class [-]
+  double mean_std = 0.05;    ///< how far the class as a whole may be off [-]
+  double sinkage_std = 0.1;  ///< sinkage over radius, place to place [-]
+};
+
+/// What is believed of the strength of a piece of ground, both at the reference slip 0.5.
+struct GroundBelief {
+  Estimate pull;     ///< drawbar pull over load [-]
+  Estimate sinkage;  ///< sinkage over wheel radius [-]
+};
+
+/// A category and the probability that it is that one.
+struct Ranked {
+  terramech::Category category = terramech::Category::Unknown;
+  double probability = 0.0;
+};
+
+/// The ground of one rover on one body: per class the mobility curve of its soil, and from it what any belief
+/// costs. Ground whose pull is believed to be less than its class's by d drives as the class does on a slope
+/// steeper by d: the shift of the curve is the extra resistance or missing thrust (ours; at the reference
+/// slip it is exact). Immutable.
+class GroundModel {
+ public:
+  /// Everything the model is made from.
+  struct Parts {
+    terramech::Rover rover;
+    std::vector<GroundClass> classes;  ///< the first is the default, for cells without a class
+    DrivePolicy policy;
+  };
+
+  /// Throws std::invalid_argument when there is no class, two share a number, or a field leaves its range.
+  explicit GroundModel(Parts parts);
+
+  const Parts& parts() const noexcept { return parts_; }
+  const terramech::Rover& rover() const noexcept { return parts_.rover; }
+
+  /// Position in parts().classes of a class number, or -1 when no soil is declared for it.
+  int classIndex(int number) const noexcept;
+
+  /// Belief before any evidence.
+  GroundBelief prior(int class_index) const;
+
+  /// Drive curve and states of ground of a class under a belief; `demoted`: one category lower (rocks,
+  /// doubtful map).
+  DriveGround ground(int class_index, const GroundBelief& belief, bool demoted = false) const;
+
+  /// State at one gradient along the heading (rise over run), as ground() tabulates it.
+  DriveState state(int class_index, const GroundBelief& belief, double gradient) const;
+
+  /// Cost of one horizontal metre [J]; infinite when refused.
+  double cost_J_per_m(const DriveState& state) const noexcept;
+
+  /// Category of ground at a gradient, worst over headings when given the plane's own, and its probability
+  /// under the belief.
+  Ranked category(const GroundBelief& belief, double gradient) const;
+
+  DriveCost::Limits limits() const;
+
+ private:
+  terramech::Category categoryAt(double pull, double sinkage, double gradient) const;
+
+  Parts parts_;
+  std::vector<terramech::MobilityCurve> curves_;
+};
+
+}  // namespace talus::costmap

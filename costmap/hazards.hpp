@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+
+#include <costmap/cell_belief.hpp>
+#include <maps/grid.hpp>
+#include <maps/terrain_metrics.hpp>
+#include <terramech/rover.hpp>
+
+namespace talus::costmap {
+
+/// What the ground's shape may be before a rover is stopped by it, whatever the soil. Plain data; of() fills
+/// it from a rover.
+struct HazardLimits {
+  double max_gradient = 0.36;         ///< steeper than this no heading keeps pitch and roll in bounds [-]
+  double max_step_m = 0.1;            ///< highest edge within one wheelbase, of the belly's clearance
+  double max_roughness_m = 0.05;      ///< rms departure from the plane within one wheelbase
+  double rock_diameter_m = 0.2;       ///< smallest rock that it cannot straddle or climb
+  double rock_area_m2 = 1.0;          ///< footprint that must be free of such rocks
+  double max_rock_probability = 0.5;  ///< refuse where such a rock is likelier than this [-]
+  double wheelbase_m = 1.0;           ///< span over which relief counts as a step
+  double inflation_m = 0.0;           ///< keep the centre this far from keep-out, impassable and unseen cells
+
+  /// Limits of a rover: step and rock height up to its clearance, roughness up to a third of it, half its
+  /// width kept free.
+  static HazardLimits of(const terramech::Rover& rover);
+};
+
+/// What hazards are judged from; empty rasters are layers that nobody gave.
+struct HazardLayers {
+  const maps::TerrainMetrics& metrics;
+  const maps::Raster<float>& elevation_m;
+  const maps::Raster<float>& rock_abundance;
+  const maps::Raster<std::uint8_t>& keep_out;
+};
+
+/// Relief within one wheelbase: what the plane does not explain over a footprint of cells larger than the
+/// rover is bending of the ground rather than an edge, and counts in proportion (ours, not from the
+/// literature). Factor in (0, 1].
+double reliefShare(const HazardLimits& limits, double footprint_m);
+
+/// Every hazard of every cell. Terrain classes are the caller's; inflate() comes after them.
+maps::Raster<Hazard> findHazards(const HazardLayers& layers, const HazardLimits& limits);
+
+/// Marks as Near the cells whose centre lies within inflation_m of the edge of a keep-out, impassable or
+/// unseen cell.
+void inflate(maps::Raster<Hazard>& hazards, const HazardLimits& limits);
+
+}  // namespace talus::costmap

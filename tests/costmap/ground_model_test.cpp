@@ -1,0 +1,110 @@
+#include <cmath>
+#include <numbers>
+
+#include <site_fixture.hpp>
+
+#include <costmap/ground_model.hpp>
+
+namespace talus::costmap {
+namespace {
+
+using terramech::Category;
+
+GroundBelief certain(const GroundModel& model) {
+  GroundBelief belief = model.prior(0);
+  belief.pull.std = 0.0;
+  return belief;
+}
+
+TEST(GroundModel, CertainPriorIsTheSoilsOwnMobilityCurve) {
+  const auto model = testGround();
+  const terramech::MobilityCurve curve(testSand(), testRover());
+  for (const double gradient : {-0.2, -0.05, 0.0, 0.05, 0.1}) {
+    const auto expected = curve.at(std::atan(gradient));
+    const DriveState state = model->state(0, certain(*model), gradient);
+    // Closed form: no shift, no doubt; the horizontal metre is longer on the slope. Tolerance: float storage.
+    EXPECT_NEAR(state.slip, expected.slip, 1e-6);
+    EXPECT_NEAR(state.energy_J_per_m, expected.energy_J_per_m * std::hypot(1.0, gradient), 1e-3);
+    EXPECT_NEAR(state.torque_Nm, expected.torque_Nm, 1e-5);
+  }
+}
+
+TEST(GroundModel, GroundWeakerByDDrivesLikeASlopeSteeperByD) {
+  const auto model = testGround();
+  GroundBelief weaker = certain(*model);
+  weaker.pull.mean -= 0.04;
+  // Property: the definition of the shift.
+  EXPECT_NEAR(model->state(0, weaker, 0.03).slip, model->state(0, certain(*model), 0.07).slip, 1e-6);
+}
+
+TEST(GroundModel, ClimbingCostsMoreThanDescending) {
+  const auto model = testGround();
+  const GroundBelief belief = certain(*model);
+  EXPECT_GT(model->cost_J_per_m(model->state(0, belief, 0.1)),
+            model->cost_J_per_m(model->state(0, belief, -0.1)));
+}
+
+TEST(GroundModel, CategoryFollowsThePullThatTheSlopeAsksFor) {
+  const auto model = testGround();
+  const double margin = model->parts().policy.slope_margin_rad;
+  const auto at = [&](double pull) {
+    return model->category({.pull = {pull, 0.0}, .sinkage = {0.1, 0.0}}, std::tan(0.2)).category;
+  };
+  // Closed form: thesis 3.5, edges at tan(slope -+ margin).
+  EXPECT_EQ(at(std::tan(0.2 + margin) + 1e-9), Category::Safe);
+  EXPECT_EQ(at(std::tan(0.2 + margin) - 1e-9), Category::Marginal);
+  EXPECT_EQ(at(std::tan(0.2 - margin) - 1e-9), Category::Dangerous);
+}
+
+TEST(GroundModel, CategoryProbabilityIsTheNormalTail) {
+  const auto model = testGround();
+  const double edge = std::tan(model->parts().policy.slope_margin_rad);
+  const Ranked ranked = model->category({.pull = {edge + 0.05, 0.05}, .sinkage = {0.1, 0.0}}, 0.0);
+  EXPECT_EQ(ranked.category, Category::Safe);
+  // Closed form: P(pull > edge) one standard deviation above it.
+  EXPECT_NEAR(ranked.probability, 0.5 * std::erfc(-1.0 / std::numbers::sqrt2), 1e-12);
+}
+
+TEST(GroundModel, RefusesWithTheReason) {
+  const auto model = testGround();
+  GroundBelief belief = certain(*model);
+  EXPECT_EQ(model->state(0, belief, 0.0).refusal, Refusal::None);
+  EXPECT_EQ(model->state(0, belief, belief.pull.mean + 0.02).refusal, Refusal::Pull);
+  belief.sinkage.mean *= 1e3;
+  EXPECT_EQ(model->state(0, belief, 0.0).refusal, Refusal::Sinkage);
+}
+
+TEST(GroundModel, DoubtCosts) {
+  const auto model = testGround();
+  GroundBelief doubtful = certain(*model);
+  doubtful.pull.std = 0.1;
+  EXPECT_GT(model->state(0, doubtful, 0.05).risk_per_m, 1e-6F);
+  EXPECT_GT(model->cost_J_per_m(model->state(0, doubtful, 0.05)),
+            model->cost_J_per_m(model->state(0, certain(*model), 0.05)));
+}
+
+TEST(GroundModel, DriveCostGivesFiniteCostExactlyWhereNothingRefuses) {
+  const auto model = testGround();
+  const DriveCost cost(model->limits(),
+                       {model->ground(0, model->prior(0)), model->ground(1, model->prior(1))});
+  for (const double slope : {0.0, 0.1, 0.2, 0.3, 0.5})
+    for (int step = 0; step < 32; ++step) {
+      const double angle = step * std::numbers::pi / 16.0;
+      const CellCode cell({.dz_dx = slope, .dz_dy = 0.0, .curve = static_cast<std::uint8_t>(step % 2)});
+      const Direction heading{std::cos(angle), std::sin(angle)};
+      const DriveState state = cost.detail(cell, heading);
+      EXPECT_EQ(std::isfinite(cost.costPerMetre(cell, heading)), state.refusal == Refusal::None)
+          << slope << " " << angle;
+    }
+}
+
+TEST(GroundModel, NamesWhatIsWrong) {
+  GroundModel::Parts parts{.rover = testRover(), .classes = {}, .policy = {}};
+  EXPECT_THROW(GroundModel{parts}, std::invalid_argument);
+  parts.classes = {GroundClass{.number = 1, .soil = testSand()},
+                   GroundClass{.number = 1, .soil = testDust()}};
+  EXPECT_THROW(GroundModel{parts}, std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace talus::costmap
