@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <costmap/cost_grid.hpp>
+#include <maps/grid.hpp>
+#include <planner/route.hpp>
+#include <talus.hpp>
+
+namespace talus::planner {
+
+/// What a planner is asked.
+struct Problem {
+  std::shared_ptr<const costmap::CostGrid> map;  ///< the version to plan on; pinned while planning runs
+  maps::Point start;
+  maps::Point goal;
+  double goal_tolerance_m = 0.0;  ///< a route may end this far from the goal, >= 0
+  std::vector<maps::Point> via;   ///< to be passed in this order
+  double time_limit_s = std::numeric_limits<double>::infinity();  ///< > 0
+  std::uint64_t seed = 1;                                         ///< same seed, same route
+  int threads = 1;                                                ///< >= 1; the answer does not depend on it
+  Watch watch;
+};
+
+/// What a planner answers: the bare polyline; annotated() makes a Route of it.
+struct Plan {
+  RouteStatus status = RouteStatus::NoRoute;
+  std::string reason;               ///< why there is no route and what to do about it; empty when Found
+  std::vector<maps::Point> points;  ///< start, turns, goal
+  double cost_J = std::numeric_limits<double>::infinity();  ///< exact, by MotionCost
+  double lower_bound_J = 0.0;                               ///< no route costs less
+};
+
+}  // namespace talus::planner

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <costmap/cost_grid.hpp>
+
+namespace talus::planner::testing {
+
+/// Cost of a metre in the tests: 10 J on the flat, more uphill than it gives back downhill, times a factor;
+/// refused beyond a gradient along the heading.
+struct Ground {
+  double factor = 1.0;
+  double steepest = 0.3;
+};
+
+inline costmap::DriveCurve curve(const Ground& ground) {
+  costmap::DriveCurve made;
+  for (int bin = 0; bin < costmap::DriveCurve::kBins; ++bin) {
+    const double g = (bin - costmap::DriveCurve::kBins / 2) / 256.0;
+    const double cost = ground.factor * (10.0 + 100.0 * std::max(g, 0.0) + 400.0 * g * g);
+    made.cost_J_per_m[static_cast<std::size_t>(bin)] =
+        static_cast<float>(std::abs(g) <= ground.steepest ? cost : std::numeric_limits<double>::infinity());
+  }
+  return made;
+}
+
+/// Curve k costs k + 1 times curve 0.
+inline std::shared_ptr<const costmap::DriveCost> driveCost(costmap::DriveCost::Limits limits = {}) {
+  std::vector<costmap::DriveCurve> curves;
+  for (int k = 0; k < 5; ++k) curves.push_back(curve({.factor = 1.0 + k}));
+  return std::make_shared<costmap::DriveCost>(limits, curves);
+}
+
+/// A map as drawn, north on top, cells of a metre, south-west corner at 0,0:
+/// '.' or a digit: flat ground of that curve; '#' blocked; '?' unknown; '^' 'v' '<' '>' climbs at 0.2 that
+/// way.
+inline std::shared_ptr<const costmap::CostGrid> drawn(const std::vector<std::string>& rows) {
+  const maps::Grid grid{.width = static_cast<int>(rows[0].size()),
+                        .height = static_cast<int>(rows.size()),
+                        .resolution_m = 1.0,
+                        .south_west = {}};
+  maps::Raster<costmap::CellCode> cells(grid);
+  for (int r = 0; r < grid.height; ++r)
+    for (int c = 0; c < grid.width; ++c) {
+      const char drawing = rows[static_cast<std::size_t>(grid.height - 1 - r)][static_cast<std::size_t>(c)];
+      costmap::CellCode::Parts parts{.curve = 0};
+      if (drawing >= '0' && drawing <= '9') parts.curve = static_cast<std::uint8_t>(drawing - '0');
+      if (drawing == '#') parts.curve = costmap::CellCode::kBlocked;
+      if (drawing == '?') parts.curve = costmap::CellCode::kUnknown;
+      if (drawing == '^') parts.dz_dy = 0.2;
+      if (drawing == 'v') parts.dz_dy = -0.2;
+      if (drawing == '>') parts.dz_dx = 0.2;
+      if (drawing == '<') parts.dz_dx = -0.2;
+      cells[{c, r}] = costmap::CellCode(parts);
+    }
+  return std::make_shared<costmap::CostGrid>(costmap::flattened(cells, driveCost()));
+}
+
+/// What a random map is made of.
+struct RandomGround {
+  int width = 20;
+  int height = 20;
+  unsigned seed = 1;
+  double blocked = 0.15;   ///< share of blocked cells
+  double roughness = 0.2;  ///< gradients are uniform within +- this
+  double resolution_m = 1.0;
+};
+
+inline std::shared_ptr<const costmap::CostGrid> randomMap(const RandomGround& ground) {
+  std::mt19937 random(ground.seed);
+  const auto unit = [&random] { return static_cast<double>(random()) / 4294967296.0; };
+  maps::Raster<costmap::CellCode> cells({.width = ground.width,
+                                         .height = ground.height,
+                                         .resolution_m = ground.resolution_m,
+                                         .south_west = {}});
+  for (auto& cell : cells.values()) {
+    costmap::CellCode::Parts parts{.dz_dx = ground.roughness * (2 * unit() - 1),
+                                   .dz_dy = ground.roughness * (2 * unit() - 1),
+                                   .curve = static_cast<std::uint8_t>(5 * unit())};
+    if (unit() < ground.blocked) parts.curve = costmap::CellCode::kBlocked;
+    cell = costmap::CellCode(parts);
+  }
+  return std::make_shared<costmap::CostGrid>(costmap::flattened(cells, driveCost()));
+}
+
+}  // namespace talus::planner::testing
