@@ -1,0 +1,17 @@
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+namespace talus::cli {
+
+struct Context;
+
+// One function a subcommand, in cli/NAME_command.cpp, built on addCommand() of cli/command.hpp.
+// Alphabetical; a subcommand stands here only once it does its job.
+
+/// Registers every subcommand.
+void addCommands(CLI::App& app, Context& context);
+
+}  // namespace talus::cli
