@@ -1,0 +1,98 @@
+#include <terramech/effects.hpp>
+
+namespace talus::terramech {
+
+const char* name(Channel channel) {
+  switch (channel) {
+    case Channel::DrawbarPull:
+      return "drawbar_pull_over_load";
+    case Channel::Sinkage:
+      return "sinkage_over_radius";
+    case Channel::Torque:
+      return "torque_over_load_radius";
+    case Channel::SideForce:
+      return "side_force_over_load";
+  }
+  return "";
+}
+
+double Reading::scaled(Channel channel) const {
+  switch (channel) {
+    case Channel::DrawbarPull:
+      return drawbar_pull_N / load_N;
+    case Channel::Sinkage:
+      return sinkage_m / radius_m;
+    case Channel::Torque:
+      return torque_Nm / (load_N * radius_m);
+    case Channel::SideForce:
+      return side_force_N / load_N;
+  }
+  return 0.0;
+}
+
+void Reading::addScaled(Channel channel, double value) {
+  switch (channel) {
+    case Channel::DrawbarPull:
+      drawbar_pull_N += value * load_N;
+      break;
+    case Channel::Sinkage:
+      sinkage_m += value * radius_m;
+      break;
+    case Channel::Torque:
+      torque_Nm += value * load_N * radius_m;
+      break;
+    case Channel::SideForce:
+      side_force_N += value * load_N;
+      break;
+  }
+}
+
+const std::vector<EffectForm>& effectLibrary() {
+  static const std::vector<EffectForm> library = [] {
+    std::vector<EffectForm> all;
+    for (auto part :
+         {detail::contactEffects, detail::forceEffects, detail::sensorEffects, detail::driftEffects})
+      for (EffectForm& form : part()) all.push_back(std::move(form));
+    return all;
+  }();
+  return library;
+}
+
+const EffectForm* findEffect(std::string_view name) {
+  for (const EffectForm& form : effectLibrary())
+    if (name == form.name) return &form;
+  return nullptr;
+}
+
+namespace {
+
+/// Second derivatives at the knots of the natural cubic spline (tridiagonal system, Thomas' algorithm).
+std::vector<double> curvatures(std::span<const double> x, std::span<const double> y) {
+  const std::size_t n = x.size();
+  std::vector<double> m(n, 0.0), upper(n, 0.0);
+  for (std::size_t i = 1; i + 1 < n; ++i) {
+    const double a = x[i] - x[i - 1], b = x[i + 1] - x[i];
+    const double pivot = 2.0 * (a + b) - a * upper[i - 1];
+    upper[i] = b / pivot;
+    m[i] = (6.0 * ((y[i + 1] - y[i]) / b - (y[i] - y[i - 1]) / a) - a * m[i - 1]) / pivot;
+  }
+  for (std::size_t i = n - 1; i-- > 1;) m[i] -= upper[i] * m[i + 1];
+  return m;
+}
+
+}  // namespace
+
+double splineValue(std::span<const double> knots, std::span<const double> values, double x) {
+  const std::size_t n = knots.size();
+  if (n == 0) return 0.0;
+  if (n == 1 || x <= knots.front()) return values.front();
+  if (x >= knots.back()) return values.back();
+  std::size_t i = 0;
+  while (x > knots[i + 1]) ++i;
+  const double h = knots[i + 1] - knots[i], b = (x - knots[i]) / h, a = 1.0 - b;
+  const std::vector<double> m = curvatures(knots, values);
+  return a * values[i] + b * values[i + 1] +
+         ((a * a * a - a) * m[i] + (b * b * b - b) * m[i + 1]) * h * h / 6.0;
+}
+
+}  // namespace talus::terramech

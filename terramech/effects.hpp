@@ -1,0 +1,95 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <terramech/wheel_contact.hpp>
+#include <terramech/wheel_state.hpp>
+
+/// Effects that the Wong-Reece wheel lacks, as parts that compose: each changes the contact before it is
+/// solved or what is read afterwards, and each has bounds, formula, source and signature.
+namespace talus::terramech {
+
+/// What is measured of a wheel, as the sensors read it.
+enum class Channel { DrawbarPull, Sinkage, Torque, SideForce };
+inline constexpr int kChannels = 4;
+
+/// "drawbar_pull_over_load", "sinkage_over_radius", "torque_over_load_radius", "side_force_over_load".
+const char* name(Channel channel);
+
+/// What the sensors read; the load is what they claim, the denominator of every ratio.
+struct Reading {
+  double load_N = 0.0;
+  double radius_m = 0.0;
+  double sinkage_m = 0.0;
+  double torque_Nm = 0.0;
+  double drawbar_pull_N = 0.0;
+  double side_force_N = 0.0;
+
+  double scaled(Channel channel) const;           ///< DP/W, z/r, T/(rW), F/W [-]
+  void addScaled(Channel channel, double value);  ///< adds to one of them [-]
+};
+
+/// A number of an effect.
+struct EffectParameter {
+  const char* name;
+  const char* unit;    ///< "-" for none
+  double low, high;    ///< physical bounds, where a fit stays
+  double typical;      ///< where a fit starts, and the size by which an effect is tried
+  bool fitted = true;  ///< false: set from the data's design (a first pass, a start of time), never fitted
+};
+
+/// What one effect sees when it acts.
+struct EffectInput {
+  const double* parameter;
+  const WheelState& state;
+  double x;  ///< its covariate's value, finite
+};
+
+/// An entry of the library. Plain data with static lifetime.
+struct EffectForm {
+  const char* name;
+  const char* family;     ///< forms of one cause share it
+  const char* covariate;  ///< column that carries its signature
+  Channel channel;        ///< where it shows most
+  const char* formula;
+  const char* source;     ///< keys of REFERENCES.bib, or "ours"
+  const char* signature;  ///< what a residual looks like
+  std::vector<EffectParameter> parameters;
+  void (*act)(const EffectInput&, WheelContact&) = nullptr;
+  void (*read)(const EffectInput&, const WheelContact&, Reading&) = nullptr;
+};
+
+/// The library.
+const std::vector<EffectForm>& effectLibrary();
+
+/// The entry of that name, or nullptr.
+const EffectForm* findEffect(std::string_view name);
+
+/// A form at work in a model, or, with form name "empirical", a curve of a measured residual: a natural cubic
+/// spline through (knots, parameters) added to one scaled channel, constant beyond its ends.
+struct Effect {
+  std::string name{};
+  std::string covariate{};
+  Channel channel = Channel::DrawbarPull;
+  std::vector<double> parameters{};  ///< as in the form; of an empirical curve the values at its knots [-]
+  std::vector<double> knots{};       ///< empirical only, ascending, in the covariate's unit
+  std::string only_column{};         ///< acts only where this grouping column ...
+  std::string only_value{};          ///< ... has this text; empty: everywhere
+
+  bool empirical() const { return name == "empirical"; }
+};
+
+/// Value at x of the natural cubic spline through (knots, values); constant outside. One knot: a constant.
+double splineValue(std::span<const double> knots, std::span<const double> values, double x);
+
+namespace detail {
+std::vector<EffectForm> contactEffects();
+std::vector<EffectForm> forceEffects();
+std::vector<EffectForm> sensorEffects();
+std::vector<EffectForm> driftEffects();
+}  // namespace detail
+
+}  // namespace talus::terramech

@@ -1,0 +1,186 @@
+#include <algorithm>
+#include <cmath>
+
+#include <terramech/refined_model.hpp>
+#include <terramech/shear_displacement.hpp>
+
+namespace talus::terramech {
+namespace {
+
+bool applies(const Effect& effect, const WheelState& state) {
+  return effect.only_column.empty() || state.label(effect.only_column) == effect.only_value;
+}
+
+/// The covariate of an effect; the sinkage is the model's own, never the measured one.
+double covariateOf(const Effect& effect, const WheelState& state, double sinkage_m) {
+  return effect.covariate == "sinkage_m" ? sinkage_m : state.covariate(effect.covariate);
+}
+
+WheelContact contactFor(const RefinedModel& model, const WheelState& state) {
+  WheelContact contact = contactOf(model.soil, state.wheel);
+  contact.load_N = state.load_N;
+  contact.slip = model.slip_along_travel ? slipInWheelPlane(state.slip, state.slip_angle_rad) : state.slip;
+  for (const Effect& effect : model.effects) {
+    const EffectForm* form = findEffect(effect.name);
+    if (!form || !form->act || !applies(effect, state)) continue;
+    const double x = covariateOf(effect, state, 0.0);
+    if (std::isfinite(x)) form->act({effect.parameters.data(), state, x}, contact);
+  }
+  contact.slip = std::clamp(contact.slip, -1.0, 1.0);
+  return contact;
+}
+
+void readSensors(const RefinedModel& model, const WheelState& state, const WheelContact& contact,
+                 Reading& reading) {
+  for (const Effect& effect : model.effects) {
+    const EffectForm* form = findEffect(effect.name);
+    if (!form || !form->read || !applies(effect, state)) continue;
+    const double x = covariateOf(effect, state, reading.sinkage_m);
+    if (std::isfinite(x)) form->read({effect.parameters.data(), state, x}, contact, reading);
+  }
+}
+
+void addCurves(const RefinedModel& model, const WheelState& state, Reading& reading) {
+  const double sinkage = reading.sinkage_m;
+  for (const Effect& effect : model.effects) {
+    if (!effect.empirical() || !applies(effect, state)) continue;
+    const double x = covariateOf(effect, state, sinkage);
+    if (std::isfinite(x)) reading.addScaled(effect.channel, splineValue(effect.knots, effect.parameters, x));
+  }
+}
+
+double squared(double x) {
+  return x * x;
+}
+
+}  // namespace
+
+double slipInWheelPlane(double slip_along_travel, double slip_angle_rad) {
+  const double q = travelRatio(slip_along_travel) * std::max(std::cos(slip_angle_rad), 0.0);
+  return q <= 1.0 ? 1.0 - q : 1.0 / q - 1.0;
+}
+
+Reading predict(const RefinedModel& model, const WheelState& state, double* entry_guess_rad) {
+  const WheelContact contact = contactFor(model, state);
+  const ContactForces forces = solveContact(contact, entry_guess_rad ? *entry_guess_rad : 0.0);
+  if (entry_guess_rad)
+    *entry_guess_rad =
+        contact.sinkage_gain == 1.0 && contact.extra_sinkage_m == 0.0 ? forces.entry_angle_rad : 0.0;
+  Reading reading{.load_N = state.load_N,
+                  .radius_m = state.wheel.radius_m,
+                  .sinkage_m = forces.sinkage_m,
+                  .torque_Nm = forces.torque_Nm,
+                  .drawbar_pull_N = forces.drawbar_pull_N,
+                  .side_force_N = forces.side_force_N};
+  if (model.base == BaseModel::LinearFormula)
+    reading.drawbar_pull_N =
+        reading.load_N * (reading.scaled(Channel::Torque) - reading.scaled(Channel::Sinkage) - 0.1);
+  readSensors(model, state, contact, reading);
+  addCurves(model, state, reading);
+  return reading;
+}
+
+const std::vector<SoilParameter>& soilParameters() {
+  static const std::vector<SoilParameter> all{
+      {"cohesion_Pa", 0.0, 1e5, 500.0, [](const Soil& s) { return s.cohesion_Pa; },
+       [](Soil& s, double v) { s.cohesion_Pa = v; }},
+      {"friction_angle_rad", 0.05, 1.2, 0.05, [](const Soil& s) { return s.friction_angle_rad; },
+       [](Soil& s, double v) { s.friction_angle_rad = v; }},
+      {"sinkage_exponent", 0.1, 3.0, 0.1, [](const Soil& s) { return s.sinkage_exponent; },
+       [](Soil& s, double v) { s.sinkage_exponent = v; }},
+      {"log_stiffness", -8.0, 8.0, 0.2, [](const Soil&) { return 0.0; },
+       [](Soil& s, double v) {  // a step, as get() always says 0
+         s.cohesive_modulus *= std::exp(v);
+         s.frictional_modulus *= std::exp(v);
+       }},
+      {"shear_modulus_m", 5e-4, 0.3, 0.003, [](const Soil& s) { return s.shear_modulus_m; },
+       [](Soil& s, double v) { s.shear_modulus_m = v; }},
+      {"c1", 0.0, 1.0, 0.05, [](const Soil& s) { return s.c1; }, [](Soil& s, double v) { s.c1 = v; }},
+      {"c2", -1.0, 1.0, 0.05, [](const Soil& s) { return s.c2; }, [](Soil& s, double v) { s.c2 = v; }},
+      {"density_kg_m3", 200.0, 5000.0, 100.0, [](const Soil& s) { return s.density_kg_m3; },
+       [](Soil& s, double v) { s.density_kg_m3 = v; }},
+  };
+  return all;
+}
+
+double value(const RefinedModel& model, const FittedParameter& p) {
+  const auto index = static_cast<std::size_t>(p.index);
+  if (p.effect < 0) return soilParameters()[index].get(model.soil);
+  return model.effects[static_cast<std::size_t>(p.effect)].parameters[index];
+}
+
+void setValue(RefinedModel& model, const FittedParameter& p, double value) {
+  const auto index = static_cast<std::size_t>(p.index);
+  if (p.effect < 0)
+    soilParameters()[index].set(model.soil, value);
+  else
+    model.effects[static_cast<std::size_t>(p.effect)].parameters[index] = value;
+}
+
+namespace {
+
+double step(const RefinedModel& model, const FittedParameter& p) {
+  const auto index = static_cast<std::size_t>(p.index);
+  if (p.effect < 0) return 0.01 * soilParameters()[index].scale;
+  const Effect& effect = model.effects[static_cast<std::size_t>(p.effect)];
+  const EffectForm* form = findEffect(effect.name);
+  return form ? 0.02 * std::abs(form->parameters[index].typical) + 1e-9 : 1e-3;
+}
+
+/// Central difference of one scaled channel set by two readings.
+using Slope = std::array<double, kChannels>;
+Slope slope(const Reading& high, const Reading& low, double width) {
+  Slope s{};
+  for (int c = 0; c < kChannels; ++c)
+    s[static_cast<std::size_t>(c)] =
+        (high.scaled(static_cast<Channel>(c)) - low.scaled(static_cast<Channel>(c))) / width;
+  return s;
+}
+
+Slope slipSlope(const RefinedModel& model, const WheelState& state) {
+  WheelState high = state, low = state;
+  high.slip = std::min(1.0, state.slip + 0.005);
+  low.slip = std::max(-1.0, state.slip - 0.005);
+  return slope(predict(model, high), predict(model, low), high.slip - low.slip);
+}
+
+Slope loadSlope(const RefinedModel& model,
+                const WheelState& state) {  // per relative load, forces over fixed load
+  WheelState high = state, low = state;
+  high.load_N *= 1.01;
+  low.load_N /= 1.01;
+  Reading a = predict(model, high), b = predict(model, low);
+  a.load_N = b.load_N = state.load_N;
+  return slope(a, b, 2.0 * std::log(1.01));
+}
+
+}  // namespace
+
+Prediction predictWithStd(const RefinedModel& model, const WheelState& state) {
+  Prediction out{.mean = predict(model, state)};
+  std::array<double, kChannels> variance{};
+  const auto& noise = model.noise;
+  const double slip_var = squared(noise.slip_absolute) + squared(noise.slip_relative * state.slip);
+  const Slope by_slip = slipSlope(model, state), by_load = loadSlope(model, state);
+  std::vector<Slope> by_parameter;
+  if (!model.covariance.empty())
+    for (const FittedParameter& p : model.fitted) {
+      RefinedModel moved = model;
+      const double h = step(model, p);
+      setValue(moved, p, value(model, p) + h);
+      by_parameter.push_back(slope(predict(moved, state), out.mean, h));
+    }
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    variance[c] = squared(noise.absolute[c]) +
+                  squared(noise.relative[c] * out.mean.scaled(static_cast<Channel>(c))) +
+                  slip_var * squared(by_slip[c]) + squared(noise.load_relative * by_load[c]);
+    for (std::size_t i = 0; i < by_parameter.size(); ++i)
+      for (std::size_t j = 0; j < by_parameter.size(); ++j)
+        variance[c] +=
+            by_parameter[i][c] * model.covariance[i * by_parameter.size() + j] * by_parameter[j][c];
+    out.scaled_std[c] = std::sqrt(std::max(0.0, variance[c]));
+  }
+  return out;
+}
+
+}  // namespace talus::terramech

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <limits>
+
+#include <terramech/soil.hpp>
+#include <terramech/wheel.hpp>
+
+/// One wheel on soil with everything that an effect may change, solved for its sinkage: the Wong-Reece wheel
+/// of wong_reece.hpp when nothing is changed, and then equal to it to 1e-7 of the load.
+namespace talus::terramech {
+
+/// What the contact of one wheel is solved from. SI; every field is already what acts, effects included.
+struct WheelContact {
+  double load_N = 0.0;          ///< vertical load > 0
+  double slip = 0.0;            ///< along the wheel plane, [-1, 1]; see shear_displacement.hpp
+  double slip_angle_rad = 0.0;  ///< beta, between the wheel plane and the travel; 0: no side force
+
+  double radius_m = 0.1;        ///< of the contact circle, > 0
+  double width_m = 0.1;         ///< b > 0
+  double shear_radius_m = 0.1;  ///< r_s of shear displacement and torque, r for a smooth wheel
+
+  double sinkage_modulus = 0.0;   ///< k = k_c/b + k_phi [N/m^(n+2)]
+  double sinkage_exponent = 1.0;  ///< n [-]
+  double cohesion_Pa = 0.0;       ///< c
+  double tan_friction = 0.0;      ///< tan phi
+  double shear_modulus_m = 0.02;  ///< K
+  double density_kg_m3 = 1600.0;  ///< for forces that move soil
+  double c1 = 0.43;               ///< theta_m = (c1 + c2 i) theta_1
+  double c2 = 0.32;
+
+  double rebound = 0.0;  ///< kappa [-]: contact ends at theta_2 = -acos(1 - kappa z/r)
+  double hard_depth_m =
+      std::numeric_limits<double>::infinity();  ///< H: below it pressure grows by hard_modulus
+  double hard_modulus_Pa_m = 0.0;               ///< k_h of the lower layer
+  double sinkage_gain = 1.0;     ///< slip sinkage: the wheel digs to gain x static sinkage + extra_sinkage_m
+  double extra_sinkage_m = 0.0;  ///< the ground below then carries the load at a lower stress
+};
+
+/// What the soil does to the wheel.
+struct ContactForces {
+  double sinkage_m = 0.0;
+  double entry_angle_rad = 0.0;
+  double torque_Nm = 0.0;
+  double drawbar_pull_N = 0.0;
+  double side_force_N = 0.0;  ///< signed against the sideways motion: negative for slip_angle > 0
+};
+
+/// The contact of a smooth rigid wheel without effects.
+WheelContact contactOf(const Soil& soil, const Wheel& wheel);
+
+/// Forces on the wheel at the sinkage that carries its load; `entry_guess_rad` starts the search, 0: none.
+/// A load that the soil cannot carry above the axle gives the wheel sunk to its axle, scaled to carry it:
+/// fits pass through such points, and none of them is a fit. Never throws. Thread-safe.
+///   W  = r b   int (sigma cos theta + tau_x sin theta) d theta,   theta_2 to theta_1
+///   DP = r b   int (tau_x cos theta - sigma sin theta) d theta
+///   T  = r_s r b int tau_x d theta,   F = -r b int tau_y d theta        (wong_reece_1967a; thesis C.8 to
+///   C.10)
+/// tau = (c + sigma tan phi)(1 - e^{-j/K}) along the resultant displacement j = hypot(j_x, j_y), which is the
+/// friction circle of an isotropic soil; j_y = (v_y / omega)(theta_1 - theta) (ishigami_2007).
+ContactForces solveContact(const WheelContact& contact, double entry_guess_rad = 0.0);
+
+}  // namespace talus::terramech

