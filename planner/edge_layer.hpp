@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <costmap/cost_grid.hpp>
+#include <planner/edge_units.hpp>
+#include <talus.hpp>
+
+namespace talus::planner {
+
+/// Position of a cell in arrays that have a border of one cell all around, so that every cell has eight
+/// neighbours.
+struct PaddedGrid {
+  int width = 0;  ///< cells without the border
+  int height = 0;
+
+  std::size_t stride() const noexcept { return static_cast<std::size_t>(width) + 2; }
+  std::size_t size() const noexcept { return stride() * (static_cast<std::size_t>(height) + 2); }
+  std::size_t index(maps::Cell c) const noexcept {
+    return static_cast<std::size_t>(c.row + 1) * stride() + static_cast<std::size_t>(c.column + 1);
+  }
+  maps::Cell cell(std::size_t index) const noexcept {
+    return {static_cast<int>(index % stride()) - 1, static_cast<int>(index / stride()) - 1};
+  }
+  /// Distance in the array to the neighbour in a heading.
+  std::ptrdiff_t offset(int heading) const noexcept {
+    const maps::Cell step = kStep[static_cast<std::size_t>(heading)];
+    return static_cast<std::ptrdiff_t>(step.row) * static_cast<std::ptrdiff_t>(stride()) + step.column;
+  }
+};
+
+/// A box of cells, both corners included.
+struct CellBox {
+  maps::Cell first;
+  maps::Cell last;
+};
+
+/// Cost of every step of the 8-neighbourhood on one version of the map, in units of EdgeUnits; 16 bytes a
+/// cell. A step is half a step in the cell it leaves and half in the one it enters, both in the heading of
+/// the step: what MotionCost says of the segment between the centres. A diagonal needs both cells beside it,
+/// too.
+class EdgeLayer {
+ public:
+  static constexpr std::uint16_t kBlocked = EdgeUnits::kBlocked;
+
+  /// Builds with `threads` threads (the result is the same for any number). Ends early, incomplete, when a
+  /// stop is requested; complete() tells.
+  EdgeLayer(std::shared_ptr<const costmap::CostGrid> map, const EdgeUnits& units, int threads = 1,
+            const Watch& watch = {});
+
+  /// The eight steps INTO the cell at a padded index, by the heading in which the neighbour lies.
+  const std::uint16_t* into(std::size_t index) const noexcept { return edges_.data() + 8 * index; }
+
+  const PaddedGrid& padded() const noexcept { return padded_; }
+  const EdgeUnits& units() const noexcept { return units_; }
+  const costmap::CostGrid& map() const noexcept { return *map_; }
+  const std::shared_ptr<const costmap::CostGrid>& mapPointer() const noexcept { return map_; }
+  bool complete() const noexcept { return complete_; }
+
+  /// Moves on to a newer version of the same grid and cost function; cells outside the box must not have
+  /// changed.
+  void update(std::shared_ptr<const costmap::CostGrid> newer, CellBox changed);
+
+ private:
+  void buildRows(CellBox box);
+
+  std::shared_ptr<const costmap::CostGrid> map_;
+  EdgeUnits units_;
+  PaddedGrid padded_;
+  std::vector<std::uint16_t> edges_;
+  bool complete_ = false;
+};
+
+}  // namespace talus::planner

@@ -1,0 +1,114 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <planner/edge_units.hpp>
+
+namespace talus::planner {
+namespace {
+
+using costmap::CellCode;
+using costmap::DriveCost;
+
+constexpr double kDiagonal = std::numbers::sqrt2 / 2;
+constexpr float kInfinite = std::numeric_limits<float>::infinity();
+
+// The cheapest and dearest metre of all curves.
+struct Range {
+  double least = std::numeric_limits<double>::infinity();
+  double most = 0.0;
+};
+
+Range costRange(const DriveCost& cost) {
+  Range range;
+  for (const auto& curve : cost.curves())
+    for (int bin = 0; bin < costmap::DriveCurve::kBins; ++bin) {
+      const auto value = static_cast<double>(curve.cost_J_per_m[static_cast<std::size_t>(bin)]);
+      const double gradient = (bin - costmap::DriveCurve::kBins / 2) / 256.0;
+      if (!std::isfinite(value) || std::abs(gradient) > cost.limits().max_along + 1.0 / 512) continue;
+      range.least = std::min(range.least, value);
+      range.most = std::max(range.most, value);
+    }
+  return range;
+}
+
+// Joules of a unit: fine enough that the dearest diagonal half just fits, but the cheapest straight half is
+// kept between 256 and 2048 units: coarser would spoil the search, finer would overflow 32 bits along a
+// route.
+double unitFor(const Range& range, double resolution_m) {
+  if (!(range.most > 0.0)) return 1.0;
+  const double least = std::max(range.least, range.most * 1e-6);
+  const double cheapest_J = 0.5 * resolution_m * least;
+  const double fitting = EdgeUnits::kDearest / (std::numbers::sqrt2 * range.most / least);
+  return cheapest_J / std::clamp(fitting, 256.0, 2048.0);
+}
+
+std::uint16_t inUnits(float cost_J_per_m, double units_per_J_per_m) {
+  if (!std::isfinite(cost_J_per_m)) return EdgeUnits::kBlocked;
+  const double units = std::round(static_cast<double>(cost_J_per_m) * units_per_J_per_m);
+  return static_cast<std::uint16_t>(std::clamp(units, 1.0, static_cast<double>(EdgeUnits::kDearest)));
+}
+
+// Most steps whose gradient stays within the limit. A diagonal's stays clear of it by more than rounding
+// does, so that what the grid allows is allowed to the exact segment too.
+int stepsWithin(double limit, double per_step) {
+  const int most = 2 * 2048;
+  const double clear = per_step == 1.0 ? limit : limit - 1e-9;
+  int steps = 0;
+  while (steps < most && (steps + 1) * per_step * CellCode::kStep <= clear) ++steps;
+  return steps;
+}
+
+}  // namespace
+
+EdgeUnits::EdgeUnits(const DriveCost& cost, double resolution_m, double coarsening)
+    : curves_(cost.curves().size()) {
+  const Range range = costRange(cost);
+  unit_J_ = unitFor(range, resolution_m) * coarsening;
+  across_straight_ = stepsWithin(cost.limits().max_across, 1.0);
+  across_diagonal_ = stepsWithin(cost.limits().max_across, kDiagonal);
+  const int straight_reach = stepsWithin(cost.limits().max_along, 1.0);
+  reach_ = stepsWithin(cost.limits().max_along, kDiagonal);
+  const double straight_units = 0.5 * resolution_m / unit_J_,
+               diagonal_units = straight_units * std::numbers::sqrt2;
+  for (const auto& curve : cost.curves())
+    for (int steps = -reach_; steps <= reach_; ++steps) {
+      const auto at = [&](double per_step) {
+        const long bin =
+            std::lround(steps * per_step * CellCode::kStep * 256.0) + costmap::DriveCurve::kBins / 2;
+        return bin >= 0 && bin < costmap::DriveCurve::kBins
+                   ? curve.cost_J_per_m[static_cast<std::size_t>(bin)]
+                   : kInfinite;
+      };
+      straight_.push_back(inUnits(std::abs(steps) <= straight_reach ? at(1.0) : kInfinite, straight_units));
+      diagonal_.push_back(inUnits(at(kDiagonal), diagonal_units));
+    }
+  cheapest_edge_ =
+      std::isfinite(range.least)
+          ? std::max(2U, 2U * static_cast<unsigned>(inUnits(static_cast<float>(range.least), straight_units)))
+          : 1U;
+}
+
+EdgeUnits::Halves EdgeUnits::halves(CellCode cell) const noexcept {
+  Halves halves;
+  halves.fill(kBlocked);
+  if (cell.curve() >= curves_) return halves;
+  const int x = cell.stepsX(), y = cell.stepsY();
+  const auto middle = static_cast<std::size_t>(cell.curve()) * static_cast<std::size_t>(2 * reach_ + 1) +
+                      static_cast<std::size_t>(reach_);
+  const std::uint16_t* straight = straight_.data() + middle;
+  const std::uint16_t* diagonal = diagonal_.data() + middle;
+  const auto fill = [&](const std::uint16_t* level, GridHeading heading, int along, int across, int limit) {
+    if (std::abs(across) > limit || std::abs(along) > reach_) return;
+    halves[heading] = level[along];
+    halves[static_cast<std::size_t>(opposite(heading))] = level[-along];
+  };
+  fill(straight, kEast, x, y, across_straight_);
+  fill(straight, kNorth, y, x, across_straight_);
+  fill(diagonal, kNorthEast, x + y, y - x, across_diagonal_);
+  fill(diagonal, kNorthWest, y - x, x + y, across_diagonal_);
+  return halves;
+}
+
+}  // namespace talus::planner

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <costmap/drive_cost.hpp>
+#include <maps/grid.hpp>
+
+namespace talus::planner {
+
+/// The eight headings of a grid, anticlockwise from east.
+enum GridHeading : int { kEast, kNorthEast, kNorth, kNorthWest, kWest, kSouthWest, kSouth, kSouthEast };
+
+/// Columns and rows that a step along each heading goes.
+inline constexpr std::array<maps::Cell, 8> kStep{
+    {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}};
+
+/// The heading the other way.
+constexpr int opposite(int heading) noexcept {
+  return heading ^ 4;
+}
+
+/// The cost of half a step, from a cell's centre to its edge or corner, for all eight headings: whole numbers
+/// of a unit of energy, so that sums do not depend on their order. 16 bits: an edge is the sum of two halves.
+/// kBlocked where the heading may not enter; anything dearer than kDearest is priced at kDearest, so a sum
+/// never exceeds the true cost by more than half a unit a half step.
+class EdgeUnits {
+ public:
+  static constexpr std::uint16_t kBlocked = 0xffff;
+  static constexpr std::uint16_t kDearest = 0x7ffe;
+
+  using Halves = std::array<std::uint16_t, 8>;  ///< by GridHeading
+
+  /// For cells of this side [m] under this cost. `coarsening` >= 1 makes the unit larger (for huge maps).
+  EdgeUnits(const costmap::DriveCost& cost, double resolution_m, double coarsening = 1.0);
+
+  /// Joules of one unit.
+  double unit_J() const noexcept { return unit_J_; }
+
+  /// A lower bound of any edge that is allowed, in units; >= 1.
+  std::uint32_t cheapestEdge() const noexcept { return cheapest_edge_; }
+
+  /// Halves of all headings in a cell.
+  Halves halves(costmap::CellCode cell) const noexcept;
+
+ private:
+  // Half costs of one curve over the gradient along the heading in steps of CellCode, from -reach_ to reach_.
+  std::vector<std::uint16_t> straight_, diagonal_;
+  int reach_ = 0;            // steps along the heading covered by a table, one more than any allowed
+  int across_straight_ = 0;  // most steps across a straight heading
+  int across_diagonal_ = 0;  // the same for |dz/dx -+ dz/dy|
+  std::size_t curves_ = 0;
+  double unit_J_ = 1.0;
+  std::uint32_t cheapest_edge_ = 1;
+};
+
+}  // namespace talus::planner

@@ -1,0 +1,132 @@
+#include <cmath>
+#include <queue>
+#include <stop_token>
+
+#include <planner/cost_to_go.hpp>
+#include <planner/motion_cost.hpp>
+
+#include "drawn_map.hpp"
+
+namespace talus::planner {
+namespace {
+
+using testing::drawn;
+using testing::randomMap;
+
+using MapPointer = std::shared_ptr<const costmap::CostGrid>;
+
+std::shared_ptr<const EdgeLayer> edgesOf(const MapPointer& map, int threads = 1) {
+  return std::make_shared<EdgeLayer>(map, EdgeUnits(map->cost(), map->grid().resolution_m), threads);
+}
+
+// Dijkstra over a plain priority queue, with the exact cost of the segment between the centres as the edge.
+maps::Raster<double> bruteForce(const MapPointer& map, maps::Cell goal) {
+  const MotionCost cost(map);
+  const maps::Grid& grid = map->grid();
+  maps::Raster<double> best(grid, std::numeric_limits<double>::infinity());
+  using Entry = std::pair<double, std::size_t>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
+  best[goal] = 0.0;
+  open.emplace(0.0, grid.index(goal));
+  while (!open.empty()) {
+    const auto [value, index] = open.top();
+    open.pop();
+    const maps::Cell cell{static_cast<int>(index) % grid.width, static_cast<int>(index) / grid.width};
+    if (value > best[cell]) continue;
+    for (const maps::Cell step : kStep) {
+      const maps::Cell from{cell.column + step.column, cell.row + step.row};
+      if (!grid.contains(from)) continue;
+      const double through = value + cost({grid.centre(from), grid.centre(cell)});
+      if (!(through < best[from])) continue;
+      best[from] = through;
+      open.emplace(through, grid.index(from));
+    }
+  }
+  return best;
+}
+
+// Property: the field is the brute-force one. Each edge is rounded by at most a unit, of which the cheapest
+// has 512.
+TEST(CostToGo, IsDijkstrasFieldOnRandomMaps) {
+  for (unsigned seed = 1; seed <= 30; ++seed) {
+    const auto map = randomMap({.width = 23, .height = 17, .seed = seed, .blocked = 0.25, .roughness = 0.35});
+    const maps::Cell goal{static_cast<int>(seed % 23), static_cast<int>(seed % 17)};
+    const auto expected = bruteForce(map, goal);
+    CostToGo field(edgesOf(map), {goal});
+    ASSERT_TRUE(field.settleAll());
+    for (int row = 0; row < 17; ++row)
+      for (int column = 0; column < 23; ++column) {
+        const maps::Cell cell{column, row};
+        const auto found = field.cost_J(cell);
+        ASSERT_EQ(found.has_value(), std::isfinite(expected[cell])) << seed << ": " << column << "," << row;
+        if (found) {
+          ASSERT_NEAR(*found, expected[cell], 1e-9 + expected[cell] / 512);
+        }
+      }
+  }
+}
+
+TEST(CostToGo, PathRunsFromStartToGoalOverAllowedSteps) {
+  const auto map = drawn({".....", ".###.", "...#.", "####.", "....."});
+  CostToGo field(edgesOf(map), {{0, 0}});
+  ASSERT_TRUE(field.settleAll());
+  const auto path = field.path({0, 2});
+  ASSERT_FALSE(path.empty());
+  EXPECT_EQ(path.front(), (maps::Cell{0, 2}));
+  EXPECT_EQ(path.back(), (maps::Cell{0, 0}));
+  const MotionCost cost(map);
+  double sum = 0.0;
+  for (std::size_t i = 1; i < path.size(); ++i)
+    sum += cost({map->grid().centre(path[i - 1]), map->grid().centre(path[i])});
+  EXPECT_NEAR(sum, *field.cost_J({0, 2}), 0.002 * sum);
+}
+
+TEST(CostToGo, NoWayIsSaid) {
+  CostToGo field(edgesOf(drawn({"..#..", "..#..", "..#.."})), {{0, 0}});
+  ASSERT_TRUE(field.settleAll());
+  EXPECT_FALSE(field.cost_J({4, 1}));
+  EXPECT_TRUE(field.path({4, 1}).empty());
+}
+
+TEST(CostToGo, GoesOnWhereItStopped) {
+  const auto map = randomMap({.width = 60, .height = 50, .seed = 5});
+  CostToGo whole(edgesOf(map), {{3, 4}}), parts(edgesOf(map), {{3, 4}});
+  ASSERT_TRUE(whole.settleAll());
+  ASSERT_TRUE(parts.settle({10, 10}));
+  EXPECT_LT(parts.settled(), whole.settled());
+  EXPECT_EQ(parts.units({10, 10}), whole.units({10, 10}));
+  ASSERT_TRUE(parts.settleAll());
+  for (int row = 0; row < 50; ++row)
+    for (int column = 0; column < 60; ++column)
+      ASSERT_EQ(parts.units({column, row}), whole.units({column, row}));
+}
+
+TEST(CostToGo, NearestOfSeveralGoals) {
+  const auto edges = edgesOf(randomMap({.seed = 8}));
+  CostToGo one(edges, {{2, 2}}), other(edges, {{17, 15}}), both(edges, {{2, 2}, {17, 15}});
+  ASSERT_TRUE(one.settleAll() && other.settleAll() && both.settleAll());
+  for (int row = 0; row < 20; ++row)
+    for (int column = 0; column < 20; ++column) {
+      const maps::Cell cell{column, row};
+      EXPECT_EQ(both.units(cell), std::min(one.units(cell), other.units(cell)));
+    }
+}
+
+TEST(CostToGo, StopsWhenAsked) {
+  const auto edges = edgesOf(randomMap({.width = 50, .height = 50}));
+  CostToGo field(edges, {{5, 5}});
+  std::stop_source source;
+  source.request_stop();
+  EXPECT_FALSE(field.settleAll({.progress = {}, .stop = source.get_token()}));
+  EXPECT_TRUE(field.settleAll());
+}
+
+TEST(EdgeLayer, SameForAnyNumberOfThreads) {
+  const auto map = randomMap({.width = 90, .height = 300, .seed = 2});
+  const auto one = edgesOf(map, 1), three = edgesOf(map, 3);
+  for (std::size_t i = 0; i < one->padded().size(); ++i)
+    for (int k = 0; k < 8; ++k) ASSERT_EQ(one->into(i)[k], three->into(i)[k]);
+}
+
+}  // namespace
+}  // namespace talus::planner
