@@ -3,23 +3,12 @@
 #include <vector>
 
 #include <costmap/hazards.hpp>
-#include <costmap/rock_hazard.hpp>
 
 namespace talus::costmap {
 namespace {
 
-constexpr auto kInflated = Hazard::KeepOut | Hazard::Obstacle | Hazard::Unknown;
-
 bool touches(Hazard a, Hazard set) noexcept {
   return (static_cast<std::uint8_t>(a) & static_cast<std::uint8_t>(set)) != 0;
-}
-
-Hazard judged(const HazardLimits& limits, double gradient, double step_m, double roughness_m) {
-  Hazard found = Hazard::None;
-  if (gradient > limits.max_gradient) found |= Hazard::Slope;
-  if (step_m > limits.max_step_m) found |= Hazard::Step;
-  if (roughness_m > limits.max_roughness_m) found |= Hazard::Roughness;
-  return found;
 }
 
 // Offsets of the cells whose nearest point lies closer than the radius to a cell at the origin.
@@ -35,10 +24,10 @@ std::vector<maps::Cell> discOffsets(double radius_cells) {
   return disc;
 }
 
-bool onEdge(const maps::Raster<Hazard>& hazards, maps::Cell cell) {
+bool onEdge(const maps::Raster<Hazard>& hazards, maps::Cell cell, Hazard spreading) {
   for (const maps::Cell step : {maps::Cell{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
     const maps::Cell next{cell.column + step.column, cell.row + step.row};
-    if (hazards.grid().contains(next) && !touches(hazards[next], kInflated)) return true;
+    if (hazards.grid().contains(next) && !touches(hazards[next], spreading)) return true;
   }
   return false;
 }
@@ -61,37 +50,28 @@ double reliefShare(const HazardLimits& limits, double footprint_m) {
   return std::min(1.0, limits.wheelbase_m / footprint_m);
 }
 
-maps::Raster<Hazard> findHazards(const HazardLayers& layers, const HazardLimits& limits) {
-  const maps::Grid& grid = layers.elevation_m.grid();
-  maps::Raster<Hazard> hazards(grid);
-  const double footprint_m =
-      2.0 * grid.resolution_m *
-      std::max(1.0, std::sqrt(layers.metrics.footprint_cells / 3.14159265358979) - 0.5);
-  const double share = reliefShare(limits, footprint_m);
-  const RockCrossing crossing{.diameter_m = limits.rock_diameter_m, .area_m2 = limits.rock_area_m2};
-  for (std::size_t i = 0; i < grid.size(); ++i) {
-    const auto& m = layers.metrics;
-    const double gradient =
-        std::hypot(static_cast<double>(m.dz_dx.values()[i]), static_cast<double>(m.dz_dy.values()[i]));
-    Hazard& found = hazards.values()[i];
-    if (std::isnan(layers.elevation_m.values()[i]) || std::isnan(gradient)) found |= Hazard::Unknown;
-    found |= judged(limits, gradient, share * static_cast<double>(m.step_m.values()[i]),
-                    share * static_cast<double>(m.roughness_m.values()[i]));
-    if (!layers.rock_abundance.empty() && rockHazard(static_cast<double>(layers.rock_abundance.values()[i]),
-                                                     crossing) > limits.max_rock_probability)
-      found |= Hazard::Rocks;
-    if (!layers.keep_out.empty() && layers.keep_out.values()[i] != 0) found |= Hazard::KeepOut;
-  }
-  return hazards;
+ShapeJudge::ShapeJudge(const HazardLimits& limits, double footprint_m)
+    : gradient_squared_(static_cast<float>(limits.max_gradient * limits.max_gradient)),
+      step_m_(static_cast<float>(limits.max_step_m / reliefShare(limits, footprint_m))),
+      roughness_m_(static_cast<float>(limits.max_roughness_m / reliefShare(limits, footprint_m))) {}
+
+Hazard ShapeJudge::operator()(const GroundShape& shape) const noexcept {
+  const float squared = shape.dz_dx * shape.dz_dx + shape.dz_dy * shape.dz_dy;
+  if (std::isnan(squared)) return Hazard::Unknown;
+  Hazard found = Hazard::None;
+  if (squared > gradient_squared_) found |= Hazard::Slope;
+  if (shape.step_m > step_m_) found |= Hazard::Step;
+  if (shape.roughness_m > roughness_m_) found |= Hazard::Roughness;
+  return found;
 }
 
-void inflate(maps::Raster<Hazard>& hazards, const HazardLimits& limits) {
+void inflate(maps::Raster<Hazard>& hazards, const HazardLimits& limits, Hazard spreading) {
   const maps::Grid& grid = hazards.grid();
   const auto disc = discOffsets(limits.inflation_m / grid.resolution_m);
   for (int row = 0; row < grid.height; ++row)
     for (int column = 0; column < grid.width; ++column) {
       const maps::Cell cell{column, row};
-      if (!touches(hazards[cell], kInflated) || !onEdge(hazards, cell)) continue;
+      if (!touches(hazards[cell], spreading) || !onEdge(hazards, cell, spreading)) continue;
       for (const maps::Cell offset : disc) {
         const maps::Cell near{column + offset.column, row + offset.row};
         if (grid.contains(near)) hazards[near] |= Hazard::Near;

@@ -4,7 +4,6 @@
 
 #include <costmap/cell_belief.hpp>
 #include <maps/grid.hpp>
-#include <maps/terrain_metrics.hpp>
 #include <terramech/rover.hpp>
 
 namespace talus::costmap {
@@ -26,24 +25,36 @@ struct HazardLimits {
   static HazardLimits of(const terramech::Rover& rover);
 };
 
-/// What hazards are judged from; empty rasters are layers that nobody gave.
-struct HazardLayers {
-  const maps::TerrainMetrics& metrics;
-  const maps::Raster<float>& elevation_m;
-  const maps::Raster<float>& rock_abundance;
-  const maps::Raster<std::uint8_t>& keep_out;
-};
-
 /// Relief within one wheelbase: what the plane does not explain over a footprint of cells larger than the
 /// rover is bending of the ground rather than an edge, and counts in proportion (ours, not from the
 /// literature). Factor in (0, 1].
 double reliefShare(const HazardLimits& limits, double footprint_m);
 
-/// Every hazard of every cell. Terrain classes are the caller's; inflate() comes after them.
-maps::Raster<Hazard> findHazards(const HazardLayers& layers, const HazardLimits& limits);
+/// The shape of the ground at a cell, as maps::TerrainMetrics has it.
+struct GroundShape {
+  float dz_dx = 0.0F;
+  float dz_dy = 0.0F;
+  float roughness_m = 0.0F;
+  float step_m = 0.0F;
+};
 
-/// Marks as Near the cells whose centre lies within inflation_m of the edge of a keep-out, impassable or
-/// unseen cell.
-void inflate(maps::Raster<Hazard>& hazards, const HazardLimits& limits);
+/// Judges shapes measured over one footprint.
+class ShapeJudge {
+ public:
+  ShapeJudge(const HazardLimits& limits, double footprint_m);
+
+  /// Slope, Step, Roughness; Unknown where a gradient is NaN.
+  Hazard operator()(const GroundShape& shape) const noexcept;
+
+ private:
+  float gradient_squared_, step_m_, roughness_m_;
+};
+
+/// Hazards that the rover's whole width must keep clear of.
+inline constexpr Hazard kKeptClearOf = Hazard::KeepOut | Hazard::Obstacle | Hazard::Unknown;
+
+/// Marks as Near the cells whose centre lies closer than inflation_m to the edge of a cell with one of these
+/// hazards.
+void inflate(maps::Raster<Hazard>& hazards, const HazardLimits& limits, Hazard spreading = kKeptClearOf);
 
 }  // namespace talus::costmap

@@ -126,14 +126,18 @@ const CellBelief* TraversabilityTree::find(const OcTreeKey& key) const {
   return node ? &node->belief() : nullptr;
 }
 
-CellBelief& TraversabilityTree::at(const OcTreeKey& key) {
-  bool inherits = root != nullptr;
+TraversabilityNode* TraversabilityTree::makeRoot() {
   if (!root) {
     root = new TraversabilityNode;
-    ++tree_size;
+    tree_size = 1;
     size_changed = true;
   }
-  TraversabilityNode* node = root;
+  return root;
+}
+
+CellBelief& TraversabilityTree::at(const OcTreeKey& key) {
+  bool inherits = root != nullptr;
+  TraversabilityNode* node = makeRoot();
   for (unsigned depth = 0; depth < kDepth; ++depth) {
     if (inherits && !nodeHasChildren(node)) expandNode(node);
     const unsigned child = octomap::computeChildIdx(key, static_cast<int>(kDepth - 1 - depth));
@@ -154,9 +158,7 @@ std::istream& TraversabilityTree::readData(std::istream& stream) {
   stream.read(preamble.data(), preamble.size());
   if (preamble != kPreamble) stream.setstate(std::ios::failbit);
   if (!stream) return stream;
-  root = new TraversabilityNode;
-  tree_size = 1;
-  size_changed = true;
+  makeRoot();
   if (!readNode(root, stream, 0)) {
     clear();
     stream.setstate(std::ios::failbit);

@@ -46,6 +46,9 @@ class TraversabilityTree : public octomap::OcTreeBaseImpl<TraversabilityNode, oc
   /// The belief at a key for change; makes the leaf (splitting a pruned cube) when there is none.
   CellBelief& at(const octomap::OcTreeKey& key);
 
+  /// The root, made when there is none.
+  TraversabilityNode* makeRoot();
+
   /// Writes a preamble with the payload's version, then the nodes.
   std::ostream& writeData(std::ostream& stream) const override;
   /// Reads the nodes from a stream without its header; sets failbit on a truncated or foreign one and stays

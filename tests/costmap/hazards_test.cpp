@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include <site_fixture.hpp>
 
@@ -36,6 +37,16 @@ TEST(HazardLimits, ReliefOfALargeFootprintCountsInProportion) {
   const HazardLimits limits = HazardLimits::of(testRover());
   EXPECT_DOUBLE_EQ(reliefShare(limits, 0.5), 1.0);
   EXPECT_DOUBLE_EQ(reliefShare(limits, 8.0), 0.1);  // Closed form: wheelbase 0.8 m over 8 m
+}
+
+TEST(ShapeJudge, NamesEachLimitThatIsPassed) {
+  const HazardLimits limits{
+      .max_gradient = 0.3, .max_step_m = 0.1, .max_roughness_m = 0.05, .wheelbase_m = 1.0};
+  const ShapeJudge judge(limits, 1.0);
+  EXPECT_EQ(judge({.dz_dx = 0.29F, .dz_dy = 0.0F, .roughness_m = 0.04F, .step_m = 0.09F}), Hazard::None);
+  EXPECT_EQ(judge({.dz_dx = 0.25F, .dz_dy = 0.25F}), Hazard::Slope);
+  EXPECT_EQ(judge({.roughness_m = 0.06F, .step_m = 0.11F}), Hazard::Step | Hazard::Roughness);
+  EXPECT_EQ(judge({.dz_dx = NAN}), Hazard::Unknown);
 }
 
 }  // namespace

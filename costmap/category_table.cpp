@@ -1,0 +1,26 @@
+#include <cmath>
+
+#include <costmap/category_table.hpp>
+
+namespace talus::costmap {
+namespace {
+
+constexpr int kSteps = 2897;  // of the steepest gradient that CellCode holds, 2048 sqrt(2)
+
+}  // namespace
+
+CategoryTable::CategoryTable(const GroundModel& model, const GroundBelief& belief) {
+  entries_.reserve(kSteps);
+  for (int step = 0; step < kSteps; ++step) {
+    const Ranked ranked = model.category(belief, step * CellCode::kStep);
+    entries_.push_back({static_cast<std::uint8_t>(ranked.category),
+                        static_cast<std::uint8_t>(std::lround(16.0 * ranked.probability))});
+  }
+}
+
+CategoryTable::Entry CategoryTable::at(CellCode cell) const noexcept {
+  const auto x = static_cast<float>(cell.stepsX()), y = static_cast<float>(cell.stepsY());
+  return entries_[static_cast<std::size_t>(std::sqrt(x * x + y * y) + 0.5F)];
+}
+
+}  // namespace talus::costmap

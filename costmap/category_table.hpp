@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <costmap/drive_cost.hpp>
+#include <costmap/ground_model.hpp>
+
+namespace talus::costmap {
+
+/// The category of one kind of ground over the steepness of its plane: worst over headings, so climbing
+/// straight up. Tabulated in CellCode's own steps, so it is exact for coded gradients rounded to 1/1024.
+class CategoryTable {
+ public:
+  /// A row of the table.
+  struct Entry {
+    std::uint8_t category;    ///< terramech::Category as a number
+    std::uint8_t confidence;  ///< probability in steps of 1/16, rounded
+  };
+
+  CategoryTable(const GroundModel& model, const GroundBelief& belief);
+
+  /// The entry for the gradient of a cell.
+  Entry at(CellCode cell) const noexcept;
+
+ private:
+  std::vector<Entry> entries_;
+};
+
+}  // namespace talus::costmap

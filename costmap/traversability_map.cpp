@@ -1,0 +1,221 @@
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include <costmap/rock_hazard.hpp>
+#include <costmap/surface_tree.hpp>
+#include <costmap/traversability_map.hpp>
+
+namespace talus::costmap {
+namespace {
+
+constexpr std::uint8_t kNoClass = 255;
+constexpr int kBandRows = 4 * CostTile::kSide;
+
+double footprintRadius(const TraversabilityMap::Options& options, const terramech::Rover& rover) {
+  return options.footprint_radius_m > 0.0 ? options.footprint_radius_m
+                                          : 0.5 * std::hypot(rover.wheelbase_m, rover.track_m);
+}
+
+// Median would be steadier; the middle of the range keeps every height inside the tree.
+double middleElevation(const maps::Raster<float>& elevation_m) {
+  float low = std::numeric_limits<float>::infinity(), high = -low;
+  for (const float e : elevation_m.values())
+    if (!std::isnan(e)) {
+      low = std::min(low, e);
+      high = std::max(high, e);
+    }
+  return low <= high ? 0.5 * (static_cast<double>(low) + static_cast<double>(high)) : 0.0;
+}
+
+template <typename T>
+void requireGrid(const maps::Raster<T>& layer, const maps::Grid& grid, const char* name) {
+  if (!layer.empty() && layer.grid() != grid)
+    throw std::invalid_argument(std::string("TraversabilityMap: ") + name +
+                                " lies on another grid than the elevation");
+}
+
+// A band of rows with a margin, measured by itself: equal to measuring the whole map, in a sixteenth of the
+// memory.
+struct Band {
+  int first_row = 0;
+  int margin_rows = 0;  // below first_row
+  maps::TerrainMetrics metrics;
+
+  std::size_t index(maps::Cell cell) const {
+    return metrics.dz_dx.grid().index({cell.column, cell.row - first_row + margin_rows});
+  }
+};
+
+struct BandRequest {
+  int first_row;
+  maps::FootprintOptions footprint;
+};
+
+Band measureBand(const maps::Raster<float>& elevation_m, const BandRequest& request) {
+  const maps::Grid& grid = elevation_m.grid();
+  const int halo = static_cast<int>(std::ceil(request.footprint.radius_m / grid.resolution_m)) + 2;
+  const int from = std::max(0, request.first_row - halo);
+  const int to = std::min(grid.height, request.first_row + kBandRows + halo);
+  maps::Grid part = grid;
+  part.height = to - from;
+  maps::Raster<float> rows(part);
+  std::copy(elevation_m.row(from), elevation_m.row(from) + part.size(), rows.values().begin());
+  return {.first_row = request.first_row,
+          .margin_rows = request.first_row - from,
+          .metrics = maps::terrainMetrics(rows, request.footprint)};
+}
+
+double footprintWidth(const maps::TerrainMetrics& metrics, double resolution_m, double radius_m) {
+  return metrics.fell_back ? 2.0 * resolution_m : 2.0 * radius_m;
+}
+
+CostGrid::Tiles emptyTiles(const maps::Grid& grid) {
+  const auto across = [](int cells) {
+    return static_cast<std::size_t>((cells + CostTile::kSide - 1) / CostTile::kSide);
+  };
+  return CostGrid::Tiles(across(grid.width) * across(grid.height));
+}
+
+}  // namespace
+
+struct TraversabilityMap::Published {
+  std::atomic<std::shared_ptr<const CostGrid>> grid;
+};
+
+TraversabilityMap::TraversabilityMap(TraversabilityMap&&) noexcept = default;
+TraversabilityMap::~TraversabilityMap() = default;
+
+TraversabilityMap::TraversabilityMap(MapLayers layers, std::shared_ptr<const GroundModel> model,
+                                     const Options& options, const Watch& watch)
+    : elevation_(std::move(layers.elevation)),
+      model_(std::move(model)),
+      limits_(HazardLimits::of(model_->rover())),
+      footprint_radius_m_(footprintRadius(options, model_->rover())),
+      keys_(elevation_.grid(), middleElevation(elevation_.elevation_m)),
+      classes_(std::move(layers.classes)),
+      hazards_(elevation_.grid(), Hazard::None),
+      book_(model_),
+      published_(std::make_unique<Published>()) {
+  requireGrid(classes_, grid(), "classes");
+  requireGrid(layers.rock_abundance, grid(), "rock_abundance");
+  requireGrid(layers.keep_out, grid(), "keep_out");
+  for (int i = 0; i < static_cast<int>(model_->parts().classes.size()); ++i)
+    prior_categories_.emplace_back(*model_, model_->prior(i));
+  published_->grid = std::make_shared<CostGrid>(CostGrid::Content{
+      .grid = grid(), .tiles = measure(layers, options, watch), .cost = book_.cost(), .version = 1});
+}
+
+Hazard TraversabilityMap::layerHazards(const MapLayers& layers, std::size_t i) const {
+  Hazard found = Hazard::None;
+  if (std::isnan(elevation_.elevation_m.values()[i])) found |= Hazard::Unknown;
+  if (!layers.keep_out.empty() && layers.keep_out.values()[i] != 0) found |= Hazard::KeepOut;
+  if (!layers.rock_abundance.empty()) {
+    const RockCrossing crossing{.diameter_m = limits_.rock_diameter_m, .area_m2 = limits_.rock_area_m2};
+    const double rocks = rockHazard(static_cast<double>(layers.rock_abundance.values()[i]), crossing);
+    if (rocks > limits_.max_rock_probability) found |= Hazard::Rocks;
+  }
+  if (!classes_.empty()) {
+    const std::uint8_t number = classes_.values()[i];
+    if (number == kNoClass)
+      found |= Hazard::Unknown;
+    else if (model_->classIndex(number) < 0)
+      found |= Hazard::Obstacle;
+  }
+  return found;
+}
+
+CostGrid::Tiles TraversabilityMap::measure(const MapLayers& layers, const Options& options,
+                                           const Watch& watch) {
+  std::vector<std::shared_ptr<CostTile>> tiles(emptyTiles(grid()).size());
+  for (auto& tile : tiles) tile = std::make_shared<CostTile>();
+  const int tile_columns = (grid().width + CostTile::kSide - 1) / CostTile::kSide;
+  const auto slot = [&](maps::Cell c) -> CellCode& {
+    auto& tile = *tiles[static_cast<std::size_t>((c.row >> 6) * tile_columns + (c.column >> 6))];
+    return tile.cells[static_cast<std::size_t>((c.row & 63) << 6 | (c.column & 63))];
+  };
+  for (int first = 0; first < grid().height && !watch.stopped(); first += kBandRows) {
+    const Band band = measureBand(elevation_.elevation_m,
+                                  {first, {.radius_m = footprint_radius_m_, .threads = options.threads}});
+    const maps::TerrainMetrics& m = band.metrics;
+    const ShapeJudge judge(limits_, footprintWidth(m, grid().resolution_m, footprint_radius_m_));
+    for (int row = first; row < std::min(first + kBandRows, grid().height); ++row)
+      for (int column = 0; column < grid().width; ++column) {
+        const maps::Cell cell{column, row};
+        const std::size_t i = band.index(cell);
+        const GroundShape shape{m.dz_dx.values()[i], m.dz_dy.values()[i], m.roughness_m.values()[i],
+                                m.step_m.values()[i]};
+        hazards_[cell] = judge(shape) | layerHazards(layers, grid().index(cell));
+        slot(cell) =
+            CellCode({.dz_dx = static_cast<double>(shape.dz_dx), .dz_dy = static_cast<double>(shape.dz_dy)});
+      }
+    watch.report(static_cast<double>(first + kBandRows) / grid().height);
+  }
+  const bool unknown_opens = model_->parts().policy.allow_unknown;
+  inflate(hazards_, limits_, unknown_opens ? Hazard::KeepOut | Hazard::Obstacle : kKeptClearOf);
+  for (int row = 0; row < grid().height; ++row)
+    for (int column = 0; column < grid().width; ++column) {
+      CellCode& code = slot({column, row});
+      code = CellCode({.dz_dx = code.dzDx(), .dz_dy = code.dzDy(), .curve = curveOf({column, row})});
+    }
+  return {tiles.begin(), tiles.end()};
+}
+
+std::uint8_t TraversabilityMap::curveOf(maps::Cell cell) const noexcept {
+  const Hazard found = hazards_[cell];
+  if (found == Hazard::None) return book_.prior(classIndex(cell));
+  if (found != Hazard::Unknown) return CellCode::kBlocked;
+  return model_->parts().policy.allow_unknown ? book_.prior(0) : CellCode::kUnknown;
+}
+
+std::shared_ptr<const CostGrid> TraversabilityMap::published() const noexcept {
+  return published_->grid.load();
+}
+
+int TraversabilityMap::classNumber(maps::Cell cell) const noexcept {
+  return classes_.empty() ? 0 : classes_[cell];
+}
+
+int TraversabilityMap::classIndex(maps::Cell cell) const noexcept {
+  return classes_.empty() ? 0 : model_->classIndex(classes_[cell]);
+}
+
+std::optional<GroundBelief> TraversabilityMap::ground(maps::Cell cell) const {
+  const int index = classIndex(cell);
+  if (index < 0) return std::nullopt;
+  return model_->prior(index);
+}
+
+CellBelief TraversabilityMap::belief(maps::Cell cell) const {
+  CellBelief belief;
+  belief.terrain_class = static_cast<std::uint8_t>(classNumber(cell));
+  belief.hazards = hazards_[cell];
+  const auto strength = ground(cell);
+  if (!strength) return belief;
+  belief.pull_mean = static_cast<float>(strength->pull.mean);
+  belief.pull_std = static_cast<float>(strength->pull.std);
+  belief.sinkage_mean = static_cast<float>(strength->sinkage.mean);
+  belief.sinkage_std = static_cast<float>(strength->sinkage.std);
+  if (has(belief.hazards, Hazard::Unknown)) return belief;
+  const auto entry = prior_categories_[static_cast<std::size_t>(classIndex(cell))].at(code(cell));
+  belief.category = belief.hazards == Hazard::None
+                        ? entry.category
+                        : static_cast<std::uint8_t>(terramech::Category::Dangerous);
+  belief.confidence = belief.hazards == Hazard::None ? entry.confidence : std::uint8_t{16};
+  return belief;
+}
+
+CategoryCounts TraversabilityMap::countCategories() const {
+  std::array<std::size_t, 4> counts{};
+  for (int row = 0; row < grid().height; ++row)
+    for (int column = 0; column < grid().width; ++column) ++counts[belief({column, row}).category];
+  return {counts[0], counts[1], counts[2], counts[3]};
+}
+
+TraversabilityTree TraversabilityMap::tree() const {
+  return surfaceTree({elevation_.elevation_m, keys_}, [this](maps::Cell cell) { return belief(cell); });
+}
+
+}  // namespace talus::costmap

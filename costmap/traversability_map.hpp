@@ -1,0 +1,101 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include <costmap/category_table.hpp>
+#include <costmap/cost_grid.hpp>
+#include <costmap/curve_book.hpp>
+#include <costmap/ground_model.hpp>
+#include <costmap/hazards.hpp>
+#include <costmap/surface_cells.hpp>
+#include <costmap/traversability_tree.hpp>
+#include <maps/elevation_map.hpp>
+#include <maps/terrain_metrics.hpp>
+#include <talus.hpp>
+
+namespace talus::costmap {
+
+/// What a map is built from; layers on the elevation's grid, empty where nobody gave one.
+struct MapLayers {
+  maps::ElevationMap elevation;
+  maps::Raster<std::uint8_t> classes;   ///< terrain-class numbers, 255 = none there
+  maps::Raster<float> rock_abundance;   ///< share of the ground, NaN = none there
+  maps::Raster<std::uint8_t> keep_out;  ///< not 0: must not be entered
+};
+
+/// How many cells fall in each category, hazards counted as dangerous where they refuse the cell, unknown
+/// where unseen.
+struct CategoryCounts {
+  std::size_t safe = 0, marginal = 0, dangerous = 0, unknown = 0;
+};
+
+/// Everything that is believed of a site: its surface, the prior of each cell's ground, the evidence that the
+/// wheels brought, and the cost grid that planners read. Ten bytes a cell and an octree of what was learned.
+///
+/// One thread changes a map; published() may be called from any thread at any time and never waits.
+class TraversabilityMap {
+ public:
+  struct Options {
+    double footprint_radius_m =
+        0.0;          ///< disc that slope and roughness are measured over; 0: half the rover's diagonal
+    int threads = 1;  ///< >= 1; the result does not depend on it
+  };
+
+  /// Builds the map. Cells of a class without a soil count as obstacles, cells that the class raster leaves
+  /// out as unknown. Throws std::invalid_argument when a layer lies on another grid.
+  TraversabilityMap(MapLayers layers, std::shared_ptr<const GroundModel> model, const Options& options,
+                    const Watch& watch = {});
+  TraversabilityMap(TraversabilityMap&&) noexcept;
+  ~TraversabilityMap();
+
+  const maps::Grid& grid() const noexcept { return elevation_.grid(); }
+  const maps::ElevationMap& elevation() const noexcept { return elevation_; }
+  const GroundModel& model() const noexcept { return *model_; }
+  const HazardLimits& hazardLimits() const noexcept { return limits_; }
+  double footprintRadius_m() const noexcept { return footprint_radius_m_; }
+
+  /// The newest published version, for planners to pin.
+  std::shared_ptr<const CostGrid> published() const noexcept;
+
+  /// Gradient, curve number of a cell inside the map.
+  CellCode code(maps::Cell cell) const noexcept { return published()->at(cell); }
+  Hazard hazards(maps::Cell cell) const noexcept { return hazards_[cell]; }
+  /// Position of the cell's class in model().parts().classes, or -1.
+  int classIndex(maps::Cell cell) const noexcept;
+  /// Class number in the raster, 0 where there is no raster.
+  int classNumber(maps::Cell cell) const noexcept;
+
+  /// All that is believed of a cell inside the map.
+  CellBelief belief(maps::Cell cell) const;
+  /// The strength of its ground: prior of the class and evidence together; nothing where the cell has no
+  /// class.
+  std::optional<GroundBelief> ground(maps::Cell cell) const;
+
+  CategoryCounts countCategories() const;
+
+  /// The whole map as an octree of beliefs, for files.
+  TraversabilityTree tree() const;
+  const SurfaceKeys& keys() const noexcept { return keys_; }
+
+ private:
+  CostGrid::Tiles measure(const MapLayers& layers, const Options& options, const Watch& watch);
+  Hazard layerHazards(const MapLayers& layers, std::size_t index) const;
+  std::uint8_t curveOf(maps::Cell cell) const noexcept;
+
+  maps::ElevationMap elevation_;
+  std::shared_ptr<const GroundModel> model_;
+  HazardLimits limits_;
+  double footprint_radius_m_ = 0.0;
+  SurfaceKeys keys_;
+  maps::Raster<std::uint8_t> classes_;
+  maps::Raster<Hazard> hazards_;
+  CurveBook book_;
+  std::vector<CategoryTable> prior_categories_;
+  struct Published;
+  std::unique_ptr<Published> published_;  // the atomic in it cannot move
+};
+
+}  // namespace talus::costmap
