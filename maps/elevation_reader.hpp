@@ -3,18 +3,11 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <string_view>
 
 #include <maps/elevation_map.hpp>
 #include <maps/place.hpp>
 
 namespace talus::maps {
-
-/// Two opposite corners of the part to read, in any order.
-struct Window {
-  Place first;
-  Place second;
-};
 
 /// How a raster file is read.
 struct ReadOptions {
@@ -32,8 +25,5 @@ struct ReadOptions {
 /// cells in metres (the map's notes say so).
 /// @throws InputError naming file, reason and remedy
 ElevationMap readElevation(const std::string& path, const ReadOptions& options = {});
-
-/// "x0,y0,x1,y1" in map metres or "lat,lon,lat,lon" with a trailing d on each. @throws InputError
-Window parseWindow(std::string_view text);
 
 }  // namespace talus::maps

@@ -4,8 +4,8 @@
 
 namespace talus::maps {
 
-/// A place on a body, by geographic (surface normal) latitude, which on a sphere is the planetocentric one
-/// too.
+/// A place on a body. Its latitude is geographic (of the surface normal) unless a coordinate system says that
+/// it is planetocentric; on a sphere these are one.
 struct GeoPoint {
   double latitude_rad = 0.0;   ///< -pi/2 to pi/2, north positive
   double longitude_rad = 0.0;  ///< east positive

@@ -14,7 +14,7 @@ enum class ProjectionMethod {
   Mercator,               ///< one standard parallel (standard_parallel_1_rad), scale there
   Equirectangular,        ///< on the sphere of the equatorial radius, as PROJ has it; true along
                           ///< standard_parallel_1_rad
-  PolarStereographic,     ///< latitude_of_origin_rad is +-pi/2; scale at the pole
+  PolarStereographic,     ///< scale along standard_parallel_1_rad, whose sign picks the pole
   Stereographic,          ///< oblique, on the conformal sphere [snyder1987]
   LambertConformalConic,  ///< standard parallels 1 and 2 (equal for one)
   AlbersEqualArea,        ///< standard parallels 1 and 2
@@ -39,15 +39,18 @@ struct Projection {
 
 /// What a file says of its coordinates.
 struct CoordinateSystem {
-  std::string name;  ///< "WGS 84 / UTM zone 10N"
-  Ellipsoid ellipsoid;
-  Projection projection;
-  std::string wkt;  ///< the file's own words, written back into the layers made from it; may be empty
+  std::string name{};  ///< "WGS 84 / UTM zone 10N"
+  Ellipsoid ellipsoid{};
+  Projection projection{};
+  bool planetocentric =
+      false;        ///< latitudes are angles at the centre of the ellipsoid, not of its surface normal
+  std::string wkt{};  ///< the file's own words, written back into the layers made from it; may be empty
 };
 
-/// Carries places between map metres and latitude, longitude on the body's own ellipsoid.
-/// Through GeographicLib [karney2013] where it has the projection; agrees with PROJ to a millimetre.
-/// Immutable, cheap to copy, safe to share between threads.
+/// Carries places between map metres and latitude, longitude on the body's own ellipsoid, the latitude of the
+/// kind that the coordinate system has (planetocentric or geographic; the same on a sphere). Through
+/// GeographicLib [karney2013] where it has the projection; agrees with PROJ to a millimetre. Immutable, cheap
+/// to copy, safe to share between threads.
 class Georeference {
  public:
   /// @throws std::invalid_argument when a parameter is out of its range
@@ -73,6 +76,8 @@ class Georeference {
   class Transform;
 
  private:
+  GeoPoint geographic(Point point) const;
+
   CoordinateSystem system_;
   std::shared_ptr<const Transform> transform_;
 };

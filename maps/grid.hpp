@@ -3,6 +3,8 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <stdexcept>
+#include <utility>
 #include <vector>
 
 namespace talus::maps {
@@ -60,6 +62,11 @@ class Raster {
  public:
   Raster() = default;
   explicit Raster(const Grid& grid, T fill = T{}) : grid_(grid), values_(grid.size(), fill) {}
+
+  /// Takes values that exist already. @throws std::invalid_argument unless there is one for each cell
+  Raster(const Grid& grid, std::vector<T> values) : grid_(grid), values_(std::move(values)) {
+    if (values_.size() != grid.size()) throw std::invalid_argument("raster: one value a cell is needed");
+  }
 
   const Grid& grid() const noexcept { return grid_; }
   bool empty() const noexcept { return values_.empty(); }

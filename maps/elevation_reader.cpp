@@ -1,0 +1,129 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <gdal_priv.h>
+
+#include <maps/elevation_reader.hpp>
+#include <maps/elevation_values.hpp>
+#include <maps/numpy_raster.hpp>
+#include <maps/raster_band.hpp>
+#include <maps/raster_frame.hpp>
+#include <talus.hpp>
+
+namespace talus::maps {
+namespace {
+
+void check(const ReadOptions& options) {
+  const auto require = [](bool holds, const char* option, const char* bound) {
+    if (!holds) throw InputError({option, bound, ""});
+  };
+  require(!options.resolution_m || (std::isfinite(*options.resolution_m) && *options.resolution_m > 0),
+          "--resolution", "must be a number of metres above 0");
+  require(std::isfinite(options.vertical_scale) && options.vertical_scale != 0, "--vertical-scale",
+          "must be a number other than 0");
+}
+
+// A corner of the window in map metres.
+Point corner(const Place& place, const std::optional<Georeference>& georeference, const std::string& path) {
+  if (const auto* point = std::get_if<Point>(&place)) return *point;
+  if (georeference) return georeference->forward(std::get<GeoPoint>(place));
+  throw InputError({path, "has no CRS for a window in degrees", "give --window in map metres"});
+}
+
+// Columns and rows of the grid (row 0 south) that the window touches.
+struct CellBox {
+  Cell first;
+  Cell last;  // past the end
+};
+
+CellBox cellsOf(const Window& window, const FramedRaster& from, const std::string& path) {
+  const Grid& grid = from.grid;
+  const Point a = corner(window.first, from.georeference, path);
+  const Point b = corner(window.second, from.georeference, path);
+  const auto column = [&](double x_m, double up) {
+    return std::clamp((x_m - grid.south_west.x_m) / grid.resolution_m + up, 0.0, grid.width + 0.0);
+  };
+  const auto row = [&](double y_m, double up) {
+    return std::clamp((y_m - grid.south_west.y_m) / grid.resolution_m + up, 0.0, grid.height + 0.0);
+  };
+  // A corner on a cell's edge, to rounding, does not reach the next cell.
+  constexpr double kRounding = 1e-6;
+  const CellBox box{{static_cast<int>(std::floor(column(std::min(a.x_m, b.x_m), kRounding))),
+                     static_cast<int>(std::floor(row(std::min(a.y_m, b.y_m), kRounding)))},
+                    {static_cast<int>(std::ceil(column(std::max(a.x_m, b.x_m), -kRounding))),
+                     static_cast<int>(std::ceil(row(std::max(a.y_m, b.y_m), -kRounding)))}};
+  if (box.last.column > box.first.column && box.last.row > box.first.row) return box;
+  throw InputError({path, "the window lies outside the map", "it " + extent(grid)});
+}
+
+Grid part(const Grid& grid, const CellBox& box) {
+  return {.width = box.last.column - box.first.column,
+          .height = box.last.row - box.first.row,
+          .resolution_m = grid.resolution_m,
+          .south_west = {grid.south_west.x_m + box.first.column * grid.resolution_m,
+                         grid.south_west.y_m + box.first.row * grid.resolution_m}};
+}
+
+void refuseSize(const Grid& grid, const ReadOptions& options, const std::string& path) {
+  if (grid.size() > options.max_cells)
+    throw InputError(
+        {path, std::to_string(grid.width) + " x " + std::to_string(grid.height) + " cells are too many",
+         "read a part with --window or coarser with --resolution"});
+  if (grid.width < 2 || grid.height < 2)
+    throw InputError(
+        {path, std::to_string(grid.width) + " x " + std::to_string(grid.height) + " cells have no slope",
+         "give a map of at least 2 x 2 cells"});
+}
+
+// Rows come north first; the map's go south first.
+Raster<float> toRaster(const Grid& grid, std::vector<float> values, bool north_up) {
+  if (north_up)
+    for (int r = 0; r < grid.height / 2; ++r)
+      std::swap_ranges(values.begin() + std::ptrdiff_t{r} * grid.width,
+                       values.begin() + std::ptrdiff_t{r + 1} * grid.width,
+                       values.begin() + std::ptrdiff_t{grid.height - 1 - r} * grid.width);
+  return {grid, std::move(values)};
+}
+
+double radius(GDALDataset& file) {
+  const OGRSpatialReference* crs = file.GetSpatialRef();
+  return crs == nullptr ? 0.0 : crs->GetSemiMajor();
+}
+
+}  // namespace
+
+ElevationMap readElevation(const std::string& path, const ReadOptions& options) {
+  check(options);
+  ElevationMap map;
+  map.source = path;
+  Dataset file = isNumpyFile(path) ? openNumpyRaster(path, map.notes) : openRaster(path);
+  const int band = chooseBand(*file,
+                              {.path = path,
+                               .band = options.band,
+                               .words = {"elev", "dem", "dtm", "height", "topo", "altitude"},
+                               .others = {"slope", "aspect", "shade", "error", "count"}},
+                              map.notes);
+  HeightCode code = heightCode(*file->GetRasterBand(band), radius(*file), map.notes);
+  if (options.nodata) code.nodata = options.nodata;
+  code.scale *= options.vertical_scale;
+  code.offset_m *= options.vertical_scale;
+
+  FramedRaster from = frame(std::move(file), band, options, path, map.notes);
+  const CellBox box = options.window ? cellsOf(*options.window, from, path)
+                                     : CellBox{{0, 0}, {from.grid.width, from.grid.height}};
+  const Grid grid = part(from.grid, box);
+  refuseSize(grid, options, path);
+  const int first_row = from.north_up ? from.grid.height - box.last.row : box.first.row;
+  std::vector<float> values =
+      readPixels(*from.raster, from.band, {box.first.column, first_row, grid.width, grid.height}, path);
+  decodeHeights(values, code, map.notes);
+  map.elevation_m = toRaster(grid, std::move(values), from.north_up);
+  map.georeference = from.georeference;
+  if (validFraction(map.elevation_m) == 0.0)
+    throw InputError({path, "holds no data in any cell" + std::string(options.window ? " of the window" : ""),
+                      "check --band, --nodata and --window"});
+  return map;
+}
+
+}  // namespace talus::maps

@@ -1,0 +1,79 @@
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <mutex>
+#include <new>
+
+#include <cpl_error.h>
+#include <gdal_priv.h>
+#include <unistd.h>
+
+#include <maps/gdal_dataset.hpp>
+#include <talus.hpp>
+
+namespace talus::maps {
+namespace {
+
+void registerDriversOnce() {
+  static std::once_flag once;
+  std::call_once(once, [] { GDALAllRegister(); });
+}
+
+}  // namespace
+
+void CloseDataset::operator()(GDALDataset* dataset) const noexcept {
+  if (dataset != nullptr) dataset->ReleaseRef();
+}
+
+void requireReadableFile(const std::string& path) {
+  if (path.starts_with("/vsi")) return;
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) throw InputError({path, "no such file", "check the path"});
+  if (std::filesystem::is_directory(status))
+    throw InputError({path, "is a directory, not a raster file", "name the file inside it"});
+  if (::access(path.c_str(), R_OK) != 0)
+    throw InputError({path, std::string("cannot be read: ") + std::strerror(errno), "check its permissions"});
+  if (std::filesystem::is_regular_file(status) && std::filesystem::file_size(path, error) == 0)
+    throw InputError({path, "is empty", "fetch it again"});
+}
+
+GdalErrors::GdalErrors() {
+  CPLErrorReset();
+  CPLPushErrorHandler(CPLQuietErrorHandler);
+}
+
+GdalErrors::~GdalErrors() {
+  CPLPopErrorHandler();
+}
+
+std::string GdalErrors::last() const {
+  const std::string message = CPLGetLastErrorMsg();
+  return message.empty() ? "unknown error" : message.substr(0, message.find('\n'));
+}
+
+bool GdalErrors::any() const {
+  return CPLGetLastErrorType() >= CE_Failure;
+}
+
+Dataset openRaster(const std::string& path) {
+  registerDriversOnce();
+  requireReadableFile(path);
+  const GdalErrors errors;
+  Dataset dataset(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR));
+  if (!dataset)
+    throw InputError({path, "GDAL opens no raster: " + errors.last(), "give a GeoTIFF or another raster"});
+  if (dataset->GetRasterCount() == 0 || dataset->GetRasterXSize() == 0 || dataset->GetRasterYSize() == 0)
+    throw InputError({path, "holds no raster band", "name one of its subdatasets (gdalinfo lists them)"});
+  return dataset;
+}
+
+Dataset memoryRaster(int width, int height) {
+  registerDriversOnce();
+  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("MEM");
+  Dataset dataset(driver->Create("", width, height, 1, GDT_Float32, nullptr));
+  if (!dataset) throw std::bad_alloc();
+  return dataset;
+}
+
+}  // namespace talus::maps

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+class GDALDataset;
+
+namespace talus::maps {
+
+struct CloseDataset {
+  void operator()(GDALDataset* dataset) const noexcept;
+};
+
+/// A GDAL dataset that closes itself once no virtual raster made from it needs it any more.
+using Dataset = std::unique_ptr<GDALDataset, CloseDataset>;
+
+/// Keeps GDAL from printing while it lives, and remembers the last error of this thread.
+class GdalErrors {
+ public:
+  GdalErrors();
+  GdalErrors(const GdalErrors&) = delete;
+  GdalErrors& operator=(const GdalErrors&) = delete;
+  ~GdalErrors();
+
+  /// GDAL's last message, or "unknown error".
+  std::string last() const;
+  /// Whether an error, not a warning, came since construction.
+  bool any() const;
+};
+
+/// @throws InputError unless the path is a file that can be read and is not empty
+void requireReadableFile(const std::string& path);
+
+/// Opens a raster file for reading. @throws InputError: missing, a directory, unreadable, not a raster, no
+/// cells
+Dataset openRaster(const std::string& path);
+
+/// An empty raster in memory of one band of 32-bit floats. @throws std::bad_alloc
+Dataset memoryRaster(int width, int height);
+
+}  // namespace talus::maps

@@ -1,0 +1,112 @@
+// The format: numpy.lib.format in NumPy's reference manual.
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <regex>
+
+#include <maps/numpy_array.hpp>
+#include <talus.hpp>
+
+namespace talus::maps {
+namespace {
+
+struct Header {
+  char kind = 'f';       // i, u or f
+  std::size_t size = 8;  // bytes
+  bool swapped = false;
+  bool fortran_order = false;
+  std::vector<std::size_t> shape;
+  std::size_t data_offset = 0;
+};
+
+[[noreturn]] void refuse(const std::string& where, const std::string& reason) {
+  throw InputError({where, reason, "save it with numpy.save as a plain array of numbers"});
+}
+
+std::size_t littleEndian(const std::string& bytes, std::size_t at, std::size_t count) {
+  std::size_t value = 0;
+  for (std::size_t i = 0; i < count; ++i)
+    value |= static_cast<std::size_t>(static_cast<unsigned char>(bytes[at + i])) << (8 * i);
+  return value;
+}
+
+std::vector<std::size_t> parseShape(const std::string& text, const std::string& where) {
+  std::vector<std::size_t> shape;
+  static const std::regex number("[0-9]+");
+  for (std::sregex_iterator it(text.begin(), text.end(), number), end; it != end; ++it) {
+    if (it->length() > 9) refuse(where, "array is too large");
+    shape.push_back(std::stoul(it->str()));
+  }
+  return shape;
+}
+
+Header parseHeader(const std::string& bytes, const std::string& where) {
+  if (bytes.size() < 12 || bytes.compare(0, 6, "\x93NUMPY") != 0) refuse(where, "not a NumPy array");
+  const std::size_t length_bytes = bytes[6] == 1 ? 2 : 4;
+  const std::size_t begin = 8 + length_bytes;
+  const std::size_t length = littleEndian(bytes, 8, length_bytes);
+  if (length > bytes.size() - begin) refuse(where, "the NumPy header is cut short");
+  const std::string words = bytes.substr(begin, length);
+  static const std::regex type("'descr': *'([<>|=])([iuf])([0-9])'");
+  static const std::regex order("'fortran_order': *True");
+  static const std::regex extent("'shape': *\\(([^)]*)\\)");
+  std::smatch match;
+  Header header;
+  if (!std::regex_search(words, match, type)) refuse(where, "the array does not hold plain numbers");
+  header.kind = match[2].str()[0];
+  header.size = std::stoul(match[3].str());
+  const bool big = match[1] == ">";
+  header.swapped = header.size > 1 && big != (std::endian::native == std::endian::big);
+  header.fortran_order = std::regex_search(words, order);
+  if (!std::regex_search(words, match, extent)) refuse(where, "the NumPy header has no shape");
+  header.shape = parseShape(match[1], where);
+  header.data_offset = begin + length;
+  return header;
+}
+
+template <typename T>
+double number(const char* bytes, bool swapped) {
+  std::array<char, sizeof(T)> raw;
+  std::copy_n(bytes, sizeof(T), raw.begin());
+  if (swapped) std::reverse(raw.begin(), raw.end());
+  return static_cast<double>(std::bit_cast<T>(raw));
+}
+
+using Convert = double (*)(const char*, bool);
+
+Convert converter(const Header& h, const std::string& where) {
+  const std::string type = h.kind + std::to_string(h.size);
+  if (type == "i1") return number<std::int8_t>;
+  if (type == "u1") return number<std::uint8_t>;
+  if (type == "i2") return number<std::int16_t>;
+  if (type == "u2") return number<std::uint16_t>;
+  if (type == "i4") return number<std::int32_t>;
+  if (type == "u4") return number<std::uint32_t>;
+  if (type == "i8") return number<std::int64_t>;
+  if (type == "u8") return number<std::uint64_t>;
+  if (type == "f4") return number<float>;
+  if (type == "f8") return number<double>;
+  refuse(where, "numbers of type " + type + " are not supported");
+}
+
+}  // namespace
+
+NumpyArray parseNumpy(const std::string& bytes, const std::string& where) {
+  const Header header = parseHeader(bytes, where);
+  const Convert convert = converter(header, where);
+  std::size_t count = 1;
+  for (std::size_t n : header.shape) count *= n;
+  if (count > (bytes.size() - header.data_offset) / header.size)
+    throw InputError({where, "the file is cut short", "fetch it again"});
+  NumpyArray array{header.shape, std::vector<double>(count)};
+  const bool transposed = header.fortran_order && header.shape.size() == 2;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t at = transposed ? (i % header.shape[0]) * header.shape[1] + i / header.shape[0] : i;
+    array.values[at] = convert(bytes.data() + header.data_offset + i * header.size, header.swapped);
+  }
+  return array;
+}
+
+}  // namespace talus::maps

@@ -1,0 +1,89 @@
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <limits>
+
+#include <gdal_priv.h>
+
+#include <maps/gdal_dataset.hpp>
+#include <maps/raster_band.hpp>
+#include <talus.hpp>
+
+namespace talus::maps {
+namespace {
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+
+std::string lowered(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+bool holdsOneOf(const std::string& text, const std::vector<std::string_view>& words) {
+  return std::any_of(words.begin(), words.end(),
+                     [&](std::string_view word) { return text.find(word) != text.npos; });
+}
+
+std::string description(GDALDataset& file, int band) {
+  const std::string words = file.GetRasterBand(band)->GetDescription();
+  return "band " + std::to_string(band) + (words.empty() ? "" : " '" + words + "'");
+}
+
+bool isPicture(GDALRasterBand& band) {
+  const GDALColorInterp colour = band.GetColorInterpretation();
+  return colour == GCI_RedBand || colour == GCI_PaletteIndex;
+}
+
+// NaN where GDAL's mask of the band, if it has one of its own, says that the pixel does not count.
+void applyMask(GDALRasterBand& band, const PixelBox& box, std::vector<float>& values,
+               const std::string& where) {
+  if ((band.GetMaskFlags() & (GMF_PER_DATASET | GMF_ALPHA)) == 0) return;
+  std::vector<unsigned char> mask(values.size());
+  const GdalErrors errors;
+  if (band.GetMaskBand()->RasterIO(GF_Read, box.column, box.row, box.width, box.height, mask.data(),
+                                   box.width, box.height, GDT_Byte, 0, 0, nullptr) != CE_None)
+    throw InputError({where, "its mask cannot be read: " + errors.last(), "fetch it again"});
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (mask[i] == 0) values[i] = kNaN;
+}
+
+}  // namespace
+
+int chooseBand(GDALDataset& file, const BandWish& wish, std::vector<std::string>& notes) {
+  const int count = file.GetRasterCount();
+  if (wish.band) {
+    if (*wish.band >= 1 && *wish.band <= count) return *wish.band;
+    throw InputError({wish.path + ", band " + std::to_string(*wish.band), "no such band",
+                      "it has " + std::to_string(count) + (count == 1 ? " band" : " bands, from 1")});
+  }
+  int chosen = 1;
+  for (int band = count; band >= 1; --band) {
+    const std::string name = lowered(file.GetRasterBand(band)->GetDescription());
+    if (holdsOneOf(name, wish.words) && !holdsOneOf(name, wish.others)) chosen = band;
+  }
+  if (isPicture(*file.GetRasterBand(chosen)))
+    throw InputError({wish.path, "is a picture of colours, not of heights or classes",
+                      "name a band with --band if it is meant"});
+  if (count > 1) notes.push_back("took " + description(file, chosen) + " of " + std::to_string(count));
+  return chosen;
+}
+
+std::vector<float> readPixels(GDALDataset& raster, int band, const PixelBox& box, const std::string& where) {
+  GDALRasterBand& source = *raster.GetRasterBand(band);
+  if (GDALDataTypeIsComplex(source.GetRasterDataType()) != FALSE)
+    throw InputError({where, "holds complex numbers", "choose a band of real numbers with --band"});
+  std::vector<float> values(static_cast<std::size_t>(box.width) * static_cast<std::size_t>(box.height));
+  const GdalErrors errors;
+  const CPLErr done = source.RasterIO(GF_Read, box.column, box.row, box.width, box.height, values.data(),
+                                      box.width, box.height, GDT_Float32, 0, 0, nullptr);
+  if (done != CE_None)
+    throw InputError({where, "cannot be read to its end: " + errors.last(),
+                      "the file is damaged or cut short: fetch it again"});
+  applyMask(source, box, values, where);
+  for (float& v : values)
+    if (!std::isfinite(v)) v = kNaN;
+  return values;
+}
+
+}  // namespace talus::maps

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <maps/grid.hpp>
+
+class GDALDataset;
+
+namespace talus::maps {
+
+/// Which band of a file to take when the user names none.
+struct BandWish {
+  std::string path;                      ///< opens error lines
+  std::optional<int> band;               ///< from 1, as the user asked
+  std::vector<std::string_view> words;   ///< parts of a description that mark the band, in lower case
+  std::vector<std::string_view> others;  ///< parts that rule it out
+};
+
+/// The band asked for, else the first whose description fits, else the first; a choice among several is said
+/// in `notes`. @throws InputError on a band that does not exist, or a picture (colours) when none was asked
+/// for
+int chooseBand(GDALDataset& file, const BandWish& wish, std::vector<std::string>& notes);
+
+/// Pixels of a raster, from its upper left corner.
+struct PixelBox {
+  int column = 0;
+  int row = 0;
+  int width = 0;
+  int height = 0;
+};
+
+/// Reads pixels of a band as they stand into rows of floats, first row first; masked pixels and infinities
+/// are NaN.
+/// @throws InputError with GDAL's words
+std::vector<float> readPixels(GDALDataset& raster, int band, const PixelBox& box, const std::string& where);
+
+}  // namespace talus::maps
