@@ -30,7 +30,7 @@ struct Grid {
   int width = 0;               ///< cells west to east
   int height = 0;              ///< cells south to north
   double resolution_m = 1.0;   ///< side of a cell, > 0
-  Point south_west;            ///< outer corner of cell (0, 0)
+  Point south_west{};           ///< outer corner of cell (0, 0)
 
   friend bool operator==(const Grid&, const Grid&) = default;
 

@@ -1,0 +1,145 @@
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <maps/footprint.hpp>
+#include <maps/partial_plane.hpp>
+#include <maps/plane_kernel.hpp>
+#include <maps/terrain_metrics.hpp>
+
+namespace talus::maps {
+namespace {
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+constexpr int kStripRows = 64;
+
+// Measures strips of rows, each through a copy of its heights with a margin of NaN.
+class Strips {
+ public:
+  Strips(const Raster<float>& elevation_m, const Footprint& footprint, TerrainMetrics& out)
+      : elevation_m_(elevation_m),
+        footprint_(footprint),
+        out_(out),
+        stride_(static_cast<std::size_t>(elevation_m.grid().width + 2 * footprint.reach + kPlaneLanes)) {}
+
+  int count() const { return (elevation_m_.grid().height + kStripRows - 1) / kStripRows; }
+
+  void measure(int strip, std::vector<float>& buffer) const {
+    const int first = strip * kStripRows;
+    const int last = std::min(first + kStripRows, elevation_m_.grid().height);
+    copyRows(first - footprint_.reach, last + footprint_.reach, buffer);
+    std::vector<const float*> rows(static_cast<std::size_t>(last - first + 2 * footprint_.reach));
+    for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = buffer.data() + i * stride_ + footprint_.reach;
+    for (int row = first; row < last; ++row) {
+      kernel_(footprint_, planeRow(rows.data() + (row - first), row));
+      fitRowEdges(row);
+    }
+  }
+
+ private:
+  PlaneRow planeRow(const float* const* heights, int row) const {
+    return {.heights = heights,
+            .width = elevation_m_.grid().width,
+            .cells_per_metre = static_cast<float>(1 / elevation_m_.grid().resolution_m),
+            .dz_dx = out_.dz_dx.row(row),
+            .dz_dy = out_.dz_dy.row(row),
+            .roughness_m = out_.roughness_m.row(row),
+            .step_m = out_.step_m.row(row)};
+  }
+
+  void copyRows(int first, int last, std::vector<float>& buffer) const {
+    buffer.assign(stride_ * static_cast<std::size_t>(last - first), kNaN);
+    const Grid& grid = elevation_m_.grid();
+    for (int row = std::max(first, 0); row < std::min(last, grid.height); ++row)
+      std::copy_n(elevation_m_.row(row), grid.width,
+                  buffer.data() + static_cast<std::size_t>(row - first) * stride_ + footprint_.reach);
+  }
+
+  // Cells whose footprint is not whole: the rest of it may do.
+  void fitRowEdges(int row) const {
+    const float* heights = elevation_m_.row(row);
+    const float* gradient = out_.dz_dx.row(row);
+    for (int column = 0; column < elevation_m_.grid().width; ++column) {
+      if (!std::isnan(gradient[column]) || std::isnan(heights[column])) continue;
+      const auto fit = fitPartialPlane(elevation_m_, footprint_, {column, row});
+      set({column, row}, fit);
+    }
+  }
+
+  void set(Cell c, const std::optional<PlaneFit>& fit) const {
+    out_.dz_dx[c] = fit ? static_cast<float>(fit->dz_dx) : kNaN;
+    out_.dz_dy[c] = fit ? static_cast<float>(fit->dz_dy) : kNaN;
+    out_.roughness_m[c] = fit ? static_cast<float>(fit->roughness_m) : kNaN;
+    out_.step_m[c] = fit ? static_cast<float>(fit->step_m) : kNaN;
+  }
+
+  const Raster<float>& elevation_m_;
+  const Footprint& footprint_;
+  TerrainMetrics& out_;
+  std::size_t stride_;
+  PlaneKernel kernel_ = planeKernel();
+};
+
+// Strips are handed out one by one; this thread works too and alone reports.
+void measureAll(const Strips& strips, int threads, const Watch& watch) {
+  std::atomic<int> next{0};
+  const auto work = [&](bool reports) {
+    std::vector<float> buffer;
+    for (int strip = next++; strip < strips.count() && !watch.stopped(); strip = next++) {
+      strips.measure(strip, buffer);
+      if (reports) watch.report((strip + 1.0) / strips.count());
+    }
+  };
+  std::vector<std::jthread> helpers;
+  for (int i = 1; i < std::min(threads, strips.count()); ++i) helpers.emplace_back(work, false);
+  work(true);
+}
+
+void check(const FootprintOptions& options) {
+  if (!std::isfinite(options.radius_m) || options.radius_m < 0)
+    throw std::invalid_argument("footprint: radius_m = " + std::to_string(options.radius_m) +
+                                ", must be finite and >= 0");
+  if (options.threads < 1)
+    throw std::invalid_argument("footprint: threads = " + std::to_string(options.threads) + ", must be >= 1");
+}
+
+// Standard error of a gradient from n residuals of root mean square 1: three of them are spent on the plane.
+double gradientStd(const Footprint& footprint, double resolution_m) {
+  const auto n = static_cast<double>(footprint.offsets.size());
+  return std::sqrt(n / (n - 3)) / (resolution_m * std::sqrt(footprint.sum_xx));
+}
+
+}  // namespace
+
+float TerrainMetrics::slope_rad(Cell c) const {
+  return std::atan(std::hypot(dz_dx[c], dz_dy[c]));
+}
+
+float TerrainMetrics::aspect_rad(Cell c) const {
+  return std::atan2(-dz_dy[c], -dz_dx[c]);
+}
+
+TerrainMetrics terrainMetrics(const Raster<float>& elevation_m, const FootprintOptions& options,
+                              const Watch& watch) {
+  check(options);
+  const Grid& grid = elevation_m.grid();
+  const double radius_cells = options.radius_m / grid.resolution_m;
+  const double diagonal = std::max(grid.width, grid.height);
+  const Footprint footprint = discFootprint(std::min(radius_cells, diagonal));
+  TerrainMetrics out{.dz_dx = Raster<float>(grid, kNaN),
+                     .dz_dy = Raster<float>(grid, kNaN),
+                     .roughness_m = Raster<float>(grid, kNaN),
+                     .step_m = Raster<float>(grid, kNaN),
+                     .footprint_cells = static_cast<int>(footprint.offsets.size()),
+                     .fell_back = radius_cells < std::sqrt(2.0) * (1 - 1e-12),
+                     .gradient_std_per_roughness = gradientStd(footprint, grid.resolution_m)};
+  measureAll(Strips(elevation_m, footprint, out), options.threads, watch);
+  return out;
+}
+
+}  // namespace talus::maps
