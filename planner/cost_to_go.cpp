@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <utility>
 
 #include <planner/cost_to_go.hpp>
@@ -11,38 +12,42 @@ constexpr std::uint32_t kNoCell = std::numeric_limits<std::uint32_t>::max();
 
 }  // namespace
 
-CostToGo::CostToGo(std::shared_ptr<const EdgeLayer> edges, const std::vector<maps::Cell>& goals)
+CostToGo::CostToGo(std::shared_ptr<const EdgeLayer> edges, const std::vector<FieldGoal>& goals)
     : edges_(std::move(edges)), distance_(edges_->padded().size(), kUnreached) {
   // A bucket no wider than the cheapest edge: its cells cannot improve each other, so they are final when its
   // turn comes and need no order among themselves (Denardo & Fox 1979 [denardo_fox_1979]).
   shift_ = static_cast<unsigned>(std::bit_width(edges_->units().cheapestEdge()) - 1);
   const std::size_t ring = std::bit_ceil((std::size_t{EdgeLayer::kBlocked} >> shift_) + 2);
   buckets_.resize(ring);
-  for (const maps::Cell goal : goals) {
-    const auto index = static_cast<std::uint32_t>(edges_->padded().index(goal));
-    if (distance_[index] == 0) continue;
-    distance_[index] = 0;
-    buckets_[0].push_back(index);
+  for (const FieldGoal& goal : goals) {
+    const auto index = static_cast<std::uint32_t>(edges_->padded().index(goal.cell));
+    const double units =
+        std::min(std::round(goal.cost_J / edges_->units().unit_J()), double{EdgeLayer::kBlocked});
+    goals_.push_back(index);
+    at_goals_.push_back(static_cast<std::uint32_t>(units));
+    if (distance_[index] <= at_goals_.back()) continue;
+    distance_[index] = at_goals_.back();
+    buckets_[distance_[index] >> shift_].push_back(index);
     ++queued_;
   }
 }
 
-bool CostToGo::settle(maps::Cell until, const Watch& watch) {
-  return settleBucketsUntil(static_cast<std::uint32_t>(edges_->padded().index(until)), watch);
+bool CostToGo::settle(maps::Cell until, const StopCheck& stop) {
+  return settleBucketsUntil(static_cast<std::uint32_t>(edges_->padded().index(until)), stop);
 }
 
-bool CostToGo::settleAll(const Watch& watch) {
-  return settleBucketsUntil(kNoCell, watch);
+bool CostToGo::settleAll(const StopCheck& stop) {
+  return settleBucketsUntil(kNoCell, stop);
 }
 
-bool CostToGo::settleBucketsUntil(std::uint32_t index, const Watch& watch) {
+bool CostToGo::settleBucketsUntil(std::uint32_t index, const StopCheck& stop) {
   const auto done = [&] {
     return queued_ == 0 || (index != kNoCell && (distance_[index] >> shift_) < current_);
   };
   for (; !done(); ++current_) {
     auto& bucket = buckets_[current_ & (buckets_.size() - 1)];
     if (bucket.empty()) continue;
-    if (watch.stopped()) return false;
+    if (stop()) return false;
     settleBucket(bucket);
   }
   return true;
@@ -75,13 +80,19 @@ std::optional<double> CostToGo::cost_J(maps::Cell cell) const noexcept {
   return found * edges_->units().unit_J();
 }
 
+bool CostToGo::endsAt(std::size_t index) const noexcept {
+  for (std::size_t k = 0; k < goals_.size(); ++k)
+    if (goals_[k] == index && at_goals_[k] == distance_[index]) return true;
+  return false;
+}
+
 std::vector<maps::Cell> CostToGo::path(maps::Cell from) const {
   const PaddedGrid& padded = edges_->padded();
   std::vector<maps::Cell> path;
   if (units(from) == kUnreached) return path;
   std::size_t at = padded.index(from);
   path.push_back(from);
-  while (distance_[at] > 0) {
+  while (!endsAt(at)) {
     const std::size_t before = at;
     for (int heading = 0; heading < 8 && at == before; ++heading) {
       const std::size_t next = at + static_cast<std::size_t>(padded.offset(heading));

@@ -50,7 +50,7 @@ void stepsInto(const std::array<const Halves*, 3>& rows, std::uint16_t* into) no
 }  // namespace
 
 EdgeLayer::EdgeLayer(std::shared_ptr<const costmap::CostGrid> map, const EdgeUnits& units, int threads,
-                     const Watch& watch)
+                     const StopCheck& stop)
     : map_(std::move(map)),
       units_(units),
       padded_{map_->grid().width, map_->grid().height},
@@ -58,7 +58,7 @@ EdgeLayer::EdgeLayer(std::shared_ptr<const costmap::CostGrid> map, const EdgeUni
   constexpr int kBlock = 64;
   std::atomic<int> next{0};
   const auto work = [&] {
-    for (int row = kBlock * next++; row < padded_.height && !watch.stopped(); row = kBlock * next++)
+    for (int row = kBlock * next++; row < padded_.height && !stop(); row = kBlock * next++)
       buildRows({{0, row}, {padded_.width - 1, std::min(row + kBlock, padded_.height) - 1}});
   };
   {
@@ -66,7 +66,7 @@ EdgeLayer::EdgeLayer(std::shared_ptr<const costmap::CostGrid> map, const EdgeUni
     for (int k = 1; k < threads; ++k) helpers.emplace_back(work);
     work();
   }
-  complete_ = !watch.stopped();
+  complete_ = !stop();
 }
 
 void EdgeLayer::buildRows(CellBox box) {

@@ -7,8 +7,7 @@
 
 #include <costmap/cost_grid.hpp>
 #include <planner/edge_units.hpp>
-#include <talus.hpp>
-
+#include <planner/stop_check.hpp>
 namespace talus::planner {
 
 /// Position of a cell in arrays that have a border of one cell all around, so that every cell has eight
@@ -49,7 +48,7 @@ class EdgeLayer {
   /// Builds with `threads` threads (the result is the same for any number). Ends early, incomplete, when a
   /// stop is requested; complete() tells.
   EdgeLayer(std::shared_ptr<const costmap::CostGrid> map, const EdgeUnits& units, int threads = 1,
-            const Watch& watch = {});
+            const StopCheck& stop = {});
 
   /// The eight steps INTO the cell at a padded index, by the heading in which the neighbour lies.
   const std::uint16_t* into(std::size_t index) const noexcept { return edges_.data() + 8 * index; }

@@ -52,7 +52,7 @@ TEST(CostToGo, IsDijkstrasFieldOnRandomMaps) {
     const auto map = randomMap({.width = 23, .height = 17, .seed = seed, .blocked = 0.25, .roughness = 0.35});
     const maps::Cell goal{static_cast<int>(seed % 23), static_cast<int>(seed % 17)};
     const auto expected = bruteForce(map, goal);
-    CostToGo field(edgesOf(map), {goal});
+    CostToGo field(edgesOf(map), {{.cell = goal}});
     ASSERT_TRUE(field.settleAll());
     for (int row = 0; row < 17; ++row)
       for (int column = 0; column < 23; ++column) {
@@ -68,7 +68,7 @@ TEST(CostToGo, IsDijkstrasFieldOnRandomMaps) {
 
 TEST(CostToGo, PathRunsFromStartToGoalOverAllowedSteps) {
   const auto map = drawn({".....", ".###.", "...#.", "####.", "....."});
-  CostToGo field(edgesOf(map), {{0, 0}});
+  CostToGo field(edgesOf(map), {{.cell = {0, 0}}});
   ASSERT_TRUE(field.settleAll());
   const auto path = field.path({0, 2});
   ASSERT_FALSE(path.empty());
@@ -82,7 +82,7 @@ TEST(CostToGo, PathRunsFromStartToGoalOverAllowedSteps) {
 }
 
 TEST(CostToGo, NoWayIsSaid) {
-  CostToGo field(edgesOf(drawn({"..#..", "..#..", "..#.."})), {{0, 0}});
+  CostToGo field(edgesOf(drawn({"..#..", "..#..", "..#.."})), {{.cell = {0, 0}}});
   ASSERT_TRUE(field.settleAll());
   EXPECT_FALSE(field.cost_J({4, 1}));
   EXPECT_TRUE(field.path({4, 1}).empty());
@@ -90,7 +90,7 @@ TEST(CostToGo, NoWayIsSaid) {
 
 TEST(CostToGo, GoesOnWhereItStopped) {
   const auto map = randomMap({.width = 60, .height = 50, .seed = 5});
-  CostToGo whole(edgesOf(map), {{3, 4}}), parts(edgesOf(map), {{3, 4}});
+  CostToGo whole(edgesOf(map), {{.cell = {3, 4}}}), parts(edgesOf(map), {{.cell = {3, 4}}});
   ASSERT_TRUE(whole.settleAll());
   ASSERT_TRUE(parts.settle({10, 10}));
   EXPECT_LT(parts.settled(), whole.settled());
@@ -103,7 +103,8 @@ TEST(CostToGo, GoesOnWhereItStopped) {
 
 TEST(CostToGo, NearestOfSeveralGoals) {
   const auto edges = edgesOf(randomMap({.seed = 8}));
-  CostToGo one(edges, {{2, 2}}), other(edges, {{17, 15}}), both(edges, {{2, 2}, {17, 15}});
+  CostToGo one(edges, {{.cell = {2, 2}}}), other(edges, {{.cell = {17, 15}}}),
+      both(edges, {{.cell = {2, 2}}, {.cell = {17, 15}}});
   ASSERT_TRUE(one.settleAll() && other.settleAll() && both.settleAll());
   for (int row = 0; row < 20; ++row)
     for (int column = 0; column < 20; ++column) {
@@ -114,10 +115,10 @@ TEST(CostToGo, NearestOfSeveralGoals) {
 
 TEST(CostToGo, StopsWhenAsked) {
   const auto edges = edgesOf(randomMap({.width = 50, .height = 50}));
-  CostToGo field(edges, {{5, 5}});
+  CostToGo field(edges, {{.cell = {5, 5}}});
   std::stop_source source;
   source.request_stop();
-  EXPECT_FALSE(field.settleAll({.progress = {}, .stop = source.get_token()}));
+  EXPECT_FALSE(field.settleAll(Watch{.progress = {}, .stop = source.get_token()}));
   EXPECT_TRUE(field.settleAll());
 }
 

@@ -1,0 +1,116 @@
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include <planner/field_planner.hpp>
+#include <planner/grid_links.hpp>
+#include <planner/lower_bound.hpp>
+#include <planner/remedy.hpp>
+
+namespace talus::planner {
+namespace {
+
+using maps::Cell;
+using maps::Point;
+
+Plan ended(RouteStatus status, std::string reason) {
+  Plan plan;
+  plan.status = status;
+  plan.reason = std::move(reason);
+  return plan;
+}
+
+Plan stoppedBy(const StopCheck& stop) {
+  if (stop.cancelled()) return ended(RouteStatus::Cancelled, "cancelled before a route was found");
+  return ended(RouteStatus::TimedOut, "the time limit passed before a route was found; allow more time");
+}
+
+// The link through which the goal is reached cheapest; nothing when none reaches it.
+const GridLink* bestLink(const std::vector<GridLink>& links, const CostToGo& field) {
+  const GridLink* best = nullptr;
+  double best_J = std::numeric_limits<double>::infinity();
+  for (const GridLink& link : links) {
+    const auto rest_J = field.cost_J(link.cell);
+    if (!rest_J || link.cost_J + *rest_J >= best_J) continue;
+    best_J = link.cost_J + *rest_J;
+    best = &link;
+  }
+  return best;
+}
+
+void add(std::vector<Point>& points, Point p) {
+  if (points.empty() || !(points.back() == p)) points.push_back(p);
+}
+
+// The route along the centres of the cells, from place to place where the last cell joins the goal.
+std::vector<Point> throughCentres(const MotionCost& cost, Point from, const std::vector<Cell>& cells,
+                                  Point to) {
+  std::vector<Point> points{from};
+  for (const Cell cell : cells) add(points, cost.map().grid().centre(cell));
+  if (std::isfinite(cost({points.back(), to}))) add(points, to);
+  return points;
+}
+
+}  // namespace
+
+Plan FieldPlanner::plan(const Problem& problem) {
+  if (!problem.map) throw std::invalid_argument("FieldPlanner: no map");
+  const StopCheck stop(problem.watch, problem.time_limit_s);
+  std::vector<Point> stops = problem.via;
+  stops.push_back(problem.goal);
+  Plan whole{RouteStatus::Found, {}, {problem.start}, 0.0, 0.0};
+  for (std::size_t i = 0; i < stops.size(); ++i) {
+    const bool last = i + 1 == stops.size();
+    const Leg leg{whole.points.back(), stops[i], last ? problem.goal_tolerance_m : 0.0};
+    Plan part = planLeg(problem, leg, stop);
+    if (part.status != RouteStatus::Found) return part;
+    for (const Point p : part.points) add(whole.points, p);
+    whole.cost_J += part.cost_J;
+    whole.lower_bound_J += part.lower_bound_J;
+    problem.watch.report(static_cast<double>(i + 1) / static_cast<double>(stops.size()));
+  }
+  return whole;
+}
+
+bool FieldPlanner::prepareEdges(const Problem& problem, const StopCheck& stop) {
+  if (edges_ && edges_->mapPointer() == problem.map) return true;
+  field_.reset();
+  edges_.reset();
+  const EdgeUnits units(problem.map->cost(), problem.map->grid().resolution_m);
+  auto edges = std::make_shared<const EdgeLayer>(problem.map, units, problem.threads, stop);
+  if (!edges->complete()) return false;
+  edges_ = std::move(edges);
+  return true;
+}
+
+bool FieldPlanner::prepareField(const MotionCost& cost, const Leg& leg) {
+  if (field_ && field_goal_ == leg.to && field_tolerance_m_ == leg.tolerance_m) return true;
+  const auto goals = fieldGoals(cost, leg.to, leg.tolerance_m);
+  if (goals.empty()) return false;
+  field_.emplace(edges_, goals);
+  field_goal_ = leg.to;
+  field_tolerance_m_ = leg.tolerance_m;
+  return true;
+}
+
+Plan FieldPlanner::planLeg(const Problem& problem, const Leg& leg, const StopCheck& stop) {
+  const MotionCost cost(problem.map);
+  if (!cost.allowed(leg.from))
+    return ended(RouteStatus::StartInvalid, invalidPlace(*problem.map, "start", leg.from));
+  if (!prepareEdges(problem, stop)) return stoppedBy(stop);
+  if (!prepareField(cost, leg))
+    return ended(RouteStatus::GoalInvalid, invalidPlace(*problem.map, "goal", leg.to));
+  const auto links = linksFrom(cost, leg.from);
+  for (const GridLink& link : links)
+    if (!field_->settle(link.cell, stop)) return stoppedBy(stop);
+  const GridLink* link = bestLink(links, *field_);
+  if (!link) return ended(RouteStatus::NoRoute, noWay(*edges_, leg.from, leg.to));
+  const auto rough = throughCentres(cost, leg.from, field_->path(link->cell), leg.to);
+  Plan plan{RouteStatus::Found, {}, refined(cost, rough, refine_, stop), 0.0, 0.0};
+  plan.cost_J = cost.along(plan.points);
+  plan.lower_bound_J = std::min(plan.cost_J, lowerBound_J(*problem.map, {leg.from, plan.points.back()}));
+  return plan;
+}
+
+}  // namespace talus::planner

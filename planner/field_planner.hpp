@@ -1,0 +1,45 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <planner/any_angle.hpp>
+#include <planner/cost_to_go.hpp>
+#include <planner/problem.hpp>
+
+namespace talus::planner {
+
+/// Plans by the whole cost-to-go field of the goal and any-angle refinement of the grid route under the exact
+/// cost.
+///
+/// What it worked out for a map and a goal is kept: another start to the same goal costs a walk down the
+/// field and the refinement only. Deterministic, for any number of threads, as long as no time limit cuts the
+/// work short. Not thread-safe: one object a thread; they may share a map.
+class FieldPlanner {
+ public:
+  explicit FieldPlanner(const RefineOptions& refine = {}) : refine_(refine) {}
+
+  /// A route through all via points in order, or why there is none. Throws std::invalid_argument without a
+  /// map.
+  Plan plan(const Problem& problem);
+
+ private:
+  struct Leg {
+    maps::Point from;
+    maps::Point to;
+    double tolerance_m;
+  };
+
+  Plan planLeg(const Problem& problem, const Leg& leg, const StopCheck& stop);
+  bool prepareEdges(const Problem& problem, const StopCheck& stop);
+  bool prepareField(const MotionCost& cost, const Leg& leg);
+
+  RefineOptions refine_;
+  std::shared_ptr<const EdgeLayer> edges_;
+  std::optional<CostToGo> field_;
+  maps::Point field_goal_;
+  double field_tolerance_m_ = 0.0;
+};
+
+}  // namespace talus::planner

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <costmap/cost_grid.hpp>
+#include <maps/grid.hpp>
+
+namespace talus::planner {
+
+/// A place on a route that a constraint forbids.
+struct Violation {
+  maps::Point place;
+  std::string reason;  ///< "the soil cannot give the pull that the slope asks for"
+
+  friend bool operator==(const Violation&, const Violation&) = default;
+};
+
+/// Every cell that the polyline drives, touches at a corner or turns on, held against every constraint that
+/// the map knows for its heading: category, tilt along and across, hazards, unknown ground, the map's edge.
+/// One violation a cell; empty for a route that may be driven. It shares no code with the planners, nor with
+/// MotionCost: the crossings of cell edges are sorted and the middle of each stretch is looked up. Exact, not
+/// sampled.
+std::vector<Violation> violations(const costmap::CostGrid& map, const std::vector<maps::Point>& route);
+
+}  // namespace talus::planner
