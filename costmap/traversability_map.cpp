@@ -102,6 +102,7 @@ TraversabilityMap::TraversabilityMap(MapLayers layers, std::shared_ptr<const Gro
   requireGrid(classes_, grid(), "classes");
   requireGrid(layers.rock_abundance, grid(), "rock_abundance");
   requireGrid(layers.keep_out, grid(), "keep_out");
+  requireGrid(layers.declared, grid(), "declared");
   for (int i = 0; i < static_cast<int>(model_->parts().classes.size()); ++i)
     prior_categories_.emplace_back(*model_, model_->prior(i));
   published_->grid = std::make_shared<CostGrid>(CostGrid::Content{
@@ -109,7 +110,7 @@ TraversabilityMap::TraversabilityMap(MapLayers layers, std::shared_ptr<const Gro
 }
 
 Hazard TraversabilityMap::layerHazards(const MapLayers& layers, std::size_t i) const {
-  Hazard found = Hazard::None;
+  Hazard found = layers.declared.empty() ? Hazard::None : layers.declared.values()[i];
   if (std::isnan(elevation_.elevation_m.values()[i])) found |= Hazard::Unknown;
   if (!layers.keep_out.empty() && layers.keep_out.values()[i] != 0) found |= Hazard::KeepOut;
   if (!layers.rock_abundance.empty()) {

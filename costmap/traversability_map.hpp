@@ -24,6 +24,7 @@ struct MapLayers {
   maps::Raster<std::uint8_t> classes;   ///< terrain-class numbers, 255 = none there
   maps::Raster<float> rock_abundance;   ///< share of the ground, NaN = none there
   maps::Raster<std::uint8_t> keep_out;  ///< not 0: must not be entered
+  maps::Raster<Hazard> declared;        ///< hazards judged elsewhere, as when a map is read back
 };
 
 /// How many cells fall in each category, hazards counted as dangerous where they refuse the cell, unknown
@@ -62,6 +63,8 @@ class TraversabilityMap {
 
   /// Gradient, curve number of a cell inside the map.
   CellCode code(maps::Cell cell) const noexcept { return published()->at(cell); }
+  const maps::Raster<Hazard>& hazards() const noexcept { return hazards_; }
+  const maps::Raster<std::uint8_t>& classes() const noexcept { return classes_; }
   Hazard hazards(maps::Cell cell) const noexcept { return hazards_[cell]; }
   /// Position of the cell's class in model().parts().classes, or -1.
   int classIndex(maps::Cell cell) const noexcept;

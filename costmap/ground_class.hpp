@@ -1,0 +1,14 @@
+#pragma once
+
+#include <costmap/ground_model.hpp>
+#include <terramech/soil_prior.hpp>
+
+namespace talus::costmap {
+
+/// The class of a soil prior on a rover. Its mean_std is what the stated deviations of cohesion, friction,
+/// sinkage exponent, moduli and shear modulus make of drawbar pull over load at the reference slip, to first
+/// order and independent; a prior that states none keeps GroundClass's default. Throws std::invalid_argument
+/// as MobilityCurve does.
+GroundClass groundClass(int number, const terramech::SoilPrior& prior, const terramech::Rover& rover);
+
+}  // namespace talus::costmap

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <iosfwd>
+#include <string>
+
+#include <costmap/traversability_map.hpp>
+
+namespace talus::costmap {
+
+/// MAP.ot: an OctoMap file of type TraversabilityTree (stock readers stop behind its nodes), then a trailer
+/// with all that planning needs besides: grid, coordinate system, rover, soils, policy, elevation, classes,
+/// declared hazards, and a checksum. The layout stands in costmap/README.md. Little-endian; same map, same
+/// bytes.
+void writeMap(const TraversabilityMap& map, std::ostream& stream);
+
+/// Writes beside the path and renames, so that a reader sees the whole file or none. Throws InputError when
+/// it cannot.
+void writeMap(const TraversabilityMap& map, const std::string& path);
+
+/// How a map is read back.
+struct MapReading {
+  std::string name;  ///< of the file, for messages
+  int threads = 1;   ///< >= 1
+};
+
+/// Reads a map and builds its cost grid. Throws InputError for a file that is truncated, damaged or no such
+/// map.
+TraversabilityMap readMap(std::istream& stream, const MapReading& reading, const Watch& watch = {});
+
+/// Opens and reads. Throws InputError also when it cannot be opened.
+TraversabilityMap readMap(const std::string& path, int threads = 1, const Watch& watch = {});
+
+}  // namespace talus::costmap
