@@ -13,6 +13,8 @@ using testing::StartsWith;
 struct WrongCall {
   std::vector<std::string> words;
   std::string says;
+
+  friend void PrintTo(const WrongCall& call, std::ostream* os) { *os << testing::PrintToString(call.words); }
 };
 
 class WrongCalls : public testing::TestWithParam<WrongCall> {};
