@@ -2,9 +2,10 @@
 
 #include <cstdint>
 
-/// Elementary functions on double or on four doubles at once, with the same bits in each lane: the same additions and
-/// multiplications in the same order, no table, no contraction. Private to the batch kernels, which inline them under
-/// their own target. Arguments outside the stated range give a finite nonsense, never a trap.
+/// Elementary functions on double or on four doubles at once, with the same bits in each lane: the same
+/// additions and multiplications in the same order, no table, no contraction. Private to the batch kernels,
+/// which inline them under their own target. Accuracy is what a wheel to 1e-7 needs, not the last bit.
+/// Arguments outside the stated range give a finite nonsense, never a trap.
 namespace talus::terramech::lanes {
 
 /// Four doubles in one vector register, where the machine has one.
@@ -38,31 +39,30 @@ TALUS_LANES T spread(double value) {
   return T{} + value;
 }
 
-/// e^x for x in [-700, 700], relative error below 3e-13: x = k ln 2 + f, e^f by its series to f^10.
+/// e^x for x in [-700, 700], relative error below 2e-12: x = k ln 2 + f, e^f by a Chebyshev polynomial.
 template <class T>
 TALUS_LANES T exponential(T x) {
   using Bits = typename Traits<T>::Bits;
-  constexpr double kRound = 6755399441055744.0;  // 1.5 * 2^52: adding it rounds to a whole number in the low bits
+  constexpr double kRound =
+      6755399441055744.0;  // 1.5 * 2^52: adding it rounds to a whole number in the low bits
   x = pick(x < spread<T>(-700.0), spread<T>(-700.0), x);
   const T shifted = x * 1.4426950408889634 + kRound;
   const T k = shifted - kRound;
   const T f = (x - k * 6.93147180369123816490e-01) - k * 1.90821492927058770002e-10;
-  T p = f * (1.0 / 3628800.0) + 1.0 / 362880.0;
-  p = p * f + 1.0 / 40320.0;
-  p = p * f + 1.0 / 5040.0;
-  p = p * f + 1.0 / 720.0;
-  p = p * f + 1.0 / 120.0;
-  p = p * f + 1.0 / 24.0;
-  p = p * f + 1.0 / 6.0;
-  p = p * f + 0.5;
-  p = p * f + 1.0;
-  p = p * f + 1.0;
+  T p = f * 2.487648831079502e-05 + 0.0001991588383383438;
+  p = p * f + 0.0013888820950714424;
+  p = p * f + 0.008333266065891581;
+  p = p * f + 0.04166666689586567;
+  p = p * f + 0.16666666891219123;
+  p = p * f + 0.49999999999788103;
+  p = p * f + 0.9999999999797613;
+  p = p * f + 1.0000000000000002;
   const Bits power = (__builtin_bit_cast(Bits, shifted) + 1023) << 52;  // 2^k
   return p * __builtin_bit_cast(T, power);
 }
 
-/// ln x for normal x > 0, error below 1e-14 absolute or relative: x = 2^e m with m in [1/sqrt 2, sqrt 2),
-/// ln m = 2 artanh((m - 1)/(m + 1)) by its series.
+/// ln x for normal x > 0, error below 2e-12: x = 2^e m with m in [1/sqrt 2, sqrt 2), ln m = 2 artanh((m -
+/// 1)/(m + 1)) by a Chebyshev polynomial.
 template <class T>
 TALUS_LANES T logarithm(T x) {
   using Bits = typename Traits<T>::Bits;
@@ -74,43 +74,34 @@ TALUS_LANES T logarithm(T x) {
   e = pick(large, e + 1.0, e);
   const T f = (m - 1.0) / (m + 1.0);
   const T g = f * f;
-  T p = g * (1.0 / 17.0) + 1.0 / 15.0;
-  p = p * g + 1.0 / 13.0;
-  p = p * g + 1.0 / 11.0;
-  p = p * g + 1.0 / 9.0;
-  p = p * g + 1.0 / 7.0;
-  p = p * g + 0.2;
-  p = p * g + 1.0 / 3.0;
-  p = p * g + 1.0;
+  T p = g * 0.11808492478190863 + 0.14267509407813553;
+  p = p * g + 0.20000192590108157;
+  p = p * g + 0.3333333262249838;
+  p = p * g + 1.0000000000041889;
   return e * 0.6931471805599453 + 2.0 * f * p;
 }
 
-/// sin x for |x| <= pi/2, error below 1e-13, by its series to x^17.
+/// sin x for |x| <= pi/2, relative error below 3e-11, by a Chebyshev polynomial in x^2.
 template <class T>
 TALUS_LANES T sine(T x) {
   const T g = x * x;
-  T p = g * (1.0 / 355687428096000.0) - 1.0 / 1307674368000.0;
-  p = p * g + 1.0 / 6227020800.0;
-  p = p * g - 1.0 / 39916800.0;
-  p = p * g + 1.0 / 362880.0;
-  p = p * g - 1.0 / 5040.0;
-  p = p * g + 1.0 / 120.0;
-  p = p * g - 1.0 / 6.0;
-  return x + x * g * p;
+  T p = g * -2.388899174917653e-08 + 2.7525257264877756e-06;
+  p = p * g - 0.00019840860938567066;
+  p = p * g + 0.00833333097235194;
+  p = p * g - 0.16666666616766518;
+  p = p * g + 0.9999999999828987;
+  return x * p;
 }
 
-/// 1 - cos x for |x| <= pi/2, relative error below 1e-13, by its series to x^18.
+/// 1 - cos x for |x| <= pi/2, relative error below 4e-12, by a Chebyshev polynomial in x^2.
 template <class T>
 TALUS_LANES T versine(T x) {
   const T g = x * x;
-  T p = g * (1.0 / 6402373705728000.0) - 1.0 / 20922789888000.0;
-  p = p * g + 1.0 / 87178291200.0;
-  p = p * g - 1.0 / 479001600.0;
-  p = p * g + 1.0 / 3628800.0;
-  p = p * g - 1.0 / 40320.0;
-  p = p * g + 1.0 / 720.0;
-  p = p * g - 1.0 / 24.0;
-  p = p * g + 0.5;
+  T p = g * -2.0043685449115407e-09 + 2.7534334726393917e-07;
+  p = p * g - 2.480129404899244e-05;
+  p = p * g + 0.0013888887195327446;
+  p = p * g - 0.04166666663086995;
+  p = p * g + 0.4999999999987732;
   return g * p;
 }
 

@@ -36,9 +36,10 @@ enum class BatchKernel {
 };
 
 /// Solves every case: `forces` gets as many entries as `cases`, every number NaN where the case has no answer
-/// (equilibrium() tells why). Agrees with equilibrium() to 1e-7 relative, drawbar pull to 1e-7 of the load. Braked wheels
-/// and those with r theta_1 / K > 12 go through equilibrium() itself. Throws std::invalid_argument when the sizes differ
-/// or the machine lacks the kernel asked for. Thread-safe.
-void equilibria(std::span<const WheelCase> cases, std::span<WheelForces> forces, BatchKernel kernel = BatchKernel::Best);
+/// (equilibrium() tells why). Agrees with equilibrium() to 1e-7 relative, drawbar pull to 1e-7 of the load.
+/// Braked wheels, slip below 0.01, and r theta_1 / K > 12 go through equilibrium() itself. Throws
+/// std::invalid_argument when the sizes differ or the machine lacks the kernel asked for. Thread-safe.
+void equilibria(std::span<const WheelCase> cases, std::span<WheelForces> forces,
+                BatchKernel kernel = BatchKernel::Best);
 
 }  // namespace talus::terramech

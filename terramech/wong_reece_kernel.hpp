@@ -8,29 +8,30 @@
 #include <terramech/lane_math.hpp>
 #include <terramech/wong_reece_batch.hpp>
 
-/// The equilibrium of wong_reece.hpp for driven wheels with theta_2 = 0, written once for one lane or four. Private.
+/// The equilibrium of wong_reece.hpp for driven wheels with theta_2 = 0, written once for one lane or four.
+/// Private.
 namespace talus::terramech::lanes {
 
-/// A rule for int_0^1 f(s) ds with s = t^3, which smooths sigma ~ s^n.
+/// A rule for int_0^1 f(s) ds with s = t^2 or t^3, which smooths sigma ~ s^n.
 template <std::size_t N>
-struct CubedRule {
+struct PowerRule {
   std::array<double, N> s{}, ds{};
 };
 
 template <std::size_t N>
-constexpr CubedRule<N> cubedRule() {
+constexpr PowerRule<N> powerRule(int power) {
   constexpr auto rule = gaussLegendre<N>();
-  CubedRule<N> cubed;
+  PowerRule<N> out;
   for (std::size_t k = 0; k < N; ++k) {
     const double t = rule.node[k];
-    cubed.s[k] = t * t * t;
-    cubed.ds[k] = 3.0 * t * t * rule.weight[k];
+    out.s[k] = power == 2 ? t * t : t * t * t;
+    out.ds[k] = power * (power == 2 ? t : t * t) * rule.weight[k];
   }
-  return cubed;
+  return out;
 }
 
-inline constexpr auto kCoarse = cubedRule<5>();  // finds theta_1 to 1e-3
-inline constexpr auto kFine = cubedRule<12>();   // 1e-7 up to r theta_1 / K = 12
+inline constexpr auto kCoarse = powerRule<4>(2);  // to start the search
+inline constexpr auto kFine = powerRule<12>(3);   // 1e-7 up to r theta_1 / K = 12
 
 /// Forces over r b (torque: over r^2 b).
 template <class T>
@@ -41,18 +42,18 @@ struct Sums {
 /// Constants of the lanes' cases.
 template <class T>
 struct Constants {
-  T exponent, log_modulus;     // n, ln(k r^n)
-  T cohesion, tan_friction;    // c, tan phi
-  T radius_over_k, travel;     // r/K, 1 - i
-  T peak;                      // theta_m / theta_1
-  T log_load;                  // ln(W / (r b))
+  T exponent, log_modulus;   // n, ln(k r^n)
+  T cohesion, tan_friction;  // c, tan phi
+  T radius_over_k, travel;   // r/K, 1 - i
+  T peak;                    // theta_m / theta_1
+  T log_load;                // ln(W / (r b))
 };
 
 /// Angle of a rim point below the entry, as the terms that its stresses need.
 template <class T>
 struct RimPoint {
-  T sine, cosine;       // of theta
-  T weight;             // d theta / ds
+  T sine, cosine;  // of theta
+  T weight;        // d theta / ds
   T displacement_over_r;
 };
 
@@ -66,9 +67,10 @@ TALUS_LANES void addPoint(const Constants<T>& c, const RimPoint<T>& p, T sigma, 
   sums.pull = sums.pull + w * (tau * p.cosine - sigma * p.sine);
 }
 
-/// C.8 to C.10 at entry angle x: each s gives a point in front and its mirror behind, which share sigma (C.3).
+/// C.8 to C.10 at entry angle x: each s gives a point in front and its mirror behind, which share sigma
+/// (C.3).
 template <std::size_t N, class T>
-TALUS_LANES Sums<T> sumsAt(const Constants<T>& c, T x, const CubedRule<N>& rule) {
+TALUS_LANES Sums<T> sumsAt(const Constants<T>& c, T x, const PowerRule<N>& rule) {
   const T sin_x = sine(x), cos_x = 1.0 - versine(x);
   const T front = x * (1.0 - c.peak), rear = x * c.peak;
   Sums<T> sums{T{}, T{}, T{}};
@@ -78,11 +80,12 @@ TALUS_LANES Sums<T> sumsAt(const Constants<T>& c, T x, const CubedRule<N>& rule)
     const T cos_difference = sin_x * sin_d - cos_x * vers_d;  // cos theta - cos theta_1 > 0
     const T sin_difference = sin_x * vers_d + cos_x * sin_d;  // sin theta_1 - sin theta
     const T sigma = exponential(c.log_modulus + c.exponent * logarithm(cos_difference));
-    addPoint(c, {sin_x - sin_difference, cos_x + cos_difference, front, delta - c.travel * sin_difference}, sigma,
-             rule.ds[k], sums);
+    addPoint(c, {sin_x - sin_difference, cos_x + cos_difference, front, delta - c.travel * sin_difference},
+             sigma, rule.ds[k], sums);
     const T theta = rear * rule.s[k];
     const T sin_r = sine(theta);
-    addPoint(c, {sin_r, 1.0 - versine(theta), rear, (x - theta) - c.travel * (sin_x - sin_r)}, sigma, rule.ds[k], sums);
+    addPoint(c, {sin_r, 1.0 - versine(theta), rear, (x - theta) - c.travel * (sin_x - sin_r)}, sigma,
+             rule.ds[k], sums);
   }
   return sums;
 }
@@ -95,7 +98,7 @@ struct Trial {
 };
 
 template <std::size_t N, class T>
-TALUS_LANES Trial<T> trialAt(const Constants<T>& c, T u, const CubedRule<N>& rule) {
+TALUS_LANES Trial<T> trialAt(const Constants<T>& c, T u, const PowerRule<N>& rule) {
   const Sums<T> sums = sumsAt(c, exponential(u), rule);
   return {u, logarithm(sums.load) - c.log_load, sums};
 }
@@ -127,7 +130,7 @@ struct Found {
   T converged;  // 1 or 0
 };
 
-/// Last step on straight lines through two trials: second order in their excesses, which is below 1e-10 by then.
+/// Last step on straight lines through two trials: its error is second order in their excesses.
 template <class T>
 TALUS_LANES Found<T> extrapolated(const Trial<T>& a, const Trial<T>& b) {
   const T run = b.u - a.u;
@@ -153,16 +156,20 @@ TALUS_LANES bool allConverged(const Found<T>& found) {
 /// Finds theta_1 in every lane; a lane that is done keeps its result, so that lanes do not see each other.
 template <class T>
 TALUS_LANES Found<T> solve(const Constants<T>& c, T u) {
+  constexpr double kGood = 1e-8;  // product of the last two excesses
   const T growth = 2.0 * c.exponent + 1.0;
   Trial<T> last = trialAt(c, u, kCoarse);
   Trial<T> trial = trialAt(c, stepped(last, growth), kCoarse);
   T slope = slopeOf(last, trial, growth);
+  last = trial;
+  trial = trialAt(c, stepped(last, slope), kCoarse);
+  slope = slopeOf(last, trial, slope);
   last = trialAt(c, stepped(trial, slope), kFine);
   trial = trialAt(c, stepped(last, slope), kFine);
   Found<T> found{trial.u, trial.sums, T{}};
   for (int iteration = 0; iteration < 12; ++iteration) {
     const T product = trial.excess * last.excess;
-    const auto good = (product < spread<T>(1e-10)) & (product > spread<T>(-1e-10));
+    const auto good = (product < spread<T>(kGood)) & (product > spread<T>(-kGood));
     const Found<T> candidate = extrapolated(last, trial);
     const auto fresh = good & (found.converged == T{});
     found.u = pick(fresh, candidate.u, found.u);
@@ -201,7 +208,8 @@ TALUS_LANES double laneOf(const T& value, int lane) {
     return value[lane];
 }
 
-/// Solves the next one or four cases, which must be valid and driven; `sunk` marks lanes left to the general solver.
+/// Solves the next one or four cases, which must be valid and driven; `sunk` marks lanes left to the general
+/// solver.
 template <class T>
 TALUS_LANES void solveGroup(const WheelCase* cases, WheelForces* forces, bool* left) {
   const T r = gather<T>(cases, &WheelCase::wheel_radius_m), b = gather<T>(cases, &WheelCase::wheel_width_m);
@@ -212,9 +220,13 @@ TALUS_LANES void solveGroup(const WheelCase* cases, WheelForces* forces, bool* l
   const T r_over_k = r / gather<T>(cases, &WheelCase::shear_modulus_m);
   const T log_modulus = logarithm(gather<T>(cases, &WheelCase::sinkage_modulus)) + n * log_r;
   const T log_load = logarithm(load / (r * b));
-  const Constants<T> c{n,        log_modulus, gather<T>(cases, &WheelCase::cohesion_Pa),
+  const Constants<T> c{n,
+                       log_modulus,
+                       gather<T>(cases, &WheelCase::cohesion_Pa),
                        tangent(gather<T>(cases, &WheelCase::friction_angle_rad)),
-                       r_over_k, 1.0 - slip,  peak,
+                       r_over_k,
+                       1.0 - slip,
+                       peak,
                        log_load};
   // Small-angle load without shear, at the midpoint of s: W ~ r b k (r theta_1^2 (1 - a^2) / 2)^n theta_1.
   const T a = 0.5 + 0.5 * peak;
