@@ -2,6 +2,6 @@
 
 namespace talus::cli {
 
-void addCommands([[maybe_unused]] CLI::App& app, [[maybe_unused]] Context& context) {}
+void addCommands(CLI::App& app, Context& context) { addWheel(app, context); }
 
 }  // namespace talus::cli

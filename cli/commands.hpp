@@ -10,6 +10,7 @@ struct Context;
 
 // One function a subcommand, in cli/NAME_command.cpp, built on addCommand() of cli/command.hpp.
 // Alphabetical; a subcommand stands here only once it does its job.
+void addWheel(CLI::App& app, Context& context);
 
 /// Registers every subcommand.
 void addCommands(CLI::App& app, Context& context);

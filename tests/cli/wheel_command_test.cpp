@@ -1,0 +1,64 @@
+#include <nlohmann/json.hpp>
+
+#include "run_program.hpp"
+
+namespace talus::cli {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+TEST(WheelCommand, PrintsTheForcesForAPersonAndForAMachine) {
+  const std::vector<std::string> call{"wheel",  "--soil", "sand",   "--rover", "mer",
+                                      "--load", "100",    "--slip", "0.3"};
+  const Ran plain = runTalus(call);
+  EXPECT_EQ(plain.code, 0) << plain.err;
+  EXPECT_THAT(plain.out, HasSubstr("drawbar pull"));
+  auto with_json = call;
+  with_json.insert(with_json.begin(), "--json");
+  const auto json = nlohmann::json::parse(runTalus(with_json).out);
+  for (const char* field : {"sinkage_m", "entry_angle_rad", "torque_Nm", "drawbar_pull_N"})
+    EXPECT_TRUE(json.at(field).is_number()) << field;
+}
+
+TEST(WheelCommand, TakesALockedWheelAndTheRoversOwnLoad) {
+  const Ran ran = runTalus({"wheel", "--soil", "sand", "--rover", "mer", "--slip", "-1", "--json"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const auto json = nlohmann::json::parse(ran.out);
+  EXPECT_LT(json["drawbar_pull_N"].get<double>(), 0.0);
+  EXPECT_NEAR(json["load_N"].get<double>(), 176.0 * 3.71 / 6.0, 1e-9);
+}
+
+TEST(WheelCommand, MistakesAreOneLineWithTheirExitCode) {
+  struct Case {
+    std::vector<std::string> words;
+    int code;
+    const char* says;
+  };
+  const Folder folder;
+  const std::string soil = folder.write("soil.yaml", "cohesion_pa: 1\n");
+  for (const Case& c : std::vector<Case>{
+           {{"wheel", "--soil", "snad", "--rover", "mer", "--slip", "0.2"}, 2, "did you mean sand?"},
+           {{"wheel", "--soil", soil, "--rover", "mer", "--slip", "0.2"}, 2, ":1: unknown key 'cohesion_pa'"},
+           {{"wheel", "--soil", "sand", "--rover", "mer", "--slip", "1.2"},
+            2,
+            "slip = 1.2, must be in [-1, 1]"},
+           {{"wheel", "--soil", "sand", "--rover", "mer", "--slip", "0.2", "--load", "-4"},
+            2,
+            "load_N = -4, must be > 0"},
+           {{"wheel", "--soil", "sand", "--rover", "mer", "--slip", "0.2", "--load", "1e9"},
+            1,
+            "sinks to its axle"},
+           {{"wheel", "--soil", "sand", "--slip", "0.2"}, 2, "lacks --rover"},
+           {{"wheel", "--cases", "/nowhere.csv", "-o", folder / "o.csv"}, 2, "/nowhere.csv"},
+           {{"wheel", "--cases", "in.csv"}, 2, "lacks -o OUT.csv"}}) {
+    const Ran ran = runTalus(c.words);
+    EXPECT_EQ(ran.code, c.code) << ran.err;
+    EXPECT_THAT(ran.err, StartsWith("talus: "));
+    EXPECT_THAT(ran.err, HasSubstr(c.says));
+    EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
+  }
+}
+
+}  // namespace
+}  // namespace talus::cli
