@@ -18,12 +18,12 @@ struct Problem {
   std::shared_ptr<const costmap::CostGrid> map;  ///< the version to plan on; pinned while planning runs
   maps::Point start;
   maps::Point goal;
-  double goal_tolerance_m = 0.0;  ///< a route may end this far from the goal, >= 0
-  std::vector<maps::Point> via;   ///< to be passed in this order
+  double goal_tolerance_m = 0.0;   ///< a route may end this far from the goal, >= 0
+  std::vector<maps::Point> via{};  ///< to be passed in this order
   double time_limit_s = std::numeric_limits<double>::infinity();  ///< > 0
   std::uint64_t seed = 1;                                         ///< same seed, same route
   int threads = 1;                                                ///< >= 1; the answer does not depend on it
-  Watch watch;
+  Watch watch{};
 };
 
 /// What a planner answers: the bare polyline; annotated() makes a Route of it.

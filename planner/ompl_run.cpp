@@ -1,0 +1,129 @@
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include <ompl/base/goals/GoalState.h>
+#include <ompl/geometric/PathGeometric.h>
+
+#include <planner/drive_objective.hpp>
+#include <planner/map_space.hpp>
+#include <planner/map_validity.hpp>
+#include <planner/ompl_guard.hpp>
+#include <planner/ompl_planner.hpp>
+#include <planner/ompl_run.hpp>
+#include <planner/polyline.hpp>
+#include <planner/region_sampler.hpp>
+
+namespace talus::planner {
+namespace {
+
+namespace ob = ompl::base;
+namespace og = ompl::geometric;
+using Clock = std::chrono::steady_clock;
+
+std::shared_ptr<const ImprovableRegion> regionOf(const Problem& leg, const LegKnowledge& known,
+                                                 const SamplingSettings& settings) {
+  const double spacing_m = settings.range_cells / 4 * leg.map->grid().resolution_m;
+  const bool seeded = known.plan.status == RouteStatus::Found;
+  return std::make_shared<ImprovableRegion>(ImprovableRegion::Parts{
+      .map = leg.map,
+      .start = leg.start,
+      .goal = leg.goal,
+      .goal_tolerance_m = leg.goal_tolerance_m,
+      .from_start = known.from_start,
+      .to_goal = known.to_goal,
+      .known_route = seeded ? subdivided(known.plan.points, spacing_m) : std::vector<maps::Point>{},
+      .known_cost_J = known.plan.cost_J,
+      .hand_out_route = !settings.planner.ends_with("RRTstar")});  // RRT* plants it instead
+}
+
+ob::SpaceInformationPtr spaceOf(const Problem& leg, const std::shared_ptr<const MeteredCost>& cost,
+                                const std::shared_ptr<const ImprovableRegion>& region) {
+  auto space = std::make_shared<MapSpace>(leg.map->grid());
+  space->setStateSamplerAllocator([region, seed = leg.seed](const ob::StateSpace* of) {
+    return std::make_shared<RegionSampler>(of, region, seed);
+  });
+  auto information = std::make_shared<ob::SpaceInformation>(space);
+  information->setStateValidityChecker(std::make_shared<MapValidityChecker>(information, cost));
+  information->setMotionValidator(std::make_shared<MapMotionValidator>(information, cost));
+  information->setup();
+  return information;
+}
+
+ob::ProblemDefinitionPtr definitionOf(const Problem& leg, const ob::SpaceInformationPtr& space,
+                                      const DriveObjective::Parts& parts) {
+  auto definition = std::make_shared<ob::ProblemDefinition>(space);
+  ob::ScopedState<MapSpace> start(space);
+  ob::ScopedState<MapSpace> goal(space);
+  MapSpace::setPlace(start.get(), leg.start);
+  MapSpace::setPlace(goal.get(), leg.goal);
+  // A threshold of 0 would never be met: OMPL asks for a distance below it.
+  const double threshold_m = std::max(leg.goal_tolerance_m, 1e-9 * leg.map->grid().resolution_m);
+  definition->setStartAndGoalStates(start, goal, threshold_m);
+  definition->setOptimizationObjective(std::make_shared<DriveObjective>(space, parts));
+  return definition;
+}
+
+// Stops after the allotted work, at the time limit, or when asked to.
+ob::PlannerTerminationCondition doneWhen(const Problem& leg, const SamplingSettings& settings,
+                                         const std::shared_ptr<const MeteredCost>& cost) {
+  const auto begin = Clock::now();
+  return ob::PlannerTerminationCondition([=, &leg] {
+    cost->iterated();
+    if (cost->work() >= settings.work || leg.watch.stopped()) return true;
+    return std::chrono::duration<double>(Clock::now() - begin).count() > leg.time_limit_s;
+  });
+}
+
+// The best of what the planner found, priced anew: OMPL's own sums may hold blocked motions.
+Plan priced(const ob::ProblemDefinition& definition, const MotionCost& cost) {
+  Plan best;
+  for (const ob::PlannerSolution& solution : definition.getSolutions()) {
+    if (solution.approximate_) continue;
+    Plan plan;
+    const auto path = std::dynamic_pointer_cast<og::PathGeometric>(solution.path_);
+    for (const ob::State* state : path->getStates()) plan.points.push_back(MapSpace::place(state));
+    plan.cost_J = cost.along(plan.points);
+    if (plan.cost_J < best.cost_J) best = std::move(plan);
+  }
+  if (std::isfinite(best.cost_J)) best.status = RouteStatus::Found;
+  return best;
+}
+
+Plan explained(Plan plan, const Problem& leg, const MeteredCost& cost, const SamplingSettings& settings) {
+  if (plan.status == RouteStatus::Found) return plan;
+  plan.points.clear();
+  plan.cost_J = std::numeric_limits<double>::infinity();
+  const bool spent = cost.work() >= settings.work;
+  plan.status = leg.watch.stopped() ? RouteStatus::Cancelled
+                : spent             ? RouteStatus::NoRoute
+                                    : RouteStatus::TimedOut;
+  plan.reason = settings.planner + (leg.watch.stopped() ? " was cancelled"
+                                    : spent ? " found no route in its allotted work; planner 'field' can "
+                                              "tell whether there is one"
+                                            : " found no route in the time given; allow more or use 'field'");
+  return plan;
+}
+
+}  // namespace
+
+Plan runOmpl(const Problem& leg, const SamplingSettings& settings, const LegKnowledge& known) {
+  const QuietOmpl quiet;
+  const double range_m = settings.range_cells * leg.map->grid().resolution_m;
+  const auto cost = std::make_shared<const MeteredCost>(leg.map);
+  const auto region = regionOf(leg, known, settings);
+  const auto space = spaceOf(leg, cost, region);
+  const auto definition = definitionOf(leg, space, {.cost = cost, .region = region, .seed = leg.seed});
+  const PlannerParts parts{.space = space,
+                           .definition = definition,
+                           .known_route = region->parts().known_route,
+                           .range_m = range_m,
+                           .seed = leg.seed};
+  const ob::PlannerPtr planner = makeOmplPlanner(settings.planner, parts);
+  planner->solve(doneWhen(leg, settings, cost));
+  Plan plan = explained(priced(*definition, cost->motion()), leg, *cost, settings);
+  plan.lower_bound_J = std::max(known.plan.lower_bound_J, region->toGoal(leg.start));
+  return plan;
+}
+
+}  // namespace talus::planner

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include <planner/improvable_region.hpp>
+#include <planner/problem.hpp>
+
+namespace talus::planner {
+
+/// How OMPL's planners are run. Defaults are what did best on maps of 1000x1000 cells.
+struct SamplingSettings {
+  std::string planner = "RRTstar";  ///< a name of plannerNames(), not "field"
+  std::uint64_t work =
+      4'000'000;              ///< cells' lengths evaluated before it stops, > 0: the same on every machine
+  double range_cells = 40.0;  ///< longest motion added to a tree, > 0
+};
+
+/// What is known of a leg before sampling begins.
+struct LegKnowledge {
+  Plan plan;                           ///< a route to improve on; not Found: none is known
+  ImprovableRegion::Bound from_start;  ///< admissible lower bounds; may be empty
+  ImprovableRegion::Bound to_goal;
+};
+
+/// Finds out what is known of a problem without via points.
+using LegScout = std::function<LegKnowledge(const Problem& leg)>;
+
+/// Plans with OMPL's sampling planners under the exact cost, leg by leg through the via points; never returns
+/// a worse route than the scout knew, nor one that is not allowed along its whole length. The same bytes for
+/// the same problem and seed as long as the work ends before problem.time_limit_s. An empty scout: the
+/// planners start from nothing. Throws std::invalid_argument for a planner that is not on offer or a setting
+/// out of range.
+Plan planBySampling(const Problem& problem, const SamplingSettings& settings, const LegScout& scout = {});
+
+}  // namespace talus::planner
