@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string>
+
+#include <planner/field_planner.hpp>
+#include <planner/problem.hpp>
+#include <planner/sampling_planner.hpp>
+
+namespace talus::planner {
+
+/// Any planner on offer, by its name: the field, or one of OMPL's improving on the field's route. What the
+/// field worked out for a map and a goal is kept from plan to plan. Not thread-safe: one object a thread;
+/// they may share a map.
+class NamedPlanner {
+ public:
+  /// Throws std::invalid_argument for a name that is not on offer (planner_names.hpp).
+  explicit NamedPlanner(const std::string& name = {});
+
+  /// The offered name.
+  const std::string& name() const noexcept { return settings_.planner; }
+
+  /// A route through all via points in order, or why there is none. Throws std::invalid_argument without a
+  /// map.
+  Plan plan(const Problem& problem);
+
+ private:
+  SamplingSettings settings_;
+  FieldPlanner field_;
+};
+
+}  // namespace talus::planner
