@@ -2,6 +2,9 @@
 
 namespace talus::cli {
 
-void addCommands(CLI::App& app, Context& context) { addWheel(app, context); }
+void addCommands(CLI::App& app, Context& context) {
+  addInfo(app, context);
+  addWheel(app, context);
+}
 
 }  // namespace talus::cli

@@ -12,6 +12,8 @@ struct Context;
 // Alphabetical; a subcommand stands here only once it does its job.
 void addWheel(CLI::App& app, Context& context);
 
+void addInfo(CLI::App& app, Context& context);
+
 /// Registers every subcommand.
 void addCommands(CLI::App& app, Context& context);
 

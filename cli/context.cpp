@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <cstdio>
+#include <thread>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -42,6 +44,10 @@ Watch Context::watch(std::string_view what) const {
   Watch watch{.progress = {}, .stop = stop};
   if (!quiet && isatty(STDERR_FILENO) != 0) watch.progress = Bar(what);
   return watch;
+}
+
+int Context::workers() const noexcept {
+  return threads > 0 ? threads : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
 }
 
 void Context::warn(std::string_view text) const {

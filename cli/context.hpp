@@ -35,6 +35,9 @@ struct Context {
   /// Ctrl-C.
   Watch watch(std::string_view what) const;
 
+  /// Threads to work with: what the user allows, else one a core; at least 1.
+  int workers() const noexcept;
+
   /// One line "talus: warning: TEXT" on stderr, unless quiet.
   void warn(std::string_view text) const;
 };

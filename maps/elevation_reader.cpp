@@ -76,16 +76,6 @@ void refuseSize(const Grid& grid, const ReadOptions& options, const std::string&
          "give a map of at least 2 x 2 cells"});
 }
 
-// Rows come north first; the map's go south first.
-Raster<float> toRaster(const Grid& grid, std::vector<float> values, bool north_up) {
-  if (north_up)
-    for (int r = 0; r < grid.height / 2; ++r)
-      std::swap_ranges(values.begin() + std::ptrdiff_t{r} * grid.width,
-                       values.begin() + std::ptrdiff_t{r + 1} * grid.width,
-                       values.begin() + std::ptrdiff_t{grid.height - 1 - r} * grid.width);
-  return {grid, std::move(values)};
-}
-
 double radius(GDALDataset& file) {
   const OGRSpatialReference* crs = file.GetSpatialRef();
   return crs == nullptr ? 0.0 : crs->GetSemiMajor();
@@ -118,7 +108,7 @@ ElevationMap readElevation(const std::string& path, const ReadOptions& options) 
   std::vector<float> values =
       readPixels(*from.raster, from.band, {box.first.column, first_row, grid.width, grid.height}, path);
   decodeHeights(values, code, map.notes);
-  map.elevation_m = toRaster(grid, std::move(values), from.north_up);
+  map.elevation_m = from.north_up ? northUp(grid, std::move(values)) : Raster<float>(grid, std::move(values));
   map.georeference = from.georeference;
   if (validFraction(map.elevation_m) == 0.0)
     throw InputError({path, "holds no data in any cell" + std::string(options.window ? " of the window" : ""),

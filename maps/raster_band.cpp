@@ -86,4 +86,10 @@ std::vector<float> readPixels(GDALDataset& raster, int band, const PixelBox& box
   return values;
 }
 
+Raster<float> northUp(const Grid& grid, std::vector<float> values) {
+  const auto row = [&](int r) { return values.begin() + std::ptrdiff_t{r} * grid.width; };
+  for (int r = 0; r < grid.height / 2; ++r) std::swap_ranges(row(r), row(r + 1), row(grid.height - 1 - r));
+  return {grid, std::move(values)};
+}
+
 }  // namespace talus::maps

@@ -37,4 +37,7 @@ struct PixelBox {
 /// @throws InputError with GDAL's words
 std::vector<float> readPixels(GDALDataset& raster, int band, const PixelBox& box, const std::string& where);
 
+/// Values of a file that begins in the north, as a raster that begins in the south.
+Raster<float> northUp(const Grid& grid, std::vector<float> values);
+
 }  // namespace talus::maps

@@ -1,0 +1,59 @@
+#include <CLI/CLI.hpp>
+#include <cli/context.hpp>
+#include <cli/map_options.hpp>
+
+namespace talus::cli {
+
+void addMapOptions(CLI::App& command, MapOptions& options) {
+  maps::ReadOptions& read = options.read;
+  command.add_option("DEM", options.path, "elevation map: anything GDAL opens, or a NumPy .npz")->required();
+  command.add_option("--band", read.band, "band that holds the heights, from 1")->type_name("N");
+  command
+      .add_option("--resolution", read.resolution_m, "cell side; needed without a CRS, resamples with one")
+      ->type_name("METRES");
+  command
+      .add_option("--window", options.window,
+                  "read only this part: x0,y0,x1,y1 or lat,lon,lat,lon with a d on each")
+      ->type_name("BOX");
+  command.add_option("--nodata", read.nodata, "value that means no data")->type_name("VALUE");
+  command.add_option("--vertical-scale", read.vertical_scale, "metres per unit of height")
+      ->type_name("FACTOR");
+  command.add_flag("--ignore-crs", read.ignore_crs,
+                   "the CRS is wrong: read as local metres (with --resolution)");
+  command.add_option("--max-cells", read.max_cells, "refuse larger maps")
+      ->type_name("N")
+      ->capture_default_str();
+}
+
+maps::ElevationMap readMap(const MapOptions& options, const Context& context) {
+  maps::ReadOptions read = options.read;
+  if (!options.window.empty()) read.window = maps::parseWindow(options.window);
+  maps::ElevationMap map = maps::readElevation(options.path, read);
+  for (const std::string& note : map.notes) context.warn(options.path + ": " + note);
+  return map;
+}
+
+void addLayerOptions(CLI::App& command, LayerOptions& options) {
+  command.add_option("--terrain", options.terrain, "raster of terrain classes")->type_name("FILE");
+  command.add_option("--terrain-band", options.terrain_band, "its band, from 1")->type_name("N");
+  command.add_option("--rocks", options.rocks, "raster of rock abundance, 0 to 1")->type_name("FILE");
+  command.add_option("--rocks-band", options.rocks_band, "its band, from 1")->type_name("N");
+  command.add_option("--keep-out", options.keep_out, "GeoJSON polygons not to enter; may be repeated")
+      ->type_name("FILE");
+}
+
+Layers readLayers(const LayerOptions& options, const maps::ElevationMap& map) {
+  Layers layers;
+  if (!options.terrain.empty())
+    layers.classes = maps::readTerrainClasses({options.terrain, options.terrain_band}, map);
+  if (!options.rocks.empty())
+    layers.rock_abundance = maps::readRockAbundance({options.rocks, options.rocks_band}, map);
+  for (const std::string& path : options.keep_out) {
+    const maps::Raster<std::uint8_t> mask = maps::readKeepOut(path, map);
+    if (layers.keep_out.empty()) layers.keep_out = maps::Raster<std::uint8_t>(map.grid());
+    for (std::size_t i = 0; i < mask.values().size(); ++i) layers.keep_out.values()[i] |= mask.values()[i];
+  }
+  return layers;
+}
+
+}  // namespace talus::cli

@@ -1,0 +1,133 @@
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <limits>
+#include <stdexcept>
+
+#include <cpl_string.h>
+#include <gdal_priv.h>
+#include <ogr_spatialref.h>
+#include <unistd.h>
+
+#include <maps/gdal_dataset.hpp>
+#include <maps/geotiff_writer.hpp>
+#include <maps/spatial_reference.hpp>
+#include <talus.hpp>
+
+namespace talus::maps {
+namespace {
+
+[[noreturn]] void refuse(const std::string& path, const std::string& reason) {
+  throw InputError(
+      {path, "cannot be written: " + reason, "check the folder, its permissions and free space"});
+}
+
+// A file beside its place; it goes away unless it was moved there.
+class Beside {
+ public:
+  explicit Beside(const std::string& path)
+      : path_(path), temporary_(path + ".part" + std::to_string(::getpid()) + ".tif") {}
+  Beside(const Beside&) = delete;
+  Beside& operator=(const Beside&) = delete;
+  ~Beside() { std::remove(temporary_.c_str()); }
+
+  const std::string& temporary() const { return temporary_; }
+
+  void moveToPlace() const {
+    std::error_code error;
+    std::filesystem::rename(temporary_, path_, error);
+    if (error) refuse(path_, error.message());
+  }
+
+ private:
+  std::string path_;
+  std::string temporary_;
+};
+
+struct Form {
+  GDALDataType type = GDT_Float32;
+  const char* predictor = "PREDICTOR=3";
+  int bands = 1;
+};
+
+Dataset create(const std::string& path, const Grid& grid, const Form& form) {
+  GDALAllRegister();
+  CPLStringList words;
+  for (const char* word : {"TILED=YES", "COMPRESS=DEFLATE", "ZLEVEL=4", "BIGTIFF=IF_SAFER", form.predictor})
+    words.AddString(word);
+  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
+  return Dataset(driver->Create(path.c_str(), grid.width, grid.height, form.bands, form.type, words.List()));
+}
+
+void place(GDALDataset& file, const Grid& grid, const Georeference* georeference) {
+  double transform[6] = {
+      grid.south_west.x_m, grid.resolution_m, 0, grid.south_west.y_m + grid.height * grid.resolution_m, 0,
+      -grid.resolution_m};
+  file.SetGeoTransform(transform);
+  if (georeference == nullptr) return;
+  const OGRSpatialReference reference = spatialReference(georeference->system());
+  file.SetSpatialRef(&reference);
+}
+
+// A raster's rows go south to north, a file's north to south: written from the last row with a negative
+// stride.
+template <typename T>
+CPLErr writeBand(GDALRasterBand& band, const Raster<T>& values, GDALDataType type) {
+  const Grid& grid = values.grid();
+  auto* last_row = const_cast<T*>(values.row(grid.height - 1));  // GDAL's writing call takes no const
+  const auto line = -static_cast<GSpacing>(grid.width) * static_cast<GSpacing>(sizeof(T));
+  return band.RasterIO(GF_Write, 0, 0, grid.width, grid.height, last_row, grid.width, grid.height, type,
+                       static_cast<GSpacing>(sizeof(T)), line, nullptr);
+}
+
+// Closing flushes: only then is it known whether all of it reached the disk.
+void finish(Dataset dataset, const Beside& file, const GdalErrors& errors, const std::string& path) {
+  dataset->FlushCache();
+  dataset.reset();
+  if (errors.any()) refuse(path, errors.last());
+  file.moveToPlace();
+}
+
+void checkGrids(const std::vector<Layer>& layers) {
+  if (layers.empty()) throw std::invalid_argument("GeoTIFF: no layer");
+  for (const Layer& layer : layers)
+    if (layer.values.grid() != layers.front().values.grid() || layer.values.empty())
+      throw std::invalid_argument("GeoTIFF: layer '" + layer.name + "' lies on another grid or is empty");
+}
+
+}  // namespace
+
+void writeGeoTiff(const GeoTiff& file, const std::vector<Layer>& layers) {
+  checkGrids(layers);
+  const Grid& grid = layers.front().values.grid();
+  const GdalErrors errors;
+  const Beside beside(file.path);
+  Dataset dataset = create(beside.temporary(), grid, {.bands = static_cast<int>(layers.size())});
+  if (!dataset) refuse(file.path, errors.last());
+  place(*dataset, grid, file.georeference);
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    GDALRasterBand& band = *dataset->GetRasterBand(static_cast<int>(i) + 1);
+    band.SetDescription(layers[i].name.c_str());
+    if (!layers[i].unit.empty()) band.SetUnitType(layers[i].unit.c_str());
+    band.SetNoDataValue(std::numeric_limits<double>::quiet_NaN());
+    if (writeBand(band, layers[i].values, GDT_Float32) != CE_None) refuse(file.path, errors.last());
+  }
+  finish(std::move(dataset), beside, errors, file.path);
+}
+
+void writeGeoTiff(const GeoTiff& file, const std::string& name, const Raster<std::uint8_t>& values,
+                  std::optional<std::uint8_t> nodata) {
+  if (values.empty()) throw std::invalid_argument("GeoTIFF: layer '" + name + "' is empty");
+  const GdalErrors errors;
+  const Beside beside(file.path);
+  Dataset dataset = create(beside.temporary(), values.grid(), {.type = GDT_Byte, .predictor = "PREDICTOR=2"});
+  if (!dataset) refuse(file.path, errors.last());
+  place(*dataset, values.grid(), file.georeference);
+  GDALRasterBand& band = *dataset->GetRasterBand(1);
+  band.SetDescription(name.c_str());
+  if (nodata) band.SetNoDataValue(*nodata);
+  if (writeBand(band, values, GDT_Byte) != CE_None) refuse(file.path, errors.last());
+  finish(std::move(dataset), beside, errors, file.path);
+}
+
+}  // namespace talus::maps
