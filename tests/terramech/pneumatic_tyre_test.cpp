@@ -1,0 +1,86 @@
+#include <cmath>
+#include <stdexcept>
+
+#include <terramech/pneumatic_tyre.hpp>
+#include <terramech/wong_reece.hpp>
+
+namespace talus::terramech {
+namespace {
+
+Soil loam() {
+  return {.name = "loam",
+          .cohesion_Pa = 3000.0,
+          .friction_angle_rad = 0.5,
+          .sinkage_exponent = 0.8,
+          .frictional_modulus = 2e6,
+          .shear_modulus_m = 0.02};
+}
+
+Tyre tyre(double inflation_Pa) {
+  return {.wheel = {.radius_m = 0.4, .width_m = 0.25}, .inflation_Pa = inflation_Pa, .carcass_Pa = 1e4};
+}
+
+TEST(PneumaticTyre, OnRigidGroundTheFlatCarriesTheLoadAtItsPressure) {
+  const TyreForces forces = tyreOnRigidGround(tyre(5e4), {.load_N = 3000.0, .slip = 0.1});
+  EXPECT_DOUBLE_EQ(forces.flat_length_m, 3000.0 / (6e4 * 0.25));  // Closed form.
+  const double half = 0.5 * forces.flat_length_m;
+  EXPECT_NEAR(std::pow(0.4 - forces.deflection_m, 2) + half * half, 0.16,
+              1e-14);  // Closed form: chord of a circle.
+}
+
+TEST(PneumaticTyre, OnRigidGroundThrustRisesWithSlipToFriction) {
+  double last = -1.0;
+  for (const double slip : {0.0, 0.001, 0.01, 0.1, 1.0}) {
+    const double pull = tyreOnRigidGround(tyre(5e4), {.load_N = 3000.0, .slip = slip}).drawbar_pull_N;
+    EXPECT_GE(pull, last);
+    EXPECT_LE(pull, 0.7 * 3000.0);
+    last = pull;
+  }
+  EXPECT_NEAR(last, 0.7 * 3000.0, 0.01 * 2100.0);
+}
+
+TEST(PneumaticTyre, AHardTyreIsARigidWheelAndASoftOneFlattens) {
+  const TyreOperation operation{.load_N = 1500.0, .slip = 0.2};
+  const double critical = criticalPressure_Pa(loam(), tyre(0.0).wheel, 1500.0);
+  const TyreForces hard = tyreOnSoftGround(tyre(critical), loam(), operation);
+  EXPECT_EQ(hard.mode, TyreMode::Rigid);
+  EXPECT_DOUBLE_EQ(hard.sinkage_m,
+                   equilibrium(loam(), tyre(0.0).wheel, {.load_N = 1500.0, .slip = 0.2}).sinkage_m);
+  const TyreForces soft = tyreOnSoftGround(tyre(0.4 * critical - 1e4), loam(), operation);
+  EXPECT_EQ(soft.mode, TyreMode::Flattened);
+  EXPECT_LT(soft.sinkage_m, hard.sinkage_m);
+  EXPECT_GT(soft.flat_length_m, 0.0);
+  EXPECT_GT(soft.drawbar_pull_N,
+            hard.drawbar_pull_N);  // Measured by others: why tyres are let down on sand (wong_2001).
+}
+
+TEST(PneumaticTyre, LessPressureSinksLessAndFlattensMore) {
+  TyreForces last = tyreOnSoftGround(tyre(2.2e4), loam(), {.load_N = 1500.0, .slip = 0.2});
+  for (const double p : {1.8e4, 1.4e4, 1e4, 5e3}) {  // Property: monotone.
+    const TyreForces forces = tyreOnSoftGround(tyre(p), loam(), {.load_N = 1500.0, .slip = 0.2});
+    EXPECT_LT(forces.sinkage_m, last.sinkage_m);
+    EXPECT_GT(forces.deflection_m, last.deflection_m);
+    last = forces;
+  }
+}
+
+TEST(PneumaticTyre, CriticalPressureIsThatUnderARigidWheelByBekker) {
+  // Closed form: for n = 1 and small angles W = b k sqrt(D z) (3 - n) z / 3 and p = k z.
+  Soil soil = loam();
+  soil.sinkage_exponent = 1.0;
+  const Wheel wheel{.radius_m = 0.4, .width_m = 0.25};
+  const double z = 0.01, load = 0.25 * 2e6 * std::sqrt(0.8 * z) * 2.0 / 3.0 * z;
+  EXPECT_NEAR(criticalPressure_Pa(soil, wheel, load) / (2e6 * z), 1.0, 1e-12);
+}
+
+TEST(PneumaticTyre, RefusesWhatHasNoAnswer) {
+  EXPECT_THROW(tyreOnRigidGround(tyre(1e3), {.load_N = 1e5, .slip = 0.1}), std::domain_error);
+  EXPECT_THROW(tyreOnSoftGround(tyre(-1.0), loam(), {.load_N = 100.0}), std::invalid_argument);
+  EXPECT_THROW(tyreOnSoftGround(tyre(1e3), loam(), {.load_N = 1e6, .slip = 0.2}), std::domain_error);
+  Soil soil = loam();
+  soil.sinkage_exponent = 3.0;
+  EXPECT_THROW(criticalPressure_Pa(soil, {}, 100.0), std::domain_error);
+}
+
+}  // namespace
+}  // namespace talus::terramech
