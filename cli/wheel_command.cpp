@@ -6,6 +6,8 @@
 
 #include <cli/command.hpp>
 #include <cli/commands.hpp>
+#include <cli/output_file.hpp>
+#include <cli/wheel_report.hpp>
 #include <cli/wheel_table.hpp>
 #include <terramech/soil_library.hpp>
 #include <terramech/wong_reece.hpp>
@@ -16,6 +18,7 @@ namespace {
 struct WheelOptions {
   std::string soil, rover;
   double load_N = std::nan(""), slip = std::nan("");
+  std::string html;
   std::string cases, output;
 };
 
@@ -29,12 +32,14 @@ void bind(CLI::App& command, WheelOptions& options) {
                    ->type_name("N");
   auto* slip =
       command.add_option("--slip", options.slip, "-1 (locked) to 1 (spinning in place)")->type_name("I");
+  auto* html = command.add_option("--html", options.html, "write a page with stresses and curves over slip")
+                   ->type_name("FILE.html");
   auto* cases =
       command.add_option("--cases", options.cases, "solve each row of a CSV instead")->type_name("IN.csv");
   command.add_option("-o,--output", options.output, "where --cases writes")
       ->type_name("OUT.csv")
       ->needs(cases);
-  for (auto* single : {soil, rover, load, slip}) cases->excludes(single);
+  for (auto* single : {soil, rover, load, slip, html}) cases->excludes(single);
 }
 
 [[noreturn]] void lacking(const std::string& option) {
@@ -92,6 +97,7 @@ int runOne(const WheelOptions& options, const Context& context) {
   const terramech::Rover rover = terramech::loadRover(options.rover);
   const double load_N = std::isnan(options.load_N) ? terramech::wheelLoad_N(rover) : options.load_N;
   const auto forces = terramech::equilibrium(soil, rover.wheel, {.load_N = load_N, .slip = options.slip});
+  if (!options.html.empty()) writeFile(options.html, wheelReport({soil, rover, load_N, options.slip}));
   if (context.json)
     printJson({{"soil", soil.name},
                {"rover", rover.name},

@@ -29,6 +29,16 @@ TEST(WheelCommand, TakesALockedWheelAndTheRoversOwnLoad) {
   EXPECT_NEAR(json["load_N"].get<double>(), 176.0 * 3.71 / 6.0, 1e-9);
 }
 
+TEST(WheelCommand, WritesAPageThatNeedsNothingElse) {
+  const Folder folder;
+  const Ran ran = runTalus(
+      {"wheel", "--soil", "sand", "--rover", "mer", "--slip", "0.3", "--html", folder / "wheel.html"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const std::string page = fileContent(folder / "wheel.html");
+  EXPECT_THAT(page, HasSubstr("Stress along the rim"));
+  EXPECT_THAT(page, testing::Not(HasSubstr("http://cdn")));
+}
+
 TEST(WheelCommand, MistakesAreOneLineWithTheirExitCode) {
   struct Case {
     std::vector<std::string> words;
