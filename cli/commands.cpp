@@ -4,6 +4,8 @@ namespace talus::cli {
 
 void addCommands(CLI::App& app, Context& context) {
   addInfo(app, context);
+  addPlan(app, context);
+  addScore(app, context);
   addWheel(app, context);
 }
 

@@ -13,6 +13,8 @@ struct Context;
 void addWheel(CLI::App& app, Context& context);
 
 void addInfo(CLI::App& app, Context& context);
+void addPlan(CLI::App& app, Context& context);
+void addScore(CLI::App& app, Context& context);
 
 /// Registers every subcommand.
 void addCommands(CLI::App& app, Context& context);

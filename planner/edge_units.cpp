@@ -34,14 +34,14 @@ Range costRange(const DriveCost& cost) {
 }
 
 // Joules of a unit: fine enough that the dearest diagonal half just fits, but the cheapest straight half is
-// kept between 256 and 2048 units: coarser would spoil the search, finer would overflow 32 bits along a
+// kept between 32 and 2048 units: coarser would spoil the search, finer would overflow 32 bits along a
 // route.
 double unitFor(const Range& range, double resolution_m) {
   if (!(range.most > 0.0)) return 1.0;
   const double least = std::max(range.least, range.most * 1e-6);
   const double cheapest_J = 0.5 * resolution_m * least;
   const double fitting = EdgeUnits::kDearest / (std::numbers::sqrt2 * range.most / least);
-  return cheapest_J / std::clamp(fitting, 256.0, 2048.0);
+  return cheapest_J / std::clamp(fitting, 32.0, 2048.0);
 }
 
 std::uint16_t inUnits(float cost_J_per_m, double units_per_J_per_m) {

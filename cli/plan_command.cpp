@@ -1,0 +1,165 @@
+// talus plan DEM --start P --goal P: a route.
+#include <chrono>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <cli/command.hpp>
+#include <cli/commands.hpp>
+#include <cli/mission.hpp>
+#include <cli/output_file.hpp>
+#include <cli/route_json.hpp>
+#include <maps/place_reader.hpp>
+#include <planner/annotation.hpp>
+#include <planner/named_planner.hpp>
+#include <planner/route_check.hpp>
+
+namespace talus::cli {
+namespace {
+
+using planner::Route;
+using planner::RouteStatus;
+
+struct Timing {
+  double load_s, costmap_s, plan_s;
+};
+
+void bind(CLI::App& command, PlanOptions& options) {
+  addGroundOptions(command, options.ground);
+  command
+      .add_option("--start", options.start, "x,y in map metres; lat,lon with a d on each; or a GeoJSON point")
+      ->type_name("PLACE");
+  command.add_option("--goal", options.goal, "the same")->type_name("PLACE");
+  command.add_option("--via", options.via, "to be passed on the way; may be repeated")->type_name("PLACE");
+  command.add_option("--tolerance", options.tolerance_m, "the route may end this far from the goal")
+      ->type_name("METRES")
+      ->check(CLI::NonNegativeNumber);
+  command.add_option("--planner", options.planner, "who plans: `talus plugins` lists them")
+      ->type_name("NAME")
+      ->capture_default_str();
+  command.add_option("--time", options.time_limit_s, "time limit of the planning")
+      ->type_name("S")
+      ->check(CLI::PositiveNumber);
+  command.add_option("-o,--output", options.output, "the route as GeoJSON")->type_name("ROUTE.geojson");
+}
+
+void requirePlaces(const PlanOptions& options) {
+  if (options.start.empty()) throw InputError({"talus plan", "no start", "pass --start x,y"});
+  if (options.goal.empty()) throw InputError({"talus plan", "no goal", "pass --goal x,y"});
+}
+
+planner::Problem problemOf(const PlanOptions& options, const Ground& ground, const Context& context) {
+  const maps::ElevationMap& map = ground.map.elevation();
+  planner::Problem problem;
+  problem.map = ground.map.published();
+  problem.start = maps::readPlace(options.start, map, "--start");
+  problem.goal = maps::readPlace(options.goal, map, "--goal");
+  for (const std::string& place : options.via) problem.via.push_back(maps::readPlace(place, map, "--via"));
+  problem.goal_tolerance_m = options.tolerance_m;
+  if (options.time_limit_s > 0.0) problem.time_limit_s = options.time_limit_s;
+  problem.seed = context.seed;
+  problem.threads = context.workers();
+  problem.watch = context.watch("plan");
+  return problem;
+}
+
+// What no planner may hand out: the check shares no code with any of them.
+void requireAllowed(const planner::Plan& plan, const costmap::CostGrid& map) {
+  const auto violations = planner::violations(map, plan.points);
+  if (violations.empty()) return;
+  throw std::logic_error(fmt::format("the planner's route is not allowed at {:.2f},{:.2f}: {}",
+                                     violations[0].place.x_m, violations[0].place.y_m, violations[0].reason));
+}
+
+std::string asText(const Route& route, const Timing& seconds) {
+  const planner::RouteSummary& s = route.summary;
+  return fmt::format("route       {:.1f} m, {} vertices, by {}\n", s.length_m, route.vertices.size(),
+                     s.planner) +
+         fmt::format("cost        {:.6g} J, at most {:.2f} % above the best possible\n", s.cost,
+                     100 * s.gap) +
+         fmt::format("energy      {:.6g} J\n", s.energy_J) +
+         fmt::format("time        {:.4g} h\n", s.time_s / 3600) +
+         fmt::format("steepest    {:.1f} deg along the heading\n", s.max_slope_rad * 180 / std::numbers::pi) +
+         fmt::format("slip        {:.2f} at most\n", s.max_slip) +
+         fmt::format("stuck       {:.2g} probability on the way\n",
+                     route.vertices.back().immobilisation_risk) +
+         fmt::format("took        {:.3f} s to load, {:.3f} s for the costmap, {:.3f} s to plan\n",
+                     seconds.load_s, seconds.costmap_s, seconds.plan_s);
+}
+
+int exitOf(RouteStatus status) {
+  switch (status) {
+    case RouteStatus::Found:
+      return Exit::kDone;
+    case RouteStatus::Cancelled:
+      return Exit::kCancelled;
+    case RouteStatus::StartInvalid:
+    case RouteStatus::GoalInvalid:
+      return Exit::kInput;
+    default:
+      return Exit::kNo;
+  }
+}
+
+// Says why there is no route; the exit code tells a wrong call from the answer no.
+int refuse(const Route& route, const Context& context) {
+  if (context.json) {
+    auto json = summaryJson(route);
+    json["reason"] = route.reason;
+    printJson(json);
+  }
+  fmt::print(stderr, "talus: {}\n", oneLine(route.reason));
+  return exitOf(route.status);
+}
+
+int run(const PlanOptions& asked, Context& context) {
+  PlanOptions options = asked;
+  if (isMission(options.ground.dem.path)) readMission(options);
+  requirePlaces(options);
+  if (!options.output.empty())
+    OutputFile(options.output);  // a bad place is told before the work, not after it
+  planner::NamedPlanner planner(options.planner);
+  const Ground ground = readGround(options.ground, context);
+  if (context.stop.stop_requested()) return Exit::kCancelled;
+  const planner::Problem problem = problemOf(options, ground, context);
+  const auto begin = std::chrono::steady_clock::now();
+  const planner::Plan plan = planner.plan(problem);
+  const std::chrono::duration<double> plan_s = std::chrono::steady_clock::now() - begin;
+  if (plan.status == RouteStatus::Found) requireAllowed(plan, *problem.map);
+  const maps::ElevationMap& map = ground.map.elevation();
+  const Route route =
+      annotated(plan, {.map = *problem.map, .elevation_m = &map.elevation_m, .planner = planner.name()});
+  if (plan.status != RouteStatus::Found) return refuse(route, context);
+  if (!options.output.empty()) {
+    const auto document = routeGeoJson(route, map, {.files = ground.files, .seed = context.seed});
+    writeFile(options.output, document.dump() + "\n");
+  }
+  const Timing seconds{ground.load_s, ground.build_s, plan_s.count()};
+  if (context.json) {
+    auto json = summaryJson(route);
+    json["seconds"] = {{"load", seconds.load_s}, {"costmap", seconds.costmap_s}, {"plan", seconds.plan_s}};
+    printJson(json);
+  } else {
+    print(asText(route, seconds));
+  }
+  return Exit::kDone;
+}
+
+}  // namespace
+
+void addPlan(CLI::App& app, Context& context) {
+  addCommand<PlanOptions>(
+      app, context,
+      {.name = "plan",
+       .group = Group::kRoutes,
+       .description =
+           "a route from start to goal, with its energy, time, slip and how far it may be from the best",
+       .examples =
+           "  talus plan gale.tif --rover mer --start -4.59d,137.44d --goal -4.6d,137.5d -o route.geojson\n"
+           "  talus plan mission.yaml\n"},
+      bind, run);
+}
+
+}  // namespace talus::cli

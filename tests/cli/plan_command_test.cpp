@@ -1,0 +1,133 @@
+#include <cmath>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "run_program.hpp"
+
+namespace talus::cli {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+// 30x20 cells of a metre, flat but for a wall along x = 15 with a gap in the north; a ramp climbs eastwards
+// beyond x = 20.
+std::string dem() {
+  std::string text = "ncols 30\nnrows 20\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -9999\n";
+  for (int row = 0; row < 20; ++row) {
+    for (int column = 0; column < 30; ++column) {
+      const bool wall = column == 15 && row > 6;
+      const double ramp = column > 20 ? 0.1 * (column - 20) : 0.0;
+      text += std::to_string(wall ? 5.0 : ramp) + " ";
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+// One run for all that a good plan shows: starting the program is what takes time.
+TEST(PlanCommand, PlansWritesAndScoresTheSame) {
+  const Folder folder;
+  folder.write("dem.asc", dem());
+  const std::vector<std::string> ground{"dem.asc",  "--resolution", "1",   "--soil",
+                                        "sandy_loam", "--rover",      "fido"};
+  const auto with = [&ground](std::vector<std::string> words, const std::vector<std::string>& more) {
+    words.insert(words.end(), ground.begin(), ground.end());
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  };
+  const Ran plan =
+      runTalus(with({"plan", "--json"}, {"--start", "5.5,4.5", "--goal", "26.5,4.5", "-o", "route.geojson"}),
+               folder.path());
+  ASSERT_EQ(plan.code, 0) << plan.err;
+  const json summary = json::parse(plan.out);
+  for (const char* key : {"status", "cost", "energy_J", "time_s", "length_m", "max_slip", "max_slope_rad",
+                          "lower_bound", "gap", "planner", "seconds"})
+    EXPECT_TRUE(summary.contains(key)) << key;
+  EXPECT_EQ(summary["status"], "found");
+  EXPECT_GT(summary["length_m"].get<double>(), 21.0);
+  EXPECT_LE(summary["lower_bound"].get<double>(), summary["cost"].get<double>());
+  for (const char* key : {"load", "costmap", "plan"}) EXPECT_TRUE(summary["seconds"].contains(key)) << key;
+
+  const json route = json::parse(fileContent(folder / "route.geojson"));
+  EXPECT_EQ(route["crs"], "local");
+  const json& feature = route["features"][0];
+  EXPECT_EQ(feature["geometry"]["type"], "LineString");
+  const std::size_t count = feature["geometry"]["coordinates"].size();
+  for (const char* key : {"x_m", "y_m", "elevation_m", "heading_rad", "slope_along_rad", "slope_across_rad",
+                          "slip", "sinkage_m", "torque_Nm", "drawbar_pull_margin", "category", "energy_J",
+                          "time_s", "immobilisation_risk"})
+    EXPECT_EQ(feature["properties"][key].size(), count) << key;
+  EXPECT_EQ(feature["properties"]["inputs"]["files"][0]["file"], "dem.asc");
+  EXPECT_EQ(feature["properties"]["inputs"]["files"][0]["sha256"].get<std::string>().size(), 64U);
+
+  const Ran score = runTalus(with({"score", "--json"}, {"--path", "route.geojson"}), folder.path());
+  ASSERT_EQ(score.code, 0) << score.err;
+  const json scored = json::parse(score.out);
+  EXPECT_NEAR(scored["cost"].get<double>(), summary["cost"].get<double>(),
+              1e-6 * summary["cost"].get<double>());
+  EXPECT_TRUE(scored["violations"].empty());
+
+  folder.write("wall.csv", "x_m,y_m\n5.5,4.5\n26.5,4.5\n");
+  const Ran wall = runTalus(with({"score", "--json"}, {"--path", "wall.csv"}), folder.path());
+  EXPECT_EQ(wall.code, 1);
+  const json refused = json::parse(wall.out);
+  EXPECT_FALSE(refused["violations"].empty());
+  EXPECT_TRUE(refused["violations"][0].contains("reason"));
+
+  const Ran back =
+      runTalus(with({"plan", "--json"}, {"--start", "26.5,4.5", "--goal", "5.5,4.5"}), folder.path());
+  ASSERT_EQ(back.code, 0) << back.err;
+  EXPECT_LT(json::parse(back.out)["energy_J"].get<double>(), summary["energy_J"].get<double>());
+}
+
+struct Refused {
+  std::vector<std::string> words;
+  int code;
+  const char* says;
+};
+
+TEST(PlanCommand, EveryBadCallIsOneLineAndACode) {
+  const Folder folder;
+  folder.write("dem.asc", dem());
+  folder.write("empty.csv", "x_m,y_m\n");
+  folder.write("nan.csv", "x_m,y_m\n1,nan\n");
+  folder.write("point.geojson", R"({"type":"Point","coordinates":[1,2]})");
+  folder.write("mission.yaml", "maps: {dem: dem.asc, resolution_m: 1}\nstrat: [1, 2]\n");
+  const std::vector<Refused> table{
+      {{"plan", "dem.asc", "--resolution", "1", "--goal", "2,2"}, 2, "no start; pass --start x,y"},
+      {{"plan", "dem.asc", "--resolution", "1", "--start", "-5,2", "--goal", "2,2"}, 2, "--start"},
+      {{"plan", "dem.asc", "--resolution", "1", "--start", "15.5,2.5", "--goal", "2,2"},
+       2,
+       "the nearest place"},
+      {{"plan", "missing.tif", "--start", "1,1", "--goal", "2,2"}, 2, "missing.tif"},
+      {{"plan", "dem.asc", "--start", "1,1", "--goal", "2,2", "-o", "no/such/folder.geojson"}, 2, "folder"},
+      {{"plan", "mission.yaml"}, 2, "start"},
+      {{"score", "dem.asc", "--resolution", "1", "--path", "empty.csv"}, 2, "empty.csv"},
+      {{"score", "dem.asc", "--resolution", "1", "--path", "nan.csv"}, 2, "nan.csv:2"},
+      {{"score", "dem.asc", "--resolution", "1", "--path", "point.geojson"}, 2, "LineString"},
+  };
+  for (const Refused& row : table) {
+    std::vector<std::string> words = row.words;
+    words.push_back("--quiet");
+    const Ran ran = runTalus(words, folder.path());
+    EXPECT_EQ(ran.code, row.code) << ran.err;
+    EXPECT_THAT(ran.err, HasSubstr(row.says));
+    EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
+  }
+}
+
+TEST(PlanCommand, AMissionNeedsNothingElse) {
+  const Folder folder;
+  folder.write("dem.asc", dem());
+  folder.write("mission.yaml",
+               "maps: {dem: dem.asc, resolution_m: 1}\nrover: fido\nsoil: sandy_loam\nstart: [5.5, 4.5]\n"
+               "goal: [10.5, 9.5]\nplanner: field\nthresholds: {allow_marginal: true}\n");
+  const Ran ran = runTalus({"plan", "mission.yaml", "--json"}, folder.path());
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_EQ(json::parse(ran.out)["status"], "found");
+}
+
+}  // namespace
+}  // namespace talus::cli
