@@ -1,5 +1,4 @@
 #include <cmath>
-#include <cstdlib>
 #include <stdexcept>
 
 #include <cli/html_report.hpp>
@@ -7,6 +6,7 @@
 #include <cli/plot.hpp>
 #include <cli/ticks.hpp>
 
+#include "example_scene.hpp"
 #include "run_program.hpp"
 
 namespace talus::cli {
@@ -31,13 +31,6 @@ Plot example() {
   line.y[20] = std::nan("");
   plot.series = {line, points};
   return plot;
-}
-
-/// Where a person who wants to see the pictures of the tests has asked for them.
-void keep(const std::string& name, const std::string& bytes) {
-  if (const char* folder = std::getenv("TALUS_TEST_PICTURES"))
-    save(std::string(folder) + "/" + name, {example()});
-  EXPECT_FALSE(bytes.empty());
 }
 
 TEST(Ticks, AreRoundAndInside) {

@@ -1,0 +1,42 @@
+# cmake -DOUTPUT=FILE -DPAGE=DIR -DLEAFLET=DIR -DVEGA=DIR -P assemble.cmake
+# Puts the page's template together from its parts and the two libraries.
+function(put text)
+  file(APPEND "${OUTPUT}" "${text}")
+endfunction()
+
+# A page without a network asks for no source maps, and for none of Leaflet's pictures.
+function(put_script path)
+  file(READ "${path}" text)
+  string(REGEX REPLACE "//# sourceMappingURL=[^\n]*" "" text "${text}")
+  put("${text}\n")
+endfunction()
+
+function(put_style path)
+  file(READ "${path}" text)
+  string(REGEX REPLACE "/[*]# sourceMappingURL=[^\n]*" "" text "${text}")
+  string(REGEX REPLACE "url\\([^)]*\\)" "none" text "${text}")
+  put("${text}\n")
+endfunction()
+
+set(vega_modules util time format loader dataflow canvas scale scenegraph statistics expression selection functions
+    runtime event-selector parser view transforms view-transforms encode)
+
+file(WRITE "${OUTPUT}" "")
+put_script("${PAGE}/head.html")
+put("<style>\n")
+put_style("${LEAFLET}/leaflet.css")
+put_style("${PAGE}/page.css")
+put("</style>\n")
+put_script("${PAGE}/body.html")
+put("<script>\n")
+put_script("${LEAFLET}/leaflet.min.js")
+put_script("${PAGE}/modules.js")
+foreach(name IN LISTS vega_modules)
+  put("vegaModule(\"vega-${name}\", function (exports, require, module) {\n")
+  put_script("${VEGA}/vega-${name}.min.js")
+  put("});\n")
+endforeach()
+foreach(name map profiles page)
+  put_script("${PAGE}/${name}.js")
+endforeach()
+put("</script>\n</body>\n</html>\n")

@@ -1,0 +1,54 @@
+// The map: metres as they are (CRS.Simple), hillshade below, one coloured layer over it, the route on top.
+function drawMap(element, data) {
+  const b = data.bounds, at = p => [p.y, p.x];
+  const box = [[b.south, b.west], [b.north, b.east]];
+  const map = L.map(element, {crs: L.CRS.Simple, minZoom: -20, maxZoom: 8, zoomSnap: 0.25, attributionControl: false});
+  L.control.scale({imperial: false}).addTo(map);
+  L.imageOverlay(data.shade, box, {alt: "hillshade"}).addTo(map);
+  const layers = {};
+  for (const layer of data.layers) {
+    layers[layer.name] = L.imageOverlay(layer.image, box, {opacity: 0.6, alt: layer.name});
+    layers[layer.name].legend = layer.legend;
+  }
+  layers["hillshade alone"] = L.layerGroup();
+  const first = Object.keys(layers)[0];
+  layers[first].addTo(map);
+  showLegend(first, layers[first].legend);
+  map.on("baselayerchange", event => showLegend(event.name, event.layer.legend));
+  L.control.layers(layers, {}, {collapsed: element.clientWidth < 600}).addTo(map);
+  const view = data.route.length ? L.latLngBounds(data.route.map(at)).pad(0.15) : L.latLngBounds(box);
+  map.fitBounds(view);
+  return map;
+}
+
+function showLegend(name, entries) {
+  const legend = document.getElementById("legend");
+  legend.replaceChildren();
+  if (!entries) return;
+  const title = legend.appendChild(document.createElement("strong"));
+  title.textContent = name;
+  for (const {colour, label} of entries) {
+    const item = legend.appendChild(document.createElement("span"));
+    item.appendChild(document.createElement("i")).style.background = colour;
+    item.append(label);
+  }
+}
+
+// Draws the route and returns {mark(point)}; told of the pointer through onHover(point).
+function drawRoute(map, points, onHover) {
+  const line = points.map(p => [p.y, p.x]);
+  L.polyline(line, {color: "#fff", weight: 7, interactive: false}).addTo(map);
+  L.polyline(line, {color: "#1b3fbf", weight: 3.5, interactive: false}).addTo(map);
+  const wide = L.polyline(line, {color: "#000", opacity: 0, weight: 34}).addTo(map);
+  const dot = L.circleMarker(line[0], {radius: 8, color: "#fff", weight: 3, fillColor: "#b3202c", fillOpacity: 1,
+                                       interactive: false, className: "here"});
+  for (const [place, letter] of [[line[0], "S"], [line[line.length - 1], "G"]])
+    L.marker(place, {interactive: false, icon: L.divIcon({className: "end", html: `<span>${letter}</span>`, iconSize: [22, 22]})})
+      .addTo(map);
+  const nearest = spot => points.reduce((best, p) => {
+    const d = (p.x - spot.lng) ** 2 + (p.y - spot.lat) ** 2;
+    return d < best.d ? {d, p} : best;
+  }, {d: Infinity}).p;
+  wide.on("mousemove click", event => onHover(nearest(event.latlng)));
+  return {mark(p) { dot.setLatLng([p.y, p.x]).addTo(map); }};
+}

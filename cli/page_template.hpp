@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string_view>
+
+namespace talus::cli {
+
+/// The page without its data, assembled at build time from cli/page/, Leaflet and Vega; place-holders
+/// @TALUS_TITLE@,
+/// @TALUS_SUBTITLE@ and, last, @TALUS_DATA@.
+std::string_view pageTemplate();
+
+}  // namespace talus::cli

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cli/scene.hpp>
+#include <maps/elevation_map.hpp>
+#include <planner/route.hpp>
+
+namespace talus::cli {
+
+/// Hills over 120 x 80 cells of 5 m, with a hole in the data.
+maps::ElevationMap exampleMap();
+
+/// A route of 61 vertices across the hills.
+planner::Route exampleRoute();
+
+/// Both together, with categories.
+Scene exampleScene();
+
+/// Keeps what a test drew where the environment variable TALUS_TEST_PICTURES names a folder, to be looked at.
+void keep(const std::string& name, const std::string& bytes);
+
+}  // namespace talus::cli
