@@ -2,7 +2,7 @@
 function(talus_warnings target)
   target_compile_options(${target} PRIVATE
     -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wnon-virtual-dtor -Wold-style-cast
-    -Woverloaded-virtual -Wdouble-promotion
+    -Woverloaded-virtual -Wdouble-promotion -Wno-missing-field-initializers
     # GCC 12 sees overlaps that are not there in "text" + std::string (its bug 105651).
     -Wno-restrict
     $<$<BOOL:${TALUS_WARNINGS_AS_ERRORS}>:-Werror>

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <planner/cost_to_go.hpp>
+#include <planner/pose_path.hpp>
+#include <planner/route.hpp>
+#include <talus.hpp>
+
+namespace talus::planner {
+
+/// What a search for a drive is asked.
+struct PoseProblem {
+  std::shared_ptr<const costmap::CostGrid> map;  ///< pinned while the search runs
+  maps::Point start;
+  maps::Point goal;
+  std::optional<double> start_heading_rad;  ///< nothing: the rover may look any way
+  std::optional<double> goal_heading_rad;   ///< nothing: it may arrive looking any way
+  Kinematics kinematics;
+  Watch watch;
+};
+
+/// Choices of the search.
+struct HybridOptions {
+  int headings = 72;                        ///< headings told apart at a cell, >= 8
+  double step_cells = 1.5;                  ///< length of a motion; more than sqrt 2 leaves the cell
+  std::uint64_t most_expanded = 2'000'000;  ///< then it gives up, TimedOut
+};
+
+/// What the search answers.
+struct PosePlan {
+  RouteStatus status = RouteStatus::NoRoute;
+  std::string reason;  ///< why there is no drive; empty when Found
+  PosePath path;
+  double cost_J = 0.0;         ///< exact, by PoseCost
+  std::uint64_t expanded = 0;  ///< poses whose motions were tried
+};
+
+/// Hybrid A* (dolgov_2010) over position and heading under the one cost function: motions of constant
+/// curvature from continuous poses, one pose kept a cell and heading, led by the anisotropic cost-to-go field
+/// of the goal, and finished by shortest curves; then shortened wherever a direct curve is cheaper. The field
+/// sees slope, soil and hazards but not turning, so that little is searched in vain. Not optimal: a seed and
+/// a drivable answer. Keeps the field of the last map and goal. Deterministic. One object one thread.
+class HybridSearch {
+ public:
+  explicit HybridSearch(const HybridOptions& options = {});
+
+  PosePlan plan(const PoseProblem& problem);
+
+ private:
+  bool prepareField(const PoseProblem& problem);
+
+  HybridOptions options_;
+  std::shared_ptr<const EdgeLayer> edges_;
+  std::optional<CostToGo> field_;
+  maps::Cell field_goal_;
+};
+
+}  // namespace talus::planner

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <vector>
+
+#include <planner/kinematics.hpp>
+#include <planner/motion_cost.hpp>
+
+/// Routes in position and heading: poses joined by arcs, priced and sampled.
+namespace talus::planner {
+
+/// A drive: from the first pose along the arcs, one after another. A turn in place is an arc of no length
+/// with `turn_rad`.
+struct PosePath {
+  /// An arc or a turn in place.
+  struct Leg {
+    Arc arc;
+    double turn_rad = 0.0;  ///< in place, left > 0; only where arc.length_m is 0
+  };
+  Pose start;
+  std::vector<Leg> legs;
+};
+
+/// The pose after a leg.
+Pose after(const Pose& from, const PosePath::Leg& leg) noexcept;
+
+/// The shortest way between two poses: shortestArcs(), or turn, drive straight, turn for a rover that turns
+/// in place (in reverse when that turns less and is allowed).
+std::vector<PosePath::Leg> connection(const Pose& from, const Pose& to, const Kinematics& kinematics);
+
+/// The price of drives on one map for one rover's kinematics: MotionCost along chords no longer than half a
+/// cell and bending no more than 0.1 rad, plus turning and cusps. Driving in reverse costs what driving that
+/// way costs: the rover is taken as symmetric. Turning in place needs every heading on the way to be allowed.
+/// Not thread-safe to change; const use is.
+class PoseCost {
+ public:
+  PoseCost(const MotionCost& cost, const Kinematics& kinematics);
+
+  /// Joules of one leg from a pose; infinite when any part is not allowed.
+  double operator()(const Pose& from, const PosePath::Leg& leg) const noexcept;
+
+  /// Joules of a drive, cusps counted; infinite when any part is not allowed.
+  double operator()(const PosePath& path) const noexcept;
+
+  const Kinematics& kinematics() const noexcept { return kinematics_; }
+
+ private:
+  double arc(const Pose& from, const Arc& arc) const noexcept;
+  double turnInPlace(const Pose& from, double turn_rad) const noexcept;
+
+  const MotionCost& cost_;
+  Kinematics kinematics_;
+  double step_m_;
+};
+
+/// Poses along a drive at most `step_m` apart, ends of legs included.
+std::vector<Pose> sampled(const PosePath& path, double step_m);
+
+/// What a controller would notice.
+struct PosePathShape {
+  double length_m = 0.0;
+  double turned_rad = 0.0;  ///< sum of all changes of heading
+  double max_curvature_1_m = 0.0;
+  int cusps = 0;  ///< changes between forward and reverse
+  int turns_in_place = 0;
+};
+
+PosePathShape shape(const PosePath& path) noexcept;
+
+}  // namespace talus::planner
