@@ -85,6 +85,24 @@ GroundBelief GroundModel::prior(int class_index) const {
           .sinkage = {reference.sinkage_over_radius, c.sinkage_std}};
 }
 
+double GroundModel::slopeAtSlip_rad(int class_index, double slip) const noexcept {
+  const auto& curve = curves_[static_cast<std::size_t>(class_index)];
+  double low = curve.minSlope_rad(), high = curve.maxSlope_rad();
+  for (int halving = 0; halving < 30 && low < high; ++halving) {
+    const double middle = 0.5 * (low + high);
+    (curve.at(middle).slip < slip ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+double GroundModel::gradientAtSlip(int class_index, double slip) const noexcept {
+  return std::tan(slopeAtSlip_rad(class_index, slip));
+}
+
+double GroundModel::sinkageAtSlip(int class_index, double slip) const noexcept {
+  return curves_[static_cast<std::size_t>(class_index)].at(slopeAtSlip_rad(class_index, slip)).sinkage_m;
+}
+
 Category GroundModel::categoryAt(double pull, double sinkage, double gradient) const {
   const DrivePolicy& policy = parts_.policy;
   const double slope_rad = std::atan(gradient);
