@@ -10,11 +10,15 @@ struct Context;
 
 // One function a subcommand, in cli/NAME_command.cpp, built on addCommand() of cli/command.hpp.
 // Alphabetical; a subcommand stands here only once it does its job.
-void addWheel(CLI::App& app, Context& context);
-
+void addCostmap(CLI::App& app, Context& context);
+void addExplain(CLI::App& app, Context& context);
 void addInfo(CLI::App& app, Context& context);
+<<<<<<< HEAD
 void addPlan(CLI::App& app, Context& context);
 void addScore(CLI::App& app, Context& context);
+=======
+void addWheel(CLI::App& app, Context& context);
+>>>>>>> 84de08a (talus costmap and talus explain; risk counts what differs from place to place, and every cell once in the colour tree)
 
 /// Registers every subcommand.
 void addCommands(CLI::App& app, Context& context);

@@ -34,8 +34,8 @@ struct Defaults {
 Defaults defaultsFor(const maps::ElevationMap& map) {
   const std::string body = map.georeference ? map.georeference->body() : "Earth";
   if (body == "Moon") return {"lunar_micro", "lunar_nominal"};
-  if (body == "Mars") return {"mer", "mars_crusty"};
-  return {"fido", "dry_sand"};
+  if (body == "Mars") return {"mer", "mars_blocky"};
+  return {"fido", "testbed_topsoil"};
 }
 
 std::vector<costmap::GroundClass> groundClasses(const SiteOptions& options, const terramech::Rover& rover,

@@ -144,7 +144,13 @@ DriveState GroundModel::state(int class_index, const GroundBelief& belief, doubl
   const double surface = std::hypot(1.0, gradient);
   const double deeper =
       reference.sinkage_over_radius > 0.0 ? belief.sinkage.mean / reference.sinkage_over_radius : 1.0;
-  const double stuck = probabilityBelow(belief.pull, gradient);
+  const auto& ground = parts_.classes[static_cast<std::size_t>(class_index)];
+  // At most, the ground pulls what it pulls at its strongest slip. What is uncertain of the class as a whole
+  // is met once on a route and shows in the category's probability; only what differs from place to place is
+  // a hazard that every metre has.
+  const double reserve = curve.strongest().drawbar_pull_over_load - reference.drawbar_pull_over_load;
+  const Estimate most{belief.pull.mean + std::max(reserve, 0.0), std::min(belief.pull.std, ground.pull_std)};
+  const double stuck = probabilityBelow(most, gradient);
 
   DriveState state;
   state.slip = static_cast<float>(s.slip);
@@ -161,7 +167,7 @@ DriveState GroundModel::state(int class_index, const GroundBelief& belief, doubl
                        (state.category == Category::Marginal && !policy.allow_marginal);
   if (std::abs(s.torque_Nm) > rover.max_torque_Nm)
     state.refusal = Refusal::Torque;
-  else if (!s.feasible || belief.pull.mean < gradient || stuck > policy.max_immobilisation)
+  else if (!s.feasible || stuck > policy.max_immobilisation)
     state.refusal = Refusal::Pull;
   else if (static_cast<double>(state.sinkage_m) >= rover.clearance_m)
     state.refusal = Refusal::Sinkage;
