@@ -8,6 +8,7 @@ void addCommands(CLI::App& app, Context& context) {
   addInfo(app, context);
   addPlan(app, context);
   addScore(app, context);
+  addUpdate(app, context);
   addWheel(app, context);
 }
 

@@ -13,12 +13,10 @@ struct Context;
 void addCostmap(CLI::App& app, Context& context);
 void addExplain(CLI::App& app, Context& context);
 void addInfo(CLI::App& app, Context& context);
-<<<<<<< HEAD
 void addPlan(CLI::App& app, Context& context);
 void addScore(CLI::App& app, Context& context);
-=======
+void addUpdate(CLI::App& app, Context& context);
 void addWheel(CLI::App& app, Context& context);
->>>>>>> 84de08a (talus costmap and talus explain; risk counts what differs from place to place, and every cell once in the colour tree)
 
 /// Registers every subcommand.
 void addCommands(CLI::App& app, Context& context);

@@ -9,7 +9,7 @@
 #include <cli/commands.hpp>
 #include <cli/output_file.hpp>
 #include <cli/site_layers.hpp>
-#include <cli/site_options.hpp>
+#include <cli/ground_options.hpp>
 #include <costmap/map_file.hpp>
 #include <costmap/surface_tree.hpp>
 
@@ -17,7 +17,7 @@ namespace talus::cli {
 namespace {
 
 struct Options {
-  SiteOptions site;
+  GroundOptions ground;
   std::string output;
   std::string geotiff;
   std::string png;
@@ -25,7 +25,7 @@ struct Options {
 };
 
 void bind(CLI::App& command, Options& options) {
-  addSiteOptions(command, options.site);
+  addGroundOptions(command, options.ground);
   command.add_option("-o,--output", options.output, "belief map to write")->type_name("MAP.ot");
   command.add_option("--geotiff", options.geotiff, "layers to write as a GeoTIFF")->type_name("FILE.tif");
   command.add_option("--png", options.png, "picture to write")->type_name("FILE.png");
@@ -53,7 +53,7 @@ void writeFiles(const Options& options, const costmap::TraversabilityMap& map, c
   if (!options.octovis.empty()) writeOctovis(map, options.octovis);
 }
 
-std::string asText(const Site& site, const costmap::CategoryCounts& counts) {
+std::string asText(const Ground& site, const costmap::CategoryCounts& counts) {
   const auto share = [&](std::size_t n) {
     return 100.0 * static_cast<double>(n) / static_cast<double>(site.map.grid().size());
   };
@@ -64,24 +64,24 @@ std::string asText(const Site& site, const costmap::CategoryCounts& counts) {
          fmt::format(
              "safe        {:.1f} %\nmarginal    {:.1f} %\ndangerous   {:.1f} %\nunknown     {:.1f} %\n",
              share(counts.safe), share(counts.marginal), share(counts.dangerous), share(counts.unknown)) +
-         fmt::format("seconds     {:.3f} reading, {:.3f} building\n", site.load_s, site.costmap_s);
+         fmt::format("seconds     {:.3f} reading, {:.3f} building\n", site.load_s, site.build_s);
 }
 
-nlohmann::ordered_json asJson(const Site& site, const costmap::CategoryCounts& counts) {
+nlohmann::ordered_json asJson(const Ground& site, const costmap::CategoryCounts& counts) {
   return {{"cells", site.map.grid().size()},
           {"categories",
            {{"safe", counts.safe},
             {"marginal", counts.marginal},
             {"dangerous", counts.dangerous},
             {"unknown", counts.unknown}}},
-          {"seconds", site.load_s + site.costmap_s},
+          {"seconds", site.load_s + site.build_s},
           {"seconds_load", site.load_s},
-          {"seconds_costmap", site.costmap_s},
+          {"seconds_costmap", site.build_s},
           {"rover", site.map.model().rover().name}};
 }
 
 int run(const Options& options, Context& context) {
-  const Site site = buildSite(options.site, context);
+  const Ground site = readGround(options.ground, context);
   if (context.stop.stop_requested()) return Exit::kCancelled;
   const costmap::CategoryCounts counts = site.map.countCategories();
   writeFiles(options, site.map, context);

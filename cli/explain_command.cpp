@@ -8,7 +8,7 @@
 
 #include <cli/command.hpp>
 #include <cli/commands.hpp>
-#include <cli/site_options.hpp>
+#include <cli/ground_options.hpp>
 #include <costmap/explanation.hpp>
 #include <maps/place_reader.hpp>
 
@@ -16,13 +16,13 @@ namespace talus::cli {
 namespace {
 
 struct Options {
-  SiteOptions site;
+  GroundOptions ground;
   std::string at;
   std::optional<double> heading_rad;
 };
 
 void bind(CLI::App& command, Options& options) {
-  addSiteOptions(command, options.site);
+  addGroundOptions(command, options.ground);
   command.add_option("--at", options.at, "place: x,y or lat,lon with a d on each, or a GeoJSON point")
       ->required()
       ->type_name("P");
@@ -62,7 +62,7 @@ std::string asText(const costmap::Explanation& why, const std::string& place) {
 }
 
 int run(const Options& options, Context& context) {
-  const Site site = buildSite(options.site, context);
+  const Ground site = readGround(options.ground, context);
   if (context.stop.stop_requested()) return Exit::kCancelled;
   const maps::Point point = maps::readPlace(options.at, site.map.elevation(), "--at");
   const maps::Cell cell = *site.map.grid().cellAt(point);

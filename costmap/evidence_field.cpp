@@ -138,7 +138,9 @@ std::optional<CellRange> EvidenceField::add(const WheelObservation& observation)
   if (std::isfinite(observation.sinkage.std))
     block.evidence_sinkage += gain * (static_cast<float>(observation.sinkage.mean) - block.evidence_sinkage);
   block.evidence += weight;
-  block.updated_s = static_cast<std::uint32_t>(std::max(observation.time_s, 0.0));
+  block.updated_s = observation.time_s > 0.0 && observation.time_s < 4294967295.0
+                        ? static_cast<std::uint32_t>(observation.time_s)
+                        : 0U;
   block.terrain_class =
       static_cast<std::uint8_t>(site_->model->parts().classes[static_cast<std::size_t>(class_index)].number);
   contribute(block, class_index, 1);

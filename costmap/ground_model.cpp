@@ -62,6 +62,7 @@ GroundModel::GroundModel(Parts parts) : parts_(std::move(parts)) {
   check.within("slope_margin_rad", parts_.policy.slope_margin_rad, {0.0, 0.5});
   check.within("max_immobilisation", parts_.policy.max_immobilisation, {0.0, 1.0});
   check.atLeast("time_weight_W", parts_.policy.time_weight_W, 0.0);
+  check.within("entrapment", parts_.policy.entrapment, {0.0, 1.0});
   check.atLeast("risk_weight_J", parts_.policy.risk_weight_J, 0.0);
   check.above("correlation_length_m", parts_.policy.correlation_length_m, 0.0);
   for (const GroundClass& c : parts_.classes) {
@@ -158,8 +159,8 @@ DriveState GroundModel::state(int class_index, const GroundBelief& belief, doubl
   state.torque_Nm = static_cast<float>(s.torque_Nm);
   state.energy_J_per_m = static_cast<float>(expected.energy_J_per_m * surface);
   state.time_s_per_m = static_cast<float>(expected.time_s_per_m * surface);
-  state.risk_per_m =
-      static_cast<float>(-std::log1p(-std::min(stuck, 1.0 - 1e-12)) / policy.correlation_length_m);
+  state.risk_per_m = static_cast<float>(-std::log1p(-policy.entrapment * std::min(stuck, 1.0 - 1e-12)) /
+                                        policy.correlation_length_m);
   state.pull_margin = static_cast<float>(belief.pull.mean - gradient);
   state.category = categoryAt(belief.pull.mean, belief.sinkage.mean, gradient);
 
