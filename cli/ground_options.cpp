@@ -8,6 +8,7 @@
 #include <cli/ground_options.hpp>
 #include <costmap/ground_class.hpp>
 #include <costmap/map_file.hpp>
+#include <costmap/octomap_surface.hpp>
 #include <terramech/soil_library.hpp>
 
 namespace talus::cli {
@@ -26,7 +27,7 @@ struct Assumed {
   const char* rover;
 };
 constexpr Assumed kAssumed[] = {
-    {"Moon", "lunar_nominal", "lunar_micro"}, {"Mars", "mars_crusty", "mer"}, {"", "sandy_loam", "fido"}};
+    {"Moon", "lunar_nominal", "lunar_micro"}, {"Mars", "mars_blocky", "mer"}, {"", "testbed_topsoil", "fido"}};
 
 const Assumed& assumedOn(const maps::ElevationMap& map) {
   const std::string body = map.georeference ? map.georeference->body() : "";
@@ -35,11 +36,11 @@ const Assumed& assumedOn(const maps::ElevationMap& map) {
   return kAssumed[2];
 }
 
-bool isBeliefMap(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::string head(256, '\0');
-  file.read(head.data(), static_cast<std::streamsize>(head.size()));
-  return head.find("id TraversabilityTree") != std::string::npos;
+bool isBeliefMap(const std::string& path) { return costmap::octomapType(path) == "TraversabilityTree"; }
+
+maps::ElevationMap readDem(const GroundOptions& options, const Context& context) {
+  if (costmap::octomapType(options.dem.path)) return costmap::octomapSurface(options.dem.path);
+  return readMap(options.dem, context);
 }
 
 void addPolicy(CLI::App& command, costmap::DrivePolicy& policy) {
@@ -122,7 +123,7 @@ Ground readGround(const GroundOptions& options, const Context& context) {
   if (!options.map_file.empty()) return fromMapFile(options, options.map_file, context);
   if (isBeliefMap(options.dem.path)) return fromMapFile(options, options.dem.path, context);
   auto begin = Clock::now();
-  maps::ElevationMap dem = readMap(options.dem, context);
+  maps::ElevationMap dem = readDem(options, context);
   const Assumed& assumed = assumedOn(dem);
   warnOfAssumptions(options, assumed, context);
   Layers layers = readLayers(options.layers, dem);

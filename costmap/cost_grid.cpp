@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -40,6 +41,34 @@ CostGrid flattened(const maps::Raster<CellCode>& cells, std::shared_ptr<const Dr
     for (int column = 0; column < cells.grid().width; column += CostTile::kSide)
       tiles.push_back(cutTile(cells, {column, row}));
   return CostGrid({.grid = cells.grid(), .tiles = std::move(tiles), .cost = std::move(cost), .version = 1});
+}
+
+CostGrid revised(const CostGrid& grid, const Revision& revision) {
+  CostGrid::Content next = grid.content();
+  std::vector<std::pair<std::size_t, std::shared_ptr<CostTile>>> copies;
+  const auto writable = [&](std::size_t slot) -> CostTile& {
+    const auto known =
+        std::find_if(copies.begin(), copies.end(), [&](const auto& copy) { return copy.first == slot; });
+    if (known != copies.end()) return *known->second;
+    copies.emplace_back(slot, std::make_shared<CostTile>(*next.tiles[slot]));
+    next.tiles[slot] = copies.back().second;
+    return *copies.back().second;
+  };
+  for (const CellRange& range : revision.ranges)
+    for (int tile_row = range.first.row >> 6; tile_row <= range.last.row >> 6; ++tile_row)
+      for (int tile_column = range.first.column >> 6; tile_column <= range.last.column >> 6; ++tile_column) {
+        CostTile& tile = writable(static_cast<std::size_t>(tile_row * grid.tileColumns() + tile_column));
+        for (int row = std::max(range.first.row, tile_row << 6);
+             row <= std::min(range.last.row, tile_row << 6 | 63); ++row)
+          for (int column = std::max(range.first.column, tile_column << 6);
+               column <= std::min(range.last.column, tile_column << 6 | 63); ++column) {
+            CellCode& code = tile.cells[static_cast<std::size_t>((row & 63) << 6 | (column & 63))];
+            code = revision.code({column, row}, code);
+          }
+      }
+  next.cost = revision.cost();
+  ++next.version;
+  return CostGrid(std::move(next));
 }
 
 }  // namespace talus::costmap

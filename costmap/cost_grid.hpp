@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -14,6 +15,12 @@ namespace talus::costmap {
 struct CostTile {
   static constexpr int kSide = 64;
   std::array<CellCode, kSide * kSide> cells;
+};
+
+/// A rectangle of cells, first to last inclusive.
+struct CellRange {
+  maps::Cell first;
+  maps::Cell last;
 };
 
 /// One version of the map as planners read it: immutable, so readers never wait and writers never wait for
@@ -52,5 +59,17 @@ class CostGrid {
 
 /// Cuts a raster of cell codes into a first version.
 CostGrid flattened(const maps::Raster<CellCode>& cells, std::shared_ptr<const DriveCost> cost);
+
+/// What a new version changes.
+struct Revision {
+  std::vector<CellRange> ranges;  ///< inside the grid; nothing else changes
+  std::function<CellCode(maps::Cell, CellCode)>
+      code;  ///< the new code of a cell of the ranges, given its old one
+  std::function<std::shared_ptr<const DriveCost>()>
+      cost;  ///< of the new version, asked once all codes are known
+};
+
+/// The next version: copies the tiles that the ranges touch and shares the others.
+CostGrid revised(const CostGrid& grid, const Revision& revision);
 
 }  // namespace talus::costmap

@@ -26,7 +26,11 @@ int octave(double value, double unit) {
 
 CurveBook::CurveBook(std::shared_ptr<const GroundModel> model) : model_(std::move(model)) {
   const int classes = static_cast<int>(model_->parts().classes.size());
-  for (int i = 0; i < classes; ++i) grounds_.push_back(model_->ground(i, model_->prior(i)));
+  for (int i = 0; i < classes; ++i) {
+    priors_.push_back(model_->prior(i));
+    grounds_.push_back(model_->ground(i, priors_.back()));
+    categories_.emplace_back(*model_, priors_.back());
+  }
 }
 
 CurveBook::Key CurveBook::rounded(int class_index, const GroundBelief& belief) noexcept {
@@ -44,6 +48,7 @@ std::uint8_t CurveBook::learned(int class_index, const GroundBelief& belief) {
                             .sinkage = {std::max(key.sinkage * kSinkageStep, 0.0), belief.sinkage.std}};
   const auto number = static_cast<std::uint8_t>(grounds_.size());
   grounds_.push_back(model_->ground(class_index, middle));
+  categories_.emplace_back(*model_, middle);
   numbers_.emplace(key, number);
   cost_.reset();
   return number;
@@ -62,9 +67,23 @@ std::uint8_t CurveBook::nearest(const Key& key) const noexcept {
   return best;
 }
 
-void CurveBook::setPrior(int class_index, const GroundBelief& belief) {
-  grounds_[static_cast<std::size_t>(class_index)] = model_->ground(class_index, belief);
+bool CurveBook::setPrior(int class_index, const GroundBelief& belief) {
+  const auto i = static_cast<std::size_t>(class_index);
+  const auto rounded_to = [](const Estimate& e, double step) {
+    return Estimate{std::round(e.mean / step) * step, std::ceil(e.std / step) * step};
+  };
+  const GroundBelief exact = model_->prior(class_index);
+  const bool untouched = belief.pull.mean == exact.pull.mean && belief.pull.std == exact.pull.std;
+  const GroundBelief next = untouched ? exact
+                                      : GroundBelief{.pull = rounded_to(belief.pull, 0.005),
+                                                     .sinkage = rounded_to(belief.sinkage, 0.02)};
+  const auto same = [](const Estimate& a, const Estimate& b) { return a.mean == b.mean && a.std == b.std; };
+  if (same(next.pull, priors_[i].pull) && same(next.sinkage, priors_[i].sinkage)) return false;
+  priors_[i] = next;
+  grounds_[i] = model_->ground(class_index, next);
+  categories_[i] = CategoryTable(*model_, next);
   cost_.reset();
+  return true;
 }
 
 std::shared_ptr<const DriveCost> CurveBook::cost() const {

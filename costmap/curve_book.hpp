@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include <costmap/category_table.hpp>
 #include <costmap/ground_model.hpp>
 
 namespace talus::costmap {
@@ -23,8 +24,12 @@ class CurveBook {
   /// Number of ground under a learned belief.
   std::uint8_t learned(int class_index, const GroundBelief& belief);
 
-  /// Replaces the belief of a class prior, after its soil was learned.
-  void setPrior(int class_index, const GroundBelief& belief);
+  /// Replaces the belief of a class prior, after its soil was learned. False when it rounds to what it was
+  /// (0.005 in pull and its standard deviation, 0.02 in sinkage).
+  bool setPrior(int class_index, const GroundBelief& belief);
+
+  /// Category of ground of this number over the steepness of its plane.
+  const CategoryTable& categories(std::uint8_t number) const { return categories_[number]; }
 
   /// The cost function over all numbers given so far; the same object until one is added.
   std::shared_ptr<const DriveCost> cost() const;
@@ -43,6 +48,8 @@ class CurveBook {
 
   std::shared_ptr<const GroundModel> model_;
   std::vector<DriveGround> grounds_;
+  std::vector<CategoryTable> categories_;
+  std::vector<GroundBelief> priors_;
   std::map<Key, std::uint8_t> numbers_;
   mutable std::shared_ptr<const DriveCost> cost_;
 };

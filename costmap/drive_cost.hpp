@@ -38,6 +38,12 @@ class CellCode {
   double dzDy() const noexcept { return static_cast<double>(stepsY()) * kStep; }
   int stepsX() const noexcept { return static_cast<std::int32_t>(bits_) >> 20; }
   int stepsY() const noexcept { return static_cast<std::int32_t>(bits_ << 12) >> 20; }
+  /// The same ground under another curve number.
+  CellCode withCurve(std::uint8_t curve) const noexcept {
+    CellCode code = *this;
+    code.bits_ = (bits_ & 0xffffff00U) | curve;
+    return code;
+  }
   std::uint8_t curve() const noexcept { return static_cast<std::uint8_t>(bits_); }
   std::uint32_t bits() const noexcept { return bits_; }
 

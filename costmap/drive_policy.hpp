@@ -18,8 +18,11 @@ struct DrivePolicy {
   double max_immobilisation =
       0.5;  ///< refuse where the soil's pull falls short of the demand with more than this P [-]
 
-  double time_weight_W = 1.0;         ///< joules that one second is worth
-  double risk_weight_J = 1e7;         ///< joules that the loss of the rover is worth
+  double time_weight_W = 1.0;  ///< joules that one second is worth
+  double entrapment =
+      0.01;  ///< share of the places where the ground pulls less than asked that hold the rover for
+             ///< good: mostly it notices and backs out (ours, not from the literature) [-]
+  double risk_weight_J = 1e8;         ///< joules that the loss of the rover is worth
   double correlation_length_m = 5.0;  ///< over which the soil of one class stays alike
 };
 

@@ -62,6 +62,7 @@ GroundModel::GroundModel(Parts parts) : parts_(std::move(parts)) {
   check.within("slope_margin_rad", parts_.policy.slope_margin_rad, {0.0, 0.5});
   check.within("max_immobilisation", parts_.policy.max_immobilisation, {0.0, 1.0});
   check.atLeast("time_weight_W", parts_.policy.time_weight_W, 0.0);
+  check.within("entrapment", parts_.policy.entrapment, {0.0, 1.0});
   check.atLeast("risk_weight_J", parts_.policy.risk_weight_J, 0.0);
   check.above("correlation_length_m", parts_.policy.correlation_length_m, 0.0);
   for (const GroundClass& c : parts_.classes) {
@@ -83,6 +84,24 @@ GroundBelief GroundModel::prior(int class_index) const {
   const auto& reference = curves_[i].reference();
   return {.pull = {reference.drawbar_pull_over_load, std::hypot(c.pull_std, c.mean_std)},
           .sinkage = {reference.sinkage_over_radius, c.sinkage_std}};
+}
+
+double GroundModel::slopeAtSlip_rad(int class_index, double slip) const noexcept {
+  const auto& curve = curves_[static_cast<std::size_t>(class_index)];
+  double low = curve.minSlope_rad(), high = curve.maxSlope_rad();
+  for (int halving = 0; halving < 30 && low < high; ++halving) {
+    const double middle = 0.5 * (low + high);
+    (curve.at(middle).slip < slip ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+double GroundModel::gradientAtSlip(int class_index, double slip) const noexcept {
+  return std::tan(slopeAtSlip_rad(class_index, slip));
+}
+
+double GroundModel::sinkageAtSlip(int class_index, double slip) const noexcept {
+  return curves_[static_cast<std::size_t>(class_index)].at(slopeAtSlip_rad(class_index, slip)).sinkage_m;
 }
 
 Category GroundModel::categoryAt(double pull, double sinkage, double gradient) const {
@@ -126,7 +145,13 @@ DriveState GroundModel::state(int class_index, const GroundBelief& belief, doubl
   const double surface = std::hypot(1.0, gradient);
   const double deeper =
       reference.sinkage_over_radius > 0.0 ? belief.sinkage.mean / reference.sinkage_over_radius : 1.0;
-  const double stuck = probabilityBelow(belief.pull, gradient);
+  const auto& ground = parts_.classes[static_cast<std::size_t>(class_index)];
+  // At most, the ground pulls what it pulls at its strongest slip. What is uncertain of the class as a whole
+  // is met once on a route and shows in the category's probability; only what differs from place to place is
+  // a hazard that every metre has.
+  const double reserve = curve.strongest().drawbar_pull_over_load - reference.drawbar_pull_over_load;
+  const Estimate most{belief.pull.mean + std::max(reserve, 0.0), std::min(belief.pull.std, ground.pull_std)};
+  const double stuck = probabilityBelow(most, gradient);
 
   DriveState state;
   state.slip = static_cast<float>(s.slip);
@@ -134,8 +159,8 @@ DriveState GroundModel::state(int class_index, const GroundBelief& belief, doubl
   state.torque_Nm = static_cast<float>(s.torque_Nm);
   state.energy_J_per_m = static_cast<float>(expected.energy_J_per_m * surface);
   state.time_s_per_m = static_cast<float>(expected.time_s_per_m * surface);
-  state.risk_per_m =
-      static_cast<float>(-std::log1p(-std::min(stuck, 1.0 - 1e-12)) / policy.correlation_length_m);
+  state.risk_per_m = static_cast<float>(-std::log1p(-policy.entrapment * std::min(stuck, 1.0 - 1e-12)) /
+                                        policy.correlation_length_m);
   state.pull_margin = static_cast<float>(belief.pull.mean - gradient);
   state.category = categoryAt(belief.pull.mean, belief.sinkage.mean, gradient);
 
@@ -143,7 +168,7 @@ DriveState GroundModel::state(int class_index, const GroundBelief& belief, doubl
                        (state.category == Category::Marginal && !policy.allow_marginal);
   if (std::abs(s.torque_Nm) > rover.max_torque_Nm)
     state.refusal = Refusal::Torque;
-  else if (!s.feasible || belief.pull.mean < gradient || stuck > policy.max_immobilisation)
+  else if (!s.feasible || stuck > policy.max_immobilisation)
     state.refusal = Refusal::Pull;
   else if (static_cast<double>(state.sinkage_m) >= rover.clearance_m)
     state.refusal = Refusal::Sinkage;

@@ -65,6 +65,12 @@ class GroundModel {
   /// Belief before any evidence.
   GroundBelief prior(int class_index) const;
 
+  /// Gradient along the heading on which ground of the class, as its soil says, lets the rover drive at this
+  /// slip; the ends of what it can drive beyond them.
+  double gradientAtSlip(int class_index, double slip) const noexcept;
+  /// Sinkage [m] of a wheel there.
+  double sinkageAtSlip(int class_index, double slip) const noexcept;
+
   /// Drive curve and states of ground of a class under a belief; `demoted`: one category lower (rocks,
   /// doubtful map).
   DriveGround ground(int class_index, const GroundBelief& belief, bool demoted = false) const;
@@ -82,6 +88,7 @@ class GroundModel {
   DriveCost::Limits limits() const;
 
  private:
+  double slopeAtSlip_rad(int class_index, double slip) const noexcept;
   terramech::Category categoryAt(double pull, double sinkage, double gradient) const;
 
   Parts parts_;

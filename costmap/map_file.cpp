@@ -1,5 +1,6 @@
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -194,8 +195,23 @@ void writeMap(const TraversabilityMap& map, const std::string& path) {
   throw InputError({path, "cannot be written", "check that the folder exists and has room"});
 }
 
+// Leaves that wheels spoke for carry their block's evidence; cell by cell, so that the order is the writer's.
+void restoreEvidence(const TraversabilityTree& tree, TraversabilityMap& map) {
+  bool any = false;
+  for (int row = 0; row < map.grid().height; ++row)
+    for (int column = 0; column < map.grid().width; ++column) {
+      const float elevation = map.elevation().elevation_m[{column, row}];
+      if (std::isnan(elevation)) continue;
+      const CellBelief* saved = tree.find(map.keys().key({column, row}, static_cast<double>(elevation)));
+      if (!saved || saved->evidence <= 0.0F) continue;
+      map.restore({column, row}, *saved);
+      any = true;
+    }
+  if (any) map.publishAll();
+}
+
 TraversabilityMap readMap(std::istream& stream, const MapReading& reading, const Watch& watch) {
-  readTree(stream, reading.name);
+  const TraversabilityTree tree = readTree(stream, reading.name);
   TrailerReader trailer(stream, reading.name);
   MapText text = parsed(trailer.text("TEXT"), reading.name);
   requireSane(text.grid, reading.name);
@@ -211,9 +227,10 @@ TraversabilityMap readMap(std::istream& stream, const MapReading& reading, const
   try {
     if (text.coordinate_system) layers.elevation.georeference.emplace(*text.coordinate_system);
     auto model = std::make_shared<GroundModel>(std::move(text.ground));
-    return TraversabilityMap(std::move(layers), std::move(model),
-                             {.footprint_radius_m = text.footprint_radius_m, .threads = reading.threads},
-                             watch);
+    TraversabilityMap map(std::move(layers), std::move(model),
+                          {.footprint_radius_m = text.footprint_radius_m, .threads = reading.threads}, watch);
+    restoreEvidence(tree, map);
+    return map;
   } catch (const std::invalid_argument& error) {
     throw InputError(
         {reading.name, std::string("damaged: ") + error.what(), "write the map again with talus costmap"});

@@ -185,6 +185,7 @@ void visitPolicy(V& v, P& policy) {
   v("policy.sinkage_critical", policy.sinkage_critical);
   v("policy.max_immobilisation", policy.max_immobilisation);
   v("policy.time_weight_W", policy.time_weight_W);
+  v("policy.entrapment", policy.entrapment);
   v("policy.risk_weight_J", policy.risk_weight_J);
   v("policy.correlation_length_m", policy.correlation_length_m);
 }

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <type_traits>
 
 #include <costmap/surface_tree.hpp>
@@ -39,13 +41,17 @@ class Filler {
     }
     for (unsigned i = 0; i < 8; ++i) {
       const Cube child = childOf(cube, i);
-      if (occupied(child)) fill(tree_.createNodeChild(node, i), child);
+      if (occupied(child)) fill(childNode(node, i), child);
     }
     // ColorOcTree prunes by occupancy alone and would mix colours.
     if constexpr (std::is_same_v<Tree, TraversabilityTree>) tree_.pruneNode(node);
   }
 
  private:
+  Node* childNode(Node* node, unsigned i) {
+    return tree_.nodeChildExists(node, i) ? tree_.getNodeChild(node, i) : tree_.createNodeChild(node, i);
+  }
+
   // Whether a cell of the surface lies in the cube; the pyramid may only say maybe where the surface jumps
   // across it.
   bool occupied(const Cube& cube) const {
@@ -93,10 +99,13 @@ std::unique_ptr<octomap::ColorOcTree> colorTree(const Surface& surface,
   };
   Filler<octomap::ColorOcTree, octomap::ColorOcTreeNode, decltype(set)> filler(tree, surface, set);
   if (!filler.anything()) return owned;
-  // A first cell makes the root, which OctoMap hides; the fill below is then the only content.
-  const octomap::OcTreeKey any = surface.keys.key({0, 0}, surface.keys.baseElevation_m());
-  tree.setNodeValue(any, tree.getClampingThresMaxLog());
-  tree.deleteNode(any);
+  // OctoMap makes a root only for a voxel: any voxel of the surface will do.
+  const auto& heights = surface.elevation_m.values();
+  const auto first =
+      std::find_if(heights.begin(), heights.end(), [](float height) { return !std::isnan(height); });
+  const auto index = static_cast<int>(first - heights.begin());
+  const maps::Cell cell{index % surface.keys.grid().width, index / surface.keys.grid().width};
+  tree.setNodeValue(surface.keys.key(cell, static_cast<double>(*first)), tree.getClampingThresMaxLog());
   filler.fill(tree.getRoot(), Cube{});
   tree.updateInnerOccupancy();
   return owned;

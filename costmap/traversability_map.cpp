@@ -72,11 +72,39 @@ double footprintWidth(const maps::TerrainMetrics& metrics, double resolution_m, 
   return metrics.fell_back ? 2.0 * resolution_m : 2.0 * radius_m;
 }
 
+std::shared_ptr<const GroundSite> siteOf(MapLayers& layers, std::shared_ptr<const GroundModel> model) {
+  const SurfaceKeys keys(layers.elevation.grid(), middleElevation(layers.elevation.elevation_m));
+  return std::make_shared<GroundSite>(
+      GroundSite{std::move(layers.elevation), std::move(layers.classes), keys, std::move(model)});
+}
+
 CostGrid::Tiles emptyTiles(const maps::Grid& grid) {
   const auto across = [](int cells) {
     return static_cast<std::size_t>((cells + CostTile::kSide - 1) / CostTile::kSide);
   };
   return CostGrid::Tiles(across(grid.width) * across(grid.height));
+}
+
+// Ranges of a drive overlap: neighbours in time are joined where that covers little more than both.
+std::vector<CellRange> joined(const std::vector<CellRange>& ranges) {
+  const auto area = [](const CellRange& r) {
+    return static_cast<double>(r.last.column - r.first.column + 1) * (r.last.row - r.first.row + 1);
+  };
+  std::vector<CellRange> out;
+  for (const CellRange& range : ranges) {
+    if (!out.empty()) {
+      const CellRange& last = out.back();
+      const CellRange both{
+          {std::min(last.first.column, range.first.column), std::min(last.first.row, range.first.row)},
+          {std::max(last.last.column, range.last.column), std::max(last.last.row, range.last.row)}};
+      if (area(both) < 1.3 * std::max(area(last), area(range))) {
+        out.back() = both;
+        continue;
+      }
+    }
+    out.push_back(range);
+  }
+  return out;
 }
 
 }  // namespace
@@ -90,39 +118,35 @@ TraversabilityMap::~TraversabilityMap() = default;
 
 TraversabilityMap::TraversabilityMap(MapLayers layers, std::shared_ptr<const GroundModel> model,
                                      const Options& options, const Watch& watch)
-    : elevation_(std::move(layers.elevation)),
-      model_(std::move(model)),
-      limits_(HazardLimits::of(model_->rover())),
-      footprint_radius_m_(footprintRadius(options, model_->rover())),
-      keys_(elevation_.grid(), middleElevation(elevation_.elevation_m)),
-      classes_(std::move(layers.classes)),
-      hazards_(elevation_.grid(), Hazard::None),
-      book_(model_),
+    : site_(siteOf(layers, std::move(model))),
+      limits_(HazardLimits::of(site_->model->rover())),
+      footprint_radius_m_(footprintRadius(options, site_->model->rover())),
+      hazards_(grid(), Hazard::None),
+      book_(site_->model),
+      field_(site_),
       published_(std::make_unique<Published>()) {
-  requireGrid(classes_, grid(), "classes");
+  requireGrid(site_->classes, grid(), "classes");
   requireGrid(layers.rock_abundance, grid(), "rock_abundance");
   requireGrid(layers.keep_out, grid(), "keep_out");
   requireGrid(layers.declared, grid(), "declared");
-  for (int i = 0; i < static_cast<int>(model_->parts().classes.size()); ++i)
-    prior_categories_.emplace_back(*model_, model_->prior(i));
   published_->grid = std::make_shared<CostGrid>(CostGrid::Content{
       .grid = grid(), .tiles = measure(layers, options, watch), .cost = book_.cost(), .version = 1});
 }
 
 Hazard TraversabilityMap::layerHazards(const MapLayers& layers, std::size_t i) const {
   Hazard found = layers.declared.empty() ? Hazard::None : layers.declared.values()[i];
-  if (std::isnan(elevation_.elevation_m.values()[i])) found |= Hazard::Unknown;
+  if (std::isnan(site_->elevation.elevation_m.values()[i])) found |= Hazard::Unknown;
   if (!layers.keep_out.empty() && layers.keep_out.values()[i] != 0) found |= Hazard::KeepOut;
   if (!layers.rock_abundance.empty()) {
     const RockCrossing crossing{.diameter_m = limits_.rock_diameter_m, .area_m2 = limits_.rock_area_m2};
     const double rocks = rockHazard(static_cast<double>(layers.rock_abundance.values()[i]), crossing);
     if (rocks > limits_.max_rock_probability) found |= Hazard::Rocks;
   }
-  if (!classes_.empty()) {
-    const std::uint8_t number = classes_.values()[i];
+  if (!site_->classes.empty()) {
+    const std::uint8_t number = site_->classes.values()[i];
     if (number == kNoClass)
       found |= Hazard::Unknown;
-    else if (model_->classIndex(number) < 0)
+    else if (site_->model->classIndex(number) < 0)
       found |= Hazard::Obstacle;
   }
   return found;
@@ -138,7 +162,7 @@ CostGrid::Tiles TraversabilityMap::measure(const MapLayers& layers, const Option
     return tile.cells[static_cast<std::size_t>((c.row & 63) << 6 | (c.column & 63))];
   };
   for (int first = 0; first < grid().height && !watch.stopped(); first += kBandRows) {
-    const Band band = measureBand(elevation_.elevation_m,
+    const Band band = measureBand(site_->elevation.elevation_m,
                                   {first, {.radius_m = footprint_radius_m_, .threads = options.threads}});
     const maps::TerrainMetrics& m = band.metrics;
     const ShapeJudge judge(limits_, footprintWidth(m, grid().resolution_m, footprint_radius_m_));
@@ -154,21 +178,21 @@ CostGrid::Tiles TraversabilityMap::measure(const MapLayers& layers, const Option
       }
     watch.report(static_cast<double>(first + kBandRows) / grid().height);
   }
-  const bool unknown_opens = model_->parts().policy.allow_unknown;
+  const bool unknown_opens = site_->model->parts().policy.allow_unknown;
   inflate(hazards_, limits_, unknown_opens ? Hazard::KeepOut | Hazard::Obstacle : kKeptClearOf);
   for (int row = 0; row < grid().height; ++row)
     for (int column = 0; column < grid().width; ++column) {
       CellCode& code = slot({column, row});
-      code = CellCode({.dz_dx = code.dzDx(), .dz_dy = code.dzDy(), .curve = curveOf({column, row})});
+      code = CellCode({.dz_dx = code.dzDx(), .dz_dy = code.dzDy(), .curve = priorCurve({column, row})});
     }
   return {tiles.begin(), tiles.end()};
 }
 
-std::uint8_t TraversabilityMap::curveOf(maps::Cell cell) const noexcept {
+std::uint8_t TraversabilityMap::priorCurve(maps::Cell cell) const noexcept {
   const Hazard found = hazards_[cell];
   if (found == Hazard::None) return book_.prior(classIndex(cell));
   if (found != Hazard::Unknown) return CellCode::kBlocked;
-  return model_->parts().policy.allow_unknown ? book_.prior(0) : CellCode::kUnknown;
+  return model().parts().policy.allow_unknown ? book_.prior(0) : CellCode::kUnknown;
 }
 
 std::shared_ptr<const CostGrid> TraversabilityMap::published() const noexcept {
@@ -176,47 +200,109 @@ std::shared_ptr<const CostGrid> TraversabilityMap::published() const noexcept {
 }
 
 int TraversabilityMap::classNumber(maps::Cell cell) const noexcept {
-  return classes_.empty() ? 0 : classes_[cell];
+  return site_->classes.empty() ? 0 : site_->classes[cell];
 }
 
 int TraversabilityMap::classIndex(maps::Cell cell) const noexcept {
-  return classes_.empty() ? 0 : model_->classIndex(classes_[cell]);
+  return site_->classIndex(cell);
 }
 
 std::optional<GroundBelief> TraversabilityMap::ground(maps::Cell cell) const {
   const int index = classIndex(cell);
   if (index < 0) return std::nullopt;
-  return model_->prior(index);
+  return EvidenceField::Beliefs(field_).at(cell, index).ground;
 }
 
 CellBelief TraversabilityMap::belief(maps::Cell cell) const {
+  EvidenceField::Beliefs beliefs(field_);
+  return belief(cell, beliefs);
+}
+
+CellBelief TraversabilityMap::belief(maps::Cell cell, EvidenceField::Beliefs& beliefs) const {
   CellBelief belief;
   belief.terrain_class = static_cast<std::uint8_t>(classNumber(cell));
   belief.hazards = hazards_[cell];
-  const auto strength = ground(cell);
-  if (!strength) return belief;
-  belief.pull_mean = static_cast<float>(strength->pull.mean);
-  belief.pull_std = static_cast<float>(strength->pull.std);
-  belief.sinkage_mean = static_cast<float>(strength->sinkage.mean);
-  belief.sinkage_std = static_cast<float>(strength->sinkage.std);
-  if (has(belief.hazards, Hazard::Unknown)) return belief;
-  const auto entry = prior_categories_[static_cast<std::size_t>(classIndex(cell))].at(code(cell));
-  belief.category = belief.hazards == Hazard::None
-                        ? entry.category
-                        : static_cast<std::uint8_t>(terramech::Category::Dangerous);
-  belief.confidence = belief.hazards == Hazard::None ? entry.confidence : std::uint8_t{16};
+  const int index = classIndex(cell);
+  if (index < 0) return belief;
+  const GroundBelief& strength = beliefs.at(cell, index).ground;
+  belief.pull_mean = static_cast<float>(strength.pull.mean);
+  belief.pull_std = static_cast<float>(strength.pull.std);
+  belief.sinkage_mean = static_cast<float>(strength.sinkage.mean);
+  belief.sinkage_std = static_cast<float>(strength.sinkage.std);
+  if (const CellBelief* own = field_.evidence(cell); own && own->terrain_class == belief.terrain_class) {
+    belief.evidence = own->evidence;
+    belief.evidence_pull = own->evidence_pull;
+    belief.evidence_sinkage = own->evidence_sinkage;
+    belief.updated_s = own->updated_s;
+  }
+  const CellCode code = this->code(cell);
+  if (code.curve() < CellCode::kUnknown) {
+    const auto entry = book_.categories(code.curve()).at(code);
+    belief.category = entry.category;
+    belief.confidence = entry.confidence;
+  } else if (!has(belief.hazards, Hazard::Unknown)) {
+    belief.category = static_cast<std::uint8_t>(terramech::Category::Dangerous);
+    belief.confidence = 16;
+  }
   return belief;
 }
 
 CategoryCounts TraversabilityMap::countCategories() const {
   std::array<std::size_t, 4> counts{};
+  const auto published = this->published();
   for (int row = 0; row < grid().height; ++row)
-    for (int column = 0; column < grid().width; ++column) ++counts[belief({column, row}).category];
+    for (int column = 0; column < grid().width; ++column) ++counts[categoryOf(*published, {column, row})];
   return {counts[0], counts[1], counts[2], counts[3]};
 }
 
+std::uint8_t TraversabilityMap::categoryOf(const CostGrid& grid, maps::Cell cell) const noexcept {
+  const CellCode code = grid.at(cell);
+  if (code.curve() < CellCode::kUnknown) return book_.categories(code.curve()).at(code).category;
+  return static_cast<std::uint8_t>(has(hazards_[cell], Hazard::Unknown) ? terramech::Category::Unknown
+                                                                        : terramech::Category::Dangerous);
+}
+
+bool TraversabilityMap::learn(const WheelObservation& observation) {
+  const auto range = field_.add(observation);
+  if (range) dirty_.push_back(*range);
+  return range.has_value();
+}
+
+bool TraversabilityMap::refreshPriors() {
+  bool changed = false;
+  for (int i = 0; i < static_cast<int>(model().parts().classes.size()); ++i)
+    changed |= book_.setPrior(i, field_.classBelief(i));
+  return changed;
+}
+
+void TraversabilityMap::publish() {
+  publish(joined(std::exchange(dirty_, {})));
+}
+
+void TraversabilityMap::publishAll() {
+  dirty_.clear();
+  publish({{{0, 0}, {grid().width - 1, grid().height - 1}}});
+}
+
+void TraversabilityMap::publish(const std::vector<CellRange>& ranges) {
+  const bool priors_moved = refreshPriors();
+  if (ranges.empty() && !priors_moved) return;
+  EvidenceField::Beliefs beliefs(field_);
+  const auto recode = [&](maps::Cell cell, CellCode code) {
+    if (hazards_[cell] != Hazard::None) return code;
+    const int index = classIndex(cell);
+    const EvidenceField::Belief& belief = beliefs.at(cell, index);
+    return code.withCurve(belief.learned ? book_.learned(index, belief.ground) : book_.prior(index));
+  };
+  // The cost is asked for after the codes are made: they may bring new curves.
+  CostGrid next =
+      revised(*published(), {.ranges = ranges, .code = recode, .cost = [&] { return book_.cost(); }});
+  published_->grid = std::make_shared<CostGrid>(std::move(next));
+}
+
 TraversabilityTree TraversabilityMap::tree() const {
-  return surfaceTree({elevation_.elevation_m, keys_}, [this](maps::Cell cell) { return belief(cell); });
+  return surfaceTree({site_->elevation.elevation_m, site_->keys},
+                     [this](maps::Cell cell) { return belief(cell); });
 }
 
 }  // namespace talus::costmap

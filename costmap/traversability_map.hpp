@@ -8,6 +8,7 @@
 #include <costmap/category_table.hpp>
 #include <costmap/cost_grid.hpp>
 #include <costmap/curve_book.hpp>
+#include <costmap/evidence_field.hpp>
 #include <costmap/ground_model.hpp>
 #include <costmap/hazards.hpp>
 #include <costmap/surface_cells.hpp>
@@ -52,9 +53,9 @@ class TraversabilityMap {
   TraversabilityMap(TraversabilityMap&&) noexcept;
   ~TraversabilityMap();
 
-  const maps::Grid& grid() const noexcept { return elevation_.grid(); }
-  const maps::ElevationMap& elevation() const noexcept { return elevation_; }
-  const GroundModel& model() const noexcept { return *model_; }
+  const maps::Grid& grid() const noexcept { return site_->grid(); }
+  const maps::ElevationMap& elevation() const noexcept { return site_->elevation; }
+  const GroundModel& model() const noexcept { return *site_->model; }
   const HazardLimits& hazardLimits() const noexcept { return limits_; }
   double footprintRadius_m() const noexcept { return footprint_radius_m_; }
 
@@ -64,7 +65,7 @@ class TraversabilityMap {
   /// Gradient, curve number of a cell inside the map.
   CellCode code(maps::Cell cell) const noexcept { return published()->at(cell); }
   const maps::Raster<Hazard>& hazards() const noexcept { return hazards_; }
-  const maps::Raster<std::uint8_t>& classes() const noexcept { return classes_; }
+  const maps::Raster<std::uint8_t>& classes() const noexcept { return site_->classes; }
   Hazard hazards(maps::Cell cell) const noexcept { return hazards_[cell]; }
   /// Position of the cell's class in model().parts().classes, or -1.
   int classIndex(maps::Cell cell) const noexcept;
@@ -78,25 +79,44 @@ class TraversabilityMap {
   std::optional<GroundBelief> ground(maps::Cell cell) const;
 
   CategoryCounts countCategories() const;
+  /// Category for people of a cell as published: terramech::Category as a number, hazards as dangerous.
+  std::uint8_t category(maps::Cell cell) const noexcept { return categoryOf(*published(), cell); }
+
+  /// What the wheels told so far.
+  const EvidenceField& evidence() const noexcept { return field_; }
+
+  /// Takes an observation in; planners see it after publish(). False when the place has no ground to learn
+  /// about.
+  bool learn(const WheelObservation& observation);
+  /// Puts saved evidence of a cell's block back, as read from a file; publishAll() afterwards.
+  void restore(maps::Cell cell, const CellBelief& saved) { field_.restore(cell, saved); }
+
+  /// Publishes what was learned since the last time as a new version: rewrites the tiles it touches, shares
+  /// the others. Readers never wait; a planner that runs keeps its version.
+  void publish();
+  /// The same over all cells, as after restore().
+  void publishAll();
 
   /// The whole map as an octree of beliefs, for files.
   TraversabilityTree tree() const;
-  const SurfaceKeys& keys() const noexcept { return keys_; }
+  const SurfaceKeys& keys() const noexcept { return site_->keys; }
 
  private:
   CostGrid::Tiles measure(const MapLayers& layers, const Options& options, const Watch& watch);
+  CellBelief belief(maps::Cell cell, EvidenceField::Beliefs& beliefs) const;
   Hazard layerHazards(const MapLayers& layers, std::size_t index) const;
-  std::uint8_t curveOf(maps::Cell cell) const noexcept;
+  std::uint8_t categoryOf(const CostGrid& grid, maps::Cell cell) const noexcept;
+  std::uint8_t priorCurve(maps::Cell cell) const noexcept;
+  void publish(const std::vector<CellRange>& ranges);
+  bool refreshPriors();
 
-  maps::ElevationMap elevation_;
-  std::shared_ptr<const GroundModel> model_;
+  std::shared_ptr<const GroundSite> site_;
   HazardLimits limits_;
   double footprint_radius_m_ = 0.0;
-  SurfaceKeys keys_;
-  maps::Raster<std::uint8_t> classes_;
   maps::Raster<Hazard> hazards_;
   CurveBook book_;
-  std::vector<CategoryTable> prior_categories_;
+  EvidenceField field_;
+  std::vector<CellRange> dirty_;
   struct Published;
   std::unique_ptr<Published> published_;  // the atomic in it cannot move
 };

@@ -135,10 +135,10 @@ TraversabilityNode* TraversabilityTree::makeRoot() {
   return root;
 }
 
-CellBelief& TraversabilityTree::at(const OcTreeKey& key) {
+CellBelief& TraversabilityTree::at(const OcTreeKey& key, unsigned leaf_depth) {
   bool inherits = root != nullptr;
   TraversabilityNode* node = makeRoot();
-  for (unsigned depth = 0; depth < kDepth; ++depth) {
+  for (unsigned depth = 0; depth < leaf_depth; ++depth) {
     if (inherits && !nodeHasChildren(node)) expandNode(node);
     const unsigned child = octomap::computeChildIdx(key, static_cast<int>(kDepth - 1 - depth));
     inherits = nodeChildExists(node, child);

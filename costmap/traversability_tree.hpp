@@ -43,8 +43,9 @@ class TraversabilityTree : public octomap::OcTreeBaseImpl<TraversabilityNode, oc
 
   /// The belief at a key: that of the leaf whose cube holds it, or null where nothing is known.
   const CellBelief* find(const octomap::OcTreeKey& key) const;
-  /// The belief at a key for change; makes the leaf (splitting a pruned cube) when there is none.
-  CellBelief& at(const octomap::OcTreeKey& key);
+  /// The belief at a key for change; makes the leaf (splitting a pruned cube) when there is none. A depth
+  /// below 16 makes a leaf of a cube of 2^(16 - depth) cells a side; the tree must hold nothing finer there.
+  CellBelief& at(const octomap::OcTreeKey& key, unsigned depth = 16);
 
   /// The root, made when there is none.
   TraversabilityNode* makeRoot();

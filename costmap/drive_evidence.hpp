@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include <costmap/evidence_journal.hpp>
+#include <costmap/sensor_watch.hpp>
+#include <costmap/traversability_map.hpp>
+#include <terramech/telemetry.hpp>
+
+namespace talus::costmap {
+
+/// What putting a drive into a map came to.
+struct DriveReport {
+  std::size_t used = 0;
+  std::size_t rejected = 0;           ///< by the sensors' watch, or without a place on the map
+  std::vector<std::string> findings;  ///< what the sensors' watch saw, a line each
+};
+
+/// Puts the rows of a telemetry file into a map, in their order, and publishes the result. Columns x_m, y_m,
+/// load_N and slip must be there; torque_Nm, sinkage_m, slope_rad, drawbar_pull_N, heading_rad, time_s,
+/// pass_index help. The slope is the row's own; without it the map's along the heading. Every row goes into
+/// the journal, if there is one, before the map. Throws InputError when a column is missing.
+DriveReport addDrive(TraversabilityMap& map, const terramech::Telemetry& telemetry,
+                     EvidenceJournal* journal = nullptr);
+
+/// Puts every accepted row of a journal into a map and publishes: same map before, same journal, same map
+/// after, to the bit.
+DriveReport replay(TraversabilityMap& map, const EvidenceJournal& journal);
+
+}  // namespace talus::costmap

@@ -1,0 +1,178 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include <costmap/explanation.hpp>
+
+namespace talus::costmap {
+namespace {
+
+constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
+
+// The metrics of one cell, from a window around it just large enough.
+maps::TerrainMetrics measuredAround(const TraversabilityMap& map, maps::Cell cell, maps::Cell& inside) {
+  const maps::Grid& grid = map.grid();
+  const int halo = static_cast<int>(std::ceil(map.footprintRadius_m() / grid.resolution_m)) + 2;
+  const maps::Cell from{std::max(0, cell.column - halo), std::max(0, cell.row - halo)};
+  const maps::Cell to{std::min(grid.width, cell.column + halo + 1),
+                      std::min(grid.height, cell.row + halo + 1)};
+  maps::Raster<float> window(maps::Grid{.width = to.column - from.column,
+                                        .height = to.row - from.row,
+                                        .resolution_m = grid.resolution_m,
+                                        .south_west = {}});
+  for (int row = from.row; row < to.row; ++row)
+    for (int column = from.column; column < to.column; ++column)
+      window[{column - from.column, row - from.row}] = map.elevation().elevation_m[{column, row}];
+  inside = {cell.column - from.column, cell.row - from.row};
+  return maps::terrainMetrics(window, {.radius_m = map.footprintRadius_m(), .threads = 1});
+}
+
+std::string limitRemark(double value, double limit) {
+  if (std::isnan(value)) return "not known";
+  return value > limit ? "above the limit " + std::to_string(limit)
+                       : "within the limit " + std::to_string(limit);
+}
+
+const char* hazardText(Hazard hazard) {
+  switch (hazard) {
+    case Hazard::Unknown:
+      return "no elevation or no terrain class is known there";
+    case Hazard::Slope:
+      return "too steep for the rover in any heading";
+    case Hazard::Step:
+      return "an edge higher than the rover clears";
+    case Hazard::Roughness:
+      return "ground rougher than the belly clears";
+    case Hazard::Rocks:
+      return "rocks that it cannot cross are too likely";
+    case Hazard::KeepOut:
+      return "inside a keep-out polygon";
+    case Hazard::Obstacle:
+      return "its terrain class has no soil and counts as an obstacle";
+    case Hazard::Near:
+      return "the rover's width would touch a refused cell";
+    case Hazard::None:
+      break;
+  }
+  return "";
+}
+
+constexpr std::array<Hazard, 8> kHazards{Hazard::Unknown, Hazard::KeepOut, Hazard::Obstacle,  Hazard::Slope,
+                                         Hazard::Step,    Hazard::Rocks,   Hazard::Roughness, Hazard::Near};
+
+void addShape(const TraversabilityMap& map, maps::Cell cell, Explanation& out) {
+  maps::Cell inside;
+  const maps::TerrainMetrics m = measuredAround(map, cell, inside);
+  const double roughness = static_cast<double>(m.roughness_m[inside]);
+  const double footprint_m = m.fell_back ? 2.0 * map.grid().resolution_m : 2.0 * map.footprintRadius_m();
+  const double share = reliefShare(map.hazardLimits(), footprint_m);
+  const std::string plane =
+      "plane through " + std::to_string(m.footprint_cells) + " cells of " + map.elevation().source;
+  out.causes.push_back({"elevation_m", static_cast<double>(map.elevation().elevation_m[cell]), kNotKnown,
+                        map.elevation().source, ""});
+  const double slope = static_cast<double>(m.slope_rad(inside));
+  out.causes.push_back({"slope_rad", slope, m.gradient_std_per_roughness * roughness, plane,
+                        limitRemark(slope, std::atan(map.hazardLimits().max_gradient))});
+  out.causes.push_back({"aspect_rad", static_cast<double>(m.aspect_rad(inside)), kNotKnown, plane, ""});
+  out.causes.push_back({"roughness_m", share * roughness, kNotKnown, plane + ", within one wheelbase",
+                        limitRemark(share * roughness, map.hazardLimits().max_roughness_m)});
+  const double step = share * static_cast<double>(m.step_m[inside]);
+  out.causes.push_back({"step_m", step, kNotKnown, plane + ", within one wheelbase",
+                        limitRemark(step, map.hazardLimits().max_step_m)});
+}
+
+void addSoil(const TraversabilityMap& map, maps::Cell cell, Explanation& out) {
+  const int index = map.classIndex(cell);
+  out.causes.push_back({"terrain_class", static_cast<double>(map.classNumber(cell)), kNotKnown,
+                        "class raster", index < 0 ? "no soil is declared for it" : ""});
+  if (index < 0) return;
+  const GroundClass& ground = map.model().parts().classes[static_cast<std::size_t>(index)];
+  const GroundBelief prior = map.model().prior(index);
+  const std::string source =
+      "soil '" + ground.soil.name + "' under rover '" + map.model().rover().name + "', slip 0.5";
+  out.causes.push_back({"prior_drawbar_pull_over_load", prior.pull.mean, prior.pull.std, source, ""});
+  const CellBelief belief = map.belief(cell);
+  const std::string wheels = belief.evidence > 0.0F ? "prior and wheels together" : source;
+  out.causes.push_back({"evidence_samples", static_cast<double>(belief.evidence), kNotKnown,
+                        "wheel telemetry nearby",
+                        belief.evidence > 0.0F ? "" : "nobody drove here: the prior speaks alone"});
+  out.causes.push_back({"drawbar_pull_over_load", static_cast<double>(belief.pull_mean),
+                        static_cast<double>(belief.pull_std), wheels, ""});
+  out.causes.push_back({"sinkage_over_radius", static_cast<double>(belief.sinkage_mean),
+                        static_cast<double>(belief.sinkage_std), wheels, ""});
+}
+
+void addDrive(const TraversabilityMap& map, maps::Cell cell, const Direction& heading, Explanation& out) {
+  const auto grid = map.published();
+  const CellCode code = grid->at(cell);
+  const double along = code.dzDx() * heading.x + code.dzDy() * heading.y;
+  const double margin = map.model().parts().policy.slope_margin_rad;
+  const DriveState state = grid->cost().detail(code, heading);
+  const std::string asks = "the slope along the heading";
+  const std::string drives = "mobility curve at the pull believed";
+  out.causes.push_back({"slope_along_rad", std::atan(along), kNotKnown, asks, ""});
+  out.causes.push_back({"dangerous_below", std::tan(std::atan(along) - margin), kNotKnown, asks,
+                        "drawbar pull over load below this is dangerous (thesis 3.5)"});
+  out.causes.push_back({"safe_above", std::tan(std::atan(along) + margin), kNotKnown, asks,
+                        "drawbar pull over load above this is safe (thesis 3.5)"});
+  if (code.curve() >= CellCode::kUnknown) return;
+  out.causes.push_back(
+      {"drawbar_pull_margin", static_cast<double>(state.pull_margin), kNotKnown, drives, ""});
+  out.causes.push_back({"slip", static_cast<double>(state.slip), kNotKnown, drives, ""});
+  out.causes.push_back({"sinkage_m", static_cast<double>(state.sinkage_m), kNotKnown, drives,
+                        limitRemark(static_cast<double>(state.sinkage_m), map.model().rover().clearance_m)});
+  out.causes.push_back(
+      {"torque_Nm", static_cast<double>(state.torque_Nm), kNotKnown, drives,
+       limitRemark(static_cast<double>(state.torque_Nm), map.model().rover().max_torque_Nm)});
+  out.causes.push_back({"energy_J_per_m", static_cast<double>(state.energy_J_per_m), kNotKnown, drives, ""});
+  out.causes.push_back({"immobilisation_per_m", static_cast<double>(state.risk_per_m), kNotKnown,
+                        "pull believed against the pull asked for", ""});
+  out.causes.push_back({"cost_J_per_m", static_cast<double>(grid->cost().costPerMetre(code, heading)),
+                        kNotKnown, "energy, time and risk as the policy weighs them", toText(state.refusal)});
+}
+
+Direction steepest(CellCode code) {
+  const double length = std::hypot(code.dzDx(), code.dzDy());
+  return length > 0.0 ? Direction{code.dzDx() / length, code.dzDy() / length} : Direction{};
+}
+
+void judge(const TraversabilityMap& map, maps::Cell cell, const Direction& heading, Explanation& out) {
+  const Hazard hazards = map.hazards(cell);
+  for (const Hazard one : kHazards)
+    if (has(hazards, one))
+      out.causes.push_back({"hazard", 1.0, kNotKnown, hazardText(one), "refused whatever the soil"});
+  const CellBelief belief = map.belief(cell);
+  out.category = static_cast<terramech::Category>(belief.category);
+  out.probability = belief.confidence / 16.0;
+  out.verdict = std::string(terramech::name(out.category));
+  for (const Hazard one : kHazards)
+    if (has(hazards, one)) {
+      out.verdict += std::string(": ") + hazardText(one);
+      return;
+    }
+  const auto ground = map.ground(cell);
+  if (!ground) return;
+  const CellCode code = map.code(cell);
+  const double along = code.dzDx() * heading.x + code.dzDy() * heading.y;
+  const Ranked ranked = map.model().category(*ground, along);
+  out.category = ranked.category;
+  out.probability = ranked.probability;
+  out.verdict = std::string(terramech::name(out.category)) +
+                ": the ground gives a drawbar pull over load of " + std::to_string(ground->pull.mean) +
+                ", the slope asks for " + std::to_string(along);
+}
+
+}  // namespace
+
+Explanation explain(const TraversabilityMap& map, maps::Cell cell, const std::optional<Direction>& heading) {
+  Explanation out;
+  const Direction direction = heading.value_or(steepest(map.code(cell)));
+  judge(map, cell, direction, out);
+  addShape(map, cell, out);
+  addSoil(map, cell, out);
+  addDrive(map, cell, direction, out);
+  return out;
+}
+
+}  // namespace talus::costmap

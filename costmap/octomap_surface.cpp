@@ -1,0 +1,191 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <fstream>
+#include <limits>
+#include <sstream>
+#include <utility>
+#include <vector>
+
+#include <costmap/octomap_surface.hpp>
+#include <talus.hpp>
+
+namespace talus::costmap {
+namespace {
+
+constexpr unsigned kDepth = 16;
+constexpr double kCentre = 32768.0;
+constexpr std::size_t kMostColumns = 400'000'000;
+
+struct Header {
+  bool binary = false;  // .bt
+  std::string type;
+  double resolution_m = 0.0;
+};
+
+std::optional<Header> readHeader(std::istream& stream) {
+  Header header;
+  std::string line;
+  if (!std::getline(stream, line)) return std::nullopt;
+  header.binary = line.rfind("# Octomap OcTree binary file", 0) == 0;
+  if (!header.binary && line.rfind("# Octomap OcTree file", 0) != 0) return std::nullopt;
+  for (int lines = 0; lines < 100 && std::getline(stream, line); ++lines) {
+    std::istringstream words(line);
+    std::string word;
+    words >> word;
+    if (word == "data") return header;
+    if (word == "id") words >> header.type;
+    if (word == "res") words >> header.resolution_m;
+  }
+  return std::nullopt;
+}
+
+// An occupied cube by its lowest keys.
+struct Leaf {
+  std::uint32_t x, y, z, side;
+};
+
+struct Cube {
+  std::uint32_t x = 0, y = 0, z = 0;
+  unsigned depth = 0;
+
+  std::uint32_t side() const { return 1U << (kDepth - depth); }
+  Cube child(unsigned i) const {
+    const std::uint32_t half = side() / 2;
+    return {x + (i & 1U ? half : 0), y + (i & 2U ? half : 0), z + (i & 4U ? half : 0), depth + 1};
+  }
+};
+
+// Walks the nodes of a file without trusting it: depth and stream are checked at each.
+class LeafReader {
+ public:
+  LeafReader(std::istream& stream, const std::string& name, std::size_t color_bytes)
+      : stream_(stream), name_(name), color_bytes_(color_bytes) {}
+
+  // .ot: log odds (and colour), then a bit a child.
+  void readFull(const Cube& cube) {
+    float log_odds = 0.0F;
+    take(&log_odds, sizeof log_odds);
+    std::array<char, 3> color{};
+    take(color.data(), color_bytes_);
+    std::uint8_t children = 0;
+    take(&children, 1);
+    if (children == 0 && log_odds > 0.0F) leaves_.push_back({cube.x, cube.y, cube.z, cube.side()});
+    if (children != 0 && cube.depth >= kDepth) damaged();
+    for (unsigned i = 0; i < 8; ++i)
+      if (children >> i & 1U) readFull(cube.child(i));
+  }
+
+  // .bt: two bits a child: 0 unknown, 1 free, 2 occupied, 3 has children of its own.
+  void readBinary(const Cube& cube) {
+    if (cube.depth >= kDepth) damaged();
+    std::array<std::uint8_t, 2> bits{};
+    take(bits.data(), bits.size());
+    const unsigned both = bits[0] | static_cast<unsigned>(bits[1]) << 8;
+    for (unsigned i = 0; i < 8; ++i) {
+      const Cube child = cube.child(i);
+      if ((both >> (2 * i) & 3U) == kOccupied) leaves_.push_back({child.x, child.y, child.z, child.side()});
+    }
+    for (unsigned i = 0; i < 8; ++i)
+      if ((both >> (2 * i) & 3U) == kInner) readBinary(cube.child(i));
+  }
+
+  std::vector<Leaf> take() { return std::move(leaves_); }
+
+ private:
+  static constexpr unsigned kOccupied = 2, kInner = 3;
+
+  void take(void* data, std::size_t size) {
+    if (!stream_.read(static_cast<char*>(data), static_cast<std::streamsize>(size))) damaged();
+  }
+  [[noreturn]] void damaged() const {
+    throw InputError({name_, "truncated or damaged: its nodes cannot be read", "write the octree again"});
+  }
+
+  std::istream& stream_;
+  const std::string& name_;
+  std::size_t color_bytes_;
+  std::vector<Leaf> leaves_;
+};
+
+struct Box {
+  std::uint32_t x0 = 65536, y0 = 65536, x1 = 0, y1 = 0;
+};
+
+Box boxOf(const std::vector<Leaf>& leaves) {
+  Box box;
+  for (const Leaf& leaf : leaves)
+    box = {std::min(box.x0, leaf.x), std::min(box.y0, leaf.y), std::max(box.x1, leaf.x + leaf.side),
+           std::max(box.y1, leaf.y + leaf.side)};
+  return box;
+}
+
+maps::Raster<float> topOf(const std::vector<Leaf>& leaves, const maps::Grid& grid, const Box& box) {
+  maps::Raster<float> top(grid, std::numeric_limits<float>::quiet_NaN());
+  for (const Leaf& leaf : leaves) {
+    const auto height = static_cast<float>((leaf.z + leaf.side - 0.5 - kCentre) * grid.resolution_m);
+    for (std::uint32_t y = leaf.y - box.y0; y < leaf.y - box.y0 + leaf.side; ++y)
+      for (std::uint32_t x = leaf.x - box.x0; x < leaf.x - box.x0 + leaf.side; ++x) {
+        float& at = top[{static_cast<int>(x), static_cast<int>(y)}];
+        if (std::isnan(at) || height > at) at = height;
+      }
+  }
+  return top;
+}
+
+std::vector<Leaf> leavesOf(std::istream& stream, const Header& header, const std::string& name) {
+  LeafReader reader(stream, name, header.type == "ColorOcTree" ? 3 : 0);
+  if (header.binary)
+    reader.readBinary({});
+  else
+    reader.readFull({});
+  return reader.take();
+}
+
+}  // namespace
+
+std::optional<std::string> octomapType(const std::string& path) {
+  std::ifstream stream(path, std::ios::binary);
+  std::array<char, 18> start{};
+  if (!stream.read(start.data(), start.size()) ||
+      std::string(start.data(), start.size()) != "# Octomap OcTree f") {
+    stream.clear();
+    if (std::string(start.data(), start.size()) != "# Octomap OcTree b") return std::nullopt;
+  }
+  stream.seekg(0);
+  const auto header = readHeader(stream);
+  return header ? std::optional(header->type) : std::nullopt;
+}
+
+maps::ElevationMap octomapSurface(std::istream& stream, const std::string& name) {
+  const auto header = readHeader(stream);
+  if (!header || !(header->resolution_m > 0.0))
+    throw InputError({name, "not an OctoMap file", "give a .bt or .ot of type OcTree or ColorOcTree"});
+  if (header->type != "OcTree" && header->type != "ColorOcTree")
+    throw InputError(
+        {name, "OctoMap tree of type '" + header->type + "'", "give one of type OcTree or ColorOcTree"});
+  const std::vector<Leaf> leaves = leavesOf(stream, *header, name);
+  if (leaves.empty()) throw InputError({name, "holds no occupied voxel", "check the octree in octovis"});
+  const Box box = boxOf(leaves);
+  const maps::Grid grid{
+      .width = static_cast<int>(box.x1 - box.x0),
+      .height = static_cast<int>(box.y1 - box.y0),
+      .resolution_m = header->resolution_m,
+      .south_west = {(box.x0 - kCentre) * header->resolution_m, (box.y0 - kCentre) * header->resolution_m}};
+  if (grid.size() > kMostColumns)
+    throw InputError(
+        {name, std::to_string(grid.size()) + " columns, more than 4e8", "crop it or lower its resolution"});
+  return {.elevation_m = topOf(leaves, grid, box),
+          .georeference = {},
+          .source = name,
+          .notes = {"top surface of an OctoMap, good to half a voxel"}};
+}
+
+maps::ElevationMap octomapSurface(const std::string& path) {
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) throw InputError({path, "cannot be opened", "check the path"});
+  return octomapSurface(stream, path);
+}
+
+}  // namespace talus::costmap

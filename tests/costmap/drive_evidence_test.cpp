@@ -1,0 +1,83 @@
+#include <cmath>
+#include <filesystem>
+#include <sstream>
+
+#include <site_map.hpp>
+#include <unistd.h>
+
+#include <costmap/drive_evidence.hpp>
+#include <costmap/map_file.hpp>
+#include <terramech/wong_reece.hpp>
+
+namespace talus::costmap {
+namespace {
+
+std::vector<std::string> wide() {
+  return std::vector<std::string>(60, std::string(60, '1'));
+}
+
+// A drive east along the middle over ground that is dust, though the map takes it for sand; every tenth row
+// off the map.
+terramech::Telemetry drive() {
+  const terramech::Rover rover = testRover();
+  const double load_N = terramech::wheelLoad_N(rover);
+  terramech::Telemetry out;
+  out.source = "drive.csv";
+  std::vector<double> x, y, load, slip, torque, sinkage, slope, time;
+  for (std::size_t i = 0; i < 100; ++i) {
+    const double s = 0.4 + 0.002 * static_cast<double>(i);
+    const auto wheel = terramech::equilibrium(testDust(), rover.wheel, {.load_N = load_N, .slip = s});
+    x.push_back(i % 10 == 9 ? -50.0 : 110.0 + 0.4 * static_cast<double>(i));
+    y.push_back(230.5);
+    load.push_back(load_N);
+    slip.push_back(s);
+    torque.push_back(wheel.torque_Nm);
+    sinkage.push_back(wheel.sinkage_m);
+    slope.push_back(std::atan(wheel.drawbar_pull_N / load_N));
+    time.push_back(static_cast<double>(i));
+    out.lines.push_back(i + 2);
+  }
+  out.numbers = {{"x_m", x},
+                 {"y_m", y},
+                 {"load_N", load},
+                 {"slip", slip},
+                 {"torque_Nm", torque},
+                 {"sinkage_m", sinkage},
+                 {"slope_rad", slope},
+                 {"time_s", time}};
+  return out;
+}
+
+std::string bytesOf(const TraversabilityMap& map) {
+  std::ostringstream stream;
+  writeMap(map, stream);
+  return stream.str();
+}
+
+TEST(AddDrive, DustDrivenAsSandIsLearnedAsWeak) {
+  TraversabilityMap map = mapOf(wide());
+  const GroundBelief before = *map.ground({30, 30});
+  const DriveReport report = addDrive(map, drive());
+  EXPECT_EQ(report.used, 90U);
+  EXPECT_EQ(report.rejected, 10U);
+  const GroundBelief after = *map.ground({30, 30});
+  EXPECT_LT(after.pull.mean, before.pull.mean - 0.1);
+  EXPECT_NE(map.belief({30, 30}).category, static_cast<std::uint8_t>(terramech::Category::Safe));
+}
+
+TEST(Replay, RebuildsTheMapFromTheJournalToTheBit) {
+  const auto folder = std::filesystem::path(::testing::TempDir()) / ("replay" + std::to_string(::getpid()));
+  std::filesystem::create_directories(folder);
+  TraversabilityMap map = mapOf(wide()), rebuilt = mapOf(wide());
+  {
+    EvidenceJournal journal((folder / "evidence.db").string());
+    addDrive(map, drive(), &journal);
+    EXPECT_EQ(journal.size(), 100);
+    replay(rebuilt, journal);
+  }
+  EXPECT_EQ(bytesOf(rebuilt), bytesOf(map));
+  std::filesystem::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace talus::costmap

@@ -1,0 +1,81 @@
+#include <cstring>
+#include <sstream>
+
+#include <octomap/AbstractOcTree.h>
+#include <site_map.hpp>
+
+#include <costmap/map_file.hpp>
+
+namespace talus::costmap {
+namespace {
+
+TraversabilityMap site() {
+  return mapOf({"1122", "1?22", "11#2", "1111"}, 0.05);
+}
+
+std::string bytesOf(const TraversabilityMap& map) {
+  std::ostringstream stream;
+  writeMap(map, stream);
+  return stream.str();
+}
+
+TraversabilityMap fromBytes(const std::string& bytes) {
+  std::istringstream stream(bytes);
+  return readMap(stream, {.name = "map.ot", .threads = 1});
+}
+
+TEST(MapFile, ComesBackWithTheSameCostGridAndBytes) {
+  const TraversabilityMap map = site();
+  const std::string bytes = bytesOf(map);
+  const TraversabilityMap back = fromBytes(bytes);
+  EXPECT_EQ(bytesOf(back), bytes);
+  ASSERT_EQ(back.grid(), map.grid());
+  for (int row = 0; row < 4; ++row)
+    for (int column = 0; column < 4; ++column) EXPECT_EQ(back.code({column, row}), map.code({column, row}));
+  const CellCode cell = map.code({0, 0});
+  EXPECT_EQ(back.published()->cost().costPerMetre(cell, {0.6, 0.8}),
+            map.published()->cost().costPerMetre(cell, {0.6, 0.8}));
+}
+
+TEST(MapFile, KeepsTheCoordinateSystem) {
+  MapLayers layers = drawn({"11", "11"});
+  maps::CoordinateSystem moon{
+      .name = "Moon pole", .ellipsoid = maps::kMoon, .projection = {}, .wkt = "A\nB\\n"};
+  moon.projection = {.method = maps::ProjectionMethod::PolarStereographic,
+                     .latitude_of_origin_rad = 1.5707963267948966};
+  layers.elevation.georeference.emplace(moon);
+  const TraversabilityMap back = fromBytes(bytesOf(TraversabilityMap(std::move(layers), testGround(), {})));
+  ASSERT_TRUE(back.elevation().georeference.has_value());
+  EXPECT_EQ(back.elevation().georeference->system().wkt, moon.wkt);
+  EXPECT_EQ(back.elevation().georeference->system().ellipsoid, moon.ellipsoid);
+}
+
+TEST(MapFile, StockOctoMapReadsItAndStopsBehindTheNodes) {
+  std::istringstream stream(bytesOf(site()));
+  const std::unique_ptr<octomap::AbstractOcTree> tree(octomap::AbstractOcTree::read(stream));
+  ASSERT_NE(tree, nullptr);
+  EXPECT_EQ(tree->getTreeType(), "TraversabilityTree");
+}
+
+TEST(MapFile, RefusesEveryTruncation) {
+  const std::string bytes = bytesOf(site());
+  for (std::size_t length = 0; length < bytes.size(); length += 7)
+    EXPECT_THROW(fromBytes(bytes.substr(0, length)), InputError) << length;
+}
+
+TEST(MapFile, RefusesEveryDamagedByteOfTheTrailer) {
+  const std::string bytes = bytesOf(site());
+  for (std::size_t i = bytes.find("TALUSMAP"); i < bytes.size(); i += 3) {
+    std::string damaged = bytes;
+    damaged[i] = static_cast<char>(damaged[i] ^ 0x55);
+    EXPECT_THROW(fromBytes(damaged), InputError) << i;
+  }
+}
+
+TEST(MapFile, SaysWhatIsMissing) {
+  EXPECT_THROW(readMap("/nonexistent/map.ot"), InputError);
+  EXPECT_THROW(writeMap(site(), "/nonexistent/map.ot"), InputError);
+}
+
+}  // namespace
+}  // namespace talus::costmap
