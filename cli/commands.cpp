@@ -3,6 +3,7 @@
 namespace talus::cli {
 
 void addCommands(CLI::App& app, Context& context) {
+  addGenerate(app, context);
   addInfo(app, context);
   addPlan(app, context);
   addScore(app, context);
