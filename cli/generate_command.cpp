@@ -1,7 +1,6 @@
 // talus generate KIND: an example site with all its layers.
-#include <array>
 #include <filesystem>
-#include <map>
+#include <optional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -9,6 +8,7 @@
 #include <cli/command.hpp>
 #include <cli/commands.hpp>
 #include <cli/output_file.hpp>
+#include <cli/site_description.hpp>
 #include <maps/geotiff_writer.hpp>
 #include <maps/site_generator.hpp>
 #include <talus.hpp>
@@ -17,9 +17,9 @@ namespace talus::cli {
 namespace {
 
 struct Options {
-  maps::SiteKind kind = maps::SiteKind::Craters;
-  std::string size = "512";
-  double resolution_m = 1.0;
+  std::string site;                 ///< a kind, or the path of a description
+  std::optional<std::string> size;  ///< as typed
+  std::optional<double> resolution_m;
   std::string output;
 };
 
@@ -72,32 +72,49 @@ struct Paths {
   std::string map, classes, rocks, soils;
 };
 
-Paths write(const maps::Site& site, const Options& options) {
-  const Paths paths{options.output, beside(options.output, "_classes.tif"),
-                    beside(options.output, "_rocks.tif"), beside(options.output, "_soils.yaml")};
+Paths write(const maps::Site& site, maps::SiteKind kind, const std::string& output) {
+  const Paths paths{output, beside(output, "_classes.tif"), beside(output, "_rocks.tif"),
+                    beside(output, "_soils.yaml")};
   const maps::Georeference* georeference = &*site.map.georeference;
   maps::writeGeoTiff({paths.map, georeference}, {{"elevation", "m", site.map.elevation_m}});
   maps::writeGeoTiff({paths.classes, georeference}, "terrain class", site.classes, std::nullopt);
   maps::writeGeoTiff({paths.rocks, georeference}, {{"rock abundance", "", site.rock_abundance}});
-  writeFile(paths.soils, options.kind == maps::SiteKind::Craters ? kLunarSoils : kMartianSoils);
+  writeFile(paths.soils, kind == maps::SiteKind::Craters ? kLunarSoils : kMartianSoils);
   return paths;
 }
 
+bool isDescription(const std::string& site) {
+  return site.ends_with(".yaml") || site.ends_with(".yml");
+}
+
+// A description is complete; words of the call that are there override it.
+maps::SiteOptions siteOptions(const Options& options, const Context& context) {
+  maps::SiteOptions out;
+  if (isDescription(options.site)) {
+    out = loadSite(options.site);
+  } else {
+    out.kind = siteKind(options.site);
+    out.seed = context.seed;
+  }
+  if (options.size) {
+    const Size size = parseSize(*options.size);
+    out.width = size.width;
+    out.height = size.height;
+  }
+  if (options.resolution_m) out.resolution_m = *options.resolution_m;
+  out.threads = context.workers();
+  return out;
+}
+
 void bind(CLI::App& command, Options& options) {
-  const std::map<std::string, maps::SiteKind> kinds{{"craters", maps::SiteKind::Craters},
-                                                    {"dunes", maps::SiteKind::Dunes},
-                                                    {"rocks", maps::SiteKind::Rocks}};
-  command.add_option("KIND", options.kind, "craters (Moon), dunes or rocks (Mars)")
-      ->required()
-      ->transform(CLI::CheckedTransformer(kinds).description(""))
-      ->type_name("");
-  command.add_option("--size", options.size, "cells a side, or WIDTHxHEIGHT")
-      ->type_name("N")
-      ->capture_default_str();
-  command.add_option("--resolution", options.resolution_m, "side of a cell")
+  command
+      .add_option("KIND", options.site,
+                  "craters (Moon), dunes or rocks (Mars), or a YAML description (see maps/sites)")
+      ->required();
+  command.add_option("--size", options.size, "cells a side, or WIDTHxHEIGHT (default 512)")->type_name("N");
+  command.add_option("--resolution", options.resolution_m, "side of a cell (default 1)")
       ->type_name("METRES")
-      ->check(CLI::Range(0.01, 1000.0))
-      ->capture_default_str();
+      ->check(CLI::Range(0.01, 1000.0));
   command
       .add_option("-o,--output", options.output, "elevation map to write; its layers are written beside it")
       ->type_name("FILE.tif")
@@ -105,26 +122,20 @@ void bind(CLI::App& command, Options& options) {
 }
 
 int run(const Options& options, Context& context) {
-  const Size size = parseSize(options.size);
+  const maps::SiteOptions wanted = siteOptions(options, context);
   const OutputFile folder_can_be_written(options.output);
-  const maps::Site site = maps::generateSite({.kind = options.kind,
-                                              .width = size.width,
-                                              .height = size.height,
-                                              .resolution_m = options.resolution_m,
-                                              .seed = context.seed,
-                                              .threads = context.workers()},
-                                             context.watch("site"));
+  const maps::Site site = maps::generateSite(wanted, context.watch("site"));
   if (context.stop.stop_requested()) return Exit::kCancelled;
-  const Paths paths = write(site, options);
+  const Paths paths = write(site, wanted.kind, options.output);
   if (context.json)
     printJson({{"map", paths.map},
                {"classes", paths.classes},
                {"rocks", paths.rocks},
                {"soils", paths.soils},
-               {"width", size.width},
-               {"height", size.height},
-               {"resolution_m", options.resolution_m},
-               {"seed", context.seed}});
+               {"width", wanted.width},
+               {"height", wanted.height},
+               {"resolution_m", wanted.resolution_m},
+               {"seed", wanted.seed}});
   else
     print(fmt::format("{}\n{}\n{}\n{}\n", paths.map, paths.classes, paths.rocks, paths.soils));
   return Exit::kDone;
