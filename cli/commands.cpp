@@ -5,6 +5,7 @@ namespace talus::cli {
 void addCommands(CLI::App& app, Context& context) {
   addCostmap(app, context);
   addExplain(app, context);
+  addGenerate(app, context);
   addInfo(app, context);
   addPlan(app, context);
   addScore(app, context);

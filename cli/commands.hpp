@@ -12,6 +12,7 @@ struct Context;
 // Alphabetical; a subcommand stands here only once it does its job.
 void addCostmap(CLI::App& app, Context& context);
 void addExplain(CLI::App& app, Context& context);
+void addGenerate(CLI::App& app, Context& context);
 void addInfo(CLI::App& app, Context& context);
 void addPlan(CLI::App& app, Context& context);
 void addScore(CLI::App& app, Context& context);

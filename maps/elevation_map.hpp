@@ -11,10 +11,10 @@ namespace talus::maps {
 
 /// A digital elevation model in map metres, square cells, row 0 south.
 struct ElevationMap {
-  Raster<float> elevation_m;  ///< above the body's datum; NaN where there is no data, never infinite
-  std::optional<Georeference> georeference;  ///< none: x, y are local metres
-  std::string source;                        ///< the file it came from, as the user named it
-  std::vector<std::string> notes;  ///< what the reader decided that a person should know, a line each
+  Raster<float> elevation_m{};  ///< above the body's datum; NaN where there is no data, never infinite
+  std::optional<Georeference> georeference{};  ///< none: x, y are local metres
+  std::string source{};                        ///< the file it came from, as the user named it
+  std::vector<std::string> notes{};  ///< what the reader decided that a person should know, a line each
 
   const Grid& grid() const noexcept { return elevation_m.grid(); }
 };

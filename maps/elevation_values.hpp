@@ -12,7 +12,7 @@ namespace talus::maps {
 struct HeightCode {
   double scale = 1.0;
   double offset_m = 0.0;
-  std::optional<double> nodata;  ///< as the band has it
+  std::optional<double> nodata{};  ///< as the band has it
 };
 
 /// The code that a band states through its scale, offset, unit and nodata value. A band whose offset is about

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <mutex>
 #include <new>
+#include <string_view>
 
 #include <cpl_error.h>
 #include <gdal_priv.h>
@@ -17,6 +18,25 @@ namespace {
 void registerDriversOnce() {
   static std::once_flag once;
   std::call_once(once, [] { GDALAllRegister(); });
+}
+
+// GDAL takes what is missing from the end of an ENVI file for zeros.
+void refuseShortEnvi(GDALDataset& dataset, const std::string& path) {
+  const GDALDriver* driver = dataset.GetDriver();
+  if (driver == nullptr ||
+      std::string_view(GDALGetDriverShortName(const_cast<GDALDriver*>(driver))) != "ENVI")
+    return;
+  const auto bytes =
+      static_cast<std::uintmax_t>(GDALGetDataTypeSizeBytes(dataset.GetRasterBand(1)->GetRasterDataType()));
+  const std::uintmax_t needed = bytes * static_cast<std::uintmax_t>(dataset.GetRasterXSize()) *
+                                static_cast<std::uintmax_t>(dataset.GetRasterYSize()) *
+                                static_cast<std::uintmax_t>(dataset.GetRasterCount());
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  if (!error && size < needed)
+    throw InputError({path,
+                      "is cut short: " + std::to_string(size) + " of " + std::to_string(needed) + " bytes",
+                      "fetch it again"});
 }
 
 }  // namespace
@@ -65,6 +85,7 @@ Dataset openRaster(const std::string& path) {
     throw InputError({path, "GDAL opens no raster: " + errors.last(), "give a GeoTIFF or another raster"});
   if (dataset->GetRasterCount() == 0 || dataset->GetRasterXSize() == 0 || dataset->GetRasterYSize() == 0)
     throw InputError({path, "holds no raster band", "name one of its subdatasets (gdalinfo lists them)"});
+  refuseShortEnvi(*dataset, path);
   return dataset;
 }
 

@@ -43,7 +43,7 @@ struct CoordinateSystem {
   Ellipsoid ellipsoid{};
   Projection projection{};
   bool planetocentric =
-      false;        ///< latitudes are angles at the centre of the ellipsoid, not of its surface normal
+      false;          ///< latitudes are angles at the centre of the ellipsoid, not of its surface normal
   std::string wkt{};  ///< the file's own words, written back into the layers made from it; may be empty
 };
 

@@ -11,14 +11,14 @@ namespace talus::maps {
 
 /// One band of a GeoTIFF.
 struct Layer {
-  std::string name;      ///< band description
-  std::string unit;      ///< "m", "rad", "" for a ratio
-  Raster<float> values;  ///< NaN = no data
+  std::string name{};      ///< band description
+  std::string unit{};      ///< "m", "rad", "" for a ratio
+  Raster<float> values{};  ///< NaN = no data
 };
 
 /// What is common to all bands.
 struct GeoTiff {
-  std::string path;
+  std::string path{};
   const Georeference* georeference = nullptr;  ///< none: local metres
 };
 

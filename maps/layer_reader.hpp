@@ -13,8 +13,8 @@ inline constexpr std::uint8_t kNoClass = 255;
 
 /// A layer's file and the band to take from it.
 struct LayerSource {
-  std::string path;
-  std::optional<int> band;  ///< from 1; unset: the first, or for rock abundance the band so named
+  std::string path{};
+  std::optional<int> band{};  ///< from 1; unset: the first, or for rock abundance the band so named
 };
 
 /// Terrain classes (whole numbers 0 to 254) on the map's grid, nearest cell; kNoClass where the file has

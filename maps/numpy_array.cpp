@@ -96,10 +96,12 @@ Convert converter(const Header& h, const std::string& where) {
 NumpyArray parseNumpy(const std::string& bytes, const std::string& where) {
   const Header header = parseHeader(bytes, where);
   const Convert convert = converter(header, where);
+  const std::size_t most = (bytes.size() - header.data_offset) / header.size;
   std::size_t count = 1;
-  for (std::size_t n : header.shape) count *= n;
-  if (count > (bytes.size() - header.data_offset) / header.size)
-    throw InputError({where, "the file is cut short", "fetch it again"});
+  for (std::size_t n : header.shape) {
+    count *= n;
+    if (count > most) throw InputError({where, "the file is cut short", "fetch it again"});
+  }
   NumpyArray array{header.shape, std::vector<double>(count)};
   const bool transposed = header.fortran_order && header.shape.size() == 2;
   for (std::size_t i = 0; i < count; ++i) {

@@ -13,10 +13,10 @@ namespace talus::maps {
 
 /// Which band of a file to take when the user names none.
 struct BandWish {
-  std::string path;                      ///< opens error lines
-  std::optional<int> band;               ///< from 1, as the user asked
-  std::vector<std::string_view> words;   ///< parts of a description that mark the band, in lower case
-  std::vector<std::string_view> others;  ///< parts that rule it out
+  std::string path{};                      ///< opens error lines
+  std::optional<int> band{};               ///< from 1, as the user asked
+  std::vector<std::string_view> words{};   ///< parts of a description that mark the band, in lower case
+  std::vector<std::string_view> others{};  ///< parts that rule it out
 };
 
 /// The band asked for, else the first whose description fits, else the first; a choice among several is said

@@ -11,11 +11,11 @@ namespace talus::maps {
 
 /// A raster whose pixels are square cells in metres, and where they lie.
 struct FramedRaster {
-  Dataset raster;
+  Dataset raster{};
   int band = 1;
-  Grid grid;             ///< of the whole raster
+  Grid grid{};             ///< of the whole raster
   bool north_up = true;  ///< the raster's first row is the northernmost
-  std::optional<Georeference> georeference;
+  std::optional<Georeference> georeference{};
 };
 
 /// Finds where the pixels of a file lie and resamples them where they are not square cells in metres; says in

@@ -1,13 +1,12 @@
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include <maps/footprint.hpp>
+#include <maps/parallel_rows.hpp>
 #include <maps/partial_plane.hpp>
 #include <maps/plane_kernel.hpp>
 #include <maps/terrain_metrics.hpp>
@@ -16,7 +15,6 @@ namespace talus::maps {
 namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-constexpr int kStripRows = 64;
 
 // Measures strips of rows, each through a copy of its heights with a margin of NaN.
 class Strips {
@@ -27,11 +25,9 @@ class Strips {
         out_(out),
         stride_(static_cast<std::size_t>(elevation_m.grid().width + 2 * footprint.reach + kPlaneLanes)) {}
 
-  int count() const { return (elevation_m_.grid().height + kStripRows - 1) / kStripRows; }
-
-  void measure(int strip, std::vector<float>& buffer) const {
-    const int first = strip * kStripRows;
-    const int last = std::min(first + kStripRows, elevation_m_.grid().height);
+  void measure(Rows strip) const {
+    const auto [first, last] = strip;
+    std::vector<float> buffer;
     copyRows(first - footprint_.reach, last + footprint_.reach, buffer);
     std::vector<const float*> rows(static_cast<std::size_t>(last - first + 2 * footprint_.reach));
     for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = buffer.data() + i * stride_ + footprint_.reach;
@@ -85,21 +81,6 @@ class Strips {
   PlaneKernel kernel_ = planeKernel();
 };
 
-// Strips are handed out one by one; this thread works too and alone reports.
-void measureAll(const Strips& strips, int threads, const Watch& watch) {
-  std::atomic<int> next{0};
-  const auto work = [&](bool reports) {
-    std::vector<float> buffer;
-    for (int strip = next++; strip < strips.count() && !watch.stopped(); strip = next++) {
-      strips.measure(strip, buffer);
-      if (reports) watch.report((strip + 1.0) / strips.count());
-    }
-  };
-  std::vector<std::jthread> helpers;
-  for (int i = 1; i < std::min(threads, strips.count()); ++i) helpers.emplace_back(work, false);
-  work(true);
-}
-
 void check(const FootprintOptions& options) {
   if (!std::isfinite(options.radius_m) || options.radius_m < 0)
     throw std::invalid_argument("footprint: radius_m = " + std::to_string(options.radius_m) +
@@ -138,7 +119,9 @@ TerrainMetrics terrainMetrics(const Raster<float>& elevation_m, const FootprintO
                      .footprint_cells = static_cast<int>(footprint.offsets.size()),
                      .fell_back = radius_cells < std::sqrt(2.0) * (1 - 1e-12),
                      .gradient_std_per_roughness = gradientStd(footprint, grid.resolution_m)};
-  measureAll(Strips(elevation_m, footprint, out), options.threads, watch);
+  const Strips strips(elevation_m, footprint, out);
+  forEachStrip({.rows = grid.height, .threads = options.threads}, watch,
+               [&](Rows rows) { strips.measure(rows); });
   return out;
 }
 

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+namespace talus::maps {
+
+/// A well-mixed 64-bit word from another (the finaliser of SplitMix64).
+constexpr std::uint64_t mixed(std::uint64_t x) noexcept {
+  x += 0x9E3779B97F4A7C15ULL;
+  x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9ULL;
+  x = (x ^ (x >> 27)) * 0x94D049BB133111EBULL;
+  return x ^ (x >> 31);
+}
+
+/// Numbers in [0, 1) in a row, from a seed; each generator of a site has its own.
+class RandomRow {
+ public:
+  explicit RandomRow(std::uint64_t seed) noexcept : state_(seed) {}
+
+  double operator()() noexcept { return static_cast<double>(mixed(state_++) >> 11) * 0x1.0p-53; }
+
+ private:
+  std::uint64_t state_;
+};
+
+/// Smooth noise over the plane in [-1, 1], known at any place without its neighbours: random slopes at whole
+/// numbers, joined by fifth-order curves (gradient noise). Distances in units of its wavelength.
+class GradientNoise {
+ public:
+  explicit GradientNoise(std::uint64_t seed) noexcept : seed_(mixed(seed)) {}
+
+  double operator()(double x, double y) const noexcept {
+    const double column = std::floor(x);
+    const double row = std::floor(y);
+    const double u = x - column;
+    const double v = y - row;
+    const double a = corner(column, row, u, v);
+    const double b = corner(column + 1, row, u - 1, v);
+    const double c = corner(column, row + 1, u, v - 1);
+    const double d = corner(column + 1, row + 1, u - 1, v - 1);
+    const double s = smooth(u);
+    return 1.4142135623730951 * (a + (b - a) * s + (c - a + (a - b - c + d) * s) * smooth(v));
+  }
+
+ private:
+  static double smooth(double t) noexcept { return t * t * t * (t * (t * 6 - 15) + 10); }
+
+  double corner(double column, double row, double u, double v) const noexcept {
+    const auto key = static_cast<std::uint64_t>(static_cast<std::int64_t>(column)) * 0x8CB92BA72F3D8DD7ULL ^
+                     static_cast<std::uint64_t>(static_cast<std::int64_t>(row));
+    const std::uint64_t word = mixed(seed_ ^ key);
+    const double gx = static_cast<double>(static_cast<std::int32_t>(word)) * 0x1.0p-31;
+    const double gy = static_cast<double>(static_cast<std::int32_t>(word >> 32)) * 0x1.0p-31;
+    return gx * u + gy * v;
+  }
+
+  std::uint64_t seed_;
+};
+
+/// Self-affine ground: octaves of noise from the longest wavelength down to the shortest, each rougher by the
+/// Hurst exponent's law (amplitude ~ wavelength^hurst).
+class FractalGround {
+ public:
+  struct Options {
+    std::uint64_t seed = 0;
+    double longest_m = 100.0;
+    double shortest_m = 1.0;
+    double amplitude_m = 1.0;  ///< of the longest wavelength
+    double hurst = 0.8;        ///< 0 to 1; higher is smoother
+  };
+
+  explicit FractalGround(const Options& options) noexcept
+      : options_(options), noise_(options.seed), fall_(std::pow(2.0, -options.hurst)) {}
+
+  double operator()(double x_m, double y_m) const noexcept {
+    // Each octave is turned by 36.9 degrees against the last, so that the squares of the noise do not show.
+    double height = 0;
+    double x = x_m / options_.longest_m;
+    double y = y_m / options_.longest_m;
+    double amplitude = options_.amplitude_m;
+    for (double wavelength = options_.longest_m; wavelength >= options_.shortest_m; wavelength /= 2) {
+      height += amplitude * noise_(x, y);
+      amplitude *= fall_;
+      const double east = 2 * (0.8 * x - 0.6 * y) + 17.31;
+      y = 2 * (0.6 * x + 0.8 * y) - 9.17;
+      x = east;
+    }
+    return height;
+  }
+
+ private:
+  Options options_;
+  GradientNoise noise_;
+  double fall_;  // of the amplitude from octave to octave
+};
+
+}  // namespace talus::maps

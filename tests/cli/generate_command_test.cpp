@@ -1,0 +1,69 @@
+#include <algorithm>
+
+#include <nlohmann/json.hpp>
+
+#include "run_program.hpp"
+
+namespace talus::cli {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(GenerateCommand, WritesASiteThatOtherCommandsRead) {
+  const Folder folder;
+  const Ran ran = runTalus({"generate", "craters", "--size", "80x60", "--resolution", "2", "--seed", "4",
+                            "-o", folder / "site.tif"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_EQ(folder.names(),
+            (std::vector<std::string>{"site.tif", "site_classes.tif", "site_rocks.tif", "site_soils.yaml"}));
+  const Ran info = runTalus({"info", folder / "site.tif", "--json"});
+  ASSERT_EQ(info.code, 0) << info.err;
+  const auto json = nlohmann::json::parse(info.out);
+  EXPECT_EQ(json["width"], 80);
+  EXPECT_EQ(json["height"], 60);
+  EXPECT_EQ(json["resolution_m"], 2.0);
+  EXPECT_EQ(json["body"], "Moon");
+  const std::string first = fileContent(folder / "site.tif");
+  runTalus({"generate", "craters", "--size", "80x60", "--resolution", "2", "--seed", "4", "--threads", "2",
+            "-o", folder / "site.tif"});
+  EXPECT_EQ(fileContent(folder / "site.tif"), first) << "same seed, same bytes";
+}
+
+TEST(GenerateCommand, ShippedDescriptionsAreWhole) {
+  const Folder folder;
+  for (const char* name : {"moon_craters", "mars_dunes", "mars_rocks"}) {
+    const Ran ran = runTalus({"generate", std::string(TALUS_SOURCE_DIR "/maps/sites/") + name + ".yaml",
+                              "--size", "64", "-o", folder / "s.tif", "--json"});
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    EXPECT_EQ(nlohmann::json::parse(ran.out)["width"], 64);
+  }
+}
+
+TEST(GenerateCommand, BadInputIsOneLineAndCodeTwo) {
+  const Folder folder;
+  const std::string out = folder / "site.tif";
+  struct Case {
+    std::vector<std::string> words;
+    const char* says;
+  };
+  const std::vector<Case> cases{
+      {{"generate", "craters"}, "--output is required"},
+      {{"generate", "crater", "-o", out}, "did you mean 'craters'?"},
+      {{"generate", "craters", "--size", "4", "-o", out}, "--size 4: is not a number of cells"},
+      {{"generate", "craters", "--size", "axb", "-o", out}, "--size axb"},
+      {{"generate", "craters", "--resolution", "0", "-o", out}, "--resolution"},
+      {{"generate", "craters", "-o", folder / "no/where.tif"}, "where.tif"},
+      {{"generate", folder.write("s.yaml", "site: {kind: dunes, widht: 9}"), "-o", out}, "widht"},
+      {{"generate", folder.write("t.yaml", "site: {kind: dunes, width: 4}"), "-o", out}, "width = 4"},
+      {{"generate", folder / "none.yaml", "-o", out}, "none.yaml"},
+  };
+  for (const Case& c : cases) {
+    const Ran ran = runTalus(c.words);
+    EXPECT_EQ(ran.code, 2) << ran.err;
+    EXPECT_THAT(ran.err, HasSubstr(c.says));
+    EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
+  }
+}
+
+}  // namespace
+}  // namespace talus::cli

@@ -1,0 +1,62 @@
+#include <maps/numpy_array.hpp>
+#include <talus.hpp>
+
+namespace talus::maps {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+std::string file(const std::string& header, const std::string& data) {
+  std::string out("\x93NUMPY\x01\x00", 8);
+  out += static_cast<char>(header.size());
+  out += '\0';
+  return out + header + data;
+}
+
+TEST(NumpyArray, WholeNumbersInEitherByteOrder) {
+  const std::string little = file("{'descr': '<i2', 'fortran_order': False, 'shape': (2, 2), }\n",
+                                  std::string("\1\0\2\0\xff\xff\0\1", 8));
+  EXPECT_THAT(parseNumpy(little, "a").values, ElementsAre(1, 2, -1, 256));
+  EXPECT_THAT(parseNumpy(little, "a").shape, ElementsAre(2U, 2U));
+  const std::string big =
+      file("{'descr': '>i2', 'fortran_order': False, 'shape': (2,), }\n", std::string("\0\1\1\0", 4));
+  EXPECT_THAT(parseNumpy(big, "a").values, ElementsAre(1, 256));
+}
+
+TEST(NumpyArray, FortranOrderAndSingleNumbers) {
+  const std::string fortran =
+      file("{'descr': '|u1', 'fortran_order': True, 'shape': (2, 3), }\n", "\1\2\3\4\5\6");
+  EXPECT_THAT(parseNumpy(fortran, "a").values, ElementsAre(1, 3, 5, 2, 4, 6));
+  const std::string one = file("{'descr': '<f8', 'fortran_order': False, 'shape': (), }\n",
+                               std::string("\0\0\0\0\0\0\xf0\x3f", 8));
+  EXPECT_THAT(parseNumpy(one, "a").values, ElementsAre(1.0));
+  EXPECT_TRUE(parseNumpy(one, "a").shape.empty());
+}
+
+TEST(NumpyArray, BadBytesAreRefused) {
+  const auto line = [](const std::string& bytes) {
+    try {
+      parseNumpy(bytes, "x.npy");
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  EXPECT_THAT(line(""), HasSubstr("x.npy: not a NumPy array"));
+  EXPECT_THAT(line(std::string("\x93NUMPY\x01\x00\xff\xff{}", 12)), HasSubstr("header is cut short"));
+  EXPECT_THAT(line(file("{'descr': '|O', 'fortran_order': False, 'shape': (2,), }", "")),
+              HasSubstr("plain numbers"));
+  EXPECT_THAT(line(file("{'descr': '<f2', 'fortran_order': False, 'shape': (2,), }", "1234")),
+              HasSubstr("f2 are not supported"));
+  EXPECT_THAT(line(file("{'descr': '<f8', 'fortran_order': False, 'shape': (2, 9), }", "1234")),
+              HasSubstr("cut short"));
+  EXPECT_THAT(line(file("{'descr': '<f8', 'fortran_order': False, 'shape': (99999999999,), }", "1")),
+              HasSubstr("too large"));
+  EXPECT_THAT(
+      line(file("{'descr': '<f8', 'fortran_order': False, 'shape': (999999999,999999999,999999999), }", "1")),
+      HasSubstr("cut short"));
+}
+
+}  // namespace
+}  // namespace talus::maps
