@@ -91,9 +91,10 @@ Route shortCut(const MotionCost& cost, const Route& route, double piece_m, const
 
 // Places to choose from at one station; the first is the station itself.
 struct Station {
-  Route places;
-  std::vector<double> best;         // from the place to the end
-  std::vector<std::size_t> choice;  // the place at the next station
+  Route places{};
+  std::vector<int> offsets{};         // steps to the left of the route
+  std::vector<double> best{};         // from the place to the end
+  std::vector<std::size_t> choice{};  // the place at the next station
 };
 
 // Whether the place has a drive curve at all; headings are left to the motions.
@@ -102,30 +103,30 @@ bool enterable(const costmap::CostGrid& map, Point place) noexcept {
   return cell && map.at(*cell).curve() < map.cost().curves().size();
 }
 
-Station stationAt(const MotionCost& cost, Point here, Point before, Point after, double apart_m,
-                  int candidates) {
-  Station station{{here}, {}, {}};
-  const double chord_m = distance_m(before, after);
+Station stationAt(const MotionCost& cost, const Segment& chord, Point here, double apart_m, int candidates) {
+  Station station{{here}, {0}, {}, {}};
+  const double chord_m = distance_m(chord.from, chord.to);
   if (chord_m <= 0.0) return station;
-  const Point left{-(after.y_m - before.y_m) / chord_m, (after.x_m - before.x_m) / chord_m};
+  const Point left{-(chord.to.y_m - chord.from.y_m) / chord_m, (chord.to.x_m - chord.from.x_m) / chord_m};
   for (int k = 1; k <= candidates; ++k)
-    for (const double side : {1.0, -1.0}) {
-      const double off_m = side * k * apart_m;
-      const Point place{here.x_m + off_m * left.x_m, here.y_m + off_m * left.y_m};
-      if (enterable(cost.map(), place)) station.places.push_back(place);
+    for (const int offset : {k, -k}) {
+      const Point place{here.x_m + offset * apart_m * left.x_m, here.y_m + offset * apart_m * left.y_m};
+      if (!enterable(cost.map(), place)) continue;
+      station.places.push_back(place);
+      station.offsets.push_back(offset);
     }
   return station;
 }
 
-// Chooses the next place for every place of `from`; keeping the present piece is one of the choices of the
-// first place.
-void choose(const MotionCost& cost, Station& from, const Station& to, double kept_J) {
+// Chooses the next place for every place of `from`, none farther than `swing` steps sideways; keeping the
+// present piece is one of the choices of the first place.
+void choose(const MotionCost& cost, Station& from, const Station& to, double kept_J, int swing) {
   from.best.assign(from.places.size(), kInfinity);
   from.choice.assign(from.places.size(), 0);
   from.best[0] = kept_J + to.best[0];
   for (std::size_t a = 0; a < from.places.size(); ++a)
     for (std::size_t b = 0; b < to.places.size(); ++b) {
-      if (!(to.best[b] < from.best[a])) continue;
+      if (std::abs(from.offsets[a] - to.offsets[b]) > swing || !(to.best[b] < from.best[a])) continue;
       const double through = cost({from.places[a], to.places[b]}) + to.best[b];
       if (through < from.best[a]) {
         from.best[a] = through;
@@ -142,13 +143,13 @@ Route shifted(const MotionCost& cost, const Route& route, double piece_m, const 
   // A little less than the power of two that would put places on the cells' edges.
   const double apart_m = 0.98 * piece_m / options.candidates;
   std::vector<Station> stations(n + 1);
-  stations[n] = {{route.back()}, {0.0}, {0}};
+  stations[n] = {{route.back()}, {0}, {0.0}, {0}};
   for (std::size_t i = n; i-- > 0;) {
     if (stop()) return route;
     const Point here = pieces[i].front(), after = pieces[i].back(),
                 before = i > 0 ? pieces[i - 1].front() : here;
-    stations[i] = stationAt(cost, here, before, after, apart_m, i > 0 ? options.candidates : 0);
-    choose(cost, stations[i], stations[i + 1], costOf(cost, pieces[i]));
+    stations[i] = stationAt(cost, {before, after}, here, apart_m, i > 0 ? options.candidates : 0);
+    choose(cost, stations[i], stations[i + 1], costOf(cost, pieces[i]), options.swing);
   }
   Route made;
   for (std::size_t i = 0, a = 0; i < n; ++i) {

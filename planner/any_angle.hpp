@@ -12,9 +12,10 @@ namespace talus::planner {
 struct RefineOptions {
   double coarsest_cells =
       64.0;                   ///< distance of the first stations along the route; halves from round to round
-  double finest_cells = 1.0;  ///< the last
+  double finest_cells = 0.5;  ///< the last
   int candidates = 8;         ///< places to each side of a station, an eighth of the stations' distance apart
-  int repeats = 2;            ///< rounds at each distance
+  int swing = 3;              ///< most steps sideways from one station to the next
+  int repeats = 1;            ///< rounds at each distance
 };
 
 /// A route of fewer, better turns: never dearer than the one given, the first and last points kept, every

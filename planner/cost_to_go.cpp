@@ -1,7 +1,10 @@
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <utility>
+
+#include <immintrin.h>
 
 #include <planner/cost_to_go.hpp>
 
@@ -9,11 +12,57 @@ namespace talus::planner {
 namespace {
 
 constexpr std::uint32_t kNoCell = std::numeric_limits<std::uint32_t>::max();
+constexpr std::size_t kOverhang = 4;  // what a vector reads behind the last row
+constexpr std::size_t kAhead = 12;    // cells of a bucket that are fetched before their turn
+
+std::array<std::ptrdiff_t, 8> neighbourOffsets(const PaddedGrid& padded) noexcept {
+  std::array<std::ptrdiff_t, 8> offsets{};
+  for (int heading = 0; heading < 8; ++heading)
+    offsets[static_cast<std::size_t>(heading)] = padded.offset(heading);
+  return offsets;
+}
+
+// The headings, a bit each, whose neighbours come cheaper through the cell that `distance` points to.
+unsigned improvedByScalar(const std::uint32_t* distance, const std::uint16_t* into,
+                          std::ptrdiff_t stride) noexcept {
+  const std::uint32_t* above = distance + stride;
+  const std::uint32_t* below = distance - stride;
+  const std::array<std::uint32_t, 8> present{distance[1],  above[1],  above[0], above[-1],
+                                             distance[-1], below[-1], below[0], below[1]};
+  unsigned better = 0;
+  for (unsigned k = 0; k < 8; ++k)
+    if (into[k] != EdgeLayer::kBlocked && *distance + into[k] < present[k]) better |= 1U << k;
+  return better;
+}
+
+// The same eight comparisons at once.
+__attribute__((target("avx2"))) unsigned improvedByVector(const std::uint32_t* distance,
+                                                          const std::uint16_t* into,
+                                                          std::ptrdiff_t stride) noexcept {
+  const auto load = [](const std::uint32_t* from) __attribute__((target("avx2"))) {
+    return _mm_loadu_si128(reinterpret_cast<const __m128i*>(from));
+  };
+  const __m128i above = _mm_shuffle_epi32(load(distance + stride - 1), _MM_SHUFFLE(0, 1, 2, 3));  // . NE N NW
+  const __m128i below = _mm_shuffle_epi32(load(distance - stride - 1), _MM_SHUFFLE(2, 1, 0, 0));  // . SW S SE
+  const __m128i first = _mm_insert_epi32(above, static_cast<int>(distance[1]), 0);
+  const __m128i second = _mm_insert_epi32(below, static_cast<int>(distance[-1]), 0);
+  const __m256i present = _mm256_set_m128i(second, first);
+  const __m128i steps = _mm_loadu_si128(reinterpret_cast<const __m128i*>(into));
+  const __m256i edges = _mm256_cvtepu16_epi32(steps);
+  const __m256i through = _mm256_add_epi32(edges, _mm256_set1_epi32(static_cast<int>(*distance)));
+  const __m256i blocked = _mm256_cmpeq_epi32(edges, _mm256_set1_epi32(EdgeLayer::kBlocked));
+  const __m256i no_better = _mm256_cmpeq_epi32(_mm256_min_epu32(through, present), present);
+  const __m256i worse = _mm256_or_si256(blocked, no_better);
+  return ~static_cast<unsigned>(_mm256_movemask_ps(_mm256_castsi256_ps(worse))) & 0xffU;
+}
 
 }  // namespace
 
-CostToGo::CostToGo(std::shared_ptr<const EdgeLayer> edges, const std::vector<FieldGoal>& goals)
-    : edges_(std::move(edges)), distance_(edges_->padded().size(), kUnreached) {
+CostToGo::CostToGo(std::shared_ptr<const EdgeLayer> edges, const std::vector<FieldGoal>& goals,
+                   Kernels kernels)
+    : edges_(std::move(edges)),
+      distance_(edges_->padded().size() + kOverhang, kUnreached),
+      vectors_(vectorsRun(kernels)) {
   // A bucket no wider than the cheapest edge: its cells cannot improve each other, so they are final when its
   // turn comes and need no order among themselves (Denardo & Fox 1979 [denardo_fox_1979]).
   shift_ = static_cast<unsigned>(std::bit_width(edges_->units().cheapestEdge()) - 1);
@@ -41,30 +90,59 @@ bool CostToGo::settleAll(const StopCheck& stop) {
 }
 
 bool CostToGo::settleBucketsUntil(std::uint32_t index, const StopCheck& stop) {
-  const auto done = [&] {
-    return queued_ == 0 || (index != kNoCell && (distance_[index] >> shift_) < current_);
-  };
-  for (; !done(); ++current_) {
-    auto& bucket = buckets_[current_ & (buckets_.size() - 1)];
-    if (bucket.empty()) continue;
+  // Farther than 32 bits tell: left unreached.
+  const std::uint64_t last_bucket = (std::uint64_t{kUnreached} - 2 * EdgeLayer::kBlocked) >> shift_;
+  for (; feed(last_bucket); ++current_) {
+    if (index != kNoCell && (distance_[index] >> shift_) < current_) return true;
+    if (buckets_[current_ & (buckets_.size() - 1)].empty()) continue;
     if (stop()) return false;
-    settleBucket(bucket);
+    settleCurrent();
   }
   return true;
 }
 
-void CostToGo::settleBucket(std::vector<std::uint32_t>& bucket) {
+void CostToGo::settleBelow(std::uint64_t bucket) {
+  for (; feed(bucket); ++current_) settleCurrent();
+}
+
+// Brings waiting seeds into the bucket whose turn it is, or goes to their bucket when nothing else is queued.
+// False when nothing is left below the given bucket.
+bool CostToGo::feed(std::uint64_t below) {
+  if (queued_ == 0 && !seeds_.empty())
+    current_ =
+        std::max<std::uint64_t>(current_, std::min<std::uint64_t>(below, seeds_.back().distance >> shift_));
+  if (current_ >= below || (queued_ == 0 && seeds_.empty())) return false;
+  for (; !seeds_.empty() && seeds_.back().distance >> shift_ <= current_; seeds_.pop_back(), ++queued_)
+    buckets_[current_ & (buckets_.size() - 1)].push_back(seeds_.back().index);
+  return true;
+}
+
+void CostToGo::settleCurrent() {
+  auto& bucket = buckets_[current_ & (buckets_.size() - 1)];
+  if (vectors_)
+    settleBucket(bucket, improvedByVector);
+  else
+    settleBucket(bucket, improvedByScalar);
+}
+
+// Settles cells one after the other. Both twins take the headings in the same order, so that even the queues
+// agree.
+template <typename Improved>
+void CostToGo::settleBucket(Bucket& bucket, Improved improved) {
   const PaddedGrid& padded = edges_->padded();
+  const std::array<std::ptrdiff_t, 8> offsets = neighbourOffsets(padded);
+  const auto stride = static_cast<std::ptrdiff_t>(padded.stride());
   for (std::size_t i = 0; i < bucket.size(); ++i) {
+    if (i + kAhead < bucket.size()) prefetch(bucket[i + kAhead], stride);
     const std::size_t cell = bucket[i];
-    if ((distance_[cell] >> shift_) != current_) continue;  // it was reached cheaper, and settled then
+    const std::uint32_t here = distance_[cell];
+    if ((here >> shift_) != current_) continue;  // it was reached cheaper, and settled then
     ++settled_;
     const std::uint16_t* into = edges_->into(cell);
-    for (int heading = 0; heading < 8; ++heading) {
-      if (into[heading] == EdgeLayer::kBlocked) continue;
-      const std::size_t neighbour = cell + static_cast<std::size_t>(padded.offset(heading));
-      const std::uint32_t through = distance_[cell] + into[heading];
-      if (through >= distance_[neighbour]) continue;
+    for (unsigned better = improved(&distance_[cell], into, stride); better != 0; better &= better - 1) {
+      const auto heading = static_cast<std::size_t>(std::countr_zero(better));
+      const std::size_t neighbour = cell + static_cast<std::size_t>(offsets[heading]);
+      const std::uint32_t through = here + into[heading];
       distance_[neighbour] = through;
       buckets_[(through >> shift_) & (buckets_.size() - 1)].push_back(static_cast<std::uint32_t>(neighbour));
       ++queued_;
@@ -72,6 +150,14 @@ void CostToGo::settleBucket(std::vector<std::uint32_t>& bucket) {
   }
   queued_ -= bucket.size();
   bucket.clear();
+}
+
+void CostToGo::prefetch(std::size_t cell, std::ptrdiff_t stride) const noexcept {
+  const std::uint32_t* distance = &distance_[cell];
+  __builtin_prefetch(edges_->into(cell));
+  __builtin_prefetch(distance - stride, 1);
+  __builtin_prefetch(distance, 1);
+  __builtin_prefetch(distance + stride, 1);
 }
 
 std::optional<double> CostToGo::cost_J(maps::Cell cell) const noexcept {

@@ -3,6 +3,9 @@
 #include <atomic>
 #include <thread>
 #include <utility>
+#include <vector>
+
+#include <immintrin.h>
 
 #include <planner/edge_layer.hpp>
 
@@ -17,13 +20,23 @@ constexpr Halves allBlocked() noexcept {
   return halves;
 }
 
+// Where a cell lies in its tile; the rest of the tile's row follows.
+const costmap::CellCode& cellAt(const costmap::CostGrid& map, maps::Cell c) noexcept {
+  const auto tile = static_cast<std::size_t>((c.row >> 6) * map.tileColumns() + (c.column >> 6));
+  return map.content().tiles[tile]->cells[static_cast<std::size_t>((c.row & 63) << 6 | (c.column & 63))];
+}
+
 // Halves of the cells of one row from column first - 1 to last + 1; blocked outside the map.
 void fillRow(const costmap::CostGrid& map, const EdgeUnits& units, int row, CellBox box,
              std::vector<Halves>& halves) {
-  for (int column = box.first.column - 1; column <= box.last.column + 1; ++column) {
-    const maps::Cell cell{column, row};
-    halves[static_cast<std::size_t>(column - box.first.column + 1)] =
-        map.grid().contains(cell) ? units.halves(map.at(cell)) : allBlocked();
+  const int width = map.grid().width, first = box.first.column - 1, last = box.last.column + 1;
+  std::fill(halves.begin(), halves.end(), allBlocked());
+  if (row < 0 || row >= map.grid().height) return;
+  for (int column = std::max(first, 0); column <= std::min(last, width - 1);) {
+    const int tile_end = std::min({(column | (costmap::CostTile::kSide - 1)) + 1, last + 1, width});
+    const costmap::CellCode* cells = &cellAt(map, {column, row});
+    for (; column < tile_end; ++column)
+      halves[static_cast<std::size_t>(column - first)] = units.halves(*cells++);
   }
 }
 
@@ -47,14 +60,43 @@ void stepsInto(const std::array<const Halves*, 3>& rows, std::uint16_t* into) no
   }
 }
 
+// The same with vectors: lane k holds the heading k until the end, when lanes turn from headings to where
+// they come from.
+__attribute__((target("sse4.1"))) void stepsIntoByVector(const std::array<const Halves*, 3>& rows,
+                                                         std::uint16_t* into) noexcept {
+  const auto at = [&rows](int row, int column) __attribute__((target("sse4.1"))) {
+    return _mm_loadu_si128(
+        reinterpret_cast<const __m128i*>(rows[static_cast<std::size_t>(row + 1)] + column));
+  };
+  const __m128i east = at(0, 1), north = at(1, 0), west = at(0, -1), south = at(-1, 0);
+  __m128i from = _mm_blend_epi16(west, at(-1, -1), 1 << kNorthEast);
+  from = _mm_blend_epi16(from, south, 1 << kNorth);
+  from = _mm_blend_epi16(from, at(-1, 1), 1 << kNorthWest);
+  from = _mm_blend_epi16(from, east, 1 << kWest);
+  from = _mm_blend_epi16(from, at(1, 1), 1 << kSouthWest);
+  from = _mm_blend_epi16(from, north, 1 << kSouth);
+  from = _mm_blend_epi16(from, at(1, -1), 1 << kSouthEast);
+  const __m128i blocked = _mm_set1_epi16(-1);
+  const __m128i beside_x = _mm_blend_epi16(west, east, 1 << kNorthWest | 1 << kSouthWest);
+  const __m128i beside_y = _mm_blend_epi16(south, north, 1 << kSouthWest | 1 << kSouthEast);
+  const __m128i diagonals = _mm_set1_epi32(-0x10000);
+  const __m128i cut = _mm_and_si128(
+      diagonals, _mm_or_si128(_mm_cmpeq_epi16(beside_x, blocked), _mm_cmpeq_epi16(beside_y, blocked)));
+  const __m128i steps =
+      _mm_or_si128(cut, _mm_adds_epu16(at(0, 0), from));  // blocked + anything stays blocked
+  _mm_storeu_si128(reinterpret_cast<__m128i*>(into), _mm_shuffle_epi32(steps, _MM_SHUFFLE(1, 0, 3, 2)));
+}
+
 }  // namespace
 
 EdgeLayer::EdgeLayer(std::shared_ptr<const costmap::CostGrid> map, const EdgeUnits& units, int threads,
-                     const StopCheck& stop)
+                     const StopCheck& stop, Kernels kernels)
     : map_(std::move(map)),
       units_(units),
       padded_{map_->grid().width, map_->grid().height},
-      edges_(8 * padded_.size(), kBlocked) {
+      edges_(std::make_unique_for_overwrite<std::uint16_t[]>(8 * padded_.size())),
+      vectors_(vectorsRun(kernels)) {
+  blockBorder();
   constexpr int kBlock = 64;
   std::atomic<int> next{0};
   const auto work = [&] {
@@ -69,24 +111,34 @@ EdgeLayer::EdgeLayer(std::shared_ptr<const costmap::CostGrid> map, const EdgeUni
   complete_ = !stop();
 }
 
+void EdgeLayer::blockBorder() {
+  const auto block = [this](maps::Cell c) { std::fill_n(edges_.get() + 8 * padded_.index(c), 8, kBlocked); };
+  for (int column = -1; column <= padded_.width; ++column)
+    block({column, -1}), block({column, padded_.height});
+  for (int row = 0; row < padded_.height; ++row) block({-1, row}), block({padded_.width, row});
+}
+
 void EdgeLayer::buildRows(CellBox box) {
   const auto width = static_cast<std::size_t>(box.last.column - box.first.column + 3);
   std::array<std::vector<Halves>, 3> rows{std::vector<Halves>(width), std::vector<Halves>(width),
                                           std::vector<Halves>(width)};
+  const auto combine = vectors_ ? stepsIntoByVector : stepsInto;
   fillRow(*map_, units_, box.first.row - 1, box, rows[0]);
   fillRow(*map_, units_, box.first.row, box, rows[1]);
   for (int row = box.first.row; row <= box.last.row; ++row) {
     fillRow(*map_, units_, row + 1, box, rows[2]);
     for (int column = box.first.column; column <= box.last.column; ++column) {
       const auto k = static_cast<std::size_t>(column - box.first.column + 1);
-      stepsInto({&rows[0][k], &rows[1][k], &rows[2][k]}, edges_.data() + 8 * padded_.index({column, row}));
+      combine({&rows[0][k], &rows[1][k], &rows[2][k]}, edges_.get() + 8 * padded_.index({column, row}));
     }
     std::rotate(rows.begin(), rows.begin() + 1, rows.end());
   }
 }
 
-void EdgeLayer::update(std::shared_ptr<const costmap::CostGrid> newer, CellBox changed) {
+void EdgeLayer::update(std::shared_ptr<const costmap::CostGrid> newer, const EdgeUnits& units,
+                       CellBox changed) {
   map_ = std::move(newer);
+  units_ = units;
   buildRows({{std::max(changed.first.column - 1, 0), std::max(changed.first.row - 1, 0)},
              {std::min(changed.last.column + 1, padded_.width - 1),
               std::min(changed.last.row + 1, padded_.height - 1)}});

@@ -3,10 +3,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <vector>
 
 #include <costmap/cost_grid.hpp>
 #include <planner/edge_units.hpp>
+#include <planner/kernels.hpp>
 #include <planner/stop_check.hpp>
 namespace talus::planner {
 
@@ -48,10 +48,10 @@ class EdgeLayer {
   /// Builds with `threads` threads (the result is the same for any number). Ends early, incomplete, when a
   /// stop is requested; complete() tells.
   EdgeLayer(std::shared_ptr<const costmap::CostGrid> map, const EdgeUnits& units, int threads = 1,
-            const StopCheck& stop = {});
+            const StopCheck& stop = {}, Kernels kernels = Kernels::Best);
 
   /// The eight steps INTO the cell at a padded index, by the heading in which the neighbour lies.
-  const std::uint16_t* into(std::size_t index) const noexcept { return edges_.data() + 8 * index; }
+  const std::uint16_t* into(std::size_t index) const noexcept { return edges_.get() + 8 * index; }
 
   const PaddedGrid& padded() const noexcept { return padded_; }
   const EdgeUnits& units() const noexcept { return units_; }
@@ -59,17 +59,20 @@ class EdgeLayer {
   const std::shared_ptr<const costmap::CostGrid>& mapPointer() const noexcept { return map_; }
   bool complete() const noexcept { return complete_; }
 
-  /// Moves on to a newer version of the same grid and cost function; cells outside the box must not have
-  /// changed.
-  void update(std::shared_ptr<const costmap::CostGrid> newer, CellBox changed);
+  /// Moves on to a newer version of the same grid, priced by units that extend the present ones; cells
+  /// outside the box must not have changed.
+  void update(std::shared_ptr<const costmap::CostGrid> newer, const EdgeUnits& units, CellBox changed);
 
  private:
   void buildRows(CellBox box);
+  void blockBorder();
 
   std::shared_ptr<const costmap::CostGrid> map_;
   EdgeUnits units_;
   PaddedGrid padded_;
-  std::vector<std::uint16_t> edges_;
+  std::unique_ptr<std::uint16_t[]>
+      edges_;  // left raw at first: each page is touched once, by the thread that fills it
+  bool vectors_ = false;
   bool complete_ = false;
 };
 

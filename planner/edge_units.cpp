@@ -90,25 +90,14 @@ EdgeUnits::EdgeUnits(const DriveCost& cost, double resolution_m, double coarseni
           : 1U;
 }
 
-EdgeUnits::Halves EdgeUnits::halves(CellCode cell) const noexcept {
-  Halves halves;
-  halves.fill(kBlocked);
-  if (cell.curve() >= curves_) return halves;
-  const int x = cell.stepsX(), y = cell.stepsY();
-  const auto middle = static_cast<std::size_t>(cell.curve()) * static_cast<std::size_t>(2 * reach_ + 1) +
-                      static_cast<std::size_t>(reach_);
-  const std::uint16_t* straight = straight_.data() + middle;
-  const std::uint16_t* diagonal = diagonal_.data() + middle;
-  const auto fill = [&](const std::uint16_t* level, GridHeading heading, int along, int across, int limit) {
-    if (std::abs(across) > limit || std::abs(along) > reach_) return;
-    halves[heading] = level[along];
-    halves[static_cast<std::size_t>(opposite(heading))] = level[-along];
+bool EdgeUnits::extends(const EdgeUnits& older) const noexcept {
+  const auto begins = [](const std::vector<std::uint16_t>& longer,
+                         const std::vector<std::uint16_t>& shorter) {
+    return longer.size() >= shorter.size() && std::equal(shorter.begin(), shorter.end(), longer.begin());
   };
-  fill(straight, kEast, x, y, across_straight_);
-  fill(straight, kNorth, y, x, across_straight_);
-  fill(diagonal, kNorthEast, x + y, y - x, across_diagonal_);
-  fill(diagonal, kNorthWest, y - x, x + y, across_diagonal_);
-  return halves;
+  return unit_J_ == older.unit_J_ && reach_ == older.reach_ && across_straight_ == older.across_straight_ &&
+         across_diagonal_ == older.across_diagonal_ && cheapest_edge_ == older.cheapest_edge_ &&
+         begins(straight_, older.straight_) && begins(diagonal_, older.diagonal_);
 }
 
 }  // namespace talus::planner

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <cstdlib>
 #include <vector>
 
 #include <costmap/drive_cost.hpp>
@@ -41,6 +42,9 @@ class EdgeUnits {
   /// A lower bound of any edge that is allowed, in units; >= 1.
   std::uint32_t cheapestEdge() const noexcept { return cheapest_edge_; }
 
+  /// Whether every cell that the older units can price is priced the same by these: curves were only added.
+  bool extends(const EdgeUnits& older) const noexcept;
+
   /// Halves of all headings in a cell.
   Halves halves(costmap::CellCode cell) const noexcept;
 
@@ -54,5 +58,26 @@ class EdgeUnits {
   double unit_J_ = 1.0;
   std::uint32_t cheapest_edge_ = 1;
 };
+
+inline EdgeUnits::Halves EdgeUnits::halves(costmap::CellCode cell) const noexcept {
+  Halves halves;
+  halves.fill(kBlocked);
+  if (cell.curve() >= curves_) return halves;
+  const int x = cell.stepsX(), y = cell.stepsY();
+  const auto middle = static_cast<std::size_t>(cell.curve()) * static_cast<std::size_t>(2 * reach_ + 1) +
+                      static_cast<std::size_t>(reach_);
+  const std::uint16_t* straight = straight_.data() + middle;
+  const std::uint16_t* diagonal = diagonal_.data() + middle;
+  const auto fill = [&](const std::uint16_t* level, GridHeading heading, int along, int across, int limit) {
+    if (std::abs(across) > limit || std::abs(along) > reach_) return;
+    halves[heading] = level[along];
+    halves[static_cast<std::size_t>(opposite(heading))] = level[-along];
+  };
+  fill(straight, kEast, x, y, across_straight_);
+  fill(straight, kNorth, y, x, across_straight_);
+  fill(diagonal, kNorthEast, x + y, y - x, across_diagonal_);
+  fill(diagonal, kNorthWest, y - x, x + y, across_diagonal_);
+  return halves;
+}
 
 }  // namespace talus::planner

@@ -52,6 +52,27 @@ std::vector<Point> throughCentres(const MotionCost& cost, Point from, const std:
   return points;
 }
 
+// The smallest box around all cells that differ; nothing when none does. Tiles that both versions share are
+// not looked at.
+std::optional<CellBox> changedCells(const costmap::CostGrid& old, const costmap::CostGrid& newer) {
+  constexpr int kSide = costmap::CostTile::kSide;
+  const maps::Grid& grid = old.grid();
+  CellBox box{{grid.width, grid.height}, {-1, -1}};
+  for (std::size_t t = 0; t < old.content().tiles.size(); ++t) {
+    if (old.content().tiles[t] == newer.content().tiles[t]) continue;
+    const int row0 = static_cast<int>(t) / old.tileColumns() * kSide,
+              column0 = static_cast<int>(t) % old.tileColumns() * kSide;
+    for (int row = row0; row < std::min(row0 + kSide, grid.height); ++row)
+      for (int column = column0; column < std::min(column0 + kSide, grid.width); ++column) {
+        if (old.at({column, row}) == newer.at({column, row})) continue;
+        box.first = {std::min(box.first.column, column), std::min(box.first.row, row)};
+        box.last = {std::max(box.last.column, column), std::max(box.last.row, row)};
+      }
+  }
+  if (box.last.column < 0) return std::nullopt;
+  return box;
+}
+
 }  // namespace
 
 Plan FieldPlanner::plan(const Problem& problem) {
@@ -73,22 +94,44 @@ Plan FieldPlanner::plan(const Problem& problem) {
   return whole;
 }
 
+// Units for this map: coarser on huge maps, so that sums along a route fit in 32 bits.
+EdgeUnits FieldPlanner::unitsFor(const costmap::CostGrid& map) {
+  const double side = map.grid().width + map.grid().height;
+  return {map.cost(), map.grid().resolution_m, std::max(1.0, side / 16384.0)};
+}
+
 bool FieldPlanner::prepareEdges(const Problem& problem, const StopCheck& stop) {
-  if (edges_ && edges_->mapPointer() == problem.map) return true;
+  if (edges_ && (edges_->mapPointer() == problem.map || repairTo(problem))) return true;
   field_.reset();
   edges_.reset();
-  const EdgeUnits units(problem.map->cost(), problem.map->grid().resolution_m);
-  auto edges = std::make_shared<const EdgeLayer>(problem.map, units, problem.threads, stop);
+  auto edges = std::make_shared<EdgeLayer>(problem.map, unitsFor(*problem.map), problem.threads, stop);
   if (!edges->complete()) return false;
   edges_ = std::move(edges);
   return true;
 }
 
+// Moves edges and field on to a newer version of the map; false when it is another map altogether.
+bool FieldPlanner::repairTo(const Problem& problem) {
+  const costmap::CostGrid &old = edges_->map(), &newer = *problem.map;
+  if (!(old.grid() == newer.grid())) return false;
+  const EdgeUnits units = unitsFor(newer);
+  if (!units.extends(edges_->units())) return false;
+  const auto changed = changedCells(old, newer);
+  edges_->update(problem.map, units, changed.value_or(CellBox{}));
+  if (!changed || !field_) return true;
+  if (fieldGoals(MotionCost(problem.map), field_goal_, field_tolerance_m_) == field_goals_)
+    field_->repair(*changed);
+  else
+    field_.reset();
+  return true;
+}
+
 bool FieldPlanner::prepareField(const MotionCost& cost, const Leg& leg) {
   if (field_ && field_goal_ == leg.to && field_tolerance_m_ == leg.tolerance_m) return true;
-  const auto goals = fieldGoals(cost, leg.to, leg.tolerance_m);
-  if (goals.empty()) return false;
-  field_.emplace(edges_, goals);
+  field_goals_ = fieldGoals(cost, leg.to, leg.tolerance_m);
+  field_.reset();
+  if (field_goals_.empty()) return false;
+  field_.emplace(edges_, field_goals_);
   field_goal_ = leg.to;
   field_tolerance_m_ = leg.tolerance_m;
   return true;

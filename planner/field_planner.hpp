@@ -33,11 +33,14 @@ class FieldPlanner {
 
   Plan planLeg(const Problem& problem, const Leg& leg, const StopCheck& stop);
   bool prepareEdges(const Problem& problem, const StopCheck& stop);
+  static EdgeUnits unitsFor(const costmap::CostGrid& map);
+  bool repairTo(const Problem& problem);
   bool prepareField(const MotionCost& cost, const Leg& leg);
 
   RefineOptions refine_;
-  std::shared_ptr<const EdgeLayer> edges_;
+  std::shared_ptr<EdgeLayer> edges_;
   std::optional<CostToGo> field_;
+  std::vector<FieldGoal> field_goals_;
   maps::Point field_goal_;
   double field_tolerance_m_ = 0.0;
 };

@@ -131,6 +131,24 @@ TEST(FieldPlanner, SameBytesForAnyNumberOfThreadsAndAgain) {
   EXPECT_EQ(first.points, other.points);
 }
 
+// Property: after a patch changed, the kept field gives the same bytes as a planner that starts from nothing.
+TEST(FieldPlanner, ReplansAsIfAnew) {
+  const auto map = randomMap({.width = 200, .height = 200, .seed = 3, .blocked = 0.05, .roughness = 0.15});
+  auto asked = problem(map, {5.5, 5.5}, {190.5, 180.5});
+  FieldPlanner kept;
+  const Plan before = kept.plan(asked);
+  ASSERT_EQ(before.status, RouteStatus::Found);
+  auto content = map->content();
+  auto tile = std::make_shared<costmap::CostTile>(*content.tiles[5]);
+  for (auto& cell : tile->cells) cell = costmap::CellCode({.dz_dx = 0.0, .dz_dy = 0.0, .curve = 4});
+  content.tiles[5] = tile;
+  asked.map = std::make_shared<costmap::CostGrid>(content);
+  FieldPlanner fresh;
+  const Plan after = kept.plan(asked), anew = fresh.plan(asked);
+  EXPECT_EQ(after.points, anew.points);
+  EXPECT_NE(after.points, before.points);
+}
+
 TEST(FieldPlanner, CancelAndTimeLimitAreStatuses) {
   const auto map = randomMap({.width = 60, .height = 60, .blocked = 0.0});
   FieldPlanner planner;
