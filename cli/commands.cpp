@@ -6,6 +6,7 @@ void addCommands(CLI::App& app, Context& context) {
   addInfo(app, context);
   addPlan(app, context);
   addScore(app, context);
+  addView(app, context);
   addWheel(app, context);
 }
 
