@@ -10,6 +10,7 @@ void addCommands(CLI::App& app, Context& context) {
   addPlan(app, context);
   addScore(app, context);
   addUpdate(app, context);
+  addView(app, context);
   addWheel(app, context);
 }
 

@@ -17,6 +17,7 @@ void addInfo(CLI::App& app, Context& context);
 void addPlan(CLI::App& app, Context& context);
 void addScore(CLI::App& app, Context& context);
 void addUpdate(CLI::App& app, Context& context);
+void addView(CLI::App& app, Context& context);
 void addWheel(CLI::App& app, Context& context);
 
 /// Registers every subcommand.

@@ -22,9 +22,10 @@ struct MapOptions {
   maps::ReadOptions read;
 };
 
-/// Declares the positional DEM with --band, --resolution, --window, --nodata, --vertical-scale, --ignore-crs,
+/// Declares the positional DEM (or what `name` calls it) with --band, --resolution, --window, --nodata,
+/// --vertical-scale, --ignore-crs,
 /// --max-cells.
-void addMapOptions(CLI::App& command, MapOptions& options);
+void addMapOptions(CLI::App& command, MapOptions& options, const std::string& name = "DEM");
 
 /// Reads the map; what the reader decided goes to stderr as warnings. @throws InputError
 maps::ElevationMap readMap(const MapOptions& options, const Context& context);

@@ -17,6 +17,8 @@ struct PlanOptions {
   std::string planner = "field";
   double time_limit_s = 0.0;  ///< 0: none
   std::string output;
+  std::string html;  ///< page to write; empty: none
+  std::string png;   ///< picture to write; empty: none
 };
 
 /// Whether the path names a mission file by its extension, .yaml or .yml.

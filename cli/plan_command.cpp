@@ -1,7 +1,7 @@
 // talus plan DEM --start P --goal P: a route.
 #include <chrono>
 #include <cmath>
-#include <numbers>
+#include <filesystem>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -10,7 +10,11 @@
 #include <cli/commands.hpp>
 #include <cli/mission.hpp>
 #include <cli/output_file.hpp>
+#include <cli/page.hpp>
+#include <cli/picture.hpp>
 #include <cli/route_json.hpp>
+#include <cli/route_summary.hpp>
+#include <cli/scene.hpp>
 #include <maps/place_reader.hpp>
 #include <planner/annotation.hpp>
 #include <planner/named_planner.hpp>
@@ -43,6 +47,8 @@ void bind(CLI::App& command, PlanOptions& options) {
       ->type_name("S")
       ->check(CLI::PositiveNumber);
   command.add_option("-o,--output", options.output, "the route as GeoJSON")->type_name("ROUTE.geojson");
+  command.add_option("--html", options.html, "the route as a page to look at")->type_name("PAGE.html");
+  command.add_option("--png", options.png, "the route as a picture")->type_name("FILE.png");
 }
 
 void requirePlaces(const PlanOptions& options) {
@@ -74,19 +80,30 @@ void requireAllowed(const planner::Plan& plan, const costmap::CostGrid& map) {
 }
 
 std::string asText(const Route& route, const Timing& seconds) {
-  const planner::RouteSummary& s = route.summary;
-  return fmt::format("route       {:.1f} m, {} vertices, by {}\n", s.length_m, route.vertices.size(),
-                     s.planner) +
-         fmt::format("cost        {:.6g} J, at most {:.2f} % above the best possible\n", s.cost,
-                     100 * s.gap) +
-         fmt::format("energy      {:.6g} J\n", s.energy_J) +
-         fmt::format("time        {:.4g} h\n", s.time_s / 3600) +
-         fmt::format("steepest    {:.1f} deg along the heading\n", s.max_slope_rad * 180 / std::numbers::pi) +
-         fmt::format("slip        {:.2f} at most\n", s.max_slip) +
-         fmt::format("stuck       {:.2g} probability on the way\n",
-                     route.vertices.back().immobilisation_risk) +
-         fmt::format("took        {:.3f} s to load, {:.3f} s for the costmap, {:.3f} s to plan\n",
+  return summaryText(route) +
+         fmt::format("{:<14}{:.3f} s to load, {:.3f} s for the costmap, {:.3f} s to plan\n", "took",
                      seconds.load_s, seconds.costmap_s, seconds.plan_s);
+}
+
+// A bad place is told before the work, not after it.
+void checkOutputs(const PlanOptions& options) {
+  for (const std::string& path : {options.output, options.html, options.png})
+    if (!path.empty()) OutputFile(path).temporary();
+}
+
+void writeFiles(const PlanOptions& options, const Ground& ground, const Route& route,
+                const Context& context) {
+  if (!options.output.empty()) {
+    const auto document =
+        routeGeoJson(route, ground.map.elevation(), {.files = ground.files, .seed = context.seed});
+    writeFile(options.output, document.dump() + "\n");
+  }
+  if (options.html.empty() && options.png.empty()) return;
+  const std::string name = std::filesystem::path(ground.map.elevation().source).filename().string();
+  Scene scene = sceneOf(ground.map, {.title = "Route across " + name});
+  addRoute(scene, route);
+  if (!options.png.empty()) savePicture(options.png, scene);
+  if (!options.html.empty()) savePage(options.html, scene);
 }
 
 int exitOf(RouteStatus status) {
@@ -118,8 +135,7 @@ int run(const PlanOptions& asked, Context& context) {
   PlanOptions options = asked;
   if (isMission(options.ground.dem.path)) readMission(options);
   requirePlaces(options);
-  if (!options.output.empty())
-    OutputFile(options.output);  // a bad place is told before the work, not after it
+  checkOutputs(options);
   planner::NamedPlanner planner(options.planner);
   const Ground ground = readGround(options.ground, context);
   if (context.stop.stop_requested()) return Exit::kCancelled;
@@ -132,10 +148,7 @@ int run(const PlanOptions& asked, Context& context) {
   const Route route =
       annotated(plan, {.map = *problem.map, .elevation_m = &map.elevation_m, .planner = planner.name()});
   if (plan.status != RouteStatus::Found) return refuse(route, context);
-  if (!options.output.empty()) {
-    const auto document = routeGeoJson(route, map, {.files = ground.files, .seed = context.seed});
-    writeFile(options.output, document.dump() + "\n");
-  }
+  writeFiles(options, ground, route, context);
   const Timing seconds{ground.load_s, ground.build_s, plan_s.count()};
   if (context.json) {
     auto json = summaryJson(route);

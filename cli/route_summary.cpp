@@ -121,9 +121,16 @@ std::string slipText(const Route& route) {
   return fmt::format("{:.2f} to {:.2f}, mean {:.2f}", slip.lowest, slip.highest, slip.mean);
 }
 
+/// How far from the best it may be, where the bound says anything of use.
 std::string statusText(const Route& route) {
   const planner::RouteSummary& s = route.summary;
+  if (!(s.gap < 1.0)) return fmt::format("found by {}; how far from the cheapest is not known", s.planner);
   return fmt::format("found by {}, within {:.2g} % of the cheapest there can be", s.planner, 100.0 * s.gap);
+}
+
+std::string riskText(double probability) {
+  if (probability > 0.99) return "more than 99 % to get stuck on the way";
+  return fmt::format("{:.2g} % to get stuck on the way", 100.0 * probability);
 }
 
 }  // namespace
@@ -163,7 +170,7 @@ Facts summaryOf(const Route& route) {
               {"wheel", wheelText(route)},
               {"pull to spare", marginText(route)},
               {"ground", groundText(route)},
-              {"risk", fmt::format("{:.2g} % to get stuck on the way", 100.0 * risk)}};
+              {"risk", riskText(risk)}};
   std::erase_if(facts, [](const auto& fact) { return fact.second.empty(); });
   return facts;
 }

@@ -86,7 +86,15 @@ void addBeliefLayers(Scene& scene, const costmap::TraversabilityMap& map, const 
        .range = {}});
 }
 
-/// "4.00 x 3.00 km, cells of 5 m".
+/// Names of the soils that the map's classes stand for.
+std::string soilNames(const costmap::TraversabilityMap& map) {
+  std::string names;
+  for (const costmap::GroundClass& one : map.model().parts().classes)
+    names += (names.empty() ? "" : ", ") + one.soil.name;
+  return names;
+}
+
+/// "4 x 3.00 km, cells of 5 m".
 std::string sizeText(const maps::Grid& grid) {
   const double width_m = grid.width * grid.resolution_m;
   const double height_m = grid.height * grid.resolution_m;
@@ -136,6 +144,8 @@ Scene sceneOf(const costmap::TraversabilityMap& map, const SceneOptions& options
   slope.range = {0.0, std::max(1.0, inner(slope.values).high)};
   scene.layers.push_back(std::move(slope));
   addBeliefLayers(scene, map, blocks);
+  scene.facts.emplace_back("rover", map.model().rover().name);
+  scene.facts.emplace_back("soil", soilNames(map));
   return scene;
 }
 

@@ -30,7 +30,7 @@ std::string dem() {
 TEST(PlanCommand, PlansWritesAndScoresTheSame) {
   const Folder folder;
   folder.write("dem.asc", dem());
-  const std::vector<std::string> ground{"dem.asc",  "--resolution", "1",   "--soil",
+  const std::vector<std::string> ground{"dem.asc",    "--resolution", "1",   "--soil",
                                         "sandy_loam", "--rover",      "fido"};
   const auto with = [&ground](std::vector<std::string> words, const std::vector<std::string>& more) {
     words.insert(words.end(), ground.begin(), ground.end());

@@ -1,0 +1,117 @@
+// Calls of plan, score and view that cannot be answered.
+#include "bad_input.hpp"
+
+namespace talus::cli {
+namespace {
+
+using Words = std::vector<std::string>;
+
+/// A plan over a map of the folder.
+Words plan(const std::string& map, const Words& more) {
+  Words words{"plan", map, "--resolution", "1", "--soil", "sandy_loam", "--rover", "fido"};
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+TEST(BadInput, Plan) {
+  const BadFiles files;
+  expectRefused(
+      files,
+      {
+          {plan("good.asc", {"--start", "5,5"}), 2, "--goal"},
+          {plan("good.asc", {"--goal", "5,5"}), 2, "--start"},
+          {plan("good.asc", {"--start", "5;5", "--goal", "9,9"}), 2, "5;5"},
+          {plan("good.asc", {"--start", "nan,5", "--goal", "9,9"}), 2, "nan,5"},
+          {plan("good.asc", {"--start", "5d,5d", "--goal", "9,9"}), 2, "CRS"},
+          {plan("good.asc", {"--start", "-5,5", "--goal", "9,9"}), 2, "outside"},
+          {plan("good.asc", {"--start", "5,5", "--goal", "64.1,9"}), 2, "outside"},
+          {plan("good.asc", {"--start", "text.json", "--goal", "9,9"}), 2, "text.json"},
+          {plan("good.asc", {"--start", "point_less.json", "--goal", "9,9"}), 2, "point_less.json"},
+          {plan("fortress.asc", {"--start", "27.5,31.5", "--goal", "5,5"}), 2, "start"},
+          {plan("fortress.asc", {"--start", "5,5", "--goal", "27.5,31.5"}), 2, "goal"},
+          {plan("fortress.asc", {"--start", "5,5", "--goal", "31.5,31.5"}), 1, ""},
+          {plan("one.asc", {"--start", "0.5,0.5", "--goal", "0.5,0.5"}), 2, ""},
+          {plan("nodata.asc", {"--start", "5,5", "--goal", "9,9"}), 2, "nodata.asc"},
+          {plan("good.asc", {"--start", "5,5", "--goal", "9,9", "--planner", "feild"}), 2, "field"},
+          {plan("good.asc", {"--start", "5,5", "--goal", "9,9", "--planner", "prmstar"}), 2, "PRMstar"},
+          {plan("good.asc", {"--start", "5,5", "--goal", "9,9", "--time", "-1"}), 2, "--time"},
+          {plan("good.asc", {"--start", "5,5", "--goal", "9,9", "-o", "no/r.geojson"}), 2,
+           "no does not exist"},
+          {plan("good.asc", {"--start", "5,5", "--goal", "9,9", "-o", "folder"}), 2, "is a directory"},
+          {plan("good.asc", {"--start", "5,5", "--goal", "9,9", "--html", "no/r.html"}), 2,
+           "no does not exist"},
+          {plan("good.asc", {"--start", "5,5", "--goal", "9,9", "--png", "folder"}), 2, "is a directory"},
+          {plan("good.asc", {"--start", "5,5", "--goal", "9,9", "--map", "garbage.ot"}), 2, "garbage.ot"},
+          {plan("good.asc", {"--start", "5,5", "--goal", "9,9", "--map", "head.ot"}), 2, "head.ot"},
+          {plan("good.asc", {"--start", "5,5", "--goal", "9,9", "--terrain", "garbage.tif"}), 2,
+           "garbage.tif"},
+          {plan("good.asc", {"--start", "5,5", "--goal", "9,9", "--rocks", "missing.tif"}), 2, "missing.tif"},
+          {plan("good.asc", {"--start", "5,5", "--goal", "9,9", "--keep-out", "text.json"}), 2, "text.json"},
+          {plan("good.asc", {"--start", "5,5", "--goal", "9,9", "--keep-out", "point_less.json"}), 2,
+           "point_less.json"},
+          {plan("good.asc", {"--start", "5,5", "--goal", "9,9", "--soils", "list.yaml"}), 2, "list.yaml"},
+          {{"plan", "missing.yaml"}, 2, "missing.yaml"},
+          {{"plan", "garbage.yaml"}, 2, "garbage.yaml"},
+          {{"plan", "unknown_key.yaml"}, 2, "unknown_key.yaml"},
+      });
+}
+
+TEST(BadInput, SoilsAndRovers) {
+  const BadFiles files;
+  std::vector<BadCall> calls;
+  for (const char* option : {"--soil", "--rover", "--soils"}) {
+    for (const char* file :
+         {"garbage.yaml", "unknown_key.yaml", "open.yaml", "list.yaml", "nan.yaml", "empty", "folder"})
+      calls.push_back(
+          {{"plan", "good.asc", "--resolution", "1", "--start", "5,5", "--goal", "9,9", option, file},
+           2,
+           file});
+    calls.push_back(
+        {{"plan", "good.asc", "--resolution", "1", "--start", "5,5", "--goal", "9,9", option, "no_such"},
+         2,
+         "no_such"});
+  }
+  expectRefused(files, calls);
+}
+
+TEST(BadInput, Score) {
+  const BadFiles files;
+  const auto score = [](const Words& more) {
+    Words words{"score", "good.asc", "--resolution", "1", "--soil", "sandy_loam", "--rover", "fido"};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  };
+  expectRefused(files, {
+                           {score({}), 2, "--path"},
+                           {score({"--path", "missing.csv"}), 2, "missing.csv"},
+                           {score({"--path", "empty.csv"}), 2, "empty.csv"},
+                           {score({"--path", "head_only.csv"}), 2, "head_only.csv"},
+                           {score({"--path", "wrong_columns.csv"}), 2, "wrong_columns.csv"},
+                           {score({"--path", "words.csv"}), 2, "words.csv"},
+                           {score({"--path", "garbage.csv"}), 2, "garbage.csv"},
+                           {score({"--path", "text.json"}), 2, "text.json"},
+                           {score({"--path", "point_less.json"}), 2, "point_less.json"},
+                           {score({"--path", "folder"}), 2, "folder"},
+                       });
+}
+
+TEST(BadInput, View) {
+  const BadFiles files;
+  expectRefused(files,
+                {
+                    {{"view"}, 2, "FILE"},
+                    {{"view", "missing.geojson"}, 2, "missing.geojson"},
+                    {{"view", "text.json"}, 2, "text.json"},
+                    {{"view", "point_less.json"}, 2, "point_less.json"},
+                    {{"view", "no_route.geojson"}, 2, "no_route.geojson: 'y_m' has 1 values for 2 vertices"},
+                    {{"view", "garbage.ot"}, 2, "garbage.ot"},
+                    {{"view", "head.ot"}, 2, "head.ot"},
+                    {{"view", "garbage.tif"}, 2, "garbage.tif"},
+                    {{"view", "folder"}, 2, "folder"},
+                    {{"view", "good.asc", "--resolution", "1", "-o", "no/page.html"}, 2, "no does not exist"},
+                    {{"view", "good.asc", "--resolution", "1", "--png", "folder"}, 2, "is a directory"},
+                });
+}
+
+}  // namespace
+}  // namespace talus::cli
