@@ -3,8 +3,11 @@
 namespace talus::cli {
 
 void addCommands(CLI::App& app, Context& context) {
+  addAssess(app, context);
+  addEstimate(app, context);
   addInfo(app, context);
   addPlan(app, context);
+  addReproduce(app, context);
   addScore(app, context);
   addWheel(app, context);
 }

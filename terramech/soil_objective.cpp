@@ -17,7 +17,7 @@ constexpr int kMostPasses = 40;         // of Gauss-Newton; five to ten are usua
 constexpr double kWiden = 1.2;          // draws a little wider than the quadratic, so that no tail is missed
 
 // Covariance of (W, T) given a soil and the readings of z and i.
-Eigen::Matrix2d residualCovariance(const SensorNoise& noise, const WheelSample& s,
+Eigen::Matrix2d residualCovariance(const ReadingErrors& noise, const WheelSample& s,
                                    const ContactDerivative& d) {
   const Eigen::Matrix2d by_state = d.block<2, 2>(kLoad, kSinkage);
   const Eigen::Vector2d state(noise.sinkage.std(s.sinkage_m), noise.slip.std(s.slip));

@@ -40,7 +40,7 @@ class SoilObjective {
   /// What is the same for all classes.
   struct Setting {
     Wheel wheel;
-    SensorNoise noise;
+    ReadingErrors noise;
     double outlier_share = 0.01;
   };
 

@@ -7,7 +7,7 @@
 #include <Eigen/Core>
 
 #include <talus.hpp>
-#include <terramech/sensor_noise.hpp>
+#include <terramech/reading_errors.hpp>
 #include <terramech/soil_mixture.hpp>
 #include <terramech/wheel.hpp>
 #include <terramech/wheel_sample.hpp>
@@ -28,7 +28,7 @@ namespace talus::terramech {
 
 /// How to fit.
 struct SoilFitOptions {
-  SensorNoise noise;
+  ReadingErrors noise = {};
   double outlier_share = 0.01;  ///< of samples that err ten times as much, [0, 0.5)
   int draws = 256;              ///< importance samples a class, >= 16
 };

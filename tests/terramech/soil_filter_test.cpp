@@ -1,16 +1,15 @@
 #include <cmath>
 
-#include <tests/terramech/simulated_soils.hpp>
-
 #include <terramech/soil_filter.hpp>
+#include <terramech/thesis_runs.hpp>
 
 namespace talus::terramech {
 namespace {
 
 TEST(SoilFilter, EqualsTheBatchWhileTheWindowHoldsAll) {
   // Property: same modes to the tolerance of the search, hence almost the same draws.
-  std::mt19937_64 random(8);
-  const SimulatedRun run = simulateRun(random, 0.05);
+  ThesisRuns runs(8);
+  const ThesisRun run = runs.next({.noise = 0.05});
   SoilFilter filter(kThesisWheel, thesisSoils(), {});
   for (const WheelSample& s : run.samples) filter.add(s);
   const SoilPosterior batch = fitSoil(kThesisWheel, run.samples, thesisSoils());
@@ -22,8 +21,8 @@ TEST(SoilFilter, EqualsTheBatchWhileTheWindowHoldsAll) {
 
 TEST(SoilFilter, StaysCloseToTheBatchWhenSamplesHaveLeftTheWindow) {
   // Property: 40 samples, 12 kept: within half a standard deviation of the fit of all 40.
-  std::mt19937_64 random(12);
-  const SimulatedRun run = simulateRun(random, 0.05, 40);
+  ThesisRuns runs(12);
+  const ThesisRun run = runs.next({.noise = 0.05, .samples = 40});
   SoilFilter filter(kThesisWheel, thesisSoils(), {});
   for (const WheelSample& s : run.samples) filter.add(s);
   const SoilPosterior batch = fitSoil(kThesisWheel, run.samples, thesisSoils());
@@ -35,9 +34,9 @@ TEST(SoilFilter, StaysCloseToTheBatchWhenSamplesHaveLeftTheWindow) {
 }
 
 TEST(SoilFilter, ARefusedSampleLeavesItAsItWas) {
-  std::mt19937_64 random(3);
+  ThesisRuns runs(3);
   SoilFilter filter(kThesisWheel, thesisSoils(), {});
-  for (const WheelSample& s : simulateRun(random, 0.05).samples) filter.add(s);
+  for (const WheelSample& s : runs.next({.noise = 0.05}).samples) filter.add(s);
   const double before = filter.mode().cohesion_Pa;
   EXPECT_THROW(filter.add({.load_N = -1.0, .torque_Nm = 1.0, .sinkage_m = 0.01, .slip = 0.3}),
                std::invalid_argument);

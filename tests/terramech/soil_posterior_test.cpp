@@ -2,9 +2,9 @@
 #include <stdexcept>
 
 #include <Eigen/LU>
-#include <tests/terramech/simulated_soils.hpp>
 
 #include <terramech/soil_posterior.hpp>
+#include <terramech/thesis_runs.hpp>
 
 namespace talus::terramech {
 namespace {
@@ -14,10 +14,11 @@ constexpr double kDegree = 3.14159265358979323846 / 180.0;
 TEST(SoilPosterior, FindsTheSoilOfExactReadings) {
   // Property: with 0.1 % errors assumed and none made, c within 0.1 kPa and phi within 0.5 deg (worst of
   // eight soils).
-  std::mt19937_64 random(5);
+  ThesisRuns runs(5);
   for (int k = 0; k < 8; ++k) {
-    const SimulatedRun run = simulateRun(random, 0.0);
-    const auto p = fitSoil(kThesisWheel, run.samples, thesisSoils(), {.noise = SensorNoise::relative(1e-3)});
+    const ThesisRun run = runs.next({.noise = 0.0});
+    const auto p =
+        fitSoil(kThesisWheel, run.samples, thesisSoils(), {.noise = ReadingErrors::relative(1e-3)});
     EXPECT_NEAR(p.mean.cohesion_Pa, run.soil.cohesion_Pa, 200.0);
     EXPECT_NEAR(p.mean.friction_angle_rad, run.soil.friction_angle_rad, 0.5 * kDegree);
     EXPECT_NEAR(p.mean.shear_modulus_m, run.soil.shear_modulus_m, 0.001);
@@ -30,12 +31,12 @@ TEST(SoilPosterior, BeatsThePriorMeanAndKnowsItsError) {
   // Property: over 60 soils with 5 % errors the rms error is below that of always answering the prior mean
   // (2.3 kPa, 4.9 deg), agrees with the posterior's own standard deviation to a third, and 95 % intervals
   // hold the truth 85 to 100 %.
-  std::mt19937_64 random(9);
+  ThesisRuns runs(9);
   double c2 = 0.0, phi2 = 0.0, own_c2 = 0.0, own_phi2 = 0.0;
   int inside = 0;
   constexpr int kSoils = 60;
   for (int k = 0; k < kSoils; ++k) {
-    const SimulatedRun run = simulateRun(random, 0.05);
+    const ThesisRun run = runs.next({.noise = 0.05});
     const SoilPosterior p = fitSoil(kThesisWheel, run.samples, thesisSoils(), {.noise = {}, .draws = 64});
     c2 += std::pow(p.mean.cohesion_Pa - run.soil.cohesion_Pa, 2) / kSoils;
     phi2 += std::pow(p.mean.friction_angle_rad - run.soil.friction_angle_rad, 2) / kSoils;
@@ -52,9 +53,9 @@ TEST(SoilPosterior, BeatsThePriorMeanAndKnowsItsError) {
 
 TEST(SoilPosterior, ShrugsOffAnOutlier) {
   // Property: one torque read at twice its value moves the answer by less than its own standard deviation.
-  std::mt19937_64 random(21);
-  SimulatedRun run = simulateRun(random, 0.02);
-  const SoilFitOptions options{.noise = SensorNoise::relative(0.02)};
+  ThesisRuns runs(21);
+  ThesisRun run = runs.next({.noise = 0.02});
+  const SoilFitOptions options{.noise = ReadingErrors::relative(0.02)};
   const SoilPosterior clean = fitSoil(kThesisWheel, run.samples, thesisSoils(), options);
   run.samples[4].torque_Nm *= 2.0;
   const SoilPosterior dirty = fitSoil(kThesisWheel, run.samples, thesisSoils(), options);
@@ -66,16 +67,16 @@ TEST(SoilPosterior, ShrugsOffAnOutlier) {
 
 TEST(SoilPosterior, SaysWhatAlikeSamplesDoNotShow) {
   // Property: twelve samples at one slip of 0.8, where the shear is nearly developed, say little of K.
-  std::mt19937_64 random(2);
-  SimulatedRun run = simulateRun(random, 0.05);
+  ThesisRuns runs(2);
+  ThesisRun run = runs.next({.noise = 0.05});
   const std::vector<WheelSample> same(3, run.samples[6]);
   const SoilPosterior p = fitSoil(kThesisWheel, same, thesisSoils());
   EXPECT_THAT(p.unseen, testing::Contains(testing::StartsWith("shear_modulus_m: ")));
 }
 
 TEST(SoilPosterior, IsTheSameEveryTime) {
-  std::mt19937_64 random(4);
-  const SimulatedRun run = simulateRun(random, 0.05);
+  ThesisRuns runs(4);
+  const ThesisRun run = runs.next({.noise = 0.05});
   const auto once = fitSoil(kThesisWheel, run.samples, thesisSoils());
   const auto again = fitSoil(kThesisWheel, run.samples, thesisSoils());
   EXPECT_EQ(once.mean.cohesion_Pa, again.mean.cohesion_Pa);

@@ -7,7 +7,7 @@
 namespace talus::terramech {
 
 /// Standard deviation of a reading: a part of its value and a part of its own, added in quadrature.
-struct ReadingNoise {
+struct ReadingError {
   double relative = 0.0;  ///< [-]
   double absolute = 0.0;  ///< in the reading's unit
 
@@ -15,14 +15,14 @@ struct ReadingNoise {
 };
 
 /// Errors of the four readings; the default is the 5 % on everything that the thesis' simulations use.
-struct SensorNoise {
-  ReadingNoise load{.relative = 0.05};
-  ReadingNoise torque{.relative = 0.05};
-  ReadingNoise sinkage{.relative = 0.05};
-  ReadingNoise slip{.relative = 0.05};
+struct ReadingErrors {
+  ReadingError load{.relative = 0.05};
+  ReadingError torque{.relative = 0.05};
+  ReadingError sinkage{.relative = 0.05};
+  ReadingError slip{.relative = 0.05};
 
   /// The same relative error [-] on all four.
-  static SensorNoise relative(double share) { return {{share}, {share}, {share}, {share}}; }
+  static ReadingErrors relative(double share) { return {{share}, {share}, {share}, {share}}; }
 };
 
 }  // namespace talus::terramech
