@@ -14,14 +14,14 @@ namespace talus::cli {
 namespace {
 
 struct ReproduceOptions {
-  std::string output = "validation";
+  std::string output = ".";
   std::string measured;
   bool goals_only = false;
   int soils = 500;
 };
 
 void bind(CLI::App& command, ReproduceOptions& options) {
-  command.add_option("-o,--output", options.output, "folder for validation.md and its pictures")
+  command.add_option("-o,--output", options.output, "folder for validation.md and validation/*.png")
       ->type_name("DIR")
       ->capture_default_str();
   command.add_flag("--goals", options.goals_only, "measure the estimators alone and print the table");
@@ -42,7 +42,7 @@ std::string goalTable(const std::vector<GoalLine>& lines) {
 }
 
 std::string pictureName(const ThesisFigure& figure) {
-  std::string name = "figure_" + figure.number + ".png";
+  std::string name = "validation/figure_" + figure.number + ".png";
   std::replace(name.begin(), name.end() - 4, '.', '_');
   return name;
 }
@@ -88,7 +88,19 @@ std::string page(const std::vector<ThesisFigure>& figures, const std::vector<Goa
   return text;
 }
 
+std::filesystem::path madeFolder(const ReproduceOptions& options) {
+  const std::filesystem::path folder = options.output;
+  std::error_code failed;
+  std::filesystem::create_directories(folder / "validation", failed);
+  if (failed) {
+    throw InputError(
+        {.where = options.output, .reason = failed.message(), .remedy = "name a folder that can be made"});
+  }
+  return folder;
+}
+
 int run(const ReproduceOptions& options, Context& context) {
+  const auto folder = options.goals_only ? std::filesystem::path() : madeFolder(options);
   const GoalOptions study{.seed = context.seed, .soils = options.soils, .measured = options.measured};
   const Watch watch = context.watch("soils");
   const std::vector<GoalLine> goals = measureGoals(study, watch);
@@ -100,12 +112,6 @@ int run(const ReproduceOptions& options, Context& context) {
       list.push_back({{"quantity", l.quantity}, {"reached", l.reached}, {"goal", l.goal}});
     return printJson(list), Exit::kDone;
   }
-  const std::filesystem::path folder = options.output;
-  std::error_code failed;
-  std::filesystem::create_directories(folder, failed);
-  if (failed)
-    throw InputError(
-        {.where = options.output, .reason = failed.message(), .remedy = "name a folder that can be made"});
   std::vector<ThesisFigure> figures = estimationFigures(context.seed);
   for (ThesisFigure& f : traversabilityFigures(context.seed)) figures.push_back(std::move(f));
   for (const ThesisFigure& f : figures) save(folder / pictureName(f), f.plots);
@@ -127,7 +133,7 @@ void addReproduce(CLI::App& app, Context& context) {
       {.name = "reproduce",
        .group = Group::kSoil,
        .description = "the thesis' figures and numbers made anew, and what the estimators reach",
-       .examples = "  talus reproduce -o validation\n  talus reproduce --goals --soils 500\n"},
+       .examples = "  talus reproduce -o docs\n  talus reproduce --goals --soils 500\n"},
       bind, run);
 }
 
