@@ -3,11 +3,14 @@
 namespace talus::cli {
 
 void addCommands(CLI::App& app, Context& context) {
+  addAssess(app, context);
   addCostmap(app, context);
+  addEstimate(app, context);
   addExplain(app, context);
   addGenerate(app, context);
   addInfo(app, context);
   addPlan(app, context);
+  addReproduce(app, context);
   addScore(app, context);
   addUpdate(app, context);
   addView(app, context);

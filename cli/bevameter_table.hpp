@@ -1,0 +1,23 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include <talus.hpp>
+#include <terramech/bevameter.hpp>
+#include <terramech/telemetry.hpp>
+
+namespace talus::cli {
+
+/// Plate tests out of a CSV: rows of a shear test (normal_stress_Pa, shear_stress_Pa, shear_displacement_m),
+/// of a pressure-sinkage test (plate_width_m or plate_d_m, pressure_Pa or p_Pa, sinkage_m), or both.
+struct BevameterTable {
+  std::vector<terramech::ShearReading> shear;
+  std::vector<terramech::PlateReading> plates;
+  std::vector<terramech::RejectedRow> rejected;
+};
+
+/// Throws InputError when the file has the columns of neither test, or no usable row.
+BevameterTable readBevameterTable(const std::filesystem::path& path, const Watch& watch);
+
+}  // namespace talus::cli

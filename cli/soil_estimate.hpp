@@ -1,0 +1,50 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <cli/wheel_rows.hpp>
+#include <terramech/mohr_coulomb_line.hpp>
+#include <terramech/soil_posterior.hpp>
+
+namespace talus::cli {
+
+/// What `talus estimate` is asked for.
+struct EstimateOptions {
+  std::string table;
+  std::string method;
+  std::string shear_modulus;  ///< a number [m], or the name of a method; empty: the file's column, else joint
+  std::string prior;          ///< soil file or name; empty: the classes of thesis Table 2.1
+  std::string rover;
+  std::string html;
+  double noise = 0.05;  ///< relative standard deviation of each reading [-]
+};
+
+/// What any method answers; a number it cannot give is NaN.
+struct SoilEstimate {
+  double cohesion_Pa;
+  double tan_friction;
+  double shear_modulus_m;
+  Eigen::Matrix2d covariance;  ///< of (c, tan phi)
+  double friction_angle_rad;
+  double sinkage_exponent;
+  std::optional<double> cohesive_modulus;
+  std::optional<double> frictional_modulus;
+  std::size_t rows_used = 0;
+  std::vector<terramech::RejectedRow> rejected;
+  std::vector<std::string> unseen;            ///< parameters that the data do not show, with the reason
+  std::vector<terramech::StressPair> points;  ///< what a line was fitted to, for a plot
+  std::optional<terramech::SoilPosterior> posterior;  ///< of wong-reece
+  std::vector<std::string> class_names;               ///< of its prior
+
+  SoilEstimate();
+};
+
+/// Runs the method on the table. Throws InputError for what is wrong with the input, std::domain_error when
+/// there is no fit.
+SoilEstimate estimateSoil(const EstimateOptions& options, const Watch& watch);
+
+}  // namespace talus::cli

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <talus.hpp>
+#include <terramech/telemetry.hpp>
+#include <terramech/wheel.hpp>
+#include <terramech/wheel_sample.hpp>
+
+namespace talus::cli {
+
+/// Rows of wheel telemetry that an estimator can use, and those that it cannot.
+struct WheelRows {
+  std::string source;      ///< the file
+  terramech::Wheel wheel;  ///< of all rows
+  std::vector<terramech::WheelSample> samples;
+  std::vector<std::size_t> lines;                ///< of each sample in the file
+  std::vector<terramech::RejectedRow> rejected;  ///< by the reader or by the method, in the file's order
+  const terramech::RejectedRow* firstRejected() const {
+    return rejected.empty() ? nullptr : &rejected.front();
+  }
+};
+
+/// How rows are read.
+struct WheelRowOptions {
+  std::string rover;       ///< whose wheel it is, where the file has no wheel_radius_m and wheel_width_m
+  bool needs_slip = true;  ///< slip > 0: the method needs a driven wheel that slips
+};
+
+/// Reads load_N, torque_Nm, sinkage_m and, where needed, slip. Leaves out rows without contact (sinkage 0),
+/// or of a wheel that is not driven where slip is needed. Throws InputError when a column is missing, wheels
+/// of two sizes are mixed, or no row is left.
+WheelRows readWheelRows(const std::filesystem::path& path, const WheelRowOptions& options,
+                        const Watch& watch);
+
+}  // namespace talus::cli

@@ -1,0 +1,168 @@
+#include <algorithm>
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include "run_program.hpp"
+
+namespace talus::cli {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+// Ten readings on loam (c 2436 Pa, phi 24.9 deg, K 20.3 mm), by an independent Wong-Reece implementation,
+// rounded.
+constexpr const char* kHeader = "load_N,torque_Nm,sinkage_m,slip,wheel_radius_m,wheel_width_m\n";
+
+std::string drive() {
+  std::string text = kHeader;
+  // Printed by talus wheel on the library's loam; exact digits do not matter here.
+  const double rows[][4] = {{80.95, 2.40, 0.0159, 0.2}, {66.59, 2.35, 0.0150, 0.3},
+                            {82.55, 3.15, 0.0178, 0.4}, {71.49, 3.05, 0.0171, 0.5},
+                            {63.35, 2.93, 0.0166, 0.6}, {93.83, 4.15, 0.0210, 0.7},
+                            {77.09, 3.68, 0.0193, 0.8}, {65.61, 3.13, 0.0176, 0.7},
+                            {85.56, 3.63, 0.0192, 0.6}, {60.52, 2.69, 0.0160, 0.5}};
+  for (const auto& r : rows) {
+    text += std::to_string(r[0]) + "," + std::to_string(r[1]) + "," + std::to_string(r[2]) + "," +
+            std::to_string(r[3]) + ",0.1,0.1\n";
+  }
+  return text;
+}
+
+json estimated(const std::vector<std::string>& more, const std::string& table) {
+  std::vector<std::string> call{"--json", "estimate", table};
+  call.insert(call.end(), more.begin(), more.end());
+  const Ran ran = runTalus(call);
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  return json::parse(ran.out);
+}
+
+TEST(EstimateCommand, EveryMethodPrintsTheFieldsThatOthersRelyOn) {
+  const Folder folder;
+  const std::string table = folder.write("drive.csv", drive());
+  for (const char* method : {"sojourner", "iagnemma", "linear-offset", "wong-reece"}) {
+    const json result = estimated({"--method", method}, table);
+    EXPECT_EQ(result.at("method"), method);
+    for (const char* field : {"cohesion_Pa", "friction_angle_rad"})
+      EXPECT_TRUE(result.at(field).is_number()) << field;
+    EXPECT_TRUE(result.contains("shear_modulus_m"));
+    EXPECT_EQ(result.at("covariance").size(), 2u);
+    EXPECT_EQ(result.at("rows_used"), 10);
+    EXPECT_EQ(result.at("rows_rejected"), 0);
+  }
+}
+
+TEST(EstimateCommand, ShearModulusIsTakenAsStatedOrFoundAsAsked) {
+  const Folder folder;
+  const std::string table = folder.write("drive.csv", drive());
+  EXPECT_DOUBLE_EQ(estimated({"--method", "iagnemma", "--shear-modulus", "0.02"}, table)["shear_modulus_m"],
+                   0.02);
+  for (const char* how : {"error-minimisation", "effective-torque", "effective-torque-printed", "joint"}) {
+    const double k =
+        estimated({"--method", "linear-offset", "--shear-modulus", how}, table)["shear_modulus_m"];
+    EXPECT_GT(k, 0.001) << how;
+    EXPECT_LE(k, 0.1) << how;
+  }
+}
+
+TEST(EstimateCommand, PriorNarrowsWongReece) {
+  const Folder folder;
+  const std::string table = folder.write("drive.csv", drive());
+  const std::string prior = folder.write(
+      "prior.yaml",
+      "soil: {name: known, cohesion_Pa: {mean: 2400, std: 10}, friction_angle_deg: {mean: 25, std: 0.1}, "
+      "sinkage_exponent: {mean: 0.85, std: 0.3}, cohesive_modulus: 0, frictional_modulus: {mean: 1.7e6, std: "
+      "4e5}, shear_modulus_m: {mean: 0.02, std: 0.005}}\n");
+  const json result = estimated({"--method", "wong-reece", "--prior", prior}, table);
+  EXPECT_NEAR(result["cohesion_Pa"], 2400.0, 40.0);
+  EXPECT_NEAR(result["friction_angle_rad"], 25.0 * 3.14159265 / 180.0, 0.01);
+}
+
+TEST(EstimateCommand, RejectsRowsByLineAndCountsThem) {
+  const Folder folder;
+  const std::string table =
+      folder.write("drive.csv", drive() + "-3,1,0.01,0.3,0.1,0.1\n80,1,0.01,-0.2,0.1,0.1\n");
+  const json result = estimated({"--method", "linear-offset", "--shear-modulus", "0.02"}, table);
+  EXPECT_EQ(result["rows_used"], 10);
+  ASSERT_EQ(result["rows_rejected"], 2);
+  EXPECT_EQ(result["rejected"][0]["line"], 12);
+  EXPECT_THAT(result["rejected"][1]["reason"].get<std::string>(), HasSubstr("slip"));
+}
+
+TEST(EstimateCommand, SaysWhenDataAreBadlyConditioned) {
+  const Folder folder;
+  std::string text = kHeader;
+  for (int k = 0; k < 6; ++k) text += "80,3.0" + std::to_string(k) + ",0.018,0.5,0.1,0.1\n";
+  const Ran ran = runTalus(
+      {"estimate", folder.write("same.csv", text), "--method", "linear-offset", "--shear-modulus", "0.02"});
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  EXPECT_THAT(ran.err, HasSubstr("badly conditioned: friction_angle_rad"));
+}
+
+TEST(EstimateCommand, BevameterFitsBothTests) {
+  const Folder folder;
+  std::string text =
+      "normal_stress_Pa,shear_stress_Pa,shear_displacement_m,plate_width_m,pressure_Pa,sinkage_m\n";
+  for (const double sigma : {5000.0, 10000.0, 20000.0}) {
+    for (int k = 1; k <= 6; ++k) {
+      const double j = 0.008 * k;
+      const double tau = (700.0 + 0.6 * sigma) * (1.0 - std::exp(-j / 0.015));
+      const double width = k % 2 == 0 ? 0.05 : 0.1;
+      const double pressure = (5000.0 / width + 1e6) * std::pow(0.005 * k, 0.9);
+      text += std::to_string(sigma) + "," + std::to_string(tau) + "," + std::to_string(j) + "," +
+              std::to_string(width) + "," + std::to_string(pressure) + "," + std::to_string(0.005 * k) + "\n";
+    }
+  }
+  const json result = estimated({"--method", "bevameter"}, folder.write("plates.csv", text));
+  EXPECT_NEAR(result["cohesion_Pa"], 700.0, 1.0);
+  EXPECT_NEAR(result["shear_modulus_m"], 0.015, 1e-5);
+  EXPECT_NEAR(result["sinkage_exponent"], 0.9, 1e-4);
+  EXPECT_NEAR(result["cohesive_modulus"], 5000.0, 20.0);
+}
+
+TEST(EstimateCommand, MistakesAreOneLineWithTheirExitCode) {
+  const Folder folder;
+  const std::string good = folder.write("drive.csv", drive());
+  const std::string lacking = folder.write("lacking.csv", "load_N,torque_Nm\n80,3\n");
+  const std::string unusable =
+      folder.write("unusable.csv", std::string(kHeader) + "80,3,0.01,-0.5,0.1,0.1\n");
+  const std::string two = folder.write("two.csv", drive() + "80,3,0.01,0.5,0.2,0.1\n");
+  const std::string one = folder.write("one.csv", std::string(kHeader) + "80,3,0.01,0.5,0.1,0.1\n");
+  struct Case {
+    std::vector<std::string> words;
+    int code;
+    const char* says;
+  };
+  for (const Case& c : std::vector<Case>{
+           {{"estimate", folder / "none.csv", "--method", "iagnemma"}, 2, "none.csv"},
+           {{"estimate", lacking, "--method", "iagnemma"}, 2, "sinkage_m"},
+           {{"estimate", unusable, "--method", "iagnemma"}, 2, "no usable row"},
+           {{"estimate", two, "--method", "iagnemma"}, 2, "another wheel"},
+           {{"estimate", one, "--method", "iagnemma", "--shear-modulus", "0.02"}, 1, "two samples"},
+           {{"estimate", good, "--method", "bevameter"}, 2, "plate test"},
+           {{"estimate", good, "--method", "guess"}, 2, "guess"},
+           {{"estimate", good, "--method", "iagnemma", "--shear-modulus", "soft"}, 2, "soft"},
+           {{"estimate", good, "--method", "iagnemma", "--prior", "sand"}, 2, "wong-reece"},
+           {{"estimate", good, "--method", "wong-reece", "--prior", "no_such"}, 2, "no_such"},
+       }) {
+    const Ran ran = runTalus(c.words);
+    EXPECT_EQ(ran.code, c.code) << ran.err;
+    EXPECT_THAT(ran.err, HasSubstr(c.says));
+    EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
+    EXPECT_TRUE(ran.out.empty());
+  }
+}
+
+TEST(EstimateCommand, WritesAPage) {
+  const Folder folder;
+  const std::string page = folder / "fit.html";
+  EXPECT_EQ(
+      runTalus({"estimate", folder.write("drive.csv", drive()), "--method", "wong-reece", "--html", page})
+          .code,
+      0);
+  EXPECT_THAT(fileContent(page), HasSubstr("<svg"));
+}
+
+}  // namespace
+}  // namespace talus::cli

@@ -1,0 +1,49 @@
+#include <nlohmann/json.hpp>
+
+#include "run_program.hpp"
+
+namespace talus::cli {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+TEST(ReproduceCommand, GoalsAreTheSameForTheSameSeed) {
+  // Property: all but the lines of time.
+  const auto measured = [] {
+    const Ran ran = runTalus({"--json", "--seed", "5", "reproduce", "--goals", "--soils", "8"});
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    json lines = json::parse(ran.out);
+    json kept = json::array();
+    for (const json& line : lines) {
+      if (!line["quantity"].get<std::string>().starts_with("processor time")) kept.push_back(line);
+    }
+    return kept;
+  };
+  const json once = measured();
+  EXPECT_GT(once.size(), 20u);
+  EXPECT_EQ(once, measured());
+}
+
+TEST(ReproduceCommand, WritesThePageAndEveryPicture) {
+  const Folder folder;
+  const Ran ran = runTalus({"reproduce", "--soils", "8", "-o", folder / "docs"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const std::string page = fileContent(folder / "docs/validation.md");
+  for (const char* figure :
+       {"2_5", "2_6", "2_7", "2_9", "3_5", "3_6", "3_8", "3_12", "A_4", "C_4", "D_1", "D_2", "D_3"}) {
+    const std::string picture = std::string("validation/figure_") + figure + ".png";
+    EXPECT_THAT(page, HasSubstr(picture));
+    EXPECT_GT(fileContent(folder / ("docs/" + picture)).size(), 1000u) << picture;
+  }
+}
+
+TEST(ReproduceCommand, RefusesAFolderThatCannotBeMade) {
+  const Folder folder;
+  const std::string file = folder.write("file", "x");
+  const Ran ran = runTalus({"reproduce", "--soils", "8", "-o", file + "/below"});
+  EXPECT_EQ(ran.code, 2);
+}
+
+}  // namespace
+}  // namespace talus::cli
