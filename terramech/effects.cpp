@@ -16,16 +16,22 @@ const char* name(Channel channel) {
   return "";
 }
 
+double Reading::denominator(Channel channel) const {
+  switch (channel) {
+    case Channel::Sinkage: return radius_m;
+    case Channel::Torque: return load_N * radius_m;
+    case Channel::DrawbarPull:
+    case Channel::SideForce: break;
+  }
+  return load_N;
+}
+
 double Reading::scaled(Channel channel) const {
   switch (channel) {
-    case Channel::DrawbarPull:
-      return drawbar_pull_N / load_N;
-    case Channel::Sinkage:
-      return sinkage_m / radius_m;
-    case Channel::Torque:
-      return torque_Nm / (load_N * radius_m);
-    case Channel::SideForce:
-      return side_force_N / load_N;
+    case Channel::DrawbarPull: return drawbar_pull_N / load_N;
+    case Channel::Sinkage: return sinkage_m / radius_m;
+    case Channel::Torque: return torque_Nm / (load_N * radius_m);
+    case Channel::SideForce: return side_force_N / load_N;
   }
   return 0.0;
 }

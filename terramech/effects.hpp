@@ -28,6 +28,7 @@ struct Reading {
   double drawbar_pull_N = 0.0;
   double side_force_N = 0.0;
 
+  double denominator(Channel channel) const;      ///< W, r, r W or W
   double scaled(Channel channel) const;           ///< DP/W, z/r, T/(rW), F/W [-]
   void addScaled(Channel channel, double value);  ///< adds to one of them [-]
 };

@@ -171,7 +171,7 @@ Prediction predictWithStd(const RefinedModel& model, const WheelState& state) {
       by_parameter.push_back(slope(predict(moved, state), out.mean, h));
     }
   for (std::size_t c = 0; c < kChannels; ++c) {
-    variance[c] = squared(noise.absolute[c]) +
+    variance[c] = squared(noise.absolute[c] / out.mean.denominator(static_cast<Channel>(c))) +
                   squared(noise.relative[c] * out.mean.scaled(static_cast<Channel>(c))) +
                   slip_var * squared(by_slip[c]) + squared(noise.load_relative * by_load[c]);
     for (std::size_t i = 0; i < by_parameter.size(); ++i)

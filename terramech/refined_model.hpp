@@ -14,7 +14,7 @@ namespace talus::terramech {
 
 /// Standard deviations of what the sensors read: absolute + relative parts add in squares.
 struct SensorNoise {
-  std::array<double, kChannels> absolute{};  ///< of DP/W, z/r, T/(rW), F/W [-]
+  std::array<double, kChannels> absolute{};  ///< of DP [N], z [m], T [N m], F [N]
   std::array<double, kChannels> relative{};  ///< of the value read [-]
   double slip_absolute = 0.0;                ///< [-]
   double slip_relative = 0.0;                ///< of the slip
