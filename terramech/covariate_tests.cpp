@@ -46,13 +46,21 @@ class Asker {
       for (int row : rows) mean += by_row(row, k) / static_cast<double>(rows.size());
       for (int row : rows) full(row * kChannels + channel, k) = by_row(row, k) - (centre ? mean : 0.0);
     }
-    Question q{{name, channel}, without(full, nuisance_), false, 0.0, static_cast<int>(rows.size())};
+    Question q;
+    q.test.covariate = name;
+    q.test.channel = channel;
+    q.columns = without(full, nuisance_);
+    q.count = static_cast<int>(rows.size());
     for (int row : rows) q.total += marginal_[row * kChannels + channel] * marginal_[row * kChannels + channel];
     add(std::move(q));
   }
 
   void askDirection(const Direction& direction) {
-    Question q{{direction.name, -1}, without(direction.columns, nuisance_white_), true, white_.squaredNorm(), 0};
+    Question q;
+    q.test.covariate = direction.name;
+    q.columns = without(direction.columns, nuisance_white_);
+    q.whitened = true;
+    q.total = white_.squaredNorm();
     q.count = static_cast<int>((trial_.measured.array().isFinite()).count());
     add(std::move(q));
   }

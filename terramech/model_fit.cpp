@@ -76,7 +76,7 @@ class Search {
  private:
   double scale(Eigen::Index k) const { return rangeOf(model_, plan_.free[static_cast<std::size_t>(k)]).scale; }
 
-  std::optional<SoilPrior> priorOf(Eigen::Index k) const {
+  std::optional<ParameterPrior> priorOf(Eigen::Index k) const {
     const auto& p = plan_.free[static_cast<std::size_t>(k)];
     if (p.effect >= 0) return {};
     const auto found = plan_.soil_prior.find(p.index);

@@ -12,14 +12,14 @@
 namespace talus::terramech {
 
 /// Prior of a soil parameter in its own unit (a step from the start for log_stiffness).
-struct SoilPrior {
+struct ParameterPrior {
   double mean, std;
 };
 
 /// What a fit moves and what it knows beforehand.
 struct FitPlan {
   std::vector<FittedParameter> free;
-  std::map<int, SoilPrior> soil_prior;  ///< by index into soilParameters()
+  std::map<int, ParameterPrior> soil_prior;  ///< by index into soilParameters()
   int iterations = 12;
 };
 

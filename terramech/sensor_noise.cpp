@@ -1,6 +1,6 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <functional>
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
@@ -176,29 +176,36 @@ struct Posterior {
   double mean, variance;
 };
 
-/// Posterior of each true value under the distribution of true values that makes the measured ones most likely,
-/// found by expectation maximisation on a grid.
-std::vector<Posterior> deconvolve(const std::vector<double>& measured, const std::vector<double>& std) {
-  constexpr int kGrid = 120, kRounds = 300;
-  const auto [low, high] = std::minmax_element(measured.begin(), measured.end());
+/// Posterior of each true value under the distribution of true values that makes the measured ones most likely: a
+/// mixture of atoms whose places and weights are found by expectation maximisation. `std_at` is the noise at a true
+/// value. Values that are known better than the atoms lie apart stay as measured.
+std::vector<Posterior> deconvolve(const std::vector<double>& measured, const std::function<double(double)>& std_at) {
+  constexpr int kRounds = 200;
   const auto n = static_cast<Eigen::Index>(measured.size());
-  Eigen::VectorXd grid = Eigen::VectorXd::LinSpaced(kGrid, *low, *high);
-  Eigen::MatrixXd like(n, kGrid);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const double s = std::max(std[static_cast<std::size_t>(i)], (*high - *low) / kGrid * 0.7 + 1e-12);
-    like.row(i) = (-0.5 * ((grid.array() - measured[static_cast<std::size_t>(i)]) / s).square()).exp() / s;
-  }
-  Eigen::VectorXd weight = Eigen::VectorXd::Constant(kGrid, 1.0 / kGrid);
+  const auto atoms = std::min<Eigen::Index>(50, std::max<Eigen::Index>(2, n / 2));
+  const Eigen::Map<const Eigen::ArrayXd> x(measured.data(), n);
+  const double spacing = (x.maxCoeff() - x.minCoeff()) / static_cast<double>(atoms) + 1e-12;
+  Eigen::ArrayXd place = Eigen::ArrayXd::LinSpaced(atoms, x.minCoeff(), x.maxCoeff());
+  Eigen::ArrayXd weight = Eigen::ArrayXd::Constant(atoms, 1.0 / static_cast<double>(atoms)), std(atoms);
+  Eigen::ArrayXXd share(n, atoms);
   for (int round = 0; round < kRounds; ++round) {
-    const Eigen::VectorXd total = (like * weight).array() + 1e-300;
-    weight.array() *= (like.transpose() * total.cwiseInverse()).array() / static_cast<double>(n);
+    for (Eigen::Index a = 0; a < atoms; ++a) std[a] = std::max(std_at(place[a]), 0.5 * spacing);
+    for (Eigen::Index a = 0; a < atoms; ++a)
+      share.col(a) = weight[a] / std[a] * (-0.5 * ((x - place[a]) / std[a]).square()).exp();
+    const Eigen::ArrayXd total = share.rowwise().sum() + 1e-300;
+    share.colwise() /= total;
+    for (Eigen::Index a = 0; a < atoms; ++a) {
+      const double mass = share.col(a).sum();
+      weight[a] = mass / static_cast<double>(n);
+      if (mass > 1e-6) place[a] = (share.col(a) * x).sum() / mass;
+    }
   }
   std::vector<Posterior> out;
   for (Eigen::Index i = 0; i < n; ++i) {
-    const Eigen::ArrayXd w = like.row(i).transpose().array() * weight.array();
-    const double total = w.sum() + 1e-300, mean = (w * grid.array()).sum() / total;
-    const double spread = (w * (grid.array() - mean).square()).sum() / total;
-    out.push_back({mean, spread});
+    const double mean = (share.row(i).transpose() * place).sum();
+    const double spread = (share.row(i).transpose() * (place - mean).square()).sum();
+    const double own = std_at(x[i]);
+    out.push_back(own < 0.5 * spacing ? Posterior{x[i], own * own} : Posterior{mean, spread});
   }
   return out;
 }
@@ -212,8 +219,9 @@ void calibrateInputs(Trial& trial, const SensorNoise& noise) {
     slip_std[i] = std::hypot(noise.slip_absolute, noise.slip_relative * trial.slip[i]);
     log_load[i] = std::log(trial.load_N[i]);
   }
-  const auto slips = deconvolve(trial.slip, slip_std);
-  const auto loads = deconvolve(log_load, load_std);
+  const auto slips = deconvolve(
+      trial.slip, [&](double slip) { return std::hypot(noise.slip_absolute, noise.slip_relative * slip); });
+  const auto loads = deconvolve(log_load, [&](double) { return noise.load_relative; });
   for (std::size_t i = 0; i < n; ++i) {
     // A grid cannot place a value better than its step: precise inputs are left as measured.
     const auto row = static_cast<Eigen::Index>(i);
@@ -221,10 +229,10 @@ void calibrateInputs(Trial& trial, const SensorNoise& noise) {
     trial.states[i].slip = std::clamp(std::abs(slips[i].mean - trial.slip[i]) > 2.5 * slip_std[i]
                                           ? trial.slip[i]
                                           : slips[i].mean, -1.0, 1.0);
-    trial.slip_variance[row] = std::min(trust, slips[i].variance);
+    trial.slip_variance[row] = std::clamp(slips[i].variance, 0.3 * trust, trust);
     trial.states[i].load_N = std::abs(loads[i].mean - log_load[i]) > 2.5 * load_std[i] ? trial.load_N[i]
                                                                                        : std::exp(loads[i].mean);
-    trial.load_variance[row] = std::min(trust_load, loads[i].variance);
+    trial.load_variance[row] = std::clamp(loads[i].variance, 0.3 * trust_load, trust_load);
   }
 }
 
@@ -249,13 +257,34 @@ Eigen::VectorXd Whitening::marginal(const Eigen::MatrixXd& residual) const {
   return out;
 }
 
+namespace {
+
+/// No reading is trusted four times better than the median one: where a relative error meets a reading near zero the
+/// quadrature and the noise of slip and load, known to first order, would speak louder than the sensor.
+Eigen::Vector4d leastVariance(const Trial& trial, const Eigen::MatrixXd& level, const SensorNoise& noise) {
+  Eigen::Vector4d least;
+  for (int c = 0; c < kChannels; ++c) {
+    const auto k = static_cast<std::size_t>(c);
+    std::vector<double> variance;
+    for (int row = 0; row < trial.rows(); ++row)
+      variance.push_back(squared(noise.absolute[k] / trial.denominator(row, static_cast<Channel>(c))) +
+                         squared(noise.relative[k] * level(row, c)));
+    least[c] = medianOf(variance) / 16.0;
+  }
+  return least;
+}
+
+}  // namespace
+
 Whitening whitening(const Trial& trial, const Eigen::MatrixXd& level, const InputSlopes& slopes,
                     const SensorNoise& noise) {
   Whitening w;
   w.std.resize(trial.rows(), kChannels);
+  const Eigen::Vector4d least = leastVariance(trial, level, noise);
   for (int row = 0; row < trial.rows(); ++row) {
-    const Eigen::Matrix4d s =
+    Eigen::Matrix4d s =
         covariance(trial, row, level, slopes, noise, trial.slip_variance[row], trial.load_variance[row]);
+    s.diagonal() = s.diagonal().cwiseMax(least);
     std::array<int, kChannels> index{};
     const int n = present(trial.measured, row, index);
     Eigen::MatrixXd part(n, n);

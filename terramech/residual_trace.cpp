@@ -1,0 +1,90 @@
+#include <cstdio>
+#include <cstdlib>
+#include <algorithm>
+#include <cmath>
+
+#include <terramech/residual_trace.hpp>
+#include <terramech/trace_search.hpp>
+
+namespace talus::terramech {
+namespace {
+
+double smallest(const std::vector<CovariateTest>& tests) {
+  double p = 1.0;
+  for (const CovariateTest& t : tests) p = std::min(p, t.p_value);
+  return p;
+}
+
+/// The family-wise p-value of the questions that the chosen effect answers.
+double pValueOf(const std::vector<CovariateTest>& tests, const Candidate& chosen) {
+  double p = 1.0;
+  for (const CovariateTest& t : tests)
+    if (t.channel < 0 ? t.covariate == chosen.parts.front().name : t.covariate == chosen.covariate())
+      p = std::min(p, t.p_value);
+  return p;
+}
+
+Channel strongest(const Explanation& e) {
+  const auto most = std::max_element(e.by_channel.begin(), e.by_channel.end());
+  return static_cast<Channel>(most - e.by_channel.begin());
+}
+
+TracedEffect traced(const std::vector<Explanation>& ranked, std::size_t best, double p_value) {
+  TracedEffect effect;
+  effect.chosen = ranked[best];
+  effect.channel = strongest(ranked[best]);
+  effect.p_value = p_value;
+  for (std::size_t k = 0; k < ranked.size(); ++k)
+    if (k != best && ranked[k].score > ranked[best].score - 6.0 && effect.alternatives.size() < 6)
+      effect.alternatives.push_back(ranked[k]);
+  return effect;
+}
+
+}  // namespace
+
+ChannelErrors rmseOf(const RefinedModel& model, const Trial& trial) {
+  std::vector<double> guesses;
+  const Eigen::MatrixXd residual = trial.measured - predictRows(model, trial, guesses);
+  ChannelErrors errors{};
+  for (int c = 0; c < kChannels; ++c) {
+    double sum = 0.0;
+    int count = 0;
+    for (double r : residual.col(c))
+      if (std::isfinite(r)) sum += r * r, ++count;
+    errors[static_cast<std::size_t>(c)] = count ? std::sqrt(sum / count) : std::nan("");
+  }
+  return errors;
+}
+
+TraceResult traceResiduals(const RefinedModel& base, const Trial& trial, const TraceOptions& options,
+                           const Watch& watch) {
+  TraceSearch search{base, trial, options};
+  TraceResult result;
+  result.base = search.model();
+  for (int round = 0; round <= options.max_effects && !watch.stopped(); ++round) {
+    watch.report(round / (options.max_effects + 1.0));
+    const auto screened = search.screen();
+    auto tests = search.test(screened);
+    if (round == 0) result.first_tests = tests;
+    result.last_tests = tests;
+    if (smallest(tests) > options.significance || round == options.max_effects) break;
+    const auto ranked = search.fitBest(screened, tests);
+    if (getenv("TRACE_DEBUG")) { for (size_t q=0;q<tests.size()&&q<6;++q) fprintf(stderr,"  test %s ch%d z=%.2f p=%.4f\n",tests[q].covariate.c_str(),tests[q].channel,tests[q].z,tests[q].p_value); for (auto& r: ranked) {fprintf(stderr,"   %s[%s] score %.1f gain %.1f k=%d |",r.candidate.parts.front().name.c_str(),r.candidate.covariate().c_str(),r.score,r.chi2_gain,r.candidate.parameters); for (double v: r.candidate.parts.front().parameters) fprintf(stderr," %.3g",v); fprintf(stderr,"\n");} auto& n=search.model().noise; fprintf(stderr,"  noise abs %.3g %.3g %.3g rel %.3g %.3g %.3g slip %.3g %.3g load %.3g\n",n.absolute[0],n.absolute[1],n.absolute[2],n.relative[0],n.relative[1],n.relative[2],n.slip_absolute,n.slip_relative,n.load_relative);}
+    const auto best = search.choose(ranked);
+    if (!best) {
+      result.rejected = ranked;
+      break;
+    }
+    search.accept(ranked[*best].candidate);
+    result.effects.push_back(traced(ranked, *best, std::min(smallest(tests), pValueOf(tests, ranked[*best].candidate))));
+    result.rejected.clear();
+    for (std::size_t k = 0; k < ranked.size(); ++k)
+      if (k != *best) result.rejected.push_back(ranked[k]);
+    if (result.effects.size() > 1) search.reconsider(result.effects);
+  }
+  search.finish(result);
+  watch.report(1.0);
+  return result;
+}
+
+}  // namespace talus::terramech
