@@ -78,6 +78,8 @@ class Search {
 
   std::optional<ParameterPrior> priorOf(Eigen::Index k) const {
     const auto& p = plan_.free[static_cast<std::size_t>(k)];
+    // A knot without rows near it would be anything.
+    if (p.effect >= 0 && model_.effects[static_cast<std::size_t>(p.effect)].empirical()) return ParameterPrior{0.0, 0.3};
     if (p.effect >= 0) return {};
     const auto found = plan_.soil_prior.find(p.index);
     return found == plan_.soil_prior.end() ? std::nullopt : std::optional(found->second);

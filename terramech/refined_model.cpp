@@ -63,9 +63,7 @@ double slipInWheelPlane(double slip_along_travel, double slip_angle_rad) {
 Reading predict(const RefinedModel& model, const WheelState& state, double* entry_guess_rad) {
   const WheelContact contact = contactFor(model, state);
   const ContactForces forces = solveContact(contact, entry_guess_rad ? *entry_guess_rad : 0.0);
-  if (entry_guess_rad)
-    *entry_guess_rad =
-        contact.sinkage_gain == 1.0 && contact.extra_sinkage_m == 0.0 ? forces.entry_angle_rad : 0.0;
+  if (entry_guess_rad) *entry_guess_rad = forces.static_entry_rad;
   Reading reading{.load_N = state.load_N,
                   .radius_m = state.wheel.radius_m,
                   .sinkage_m = forces.sinkage_m,

@@ -40,6 +40,33 @@ TracedEffect traced(const std::vector<Explanation>& ranked, std::size_t best, do
   return effect;
 }
 
+bool same(const Candidate& a, const Candidate& b) {
+  return a.parts.front().name == b.parts.front().name && a.covariate() == b.covariate() &&
+         a.parts.front().only_value == b.parts.front().only_value;
+}
+
+/// Looks at every effect again, the newest first, until none is better replaced.
+void reconsider(TraceSearch& search, std::vector<TracedEffect>& effects) {
+  int replacements = 0;
+  for (std::size_t looked = 0; looked < effects.size();) {
+    const std::size_t k = effects.size() - 1 - looked;
+    const auto ranked = search.rivals(k);
+    const auto best = search.choose(ranked);
+    ++looked;
+    if (!best) continue;
+    TracedEffect again = traced(ranked, *best, effects[k].p_value);
+    if (same(ranked[*best].candidate, effects[k].chosen.candidate)) {
+      effects[k] = again;
+      continue;
+    }
+    if (++replacements > 4) return;
+    search.replace(k, ranked[*best].candidate);
+    effects.erase(effects.begin() + static_cast<long>(k));
+    effects.push_back(again);
+    looked = 0;
+  }
+}
+
 }  // namespace
 
 ChannelErrors rmseOf(const RefinedModel& model, const Trial& trial) {
@@ -80,7 +107,7 @@ TraceResult traceResiduals(const RefinedModel& base, const Trial& trial, const T
     result.rejected.clear();
     for (std::size_t k = 0; k < ranked.size(); ++k)
       if (k != *best) result.rejected.push_back(ranked[k]);
-    if (result.effects.size() > 1) search.reconsider(result.effects);
+    reconsider(search, result.effects);
   }
   search.finish(result);
   watch.report(1.0);

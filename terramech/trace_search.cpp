@@ -234,38 +234,29 @@ void TraceSearch::accept(const Candidate& candidate) {
   }
 }
 
-void TraceSearch::reconsider(std::vector<TracedEffect>& effects) {
-  for (std::size_t k = 0; k + 1 < effects.size(); ++k) {
-    const RefinedModel whole = model_;
-    const auto first = std::accumulate(part_count_.begin(), part_count_.begin() + static_cast<long>(k), std::size_t{0});
-    const auto begin = model_.effects.begin() + static_cast<long>(first);
-    model_.effects.erase(begin, begin + static_cast<long>(part_count_[k]));
-    std::vector<double> guesses = guesses_;
-    model_ = fitModel(model_, trial_, whitening_, planFor(model_), guesses).model;
-    level_ = predictRows(model_, trial_, guesses_);
-    residual_ = trial_.measured - level_;
-    white_ = whitening_.apply(residual_);
-    const auto ranked = fitBest(screen(), {});
-    const auto best = choose(ranked);
-    const Effect& old = effects[k].chosen.candidate.parts.front();
-    if (!best || (ranked[*best].candidate.parts.front().name == old.name &&
-                  ranked[*best].candidate.covariate() == old.covariate)) {
-      model_ = whole;
-      refresh();
-      continue;
-    }
-    TracedEffect replaced;
-    replaced.chosen = ranked[*best];
-    replaced.p_value = effects[k].p_value;
-    replaced.channel = static_cast<Channel>(
-        std::max_element(replaced.chosen.by_channel.begin(), replaced.chosen.by_channel.end()) -
-        replaced.chosen.by_channel.begin());
-    part_count_.erase(part_count_.begin() + static_cast<long>(k));
-    effects.erase(effects.begin() + static_cast<long>(k));
-    accept(replaced.chosen.candidate);
-    effects.push_back(replaced);
-    return;
-  }
+void TraceSearch::takeOut(std::size_t k) {
+  const auto first = std::accumulate(part_count_.begin(), part_count_.begin() + static_cast<long>(k), std::size_t{0});
+  const auto begin = model_.effects.begin() + static_cast<long>(first);
+  model_.effects.erase(begin, begin + static_cast<long>(part_count_[k]));
+  part_count_.erase(part_count_.begin() + static_cast<long>(k));
+  std::vector<double> guesses = guesses_;
+  model_ = fitModel(model_, trial_, whitening_, planFor(model_), guesses).model;
+  level_ = predictRows(model_, trial_, guesses_);
+  residual_ = trial_.measured - level_;
+  white_ = whitening_.apply(residual_);
+}
+
+std::vector<Explanation> TraceSearch::rivals(std::size_t k) {
+  const TraceSearch kept = *this;
+  takeOut(k);
+  auto ranked = fitBest(screen(), {});
+  *this = kept;
+  return ranked;
+}
+
+void TraceSearch::replace(std::size_t k, const Candidate& candidate) {
+  takeOut(k);
+  accept(candidate);
 }
 
 void TraceSearch::finish(TraceResult& result) {

@@ -37,14 +37,19 @@ class TraceSearch {
   /// Puts a candidate into the model, fits everything again and finds the noise anew.
   void accept(const Candidate& candidate);
 
-  /// Takes each effect out once and looks whether, with the others in, something explains the rows better.
-  void reconsider(std::vector<TracedEffect>& effects);
+  /// What would explain the rows in place of accepted candidate number k, the others kept and the noise as it is now
+  /// known: before the first effect was in, the noise was only guessed.
+  std::vector<Explanation> rivals(std::size_t k);
+
+  /// Takes accepted candidate number k out and puts another in, which becomes the last.
+  void replace(std::size_t k, const Candidate& candidate);
 
   /// Fills the result's model, errors and standard deviations.
   void finish(TraceResult& result);
 
  private:
   void refresh();
+  void takeOut(std::size_t k);
   void fitSoil();
   FitPlan planFor(const RefinedModel& model) const;
   Explanation fitted(const Candidate& candidate);
