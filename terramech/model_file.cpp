@@ -24,6 +24,7 @@ void setDeviation(RefinedModel& model, const SoilPrior& prior) {
     if (std > 0.0) model.soil_prior_std[name] = std;
   const double width = model.wheel.value_or(Wheel{}).width_m;
   const double stiffness = std::hypot(d.cohesive_modulus / width, d.frictional_modulus);
+  for (const SoilParameter& p : soilParameters()) model.soil_prior_mean[p.name] = p.get(prior.mean);
   if (stiffness > 0.0) model.soil_prior_std["log_stiffness"] = stiffness / sinkageModulus(prior.mean, width);
 }
 

@@ -7,6 +7,15 @@
 namespace talus::terramech {
 namespace {
 
+/// Standard deviations that a soil is believed to have when nobody states it, own units.
+const std::map<std::string, ParameterPrior>& vagueSoil() {
+  static const std::map<std::string, ParameterPrior> prior{
+      {"cohesion_Pa", {1500.0, 2000.0}},  {"friction_angle_rad", {0.55, 0.12}}, {"sinkage_exponent", {1.0, 0.25}},
+      {"log_stiffness", {0.0, 3.0}},      {"shear_modulus_m", {0.02, 0.012}},   {"c1", {0.43, 0.08}},
+      {"c2", {0.32, 0.12}}};
+  return prior;
+}
+
 bool isLogStiffness(const FittedParameter& p) {
   return p.effect < 0 && std::string_view(soilParameters()[static_cast<std::size_t>(p.index)].name) == "log_stiffness";
 }
@@ -111,6 +120,25 @@ class Search {
 };
 
 }  // namespace
+
+FitPlan fitPlan(const RefinedModel& model, bool fit_soil) {
+  FitPlan plan;
+  const auto& all = soilParameters();
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const auto vague = vagueSoil().find(all[k].name);
+    const auto stated = model.soil_prior_std.find(all[k].name);
+    if (fit_soil && vague != vagueSoil().end())
+      plan.soil_prior[static_cast<int>(k)] = vague->second;
+    else if (stated != model.soil_prior_std.end() && stated->second > 0.0)
+      plan.soil_prior[static_cast<int>(k)] = {model.soil_prior_mean.at(all[k].name), stated->second};
+    else
+      continue;
+    plan.free.push_back({-1, static_cast<int>(k)});
+  }
+  for (std::size_t k = 0; k < model.effects.size(); ++k)
+    for (const FittedParameter& p : parametersOf(model, static_cast<int>(k))) plan.free.push_back(p);
+  return plan;
+}
 
 std::vector<FittedParameter> parametersOf(const RefinedModel& model, int effect) {
   const Effect& e = model.effects[static_cast<std::size_t>(effect)];

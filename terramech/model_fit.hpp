@@ -41,6 +41,10 @@ Eigen::MatrixXd jacobian(const RefinedModel& model, const Trial& trial, const st
                          std::vector<double>& guesses,
                          const std::function<Eigen::VectorXd(const Eigen::MatrixXd&)>& scale);
 
+/// Everything that a model lets a fit move: its effects, and the soil's parameters that are stated with a standard
+/// deviation, or all of them, under vague priors, when `fit_soil`.
+FitPlan fitPlan(const RefinedModel& model, bool fit_soil);
+
 /// All fitted numbers of effect number `effect`.
 std::vector<FittedParameter> parametersOf(const RefinedModel& model, int effect);
 

@@ -43,6 +43,7 @@ enum class BaseModel {
 struct RefinedModel {
   BaseModel base = BaseModel::WongReece;
   Soil soil;
+  std::map<std::string, double> soil_prior_mean;  ///< by field name, of those below
   std::map<std::string, double> soil_prior_std;  ///< by field name; fields that are not in it are exact
   std::vector<Effect> effects;                   ///< act in this order
   bool slip_along_travel =

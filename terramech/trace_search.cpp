@@ -20,45 +20,18 @@ Eigen::MatrixXd off(const Eigen::MatrixXd& columns, const Eigen::MatrixXd& ortho
   return columns - orthonormal_nuisance * (orthonormal_nuisance.transpose() * columns);
 }
 
-/// Standard deviations that a soil is believed to have when nobody states it, own units.
-const std::map<std::string, ParameterPrior>& vagueSoil() {
-  static const std::map<std::string, ParameterPrior> prior{
-      {"cohesion_Pa", {1500.0, 2000.0}},  {"friction_angle_rad", {0.55, 0.12}}, {"sinkage_exponent", {1.0, 0.25}},
-      {"log_stiffness", {0.0, 3.0}},      {"shear_modulus_m", {0.02, 0.012}},   {"c1", {0.43, 0.08}},
-      {"c2", {0.32, 0.12}}};
-  return prior;
-}
-
 }  // namespace
 
 TraceSearch::TraceSearch(const RefinedModel& base, const Trial& trial, const TraceOptions& options)
     : options_(options), model_(base), trial_(trial) {
-  const auto& all = soilParameters();
-  for (std::size_t k = 0; k < all.size(); ++k) {
-    const std::string name = all[k].name;
-    const auto vague = vagueSoil().find(name);
-    const auto stated = base.soil_prior_std.find(name);
-    if (options.fit_soil && vague != vagueSoil().end())
-      soil_prior_[static_cast<int>(k)] = vague->second;
-    else if (stated != base.soil_prior_std.end() && stated->second > 0.0)
-      soil_prior_[static_cast<int>(k)] = {all[k].get(base.soil), stated->second};
-    else
-      continue;
-    soil_free_.push_back({-1, static_cast<int>(k)});
-  }
   refresh();
-  if (!soil_free_.empty()) fitSoil();
+  if (!planFor(model_).free.empty()) fitSoil();
 }
 
-FitPlan TraceSearch::planFor(const RefinedModel& model) const {
-  FitPlan plan{.free = soil_free_, .soil_prior = soil_prior_};
-  for (std::size_t k = 0; k < model.effects.size(); ++k)
-    for (const FittedParameter& p : parametersOf(model, static_cast<int>(k))) plan.free.push_back(p);
-  return plan;
-}
+FitPlan TraceSearch::planFor(const RefinedModel& model) const { return fitPlan(model, options_.fit_soil); }
 
 void TraceSearch::fitSoil() {
-  for (int round = 0; round < 2; ++round) {
+  for (int round = 0; round < 3; ++round) {
     FitPlan plan = planFor(model_);
     plan.iterations = 30;
     model_ = fitModel(model_, trial_, whitening_, plan, guesses_).model;

@@ -62,8 +62,6 @@ class TraceSearch {
   TraceOptions options_;
   RefinedModel model_;
   Trial trial_;
-  std::vector<FittedParameter> soil_free_;
-  std::map<int, ParameterPrior> soil_prior_;
   std::vector<double> guesses_;
   Eigen::MatrixXd level_, residual_;
   Whitening whitening_;
