@@ -10,6 +10,8 @@ struct Context;
 
 // One function a subcommand, in cli/NAME_command.cpp, built on addCommand() of cli/command.hpp.
 // Alphabetical; a subcommand stands here only once it does its job.
+void addPredict(CLI::App& app, Context& context);
+void addTrace(CLI::App& app, Context& context);
 void addWheel(CLI::App& app, Context& context);
 
 void addInfo(CLI::App& app, Context& context);

@@ -16,10 +16,13 @@ constexpr const char* kRelative[] = {"drawbar_pull_relative", "sinkage_relative"
 
 void setDeviation(RefinedModel& model, const SoilPrior& prior) {
   const SoilDeviation& d = prior.deviation;
-  const std::pair<const char*, double> all[] = {
-      {"cohesion_Pa", d.cohesion_Pa}, {"friction_angle_rad", d.friction_angle_rad},
-      {"sinkage_exponent", d.sinkage_exponent}, {"shear_modulus_m", d.shear_modulus_m},
-      {"c1", d.c1}, {"c2", d.c2}, {"density_kg_m3", d.density_kg_m3}};
+  const std::pair<const char*, double> all[] = {{"cohesion_Pa", d.cohesion_Pa},
+                                                {"friction_angle_rad", d.friction_angle_rad},
+                                                {"sinkage_exponent", d.sinkage_exponent},
+                                                {"shear_modulus_m", d.shear_modulus_m},
+                                                {"c1", d.c1},
+                                                {"c2", d.c2},
+                                                {"density_kg_m3", d.density_kg_m3}};
   for (const auto& [name, std] : all)
     if (std > 0.0) model.soil_prior_std[name] = std;
   const double width = model.wheel.value_or(Wheel{}).width_m;
@@ -29,15 +32,21 @@ void setDeviation(RefinedModel& model, const SoilPrior& prior) {
 }
 
 void readSoilInto(const YamlFields& root, RefinedModel& model) {
-  const SoilPrior prior = root.isMapping("soil") ? readSoil(root.fields("soil")) : loadSoilPrior(root.word("soil"));
+  const SoilPrior prior =
+      root.isMapping("soil") ? readSoil(root.fields("soil")) : loadSoilPrior(root.word("soil"));
   model.soil = prior.mean;
   setDeviation(model, prior);
 }
 
 /// Where a fit starts when nobody names a soil.
 Soil startingSoil() {
-  return {.name = "fitted", .cohesion_Pa = 1000.0, .friction_angle_rad = 0.55, .sinkage_exponent = 1.0,
-          .cohesive_modulus = 0.0, .frictional_modulus = 1e6, .shear_modulus_m = 0.015};
+  return {.name = "fitted",
+          .cohesion_Pa = 1000.0,
+          .friction_angle_rad = 0.55,
+          .sinkage_exponent = 1.0,
+          .cohesive_modulus = 0.0,
+          .frictional_modulus = 1e6,
+          .shear_modulus_m = 0.015};
 }
 
 Wheel readWheel(const YamlFields& f) {
@@ -88,7 +97,8 @@ Channel readChannel(const YamlFields& f) {
   for (Channel c : kAll)
     if (word == name(c)) return c;
   f.refuse("channel", "'" + word + "' is no channel",
-           std::string("one of ") + name(kAll[0]) + ", " + name(kAll[1]) + ", " + name(kAll[2]) + ", " + name(kAll[3]));
+           std::string("one of ") + name(kAll[0]) + ", " + name(kAll[1]) + ", " + name(kAll[2]) + ", " +
+               name(kAll[3]));
 }
 
 Effect readEffect(const YamlFields& f) {
@@ -108,7 +118,8 @@ Effect readEffect(const YamlFields& f) {
     std::vector<std::string> names;
     for (const EffectForm& known : effectLibrary()) names.emplace_back(known.name);
     const std::string nearest = nearestName(effect.name, names);
-    f.refuse("name", "no effect '" + effect.name + "'", nearest.empty() ? "" : "did you mean " + nearest + "?");
+    f.refuse("name", "no effect '" + effect.name + "'",
+             nearest.empty() ? "" : "did you mean " + nearest + "?");
   }
   const std::size_t wanted = form ? form->parameters.size() : effect.knots.size();
   if (effect.parameters.size() != wanted || wanted == 0)
@@ -122,9 +133,12 @@ void readFit(const YamlFields& root, RefinedModel& model) {
     f.only({"effect", "index"});
     model.fitted.push_back({f.integer("effect"), f.integer("index")});
     const auto& p = model.fitted.back();
-    const bool known = p.effect < 0 ? p.index >= 0 && p.index < static_cast<int>(soilParameters().size())
-                                    : p.effect < static_cast<int>(model.effects.size()) && p.index >= 0 &&
-                                          p.index < static_cast<int>(model.effects[static_cast<std::size_t>(p.effect)].parameters.size());
+    const bool known =
+        p.effect < 0
+            ? p.index >= 0 && p.index < static_cast<int>(soilParameters().size())
+            : p.effect < static_cast<int>(model.effects.size()) && p.index >= 0 &&
+                  p.index <
+                      static_cast<int>(model.effects[static_cast<std::size_t>(p.effect)].parameters.size());
     if (!known) f.refuse("index", "names no parameter", "");
   }
   model.covariance = root.numbers("covariance");
@@ -141,9 +155,17 @@ BaseModel readBase(const YamlFields& root) {
 
 }  // namespace
 
+ModelFile unknownSoil() {
+  ModelFile file;
+  file.soil_given = false;
+  file.model.soil = startingSoil();
+  return file;
+}
+
 ModelFile loadModel(const std::string& path) {
   ModelFile file;
-  const YamlFields root = std::filesystem::exists(path) ? YamlFields::file(path) : YamlFields::text("{}", path);
+  const YamlFields root =
+      std::filesystem::exists(path) ? YamlFields::file(path) : YamlFields::text("{}", path);
   const bool is_model = root.has("model") || root.has("effects") || root.has("sensors") || root.has("soil");
   if (!is_model) {
     const SoilPrior prior = loadSoilPrior(path);
@@ -213,8 +235,8 @@ void writeSoil(Writer& w, const Soil& s) {
 void writeEffect(Writer& w, const Effect& e) {
   const EffectForm* form = findEffect(e.name);
   if (form) w << "  # " << form->formula << "\n";
-  w << "  - name: " << e.name << "\n    covariate: " << quoted(e.covariate) << "\n    channel: " << name(e.channel)
-    << "\n    ";
+  w << "  - name: " << e.name << "\n    covariate: " << quoted(e.covariate)
+    << "\n    channel: " << name(e.channel) << "\n    ";
   w.list("parameters", e.parameters);
   if (form && !form->parameters.empty()) {
     w << "  #";
@@ -232,7 +254,8 @@ void writeEffect(Writer& w, const Effect& e) {
 void writeNoise(Writer& w, const SensorNoise& n) {
   w << "noise:\n";
   for (std::size_t c = 0; c < kChannels; ++c)
-    w << "  " << kColumn[c] << ": " << n.absolute[c] << "\n  " << kRelative[c] << ": " << n.relative[c] << "\n";
+    w << "  " << kColumn[c] << ": " << n.absolute[c] << "\n  " << kRelative[c] << ": " << n.relative[c]
+      << "\n";
   w << "  slip: " << n.slip_absolute << "\n  slip_relative: " << n.slip_relative
     << "\n  load_relative: " << n.load_relative << "\n";
 }
@@ -245,15 +268,16 @@ std::string modelText(const RefinedModel& model) {
   writeSoil(w, model.soil);
   if (model.wheel)
     w << "wheel: {radius_m: " << model.wheel->radius_m << ", width_m: " << model.wheel->width_m
-      << ", grouser_height_m: " << model.wheel->grouser_height_m << ", grouser_count: " << model.wheel->grouser_count
-      << "}\n";
+      << ", grouser_height_m: " << model.wheel->grouser_height_m
+      << ", grouser_count: " << model.wheel->grouser_count << "}\n";
   w << "slip_along_travel: " << (model.slip_along_travel ? "true" : "false") << "\n";
   if (!model.effects.empty()) w << "effects:\n";
   for (const Effect& e : model.effects) writeEffect(w, e);
   writeNoise(w, model.noise);
   if (model.covariance.empty()) return w.text();
   w << "fitted:\n";
-  for (const FittedParameter& p : model.fitted) w << "  - {effect: " << p.effect << ", index: " << p.index << "}\n";
+  for (const FittedParameter& p : model.fitted)
+    w << "  - {effect: " << p.effect << ", index: " << p.index << "}\n";
   w.list("covariance", model.covariance);
   w << "\n";
   return w.text();

@@ -13,11 +13,15 @@ struct ModelFile {
 };
 
 /// Reads a base or refined model:
-///   {soil: {...}|NAME, model: wong-reece|linear-formula, sensors: {load_N, slip, torque_Nm, sinkage_m, drawbar_pull_N},
-///    wheel: {...}, slip_along_travel: false, effects: [{name, covariate, channel, parameters: [...], knots: [...],
-///    only: {column, value}}], noise: {...}, fitted: [...], covariance: [...]}
+///   {soil: {...}|NAME, model: wong-reece|linear-formula, sensors: {load_N, slip, torque_Nm, sinkage_m,
+///   drawbar_pull_N},
+///    wheel: {...}, slip_along_travel: false, effects: [{name, covariate, channel, parameters: [...], knots:
+///    [...], only: {column, value}}], noise: {...}, fitted: [...], covariance: [...]}
 /// or a bare soil. Throws InputError with file, line and field.
 ModelFile loadModel(const std::string& path);
+
+/// Where a fit starts when nobody names a soil.
+ModelFile unknownSoil();
 
 /// The text of a file that loadModel() reads back to the same bits.
 std::string modelText(const RefinedModel& model);

@@ -1,5 +1,3 @@
-#include <cstdio>
-#include <cstdlib>
 #include <algorithm>
 #include <cmath>
 
@@ -41,8 +39,8 @@ TracedEffect traced(const std::vector<Explanation>& ranked, std::size_t best, do
 }
 
 bool same(const Candidate& a, const Candidate& b) {
-  return a.parts.front().name == b.parts.front().name && a.covariate() == b.covariate() &&
-         a.parts.front().only_value == b.parts.front().only_value;
+  return a.parts.size() == b.parts.size() && a.parts.front().name == b.parts.front().name &&
+         a.covariate() == b.covariate() && a.parts.front().only_value == b.parts.front().only_value;
 }
 
 /// Looks at every effect again, the newest first, until none is better replaced.
@@ -96,14 +94,14 @@ TraceResult traceResiduals(const RefinedModel& base, const Trial& trial, const T
     result.last_tests = tests;
     if (smallest(tests) > options.significance || round == options.max_effects) break;
     const auto ranked = search.fitBest(screened, tests);
-    if (getenv("TRACE_DEBUG")) { for (size_t q=0;q<tests.size()&&q<6;++q) fprintf(stderr,"  test %s ch%d z=%.2f p=%.4f\n",tests[q].covariate.c_str(),tests[q].channel,tests[q].z,tests[q].p_value); for (auto& r: ranked) {fprintf(stderr,"   %s[%s] score %.1f gain %.1f k=%d |",r.candidate.parts.front().name.c_str(),r.candidate.covariate().c_str(),r.score,r.chi2_gain,r.candidate.parameters); for (double v: r.candidate.parts.front().parameters) fprintf(stderr," %.3g",v); fprintf(stderr,"\n");} auto& n=search.model().noise; fprintf(stderr,"  noise abs %.3g %.3g %.3g rel %.3g %.3g %.3g slip %.3g %.3g load %.3g\n",n.absolute[0],n.absolute[1],n.absolute[2],n.relative[0],n.relative[1],n.relative[2],n.slip_absolute,n.slip_relative,n.load_relative);}
     const auto best = search.choose(ranked);
     if (!best) {
       result.rejected = ranked;
       break;
     }
     search.accept(ranked[*best].candidate);
-    result.effects.push_back(traced(ranked, *best, std::min(smallest(tests), pValueOf(tests, ranked[*best].candidate))));
+    result.effects.push_back(
+        traced(ranked, *best, std::min(smallest(tests), pValueOf(tests, ranked[*best].candidate))));
     result.rejected.clear();
     for (std::size_t k = 0; k < ranked.size(); ++k)
       if (k != *best) result.rejected.push_back(ranked[k]);

@@ -4,6 +4,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
+
 #include <terramech/nelder_mead.hpp>
 #include <terramech/sensor_noise.hpp>
 #include <terramech/spline_basis.hpp>
@@ -11,11 +12,14 @@
 namespace talus::terramech {
 namespace {
 
-double squared(double x) { return x * x; }
+double squared(double x) {
+  return x * x;
+}
 
 /// Row covariances of scaled residuals.
-Eigen::Matrix4d covariance(const Trial& trial, int row, const Eigen::MatrixXd& level, const InputSlopes& slopes,
-                           const SensorNoise& noise, double slip_variance, double load_variance) {
+Eigen::Matrix4d covariance(const Trial& trial, int row, const Eigen::MatrixXd& level,
+                           const InputSlopes& slopes, const SensorNoise& noise, double slip_variance,
+                           double load_variance) {
   Eigen::Matrix4d s = slip_variance * slopes.by_slip.row(row).transpose() * slopes.by_slip.row(row) +
                       load_variance * slopes.by_load.row(row).transpose() * slopes.by_load.row(row);
   for (int c = 0; c < kChannels; ++c) {
@@ -41,7 +45,8 @@ double rowLogLikelihood(const Eigen::Matrix4d& s, const Eigen::MatrixXd& residua
   Eigen::Matrix<double, -1, 1, 0, 4, 1> r(n);
   for (int i = 0; i < n; ++i) {
     r[i] = residual(row, index[static_cast<std::size_t>(i)]);
-    for (int j = 0; j < n; ++j) part(i, j) = s(index[static_cast<std::size_t>(i)], index[static_cast<std::size_t>(j)]);
+    for (int j = 0; j < n; ++j)
+      part(i, j) = s(index[static_cast<std::size_t>(i)], index[static_cast<std::size_t>(j)]);
   }
   const Eigen::LLT<decltype(part)> llt(part);
   const auto u = llt.matrixL().solve(r).eval();
@@ -64,25 +69,34 @@ double medianOf(std::vector<double> v) {
 
 std::optional<double> statedOf(const StatedSensors& stated, Channel channel) {
   switch (channel) {
-    case Channel::DrawbarPull: return stated.drawbar_pull_N;
-    case Channel::Sinkage: return stated.sinkage_m;
-    case Channel::Torque: return stated.torque_Nm;
-    case Channel::SideForce: return stated.side_force_N;
+    case Channel::DrawbarPull:
+      return stated.drawbar_pull_N;
+    case Channel::Sinkage:
+      return stated.sinkage_m;
+    case Channel::Torque:
+      return stated.torque_Nm;
+    case Channel::SideForce:
+      return stated.side_force_N;
   }
   return {};
 }
 
-std::vector<Scale> scales(const Trial& trial, const Eigen::MatrixXd& level, const StatedSensors& stated,
-                          SensorNoise& noise) {
+std::vector<Scale> scales(const Trial& trial, const Eigen::MatrixXd& residual, const Eigen::MatrixXd& level,
+                          const StatedSensors& stated, SensorNoise& noise) {
   std::vector<Scale> all;
   for (int c = 0; c < kChannels; ++c) {
     if (!trial.has(static_cast<Channel>(c))) continue;
-    std::vector<double> sizes;
-    for (int row = 0; row < trial.rows(); ++row)
-      sizes.push_back(std::abs(level(row, c)) * trial.denominator(row, static_cast<Channel>(c)));
+    std::vector<double> sizes, left;
+    for (int row = 0; row < trial.rows(); ++row) {
+      const double unit = trial.denominator(row, static_cast<Channel>(c));
+      sizes.push_back(std::abs(level(row, c)) * unit);
+      if (std::isfinite(residual(row, c))) left.push_back(std::abs(residual(row, c)) * unit);
+    }
     const auto k = static_cast<std::size_t>(c);
     const auto given = statedOf(stated, static_cast<Channel>(c));
-    all.push_back({&noise.absolute[k], given.value_or(0.01 * medianOf(sizes)), given ? 0.25 : 1.0});
+    all.push_back({&noise.absolute[k],
+                   given.value_or(std::max(0.01 * medianOf(sizes), 0.1 * medianOf(left)) + 1e-9),
+                   given ? 0.25 : 1.0});
     all.push_back({&noise.relative[k], given ? 0.01 : 0.03, 1.0});
   }
   if (stated.slip)
@@ -150,7 +164,7 @@ Eigen::MatrixXd withoutSmooth(const Trial& trial, const Eigen::MatrixXd& residua
 SensorNoise fitNoise(const Trial& trial, const Eigen::MatrixXd& residual, const Eigen::MatrixXd& level,
                      const InputSlopes& slopes, const StatedSensors& stated) {
   SensorNoise noise;
-  const std::vector<Scale> all = scales(trial, level, stated, noise);
+  const std::vector<Scale> all = scales(trial, residual, level, stated, noise);
   const auto set = [&](const std::vector<double>& log_ratio) {
     for (std::size_t k = 0; k < all.size(); ++k) *all[k].target = all[k].median * std::exp(log_ratio[k]);
   };
@@ -162,11 +176,13 @@ SensorNoise fitNoise(const Trial& trial, const Eigen::MatrixXd& residual, const 
       const double slip = trial.states[static_cast<std::size_t>(row)].slip;
       const double variance = squared(noise.slip_absolute) + squared(noise.slip_relative * slip);
       sum -= rowLogLikelihood(
-          covariance(trial, row, level, slopes, noise, variance, squared(noise.load_relative)), residual, row);
+          covariance(trial, row, level, slopes, noise, variance, squared(noise.load_relative)), residual,
+          row);
     }
     return sum;
   };
-  set(nelderMead(cost, std::vector<double>(all.size(), 0.0), {.step = 0.7, .evaluations = 900, .tolerance = 1e-3}));
+  set(nelderMead(cost, std::vector<double>(all.size(), 0.0),
+                 {.step = 0.7, .evaluations = 900, .tolerance = 1e-3}));
   return noise;
 }
 
@@ -176,10 +192,11 @@ struct Posterior {
   double mean, variance;
 };
 
-/// Posterior of each true value under the distribution of true values that makes the measured ones most likely: a
-/// mixture of atoms whose places and weights are found by expectation maximisation. `std_at` is the noise at a true
-/// value. Values that are known better than the atoms lie apart stay as measured.
-std::vector<Posterior> deconvolve(const std::vector<double>& measured, const std::function<double(double)>& std_at) {
+/// Posterior of each true value under the distribution of true values that makes the measured ones most
+/// likely: a mixture of atoms whose places and weights are found by expectation maximisation. `std_at` is the
+/// noise at a true value. Values that are known better than the atoms lie apart stay as measured.
+std::vector<Posterior> deconvolve(const std::vector<double>& measured,
+                                  const std::function<double(double)>& std_at) {
   constexpr int kRounds = 200;
   const auto n = static_cast<Eigen::Index>(measured.size());
   const auto atoms = std::min<Eigen::Index>(50, std::max<Eigen::Index>(2, n / 2));
@@ -226,12 +243,12 @@ void calibrateInputs(Trial& trial, const SensorNoise& noise) {
     // A grid cannot place a value better than its step: precise inputs are left as measured.
     const auto row = static_cast<Eigen::Index>(i);
     const double trust = squared(slip_std[i]), trust_load = squared(load_std[i]);
-    trial.states[i].slip = std::clamp(std::abs(slips[i].mean - trial.slip[i]) > 2.5 * slip_std[i]
-                                          ? trial.slip[i]
-                                          : slips[i].mean, -1.0, 1.0);
+    trial.states[i].slip = std::clamp(
+        std::abs(slips[i].mean - trial.slip[i]) > 2.5 * slip_std[i] ? trial.slip[i] : slips[i].mean, -1.0,
+        1.0);
     trial.slip_variance[row] = std::clamp(slips[i].variance, 0.3 * trust, trust);
-    trial.states[i].load_N = std::abs(loads[i].mean - log_load[i]) > 2.5 * load_std[i] ? trial.load_N[i]
-                                                                                       : std::exp(loads[i].mean);
+    trial.states[i].load_N =
+        std::abs(loads[i].mean - log_load[i]) > 2.5 * load_std[i] ? trial.load_N[i] : std::exp(loads[i].mean);
     trial.load_variance[row] = std::clamp(loads[i].variance, 0.3 * trust_load, trust_load);
   }
 }
@@ -239,9 +256,8 @@ void calibrateInputs(Trial& trial, const SensorNoise& noise) {
 Eigen::VectorXd Whitening::apply(const Eigen::MatrixXd& residual) const {
   Eigen::VectorXd out(residual.rows() * kChannels);
   for (Eigen::Index row = 0; row < residual.rows(); ++row) {
-    const Eigen::Vector4d r = residual.row(row).transpose().unaryExpr([](double v) {
-      return std::isfinite(v) ? v : 0.0;
-    });
+    const Eigen::Vector4d r =
+        residual.row(row).transpose().unaryExpr([](double v) { return std::isfinite(v) ? v : 0.0; });
     out.segment<kChannels>(row * kChannels) = factor[static_cast<std::size_t>(row)] * r;
   }
   return out;
@@ -251,7 +267,8 @@ Eigen::VectorXd Whitening::marginal(const Eigen::MatrixXd& residual) const {
   Eigen::VectorXd out(residual.rows() * kChannels);
   for (Eigen::Index row = 0; row < residual.rows(); ++row)
     for (int c = 0; c < kChannels; ++c) {
-      const bool there = factor[static_cast<std::size_t>(row)](c, c) != 0.0 && std::isfinite(residual(row, c));
+      const bool there =
+          factor[static_cast<std::size_t>(row)](c, c) != 0.0 && std::isfinite(residual(row, c));
       out[row * kChannels + c] = there ? residual(row, c) / std(row, c) : 0.0;
     }
   return out;
@@ -259,8 +276,9 @@ Eigen::VectorXd Whitening::marginal(const Eigen::MatrixXd& residual) const {
 
 namespace {
 
-/// No reading is trusted four times better than the median one: where a relative error meets a reading near zero the
-/// quadrature and the noise of slip and load, known to first order, would speak louder than the sensor.
+/// No reading is trusted four times better than the median one: where a relative error meets a reading near
+/// zero the quadrature and the noise of slip and load, known to first order, would speak louder than the
+/// sensor.
 Eigen::Vector4d leastVariance(const Trial& trial, const Eigen::MatrixXd& level, const SensorNoise& noise) {
   Eigen::Vector4d least;
   for (int c = 0; c < kChannels; ++c) {

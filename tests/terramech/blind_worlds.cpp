@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <random>
 #include <sstream>
 
@@ -36,7 +35,8 @@ Integral integrate(const Wheel& m, double slip, double entry) {
   for (int i = 0; i < kSteps; ++i) {
     const bool rear = i < kSteps / 2;
     const double v = (2.0 * (rear ? i : i - kSteps / 2) + 1.0) / kSteps;
-    const double u = rear ? v * v * v : 1.0 - (1.0 - v) * (1.0 - v) * (1.0 - v);  // fine where the stress begins
+    const double u =
+        rear ? v * v * v : 1.0 - (1.0 - v) * (1.0 - v) * (1.0 - v);  // fine where the stress begins
     const double dv = 3.0 * (rear ? v * v : (1.0 - v) * (1.0 - v));
     const double a = rear ? exit + (peak - exit) * u : peak + (entry - peak) * u;
     const double front = a >= peak ? a : entry - (a - exit) / (peak - exit) * (entry - peak);
@@ -84,7 +84,8 @@ Answer truth(const World& world, const Conditions& at) {
   if (has(world, "slip_sinkage_ding", a)) m.n += a * slip;
   if (has(world, "slip_sinkage_lyasko", a)) dig = (1.0 + slip) / (1.0 - 0.5 * slip);
   if (has(world, "rate_pressure", a)) m.k *= std::pow(at.speed / 0.03, a);
-  if (has(world, "rate_shear", a)) m.c *= 1.0 + a * std::log(at.speed / 0.03), m.t *= 1.0 + a * std::log(at.speed / 0.03);
+  if (has(world, "rate_shear", a))
+    m.c *= 1.0 + a * std::log(at.speed / 0.03), m.t *= 1.0 + a * std::log(at.speed / 0.03);
   if (has(world, "multipass", a)) {
     const double f = 1.0 + a * (1.0 - std::exp(-(at.pass - 1.0) / 1.3));
     m.k *= f;
@@ -115,23 +116,30 @@ Answer truth(const World& world, const Conditions& at) {
   Answer out{m.r * (1.0 - std::cos(entry)), f.t, f.d};
   const double weight = g.density * 9.81, passive = kp(m.t);
   if (has(world, "bulldozing", a))
-    out.pull -= a * at.width * (0.5 * weight * out.z * out.z * passive + 2.0 * m.c * out.z * std::sqrt(passive));
+    out.pull -=
+        a * at.width * (0.5 * weight * out.z * out.z * passive + 2.0 * m.c * out.z * std::sqrt(passive));
   if (has(world, "rear_pile", a)) out.pull += a * at.load * std::pow(std::max(0.0, at.slip - 0.35), 2);
   if (has(world, "torque_offset", a)) out.torque += a;
   if (has(world, "load_cell_tilt", a)) out.pull = out.pull * std::cos(a) + at.load * std::sin(a);
   if (has(world, "sinkage_datum", a)) out.z += a;
-  if (has(world, "form:pull_slip_bump", a)) out.pull += at.load * a * std::exp(-std::pow((at.slip - 0.35) / 0.12, 2));
-  if (has(world, "form:sinkage_temperature_step", a)) out.z += at.radius * a / (1.0 + std::exp(-(at.temperature - 15.0) / 2.0));
-  if (has(world, "form:torque_battery_parabola", a)) out.torque += at.load * at.radius * a * std::pow((at.battery - 26.0) / 3.0, 2);
+  if (has(world, "form:pull_slip_bump", a))
+    out.pull += at.load * a * std::exp(-std::pow((at.slip - 0.35) / 0.12, 2));
+  if (has(world, "form:sinkage_temperature_step", a))
+    out.z += at.radius * a / (1.0 + std::exp(-(at.temperature - 15.0) / 2.0));
+  if (has(world, "form:torque_battery_parabola", a))
+    out.torque += at.load * at.radius * a * std::pow((at.battery - 26.0) / 3.0, 2);
   if (has(world, "form:pull_dust_saturating", a)) out.pull += at.load * a * (1.0 - std::exp(-3.0 * at.dust));
-  if (has(world, "form:pull_speed_peak", a)) out.pull += at.load * a * std::exp(-std::pow(std::log(at.speed / 0.05) / 0.4, 2));
+  if (has(world, "form:pull_speed_peak", a))
+    out.pull += at.load * a * std::exp(-std::pow(std::log(at.speed / 0.05) / 0.4, 2));
   return out;
 }
 
 class Random {
  public:
   explicit Random(std::uint64_t seed) : engine_(seed * 0x9E3779B97F4A7C15ULL + 77) {}
-  double uniform(double a, double b) { return a + (b - a) * static_cast<double>(engine_() >> 11) * 0x1.0p-53; }
+  double uniform(double a, double b) {
+    return a + (b - a) * static_cast<double>(engine_() >> 11) * 0x1.0p-53;
+  }
   double normal() {
     return std::sqrt(-2.0 * std::log(uniform(1e-12, 1.0))) * std::cos(2.0 * kPi * uniform(0.0, 1.0));
   }
@@ -147,7 +155,8 @@ struct Kind {
   double low, high;
 };
 
-const std::string kPull = "drawbar_pull_over_load", kSink = "sinkage_over_radius", kTorque = "torque_over_load_radius";
+const std::string kPull = "drawbar_pull_over_load", kSink = "sinkage_over_radius",
+                  kTorque = "torque_over_load_radius";
 
 const std::vector<Kind>& libraryKinds() {
   static const std::vector<Kind> kinds{
@@ -209,9 +218,21 @@ Conditions conditions(Random& random, int row, int count, bool levels) {
 
 std::vector<double> measure(const World& world, const Conditions& c, const Answer& a, Random& random) {
   const auto noisy = [&](double v) { return v * (1.0 + world.noise * random.normal()); };
-  const double es = getenv("NOSLIP") ? 0.0 : 1.0, el = getenv("NOLOAD") ? 0.0 : 1.0;
-  return {std::clamp(c.slip * (1.0 + es * world.noise * random.normal()), -1.0, 1.0), c.load * (1.0 + el * world.noise * random.normal()), noisy(a.torque), noisy(a.z), noisy(a.pull), c.speed,
-          c.pass, c.time, c.slope, c.grouser, c.temperature, c.dust, c.battery, c.radius, c.width};
+  return {std::clamp(c.slip * (1.0 + world.noise * random.normal()), -1.0, 1.0),
+          c.load * (1.0 + world.noise * random.normal()),
+          noisy(a.torque),
+          noisy(a.z),
+          noisy(a.pull),
+          c.speed,
+          c.pass,
+          c.time,
+          c.slope,
+          c.grouser,
+          c.temperature,
+          c.dust,
+          c.battery,
+          c.radius,
+          c.width};
 }
 
 }  // namespace
@@ -220,18 +241,23 @@ World makeWorld(const WorldPlan& plan) {
   Random random{plan.seed};
   World w;
   w.seed = plan.seed;
-  w.columns = {"slip", "load_N", "torque_Nm", "sinkage_m", "drawbar_pull_N", "speed_mps", "pass_index", "time_s",
-               "slope_rad", "grouser_height_m", "temperature_C", "dust_index", "battery_V", "wheel_radius_m",
-               "wheel_width_m"};
+  w.columns = {"slip",          "load_N",     "torque_Nm", "sinkage_m",      "drawbar_pull_N",
+               "speed_mps",     "pass_index", "time_s",    "slope_rad",      "grouser_height_m",
+               "temperature_C", "dust_index", "battery_V", "wheel_radius_m", "wheel_width_m"};
   const double n = random.uniform(0.7, 1.2);
-  w.ground = {random.uniform(200.0, 4000.0), random.uniform(0.4, 0.65), n,
-              random.uniform(12e3, 50e3) * std::pow(0.02, 1.0 - n) / 0.02, random.uniform(0.01, 0.025),
-              random.uniform(0.35, 0.45), random.uniform(0.2, 0.35), random.uniform(1400.0, 1800.0)};
+  w.ground = {random.uniform(200.0, 4000.0),
+              random.uniform(0.4, 0.65),
+              n,
+              random.uniform(12e3, 50e3) * std::pow(0.02, 1.0 - n) / 0.02,
+              random.uniform(0.01, 0.025),
+              random.uniform(0.35, 0.45),
+              random.uniform(0.2, 0.35),
+              random.uniform(1400.0, 1800.0)};
   w.noise = random.uniform(0.02, 0.05);
-  if (getenv("NONOISE")) w.noise = 0.0;
   for (int k = 0; k < plan.effects; ++k) {
     Hidden h = draw(plan.library ? libraryKinds() : otherKinds(), random);
-    while (!w.hidden.empty() && h.family == w.hidden.front().family && h.covariates == w.hidden.front().covariates)
+    while (!w.hidden.empty() && h.family == w.hidden.front().family &&
+           h.covariates == w.hidden.front().covariates)
       h = draw(plan.library ? libraryKinds() : otherKinds(), random);
     w.hidden.push_back(h);
   }
@@ -295,9 +321,9 @@ Marks judge(const World& world, const std::vector<Claim>& claims) {
       used[k] = 1;
       ++marks.located;
       std::string stem = h.kind.substr(0, h.kind.find('_'));
-      for (const char* word : {"slip_sinkage", "rear_pile", "rate", "multipass", "rebound", "hardpan", "grouser",
-                               "load_transfer", "flexibility", "torque_offset", "load_cell", "sinkage_datum", "drift",
-                               "slip_bias", "bulldozing"})
+      for (const char* word : {"slip_sinkage", "rear_pile", "rate", "multipass", "rebound", "hardpan",
+                               "grouser", "load_transfer", "flexibility", "torque_offset", "load_cell",
+                               "sinkage_datum", "drift", "slip_bias", "bulldozing"})
         if (h.kind.find(word) == 0 || (h.family == word)) stem = word;
       marks.family += h.family == "empirical" ? claims[k].name.find("empirical") != std::string::npos
                                               : claims[k].name.find(stem) != std::string::npos;
