@@ -56,6 +56,7 @@ double squared(double x) {
 }  // namespace
 
 double slipInWheelPlane(double slip_along_travel, double slip_angle_rad) {
+  if (slip_along_travel <= -1.0) return -1.0;  // locked, whatever the angle
   const double q = travelRatio(slip_along_travel) * std::max(std::cos(slip_angle_rad), 0.0);
   return q <= 1.0 ? 1.0 - q : 1.0 / q - 1.0;
 }
