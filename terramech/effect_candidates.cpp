@@ -38,7 +38,9 @@ class Collector {
 
   const std::vector<std::string>& covariates() const { return trial_.covariates; }
 
-  Extent extent(const std::string& column) const { return extentOf(covariateValues(trial_, column, sinkage_m_)); }
+  Extent extent(const std::string& column) const {
+    return extentOf(covariateValues(trial_, column, sinkage_m_));
+  }
 
   /// Adds a form on a column, with some parameters set: pairs of parameter name and value.
   void add(const EffectForm& form, const std::string& column,
@@ -86,7 +88,9 @@ class Collector {
 
 using Rule = void (*)(Collector&, const EffectForm&);
 
-void always(Collector& to, const EffectForm& form) { to.add(form, form.covariate); }
+void always(Collector& to, const EffectForm& form) {
+  to.add(form, form.covariate);
+}
 
 void whereItVaries(Collector& to, const EffectForm& form) {
   if (to.varies(form.covariate)) to.add(form, form.covariate);
@@ -99,7 +103,8 @@ void rate(Collector& to, const EffectForm& form) {
 
 void passes(Collector& to, const EffectForm& form) {
   if (!to.varies("pass_index")) return;
-  for (double scale : {0.6, 2.0}) to.add(form, "pass_index", {{"p0", scale}, {"first", to.extent("pass_index").low}});
+  for (double scale : {0.6, 2.0})
+    to.add(form, "pass_index", {{"p0", scale}, {"first", to.extent("pass_index").low}});
 }
 
 void hardLayer(Collector& to, const EffectForm& form) {
@@ -156,7 +161,8 @@ Rule ruleOf(const EffectForm& form) {
   if (family == "rear_pile") return pile;
   if (family == "drift") return drift;
   if (family == "grouser" || name == "slip_sinkage_reece") return lugs;
-  if (name == "torque_offset" || name == "load_cell_tilt" || name == "sinkage_datum" || name == "slip_bias") return sensor;
+  if (name == "torque_offset" || name == "load_cell_tilt" || name == "sinkage_datum" || name == "slip_bias")
+    return sensor;
   if (family == "diameter" || family == "lateral_slip" || family == "load_transfer" ||
       name == "torque_offset_viscous")
     return whereItVaries;
@@ -171,28 +177,51 @@ std::vector<Candidate> libraryCandidates(const Trial& trial, const Eigen::Vector
   return collector.take();
 }
 
+namespace {
+
+Effect flatCurve(const char* name, const std::string& covariate, Channel channel,
+                 const std::vector<double>& knots) {
+  Effect curve;
+  curve.name = name;
+  curve.covariate = covariate;
+  curve.channel = channel;
+  curve.knots = knots;
+  curve.parameters.assign(knots.size(), 0.0);
+  return curve;
+}
+
+void addCurves(const Trial& trial, const std::string& covariate, const std::vector<double>& knots,
+               std::vector<Candidate>& all) {
+  const auto count = static_cast<int>(knots.size());
+  Candidate channels{{}, "empirical", 0};
+  for (int c = 0; c < kChannels; ++c) {
+    const auto channel = static_cast<Channel>(c);
+    if (!trial.has(channel) || (covariate == "sinkage_m" && channel == Channel::Sinkage)) continue;
+    channels.parts.push_back(flatCurve("empirical", covariate, channel, knots));
+    channels.parameters += count;
+  }
+  if (!channels.parts.empty()) all.push_back(std::move(channels));
+  if (covariate == "sinkage_m" || covariate == "slip_angle_rad") return;
+  all.push_back({{flatCurve("empirical_stiffness", covariate, Channel::Sinkage, knots)}, "empirical", count});
+  all.push_back(
+      {{flatCurve("empirical_strength", covariate, Channel::DrawbarPull, knots)}, "empirical", count});
+}
+
+}  // namespace
+
 std::vector<Candidate> empiricalCandidates(const Trial& trial, const Eigen::VectorXd& sinkage_m) {
   std::vector<Candidate> all;
   std::vector<std::string> names = trial.covariates;
   names.push_back("sinkage_m");
-  const int most = trial.rows() >= 150 ? 6 : 5;
   for (const std::string& name : names) {
-    const auto knots = quantileKnots(covariateValues(trial, name, sinkage_m), most);
-    if (knots.size() < 2) continue;
-    Candidate candidate{{}, "empirical", 0};
-    for (int c = 0; c < kChannels; ++c) {
-      const auto channel = static_cast<Channel>(c);
-      if (!trial.has(channel) || (name == "sinkage_m" && channel == Channel::Sinkage)) continue;
-      Effect curve;
-      curve.name = "empirical";
-      curve.covariate = name;
-      curve.channel = channel;
-      curve.knots = knots;
-      curve.parameters.assign(knots.size(), 0.0);
-      candidate.parts.push_back(std::move(curve));
-      candidate.parameters += static_cast<int>(knots.size());
+    const Eigen::VectorXd x = covariateValues(trial, name, sinkage_m);
+    std::size_t coarser = 1;
+    for (int most : {5, trial.rows() >= 120 ? 9 : 5}) {
+      const auto knots = quantileKnots(x, most);
+      if (knots.size() <= coarser) continue;
+      coarser = knots.size();
+      addCurves(trial, name, knots, all);
     }
-    if (!candidate.parts.empty()) all.push_back(std::move(candidate));
   }
   return all;
 }

@@ -1,3 +1,5 @@
+#include <unordered_map>
+
 #include <terramech/effects.hpp>
 
 namespace talus::terramech {
@@ -18,20 +20,27 @@ const char* name(Channel channel) {
 
 double Reading::denominator(Channel channel) const {
   switch (channel) {
-    case Channel::Sinkage: return radius_m;
-    case Channel::Torque: return load_N * radius_m;
+    case Channel::Sinkage:
+      return radius_m;
+    case Channel::Torque:
+      return load_N * radius_m;
     case Channel::DrawbarPull:
-    case Channel::SideForce: break;
+    case Channel::SideForce:
+      break;
   }
   return load_N;
 }
 
 double Reading::scaled(Channel channel) const {
   switch (channel) {
-    case Channel::DrawbarPull: return drawbar_pull_N / load_N;
-    case Channel::Sinkage: return sinkage_m / radius_m;
-    case Channel::Torque: return torque_Nm / (load_N * radius_m);
-    case Channel::SideForce: return side_force_N / load_N;
+    case Channel::DrawbarPull:
+      return drawbar_pull_N / load_N;
+    case Channel::Sinkage:
+      return sinkage_m / radius_m;
+    case Channel::Torque:
+      return torque_Nm / (load_N * radius_m);
+    case Channel::SideForce:
+      return side_force_N / load_N;
   }
   return 0.0;
 }
@@ -65,9 +74,13 @@ const std::vector<EffectForm>& effectLibrary() {
 }
 
 const EffectForm* findEffect(std::string_view name) {
-  for (const EffectForm& form : effectLibrary())
-    if (name == form.name) return &form;
-  return nullptr;
+  static const std::unordered_map<std::string_view, const EffectForm*> by_name = [] {
+    std::unordered_map<std::string_view, const EffectForm*> all;
+    for (const EffectForm& form : effectLibrary()) all.emplace(form.name, &form);
+    return all;
+  }();
+  const auto found = by_name.find(name);
+  return found == by_name.end() ? nullptr : found->second;
 }
 
 namespace {

@@ -16,15 +16,28 @@ double covariateOf(const Effect& effect, const WheelState& state, double sinkage
   return effect.covariate == "sinkage_m" ? sinkage_m : state.covariate(effect.covariate);
 }
 
+/// Curves that act through the soil.
+void bend(const Effect& curve, double x, WheelContact& contact) {
+  if (curve.name == "empirical") return;
+  const double factor = std::exp(std::clamp(splineValue(curve.knots, curve.parameters, x), -3.0, 3.0));
+  if (curve.name == "empirical_stiffness") {
+    contact.sinkage_modulus *= factor;
+  } else {
+    contact.cohesion_Pa *= factor;
+    contact.tan_friction *= factor;
+  }
+}
+
 WheelContact contactFor(const RefinedModel& model, const WheelState& state) {
   WheelContact contact = contactOf(model.soil, state.wheel);
   contact.load_N = state.load_N;
   contact.slip = model.slip_along_travel ? slipInWheelPlane(state.slip, state.slip_angle_rad) : state.slip;
   for (const Effect& effect : model.effects) {
-    const EffectForm* form = findEffect(effect.name);
-    if (!form || !form->act || !applies(effect, state)) continue;
+    if (!applies(effect, state)) continue;
     const double x = covariateOf(effect, state, 0.0);
-    if (std::isfinite(x)) form->act({effect.parameters.data(), state, x}, contact);
+    if (effect.empirical() && std::isfinite(x)) bend(effect, x, contact);
+    const EffectForm* form = effect.empirical() ? nullptr : findEffect(effect.name);
+    if (form && form->act && std::isfinite(x)) form->act({effect.parameters.data(), state, x}, contact);
   }
   contact.slip = std::clamp(contact.slip, -1.0, 1.0);
   return contact;
@@ -33,7 +46,7 @@ WheelContact contactFor(const RefinedModel& model, const WheelState& state) {
 void readSensors(const RefinedModel& model, const WheelState& state, const WheelContact& contact,
                  Reading& reading) {
   for (const Effect& effect : model.effects) {
-    const EffectForm* form = findEffect(effect.name);
+    const EffectForm* form = effect.empirical() ? nullptr : findEffect(effect.name);
     if (!form || !form->read || !applies(effect, state)) continue;
     const double x = covariateOf(effect, state, reading.sinkage_m);
     if (std::isfinite(x)) form->read({effect.parameters.data(), state, x}, contact, reading);
@@ -43,7 +56,7 @@ void readSensors(const RefinedModel& model, const WheelState& state, const Wheel
 void addCurves(const RefinedModel& model, const WheelState& state, Reading& reading) {
   const double sinkage = reading.sinkage_m;
   for (const Effect& effect : model.effects) {
-    if (!effect.empirical() || !applies(effect, state)) continue;
+    if (effect.name != "empirical" || !applies(effect, state)) continue;
     const double x = covariateOf(effect, state, sinkage);
     if (std::isfinite(x)) reading.addScaled(effect.channel, splineValue(effect.knots, effect.parameters, x));
   }

@@ -44,8 +44,8 @@ struct RefinedModel {
   BaseModel base = BaseModel::WongReece;
   Soil soil;
   std::map<std::string, double> soil_prior_mean;  ///< by field name, of those below
-  std::map<std::string, double> soil_prior_std;  ///< by field name; fields that are not in it are exact
-  std::vector<Effect> effects;                   ///< act in this order
+  std::map<std::string, double> soil_prior_std;   ///< by field name; fields that are not in it are exact
+  std::vector<Effect> effects;                    ///< act in this order
   bool slip_along_travel =
       false;                   ///< slip was measured with the full speed, not its part along the wheel plane
   std::optional<Wheel> wheel;  ///< for rows that do not say which wheel they are of

@@ -22,6 +22,13 @@ double pValueOf(const std::vector<CovariateTest>& tests, const Candidate& chosen
   return p;
 }
 
+/// Whether a further effect carries a share of the residual worth a name: what the form of the first leaves
+/// over is often certain and tiny.
+bool matters(const Explanation& e, const Trial& trial) {
+  const auto values = static_cast<double>(trial.measured.array().isFinite().count());
+  return e.chi2_gain > 0.03 * values;
+}
+
 Channel strongest(const Explanation& e) {
   const auto most = std::max_element(e.by_channel.begin(), e.by_channel.end());
   return static_cast<Channel>(most - e.by_channel.begin());
@@ -94,7 +101,8 @@ TraceResult traceResiduals(const RefinedModel& base, const Trial& trial, const T
     result.last_tests = tests;
     if (smallest(tests) > options.significance || round == options.max_effects) break;
     const auto ranked = search.fitBest(screened, tests);
-    const auto best = search.choose(ranked);
+    auto best = search.choose(ranked);
+    if (best && !result.effects.empty() && !matters(ranked[*best], trial)) best.reset();
     if (!best) {
       result.rejected = ranked;
       break;

@@ -19,18 +19,18 @@ namespace talus::terramech {
 struct TraceOptions {
   double significance = 0.005;  ///< family-wise level at which something is called missing
   int max_effects = 4;
-  int fits = 10;                ///< candidates that are fitted inside the full model, a round
-  int flips = 1999;             ///< of the significance test
-  double library_bonus = 3.0;   ///< log odds by which a known form is believed before a curve
-  bool fit_soil = false;        ///< the base soil is not given: it is fitted from the data
+  int fits = 7;                ///< candidates that are fitted inside the full model, a round
+  int flips = 1999;            ///< of the significance test
+  double library_bonus = 3.0;  ///< log odds by which a known form is believed before a curve
+  bool fit_soil = false;       ///< the base soil is not given: it is fitted from the data
   std::uint64_t seed = 1;
 };
 
 /// A candidate that was fitted, and how well.
 struct Explanation {
-  Candidate candidate;                     ///< with fitted parameters
-  double score = 0.0;                      ///< log-likelihood gained less the penalty of its parameters
-  double chi2_gain = 0.0;                  ///< twice the log-likelihood gained
+  Candidate candidate;                         ///< with fitted parameters
+  double score = 0.0;                          ///< log-likelihood gained less the penalty of its parameters
+  double chi2_gain = 0.0;                      ///< twice the log-likelihood gained
   std::array<double, kChannels> by_channel{};  ///< chi2 gained in each channel
 };
 
@@ -53,15 +53,15 @@ struct TraceResult {
   RefinedModel refined;  ///< base and the effects
   Trial trial;           ///< the rows, inputs calibrated
   std::vector<TracedEffect> effects;
-  std::vector<Explanation> rejected;       ///< fitted and not chosen in the last round, or less likely than noise
+  std::vector<Explanation> rejected;  ///< fitted and not chosen in the last round, or less likely than noise
   std::vector<CovariateTest> first_tests;  ///< of the base model, strongest first
   std::vector<CovariateTest> last_tests;   ///< of the refined model
   ChannelErrors base_rmse{}, refined_rmse{}, noise_floor{};
   bool grouped_by_run = false;
 };
 
-/// Traces the residuals of `base` on the rows of `trial`. Deterministic for a seed. A stopped watch ends it early with
-/// what was found so far.
+/// Traces the residuals of `base` on the rows of `trial`. Deterministic for a seed. A stopped watch ends it
+/// early with what was found so far.
 TraceResult traceResiduals(const RefinedModel& base, const Trial& trial, const TraceOptions& options = {},
                            const Watch& watch = {});
 

@@ -3,6 +3,7 @@
 #include <numeric>
 
 #include <Eigen/QR>
+
 #include <terramech/spline_basis.hpp>
 #include <terramech/trace_search.hpp>
 
@@ -28,15 +29,33 @@ TraceSearch::TraceSearch(const RefinedModel& base, const Trial& trial, const Tra
   if (!planFor(model_).free.empty()) fitSoil();
 }
 
-FitPlan TraceSearch::planFor(const RefinedModel& model) const { return fitPlan(model, options_.fit_soil); }
+FitPlan TraceSearch::planFor(const RefinedModel& model) const {
+  return fitPlan(model, options_.fit_soil);
+}
 
 void TraceSearch::fitSoil() {
+  // A soil is learned where the wheel rolls straight, if there are rows enough: at an angle the base has no
+  // say.
+  const Trial all = trial_;
+  std::vector<char> straight;
+  for (const WheelState& s : trial_.states) straight.push_back(std::abs(s.slip_angle_rad) < 0.1);
+  const auto count = std::count(straight.begin(), straight.end(), 1);
+  const bool part = count >= 20 && count < trial_.rows();
+  if (part) {
+    trial_ = subset(all, straight);
+    guesses_.clear();
+    refresh();
+  }
   for (int round = 0; round < 3; ++round) {
     FitPlan plan = planFor(model_);
     plan.iterations = 30;
     model_ = fitModel(model_, trial_, whitening_, plan, guesses_).model;
     refresh();
   }
+  if (!part) return;
+  trial_ = all;
+  guesses_.clear();
+  refresh();
 }
 
 Eigen::VectorXd TraceSearch::sinkages(const Eigen::MatrixXd& level) const {
@@ -73,7 +92,8 @@ Eigen::VectorXd TraceSearch::change(const RefinedModel& moved) {
   return whitening_.apply(predictRows(moved, trial_, guesses) - level_);
 }
 
-TraceSearch::Screened TraceSearch::screenLibrary(const Candidate& candidate, const Eigen::MatrixXd& nuisance) {
+TraceSearch::Screened TraceSearch::screenLibrary(const Candidate& candidate,
+                                                 const Eigen::MatrixXd& nuisance) {
   const RefinedModel grown = with(model_, candidate);
   const Eigen::VectorXd whole = change(grown);
   const auto free = parametersOf(grown, static_cast<int>(grown.effects.size()) - 1);
@@ -94,7 +114,27 @@ TraceSearch::Screened TraceSearch::screenLibrary(const Candidate& candidate, con
   return screened;
 }
 
+TraceSearch::Screened TraceSearch::screenSoilCurve(const Candidate& candidate,
+                                                   const Eigen::MatrixXd& nuisance) {
+  // All knots act through one number of the soil, so that one derivative by it gives every column.
+  const Effect& curve = candidate.parts.front();
+  Candidate level = candidate;
+  level.parts.front().parameters.assign(curve.knots.size(), 0.02);
+  const Eigen::VectorXd whole = change(with(model_, level)) / 0.02;
+  const Eigen::MatrixXd basis =
+      splineBasis(covariateValues(trial_, curve.covariate, sinkages(level_)), curve.knots);
+  Eigen::MatrixXd columns(whole.size(), basis.cols());
+  for (Eigen::Index row = 0; row < basis.rows(); ++row)
+    for (int c = 0; c < kChannels; ++c)
+      columns.row(row * kChannels + c) = whole[row * kChannels + c] * basis.row(row);
+  Screened screened{candidate, off(columns, nuisance), 0.0};
+  const double gain = (orthonormal(screened.direction).transpose() * white_).squaredNorm();
+  screened.score = 0.5 * gain - penalty(candidate);
+  return screened;
+}
+
 TraceSearch::Screened TraceSearch::screenCurves(const Candidate& candidate, const Eigen::MatrixXd& nuisance) {
+  if (candidate.parts.front().name != "empirical") return screenSoilCurve(candidate, nuisance);
   Screened screened{candidate, {}, 0.0};
   screened.candidate.parts.clear();
   screened.candidate.parameters = 0;
@@ -109,7 +149,8 @@ TraceSearch::Screened TraceSearch::screenCurves(const Candidate& candidate, cons
     }
     columns = off(columns, nuisance);
     const double gain = (orthonormal(columns).transpose() * white_).squaredNorm();
-    const double cost = 0.5 * static_cast<double>(curve.knots.size()) * std::log(static_cast<double>(trial_.rows()));
+    const double cost =
+        0.5 * static_cast<double>(curve.knots.size()) * std::log(static_cast<double>(trial_.rows()));
     if (0.5 * gain < cost) continue;
     screened.candidate.parts.push_back(curve);
     screened.candidate.parameters += static_cast<int>(curve.knots.size());
@@ -124,16 +165,18 @@ TraceSearch::Screened TraceSearch::screenCurves(const Candidate& candidate, cons
 }
 
 std::vector<TraceSearch::Screened> TraceSearch::screen() {
-  const Eigen::MatrixXd nuisance = orthonormal(
-      jacobian(model_, trial_, planFor(model_).free, guesses_,
-               [&](const Eigen::MatrixXd& m) { return whitening_.apply(m); }));
+  const Eigen::MatrixXd nuisance =
+      orthonormal(jacobian(model_, trial_, planFor(model_).free, guesses_,
+                           [&](const Eigen::MatrixXd& m) { return whitening_.apply(m); }));
   std::vector<Screened> all;
-  for (const Candidate& c : libraryCandidates(trial_, sinkages(level_))) all.push_back(screenLibrary(c, nuisance));
+  for (const Candidate& c : libraryCandidates(trial_, sinkages(level_)))
+    all.push_back(screenLibrary(c, nuisance));
   for (const Candidate& c : empiricalCandidates(trial_, sinkages(level_))) {
     Screened s = screenCurves(c, nuisance);
     if (!s.candidate.parts.empty()) all.push_back(std::move(s));
   }
-  std::stable_sort(all.begin(), all.end(), [](const Screened& a, const Screened& b) { return a.score > b.score; });
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Screened& a, const Screened& b) { return a.score > b.score; });
   return all;
 }
 
@@ -143,8 +186,8 @@ std::vector<CovariateTest> TraceSearch::test(const std::vector<Screened>& screen
   plan.flips = options_.flips;
   plan.seed = options_.seed;
   const auto free = planFor(model_).free;
-  plan.nuisance_whitened = jacobian(model_, trial_, free, guesses_,
-                                    [&](const Eigen::MatrixXd& m) { return whitening_.apply(m); });
+  plan.nuisance_whitened =
+      jacobian(model_, trial_, free, guesses_, [&](const Eigen::MatrixXd& m) { return whitening_.apply(m); });
   plan.nuisance_marginal = jacobian(model_, trial_, free, guesses_,
                                     [&](const Eigen::MatrixXd& m) { return whitening_.marginal(m); });
   for (const Screened& s : screened)
@@ -155,7 +198,9 @@ std::vector<CovariateTest> TraceSearch::test(const std::vector<Screened>& screen
 Explanation TraceSearch::fitted(const Candidate& candidate) {
   const RefinedModel grown = with(model_, candidate);
   std::vector<double> guesses = guesses_;
-  const Fit fit = fitModel(grown, trial_, whitening_, planFor(grown), guesses);
+  FitPlan plan = planFor(grown);
+  plan.iterations = 6;
+  const Fit fit = fitModel(grown, trial_, whitening_, plan, guesses);
   Explanation e;
   e.candidate = candidate;
   for (std::size_t k = 0; k < candidate.parts.size(); ++k)
@@ -163,7 +208,8 @@ Explanation TraceSearch::fitted(const Candidate& candidate) {
   e.chi2_gain = white_.squaredNorm() - fit.chi2 - fit.prior_chi2;
   e.score = 0.5 * e.chi2_gain - penalty(candidate) + (candidate.empirical() ? 0.0 : options_.library_bonus);
   const Eigen::VectorXd before = whitening_.marginal(residual_),
-                        after = whitening_.marginal(trial_.measured - predictRows(fit.model, trial_, guesses));
+                        after =
+                            whitening_.marginal(trial_.measured - predictRows(fit.model, trial_, guesses));
   for (Eigen::Index i = 0; i < before.size(); ++i)
     e.by_channel[static_cast<std::size_t>(i % kChannels)] += before[i] * before[i] - after[i] * after[i];
   return e;
@@ -178,7 +224,7 @@ std::vector<Explanation> TraceSearch::fitBest(const std::vector<Screened>& scree
   for (const Screened& s : screened) {
     int& count = s.candidate.empirical() ? empirical : library;
     const Effect& front = s.candidate.parts.front();
-    if (count >= (s.candidate.empirical() ? 4 : options_.fits) || s.score < -2.0) continue;
+    if (count >= (s.candidate.empirical() ? 3 : options_.fits) || s.score < -2.0) continue;
     if (++tried[front.name + front.covariate + front.only_value] > 2) continue;
     ++count;
     ranked.push_back(fitted(s.candidate));
@@ -208,7 +254,8 @@ void TraceSearch::accept(const Candidate& candidate) {
 }
 
 void TraceSearch::takeOut(std::size_t k) {
-  const auto first = std::accumulate(part_count_.begin(), part_count_.begin() + static_cast<long>(k), std::size_t{0});
+  const auto first =
+      std::accumulate(part_count_.begin(), part_count_.begin() + static_cast<long>(k), std::size_t{0});
   const auto begin = model_.effects.begin() + static_cast<long>(first);
   model_.effects.erase(begin, begin + static_cast<long>(part_count_[k]));
   part_count_.erase(part_count_.begin() + static_cast<long>(k));
@@ -269,7 +316,8 @@ void TraceSearch::finish(TraceResult& result) {
       const auto k = static_cast<int>(c);
       if (!std::isfinite(trial_.measured(row, k))) continue;
       const auto& n = model_.noise;
-      const double slip = std::hypot(n.slip_absolute, n.slip_relative * trial_.slip[static_cast<std::size_t>(row)]);
+      const double slip =
+          std::hypot(n.slip_absolute, n.slip_relative * trial_.slip[static_cast<std::size_t>(row)]);
       sum += std::pow(n.absolute[c] / trial_.denominator(row, static_cast<Channel>(k)), 2) +
              std::pow(n.relative[c] * level_(row, k), 2) + std::pow(slip * slopes.by_slip(row, k), 2) +
              std::pow(n.load_relative * slopes.by_load(row, k), 2);

@@ -17,28 +17,31 @@ class TraceSearch {
 
   /// A candidate tried to first order.
   struct Screened {
-    Candidate candidate;  ///< empirical ones only with the channels that pay
+    Candidate candidate;        ///< empirical ones only with the channels that pay
     Eigen::MatrixXd direction;  ///< whitened change of the readings
     double score = 0.0;
   };
 
-  /// All candidates by the log-likelihood that they would gain to first order, less their penalty; best first.
+  /// All candidates by the log-likelihood that they would gain to first order, less their penalty; best
+  /// first.
   std::vector<Screened> screen();
 
   /// Whether the residuals hold anything at all.
   std::vector<CovariateTest> test(const std::vector<Screened>& screened);
 
   /// The most promising candidates fitted inside the full model, best first.
-  std::vector<Explanation> fitBest(const std::vector<Screened>& screened, const std::vector<CovariateTest>& tests);
+  std::vector<Explanation> fitBest(const std::vector<Screened>& screened,
+                                   const std::vector<CovariateTest>& tests);
 
-  /// Which of the ranked is believed: the best known form unless a curve says clearly more; none when nothing pays.
+  /// Which of the ranked is believed: the best known form unless a curve says clearly more; none when nothing
+  /// pays.
   std::optional<std::size_t> choose(const std::vector<Explanation>& ranked) const;
 
   /// Puts a candidate into the model, fits everything again and finds the noise anew.
   void accept(const Candidate& candidate);
 
-  /// What would explain the rows in place of accepted candidate number k, the others kept and the noise as it is now
-  /// known: before the first effect was in, the noise was only guessed.
+  /// What would explain the rows in place of accepted candidate number k, the others kept and the noise as it
+  /// is now known: before the first effect was in, the noise was only guessed.
   std::vector<Explanation> rivals(std::size_t k);
 
   /// Takes accepted candidate number k out and puts another in, which becomes the last.
@@ -56,6 +59,7 @@ class TraceSearch {
   double penalty(const Candidate& candidate) const;
   Eigen::VectorXd sinkages(const Eigen::MatrixXd& level) const;
   Screened screenLibrary(const Candidate& candidate, const Eigen::MatrixXd& nuisance);
+  Screened screenSoilCurve(const Candidate& candidate, const Eigen::MatrixXd& nuisance);
   Screened screenCurves(const Candidate& candidate, const Eigen::MatrixXd& nuisance);
   Eigen::VectorXd change(const RefinedModel& moved);
 
