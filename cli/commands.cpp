@@ -10,8 +10,10 @@ void addCommands(CLI::App& app, Context& context) {
   addGenerate(app, context);
   addInfo(app, context);
   addPlan(app, context);
+  addPredict(app, context);
   addReproduce(app, context);
   addScore(app, context);
+  addTrace(app, context);
   addUpdate(app, context);
   addView(app, context);
   addWheel(app, context);

@@ -1,3 +1,5 @@
+#include <unordered_map>
+
 #include <terramech/effects.hpp>
 
 namespace talus::terramech {
@@ -14,6 +16,19 @@ const char* name(Channel channel) {
       return "side_force_over_load";
   }
   return "";
+}
+
+double Reading::denominator(Channel channel) const {
+  switch (channel) {
+    case Channel::Sinkage:
+      return radius_m;
+    case Channel::Torque:
+      return load_N * radius_m;
+    case Channel::DrawbarPull:
+    case Channel::SideForce:
+      break;
+  }
+  return load_N;
 }
 
 double Reading::scaled(Channel channel) const {
@@ -59,9 +74,13 @@ const std::vector<EffectForm>& effectLibrary() {
 }
 
 const EffectForm* findEffect(std::string_view name) {
-  for (const EffectForm& form : effectLibrary())
-    if (name == form.name) return &form;
-  return nullptr;
+  static const std::unordered_map<std::string_view, const EffectForm*> by_name = [] {
+    std::unordered_map<std::string_view, const EffectForm*> all;
+    for (const EffectForm& form : effectLibrary()) all.emplace(form.name, &form);
+    return all;
+  }();
+  const auto found = by_name.find(name);
+  return found == by_name.end() ? nullptr : found->second;
 }
 
 namespace {

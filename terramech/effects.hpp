@@ -28,6 +28,7 @@ struct Reading {
   double drawbar_pull_N = 0.0;
   double side_force_N = 0.0;
 
+  double denominator(Channel channel) const;      ///< W, r, r W or W
   double scaled(Channel channel) const;           ///< DP/W, z/r, T/(rW), F/W [-]
   void addScaled(Channel channel, double value);  ///< adds to one of them [-]
 };
@@ -79,7 +80,10 @@ struct Effect {
   std::string only_column{};         ///< acts only where this grouping column ...
   std::string only_value{};          ///< ... has this text; empty: everywhere
 
-  bool empirical() const { return name == "empirical"; }
+  /// Whether it is a curve: "empirical" adds to one scaled channel; "empirical_stiffness" and
+  /// "empirical_strength" multiply k, or c and tan phi, by the exponential of the curve, and so move every
+  /// channel.
+  bool empirical() const { return name.starts_with("empirical"); }
 };
 
 /// Value at x of the natural cubic spline through (knots, values); constant outside. One knot: a constant.

@@ -274,6 +274,30 @@ std::vector<EffectForm> sideSlip() {
        .signature = "drawbar pull falls, even in the slip angle; side force odd in it",
        .parameters = {{"a", "-", 0.2, 8.0, 1.0}},
        .act = +resolve},
+      {.name = "side_slip_sinkage",
+       .family = "lateral_slip",
+       .covariate = "slip_angle_rad",
+       .channel = Channel::Sinkage,
+       .formula = "n = n0 + n_y |sin beta|",
+       .source = "ours",
+       .signature = "sinkage grows with the slip angle, as slip sinkage does with slip",
+       .parameters = {{"n_y", "-", 0.0, 3.0, 0.3}},
+       .act = [](Input in,
+                 WheelContact& c) { c.sinkage_exponent += in.parameter[0] * std::abs(std::sin(in.x)); }},
+      {.name = "side_slip",
+       .family = "lateral_slip",
+       .covariate = "slip_angle_rad",
+       .channel = Channel::SideForce,
+       .formula = "lateral shear along the resultant, K -> K a; n = n0 + n_y |sin beta|",
+       .source = "ishigami_2007",
+       .signature = "side force odd in the slip angle; sinkage grows and drawbar pull falls, even in it",
+       .parameters = {{"a", "-", 0.2, 8.0, 1.0}, {"n_y", "-", 0.0, 3.0, 0.3}},
+       .act =
+           [](Input in, WheelContact& c) {
+             c.slip_angle_rad = in.x;
+             c.shear_modulus_m *= in.parameter[0];
+             c.sinkage_exponent += in.parameter[1] * std::abs(std::sin(in.x));
+           }},
   };
 }
 

@@ -16,15 +16,28 @@ double covariateOf(const Effect& effect, const WheelState& state, double sinkage
   return effect.covariate == "sinkage_m" ? sinkage_m : state.covariate(effect.covariate);
 }
 
+/// Curves that act through the soil.
+void bend(const Effect& curve, double x, WheelContact& contact) {
+  if (curve.name == "empirical") return;
+  const double factor = std::exp(std::clamp(splineValue(curve.knots, curve.parameters, x), -3.0, 3.0));
+  if (curve.name == "empirical_stiffness") {
+    contact.sinkage_modulus *= factor;
+  } else {
+    contact.cohesion_Pa *= factor;
+    contact.tan_friction *= factor;
+  }
+}
+
 WheelContact contactFor(const RefinedModel& model, const WheelState& state) {
   WheelContact contact = contactOf(model.soil, state.wheel);
   contact.load_N = state.load_N;
   contact.slip = model.slip_along_travel ? slipInWheelPlane(state.slip, state.slip_angle_rad) : state.slip;
   for (const Effect& effect : model.effects) {
-    const EffectForm* form = findEffect(effect.name);
-    if (!form || !form->act || !applies(effect, state)) continue;
+    if (!applies(effect, state)) continue;
     const double x = covariateOf(effect, state, 0.0);
-    if (std::isfinite(x)) form->act({effect.parameters.data(), state, x}, contact);
+    if (effect.empirical() && std::isfinite(x)) bend(effect, x, contact);
+    const EffectForm* form = effect.empirical() ? nullptr : findEffect(effect.name);
+    if (form && form->act && std::isfinite(x)) form->act({effect.parameters.data(), state, x}, contact);
   }
   contact.slip = std::clamp(contact.slip, -1.0, 1.0);
   return contact;
@@ -33,7 +46,7 @@ WheelContact contactFor(const RefinedModel& model, const WheelState& state) {
 void readSensors(const RefinedModel& model, const WheelState& state, const WheelContact& contact,
                  Reading& reading) {
   for (const Effect& effect : model.effects) {
-    const EffectForm* form = findEffect(effect.name);
+    const EffectForm* form = effect.empirical() ? nullptr : findEffect(effect.name);
     if (!form || !form->read || !applies(effect, state)) continue;
     const double x = covariateOf(effect, state, reading.sinkage_m);
     if (std::isfinite(x)) form->read({effect.parameters.data(), state, x}, contact, reading);
@@ -43,7 +56,7 @@ void readSensors(const RefinedModel& model, const WheelState& state, const Wheel
 void addCurves(const RefinedModel& model, const WheelState& state, Reading& reading) {
   const double sinkage = reading.sinkage_m;
   for (const Effect& effect : model.effects) {
-    if (!effect.empirical() || !applies(effect, state)) continue;
+    if (effect.name != "empirical" || !applies(effect, state)) continue;
     const double x = covariateOf(effect, state, sinkage);
     if (std::isfinite(x)) reading.addScaled(effect.channel, splineValue(effect.knots, effect.parameters, x));
   }
@@ -56,6 +69,7 @@ double squared(double x) {
 }  // namespace
 
 double slipInWheelPlane(double slip_along_travel, double slip_angle_rad) {
+  if (slip_along_travel <= -1.0) return -1.0;  // locked, whatever the angle
   const double q = travelRatio(slip_along_travel) * std::max(std::cos(slip_angle_rad), 0.0);
   return q <= 1.0 ? 1.0 - q : 1.0 / q - 1.0;
 }
@@ -63,9 +77,7 @@ double slipInWheelPlane(double slip_along_travel, double slip_angle_rad) {
 Reading predict(const RefinedModel& model, const WheelState& state, double* entry_guess_rad) {
   const WheelContact contact = contactFor(model, state);
   const ContactForces forces = solveContact(contact, entry_guess_rad ? *entry_guess_rad : 0.0);
-  if (entry_guess_rad)
-    *entry_guess_rad =
-        contact.sinkage_gain == 1.0 && contact.extra_sinkage_m == 0.0 ? forces.entry_angle_rad : 0.0;
+  if (entry_guess_rad) *entry_guess_rad = forces.static_entry_rad;
   Reading reading{.load_N = state.load_N,
                   .radius_m = state.wheel.radius_m,
                   .sinkage_m = forces.sinkage_m,
@@ -171,7 +183,7 @@ Prediction predictWithStd(const RefinedModel& model, const WheelState& state) {
       by_parameter.push_back(slope(predict(moved, state), out.mean, h));
     }
   for (std::size_t c = 0; c < kChannels; ++c) {
-    variance[c] = squared(noise.absolute[c]) +
+    variance[c] = squared(noise.absolute[c] / out.mean.denominator(static_cast<Channel>(c))) +
                   squared(noise.relative[c] * out.mean.scaled(static_cast<Channel>(c))) +
                   slip_var * squared(by_slip[c]) + squared(noise.load_relative * by_load[c]);
     for (std::size_t i = 0; i < by_parameter.size(); ++i)

@@ -14,7 +14,7 @@ namespace talus::terramech {
 
 /// Standard deviations of what the sensors read: absolute + relative parts add in squares.
 struct SensorNoise {
-  std::array<double, kChannels> absolute{};  ///< of DP/W, z/r, T/(rW), F/W [-]
+  std::array<double, kChannels> absolute{};  ///< of DP [N], z [m], T [N m], F [N]
   std::array<double, kChannels> relative{};  ///< of the value read [-]
   double slip_absolute = 0.0;                ///< [-]
   double slip_relative = 0.0;                ///< of the slip
@@ -43,8 +43,9 @@ enum class BaseModel {
 struct RefinedModel {
   BaseModel base = BaseModel::WongReece;
   Soil soil;
-  std::map<std::string, double> soil_prior_std;  ///< by field name; fields that are not in it are exact
-  std::vector<Effect> effects;                   ///< act in this order
+  std::map<std::string, double> soil_prior_mean;  ///< by field name, of those below
+  std::map<std::string, double> soil_prior_std;   ///< by field name; fields that are not in it are exact
+  std::vector<Effect> effects;                    ///< act in this order
   bool slip_along_travel =
       false;                   ///< slip was measured with the full speed, not its part along the wheel plane
   std::optional<Wheel> wheel;  ///< for rows that do not say which wheel they are of

@@ -153,6 +153,7 @@ ContactForces solveContact(const WheelContact& c, double entry_guess_rad) {
   const Rim rim{c};
   const double area = c.radius_m * c.width_m, wanted = c.load_N / area;
   Solved solved = carry(rim, c, wanted, entry_guess_rad);
+  const double static_entry = solved.entry;
   double scale = 1.0;
   if (c.sinkage_gain != 1.0 || c.extra_sinkage_m != 0.0) {
     const double z = std::clamp(c.sinkage_gain * sinkageOf(c.radius_m, solved.entry) + c.extra_sinkage_m,
@@ -164,6 +165,7 @@ ContactForces solveContact(const WheelContact& c, double entry_guess_rad) {
   const Sums &p = solved.sums.pressure, &q = solved.sums.cohesion;
   return {.sinkage_m = sinkageOf(c.radius_m, solved.entry),
           .entry_angle_rad = solved.entry,
+          .static_entry_rad = static_entry,
           .torque_Nm = (scale * p.shear + q.shear) * area * c.shear_radius_m,
           .drawbar_pull_N = (scale * p.pull + q.pull) * area,
           .side_force_N = (scale * p.side + q.side) * area};

@@ -40,6 +40,7 @@ struct WheelContact {
 struct ContactForces {
   double sinkage_m = 0.0;
   double entry_angle_rad = 0.0;
+  double static_entry_rad = 0.0;  ///< before an imposed sinkage: what starts the next search best
   double torque_Nm = 0.0;
   double drawbar_pull_N = 0.0;
   double side_force_N = 0.0;  ///< signed against the sideways motion: negative for slip_angle > 0

@@ -121,7 +121,7 @@ TEST(RefinedModel, SlipInTheWheelPlaneGrowsWithTheSlipAngle) {
 
 TEST(RefinedModel, StdHoldsTheSensorsAndTheSlip) {
   RefinedModel model = base();
-  model.noise.absolute[0] = 0.02;
+  model.noise.absolute[0] = 0.02 * 80.0;
   EXPECT_NEAR(predictWithStd(model, state()).scaled_std[0], 0.02, 1e-12);
   model.noise.slip_absolute = 0.02;
   EXPECT_GT(predictWithStd(model, state(0.05)).scaled_std[0], 0.02);

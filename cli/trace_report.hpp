@@ -1,0 +1,38 @@
+#pragma once
+
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <terramech/held_out.hpp>
+#include <terramech/residual_trace.hpp>
+
+namespace talus::cli {
+
+/// Everything that a tracing has to tell.
+struct TraceStory {
+  std::string source;  ///< the file
+  std::size_t rows_rejected = 0;
+  terramech::TraceResult result;
+  terramech::HeldOut held_out;
+};
+
+/// Whether the model, refined, says anything about rows it has not seen; else why not.
+struct Applicability {
+  bool applies = true;
+  std::string reason;
+};
+Applicability applicability(const TraceStory& story);
+
+/// Columns that move with a covariate so closely (|correlation| above 0.9) that the rows cannot tell them
+/// apart.
+std::vector<std::string> confounded(const terramech::Trial& trial, const std::string& covariate);
+
+/// What one would have to measure to tell an effect from its nearest rival.
+std::string separatingMeasurement(const terramech::Trial& trial, const terramech::TracedEffect& effect);
+
+nlohmann::ordered_json traceJson(const TraceStory& story);
+std::string traceText(const TraceStory& story);
+std::string tracePage(const TraceStory& story);
+
+}  // namespace talus::cli

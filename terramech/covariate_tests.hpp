@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+#include <terramech/sensor_noise.hpp>
+#include <terramech/trial.hpp>
+
+namespace talus::terramech {
+
+/// One question put to the residuals.
+struct CovariateTest {
+  std::string covariate;  ///< column, "constant", or name of an effect whose own direction is tried
+  int channel = -1;       ///< of Channel; -1: an effect's direction through all channels
+  double z = 0.0;         ///< strength as a normal score (wilson_hilferty_1931)
+  double p_value = 1.0;   ///< family-wise: how often noise alone gives any question this strength
+};
+
+/// A direction in the space of whitened residuals, rows*kChannels x degrees of freedom.
+struct Direction {
+  std::string name;
+  Eigen::MatrixXd columns;
+};
+
+/// What is asked.
+struct TestPlan {
+  std::vector<Direction> directions;   ///< of candidate effects, whitened
+  Eigen::MatrixXd nuisance_whitened;   ///< derivatives by what was fitted already, whitened
+  Eigen::MatrixXd nuisance_marginal;   ///< the same over marginal standard deviations
+  std::vector<int> group;              ///< number of the exchangeable unit of each row
+  int flips = 1999;
+  std::uint64_t seed = 1;
+};
+
+/// Every covariate in every channel (spline and line), every grouping, a constant, and every direction, against sign
+/// flips of whole groups: p-values of the maximum over all questions (westfall_young_1993), exact when the noise is
+/// symmetric, whatever its variance from row to row and its correlation within a group.
+std::vector<CovariateTest> testCovariates(const Trial& trial, const Whitening& whitening,
+                                          const Eigen::MatrixXd& residual, const Eigen::VectorXd& sinkage_m,
+                                          const TestPlan& plan);
+
+/// Row groups to flip together: rows, or whole runs when what is left of a smooth of all covariates still correlates
+/// within runs (intraclass correlation with p < 0.05), or blocks of neighbouring times within one long run.
+std::vector<int> exchangeableGroups(const Trial& trial, const Whitening& whitening, const Eigen::MatrixXd& smoothed);
+
+/// Values of a covariate over the rows; "sinkage_m" is the model's.
+Eigen::VectorXd covariateValues(const Trial& trial, const std::string& name, const Eigen::VectorXd& sinkage_m);
+
+}  // namespace talus::terramech

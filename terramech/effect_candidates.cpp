@@ -1,0 +1,229 @@
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <set>
+
+#include <terramech/covariate_tests.hpp>
+#include <terramech/effect_candidates.hpp>
+#include <terramech/spline_basis.hpp>
+
+namespace talus::terramech {
+namespace {
+
+/// Extent of a covariate over the rows.
+struct Extent {
+  double low, high, middle;  // middle: median
+};
+
+std::vector<double> finite(const Eigen::VectorXd& x) {
+  std::vector<double> v;
+  for (double value : x)
+    if (std::isfinite(value)) v.push_back(value);
+  std::sort(v.begin(), v.end());
+  return v;
+}
+
+Extent extentOf(const Eigen::VectorXd& x) {
+  const auto v = finite(x);
+  return v.empty() ? Extent{0.0, 1.0, 0.5} : Extent{v.front(), v.back(), v[v.size() / 2]};
+}
+
+class Collector {
+ public:
+  Collector(const Trial& trial, const Eigen::VectorXd& sinkage_m) : trial_(trial), sinkage_m_(sinkage_m) {}
+
+  bool varies(const std::string& column) const {
+    return std::find(trial_.covariates.begin(), trial_.covariates.end(), column) != trial_.covariates.end();
+  }
+
+  const std::vector<std::string>& covariates() const { return trial_.covariates; }
+
+  Extent extent(const std::string& column) const {
+    return extentOf(covariateValues(trial_, column, sinkage_m_));
+  }
+
+  /// Adds a form on a column, with some parameters set: pairs of parameter name and value.
+  void add(const EffectForm& form, const std::string& column,
+           std::initializer_list<std::pair<const char*, double>> starts = {}) {
+    if (!trial_.has(form.channel) && !form.act) return;
+    Effect effect;
+    effect.name = form.name;
+    effect.covariate = column;
+    effect.channel = form.channel;
+    Candidate candidate{{}, form.family, 0};
+    for (const EffectParameter& p : form.parameters) {
+      double value = p.typical;
+      for (const auto& [name, start] : starts)
+        if (std::string_view(name) == p.name) value = start;
+      effect.parameters.push_back(p.fitted ? std::clamp(value, p.low, p.high) : value);
+      candidate.parameters += p.fitted;
+    }
+    candidate.parts = {effect};
+    all_.push_back(std::move(candidate));
+  }
+
+  /// The last one again, for each group of each text column alone.
+  void repeatByGroup() {
+    const Candidate whole = all_.back();
+    for (const std::string& column : trial_.groupings) {
+      std::set<std::string> labels;
+      for (const WheelState& s : trial_.states) labels.emplace(s.label(column));
+      for (const std::string& label : labels) {
+        if (label.empty()) continue;
+        Candidate one = whole;
+        one.parts[0].only_column = column;
+        one.parts[0].only_value = label;
+        all_.push_back(std::move(one));
+      }
+    }
+  }
+
+  std::vector<Candidate> take() { return std::move(all_); }
+
+ private:
+  const Trial& trial_;
+  const Eigen::VectorXd& sinkage_m_;
+  std::vector<Candidate> all_;
+};
+
+using Rule = void (*)(Collector&, const EffectForm&);
+
+void always(Collector& to, const EffectForm& form) {
+  to.add(form, form.covariate);
+}
+
+void whereItVaries(Collector& to, const EffectForm& form) {
+  if (to.varies(form.covariate)) to.add(form, form.covariate);
+}
+
+void rate(Collector& to, const EffectForm& form) {
+  for (const char* column : {"speed_mps", "rim_speed_mps"})
+    if (to.varies(column)) to.add(form, column, {{"v0", std::max(1e-4, to.extent(column).middle)}});
+}
+
+void passes(Collector& to, const EffectForm& form) {
+  if (!to.varies("pass_index")) return;
+  for (double scale : {0.6, 2.0})
+    to.add(form, "pass_index", {{"p0", scale}, {"first", to.extent("pass_index").low}});
+}
+
+void hardLayer(Collector& to, const EffectForm& form) {
+  const Extent z = to.extent("sinkage_m");
+  for (double share : {0.15, 0.4, 0.7})
+    to.add(form, "sinkage_m", {{"H", z.low + share * (z.high - z.low)}, {"k_h", 5e6}});
+}
+
+void pile(Collector& to, const EffectForm& form) {
+  for (double start : {0.1, 0.35, 0.55}) to.add(form, "slip", {{"i0", start}});
+}
+
+void sensor(Collector& to, const EffectForm& form) {
+  to.add(form, form.covariate);
+  to.repeatByGroup();
+}
+
+void lugs(Collector& to, const EffectForm& form) {
+  if (to.extent("grouser_height_m").high > 0.0) to.add(form, form.covariate);
+}
+
+/// Columns along which a soil or a sensor may drift: time, and what the weather does.
+std::vector<std::string> driftColumns(const Collector& c, const std::vector<std::string>& covariates) {
+  std::vector<std::string> columns;
+  for (const std::string& name : covariates) {
+    bool drifts = name == "time_s";
+    for (const char* word : {"temp", "moist", "humid", "water", "hour", "suction"})
+      drifts |= name.find(word) != std::string::npos;
+    if (drifts && c.varies(name)) columns.push_back(name);
+  }
+  return columns;
+}
+
+void drift(Collector& to, const EffectForm& form) {
+  for (const std::string& column : driftColumns(to, to.covariates())) {
+    const Extent x = to.extent(column);
+    const double span = x.high - x.low;
+    if (form.parameters.size() < 5) {
+      to.add(form, column, {{"start", x.low}, {"span", span}});
+      continue;
+    }
+    if (column != "time_s") continue;  // a wave needs a clock
+    for (double period : {0.6, 1.0, 2.0})
+      for (double phase : {0.0, 1.57})
+        to.add(form, column, {{"start", x.low}, {"span", span}, {"period", period}, {"phase", phase}});
+  }
+}
+
+Rule ruleOf(const EffectForm& form) {
+  const std::string family = form.family, name = form.name;
+  if (family == "rate") return rate;
+  if (family == "multipass") return passes;
+  if (family == "hardpan") return hardLayer;
+  if (family == "rear_pile") return pile;
+  if (family == "drift") return drift;
+  if (family == "grouser" || name == "slip_sinkage_reece") return lugs;
+  if (name == "torque_offset" || name == "load_cell_tilt" || name == "sinkage_datum" || name == "slip_bias")
+    return sensor;
+  if (family == "diameter" || family == "lateral_slip" || family == "load_transfer" ||
+      name == "torque_offset_viscous")
+    return whereItVaries;
+  return always;
+}
+
+}  // namespace
+
+std::vector<Candidate> libraryCandidates(const Trial& trial, const Eigen::VectorXd& sinkage_m) {
+  Collector collector{trial, sinkage_m};
+  for (const EffectForm& form : effectLibrary()) ruleOf(form)(collector, form);
+  return collector.take();
+}
+
+namespace {
+
+Effect flatCurve(const char* name, const std::string& covariate, Channel channel,
+                 const std::vector<double>& knots) {
+  Effect curve;
+  curve.name = name;
+  curve.covariate = covariate;
+  curve.channel = channel;
+  curve.knots = knots;
+  curve.parameters.assign(knots.size(), 0.0);
+  return curve;
+}
+
+void addCurves(const Trial& trial, const std::string& covariate, const std::vector<double>& knots,
+               std::vector<Candidate>& all) {
+  const auto count = static_cast<int>(knots.size());
+  Candidate channels{{}, "empirical", 0};
+  for (int c = 0; c < kChannels; ++c) {
+    const auto channel = static_cast<Channel>(c);
+    if (!trial.has(channel) || (covariate == "sinkage_m" && channel == Channel::Sinkage)) continue;
+    channels.parts.push_back(flatCurve("empirical", covariate, channel, knots));
+    channels.parameters += count;
+  }
+  if (!channels.parts.empty()) all.push_back(std::move(channels));
+  if (covariate == "sinkage_m" || covariate == "slip_angle_rad") return;
+  all.push_back({{flatCurve("empirical_stiffness", covariate, Channel::Sinkage, knots)}, "empirical", count});
+  all.push_back(
+      {{flatCurve("empirical_strength", covariate, Channel::DrawbarPull, knots)}, "empirical", count});
+}
+
+}  // namespace
+
+std::vector<Candidate> empiricalCandidates(const Trial& trial, const Eigen::VectorXd& sinkage_m) {
+  std::vector<Candidate> all;
+  std::vector<std::string> names = trial.covariates;
+  names.push_back("sinkage_m");
+  for (const std::string& name : names) {
+    const Eigen::VectorXd x = covariateValues(trial, name, sinkage_m);
+    std::size_t coarser = 1;
+    for (int most : {5, trial.rows() >= 120 ? 9 : 5}) {
+      const auto knots = quantileKnots(x, most);
+      if (knots.size() <= coarser) continue;
+      coarser = knots.size();
+      addCurves(trial, name, knots, all);
+    }
+  }
+  return all;
+}
+
+}  // namespace talus::terramech

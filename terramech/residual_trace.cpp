@@ -1,0 +1,123 @@
+#include <algorithm>
+#include <cmath>
+
+#include <terramech/residual_trace.hpp>
+#include <terramech/trace_search.hpp>
+
+namespace talus::terramech {
+namespace {
+
+double smallest(const std::vector<CovariateTest>& tests) {
+  double p = 1.0;
+  for (const CovariateTest& t : tests) p = std::min(p, t.p_value);
+  return p;
+}
+
+/// The family-wise p-value of the questions that the chosen effect answers.
+double pValueOf(const std::vector<CovariateTest>& tests, const Candidate& chosen) {
+  double p = 1.0;
+  for (const CovariateTest& t : tests)
+    if (t.channel < 0 ? t.covariate == chosen.parts.front().name : t.covariate == chosen.covariate())
+      p = std::min(p, t.p_value);
+  return p;
+}
+
+/// Whether a further effect carries a share of the residual worth a name: what the form of the first leaves
+/// over is often certain and tiny.
+bool matters(const Explanation& e, const Trial& trial) {
+  const auto values = static_cast<double>(trial.measured.array().isFinite().count());
+  return e.chi2_gain > 0.03 * values;
+}
+
+Channel strongest(const Explanation& e) {
+  const auto most = std::max_element(e.by_channel.begin(), e.by_channel.end());
+  return static_cast<Channel>(most - e.by_channel.begin());
+}
+
+TracedEffect traced(const std::vector<Explanation>& ranked, std::size_t best, double p_value) {
+  TracedEffect effect;
+  effect.chosen = ranked[best];
+  effect.channel = strongest(ranked[best]);
+  effect.p_value = p_value;
+  for (std::size_t k = 0; k < ranked.size(); ++k)
+    if (k != best && ranked[k].score > ranked[best].score - 6.0 && effect.alternatives.size() < 6)
+      effect.alternatives.push_back(ranked[k]);
+  return effect;
+}
+
+bool same(const Candidate& a, const Candidate& b) {
+  return a.parts.size() == b.parts.size() && a.parts.front().name == b.parts.front().name &&
+         a.covariate() == b.covariate() && a.parts.front().only_value == b.parts.front().only_value;
+}
+
+/// Looks at every effect again, the newest first, until none is better replaced.
+void reconsider(TraceSearch& search, std::vector<TracedEffect>& effects) {
+  int replacements = 0;
+  for (std::size_t looked = 0; looked < effects.size();) {
+    const std::size_t k = effects.size() - 1 - looked;
+    const auto ranked = search.rivals(k);
+    const auto best = search.choose(ranked);
+    ++looked;
+    if (!best) continue;
+    TracedEffect again = traced(ranked, *best, effects[k].p_value);
+    if (same(ranked[*best].candidate, effects[k].chosen.candidate)) {
+      effects[k] = again;
+      continue;
+    }
+    if (++replacements > 4) return;
+    search.replace(k, ranked[*best].candidate);
+    effects.erase(effects.begin() + static_cast<long>(k));
+    effects.push_back(again);
+    looked = 0;
+  }
+}
+
+}  // namespace
+
+ChannelErrors rmseOf(const RefinedModel& model, const Trial& trial) {
+  std::vector<double> guesses;
+  const Eigen::MatrixXd residual = trial.measured - predictRows(model, trial, guesses);
+  ChannelErrors errors{};
+  for (int c = 0; c < kChannels; ++c) {
+    double sum = 0.0;
+    int count = 0;
+    for (double r : residual.col(c))
+      if (std::isfinite(r)) sum += r * r, ++count;
+    errors[static_cast<std::size_t>(c)] = count ? std::sqrt(sum / count) : std::nan("");
+  }
+  return errors;
+}
+
+TraceResult traceResiduals(const RefinedModel& base, const Trial& trial, const TraceOptions& options,
+                           const Watch& watch) {
+  TraceSearch search{base, trial, options};
+  TraceResult result;
+  result.base = search.model();
+  for (int round = 0; round <= options.max_effects && !watch.stopped(); ++round) {
+    watch.report(round / (options.max_effects + 1.0));
+    const auto screened = search.screen();
+    auto tests = search.test(screened);
+    if (round == 0) result.first_tests = tests;
+    result.last_tests = tests;
+    if (smallest(tests) > options.significance || round == options.max_effects) break;
+    const auto ranked = search.fitBest(screened, tests);
+    auto best = search.choose(ranked);
+    if (best && !result.effects.empty() && !matters(ranked[*best], trial)) best.reset();
+    if (!best) {
+      result.rejected = ranked;
+      break;
+    }
+    search.accept(ranked[*best].candidate);
+    result.effects.push_back(
+        traced(ranked, *best, std::min(smallest(tests), pValueOf(tests, ranked[*best].candidate))));
+    result.rejected.clear();
+    for (std::size_t k = 0; k < ranked.size(); ++k)
+      if (k != *best) result.rejected.push_back(ranked[k]);
+    reconsider(search, result.effects);
+  }
+  search.finish(result);
+  watch.report(1.0);
+  return result;
+}
+
+}  // namespace talus::terramech

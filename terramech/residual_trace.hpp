@@ -1,0 +1,71 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <talus.hpp>
+#include <terramech/covariate_tests.hpp>
+#include <terramech/effect_candidates.hpp>
+#include <terramech/model_fit.hpp>
+#include <terramech/trial.hpp>
+
+/// From measured rows and a model: what the model lacks, and the model with it.
+namespace talus::terramech {
+
+/// How residuals are traced.
+struct TraceOptions {
+  double significance = 0.005;  ///< family-wise level at which something is called missing
+  int max_effects = 4;
+  int fits = 7;                ///< candidates that are fitted inside the full model, a round
+  int flips = 1999;            ///< of the significance test
+  double library_bonus = 3.0;  ///< log odds by which a known form is believed before a curve
+  bool fit_soil = false;       ///< the base soil is not given: it is fitted from the data
+  std::uint64_t seed = 1;
+};
+
+/// A candidate that was fitted, and how well.
+struct Explanation {
+  Candidate candidate;                         ///< with fitted parameters
+  double score = 0.0;                          ///< log-likelihood gained less the penalty of its parameters
+  double chi2_gain = 0.0;                      ///< twice the log-likelihood gained
+  std::array<double, kChannels> by_channel{};  ///< chi2 gained in each channel
+};
+
+/// Root mean square of the scaled residual in each channel; NaN where nothing is measured.
+using ChannelErrors = std::array<double, kChannels>;
+
+/// An effect that was found.
+struct TracedEffect {
+  Explanation chosen;
+  Channel channel = Channel::DrawbarPull;  ///< where it shows most
+  std::vector<double> parameter_std;       ///< of the fitted model's parameters of chosen.candidate, in order
+  double p_value = 1.0;                    ///< family-wise
+  std::vector<Explanation> alternatives;   ///< others within 6 of its score, best first
+  std::vector<Effect> correction;          ///< curves that carry what its form leaves in the same covariate
+};
+
+/// What tracing found.
+struct TraceResult {
+  RefinedModel base;     ///< as given or fitted, with its noise
+  RefinedModel refined;  ///< base and the effects
+  Trial trial;           ///< the rows, inputs calibrated
+  std::vector<TracedEffect> effects;
+  std::vector<Explanation> rejected;  ///< fitted and not chosen in the last round, or less likely than noise
+  std::vector<CovariateTest> first_tests;  ///< of the base model, strongest first
+  std::vector<CovariateTest> last_tests;   ///< of the refined model
+  ChannelErrors base_rmse{}, refined_rmse{}, noise_floor{};
+  bool grouped_by_run = false;
+};
+
+/// Traces the residuals of `base` on the rows of `trial`. Deterministic for a seed. A stopped watch ends it
+/// early with what was found so far.
+TraceResult traceResiduals(const RefinedModel& base, const Trial& trial, const TraceOptions& options = {},
+                           const Watch& watch = {});
+
+/// Root mean square of measured less predicted, scaled.
+ChannelErrors rmseOf(const RefinedModel& model, const Trial& trial);
+
+}  // namespace talus::terramech

@@ -1,0 +1,99 @@
+// Blind trials of residual tracing: blind_trials FIRST_SEED COUNT [library|other|double|none]. Prints a line a world and
+// the rates that matter. Development seeds are 1 to 9999; 100000 and above are for judging, reported once.
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <algorithm>
+#include <string>
+
+#include <terramech/residual_trace.hpp>
+
+#include "blind_worlds.hpp"
+
+using namespace talus;
+using namespace talus::terramech;
+
+namespace {
+
+Telemetry telemetryOf(const blind::World& world, const std::vector<std::vector<double>>& rows) {
+  Telemetry t;
+  t.source = "world";
+  for (std::size_t k = 0; k < world.columns.size(); ++k) {
+    t.numbers.push_back({world.columns[k], {}});
+    for (const auto& row : rows) t.numbers.back().values.push_back(row[k]);
+  }
+  for (std::size_t row = 0; row < rows.size(); ++row) t.lines.push_back(row + 2);
+  return t;
+}
+
+RefinedModel baseOf(const blind::World& w) {
+  RefinedModel m;
+  const auto& g = w.ground;
+  m.soil = {.name = "hidden", .cohesion_Pa = g.cohesion, .friction_angle_rad = g.phi, .sinkage_exponent = g.n,
+            .cohesive_modulus = 0.0, .frictional_modulus = g.k, .shear_modulus_m = g.shear_k, .c1 = g.c1, .c2 = g.c2,
+            .density_kg_m3 = g.density};
+  return m;
+}
+
+double rms(const std::vector<double>& v) {
+  double s = 0.0;
+  for (double x : v) s += x * x;
+  return std::sqrt(s / static_cast<double>(v.size()));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::string mode = argc > 3 ? argv[3] : "library";
+  const int first = argc > 1 ? std::atoi(argv[1]) : 1, count = argc > 2 ? std::atoi(argv[2]) : 10;
+  int located = 0, family = 0, hidden = 0, all_found = 0, alarms = 0;
+  double slowest = 0.0;
+  std::vector<double> pull_ratio, z_ratio;
+  for (int seed = first; seed < first + count; ++seed) {
+    blind::WorldPlan plan{.seed = static_cast<std::uint64_t>(seed)};
+    plan.effects = mode == "none" ? 0 : mode == "double" ? 2 : 1;
+    plan.library = mode != "other";
+    const blind::World world = blind::makeWorld(plan);
+    const auto start = std::chrono::steady_clock::now();
+    const RefinedModel base = baseOf(world);
+    const TraceResult result = traceResiduals(base, makeTrial(telemetryOf(world, world.rows), base));
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    slowest = std::max(slowest, seconds);
+    std::vector<blind::Claim> claims;
+    for (const TracedEffect& e : result.effects)
+      claims.push_back({e.chosen.candidate.parts.front().name, e.chosen.candidate.covariate(), name(e.channel)});
+    const blind::Marks marks = blind::judge(world, claims);
+    const ChannelErrors held = rmseOf(result.refined, makeTrial(telemetryOf(world, world.held), base));
+    pull_ratio.push_back(held[0] / rms(world.floor_pull));
+    z_ratio.push_back(held[1] / rms(world.floor_z));
+    hidden += marks.hidden;
+    located += marks.located;
+    family += marks.family;
+    all_found += marks.located == marks.hidden;
+    alarms += marks.claimed > marks.located;
+    std::printf("%6d n=%3zu noise=%.3f %4.1fs  ratio %.2f %.2f  p=%.4f |", seed, world.rows.size(), world.noise, seconds,
+                pull_ratio.back(), z_ratio.back(), result.first_tests.empty() ? 1.0 : result.first_tests[0].p_value);
+    for (const auto& h : world.hidden) std::printf(" %s(%.3g)", h.kind.c_str(), h.size);
+    std::printf(" =>");
+    for (const TracedEffect& e : result.effects) {
+      std::printf(" %s[%s %s", e.chosen.candidate.parts.front().name.c_str(), e.chosen.candidate.covariate().c_str(),
+                  name(e.channel));
+      for (double p : e.chosen.candidate.parts.front().parameters) std::printf(" %.3g", p);
+      std::printf("]");
+    }
+    std::printf(" %s%s\n", marks.located == marks.hidden ? "" : "MISSED ", marks.claimed > marks.located ? "EXTRA" : "");
+    std::fflush(stdout);
+  }
+  const auto show = [](std::vector<double> v) {
+    std::sort(v.begin(), v.end());
+    std::printf(" median %.3f worst %.3f", v[v.size() / 2], v.back());
+  };
+  std::printf("located %d/%d, family %d/%d, all found %d/%d, sets with an extra %d/%d, slowest %.1f s\n", located, hidden,
+              family, hidden, all_found, count, alarms, count, slowest);
+  std::printf("held-out rmse over floor: pull");
+  show(pull_ratio);
+  std::printf(", sinkage");
+  show(z_ratio);
+  std::printf("\n");
+}

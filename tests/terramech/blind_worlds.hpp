@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+/// Wheel data from made-up worlds with effects that nobody declares, and a judge of what a tracer says of them.
+/// Independent of the library on purpose: own stress integrals (plain midpoint rule, bisection), own formulas, own
+/// random numbers; neither includes anything of it.
+namespace talus::blind {
+
+/// A true soil, SI.
+struct Ground {
+  double cohesion, phi, n, k, shear_k, c1, c2, density;
+};
+
+/// One hidden effect.
+struct Hidden {
+  std::string kind;                     ///< "slip_sinkage_ding", ..., or "form:..." for forms that no library holds
+  std::string family;                   ///< that a library form belongs to; "empirical" for other forms
+  std::vector<std::string> covariates;  ///< columns that a right answer may name
+  std::vector<std::string> channels;    ///< scaled channels that a right answer may name
+  double size = 0.0;                    ///< the main number of the effect
+};
+
+/// A table with answers, and the truth behind it.
+struct World {
+  std::uint64_t seed = 0;
+  std::vector<std::string> columns;
+  std::vector<std::vector<double>> rows;     ///< training rows, noisy
+  std::vector<std::vector<double>> held;     ///< rows of conditions that training has too, noisy
+  std::vector<double> floor_pull, floor_z;   ///< noise-free truth less measured of held rows: what nobody can predict
+  std::vector<Hidden> hidden;
+  Ground ground{};
+  double noise = 0.03;
+
+  std::string csv(bool held_rows) const;
+  std::string yaml() const;  ///< the base soil, without effects
+};
+
+/// What to make.
+struct WorldPlan {
+  std::uint64_t seed = 1;
+  int effects = 1;         ///< 0, 1 or 2
+  bool library = true;     ///< forms that the literature names, or others
+};
+World makeWorld(const WorldPlan& plan);
+
+/// What a tracer said, reduced to words.
+struct Claim {
+  std::string name, covariate, channel;
+};
+
+/// Points of one world.
+struct Marks {
+  int hidden = 0, claimed = 0;
+  int located = 0;  ///< hidden effects with covariate and channel right
+  int family = 0;   ///< hidden effects with their family named too (curves: called empirical)
+};
+Marks judge(const World& world, const std::vector<Claim>& claims);
+
+}  // namespace talus::blind
