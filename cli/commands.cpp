@@ -5,6 +5,7 @@ namespace talus::cli {
 void addCommands(CLI::App& app, Context& context) {
   addInfo(app, context);
   addPlan(app, context);
+  addPlugins(app, context);
   addScore(app, context);
   addWheel(app, context);
 }

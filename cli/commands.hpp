@@ -10,11 +10,11 @@ struct Context;
 
 // One function a subcommand, in cli/NAME_command.cpp, built on addCommand() of cli/command.hpp.
 // Alphabetical; a subcommand stands here only once it does its job.
-void addWheel(CLI::App& app, Context& context);
-
 void addInfo(CLI::App& app, Context& context);
 void addPlan(CLI::App& app, Context& context);
+void addPlugins(CLI::App& app, Context& context);
 void addScore(CLI::App& app, Context& context);
+void addWheel(CLI::App& app, Context& context);
 
 /// Registers every subcommand.
 void addCommands(CLI::App& app, Context& context);
