@@ -3,6 +3,7 @@
 namespace talus::cli {
 
 void addCommands(CLI::App& app, Context& context) {
+  addBench(app, context);
   addInfo(app, context);
   addPlan(app, context);
   addPlugins(app, context);

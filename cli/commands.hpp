@@ -10,6 +10,7 @@ struct Context;
 
 // One function a subcommand, in cli/NAME_command.cpp, built on addCommand() of cli/command.hpp.
 // Alphabetical; a subcommand stands here only once it does its job.
+void addBench(CLI::App& app, Context& context);
 void addInfo(CLI::App& app, Context& context);
 void addPlan(CLI::App& app, Context& context);
 void addPlugins(CLI::App& app, Context& context);

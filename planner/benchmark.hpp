@@ -52,13 +52,26 @@ struct BenchmarkPlan {
   double time_limit_s = 1.0;          ///< a run
 };
 
-/// One run in a process of its own: a crash, an abort or a run-away is a result, not the end of the
-/// benchmark. Call it before the program starts threads. Throws std::runtime_error when no process can be
-/// made.
-BenchmarkRun runIsolated(const BenchmarkPlan& plan, const std::string& planner, std::size_t case_index,
-                         std::uint64_t seed);
+/// One run to be made.
+struct BenchmarkJob {
+  std::string planner;
+  std::size_t case_index = 0;
+  std::uint64_t seed = 1;
+};
 
-/// All runs, planner by planner, case by case, seed by seed; fewer when a stop is requested.
+/// All runs of a benchmark: planner by planner, case by case, seed by seed.
+std::vector<BenchmarkJob> jobsOf(const BenchmarkPlan& plan);
+
+/// One run in a process of its own: a crash, an abort or a run-away is a result, not the end of the
+/// benchmark. Call it while the program has no other threads. Returns the answer as bytes, for benchmarkRun()
+/// on this or another machine of the same kind; empty when the process did not live to answer. Throws
+/// std::runtime_error when none can be made.
+std::string runIsolated(const BenchmarkPlan& plan, const BenchmarkJob& job);
+
+/// What the bytes say.
+BenchmarkRun benchmarkRun(const BenchmarkJob& job, const std::string& bytes);
+
+/// All jobs, one after another; fewer when a stop is requested.
 std::vector<BenchmarkRun> runBenchmark(const BenchmarkPlan& plan, const Watch& watch = {});
 
 /// The best cost known of a case: the optimum where it is known, else the best of all its runs [J]; infinite

@@ -41,7 +41,8 @@ TEST(Benchmark, RunsEveryPlannerCaseAndSeed) {
 TEST(Benchmark, ARunThatDiesIsAResult) {
   BenchmarkPlan plan = smallPlan();
   plan.cases[0].map = nullptr;  // the run in its own process throws
-  const BenchmarkRun run = runIsolated(plan, "field", 0, 1);
+  const BenchmarkJob job{.planner = "field", .case_index = 0, .seed = 1};
+  const BenchmarkRun run = benchmarkRun(job, runIsolated(plan, job));
   EXPECT_TRUE(run.crashed);
   EXPECT_TRUE(std::isinf(run.cost_J));
 }
