@@ -4,12 +4,14 @@ namespace talus::cli {
 
 void addCommands(CLI::App& app, Context& context) {
   addAssess(app, context);
+  addBench(app, context);
   addCostmap(app, context);
   addEstimate(app, context);
   addExplain(app, context);
   addGenerate(app, context);
   addInfo(app, context);
   addPlan(app, context);
+  addPlugins(app, context);
   addPredict(app, context);
   addReproduce(app, context);
   addScore(app, context);

@@ -11,12 +11,14 @@ struct Context;
 // One function a subcommand, in cli/NAME_command.cpp, built on addCommand() of cli/command.hpp.
 // Alphabetical; a subcommand stands here only once it does its job.
 void addAssess(CLI::App& app, Context& context);
+void addBench(CLI::App& app, Context& context);
 void addCostmap(CLI::App& app, Context& context);
 void addEstimate(CLI::App& app, Context& context);
 void addExplain(CLI::App& app, Context& context);
 void addGenerate(CLI::App& app, Context& context);
 void addInfo(CLI::App& app, Context& context);
 void addPlan(CLI::App& app, Context& context);
+void addPlugins(CLI::App& app, Context& context);
 void addPredict(CLI::App& app, Context& context);
 void addReproduce(CLI::App& app, Context& context);
 void addScore(CLI::App& app, Context& context);

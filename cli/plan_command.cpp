@@ -11,6 +11,7 @@
 #include <cli/mission.hpp>
 #include <cli/output_file.hpp>
 #include <cli/page.hpp>
+#include <cli/pareto_chart.hpp>
 #include <cli/picture.hpp>
 #include <cli/route_json.hpp>
 #include <cli/route_summary.hpp>
@@ -18,13 +19,18 @@
 #include <maps/place_reader.hpp>
 #include <planner/annotation.hpp>
 #include <planner/named_planner.hpp>
+#include <planner/risk_planner.hpp>
 #include <planner/route_check.hpp>
+#include <planner/route_risk.hpp>
 
 namespace talus::cli {
 namespace {
 
 using planner::Route;
 using planner::RouteStatus;
+
+// Prices of time and of risk that are tried for the Pareto set, each.
+constexpr int kParetoSteps = 6;
 
 struct Timing {
   double load_s, costmap_s, plan_s;
@@ -46,6 +52,14 @@ void bind(CLI::App& command, PlanOptions& options) {
   command.add_option("--time", options.time_limit_s, "time limit of the planning")
       ->type_name("S")
       ->check(CLI::PositiveNumber);
+  command
+      .add_option("--risk", options.max_risk, "the route's probability of immobilisation stays within this")
+      ->type_name("ALPHA")
+      ->check(CLI::Range(0.0, 1.0));
+  command
+      .add_option("--pareto", options.pareto,
+                  "draw what energy, time and risk may be traded: .png, .svg or .html")
+      ->type_name("FILE");
   command.add_option("-o,--output", options.output, "the route as GeoJSON")->type_name("ROUTE.geojson");
   command.add_option("--html", options.html, "the route as a page to look at")->type_name("PAGE.html");
   command.add_option("--png", options.png, "the route as a picture")->type_name("FILE.png");
@@ -106,6 +120,23 @@ void writeFiles(const PlanOptions& options, const Ground& ground, const Route& r
   if (!options.html.empty()) savePage(options.html, scene);
 }
 
+// The risk once more, with soil that is alike nearby.
+nlohmann::ordered_json riskJson(const Route& route, const PlanOptions& options, const Context& context) {
+  planner::RouteRiskOptions drawn;
+  drawn.correlation_length_m = options.ground.policy.correlation_length_m;
+  drawn.seed = context.seed;
+  const planner::RouteRisk risk = planner::routeRisk(route, drawn);
+  return {{"limit", options.max_risk},
+          {"immobilisation", route.vertices.back().immobilisation_risk},
+          {"correlated_soil",
+           {{"immobilisation", risk.immobilisation},
+            {"standard_error", risk.standard_error},
+            {"cvar_reserve_std", risk.cvar},
+            {"tail", drawn.tail},
+            {"worst_x_m", risk.worst_x_m},
+            {"worst_y_m", risk.worst_y_m}}}};
+}
+
 int exitOf(RouteStatus status) {
   switch (status) {
     case RouteStatus::Found:
@@ -141,7 +172,9 @@ int run(const PlanOptions& asked, Context& context) {
   if (context.stop.stop_requested()) return Exit::kCancelled;
   const planner::Problem problem = problemOf(options, ground, context);
   const auto begin = std::chrono::steady_clock::now();
-  const planner::Plan plan = planner.plan(problem);
+  const planner::Plan plan = options.max_risk > 0.0
+                                 ? planner::planWithinRisk(problem, planner, options.max_risk)
+                                 : planner.plan(problem);
   const std::chrono::duration<double> plan_s = std::chrono::steady_clock::now() - begin;
   if (plan.status == RouteStatus::Found) requireAllowed(plan, *problem.map);
   const maps::ElevationMap& map = ground.map.elevation();
@@ -149,9 +182,12 @@ int run(const PlanOptions& asked, Context& context) {
       annotated(plan, {.map = *problem.map, .elevation_m = &map.elevation_m, .planner = planner.name()});
   if (plan.status != RouteStatus::Found) return refuse(route, context);
   writeFiles(options, ground, route, context);
+  if (!options.pareto.empty())
+    saveParetoChart(options.pareto, planner::paretoSet(problem, planner, kParetoSteps));
   const Timing seconds{ground.load_s, ground.build_s, plan_s.count()};
   if (context.json) {
     auto json = summaryJson(route);
+    if (options.max_risk > 0.0) json["risk"] = riskJson(route, options, context);
     json["seconds"] = {{"load", seconds.load_s}, {"costmap", seconds.costmap_s}, {"plan", seconds.plan_s}};
     printJson(json);
   } else {

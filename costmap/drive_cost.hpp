@@ -99,6 +99,8 @@ class DriveCost {
 
   const Limits& limits() const noexcept { return limits_; }
   const std::vector<DriveCurve>& curves() const noexcept { return curves_; }
+  /// The numbers behind each curve; null where a curve was made without.
+  const std::vector<std::shared_ptr<const DriveTable>>& states() const noexcept { return states_; }
 
  private:
   Limits limits_;

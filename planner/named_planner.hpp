@@ -1,6 +1,8 @@
 #pragma once
 
+#include <functional>
 #include <string>
+#include <utility>
 
 #include <planner/field_planner.hpp>
 #include <planner/problem.hpp>
@@ -18,6 +20,10 @@ class NamedPlanner {
 
   /// The offered name.
   const std::string& name() const noexcept { return settings_.planner; }
+
+  /// Calls back with every better cost in joules as it is found; sampling planners only, for routes without
+  /// via points.
+  void onBetter(std::function<void(double)> better) { settings_.better = std::move(better); }
 
   /// A route through all via points in order, or why there is none. Throws std::invalid_argument without a
   /// map.

@@ -120,6 +120,11 @@ Plan runOmpl(const Problem& leg, const SamplingSettings& settings, const LegKnow
                            .range_m = range_m,
                            .seed = leg.seed};
   const ob::PlannerPtr planner = makeOmplPlanner(settings.planner, parts);
+  if (settings.better)
+    definition->setIntermediateSolutionCallback(
+        [&settings](const ob::Planner*, const std::vector<const ob::State*>&, ob::Cost found) {
+          if (found.value() < kBlockedMotionCost_J) settings.better(found.value());
+        });
   planner->solve(doneWhen(leg, settings, cost));
   Plan plan = explained(priced(*definition, cost->motion()), leg, *cost, settings);
   plan.lower_bound_J = std::max(known.plan.lower_bound_J, region->toGoal(leg.start));

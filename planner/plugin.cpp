@@ -1,6 +1,8 @@
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
+#include <planner/annotation.hpp>
 #include <planner/named_planner.hpp>
 #include <planner/planner_names.hpp>
 #include <planner/plugin_export.hpp>
@@ -30,7 +32,7 @@ class Plugin final : public GlobalPlanner {
     if (!(settings.time_limit_s > 0))
       throw std::invalid_argument("PlannerSettings: time_limit_s = " + std::to_string(settings.time_limit_s) +
                                   ", must be > 0");
-    planner_ = NamedPlanner(settings.planner);
+    planner_.emplace(settings.planner);
     settings_ = settings;
   }
 
@@ -47,7 +49,8 @@ class Plugin final : public GlobalPlanner {
 
   Route plan(const PlanRequest& request) override {
     if (!map_) throw std::logic_error("plan: no map; call set_map first");
-    const Plan plan = planner_.plan({.map = map_,
+    if (!planner_) planner_.emplace();
+    const Plan plan = planner_->plan({.map = map_,
                                      .start = request.start,
                                      .goal = request.goal,
                                      .goal_tolerance_m = request.tolerance_m,
@@ -56,15 +59,13 @@ class Plugin final : public GlobalPlanner {
                                      .seed = settings_.seed,
                                      .threads = settings_.threads,
                                      .watch = request.watch});
-    Route route = annotated(*map_, plan);
-    route.summary.planner = planner_.name();
-    return route;
+    return annotated(plan, {.map = *map_, .elevation_m = nullptr, .planner = planner_->name()});
   }
 
   std::unique_ptr<GlobalPlanner> create() const override { return std::make_unique<Plugin>(); }
 
  private:
-  NamedPlanner planner_;
+  std::optional<NamedPlanner> planner_;  // none: the default, made when first asked
   PlannerSettings settings_;
   std::shared_ptr<const costmap::CostGrid> map_;
 };

@@ -66,6 +66,7 @@ Plan planLeg(const Problem& leg, const SamplingSettings& settings, const LegScou
   if (apart_m <= leg.goal_tolerance_m) return arrived(leg);
   const LegKnowledge known = scout ? scout(leg) : LegKnowledge{};
   if (known.plan.status == RouteStatus::Cancelled) return known.plan;
+  if (settings.better && known.plan.status == RouteStatus::Found) settings.better(known.plan.cost_J);
   Plan found = runOmpl(leg, settings, known);
   const bool known_better = known.plan.status == RouteStatus::Found && known.plan.cost_J <= found.cost_J;
   if (known_better && found.status != RouteStatus::Cancelled) return known.plan;

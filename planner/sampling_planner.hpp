@@ -15,6 +15,7 @@ struct SamplingSettings {
   std::uint64_t work =
       4'000'000;              ///< cells' lengths evaluated before it stops, > 0: the same on every machine
   double range_cells = 40.0;  ///< longest motion added to a tree, > 0
+  std::function<void(double)> better{};  ///< called with each better cost of the leg in work, in joules
 };
 
 /// What is known of a leg before sampling begins.

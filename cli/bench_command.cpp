@@ -1,0 +1,119 @@
+// talus bench SUITE: planners compared on the same questions.
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <cli/bench_report.hpp>
+#include <cli/bench_suite.hpp>
+#include <cli/campaign.hpp>
+#include <cli/command.hpp>
+#include <cli/commands.hpp>
+#include <cli/output_file.hpp>
+#include <planner/benchmark_log.hpp>
+#include <planner/planner_names.hpp>
+
+namespace talus::cli {
+namespace {
+
+struct Options {
+  SuiteOptions suite;
+  std::vector<std::string> planners;
+  int runs = 3;
+  double time_limit_s = 2.0;
+  std::string folder = "bench";
+};
+
+void bind(CLI::App& command, Options& options) {
+  command
+      .add_option(
+          "suite", options.suite.name,
+          "generated (crater field, dunes, rocks), an elevation file, or a MovingAI .scen beside its .map")
+      ->capture_default_str();
+  command.add_option("--planners", options.planners, "comma-separated; all by default")->delimiter(',');
+  command.add_option("--runs", options.runs, "seeds a case and planner")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command.add_option("--time", options.time_limit_s, "limit a run")
+      ->type_name("S")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command.add_option("--pairs", options.suite.pairs, "starts and goals a map")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command.add_option("--side", options.suite.side_cells, "cells along a generated site")
+      ->check(CLI::Range(32, 10000))
+      ->capture_default_str();
+  command.add_option("-o,--output", options.folder, "folder for the logs, the table and the page")
+      ->type_name("FOLDER")
+      ->capture_default_str();
+}
+
+std::string fileName(std::string name) {
+  for (char& c : name)
+    if (c == ' ' || c == '/') c = '_';
+  return name;
+}
+
+void write(const std::filesystem::path& folder, const planner::BenchmarkPlan& plan,
+           const std::vector<planner::BenchmarkRun>& runs) {
+  for (std::size_t c = 0; c < plan.cases.size(); ++c)
+    writeFile(folder / (fileName(plan.cases[c].name) + ".log"), planner::benchmarkLog(plan, runs, c));
+  writeFile(folder / "table.txt", asText(compared(plan, runs)));
+  writeFile(folder / "index.html", asPage(plan, runs));
+}
+
+std::vector<planner::BenchmarkRun> allRuns(const planner::BenchmarkPlan& plan, const Campaign& campaign,
+                                           const Context& context) {
+  const auto jobs = planner::jobsOf(plan);
+  const Watch watch = campaign.leads() ? context.watch("bench") : Watch{.progress = {}, .stop = context.stop};
+  const auto outcomes = campaign.run(
+      jobs.size(), [&](std::size_t i) { return planner::runIsolated(plan, jobs[i]); }, watch);
+  std::vector<planner::BenchmarkRun> runs;
+  for (std::size_t i = 0; i < outcomes.size(); ++i)
+    runs.push_back(planner::benchmarkRun(jobs[i], outcomes[i].failed ? std::string() : outcomes[i].text));
+  return runs;
+}
+
+int run(const Options& options, Context& context) {
+  const Campaign campaign;
+  if (!campaign.leads()) context.quiet = true;
+  planner::BenchmarkPlan plan;
+  for (const std::string& name : options.planners.empty() ? planner::plannerNames() : options.planners)
+    plan.planners.push_back(planner::plannerName(name));
+  std::error_code error;
+  std::filesystem::create_directories(options.folder, error);
+  if (error)
+    throw InputError({options.folder, "cannot be made: " + error.message(), "name another folder with -o"});
+  plan.cases = suiteCases(options.suite, context);
+  if (plan.cases.empty())
+    throw InputError({options.suite.name, "no two places far apart with a route between them",
+                      "take another map or rover"});
+  plan.seeds = options.runs;
+  plan.time_limit_s = options.time_limit_s;
+  const auto runs = allRuns(plan, campaign, context);
+  if (!campaign.leads()) return Exit::kDone;
+  if (context.stop.stop_requested()) return Exit::kCancelled;
+  write(options.folder, plan, runs);
+  const auto lines = compared(plan, runs);
+  if (context.json)
+    printJson(asJson(lines));
+  else
+    print(asText(lines));
+  return Exit::kDone;
+}
+
+}  // namespace
+
+void addBench(CLI::App& app, Context& context) {
+  addCommand<Options>(app, context,
+                      {.name = "bench",
+                       .group = Group::kRoutes,
+                       .description = "compare the planners; writes OMPL logs, a table and a page",
+                       .examples = "  talus bench --planners field,RRTstar --time 5\n"
+                                   "  talus bench gale.tif --pairs 10 -o gale_bench\n"
+                                   "  talus bench room.scen --planners field\n"},
+                      bind, run);
+}
+
+}  // namespace talus::cli

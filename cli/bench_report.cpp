@@ -1,0 +1,148 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <cli/bench_report.hpp>
+#include <cli/html_report.hpp>
+
+namespace talus::cli {
+namespace {
+
+using planner::BenchmarkPlan;
+using planner::BenchmarkRun;
+using planner::RouteStatus;
+
+double median(std::vector<double> values) {
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  std::ranges::sort(values);
+  return (values[(values.size() - 1) / 2] + values[values.size() / 2]) / 2;
+}
+
+double largest(const std::vector<double>& values) {
+  return values.empty() ? std::numeric_limits<double>::quiet_NaN() : std::ranges::max(values);
+}
+
+BenchmarkLine lineOf(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& runs,
+                     const std::string& planner) {
+  BenchmarkLine line{.planner = planner};
+  std::vector<double> gaps, seconds;
+  for (const BenchmarkRun& run : runs) {
+    if (run.planner != planner) continue;
+    ++line.runs;
+    line.crashed += run.crashed;
+    line.breached += run.breached;
+    line.worst_megabytes = std::max(line.worst_megabytes, run.megabytes);
+    if (run.crashed) continue;
+    seconds.push_back(run.seconds);
+    if (run.status != RouteStatus::Found) continue;
+    ++line.found;
+    gaps.push_back(run.cost_J / planner::bestKnown_J(plan, runs, run.case_index) - 1.0);
+  }
+  line.median_gap = median(gaps);
+  line.worst_gap = largest(gaps);
+  line.median_seconds = median(seconds);
+  return line;
+}
+
+std::string percent(double share) {
+  return std::isfinite(share) ? fmt::format("{:.2f}", 100 * share) : "-";
+}
+
+const std::vector<std::string>& header() {
+  static const std::vector<std::string> words{"planner",   "runs",      "found",      "breached", "crashed",
+                                              "gap p50 %", "gap max %", "time p50 s", "MB max"};
+  return words;
+}
+
+std::vector<std::string> words(const BenchmarkLine& line) {
+  return {line.planner,
+          std::to_string(line.runs),
+          std::to_string(line.found),
+          std::to_string(line.breached),
+          std::to_string(line.crashed),
+          percent(line.median_gap),
+          percent(line.worst_gap),
+          fmt::format("{:.4f}", line.median_seconds),
+          fmt::format("{:.0f}", line.worst_megabytes)};
+}
+
+// Gap over time of every run of a case: each planner a curve of its first seed.
+Plot gapOverTime(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& runs, std::size_t case_index) {
+  Plot plot{.title = plan.cases[case_index].name,
+            .x = {"time [s]"},
+            .y = {"gap to the best known [%]"},
+            .series = {}};
+  const double best_J = planner::bestKnown_J(plan, runs, case_index);
+  for (const BenchmarkRun& run : runs) {
+    if (run.case_index != case_index || run.seed != 1 || run.progress.empty()) continue;
+    Series series{.name = run.planner, .x = {}, .y = {}};
+    for (const auto& at : run.progress) {
+      if (!series.x.empty()) {  // a step: the old cost holds until the new one is found
+        series.x.push_back(at.seconds);
+        series.y.push_back(series.y.back());
+      }
+      series.x.push_back(at.seconds);
+      series.y.push_back(100 * (at.cost_J / best_J - 1.0));
+    }
+    plot.series.push_back(std::move(series));
+  }
+  return plot;
+}
+
+}  // namespace
+
+std::vector<BenchmarkLine> compared(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& runs) {
+  std::vector<BenchmarkLine> lines;
+  for (const std::string& planner : plan.planners) lines.push_back(lineOf(plan, runs, planner));
+  return lines;
+}
+
+std::string asText(const std::vector<BenchmarkLine>& lines) {
+  std::string text = fmt::format("{:<16}", header()[0]);
+  for (std::size_t i = 1; i < header().size(); ++i) text += fmt::format("{:>12}", header()[i]);
+  text += "\n";
+  for (const BenchmarkLine& line : lines) {
+    const auto cells = words(line);
+    text += fmt::format("{:<16}", cells[0]);
+    for (std::size_t i = 1; i < cells.size(); ++i) text += fmt::format("{:>12}", cells[i]);
+    text += "\n";
+  }
+  return text;
+}
+
+nlohmann::ordered_json asJson(const std::vector<BenchmarkLine>& lines) {
+  auto array = nlohmann::ordered_json::array();
+  for (const BenchmarkLine& line : lines)
+    array.push_back({{"planner", line.planner},
+                     {"runs", line.runs},
+                     {"found", line.found},
+                     {"breached", line.breached},
+                     {"crashed", line.crashed},
+                     {"median_gap", line.median_gap},
+                     {"worst_gap", line.worst_gap},
+                     {"median_seconds", line.median_seconds},
+                     {"worst_megabytes", line.worst_megabytes}});
+  return array;
+}
+
+std::string asPage(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& runs) {
+  HtmlReport page("Planner benchmark");
+  page.paragraph(fmt::format(
+      "{} cases, {} seeds, {} s a run, each run in a process of its own. Gap: to the known optimum, "
+      "else to the best of all runs. Breached: the independent check refuses the route.",
+      plan.cases.size(), plan.seeds, plan.time_limit_s));
+  std::vector<std::vector<std::string>> rows;
+  for (const BenchmarkLine& line : compared(plan, runs)) rows.push_back(words(line));
+  page.table(header(), rows);
+  page.heading("Cost over time");
+  std::vector<Plot> plots;
+  for (std::size_t c = 0; c < std::min<std::size_t>(plan.cases.size(), 12); ++c)
+    plots.push_back(gapOverTime(plan, runs, c));
+  page.charts(plots);
+  return page.html();
+}
+
+}  // namespace talus::cli

@@ -1,0 +1,99 @@
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <random>
+
+#include <cli/bench_suite.hpp>
+#include <cli/context.hpp>
+#include <costmap/ground_class.hpp>
+#include <maps/site_generator.hpp>
+#include <planner/field_planner.hpp>
+#include <planner/moving_ai.hpp>
+#include <terramech/soil_library.hpp>
+
+namespace talus::cli {
+namespace {
+
+using planner::BenchmarkCase;
+
+maps::Point anywhere(const maps::Grid& grid, std::mt19937_64& random) {
+  const auto pick = [&random](int n) { return static_cast<int>(random() % static_cast<std::uint64_t>(n)); };
+  const int column = pick(grid.width);
+  return grid.centre({column, pick(grid.height)});
+}
+
+// Places far apart between which the field finds a route; fewer than asked for when the map has hardly any.
+std::vector<BenchmarkCase> pairsOn(const std::string& name,
+                                   const std::shared_ptr<const costmap::CostGrid>& map, int count,
+                                   std::uint64_t seed) {
+  const maps::Grid& grid = map->grid();
+  const double least_m = 0.5 * grid.resolution_m * std::hypot(grid.width, grid.height);
+  std::mt19937_64 random(seed);
+  planner::FieldPlanner field;
+  std::vector<BenchmarkCase> cases;
+  for (int tries = 0; tries < 1000 && static_cast<int>(cases.size()) < count; ++tries) {
+    planner::Problem problem;
+    problem.map = map;
+    problem.start = anywhere(grid, random);
+    problem.goal = anywhere(grid, random);
+    if (std::hypot(problem.goal.x_m - problem.start.x_m, problem.goal.y_m - problem.start.y_m) < least_m)
+      continue;
+    const planner::MotionCost cost(map);
+    if (!cost.allowed(problem.start) || !cost.allowed(problem.goal)) continue;
+    if (field.plan(problem).status != planner::RouteStatus::Found) continue;
+    cases.push_back({.name = name + " " + std::to_string(cases.size() + 1),
+                     .map = map,
+                     .start = problem.start,
+                     .goal = problem.goal});
+  }
+  return cases;
+}
+
+std::shared_ptr<const costmap::GroundModel> generatedGround() {
+  costmap::GroundModel::Parts parts;
+  parts.rover = terramech::loadRover("mer");
+  const std::array soils{std::pair{maps::SiteClass::Firm, "mars_crusty"},
+                         std::pair{maps::SiteClass::Loose, "sand"},
+                         std::pair{maps::SiteClass::VeryLoose, "mars_drift"}};
+  for (const auto& [site_class, soil] : soils)
+    parts.classes.push_back(
+        costmap::groundClass(static_cast<int>(site_class), terramech::loadSoilPrior(soil), parts.rover));
+  return std::make_shared<const costmap::GroundModel>(std::move(parts));
+}
+
+std::vector<BenchmarkCase> generatedCases(const SuiteOptions& options, const Context& context) {
+  std::vector<BenchmarkCase> cases;
+  const auto model = generatedGround();
+  for (const auto& [kind, name] :
+       {std::pair{maps::SiteKind::Craters, "craters"}, std::pair{maps::SiteKind::Dunes, "dunes"},
+        std::pair{maps::SiteKind::Rocks, "rocks"}}) {
+    maps::Site site = maps::generateSite({.kind = kind,
+                                          .width = options.side_cells,
+                                          .height = options.side_cells,
+                                          .resolution_m = 1.0,
+                                          .seed = context.seed});
+    costmap::MapLayers layers;
+    layers.elevation = std::move(site.map);
+    layers.classes = std::move(site.classes);
+    layers.rock_abundance = std::move(site.rock_abundance);
+    const auto map = costmap::TraversabilityMap(std::move(layers), model, {}).published();
+    for (BenchmarkCase& made : pairsOn(name, map, options.pairs, context.seed))
+      cases.push_back(std::move(made));
+  }
+  return cases;
+}
+
+}  // namespace
+
+std::vector<BenchmarkCase> suiteCases(const SuiteOptions& options, const Context& context) {
+  if (options.name == "generated") return generatedCases(options, context);
+  if (options.name.ends_with(".scen"))
+    return planner::readMovingAi(options.name, static_cast<std::size_t>(options.pairs));
+  GroundOptions ground = options.ground;
+  ground.dem.path = options.name;
+  const Ground read = readGround(ground, context);
+  return pairsOn(std::filesystem::path(options.name).stem().string(), read.map.published(), options.pairs,
+                 context.seed);
+}
+
+}  // namespace talus::cli

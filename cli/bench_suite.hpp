@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include <cli/ground_options.hpp>
+#include <planner/benchmark.hpp>
+
+namespace talus::cli {
+
+struct Context;
+
+/// Which questions are asked.
+struct SuiteOptions {
+  std::string name = "generated";  ///< "generated", a DEM, or a MovingAI .scen
+  int pairs = 3;                   ///< starts and goals a map, > 0
+  int side_cells = 300;            ///< of generated sites
+  GroundOptions ground;            ///< for a DEM: layers, rover, soils, policy
+};
+
+/// The cases of a suite. Throws InputError for a file that cannot be used.
+std::vector<planner::BenchmarkCase> suiteCases(const SuiteOptions& options, const Context& context);
+
+}  // namespace talus::cli

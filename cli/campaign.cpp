@@ -1,0 +1,120 @@
+#include <cstdlib>
+
+#include <cli/campaign.hpp>
+
+#ifdef TALUS_MPI
+#include <boost/mpi/communicator.hpp>
+#include <boost/mpi/environment.hpp>
+#include <boost/serialization/string.hpp>
+#endif
+
+namespace talus::cli {
+namespace {
+
+JobOutcome outcomeOf(const std::function<std::string(std::size_t)>& job, std::size_t i, const Watch& watch) {
+  if (watch.stopped()) return {.failed = true, .text = "cancelled"};
+  try {
+    return {.failed = false, .text = job(i)};
+  } catch (const std::exception& error) {
+    return {.failed = true, .text = error.what()};
+  }
+}
+
+}  // namespace
+
+#ifdef TALUS_MPI
+
+namespace {
+
+// Set by Open MPI's and by other launchers (PMI).
+bool startedByMpirun() {
+  return std::getenv("OMPI_COMM_WORLD_SIZE") || std::getenv("PMI_SIZE");
+}
+
+constexpr int kIndexTag = 1;
+constexpr int kFailedTag = 2;
+constexpr int kTextTag = 3;
+
+}  // namespace
+
+struct Campaign::Ranks {
+  boost::mpi::environment environment;
+  boost::mpi::communicator world;
+
+  void send(std::size_t i, const JobOutcome& outcome) const {
+    world.send(0, kIndexTag, i);
+    world.send(0, kFailedTag, outcome.failed);
+    world.send(0, kTextTag, outcome.text);
+  }
+
+  void receive(int from, std::vector<JobOutcome>& outcomes) const {
+    std::size_t i = 0;
+    world.recv(from, kIndexTag, i);
+    world.recv(from, kFailedTag, outcomes[i].failed);
+    world.recv(from, kTextTag, outcomes[i].text);
+  }
+};
+
+Campaign::Campaign() {
+  if (startedByMpirun()) mpi_ = std::make_unique<Ranks>();
+}
+
+int Campaign::ranks() const noexcept {
+  return mpi_ ? mpi_->world.size() : 1;
+}
+bool Campaign::leads() const noexcept {
+  return !mpi_ || mpi_->world.rank() == 0;
+}
+
+#else
+
+struct Campaign::Ranks {};
+
+Campaign::Campaign() = default;
+int Campaign::ranks() const noexcept {
+  return 1;
+}
+bool Campaign::leads() const noexcept {
+  return true;
+}
+
+#endif
+
+Campaign::~Campaign() = default;
+
+std::vector<JobOutcome> Campaign::run(std::size_t count, const std::function<std::string(std::size_t)>& job,
+                                      const Watch& watch) const {
+  std::vector<JobOutcome> outcomes(leads() ? count : 0);
+  std::size_t done = 0;
+  const auto report = [&] { watch.report(static_cast<double>(++done) / static_cast<double>(count)); };
+  const auto step = static_cast<std::size_t>(ranks());
+#ifdef TALUS_MPI
+  const auto first = mpi_ ? static_cast<std::size_t>(mpi_->world.rank()) : 0;
+#else
+  const std::size_t first = 0;
+#endif
+  for (std::size_t i = first; i < count; i += step) {
+    JobOutcome outcome = outcomeOf(job, i, watch);
+#ifdef TALUS_MPI
+    if (!leads()) {
+      mpi_->send(i, outcome);
+      continue;
+    }
+    while (mpi_ && mpi_->world.iprobe(boost::mpi::any_source, kIndexTag)) {
+      mpi_->receive(mpi_->world.probe(boost::mpi::any_source, kIndexTag).source(), outcomes);
+      report();
+    }
+#endif
+    outcomes[i] = std::move(outcome);
+    report();
+  }
+#ifdef TALUS_MPI
+  for (; leads() && mpi_ && done < count;) {
+    mpi_->receive(mpi_->world.probe(boost::mpi::any_source, kIndexTag).source(), outcomes);
+    report();
+  }
+#endif
+  return outcomes;
+}
+
+}  // namespace talus::cli

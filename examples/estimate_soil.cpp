@@ -1,0 +1,52 @@
+// Shows   how the strength of the soil comes from what a driving wheel feels, sample by sample, in constant
+// memory. Needs   talus::terramech. Prints  cohesion and friction angle after each ten samples, beside the
+// soil that made them. Next    rover_loop.cpp: putting what was learned into the map.
+
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+#include <terramech/linear_offset.hpp>
+#include <terramech/wong_reece.hpp>
+
+namespace {
+
+namespace tm = talus::terramech;
+
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+
+// What the wheel would feel at a slip: here from the Wong-Reece equilibrium, on a rover from its sensors.
+tm::WheelSample felt(const tm::Soil& soil, const tm::Wheel& wheel, tm::WheelOperation operation) {
+  const tm::WheelForces forces = tm::equilibrium(soil, wheel, operation);
+  return {.load_N = operation.load_N,
+          .torque_Nm = forces.torque_Nm,
+          .sinkage_m = forces.sinkage_m,
+          .slip = operation.slip};
+}
+
+}  // namespace
+
+int main() {
+  const tm::Soil soil{.name = "dry sand",
+                      .cohesion_Pa = 800.0,
+                      .friction_angle_rad = 30.0 / kDegrees,
+                      .sinkage_exponent = 1.1,
+                      .cohesive_modulus = 1000.0,
+                      .frictional_modulus = 1500000.0,
+                      .shear_modulus_m = 0.025};
+  const tm::Wheel wheel{.radius_m = 0.15, .width_m = 0.15};
+
+  tm::LinearOffsetFit fit;
+  for (int k = 0; k < 40; ++k) {
+    const tm::WheelOperation operation{.load_N = 60.0 + 3.0 * k, .slip = 0.2 + 0.015 * k};
+    fit.add(tm::linearOffset(wheel, felt(soil, wheel, operation), soil.shear_modulus_m));
+    if (k % 10 != 9) continue;
+    const tm::ShearStrength strength = fit.estimate();
+    std::printf("%2d samples: cohesion %5.0f Pa, friction angle %4.1f deg\n", k + 1, strength.cohesion_Pa,
+                std::atan(strength.tan_friction) * kDegrees);
+  }
+  std::printf("the soil   : cohesion %5.0f Pa, friction angle %4.1f deg\n", soil.cohesion_Pa,
+              soil.friction_angle_rad * kDegrees);
+  std::puts("what is left is the method's own error: its stresses are straight lines, the wheel's are not");
+  return 0;
+}

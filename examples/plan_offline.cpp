@@ -1,0 +1,73 @@
+// Shows   planning on the ground: an elevation file, a rover and a soil from the library, a route with its
+// numbers. Needs   talus::planner, talus::maps_io (GDAL), talus::terramech_io (YAML); an elevation file such
+// as hill.asc. Prints  the route's turns with slope and slip, and its sums there and back: on a slope they
+// differ. Next    `talus plan --help` does this and more from the command line.
+
+#include <cstdio>
+#include <exception>
+#include <memory>
+#include <numbers>
+
+#include <costmap/traversability_map.hpp>
+#include <maps/elevation_reader.hpp>
+#include <planner/annotation.hpp>
+#include <planner/named_planner.hpp>
+#include <terramech/soil_library.hpp>
+
+namespace {
+
+using talus::planner::Route;
+
+void print(const char* title, const Route& route) {
+  std::printf("%s: %.1f m, %.0f J, %.0f s, steepest %.1f deg, largest slip %.2f\n", title,
+              route.summary.length_m, route.summary.energy_J, route.summary.time_s,
+              route.summary.max_slope_rad * 180.0 / std::numbers::pi, route.summary.max_slip);
+}
+
+int run(const char* file) {
+  talus::costmap::MapLayers layers;
+  talus::maps::ReadOptions options;
+  options.resolution_m = 1.0;  // the file names no coordinate system
+  layers.elevation = talus::maps::readElevation(file, options);
+  const talus::maps::Raster<float> elevation = layers.elevation.elevation_m;
+  talus::costmap::GroundModel::Parts ground;
+  ground.rover = talus::terramech::loadRover("mer");
+  ground.classes = {{.soil = talus::terramech::loadSoil("sand")}};
+  std::printf("%s on %s\n", ground.rover.name.c_str(), ground.classes.front().soil.name.c_str());
+  const talus::costmap::TraversabilityMap map(
+      std::move(layers), std::make_shared<const talus::costmap::GroundModel>(std::move(ground)), {});
+
+  talus::planner::NamedPlanner planner("field");
+  talus::planner::Problem problem;
+  problem.map = map.published();
+  problem.start = problem.map->grid().centre({4, 10});
+  problem.goal = problem.map->grid().centre({35, 22});
+  const auto there = planner.plan(problem);
+  std::swap(problem.start, problem.goal);
+  const auto back = planner.plan(problem);
+  if (there.status != talus::planner::RouteStatus::Found ||
+      back.status != talus::planner::RouteStatus::Found) {
+    std::printf("no route: %s%s\n", there.reason.c_str(), back.reason.c_str());
+    return 1;
+  }
+  const talus::planner::AnnotationInput input{
+      .map = *problem.map, .elevation_m = &elevation, .planner = planner.name()};
+  print("there", annotated(there, input));
+  print("back ", annotated(back, input));
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    std::fprintf(stderr, "usage: %s ELEVATION_FILE\n", argv[0]);
+    return 2;
+  }
+  try {
+    return run(argv[1]);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 2;
+  }
+}

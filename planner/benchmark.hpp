@@ -1,0 +1,81 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <costmap/cost_grid.hpp>
+#include <planner/problem.hpp>
+
+namespace talus::planner {
+
+/// One question of a benchmark suite.
+struct BenchmarkCase {
+  std::string name;
+  std::shared_ptr<const costmap::CostGrid> map;
+  maps::Point start;
+  maps::Point goal;
+  double optimum_J = std::numeric_limits<double>::quiet_NaN();  ///< where it is known, else NaN
+};
+
+/// A cost and when it was reached.
+struct CostAtTime {
+  double seconds = 0.0;
+  double cost_J = 0.0;
+};
+
+/// How one run of one planner on one case went.
+struct BenchmarkRun {
+  std::string planner;
+  std::size_t case_index = 0;
+  std::uint64_t seed = 1;
+  RouteStatus status = RouteStatus::NoRoute;
+  bool crashed = false;    ///< the process did not live to answer
+  bool breached = false;   ///< the independent check found a violation along the route
+  double seconds = 0.0;    ///< wall clock of planning
+  double megabytes = 0.0;  ///< peak memory of the process
+  double cost_J = std::numeric_limits<double>::infinity();
+  double lower_bound_J = 0.0;
+  double length_m = 0.0;
+  int turns = 0;
+  std::vector<CostAtTime> progress;  ///< ever better costs
+};
+
+/// What a benchmark runs.
+struct BenchmarkPlan {
+  std::vector<BenchmarkCase> cases;
+  std::vector<std::string> planners;  ///< names of plannerNames()
+  int seeds = 1;                      ///< runs a case and planner: seeds 1 to so many
+  double time_limit_s = 1.0;          ///< a run
+};
+
+/// One run to be made.
+struct BenchmarkJob {
+  std::string planner;
+  std::size_t case_index = 0;
+  std::uint64_t seed = 1;
+};
+
+/// All runs of a benchmark: planner by planner, case by case, seed by seed.
+std::vector<BenchmarkJob> jobsOf(const BenchmarkPlan& plan);
+
+/// One run in a process of its own: a crash, an abort or a run-away is a result, not the end of the
+/// benchmark. Call it while the program has no other threads. Returns the answer as bytes, for benchmarkRun()
+/// on this or another machine of the same kind; empty when the process did not live to answer. Throws
+/// std::runtime_error when none can be made.
+std::string runIsolated(const BenchmarkPlan& plan, const BenchmarkJob& job);
+
+/// What the bytes say.
+BenchmarkRun benchmarkRun(const BenchmarkJob& job, const std::string& bytes);
+
+/// All jobs, one after another; fewer when a stop is requested.
+std::vector<BenchmarkRun> runBenchmark(const BenchmarkPlan& plan, const Watch& watch = {});
+
+/// The best cost known of a case: the optimum where it is known, else the best of all its runs [J]; infinite
+/// for none.
+double bestKnown_J(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& runs, std::size_t case_index);
+
+}  // namespace talus::planner

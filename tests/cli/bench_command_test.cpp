@@ -1,0 +1,90 @@
+#include <cstdlib>
+
+#include <nlohmann/json.hpp>
+
+#include "run_program.hpp"
+
+namespace talus::cli {
+namespace {
+
+using testing::HasSubstr;
+
+// A room with a block in it, as MovingAI draws one.
+std::string room(const Folder& folder) {
+  folder.write(
+      "room.map",
+      "type octile\nheight 6\nwidth 8\nmap\n........\n..@@@@..\n..@@@@..\n..@@@@..\n........\n........\n");
+  return folder.write("room.scen",
+                      "version 1\n0\troom.map\t8\t6\t0\t2\t7\t2\t9\n0\troom.map\t8\t6\t1\t1\t6\t4\t7.5\n"
+                      "0\troom.map\t8\t6\t0\t0\t7\t5\t10\n");
+}
+
+// What must not depend on the clock or on how many processes there were.
+nlohmann::json lasting(const std::string& text) {
+  auto lines = nlohmann::json::parse(text);
+  for (auto& line : lines) {
+    line.erase("median_seconds");
+    line.erase("worst_megabytes");
+  }
+  return lines;
+}
+
+TEST(BenchCommand, ComparesPlannersAndWritesLogsTableAndPage) {
+  const Folder folder;
+  const Ran ran = runTalus({"bench", room(folder), "--planners", "field,BIT*", "--runs", "2", "--time", "0.2",
+                            "-o", folder / "out", "--json"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const auto json = nlohmann::json::parse(ran.out);
+  ASSERT_EQ(json.size(), 2u);
+  EXPECT_EQ(json[0]["planner"], "field");
+  EXPECT_EQ(json[0]["runs"], 6);
+  EXPECT_EQ(json[0]["found"], 6);
+  EXPECT_EQ(json[0]["breached"], 0);
+  EXPECT_EQ(json[1]["planner"], "BITstar");
+  EXPECT_THAT(fileContent(folder / "out/room_1.log"), HasSubstr("OMPL version"));
+  EXPECT_THAT(fileContent(folder / "out/index.html"), HasSubstr("gap to the best known"));
+  EXPECT_THAT(fileContent(folder / "out/table.txt"), HasSubstr("field"));
+}
+
+TEST(BenchCommand, TakesAGeneratedSite) {
+  const Folder folder;
+  const Ran ran = runTalus({"bench", "--planners", "field", "--runs", "1", "--pairs", "1", "--side", "64",
+                            "-o", folder / "out", "--json"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const auto json = nlohmann::json::parse(ran.out);
+  EXPECT_EQ(json[0]["found"], json[0]["runs"]);
+  EXPECT_EQ(json[0]["breached"], 0);
+}
+
+TEST(BenchCommand, RanksOfMpiGiveWhatOneProcessGives) {
+  if (!TALUS_HAS_MPI || std::system("mpirun --version > /dev/null 2>&1") != 0)
+    GTEST_SKIP() << "built without Boost.MPI, or mpirun is not installed";
+  const Folder folder;
+  const std::string call = std::string(TALUS_PROGRAM) + " bench " + room(folder) +
+                           " --planners field --runs 2 --json -o " + folder / "out";
+  const auto answer = [&](const std::string& before) {
+    const std::string file = folder / "answer.json";
+    EXPECT_EQ(std::system((before + call + " > " + file).c_str()), 0);
+    return lasting(fileContent(file));
+  };
+  const auto one = answer("");
+  const std::string mpirun =
+      "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 mpirun --oversubscribe -np ";
+  EXPECT_EQ(answer(mpirun + "2 "), one);
+  EXPECT_EQ(answer(mpirun + "4 "), one);
+}
+
+TEST(BenchCommand, MistakesAreOneLineWithTwo) {
+  const Folder folder;
+  for (const auto& words : std::vector<std::vector<std::string>>{{"bench", folder / "none.scen"},
+                                                                 {"bench", folder / "none.tif"},
+                                                                 {"bench", "--planners", "PRM*"},
+                                                                 {"bench", "--runs", "0"}}) {
+    const Ran ran = runTalus(words, folder.path());
+    EXPECT_EQ(ran.code, 2) << ran.err;
+    EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
+  }
+}
+
+}  // namespace
+}  // namespace talus::cli

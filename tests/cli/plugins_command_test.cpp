@@ -1,0 +1,34 @@
+#include <nlohmann/json.hpp>
+
+#include "run_program.hpp"
+
+namespace talus::cli {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(PluginsCommand, SaysWhatIsBuiltInAndWhatAPluginOffers) {
+  const Ran built_in = runTalus({"plugins"});
+  EXPECT_EQ(built_in.code, 0) << built_in.err;
+  EXPECT_THAT(built_in.out, HasSubstr("planners: field, RRTstar"));
+  const Ran loaded = runTalus({"plugins", TALUS_PLUGIN, "--json"});
+  ASSERT_EQ(loaded.code, 0) << loaded.err;
+  const auto json = nlohmann::json::parse(loaded.out);
+  EXPECT_EQ(json["name"], "talus");
+  EXPECT_EQ(json["interface_version"], 1);
+  EXPECT_EQ(json["planners"][0], "field");
+  EXPECT_THAT(json["features"], ::testing::Contains("lower bound"));
+}
+
+TEST(PluginsCommand, WhatIsNoPluginIsOneLineAndTwo) {
+  const Folder folder;
+  for (const std::string& file : {folder / "none.so", folder.write("text.so", "not a library\n")}) {
+    const Ran ran = runTalus({"plugins", file});
+    EXPECT_EQ(ran.code, 2);
+    EXPECT_THAT(ran.err, HasSubstr(file));
+    EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
+  }
+}
+
+}  // namespace
+}  // namespace talus::cli
