@@ -33,6 +33,11 @@ function(talus_module name)
   install(TARGETS talus_${name} EXPORT talus FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/talus)
 endfunction()
 
+# talus_quick_build(TARGET): code that is read once a run is compiled for build time, not for speed.
+function(talus_quick_build target)
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+endfunction()
+
 # talus_test(NAME SOURCES ... DEPENDS ...): one GoogleTest program; each of its tests is a ctest case.
 function(talus_test name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;DEPENDS")
@@ -41,6 +46,7 @@ function(talus_test name)
   target_link_libraries(${name} PRIVATE talus::common ${arg_DEPENDS} GTest::gmock_main)
   target_compile_definitions(${name} PRIVATE TALUS_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   target_precompile_headers(${name} PRIVATE <gmock/gmock.h> <gtest/gtest.h>)
+  talus_quick_build(${name})
   talus_warnings(${name})
   gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST NO_PRETTY_VALUES PROPERTIES TIMEOUT 300)
 endfunction()
