@@ -119,13 +119,16 @@ int run(const WheelOptions& options, Context& context) {
 }  // namespace
 
 void addWheel(CLI::App& app, Context& context) {
-  addCommand<WheelOptions>(app, context,
-                           {.name = "wheel",
-                            .group = Group::kSoil,
-                            .description = "forces on a wheel: sinkage, torque, drawbar pull",
-                            .examples = "  talus wheel --soil lunar_nominal --rover lunar_micro --slip 0.3\n"
-                                        "  talus wheel --cases cases.csv -o forces.csv\n"},
-                           bind, run);
+  addCommand<WheelOptions>(
+      app, context,
+      {.name = "wheel",
+       .group = Group::kSoil,
+       .description = "forces on a wheel: sinkage, torque, drawbar pull",
+       .examples = "  talus wheel --soil lunar_nominal --rover lunar_micro --slip 0.3\n"
+                   "  talus wheel --cases cases.csv -o forces.csv\n" +
+                   fmt::format("Soils: {}\nRovers: {}\n", fmt::join(terramech::librarySoils(), " "),
+                               fmt::join(terramech::libraryRovers(), " "))},
+      bind, run);
 }
 
 }  // namespace talus::cli

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <deque>
 #include <fstream>
+#include <new>
 
 #include <csv.h>
 
@@ -20,6 +21,7 @@ struct CsvReader::Parser {
   Parser(const Parser&) = delete;
   Parser& operator=(const Parser&) = delete;
 
+  void open();
   void readHeader();
   bool pop(CsvRow& row);
   void feed();
@@ -40,12 +42,15 @@ struct CsvReader::Parser {
 };
 
 CsvReader::Parser::Parser(const std::filesystem::path& file_path) : path(file_path) {
+  if (csv_init(&csv, CSV_REPALL_NL) != 0) throw std::bad_alloc();
+}
+
+void CsvReader::Parser::open() {
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) refuse("is a directory", "name a CSV file");
   file.open(path, std::ios::binary);
   if (!file) refuse(std::strerror(errno), "check the path and its permissions");
   size = std::filesystem::file_size(path, error);
-  if (csv_init(&csv, CSV_REPALL_NL) != 0) refuse("out of memory", "");
   readHeader();
 }
 
@@ -126,7 +131,9 @@ std::string CsvReader::Parser::faultOf(const CsvRow& row) const {
   return "has " + std::to_string(row.fields.size()) + " fields, the header " + std::to_string(header.size());
 }
 
-CsvReader::CsvReader(const std::filesystem::path& path) : parser_(std::make_unique<Parser>(path)) {}
+CsvReader::CsvReader(const std::filesystem::path& path) : parser_(std::make_unique<Parser>(path)) {
+  parser_->open();
+}
 
 CsvReader::~CsvReader() = default;
 

@@ -10,6 +10,11 @@
 namespace talus::terramech {
 namespace {
 
+bool isFile(const std::filesystem::path& path) {
+  std::error_code error;
+  return std::filesystem::exists(path, error);
+}
+
 const std::string* findText(const std::map<std::string, std::string>& texts, const std::string& name) {
   const auto found = texts.find(name);
   return found == texts.end() ? nullptr : &found->second;
@@ -26,7 +31,7 @@ std::vector<std::string> namesOf(const std::map<std::string, std::string>& texts
 YamlFields open(const std::string& name, const std::map<std::string, std::string>& texts,
                 const std::string& what) {
   if (const auto* text = findText(texts, name)) return YamlFields::text(*text, "talus library, " + name);
-  if (std::filesystem::exists(name)) return YamlFields::file(name);
+  if (isFile(name)) return YamlFields::file(name);
   const std::string nearest = nearestName(name, namesOf(texts));
   throw InputError({.where = name,
                     .reason = "no such file, and no " + what + " of this name in the library",
@@ -65,7 +70,7 @@ SoilPrior soilOfClass(const YamlFields& classes, const std::string& key, const s
   if (classes.isMapping(key)) return readSoil(unwrapped(classes.fields(key), "soil"));
   const std::string name = classes.word(key);
   if (const auto* soil = named(listed, name)) return *soil;
-  if (!findText(librarySoilTexts(), name) && std::filesystem::exists(folder / name))
+  if (!findText(librarySoilTexts(), name) && isFile(folder / name))
     return loadSoilPrior((folder / name).string());
   try {
     return loadSoilPrior(name);
@@ -166,7 +171,7 @@ Rover readRover(const YamlFields& fields) {
 
 SoilPrior loadSoilPrior(const std::string& name_or_path) {
   const auto hash = name_or_path.rfind('#');
-  const bool picks = hash != std::string::npos && !std::filesystem::exists(name_or_path);
+  const bool picks = hash != std::string::npos && !isFile(name_or_path);
   const std::string path = name_or_path.substr(0, picks ? hash : std::string::npos);
   const std::string wanted = picks ? name_or_path.substr(hash + 1) : "";
   const YamlFields root = open(path, librarySoilTexts(), "soil");

@@ -4,7 +4,6 @@
 #include <stdexcept>
 #include <vector>
 
-#include <terramech/lane_math.hpp>
 #include <terramech/wong_reece_batch.hpp>
 
 #include "reference_table.hpp"
@@ -117,18 +116,6 @@ TEST(WongReeceBatch, WhatHasNoAnswerIsNan) {
   EXPECT_EQ(forces[4].sinkage_m, forces[0].sinkage_m);
   std::vector<WheelForces> too_few(2);
   EXPECT_THROW(equilibria(cases, too_few), std::invalid_argument);
-}
-
-TEST(LaneMath, AgreesWithTheStandardLibrary) {
-  Random random{3};
-  for (int k = 0; k < 20000; ++k) {
-    const double x = random.between(-690.0, 300.0), angle = random.between(1e-6, 1.5707);
-    EXPECT_NEAR(lanes::exponential(x) / std::exp(x), 1.0, 2e-12);
-    EXPECT_NEAR(lanes::logarithm(std::exp(x)), x, 2e-12);
-    EXPECT_NEAR(lanes::sine(angle) / std::sin(angle), 1.0, 3e-11);
-    const double half = std::sin(0.5 * angle);
-    EXPECT_NEAR(lanes::versine(angle) / (2.0 * half * half), 1.0, 4e-12);
-  }
 }
 
 }  // namespace
