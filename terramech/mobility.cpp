@@ -59,7 +59,7 @@ std::vector<double> drivenSlips() {
 
 std::vector<double> brakedSlips() {
   std::vector<double> slips;
-  for (int k = 0; k <= 24; ++k) slips.push_back(-0.5 * (1.0 - std::cos(std::numbers::pi * k / 24.0)));
+  for (int k = 0; k <= 32; ++k) slips.push_back(-0.5 * (1.0 - std::cos(std::numbers::pi * k / 32.0)));
   return slips;
 }
 

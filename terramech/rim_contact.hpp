@@ -1,11 +1,8 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <concepts>
-#include <numbers>
-#include <stdexcept>
 
 #include <terramech/gauss_legendre.hpp>
 #include <terramech/shear_displacement.hpp>
@@ -131,45 +128,43 @@ struct RimLoad {
   double growth = 3.0;       ///< d log W / d log theta_1 to start from [-]
 };
 
-/// The smallest entry angle in (0, pi/2] at which the rim carries the load. The load grows almost as a power
-/// of the entry angle, so the secant method runs on logarithms, inside a bracket; four to six evaluations.
-/// Throws std::domain_error when the wheel would sink to its axle before it carried the load.
+namespace detail {
+
+/// Search for the entry angle. The load grows almost as a power of it, so the secant method runs on
+/// logarithms, inside a bracket that catches a step too far; four to six trials.
+class EntrySearch {
+ public:
+  explicit EntrySearch(const RimLoad& wanted);
+
+  /// The angle to try next [rad], in (0, pi/2].
+  double entry_rad() const { return entry_; }
+
+  /// Takes the load [N] found there. True when it is the one wanted; else entry_rad() has moved on. Throws
+  /// std::domain_error when even the axle on the ground does not carry the load.
+  bool take(double load_N);
+
+ private:
+  void learnGrowth(double log_ratio);
+  double next(double log_ratio) const;
+
+  double wanted_N_, entry_, growth_;
+  double low_ = 0.0, high_ = 0.0;  // high 0: not met yet
+  double last_log_entry_ = 0.0, last_log_ratio_ = 0.0;
+  int trials_ = 0;
+};
+
+}  // namespace detail
+
+/// The smallest entry angle in (0, pi/2] at which the rim carries the load. Throws std::domain_error when the
+/// wheel would sink to its axle before it carried the load.
 template <ContactLaw Law>
 RimEquilibrium rimEquilibrium(const Law& law, const Wheel& wheel, const RimLoad& wanted) {
-  constexpr double kDeepest = 0.5 * std::numbers::pi;
-  constexpr double kTolerance = 1e-13;
-  const auto forcesAt = [&](double entry) {
-    return rimForces(law, wheel, ShearDisplacement{{wheel.radius_m, wanted.slip, entry}});
-  };
-  double low = 0.0, high = 0.0;  // high = 0: not met yet
-  // Fast path and bracketing in one: `entry` moves by secant steps, the bracket catches a step that leaves
-  // it.
-  double entry = std::clamp(wanted.first_guess, 1e-9, kDeepest), growth = wanted.growth;
-  double last_log_entry = 0.0, last_log_ratio = 0.0;
-  bool have_last = false;
-  for (int iteration = 0; iteration < 200; ++iteration) {
-    const RimForces forces = forcesAt(entry);
-    const bool carries = forces.load_N >= wanted.load_N;
-    (carries ? high : low) = entry;
-    const double log_ratio = forces.load_N > 0.0 ? std::log(forces.load_N / wanted.load_N) : -50.0;
-    const double bracket = high > 0.0 ? high - low : 1.0;
-    if (std::abs(log_ratio) < kTolerance || bracket <= 4e-16 * high) return {entry, forces};
-    if (!carries && entry >= kDeepest) break;
-    const double log_entry = std::log(entry);
-    if (have_last && log_entry != last_log_entry) {
-      const double slope = (log_ratio - last_log_ratio) / (log_entry - last_log_entry);
-      if (slope > 0.05 && slope < 50.0) growth = slope;
-    }
-    last_log_entry = log_entry;
-    last_log_ratio = log_ratio;
-    have_last = true;
-    double next = entry * std::exp(std::clamp(-log_ratio / growth, -3.0, 1.0));
-    if (next <= low || (high > 0.0 && next >= high)) next = high > 0.0 ? 0.5 * (low + high) : 1.5 * entry;
-    if (std::abs(next - entry) <= 4e-16 * entry) return {entry, forces};
-    entry = std::min(next, kDeepest);
+  detail::EntrySearch search{wanted};
+  while (true) {
+    const double entry = search.entry_rad();
+    const RimForces forces = rimForces(law, wheel, ShearDisplacement{{wheel.radius_m, wanted.slip, entry}});
+    if (search.take(forces.load_N)) return {entry, forces};
   }
-  throw std::domain_error("the wheel sinks to its axle before the soil carries " +
-                          std::to_string(wanted.load_N) + " N");
 }
 
 }  // namespace talus::terramech

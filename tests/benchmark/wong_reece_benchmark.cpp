@@ -99,7 +99,7 @@ struct GaussKronrod {
 struct TanhSinh {
   template <class Function>
   double operator()(const Function& f, double a, double b) const {
-    return rule.integrate(f, a, b, 1e-12);
+    return rule.integrate([&](double t) { return f(a + t); }, 0.0, b - a, 1e-12);
   }
   mutable boost::math::quadrature::tanh_sinh<double> rule{12};
 };

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <random>
 #include <stdexcept>
 
 #include <terramech/mobility.hpp>
@@ -37,6 +38,29 @@ TEST(Mobility, SlipBalancesThePullOfTheSlopeUpAndDown) {
     if (slope < curve.minSlope_rad()) continue;
     // Closed form: root of DP(i) = N tan(slope), found without the table.
     EXPECT_NEAR(curve.at(slope).slip, slipOnSlope(loam(), rover(), slope), 1e-3) << slope;
+  }
+}
+
+TEST(Mobility, IsExactOnRandomSoilsAndRovers) {
+  std::mt19937_64 random{11};
+  const auto between = [&](double low, double high) {
+    return std::uniform_real_distribution<double>{low, high}(random);
+  };
+  for (int k = 0; k < 12; ++k) {
+    Soil soil = loam();
+    soil.cohesion_Pa = between(0.0, 6e3);
+    soil.friction_angle_rad = between(0.2, 0.7);
+    soil.sinkage_exponent = between(0.5, 1.2);
+    Rover any = rover();
+    any.mass_kg = between(10.0, 200.0);
+    any.wheel.radius_m = between(0.08, 0.25);
+    const MobilityCurve curve{soil, any};
+    for (int q = 0; q < 4 && curve.minSlope_rad() < curve.maxSlope_rad(); ++q) {
+      const double slope = between(curve.minSlope_rad() + 1e-3, curve.maxSlope_rad() - 1e-3);
+      // Closed form: root of DP(i) = N tan(slope), found without the table; 1e-3 is the table's stated
+      // accuracy.
+      EXPECT_NEAR(curve.at(slope).slip, slipOnSlope(soil, any, slope), 1e-3) << k << " " << slope;
+    }
   }
 }
 

@@ -55,7 +55,8 @@ ImposedContact adaptive(const Soil& soil, const Wheel& wheel, const WheelOperati
     const double zero = ShearDisplacement{{r, operation.slip, entry}}.signChange_rad(exit);
     if (zero == zero) ends.insert(ends.begin() + (zero > peak ? 2 : 1), zero);
     for (std::size_t i = 0; i + 1 < ends.size(); ++i)
-      if (ends[i + 1] - ends[i] > 1e-12) sum += rule.integrate(f, ends[i], ends[i + 1], 1e-12);
+      if (ends[i + 1] - ends[i] > 1e-12)
+        sum += rule.integrate([&](double t) { return f(ends[i] + t); }, 0.0, ends[i + 1] - ends[i], 1e-12);
     return sum;
   };
   using std::cos, std::sin;
