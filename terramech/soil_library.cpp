@@ -22,6 +22,7 @@ const std::string* findText(const std::map<std::string, std::string>& texts, con
 
 std::vector<std::string> namesOf(const std::map<std::string, std::string>& texts) {
   std::vector<std::string> names;
+  names.reserve(texts.size());
   for (const auto& [name, text] : texts) names.push_back(name);
   return names;
 }
