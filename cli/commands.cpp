@@ -4,6 +4,7 @@ namespace talus::cli {
 
 void addCommands(CLI::App& app, Context& context) {
   addCostmap(app, context);
+  addDrive(app, context);
   addExplain(app, context);
   addInfo(app, context);
   addPlan(app, context);

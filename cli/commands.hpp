@@ -11,6 +11,7 @@ struct Context;
 // One function a subcommand, in cli/NAME_command.cpp, built on addCommand() of cli/command.hpp.
 // Alphabetical; a subcommand stands here only once it does its job.
 void addCostmap(CLI::App& app, Context& context);
+void addDrive(CLI::App& app, Context& context);
 void addExplain(CLI::App& app, Context& context);
 void addInfo(CLI::App& app, Context& context);
 void addPlan(CLI::App& app, Context& context);
