@@ -6,6 +6,7 @@ void addCommands(CLI::App& app, Context& context) {
   addAssess(app, context);
   addBench(app, context);
   addCostmap(app, context);
+  addDrive(app, context);
   addEstimate(app, context);
   addExplain(app, context);
   addGenerate(app, context);

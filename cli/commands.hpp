@@ -13,6 +13,7 @@ struct Context;
 void addAssess(CLI::App& app, Context& context);
 void addBench(CLI::App& app, Context& context);
 void addCostmap(CLI::App& app, Context& context);
+void addDrive(CLI::App& app, Context& context);
 void addEstimate(CLI::App& app, Context& context);
 void addExplain(CLI::App& app, Context& context);
 void addGenerate(CLI::App& app, Context& context);

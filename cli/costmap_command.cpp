@@ -7,9 +7,10 @@
 
 #include <cli/command.hpp>
 #include <cli/commands.hpp>
-#include <cli/output_file.hpp>
-#include <cli/site_layers.hpp>
 #include <cli/ground_options.hpp>
+#include <cli/output_file.hpp>
+#include <cli/picture.hpp>
+#include <cli/site_layers.hpp>
 #include <costmap/map_file.hpp>
 #include <costmap/surface_tree.hpp>
 
@@ -50,6 +51,7 @@ void writeFiles(const Options& options, const costmap::TraversabilityMap& map, c
     maps::writeGeoTiff({.path = options.geotiff, .georeference = georeference ? &*georeference : nullptr},
                        siteLayers(map, context.workers()));
   }
+  if (!options.png.empty()) savePicture(options.png, sceneOf(map, {.title = map.elevation().source}));
   if (!options.octovis.empty()) writeOctovis(map, options.octovis);
 }
 

@@ -57,11 +57,11 @@ struct Difference {
 };
 
 bool sameCost(const Snapshot& a, const Snapshot& b, maps::Cell cell) {
-  const auto from = a.grid->at(cell).curve(), to = b.grid->at(cell).curve();
+  const std::size_t from = a.grid->at(cell).curve(), to = b.grid->at(cell).curve();
   const auto& before = a.grid->cost().curves();
   const auto& after = b.grid->cost().curves();
   if (from >= before.size() || to >= after.size()) return from == to;
-  return from == to && (&before == &after || before[from].cost_J_per_m == after[to].cost_J_per_m);
+  return before[from].cost_J_per_m == after[to].cost_J_per_m;
 }
 
 Difference between(const Snapshot& before, const Snapshot& after) {
@@ -70,8 +70,8 @@ Difference between(const Snapshot& before, const Snapshot& after) {
   for (int row = 0; row < grid.height; ++row)
     for (int column = 0; column < grid.width; ++column) {
       const std::size_t i = grid.index({column, row});
-      difference.categories += before.categories[i] != after.categories[i] ? 1 : 0;
-      difference.cells += sameCost(before, after, {column, row}) ? 0 : 1;
+      difference.categories += before.categories[i] != after.categories[i] ? 1U : 0U;
+      difference.cells += sameCost(before, after, {column, row}) ? 0U : 1U;
     }
   return difference;
 }

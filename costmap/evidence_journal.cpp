@@ -95,9 +95,12 @@ EvidenceJournal::EvidenceJournal(const std::string& path) : path_(path) {
     throw InputError({path_, "an SQLite file, but no evidence journal", "name another file"});
   run("PRAGMA journal_mode = WAL");
   run("PRAGMA synchronous = FULL");
+  if (application != kApplication) {
+    // The mark comes before the table: a process killed in between leaves a journal, if an empty one.
+    run(("PRAGMA application_id = " + std::to_string(kApplication)).c_str());
+    run(("PRAGMA user_version = " + std::to_string(kFormat)).c_str());
+  }
   run(kSchema);
-  run(("PRAGMA application_id = " + std::to_string(kApplication)).c_str());
-  run(("PRAGMA user_version = " + std::to_string(kFormat)).c_str());
   insert_ = prepare(kInsert);
 }
 

@@ -16,7 +16,7 @@ struct SensorLimits {
   double slip_spike = 0.3;      ///< departure from the median of the last five
   double torque_spike = 0.3;    ///< of T/(rW), likewise
   double sinkage_spike = 0.25;  ///< of z/r, likewise
-  std::size_t stuck_rows = 8;   ///< equal readings in a row that a live sensor does not give
+  std::size_t stuck_rows = 25;  ///< equal readings in a row that a live sensor does not give
   double bias =
       0.04;  ///< pull by torque and sinkage less pull asked for, on average, that betrays a sensor [-]
   std::size_t bias_rows = 30;  ///< rows before a bias is spoken of

@@ -87,7 +87,7 @@ std::int64_t killedAfter(const std::string& path, useconds_t microseconds) {
 TEST_F(EvidenceJournalTest, AKilledWriterLosesAtMostTheRowBeingWritten) {
   // 200 kills at scattered moments, from before the first row on.
   for (unsigned kill = 0; kill < 200; ++kill) {
-    const std::string file = path(("k" + std::to_string(kill) + ".db").c_str());
+    const std::string file = path(std::to_string(kill).append(".db").c_str());
     const std::int64_t told = killedAfter(file, 500 + kill * 7919 % 12000);
     const EvidenceJournal journal(file);
     std::int64_t expected = 1;

@@ -25,7 +25,7 @@ TEST(SensorWatch, BelievesAQuietDrive) {
 
 TEST(SensorWatch, SeesTimeGoingBackStuckValuesAndSpikes) {
   const auto model = testGround();
-  SensorWatch watch(*model);
+  SensorWatch watch(*model, {.stuck_rows = 8});
   for (int i = 0; i < 10; ++i) watch.refuse("w", at(0.1 * i, 0.1 + 0.01 * (i % 3)));
   EXPECT_EQ(watch.refuse("w", at(0.2, 0.11)).value_or(""), "time goes back");
   EXPECT_EQ(watch.refuse("w", at(2.0, 0.9)).value_or(""), "spike");
