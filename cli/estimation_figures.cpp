@@ -159,8 +159,8 @@ ThesisFigure representative(std::uint64_t seed) {
           {{.title = "Clay, ten samples",
             .x = {.label = "M3 [kPa]", .low = 0.0},
             .y = {.label = "M4 [kPa]", .low = 0.0},
-            .series = {straight("truth", 1e-3 * run.soil.cohesion_Pa, t, 16.0),
-                       straight("fit", 1e-3 * f.fit.cohesion_Pa, f.fit.tan_friction, 16.0), f.cloud}}}};
+            .series = {straight("truth", 1e-3 * run.soil.cohesion_Pa, t, 25.0),
+                       straight("fit", 1e-3 * f.fit.cohesion_Pa, f.fit.tan_friction, 25.0), f.cloud}}}};
 }
 
 ThesisFigure window(std::uint64_t seed) {
@@ -274,7 +274,7 @@ ThesisFigure trialModulus(std::uint64_t seed) {
   for (const double factor : {0.5, 1.0, 2.0})
     shown.push_back(fitted(run, factor * run.soil.shear_modulus_m, fmt::format("K_e = {} K", factor)).cloud);
   shown.push_back(
-      straight("truth", 1e-3 * run.soil.cohesion_Pa, std::tan(run.soil.friction_angle_rad), 16.0));
+      straight("truth", 1e-3 * run.soil.cohesion_Pa, std::tan(run.soil.friction_angle_rad), 25.0));
   return {"D.1",
           "Points for a wrong shear modulus",
           "points leave the line of the true parameters when K_e is not K",
