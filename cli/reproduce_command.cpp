@@ -69,7 +69,11 @@ constexpr const char* kErrata =
 
 std::string page(const std::vector<ThesisFigure>& figures, const std::vector<GoalLine>& goals,
                  const ReproduceOptions& options, std::uint64_t seed) {
-  const std::string call = fmt::format("talus reproduce -o DIR --soils {} --seed {}", options.soils, seed);
+  const std::string call =
+      fmt::format("talus reproduce -o DIR --soils {} --seed {}{}", options.soils, seed,
+                  options.measured.empty()
+                      ? ""
+                      : " --measured " + std::filesystem::path(options.measured).filename().string());
   std::string text = "# The thesis, made anew\n\nEvery number and figure here comes from one command, `" +
                      call +
                      "`, which also writes this page.\nThe thesis is kang_2003 in REFERENCES.bib. What does "

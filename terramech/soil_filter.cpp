@@ -5,6 +5,12 @@
 #include <terramech/soil_filter.hpp>
 
 namespace talus::terramech {
+namespace {
+
+// So many samples are fitted afresh, until the modes stand where later samples only nudge them.
+constexpr std::size_t kFresh = 4;
+
+}  // namespace
 
 SoilFilter::SoilFilter(const Wheel& wheel, SoilMixture prior, const Options& options)
     : wheel_(wheel), prior_(std::move(prior)), options_(options), tracks_(prior_.size()) {
@@ -28,7 +34,8 @@ void SoilFilter::add(const WheelSample& sample) {
       track.before = objective(k).expand(track.mode.likelihood.at, {&window_.front(), 1}, track.before);
     }
     const auto kept = std::span(window_).subspan(full ? 1 : 0);
-    track.mode = findMode(objective(k), kept, track.before, track.mode.x);
+    track.mode = !full && count_ <= kFresh ? findModeAfresh(objective(k), kept)
+                                           : findMode(objective(k), kept, track.before, track.mode.x);
   }
   if (full) window_.erase(window_.begin());
 }

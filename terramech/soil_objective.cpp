@@ -151,6 +151,14 @@ SoilMode findMode(const SoilObjective& objective, std::span<const WheelSample> s
   return {.x = x, .likelihood = here.likelihood, .log_evidence = -here.cost - log_root};
 }
 
+SoilMode findModeAfresh(const SoilObjective& objective, std::span<const WheelSample> samples) {
+  const SoilVector middle = SoilVector::Zero();
+  const SoilMode near = findMode(objective, samples, {}, middle);
+  const SoilMode led =
+      findMode(objective, samples, {}, findMode(objective.trusting(), samples, {}, middle).x);
+  return led.log_evidence > near.log_evidence ? led : near;
+}
+
 TruncatedGaussian proposal(const SoilClass& soil, const SoilQuadratic& likelihood) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   SoilBox box{SoilVector::Constant(-kInfinity), SoilVector::Constant(kInfinity)};

@@ -60,6 +60,10 @@ class SoilObjective {
   /// them.
   ContactState likelyState(const ContactSoil& soil, const WheelSample& sample) const;
 
+  /// The same with every sample taken at its word, to find a start from far away: where nothing fits yet, all
+  /// samples look like outliers, and the robust loss is flat.
+  SoilObjective trusting() const { return {*soil_, {setting_.wheel, setting_.noise, 0.0}}; }
+
   const SoilClass& soilClass() const { return *soil_; }
 
  private:
@@ -78,6 +82,10 @@ struct SoilMode {
 /// Most likely x of samples on top of `before` by damped Gauss-Newton, from `start`.
 SoilMode findMode(const SoilObjective& objective, std::span<const WheelSample> samples,
                   const SoilQuadratic& before, const SoilVector& start);
+
+/// findMode() from the middle of the prior and from where the samples lead when all are trusted; the likelier
+/// of the two.
+SoilMode findModeAfresh(const SoilObjective& objective, std::span<const WheelSample> samples);
 
 /// Samples the posterior of one class: the likelihood's quadratic, cut to the prior's box.
 TruncatedGaussian proposal(const SoilClass& soil, const SoilQuadratic& likelihood);

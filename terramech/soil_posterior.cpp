@@ -170,7 +170,7 @@ SoilPosterior fitSoil(const Wheel& wheel, std::span<const WheelSample> samples, 
   std::vector<ClassFit> classes;
   for (const SoilClass& soil : prior) {
     const SoilObjective objective(soil, {wheel, options.noise, options.outlier_share});
-    classes.push_back({objective, {}, findMode(objective, samples, {}, SoilVector::Zero())});
+    classes.push_back({objective, {}, findModeAfresh(objective, samples)});
   }
   return samplePosterior(classes, samples, options.draws);
 }

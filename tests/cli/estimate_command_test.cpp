@@ -161,7 +161,7 @@ TEST(EstimateCommand, WritesAPage) {
       runTalus({"estimate", folder.write("drive.csv", drive()), "--method", "wong-reece", "--html", page})
           .code,
       0);
-  EXPECT_THAT(fileContent(page), HasSubstr("<svg"));
+  EXPECT_TRUE(fileContent(page).find("data:image/svg+xml") != std::string::npos);
 }
 
 }  // namespace

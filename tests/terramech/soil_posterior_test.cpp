@@ -65,6 +65,19 @@ TEST(SoilPosterior, ShrugsOffAnOutlier) {
             std::sqrt(clean.covariance(1, 1)) + 0.5 * kDegree);
 }
 
+TEST(SoilPosterior, FindsASoilFarFromTheMiddleOfAWidePrior) {
+  // Property: at 1 % errors every sample is an outlier at the prior's middle; the soil must be found all the
+  // same.
+  ThesisRuns runs(14);
+  const ThesisRun run = runs.next({.noise = 0.01});
+  const SoilMixture wide{thesisSoilsOrOther(0.5).back()};
+  SoilFitOptions options;
+  options.noise = ReadingErrors::relative(0.01);
+  const SoilPosterior p = fitSoil(kThesisWheel, run.samples, wide, options);
+  EXPECT_LT(p.misfit, 3.0);
+  EXPECT_NEAR(p.mean.sinkage_exponent, run.soil.sinkage_exponent, 4.0 * std::sqrt(p.covariance(2, 2)) + 0.02);
+}
+
 TEST(SoilPosterior, SaysWhatAlikeSamplesDoNotShow) {
   // Property: twelve samples at one slip of 0.8, where the shear is nearly developed, say little of K.
   ThesisRuns runs(2);
