@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <cli/context.hpp>
 #include <cli/ground_options.hpp>
+#include <cli/number_check.hpp>
 #include <costmap/ground_class.hpp>
 #include <costmap/map_file.hpp>
 #include <costmap/octomap_surface.hpp>
@@ -115,7 +116,8 @@ void addGroundOptions(CLI::App& command, GroundOptions& options) {
   command
       .add_option("--footprint", options.footprint_m,
                   "radius that slopes are taken over (default: the rover's)")
-      ->type_name("METRES");
+      ->type_name("METRES")
+      ->check(notNegative());
   addPolicy(command, options.policy);
 }
 

@@ -55,7 +55,6 @@ class Picture {
     canvas_.clip(map_);
     route();
     scaleBar();
-    northArrow();
     canvas_.unclip();
     outline(canvas_, map_, {.colour = rgb(0x888888)});
     legend();
@@ -113,13 +112,11 @@ class Picture {
                  {.size = 13, .bold = true, .anchor = 0.5, .halo = true});
   }
 
-  void northArrow() {
-    const Spot top{map_.x + map_.width - 28, map_.y + 30};
-    canvas_.disc({top.x, top.y + 14}, 25, faded(kWhite, 0.7));
-    canvas_.polygon(std::array{Spot{top.x, top.y + 6}, Spot{top.x + 9, top.y + 33}, Spot{top.x, top.y + 27},
-                               Spot{top.x - 9, top.y + 33}},
-                    kInk);
-    canvas_.text("N", {top.x, top.y + 2}, {.size = 12, .bold = true, .anchor = 0.5});
+  void northArrow(Spot tip) {
+    canvas_.polygon(
+        std::array{tip, Spot{tip.x + 9, tip.y + 27}, Spot{tip.x, tip.y + 21}, Spot{tip.x - 9, tip.y + 27}},
+        kInk);
+    canvas_.text("N", {tip.x, tip.y - 5}, {.size = 13, .bold = true, .anchor = 0.5});
   }
 
   void legend() {
@@ -134,6 +131,7 @@ class Picture {
       at.y += 24;
     }
     elevations(at);
+    northArrow({at.x + 12, at.y + 80});
   }
 
   void categoryLegend(Spot& at) {

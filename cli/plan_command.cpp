@@ -9,6 +9,7 @@
 #include <cli/command.hpp>
 #include <cli/commands.hpp>
 #include <cli/mission.hpp>
+#include <cli/number_check.hpp>
 #include <cli/output_file.hpp>
 #include <cli/page.hpp>
 #include <cli/pareto_chart.hpp>
@@ -45,7 +46,7 @@ void bind(CLI::App& command, PlanOptions& options) {
   command.add_option("--via", options.via, "to be passed on the way; may be repeated")->type_name("PLACE");
   command.add_option("--tolerance", options.tolerance_m, "the route may end this far from the goal")
       ->type_name("METRES")
-      ->check(CLI::NonNegativeNumber);
+      ->check(notNegative());
   command.add_option("--planner", options.planner, "who plans: `talus plugins` lists them")
       ->type_name("NAME")
       ->capture_default_str();

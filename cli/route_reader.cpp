@@ -122,12 +122,19 @@ planner::RouteSummary summaryFrom(const Fields& summary) {
           .planner = summary.text("planner")};
 }
 
+/// A member of an object; null where there is no such object or member.
+json member(const json& object, const char* key) {
+  return object.is_object() && object.contains(key) ? object.at(key) : json();
+}
+
 std::vector<RouteInput> inputsOf(const json& properties) {
   std::vector<RouteInput> inputs;
-  const json files = properties.value(json::json_pointer("/inputs/files"), json::array());
-  for (const json& file : files)
-    if (file.is_object() && file.contains("file") && file["file"].is_string())
-      inputs.push_back({file["file"].get<std::string>(), file.value("sha256", std::string())});
+  for (const json& file : member(member(properties, "inputs"), "files")) {
+    const json name = member(file, "file");
+    const json sha256 = member(file, "sha256");
+    if (name.is_string() && sha256.is_string())
+      inputs.push_back({name.get<std::string>(), sha256.get<std::string>()});
+  }
   return inputs;
 }
 
@@ -148,7 +155,7 @@ RouteFile readRoute(const std::string& path) {
   RouteFile file;
   file.route.status = planner::RouteStatus::Found;
   readVertices(fields, file.route.vertices);
-  const json summary = properties.value("summary", json());
+  const json summary = member(properties, "summary");
   file.route.summary = summaryFrom(Fields(path, summary));
   file.inputs = inputsOf(properties);
   return file;

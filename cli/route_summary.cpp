@@ -20,9 +20,10 @@ std::string lengthText(double metres) {
   return metres >= 2000.0 ? fmt::format("{:.2f} km", metres / 1000.0) : fmt::format("{:.4g} m", metres);
 }
 
+/// Joules as J, kJ or MJ, four digits.
 std::string energyText(double joules) {
-  if (joules >= 3.6e4) return fmt::format("{:.4g} Wh", joules / 3600.0);
-  return fmt::format("{:.4g} J", joules);
+  if (joules >= 1e6) return fmt::format("{:.4g} MJ", joules / 1e6);
+  return joules >= 1e4 ? fmt::format("{:.4g} kJ", joules / 1e3) : fmt::format("{:.4g} J", joules);
 }
 
 /// Largest and mean of a field over the motions, by length; not known where no motion has it.
@@ -125,7 +126,7 @@ std::string slipText(const Route& route) {
 std::string statusText(const Route& route) {
   const planner::RouteSummary& s = route.summary;
   if (!(s.gap < 1.0)) return fmt::format("found by {}; how far from the cheapest is not known", s.planner);
-  return fmt::format("found by {}, within {:.2g} % of the cheapest there can be", s.planner, 100.0 * s.gap);
+  return fmt::format("found by {}, within {:.1f} % of the cheapest there can be", s.planner, 100.0 * s.gap);
 }
 
 std::string riskText(double probability) {
@@ -159,18 +160,20 @@ Facts summaryOf(const Route& route) {
     return {{"route", fmt::format("{}: {}", planner::name(route.status), route.reason)}};
   const planner::RouteSummary& s = route.summary;
   const double risk = route.vertices.back().immobilisation_risk;
-  Facts facts{{"route", statusText(route)},
-              {"length", lengthText(s.length_m) + straightText(route)},
-              {"driving time",
-               fmt::format("{}, {:.3g} m/s on average", durationText(s.time_s), s.length_m / s.time_s)},
-              {"energy", fmt::format("{}, {:.4g} J/m", energyText(s.energy_J), s.energy_J / s.length_m)},
-              {"climb", climbText(route)},
-              {"slope", slopeText(route)},
-              {"slip", slipText(route)},
-              {"wheel", wheelText(route)},
-              {"pull to spare", marginText(route)},
-              {"ground", groundText(route)},
-              {"risk", riskText(risk)}};
+  Facts facts{
+      {"route", statusText(route)},
+      {"length", lengthText(s.length_m) + straightText(route)},
+      {"driving time",
+       fmt::format("{}, {:.3g} m/s on average", durationText(s.time_s), s.length_m / s.time_s)},
+      {"energy", fmt::format("{} ({:.4g} Wh), {:.4g} J/m; cost with time and risk {}", energyText(s.energy_J),
+                             s.energy_J / 3600.0, s.energy_J / s.length_m, energyText(s.cost))},
+      {"climb", climbText(route)},
+      {"slope", slopeText(route)},
+      {"slip", slipText(route)},
+      {"wheel", wheelText(route)},
+      {"pull to spare", marginText(route)},
+      {"ground", groundText(route)},
+      {"risk", riskText(risk)}};
   std::erase_if(facts, [](const auto& fact) { return fact.second.empty(); });
   return facts;
 }

@@ -6,6 +6,7 @@
 
 #include <cli/command.hpp>
 #include <cli/commands.hpp>
+#include <cli/number_check.hpp>
 #include <cli/output_file.hpp>
 #include <cli/wheel_report.hpp>
 #include <cli/wheel_table.hpp>
@@ -29,9 +30,11 @@ void bind(CLI::App& command, WheelOptions& options) {
       command.add_option("--rover", options.rover, "rover of the library, or a YAML file; its wheel is used")
           ->type_name("NAME|FILE");
   auto* load = command.add_option("--load", options.load_N, "load on the wheel [N] (default: the rover's)")
-                   ->type_name("N");
-  auto* slip =
-      command.add_option("--slip", options.slip, "-1 (locked) to 1 (spinning in place)")->type_name("I");
+                   ->type_name("N")
+                   ->check(finite());
+  auto* slip = command.add_option("--slip", options.slip, "-1 (locked) to 1 (spinning in place)")
+                   ->type_name("I")
+                   ->check(within(-1.0, 1.0));
   auto* html = command.add_option("--html", options.html, "write a page with stresses and curves over slip")
                    ->type_name("FILE.html");
   auto* cases =

@@ -15,9 +15,10 @@ function drawMap(element, data) {
   layers[first].addTo(map);
   showLegend(first, layers[first].legend);
   map.on("baselayerchange", event => showLegend(event.name, event.layer.legend));
-  L.control.layers(layers, {}, {collapsed: element.clientWidth < 600}).addTo(map);
+  const narrow = element.clientWidth < 600;
+  L.control.layers(layers, {}, {collapsed: narrow}).addTo(map);
   const view = data.route.length ? L.latLngBounds(data.route.map(at)).pad(0.15) : L.latLngBounds(box);
-  map.fitBounds(view);
+  map.fitBounds(view, {paddingBottomRight: [narrow ? 0 : 170, 0]});  // room for the list of layers
   return map;
 }
 

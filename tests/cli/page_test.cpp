@@ -80,7 +80,7 @@ TEST(Page, DrawsMapProfilesAndSummary) {
   EXPECT_TRUE(bodyHas(shown, "alt=\"categories\""));
   EXPECT_TRUE(bodyHas(shown, ">elevation [m]</text>"));
   EXPECT_TRUE(bodyHas(shown, ">distance along the route [m]</text>"));
-  EXPECT_TRUE(bodyHas(shown, "<th>energy</th><td>15 Wh"));
+  EXPECT_TRUE(bodyHas(shown, "<th>energy</th><td>54 kJ (15 Wh)"));
   EXPECT_TRUE(bodyHas(shown, "leaflet-control-scale-line"));
   EXPECT_THAT(shown.console, Not(HasSubstr("CONSOLE"))) << "the page complains";
 #endif

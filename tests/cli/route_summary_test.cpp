@@ -16,7 +16,8 @@ TEST(RouteSummary, SaysWhatARoverEngineerAsks) {
   const auto facts = summaryOf(exampleRoute());
   EXPECT_THAT(facts, Contains(Pair("length", StartsWith("512.6 m, 1.00 times"))));
   EXPECT_THAT(facts, Contains(Pair("driving time", StartsWith("2 h 50 min, 0.0503 m/s"))));
-  EXPECT_THAT(facts, Contains(Pair("energy", StartsWith("15 Wh, 105.3 J/m"))));
+  EXPECT_THAT(
+      facts, Contains(Pair("energy", StartsWith("54 kJ (15 Wh), 105.3 J/m; cost with time and risk 60 kJ"))));
   EXPECT_THAT(facts,
               Contains(Pair("slope", StartsWith("at most 11.5 deg up, 11.5 deg down, 2.9 deg across"))));
   EXPECT_THAT(facts, Contains(Pair("ground", "66.7 % safe, 33.3 % marginal")));

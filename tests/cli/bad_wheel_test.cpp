@@ -1,0 +1,30 @@
+// Calls of wheel that cannot be answered.
+#include "bad_input.hpp"
+
+namespace talus::cli {
+namespace {
+
+TEST(BadInput, Wheel) {
+  const auto wheel = [](const std::vector<std::string>& more) {
+    std::vector<std::string> words{"wheel", "--soil", "clay", "--rover", "fido"};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  };
+  std::vector<BadCall> calls{
+      {{"wheel"}, 2, "lacks --soil"},
+      {wheel({"--load", "100"}), 2, "lacks --slip"},
+      {wheel({"--load", "-1", "--slip", "0.2"}), 2, "load_N = -1, must be > 0"},
+      {wheel({"--load", "nan", "--slip", "0.2"}), 2, "--load: = nan, must be a finite number"},
+      {wheel({"--load", "100", "--slip", "2"}), 2, "--slip: = 2, must be -1 to 1"},
+      {wheel({"--load", "1e12", "--slip", "0.5"}), 1, "sinks to its axle"},
+      {wheel({"--load", "100", "--slip", "0.2", "--html", "no/w.html"}), 2, "no does not exist"},
+      {{"wheel", "--soil", "cley", "--rover", "fido", "--slip", "0.2"}, 2, "did you mean clay?"},
+  };
+  for (const char* file : {"missing.csv", "folder", "empty.csv", "head_only.csv", "wrong_columns.csv",
+                           "words.csv", "garbage.csv"})
+    calls.push_back({{"wheel", "--cases", file, "-o", "out.csv"}, 2, file});
+  expectRefused(BadFiles(), calls);
+}
+
+}  // namespace
+}  // namespace talus::cli
