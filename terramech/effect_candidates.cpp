@@ -216,7 +216,7 @@ std::vector<Candidate> empiricalCandidates(const Trial& trial, const Eigen::Vect
   for (const std::string& name : names) {
     const Eigen::VectorXd x = covariateValues(trial, name, sinkage_m);
     std::size_t coarser = 1;
-    for (int most : {5, trial.rows() >= 120 ? 9 : 5}) {
+    for (int most : {5, std::clamp(trial.rows() / 10, 5, 9)}) {
       const auto knots = quantileKnots(x, most);
       if (knots.size() <= coarser) continue;
       coarser = knots.size();
