@@ -86,12 +86,8 @@ EvidenceJournal::EvidenceJournal(const std::string& path) : path_(path) {
   database_.reset(opened);
   if (result != SQLITE_OK) fail();
   sqlite3_busy_timeout(opened, 30'000);
-  const auto owner = prepare("PRAGMA application_id");
-  if (sqlite3_step(owner.get()) != SQLITE_ROW) fail();
-  const int application = sqlite3_column_int(owner.get(), 0);
-  const auto tables = prepare("SELECT count(*) FROM sqlite_master");
-  if (sqlite3_step(tables.get()) != SQLITE_ROW) fail();
-  if (application != kApplication && sqlite3_column_int(tables.get(), 0) > 0)
+  const std::int64_t application = single("PRAGMA application_id");
+  if (application != kApplication && single("SELECT count(*) FROM sqlite_master") > 0)
     throw InputError({path_, "an SQLite file, but no evidence journal", "name another file"});
   run("PRAGMA journal_mode = WAL");
   run("PRAGMA synchronous = FULL");
@@ -148,10 +144,15 @@ void EvidenceJournal::forEach(const std::function<void(const JournalRow&)>& visi
   if (result != SQLITE_DONE) fail();
 }
 
-std::int64_t EvidenceJournal::size() const {
-  const auto rows = prepare("SELECT count(*) FROM evidence");
+// The first number of a query's answer; nothing of the query stays open.
+std::int64_t EvidenceJournal::single(const char* sql) const {
+  const auto rows = prepare(sql);
   if (sqlite3_step(rows.get()) != SQLITE_ROW) fail();
   return sqlite3_column_int64(rows.get(), 0);
+}
+
+std::int64_t EvidenceJournal::size() const {
+  return single("SELECT count(*) FROM evidence");
 }
 
 }  // namespace talus::costmap

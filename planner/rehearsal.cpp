@@ -66,7 +66,7 @@ class Drive {
   }
 
   Leg follow() {
-    for (int steps = 1; next_ < route_.size(); ++steps) {
+    while (next_ < route_.size()) {
       const double left = distance_m(here_, route_[next_]);
       const double length = std::min(left, options_.step_m);
       if (length < 1e-9) {
@@ -77,10 +77,12 @@ class Drive {
       const TrueWorld::Step step = world_.drive(here_, heading, gradient(heading));
       if (tipped(heading)) return Leg::Tipped;
       result_.max_slip = std::max(result_.max_slip, step.slip);
+      const double expected = expectedSlip(heading);
       learn(step, heading);
-      if (step.stuck || (options_.senses && step.slip > options_.alarm_slip)) return retreat(step, heading);
+      if (step.stuck || (options_.senses && step.slip > expected + options_.alarm_slip))
+        return retreat(step, heading);
       advance(step, heading, length);
-      if (options_.senses && steps % 4 == 0 && routeTurnedDear()) return Leg::Replan;
+      if (options_.senses && routeTurnedDear()) return Leg::Replan;
     }
     return Leg::Arrived;
   }
@@ -90,6 +92,14 @@ class Drive {
     if (!cell) return 0.0;
     const costmap::CellCode code = map_.code(*cell);
     return code.dzDx() * heading.x + code.dzDy() * heading.y;
+  }
+
+  // What the map says before this step's readings are in.
+  double expectedSlip(const Direction& heading) const {
+    const auto cell = map_.grid().cellAt(here_);
+    if (!cell) return 0.0;
+    const auto grid = map_.published();
+    return static_cast<double>(grid->cost().detail(grid->at(*cell), heading).slip);
   }
 
   bool tipped(const Direction& heading) const {

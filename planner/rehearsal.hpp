@@ -28,7 +28,7 @@ struct RehearsalOptions {
   double goal_tolerance_m = 0.0;  ///< >= 0
   bool senses =
       true;  ///< the rover watches its slip, learns and replans; else it drives the first route blindly
-  double alarm_slip = 0.6;  ///< it stops and backs out above this slip
+  double alarm_slip = 0.2;  ///< it stops and backs out when it slips so much more than the map says
   double step_m = 0.5;      ///< > 0
   int max_replans = 60;     ///< then it gives up
   std::uint64_t seed = 1;   ///< of the sensors' noise

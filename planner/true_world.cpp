@@ -11,6 +11,7 @@ namespace {
 
 constexpr int kRows = 81;  // of slip -1 .. 1
 constexpr double kHighestSlip = 0.98;
+constexpr double kSlipStep = 0.02;
 
 WheelTable::Row solved(const terramech::Soil& soil, const terramech::Rover& rover, double slip) {
   const double load_N = terramech::wheelLoad_N(rover);
@@ -72,13 +73,16 @@ TrueWorld::Step TrueWorld::drive(const maps::Point& place, const costmap::Direct
         {place.x_m + a * heading.x - b * heading.y, place.y_m + a * heading.y + b * heading.x});
     soils.push_back(soilAt(step.wheels.back()));
   }
-  double low = -1.0, high = kHighestSlip;
-  step.stuck = meanPull(soils, high) < gradient;
-  for (int halving = 0; halving < 40; ++halving) {
+  // The least slip that pulls enough: on soft ground the pull falls again as the wheel digs in.
+  double high = -1.0;
+  while (high < kHighestSlip && meanPull(soils, high) < gradient) high += kSlipStep;
+  step.stuck = high >= kHighestSlip;
+  double low = high - kSlipStep;
+  for (int halving = 0; halving < 30; ++halving) {
     const double middle = 0.5 * (low + high);
     (meanPull(soils, middle) < gradient ? low : high) = middle;
   }
-  step.slip = step.stuck ? kHighestSlip : 0.5 * (low + high);
+  step.slip = step.stuck ? kHighestSlip : high;
   double torque = 0.0;
   for (const std::size_t soil : soils) {
     step.rows.push_back(tables_[soil].at(step.slip));
