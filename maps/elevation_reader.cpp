@@ -85,6 +85,7 @@ double radius(GDALDataset& file) {
 
 ElevationMap readElevation(const std::string& path, const ReadOptions& options) {
   check(options);
+  const GdalErrors quiet;  // GDAL judges a CRS only when asked for it
   ElevationMap map;
   map.source = path;
   Dataset file = isNumpyFile(path) ? openNumpyRaster(path, map.notes) : openRaster(path);

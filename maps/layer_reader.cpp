@@ -70,6 +70,7 @@ Raster<float> aligned(Dataset file, int band, const ElevationMap& map, const cha
 }  // namespace
 
 Raster<std::uint8_t> readTerrainClasses(const LayerSource& source, const ElevationMap& map) {
+  const GdalErrors quiet;
   Dataset file = openRaster(source.path);
   std::vector<std::string> notes;
   const int band =
@@ -89,6 +90,7 @@ Raster<std::uint8_t> readTerrainClasses(const LayerSource& source, const Elevati
 }
 
 Raster<float> readRockAbundance(const LayerSource& source, const ElevationMap& map) {
+  const GdalErrors quiet;
   Dataset file = openRaster(source.path);
   std::vector<std::string> notes;
   const int band = chooseBand(*file,

@@ -285,6 +285,30 @@ TEST(ElevationReader, BadInputIsOneLineWithARemedy) {
   }
 }
 
+// Property: whatever the bytes, a file is read or refused in one line; nothing else comes out.
+TEST(ElevationReader, DamagedFilesAreReadOrRefused) {
+  const TemporaryFolder folder;
+  const std::string good = write({.rows = kHill, .nodata = -1}, folder / "good.tif");
+  std::ifstream file(good, std::ios::binary);
+  const std::string whole((std::istreambuf_iterator<char>(file)), {});
+  std::uint32_t random = 1;
+  const auto next = [&random](std::size_t below) {
+    random = random * 1664525U + 1013904223U;
+    return static_cast<std::size_t>(random >> 8) % below;
+  };
+  for (int i = 0; i < 200; ++i) {
+    std::string bytes = whole;
+    for (std::size_t n = 1 + next(3); n > 0; --n) bytes[next(bytes.size())] = static_cast<char>(next(256));
+    if (i % 5 == 0) bytes.resize(1 + next(bytes.size()));
+    const std::string path = folder.write("damaged.tif", bytes);
+    testing::internal::CaptureStderr();
+    const std::string line = refusal([&] { readElevation(path, {.max_cells = 1'000'000}); });
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+    EXPECT_THAT(line, testing::AnyOf("accepted", HasSubstr(path)));
+    EXPECT_THAT(line, testing::Not(HasSubstr("another error")));
+  }
+}
+
 TEST(ElevationReader, ReadsTheMapOfJacksboroThatMatplotlibShips) {
   const std::string path = "/usr/share/matplotlib/mpl-data/sample_data/jacksboro_fault_dem.npz";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << "python-matplotlib-data is not installed";
