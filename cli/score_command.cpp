@@ -59,8 +59,8 @@ int run(const Options& options, Context& context) {
   plan.status = violations.empty() ? planner::RouteStatus::Found : planner::RouteStatus::NoRoute;
   plan.cost_J = planner::MotionCost(map).along(plan.points);
   if (!violations.empty()) plan.cost_J = INFINITY;
-  plan.lower_bound_J =
-      std::min(plan.cost_J, planner::lowerBound_J(*map, {plan.points.front(), plan.points.back()}));
+  const planner::Segment ends{plan.points.front(), plan.points.back()};
+  plan.lower_bound_J = std::min(plan.cost_J, planner::LowerBound()(map, ends, 0.0, context.watch("bound")));
   const planner::Route route =
       annotated(plan, {.map = *map, .elevation_m = &ground.map.elevation().elevation_m, .planner = "none"});
   if (context.json) {

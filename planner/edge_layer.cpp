@@ -111,6 +111,15 @@ EdgeLayer::EdgeLayer(std::shared_ptr<const costmap::CostGrid> map, const EdgeUni
   complete_ = !stop();
 }
 
+EdgeLayer::EdgeLayer(std::shared_ptr<const costmap::CostGrid> map, const EdgeUnits& units, Unfilled)
+    : map_(std::move(map)),
+      units_(units),
+      padded_{map_->grid().width, map_->grid().height},
+      edges_(std::make_unique_for_overwrite<std::uint16_t[]>(8 * padded_.size())),
+      complete_(true) {
+  std::fill_n(edges_.get(), 8 * padded_.size(), kBlocked);
+}
+
 void EdgeLayer::blockBorder() {
   const auto block = [this](maps::Cell c) { std::fill_n(edges_.get() + 8 * padded_.index(c), 8, kBlocked); };
   for (int column = -1; column <= padded_.width; ++column)

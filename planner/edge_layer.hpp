@@ -50,6 +50,12 @@ class EdgeLayer {
   EdgeLayer(std::shared_ptr<const costmap::CostGrid> map, const EdgeUnits& units, int threads = 1,
             const StopCheck& stop = {}, Kernels kernels = Kernels::Best);
 
+  /// All steps blocked, to be filled through into().
+  struct Unfilled {};
+  EdgeLayer(std::shared_ptr<const costmap::CostGrid> map, const EdgeUnits& units, Unfilled);
+
+  std::uint16_t* into(std::size_t index) noexcept { return edges_.get() + 8 * index; }
+
   /// The eight steps INTO the cell at a padded index, by the heading in which the neighbour lies.
   const std::uint16_t* into(std::size_t index) const noexcept { return edges_.get() + 8 * index; }
 

@@ -36,6 +36,9 @@ class EdgeUnits {
   /// For cells of this side [m] under this cost. `coarsening` >= 1 makes the unit larger (for huge maps).
   EdgeUnits(const costmap::DriveCost& cost, double resolution_m, double coarsening = 1.0);
 
+  /// A unit alone, for edges that are priced in another way; halves() are all blocked.
+  EdgeUnits(double unit_J, std::uint32_t cheapest_edge) : unit_J_(unit_J), cheapest_edge_(cheapest_edge) {}
+
   /// Joules of one unit.
   double unit_J() const noexcept { return unit_J_; }
 

@@ -5,7 +5,6 @@
 
 #include <planner/field_planner.hpp>
 #include <planner/grid_links.hpp>
-#include <planner/lower_bound.hpp>
 #include <planner/remedy.hpp>
 
 namespace talus::planner {
@@ -152,7 +151,10 @@ Plan FieldPlanner::planLeg(const Problem& problem, const Leg& leg, const StopChe
   const auto rough = throughCentres(cost, leg.from, field_->path(link->cell), leg.to);
   Plan plan{RouteStatus::Found, {}, refined(cost, rough, refine_, stop), 0.0, 0.0};
   plan.cost_J = cost.along(plan.points);
-  plan.lower_bound_J = std::min(plan.cost_J, lowerBound_J(*problem.map, {leg.from, plan.points.back()}));
+  const Segment ends{leg.from, leg.to};
+  const double bound_J = problem.prove ? bound_(problem.map, ends, leg.tolerance_m, stop)
+                                       : straightBound_J(*problem.map, {leg.from, plan.points.back()});
+  plan.lower_bound_J = std::min(plan.cost_J, bound_J);
   return plan;
 }
 

@@ -6,6 +6,7 @@
 
 #include <planner/any_angle.hpp>
 #include <planner/cost_to_go.hpp>
+#include <planner/lower_bound.hpp>
 #include <planner/problem.hpp>
 
 namespace talus::planner {
@@ -38,6 +39,7 @@ class FieldPlanner {
   bool prepareField(const MotionCost& cost, const Leg& leg);
 
   RefineOptions refine_;
+  LowerBound bound_;
   std::shared_ptr<EdgeLayer> edges_;
   std::optional<CostToGo> field_;
   std::vector<FieldGoal> field_goals_;

@@ -3,15 +3,65 @@
 #include <limits>
 
 #include <planner/lower_bound.hpp>
+#include <planner/relaxed_edges.hpp>
 
 namespace talus::planner {
+namespace {
 
-double lowerBound_J(const costmap::CostGrid& map, const Segment& places) {
+// All cells within so many cells of a place, by column and by row.
+std::vector<maps::Cell> cellsWithin(const maps::Grid& grid, maps::Point place, double cells) {
+  std::vector<maps::Cell> found;
+  const double column = (place.x_m - grid.south_west.x_m) / grid.resolution_m - 0.5;
+  const double row = (place.y_m - grid.south_west.y_m) / grid.resolution_m - 0.5;
+  const auto from = [cells](double at) { return static_cast<int>(std::max(std::ceil(at - cells), 0.0)); };
+  const auto to = [cells](double at, int count) {
+    return static_cast<int>(std::min(std::floor(at + cells), count - 1.0));
+  };
+  for (int r = from(row); r <= to(row, grid.height); ++r)
+    for (int c = from(column); c <= to(column, grid.width); ++c) found.push_back({c, r});
+  return found;
+}
+
+// Any place lies in a square of centres that are less than this many cells away, also in the outer half of
+// border cells.
+constexpr double kSquare = 1.001;
+
+}  // namespace
+
+double straightBound_J(const costmap::CostGrid& map, const Segment& places) {
   double cheapest = std::numeric_limits<double>::infinity();
   for (const auto& curve : map.cost().curves())
     for (const float value : curve.cost_J_per_m) cheapest = std::min(cheapest, static_cast<double>(value));
   const double metres = std::hypot(places.to.x_m - places.from.x_m, places.to.y_m - places.from.y_m);
   return std::isfinite(cheapest) ? cheapest * metres : 0.0;
+}
+
+double LowerBound::operator()(const std::shared_ptr<const costmap::CostGrid>& map, const Segment& places,
+                              double goal_tolerance_m, const StopCheck& stop) {
+  const maps::Grid& grid = map->grid();
+  if (map != map_ || !edges_) {
+    field_.reset();
+    map_ = map;
+    edges_ = relaxedEdges(map, stop);
+  }
+  const double metres = std::hypot(places.to.x_m - places.from.x_m, places.to.y_m - places.from.y_m);
+  const double share = metres > 0.0 ? std::max(0.0, 1.0 - goal_tolerance_m / metres) : 0.0;
+  const double straight_J = share * straightBound_J(*map, places);
+  if (!edges_) return straight_J;
+  if (!field_ || !(goal_ == places.to) || tolerance_m_ != goal_tolerance_m) {
+    std::vector<FieldGoal> goals;
+    for (const maps::Cell cell : cellsWithin(grid, places.to, kSquare + goal_tolerance_m / grid.resolution_m))
+      goals.push_back({cell, 0.0});
+    field_.emplace(edges_, goals);
+    goal_ = places.to;
+    tolerance_m_ = goal_tolerance_m;
+  }
+  double least_J = std::numeric_limits<double>::infinity();
+  for (const maps::Cell cell : cellsWithin(grid, places.from, kSquare)) {
+    if (!field_->settle(cell, stop)) return straight_J;
+    least_J = std::min(least_J, field_->cost_J(cell).value_or(least_J));
+  }
+  return std::isfinite(least_J) ? std::max(least_J, straight_J) : straight_J;
 }
 
 }  // namespace talus::planner

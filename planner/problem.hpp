@@ -23,6 +23,8 @@ struct Problem {
   double time_limit_s = std::numeric_limits<double>::infinity();  ///< > 0
   std::uint64_t seed = 1;                                         ///< same seed, same route
   int threads = 1;                                                ///< >= 1; the answer does not depend on it
+  bool prove =
+      true;  ///< also work out the best lower bound, for about the time of a field; else a simple one
   Watch watch{};
 };
 

@@ -1,0 +1,81 @@
+#include <cmath>
+#include <random>
+
+#include <planner/field_planner.hpp>
+#include <planner/lower_bound.hpp>
+#include <planner/minorant.hpp>
+
+#include "drawn_map.hpp"
+
+namespace talus::planner {
+namespace {
+
+using testing::drawn;
+using testing::randomMap;
+
+// Property: no allowed metre in any heading costs less than the line says.
+TEST(Minorants, StayBelowTheCost) {
+  const auto cost = testing::driveCost({.max_along = 0.4, .max_across = 0.4});
+  const Minorants lines(*cost);
+  std::mt19937 random(2);
+  for (int k = 0; k < 20'000; ++k) {
+    const costmap::CellCode cell({.dz_dx = (static_cast<int>(random() % 800) - 400) / 1024.0,
+                                  .dz_dy = (static_cast<int>(random() % 800) - 400) / 1024.0,
+                                  .curve = static_cast<std::uint8_t>(random() % 5)});
+    const Minorant line = lines.of(cell);
+    for (int h = 0; h < 48; ++h) {
+      const costmap::Direction heading{std::cos(h * 0.1309), std::sin(h * 0.1309)};
+      const double along = cell.dzDx() * heading.x + cell.dzDy() * heading.y;
+      const double below = line.level_J_per_m + line.tilt_J_per_m * along;
+      ASSERT_LE(below, static_cast<double>(cost->costPerMetre(cell, heading)) * (1 + 1e-6));
+      ASSERT_GT(below, 0.0);
+    }
+  }
+}
+
+// Property: no polyline costs less, of which the best that the planner finds, refined as hard as we can, is
+// the sharpest.
+TEST(LowerBound, IsBelowEveryRouteFound) {
+  for (unsigned seed = 1; seed <= 25; ++seed) {
+    const auto map =
+        randomMap({.width = 40, .height = 30, .seed = seed, .blocked = 0.1, .roughness = 0.02 * (seed % 12)});
+    FieldPlanner planner(
+        {.coarsest_cells = 32.0, .finest_cells = 0.25, .candidates = 12, .swing = 12, .repeats = 2});
+    for (const maps::Point start : {maps::Point{2.3, 2.7}, maps::Point{39.9, 0.1}}) {
+      const Problem asked{.map = map, .start = start, .goal = {20.2, 27.9}, .prove = false};
+      const Plan plan = planner.plan(asked);
+      if (plan.status != RouteStatus::Found) continue;
+      const double bound = LowerBound()(map, {asked.start, asked.goal}, 0.0);
+      EXPECT_LE(bound, plan.cost_J) << seed;
+      EXPECT_GT(bound, 0.0);
+    }
+  }
+}
+
+TEST(LowerBound, IsWithinTheOctagonOnEvenGround) {
+  const auto map = drawn(std::vector<std::string>(200, std::string(200, '.')));
+  // Closed form: 10 J/m; the octagon gives away up to 7.6 %, the squares about the ends two cells each.
+  const Segment ends{{10.5, 10.5}, {190.5, 80.5}};
+  const double best = 10.0 * std::hypot(180.0, 70.0);
+  const double bound = LowerBound()(map, ends, 0.0);
+  EXPECT_LE(bound, best);
+  EXPECT_GT(bound, 0.90 * best);
+}
+
+TEST(LowerBound, KnowsThatClimbingIsDear) {
+  // Closed form: a ramp of 0.2 costs 43 J/m straight up and 26 J/m down, ten on the flat.
+  std::vector<std::string> rows(60, std::string(60, '>'));
+  const auto map = drawn(rows);
+  const double up = LowerBound()(map, {{5.5, 30.5}, {54.5, 30.5}}, 0.0);
+  const double down = LowerBound()(map, {{54.5, 30.5}, {5.5, 30.5}}, 0.0);
+  EXPECT_GT(up, 1.3 * down);
+}
+
+TEST(LowerBound, ToleranceLowersIt) {
+  const auto map = drawn(std::vector<std::string>(60, std::string(60, '.')));
+  const Segment ends{{5.5, 5.5}, {50.5, 50.5}};
+  EXPECT_LT(LowerBound()(map, ends, 20.0), LowerBound()(map, ends, 0.0));
+}
+
+}  // namespace
+}  // namespace talus::planner
