@@ -22,7 +22,7 @@ CLI::Validator within(double low, double high) {
     double value = 0.0;
     const bool number = CLI::detail::lexical_cast(text, value) && std::isfinite(value);
     if (number && value >= low && value <= high) return "";
-    return fmt::format("= {}, must be {}", text, bound(low, high));
+    return fmt::format("{}, must be {}", text, bound(low, high));
   };
   return CLI::Validator(check, "");
 }

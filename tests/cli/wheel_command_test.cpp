@@ -52,7 +52,7 @@ TEST(WheelCommand, MistakesAreOneLineWithTheirExitCode) {
            {{"wheel", "--soil", soil, "--rover", "mer", "--slip", "0.2"}, 2, ":1: unknown key 'cohesion_pa'"},
            {{"wheel", "--soil", "sand", "--rover", "mer", "--slip", "1.2"},
             2,
-            "slip = 1.2, must be in [-1, 1]"},
+            "--slip: 1.2, must be -1 to 1"},
            {{"wheel", "--soil", "sand", "--rover", "mer", "--slip", "0.2", "--load", "-4"},
             2,
             "load_N = -4, must be > 0"},
