@@ -13,16 +13,18 @@ std::vector<Plot> charts(const std::vector<planner::ParetoRoute>& front) {
   Series risk{.name = {}, .x = {}, .y = {}, .y_std = {}, .mark = Series::Mark::Points};
   Series time = risk;
   for (const planner::ParetoRoute& route : front) {
-    risk.x.push_back(route.demand.energy_J / 1e3);
+    const double above_least = 100 * (route.demand.energy_J / front.front().demand.energy_J - 1.0);
+    risk.x.push_back(above_least);
     risk.y.push_back(100 * route.demand.risk);
-    time.x.push_back(route.demand.energy_J / 1e3);
+    time.x.push_back(above_least);
     time.y.push_back(route.demand.time_s / 3600);
   }
-  return {{.title = "Energy and risk",
-           .x = {"energy [kJ]"},
-           .y = {"probability of immobilisation [%]"},
-           .series = {risk}},
-          {.title = "Energy and time", .x = {"energy [kJ]"}, .y = {"time [h]"}, .series = {time}}};
+  return {
+      {.title = "Energy and risk",
+       .x = {"energy above the least [%]"},
+       .y = {"probability of immobilisation [%]"},
+       .series = {risk}},
+      {.title = "Energy and time", .x = {"energy above the least [%]"}, .y = {"time [h]"}, .series = {time}}};
 }
 
 }  // namespace

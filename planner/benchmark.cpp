@@ -64,7 +64,11 @@ std::string answered(const BenchmarkPlan& plan, const BenchmarkJob& job) {
   const auto begin = Clock::now();
   const auto elapsed = [begin] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
   NamedPlanner named(job.planner);
-  named.onBetter([&](double cost_J) { progress.push_back({elapsed(), cost_J}); });
+  const auto note = [&](double cost_J) {
+    // A planner starts from a route it was given; its own first ones may be worse.
+    if (progress.empty() || cost_J < progress.back().cost_J) progress.push_back({elapsed(), cost_J});
+  };
+  named.onBetter(note);
   Problem problem;
   problem.map = asked.map;
   problem.start = asked.start;
@@ -72,7 +76,7 @@ std::string answered(const BenchmarkPlan& plan, const BenchmarkJob& job) {
   problem.time_limit_s = plan.time_limit_s;
   problem.seed = job.seed;
   const Plan found = named.plan(problem);
-  if (found.status == RouteStatus::Found) progress.push_back({elapsed(), found.cost_J});
+  if (found.status == RouteStatus::Found) note(found.cost_J);
   const Answer result{.status = found.status,
                       .breached = !found.points.empty() && !violations(*asked.map, found.points).empty(),
                       .seconds = elapsed(),

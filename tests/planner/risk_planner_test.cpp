@@ -79,7 +79,7 @@ TEST(RiskPlanner, NoRouteOfTheParetoSetBeatsAnother) {
   Problem problem = acrossRisk();
   problem.map = withRisk(rows);
   NamedPlanner planner;
-  const auto front = paretoSet(problem, planner, 5);
+  const auto front = paretoSet(problem, planner, 9);
   ASSERT_GE(front.size(), 3u);  // Property: each of the three grounds is best at something
   for (const ParetoRoute& a : front)
     for (const ParetoRoute& b : front)
