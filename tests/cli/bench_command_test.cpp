@@ -42,7 +42,7 @@ TEST(BenchCommand, ComparesPlannersAndWritesLogsTableAndPage) {
   EXPECT_EQ(json[0]["breached"], 0);
   EXPECT_EQ(json[1]["planner"], "BITstar");
   EXPECT_THAT(fileContent(folder / "out/room_1.log"), HasSubstr("OMPL version"));
-  EXPECT_THAT(fileContent(folder / "out/index.html"), HasSubstr("gap to the best known"));
+  EXPECT_THAT(fileContent(folder / "out/index.html"), HasSubstr("else to the best of all runs"));
   EXPECT_THAT(fileContent(folder / "out/table.txt"), HasSubstr("field"));
 }
 
