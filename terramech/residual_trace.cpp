@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <terramech/closure_offset.hpp>
 #include <terramech/residual_trace.hpp>
 #include <terramech/trace_search.hpp>
 
@@ -51,9 +52,9 @@ bool same(const Candidate& a, const Candidate& b) {
 }
 
 /// Looks at every effect again, the newest first, until none is better replaced.
-void reconsider(TraceSearch& search, std::vector<TracedEffect>& effects) {
+void reconsider(TraceSearch& search, std::vector<TracedEffect>& effects, std::size_t pinned) {
   int replacements = 0;
-  for (std::size_t looked = 0; looked < effects.size();) {
+  for (std::size_t looked = 0; looked + pinned < effects.size();) {
     const std::size_t k = effects.size() - 1 - looked;
     const auto ranked = search.rivals(k);
     const auto best = search.choose(ranked);
@@ -70,6 +71,27 @@ void reconsider(TraceSearch& search, std::vector<TracedEffect>& effects) {
     effects.push_back(again);
     looked = 0;
   }
+}
+
+/// Puts in the offset of a force sensor that its group's own torque and sinkage betray; a soil fitted to all
+/// rows would hide it. It stays: the search sees only what the soil left of it.
+bool correctOffset(TraceSearch& search, const Trial& trial, std::uint64_t seed,
+                   std::vector<TracedEffect>& effects) {
+  const auto found = findClosureOffset(trial, seed);
+  if (!found) return false;
+  Effect tilt;
+  tilt.name = "load_cell_tilt";
+  tilt.covariate = found->column;
+  tilt.channel = Channel::DrawbarPull;
+  tilt.parameters = {std::asin(std::clamp(found->offset, -0.3, 0.3))};
+  tilt.only_column = found->column;
+  tilt.only_value = found->value;
+  TracedEffect effect;
+  effect.chosen.candidate = {{tilt}, "load_cell_tilt", 1};
+  effect.p_value = found->p_value;
+  search.accept(effect.chosen.candidate);
+  effects.push_back(effect);
+  return true;
 }
 
 }  // namespace
@@ -93,6 +115,8 @@ TraceResult traceResiduals(const RefinedModel& base, const Trial& trial, const T
   TraceSearch search{base, trial, options};
   TraceResult result;
   result.base = search.model();
+  const std::size_t pinned =
+      options.fit_soil && correctOffset(search, trial, options.seed, result.effects) ? 1 : 0;
   for (int round = 0; round <= options.max_effects && !watch.stopped(); ++round) {
     watch.report(round / (options.max_effects + 1.0));
     const auto screened = search.screen();
@@ -113,7 +137,7 @@ TraceResult traceResiduals(const RefinedModel& base, const Trial& trial, const T
     result.rejected.clear();
     for (std::size_t k = 0; k < ranked.size(); ++k)
       if (k != *best) result.rejected.push_back(ranked[k]);
-    reconsider(search, result.effects);
+    reconsider(search, result.effects, pinned);
   }
   search.finish(result);
   watch.report(1.0);

@@ -32,6 +32,8 @@ double WheelState::covariate(std::string_view name) const {
     if (name == column.name) return column.value(*this);
   for (const auto& [key, value] : extra)
     if (key == name) return value;
+  for (const auto& [key, text] : group)
+    if (key == name) return 1.0;
   return name == "constant" ? 1.0 : kUnknown;
 }
 

@@ -29,7 +29,8 @@ struct WheelState {
   std::vector<std::pair<std::string, std::string>> group;  ///< text columns: wheel, session, source, ...
 
   /// Value of a column by its name in telemetry files (INTERFACE: slip, load_N, grouser_height_m, ...); NaN
-  /// when unknown. "constant" is 1.
+  /// when unknown. "constant" and the name of
+  /// a grouping column are 1.
   double covariate(std::string_view name) const;
 
   /// Text of a grouping column; empty when there is none of that name.

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include <terramech/trial.hpp>
+
+namespace talus::terramech {
+
+/// A group of rows whose force sensor reads off from what its own torque and sinkage say.
+struct ClosureOffset {
+  std::string column, value;  ///< the text column and the group in it
+  double offset = 0.0;        ///< of DP/W [-]
+  double p_value = 1.0;       ///< over all groups and columns, by shuffling rows among groups
+};
+
+/// Checks DP against measured T and z by the relation that needs no soil (kang_2003, Eq. 3.12),
+///   DP/W = -tan(theta_1/2) + [sin(theta_1/4)/(theta_1/4)]^2 / cos(theta_1/2) T/(rW),  theta_1 = acos(1 -
+///   z/r),
+/// good to 0.02: finds the group of a text column that is off by more than 0.08 (ours) while the others are
+/// not, which a freely fitted soil would hide. Empty where no row has all three, or nothing stands out at p
+/// <= 0.01.
+std::optional<ClosureOffset> findClosureOffset(const Trial& trial, std::uint64_t seed);
+
+}  // namespace talus::terramech
