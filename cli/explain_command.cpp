@@ -9,6 +9,7 @@
 #include <cli/command.hpp>
 #include <cli/commands.hpp>
 #include <cli/ground_options.hpp>
+#include <cli/number_check.hpp>
 #include <costmap/explanation.hpp>
 #include <maps/place_reader.hpp>
 
@@ -29,7 +30,8 @@ void bind(CLI::App& command, Options& options) {
   command
       .add_option("--heading", options.heading_rad,
                   "heading, counter-clockwise from east; else the worst one")
-      ->type_name("RAD");
+      ->type_name("RAD")
+      ->check(finite());
 }
 
 nlohmann::ordered_json asJson(const costmap::Explanation& why, const maps::Point& point,

@@ -27,8 +27,9 @@ struct Assumed {
   const char* soil;
   const char* rover;
 };
-constexpr Assumed kAssumed[] = {
-    {"Moon", "lunar_nominal", "lunar_micro"}, {"Mars", "mars_blocky", "mer"}, {"", "testbed_topsoil", "fido"}};
+constexpr Assumed kAssumed[] = {{"Moon", "lunar_nominal", "lunar_micro"},
+                                {"Mars", "mars_blocky", "mer"},
+                                {"", "testbed_topsoil", "fido"}};
 
 const Assumed& assumedOn(const maps::ElevationMap& map) {
   const std::string body = map.georeference ? map.georeference->body() : "";
@@ -37,7 +38,9 @@ const Assumed& assumedOn(const maps::ElevationMap& map) {
   return kAssumed[2];
 }
 
-bool isBeliefMap(const std::string& path) { return costmap::octomapType(path) == "TraversabilityTree"; }
+bool isBeliefMap(const std::string& path) {
+  return costmap::octomapType(path) == "TraversabilityTree";
+}
 
 maps::ElevationMap readDem(const GroundOptions& options, const Context& context) {
   if (costmap::octomapType(options.dem.path)) return costmap::octomapSurface(options.dem.path);

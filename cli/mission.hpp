@@ -15,8 +15,8 @@ struct PlanOptions {
   std::vector<std::string> via;
   double tolerance_m = 0.0;
   std::string planner = "field";
-  double max_risk = 0.0;  ///< chance constraint on immobilisation, 0: none
-  std::string pareto;     ///< chart to draw; empty: none
+  double max_risk = 0.0;      ///< chance constraint on immobilisation, 0: none
+  std::string pareto;         ///< chart to draw; empty: none
   double time_limit_s = 0.0;  ///< 0: none
   std::string output;
   std::string html;  ///< page to write; empty: none

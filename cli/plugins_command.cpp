@@ -56,7 +56,7 @@ void addPlugins(CLI::App& app, Context& context) {
   addCommand<Options>(app, context,
                       {.name = "plugins",
                        .group = Group::kRoutes,
-                       .description = "What a planner plugin offers",
+                       .description = "what a planner plugin offers",
                        .examples = "  talus plugins\n  talus plugins /usr/lib/talus/libtalus_planner.so"},
                       bind, run);
 }

@@ -1,6 +1,5 @@
 // talus view ROUTE|MAP: one page to look at.
 #include <filesystem>
-#include <fstream>
 #include <optional>
 
 #include <fmt/format.h>
@@ -16,6 +15,7 @@
 #include <cli/scene.hpp>
 #include <cli/sha256.hpp>
 #include <costmap/map_file.hpp>
+#include <costmap/octomap_surface.hpp>
 #include <costmap/traversability_map.hpp>
 
 namespace talus::cli {
@@ -45,17 +45,10 @@ void bind(CLI::App& command, Options& options) {
   command.add_option("--png", options.png, "picture to write as well")->type_name("FILE.png");
 }
 
-bool isBeliefMap(const std::string& path) {
-  std::ifstream stream(path, std::ios::binary);
-  std::string head(512, '\0');
-  stream.read(head.data(), static_cast<std::streamsize>(head.size()));
-  return head.find("id TraversabilityTree") != std::string::npos;
-}
-
 Scene mapScene(const Options& options, const std::string& path, const Context& context) {
   const SceneOptions scene{.title =
                                options.title.empty() ? fs::path(path).filename().string() : options.title};
-  if (isBeliefMap(path))
+  if (costmap::octomapType(path) == "TraversabilityTree")
     return sceneOf(costmap::readMap(path, context.workers(), context.watch("read map")), scene);
   MapOptions dem = options.file;
   dem.path = path;
