@@ -13,6 +13,7 @@
 #include <cli/commands.hpp>
 #include <cli/drive_page.hpp>
 #include <cli/drive_report.hpp>
+#include <cli/drive_telemetry.hpp>
 #include <cli/ground_options.hpp>
 #include <cli/truth_file.hpp>
 #include <maps/place_reader.hpp>
@@ -29,7 +30,7 @@ constexpr std::array<Belief, 4> kBeliefs{Belief::Geometry, Belief::Prior, Belief
 
 struct Options {
   GroundOptions ground;
-  std::string truth, start, goal, html;
+  std::string truth, start, goal, html, telemetry;
   std::string belief = "online";
   std::size_t worlds = 1;
 };
@@ -52,6 +53,9 @@ void bind(CLI::App& command, Options& options) {
           ->type_name("N");
   command.add_option("--html", options.html, "write a page with a time slider, to watch the rehearsal")
       ->type_name("R.html")
+      ->excludes(worlds);
+  command.add_option("--telemetry", options.telemetry, "write what the wheels read, for `talus update`")
+      ->type_name("T.csv")
       ->excludes(worlds);
 }
 
@@ -101,6 +105,24 @@ int runAll(const planner::RehearsalSite& site, const Options& options, const Con
   return Exit::kDone;
 }
 
+int runMany(const planner::RehearsalSite& site, const Options& options, const Context& context) {
+  const std::vector<WorldResult> results = rehearseAll(site, beliefOf(options.belief), options.worlds, context);
+  if (context.stop.stop_requested()) return Exit::kCancelled;
+  show(asJson(results), context);
+  return Exit::kDone;
+}
+
+int runOne(const planner::RehearsalSite& site, const Options& options, const Context& context,
+           const terramech::Rover& rover) {
+  const Belief belief = beliefOf(options.belief);
+  const WatchedDrive drive = watchedDrive(site, belief, context.watch("rehearsing"));
+  if (context.stop.stop_requested()) return Exit::kCancelled;
+  if (!options.html.empty()) saveDrivePage(options.html, site, belief, drive);
+  if (!options.telemetry.empty()) saveTelemetry(options.telemetry, drive.result.drive, rover);
+  show(asJson(drive.result), context);
+  return drive.result.drive.outcome == planner::Outcome::Reached ? Exit::kDone : Exit::kNo;
+}
+
 int run(const Options& options, Context& context) {
   const Ground ground = readGround(options.ground, context);
   if (context.stop.stop_requested()) return Exit::kCancelled;
@@ -111,14 +133,8 @@ int run(const Options& options, Context& context) {
                    .firm = terramech::loadSoil("bedrock"),
                    .seed = context.seed});
   if (options.belief == "all") return runAll(site, options, context);
-  const Belief belief = beliefOf(options.belief);
-  const std::vector<WorldResult> results =
-      options.html.empty() ? rehearseAll(site, belief, options.worlds, context)
-                           : std::vector{saveDrivePage(options.html, site, belief, context.watch("rehearsing"))};
-  if (context.stop.stop_requested()) return Exit::kCancelled;
-  show(options.worlds == 1 ? asJson(results.front()) : asJson(results), context);
-  const bool reached = results.front().drive.outcome == planner::Outcome::Reached;
-  return options.worlds > 1 || reached ? Exit::kDone : Exit::kNo;
+  return options.worlds > 1 ? runMany(site, options, context)
+                            : runOne(site, options, context, ground.map.model().rover());
 }
 
 }  // namespace

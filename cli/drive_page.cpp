@@ -9,9 +9,10 @@
 namespace talus::cli {
 namespace {
 
-Scene sceneOf(const costmap::TraversabilityMap& map, const planner::WorldResult& result,
+Scene sceneBefore(const costmap::TraversabilityMap& map, const planner::WorldResult& result,
               planner::Belief belief) {
-  Scene scene = sceneOf(map, {.title = fmt::format("Rehearsal: {}", planner::name(result.drive.outcome))});
+  Scene scene =
+      sceneOf(map, SceneOptions{.title = fmt::format("Rehearsal: {}", planner::name(result.drive.outcome))});
   scene.subtitle = fmt::format("belief: {}; categories as believed before the drive", planner::name(belief));
   const planner::Rehearsal& drive = result.drive;
   scene.facts = {{"outcome", std::string(planner::name(drive.outcome))},
@@ -27,31 +28,35 @@ Scene sceneOf(const costmap::TraversabilityMap& map, const planner::WorldResult&
 
 }  // namespace
 
-planner::WorldResult saveDrivePage(const std::filesystem::path& path, const planner::RehearsalSite& site,
-                                   planner::Belief belief, const Watch& watch) {
+WatchedDrive watchedDrive(const planner::RehearsalSite& site, planner::Belief belief, const Watch& watch) {
   const planner::TrueWorld world = site.trueWorld(0);
   costmap::TraversabilityMap map = site.believed(belief, world);
-  DriveStory story{{}, {}, world.patches(), map.grid()};
+  WatchedDrive out{{}, {{}, {}, world.patches(), map.grid()}};
   const std::vector<std::uint8_t> before = planner::categoriesOf(map);
   std::vector<std::uint8_t> known = before;
   planner::RehearsalOptions options = site.options(belief, 0);
   options.watch = {.progress = {}, .stop = watch.stop};
+  options.record = true;
   options.on_learned = [&](double time_s) {
-    const std::vector<std::uint8_t> now = planner::categoriesOf(map);
+    std::vector<std::uint8_t> now = planner::categoriesOf(map);
+    const int width = map.grid().width;
     for (std::size_t i = 0; i < now.size(); ++i)
       if (now[i] != known[i])
-        story.changes.push_back({time_s,
-                                 {static_cast<int>(i) % map.grid().width, static_cast<int>(i) / map.grid().width},
-                                 now[i]});
-    known = now;
+        out.story.changes.push_back({time_s, {static_cast<int>(i) % width, static_cast<int>(i) / width}, now[i]});
+    known = std::move(now);
   };
-  planner::WorldResult result{planner::rehearse(map, world, options), 0};
-  for (std::size_t i = 0; i < before.size(); ++i) result.categories_changed += before[i] != known[i] ? 1U : 0U;
-  story.drive = result.drive;
-  Scene scene = sceneOf(site.believed(belief, world), result, belief);
-  scene.story = std::move(story);
+  out.result.drive = planner::rehearse(map, world, options);
+  for (std::size_t i = 0; i < before.size(); ++i)
+    out.result.categories_changed += before[i] != known[i] ? 1U : 0U;
+  out.story.drive = out.result.drive;
+  return out;
+}
+
+void saveDrivePage(const std::filesystem::path& path, const planner::RehearsalSite& site, planner::Belief belief,
+                   const WatchedDrive& drive) {
+  Scene scene = sceneBefore(site.believed(belief, site.trueWorld(0)), drive.result, belief);
+  scene.story = drive.story;
   savePage(path, scene);
-  return result;
 }
 
 }  // namespace talus::cli
