@@ -87,7 +87,8 @@ WorldResult RehearsalSite::world(Belief belief, std::size_t i, const Watch& watc
   how.watch = {.progress = {}, .stop = watch.stop};
   WorldResult result{rehearse(map, truth, how)};
   const std::vector<std::uint8_t> after = categoriesOf(map);
-  for (std::size_t c = 0; c < before.size(); ++c) result.categories_changed += before[c] != after[c] ? 1U : 0U;
+  for (std::size_t c = 0; c < before.size(); ++c)
+    result.categories_changed += before[c] != after[c] ? 1U : 0U;
   return result;
 }
 

@@ -15,9 +15,9 @@ std::vector<std::string> drive(const Folder& folder, const std::string& truth,
                                const std::vector<std::string>& more = {}) {
   folder.write("flat.asc", asciiGrid(40, 30, [](int, int) { return 0.0; }));
   folder.write("truth.yaml", truth);
-  std::vector<std::string> words{"drive",   "flat.asc", "--ignore-crs", "--resolution", "1",
-                                 "--soil",  "sandy_loam", "--rover",    "sojourner",    "--truth",
-                                 "truth.yaml", "--start", "5,15",       "--goal",       "35,15"};
+  std::vector<std::string> words{"drive",      "flat.asc",   "--ignore-crs", "--resolution", "1",
+                                 "--soil",     "sandy_loam", "--rover",      "sojourner",    "--truth",
+                                 "truth.yaml", "--start",    "5,15",         "--goal",       "35,15"};
   words.insert(words.end(), more.begin(), more.end());
   return words;
 }
@@ -119,8 +119,9 @@ TEST(BadInput, Rehearsals) {
   write("t_many.yaml", "random: {patches: -3}\n");
   write("truth.yaml", "{}\n");
   const auto call = [](const std::string& truth, std::vector<std::string> more = {}) {
-    std::vector<std::string> words{"drive", "good.asc", "--resolution", "1",     "--soil", "sandy_loam", "--rover",
-                                   "fido",  "--truth",  truth,          "--start", "5,5",  "--goal",     "15,15"};
+    std::vector<std::string> words{"drive",      "good.asc", "--resolution", "1",       "--soil",
+                                   "sandy_loam", "--rover",  "fido",         "--truth", truth,
+                                   "--start",    "5,5",      "--goal",       "15,15"};
     words.insert(words.end(), more.begin(), more.end());
     return words;
   };

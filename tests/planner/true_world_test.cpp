@@ -18,7 +18,8 @@ maps::Raster<std::uint8_t> oneClass() {
 
 // Sand, but for dust east of x = 30.
 TrueWorld dustInTheEast() {
-  return {{.classes = {testSand()}, .patches = {{{1030.0, 20.0}, 1000.0, testDust()}}}, testRover(), oneClass()};
+  return {
+      {.classes = {testSand()}, .patches = {{{1030.0, 20.0}, 1000.0, testDust()}}}, testRover(), oneClass()};
 }
 
 TEST(WheelTable, HoldsTheForwardModel) {
@@ -117,9 +118,10 @@ TEST(TrueWorld, EnergyIsWorkAgainstSlipAndHotel) {
   const auto step = world.drive({.place = {10.0, 20.0}, .heading = {1.0, 0.0}, .gradient = 0.05});
   const double left = 1.0 - step.slip;
   // Closed form: sum T / (r (1 - i)) + P / (v0 (1 - i))
-  EXPECT_NEAR(step.energy_J_per_m,
-              step.torque_Nm / (rover.wheel.radius_m * left) + rover.hotel_power_W / (rover.max_speed_mps * left),
-              1e-9);
+  EXPECT_NEAR(
+      step.energy_J_per_m,
+      step.torque_Nm / (rover.wheel.radius_m * left) + rover.hotel_power_W / (rover.max_speed_mps * left),
+      1e-9);
 }
 
 }  // namespace
