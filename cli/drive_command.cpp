@@ -121,11 +121,24 @@ int runOne(const planner::RehearsalSite& site, const Options& options, const Con
   return drive.result.drive.outcome == planner::Outcome::Reached ? Exit::kDone : Exit::kNo;
 }
 
+// The truth, whose classes must be classes of the map.
+planner::Truth truthFor(const costmap::GroundModel& model, const std::string& path) {
+  planner::Truth truth = readTruth(path);
+  std::string known;
+  for (const costmap::GroundClass& ground : model.parts().classes)
+    known += (known.empty() ? "" : ", ") + std::to_string(ground.number);
+  for (const auto& [number, soil] : truth.classes)
+    if (model.classIndex(number) < 0)
+      throw InputError({path, fmt::format("class {} is no class of the map", number),
+                        fmt::format("its classes are {}", known)});
+  return truth;
+}
+
 int run(const Options& options, Context& context) {
   const Ground ground = readGround(options.ground, context);
   if (context.stop.stop_requested()) return Exit::kCancelled;
   const planner::RehearsalSite site(
-      ground.map, {.truth = readTruth(options.truth),
+      ground.map, {.truth = truthFor(ground.map.model(), options.truth),
                    .start = maps::readPlace(options.start, ground.map.elevation(), "--start"),
                    .goal = maps::readPlace(options.goal, ground.map.elevation(), "--goal"),
                    .firm = terramech::loadSoil("bedrock"),

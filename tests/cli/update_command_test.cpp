@@ -128,7 +128,7 @@ TEST(UpdateCommand, FrictionInTheTorqueIsToldAndLeftOut) {
 
 TEST(UpdateCommand, ARehearsalsTelemetryTeachesTheMap) {
   const Site site;
-  site.folder.write("truth.yaml", "classes: {0: dry_sand, 1: dry_sand}\n");
+  site.folder.write("truth.yaml", "classes: {0: lunar_nominal}\n");
   std::vector<std::string> words{"drive"};
   words.insert(words.end(), kGround.begin(), kGround.end());
   words.insert(words.end(), {"--truth", "truth.yaml", "--start", "5,20", "--goal", "50,20", "--telemetry",

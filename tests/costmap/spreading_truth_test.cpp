@@ -159,7 +159,7 @@ TEST(Spreading, OfPlacesSaidToBeWeakWithProbabilityPASharePIs) {
     own.add(GaussianProcess(drive, kVariation).at(places.back()).pull, truth.back());
   }
   // Property: calibrated on ground that varies as it is said to. Three standard errors of the smallest bin
-  // are 0.03; the rest is what the process gives away to be ready for patches of other ground.
+  // are 0.045.
   own.expectWithin(0.05, "ground of the kernel");
 }
 

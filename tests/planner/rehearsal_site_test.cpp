@@ -15,6 +15,7 @@ terramech::Soil rock() {
   terramech::Soil soil = testSand();
   soil.friction_angle_rad = 0.75;
   soil.frictional_modulus = 5e7;
+  soil.shear_modulus_m = 0.002;
   return soil;
 }
 
