@@ -217,6 +217,7 @@ DriveReport addDrive(TraversabilityMap& map, const terramech::Telemetry& telemet
                          .observation = heard.observation};
     if (journal) journal->append(row);
     ++(row.accepted ? report.used : report.rejected);
+    if (report.first_reason.empty()) report.first_reason = row.reason;
   });
   map.publish();
   report.findings = listener.watch().findings();

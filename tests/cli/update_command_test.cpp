@@ -38,7 +38,8 @@ class Site {
 
   // A number behind a cell of a map.
   double cause(const std::string& map, const std::string& place, const std::string& name) const {
-    for (const json& cause : run({"explain", map, "--at", place, "--json"})["causes"])
+    const json why = run({"explain", map, "--at", place, "--json"});
+    for (const json& cause : why["causes"])
       if (cause["name"] == name) return cause["value"];
     ADD_FAILURE() << name;
     return std::nan("");

