@@ -14,6 +14,7 @@ struct DriveOptions {
   std::optional<double> goal_heading_rad;   ///< the same on arrival
   std::optional<double> turning_radius_m;   ///< none: the rover's
   bool no_reverse = false;
+  std::string chassis;  ///< "rigid" or "rocker-bogie": clearance and tilt are kept along the whole motion
 
   bool any() const { return start_heading_rad || goal_heading_rad || turning_radius_m || no_reverse; }
 };

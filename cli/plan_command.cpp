@@ -21,6 +21,7 @@
 #include <cli/scene.hpp>
 #include <maps/place_reader.hpp>
 #include <planner/annotation.hpp>
+#include <planner/chassis_planner.hpp>
 #include <planner/named_planner.hpp>
 #include <planner/risk_planner.hpp>
 #include <planner/route_check.hpp>
@@ -66,6 +67,11 @@ void addDrive(CLI::App& command, DriveOptions& drive) {
           "smallest radius that hybrid may drive; 0: turns in place (default: the rover's)")
       ->type_name("METRES")
       ->check(notNegative());
+  command
+      .add_option("--chassis", drive.chassis,
+                  "keep clearance, pitch and roll of such a chassis along the whole motion (any planner)")
+      ->type_name("KIND")
+      ->check(CLI::IsMember({"rigid", "rocker-bogie"}));
   command.add_flag("--no-reverse", drive.no_reverse, "hybrid: the rover may not drive backwards");
 }
 
@@ -137,6 +143,22 @@ void requireAllowed(const planner::Plan& plan, const costmap::CostGrid& map, dou
   if (violations.empty()) return;
   throw std::logic_error(fmt::format("the planner's route is not allowed at {:.2f},{:.2f}: {}",
                                      violations[0].place.x_m, violations[0].place.y_m, violations[0].reason));
+}
+
+// The chassis that the call asks for.
+std::optional<planner::Chassis> chassisOf(const DriveOptions& drive, const costmap::TraversabilityMap& map) {
+  if (drive.chassis.empty()) return std::nullopt;
+  return planner::Chassis(
+      map.elevation().elevation_m, map.model().rover(),
+      drive.chassis == "rigid" ? planner::Suspension::Rigid : planner::Suspension::RockerBogie);
+}
+
+planner::Plan planned(const planner::Problem& problem, planner::NamedPlanner& planner,
+                      const PlanOptions& options, const std::optional<planner::Chassis>& chassis) {
+  const auto once = [&](const planner::Problem& p) {
+    return options.max_risk > 0.0 ? planner::planWithinRisk(p, planner, options.max_risk) : planner.plan(p);
+  };
+  return chassis ? planner::planOnChassis(problem, *chassis, once) : once(problem);
 }
 
 std::string asText(const Route& route, const Timing& seconds) {
@@ -222,9 +244,7 @@ int run(const PlanOptions& asked, Context& context) {
   if (context.stop.stop_requested()) return Exit::kCancelled;
   const planner::Problem problem = problemOf(options, ground, context);
   const auto begin = std::chrono::steady_clock::now();
-  const planner::Plan plan = options.max_risk > 0.0
-                                 ? planner::planWithinRisk(problem, planner, options.max_risk)
-                                 : planner.plan(problem);
+  const planner::Plan plan = planned(problem, planner, options, chassisOf(options.drive, ground.map));
   const std::chrono::duration<double> plan_s = std::chrono::steady_clock::now() - begin;
   if (plan.status == RouteStatus::Found)
     requireAllowed(plan, *problem.map, problem.kinematics.turning_radius_m);
