@@ -91,14 +91,13 @@ Plan priced(const ob::ProblemDefinition& definition, const MotionCost& cost) {
 }
 
 Plan explained(Plan plan, const Problem& leg, const MeteredCost& cost, const SamplingSettings& settings) {
-  if (plan.status == RouteStatus::Found) return plan;
+  const bool stopped = leg.watch.stopped();
+  if (plan.status == RouteStatus::Found && !stopped) return plan;
   plan.points.clear();
   plan.cost_J = std::numeric_limits<double>::infinity();
   const bool spent = cost.work() >= settings.work;
-  plan.status = leg.watch.stopped() ? RouteStatus::Cancelled
-                : spent             ? RouteStatus::NoRoute
-                                    : RouteStatus::TimedOut;
-  plan.reason = settings.planner + (leg.watch.stopped() ? " was cancelled"
+  plan.status = stopped ? RouteStatus::Cancelled : spent ? RouteStatus::NoRoute : RouteStatus::TimedOut;
+  plan.reason = settings.planner + (stopped ? " was cancelled"
                                     : spent ? " found no route in its allotted work; planner 'field' can "
                                               "tell whether there is one"
                                             : " found no route in the time given; allow more or use 'field'");

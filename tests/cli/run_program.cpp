@@ -23,10 +23,12 @@ std::string quoted(const std::string& word) {
 
 }  // namespace
 
-Ran runTalus(const std::vector<std::string>& words, const fs::path& folder) {
+Ran runTalus(const std::vector<std::string>& words, const fs::path& folder, double interrupt_s) {
   const Folder capture;
   std::ostringstream line;
-  line << "cd " << quoted(folder.string()) << " && exec " << quoted(TALUS_PROGRAM);
+  line << "cd " << quoted(folder.string()) << " && exec ";
+  if (interrupt_s > 0.0) line << "timeout --preserve-status --foreground --signal=INT " << interrupt_s << ' ';
+  line << quoted(TALUS_PROGRAM);
   for (const std::string& word : words) line << ' ' << quoted(word);
   line << " >" << quoted(capture / "out") << " 2>" << quoted(capture / "err") << " </dev/null";
   const int status =

@@ -13,8 +13,10 @@ struct Ran {
   std::string err;
 };
 
-/// Runs the built program with the words as its arguments, in a folder of the caller's.
-Ran runTalus(const std::vector<std::string>& words, const std::filesystem::path& folder = ".");
+/// Runs the built program with the words as its arguments, in a folder of the caller's; with an interrupt
+/// (SIGINT) after so many seconds, 0 for none.
+Ran runTalus(const std::vector<std::string>& words, const std::filesystem::path& folder = ".",
+             double interrupt_s = 0.0);
 
 /// A fresh folder, gone with the object.
 class Folder {

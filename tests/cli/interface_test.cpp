@@ -1,0 +1,196 @@
+// What other programs rely on: every subcommand's fields, by name and kind, and the columns of its tables.
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include <terramech/soil_library.hpp>
+#include <terramech/wong_reece.hpp>
+
+#include "run_program.hpp"
+
+namespace talus::cli {
+namespace {
+
+using nlohmann::json;
+
+// A gentle slope with a bump, 40 x 30 cells of a metre.
+std::string dem() {
+  std::string text = "ncols 40\nnrows 30\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -9999\n";
+  for (int row = 0; row < 30; ++row) {
+    for (int column = 0; column < 40; ++column) {
+      const double bump = 0.4 * std::exp(-0.05 * (std::pow(column - 20, 2) + std::pow(row - 15, 2)));
+      text += std::to_string(0.02 * column + bump) + " ";
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+// A drive along y = 15 in six runs of six levels of slip, by the forward model, two percent off.
+std::string telemetry() {
+  std::string text =
+      "run,wheel,time_s,x_m,y_m,heading_rad,load_N,slip,torque_Nm,sinkage_m,drawbar_pull_N,wheel_radius_m,"
+      "wheel_width_m\n";
+  const terramech::Soil soil = terramech::loadSoil("sandy_loam");
+  for (int row = 0; row < 36; ++row) {
+    const double load_N = 60.0 + 8.0 * (row % 6);
+    const double slip = 0.1 + 0.12 * (row / 6);
+    const terramech::WheelForces forces =
+        equilibrium(soil, {.radius_m = 0.1, .width_m = 0.1}, {.load_N = load_N, .slip = slip});
+    const double off = 1.0 + 0.02 * std::sin(12.9 * row);
+    for (const double value :
+         {row / 6 + 0.0, 1.0, row + 0.0, 4 + 0.8 * row, 15.0, 0.0, load_N, slip, forces.torque_Nm * off,
+          forces.sinkage_m / off, forces.drawbar_pull_N * off, 0.1})
+      text += std::to_string(value) + ",";
+    text += "0.1\n";
+  }
+  return text;
+}
+
+constexpr const char* kCases =
+    "cohesion_Pa,friction_angle_rad,sinkage_exponent,sinkage_modulus,shear_modulus_m,c1,c2,wheel_radius_m,"
+    "wheel_width_m,load_N,slip\n1000,0.5,1,500000,0.01,0.4,0.1,0.1,0.1,80,0.3\n";
+
+// The files that the calls below need, made once.
+const Folder& site() {
+  static const Folder* const folder = [] {
+    auto* made = new Folder;
+    made->write("dem.asc", dem());
+    made->write("t.csv", telemetry());
+    made->write("cases.csv", kCases);
+    made->write("base.yaml", "{soil: sandy_loam, model: wong-reece}\n");
+    made->write("truth.yaml", "{random: {spread: 0.1, patches: 1, patch_radius_m: 2}}\n");
+    return made;
+  }();
+  return *folder;
+}
+
+const std::vector<std::string> kGround{"dem.asc",    "--resolution", "1",   "--soil",
+                                       "sandy_loam", "--rover",      "fido"};
+const std::vector<std::string> kEnds{"--start", "4,4", "--goal", "35,25"};
+
+struct Call {
+  std::string name;                 ///< subcommand
+  std::vector<std::string> words;   ///< after it
+  std::vector<std::string> fields;  ///< JSON pointer of each promised field, behind its kind: `number /cost`
+};
+
+std::vector<std::string> words(std::vector<std::string> first, const std::vector<std::string>& more) {
+  first.insert(first.end(), more.begin(), more.end());
+  return first;
+}
+
+const std::vector<std::string> kRouteFields{
+    "string /status",   "number /cost",     "number /energy_J",      "number /time_s",
+    "number /length_m", "number /max_slip", "number /max_slope_rad", "number /lower_bound",
+    "number /gap",      "string /planner",  "number /seconds/load",  "number /seconds/costmap"};
+
+// In an order in which each finds what those before it wrote.
+std::vector<Call> calls() {
+  const std::vector<std::string> route = words(kGround, kEnds);
+  return {
+      {"info",
+       {"dem.asc", "--resolution", "1"},
+       {"number /width", "number /height", "number /resolution_m", "number /valid_fraction",
+        "number /slope_deg/p50", "number /slope_deg/p90", "number /slope_deg/p99", "any /crs", "any /body"}},
+      {"wheel",
+       {"--soil", "dry_sand", "--rover", "fido", "--load", "80", "--slip", "0.3"},
+       {"number /sinkage_m", "number /entry_angle_rad", "number /torque_Nm", "number /drawbar_pull_N"}},
+      {"estimate",
+       {"t.csv", "--method", "linear-offset", "--shear-modulus", "0.01"},
+       {"string /method", "number /cohesion_Pa", "number /friction_angle_rad", "number /shear_modulus_m",
+        "number /covariance/0/0", "number /covariance/1/1", "number /rows_used", "number /rows_rejected"}},
+      {"assess",
+       {"t.csv", "--slope", "0.1"},
+       {"number /0/row", "number /0/drawbar_pull_over_load", "number /0/std", "number /0/sinkage_over_radius",
+        "string /0/category"}},
+      {"trace",
+       {"t.csv", "--base", "base.yaml", "--model-out", "model.yaml"},
+       {"number /base/rmse/drawbar_pull_over_load", "number /base/rmse/sinkage_over_radius", "array /effects",
+        "array /rejected", "object /refined/rmse", "string /held_out/scheme", "any /held_out/base_rmse",
+        "any /held_out/refined_rmse", "any /held_out/noise_floor"}},
+      {"costmap",
+       words(kGround, {"-o", "map.ot", "--geotiff", "l.tif", "--png", "map.png"}),
+       {"number /cells", "number /categories/safe", "number /categories/marginal",
+        "number /categories/dangerous", "number /categories/unknown", "number /seconds"}},
+      {"update",
+       {"map.ot", "t.csv", "-o", "map2.ot"},
+       {"number /rows_used", "number /rows_rejected", "number /cells_changed", "number /categories_changed"}},
+      {"plan", words(route, {"-o", "route.geojson"}), words(kRouteFields, {"number /seconds/plan"})},
+      {"score", words(kGround, {"--path", "route.geojson"}), words(kRouteFields, {"array /violations"})},
+      {"explain",
+       words(kGround, {"--at", "20,15", "--heading", "0.5"}),
+       {"string /category", "array /causes", "string /causes/0/name", "any /causes/0/value"}},
+      {"drive",
+       words(route, {"--truth", "truth.yaml"}),
+       {"string /outcome", "number /energy_J", "number /length_m", "number /replans", "number /max_slip",
+        "number /categories_changed"}},
+  };
+}
+
+bool isOfKind(const json& value, const std::string& kind) {
+  return kind == "any" || kind == value.type_name();
+}
+
+TEST(Interface, EveryCommandPrintsTheFieldsThatOthersRelyOn) {
+  for (const Call& call : calls()) {
+    SCOPED_TRACE(call.name);
+    const Ran ran = runTalus(words({"--json", call.name}, call.words), site().path());
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    const json printed = json::parse(ran.out, nullptr, false);
+    ASSERT_FALSE(printed.is_discarded());
+    for (const std::string& field : call.fields) {
+      const auto space = field.find(' ');
+      const json::json_pointer pointer(field.substr(space + 1));
+      ASSERT_TRUE(printed.contains(pointer)) << field;
+      EXPECT_TRUE(isOfKind(printed[pointer], field.substr(0, space)))
+          << field << " is " << printed[pointer].type_name();
+    }
+  }
+}
+
+TEST(Interface, GlobalOptionsMayStandBehindTheSubcommandAndQuietIsSilent) {
+  const Ran before = runTalus({"--json", "info", "dem.asc", "--resolution", "1"}, site().path());
+  const Ran after = runTalus({"info", "dem.asc", "--resolution", "1", "--json", "--quiet"}, site().path());
+  EXPECT_EQ(before.out, after.out);
+  EXPECT_EQ(after.err, "");
+}
+
+TEST(Interface, TablesKeepTheirColumnsAndGetThePromisedOnes) {
+  const Folder folder;
+  folder.write("cases.csv", kCases);
+  ASSERT_EQ(runTalus({"wheel", "--cases", "cases.csv", "-o", "out.csv"}, folder.path()).code, 0);
+  const std::string text = fileContent(folder / "out.csv");
+  EXPECT_EQ(text.substr(0, text.find('\n')), std::string(kCases).substr(0, std::string(kCases).find('\n')) +
+                                                 ",sinkage_m,entry_angle_rad,torque_Nm,drawbar_pull_N");
+  folder.write("t.csv", telemetry());
+  folder.write("base.yaml", "{soil: sandy_loam, model: wong-reece}\n");
+  ASSERT_EQ(runTalus({"predict", "t.csv", "--model", "base.yaml", "-o", "p.csv"}, folder.path()).code, 0);
+  const std::string predicted = fileContent(folder / "p.csv");
+  const std::string header = predicted.substr(0, predicted.find('\n'));
+  for (const char* column :
+       {"predicted_drawbar_pull_N", "predicted_drawbar_pull_N_std", "predicted_sinkage_m",
+        "predicted_sinkage_m_std", "predicted_torque_Nm", "predicted_torque_Nm_std"})
+    EXPECT_THAT(header, testing::HasSubstr(column));
+}
+
+// Property: whoever presses Ctrl-C gets 130 and no half file, whatever was going on.
+TEST(Interface, AnInterruptEndsLongWorkWith130AndNoFile) {
+  const std::vector<std::vector<std::string>> long_work{
+      words(words({"drive"}, words(kGround, kEnds)), {"--truth", "truth.yaml", "--worlds", "100000"}),
+      words(words({"plan"}, words(kGround, kEnds)),
+            {"--planner", "RRTstar", "--time", "100", "-o", "late.geojson"}),
+      {"generate", "craters", "--size", "8000", "-o", "late.tif"}};
+  for (const auto& work : long_work) {
+    SCOPED_TRACE(work.front());
+    const auto before = site().names();
+    const Ran ran = runTalus(work, site().path(), 0.5);
+    EXPECT_EQ(ran.code, 130) << ran.err;
+    EXPECT_EQ(site().names(), before);
+  }
+}
+
+}  // namespace
+}  // namespace talus::cli
