@@ -74,13 +74,15 @@ void readMission(PlanOptions& options) {
   const std::filesystem::path path = options.ground.dem.path;
   const std::filesystem::path folder = path.parent_path();
   const YamlFields fields = YamlFields::file(path.string());
-  fields.only({"maps", "rover", "soil", "soils", "thresholds", "planner", "start", "goal", "via",
+  fields.only({"maps", "rover", "soil", "model", "soils", "thresholds", "planner", "start", "goal", "via",
                "tolerance_m", "time_s", "start_heading_rad", "goal_heading_rad", "reverse", "output"});
   readMaps(fields.fields("maps"), options.ground, folder);
   take(options.ground.rover, fields, "rover");
   take(options.ground.soil, fields, "soil");
+  take(options.ground.model, fields, "model");
   take(options.ground.soils, fields, "soils");
-  for (std::string* file : {&options.ground.rover, &options.ground.soil, &options.ground.soils})
+  for (std::string* file :
+       {&options.ground.rover, &options.ground.soil, &options.ground.model, &options.ground.soils})
     *file = resolved(*file, folder);
   if (fields.has("thresholds")) readThresholds(fields.fields("thresholds"), options.ground.policy);
   if (options.planner == "field") options.planner = fields.word("planner", "field");

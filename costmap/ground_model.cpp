@@ -55,6 +55,14 @@ Category lower(Category category) {
 
 }  // namespace
 
+terramech::MobilityCurve mobilityOf(const GroundClass& ground, const terramech::Rover& rover) {
+  if (ground.effects.empty()) return {ground.soil, rover};
+  terramech::RefinedModel model;
+  model.soil = ground.soil;
+  model.effects = ground.effects;
+  return {model, rover};
+}
+
 GroundModel::GroundModel(Parts parts) : parts_(std::move(parts)) {
   if (parts_.classes.empty())
     throw std::invalid_argument("ground model: classes is empty, must hold at least one");
@@ -68,7 +76,7 @@ GroundModel::GroundModel(Parts parts) : parts_(std::move(parts)) {
   for (const GroundClass& c : parts_.classes) {
     if (&parts_.classes[static_cast<std::size_t>(classIndex(c.number))] != &c)
       throw std::invalid_argument("ground model: class " + std::to_string(c.number) + " is declared twice");
-    curves_.emplace_back(c.soil, parts_.rover);
+    curves_.push_back(mobilityOf(c, parts_.rover));
   }
 }
 
