@@ -10,7 +10,7 @@ namespace talus::cli {
 namespace {
 
 Scene sceneBefore(const costmap::TraversabilityMap& map, const planner::WorldResult& result,
-              planner::Belief belief) {
+                  planner::Belief belief) {
   Scene scene =
       sceneOf(map, SceneOptions{.title = fmt::format("Rehearsal: {}", planner::name(result.drive.outcome))});
   scene.subtitle = fmt::format("belief: {}; categories as believed before the drive", planner::name(belief));
@@ -42,7 +42,8 @@ WatchedDrive watchedDrive(const planner::RehearsalSite& site, planner::Belief be
     const int width = map.grid().width;
     for (std::size_t i = 0; i < now.size(); ++i)
       if (now[i] != known[i])
-        out.story.changes.push_back({time_s, {static_cast<int>(i) % width, static_cast<int>(i) / width}, now[i]});
+        out.story.changes.push_back(
+            {time_s, {static_cast<int>(i) % width, static_cast<int>(i) / width}, now[i]});
     known = std::move(now);
   };
   out.result.drive = planner::rehearse(map, world, options);
@@ -52,8 +53,8 @@ WatchedDrive watchedDrive(const planner::RehearsalSite& site, planner::Belief be
   return out;
 }
 
-void saveDrivePage(const std::filesystem::path& path, const planner::RehearsalSite& site, planner::Belief belief,
-                   const WatchedDrive& drive) {
+void saveDrivePage(const std::filesystem::path& path, const planner::RehearsalSite& site,
+                   planner::Belief belief, const WatchedDrive& drive) {
   Scene scene = sceneBefore(site.believed(belief, site.trueWorld(0)), drive.result, belief);
   scene.story = drive.story;
   savePage(path, scene);

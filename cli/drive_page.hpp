@@ -17,7 +17,7 @@ WatchedDrive watchedDrive(const planner::RehearsalSite& site, planner::Belief be
 
 /// Writes a page on which a slider runs through the drive: track, plan in force, cells that changed their
 /// category, what happened. @throws InputError when the file cannot be written
-void saveDrivePage(const std::filesystem::path& path, const planner::RehearsalSite& site, planner::Belief belief,
-                   const WatchedDrive& drive);
+void saveDrivePage(const std::filesystem::path& path, const planner::RehearsalSite& site,
+                   planner::Belief belief, const WatchedDrive& drive);
 
 }  // namespace talus::cli

@@ -26,7 +26,8 @@ const char* const kTruthFormat =
 
 namespace {
 
-Soil soilUnder(const YamlFields& fields, const std::string& name, const YamlFields& file, const std::string& path) {
+Soil soilUnder(const YamlFields& fields, const std::string& name, const YamlFields& file,
+               const std::string& path) {
   if (fields.isMapping(name)) return terramech::readSoil(fields.fields(name)).mean;
   const std::string word = fields.word(name);
   if (file.has("soils")) {
@@ -58,7 +59,8 @@ planner::SoilPatch patchOf(const YamlFields& fields, const YamlFields& file, con
   return patch;
 }
 
-void readRandom(const YamlFields& random, const YamlFields& file, const std::string& path, planner::Truth& truth) {
+void readRandom(const YamlFields& random, const YamlFields& file, const std::string& path,
+                planner::Truth& truth) {
   random.only({"spread", "patches", "patch_radius_m", "patch_soil"});
   truth.spread = random.number("spread", 0.0);
   if (!(truth.spread >= 0.0 && truth.spread <= 1.0)) random.refuse("spread", "spread must lie in [0, 1]", "");

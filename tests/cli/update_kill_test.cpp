@@ -7,11 +7,10 @@
 #include <vector>
 
 #include <fcntl.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "bad_input.hpp"
 #include "run_program.hpp"
@@ -24,8 +23,8 @@ class Site {
  public:
   Site() {
     folder.write("flat.asc", asciiGrid(60, 40, [](int, int) { return 0.0; }));
-    EXPECT_EQ(runTalus({"costmap", "flat.asc", "--ignore-crs", "--resolution", "1", "--soil", "sandy_loam", "--rover",
-                        "sojourner", "-o", "map.ot"},
+    EXPECT_EQ(runTalus({"costmap", "flat.asc", "--ignore-crs", "--resolution", "1", "--soil", "sandy_loam",
+                        "--rover", "sojourner", "-o", "map.ot"},
                        folder.path())
                   .code,
               0);
@@ -49,8 +48,8 @@ class Site {
   }
 
   nlohmann::json replay(const std::string& journal, const std::string& output) const {
-    const Ran ran =
-        runTalus({"update", "map.ot", "--replay", "--journal", journal, "-o", output, "--json"}, folder.path());
+    const Ran ran = runTalus({"update", "map.ot", "--replay", "--journal", journal, "-o", output, "--json"},
+                             folder.path());
     EXPECT_EQ(ran.code, 0) << ran.err;
     return nlohmann::json::parse(ran.out);
   }
@@ -94,9 +93,10 @@ TEST(UpdateCommand, KilledAtAnyMomentItLeavesWholeFilesAndItsJournal) {
   EXPECT_GT(interrupted, 50U);
   EXPECT_GT(rows, 60);
   // A whole drive behind all those pieces still goes in.
-  ASSERT_EQ(runTalus({"update", "map.ot", "t.csv", "-o", "last.ot", "--journal", "evidence.db"}, site.folder.path())
-                .code,
-            0);
+  ASSERT_EQ(
+      runTalus({"update", "map.ot", "t.csv", "-o", "last.ot", "--journal", "evidence.db"}, site.folder.path())
+          .code,
+      0);
   EXPECT_EQ(site.content("last.ot"), whole);
   EXPECT_EQ(site.replay("evidence.db", "all.ot")["rows_used"], rows + 60);
 }
