@@ -53,6 +53,8 @@ void bind(CLI::App& command, PlanOptions& options) {
   command.add_option("--time", options.time_limit_s, "time limit of the planning")
       ->type_name("S")
       ->check(CLI::PositiveNumber);
+  command.add_flag("--whole-field", options.whole_field,
+                   "settle the whole map even above 20 million cells, where a tube around a coarse route would do");
   command
       .add_option("--risk", options.max_risk, "the route's probability of immobilisation stays within this")
       ->type_name("ALPHA")
@@ -82,6 +84,7 @@ planner::Problem problemOf(const PlanOptions& options, const Ground& ground, con
   if (options.time_limit_s > 0.0) problem.time_limit_s = options.time_limit_s;
   problem.seed = context.seed;
   problem.threads = context.workers();
+  problem.whole_field = options.whole_field;
   problem.watch = context.watch("plan");
   return problem;
 }

@@ -7,6 +7,7 @@
 #include <planner/field_planner.hpp>
 #include <planner/problem.hpp>
 #include <planner/sampling_planner.hpp>
+#include <planner/tube_planner.hpp>
 
 namespace talus::planner {
 
@@ -25,13 +26,20 @@ class NamedPlanner {
   /// via points.
   void onBetter(std::function<void(double)> better) { settings_.better = std::move(better); }
 
+  /// From this many cells on the field is settled in a tube only (TubePlanner), unless the problem asks for
+  /// the whole: at twenty bytes a cell it would take more than 400 MB.
+  static constexpr std::size_t kLarge = 20'000'000;
+
   /// A route through all via points in order, or why there is none. Throws std::invalid_argument without a
   /// map.
   Plan plan(const Problem& problem);
 
  private:
   SamplingSettings settings_;
+  Plan planField(const Problem& problem);
+
   FieldPlanner field_;
+  TubePlanner tube_;
 };
 
 }  // namespace talus::planner

@@ -25,6 +25,7 @@ struct Problem {
   int threads = 1;                                                ///< >= 1; the answer does not depend on it
   bool prove =
       true;  ///< also work out the best lower bound, for about the time of a field; else a simple one
+  bool whole_field = false;  ///< settle the whole map even where it is large (NamedPlanner)
   Watch watch{};
 };
 
