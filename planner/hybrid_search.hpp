@@ -25,8 +25,12 @@ struct PoseProblem {
 
 /// Choices of the search.
 struct HybridOptions {
-  int headings = 72;                        ///< headings told apart at a cell, >= 8
-  double step_cells = 1.5;                  ///< length of a motion; more than sqrt 2 leaves the cell
+  int headings = 72;        ///< headings told apart at a cell, >= 8
+  double step_cells = 1.5;  ///< length of a motion; more than sqrt 2 leaves the cell
+  double greed = 1.1;  ///< weight of the cost still to go, >= 1: more finds a drive sooner, and a dearer one
+  double good =
+      1.1;  ///< a direct curve to the goal that costs at most so many times the field ends the search soon
+  std::uint64_t improve = 500;              ///< poses tried after that
   std::uint64_t most_expanded = 2'000'000;  ///< then it gives up, TimedOut
 };
 
@@ -41,9 +45,10 @@ struct PosePlan {
 
 /// Hybrid A* (dolgov_2010) over position and heading under the one cost function: motions of constant
 /// curvature from continuous poses, one pose kept a cell and heading, led by the anisotropic cost-to-go field
-/// of the goal, and finished by shortest curves; then shortened wherever a direct curve is cheaper. The field
-/// sees slope, soil and hazards but not turning, so that little is searched in vain. Not optimal: a seed and
-/// a drivable answer. Keeps the field of the last map and goal. Deterministic. One object one thread.
+/// of the goal, and finished by shortest curves; then shortened wherever a direct curve is cheaper. Motions
+/// are priced by a few cells while they wait and held against the exact cost when their turn comes. The field
+/// sees slope, soil and hazards but not turning, so that little is searched in vain. Not optimal: a drivable
+/// answer, and a seed. Keeps the field of the last map and goal. Deterministic. One object one thread.
 class HybridSearch {
  public:
   explicit HybridSearch(const HybridOptions& options = {});
