@@ -29,6 +29,7 @@ struct PlanOptions {
   std::string planner = "field";
   DriveOptions drive;
   double max_risk = 0.0;      ///< chance constraint on immobilisation, 0: none
+  bool whole_field = false;   ///< even on large maps
   std::string pareto;         ///< chart to draw; empty: none
   double time_limit_s = 0.0;  ///< 0: none
   std::string output;

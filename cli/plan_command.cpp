@@ -92,6 +92,8 @@ void bind(CLI::App& command, PlanOptions& options) {
   command.add_option("--time", options.time_limit_s, "time limit of the planning")
       ->type_name("S")
       ->check(CLI::PositiveNumber);
+  command.add_flag("--whole-field", options.whole_field,
+                   "settle the whole map even above 20 million cells, where a tube around a coarse route would do");
   command
       .add_option("--risk", options.max_risk, "the route's probability of immobilisation stays within this")
       ->type_name("ALPHA")
@@ -131,6 +133,7 @@ planner::Problem problemOf(const PlanOptions& options, const Ground& ground, con
   problem.start_heading_rad = options.drive.start_heading_rad;
   problem.goal_heading_rad = options.drive.goal_heading_rad;
   problem.kinematics = kinematicsOf(options.drive, ground.map);
+  problem.whole_field = options.whole_field;
   problem.watch = context.watch("plan");
   return problem;
 }
