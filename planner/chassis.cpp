@@ -9,7 +9,8 @@ namespace {
 
 using maps::Point;
 
-constexpr int kBellyParts = 6;        // of the belly, along and across
+constexpr int kBellyParts = 6;  // of the belly, along and across
+constexpr int kTightenings = 4;
 constexpr double kStep_cells = 0.25;  // between the poses looked at along a motion
 constexpr double kLeastStep = 0.05;   // and no finer than this share of the wheelbase
 
@@ -81,17 +82,20 @@ std::optional<Bounds> Chassis::ground(Point middle, double reach_m) const {
   return found;
 }
 
-// How far a point of the body, at the height of the contacts, moves in the map plane while it tilts within
-// its limits.
-double Chassis::tilt_m(double x_m, double y_m) const noexcept {
-  const double tilt = rover_.max_pitch_rad + rover_.max_roll_rad;
-  return std::hypot(x_m, y_m) * (1.0 - std::cos(std::min(tilt, M_PI / 2)));
+// How far a point of the body, at the height of the contacts, moves in the map plane while the body tilts:
+// the long axis shortens to cos(pitch); the cross axis, perpendicular to it, also swings ahead by tan(pitch)
+// sin(roll).
+double Chassis::moves_m(double x_m, double y_m, const Tilt& tilt) noexcept {
+  const double rise = std::sin(tilt.roll_rad), swing = std::tan(tilt.pitch_rad) * rise;
+  const double side = std::sqrt(std::max(0.0, 1.0 - rise * rise - swing * swing));
+  return std::abs(x_m) * (1.0 - std::cos(tilt.pitch_rad)) + std::abs(y_m) * (swing + 1.0 - side);
 }
 
-std::optional<Chassis::Heights> Chassis::heights(const Pose& pose, double slack_m) const {
+std::optional<Chassis::Heights> Chassis::heights(const Pose& pose, double slack_m, const Tilt& tilt) const {
   Heights z;
   for (const Wheel& wheel : wheels_) {
-    const auto found = ground(placed(pose, wheel.x_m, wheel.y_m), tilt_m(wheel.x_m, wheel.y_m) + slack_m);
+    const auto found =
+        ground(placed(pose, wheel.x_m, wheel.y_m), moves_m(wheel.x_m, wheel.y_m, tilt) + slack_m);
     if (!found) return std::nullopt;
     z.push_back(*found);
   }
@@ -150,18 +154,18 @@ Stance Chassis::rockerBogie(const Heights& z) const {
 // The least that parts of the belly stand above the ground that they can be above; `under` tells the height
 // of the plane of contacts below a point of the body, at least.
 template <typename Under>
-std::optional<double> Chassis::clearance(const Pose& pose, double slack_m, Under under) const {
+std::optional<double> Chassis::clearance(const Pose& pose, double slack_m, const Tilt& tilt,
+                                         Under under) const {
   const double length_m = rover_.wheelbase_m / kBellyParts, width_m = rover_.track_m / kBellyParts;
-  const double lean_m =
-      rover_.clearance_m * std::sin(std::min(rover_.max_pitch_rad + rover_.max_roll_rad, M_PI / 2));
-  const double pitch = std::sin(rover_.max_pitch_rad), roll = std::sin(rover_.max_roll_rad);
-  const double belly_m = rover_.clearance_m * std::sqrt(std::max(0.0, 1.0 - pitch * pitch - roll * roll));
+  const double lean = std::min(1.0, std::hypot(std::sin(tilt.pitch_rad), std::sin(tilt.roll_rad)));
+  const double lean_m = rover_.clearance_m * lean,
+               belly_m = rover_.clearance_m * std::sqrt(1.0 - lean * lean);
   double least = INFINITY;
   for (int i = 0; i < kBellyParts; ++i)
     for (int k = 0; k < kBellyParts; ++k) {
       const double x = rover_.wheelbase_m / 2 - (i + 0.5) * length_m,
                    y = rover_.track_m / 2 - (k + 0.5) * width_m;
-      const double reach_m = 0.5 * std::hypot(length_m, width_m) + tilt_m(x, y) + lean_m + slack_m;
+      const double reach_m = 0.5 * std::hypot(length_m, width_m) + moves_m(x, y, tilt) + lean_m + slack_m;
       const auto below = ground(placed(pose, x, y), reach_m);
       if (!below) return std::nullopt;
       double plane = INFINITY;
@@ -174,33 +178,45 @@ std::optional<double> Chassis::clearance(const Pose& pose, double slack_m, Under
 }
 
 std::optional<Stance> Chassis::stance(const Pose& pose, double slack_m) const {
-  const auto z = heights(pose, slack_m);
-  if (!z) return std::nullopt;
-  std::optional<double> clear_m;
+  Tilt tilt{rover_.max_pitch_rad, rover_.max_roll_rad};
+  std::optional<Heights> z;
   Stance stance;
-  if (suspension_ == Suspension::Rigid) {
-    stance = rigid(*z);
-    // No wheel is below the ground, and the plane at a point of the belly is a mean of its corners.
-    const std::size_t last = z->size() - 2;
-    clear_m = clearance(pose, slack_m, [&](double x, double y) {
-      const double u = 0.5 + x / rover_.wheelbase_m, v = 0.5 + y / rover_.track_m;
-      return u * (v * (*z)[0].low + (1 - v) * (*z)[1].low) +
-             (1 - u) * (v * (*z)[last].low + (1 - v) * (*z)[last + 1].low);
-    });
-  } else {
-    stance = rockerBogie(*z);
-    double middle_m = 0.0;
-    for (const Bounds& wheel : *z) middle_m += wheel.low / static_cast<double>(z->size());
-    const auto lift = [](double metres, const Bounds& angle) {
-      return std::min(metres * std::sin(angle.low), metres * std::sin(angle.high));
-    };
-    clear_m = clearance(pose, slack_m, [&](double x, double y) {
-      return middle_m + lift(x, stance.pitch_rad) + lift(y, stance.roll_rad);
-    });
+  // Every stance within a tilt lies within the bounds that the tilt gives, and so within their tilt.
+  for (int round = 0; round < kTightenings; ++round) {
+    z = heights(pose, slack_m, tilt);
+    if (!z) return std::nullopt;
+    stance = suspension_ == Suspension::Rigid ? rigid(*z) : rockerBogie(*z);
+    tilt = {std::min(tilt.pitch_rad, std::max(stance.pitch_rad.high, -stance.pitch_rad.low)),
+            std::min(tilt.roll_rad, std::max(stance.roll_rad.high, -stance.roll_rad.low))};
   }
+  const auto clear_m = suspension_ == Suspension::Rigid ? underRigid(pose, slack_m, tilt, *z)
+                                                        : underRockerBogie(pose, slack_m, tilt, *z);
   if (!clear_m) return std::nullopt;
   stance.clearance_m = *clear_m;
   return stance;
+}
+
+// No wheel is below the ground, and the plane at a point of the belly is a mean of its corners.
+std::optional<double> Chassis::underRigid(const Pose& pose, double slack_m, const Tilt& tilt,
+                                          const Heights& z) const {
+  const std::size_t last = z.size() - 2;
+  return clearance(pose, slack_m, tilt, [&](double x, double y) {
+    const double u = 0.5 + x / rover_.wheelbase_m, v = 0.5 + y / rover_.track_m;
+    return u * (v * z[0].low + (1 - v) * z[1].low) + (1 - u) * (v * z[last].low + (1 - v) * z[last + 1].low);
+  });
+}
+
+std::optional<double> Chassis::underRockerBogie(const Pose& pose, double slack_m, const Tilt& tilt,
+                                                const Heights& z) const {
+  const Stance bounds = rockerBogie(z);
+  double middle_m = 0.0;
+  for (const Bounds& wheel : z) middle_m += wheel.low / static_cast<double>(z.size());
+  const auto lift = [](double metres, const Bounds& angle) {
+    return std::min(metres * std::sin(angle.low), metres * std::sin(angle.high));
+  };
+  return clearance(pose, slack_m, tilt, [&](double x, double y) {
+    return middle_m + lift(x, bounds.pitch_rad) + lift(y, bounds.roll_rad);
+  });
 }
 
 std::string_view Chassis::refusal(const Pose& pose, double slack_m) const {

@@ -64,14 +64,21 @@ class Chassis {
     double x_m, y_m;  // of the body
   };
   using Heights = std::vector<Bounds>;  // rows left and right, front axle first, alternating
+  struct Tilt {
+    double pitch_rad, roll_rad;  // at most, either way
+  };
 
   std::optional<Bounds> ground(maps::Point middle, double reach_m) const;
-  std::optional<Heights> heights(const Pose& pose, double slack_m) const;
+  std::optional<Heights> heights(const Pose& pose, double slack_m, const Tilt& tilt) const;
   Stance rigid(const Heights& z) const;
   Stance rockerBogie(const Heights& z) const;
-  double tilt_m(double x_m, double y_m) const noexcept;
+  static double moves_m(double x_m, double y_m, const Tilt& tilt) noexcept;
+  std::optional<double> underRigid(const Pose& pose, double slack_m, const Tilt& tilt,
+                                   const Heights& z) const;
+  std::optional<double> underRockerBogie(const Pose& pose, double slack_m, const Tilt& tilt,
+                                         const Heights& z) const;
   template <typename Under>
-  std::optional<double> clearance(const Pose& pose, double slack_m, Under under) const;
+  std::optional<double> clearance(const Pose& pose, double slack_m, const Tilt& tilt, Under under) const;
   double step_m() const noexcept;
 
   const maps::Raster<float>& elevation_m_;
