@@ -28,7 +28,7 @@ void bind(CLI::App& command, EstimateOptions& options) {
       .add_option("--shear-modulus", options.shear_modulus,
                   "K in metres, or how to find it: error-minimisation, effective-torque, "
                   "effective-torque-printed, joint "
-                  "(default: the file's shear_modulus_m, else joint; wong-reece infers it)")
+                  "(default: the file's shear_modulus_m, else the prior's, else joint; wong-reece infers it)")
       ->type_name("M|HOW")
       ->check([](const std::string& word) -> std::string {
         for (const char* how :
@@ -39,19 +39,35 @@ void bind(CLI::App& command, EstimateOptions& options) {
                                          : "'" + word + "' is neither metres nor a way to find K";
       });
   command
-      .add_option("--prior", options.prior, "soils with {mean, std} (wong-reece; default: thesis Table 2.1)")
+      .add_option("--prior", options.prior,
+                  "soils with {mean, std} (default: wong-reece thesis Table 2.1, other methods none)")
       ->type_name("NAME|FILE");
   command.add_option("--rover", options.rover, "whose wheel, where the file does not say")
       ->type_name("NAME|FILE");
   command.add_option("--noise", options.noise, "relative error of each reading (wong-reece)")
       ->check(CLI::Range(1e-4, 0.5))
       ->capture_default_str();
+  command.add_flag("--recursive", options.recursive,
+                   "take the rows in one by one, in constant memory, and print the estimate after each");
   command.add_option("--html", options.html, "a page with the fit")->type_name("R.html");
 }
 
 Json rejectedRows(const SoilEstimate& e) {
   Json rows = Json::array();
   for (const auto& row : e.rejected) rows.push_back({{"line", row.line}, {"reason", row.reason}});
+  return rows;
+}
+
+Json runningJson(const SoilEstimate& e) {
+  Json rows = Json::array();
+  for (const RunningSoil& r : e.running) {
+    rows.push_back({{"line", r.line},
+                    {"cohesion_Pa", r.cohesion_Pa},
+                    {"cohesion_std_Pa", std::sqrt(r.covariance(0, 0))},
+                    {"friction_angle_rad", r.friction_angle_rad},
+                    {"friction_angle_std_rad", frictionStd_rad(r.covariance, r.friction_angle_rad)},
+                    {"shear_modulus_m", r.shear_modulus_m}});
+  }
   return rows;
 }
 
@@ -65,6 +81,7 @@ Json posteriorJson(const SoilEstimate& e) {
             {"friction_angle_rad", range(p.friction_angle_rad)},
             {"shear_modulus_m", range(p.shear_modulus_m)}}},
           {"class_probabilities", classes},
+          {"ellipse_95", p.ellipse_95},
           {"misfit", p.misfit},
           {"effective_draws", p.effective_draws}};
 }
@@ -85,18 +102,34 @@ Json jsonOf(const std::string& method, const SoilEstimate& e) {
   if (std::isfinite(e.sinkage_exponent)) json["sinkage_exponent"] = e.sinkage_exponent;
   if (e.cohesive_modulus) json["cohesive_modulus"] = *e.cohesive_modulus;
   if (e.frictional_modulus) json["frictional_modulus"] = *e.frictional_modulus;
+  if (!e.running.empty()) json["running"] = runningJson(e);
   if (e.posterior) json.update(posteriorJson(e));
   return json;
 }
 
+std::string runningText(const SoilEstimate& e) {
+  if (e.running.empty()) return {};
+  std::string text = "  line     c kPa      +-   phi deg      +-    K mm\n";
+  for (const RunningSoil& r : e.running) {
+    if (std::isnan(r.cohesion_Pa)) {
+      text += fmt::format("{:6}  too few rows yet\n", r.line);
+      continue;
+    }
+    text +=
+        fmt::format("{:6}  {:8.3f}  {:6.3f}  {:8.2f}  {:6.2f}  {:6.2f}\n", r.line, 1e-3 * r.cohesion_Pa,
+                    1e-3 * std::sqrt(r.covariance(0, 0)), r.friction_angle_rad / kDegree,
+                    frictionStd_rad(r.covariance, r.friction_angle_rad) / kDegree, 1e3 * r.shear_modulus_m);
+  }
+  return text + '\n';
+}
+
 std::string textOf(const SoilEstimate& e) {
-  std::string text;
+  std::string text = runningText(e);
   if (std::isfinite(e.cohesion_Pa)) {
-    const double cosine = std::cos(e.friction_angle_rad);
     text += fmt::format("cohesion        {:9.3f} kPa  +- {:.3f}\n", 1e-3 * e.cohesion_Pa,
                         1e-3 * std::sqrt(e.covariance(0, 0)));
     text += fmt::format("friction angle  {:9.2f} deg  +- {:.2f}\n", e.friction_angle_rad / kDegree,
-                        std::sqrt(e.covariance(1, 1)) * cosine * cosine / kDegree);
+                        frictionStd_rad(e.covariance, e.friction_angle_rad) / kDegree);
   }
   if (std::isfinite(e.shear_modulus_m))
     text += fmt::format("shear modulus   {:9.2f} mm\n", 1e3 * e.shear_modulus_m);
@@ -162,7 +195,8 @@ void writePage(const EstimateOptions& options, const SoilEstimate& e) {
 }
 
 int run(const EstimateOptions& options, Context& context) {
-  const SoilEstimate estimate = estimateSoil(options, context.watch("reading"));
+  const SoilEstimate estimate = estimateSoil(options, context.watch("estimating"));
+  if (context.stop.stop_requested()) return Exit::kCancelled;
   if (!estimate.rejected.empty()) {
     const auto& first = estimate.rejected.front();
     context.warn(fmt::format("{}:{}: {} ({} rows rejected; --json lists them)", options.table, first.line,

@@ -169,6 +169,7 @@ Facts summaryOf(const Route& route) {
   if (route.status != planner::RouteStatus::Found || route.vertices.empty())
     return {{"route", fmt::format("{}: {}", planner::name(route.status), route.reason)}};
   const planner::RouteSummary& s = route.summary;
+  if (!(s.length_m > 0.0)) return {{"route", "nothing to drive: the start is at the goal"}};
   const double risk = route.vertices.back().immobilisation_risk;
   Facts facts{
       {"route", statusText(route)},

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,11 +18,26 @@ struct EstimateOptions {
   std::string table;
   std::string method;
   std::string shear_modulus;  ///< a number [m], or the name of a method; empty: the file's column, else joint
-  std::string prior;          ///< soil file or name; empty: the classes of thesis Table 2.1
+  std::string prior;  ///< soil file or name; empty: for wong-reece the classes of thesis Table 2.1, else none
   std::string rover;
   std::string html;
-  double noise = 0.05;  ///< relative standard deviation of each reading [-]
+  bool recursive = false;  ///< take the rows in one by one and keep each answer
+  double noise = 0.05;     ///< relative standard deviation of each reading [-]
 };
+
+/// What was believed after a row of the table; NaN where nothing could be said yet.
+struct RunningSoil {
+  static constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+  std::size_t line = 0;  ///< of the table
+  double cohesion_Pa = kNan;
+  double friction_angle_rad = kNan;
+  double shear_modulus_m = kNan;
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Constant(kNan);  ///< of (c, tan phi)
+};
+
+/// Standard deviation of phi [rad] from that of tan(phi): by its slope at phi.
+double frictionStd_rad(const Eigen::Matrix2d& covariance, double friction_angle_rad);
 
 /// What any method answers; a number it cannot give is NaN.
 struct SoilEstimate {
@@ -39,8 +55,12 @@ struct SoilEstimate {
   std::vector<terramech::StressPair> points;  ///< what a line was fitted to, for a plot
   std::optional<terramech::SoilPosterior> posterior;  ///< of wong-reece
   std::vector<std::string> class_names;               ///< of its prior
+  std::vector<RunningSoil> running;                   ///< a row used, when asked to be recursive
 
   SoilEstimate();
+
+  /// Takes c, tan(phi), their covariance and what was not seen from a fitted line.
+  void take(const terramech::ShearStrength& fit);
 };
 
 /// Runs the method on the table. Throws InputError for what is wrong with the input, std::domain_error when

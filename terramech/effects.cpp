@@ -95,23 +95,25 @@ std::vector<double> curvatures(std::span<const double> x, std::span<const double
     upper[i] = b / pivot;
     m[i] = (6.0 * ((y[i + 1] - y[i]) / b - (y[i] - y[i - 1]) / a) - a * m[i - 1]) / pivot;
   }
-  for (std::size_t i = n - 1; i-- > 1;) m[i] -= upper[i] * m[i + 1];
+  for (std::size_t i = n; i-- > 2;) m[i - 1] -= upper[i - 1] * m[i];
   return m;
 }
 
 }  // namespace
 
-double splineValue(std::span<const double> knots, std::span<const double> values, double x) {
-  const std::size_t n = knots.size();
+NaturalSpline::NaturalSpline(std::vector<double> knots, std::vector<double> values)
+    : knots_(std::move(knots)), values_(std::move(values)), curvatures_(curvatures(knots_, values_)) {}
+
+double NaturalSpline::operator()(double x) const {
+  const std::size_t n = knots_.size();
   if (n == 0) return 0.0;
-  if (n == 1 || x <= knots.front()) return values.front();
-  if (x >= knots.back()) return values.back();
+  if (n == 1 || x <= knots_.front()) return values_.front();
+  if (x >= knots_.back()) return values_.back();
   std::size_t i = 0;
-  while (x > knots[i + 1]) ++i;
-  const double h = knots[i + 1] - knots[i], b = (x - knots[i]) / h, a = 1.0 - b;
-  const std::vector<double> m = curvatures(knots, values);
-  return a * values[i] + b * values[i + 1] +
-         ((a * a * a - a) * m[i] + (b * b * b - b) * m[i + 1]) * h * h / 6.0;
+  while (x > knots_[i + 1]) ++i;
+  const double h = knots_[i + 1] - knots_[i], b = (x - knots_[i]) / h, a = 1.0 - b;
+  return a * values_[i] + b * values_[i + 1] +
+         ((a * a * a - a) * curvatures_[i] + (b * b * b - b) * curvatures_[i + 1]) * h * h / 6.0;
 }
 
 }  // namespace talus::terramech

@@ -86,8 +86,17 @@ struct Effect {
   bool empirical() const { return name.starts_with("empirical"); }
 };
 
-/// Value at x of the natural cubic spline through (knots, values); constant outside. One knot: a constant.
-double splineValue(std::span<const double> knots, std::span<const double> values, double x);
+/// Natural cubic spline through (knots, values), constant outside; one knot: a constant, none: 0.
+class NaturalSpline {
+ public:
+  NaturalSpline() = default;
+  NaturalSpline(std::vector<double> knots, std::vector<double> values);
+
+  double operator()(double x) const;
+
+ private:
+  std::vector<double> knots_, values_, curvatures_;
+};
 
 namespace detail {
 std::vector<EffectForm> contactEffects();

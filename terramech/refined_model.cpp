@@ -7,20 +7,45 @@
 namespace talus::terramech {
 namespace {
 
-bool applies(const Effect& effect, const WheelState& state) {
-  return effect.only_column.empty() || state.label(effect.only_column) == effect.only_value;
-}
+/// The effects of a model with their forms looked up.
+class Bound {
+ public:
+  explicit Bound(const RefinedModel& model) : model_(model) {
+    for (const Effect& e : model.effects)
+      effects_.push_back({&e, e.empirical() ? nullptr : findEffect(e.name),
+                          e.empirical() ? NaturalSpline(e.knots, e.parameters) : NaturalSpline()});
+  }
 
-/// The covariate of an effect; the sinkage is the model's own, never the measured one.
-double covariateOf(const Effect& effect, const WheelState& state, double sinkage_m) {
-  return effect.covariate == "sinkage_m" ? sinkage_m : state.covariate(effect.covariate);
-}
+  WheelContact contact(const WheelState& state) const;
+  Reading reading(const WheelState& state, const WheelContact& contact, const ContactForces& forces) const;
+
+ private:
+  struct BoundEffect {
+    const Effect* effect;
+    const EffectForm* form;  ///< null: a curve
+    NaturalSpline curve;
+  };
+
+  static bool applies(const Effect& effect, const WheelState& state) {
+    return effect.only_column.empty() || state.label(effect.only_column) == effect.only_value;
+  }
+
+  /// The covariate of an effect; the sinkage is the model's own, never the measured one.
+  static double covariateOf(const Effect& effect, const WheelState& state, double sinkage_m) {
+    return effect.covariate == "sinkage_m" ? sinkage_m : state.covariate(effect.covariate);
+  }
+
+  static void bend(const BoundEffect& curve, double x, WheelContact& contact);
+
+  const RefinedModel& model_;
+  std::vector<BoundEffect> effects_;
+};
 
 /// Curves that act through the soil.
-void bend(const Effect& curve, double x, WheelContact& contact) {
-  if (curve.name == "empirical") return;
-  const double factor = std::exp(std::clamp(splineValue(curve.knots, curve.parameters, x), -3.0, 3.0));
-  if (curve.name == "empirical_stiffness") {
+void Bound::bend(const BoundEffect& curve, double x, WheelContact& contact) {
+  if (curve.effect->name == "empirical") return;
+  const double factor = std::exp(std::clamp(curve.curve(x), -3.0, 3.0));
+  if (curve.effect->name == "empirical_stiffness") {
     contact.sinkage_modulus *= factor;
   } else {
     contact.cohesion_Pa *= factor;
@@ -28,38 +53,47 @@ void bend(const Effect& curve, double x, WheelContact& contact) {
   }
 }
 
-WheelContact contactFor(const RefinedModel& model, const WheelState& state) {
-  WheelContact contact = contactOf(model.soil, state.wheel);
+WheelContact Bound::contact(const WheelState& state) const {
+  WheelContact contact = contactOf(model_.soil, state.wheel);
   contact.load_N = state.load_N;
-  contact.slip = model.slip_along_travel ? slipInWheelPlane(state.slip, state.slip_angle_rad) : state.slip;
-  for (const Effect& effect : model.effects) {
-    if (!applies(effect, state)) continue;
-    const double x = covariateOf(effect, state, 0.0);
-    if (effect.empirical() && std::isfinite(x)) bend(effect, x, contact);
-    const EffectForm* form = effect.empirical() ? nullptr : findEffect(effect.name);
-    if (form && form->act && std::isfinite(x)) form->act({effect.parameters.data(), state, x}, contact);
+  contact.slip = model_.slip_along_travel ? slipInWheelPlane(state.slip, state.slip_angle_rad) : state.slip;
+  for (const BoundEffect& e : effects_) {
+    if (!applies(*e.effect, state)) continue;
+    // The sinkage is not known yet: an effect that acts here never asks for it.
+    const double x = covariateOf(*e.effect, state, 0.0);
+    if (!std::isfinite(x)) continue;
+    if (!e.form)
+      bend(e, x, contact);
+    else if (e.form->act)
+      e.form->act({e.effect->parameters.data(), state, x}, contact);
   }
   contact.slip = std::clamp(contact.slip, -1.0, 1.0);
   return contact;
 }
 
-void readSensors(const RefinedModel& model, const WheelState& state, const WheelContact& contact,
-                 Reading& reading) {
-  for (const Effect& effect : model.effects) {
-    const EffectForm* form = effect.empirical() ? nullptr : findEffect(effect.name);
-    if (!form || !form->read || !applies(effect, state)) continue;
-    const double x = covariateOf(effect, state, reading.sinkage_m);
-    if (std::isfinite(x)) form->read({effect.parameters.data(), state, x}, contact, reading);
+Reading Bound::reading(const WheelState& state, const WheelContact& contact,
+                       const ContactForces& forces) const {
+  Reading reading{.load_N = state.load_N,
+                  .radius_m = state.wheel.radius_m,
+                  .sinkage_m = forces.sinkage_m,
+                  .torque_Nm = forces.torque_Nm,
+                  .drawbar_pull_N = forces.drawbar_pull_N,
+                  .side_force_N = forces.side_force_N};
+  if (model_.base == BaseModel::LinearFormula)
+    reading.drawbar_pull_N =
+        reading.load_N * (reading.scaled(Channel::Torque) - reading.scaled(Channel::Sinkage) - 0.1);
+  for (const BoundEffect& e : effects_) {
+    if (!e.form || !e.form->read || !applies(*e.effect, state)) continue;
+    const double x = covariateOf(*e.effect, state, reading.sinkage_m);
+    if (std::isfinite(x)) e.form->read({e.effect->parameters.data(), state, x}, contact, reading);
   }
-}
-
-void addCurves(const RefinedModel& model, const WheelState& state, Reading& reading) {
   const double sinkage = reading.sinkage_m;
-  for (const Effect& effect : model.effects) {
-    if (effect.name != "empirical" || !applies(effect, state)) continue;
-    const double x = covariateOf(effect, state, sinkage);
-    if (std::isfinite(x)) reading.addScaled(effect.channel, splineValue(effect.knots, effect.parameters, x));
+  for (const BoundEffect& e : effects_) {
+    if (e.effect->name != "empirical" || !applies(*e.effect, state)) continue;
+    const double x = covariateOf(*e.effect, state, sinkage);
+    if (std::isfinite(x)) reading.addScaled(e.effect->channel, e.curve(x));
   }
+  return reading;
 }
 
 double squared(double x) {
@@ -75,21 +109,25 @@ double slipInWheelPlane(double slip_along_travel, double slip_angle_rad) {
 }
 
 Reading predict(const RefinedModel& model, const WheelState& state, double* entry_guess_rad) {
-  const WheelContact contact = contactFor(model, state);
+  const Bound bound{model};
+  const WheelContact contact = bound.contact(state);
   const ContactForces forces = solveContact(contact, entry_guess_rad ? *entry_guess_rad : 0.0);
   if (entry_guess_rad) *entry_guess_rad = forces.static_entry_rad;
-  Reading reading{.load_N = state.load_N,
-                  .radius_m = state.wheel.radius_m,
-                  .sinkage_m = forces.sinkage_m,
-                  .torque_Nm = forces.torque_Nm,
-                  .drawbar_pull_N = forces.drawbar_pull_N,
-                  .side_force_N = forces.side_force_N};
-  if (model.base == BaseModel::LinearFormula)
-    reading.drawbar_pull_N =
-        reading.load_N * (reading.scaled(Channel::Torque) - reading.scaled(Channel::Sinkage) - 0.1);
-  readSensors(model, state, contact, reading);
-  addCurves(model, state, reading);
-  return reading;
+  return bound.reading(state, contact, forces);
+}
+
+std::vector<Reading> predict(const RefinedModel& model, std::span<const WheelState> states,
+                             std::vector<double>& entry_guess_rad) {
+  const Bound bound{model};
+  entry_guess_rad.resize(states.size(), 0.0);
+  std::vector<WheelContact> contacts;
+  for (const WheelState& state : states) contacts.push_back(bound.contact(state));
+  std::vector<ContactForces> forces(states.size());
+  solveContacts(contacts, entry_guess_rad, forces);
+  std::vector<Reading> readings;
+  for (std::size_t k = 0; k < states.size(); ++k)
+    readings.push_back(bound.reading(states[k], contacts[k], forces[k]));
+  return readings;
 }
 
 const std::vector<SoilParameter>& soilParameters() {

@@ -3,6 +3,7 @@
 #include <array>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -58,6 +59,11 @@ struct RefinedModel {
 /// What the model says that the sensors will read. Never throws on a state that validate()s;
 /// `entry_guess_rad`, where given, starts the search for the sinkage and receives its result. Thread-safe.
 Reading predict(const RefinedModel& model, const WheelState& state, double* entry_guess_rad = nullptr);
+
+/// The same for many states, several times faster where no effect leaves the plain wheel.
+/// `entry_guess_rad` is resized to one a state, 0 where it held none.
+std::vector<Reading> predict(const RefinedModel& model, std::span<const WheelState> states,
+                             std::vector<double>& entry_guess_rad);
 
 /// A prediction and the standard deviation of what would be measured: parameters, slip, load and the sensor
 /// itself.

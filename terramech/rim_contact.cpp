@@ -12,9 +12,15 @@ Breaks breaks(const ShearDisplacement& displacement, double peak_rad, double exi
   const double zero = displacement.signChange_rad(exit_rad);
   if (!(zero == zero)) return {};
   const double entry = displacement.entryAngle_rad();
-  const double s =
-      zero > peak_rad ? (entry - zero) / (entry - peak_rad) : (zero - exit_rad) / (peak_rad - exit_rad);
-  return {{0.0, std::cbrt(s), 1.0, 1.0}, 3};
+  return {
+      {0.0, zero > peak_rad ? (entry - zero) / (entry - peak_rad) : (zero - exit_rad) / (peak_rad - exit_rad),
+       1.0},
+      3};
+}
+
+void throwSunk(double load_N) {
+  throw std::domain_error("the wheel sinks to its axle before the soil carries " + std::to_string(load_N) +
+                          " N");
 }
 
 namespace {
@@ -27,21 +33,21 @@ constexpr double kRounding = 4e-16;
 EntrySearch::EntrySearch(const RimLoad& wanted)
     : wanted_N_(wanted.load_N),
       entry_(std::clamp(wanted.first_guess, 1e-9, kDeepest)),
-      growth_(wanted.growth) {}
+      growth_(wanted.growth),
+      tolerance_(wanted.tolerance) {}
 
-bool EntrySearch::take(double load_N) {
+EntrySearch::Status EntrySearch::take(double load_N) {
   const bool carries = load_N >= wanted_N_;
   (carries ? high_ : low_) = entry_;
   const double log_ratio = load_N > 0.0 ? std::log(load_N / wanted_N_) : -50.0;
-  if (std::abs(log_ratio) < 1e-13 || (high_ > 0.0 && high_ - low_ <= kRounding * high_)) return true;
-  if ((!carries && entry_ >= kDeepest) || ++trials_ > 200)
-    throw std::domain_error("the wheel sinks to its axle before the soil carries " +
-                            std::to_string(wanted_N_) + " N");
+  if (std::abs(log_ratio) < tolerance_ || (high_ > 0.0 && high_ - low_ <= kRounding * high_))
+    return Status::Found;
+  if ((!carries && entry_ >= kDeepest) || ++trials_ > 200) return Status::Sunk;
   learnGrowth(log_ratio);
   const double step_to = std::min(next(log_ratio), kDeepest);
-  if (std::abs(step_to - entry_) <= kRounding * entry_) return true;
+  if (std::abs(step_to - entry_) <= kRounding * entry_) return Status::Found;
   entry_ = step_to;
-  return false;
+  return Status::Searching;
 }
 
 void EntrySearch::learnGrowth(double log_ratio) {

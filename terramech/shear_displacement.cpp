@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <terramech/shear_displacement.hpp>
 
 namespace talus::terramech {
@@ -15,5 +17,11 @@ double ShearDisplacement::signChange_rad(double lowest_rad) const {
   }
   return 0.5 * (positive + negative);
 }
+
+SideSlipDisplacement::SideSlipDisplacement(const Parameters& p)
+    : p_(p),
+      travel_(std::min(travelRatio(p.slip), 1e6)),
+      lateral_m_(p.radius_m * travel_ * std::tan(p.slip_angle_rad)),
+      sin_entry_(std::sin(p.entry_angle_rad)) {}
 
 }  // namespace talus::terramech

@@ -14,6 +14,12 @@ inline double travelRatio(double slip) {
   return slip > -1.0 ? 1.0 / (1.0 + slip) : std::numeric_limits<double>::infinity();
 }
 
+/// Shear traction or displacement of a wheel that also slides sideways.
+struct Tangent {
+  double along = 0.0;   ///< the wheel plane
+  double across = 0.0;  ///< towards the side that the wheel slides to
+};
+
 /// Shear displacement of the soil along a rim (thesis C.6, with travelRatio() in place of 1 - i so that it
 /// holds for braked wheels too): j(theta) = r [(theta_1 - theta) - q (sin theta_1 - sin theta)], the path of
 /// a rim point over the soil since it entered at theta_1. Positive where the rim drags the soil backwards.
@@ -45,6 +51,32 @@ class ShearDisplacement {
   Parameters p_;
   double travel_;
   double sin_entry_;
+};
+
+/// Shear displacement of a wheel that also slides sideways at slip angle beta: along the wheel plane as
+/// above, across it j_y = r q tan(beta) (theta_1 - theta), the same for every rim (ishigami_2007).
+class SideSlipDisplacement {
+ public:
+  struct Parameters {
+    double shear_radius_m;  ///< of the displacement along, > 0
+    double radius_m;        ///< of the rim, > 0
+    double slip;            ///< [-1, 1]
+    double slip_angle_rad;  ///< beta, (-pi/2, pi/2)
+    double entry_angle_rad;
+  };
+
+  explicit SideSlipDisplacement(const Parameters& p);
+
+  double radius_m() const { return p_.shear_radius_m; }
+  double entryAngle_rad() const { return p_.entry_angle_rad; }
+  Tangent at_m(double theta_rad) const {
+    const double arc = p_.entry_angle_rad - theta_rad;
+    return {p_.shear_radius_m * (arc - travel_ * (sin_entry_ - std::sin(theta_rad))), lateral_m_ * arc};
+  }
+
+ private:
+  Parameters p_;
+  double travel_, lateral_m_, sin_entry_;
 };
 
 }  // namespace talus::terramech

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include <Eigen/QR>
+
 #include <terramech/effects.hpp>
 #include <terramech/spline_basis.hpp>
 
@@ -15,8 +16,9 @@ std::vector<double> quantileKnots(const Eigen::VectorXd& x, int most) {
   if (sorted.empty()) return {};
   std::vector<double> distinct = sorted;
   const double close = 1e-6 * (sorted.back() - sorted.front());
-  distinct.erase(std::unique(distinct.begin(), distinct.end(), [&](double a, double b) { return b - a <= close; }),
-                 distinct.end());
+  distinct.erase(
+      std::unique(distinct.begin(), distinct.end(), [&](double a, double b) { return b - a <= close; }),
+      distinct.end());
   const auto count = std::min<std::size_t>(static_cast<std::size_t>(most), distinct.size());
   if (count == distinct.size()) return distinct;
   std::vector<double> knots;
@@ -37,8 +39,9 @@ Eigen::MatrixXd splineBasis(const Eigen::VectorXd& x, const std::vector<double>&
   std::vector<double> unit(knots.size(), 0.0);
   for (Eigen::Index k = 0; k < count; ++k) {
     unit[static_cast<std::size_t>(k)] = 1.0;
+    const NaturalSpline spline{knots, unit};
     for (Eigen::Index row = 0; row < x.size(); ++row)
-      if (std::isfinite(x[row])) basis(row, k) = splineValue(knots, unit, x[row]);
+      if (std::isfinite(x[row])) basis(row, k) = spline(x[row]);
     unit[static_cast<std::size_t>(k)] = 0.0;
   }
   return basis;

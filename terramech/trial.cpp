@@ -4,14 +4,14 @@
 #include <map>
 #include <set>
 
-#include <terramech/trial.hpp>
-
 #include <talus.hpp>
+#include <terramech/trial.hpp>
 
 namespace talus::terramech {
 namespace {
 
-constexpr std::array<const char*, kChannels> kAnswers{"drawbar_pull_N", "sinkage_m", "torque_Nm", "side_force_N"};
+constexpr std::array<const char*, kChannels> kAnswers{"drawbar_pull_N", "sinkage_m", "torque_Nm",
+                                                      "side_force_N"};
 
 bool isAnswer(const std::string& name) {
   return std::find(kAnswers.begin(), kAnswers.end(), name) != kAnswers.end();
@@ -48,7 +48,8 @@ WheelState stateAt(const Telemetry& t, std::size_t row, const RefinedModel& mode
   s.pass_index = numberAt(t.find("pass_index"), row, kUnknown);
   s.slope_rad = numberAt(t.find("slope_rad"), row, kUnknown);
   for (const auto& column : t.numbers)
-    if (!isStateColumn(column.name) && !isAnswer(column.name)) s.extra.emplace_back(column.name, column.values[row]);
+    if (!isStateColumn(column.name) && !isAnswer(column.name))
+      s.extra.emplace_back(column.name, column.values[row]);
   for (const auto& column : t.words) s.group.emplace_back(column.name, column.values[row]);
   return s;
 }
@@ -78,7 +79,8 @@ std::vector<std::string> varyingCovariates(const std::vector<WheelState>& states
   for (const std::string& name : names) {
     std::vector<double> values;
     for (const WheelState& s : states) values.push_back(s.covariate(name));
-    const auto present = std::count_if(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+    const auto present =
+        std::count_if(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
     if (2 * present > static_cast<long>(values.size()) && distinct(values, 2) > 1) varying.push_back(name);
   }
   return varying;
@@ -155,7 +157,8 @@ Trial makeTrial(const Telemetry& t, const RefinedModel& model) {
     std::array<double, kChannels> a{};
     bool any = false;
     for (std::size_t c = 0; c < kChannels; ++c) {
-      a[c] = numberAt(t.find(kAnswers[c]), row, WheelState::kUnknown) / units.denominator(static_cast<Channel>(c));
+      a[c] = numberAt(t.find(kAnswers[c]), row, WheelState::kUnknown) /
+             units.denominator(static_cast<Channel>(c));
       any |= std::isfinite(a[c]);
     }
     if (!any) continue;
@@ -163,7 +166,8 @@ Trial makeTrial(const Telemetry& t, const RefinedModel& model) {
     answers.push_back(a);
   }
   if (answers.empty())
-    throw InputError({t.source, "no row has load_N, slip and one of drawbar_pull_N, sinkage_m, torque_Nm", ""});
+    throw InputError(
+        {t.source, "no row has load_N, slip and one of drawbar_pull_N, sinkage_m, torque_Nm", ""});
   trial.measured.resize(trial.rows(), kChannels);
   for (int row = 0; row < trial.rows(); ++row)
     for (int c = 0; c < kChannels; ++c)
@@ -204,13 +208,12 @@ Trial subset(const Trial& trial, const std::vector<char>& keep) {
 }
 
 Eigen::MatrixXd predictRows(const RefinedModel& model, const Trial& trial, std::vector<double>& guesses) {
-  guesses.resize(trial.states.size(), 0.0);
+  std::vector<Reading> readings = predict(model, trial.states, guesses);
   Eigen::MatrixXd out(trial.rows(), kChannels);
   for (int row = 0; row < trial.rows(); ++row) {
     const auto r = static_cast<std::size_t>(row);
-    Reading reading = predict(model, trial.states[r], &guesses[r]);
-    reading.load_N = trial.load_N[r];
-    for (int c = 0; c < kChannels; ++c) out(row, c) = reading.scaled(static_cast<Channel>(c));
+    readings[r].load_N = trial.load_N[r];
+    for (int c = 0; c < kChannels; ++c) out(row, c) = readings[r].scaled(static_cast<Channel>(c));
   }
   return out;
 }

@@ -4,20 +4,23 @@
 #include <vector>
 
 #include <Eigen/Core>
+
 #include <terramech/refined_model.hpp>
 #include <terramech/telemetry.hpp>
 
 namespace talus::terramech {
 
-/// Measured rows as residual tracing sees them. Channels of `measured` are those of Channel, scaled; NaN = missing.
+/// Measured rows as residual tracing sees them. Channels of `measured` are those of Channel, scaled; NaN =
+/// missing.
 struct Trial {
-  std::vector<WheelState> states;  ///< slip and load replaced by their best guesses once inputs are calibrated
-  std::vector<double> load_N;      ///< as measured: the denominator of every ratio
-  std::vector<double> slip;        ///< as measured
-  Eigen::MatrixXd measured;        ///< rows x kChannels [-]
-  Eigen::VectorXd slip_variance;   ///< of the true slip about states' slip
-  Eigen::VectorXd load_variance;   ///< of the true load about states' load, relative
-  std::vector<int> run;            ///< number of the run of each row; a row of its own where there is no run column
+  std::vector<WheelState>
+      states;                     ///< slip and load replaced by their best guesses once inputs are calibrated
+  std::vector<double> load_N;     ///< as measured: the denominator of every ratio
+  std::vector<double> slip;       ///< as measured
+  Eigen::MatrixXd measured;       ///< rows x kChannels [-]
+  Eigen::VectorXd slip_variance;  ///< of the true slip about states' slip
+  Eigen::VectorXd load_variance;  ///< of the true load about states' load, relative
+  std::vector<int> run;  ///< number of the run of each row; a row of its own where there is no run column
   std::vector<std::string> covariates;  ///< numeric columns that vary, answers left out
   std::vector<std::string> groupings;   ///< text columns of few words, runs left out
 
@@ -26,22 +29,23 @@ struct Trial {
   double denominator(int row, Channel channel) const;
 };
 
-/// Rows of telemetry as a trial. `fallback` is the wheel of rows that do not say theirs. Throws InputError when no load,
-/// slip or answer is measured, or no wheel is known.
+/// Rows of telemetry as a trial. `fallback` is the wheel of rows that do not say theirs. Throws InputError
+/// when no load, slip or answer is measured, or no wheel is known.
 Trial makeTrial(const Telemetry& telemetry, const RefinedModel& model);
 
-/// The state of each row of telemetry, answers left out: what predictions are made from. Errors as makeTrial().
+/// The state of each row of telemetry, answers left out: what predictions are made from. Errors as
+/// makeTrial().
 std::vector<WheelState> statesOf(const Telemetry& telemetry, const RefinedModel& model);
 
-/// Whether slip was measured with the full speed of travel rather than its part along the wheel plane, told from
-/// speed_mps and rim_speed_mps of rows with a slip angle; false when they cannot tell.
+/// Whether slip was measured with the full speed of travel rather than its part along the wheel plane, told
+/// from speed_mps and rim_speed_mps of rows with a slip angle; false when they cannot tell.
 bool slipIsAlongTravel(const std::vector<WheelState>& states);
 
 /// The rows of a trial that `keep` marks.
 Trial subset(const Trial& trial, const std::vector<char>& keep);
 
-/// Model readings of all rows over the measured load, rows x kChannels [-]. `guesses` (one a row, may be empty at first)
-/// carries entry angles from call to call.
+/// Model readings of all rows over the measured load, rows x kChannels [-]. `guesses` (one a row, may be
+/// empty at first) carries entry angles from call to call.
 Eigen::MatrixXd predictRows(const RefinedModel& model, const Trial& trial, std::vector<double>& guesses);
 
 }  // namespace talus::terramech

@@ -1,123 +1,99 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
-#include <terramech/gauss_legendre.hpp>
-#include <terramech/shear_displacement.hpp>
+#include <terramech/rim_contact.hpp>
 #include <terramech/wheel_contact.hpp>
+#include <terramech/wong_reece_batch.hpp>
 
 namespace talus::terramech {
 namespace {
 
-constexpr auto kRule = gaussLegendre<8>();
 constexpr double kDeepest = 0.5 * std::numbers::pi;
 
-/// Integrals over the rim, those proportional to the pressure and those of cohesion alone apart, because an
-/// imposed sinkage scales the first.
-struct Sums {
-  double load = 0.0, pull = 0.0, shear = 0.0, side = 0.0;
-};
-struct RimSums {
-  Sums pressure, cohesion;
-  double load() const { return pressure.load + cohesion.load; }
-};
-
-class Rim {
+/// The law of wong_reece.hpp with what effects change; `pressure_scale` lowers the pressure of a wheel that
+/// dug deeper than its load asks for.
+class EffectLaw {
  public:
-  explicit Rim(const WheelContact& c)
-      : c_(c), travel_(std::min(travelRatio(c.slip), 1e6)), lateral_(lateral(c, travel_)) {}
+  explicit EffectLaw(const WheelContact& c, double pressure_scale = 1.0)
+      : c_(c), peak_fraction_(std::clamp(c.c1 + c.c2 * c.slip, 0.02, 0.98)), scale_(pressure_scale) {}
 
-  RimSums at(double entry) const {
-    const double peak = std::clamp(c_.c1 + c_.c2 * c_.slip, 0.02, 0.98) * entry;
-    const double exit =
-        c_.rebound > 0.0 ? -2.0 * std::asin(std::sqrt(c_.rebound) * std::sin(0.5 * entry)) : 0.0;
-    RimSums sums;
-    for (std::size_t k = 0; k < kRule.node.size(); ++k) {
-      // s = t^2 from either end of contact to the peak makes sigma ~ s^n smooth enough for eight points.
-      const double t = kRule.node[k], s = t * t, ds = 2.0 * t * kRule.weight[k];
-      const double front = entry - (entry - peak) * s;
-      const double depth =
-          2.0 * c_.radius_m * std::sin(0.5 * (entry + front)) * std::sin(0.5 * (entry - front));
-      const double sigma = pressure(depth);
-      add(front, sigma, {entry, (entry - peak) * ds}, sums);
-      add(exit + (peak - exit) * s, sigma, {entry, (peak - exit) * ds}, sums);
-    }
-    return sums;
+  double pressure_Pa(double depth_m) const {
+    double p = c_.sinkage_modulus * std::pow(depth_m, c_.sinkage_exponent);
+    if (depth_m > c_.hard_depth_m) p += c_.hard_modulus_Pa_m * (depth_m - c_.hard_depth_m);
+    return scale_ * p;
+  }
+
+  double shear_Pa(double normal_Pa, double displacement_m) const {
+    return std::copysign(strength_Pa(normal_Pa, std::abs(displacement_m)), displacement_m);
+  }
+
+  Tangent shear_Pa(double normal_Pa, const Tangent& displacement_m) const {
+    const double path = std::hypot(displacement_m.along, displacement_m.across) + 1e-300;
+    const double tau = strength_Pa(normal_Pa, path) / path;
+    return {tau * displacement_m.along, tau * displacement_m.across};
+  }
+
+  double peak_rad(double entry_rad) const { return peak_fraction_ * entry_rad; }
+
+  double exit_rad(double entry_rad) const {
+    return c_.rebound > 0.0 ? -2.0 * std::asin(std::sqrt(c_.rebound) * std::sin(0.5 * entry_rad)) : 0.0;
   }
 
  private:
-  struct Step {
-    double entry, width;
-  };
-
-  static double lateral(const WheelContact& c, double travel) {
-    if (c.slip_angle_rad == 0.0) return 0.0;
-    return travel * std::tan(std::clamp(c.slip_angle_rad, -1.5607, 1.5607));
-  }
-
-  double pressure(double depth) const {
-    double p = c_.sinkage_modulus * std::pow(depth, c_.sinkage_exponent);
-    if (depth > c_.hard_depth_m) p += c_.hard_modulus_Pa_m * (depth - c_.hard_depth_m);
-    return p;
-  }
-
-  void add(double theta, double sigma, Step step, RimSums& sums) const {
-    const double sine = std::sin(theta), cosine = std::cos(theta), arc = step.entry - theta;
-    const double along = c_.shear_radius_m * (arc - travel_ * (std::sin(step.entry) - sine));
-    double path = std::abs(along), share_x = along < 0.0 ? -1.0 : 1.0, share_y = 0.0;
-    if (lateral_ != 0.0) {
-      const double across = c_.radius_m * lateral_ * arc;
-      path = std::hypot(along, across) + 1e-300;
-      share_x = along / path;
-      share_y = across / path;
-    }
-    const double mobilised = (1.0 - std::exp(-path / c_.shear_modulus_m)) * step.width;
-    const double friction = sigma * c_.tan_friction * mobilised, cohesive = c_.cohesion_Pa * mobilised;
-    sigma *= step.width;
-    sums.pressure.load += sigma * cosine + friction * share_x * sine;
-    sums.pressure.pull += friction * share_x * cosine - sigma * sine;
-    sums.pressure.shear += friction * share_x;
-    sums.pressure.side -= friction * share_y;
-    sums.cohesion.load += cohesive * share_x * sine;
-    sums.cohesion.pull += cohesive * share_x * cosine;
-    sums.cohesion.shear += cohesive * share_x;
-    sums.cohesion.side -= cohesive * share_y;
+  double strength_Pa(double normal_Pa, double path_m) const {
+    return (c_.cohesion_Pa + normal_Pa * c_.tan_friction) * (1.0 - std::exp(-path_m / c_.shear_modulus_m));
   }
 
   const WheelContact& c_;
-  double travel_, lateral_;
+  double peak_fraction_, scale_;
 };
 
-struct Solved {
-  double entry = 0.0;
-  RimSums sums;
-};
+Wheel wheelOf(const WheelContact& c) {
+  return {.radius_m = c.radius_m, .width_m = c.width_m};
+}
 
-/// Secant steps on the logarithms of angle and load, along which the load is almost a power, inside a
-/// bracket.
-Solved carry(const Rim& rim, const WheelContact& c, double wanted, double guess) {
-  double low = 0.0, high = kDeepest, entry = guess > 0.0 ? std::min(guess, kDeepest) : 0.3;
-  double growth = 2.0 * c.sinkage_exponent + 1.0, last_entry = 0.0, last_ratio = 0.0;
-  Solved solved;
-  for (int iteration = 0; iteration < 60; ++iteration) {
-    solved = {entry, rim.at(entry)};
-    const double load = solved.sums.load();
-    const double ratio = load > 0.0 ? std::log(load / wanted) : -30.0;
-    if (std::abs(ratio) < 1e-9) break;
-    (ratio > 0.0 ? high : low) = entry;
-    if (low >= kDeepest || high - low < 1e-13) break;
-    if (iteration > 0 && entry != last_entry) {
-      const double slope = (ratio - last_ratio) / std::log(entry / last_entry);
-      if (slope > 0.2 && slope < 30.0) growth = slope;
-    }
-    last_entry = entry;
-    last_ratio = ratio;
-    const double next = entry * std::exp(std::clamp(-ratio / growth, -2.0, 1.0));
-    entry = next > low && next < high
-                ? next
-                : (next >= kDeepest && high == kDeepest ? kDeepest : 0.5 * (low + high));
-  }
-  return solved;
+ShearDisplacement straight(const WheelContact& c, double entry) {
+  return ShearDisplacement{{c.shear_radius_m, c.slip, entry}};
+}
+
+SideSlipDisplacement sideways(const WheelContact& c, double entry) {
+  return SideSlipDisplacement{{.shear_radius_m = c.shear_radius_m,
+                               .radius_m = c.radius_m,
+                               .slip = c.slip,
+                               .slip_angle_rad = std::clamp(c.slip_angle_rad, -1.5607, 1.5607),
+                               .entry_angle_rad = entry}};
+}
+
+template <class Rule>
+RimForces forcesBy(const WheelContact& c, double entry, double pressure_scale) {
+  const EffectLaw law{c, pressure_scale};
+  if (c.slip_angle_rad == 0.0) return rimForces<Rule>(law, wheelOf(c), straight(c, entry));
+  return rimForces<Rule>(law, wheelOf(c), sideways(c, entry));
+}
+
+template <class Rule>
+std::optional<RimEquilibrium> carryBy(const WheelContact& c, double guess) {
+  const EffectLaw law{c};
+  const RimLoad wanted{.load_N = c.load_N,
+                       .slip = c.slip,
+                       .first_guess = guess > 0.0 ? guess : 0.3,
+                       .growth = 2.0 * c.sinkage_exponent + 1.0,
+                       .tolerance = 1e-9};
+  if (c.slip_angle_rad == 0.0)
+    return findEquilibrium<Rule>(law, wheelOf(c), wanted, [&](double entry) { return straight(c, entry); });
+  return findEquilibrium<Rule>(law, wheelOf(c), wanted, [&](double entry) { return sideways(c, entry); });
+}
+
+/// A braked rim slides far, so that its shear stress rises steeply where contact begins.
+RimForces forcesAt(const WheelContact& c, double entry, double pressure_scale) {
+  return c.slip < 0.0 ? forcesBy<BrakedRimRule>(c, entry, pressure_scale)
+                      : forcesBy<QuickRimRule>(c, entry, pressure_scale);
+}
+
+std::optional<RimEquilibrium> carry(const WheelContact& c, double guess) {
+  return c.slip < 0.0 ? carryBy<BrakedRimRule>(c, guess) : carryBy<QuickRimRule>(c, guess);
 }
 
 double sinkageOf(double radius_m, double entry) {
@@ -125,11 +101,50 @@ double sinkageOf(double radius_m, double entry) {
   return 2.0 * radius_m * half * half;
 }
 
-/// Moves a wheel to an imposed entry angle; the pressure there is scaled so that it still carries the load.
-Solved impose(const Rim& rim, double entry, double wanted, double& scale) {
-  const Solved solved{entry, rim.at(entry)};
-  scale = std::max(0.0, wanted - solved.sums.cohesion.load) / std::max(solved.sums.pressure.load, 1e-300);
-  return solved;
+double entryOf(double radius_m, double sinkage_m) {
+  return sinkage_m >= radius_m ? kDeepest : 2.0 * std::asin(std::sqrt(0.5 * sinkage_m / radius_m));
+}
+
+/// At an imposed entry angle with the pressure scaled so that it still carries the load: every force is
+/// linear in that scale.
+RimForces imposed(const WheelContact& c, double entry) {
+  const RimForces full = forcesAt(c, entry, 1.0), none = forcesAt(c, entry, 0.0);
+  const double scale = std::max(0.0, c.load_N - none.load_N) / std::max(full.load_N - none.load_N, 1e-300);
+  const auto at = [&](double RimForces::*force) { return none.*force + scale * (full.*force - none.*force); };
+  return {at(&RimForces::load_N), at(&RimForces::torque_Nm), at(&RimForces::drawbar_pull_N),
+          at(&RimForces::side_force_N)};
+}
+
+ContactForces forcesOf(const RimForces& forces, double sinkage_m, double entry, double static_entry) {
+  return {.sinkage_m = sinkage_m,
+          .entry_angle_rad = entry,
+          .static_entry_rad = static_entry,
+          .torque_Nm = forces.torque_Nm,
+          .drawbar_pull_N = forces.drawbar_pull_N,
+          .side_force_N = forces.side_force_N};
+}
+
+bool digs(const WheelContact& c) {
+  return c.sinkage_gain != 1.0 || c.extra_sinkage_m != 0.0;
+}
+
+bool isPlain(const WheelContact& c) {
+  return c.slip_angle_rad == 0.0 && c.rebound == 0.0 && c.shear_radius_m == c.radius_m &&
+         c.hard_modulus_Pa_m == 0.0 && !digs(c);
+}
+
+WheelCase caseOf(const WheelContact& c) {
+  return {.cohesion_Pa = c.cohesion_Pa,
+          .friction_angle_rad = std::atan(c.tan_friction),
+          .sinkage_exponent = c.sinkage_exponent,
+          .sinkage_modulus = c.sinkage_modulus,
+          .shear_modulus_m = c.shear_modulus_m,
+          .c1 = c.c1,
+          .c2 = c.c2,
+          .wheel_radius_m = c.radius_m,
+          .wheel_width_m = c.width_m,
+          .load_N = c.load_N,
+          .slip = c.slip};
 }
 
 }  // namespace
@@ -150,25 +165,44 @@ WheelContact contactOf(const Soil& soil, const Wheel& wheel) {
 }
 
 ContactForces solveContact(const WheelContact& c, double entry_guess_rad) {
-  const Rim rim{c};
-  const double area = c.radius_m * c.width_m, wanted = c.load_N / area;
-  Solved solved = carry(rim, c, wanted, entry_guess_rad);
-  const double static_entry = solved.entry;
-  double scale = 1.0;
-  if (c.sinkage_gain != 1.0 || c.extra_sinkage_m != 0.0) {
-    const double z = std::clamp(c.sinkage_gain * sinkageOf(c.radius_m, solved.entry) + c.extra_sinkage_m,
-                                1e-6 * c.radius_m, c.radius_m);
-    solved = impose(rim, 2.0 * std::asin(std::sqrt(0.5 * z / c.radius_m)), wanted, scale);
-  } else if (solved.entry >= kDeepest) {
-    solved = impose(rim, kDeepest, wanted, scale);
+  const auto carried = carry(c, entry_guess_rad);
+  const double static_entry = carried ? carried->entry_angle_rad : kDeepest;
+  const double z0 = sinkageOf(c.radius_m, static_entry);
+  if (carried && !digs(c)) return forcesOf(carried->forces, z0, static_entry, static_entry);
+  const double z = std::clamp(c.sinkage_gain * z0 + c.extra_sinkage_m, 1e-6 * c.radius_m, 1.95 * c.radius_m);
+  const double entry = entryOf(c.radius_m, z);
+  return forcesOf(imposed(c, entry), z, entry, static_entry);
+}
+
+void solveContacts(std::span<const WheelContact> contacts, std::span<double> entry_guess_rad,
+                   std::span<ContactForces> forces) {
+  std::vector<std::size_t> plain;
+  std::vector<WheelCase> cases;
+  const auto slowly = [&](std::size_t k) {
+    forces[k] = solveContact(contacts[k], entry_guess_rad[k]);
+    entry_guess_rad[k] = forces[k].static_entry_rad;
+  };
+  for (std::size_t k = 0; k < contacts.size(); ++k) {
+    const WheelCase one = caseOf(contacts[k]);
+    if (!isPlain(contacts[k]) || !isFastCase(one)) {
+      slowly(k);
+      continue;
+    }
+    plain.push_back(k);
+    cases.push_back(one);
   }
-  const Sums &p = solved.sums.pressure, &q = solved.sums.cohesion;
-  return {.sinkage_m = sinkageOf(c.radius_m, solved.entry),
-          .entry_angle_rad = solved.entry,
-          .static_entry_rad = static_entry,
-          .torque_Nm = (scale * p.shear + q.shear) * area * c.shear_radius_m,
-          .drawbar_pull_N = (scale * p.pull + q.pull) * area,
-          .side_force_N = (scale * p.side + q.side) * area};
+  std::vector<WheelForces> solved(cases.size());
+  equilibria(cases, solved, BatchKernel::Best, Leftover::Nan);
+  for (std::size_t j = 0; j < plain.size(); ++j) {
+    const WheelForces& f = solved[j];
+    if (!std::isfinite(f.drawbar_pull_N)) {
+      slowly(plain[j]);
+      continue;
+    }
+    forces[plain[j]] = {f.sinkage_m, f.entry_angle_rad, f.entry_angle_rad,
+                        f.torque_Nm, f.drawbar_pull_N,  0.0};
+    entry_guess_rad[plain[j]] = f.entry_angle_rad;
+  }
 }
 
 }  // namespace talus::terramech

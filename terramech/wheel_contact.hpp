@@ -1,12 +1,14 @@
 #pragma once
 
 #include <limits>
+#include <span>
 
 #include <terramech/soil.hpp>
 #include <terramech/wheel.hpp>
 
-/// One wheel on soil with everything that an effect may change, solved for its sinkage: the Wong-Reece wheel
-/// of wong_reece.hpp when nothing is changed, and then equal to it to 1e-7 of the load.
+/// One wheel on soil with everything that an effect may change, integrated by rim_contact.hpp with a quicker
+/// rule: the Wong-Reece wheel of wong_reece.hpp when nothing is changed, and then equal to it to 1e-6 of the
+/// load.
 namespace talus::terramech {
 
 /// What the contact of one wheel is solved from. SI; every field is already what acts, effects included.
@@ -32,8 +34,8 @@ struct WheelContact {
   double hard_depth_m =
       std::numeric_limits<double>::infinity();  ///< H: below it pressure grows by hard_modulus
   double hard_modulus_Pa_m = 0.0;               ///< k_h of the lower layer
-  double sinkage_gain = 1.0;     ///< slip sinkage: the wheel digs to gain x static sinkage + extra_sinkage_m
-  double extra_sinkage_m = 0.0;  ///< the ground below then carries the load at a lower stress
+  double sinkage_gain = 1.0;     ///< slip sinkage: the wheel digs to gain x static sinkage + extra_sinkage_m,
+  double extra_sinkage_m = 0.0;  ///< at most 1.95 r; the ground below then carries the load at a lower stress
 };
 
 /// What the soil does to the wheel.
@@ -50,14 +52,18 @@ struct ContactForces {
 WheelContact contactOf(const Soil& soil, const Wheel& wheel);
 
 /// Forces on the wheel at the sinkage that carries its load; `entry_guess_rad` starts the search, 0: none.
-/// A load that the soil cannot carry above the axle gives the wheel sunk to its axle, scaled to carry it:
-/// fits pass through such points, and none of them is a fit. Never throws. Thread-safe.
-///   W  = r b   int (sigma cos theta + tau_x sin theta) d theta,   theta_2 to theta_1
-///   DP = r b   int (tau_x cos theta - sigma sin theta) d theta
-///   T  = r_s r b int tau_x d theta,   F = -r b int tau_y d theta        (wong_reece_1967a; thesis C.8 to
-///   C.10)
-/// tau = (c + sigma tan phi)(1 - e^{-j/K}) along the resultant displacement j = hypot(j_x, j_y), which is the
-/// friction circle of an isotropic soil; j_y = (v_y / omega)(theta_1 - theta) (ishigami_2007).
+/// A load that the soil cannot carry above the axle gives the wheel sunk to its axle, the stress scaled to
+/// carry it: fits pass through such points, and none of them is a fit. Contact ends at the axle's height
+/// whatever the sinkage. Never throws. Thread-safe. Integrals: rimForces();
+///   tau = (c + sigma tan phi)(1 - e^{-j/K}) along the resultant displacement j = hypot(j_x, j_y), which is
+///   the
+/// friction circle of an isotropic soil (ishigami_2007).
 ContactForces solveContact(const WheelContact& contact, double entry_guess_rad = 0.0);
+
+/// All of them: those that no effect takes from the plain Wong-Reece wheel by the kernel of
+/// wong_reece_batch.hpp, four at a time, the others by solveContact(). `entry_guess_rad`, one each, start the
+/// searches and receive what they found.
+void solveContacts(std::span<const WheelContact> contacts, std::span<double> entry_guess_rad,
+                   std::span<ContactForces> forces);
 
 }  // namespace talus::terramech

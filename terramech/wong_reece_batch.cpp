@@ -33,19 +33,8 @@ Group groupOf(BatchKernel kernel) {
   return kernel == BatchKernel::Scalar || !haveAvx2() ? scalarGroup : avx2Group;
 }
 
-/// Whether the fast kernel takes the case: valid and driven, away from what would overflow it. Near no slip
-/// the shear displacement is a small difference, which lane_math.hpp does not resolve.
-bool isFast(const WheelCase& c) {
-  const double peak = c.c1 + c.c2 * c.slip;
-  const auto ordinary = [](double x) { return x > 1e-9 && x < 1e12; };
-  return c.slip >= 0.01 && c.slip <= 1.0 && peak > 0.0 && peak < 0.999 && c.cohesion_Pa >= 0.0 &&
-         c.cohesion_Pa < 1e9 && c.friction_angle_rad >= 0.0 && c.friction_angle_rad < 1.5 &&
-         c.sinkage_exponent >= 0.1 && c.sinkage_exponent <= 2.0 && ordinary(c.sinkage_modulus) &&
-         ordinary(c.shear_modulus_m) && ordinary(c.wheel_radius_m) && ordinary(c.wheel_width_m) &&
-         ordinary(c.load_N);
-}
-
-WheelForces general(const WheelCase& c) {
+WheelForces general(const WheelCase& c, Leftover leftover) {
+  if (leftover == Leftover::Nan) return {kNan, kNan, kNan, kNan};
   try {
     return equilibrium(c);
   } catch (const std::logic_error&) {
@@ -54,24 +43,36 @@ WheelForces general(const WheelCase& c) {
 }
 
 /// Up to four cases; a short group is filled with copies of its first fast case, a slow case replaced by one.
-void solveSome(std::span<const WheelCase> cases, std::span<WheelForces> forces, Group group) {
-  const auto fast = std::find_if(cases.begin(), cases.end(), isFast);
+void solveSome(std::span<const WheelCase> cases, std::span<WheelForces> forces, Group group,
+               Leftover leftover) {
+  const auto fast = std::find_if(cases.begin(), cases.end(), isFastCase);
   std::array<bool, kLanes> left;
   left.fill(true);
   if (fast != cases.end()) {
     std::array<WheelCase, kLanes> lane;
     lane.fill(*fast);
     for (std::size_t k = 0; k < cases.size(); ++k)
-      if (isFast(cases[k])) lane[k] = cases[k];
+      if (isFastCase(cases[k])) lane[k] = cases[k];
     std::array<WheelForces, kLanes> solved;
     group(lane.data(), solved.data(), left.data());
     std::copy_n(solved.begin(), cases.size(), forces.begin());
   }
   for (std::size_t k = 0; k < cases.size(); ++k)
-    if (left[k] || !isFast(cases[k])) forces[k] = general(cases[k]);
+    if (left[k] || !isFastCase(cases[k])) forces[k] = general(cases[k], leftover);
 }
 
 }  // namespace
+
+bool isFastCase(const WheelCase& c) {
+  // Near no slip the shear displacement is a small difference, which lane_math.hpp does not resolve.
+  const double peak = c.c1 + c.c2 * c.slip;
+  const auto ordinary = [](double x) { return x > 1e-9 && x < 1e12; };
+  return c.slip >= 0.01 && c.slip <= 1.0 && peak > 0.0 && peak < 0.999 && c.cohesion_Pa >= 0.0 &&
+         c.cohesion_Pa < 1e9 && c.friction_angle_rad >= 0.0 && c.friction_angle_rad < 1.5 &&
+         c.sinkage_exponent >= 0.1 && c.sinkage_exponent <= 2.0 && ordinary(c.sinkage_modulus) &&
+         ordinary(c.shear_modulus_m) && ordinary(c.wheel_radius_m) && ordinary(c.wheel_width_m) &&
+         ordinary(c.load_N);
+}
 
 WheelCase wheelCase(const Soil& soil, const Wheel& wheel, const WheelOperation& operation) {
   return {.cohesion_Pa = soil.cohesion_Pa,
@@ -100,13 +101,14 @@ WheelForces equilibrium(const WheelCase& c) {
   return equilibrium(soil, wheel, {.load_N = c.load_N, .slip = c.slip});
 }
 
-void equilibria(std::span<const WheelCase> cases, std::span<WheelForces> forces, BatchKernel kernel) {
+void equilibria(std::span<const WheelCase> cases, std::span<WheelForces> forces, BatchKernel kernel,
+                Leftover leftover) {
   if (cases.size() != forces.size())
     throw std::invalid_argument("equilibria: as many forces as cases are needed");
   const Group group = groupOf(kernel);
   for (std::size_t k = 0; k < cases.size(); k += kLanes) {
     const std::size_t count = std::min<std::size_t>(kLanes, cases.size() - k);
-    solveSome(cases.subspan(k, count), forces.subspan(k, count), group);
+    solveSome(cases.subspan(k, count), forces.subspan(k, count), group, leftover);
   }
 }
 

@@ -28,6 +28,15 @@ WheelCase wheelCase(const Soil& soil, const Wheel& wheel, const WheelOperation& 
 /// One case by the solver of wong_reece.hpp, with its errors.
 WheelForces equilibrium(const WheelCase& wheel_case);
 
+/// Whether the batch's kernel takes a case: valid and driven, away from what would overflow it.
+bool isFastCase(const WheelCase& wheel_case);
+
+/// What becomes of a case that the kernel does not solve.
+enum class Leftover {
+  Equilibrium,  ///< goes through equilibrium()
+  Nan           ///< is left as NaN, to a caller who has another solver
+};
+
 /// Which code computes a batch. Both give the same bits.
 enum class BatchKernel {
   Best,    ///< Avx2 where the machine has it, else Scalar
@@ -37,9 +46,9 @@ enum class BatchKernel {
 
 /// Solves every case: `forces` gets as many entries as `cases`, every number NaN where the case has no answer
 /// (equilibrium() tells why). Agrees with equilibrium() to 1e-7 relative, drawbar pull to 1e-7 of the load.
-/// Braked wheels, slip below 0.01, and r theta_1 / K > 12 go through equilibrium() itself. Throws
+/// Braked wheels, slip below 0.01, and r theta_1 / K > 12 are left over. Throws
 /// std::invalid_argument when the sizes differ or the machine lacks the kernel asked for. Thread-safe.
 void equilibria(std::span<const WheelCase> cases, std::span<WheelForces> forces,
-                BatchKernel kernel = BatchKernel::Best);
+                BatchKernel kernel = BatchKernel::Best, Leftover leftover = Leftover::Equilibrium);
 
 }  // namespace talus::terramech

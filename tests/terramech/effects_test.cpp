@@ -108,9 +108,10 @@ TEST(Effects, LyaskoSinkageFollowsItsLaw) {
 TEST(Effects, SplineIsNaturalAndConstantOutside) {
   const std::vector<double> x{0.0, 1.0, 2.0}, y{0.0, 1.0, 0.0};
   // Closed form: natural cubic through (0,0), (1,1), (2,0) is 1.5 t - 0.5 t^3 on the first piece.
-  EXPECT_NEAR(splineValue(x, y, 0.5), 1.5 * 0.5 - 0.5 * 0.125, 1e-12);
-  EXPECT_EQ(splineValue(x, y, -3.0), 0.0);
-  EXPECT_EQ(splineValue(x, y, 9.0), 0.0);
+  const NaturalSpline spline{x, y};
+  EXPECT_NEAR(spline(0.5), 1.5 * 0.5 - 0.5 * 0.125, 1e-12);
+  EXPECT_EQ(spline(-3.0), 0.0);
+  EXPECT_EQ(spline(9.0), 0.0);
 }
 
 TEST(RefinedModel, SlipInTheWheelPlaneGrowsWithTheSlipAngle) {
