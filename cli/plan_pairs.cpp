@@ -51,14 +51,14 @@ Json planned(const PlacePair& pair, planner::Problem problem, planner::NamedPlan
   if (pair.start_heading_rad) problem.start_heading_rad = pair.start_heading_rad;
   if (pair.goal_heading_rad) problem.goal_heading_rad = pair.goal_heading_rad;
   const planner::Plan plan = planner.plan(problem);
-  if (plan.status == planner::RouteStatus::Found) requireAllowed(plan, problem);
+  if (plan.status != planner::RouteStatus::Found)
+    return {{"status", planner::name(plan.status)}, {"planner", planner.name()}, {"reason", plan.reason}};
+  requireAllowed(plan, problem);
   const planner::Route route = annotated(plan, {.map = *problem.map,
                                                 .elevation_m = nullptr,
                                                 .planner = planner.name(),
                                                 .kinematics = problem.kinematics});
-  Json line = summaryJson(route);
-  if (plan.status != planner::RouteStatus::Found) line["reason"] = plan.reason;
-  return line;
+  return summaryJson(route);
 }
 
 std::string cell(const Json& line, const char* key) {
