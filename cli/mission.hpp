@@ -25,6 +25,7 @@ struct PlanOptions {
   std::string start;
   std::string goal;
   std::vector<std::string> via;
+  std::string pairs;  ///< CSV of many starts and goals; empty: one route
   double tolerance_m = 0.0;
   std::string planner = "field";
   DriveOptions drive;

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <cli/campaign.hpp>
 #include <cli/command.hpp>
 #include <cli/commands.hpp>
 #include <cli/mission.hpp>
@@ -16,6 +17,7 @@
 #include <cli/page.hpp>
 #include <cli/pareto_chart.hpp>
 #include <cli/picture.hpp>
+#include <cli/plan_pairs.hpp>
 #include <cli/route_json.hpp>
 #include <cli/route_summary.hpp>
 #include <cli/scene.hpp>
@@ -82,6 +84,11 @@ void bind(CLI::App& command, PlanOptions& options) {
       ->type_name("PLACE");
   command.add_option("--goal", options.goal, "the same")->type_name("PLACE");
   command.add_option("--via", options.via, "to be passed on the way; may be repeated")->type_name("PLACE");
+  command
+      .add_option("--pairs", options.pairs,
+                  "many routes over the one map: CSV with start_x_m, start_y_m, goal_x_m, goal_y_m; a row of "
+                  "results each, to -o FILE.csv or stdout; over all ranks under mpirun")
+      ->type_name("FILE.csv");
   command.add_option("--tolerance", options.tolerance_m, "the route may end this far from the goal")
       ->type_name("METRES")
       ->check(notNegative());
@@ -108,6 +115,15 @@ void bind(CLI::App& command, PlanOptions& options) {
 }
 
 void requirePlaces(const PlanOptions& options) {
+  if (!options.pairs.empty()) {
+    if (!options.start.empty() || !options.goal.empty() || !options.via.empty() || !options.html.empty() ||
+        !options.png.empty() || !options.pareto.empty() || options.max_risk > 0.0 ||
+        !options.drive.chassis.empty())
+      throw InputError({"--pairs " + options.pairs,
+                        "goes without --start, --goal, --via, --html, --png, --pareto, --risk and --chassis",
+                        "leave them out, or plan the routes one by one"});
+    return;
+  }
   if (options.start.empty()) throw InputError({"talus plan", "no start", "pass --start x,y"});
   if (options.goal.empty()) throw InputError({"talus plan", "no goal", "pass --goal x,y"});
 }
@@ -123,8 +139,10 @@ planner::Problem problemOf(const PlanOptions& options, const Ground& ground, con
   const maps::ElevationMap& map = ground.map.elevation();
   planner::Problem problem;
   problem.map = ground.map.published();
-  problem.start = maps::readPlace(options.start, map, "--start");
-  problem.goal = maps::readPlace(options.goal, map, "--goal");
+  if (options.pairs.empty()) {
+    problem.start = maps::readPlace(options.start, map, "--start");
+    problem.goal = maps::readPlace(options.goal, map, "--goal");
+  }
   for (const std::string& place : options.via) problem.via.push_back(maps::readPlace(place, map, "--via"));
   problem.goal_tolerance_m = options.tolerance_m;
   if (options.time_limit_s > 0.0) problem.time_limit_s = options.time_limit_s;
@@ -233,16 +251,36 @@ int refuse(const Route& route, const Context& context) {
   return exitOf(route.status);
 }
 
+// Many routes over one map, over all ranks of an MPI run.
+int runPairs(const PlanOptions& options, Context& context) {
+  const Campaign campaign;
+  if (!campaign.leads()) context.quiet = true;
+  const auto pairs = readPairs(options.pairs);
+  if (campaign.leads()) checkOutputs(options);
+  const Ground ground = readGround(options.ground, context);
+  if (context.stop.stop_requested()) return Exit::kCancelled;
+  const auto lines = planPairs(pairs, problemOf(options, ground, context), options.planner, campaign);
+  if (!campaign.leads()) return Exit::kDone;
+  if (context.stop.stop_requested()) return Exit::kCancelled;
+  if (!options.output.empty()) writeFile(options.output, pairsCsv(lines));
+  if (context.json)
+    printJson(nlohmann::ordered_json(lines));
+  else if (options.output.empty())
+    print(pairsCsv(lines));
+  return Exit::kDone;
+}
+
 int run(const PlanOptions& asked, Context& context) {
   PlanOptions options = asked;
   if (isMission(options.ground.dem.path)) readMission(options);
   requirePlaces(options);
-  checkOutputs(options);
+  if (options.pairs.empty()) checkOutputs(options);
   planner::NamedPlanner planner(options.planner);
   if (options.drive.any() && !planner.drives())
     throw InputError({"planner '" + planner.name() + "'", "knows no heading and no turning radius",
                       "pass --planner hybrid, or leave out --start-heading, --goal-heading, --turning-radius "
                       "and --no-reverse"});
+  if (!options.pairs.empty()) return runPairs(options, context);
   const Ground ground = readGround(options.ground, context);
   if (context.stop.stop_requested()) return Exit::kCancelled;
   const planner::Problem problem = problemOf(options, ground, context);

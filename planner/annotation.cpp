@@ -86,6 +86,7 @@ class Annotator {
         looked(pose.place, pose.place, {std::cos(pose.heading_rad), std::sin(pose.heading_rad)});
     vertex.turn_rad = turn_rad;
     vertices.push_back(vertex);
+    spend(input_.kinematics.stop, 1.0);
     turn(turn_rad, pose.place);
   }
 

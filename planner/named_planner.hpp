@@ -21,7 +21,9 @@ class NamedPlanner {
   explicit NamedPlanner(const std::string& name = {});
 
   /// Whether it keeps headings and a turning radius.
-  bool drives() const noexcept { return settings_.planner == DrivePlanner::kName; }
+  bool drives() const noexcept {
+    return settings_.planner == DrivePlanner::kName || settings_.planner == DrivePlanner::kSampling;
+  }
 
   /// The offered name.
   const std::string& name() const noexcept { return settings_.planner; }
