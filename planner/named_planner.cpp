@@ -14,6 +14,10 @@ Plan NamedPlanner::planField(const Problem& problem) {
 
 Plan NamedPlanner::plan(const Problem& problem) {
   if (settings_.planner == plannerNames().front()) return planField(problem);
+  if (drives()) {
+    if (name() == DrivePlanner::kSampling) drive_.sample({.better = settings_.better});
+    return drive_.plan(problem);
+  }
   return planBySampling(problem, settings_, [this](const Problem& leg) {
     return LegKnowledge{.plan = planField(leg), .from_start = {}, .to_goal = {}};
   });
