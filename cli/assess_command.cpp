@@ -160,6 +160,10 @@ int run(const AssessOptions& options, Context& context) {
     context.warn(fmt::format("{}:{}: {} ({} rows rejected)", options.table, first.line, first.reason,
                              table.rejected.size()));
   }
+  for (const std::string& name : table.left_out) {
+    context.warn(options.model + ": " + name +
+                 " is a fault of a sensor; the pull is given without it, other than in talus predict");
+  }
   if (!options.html.empty()) writePage(options, table.rows);
   if (context.json) {
     printJson(jsonOf(table.rows, options.reference_slip));

@@ -26,7 +26,7 @@ Uncertain pullBy(const std::string& formula, const Wheel& wheel, const WheelSamp
 
 void judge(Assessment& a, const CategoryThresholds& limits) {
   const WheelCondition mean{.drawbar_pull_over_load = a.pull.value,
-                             .sinkage_over_radius = a.sinkage_over_radius.value};
+                            .sinkage_over_radius = a.sinkage_over_radius.value};
   a.category = categorise(mean, limits);
   a.probability = categoryProbability({.mean = mean,
                                        .drawbar_pull_over_load_std = a.pull.std,
@@ -51,7 +51,7 @@ AssessedTable assessReadings(const AssessOptions& options, const CategoryThresho
   const ReadingErrors errors = ReadingErrors::relative(options.noise);
   const WheelRows rows =
       readWheelRows(options.table, {.rover = options.rover, .needs_slip = options.extrapolate}, watch);
-  AssessedTable table{.rows = {}, .rejected = rows.rejected};
+  AssessedTable table{.rows = {}, .rejected = rows.rejected, .left_out = {}};
   for (std::size_t k = 0; k < rows.samples.size(); ++k) {
     const WheelSample& s = rows.samples[k];
     const double sinkage = s.sinkage_m / rows.wheel.radius_m;
@@ -67,11 +67,14 @@ AssessedTable assessReadings(const AssessOptions& options, const CategoryThresho
   return table;
 }
 
-RefinedModel modelOf(const AssessOptions& options) {
+RefinedModel modelOf(const AssessOptions& options, std::vector<std::string>& left_out) {
   ModelFile file = loadModel(options.model);
   if (!file.soil_given)
     throw InputError({options.model, "names no soil", "trace some data with it first: talus trace"});
   if (!options.rover.empty()) file.model.wheel = loadRover(options.rover).wheel;
+  for (const Effect& effect : file.model.effects) {
+    if (isSensorFault(effect)) left_out.push_back(effect.name);
+  }
   return groundTruthOf(file.model);
 }
 
@@ -85,14 +88,15 @@ Uncertain sinkageOf(const std::vector<double>* read, std::size_t row, const Whee
 
 AssessedTable assessByModel(const AssessOptions& options, const CategoryThresholds& limits,
                             const Watch& watch) {
-  const RefinedModel model = modelOf(options);
+  AssessedTable table;
+  const RefinedModel model = modelOf(options, table.left_out);
   TelemetryOptions reading{.required = {"load_N", "slip"}};
   if (model.wheel) reading.wheel_radius_m = model.wheel->radius_m;
   const Telemetry telemetry = readTelemetry(options.table, reading, watch);
   const std::vector<WheelState> states = statesOf(telemetry, model);
   const auto* sinkage = telemetry.find("sinkage_m");
   const auto* torque = telemetry.find("torque_Nm");
-  AssessedTable table{.rows = {}, .rejected = telemetry.rejected};
+  table.rejected = telemetry.rejected;
   for (std::size_t k = 0; k < states.size() && !watch.stopped(); ++k) {
     const ModelPull pull = pullOf(model, states[k]);
     const bool torque_read = torque != nullptr && std::isfinite((*torque)[k]);

@@ -44,6 +44,7 @@ struct Assessment {
 struct AssessedTable {
   std::vector<Assessment> rows;
   std::vector<terramech::RejectedRow> rejected;
+  std::vector<std::string> left_out;  ///< effects of the model that are faults of a sensor
 };
 
 /// Reads the table and judges each row, by its readings or by the model. Throws InputError for what is wrong

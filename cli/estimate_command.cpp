@@ -47,6 +47,8 @@ void bind(CLI::App& command, EstimateOptions& options) {
   command.add_option("--noise", options.noise, "relative error of each reading (wong-reece)")
       ->check(CLI::Range(1e-4, 0.5))
       ->capture_default_str();
+  command.add_flag("--keep-m1", options.whole_equation,
+                   "solve the whole Eq. 2.9, M1 included, in place of 2.11 (linear-offset)");
   command.add_flag("--recursive", options.recursive,
                    "take the rows in one by one, in constant memory, and print the estimate after each");
   command.add_option("--html", options.html, "a page with the fit")->type_name("R.html");
@@ -98,10 +100,14 @@ Json jsonOf(const std::string& method, const SoilEstimate& e) {
             {"rows_rejected", e.rejected.size()},
             {"well_conditioned", e.unseen.empty()},
             {"unseen", e.unseen},
+            {"plausible", e.implausible().empty()},
             {"rejected", rejectedRows(e)}};
   if (std::isfinite(e.sinkage_exponent)) json["sinkage_exponent"] = e.sinkage_exponent;
   if (e.cohesive_modulus) json["cohesive_modulus"] = *e.cohesive_modulus;
   if (e.frictional_modulus) json["frictional_modulus"] = *e.frictional_modulus;
+  for (const auto& plate : e.plates)
+    json["plates"].push_back(
+        {{"plate_width_m", plate.plate_width_m}, {"sinkage_modulus", plate.sinkage_modulus}});
   if (!e.running.empty()) json["running"] = runningJson(e);
   if (e.posterior) json.update(posteriorJson(e));
   return json;
@@ -134,6 +140,9 @@ std::string textOf(const SoilEstimate& e) {
   if (std::isfinite(e.shear_modulus_m))
     text += fmt::format("shear modulus   {:9.2f} mm\n", 1e3 * e.shear_modulus_m);
   if (std::isfinite(e.sinkage_exponent)) text += fmt::format("exponent n      {:9.3f}\n", e.sinkage_exponent);
+  for (const auto& plate : e.plates)
+    text += fmt::format("k at b {:5.1f} mm {:9.3g} N/m^(n+2)\n", 1e3 * plate.plate_width_m,
+                        plate.sinkage_modulus);
   if (e.cohesive_modulus) text += fmt::format("k_c             {:9.3g} N/m^(n+1)\n", *e.cohesive_modulus);
   if (e.frictional_modulus) text += fmt::format("k_phi           {:9.3g} N/m^(n+2)\n", *e.frictional_modulus);
   for (std::size_t k = 0; k < e.class_names.size(); ++k) {
@@ -203,6 +212,7 @@ int run(const EstimateOptions& options, Context& context) {
                              first.reason, estimate.rejected.size()));
   }
   for (const std::string& text : estimate.unseen) context.warn("badly conditioned: " + text);
+  if (const std::string why = estimate.implausible(); !why.empty()) context.warn(why);
   constexpr double kMisfit = 3.0;
   if (estimate.posterior && estimate.posterior->misfit > kMisfit) {
     context.warn(fmt::format(

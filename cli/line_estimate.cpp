@@ -77,6 +77,29 @@ ShearStrength believed(const ShearStrength& fit, const std::vector<StrengthPrior
   return priors.empty() ? fit : withPrior(fit, priors);
 }
 
+// The line of a method at a known K, in constant memory; that of linear-offset with M1 where asked.
+class LineFit {
+ public:
+  LineFit(const EstimateOptions& options, const Wheel& wheel)
+      : wheel_(wheel), pair_(pairOf(options.method)), whole_equation_(options.whole_equation) {}
+
+  void add(const WheelSample& sample, double shear_modulus_m) {
+    if (whole_equation_) {
+      whole_.add(linearOffset(wheel_, sample, shear_modulus_m));
+    } else {
+      line_.add(pair_(wheel_, sample, shear_modulus_m));
+    }
+  }
+  ShearStrength estimate() const { return whole_equation_ ? whole_.estimate() : line_.estimate(); }
+
+ private:
+  Wheel wheel_;
+  PairOf pair_;
+  bool whole_equation_;
+  MohrCoulombLine line_;
+  LinearOffsetFit whole_;
+};
+
 // All rows at once.
 void fitTogether(const EstimateOptions& options, const WheelRows& rows, const std::vector<SoilPrior>& priors,
                  SoilEstimate& estimate) {
@@ -84,10 +107,10 @@ void fitTogether(const EstimateOptions& options, const WheelRows& rows, const st
   const auto modulus = known ? ModulusEstimate{.shear_modulus_m = *known}
                              : findModulus(criterionOf(options.shear_modulus), rows);
   sayModulusUnseen(modulus, estimate);
-  MohrCoulombLine line;
+  LineFit line(options, rows.wheel);
   for (const WheelSample& s : rows.samples) {
     estimate.points.push_back(pairOf(options.method)(rows.wheel, s, modulus.shear_modulus_m));
-    line.add(estimate.points.back());
+    line.add(s, modulus.shear_modulus_m);
   }
   estimate.take(believed(line.estimate(), strengthPriors(priors)));
   estimate.shear_modulus_m = modulus.shear_modulus_m;
@@ -97,16 +120,21 @@ void fitTogether(const EstimateOptions& options, const WheelRows& rows, const st
 class Recursion {
  public:
   Recursion(const EstimateOptions& options, const Wheel& wheel, const std::vector<SoilPrior>& priors)
-      : wheel_(wheel),
-        known_(knownModulus(options, priors)),
+      : known_(knownModulus(options, priors)),
         priors_(strengthPriors(priors)),
-        pair_(pairOf(options.method)),
-        ladder_(wheel, {.criterion = criterionOf(options.shear_modulus), .pair = pair_}) {}
+        line_(options, wheel),
+        ladder_(wheel, {.criterion = criterionOf(options.shear_modulus), .pair = pairOf(options.method)}) {
+    if (options.whole_equation && !known_) {
+      throw InputError({.where = "--keep-m1",
+                        .reason = "K has to be known to take rows in one by one",
+                        .remedy = "state --shear-modulus in metres"});
+    }
+  }
 
   // False: the sample has no equation.
   bool add(const WheelSample& sample) {
     if (!known_) return ladder_.add(sample);
-    line_.add(pair_(wheel_, sample, *known_));
+    line_.add(sample, *known_);
     return true;
   }
   ShearStrength strength() const { return believed(known_ ? line_.estimate() : ladder_.strength(), priors_); }
@@ -115,11 +143,9 @@ class Recursion {
   }
 
  private:
-  Wheel wheel_;
   std::optional<double> known_;
   std::vector<StrengthPrior> priors_;
-  PairOf pair_;
-  MohrCoulombLine line_;
+  LineFit line_;
   ModulusLadder ladder_;
 };
 

@@ -1,5 +1,7 @@
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include <cli/bevameter_table.hpp>
 #include <cli/line_estimate.hpp>
 #include <cli/prior_option.hpp>
@@ -93,6 +95,7 @@ SoilEstimate bevameterEstimate(const EstimateOptions& options, const Watch& watc
     for (const PlateReading& r : table.plates) fitter.add(r);
     const PressureSinkage fit = fitter.estimate();
     estimate.sinkage_exponent = fit.sinkage_exponent;
+    estimate.plates = fit.plates;
     estimate.cohesive_modulus = fit.cohesive_modulus;
     estimate.frictional_modulus = fit.frictional_modulus;
     if (!fit.refused.empty())
@@ -119,11 +122,30 @@ void SoilEstimate::take(const ShearStrength& fit) {
   unseen.insert(unseen.end(), fit.unseen.begin(), fit.unseen.end());
 }
 
+std::string SoilEstimate::implausible() const {
+  constexpr double kSteepest = 1.7320508075688772;  // tan 60 deg
+  const double c = cohesion_Pa + 2.0 * std::sqrt(covariance(0, 0));
+  const double doubt = 2.0 * std::sqrt(covariance(1, 1));
+  const bool no_cohesion = c < 0.0;
+  const bool no_friction = tan_friction + doubt < 0.0 || tan_friction - doubt > kSteepest;
+  if (!no_cohesion && !no_friction) return {};
+  return fmt::format(
+      "{} no soil has: the rows do not behave as the method assumes (one soil, no slip-sinkage, no grousers)",
+      no_cohesion && no_friction ? "a cohesion and a friction angle that"
+      : no_cohesion              ? "a cohesion that"
+                                 : "a friction angle that");
+}
+
 double frictionStd_rad(const Eigen::Matrix2d& covariance, double friction_angle_rad) {
   return std::sqrt(covariance(1, 1)) * std::pow(std::cos(friction_angle_rad), 2);
 }
 
 SoilEstimate estimateSoil(const EstimateOptions& options, const Watch& watch) {
+  if (options.whole_equation && options.method != "linear-offset") {
+    throw InputError({.where = "--keep-m1",
+                      .reason = "it is a term of linear-offset",
+                      .remedy = "use --method linear-offset, or leave it out"});
+  }
   if (options.method == "wong-reece") return posteriorEstimate(options, watch);
   if (options.method != "bevameter") return lineEstimate(options, watch);
   if (options.recursive) {

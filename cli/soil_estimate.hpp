@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include <cli/wheel_rows.hpp>
+#include <terramech/bevameter.hpp>
 #include <terramech/mohr_coulomb_line.hpp>
 #include <terramech/soil_posterior.hpp>
 
@@ -21,8 +22,9 @@ struct EstimateOptions {
   std::string prior;  ///< soil file or name; empty: for wong-reece the classes of thesis Table 2.1, else none
   std::string rover;
   std::string html;
-  bool recursive = false;  ///< take the rows in one by one and keep each answer
-  double noise = 0.05;     ///< relative standard deviation of each reading [-]
+  bool whole_equation = false;  ///< linear-offset: keep M1 of Eq. 2.9
+  bool recursive = false;       ///< take the rows in one by one and keep each answer
+  double noise = 0.05;          ///< relative standard deviation of each reading [-]
 };
 
 /// What was believed after a row of the table; NaN where nothing could be said yet.
@@ -49,6 +51,7 @@ struct SoilEstimate {
   double sinkage_exponent;
   std::optional<double> cohesive_modulus;
   std::optional<double> frictional_modulus;
+  std::vector<terramech::PlateModulus> plates;  ///< of bevameter
   std::size_t rows_used = 0;
   std::vector<terramech::RejectedRow> rejected;
   std::vector<std::string> unseen;            ///< parameters that the data do not show, with the reason
@@ -61,6 +64,10 @@ struct SoilEstimate {
 
   /// Takes c, tan(phi), their covariance and what was not seen from a fitted line.
   void take(const terramech::ShearStrength& fit);
+
+  /// What no soil is like, by more than two standard deviations: c < 0, phi below 0 or above 60 deg. Empty
+  /// where it may be one.
+  std::string implausible() const;
 };
 
 /// Runs the method on the table. Throws InputError for what is wrong with the input, std::domain_error when

@@ -65,6 +65,14 @@ Category lower(Category category) {
 
 }  // namespace
 
+terramech::MobilityCurve mobilityOf(const GroundClass& ground, const terramech::Rover& rover) {
+  if (ground.effects.empty()) return {ground.soil, rover};
+  terramech::RefinedModel model;
+  model.soil = ground.soil;
+  model.effects = ground.effects;
+  return {model, rover};
+}
+
 GroundModel::GroundModel(Parts parts) : parts_(std::move(parts)) {
   if (parts_.classes.empty())
     throw std::invalid_argument("ground model: classes is empty, must hold at least one");
@@ -79,8 +87,10 @@ GroundModel::GroundModel(Parts parts) : parts_(std::move(parts)) {
   for (const GroundClass& c : parts_.classes) {
     if (&parts_.classes[static_cast<std::size_t>(classIndex(c.number))] != &c)
       throw std::invalid_argument("ground model: class " + std::to_string(c.number) + " is declared twice");
-    curves_.emplace_back(c.soil, parts_.rover);
-    rut_curves_.emplace_back(terramech::rutted(c.soil), parts_.rover);
+    GroundClass rut = c;
+    rut.soil = terramech::rutted(c.soil);
+    curves_.push_back(mobilityOf(c, parts_.rover));
+    rut_curves_.push_back(mobilityOf(rut, parts_.rover));
   }
 }
 

@@ -7,6 +7,7 @@
 #include <costmap/drive_cost.hpp>
 #include <costmap/drive_policy.hpp>
 #include <terramech/category.hpp>
+#include <terramech/effects.hpp>
 #include <terramech/mobility.hpp>
 #include <terramech/rover.hpp>
 #include <terramech/soil.hpp>
@@ -21,12 +22,17 @@ struct Estimate {
 
 /// A terrain class as a prior for the ground of its cells. Plain data.
 struct GroundClass {
-  int number = 0;            ///< in the terrain-class raster
-  terramech::Soil soil;      ///< its mean soil
+  int number = 0;        ///< in the terrain-class raster
+  terramech::Soil soil;  ///< its mean soil
+  std::vector<terramech::Effect>
+      effects{};             ///< that data have shown of it, beyond a rigid wheel on that soil
   double pull_std = 0.05;    ///< how drawbar pull over load differs from place to place within the class [-]
   double mean_std = 0.05;    ///< how far the class as a whole may be off [-]
   double sinkage_std = 0.1;  ///< sinkage over radius, place to place [-]
 };
+
+/// What a slope asks of a rover on ground of a class. Throws std::invalid_argument as MobilityCurve does.
+terramech::MobilityCurve mobilityOf(const GroundClass& ground, const terramech::Rover& rover);
 
 /// What is believed of the strength of a piece of ground, both at the reference slip 0.5.
 struct GroundBelief {

@@ -6,16 +6,6 @@
 namespace talus::terramech {
 namespace {
 
-// Changes what is read and nothing of the contact.
-bool isSensorFault(const Effect& effect) {
-  if (effect.empirical()) return false;
-  const auto names = [&](const std::vector<EffectForm>& forms) {
-    return std::ranges::any_of(
-        forms, [&](const EffectForm& f) { return effect.name == f.name && f.read != nullptr; });
-  };
-  return names(detail::sensorEffects()) || names(detail::driftEffects());
-}
-
 // Keeps the fitted numbers that `keep` marks, with their rows and columns of the covariance.
 void keepFitted(RefinedModel& model, const std::vector<char>& keep) {
   const std::size_t n = model.fitted.size();
@@ -65,6 +55,15 @@ void takePriorAsCovariance(RefinedModel& model) {
 }
 
 }  // namespace
+
+bool isSensorFault(const Effect& effect) {
+  if (effect.empirical()) return false;
+  const auto names = [&](const std::vector<EffectForm>& forms) {
+    return std::ranges::any_of(
+        forms, [&](const EffectForm& f) { return effect.name == f.name && f.read != nullptr; });
+  };
+  return names(detail::sensorEffects()) || names(detail::driftEffects());
+}
 
 RefinedModel groundTruthOf(const RefinedModel& model) {
   RefinedModel truth = model;

@@ -6,6 +6,9 @@
 /// What a base or refined model says that a wheel really pulls (ours): predict() says what sensors will read.
 namespace talus::terramech {
 
+/// Whether an effect changes what a sensor reads and nothing of the contact.
+bool isSensorFault(const Effect& effect);
+
 /// The model without the faults of its sensors: no offset or drift of a reading, no scatter of the answers.
 /// What the readings of slip and load leave open stays, and so does the covariance of what was fitted. Where
 /// nothing was fitted, the soil's prior takes the place of that covariance.

@@ -76,31 +76,41 @@ double ModulusLadder::squaredError(const Rung& rung) const {
   return 0.0;
 }
 
-std::size_t ModulusLadder::best() const {
+ModulusLadder::Place ModulusLadder::best() const {
   if (count_ < kLeastSamples) {
     throw std::domain_error("shear modulus: " + std::to_string(kLeastSamples) + " samples at least, got " +
                             std::to_string(count_));
   }
-  const auto error = [this](const Rung& rung) { return squaredError(rung); };
-  return static_cast<std::size_t>(std::ranges::min_element(rungs_, {}, error) - rungs_.begin());
+  std::array<double, kRungs> error{};
+  for (std::size_t i = 0; i < kRungs; ++i) error[i] = squaredError(rungs_[i]);
+  const auto i = static_cast<std::size_t>(std::ranges::min_element(error) - error.begin());
+  if (i == 0 || i + 1 == kRungs) return {.rung = i, .shift = 0.0};
+  const double bend = error[i - 1] - 2.0 * error[i] + error[i + 1];
+  return {.rung = i, .shift = bend > 0.0 ? 0.5 * (error[i - 1] - error[i + 1]) / bend : 0.0};
 }
 
 ModulusEstimate ModulusLadder::modulus() const {
-  const std::size_t i = best();
-  const double least = squaredError(rungs_[i]);
-  const double error = std::sqrt(least);
-  if (i == 0 || i + 1 == kRungs)
-    return {.shear_modulus_m = rungs_[i].modulus_m, .error = error, .at_bound = true};
-  const double before = squaredError(rungs_[i - 1]);
-  const double after = squaredError(rungs_[i + 1]);
-  const double bend = before - 2.0 * least + after;
-  const double shift = bend > 0.0 ? 0.5 * (before - after) / bend : 0.0;
+  const auto [i, shift] = best();
   return {.shear_modulus_m = rungs_[i].modulus_m * std::pow(rungs_[1].modulus_m / rungs_[0].modulus_m, shift),
-          .error = error};
+          .error = std::sqrt(squaredError(rungs_[i])),
+          .at_bound = i == 0 || i + 1 == kRungs};
 }
 
 ShearStrength ModulusLadder::strength() const {
-  return rungs_[best()].method.estimate();
+  const auto [i, shift] = best();
+  ShearStrength fit = rungs_[i].method.estimate();
+  if (shift == 0.0) return fit;
+  const ShearStrength next = rungs_[shift > 0.0 ? i + 1 : i - 1].method.estimate();
+  const auto blend = [share = std::abs(shift)](const auto& a, const auto& b) {
+    return (a + share * (b - a)).eval();
+  };
+  const auto both = [](const ShearStrength& f) { return Eigen::Vector2d(f.cohesion_Pa, f.tan_friction); };
+  const Eigen::Vector2d between = blend(both(fit), both(next));
+  fit.cohesion_Pa = between[0];
+  fit.tan_friction = between[1];
+  fit.covariance = blend(fit.covariance, next.covariance);
+  fit.unseen = unseenStrength(fit);
+  return fit;
 }
 
 }  // namespace talus::terramech

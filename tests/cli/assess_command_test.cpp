@@ -81,6 +81,21 @@ TEST(AssessCommand, ByAModelThePullIsTheModelsAndTheSinkageTheReading) {
   EXPECT_NEAR(rows[1]["sinkage_over_radius"].get<double>(), 0.4, 1e-12);
 }
 
+TEST(AssessCommand, SaysWhichFaultsOfSensorsItLeavesOut) {
+  const Folder folder;
+  const std::string drive = folder.write("drive.csv", kDrive), plain = folder.write("plain.yaml", kSoil);
+  const std::string tilted =
+      folder.write("tilted.yaml", std::string(kSoil) +
+                                      "effects:\n  - {name: load_cell_tilt, covariate: constant, channel: "
+                                      "drawbar_pull_over_load, parameters: [0.1]}\n");
+  const Ran without = runTalus({"--json", "assess", drive, "--model", plain});
+  const Ran with = runTalus({"--json", "assess", drive, "--model", tilted});
+  ASSERT_EQ(with.code, 0) << with.err;
+  EXPECT_THAT(with.err, HasSubstr("load_cell_tilt is a fault of a sensor"));
+  EXPECT_EQ(with.out, without.out);
+  EXPECT_TRUE(without.err.empty());
+}
+
 TEST(AssessCommand, ByAModelNeitherTorqueNorSinkageNeedBeRead) {
   const Folder folder;
   const Ran ran =

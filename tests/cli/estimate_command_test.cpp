@@ -160,6 +160,54 @@ TEST(EstimateCommand, SaysWhenDataAreBadlyConditioned) {
   EXPECT_THAT(ran.err, HasSubstr("badly conditioned: friction_angle_rad"));
 }
 
+TEST(EstimateCommand, BevameterWithOnePlateGivesItsModulusAndNoMore) {
+  // Closed form: p = 2e6 z^0.8 under one plate: k is seen, k_c and k_phi are not.
+  const Folder folder;
+  std::string text = "plate_width_m,pressure_Pa,sinkage_m\n";
+  for (int k = 1; k <= 6; ++k)
+    text += "0.1," + std::to_string(2e6 * std::pow(0.004 * k, 0.8)) + "," + std::to_string(0.004 * k) + "\n";
+  const json result = estimated({"--method", "bevameter"}, folder.write("plate.csv", text));
+  EXPECT_NEAR(result["sinkage_exponent"], 0.8, 1e-6);
+  ASSERT_EQ(result["plates"].size(), 1u);
+  EXPECT_DOUBLE_EQ(result["plates"][0]["plate_width_m"], 0.1);
+  EXPECT_NEAR(result["plates"][0]["sinkage_modulus"].get<double>() / 2e6, 1.0, 1e-5);
+  EXPECT_FALSE(result.contains("cohesive_modulus"));
+  EXPECT_FALSE(result.contains("frictional_modulus"));
+  EXPECT_THAT(result["unseen"][0].get<std::string>(), HasSubstr("frictional_modulus"));
+  EXPECT_TRUE(result["cohesion_Pa"].is_null());
+}
+
+TEST(EstimateCommand, KeepsM1WhereAsked) {
+  // Property: M1 makes a difference of some per cent on cohesive soil, alike in the recursion.
+  const Folder folder;
+  const std::string table = folder.write("drive.csv", drive());
+  const std::vector<std::string> plain{"--method", "linear-offset", "--shear-modulus", "0.015"};
+  auto kept = plain;
+  kept.emplace_back("--keep-m1");
+  auto recursive = kept;
+  recursive.emplace_back("--recursive");
+  const double without = estimated(plain, table)["cohesion_Pa"], with = estimated(kept, table)["cohesion_Pa"];
+  EXPECT_GT(std::abs(with - without), 1.0);
+  EXPECT_LT(std::abs(with - without), 500.0);
+  EXPECT_EQ(estimated(recursive, table)["cohesion_Pa"], with);
+}
+
+TEST(EstimateCommand, SaysWhenNoSoilIsLikeThis) {
+  // Property: sinkage that grows threefold with slip at one load is no Wong-Reece wheel.
+  const Folder folder;
+  const std::string table = folder.write("sinking.csv", std::string(kHeader) +
+                                                            "80,3.0,0.0055,0.1,0.157,0.165\n"
+                                                            "80,4.2,0.0075,0.2,0.157,0.165\n"
+                                                            "80,4.8,0.0100,0.3,0.157,0.165\n"
+                                                            "80,5.0,0.0125,0.4,0.157,0.165\n"
+                                                            "80,5.3,0.0175,0.6,0.157,0.165\n");
+  const Ran ran = runTalus({"--json", "estimate", table, "--method", "iagnemma", "--shear-modulus", "0.011"});
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  EXPECT_THAT(ran.err, HasSubstr("no soil has"));
+  EXPECT_EQ(json::parse(ran.out)["plausible"], false);
+  EXPECT_EQ(estimated({"--method", "wong-reece"}, folder.write("drive.csv", drive()))["plausible"], true);
+}
+
 TEST(EstimateCommand, BevameterFitsBothTests) {
   const Folder folder;
   std::string text =
@@ -207,6 +255,10 @@ TEST(EstimateCommand, MistakesAreOneLineWithTheirExitCode) {
            {{"estimate", good, "--method", "iagnemma", "--shear-modulus", "soft"}, 2, "soft"},
            {{"estimate", good, "--method", "iagnemma", "--prior", "no_such"}, 2, "no_such"},
            {{"estimate", plates, "--method", "bevameter", "--recursive"}, 2, "--recursive"},
+           {{"estimate", good, "--method", "iagnemma", "--keep-m1"}, 2, "--keep-m1"},
+           {{"estimate", good, "--method", "linear-offset", "--keep-m1", "--recursive"},
+            2,
+            "--shear-modulus"},
            {{"estimate", plates, "--method", "bevameter", "--prior", "sand"}, 2, "no shear test"},
            {{"estimate", good, "--method", "wong-reece", "--prior", "no_such"}, 2, "no_such"},
        }) {

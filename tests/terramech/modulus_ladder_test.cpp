@@ -30,7 +30,7 @@ std::vector<WheelSample> steadyRun(double modulus) {
 }
 
 TEST(ModulusLadder, JointEqualsTheBatchFitToARung) {
-  // Property: the ladder refines between rungs 13 % apart by a parabola.
+  // Property: the ladder refines between rungs 28 % apart by a parabola.
   const auto samples = linearSamples(kWheel, {.cohesion_Pa = 1000.0});
   EXPECT_NEAR(
       ladderOver(samples, {}).modulus().shear_modulus_m / modulusJointly(kWheel, samples).shear_modulus_m,
@@ -48,7 +48,8 @@ TEST(ModulusLadder, ErrorMinimisationEqualsTheBatchFitToARung) {
 TEST(ModulusLadder, TorqueRatioIsExactUnderItsAssumptions) {
   for (const double truth : {0.006, 0.02, 0.05}) {
     const auto ladder = ladderOver(steadyRun(truth), {.criterion = ModulusCriterion::TorqueRatio});
-    EXPECT_NEAR(ladder.modulus().shear_modulus_m / truth, 1.0, 0.02) << truth;
+    // To what the parabola through rungs 28 % apart can tell.
+    EXPECT_NEAR(ladder.modulus().shear_modulus_m / truth, 1.0, 0.03) << truth;
     EXPECT_FALSE(ladder.modulus().at_bound);
   }
 }
@@ -86,8 +87,8 @@ TEST(ModulusLadder, StrengthIsThatOfTheMethodAskedFor) {
   for (const WheelSample& s : samples) ladder.add(s);
   MohrCoulombLine at_k;
   for (const WheelSample& s : samples) at_k.add(iagnemmaPair(kWheel, s, ladder.modulus().shear_modulus_m));
-  EXPECT_NEAR(ladder.strength().cohesion_Pa, at_k.estimate().cohesion_Pa, 60.0);  // a rung is 4 % of K
-  EXPECT_NEAR(ladder.strength().tan_friction, at_k.estimate().tan_friction, 0.01);
+  EXPECT_NEAR(ladder.strength().cohesion_Pa, at_k.estimate().cohesion_Pa, 5.0);
+  EXPECT_NEAR(ladder.strength().tan_friction, at_k.estimate().tan_friction, 0.001);
 }
 
 TEST(ModulusLadder, LeavesOutWhatHasNoEquationAndAsksForFourSamples) {
