@@ -17,12 +17,14 @@
 #include <cli/route_json.hpp>
 #include <cli/route_summary.hpp>
 #include <cli/scene.hpp>
+#include <cli/windowed_ground.hpp>
 #include <maps/place_reader.hpp>
 #include <planner/annotation.hpp>
 #include <planner/named_planner.hpp>
 #include <planner/risk_planner.hpp>
 #include <planner/route_check.hpp>
 #include <planner/route_risk.hpp>
+#include <planner/tube_planner.hpp>
 
 namespace talus::cli {
 namespace {
@@ -53,8 +55,13 @@ void bind(CLI::App& command, PlanOptions& options) {
   command.add_option("--time", options.time_limit_s, "time limit of the planning")
       ->type_name("S")
       ->check(CLI::PositiveNumber);
+  command
+      .add_option("--in-memory", options.in_memory,
+                  "read a DEM of more cells in windows along a route over its overview")
+      ->type_name("CELLS")
+      ->capture_default_str();
   command.add_flag("--whole-field", options.whole_field,
-                   "settle the whole map even above 20 million cells, where a tube around a coarse route would do");
+                   "read and settle the whole map, however large, instead of a tube around a coarse route");
   command
       .add_option("--risk", options.max_risk, "the route's probability of immobilisation stays within this")
       ->type_name("ALPHA")
@@ -166,29 +173,75 @@ int refuse(const Route& route, const Context& context) {
   return exitOf(route.status);
 }
 
-int run(const PlanOptions& asked, Context& context) {
-  PlanOptions options = asked;
-  if (isMission(options.ground.dem.path)) readMission(options);
-  requirePlaces(options);
-  checkOutputs(options);
-  planner::NamedPlanner planner(options.planner);
-  const Ground ground = readGround(options.ground, context);
-  if (context.stop.stop_requested()) return Exit::kCancelled;
-  const planner::Problem problem = problemOf(options, ground, context);
+// A plan, and the ground that it was made on.
+struct Planned {
+  Ground ground;             // of large maps the overview
+  planner::Problem problem;  // its map holds the tiles that were read
+  planner::Plan plan;
+  double plan_s = 0.0;
+};
+
+double since_s(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+Planned planWhole(const PlanOptions& options, planner::NamedPlanner& planner, const Context& context) {
+  Planned planned{.ground = readGround(options.ground, context), .problem = {}, .plan = {}};
+  planned.problem = problemOf(options, planned.ground, context);
   const auto begin = std::chrono::steady_clock::now();
-  const planner::Plan plan = options.max_risk > 0.0
-                                 ? planner::planWithinRisk(problem, planner, options.max_risk)
-                                 : planner.plan(problem);
-  const std::chrono::duration<double> plan_s = std::chrono::steady_clock::now() - begin;
-  if (plan.status == RouteStatus::Found) requireAllowed(plan, *problem.map);
-  const maps::ElevationMap& map = ground.map.elevation();
-  const Route route =
-      annotated(plan, {.map = *problem.map, .elevation_m = &map.elevation_m, .planner = planner.name()});
-  if (plan.status != RouteStatus::Found) return refuse(route, context);
-  writeFiles(options, ground, route, context);
-  if (!options.pareto.empty())
-    saveParetoChart(options.pareto, planner::paretoSet(problem, planner, kParetoSteps));
-  const Timing seconds{ground.load_s, ground.build_s, plan_s.count()};
+  planned.plan = options.max_risk > 0.0 ? planner::planWithinRisk(planned.problem, planner, options.max_risk)
+                                        : planner.plan(planned.problem);
+  planned.plan_s = since_s(begin);
+  return planned;
+}
+
+// One leg: along the overview's route, in windows; in wider ones where those hold no way.
+planner::Plan planInWindows(planner::Problem& leg, WindowedGround& ground, planner::TubePlanner& tube) {
+  const auto guide = tube.guideOver(ground.overview().map.published(), leg);
+  if (guide.empty()) {
+    planner::Plan none;
+    none.reason =
+        "the overview shows no way; plan on a part with --window, or on the whole with --whole-field";
+    return none;
+  }
+  planner::Plan plan;
+  for (const double margin_cells : {128.0, 512.0}) {
+    leg.map = ground.around(guide, margin_cells);
+    plan = tube.planAlong(leg, guide);
+    if (plan.status != RouteStatus::NoRoute) break;
+  }
+  return plan;
+}
+
+planner::Plan planAllInWindows(planner::Problem& problem, WindowedGround& ground) {
+  planner::TubePlanner tube;
+  auto stops = problem.via;
+  stops.push_back(problem.goal);
+  planner::Plan whole{RouteStatus::Found, {}, {problem.start}, 0.0, 0.0};
+  for (std::size_t k = 0; k < stops.size(); ++k) {
+    planner::Problem leg = problem;
+    leg.via.clear();
+    leg.start = whole.points.back();
+    leg.goal = stops[k];
+    if (k + 1 < stops.size()) leg.goal_tolerance_m = 0.0;
+    const planner::Plan part = planInWindows(leg, ground, tube);
+    problem.map = leg.map;
+    if (part.status != RouteStatus::Found) return part;
+    planner::append(whole.points, part.points);
+    whole.cost_J += part.cost_J;
+    whole.lower_bound_J += part.lower_bound_J;
+  }
+  return whole;
+}
+
+// What is done with a plan, whichever way it was made.
+int finish(const PlanOptions& options, const Planned& planned, const planner::AnnotationInput& input,
+           const Context& context) {
+  if (planned.plan.status == RouteStatus::Found) requireAllowed(planned.plan, *planned.problem.map);
+  const Route route = annotated(planned.plan, input);
+  if (planned.plan.status != RouteStatus::Found) return refuse(route, context);
+  writeFiles(options, planned.ground, route, context);
+  const Timing seconds{planned.ground.load_s, planned.ground.build_s, planned.plan_s};
   if (context.json) {
     auto json = summaryJson(route);
     if (options.max_risk > 0.0) json["risk"] = riskJson(route, options, context);
@@ -198,6 +251,49 @@ int run(const PlanOptions& asked, Context& context) {
     print(asText(route, seconds));
   }
   return Exit::kDone;
+}
+
+void refuseInWindows(const PlanOptions& options) {
+  const bool other = options.planner != "field" || options.max_risk > 0.0 || !options.pareto.empty();
+  if (!other) return;
+  throw InputError({options.ground.dem.path, "is too large for --planner, --risk and --pareto",
+                    "read a part with --window, or the whole with --whole-field"});
+}
+
+int runInWindows(const PlanOptions& options, const Context& context) {
+  refuseInWindows(options);
+  WindowedGround ground(options.ground, context);
+  if (context.stop.stop_requested()) return Exit::kCancelled;
+  planner::Problem problem = problemOf(options, ground.overview(), context);
+  const auto begin = std::chrono::steady_clock::now();
+  planner::Plan plan = planAllInWindows(problem, ground);
+  const double plan_s = since_s(begin);
+  if (!problem.map) problem.map = ground.overview().map.published();
+  const planner::AnnotationInput input{.map = *problem.map,
+                                       .elevation_m = [&](maps::Point p) { return ground.elevation_m(p); },
+                                       .planner = options.planner};
+  return finish(options, {std::move(ground).takeOverview(), problem, std::move(plan), plan_s}, input,
+                context);
+}
+
+int run(const PlanOptions& asked, Context& context) {
+  PlanOptions options = asked;
+  if (isMission(options.ground.dem.path)) readMission(options);
+  requirePlaces(options);
+  checkOutputs(options);
+  planner::NamedPlanner planner(options.planner);
+  if (!options.whole_field && WindowedGround::needed(options.ground, options.in_memory))
+    return runInWindows(options, context);
+  const Planned planned = planWhole(options, planner, context);
+  if (context.stop.stop_requested() && planned.plan.points.empty()) return Exit::kCancelled;
+  const maps::Raster<float>& heights = planned.ground.map.elevation().elevation_m;
+  const int code = finish(
+      options, planned,
+      {.map = *planned.problem.map, .elevation_m = maps::elevationOf(heights), .planner = planner.name()},
+      context);
+  if (code == Exit::kDone && !options.pareto.empty())
+    saveParetoChart(options.pareto, planner::paretoSet(planned.problem, planner, kParetoSteps));
+  return code;
 }
 
 }  // namespace
