@@ -30,6 +30,7 @@ struct PlanOptions {
   std::string planner = "field";
   DriveOptions drive;
   double max_risk = 0.0;      ///< chance constraint on immobilisation, 0: none
+  std::size_t in_memory = 40'000'000;  ///< cells; larger maps are read in windows along an overview's route
   bool whole_field = false;   ///< even on large maps
   std::string pareto;         ///< chart to draw; empty: none
   double time_limit_s = 0.0;  ///< 0: none

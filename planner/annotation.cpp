@@ -162,7 +162,7 @@ class Annotator {
 
   double elevation(Point p) const {
     if (!input_.elevation_m) return kNotKnown;
-    return maps::elevationAt(*input_.elevation_m, p).value_or(kNotKnown);
+    return input_.elevation_m(p).value_or(kNotKnown);
   }
 
   const AnnotationInput& input_;

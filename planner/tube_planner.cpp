@@ -68,7 +68,8 @@ Plan TubePlanner::planLeg(const Problem& leg, const StopCheck& stop) {
     return ended(RouteStatus::GoalInvalid, invalidPlace(*leg.map, "goal", leg.goal));
   if (!pool(leg, stop)) return stoppedBy(stop);
   Polyline way;
-  if (const Polyline along = guide(leg); !along.empty()) way = tubeRoute(leg, along, options_, stop);
+  if (const Polyline along = guideOver(pooled_, leg); !along.empty())
+    way = tubeRoute(leg, along, options_, stop);
   if (stop()) return stoppedBy(stop);
   if (!way.empty()) return finished(leg, std::move(way), stop);
   Problem proof = leg;
@@ -117,16 +118,16 @@ bool TubePlanner::pool(const Problem& problem, const StopCheck& stop) {
   return pooled_ != nullptr;
 }
 
-// From start to goal by way of the route on the pooled map; empty when that has none.
-Polyline TubePlanner::guide(const Problem& leg) {
-  const MotionCost cost(pooled_);
+Polyline TubePlanner::guideOver(const std::shared_ptr<const costmap::CostGrid>& coarse, const Problem& leg) {
+  const MotionCost cost(coarse);
   const auto from = standingPlace(cost, leg.start), to = standingPlace(cost, leg.goal);
   if (!from || !to) return {};
   Problem rough = leg;
-  rough.map = pooled_;
+  rough.map = coarse;
   rough.start = *from;
   rough.goal = *to;
   rough.goal_tolerance_m = 0.0;
+  rough.via.clear();
   rough.prove = false;
   const Plan plan = coarse_.plan(rough);
   if (plan.status != RouteStatus::Found) return {};

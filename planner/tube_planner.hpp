@@ -24,6 +24,10 @@ class TubePlanner {
   /// As FieldPlanner::plan; the lower bound is the simple one. Throws std::invalid_argument without a map.
   Plan plan(const Problem& problem);
 
+  /// A way from start to goal by the route on a coarse map, to plan along; empty when that has none near
+  /// both.
+  Polyline guideOver(const std::shared_ptr<const costmap::CostGrid>& coarse, const Problem& leg);
+
   /// The route near a guide that is known already, as from an overview of a map that memory does not hold as
   /// a whole; NoRoute, which proves nothing, where the tube holds none.
   Plan planAlong(const Problem& problem, const Polyline& guide);
@@ -36,7 +40,6 @@ class TubePlanner {
   Plan planLeg(const Problem& leg, const StopCheck& stop);
   Plan finished(const Problem& leg, Polyline way, const StopCheck& stop);
   bool pool(const Problem& problem, const StopCheck& stop);
-  Polyline guide(const Problem& leg);
 
   TubeOptions options_;
   FieldPlanner coarse_, whole_;

@@ -221,6 +221,7 @@ Polyline Tube::joined(const std::vector<Leg>& legs) const {
 
 Polyline tubeRoute(const Problem& problem, const Polyline& guide, const TubeOptions& options,
                    const StopCheck& stop) {
+  if (guide.size() < 2) return {problem.start};  // nothing to drive
   const Tube tube(problem, options, stop);
   auto legs = tube.cut(guide);
   if (!tube.searchAll(legs)) return {};

@@ -71,6 +71,16 @@ TEST(TubePlanner, TheWholeFieldIsTheProof) {
   EXPECT_TRUE(violations(*open.map, plan.points).empty());
 }
 
+TEST(TubePlanner, NothingToDriveWhereStartIsGoal) {
+  const Problem problem{.map = drawn(std::vector<std::string>(100, std::string(100, '.'))),
+                        .start = {45.5, 49.5},
+                        .goal = {45.5, 49.5}};
+  const Plan plan = TubePlanner().plan(problem);
+  EXPECT_EQ(plan.status, RouteStatus::Found);
+  EXPECT_EQ(plan.cost_J, 0.0);
+  EXPECT_EQ(plan.points, (Polyline{problem.start}));
+}
+
 TEST(TubePlanner, SaysWhatIsWrongWithAPlace) {
   std::vector<std::string> rows(100, std::string(100, '.'));
   rows[50].replace(40, 10, "##########");
