@@ -85,6 +85,9 @@ Plot gapOverTime(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& run
             .y = {"gap to the best known [%]"},
             .series = {}};
   const double best_J = planner::bestKnown_J(plan, runs, case_index);
+  double end_s = 0.0;
+  for (const BenchmarkRun& run : runs)
+    if (run.case_index == case_index) end_s = std::max(end_s, run.seconds);
   for (const BenchmarkRun& run : runs) {
     if (run.case_index != case_index || run.seed != 1 || run.progress.empty()) continue;
     Series series{.name = run.planner, .x = {}, .y = {}};
@@ -96,6 +99,8 @@ Plot gapOverTime(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& run
       series.x.push_back(at.seconds);
       series.y.push_back(100 * (at.cost_J / best_J - 1.0));
     }
+    series.x.push_back(end_s);  // what was found holds on
+    series.y.push_back(series.y.back());
     plot.series.push_back(std::move(series));
   }
   return plot;

@@ -81,10 +81,14 @@ TEST(PlanPairs, RanksOfMpiGiveWhatOneProcessGives) {
 
 TEST(PlanPairs, MistakesAreOneLine) {
   const BadFiles files;
+  int tables = 0;
   const auto plan = [&](const std::string& table, const std::vector<std::string>& more = {}) {
     std::vector<std::string> words{
-        "plan",       "good.asc", "--resolution", "1",       "--soil",
-        "sandy_loam", "--rover",  "fido",         "--pairs", files.folder().write("p.csv", table)};
+        "plan",         "good.asc",
+        "--resolution", "1",
+        "--soil",       "sandy_loam",
+        "--rover",      "fido",
+        "--pairs",      files.folder().write("p" + std::to_string(++tables) + ".csv", table)};
     words.insert(words.end(), more.begin(), more.end());
     return words;
   };
@@ -92,7 +96,7 @@ TEST(PlanPairs, MistakesAreOneLine) {
   for (const auto& [words, says] : std::vector<std::pair<std::vector<std::string>, std::string>>{
            {plan("start_x_m,start_y_m,goal_x_m\n1,1,9\n"), "goal_y_m"},
            {plan(header), "no pair"},
-           {plan(header + "1,1,9\n"), "p.csv:2"},
+           {plan(header + "1,1,9\n"), ".csv:2"},
            {plan(header + "1,1,9,x\n"), "goal_y_m = 'x'"},
            {plan(header + "1,1,9,inf\n"), "goal_y_m = 'inf'"},
            {plan(header + "1,1,9,9\n", {"--start", "5,5"}), "goes without"},

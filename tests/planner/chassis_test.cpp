@@ -245,6 +245,21 @@ TEST(Chassis, ARockBetweenTheWheelsIsWhatTheBellyMeets) {
   EXPECT_NE(chassis.refusal({{0.2, 0.2}, 0.0}), "");  // half the rover over the edge
 }
 
+TEST(Chassis, ATurnInPlaceSweepsEveryWheelsCircle) {
+  // The front left wheel passes a rock 107 degrees round its circle, between the poses at both ends and the
+  // middle.
+  maps::Raster<float> flat({.width = 80, .height = 80, .resolution_m = 0.1, .south_west = {}});
+  const double around = 107.0 * M_PI / 180.0;
+  const auto cell = flat.grid().cellAt({4.0 + 0.781 * std::cos(around), 4.0 + 0.781 * std::sin(around)});
+  flat[*cell] = 1.5F;
+  auto cart = rover(4);
+  cart.max_pitch_rad = cart.max_roll_rad = 0.2;  // hardly any tilting: the wheels' boxes are small
+  const Chassis chassis(flat, cart, Suspension::Rigid);
+  for (const double heading : {0.0, M_PI / 4, M_PI / 2})
+    EXPECT_EQ(chassis.refusal({{4.0, 4.0}, heading}), "") << heading;
+  EXPECT_FALSE(chassis.violations(PosePath{.start = {{4.0, 4.0}, 0.0}, .legs = {{{}, M_PI / 2}}}).empty());
+}
+
 TEST(Chassis, ARockerBogieHasThreeAxles) {
   const maps::Raster<float> flat({.width = 8, .height = 8, .resolution_m = 1.0, .south_west = {}});
   EXPECT_THROW(Chassis(flat, rover(4), Suspension::RockerBogie), std::invalid_argument);
