@@ -44,5 +44,18 @@ TEST(SoilFilter, ARefusedSampleLeavesItAsItWas) {
   EXPECT_EQ(filter.samples(), 10u);
 }
 
+TEST(SoilFilter, RemembersWhatLeftItsWindow) {
+  // Property: sixty samples on a known class narrow phi and K more than the last twelve alone.
+  ThesisRuns runs(44);
+  const ThesisRun run = runs.next({.noise = 0.05, .samples = 60});
+  const SoilMixture known{thesisSoils()[static_cast<std::size_t>(run.soil_class)]};
+  SoilFilter filter(kThesisWheel, known, {});
+  for (const WheelSample& s : run.samples) filter.add(s);
+  const auto all = filter.posterior().covariance;
+  const auto window = fitSoil(kThesisWheel, std::span(run.samples).last(12), known).covariance;
+  EXPECT_LT(all(kShear, kShear), 0.5 * window(kShear, kShear));
+  EXPECT_LT(all(kFriction, kFriction), 0.5 * window(kFriction, kFriction));
+}
+
 }  // namespace
 }  // namespace talus::terramech
