@@ -10,6 +10,7 @@
 #include <costmap/ground_class.hpp>
 #include <costmap/map_file.hpp>
 #include <costmap/octomap_surface.hpp>
+#include <terramech/model_file.hpp>
 #include <terramech/soil_library.hpp>
 
 namespace talus::cli {
@@ -60,12 +61,25 @@ void addPolicy(CLI::App& command, costmap::DrivePolicy& policy) {
       ->capture_default_str();
 }
 
+costmap::GroundClass modelledGround(const std::string& path, const terramech::Rover& rover) {
+  const terramech::ModelFile file = terramech::loadModel(path);
+  if (!file.soil_given)
+    throw InputError({path, "names no soil", "trace some data with it first: talus trace --model-out"});
+  try {
+    return costmap::groundClass(0, file.model, rover);
+  } catch (const std::invalid_argument& e) {
+    throw InputError({path, e.what(), ""});
+  }
+}
+
 // The class for ground that no raster names first, then those of the classes file.
 std::vector<costmap::GroundClass> groundClasses(const GroundOptions& options, const Assumed& assumed,
                                                 const terramech::Rover& rover) {
   std::vector<costmap::GroundClass> classes;
-  const bool classes_only = !options.soils.empty() && options.soil.empty();
-  if (!classes_only)
+  const bool classes_only = !options.soils.empty() && options.soil.empty() && options.model.empty();
+  if (!options.model.empty())
+    classes.push_back(modelledGround(options.model, rover));
+  else if (!classes_only)
     classes.push_back(costmap::groundClass(
         0, terramech::loadSoilPrior(options.soil.empty() ? assumed.soil : options.soil), rover));
   if (options.soils.empty()) return classes;
@@ -79,7 +93,7 @@ std::vector<costmap::GroundClass> groundClasses(const GroundOptions& options, co
 std::vector<std::string> filesOf(const GroundOptions& options) {
   std::vector<std::string> files{options.dem.path};
   for (const std::string& path : {options.map_file, options.layers.terrain, options.layers.rocks,
-                                  options.soils, options.soil, options.rover})
+                                  options.soils, options.soil, options.model, options.rover})
     if (std::ifstream(path).good()) files.push_back(path);
   files.insert(files.end(), options.layers.keep_out.begin(), options.layers.keep_out.end());
   return files;
@@ -93,7 +107,7 @@ Ground fromMapFile(const GroundOptions& options, const std::string& path, const 
 }
 
 void warnOfAssumptions(const GroundOptions& options, const Assumed& assumed, const Context& context) {
-  if (options.soil.empty() && options.soils.empty())
+  if (options.soil.empty() && options.soils.empty() && options.model.empty())
     context.warn(std::string("no --soil or --soils: the ground is taken for ") + assumed.soil);
   if (options.rover.empty()) context.warn(std::string("no --rover: ") + assumed.rover + " is taken");
 }
@@ -106,9 +120,15 @@ void addGroundOptions(CLI::App& command, GroundOptions& options) {
   command.add_option("--map", options.map_file, "map of beliefs made by `talus costmap` or `talus update`")
       ->type_name("MAP.ot");
   command.add_option("--soils", options.soils, "soil of each terrain class")->type_name("FILE");
+  auto* soil = command
+                   .add_option("--soil", options.soil,
+                               "soil of ground without a class: a name of the library or a file")
+                   ->type_name("SOIL");
   command
-      .add_option("--soil", options.soil, "soil of ground without a class: a name of the library or a file")
-      ->type_name("SOIL");
+      .add_option("--model", options.model,
+                  "refined model of ground without a class, made by `talus trace`, in place of --soil")
+      ->type_name("M.yaml")
+      ->excludes(soil);
   command.add_option("--rover", options.rover, "the rover: a name of the library or a file")
       ->type_name("ROVER");
   command

@@ -21,13 +21,14 @@ struct GroundOptions {
   std::string map_file;  ///< --map: built already by `talus costmap`; its own layers, soils and rover hold
   std::string soils;     ///< YAML: terrain class number -> soil
   std::string soil;      ///< library name or YAML, of ground without a class; empty: by the body
+  std::string model;     ///< refined model of ground without a class, made by `talus trace`, in place of soil
   std::string rover;     ///< library name or YAML; empty: by the body
   double footprint_m = 0.0;  ///< radius that slopes are taken over; 0: of the rover
   costmap::DrivePolicy policy;
 };
 
-/// Declares what addMapOptions and addLayerOptions declare, and --map, --soils, --soil, --rover, --footprint
-/// and the options of the policy.
+/// Declares what addMapOptions and addLayerOptions declare, and --map, --soils, --soil, --model, --rover,
+/// --footprint and the options of the policy.
 void addGroundOptions(CLI::App& command, GroundOptions& options);
 
 /// A built map, and what it took.

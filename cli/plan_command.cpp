@@ -2,10 +2,13 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <numbers>
+#include <optional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <cli/campaign.hpp>
 #include <cli/command.hpp>
 #include <cli/commands.hpp>
 #include <cli/mission.hpp>
@@ -14,15 +17,18 @@
 #include <cli/page.hpp>
 #include <cli/pareto_chart.hpp>
 #include <cli/picture.hpp>
+#include <cli/plan_pairs.hpp>
 #include <cli/route_json.hpp>
 #include <cli/route_summary.hpp>
 #include <cli/scene.hpp>
 #include <maps/place_reader.hpp>
 #include <planner/annotation.hpp>
+#include <planner/chassis_planner.hpp>
 #include <planner/named_planner.hpp>
 #include <planner/risk_planner.hpp>
 #include <planner/route_check.hpp>
 #include <planner/route_risk.hpp>
+#include <planner/turn_prices.hpp>
 
 namespace talus::cli {
 namespace {
@@ -37,6 +43,40 @@ struct Timing {
   double load_s, costmap_s, plan_s;
 };
 
+// A heading in radians, or in degrees under another name.
+void addHeading(CLI::App& command, const std::string& name, std::optional<double>& heading_rad) {
+  auto* radians = command
+                      .add_option_function<double>(
+                          name, [&heading_rad](double value) { heading_rad = value; },
+                          "which way the rover looks there, counter-clockwise from east; any if not given")
+                      ->type_name("RAD")
+                      ->check(finite());
+  command
+      .add_option_function<double>(
+          name + "-deg", [&heading_rad](double value) { heading_rad = value * std::numbers::pi / 180.0; },
+          "the same in degrees")
+      ->type_name("DEG")
+      ->check(finite())
+      ->excludes(radians);
+}
+
+void addDrive(CLI::App& command, DriveOptions& drive) {
+  addHeading(command, "--start-heading", drive.start_heading_rad);
+  addHeading(command, "--goal-heading", drive.goal_heading_rad);
+  command
+      .add_option_function<double>(
+          "--turning-radius", [&drive](double value) { drive.turning_radius_m = value; },
+          "smallest radius that hybrid may drive; 0: turns in place (default: the rover's)")
+      ->type_name("METRES")
+      ->check(notNegative());
+  command
+      .add_option("--chassis", drive.chassis,
+                  "keep clearance, pitch and roll of such a chassis along the whole motion (any planner)")
+      ->type_name("KIND")
+      ->check(CLI::IsMember({"rigid", "rocker-bogie"}));
+  command.add_flag("--no-reverse", drive.no_reverse, "hybrid: the rover may not drive backwards");
+}
+
 void bind(CLI::App& command, PlanOptions& options) {
   addGroundOptions(command, options.ground);
   command
@@ -44,15 +84,23 @@ void bind(CLI::App& command, PlanOptions& options) {
       ->type_name("PLACE");
   command.add_option("--goal", options.goal, "the same")->type_name("PLACE");
   command.add_option("--via", options.via, "to be passed on the way; may be repeated")->type_name("PLACE");
+  command
+      .add_option("--pairs", options.pairs,
+                  "many routes over the one map: CSV with start_x_m, start_y_m, goal_x_m, goal_y_m; a row of "
+                  "results each, to -o FILE.csv or stdout; over all ranks under mpirun")
+      ->type_name("FILE.csv");
   command.add_option("--tolerance", options.tolerance_m, "the route may end this far from the goal")
       ->type_name("METRES")
       ->check(notNegative());
   command.add_option("--planner", options.planner, "who plans: `talus plugins` lists them")
       ->type_name("NAME")
       ->capture_default_str();
+  addDrive(command, options.drive);
   command.add_option("--time", options.time_limit_s, "time limit of the planning")
       ->type_name("S")
       ->check(CLI::PositiveNumber);
+  command.add_flag("--whole-field", options.whole_field,
+                   "settle the whole map even above 20 million cells, where a tube around a coarse route would do");
   command
       .add_option("--risk", options.max_risk, "the route's probability of immobilisation stays within this")
       ->type_name("ALPHA")
@@ -67,31 +115,71 @@ void bind(CLI::App& command, PlanOptions& options) {
 }
 
 void requirePlaces(const PlanOptions& options) {
+  if (!options.pairs.empty()) {
+    if (!options.start.empty() || !options.goal.empty() || !options.via.empty() || !options.html.empty() ||
+        !options.png.empty() || !options.pareto.empty() || options.max_risk > 0.0 ||
+        !options.drive.chassis.empty())
+      throw InputError({"--pairs " + options.pairs,
+                        "goes without --start, --goal, --via, --html, --png, --pareto, --risk and --chassis",
+                        "leave them out, or plan the routes one by one"});
+    return;
+  }
   if (options.start.empty()) throw InputError({"talus plan", "no start", "pass --start x,y"});
   if (options.goal.empty()) throw InputError({"talus plan", "no goal", "pass --goal x,y"});
+}
+
+planner::Kinematics kinematicsOf(const DriveOptions& drive, const costmap::TraversabilityMap& map) {
+  planner::Kinematics kinematics = planner::kinematicsOn(map.model(), map.published()->cost());
+  if (drive.turning_radius_m) kinematics.turning_radius_m = *drive.turning_radius_m;
+  kinematics.may_reverse = !drive.no_reverse;
+  return kinematics;
 }
 
 planner::Problem problemOf(const PlanOptions& options, const Ground& ground, const Context& context) {
   const maps::ElevationMap& map = ground.map.elevation();
   planner::Problem problem;
   problem.map = ground.map.published();
-  problem.start = maps::readPlace(options.start, map, "--start");
-  problem.goal = maps::readPlace(options.goal, map, "--goal");
+  if (options.pairs.empty()) {
+    problem.start = maps::readPlace(options.start, map, "--start");
+    problem.goal = maps::readPlace(options.goal, map, "--goal");
+  }
   for (const std::string& place : options.via) problem.via.push_back(maps::readPlace(place, map, "--via"));
   problem.goal_tolerance_m = options.tolerance_m;
   if (options.time_limit_s > 0.0) problem.time_limit_s = options.time_limit_s;
   problem.seed = context.seed;
   problem.threads = context.workers();
+  problem.start_heading_rad = options.drive.start_heading_rad;
+  problem.goal_heading_rad = options.drive.goal_heading_rad;
+  problem.kinematics = kinematicsOf(options.drive, ground.map);
+  problem.whole_field = options.whole_field;
   problem.watch = context.watch("plan");
   return problem;
 }
 
 // What no planner may hand out: the check shares no code with any of them.
-void requireAllowed(const planner::Plan& plan, const costmap::CostGrid& map) {
-  const auto violations = planner::violations(map, plan.points);
+void requireAllowed(const planner::Plan& plan, const costmap::CostGrid& map, double turning_radius_m) {
+  auto violations = planner::violations(map, plan.points);
+  if (violations.empty() && !plan.drive.legs.empty())
+    violations = planner::violations(map, plan.drive, turning_radius_m);
   if (violations.empty()) return;
   throw std::logic_error(fmt::format("the planner's route is not allowed at {:.2f},{:.2f}: {}",
                                      violations[0].place.x_m, violations[0].place.y_m, violations[0].reason));
+}
+
+// The chassis that the call asks for.
+std::optional<planner::Chassis> chassisOf(const DriveOptions& drive, const costmap::TraversabilityMap& map) {
+  if (drive.chassis.empty()) return std::nullopt;
+  return planner::Chassis(
+      map.elevation().elevation_m, map.model().rover(),
+      drive.chassis == "rigid" ? planner::Suspension::Rigid : planner::Suspension::RockerBogie);
+}
+
+planner::Plan planned(const planner::Problem& problem, planner::NamedPlanner& planner,
+                      const PlanOptions& options, const std::optional<planner::Chassis>& chassis) {
+  const auto once = [&](const planner::Problem& p) {
+    return options.max_risk > 0.0 ? planner::planWithinRisk(p, planner, options.max_risk) : planner.plan(p);
+  };
+  return chassis ? planner::planOnChassis(problem, *chassis, once) : once(problem);
 }
 
 std::string asText(const Route& route, const Timing& seconds) {
@@ -163,24 +251,49 @@ int refuse(const Route& route, const Context& context) {
   return exitOf(route.status);
 }
 
+// Many routes over one map, over all ranks of an MPI run.
+int runPairs(const PlanOptions& options, Context& context) {
+  const Campaign campaign;
+  if (!campaign.leads()) context.quiet = true;
+  const auto pairs = readPairs(options.pairs);
+  if (campaign.leads()) checkOutputs(options);
+  const Ground ground = readGround(options.ground, context);
+  if (context.stop.stop_requested()) return Exit::kCancelled;
+  const auto lines = planPairs(pairs, problemOf(options, ground, context), options.planner, campaign);
+  if (!campaign.leads()) return Exit::kDone;
+  if (context.stop.stop_requested()) return Exit::kCancelled;
+  if (!options.output.empty()) writeFile(options.output, pairsCsv(lines));
+  if (context.json)
+    printJson(nlohmann::ordered_json(lines));
+  else if (options.output.empty())
+    print(pairsCsv(lines));
+  return Exit::kDone;
+}
+
 int run(const PlanOptions& asked, Context& context) {
   PlanOptions options = asked;
   if (isMission(options.ground.dem.path)) readMission(options);
   requirePlaces(options);
-  checkOutputs(options);
+  if (options.pairs.empty()) checkOutputs(options);
   planner::NamedPlanner planner(options.planner);
+  if (options.drive.any() && !planner.drives())
+    throw InputError({"planner '" + planner.name() + "'", "knows no heading and no turning radius",
+                      "pass --planner hybrid, or leave out --start-heading, --goal-heading, --turning-radius "
+                      "and --no-reverse"});
+  if (!options.pairs.empty()) return runPairs(options, context);
   const Ground ground = readGround(options.ground, context);
   if (context.stop.stop_requested()) return Exit::kCancelled;
   const planner::Problem problem = problemOf(options, ground, context);
   const auto begin = std::chrono::steady_clock::now();
-  const planner::Plan plan = options.max_risk > 0.0
-                                 ? planner::planWithinRisk(problem, planner, options.max_risk)
-                                 : planner.plan(problem);
+  const planner::Plan plan = planned(problem, planner, options, chassisOf(options.drive, ground.map));
   const std::chrono::duration<double> plan_s = std::chrono::steady_clock::now() - begin;
-  if (plan.status == RouteStatus::Found) requireAllowed(plan, *problem.map);
+  if (plan.status == RouteStatus::Found)
+    requireAllowed(plan, *problem.map, problem.kinematics.turning_radius_m);
   const maps::ElevationMap& map = ground.map.elevation();
-  const Route route =
-      annotated(plan, {.map = *problem.map, .elevation_m = &map.elevation_m, .planner = planner.name()});
+  const Route route = annotated(plan, {.map = *problem.map,
+                                       .elevation_m = &map.elevation_m,
+                                       .planner = planner.name(),
+                                       .kinematics = problem.kinematics});
   if (plan.status != RouteStatus::Found) return refuse(route, context);
   writeFiles(options, ground, route, context);
   if (!options.pareto.empty())

@@ -20,12 +20,6 @@ std::string lengthText(double metres) {
   return metres >= 2000.0 ? fmt::format("{:.2f} km", metres / 1000.0) : fmt::format("{:.4g} m", metres);
 }
 
-/// Joules as J, kJ or MJ, four digits.
-std::string energyText(double joules) {
-  if (joules >= 1e6) return fmt::format("{:.4g} MJ", joules / 1e6);
-  return joules >= 1e4 ? fmt::format("{:.4g} kJ", joules / 1e3) : fmt::format("{:.4g} J", joules);
-}
-
 /// Largest and mean of a field over the motions, by length; not known where no motion has it.
 struct Profile {
   double highest = -INFINITY;
@@ -134,6 +128,16 @@ std::string riskText(double probability) {
   return fmt::format("{:.2g} % to get stuck on the way", 100.0 * probability);
 }
 
+std::string driveText(const Route& route) {
+  if (!route.summary.drive) return "";
+  const planner::DriveShape& d = *route.summary.drive;
+  const std::string radius = d.max_curvature_1_m > 0.0
+                                 ? fmt::format("arcs of {:.3g} m and more", 1.0 / d.max_curvature_1_m)
+                                 : "straight between turns";
+  return fmt::format("{}, {} reversals, {} turns in place, {:.0f} deg turned in all", radius, d.cusps,
+                     d.turns_in_place, kDegrees * d.turned_rad);
+}
+
 }  // namespace
 
 std::vector<double> distances_m(const Route& route) {
@@ -144,6 +148,11 @@ std::vector<double> distances_m(const Route& route) {
     s.push_back((i == 0 ? 0.0 : s.back()) + std::hypot(b.x_m - a.x_m, b.y_m - a.y_m));
   }
   return s;
+}
+
+std::string energyText(double joules) {
+  if (joules >= 1e6) return fmt::format("{:.4g} MJ", joules / 1e6);
+  return joules >= 1e4 ? fmt::format("{:.4g} kJ", joules / 1e3) : fmt::format("{:.4g} J", joules);
 }
 
 std::string durationText(double seconds) {
@@ -168,6 +177,7 @@ Facts summaryOf(const Route& route) {
        fmt::format("{}, {:.3g} m/s on average", durationText(s.time_s), s.length_m / s.time_s)},
       {"energy", fmt::format("{} ({:.4g} Wh), {:.4g} J/m; cost with time and risk {}", energyText(s.energy_J),
                              s.energy_J / 3600.0, s.energy_J / s.length_m, energyText(s.cost))},
+      {"manoeuvres", driveText(route)},
       {"climb", climbText(route)},
       {"slope", slopeText(route)},
       {"slip", slipText(route)},

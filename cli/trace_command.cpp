@@ -67,16 +67,18 @@ int run(const TraceCommandOptions& options, Context& context) {
   TraceStory story{options.telemetry,
                    telemetry.rejected.size(),
                    terramech::traceResiduals(base.model, trial, how, watch),
+                   {},
                    {}};
   if (watch.stopped()) return Exit::kCancelled;
   story.held_out = terramech::holdOut(story.result, how);
+  story.applies = terramech::applicability(story.result, how);
   if (!options.model_out.empty()) writeFile(options.model_out, terramech::modelText(story.result.refined));
   if (!options.html.empty()) writeFile(options.html, tracePage(story));
   if (context.json)
     printJson(traceJson(story));
   else
     print(traceText(story));
-  return Exit::kDone;
+  return story.applies.applies ? Exit::kDone : Exit::kNo;
 }
 
 }  // namespace

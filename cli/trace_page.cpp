@@ -89,19 +89,21 @@ void effects(HtmlReport& page, const TraceStory& story) {
 
 void errors(HtmlReport& page, const TraceStory& story) {
   page.heading("Error before and after");
-  page.paragraph("Held out: " + story.held_out.scheme +
-                 ". The noise floor is what the sensors alone would leave.");
-  std::vector<std::vector<std::string>> rows;
   const TraceResult& r = story.result;
-  for (Channel c : kAll) {
+  const auto row = [&](const char* rows, Channel c, const ChannelErrors& base, const ChannelErrors& refined) {
     const auto k = static_cast<std::size_t>(c);
-    if (!r.trial.has(c)) continue;
-    rows.push_back({name(c), fmt::format("{:.4f}", r.base_rmse[k]), fmt::format("{:.4f}", r.refined_rmse[k]),
-                    fmt::format("{:.4f}", story.held_out.base_rmse[k]),
-                    fmt::format("{:.4f}", story.held_out.refined_rmse[k]),
-                    fmt::format("{:.4f}", r.noise_floor[k])});
-  }
-  page.table({"rms of", "base", "refined", "base, held out", "refined, held out", "noise floor"}, rows);
+    return std::vector<std::string>{rows, name(c), fmt::format("{:.4f}", base[k]),
+                                    fmt::format("{:.4f}", refined[k]),
+                                    fmt::format("{:.4f}", r.noise_floor[k])};
+  };
+  std::vector<std::vector<std::string>> rows;
+  for (const HeldOut& held : story.held_out)
+    for (Channel c : kAll)
+      if (r.trial.has(c)) rows.push_back(row(held.scheme.c_str(), c, held.base_rmse, held.refined_rmse));
+  for (Channel c : kAll)
+    if (r.trial.has(c)) rows.push_back(row("none: the rows of the fit", c, r.base_rmse, r.refined_rmse));
+  page.paragraph("Root mean squares. The noise floor is what the sensors alone would leave.");
+  page.table({"held out", "channel", "base", "refined", "noise floor"}, rows);
 }
 
 void tests(HtmlReport& page, const TraceResult& r) {
@@ -124,8 +126,7 @@ std::string tracePage(const TraceStory& story) {
   const TraceResult& r = story.result;
   HtmlReport page("Residuals of " + story.source);
   page.paragraph(fmt::format("{} rows used, {} rejected.", r.trial.rows(), story.rows_rejected));
-  const Applicability applies = applicability(story);
-  if (!applies.applies) page.paragraph("The model does not apply here: " + applies.reason + ".");
+  if (!story.applies.applies) page.paragraph("The model does not apply here: " + story.applies.reason + ".");
   effects(page, story);
   errors(page, story);
   std::vector<double> guesses;

@@ -171,31 +171,29 @@ std::string separatingMeasurement(const Trial& trial, const TracedEffect& effect
   return "nothing else comes near";
 }
 
-Applicability applicability(const TraceStory& story) {
-  const Trial& trial = story.result.trial;
-  double best = -1.0;
-  for (Channel c : kAll) {
-    if (!trial.has(c)) continue;
-    const auto k = static_cast<std::size_t>(c);
-    double n = 0.0, sum = 0.0, square = 0.0;
-    for (double v : trial.measured.col(static_cast<int>(c)))
-      if (std::isfinite(v)) n += 1.0, sum += v, square += v * v;
-    const double spread = square / n - (sum / n) * (sum / n);
-    if (spread > 0.0) best = std::max(best, 1.0 - std::pow(story.held_out.refined_rmse[k], 2) / spread);
-  }
-  if (best > 0.1) return {};
-  return {
-      false,
-      fmt::format("on rows held out no channel is predicted better than by its mean (best explained share of "
-                  "variance {:.2f}): a rigid wheel on one homogeneous soil does not describe these rows",
-                  best)};
+namespace {
+
+ordered_json schemeJson(const HeldOut& held) {
+  return {{"scheme", held.scheme},
+          {"base_rmse", errorsJson(held.base_rmse)},
+          {"refined_rmse", errorsJson(held.refined_rmse)}};
 }
+
+ordered_json heldOutJson(const TraceStory& story) {
+  ordered_json out = schemeJson(story.held_out.front());
+  out["noise_floor"] = errorsJson(story.result.noise_floor);
+  ordered_json others = ordered_json::array();
+  for (std::size_t k = 1; k < story.held_out.size(); ++k) others.push_back(schemeJson(story.held_out[k]));
+  out["others"] = others;
+  return out;
+}
+
+}  // namespace
 
 ordered_json traceJson(const TraceStory& story) {
   const TraceResult& r = story.result;
   ordered_json effects = ordered_json::array();
   for (const TracedEffect& e : r.effects) effects.push_back(effectJson(story, e));
-  const Applicability applies = applicability(story);
   ordered_json tests = ordered_json::array();
   for (std::size_t k = 0; k < r.first_tests.size() && k < 12; ++k) {
     const CovariateTest& t = r.first_tests[k];
@@ -208,14 +206,10 @@ ordered_json traceJson(const TraceStory& story) {
           {"effects", effects},
           {"rejected", rejectedJson(r)},
           {"refined", {{"rmse", errorsJson(r.refined_rmse)}}},
-          {"held_out",
-           {{"scheme", story.held_out.scheme},
-            {"base_rmse", errorsJson(story.held_out.base_rmse)},
-            {"refined_rmse", errorsJson(story.held_out.refined_rmse)},
-            {"noise_floor", errorsJson(r.noise_floor)}}},
+          {"held_out", heldOutJson(story)},
           {"tests", tests},
-          {"applies", applies.applies},
-          {"applies_reason", applies.reason},
+          {"applies", story.applies.applies},
+          {"applies_reason", story.applies.reason},
           {"rows_used", r.trial.rows()},
           {"rows_rejected", story.rows_rejected}};
 }
@@ -226,16 +220,17 @@ std::string traceText(const TraceStory& story) {
       fmt::format("{}: {} rows used, {} rejected\n", story.source, r.trial.rows(), story.rows_rejected);
   if (r.effects.empty()) out += "no effect found: what is left looks like noise\n";
   for (const TracedEffect& e : r.effects) out += effectLine(e);
-  out += fmt::format("held out ({})\n  {:26s} {:>10s} {:>10s} {:>12s}\n", story.held_out.scheme, "rmse of",
-                     "base", "refined", "noise floor");
-  for (Channel c : kAll) {
-    const auto k = static_cast<std::size_t>(c);
-    if (!r.trial.has(c)) continue;
-    out += fmt::format("  {:26s} {:10.4f} {:10.4f} {:12.4f}\n", name(c), story.held_out.base_rmse[k],
-                       story.held_out.refined_rmse[k], r.noise_floor[k]);
+  for (const HeldOut& held : story.held_out) {
+    out += fmt::format("held out ({})\n  {:26s} {:>10s} {:>10s} {:>12s}\n", held.scheme, "rmse of", "base",
+                       "refined", "noise floor");
+    for (Channel c : kAll) {
+      const auto k = static_cast<std::size_t>(c);
+      if (!r.trial.has(c)) continue;
+      out += fmt::format("  {:26s} {:10.4f} {:10.4f} {:12.4f}\n", name(c), held.base_rmse[k],
+                         held.refined_rmse[k], r.noise_floor[k]);
+    }
   }
-  const Applicability applies = applicability(story);
-  if (!applies.applies) out += "the model does not apply: " + applies.reason + "\n";
+  if (!story.applies.applies) out += "the model does not apply: " + story.applies.reason + "\n";
   return out;
 }
 

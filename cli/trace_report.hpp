@@ -5,6 +5,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include <terramech/held_out.hpp>
+#include <terramech/model_validity.hpp>
 #include <terramech/residual_trace.hpp>
 
 namespace talus::cli {
@@ -14,15 +15,9 @@ struct TraceStory {
   std::string source;  ///< the file
   std::size_t rows_rejected = 0;
   terramech::TraceResult result;
-  terramech::HeldOut held_out;
+  std::vector<terramech::HeldOut> held_out;  ///< the first is the one that counts
+  terramech::Applicability applies;
 };
-
-/// Whether the model, refined, says anything about rows it has not seen; else why not.
-struct Applicability {
-  bool applies = true;
-  std::string reason;
-};
-Applicability applicability(const TraceStory& story);
 
 /// Columns that move with a covariate so closely (|correlation| above 0.9) that the rows cannot tell them
 /// apart.

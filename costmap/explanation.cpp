@@ -89,8 +89,10 @@ void addSoil(const TraversabilityMap& map, maps::Cell cell, Explanation& out) {
   if (index < 0) return;
   const GroundClass& ground = map.model().parts().classes[static_cast<std::size_t>(index)];
   const GroundBelief prior = map.model().prior(index);
-  const std::string source =
-      "soil '" + ground.soil.name + "' under rover '" + map.model().rover().name + "', slip 0.5";
+  std::string effects;
+  for (const terramech::Effect& e : ground.effects) effects += " + " + e.name;
+  const std::string source = "soil '" + ground.soil.name + "'" + effects + " under rover '" +
+                             map.model().rover().name + "', slip 0.5";
   out.causes.push_back({"prior_drawbar_pull_over_load", prior.pull.mean, prior.pull.std, source, ""});
   const CellBelief belief = map.belief(cell);
   const std::string wheels = belief.evidence > 0.0F ? "prior and wheels together" : source;

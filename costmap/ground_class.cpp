@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include <costmap/ground_class.hpp>
 
@@ -42,6 +43,30 @@ GroundClass groundClass(int number, const terramech::SoilPrior& prior, const ter
     const double slope = (pullOf(more, rover) - pullOf(less, rover)) / (more.*value - less.*value);
     variance += slope * std * slope * std;
   }
+  if (variance > 0.0) ground.mean_std = std::sqrt(variance);
+  return ground;
+}
+
+GroundClass groundClass(int number, const terramech::RefinedModel& model, const terramech::Rover& rover) {
+  const auto pull = [&](const terramech::RefinedModel& m) {
+    return terramech::MobilityCurve(m, rover).reference().drawbar_pull_over_load;
+  };
+  GroundClass ground;
+  ground.number = number;
+  ground.soil = model.soil;
+  ground.effects = terramech::withoutSensors(model).effects;
+  const double here = pull(model);
+  const std::size_t count = model.covariance.empty() ? 0 : model.fitted.size();
+  std::vector<double> slope;
+  for (std::size_t k = 0; k < count; ++k) {
+    const double std = std::sqrt(std::max(0.0, model.covariance[k * count + k]));
+    terramech::RefinedModel moved = model;
+    terramech::setValue(moved, model.fitted[k], terramech::value(model, model.fitted[k]) + 0.1 * std);
+    slope.push_back(std > 0.0 ? (pull(moved) - here) / (0.1 * std) : 0.0);
+  }
+  double variance = 0.0;
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t j = 0; j < count; ++j) variance += slope[i] * model.covariance[i * count + j] * slope[j];
   if (variance > 0.0) ground.mean_std = std::sqrt(variance);
   return ground;
 }

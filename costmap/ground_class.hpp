@@ -11,4 +11,9 @@ namespace talus::costmap {
 /// as MobilityCurve does.
 GroundClass groundClass(int number, const terramech::SoilPrior& prior, const terramech::Rover& rover);
 
+/// The class of a refined model on a rover. Its mean_std is what the model's covariance makes of drawbar pull
+/// over load at the reference slip; a model without one keeps GroundClass's default. Effects of sensors are
+/// left out. Throws std::invalid_argument as MobilityCurve does.
+GroundClass groundClass(int number, const terramech::RefinedModel& model, const terramech::Rover& rover);
+
 }  // namespace talus::costmap

@@ -8,6 +8,7 @@
 
 #include <costmap/ground_model.hpp>
 #include <terramech/range.hpp>
+#include <terramech/rut.hpp>
 
 namespace talus::costmap {
 namespace {
@@ -47,6 +48,15 @@ Expected expectedDrive(const terramech::MobilityCurve& curve, const Estimate& sh
   return weight > 0.0 ? Expected{sum.energy_J_per_m / weight, sum.time_s_per_m / weight} : Expected{};
 }
 
+double slopeAtSlip_rad(const terramech::MobilityCurve& curve, double slip) {
+  double low = curve.minSlope_rad(), high = curve.maxSlope_rad();
+  for (int halving = 0; halving < 30 && low < high; ++halving) {
+    const double middle = 0.5 * (low + high);
+    (curve.at(middle).slip < slip ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
 Category lower(Category category) {
   return category == Category::Safe       ? Category::Marginal
          : category == Category::Marginal ? Category::Dangerous
@@ -55,11 +65,20 @@ Category lower(Category category) {
 
 }  // namespace
 
+terramech::MobilityCurve mobilityOf(const GroundClass& ground, const terramech::Rover& rover) {
+  if (ground.effects.empty()) return {ground.soil, rover};
+  terramech::RefinedModel model;
+  model.soil = ground.soil;
+  model.effects = ground.effects;
+  return {model, rover};
+}
+
 GroundModel::GroundModel(Parts parts) : parts_(std::move(parts)) {
   if (parts_.classes.empty())
     throw std::invalid_argument("ground model: classes is empty, must hold at least one");
   const terramech::RangeCheck check("drive policy");
   check.within("slope_margin_rad", parts_.policy.slope_margin_rad, {0.0, 0.5});
+  tan_margin_ = std::tan(parts_.policy.slope_margin_rad);
   check.within("max_immobilisation", parts_.policy.max_immobilisation, {0.0, 1.0});
   check.atLeast("time_weight_W", parts_.policy.time_weight_W, 0.0);
   check.within("entrapment", parts_.policy.entrapment, {0.0, 1.0});
@@ -68,7 +87,10 @@ GroundModel::GroundModel(Parts parts) : parts_(std::move(parts)) {
   for (const GroundClass& c : parts_.classes) {
     if (&parts_.classes[static_cast<std::size_t>(classIndex(c.number))] != &c)
       throw std::invalid_argument("ground model: class " + std::to_string(c.number) + " is declared twice");
-    curves_.emplace_back(c.soil, parts_.rover);
+    GroundClass rut = c;
+    rut.soil = terramech::rutted(c.soil);
+    curves_.push_back(mobilityOf(c, parts_.rover));
+    rut_curves_.push_back(mobilityOf(rut, parts_.rover));
   }
 }
 
@@ -86,46 +108,51 @@ GroundBelief GroundModel::prior(int class_index) const {
           .sinkage = {reference.sinkage_over_radius, c.sinkage_std}};
 }
 
-double GroundModel::slopeAtSlip_rad(int class_index, double slip) const noexcept {
-  const auto& curve = curves_[static_cast<std::size_t>(class_index)];
-  double low = curve.minSlope_rad(), high = curve.maxSlope_rad();
-  for (int halving = 0; halving < 30 && low < high; ++halving) {
-    const double middle = 0.5 * (low + high);
-    (curve.at(middle).slip < slip ? low : high) = middle;
-  }
-  return 0.5 * (low + high);
+SteadyWheel GroundModel::steady(int class_index, const DrivenWheel& wheel) const noexcept {
+  const terramech::MobilityCurve& driven = curve(class_index, wheel.in_rut);
+  const double slope_rad = slopeAtSlip_rad(driven, wheel.slip);
+  const MobilityState state = driven.at(slope_rad);
+  const double radius_m = parts_.rover.wheel.radius_m;
+  const double load_N = terramech::wheelLoad_N(parts_.rover) * std::cos(slope_rad);
+  return {.gradient = std::tan(slope_rad),
+          .sinkage_over_radius = state.sinkage_m / radius_m,
+          .torque_over_load_radius = state.torque_Nm / (load_N * radius_m)};
 }
 
-double GroundModel::gradientAtSlip(int class_index, double slip) const noexcept {
-  return std::tan(slopeAtSlip_rad(class_index, slip));
+SteadyWheel GroundModel::reference(int class_index, bool in_rut) const noexcept {
+  const terramech::MobilityReference& at = curve(class_index, in_rut).reference();
+  return {at.drawbar_pull_over_load, at.sinkage_over_radius, at.torque_over_load_radius};
 }
 
-double GroundModel::sinkageAtSlip(int class_index, double slip) const noexcept {
-  return curves_[static_cast<std::size_t>(class_index)].at(slopeAtSlip_rad(class_index, slip)).sinkage_m;
+// tan(slope -+ margin) by the addition theorem; beyond a right angle nothing is enough.
+GroundModel::Edges GroundModel::edges(double gradient) const noexcept {
+  const double left = 1.0 - gradient * tan_margin_, right = 1.0 + gradient * tan_margin_;
+  constexpr double kSteeper = std::numeric_limits<double>::infinity();
+  return {.low = right > 0.0 ? (gradient - tan_margin_) / right : -kSteeper,
+          .high = left > 0.0 ? (gradient + tan_margin_) / left : kSteeper};
 }
 
 Category GroundModel::categoryAt(double pull, double sinkage, double gradient) const {
   const DrivePolicy& policy = parts_.policy;
-  const double slope_rad = std::atan(gradient);
+  const Edges edge = edges(gradient);
   const double critical = policy.sinkage_critical > 0.0
                               ? policy.sinkage_critical
                               : parts_.rover.clearance_m / parts_.rover.wheel.radius_m;
   return terramech::categorise({.drawbar_pull_over_load = pull, .sinkage_over_radius = sinkage},
-                               {.dp_low = std::tan(slope_rad - policy.slope_margin_rad),
-                                .dp_high = std::tan(slope_rad + policy.slope_margin_rad),
+                               {.dp_low = edge.low,
+                                .dp_high = edge.high,
                                 .z_threshold = std::min(policy.sinkage_threshold, critical),
                                 .z_critical = critical});
 }
 
 Ranked GroundModel::category(const GroundBelief& belief, double gradient) const {
-  const double slope_rad = std::atan(gradient);
-  const double margin = parts_.policy.slope_margin_rad;
-  const double below_low = probabilityBelow(belief.pull, std::tan(slope_rad - margin));
-  const double below_high = probabilityBelow(belief.pull, std::tan(slope_rad + margin));
+  const Edges edge = edges(gradient);
+  const double below_low = probabilityBelow(belief.pull, edge.low);
+  const double below_high = probabilityBelow(belief.pull, edge.high);
   // What each of the three pull ranks becomes at the believed sinkage; their chances add up.
   const std::array<std::pair<double, double>, 3> ranks{
       {{std::numeric_limits<double>::infinity(), 1.0 - below_high},
-       {std::tan(slope_rad), below_high - below_low},
+       {gradient, below_high - below_low},
        {-std::numeric_limits<double>::infinity(), below_low}}};
   const Category mean = categoryAt(belief.pull.mean, belief.sinkage.mean, gradient);
   double probability = 0.0;

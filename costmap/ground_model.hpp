@@ -7,6 +7,7 @@
 #include <costmap/drive_cost.hpp>
 #include <costmap/drive_policy.hpp>
 #include <terramech/category.hpp>
+#include <terramech/effects.hpp>
 #include <terramech/mobility.hpp>
 #include <terramech/rover.hpp>
 #include <terramech/soil.hpp>
@@ -21,17 +22,35 @@ struct Estimate {
 
 /// A terrain class as a prior for the ground of its cells. Plain data.
 struct GroundClass {
-  int number = 0;            ///< in the terrain-class raster
-  terramech::Soil soil;      ///< its mean soil
+  int number = 0;        ///< in the terrain-class raster
+  terramech::Soil soil;  ///< its mean soil
+  std::vector<terramech::Effect>
+      effects{};             ///< that data have shown of it, beyond a rigid wheel on that soil
   double pull_std = 0.05;    ///< how drawbar pull over load differs from place to place within the class [-]
   double mean_std = 0.05;    ///< how far the class as a whole may be off [-]
   double sinkage_std = 0.1;  ///< sinkage over radius, place to place [-]
 };
 
+/// What a slope asks of a rover on ground of a class. Throws std::invalid_argument as MobilityCurve does.
+terramech::MobilityCurve mobilityOf(const GroundClass& ground, const terramech::Rover& rover);
+
 /// What is believed of the strength of a piece of ground, both at the reference slip 0.5.
 struct GroundBelief {
   Estimate pull;     ///< drawbar pull over load [-]
   Estimate sinkage;  ///< sinkage over wheel radius [-]
+};
+
+/// A wheel at a slip, on fresh ground or in the rut of an equal one.
+struct DrivenWheel {
+  double slip = 0.0;
+  bool in_rut = false;
+};
+
+/// Of a wheel that drives steadily.
+struct SteadyWheel {
+  double gradient = 0.0;  ///< of the slope it does so on, which is the drawbar pull over load it gives [-]
+  double sinkage_over_radius = 0.0;
+  double torque_over_load_radius = 0.0;
 };
 
 /// A category and the probability that it is that one.
@@ -65,11 +84,11 @@ class GroundModel {
   /// Belief before any evidence.
   GroundBelief prior(int class_index) const;
 
-  /// Gradient along the heading on which ground of the class, as its soil says, lets the rover drive at this
-  /// slip; the ends of what it can drive beyond them.
-  double gradientAtSlip(int class_index, double slip) const noexcept;
-  /// Sinkage [m] of a wheel there.
-  double sinkageAtSlip(int class_index, double slip) const noexcept;
+  /// What a wheel of a rover that drives steadily at this slip on ground of the class reads, as its soil
+  /// says; the ends of what it can drive beyond them.
+  SteadyWheel steady(int class_index, const DrivenWheel& wheel) const noexcept;
+  /// The same at the reference slip.
+  SteadyWheel reference(int class_index, bool in_rut) const noexcept;
 
   /// Drive curve and states of ground of a class under a belief; `demoted`: one category lower (rocks,
   /// doubtful map).
@@ -88,11 +107,21 @@ class GroundModel {
   DriveCost::Limits limits() const;
 
  private:
-  double slopeAtSlip_rad(int class_index, double slip) const noexcept;
+  const terramech::MobilityCurve& curve(int class_index, bool in_rut) const noexcept {
+    return (in_rut ? rut_curves_ : curves_)[static_cast<std::size_t>(class_index)];
+  }
+
+  // Drawbar pull over load at which a slope is no longer dangerous, and from which it is safe.
+  struct Edges {
+    double low, high;
+  };
+  Edges edges(double gradient) const noexcept;
   terramech::Category categoryAt(double pull, double sinkage, double gradient) const;
 
   Parts parts_;
-  std::vector<terramech::MobilityCurve> curves_;
+  double tan_margin_ = 0.0;
+  std::vector<terramech::MobilityCurve> curves_;      // of each class
+  std::vector<terramech::MobilityCurve> rut_curves_;  // in the rut of an equal wheel
 };
 
 }  // namespace talus::costmap

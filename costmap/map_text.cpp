@@ -4,6 +4,7 @@
 #include <sstream>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include <costmap/map_text.hpp>
 #include <talus.hpp>
@@ -38,6 +39,10 @@ class Writer {
   template <typename T>
   void operator()(const std::string& name, const T& value) {
     lines_ += name + ' ' + text(value) + '\n';
+  }
+  template <typename T>
+  void count(const std::string& name, const std::vector<T>& list) {
+    if (!list.empty()) (*this)(name, list.size());
   }
   std::string take() { return std::move(lines_); }
 
@@ -75,6 +80,15 @@ class Reader {
     if (found == values_.end()) fail("'" + name + "' is missing");
     read(found->first, found->second, value);
     values_.erase(found);
+  }
+
+  /// Makes the list as long as is written; none where nothing is.
+  template <typename T>
+  void count(const std::string& name, std::vector<T>& list) {
+    std::size_t size = 0;
+    if (values_.contains(name)) (*this)(name, size);
+    if (size > 1000) fail("'" + name + "' is " + std::to_string(size));
+    list.resize(size);
   }
 
   void done() const {
@@ -156,6 +170,23 @@ void visitRover(V& v, R& rover) {
   v("rover.steering", rover.steering);
 }
 
+template <typename V, typename L>
+void visitNumbers(V& v, L& numbers, const std::string& name) {
+  v.count(name, numbers);
+  for (std::size_t k = 0; k < numbers.size(); ++k) v(name + '.' + std::to_string(k), numbers[k]);
+}
+
+template <typename V, typename E>
+void visitEffect(V& v, E& effect, const std::string& at) {
+  v(at + "name", effect.name);
+  v(at + "covariate", effect.covariate);
+  v(at + "channel", effect.channel);
+  visitNumbers(v, effect.parameters, at + "parameters");
+  visitNumbers(v, effect.knots, at + "knots");
+  v(at + "only_column", effect.only_column);
+  v(at + "only_value", effect.only_value);
+}
+
 template <typename V, typename C>
 void visitClass(V& v, C& c, const std::string& at) {
   v(at + "number", c.number);
@@ -173,6 +204,9 @@ void visitClass(V& v, C& c, const std::string& at) {
   v(at + "soil.c1", soil.c1);
   v(at + "soil.c2", soil.c2);
   v(at + "soil.density_kg_m3", soil.density_kg_m3);
+  v.count(at + "effects", c.effects);
+  for (std::size_t k = 0; k < c.effects.size(); ++k)
+    visitEffect(v, c.effects[k], at + "effect." + std::to_string(k) + '.');
 }
 
 template <typename V, typename P>

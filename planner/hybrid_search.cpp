@@ -10,6 +10,8 @@
 #include <planner/motion_set.hpp>
 #include <planner/pose_shortcut.hpp>
 #include <planner/pose_table.hpp>
+#include <planner/route_check.hpp>
+#include <planner/turning_drive.hpp>
 
 namespace talus::planner {
 namespace {
@@ -58,7 +60,10 @@ class Search {
       if (next.estimate >= best_cost_ || expanded_ >= last_) return RouteStatus::Found;
       open_.pop();
       if (best(nodes_[next.node]) != nodes_[next.node].cost) continue;  // a better one came later
-      if ((++expanded_ & 63) == 0 && problem_.watch.stopped()) return RouteStatus::Cancelled;
+      if ((++expanded_ & 63) == 0 && stop_()) {
+        if (stop_.cancelled()) return RouteStatus::Cancelled;
+        return best_cost_ < kInfinity ? RouteStatus::Found : RouteStatus::TimedOut;
+      }
       if (expanded_ > options_.most_expanded)
         return best_cost_ < kInfinity ? RouteStatus::Found : RouteStatus::TimedOut;
       expand(next.node);
@@ -66,19 +71,22 @@ class Search {
     return best_cost_ < kInfinity ? RouteStatus::Found : RouteStatus::NoRoute;
   }
 
-  PosePath path() const {
-    PosePath path{.start = {}, .legs = {best_finish_.rbegin(), best_finish_.rend()}};
-    std::uint32_t at = best_node_;
+  PosePath path() const { return pathThrough(best_node_, best_finish_); }
+
+  bool checked(const PosePath& path) const { return mayBeDriven(*problem_.map, path, problem_.kinematics); }
+
+  std::uint64_t expanded() const noexcept { return expanded_; }
+  const PoseCost& cost() const noexcept { return cost_; }
+
+ private:
+  PosePath pathThrough(std::uint32_t at, const std::vector<PosePath::Leg>& finish) const {
+    PosePath path{.start = {}, .legs = {finish.rbegin(), finish.rend()}};
     for (; nodes_[at].motion; at = nodes_[at].parent) path.legs.push_back(nodes_[at].motion->leg);
     std::reverse(path.legs.begin(), path.legs.end());
     path.start = poseOf(nodes_[at]);
     return path;
   }
 
-  std::uint64_t expanded() const noexcept { return expanded_; }
-  const PoseCost& cost() const noexcept { return cost_; }
-
- private:
   Pose poseOf(const Node& node) const noexcept { return {node.place, motions_.heading_rad(node.heading)}; }
 
   void begin() {
@@ -163,7 +171,7 @@ class Search {
     const bool turns = !rest.legs.empty() && node.direction * direction(rest.legs.front()) < 0;
     const double so_far = static_cast<double>(node.cost);
     const double cost = so_far + cost_(rest) + (turns ? problem_.kinematics.cusp.cost_J : 0.0);
-    if (cost >= best_cost_) return;
+    if (cost >= best_cost_ || !checked(pathThrough(index, rest.legs))) return;
     const bool good = cost - so_far <= options_.good * toGo(*problem_.map->grid().cellAt(node.place));
     if (good && last_ == kNever) last_ = expanded_ + options_.improve;
     best_cost_ = cost;
@@ -173,7 +181,7 @@ class Search {
 
   const PoseProblem& problem_;
   const HybridOptions& options_;
-  StopCheck stop_{problem_.watch};
+  StopCheck stop_{problem_.watch, problem_.time_limit_s};
   CostToGo& field_;
   MotionCost motion_cost_;
   PoseCost cost_;
@@ -208,6 +216,12 @@ std::string whyNot(RouteStatus status) {
 }
 
 }  // namespace
+
+bool mayBeDriven(const costmap::CostGrid& map, const PosePath& path, const Kinematics& kinematics) {
+  std::vector<maps::Point> points;
+  for (const Pose& pose : chords(path, map)) points.push_back(pose.place);
+  return violations(map, path, kinematics.turning_radius_m).empty() && violations(map, points).empty();
+}
 
 HybridSearch::HybridSearch(const HybridOptions& options) : options_(options) {
   if (options.headings < 8)
@@ -249,9 +263,20 @@ PosePlan HybridSearch::plan(const PoseProblem& problem) {
     plan.reason = whyNot(plan.status);
     return plan;
   }
-  plan.path = shortened(search.path(), search.cost(),
-                        {.joint_m = kJoint_cells * problem.map->grid().resolution_m,
-                         .cheapest_J_per_m = cheapestMetre_J(*problem.map)});
+  plan.path = search.path();
+  PosePath shorter = shortened(plan.path, search.cost(),
+                               {.joint_m = kJoint_cells * problem.map->grid().resolution_m,
+                                .cheapest_J_per_m = cheapestMetre_J(*problem.map)});
+  if (problem.kinematics.turning_radius_m <= 0.0) {
+    std::vector<maps::Point> places;
+    for (const Pose& pose : sampled(plan.path, kJoint_cells * problem.map->grid().resolution_m))
+      if (places.empty() || !(places.back() == pose.place)) places.push_back(pose.place);
+    PosePath turning =
+        turningDrive(places, {problem.start_heading_rad, problem.goal_heading_rad}, search.cost());
+    if (!turning.legs.empty() && search.cost()(turning) < search.cost()(shorter))
+      shorter = std::move(turning);
+  }
+  if (search.checked(shorter)) plan.path = std::move(shorter);
   plan.cost_J = search.cost()(plan.path);
   return plan;
 }

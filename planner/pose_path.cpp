@@ -9,9 +9,10 @@ namespace talus::planner {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kChord_cells = 0.5;
 constexpr double kBend_rad = 0.1;  // a chord leaves its arc by 0.1^2/8 of the radius at most
 
-int chords(const Arc& arc, double step_m) noexcept {
+int chordsOf(const Arc& arc, double step_m) noexcept {
   const double bend = std::abs(arc.length_m * arc.curvature_1_m) / kBend_rad;
   return std::max(1, static_cast<int>(std::ceil(std::max(std::abs(arc.length_m) / step_m, bend) - 1e-9)));
 }
@@ -51,7 +52,7 @@ int direction(const PosePath::Leg& leg) noexcept {
 }
 
 PoseCost::PoseCost(const MotionCost& cost, const Kinematics& kinematics)
-    : cost_(cost), kinematics_(kinematics), step_m_(0.5 * cost.map().grid().resolution_m) {
+    : cost_(cost), kinematics_(kinematics), step_m_(kChord_cells * cost.map().grid().resolution_m) {
   if (kinematics.turning_radius_m > 0.0) curves_.emplace(kinematics);
 }
 
@@ -73,7 +74,7 @@ double PoseCost::operator()(const Pose& from, const PosePath::Leg& leg) const no
 }
 
 double PoseCost::arc(const Pose& from, const Arc& arc) const noexcept {
-  const int count = arc.curvature_1_m == 0.0 ? 1 : chords(arc, step_m_);
+  const int count = arc.curvature_1_m == 0.0 ? 1 : chordsOf(arc, step_m_);
   const Arc part{arc.length_m / count, arc.curvature_1_m};
   const double turn_rad = std::abs(part.length_m * part.curvature_1_m);
   double sum = 0.0;
@@ -98,7 +99,7 @@ double PoseCost::turnInPlace(const Pose& from, double turn_rad) const noexcept {
     if (std::isinf(map.cost().costPerMetre(map.at(*cell), {std::cos(heading), std::sin(heading)})))
       return kInfinity;
   }
-  return turnsAt(from.place).in_place.cost_J * std::abs(turn_rad);
+  return kinematics_.stop.cost_J + turnsAt(from.place).in_place.cost_J * std::abs(turn_rad);
 }
 
 double PoseCost::operator()(const PosePath& path) const noexcept {
@@ -118,26 +119,42 @@ double PoseCost::operator()(const PosePath& path) const noexcept {
 std::vector<Pose> sampled(const PosePath& path, double step_m) {
   std::vector<Pose> poses{path.start};
   for (const auto& leg : path.legs) {
-    const int count = leg.turn_rad != 0.0 ? 1 : chords(leg.arc, step_m);
+    const int count = leg.turn_rad != 0.0 ? 1 : chordsOf(leg.arc, step_m);
     const PosePath::Leg part{{leg.arc.length_m / count, leg.arc.curvature_1_m}, leg.turn_rad};
     for (int k = 0; k < count; ++k) poses.push_back(after(poses.back(), part));
   }
   return poses;
 }
 
-PosePathShape shape(const PosePath& path) noexcept {
-  PosePathShape shape;
+std::vector<Pose> chords(const PosePath& path, const costmap::CostGrid& map) {
+  std::vector<Pose> poses{path.start};
+  for (const auto& leg : path.legs) {
+    const bool whole = leg.turn_rad != 0.0 || leg.arc.curvature_1_m == 0.0;
+    const int count = whole ? 1 : chordsOf(leg.arc, kChord_cells * map.grid().resolution_m);
+    const PosePath::Leg part{{leg.arc.length_m / count, leg.arc.curvature_1_m}, leg.turn_rad};
+    for (int k = 0; k < count; ++k) poses.push_back(after(poses.back(), part));
+  }
+  return poses;
+}
+
+DriveShape shape(const PosePath& path) noexcept {
+  DriveShape shape;
   int last = 0;
   for (const auto& leg : path.legs) {
     const int now = direction(leg);
     if (now * last < 0) ++shape.cusps;
     if (now != 0) last = now;
-    shape.length_m += std::abs(leg.arc.length_m);
     shape.turned_rad += std::abs(leg.arc.length_m * leg.arc.curvature_1_m) + std::abs(leg.turn_rad);
     shape.max_curvature_1_m = std::max(shape.max_curvature_1_m, std::abs(leg.arc.curvature_1_m));
     if (leg.turn_rad != 0.0) ++shape.turns_in_place;
   }
   return shape;
+}
+
+double length_m(const PosePath& path) noexcept {
+  double sum = 0.0;
+  for (const auto& leg : path.legs) sum += std::abs(leg.arc.length_m);
+  return sum;
 }
 
 }  // namespace talus::planner

@@ -5,6 +5,7 @@
 
 #include <planner/kinematics.hpp>
 #include <planner/motion_cost.hpp>
+#include <planner/route.hpp>
 
 /// Routes in position and heading: poses joined by arcs, priced and sampled.
 namespace talus::planner {
@@ -62,15 +63,13 @@ int direction(const PosePath::Leg& leg) noexcept;
 /// Poses along a drive at most `step_m` apart, ends of legs included.
 std::vector<Pose> sampled(const PosePath& path, double step_m);
 
-/// What a controller would notice.
-struct PosePathShape {
-  double length_m = 0.0;
-  double turned_rad = 0.0;  ///< sum of all changes of heading
-  double max_curvature_1_m = 0.0;
-  int cusps = 0;  ///< changes between forward and reverse
-  int turns_in_place = 0;
-};
+/// The poses between which PoseCost drives straight: ends of straight legs, chords of arcs.
+std::vector<Pose> chords(const PosePath& path, const costmap::CostGrid& map);
 
-PosePathShape shape(const PosePath& path) noexcept;
+/// What a controller would notice.
+DriveShape shape(const PosePath& path) noexcept;
+
+/// Length along the map plane.
+double length_m(const PosePath& path) noexcept;
 
 }  // namespace talus::planner

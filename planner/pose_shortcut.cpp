@@ -56,7 +56,9 @@ class Shortening {
     }
   }
 
-  PosePath result() const {
+  // The drive itself where its end cannot be reached.
+  PosePath result(const PosePath& given) const {
+    if (joints_.back().price == kInfinity) return given;
     std::vector<std::size_t> chain;
     for (std::size_t k = joints_.size() - 1; k > 0; k = joints_[k].from) chain.push_back(k);
     PosePath path{.start = joints_[0].pose, .legs = {}};
@@ -113,7 +115,8 @@ PosePath shortened(const PosePath& path, const PoseCost& cost, const ShortenOpti
   PosePath best = path;
   double price = cost(best);
   for (int round = 0; round < kRounds; ++round) {
-    PosePath shorter = Shortening(divided(best, options.joint_m), cost, options.cheapest_J_per_m).result();
+    const PosePath fine = divided(best, options.joint_m);
+    PosePath shorter = Shortening(fine, cost, options.cheapest_J_per_m).result(fine);
     const double shorter_price = cost(shorter);
     if (!(shorter_price < price)) break;
     const bool enough = shorter_price > price * (1.0 - kWorthwhile);

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 #include <set>
 #include <vector>
@@ -9,7 +10,31 @@
 namespace talus::terramech {
 namespace {
 
-/// DP/W measured less what torque and sinkage say; NaN where one is missing.
+constexpr double kAccuracy = 0.02;  // of the relation, over soils
+
+struct Split {
+  double inside = 0.0, outside = 0.0, squares = 0.0;  // sums of the errors, and of their squares inside
+  int in = 0, out = 0;
+  double meanStd() const {
+    const double mean = inside / in, variance = std::max(0.0, squares / in - mean * mean) * in / (in - 1.0);
+    return std::hypot(std::sqrt(variance / in), kAccuracy / std::numbers::sqrt3);
+  }
+  double gap() const { return in >= 4 && out >= 4 ? std::abs(inside / in - outside / out) : 0.0; }
+};
+
+Split splitBy(const std::vector<double>& errors, const std::vector<char>& member) {
+  Split s;
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    if (!std::isfinite(errors[i])) continue;
+    (member[i] ? s.inside : s.outside) += errors[i];
+    ++(member[i] ? s.in : s.out);
+    if (member[i]) s.squares += errors[i] * errors[i];
+  }
+  return s;
+}
+
+}  // namespace
+
 std::vector<double> closureErrors(const Trial& trial) {
   std::vector<double> errors;
   for (int row = 0; row < trial.rows(); ++row) {
@@ -21,26 +46,8 @@ std::vector<double> closureErrors(const Trial& trial) {
   return errors;
 }
 
-struct Split {
-  double inside = 0.0, outside = 0.0;
-  int in = 0, out = 0;
-  double gap() const { return in >= 4 && out >= 4 ? std::abs(inside / in - outside / out) : 0.0; }
-};
-
-Split splitBy(const std::vector<double>& errors, const std::vector<char>& member) {
-  Split s;
-  for (std::size_t i = 0; i < errors.size(); ++i) {
-    if (!std::isfinite(errors[i])) continue;
-    (member[i] ? s.inside : s.outside) += errors[i];
-    ++(member[i] ? s.in : s.out);
-  }
-  return s;
-}
-
-}  // namespace
-
 std::optional<ClosureOffset> findClosureOffset(const Trial& trial, std::uint64_t seed) {
-  constexpr double kLeast = 0.08;
+  constexpr double kLeast = 2.0 * kAccuracy;
   constexpr int kShuffles = 1999;
   const std::vector<double> errors = closureErrors(trial);
   std::optional<ClosureOffset> found;
@@ -57,7 +64,7 @@ std::optional<ClosureOffset> findClosureOffset(const Trial& trial, std::uint64_t
       if (!off || s.gap() <= widest) continue;
       widest = s.gap();
       chosen = member;
-      found = ClosureOffset{column, label, s.inside / s.in, 1.0};
+      found = ClosureOffset{column, label, s.inside / s.in, s.meanStd(), 1.0};
     }
   }
   if (!found) return {};

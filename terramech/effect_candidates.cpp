@@ -109,8 +109,9 @@ void passes(Collector& to, const EffectForm& form) {
 
 void hardLayer(Collector& to, const EffectForm& form) {
   const Extent z = to.extent("sinkage_m");
-  for (double share : {0.15, 0.4, 0.7})
-    to.add(form, "sinkage_m", {{"H", z.low + share * (z.high - z.low)}, {"k_h", 5e6}});
+  for (double share : {0.15, 0.35, 0.55, 0.75})
+    for (double modulus : {5e6, 3e7})
+      to.add(form, "sinkage_m", {{"H", z.low + share * (z.high - z.low)}, {"k_h", modulus}});
 }
 
 void pile(Collector& to, const EffectForm& form) {
@@ -153,6 +154,11 @@ void drift(Collector& to, const EffectForm& form) {
   }
 }
 
+/// Only rows of a braked wheel can tell.
+void skid(Collector& to, const EffectForm& form) {
+  if (to.extent("slip").low < -0.02) to.add(form, form.covariate);
+}
+
 Rule ruleOf(const EffectForm& form) {
   const std::string family = form.family, name = form.name;
   if (family == "rate") return rate;
@@ -163,6 +169,7 @@ Rule ruleOf(const EffectForm& form) {
   if (family == "grouser" || name == "slip_sinkage_reece") return lugs;
   if (name == "torque_offset" || name == "load_cell_tilt" || name == "sinkage_datum" || name == "slip_bias")
     return sensor;
+  if (name == "skid_sinkage") return skid;
   if (family == "diameter" || family == "lateral_slip" || family == "load_transfer" ||
       name == "torque_offset_viscous")
     return whereItVaries;

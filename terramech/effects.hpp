@@ -61,6 +61,7 @@ struct EffectForm {
   std::vector<EffectParameter> parameters;
   void (*act)(const EffectInput&, WheelContact&) = nullptr;
   void (*read)(const EffectInput&, const WheelContact&, Reading&) = nullptr;
+  bool of_sensor = false;  ///< what the sensors err, not what the ground does: no route depends on it
 };
 
 /// The library.
@@ -99,6 +100,10 @@ class NaturalSpline {
 };
 
 namespace detail {
+/// Share of the passive pressure in front of a wheel that a travel at a slip angle mobilises: nearly all of
+/// it for little motion into the soil, none at 90 deg: g = 1.05 cos beta / (cos beta + 0.05) (ours).
+double intoTheSoil(double slip_angle_rad);
+
 std::vector<EffectForm> contactEffects();
 std::vector<EffectForm> forceEffects();
 std::vector<EffectForm> sensorEffects();

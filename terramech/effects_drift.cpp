@@ -93,7 +93,8 @@ void addShape(std::vector<EffectForm>& all, int shape, std::initializer_list<con
                    .source = "ours",
                    .signature = "one channel alone drifts",
                    .parameters = shapeParameters(target, shape),
-                   .read = read});
+                   .read = read,
+                   .of_sensor = true});
   };
   soil(Channel::DrawbarPull, "c -> c (1 + g(u))", {"-", -0.95, 8.0, 0.3}, cohesion<Shape>);
   soil(Channel::DrawbarPull, "tan phi -> tan phi (1 + g(u))", {"-", -0.8, 3.0, 0.1}, friction<Shape>);

@@ -33,8 +33,8 @@ double hegedus(const WheelContact& c, double z) {
   return c.width_m * front * (z * c.cohesion_Pa + 0.5 * c.density_kg_m3 * kGravity * z * z * heap);
 }
 
-double direction(const WheelState& state) {  // resistance acts against the travel
-  return std::cos(state.slip_angle_rad);
+double direction(const WheelState& state) {
+  return intoTheSoil(state.slip_angle_rad);
 }
 
 std::vector<EffectForm> bulldozing() {

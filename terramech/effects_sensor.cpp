@@ -92,6 +92,7 @@ std::vector<EffectForm> sensorEffects() {
                    if (c.slip >= 0.0)
                      c.slip = std::fmax(-0.9, 1.0 - (1.0 - c.slip) / (1.0 + in.parameter[0]));
                  }});
+  for (EffectForm& form : all) form.of_sensor = true;
   return all;
 }
 

@@ -1,56 +1,11 @@
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <numeric>
 #include <set>
 
 #include <terramech/held_out.hpp>
 
 namespace talus::terramech {
 namespace {
-
-constexpr int kFolds = 5;
-
-struct Folds {
-  std::string scheme;
-  std::vector<int> of_row;
-};
-
-/// Rows in bands of like values, neighbours in different folds.
-std::vector<int> bands(const std::vector<double>& value, int count) {
-  std::vector<std::size_t> order(value.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return value[a] < value[b]; });
-  std::vector<int> fold(value.size());
-  for (std::size_t k = 0; k < order.size(); ++k)
-    fold[order[k]] = static_cast<int>(k * static_cast<std::size_t>(count) / order.size()) % kFolds;
-  return fold;
-}
-
-std::vector<int> levels(const std::vector<double>& value) {
-  std::map<long, int> number;
-  for (double v : value) number.try_emplace(std::lround(v / 0.02), 0);
-  int next = 0;
-  for (auto& [key, fold] : number) fold = next++ % kFolds;
-  std::vector<int> fold;
-  for (double v : value) fold.push_back(number[std::lround(v / 0.02)]);
-  return fold;
-}
-
-Folds foldsOf(const Trial& trial) {
-  const std::set<int> runs(trial.run.begin(), trial.run.end());
-  if (runs.size() >= kFolds && 2 * runs.size() <= trial.run.size()) {
-    std::vector<int> fold;
-    for (int run : trial.run) fold.push_back(static_cast<int>(std::distance(runs.begin(), runs.find(run))) % kFolds);
-    return {"whole runs, five folds", fold};
-  }
-  std::set<long> slips;
-  for (double s : trial.slip) slips.insert(std::lround(s / 0.02));
-  if (slips.size() >= kFolds && 4 * slips.size() <= trial.slip.size() && slips.size() <= 20)
-    return {"whole slip levels, five folds", levels(trial.slip)};
-  if (slips.size() >= kFolds) return {"whole bands of slip, ten bands in five folds", bands(trial.slip, 10)};
-  return {"whole bands of load, ten bands in five folds", bands(trial.load_N, 10)};
-}
 
 /// Squared errors summed by channel.
 struct Sums {
@@ -84,33 +39,40 @@ Eigen::MatrixXd asMeasured(const RefinedModel& model, Trial trial) {
 
 }  // namespace
 
-HeldOut holdOut(const TraceResult& result, const TraceOptions& options) {
+HeldOut holdOut(const TraceResult& result, const TraceOptions& options, const Folds& folds) {
   const Trial& trial = result.trial;
-  const Folds folds = foldsOf(trial);
   std::vector<double> guesses;
   const Whitening all = whitening(trial, predictRows(result.refined, trial, guesses),
                                   inputSlopes(result.refined, trial, guesses), result.refined.noise);
   Sums base, refined;
-  for (int fold = 0; fold < kFolds; ++fold) {
-    std::vector<char> train, held;
-    Whitening white;
-    for (std::size_t row = 0; row < trial.states.size(); ++row) {
-      train.push_back(folds.of_row[row] != fold);
-      held.push_back(!train.back());
-      if (train.back()) white.factor.push_back(all.factor[row]);
-    }
-    const Trial seen = subset(trial, train), unseen = subset(trial, held);
+  for (int fold = 0; fold < folds.count; ++fold) {
+    const std::vector<char> train = rowsOf(folds, fold, false);
+    const Trial seen = subset(trial, train), unseen = subset(trial, rowsOf(folds, fold, true));
     if (unseen.rows() == 0 || seen.rows() == 0) continue;
+    const Whitening white = subset(all, train);
     const auto refit = [&](const RefinedModel& model) {
       std::vector<double> start;
       FitPlan plan = fitPlan(model, options.fit_soil);
       plan.iterations = 8;
+      if (result.first_prior && !model.effects.empty()) plan.effect_prior[0] = *result.first_prior;
       return fitModel(model, seen, white, plan, start).model;
     };
     base.add(asMeasured(refit(result.base), unseen));
     refined.add(asMeasured(refit(result.refined), unseen));
   }
   return {folds.scheme, base.rmse(), refined.rmse()};
+}
+
+std::vector<HeldOut> holdOut(const TraceResult& result, const TraceOptions& options) {
+  std::vector<HeldOut> all{holdOut(result, options, foldsOf(result.trial))};
+  std::set<std::string> columns;
+  for (const TracedEffect& e : result.effects) columns.insert(e.chosen.candidate.covariate());
+  for (const std::string& column : columns) {
+    if (column == "slip" && all.front().scheme.find("slip") != std::string::npos) continue;
+    const Folds folds = levelFolds(result.trial, column);
+    if (folds.count > 0) all.push_back(holdOut(result, options, folds));
+  }
+  return all;
 }
 
 }  // namespace talus::terramech

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <optional>
 #include <stdexcept>
@@ -12,6 +13,16 @@
 namespace talus::terramech {
 namespace {
 
+/// A wheel somewhere.
+struct Station {
+  double load_N;
+  double slip;
+  double slope_rad;
+};
+
+/// Forces there; none where the soil cannot carry the wheel.
+using CarriedForces = std::function<std::optional<WheelForces>(const Station&)>;
+
 /// One steady drive: the slope that a slip holds on.
 struct Drive {
   double slip;
@@ -21,29 +32,27 @@ struct Drive {
 
 /// The slope on which a wheel at this slip drives steadily: DP(i, W cos alpha) = W sin alpha. A fixed point,
 /// since DP/N hardly depends on the load N. None where the soil cannot carry the wheel.
-std::optional<Drive> driveAt(const Soil& soil, const Rover& rover, double slip) {
+std::optional<Drive> driveAt(const CarriedForces& carried, const Rover& rover, double slip) {
   const double weight_N = wheelLoad_N(rover);
   Drive drive{slip, 0.0, {}};
-  try {
-    for (int iteration = 0; iteration < 60; ++iteration) {
-      const double load_N = weight_N * std::cos(drive.slope_rad);
-      drive.wheel = equilibrium(soil, rover.wheel, {.load_N = load_N, .slip = slip});
-      const double slope = std::atan(drive.wheel.drawbar_pull_N / load_N);
-      const double change = std::abs(slope - drive.slope_rad);
-      drive.slope_rad = slope;
-      if (change < 1e-10) break;
-    }
-  } catch (const std::domain_error&) {
-    return std::nullopt;
+  for (int iteration = 0; iteration < 60; ++iteration) {
+    const double load_N = weight_N * std::cos(drive.slope_rad);
+    const auto forces = carried({load_N, slip, drive.slope_rad});
+    if (!forces) return std::nullopt;
+    drive.wheel = *forces;
+    const double slope = std::atan(drive.wheel.drawbar_pull_N / load_N);
+    const double change = std::abs(slope - drive.slope_rad);
+    drive.slope_rad = slope;
+    if (change < 1e-10) break;
   }
   return drive;
 }
 
 /// Drives at rising slip from a start, as long as the slope keeps rising (sign 1) or falling (sign -1).
-void follow(const Soil& soil, const Rover& rover, const std::vector<double>& slips, double sign,
+void follow(const CarriedForces& carried, const Rover& rover, const std::vector<double>& slips, double sign,
             std::vector<Drive>& drives) {
   for (const double slip : slips) {
-    const auto drive = driveAt(soil, rover, slip);
+    const auto drive = driveAt(carried, rover, slip);
     if (!drive) return;
     if (drives.empty() || sign * (drive->slope_rad - drives.back().slope_rad) > 1e-9)
       drives.push_back(*drive);
@@ -64,39 +73,94 @@ std::vector<double> brakedSlips() {
 }
 
 /// All steady drives, slope strictly rising.
-std::vector<Drive> steadyDrives(const Soil& soil, const Rover& rover) {
+std::vector<Drive> steadyDrives(const CarriedForces& carried, const Rover& rover) {
   std::vector<Drive> up, down;
-  follow(soil, rover, drivenSlips(), 1.0, up);
-  follow(soil, rover, brakedSlips(), -1.0, down);
+  follow(carried, rover, drivenSlips(), 1.0, up);
+  follow(carried, rover, brakedSlips(), -1.0, down);
   if (!down.empty()) up.insert(up.begin(), down.rbegin(), down.rend() - 1);
   return up;
 }
 
-MobilityReference flatAt(const Soil& soil, const Rover& rover, double slip) {
-  const WheelOperation operation{.load_N = wheelLoad_N(rover), .slip = slip};
-  const auto over = [&](const WheelForces& f, double load_N) {
-    return MobilityReference{slip, f.drawbar_pull_N / load_N, f.sinkage_m / rover.wheel.radius_m,
-                             f.torque_Nm / (load_N * rover.wheel.radius_m)};
+/// Forces of a wheel on its axle, for the record.
+using AxleForces = std::function<WheelForces(const Station&)>;
+
+CarriedForces carriedBy(const Soil& soil, const Wheel& wheel) {
+  return [&soil, wheel](const Station& at) -> std::optional<WheelForces> {
+    try {
+      return equilibrium(soil, wheel, {.load_N = at.load_N, .slip = at.slip});
+    } catch (const std::domain_error&) {
+      return std::nullopt;
+    }
   };
-  try {
-    return over(equilibrium(soil, rover.wheel, operation), operation.load_N);
-  } catch (const std::domain_error&) {
-    const auto axle = forcesAtEntry(soil, rover.wheel, operation, 0.5 * std::numbers::pi);
-    return over(axle.forces, operation.load_N);
-  }
+}
+
+/// What a model says of a wheel of a rover at full speed.
+WheelForces predicted(const RefinedModel& model, const Rover& rover, const Station& at) {
+  WheelState state;
+  state.wheel = rover.wheel;
+  state.load_N = at.load_N;
+  state.slip = at.slip;
+  state.rim_speed_mps = rover.max_speed_mps * (at.slip < 0.0 ? 1.0 + at.slip : 1.0);
+  state.speed_mps = rover.max_speed_mps * (1.0 - std::max(at.slip, 0.0));
+  state.pass_index = 1.0;
+  state.slope_rad = at.slope_rad;
+  const Reading reading = predict(model, state);
+  return {.sinkage_m = reading.sinkage_m,
+          .entry_angle_rad = 0.0,
+          .torque_Nm = reading.torque_Nm,
+          .drawbar_pull_N = reading.drawbar_pull_N};
 }
 
 }  // namespace
 
+/// How a curve asks for forces.
+struct MobilityCurve::Solver {
+  CarriedForces carried;
+  AxleForces on_axle;
+};
+
 MobilityCurve::MobilityCurve(const Soil& soil, const Rover& rover, const MobilityOptions& options)
     : rover_(rover), options_(options) {
   validate(soil);
-  validate(rover);
+  tabulate({carriedBy(soil, rover.wheel), [&](const Station& at) {
+              return forcesAtEntry(soil, rover.wheel, {.load_N = at.load_N, .slip = at.slip},
+                                   0.5 * std::numbers::pi)
+                  .forces;
+            }});
+}
+
+MobilityCurve::MobilityCurve(const RefinedModel& model, const Rover& rover, const MobilityOptions& options)
+    : rover_(rover), options_(options) {
+  validate(model.soil);
+  if (model.base == BaseModel::LinearFormula)
+    throw std::invalid_argument(
+        "model 'linear-formula' takes drawbar pull from a measured torque: it cannot say "
+        "what a slope will ask, trace the data with model: wong-reece");
+  const RefinedModel ground = withoutSensors(model);
+  const AxleForces forces = [&](const Station& at) { return predicted(ground, rover, at); };
+  const CarriedForces carried = [&](const Station& at) -> std::optional<WheelForces> {
+    const WheelForces f = forces(at);
+    if (!(f.sinkage_m < (1.0 - 1e-9) * rover.wheel.radius_m)) return std::nullopt;
+    return f;
+  };
+  tabulate({carried, forces});
+}
+
+void MobilityCurve::tabulate(const Solver& solver) {
+  validate(rover_);
   const RangeCheck check{"mobility options"};
-  check.within("reference_slip", options.reference_slip, {1e-6, 1.0 - 1e-6});
-  check.within("max_slip", options.max_slip, {1e-6, 1.0});
-  reference_ = strongest_ = flatAt(soil, rover, options.reference_slip);
-  const std::vector<Drive> drives = steadyDrives(soil, rover);
+  check.within("reference_slip", options_.reference_slip, {1e-6, 1.0 - 1e-6});
+  check.within("max_slip", options_.max_slip, {1e-6, 1.0});
+  const auto flatAt = [&](double slip) {
+    const Station flat{wheelLoad_N(rover_), slip, 0.0};
+    const auto carried = solver.carried(flat);
+    const WheelForces f = carried ? *carried : solver.on_axle(flat);
+    const double radius_m = rover_.wheel.radius_m;
+    return MobilityReference{slip, f.drawbar_pull_N / flat.load_N, std::min(f.sinkage_m / radius_m, 1.0),
+                             f.torque_Nm / (flat.load_N * radius_m)};
+  };
+  reference_ = strongest_ = flatAt(options_.reference_slip);
+  const std::vector<Drive> drives = steadyDrives(solver.carried, rover_);
   if (drives.size() < 2) return;
   std::vector<double> slope, slip, sinkage, torque;
   for (const Drive& drive : drives) {
@@ -108,7 +172,7 @@ MobilityCurve::MobilityCurve(const Soil& soil, const Rover& rover, const Mobilit
   min_slope_rad_ = slope.front();
   max_slope_rad_ = slope.back();
   locked_pull_ = std::tan(min_slope_rad_);
-  strongest_ = flatAt(soil, rover, drives.back().slip);
+  strongest_ = flatAt(drives.back().slip);
   slip_ = {slope, slip};
   sinkage_m_ = {slope, sinkage};
   torque_Nm_ = {slope, torque};

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <terramech/monotone_curve.hpp>
+#include <terramech/refined_model.hpp>
 #include <terramech/rover.hpp>
 #include <terramech/soil.hpp>
 
@@ -46,6 +47,13 @@ class MobilityCurve {
   /// wheel at all is not an error: nothing is feasible on it.
   MobilityCurve(const Soil& soil, const Rover& rover, const MobilityOptions& options = {});
 
+  /// The same of a model with effects. Those of sensors say nothing of the ground and are left out; those on
+  /// columns that a drive does not have (a dust index, a session) stay neutral; slope, speed and rim speed
+  /// (the rover's greatest), and a first pass are known. The table is monotone all the same: where effects
+  /// make the pull fall with slip, the lesser slip holds. Throws as above, and for a linear-formula base,
+  /// which needs a measured torque.
+  MobilityCurve(const RefinedModel& model, const Rover& rover, const MobilityOptions& options = {});
+
   /// State on a slope along the heading, uphill > 0, in (-pi/2, pi/2). Where the slope is out of reach the
   /// state is that of the nearest slope that can be reached, with `feasible` false.
   MobilityState at(double slope_rad) const noexcept;
@@ -62,6 +70,9 @@ class MobilityCurve {
   const MobilityReference& strongest() const noexcept { return strongest_; }
 
  private:
+  struct Solver;
+  void tabulate(const Solver& solver);
+
   Rover rover_;
   MobilityOptions options_;
   MonotoneCurve slip_, sinkage_m_, torque_Nm_;

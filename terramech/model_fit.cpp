@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include <Eigen/Cholesky>
+
 #include <terramech/model_fit.hpp>
 
 namespace talus::terramech {
@@ -9,15 +10,19 @@ namespace {
 
 /// Standard deviations that a soil is believed to have when nobody states it, own units.
 const std::map<std::string, ParameterPrior>& vagueSoil() {
-  static const std::map<std::string, ParameterPrior> prior{
-      {"cohesion_Pa", {1500.0, 2000.0}},  {"friction_angle_rad", {0.55, 0.12}}, {"sinkage_exponent", {1.0, 0.25}},
-      {"log_stiffness", {0.0, 3.0}},      {"shear_modulus_m", {0.02, 0.012}},   {"c1", {0.43, 0.08}},
-      {"c2", {0.32, 0.12}}};
+  static const std::map<std::string, ParameterPrior> prior{{"cohesion_Pa", {1500.0, 2000.0}},
+                                                           {"friction_angle_rad", {0.55, 0.12}},
+                                                           {"sinkage_exponent", {1.0, 0.25}},
+                                                           {"log_stiffness", {0.0, 3.0}},
+                                                           {"shear_modulus_m", {0.02, 0.012}},
+                                                           {"c1", {0.43, 0.08}},
+                                                           {"c2", {0.32, 0.12}}};
   return prior;
 }
 
 bool isLogStiffness(const FittedParameter& p) {
-  return p.effect < 0 && std::string_view(soilParameters()[static_cast<std::size_t>(p.index)].name) == "log_stiffness";
+  return p.effect < 0 &&
+         std::string_view(soilParameters()[static_cast<std::size_t>(p.index)].name) == "log_stiffness";
 }
 
 /// A point of the search: the model, its whitened residuals and how far priors are left.
@@ -25,8 +30,13 @@ class Search {
  public:
   Search(const RefinedModel& start, const Trial& trial, const Whitening& whitening, const FitPlan& plan,
          std::vector<double>& guesses)
-      : trial_(trial), whitening_(whitening), plan_(plan), guesses_(guesses), model_(start),
-        log_stiffness_(0.0), residual_(residualOf(start)) {}
+      : trial_(trial),
+        whitening_(whitening),
+        plan_(plan),
+        guesses_(guesses),
+        model_(start),
+        log_stiffness_(0.0),
+        residual_(residualOf(start)) {}
 
   double chi2() const { return residual_.squaredNorm(); }
   double priorChi2() const { return priorResidual(model_, log_stiffness_).squaredNorm(); }
@@ -83,15 +93,19 @@ class Search {
   }
 
  private:
-  double scale(Eigen::Index k) const { return rangeOf(model_, plan_.free[static_cast<std::size_t>(k)]).scale; }
+  double scale(Eigen::Index k) const {
+    return rangeOf(model_, plan_.free[static_cast<std::size_t>(k)]).scale;
+  }
 
   std::optional<ParameterPrior> priorOf(Eigen::Index k) const {
     const auto& p = plan_.free[static_cast<std::size_t>(k)];
     // A knot without rows near it would be anything.
-    if (p.effect >= 0 && model_.effects[static_cast<std::size_t>(p.effect)].empirical()) return ParameterPrior{0.0, 0.3};
-    if (p.effect >= 0) return {};
-    const auto found = plan_.soil_prior.find(p.index);
-    return found == plan_.soil_prior.end() ? std::nullopt : std::optional(found->second);
+    if (p.effect >= 0 && model_.effects[static_cast<std::size_t>(p.effect)].empirical())
+      return ParameterPrior{0.0, 0.3};
+    if (p.effect >= 0 && p.index > 0) return {};
+    const auto& priors = p.effect >= 0 ? plan_.effect_prior : plan_.soil_prior;
+    const auto found = priors.find(p.effect >= 0 ? p.effect : p.index);
+    return found == priors.end() ? std::nullopt : std::optional(found->second);
   }
 
   double valueOf(const RefinedModel& model, double log_stiffness, Eigen::Index k) const {
@@ -163,8 +177,8 @@ ParameterRange rangeOf(const RefinedModel& model, const FittedParameter& p) {
   return {e.low, e.high, size > 0.0 ? 0.5 * size : 0.5};
 }
 
-Eigen::MatrixXd jacobian(const RefinedModel& model, const Trial& trial, const std::vector<FittedParameter>& free,
-                         std::vector<double>& guesses,
+Eigen::MatrixXd jacobian(const RefinedModel& model, const Trial& trial,
+                         const std::vector<FittedParameter>& free, std::vector<double>& guesses,
                          const std::function<Eigen::VectorXd(const Eigen::MatrixXd&)>& scale) {
   const Eigen::MatrixXd here = predictRows(model, trial, guesses);
   Eigen::MatrixXd j(here.rows() * kChannels, static_cast<Eigen::Index>(free.size()));

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <Eigen/Core>
+
 #include <terramech/sensor_noise.hpp>
 #include <terramech/trial.hpp>
 
@@ -19,16 +20,17 @@ struct ParameterPrior {
 /// What a fit moves and what it knows beforehand.
 struct FitPlan {
   std::vector<FittedParameter> free;
-  std::map<int, ParameterPrior> soil_prior;  ///< by index into soilParameters()
+  std::map<int, ParameterPrior> soil_prior;    ///< by index into soilParameters()
+  std::map<int, ParameterPrior> effect_prior;  ///< by number of an effect, of its first parameter
   int iterations = 12;
 };
 
 /// A fitted model.
 struct Fit {
   RefinedModel model;
-  double chi2 = 0.0;               ///< of the whitened residuals, priors left out
+  double chi2 = 0.0;  ///< of the whitened residuals, priors left out
   double prior_chi2 = 0.0;
-  Eigen::MatrixXd covariance;      ///< of plan.free, own units
+  Eigen::MatrixXd covariance;  ///< of plan.free, own units
   double cost() const { return chi2 + prior_chi2; }
 };
 
@@ -37,12 +39,12 @@ Fit fitModel(const RefinedModel& start, const Trial& trial, const Whitening& whi
              std::vector<double>& guesses);
 
 /// Whitened (or marginally scaled) derivative of the readings by each parameter, rows*kChannels x parameters.
-Eigen::MatrixXd jacobian(const RefinedModel& model, const Trial& trial, const std::vector<FittedParameter>& free,
-                         std::vector<double>& guesses,
+Eigen::MatrixXd jacobian(const RefinedModel& model, const Trial& trial,
+                         const std::vector<FittedParameter>& free, std::vector<double>& guesses,
                          const std::function<Eigen::VectorXd(const Eigen::MatrixXd&)>& scale);
 
-/// Everything that a model lets a fit move: its effects, and the soil's parameters that are stated with a standard
-/// deviation, or all of them, under vague priors, when `fit_soil`.
+/// Everything that a model lets a fit move: its effects, and the soil's parameters that are stated with a
+/// standard deviation, or all of them, under vague priors, when `fit_soil`.
 FitPlan fitPlan(const RefinedModel& model, bool fit_soil);
 
 /// All fitted numbers of effect number `effect`.

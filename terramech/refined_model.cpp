@@ -41,6 +41,12 @@ class Bound {
   std::vector<BoundEffect> effects_;
 };
 
+/// r omega over the full speed; a wheel that spins in place counts as 1e3.
+double rolling(const WheelState& state, bool slip_along_travel) {
+  const double share = slip_along_travel ? 1.0 : std::max(std::cos(state.slip_angle_rad), 0.0);
+  return std::min(share / std::max(travelRatio(std::clamp(state.slip, -1.0, 1.0)), 1e-9), 1e3);
+}
+
 /// Curves that act through the soil.
 void Bound::bend(const BoundEffect& curve, double x, WheelContact& contact) {
   if (curve.effect->name == "empirical") return;
@@ -57,6 +63,7 @@ WheelContact Bound::contact(const WheelState& state) const {
   WheelContact contact = contactOf(model_.soil, state.wheel);
   contact.load_N = state.load_N;
   contact.slip = model_.slip_along_travel ? slipInWheelPlane(state.slip, state.slip_angle_rad) : state.slip;
+  contact.rolling = rolling(state, model_.slip_along_travel);
   for (const BoundEffect& e : effects_) {
     if (!applies(*e.effect, state)) continue;
     // The sinkage is not known yet: an effect that acts here never asks for it.
@@ -128,6 +135,16 @@ std::vector<Reading> predict(const RefinedModel& model, std::span<const WheelSta
   for (std::size_t k = 0; k < states.size(); ++k)
     readings.push_back(bound.reading(states[k], contacts[k], forces[k]));
   return readings;
+}
+
+RefinedModel withoutSensors(RefinedModel model) {
+  std::erase_if(model.effects, [](const Effect& e) {
+    const EffectForm* form = findEffect(e.name);
+    return form && form->of_sensor;
+  });
+  model.fitted.clear();  // numbers effects that are gone
+  model.covariance.clear();
+  return model;
 }
 
 const std::vector<SoilParameter>& soilParameters() {

@@ -73,6 +73,9 @@ struct Prediction {
 };
 Prediction predictWithStd(const RefinedModel& model, const WheelState& state);
 
+/// The model without what its sensors err: what the ground does.
+RefinedModel withoutSensors(RefinedModel model);
+
 /// Fields of a soil that a fit may move.
 struct SoilParameter {
   const char* name;

@@ -59,7 +59,13 @@ void reconsider(TraceSearch& search, std::vector<TracedEffect>& effects, std::si
     const auto ranked = search.rivals(k);
     const auto best = search.choose(ranked);
     ++looked;
-    if (!best) continue;
+    if (!best) {  // the others, fitted again, leave nothing for it
+      search.drop(k);
+      effects.erase(effects.begin() + static_cast<long>(k));
+      looked = 0;
+      if (++replacements > 4) return;
+      continue;
+    }
     TracedEffect again = traced(ranked, *best, effects[k].p_value);
     if (same(ranked[*best].candidate, effects[k].chosen.candidate)) {
       effects[k] = again;
@@ -84,6 +90,7 @@ bool correctOffset(TraceSearch& search, const Trial& trial, std::uint64_t seed,
   tilt.covariate = found->column;
   tilt.channel = Channel::DrawbarPull;
   tilt.parameters = {std::asin(std::clamp(found->offset, -0.3, 0.3))};
+  search.trust({tilt.parameters[0], found->std});
   tilt.only_column = found->column;
   tilt.only_value = found->value;
   TracedEffect effect;
@@ -124,7 +131,7 @@ TraceResult traceResiduals(const RefinedModel& base, const Trial& trial, const T
     if (round == 0) result.first_tests = tests;
     result.last_tests = tests;
     if (smallest(tests) > options.significance || round == options.max_effects) break;
-    const auto ranked = search.fitBest(screened, tests);
+    const auto ranked = search.fitBest(screened);
     auto best = search.choose(ranked);
     if (best && !result.effects.empty() && !matters(ranked[*best], trial)) best.reset();
     if (!best) {

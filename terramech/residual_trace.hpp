@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,7 @@ namespace talus::terramech {
 /// How residuals are traced.
 struct TraceOptions {
   double significance = 0.005;  ///< family-wise level at which something is called missing
-  int max_effects = 4;
+  int max_effects = 7;
   int fits = 7;                ///< candidates that are fitted inside the full model, a round
   int flips = 1999;            ///< of the significance test
   double library_bonus = 3.0;  ///< log odds by which a known form is believed before a curve
@@ -28,9 +29,12 @@ struct TraceOptions {
 
 /// A candidate that was fitted, and how well.
 struct Explanation {
-  Candidate candidate;                         ///< with fitted parameters
-  double score = 0.0;                          ///< log-likelihood gained less the penalty of its parameters
-  double chi2_gain = 0.0;                      ///< twice the log-likelihood gained
+  Candidate candidate;  ///< with fitted parameters
+  double score =
+      0.0;  ///< log-likelihood gained on held-out rows, less one a parameter; a known form has a bonus
+  double chi2_gain = 0.0;  ///< twice the log-likelihood gained on the rows that it was fitted to
+  double in_sample = 0.0;  ///< half of chi2_gain less (parameters / 2) ln(rows), with the same bonus
+  bool spoils = false;     ///< makes some channel's held-out error larger
   std::array<double, kChannels> by_channel{};  ///< chi2 gained in each channel
 };
 
@@ -57,6 +61,8 @@ struct TraceResult {
   std::vector<CovariateTest> first_tests;  ///< of the base model, strongest first
   std::vector<CovariateTest> last_tests;   ///< of the refined model
   ChannelErrors base_rmse{}, refined_rmse{}, noise_floor{};
+  std::optional<ParameterPrior>
+      first_prior;  ///< of the first effect's first parameter, known beside the model
   bool grouped_by_run = false;
 };
 

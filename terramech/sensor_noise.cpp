@@ -253,6 +253,18 @@ void calibrateInputs(Trial& trial, const SensorNoise& noise) {
   }
 }
 
+Whitening subset(const Whitening& whitening, const std::vector<char>& keep) {
+  Whitening part;
+  std::vector<Eigen::Index> rows;
+  for (std::size_t row = 0; row < keep.size(); ++row) {
+    if (!keep[row]) continue;
+    part.factor.push_back(whitening.factor[row]);
+    rows.push_back(static_cast<Eigen::Index>(row));
+  }
+  part.std = whitening.std(rows, Eigen::all);
+  return part;
+}
+
 Eigen::VectorXd Whitening::apply(const Eigen::MatrixXd& residual) const {
   Eigen::VectorXd out(residual.rows() * kChannels);
   for (Eigen::Index row = 0; row < residual.rows(); ++row) {

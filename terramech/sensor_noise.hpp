@@ -4,6 +4,7 @@
 #include <vector>
 
 #include <Eigen/Core>
+
 #include <terramech/trial.hpp>
 
 namespace talus::terramech {
@@ -15,23 +16,25 @@ struct InputSlopes {
 };
 InputSlopes inputSlopes(const RefinedModel& model, const Trial& trial, std::vector<double>& guesses);
 
-/// Maximum a posteriori noise of sensors and inputs from what is left of the residuals once every smooth dependence on
-/// a covariate is taken out (so that a missing effect does not pass for noise). Errors of slip and load show as
-/// deviations that move all channels along `slopes` together. Stated standard deviations are priors of 25 %, others
-/// are 3 % within a factor 2. `level` is the model's reading, for the relative parts.
+/// Maximum a posteriori noise of sensors and inputs from what is left of the residuals once every smooth
+/// dependence on a covariate is taken out (so that a missing effect does not pass for noise). Errors of slip
+/// and load show as deviations that move all channels along `slopes` together. Stated standard deviations are
+/// priors of 25 %, others are 3 % within a factor 2. `level` is the model's reading, for the relative parts.
 SensorNoise fitNoise(const Trial& trial, const Eigen::MatrixXd& residual, const Eigen::MatrixXd& level,
                      const InputSlopes& slopes, const StatedSensors& stated);
 
-/// Residuals with an additive smooth of all covariates taken out, scaled up for the freedom that it took. NaN stay.
+/// Residuals with an additive smooth of all covariates taken out, scaled up for the freedom that it took. NaN
+/// stay.
 Eigen::MatrixXd withoutSmooth(const Trial& trial, const Eigen::MatrixXd& residual);
 
-/// Replaces slip and load of the states by their posterior means given what was measured, and sets their variances:
-/// the distribution of true values is found from all rows (nonparametric maximum likelihood, kiefer_wolfowitz_1956),
-/// so that the attenuation by noisy inputs is taken out. Call it with the measured slip and load in the states.
+/// Replaces slip and load of the states by their posterior means given what was measured, and sets their
+/// variances: the distribution of true values is found from all rows (nonparametric maximum likelihood,
+/// kiefer_wolfowitz_1956), so that the attenuation by noisy inputs is taken out. Call it with the measured
+/// slip and load in the states.
 void calibrateInputs(Trial& trial, const SensorNoise& noise);
 
-/// Per row the factor that makes residuals of unit variance and uncorrelated: inverse of the lower Cholesky factor of
-/// their covariance, zero rows and columns for missing channels.
+/// Per row the factor that makes residuals of unit variance and uncorrelated: inverse of the lower Cholesky
+/// factor of their covariance, zero rows and columns for missing channels.
 struct Whitening {
   std::vector<Eigen::Matrix4d> factor;
   Eigen::MatrixXd std;  ///< marginal standard deviations, rows x kChannels
@@ -39,6 +42,9 @@ struct Whitening {
   Eigen::VectorXd apply(const Eigen::MatrixXd& residual) const;     ///< rows*kChannels; 0 where missing
   Eigen::VectorXd marginal(const Eigen::MatrixXd& residual) const;  ///< each over its std
 };
+/// The rows that `keep` marks.
+Whitening subset(const Whitening& whitening, const std::vector<char>& keep);
+
 Whitening whitening(const Trial& trial, const Eigen::MatrixXd& level, const InputSlopes& slopes,
                     const SensorNoise& noise);
 

@@ -30,7 +30,9 @@ TraceSearch::TraceSearch(const RefinedModel& base, const Trial& trial, const Tra
 }
 
 FitPlan TraceSearch::planFor(const RefinedModel& model) const {
-  return fitPlan(model, options_.fit_soil);
+  FitPlan plan = fitPlan(model, options_.fit_soil);
+  if (first_prior_) plan.effect_prior[0] = *first_prior_;
+  return plan;
 }
 
 void TraceSearch::fitSoil() {
@@ -195,18 +197,88 @@ std::vector<CovariateTest> TraceSearch::test(const std::vector<Screened>& screen
   return testCovariates(trial_, whitening_, residual_, sinkages(level_), plan);
 }
 
-Explanation TraceSearch::fitted(const Candidate& candidate) {
+/// What a model, fitted anew to the rows that are seen, leaves on the others. Few iterations: it starts near.
+TraceSearch::HeldRows TraceSearch::errorsOn(const HeldRows& fold, const RefinedModel& start) {
+  std::vector<double> guesses;
+  FitPlan plan = planFor(start);
+  plan.iterations = 3;
+  const RefinedModel model = fitModel(start, fold.seen, fold.white_seen, plan, guesses).model;
+  guesses.clear();
+  const Eigen::MatrixXd left = fold.unseen.measured - predictRows(model, fold.unseen, guesses);
+  HeldRows errors;
+  errors.chi2 = fold.white_unseen.apply(left).squaredNorm();
+  const Eigen::VectorXd scaled = fold.white_unseen.marginal(left);
+  for (Eigen::Index i = 0; i < scaled.size(); ++i)
+    errors.by_channel[static_cast<std::size_t>(i % kChannels)] += scaled[i] * scaled[i];
+  return errors;
+}
+
+std::vector<TraceSearch::HeldRows> TraceSearch::heldRows() {
+  const Folds folds = foldsOf(trial_);
+  std::vector<HeldRows> all;
+  for (int fold = 0; fold < folds.count; ++fold) {
+    const auto seen = rowsOf(folds, fold, false), unseen = rowsOf(folds, fold, true);
+    HeldRows rows{.seen = subset(trial_, seen),
+                  .unseen = subset(trial_, unseen),
+                  .white_seen = subset(whitening_, seen),
+                  .white_unseen = subset(whitening_, unseen)};
+    if (rows.seen.rows() == 0 || rows.unseen.rows() == 0) continue;
+    const HeldRows errors = errorsOn(rows, model_);
+    rows.chi2 = errors.chi2;
+    rows.by_channel = errors.by_channel;
+    all.push_back(std::move(rows));
+  }
+  return all;
+}
+
+void TraceSearch::judgeHeldOut(std::vector<HeldRows>& folds, const RefinedModel& fitted, Explanation& e) {
+  double gain = 0.0;
+  std::array<double, kChannels> before{}, after{};
+  for (const HeldRows& fold : folds) {
+    const HeldRows errors = errorsOn(fold, fitted);
+    gain += 0.5 * (fold.chi2 - errors.chi2);
+    for (std::size_t c = 0; c < kChannels; ++c) {
+      before[c] += fold.by_channel[c];
+      after[c] += errors.by_channel[c];
+    }
+  }
+  e.score = gain - e.candidate.parameters + (e.candidate.empirical() ? 0.0 : options_.library_bonus);
+  for (std::size_t c = 0; c < kChannels; ++c)
+    e.spoils |= after[c] > 1.05 * before[c] + 4.0;  // 2.5 % of the rms, and what chance does
+}
+
+std::vector<Explanation> TraceSearch::fitBest(const std::vector<Screened>& screened) {
+  std::vector<Explanation> ranked;
+  std::map<std::string, int> tried;
+  std::vector<HeldRows> folds = heldRows();
+  int library = 0, empirical = 0;
+  for (const Screened& s : screened) {
+    int& count = s.candidate.empirical() ? empirical : library;
+    const Effect& front = s.candidate.parts.front();
+    if (count >= (s.candidate.empirical() ? 3 : options_.fits) || s.score < -2.0) continue;
+    if (++tried[front.name + front.covariate + front.only_value] > 2) continue;
+    ++count;
+    ranked.push_back(fitted(s.candidate, folds));
+  }
+  std::stable_sort(ranked.begin(), ranked.end(),
+                   [](const Explanation& a, const Explanation& b) { return a.score > b.score; });
+  return ranked;
+}
+
+Explanation TraceSearch::fitted(const Candidate& candidate, std::vector<HeldRows>& folds) {
   const RefinedModel grown = with(model_, candidate);
   std::vector<double> guesses = guesses_;
   FitPlan plan = planFor(grown);
-  plan.iterations = 6;
+  plan.iterations = 10;
   const Fit fit = fitModel(grown, trial_, whitening_, plan, guesses);
   Explanation e;
   e.candidate = candidate;
   for (std::size_t k = 0; k < candidate.parts.size(); ++k)
     e.candidate.parts[k] = fit.model.effects[model_.effects.size() + k];
   e.chi2_gain = white_.squaredNorm() - fit.chi2 - fit.prior_chi2;
-  e.score = 0.5 * e.chi2_gain - penalty(candidate) + (candidate.empirical() ? 0.0 : options_.library_bonus);
+  e.in_sample =
+      0.5 * e.chi2_gain - penalty(candidate) + (candidate.empirical() ? 0.0 : options_.library_bonus);
+  judgeHeldOut(folds, fit.model, e);
   const Eigen::VectorXd before = whitening_.marginal(residual_),
                         after =
                             whitening_.marginal(trial_.measured - predictRows(fit.model, trial_, guesses));
@@ -215,33 +287,20 @@ Explanation TraceSearch::fitted(const Candidate& candidate) {
   return e;
 }
 
-std::vector<Explanation> TraceSearch::fitBest(const std::vector<Screened>& screened,
-                                              const std::vector<CovariateTest>& tests) {
-  (void)tests;
-  std::vector<Explanation> ranked;
-  std::map<std::string, int> tried;
-  int library = 0, empirical = 0;
-  for (const Screened& s : screened) {
-    int& count = s.candidate.empirical() ? empirical : library;
-    const Effect& front = s.candidate.parts.front();
-    if (count >= (s.candidate.empirical() ? 3 : options_.fits) || s.score < -2.0) continue;
-    if (++tried[front.name + front.covariate + front.only_value] > 2) continue;
-    ++count;
-    ranked.push_back(fitted(s.candidate));
-  }
-  std::stable_sort(ranked.begin(), ranked.end(),
-                   [](const Explanation& a, const Explanation& b) { return a.score > b.score; });
-  return ranked;
-}
-
 std::optional<std::size_t> TraceSearch::choose(const std::vector<Explanation>& ranked) const {
-  if (ranked.empty() || ranked.front().score < 2.0) return {};
-  const Explanation& best = ranked.front();
-  if (!best.candidate.empirical()) return 0;
+  const auto believable = [](const Explanation& e) {
+    return e.score >= 2.0 && e.in_sample >= 2.0 && !e.spoils;
+  };
+  const auto first = std::find_if(ranked.begin(), ranked.end(), believable);
+  if (first == ranked.end()) return {};
+  const auto best = static_cast<std::size_t>(first - ranked.begin());
+  if (!first->candidate.empirical()) return best;
   // A known form that carries nearly all of what the curve does is the cause; its remainder is a correction.
-  for (std::size_t k = 1; k < ranked.size(); ++k)
-    if (!ranked[k].candidate.empirical() && ranked[k].chi2_gain > 0.93 * best.chi2_gain) return k;
-  return 0;
+  for (std::size_t k = best + 1; k < ranked.size(); ++k)
+    if (!ranked[k].candidate.empirical() && believable(ranked[k]) &&
+        ranked[k].chi2_gain > 0.93 * first->chi2_gain)
+      return k;
+  return best;
 }
 
 void TraceSearch::accept(const Candidate& candidate) {
@@ -269,9 +328,17 @@ void TraceSearch::takeOut(std::size_t k) {
 std::vector<Explanation> TraceSearch::rivals(std::size_t k) {
   const TraceSearch kept = *this;
   takeOut(k);
-  auto ranked = fitBest(screen(), {});
+  auto ranked = fitBest(screen());
   *this = kept;
   return ranked;
+}
+
+void TraceSearch::drop(std::size_t k) {
+  takeOut(k);
+  for (int round = 0; round < 2; ++round) {
+    model_ = fitModel(model_, trial_, whitening_, planFor(model_), guesses_).model;
+    refresh();
+  }
 }
 
 void TraceSearch::replace(std::size_t k, const Candidate& candidate) {
@@ -300,6 +367,7 @@ void TraceSearch::finish(TraceResult& result) {
     }
   }
   result.refined = model_;
+  result.first_prior = first_prior_;
   Trial measured = trial_;
   for (std::size_t row = 0; row < measured.states.size(); ++row) {
     measured.states[row].slip = measured.slip[row];

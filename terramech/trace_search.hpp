@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include <terramech/folds.hpp>
 #include <terramech/residual_trace.hpp>
 
 namespace talus::terramech {
@@ -29,9 +30,8 @@ class TraceSearch {
   /// Whether the residuals hold anything at all.
   std::vector<CovariateTest> test(const std::vector<Screened>& screened);
 
-  /// The most promising candidates fitted inside the full model, best first.
-  std::vector<Explanation> fitBest(const std::vector<Screened>& screened,
-                                   const std::vector<CovariateTest>& tests);
+  /// The most promising candidates fitted inside the full model, ranked by their likelihood on rows held out.
+  std::vector<Explanation> fitBest(const std::vector<Screened>& screened);
 
   /// Which of the ranked is believed: the best known form unless a curve says clearly more; none when nothing
   /// pays.
@@ -39,6 +39,12 @@ class TraceSearch {
 
   /// Puts a candidate into the model, fits everything again and finds the noise anew.
   void accept(const Candidate& candidate);
+
+  /// Keeps the first parameter of the effect accepted first near what was known of it before.
+  void trust(const ParameterPrior& prior) { first_prior_ = prior; }
+
+  /// Takes accepted candidate number k out, fits everything again and finds the noise anew.
+  void drop(std::size_t k);
 
   /// What would explain the rows in place of accepted candidate number k, the others kept and the noise as it
   /// is now known: before the first effect was in, the noise was only guessed.
@@ -55,13 +61,24 @@ class TraceSearch {
   void takeOut(std::size_t k);
   void fitSoil();
   FitPlan planFor(const RefinedModel& model) const;
-  Explanation fitted(const Candidate& candidate);
   double penalty(const Candidate& candidate) const;
   Eigen::VectorXd sinkages(const Eigen::MatrixXd& level) const;
   Screened screenLibrary(const Candidate& candidate, const Eigen::MatrixXd& nuisance);
   Screened screenSoilCurve(const Candidate& candidate, const Eigen::MatrixXd& nuisance);
   Screened screenCurves(const Candidate& candidate, const Eigen::MatrixXd& nuisance);
   Eigen::VectorXd change(const RefinedModel& moved);
+
+  /// Rows held out, and what the model without a candidate leaves there.
+  struct HeldRows {
+    Trial seen, unseen;
+    Whitening white_seen, white_unseen;
+    double chi2 = 0.0;
+    std::array<double, kChannels> by_channel{};
+  };
+  void judgeHeldOut(std::vector<HeldRows>& folds, const RefinedModel& fitted, Explanation& candidate);
+  std::vector<HeldRows> heldRows();
+  Explanation fitted(const Candidate& candidate, std::vector<HeldRows>& folds);
+  HeldRows errorsOn(const HeldRows& fold, const RefinedModel& start);
 
   TraceOptions options_;
   RefinedModel model_;
@@ -71,7 +88,8 @@ class TraceSearch {
   Whitening whitening_;
   Eigen::VectorXd white_;
   std::vector<int> group_;
-  std::vector<std::size_t> part_count_;  ///< effects in the model of each accepted candidate
+  std::optional<ParameterPrior> first_prior_;  ///< of a correction that is never taken out
+  std::vector<std::size_t> part_count_;        ///< effects in the model of each accepted candidate
 };
 
 }  // namespace talus::terramech

@@ -17,7 +17,10 @@ function drawMap(element, data) {
   map.on("baselayerchange", event => showLegend(event.name, event.layer.legend));
   const narrow = element.clientWidth < 600;
   L.control.layers(layers, {}, {collapsed: narrow}).addTo(map);
-  const view = data.route.length ? L.latLngBounds(data.route.map(at)).pad(0.15) : L.latLngBounds(box);
+  const way = data.story
+    ? [...data.story.track.map(([, x, y]) => ({x, y})), ...data.story.events.flatMap(e => e.route.map(([x, y]) => ({x, y})))]
+    : data.route;
+  const view = way.length ? L.latLngBounds(way.map(at)).pad(0.15) : L.latLngBounds(box);
   map.fitBounds(view, {paddingBottomRight: [narrow ? 0 : 170, 0]});  // room for the list of layers
   return map;
 }
@@ -40,6 +43,12 @@ function drawRoute(map, points, onHover) {
   const line = points.map(p => [p.y, p.x]);
   L.polyline(line, {color: "#fff", weight: 7, interactive: false}).addTo(map);
   L.polyline(line, {color: "#1b3fbf", weight: 3.5, interactive: false}).addTo(map);
+  points.forEach((p, i) => {
+    const reverse = {color: "#b3202c", weight: 3.5, interactive: false};
+    if (p.reverse && i + 1 < line.length) L.polyline([line[i], line[i + 1]], reverse).addTo(map);
+    if (p.turn || (i > 0 && !!p.reverse !== !!points[i - 1].reverse))
+      L.circleMarker(line[i], {radius: 4, color: "#b3202c", fillColor: "#b3202c", fillOpacity: 1, interactive: false}).addTo(map);
+  });
   const wide = L.polyline(line, {color: "#000", opacity: 0, weight: 34}).addTo(map);
   const dot = L.circleMarker(line[0], {radius: 8, color: "#fff", weight: 3, fillColor: "#b3202c", fillOpacity: 1,
                                        interactive: false, className: "here"});

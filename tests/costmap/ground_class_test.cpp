@@ -25,5 +25,35 @@ TEST(GroundClass, WithoutStatedDeviationsKeepsTheDefault) {
             GroundClass{}.mean_std);
 }
 
+terramech::RefinedModel digging() {
+  terramech::RefinedModel model;
+  model.soil = testSand();
+  model.effects = {{.name = "slip_sinkage_ding", .covariate = "slip", .parameters = {0.5}},
+                   {.name = "load_cell_tilt", .covariate = "constant", .parameters = {0.1}}};
+  model.fitted = {{.effect = 0, .index = 0}};
+  model.covariance = {0.0016};
+  return model;
+}
+
+TEST(GroundClass, OfARefinedModelKeepsWhatTheGroundDoes) {
+  const GroundClass ground = groundClass(3, digging(), testRover());
+  ASSERT_EQ(ground.effects.size(), 1U);
+  EXPECT_EQ(ground.effects[0].name, "slip_sinkage_ding");
+  // Property: deeper in slipping than the sand alone, weaker at the reference slip.
+  EXPECT_LT(mobilityOf(ground, testRover()).reference().drawbar_pull_over_load, pull(testSand()));
+}
+
+TEST(GroundClass, DoubtOfARefinedModelIsItsCovariance) {
+  terramech::RefinedModel more = digging(), less = digging();
+  more.effects[0].parameters[0] += 0.004;
+  less.effects[0].parameters[0] -= 0.004;
+  const auto at = [](const terramech::RefinedModel& m) {
+    return terramech::MobilityCurve(m, testRover()).reference().drawbar_pull_over_load;
+  };
+  // Closed form: |dDP/dn1| std, std 0.04; a central difference against a one-sided one, hence 2 %.
+  const double expected = std::abs(at(more) - at(less)) / 0.008 * 0.04;
+  EXPECT_NEAR(groundClass(3, digging(), testRover()).mean_std, expected, 0.02 * expected);
+}
+
 }  // namespace
 }  // namespace talus::costmap

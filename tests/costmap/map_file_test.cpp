@@ -50,6 +50,29 @@ TEST(MapFile, KeepsTheCoordinateSystem) {
   EXPECT_EQ(back.elevation().georeference->system().ellipsoid, moon.ellipsoid);
 }
 
+TEST(MapFile, KeepsTheEffectsOfItsGround) {
+  GroundModel::Parts parts = testGround()->parts();
+  terramech::Effect curve{.name = "empirical",
+                          .covariate = "slip",
+                          .channel = terramech::Channel::Sinkage,
+                          .parameters = {0.0, 0.01, 0.02},
+                          .knots = {0.0, 0.4, 0.9}};
+  curve.only_column = "session";
+  curve.only_value = "a b\nc";
+  parts.classes[0].effects = {{.name = "slip_sinkage_ding", .covariate = "slip", .parameters = {0.4}}, curve};
+  const TraversabilityMap map(drawn({"11", "12"}), std::make_shared<GroundModel>(parts), {});
+  const TraversabilityMap back = fromBytes(bytesOf(map));
+  EXPECT_EQ(bytesOf(back), bytesOf(map));
+  ASSERT_EQ(back.model().parts().classes[0].effects.size(), 2U);
+  const terramech::Effect& read = back.model().parts().classes[0].effects[1];
+  EXPECT_EQ(read.knots, curve.knots);
+  EXPECT_EQ(read.parameters, curve.parameters);
+  EXPECT_EQ(read.channel, curve.channel);
+  EXPECT_EQ(read.only_value, curve.only_value);
+  // Property: ground that digs is not the ground of its soil alone.
+  EXPECT_NE(back.model().prior(0).pull.mean, testGround()->prior(0).pull.mean);
+}
+
 TEST(MapFile, StockOctoMapReadsItAndStopsBehindTheNodes) {
   std::istringstream stream(bytesOf(site()));
   const std::unique_ptr<octomap::AbstractOcTree> tree(octomap::AbstractOcTree::read(stream));

@@ -12,7 +12,7 @@ namespace {
 constexpr double kPi = 3.14159265358979;
 
 struct Conditions {
-  double load, slip, speed, pass, time, slope, grouser, temperature, dust, battery, radius, width;
+  double load, slip, speed, rim, pass, time, slope, grouser, temperature, dust, battery, radius, width;
 };
 
 struct Answer {
@@ -198,14 +198,52 @@ Hidden draw(const std::vector<Kind>& kinds, Random& random) {
   return {k.kind, k.family, k.covariates, k.channels, random.uniform(k.low, k.high)};
 }
 
-Conditions conditions(Random& random, int row, int count, bool levels) {
+/// How a campaign was laid out.
+struct Design {
+  int count = 100;
+  bool levels = false;
+  double one_slip = -1.0;   ///< >= 0: all rows have it
+  bool tied_speed = false;  ///< the travel speed is fixed, so that the rim's follows the slip
+  int rows_a_run = 0;       ///< > 0: runs
+  double run_offset = 0.0;  ///< of DP/W and z/r, normal from run to run
+  int idle_columns = 0;     ///< that mean nothing
+  bool heavy_tails = false;
+  double absolute = 0.0;  ///< part of the noise that does not grow with the reading, of DP/W and T/(rW)
+};
+
+Design plainDesign(Random& random) {
+  Design d;
+  d.count = 60 + random.below(341);
+  d.levels = random.below(2) == 1;
+  return d;
+}
+
+Design wideDesign(Random& random) {
+  Design d = plainDesign(random);
+  const int kind = random.below(5);
+  if (kind == 1) d.one_slip = random.uniform(0.15, 0.5);
+  if (kind == 2) d.tied_speed = true;
+  if (kind == 3) {
+    d.rows_a_run = 4 + random.below(9);
+    d.run_offset = random.uniform(0.003, 0.015);
+  }
+  d.idle_columns = random.below(5);
+  d.heavy_tails = random.below(3) == 0;
+  d.absolute = random.below(2) * random.uniform(0.002, 0.01);
+  return d;
+}
+
+Conditions conditions(Random& random, int row, const Design& design) {
   static constexpr double kLoads[] = {20.0, 40.0, 60.0, 90.0}, kSlips[] = {0.05, 0.15, 0.3, 0.45, 0.6, 0.8};
   Conditions c{};
-  c.load = levels ? kLoads[random.below(4)] : random.uniform(20.0, 100.0);
-  c.slip = levels ? kSlips[random.below(6)] : random.uniform(0.03, 0.8);
+  c.load = design.levels ? kLoads[random.below(4)] : random.uniform(20.0, 100.0);
+  c.slip = design.levels ? kSlips[random.below(6)] : random.uniform(0.03, 0.8);
+  if (design.one_slip >= 0.0) c.slip = design.one_slip;
   c.speed = std::exp(random.uniform(std::log(0.01), std::log(0.15)));
+  if (design.tied_speed) c.speed = 0.02;
+  c.rim = c.speed / (1.0 - c.slip);
   c.pass = 1.0 + random.below(4);
-  c.time = 3600.0 * (row + random.uniform(0.0, 1.0)) / count;
+  c.time = 3600.0 * (row + random.uniform(0.0, 1.0)) / design.count;
   c.slope = random.uniform(-0.25, 0.25);
   c.grouser = random.below(2) * 0.01;
   c.temperature = 15.0 + 8.0 * std::sin(2.0 * kPi * c.time / 5000.0) + 2.0 * random.normal();
@@ -216,14 +254,31 @@ Conditions conditions(Random& random, int row, int count, bool levels) {
   return c;
 }
 
-std::vector<double> measure(const World& world, const Conditions& c, const Answer& a, Random& random) {
-  const auto noisy = [&](double v) { return v * (1.0 + world.noise * random.normal()); };
-  return {std::clamp(c.slip * (1.0 + world.noise * random.normal()), -1.0, 1.0),
-          c.load * (1.0 + world.noise * random.normal()),
-          noisy(a.torque),
-          noisy(a.z),
-          noisy(a.pull),
+double shock(Random& random, const Design& design) {
+  if (!design.heavy_tails) return random.normal();
+  double chi2 = 0.0;  // Student's t of five degrees, brought to unit variance
+  for (int k = 0; k < 5; ++k) chi2 += std::pow(random.normal(), 2);
+  return random.normal() / std::sqrt(chi2 / 5.0) * std::sqrt(3.0 / 5.0);
+}
+
+/// Offsets that the rows of one run share.
+struct RunOffset {
+  double pull = 0.0, sinkage = 0.0;
+};
+
+std::vector<double> measure(const World& world, const Design& design, const Conditions& c, const Answer& a,
+                            const RunOffset& offset, Random& random) {
+  const auto noisy = [&](double v, double unit) {
+    const double relative = v * (1.0 + world.noise * shock(random, design));
+    return design.absolute > 0.0 ? relative + unit * design.absolute * shock(random, design) : relative;
+  };
+  return {std::clamp(c.slip * (1.0 + world.noise * shock(random, design)), -1.0, 1.0),
+          c.load * (1.0 + world.noise * shock(random, design)),
+          noisy(a.torque, c.load * c.radius),
+          noisy(a.z, 0.0) + offset.sinkage * c.radius,
+          noisy(a.pull, c.load) + offset.pull * c.load,
           c.speed,
+          c.rim,
           c.pass,
           c.time,
           c.slope,
@@ -235,15 +290,38 @@ std::vector<double> measure(const World& world, const Conditions& c, const Answe
           c.width};
 }
 
+/// Whether a campaign could show an effect at all.
+bool shows(const Hidden& h, const Design& design) {
+  const auto on = [&](const char* column) {
+    return std::find(h.covariates.begin(), h.covariates.end(), column) != h.covariates.end();
+  };
+  return !(design.one_slip >= 0.0 && on("slip")) && !(design.tied_speed && on("speed_mps"));
+}
+
+/// Columns without meaning: white, wandering or stepping.
+void addIdleColumns(const Design& design, std::vector<std::string>& columns,
+                    std::vector<std::vector<double>>& rows, Random& random) {
+  for (int k = 0; k < design.idle_columns; ++k) {
+    columns.push_back("aux_" + std::to_string(k));
+    const int kind = random.below(3);
+    double walk = 0.0;
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+      walk += random.normal();
+      rows[row].push_back(kind == 0 ? random.normal() : kind == 1 ? walk : static_cast<double>((row * 4 / rows.size()) % 2));
+    }
+  }
+}
+
 }  // namespace
 
 World makeWorld(const WorldPlan& plan) {
   Random random{plan.seed};
   World w;
   w.seed = plan.seed;
-  w.columns = {"slip",          "load_N",     "torque_Nm", "sinkage_m",      "drawbar_pull_N",
-               "speed_mps",     "pass_index", "time_s",    "slope_rad",      "grouser_height_m",
-               "temperature_C", "dust_index", "battery_V", "wheel_radius_m", "wheel_width_m"};
+  w.columns = {"slip",           "load_N",    "torque_Nm",        "sinkage_m",
+               "drawbar_pull_N", "speed_mps", "rim_speed_mps",    "pass_index",
+               "time_s",         "slope_rad", "grouser_height_m", "temperature_C",
+               "dust_index",     "battery_V", "wheel_radius_m",   "wheel_width_m"};
   const double n = random.uniform(0.7, 1.2);
   w.ground = {random.uniform(200.0, 4000.0),
               random.uniform(0.4, 0.65),
@@ -261,16 +339,29 @@ World makeWorld(const WorldPlan& plan) {
       h = draw(plan.library ? libraryKinds() : otherKinds(), random);
     w.hidden.push_back(h);
   }
-  const int count = 60 + random.below(341);
-  const bool levels = random.below(2) == 1;
-  for (int row = 0; row < count; ++row) {
-    const Conditions c = conditions(random, row, count, levels);
-    w.rows.push_back(measure(w, c, truth(w, c), random));
+  const Design design = plan.wide ? wideDesign(random) : plainDesign(random);
+  for (Hidden& h : w.hidden)
+    while (!shows(h, design)) h = draw(plan.library ? libraryKinds() : otherKinds(), random);
+  if (design.tied_speed)  // nobody can tell these apart
+    for (Hidden& h : w.hidden)
+      if (std::find(h.covariates.begin(), h.covariates.end(), "slip") != h.covariates.end())
+        h.covariates.push_back("rim_speed_mps");
+  RunOffset offset;
+  for (int row = 0; row < design.count; ++row) {
+    if (design.rows_a_run > 0) {
+      if (row % design.rows_a_run == 0)
+        offset = {design.run_offset * random.normal(), design.run_offset * random.normal()};
+      w.run.push_back(row / design.rows_a_run);
+    }
+    const Conditions c = conditions(random, row, design);
+    w.rows.push_back(measure(w, design, c, truth(w, c), offset, random));
   }
   for (int row = 0; row < 80; ++row) {
-    const Conditions c = conditions(random, row, 80, levels);
+    Design held = design;
+    held.count = 80;
+    const Conditions c = conditions(random, row, held);
     const Answer a = truth(w, c);
-    w.held.push_back(measure(w, c, a, random));
+    w.held.push_back(measure(w, design, c, a, {}, random));
     // The floor: the true model fed with the measured slip and load.
     Conditions seen = c;
     seen.slip = w.held.back()[0];
@@ -279,6 +370,15 @@ World makeWorld(const WorldPlan& plan) {
     w.floor_pull.push_back((w.held.back()[4] - best.pull) / seen.load);
     w.floor_z.push_back((w.held.back()[3] - best.z) / c.radius);
   }
+  if (!plan.wide) {  // the rim's speed follows from speed and slip
+    const auto at = std::find(w.columns.begin(), w.columns.end(), "rim_speed_mps") - w.columns.begin();
+    w.columns.erase(w.columns.begin() + at);
+    for (auto* rows : {&w.rows, &w.held})
+      for (auto& row : *rows) row.erase(row.begin() + at);
+  }
+  std::vector<std::string> held_columns = w.columns;
+  addIdleColumns(design, held_columns, w.held, random);
+  addIdleColumns(design, w.columns, w.rows, random);
   return w;
 }
 

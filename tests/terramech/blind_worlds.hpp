@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-/// Wheel data from made-up worlds with effects that nobody declares, and a judge of what a tracer says of them.
-/// Independent of the library on purpose: own stress integrals (plain midpoint rule, bisection), own formulas, own
-/// random numbers; neither includes anything of it.
+/// Wheel data from made-up worlds with effects that nobody declares, and a judge of what a tracer says of
+/// them. Independent of the library on purpose: own stress integrals (plain midpoint rule, bisection), own
+/// formulas, own random numbers; neither includes anything of it.
 namespace talus::blind {
 
 /// A true soil, SI.
@@ -17,8 +17,8 @@ struct Ground {
 
 /// One hidden effect.
 struct Hidden {
-  std::string kind;                     ///< "slip_sinkage_ding", ..., or "form:..." for forms that no library holds
-  std::string family;                   ///< that a library form belongs to; "empirical" for other forms
+  std::string kind;    ///< "slip_sinkage_ding", ..., or "form:..." for forms that no library holds
+  std::string family;  ///< that a library form belongs to; "empirical" for other forms
   std::vector<std::string> covariates;  ///< columns that a right answer may name
   std::vector<std::string> channels;    ///< scaled channels that a right answer may name
   double size = 0.0;                    ///< the main number of the effect
@@ -28,9 +28,11 @@ struct Hidden {
 struct World {
   std::uint64_t seed = 0;
   std::vector<std::string> columns;
-  std::vector<std::vector<double>> rows;     ///< training rows, noisy
-  std::vector<std::vector<double>> held;     ///< rows of conditions that training has too, noisy
-  std::vector<double> floor_pull, floor_z;   ///< noise-free truth less measured of held rows: what nobody can predict
+  std::vector<std::vector<double>> rows;  ///< training rows, noisy
+  std::vector<std::vector<double>> held;  ///< rows of conditions that training has too, noisy
+  std::vector<double> floor_pull,
+      floor_z;           ///< noise-free truth less measured of held rows: what nobody can predict
+  std::vector<int> run;  ///< number of the run of each training row; empty: there are no runs
   std::vector<Hidden> hidden;
   Ground ground{};
   double noise = 0.03;
@@ -42,8 +44,11 @@ struct World {
 /// What to make.
 struct WorldPlan {
   std::uint64_t seed = 1;
-  int effects = 1;         ///< 0, 1 or 2
-  bool library = true;     ///< forms that the literature names, or others
+  int effects = 1;      ///< 0, 1 or 2
+  bool library = true;  ///< forms that the literature names, or others
+  bool wide =
+      false;  ///< designs and noise of many kinds: one slip level, a rim speed tied to slip, runs with
+              ///< offsets of their own, columns that mean nothing, drifting or heavy-tailed noise
 };
 World makeWorld(const WorldPlan& plan);
 

@@ -67,7 +67,8 @@ TEST(Effects, EveryFormActsAtItsTypicalSize) {
   for (const EffectForm& form : effectLibrary()) {
     RefinedModel model = base();
     model.effects = {typical(form)};
-    const double moved = change(predict(model, state()), predict(base(), state()));
+    const WheelState at = state(std::string(form.name) == "skid_sinkage" ? -0.5 : 0.5);
+    const double moved = change(predict(model, at), predict(base(), at));
     if (std::string(form.name) == "layered_hardpan") continue;  // its depth is beyond this sinkage or not
     EXPECT_GT(moved, 1e-6) << form.name;
     EXPECT_LT(moved, 10.0) << form.name;
@@ -103,6 +104,40 @@ TEST(Effects, LyaskoSinkageFollowsItsLaw) {
   const double z0 = predict(model, state()).sinkage_m;
   model.effects = {typical(*findEffect("slip_sinkage_lyasko"))};
   EXPECT_NEAR(predict(model, state()).sinkage_m, 2.0 * z0, 1e-9);
+}
+
+TEST(Effects, ADraggedWheelSinksByTheSquareOfWhatItDoesNotRoll) {
+  // Closed form: 0.3 r (1 - r omega/v)^2 with r omega/v = 1 + slip; none where the wheel drives.
+  RefinedModel model = base();
+  model.effects = {typical(*findEffect("skid_sinkage"))};
+  for (const double slip : {-1.0, -0.6, -0.2, 0.3}) {
+    WheelState s = state(slip);
+    s.slip_angle_rad = 0.0;
+    const double extra = slip < 0.0 ? 0.3 * 0.12 * slip * slip : 0.0;
+    EXPECT_NEAR(predict(model, s).sinkage_m, predict(base(), s).sinkage_m + extra, 1e-9) << slip;
+  }
+}
+
+TEST(Effects, SideForceAgainstTheTravelAndNoPloughingStraightOn) {
+  RefinedModel model = base();
+  model.effects = {typical(*findEffect("side_ploughing"))};
+  WheelState s = state(0.2);
+  s.slip_angle_rad = 0.0;
+  EXPECT_NEAR(change(predict(model, s), predict(base(), s)), 0.0, 1e-12);
+  double last = 0.0;
+  for (const double angle : {0.3, 0.8, 1.3}) {
+    s.slip_angle_rad = angle;
+    const Reading right = predict(model, s);
+    s.slip_angle_rad = -angle;
+    const Reading left = predict(model, s);
+    // Property: the side force is odd, the rest even, and sinkage grows with the angle (at small ones the
+    // contact behind carries a little more).
+    EXPECT_LT(right.side_force_N, 0.0);
+    EXPECT_NEAR(right.side_force_N, -left.side_force_N, 1e-9);
+    EXPECT_NEAR(right.drawbar_pull_N, left.drawbar_pull_N, 1e-9);
+    EXPECT_GT(right.sinkage_m, last);
+    last = right.sinkage_m;
+  }
 }
 
 TEST(Effects, SplineIsNaturalAndConstantOutside) {

@@ -149,5 +149,73 @@ TEST(Mobility, RefusesABadRover) {
   EXPECT_THROW((MobilityCurve{loam(), rover(), {.max_slip = 0.0}}), std::invalid_argument);
 }
 
+RefinedModel withEffect(const char* name, std::vector<double> parameters) {
+  RefinedModel model;
+  model.soil = loam();
+  const EffectForm& form = *findEffect(name);
+  model.effects = {{.name = name,
+                    .covariate = form.covariate,
+                    .channel = form.channel,
+                    .parameters = std::move(parameters)}};
+  return model;
+}
+
+TEST(Mobility, AModelWithoutEffectsIsItsSoil) {
+  const MobilityCurve of_soil{loam(), rover()};
+  RefinedModel model;
+  model.soil = loam();
+  const MobilityCurve of_model{model, rover()};
+  for (const double slope : {-0.15, -0.05, 0.0, 0.1}) {
+    // Property: two rules of one integral, 1e-6 of the load apart.
+    EXPECT_NEAR(of_model.at(slope).slip, of_soil.at(slope).slip, 1e-5) << slope;
+    EXPECT_NEAR(of_model.at(slope).energy_J_per_m, of_soil.at(slope).energy_J_per_m, 1e-3) << slope;
+  }
+  EXPECT_NEAR(of_model.maxSlope_rad(), of_soil.maxSlope_rad(), 1e-6);
+}
+
+TEST(Mobility, AnEffectHoldsOnEverySlope) {
+  const RefinedModel model = withEffect("slip_sinkage_ding", {0.4});
+  const MobilityCurve curve{model, rover()};
+  for (const double slope : {0.05, 0.12}) {
+    const MobilityState s = curve.at(slope);
+    WheelState wheel;
+    wheel.wheel = rover().wheel;
+    wheel.load_N = wheelLoad_N(rover()) * std::cos(slope);
+    wheel.slip = s.slip;
+    // Closed form: DP/N = tan(slope) at the slip that the table gives, by the model itself.
+    EXPECT_NEAR(predict(model, wheel).drawbar_pull_N / wheel.load_N, std::tan(slope), 1e-3) << slope;
+    EXPECT_NEAR(predict(model, wheel).sinkage_m, s.sinkage_m, 1e-5) << slope;
+    // Property: at that slip it lies deeper than the soil alone would let it.
+    EXPECT_GT(s.sinkage_m,
+              equilibrium(loam(), rover().wheel, {.load_N = wheel.load_N, .slip = s.slip}).sinkage_m);
+  }
+}
+
+TEST(Mobility, ResistanceCostsSlipEnergyAndTheSteepestSlopes) {
+  const MobilityCurve curve{withEffect("bulldozing", {0.3}), rover()}, plain{loam(), rover()};
+  for (const double slope : {-0.05, 0.05, 0.1}) {
+    EXPECT_GT(curve.at(slope).slip, plain.at(slope).slip) << slope;
+    EXPECT_GT(curve.at(slope).energy_J_per_m, plain.at(slope).energy_J_per_m) << slope;
+  }
+  EXPECT_LT(curve.maxSlope_rad(), plain.maxSlope_rad());
+  EXPECT_LT(curve.reference().drawbar_pull_over_load, plain.reference().drawbar_pull_over_load);
+}
+
+TEST(Mobility, WhatSensorsErrDoesNotMoveTheGround) {
+  for (const char* name : {"load_cell_tilt", "torque_offset", "sinkage_datum", "slip_bias"}) {
+    const MobilityCurve curve{withEffect(name, {0.05}), rover()};
+    RefinedModel plain;
+    plain.soil = loam();
+    EXPECT_EQ(curve.at(0.1).energy_J_per_m, MobilityCurve(plain, rover()).at(0.1).energy_J_per_m) << name;
+  }
+}
+
+TEST(Mobility, ALinearFormulaCannotSayWhatASlopeAsks) {
+  RefinedModel model;
+  model.soil = loam();
+  model.base = BaseModel::LinearFormula;
+  EXPECT_THROW(MobilityCurve(model, rover()), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace talus::terramech

@@ -15,6 +15,10 @@ Telemetry telemetryOf(const blind::World& world) {
     t.numbers.push_back({world.columns[k], {}});
     for (const auto& row : world.rows) t.numbers.back().values.push_back(row[k]);
   }
+  if (!world.run.empty()) {
+    t.words.push_back({"run", {}});
+    for (int run : world.run) t.words.back().values.push_back("run" + std::to_string(run));
+  }
   for (std::size_t row = 0; row < world.rows.size(); ++row) t.lines.push_back(row + 2);
   return t;
 }
@@ -86,7 +90,7 @@ TEST(ResidualTrace, SameSeedSameAnswer) {
 TEST(HeldOut, WholeBandsAreHeldOut) {
   const blind::World world = blind::makeWorld({.seed = 10, .effects = 1, .library = true});
   const TraceResult result = traced(world);
-  const HeldOut held = holdOut(result, {});
+  const HeldOut held = holdOut(result, {}).front();
   EXPECT_FALSE(held.scheme.empty());
   EXPECT_LT(held.refined_rmse[1], held.base_rmse[1]);
 }
