@@ -119,6 +119,22 @@ TEST(SoilPosterior, BeatsThePriorMeanAndKnowsItsError) {
   EXPECT_GE(inside, 51);
 }
 
+TEST(SoilPosterior, IntervalsLeaveOutAFortiethOnEitherSide) {
+  // Property: of the draws' weight, to that of the heaviest draw.
+  ThesisRuns runs(43);
+  const ThesisRun run = runs.next({.noise = 0.05});
+  const SoilPosterior p = fitSoil(kThesisWheel, run.samples, thesisSoils());
+  double below = 0.0, above = 0.0, heaviest = 0.0;
+  for (const SoilDraw& d : p.draws) {
+    if (d.soil.cohesion_Pa < p.cohesion_Pa.low) below += d.weight;
+    if (d.soil.cohesion_Pa > p.cohesion_Pa.high) above += d.weight;
+    heaviest = std::max(heaviest, d.weight);
+  }
+  EXPECT_LT(heaviest, 0.015);
+  EXPECT_NEAR(below, 0.025, heaviest);
+  EXPECT_NEAR(above, 0.025, heaviest);
+}
+
 TEST(SoilPosterior, ShrugsOffAnOutlier) {
   // Property: one torque read at twice its value moves the answer by less than its own standard deviation.
   ThesisRuns runs(21);
