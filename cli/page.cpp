@@ -92,6 +92,34 @@ ordered_json routeOf(const planner::Route& route) {
   return points;
 }
 
+ordered_json places(const std::vector<maps::Point>& points) {
+  ordered_json out = ordered_json::array();
+  for (const maps::Point& p : points) out.push_back({number(p.x_m), number(p.y_m)});
+  return out;
+}
+
+// Rows of plain numbers: a drive has thousands of moments.
+ordered_json storyOf(const DriveStory& story) {
+  ordered_json out{{"track", ordered_json::array()},
+                   {"events", ordered_json::array()},
+                   {"changes", ordered_json::array()},
+                   {"patches", ordered_json::array()},
+                   {"cell", story.grid.resolution_m}};
+  for (const planner::TrackPoint& t : story.drive.track)
+    out["track"].push_back({number(t.time_s), number(t.place.x_m), number(t.place.y_m), number(t.slip),
+                            number(t.energy_J / 1000.0), number(t.sinkage_m)});
+  for (const planner::DriveEvent& e : story.drive.events)
+    out["events"].push_back({{"time", number(e.time_s)}, {"text", e.text}, {"route", places(e.route)}});
+  for (const CellChange& c : story.changes) {
+    const maps::Point centre = story.grid.centre(c.cell);
+    out["changes"].push_back({number(c.time_s), number(centre.x_m), number(centre.y_m),
+                              hex(colourOf(static_cast<terramech::Category>(c.category)))});
+  }
+  for (const planner::SoilPatch& p : story.patches)
+    out["patches"].push_back({number(p.centre.x_m), number(p.centre.y_m), number(p.radius_m)});
+  return out;
+}
+
 ordered_json dataOf(const Scene& scene) {
   const maps::Grid& grid = scene.grid();
   ordered_json data;
@@ -103,6 +131,7 @@ ordered_json dataOf(const Scene& scene) {
   data["layers"] = layersOf(scene);
   data["facts"] = scene.facts;
   data["route"] = scene.route ? routeOf(*scene.route) : ordered_json::array();
+  if (scene.story) data["story"] = storyOf(*scene.story);
   return data;
 }
 

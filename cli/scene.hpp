@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <cli/colour.hpp>
+#include <cli/drive_story.hpp>
 #include <cli/ticks.hpp>
 #include <maps/elevation_map.hpp>
 #include <planner/route.hpp>
@@ -45,6 +46,7 @@ struct Scene {
   std::vector<ValueLayer> layers;
   std::vector<Fact> facts;
   std::optional<planner::Route> route;
+  std::optional<DriveStory> story;  ///< a rehearsed drive, to be run through
 
   const maps::Grid& grid() const noexcept { return elevation_m.grid(); }
 };

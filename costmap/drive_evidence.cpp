@@ -1,8 +1,11 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <string>
+#include <utility>
 
 #include <costmap/drive_evidence.hpp>
+#include <terramech/load_transfer.hpp>
 
 namespace talus::costmap {
 namespace {
@@ -28,28 +31,47 @@ class Rows {
         wheel_(telemetry.findWords("wheel")),
         run_(telemetry.findWords("run")) {}
 
+  std::size_t size() const noexcept { return x_.size(); }
+
   WheelReading reading(std::size_t i) const {
-    const auto value = [i](const std::vector<double>* column) { return column ? (*column)[i] : kNone; };
-    WheelReading r{.time_s = value(time_),
+    WheelReading r{.time_s = value(time_, i),
                    .place = {x_[i], y_[i]},
                    .load_N = load_[i],
                    .slip = slip_[i],
-                   .torque_Nm = value(torque_),
-                   .sinkage_m = value(sinkage_),
-                   .gradient = std::tan(value(slope_)),
-                   .drawbar_pull_N = value(pull_),
+                   .torque_Nm = value(torque_, i),
+                   .sinkage_m = value(sinkage_, i),
+                   .gradient = std::tan(value(slope_, i)),
+                   .drawbar_pull_N = value(pull_, i),
                    .pass = 1};
-    if (std::isfinite(value(pass_))) r.pass = static_cast<int>(value(pass_));
-    if (std::isnan(r.gradient)) r.gradient = mapGradient(r.place, value(heading_));
+    if (std::isfinite(value(pass_, i))) r.pass = static_cast<int>(value(pass_, i));
+    if (std::isnan(r.gradient)) r.gradient = mapGradient(r.place, heading(i));
     return r;
   }
 
+  double heading(std::size_t i) const { return value(heading_, i); }
+
   // Wheel and run together name a series in time.
-  std::string series(std::size_t i) const {
-    return (run_ ? (*run_)[i] : std::string()) + '/' + (wheel_ ? (*wheel_)[i] : std::string());
+  std::string series(std::size_t i) const { return run(i) + '/' + wheel(i); }
+
+  // One past the last row that was read at the same moment of the same run as this one, by another wheel.
+  std::size_t endOfMoment(std::size_t first) const {
+    std::size_t end = first + 1;
+    if (!time_ || !wheel_ || !std::isfinite(value(time_, first))) return end;
+    const auto seen = [&](std::size_t i) {
+      for (std::size_t j = first; j < i; ++j)
+        if (wheel(j) == wheel(i)) return true;
+      return false;
+    };
+    while (end < size() && value(time_, end) == value(time_, first) && run(end) == run(first) && !seen(end))
+      ++end;
+    return end;
   }
 
  private:
+  static double value(const std::vector<double>* column, std::size_t i) { return column ? (*column)[i] : kNone; }
+  std::string wheel(std::size_t i) const { return wheel_ ? (*wheel_)[i] : std::string(); }
+  std::string run(std::size_t i) const { return run_ ? (*run_)[i] : std::string(); }
+
   double mapGradient(const maps::Point& place, double heading_rad) const {
     const auto cell = map_.grid().cellAt(place);
     if (!cell || std::isnan(heading_rad)) return kNone;
@@ -69,58 +91,132 @@ std::optional<int> classAt(const TraversabilityMap& map, const maps::Point& plac
   return map.classIndex(*cell);
 }
 
-// The first look: is there a bias in torque or sinkage that all ground shares?
-bool torqueBiased(const TraversabilityMap& map, const Rows& rows, std::size_t count) {
-  SensorWatch watch(map.model());
-  const WheelObserver observer(map.model());
-  for (std::size_t i = 0; i < count; ++i) {
-    const WheelReading reading = rows.reading(i);
-    const auto index = classAt(map, reading.place);
-    if (!index || watch.refuse(rows.series(i), reading)) continue;
-    if (const auto seen = observer.observe(*index, reading)) watch.compare(*seen);
+// The readings of one moment, with the loads that the slope gives them where the file has all wheels carry the
+// same: such a column is the weight's even share and not a measurement.
+struct Moment {
+  std::size_t first = 0;
+  std::vector<WheelReading> readings;
+  bool transferred = false;
+};
+
+constexpr double kSameLoad = 0.01;       // of the load: less is the same number
+constexpr double kLevelGradient = 0.03;  // less moves no load worth speaking of
+
+Moment momentAt(const Rows& rows, std::size_t first, const terramech::Rover& rover) {
+  Moment moment{.first = first, .readings = {}};
+  maps::Point middle{0.0, 0.0};
+  const std::size_t end = rows.endOfMoment(first);
+  bool same = true;
+  for (std::size_t i = first; i < end; ++i) {
+    const WheelReading& r = moment.readings.emplace_back(rows.reading(i));
+    middle.x_m += r.place.x_m / static_cast<double>(end - first);
+    middle.y_m += r.place.y_m / static_cast<double>(end - first);
+    const double even_N = terramech::wheelLoad_N(rover);
+    same = same && std::abs(r.load_N - even_N) < kSameLoad * even_N && r.gradient == moment.readings[0].gradient;
   }
-  return watch.biased();
+  const double gradient = moment.readings[0].gradient, heading = rows.heading(first);
+  const bool whole = moment.readings.size() == static_cast<std::size_t>(rover.wheel_count);
+  if (!same || !whole || !(std::abs(gradient) > kLevelGradient) || std::isnan(heading)) return moment;
+  std::vector<double> along_m;
+  for (const WheelReading& r : moment.readings)
+    along_m.push_back((r.place.x_m - middle.x_m) * std::cos(heading) +
+                      (r.place.y_m - middle.y_m) * std::sin(heading));
+  const std::vector<double> loads_N = terramech::wheelLoads_N(rover, gradient, along_m);
+  for (std::size_t w = 0; w < loads_N.size(); ++w) moment.readings[w].load_N = loads_N[w];
+  moment.transferred = true;
+  return moment;
 }
 
-std::string refusal(TraversabilityMap& map, const JournalRow& row, bool observed) {
-  if (!classAt(map, row.reading.place)) return "outside the map or on ground without a soil";
-  if (!observed) return "says nothing: neither slope, nor torque with sinkage, nor drawbar pull";
-  return map.learn(row.observation) ? "" : "no ground to learn about there";
-}
+// Puts the moments of a drive through watch and observer, one after the other.
+class Listener {
+ public:
+  Listener(TraversabilityMap& map, const Rows& rows)
+      : map_(map), rows_(rows), watch_(map.model()), observer_(map.model()) {}
+
+  // Of one wheel: why it is not believed, and what it says if it is.
+  struct Heard {
+    WheelReading reading;
+    std::string reason;
+    WheelObservation observation;
+  };
+
+  // Calls take(row, heard) for every row in order. `without_torque`: torque and sinkage are not believed.
+  template <typename Take>
+  void listen(bool without_torque, Take&& take) {
+    for (std::size_t first = 0; first < rows_.size();) {
+      const Moment moment = momentAt(rows_, first, map_.model().rover());
+      transferred_ += moment.transferred ? moment.readings.size() : 0;
+      for (Heard& heard : understood(moment, without_torque)) take(first++, std::move(heard));
+    }
+  }
+
+  const SensorWatch& watch() const noexcept { return watch_; }
+  std::size_t transferred() const noexcept { return transferred_; }
+
+ private:
+  std::vector<Heard> understood(const Moment& moment, bool without_torque) {
+    std::vector<Heard> all;
+    std::vector<ClassReading> sound, believed;
+    std::vector<std::size_t> who;
+    for (std::size_t w = 0; w < moment.readings.size(); ++w) {
+      Heard& heard = all.emplace_back(Heard{moment.readings[w], {}, {}});
+      const auto index = classAt(map_, heard.reading.place);
+      if (const auto reason = watch_.refuse(rows_.series(moment.first + w), heard.reading))
+        heard.reason = *reason;
+      else if (!index)
+        heard.reason = "outside the map or on ground without a soil";
+      if (!heard.reason.empty()) continue;
+      sound.push_back({*index, heard.reading});
+      believed.push_back(sound.back());
+      if (without_torque) believed.back().reading.torque_Nm = believed.back().reading.sinkage_m = kNone;
+      who.push_back(w);
+    }
+    for (const auto& seen : observer_.observe(sound))
+      if (seen) watch_.compare(*seen);
+    const auto seen = observer_.observe(believed);
+    for (std::size_t i = 0; i < who.size(); ++i)
+      if (seen[i])
+        all[who[i]].observation = *seen[i];
+      else
+        all[who[i]].reason = "says nothing: neither slope, nor torque with sinkage, nor drawbar pull";
+    return all;
+  }
+
+  const TraversabilityMap& map_;
+  const Rows& rows_;
+  SensorWatch watch_;
+  WheelObserver observer_;
+  std::size_t transferred_ = 0;
+};
 
 }  // namespace
 
 DriveReport addDrive(TraversabilityMap& map, const terramech::Telemetry& telemetry,
                      EvidenceJournal* journal) {
   const Rows rows(telemetry, map);
-  const bool biased = torqueBiased(map, rows, telemetry.size());
-  SensorWatch watch(map.model());
-  const WheelObserver observer(map.model());
+  // The first look: is there a bias in torque or sinkage that all ground shares?
+  Listener first_look(map, rows);
+  first_look.listen(false, [](std::size_t, Listener::Heard&&) {});
+  Listener listener(map, rows);
   DriveReport report;
-  for (std::size_t i = 0; i < telemetry.size(); ++i) {
-    JournalRow row{.source = telemetry.source,
-                   .line = static_cast<std::int64_t>(telemetry.lines[i]),
-                   .accepted = false,
-                   .reason = {},
-                   .reading = rows.reading(i),
-                   .observation = {}};
-    WheelReading believed = row.reading;
-    if (biased) believed.torque_Nm = believed.sinkage_m = kNone;
-    if (const auto reason = watch.refuse(rows.series(i), row.reading)) row.reason = *reason;
-    if (row.reason.empty()) {
-      const auto index = classAt(map, believed.place);
-      const auto all = index ? observer.observe(*index, row.reading) : std::nullopt;
-      const auto seen = index ? observer.observe(*index, believed) : std::nullopt;
-      if (all) watch.compare(*all);
-      if (seen) row.observation = *seen;
-      row.reason = refusal(map, row, seen.has_value());
-    }
-    row.accepted = row.reason.empty();
+  listener.listen(first_look.watch().biased(), [&](std::size_t i, Listener::Heard&& heard) {
+    if (heard.reason.empty() && !map.learn(heard.observation))
+      heard.reason = "no ground to learn about there";
+    const JournalRow row{.source = telemetry.source,
+                         .line = static_cast<std::int64_t>(telemetry.lines[i]),
+                         .accepted = heard.reason.empty(),
+                         .reason = heard.reason,
+                         .reading = rows.reading(i),
+                         .observation = heard.observation};
     if (journal) journal->append(row);
     ++(row.accepted ? report.used : report.rejected);
-  }
+  });
   map.publish();
-  report.findings = watch.findings();
+  report.findings = listener.watch().findings();
+  if (listener.transferred() > 0)
+    report.findings.push_back(std::to_string(listener.transferred()) +
+                              " rows: load_N is the even share of the weight on a slope; the load transfer was "
+                              "worked out from the wheels' places");
   return report;
 }
 

@@ -17,6 +17,8 @@ constexpr double kNugget =
     0.01;  // of a block's mean however many samples it has: ground varies inside it too
 constexpr std::size_t kMostNeighbours = 64;
 constexpr int kPatchBlocks = 8;
+constexpr double kFreedom = 4.0;      // of Student's t
+constexpr double kContradicts = 1.5;  // standard deviations
 constexpr double kUnit = 1048576.0;  // of the fixed-point sums
 
 int shiftFor(double correlation_length_m, double resolution_m) {
@@ -88,7 +90,8 @@ double EvidenceField::measuredVariance(const CellBelief& block) const noexcept {
 }
 
 // One block speaks for as many independent places as its length holds integral scales (2/3 of the correlation
-// length).
+// length). Ground that departs from its class by much more than the class varies is other ground that no class
+// raster shows: it counts for less by the weight of Student's t with four degrees of freedom (lange_1989).
 void EvidenceField::contribute(const CellBelief& block, int class_index, std::int64_t sign) {
   if (block.evidence <= 0.0F) return;
   const GroundClass& ground = site_->model->parts().classes[static_cast<std::size_t>(class_index)];
@@ -96,10 +99,13 @@ void EvidenceField::contribute(const CellBelief& block, int class_index, std::in
   const double block_m = (1 << block_shift_) * site_->keys.grid().resolution_m;
   const double places = std::min(1.0, 1.5 * block_m / site_->model->parts().policy.correlation_length_m);
   const double variance = ground.pull_std * ground.pull_std;
-  const double weight = places * variance / (variance + measuredVariance(block));
+  const double departure = static_cast<double>(block.evidence_pull) - prior.pull.mean;
+  const double spread = variance + ground.mean_std * ground.mean_std + measuredVariance(block);
+  const double alike = std::min(1.0, (kFreedom + 1.0) / (kFreedom + departure * departure / spread));
+  const double weight = alike * places * variance / (variance + measuredVariance(block));
   ClassSums& sums = sums_[static_cast<std::size_t>(class_index)];
   sums.weight += sign * fixed(weight);
-  sums.pull += sign * fixed(weight * (static_cast<double>(block.evidence_pull) - prior.pull.mean));
+  sums.pull += sign * fixed(weight * departure);
   sums.sinkage += sign * fixed(weight * (static_cast<double>(block.evidence_sinkage) - prior.sinkage.mean));
 }
 
@@ -131,6 +137,10 @@ std::optional<CellRange> EvidenceField::add(const WheelObservation& observation)
   contribute(block, class_index, -1);
   const double share = kReferenceStd / observation.pull.std;
   const auto weight = static_cast<float>(std::min(share * share, kMostPerSample));
+  // A block is as weak as its weakest part: what stronger ground in it told before counts no more than the
+  // sample that contradicts it.
+  if (observation.pull.mean < static_cast<double>(block.evidence_pull) - kContradicts * observation.pull.std)
+    block.evidence = std::min(block.evidence, weight);
   const float gain = weight / (block.evidence + weight);
   if (block.evidence <= 0.0F)
     block.evidence_sinkage = static_cast<float>(site_->model->prior(class_index).sinkage.mean);
@@ -229,7 +239,7 @@ GroundBelief EvidenceField::combined(int class_index, const GroundBelief& depart
   const GroundClass& ground = site_->model->parts().classes[i];
   const GroundBelief prior = site_->model->prior(class_index);
   const ClassPosterior& posterior = posteriors_[i];
-  const double open = departure.pull.std / ground.pull_std;
+  const double open = std::min(departure.pull.std / ground.pull_std, 1.0);
   return {.pull = {prior.pull.mean + posterior.pull.mean + departure.pull.mean,
                    std::hypot(departure.pull.std, open * posterior.pull.std)},
           .sinkage = {std::max(prior.sinkage.mean + posterior.sinkage.mean + departure.sinkage.mean, 0.0),
@@ -263,7 +273,7 @@ const EvidenceField::Belief& EvidenceField::Beliefs::at(maps::Cell cell, int cla
     const double prior_std =
         field_.site_->model->parts().classes[static_cast<std::size_t>(class_index)].pull_std;
     known =
-        known_.emplace(key, Belief{field_.combined(class_index, departure), departure.pull.std < prior_std})
+        known_.emplace(key, Belief{field_.combined(class_index, departure), departure.pull.std != prior_std})
             .first;
   }
   return *(last_belief_ = &known->second);

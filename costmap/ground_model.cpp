@@ -8,6 +8,7 @@
 
 #include <costmap/ground_model.hpp>
 #include <terramech/range.hpp>
+#include <terramech/rut.hpp>
 
 namespace talus::costmap {
 namespace {
@@ -47,6 +48,15 @@ Expected expectedDrive(const terramech::MobilityCurve& curve, const Estimate& sh
   return weight > 0.0 ? Expected{sum.energy_J_per_m / weight, sum.time_s_per_m / weight} : Expected{};
 }
 
+double slopeAtSlip_rad(const terramech::MobilityCurve& curve, double slip) {
+  double low = curve.minSlope_rad(), high = curve.maxSlope_rad();
+  for (int halving = 0; halving < 30 && low < high; ++halving) {
+    const double middle = 0.5 * (low + high);
+    (curve.at(middle).slip < slip ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
 Category lower(Category category) {
   return category == Category::Safe       ? Category::Marginal
          : category == Category::Marginal ? Category::Dangerous
@@ -77,6 +87,9 @@ GroundModel::GroundModel(Parts parts) : parts_(std::move(parts)) {
     if (&parts_.classes[static_cast<std::size_t>(classIndex(c.number))] != &c)
       throw std::invalid_argument("ground model: class " + std::to_string(c.number) + " is declared twice");
     curves_.push_back(mobilityOf(c, parts_.rover));
+    GroundClass rut = c;
+    rut.soil = terramech::rutted(c.soil);
+    rut_curves_.push_back(mobilityOf(rut, parts_.rover));
   }
 }
 
@@ -94,22 +107,20 @@ GroundBelief GroundModel::prior(int class_index) const {
           .sinkage = {reference.sinkage_over_radius, c.sinkage_std}};
 }
 
-double GroundModel::slopeAtSlip_rad(int class_index, double slip) const noexcept {
-  const auto& curve = curves_[static_cast<std::size_t>(class_index)];
-  double low = curve.minSlope_rad(), high = curve.maxSlope_rad();
-  for (int halving = 0; halving < 30 && low < high; ++halving) {
-    const double middle = 0.5 * (low + high);
-    (curve.at(middle).slip < slip ? low : high) = middle;
-  }
-  return 0.5 * (low + high);
+SteadyWheel GroundModel::steady(int class_index, const DrivenWheel& wheel) const noexcept {
+  const terramech::MobilityCurve& driven = curve(class_index, wheel.in_rut);
+  const double slope_rad = slopeAtSlip_rad(driven, wheel.slip);
+  const MobilityState state = driven.at(slope_rad);
+  const double radius_m = parts_.rover.wheel.radius_m;
+  const double load_N = terramech::wheelLoad_N(parts_.rover) * std::cos(slope_rad);
+  return {.gradient = std::tan(slope_rad),
+          .sinkage_over_radius = state.sinkage_m / radius_m,
+          .torque_over_load_radius = state.torque_Nm / (load_N * radius_m)};
 }
 
-double GroundModel::gradientAtSlip(int class_index, double slip) const noexcept {
-  return std::tan(slopeAtSlip_rad(class_index, slip));
-}
-
-double GroundModel::sinkageAtSlip(int class_index, double slip) const noexcept {
-  return curves_[static_cast<std::size_t>(class_index)].at(slopeAtSlip_rad(class_index, slip)).sinkage_m;
+SteadyWheel GroundModel::reference(int class_index, bool in_rut) const noexcept {
+  const terramech::MobilityReference& at = curve(class_index, in_rut).reference();
+  return {at.drawbar_pull_over_load, at.sinkage_over_radius, at.torque_over_load_radius};
 }
 
 Category GroundModel::categoryAt(double pull, double sinkage, double gradient) const {

@@ -40,6 +40,19 @@ struct GroundBelief {
   Estimate sinkage;  ///< sinkage over wheel radius [-]
 };
 
+/// A wheel at a slip, on fresh ground or in the rut of an equal one.
+struct DrivenWheel {
+  double slip = 0.0;
+  bool in_rut = false;
+};
+
+/// Of a wheel that drives steadily.
+struct SteadyWheel {
+  double gradient = 0.0;  ///< of the slope it does so on, which is the drawbar pull over load it gives [-]
+  double sinkage_over_radius = 0.0;
+  double torque_over_load_radius = 0.0;
+};
+
 /// A category and the probability that it is that one.
 struct Ranked {
   terramech::Category category = terramech::Category::Unknown;
@@ -71,11 +84,11 @@ class GroundModel {
   /// Belief before any evidence.
   GroundBelief prior(int class_index) const;
 
-  /// Gradient along the heading on which ground of the class, as its soil says, lets the rover drive at this
-  /// slip; the ends of what it can drive beyond them.
-  double gradientAtSlip(int class_index, double slip) const noexcept;
-  /// Sinkage [m] of a wheel there.
-  double sinkageAtSlip(int class_index, double slip) const noexcept;
+  /// What a wheel of a rover that drives steadily at this slip on ground of the class reads, as its soil says;
+  /// the ends of what it can drive beyond them.
+  SteadyWheel steady(int class_index, const DrivenWheel& wheel) const noexcept;
+  /// The same at the reference slip.
+  SteadyWheel reference(int class_index, bool in_rut) const noexcept;
 
   /// Drive curve and states of ground of a class under a belief; `demoted`: one category lower (rocks,
   /// doubtful map).
@@ -94,11 +107,15 @@ class GroundModel {
   DriveCost::Limits limits() const;
 
  private:
-  double slopeAtSlip_rad(int class_index, double slip) const noexcept;
+  const terramech::MobilityCurve& curve(int class_index, bool in_rut) const noexcept {
+    return (in_rut ? rut_curves_ : curves_)[static_cast<std::size_t>(class_index)];
+  }
+
   terramech::Category categoryAt(double pull, double sinkage, double gradient) const;
 
   Parts parts_;
-  std::vector<terramech::MobilityCurve> curves_;
+  std::vector<terramech::MobilityCurve> curves_;      // of each class
+  std::vector<terramech::MobilityCurve> rut_curves_;  // in the rut of an equal wheel
 };
 
 }  // namespace talus::costmap

@@ -48,12 +48,19 @@ double sparseKernel(double distance_m, double correlation_length_m) noexcept {
 
 GaussianProcess::GaussianProcess(std::vector<PlaceEvidence> evidence, const Variation& variation)
     : evidence_(std::move(evidence)), variation_(variation) {
+  constexpr double kOrdinary = 2.0;  // standard deviations that its class explains
   const std::size_t n = evidence_.size();
   const double prior = variation_.pull_std * variation_.pull_std;
+  for (const PlaceEvidence& e : evidence_) {
+    const double needed = (e.pull * e.pull / (kOrdinary * kOrdinary) - e.variance) / prior;
+    excess_.push_back(std::sqrt(std::fmax(needed, 1.0)) - 1.0);
+  }
+  for (const PlaceEvidence& e : evidence_) amplitude_.push_back(amplitude(e.place));
   factor_.assign(n * n, 0.0);
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = 0; j <= i; ++j)
       factor_[i * n + j] =
+          amplitude_[i] * amplitude_[j] *
           sparseKernel(distance_m(evidence_[i].place, evidence_[j].place), variation_.correlation_length_m);
     factor_[i * n + i] += evidence_[i].variance / prior;
     pull_.push_back(evidence_[i].pull);
@@ -66,19 +73,30 @@ GaussianProcess::GaussianProcess(std::vector<PlaceEvidence> evidence, const Vari
   }
 }
 
+double GaussianProcess::amplitude(const maps::Point& place) const noexcept {
+  double most = 0.0;
+  for (std::size_t i = 0; i < evidence_.size(); ++i)
+    if (excess_[i] > 0.0)
+      most = std::fmax(most, excess_[i] * sparseKernel(distance_m(place, evidence_[i].place),
+                                                       variation_.correlation_length_m));
+  return 1.0 + most;
+}
+
 GroundBelief GaussianProcess::at(const maps::Point& place) const {
   std::vector<double> k;
   k.reserve(evidence_.size());
   GroundBelief belief;
+  const double here = amplitude(place);
   for (std::size_t i = 0; i < evidence_.size(); ++i) {
-    k.push_back(sparseKernel(distance_m(place, evidence_[i].place), variation_.correlation_length_m));
+    k.push_back(here * amplitude_[i] *
+                sparseKernel(distance_m(place, evidence_[i].place), variation_.correlation_length_m));
     belief.pull.mean += k[i] * pull_[i];
     belief.sinkage.mean += k[i] * sinkage_[i];
   }
   solveLower(factor_, k);
   double explained = 0.0;
   for (const double v : k) explained += v * v;
-  const double left = std::sqrt(std::fmax(1.0 - explained, 0.0));
+  const double left = std::sqrt(std::fmax(here * here - explained, 0.0));
   belief.pull.std = left * variation_.pull_std;
   belief.sinkage.std = left * variation_.sinkage_std;
   return belief;

@@ -31,6 +31,11 @@ double sparseKernel(double distance_m, double correlation_length_m) noexcept;
 
 /// Gaussian-process regression of the departure (rasmussen_williams_2006, Eqs. 2.25, 2.26): factorised once
 /// for a set of evidence, then asked at any number of places.
+///
+/// Ground varies by its class's pull_std, but for patches of other ground that no class raster shows: around
+/// evidence that departs by more than two standard deviations the process varies by as much as explains it,
+///   cov(x, x') = a(x) a(x') k(|x - x'|),  a(x) = 1 + max_i (a_i - 1) k(|x - x_i|) in units of pull_std,
+/// a_i the least amplitude under which evidence i lies within two standard deviations (ours).
 class GaussianProcess {
  public:
   /// Evidence that is empty leaves the prior.
@@ -42,8 +47,12 @@ class GaussianProcess {
   GroundBelief at(const maps::Point& place) const;
 
  private:
+  double amplitude(const maps::Point& place) const noexcept;
+
   std::vector<PlaceEvidence> evidence_;
   Variation variation_;
+  std::vector<double> excess_;  // a_i - 1
+  std::vector<double> amplitude_;  // a at each evidence
   std::vector<double> factor_;          // lower Cholesky factor of K + noise, in units of the prior variance
   std::vector<double> pull_, sinkage_;  // (K + noise)^-1 y
 };

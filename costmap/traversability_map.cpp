@@ -268,6 +268,24 @@ bool TraversabilityMap::learn(const WheelObservation& observation) {
   return range.has_value();
 }
 
+void TraversabilityMap::refuse(const maps::Point& place, double radius_m) {
+  const double cell_m = grid().resolution_m;
+  const auto clamped = [](double value, int cells) {
+    return static_cast<int>(std::clamp(std::floor(value), 0.0, static_cast<double>(cells - 1)));
+  };
+  const double x = (place.x_m - grid().south_west.x_m) / cell_m, y = (place.y_m - grid().south_west.y_m) / cell_m;
+  const double reach = radius_m / cell_m;
+  const CellRange range{{clamped(x - reach, grid().width), clamped(y - reach, grid().height)},
+                        {clamped(x + reach, grid().width), clamped(y + reach, grid().height)}};
+  for (int row = range.first.row; row <= range.last.row; ++row)
+    for (int column = range.first.column; column <= range.last.column; ++column) {
+      const maps::Point centre = grid().centre({column, row});
+      if (std::hypot(centre.x_m - place.x_m, centre.y_m - place.y_m) <= radius_m)
+        hazards_[{column, row}] |= Hazard::Obstacle;
+    }
+  dirty_.push_back(range);
+}
+
 bool TraversabilityMap::refreshPriors() {
   bool changed = false;
   for (int i = 0; i < static_cast<int>(model().parts().classes.size()); ++i)
@@ -289,7 +307,7 @@ void TraversabilityMap::publish(const std::vector<CellRange>& ranges) {
   if (ranges.empty() && !priors_moved) return;
   EvidenceField::Beliefs beliefs(field_);
   const auto recode = [&](maps::Cell cell, CellCode code) {
-    if (hazards_[cell] != Hazard::None) return code;
+    if (hazards_[cell] != Hazard::None) return code.withCurve(priorCurve(cell));
     const int index = classIndex(cell);
     const EvidenceField::Belief& belief = beliefs.at(cell, index);
     return code.withCurve(belief.learned ? book_.learned(index, belief.ground) : book_.prior(index));

@@ -91,6 +91,10 @@ class TraversabilityMap {
   /// Puts saved evidence of a cell's block back, as read from a file; publishAll() afterwards.
   void restore(maps::Cell cell, const CellBelief& saved) { field_.restore(cell, saved); }
 
+  /// Declares the ground around a place impassable, as a driver does who got stuck there: Hazard::Obstacle on
+  /// every cell whose centre lies within the radius. Planners see it after publish().
+  void refuse(const maps::Point& place, double radius_m);
+
   /// Publishes what was learned since the last time as a new version: rewrites the tiles it touches, shares
   /// the others. Readers never wait; a planner that runs keeps its version.
   void publish();

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -12,6 +13,9 @@ constexpr double kReferenceSlip = 0.5;
 // departure at slip 0.3).
 constexpr double kShiftPerSlip = 0.06;
 constexpr double kShiftPerSlipAndDeparture = 1.2;
+constexpr double kFlatFrom = 0.25;  // further from the reference slip than this both curves are flat
+constexpr double kFelt = 0.1;     // of the torque at the reference slip: less tells nothing about it
+constexpr double kRutDoubt = 1.0;  // of what a rut adds: its stiffness is known to a factor (ours)
 
 bool known(double value) noexcept {
   return std::isfinite(value);
@@ -35,42 +39,114 @@ double pullFromTorque(double torque_over_load_radius, double sinkage_over_radius
 WheelObserver::WheelObserver(const GroundModel& model, const ReadingNoise& noise)
     : model_(model), noise_(noise) {}
 
-std::optional<WheelObservation> WheelObserver::observe(int class_index, const WheelReading& reading) const {
+// A reading with what the model expects of it.
+struct WheelObserver::Wheel {
+  const ClassReading& read;
+  SteadyWheel expected;   // at its slip, fresh or in a rut
+  SteadyWheel reference;  // at the reference slip, likewise
+  double steepness = 0.0;  // of the expected gradient, for one standard deviation of slip
+  double rut_gain = 0.0;   // how much more it pulls than on fresh ground
+  double from_torque = std::numeric_limits<double>::quiet_NaN();  // pull at its slip
+  Estimate by_torque{0.0, std::numeric_limits<double>::infinity()};  // departure at the reference slip
+};
+
+WheelObserver::Wheel WheelObserver::expected(const ClassReading& read) const {
+  const WheelReading& r = read.reading;
   const double radius_m = model_.rover().wheel.radius_m;
-  if (!known(reading.slip) || !(reading.load_N > 0.0)) return std::nullopt;
+  const bool rut = r.pass > 1;
+  const auto at = [&](double slip, bool in_rut) {
+    return model_.steady(read.class_index, {.slip = slip, .in_rut = in_rut});
+  };
+  Wheel w{.read = read, .expected = at(r.slip, rut), .reference = model_.reference(read.class_index, rut)};
+  w.steepness = (at(r.slip + noise_.slip, rut).gradient - at(r.slip - noise_.slip, rut).gradient) / 2.0;
+  w.rut_gain = rut ? w.expected.gradient - at(r.slip, false).gradient : 0.0;
+  const double z = r.sinkage_m / radius_m, t = r.torque_Nm / (radius_m * r.load_N);
+  if (!known(t) || !(z >= 0.0 && z < 1.0)) return w;
+  w.from_torque = pullFromTorque(t, z);
+  if (!(w.expected.sinkage_over_radius > 0.0)) return w;
+  const SteadyWheel& like = w.reference;
+  const double class_pull = pullFromTorque(like.torque_over_load_radius, like.sinkage_over_radius);
+  const double depth = std::min(z * like.sinkage_over_radius / w.expected.sinkage_over_radius, 0.99);
+  // The torque at the reference slip: as read, as far as it is mobilised, else the class's, which says the less
+  // the more the depth departs from the class.
+  const GroundClass& ground = model_.parts().classes[static_cast<std::size_t>(read.class_index)];
+  const double deeper = pullFromTorque(like.torque_over_load_radius, depth) - class_pull;
+  Estimate torque{like.torque_over_load_radius, std::hypot(ground.pull_std, ground.mean_std, deeper)};
+  if (w.expected.torque_over_load_radius > kFelt * like.torque_over_load_radius) {
+    const double mobilised = like.torque_over_load_radius / w.expected.torque_over_load_radius;
+    torque = combined(torque, {t * mobilised, noise_.torque_share * t * mobilised +
+                                                  noise_.mobilised * std::abs(mobilised - 1.0) + noise_.model_pull});
+  }
+  w.by_torque = {pullFromTorque(torque.mean, depth) - class_pull,
+                 std::hypot(torque.std, noise_.sinkage_share, noise_.model_pull)};
+  return w;
+}
+
+// `departure`: by how much all wheels together pull less or more than they should at their slip; `own`: this
+// wheel against its fellows by torque and sinkage, believed to half of itself.
+Estimate WheelObserver::bySlope(const Wheel& w, double departure, double own) const {
+  const double mean = departure + own;
+  const double extrapolation = std::min(std::abs(w.read.reading.slip - kReferenceSlip), kFlatFrom) *
+                               (kShiftPerSlip + kShiftPerSlipAndDeparture * std::abs(mean));
+  return {mean, std::hypot(std::hypot(noise_.gradient, noise_.model_pull, 0.5 * own),
+                           std::hypot(w.steepness, extrapolation))};
+}
+
+std::optional<WheelObservation> WheelObserver::observed(const Wheel& w, double departure, double own) const {
+  const WheelReading& reading = w.read.reading;
   WheelObservation out{.time_s = reading.time_s,
                        .place = reading.place,
                        .pull = {},
                        .sinkage = {},
-                       .demand = reading.gradient,
-                       .from_torque = std::numeric_limits<double>::quiet_NaN()};
-  const double z = reading.sinkage_m / radius_m;
-  const double t = reading.torque_Nm / (radius_m * reading.load_N);
-  if (known(t) && z >= 0.0 && z < 1.0) out.from_torque = pullFromTorque(t, z);
-
-  Estimate pull{0.0, std::numeric_limits<double>::infinity()};
-  if (known(reading.gradient)) pull = {reading.gradient, std::hypot(noise_.gradient, noise_.model_pull)};
-  if (known(out.from_torque)) {
-    const Estimate torque{out.from_torque,
-                          std::hypot(noise_.torque_share * t, noise_.sinkage_share, noise_.model_pull)};
-    pull = known(reading.gradient) ? combined(pull, torque) : torque;
+                       .demand = w.expected.gradient + departure,
+                       .from_torque = w.from_torque};
+  Estimate seen = w.by_torque;
+  if (known(departure)) seen = known(seen.std) ? combined(bySlope(w, departure, own), seen) : bySlope(w, departure, own);
+  if (known(reading.drawbar_pull_N)) {
+    const double pull = reading.drawbar_pull_N / reading.load_N - w.expected.gradient;
+    seen = bySlope(w, pull, 0.0);
   }
-  if (known(reading.drawbar_pull_N)) pull = {reading.drawbar_pull_N / reading.load_N, noise_.model_pull};
-  if (!known(pull.std)) return std::nullopt;
-
-  const GroundBelief prior = model_.prior(class_index);
-  const double expected = model_.gradientAtSlip(class_index, reading.slip);
-  const double steepness = (model_.gradientAtSlip(class_index, reading.slip + noise_.slip) -
-                            model_.gradientAtSlip(class_index, reading.slip - noise_.slip)) /
-                           2.0;
-  const double extrapolation = std::abs(reading.slip - kReferenceSlip) *
-                               (kShiftPerSlip + kShiftPerSlipAndDeparture * std::abs(pull.mean - expected));
-  out.pull = {prior.pull.mean + pull.mean - expected, std::hypot(pull.std, steepness, extrapolation)};
+  if (!known(seen.std)) return std::nullopt;
+  const GroundBelief prior = model_.prior(w.read.class_index);
+  out.pull = {prior.pull.mean + seen.mean, std::hypot(seen.std, kRutDoubt * w.rut_gain)};
   out.sinkage = {prior.sinkage.mean, std::numeric_limits<double>::infinity()};
-  if (z >= 0.0 && z < 1.0) {
-    const double modelled = model_.sinkageAtSlip(class_index, reading.slip) / radius_m;
-    if (modelled > 0.0)
-      out.sinkage = {prior.sinkage.mean * z / modelled, noise_.sinkage_share * prior.sinkage.mean / modelled};
+  const double z = reading.sinkage_m / model_.rover().wheel.radius_m;
+  if (reading.pass <= 1 && z >= 0.0 && z < 1.0 && w.expected.sinkage_over_radius > 0.0) {
+    const double deeper = prior.sinkage.mean / w.expected.sinkage_over_radius;
+    out.sinkage = {deeper * z, deeper * noise_.sinkage_share};
+  }
+  return out;
+}
+
+std::optional<WheelObservation> WheelObserver::observe(int class_index, const WheelReading& reading) const {
+  return observe({{class_index, reading}}).front();
+}
+
+std::vector<std::optional<WheelObservation>> WheelObserver::observe(
+    const std::vector<ClassReading>& together) const {
+  const auto usable = [](const ClassReading& c) { return known(c.reading.slip) && c.reading.load_N > 0.0; };
+  std::vector<Wheel> wheels;
+  double load = 0.0, departure = 0.0, felt_load = 0.0, felt = 0.0;
+  for (const ClassReading& read : together) {
+    if (!usable(read)) continue;
+    const Wheel& w = wheels.emplace_back(expected(read));
+    const double load_N = read.reading.load_N;
+    load += load_N;
+    departure += load_N * (read.reading.gradient - w.expected.gradient);
+    if (!known(w.from_torque)) continue;
+    felt_load += load_N;
+    felt += load_N * (w.from_torque - w.expected.gradient);
+  }
+  std::vector<std::optional<WheelObservation>> out;
+  std::size_t next = 0;
+  for (const ClassReading& read : together) {
+    if (!usable(read)) {
+      out.emplace_back();
+      continue;
+    }
+    const Wheel& w = wheels[next++];
+    const double own = w.from_torque - w.expected.gradient - felt / felt_load;
+    out.push_back(observed(w, departure / load, known(own) ? own : 0.0));
   }
   return out;
 }

@@ -1,98 +1,127 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <stdexcept>
+#include <utility>
 
 #include <planner/true_world.hpp>
-#include <terramech/wong_reece.hpp>
+#include <terramech/load_transfer.hpp>
+#include <terramech/rut.hpp>
 
 namespace talus::planner {
 namespace {
 
-constexpr int kRows = 81;  // of slip -1 .. 1
 constexpr double kHighestSlip = 0.98;
-constexpr double kSlipStep = 0.02;
 
-WheelTable::Row solved(const terramech::Soil& soil, const terramech::Rover& rover, double slip) {
-  const double load_N = terramech::wheelLoad_N(rover);
-  try {
-    const auto f = terramech::equilibrium(soil, rover.wheel, {.load_N = load_N, .slip = slip});
-    return {f.drawbar_pull_N / load_N, f.torque_Nm / (load_N * rover.wheel.radius_m),
-            f.sinkage_m / rover.wheel.radius_m};
-  } catch (const std::domain_error&) {
-    return {-1.0, 1.0, 1.0};
+bool sameSoil(const terramech::Soil& a, const terramech::Soil& b) {
+  return a.cohesion_Pa == b.cohesion_Pa && a.friction_angle_rad == b.friction_angle_rad &&
+         a.sinkage_exponent == b.sinkage_exponent && a.cohesive_modulus == b.cohesive_modulus &&
+         a.frictional_modulus == b.frictional_modulus && a.shear_modulus_m == b.shear_modulus_m &&
+         a.c1 == b.c1 && a.c2 == b.c2;
+}
+
+// A wheel in a hole of its own shape, d deep, rises by d over sqrt(2 r d): the mean slope out of it (ours).
+double slopeOutOf(double dug_m, double radius_m) {
+  return std::sqrt(std::max(dug_m, 0.0) / (2.0 * radius_m));
+}
+
+// The common slip at which the wheels pull what is asked: the least one, since on soft ground the pull falls
+// again as the wheel digs in.
+struct Balance {
+  double slip = kHighestSlip;
+  bool stuck = true;
+};
+
+Balance balanced(const std::vector<const WheelTable*>& tables, const std::vector<double>& shares, double demand) {
+  double before = 0.0;
+  for (std::size_t row = 0; row < WheelTable::kRows && WheelTable::slip(row) <= kHighestSlip; ++row) {
+    double pull = 0.0;
+    for (std::size_t w = 0; w < tables.size(); ++w) pull += shares[w] * tables[w]->row(row).pull;
+    if (pull >= demand) {
+      if (row == 0) return {-1.0, false};
+      const double t = (demand - before) / (pull - before);
+      return {WheelTable::slip(row - 1) + t * (WheelTable::slip(row) - WheelTable::slip(row - 1)), false};
+    }
+    before = pull;
   }
+  return {};
 }
 
 }  // namespace
 
-WheelTable::WheelTable(const terramech::Soil& soil, const terramech::Rover& rover) {
-  for (int i = 0; i < kRows; ++i) rows_.push_back(solved(soil, rover, 2.0 * i / (kRows - 1) - 1.0));
-}
-
-WheelTable::Row WheelTable::at(double slip) const noexcept {
-  const double position = (std::clamp(slip, -1.0, 1.0) + 1.0) * 0.5 * (kRows - 1);
-  const auto i = std::min(static_cast<std::size_t>(position), static_cast<std::size_t>(kRows - 2));
-  const double t = position - static_cast<double>(i);
-  const Row &a = rows_[i], &b = rows_[i + 1];
-  return {a.pull + t * (b.pull - a.pull), a.torque + t * (b.torque - a.torque),
-          a.sinkage + t * (b.sinkage - a.sinkage)};
-}
-
 TrueWorld::TrueWorld(const WorldSoils& soils, const terramech::Rover& rover,
-                     const maps::Raster<std::uint8_t>& class_index)
-    : soils_(soils), rover_(rover), class_index_(class_index) {
-  for (const auto& soil : soils_.classes) tables_.emplace_back(soil, rover);
-  for (const auto& patch : soils_.patches) tables_.emplace_back(patch.soil, rover);
+                     maps::Raster<std::uint8_t> class_index)
+    : rover_(rover),
+      class_index_(std::move(class_index)),
+      classes_(soils.classes.size()),
+      soils_(soils.classes),
+      effects_(soils.effects),
+      patches_(soils.patches) {
+  for (const SoilPatch& patch : patches_) {
+    const auto alike = std::find_if(soils_.begin() + static_cast<std::ptrdiff_t>(classes_), soils_.end(),
+                                    [&](const auto& soil) { return sameSoil(soil, patch.soil); });
+    patch_soil_.push_back(static_cast<std::size_t>(alike - soils_.begin()));
+    if (alike == soils_.end()) soils_.push_back(patch.soil);
+  }
+  for (const auto& soil : soils_)
+    tables_.push_back(
+        {WheelTable(soil, rover_, effects_), WheelTable(terramech::rutted(soil), rover_, effects_)});
 }
 
-std::size_t TrueWorld::soilAt(const maps::Point& place) const noexcept {
-  for (std::size_t i = soils_.patches.size(); i-- > 0;) {
-    const SoilPatch& patch = soils_.patches[i];
-    if (std::hypot(place.x_m - patch.centre.x_m, place.y_m - patch.centre.y_m) < patch.radius_m)
-      return soils_.classes.size() + i;
+std::size_t TrueWorld::soilAt(const maps::Point& place, double margin_m) const noexcept {
+  for (std::size_t i = patches_.size(); i-- > 0;) {
+    const SoilPatch& patch = patches_[i];
+    if (std::hypot(place.x_m - patch.centre.x_m, place.y_m - patch.centre.y_m) < patch.radius_m + margin_m)
+      return patch_soil_[i];
   }
   const auto cell = class_index_.grid().cellAt(place);
-  return cell ? std::min<std::size_t>(class_index_[*cell], soils_.classes.size() - 1) : 0;
+  return cell ? std::min<std::size_t>(class_index_[*cell], classes_ - 1) : 0;
 }
 
-double TrueWorld::meanPull(const std::vector<std::size_t>& soils, double slip) const noexcept {
-  double sum = 0.0;
-  for (const std::size_t soil : soils) sum += tables_[soil].at(slip).pull;
-  return sum / static_cast<double>(soils.size());
+// Axles evenly over the wheelbase.
+std::vector<TrueWorld::WheelState> TrueWorld::standing(const Motion& motion) const {
+  const int axles = std::max(rover_.wheel_count / 2, 2);
+  std::vector<double> along_m;
+  for (int wheel = 0; wheel < 2 * axles; ++wheel)
+    along_m.push_back(rover_.wheelbase_m * (0.5 - static_cast<double>(wheel / 2) / (axles - 1)));
+  const std::vector<double> loads_N = terramech::wheelLoads_N(rover_, motion.gradient, along_m);
+  std::vector<WheelState> wheels;
+  for (std::size_t w = 0; w < along_m.size(); ++w) {
+    const double across_m = w % 2 == 0 ? 0.5 * rover_.track_m : -0.5 * rover_.track_m;
+    const maps::Point place{
+        motion.place.x_m + along_m[w] * motion.heading.x - across_m * motion.heading.y,
+        motion.place.y_m + along_m[w] * motion.heading.y + across_m * motion.heading.x};
+    wheels.push_back({.place = place,
+                      .load_N = loads_N[w],
+                      .passes = motion.ruts ? motion.ruts->passes(place) : 0,
+                      .forces = {}});
+  }
+  return wheels;
 }
 
-TrueWorld::Step TrueWorld::drive(const maps::Point& place, const costmap::Direction& heading,
-                                 double gradient) const {
-  constexpr std::array<std::pair<double, double>, 4> kCorners{{{1, 1}, {1, -1}, {-1, 1}, {-1, -1}}};
+TrueWorld::Step TrueWorld::drive(const Motion& motion) const {
   Step step;
-  std::vector<std::size_t> soils;
-  for (const auto& [along, across] : kCorners) {
-    const double a = 0.5 * along * rover_.wheelbase_m, b = 0.5 * across * rover_.track_m;
-    step.wheels.push_back(
-        {place.x_m + a * heading.x - b * heading.y, place.y_m + a * heading.y + b * heading.x});
-    soils.push_back(soilAt(step.wheels.back()));
+  step.wheels = standing(motion);
+  std::vector<const WheelTable*> tables;
+  for (const WheelState& w : step.wheels) {
+    const Tables& ground = tables_[soilAt(w.place)];
+    tables.push_back(w.passes > 0 ? &ground.rut : &ground.fresh);
   }
-  // The least slip that pulls enough: on soft ground the pull falls again as the wheel digs in.
-  double high = -1.0;
-  while (high < kHighestSlip && meanPull(soils, high) < gradient) high += kSlipStep;
-  step.stuck = high >= kHighestSlip;
-  double low = high - kSlipStep;
-  for (int halving = 0; halving < 30; ++halving) {
-    const double middle = 0.5 * (low + high);
-    (meanPull(soils, middle) < gradient ? low : high) = middle;
+  double load_N = 0.0;
+  for (const WheelState& w : step.wheels) load_N += w.load_N;
+  std::vector<double> shares;
+  for (const WheelState& w : step.wheels) shares.push_back(w.load_N / load_N);
+  const double demand = motion.gradient + slopeOutOf(motion.dug_m, rover_.wheel.radius_m);
+  const Balance balance = balanced(tables, shares, demand);
+  step.stuck = balance.stuck;
+  step.slip = balance.slip;
+  for (std::size_t w = 0; w < tables.size(); ++w) {
+    step.wheels[w].forces = tables[w]->at(step.slip);
+    step.torque_Nm += step.wheels[w].forces.torque * step.wheels[w].load_N * rover_.wheel.radius_m;
   }
-  step.slip = step.stuck ? kHighestSlip : high;
-  double torque = 0.0;
-  for (const std::size_t soil : soils) {
-    step.rows.push_back(tables_[soil].at(step.slip));
-    torque += step.rows.back().torque / static_cast<double>(soils.size());
-  }
-  // Power of all wheels over the speed: N T omega / v with omega = v/(r (1 - i)); a braking wheel gives
-  // nothing back.
-  const double weight_N = rover_.mass_kg * rover_.gravity_m_s2 / std::hypot(1.0, gradient);
-  step.speed_mps = rover_.max_speed_mps * (1.0 - std::max(step.slip, 0.0));
-  step.energy_J_per_m = std::max(torque, 0.0) * weight_N / (1.0 - std::max(step.slip, 0.0)) +
+  // Power of all wheels over the speed: T omega / v with omega = v/(r (1 - i)); a braking wheel gives nothing
+  // back.
+  const double moving = 1.0 - std::max(step.slip, 0.0);
+  step.speed_mps = rover_.max_speed_mps * moving;
+  step.energy_J_per_m = std::max(step.torque_Nm, 0.0) / (rover_.wheel.radius_m * moving) +
                         rover_.hotel_power_W / step.speed_mps;
   return step;
 }

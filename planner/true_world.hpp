@@ -1,11 +1,13 @@
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <vector>
 
-#include <costmap/wheel_observation.hpp>
+#include <costmap/drive_cost.hpp>
 #include <maps/grid.hpp>
+#include <planner/ruts.hpp>
+#include <planner/wheel_table.hpp>
+#include <terramech/effects.hpp>
 #include <terramech/rover.hpp>
 #include <terramech/soil.hpp>
 
@@ -22,57 +24,71 @@ struct SoilPatch {
 struct WorldSoils {
   std::vector<terramech::Soil> classes;  ///< true soil of each class of the map, in its order
   std::vector<SoilPatch> patches;        ///< later ones lie on top
+  std::vector<terramech::Effect> effects{};  ///< that act on all of them, beyond a rigid wheel on that soil
 };
 
-/// What a wheel does on one soil under its load on the flat, tabulated over slip -1 .. 1 by the forward
-/// model.
-class WheelTable {
- public:
-  /// Forces over the load.
-  struct Row {
-    double pull = 0.0;     ///< drawbar pull over load [-]
-    double torque = 0.0;   ///< torque over load and radius [-]
-    double sinkage = 0.0;  ///< sinkage over radius [-]
-  };
-
-  WheelTable(const terramech::Soil& soil, const terramech::Rover& rover);
-
-  /// Interpolated at a slip, clamped to [-1, 1]. A soil that cannot carry the wheel pulls nothing.
-  Row at(double slip) const noexcept;
-
- private:
-  std::vector<Row> rows_;
+/// Where a rover stands and where it is driven to.
+struct Motion {
+  maps::Point place;            ///< of the rover's middle
+  costmap::Direction heading;   ///< of the motion
+  double gradient = 0.0;        ///< rise over run along the motion
+  double dug_m = 0.0;           ///< depth of the holes that the wheels stand in and must climb out of
+  const Ruts* ruts = nullptr;   ///< none: all ground is fresh
 };
 
-/// How a rover of four or more alike wheels stands and drives on the true ground.
+/// How a rover of alike wheels stands and drives on the true ground: each wheel on the soil under it, in the
+/// rut of the one ahead where there is one, under its share of the weight; all turn at one rate, so the slip
+/// is common, and together they pull what the slope asks.
+///
+/// Quasi-static. Immutable, safe to share between threads.
 class TrueWorld {
  public:
-  TrueWorld(const WorldSoils& soils, const terramech::Rover& rover,
-            const maps::Raster<std::uint8_t>& class_index);
+  /// `class_index`: position of each cell's class in soils.classes.
+  TrueWorld(const WorldSoils& soils, const terramech::Rover& rover, maps::Raster<std::uint8_t> class_index);
 
-  /// One steady step of the rover: its common slip, and each corner's forces.
+  /// A wheel during a step.
+  struct WheelState {
+    maps::Point place;
+    double load_N = 0.0;
+    int passes = 0;  ///< wheels that were here before
+    WheelTable::Row forces;
+  };
+
+  /// One steady step of the rover.
   struct Step {
     bool stuck = false;  ///< no slip gives the pull
     double slip = 0.0;
     double energy_J_per_m = 0.0;  ///< of driving and hotel, along the surface
     double speed_mps = 0.0;
-    std::vector<maps::Point> wheels;
-    std::vector<WheelTable::Row> rows;
+    double torque_Nm = 0.0;           ///< of all wheels together
+    std::vector<WheelState> wheels;  ///< the foremost first
   };
 
-  /// Steady driving at a place along a heading on a gradient (rise over run along the heading).
-  Step drive(const maps::Point& place, const costmap::Direction& heading, double gradient) const;
+  Step drive(const Motion& motion) const;
 
-  /// Which soil lies at a place: 0 .. classes - 1, then the patches.
-  std::size_t soilAt(const maps::Point& place) const noexcept;
+  /// Which of soils() lies at a place; patches reach `margin_m` further than they do.
+  std::size_t soilAt(const maps::Point& place, double margin_m = 0.0) const noexcept;
+  /// The classes' soils in their order, then those of the patches, each once.
+  const std::vector<terramech::Soil>& soils() const noexcept { return soils_; }
+  /// Effects that act on all of them.
+  const std::vector<terramech::Effect>& effects() const noexcept { return effects_; }
+  const std::vector<SoilPatch>& patches() const noexcept { return patches_; }
 
  private:
-  double meanPull(const std::vector<std::size_t>& soils, double slip) const noexcept;
+  struct Tables {
+    WheelTable fresh, rut;
+  };
 
-  WorldSoils soils_;
+  std::vector<WheelState> standing(const Motion& motion) const;
+
   terramech::Rover rover_;
-  const maps::Raster<std::uint8_t>& class_index_;
-  std::vector<WheelTable> tables_;
+  maps::Raster<std::uint8_t> class_index_;
+  std::size_t classes_;
+  std::vector<terramech::Soil> soils_;
+  std::vector<terramech::Effect> effects_;
+  std::vector<Tables> tables_;  // of each soil
+  std::vector<SoilPatch> patches_;
+  std::vector<std::size_t> patch_soil_;  // of each patch
 };
 
 }  // namespace talus::planner

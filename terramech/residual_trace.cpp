@@ -24,10 +24,13 @@ double pValueOf(const std::vector<CovariateTest>& tests, const Candidate& chosen
 }
 
 /// Whether a further effect carries a share of the residual worth a name: what the form of the first leaves
-/// over is often certain and tiny.
+/// over is often certain and tiny. A curve in slip or load must carry more, since their own errors, where
+/// they are not as normal as supposed, look like one.
 bool matters(const Explanation& e, const Trial& trial) {
   const auto values = static_cast<double>(trial.measured.array().isFinite().count());
-  return e.chi2_gain > 0.03 * values;
+  const std::string& covariate = e.candidate.covariate();
+  const bool noisy_input = covariate == "slip" || covariate == "load_N";
+  return e.chi2_gain > (e.candidate.empirical() && noisy_input ? 0.12 : 0.03) * values;
 }
 
 Channel strongest(const Explanation& e) {

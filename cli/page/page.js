@@ -29,6 +29,7 @@ function start() {
   const data = JSON.parse(document.getElementById("data").textContent);
   const map = drawMap(document.getElementById("map"), data);
   showFacts(data.facts);
+  if (data.story) tellStory(map, data.story);
   const points = data.route;
   if (points.length < 2) {
     document.getElementById("profiles").hidden = true;

@@ -1,61 +1,38 @@
-#include <cmath>
 #include <memory>
+
+#include <site_fixture.hpp>
 
 #include <planner/rehearsal.hpp>
 
 namespace talus::planner {
 namespace {
 
-terramech::Rover rover() {
-  return {.name = "test rover",
-          .mass_kg = 60.0,
-          .gravity_m_s2 = 3.72,
-          .wheel_count = 4,
-          .wheel = {.radius_m = 0.12, .width_m = 0.12},
-          .wheelbase_m = 0.8,
-          .track_m = 0.6,
-          .clearance_m = 0.2,
-          .centre_of_mass_height_m = 0.3,
-          .max_torque_Nm = 15.0,
-          .max_speed_mps = 0.1,
-          .hotel_power_W = 15.0};
-}
-
-terramech::Soil sand() {
-  return {.name = "sand",
-          .cohesion_Pa = 800.0,
-          .friction_angle_rad = 0.63,
-          .sinkage_exponent = 1.0,
-          .cohesive_modulus = 1400.0,
-          .frictional_modulus = 820000.0,
-          .shear_modulus_m = 0.015};
-}
-
-terramech::Soil trap() {
-  terramech::Soil soil = sand();
-  soil.cohesion_Pa = 0.0;
-  soil.friction_angle_rad = 0.42;
-  soil.frictional_modulus = 300000.0;
-  return soil;
-}
+using costmap::testDust;
+using costmap::testRover;
+using costmap::testSand;
 
 maps::Grid grid() {
   return {.width = 60, .height = 40, .resolution_m = 1.0, .south_west = {}};
 }
 
-costmap::TraversabilityMap flatMap() {
+// A plane that rises eastwards, taken for sand.
+costmap::TraversabilityMap planeMap(double rise) {
   costmap::MapLayers layers;
-  layers.elevation.elevation_m = maps::Raster<float>(grid(), 0.0F);
-  return {std::move(layers),
-          std::make_shared<costmap::GroundModel>(costmap::GroundModel::Parts{
-              .rover = rover(), .classes = {{.number = 1, .soil = sand()}}, .policy = {}}),
-          {}};
+  layers.elevation.elevation_m = maps::Raster<float>(grid());
+  for (int row = 0; row < grid().height; ++row)
+    for (int column = 0; column < grid().width; ++column)
+      layers.elevation.elevation_m[{column, row}] = static_cast<float>(rise * column);
+  return {std::move(layers), costmap::testGround(), {}};
 }
 
-Rehearsal over(const WorldSoils& soils, bool senses) {
-  const maps::Raster<std::uint8_t> classes(grid(), 0);
-  const TrueWorld world(soils, rover(), classes);
-  costmap::TraversabilityMap map = flatMap();
+struct Site {
+  WorldSoils soils;
+  double rise = 0.0;
+};
+
+Rehearsal over(const Site& site, bool senses) {
+  const TrueWorld world(site.soils, testRover(), maps::Raster<std::uint8_t>(grid(), 0));
+  costmap::TraversabilityMap map = planeMap(site.rise);
   RehearsalOptions options;
   options.start = {5.5, 20.5};
   options.goal = {54.5, 20.5};
@@ -63,32 +40,64 @@ Rehearsal over(const WorldSoils& soils, bool senses) {
   return rehearse(map, world, options);
 }
 
+Site trapped(double rise = 0.0) {
+  return {{.classes = {testSand()}, .patches = {{{30.0, 20.5}, 4.0, testDust()}}}, rise};
+}
+
 TEST(Rehearsal, GroundThatIsAsBelievedIsDrivenAtOnce) {
-  const Rehearsal drive = over({.classes = {sand()}, .patches = {}}, true);
+  const Rehearsal drive = over({{.classes = {testSand()}, .patches = {}}}, true);
   EXPECT_EQ(drive.outcome, Outcome::Reached);
+  EXPECT_EQ(drive.alarms, 0);
   EXPECT_NEAR(drive.length_m, 49.0, 0.5);  // Closed form: straight over flat ground, to the goal
 }
 
-TEST(Rehearsal, AnUndeclaredTrapHoldsWhoDrivesIn) {
-  const WorldSoils soils{.classes = {sand()}, .patches = {{{30.0, 20.5}, 4.0, trap()}}};
-  EXPECT_EQ(over(soils, false).outcome, Outcome::Immobilised);
-  // What the rehearsal shows and the rover does not yet master: with all wheels in ground that pulls less
-  // than nothing, watching the slip comes too late.
-  EXPECT_EQ(over(soils, true).outcome, Outcome::Immobilised);
+TEST(Rehearsal, AnUndeclaredTrapHoldsWhoDrivesInBlindly) {
+  EXPECT_EQ(over(trapped(), false).outcome, Outcome::Immobilised);
+}
+
+TEST(Rehearsal, WhoWatchesItsWheelsBacksOutAndGoesRound) {
+  for (const double rise : {0.0, 0.06, -0.06}) {
+    const Rehearsal drive = over(trapped(rise), true);
+    EXPECT_EQ(drive.outcome, Outcome::Reached) << rise;
+    EXPECT_GE(drive.alarms, 1) << rise;
+    EXPECT_GE(drive.replans, drive.alarms) << rise;
+    EXPECT_GT(drive.length_m, 50.0) << rise;
+    EXPECT_LT(drive.length_m, 85.0) << rise;
+  }
+}
+
+TEST(Rehearsal, NoWayRoundIsGivenUpNotTriedToDeath) {
+  const Site wall{{.classes = {testSand()}, .patches = {{{1030.0, 20.5}, 1000.0, testDust()}}}, 0.0};
+  const Rehearsal drive = over(wall, true);
+  EXPECT_EQ(drive.outcome, Outcome::GaveUp);
+  for (const TrackPoint& at : drive.track) EXPECT_LT(at.place.x_m, 30.5);  // at most the front wheels were in
+}
+
+TEST(Rehearsal, FarTooSteepTips) {
+  EXPECT_EQ(over({{.classes = {testSand()}, .patches = {}}, 0.9}, false).outcome, Outcome::GaveUp);
+}
+
+TEST(Rehearsal, TheTrackTellsTheDrive) {
+  const Rehearsal drive = over(trapped(), true);
+  ASSERT_GT(drive.track.size(), 10U);
+  double length_m = 0.0;
+  for (std::size_t i = 1; i < drive.track.size(); ++i) {
+    const TrackPoint &a = drive.track[i - 1], &b = drive.track[i];
+    length_m += std::hypot(b.place.x_m - a.place.x_m, b.place.y_m - a.place.y_m);
+    EXPECT_GE(b.time_s, a.time_s);
+    EXPECT_GE(b.energy_J, a.energy_J);
+  }
+  EXPECT_NEAR(length_m, drive.length_m, 1e-6);
+  EXPECT_EQ(drive.events.front().text, "planned");
+  EXPECT_EQ(drive.events.back().text, "reached");
+  EXPECT_GE(drive.events.front().route.size(), 2U);
 }
 
 TEST(Rehearsal, SameSeedSameDrive) {
-  const WorldSoils soils{.classes = {sand()}, .patches = {{{30.0, 20.5}, 4.0, trap()}}};
-  const Rehearsal a = over(soils, true), b = over(soils, true);
-  EXPECT_EQ(a.track, b.track);
+  const Rehearsal a = over(trapped(), true), b = over(trapped(), true);
   EXPECT_EQ(a.energy_J, b.energy_J);
-}
-
-TEST(WheelTable, HoldsTheForwardModel) {
-  const WheelTable table(sand(), rover());
-  EXPECT_LT(table.at(0.0).pull, table.at(0.3).pull);
-  EXPECT_LT(table.at(0.3).pull, table.at(0.6).pull);
-  EXPECT_LT(table.at(-0.5).torque, 0.0);
+  EXPECT_EQ(a.length_m, b.length_m);
+  EXPECT_EQ(a.track.size(), b.track.size());
 }
 
 }  // namespace

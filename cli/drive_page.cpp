@@ -1,0 +1,58 @@
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <cli/drive_page.hpp>
+#include <cli/page.hpp>
+
+namespace talus::cli {
+namespace {
+
+Scene sceneBefore(const costmap::TraversabilityMap& map, const planner::WorldResult& result,
+              planner::Belief belief) {
+  Scene scene =
+      sceneOf(map, SceneOptions{.title = fmt::format("Rehearsal: {}", planner::name(result.drive.outcome))});
+  scene.subtitle = fmt::format("belief: {}; categories as believed before the drive", planner::name(belief));
+  const planner::Rehearsal& drive = result.drive;
+  scene.facts = {{"outcome", std::string(planner::name(drive.outcome))},
+                 {"driven", fmt::format("{:.1f} m", drive.length_m)},
+                 {"time", fmt::format("{:.0f} s", drive.time_s)},
+                 {"energy", fmt::format("{:.2f} kJ", drive.energy_J / 1000.0)},
+                 {"largest slip", fmt::format("{:.2f}", drive.max_slip)},
+                 {"alarms", std::to_string(drive.alarms)},
+                 {"replans", std::to_string(drive.replans)},
+                 {"cells with a new category", std::to_string(result.categories_changed)}};
+  return scene;
+}
+
+}  // namespace
+
+planner::WorldResult saveDrivePage(const std::filesystem::path& path, const planner::RehearsalSite& site,
+                                   planner::Belief belief, const Watch& watch) {
+  const planner::TrueWorld world = site.trueWorld(0);
+  costmap::TraversabilityMap map = site.believed(belief, world);
+  DriveStory story{{}, {}, world.patches(), map.grid()};
+  const std::vector<std::uint8_t> before = planner::categoriesOf(map);
+  std::vector<std::uint8_t> known = before;
+  planner::RehearsalOptions options = site.options(belief, 0);
+  options.watch = {.progress = {}, .stop = watch.stop};
+  options.on_learned = [&](double time_s) {
+    const std::vector<std::uint8_t> now = planner::categoriesOf(map);
+    for (std::size_t i = 0; i < now.size(); ++i)
+      if (now[i] != known[i])
+        story.changes.push_back({time_s,
+                                 {static_cast<int>(i) % map.grid().width, static_cast<int>(i) / map.grid().width},
+                                 now[i]});
+    known = now;
+  };
+  planner::WorldResult result{planner::rehearse(map, world, options), 0};
+  for (std::size_t i = 0; i < before.size(); ++i) result.categories_changed += before[i] != known[i] ? 1U : 0U;
+  story.drive = result.drive;
+  Scene scene = sceneBefore(site.believed(belief, world), result, belief);
+  scene.story = std::move(story);
+  savePage(path, scene);
+  return result;
+}
+
+}  // namespace talus::cli

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include <planner/rehearsal_rates.hpp>
+
+namespace talus::cli {
+
+/// One rehearsal: outcome, energy_J, length_m, time_s, replans, alarms, max_slip, categories_changed.
+nlohmann::ordered_json asJson(const planner::WorldResult& result);
+
+/// Many under one belief: the rate of each outcome with its 95 % interval, mean energy, and each world.
+nlohmann::ordered_json asJson(const std::vector<planner::WorldResult>& results);
+
+/// All beliefs in the same worlds, against the clairvoyant, which comes last. In the order of planner::Belief.
+nlohmann::ordered_json asJson(const std::array<std::vector<planner::WorldResult>, 4>& beliefs);
+
+}  // namespace talus::cli
