@@ -5,14 +5,11 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <cli/assessment.hpp>
 #include <cli/command.hpp>
 #include <cli/commands.hpp>
 #include <cli/html_report.hpp>
 #include <cli/output_file.hpp>
-#include <cli/wheel_rows.hpp>
-#include <terramech/category.hpp>
-#include <terramech/category_probability.hpp>
-#include <terramech/drawbar_pull.hpp>
 
 namespace talus::cli {
 namespace {
@@ -21,25 +18,6 @@ using namespace terramech;
 using Json = nlohmann::ordered_json;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-
-struct AssessOptions {
-  std::string table, formula = "single-force", rover, html;
-  double slope_rad = 10.0 * kDegree;  // thesis Fig. 3.12
-  double margin_rad = 0.0;
-  double z_threshold = 0.5;
-  double z_critical = 0.75;
-  double noise = 0.05;
-};
-
-// What a row comes to.
-struct Assessment {
-  std::size_t line = 0;
-  Uncertain pull;  // DP/W
-  double sinkage_over_radius = 0.0;
-  double torque_over_load_radius = 0.0;
-  Category category = Category::Unknown;
-  CategoryProbability probability{};
-};
 
 void bind(CLI::App& command, AssessOptions& options) {
   command.add_option("table", options.table, "wheel telemetry")->required()->type_name("T.csv");
@@ -53,9 +31,19 @@ void bind(CLI::App& command, AssessOptions& options) {
       ->capture_default_str();
   command.add_option("--z-critical", options.z_critical, "z/r above which ground is dangerous")
       ->capture_default_str();
+  auto* model = command.add_option("--model", options.model,
+                                   "pull by this model (talus trace --model-out, a base model or a soil)");
+  model->type_name("M.yaml");
   command
       .add_option("--formula", options.formula, "drawbar pull from W, T, z (thesis 3.6, 3.12, 3.21, or ours)")
       ->check(CLI::IsMember({"single-force", "small-angle", "triangular", "plane"}))
+      ->capture_default_str()
+      ->excludes(model);
+  command.add_flag("--extrapolate", options.extrapolate,
+                   "also the pull at the reference slip and the greatest, by the soil that all rows show, or "
+                   "by the model");
+  command.add_option("--reference-slip", options.reference_slip, "slip to extrapolate to (thesis 3.5)")
+      ->check(CLI::Range(0.01, 1.0))
       ->capture_default_str();
   command.add_option("--rover", options.rover, "whose wheel, where the file does not say")
       ->type_name("NAME|FILE");
@@ -65,68 +53,64 @@ void bind(CLI::App& command, AssessOptions& options) {
   command.add_option("--html", options.html, "a page with the traversability map")->type_name("R.html");
 }
 
-// Each formula with the scatter that it has over thesis Table 2.1 (talus reproduce --goals), and the
-// readings' errors.
-Uncertain pullBy(const std::string& formula, const WheelRows& rows, const WheelSample& s,
-                 const ReadingErrors& errors) {
-  const Uncertain ours = pullOverLoad(rows.wheel, s, errors);
-  if (formula == "small-angle") return {pullAtSmallAngle(rows.wheel, s), std::hypot(ours.std, 0.013)};
-  if (formula == "triangular") return {pullOfTriangularStress(rows.wheel, s), std::hypot(ours.std, 0.014)};
-  if (formula == "plane") return {kThesisPlane.at(rows.wheel, s), std::hypot(ours.std, 0.028)};
-  return ours;
+Json jsonOf(const Uncertain& pull) {
+  const Uncertain slope = climbableSlope_rad(pull);
+  return {{"drawbar_pull_over_load", pull.value},
+          {"std", pull.std},
+          {"climbable_slope_rad", slope.value},
+          {"climbable_slope_std_rad", slope.std}};
 }
 
-std::vector<Assessment> assess(const AssessOptions& options, const WheelRows& rows,
-                               const CategoryThresholds& limits) {
-  const ReadingErrors errors = ReadingErrors::relative(options.noise);
-  std::vector<Assessment> result;
-  for (std::size_t k = 0; k < rows.samples.size(); ++k) {
-    const WheelSample& s = rows.samples[k];
-    Assessment a;
-    a.line = rows.lines[k];
-    a.pull = pullBy(options.formula, rows, s, errors);
-    a.sinkage_over_radius = s.sinkage_m / rows.wheel.radius_m;
-    a.torque_over_load_radius = torqueOverLoadRadius(rows.wheel, s);
-    a.category = categorise(
-        {.drawbar_pull_over_load = a.pull.value, .sinkage_over_radius = a.sinkage_over_radius}, limits);
-    a.probability = categoryProbability(
-        {.mean = {.drawbar_pull_over_load = a.pull.value, .sinkage_over_radius = a.sinkage_over_radius},
-         .drawbar_pull_over_load_std = a.pull.std,
-         .sinkage_over_radius_std = errors.sinkage.std(a.sinkage_over_radius)},
-        limits);
-    result.push_back(a);
-  }
-  return result;
+Json jsonOf(const PullForecast& f, double reference_slip) {
+  Json reference{{"slip", reference_slip}};
+  reference.update(jsonOf(f.at_reference));
+  reference["sinkage_over_radius"] = f.sinkage_over_radius.value;
+  reference["sinkage_over_radius_std"] = f.sinkage_over_radius.std;
+  Json most{{"slip", f.most_slip}};
+  most.update(jsonOf(f.most));
+  return {{"at_reference_slip", reference}, {"greatest", most}};
 }
 
-Json jsonOf(const std::vector<Assessment>& rows) {
+Json jsonOf(const std::vector<Assessment>& rows, double reference_slip) {
   Json list = Json::array();
   for (const Assessment& a : rows) {
     const Uncertain slope = climbableSlope_rad(a.pull);
-    list.push_back(
-        {{"row", a.line - 1},
-         {"line", a.line},
-         {"drawbar_pull_over_load", a.pull.value},
-         {"std", a.pull.std},
-         {"sinkage_over_radius", a.sinkage_over_radius},
-         {"torque_over_load_radius", a.torque_over_load_radius},
-         {"category", name(a.category)},
-         {"probability",
-          {{"safe", a.probability[0]}, {"marginal", a.probability[1]}, {"dangerous", a.probability[2]}}},
-         {"climbable_slope_rad", slope.value},
-         {"climbable_slope_std_rad", slope.std}});
+    Json row{{"row", a.line - 1},
+             {"line", a.line},
+             {"drawbar_pull_over_load", a.pull.value},
+             {"std", a.pull.std},
+             {"sinkage_over_radius", a.sinkage_over_radius.value},
+             {"sinkage_over_radius_std", a.sinkage_over_radius.std},
+             {"torque_over_load_radius", a.torque_over_load_radius},
+             {"category", name(a.category)},
+             {"probability",
+              {{"safe", a.probability[0]}, {"marginal", a.probability[1]}, {"dangerous", a.probability[2]}}},
+             {"climbable_slope_rad", slope.value},
+             {"climbable_slope_std_rad", slope.std}};
+    if (a.forecast) row.update(jsonOf(*a.forecast, reference_slip));
+    list.push_back(row);
   }
   return list;
 }
 
-std::string textOf(const std::vector<Assessment>& rows) {
+std::string textOf(const AssessOptions& options, const std::vector<Assessment>& rows) {
   std::string text =
-      "  line     DP/W      +-     z/r   T/rW  climbs deg  category   (safe marginal dangerous)\n";
+      "  line     DP/W      +-     z/r   T/rW  climbs deg  category   (safe marginal dangerous)";
+  if (options.extrapolate)
+    text += fmt::format("  DP/W at slip {:.2f}     greatest at slip  climbs deg", options.reference_slip);
+  text += '\n';
   for (const Assessment& a : rows) {
-    text += fmt::format("{:6}  {:7.3f}  {:6.3f}  {:6.3f} {:6.3f}  {:10.1f}  {:9}  ({:.2f} {:.2f} {:.2f})\n",
-                        a.line, a.pull.value, a.pull.std, a.sinkage_over_radius, a.torque_over_load_radius,
-                        std::atan(a.pull.value) / kDegree, name(a.category), a.probability[0],
-                        a.probability[1], a.probability[2]);
+    text += fmt::format("{:6}  {:7.3f}  {:6.3f}  {:6.3f} {:6.3f}  {:10.1f}  {:9}  ({:.2f} {:.2f} {:.2f})",
+                        a.line, a.pull.value, a.pull.std, a.sinkage_over_radius.value,
+                        a.torque_over_load_radius, std::atan(a.pull.value) / kDegree, name(a.category),
+                        a.probability[0], a.probability[1], a.probability[2]);
+    if (a.forecast) {
+      const PullForecast& f = *a.forecast;
+      text += fmt::format("         {:7.3f} +-{:6.3f}  {:7.3f} +-{:6.3f}  {:4.1f}  {:4.1f} +-{:4.1f}",
+                          f.at_reference.value, f.at_reference.std, f.most.value, f.most.std, f.most_slip,
+                          f.climbable_slope_rad.value / kDegree, f.climbable_slope_rad.std / kDegree);
+    }
+    text += '\n';
   }
   return text;
 }
@@ -145,7 +129,7 @@ Plot mapOf(const std::vector<Assessment>& rows) {
     for (const Assessment& a : rows) {
       if (a.category != c) continue;
       cloud.x.push_back(a.torque_over_load_radius);
-      cloud.y.push_back(a.sinkage_over_radius);
+      cloud.y.push_back(a.sinkage_over_radius.value);
     }
     if (!cloud.x.empty()) plot.series.push_back(cloud);
   }
@@ -161,7 +145,7 @@ void writePage(const AssessOptions& options, const std::vector<Assessment>& rows
   std::vector<std::vector<std::string>> cells;
   for (const Assessment& a : rows) {
     cells.push_back({fmt::format("{}", a.line), fmt::format("{:.3f}", a.pull.value),
-                     fmt::format("{:.3f}", a.pull.std), fmt::format("{:.3f}", a.sinkage_over_radius),
+                     fmt::format("{:.3f}", a.pull.std), fmt::format("{:.3f}", a.sinkage_over_radius.value),
                      name(a.category)});
   }
   page.table({"line", "DP/W", "std", "z/r", "category"}, cells);
@@ -169,22 +153,22 @@ void writePage(const AssessOptions& options, const std::vector<Assessment>& rows
 }
 
 int run(const AssessOptions& options, Context& context) {
-  CategoryThresholds limits = thresholds({.slope_rad = options.slope_rad, .margin_rad = options.margin_rad});
-  limits.z_threshold = options.z_threshold;
-  limits.z_critical = options.z_critical;
-  validate(limits);
-  const WheelRows rows =
-      readWheelRows(options.table, {.rover = options.rover, .needs_slip = false}, context.watch("reading"));
-  if (!rows.rejected.empty()) {
-    context.warn(fmt::format("{}:{}: {} ({} rows rejected)", rows.source, rows.rejected.front().line,
-                             rows.rejected.front().reason, rows.rejected.size()));
+  const AssessedTable table = assessTable(options, context.watch("assessing"));
+  if (context.stop.stop_requested()) return Exit::kCancelled;
+  if (!table.rejected.empty()) {
+    const auto& first = table.rejected.front();
+    context.warn(fmt::format("{}:{}: {} ({} rows rejected)", options.table, first.line, first.reason,
+                             table.rejected.size()));
   }
-  const std::vector<Assessment> assessed = assess(options, rows, limits);
-  if (!options.html.empty()) writePage(options, assessed);
+  for (const std::string& name : table.left_out) {
+    context.warn(options.model + ": " + name +
+                 " is a fault of a sensor; the pull is given without it, other than in talus predict");
+  }
+  if (!options.html.empty()) writePage(options, table.rows);
   if (context.json) {
-    printJson(jsonOf(assessed));
+    printJson(jsonOf(table.rows, options.reference_slip));
   } else {
-    print(textOf(assessed));
+    print(textOf(options, table.rows));
   }
   return Exit::kDone;
 }
@@ -197,7 +181,8 @@ void addAssess(CLI::App& app, Context& context) {
       {.name = "assess",
        .group = Group::kSoil,
        .description = "drawbar pull and traversability category of each row of telemetry",
-       .examples = "  talus assess drive.csv --slope 0.26 --margin 0.087\n"},
+       .examples = "  talus assess drive.csv --slope 0.26 --margin 0.087\n"
+                   "  talus assess drive.csv --model refined.yaml --extrapolate\n"},
       bind, run);
 }
 

@@ -13,11 +13,10 @@
 #include <cli/commands.hpp>
 #include <cli/drive_page.hpp>
 #include <cli/drive_report.hpp>
+#include <cli/drive_telemetry.hpp>
 #include <cli/ground_options.hpp>
-#include <cli/output_file.hpp>
 #include <cli/truth_file.hpp>
 #include <maps/place_reader.hpp>
-#include <planner/drive_log.hpp>
 #include <planner/rehearsal_site.hpp>
 #include <terramech/soil_library.hpp>
 
@@ -27,8 +26,7 @@ namespace {
 using planner::Belief;
 using planner::WorldResult;
 
-constexpr std::array<Belief, 4> kBeliefs{Belief::Geometry, Belief::Prior, Belief::OnLine,
-                                         Belief::Clairvoyant};
+constexpr std::array<Belief, 4> kBeliefs{Belief::Geometry, Belief::Prior, Belief::OnLine, Belief::Clairvoyant};
 
 struct Options {
   GroundOptions ground;
@@ -50,18 +48,14 @@ void bind(CLI::App& command, Options& options) {
       ->check(CLI::IsMember({"geometry", "prior", "online", "clairvoyant", "all"}))
       ->capture_default_str();
   auto* worlds =
-      command
-          .add_option("--worlds", options.worlds, "rehearse in so many random worlds, --threads at a time")
+      command.add_option("--worlds", options.worlds, "rehearse in so many random worlds, --threads at a time")
           ->check(CLI::Range(1, 100000))
           ->type_name("N");
-  command
-      .add_option(
-          "--telemetry", options.telemetry,
-          "write what the wheels' sensors read, for `talus trace`, and say how far predictions were off")
-      ->type_name("T.csv")
-      ->excludes(worlds);
   command.add_option("--html", options.html, "write a page with a time slider, to watch the rehearsal")
       ->type_name("R.html")
+      ->excludes(worlds);
+  command.add_option("--telemetry", options.telemetry, "write what the wheels read, for `talus update`")
+      ->type_name("T.csv")
       ->excludes(worlds);
 }
 
@@ -69,8 +63,7 @@ Belief beliefOf(const std::string& word) {
   return *std::find_if(kBeliefs.begin(), kBeliefs.end(), [&](Belief b) { return planner::name(b) == word; });
 }
 
-// As many worlds at a time as there are workers; each falls into its own place, so that order does not
-// matter.
+// As many worlds at a time as there are workers; each falls into its own place, so that order does not matter.
 std::vector<WorldResult> rehearseAll(const planner::RehearsalSite& site, Belief belief, std::size_t worlds,
                                      const Context& context) {
   std::vector<WorldResult> results(worlds);
@@ -112,27 +105,27 @@ int runAll(const planner::RehearsalSite& site, const Options& options, const Con
   return Exit::kDone;
 }
 
-// One world, step by step: its log as telemetry, and the errors of what the map said before each step.
-int runLogged(const costmap::TraversabilityMap& map, const planner::RehearsalSite& site,
-              const Options& options, const Context& context) {
-  const Belief belief = beliefOf(options.belief);
-  const planner::TrueWorld truth = site.trueWorld(0);
-  costmap::TraversabilityMap believed = site.believed(belief, truth);
-  planner::DriveLog log;
-  planner::RehearsalOptions how = site.options(belief, 0);
-  how.on_step = [&](const planner::DriveStep& step) { log.record(step); };
-  how.watch = context.watch("rehearsing");
-  const planner::Rehearsal drive = planner::rehearse(believed, truth, how);
+int runMany(const planner::RehearsalSite& site, const Options& options, const Context& context) {
+  const std::vector<WorldResult> results = rehearseAll(site, beliefOf(options.belief), options.worlds, context);
   if (context.stop.stop_requested()) return Exit::kCancelled;
-  writeFile(options.telemetry, log.telemetry(map.model().rover(), context.seed));
-  const planner::PredictionErrors errors = log.errors();
-  nlohmann::ordered_json json = asJson(WorldResult{drive, 0});
-  json["prediction"] = {{"steps", errors.steps},
-                        {"slip_rmse", errors.slip_rmse},
-                        {"energy_rmse", errors.energy_rmse},
-                        {"energy_error", errors.energy_error}};
+  show(asJson(results), context);
+  return Exit::kDone;
+}
+
+int runOne(const planner::RehearsalSite& site, const Options& options, const Context& context,
+           const terramech::Rover& rover) {
+  const Belief belief = beliefOf(options.belief);
+  const WatchedDrive drive = watchedDrive(site, belief, context.watch("rehearsing"));
+  if (context.stop.stop_requested()) return Exit::kCancelled;
+  if (!options.html.empty()) saveDrivePage(options.html, site, belief, drive);
+  if (!options.telemetry.empty()) saveTelemetry(options.telemetry, drive.result.drive, rover);
+  nlohmann::ordered_json json = asJson(drive.result);
+  json["prediction"] = {{"steps", drive.prediction.steps},
+                        {"slip_rmse", drive.prediction.slip_rmse},
+                        {"energy_rmse", drive.prediction.energy_rmse},
+                        {"energy_error", drive.prediction.energy_error}};
   show(json, context);
-  return drive.outcome == planner::Outcome::Reached ? Exit::kDone : Exit::kNo;
+  return drive.result.drive.outcome == planner::Outcome::Reached ? Exit::kDone : Exit::kNo;
 }
 
 int run(const Options& options, Context& context) {
@@ -145,16 +138,8 @@ int run(const Options& options, Context& context) {
                    .firm = terramech::loadSoil("bedrock"),
                    .seed = context.seed});
   if (options.belief == "all") return runAll(site, options, context);
-  if (!options.telemetry.empty()) return runLogged(ground.map, site, options, context);
-  const Belief belief = beliefOf(options.belief);
-  const std::vector<WorldResult> results =
-      options.html.empty()
-          ? rehearseAll(site, belief, options.worlds, context)
-          : std::vector{saveDrivePage(options.html, site, belief, context.watch("rehearsing"))};
-  if (context.stop.stop_requested()) return Exit::kCancelled;
-  show(options.worlds == 1 ? asJson(results.front()) : asJson(results), context);
-  const bool reached = results.front().drive.outcome == planner::Outcome::Reached;
-  return options.worlds > 1 || reached ? Exit::kDone : Exit::kNo;
+  return options.worlds > 1 ? runMany(site, options, context)
+                            : runOne(site, options, context, ground.map.model().rover());
 }
 
 }  // namespace
@@ -166,10 +151,9 @@ void addDrive(CLI::App& app, Context& context) {
        .group = Group::kRoutes,
        .description = "rehearse: drive the route over soils that the planner does not know",
        .examples =
-           std::string(
-               "  talus drive dem.tif --truth truth.yaml --start 10,10 --goal 90,90 --html drive.html\n"
-               "  talus drive dem.tif --truth truth.yaml --start 10,10 --goal 90,90 --worlds 100 "
-               "--belief all\n\n") +
+           std::string("  talus drive dem.tif --truth truth.yaml --start 10,10 --goal 90,90 --html drive.html\n"
+                       "  talus drive dem.tif --truth truth.yaml --start 10,10 --goal 90,90 --worlds 100 "
+                       "--belief all\n\n") +
            kTruthFormat},
       bind, run);
 }

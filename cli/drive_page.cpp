@@ -10,7 +10,7 @@ namespace talus::cli {
 namespace {
 
 Scene sceneBefore(const costmap::TraversabilityMap& map, const planner::WorldResult& result,
-              planner::Belief belief) {
+                  planner::Belief belief) {
   Scene scene =
       sceneOf(map, SceneOptions{.title = fmt::format("Rehearsal: {}", planner::name(result.drive.outcome))});
   scene.subtitle = fmt::format("belief: {}; categories as believed before the drive", planner::name(belief));
@@ -28,31 +28,39 @@ Scene sceneBefore(const costmap::TraversabilityMap& map, const planner::WorldRes
 
 }  // namespace
 
-planner::WorldResult saveDrivePage(const std::filesystem::path& path, const planner::RehearsalSite& site,
-                                   planner::Belief belief, const Watch& watch) {
+WatchedDrive watchedDrive(const planner::RehearsalSite& site, planner::Belief belief, const Watch& watch) {
   const planner::TrueWorld world = site.trueWorld(0);
   costmap::TraversabilityMap map = site.believed(belief, world);
-  DriveStory story{{}, {}, world.patches(), map.grid()};
+  WatchedDrive out{{}, {{}, {}, world.patches(), map.grid()}};
   const std::vector<std::uint8_t> before = planner::categoriesOf(map);
   std::vector<std::uint8_t> known = before;
   planner::RehearsalOptions options = site.options(belief, 0);
   options.watch = {.progress = {}, .stop = watch.stop};
+  options.record = true;
+  planner::DriveLog log;
+  options.on_step = [&](const planner::DriveStep& step) { log.record(step); };
   options.on_learned = [&](double time_s) {
-    const std::vector<std::uint8_t> now = planner::categoriesOf(map);
+    std::vector<std::uint8_t> now = planner::categoriesOf(map);
+    const int width = map.grid().width;
     for (std::size_t i = 0; i < now.size(); ++i)
       if (now[i] != known[i])
-        story.changes.push_back({time_s,
-                                 {static_cast<int>(i) % map.grid().width, static_cast<int>(i) / map.grid().width},
-                                 now[i]});
-    known = now;
+        out.story.changes.push_back(
+            {time_s, {static_cast<int>(i) % width, static_cast<int>(i) / width}, now[i]});
+    known = std::move(now);
   };
-  planner::WorldResult result{planner::rehearse(map, world, options), 0};
-  for (std::size_t i = 0; i < before.size(); ++i) result.categories_changed += before[i] != known[i] ? 1U : 0U;
-  story.drive = result.drive;
-  Scene scene = sceneBefore(site.believed(belief, world), result, belief);
-  scene.story = std::move(story);
+  out.result.drive = planner::rehearse(map, world, options);
+  for (std::size_t i = 0; i < before.size(); ++i)
+    out.result.categories_changed += before[i] != known[i] ? 1U : 0U;
+  out.story.drive = out.result.drive;
+  out.prediction = log.errors();
+  return out;
+}
+
+void saveDrivePage(const std::filesystem::path& path, const planner::RehearsalSite& site,
+                   planner::Belief belief, const WatchedDrive& drive) {
+  Scene scene = sceneBefore(site.believed(belief, site.trueWorld(0)), drive.result, belief);
+  scene.story = drive.story;
   savePage(path, scene);
-  return result;
 }
 
 }  // namespace talus::cli

@@ -28,7 +28,7 @@ void bind(CLI::App& command, EstimateOptions& options) {
       .add_option("--shear-modulus", options.shear_modulus,
                   "K in metres, or how to find it: error-minimisation, effective-torque, "
                   "effective-torque-printed, joint "
-                  "(default: the file's shear_modulus_m, else joint; wong-reece infers it)")
+                  "(default: the file's shear_modulus_m, else the prior's, else joint; wong-reece infers it)")
       ->type_name("M|HOW")
       ->check([](const std::string& word) -> std::string {
         for (const char* how :
@@ -39,19 +39,37 @@ void bind(CLI::App& command, EstimateOptions& options) {
                                          : "'" + word + "' is neither metres nor a way to find K";
       });
   command
-      .add_option("--prior", options.prior, "soils with {mean, std} (wong-reece; default: thesis Table 2.1)")
+      .add_option("--prior", options.prior,
+                  "soils with {mean, std} (default: wong-reece thesis Table 2.1, other methods none)")
       ->type_name("NAME|FILE");
   command.add_option("--rover", options.rover, "whose wheel, where the file does not say")
       ->type_name("NAME|FILE");
   command.add_option("--noise", options.noise, "relative error of each reading (wong-reece)")
       ->check(CLI::Range(1e-4, 0.5))
       ->capture_default_str();
+  command.add_flag("--keep-m1", options.whole_equation,
+                   "solve the whole Eq. 2.9, M1 included, in place of 2.11 (linear-offset)");
+  command.add_flag("--recursive", options.recursive,
+                   "take the rows in one by one, in constant memory, and print the estimate after each");
   command.add_option("--html", options.html, "a page with the fit")->type_name("R.html");
 }
 
 Json rejectedRows(const SoilEstimate& e) {
   Json rows = Json::array();
   for (const auto& row : e.rejected) rows.push_back({{"line", row.line}, {"reason", row.reason}});
+  return rows;
+}
+
+Json runningJson(const SoilEstimate& e) {
+  Json rows = Json::array();
+  for (const RunningSoil& r : e.running) {
+    rows.push_back({{"line", r.line},
+                    {"cohesion_Pa", r.cohesion_Pa},
+                    {"cohesion_std_Pa", std::sqrt(r.covariance(0, 0))},
+                    {"friction_angle_rad", r.friction_angle_rad},
+                    {"friction_angle_std_rad", frictionStd_rad(r.covariance, r.friction_angle_rad)},
+                    {"shear_modulus_m", r.shear_modulus_m}});
+  }
   return rows;
 }
 
@@ -65,6 +83,7 @@ Json posteriorJson(const SoilEstimate& e) {
             {"friction_angle_rad", range(p.friction_angle_rad)},
             {"shear_modulus_m", range(p.shear_modulus_m)}}},
           {"class_probabilities", classes},
+          {"ellipse_95", p.ellipse_95},
           {"misfit", p.misfit},
           {"effective_draws", p.effective_draws}};
 }
@@ -81,26 +100,49 @@ Json jsonOf(const std::string& method, const SoilEstimate& e) {
             {"rows_rejected", e.rejected.size()},
             {"well_conditioned", e.unseen.empty()},
             {"unseen", e.unseen},
+            {"plausible", e.implausible().empty()},
             {"rejected", rejectedRows(e)}};
   if (std::isfinite(e.sinkage_exponent)) json["sinkage_exponent"] = e.sinkage_exponent;
   if (e.cohesive_modulus) json["cohesive_modulus"] = *e.cohesive_modulus;
   if (e.frictional_modulus) json["frictional_modulus"] = *e.frictional_modulus;
+  for (const auto& plate : e.plates)
+    json["plates"].push_back(
+        {{"plate_width_m", plate.plate_width_m}, {"sinkage_modulus", plate.sinkage_modulus}});
+  if (!e.running.empty()) json["running"] = runningJson(e);
   if (e.posterior) json.update(posteriorJson(e));
   return json;
 }
 
+std::string runningText(const SoilEstimate& e) {
+  if (e.running.empty()) return {};
+  std::string text = "  line     c kPa      +-   phi deg      +-    K mm\n";
+  for (const RunningSoil& r : e.running) {
+    if (std::isnan(r.cohesion_Pa)) {
+      text += fmt::format("{:6}  too few rows yet\n", r.line);
+      continue;
+    }
+    text +=
+        fmt::format("{:6}  {:8.3f}  {:6.3f}  {:8.2f}  {:6.2f}  {:6.2f}\n", r.line, 1e-3 * r.cohesion_Pa,
+                    1e-3 * std::sqrt(r.covariance(0, 0)), r.friction_angle_rad / kDegree,
+                    frictionStd_rad(r.covariance, r.friction_angle_rad) / kDegree, 1e3 * r.shear_modulus_m);
+  }
+  return text + '\n';
+}
+
 std::string textOf(const SoilEstimate& e) {
-  std::string text;
+  std::string text = runningText(e);
   if (std::isfinite(e.cohesion_Pa)) {
-    const double cosine = std::cos(e.friction_angle_rad);
     text += fmt::format("cohesion        {:9.3f} kPa  +- {:.3f}\n", 1e-3 * e.cohesion_Pa,
                         1e-3 * std::sqrt(e.covariance(0, 0)));
     text += fmt::format("friction angle  {:9.2f} deg  +- {:.2f}\n", e.friction_angle_rad / kDegree,
-                        std::sqrt(e.covariance(1, 1)) * cosine * cosine / kDegree);
+                        frictionStd_rad(e.covariance, e.friction_angle_rad) / kDegree);
   }
   if (std::isfinite(e.shear_modulus_m))
     text += fmt::format("shear modulus   {:9.2f} mm\n", 1e3 * e.shear_modulus_m);
   if (std::isfinite(e.sinkage_exponent)) text += fmt::format("exponent n      {:9.3f}\n", e.sinkage_exponent);
+  for (const auto& plate : e.plates)
+    text += fmt::format("k at b {:5.1f} mm {:9.3g} N/m^(n+2)\n", 1e3 * plate.plate_width_m,
+                        plate.sinkage_modulus);
   if (e.cohesive_modulus) text += fmt::format("k_c             {:9.3g} N/m^(n+1)\n", *e.cohesive_modulus);
   if (e.frictional_modulus) text += fmt::format("k_phi           {:9.3g} N/m^(n+2)\n", *e.frictional_modulus);
   for (std::size_t k = 0; k < e.class_names.size(); ++k) {
@@ -162,13 +204,15 @@ void writePage(const EstimateOptions& options, const SoilEstimate& e) {
 }
 
 int run(const EstimateOptions& options, Context& context) {
-  const SoilEstimate estimate = estimateSoil(options, context.watch("reading"));
+  const SoilEstimate estimate = estimateSoil(options, context.watch("estimating"));
+  if (context.stop.stop_requested()) return Exit::kCancelled;
   if (!estimate.rejected.empty()) {
     const auto& first = estimate.rejected.front();
     context.warn(fmt::format("{}:{}: {} ({} rows rejected; --json lists them)", options.table, first.line,
                              first.reason, estimate.rejected.size()));
   }
   for (const std::string& text : estimate.unseen) context.warn("badly conditioned: " + text);
+  if (const std::string why = estimate.implausible(); !why.empty()) context.warn(why);
   constexpr double kMisfit = 3.0;
   if (estimate.posterior && estimate.posterior->misfit > kMisfit) {
     context.warn(fmt::format(

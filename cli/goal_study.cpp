@@ -3,15 +3,14 @@
 #include <map>
 #include <numbers>
 
-#include <Eigen/LU>
 #include <fmt/format.h>
 
 #include <cli/goal_study.hpp>
 #include <terramech/drawbar_pull.hpp>
 #include <terramech/iagnemma.hpp>
 #include <terramech/linear_offset.hpp>
+#include <terramech/modulus_ladder.hpp>
 #include <terramech/pull_forecast.hpp>
-#include <terramech/shear_modulus.hpp>
 #include <terramech/soil_filter.hpp>
 #include <terramech/telemetry_reader.hpp>
 #include <terramech/thesis_runs.hpp>
@@ -22,7 +21,6 @@ namespace {
 using namespace terramech;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr double kEllipse95 = 5.991464547107979;  // of chi-squared with two degrees of freedom
 
 // Root mean square, one error at a time.
 class Rms {
@@ -54,9 +52,7 @@ struct Coverage {
     const auto in = [](const CredibleInterval& i, double value) { return value >= i.low && value <= i.high; };
     cohesion += in(p.cohesion_Pa, t.cohesion_Pa);
     friction += in(p.friction_angle_rad, t.friction_angle_rad);
-    const Eigen::Vector2d away(t.cohesion_Pa - p.mean.cohesion_Pa,
-                               std::tan(t.friction_angle_rad) - p.tan_friction);
-    ellipse += away.dot(p.strength_covariance.inverse() * away) < kEllipse95;
+    ellipse += strengthDistance(p, t) < p.ellipse_95;
     ++count;
   }
   std::string text() const {
@@ -71,10 +67,26 @@ double seconds() {
   return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
+// The rms error that posteriors expect of their own means: no estimator does better on average.
+struct Expected {
+  double cohesion = 0.0, friction = 0.0;
+  int count = 0;
+
+  void add(const SoilPosterior& p) {
+    cohesion += 1e-6 * p.covariance(kCohesion, kCohesion);
+    friction += p.covariance(kFriction, kFriction) / (kDegree * kDegree);
+    ++count;
+  }
+  std::string text() const {
+    return fmt::format("{:.2f} kPa, {:.2f} deg", std::sqrt(cohesion / count), std::sqrt(friction / count));
+  }
+};
+
 // Everything that the 5 % runs are put through.
 struct StrengthStudy {
   StrengthErrors prior_mean, iagnemma, linear_offset, linear_offset_joint, mixture, known;
   Coverage coverage, known_coverage;
+  Expected expected, known_expected;
 
   void add(const ThesisRun& run, const SoilMixture& classes) {
     prior_mean.add(2500.0, 28.125 * kDegree, run.soil);
@@ -94,10 +106,12 @@ struct StrengthStudy {
     const SoilPosterior p = fitSoil(kThesisWheel, run.samples, classes);
     mixture.add(p.mean.cohesion_Pa, p.mean.friction_angle_rad, run.soil);
     coverage.add(p, run.soil);
+    expected.add(p);
     const SoilPosterior q =
         fitSoil(kThesisWheel, run.samples, {classes[static_cast<std::size_t>(run.soil_class)]});
     known.add(q.mean.cohesion_Pa, q.mean.friction_angle_rad, run.soil);
     known_coverage.add(q, run.soil);
+    known_expected.add(q);
   }
 
   void report(std::vector<GoalLine>& lines) const {
@@ -107,7 +121,11 @@ struct StrengthStudy {
     lines.push_back({"c, phi at 5 %: linear-offset, K found jointly", linear_offset_joint.text(), ""});
     lines.push_back(
         {"c, phi at 5 %: wong-reece, four classes, K not given", mixture.text(), "1.4 kPa, 3.7 deg"});
+    lines.push_back(
+        {"the same, expected from its own standard deviations (Bayes bound)", expected.text(), ""});
     lines.push_back({"c, phi at 5 %: wong-reece, class known", known.text(), "0.40 kPa, 1.6 deg"});
+    lines.push_back(
+        {"the same, expected from its own standard deviations (Bayes bound)", known_expected.text(), ""});
     lines.push_back({"95 % regions that hold the truth, four classes", coverage.text(), "93 to 97 %"});
     lines.push_back({"95 % regions that hold the truth, class known", known_coverage.text(), "93 to 97 %"});
   }

@@ -43,11 +43,6 @@ bool isBeliefMap(const std::string& path) {
   return costmap::octomapType(path) == "TraversabilityTree";
 }
 
-maps::ElevationMap readDem(const GroundOptions& options, const Context& context) {
-  if (costmap::octomapType(options.dem.path)) return costmap::octomapSurface(options.dem.path);
-  return readMap(options.dem, context);
-}
-
 void addPolicy(CLI::App& command, costmap::DrivePolicy& policy) {
   command.add_flag("--no-marginal{false}", policy.allow_marginal, "refuse marginal ground, too");
   command.add_flag("--allow-dangerous", policy.allow_dangerous,
@@ -148,7 +143,7 @@ Ground readGround(const GroundOptions& options, const Context& context) {
   if (!options.map_file.empty()) return fromMapFile(options, options.map_file, context);
   if (isBeliefMap(options.dem.path)) return fromMapFile(options, options.dem.path, context);
   auto begin = Clock::now();
-  maps::ElevationMap dem = readDem(options, context);
+  maps::ElevationMap dem = readMap(options.dem, context);
   const Assumed& assumed = assumedOn(dem);
   warnOfAssumptions(options, assumed, context);
   Layers layers = readLayers(options.layers, dem);

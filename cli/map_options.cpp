@@ -1,12 +1,15 @@
 #include <CLI/CLI.hpp>
 #include <cli/context.hpp>
 #include <cli/map_options.hpp>
+#include <costmap/map_file.hpp>
+#include <costmap/octomap_surface.hpp>
 
 namespace talus::cli {
 
 void addMapOptions(CLI::App& command, MapOptions& options, const std::string& name) {
   maps::ReadOptions& read = options.read;
-  command.add_option(name, options.path, "elevation map: anything GDAL opens, or a NumPy .npz")->required();
+  command.add_option(name, options.path, "elevation map: anything GDAL opens, a NumPy .npz, or an OctoMap")
+      ->required();
   command.add_option("--band", read.band, "band that holds the heights, from 1")->type_name("N");
   command
       .add_option("--resolution", read.resolution_m, "cell side; needed without a CRS, resamples with one")
@@ -25,7 +28,23 @@ void addMapOptions(CLI::App& command, MapOptions& options, const std::string& na
       ->capture_default_str();
 }
 
+namespace {
+
+// An OctoMap brings its own grid; what says how to read a raster means nothing to it.
+maps::ElevationMap fromOctomap(const MapOptions& options, const std::string& type, const Context& context) {
+  const maps::ReadOptions& read = options.read;
+  if (read.band || read.resolution_m || read.nodata || read.ignore_crs || !options.window.empty())
+    context.warn(options.path +
+                 ": an OctoMap has its own grid; --band, --resolution, --window, --nodata and "
+                 "--ignore-crs are not used");
+  if (type != "TraversabilityTree") return costmap::octomapSurface(options.path);
+  return costmap::readMap(options.path, context.workers(), context.watch("read map")).elevation();
+}
+
+}  // namespace
+
 maps::ElevationMap readMap(const MapOptions& options, const Context& context) {
+  if (const auto type = costmap::octomapType(options.path)) return fromOctomap(options, *type, context);
   maps::ReadOptions read = options.read;
   if (!options.window.empty()) read.window = maps::parseWindow(options.window);
   maps::ElevationMap map = maps::readElevation(options.path, read);

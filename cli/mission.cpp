@@ -75,7 +75,7 @@ void readMission(PlanOptions& options) {
   const std::filesystem::path folder = path.parent_path();
   const YamlFields fields = YamlFields::file(path.string());
   fields.only({"maps", "rover", "soil", "model", "soils", "thresholds", "planner", "start", "goal", "via",
-               "tolerance_m", "time_s", "output"});
+               "tolerance_m", "time_s", "start_heading_rad", "goal_heading_rad", "reverse", "output"});
   readMaps(fields.fields("maps"), options.ground, folder);
   take(options.ground.rover, fields, "rover");
   take(options.ground.soil, fields, "soil");
@@ -89,6 +89,10 @@ void readMission(PlanOptions& options) {
   if (options.start.empty()) options.start = place(fields, "start");
   if (options.goal.empty()) options.goal = place(fields, "goal");
   if (options.via.empty() && fields.has("via")) options.via.push_back(place(fields, "via"));
+  for (const auto& [heading, key] : {std::pair{&options.drive.start_heading_rad, "start_heading_rad"},
+                                     std::pair{&options.drive.goal_heading_rad, "goal_heading_rad"}})
+    if (!*heading && fields.has(key)) *heading = fields.number(key);
+  if (!fields.flag("reverse", true)) options.drive.no_reverse = true;
   if (options.tolerance_m == 0.0) options.tolerance_m = fields.number("tolerance_m", 0.0);
   if (options.time_limit_s == 0.0) options.time_limit_s = fields.number("time_s", 0.0);
   take(options.output, fields, "output");

@@ -1,11 +1,23 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <cli/ground_options.hpp>
 
 namespace talus::cli {
+
+/// How the rover may move, for planners of drives.
+struct DriveOptions {
+  std::optional<double> start_heading_rad;  ///< none: it may look any way
+  std::optional<double> goal_heading_rad;   ///< the same on arrival
+  std::optional<double> turning_radius_m;   ///< none: the rover's
+  bool no_reverse = false;
+  std::string chassis;  ///< "rigid" or "rocker-bogie": clearance and tilt are kept along the whole motion
+
+  bool any() const { return start_heading_rad || goal_heading_rad || turning_radius_m || no_reverse; }
+};
 
 /// Everything that `talus plan` asks: on the command line or in a mission file.
 struct PlanOptions {
@@ -15,6 +27,7 @@ struct PlanOptions {
   std::vector<std::string> via;
   double tolerance_m = 0.0;
   std::string planner = "field";
+  DriveOptions drive;
   double max_risk = 0.0;      ///< chance constraint on immobilisation, 0: none
   std::string pareto;         ///< chart to draw; empty: none
   double time_limit_s = 0.0;  ///< 0: none

@@ -88,6 +88,8 @@ ordered_json routeOf(const planner::Route& route) {
                       {"energy", number(v.energy_J / 1000.0)},
                       {"time", number(v.time_s)},
                       {"category", terramech::name(v.category)}});
+    if (v.reverse) points.back()["reverse"] = true;
+    if (v.turn_rad != 0.0) points.back()["turn"] = number(v.turn_rad);
   }
   return points;
 }

@@ -19,6 +19,7 @@ constexpr double kMargin = 24.0;
 constexpr double kHead = 64.0;
 constexpr double kLegend = 210.0;
 constexpr Colour kRoute = rgb(0x1B3FBF);
+constexpr Colour kReverse = rgb(0xB3202C);
 constexpr Colour kWhite = rgb(0xFFFFFF);
 constexpr Colour kInk = rgb(0x222222);
 
@@ -89,8 +90,20 @@ class Picture {
     for (const planner::RouteVertex& v : scene_.route->vertices) spots.push_back(spot(v.x_m, v.y_m));
     canvas_.line(spots, {.colour = kWhite, .width = 5.5});
     canvas_.line(spots, {.colour = kRoute, .width = 2.8});
+    manoeuvres(spots);
     mark(spots.front(), "S");
     mark(spots.back(), "G");
+  }
+
+  // Where the rover drives backwards, and dots where it changes direction or turns in place.
+  void manoeuvres(const std::vector<Spot>& spots) {
+    const auto& vertices = scene_.route->vertices;
+    for (std::size_t i = 0; i + 1 < spots.size(); ++i) {
+      if (vertices[i].reverse)
+        canvas_.line(std::array{spots[i], spots[i + 1]}, {.colour = kReverse, .width = 2.8});
+      if (vertices[i].turn_rad != 0.0 || (i > 0 && vertices[i].reverse != vertices[i - 1].reverse))
+        canvas_.disc(spots[i], 3.5, kReverse);
+    }
   }
 
   void mark(Spot at, const char* letter) {
@@ -129,6 +142,11 @@ class Picture {
       canvas_.line(std::array{at, Spot{at.x + 26, at.y}}, {.colour = kRoute, .width = 3});
       canvas_.text("route, S to G", {at.x + 36, at.y + 4}, {});
       at.y += 24;
+      if (scene_.route->summary.drive) {
+        canvas_.line(std::array{at, Spot{at.x + 26, at.y}}, {.colour = kReverse, .width = 3});
+        canvas_.text("in reverse; dot: turns", {at.x + 36, at.y + 4}, {});
+        at.y += 24;
+      }
     }
     elevations(at);
     northArrow({at.x + 12, at.y + 80});

@@ -2,6 +2,8 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <numbers>
+#include <optional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -19,10 +21,12 @@
 #include <cli/scene.hpp>
 #include <maps/place_reader.hpp>
 #include <planner/annotation.hpp>
+#include <planner/chassis_planner.hpp>
 #include <planner/named_planner.hpp>
 #include <planner/risk_planner.hpp>
 #include <planner/route_check.hpp>
 #include <planner/route_risk.hpp>
+#include <planner/turn_prices.hpp>
 
 namespace talus::cli {
 namespace {
@@ -37,6 +41,40 @@ struct Timing {
   double load_s, costmap_s, plan_s;
 };
 
+// A heading in radians, or in degrees under another name.
+void addHeading(CLI::App& command, const std::string& name, std::optional<double>& heading_rad) {
+  auto* radians = command
+                      .add_option_function<double>(
+                          name, [&heading_rad](double value) { heading_rad = value; },
+                          "which way the rover looks there, counter-clockwise from east; any if not given")
+                      ->type_name("RAD")
+                      ->check(finite());
+  command
+      .add_option_function<double>(
+          name + "-deg", [&heading_rad](double value) { heading_rad = value * std::numbers::pi / 180.0; },
+          "the same in degrees")
+      ->type_name("DEG")
+      ->check(finite())
+      ->excludes(radians);
+}
+
+void addDrive(CLI::App& command, DriveOptions& drive) {
+  addHeading(command, "--start-heading", drive.start_heading_rad);
+  addHeading(command, "--goal-heading", drive.goal_heading_rad);
+  command
+      .add_option_function<double>(
+          "--turning-radius", [&drive](double value) { drive.turning_radius_m = value; },
+          "smallest radius that hybrid may drive; 0: turns in place (default: the rover's)")
+      ->type_name("METRES")
+      ->check(notNegative());
+  command
+      .add_option("--chassis", drive.chassis,
+                  "keep clearance, pitch and roll of such a chassis along the whole motion (any planner)")
+      ->type_name("KIND")
+      ->check(CLI::IsMember({"rigid", "rocker-bogie"}));
+  command.add_flag("--no-reverse", drive.no_reverse, "hybrid: the rover may not drive backwards");
+}
+
 void bind(CLI::App& command, PlanOptions& options) {
   addGroundOptions(command, options.ground);
   command
@@ -50,6 +88,7 @@ void bind(CLI::App& command, PlanOptions& options) {
   command.add_option("--planner", options.planner, "who plans: `talus plugins` lists them")
       ->type_name("NAME")
       ->capture_default_str();
+  addDrive(command, options.drive);
   command.add_option("--time", options.time_limit_s, "time limit of the planning")
       ->type_name("S")
       ->check(CLI::PositiveNumber);
@@ -71,6 +110,13 @@ void requirePlaces(const PlanOptions& options) {
   if (options.goal.empty()) throw InputError({"talus plan", "no goal", "pass --goal x,y"});
 }
 
+planner::Kinematics kinematicsOf(const DriveOptions& drive, const costmap::TraversabilityMap& map) {
+  planner::Kinematics kinematics = planner::kinematicsOn(map.model(), map.published()->cost());
+  if (drive.turning_radius_m) kinematics.turning_radius_m = *drive.turning_radius_m;
+  kinematics.may_reverse = !drive.no_reverse;
+  return kinematics;
+}
+
 planner::Problem problemOf(const PlanOptions& options, const Ground& ground, const Context& context) {
   const maps::ElevationMap& map = ground.map.elevation();
   planner::Problem problem;
@@ -82,16 +128,37 @@ planner::Problem problemOf(const PlanOptions& options, const Ground& ground, con
   if (options.time_limit_s > 0.0) problem.time_limit_s = options.time_limit_s;
   problem.seed = context.seed;
   problem.threads = context.workers();
+  problem.start_heading_rad = options.drive.start_heading_rad;
+  problem.goal_heading_rad = options.drive.goal_heading_rad;
+  problem.kinematics = kinematicsOf(options.drive, ground.map);
   problem.watch = context.watch("plan");
   return problem;
 }
 
 // What no planner may hand out: the check shares no code with any of them.
-void requireAllowed(const planner::Plan& plan, const costmap::CostGrid& map) {
-  const auto violations = planner::violations(map, plan.points);
+void requireAllowed(const planner::Plan& plan, const costmap::CostGrid& map, double turning_radius_m) {
+  auto violations = planner::violations(map, plan.points);
+  if (violations.empty() && !plan.drive.legs.empty())
+    violations = planner::violations(map, plan.drive, turning_radius_m);
   if (violations.empty()) return;
   throw std::logic_error(fmt::format("the planner's route is not allowed at {:.2f},{:.2f}: {}",
                                      violations[0].place.x_m, violations[0].place.y_m, violations[0].reason));
+}
+
+// The chassis that the call asks for.
+std::optional<planner::Chassis> chassisOf(const DriveOptions& drive, const costmap::TraversabilityMap& map) {
+  if (drive.chassis.empty()) return std::nullopt;
+  return planner::Chassis(
+      map.elevation().elevation_m, map.model().rover(),
+      drive.chassis == "rigid" ? planner::Suspension::Rigid : planner::Suspension::RockerBogie);
+}
+
+planner::Plan planned(const planner::Problem& problem, planner::NamedPlanner& planner,
+                      const PlanOptions& options, const std::optional<planner::Chassis>& chassis) {
+  const auto once = [&](const planner::Problem& p) {
+    return options.max_risk > 0.0 ? planner::planWithinRisk(p, planner, options.max_risk) : planner.plan(p);
+  };
+  return chassis ? planner::planOnChassis(problem, *chassis, once) : once(problem);
 }
 
 std::string asText(const Route& route, const Timing& seconds) {
@@ -169,18 +236,23 @@ int run(const PlanOptions& asked, Context& context) {
   requirePlaces(options);
   checkOutputs(options);
   planner::NamedPlanner planner(options.planner);
+  if (options.drive.any() && !planner.drives())
+    throw InputError({"planner '" + planner.name() + "'", "knows no heading and no turning radius",
+                      "pass --planner hybrid, or leave out --start-heading, --goal-heading, --turning-radius "
+                      "and --no-reverse"});
   const Ground ground = readGround(options.ground, context);
   if (context.stop.stop_requested()) return Exit::kCancelled;
   const planner::Problem problem = problemOf(options, ground, context);
   const auto begin = std::chrono::steady_clock::now();
-  const planner::Plan plan = options.max_risk > 0.0
-                                 ? planner::planWithinRisk(problem, planner, options.max_risk)
-                                 : planner.plan(problem);
+  const planner::Plan plan = planned(problem, planner, options, chassisOf(options.drive, ground.map));
   const std::chrono::duration<double> plan_s = std::chrono::steady_clock::now() - begin;
-  if (plan.status == RouteStatus::Found) requireAllowed(plan, *problem.map);
+  if (plan.status == RouteStatus::Found)
+    requireAllowed(plan, *problem.map, problem.kinematics.turning_radius_m);
   const maps::ElevationMap& map = ground.map.elevation();
-  const Route route =
-      annotated(plan, {.map = *problem.map, .elevation_m = &map.elevation_m, .planner = planner.name()});
+  const Route route = annotated(plan, {.map = *problem.map,
+                                       .elevation_m = &map.elevation_m,
+                                       .planner = planner.name(),
+                                       .kinematics = problem.kinematics});
   if (plan.status != RouteStatus::Found) return refuse(route, context);
   writeFiles(options, ground, route, context);
   if (!options.pareto.empty())

@@ -55,6 +55,10 @@ void addVertices(Json& properties, const Route& route) {
   add("energy_J", &RouteVertex::energy_J);
   add("time_s", &RouteVertex::time_s);
   add("immobilisation_risk", &RouteVertex::immobilisation_risk);
+  if (!route.summary.drive) return;
+  add("curvature_1_m", &RouteVertex::curvature_1_m);
+  add("turn_rad", &RouteVertex::turn_rad);
+  properties["reverse"] = values(route, [](const RouteVertex& vertex) { return vertex.reverse; });
 }
 
 Json originJson(const RouteOrigin& origin) {
@@ -81,6 +85,11 @@ Json summaryJson(const Route& route) {
   made["gap"] = s.gap;
   made["immobilisation_risk"] = route.vertices.empty() ? 0.0 : route.vertices.back().immobilisation_risk;
   made["planner"] = s.planner;
+  if (s.drive)
+    made["drive"] = {{"cusps", s.drive->cusps},
+                     {"turns_in_place", s.drive->turns_in_place},
+                     {"turned_rad", s.drive->turned_rad},
+                     {"max_curvature_1_m", s.drive->max_curvature_1_m}};
   return made;
 }
 

@@ -110,6 +110,22 @@ void readVertices(const Fields& fields, std::vector<RouteVertex>& vertices) {
   for (std::size_t i = 0; i < vertices.size(); ++i) vertices[i].category = categoryOf(fields, categories[i]);
 }
 
+// What only a drive has.
+void readDrive(const Fields& fields, std::vector<RouteVertex>& vertices) {
+  fields.fill("curvature_1_m", &RouteVertex::curvature_1_m, vertices);
+  fields.fill("turn_rad", &RouteVertex::turn_rad, vertices);
+  const json& reverse = fields.array("reverse");
+  if (reverse.size() != vertices.size()) fields.refuse("reverse", "has another length than x_m");
+  for (std::size_t i = 0; i < vertices.size(); ++i) vertices[i].reverse = reverse[i] == json(true);
+}
+
+planner::DriveShape shapeFrom(const Fields& drive) {
+  return {.cusps = static_cast<int>(drive.number("cusps")),
+          .turns_in_place = static_cast<int>(drive.number("turns_in_place")),
+          .turned_rad = drive.number("turned_rad"),
+          .max_curvature_1_m = drive.number("max_curvature_1_m")};
+}
+
 planner::RouteSummary summaryFrom(const Fields& summary) {
   return {.cost = summary.number("cost"),
           .energy_J = summary.number("energy_J"),
@@ -157,6 +173,10 @@ RouteFile readRoute(const std::string& path) {
   readVertices(fields, file.route.vertices);
   const json summary = member(properties, "summary");
   file.route.summary = summaryFrom(Fields(path, summary));
+  if (const json drive = member(summary, "drive"); drive.is_object()) {
+    readDrive(fields, file.route.vertices);
+    file.route.summary.drive = shapeFrom(Fields(path, drive));
+  }
   file.inputs = inputsOf(properties);
   return file;
 }

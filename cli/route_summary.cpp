@@ -134,6 +134,16 @@ std::string riskText(double probability) {
   return fmt::format("{:.2g} % to get stuck on the way", 100.0 * probability);
 }
 
+std::string driveText(const Route& route) {
+  if (!route.summary.drive) return "";
+  const planner::DriveShape& d = *route.summary.drive;
+  const std::string radius = d.max_curvature_1_m > 0.0
+                                 ? fmt::format("arcs of {:.3g} m and more", 1.0 / d.max_curvature_1_m)
+                                 : "straight between turns";
+  return fmt::format("{}, {} reversals, {} turns in place, {:.0f} deg turned in all", radius, d.cusps,
+                     d.turns_in_place, kDegrees * d.turned_rad);
+}
+
 }  // namespace
 
 std::vector<double> distances_m(const Route& route) {
@@ -159,6 +169,7 @@ Facts summaryOf(const Route& route) {
   if (route.status != planner::RouteStatus::Found || route.vertices.empty())
     return {{"route", fmt::format("{}: {}", planner::name(route.status), route.reason)}};
   const planner::RouteSummary& s = route.summary;
+  if (!(s.length_m > 0.0)) return {{"route", "nothing to drive: the start is at the goal"}};
   const double risk = route.vertices.back().immobilisation_risk;
   Facts facts{
       {"route", statusText(route)},
@@ -167,6 +178,7 @@ Facts summaryOf(const Route& route) {
        fmt::format("{}, {:.3g} m/s on average", durationText(s.time_s), s.length_m / s.time_s)},
       {"energy", fmt::format("{} ({:.4g} Wh), {:.4g} J/m; cost with time and risk {}", energyText(s.energy_J),
                              s.energy_J / 3600.0, s.energy_J / s.length_m, energyText(s.cost))},
+      {"manoeuvres", driveText(route)},
       {"climb", climbText(route)},
       {"slope", slopeText(route)},
       {"slip", slipText(route)},

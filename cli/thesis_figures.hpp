@@ -18,8 +18,16 @@ struct ThesisFigure {
   std::vector<Plot> plots;
 };
 
-/// Figures of chapter 2 (2.5, 2.6, 2.7, 2.9) and of appendices A, C and D (A.4, C.4, D.1, D.2, D.3).
+/// A verdict that follows from what was found: "reproduced" and what else is to be said of it, or the other.
+inline std::string verdictOf(bool holds, const std::string& otherwise, const std::string& remark = "") {
+  return holds ? "reproduced" + remark : otherwise;
+}
+
+/// Figures of chapter 2 (2.5, 2.6, 2.7, 2.9).
 std::vector<ThesisFigure> estimationFigures(std::uint64_t seed);
+
+/// Figures of appendices A, C and D (A.4, C.4, D.1, D.2, D.3).
+std::vector<ThesisFigure> appendixFigures(std::uint64_t seed);
 
 /// Figures of chapter 3 (3.5, 3.6, 3.8, 3.12).
 std::vector<ThesisFigure> traversabilityFigures(std::uint64_t seed);

@@ -17,7 +17,6 @@ target_link_libraries(talus::ompl INTERFACE ${OMPL_LIBRARIES} Boost::serializati
 
 if(TALUS_OFFLINE)
   find_package(GDAL 3.6 REQUIRED)
-  find_package(Ceres 2.1 REQUIRED)
   find_package(yaml-cpp 0.7 REQUIRED)
   find_package(nlohmann_json 3.11 REQUIRED)
   find_package(CLI11 2.1 REQUIRED)

@@ -19,6 +19,7 @@ constexpr std::size_t kMostNeighbours = 64;
 constexpr int kPatchBlocks = 8;
 constexpr double kFreedom = 4.0;      // of Student's t
 constexpr double kContradicts = 1.5;  // standard deviations
+constexpr std::size_t kMostRemembered = 512;  // patches, so that a whole map is worked out in little memory
 constexpr double kUnit = 1048576.0;  // of the fixed-point sums
 
 int shiftFor(double correlation_length_m, double resolution_m) {
@@ -265,6 +266,10 @@ const EvidenceField::Belief& EvidenceField::Beliefs::at(maps::Cell cell, int cla
     const maps::Cell patch{down(block.column, field_.first_block_.column),
                            down(block.row, field_.first_block_.row)};
     const Key patch_key{patch.column, patch.row, class_index};
+    if (processes_.size() >= kMostRemembered) {
+      processes_.clear();
+      known_.clear();
+    }
     auto process = processes_.find(patch_key);
     if (process == processes_.end())
       process = processes_.emplace(patch_key, field_.process(patch, class_index)).first;

@@ -78,6 +78,7 @@ GroundModel::GroundModel(Parts parts) : parts_(std::move(parts)) {
     throw std::invalid_argument("ground model: classes is empty, must hold at least one");
   const terramech::RangeCheck check("drive policy");
   check.within("slope_margin_rad", parts_.policy.slope_margin_rad, {0.0, 0.5});
+  tan_margin_ = std::tan(parts_.policy.slope_margin_rad);
   check.within("max_immobilisation", parts_.policy.max_immobilisation, {0.0, 1.0});
   check.atLeast("time_weight_W", parts_.policy.time_weight_W, 0.0);
   check.within("entrapment", parts_.policy.entrapment, {0.0, 1.0});
@@ -86,9 +87,9 @@ GroundModel::GroundModel(Parts parts) : parts_(std::move(parts)) {
   for (const GroundClass& c : parts_.classes) {
     if (&parts_.classes[static_cast<std::size_t>(classIndex(c.number))] != &c)
       throw std::invalid_argument("ground model: class " + std::to_string(c.number) + " is declared twice");
-    curves_.push_back(mobilityOf(c, parts_.rover));
     GroundClass rut = c;
     rut.soil = terramech::rutted(c.soil);
+    curves_.push_back(mobilityOf(c, parts_.rover));
     rut_curves_.push_back(mobilityOf(rut, parts_.rover));
   }
 }
@@ -123,28 +124,35 @@ SteadyWheel GroundModel::reference(int class_index, bool in_rut) const noexcept 
   return {at.drawbar_pull_over_load, at.sinkage_over_radius, at.torque_over_load_radius};
 }
 
+// tan(slope -+ margin) by the addition theorem; beyond a right angle nothing is enough.
+GroundModel::Edges GroundModel::edges(double gradient) const noexcept {
+  const double left = 1.0 - gradient * tan_margin_, right = 1.0 + gradient * tan_margin_;
+  constexpr double kSteeper = std::numeric_limits<double>::infinity();
+  return {.low = right > 0.0 ? (gradient - tan_margin_) / right : -kSteeper,
+          .high = left > 0.0 ? (gradient + tan_margin_) / left : kSteeper};
+}
+
 Category GroundModel::categoryAt(double pull, double sinkage, double gradient) const {
   const DrivePolicy& policy = parts_.policy;
-  const double slope_rad = std::atan(gradient);
+  const Edges edge = edges(gradient);
   const double critical = policy.sinkage_critical > 0.0
                               ? policy.sinkage_critical
                               : parts_.rover.clearance_m / parts_.rover.wheel.radius_m;
   return terramech::categorise({.drawbar_pull_over_load = pull, .sinkage_over_radius = sinkage},
-                               {.dp_low = std::tan(slope_rad - policy.slope_margin_rad),
-                                .dp_high = std::tan(slope_rad + policy.slope_margin_rad),
+                               {.dp_low = edge.low,
+                                .dp_high = edge.high,
                                 .z_threshold = std::min(policy.sinkage_threshold, critical),
                                 .z_critical = critical});
 }
 
 Ranked GroundModel::category(const GroundBelief& belief, double gradient) const {
-  const double slope_rad = std::atan(gradient);
-  const double margin = parts_.policy.slope_margin_rad;
-  const double below_low = probabilityBelow(belief.pull, std::tan(slope_rad - margin));
-  const double below_high = probabilityBelow(belief.pull, std::tan(slope_rad + margin));
+  const Edges edge = edges(gradient);
+  const double below_low = probabilityBelow(belief.pull, edge.low);
+  const double below_high = probabilityBelow(belief.pull, edge.high);
   // What each of the three pull ranks becomes at the believed sinkage; their chances add up.
   const std::array<std::pair<double, double>, 3> ranks{
       {{std::numeric_limits<double>::infinity(), 1.0 - below_high},
-       {std::tan(slope_rad), below_high - below_low},
+       {gradient, below_high - below_low},
        {-std::numeric_limits<double>::infinity(), below_low}}};
   const Category mean = categoryAt(belief.pull.mean, belief.sinkage.mean, gradient);
   double probability = 0.0;

@@ -111,9 +111,15 @@ class GroundModel {
     return (in_rut ? rut_curves_ : curves_)[static_cast<std::size_t>(class_index)];
   }
 
+  // Drawbar pull over load at which a slope is no longer dangerous, and from which it is safe.
+  struct Edges {
+    double low, high;
+  };
+  Edges edges(double gradient) const noexcept;
   terramech::Category categoryAt(double pull, double sinkage, double gradient) const;
 
   Parts parts_;
+  double tan_margin_ = 0.0;
   std::vector<terramech::MobilityCurve> curves_;      // of each class
   std::vector<terramech::MobilityCurve> rut_curves_;  // in the rut of an equal wheel
 };

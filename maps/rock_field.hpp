@@ -8,7 +8,7 @@
 
 namespace talus::maps {
 
-/// A half-buried boulder: half an ellipsoid twice as wide as high.
+/// A half-buried boulder: the upper half of a sphere.
 struct Rock {
   Point centre;
   double radius_m = 0.0;

@@ -31,11 +31,18 @@ std::vector<double> passages(const maps::Grid& grid, const Segment& motion) {
   return shares;
 }
 
+// How a straight piece belongs to a drive.
+struct Motion {
+  bool reverse = false;
+  double curvature_1_m = 0.0;
+};
+
 class Annotator {
  public:
   explicit Annotator(const AnnotationInput& input) : input_(input), grid_(input.map.grid()) {}
 
-  void drive(const Segment& motion) {
+  void drive(const Segment& motion, const Motion& how = {}) {
+    how_ = how;
     const double length_m = std::hypot(motion.to.x_m - motion.from.x_m, motion.to.y_m - motion.from.y_m);
     if (!(length_m > 0.0)) return;
     const Direction heading{(motion.to.x_m - motion.from.x_m) / length_m,
@@ -62,6 +69,27 @@ class Annotator {
     }
     length_m_ += length_m;
   }
+
+  // A turn in place, or the turning of an arc.
+  void turn(double turn_rad, Point place) {
+    const auto cell = grid_.cellAt(place);
+    const TurnPrices& prices =
+        cell ? input_.kinematics.turnsOn(input_.map.at(*cell).curve()) : input_.kinematics.turns;
+    const bool in_place = how_.curvature_1_m == 0.0;
+    spend(in_place ? prices.in_place : prices.on_arc, std::abs(turn_rad));
+  }
+
+  // The vertex at which the rover stands and turns.
+  void stand(const Pose& pose, double turn_rad) {
+    how_ = {};
+    RouteVertex vertex =
+        looked(pose.place, pose.place, {std::cos(pose.heading_rad), std::sin(pose.heading_rad)});
+    vertex.turn_rad = turn_rad;
+    vertices.push_back(vertex);
+    turn(turn_rad, pose.place);
+  }
+
+  void cusp() { spend(input_.kinematics.cusp, 1.0); }
 
   void arrive(Point end) {
     RouteVertex last = vertices.empty() ? looked(end, end, {1.0, 0.0}) : vertices.back();
@@ -91,7 +119,10 @@ class Annotator {
     vertex.x_m = at.x_m;
     vertex.y_m = at.y_m;
     vertex.elevation_m = elevation(at);
-    vertex.heading_rad = std::atan2(heading.y, heading.x);
+    const double side = how_.reverse ? -1.0 : 1.0;
+    vertex.heading_rad = std::atan2(side * heading.y, side * heading.x);
+    vertex.reverse = how_.reverse;
+    vertex.curvature_1_m = how_.curvature_1_m;
     state_ = {};
     if (const auto cell = grid_.cellAt(inside)) {
       const auto code = input_.map.at(*cell);
@@ -123,6 +154,11 @@ class Annotator {
     max_slope_rad_ = std::fmax(max_slope_rad_, std::abs(vertex.slope_along_rad));
   }
 
+  void spend(const TurnPrice& price, double times) {
+    energy_J_ += price.energy_J * times;
+    time_s_ += price.time_s * times;
+  }
+
   double elevation(Point p) const {
     if (!input_.elevation_m) return kNotKnown;
     return maps::elevationAt(*input_.elevation_m, p).value_or(kNotKnown);
@@ -130,10 +166,30 @@ class Annotator {
 
   const AnnotationInput& input_;
   const maps::Grid& grid_;
+  Motion how_;
   costmap::DriveState state_;  // of the cell looked at last
   double energy_J_ = 0.0, time_s_ = 0.0, hazard_ = 0.0, length_m_ = 0.0, max_slip_ = 0.0,
          max_slope_rad_ = 0.0;
 };
+
+void driveAlong(const PosePath& drive, const costmap::CostGrid& map, Annotator& annotator) {
+  Pose pose = drive.start;
+  int last = 0;
+  for (const PosePath::Leg& leg : drive.legs) {
+    const int now = direction(leg);
+    if (now * last < 0) annotator.cusp();
+    if (now != 0) last = now;
+    if (leg.turn_rad != 0.0) annotator.stand(pose, leg.turn_rad);
+    const auto poses = chords({.start = pose, .legs = {leg}}, map);
+    for (std::size_t i = 1; i < poses.size() && leg.turn_rad == 0.0; ++i) {
+      annotator.drive({poses[i - 1].place, poses[i].place},
+                      {.reverse = now < 0, .curvature_1_m = leg.arc.curvature_1_m});
+      if (leg.arc.curvature_1_m != 0.0)
+        annotator.turn(poses[i].heading_rad - poses[i - 1].heading_rad, poses[i - 1].place);
+    }
+    pose = poses.back();
+  }
+}
 
 }  // namespace
 
@@ -149,10 +205,13 @@ Route annotated(const Plan& plan, const AnnotationInput& input) {
   route.summary.planner = input.planner;
   if (plan.points.empty()) return route;
   Annotator annotator(input);
-  for (std::size_t i = 1; i < plan.points.size(); ++i) annotator.drive({plan.points[i - 1], plan.points[i]});
+  driveAlong(plan.drive, input.map, annotator);
+  for (std::size_t i = 1; i < plan.points.size() && plan.drive.legs.empty(); ++i)
+    annotator.drive({plan.points[i - 1], plan.points[i]});
   annotator.arrive(plan.points.back());
   route.summary = annotator.summary();
   route.summary.planner = input.planner;
+  if (!plan.drive.legs.empty()) route.summary.drive = shape(plan.drive);
   route.summary.cost = plan.cost_J;
   route.summary.lower_bound = plan.lower_bound_J;
   route.summary.gap = gapOf(plan.cost_J, plan.lower_bound_J);

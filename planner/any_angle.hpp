@@ -2,35 +2,53 @@
 
 #include <vector>
 
-#include <maps/grid.hpp>
-#include <planner/motion_cost.hpp>
-#include <planner/stop_check.hpp>
+#include <planner/corridor_search.hpp>
+#include <planner/short_cut.hpp>
+#include <planner/station_shift.hpp>
+#include <planner/window_memo.hpp>
 
 namespace talus::planner {
 
-/// How hard a route is refined.
+/// How hard a route is refined. Distances in cells.
 struct RefineOptions {
+  double short_cut_cells = 8.0;  ///< how far apart the ends of short cuts lie along the route
   double coarsest_cells =
-      64.0;                   ///< distance of the first stations along the route; halves from round to round
-  double finest_cells = 0.5;  ///< the last
-  int candidates = 8;         ///< places to each side of a station, an eighth of the stations' distance apart
-  int swing = 3;              ///< most steps sideways from one station to the next
-  int repeats = 1;            ///< rounds at each distance
+      128.0;                   ///< distance of the first stations along the route; halves from round to round
+  double finest_cells = 4.0;   ///< the last
+  ShiftOptions shift{};        ///< places beside the stations
+  CorridorOptions corridor{};  ///< search over cell edges beside what the stations found
+  int slides = 4;              ///< rounds of moving turns along cell edges
 };
 
-/// A route of fewer, better turns: never dearer than the one given, the first and last points kept, every
-/// motion allowed.
+/// Makes routes of fewer, better turns: never dearer than the one given, the first and last points kept,
+/// every motion allowed.
 ///
-/// First the stretches that a straight motion does cheaper are cut short, by dynamic programming over all
-/// pairs of some hundred points. Then, from coarse to fine, stations are set along the route with places to
-/// both sides of each, and dynamic programming picks a place at every station; between two stations the
-/// present route may be kept, so that no round makes it worse. All costs are exact, by MotionCost. Ours, not
-/// from the literature. Ends early, with the best so far, when `stop` says so. The route given must be
-/// allowed.
-std::vector<maps::Point> refined(const MotionCost& cost, std::vector<maps::Point> route,
-                                 const RefineOptions& options = {}, const StopCheck& stop = {});
+/// First the stretches that a straight motion does cheaper are cut short. Then, from coarse to fine, places
+/// beside stations are chosen; then the cheapest way over points of the cells' edges near the route is
+/// searched and its turns are slid along those edges. All by dynamic programming, costs exact by MotionCost.
+/// The last part works window by window: on several threads, and only once on the same window of the same
+/// ground, so a route that changed in part is searched in part. The answer depends on neither. Ours, not from
+/// the literature.
+class Refiner {
+ public:
+  explicit Refiner(const RefineOptions& options = {}) : options_(options) {}
 
-/// The same route without the points that a straight motion can leave out at no cost.
-std::vector<maps::Point> withoutIdleTurns(const MotionCost& cost, const std::vector<maps::Point>& route);
+  /// The route given must be allowed. Ends early, with the best so far, when `stop` says so.
+  Polyline operator()(const MotionCost& cost, Polyline route, int threads = 1, const StopCheck& stop = {});
+
+  /// The ground changed between two opposite corners / altogether.
+  void forget(const Segment& corners) { memo_.forget(corners); }
+  void clear() { memo_.clear(); }
+
+ private:
+  Polyline acrossEdges(const MotionCost& cost, const Polyline& window) const;
+
+  RefineOptions options_;
+  WindowMemo memo_;
+};
+
+/// One route, once.
+Polyline refined(const MotionCost& cost, Polyline route, const RefineOptions& options = {},
+                 const StopCheck& stop = {});
 
 }  // namespace talus::planner

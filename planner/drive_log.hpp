@@ -1,11 +1,8 @@
 #pragma once
 
-#include <cstdint>
-#include <string>
 #include <vector>
 
 #include <planner/rehearsal.hpp>
-#include <terramech/rover.hpp>
 
 namespace talus::planner {
 
@@ -25,11 +22,6 @@ class DriveLog {
   const std::vector<DriveStep>& steps() const noexcept { return steps_; }
 
   PredictionErrors errors() const;
-
-  /// What the rover's sensors read of every wheel about every metre, as a telemetry CSV: slip within 0.02,
-  /// torque 5 %, sinkage 3 %, pitch exactly. pass_index: how often the ground was driven, this wheel
-  /// included.
-  std::string telemetry(const terramech::Rover& rover, std::uint64_t seed) const;
 
  private:
   std::vector<DriveStep> steps_;

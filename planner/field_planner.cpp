@@ -103,6 +103,7 @@ bool FieldPlanner::prepareEdges(const Problem& problem, const StopCheck& stop) {
   if (edges_ && (edges_->mapPointer() == problem.map || repairTo(problem))) return true;
   field_.reset();
   edges_.reset();
+  refine_.clear();
   auto edges = std::make_shared<EdgeLayer>(problem.map, unitsFor(*problem.map), problem.threads, stop);
   if (!edges->complete()) return false;
   edges_ = std::move(edges);
@@ -117,6 +118,7 @@ bool FieldPlanner::repairTo(const Problem& problem) {
   if (!units.extends(edges_->units())) return false;
   const auto changed = changedCells(old, newer);
   edges_->update(problem.map, units, changed.value_or(CellBox{}));
+  if (changed) refine_.forget({newer.grid().centre(changed->first), newer.grid().centre(changed->last)});
   if (!changed || !field_) return true;
   if (fieldGoals(MotionCost(problem.map), field_goal_, field_tolerance_m_) == field_goals_)
     field_->repair(*changed);
@@ -149,7 +151,7 @@ Plan FieldPlanner::planLeg(const Problem& problem, const Leg& leg, const StopChe
   const GridLink* link = bestLink(links, *field_);
   if (!link) return ended(RouteStatus::NoRoute, noWay(*edges_, leg.from, leg.to));
   const auto rough = throughCentres(cost, leg.from, field_->path(link->cell), leg.to);
-  Plan plan{RouteStatus::Found, {}, refined(cost, rough, refine_, stop), 0.0, 0.0};
+  Plan plan{RouteStatus::Found, {}, refine_(cost, rough, problem.threads, stop), 0.0, 0.0};
   plan.cost_J = cost.along(plan.points);
   const Segment ends{leg.from, leg.to};
   const double bound_J = problem.prove ? bound_(problem.map, ends, leg.tolerance_m, stop)

@@ -38,7 +38,7 @@ class FieldPlanner {
   bool repairTo(const Problem& problem);
   bool prepareField(const MotionCost& cost, const Leg& leg);
 
-  RefineOptions refine_;
+  Refiner refine_;
   LowerBound bound_;
   std::shared_ptr<EdgeLayer> edges_;
   std::optional<CostToGo> field_;

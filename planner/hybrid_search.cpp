@@ -6,21 +6,28 @@
 #include <vector>
 
 #include <planner/hybrid_search.hpp>
+#include <planner/improvable_region.hpp>
+#include <planner/motion_set.hpp>
 #include <planner/pose_shortcut.hpp>
 #include <planner/pose_table.hpp>
+#include <planner/route_check.hpp>
 
 namespace talus::planner {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kJoint_cells = 4.0;  // between the joints that shortening looks at
+constexpr float kClosed = -std::numeric_limits<float>::infinity();
+constexpr std::uint64_t kNever = std::numeric_limits<std::uint64_t>::max();
+constexpr std::uint32_t kNone = 0xffffffff;
 
 struct Node {
-  Pose pose;
-  PosePath::Leg leg;  // that led here
-  std::uint32_t parent = PoseTable::kNone;
-  int direction = 0;  // of travel: +1 forward, -1 reverse, 0 not moved yet
-  double cost = kInfinity;
-  bool closed = false;
+  maps::Point place;
+  float cost = 0.0F;
+  const MotionSet::Motion* motion = nullptr;  // that led here; null at the start
+  std::uint32_t parent = kNone;
+  std::int16_t heading = 0;   // by its number
+  std::int8_t direction = 0;  // of travel: +1 forward, -1 reverse, 0 not moved yet
 };
 
 struct Queued {
@@ -31,29 +38,6 @@ struct Queued {
   }
 };
 
-// Motions tried from every pose.
-std::vector<PosePath::Leg> motions(const Kinematics& kinematics, const HybridOptions& options,
-                                   double resolution_m) {
-  const double step = options.step_cells * resolution_m, bin = 2.0 * M_PI / options.headings;
-  std::vector<PosePath::Leg> legs{{{step, 0.0}, 0.0}};
-  if (kinematics.turning_radius_m > 0.0) {
-    for (const double curvature :
-         {1.0 / kinematics.turning_radius_m, 1.0 / (3.0 * kinematics.turning_radius_m)}) {
-      const double bins = std::clamp(std::round(step * curvature / bin), 1.0, options.headings / 4.0);
-      for (const double side : {1.0, -1.0}) legs.push_back({{bins * bin / curvature, side * curvature}, 0.0});
-    }
-  }
-  if (kinematics.may_reverse)
-    for (std::size_t k = 0, count = legs.size(); k < count; ++k) {
-      legs.push_back(legs[k]);
-      legs.back().arc.length_m *= -1.0;
-    }
-  if (kinematics.turning_radius_m <= 0.0)
-    for (const int bins : {1, 3, 9})
-      for (const double side : {1.0, -1.0}) legs.push_back({{}, side * bins * bin});
-  return legs;
-}
-
 // One search; HybridSearch keeps what outlives it.
 class Search {
  public:
@@ -63,67 +47,91 @@ class Search {
         field_(field),
         motion_cost_(problem.map),
         cost_(motion_cost_, problem.kinematics),
-        motions_(motions(problem.kinematics, options, problem.map->grid().resolution_m)) {}
+        motions_(*problem.map, problem.kinematics,
+                 {.headings = options.headings,
+                  .step_cells = options.step_cells,
+                  .offset_rad = problem.start_heading_rad.value_or(0.0)}) {}
 
   RouteStatus run() {
     begin();
     while (!open_.empty()) {
       const Queued next = open_.top();
-      if (next.estimate >= best_cost_) return RouteStatus::Found;
+      if (next.estimate >= best_cost_ || expanded_ >= last_) return RouteStatus::Found;
       open_.pop();
-      if (nodes_[next.node].closed) continue;
-      if (problem_.watch.stopped()) return RouteStatus::Cancelled;
-      if (++expanded_ > options_.most_expanded)
+      if (best(nodes_[next.node]) != nodes_[next.node].cost) continue;  // a better one came later
+      if ((++expanded_ & 63) == 0 && stop_()) {
+        if (stop_.cancelled()) return RouteStatus::Cancelled;
+        return best_cost_ < kInfinity ? RouteStatus::Found : RouteStatus::TimedOut;
+      }
+      if (expanded_ > options_.most_expanded)
         return best_cost_ < kInfinity ? RouteStatus::Found : RouteStatus::TimedOut;
       expand(next.node);
     }
     return best_cost_ < kInfinity ? RouteStatus::Found : RouteStatus::NoRoute;
   }
 
-  PosePath path() const {
-    PosePath path{.start = {}, .legs = {best_finish_.rbegin(), best_finish_.rend()}};
-    std::uint32_t at = best_node_;
-    for (; nodes_[at].parent != PoseTable::kNone; at = nodes_[at].parent) path.legs.push_back(nodes_[at].leg);
-    std::reverse(path.legs.begin(), path.legs.end());
-    path.start = nodes_[at].pose;
-    return path;
-  }
+  PosePath path() const { return pathThrough(best_node_, best_finish_); }
+
+  bool checked(const PosePath& path) const { return mayBeDriven(*problem_.map, path, problem_.kinematics); }
 
   std::uint64_t expanded() const noexcept { return expanded_; }
   const PoseCost& cost() const noexcept { return cost_; }
 
  private:
+  PosePath pathThrough(std::uint32_t at, const std::vector<PosePath::Leg>& finish) const {
+    PosePath path{.start = {}, .legs = {finish.rbegin(), finish.rend()}};
+    for (; nodes_[at].motion; at = nodes_[at].parent) path.legs.push_back(nodes_[at].motion->leg);
+    std::reverse(path.legs.begin(), path.legs.end());
+    path.start = poseOf(nodes_[at]);
+    return path;
+  }
+
+  Pose poseOf(const Node& node) const noexcept { return {node.place, motions_.heading_rad(node.heading)}; }
+
   void begin() {
     const int ways = problem_.start_heading_rad ? 1 : options_.headings;
-    for (int k = 0; k < ways; ++k) {
-      const double heading = problem_.start_heading_rad.value_or(2.0 * M_PI * k / options_.headings);
-      offer({.pose = {problem_.start, heading}, .leg = {}, .cost = 0.0});
-    }
+    for (int k = 0; k < ways; ++k) offer({.place = problem_.start, .heading = static_cast<std::int16_t>(k)});
+  }
+
+  // The motion that led to a node was priced quickly; here it is held against the exact cost.
+  bool stands(const Node& node) const {
+    return !node.motion || cost_(poseOf(nodes_[node.parent]), node.motion->leg) < kInfinity;
   }
 
   void expand(std::uint32_t index) {
-    nodes_[index].closed = true;
+    if (!stands(nodes_[index])) {
+      best(nodes_[index]) = std::numeric_limits<float>::infinity();
+      return;
+    }
+    best(nodes_[index]) = kClosed;
     if (due(nodes_[index])) finish(index);
-    for (const auto& leg : motions_) {
-      const Node from = nodes_[index];
-      const Pose to = after(from.pose, leg);
-      if (!problem_.map->grid().cellAt(to.place)) continue;
-      const double cost = from.cost + cost_(from.pose, leg) + cusp(from, leg.arc);
-      if (cost < best_cost_)
-        offer({.pose = to, .leg = leg, .parent = index, .direction = direction(from, leg.arc), .cost = cost});
+    const Node from = nodes_[index];
+    for (const auto& motion : motions_.from(from.heading)) {
+      const double cost = static_cast<double>(from.cost) + motions_.quickCost(motion, from.place) +
+                          (from.direction * motion.direction < 0 ? problem_.kinematics.cusp.cost_J : 0.0);
+      if (cost >= best_cost_) continue;
+      const int way = motion.direction == 0 ? from.direction : motion.direction;
+      offer({.place = {from.place.x_m + motion.dx_m, from.place.y_m + motion.dy_m},
+             .cost = static_cast<float>(cost),
+             .motion = &motion,
+             .parent = index,
+             .heading = static_cast<std::int16_t>(motion.heading),
+             .direction = static_cast<std::int8_t>(way)});
     }
   }
 
   // Keeps the node when it is the best at its cell and heading.
   void offer(const Node& node) {
-    const auto cell = problem_.map->grid().cellAt(node.pose.place);
+    const auto cell = problem_.map->grid().cellAt(node.place);
+    if (!cell) return;
     const double rest = toGo(*cell);
-    if (node.cost + rest >= best_cost_) return;
-    std::uint32_t& at = table_[key(*cell, node.pose.heading_rad, node.direction)];
-    if (at != PoseTable::kNone && nodes_[at].cost <= node.cost) return;
-    at = static_cast<std::uint32_t>(nodes_.size());
+    const auto cost = static_cast<double>(node.cost);
+    if (cost + rest >= best_cost_) return;
+    float& least = best(node);
+    if (least <= node.cost) return;
+    least = node.cost;
+    open_.push({cost + options_.greed * rest, static_cast<std::uint32_t>(nodes_.size())});
     nodes_.push_back(node);
-    open_.push({node.cost + rest, at});
   }
 
   double toGo(maps::Cell cell) {
@@ -131,40 +139,40 @@ class Search {
     return field_.cost_J(cell).value_or(kInfinity);
   }
 
-  std::uint64_t key(maps::Cell cell, double heading, int direction) const noexcept {
-    const double turns = heading / (2.0 * M_PI);
-    const auto bin = static_cast<std::uint64_t>((turns - std::floor(turns)) * options_.headings + 0.5) %
-                     static_cast<std::uint64_t>(options_.headings);
-    const std::uint64_t way = problem_.kinematics.cusp_cost_J > 0.0 && direction < 0 ? 1 : 0;
-    return (problem_.map->grid().index(cell) * static_cast<std::uint64_t>(options_.headings) + bin) * 2 + way;
-  }
-
-  static int direction(const Node& from, const Arc& arc) noexcept {
-    return arc.length_m == 0.0 ? from.direction : arc.length_m > 0.0 ? 1 : -1;
-  }
-
-  double cusp(const Node& from, const Arc& arc) const noexcept {
-    return from.direction * direction(from, arc) < 0 ? problem_.kinematics.cusp_cost_J : 0.0;
+  // The least cost at the node's cell and heading, by direction where changing it has a price.
+  float& best(const Node& node) {
+    const maps::Grid& grid = problem_.map->grid();
+    const bool apart = problem_.kinematics.cusp.cost_J > 0.0 && node.direction < 0;
+    return table_.at(grid.index(*grid.cellAt(node.place)),
+                     static_cast<std::size_t>(node.heading + (apart ? options_.headings : 0)));
   }
 
   // A direct curve is tried more often the nearer the goal is.
-  bool due(const Node& node) {
-    const double cells =
-        std::hypot(node.pose.place.x_m - problem_.goal.x_m, node.pose.place.y_m - problem_.goal.y_m) /
-        problem_.map->grid().resolution_m;
+  bool due(const Node& node) const {
+    const double cells = std::hypot(node.place.x_m - problem_.goal.x_m, node.place.y_m - problem_.goal.y_m) /
+                         problem_.map->grid().resolution_m;
     const auto every = static_cast<std::uint64_t>(std::clamp(cells / 4.0, 1.0, 64.0));
-    return expanded_ % every == 0 || node.parent == PoseTable::kNone;
+    return expanded_ % every == 0 || !node.motion;
   }
 
   void finish(std::uint32_t index) {
+    const maps::Point place = nodes_[index].place, goal = problem_.goal;
+    if (problem_.goal_heading_rad) return finish(index, *problem_.goal_heading_rad);
+    const double facing = std::atan2(goal.y_m - place.y_m, goal.x_m - place.x_m);
+    finish(index, facing);
+    if (problem_.kinematics.may_reverse) finish(index, facing + M_PI);
+  }
+
+  void finish(std::uint32_t index, double goal_heading_rad) {
     const Node& node = nodes_[index];
-    const double facing =
-        std::atan2(problem_.goal.y_m - node.pose.place.y_m, problem_.goal.x_m - node.pose.place.x_m);
-    const Pose goal{problem_.goal, problem_.goal_heading_rad.value_or(facing)};
-    PosePath rest{.start = node.pose, .legs = connection(node.pose, goal, problem_.kinematics)};
-    const double cost =
-        node.cost + cost_(rest) + (rest.legs.empty() ? 0.0 : cusp(node, rest.legs.front().arc));
-    if (cost >= best_cost_) return;
+    PosePath rest{.start = poseOf(node), .legs = {}};
+    rest.legs = cost_.direct(rest.start, {problem_.goal, goal_heading_rad});
+    const bool turns = !rest.legs.empty() && node.direction * direction(rest.legs.front()) < 0;
+    const double so_far = static_cast<double>(node.cost);
+    const double cost = so_far + cost_(rest) + (turns ? problem_.kinematics.cusp.cost_J : 0.0);
+    if (cost >= best_cost_ || !checked(pathThrough(index, rest.legs))) return;
+    const bool good = cost - so_far <= options_.good * toGo(*problem_.map->grid().cellAt(node.place));
+    if (good && last_ == kNever) last_ = expanded_ + options_.improve;
     best_cost_ = cost;
     best_node_ = index;
     best_finish_ = std::move(rest.legs);
@@ -172,15 +180,16 @@ class Search {
 
   const PoseProblem& problem_;
   const HybridOptions& options_;
-  StopCheck stop_{problem_.watch};
+  StopCheck stop_{problem_.watch, problem_.time_limit_s};
   CostToGo& field_;
   MotionCost motion_cost_;
   PoseCost cost_;
-  std::vector<PosePath::Leg> motions_;
+  MotionSet motions_;
   std::vector<Node> nodes_;
-  PoseTable table_;
+  PoseTable table_{problem_.map->grid().size(), static_cast<std::size_t>(2 * options_.headings)};
   std::priority_queue<Queued> open_;
   std::uint64_t expanded_ = 0;
+  std::uint64_t last_ = kNever;
   double best_cost_ = kInfinity;
   std::uint32_t best_node_ = 0;
   std::vector<PosePath::Leg> best_finish_;
@@ -206,6 +215,12 @@ std::string whyNot(RouteStatus status) {
 }
 
 }  // namespace
+
+bool mayBeDriven(const costmap::CostGrid& map, const PosePath& path, const Kinematics& kinematics) {
+  std::vector<maps::Point> points;
+  for (const Pose& pose : chords(path, map)) points.push_back(pose.place);
+  return violations(map, path, kinematics.turning_radius_m).empty() && violations(map, points).empty();
+}
 
 HybridSearch::HybridSearch(const HybridOptions& options) : options_(options) {
   if (options.headings < 8)
@@ -247,7 +262,11 @@ PosePlan HybridSearch::plan(const PoseProblem& problem) {
     plan.reason = whyNot(plan.status);
     return plan;
   }
-  plan.path = shortened(search.path(), search.cost());
+  plan.path = search.path();
+  PosePath shorter = shortened(plan.path, search.cost(),
+                               {.joint_m = kJoint_cells * problem.map->grid().resolution_m,
+                                .cheapest_J_per_m = cheapestMetre_J(*problem.map)});
+  if (search.checked(shorter)) plan.path = std::move(shorter);
   plan.cost_J = search.cost()(plan.path);
   return plan;
 }

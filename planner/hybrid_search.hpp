@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -20,13 +21,18 @@ struct PoseProblem {
   std::optional<double> start_heading_rad;  ///< nothing: the rover may look any way
   std::optional<double> goal_heading_rad;   ///< nothing: it may arrive looking any way
   Kinematics kinematics;
+  double time_limit_s = std::numeric_limits<double>::infinity();  ///< > 0
   Watch watch;
 };
 
 /// Choices of the search.
 struct HybridOptions {
-  int headings = 72;                        ///< headings told apart at a cell, >= 8
-  double step_cells = 1.5;                  ///< length of a motion; more than sqrt 2 leaves the cell
+  int headings = 72;        ///< headings told apart at a cell, >= 8
+  double step_cells = 1.5;  ///< length of a motion; more than sqrt 2 leaves the cell
+  double greed = 1.1;  ///< weight of the cost still to go, >= 1: more finds a drive sooner, and a dearer one
+  double good =
+      1.1;  ///< a direct curve to the goal that costs at most so many times the field ends the search soon
+  std::uint64_t improve = 500;              ///< poses tried after that
   std::uint64_t most_expanded = 2'000'000;  ///< then it gives up, TimedOut
 };
 
@@ -39,11 +45,16 @@ struct PosePlan {
   std::uint64_t expanded = 0;  ///< poses whose motions were tried
 };
 
+/// Whether violations() finds nothing, along the drive's arcs and along the chords that go into files.
+bool mayBeDriven(const costmap::CostGrid& map, const PosePath& path, const Kinematics& kinematics);
+
 /// Hybrid A* (dolgov_2010) over position and heading under the one cost function: motions of constant
 /// curvature from continuous poses, one pose kept a cell and heading, led by the anisotropic cost-to-go field
-/// of the goal, and finished by shortest curves; then shortened wherever a direct curve is cheaper. The field
-/// sees slope, soil and hazards but not turning, so that little is searched in vain. Not optimal: a seed and
-/// a drivable answer. Keeps the field of the last map and goal. Deterministic. One object one thread.
+/// of the goal, and finished by shortest curves; then shortened wherever a direct curve is cheaper. Motions
+/// are priced by a few cells while they wait and held against the exact cost when their turn comes. The field
+/// sees slope, soil and hazards but not turning, so that little is searched in vain. Not optimal: a drivable
+/// answer, and a seed. What it answers stands up to violations() of route_check.hpp. Keeps the field of the
+/// last map and goal. Deterministic. One object one thread.
 class HybridSearch {
  public:
   explicit HybridSearch(const HybridOptions& options = {});

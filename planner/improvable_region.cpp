@@ -20,8 +20,16 @@ double uniform01(ImprovableRegion::Engine& engine) {
   return std::generate_canonical<double, 53>(engine);
 }
 
-// Of the curves that some cell of the map uses.
-double cheapestMetre(const costmap::CostGrid& map) {
+std::vector<double> cumulativeLength(const std::vector<maps::Point>& route) {
+  std::vector<double> metres;
+  for (std::size_t i = 0; i < route.size(); ++i)
+    metres.push_back(i == 0 ? 0.0 : metres.back() + distance(route[i - 1], route[i]));
+  return metres;
+}
+
+}  // namespace
+
+double cheapestMetre_J(const costmap::CostGrid& map) {
   std::array<bool, 256> used{};
   for (const auto& tile : map.content().tiles)
     for (const costmap::CellCode cell : tile->cells) used[cell.curve()] = true;
@@ -32,19 +40,10 @@ double cheapestMetre(const costmap::CostGrid& map) {
   return std::isfinite(cheapest) ? static_cast<double>(std::max(cheapest, 0.0F)) : 0.0;
 }
 
-std::vector<double> cumulativeLength(const std::vector<maps::Point>& route) {
-  std::vector<double> metres;
-  for (std::size_t i = 0; i < route.size(); ++i)
-    metres.push_back(i == 0 ? 0.0 : metres.back() + distance(route[i - 1], route[i]));
-  return metres;
-}
-
-}  // namespace
-
 ImprovableRegion::ImprovableRegion(Parts parts)
     : parts_(std::move(parts)),
       motion_(parts_.map),
-      cheapest_J_per_m_(cheapestMetre(*parts_.map)),
+      cheapest_J_per_m_(planner::cheapestMetre_J(*parts_.map)),
       route_metres_(cumulativeLength(parts_.known_route)) {
   if (parts_.known_route.empty()) return;
   const maps::Grid& grid = parts_.map->grid();

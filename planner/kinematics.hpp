@@ -1,6 +1,7 @@
 #pragma once
 
-#include <optional>
+#include <cstdint>
+#include <memory>
 #include <vector>
 
 #include <maps/grid.hpp>
@@ -15,28 +16,32 @@ struct Pose {
   double heading_rad = 0.0;  ///< counter-clockwise from x
 };
 
+/// What a radian of heading, or a change of direction, takes beside the path's own length.
+struct TurnPrice {
+  double cost_J = 0.0;    ///< under the one cost function, >= 0
+  double energy_J = 0.0;  ///< >= 0
+  double time_s = 0.0;    ///< >= 0
+};
+
+/// A radian of heading on one ground.
+struct TurnPrices {
+  TurnPrice on_arc;
+  TurnPrice in_place;
+};
+
 /// What bends a route. The defaults are a rover that may do anything for free.
 struct Kinematics {
-  double turning_radius_m = 0.0;  ///< smallest radius of an arc, >= 0; 0: turns in place
-  bool may_reverse = true;        ///< Reeds-Shepp when true, Dubins when false
-  double turn_cost_J_per_rad =
-      0.0;                   ///< added for each radian of heading, whether on an arc or in place, >= 0
-  double cusp_cost_J = 0.0;  ///< added where the direction of travel reverses, >= 0
-};
+  double turning_radius_m = 0.0;             ///< smallest radius of an arc, >= 0; 0: turns in place
+  bool may_reverse = true;                   ///< Reeds-Shepp when true, Dubins when false
+  TurnPrices turns{};                        ///< a radian, on ground that `turns_by_curve` leaves out
+  std::vector<TurnPrices> turns_by_curve{};  ///< by the number of the drive curve
+  TurnPrice cusp{};                          ///< a change between forward and reverse
 
-/// What turning takes beside the path's own length.
-struct TurningGround {
-  double lateral_resistance =
-      0.6;  ///< lateral force over load of a wheel dragged sideways [-]; tan(phi) in soil
-  double rolling_J_per_m = 0.0;  ///< of the whole rover on this ground, on the flat
+  /// What turning takes on ground of a curve.
+  const TurnPrices& turnsOn(std::uint8_t curve) const noexcept {
+    return curve < turns_by_curve.size() ? turns_by_curve[curve] : turns;
+  }
 };
-
-/// Kinematics of a rover whose wheels are evenly spaced on two rows. A radian of heading takes, by Steering,
-///   Skid:               mu sum_k (N_k |x_k|)     each axle dragged sideways through |x_k| (wong_2001, ch. 6,
-///   for wheels) Ackermann/AllWheel: R_m rho                  each wheel rolls a circle about the centre, rho
-///   half the diagonal
-/// An Ackermann rover of no stated radius is refused: std::invalid_argument.
-Kinematics kinematicsOf(const terramech::Rover& rover, const TurningGround& ground);
 
 /// A stretch of constant curvature.
 struct Arc {
@@ -47,8 +52,28 @@ struct Arc {
 /// The pose at the end of an arc that starts at a pose.
 Pose after(const Pose& from, const Arc& arc) noexcept;
 
-/// The shortest way between two poses for a turning radius > 0: Reeds-Shepp with reversing, else Dubins
-/// (reeds_shepp_1990, dubins_1957; both by OMPL).
+/// The shortest ways between poses for a turning radius > 0: Reeds-Shepp with reversing, else Dubins
+/// (reeds_shepp_1990, by OMPL; dubins.hpp). Immutable, safe to share between threads.
+class ShortestCurves {
+ public:
+  /// Throws std::invalid_argument for a radius that is not > 0.
+  explicit ShortestCurves(const Kinematics& kinematics);
+  ~ShortestCurves();
+  ShortestCurves(ShortestCurves&&) noexcept;
+
+  std::vector<Arc> operator()(const Pose& from, const Pose& to) const;
+
+  /// The same without reversing.
+  std::vector<Arc> forward(const Pose& from, const Pose& to) const;
+
+ private:
+  struct Spaces;
+  std::unique_ptr<const Spaces> spaces_;
+  double radius_m_;
+  bool may_reverse_;
+};
+
+/// ShortestCurves for one pair.
 std::vector<Arc> shortestArcs(const Pose& from, const Pose& to, const Kinematics& kinematics);
 
 }  // namespace talus::planner

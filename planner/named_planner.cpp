@@ -9,6 +9,7 @@ NamedPlanner::NamedPlanner(const std::string& name) {
 
 Plan NamedPlanner::plan(const Problem& problem) {
   if (settings_.planner == plannerNames().front()) return field_.plan(problem);
+  if (drives()) return drive_.plan(problem);
   return planBySampling(problem, settings_, [this](const Problem& leg) {
     return LegKnowledge{.plan = field_.plan(leg), .from_start = {}, .to_goal = {}};
   });

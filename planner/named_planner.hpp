@@ -4,19 +4,23 @@
 #include <string>
 #include <utility>
 
+#include <planner/drive_planner.hpp>
 #include <planner/field_planner.hpp>
 #include <planner/problem.hpp>
 #include <planner/sampling_planner.hpp>
 
 namespace talus::planner {
 
-/// Any planner on offer, by its name: the field, or one of OMPL's improving on the field's route. What the
-/// field worked out for a map and a goal is kept from plan to plan. Not thread-safe: one object a thread;
-/// they may share a map.
+/// Any planner on offer, by its name: the field, drives within a turning radius, or one of OMPL's improving
+/// on the field's route. What the field worked out for a map and a goal is kept from plan to plan. Not
+/// thread-safe: one object a thread; they may share a map.
 class NamedPlanner {
  public:
   /// Throws std::invalid_argument for a name that is not on offer (planner_names.hpp).
   explicit NamedPlanner(const std::string& name = {});
+
+  /// Whether it keeps headings and a turning radius.
+  bool drives() const noexcept { return settings_.planner == DrivePlanner::kName; }
 
   /// The offered name.
   const std::string& name() const noexcept { return settings_.planner; }
@@ -32,6 +36,7 @@ class NamedPlanner {
  private:
   SamplingSettings settings_;
   FieldPlanner field_;
+  DrivePlanner drive_;
 };
 
 }  // namespace talus::planner

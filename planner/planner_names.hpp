@@ -6,7 +6,8 @@
 
 namespace talus::planner {
 
-/// Names of the planners on offer, the default first: "field" and OMPL's by their class names.
+/// Names of the planners on offer, the default first: "field", "hybrid" (drives that keep a turning radius)
+/// and OMPL's by their class names.
 const std::vector<std::string>& plannerNames();
 
 /// The offered name that the user means: case, '-', '_' and blanks do not matter and "RRT*" is "RRTstar";

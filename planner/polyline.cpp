@@ -1,16 +1,24 @@
+#include <algorithm>
 #include <cmath>
 
 #include <planner/polyline.hpp>
 
 namespace talus::planner {
+namespace {
 
-std::vector<maps::Point> subdivided(const std::vector<maps::Point>& points, double longest_m) {
-  std::vector<maps::Point> result;
+double distance_m(maps::Point a, maps::Point b) noexcept {
+  return std::hypot(b.x_m - a.x_m, b.y_m - a.y_m);
+}
+
+}  // namespace
+
+Polyline subdivided(const Polyline& points, double longest_m) {
+  Polyline result;
   if (!points.empty()) result.push_back(points.front());
   for (std::size_t i = 1; i < points.size(); ++i) {
     const maps::Point a = points[i - 1];
     const maps::Point b = points[i];
-    const int parts = static_cast<int>(std::ceil(std::hypot(b.x_m - a.x_m, b.y_m - a.y_m) / longest_m));
+    const int parts = static_cast<int>(std::ceil(distance_m(a, b) / longest_m));
     for (int k = 1; k < parts; ++k) {
       const double t = static_cast<double>(k) / parts;
       result.push_back({a.x_m + t * (b.x_m - a.x_m), a.y_m + t * (b.y_m - a.y_m)});
@@ -18,6 +26,60 @@ std::vector<maps::Point> subdivided(const std::vector<maps::Point>& points, doub
     result.push_back(b);
   }
   return result;
+}
+
+double length_m(const Polyline& points) noexcept {
+  double sum = 0.0;
+  for (std::size_t i = 1; i < points.size(); ++i) sum += distance_m(points[i - 1], points[i]);
+  return sum;
+}
+
+std::vector<Polyline> cutFromEnd(const Polyline& points, double piece_m, double offset_m) {
+  double before_m = length_m(points);  // of the way not walked yet
+  const double shortest_m = piece_m / 2;
+  std::vector<Polyline> backwards{{points.back()}};
+  double walked_m = 0.0, next_m = offset_m;
+  for (std::size_t i = points.size() - 1; i-- > 0;) {
+    const maps::Point from = points[i + 1], to = points[i];
+    const double leg_m = distance_m(from, to);
+    for (; walked_m + leg_m > next_m && before_m - (next_m - walked_m) > shortest_m; next_m += piece_m) {
+      const double share = (next_m - walked_m) / leg_m;
+      const maps::Point cut{from.x_m + share * (to.x_m - from.x_m), from.y_m + share * (to.y_m - from.y_m)};
+      backwards.back().push_back(cut);
+      backwards.push_back({cut});
+    }
+    backwards.back().push_back(to);
+    walked_m += leg_m;
+    before_m -= leg_m;
+  }
+  for (Polyline& piece : backwards) std::reverse(piece.begin(), piece.end());
+  std::reverse(backwards.begin(), backwards.end());
+  return backwards;
+}
+
+std::pair<Polyline, Polyline> splitAt(const Polyline& points, double left_m) {
+  Polyline behind{points.back()};
+  for (std::size_t i = points.size() - 1; i-- > 0; left_m -= distance_m(points[i + 1], points[i])) {
+    const maps::Point from = points[i + 1], to = points[i];
+    const double leg_m = distance_m(from, to);
+    if (left_m >= leg_m && i > 0) {
+      behind.push_back(to);
+      continue;
+    }
+    const double share = leg_m > 0.0 ? std::min(left_m / leg_m, 1.0) : 0.0;
+    const maps::Point cut{from.x_m + share * (to.x_m - from.x_m), from.y_m + share * (to.y_m - from.y_m)};
+    behind.push_back(cut);
+    Polyline before(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+    before.push_back(cut);
+    std::reverse(behind.begin(), behind.end());
+    return {before, behind};
+  }
+  return {points, points};
+}
+
+void append(Polyline& points, const Polyline& piece) {
+  for (const maps::Point p : piece)
+    if (points.empty() || !(points.back() == p)) points.push_back(p);
 }
 
 }  // namespace talus::planner

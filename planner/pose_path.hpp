@@ -1,9 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <planner/kinematics.hpp>
 #include <planner/motion_cost.hpp>
+#include <planner/route.hpp>
 
 /// Routes in position and heading: poses joined by arcs, priced and sampled.
 namespace talus::planner {
@@ -23,14 +25,10 @@ struct PosePath {
 /// The pose after a leg.
 Pose after(const Pose& from, const PosePath::Leg& leg) noexcept;
 
-/// The shortest way between two poses: shortestArcs(), or turn, drive straight, turn for a rover that turns
-/// in place (in reverse when that turns less and is allowed).
-std::vector<PosePath::Leg> connection(const Pose& from, const Pose& to, const Kinematics& kinematics);
-
 /// The price of drives on one map for one rover's kinematics: MotionCost along chords no longer than half a
 /// cell and bending no more than 0.1 rad, plus turning and cusps. Driving in reverse costs what driving that
 /// way costs: the rover is taken as symmetric. Turning in place needs every heading on the way to be allowed.
-/// Not thread-safe to change; const use is.
+/// Immutable; safe to share between threads.
 class PoseCost {
  public:
   PoseCost(const MotionCost& cost, const Kinematics& kinematics);
@@ -41,29 +39,37 @@ class PoseCost {
   /// Joules of a drive, cusps counted; infinite when any part is not allowed.
   double operator()(const PosePath& path) const noexcept;
 
+  /// The shortest way between two poses: ShortestCurves, or turn, drive straight, turn for a rover that turns
+  /// in place (in reverse when that turns less and is allowed). `forward`: without reversing.
+  std::vector<PosePath::Leg> direct(const Pose& from, const Pose& to, bool forward = false) const;
+
   const Kinematics& kinematics() const noexcept { return kinematics_; }
+  const MotionCost& motion() const noexcept { return cost_; }
 
  private:
   double arc(const Pose& from, const Arc& arc) const noexcept;
   double turnInPlace(const Pose& from, double turn_rad) const noexcept;
+  const TurnPrices& turnsAt(maps::Point place) const noexcept;
 
   const MotionCost& cost_;
   Kinematics kinematics_;
+  std::optional<ShortestCurves> curves_;  // none: turns in place
   double step_m_;
 };
+
+/// +1 forward, -1 in reverse, 0 turning in place.
+int direction(const PosePath::Leg& leg) noexcept;
 
 /// Poses along a drive at most `step_m` apart, ends of legs included.
 std::vector<Pose> sampled(const PosePath& path, double step_m);
 
-/// What a controller would notice.
-struct PosePathShape {
-  double length_m = 0.0;
-  double turned_rad = 0.0;  ///< sum of all changes of heading
-  double max_curvature_1_m = 0.0;
-  int cusps = 0;  ///< changes between forward and reverse
-  int turns_in_place = 0;
-};
+/// The poses between which PoseCost drives straight: ends of straight legs, chords of arcs.
+std::vector<Pose> chords(const PosePath& path, const costmap::CostGrid& map);
 
-PosePathShape shape(const PosePath& path) noexcept;
+/// What a controller would notice.
+DriveShape shape(const PosePath& path) noexcept;
+
+/// Length along the map plane.
+double length_m(const PosePath& path) noexcept;
 
 }  // namespace talus::planner

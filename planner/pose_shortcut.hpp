@@ -4,8 +4,14 @@
 
 namespace talus::planner {
 
-/// The same drive with every stretch replaced by the direct curve between its ends where that is cheaper
-/// under the exact cost; never dearer than what came in. The longest stretches are tried first.
-PosePath shortened(const PosePath& path, const PoseCost& cost);
+struct ShortenOptions {
+  double joint_m = 1.0;           ///< joints of the drive lie no further apart, > 0
+  double cheapest_J_per_m = 0.0;  ///< no metre costs less; tells which curves need not be priced
+};
+
+/// The same drive with stretches replaced by the direct curve between their ends where that is cheaper under
+/// the exact cost: dynamic programming over joints along it, repeated while it gains. Never dearer than what
+/// came in.
+PosePath shortened(const PosePath& path, const PoseCost& cost, const ShortenOptions& options);
 
 }  // namespace talus::planner

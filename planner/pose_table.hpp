@@ -2,49 +2,33 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace talus::planner {
 
-/// From a lattice key to the number of the best node found there. Grows by doubling; open addressing, since a
-/// search asks it once a motion.
+/// The least cost found so far at every cell and heading of a lattice; headings of a cell lie side by side,
+/// since a search asks for neighbours. Cells cost four bytes until they are reached.
 class PoseTable {
  public:
-  static constexpr std::uint32_t kNone = 0xffffffff;
+  PoseTable(std::size_t cells, std::size_t headings) : block_(cells, 0), headings_(headings) {
+    costs_.resize(headings);  // block 0: of no cell
+  }
 
-  PoseTable() : slots_(1U << 16) {}
-
-  /// The number stored under the key, kNone when new; the reference is valid until the next call.
-  std::uint32_t& operator[](std::uint64_t key) {
-    if (2 * ++used_ > slots_.size()) grow();
-    Slot& slot = find(key + 1);
-    if (slot.key != 0) --used_;
-    slot.key = key + 1;
-    return slot.value;
+  /// Infinite until set; the reference is valid until the next call.
+  float& at(std::size_t cell, std::size_t heading) {
+    std::uint32_t& block = block_[cell];
+    if (block == 0) {
+      block = static_cast<std::uint32_t>(costs_.size() / headings_);
+      costs_.resize(costs_.size() + headings_, std::numeric_limits<float>::infinity());
+    }
+    return costs_[block * headings_ + heading];
   }
 
  private:
-  struct Slot {
-    std::uint64_t key = 0;  // key + 1; 0 is empty
-    std::uint32_t value = kNone;
-  };
-
-  Slot& find(std::uint64_t key) {
-    const std::size_t mask = slots_.size() - 1;
-    std::size_t at = (key * 0x9e3779b97f4a7c15ULL >> 20) & mask;
-    while (slots_[at].key != 0 && slots_[at].key != key) at = (at + 1) & mask;
-    return slots_[at];
-  }
-
-  void grow() {
-    std::vector<Slot> old(2 * slots_.size());
-    old.swap(slots_);
-    for (const Slot& slot : old)
-      if (slot.key != 0) find(slot.key) = slot;
-  }
-
-  std::vector<Slot> slots_;
-  std::size_t used_ = 0;
+  std::vector<std::uint32_t> block_;  // of each cell, 0: none yet
+  std::size_t headings_;
+  std::vector<float> costs_;
 };
 
 }  // namespace talus::planner

@@ -3,11 +3,13 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <costmap/cost_grid.hpp>
 #include <maps/grid.hpp>
+#include <planner/pose_path.hpp>
 #include <planner/route.hpp>
 #include <talus.hpp>
 
@@ -26,6 +28,10 @@ struct Problem {
   bool prove =
       true;  ///< also work out the best lower bound, for about the time of a field; else a simple one
   Watch watch{};
+  std::optional<double>
+      start_heading_rad{};  ///< which way the rover looks; for planners of drives, any if none
+  std::optional<double> goal_heading_rad{};  ///< the same on arrival
+  Kinematics kinematics{};                   ///< what planners of drives keep
 };
 
 /// What a planner answers: the bare polyline; annotated() makes a Route of it.
@@ -35,6 +41,7 @@ struct Plan {
   std::vector<maps::Point> points;  ///< start, turns, goal
   double cost_J = std::numeric_limits<double>::infinity();  ///< exact, by MotionCost
   double lower_bound_J = 0.0;                               ///< no route costs less
+  PosePath drive{};  ///< of planners of drives: `points` are its chords; no legs for the others
 };
 
 }  // namespace talus::planner

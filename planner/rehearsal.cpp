@@ -102,9 +102,9 @@ class Drive {
       const TrueWorld::Step step = world_.drive(
           {.place = here_, .heading = heading, .gradient = gradient(heading), .ruts = &ruts_});
       result_.max_slip = std::max(result_.max_slip, step.slip);
-      if (step.stuck && !options_.senses) return Leg::Stuck;
       const auto reason = alarm(step, heading);
-      const bool learned = look(step, heading, reason.has_value());
+      const bool learned = look(step, heading, step.stuck || reason);
+      if (step.stuck && !options_.senses) return Leg::Stuck;
       if (reason) return retreat(step, heading, *reason);
       if (learned && routeTurnedDear()) return retreat(step, heading, "ground turned out weaker");
       report(step, heading, std::min(left, options_.step_m));
@@ -268,31 +268,43 @@ class Drive {
     if (options_.on_learned) options_.on_learned(result_.time_s);
   }
 
-  // Reads the wheels, if it is time or must be now, and puts it into the map. True when the map changed.
-  bool look(const TrueWorld::Step& step, const Direction& heading, bool now) {
-    if (!options_.senses || (!now && since_look_m_ < options_.look_m)) return false;
-    since_look_m_ = 0.0;
+  // What the wheels read, noise and all.
+  std::vector<costmap::WheelReading> readings(const TrueWorld::Step& step, const Direction& heading) {
     const double radius_m = map_.model().rover().wheel.radius_m;
     std::normal_distribution<double> noise;
-    std::vector<costmap::ClassReading> readings;
+    std::vector<costmap::WheelReading> out;
     const double slip = std::clamp(step.slip + kSlipNoise * noise(random_), -1.0, 1.0);
     for (const TrueWorld::WheelState& wheel : step.wheels) {
       const double torque = wheel.forces.torque * (1.0 + kTorqueNoise * noise(random_));
       const double sinkage = wheel.forces.sinkage * (1.0 + kSinkageNoise * noise(random_));
-      const auto cell = map_.grid().cellAt(wheel.place);
-      if (!cell || map_.classIndex(*cell) < 0) continue;
-      readings.push_back({map_.classIndex(*cell),
-                          {.time_s = result_.time_s,
-                           .place = wheel.place,
-                           .load_N = wheel.load_N,
-                           .slip = slip,
-                           .torque_Nm = torque * wheel.load_N * radius_m,
-                           .sinkage_m = sinkage * radius_m,
-                           .gradient = step.stuck ? std::nan("") : gradient(heading),
-                           .drawbar_pull_N = std::nan(""),
-                           .pass = wheel.passes + 1}});
+      out.push_back({.time_s = result_.time_s,
+                     .place = wheel.place,
+                     .load_N = wheel.load_N,
+                     .slip = slip,
+                     .torque_Nm = torque * wheel.load_N * radius_m,
+                     .sinkage_m = sinkage * radius_m,
+                     .gradient = step.stuck ? std::nan("") : gradient(heading),
+                     .drawbar_pull_N = std::nan(""),
+                     .pass = wheel.passes + 1});
+      if (options_.record)
+        result_.records.push_back({out.size() - 1, std::atan2(heading.y, heading.x), out.back()});
     }
-    for (const auto& seen : observer_.observe(readings))
+    return out;
+  }
+
+  // Reads the wheels, if it is time or must be now, and puts it into the map. True when the map changed.
+  bool look(const TrueWorld::Step& step, const Direction& heading, bool now) {
+    const bool blind = !options_.senses && !options_.record;
+    if (blind || (!now && since_look_m_ < options_.look_m)) return false;
+    since_look_m_ = 0.0;
+    const std::vector<costmap::WheelReading> read = readings(step, heading);
+    if (!options_.senses) return false;
+    std::vector<costmap::ClassReading> together;
+    for (const costmap::WheelReading& reading : read) {
+      const auto cell = map_.grid().cellAt(reading.place);
+      if (cell && map_.classIndex(*cell) >= 0) together.push_back({map_.classIndex(*cell), reading});
+    }
+    for (const auto& seen : observer_.observe(together))
       if (seen) map_.learn(*seen);
     map_.publish();
     if (options_.on_learned) options_.on_learned(result_.time_s);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <costmap/traversability_map.hpp>
+#include <costmap/wheel_observation.hpp>
 #include <planner/true_world.hpp>
 #include <talus.hpp>
 
@@ -51,6 +52,7 @@ struct RehearsalOptions {
   int max_replans = 60;     ///< then it gives up
   std::uint64_t seed = 1;   ///< of the sensors' noise
   std::function<void(const DriveStep&)> on_step = {};  ///< called for every step that leads on
+  bool record = false;      ///< keep what the wheels read
   std::function<void(double time_s)> on_learned = {};  ///< called after the map changed
   Watch watch = {};
 };
@@ -71,6 +73,13 @@ struct DriveEvent {
   std::vector<maps::Point> route;  ///< where it planned one
 };
 
+/// What one wheel read at one look, noise and all.
+struct WheelRecord {
+  std::size_t wheel = 0;  ///< the foremost first
+  double heading_rad = 0.0;
+  costmap::WheelReading reading;
+};
+
 /// What came of it.
 struct Rehearsal {
   Outcome outcome = Outcome::GaveUp;
@@ -82,6 +91,7 @@ struct Rehearsal {
   int alarms = 0;  ///< times that it stopped and backed out
   std::vector<TrackPoint> track;
   std::vector<DriveEvent> events;
+  std::vector<WheelRecord> records;  ///< where RehearsalOptions::record asks for them
 };
 
 /// Drives a rover over a true world with what a map believes, changing the map as it learns. A rover that

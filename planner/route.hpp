@@ -1,6 +1,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -43,6 +44,17 @@ struct RouteVertex {
   double energy_J = 0.0;             ///< from the start to here
   double time_s = 0.0;               ///< from the start to here
   double immobilisation_risk = 0.0;  ///< probability of getting stuck between the start and here, 0 to 1
+  bool reverse = false;        ///< drives on backwards: heading_rad is where it looks, not where it goes
+  double curvature_1_m = 0.0;  ///< of the motion that leaves the vertex, left > 0
+  double turn_rad = 0.0;       ///< turned in place here before going on, left > 0
+};
+
+/// What a controller would notice of a drive.
+struct DriveShape {
+  int cusps = 0;  ///< changes between forward and reverse
+  int turns_in_place = 0;
+  double turned_rad = 0.0;         ///< all changes of heading
+  double max_curvature_1_m = 0.0;  ///< never more than one over the turning radius
 };
 
 /// A route as a whole.
@@ -56,6 +68,7 @@ struct RouteSummary {
   double lower_bound = 0.0;    ///< no route between these places costs less, same unit as cost
   double gap = 0.0;            ///< cost / lower_bound - 1 [-]: the route is at most so far from the best
   std::string planner;         ///< name of the planner that found it
+  std::optional<DriveShape> drive{};  ///< of routes that keep a turning radius
 };
 
 /// A route with everything a report or a controller asks for.

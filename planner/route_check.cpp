@@ -15,6 +15,8 @@ using maps::Point;
 
 // Nearer to a corner or an edge than this share of a cell counts as on it.
 constexpr double kOn = 1e-6;
+// Headings asked for along an arc lie no further apart.
+constexpr double kApart_rad = 0.01;
 
 class Checker {
  public:
@@ -48,9 +50,51 @@ class Checker {
     if (map_.at(*cell).curve() >= map_.cost().curves().size()) enter(*cell, p);
   }
 
+  // An arc: straight when it does not bend.
+  void arc(const Pose& from, const Arc& arc) {
+    const Pose end = after(from, arc);
+    if (std::abs(arc.curvature_1_m * arc.length_m) < 1e-9) return segment(from.place, end.place);
+    const std::vector<double> cuts = crossings(from, arc);
+    const double way = arc.length_m > 0.0 ? 0.0 : M_PI;
+    for (std::size_t i = 1; i < cuts.size(); ++i) {
+      if ((cuts[i] - cuts[i - 1]) * std::abs(arc.length_m) <= kOn * side_m_) continue;
+      const double bend = std::abs(arc.curvature_1_m * arc.length_m) * (cuts[i] - cuts[i - 1]);
+      const int parts = static_cast<int>(std::ceil(bend / kApart_rad)) + 1;
+      const Pose middle = after(from, Arc{arc.length_m * (cuts[i] + cuts[i - 1]) / 2, arc.curvature_1_m});
+      const auto cell = map_.grid().cellAt(middle.place);
+      if (!cell) {
+        report(std::nullopt, middle.place, "outside the map");
+        continue;
+      }
+      for (int k = 0; k < parts; ++k) {
+        const double share = cuts[i - 1] + (cuts[i] - cuts[i - 1]) * (k + 0.5) / parts;
+        look(from.heading_rad + arc.curvature_1_m * arc.length_m * share + way);
+        enter(*cell, middle.place);
+      }
+    }
+  }
+
+  void turn(const Pose& from, double turn_rad) {
+    const auto cell = map_.grid().cellAt(from.place);
+    if (!cell) return report(std::nullopt, from.place, "outside the map");
+    const int parts = static_cast<int>(std::ceil(std::abs(turn_rad) / kApart_rad));
+    for (int k = 0; k <= parts; ++k) {
+      look(from.heading_rad + turn_rad * k / std::max(1, parts));
+      enter(*cell, from.place);
+    }
+  }
+
+  void report(std::optional<Cell> cell, Point where, std::string reason) {
+    if (!found.empty() && cell == last_ && found.back().reason == reason) return;
+    last_ = cell;
+    found.push_back({where, std::move(reason)});
+  }
+
   std::vector<Violation> found;
 
  private:
+  void look(double heading_rad) noexcept { heading_ = {std::cos(heading_rad), std::sin(heading_rad)}; }
+
   static Point along(Point from, Point to, double t) noexcept {
     return {from.x_m + t * (to.x_m - from.x_m), from.y_m + t * (to.y_m - from.y_m)};
   }
@@ -76,6 +120,40 @@ class Checker {
     return cuts;
   }
 
+  // Shares of an arc at which it crosses a line between columns or rows, with both ends, sorted. With the
+  // centre of its circle at c, x = c_x + r sin(heading) and y = c_y - r cos(heading).
+  std::vector<double> crossings(const Pose& from, const Arc& arc) const {
+    const double r = 1.0 / arc.curvature_1_m, turn = arc.length_m * arc.curvature_1_m;
+    const Point centre{from.place.x_m - r * std::sin(from.heading_rad),
+                       from.place.y_m + r * std::cos(from.heading_rad)};
+    std::vector<double> cuts{0.0, 1.0};
+    const auto atHeading = [&](double heading) {
+      for (double full = std::floor((std::min(0.0, turn) - heading + from.heading_rad) / (2 * M_PI));;
+           ++full) {
+        const double turned = heading + 2 * M_PI * full - from.heading_rad;
+        if (turned > std::max(0.0, turn)) return;
+        if (turned >= std::min(0.0, turn)) cuts.push_back(turned / turn);
+      }
+    };
+    const auto lines = [&](double middle, double corner, auto headings) {
+      const double low = (middle - std::abs(r) - corner) / side_m_,
+                   high = (middle + std::abs(r) - corner) / side_m_;
+      for (double line = std::ceil(low); line <= high; line += 1.0)
+        headings(std::clamp((corner + line * side_m_ - middle) / r, -1.0, 1.0));
+    };
+    const Point& corner = map_.grid().south_west;
+    lines(centre.x_m, corner.x_m, [&](double sine) {
+      atHeading(std::asin(sine));
+      atHeading(M_PI - std::asin(sine));
+    });
+    lines(centre.y_m, corner.y_m, [&](double minus_cosine) {
+      atHeading(std::acos(-minus_cosine));
+      atHeading(-std::acos(-minus_cosine));
+    });
+    std::sort(cuts.begin(), cuts.end());
+    return cuts;
+  }
+
   // The inside of a cell, or the line between two cells, both of which then count.
   void stretch(Point middle) {
     const Point left{-heading_.y * 2 * kOn * side_m_, heading_.x * 2 * kOn * side_m_};
@@ -96,12 +174,6 @@ class Checker {
     report(cell, where, said ? costmap::toText(refusal) : "the ground refuses this heading");
   }
 
-  void report(std::optional<Cell> cell, Point where, std::string reason) {
-    if (!found.empty() && cell == last_ && found.back().reason == reason) return;
-    last_ = cell;
-    found.push_back({where, std::move(reason)});
-  }
-
   const CostGrid& map_;
   double side_m_;
   Direction heading_;
@@ -117,6 +189,25 @@ std::vector<Violation> violations(const CostGrid& map, const std::vector<Point>&
     checker.segment(route[i - 1], route[i]);
     if (i > 1) checker.touch(route[i - 1]);
     if (i + 1 < route.size()) checker.touch(route[i]);
+  }
+  return checker.found;
+}
+
+std::vector<Violation> violations(const CostGrid& map, const PosePath& drive, double turning_radius_m) {
+  Checker checker(map);
+  checker.place(drive.start.place);
+  Pose pose = drive.start;
+  for (const PosePath::Leg& leg : drive.legs) {
+    if (std::abs(leg.arc.curvature_1_m) * turning_radius_m > 1.0 + 1e-9)
+      checker.report(std::nullopt, pose.place, "an arc tighter than the turning radius");
+    if (leg.turn_rad != 0.0) {
+      if (turning_radius_m > 0.0)
+        checker.report(std::nullopt, pose.place, "a turn in place by a rover that cannot");
+      checker.turn(pose, leg.turn_rad);
+    } else {
+      checker.arc(pose, leg.arc);
+    }
+    pose = after(pose, leg);
   }
   return checker.found;
 }

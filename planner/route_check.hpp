@@ -5,6 +5,7 @@
 
 #include <costmap/cost_grid.hpp>
 #include <maps/grid.hpp>
+#include <planner/pose_path.hpp>
 
 namespace talus::planner {
 
@@ -22,5 +23,11 @@ struct Violation {
 /// MotionCost: the crossings of cell edges are sorted and the middle of each stretch is looked up. Exact, not
 /// sampled.
 std::vector<Violation> violations(const costmap::CostGrid& map, const std::vector<maps::Point>& route);
+
+/// The same of a drive, along its arcs themselves: where each crosses the lines between cells is found in
+/// closed form, and every cell is asked for headings no more than 0.01 rad apart, those passed in a turn in
+/// place included. Also reported: an arc that bends more than the radius allows.
+std::vector<Violation> violations(const costmap::CostGrid& map, const PosePath& drive,
+                                  double turning_radius_m);
 
 }  // namespace talus::planner

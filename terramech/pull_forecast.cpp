@@ -91,9 +91,9 @@ PullForecast forecastPull(const Wheel& wheel, const SoilPosterior& posterior,
     sinkage.add(at.sinkage_over_radius, 1.0);
     double best = -1e9;
     double best_slip = 0.0;
-    for (int k = 2; k <= 10; ++k) {
-      const double pull = reply(wheel, soil, {.load_N = options.load_N, .slip = 0.1 * k}).pull_over_load;
-      if (pull > best) best = pull, best_slip = 0.1 * k;
+    for (const double slip : kForecastSlips) {
+      const double pull = reply(wheel, soil, {.load_N = options.load_N, .slip = slip}).pull_over_load;
+      if (pull > best) best = pull, best_slip = slip;
     }
     most.add(best, 1.0);
     slip_of_most.add(best_slip, 1.0);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include <terramech/drawbar_pull.hpp>
 #include <terramech/soil_posterior.hpp>
 
@@ -20,6 +22,9 @@ struct PullForecast {
   Uncertain sinkage_over_radius;  ///< z/r at the reference slip
   Uncertain climbable_slope_rad;  ///< arctan of `most`
 };
+
+/// Slips among which the greatest pull is sought.
+inline constexpr std::array kForecastSlips{0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0};
 
 /// How to forecast.
 struct PullForecastOptions {

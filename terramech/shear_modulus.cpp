@@ -141,43 +141,4 @@ ModulusEstimate modulusJointly(const Wheel& wheel, std::span<const WheelSample> 
   return {.shear_modulus_m = best.at, .error = best.value, .at_bound = atBound(best.at, range)};
 }
 
-ModulusLadder::ModulusLadder(const Wheel& wheel, ModulusRange range) : wheel_(wheel), range_(range) {}
-
-double ModulusLadder::rung_m(std::size_t index) const {
-  return range_.low_m *
-         std::pow(range_.high_m / range_.low_m, static_cast<double>(index) / static_cast<double>(kRungs - 1));
-}
-
-bool ModulusLadder::add(const WheelSample& sample) {
-  if (!(sample.torque_Nm > 0.0) || !(peakShearDisplacement_m(wheel_, sample) > 0.0)) return false;
-  for (std::size_t i = 0; i < kRungs; ++i) {
-    const auto [pair, weight] = torqueWeighted(wheel_, sample, rung_m(i));
-    lines_[i].add(pair, weight);
-  }
-  return true;
-}
-
-std::size_t ModulusLadder::best() const {
-  require(lines_.front().samples(), 4);
-  std::size_t index = 0;
-  for (std::size_t i = 1; i < kRungs; ++i) {
-    if (lines_[i].relativeResidual() < lines_[index].relativeResidual()) index = i;
-  }
-  return index;
-}
-
-ModulusEstimate ModulusLadder::modulus() const {
-  const std::size_t i = best();
-  const double error = lines_[i].relativeResidual();
-  if (i == 0 || i + 1 == kRungs) return {.shear_modulus_m = rung_m(i), .error = error, .at_bound = true};
-  const double before = std::pow(lines_[i - 1].relativeResidual(), 2);
-  const double after = std::pow(lines_[i + 1].relativeResidual(), 2);
-  const double shift = 0.5 * (before - after) / (before - 2.0 * error * error + after);
-  return {.shear_modulus_m = rung_m(i) * std::pow(rung_m(1) / rung_m(0), shift), .error = error};
-}
-
-ShearStrength ModulusLadder::strength() const {
-  return lines_[best()].estimate();
-}
-
 }  // namespace talus::terramech

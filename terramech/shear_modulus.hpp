@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <span>
 
 #include <terramech/mohr_coulomb_line.hpp>
@@ -50,33 +49,5 @@ ModulusEstimate modulusByTorqueRatio(const Wheel& wheel, std::span<const WheelSa
 /// shrinking M3 and M4.
 ModulusEstimate modulusJointly(const Wheel& wheel, std::span<const WheelSample> samples,
                                ModulusRange range = {});
-
-/// The joint fit taken in sample by sample: one line per K of a fixed ladder, so memory and time are
-/// constant.
-class ModulusLadder {
- public:
-  explicit ModulusLadder(const Wheel& wheel, ModulusRange range = {});
-
-  /// Samples whose equation has no solution (nothing mobilised) are left out and counted by the caller:
-  /// returns false.
-  bool add(const WheelSample& sample);
-
-  /// K at the lowest residual, refined by a parabola through three rungs. Throws std::domain_error below four
-  /// samples.
-  ModulusEstimate modulus() const;
-
-  /// c and tan(phi) at the best rung.
-  ShearStrength strength() const;
-
- private:
-  static constexpr std::size_t kRungs = 33;
-
-  double rung_m(std::size_t index) const;
-  std::size_t best() const;
-
-  Wheel wheel_;
-  ModulusRange range_;
-  std::array<MohrCoulombLine, kRungs> lines_;
-};
 
 }  // namespace talus::terramech

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include <Eigen/Cholesky>
+#include <Eigen/QR>
 
 #include <terramech/normal_distribution.hpp>
 #include <terramech/range.hpp>
@@ -39,18 +39,30 @@ SoilVector vectorOf(const ContactSoil& s) {
   return {s.cohesion_Pa, s.friction_angle_rad, s.sinkage_exponent, s.sinkage_modulus, s.shear_modulus_m};
 }
 
-CredibleInterval interval(const std::vector<SoilDraw>& draws, double ContactSoil::*field) {
-  std::vector<std::pair<double, double>> sorted;
-  for (const SoilDraw& d : draws) sorted.emplace_back(d.soil.*field, d.weight);
-  std::ranges::sort(sorted);
-  CredibleInterval range{sorted.front().first, sorted.back().first};
+// A value of each draw, with its weight.
+using Weighted = std::vector<std::pair<double, double>>;
+
+// The value below which the share lies; `sorted` ascending.
+double quantile(const Weighted& sorted, double share) {
   double below = 0.0;
   for (const auto& [value, weight] : sorted) {
-    if (below < 0.025 && below + weight >= 0.025) range.low = value;
-    if (below < 0.975 && below + weight >= 0.975) range.high = value;
-    below += weight;
+    if ((below += weight) >= share) return value;
   }
-  return range;
+  return sorted.back().first;
+}
+
+CredibleInterval interval(const std::vector<SoilDraw>& draws, double ContactSoil::*field) {
+  Weighted sorted;
+  for (const SoilDraw& d : draws) sorted.emplace_back(d.soil.*field, d.weight);
+  std::ranges::sort(sorted);
+  return {quantile(sorted, 0.025), quantile(sorted, 0.975)};
+}
+
+double ellipse95(const SoilPosterior& p) {
+  Weighted sorted;
+  for (const SoilDraw& d : p.draws) sorted.emplace_back(strengthDistance(p, d.soil), d.weight);
+  std::ranges::sort(sorted);
+  return quantile(sorted, 0.95);
 }
 
 void summarise(SoilPosterior& p) {
@@ -71,6 +83,7 @@ void summarise(SoilPosterior& p) {
   p.mean = {mean[kCohesion], mean[kFriction], mean[kExponent], mean[kModulus],
             mean[kShear],    likeliest.c1,    likeliest.c2};
   p.effective_draws = 1.0 / squares;
+  p.ellipse_95 = ellipse95(p);
   p.cohesion_Pa = interval(p.draws, &ContactSoil::cohesion_Pa);
   p.friction_angle_rad = interval(p.draws, &ContactSoil::friction_angle_rad);
   p.shear_modulus_m = interval(p.draws, &ContactSoil::shear_modulus_m);
@@ -127,6 +140,17 @@ void checkSample(const Wheel& wheel, const WheelSample& s) {
 }
 
 }  // namespace
+
+double strengthDistance(const SoilPosterior& p, const ContactSoil& soil) {
+  const Eigen::Vector2d away(soil.cohesion_Pa - p.mean.cohesion_Pa,
+                             std::tan(soil.friction_angle_rad) - p.tan_friction);
+  const Eigen::Vector2d std = p.strength_covariance.diagonal().cwiseSqrt();
+  const Eigen::Array2d rounding = 1e-9 * Eigen::Array2d(p.mean.cohesion_Pa, p.tan_friction).abs();
+  const Eigen::Vector2d scale = (std.array() > rounding).select(std.cwiseInverse(), 0.0);
+  const Eigen::Matrix2d correlation = scale.asDiagonal() * p.strength_covariance * scale.asDiagonal();
+  const Eigen::Vector2d scaled = scale.cwiseProduct(away);
+  return scaled.dot(correlation.completeOrthogonalDecomposition().solve(scaled));
+}
 
 SoilPosterior samplePosterior(const std::vector<ClassFit>& classes, std::span<const WheelSample> samples,
                               int draws) {

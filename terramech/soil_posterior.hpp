@@ -52,6 +52,9 @@ struct SoilPosterior {
   SoilMatrix covariance = SoilMatrix::Zero();                     ///< of (c, phi, n, k, K), SI
   double tan_friction = 0.0;                                      ///< mean of tan(phi) [-]
   Eigen::Matrix2d strength_covariance = Eigen::Matrix2d::Zero();  ///< of (c [Pa], tan phi)
+  /// (x - mean)' strength_covariance^-1 (x - mean) <= this, x = (c, tan phi), holds 95 % of the
+  /// posterior. 5.99 were it Gaussian; less where the bounds of a class cut it off.
+  double ellipse_95 = 0.0;
   CredibleInterval cohesion_Pa;
   CredibleInterval friction_angle_rad;
   CredibleInterval shear_modulus_m;
@@ -62,6 +65,10 @@ struct SoilPosterior {
       0.0;  ///< mean square of the whitened residuals of the best class; about 1 when model and noise hold
   std::vector<std::string> unseen;  ///< parameters that the samples said little about, each with the reason
 };
+
+/// Squared distance of a soil from the mean in units of the posterior's covariance of (c, tan phi): compare
+/// with ellipse_95. What the prior fixes does not count.
+double strengthDistance(const SoilPosterior& posterior, const ContactSoil& soil);
 
 /// Throws std::domain_error without a sample, std::invalid_argument for a sample that is not of a driven
 /// wheel (load > 0, 0 < z < r, 0 <= slip <= 1) or options out of range.

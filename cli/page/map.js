@@ -41,6 +41,12 @@ function drawRoute(map, points, onHover) {
   const line = points.map(p => [p.y, p.x]);
   L.polyline(line, {color: "#fff", weight: 7, interactive: false}).addTo(map);
   L.polyline(line, {color: "#1b3fbf", weight: 3.5, interactive: false}).addTo(map);
+  points.forEach((p, i) => {
+    const reverse = {color: "#b3202c", weight: 3.5, interactive: false};
+    if (p.reverse && i + 1 < line.length) L.polyline([line[i], line[i + 1]], reverse).addTo(map);
+    if (p.turn || (i > 0 && !!p.reverse !== !!points[i - 1].reverse))
+      L.circleMarker(line[i], {radius: 4, color: "#b3202c", fillColor: "#b3202c", fillOpacity: 1, interactive: false}).addTo(map);
+  });
   const wide = L.polyline(line, {color: "#000", opacity: 0, weight: 34}).addTo(map);
   const dot = L.circleMarker(line[0], {radius: 8, color: "#fff", weight: 3, fillColor: "#b3202c", fillOpacity: 1,
                                        interactive: false, className: "here"});

@@ -54,15 +54,98 @@ TEST(AssessCommand, ASteeperMissionAsksForMore) {
   EXPECT_EQ(assessed({"--slope", "0.6"})[2]["category"], "dangerous");
 }
 
+constexpr const char* kSoil =
+    "soil: {name: x, cohesion_Pa: 1500, friction_angle_deg: 30, sinkage_exponent: 0.9, cohesive_modulus: 0, "
+    "frictional_modulus: 1.7e6, shear_modulus_m: 0.015}\nmodel: wong-reece\n";
+
+TEST(AssessCommand, ByAModelThePullIsTheModelsAndTheSinkageTheReading) {
+  // Property: the same soil in `talus wheel` gives the same pull, whatever torque was read.
+  const Folder folder;
+  const std::string model = folder.write("model.yaml", kSoil);
+  const json rows = assessed({"--model", model});
+  const Ran wheel =
+      runTalus({"--json", "wheel", "--soil", model, "--rover",
+                folder.write("rover.yaml",
+                             "rover: {name: r, mass_kg: 40, gravity_m_s2: 9.81, wheels: {count: 6, "
+                             "radius_m: 0.1, width_m: 0.1}, wheelbase_m: 1, track_m: 1, "
+                             "clearance_m: 0.3, centre_of_mass_height_m: 0.3, max_pitch_rad: "
+                             "0.5, max_roll_rad: 0.5, max_torque_Nm: 10, max_speed_mps: 0.1, "
+                             "turning_radius_m: 0, hotel_power_W: 5, steering: skid}\n"),
+                "--load", "80", "--slip", "0.5"});
+  ASSERT_EQ(wheel.code, 0) << wheel.err;
+  const double pull = json::parse(wheel.out)["drawbar_pull_N"].get<double>() / 80.0;
+  for (const json& row : rows) {
+    EXPECT_NEAR(row["drawbar_pull_over_load"].get<double>(), pull, 1e-5);
+    EXPECT_DOUBLE_EQ(row["std"], 0.0);
+  }
+  EXPECT_NEAR(rows[1]["sinkage_over_radius"].get<double>(), 0.4, 1e-12);
+}
+
+TEST(AssessCommand, SaysWhichFaultsOfSensorsItLeavesOut) {
+  const Folder folder;
+  const std::string drive = folder.write("drive.csv", kDrive), plain = folder.write("plain.yaml", kSoil);
+  const std::string tilted =
+      folder.write("tilted.yaml", std::string(kSoil) +
+                                      "effects:\n  - {name: load_cell_tilt, covariate: constant, channel: "
+                                      "drawbar_pull_over_load, parameters: [0.1]}\n");
+  const Ran without = runTalus({"--json", "assess", drive, "--model", plain});
+  const Ran with = runTalus({"--json", "assess", drive, "--model", tilted});
+  ASSERT_EQ(with.code, 0) << with.err;
+  EXPECT_THAT(with.err, HasSubstr("load_cell_tilt is a fault of a sensor"));
+  EXPECT_EQ(with.out, without.out);
+  EXPECT_TRUE(without.err.empty());
+}
+
+TEST(AssessCommand, ByAModelNeitherTorqueNorSinkageNeedBeRead) {
+  const Folder folder;
+  const Ran ran =
+      runTalus({"--json", "assess",
+                folder.write("bare.csv", "load_N,slip,wheel_radius_m,wheel_width_m\n80,0.5,0.1,0.1\n"),
+                "--model", folder.write("model.yaml", kSoil)});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const json row = json::parse(ran.out)[0];
+  EXPECT_GT(row["sinkage_over_radius"].get<double>(), 0.05);
+  EXPECT_GT(row["torque_over_load_radius"].get<double>(), 0.1);
+}
+
+TEST(AssessCommand, ExtrapolatesByTheRowsOwnSoilOrByTheModel) {
+  // Property: the greatest pull is not below that at the reference slip; rows of the same load foretell the
+  // same; a model without doubt has none.
+  const Folder folder;
+  const json own = assessed({"--extrapolate"});
+  const json model =
+      assessed({"--extrapolate", "--reference-slip", "0.3", "--model", folder.write("model.yaml", kSoil)});
+  for (const json& row : own) {
+    EXPECT_GT(row["at_reference_slip"]["std"].get<double>(), 0.0);
+    EXPECT_DOUBLE_EQ(row["at_reference_slip"]["slip"], 0.5);
+    EXPECT_GE(row["greatest"]["drawbar_pull_over_load"].get<double>(),
+              row["at_reference_slip"]["drawbar_pull_over_load"].get<double>());
+    EXPECT_NEAR(std::tan(row["greatest"]["climbable_slope_rad"].get<double>()),
+                row["greatest"]["drawbar_pull_over_load"].get<double>(), 1e-9);
+    EXPECT_EQ(row["greatest"], own[0]["greatest"]);
+  }
+  EXPECT_DOUBLE_EQ(model[0]["at_reference_slip"]["slip"], 0.3);
+  EXPECT_LT(model[0]["at_reference_slip"]["drawbar_pull_over_load"].get<double>(),
+            model[0]["drawbar_pull_over_load"].get<double>());  // driven at 0.5
+  EXPECT_DOUBLE_EQ(model[0]["greatest"]["std"], 0.0);
+  EXPECT_FALSE(assessed({})[0].contains("greatest"));
+}
+
 TEST(AssessCommand, MistakesAreOneLineWithTheirExitCode) {
   const Folder folder;
   const std::string bad =
       folder.write("bad.csv", "load_N,torque_Nm,sinkage_m,wheel_radius_m,wheel_width_m\n0,1,0.01,0.1,0.1\n");
   const std::string nowheel = folder.write("nowheel.csv", "load_N,torque_Nm,sinkage_m\n80,1,0.01\n");
+  const std::string ok = folder.write("ok.csv", kDrive);
   for (const auto& [words, says] : std::vector<std::pair<std::vector<std::string>, std::string>>{
            {{"assess", bad}, "load_N"},
            {{"assess", nowheel}, "--rover"},
-           {{"assess", folder.write("ok.csv", kDrive), "--slope", "2"}, "slope"}}) {
+           {{"assess", ok, "--model", folder / "none.yaml"}, "none.yaml"},
+           {{"assess", ok, "--model", "sand", "--formula", "plane"}, "--formula"},
+           {{"assess", nowheel, "--model", "sand"}, "slip"},
+           {{"assess", ok, "--model", folder.write("empty.yaml", "model: wong-reece\n")}, "soil"},
+           {{"assess", ok, "--reference-slip", "0"}, "--reference-slip"},
+           {{"assess", ok, "--slope", "2"}, "slope"}}) {
     const Ran ran = runTalus(words);
     EXPECT_EQ(ran.code, 2) << ran.err;
     EXPECT_THAT(ran.err, HasSubstr(says));

@@ -79,6 +79,66 @@ TEST(EstimateCommand, PriorNarrowsWongReece) {
   EXPECT_NEAR(result["friction_angle_rad"], 25.0 * 3.14159265 / 180.0, 0.01);
 }
 
+TEST(EstimateCommand, PriorNarrowsTheLinearMethods) {
+  // Property: a prior without width is the answer; one of great width changes nothing. Its K is taken where
+  // none is stated.
+  const Folder folder;
+  const std::string table = folder.write("drive.csv", drive());
+  const auto prior = [&](const char* name, const char* cohesion, const char* friction) {
+    return folder.write(name, std::string("soil: {name: x, cohesion_Pa: ") + cohesion +
+                                  ", friction_angle_deg: " + friction +
+                                  ", sinkage_exponent: 0.9, cohesive_modulus: 0, frictional_modulus: 1.7e6, "
+                                  "shear_modulus_m: 0.013}\n");
+  };
+  const std::string known = prior("known.yaml", "2400", "25");
+  const std::string vague = prior("vague.yaml", "{mean: 0, std: 1e8}", "{mean: 30, std: 1e6}");
+  for (const char* method : {"iagnemma", "linear-offset", "sojourner"}) {
+    const json fixed = estimated({"--method", method, "--prior", known}, table);
+    EXPECT_NEAR(fixed["cohesion_Pa"], 2400.0, 1e-6) << method;
+    EXPECT_NEAR(fixed["friction_angle_rad"], 25.0 * 3.14159265358979 / 180.0, 1e-9) << method;
+    const json free = estimated({"--method", method, "--shear-modulus", "0.013"}, table);
+    const json open = estimated({"--method", method, "--prior", vague}, table);
+    EXPECT_NEAR(open["cohesion_Pa"].get<double>(), free["cohesion_Pa"].get<double>(), 0.1) << method;
+    EXPECT_EQ(open["shear_modulus_m"], free["shear_modulus_m"]) << method;
+  }
+}
+
+TEST(EstimateCommand, RecursiveEndsWhereAllRowsTogetherDo) {
+  // Property: with K stated the recursion is the same least squares; wong-reece keeps the ten rows in its
+  // window.
+  const Folder folder;
+  const std::string table = folder.write("drive.csv", drive());
+  for (const char* method : {"iagnemma", "linear-offset", "wong-reece"}) {
+    const std::vector<std::string> call{"--method", method, "--shear-modulus", "0.02"};
+    std::vector<std::string> recursive = call;
+    recursive.emplace_back("--recursive");
+    const json all = estimated(call, table), running = estimated(recursive, table);
+    const double exact = std::string(method) == "wong-reece" ? 0.1 : 1e-9;
+    const double std_Pa = std::sqrt(all["covariance"][0][0].get<double>());
+    EXPECT_NEAR(running["cohesion_Pa"].get<double>(), all["cohesion_Pa"].get<double>(), exact * std_Pa);
+    ASSERT_EQ(running["running"].size(), 10u) << method;
+    EXPECT_EQ(running["running"][9]["line"], 11);
+    EXPECT_EQ(running["running"][9]["cohesion_Pa"], running["cohesion_Pa"]);
+    EXPECT_NEAR(running["running"][9]["cohesion_std_Pa"].get<double>(),
+                std::sqrt(running["covariance"][0][0].get<double>()), 1e-6);
+    EXPECT_FALSE(all.contains("running"));
+  }
+}
+
+TEST(EstimateCommand, RecursiveFindsKWithEveryCriterion) {
+  const Folder folder;
+  const std::string table = folder.write("drive.csv", drive());
+  for (const char* how : {"error-minimisation", "effective-torque", "effective-torque-printed", "joint"}) {
+    const json result =
+        estimated({"--method", "linear-offset", "--shear-modulus", how, "--recursive"}, table);
+    EXPECT_TRUE(result["running"][0]["cohesion_Pa"].is_null()) << how;  // one row tells nothing yet
+    EXPECT_TRUE(result["running"][9]["cohesion_Pa"].is_number()) << how;
+    const double k = result["shear_modulus_m"];
+    EXPECT_GE(k, 0.002) << how;
+    EXPECT_LE(k, 0.1) << how;
+  }
+}
+
 TEST(EstimateCommand, RejectsRowsByLineAndCountsThem) {
   const Folder folder;
   const std::string table =
@@ -98,6 +158,54 @@ TEST(EstimateCommand, SaysWhenDataAreBadlyConditioned) {
       {"estimate", folder.write("same.csv", text), "--method", "linear-offset", "--shear-modulus", "0.02"});
   EXPECT_EQ(ran.code, 0) << ran.err;
   EXPECT_THAT(ran.err, HasSubstr("badly conditioned: friction_angle_rad"));
+}
+
+TEST(EstimateCommand, BevameterWithOnePlateGivesItsModulusAndNoMore) {
+  // Closed form: p = 2e6 z^0.8 under one plate: k is seen, k_c and k_phi are not.
+  const Folder folder;
+  std::string text = "plate_width_m,pressure_Pa,sinkage_m\n";
+  for (int k = 1; k <= 6; ++k)
+    text += "0.1," + std::to_string(2e6 * std::pow(0.004 * k, 0.8)) + "," + std::to_string(0.004 * k) + "\n";
+  const json result = estimated({"--method", "bevameter"}, folder.write("plate.csv", text));
+  EXPECT_NEAR(result["sinkage_exponent"], 0.8, 1e-6);
+  ASSERT_EQ(result["plates"].size(), 1u);
+  EXPECT_DOUBLE_EQ(result["plates"][0]["plate_width_m"], 0.1);
+  EXPECT_NEAR(result["plates"][0]["sinkage_modulus"].get<double>() / 2e6, 1.0, 1e-5);
+  EXPECT_FALSE(result.contains("cohesive_modulus"));
+  EXPECT_FALSE(result.contains("frictional_modulus"));
+  EXPECT_THAT(result["unseen"][0].get<std::string>(), HasSubstr("frictional_modulus"));
+  EXPECT_TRUE(result["cohesion_Pa"].is_null());
+}
+
+TEST(EstimateCommand, KeepsM1WhereAsked) {
+  // Property: M1 makes a difference of some per cent on cohesive soil, alike in the recursion.
+  const Folder folder;
+  const std::string table = folder.write("drive.csv", drive());
+  const std::vector<std::string> plain{"--method", "linear-offset", "--shear-modulus", "0.015"};
+  auto kept = plain;
+  kept.emplace_back("--keep-m1");
+  auto recursive = kept;
+  recursive.emplace_back("--recursive");
+  const double without = estimated(plain, table)["cohesion_Pa"], with = estimated(kept, table)["cohesion_Pa"];
+  EXPECT_GT(std::abs(with - without), 1.0);
+  EXPECT_LT(std::abs(with - without), 500.0);
+  EXPECT_EQ(estimated(recursive, table)["cohesion_Pa"], with);
+}
+
+TEST(EstimateCommand, SaysWhenNoSoilIsLikeThis) {
+  // Property: sinkage that grows threefold with slip at one load is no Wong-Reece wheel.
+  const Folder folder;
+  const std::string table = folder.write("sinking.csv", std::string(kHeader) +
+                                                            "80,3.0,0.0055,0.1,0.157,0.165\n"
+                                                            "80,4.2,0.0075,0.2,0.157,0.165\n"
+                                                            "80,4.8,0.0100,0.3,0.157,0.165\n"
+                                                            "80,5.0,0.0125,0.4,0.157,0.165\n"
+                                                            "80,5.3,0.0175,0.6,0.157,0.165\n");
+  const Ran ran = runTalus({"--json", "estimate", table, "--method", "iagnemma", "--shear-modulus", "0.011"});
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  EXPECT_THAT(ran.err, HasSubstr("no soil has"));
+  EXPECT_EQ(json::parse(ran.out)["plausible"], false);
+  EXPECT_EQ(estimated({"--method", "wong-reece"}, folder.write("drive.csv", drive()))["plausible"], true);
 }
 
 TEST(EstimateCommand, BevameterFitsBothTests) {
@@ -129,6 +237,8 @@ TEST(EstimateCommand, MistakesAreOneLineWithTheirExitCode) {
       folder.write("unusable.csv", std::string(kHeader) + "80,3,0.01,-0.5,0.1,0.1\n");
   const std::string two = folder.write("two.csv", drive() + "80,3,0.01,0.5,0.2,0.1\n");
   const std::string one = folder.write("one.csv", std::string(kHeader) + "80,3,0.01,0.5,0.1,0.1\n");
+  const std::string plates =
+      folder.write("plates.csv", "plate_width_m,pressure_Pa,sinkage_m\n0.1,1e4,0.01\n0.1,2e4,0.02\n");
   struct Case {
     std::vector<std::string> words;
     int code;
@@ -143,7 +253,13 @@ TEST(EstimateCommand, MistakesAreOneLineWithTheirExitCode) {
            {{"estimate", good, "--method", "bevameter"}, 2, "plate test"},
            {{"estimate", good, "--method", "guess"}, 2, "guess"},
            {{"estimate", good, "--method", "iagnemma", "--shear-modulus", "soft"}, 2, "soft"},
-           {{"estimate", good, "--method", "iagnemma", "--prior", "sand"}, 2, "wong-reece"},
+           {{"estimate", good, "--method", "iagnemma", "--prior", "no_such"}, 2, "no_such"},
+           {{"estimate", plates, "--method", "bevameter", "--recursive"}, 2, "--recursive"},
+           {{"estimate", good, "--method", "iagnemma", "--keep-m1"}, 2, "--keep-m1"},
+           {{"estimate", good, "--method", "linear-offset", "--keep-m1", "--recursive"},
+            2,
+            "--shear-modulus"},
+           {{"estimate", plates, "--method", "bevameter", "--prior", "sand"}, 2, "no shear test"},
            {{"estimate", good, "--method", "wong-reece", "--prior", "no_such"}, 2, "no_such"},
        }) {
     const Ran ran = runTalus(c.words);

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include <nlohmann/json.hpp>
+#include <octomap/OcTree.h>
 
 #include "run_program.hpp"
 
@@ -35,6 +36,29 @@ TEST(InfoCommand, JsonHasTheFieldsThatProgramsRelyOn) {
     EXPECT_NEAR(json["slope_deg"][quantile].get<double>(), 14.0362, 1e-3);
   EXPECT_THAT(ran.err, HasSubstr("warning"));
   EXPECT_EQ(runTalus({"--json", "--quiet", "info", folder / "plane.asc", "--resolution", "2"}).err, "");
+}
+
+// Property: a point cloud stands wherever a DEM does.
+TEST(InfoCommand, APointCloudIsAMapForEveryCommand) {
+  const Folder folder;
+  octomap::OcTree tree(0.5);
+  for (int column = 0; column < 24; ++column)
+    for (int row = 0; row < 20; ++row)
+      tree.updateNode(octomap::point3d(0.25F + 0.5F * static_cast<float>(column),
+                                       0.25F + 0.5F * static_cast<float>(row), 0.25F),
+                      true);
+  tree.writeBinary(folder / "cloud.bt");
+  const Ran info = runTalus({"--json", "info", "cloud.bt"}, folder.path());
+  ASSERT_EQ(info.code, 0) << info.err;
+  EXPECT_EQ(nlohmann::json::parse(info.out)["width"], 24);
+  EXPECT_EQ(nlohmann::json::parse(info.out)["slope_deg"]["p99"], 0.0);
+  const Ran plan = runTalus({"--json", "plan", "cloud.bt", "--rover", "sojourner", "--soil", "sandy_loam",
+                             "--start", "2,2", "--goal", "9,8"},
+                            folder.path());
+  EXPECT_EQ(plan.code, 0) << plan.err;
+  EXPECT_EQ(runTalus({"view", "cloud.bt"}, folder.path()).code, 0);
+  EXPECT_THAT(runTalus({"info", "cloud.bt", "--resolution", "1"}, folder.path()).err,
+              HasSubstr("has its own grid"));
 }
 
 TEST(InfoCommand, BadInputIsOneLineAndCodeTwo) {

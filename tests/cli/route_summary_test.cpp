@@ -34,6 +34,13 @@ TEST(RouteSummary, LeavesOutWhatIsNotKnown) {
   }
 }
 
+TEST(RouteSummary, OfARouteWithoutLengthSaysSo) {
+  planner::Route route = exampleRoute();
+  route.vertices.resize(1);
+  route.summary.length_m = route.summary.time_s = 0.0;
+  EXPECT_EQ(summaryText(route), "route         nothing to drive: the start is at the goal\n");
+}
+
 TEST(RouteSummary, OfNoRouteIsItsReason) {
   planner::Route route;
   route.reason = "a cliff";

@@ -17,6 +17,14 @@ WheelObservation soft(double x, double y) {
   return {.time_s = 12.0, .place = {100.0 + x, 200.0 + y}, .pull = {0.05, 0.05}, .sinkage = {0.6, 0.05}};
 }
 
+// Ground whose pull is so much less than its class's.
+WheelObservation weaker(double x, double y, double by) {
+  return {.time_s = 12.0,
+          .place = {100.0 + x, 200.0 + y},
+          .pull = {testGround()->prior(0).pull.mean - by, 0.05},
+          .sinkage = {0.2, 0.05}};
+}
+
 TEST(TraversabilityMap, LearnsWhereItDroveAndDoubtsFarAway) {
   TraversabilityMap map = mapOf(wide());
   const GroundBelief before = *map.ground({30, 30});
@@ -78,13 +86,51 @@ TEST(TraversabilityMap, OutsideTheMapNothingIsLearned) {
 TEST(EvidenceField, ManyPlacesMoveTheClassOnePlaceHardly) {
   TraversabilityMap one = mapOf(wide()), many = mapOf(wide());
   for (int i = 0; i < 200; ++i) {
-    one.learn(soft(30.5, 30.5));
-    many.learn(soft(5.5 + 0.25 * i, 30.5));
+    one.learn(weaker(30.5, 30.5, 0.06));
+    many.learn(weaker(5.5 + 0.25 * i, 30.5, 0.06));
   }
   EXPECT_LT(one.evidence().posterior(0).places, 1.0);
   EXPECT_GT(many.evidence().posterior(0).places,
             8.0);  // Closed form: 50 m over integral scales of 3.3 m, less noise
   EXPECT_LT(many.evidence().posterior(0).pull.mean, one.evidence().posterior(0).pull.mean);
+}
+
+TEST(EvidenceField, OtherGroundThatNoRasterShowsIsNotTheClass) {
+  TraversabilityMap map = mapOf(wide()), ordinary = mapOf(wide());
+  for (int i = 0; i < 20; ++i) {
+    map.learn(weaker(30.5, 30.5, 0.4));
+    ordinary.learn(weaker(30.5, 30.5, 0.06));
+  }
+  map.publish();
+  // Property: seven standard deviations off move the class less than one does, yet are believed where they lie.
+  EXPECT_GT(map.evidence().posterior(0).pull.mean, -0.05);
+  const double prior = map.model().prior(0).pull.mean;
+  EXPECT_LT(map.ground({30, 30})->pull.mean, prior - 0.3);
+  EXPECT_NEAR(map.ground({45, 45})->pull.mean, prior, 0.05);
+}
+
+TEST(EvidenceField, ABlockIsAsWeakAsItsWeakestPart) {
+  TraversabilityMap map = mapOf(wide());
+  for (int i = 0; i < 50; ++i) map.learn(weaker(30.5, 30.5, 0.0));
+  for (int i = 0; i < 3; ++i) map.learn(weaker(30.5, 30.5, 0.4));
+  map.publish();
+  EXPECT_LT(map.ground({30, 30})->pull.mean, map.model().prior(0).pull.mean - 0.2);
+}
+
+TEST(TraversabilityMap, RefusedGroundStaysRefused) {
+  TraversabilityMap map = mapOf(wide());
+  map.refuse({130.5, 230.5}, 2.0);
+  map.publish();
+  for (int row = 25; row <= 35; ++row)
+    for (int column = 25; column <= 35; ++column) {
+      const bool inside = std::hypot(column - 30, row - 30) <= 2.0;
+      EXPECT_EQ(has(map.hazards({column, row}), Hazard::Obstacle), inside) << column << ' ' << row;
+      EXPECT_EQ(map.code({column, row}).curve() == CellCode::kBlocked, inside) << column << ' ' << row;
+    }
+  for (int i = 0; i < 20; ++i) map.learn(weaker(30.5, 30.5, -0.1));
+  map.publish();
+  EXPECT_EQ(map.code({30, 30}).curve(), CellCode::kBlocked);
+  EXPECT_NO_THROW(map.refuse({-500.0, 1e9}, 3.0));
 }
 
 }  // namespace

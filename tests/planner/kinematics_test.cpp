@@ -7,39 +7,9 @@
 namespace talus::planner {
 namespace {
 
-terramech::Rover fourWheels(terramech::Steering steering) {
-  return {.name = "cart",
-          .mass_kg = 100.0,
-          .gravity_m_s2 = 2.0,
-          .wheel_count = 4,
-          .wheelbase_m = 1.2,
-          .track_m = 0.9,
-          .clearance_m = 0.2,
-          .max_torque_Nm = 10.0,
-          .steering = steering};
-}
-
 Pose end(Pose pose, const std::vector<Arc>& arcs) {
   for (const Arc& arc : arcs) pose = after(pose, arc);
   return pose;
-}
-
-TEST(Kinematics, ASkidRoverDragsEachAxleSideways) {
-  // Closed form: 4 wheels of 50 N, each 0.6 m from the middle, at 0.5 lateral force over load.
-  EXPECT_DOUBLE_EQ(
-      kinematicsOf(fourWheels(terramech::Steering::Skid), {.lateral_resistance = 0.5}).turn_cost_J_per_rad,
-      0.5 * 4 * 50.0 * 0.6);
-}
-
-TEST(Kinematics, ASteeredRoverRollsAroundItsMiddle) {
-  // Closed form: half the diagonal of 1.2 by 0.9 m is 0.75 m.
-  EXPECT_DOUBLE_EQ(
-      kinematicsOf(fourWheels(terramech::Steering::AllWheel), {.rolling_J_per_m = 40.0}).turn_cost_J_per_rad,
-      30.0);
-}
-
-TEST(Kinematics, AnAckermannRoverNeedsARadius) {
-  EXPECT_THROW(kinematicsOf(fourWheels(terramech::Steering::Ackermann), {}), std::invalid_argument);
 }
 
 TEST(Kinematics, AQuarterCircleEndsWhereItShould) {

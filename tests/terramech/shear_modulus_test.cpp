@@ -45,14 +45,6 @@ TEST(ShearModulus, JointFitFindsTheTruthWhereStressesAreLinear) {
   EXPECT_NEAR(modulusJointly(kWheel, samples).shear_modulus_m, 0.02, 0.002);
 }
 
-TEST(ShearModulus, LadderEqualsTheJointFitToARung) {
-  // Property: the ladder refines between rungs 13 % apart by a parabola.
-  const auto samples = linearSamples(kWheel, {.cohesion_Pa = 1000.0});
-  ModulusLadder ladder(kWheel);
-  for (const auto& s : samples) EXPECT_TRUE(ladder.add(s));
-  EXPECT_NEAR(ladder.modulus().shear_modulus_m / modulusJointly(kWheel, samples).shear_modulus_m, 1.0, 0.05);
-}
-
 TEST(ShearModulus, SaysSoWhenTheSlipDoesNotVary) {
   const auto run = steadyRun(0.02);
   const std::vector<WheelSample> same(5, run.front());

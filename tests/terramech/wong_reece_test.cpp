@@ -149,6 +149,113 @@ TEST(WongReece, StressesVanishAtBothEndsAndPeakWhereC2Says) {
   EXPECT_NEAR(highest->angle_rad / stresses.back().angle_rad, 0.43 + 0.32 * 0.5, 2e-3);  // Closed form: C.2
 }
 
+// A soil, wheel and operation from the far ends of what is allowed.
+struct Extreme {
+  Soil soil;
+  Wheel wheel;
+  WheelOperation operation;
+};
+
+Extreme extreme(std::mt19937_64& random) {
+  std::uniform_real_distribution<double> even{0.0, 1.0};
+  const auto log = [&](double low, double high) { return low * std::pow(high / low, even(random)); };
+  const auto pick = random() % 8;
+  const double slips[] = {-1.0, -1e-12, 0.0, 1e-12, 1.0};
+  const double slip = pick < 5 ? slips[pick] : 2.0 * even(random) - 1.0;
+  return {
+      .soil = {.name = "extreme",
+               .cohesion_Pa = pick == 5 ? 0.0 : log(1.0, 1e5),
+               .friction_angle_rad = pick == 6 ? 0.0 : 1.4 * even(random),
+               .sinkage_exponent = 0.1 + 1.9 * even(random),
+               .frictional_modulus = log(1e2, 1e9),
+               .shear_modulus_m = log(1e-5, 1.0)},
+      .wheel = {.radius_m = log(0.005, 2.0), .width_m = log(0.002, 2.0)},
+      .operation = {.load_N = log(1e-3, 1e8), .slip = slip, .rebound = pick == 7 ? 0.9 * even(random) : 0.0}};
+}
+
+TEST(WongReece, AlwaysAnswersOrRefuses) {
+  // Property: numbers that carry the load, or std::domain_error; never NaN, never a search without end.
+  std::mt19937_64 random{7};
+  int answered = 0;
+  for (int k = 0; k < 5000; ++k) {
+    const Extreme e = extreme(random);
+    try {
+      const WheelForces f = equilibrium(e.soil, e.wheel, e.operation);
+      ASSERT_TRUE(std::isfinite(f.torque_Nm) && std::isfinite(f.drawbar_pull_N));
+      ASSERT_GT(f.entry_angle_rad, 0.0);
+      ASSERT_LE(f.entry_angle_rad, 1.5707963267948968);
+      const double carried = forcesAtEntry(e.soil, e.wheel, e.operation, f.entry_angle_rad).load_N;
+      EXPECT_NEAR(carried / e.operation.load_N, 1.0, 1e-6);
+      ++answered;
+    } catch (const std::domain_error&) {
+    }
+  }
+  EXPECT_GT(answered, 1500);  // about half of these soils carry their load
+}
+
+TEST(WongReece, ScalesAsItsUnitsDo) {
+  // Property: lengths times a, stresses times s (k_phi of N/m^(n+2) times s/a^n): forces times s a^2, torque
+  // s a^3, the same angle.
+  std::mt19937_64 random{8};
+  for (int k = 0; k < 300; ++k) {
+    const Extreme e = extreme(random);
+    const double a = 0.37, s = 11.0;
+    Extreme scaled = e;
+    scaled.wheel = {.radius_m = a * e.wheel.radius_m, .width_m = a * e.wheel.width_m};
+    scaled.soil.cohesion_Pa *= s;
+    scaled.soil.frictional_modulus *= s / std::pow(a, e.soil.sinkage_exponent);
+    scaled.soil.shear_modulus_m *= a;
+    constexpr double kEntry = 0.6;
+    const auto f = forcesAtEntry(e.soil, e.wheel, e.operation, kEntry);
+    const auto g = forcesAtEntry(scaled.soil, scaled.wheel, scaled.operation, kEntry);
+    const double scale = std::abs(f.load_N) + std::abs(f.forces.drawbar_pull_N);
+    EXPECT_NEAR(g.load_N / (s * a * a) / scale, f.load_N / scale, 1e-10);
+    EXPECT_NEAR(g.forces.drawbar_pull_N / (s * a * a) / scale, f.forces.drawbar_pull_N / scale, 1e-10);
+    EXPECT_NEAR(g.forces.torque_Nm / (s * a * a * a), f.forces.torque_Nm,
+                1e-9 * std::abs(f.forces.torque_Nm));
+  }
+}
+
+TEST(WongReece, WorkGoesIntoShearAndCompaction) {
+  // Property: T omega - DP v = r b int tau (r omega - v cos) + sigma v sin, the rates at which rim and soil
+  // rub and the soil is pressed down; stresses taken apart from the integrals, by the trapezoid.
+  for (const double slip : {-0.4, 0.0, 0.2, 0.7}) {
+    const Wheel wheel{.radius_m = 0.12, .width_m = 0.08};
+    const WheelOperation operation{.load_N = 70.0, .slip = slip, .rebound = 0.1};
+    const WheelForces f = equilibrium(sand(), wheel, operation);
+    const double omega = 1.0, v = travelRatio(slip) * wheel.radius_m * omega;
+    const auto stresses = stressDistribution(sand(), wheel, operation, 20001);
+    double lost = 0.0;
+    for (std::size_t k = 0; k + 1 < stresses.size(); ++k) {
+      const auto& p = stresses[k];
+      lost += (p.shear_Pa * (wheel.radius_m * omega - v * std::cos(p.angle_rad)) +
+               p.normal_Pa * v * std::sin(p.angle_rad)) *
+              (stresses[k + 1].angle_rad - p.angle_rad);
+    }
+    lost *= wheel.radius_m * wheel.width_m;
+    EXPECT_NEAR((f.torque_Nm * omega - f.drawbar_pull_N * v) / lost, 1.0, 2e-4) << slip;
+    EXPECT_GT(lost, 0.0);
+  }
+}
+
+TEST(WongReece, MoreSlipPullsMoreWhereThePeakStays) {
+  // Property: with c2 = 0 the normal stress at a sinkage does not depend on slip, j grows with slip
+  // everywhere, and so do torque and pull.
+  std::mt19937_64 random{9};
+  for (int k = 0; k < 100; ++k) {
+    Extreme e = extreme(random);
+    e.soil.c2 = 0.0;
+    ImposedContact last = forcesAtEntry(e.soil, e.wheel, {.load_N = 1.0, .slip = -1.0}, 0.7);
+    for (int i = -9; i <= 10; ++i) {
+      const auto here = forcesAtEntry(e.soil, e.wheel, {.load_N = 1.0, .slip = 0.1 * i}, 0.7);
+      const double rounding = 1e-9 * std::abs(here.load_N);
+      EXPECT_GE(here.forces.torque_Nm, last.forces.torque_Nm - rounding * e.wheel.radius_m);
+      EXPECT_GE(here.forces.drawbar_pull_N, last.forces.drawbar_pull_N - rounding);
+      last = here;
+    }
+  }
+}
+
 TEST(WongReece, RefusesWhatHasNoAnswer) {
   const Wheel wheel{};
   EXPECT_THROW(equilibrium(sand(), wheel, {.load_N = 1e6, .slip = 0.2}), std::domain_error);

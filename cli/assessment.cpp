@@ -1,0 +1,129 @@
+#include <cmath>
+
+#include <cli/assessment.hpp>
+#include <cli/wheel_rows.hpp>
+#include <terramech/model_file.hpp>
+#include <terramech/model_pull.hpp>
+#include <terramech/soil_library.hpp>
+#include <terramech/telemetry_reader.hpp>
+#include <terramech/trial.hpp>
+
+namespace talus::cli {
+namespace {
+
+using namespace terramech;
+
+// Each formula with the scatter that it has over thesis Table 2.1 (talus reproduce --goals), and the
+// readings' errors.
+Uncertain pullBy(const std::string& formula, const Wheel& wheel, const WheelSample& s,
+                 const ReadingErrors& errors) {
+  const Uncertain ours = pullOverLoad(wheel, s, errors);
+  if (formula == "small-angle") return {pullAtSmallAngle(wheel, s), std::hypot(ours.std, 0.013)};
+  if (formula == "triangular") return {pullOfTriangularStress(wheel, s), std::hypot(ours.std, 0.014)};
+  if (formula == "plane") return {kThesisPlane.at(wheel, s), std::hypot(ours.std, 0.028)};
+  return ours;
+}
+
+void judge(Assessment& a, const CategoryThresholds& limits) {
+  const WheelCondition mean{.drawbar_pull_over_load = a.pull.value,
+                            .sinkage_over_radius = a.sinkage_over_radius.value};
+  a.category = categorise(mean, limits);
+  a.probability = categoryProbability({.mean = mean,
+                                       .drawbar_pull_over_load_std = a.pull.std,
+                                       .sinkage_over_radius_std = a.sinkage_over_radius.std},
+                                      limits);
+}
+
+// The pull at other slips: of the soils that all rows together allow, at each row's load.
+void extrapolate(const AssessOptions& options, const WheelRows& rows, const Watch& watch,
+                 std::vector<Assessment>& result) {
+  const SoilPosterior soil = fitSoil(rows.wheel, rows.samples, thesisSoilsOrOther(),
+                                     {.noise = ReadingErrors::relative(std::max(options.noise, 1e-3))});
+  for (std::size_t k = 0; k < result.size() && !watch.stopped(); ++k) {
+    result[k].forecast = forecastPull(
+        rows.wheel, soil, {.load_N = rows.samples[k].load_N, .reference_slip = options.reference_slip});
+    watch.report(static_cast<double>(k) / static_cast<double>(result.size()));
+  }
+}
+
+AssessedTable assessReadings(const AssessOptions& options, const CategoryThresholds& limits,
+                             const Watch& watch) {
+  const ReadingErrors errors = ReadingErrors::relative(options.noise);
+  const WheelRows rows =
+      readWheelRows(options.table, {.rover = options.rover, .needs_slip = options.extrapolate}, watch);
+  AssessedTable table{.rows = {}, .rejected = rows.rejected, .left_out = {}};
+  for (std::size_t k = 0; k < rows.samples.size(); ++k) {
+    const WheelSample& s = rows.samples[k];
+    const double sinkage = s.sinkage_m / rows.wheel.radius_m;
+    Assessment a{.line = rows.lines[k],
+                 .slip = s.slip,
+                 .pull = pullBy(options.formula, rows.wheel, s, errors),
+                 .sinkage_over_radius = {sinkage, errors.sinkage.std(sinkage)},
+                 .torque_over_load_radius = torqueOverLoadRadius(rows.wheel, s)};
+    judge(a, limits);
+    table.rows.push_back(a);
+  }
+  if (options.extrapolate) extrapolate(options, rows, watch, table.rows);
+  return table;
+}
+
+RefinedModel modelOf(const AssessOptions& options, std::vector<std::string>& left_out) {
+  ModelFile file = loadModel(options.model);
+  if (!file.soil_given)
+    throw InputError({options.model, "names no soil", "trace some data with it first: talus trace"});
+  if (!options.rover.empty()) file.model.wheel = loadRover(options.rover).wheel;
+  for (const Effect& effect : file.model.effects) {
+    if (isSensorFault(effect)) left_out.push_back(effect.name);
+  }
+  return groundTruthOf(file.model);
+}
+
+// What was read of the sinkage goes before what the model foretells.
+Uncertain sinkageOf(const std::vector<double>* read, std::size_t row, const WheelState& state,
+                    const ModelPull& pull, double noise) {
+  if (read == nullptr || !std::isfinite((*read)[row])) return pull.sinkage_over_radius;
+  const double sinkage = (*read)[row] / state.wheel.radius_m;
+  return {sinkage, noise * sinkage};
+}
+
+AssessedTable assessByModel(const AssessOptions& options, const CategoryThresholds& limits,
+                            const Watch& watch) {
+  AssessedTable table;
+  const RefinedModel model = modelOf(options, table.left_out);
+  TelemetryOptions reading{.required = {"load_N", "slip"}};
+  if (model.wheel) reading.wheel_radius_m = model.wheel->radius_m;
+  const Telemetry telemetry = readTelemetry(options.table, reading, watch);
+  const std::vector<WheelState> states = statesOf(telemetry, model);
+  const auto* sinkage = telemetry.find("sinkage_m");
+  const auto* torque = telemetry.find("torque_Nm");
+  table.rejected = telemetry.rejected;
+  for (std::size_t k = 0; k < states.size() && !watch.stopped(); ++k) {
+    const ModelPull pull = pullOf(model, states[k]);
+    const bool torque_read = torque != nullptr && std::isfinite((*torque)[k]);
+    Assessment a{.line = telemetry.lines[k],
+                 .slip = states[k].slip,
+                 .pull = pull.pull_over_load,
+                 .sinkage_over_radius = sinkageOf(sinkage, k, states[k], pull, options.noise),
+                 .torque_over_load_radius = torque_read
+                                                ? (*torque)[k] / (states[k].wheel.radius_m * states[k].load_N)
+                                                : pull.torque_over_load_radius};
+    judge(a, limits);
+    if (options.extrapolate) a.forecast = forecastPull(model, states[k], options.reference_slip);
+    table.rows.push_back(a);
+    watch.report(static_cast<double>(k) / static_cast<double>(states.size()));
+  }
+  return table;
+}
+
+}  // namespace
+
+AssessedTable assessTable(const AssessOptions& options, const Watch& watch) {
+  CategoryThresholds limits = thresholds({.slope_rad = options.slope_rad, .margin_rad = options.margin_rad});
+  limits.z_threshold = options.z_threshold;
+  limits.z_critical = options.z_critical;
+  validate(limits);
+  return options.model.empty() ? assessReadings(options, limits, watch)
+                               : assessByModel(options, limits, watch);
+}
+
+}  // namespace talus::cli

@@ -1,0 +1,124 @@
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include <planner/drive_planner.hpp>
+#include <planner/improvable_region.hpp>
+#include <planner/polyline.hpp>
+#include <planner/pose_shortcut.hpp>
+
+namespace talus::planner {
+namespace {
+
+// Between poses that a curve is fitted to: cells at least, and radii.
+constexpr double kPose_cells = 4.0;
+constexpr double kPose_radii = 2.0;
+
+Plan ended(PosePlan leg) {
+  Plan plan;
+  plan.status = leg.status;
+  plan.reason = std::move(leg.reason);
+  return plan;
+}
+
+Pose endOf(const PosePath& path) {
+  Pose pose = path.start;
+  for (const PosePath::Leg& leg : path.legs) pose = after(pose, leg);
+  return pose;
+}
+
+void append(PosePath& whole, const PosePath& leg) {
+  if (whole.legs.empty()) whole.start = leg.start;
+  whole.legs.insert(whole.legs.end(), leg.legs.begin(), leg.legs.end());
+}
+
+// Poses along a polyline, looking along it: half way between the ways in and out where it bends.
+std::vector<Pose> posesAlong(const std::vector<maps::Point>& points, const PoseProblem& asked) {
+  std::vector<Pose> poses;
+  const auto heading = [&](std::size_t i) {
+    return std::atan2(points[i + 1].y_m - points[i].y_m, points[i + 1].x_m - points[i].x_m);
+  };
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double out = heading(std::min(i, points.size() - 2)), in = heading(i == 0 ? 0 : i - 1);
+    poses.push_back({points[i], in + 0.5 * std::remainder(out - in, 2.0 * M_PI)});
+  }
+  poses.front().heading_rad = asked.start_heading_rad.value_or(poses.front().heading_rad);
+  poses.back().heading_rad = asked.goal_heading_rad.value_or(poses.back().heading_rad);
+  return poses;
+}
+
+// Shortest curves from pose to pose, shortened as a whole. Where some may not be driven, others bridge them.
+PosePath fitted(const std::vector<Pose>& poses, const PoseCost& cost, const ShortenOptions& options) {
+  PosePath path{.start = poses.front(), .legs = {}};
+  for (std::size_t i = 1; i < poses.size(); ++i)
+    for (const PosePath::Leg& leg : cost.direct(poses[i - 1], poses[i])) path.legs.push_back(leg);
+  return shortened(path, cost, options);
+}
+
+}  // namespace
+
+// Turning costs little where the radius is small against the bends of the route: then the any-angle route,
+// which the search's eight headings do not see, is the better seed.
+void DrivePlanner::improve(const PoseProblem& asked, const Problem& problem, PosePlan& leg) {
+  Problem free = problem;
+  free.start = asked.start;
+  free.goal = asked.goal;
+  free.via.clear();
+  free.goal_tolerance_m = 0.0;
+  free.prove = false;
+  const Plan route = field_.plan(free);
+  if (route.status != RouteStatus::Found || route.points.size() < 2 || route.cost_J >= leg.cost_J) return;
+  const double cell_m = problem.map->grid().resolution_m;
+  const double apart_m = std::max(kPose_cells * cell_m, kPose_radii * asked.kinematics.turning_radius_m);
+  const MotionCost motion(problem.map);
+  const PoseCost cost(motion, asked.kinematics);
+  const bool turns_in_place = asked.kinematics.turning_radius_m <= 0.0;
+  const auto points = turns_in_place ? route.points : subdivided(route.points, apart_m);
+  PosePath path =
+      fitted(posesAlong(points, asked), cost,
+             {.joint_m = kPose_cells * cell_m, .cheapest_J_per_m = cheapestMetre_J(*problem.map)});
+  const double cost_J = cost(path);
+  if (cost_J >= leg.cost_J || !mayBeDriven(*problem.map, path, asked.kinematics)) return;
+  leg.path = std::move(path);
+  leg.cost_J = cost_J;
+}
+
+Plan DrivePlanner::plan(const Problem& problem) {
+  if (!problem.map) throw std::invalid_argument("DrivePlanner: no map");
+  std::vector<maps::Point> stops = problem.via;
+  stops.push_back(problem.goal);
+  PoseProblem asked{.map = problem.map,
+                    .start = problem.start,
+                    .goal = {},
+                    .start_heading_rad = problem.start_heading_rad,
+                    .goal_heading_rad = {},
+                    .kinematics = problem.kinematics,
+                    .time_limit_s = problem.time_limit_s / static_cast<double>(stops.size()),
+                    .watch = problem.watch};
+  Plan whole;
+  whole.status = RouteStatus::Found;
+  whole.drive.start = {problem.start, problem.start_heading_rad.value_or(0.0)};
+  for (std::size_t i = 0; i < stops.size(); ++i) {
+    asked.goal = stops[i];
+    if (i + 1 == stops.size()) asked.goal_heading_rad = problem.goal_heading_rad;
+    PosePlan leg = search_.plan(asked);
+    if (leg.status != RouteStatus::Found) return ended(std::move(leg));
+    improve(asked, problem, leg);
+    append(whole.drive, leg.path);
+    const Segment ends{asked.start, asked.goal};
+    const double bound_J = problem.prove ? bound_(problem.map, ends, 0.0, StopCheck(problem.watch))
+                                         : straightBound_J(*problem.map, ends);
+    whole.lower_bound_J += std::min(bound_J, leg.cost_J);
+    asked.start = stops[i];
+    asked.start_heading_rad = endOf(leg.path).heading_rad;
+    problem.watch.report(static_cast<double>(i + 1) / static_cast<double>(stops.size()));
+  }
+  for (const Pose& pose : chords(whole.drive, *problem.map))
+    if (whole.points.empty() || !(whole.points.back() == pose.place)) whole.points.push_back(pose.place);
+  const MotionCost motion(problem.map);
+  whole.cost_J = PoseCost(motion, problem.kinematics)(whole.drive);
+  return whole;
+}
+
+}  // namespace talus::planner

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string_view>
+
+#include <planner/field_planner.hpp>
+#include <planner/hybrid_search.hpp>
+#include <planner/lower_bound.hpp>
+#include <planner/problem.hpp>
+
+namespace talus::planner {
+
+/// Drives that keep the problem's kinematics, through all via points in order: HybridSearch leg by leg, each
+/// setting out as the one before arrived, or a curve fitted to FieldPlanner's route where that is cheaper.
+/// Keeps what the search knows of map and goal. Not thread-safe: one object a thread.
+class DrivePlanner {
+ public:
+  static constexpr std::string_view kName = "hybrid";  ///< among plannerNames()
+
+  explicit DrivePlanner(const HybridOptions& options = {}) : search_(options) {}
+
+  /// A drive, or why there is none. A goal tolerance is not made use of: the drive ends at the goal. Throws
+  /// std::invalid_argument without a map.
+  Plan plan(const Problem& problem);
+
+ private:
+  void improve(const PoseProblem& asked, const Problem& problem, PosePlan& leg);
+
+  HybridSearch search_;
+  FieldPlanner field_;
+  LowerBound bound_;
+};
+
+}  // namespace talus::planner

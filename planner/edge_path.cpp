@@ -1,0 +1,88 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include <planner/edge_path.hpp>
+#include <planner/heading_cost.hpp>
+
+namespace talus::planner {
+namespace {
+
+constexpr int kReach = 2;  // places to each side of a turn
+constexpr int kPlaces = 2 * kReach + 1;
+constexpr double kClear = 1.0 / 64;  // cells: turns keep this far from corners
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+using Turn = EdgePath::Turn;
+
+// The places that a turn may move to; the first is where it is.
+struct Choice {
+  std::array<Turn, kPlaces> places;
+  std::array<double, kPlaces> best{};
+  std::array<int, kPlaces> next{};
+  int count = 0;
+};
+
+Choice choiceAround(Turn turn, double step) {
+  Choice choice;
+  choice.places[static_cast<std::size_t>(choice.count++)] = turn;
+  const double at = turn.on_vertical ? turn.y : turn.x, cell = std::floor(at);
+  for (int k = 1; k <= kReach; ++k)
+    for (const double moved : {at + k * step, at - k * step}) {
+      if (moved < cell + kClear || moved > cell + 1.0 - kClear) continue;
+      Turn place = turn;
+      (turn.on_vertical ? place.y : place.x) = moved;
+      choice.places[static_cast<std::size_t>(choice.count++)] = place;
+    }
+  return choice;
+}
+
+double within(const costmap::CostGrid& map, maps::Cell cell, const Turn& from, const Turn& to) noexcept {
+  const double dx = to.x - from.x, dy = to.y - from.y, length = std::sqrt(dx * dx + dy * dy);
+  if (length == 0.0) return 0.0;
+  return length * static_cast<double>(HeadingCost(map.cost(), {dx / length, dy / length})(map.at(cell)));
+}
+
+void choose(const costmap::CostGrid& map, maps::Cell cell, Choice& from, const Choice& to) {
+  for (std::size_t a = 0; a < static_cast<std::size_t>(from.count); ++a) {
+    from.best[a] = kInfinity;
+    for (std::size_t b = 0; b < static_cast<std::size_t>(to.count); ++b) {
+      const double through = within(map, cell, from.places[a], to.places[b]) + to.best[b];
+      if (!(through < from.best[a])) continue;
+      from.best[a] = through;
+      from.next[a] = static_cast<int>(b);
+    }
+  }
+}
+
+void slideOnce(const costmap::CostGrid& map, EdgePath& path, double step) {
+  const std::size_t n = path.turns.size();
+  std::vector<Choice> choices(n);
+  for (std::size_t i = n; i-- > 0;) {
+    const bool end = i == 0 || i + 1 == n;
+    choices[i] = choiceAround(path.turns[i], end ? 2.0 : step);
+    if (i + 1 < n) choose(map, path.cells[i], choices[i], choices[i + 1]);
+  }
+  for (std::size_t i = 0, a = 0; i < n; ++i) {
+    path.turns[i] = choices[i].places[a];
+    a = static_cast<std::size_t>(choices[i].next[a]);
+  }
+}
+
+}  // namespace
+
+std::vector<maps::Point> EdgePath::points(const maps::Grid& grid) const {
+  std::vector<maps::Point> points;
+  for (const Turn& turn : turns)
+    points.push_back(
+        {grid.south_west.x_m + turn.x * grid.resolution_m, grid.south_west.y_m + turn.y * grid.resolution_m});
+  return points;
+}
+
+void slideTurns(const costmap::CostGrid& map, EdgePath& path, double coarsest_cells, int rounds) {
+  if (path.turns.size() < 3) return;
+  for (int k = 0; k < rounds; ++k) slideOnce(map, path, coarsest_cells / (1 << k));
+}
+
+}  // namespace talus::planner

@@ -1,0 +1,79 @@
+#include <atomic>
+#include <thread>
+#include <utility>
+
+#include <planner/route_windows.hpp>
+
+namespace talus::planner {
+namespace {
+
+struct Job {
+  const WindowCut& cut;
+  const std::function<Polyline(const Polyline&)>& work;
+  WindowMemo& memo;
+  int threads;
+  const StopCheck& stop;
+};
+
+void workOn(Polyline& window, const Job& job) {
+  if (job.stop()) return;
+  const Polyline key = window;
+  if (auto known = job.memo.find(key)) {
+    window = std::move(*known);
+    return;
+  }
+  window = job.work(window);
+  if (!job.stop()) job.memo.keep(key, window, job.cut.reach_m);
+}
+
+void workOnAll(std::vector<Polyline>& windows, const Job& job) {
+  std::atomic<std::size_t> next{0};
+  const auto run = [&] {
+    for (std::size_t k = next++; k < windows.size(); k = next++) workOn(windows[k], job);
+  };
+  std::vector<std::jthread> helpers;
+  for (int k = 1; k < job.threads && static_cast<std::size_t>(k) < windows.size(); ++k)
+    helpers.emplace_back(run);
+  run();
+}
+
+// A window's head and tail of at most that length, and what is left between them.
+struct Parts {
+  Polyline head, middle, tail;
+};
+
+Parts partsOf(const Polyline& window, double end_m) {
+  const double whole_m = length_m(window);
+  const bool middle = whole_m > 3 * end_m;
+  auto [before, tail] = splitAt(window, middle ? end_m : whole_m / 2);
+  if (!middle) return {before, {tail.front()}, tail};
+  auto [head, rest] = splitAt(before, whole_m - 2 * end_m);
+  return {head, rest, tail};
+}
+
+}  // namespace
+
+Polyline byWindows(const Polyline& route, const WindowCut& cut,
+                   const std::function<Polyline(const Polyline&)>& work, WindowMemo& memo, int threads,
+                   const StopCheck& stop) {
+  const Job job{cut, work, memo, threads, stop};
+  auto windows = cutFromEnd(route, cut.length_m, cut.length_m);
+  workOnAll(windows, job);
+  if (windows.size() == 1) return windows.front();
+  std::vector<Polyline> joints{{}}, middles;
+  for (const Polyline& window : windows) {
+    Parts parts = partsOf(window, cut.overlap_m);
+    append(joints.back(), parts.head);
+    middles.push_back(std::move(parts.middle));
+    joints.push_back(std::move(parts.tail));
+  }
+  workOnAll(joints, job);
+  Polyline whole = joints.front();
+  for (std::size_t k = 0; k < middles.size(); ++k) {
+    append(whole, middles[k]);
+    append(whole, joints[k + 1]);
+  }
+  return whole;
+}
+
+}  // namespace talus::planner

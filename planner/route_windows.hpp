@@ -1,0 +1,25 @@
+#pragma once
+
+#include <functional>
+
+#include <planner/stop_check.hpp>
+#include <planner/window_memo.hpp>
+
+namespace talus::planner {
+
+/// How a route is cut for work on its parts.
+struct WindowCut {
+  double length_m = 0.0;   ///< of a window
+  double overlap_m = 0.0;  ///< to each side of where two windows meet, worked on once more
+  double reach_m = 0.0;    ///< farthest ground from a window's bounding box that the work looks at
+};
+
+/// Works on the windows of a route, then on what lies around the places where two meet, side by side on
+/// `threads` threads; the answer does not depend on their number. `work` gives a way between the same ends,
+/// and the same one for the same window on the same ground. What the memo holds is not worked on. Windows not
+/// begun when stopped stay as they are.
+Polyline byWindows(const Polyline& route, const WindowCut& cut,
+                   const std::function<Polyline(const Polyline&)>& work, WindowMemo& memo, int threads = 1,
+                   const StopCheck& stop = {});
+
+}  // namespace talus::planner

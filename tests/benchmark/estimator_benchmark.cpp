@@ -1,0 +1,67 @@
+// Time a sample of the recursive estimators: 10 us for the linear ones, 1 ms for the full one (goals). What
+// is timed is one sample in and the estimate out.
+#include <benchmark/benchmark.h>
+
+#include <terramech/iagnemma.hpp>
+#include <terramech/modulus_ladder.hpp>
+#include <terramech/soil_filter.hpp>
+#include <terramech/thesis_runs.hpp>
+
+namespace talus::terramech {
+namespace {
+
+const std::vector<WheelSample>& samples() {
+  static const std::vector<WheelSample> all = ThesisRuns(4).next({.noise = 0.05, .samples = 240}).samples;
+  return all;
+}
+
+void known(benchmark::State& state, PairOf pair) {
+  std::size_t k = 0;
+  MohrCoulombLine line;
+  line.add(pair(kThesisWheel, samples()[0], 0.02));
+  for (auto _ : state) {
+    k = (k + 1) % samples().size();
+    line.add(pair(kThesisWheel, samples()[k], 0.02));
+    benchmark::DoNotOptimize(line.estimate());
+  }
+}
+BENCHMARK_CAPTURE(known, linear_offset, linearOffsetPair);
+BENCHMARK_CAPTURE(known, iagnemma, iagnemmaPair);
+
+void ladder(benchmark::State& state, ModulusCriterion criterion) {
+  std::size_t k = 0;
+  ModulusLadder rungs(kThesisWheel, {.criterion = criterion});
+  for (; k < 4; ++k) rungs.add(samples()[k]);
+  for (auto _ : state) {
+    k = (k + 1) % samples().size();
+    rungs.add(samples()[k]);
+    benchmark::DoNotOptimize(rungs.modulus());
+    benchmark::DoNotOptimize(rungs.strength());
+  }
+}
+BENCHMARK_CAPTURE(ladder, joint, ModulusCriterion::Joint);
+BENCHMARK_CAPTURE(ladder, error_minimisation, ModulusCriterion::ErrorMinimisation);
+BENCHMARK_CAPTURE(ladder, torque_ratio, ModulusCriterion::TorqueRatio);
+BENCHMARK_CAPTURE(ladder, effective_torque_as_printed, ModulusCriterion::EffectiveTorque);
+
+void filter(benchmark::State& state) {
+  std::size_t k = 0;
+  SoilFilter soil(kThesisWheel, thesisSoils(), {});
+  for (; k < 20; ++k) soil.add(samples()[k]);  // the window is full
+  for (auto _ : state) {
+    k = (k + 1) % samples().size();
+    soil.add(samples()[k]);
+    benchmark::DoNotOptimize(soil.mode());
+  }
+}
+BENCHMARK(filter);
+
+void posterior(benchmark::State& state) {
+  SoilFilter soil(kThesisWheel, thesisSoils(), {.fit = {.draws = static_cast<int>(state.range(0))}});
+  for (std::size_t k = 0; k < 20; ++k) soil.add(samples()[k]);
+  for (auto _ : state) benchmark::DoNotOptimize(soil.posterior());
+}
+BENCHMARK(posterior)->Arg(16)->Arg(128)->Arg(512);
+
+}  // namespace
+}  // namespace talus::terramech

@@ -1,0 +1,144 @@
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include "bad_input.hpp"
+#include "run_program.hpp"
+
+namespace talus::cli {
+namespace {
+
+using nlohmann::json;
+
+// A flat site of 40 m by 30 m, taken for sandy loam.
+std::vector<std::string> drive(const Folder& folder, const std::string& truth,
+                               const std::vector<std::string>& more = {}) {
+  folder.write("flat.asc", asciiGrid(40, 30, [](int, int) { return 0.0; }));
+  folder.write("truth.yaml", truth);
+  std::vector<std::string> words{"drive",   "flat.asc", "--ignore-crs", "--resolution", "1",
+                                 "--soil",  "sandy_loam", "--rover",    "sojourner",    "--truth",
+                                 "truth.yaml", "--start", "5,15",       "--goal",       "35,15"};
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+// Dust across the direct way, which no class raster shows.
+const char* const kTrap = R"(soils:
+  - {name: trap, cohesion_kPa: 0, friction_angle_deg: 18, sinkage_exponent: 1, cohesive_modulus: 0,
+     frictional_modulus: 60000, shear_modulus_mm: 20}
+patches:
+  - {x_m: 20, y_m: 15, radius_m: 4, soil: trap}
+)";
+
+json outcomeOf(const Folder& folder, const std::vector<std::string>& words) {
+  const Ran ran = runTalus(words, folder.path());
+  EXPECT_TRUE(ran.code == 0 || ran.code == 1) << ran.err;
+  return json::parse(ran.out);
+}
+
+TEST(DriveCommand, GroundAsBelievedIsReachedUnderEveryBelief) {
+  for (const char* belief : {"geometry", "prior", "online", "clairvoyant"}) {
+    const Folder folder;
+    const Ran ran = runTalus(drive(folder, "{}\n", {"--belief", belief, "--json"}), folder.path());
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    const json out = json::parse(ran.out);
+    EXPECT_EQ(out["outcome"], "reached") << belief;
+    EXPECT_NEAR(out["length_m"].get<double>(), 30.0, 1.0) << belief;  // Closed form: straight
+    EXPECT_GT(out["energy_J"].get<double>(), 0.0);
+    EXPECT_EQ(out["replans"], 0);
+    EXPECT_LT(out["max_slip"].get<double>(), 0.5);
+    EXPECT_TRUE(out["categories_changed"].is_number_unsigned());
+  }
+}
+
+TEST(DriveCommand, AnUndeclaredPatchHoldsTheBlindAndNotTheWatchful) {
+  const Folder folder;
+  const Ran blind = runTalus(drive(folder, kTrap, {"--belief", "prior", "--json"}), folder.path());
+  EXPECT_EQ(blind.code, 1);
+  EXPECT_EQ(json::parse(blind.out)["outcome"], "immobilised");
+  const json online = outcomeOf(folder, drive(folder, kTrap, {"--belief", "online", "--json"}));
+  EXPECT_EQ(online["outcome"], "reached");
+  EXPECT_GE(online["replans"].get<int>(), 1);
+  EXPECT_GT(online["categories_changed"].get<int>(), 0);
+  const json told = outcomeOf(folder, drive(folder, kTrap, {"--belief", "clairvoyant", "--json"}));
+  EXPECT_EQ(told["outcome"], "reached");
+  EXPECT_EQ(told["replans"], 0);
+  EXPECT_GT(online["length_m"].get<double>(), told["length_m"].get<double>());
+}
+
+TEST(DriveCommand, WorldsGiveRatesThatDoNotDependOnThreads) {
+  const Folder folder;
+  const char* const random = "random: {spread: 0.1, patches: 6, patch_radius_m: 2}\n";
+  const auto words = drive(folder, random, {"--worlds", "6", "--seed", "11", "--json"});
+  auto alone = words, both = words;
+  alone.insert(alone.end(), {"--threads", "1"});
+  both.insert(both.end(), {"--threads", "2"});
+  const Ran one = runTalus(alone, folder.path()), two = runTalus(both, folder.path());
+  ASSERT_EQ(one.code, 0) << one.err;
+  EXPECT_EQ(one.out, two.out);
+  const json out = json::parse(one.out);
+  EXPECT_EQ(out["worlds"], 6);
+  double sum = 0.0;
+  for (const char* outcome : {"reached", "immobilised", "tipped", "gave_up"}) {
+    const double rate = out[outcome]["rate"];
+    EXPECT_LE(out[outcome]["interval_95"][0].get<double>(), rate);
+    EXPECT_GE(out[outcome]["interval_95"][1].get<double>(), rate);
+    sum += rate;
+  }
+  EXPECT_NEAR(sum, 1.0, 1e-12);
+  EXPECT_EQ(out["each"].size(), 6U);
+}
+
+TEST(DriveCommand, AllBeliefsAreComparedInTheSameWorlds) {
+  const Folder folder;
+  const json out = outcomeOf(
+      folder, drive(folder, "random: {spread: 0.05}\n", {"--worlds", "3", "--belief", "all", "--json"}));
+  EXPECT_EQ(out["worlds"], 3);
+  EXPECT_EQ(out["clairvoyant"]["energy_over_clairvoyant"]["mean"], 1.0);
+  for (const char* belief : {"geometry", "prior", "online"})
+    EXPECT_TRUE(out[belief]["immobilised"].contains("interval_95")) << belief;
+}
+
+TEST(DriveCommand, ThePageTellsTheDrive) {
+  const Folder folder;
+  const json out = outcomeOf(folder, drive(folder, kTrap, {"--html", "r.html", "--json"}));
+  EXPECT_EQ(out, outcomeOf(folder, drive(folder, kTrap, {"--json"})));
+  const std::string page = fileContent(folder / "r.html");
+  for (const char* part : {"\"story\":{\"track\":[[", "\"text\":\"planned\"", "backed out", "id=\"moment\""})
+    EXPECT_NE(page.find(part), std::string::npos) << part;
+}
+
+TEST(BadInput, Rehearsals) {
+  const BadFiles files;
+  const auto write = [&](const char* name, const char* text) { files.folder().write(name, text); };
+  write("t_key.yaml", "patchs: []\n");
+  write("t_soil.yaml", "patches:\n  - {x_m: 1, y_m: 1, radius_m: 2, soil: mars_drifd}\n");
+  write("t_radius.yaml", "patches:\n  - {x_m: 1, y_m: 1, radius_m: -2, soil: mars_drift}\n");
+  write("t_place.yaml", "patches:\n  - {x_m: .nan, y_m: 1, radius_m: 2, soil: mars_drift}\n");
+  write("t_spread.yaml", "random: {spread: 7}\n");
+  write("t_many.yaml", "random: {patches: -3}\n");
+  write("truth.yaml", "{}\n");
+  const auto call = [](const std::string& truth, std::vector<std::string> more = {}) {
+    std::vector<std::string> words{"drive", "good.asc", "--resolution", "1",     "--soil", "sandy_loam", "--rover",
+                                   "fido",  "--truth",  truth,          "--start", "5,5",  "--goal",     "15,15"};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  };
+  expectRefused(files, {
+                           {{"drive"}, 2, ""},
+                           {call("missing.yaml"), 2, "missing.yaml"},
+                           {call("t_key.yaml"), 2, "patches"},
+                           {call("t_soil.yaml"), 2, "t_soil.yaml:2"},
+                           {call("t_radius.yaml"), 2, "radius_m"},
+                           {call("t_place.yaml"), 2, "x_m"},
+                           {call("t_spread.yaml"), 2, "spread"},
+                           {call("t_many.yaml"), 2, "patches"},
+                           {call("truth.yaml", {"--belief", "faith"}), 2, "faith"},
+                           {call("truth.yaml", {"--worlds", "0"}), 2, "--worlds"},
+                           {call("truth.yaml", {"--worlds", "2", "--html", "r.html"}), 2, "--html"},
+                           {call("truth.yaml", {"--html", "no/r.html"}), 2, "no/r.html"},
+                       });
+}
+
+}  // namespace
+}  // namespace talus::cli

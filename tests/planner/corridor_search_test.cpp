@@ -1,0 +1,110 @@
+#include <cmath>
+#include <limits>
+
+#include <planner/corridor_search.hpp>
+
+#include "drawn_map.hpp"
+
+namespace talus::planner {
+namespace {
+
+using maps::Point;
+using testing::drawn;
+using testing::randomMap;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// The cheapest way over the points of all edges, by trying every pair of points of a cell until nothing gets
+// cheaper. The expected answer, found in another way.
+double cheapestByHand(const MotionCost& cost, Point from, Point to, int points) {
+  const maps::Grid& grid = cost.map().grid();
+  std::vector<Point> places{from, to};
+  for (int line = 0; line <= grid.width; ++line)
+    for (int row = 0; row < grid.height; ++row)
+      for (int k = 0; k < points; ++k) places.push_back({line * 1.0, row + (k + 0.5) / points});
+  for (int line = 0; line <= grid.height; ++line)
+    for (int column = 0; column < grid.width; ++column)
+      for (int k = 0; k < points; ++k) places.push_back({column + (k + 0.5) / points, line * 1.0});
+  const auto shareACell = [](Point a, Point b) {
+    const double x = 0.5 * (a.x_m + b.x_m), y = 0.5 * (a.y_m + b.y_m);
+    if ((a.x_m == b.x_m && a.x_m == std::round(a.x_m)) || (a.y_m == b.y_m && a.y_m == std::round(a.y_m)))
+      return false;
+    for (const Point p : {a, b})
+      if (std::abs(p.x_m - std::floor(x) - 0.5) > 0.5 || std::abs(p.y_m - std::floor(y) - 0.5) > 0.5)
+        return false;
+    return true;
+  };
+  std::vector<double> label(places.size(), kInfinity);
+  label[0] = 0.0;
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (std::size_t a = 0; a < places.size(); ++a)
+      for (std::size_t b = 0; b < places.size() && std::isfinite(label[a]); ++b) {
+        if (a == b || !shareACell(places[a], places[b])) continue;
+        const double through = label[a] + cost({places[a], places[b]});
+        if (through < label[b] - 1e-12) label[b] = through, changed = true;
+      }
+  }
+  return label[1];
+}
+
+double priced(const MotionCost& cost, const EdgePath& path) {
+  const auto points = path.points(cost.map().grid());
+  double sum = 0.0;
+  for (std::size_t i = 1; i < points.size(); ++i) sum += cost({points[i - 1], points[i]});
+  return sum;
+}
+
+TEST(CorridorSearch, FindsTheCheapestWayOverEdgePoints) {
+  int found = 0;
+  for (unsigned seed = 1; seed <= 12; ++seed) {
+    const MotionCost cost(
+        randomMap({.width = 6, .height = 5, .seed = seed, .blocked = 0.15, .roughness = 0.03 * (seed % 6)}));
+    const Point from{0.6, 0.7}, to{5.3, 4.4};
+    const double expected = cheapestByHand(cost, from, to, 2);
+    const EdgePath path = searchCorridor(cost, {from, to}, 1e9, {.reach_cells = 6, .points_per_edge = 2});
+    ASSERT_EQ(path.empty(), !std::isfinite(expected)) << seed;
+    if (path.empty()) continue;
+    ++found;
+    EXPECT_NEAR(priced(cost, path), expected, 1e-5 * expected) << seed;  // labels are floats
+    // Property: nothing is found that is not cheaper than asked.
+    EXPECT_TRUE(
+        searchCorridor(cost, {from, to}, 0.999 * expected, {.reach_cells = 6, .points_per_edge = 2}).empty());
+  }
+  EXPECT_GT(found, 5);
+}
+
+TEST(CorridorSearch, StaysBesideTheWay) {
+  std::vector<std::string> rows(20, std::string(20, '4'));
+  rows.front() = rows.back() = std::string(20, '.');  // cheap, but out of reach
+  const MotionCost cost(drawn(rows));
+  const EdgePath path = searchCorridor(cost, {{1.5, 10.5}, {18.5, 10.5}}, 1e9, {.reach_cells = 2});
+  ASSERT_FALSE(path.empty());
+  for (const maps::Cell cell : path.cells) EXPECT_LE(std::abs(cell.row - 10), 2);
+}
+
+// Property: sliding makes no way dearer, keeps its ends and its cells, and bends it as light is bent.
+TEST(EdgePath, SlidesToWhereItIsCheaper) {
+  std::vector<std::string> rows(40, std::string(40, '.'));
+  for (auto& row : rows) row.replace(20, 20, std::string(20, '2'));
+  const MotionCost cost(drawn(rows));
+  const Point from{3.5, 5.5}, to{36.5, 30.5};
+  EdgePath path = searchCorridor(cost, {from, to}, 1e9, {.reach_cells = 8, .points_per_edge = 3});
+  const double before = priced(cost, path);
+  const auto cells = path.cells;
+  slideTurns(cost.map(), path, 0.5 / 3, 6);
+  double best = 1e9;  // Closed form, by scanning where the border is crossed.
+  for (double y = 5.5; y < 30.5; y += 1e-3)
+    best = std::min(best,
+                    10 * std::hypot(20 - from.x_m, y - from.y_m) + 30 * std::hypot(to.x_m - 20, to.y_m - y));
+  const double after = priced(cost, path);
+  EXPECT_LT(after, before);
+  EXPECT_EQ(path.cells, cells);
+  EXPECT_EQ(path.points(cost.map().grid()).front(), from);
+  EXPECT_EQ(path.points(cost.map().grid()).back(), to);
+  EXPECT_GE(after, best * (1 - 1e-9));
+  EXPECT_LT(after, best * 1.01);
+}
+
+}  // namespace
+}  // namespace talus::planner

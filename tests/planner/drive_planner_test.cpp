@@ -1,0 +1,144 @@
+#include <cmath>
+
+#include <planner/annotation.hpp>
+#include <planner/drive_planner.hpp>
+#include <planner/route_check.hpp>
+
+#include "drawn_map.hpp"
+
+namespace talus::planner {
+namespace {
+
+using testing::randomMap;
+
+Problem across(const std::shared_ptr<const costmap::CostGrid>& map, double radius_m) {
+  return {.map = map,
+          .start = {2.5, 2.5},
+          .goal = {37.5, 35.5},
+          .kinematics = {.turning_radius_m = radius_m,
+                         .turns = {.on_arc = {.cost_J = 2.0, .energy_J = 2.0, .time_s = 1.0},
+                                   .in_place = {.cost_J = 5.0, .energy_J = 4.0, .time_s = 1.0}},
+                         .cusp = {.cost_J = 3.0, .energy_J = 3.0, .time_s = 0.5}}};
+}
+
+// Hazards laid against the true arc every hundredth of a metre, in the heading that it has there.
+bool drivable(const costmap::CostGrid& map, const PosePath& drive) {
+  Pose pose = drive.start;
+  for (const auto& leg : drive.legs) {
+    const int steps = 1 + static_cast<int>(std::abs(leg.arc.length_m) / 0.01 + std::abs(leg.turn_rad) / 0.01);
+    const double side = leg.arc.length_m < 0.0 ? M_PI : 0.0;
+    for (int k = 0; k < steps; ++k) {
+      const double share = (k + 0.5) / steps;
+      const Pose at =
+          after(pose, PosePath::Leg{{leg.arc.length_m * share, leg.arc.curvature_1_m}, leg.turn_rad * share});
+      const double way = at.heading_rad + side;
+      const auto cell = map.grid().cellAt(at.place);
+      if (!cell || std::isinf(map.cost().costPerMetre(map.at(*cell), {std::cos(way), std::sin(way)})))
+        return false;
+    }
+    pose = after(pose, leg);
+  }
+  return true;
+}
+
+TEST(DrivePlanner, NeverHandsOutADriveThatMayNotBeDriven) {
+  // Property: on random ground, with and without reversing, turning in place and not, each drive stands up to
+  // dense sampling of its arcs, starts and ends where asked, and its cost is not below the bound.
+  int found = 0;
+  for (unsigned seed = 1; seed <= 12; ++seed)
+    for (const double radius_m : {0.0, 1.5, 3.0})
+      for (const bool reverse : {true, false}) {
+        const auto map =
+            randomMap({.width = 40, .height = 40, .seed = seed, .blocked = 0.06, .roughness = 0.2});
+        Problem problem = across(map, radius_m);
+        problem.kinematics.may_reverse = reverse;
+        problem.start_heading_rad = 0.3 * seed;
+        const Plan plan = DrivePlanner().plan(problem);
+        if (plan.status != RouteStatus::Found) continue;
+        ++found;
+        EXPECT_TRUE(drivable(*map, plan.drive)) << "seed " << seed << " radius " << radius_m;
+        EXPECT_EQ(plan.points.front(), problem.start);
+        EXPECT_NEAR(plan.points.back().x_m, 37.5, 1e-6);
+        EXPECT_NEAR(plan.points.back().y_m, 35.5, 1e-6);
+        EXPECT_NEAR(std::remainder(plan.drive.start.heading_rad - 0.3 * seed, 2 * M_PI), 0.0, 1e-9);
+        EXPECT_GE(plan.cost_J, plan.lower_bound_J);
+        const DriveShape made = shape(plan.drive);
+        if (radius_m > 0.0) {
+          EXPECT_LE(made.max_curvature_1_m, 1.0 / radius_m + 1e-9);
+        }
+        if (!reverse) {
+          EXPECT_EQ(made.cusps, 0);
+        }
+      }
+  EXPECT_GT(found, 40);
+}
+
+TEST(DrivePlanner, PassesViaPointsWithoutAJumpInHeading) {
+  const auto map = randomMap({.width = 40, .height = 40, .seed = 4, .blocked = 0.0, .roughness = 0.1});
+  Problem problem = across(map, 2.0);
+  problem.via = {{30.5, 5.5}};
+  const Plan plan = DrivePlanner().plan(problem);
+  ASSERT_EQ(plan.status, RouteStatus::Found) << plan.reason;
+  double nearest_m = 100.0;
+  for (const Pose& pose : sampled(plan.drive, 0.05))
+    nearest_m = std::min(nearest_m, std::hypot(pose.place.x_m - 30.5, pose.place.y_m - 5.5));
+  EXPECT_LT(nearest_m, 0.06);
+}
+
+TEST(DrivePlanner, TheReportCountsTurning) {
+  // Closed form: on flat ground of 10 J/m a turn in place of a quarter takes 4 J a radian and a second a
+  // radian.
+  const auto map = testing::drawn(std::vector<std::string>(12, std::string(20, '.')));
+  Problem problem = across(map, 0.0);
+  problem.goal = {12.5, 2.5};
+  problem.start_heading_rad = M_PI / 2;
+  problem.kinematics.may_reverse = false;
+  const Plan plan = DrivePlanner().plan(problem);
+  ASSERT_EQ(plan.status, RouteStatus::Found) << plan.reason;
+  EXPECT_NEAR(plan.cost_J, 100.0 + 5.0 * M_PI / 2, 1e-3);
+  const Route route = annotated(plan, {.map = *map, .kinematics = problem.kinematics});
+  EXPECT_NEAR(route.summary.energy_J, 4.0 * M_PI / 2, 1e-9);  // the drawn map has no table of energies
+  EXPECT_NEAR(route.summary.time_s, M_PI / 2, 1e-9);
+  ASSERT_TRUE(route.summary.drive.has_value());
+  EXPECT_EQ(route.summary.drive->turns_in_place, 1);
+  EXPECT_NEAR(route.vertices.front().turn_rad, -M_PI / 2, 1e-9);
+  EXPECT_NEAR(route.vertices.front().heading_rad, M_PI / 2, 1e-9);
+  EXPECT_NEAR(route.vertices[1].heading_rad, 0.0, 1e-9);
+}
+
+TEST(DrivePlanner, AVertexInReverseLooksTheOtherWay) {
+  const auto map = testing::drawn({"######", "#....#", "######"});
+  Problem problem = across(map, 2.0);
+  problem.start = {4.5, 1.5};
+  problem.goal = {1.5, 1.5};
+  problem.start_heading_rad = 0.0;
+  const Plan plan = DrivePlanner().plan(problem);
+  ASSERT_EQ(plan.status, RouteStatus::Found) << plan.reason;
+  const Route route = annotated(plan, {.map = *map});
+  EXPECT_TRUE(route.vertices.front().reverse);
+  EXPECT_NEAR(std::remainder(route.vertices.front().heading_rad, 2 * M_PI), 0.0, 1e-9);
+}
+
+TEST(RouteCheckOfDrives, FindsWhatAnArcGrazes) {
+  // The chord of this quarter circle of radius 3 about (4, 1) runs through (1.9, 3.1); the arc bulges into
+  // the blocked corner cell that the chord misses.
+  const auto map = testing::drawn({".....", ".#...", ".....", ".....", "....."});
+  const PosePath arc{.start = {{1.0, 1.0}, M_PI / 2}, .legs = {{{3.0 * M_PI / 2, -1.0 / 3.0}, 0.0}}};
+  EXPECT_TRUE(violations(*map, std::vector<maps::Point>{{1.0, 1.0}, {4.0, 4.0}}).empty());
+  EXPECT_FALSE(violations(*map, arc, 3.0).empty());
+  EXPECT_NE(violations(*map, arc, 4.0).front().reason.find("tighter"), std::string::npos);
+}
+
+TEST(RouteCheckOfDrives, ATurnInPlaceNeedsEveryHeading) {
+  const auto steep = testing::drawn({">"});
+  const costmap::CostGrid grid({.grid = steep->grid(),
+                                .tiles = steep->content().tiles,
+                                .cost = testing::driveCost({.max_along = 0.3, .max_across = 0.1}),
+                                .version = 1});
+  EXPECT_TRUE(violations(grid, PosePath{.start = {{0.5, 0.5}, 0.0}, .legs = {{{}, 0.2}}}, 0.0).empty());
+  EXPECT_FALSE(violations(grid, PosePath{.start = {{0.5, 0.5}, 0.0}, .legs = {{{}, M_PI}}}, 0.0).empty());
+  EXPECT_FALSE(violations(grid, PosePath{.start = {{0.5, 0.5}, 0.0}, .legs = {{{}, 0.2}}}, 1.0).empty());
+}
+
+}  // namespace
+}  // namespace talus::planner

@@ -1,0 +1,65 @@
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include <planner/polyline.hpp>
+
+namespace talus::planner {
+namespace {
+
+using maps::Point;
+
+Polyline wandering(unsigned seed, int points) {
+  std::mt19937 random(seed);
+  const auto unit = [&random] { return static_cast<double>(random()) / 4294967296.0; };
+  Polyline line{{0.0, 0.0}};
+  while (static_cast<int>(line.size()) < points)
+    line.push_back({line.back().x_m + 5.0 * unit(), line.back().y_m + 8.0 * (unit() - 0.5)});
+  return line;
+}
+
+// Property: pieces join up, keep the length, and end where the way left is a multiple of the piece.
+TEST(Polyline, IsCutFromItsEnd) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    const Polyline line = wandering(seed, 30);
+    const auto pieces = cutFromEnd(line, 7.0, 3.0);
+    double left_m = 0.0;
+    for (std::size_t k = pieces.size(); k-- > 0; left_m += length_m(pieces[k])) {
+      if (k + 1 < pieces.size()) {
+        EXPECT_EQ(pieces[k].back(), pieces[k + 1].front());
+        EXPECT_NEAR(std::remainder(left_m - 3.0, 7.0), 0.0, 1e-9);
+      }
+    }
+    EXPECT_NEAR(left_m, length_m(line), 1e-9);
+    EXPECT_EQ(pieces.front().front(), line.front());
+    EXPECT_GT(length_m(pieces.front()), 3.5 - 1e-9);
+    EXPECT_LE(length_m(pieces.front()), 10.5 + 1e-9);
+  }
+}
+
+// Property: what lies before a cut does not move it, to the bit.
+TEST(Polyline, CutsBehindAChangeStay) {
+  Polyline line = wandering(5, 40);
+  const auto before = cutFromEnd(line, 9.0, 9.0);
+  line[1].y_m += 3.0;
+  line.insert(line.begin(), {-20.0, 4.0});
+  const auto after = cutFromEnd(line, 9.0, 9.0);
+  for (std::size_t k = 1; k + 3 < before.size(); ++k)
+    EXPECT_EQ(before[before.size() - k], after[after.size() - k]) << k;
+}
+
+TEST(Polyline, IsSplitWhereSoMuchIsLeft) {
+  const Polyline line{{0.0, 0.0}, {10.0, 0.0}, {10.0, 5.0}};
+  for (const double left_m : {0.5, 5.0, 7.0, 14.5}) {
+    const auto [before, behind] = splitAt(line, left_m);
+    EXPECT_NEAR(length_m(behind), left_m, 1e-12);
+    EXPECT_NEAR(length_m(before) + length_m(behind), 15.0, 1e-12);
+    EXPECT_EQ(before.back(), behind.front());
+    EXPECT_EQ(before.front(), line.front());
+    EXPECT_EQ(behind.back(), line.back());
+  }
+}
+
+}  // namespace
+}  // namespace talus::planner
