@@ -117,7 +117,20 @@ int runOne(const planner::RehearsalSite& site, const Options& options, const Con
   if (context.stop.stop_requested()) return Exit::kCancelled;
   if (!options.html.empty()) saveDrivePage(options.html, site, belief, drive);
   if (!options.telemetry.empty()) saveTelemetry(options.telemetry, drive.result.drive, rover);
-  show(drive.result, context);
+  if (context.json) {
+    nlohmann::ordered_json json = asJson(drive.result);
+    json["prediction"] = {{"steps", drive.prediction.steps},
+                          {"slip_rmse", drive.prediction.slip_rmse},
+                          {"energy_rmse", drive.prediction.energy_rmse},
+                          {"energy_error", drive.prediction.energy_error}};
+    printJson(json);
+  } else {
+    print(asText(drive.result) +
+          fmt::format("predicted     slip to {:.3f} rms, energy of the whole drive {:+.1f} % off
+                      ",
+                      drive.prediction.slip_rmse,
+                      100.0 * drive.prediction.energy_error));
+  }
   return drive.result.drive.outcome == planner::Outcome::Reached ? Exit::kDone : Exit::kNo;
 }
 

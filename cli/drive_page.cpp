@@ -37,6 +37,8 @@ WatchedDrive watchedDrive(const planner::RehearsalSite& site, planner::Belief be
   planner::RehearsalOptions options = site.options(belief, 0);
   options.watch = {.progress = {}, .stop = watch.stop};
   options.record = true;
+  planner::DriveLog log;
+  options.on_step = [&](const planner::DriveStep& step) { log.record(step); };
   options.on_learned = [&](double time_s) {
     std::vector<std::uint8_t> now = planner::categoriesOf(map);
     const int width = map.grid().width;
@@ -50,6 +52,7 @@ WatchedDrive watchedDrive(const planner::RehearsalSite& site, planner::Belief be
   for (std::size_t i = 0; i < before.size(); ++i)
     out.result.categories_changed += before[i] != known[i] ? 1U : 0U;
   out.story.drive = out.result.drive;
+  out.prediction = log.errors();
   return out;
 }
 

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include <cli/drive_story.hpp>
+#include <planner/drive_log.hpp>
 #include <planner/rehearsal_site.hpp>
 
 namespace talus::cli {
@@ -12,6 +13,7 @@ namespace talus::cli {
 struct WatchedDrive {
   planner::WorldResult result;
   DriveStory story;
+  planner::PredictionErrors prediction{};  ///< of what the map said of each step before it was driven
 };
 WatchedDrive watchedDrive(const planner::RehearsalSite& site, planner::Belief belief, const Watch& watch);
 

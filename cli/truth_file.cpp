@@ -3,6 +3,7 @@
 
 #include <cli/truth_file.hpp>
 #include <talus.hpp>
+#include <terramech/model_file.hpp>
 #include <terramech/soil_library.hpp>
 #include <terramech/yaml_fields.hpp>
 
@@ -21,6 +22,9 @@ const char* const kTruthFormat =
     "    patches: 8                            so many more, anywhere but at start and goal\n"
     "    patch_radius_m: 3                     their mean radius, +-50 %\n"
     "    patch_soil: mars_drift\n"
+    "  effects:                                what acts on all soils and nobody declared (talus trace "
+    "--help)\n"
+    "    - {name: slip_sinkage_ding, parameters: [0.4]}\n"
     "  soils: [{name: SOIL, cohesion_kPa: 0.2, friction_angle_deg: 24, ...}]   soils of one's own\n"
     "SOIL is a name in the library or in `soils:`, a YAML file, or the fields of a soil in braces.\n";
 
@@ -75,13 +79,14 @@ void readRandom(const YamlFields& random, const YamlFields& file, const std::str
 
 planner::Truth readTruth(const std::string& path) {
   const YamlFields file = YamlFields::file(path);
-  file.only({"classes", "terrain_classes", "soils", "patches", "random"});
+  file.only({"classes", "terrain_classes", "soils", "patches", "random", "effects"});
   planner::Truth truth;
   if (file.has("classes") || file.has("terrain_classes"))
     for (const auto& [number, prior] : terramech::loadTerrainClasses(path))
       truth.classes[number] = prior.mean;
   for (const YamlFields& patch : file.list("patches")) truth.patches.push_back(patchOf(patch, file, path));
   truth.patch_soil = terramech::loadSoil("mars_drift");
+  truth.effects = terramech::readEffects(file);
   if (file.has("random")) readRandom(file.fields("random"), file, path, truth);
   return truth;
 }

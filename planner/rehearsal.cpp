@@ -108,9 +108,25 @@ class Drive {
       if (step.stuck && !options_.senses) return Leg::Stuck;
       if (reason) return retreat(step, heading, *reason);
       if (learned && routeTurnedDear()) return retreat(step, heading, "ground turned out weaker");
+      report(step, heading, std::min(left, options_.step_m));
       advance(step, heading, std::min(left, options_.step_m));
     }
     return Leg::Arrived;
+  }
+
+  void report(const TrueWorld::Step& step, const Direction& heading, double length_m) const {
+    if (!options_.on_step) return;
+    const costmap::DriveState state = expected(here_, heading);
+    const double slope = gradient(heading);
+    options_.on_step({.time_s = result_.time_s,
+                      .place = here_,
+                      .heading = heading,
+                      .gradient = slope,
+                      .length_m = length_m,
+                      .expected_slip = static_cast<double>(state.slip),
+                      .expected_energy_J_per_m =
+                          static_cast<double>(state.energy_J_per_m) / std::hypot(1.0, slope),
+                      .truth = step});
   }
 
   double gradient(const Direction& heading) const {

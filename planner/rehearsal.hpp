@@ -24,6 +24,18 @@ enum class Outcome {
 /// "reached", "immobilised", "tipped", "gave_up".
 std::string_view name(Outcome outcome) noexcept;
 
+/// One step of a drive: what the map said of it before, and what it was.
+struct DriveStep {
+  double time_s = 0.0;
+  maps::Point place;
+  costmap::Direction heading;
+  double gradient = 0.0;
+  double length_m = 0.0;
+  double expected_slip = 0.0;
+  double expected_energy_J_per_m = 0.0;  ///< along the surface
+  TrueWorld::Step truth;
+};
+
 /// What a rehearsal does.
 struct RehearsalOptions {
   maps::Point start;
@@ -42,7 +54,8 @@ struct RehearsalOptions {
   double look_m = 0.5;     ///< between two readings of the wheels that the map learns from, > 0
   int max_replans = 60;    ///< then it gives up
   std::uint64_t seed = 1;  ///< of the sensors' noise
-  bool record = false;     ///< keep what the wheels read
+  std::function<void(const DriveStep&)> on_step = {};  ///< called for every step that leads on
+  bool record = false;                                 ///< keep what the wheels read
   std::function<void(double time_s)> on_learned = {};  ///< called after the map changed
   Watch watch = {};
 };

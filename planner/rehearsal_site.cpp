@@ -35,6 +35,7 @@ void tellTruth(const TrueWorld& world, double footprint_m, costmap::MapLayers& l
   for (const terramech::Soil& soil : world.soils())
     parts.classes.push_back({.number = static_cast<int>(parts.classes.size()),
                              .soil = soil,
+                             .effects = world.effects(),
                              .pull_std = kNoDoubt,
                              .mean_std = kNoDoubt});
   const maps::Grid& grid = layers.elevation.grid();
@@ -66,7 +67,10 @@ costmap::TraversabilityMap RehearsalSite::believed(Belief belief, const TrueWorl
   costmap::GroundModel::Parts parts = map_.model().parts();
   costmap::MapLayers layers{map_.elevation(), map_.classes(), {}, {}, declaredHazards(map_)};
   if (belief == Belief::Geometry)
-    for (costmap::GroundClass& ground : parts.classes) ground.soil = parts_.firm;
+    for (costmap::GroundClass& ground : parts.classes) {
+      ground.soil = parts_.firm;
+      ground.effects.clear();
+    }
   if (belief == Belief::Clairvoyant) tellTruth(world, map_.footprintRadius_m(), layers, parts);
   return {std::move(layers),
           std::make_shared<costmap::GroundModel>(std::move(parts)),

@@ -54,6 +54,7 @@ TrueWorld::TrueWorld(const WorldSoils& soils, const terramech::Rover& rover,
       class_index_(std::move(class_index)),
       classes_(soils.classes.size()),
       soils_(soils.classes),
+      effects_(soils.effects),
       patches_(soils.patches) {
   for (const SoilPatch& patch : patches_) {
     const auto alike = std::find_if(soils_.begin() + static_cast<std::ptrdiff_t>(classes_), soils_.end(),
@@ -62,7 +63,8 @@ TrueWorld::TrueWorld(const WorldSoils& soils, const terramech::Rover& rover,
     if (alike == soils_.end()) soils_.push_back(patch.soil);
   }
   for (const auto& soil : soils_)
-    tables_.push_back({WheelTable(soil, rover_), WheelTable(terramech::rutted(soil), rover_)});
+    tables_.push_back(
+        {WheelTable(soil, rover_, effects_), WheelTable(terramech::rutted(soil), rover_, effects_)});
 }
 
 std::size_t TrueWorld::soilAt(const maps::Point& place, double margin_m) const noexcept {

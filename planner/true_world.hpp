@@ -7,6 +7,7 @@
 #include <maps/grid.hpp>
 #include <planner/ruts.hpp>
 #include <planner/wheel_table.hpp>
+#include <terramech/effects.hpp>
 #include <terramech/rover.hpp>
 #include <terramech/soil.hpp>
 
@@ -23,6 +24,7 @@ struct SoilPatch {
 struct WorldSoils {
   std::vector<terramech::Soil> classes;  ///< true soil of each class of the map, in its order
   std::vector<SoilPatch> patches;        ///< later ones lie on top
+  std::vector<terramech::Effect> effects{};  ///< that act on all of them, beyond a rigid wheel on that soil
 };
 
 /// Where a rover stands and where it is driven to.
@@ -68,6 +70,8 @@ class TrueWorld {
   std::size_t soilAt(const maps::Point& place, double margin_m = 0.0) const noexcept;
   /// The classes' soils in their order, then those of the patches, each once.
   const std::vector<terramech::Soil>& soils() const noexcept { return soils_; }
+  /// Effects that act on all of them.
+  const std::vector<terramech::Effect>& effects() const noexcept { return effects_; }
   const std::vector<SoilPatch>& patches() const noexcept { return patches_; }
 
  private:
@@ -81,6 +85,7 @@ class TrueWorld {
   maps::Raster<std::uint8_t> class_index_;
   std::size_t classes_;
   std::vector<terramech::Soil> soils_;
+  std::vector<terramech::Effect> effects_;
   std::vector<Tables> tables_;  // of each soil
   std::vector<SoilPatch> patches_;
   std::vector<std::size_t> patch_soil_;  // of each patch

@@ -1,14 +1,16 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
+#include <terramech/effects.hpp>
 #include <terramech/rover.hpp>
 #include <terramech/soil.hpp>
 
 namespace talus::planner {
 
-/// What a wheel does on one soil under its load on the flat, tabulated over slip -1 .. 1 by the forward
-/// model.
+/// What a wheel does on one soil, with the effects that act there, under its load on the flat, tabulated over
+/// slip -1 .. 1 by the forward model.
 class WheelTable {
  public:
   /// Forces over the load.
@@ -21,7 +23,8 @@ class WheelTable {
   static constexpr std::size_t kRows = 81;
 
   /// A soil that cannot carry the wheel pulls nothing.
-  WheelTable(const terramech::Soil& soil, const terramech::Rover& rover);
+  WheelTable(const terramech::Soil& soil, const terramech::Rover& rover,
+             const std::vector<terramech::Effect>& effects = {});
 
   /// Slip of a row.
   static constexpr double slip(std::size_t row) noexcept {

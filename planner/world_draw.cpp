@@ -45,6 +45,7 @@ WorldSoils drawWorld(const Truth& truth, const std::vector<costmap::GroundClass>
         varied(stated == truth.classes.end() ? ground.soil : stated->second, truth.spread, random));
   }
   world.patches = truth.patches;
+  world.effects = truth.effects;
   const Soil patch_soil = truth.random_patches > 0 ? varied(truth.patch_soil, truth.spread, random) : Soil{};
   std::uniform_real_distribution<double> size(0.5, 1.5);
   for (int i = 0; i < truth.random_patches; ++i) {

@@ -18,6 +18,7 @@ struct Truth {
   int random_patches = 0;  ///< undeclared, a world
   double patch_radius_m = 3.0;  ///< mean; they range evenly over +-50 %
   terramech::Soil patch_soil;   ///< of the random patches, varied as the classes are
+  std::vector<terramech::Effect> effects{};  ///< undeclared, on all soils
 };
 
 /// What draws a world: its number, and the places that random patches spare.

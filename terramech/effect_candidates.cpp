@@ -62,6 +62,23 @@ class Collector {
     all_.push_back(std::move(candidate));
   }
 
+  /// Several forms as one explanation, at their typical sizes.
+  void addTogether(std::initializer_list<const char*> names) {
+    const std::size_t first = all_.size();
+    for (const char* name : names) {
+      const EffectForm& form = *findEffect(name);
+      add(form, form.covariate);
+    }
+    if (all_.size() < first + 2) return;
+    Candidate whole = all_[first];
+    for (std::size_t k = first + 1; k < all_.size(); ++k) {
+      whole.parts.push_back(all_[k].parts.front());
+      whole.parameters += all_[k].parameters;
+    }
+    all_.resize(first);
+    all_.push_back(std::move(whole));
+  }
+
   /// The last one again, for each group of each text column alone.
   void repeatByGroup() {
     const Candidate whole = all_.back();
@@ -176,11 +193,26 @@ Rule ruleOf(const EffectForm& form) {
   return always;
 }
 
+/// What happens at once to a wheel that is dragged or slides sideways; one without the others explains
+/// little.
+void together(Collector& to) {
+  const bool braked = to.extent("slip").low < -0.02, sideways = to.varies("slip_angle_rad");
+  if (braked && sideways)
+    to.addTogether({"side_ploughing", "side_bulldozing", "skid_sinkage", "slip_sinkage_ding_quadratic",
+                    "bulldozing_two_term", "elastic_rebound"});
+  else if (sideways)
+    to.addTogether({"side_ploughing", "side_bulldozing", "slip_sinkage_ding_quadratic", "bulldozing_two_term",
+                    "elastic_rebound"});
+  else if (braked)
+    to.addTogether({"skid_sinkage", "slip_sinkage_ding_quadratic", "bulldozing_two_term", "elastic_rebound"});
+}
+
 }  // namespace
 
 std::vector<Candidate> libraryCandidates(const Trial& trial, const Eigen::VectorXd& sinkage_m) {
   Collector collector{trial, sinkage_m};
   for (const EffectForm& form : effectLibrary()) ruleOf(form)(collector, form);
+  together(collector);
   return collector.take();
 }
 

@@ -105,8 +105,6 @@ Effect readEffect(const YamlFields& f) {
   f.only({"name", "covariate", "channel", "parameters", "knots", "only"});
   Effect effect;
   effect.name = f.word("name");
-  effect.covariate = f.word("covariate");
-  effect.channel = readChannel(f);
   effect.parameters = f.numbers("parameters");
   effect.knots = f.numbers("knots");
   if (f.has("only")) {
@@ -121,6 +119,8 @@ Effect readEffect(const YamlFields& f) {
     f.refuse("name", "no effect '" + effect.name + "'",
              nearest.empty() ? "" : "did you mean " + nearest + "?");
   }
+  effect.covariate = form ? f.word("covariate", form->covariate) : f.word("covariate");
+  effect.channel = form && !f.has("channel") ? form->channel : readChannel(f);
   const std::size_t wanted = form ? form->parameters.size() : effect.knots.size();
   if (effect.parameters.size() != wanted || wanted == 0)
     if (!form || wanted != effect.parameters.size())
@@ -155,6 +155,12 @@ BaseModel readBase(const YamlFields& root) {
 
 }  // namespace
 
+std::vector<Effect> readEffects(const YamlFields& root) {
+  std::vector<Effect> effects;
+  for (const YamlFields& f : root.list("effects")) effects.push_back(readEffect(f));
+  return effects;
+}
+
 ModelFile unknownSoil() {
   ModelFile file;
   file.soil_given = false;
@@ -186,7 +192,7 @@ ModelFile loadModel(const std::string& path) {
   model.slip_along_travel = root.flag("slip_along_travel", false);
   if (root.has("sensors")) model.stated = readSensors(root.fields("sensors"));
   if (root.has("noise")) model.noise = readNoise(root.fields("noise"));
-  for (const YamlFields& f : root.list("effects")) model.effects.push_back(readEffect(f));
+  model.effects = readEffects(root);
   if (root.has("fitted")) readFit(root, model);
   return file;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <terramech/refined_model.hpp>
 
@@ -19,6 +20,12 @@ struct ModelFile {
 ///    [...], only: {column, value}}], noise: {...}, fitted: [...], covariance: [...]}
 /// or a bare soil. Throws InputError with file, line and field.
 ModelFile loadModel(const std::string& path);
+
+class YamlFields;
+
+/// The list `effects:` of a file, as above; covariate and channel may be left out of a known form, which has
+/// its own.
+std::vector<Effect> readEffects(const YamlFields& root);
 
 /// Where a fit starts when nobody names a soil.
 ModelFile unknownSoil();

@@ -10,13 +10,25 @@
 namespace talus::terramech {
 namespace {
 
-constexpr double kLeastShare = 0.1, kFarOff = 0.15;
+constexpr double kLeastShare = 0.1, kFarOff = 0.15, kLoudest = 0.25;
 
-double spreadOf(const Trial& trial, int channel) {
+struct Scatter {
+  double mean = 0.0, std = 0.0;
+};
+
+Scatter scatterOf(const Trial& trial, int channel) {
   double n = 0.0, sum = 0.0, square = 0.0;
   for (double v : trial.measured.col(channel))
     if (std::isfinite(v)) n += 1.0, sum += v, square += v * v;
-  return n > 1.0 ? std::sqrt(std::max(0.0, square / n - (sum / n) * (sum / n))) : 0.0;
+  if (n < 2.0) return {};
+  return {sum / n, std::sqrt(std::max(0.0, square / n - (sum / n) * (sum / n)))};
+}
+
+/// Whether a channel moves by more than its noise, or by so much that no sensor's noise is that large.
+bool moves(const Scatter& scatter, int channel, double noise_floor) {
+  const bool ratio =
+      channel == static_cast<int>(Channel::Sinkage) || channel == static_cast<int>(Channel::Torque);
+  return scatter.std > 2.0 * noise_floor || (ratio && scatter.std > kLoudest * std::abs(scatter.mean));
 }
 
 double medianClosureError(const Trial& trial) {
@@ -40,20 +52,23 @@ Applicability applicability(const TraceResult& result, const TraceOptions& optio
   TraceResult physics = result;
   std::erase_if(physics.refined.effects, [](const Effect& e) { return e.empirical(); });
   const HeldOut held = holdOut(physics, options, foldsOf(result.trial));
-  double best = -1.0;
-  bool asked = false;
+  int asked = 0, silent = 0;
+  bool absurd = false;
+  std::string shares;
   for (int c = 0; c < kChannels; ++c) {
     const auto k = static_cast<std::size_t>(c);
-    const double spread = spreadOf(result.trial, c);
-    if (!result.trial.has(static_cast<Channel>(c)) || spread < 2.0 * result.noise_floor[k]) continue;
-    asked = true;
-    best = std::max(best, 1.0 - std::pow(held.refined_rmse[k] / spread, 2));
+    if (!result.trial.has(static_cast<Channel>(c))) continue;
+    const Scatter scatter = scatterOf(result.trial, c);
+    if (!moves(scatter, c, result.noise_floor[k])) continue;
+    const double share = 1.0 - std::pow(held.refined_rmse[k] / scatter.std, 2);
+    ++asked;
+    silent += share < kLeastShare;
+    absurd |= share < -1.0;
+    shares += std::string(shares.empty() ? "" : ", ") + name(static_cast<Channel>(c)) + " " + number(share);
   }
-  if (asked && best < kLeastShare)
-    return {false,
-            "on rows held out its physics predicts no channel better than that channel's mean (explained "
-            "share of variance at most " +
-                number(best) + "): a rigid wheel on soil does not describe them"};
+  if (absurd || (asked > 0 && silent == asked))
+    return {false, "on rows held out its physics explains too little of the variance (" + shares +
+                       "): a rigid wheel on soil does not describe them"};
   const double closure = medianClosureError(result.trial);
   if (closure > kFarOff && held.refined_rmse[0] > kFarOff)
     return {false,

@@ -86,9 +86,13 @@ Reading Bound::reading(const WheelState& state, const WheelContact& contact,
                   .torque_Nm = forces.torque_Nm,
                   .drawbar_pull_N = forces.drawbar_pull_N,
                   .side_force_N = forces.side_force_N};
-  if (model_.base == BaseModel::LinearFormula)
+  if (model_.base == BaseModel::LinearFormula) {
+    Reading from = reading;
+    if (std::isfinite(state.measured_torque_Nm)) from.torque_Nm = state.measured_torque_Nm;
+    if (std::isfinite(state.measured_sinkage_m)) from.sinkage_m = state.measured_sinkage_m;
     reading.drawbar_pull_N =
-        reading.load_N * (reading.scaled(Channel::Torque) - reading.scaled(Channel::Sinkage) - 0.1);
+        reading.load_N * (from.scaled(Channel::Torque) - from.scaled(Channel::Sinkage) - 0.1);
+  }
   for (const BoundEffect& e : effects_) {
     if (!e.form || !e.form->read || !applies(*e.effect, state)) continue;
     const double x = covariateOf(*e.effect, state, reading.sinkage_m);

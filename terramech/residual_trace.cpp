@@ -23,11 +23,18 @@ double pValueOf(const std::vector<CovariateTest>& tests, const Candidate& chosen
   return p;
 }
 
+/// A curve in slip or load, which are measured with errors of their own.
+bool inNoisyInput(const Explanation& e) {
+  const std::string& covariate = e.candidate.covariate();
+  return e.candidate.empirical() && (covariate == "slip" || covariate == "load_N");
+}
+
 /// Whether a further effect carries a share of the residual worth a name: what the form of the first leaves
-/// over is often certain and tiny.
+/// over is often certain and tiny. A curve in slip or load must carry more, since their own errors, where
+/// they are not as normal as supposed, look like one.
 bool matters(const Explanation& e, const Trial& trial) {
   const auto values = static_cast<double>(trial.measured.array().isFinite().count());
-  return e.chi2_gain > 0.03 * values;
+  return e.chi2_gain > (inNoisyInput(e) ? 0.12 : 0.03) * values;
 }
 
 Channel strongest(const Explanation& e) {
@@ -101,6 +108,32 @@ bool correctOffset(TraceSearch& search, const Trial& trial, std::uint64_t seed,
   return true;
 }
 
+/// Forms that were found together, each told for itself.
+std::vector<TracedEffect> apart(const std::vector<TracedEffect>& effects) {
+  std::vector<TracedEffect> all;
+  for (const TracedEffect& e : effects) {
+    if (e.chosen.candidate.empirical() || e.chosen.candidate.parts.size() == 1) {
+      all.push_back(e);
+      continue;
+    }
+    std::size_t at = 0;
+    for (const Effect& part : e.chosen.candidate.parts) {
+      TracedEffect one = e;
+      const EffectForm& form = *findEffect(part.name);
+      one.chosen.candidate = {{part}, form.family, 0};
+      one.channel = form.channel;
+      one.parameter_std.clear();
+      for (const EffectParameter& p : form.parameters) {
+        if (!p.fitted || at >= e.parameter_std.size()) continue;
+        ++one.chosen.candidate.parameters;
+        one.parameter_std.push_back(e.parameter_std[at++]);
+      }
+      all.push_back(std::move(one));
+    }
+  }
+  return all;
+}
+
 }  // namespace
 
 ChannelErrors rmseOf(const RefinedModel& model, const Trial& trial) {
@@ -133,7 +166,8 @@ TraceResult traceResiduals(const RefinedModel& base, const Trial& trial, const T
     if (smallest(tests) > options.significance || round == options.max_effects) break;
     const auto ranked = search.fitBest(screened);
     auto best = search.choose(ranked);
-    if (best && !result.effects.empty() && !matters(ranked[*best], trial)) best.reset();
+    const bool further = !result.effects.empty() || (best && inNoisyInput(ranked[*best]));
+    if (best && further && !matters(ranked[*best], trial)) best.reset();
     if (!best) {
       result.rejected = ranked;
       break;
@@ -147,6 +181,7 @@ TraceResult traceResiduals(const RefinedModel& base, const Trial& trial, const T
     reconsider(search, result.effects, pinned);
   }
   search.finish(result);
+  result.effects = apart(result.effects);
   watch.report(1.0);
   return result;
 }

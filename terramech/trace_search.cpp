@@ -98,7 +98,9 @@ TraceSearch::Screened TraceSearch::screenLibrary(const Candidate& candidate,
                                                  const Eigen::MatrixXd& nuisance) {
   const RefinedModel grown = with(model_, candidate);
   const Eigen::VectorXd whole = change(grown);
-  const auto free = parametersOf(grown, static_cast<int>(grown.effects.size()) - 1);
+  std::vector<FittedParameter> free;
+  for (std::size_t part = model_.effects.size(); part < grown.effects.size(); ++part)
+    for (const FittedParameter& p : parametersOf(grown, static_cast<int>(part))) free.push_back(p);
   Eigen::MatrixXd columns(whole.size(), std::max<Eigen::Index>(1, static_cast<Eigen::Index>(free.size())));
   columns.col(0) = whole;
   for (std::size_t k = 1; k < free.size(); ++k) {
@@ -269,7 +271,7 @@ Explanation TraceSearch::fitted(const Candidate& candidate, std::vector<HeldRows
   const RefinedModel grown = with(model_, candidate);
   std::vector<double> guesses = guesses_;
   FitPlan plan = planFor(grown);
-  plan.iterations = 10;
+  plan.iterations = candidate.empirical() ? 5 : candidate.parts.size() > 1 ? 30 : 10;
   const Fit fit = fitModel(grown, trial_, whitening_, plan, guesses);
   Explanation e;
   e.candidate = candidate;

@@ -47,6 +47,8 @@ WheelState stateAt(const Telemetry& t, std::size_t row, const RefinedModel& mode
   s.time_s = numberAt(t.find("time_s"), row, kUnknown);
   s.pass_index = numberAt(t.find("pass_index"), row, kUnknown);
   s.slope_rad = numberAt(t.find("slope_rad"), row, kUnknown);
+  s.measured_torque_Nm = numberAt(t.find("torque_Nm"), row, kUnknown);
+  s.measured_sinkage_m = numberAt(t.find("sinkage_m"), row, kUnknown);
   for (const auto& column : t.numbers)
     if (!isStateColumn(column.name) && !isAnswer(column.name))
       s.extra.emplace_back(column.name, column.values[row]);

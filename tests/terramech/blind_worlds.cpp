@@ -204,6 +204,7 @@ struct Design {
   bool levels = false;
   double one_slip = -1.0;   ///< >= 0: all rows have it
   bool tied_speed = false;  ///< the travel speed is fixed, so that the rim's follows the slip
+  bool both_speeds = false;
   int rows_a_run = 0;       ///< > 0: runs
   double run_offset = 0.0;  ///< of DP/W and z/r, normal from run to run
   int idle_columns = 0;     ///< that mean nothing
@@ -227,6 +228,7 @@ Design wideDesign(Random& random) {
     d.rows_a_run = 4 + random.below(9);
     d.run_offset = random.uniform(0.003, 0.015);
   }
+  d.both_speeds = true;
   d.idle_columns = random.below(5);
   d.heavy_tails = random.below(3) == 0;
   d.absolute = random.below(2) * random.uniform(0.002, 0.01);
@@ -272,12 +274,15 @@ std::vector<double> measure(const World& world, const Design& design, const Cond
     const double relative = v * (1.0 + world.noise * shock(random, design));
     return design.absolute > 0.0 ? relative + unit * design.absolute * shock(random, design) : relative;
   };
-  return {std::clamp(c.slip * (1.0 + world.noise * shock(random, design)), -1.0, 1.0),
+  const double slip = std::clamp(c.slip * (1.0 + world.noise * shock(random, design)), -1.0, 1.0);
+  // Slip is had from the two speeds: with both in the table, the one over ground errs with it.
+  const double speed = design.both_speeds ? c.rim * (1.0 - slip) : c.speed;
+  return {slip,
           c.load * (1.0 + world.noise * shock(random, design)),
           noisy(a.torque, c.load * c.radius),
           noisy(a.z, 0.0) + offset.sinkage * c.radius,
           noisy(a.pull, c.load) + offset.pull * c.load,
-          c.speed,
+          speed,
           c.rim,
           c.pass,
           c.time,
@@ -307,7 +312,9 @@ void addIdleColumns(const Design& design, std::vector<std::string>& columns,
     double walk = 0.0;
     for (std::size_t row = 0; row < rows.size(); ++row) {
       walk += random.normal();
-      rows[row].push_back(kind == 0 ? random.normal() : kind == 1 ? walk : static_cast<double>((row * 4 / rows.size()) % 2));
+      rows[row].push_back(kind == 0   ? random.normal()
+                          : kind == 1 ? walk
+                                      : static_cast<double>((row * 4 / rows.size()) % 2));
     }
   }
 }

@@ -149,6 +149,20 @@ TEST(Effects, SplineIsNaturalAndConstantOutside) {
   EXPECT_EQ(spline(9.0), 0.0);
 }
 
+TEST(RefinedModel, TheLinearFormulaStartsFromWhatWasMeasured) {
+  RefinedModel model = base();
+  model.base = BaseModel::LinearFormula;
+  WheelState s = state();
+  const Reading solved = predict(model, s);
+  // Closed form: T/(rW) - z/r - 0.1.
+  EXPECT_NEAR(solved.scaled(Channel::DrawbarPull),
+              solved.scaled(Channel::Torque) - solved.scaled(Channel::Sinkage) - 0.1, 1e-12);
+  s.measured_torque_Nm = 0.4 * 80.0 * 0.12;
+  s.measured_sinkage_m = 0.06 * 0.12;
+  EXPECT_NEAR(predict(model, s).scaled(Channel::DrawbarPull), 0.4 - 0.06 - 0.1, 1e-12);
+  EXPECT_EQ(predict(model, s).torque_Nm, solved.torque_Nm);
+}
+
 TEST(RefinedModel, SlipInTheWheelPlaneGrowsWithTheSlipAngle) {
   // Closed form: 1 - 0.8 cos 60 deg = 0.6; a wheel braked along the travel may be driven in its own plane.
   EXPECT_NEAR(slipInWheelPlane(0.2, std::acos(0.5)), 0.6, 1e-12);

@@ -1,0 +1,82 @@
+// From residual to route: a model refined by `talus trace` and taken by the commands that plan.
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include "run_program.hpp"
+
+namespace talus::cli {
+namespace {
+
+constexpr const char* kSoil =
+    "soil: {name: site sand, cohesion_Pa: 600, friction_angle_rad: 0.6, sinkage_exponent: 1.0, "
+    "cohesive_modulus: 0, "
+    "frictional_modulus: 1.0e6, shear_modulus_m: 0.015, c1: 0.43, c2: 0.32, density_kg_m3: 1600}\n";
+
+/// Gentle hills, 60 x 60 m, as an ESRI grid.
+std::string hills() {
+  std::string text = "ncols 60\nnrows 60\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -9999\n";
+  for (int row = 0; row < 60; ++row) {
+    for (int column = 0; column < 60; ++column)
+      text += std::to_string(0.5 * std::sin(0.17 * column) + 0.4 * std::cos(0.14 * (59 - row))) + " ";
+    text += "\n";
+  }
+  return text;
+}
+
+class RefinedModelCommands : public ::testing::Test {
+ protected:
+  RefinedModelCommands() {
+    folder_.write("dem.asc", hills());
+    folder_.write("soil.yaml", kSoil);
+  }
+
+  Ran talus(std::vector<std::string> words) const {
+    words.emplace_back("--quiet");
+    return runTalus(words, folder_.path());
+  }
+
+  Folder folder_;
+};
+
+TEST_F(RefinedModelCommands, PlanAndCostmapTakeAModelAndKeepIt) {
+  folder_.write("model.yaml", std::string(kSoil) +
+                                  "model: wong-reece\neffects: [{name: bulldozing, parameters: [0.15]}]\n");
+  const auto energy = [&](const std::vector<std::string>& ground) {
+    std::vector<std::string> words{"plan",   "dem.asc", "--resolution", "1",  "--start",  "5,5",
+                                   "--goal", "54,50",   "--json",       "-o", "r.geojson"};
+    words.insert(words.end(), ground.begin(), ground.end());
+    const Ran ran = talus(words);
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    return nlohmann::json::parse(ran.out, nullptr, false)["energy_J"].get<double>();
+  };
+  const double plain = energy({"--rover", "fido", "--soil", "soil.yaml"});
+  const double refined = energy({"--rover", "fido", "--model", "model.yaml"});
+  EXPECT_GT(refined, 1.02 * plain);  // Property: pushing soil costs energy.
+  ASSERT_EQ(talus({"costmap", "dem.asc", "--resolution", "1", "--rover", "fido", "--model", "model.yaml",
+                   "-o", "map.ot"})
+                .code,
+            0);
+  EXPECT_NEAR(energy({"--map", "map.ot"}), refined, 1e-6 * refined);
+  const Ran why = talus({"explain", "dem.asc", "--resolution", "1", "--rover", "fido", "--model",
+                         "model.yaml", "--at", "20,20"});
+  EXPECT_NE(why.out.find("bulldozing"), std::string::npos);
+}
+
+TEST_F(RefinedModelCommands, RefusesModelsThatCannotPlan) {
+  folder_.write("linear.yaml", std::string(kSoil) + "model: linear-formula\n");
+  folder_.write("nosoil.yaml", "model: wong-reece\n");
+  for (const char* model : {"linear.yaml", "nosoil.yaml", "missing.yaml"}) {
+    const Ran ran = talus({"plan", "dem.asc", "--resolution", "1", "--start", "5,5", "--goal", "9,9",
+                           "--rover", "fido", "--model", model, "-o", "r.geojson"});
+    EXPECT_EQ(ran.code, 2) << model;
+    EXPECT_NE(ran.err.find(model), std::string::npos) << ran.err;
+  }
+  EXPECT_EQ(talus({"plan", "dem.asc", "--resolution", "1", "--start", "5,5", "--goal", "9,9", "--model",
+                   "linear.yaml", "--soil", "soil.yaml", "-o", "r.geojson"})
+                .code,
+            2);
+}
+
+}  // namespace
+}  // namespace talus::cli

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstddef>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <terramech/telemetry.hpp>
+#include <terramech/wong_reece.hpp>
+
+namespace talus::terramech {
+
+/// Rows of made-up telemetry, a number a column.
+class MadeRows {
+ public:
+  explicit MadeRows(std::vector<std::string> columns) {
+    for (std::string& name : columns) telemetry_.numbers.push_back({std::move(name), {}});
+  }
+
+  void add(const std::vector<double>& row, const std::string& label = "") {
+    for (std::size_t k = 0; k < row.size(); ++k) telemetry_.numbers[k].values.push_back(row[k]);
+    labels_.push_back(label);
+    telemetry_.lines.push_back(labels_.size() + 1);
+  }
+
+  /// As telemetry; the labels as a text column of that name, unless it is empty.
+  Telemetry telemetry(const std::string& column = "") const {
+    Telemetry t = telemetry_;
+    t.source = "made";
+    if (!column.empty()) t.words.push_back({column, labels_});
+    return t;
+  }
+
+ private:
+  Telemetry telemetry_;
+  std::vector<std::string> labels_;
+};
+
+inline const std::vector<std::string>& wheelColumns() {
+  static const std::vector<std::string> all{"load_N",         "slip",           "torque_Nm",    "sinkage_m",
+                                            "drawbar_pull_N", "wheel_radius_m", "wheel_width_m"};
+  return all;
+}
+
+/// What a wheel of 0.1 x 0.1 m reads on a soil, with a normal relative error on each reading.
+inline std::vector<double> wheelRow(const Soil& soil, double load_N, double slip, double noise,
+                                    std::mt19937_64& random) {
+  std::normal_distribution<double> error(1.0, noise > 0.0 ? noise : 1e-12);
+  const WheelForces f =
+      equilibrium(soil, Wheel{.radius_m = 0.1, .width_m = 0.1}, {.load_N = load_N, .slip = slip});
+  return {load_N,
+          slip,
+          f.torque_Nm * error(random),
+          f.sinkage_m * error(random),
+          f.drawbar_pull_N * error(random),
+          0.1,
+          0.1};
+}
+
+}  // namespace talus::terramech
