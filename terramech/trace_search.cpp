@@ -199,56 +199,6 @@ std::vector<CovariateTest> TraceSearch::test(const std::vector<Screened>& screen
   return testCovariates(trial_, whitening_, residual_, sinkages(level_), plan);
 }
 
-/// What a model, fitted anew to the rows that are seen, leaves on the others. Few iterations: it starts near.
-TraceSearch::HeldRows TraceSearch::errorsOn(const HeldRows& fold, const RefinedModel& start) {
-  std::vector<double> guesses;
-  FitPlan plan = planFor(start);
-  plan.iterations = 3;
-  const RefinedModel model = fitModel(start, fold.seen, fold.white_seen, plan, guesses).model;
-  guesses.clear();
-  const Eigen::MatrixXd left = fold.unseen.measured - predictRows(model, fold.unseen, guesses);
-  HeldRows errors;
-  errors.chi2 = fold.white_unseen.apply(left).squaredNorm();
-  const Eigen::VectorXd scaled = fold.white_unseen.marginal(left);
-  for (Eigen::Index i = 0; i < scaled.size(); ++i)
-    errors.by_channel[static_cast<std::size_t>(i % kChannels)] += scaled[i] * scaled[i];
-  return errors;
-}
-
-std::vector<TraceSearch::HeldRows> TraceSearch::heldRows() {
-  const Folds folds = foldsOf(trial_);
-  std::vector<HeldRows> all;
-  for (int fold = 0; fold < folds.count; ++fold) {
-    const auto seen = rowsOf(folds, fold, false), unseen = rowsOf(folds, fold, true);
-    HeldRows rows{.seen = subset(trial_, seen),
-                  .unseen = subset(trial_, unseen),
-                  .white_seen = subset(whitening_, seen),
-                  .white_unseen = subset(whitening_, unseen)};
-    if (rows.seen.rows() == 0 || rows.unseen.rows() == 0) continue;
-    const HeldRows errors = errorsOn(rows, model_);
-    rows.chi2 = errors.chi2;
-    rows.by_channel = errors.by_channel;
-    all.push_back(std::move(rows));
-  }
-  return all;
-}
-
-void TraceSearch::judgeHeldOut(std::vector<HeldRows>& folds, const RefinedModel& fitted, Explanation& e) {
-  double gain = 0.0;
-  std::array<double, kChannels> before{}, after{};
-  for (const HeldRows& fold : folds) {
-    const HeldRows errors = errorsOn(fold, fitted);
-    gain += 0.5 * (fold.chi2 - errors.chi2);
-    for (std::size_t c = 0; c < kChannels; ++c) {
-      before[c] += fold.by_channel[c];
-      after[c] += errors.by_channel[c];
-    }
-  }
-  e.score = gain - e.candidate.parameters + (e.candidate.empirical() ? 0.0 : options_.library_bonus);
-  for (std::size_t c = 0; c < kChannels; ++c)
-    e.spoils |= after[c] > 1.05 * before[c] + 4.0;  // 2.5 % of the rms, and what chance does
-}
-
 std::vector<Explanation> TraceSearch::fitBest(const std::vector<Screened>& screened) {
   std::vector<Explanation> ranked;
   std::map<std::string, int> tried;

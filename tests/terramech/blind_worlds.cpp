@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <random>
-#include <sstream>
 
 namespace talus::blind {
 namespace {
@@ -387,56 +385,6 @@ World makeWorld(const WorldPlan& plan) {
   addIdleColumns(design, held_columns, w.held, random);
   addIdleColumns(design, w.columns, w.rows, random);
   return w;
-}
-
-std::string World::csv(bool held_rows) const {
-  std::ostringstream out;
-  for (std::size_t k = 0; k < columns.size(); ++k) out << (k ? "," : "") << columns[k];
-  out << '\n';
-  for (const auto& row : held_rows ? held : rows) {
-    for (std::size_t k = 0; k < row.size(); ++k) {
-      char text[40];
-      std::snprintf(text, sizeof text, "%.8g", row[k]);
-      out << (k ? "," : "") << text;
-    }
-    out << '\n';
-  }
-  return out.str();
-}
-
-std::string World::yaml() const {
-  std::ostringstream out;
-  out.precision(10);
-  out << "soil: {name: hidden, cohesion_Pa: " << ground.cohesion << ", friction_angle_rad: " << ground.phi
-      << ", sinkage_exponent: " << ground.n << ", cohesive_modulus: 0, frictional_modulus: " << ground.k
-      << ", shear_modulus_m: " << ground.shear_k << ", c1: " << ground.c1 << ", c2: " << ground.c2
-      << ", density_kg_m3: " << ground.density << "}\nmodel: wong-reece\n";
-  return out.str();
-}
-
-Marks judge(const World& world, const std::vector<Claim>& claims) {
-  Marks marks;
-  marks.hidden = static_cast<int>(world.hidden.size());
-  marks.claimed = static_cast<int>(claims.size());
-  std::vector<char> used(claims.size(), 0);
-  for (const Hidden& h : world.hidden)
-    for (std::size_t k = 0; k < claims.size(); ++k) {
-      const auto in = [](const std::vector<std::string>& list, const std::string& word) {
-        return std::find(list.begin(), list.end(), word) != list.end();
-      };
-      if (used[k] || !in(h.covariates, claims[k].covariate) || !in(h.channels, claims[k].channel)) continue;
-      used[k] = 1;
-      ++marks.located;
-      std::string stem = h.kind.substr(0, h.kind.find('_'));
-      for (const char* word : {"slip_sinkage", "rear_pile", "rate", "multipass", "rebound", "hardpan",
-                               "grouser", "load_transfer", "flexibility", "torque_offset", "load_cell",
-                               "sinkage_datum", "drift", "slip_bias", "bulldozing"})
-        if (h.kind.find(word) == 0 || (h.family == word)) stem = word;
-      marks.family += h.family == "empirical" ? claims[k].name.find("empirical") != std::string::npos
-                                              : claims[k].name.find(stem) != std::string::npos;
-      break;
-    }
-  return marks;
 }
 
 }  // namespace talus::blind
