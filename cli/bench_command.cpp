@@ -9,6 +9,7 @@
 #include <cli/campaign.hpp>
 #include <cli/command.hpp>
 #include <cli/commands.hpp>
+#include <cli/number_check.hpp>
 #include <cli/output_file.hpp>
 #include <planner/benchmark_log.hpp>
 #include <planner/planner_names.hpp>
@@ -41,6 +42,11 @@ void bind(CLI::App& command, Options& options) {
   command.add_option("--pairs", options.suite.pairs, "starts and goals a map")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
+  command
+      .add_option("--turning-radius", options.suite.turning_radius_m,
+                  "that planners of drives keep; 0: turns in place (default: the rover's)")
+      ->type_name("METRES")
+      ->check(notNegative());
   command.add_option("--side", options.suite.side_cells, "cells along a generated site")
       ->check(CLI::Range(32, 10000))
       ->capture_default_str();
@@ -53,6 +59,14 @@ std::string fileName(std::string name) {
   for (char& c : name)
     if (c == ' ' || c == '/') c = '_';
   return name;
+}
+
+// Made before the runs, so that a bad place is told at once; after the suite, so that a bad suite leaves
+// nothing.
+void makeFolder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw InputError({folder, "cannot be made: " + error.message(), "name another folder with -o"});
 }
 
 void write(const std::filesystem::path& folder, const planner::BenchmarkPlan& plan,
@@ -81,14 +95,11 @@ int run(const Options& options, Context& context) {
   planner::BenchmarkPlan plan;
   for (const std::string& name : options.planners.empty() ? planner::plannerNames() : options.planners)
     plan.planners.push_back(planner::plannerName(name));
-  std::error_code error;
-  std::filesystem::create_directories(options.folder, error);
-  if (error)
-    throw InputError({options.folder, "cannot be made: " + error.message(), "name another folder with -o"});
   plan.cases = suiteCases(options.suite, context);
   if (plan.cases.empty())
     throw InputError({options.suite.name, "no two places far apart with a route between them",
                       "take another map or rover"});
+  if (campaign.leads()) makeFolder(options.folder);
   plan.seeds = options.runs;
   plan.time_limit_s = options.time_limit_s;
   const auto runs = allRuns(plan, campaign, context);

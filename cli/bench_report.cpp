@@ -28,7 +28,7 @@ double largest(const std::vector<double>& values) {
 BenchmarkLine lineOf(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& runs,
                      const std::string& planner) {
   BenchmarkLine line{.planner = planner};
-  std::vector<double> gaps, seconds;
+  std::vector<double> gaps, seconds, clearances;
   for (const BenchmarkRun& run : runs) {
     if (run.planner != planner) continue;
     ++line.runs;
@@ -39,10 +39,15 @@ BenchmarkLine lineOf(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>&
     seconds.push_back(run.seconds);
     if (run.status != RouteStatus::Found) continue;
     ++line.found;
+    line.mean_cusps += run.cusps;
+    line.max_curvature_1_m = std::max(line.max_curvature_1_m, run.max_curvature_1_m);
+    clearances.push_back(-run.clearance_cells);
     gaps.push_back(run.cost_J / planner::bestKnown_J(plan, runs, run.case_index) - 1.0);
   }
   line.median_gap = median(gaps);
   line.worst_gap = largest(gaps);
+  line.mean_cusps /= std::max(1, line.found);
+  line.least_clearance_cells = -largest(clearances);
   line.median_seconds = median(seconds);
   return line;
 }
@@ -52,8 +57,9 @@ std::string percent(double share) {
 }
 
 const std::vector<std::string>& header() {
-  static const std::vector<std::string> words{"planner",   "runs",      "found",      "breached", "crashed",
-                                              "gap p50 %", "gap max %", "time p50 s", "MB max"};
+  static const std::vector<std::string> words{"planner", "runs",      "found",     "breached",
+                                              "crashed", "gap p50 %", "gap max %", "time p50 s",
+                                              "MB max",  "cusps",     "bend 1/m",  "clear cells"};
   return words;
 }
 
@@ -66,7 +72,10 @@ std::vector<std::string> words(const BenchmarkLine& line) {
           percent(line.median_gap),
           percent(line.worst_gap),
           fmt::format("{:.4f}", line.median_seconds),
-          fmt::format("{:.0f}", line.worst_megabytes)};
+          fmt::format("{:.0f}", line.worst_megabytes),
+          fmt::format("{:.2f}", line.mean_cusps),
+          fmt::format("{:.3g}", line.max_curvature_1_m),
+          fmt::format("{:.2f}", line.least_clearance_cells)};
 }
 
 // Gap over time of every run of a case: each planner a curve of its first seed.
@@ -76,6 +85,9 @@ Plot gapOverTime(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& run
             .y = {"gap to the best known [%]"},
             .series = {}};
   const double best_J = planner::bestKnown_J(plan, runs, case_index);
+  double end_s = 0.0;
+  for (const BenchmarkRun& run : runs)
+    if (run.case_index == case_index) end_s = std::max(end_s, run.seconds);
   for (const BenchmarkRun& run : runs) {
     if (run.case_index != case_index || run.seed != 1 || run.progress.empty()) continue;
     Series series{.name = run.planner, .x = {}, .y = {}};
@@ -87,6 +99,8 @@ Plot gapOverTime(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& run
       series.x.push_back(at.seconds);
       series.y.push_back(100 * (at.cost_J / best_J - 1.0));
     }
+    series.x.push_back(end_s);  // what was found holds on
+    series.y.push_back(series.y.back());
     plot.series.push_back(std::move(series));
   }
   return plot;
@@ -124,7 +138,10 @@ nlohmann::ordered_json asJson(const std::vector<BenchmarkLine>& lines) {
                      {"median_gap", line.median_gap},
                      {"worst_gap", line.worst_gap},
                      {"median_seconds", line.median_seconds},
-                     {"worst_megabytes", line.worst_megabytes}});
+                     {"worst_megabytes", line.worst_megabytes},
+                     {"mean_cusps", line.mean_cusps},
+                     {"max_curvature_1_m", line.max_curvature_1_m},
+                     {"least_clearance_cells", line.least_clearance_cells}});
   return array;
 }
 

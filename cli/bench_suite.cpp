@@ -9,6 +9,7 @@
 #include <maps/site_generator.hpp>
 #include <planner/field_planner.hpp>
 #include <planner/moving_ai.hpp>
+#include <planner/turn_prices.hpp>
 #include <terramech/soil_library.hpp>
 
 namespace talus::cli {
@@ -49,6 +50,15 @@ std::vector<BenchmarkCase> pairsOn(const std::string& name,
   return cases;
 }
 
+// What planners of drives keep on a case's map.
+void giveKinematics(std::vector<BenchmarkCase>& cases, const costmap::GroundModel& model,
+                    const SuiteOptions& options) {
+  for (BenchmarkCase& made : cases) {
+    made.kinematics = planner::kinematicsOn(model, made.map->cost());
+    if (options.turning_radius_m >= 0.0) made.kinematics.turning_radius_m = options.turning_radius_m;
+  }
+}
+
 std::shared_ptr<const costmap::GroundModel> generatedGround() {
   costmap::GroundModel::Parts parts;
   parts.rover = terramech::loadRover("mer");
@@ -80,6 +90,7 @@ std::vector<BenchmarkCase> generatedCases(const SuiteOptions& options, const Con
     for (BenchmarkCase& made : pairsOn(name, map, options.pairs, context.seed))
       cases.push_back(std::move(made));
   }
+  giveKinematics(cases, *model, options);
   return cases;
 }
 
@@ -92,8 +103,10 @@ std::vector<BenchmarkCase> suiteCases(const SuiteOptions& options, const Context
   GroundOptions ground = options.ground;
   ground.dem.path = options.name;
   const Ground read = readGround(ground, context);
-  return pairsOn(std::filesystem::path(options.name).stem().string(), read.map.published(), options.pairs,
-                 context.seed);
+  auto cases = pairsOn(std::filesystem::path(options.name).stem().string(), read.map.published(),
+                       options.pairs, context.seed);
+  giveKinematics(cases, read.map.model(), options);
+  return cases;
 }
 
 }  // namespace talus::cli

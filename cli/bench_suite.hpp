@@ -15,6 +15,7 @@ struct SuiteOptions {
   std::string name = "generated";  ///< "generated", a DEM, or a MovingAI .scen
   int pairs = 3;                   ///< starts and goals a map, > 0
   int side_cells = 300;            ///< of generated sites
+  double turning_radius_m = -1.0;  ///< that planners of drives keep; < 0: the rover's
   GroundOptions ground;            ///< for a DEM: layers, rover, soils, policy
 };
 

@@ -26,7 +26,8 @@ namespace {
 using planner::Belief;
 using planner::WorldResult;
 
-constexpr std::array<Belief, 4> kBeliefs{Belief::Geometry, Belief::Prior, Belief::OnLine, Belief::Clairvoyant};
+constexpr std::array<Belief, 4> kBeliefs{Belief::Geometry, Belief::Prior, Belief::OnLine,
+                                         Belief::Clairvoyant};
 
 struct Options {
   GroundOptions ground;
@@ -48,7 +49,8 @@ void bind(CLI::App& command, Options& options) {
       ->check(CLI::IsMember({"geometry", "prior", "online", "clairvoyant", "all"}))
       ->capture_default_str();
   auto* worlds =
-      command.add_option("--worlds", options.worlds, "rehearse in so many random worlds, --threads at a time")
+      command
+          .add_option("--worlds", options.worlds, "rehearse in so many random worlds, --threads at a time")
           ->check(CLI::Range(1, 100000))
           ->type_name("N");
   command.add_option("--html", options.html, "write a page with a time slider, to watch the rehearsal")
@@ -63,7 +65,8 @@ Belief beliefOf(const std::string& word) {
   return *std::find_if(kBeliefs.begin(), kBeliefs.end(), [&](Belief b) { return planner::name(b) == word; });
 }
 
-// As many worlds at a time as there are workers; each falls into its own place, so that order does not matter.
+// As many worlds at a time as there are workers; each falls into its own place, so that order does not
+// matter.
 std::vector<WorldResult> rehearseAll(const planner::RehearsalSite& site, Belief belief, std::size_t worlds,
                                      const Context& context) {
   std::vector<WorldResult> results(worlds);
@@ -82,18 +85,12 @@ std::vector<WorldResult> rehearseAll(const planner::RehearsalSite& site, Belief 
   return results;
 }
 
-void show(const nlohmann::ordered_json& json, const Context& context) {
-  if (context.json) return printJson(json);
-  for (const auto& [key, value] : json.items()) {
-    if (key == "each") continue;
-    if (!value.is_object()) {
-      print(fmt::format("{:<28} {}\n", key, value.is_string() ? value.get<std::string>() : value.dump()));
-      continue;
-    }
-    print(fmt::format("{:<28}", key));
-    for (const auto& [part, number] : value.items()) print(fmt::format(" {} {}", part, number.dump()));
-    print("\n");
-  }
+template <typename Results>
+void show(const Results& results, const Context& context) {
+  if (context.json)
+    printJson(asJson(results));
+  else
+    print(asText(results));
 }
 
 int runAll(const planner::RehearsalSite& site, const Options& options, const Context& context) {
@@ -101,14 +98,15 @@ int runAll(const planner::RehearsalSite& site, const Options& options, const Con
   for (const Belief belief : kBeliefs)
     results[static_cast<std::size_t>(belief)] = rehearseAll(site, belief, options.worlds, context);
   if (context.stop.stop_requested()) return Exit::kCancelled;
-  show(asJson(results), context);
+  show(results, context);
   return Exit::kDone;
 }
 
 int runMany(const planner::RehearsalSite& site, const Options& options, const Context& context) {
-  const std::vector<WorldResult> results = rehearseAll(site, beliefOf(options.belief), options.worlds, context);
+  const std::vector<WorldResult> results =
+      rehearseAll(site, beliefOf(options.belief), options.worlds, context);
   if (context.stop.stop_requested()) return Exit::kCancelled;
-  show(asJson(results), context);
+  show(results, context);
   return Exit::kDone;
 }
 
@@ -119,20 +117,37 @@ int runOne(const planner::RehearsalSite& site, const Options& options, const Con
   if (context.stop.stop_requested()) return Exit::kCancelled;
   if (!options.html.empty()) saveDrivePage(options.html, site, belief, drive);
   if (!options.telemetry.empty()) saveTelemetry(options.telemetry, drive.result.drive, rover);
-  nlohmann::ordered_json json = asJson(drive.result);
-  json["prediction"] = {{"steps", drive.prediction.steps},
-                        {"slip_rmse", drive.prediction.slip_rmse},
-                        {"energy_rmse", drive.prediction.energy_rmse},
-                        {"energy_error", drive.prediction.energy_error}};
-  show(json, context);
+  if (context.json) {
+    nlohmann::ordered_json json = asJson(drive.result);
+    json["prediction"] = {{"steps", drive.prediction.steps},
+                          {"slip_rmse", drive.prediction.slip_rmse},
+                          {"energy_rmse", drive.prediction.energy_rmse},
+                          {"energy_error", drive.prediction.energy_error}};
+    printJson(json);
+  } else {
+    show(drive.result, context);
+  }
   return drive.result.drive.outcome == planner::Outcome::Reached ? Exit::kDone : Exit::kNo;
+}
+
+// The truth, whose classes must be classes of the map.
+planner::Truth truthFor(const costmap::GroundModel& model, const std::string& path) {
+  planner::Truth truth = readTruth(path);
+  std::string known;
+  for (const costmap::GroundClass& ground : model.parts().classes)
+    known += (known.empty() ? "" : ", ") + std::to_string(ground.number);
+  for (const auto& [number, soil] : truth.classes)
+    if (model.classIndex(number) < 0)
+      throw InputError({path, fmt::format("class {} is no class of the map", number),
+                        fmt::format("its classes are {}", known)});
+  return truth;
 }
 
 int run(const Options& options, Context& context) {
   const Ground ground = readGround(options.ground, context);
   if (context.stop.stop_requested()) return Exit::kCancelled;
   const planner::RehearsalSite site(
-      ground.map, {.truth = readTruth(options.truth),
+      ground.map, {.truth = truthFor(ground.map.model(), options.truth),
                    .start = maps::readPlace(options.start, ground.map.elevation(), "--start"),
                    .goal = maps::readPlace(options.goal, ground.map.elevation(), "--goal"),
                    .firm = terramech::loadSoil("bedrock"),
@@ -151,9 +166,10 @@ void addDrive(CLI::App& app, Context& context) {
        .group = Group::kRoutes,
        .description = "rehearse: drive the route over soils that the planner does not know",
        .examples =
-           std::string("  talus drive dem.tif --truth truth.yaml --start 10,10 --goal 90,90 --html drive.html\n"
-                       "  talus drive dem.tif --truth truth.yaml --start 10,10 --goal 90,90 --worlds 100 "
-                       "--belief all\n\n") +
+           std::string(
+               "  talus drive dem.tif --truth truth.yaml --start 10,10 --goal 90,90 --html drive.html\n"
+               "  talus drive dem.tif --truth truth.yaml --start 10,10 --goal 90,90 --worlds 100 "
+               "--belief all\n\n") +
            kTruthFormat},
       bind, run);
 }

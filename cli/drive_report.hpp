@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <string>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -14,7 +16,13 @@ nlohmann::ordered_json asJson(const planner::WorldResult& result);
 /// Many under one belief: the rate of each outcome with its 95 % interval, mean energy, and each world.
 nlohmann::ordered_json asJson(const std::vector<planner::WorldResult>& results);
 
-/// All beliefs in the same worlds, against the clairvoyant, which comes last. In the order of planner::Belief.
+/// All beliefs in the same worlds, against the clairvoyant, which comes last. In the order of
+/// planner::Belief.
 nlohmann::ordered_json asJson(const std::array<std::vector<planner::WorldResult>, 4>& beliefs);
+
+/// The same for a person, a line or a table.
+std::string asText(const planner::WorldResult& result);
+std::string asText(const std::vector<planner::WorldResult>& results);
+std::string asText(const std::array<std::vector<planner::WorldResult>, 4>& beliefs);
 
 }  // namespace talus::cli

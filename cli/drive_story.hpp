@@ -16,8 +16,8 @@ struct CellChange {
   std::uint8_t category = 0;  ///< terramech::Category as a number
 };
 
-/// A rehearsed drive as a page tells it: what happened when, what changed in the map, and what the rover could
-/// not know.
+/// A rehearsed drive as a page tells it: what happened when, what changed in the map, and what the rover
+/// could not know.
 struct DriveStory {
   planner::Rehearsal drive;
   std::vector<CellChange> changes;

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <cli/campaign.hpp>
 #include <cli/command.hpp>
 #include <cli/commands.hpp>
 #include <cli/mission.hpp>
@@ -16,9 +17,12 @@
 #include <cli/page.hpp>
 #include <cli/pareto_chart.hpp>
 #include <cli/picture.hpp>
+#include <cli/plan_pairs.hpp>
 #include <cli/route_json.hpp>
 #include <cli/route_summary.hpp>
 #include <cli/scene.hpp>
+#include <cli/windowed_ground.hpp>
+#include <cli/windowed_plan.hpp>
 #include <maps/place_reader.hpp>
 #include <planner/annotation.hpp>
 #include <planner/chassis_planner.hpp>
@@ -82,6 +86,11 @@ void bind(CLI::App& command, PlanOptions& options) {
       ->type_name("PLACE");
   command.add_option("--goal", options.goal, "the same")->type_name("PLACE");
   command.add_option("--via", options.via, "to be passed on the way; may be repeated")->type_name("PLACE");
+  command
+      .add_option("--pairs", options.pairs,
+                  "many routes over the one map: CSV with start_x_m, start_y_m, goal_x_m, goal_y_m; a row of "
+                  "results each, to -o FILE.csv or stdout; over all ranks under mpirun")
+      ->type_name("FILE.csv");
   command.add_option("--tolerance", options.tolerance_m, "the route may end this far from the goal")
       ->type_name("METRES")
       ->check(notNegative());
@@ -92,6 +101,13 @@ void bind(CLI::App& command, PlanOptions& options) {
   command.add_option("--time", options.time_limit_s, "time limit of the planning")
       ->type_name("S")
       ->check(CLI::PositiveNumber);
+  command
+      .add_option("--in-memory", options.in_memory,
+                  "read a DEM of more cells in windows along a route over its overview")
+      ->type_name("CELLS")
+      ->capture_default_str();
+  command.add_flag("--whole-field", options.whole_field,
+                   "read and settle the whole map, however large, instead of a tube around a coarse route");
   command
       .add_option("--risk", options.max_risk, "the route's probability of immobilisation stays within this")
       ->type_name("ALPHA")
@@ -106,6 +122,15 @@ void bind(CLI::App& command, PlanOptions& options) {
 }
 
 void requirePlaces(const PlanOptions& options) {
+  if (!options.pairs.empty()) {
+    if (!options.start.empty() || !options.goal.empty() || !options.via.empty() || !options.html.empty() ||
+        !options.png.empty() || !options.pareto.empty() || options.max_risk > 0.0 ||
+        !options.drive.chassis.empty())
+      throw InputError({"--pairs " + options.pairs,
+                        "goes without --start, --goal, --via, --html, --png, --pareto, --risk and --chassis",
+                        "leave them out, or plan the routes one by one"});
+    return;
+  }
   if (options.start.empty()) throw InputError({"talus plan", "no start", "pass --start x,y"});
   if (options.goal.empty()) throw InputError({"talus plan", "no goal", "pass --goal x,y"});
 }
@@ -121,8 +146,10 @@ planner::Problem problemOf(const PlanOptions& options, const Ground& ground, con
   const maps::ElevationMap& map = ground.map.elevation();
   planner::Problem problem;
   problem.map = ground.map.published();
-  problem.start = maps::readPlace(options.start, map, "--start");
-  problem.goal = maps::readPlace(options.goal, map, "--goal");
+  if (options.pairs.empty()) {
+    problem.start = maps::readPlace(options.start, map, "--start");
+    problem.goal = maps::readPlace(options.goal, map, "--goal");
+  }
   for (const std::string& place : options.via) problem.via.push_back(maps::readPlace(place, map, "--via"));
   problem.goal_tolerance_m = options.tolerance_m;
   if (options.time_limit_s > 0.0) problem.time_limit_s = options.time_limit_s;
@@ -131,6 +158,7 @@ planner::Problem problemOf(const PlanOptions& options, const Ground& ground, con
   problem.start_heading_rad = options.drive.start_heading_rad;
   problem.goal_heading_rad = options.drive.goal_heading_rad;
   problem.kinematics = kinematicsOf(options.drive, ground.map);
+  problem.whole_field = options.whole_field;
   problem.watch = context.watch("plan");
   return problem;
 }
@@ -153,8 +181,8 @@ std::optional<planner::Chassis> chassisOf(const DriveOptions& drive, const costm
       drive.chassis == "rigid" ? planner::Suspension::Rigid : planner::Suspension::RockerBogie);
 }
 
-planner::Plan planned(const planner::Problem& problem, planner::NamedPlanner& planner,
-                      const PlanOptions& options, const std::optional<planner::Chassis>& chassis) {
+planner::Plan planOnce(const planner::Problem& problem, planner::NamedPlanner& planner,
+                       const PlanOptions& options, const std::optional<planner::Chassis>& chassis) {
   const auto once = [&](const planner::Problem& p) {
     return options.max_risk > 0.0 ? planner::planWithinRisk(p, planner, options.max_risk) : planner.plan(p);
   };
@@ -230,34 +258,56 @@ int refuse(const Route& route, const Context& context) {
   return exitOf(route.status);
 }
 
-int run(const PlanOptions& asked, Context& context) {
-  PlanOptions options = asked;
-  if (isMission(options.ground.dem.path)) readMission(options);
-  requirePlaces(options);
-  checkOutputs(options);
-  planner::NamedPlanner planner(options.planner);
-  if (options.drive.any() && !planner.drives())
-    throw InputError({"planner '" + planner.name() + "'", "knows no heading and no turning radius",
-                      "pass --planner hybrid, or leave out --start-heading, --goal-heading, --turning-radius "
-                      "and --no-reverse"});
+// A plan, and the ground that it was made on.
+struct Planned {
+  Ground ground;             // of large maps the overview
+  planner::Problem problem;  // its map holds the tiles that were read
+  planner::Plan plan;
+  double plan_s = 0.0;
+};
+
+double since_s(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+Planned planWhole(const PlanOptions& options, planner::NamedPlanner& planner, const Context& context) {
+  Planned planned{.ground = readGround(options.ground, context), .problem = {}, .plan = {}};
+  planned.problem = problemOf(options, planned.ground, context);
+  const auto chassis = chassisOf(options.drive, planned.ground.map);
+  const auto begin = std::chrono::steady_clock::now();
+  planned.plan = planOnce(planned.problem, planner, options, chassis);
+  planned.plan_s = since_s(begin);
+  return planned;
+}
+
+// Many routes over one map, over all ranks of an MPI run.
+int runPairs(const PlanOptions& options, Context& context) {
+  const Campaign campaign;
+  if (!campaign.leads()) context.quiet = true;
+  const auto pairs = readPairs(options.pairs);
+  if (campaign.leads()) checkOutputs(options);
   const Ground ground = readGround(options.ground, context);
   if (context.stop.stop_requested()) return Exit::kCancelled;
-  const planner::Problem problem = problemOf(options, ground, context);
-  const auto begin = std::chrono::steady_clock::now();
-  const planner::Plan plan = planned(problem, planner, options, chassisOf(options.drive, ground.map));
-  const std::chrono::duration<double> plan_s = std::chrono::steady_clock::now() - begin;
-  if (plan.status == RouteStatus::Found)
-    requireAllowed(plan, *problem.map, problem.kinematics.turning_radius_m);
-  const maps::ElevationMap& map = ground.map.elevation();
-  const Route route = annotated(plan, {.map = *problem.map,
-                                       .elevation_m = &map.elevation_m,
-                                       .planner = planner.name(),
-                                       .kinematics = problem.kinematics});
-  if (plan.status != RouteStatus::Found) return refuse(route, context);
-  writeFiles(options, ground, route, context);
-  if (!options.pareto.empty())
-    saveParetoChart(options.pareto, planner::paretoSet(problem, planner, kParetoSteps));
-  const Timing seconds{ground.load_s, ground.build_s, plan_s.count()};
+  const auto lines = planPairs(pairs, problemOf(options, ground, context), options.planner, campaign);
+  if (!campaign.leads()) return Exit::kDone;
+  if (context.stop.stop_requested()) return Exit::kCancelled;
+  if (!options.output.empty()) writeFile(options.output, pairsCsv(lines));
+  if (context.json)
+    printJson(nlohmann::ordered_json(lines));
+  else if (options.output.empty())
+    print(pairsCsv(lines));
+  return Exit::kDone;
+}
+
+// What is done with a plan, whichever way it was made.
+int finish(const PlanOptions& options, const Planned& planned, const planner::AnnotationInput& input,
+           const Context& context) {
+  if (planned.plan.status == RouteStatus::Found)
+    requireAllowed(planned.plan, *planned.problem.map, planned.problem.kinematics.turning_radius_m);
+  const Route route = annotated(planned.plan, input);
+  if (planned.plan.status != RouteStatus::Found) return refuse(route, context);
+  writeFiles(options, planned.ground, route, context);
+  const Timing seconds{planned.ground.load_s, planned.ground.build_s, planned.plan_s};
   if (context.json) {
     auto json = summaryJson(route);
     if (options.max_risk > 0.0) json["risk"] = riskJson(route, options, context);
@@ -267,6 +317,58 @@ int run(const PlanOptions& asked, Context& context) {
     print(asText(route, seconds));
   }
   return Exit::kDone;
+}
+
+void refuseInWindows(const PlanOptions& options) {
+  const bool other = options.planner != "field" || options.max_risk > 0.0 || !options.pareto.empty() ||
+                     !options.pairs.empty() || !options.drive.chassis.empty();
+  if (!other) return;
+  throw InputError({options.ground.dem.path,
+                    "is too large for --planner, --pairs, --risk, --pareto and --chassis",
+                    "read a part with --window, or the whole with --whole-field"});
+}
+
+int runInWindows(const PlanOptions& options, const Context& context) {
+  refuseInWindows(options);
+  WindowedGround ground(options.ground, context);
+  if (context.stop.stop_requested()) return Exit::kCancelled;
+  planner::Problem problem = problemOf(options, ground.overview(), context);
+  const auto begin = std::chrono::steady_clock::now();
+  planner::Plan plan = planInWindows(problem, ground);
+  const double plan_s = since_s(begin);
+  if (!problem.map) problem.map = ground.overview().map.published();
+  const planner::AnnotationInput input{.map = *problem.map,
+                                       .elevation_m = [&](maps::Point p) { return ground.elevation_m(p); },
+                                       .planner = options.planner};
+  return finish(options, {std::move(ground).takeOverview(), problem, std::move(plan), plan_s}, input,
+                context);
+}
+
+int run(const PlanOptions& asked, Context& context) {
+  PlanOptions options = asked;
+  if (isMission(options.ground.dem.path)) readMission(options);
+  requirePlaces(options);
+  if (options.pairs.empty()) checkOutputs(options);
+  planner::NamedPlanner planner(options.planner);
+  if (options.drive.any() && !planner.drives())
+    throw InputError({"planner '" + planner.name() + "'", "knows no heading and no turning radius",
+                      "pass --planner hybrid, or leave out --start-heading, --goal-heading, --turning-radius "
+                      "and --no-reverse"});
+  if (!options.whole_field && WindowedGround::needed(options.ground, options.in_memory))
+    return runInWindows(options, context);
+  if (!options.pairs.empty()) return runPairs(options, context);
+  const Planned planned = planWhole(options, planner, context);
+  if (context.stop.stop_requested() && planned.plan.points.empty()) return Exit::kCancelled;
+  const maps::Raster<float>& heights = planned.ground.map.elevation().elevation_m;
+  const int code = finish(options, planned,
+                          {.map = *planned.problem.map,
+                           .elevation_m = maps::elevationOf(heights),
+                           .planner = planner.name(),
+                           .kinematics = planned.problem.kinematics},
+                          context);
+  if (code == Exit::kDone && !options.pareto.empty())
+    saveParetoChart(options.pareto, planner::paretoSet(planned.problem, planner, kParetoSteps));
+  return code;
 }
 
 }  // namespace

@@ -20,12 +20,6 @@ std::string lengthText(double metres) {
   return metres >= 2000.0 ? fmt::format("{:.2f} km", metres / 1000.0) : fmt::format("{:.4g} m", metres);
 }
 
-/// Joules as J, kJ or MJ, four digits.
-std::string energyText(double joules) {
-  if (joules >= 1e6) return fmt::format("{:.4g} MJ", joules / 1e6);
-  return joules >= 1e4 ? fmt::format("{:.4g} kJ", joules / 1e3) : fmt::format("{:.4g} J", joules);
-}
-
 /// Largest and mean of a field over the motions, by length; not known where no motion has it.
 struct Profile {
   double highest = -INFINITY;
@@ -154,6 +148,11 @@ std::vector<double> distances_m(const Route& route) {
     s.push_back((i == 0 ? 0.0 : s.back()) + std::hypot(b.x_m - a.x_m, b.y_m - a.y_m));
   }
   return s;
+}
+
+std::string energyText(double joules) {
+  if (joules >= 1e6) return fmt::format("{:.4g} MJ", joules / 1e6);
+  return joules >= 1e4 ? fmt::format("{:.4g} kJ", joules / 1e3) : fmt::format("{:.4g} J", joules);
 }
 
 std::string durationText(double seconds) {

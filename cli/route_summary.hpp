@@ -18,6 +18,9 @@ std::vector<std::pair<std::string, std::string>> summaryOf(const planner::Route&
 /// The same as aligned text, a line each.
 std::string summaryText(const planner::Route& route);
 
+/// Joules as J, kJ or MJ, four digits.
+std::string energyText(double joules);
+
 /// "2 h 05 min", "45 s", "3 d 04 h".
 std::string durationText(double seconds);
 

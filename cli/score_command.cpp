@@ -61,8 +61,9 @@ int run(const Options& options, Context& context) {
   if (!violations.empty()) plan.cost_J = INFINITY;
   const planner::Segment ends{plan.points.front(), plan.points.back()};
   plan.lower_bound_J = std::min(plan.cost_J, planner::LowerBound()(map, ends, 0.0, context.watch("bound")));
-  const planner::Route route =
-      annotated(plan, {.map = *map, .elevation_m = &ground.map.elevation().elevation_m, .planner = "none"});
+  const planner::Route route = annotated(
+      plan,
+      {.map = *map, .elevation_m = maps::elevationOf(ground.map.elevation().elevation_m), .planner = "none"});
   if (context.json) {
     auto json = summaryJson(route);
     if (!violations.empty()) json["status"] = "infeasible";

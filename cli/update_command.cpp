@@ -99,6 +99,9 @@ int run(const Options& options, Context& context) {
     for (const auto& row : telemetry.rejected)
       context.warn(fmt::format("{}:{}: {}", options.telemetry, row.line, row.reason));
     report = costmap::addDrive(map, telemetry, journal.get());
+    if (report.used == 0)
+      throw InputError({options.telemetry, fmt::format("none of its {} rows could be used", report.rejected),
+                        "the first: " + report.first_reason});
   }
   for (const std::string& finding : report.findings) context.warn(finding);
   if (context.stop.stop_requested()) return Exit::kCancelled;

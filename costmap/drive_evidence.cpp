@@ -68,7 +68,9 @@ class Rows {
   }
 
  private:
-  static double value(const std::vector<double>* column, std::size_t i) { return column ? (*column)[i] : kNone; }
+  static double value(const std::vector<double>* column, std::size_t i) {
+    return column ? (*column)[i] : kNone;
+  }
   std::string wheel(std::size_t i) const { return wheel_ ? (*wheel_)[i] : std::string(); }
   std::string run(std::size_t i) const { return run_ ? (*run_)[i] : std::string(); }
 
@@ -91,8 +93,8 @@ std::optional<int> classAt(const TraversabilityMap& map, const maps::Point& plac
   return map.classIndex(*cell);
 }
 
-// The readings of one moment, with the loads that the slope gives them where the file has all wheels carry the
-// same: such a column is the weight's even share and not a measurement.
+// The readings of one moment, with the loads that the slope gives them where the file has all wheels carry
+// the same: such a column is the weight's even share and not a measurement.
 struct Moment {
   std::size_t first = 0;
   std::vector<WheelReading> readings;
@@ -112,7 +114,8 @@ Moment momentAt(const Rows& rows, std::size_t first, const terramech::Rover& rov
     middle.x_m += r.place.x_m / static_cast<double>(end - first);
     middle.y_m += r.place.y_m / static_cast<double>(end - first);
     const double even_N = terramech::wheelLoad_N(rover);
-    same = same && std::abs(r.load_N - even_N) < kSameLoad * even_N && r.gradient == moment.readings[0].gradient;
+    same =
+        same && std::abs(r.load_N - even_N) < kSameLoad * even_N && r.gradient == moment.readings[0].gradient;
   }
   const double gradient = moment.readings[0].gradient, heading = rows.heading(first);
   const bool whole = moment.readings.size() == static_cast<std::size_t>(rover.wheel_count);
@@ -155,14 +158,18 @@ class Listener {
 
  private:
   std::vector<Heard> understood(const Moment& moment, bool without_torque) {
+    std::vector<SensorWatch::Named> named;
+    for (std::size_t w = 0; w < moment.readings.size(); ++w)
+      named.push_back({rows_.series(moment.first + w), moment.readings[w]});
+    const auto refused = watch_.refuse(named);
     std::vector<Heard> all;
     std::vector<ClassReading> sound, believed;
     std::vector<std::size_t> who;
     for (std::size_t w = 0; w < moment.readings.size(); ++w) {
       Heard& heard = all.emplace_back(Heard{moment.readings[w], {}, {}});
       const auto index = classAt(map_, heard.reading.place);
-      if (const auto reason = watch_.refuse(rows_.series(moment.first + w), heard.reading))
-        heard.reason = *reason;
+      if (refused[w])
+        heard.reason = *refused[w];
       else if (!index)
         heard.reason = "outside the map or on ground without a soil";
       if (!heard.reason.empty()) continue;
@@ -210,13 +217,15 @@ DriveReport addDrive(TraversabilityMap& map, const terramech::Telemetry& telemet
                          .observation = heard.observation};
     if (journal) journal->append(row);
     ++(row.accepted ? report.used : report.rejected);
+    if (report.first_reason.empty()) report.first_reason = row.reason;
   });
   map.publish();
   report.findings = listener.watch().findings();
   if (listener.transferred() > 0)
-    report.findings.push_back(std::to_string(listener.transferred()) +
-                              " rows: load_N is the even share of the weight on a slope; the load transfer was "
-                              "worked out from the wheels' places");
+    report.findings.push_back(
+        std::to_string(listener.transferred()) +
+        " rows: load_N is the even share of the weight on a slope; the load transfer was "
+        "worked out from the wheels' places");
   return report;
 }
 

@@ -15,6 +15,7 @@ namespace talus::costmap {
 struct DriveReport {
   std::size_t used = 0;
   std::size_t rejected = 0;           ///< by the sensors' watch, or without a place on the map
+  std::string first_reason;           ///< of the first row rejected; empty when none was
   std::vector<std::string> findings;  ///< what the sensors' watch saw, a line each
 };
 

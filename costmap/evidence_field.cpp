@@ -17,10 +17,10 @@ constexpr double kNugget =
     0.01;  // of a block's mean however many samples it has: ground varies inside it too
 constexpr std::size_t kMostNeighbours = 64;
 constexpr int kPatchBlocks = 8;
-constexpr double kFreedom = 4.0;      // of Student's t
-constexpr double kContradicts = 1.5;  // standard deviations
+constexpr double kFreedom = 4.0;              // of Student's t
+constexpr double kContradicts = 1.5;          // standard deviations
 constexpr std::size_t kMostRemembered = 512;  // patches, so that a whole map is worked out in little memory
-constexpr double kUnit = 1048576.0;  // of the fixed-point sums
+constexpr double kUnit = 1048576.0;           // of the fixed-point sums
 
 int shiftFor(double correlation_length_m, double resolution_m) {
   const double cells = correlation_length_m / kBlocksPerLength / resolution_m;
@@ -91,8 +91,9 @@ double EvidenceField::measuredVariance(const CellBelief& block) const noexcept {
 }
 
 // One block speaks for as many independent places as its length holds integral scales (2/3 of the correlation
-// length). Ground that departs from its class by much more than the class varies is other ground that no class
-// raster shows: it counts for less by the weight of Student's t with four degrees of freedom (lange_1989).
+// length). Ground that departs from its class by much more than the class varies is other ground that no
+// class raster shows: it counts for less by the weight of Student's t with four degrees of freedom
+// (lange_1989).
 void EvidenceField::contribute(const CellBelief& block, int class_index, std::int64_t sign) {
   if (block.evidence <= 0.0F) return;
   const GroundClass& ground = site_->model->parts().classes[static_cast<std::size_t>(class_index)];

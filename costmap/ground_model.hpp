@@ -84,8 +84,8 @@ class GroundModel {
   /// Belief before any evidence.
   GroundBelief prior(int class_index) const;
 
-  /// What a wheel of a rover that drives steadily at this slip on ground of the class reads, as its soil says;
-  /// the ends of what it can drive beyond them.
+  /// What a wheel of a rover that drives steadily at this slip on ground of the class reads, as its soil
+  /// says; the ends of what it can drive beyond them.
   SteadyWheel steady(int class_index, const DrivenWheel& wheel) const noexcept;
   /// The same at the reference slip.
   SteadyWheel reference(int class_index, bool in_rut) const noexcept;

@@ -7,6 +7,7 @@ namespace talus::costmap {
 namespace {
 
 constexpr std::size_t kWindow = 5;
+constexpr const char* kSpike = "spike";
 
 double medianOf(const std::deque<WheelReading>& last, double WheelReading::*field) {
   std::vector<double> values;
@@ -43,19 +44,61 @@ bool SensorWatch::isSpike(const Wheel& wheel, const WheelReading& reading) const
                  limits_.sinkage_spike * radius_m);
 }
 
-std::optional<std::string> SensorWatch::refuse(const std::string& name, const WheelReading& reading) {
-  Wheel& wheel = wheels_[name];
+bool SensorWatch::slipsBackwardsUphill(const WheelReading& reading) const noexcept {
+  return reading.slip < limits_.backward_slip && reading.gradient > limits_.climb &&
+         !(reading.torque_Nm <= 0.0);
+}
+
+void SensorWatch::countGap(Wheel& wheel, double time_s) {
+  constexpr std::size_t kKnown = 10;  // intervals that tell the usual one
+  const double passed_s = time_s - wheel.time_s;
+  if (wheel.time_s < -1e299 || !(passed_s > 0.0)) return;
+  if (wheel.intervals >= kKnown && passed_s > limits_.gap * wheel.interval_s) {
+    ++gaps_;
+    longest_gap_s_ = std::max(longest_gap_s_, passed_s);
+    return;
+  }
+  ++wheel.intervals;
+  wheel.interval_s += (passed_s - wheel.interval_s) / static_cast<double>(wheel.intervals);
+}
+
+void SensorWatch::countDropout(Wheel& wheel, const WheelReading& reading) {
+  const bool torque = std::isfinite(reading.torque_Nm), sinkage = std::isfinite(reading.sinkage_m);
+  if ((wheel.has_torque && !torque) || (wheel.has_sinkage && !sinkage)) ++dropouts_;
+  wheel.has_torque |= torque;
+  wheel.has_sinkage |= sinkage;
+}
+
+std::vector<std::optional<std::string>> SensorWatch::refuse(const std::vector<Named>& moment) {
+  std::vector<std::optional<std::string>> reasons;
+  for (const Named& named : moment) reasons.push_back(judge(named));
+  const bool all_jump =
+      reasons.size() > 1 &&
+      std::all_of(reasons.begin(), reasons.end(), [](const auto& reason) { return reason == kSpike; });
+  for (auto& reason : reasons)
+    if (all_jump)
+      reason.reset();
+    else if (reason)
+      ++refusals_[*reason];
+  return reasons;
+}
+
+std::optional<std::string> SensorWatch::judge(const Named& named) {
+  const WheelReading& reading = named.reading;
+  Wheel& wheel = wheels_[named.wheel];
   std::optional<std::string> reason;
+  countGap(wheel, reading.time_s);
+  countDropout(wheel, reading);
   if (reading.time_s < wheel.time_s)
     reason = "time goes back";
   else
     wheel.time_s = std::isnan(reading.time_s) ? wheel.time_s : reading.time_s;
   wheel.equal = !wheel.last.empty() && sameReading(wheel.last.back(), reading) ? wheel.equal + 1 : 0;
   if (!reason && wheel.equal + 1 >= limits_.stuck_rows) reason = "readings are stuck";
-  if (!reason && isSpike(wheel, reading)) reason = "spike";
+  if (!reason && isSpike(wheel, reading)) reason = kSpike;
+  if (!reason && slipsBackwardsUphill(reading)) reason = "slips backwards on a climb: the slip is biased";
   wheel.last.push_back(reading);
   if (wheel.last.size() > kWindow) wheel.last.pop_front();
-  if (reason) ++refusals_[*reason];
   return reason;
 }
 
@@ -73,6 +116,12 @@ std::optional<double> SensorWatch::bias() const {
 std::vector<std::string> SensorWatch::findings() const {
   std::vector<std::string> lines;
   for (const auto& [reason, count] : refusals_) lines.push_back(std::to_string(count) + " rows: " + reason);
+  if (dropouts_ > 0)
+    lines.push_back(std::to_string(dropouts_) +
+                    " rows: torque or sinkage missing; their slip and slope count");
+  if (gaps_ > 0)
+    lines.push_back(std::to_string(gaps_) + " gaps in time, the longest of " +
+                    std::to_string(longest_gap_s_) + " s");
   if (biased())
     lines.push_back(
         "torque and sinkage say " + std::to_string(*bias()) +

@@ -19,20 +19,35 @@ struct SensorLimits {
   std::size_t stuck_rows = 25;  ///< equal readings in a row that a live sensor does not give
   double bias =
       0.04;  ///< pull by torque and sinkage less pull asked for, on average, that betrays a sensor [-]
-  std::size_t bias_rows = 30;  ///< rows before a bias is spoken of
+  std::size_t bias_rows = 30;    ///< rows before a bias is spoken of
+  double climb = 0.03;           ///< gradient from which a driven wheel cannot slip backwards [-]
+  double backward_slip = -0.03;  ///< slip below which it would
+  double gap = 10.0;             ///< intervals without a row that make a gap in time
 };
 
 /// Watches the readings of a drive, wheel by wheel, in the order they come. What the data can tell is refused
 /// with a reason: time going backwards, stuck values, spikes. A torque offset or a sinkage datum shows as
 /// pull that the slope does not ask for, on all ground alike; torque and sinkage are then left out, which
-/// leaves slip against slope. A slip bias cannot be told from weak ground by one rover; it stays in the
-/// doubt.
+/// leaves slip against slope. Odometry that has a driven wheel slip backwards on a climb is refused; a slip
+/// bias the other way cannot be told from weak ground by one rover and stays in the doubt. Gaps in time and
+/// values that are missing now and then are counted.
 class SensorWatch {
  public:
   SensorWatch(const GroundModel& model, const SensorLimits& limits = {}) : model_(model), limits_(limits) {}
 
-  /// Why the reading is not believed; nothing when it is.
-  std::optional<std::string> refuse(const std::string& wheel, const WheelReading& reading);
+  /// A wheel's name and what it read.
+  struct Named {
+    std::string wheel;
+    WheelReading reading;
+  };
+
+  /// Why each of the readings of one moment is not believed; nothing where it is. What jumps at all wheels of
+  /// several at once is the rover, slipping, and no spike.
+  std::vector<std::optional<std::string>> refuse(const std::vector<Named>& moment);
+  /// The same of one wheel.
+  std::optional<std::string> refuse(const std::string& wheel, const WheelReading& reading) {
+    return refuse({{wheel, reading}}).front();
+  }
 
   /// Counts what torque and sinkage say against what the slope asks.
   void compare(const WheelObservation& observation);
@@ -47,16 +62,25 @@ class SensorWatch {
  private:
   struct Wheel {
     double time_s = -1e300;
+    double interval_s = 0.0;  // between rows, the mean outside gaps
+    std::size_t intervals = 0;
+    bool has_torque = false, has_sinkage = false;
     std::deque<WheelReading> last;
     std::size_t equal = 0;
   };
 
+  std::optional<std::string> judge(const Named& named);
   bool isSpike(const Wheel& wheel, const WheelReading& reading) const;
+  bool slipsBackwardsUphill(const WheelReading& reading) const noexcept;
+  void countGap(Wheel& wheel, double time_s);
+  void countDropout(Wheel& wheel, const WheelReading& reading);
 
   const GroundModel& model_;
   SensorLimits limits_;
   std::map<std::string, Wheel> wheels_;
   std::map<std::string, std::size_t> refusals_;
+  std::size_t gaps_ = 0, dropouts_ = 0;
+  double longest_gap_s_ = 0.0;
   double difference_sum_ = 0.0;
   std::size_t differences_ = 0;
 };

@@ -51,8 +51,8 @@ class GaussianProcess {
 
   std::vector<PlaceEvidence> evidence_;
   Variation variation_;
-  std::vector<double> excess_;  // a_i - 1
-  std::vector<double> amplitude_;  // a at each evidence
+  std::vector<double> excess_;          // a_i - 1
+  std::vector<double> amplitude_;       // a at each evidence
   std::vector<double> factor_;          // lower Cholesky factor of K + noise, in units of the prior variance
   std::vector<double> pull_, sinkage_;  // (K + noise)^-1 y
 };

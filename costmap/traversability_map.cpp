@@ -273,7 +273,8 @@ void TraversabilityMap::refuse(const maps::Point& place, double radius_m) {
   const auto clamped = [](double value, int cells) {
     return static_cast<int>(std::clamp(std::floor(value), 0.0, static_cast<double>(cells - 1)));
   };
-  const double x = (place.x_m - grid().south_west.x_m) / cell_m, y = (place.y_m - grid().south_west.y_m) / cell_m;
+  const double x = (place.x_m - grid().south_west.x_m) / cell_m,
+               y = (place.y_m - grid().south_west.y_m) / cell_m;
   const double reach = radius_m / cell_m;
   const CellRange range{{clamped(x - reach, grid().width), clamped(y - reach, grid().height)},
                         {clamped(x + reach, grid().width), clamped(y + reach, grid().height)}};

@@ -14,8 +14,8 @@ constexpr double kReferenceSlip = 0.5;
 constexpr double kShiftPerSlip = 0.06;
 constexpr double kShiftPerSlipAndDeparture = 1.2;
 constexpr double kFlatFrom = 0.25;  // further from the reference slip than this both curves are flat
-constexpr double kFelt = 0.1;     // of the torque at the reference slip: less tells nothing about it
-constexpr double kRutDoubt = 1.0;  // of what a rut adds: its stiffness is known to a factor (ours)
+constexpr double kFelt = 0.1;       // of the torque at the reference slip: less tells nothing about it
+constexpr double kRutDoubt = 1.0;   // of what a rut adds: its stiffness is known to a factor (ours)
 
 bool known(double value) noexcept {
   return std::isfinite(value);
@@ -42,11 +42,11 @@ WheelObserver::WheelObserver(const GroundModel& model, const ReadingNoise& noise
 // A reading with what the model expects of it.
 struct WheelObserver::Wheel {
   const ClassReading& read;
-  SteadyWheel expected;   // at its slip, fresh or in a rut
-  SteadyWheel reference;  // at the reference slip, likewise
+  SteadyWheel expected;    // at its slip, fresh or in a rut
+  SteadyWheel reference;   // at the reference slip, likewise
   double steepness = 0.0;  // of the expected gradient, for one standard deviation of slip
   double rut_gain = 0.0;   // how much more it pulls than on fresh ground
-  double from_torque = std::numeric_limits<double>::quiet_NaN();  // pull at its slip
+  double from_torque = std::numeric_limits<double>::quiet_NaN();     // pull at its slip
   Estimate by_torque{0.0, std::numeric_limits<double>::infinity()};  // departure at the reference slip
 };
 
@@ -67,15 +67,16 @@ WheelObserver::Wheel WheelObserver::expected(const ClassReading& read) const {
   const SteadyWheel& like = w.reference;
   const double class_pull = pullFromTorque(like.torque_over_load_radius, like.sinkage_over_radius);
   const double depth = std::min(z * like.sinkage_over_radius / w.expected.sinkage_over_radius, 0.99);
-  // The torque at the reference slip: as read, as far as it is mobilised, else the class's, which says the less
-  // the more the depth departs from the class.
+  // The torque at the reference slip: as read, as far as it is mobilised, else the class's, which says the
+  // less the more the depth departs from the class.
   const GroundClass& ground = model_.parts().classes[static_cast<std::size_t>(read.class_index)];
   const double deeper = pullFromTorque(like.torque_over_load_radius, depth) - class_pull;
   Estimate torque{like.torque_over_load_radius, std::hypot(ground.pull_std, ground.mean_std, deeper)};
   if (w.expected.torque_over_load_radius > kFelt * like.torque_over_load_radius) {
     const double mobilised = like.torque_over_load_radius / w.expected.torque_over_load_radius;
-    torque = combined(torque, {t * mobilised, noise_.torque_share * t * mobilised +
-                                                  noise_.mobilised * std::abs(mobilised - 1.0) + noise_.model_pull});
+    torque = combined(torque,
+                      {t * mobilised, noise_.torque_share * t * mobilised +
+                                          noise_.mobilised * std::abs(mobilised - 1.0) + noise_.model_pull});
   }
   w.by_torque = {pullFromTorque(torque.mean, depth) - class_pull,
                  std::hypot(torque.std, noise_.sinkage_share, noise_.model_pull)};
@@ -101,7 +102,8 @@ std::optional<WheelObservation> WheelObserver::observed(const Wheel& w, double d
                        .demand = w.expected.gradient + departure,
                        .from_torque = w.from_torque};
   Estimate seen = w.by_torque;
-  if (known(departure)) seen = known(seen.std) ? combined(bySlope(w, departure, own), seen) : bySlope(w, departure, own);
+  if (known(departure))
+    seen = known(seen.std) ? combined(bySlope(w, departure, own), seen) : bySlope(w, departure, own);
   if (known(reading.drawbar_pull_N)) {
     const double pull = reading.drawbar_pull_N / reading.load_N - w.expected.gradient;
     seen = bySlope(w, pull, 0.0);

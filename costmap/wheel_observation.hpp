@@ -33,7 +33,7 @@ struct ReadingNoise {
   double gradient = 0.01;
   double torque_share = 0.05;   ///< of T/(rW)
   double sinkage_share = 0.05;  ///< of the wheel radius, times z/r's slope
-  double mobilised = 0.15;  ///< of torque taken to the reference slip, per share by which it grows [-]
+  double mobilised = 0.15;      ///< of torque taken to the reference slip, per share by which it grows [-]
   double model_pull =
       0.02;  ///< of thesis Eq. 3.12 as a model of DP/W, and of a wheel pulling its own share [-]
 };
@@ -51,17 +51,17 @@ struct WheelObservation {
 /// Turns readings into observations of fresh ground at the reference slip, by two ways that are weighed by
 /// their doubt:
 ///
-/// Slope: a steady rover's wheels together pull what the slope asks, DP/N = tan(slope). Each wheel's own curve,
-/// of its class and of fresh ground or a rut, says at which gradient it would drive at its slip; by how much
-/// the slope departs from what the wheels should pull together is the departure of the ground under all of
-/// them, the shift of GroundModel. How they share it, torque and sinkage say: a wheel that pulls less than its
-/// fellows, as on the edge of a soft patch, stands on weaker ground.
+/// Slope: a steady rover's wheels together pull what the slope asks, DP/N = tan(slope). Each wheel's own
+/// curve, of its class and of fresh ground or a rut, says at which gradient it would drive at its slip; by
+/// how much the slope departs from what the wheels should pull together is the departure of the ground under
+/// all of them, the shift of GroundModel. How they share it, torque and sinkage say: a wheel that pulls less
+/// than its fellows, as on the edge of a soft patch, stands on weaker ground.
 ///
-/// Torque and sinkage: what a wheel pulls is a function of both (thesis Eq. 3.12). On the way to the reference
-/// slip both grow as they do on ground of the class: torque as shear is mobilised, sinkage as the wheel digs
-/// (ours; from slip 0.3 on within 0.11 of the forward model on dust, trap and drift taken for sand, whose pull
-/// is 0.2 to 0.36 less). Where little is mobilised yet, the class's own torque stands in, and the sinkage alone
-/// speaks: who sinks deeper has more to climb out of.
+/// Torque and sinkage: what a wheel pulls is a function of both (thesis Eq. 3.12). On the way to the
+/// reference slip both grow as they do on ground of the class: torque as shear is mobilised, sinkage as the
+/// wheel digs (ours; from slip 0.3 on within 0.11 of the forward model on dust, trap and drift taken for
+/// sand, whose pull is 0.2 to 0.36 less). Where little is mobilised yet, the class's own torque stands in,
+/// and the sinkage alone speaks: who sinks deeper has more to climb out of.
 class WheelObserver {
  public:
   explicit WheelObserver(const GroundModel& model, const ReadingNoise& noise = {});

@@ -51,7 +51,7 @@ int run(const char* file) {
     return 1;
   }
   const talus::planner::AnnotationInput input{
-      .map = *problem.map, .elevation_m = &elevation, .planner = planner.name()};
+      .map = *problem.map, .elevation_m = talus::maps::elevationOf(elevation), .planner = planner.name()};
   print("there", annotated(there, input));
   print("back ", annotated(back, input));
   return 0;

@@ -25,4 +25,9 @@ double validFraction(const Raster<float>& elevation_m);
 /// Elevation [m] at a point, bilinear between cell centres; nothing outside the map or beside nodata.
 std::optional<double> elevationAt(const Raster<float>& elevation_m, Point point);
 
+/// elevationAt() as a function; the raster must outlive it.
+inline auto elevationOf(const Raster<float>& elevation_m) {
+  return [&elevation_m](Point point) { return elevationAt(elevation_m, point); };
+}
+
 }  // namespace talus::maps

@@ -81,33 +81,57 @@ double radius(GDALDataset& file) {
   return crs == nullptr ? 0.0 : crs->GetSemiMajor();
 }
 
-}  // namespace
+// What is read of a file: where its pixels lie, which of them, and how they say heights.
+struct Selection {
+  FramedRaster from;
+  HeightCode code;
+  CellBox box;
+  Grid grid;  // of the result
+};
 
-ElevationMap readElevation(const std::string& path, const ReadOptions& options) {
+// A box of whole overview cells; what is left over in the north and east is left out.
+CellBox wholeCells(CellBox box, int overview) {
+  const auto whole = [overview](int first, int last) { return first + (last - first) / overview * overview; };
+  return {box.first, {whole(box.first.column, box.last.column), whole(box.first.row, box.last.row)}};
+}
+
+Selection select(const std::string& path, const ReadOptions& options, std::vector<std::string>& notes) {
   check(options);
-  const GdalErrors quiet;  // GDAL judges a CRS only when asked for it
-  ElevationMap map;
-  map.source = path;
-  Dataset file = isNumpyFile(path) ? openNumpyRaster(path, map.notes) : openRaster(path);
+  Dataset file = isNumpyFile(path) ? openNumpyRaster(path, notes) : openRaster(path);
   const int band = chooseBand(*file,
                               {.path = path,
                                .band = options.band,
                                .words = {"elev", "dem", "dtm", "height", "topo", "altitude"},
                                .others = {"slope", "aspect", "shade", "error", "count"}},
-                              map.notes);
-  HeightCode code = heightCode(*file->GetRasterBand(band), radius(*file), map.notes);
+                              notes);
+  HeightCode code = heightCode(*file->GetRasterBand(band), radius(*file), notes);
   if (options.nodata) code.nodata = options.nodata;
   code.scale *= options.vertical_scale;
   code.offset_m *= options.vertical_scale;
+  FramedRaster from = frame(std::move(file), band, options, path, notes);
+  const CellBox whole{{0, 0}, {from.grid.width, from.grid.height}};
+  const CellBox box =
+      wholeCells(options.window ? cellsOf(*options.window, from, path) : whole, options.overview);
+  Grid grid = part(from.grid, box);
+  grid.width /= options.overview;
+  grid.height /= options.overview;
+  grid.resolution_m *= options.overview;
+  return {std::move(from), code, box, grid};
+}
 
-  FramedRaster from = frame(std::move(file), band, options, path, map.notes);
-  const CellBox box = options.window ? cellsOf(*options.window, from, path)
-                                     : CellBox{{0, 0}, {from.grid.width, from.grid.height}};
-  const Grid grid = part(from.grid, box);
+}  // namespace
+
+ElevationMap readElevation(const std::string& path, const ReadOptions& options) {
+  const GdalErrors quiet;  // GDAL judges a CRS only when asked for it
+  ElevationMap map;
+  map.source = path;
+  const Selection chosen = select(path, options, map.notes);
+  const auto& [from, code, box, grid] = chosen;
   refuseSize(grid, options, path);
   const int first_row = from.north_up ? from.grid.height - box.last.row : box.first.row;
-  std::vector<float> values =
-      readPixels(*from.raster, from.band, {box.first.column, first_row, grid.width, grid.height}, path);
+  const PixelBox pixels{box.first.column, first_row, box.last.column - box.first.column,
+                        box.last.row - box.first.row};
+  std::vector<float> values = readPixels(*from.raster, from.band, pixels, path, options.overview);
   decodeHeights(values, code, map.notes);
   map.elevation_m = from.north_up ? northUp(grid, std::move(values)) : Raster<float>(grid, std::move(values));
   map.georeference = from.georeference;
@@ -115,6 +139,12 @@ ElevationMap readElevation(const std::string& path, const ReadOptions& options) 
     throw InputError({path, "holds no data in any cell" + std::string(options.window ? " of the window" : ""),
                       "check --band, --nodata and --window"});
   return map;
+}
+
+Grid elevationGrid(const std::string& path, const ReadOptions& options) {
+  const GdalErrors quiet;
+  std::vector<std::string> notes;
+  return select(path, options, notes).grid;
 }
 
 }  // namespace talus::maps

@@ -17,6 +17,7 @@ struct ReadOptions {
   std::optional<double> nodata{};           ///< value that means no data, over what the file says
   double vertical_scale = 1.0;            ///< metres per unit of the file, on top of the unit it states
   bool ignore_crs = false;                ///< the file's CRS is wrong: read as local metres
+  int overview = 1;  ///< cells to a side that are read as one, their mean, from the file's overviews if it has some
   std::uint64_t max_cells = 400'000'000;  ///< refuse larger maps (1.6 GB as float)
 };
 
@@ -25,5 +26,8 @@ struct ReadOptions {
 /// cells in metres (the map's notes say so).
 /// @throws InputError naming file, reason and remedy
 ElevationMap readElevation(const std::string& path, const ReadOptions& options = {});
+
+/// Where the cells lie that readElevation() would read, without reading them. @throws InputError
+Grid elevationGrid(const std::string& path, const ReadOptions& options = {});
 
 }  // namespace talus::maps

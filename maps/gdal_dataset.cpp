@@ -76,6 +76,10 @@ bool GdalErrors::any() const {
   return CPLGetLastErrorType() >= CE_Failure;
 }
 
+void limitPixelCache(std::int64_t bytes) {
+  GDALSetCacheMax64(bytes);
+}
+
 Dataset openRaster(const std::string& path) {
   registerDriversOnce();
   requireReadableFile(path);

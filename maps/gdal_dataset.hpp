@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
@@ -35,6 +36,10 @@ void requireReadableFile(const std::string& path);
 /// Opens a raster file for reading. @throws InputError: missing, a directory, unreadable, not a raster, no
 /// cells
 Dataset openRaster(const std::string& path);
+
+/// Pixels that GDAL keeps in memory in the whole process, in bytes; left alone a twentieth of the machine's
+/// memory.
+void limitPixelCache(std::int64_t bytes);
 
 /// An empty raster in memory of one band of 32-bit floats. @throws std::bad_alloc
 Dataset memoryRaster(int width, int height);

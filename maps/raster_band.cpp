@@ -37,12 +37,12 @@ bool isPicture(GDALRasterBand& band) {
 
 // NaN where GDAL's mask of the band, if it has one of its own, says that the pixel does not count.
 void applyMask(GDALRasterBand& band, const PixelBox& box, std::vector<float>& values,
-               const std::string& where) {
+               const std::string& where, int overview) {
   if ((band.GetMaskFlags() & (GMF_PER_DATASET | GMF_ALPHA)) == 0) return;
   std::vector<unsigned char> mask(values.size());
   const GdalErrors errors;
   if (band.GetMaskBand()->RasterIO(GF_Read, box.column, box.row, box.width, box.height, mask.data(),
-                                   box.width, box.height, GDT_Byte, 0, 0, nullptr) != CE_None)
+                                   box.width / overview, box.height / overview, GDT_Byte, 0, 0, nullptr) != CE_None)
     throw InputError({where, "its mask cannot be read: " + errors.last(), "fetch it again"});
   for (std::size_t i = 0; i < values.size(); ++i)
     if (mask[i] == 0) values[i] = kNaN;
@@ -69,18 +69,23 @@ int chooseBand(GDALDataset& file, const BandWish& wish, std::vector<std::string>
   return chosen;
 }
 
-std::vector<float> readPixels(GDALDataset& raster, int band, const PixelBox& box, const std::string& where) {
+std::vector<float> readPixels(GDALDataset& raster, int band, const PixelBox& box, const std::string& where,
+                              int overview) {
   GDALRasterBand& source = *raster.GetRasterBand(band);
   if (GDALDataTypeIsComplex(source.GetRasterDataType()) != FALSE)
     throw InputError({where, "holds complex numbers", "choose a band of real numbers with --band"});
-  std::vector<float> values(static_cast<std::size_t>(box.width) * static_cast<std::size_t>(box.height));
+  const int width = box.width / overview, height = box.height / overview;
+  std::vector<float> values(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  GDALRasterIOExtraArg how;
+  INIT_RASTERIO_EXTRA_ARG(how);
+  if (overview > 1) how.eResampleAlg = GRIORA_Average;
   const GdalErrors errors;
   const CPLErr done = source.RasterIO(GF_Read, box.column, box.row, box.width, box.height, values.data(),
-                                      box.width, box.height, GDT_Float32, 0, 0, nullptr);
+                                      width, height, GDT_Float32, 0, 0, &how);
   if (done != CE_None)
     throw InputError({where, "cannot be read to its end: " + errors.last(),
                       "the file is damaged or cut short: fetch it again"});
-  applyMask(source, box, values, where);
+  applyMask(source, box, values, where, overview);
   for (float& v : values)
     if (!std::isfinite(v)) v = kNaN;
   return values;

@@ -33,9 +33,11 @@ struct PixelBox {
 };
 
 /// Reads pixels of a band as they stand into rows of floats, first row first; masked pixels and infinities
-/// are NaN.
+/// are NaN. With `overview` above 1 the mean of each overview x overview pixels, of which width and height are
+/// multiples: from the file's overviews where it has some.
 /// @throws InputError with GDAL's words
-std::vector<float> readPixels(GDALDataset& raster, int band, const PixelBox& box, const std::string& where);
+std::vector<float> readPixels(GDALDataset& raster, int band, const PixelBox& box, const std::string& where,
+                              int overview = 1);
 
 /// Values of a file that begins in the north, as a raster that begins in the south.
 Raster<float> northUp(const Grid& grid, std::vector<float> values);

@@ -86,6 +86,7 @@ class Annotator {
         looked(pose.place, pose.place, {std::cos(pose.heading_rad), std::sin(pose.heading_rad)});
     vertex.turn_rad = turn_rad;
     vertices.push_back(vertex);
+    spend(input_.kinematics.stop, 1.0);
     turn(turn_rad, pose.place);
   }
 
@@ -161,7 +162,7 @@ class Annotator {
 
   double elevation(Point p) const {
     if (!input_.elevation_m) return kNotKnown;
-    return maps::elevationAt(*input_.elevation_m, p).value_or(kNotKnown);
+    return input_.elevation_m(p).value_or(kNotKnown);
   }
 
   const AnnotationInput& input_;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,9 +15,9 @@ namespace talus::planner {
 /// What a bare polyline is annotated from.
 struct AnnotationInput {
   const costmap::CostGrid& map;
-  const maps::Raster<float>* elevation_m = nullptr;  ///< none: vertices have no elevation
-  std::string planner = {};                          ///< its name, for the summary
-  Kinematics kinematics = {};                        ///< prices of turning, for drives
+  std::function<std::optional<double>(maps::Point)> elevation_m = nullptr;  ///< none: vertices have none
+  std::string planner = {};                                                 ///< its name, for the summary
+  Kinematics kinematics = {};                                               ///< prices of turning, for drives
 };
 
 /// The plan as a route for reports and controllers: a vertex at each turn and wherever the route enters

@@ -12,6 +12,7 @@
 
 #include <planner/benchmark.hpp>
 #include <planner/named_planner.hpp>
+#include <planner/polyline.hpp>
 #include <planner/route_check.hpp>
 
 namespace talus::planner {
@@ -26,6 +27,8 @@ struct Answer {
   bool breached = false;
   double seconds = 0.0, cost_J = 0.0, lower_bound_J = 0.0, length_m = 0.0;
   int turns = 0;
+  DriveShape drive;
+  double clearance_cells = 0.0;
   double megabytes = 0.0;
 };
 
@@ -34,6 +37,33 @@ double lengthOf(const std::vector<maps::Point>& points) {
   for (std::size_t i = 1; i < points.size(); ++i)
     metres += std::hypot(points[i].x_m - points[i - 1].x_m, points[i].y_m - points[i - 1].y_m);
   return metres;
+}
+
+bool breached(const BenchmarkCase& asked, const Plan& found) {
+  return (!found.points.empty() && !violations(*asked.map, found.points).empty()) ||
+         (!found.drive.legs.empty() &&
+          !violations(*asked.map, found.drive, asked.kinematics.turning_radius_m).empty());
+}
+
+// From points half a cell apart to the nearest edge of a cell that no heading may enter, in cells; 10 when
+// there is none so near.
+double clearance_cells(const costmap::CostGrid& map, const std::vector<maps::Point>& points) {
+  constexpr int kReach = 10;
+  const maps::Grid& grid = map.grid();
+  double least = kReach;
+  for (const maps::Point p : subdivided(points, 0.5 * grid.resolution_m)) {
+    const double x = (p.x_m - grid.south_west.x_m) / grid.resolution_m,
+                 y = (p.y_m - grid.south_west.y_m) / grid.resolution_m;
+    const int reach = static_cast<int>(std::ceil(least)), column = static_cast<int>(x),
+              row = static_cast<int>(y);
+    for (int r = row - reach; r <= row + reach; ++r)
+      for (int c = column - reach; c <= column + reach; ++c) {
+        if (!grid.contains({c, r}) || map.at({c, r}).curve() < map.cost().curves().size()) continue;
+        least =
+            std::min(least, std::hypot(std::max({c - x, x - c - 1, 0.0}), std::max({r - y, y - r - 1, 0.0})));
+      }
+  }
+  return least;
 }
 
 void sendAll(int pipe, const void* data, std::size_t bytes) {
@@ -75,15 +105,19 @@ std::string answered(const BenchmarkPlan& plan, const BenchmarkJob& job) {
   problem.goal = asked.goal;
   problem.time_limit_s = plan.time_limit_s;
   problem.seed = job.seed;
+  problem.kinematics = asked.kinematics;
   const Plan found = named.plan(problem);
   if (found.status == RouteStatus::Found) note(found.cost_J);
+  const double seconds = elapsed();
   const Answer result{.status = found.status,
-                      .breached = !found.points.empty() && !violations(*asked.map, found.points).empty(),
-                      .seconds = elapsed(),
+                      .breached = breached(asked, found),
+                      .seconds = seconds,
                       .cost_J = found.cost_J,
                       .lower_bound_J = found.lower_bound_J,
                       .length_m = lengthOf(found.points),
                       .turns = std::max(0, static_cast<int>(found.points.size()) - 2),
+                      .drive = shape(found.drive),
+                      .clearance_cells = clearance_cells(*asked.map, found.points),
                       .megabytes = 0.0};
   std::string bytes(sizeof result + progress.size() * sizeof(CostAtTime), '\0');
   std::memcpy(bytes.data(), &result, sizeof result);
@@ -141,6 +175,10 @@ BenchmarkRun benchmarkRun(const BenchmarkJob& job, const std::string& bytes) {
   run.lower_bound_J = result.lower_bound_J;
   run.length_m = result.length_m;
   run.turns = result.turns;
+  run.cusps = result.drive.cusps;
+  run.turns_in_place = result.drive.turns_in_place;
+  run.max_curvature_1_m = result.drive.max_curvature_1_m;
+  run.clearance_cells = result.clearance_cells;
   return run;
 }
 

@@ -19,6 +19,7 @@ struct BenchmarkCase {
   maps::Point start;
   maps::Point goal;
   double optimum_J = std::numeric_limits<double>::quiet_NaN();  ///< where it is known, else NaN
+  Kinematics kinematics{};                                      ///< that planners of drives keep
 };
 
 /// A cost and when it was reached.
@@ -41,6 +42,10 @@ struct BenchmarkRun {
   double lower_bound_J = 0.0;
   double length_m = 0.0;
   int turns = 0;
+  int cusps = 0;                   ///< of drives: changes between forward and reverse
+  int turns_in_place = 0;          ///< of drives
+  double max_curvature_1_m = 0.0;  ///< of drives
+  double clearance_cells = 0.0;  ///< from the route to the nearest cell that no heading may enter, at most 10
   std::vector<CostAtTime> progress;  ///< ever better costs
 };
 

@@ -1,3 +1,4 @@
+#include <cctype>
 #include <cmath>
 #include <sstream>
 
@@ -40,23 +41,41 @@ std::string number(double value) {
 }
 
 void writeRuns(std::ostream& log, const std::vector<const BenchmarkRun*>& runs, double best_J) {
-  log << "9 properties for each run\ntime REAL\nmemory REAL\nstatus ENUM\nsolved BOOLEAN\ncorrect solution "
+  log << "13 properties for each run\ntime REAL\nmemory REAL\nstatus ENUM\nsolved BOOLEAN\ncorrect solution "
          "BOOLEAN\n"
          "solution cost REAL\nsolution length REAL\nsolution turns INTEGER\ngap to best known REAL\n"
+         "solution cusps INTEGER\nturns in place INTEGER\nmax curvature REAL\nclearance in cells REAL\n"
       << runs.size() << " runs\n";
   for (const BenchmarkRun* run : runs) {
     const bool solved = run->status == RouteStatus::Found && !run->crashed;
     log << number(run->seconds) << "; " << number(run->megabytes) << "; " << omplStatus(*run) << "; "
         << solved << "; " << (solved && !run->breached) << "; " << (solved ? number(run->cost_J) : "") << "; "
         << (solved ? number(run->length_m) : "") << "; " << (solved ? std::to_string(run->turns) : "") << "; "
-        << (solved ? number(run->cost_J / best_J - 1.0) : "") << "; \n";
+        << (solved ? number(run->cost_J / best_J - 1.0) : "") << "; "
+        << (solved ? std::to_string(run->cusps) : "") << "; "
+        << (solved ? std::to_string(run->turns_in_place) : "") << "; "
+        << (solved ? number(run->max_curvature_1_m) : "") << "; "
+        << (solved ? number(run->clearance_cells) : "") << "; \n";
   }
   log << "2 progress properties for each run\ntime REAL\nbest cost REAL\n" << runs.size() << " runs\n";
   for (const BenchmarkRun* run : runs) {
-    for (const CostAtTime& at : run->progress) log << number(at.seconds) << "," << number(at.cost_J) << ",;";
+    for (std::size_t i = 0; i < run->progress.size(); ++i) {
+      const CostAtTime& at = run->progress[i];
+      // A run and a time are a key in Planner Arena's tables: of equal times the last holds.
+      const bool again =
+          i + 1 < run->progress.size() && number(run->progress[i + 1].seconds) == number(at.seconds);
+      if (!again) log << number(at.seconds) << "," << number(at.cost_J) << ",;";
+    }
     log << "\n";
   }
   log << ".\n";
+}
+
+// Planner Arena takes the last word of its line for the name of an experiment.
+std::string oneWord(std::string name) {
+  for (char& c : name)
+    if (std::isspace(static_cast<unsigned char>(c))) c = '_';
+  return name;
 }
 
 }  // namespace
@@ -67,7 +86,7 @@ std::string benchmarkLog(const BenchmarkPlan& plan, const std::vector<BenchmarkR
   const maps::Grid& grid = asked.map->grid();
   std::ostringstream log;
   // No clock and no host: the same runs give the same log but for their measured seconds and megabytes.
-  log << "OMPL version 1.5.2\nExperiment " << asked.name
+  log << "OMPL version 1.5.2\nExperiment " << oneWord(asked.name)
       << "\n3 experiment properties\nwidth INTEGER = " << grid.width << "\nheight INTEGER = " << grid.height
       << "\nresolution_m REAL = " << grid.resolution_m
       << "\nRunning on talus\nStarting at 1970-01-01 00:00:00\n<<<|\nfrom " << asked.start.x_m << ","

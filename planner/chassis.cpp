@@ -2,6 +2,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include <maps/elevation_map.hpp>
 #include <planner/chassis.hpp>
 
 namespace talus::planner {
@@ -9,9 +10,9 @@ namespace {
 
 using maps::Point;
 
-constexpr int kBellyParts = 6;        // of the belly, along and across
-constexpr double kStep_cells = 0.25;  // between the poses looked at along a motion
-constexpr double kLeastStep = 0.05;   // and no finer than this share of the wheelbase
+constexpr int kBellyParts = 6;  // of the belly, along and across
+constexpr int kTightenings = 4;
+constexpr double kStep = 0.1;  // between the poses looked at along a motion, of the wheelbase
 
 double asine(double sine) noexcept {
   return std::asin(std::clamp(sine, -1.0, 1.0));
@@ -52,9 +53,21 @@ Chassis::Chassis(const maps::Raster<float>& elevation_m, const terramech::Rover&
           {rover.wheelbase_m * (0.5 - static_cast<double>(k) / (axles - 1)), side * rover.track_m});
 }
 
-// Least and greatest height of the bilinear surface over a square: on each patch between four middles both
-// lie at corners of what the square shares with it.
-std::optional<Bounds> Chassis::ground(Point middle, double reach_m) const {
+// Rise of the ground under the rover, from the heights at the ends of a cross; level where one is not known.
+// Any plane would do for the bounds to hold; a near one makes them tight.
+Chassis::Plane Chassis::planeUnder(const Pose& pose) const {
+  const double arm_m = std::max(reach_m_, 0.5 * elevation_m_.grid().resolution_m);
+  const auto height = [&](double dx, double dy) {
+    return maps::elevationAt(elevation_m_, {pose.place.x_m + dx, pose.place.y_m + dy}).value_or(NAN);
+  };
+  const double east = (height(arm_m, 0.0) - height(-arm_m, 0.0)) / (2.0 * arm_m);
+  const double north = (height(0.0, arm_m) - height(0.0, -arm_m)) / (2.0 * arm_m);
+  return {pose.place, std::isfinite(east) ? east : 0.0, std::isfinite(north) ? north : 0.0};
+}
+
+// Least and greatest height of the bilinear surface above a plane over a square: on each patch between four
+// middles both lie at corners of what the square shares with it.
+std::optional<Bounds> Chassis::above(const Plane& plane, Point middle, double reach_m) const {
   const maps::Grid& grid = elevation_m_.grid();
   const auto inCells = [&](double metres, double corner) {
     return (metres - corner) / grid.resolution_m - 0.5;
@@ -75,25 +88,33 @@ std::optional<Bounds> Chassis::ground(Point middle, double reach_m) const {
           const double u = x - column, v = y - row;
           const double z = (1 - v) * ((1 - u) * sw + u * se) + v * ((1 - u) * nw + u * ne);
           if (!std::isfinite(z)) return std::nullopt;
-          widen(found, z);
+          widen(found, z - plane.at({grid.south_west.x_m + (x + 0.5) * grid.resolution_m,
+                                     grid.south_west.y_m + (y + 0.5) * grid.resolution_m}));
         }
     }
   return found;
 }
 
-// How far a point of the body, at the height of the contacts, moves in the map plane while it tilts within
-// its limits.
-double Chassis::tilt_m(double x_m, double y_m) const noexcept {
-  const double tilt = rover_.max_pitch_rad + rover_.max_roll_rad;
-  return std::hypot(x_m, y_m) * (1.0 - std::cos(std::min(tilt, M_PI / 2)));
+// How far a point of the body, at the height of the contacts, moves in the map plane while the body tilts:
+// the long axis shortens to cos(pitch); the cross axis, perpendicular to it, also swings ahead by tan(pitch)
+// sin(roll).
+double Chassis::moves_m(double x_m, double y_m, const Tilt& tilt) noexcept {
+  const double rise = std::sin(tilt.roll_rad), swing = std::tan(tilt.pitch_rad) * rise;
+  const double side = std::sqrt(std::max(0.0, 1.0 - rise * rise - swing * swing));
+  return std::abs(x_m) * (1.0 - std::cos(tilt.pitch_rad)) + std::abs(y_m) * (swing + 1.0 - side);
 }
 
-std::optional<Chassis::Heights> Chassis::heights(const Pose& pose, double slack_m) const {
+// A shift of the whole rover lifts all of it alike along the plane, so only what leaves the plane counts
+// then.
+std::optional<Chassis::Heights> Chassis::heights(const Place& place, const Tilt& tilt) const {
   Heights z;
   for (const Wheel& wheel : wheels_) {
-    const auto found = ground(placed(pose, wheel.x_m, wheel.y_m), tilt_m(wheel.x_m, wheel.y_m) + slack_m);
-    if (!found) return std::nullopt;
-    z.push_back(*found);
+    const Point nominal = placed(place.pose, wheel.x_m, wheel.y_m);
+    const double own_m = moves_m(wheel.x_m, wheel.y_m, tilt) + place.slack.turn_m;
+    const auto rough = above(place.plane, nominal, own_m + place.slack.shift_m);
+    if (!rough) return std::nullopt;
+    const double even = place.plane.at(nominal), lift = place.plane.steepness() * own_m;
+    z.push_back({even + rough->low - lift, even + rough->high + lift});
   }
   return z;
 }
@@ -150,61 +171,75 @@ Stance Chassis::rockerBogie(const Heights& z) const {
 // The least that parts of the belly stand above the ground that they can be above; `under` tells the height
 // of the plane of contacts below a point of the body, at least.
 template <typename Under>
-std::optional<double> Chassis::clearance(const Pose& pose, double slack_m, Under under) const {
+std::optional<double> Chassis::clearance(const Place& place, const Tilt& tilt, Under under) const {
   const double length_m = rover_.wheelbase_m / kBellyParts, width_m = rover_.track_m / kBellyParts;
-  const double lean_m =
-      rover_.clearance_m * std::sin(std::min(rover_.max_pitch_rad + rover_.max_roll_rad, M_PI / 2));
-  const double pitch = std::sin(rover_.max_pitch_rad), roll = std::sin(rover_.max_roll_rad);
-  const double belly_m = rover_.clearance_m * std::sqrt(std::max(0.0, 1.0 - pitch * pitch - roll * roll));
+  const double lean = std::min(1.0, std::hypot(std::sin(tilt.pitch_rad), std::sin(tilt.roll_rad)));
+  const double lean_m = rover_.clearance_m * lean,
+               belly_m = rover_.clearance_m * std::sqrt(1.0 - lean * lean);
   double least = INFINITY;
   for (int i = 0; i < kBellyParts; ++i)
     for (int k = 0; k < kBellyParts; ++k) {
       const double x = rover_.wheelbase_m / 2 - (i + 0.5) * length_m,
                    y = rover_.track_m / 2 - (k + 0.5) * width_m;
-      const double reach_m = 0.5 * std::hypot(length_m, width_m) + tilt_m(x, y) + lean_m + slack_m;
-      const auto below = ground(placed(pose, x, y), reach_m);
-      if (!below) return std::nullopt;
-      double plane = INFINITY;
-      for (const double dx : {-0.5, 0.5})
-        for (const double dy : {-0.5, 0.5})
-          plane = std::min(plane, under(x + dx * length_m, y + dy * width_m));
-      least = std::min(least, plane + belly_m - below->high);
+      const double own_m =
+          moves_m(std::abs(x) + length_m / 2, std::abs(y) + width_m / 2, tilt) + lean_m + place.slack.turn_m;
+      const auto rough = above(place.plane, placed(place.pose, x, y),
+                               0.5 * std::hypot(length_m, width_m) + own_m + place.slack.shift_m);
+      if (!rough) return std::nullopt;
+      double over_plane = INFINITY;
+      for (const double dx : {-0.5 * length_m, 0.5 * length_m})
+        for (const double dy : {-0.5 * width_m, 0.5 * width_m})
+          over_plane = std::min(over_plane,
+                                under(x + dx, y + dy) - place.plane.at(placed(place.pose, x + dx, y + dy)));
+      least = std::min(least, over_plane + belly_m - rough->high - place.plane.steepness() * own_m);
     }
   return least;
 }
 
-std::optional<Stance> Chassis::stance(const Pose& pose, double slack_m) const {
-  const auto z = heights(pose, slack_m);
-  if (!z) return std::nullopt;
-  std::optional<double> clear_m;
+std::optional<Stance> Chassis::stance(const Pose& pose, const Slack& slack) const {
+  const Place place{pose, slack, planeUnder(pose)};
+  Tilt tilt{rover_.max_pitch_rad, rover_.max_roll_rad};
+  std::optional<Heights> z;
   Stance stance;
-  if (suspension_ == Suspension::Rigid) {
-    stance = rigid(*z);
-    // No wheel is below the ground, and the plane at a point of the belly is a mean of its corners.
-    const std::size_t last = z->size() - 2;
-    clear_m = clearance(pose, slack_m, [&](double x, double y) {
-      const double u = 0.5 + x / rover_.wheelbase_m, v = 0.5 + y / rover_.track_m;
-      return u * (v * (*z)[0].low + (1 - v) * (*z)[1].low) +
-             (1 - u) * (v * (*z)[last].low + (1 - v) * (*z)[last + 1].low);
-    });
-  } else {
-    stance = rockerBogie(*z);
-    double middle_m = 0.0;
-    for (const Bounds& wheel : *z) middle_m += wheel.low / static_cast<double>(z->size());
-    const auto lift = [](double metres, const Bounds& angle) {
-      return std::min(metres * std::sin(angle.low), metres * std::sin(angle.high));
-    };
-    clear_m = clearance(pose, slack_m, [&](double x, double y) {
-      return middle_m + lift(x, stance.pitch_rad) + lift(y, stance.roll_rad);
-    });
+  // Every stance within a tilt lies within the bounds that the tilt gives, and so within their tilt.
+  for (int round = 0; round < kTightenings; ++round) {
+    z = heights(place, tilt);
+    if (!z) return std::nullopt;
+    stance = suspension_ == Suspension::Rigid ? rigid(*z) : rockerBogie(*z);
+    tilt = {std::min(tilt.pitch_rad, std::max(stance.pitch_rad.high, -stance.pitch_rad.low)),
+            std::min(tilt.roll_rad, std::max(stance.roll_rad.high, -stance.roll_rad.low))};
   }
+  const auto clear_m =
+      suspension_ == Suspension::Rigid ? underRigid(place, tilt, *z) : underRockerBogie(place, tilt, *z);
   if (!clear_m) return std::nullopt;
   stance.clearance_m = *clear_m;
   return stance;
 }
 
-std::string_view Chassis::refusal(const Pose& pose, double slack_m) const {
-  const auto found = stance(pose, slack_m);
+// No wheel is below the ground, and the plane at a point of the belly is a mean of its corners.
+std::optional<double> Chassis::underRigid(const Place& place, const Tilt& tilt, const Heights& z) const {
+  const std::size_t last = z.size() - 2;
+  return clearance(place, tilt, [&](double x, double y) {
+    const double u = 0.5 + x / rover_.wheelbase_m, v = 0.5 + y / rover_.track_m;
+    return u * (v * z[0].low + (1 - v) * z[1].low) + (1 - u) * (v * z[last].low + (1 - v) * z[last + 1].low);
+  });
+}
+
+std::optional<double> Chassis::underRockerBogie(const Place& place, const Tilt& tilt,
+                                                const Heights& z) const {
+  const Stance bounds = rockerBogie(z);
+  double middle_m = 0.0;
+  for (const Bounds& wheel : z) middle_m += wheel.low / static_cast<double>(z.size());
+  const auto lift = [](double metres, const Bounds& angle) {
+    return std::min(metres * std::sin(angle.low), metres * std::sin(angle.high));
+  };
+  return clearance(place, tilt, [&](double x, double y) {
+    return middle_m + lift(x, bounds.pitch_rad) + lift(y, bounds.roll_rad);
+  });
+}
+
+std::string_view Chassis::refusal(const Pose& pose, const Slack& slack) const {
+  const auto found = stance(pose, slack);
   if (!found) return "the ground under the chassis is not known";
   if (found->pitch_rad.high > rover_.max_pitch_rad || found->pitch_rad.low < -rover_.max_pitch_rad)
     return "the chassis may pitch beyond its limit";
@@ -213,23 +248,20 @@ std::string_view Chassis::refusal(const Pose& pose, double slack_m) const {
   return found->clearance_m < 0.0 ? "the belly may touch the ground" : "";
 }
 
-double Chassis::step_m() const noexcept {
-  return std::max(kStep_cells * elevation_m_.grid().resolution_m, kLeastStep * rover_.wheelbase_m);
-}
-
 std::vector<Violation> Chassis::violations(const PosePath& drive) const {
   std::vector<Violation> found;
   Pose pose = drive.start;
   for (const PosePath::Leg& leg : drive.legs) {
     // No wheel goes further than the body's middle and its own circle about it.
-    const double swept_m = std::abs(leg.arc.length_m) +
-                           reach_m_ * std::abs(leg.turn_rad + leg.arc.length_m * leg.arc.curvature_1_m);
-    const int parts = std::max(1, static_cast<int>(std::ceil(swept_m / step_m())));
+    const double shift_m = std::abs(leg.arc.length_m);
+    const double turn_m = reach_m_ * std::abs(leg.turn_rad + leg.arc.length_m * leg.arc.curvature_1_m);
+    const double swept_m = shift_m + turn_m;
+    const int parts = std::max(1, static_cast<int>(std::ceil(swept_m / (kStep * rover_.wheelbase_m))));
     for (int k = 0; k < parts; ++k) {
       const double share = (k + 0.5) / parts;
       const Pose at =
           after(pose, PosePath::Leg{{leg.arc.length_m * share, leg.arc.curvature_1_m}, leg.turn_rad * share});
-      const std::string_view reason = refusal(at, 0.5 * swept_m / parts);
+      const std::string_view reason = refusal(at, {0.5 * shift_m / parts, 0.5 * turn_m / parts});
       if (!reason.empty()) found.push_back({at.place, std::string(reason)});
     }
     pose = after(pose, leg);

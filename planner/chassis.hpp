@@ -47,12 +47,21 @@ class Chassis {
   /// Throws std::invalid_argument for a rocker-bogie without three axles. Keeps the raster by reference.
   Chassis(const maps::Raster<float>& elevation_m, const terramech::Rover& rover, Suspension suspension);
 
-  /// Bounds at every pose no further than `slack_m` from this one in any wheel's place; nothing where the
-  /// ground under the rover is not known.
-  std::optional<Stance> stance(const Pose& pose, double slack_m = 0.0) const;
+  /// How far poses may lie from one that stands for them: a shift of the whole rover, and what a turn moves
+  /// its farthest wheel by.
+  struct Slack {
+    double shift_m = 0.0;
+    double turn_m = 0.0;
+  };
+
+  /// Bounds at every pose within the slack of this one; nothing where the ground under the rover is not
+  /// known.
+  std::optional<Stance> stance(const Pose& pose, const Slack& slack) const;
+  std::optional<Stance> stance(const Pose& pose) const { return stance(pose, {0.0, 0.0}); }
 
   /// Why the rover may not stand there; empty when it may.
-  std::string_view refusal(const Pose& pose, double slack_m = 0.0) const;
+  std::string_view refusal(const Pose& pose, const Slack& slack) const;
+  std::string_view refusal(const Pose& pose) const { return refusal(pose, {0.0, 0.0}); }
 
   /// Violations along a drive, arcs and turns in place included, and along a polyline that turns in place at
   /// its corners. Nothing between the poses looked at is missed: each stands for its surroundings.
@@ -64,15 +73,35 @@ class Chassis {
     double x_m, y_m;  // of the body
   };
   using Heights = std::vector<Bounds>;  // rows left and right, front axle first, alternating
+  struct Tilt {
+    double pitch_rad, roll_rad;  // at most, either way
+  };
 
-  std::optional<Bounds> ground(maps::Point middle, double reach_m) const;
-  std::optional<Heights> heights(const Pose& pose, double slack_m) const;
+  // A plane through height 0 at a place.
+  struct Plane {
+    maps::Point origin;
+    double east, north;  // rise over run
+    double at(maps::Point p) const noexcept {
+      return east * (p.x_m - origin.x_m) + north * (p.y_m - origin.y_m);
+    }
+    double steepness() const noexcept { return (east < 0 ? -east : east) + (north < 0 ? -north : north); }
+  };
+  struct Place {
+    Pose pose;
+    Slack slack;
+    Plane plane;
+  };
+
+  Plane planeUnder(const Pose& pose) const;
+  std::optional<Bounds> above(const Plane& plane, maps::Point middle, double reach_m) const;
+  std::optional<Heights> heights(const Place& place, const Tilt& tilt) const;
   Stance rigid(const Heights& z) const;
   Stance rockerBogie(const Heights& z) const;
-  double tilt_m(double x_m, double y_m) const noexcept;
+  static double moves_m(double x_m, double y_m, const Tilt& tilt) noexcept;
+  std::optional<double> underRigid(const Place& place, const Tilt& tilt, const Heights& z) const;
+  std::optional<double> underRockerBogie(const Place& place, const Tilt& tilt, const Heights& z) const;
   template <typename Under>
-  std::optional<double> clearance(const Pose& pose, double slack_m, Under under) const;
-  double step_m() const noexcept;
+  std::optional<double> clearance(const Place& place, const Tilt& tilt, Under under) const;
 
   const maps::Raster<float>& elevation_m_;
   terramech::Rover rover_;

@@ -113,7 +113,7 @@ class Search {
   const maps::Grid& grid_;
   int points_;
   Motions motions_;
-  Cell first_{};             // of the box, one cell of margin around
+  Cell first_{};  // of the box, two cells of margin around: an end on an edge touches the next cell
   std::size_t columns_ = 0;  // of the box
   std::vector<CellCode> codes_;
   std::vector<float> label_, last_;       // by node: cost from the start; on to the end
@@ -149,9 +149,9 @@ void Search::open(const std::vector<Point>& along, int reach) {
       add(before.x + (here.x - before.x) * k / steps, before.y + (here.y - before.y) * k / steps);
     before = here;
   }
-  first_ = {low.column - reach - 1, low.row - reach - 1};
-  columns_ = static_cast<std::size_t>(high.column - low.column + 2 * reach + 3);
-  const std::size_t rows = static_cast<std::size_t>(high.row - low.row + 2 * reach + 3);
+  first_ = {low.column - reach - 2, low.row - reach - 2};
+  columns_ = static_cast<std::size_t>(high.column - low.column + 2 * reach + 5);
+  const std::size_t rows = static_cast<std::size_t>(high.row - low.row + 2 * reach + 5);
   codes_.assign(columns_ * rows, CellCode());
   std::vector<bool> done(codes_.size());
   for (const Cell c : on) {

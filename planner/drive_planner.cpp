@@ -7,6 +7,7 @@
 #include <planner/improvable_region.hpp>
 #include <planner/polyline.hpp>
 #include <planner/pose_shortcut.hpp>
+#include <planner/turning_drive.hpp>
 
 namespace talus::planner {
 namespace {
@@ -73,11 +74,13 @@ void DrivePlanner::improve(const PoseProblem& asked, const Problem& problem, Pos
   const double apart_m = std::max(kPose_cells * cell_m, kPose_radii * asked.kinematics.turning_radius_m);
   const MotionCost motion(problem.map);
   const PoseCost cost(motion, asked.kinematics);
-  const bool turns_in_place = asked.kinematics.turning_radius_m <= 0.0;
-  const auto points = turns_in_place ? route.points : subdivided(route.points, apart_m);
+  const auto points = subdivided(route.points, apart_m);
   PosePath path =
-      fitted(posesAlong(points, asked), cost,
-             {.joint_m = kPose_cells * cell_m, .cheapest_J_per_m = cheapestMetre_J(*problem.map)});
+      asked.kinematics.turning_radius_m <= 0.0
+          ? turningDrive(points, {asked.start_heading_rad, asked.goal_heading_rad}, cost)
+          : fitted(posesAlong(points, asked), cost,
+                   {.joint_m = kPose_cells * cell_m, .cheapest_J_per_m = cheapestMetre_J(*problem.map)});
+  if (path.legs.empty()) return;
   const double cost_J = cost(path);
   if (cost_J >= leg.cost_J || !mayBeDriven(*problem.map, path, asked.kinematics)) return;
   leg.path = std::move(path);
@@ -105,6 +108,12 @@ Plan DrivePlanner::plan(const Problem& problem) {
     PosePlan leg = search_.plan(asked);
     if (leg.status != RouteStatus::Found) return ended(std::move(leg));
     improve(asked, problem, leg);
+    if (sampling_) {
+      sampling_->seed = problem.seed;
+      if (sampling_->better) sampling_->better(leg.cost_J);
+      leg = improvedBySampling(asked, leg, *sampling_);
+      if (leg.status != RouteStatus::Found) return ended(std::move(leg));
+    }
     append(whole.drive, leg.path);
     const Segment ends{asked.start, asked.goal};
     const double bound_J = problem.prove ? bound_(problem.map, ends, 0.0, StopCheck(problem.watch))

@@ -5,6 +5,7 @@
 #include <planner/field_planner.hpp>
 #include <planner/hybrid_search.hpp>
 #include <planner/lower_bound.hpp>
+#include <planner/pose_sampling.hpp>
 #include <planner/problem.hpp>
 
 namespace talus::planner {
@@ -14,9 +15,13 @@ namespace talus::planner {
 /// Keeps what the search knows of map and goal. Not thread-safe: one object a thread.
 class DrivePlanner {
  public:
-  static constexpr std::string_view kName = "hybrid";  ///< among plannerNames()
+  static constexpr std::string_view kName = "hybrid";          ///< among plannerNames()
+  static constexpr std::string_view kSampling = "RRTstarSE2";  ///< the same, then improved by RRT*
 
   explicit DrivePlanner(const HybridOptions& options = {}) : search_(options) {}
+
+  /// Each leg is handed to improvedBySampling() too.
+  void sample(const PoseSamplingSettings& settings) { sampling_ = settings; }
 
   /// A drive, or why there is none. A goal tolerance is not made use of: the drive ends at the goal. Throws
   /// std::invalid_argument without a map.
@@ -25,6 +30,7 @@ class DrivePlanner {
  private:
   void improve(const PoseProblem& asked, const Problem& problem, PosePlan& leg);
 
+  std::optional<PoseSamplingSettings> sampling_;
   HybridSearch search_;
   FieldPlanner field_;
   LowerBound bound_;

@@ -5,72 +5,15 @@
 
 #include <planner/field_planner.hpp>
 #include <planner/grid_links.hpp>
+#include <planner/grid_route.hpp>
+#include <planner/map_change.hpp>
+#include <planner/plan_end.hpp>
 #include <planner/remedy.hpp>
 
 namespace talus::planner {
 namespace {
 
-using maps::Cell;
 using maps::Point;
-
-Plan ended(RouteStatus status, std::string reason) {
-  Plan plan;
-  plan.status = status;
-  plan.reason = std::move(reason);
-  return plan;
-}
-
-Plan stoppedBy(const StopCheck& stop) {
-  if (stop.cancelled()) return ended(RouteStatus::Cancelled, "cancelled before a route was found");
-  return ended(RouteStatus::TimedOut, "the time limit passed before a route was found; allow more time");
-}
-
-// The link through which the goal is reached cheapest; nothing when none reaches it.
-const GridLink* bestLink(const std::vector<GridLink>& links, const CostToGo& field) {
-  const GridLink* best = nullptr;
-  double best_J = std::numeric_limits<double>::infinity();
-  for (const GridLink& link : links) {
-    const auto rest_J = field.cost_J(link.cell);
-    if (!rest_J || link.cost_J + *rest_J >= best_J) continue;
-    best_J = link.cost_J + *rest_J;
-    best = &link;
-  }
-  return best;
-}
-
-void add(std::vector<Point>& points, Point p) {
-  if (points.empty() || !(points.back() == p)) points.push_back(p);
-}
-
-// The route along the centres of the cells, from place to place where the last cell joins the goal.
-std::vector<Point> throughCentres(const MotionCost& cost, Point from, const std::vector<Cell>& cells,
-                                  Point to) {
-  std::vector<Point> points{from};
-  for (const Cell cell : cells) add(points, cost.map().grid().centre(cell));
-  if (std::isfinite(cost({points.back(), to}))) add(points, to);
-  return points;
-}
-
-// The smallest box around all cells that differ; nothing when none does. Tiles that both versions share are
-// not looked at.
-std::optional<CellBox> changedCells(const costmap::CostGrid& old, const costmap::CostGrid& newer) {
-  constexpr int kSide = costmap::CostTile::kSide;
-  const maps::Grid& grid = old.grid();
-  CellBox box{{grid.width, grid.height}, {-1, -1}};
-  for (std::size_t t = 0; t < old.content().tiles.size(); ++t) {
-    if (old.content().tiles[t] == newer.content().tiles[t]) continue;
-    const int row0 = static_cast<int>(t) / old.tileColumns() * kSide,
-              column0 = static_cast<int>(t) % old.tileColumns() * kSide;
-    for (int row = row0; row < std::min(row0 + kSide, grid.height); ++row)
-      for (int column = column0; column < std::min(column0 + kSide, grid.width); ++column) {
-        if (old.at({column, row}) == newer.at({column, row})) continue;
-        box.first = {std::min(box.first.column, column), std::min(box.first.row, row)};
-        box.last = {std::max(box.last.column, column), std::max(box.last.row, row)};
-      }
-  }
-  if (box.last.column < 0) return std::nullopt;
-  return box;
-}
 
 }  // namespace
 
@@ -85,7 +28,7 @@ Plan FieldPlanner::plan(const Problem& problem) {
     const Leg leg{whole.points.back(), stops[i], last ? problem.goal_tolerance_m : 0.0};
     Plan part = planLeg(problem, leg, stop);
     if (part.status != RouteStatus::Found) return part;
-    for (const Point p : part.points) add(whole.points, p);
+    append(whole.points, part.points);
     whole.cost_J += part.cost_J;
     whole.lower_bound_J += part.lower_bound_J;
     problem.watch.report(static_cast<double>(i + 1) / static_cast<double>(stops.size()));
@@ -145,13 +88,12 @@ Plan FieldPlanner::planLeg(const Problem& problem, const Leg& leg, const StopChe
   if (!prepareEdges(problem, stop)) return stoppedBy(stop);
   if (!prepareField(cost, leg))
     return ended(RouteStatus::GoalInvalid, invalidPlace(*problem.map, "goal", leg.to));
-  const auto links = linksFrom(cost, leg.from);
-  for (const GridLink& link : links)
-    if (!field_->settle(link.cell, stop)) return stoppedBy(stop);
-  const GridLink* link = bestLink(links, *field_);
-  if (!link) return ended(RouteStatus::NoRoute, noWay(*edges_, leg.from, leg.to));
-  const auto rough = throughCentres(cost, leg.from, field_->path(link->cell), leg.to);
-  Plan plan{RouteStatus::Found, {}, refine_(cost, rough, problem.threads, stop), 0.0, 0.0};
+  auto rough = gridRoute(cost, *field_, {leg.from, leg.to}, stop);
+  if (rough.empty()) {
+    if (stop()) return stoppedBy(stop);
+    return ended(RouteStatus::NoRoute, noWay(*edges_, leg.from, leg.to));
+  }
+  Plan plan{RouteStatus::Found, {}, refine_(cost, std::move(rough), problem.threads, stop), 0.0, 0.0};
   plan.cost_J = cost.along(plan.points);
   const Segment ends{leg.from, leg.to};
   const double bound_J = problem.prove ? bound_(problem.map, ends, leg.tolerance_m, stop)

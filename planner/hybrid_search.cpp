@@ -11,6 +11,7 @@
 #include <planner/pose_shortcut.hpp>
 #include <planner/pose_table.hpp>
 #include <planner/route_check.hpp>
+#include <planner/turning_drive.hpp>
 
 namespace talus::planner {
 namespace {
@@ -266,6 +267,15 @@ PosePlan HybridSearch::plan(const PoseProblem& problem) {
   PosePath shorter = shortened(plan.path, search.cost(),
                                {.joint_m = kJoint_cells * problem.map->grid().resolution_m,
                                 .cheapest_J_per_m = cheapestMetre_J(*problem.map)});
+  if (problem.kinematics.turning_radius_m <= 0.0) {
+    std::vector<maps::Point> places;
+    for (const Pose& pose : sampled(plan.path, kJoint_cells * problem.map->grid().resolution_m))
+      if (places.empty() || !(places.back() == pose.place)) places.push_back(pose.place);
+    PosePath turning =
+        turningDrive(places, {problem.start_heading_rad, problem.goal_heading_rad}, search.cost());
+    if (!turning.legs.empty() && search.cost()(turning) < search.cost()(shorter))
+      shorter = std::move(turning);
+  }
   if (search.checked(shorter)) plan.path = std::move(shorter);
   plan.cost_J = search.cost()(plan.path);
   return plan;

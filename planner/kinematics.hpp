@@ -36,6 +36,7 @@ struct Kinematics {
   TurnPrices turns{};                        ///< a radian, on ground that `turns_by_curve` leaves out
   std::vector<TurnPrices> turns_by_curve{};  ///< by the number of the drive curve
   TurnPrice cusp{};                          ///< a change between forward and reverse
+  TurnPrice stop{};  ///< for each turn in place: to stop, to set the wheels, to start again
 
   /// What turning takes on ground of a curve.
   const TurnPrices& turnsOn(std::uint8_t curve) const noexcept {

@@ -91,7 +91,8 @@ double MotionSet::quickCost(const Motion& motion, maps::Point from) const noexce
   }
   if (motion.turn_rad == 0.0) return sum;
   const TurnPrices& turns = kinematics_.turnsOn(code(0.0, 0.0).curve());
-  return sum + (motion.direction == 0 ? turns.in_place : turns.on_arc).cost_J * motion.turn_rad;
+  if (motion.direction == 0) return sum + kinematics_.stop.cost_J + turns.in_place.cost_J * motion.turn_rad;
+  return sum + turns.on_arc.cost_J * motion.turn_rad;
 }
 
 }  // namespace talus::planner

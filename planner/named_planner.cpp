@@ -7,11 +7,19 @@ NamedPlanner::NamedPlanner(const std::string& name) {
   settings_.planner = plannerName(name);
 }
 
+Plan NamedPlanner::planField(const Problem& problem) {
+  const bool large = problem.map && problem.map->grid().size() > kLarge;
+  return large && !problem.whole_field ? tube_.plan(problem) : field_.plan(problem);
+}
+
 Plan NamedPlanner::plan(const Problem& problem) {
-  if (settings_.planner == plannerNames().front()) return field_.plan(problem);
-  if (drives()) return drive_.plan(problem);
+  if (settings_.planner == plannerNames().front()) return planField(problem);
+  if (drives()) {
+    if (name() == DrivePlanner::kSampling) drive_.sample({.better = settings_.better});
+    return drive_.plan(problem);
+  }
   return planBySampling(problem, settings_, [this](const Problem& leg) {
-    return LegKnowledge{.plan = field_.plan(leg), .from_start = {}, .to_goal = {}};
+    return LegKnowledge{.plan = planField(leg), .from_start = {}, .to_goal = {}};
   });
 }
 

@@ -8,6 +8,7 @@
 #include <planner/field_planner.hpp>
 #include <planner/problem.hpp>
 #include <planner/sampling_planner.hpp>
+#include <planner/tube_planner.hpp>
 
 namespace talus::planner {
 
@@ -20,7 +21,9 @@ class NamedPlanner {
   explicit NamedPlanner(const std::string& name = {});
 
   /// Whether it keeps headings and a turning radius.
-  bool drives() const noexcept { return settings_.planner == DrivePlanner::kName; }
+  bool drives() const noexcept {
+    return settings_.planner == DrivePlanner::kName || settings_.planner == DrivePlanner::kSampling;
+  }
 
   /// The offered name.
   const std::string& name() const noexcept { return settings_.planner; }
@@ -29,14 +32,21 @@ class NamedPlanner {
   /// via points.
   void onBetter(std::function<void(double)> better) { settings_.better = std::move(better); }
 
+  /// From this many cells on the field is settled in a tube only (TubePlanner), unless the problem asks for
+  /// the whole: at twenty bytes a cell it would take more than 400 MB.
+  static constexpr std::size_t kLarge = 20'000'000;
+
   /// A route through all via points in order, or why there is none. Throws std::invalid_argument without a
   /// map.
   Plan plan(const Problem& problem);
 
  private:
+  Plan planField(const Problem& problem);
+
   SamplingSettings settings_;
   FieldPlanner field_;
   DrivePlanner drive_;
+  TubePlanner tube_;
 };
 
 }  // namespace talus::planner

@@ -99,7 +99,7 @@ double PoseCost::turnInPlace(const Pose& from, double turn_rad) const noexcept {
     if (std::isinf(map.cost().costPerMetre(map.at(*cell), {std::cos(heading), std::sin(heading)})))
       return kInfinity;
   }
-  return turnsAt(from.place).in_place.cost_J * std::abs(turn_rad);
+  return kinematics_.stop.cost_J + turnsAt(from.place).in_place.cost_J * std::abs(turn_rad);
 }
 
 double PoseCost::operator()(const PosePath& path) const noexcept {

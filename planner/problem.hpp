@@ -27,6 +27,7 @@ struct Problem {
   int threads = 1;                                                ///< >= 1; the answer does not depend on it
   bool prove =
       true;  ///< also work out the best lower bound, for about the time of a field; else a simple one
+  bool whole_field = false;  ///< settle the whole map even where it is large (NamedPlanner)
   Watch watch{};
   std::optional<double>
       start_heading_rad{};  ///< which way the rover looks; for planners of drives, any if none

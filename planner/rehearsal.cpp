@@ -18,7 +18,8 @@ using costmap::Direction;
 constexpr double kSlipNoise = 0.02, kTorqueNoise = 0.05, kSinkageNoise = 0.03;
 // The route is planned anew when what is left of it costs this much more than when it was planned.
 constexpr double kDearer = 1.3;
-// Depth that a wheel digs on the spot per metre of rim travel (ours: Spirit went in to the hub in some metres).
+// Depth that a wheel digs on the spot per metre of rim travel (ours: Spirit went in to the hub in some
+// metres).
 constexpr double kDugPerMetre = 0.05;
 
 double distance_m(const maps::Point& a, const maps::Point& b) {
@@ -99,8 +100,8 @@ class Drive {
       if (options_.watch.stopped()) return Leg::Replan;
       const Direction heading = directionTo(here_, route_[next_]);
       if (tipped(heading)) return Leg::Tipped;
-      const TrueWorld::Step step = world_.drive(
-          {.place = here_, .heading = heading, .gradient = gradient(heading), .ruts = &ruts_});
+      const TrueWorld::Step step =
+          world_.drive({.place = here_, .heading = heading, .gradient = gradient(heading), .ruts = &ruts_});
       result_.max_slip = std::max(result_.max_slip, step.slip);
       const auto reason = alarm(step, heading);
       const bool learned = look(step, heading, step.stuck || reason);
@@ -185,8 +186,8 @@ class Drive {
     here_ = place;
     double deepest = 0.0;
     for (const TrueWorld::WheelState& wheel : step.wheels) deepest = std::max(deepest, wheel.forces.sinkage);
-    result_.track.push_back({place, result_.time_s, result_.energy_J, step.slip,
-                             deepest * map_.model().rover().wheel.radius_m});
+    result_.track.push_back(
+        {place, result_.time_s, result_.energy_J, step.slip, deepest * map_.model().rover().wheel.radius_m});
   }
 
   void advance(const TrueWorld::Step& step, const Direction& heading, double length_m) {
@@ -204,8 +205,8 @@ class Drive {
     const maps::Point to = way_back_.back();
     const Direction heading = directionTo(here_, to);
     const double slope = gradient(heading);
-    const TrueWorld::Step step = world_.drive(
-        {.place = here_, .heading = heading, .gradient = slope, .dug_m = dug_m, .ruts = &ruts_});
+    const TrueWorld::Step step =
+        world_.drive({.place = here_, .heading = heading, .gradient = slope, .dug_m = dug_m, .ruts = &ruts_});
     if (step.stuck) {
       held_ = true;
       return false;
@@ -216,7 +217,8 @@ class Drive {
     return true;
   }
 
-  // Whether all ground within the rover's outline is as strong as its class, give or take what a class varies.
+  // Whether all ground within the rover's outline is as strong as its class, give or take what a class
+  // varies.
   bool standsSound() const {
     const auto& model = map_.model();
     const double reach_m = 0.5 * std::hypot(model.rover().wheelbase_m, model.rover().track_m);
@@ -232,8 +234,8 @@ class Drive {
     return true;
   }
 
-  // Backs out along the ruts it came in: by one length of the rover, and until it stands on sound ground, where
-  // it may turn. Ground that gave the alarm is not tried again.
+  // Backs out along the ruts it came in: by one length of the rover, and until it stands on sound ground,
+  // where it may turn. Ground that gave the alarm is not tried again.
   Leg retreat(const TrueWorld::Step& stopped, const Direction& heading, const std::string& reason) {
     tell(reason);
     const double radius_m = map_.model().rover().wheel.radius_m;

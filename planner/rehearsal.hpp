@@ -41,18 +41,21 @@ struct RehearsalOptions {
   maps::Point start;
   maps::Point goal;
   double goal_tolerance_m = 0.0;  ///< >= 0
-  bool senses = true;  ///< the rover watches its slip, learns and replans; else it drives the first route blindly
+  bool senses =
+      true;  ///< the rover watches its slip, learns and replans; else it drives the first route blindly
   double alarm_slip = 0.2;  ///< it stops and backs out when it slips so much more than the map says
-  double alarm_sinkage = 0.08;  ///< and when a wheel sinks so much deeper than the map says, over its radius [-]
-  double berth_m = 1.0;  ///< so far it backs out at least, and so wide a berth it gives the ground that gave the alarm
-  double notice_m = 0.06;   ///< rim travel on the spot before a rover that does not move notices (ours: a quarter
-                            ///< of a small wheel's diameter, as visual odometry resolves)
-  double step_m = 0.1;      ///< between two looks at the slip, > 0
-  double look_m = 0.5;      ///< between two readings of the wheels that the map learns from, > 0
-  int max_replans = 60;     ///< then it gives up
-  std::uint64_t seed = 1;   ///< of the sensors' noise
+  double alarm_sinkage =
+      0.08;  ///< and when a wheel sinks so much deeper than the map says, over its radius [-]
+  double berth_m =
+      1.0;  ///< so far it backs out at least, and so wide a berth it gives the ground that gave the alarm
+  double notice_m = 0.06;  ///< rim travel on the spot before a rover that does not move notices (ours: a
+                           ///< quarter of a small wheel's diameter, as visual odometry resolves)
+  double step_m = 0.1;     ///< between two looks at the slip, > 0
+  double look_m = 0.5;     ///< between two readings of the wheels that the map learns from, > 0
+  int max_replans = 60;    ///< then it gives up
+  std::uint64_t seed = 1;  ///< of the sensors' noise
+  bool record = false;     ///< keep what the wheels read
   std::function<void(const DriveStep&)> on_step = {};  ///< called for every step that leads on
-  bool record = false;      ///< keep what the wheels read
   std::function<void(double time_s)> on_learned = {};  ///< called after the map changed
   Watch watch = {};
 };
@@ -95,7 +98,8 @@ struct Rehearsal {
 };
 
 /// Drives a rover over a true world with what a map believes, changing the map as it learns. A rover that
-/// senses watches its slip at every short step; at the alarm it backs out in its own ruts and plans anew. Deterministic in its seed.
+/// senses watches its slip at every short step; at the alarm it backs out in its own ruts and plans anew.
+/// Deterministic in its seed.
 Rehearsal rehearse(costmap::TraversabilityMap& map, const TrueWorld& world, const RehearsalOptions& options);
 
 }  // namespace talus::planner

@@ -22,7 +22,8 @@ Sampled share(std::size_t hits, std::size_t all) {
   const double n = static_cast<double>(all), p = static_cast<double>(hits) / n, zz = kNormal95 * kNormal95;
   const double middle = p + zz / (2.0 * n);
   const double half = kNormal95 * std::sqrt(p * (1.0 - p) / n + zz / (4.0 * n * n));
-  return {p, {std::max((middle - half) / (1.0 + zz / n), 0.0), std::min((middle + half) / (1.0 + zz / n), 1.0)}};
+  const double low = (middle - half) / (1.0 + zz / n), high = (middle + half) / (1.0 + zz / n);
+  return {p, {hits == 0 ? 0.0 : low, hits == all ? 1.0 : high}};  // exactly, where rounding leaves 1e-17
 }
 
 Sampled mean(const std::vector<double>& values) {

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -26,7 +27,7 @@ maps::Raster<Hazard> declaredHazards(const costmap::TraversabilityMap& map) {
 }
 
 // Every soil of the world as a class of its own with next to no doubt. A cell belongs to a patch as soon as a
-// wheel of a rover on it may touch the patch.
+// wheel of a rover anywhere on it may touch the patch.
 void tellTruth(const TrueWorld& world, double footprint_m, costmap::MapLayers& layers,
                costmap::GroundModel::Parts& parts) {
   constexpr double kNoDoubt = 0.01;
@@ -38,11 +39,12 @@ void tellTruth(const TrueWorld& world, double footprint_m, costmap::MapLayers& l
                              .pull_std = kNoDoubt,
                              .mean_std = kNoDoubt});
   const maps::Grid& grid = layers.elevation.grid();
+  const double reach_m = footprint_m + grid.resolution_m * std::sqrt(0.5);
   layers.classes = maps::Raster<std::uint8_t>(grid);
   for (int row = 0; row < grid.height; ++row)
     for (int column = 0; column < grid.width; ++column)
       layers.classes[{column, row}] =
-          static_cast<std::uint8_t>(world.soilAt(grid.centre({column, row}), footprint_m));
+          static_cast<std::uint8_t>(world.soilAt(grid.centre({column, row}), reach_m));
 }
 
 }  // namespace
@@ -91,7 +93,8 @@ WorldResult RehearsalSite::world(Belief belief, std::size_t i, const Watch& watc
   how.watch = {.progress = {}, .stop = watch.stop};
   WorldResult result{rehearse(map, truth, how)};
   const std::vector<std::uint8_t> after = categoriesOf(map);
-  for (std::size_t c = 0; c < before.size(); ++c) result.categories_changed += before[c] != after[c] ? 1U : 0U;
+  for (std::size_t c = 0; c < before.size(); ++c)
+    result.categories_changed += before[c] != after[c] ? 1U : 0U;
   return result;
 }
 

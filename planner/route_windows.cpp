@@ -1,15 +1,14 @@
-#include <atomic>
-#include <thread>
 #include <utility>
 
 #include <planner/route_windows.hpp>
+#include <planner/side_by_side.hpp>
 
 namespace talus::planner {
 namespace {
 
 struct Job {
   const WindowCut& cut;
-  const std::function<Polyline(const Polyline&)>& work;
+  const WindowWork& work;
   WindowMemo& memo;
   int threads;
   const StopCheck& stop;
@@ -27,14 +26,7 @@ void workOn(Polyline& window, const Job& job) {
 }
 
 void workOnAll(std::vector<Polyline>& windows, const Job& job) {
-  std::atomic<std::size_t> next{0};
-  const auto run = [&] {
-    for (std::size_t k = next++; k < windows.size(); k = next++) workOn(windows[k], job);
-  };
-  std::vector<std::jthread> helpers;
-  for (int k = 1; k < job.threads && static_cast<std::size_t>(k) < windows.size(); ++k)
-    helpers.emplace_back(run);
-  run();
+  sideBySide(windows.size(), job.threads, [&](std::size_t k) { workOn(windows[k], job); });
 }
 
 // A window's head and tail of at most that length, and what is left between them.
@@ -53,12 +45,15 @@ Parts partsOf(const Polyline& window, double end_m) {
 
 }  // namespace
 
-Polyline byWindows(const Polyline& route, const WindowCut& cut,
-                   const std::function<Polyline(const Polyline&)>& work, WindowMemo& memo, int threads,
-                   const StopCheck& stop) {
-  const Job job{cut, work, memo, threads, stop};
+Polyline byWindows(const Polyline& route, const WindowCut& cut, const WindowWork& work, WindowMemo& memo,
+                   int threads, const StopCheck& stop) {
   auto windows = cutFromEnd(route, cut.length_m, cut.length_m);
-  workOnAll(windows, job);
+  workOnAll(windows, {cut, work, memo, threads, stop});
+  return joinWindows(windows, cut, work, memo, threads, stop);
+}
+
+Polyline joinWindows(const std::vector<Polyline>& windows, const WindowCut& cut, const WindowWork& work,
+                     WindowMemo& memo, int threads, const StopCheck& stop) {
   if (windows.size() == 1) return windows.front();
   std::vector<Polyline> joints{{}}, middles;
   for (const Polyline& window : windows) {
@@ -67,7 +62,7 @@ Polyline byWindows(const Polyline& route, const WindowCut& cut,
     middles.push_back(std::move(parts.middle));
     joints.push_back(std::move(parts.tail));
   }
-  workOnAll(joints, job);
+  workOnAll(joints, {cut, work, memo, threads, stop});
   Polyline whole = joints.front();
   for (std::size_t k = 0; k < middles.size(); ++k) {
     append(whole, middles[k]);

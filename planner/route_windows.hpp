@@ -14,12 +14,17 @@ struct WindowCut {
   double reach_m = 0.0;    ///< farthest ground from a window's bounding box that the work looks at
 };
 
+/// Gives a way between the same ends, and the same one for the same window on the same ground.
+using WindowWork = std::function<Polyline(const Polyline&)>;
+
 /// Works on the windows of a route, then on what lies around the places where two meet, side by side on
-/// `threads` threads; the answer does not depend on their number. `work` gives a way between the same ends,
-/// and the same one for the same window on the same ground. What the memo holds is not worked on. Windows not
-/// begun when stopped stay as they are.
-Polyline byWindows(const Polyline& route, const WindowCut& cut,
-                   const std::function<Polyline(const Polyline&)>& work, WindowMemo& memo, int threads = 1,
-                   const StopCheck& stop = {});
+/// `threads` threads; the answer does not depend on their number. What the memo holds is not worked on.
+/// Windows not begun when stopped stay as they are.
+Polyline byWindows(const Polyline& route, const WindowCut& cut, const WindowWork& work, WindowMemo& memo,
+                   int threads = 1, const StopCheck& stop = {});
+
+/// The second half of it: of windows that were worked on, each beginning where the one before ends.
+Polyline joinWindows(const std::vector<Polyline>& windows, const WindowCut& cut, const WindowWork& work,
+                     WindowMemo& memo, int threads = 1, const StopCheck& stop = {});
 
 }  // namespace talus::planner

@@ -6,7 +6,8 @@ namespace talus::planner {
 
 std::uint64_t Ruts::square(const maps::Point& place) const noexcept {
   const auto index = [this](double value_m) {
-    return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(value_m / square_m_))) & 0xffffffffU;
+    return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(value_m / square_m_))) &
+           0xffffffffU;
   };
   return index(place.x_m) << 32 | index(place.y_m);
 }

@@ -30,7 +30,8 @@ struct Balance {
   bool stuck = true;
 };
 
-Balance balanced(const std::vector<const WheelTable*>& tables, const std::vector<double>& shares, double demand) {
+Balance balanced(const std::vector<const WheelTable*>& tables, const std::vector<double>& shares,
+                 double demand) {
   double before = 0.0;
   for (std::size_t row = 0; row < WheelTable::kRows && WheelTable::slip(row) <= kHighestSlip; ++row) {
     double pull = 0.0;
@@ -86,9 +87,8 @@ std::vector<TrueWorld::WheelState> TrueWorld::standing(const Motion& motion) con
   std::vector<WheelState> wheels;
   for (std::size_t w = 0; w < along_m.size(); ++w) {
     const double across_m = w % 2 == 0 ? 0.5 * rover_.track_m : -0.5 * rover_.track_m;
-    const maps::Point place{
-        motion.place.x_m + along_m[w] * motion.heading.x - across_m * motion.heading.y,
-        motion.place.y_m + along_m[w] * motion.heading.y + across_m * motion.heading.x};
+    const maps::Point place{motion.place.x_m + along_m[w] * motion.heading.x - across_m * motion.heading.y,
+                            motion.place.y_m + along_m[w] * motion.heading.y + across_m * motion.heading.x};
     wheels.push_back({.place = place,
                       .load_N = loads_N[w],
                       .passes = motion.ruts ? motion.ruts->passes(place) : 0,

@@ -29,11 +29,11 @@ struct WorldSoils {
 
 /// Where a rover stands and where it is driven to.
 struct Motion {
-  maps::Point place;            ///< of the rover's middle
-  costmap::Direction heading;   ///< of the motion
-  double gradient = 0.0;        ///< rise over run along the motion
-  double dug_m = 0.0;           ///< depth of the holes that the wheels stand in and must climb out of
-  const Ruts* ruts = nullptr;   ///< none: all ground is fresh
+  maps::Point place;           ///< of the rover's middle
+  costmap::Direction heading;  ///< of the motion
+  double gradient = 0.0;       ///< rise over run along the motion
+  double dug_m = 0.0;          ///< depth of the holes that the wheels stand in and must climb out of
+  const Ruts* ruts = nullptr;  ///< none: all ground is fresh
 };
 
 /// How a rover of alike wheels stands and drives on the true ground: each wheel on the soil under it, in the
@@ -60,7 +60,7 @@ class TrueWorld {
     double slip = 0.0;
     double energy_J_per_m = 0.0;  ///< of driving and hotel, along the surface
     double speed_mps = 0.0;
-    double torque_Nm = 0.0;           ///< of all wheels together
+    double torque_Nm = 0.0;          ///< of all wheels together
     std::vector<WheelState> wheels;  ///< the foremost first
   };
 

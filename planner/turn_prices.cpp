@@ -7,6 +7,8 @@
 namespace talus::planner {
 namespace {
 
+constexpr double kStop_s = 20.0;  // ours, not from the literature
+
 using terramech::Rover;
 using terramech::Steering;
 
@@ -75,7 +77,8 @@ Kinematics kinematicsOf(const Rover& rover, const TurningGround& ground) {
                                 "': turning_radius_m = 0, must be > 0 with steering ackermann");
   return {.turning_radius_m = rover.turning_radius_m,
           .turns = turnPrices(rover, ground),
-          .cusp = price(rover, ground, 0.0, rover.wheel.radius_m / rover.max_speed_mps)};
+          .cusp = price(rover, ground, 0.0, rover.wheel.radius_m / rover.max_speed_mps),
+          .stop = price(rover, ground, 0.0, kStop_s)};
 }
 
 Kinematics kinematicsOn(const costmap::GroundModel& model, const costmap::DriveCost& cost) {

@@ -30,8 +30,9 @@ double bulldozing_N(const terramech::Soil& soil, const terramech::Rover& rover, 
 /// in place rho / v (Skid: (b/2) / v); the hotel's power is drawn meanwhile.
 TurnPrices turnPrices(const terramech::Rover& rover, const TurningGround& ground) noexcept;
 
-/// Kinematics of a rover on ground of one kind. A change of direction takes the time to drive a wheel radius.
-/// An Ackermann rover of no stated radius is refused: std::invalid_argument.
+/// Kinematics of a rover on ground of one kind. A change of direction takes the time to drive a wheel radius,
+/// a stop to turn in place twenty seconds (ours): that is what keeps a drive from turning at every cell. An
+/// Ackermann rover of no stated radius is refused: std::invalid_argument.
 Kinematics kinematicsOf(const terramech::Rover& rover, const TurningGround& ground);
 
 /// Kinematics on a map: turning priced by the ground of each drive curve, with the sinkage that its table

@@ -35,8 +35,8 @@ maps::Point anywhere(const maps::Grid& grid, std::mt19937_64& random) {
 
 }  // namespace
 
-WorldSoils drawWorld(const Truth& truth, const std::vector<costmap::GroundClass>& classes, const maps::Grid& grid,
-                     const WorldDraw& draw) {
+WorldSoils drawWorld(const Truth& truth, const std::vector<costmap::GroundClass>& classes,
+                     const maps::Grid& grid, const WorldDraw& draw) {
   std::mt19937_64 random(draw.seed);
   WorldSoils world;
   for (const costmap::GroundClass& ground : classes) {

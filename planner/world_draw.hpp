@@ -14,8 +14,8 @@ namespace talus::planner {
 struct Truth {
   std::map<int, terramech::Soil> classes;  ///< true soils where they differ from what the map believes
   std::vector<SoilPatch> patches;          ///< in every world
-  double spread = 0.0;  ///< relative standard deviation of cohesion, tangent of friction and moduli [-]
-  int random_patches = 0;       ///< undeclared, a world
+  double spread = 0.0;     ///< relative standard deviation of cohesion, tangent of friction and moduli [-]
+  int random_patches = 0;  ///< undeclared, a world
   double patch_radius_m = 3.0;  ///< mean; they range evenly over +-50 %
   terramech::Soil patch_soil;   ///< of the random patches, varied as the classes are
   std::vector<terramech::Effect> effects{};  ///< undeclared, on all soils
@@ -29,7 +29,7 @@ struct WorldDraw {
 };
 
 /// Soils of one world over a grid, in the order of the classes. Same draw, same world.
-WorldSoils drawWorld(const Truth& truth, const std::vector<costmap::GroundClass>& classes, const maps::Grid& grid,
-                     const WorldDraw& draw);
+WorldSoils drawWorld(const Truth& truth, const std::vector<costmap::GroundClass>& classes,
+                     const maps::Grid& grid, const WorldDraw& draw);
 
 }  // namespace talus::planner

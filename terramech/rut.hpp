@@ -4,10 +4,10 @@
 
 namespace talus::terramech {
 
-/// How much stiffer soil is when it is loaded again by a driven wheel. On reloading by a plate it is some tens of
-/// times stiffer than at first (wong_2001, response to repetitive loading), but a wheel that slips goes on
-/// digging: the second one is known to meet about half the first one's resistance, which grows with the root of
-/// the sinkage. Ours, number unverified [-].
+/// How much stiffer soil is when it is loaded again by a driven wheel. On reloading by a plate it is some
+/// tens of times stiffer than at first (wong_2001, response to repetitive loading), but a wheel that slips
+/// goes on digging: the second one is known to meet about half the first one's resistance, which grows with
+/// the root of the sinkage. Ours, number unverified [-].
 inline constexpr double kReloadStiffness = 4.0;
 
 /// By how much less displacement its shear strength is mobilised there: compacted soil has a smaller K

@@ -31,7 +31,7 @@ void SoilFilter::add(const WheelSample& sample) {
   for (std::size_t k = 0; k < tracks_.size(); ++k) {
     Track& track = tracks_[k];
     if (full) {  // the oldest sample leaves: its quadratic about the mode stays
-      track.before = objective(k).expand(track.mode.likelihood.at, {&window_.front(), 1}, track.before);
+      track.before = objective(k).absorb(track.mode.likelihood.at, window_.front(), track.before);
     }
     const auto kept = std::span(window_).subspan(full ? 1 : 0);
     track.mode = !full && count_ <= kFresh ? findModeAfresh(objective(k), kept)

@@ -108,6 +108,18 @@ SoilQuadratic SoilObjective::expand(const SoilVector& y, std::span<const WheelSa
   return sum;
 }
 
+SoilQuadratic SoilObjective::absorb(const SoilVector& y, const WheelSample& sample,
+                                    const SoilQuadratic& before) const {
+  constexpr double kStep = 1e-4;
+  SoilQuadratic sum = expand(y, {&sample, 1}, before);
+  sum.gradient = before.gradientAt(y);
+  for (int k = 0; k < kSoilParameters; ++k) {
+    const SoilVector step = kStep * SoilVector::Unit(k);
+    sum.gradient[k] += (misfit(y + step, sample).cost - misfit(y - step, sample).cost) / (2.0 * kStep);
+  }
+  return sum;
+}
+
 double SoilObjective::cost(const SoilVector& y, std::span<const WheelSample> samples,
                            const SoilQuadratic& before) const {
   double sum = before.costAt(y);

@@ -53,6 +53,10 @@ class SoilObjective {
   SoilQuadratic expand(const SoilVector& y, std::span<const WheelSample> samples,
                        const SoilQuadratic& before) const;
 
+  /// A sample taken into `before` for good: as expand(), with the slope of the whole cost. Gauss-Newton
+  /// leaves out that of the normalisation, which is small for one sample and adds up over many.
+  SoilQuadratic absorb(const SoilVector& y, const WheelSample& sample, const SoilQuadratic& before) const;
+
   /// -log likelihood of the samples at y, and of `before`.
   double cost(const SoilVector& y, std::span<const WheelSample> samples, const SoilQuadratic& before) const;
 

@@ -17,7 +17,9 @@ function drawMap(element, data) {
   map.on("baselayerchange", event => showLegend(event.name, event.layer.legend));
   const narrow = element.clientWidth < 600;
   L.control.layers(layers, {}, {collapsed: narrow}).addTo(map);
-  const way = data.story ? data.story.track.map(([, x, y]) => ({x, y})) : data.route;
+  const way = data.story
+    ? [...data.story.track.map(([, x, y]) => ({x, y})), ...data.story.events.flatMap(e => e.route.map(([x, y]) => ({x, y})))]
+    : data.route;
   const view = way.length ? L.latLngBounds(way.map(at)).pad(0.15) : L.latLngBounds(box);
   map.fitBounds(view, {paddingBottomRight: [narrow ? 0 : 170, 0]});  // room for the list of layers
   return map;

@@ -1,5 +1,5 @@
-// What a map of beliefs costs: one sample with all its effects published, a patch of changed cells, and memory,
-// whatever the size of the map.
+// What a map of beliefs costs: one sample with all its effects published, a patch of changed cells, and
+// memory, whatever the size of the map.
 #include <cmath>
 #include <fstream>
 #include <memory>
@@ -94,12 +94,10 @@ void patch(benchmark::State& state) {
   for (auto _ : state) {
     on = !on;
     const costmap::CellRange range{{side / 2, side / 2}, {side / 2 + 199, side / 2 + 199}};
-    grid = std::make_shared<costmap::CostGrid>(
-        revised(*grid, {.ranges = {range},
-                        .code = [&](maps::Cell, costmap::CellCode code) {
-                          return on ? refused : code.withCurve(0);
-                        },
-                        .cost = [&] { return grid->content().cost; }}));
+    grid = std::make_shared<costmap::CostGrid>(revised(
+        *grid, {.ranges = {range},
+                .code = [&](maps::Cell, costmap::CellCode code) { return on ? refused : code.withCurve(0); },
+                .cost = [&] { return grid->content().cost; }}));
     benchmark::DoNotOptimize(grid);
   }
 }
@@ -124,8 +122,7 @@ void memory(benchmark::State& state) {
     state.counters["MB_without"] = residentMegabytes() - before;
     const int block = map->evidence().blockCells();
     for (int row = 0; row < 4000; row += block)
-      for (int column = 0; column < 4000; column += block)
-        map->learn(seen({column + 0.5, row + 0.5}, 0.2));
+      for (int column = 0; column < 4000; column += block) map->learn(seen({column + 0.5, row + 0.5}, 0.2));
     state.counters["MB_learned"] = residentMegabytes() - before;
     map->publish();
     state.counters["MB_with"] = residentMegabytes() - before;

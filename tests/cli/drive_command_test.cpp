@@ -15,17 +15,17 @@ std::vector<std::string> drive(const Folder& folder, const std::string& truth,
                                const std::vector<std::string>& more = {}) {
   folder.write("flat.asc", asciiGrid(40, 30, [](int, int) { return 0.0; }));
   folder.write("truth.yaml", truth);
-  std::vector<std::string> words{"drive",   "flat.asc", "--ignore-crs", "--resolution", "1",
-                                 "--soil",  "sandy_loam", "--rover",    "sojourner",    "--truth",
-                                 "truth.yaml", "--start", "5,15",       "--goal",       "35,15"};
+  std::vector<std::string> words{"drive",      "flat.asc",   "--ignore-crs", "--resolution", "1",
+                                 "--soil",     "sandy_loam", "--rover",      "sojourner",    "--truth",
+                                 "truth.yaml", "--start",    "5,15",         "--goal",       "35,15"};
   words.insert(words.end(), more.begin(), more.end());
   return words;
 }
 
 // Dust across the direct way, which no class raster shows.
 const char* const kTrap = R"(soils:
-  - {name: trap, cohesion_kPa: 0, friction_angle_deg: 18, sinkage_exponent: 1, cohesive_modulus: 0,
-     frictional_modulus: 60000, shear_modulus_mm: 20}
+  - {name: trap, cohesion_kPa: 0, friction_angle_deg: 22, sinkage_exponent: 1, cohesive_modulus: 0,
+     frictional_modulus: 300000, shear_modulus_mm: 20}
 patches:
   - {x_m: 20, y_m: 15, radius_m: 4, soil: trap}
 )";
@@ -117,10 +117,12 @@ TEST(BadInput, Rehearsals) {
   write("t_place.yaml", "patches:\n  - {x_m: .nan, y_m: 1, radius_m: 2, soil: mars_drift}\n");
   write("t_spread.yaml", "random: {spread: 7}\n");
   write("t_many.yaml", "random: {patches: -3}\n");
+  write("t_class.yaml", "classes: {7: dry_sand}\n");
   write("truth.yaml", "{}\n");
   const auto call = [](const std::string& truth, std::vector<std::string> more = {}) {
-    std::vector<std::string> words{"drive", "good.asc", "--resolution", "1",     "--soil", "sandy_loam", "--rover",
-                                   "fido",  "--truth",  truth,          "--start", "5,5",  "--goal",     "15,15"};
+    std::vector<std::string> words{"drive",      "good.asc", "--resolution", "1",       "--soil",
+                                   "sandy_loam", "--rover",  "fido",         "--truth", truth,
+                                   "--start",    "5,5",      "--goal",       "15,15"};
     words.insert(words.end(), more.begin(), more.end());
     return words;
   };
@@ -133,6 +135,7 @@ TEST(BadInput, Rehearsals) {
                            {call("t_place.yaml"), 2, "x_m"},
                            {call("t_spread.yaml"), 2, "spread"},
                            {call("t_many.yaml"), 2, "patches"},
+                           {call("t_class.yaml"), 2, "class 7 is no class of the map"},
                            {call("truth.yaml", {"--belief", "faith"}), 2, "faith"},
                            {call("truth.yaml", {"--worlds", "0"}), 2, "--worlds"},
                            {call("truth.yaml", {"--worlds", "2", "--html", "r.html"}), 2, "--html"},

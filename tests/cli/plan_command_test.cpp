@@ -129,5 +129,44 @@ TEST(PlanCommand, AMissionNeedsNothingElse) {
   EXPECT_EQ(json::parse(ran.out)["status"], "found");
 }
 
+// Property: a map read in windows gives a route that the whole map allows at the same price, near the one
+// planned on the whole.
+TEST(PlanCommand, PlansInWindowsOfAMapBeyondMemory) {
+  const Folder folder;
+  const Ran made =
+      runTalus({"generate", "craters", "--size", "900x700", "--seed", "7", "-o", "dem.tif"}, folder.path());
+  ASSERT_EQ(made.code, 0) << made.err;
+  const auto plan = [&folder](const std::vector<std::string>& more) {
+    std::vector<std::string> words{"plan",   "dem.tif", "--soil", "sandy_loam", "--rover", "fido",
+                                   "--json", "--start", "60,60",  "--goal",     "820,620"};
+    words.insert(words.end(), more.begin(), more.end());
+    return runTalus(words, folder.path());
+  };
+  const Ran whole = plan({}), windows = plan({"--in-memory", "100000", "-o", "windows.geojson"});
+  ASSERT_EQ(whole.code, 0) << whole.err;
+  ASSERT_EQ(windows.code, 0) << windows.err;
+  const double whole_J = json::parse(whole.out)["cost"], windows_J = json::parse(windows.out)["cost"];
+  EXPECT_NEAR(windows_J, whole_J, 0.05 * whole_J);
+  for (const auto& height :
+       json::parse(fileContent(folder / "windows.geojson"))["features"][0]["properties"]["elevation_m"])
+    ASSERT_TRUE(height.is_number());
+  const Ran score = runTalus(
+      {"score", "dem.tif", "--soil", "sandy_loam", "--rover", "fido", "--json", "--path", "windows.geojson"},
+      folder.path());
+  ASSERT_EQ(score.code, 0) << score.err;
+  EXPECT_NEAR(json::parse(score.out)["cost"].get<double>(), windows_J, 1e-6 * windows_J);
+  EXPECT_EQ(plan({"--in-memory", "100000", "--whole-field"}).out.substr(0, 60), whole.out.substr(0, 60));
+}
+
+TEST(PlanCommand, SaysWhatWindowsCannotDo) {
+  const Folder folder;
+  folder.write("dem.asc", dem());
+  const Ran ran = runTalus({"plan", "dem.asc", "--resolution", "1", "--start", "5.5,4.5", "--goal",
+                            "26.5,4.5", "--in-memory", "100", "--planner", "RRTstar"},
+                           folder.path());
+  EXPECT_EQ(ran.code, 2);
+  EXPECT_THAT(ran.err, HasSubstr("--whole-field"));
+}
+
 }  // namespace
 }  // namespace talus::cli

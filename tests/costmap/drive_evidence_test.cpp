@@ -7,6 +7,7 @@
 
 #include <costmap/drive_evidence.hpp>
 #include <costmap/map_file.hpp>
+#include <terramech/load_transfer.hpp>
 #include <terramech/wong_reece.hpp>
 
 namespace talus::costmap {
@@ -63,6 +64,56 @@ TEST(AddDrive, DustDrivenAsSandIsLearnedAsWeak) {
   const GroundBelief after = *map.ground({30, 30});
   EXPECT_LT(after.pull.mean, before.pull.mean - 0.1);
   EXPECT_NE(map.belief({30, 30}).category, static_cast<std::uint8_t>(terramech::Category::Safe));
+}
+
+// Four wheels up a slope at one slip, each with the torque of its own load; `told`: the load column is right,
+// else it holds the even share.
+terramech::Telemetry climb(bool told) {
+  const terramech::Rover rover = testRover();
+  const double gradient = 0.15;
+  const std::vector<double> along{0.4, 0.4, -0.4, -0.4};
+  const auto loads_N = terramech::wheelLoads_N(rover, gradient, along);
+  terramech::Telemetry out;
+  out.source = "climb.csv";
+  std::vector<double> x, y, load, slip, torque, sinkage, slope, heading, time;
+  std::vector<std::string> wheel;
+  for (std::size_t moment = 0; moment < 30; ++moment)
+    for (std::size_t w = 0; w < 4; ++w) {
+      const auto forces =
+          terramech::equilibrium(testSand(), rover.wheel, {.load_N = loads_N[w], .slip = 0.3});
+      x.push_back(120.0 + 0.3 * static_cast<double>(moment) + along[w]);
+      y.push_back(230.5 + (w % 2 == 0 ? 0.3 : -0.3));
+      load.push_back(told ? loads_N[w] : terramech::wheelLoad_N(rover));
+      slip.push_back(0.3 + 1e-4 * static_cast<double>(moment));
+      torque.push_back(forces.torque_Nm);
+      sinkage.push_back(forces.sinkage_m);
+      slope.push_back(std::atan(gradient));
+      heading.push_back(0.0);
+      time.push_back(static_cast<double>(moment));
+      wheel.push_back("w" + std::to_string(w));
+      out.lines.push_back(out.lines.size() + 2);
+    }
+  out.numbers = {{"x_m", x},
+                 {"y_m", y},
+                 {"load_N", load},
+                 {"slip", slip},
+                 {"torque_Nm", torque},
+                 {"sinkage_m", sinkage},
+                 {"slope_rad", slope},
+                 {"heading_rad", heading},
+                 {"time_s", time}};
+  out.words = {{"wheel", wheel}};
+  return out;
+}
+
+TEST(AddDrive, LoadTransferIsWorkedOutWhereTheFileLeavesItOut) {
+  TraversabilityMap right = mapOf(wide()), even = mapOf(wide());
+  EXPECT_TRUE(addDrive(right, climb(true)).findings.empty());
+  const DriveReport report = addDrive(even, climb(false));
+  ASSERT_EQ(report.findings.size(), 1U);
+  EXPECT_NE(report.findings[0].find("load transfer"), std::string::npos);
+  // Closed form: corrected, both files say the same
+  EXPECT_NEAR(even.ground({24, 30})->pull.mean, right.ground({24, 30})->pull.mean, 1e-6);
 }
 
 TEST(Replay, RebuildsTheMapFromTheJournalToTheBit) {

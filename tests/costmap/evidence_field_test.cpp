@@ -102,7 +102,8 @@ TEST(EvidenceField, OtherGroundThatNoRasterShowsIsNotTheClass) {
     ordinary.learn(weaker(30.5, 30.5, 0.06));
   }
   map.publish();
-  // Property: seven standard deviations off move the class less than one does, yet are believed where they lie.
+  // Property: seven standard deviations off move the class less than one does, yet are believed where they
+  // lie.
   EXPECT_GT(map.evidence().posterior(0).pull.mean, -0.05);
   const double prior = map.model().prior(0).pull.mean;
   EXPECT_LT(map.ground({30, 30})->pull.mean, prior - 0.3);

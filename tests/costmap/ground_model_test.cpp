@@ -4,6 +4,7 @@
 #include <site_fixture.hpp>
 
 #include <costmap/ground_model.hpp>
+#include <terramech/wong_reece.hpp>
 
 namespace talus::costmap {
 namespace {
@@ -104,6 +105,39 @@ TEST(GroundModel, NamesWhatIsWrong) {
   parts.classes = {GroundClass{.number = 1, .soil = testSand()},
                    GroundClass{.number = 1, .soil = testDust()}};
   EXPECT_THROW(GroundModel{parts}, std::invalid_argument);
+}
+
+TEST(GroundModel, SteadyWheelsAreThoseOfTheForwardModel) {
+  const auto model = testGround();
+  const terramech::Rover rover = testRover();
+  for (const double slip : {0.1, 0.3, 0.5}) {
+    const SteadyWheel steady = model->steady(0, {.slip = slip});
+    const double load_N = terramech::wheelLoad_N(rover) / std::hypot(1.0, steady.gradient);
+    const auto wheel = terramech::equilibrium(testSand(), rover.wheel, {.load_N = load_N, .slip = slip});
+    // Closed form: the wheel under its load on that slope; the curve's table is good to 1e-3 in slip
+    EXPECT_NEAR(steady.gradient, wheel.drawbar_pull_N / load_N, 5e-3) << slip;
+    EXPECT_NEAR(steady.sinkage_over_radius, wheel.sinkage_m / rover.wheel.radius_m, 2e-3) << slip;
+    EXPECT_NEAR(steady.torque_over_load_radius, wheel.torque_Nm / (load_N * rover.wheel.radius_m), 5e-3)
+        << slip;
+    EXPECT_LT(model->steady(0, {.slip = slip, .in_rut = true}).sinkage_over_radius,
+              0.6 * steady.sinkage_over_radius);
+  }
+  EXPECT_DOUBLE_EQ(model->reference(0, false).gradient, model->prior(0).pull.mean);
+}
+
+TEST(GroundModel, CategoryEdgesAreTheTangentsOfSlopeAndMargin) {
+  const auto model = testGround();
+  const double margin = model->parts().policy.slope_margin_rad;
+  for (const double slope : {-0.3, 0.0, 0.1, 0.4}) {
+    // Closed form: thesis 3.5, safe above tan(slope + margin), dangerous below tan(slope - margin)
+    const auto of = [&](double pull) {
+      return model->category({.pull = {pull, 0.0}, .sinkage = {0.1, 0.0}}, std::tan(slope)).category;
+    };
+    EXPECT_EQ(of(std::tan(slope + margin) + 1e-9), terramech::Category::Safe);
+    EXPECT_EQ(of(std::tan(slope + margin) - 1e-9), terramech::Category::Marginal);
+    EXPECT_EQ(of(std::tan(slope - margin) + 1e-9), terramech::Category::Marginal);
+    EXPECT_EQ(of(std::tan(slope - margin) - 1e-9), terramech::Category::Dangerous);
+  }
 }
 
 }  // namespace

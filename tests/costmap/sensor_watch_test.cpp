@@ -1,4 +1,5 @@
 #include <cmath>
+#include <string>
 
 #include <site_fixture.hpp>
 
@@ -53,6 +54,52 @@ TEST(SensorWatch, AnOffsetInTheTorqueShowsAgainstTheSlope) {
   EXPECT_TRUE(watch.biased());
   EXPECT_NEAR(watch.bias().value_or(0.0), 0.07, 1e-12);
   EXPECT_EQ(watch.findings().size(), 1U);
+}
+
+TEST(SensorWatch, NoDrivenWheelSlipsBackwardsOnAClimb) {
+  const auto model = testGround();
+  SensorWatch watch(*model);
+  WheelReading up = at(1.0, -0.1);
+  up.gradient = 0.1;
+  EXPECT_NE(watch.refuse("w", up).value_or("").find("biased"), std::string::npos);
+  WheelReading down = at(2.0, -0.1);
+  down.gradient = -0.1;
+  EXPECT_FALSE(watch.refuse("w", down).has_value()) << "braking downhill is no lie";
+  WheelReading pushed = at(3.0, -0.1);
+  pushed.gradient = 0.1;
+  pushed.torque_Nm = -1.0;
+  EXPECT_FALSE(watch.refuse("w", pushed).has_value()) << "a braked wheel may be pushed";
+}
+
+TEST(SensorWatch, CountsGapsAndDropouts) {
+  const auto model = testGround();
+  SensorWatch watch(*model);
+  double time_s = 0.0;
+  for (int i = 0; i < 60; ++i) {
+    WheelReading r = at(time_s, 0.1 + 0.01 * (i % 3));
+    if (i % 20 == 19) r.torque_Nm = std::nan("");
+    EXPECT_FALSE(watch.refuse("w", r).has_value()) << i;
+    time_s += i == 40 ? 7.5 : 0.1;
+  }
+  const auto lines = watch.findings();
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_EQ(lines[0].substr(0, 7), "3 rows:");
+  EXPECT_EQ(lines[1], "1 gaps in time, the longest of 7.500000 s");
+}
+
+TEST(SensorWatch, WhatJumpsAtAllWheelsIsTheRover) {
+  const auto model = testGround();
+  SensorWatch watch(*model);
+  const auto moment = [&](double time_s, double left, double right) {
+    return watch.refuse({{"left", at(time_s, left)}, {"right", at(time_s, right)}});
+  };
+  for (int i = 0; i < 10; ++i) moment(0.1 * i, 0.1 + 0.01 * (i % 3), 0.1 + 0.01 * (i % 2));
+  const auto one = moment(2.0, 0.9, 0.1);
+  EXPECT_EQ(one[0].value_or(""), "spike");
+  EXPECT_FALSE(one[1].has_value());
+  const auto both = moment(3.0, 0.9, 0.91);
+  EXPECT_FALSE(both[0].has_value());
+  EXPECT_FALSE(both[1].has_value());
 }
 
 }  // namespace

@@ -1,9 +1,11 @@
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include <site_fixture.hpp>
 
 #include <costmap/wheel_observation.hpp>
+#include <terramech/rut.hpp>
 #include <terramech/wong_reece.hpp>
 
 namespace talus::costmap {
@@ -66,6 +68,56 @@ TEST(WheelObserver, NothingToGoByNothingSaid) {
   blind = reading(testSand(), 0.2);
   blind.slip = kNone;
   EXPECT_FALSE(WheelObserver(*model).observe(0, blind).has_value());
+}
+
+// Two wheels on one soil and two on another at one slip, the slope that they hold together.
+std::vector<ClassReading> halfAndHalf(const terramech::Soil& front, const terramech::Soil& rear,
+                                      double slip) {
+  std::vector<ClassReading> all{{0, reading(front, slip)},
+                                {0, reading(front, slip)},
+                                {0, reading(rear, slip)},
+                                {0, reading(rear, slip)}};
+  const double gradient = 0.5 * (all[0].reading.gradient + all[2].reading.gradient);
+  for (ClassReading& r : all) r.reading.gradient = gradient;
+  return all;
+}
+
+TEST(WheelObserver, TheWheelsInDustAreToldFromThoseOnSand) {
+  const auto model = testGround();
+  for (const double slip : {0.2, 0.4, 0.7}) {
+    const auto seen = WheelObserver(*model).observe(halfAndHalf(testDust(), testSand(), slip));
+    const double sand = model->prior(0).pull.mean, dust = model->prior(1).pull.mean;
+    EXPECT_LT(seen[0]->pull.mean, sand - 0.45 * (sand - dust)) << slip;
+    EXPECT_NEAR(seen[3]->pull.mean, sand, 2.0 * seen[3]->pull.std) << slip;
+    EXPECT_GT(seen[3]->pull.mean, seen[0]->pull.mean + 0.1) << slip;
+  }
+}
+
+TEST(WheelObserver, LittleSlipYetDeepIsASign) {
+  const auto model = testGround();
+  const auto seen = WheelObserver(*model).observe(halfAndHalf(testDust(), testSand(), 0.05));
+  // Property: weaker by more than the class varies from place to place
+  EXPECT_LT(seen[0]->pull.mean, model->prior(0).pull.mean - 0.05);
+}
+
+TEST(WheelObserver, ARutIsNotTakenForFirmGround) {
+  const auto model = testGround();
+  std::vector<ClassReading> all = halfAndHalf(testSand(), terramech::rutted(testSand()), 0.3);
+  all[2].reading.pass = all[3].reading.pass = 2;
+  const auto told = WheelObserver(*model).observe(all);
+  for (const auto& seen : told) EXPECT_NEAR(seen->pull.mean, model->prior(0).pull.mean, 0.03);
+  EXPECT_GT(told[2]->pull.std, told[0]->pull.std) << "a rut says less about fresh ground";
+  EXPECT_TRUE(std::isinf(told[2]->sinkage.std)) << "and nothing about its depth";
+  all[2].reading.pass = all[3].reading.pass = 1;
+  EXPECT_GT(WheelObserver(*model).observe(all)[2]->pull.mean, model->prior(0).pull.mean + 0.05);
+}
+
+TEST(WheelObserver, StuckWheelsSayThatTheGroundIsWeak) {
+  const auto model = testGround();
+  WheelReading spun = reading(testDust(), 0.98);
+  spun.gradient = kNone;
+  const auto seen = WheelObserver(*model).observe(0, spun);
+  EXPECT_NEAR(seen->pull.mean, model->prior(1).pull.mean, 0.1);
 }
 
 TEST(PullFromTorque, FlatWheelPullsItsTorque) {

@@ -33,6 +33,19 @@ TEST(ElevationReader, RowsBecomeSouthFirstAndNodataNaN) {
   EXPECT_THAT(map.georeference->system().name, HasSubstr("UTM zone 10N"));
 }
 
+// Closed form: the mean of two by two pixels; what is left over in the north and east is left out.
+TEST(ElevationReader, AnOverviewHoldsMeans) {
+  const TemporaryFolder folder;
+  const std::string path = write({.rows = kHill, .nodata = -1}, folder / "hill.tif");
+  const ElevationMap map = readElevation(path, {.overview = 2});
+  EXPECT_EQ(map.grid(), (Grid{.width = 2, .height = 2, .resolution_m = 20, .south_west = {500000, 4999950}}));
+  EXPECT_EQ((map.elevation_m[{0, 0}]), (5 + 6 + 4 + 5) / 4.0F);
+  EXPECT_EQ((map.elevation_m[{1, 0}]), (7 + 8 + 6 + 7) / 4.0F);
+  EXPECT_EQ((map.elevation_m[{0, 1}]), (3 + 4 + 2 + 3) / 4.0F);
+  EXPECT_EQ((map.elevation_m[{1, 1}]), (5 + 4 + 5) / 3.0F);  // one pixel without data
+  EXPECT_EQ(elevationGrid(path, {.overview = 2}), map.grid());
+}
+
 TEST(ElevationReader, EveryFormatGivesTheSameMap) {
   const TemporaryFolder folder;
   // PDS4 holds no false easting.

@@ -55,7 +55,7 @@ TEST(Benchmark, TheLogHasTheFormThatOmplReads) {
   EXPECT_THAT(log, ::testing::StartsWith("OMPL version 1.5.2\nExperiment gap\n"));
   EXPECT_THAT(log, HasSubstr("\n1 enum type\nstatus|"));
   EXPECT_THAT(log,
-              HasSubstr("\n2 planners\nfield\n0 common properties\n9 properties for each run\ntime REAL\n"));
+              HasSubstr("\n2 planners\nfield\n0 common properties\n13 properties for each run\ntime REAL\n"));
   EXPECT_THAT(log, HasSubstr("\n2 progress properties for each run\ntime REAL\nbest cost REAL\n2 runs\n"));
   EXPECT_THAT(log, ::testing::EndsWith("\n.\n"));
 }

@@ -74,6 +74,18 @@ TEST(CorridorSearch, FindsTheCheapestWayOverEdgePoints) {
   EXPECT_GT(found, 5);
 }
 
+// Ends on edges and corners, at the map's border, with no reach at all: the search looks at the cells they
+// touch.
+TEST(CorridorSearch, BeginsOnEdgesOfTheMap) {
+  const MotionCost cost(drawn(std::vector<std::string>(6, std::string(7, '.'))));
+  for (const Point from : {Point{0.0, 2.0}, Point{3.0, 0.0}, Point{0.0, 0.0}, Point{7.0, 6.0}})
+    for (const Point to : {Point{5.0, 4.0}, Point{7.0, 3.0}, Point{2.0, 6.0}, Point{4.5, 6.0}}) {
+      const EdgePath path = searchCorridor(cost, {from, to}, 1e9, {.reach_cells = 0, .points_per_edge = 3});
+      if (path.empty()) continue;
+      EXPECT_GE(priced(cost, path), 10.0 * std::hypot(to.x_m - from.x_m, to.y_m - from.y_m) * (1 - 1e-6));
+    }
+}
+
 TEST(CorridorSearch, StaysBesideTheWay) {
   std::vector<std::string> rows(20, std::string(20, '4'));
   rows.front() = rows.back() = std::string(20, '.');  // cheap, but out of reach

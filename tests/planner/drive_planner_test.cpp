@@ -1,4 +1,5 @@
 #include <cmath>
+#include <random>
 
 #include <planner/annotation.hpp>
 #include <planner/drive_planner.hpp>
@@ -93,12 +94,13 @@ TEST(DrivePlanner, TheReportCountsTurning) {
   problem.goal = {12.5, 2.5};
   problem.start_heading_rad = M_PI / 2;
   problem.kinematics.may_reverse = false;
+  problem.kinematics.stop = {.cost_J = 7.0, .energy_J = 6.0, .time_s = 2.0};  // and for the stop
   const Plan plan = DrivePlanner().plan(problem);
   ASSERT_EQ(plan.status, RouteStatus::Found) << plan.reason;
-  EXPECT_NEAR(plan.cost_J, 100.0 + 5.0 * M_PI / 2, 1e-3);
+  EXPECT_NEAR(plan.cost_J, 107.0 + 5.0 * M_PI / 2, 1e-3);
   const Route route = annotated(plan, {.map = *map, .kinematics = problem.kinematics});
-  EXPECT_NEAR(route.summary.energy_J, 4.0 * M_PI / 2, 1e-9);  // the drawn map has no table of energies
-  EXPECT_NEAR(route.summary.time_s, M_PI / 2, 1e-9);
+  EXPECT_NEAR(route.summary.energy_J, 6.0 + 4.0 * M_PI / 2, 1e-9);  // the drawn map has no table of energies
+  EXPECT_NEAR(route.summary.time_s, 2.0 + M_PI / 2, 1e-9);
   ASSERT_TRUE(route.summary.drive.has_value());
   EXPECT_EQ(route.summary.drive->turns_in_place, 1);
   EXPECT_NEAR(route.vertices.front().turn_rad, -M_PI / 2, 1e-9);
@@ -117,6 +119,32 @@ TEST(DrivePlanner, AVertexInReverseLooksTheOtherWay) {
   const Route route = annotated(plan, {.map = *map});
   EXPECT_TRUE(route.vertices.front().reverse);
   EXPECT_NEAR(std::remainder(route.vertices.front().heading_rad, 2 * M_PI), 0.0, 1e-9);
+}
+
+TEST(RouteCheckOfDrives, AgreesWithDenseSamplingOfRandomArcs) {
+  // Property: an arc that dense sampling finds in a blocked cell is refused, and hardly any other is.
+  std::mt19937 random(9);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  int refused = 0, allowed = 0, grazing = 0;
+  for (unsigned k = 0; k < 400; ++k) {
+    const auto map = randomMap({.width = 16, .height = 16, .seed = k + 1, .blocked = 0.12, .roughness = 0.0});
+    const double radius_m = 1.0 + 2.0 * unit(random), side = k % 2 ? 1.0 : -1.0;
+    const PosePath arc{.start = {{5.0 + 6.0 * unit(random), 5.0 + 6.0 * unit(random)}, 7.0 * unit(random)},
+                       .legs = {{{(k % 3 ? 4.0 : -4.0) * unit(random), side / radius_m}, 0.0}}};
+    bool hit = false;
+    for (const Pose& pose : sampled(arc, 0.002)) {
+      const auto cell = map->grid().cellAt(pose.place);
+      hit = hit || map->at(*cell).curve() >= map->cost().curves().size();
+    }
+    const bool found = !violations(*map, arc, radius_m).empty();
+    EXPECT_TRUE(found || !hit) << k;
+    refused += hit;
+    allowed += !found;
+    grazing += found && !hit;
+  }
+  EXPECT_GT(refused, 50);
+  EXPECT_GT(allowed, 50);
+  EXPECT_LE(grazing, 2);
 }
 
 TEST(RouteCheckOfDrives, FindsWhatAnArcGrazes) {

@@ -15,12 +15,14 @@ terramech::Soil rock() {
   terramech::Soil soil = testSand();
   soil.friction_angle_rad = 0.75;
   soil.frictional_modulus = 5e7;
+  soil.shear_modulus_m = 0.002;
   return soil;
 }
 
 // A drawing starts at 100,200.
 RehearsalSite::Parts across(Truth truth) {
-  return {.truth = std::move(truth), .start = {105.5, 215.5}, .goal = {135.5, 215.5}, .firm = rock(), .seed = 7};
+  return {
+      .truth = std::move(truth), .start = {105.5, 215.5}, .goal = {135.5, 215.5}, .firm = rock(), .seed = 7};
 }
 
 std::vector<std::string> plain() {
@@ -73,7 +75,8 @@ TEST(RehearsalSite, GeometryTakesAllGroundForFirm) {
   const RehearsalSite site(map, across({}));
   const TrueWorld world = site.trueWorld(0);
   const auto believed = site.believed(Belief::Geometry, world);
-  EXPECT_GT(believed.ground({5, 5})->pull.mean, site.believed(Belief::Prior, world).ground({5, 5})->pull.mean + 0.2);
+  EXPECT_GT(believed.ground({5, 5})->pull.mean,
+            site.believed(Belief::Prior, world).ground({5, 5})->pull.mean + 0.2);
 }
 
 TEST(RehearsalSite, KeepOutStaysUnderEveryBelief) {
@@ -83,7 +86,8 @@ TEST(RehearsalSite, KeepOutStaysUnderEveryBelief) {
   const RehearsalSite site(map, across({}));
   const TrueWorld world = site.trueWorld(0);
   for (const Belief belief : {Belief::Geometry, Belief::Prior, Belief::OnLine, Belief::Clairvoyant})
-    EXPECT_TRUE(has(site.believed(belief, world).hazards({20, 19}), costmap::Hazard::KeepOut)) << name(belief);
+    EXPECT_TRUE(has(site.believed(belief, world).hazards({20, 19}), costmap::Hazard::KeepOut))
+        << name(belief);
 }
 
 TEST(DrawWorld, SparesStartAndGoal) {
@@ -91,8 +95,8 @@ TEST(DrawWorld, SparesStartAndGoal) {
   const auto& classes = map.model().parts().classes;
   std::size_t patches = 0;
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
-    const WorldSoils world =
-        drawWorld(random(20), classes, map.grid(), {.seed = seed, .start = {105.5, 215.5}, .goal = {135.5, 215.5}});
+    const WorldSoils world = drawWorld(random(20), classes, map.grid(),
+                                       {.seed = seed, .start = {105.5, 215.5}, .goal = {135.5, 215.5}});
     patches += world.patches.size();
     for (const SoilPatch& p : world.patches) {
       EXPECT_GE(std::hypot(p.centre.x_m - 105.5, p.centre.y_m - 215.5), p.radius_m + 2.0);
@@ -146,7 +150,8 @@ TEST(Compared, CountsWhereTheClairvoyantGotThrough) {
   EXPECT_NEAR(out.rates.outcome[static_cast<std::size_t>(Outcome::Immobilised)].value, 1.0 / 3.0, 1e-12);
   EXPECT_DOUBLE_EQ(out.rates.outcome[static_cast<std::size_t>(Outcome::GaveUp)].value, 0.0);
   EXPECT_NEAR(out.energy_over_clairvoyant.value, 1.2, 1e-12);
-  EXPECT_NEAR(out.energy_over_clairvoyant.interval_95[1] - 1.2, 1.959964 * 0.1, 1e-6);  // std 0.1414 / sqrt(2)
+  EXPECT_NEAR(out.energy_over_clairvoyant.interval_95[1] - 1.2, 1.959964 * 0.1,
+              1e-6);  // std 0.1414 / sqrt(2)
   EXPECT_THROW(compared(mine, {}), std::invalid_argument);
 }
 

@@ -40,10 +40,39 @@ TEST(PressureSinkageFit, RefusesToSeparateModuliWithOneOrAlikePlates) {
 }
 
 TEST(PressureSinkageFit, ScatterIsWhatWasPutIn) {
-  // Property: 5 % of noise on each pressure shows as a scatter of 0.05 (1200 readings: +- 4 %, two standard deviations).
+  // Property: 5 % of noise on each pressure shows as a scatter of 0.05 (1200 readings: +- 4 %, two standard
+  // deviations).
   const PressureSinkage fit = pressed({0.05, 0.1, 0.2}, 0.05).estimate();
   EXPECT_NEAR(fit.residual_std, 0.05, 0.002);
   EXPECT_NEAR(fit.sinkage_exponent, 0.5, 0.01);
+}
+
+TEST(PressureSinkageFit, IsTheLeastOfWongsCriterion) {
+  // Property: any step from the answer makes the sum of sigma^2 (ln sigma - ln k - n ln z)^2 larger
+  // (wong_1980).
+  std::mt19937_64 random(13);
+  std::normal_distribution<double> normal;
+  PressureSinkageFit fitter;
+  std::vector<PlateReading> readings;
+  for (int i = 1; i <= 40; ++i) {
+    const double z = 1e-3 * i;
+    readings.push_back({0.1, z, 8e5 * std::pow(z, 0.7) * (1.0 + 0.2 * normal(random))});
+    fitter.add(readings.back());
+  }
+  const PressureSinkage fit = fitter.estimate();
+  const auto cost = [&](double k, double n) {
+    double sum = 0.0;
+    for (const PlateReading& r : readings) {
+      const double away = std::log(r.pressure_Pa) - std::log(k) - n * std::log(r.sinkage_m);
+      sum += r.pressure_Pa * r.pressure_Pa * away * away;
+    }
+    return sum;
+  };
+  const double k = fit.plates.front().sinkage_modulus, n = fit.sinkage_exponent;
+  for (const double step : {-0.001, 0.001}) {
+    EXPECT_GT(cost(k * (1.0 + step), n), cost(k, n));
+    EXPECT_GT(cost(k, n + step), cost(k, n));
+  }
 }
 
 TEST(PressureSinkageFit, RefusesWhatIsNoReading) {
@@ -74,9 +103,25 @@ TEST(FitShear, GivesBackAllThreeParameters) {
   EXPECT_FALSE(fit.modulus_at_bound);
 }
 
-TEST(FitShear, ThreeKIsWhereNinetyFivePerCentOfTheStrengthIsReached) {
-  // Printed in: thesis A.2 (K is a third of the displacement at 95 % of tau_max).
-  EXPECT_NEAR(1.0 - std::exp(-3.0), 0.95, 0.001);
+TEST(FitShear, IsTheLeastOfTheSquaredStresses) {
+  // Property: any step from the answer makes the sum of squares of tau - (c + sigma t)(1 - e^(-j/K)) larger.
+  std::mt19937_64 random(12);
+  std::normal_distribution<double> normal;
+  auto readings = sheared(0.013, 0.05);
+  for (ShearReading& r : readings) r.shear_Pa *= 1.0 + 0.05 * normal(random);
+  const ShearFit fit = fitShear(readings);
+  const auto cost = [&](double c, double t, double k) {
+    double sum = 0.0;
+    for (const ShearReading& r : readings)
+      sum += std::pow(r.shear_Pa - (c + r.normal_Pa * t) * (1.0 - std::exp(-r.displacement_m / k)), 2);
+    return sum;
+  };
+  const double c = fit.strength.cohesion_Pa, t = fit.strength.tan_friction, k = fit.shear_modulus_m;
+  for (const double step : {-0.01, 0.01}) {
+    EXPECT_GT(cost(c * (1.0 + step), t, k), cost(c, t, k));
+    EXPECT_GT(cost(c, t * (1.0 + step), k), cost(c, t, k));
+    EXPECT_GT(cost(c, t, k * (1.0 + step)), cost(c, t, k));
+  }
 }
 
 TEST(FitShear, RefusesOneNormalStress) {

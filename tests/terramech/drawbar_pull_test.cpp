@@ -70,6 +70,24 @@ TEST(DrawbarPull, PlaneFitGivesBackAPlane) {
   EXPECT_LT(fit.residual_std, 1e-7);
 }
 
+TEST(DrawbarPull, PlaneFitStatesItsScatter) {
+  // Closed form: residual variance with n - 3 degrees of freedom, from the residuals themselves.
+  PullPlaneFitter fitter;
+  std::vector<std::pair<WheelSample, double>> data;
+  for (int k = 0; k < 7; ++k) {
+    const WheelSample s{.load_N = 60.0 + 5 * k,
+                        .torque_Nm = 2.0 + 0.1 * ((k * 5) % 7),
+                        .sinkage_m = 0.01 + 0.002 * ((k * 3) % 7)};
+    data.emplace_back(s, kThesisPlane.at(kThesisWheel, s) + 0.02 * ((k * k) % 3 - 1));
+    fitter.add(kThesisWheel, s, data.back().second);
+  }
+  const PullPlaneFit fit = fitter.estimate();
+  double squares = 0.0;
+  for (const auto& [s, pull] : data) squares += std::pow(fit.plane.at(kThesisWheel, s) - pull, 2);
+  EXPECT_NEAR(fit.residual_std, std::sqrt(squares / 4.0), 1e-9);
+  EXPECT_GT(fit.covariance(0, 0), 0.0);
+}
+
 TEST(DrawbarPull, PlaneFitRefusesSamplesOnALine) {
   PullPlaneFitter fitter;
   for (int k = 0; k < 9; ++k) fitter.add(kThesisWheel, kSample, 0.1);
@@ -113,6 +131,26 @@ TEST(DrawbarPull, StandardDeviationIsTheScatterOfNoisyReadings) {
     stated += pull.std / 400.0;
   }
   EXPECT_NEAR(stated / std::sqrt(squares), 1.0, 0.15);
+}
+
+TEST(DrawbarPull, EachReadingsErrorIsCarriedThrough) {
+  // Property: one error alone gives half the difference at plus and minus it, and the model's own in
+  // quadrature.
+  const auto check = [](double WheelSample::*field, ReadingError ReadingErrors::*which) {
+    ReadingErrors noise = ReadingErrors::relative(0.0);
+    (noise.*which).relative = 0.02;
+    WheelSample high = kSample, low = kSample;
+    high.*field *= 1.02;
+    low.*field *= 0.98;
+    const double half =
+        0.5 * (pullOverLoad(kThesisWheel, high).value - pullOverLoad(kThesisWheel, low).value);
+    EXPECT_GT(std::abs(half), 5e-4);
+    EXPECT_NEAR(pullOverLoad(kThesisWheel, kSample, noise).std, std::hypot(half, PullAngleModel{}.std), 1e-5);
+  };
+  check(&WheelSample::load_N, &ReadingErrors::load);
+  check(&WheelSample::torque_Nm, &ReadingErrors::torque);
+  check(&WheelSample::sinkage_m, &ReadingErrors::sinkage);
+  check(&WheelSample::slip, &ReadingErrors::slip);
 }
 
 TEST(DrawbarPull, ClimbableSlopeIsItsArctan) {

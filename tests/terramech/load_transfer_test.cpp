@@ -17,7 +17,8 @@ Rover rover() {
 }
 
 TEST(WheelLoads, LevelGroundLoadsAllAlike) {
-  for (const double load_N : wheelLoads_N(rover(), 0.0, {0.5, 0.5, -0.5, -0.5})) EXPECT_DOUBLE_EQ(load_N, 250.0);
+  for (const double load_N : wheelLoads_N(rover(), 0.0, {0.5, 0.5, -0.5, -0.5}))
+    EXPECT_DOUBLE_EQ(load_N, 250.0);
 }
 
 TEST(WheelLoads, TwoAxlesAreTheTextbook) {

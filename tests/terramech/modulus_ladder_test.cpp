@@ -64,6 +64,16 @@ TEST(ModulusLadder, EffectiveTorqueAsPrintedSolvesItsEquation) {
   EXPECT_LT(at(0.02, ModulusCriterion::EffectiveTorque), 0.75 * 0.02);
 }
 
+TEST(ModulusLadder, TheHighestSlipIsNoReadingOfItsOwn) {
+  // Property: one slower sample beside the fastest, at three times: K solves its equation A(i) = T/T_max
+  // alone, K = -j / ln(1 - T/T_max), as the batch form has it (thesis D.8 as printed).
+  const auto run = steadyRun(0.02);
+  const std::vector<WheelSample> samples{run[2], run[2], run[2], run.back()};
+  const auto ladder = ladderOver(samples, {.criterion = ModulusCriterion::EffectiveTorque});
+  EXPECT_NEAR(ladder.modulus().shear_modulus_m / modulusByEffectiveTorque(kWheel, samples).shear_modulus_m,
+              1.0, 0.05);
+}
+
 TEST(ModulusLadder, TheOrderOfTheSamplesDoesNotMatter) {
   // Property: the highest slip may come first, last or between.
   const auto samples = steadyRun(0.02);

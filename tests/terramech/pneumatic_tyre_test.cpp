@@ -54,6 +54,43 @@ TEST(PneumaticTyre, AHardTyreIsARigidWheelAndASoftOneFlattens) {
             hard.drawbar_pull_N);  // Measured by others: why tyres are let down on sand (wong_2001).
 }
 
+TEST(PneumaticTyre, ForcesAreTheStressesSummedUp) {
+  // Property: load, torque and pull by the midpoint rule over the round part and the flat, from the laws as
+  // the header states them.
+  const double r = 0.4, b = 0.25;
+  const Soil soil = loam();
+  for (const double slip : {0.0, 0.3}) {
+    const Tyre soft = tyre(1e4);
+    const TyreForces f = tyreOnSoftGround(soft, soil, {.load_N = 1500.0, .slip = slip});
+    ASSERT_EQ(f.mode, TyreMode::Flattened);
+    const double entry = std::acos(1.0 - (f.deflection_m + f.sinkage_m) / r);
+    const double flat = std::acos(1.0 - f.deflection_m / r);
+    const auto j = [&](double a) {  // thesis C.6
+      return r * (entry - a - (1.0 - slip) * (std::sin(entry) - std::sin(a)));
+    };
+    const auto tau = [&](double sigma, double at) {
+      return (3000.0 + sigma * std::tan(0.5)) * (1.0 - std::exp(-at / 0.02));
+    };
+    double load = 2e4 * f.flat_length_m, torque = 0.0, pull = 0.0;
+    constexpr int kSteps = 20000;
+    for (int k = 0; k < kSteps; ++k) {
+      const double a = flat + (entry - flat) * (k + 0.5) / kSteps, ds = r * (entry - flat) / kSteps;
+      const double sigma = 2e6 * std::pow(r * (std::cos(a) - std::cos(entry)), 0.8);
+      const double t = tau(sigma, j(a));
+      load += (sigma * std::cos(a) + t * std::sin(a)) * ds;
+      pull += (t * std::cos(a) - sigma * std::sin(a)) * ds;
+      torque += r * t * ds;
+      const double dx = f.flat_length_m / kSteps;
+      const double along = tau(2e4, j(flat) + slip * (k + 0.5) * dx) * dx;
+      pull += along;
+      torque += (r - f.deflection_m) * along;
+    }
+    EXPECT_NEAR(b * load, 1500.0, 0.01);
+    EXPECT_NEAR(f.torque_Nm / (b * torque), 1.0, 1e-5);
+    EXPECT_NEAR(f.drawbar_pull_N, b * pull, 0.01);
+  }
+}
+
 TEST(PneumaticTyre, LessPressureSinksLessAndFlattensMore) {
   TyreForces last = tyreOnSoftGround(tyre(2.2e4), loam(), {.load_N = 1500.0, .slip = 0.2});
   for (const double p : {1.8e4, 1.4e4, 1e4, 5e3}) {  // Property: monotone.

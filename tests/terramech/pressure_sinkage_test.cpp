@@ -40,6 +40,17 @@ TEST(PressureSinkage, ReecePressureDependsOnDepthOverWidthOnly) {
   EXPECT_DOUBLE_EQ(reecePressure_Pa(clay, 0.1, 0.02), reecePressure_Pa(clay, 0.3, 0.06));
 }
 
+TEST(PressureSinkage, ReeceWeightTermGrowsWithTheWidth) {
+  // Closed form: at z = b, p = c k'_c + gamma b k'_phi.
+  const ReeceSoil soil{.cohesion_Pa = 500.0,
+                       .weight_N_m3 = 15000.0,
+                       .cohesive_factor = 20.0,
+                       .frictional_factor = 300.0,
+                       .sinkage_exponent = 0.8};
+  for (const double b : {0.05, 0.2})
+    EXPECT_NEAR(reecePressure_Pa(soil, b, b), 500.0 * 20.0 + 15000.0 * b * 300.0, 1e-6);
+}
+
 TEST(PressureSinkage, AReeceSoilEntersTheWheelAsItsBekkerTwin) {
   const ReeceSoil reece{.cohesion_Pa = 500.0,
                         .weight_N_m3 = 15000.0,
@@ -47,6 +58,8 @@ TEST(PressureSinkage, AReeceSoilEntersTheWheelAsItsBekkerTwin) {
                         .frictional_factor = 300.0,
                         .sinkage_exponent = 0.8};
   const Soil twin = bekkerOf(reece, 0.12, drySand());
+  EXPECT_EQ(twin.cohesion_Pa, 500.0);
+  EXPECT_EQ(twin.friction_angle_rad, drySand().friction_angle_rad);  // Reece says nothing of it
   for (const double z : {0.001, 0.03})
     EXPECT_NEAR(bekkerPressure_Pa(twin, 0.12, z) / reecePressure_Pa(reece, 0.12, z), 1.0, 1e-14);
   EXPECT_GT(equilibrium(twin, {.radius_m = 0.15, .width_m = 0.12}, {.load_N = 60.0, .slip = 0.2}).sinkage_m,

@@ -64,5 +64,11 @@ TEST(ShearStress, AnotherLawGivesAnotherWheelThroughTheSameCode) {
   EXPECT_LT(rim.entry_angle_rad, janosi.entry_angle_rad);
 }
 
+TEST(ShearStress, ThreeKIsWhereNinetyFivePerCentOfTheStrengthIsReached) {
+  // Printed in: thesis A.2 (K is a third of the displacement at 95 % of tau_max).
+  const Soil soil{.cohesion_Pa = 740.0, .friction_angle_rad = 0.55, .shear_modulus_m = 0.013};
+  EXPECT_NEAR(janosiHanamoto_Pa(soil, 8000.0, 0.039) / shearStrength_Pa(soil, 8000.0), 0.95, 0.001);
+}
+
 }  // namespace
 }  // namespace talus::terramech

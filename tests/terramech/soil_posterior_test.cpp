@@ -8,40 +8,12 @@
 #include <terramech/soil_posterior.hpp>
 #include <terramech/thesis_runs.hpp>
 
+#include "exact_likelihood.hpp"
+
 namespace talus::terramech {
 namespace {
 
 constexpr double kDegree = 3.14159265358979323846 / 180.0;
-
-// Gauss-Hermite, weight exp(-x^2/2) / sqrt(2 pi), the inner seven of nine points (Abramowitz and Stegun 25.10
-// scaled).
-constexpr double kNode[] = {0.0, 1.023255663789133, 2.076847978677830, 3.205429002856470};
-constexpr double kShare[] = {0.4063492063492063, 0.2440975028949394, 0.0499164067652179, 0.0027891413212318};
-
-double normal(double away, double std) {
-  return std::exp(-0.5 * away * away / (std * std)) / std;
-}
-
-// p(readings of one sample | soil), its true sinkage and slip integrated out: every error 5 % of the true
-// value, flat in log W and in slip.
-double likelihood(const ContactSoil& soil, const WheelSample& read) {
-  const auto load = [&](double z) { return contactForces(soil, kThesisWheel, {z, read.slip})[kLoad]; };
-  double sum = 0.0;
-  for (int a = -3; a <= 3; ++a) {
-    const double z = read.sinkage_m * (1.0 + 0.05 * std::copysign(kNode[std::abs(a)], a));
-    const double by_sinkage = std::log(load(1.001 * z) / load(0.999 * z)) / (0.002 * z) *
-                              kShare[std::abs(a)] * normal(z - read.sinkage_m, 0.05 * z) /
-                              normal(z - read.sinkage_m, 0.05 * read.sinkage_m);
-    for (int b = -3; b <= 3; ++b) {
-      const double slip = read.slip * (1.0 + 0.05 * std::copysign(kNode[std::abs(b)], b));
-      const ForceVector f = contactForces(soil, kThesisWheel, {z, slip});
-      sum += by_sinkage * kShare[std::abs(b)] * normal(slip - read.slip, 0.05 * slip) /
-             normal(slip - read.slip, 0.05 * read.slip) * normal(read.load_N - f[kLoad], 0.05 * f[kLoad]) *
-             normal(read.torque_Nm - f[kTorque], 0.05 * f[kTorque]);
-    }
-  }
-  return sum;
-}
 
 TEST(SoilPosterior, EqualsBruteForce) {
   // Property: means, standard deviations and class probabilities are those of soils drawn from the prior and
@@ -60,7 +32,7 @@ TEST(SoilPosterior, EqualsBruteForce) {
       for (int d = 0; d < kDraws; ++d) {
         const ContactSoil soil = prior[m].at(points.col(d));
         double weight = 1.0;
-        for (const WheelSample& s : run.samples) weight *= likelihood(soil, s);
+        for (const WheelSample& s : run.samples) weight *= exactLikelihood(soil, s, 0.05);
         sum += weight, of_class[m] += weight;
         c += weight * soil.cohesion_Pa, cc += weight * std::pow(soil.cohesion_Pa, 2);
         phi += weight * soil.friction_angle_rad, phi2 += weight * std::pow(soil.friction_angle_rad, 2);
@@ -145,6 +117,22 @@ TEST(SoilPosterior, BeatsThePriorMeanAndKnowsItsError) {
   EXPECT_NEAR(std::sqrt(c2 / own_c2), 1.0, 0.33);
   EXPECT_NEAR(std::sqrt(phi2 / own_phi2), 1.0, 0.33);
   EXPECT_GE(inside, 51);
+}
+
+TEST(SoilPosterior, IntervalsLeaveOutAFortiethOnEitherSide) {
+  // Property: of the draws' weight, to that of the heaviest draw.
+  ThesisRuns runs(43);
+  const ThesisRun run = runs.next({.noise = 0.05});
+  const SoilPosterior p = fitSoil(kThesisWheel, run.samples, thesisSoils());
+  double below = 0.0, above = 0.0, heaviest = 0.0;
+  for (const SoilDraw& d : p.draws) {
+    if (d.soil.cohesion_Pa < p.cohesion_Pa.low) below += d.weight;
+    if (d.soil.cohesion_Pa > p.cohesion_Pa.high) above += d.weight;
+    heaviest = std::max(heaviest, d.weight);
+  }
+  EXPECT_LT(heaviest, 0.015);
+  EXPECT_NEAR(below, 0.025, heaviest);
+  EXPECT_NEAR(above, 0.025, heaviest);
 }
 
 TEST(SoilPosterior, ShrugsOffAnOutlier) {

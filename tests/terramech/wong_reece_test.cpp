@@ -262,6 +262,9 @@ TEST(WongReece, RefusesWhatHasNoAnswer) {
   EXPECT_THROW(equilibrium(sand(), wheel, {.load_N = 0.0, .slip = 0.2}), std::invalid_argument);
   EXPECT_THROW(equilibrium(sand(), wheel, {.load_N = 50.0, .slip = 1.1}), std::invalid_argument);
   EXPECT_THROW(equilibrium(sand(), wheel, {.load_N = 50.0, .slip = std::nan("")}), std::invalid_argument);
+  for (const double rebound : {-0.1, 1.0})
+    EXPECT_THROW(equilibrium(sand(), wheel, {.load_N = 50.0, .slip = 0.2, .rebound = rebound}),
+                 std::invalid_argument);
   Soil soil = sand();
   soil.frictional_modulus = -1.0;
   EXPECT_THROW(equilibrium(soil, wheel, {.load_N = 50.0, .slip = 0.2}), std::invalid_argument);

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <planner/cost_to_go.hpp>
+#include <planner/motion_cost.hpp>
+#include <planner/polyline.hpp>
+
+namespace talus::planner {
+
+/// The cheapest way along the grid between two places: to the centre of a cell beside the first, from centre
+/// to centre down the field, on to the second where the field's goal asks for it. Empty when there is none,
+/// or when stopped. The field's goals must be fieldGoals() of the second place.
+Polyline gridRoute(const MotionCost& cost, CostToGo& field, const Segment& places,
+                   const StopCheck& stop = {});
+
+}  // namespace talus::planner
