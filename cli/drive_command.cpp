@@ -126,7 +126,7 @@ int runOne(const planner::RehearsalSite& site, const Options& options, const Con
     printJson(json);
   } else {
     print(asText(drive.result) +
-          fmt::format("{:<21}slip to {:.3f} rms, energy of the whole drive {:+.1f} % off\n", "predicted",
+          fmt::format("{:<24} slip to {:.3f} rms, energy of the whole drive {:+.1f} % off\n", "predicted",
                       drive.prediction.slip_rmse, 100.0 * drive.prediction.energy_error));
   }
   return drive.result.drive.outcome == planner::Outcome::Reached ? Exit::kDone : Exit::kNo;

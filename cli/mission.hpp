@@ -29,11 +29,11 @@ struct PlanOptions {
   double tolerance_m = 0.0;
   std::string planner = "field";
   DriveOptions drive;
-  double max_risk = 0.0;      ///< chance constraint on immobilisation, 0: none
+  double max_risk = 0.0;               ///< chance constraint on immobilisation, 0: none
   std::size_t in_memory = 40'000'000;  ///< cells; larger maps are read in windows along an overview's route
-  bool whole_field = false;   ///< even on large maps
-  std::string pareto;         ///< chart to draw; empty: none
-  double time_limit_s = 0.0;  ///< 0: none
+  bool whole_field = false;            ///< even on large maps
+  std::string pareto;                  ///< chart to draw; empty: none
+  double time_limit_s = 0.0;           ///< 0: none
   std::string output;
   std::string html;  ///< page to write; empty: none
   std::string png;   ///< picture to write; empty: none

@@ -27,8 +27,9 @@ struct PlacePair {
 std::vector<PlacePair> readPairs(const std::string& path);
 
 /// Plans them all over the problem's map with the named planner, over the ranks of the campaign: a line of
-/// JSON each, in order, as `talus plan --json` prints it with `pair`, and status, planner and `reason` alone where there is no route.
-/// What went wrong with one pair is its line's reason and stops no other. Empty but on the leading rank.
+/// JSON each, in order, as `talus plan --json` prints it with `pair`, and status, planner and `reason` alone
+/// where there is no route. What went wrong with one pair is its line's reason and stops no other. Empty but
+/// on the leading rank.
 std::vector<nlohmann::ordered_json> planPairs(const std::vector<PlacePair>& pairs,
                                               const planner::Problem& problem, const std::string& planner,
                                               const Campaign& campaign);

@@ -1,3 +1,4 @@
+#include <cli/context.hpp>
 #include <cli/windowed_ground.hpp>
 #include <cli/windowed_plan.hpp>
 #include <planner/tube_planner.hpp>
@@ -18,7 +19,7 @@ planner::Plan planLeg(planner::Problem& leg, WindowedGround& ground, planner::Tu
   for (const double margin_cells : {128.0, 512.0}) {
     leg.map = ground.around(guide, margin_cells);
     plan = tube.planAlong(leg, guide);
-    if (plan.status != RouteStatus::NoRoute) break;
+    if (plan.status != planner::RouteStatus::NoRoute) break;
   }
   return plan;
 }
@@ -29,7 +30,7 @@ planner::Plan planInWindows(planner::Problem& problem, WindowedGround& ground) {
   planner::TubePlanner tube;
   auto stops = problem.via;
   stops.push_back(problem.goal);
-  planner::Plan whole{RouteStatus::Found, {}, {problem.start}, 0.0, 0.0};
+  planner::Plan whole{planner::RouteStatus::Found, {}, {problem.start}, 0.0, 0.0};
   for (std::size_t k = 0; k < stops.size(); ++k) {
     planner::Problem leg = problem;
     leg.via.clear();
@@ -38,7 +39,7 @@ planner::Plan planInWindows(planner::Problem& problem, WindowedGround& ground) {
     if (k + 1 < stops.size()) leg.goal_tolerance_m = 0.0;
     const planner::Plan part = planLeg(leg, ground, tube);
     problem.map = leg.map;
-    if (part.status != RouteStatus::Found) return part;
+    if (part.status != planner::RouteStatus::Found) return part;
     planner::append(whole.points, part.points);
     whole.cost_J += part.cost_J;
     whole.lower_bound_J += part.lower_bound_J;

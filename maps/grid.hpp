@@ -9,7 +9,8 @@
 
 namespace talus::maps {
 
-/// A place on the map: x east, y north, in metres of the map's projection (or local metres where it has none).
+/// A place on the map: x east, y north, in metres of the map's projection (or local metres where it has
+/// none).
 struct Point {
   double x_m = 0.0;
   double y_m = 0.0;
@@ -27,20 +28,25 @@ struct Cell {
 
 /// Where the square cells of a raster lie. Row 0 is the southernmost: y grows with the row.
 struct Grid {
-  int width = 0;               ///< cells west to east
-  int height = 0;              ///< cells south to north
-  double resolution_m = 1.0;   ///< side of a cell, > 0
-  Point south_west{};           ///< outer corner of cell (0, 0)
+  int width = 0;              ///< cells west to east
+  int height = 0;             ///< cells south to north
+  double resolution_m = 1.0;  ///< side of a cell, > 0
+  Point south_west{};         ///< outer corner of cell (0, 0)
 
   friend bool operator==(const Grid&, const Grid&) = default;
 
-  std::size_t size() const noexcept { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
+  std::size_t size() const noexcept {
+    return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  }
 
-  bool contains(Cell c) const noexcept { return c.column >= 0 && c.row >= 0 && c.column < width && c.row < height; }
+  bool contains(Cell c) const noexcept {
+    return c.column >= 0 && c.row >= 0 && c.column < width && c.row < height;
+  }
 
   /// Position of the cell in a row-major array; the cell must lie inside.
   std::size_t index(Cell c) const noexcept {
-    return static_cast<std::size_t>(c.row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(c.column);
+    return static_cast<std::size_t>(c.row) * static_cast<std::size_t>(width) +
+           static_cast<std::size_t>(c.column);
   }
 
   Point centre(Cell c) const noexcept {

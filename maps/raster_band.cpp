@@ -42,7 +42,8 @@ void applyMask(GDALRasterBand& band, const PixelBox& box, std::vector<float>& va
   std::vector<unsigned char> mask(values.size());
   const GdalErrors errors;
   if (band.GetMaskBand()->RasterIO(GF_Read, box.column, box.row, box.width, box.height, mask.data(),
-                                   box.width / overview, box.height / overview, GDT_Byte, 0, 0, nullptr) != CE_None)
+                                   box.width / overview, box.height / overview, GDT_Byte, 0, 0,
+                                   nullptr) != CE_None)
     throw InputError({where, "its mask cannot be read: " + errors.last(), "fetch it again"});
   for (std::size_t i = 0; i < values.size(); ++i)
     if (mask[i] == 0) values[i] = kNaN;

@@ -13,7 +13,7 @@ namespace talus::maps {
 struct FramedRaster {
   Dataset raster{};
   int band = 1;
-  Grid grid{};             ///< of the whole raster
+  Grid grid{};           ///< of the whole raster
   bool north_up = true;  ///< the raster's first row is the northernmost
   std::optional<Georeference> georeference{};
 };

@@ -11,9 +11,9 @@ namespace talus::maps {
 /// What a raster is resampled to: square cells of 32-bit floats, NaN where there is no data.
 struct WarpTarget {
   int band = 1;
-  std::string wkt{};               ///< CRS of the result; empty: the source's own coordinates
+  std::string wkt{};             ///< CRS of the result; empty: the source's own coordinates
   double resolution = 0.0;       ///< cell side in units of the target CRS; 0: as many cells as the source has
-  std::optional<Grid> grid{};      ///< exactly these cells, instead of resolution
+  std::optional<Grid> grid{};    ///< exactly these cells, instead of resolution
   std::string method = "cubic";  ///< GDAL's name: near, bilinear, cubic, average
   std::optional<double> nodata{};  ///< value of the source that means no data, over what the file says
 };

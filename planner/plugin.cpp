@@ -51,14 +51,14 @@ class Plugin final : public GlobalPlanner {
     if (!map_) throw std::logic_error("plan: no map; call set_map first");
     if (!planner_) planner_.emplace();
     const Plan plan = planner_->plan({.map = map_,
-                                     .start = request.start,
-                                     .goal = request.goal,
-                                     .goal_tolerance_m = request.tolerance_m,
-                                     .via = request.via,
-                                     .time_limit_s = settings_.time_limit_s,
-                                     .seed = settings_.seed,
-                                     .threads = settings_.threads,
-                                     .watch = request.watch});
+                                      .start = request.start,
+                                      .goal = request.goal,
+                                      .goal_tolerance_m = request.tolerance_m,
+                                      .via = request.via,
+                                      .time_limit_s = settings_.time_limit_s,
+                                      .seed = settings_.seed,
+                                      .threads = settings_.threads,
+                                      .watch = request.watch});
     return annotated(plan, {.map = *map_, .elevation_m = nullptr, .planner = planner_->name()});
   }
 

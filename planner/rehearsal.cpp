@@ -118,15 +118,15 @@ class Drive {
     if (!options_.on_step) return;
     const costmap::DriveState state = expected(here_, heading);
     const double slope = gradient(heading);
-    options_.on_step({.time_s = result_.time_s,
-                      .place = here_,
-                      .heading = heading,
-                      .gradient = slope,
-                      .length_m = length_m,
-                      .expected_slip = static_cast<double>(state.slip),
-                      .expected_energy_J_per_m =
-                          static_cast<double>(state.energy_J_per_m) / std::hypot(1.0, slope),
-                      .truth = step});
+    options_.on_step(
+        {.time_s = result_.time_s,
+         .place = here_,
+         .heading = heading,
+         .gradient = slope,
+         .length_m = length_m,
+         .expected_slip = static_cast<double>(state.slip),
+         .expected_energy_J_per_m = static_cast<double>(state.energy_J_per_m) / std::hypot(1.0, slope),
+         .truth = step});
   }
 
   double gradient(const Direction& heading) const {

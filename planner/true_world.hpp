@@ -22,8 +22,8 @@ struct SoilPatch {
 
 /// The soils of a rehearsed world, which the planner does not know.
 struct WorldSoils {
-  std::vector<terramech::Soil> classes;  ///< true soil of each class of the map, in its order
-  std::vector<SoilPatch> patches;        ///< later ones lie on top
+  std::vector<terramech::Soil> classes;      ///< true soil of each class of the map, in its order
+  std::vector<SoilPatch> patches;            ///< later ones lie on top
   std::vector<terramech::Effect> effects{};  ///< that act on all of them, beyond a rigid wheel on that soil
 };
 

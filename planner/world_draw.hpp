@@ -16,8 +16,8 @@ struct Truth {
   std::vector<SoilPatch> patches;          ///< in every world
   double spread = 0.0;     ///< relative standard deviation of cohesion, tangent of friction and moduli [-]
   int random_patches = 0;  ///< undeclared, a world
-  double patch_radius_m = 3.0;  ///< mean; they range evenly over +-50 %
-  terramech::Soil patch_soil;   ///< of the random patches, varied as the classes are
+  double patch_radius_m = 3.0;               ///< mean; they range evenly over +-50 %
+  terramech::Soil patch_soil;                ///< of the random patches, varied as the classes are
   std::vector<terramech::Effect> effects{};  ///< undeclared, on all soils
 };
 

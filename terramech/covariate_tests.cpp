@@ -33,8 +33,12 @@ Eigen::MatrixXd without(const Eigen::MatrixXd& columns, const Eigen::MatrixXd& n
 class Asker {
  public:
   Asker(const Trial& trial, const Whitening& whitening, const Eigen::MatrixXd& residual, const TestPlan& plan)
-      : trial_(trial), plan_(plan), white_(whitening.apply(residual)), marginal_(whitening.marginal(residual)),
-        nuisance_white_(orthonormal(plan.nuisance_whitened)), nuisance_(orthonormal(plan.nuisance_marginal)) {}
+      : trial_(trial),
+        plan_(plan),
+        white_(whitening.apply(residual)),
+        marginal_(whitening.marginal(residual)),
+        nuisance_white_(orthonormal(plan.nuisance_whitened)),
+        nuisance_(orthonormal(plan.nuisance_marginal)) {}
 
   /// A dependence within one channel on the columns given by row; centred unless it is the constant itself.
   void ask(const std::string& name, int channel, Eigen::MatrixXd by_row, bool centre) {
@@ -51,7 +55,8 @@ class Asker {
     q.test.channel = channel;
     q.columns = without(full, nuisance_);
     q.count = static_cast<int>(rows.size());
-    for (int row : rows) q.total += marginal_[row * kChannels + channel] * marginal_[row * kChannels + channel];
+    for (int row : rows)
+      q.total += marginal_[row * kChannels + channel] * marginal_[row * kChannels + channel];
     add(std::move(q));
   }
 
@@ -100,7 +105,8 @@ class Asker {
     std::vector<double> z;
     Eigen::Index at = 0;
     for (const Question& q : questions_) {
-      const double explained = std::min(products.segment(at, q.columns.cols()).squaredNorm() / q.total, 1.0 - 1e-12);
+      const double explained =
+          std::min(products.segment(at, q.columns.cols()).squaredNorm() / q.total, 1.0 - 1e-12);
       z.push_back(normalScore(-q.count * std::log1p(-explained), static_cast<int>(q.columns.cols())));
       at += q.columns.cols();
     }
@@ -175,19 +181,23 @@ double withinScore(const std::vector<double>& value, const std::vector<int>& gro
 
 }  // namespace
 
-Eigen::VectorXd covariateValues(const Trial& trial, const std::string& name, const Eigen::VectorXd& sinkage_m) {
+Eigen::VectorXd covariateValues(const Trial& trial, const std::string& name,
+                                const Eigen::VectorXd& sinkage_m) {
   if (name == "sinkage_m") return sinkage_m;
   Eigen::VectorXd x(trial.rows());
-  for (int row = 0; row < trial.rows(); ++row) x[row] = trial.states[static_cast<std::size_t>(row)].covariate(name);
+  for (int row = 0; row < trial.rows(); ++row)
+    x[row] = trial.states[static_cast<std::size_t>(row)].covariate(name);
   return x;
 }
 
-std::vector<int> exchangeableGroups(const Trial& trial, const Whitening& whitening, const Eigen::MatrixXd& smoothed) {
+std::vector<int> exchangeableGroups(const Trial& trial, const Whitening& whitening,
+                                    const Eigen::MatrixXd& smoothed) {
   std::map<int, int> number;
   std::vector<int> by_run, by_row;
   for (int row = 0; row < trial.rows(); ++row) {
     by_run.push_back(
-        number.try_emplace(trial.run[static_cast<std::size_t>(row)], static_cast<int>(number.size())).first->second);
+        number.try_emplace(trial.run[static_cast<std::size_t>(row)], static_cast<int>(number.size()))
+            .first->second);
     by_row.push_back(row);
   }
   if (static_cast<int>(number.size()) == trial.rows() || number.size() < 2) return by_row;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <Eigen/Core>
+
 #include <terramech/sensor_noise.hpp>
 #include <terramech/trial.hpp>
 
@@ -26,26 +27,30 @@ struct Direction {
 
 /// What is asked.
 struct TestPlan {
-  std::vector<Direction> directions;   ///< of candidate effects, whitened
-  Eigen::MatrixXd nuisance_whitened;   ///< derivatives by what was fitted already, whitened
-  Eigen::MatrixXd nuisance_marginal;   ///< the same over marginal standard deviations
-  std::vector<int> group;              ///< number of the exchangeable unit of each row
+  std::vector<Direction> directions;  ///< of candidate effects, whitened
+  Eigen::MatrixXd nuisance_whitened;  ///< derivatives by what was fitted already, whitened
+  Eigen::MatrixXd nuisance_marginal;  ///< the same over marginal standard deviations
+  std::vector<int> group;             ///< number of the exchangeable unit of each row
   int flips = 1999;
   std::uint64_t seed = 1;
 };
 
-/// Every covariate in every channel (spline and line), every grouping, a constant, and every direction, against sign
-/// flips of whole groups: p-values of the maximum over all questions (westfall_young_1993), exact when the noise is
-/// symmetric, whatever its variance from row to row and its correlation within a group.
+/// Every covariate in every channel (spline and line), every grouping, a constant, and every direction,
+/// against sign flips of whole groups: p-values of the maximum over all questions (westfall_young_1993),
+/// exact when the noise is symmetric, whatever its variance from row to row and its correlation within a
+/// group.
 std::vector<CovariateTest> testCovariates(const Trial& trial, const Whitening& whitening,
                                           const Eigen::MatrixXd& residual, const Eigen::VectorXd& sinkage_m,
                                           const TestPlan& plan);
 
-/// Row groups to flip together: rows, or whole runs when what is left of a smooth of all covariates still correlates
-/// within runs (intraclass correlation with p < 0.05), or blocks of neighbouring times within one long run.
-std::vector<int> exchangeableGroups(const Trial& trial, const Whitening& whitening, const Eigen::MatrixXd& smoothed);
+/// Row groups to flip together: rows, or whole runs when what is left of a smooth of all covariates still
+/// correlates within runs (intraclass correlation with p < 0.05), or blocks of neighbouring times within one
+/// long run.
+std::vector<int> exchangeableGroups(const Trial& trial, const Whitening& whitening,
+                                    const Eigen::MatrixXd& smoothed);
 
 /// Values of a covariate over the rows; "sinkage_m" is the model's.
-Eigen::VectorXd covariateValues(const Trial& trial, const std::string& name, const Eigen::VectorXd& sinkage_m);
+Eigen::VectorXd covariateValues(const Trial& trial, const std::string& name,
+                                const Eigen::VectorXd& sinkage_m);
 
 }  // namespace talus::terramech

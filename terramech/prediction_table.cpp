@@ -11,15 +11,20 @@
 namespace talus::terramech {
 namespace {
 
-constexpr std::array<const char*, kChannels> kAnswers{"drawbar_pull_N", "sinkage_m", "torque_Nm", "side_force_N"};
+constexpr std::array<const char*, kChannels> kAnswers{"drawbar_pull_N", "sinkage_m", "torque_Nm",
+                                                      "side_force_N"};
 
 bool isAnswer(const std::string& name) {
   return std::find(kAnswers.begin(), kAnswers.end(), name) != kAnswers.end();
 }
 
-bool isPrediction(const std::string& name) { return name.starts_with("predicted_"); }
+bool isPrediction(const std::string& name) {
+  return name.starts_with("predicted_");
+}
 
-bool alwaysWords(const std::string& name) { return name == "run" || name == "wheel"; }
+bool alwaysWords(const std::string& name) {
+  return name == "run" || name == "wheel";
+}
 
 struct Rows {
   std::vector<std::string> header;
@@ -99,7 +104,8 @@ PredictionTable predictTable(const std::filesystem::path& path, const RefinedMod
     }
     table.text += (table.text.empty() ? "" : ",") + csvField(all.header[k]);
   }
-  for (const char* answer : kAnswers) table.text += std::string(",predicted_") + answer + ",predicted_" + answer + "_std";
+  for (const char* answer : kAnswers)
+    table.text += std::string(",predicted_") + answer + ",predicted_" + answer + "_std";
   table.text += '\n';
   for (std::size_t row = 0; row < all.rows.size(); ++row) {
     std::string line;

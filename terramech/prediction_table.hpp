@@ -18,9 +18,10 @@ struct PredictionTable {
   bool replaced = false;             ///< the input held columns of predictions; they are made anew
 };
 
-/// Every row of a CSV with predicted_drawbar_pull_N, predicted_sinkage_m, predicted_torque_Nm, predicted_side_force_N
-/// and their _std appended. What was measured (drawbar_pull_N, sinkage_m, torque_Nm, side_force_N) is copied, never
-/// used. Throws InputError when the file cannot be read or has no load_N, slip or wheel.
+/// Every row of a CSV with predicted_drawbar_pull_N, predicted_sinkage_m, predicted_torque_Nm,
+/// predicted_side_force_N and their _std appended. What was measured (drawbar_pull_N, sinkage_m, torque_Nm,
+/// side_force_N) is copied, never used. Throws InputError when the file cannot be read or has no load_N, slip
+/// or wheel.
 PredictionTable predictTable(const std::filesystem::path& path, const RefinedModel& model);
 
 }  // namespace talus::terramech

@@ -1,8 +1,8 @@
-#include <terramech/range.hpp>
-
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
+
+#include <terramech/range.hpp>
 
 namespace talus::terramech {
 namespace {

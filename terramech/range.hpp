@@ -10,7 +10,8 @@ struct Interval {
   double high;
 };
 
-/// Throws std::invalid_argument "owner: field = value, must be bound" for a field outside its range or not finite.
+/// Throws std::invalid_argument "owner: field = value, must be bound" for a field outside its range or not
+/// finite.
 class RangeCheck {
  public:
   explicit RangeCheck(std::string owner) : owner_(std::move(owner)) {}

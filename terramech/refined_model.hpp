@@ -36,8 +36,8 @@ struct FittedParameter {
 /// How the drawbar pull follows from the solved contact.
 enum class BaseModel {
   WongReece,     ///< integral of the stresses
-  LinearFormula  ///< DP/W = T/(rW) - z/r - 0.1 (kang_2003, Eq. 3.21) of the measured torque and sinkage; of the
-                 ///< solved ones where a state has none
+  LinearFormula  ///< DP/W = T/(rW) - z/r - 0.1 (kang_2003, Eq. 3.21) of the measured torque and sinkage; of
+                 ///< the solved ones where a state has none
 };
 
 /// Wong-Reece and the effects that data have shown: what estimate, assess, costmap, plan and drive take as a

@@ -1,10 +1,11 @@
-#include <terramech/rover.hpp>
-
 #include <terramech/range.hpp>
+#include <terramech/rover.hpp>
 
 namespace talus::terramech {
 
-double wheelLoad_N(const Rover& rover) { return rover.mass_kg * rover.gravity_m_s2 / rover.wheel_count; }
+double wheelLoad_N(const Rover& rover) {
+  return rover.mass_kg * rover.gravity_m_s2 / rover.wheel_count;
+}
 
 void validate(const Rover& rover) {
   const RangeCheck check{"rover '" + rover.name + "'"};

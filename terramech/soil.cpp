@@ -1,6 +1,5 @@
-#include <terramech/soil.hpp>
-
 #include <terramech/range.hpp>
+#include <terramech/soil.hpp>
 
 namespace talus::terramech {
 

@@ -1,6 +1,5 @@
-#include <terramech/wheel.hpp>
-
 #include <terramech/range.hpp>
+#include <terramech/wheel.hpp>
 
 namespace talus::terramech {
 

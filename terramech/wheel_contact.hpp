@@ -16,7 +16,7 @@ struct WheelContact {
   double load_N = 0.0;          ///< vertical load > 0
   double slip = 0.0;            ///< along the wheel plane, [-1, 1]; see shear_displacement.hpp
   double slip_angle_rad = 0.0;  ///< beta, between the wheel plane and the travel; 0: no side force
-  double rolling = 1.0;         ///< r omega over the full speed of travel [-]: 0 locked; for effects, not solved
+  double rolling = 1.0;  ///< r omega over the full speed of travel [-]: 0 locked; for effects, not solved
 
   double radius_m = 0.1;        ///< of the contact circle, > 0
   double width_m = 0.1;         ///< b > 0

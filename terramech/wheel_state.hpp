@@ -25,7 +25,8 @@ struct WheelState {
   double pass_index = kUnknown;  ///< how often this track was driven, this pass included
   double slope_rad = kUnknown;   ///< along the heading, uphill > 0
 
-  double measured_torque_Nm = kUnknown;  ///< readings that the linear formula starts from; no other model uses them
+  double measured_torque_Nm =
+      kUnknown;  ///< readings that the linear formula starts from; no other model uses them
   double measured_sinkage_m = kUnknown;
 
   std::vector<std::pair<std::string, double>> extra;       ///< further numeric columns

@@ -1,4 +1,5 @@
-// The rooms stand on each other in one direction only; an include that points the other way fails here by name.
+// The rooms stand on each other in one direction only; an include that points the other way fails here by
+// name.
 #include <algorithm>
 #include <map>
 #include <regex>

@@ -25,7 +25,8 @@ TEST(References, EveryCitedKeyIsKnown) {
   for (const std::string folder : {"terramech", "maps", "costmap", "planner", "cli", "docs"})
     for (const auto& file : files(folder, {".hpp", ".cpp", ".md", ".yaml"}))
       for (const auto& key : matches(text(file), keyPattern()))
-        EXPECT_TRUE(known.contains(key)) << file << " cites " << key << ", which REFERENCES.bib does not hold";
+        EXPECT_TRUE(known.contains(key))
+            << file << " cites " << key << ", which REFERENCES.bib does not hold";
 }
 
 }  // namespace

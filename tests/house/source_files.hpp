@@ -10,7 +10,8 @@
 namespace talus::house {
 
 /// Files of one of our folders, by ending; sorted, so that messages are the same everywhere.
-inline std::vector<std::filesystem::path> files(const std::string& folder, const std::vector<std::string>& endings) {
+inline std::vector<std::filesystem::path> files(const std::string& folder,
+                                                const std::vector<std::string>& endings) {
   std::vector<std::filesystem::path> found;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(TALUS_SOURCE_DIR "/" + folder))
     for (const auto& ending : endings)

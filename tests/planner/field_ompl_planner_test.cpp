@@ -48,8 +48,7 @@ TEST(FieldOmplPlanner, AddsTheFieldsRoute) {
   ASSERT_EQ(planner.solve(ob::plannerNonTerminatingCondition()), ob::PlannerStatus::EXACT_SOLUTION);
   const auto* path = definition->getSolutionPath()->as<og::PathGeometric>();
   std::vector<maps::Point> points;
-  for (unsigned i = 0; i < path->getStateCount(); ++i)
-    points.push_back(MapSpace::place(path->getState(i)));
+  for (unsigned i = 0; i < path->getStateCount(); ++i) points.push_back(MapSpace::place(path->getState(i)));
   EXPECT_TRUE(violations(*map, points).empty());
   Problem problem{.map = map, .start = {3.5, 1.5}, .goal = {5.5, 2.5}};
   EXPECT_EQ(points, FieldPlanner().plan(problem).points);

@@ -1,7 +1,7 @@
-#include <terramech/soil.hpp>
-
 #include <cmath>
 #include <stdexcept>
+
+#include <terramech/soil.hpp>
 
 namespace talus::terramech {
 namespace {
@@ -23,14 +23,14 @@ TEST(Soil, RefusalNamesSoilFieldValueAndBound) {
   Soil soil = sand();
   soil.cohesion_Pa = -1.0;
   EXPECT_THAT([&] { validate(soil); },
-              Throws<std::invalid_argument>(Property(
-                  &std::exception::what, HasSubstr("soil 'sand': cohesion_Pa = -1, must be >= 0"))));
+              Throws<std::invalid_argument>(
+                  Property(&std::exception::what, HasSubstr("soil 'sand': cohesion_Pa = -1, must be >= 0"))));
 }
 
 TEST(Soil, NotANumberIsRefusedInEveryField) {
-  for (double Soil::*field : {&Soil::cohesion_Pa, &Soil::friction_angle_rad, &Soil::sinkage_exponent,
-                              &Soil::cohesive_modulus, &Soil::frictional_modulus, &Soil::shear_modulus_m, &Soil::c1,
-                              &Soil::c2, &Soil::density_kg_m3}) {
+  for (double Soil::*field :
+       {&Soil::cohesion_Pa, &Soil::friction_angle_rad, &Soil::sinkage_exponent, &Soil::cohesive_modulus,
+        &Soil::frictional_modulus, &Soil::shear_modulus_m, &Soil::c1, &Soil::c2, &Soil::density_kg_m3}) {
     Soil soil = sand();
     soil.*field = std::nan("");
     EXPECT_THROW(validate(soil), std::invalid_argument);
