@@ -180,8 +180,7 @@ TEST(Interface, TablesKeepTheirColumnsAndGetThePromisedOnes) {
 TEST(Interface, AnInterruptEndsLongWorkWith130AndNoFile) {
   const std::vector<std::vector<std::string>> long_work{
       words(words({"drive"}, words(kGround, kEnds)), {"--truth", "truth.yaml", "--worlds", "100000"}),
-      words(words({"plan"}, words(kGround, kEnds)),
-            {"--planner", "RRTstar", "--time", "100", "-o", "late.geojson"}),
+      {"reproduce", "--goals", "--soils", "100000"},
       {"generate", "craters", "--size", "8000", "-o", "late.tif"}};
   for (const auto& work : long_work) {
     SCOPED_TRACE(work.front());
