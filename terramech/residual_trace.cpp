@@ -23,18 +23,25 @@ double pValueOf(const std::vector<CovariateTest>& tests, const Candidate& chosen
   return p;
 }
 
-/// A curve in slip or load, which are measured with errors of their own.
-bool inNoisyInput(const Explanation& e) {
+/// A curve in slip or load, which are measured with errors of their own; or in a speed where both speeds are
+/// at hand, since together they tell the error of the slip.
+bool inNoisyInput(const Explanation& e, const Trial& trial) {
   const std::string& covariate = e.candidate.covariate();
-  return e.candidate.empirical() && (covariate == "slip" || covariate == "load_N");
+  const auto& known = trial.covariates;
+  const auto has = [&](const char* name) {
+    return std::find(known.begin(), known.end(), name) != known.end();
+  };
+  const bool speed = covariate == "speed_mps" || covariate == "rim_speed_mps";
+  const bool tells_slip = speed && has("speed_mps") && has("rim_speed_mps");
+  return e.candidate.empirical() && (covariate == "slip" || covariate == "load_N" || tells_slip);
 }
 
 /// Whether a further effect carries a share of the residual worth a name: what the form of the first leaves
-/// over is often certain and tiny. A curve in slip or load must carry more, since their own errors, where
-/// they are not as normal as supposed, look like one.
+/// over is often certain and tiny. A curve in a noisy input must carry more, since its own errors, where they
+/// are not as normal as supposed, look like one. The shares come from worlds made for development.
 bool matters(const Explanation& e, const Trial& trial) {
   const auto values = static_cast<double>(trial.measured.array().isFinite().count());
-  return e.chi2_gain > (inNoisyInput(e) ? 0.12 : 0.03) * values;
+  return e.chi2_gain > (inNoisyInput(e, trial) ? 0.5 : 0.1) * values;
 }
 
 Channel strongest(const Explanation& e) {
@@ -166,7 +173,7 @@ TraceResult traceResiduals(const RefinedModel& base, const Trial& trial, const T
     if (smallest(tests) > options.significance || round == options.max_effects) break;
     const auto ranked = search.fitBest(screened);
     auto best = search.choose(ranked);
-    const bool further = !result.effects.empty() || (best && inNoisyInput(ranked[*best]));
+    const bool further = !result.effects.empty() || (best && inNoisyInput(ranked[*best], trial));
     if (best && further && !matters(ranked[*best], trial)) best.reset();
     if (!best) {
       result.rejected = ranked;

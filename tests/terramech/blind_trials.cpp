@@ -96,7 +96,7 @@ int main(int argc, char** argv) {
       std::printf(" %s[%s %s", e.chosen.candidate.parts.front().name.c_str(),
                   e.chosen.candidate.covariate().c_str(), name(e.channel));
       for (double p : e.chosen.candidate.parts.front().parameters) std::printf(" %.3g", p);
-      std::printf("]");
+      std::printf("] %.2f", e.chosen.chi2_gain / (3.0 * static_cast<double>(world.rows.size())));
     }
     std::printf(" %s%s\n", marks.located == marks.hidden ? "" : "MISSED ",
                 marks.claimed > marks.located ? "EXTRA" : "");
