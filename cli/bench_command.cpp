@@ -49,6 +49,8 @@ void bind(CLI::App& command, Options& options) {
                   "that planners of drives keep; 0: turns in place (default: the rover's)")
       ->type_name("METRES")
       ->check(notNegative());
+  addReadOptions(command, options.suite.ground.dem);
+  addGroundChoices(command, options.suite.ground);
   command.add_option("--side", options.suite.side_cells, "cells along a generated site")
       ->check(CLI::Range(32, 10000))
       ->capture_default_str();
