@@ -212,8 +212,8 @@ std::string draw(const std::vector<Plot>& plots, Canvas::Kind kind, const PlotLa
     const int column = i % columns;
     const int row = i / columns;
     const Box box{static_cast<double>(column * layout.panel_width),
-                  static_cast<double>(row * layout.panel_height),
-                  static_cast<double>(layout.panel_width), static_cast<double>(layout.panel_height)};
+                  static_cast<double>(row * layout.panel_height), static_cast<double>(layout.panel_width),
+                  static_cast<double>(layout.panel_height)};
     Panel(canvas, plots[static_cast<std::size_t>(i)], box).draw();
   }
   return canvas.bytes();
