@@ -67,7 +67,7 @@ void bind(CLI::App& command, PlanOptions& options) {
   addDriveOptions(command, options.drive);
   command.add_option("--time", options.time_limit_s, "time limit of the planning")
       ->type_name("S")
-      ->check(CLI::PositiveNumber);
+      ->check(positive());
   command
       .add_option("--in-memory", options.in_memory,
                   "read a DEM of more cells in windows along a route over its overview")
