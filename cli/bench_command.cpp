@@ -27,9 +27,11 @@ struct Options {
 
 void bind(CLI::App& command, Options& options) {
   command
-      .add_option(
-          "suite", options.suite.name,
-          "generated (crater field, dunes, rocks), an elevation file, or a MovingAI .scen beside its .map")
+      .add_option("suite", options.suite.names,
+                  "one or more of: generated (crater field, dunes, rocks), slip (terrains of unsure slip, "
+                  "routes driven "
+                  "over the true one), grids (walls, optimum known), an elevation file, a MovingAI .scen "
+                  "beside its .map")
       ->capture_default_str();
   command.add_option("--planners", options.planners, "comma-separated; all by default")->delimiter(',');
   command.add_option("--runs", options.runs, "seeds a case and planner")
@@ -73,7 +75,7 @@ void write(const std::filesystem::path& folder, const planner::BenchmarkPlan& pl
            const std::vector<planner::BenchmarkRun>& runs) {
   for (std::size_t c = 0; c < plan.cases.size(); ++c)
     writeFile(folder / (fileName(plan.cases[c].name) + ".log"), planner::benchmarkLog(plan, runs, c));
-  writeFile(folder / "table.txt", asText(compared(plan, runs)));
+  writeFile(folder / "table.txt", asText(compared(plan, runs)) + asText(drivesOf(plan, runs)));
   writeFile(folder / "index.html", asPage(plan, runs));
 }
 
@@ -97,8 +99,8 @@ int run(const Options& options, Context& context) {
     plan.planners.push_back(planner::plannerName(name));
   plan.cases = suiteCases(options.suite, context);
   if (plan.cases.empty())
-    throw InputError({options.suite.name, "no two places far apart with a route between them",
-                      "take another map or rover"});
+    throw InputError({"talus bench", "the suite has no two places far apart with a route between them",
+                      "take another --seed or --side"});
   if (campaign.leads()) makeFolder(options.folder);
   plan.seeds = options.runs;
   plan.time_limit_s = options.time_limit_s;
@@ -108,9 +110,9 @@ int run(const Options& options, Context& context) {
   write(options.folder, plan, runs);
   const auto lines = compared(plan, runs);
   if (context.json)
-    printJson(asJson(lines));
+    printJson(asJson(lines, drivesOf(plan, runs)));
   else
-    print(asText(lines));
+    print(asText(lines) + asText(drivesOf(plan, runs)));
   return Exit::kDone;
 }
 
@@ -123,7 +125,8 @@ void addBench(CLI::App& app, Context& context) {
                        .description = "compare the planners; writes OMPL logs, a table and a page",
                        .examples = "  talus bench --planners field,RRTstar --time 5\n"
                                    "  talus bench gale.tif --pairs 10 -o gale_bench\n"
-                                   "  talus bench room.scen --planners field\n"},
+                                   "  talus bench room.scen --planners field\n"
+                                   "  talus bench generated slip grids maps/*.tif --pairs 4\n"},
                       bind, run);
 }
 

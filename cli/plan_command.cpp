@@ -84,7 +84,9 @@ void bind(CLI::App& command, PlanOptions& options) {
   command
       .add_option("--start", options.start, "x,y in map metres; lat,lon with a d on each; or a GeoJSON point")
       ->type_name("PLACE");
-  command.add_option("--goal", options.goal, "the same")->type_name("PLACE");
+  command
+      .add_option("--goal", options.goals, "the same; may be repeated: the goal that costs least is taken")
+      ->type_name("PLACE");
   command.add_option("--via", options.via, "to be passed on the way; may be repeated")->type_name("PLACE");
   command
       .add_option("--pairs", options.pairs,
@@ -123,7 +125,7 @@ void bind(CLI::App& command, PlanOptions& options) {
 
 void requirePlaces(const PlanOptions& options) {
   if (!options.pairs.empty()) {
-    if (!options.start.empty() || !options.goal.empty() || !options.via.empty() || !options.html.empty() ||
+    if (!options.start.empty() || !options.goals.empty() || !options.via.empty() || !options.html.empty() ||
         !options.png.empty() || !options.pareto.empty() || options.max_risk > 0.0 ||
         !options.drive.chassis.empty())
       throw InputError({"--pairs " + options.pairs,
@@ -132,7 +134,7 @@ void requirePlaces(const PlanOptions& options) {
     return;
   }
   if (options.start.empty()) throw InputError({"talus plan", "no start", "pass --start x,y"});
-  if (options.goal.empty()) throw InputError({"talus plan", "no goal", "pass --goal x,y"});
+  if (options.goals.empty()) throw InputError({"talus plan", "no goal", "pass --goal x,y"});
 }
 
 planner::Kinematics kinematicsOf(const DriveOptions& drive, const costmap::TraversabilityMap& map) {
@@ -148,7 +150,9 @@ planner::Problem problemOf(const PlanOptions& options, const Ground& ground, con
   problem.map = ground.map.published();
   if (options.pairs.empty()) {
     problem.start = maps::readPlace(options.start, map, "--start");
-    problem.goal = maps::readPlace(options.goal, map, "--goal");
+    problem.goal = maps::readPlace(options.goals.front(), map, "--goal");
+    for (auto goal = options.goals.begin() + 1; goal != options.goals.end(); ++goal)
+      problem.other_goals.push_back(maps::readPlace(*goal, map, "--goal"));
   }
   for (const std::string& place : options.via) problem.via.push_back(maps::readPlace(place, map, "--via"));
   problem.goal_tolerance_m = options.tolerance_m;
@@ -187,6 +191,13 @@ planner::Plan planOnce(const planner::Problem& problem, planner::NamedPlanner& p
     return options.max_risk > 0.0 ? planner::planWithinRisk(p, planner, options.max_risk) : planner.plan(p);
   };
   return chassis ? planner::planOnChassis(problem, *chassis, once) : once(problem);
+}
+
+// Which of several goals the route ends at.
+std::string goalText(const PlanOptions& options, const planner::Plan& plan) {
+  if (options.goals.size() < 2) return "";
+  return fmt::format("{:<14}{}, number {} of the {} given: none costs less\n", "goal",
+                     options.goals[plan.goal], plan.goal + 1, options.goals.size());
 }
 
 std::string asText(const Route& route, const Timing& seconds) {
@@ -310,21 +321,22 @@ int finish(const PlanOptions& options, const Planned& planned, const planner::An
   const Timing seconds{planned.ground.load_s, planned.ground.build_s, planned.plan_s};
   if (context.json) {
     auto json = summaryJson(route);
+    if (options.goals.size() > 1) json["goal"] = options.goals[planned.plan.goal];
     if (options.max_risk > 0.0) json["risk"] = riskJson(route, options, context);
     json["seconds"] = {{"load", seconds.load_s}, {"costmap", seconds.costmap_s}, {"plan", seconds.plan_s}};
     printJson(json);
   } else {
-    print(asText(route, seconds));
+    print(goalText(options, planned.plan) + asText(route, seconds));
   }
   return Exit::kDone;
 }
 
 void refuseInWindows(const PlanOptions& options) {
   const bool other = options.planner != "field" || options.max_risk > 0.0 || !options.pareto.empty() ||
-                     !options.pairs.empty() || !options.drive.chassis.empty();
+                     !options.pairs.empty() || !options.drive.chassis.empty() || options.goals.size() > 1;
   if (!other) return;
   throw InputError({options.ground.dem.path,
-                    "is too large for --planner, --pairs, --risk, --pareto and --chassis",
+                    "is too large for --planner, --pairs, --risk, --pareto, --chassis and several goals",
                     "read a part with --window, or the whole with --whole-field"});
 }
 

@@ -101,11 +101,15 @@ Plan FieldPlanner::planLeg(const Problem& problem, const Leg& leg, const StopChe
     if (stop()) return stoppedBy(stop);
     return ended(RouteStatus::NoRoute, noWay(*edges_, leg.from, leg.to));
   }
-  Plan plan{RouteStatus::Found, {}, refine_(cost, std::move(rough), problem.threads, stop), 0.0, 0.0};
+  Plan plan{RouteStatus::Found,
+            {},
+            cutWithin(refine_(cost, std::move(rough), problem.threads, stop), leg.to, leg.tolerance_m),
+            0.0,
+            0.0};
   plan.cost_J = cost.along(plan.points);
   const Segment ends{leg.from, leg.to};
   const double bound_J = problem.prove ? bound_(problem.map, ends, leg.tolerance_m, stop)
-                                       : straightBound_J(*problem.map, {leg.from, plan.points.back()});
+                                       : straightBound_J(*problem.map, ends, leg.tolerance_m);
   plan.lower_bound_J = std::min(plan.cost_J, bound_J);
   return plan;
 }

@@ -1,3 +1,4 @@
+#include <planner/goal_choice.hpp>
 #include <planner/named_planner.hpp>
 #include <planner/planner_names.hpp>
 
@@ -13,6 +14,11 @@ Plan NamedPlanner::planField(const Problem& problem) {
 }
 
 Plan NamedPlanner::plan(const Problem& problem) {
+  if (problem.other_goals.empty()) return planOne(problem);
+  return planToCheapest(problem, [this](const Problem& one_goal) { return planOne(one_goal); });
+}
+
+Plan NamedPlanner::planOne(const Problem& problem) {
   if (settings_.planner == plannerNames().front()) return planField(problem);
   if (drives()) {
     if (name() == DrivePlanner::kSampling) drive_.sample({.better = settings_.better});

@@ -36,11 +36,12 @@ class NamedPlanner {
   /// the whole: at twenty bytes a cell it would take more than 400 MB.
   static constexpr std::size_t kLarge = 20'000'000;
 
-  /// A route through all via points in order, or why there is none. Throws std::invalid_argument without a
-  /// map.
+  /// A route through all via points in order to the goal that costs least, or why there is none. Throws
+  /// std::invalid_argument without a map.
   Plan plan(const Problem& problem);
 
  private:
+  Plan planOne(const Problem& problem);
   Plan planField(const Problem& problem);
 
   SamplingSettings settings_;

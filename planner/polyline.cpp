@@ -77,6 +77,29 @@ std::pair<Polyline, Polyline> splitAt(const Polyline& points, double left_m) {
   return {points, points};
 }
 
+Polyline cutWithin(Polyline points, maps::Point goal, double tolerance_m) {
+  if (!(tolerance_m > 0.0) || points.empty()) return points;
+  const double reach_m = tolerance_m * (1.0 - 1e-9);  // so that rounding leaves the end inside
+  const auto apart_m = [&](maps::Point p) { return std::hypot(p.x_m - goal.x_m, p.y_m - goal.y_m); };
+  const auto inside = std::ranges::find_if(points, [&](maps::Point p) { return apart_m(p) <= reach_m; });
+  // A leg may also pass through the circle between two places outside it.
+  for (auto to = points.begin() + 1; to != points.end() && to <= inside; ++to) {
+    const maps::Point from = *(to - 1);
+    const double dx = to->x_m - from.x_m, dy = to->y_m - from.y_m, square = dx * dx + dy * dy;
+    const double along = (goal.x_m - from.x_m) * dx + (goal.y_m - from.y_m) * dy;
+    const double far = apart_m(from);
+    const double root = along * along - square * (far * far - reach_m * reach_m);
+    if (far <= reach_m || !(square > 0.0) || root < 0.0 || along <= 0.0) continue;
+    const double t = (along - std::sqrt(root)) / square;
+    if (t > 1.0) continue;
+    *to = {from.x_m + t * dx, from.y_m + t * dy};
+    points.erase(to + 1, points.end());
+    return points;
+  }
+  if (inside != points.end()) points.erase(inside + 1, points.end());
+  return points;
+}
+
 void append(Polyline& points, const Polyline& piece) {
   for (const maps::Point p : piece)
     if (points.empty() || !(points.back() == p)) points.push_back(p);

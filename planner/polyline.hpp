@@ -25,6 +25,10 @@ std::vector<Polyline> cutFromEnd(const Polyline& points, double piece_m, double 
 /// The part before and the part behind the place from where left_m are left to the end, 0 < left_m < length.
 std::pair<Polyline, Polyline> splitAt(const Polyline& points, double left_m);
 
+/// The polyline as far as the first place that is no farther from its goal than the tolerance, >= 0; whole
+/// where it comes no nearer.
+Polyline cutWithin(Polyline points, maps::Point goal, double tolerance_m);
+
 /// Puts a piece behind a polyline that ends where it begins.
 void append(Polyline& points, const Polyline& piece);
 

@@ -56,6 +56,23 @@ TEST(BenchCommand, TakesAGeneratedSite) {
   EXPECT_EQ(json[0]["breached"], 0);
 }
 
+TEST(BenchCommand, TakesSeveralSuitesAndDrivesOverTheTrueSlip) {
+  const Folder folder;
+  const Ran ran = runTalus({"bench", "slip", "grids", room(folder), "--planners", "field", "--runs", "1",
+                            "--pairs", "2", "-o", folder / "out", "--json"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const auto line = nlohmann::json::parse(ran.out)[0];
+  EXPECT_EQ(line["runs"],
+            2 * 2 + 2 * 2 + 2);  // two worlds under two beliefs, two pairs of blocks and rooms, two
+  EXPECT_EQ(line["breached"], 0);
+  ASSERT_EQ(line["drives"].size(), 2u);
+  EXPECT_EQ(line["drives"][0]["belief"], "slip mean");
+  EXPECT_EQ(line["drives"][1]["runs"], 2);
+  EXPECT_LE(line["drives"][1]["reached"].get<int>(), 2);
+  EXPECT_THAT(fileContent(folder / "out/table.txt"), HasSubstr("slip tail"));
+  EXPECT_THAT(fileContent(folder / "out/index.html"), HasSubstr("Drives over the true slip"));
+}
+
 TEST(BenchCommand, RanksOfMpiGiveWhatOneProcessGives) {
   if (!TALUS_HAS_MPI || std::system("mpirun --version > /dev/null 2>&1") != 0)
     GTEST_SKIP() << "built without Boost.MPI, or mpirun is not installed";

@@ -129,6 +129,42 @@ TEST(PlanCommand, AMissionNeedsNothingElse) {
   EXPECT_EQ(json::parse(ran.out)["status"], "found");
 }
 
+TEST(PlanCommand, TakesTheCheapestOfSeveralGoalsAndPassesViaPoints) {
+  const Folder folder;
+  folder.write("dem.asc", dem());
+  const auto plan = [&folder](const std::vector<std::string>& more) {
+    std::vector<std::string> words{"plan",       "dem.asc",  "--resolution", "1",       "--soil",
+                                   "sandy_loam", "--rover",  "fido",         "--start", "5.5,4.5",
+                                   "--goal",     "26.5,4.5", "--goal",       "10.5,9.5"};
+    words.insert(words.end(), more.begin(), more.end());
+    return runTalus(words, folder.path());
+  };
+  const Ran json_run = plan({"--json"});
+  ASSERT_EQ(json_run.code, 0) << json_run.err;
+  EXPECT_EQ(json::parse(json_run.out)["goal"], "10.5,9.5");
+  EXPECT_THAT(plan({}).out, HasSubstr("10.5,9.5, number 2 of the 2 given"));
+  EXPECT_THAT(plan({"--in-memory", "10"}).err, HasSubstr("several goals"));
+
+  folder.write("mission.yaml",
+               "maps: {dem: dem.asc, resolution_m: 1}\nrover: fido\nsoil: sandy_loam\nstart: [5.5, 4.5]\n"
+               "goal: [[26.5, 4.5], '10.5,9.5']\nvia: [[5.5, 8.5], [8.5, 8.5]]\n");
+  const Ran mission = runTalus({"plan", "mission.yaml", "--json", "-o", "r.geojson"}, folder.path());
+  ASSERT_EQ(mission.code, 0) << mission.err;
+  EXPECT_EQ(json::parse(mission.out)["goal"], "10.5,9.5");
+  const json route = json::parse(fileContent(folder / "r.geojson"))["features"][0]["properties"];
+  const auto passed = [&](double x, double y) {
+    for (std::size_t i = 0; i < route["x_m"].size(); ++i)
+      if (route["x_m"][i] == x && route["y_m"][i] == y) return true;
+    return false;
+  };
+  EXPECT_TRUE(passed(5.5, 8.5) && passed(8.5, 8.5));
+
+  folder.write("bad.yaml", "maps: {dem: dem.asc}\nstart: [5.5, 4.5]\ngoal:\n  - {x: 1}\n");
+  const Ran bad = runTalus({"plan", "bad.yaml"}, folder.path());
+  EXPECT_EQ(bad.code, 2);
+  EXPECT_THAT(bad.err, HasSubstr("bad.yaml:4"));
+}
+
 // Property: a map read in windows gives a route that the whole map allows at the same price, near the one
 // planned on the whole.
 TEST(PlanCommand, PlansInWindowsOfAMapBeyondMemory) {

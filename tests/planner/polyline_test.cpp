@@ -61,5 +61,19 @@ TEST(Polyline, IsSplitWhereSoMuchIsLeft) {
   }
 }
 
+TEST(Polyline, IsCutWhereItEntersACircle) {
+  const Polyline line{{0, 0}, {10, 0}, {10, 10}};
+  const auto near = [](const Polyline& got, const Polyline& want) {
+    ASSERT_EQ(got.size(), want.size());
+    for (std::size_t i = 0; i < got.size(); ++i)
+      EXPECT_NEAR(std::hypot(got[i].x_m - want[i].x_m, got[i].y_m - want[i].y_m), 0.0, 1e-7);
+  };
+  near(cutWithin(line, {10, 10}, 4.0), {{0, 0}, {10, 0}, {10, 6}});
+  near(cutWithin(line, {5, 3}, 5.0), {{0, 0}, {1, 0}});  // 3-4-5, between two places outside
+  near(cutWithin(line, {5, 3}, 2.9), line);              // passes it by
+  near(cutWithin(line, {-1, 0}, 1.5), {{0, 0}});         // begins inside
+  near(cutWithin(line, {10, 10}, 0.0), line);
+}
+
 }  // namespace
 }  // namespace talus::planner
