@@ -129,9 +129,9 @@ std::string tracePage(const TraceStory& story) {
   if (!story.applies.applies) page.paragraph("The model does not apply here: " + story.applies.reason + ".");
   effects(page, story);
   errors(page, story);
-  std::vector<double> guesses;
-  const Eigen::MatrixXd before = r.trial.measured - predictRows(r.base, r.trial, guesses);
-  const Eigen::MatrixXd level = predictRows(r.refined, r.trial, guesses), after = r.trial.measured - level;
+  terramech::SolvedContacts solved;
+  const Eigen::MatrixXd before = r.trial.measured - predictRows(r.base, r.trial, solved);
+  const Eigen::MatrixXd level = predictRows(r.refined, r.trial, solved), after = r.trial.measured - level;
   Eigen::VectorXd sinkage(level.rows());
   for (int row = 0; row < r.trial.rows(); ++row)
     sinkage[row] = level(row, 1) * r.trial.denominator(row, Channel::Sinkage);

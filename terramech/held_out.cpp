@@ -33,17 +33,17 @@ Eigen::MatrixXd asMeasured(const RefinedModel& model, Trial trial) {
     trial.states[row].slip = trial.slip[row];
     trial.states[row].load_N = trial.load_N[row];
   }
-  std::vector<double> guesses;
-  return trial.measured - predictRows(model, trial, guesses);
+  SolvedContacts solved;
+  return trial.measured - predictRows(model, trial, solved);
 }
 
 }  // namespace
 
 HeldOut holdOut(const TraceResult& result, const TraceOptions& options, const Folds& folds) {
   const Trial& trial = result.trial;
-  std::vector<double> guesses;
-  const Whitening all = whitening(trial, predictRows(result.refined, trial, guesses),
-                                  inputSlopes(result.refined, trial, guesses), result.refined.noise);
+  SolvedContacts solved;
+  const Whitening all = whitening(trial, predictRows(result.refined, trial, solved),
+                                  inputSlopes(result.refined, trial, solved), result.refined.noise);
   Sums base, refined;
   for (int fold = 0; fold < folds.count; ++fold) {
     const std::vector<char> train = rowsOf(folds, fold, false);
@@ -51,7 +51,7 @@ HeldOut holdOut(const TraceResult& result, const TraceOptions& options, const Fo
     if (unseen.rows() == 0 || seen.rows() == 0) continue;
     const Whitening white = subset(all, train);
     const auto refit = [&](const RefinedModel& model) {
-      std::vector<double> start;
+      SolvedContacts start;
       FitPlan plan = fitPlan(model, options.fit_soil);
       plan.iterations = 8;
       if (result.first_prior && !model.effects.empty()) plan.effect_prior[0] = *result.first_prior;

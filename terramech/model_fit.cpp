@@ -29,14 +29,14 @@ bool isLogStiffness(const FittedParameter& p) {
 class Search {
  public:
   Search(const RefinedModel& start, const Trial& trial, const Whitening& whitening, const FitPlan& plan,
-         std::vector<double>& guesses)
+         SolvedContacts& solved)
       : trial_(trial),
         whitening_(whitening),
         plan_(plan),
-        guesses_(guesses),
+        solved_(solved),
         model_(start),
         log_stiffness_(0.0),
-        residual_(residualOf(start)) {}
+        residual_(residualOf(start, solved)) {}
 
   double chi2() const { return residual_.squaredNorm(); }
   double priorChi2() const { return priorResidual(model_, log_stiffness_).squaredNorm(); }
@@ -70,11 +70,13 @@ class Search {
       setValue(moved, p, now);
       if (isLogStiffness(p)) stiffness += now;
     }
-    const Eigen::VectorXd residual = residualOf(moved);
+    SolvedContacts solved = solved_;
+    const Eigen::VectorXd residual = residualOf(moved, solved);
     const double cost_moved = residual.squaredNorm() + priorResidual(moved, stiffness).squaredNorm();
     if (!(cost_moved < cost())) return false;
     model_ = moved;
     residual_ = residual;
+    solved_ = std::move(solved);
     log_stiffness_ = stiffness;
     return true;
   }
@@ -86,8 +88,10 @@ class Search {
   }
 
   Eigen::MatrixXd jacobianHere() {
-    Eigen::MatrixXd j = jacobian(model_, trial_, plan_.free, guesses_,
-                                 [&](const Eigen::MatrixXd& m) { return whitening_.apply(m); });
+    Eigen::MatrixXd j = plan_.derivative
+                            ? *plan_.derivative
+                            : jacobian(model_, trial_, plan_.free, solved_,
+                                       [&](const Eigen::MatrixXd& m) { return whitening_.apply(m); });
     for (Eigen::Index k = 0; k < j.cols(); ++k) j.col(k) *= scale(k);
     return j;
   }
@@ -120,14 +124,14 @@ class Search {
     return r;
   }
 
-  Eigen::VectorXd residualOf(const RefinedModel& model) const {
-    return whitening_.apply(trial_.measured - predictRows(model, trial_, guesses_));
+  Eigen::VectorXd residualOf(const RefinedModel& model, SolvedContacts& solved) const {
+    return whitening_.apply(trial_.measured - predictRows(model, trial_, solved));
   }
 
   const Trial& trial_;
   const Whitening& whitening_;
   const FitPlan& plan_;
-  std::vector<double>& guesses_;
+  SolvedContacts& solved_;
   RefinedModel model_;
   double log_stiffness_;
   Eigen::VectorXd residual_;
@@ -178,9 +182,9 @@ ParameterRange rangeOf(const RefinedModel& model, const FittedParameter& p) {
 }
 
 Eigen::MatrixXd jacobian(const RefinedModel& model, const Trial& trial,
-                         const std::vector<FittedParameter>& free, std::vector<double>& guesses,
+                         const std::vector<FittedParameter>& free, SolvedContacts& solved,
                          const std::function<Eigen::VectorXd(const Eigen::MatrixXd&)>& scale) {
-  const Eigen::MatrixXd here = predictRows(model, trial, guesses);
+  const Eigen::MatrixXd here = predictRows(model, trial, solved);
   Eigen::MatrixXd j(here.rows() * kChannels, static_cast<Eigen::Index>(free.size()));
   for (std::size_t k = 0; k < free.size(); ++k) {
     const ParameterRange range = rangeOf(model, free[k]);
@@ -188,7 +192,8 @@ Eigen::MatrixXd jacobian(const RefinedModel& model, const Trial& trial,
     if (value(model, free[k]) + h > range.high) h = -h;
     RefinedModel moved = model;
     setValue(moved, free[k], value(model, free[k]) + h);
-    j.col(static_cast<Eigen::Index>(k)) = scale((predictRows(moved, trial, guesses) - here) / h);
+    SolvedContacts beside = solved;
+    j.col(static_cast<Eigen::Index>(k)) = scale((predictRows(moved, trial, beside) - here) / h);
   }
   // A missing channel has no derivative either.
   for (int row = 0; row < trial.rows(); ++row)
@@ -198,8 +203,8 @@ Eigen::MatrixXd jacobian(const RefinedModel& model, const Trial& trial,
 }
 
 Fit fitModel(const RefinedModel& start, const Trial& trial, const Whitening& whitening, const FitPlan& plan,
-             std::vector<double>& guesses) {
-  Search search{start, trial, whitening, plan, guesses};
+             SolvedContacts& solved) {
+  Search search{start, trial, whitening, plan, solved};
   const auto n = static_cast<Eigen::Index>(plan.free.size());
   Eigen::MatrixXd normal(n, n);
   Eigen::VectorXd gradient(n);
@@ -216,14 +221,19 @@ Fit fitModel(const RefinedModel& start, const Trial& trial, const Whitening& whi
     damping = std::max(1e-6, damping * 0.2);
     if (!moved || before - search.cost() < 1e-3 + 1e-5 * before) break;
   }
-  Fit fit{.model = search.model(), .chi2 = search.chi2(), .prior_chi2 = search.priorChi2(), .covariance = {}};
-  if (n > 0) {
-    search.linearise(normal, gradient);
-    normal.diagonal().array() += 1e-9;
-    const Eigen::VectorXd s = search.scales();
-    fit.covariance = s.asDiagonal() * normal.ldlt().solve(Eigen::MatrixXd::Identity(n, n)) * s.asDiagonal();
-  }
-  return fit;
+  return {.model = search.model(), .chi2 = search.chi2(), .prior_chi2 = search.priorChi2()};
+}
+
+Eigen::MatrixXd parameterCovariance(const RefinedModel& fitted, const Trial& trial,
+                                    const Whitening& whitening, const FitPlan& plan, SolvedContacts& solved) {
+  Search search{fitted, trial, whitening, plan, solved};
+  const auto n = static_cast<Eigen::Index>(plan.free.size());
+  Eigen::MatrixXd normal(n, n);
+  Eigen::VectorXd gradient(n);
+  search.linearise(normal, gradient);
+  normal.diagonal().array() += 1e-9;
+  const Eigen::VectorXd s = search.scales();
+  return s.asDiagonal() * normal.ldlt().solve(Eigen::MatrixXd::Identity(n, n)) * s.asDiagonal();
 }
 
 }  // namespace talus::terramech

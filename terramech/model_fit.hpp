@@ -23,6 +23,8 @@ struct FitPlan {
   std::map<int, ParameterPrior> soil_prior;    ///< by index into soilParameters()
   std::map<int, ParameterPrior> effect_prior;  ///< by number of an effect, of its first parameter
   int iterations = 12;
+  const Eigen::MatrixXd* derivative =
+      nullptr;  ///< whitened, kept for all iterations; null: taken anew in each
 };
 
 /// A fitted model.
@@ -30,17 +32,20 @@ struct Fit {
   RefinedModel model;
   double chi2 = 0.0;  ///< of the whitened residuals, priors left out
   double prior_chi2 = 0.0;
-  Eigen::MatrixXd covariance;  ///< of plan.free, own units
   double cost() const { return chi2 + prior_chi2; }
 };
 
-/// Levenberg-Marquardt on whitened residuals inside the parameters' bounds. `guesses` as predictRows().
+/// Levenberg-Marquardt on whitened residuals inside the parameters' bounds. `solved` as predictRows().
 Fit fitModel(const RefinedModel& start, const Trial& trial, const Whitening& whitening, const FitPlan& plan,
-             std::vector<double>& guesses);
+             SolvedContacts& solved);
+
+/// Covariance of the free parameters [own units] about a model that was fitted.
+Eigen::MatrixXd parameterCovariance(const RefinedModel& fitted, const Trial& trial,
+                                    const Whitening& whitening, const FitPlan& plan, SolvedContacts& solved);
 
 /// Whitened (or marginally scaled) derivative of the readings by each parameter, rows*kChannels x parameters.
 Eigen::MatrixXd jacobian(const RefinedModel& model, const Trial& trial,
-                         const std::vector<FittedParameter>& free, std::vector<double>& guesses,
+                         const std::vector<FittedParameter>& free, SolvedContacts& solved,
                          const std::function<Eigen::VectorXd(const Eigen::MatrixXd&)>& scale);
 
 /// Everything that a model lets a fit move: its effects, and the soil's parameters that are stated with a

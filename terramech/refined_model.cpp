@@ -128,16 +128,16 @@ Reading predict(const RefinedModel& model, const WheelState& state, double* entr
 }
 
 std::vector<Reading> predict(const RefinedModel& model, std::span<const WheelState> states,
-                             std::vector<double>& entry_guess_rad) {
+                             SolvedContacts& solved) {
   const Bound bound{model};
-  entry_guess_rad.resize(states.size(), 0.0);
   std::vector<WheelContact> contacts;
+  contacts.reserve(states.size());
   for (const WheelState& state : states) contacts.push_back(bound.contact(state));
-  std::vector<ContactForces> forces(states.size());
-  solveContacts(contacts, entry_guess_rad, forces);
+  solveContacts(std::move(contacts), solved);
   std::vector<Reading> readings;
+  readings.reserve(states.size());
   for (std::size_t k = 0; k < states.size(); ++k)
-    readings.push_back(bound.reading(states[k], contacts[k], forces[k]));
+    readings.push_back(bound.reading(states[k], solved.contacts[k], solved.forces[k]));
   return readings;
 }
 

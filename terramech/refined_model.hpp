@@ -61,10 +61,10 @@ struct RefinedModel {
 /// `entry_guess_rad`, where given, starts the search for the sinkage and receives its result. Thread-safe.
 Reading predict(const RefinedModel& model, const WheelState& state, double* entry_guess_rad = nullptr);
 
-/// The same for many states, several times faster where no effect leaves the plain wheel.
-/// `entry_guess_rad` is resized to one a state, 0 where it held none.
+/// The same for many states, several times faster where no effect leaves the plain wheel, and where `solved`
+/// holds a state's contact already: nothing is solved again for what only the readings show.
 std::vector<Reading> predict(const RefinedModel& model, std::span<const WheelState> states,
-                             std::vector<double>& entry_guess_rad);
+                             SolvedContacts& solved);
 
 /// A prediction and the standard deviation of what would be measured: parameters, slip, load and the sensor
 /// itself.

@@ -144,8 +144,8 @@ std::vector<TracedEffect> apart(const std::vector<TracedEffect>& effects) {
 }  // namespace
 
 ChannelErrors rmseOf(const RefinedModel& model, const Trial& trial) {
-  std::vector<double> guesses;
-  const Eigen::MatrixXd residual = trial.measured - predictRows(model, trial, guesses);
+  SolvedContacts solved;
+  const Eigen::MatrixXd residual = trial.measured - predictRows(model, trial, solved);
   ChannelErrors errors{};
   for (int c = 0; c < kChannels; ++c) {
     double sum = 0.0;

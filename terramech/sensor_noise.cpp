@@ -111,7 +111,7 @@ std::vector<Scale> scales(const Trial& trial, const Eigen::MatrixXd& residual, c
 
 }  // namespace
 
-InputSlopes inputSlopes(const RefinedModel& model, const Trial& trial, std::vector<double>& guesses) {
+InputSlopes inputSlopes(const RefinedModel& model, const Trial& trial, SolvedContacts& solved) {
   constexpr double kStep = 0.004;
   const auto moved = [&](double slip, double load) {
     Trial copy = trial;
@@ -119,7 +119,7 @@ InputSlopes inputSlopes(const RefinedModel& model, const Trial& trial, std::vect
       s.slip = std::clamp(s.slip + slip, -1.0, 1.0);
       s.load_N *= 1.0 + load;
     }
-    return predictRows(model, copy, guesses);
+    return predictRows(model, copy, solved);
   };
   return {(moved(kStep, 0.0) - moved(-kStep, 0.0)) / (2.0 * kStep),
           (moved(0.0, kStep) - moved(0.0, -kStep)) / (2.0 * kStep)};

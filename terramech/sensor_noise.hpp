@@ -14,7 +14,7 @@ struct InputSlopes {
   Eigen::MatrixXd by_slip;  ///< per unit of slip
   Eigen::MatrixXd by_load;  ///< per relative change of load, forces over the measured load
 };
-InputSlopes inputSlopes(const RefinedModel& model, const Trial& trial, std::vector<double>& guesses);
+InputSlopes inputSlopes(const RefinedModel& model, const Trial& trial, SolvedContacts& solved);
 
 /// Maximum a posteriori noise of sensors and inputs from what is left of the residuals once every smooth
 /// dependence on a covariate is taken out (so that a missing effect does not pass for noise). Errors of slip

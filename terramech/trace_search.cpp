@@ -45,18 +45,18 @@ void TraceSearch::fitSoil() {
   const bool part = count >= 20 && count < trial_.rows();
   if (part) {
     trial_ = subset(all, straight);
-    guesses_.clear();
+    solved_ = {};
     refresh();
   }
   for (int round = 0; round < 3; ++round) {
     FitPlan plan = planFor(model_);
     plan.iterations = 30;
-    model_ = fitModel(model_, trial_, whitening_, plan, guesses_).model;
+    model_ = fitModel(model_, trial_, whitening_, plan, solved_).model;
     refresh();
   }
   if (!part) return;
   trial_ = all;
-  guesses_.clear();
+  solved_ = {};
   refresh();
 }
 
@@ -72,13 +72,13 @@ void TraceSearch::refresh() {
     trial_.states[row].slip = trial_.slip[row];
     trial_.states[row].load_N = trial_.load_N[row];
   }
-  level_ = predictRows(model_, trial_, guesses_);
-  InputSlopes slopes = inputSlopes(model_, trial_, guesses_);
+  level_ = predictRows(model_, trial_, solved_);
+  InputSlopes slopes = inputSlopes(model_, trial_, solved_);
   const Eigen::MatrixXd smooth = withoutSmooth(trial_, trial_.measured - level_);
   model_.noise = fitNoise(trial_, smooth, level_, slopes, model_.stated);
   calibrateInputs(trial_, model_.noise);
-  level_ = predictRows(model_, trial_, guesses_);
-  slopes = inputSlopes(model_, trial_, guesses_);
+  level_ = predictRows(model_, trial_, solved_);
+  slopes = inputSlopes(model_, trial_, solved_);
   residual_ = trial_.measured - level_;
   whitening_ = whitening(trial_, level_, slopes, model_.noise);
   white_ = whitening_.apply(residual_);
@@ -90,8 +90,8 @@ double TraceSearch::penalty(const Candidate& candidate) const {
 }
 
 Eigen::VectorXd TraceSearch::change(const RefinedModel& moved) {
-  std::vector<double> guesses = guesses_;
-  return whitening_.apply(predictRows(moved, trial_, guesses) - level_);
+  SolvedContacts solved = solved_;
+  return whitening_.apply(predictRows(moved, trial_, solved) - level_);
 }
 
 TraceSearch::Screened TraceSearch::screenLibrary(const Candidate& candidate,
@@ -169,9 +169,7 @@ TraceSearch::Screened TraceSearch::screenCurves(const Candidate& candidate, cons
 }
 
 std::vector<TraceSearch::Screened> TraceSearch::screen() {
-  const Eigen::MatrixXd nuisance =
-      orthonormal(jacobian(model_, trial_, planFor(model_).free, guesses_,
-                           [&](const Eigen::MatrixXd& m) { return whitening_.apply(m); }));
+  const Eigen::MatrixXd nuisance = orthonormal(derivativeOf(model_, solved_));
   std::vector<Screened> all;
   for (const Candidate& c : libraryCandidates(trial_, sinkages(level_)))
     all.push_back(screenLibrary(c, nuisance));
@@ -190,9 +188,8 @@ std::vector<CovariateTest> TraceSearch::test(const std::vector<Screened>& screen
   plan.flips = options_.flips;
   plan.seed = options_.seed;
   const auto free = planFor(model_).free;
-  plan.nuisance_whitened =
-      jacobian(model_, trial_, free, guesses_, [&](const Eigen::MatrixXd& m) { return whitening_.apply(m); });
-  plan.nuisance_marginal = jacobian(model_, trial_, free, guesses_,
+  plan.nuisance_whitened = derivativeOf(model_, solved_);
+  plan.nuisance_marginal = jacobian(model_, trial_, free, solved_,
                                     [&](const Eigen::MatrixXd& m) { return whitening_.marginal(m); });
   for (const Screened& s : screened)
     if (!s.candidate.empirical()) plan.directions.push_back({s.candidate.parts.front().name, s.direction});
@@ -217,12 +214,12 @@ std::vector<Explanation> TraceSearch::fitBest(const std::vector<Screened>& scree
   return ranked;
 }
 
-Explanation TraceSearch::fitted(const Candidate& candidate, std::vector<HeldRows>& folds) {
+Explanation TraceSearch::fitted(const Candidate& candidate, const std::vector<HeldRows>& folds) {
   const RefinedModel grown = with(model_, candidate);
-  std::vector<double> guesses = guesses_;
+  SolvedContacts solved = solved_;
   FitPlan plan = planFor(grown);
   plan.iterations = candidate.empirical() ? 5 : candidate.parts.size() > 1 ? 30 : 10;
-  const Fit fit = fitModel(grown, trial_, whitening_, plan, guesses);
+  const Fit fit = fitModel(grown, trial_, whitening_, plan, solved);
   Explanation e;
   e.candidate = candidate;
   for (std::size_t k = 0; k < candidate.parts.size(); ++k)
@@ -230,10 +227,9 @@ Explanation TraceSearch::fitted(const Candidate& candidate, std::vector<HeldRows
   e.chi2_gain = white_.squaredNorm() - fit.chi2 - fit.prior_chi2;
   e.in_sample =
       0.5 * e.chi2_gain - penalty(candidate) + (candidate.empirical() ? 0.0 : options_.library_bonus);
-  judgeHeldOut(folds, fit.model, e);
+  judgeHeldOut(folds, fit.model, solved, e);
   const Eigen::VectorXd before = whitening_.marginal(residual_),
-                        after =
-                            whitening_.marginal(trial_.measured - predictRows(fit.model, trial_, guesses));
+                        after = whitening_.marginal(trial_.measured - predictRows(fit.model, trial_, solved));
   for (Eigen::Index i = 0; i < before.size(); ++i)
     e.by_channel[static_cast<std::size_t>(i % kChannels)] += before[i] * before[i] - after[i] * after[i];
   return e;
@@ -259,7 +255,7 @@ void TraceSearch::accept(const Candidate& candidate) {
   part_count_.push_back(candidate.parts.size());
   model_ = with(model_, candidate);
   for (int round = 0; round < 2; ++round) {
-    model_ = fitModel(model_, trial_, whitening_, planFor(model_), guesses_).model;
+    model_ = fitModel(model_, trial_, whitening_, planFor(model_), solved_).model;
     refresh();
   }
 }
@@ -270,9 +266,9 @@ void TraceSearch::takeOut(std::size_t k) {
   const auto begin = model_.effects.begin() + static_cast<long>(first);
   model_.effects.erase(begin, begin + static_cast<long>(part_count_[k]));
   part_count_.erase(part_count_.begin() + static_cast<long>(k));
-  std::vector<double> guesses = guesses_;
-  model_ = fitModel(model_, trial_, whitening_, planFor(model_), guesses).model;
-  level_ = predictRows(model_, trial_, guesses_);
+  SolvedContacts solved = solved_;
+  model_ = fitModel(model_, trial_, whitening_, planFor(model_), solved).model;
+  level_ = predictRows(model_, trial_, solved_);
   residual_ = trial_.measured - level_;
   white_ = whitening_.apply(residual_);
 }
@@ -288,7 +284,7 @@ std::vector<Explanation> TraceSearch::rivals(std::size_t k) {
 void TraceSearch::drop(std::size_t k) {
   takeOut(k);
   for (int round = 0; round < 2; ++round) {
-    model_ = fitModel(model_, trial_, whitening_, planFor(model_), guesses_).model;
+    model_ = fitModel(model_, trial_, whitening_, planFor(model_), solved_).model;
     refresh();
   }
 }
@@ -300,12 +296,13 @@ void TraceSearch::replace(std::size_t k, const Candidate& candidate) {
 
 void TraceSearch::finish(TraceResult& result) {
   const FitPlan plan = planFor(model_);
-  const Fit fit = fitModel(model_, trial_, whitening_, plan, guesses_);
+  const Fit fit = fitModel(model_, trial_, whitening_, plan, solved_);
   const SensorNoise noise = model_.noise;
   model_ = fit.model;
   model_.noise = noise;
   model_.fitted = plan.free;
-  model_.covariance.assign(fit.covariance.data(), fit.covariance.data() + fit.covariance.size());
+  const Eigen::MatrixXd covariance = parameterCovariance(model_, trial_, whitening_, plan, solved_);
+  model_.covariance.assign(covariance.data(), covariance.data() + covariance.size());
   std::size_t at = 0;
   for (std::size_t k = 0; k < result.effects.size(); ++k) {
     auto& effect = result.effects[k];
@@ -315,7 +312,7 @@ void TraceSearch::finish(TraceResult& result) {
       const int e = plan.free[j].effect;
       if (e >= static_cast<int>(at - part_count_[k]) && e < static_cast<int>(at))
         effect.parameter_std.push_back(
-            std::sqrt(std::max(0.0, fit.covariance(static_cast<long>(j), static_cast<long>(j)))));
+            std::sqrt(std::max(0.0, covariance(static_cast<long>(j), static_cast<long>(j)))));
     }
   }
   result.refined = model_;
@@ -328,7 +325,7 @@ void TraceSearch::finish(TraceResult& result) {
   result.base_rmse = rmseOf(result.base, measured);
   result.refined_rmse = rmseOf(result.refined, measured);
   // What the sensors and the noisy inputs alone would leave, at the rows' own slip and load.
-  const InputSlopes slopes = inputSlopes(model_, measured, guesses_);
+  const InputSlopes slopes = inputSlopes(model_, measured, solved_);
   for (std::size_t c = 0; c < kChannels; ++c) {
     double sum = 0.0;
     int count = 0;

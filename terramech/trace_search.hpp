@@ -72,18 +72,21 @@ class TraceSearch {
   struct HeldRows {
     Trial seen, unseen;
     Whitening white_seen, white_unseen;
+    std::vector<char> is_seen;  ///< of all rows
     double chi2 = 0.0;
     std::array<double, kChannels> by_channel{};
   };
-  void judgeHeldOut(std::vector<HeldRows>& folds, const RefinedModel& fitted, Explanation& candidate);
+  void judgeHeldOut(const std::vector<HeldRows>& folds, const RefinedModel& fitted, SolvedContacts& solved,
+                    Explanation& candidate) const;
   std::vector<HeldRows> heldRows();
-  Explanation fitted(const Candidate& candidate, std::vector<HeldRows>& folds);
-  HeldRows errorsOn(const HeldRows& fold, const RefinedModel& start);
+  Explanation fitted(const Candidate& candidate, const std::vector<HeldRows>& folds);
+  HeldRows errorsOn(const HeldRows& fold, const RefinedModel& start, const Eigen::MatrixXd& derivative) const;
+  Eigen::MatrixXd derivativeOf(const RefinedModel& model, SolvedContacts& solved) const;
 
   TraceOptions options_;
   RefinedModel model_;
   Trial trial_;
-  std::vector<double> guesses_;
+  SolvedContacts solved_;
   Eigen::MatrixXd level_, residual_;
   Whitening whitening_;
   Eigen::VectorXd white_;

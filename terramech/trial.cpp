@@ -209,8 +209,8 @@ Trial subset(const Trial& trial, const std::vector<char>& keep) {
   return part;
 }
 
-Eigen::MatrixXd predictRows(const RefinedModel& model, const Trial& trial, std::vector<double>& guesses) {
-  std::vector<Reading> readings = predict(model, trial.states, guesses);
+Eigen::MatrixXd predictRows(const RefinedModel& model, const Trial& trial, SolvedContacts& solved) {
+  std::vector<Reading> readings = predict(model, trial.states, solved);
   Eigen::MatrixXd out(trial.rows(), kChannels);
   for (int row = 0; row < trial.rows(); ++row) {
     const auto r = static_cast<std::size_t>(row);

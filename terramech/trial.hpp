@@ -13,13 +13,12 @@ namespace talus::terramech {
 /// Measured rows as residual tracing sees them. Channels of `measured` are those of Channel, scaled; NaN =
 /// missing.
 struct Trial {
-  std::vector<WheelState>
-      states;                     ///< slip and load replaced by their best guesses once inputs are calibrated
-  std::vector<double> load_N;     ///< as measured: the denominator of every ratio
-  std::vector<double> slip;       ///< as measured
-  Eigen::MatrixXd measured;       ///< rows x kChannels [-]
-  Eigen::VectorXd slip_variance;  ///< of the true slip about states' slip
-  Eigen::VectorXd load_variance;  ///< of the true load about states' load, relative
+  std::vector<WheelState> states;  ///< slip and load replaced by their best solved once inputs are calibrated
+  std::vector<double> load_N;      ///< as measured: the denominator of every ratio
+  std::vector<double> slip;        ///< as measured
+  Eigen::MatrixXd measured;        ///< rows x kChannels [-]
+  Eigen::VectorXd slip_variance;   ///< of the true slip about states' slip
+  Eigen::VectorXd load_variance;   ///< of the true load about states' load, relative
   std::vector<int> run;  ///< number of the run of each row; a row of its own where there is no run column
   std::vector<std::string> covariates;  ///< numeric columns that vary, answers left out
   std::vector<std::string> groupings;   ///< text columns of few words, runs left out
@@ -44,8 +43,8 @@ bool slipIsAlongTravel(const std::vector<WheelState>& states);
 /// The rows of a trial that `keep` marks.
 Trial subset(const Trial& trial, const std::vector<char>& keep);
 
-/// Model readings of all rows over the measured load, rows x kChannels [-]. `guesses` (one a row, may be
-/// empty at first) carries entry angles from call to call.
-Eigen::MatrixXd predictRows(const RefinedModel& model, const Trial& trial, std::vector<double>& guesses);
+/// Model readings of all rows over the measured load, rows x kChannels [-]. `solved` (may be
+/// empty at first) carries what was solved from call to call.
+Eigen::MatrixXd predictRows(const RefinedModel& model, const Trial& trial, SolvedContacts& solved);
 
 }  // namespace talus::terramech

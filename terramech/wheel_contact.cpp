@@ -174,15 +174,16 @@ ContactForces solveContact(const WheelContact& c, double entry_guess_rad) {
   return forcesOf(imposed(c, entry), z, entry, static_entry);
 }
 
-void solveContacts(std::span<const WheelContact> contacts, std::span<double> entry_guess_rad,
-                   std::span<ContactForces> forces) {
+void solveContacts(std::vector<WheelContact> contacts, SolvedContacts& solved) {
+  const bool new_rows = solved.contacts.size() != contacts.size();
+  if (new_rows) solved.forces.assign(contacts.size(), {});
   std::vector<std::size_t> plain;
   std::vector<WheelCase> cases;
   const auto slowly = [&](std::size_t k) {
-    forces[k] = solveContact(contacts[k], entry_guess_rad[k]);
-    entry_guess_rad[k] = forces[k].static_entry_rad;
+    solved.forces[k] = solveContact(contacts[k], solved.forces[k].static_entry_rad);
   };
   for (std::size_t k = 0; k < contacts.size(); ++k) {
+    if (!new_rows && contacts[k] == solved.contacts[k]) continue;
     const WheelCase one = caseOf(contacts[k]);
     if (!isPlain(contacts[k]) || !isFastCase(one)) {
       slowly(k);
@@ -191,18 +192,17 @@ void solveContacts(std::span<const WheelContact> contacts, std::span<double> ent
     plain.push_back(k);
     cases.push_back(one);
   }
-  std::vector<WheelForces> solved(cases.size());
-  equilibria(cases, solved, BatchKernel::Best, Leftover::Nan);
+  std::vector<WheelForces> batch(cases.size());
+  equilibria(cases, batch, BatchKernel::Best, Leftover::Nan);
   for (std::size_t j = 0; j < plain.size(); ++j) {
-    const WheelForces& f = solved[j];
-    if (!std::isfinite(f.drawbar_pull_N)) {
+    const WheelForces& f = batch[j];
+    if (std::isfinite(f.drawbar_pull_N))
+      solved.forces[plain[j]] = {f.sinkage_m, f.entry_angle_rad, f.entry_angle_rad,
+                                 f.torque_Nm, f.drawbar_pull_N,  0.0};
+    else
       slowly(plain[j]);
-      continue;
-    }
-    forces[plain[j]] = {f.sinkage_m, f.entry_angle_rad, f.entry_angle_rad,
-                        f.torque_Nm, f.drawbar_pull_N,  0.0};
-    entry_guess_rad[plain[j]] = f.entry_angle_rad;
   }
+  solved.contacts = std::move(contacts);
 }
 
 }  // namespace talus::terramech

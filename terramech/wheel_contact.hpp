@@ -1,7 +1,7 @@
 #pragma once
 
 #include <limits>
-#include <span>
+#include <vector>
 
 #include <terramech/soil.hpp>
 #include <terramech/wheel.hpp>
@@ -37,6 +37,8 @@ struct WheelContact {
   double hard_modulus_Pa_m = 0.0;               ///< k_h of the lower layer
   double sinkage_gain = 1.0;     ///< slip sinkage: the wheel digs to gain x static sinkage + extra_sinkage_m,
   double extra_sinkage_m = 0.0;  ///< at most 1.95 r; the ground below then carries the load at a lower stress
+
+  bool operator==(const WheelContact&) const = default;
 };
 
 /// What the soil does to the wheel.
@@ -61,10 +63,16 @@ WheelContact contactOf(const Soil& soil, const Wheel& wheel);
 /// friction circle of an isotropic soil (ishigami_2007).
 ContactForces solveContact(const WheelContact& contact, double entry_guess_rad = 0.0);
 
-/// All of them: those that no effect takes from the plain Wong-Reece wheel by the kernel of
-/// wong_reece_batch.hpp, four at a time, the others by solveContact(). `entry_guess_rad`, one each, start the
-/// searches and receive what they found.
-void solveContacts(std::span<const WheelContact> contacts, std::span<double> entry_guess_rad,
-                   std::span<ContactForces> forces);
+/// Contacts in their order and what the soil does to each: the memory of who solves nearly the same ones
+/// again and again.
+struct SolvedContacts {
+  std::vector<WheelContact> contacts;
+  std::vector<ContactForces> forces;  ///< as many
+};
+
+/// Brings `solved` to `contacts`. One that stands there already keeps its forces, another in its place starts
+/// the search. Those that no effect takes from the plain Wong-Reece wheel go through the kernel of
+/// wong_reece_batch.hpp, four at a time, the others through solveContact().
+void solveContacts(std::vector<WheelContact> contacts, SolvedContacts& solved);
 
 }  // namespace talus::terramech

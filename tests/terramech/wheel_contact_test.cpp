@@ -45,16 +45,27 @@ TEST(WheelContact, ManyAtOnceAreTheSameWheels) {
     contacts.back().rebound = 0.1;
     contacts.push_back(loaded(1e7, slip));
   }
-  std::vector<double> guesses(contacts.size(), 0.0);
-  std::vector<ContactForces> forces(contacts.size());
-  solveContacts(contacts, guesses, forces);
+  SolvedContacts solved;
+  solveContacts(contacts, solved);
+  const std::vector<ContactForces>& forces = solved.forces;
   for (std::size_t k = 0; k < contacts.size(); ++k) {
     const ContactForces one = solveContact(contacts[k]);
     EXPECT_NEAR(forces[k].sinkage_m, one.sinkage_m, 2e-7) << k;
     EXPECT_NEAR(forces[k].drawbar_pull_N, one.drawbar_pull_N, 1e-6 * contacts[k].load_N) << k;
     EXPECT_NEAR(forces[k].torque_Nm, one.torque_Nm, 1e-6 * contacts[k].load_N * contacts[k].radius_m) << k;
-    EXPECT_EQ(guesses[k], forces[k].static_entry_rad) << k;
   }
+}
+
+TEST(WheelContact, ContactsThatStandSolvedAreNotSolvedAgain) {
+  // Property: forces kept under a contact come back untouched, another contact in its place is solved anew.
+  SolvedContacts solved;
+  solveContacts({loaded(60.0, 0.3), loaded(80.0, 0.3)}, solved);
+  solved.forces[0].torque_Nm = solved.forces[1].torque_Nm = -1.0;
+  solveContacts({loaded(60.0, 0.3), loaded(80.0, 0.31)}, solved);
+  EXPECT_EQ(solved.forces[0].torque_Nm, -1.0);
+  EXPECT_NEAR(solved.forces[1].torque_Nm, solveContact(loaded(80.0, 0.31)).torque_Nm, 1e-6 * 80.0 * 0.1);
+  solveContacts({loaded(60.0, 0.3)}, solved);
+  EXPECT_GT(solved.forces[0].torque_Nm, 0.0);
 }
 
 TEST(WheelContact, ImposedSinkageIsReachedAndStillCarriesTheLoad) {
