@@ -181,6 +181,7 @@ std::vector<WheelReading> spreadEvenly(std::span<const WheelReading> samples, st
 SoilPosterior fitManySamples(const std::vector<SoilObjective>& classes, std::span<const WheelReading> samples,
                              const SoilFitOptions& options) {
   std::vector<Candidate> candidates;
+  candidates.reserve(classes.size());
   for (const SoilObjective& objective : classes) candidates.push_back({objective});
   for (std::size_t count = kFirst;; count *= kGrowth) {
     const bool all = count >= samples.size();
