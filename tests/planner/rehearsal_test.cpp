@@ -78,7 +78,7 @@ TEST(Rehearsal, NoWayRoundIsGivenUpNotTriedToDeath) {
 // would turn on ground that it has just felt to be weak.
 TEST(Rehearsal, BacksOutUntilItStandsOnSoundGround) {
   terramech::Soil weak = testSand();
-  weak.friction_angle_rad = 0.5;
+  weak.friction_angle_rad = 0.44;
   const Site site{
       {.classes = {testSand()}, .patches = {{{30.0, 20.5}, 8.0, weak}, {{30.0, 20.5}, 4.0, testDust()}}},
       0.0};
