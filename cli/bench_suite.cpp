@@ -1,7 +1,9 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
 #include <random>
+#include <set>
 
 #include <cli/bench_suite.hpp>
 #include <cli/context.hpp>
@@ -123,9 +125,9 @@ std::vector<BenchmarkCase> mapCases(const std::string& path, const SuiteOptions&
   const Ground read = readGround(ground, context);
   auto cases =
       pairsOn(std::filesystem::path(path).stem().string(), read.map.published(), options.pairs, context.seed);
-  if (cases.empty())
-    throw InputError(
-        {path, "no two places far apart with a route between them", "take another map or rover"});
+  if (static_cast<int>(cases.size()) < options.pairs)
+    context.warn(path + ": " + std::to_string(cases.size()) +
+                 " pairs of places far apart with a route between them, fewer than asked for");
   giveKinematics(cases, read.map.model(), options);
   return cases;
 }
@@ -139,12 +141,33 @@ std::vector<BenchmarkCase> casesOf(const std::string& name, const SuiteOptions& 
   return mapCases(name, options, context);
 }
 
+bool isMap(const std::string& name) {
+  return name != "generated" && name != "slip" && name != "grids" && !name.ends_with(".scen");
+}
+
+void refuseUnusedGround(const SuiteOptions& options) {
+  const GroundOptions& g = options.ground;
+  const bool given = !g.soil.empty() || !g.soils.empty() || !g.model.empty() || !g.rover.empty() ||
+                     !g.layers.terrain.empty() || !g.layers.rocks.empty() || !g.layers.keep_out.empty();
+  if (given && std::ranges::none_of(options.names, isMap))
+    throw InputError({"talus bench", "a soil, rover or layer is given, but no elevation map",
+                      "name a map; the other suites bring their own ground"});
+}
+
 }  // namespace
 
 std::vector<BenchmarkCase> suiteCases(const SuiteOptions& options, const Context& context) {
+  refuseUnusedGround(options);
   std::vector<BenchmarkCase> all;
+  std::set<std::string> names;
   for (const std::string& name : options.names)
-    for (BenchmarkCase& made : casesOf(name, options, context)) all.push_back(std::move(made));
+    for (BenchmarkCase& made : casesOf(name, options, context)) {
+      // Maps of the same name in two folders: a case's log is named after it.
+      std::string unique = made.name;
+      for (int k = 2; !names.insert(unique).second; ++k) unique = made.name + " of map " + std::to_string(k);
+      made.name = unique;
+      all.push_back(std::move(made));
+    }
   return all;
 }
 
