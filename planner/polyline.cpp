@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 
 #include <planner/polyline.hpp>
 
@@ -103,6 +105,41 @@ Polyline cutWithin(Polyline points, maps::Point goal, double tolerance_m) {
 void append(Polyline& points, const Polyline& piece) {
   for (const maps::Point p : piece)
     if (points.empty() || !(points.back() == p)) points.push_back(p);
+}
+
+namespace {
+
+std::uint64_t hashOf(maps::Point p) noexcept {
+  std::uint64_t hash = std::bit_cast<std::uint64_t>(p.x_m) * 0x9e3779b97f4a7c15U;
+  hash = (hash ^ (hash >> 32)) + std::bit_cast<std::uint64_t>(p.y_m);
+  hash *= 0xbf58476d1ce4e5b9U;
+  return hash ^ (hash >> 29);
+}
+
+}  // namespace
+
+std::vector<Polyline> cutAtMarks(const Polyline& points, double apart_m) {
+  std::vector<double> at_m(points.size(), 0.0);
+  std::vector<std::uint64_t> hash(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    hash[i] = hashOf(points[i]);
+    if (i > 0)
+      at_m[i] =
+          at_m[i - 1] + std::hypot(points[i].x_m - points[i - 1].x_m, points[i].y_m - points[i - 1].y_m);
+  }
+  const auto isMark = [&](std::size_t i) {
+    for (std::size_t k = i; k-- > 0 && at_m[i] - at_m[k] <= apart_m;)
+      if (hash[k] <= hash[i]) return false;
+    for (std::size_t k = i + 1; k < points.size() && at_m[k] - at_m[i] <= apart_m; ++k)
+      if (hash[k] <= hash[i]) return false;
+    return true;
+  };
+  std::vector<Polyline> pieces(1);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    pieces.back().push_back(points[i]);
+    if (i > 0 && i + 1 < points.size() && isMark(i)) pieces.push_back({points[i]});
+  }
+  return pieces;
 }
 
 }  // namespace talus::planner
