@@ -143,6 +143,7 @@ void writePage(const AssessOptions& options, const std::vector<Assessment>& rows
       options.slope_rad / kDegree, options.margin_rad / kDegree, options.z_threshold, options.z_critical));
   page.charts({mapOf(rows)});
   std::vector<std::vector<std::string>> cells;
+  cells.reserve(rows.size());
   for (const Assessment& a : rows) {
     cells.push_back({fmt::format("{}", a.line), fmt::format("{:.3f}", a.pull.value),
                      fmt::format("{:.3f}", a.pull.std), fmt::format("{:.3f}", a.sinkage_over_radius.value),

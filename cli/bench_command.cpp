@@ -1,4 +1,5 @@
 // talus bench SUITE: planners compared on the same questions.
+#include <algorithm>
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -27,26 +28,30 @@ struct Options {
 
 void bind(CLI::App& command, Options& options) {
   command
-      .add_option(
-          "suite", options.suite.name,
-          "generated (crater field, dunes, rocks), an elevation file, or a MovingAI .scen beside its .map")
+      .add_option("suite", options.suite.names,
+                  "one or more of: generated (crater field, dunes, rocks), slip (terrains of unsure slip, "
+                  "routes driven "
+                  "over the true one), grids (walls, optimum known), an elevation file, a MovingAI .scen "
+                  "beside its .map")
       ->capture_default_str();
   command.add_option("--planners", options.planners, "comma-separated; all by default")->delimiter(',');
   command.add_option("--runs", options.runs, "seeds a case and planner")
-      ->check(CLI::PositiveNumber)
+      ->check(positive())
       ->capture_default_str();
   command.add_option("--time", options.time_limit_s, "limit a run")
       ->type_name("S")
-      ->check(CLI::PositiveNumber)
+      ->check(positive())
       ->capture_default_str();
   command.add_option("--pairs", options.suite.pairs, "starts and goals a map")
-      ->check(CLI::PositiveNumber)
+      ->check(positive())
       ->capture_default_str();
   command
       .add_option("--turning-radius", options.suite.turning_radius_m,
                   "that planners of drives keep; 0: turns in place (default: the rover's)")
       ->type_name("METRES")
       ->check(notNegative());
+  addReadOptions(command, options.suite.ground.dem);
+  addGroundChoices(command, options.suite.ground);
   command.add_option("--side", options.suite.side_cells, "cells along a generated site")
       ->check(CLI::Range(32, 10000))
       ->capture_default_str();
@@ -62,18 +67,27 @@ std::string fileName(std::string name) {
 }
 
 // Made before the runs, so that a bad place is told at once; after the suite, so that a bad suite leaves
-// nothing.
-void makeFolder(const std::string& folder) {
+// nothing. Whether it was not there before.
+bool makeFolder(const std::string& folder) {
   std::error_code error;
-  std::filesystem::create_directories(folder, error);
+  const bool made = std::filesystem::create_directories(folder, error);
   if (error) throw InputError({folder, "cannot be made: " + error.message(), "name another folder with -o"});
+  OutputFile(std::filesystem::path(folder) / "table.txt").temporary();
+  return made;
+}
+
+// What is named twice would be counted twice.
+void refuseTwice(const std::string& what, std::vector<std::string> names) {
+  std::ranges::sort(names);
+  const auto twice = std::ranges::adjacent_find(names);
+  if (twice != names.end()) throw InputError({what + " " + *twice, "is named twice", "name it once"});
 }
 
 void write(const std::filesystem::path& folder, const planner::BenchmarkPlan& plan,
            const std::vector<planner::BenchmarkRun>& runs) {
   for (std::size_t c = 0; c < plan.cases.size(); ++c)
     writeFile(folder / (fileName(plan.cases[c].name) + ".log"), planner::benchmarkLog(plan, runs, c));
-  writeFile(folder / "table.txt", asText(compared(plan, runs)));
+  writeFile(folder / "table.txt", asText(compared(plan, runs)) + asText(drivesOf(plan, runs)));
   writeFile(folder / "index.html", asPage(plan, runs));
 }
 
@@ -93,24 +107,29 @@ int run(const Options& options, Context& context) {
   const Campaign campaign;
   if (!campaign.leads()) context.quiet = true;
   planner::BenchmarkPlan plan;
+  refuseTwice("suite", options.suite.names);
   for (const std::string& name : options.planners.empty() ? planner::plannerNames() : options.planners)
     plan.planners.push_back(planner::plannerName(name));
+  refuseTwice("planner", plan.planners);
   plan.cases = suiteCases(options.suite, context);
   if (plan.cases.empty())
-    throw InputError({options.suite.name, "no two places far apart with a route between them",
-                      "take another map or rover"});
-  if (campaign.leads()) makeFolder(options.folder);
+    throw InputError({"talus bench", "the suite has no two places far apart with a route between them",
+                      "take another map, rover or --seed"});
+  const bool made = campaign.leads() && makeFolder(options.folder);
   plan.seeds = options.runs;
   plan.time_limit_s = options.time_limit_s;
   const auto runs = allRuns(plan, campaign, context);
   if (!campaign.leads()) return Exit::kDone;
-  if (context.stop.stop_requested()) return Exit::kCancelled;
+  if (context.stop.stop_requested()) {
+    if (made) std::filesystem::remove(options.folder);  // empty still
+    return Exit::kCancelled;
+  }
   write(options.folder, plan, runs);
   const auto lines = compared(plan, runs);
   if (context.json)
-    printJson(asJson(lines));
+    printJson(asJson(lines, drivesOf(plan, runs)));
   else
-    print(asText(lines));
+    print(asText(lines) + asText(drivesOf(plan, runs)));
   return Exit::kDone;
 }
 
@@ -123,7 +142,8 @@ void addBench(CLI::App& app, Context& context) {
                        .description = "compare the planners; writes OMPL logs, a table and a page",
                        .examples = "  talus bench --planners field,RRTstar --time 5\n"
                                    "  talus bench gale.tif --pairs 10 -o gale_bench\n"
-                                   "  talus bench room.scen --planners field\n"},
+                                   "  talus bench room.scen --planners field\n"
+                                   "  talus bench generated slip grids maps/*.tif --pairs 4\n"},
                       bind, run);
 }
 

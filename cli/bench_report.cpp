@@ -7,6 +7,7 @@
 
 #include <cli/bench_report.hpp>
 #include <cli/html_report.hpp>
+#include <planner/rehearsal_rates.hpp>
 
 namespace talus::cli {
 namespace {
@@ -106,12 +107,67 @@ Plot gapOverTime(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& run
   return plot;
 }
 
+// Groups of worlds in the order of the cases.
+std::vector<std::string> groupsOf(const BenchmarkPlan& plan) {
+  std::vector<std::string> groups;
+  for (const auto& asked : plan.cases)
+    if (asked.world && std::ranges::find(groups, asked.group) == groups.end()) groups.push_back(asked.group);
+  return groups;
+}
+
+// With the header first.
+std::vector<std::vector<std::string>> worldRows(const std::vector<WorldLine>& lines) {
+  std::vector<std::vector<std::string>> rows{
+      {"belief", "planner", "runs", "reached %", "95 %", "drive p50 s", "slip max p50"}};
+  for (const WorldLine& line : lines) {
+    const auto rate =
+        planner::share(static_cast<std::size_t>(line.reached), static_cast<std::size_t>(line.runs));
+    rows.push_back({line.group, line.planner, std::to_string(line.runs),
+                    fmt::format("{:.1f}", 100 * rate.value),
+                    fmt::format("{:.1f}-{:.1f}", 100 * rate.interval_95[0], 100 * rate.interval_95[1]),
+                    std::isfinite(line.median_drive_s) ? fmt::format("{:.0f}", line.median_drive_s) : "-",
+                    std::isfinite(line.median_max_slip) ? fmt::format("{:.2f}", line.median_max_slip) : "-"});
+  }
+  return rows;
+}
+
 }  // namespace
 
 std::vector<BenchmarkLine> compared(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& runs) {
   std::vector<BenchmarkLine> lines;
   for (const std::string& planner : plan.planners) lines.push_back(lineOf(plan, runs, planner));
   return lines;
+}
+
+std::vector<WorldLine> drivesOf(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& runs) {
+  std::vector<WorldLine> lines;
+  for (const std::string& group : groupsOf(plan))
+    for (const std::string& planner : plan.planners) {
+      WorldLine line{.group = group, .planner = planner};
+      std::vector<double> seconds, slips;
+      for (const BenchmarkRun& run : runs) {
+        if (run.planner != planner || plan.cases[run.case_index].group != group) continue;
+        ++line.runs;
+        line.reached += run.reached;
+        if (run.reached) seconds.push_back(run.drive_s);
+        if (run.status == RouteStatus::Found && !run.crashed) slips.push_back(run.max_slip);
+      }
+      line.median_drive_s = median(seconds);
+      line.median_max_slip = median(slips);
+      lines.push_back(std::move(line));
+    }
+  return lines;
+}
+
+std::string asText(const std::vector<WorldLine>& lines) {
+  if (lines.empty()) return "";
+  std::string text = "\n";
+  for (const auto& row : worldRows(lines)) {
+    text += fmt::format("{:<12}{:<16}", row[0], row[1]);
+    for (std::size_t i = 2; i < row.size(); ++i) text += fmt::format("{:>14}", row[i]);
+    text += "\n";
+  }
+  return text;
 }
 
 std::string asText(const std::vector<BenchmarkLine>& lines) {
@@ -127,9 +183,9 @@ std::string asText(const std::vector<BenchmarkLine>& lines) {
   return text;
 }
 
-nlohmann::ordered_json asJson(const std::vector<BenchmarkLine>& lines) {
+nlohmann::ordered_json asJson(const std::vector<BenchmarkLine>& lines, const std::vector<WorldLine>& drives) {
   auto array = nlohmann::ordered_json::array();
-  for (const BenchmarkLine& line : lines)
+  for (const BenchmarkLine& line : lines) {
     array.push_back({{"planner", line.planner},
                      {"runs", line.runs},
                      {"found", line.found},
@@ -142,6 +198,14 @@ nlohmann::ordered_json asJson(const std::vector<BenchmarkLine>& lines) {
                      {"mean_cusps", line.mean_cusps},
                      {"max_curvature_1_m", line.max_curvature_1_m},
                      {"least_clearance_cells", line.least_clearance_cells}});
+    for (const WorldLine& drive : drives)
+      if (drive.planner == line.planner)
+        array.back()["drives"].push_back({{"belief", drive.group},
+                                          {"runs", drive.runs},
+                                          {"reached", drive.reached},
+                                          {"median_drive_s", drive.median_drive_s},
+                                          {"median_max_slip", drive.median_max_slip}});
+  }
   return array;
 }
 
@@ -154,6 +218,10 @@ std::string asPage(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& r
   std::vector<std::vector<std::string>> rows;
   for (const BenchmarkLine& line : compared(plan, runs)) rows.push_back(words(line));
   page.table(header(), rows);
+  if (const auto drives = worldRows(drivesOf(plan, runs)); drives.size() > 1) {
+    page.heading("Drives over the true slip");
+    page.table(drives.front(), {drives.begin() + 1, drives.end()});
+  }
   page.heading("Cost over time");
   std::vector<Plot> plots;
   for (std::size_t c = 0; c < std::min<std::size_t>(plan.cases.size(), 12); ++c)

@@ -28,9 +28,26 @@ struct BenchmarkLine {
 std::vector<BenchmarkLine> compared(const planner::BenchmarkPlan& plan,
                                     const std::vector<planner::BenchmarkRun>& runs);
 
+/// Drives over the true slip: a planner over all worlds of a group.
+struct WorldLine {
+  std::string group;
+  std::string planner;
+  int runs = 0;
+  int reached = 0;
+  double median_drive_s = 0.0;   ///< of those that reached the goal; NaN for none
+  double median_max_slip = 0.0;  ///< of all routes driven [-]; NaN for none
+};
+
+/// None where no case has a world.
+std::vector<WorldLine> drivesOf(const planner::BenchmarkPlan& plan,
+                                const std::vector<planner::BenchmarkRun>& runs);
+
+/// Columns with 95 % intervals of the share that reached the goal; empty for none.
+std::string asText(const std::vector<WorldLine>& lines);
+
 /// The comparison as columns for a terminal, as JSON, and as a page with the cost over time of every case.
 std::string asText(const std::vector<BenchmarkLine>& lines);
-nlohmann::ordered_json asJson(const std::vector<BenchmarkLine>& lines);
+nlohmann::ordered_json asJson(const std::vector<BenchmarkLine>& lines, const std::vector<WorldLine>& drives);
 std::string asPage(const planner::BenchmarkPlan& plan, const std::vector<planner::BenchmarkRun>& runs);
 
 }  // namespace talus::cli

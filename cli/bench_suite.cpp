@@ -1,14 +1,18 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
 #include <random>
+#include <set>
 
 #include <cli/bench_suite.hpp>
 #include <cli/context.hpp>
 #include <costmap/ground_class.hpp>
 #include <maps/site_generator.hpp>
 #include <planner/field_planner.hpp>
+#include <planner/grid_suite.hpp>
 #include <planner/moving_ai.hpp>
+#include <planner/slip_world.hpp>
 #include <planner/turn_prices.hpp>
 #include <terramech/soil_library.hpp>
 
@@ -94,19 +98,77 @@ std::vector<BenchmarkCase> generatedCases(const SuiteOptions& options, const Con
   return cases;
 }
 
+// Each world twice: planned on the slip of the terrain seen, and on the tail of what it may be.
+std::vector<BenchmarkCase> slipCases(const SuiteOptions& options, const Context& context) {
+  std::vector<BenchmarkCase> cases;
+  for (int k = 1; k <= options.pairs; ++k)
+    for (const bool heed : {false, true}) {
+      const auto world = std::make_shared<const planner::SlipWorld>(planner::slipWorld(
+          {.seed = context.seed * 1000 + static_cast<std::uint64_t>(k), .heed_doubt = heed}));
+      const maps::Grid& grid = world->map->grid();
+      const std::string group = heed ? "slip tail" : "slip mean";
+      cases.push_back({.name = group + " " + std::to_string(k),
+                       .map = world->map,
+                       .start = grid.centre({8, 8}),
+                       .goal = grid.centre({grid.width - 9, grid.height - 9}),
+                       .kinematics = {.turning_radius_m = std::max(0.0, options.turning_radius_m)},
+                       .world = world,
+                       .group = group});
+    }
+  return cases;
+}
+
+std::vector<BenchmarkCase> mapCases(const std::string& path, const SuiteOptions& options,
+                                    const Context& context) {
+  GroundOptions ground = options.ground;
+  ground.dem.path = path;
+  const Ground read = readGround(ground, context);
+  auto cases =
+      pairsOn(std::filesystem::path(path).stem().string(), read.map.published(), options.pairs, context.seed);
+  if (static_cast<int>(cases.size()) < options.pairs)
+    context.warn(path + ": " + std::to_string(cases.size()) +
+                 " pairs of places far apart with a route between them, fewer than asked for");
+  giveKinematics(cases, read.map.model(), options);
+  return cases;
+}
+
+std::vector<BenchmarkCase> casesOf(const std::string& name, const SuiteOptions& options,
+                                   const Context& context) {
+  if (name == "generated") return generatedCases(options, context);
+  if (name == "slip") return slipCases(options, context);
+  if (name == "grids") return planner::gridCases(64, options.pairs, context.seed);
+  if (name.ends_with(".scen")) return planner::readMovingAi(name, static_cast<std::size_t>(options.pairs));
+  return mapCases(name, options, context);
+}
+
+bool isMap(const std::string& name) {
+  return name != "generated" && name != "slip" && name != "grids" && !name.ends_with(".scen");
+}
+
+void refuseUnusedGround(const SuiteOptions& options) {
+  const GroundOptions& g = options.ground;
+  const bool given = !g.soil.empty() || !g.soils.empty() || !g.model.empty() || !g.rover.empty() ||
+                     !g.layers.terrain.empty() || !g.layers.rocks.empty() || !g.layers.keep_out.empty();
+  if (given && std::ranges::none_of(options.names, isMap))
+    throw InputError({"talus bench", "a soil, rover or layer is given, but no elevation map",
+                      "name a map; the other suites bring their own ground"});
+}
+
 }  // namespace
 
 std::vector<BenchmarkCase> suiteCases(const SuiteOptions& options, const Context& context) {
-  if (options.name == "generated") return generatedCases(options, context);
-  if (options.name.ends_with(".scen"))
-    return planner::readMovingAi(options.name, static_cast<std::size_t>(options.pairs));
-  GroundOptions ground = options.ground;
-  ground.dem.path = options.name;
-  const Ground read = readGround(ground, context);
-  auto cases = pairsOn(std::filesystem::path(options.name).stem().string(), read.map.published(),
-                       options.pairs, context.seed);
-  giveKinematics(cases, read.map.model(), options);
-  return cases;
+  refuseUnusedGround(options);
+  std::vector<BenchmarkCase> all;
+  std::set<std::string> names;
+  for (const std::string& name : options.names)
+    for (BenchmarkCase& made : casesOf(name, options, context)) {
+      // Maps of the same name in two folders: a case's log is named after it.
+      std::string unique = made.name;
+      for (int k = 2; !names.insert(unique).second; ++k) unique = made.name + " of map " + std::to_string(k);
+      made.name = unique;
+      all.push_back(std::move(made));
+    }
+  return all;
 }
 
 }  // namespace talus::cli

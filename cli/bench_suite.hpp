@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include <cli/ground_options.hpp>
 #include <planner/benchmark.hpp>
@@ -12,14 +13,14 @@ struct Context;
 
 /// Which questions are asked.
 struct SuiteOptions {
-  std::string name = "generated";  ///< "generated", a DEM, or a MovingAI .scen
-  int pairs = 3;                   ///< starts and goals a map, > 0
-  int side_cells = 300;            ///< of generated sites
-  double turning_radius_m = -1.0;  ///< that planners of drives keep; < 0: the rover's
-  GroundOptions ground;            ///< for a DEM: layers, rover, soils, policy
+  std::vector<std::string> names{"generated"};  ///< "generated", "slip", "grids", DEMs, MovingAI .scen files
+  int pairs = 3;                                ///< starts and goals a map, > 0; worlds of "slip"
+  int side_cells = 300;                         ///< of generated sites
+  double turning_radius_m = -1.0;               ///< that planners of drives keep; < 0: the rover's
+  GroundOptions ground;                         ///< for DEMs: layers, rover, soils, policy
 };
 
-/// The cases of a suite. Throws InputError for a file that cannot be used.
+/// The cases of all suites named. Throws InputError for a file that cannot be used.
 std::vector<planner::BenchmarkCase> suiteCases(const SuiteOptions& options, const Context& context);
 
 }  // namespace talus::cli

@@ -73,8 +73,8 @@ struct Paths {
 };
 
 Paths write(const maps::Site& site, maps::SiteKind kind, const std::string& output) {
-  const Paths paths{output, beside(output, "_classes.tif"), beside(output, "_rocks.tif"),
-                    beside(output, "_soils.yaml")};
+  Paths paths{output, beside(output, "_classes.tif"), beside(output, "_rocks.tif"),
+              beside(output, "_soils.yaml")};
   const maps::Georeference* georeference = &*site.map.georeference;
   maps::writeGeoTiff({paths.map, georeference}, {{"elevation", "m", site.map.elevation_m}});
   maps::writeGeoTiff({paths.classes, georeference}, "terrain class", site.classes, std::nullopt);

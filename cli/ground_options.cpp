@@ -116,9 +116,13 @@ void warnOfAssumptions(const GroundOptions& options, const Assumed& assumed, con
 
 void addGroundOptions(CLI::App& command, GroundOptions& options) {
   addMapOptions(command, options.dem);
-  addLayerOptions(command, options.layers);
   command.add_option("--map", options.map_file, "map of beliefs made by `talus costmap` or `talus update`")
       ->type_name("MAP.ot");
+  addGroundChoices(command, options);
+}
+
+void addGroundChoices(CLI::App& command, GroundOptions& options) {
+  addLayerOptions(command, options.layers);
   command.add_option("--soils", options.soils, "soil of each terrain class")->type_name("FILE");
   auto* soil = command
                    .add_option("--soil", options.soil,

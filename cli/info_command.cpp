@@ -40,7 +40,7 @@ std::vector<float> slopes_deg(const maps::TerrainMetrics& metrics) {
 
 // The value below which the share lies (nearest rank).
 double quantile(std::vector<float>& values, double share) {
-  const auto rank = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1) + 0.5);
+  const auto rank = std::lround(share * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), values.begin() + rank, values.end());
   return static_cast<double>(values[static_cast<std::size_t>(rank)]);
 }

@@ -16,6 +16,8 @@ Interrupt::Interrupt() {
 
 Interrupt::~Interrupt() {
   closing_ = true;
+  // The listener has SIGTERM blocked and waits for it: this wakes it.
+  // NOLINTNEXTLINE(bugprone-bad-signal-to-kill-thread)
   pthread_kill(listener_.native_handle(), SIGTERM);
   listener_.join();
 }

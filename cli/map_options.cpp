@@ -7,9 +7,13 @@
 namespace talus::cli {
 
 void addMapOptions(CLI::App& command, MapOptions& options, const std::string& name) {
-  maps::ReadOptions& read = options.read;
   command.add_option(name, options.path, "elevation map: anything GDAL opens, a NumPy .npz, or an OctoMap")
       ->required();
+  addReadOptions(command, options);
+}
+
+void addReadOptions(CLI::App& command, MapOptions& options) {
+  maps::ReadOptions& read = options.read;
   command.add_option("--band", read.band, "band that holds the heights, from 1")->type_name("N");
   command
       .add_option("--resolution", read.resolution_m, "cell side; needed without a CRS, resamples with one")

@@ -22,9 +22,10 @@ struct MapOptions {
   maps::ReadOptions read;
 };
 
-/// Declares the positional DEM (or what `name` calls it) with --band, --resolution, --window, --nodata,
-/// --vertical-scale, --ignore-crs,
-/// --max-cells.
+/// Declares --band, --resolution, --window, --nodata, --vertical-scale, --ignore-crs, --max-cells.
+void addReadOptions(CLI::App& command, MapOptions& options);
+
+/// Declares the positional DEM (or what `name` calls it) and addReadOptions().
 void addMapOptions(CLI::App& command, MapOptions& options, const std::string& name = "DEM");
 
 /// Reads the map; what the reader decided goes to stderr as warnings. @throws InputError

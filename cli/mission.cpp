@@ -33,6 +33,15 @@ std::string place(const YamlFields& fields, const std::string& name) {
   return fields.word(name);
 }
 
+// One place, or a list of them.
+std::vector<std::string> places(const YamlFields& fields, const std::string& name) {
+  try {
+    if (fields.numbers(name).size() == 2) return {place(fields, name)};
+  } catch (const InputError&) {
+  }
+  return fields.texts(name);
+}
+
 void readMaps(const YamlFields& maps, GroundOptions& ground, const std::filesystem::path& folder) {
   maps.only({"dem", "map", "terrain", "rocks", "keep_out", "resolution_m", "ignore_crs"});
   ground.dem.path = resolved(maps.word("dem", ""), folder);
@@ -87,8 +96,8 @@ void readMission(PlanOptions& options) {
   if (fields.has("thresholds")) readThresholds(fields.fields("thresholds"), options.ground.policy);
   if (options.planner == "field") options.planner = fields.word("planner", "field");
   if (options.start.empty()) options.start = place(fields, "start");
-  if (options.goal.empty()) options.goal = place(fields, "goal");
-  if (options.via.empty() && fields.has("via")) options.via.push_back(place(fields, "via"));
+  if (options.goals.empty()) options.goals = places(fields, "goal");
+  if (options.via.empty()) options.via = places(fields, "via");
   for (const auto& [heading, key] : {std::pair{&options.drive.start_heading_rad, "start_heading_rad"},
                                      std::pair{&options.drive.goal_heading_rad, "goal_heading_rad"}})
     if (!*heading && fields.has(key)) *heading = fields.number(key);

@@ -23,7 +23,7 @@ struct DriveOptions {
 struct PlanOptions {
   GroundOptions ground;
   std::string start;
-  std::string goal;
+  std::vector<std::string> goals;  ///< the one that costs least is driven to
   std::vector<std::string> via;
   std::string pairs;  ///< CSV of many starts and goals; empty: one route
   double tolerance_m = 0.0;

@@ -33,6 +33,7 @@ void saveParetoChart(const std::string& path, const std::vector<planner::ParetoR
   if (!path.ends_with(".html")) return save(path, charts(front));
   HtmlReport page("Energy, time and risk");
   std::vector<std::vector<std::string>> rows;
+  rows.reserve(front.size());
   for (const planner::ParetoRoute& route : front)
     rows.push_back({fmt::format("{:.1f}", route.demand.energy_J / 1e3),
                     fmt::format("{:.2f}", route.demand.time_s / 3600),

@@ -13,8 +13,6 @@
 namespace talus::cli {
 namespace {
 
-using maps::Cell;
-
 constexpr double kMargin = 24.0;
 constexpr double kHead = 64.0;
 constexpr double kLegend = 210.0;

@@ -2,7 +2,6 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <numbers>
 #include <optional>
 
 #include <fmt/format.h>
@@ -11,6 +10,7 @@
 #include <cli/campaign.hpp>
 #include <cli/command.hpp>
 #include <cli/commands.hpp>
+#include <cli/drive_options.hpp>
 #include <cli/mission.hpp>
 #include <cli/number_check.hpp>
 #include <cli/output_file.hpp>
@@ -30,7 +30,6 @@
 #include <planner/risk_planner.hpp>
 #include <planner/route_check.hpp>
 #include <planner/route_risk.hpp>
-#include <planner/turn_prices.hpp>
 
 namespace talus::cli {
 namespace {
@@ -45,46 +44,14 @@ struct Timing {
   double load_s, costmap_s, plan_s;
 };
 
-// A heading in radians, or in degrees under another name.
-void addHeading(CLI::App& command, const std::string& name, std::optional<double>& heading_rad) {
-  auto* radians = command
-                      .add_option_function<double>(
-                          name, [&heading_rad](double value) { heading_rad = value; },
-                          "which way the rover looks there, counter-clockwise from east; any if not given")
-                      ->type_name("RAD")
-                      ->check(finite());
-  command
-      .add_option_function<double>(
-          name + "-deg", [&heading_rad](double value) { heading_rad = value * std::numbers::pi / 180.0; },
-          "the same in degrees")
-      ->type_name("DEG")
-      ->check(finite())
-      ->excludes(radians);
-}
-
-void addDrive(CLI::App& command, DriveOptions& drive) {
-  addHeading(command, "--start-heading", drive.start_heading_rad);
-  addHeading(command, "--goal-heading", drive.goal_heading_rad);
-  command
-      .add_option_function<double>(
-          "--turning-radius", [&drive](double value) { drive.turning_radius_m = value; },
-          "smallest radius that hybrid may drive; 0: turns in place (default: the rover's)")
-      ->type_name("METRES")
-      ->check(notNegative());
-  command
-      .add_option("--chassis", drive.chassis,
-                  "keep clearance, pitch and roll of such a chassis along the whole motion (any planner)")
-      ->type_name("KIND")
-      ->check(CLI::IsMember({"rigid", "rocker-bogie"}));
-  command.add_flag("--no-reverse", drive.no_reverse, "hybrid: the rover may not drive backwards");
-}
-
 void bind(CLI::App& command, PlanOptions& options) {
   addGroundOptions(command, options.ground);
   command
       .add_option("--start", options.start, "x,y in map metres; lat,lon with a d on each; or a GeoJSON point")
       ->type_name("PLACE");
-  command.add_option("--goal", options.goal, "the same")->type_name("PLACE");
+  command
+      .add_option("--goal", options.goals, "the same; may be repeated: the goal that costs least is taken")
+      ->type_name("PLACE");
   command.add_option("--via", options.via, "to be passed on the way; may be repeated")->type_name("PLACE");
   command
       .add_option("--pairs", options.pairs,
@@ -97,10 +64,10 @@ void bind(CLI::App& command, PlanOptions& options) {
   command.add_option("--planner", options.planner, "who plans: `talus plugins` lists them")
       ->type_name("NAME")
       ->capture_default_str();
-  addDrive(command, options.drive);
+  addDriveOptions(command, options.drive);
   command.add_option("--time", options.time_limit_s, "time limit of the planning")
       ->type_name("S")
-      ->check(CLI::PositiveNumber);
+      ->check(positive());
   command
       .add_option("--in-memory", options.in_memory,
                   "read a DEM of more cells in windows along a route over its overview")
@@ -123,7 +90,7 @@ void bind(CLI::App& command, PlanOptions& options) {
 
 void requirePlaces(const PlanOptions& options) {
   if (!options.pairs.empty()) {
-    if (!options.start.empty() || !options.goal.empty() || !options.via.empty() || !options.html.empty() ||
+    if (!options.start.empty() || !options.goals.empty() || !options.via.empty() || !options.html.empty() ||
         !options.png.empty() || !options.pareto.empty() || options.max_risk > 0.0 ||
         !options.drive.chassis.empty())
       throw InputError({"--pairs " + options.pairs,
@@ -132,14 +99,7 @@ void requirePlaces(const PlanOptions& options) {
     return;
   }
   if (options.start.empty()) throw InputError({"talus plan", "no start", "pass --start x,y"});
-  if (options.goal.empty()) throw InputError({"talus plan", "no goal", "pass --goal x,y"});
-}
-
-planner::Kinematics kinematicsOf(const DriveOptions& drive, const costmap::TraversabilityMap& map) {
-  planner::Kinematics kinematics = planner::kinematicsOn(map.model(), map.published()->cost());
-  if (drive.turning_radius_m) kinematics.turning_radius_m = *drive.turning_radius_m;
-  kinematics.may_reverse = !drive.no_reverse;
-  return kinematics;
+  if (options.goals.empty()) throw InputError({"talus plan", "no goal", "pass --goal x,y"});
 }
 
 planner::Problem problemOf(const PlanOptions& options, const Ground& ground, const Context& context) {
@@ -148,7 +108,9 @@ planner::Problem problemOf(const PlanOptions& options, const Ground& ground, con
   problem.map = ground.map.published();
   if (options.pairs.empty()) {
     problem.start = maps::readPlace(options.start, map, "--start");
-    problem.goal = maps::readPlace(options.goal, map, "--goal");
+    problem.goal = maps::readPlace(options.goals.front(), map, "--goal");
+    for (auto goal = options.goals.begin() + 1; goal != options.goals.end(); ++goal)
+      problem.other_goals.push_back(maps::readPlace(*goal, map, "--goal"));
   }
   for (const std::string& place : options.via) problem.via.push_back(maps::readPlace(place, map, "--via"));
   problem.goal_tolerance_m = options.tolerance_m;
@@ -173,20 +135,19 @@ void requireAllowed(const planner::Plan& plan, const costmap::CostGrid& map, dou
                                      violations[0].place.x_m, violations[0].place.y_m, violations[0].reason));
 }
 
-// The chassis that the call asks for.
-std::optional<planner::Chassis> chassisOf(const DriveOptions& drive, const costmap::TraversabilityMap& map) {
-  if (drive.chassis.empty()) return std::nullopt;
-  return planner::Chassis(
-      map.elevation().elevation_m, map.model().rover(),
-      drive.chassis == "rigid" ? planner::Suspension::Rigid : planner::Suspension::RockerBogie);
-}
-
 planner::Plan planOnce(const planner::Problem& problem, planner::NamedPlanner& planner,
                        const PlanOptions& options, const std::optional<planner::Chassis>& chassis) {
   const auto once = [&](const planner::Problem& p) {
     return options.max_risk > 0.0 ? planner::planWithinRisk(p, planner, options.max_risk) : planner.plan(p);
   };
   return chassis ? planner::planOnChassis(problem, *chassis, once) : once(problem);
+}
+
+// Which of several goals the route ends at.
+std::string goalText(const PlanOptions& options, const planner::Plan& plan) {
+  if (options.goals.size() < 2) return "";
+  return fmt::format("{:<14}{}, number {} of the {} given: none costs less\n", "goal",
+                     options.goals[plan.goal], plan.goal + 1, options.goals.size());
 }
 
 std::string asText(const Route& route, const Timing& seconds) {
@@ -273,7 +234,7 @@ double since_s(std::chrono::steady_clock::time_point begin) {
 Planned planWhole(const PlanOptions& options, planner::NamedPlanner& planner, const Context& context) {
   Planned planned{.ground = readGround(options.ground, context), .problem = {}, .plan = {}};
   planned.problem = problemOf(options, planned.ground, context);
-  const auto chassis = chassisOf(options.drive, planned.ground.map);
+  const auto chassis = chassisOf(options.drive.chassis, planned.ground.map);
   const auto begin = std::chrono::steady_clock::now();
   planned.plan = planOnce(planned.problem, planner, options, chassis);
   planned.plan_s = since_s(begin);
@@ -310,21 +271,22 @@ int finish(const PlanOptions& options, const Planned& planned, const planner::An
   const Timing seconds{planned.ground.load_s, planned.ground.build_s, planned.plan_s};
   if (context.json) {
     auto json = summaryJson(route);
+    if (options.goals.size() > 1) json["goal"] = options.goals[planned.plan.goal];
     if (options.max_risk > 0.0) json["risk"] = riskJson(route, options, context);
     json["seconds"] = {{"load", seconds.load_s}, {"costmap", seconds.costmap_s}, {"plan", seconds.plan_s}};
     printJson(json);
   } else {
-    print(asText(route, seconds));
+    print(goalText(options, planned.plan) + asText(route, seconds));
   }
   return Exit::kDone;
 }
 
 void refuseInWindows(const PlanOptions& options) {
   const bool other = options.planner != "field" || options.max_risk > 0.0 || !options.pareto.empty() ||
-                     !options.pairs.empty() || !options.drive.chassis.empty();
+                     !options.pairs.empty() || !options.drive.chassis.empty() || options.goals.size() > 1;
   if (!other) return;
   throw InputError({options.ground.dem.path,
-                    "is too large for --planner, --pairs, --risk, --pareto and --chassis",
+                    "is too large for --planner, --pairs, --risk, --pareto, --chassis and several goals",
                     "read a part with --window, or the whole with --whole-field"});
 }
 

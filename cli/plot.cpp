@@ -209,9 +209,11 @@ std::string draw(const std::vector<Plot>& plots, Canvas::Kind kind, const PlotLa
   const int rows = (count + columns - 1) / columns;
   Canvas canvas({.width = columns * layout.panel_width, .height = rows * layout.panel_height, .kind = kind});
   for (int i = 0; i < static_cast<int>(plots.size()); ++i) {
-    const Box box{static_cast<double>(i % columns * layout.panel_width),
-                  static_cast<double>(i / columns * layout.panel_height),
-                  static_cast<double>(layout.panel_width), static_cast<double>(layout.panel_height)};
+    const int column = i % columns;
+    const int row = i / columns;
+    const Box box{static_cast<double>(column * layout.panel_width),
+                  static_cast<double>(row * layout.panel_height), static_cast<double>(layout.panel_width),
+                  static_cast<double>(layout.panel_height)};
     Panel(canvas, plots[static_cast<std::size_t>(i)], box).draw();
   }
   return canvas.bytes();

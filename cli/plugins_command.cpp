@@ -19,6 +19,7 @@ std::vector<std::string> features(const PlannerCapabilities& offers) {
   if (offers.heading_dependent) words.emplace_back("heading-dependent cost");
   if (offers.lower_bound) words.emplace_back("lower bound");
   if (offers.via_points) words.emplace_back("via points");
+  if (offers.several_goals) words.emplace_back("several goals");
   if (offers.incremental_update) words.emplace_back("incremental update");
   if (offers.deterministic) words.emplace_back("deterministic");
   return words;

@@ -45,6 +45,7 @@ SoilMixture mixtureOf(const std::vector<SoilPrior>& soils, double width_m) {
 
 std::vector<StrengthPrior> strengthPriors(const std::vector<SoilPrior>& soils) {
   std::vector<StrengthPrior> priors;
+  priors.reserve(soils.size());
   for (const SoilPrior& soil : soils) priors.push_back(strengthPrior(soil));
   return priors;
 }

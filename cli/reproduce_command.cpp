@@ -109,7 +109,7 @@ std::string page(const std::vector<ThesisFigure>& figures, const std::vector<Goa
 }
 
 std::filesystem::path madeFolder(const ReproduceOptions& options) {
-  const std::filesystem::path folder = options.output;
+  std::filesystem::path folder = options.output;
   std::error_code failed;
   std::filesystem::create_directories(folder / "validation", failed);
   if (failed) {

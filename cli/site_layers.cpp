@@ -10,7 +10,6 @@
 namespace talus::cli {
 namespace {
 
-using costmap::CellBelief;
 using costmap::CellCode;
 using costmap::TraversabilityMap;
 

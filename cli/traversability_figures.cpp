@@ -54,6 +54,7 @@ Cells spread(const std::vector<State>& all, double step) {
     double n = 0.0, pull = 0.0, square = 0.0;
   };
   std::vector<std::pair<std::pair<int, int>, State>> sorted;
+  sorted.reserve(all.size());
   for (const State& s : all) {
     sorted.push_back(
         {{static_cast<int>(torqueShare(s) / step), static_cast<int>(sinkageShare(s) / step)}, s});

@@ -133,6 +133,7 @@ class Writer {
 
 void solveAll(const std::vector<Entry>& entries, std::vector<WheelForces>& forces) {
   std::vector<WheelCase> cases;
+  cases.reserve(entries.size());
   for (const Entry& entry : entries) cases.push_back(entry.wheel_case);
   forces.resize(cases.size());
   // Blocks of a multiple of four: a case's lane, and so nothing else, depends on them.

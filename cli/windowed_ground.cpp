@@ -65,7 +65,7 @@ WindowedGround::WindowedGround(const GroundOptions& options, const Context& cont
 std::set<WindowedGround::Tile> WindowedGround::missing(const planner::Polyline& line,
                                                        double margin_cells) const {
   std::set<Tile> tiles;
-  for (const maps::Point p : planner::subdivided(line, kSide / 4 * grid_.resolution_m)) {
+  for (const maps::Point p : planner::subdivided(line, 0.25 * kSide * grid_.resolution_m)) {
     const double column = (p.x_m - grid_.south_west.x_m) / grid_.resolution_m,
                  row = (p.y_m - grid_.south_west.y_m) / grid_.resolution_m;
     const auto tile = [](double cell, int count) {

@@ -37,7 +37,7 @@ planner::Plan planInWindows(planner::Problem& problem, WindowedGround& ground) {
     leg.start = whole.points.back();
     leg.goal = stops[k];
     if (k + 1 < stops.size()) leg.goal_tolerance_m = 0.0;
-    const planner::Plan part = planLeg(leg, ground, tube);
+    planner::Plan part = planLeg(leg, ground, tube);
     problem.map = leg.map;
     if (part.status != planner::RouteStatus::Found) return part;
     planner::append(whole.points, part.points);

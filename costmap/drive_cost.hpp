@@ -67,7 +67,7 @@ struct DriveCurve {
   /// The bin of a gradient; outside 0..kBins-1 when the gradient leaves the table.
   static int bin(double gradient) noexcept;
   /// The gradient at the middle of a bin.
-  static constexpr double gradient(int bin) noexcept { return (bin - kBins / 2) / 256.0; }
+  static constexpr double gradient(int bin) noexcept { return (bin - 0.5 * kBins) / 256.0; }
 };
 
 /// One kind of ground: what a metre costs for the hot loop, and the numbers behind it.

@@ -8,9 +8,13 @@
 namespace talus::planner {
 namespace {
 
-// Windows, in cells: long enough that where they meet matters little, short enough that a search over their
-// box of cells stays in the cache.
-constexpr double kWindow = 64.0, kOverlap = 16.0;
+// Stretches between two marks are worked on, and remembered, as wholes; then what lies around the marks. In
+// cells, the first at least.
+constexpr double kMarks = 64.0, kAround = 32.0;
+
+// Windows of a stretch, in cells: long enough that where they meet matters little, short enough that a search
+// over their box of cells stays in the cache.
+constexpr double kWindow = 96.0, kOverlap = 16.0;
 
 // The search crosses edges at a few points only; sliding them wins back more than this share.
 constexpr double kSlidingGains = 0.03;
@@ -28,23 +32,41 @@ Polyline Refiner::acrossEdges(const MotionCost& cost, const Polyline& window) co
   return cost.along(tried) < before_J ? tried : window;
 }
 
-Polyline Refiner::operator()(const MotionCost& cost, Polyline route, int threads, const StopCheck& stop) {
-  memo_.newRound();
-  if (route.size() < 2) return route;
-  double best_J = cost.along(route);
+Polyline Refiner::refinedStretch(const MotionCost& cost, Polyline stretch, const StopCheck& stop) const {
+  const double cell_m = cost.map().grid().resolution_m;
+  double best_J = cost.along(stretch);
   const auto take = [&](Polyline tried) {
     const double tried_J = cost.along(tried);
     if (!(tried_J < best_J)) return;
     best_J = tried_J;
+    stretch = std::move(tried);
+  };
+  for (double cells = options_.coarsest_cells; cells >= options_.finest_cells && !stop(); cells /= 2)
+    take(shifted(cost, stretch, cells * cell_m, options_.shift, stop));
+  WindowMemo none;
+  take(byWindows(
+      stretch, {kWindow * cell_m, kOverlap * cell_m},
+      [&](const Polyline& window) { return acrossEdges(cost, window); }, none, 1, stop));
+  return stretch;
+}
+
+Polyline Refiner::operator()(const MotionCost& cost, Polyline route, int threads, const StopCheck& stop) {
+  memo_.newRound();
+  if (route.size() < 2) return route;
+  const double cell_m = cost.map().grid().resolution_m;
+  double best_J = cost.along(route);
+  const auto take = [&](Polyline tried) {
+    const double tried_J = cost.along(tried);
+    if (!(tried_J <= best_J)) return;
+    best_J = tried_J;
     route = std::move(tried);
   };
-  const double cell_m = cost.map().grid().resolution_m;
   take(shortCut(cost, route, options_.short_cut_cells * cell_m, stop));
-  for (double cells = options_.coarsest_cells; cells >= options_.finest_cells && !stop(); cells /= 2)
-    take(shifted(cost, route, cells * cell_m, options_.shift, stop));
-  const WindowCut cut{kWindow * cell_m, kOverlap * cell_m, (options_.corridor.reach_cells + 2) * cell_m};
-  take(byWindows(
-      route, cut, [&](const Polyline& window) { return acrossEdges(cost, window); }, memo_, threads, stop));
+  const double reach_cells = 2 * options_.coarsest_cells + options_.corridor.reach_cells + 2;
+  const WindowCut cut{kMarks * cell_m, kAround * cell_m, reach_cells * cell_m};
+  take(overWindows(
+      cutAtMarks(route, cut.length_m), cut,
+      [&](const Polyline& stretch) { return refinedStretch(cost, stretch, stop); }, memo_, threads, stop));
   const Polyline fewer = withoutIdleTurns(cost, route);
   return cost.along(fewer) <= best_J * (1.0 + 1e-9) ? fewer : route;
 }

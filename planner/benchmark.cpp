@@ -14,6 +14,7 @@
 #include <planner/named_planner.hpp>
 #include <planner/polyline.hpp>
 #include <planner/route_check.hpp>
+#include <planner/slip_world.hpp>
 
 namespace talus::planner {
 namespace {
@@ -30,6 +31,7 @@ struct Answer {
   DriveShape drive;
   double clearance_cells = 0.0;
   double megabytes = 0.0;
+  SlipDrive went;
 };
 
 double lengthOf(const std::vector<maps::Point>& points) {
@@ -118,7 +120,8 @@ std::string answered(const BenchmarkPlan& plan, const BenchmarkJob& job) {
                       .turns = std::max(0, static_cast<int>(found.points.size()) - 2),
                       .drive = shape(found.drive),
                       .clearance_cells = clearance_cells(*asked.map, found.points),
-                      .megabytes = 0.0};
+                      .megabytes = 0.0,
+                      .went = asked.world ? driven(*asked.world, found.points) : SlipDrive{}};
   std::string bytes(sizeof result + progress.size() * sizeof(CostAtTime), '\0');
   std::memcpy(bytes.data(), &result, sizeof result);
   if (!progress.empty())
@@ -179,6 +182,9 @@ BenchmarkRun benchmarkRun(const BenchmarkJob& job, const std::string& bytes) {
   run.turns_in_place = result.drive.turns_in_place;
   run.max_curvature_1_m = result.drive.max_curvature_1_m;
   run.clearance_cells = result.clearance_cells;
+  run.reached = result.status == RouteStatus::Found && result.went.reached;
+  run.drive_s = result.went.time_s;
+  run.max_slip = result.went.max_slip;
   return run;
 }
 

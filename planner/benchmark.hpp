@@ -12,6 +12,8 @@
 
 namespace talus::planner {
 
+struct SlipWorld;
+
 /// One question of a benchmark suite.
 struct BenchmarkCase {
   std::string name;
@@ -20,6 +22,8 @@ struct BenchmarkCase {
   maps::Point goal;
   double optimum_J = std::numeric_limits<double>::quiet_NaN();  ///< where it is known, else NaN
   Kinematics kinematics{};                                      ///< that planners of drives keep
+  std::shared_ptr<const SlipWorld> world{};  ///< over which routes are driven; null: nobody drives
+  std::string group{};                       ///< worlds of one group are scored together
 };
 
 /// A cost and when it was reached.
@@ -46,6 +50,9 @@ struct BenchmarkRun {
   int turns_in_place = 0;          ///< of drives
   double max_curvature_1_m = 0.0;  ///< of drives
   double clearance_cells = 0.0;  ///< from the route to the nearest cell that no heading may enter, at most 10
+  bool reached = false;          ///< in worlds: the rover came to the goal
+  double drive_s = 0.0;          ///< in worlds: time that the drive took
+  double max_slip = 0.0;         ///< in worlds: largest slip met
   std::vector<CostAtTime> progress;  ///< ever better costs
 };
 

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include <planner/corridor_search.hpp>
-#include <planner/heading_cost.hpp>
+#include <planner/edge_crossings.hpp>
 
 namespace talus::planner {
 namespace {
@@ -17,76 +17,28 @@ using maps::Point;
 constexpr float kFar = std::numeric_limits<float>::infinity();
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-enum Side : int { kWestSide, kEastSide, kSouthSide, kNorthSide };
-
-// A point of a cell's edge, in cells from the cell's south-west corner.
-struct Spot {
-  double x, y;
-};
-
-Spot spotOf(int side, int k, int points) noexcept {
-  const double t = (k + 0.5) / points;
-  switch (side) {
-    case kWestSide:
-      return {0.0, t};
-    case kEastSide:
-      return {1.0, t};
-    case kSouthSide:
-      return {t, 0.0};
-    default:
-      return {t, 1.0};
-  }
-}
-
-// All motions across a cell from a point of its edge to points of the other three.
-struct Motion {
-  HeadingCost cost;
-  float length;
-  int side, k;  // where it ends
-};
-
-class Motions {
- public:
-  Motions(const costmap::DriveCost& cost, int points) : points_(points) {
-    for (int side = 0; side < 4; ++side)
-      for (int k = 0; k < points; ++k)
-        for (int to = 0; to < 4; ++to)
-          for (int l = 0; l < points && to != side; ++l) {
-            const Spot a = spotOf(side, k, points), b = spotOf(to, l, points);
-            const double dx = b.x - a.x, dy = b.y - a.y, length = std::sqrt(dx * dx + dy * dy);
-            all_.push_back(
-                {HeadingCost(cost, {dx / length, dy / length}), static_cast<float>(length), to, l});
-          }
-  }
-  const Motion* from(int side, int k) const noexcept {
-    return all_.data() + static_cast<std::size_t>((side * points_ + k) * each());
-  }
-  int each() const noexcept { return 3 * points_; }
-
- private:
-  int points_;
-  std::vector<Motion> all_;
-};
-
 class Search {
  public:
   Search(const MotionCost& cost, const std::vector<Point>& along, const CorridorOptions& options)
       : cost_(cost),
         grid_(cost.map().grid()),
         points_(options.points_per_edge),
-        motions_(cost.map().cost(), options.points_per_edge) {
+        crossings_(cost.map().cost(), options.points_per_edge, options.kernels),
+        paid_(static_cast<std::size_t>(crossings_.count() + EdgeCrossings::kVector)) {
     open(along, options.reach_cells);
   }
 
   EdgePath run(Point from, Point to, double below_J);
 
  private:
-  struct End {
-    Cell cell{};
-    float cost = kFar;
+  // A point of a local cell's edge, and the cell beyond it.
+  struct EdgePoint {
+    std::uint32_t node;
+    std::size_t cell, beyond;
   };
 
   void open(const std::vector<Point>& along, int reach);
+  double priceOfEnd(const Segment& motion, EdgePoint turn) const noexcept;
   std::size_t local(Cell c) const noexcept {
     return static_cast<std::size_t>(c.row - first_.row) * columns_ +
            static_cast<std::size_t>(c.column - first_.column);
@@ -97,11 +49,18 @@ class Search {
                                       static_cast<std::size_t>(points_)) +
            static_cast<std::uint32_t>(k);
   }
+  std::size_t beyond(std::size_t cell, int side) const noexcept {
+    return side == kWestSide    ? cell - 1
+           : side == kEastSide  ? cell + 1
+           : side == kSouthSide ? cell - columns_
+                                : cell + columns_;
+  }
+  bool turnsAllowed(std::size_t cell, int side, EdgeCrossings::End end, int i, int k) const noexcept;
   Cell cellOf(std::size_t local) const noexcept {
     return {first_.column + static_cast<int>(local % columns_),
             first_.row + static_cast<int>(local / columns_)};
   }
-  Spot spotOfNode(std::uint32_t node) const noexcept;
+  EdgeSpot spotOfNode(std::uint32_t node) const noexcept;
   template <typename Each>
   void forEachEdgePoint(Point place, Each each) const;
   void reach(std::uint32_t node, float label, std::uint32_t from, std::uint32_t cell);
@@ -112,10 +71,12 @@ class Search {
   const MotionCost& cost_;
   const maps::Grid& grid_;
   int points_;
-  Motions motions_;
+  EdgeCrossings crossings_;
+  std::vector<float> paid_;
   Cell first_{};  // of the box, two cells of margin around: an end on an edge touches the next cell
   std::size_t columns_ = 0;  // of the box
   std::vector<CellCode> codes_;
+  std::vector<bool> free_;                // by local cell: every heading may be had
   std::vector<float> label_, last_;       // by node: cost from the start; on to the end
   std::vector<std::uint32_t> from_, in_;  // node before (kNone: the start); local cell crossed
   std::vector<std::vector<std::uint32_t>> ring_;
@@ -137,12 +98,12 @@ void Search::open(const std::vector<Point>& along, int reach) {
     high = {std::max(high.column, c.column), std::max(high.row, c.row)};
   };
   const auto inCells = [&](Point p) {
-    return Spot{(p.x_m - grid_.south_west.x_m) / grid_.resolution_m,
-                (p.y_m - grid_.south_west.y_m) / grid_.resolution_m};
+    return EdgeSpot{(p.x_m - grid_.south_west.x_m) / grid_.resolution_m,
+                    (p.y_m - grid_.south_west.y_m) / grid_.resolution_m};
   };
-  Spot before = inCells(along.front());
+  EdgeSpot before = inCells(along.front());
   for (const Point p : along) {
-    const Spot here = inCells(p);
+    const EdgeSpot here = inCells(p);
     const int steps =
         1 + static_cast<int>(std::max(std::abs(here.x - before.x), std::abs(here.y - before.y)));
     for (int k = 1; k <= steps; ++k)
@@ -153,6 +114,7 @@ void Search::open(const std::vector<Point>& along, int reach) {
   columns_ = static_cast<std::size_t>(high.column - low.column + 2 * reach + 5);
   const std::size_t rows = static_cast<std::size_t>(high.row - low.row + 2 * reach + 5);
   codes_.assign(columns_ * rows, CellCode());
+  free_.assign(codes_.size(), false);
   std::vector<bool> done(codes_.size());
   for (const Cell c : on) {
     for (int row = std::max(c.row - reach, 0); row <= std::min(c.row + reach, grid_.height - 1); ++row)
@@ -162,6 +124,7 @@ void Search::open(const std::vector<Point>& along, int reach) {
         if (done[at]) continue;
         done[at] = true;
         codes_[at] = cost_.map().at({column, row});
+        free_[at] = crossings_.free(codes_[at]);
       }
   }
   const std::size_t nodes = codes_.size() * 2 * static_cast<std::size_t>(points_);
@@ -171,15 +134,15 @@ void Search::open(const std::vector<Point>& along, int reach) {
   in_.assign(nodes, kNone);
 }
 
-Spot Search::spotOfNode(std::uint32_t node) const noexcept {
+EdgeSpot Search::spotOfNode(std::uint32_t node) const noexcept {
   const auto points = static_cast<std::uint32_t>(points_);
   const Cell c = cellOf(node / points / 2);
-  const Spot in =
-      spotOf(node / points % 2 == 0 ? kWestSide : kSouthSide, static_cast<int>(node % points), points_);
+  const EdgeSpot in =
+      edgeSpot(node / points % 2 == 0 ? kWestSide : kSouthSide, static_cast<int>(node % points), points_);
   return {c.column + in.x, c.row + in.y};
 }
 
-// Calls each(node, point, local cell) for the edge points of every cell that the place touches.
+// Calls each(where, point) for the edge points of every cell that the place touches.
 template <typename Each>
 void Search::forEachEdgePoint(Point place, Each each) const {
   const double x = (place.x_m - grid_.south_west.x_m) / grid_.resolution_m,
@@ -193,13 +156,22 @@ void Search::forEachEdgePoint(Point place, Each each) const {
       const std::size_t cell = local({column, row});
       for (int side = 0; side < 4; ++side)
         for (int k = 0; k < points_; ++k) {
-          const Spot in = spotOf(side, k, points_);
-          each(node(cell, side, k),
+          const EdgeSpot in = edgeSpot(side, k, points_);
+          each({node(cell, side, k), cell, beyond(cell, side)},
                Point{grid_.south_west.x_m + (column + in.x) * grid_.resolution_m,
-                     grid_.south_west.y_m + (row + in.y) * grid_.resolution_m},
-               cell);
+                     grid_.south_west.y_m + (row + in.y) * grid_.resolution_m});
         }
     }
+}
+
+// Price of the first or the last motion; infinite where the cell beyond the edge does not allow its heading.
+double Search::priceOfEnd(const Segment& motion, EdgePoint turn) const noexcept {
+  const double dx = motion.to.x_m - motion.from.x_m, dy = motion.to.y_m - motion.from.y_m;
+  const double length = std::hypot(dx, dy);
+  if (length > 0.0 &&
+      std::isinf(cost_.map().cost().costPerMetre(codes_[turn.beyond], {dx / length, dy / length})))
+    return kFar;
+  return cost_(motion);
 }
 
 void Search::reach(std::uint32_t node, float label, std::uint32_t from, std::uint32_t cell) {
@@ -211,15 +183,24 @@ void Search::reach(std::uint32_t node, float label, std::uint32_t from, std::uin
   ++queued_;
 }
 
+// Whether the heading of motion i from a point of a side may be had in the cells beyond both ends, too: a
+// turn on an edge touches both its cells.
+bool Search::turnsAllowed(std::size_t cell, int side, EdgeCrossings::End end, int i, int k) const noexcept {
+  const std::size_t before = beyond(cell, side), after = beyond(cell, end.side);
+  return (free_[before] || crossings_.allowed(side, k, i, codes_[before])) &&
+         (free_[after] || crossings_.allowed(side, k, i, codes_[after]));
+}
+
 void Search::cross(std::uint32_t node, std::size_t cell, int side, int k) {
   const CellCode code = codes_[cell];
   if (code.curve() >= cost_.map().cost().curves().size()) return;
-  const Motion* motion = motions_.from(side, k);
-  const float here = label_[node];
-  for (int i = 0; i < motions_.each(); ++i, ++motion) {
-    const float through = here + motion->cost(code) * motion->length;
-    if (through < below_)
-      reach(this->node(cell, motion->side, motion->k), through, node, static_cast<std::uint32_t>(cell));
+  const EdgeCrossings::End* end = crossings_.ends(side, k);
+  crossings_.prices(side, k, code, label_[node], paid_.data());
+  for (int i = 0; i < crossings_.count(); ++i) {
+    const float through = paid_[static_cast<std::size_t>(i)];
+    const std::uint32_t to = this->node(cell, end[i].side, end[i].k);
+    if (through < below_ && through < label_[to] && turnsAllowed(cell, side, end[i], i, k))
+      reach(to, through, node, static_cast<std::uint32_t>(cell));
   }
 }
 
@@ -228,8 +209,9 @@ void Search::settle(std::uint32_t node) {
   const std::size_t holder = node / points / 2;
   const int k = static_cast<int>(node % points);
   const bool vertical = node / points % 2 == 0;
-  cross(node, holder, vertical ? kWestSide : kSouthSide, k);
-  cross(node, holder - (vertical ? 1 : columns_), vertical ? kEastSide : kNorthSide, k);
+  const std::size_t before = holder - (vertical ? 1 : columns_);
+  if (in_[node] != holder) cross(node, holder, vertical ? kWestSide : kSouthSide, k);
+  if (in_[node] != before) cross(node, before, vertical ? kEastSide : kNorthSide, k);
 }
 
 EdgePath Search::run(Point from, Point to, double below_J) {
@@ -245,13 +227,14 @@ EdgePath Search::run(Point from, Point to, double below_J) {
   ring_.resize(std::bit_ceil(static_cast<std::size_t>(most * 1.5F * per_bucket_) + 2));
   below_ = static_cast<float>(below_J / side_m);
   std::vector<std::uint32_t> last_cell(label_.size(), kNone);
-  forEachEdgePoint(to, [&](std::uint32_t node, Point p, std::size_t cell) {
-    const auto rest = static_cast<float>(cost_({p, to}) / side_m);
-    if (rest < last_[node]) last_[node] = rest, last_cell[node] = static_cast<std::uint32_t>(cell);
+  forEachEdgePoint(to, [&](EdgePoint at, Point p) {
+    const auto rest = static_cast<float>(priceOfEnd({p, to}, at) / side_m);
+    if (rest < last_[at.node])
+      last_[at.node] = rest, last_cell[at.node] = static_cast<std::uint32_t>(at.cell);
   });
-  forEachEdgePoint(from, [&](std::uint32_t node, Point p, std::size_t cell) {
-    const auto first = static_cast<float>(cost_({from, p}) / side_m);
-    if (first < below_) reach(node, first, kNone, static_cast<std::uint32_t>(cell));
+  forEachEdgePoint(from, [&](EdgePoint at, Point p) {
+    const auto first = static_cast<float>(priceOfEnd({from, p}, at) / side_m);
+    if (first < below_) reach(at.node, first, kNone, static_cast<std::uint32_t>(at.cell));
   });
   std::uint32_t best = kNone;
   for (std::size_t current = 0; queued_ > 0; ++current) {
@@ -274,7 +257,7 @@ EdgePath Search::run(Point from, Point to, double below_J) {
   path.turns.push_back(inCells(to));
   path.cells.push_back(cellOf(last_cell[best]));
   for (std::uint32_t at = best; at != kNone; at = from_[at]) {
-    const Spot s = spotOfNode(at);
+    const EdgeSpot s = spotOfNode(at);
     path.turns.push_back({s.x, s.y, at / static_cast<std::uint32_t>(points_) % 2 == 0});
     path.cells.push_back(cellOf(in_[at]));
   }

@@ -7,6 +7,7 @@
 #include <immintrin.h>
 
 #include <planner/cost_to_go.hpp>
+#include <planner/descent.hpp>
 
 namespace talus::planner {
 namespace {
@@ -69,15 +70,24 @@ CostToGo::CostToGo(std::shared_ptr<const EdgeLayer> edges, const std::vector<Fie
   const std::size_t ring = std::bit_ceil((std::size_t{EdgeLayer::kBlocked} >> shift_) + 2);
   buckets_.resize(ring);
   for (const FieldGoal& goal : goals) {
-    const auto index = static_cast<std::uint32_t>(edges_->padded().index(goal.cell));
     const double units =
         std::min(std::round(goal.cost_J / edges_->units().unit_J()), double{EdgeLayer::kBlocked});
-    goals_.push_back(index);
-    at_goals_.push_back(static_cast<std::uint32_t>(units));
-    if (distance_[index] <= at_goals_.back()) continue;
-    distance_[index] = at_goals_.back();
-    buckets_[distance_[index] >> shift_].push_back(index);
-    ++queued_;
+    goals_.push_back(
+        {static_cast<std::uint32_t>(edges_->padded().index(goal.cell)), static_cast<std::uint32_t>(units)});
+  }
+  seedGoals();
+}
+
+void CostToGo::enqueue(std::size_t cell) {
+  buckets_[(distance_[cell] >> shift_) & (buckets_.size() - 1)].push_back(static_cast<std::uint32_t>(cell));
+  ++queued_;
+}
+
+void CostToGo::seedGoals() {
+  for (const Goal goal : goals_) {
+    if (distance_[goal.index] <= goal.units) continue;
+    distance_[goal.index] = goal.units;
+    enqueue(goal.index);
   }
 }
 
@@ -92,28 +102,12 @@ bool CostToGo::settleAll(const StopCheck& stop) {
 bool CostToGo::settleBucketsUntil(std::uint32_t index, const StopCheck& stop) {
   // Farther than 32 bits tell: left unreached.
   const std::uint64_t last_bucket = (std::uint64_t{kUnreached} - 2 * EdgeLayer::kBlocked) >> shift_;
-  for (; feed(last_bucket); ++current_) {
+  for (; queued_ > 0 && current_ < last_bucket; ++current_) {
     if (index != kNoCell && (distance_[index] >> shift_) < current_) return true;
     if (buckets_[current_ & (buckets_.size() - 1)].empty()) continue;
     if (stop()) return false;
     settleCurrent();
   }
-  return true;
-}
-
-void CostToGo::settleBelow(std::uint64_t bucket) {
-  for (; feed(bucket); ++current_) settleCurrent();
-}
-
-// Brings waiting seeds into the bucket whose turn it is, or goes to their bucket when nothing else is queued.
-// False when nothing is left below the given bucket.
-bool CostToGo::feed(std::uint64_t below) {
-  if (queued_ == 0 && !seeds_.empty())
-    current_ =
-        std::max<std::uint64_t>(current_, std::min<std::uint64_t>(below, seeds_.back().distance >> shift_));
-  if (current_ >= below || (queued_ == 0 && seeds_.empty())) return false;
-  for (; !seeds_.empty() && seeds_.back().distance >> shift_ <= current_; seeds_.pop_back(), ++queued_)
-    buckets_[current_ & (buckets_.size() - 1)].push_back(seeds_.back().index);
   return true;
 }
 
@@ -166,31 +160,17 @@ std::optional<double> CostToGo::cost_J(maps::Cell cell) const noexcept {
   return found * edges_->units().unit_J();
 }
 
-bool CostToGo::endsAt(std::size_t index) const noexcept {
-  for (std::size_t k = 0; k < goals_.size(); ++k)
-    if (goals_[k] == index && at_goals_[k] == distance_[index]) return true;
-  return false;
+std::uint32_t CostToGo::atGoal(std::size_t index) const noexcept {
+  std::uint32_t least = kUnreached;
+  for (const Goal goal : goals_)
+    if (goal.index == index) least = std::min(least, goal.units);
+  return least;
 }
 
 std::vector<maps::Cell> CostToGo::path(maps::Cell from) const {
-  const PaddedGrid& padded = edges_->padded();
-  std::vector<maps::Cell> path;
-  if (units(from) == kUnreached) return path;
-  std::size_t at = padded.index(from);
-  path.push_back(from);
-  while (!endsAt(at)) {
-    const std::size_t before = at;
-    for (int heading = 0; heading < 8 && at == before; ++heading) {
-      const std::size_t next = at + static_cast<std::size_t>(padded.offset(heading));
-      const std::uint16_t edge = edges_->into(next)[opposite(heading)];
-      if (edge != EdgeLayer::kBlocked && distance_[next] != kUnreached &&
-          distance_[next] + edge == distance_[at])
-        at = next;
-    }
-    if (at == before) return {};  // not settled
-    path.push_back(padded.cell(at));
-  }
-  return path;
+  return descent(
+      *edges_, from, [this](std::size_t index) { return distance_[index]; },
+      [this](std::size_t index) { return atGoal(index); });
 }
 
 }  // namespace talus::planner

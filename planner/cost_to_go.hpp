@@ -25,6 +25,12 @@ class CostToGo {
  public:
   static constexpr std::uint32_t kUnreached = std::numeric_limits<std::uint32_t>::max();
 
+  /// A goal by padded index, and what is left to pay there in units.
+  struct Goal {
+    std::uint32_t index;
+    std::uint32_t units;
+  };
+
   CostToGo(std::shared_ptr<const EdgeLayer> edges, const std::vector<FieldGoal>& goals,
            Kernels kernels = Kernels::Best);
 
@@ -35,8 +41,8 @@ class CostToGo {
   bool settleAll(const StopCheck& stop = {});
 
   /// Takes in that the edge layer was updated for cells of this box: afterwards the field is the one that
-  /// would be found anew. Only what depended on the change, or gains by it, is worked on
-  /// [ramalingam_reps_1996].
+  /// would be found anew. What is nearer to the goal than anything in the box stays; the rest is settled
+  /// again when it is asked for. PatchedField answers for one start with less work.
   void repair(CellBox changed);
 
   /// Cost from the cell's centre to a goal's centre, in units; kUnreached when there is no way. Final for
@@ -45,6 +51,19 @@ class CostToGo {
 
   /// The same in joules; nothing when there is no way.
   std::optional<double> cost_J(maps::Cell cell) const noexcept;
+
+  /// No more than the cost of the best way from a padded index, in units, whether it is settled or not;
+  /// kUnreached where there is surely no way.
+  std::uint32_t atLeast(std::size_t index) const noexcept {
+    const std::uint64_t front = current_ << shift_;
+    return distance_[index] < front || queued_ == 0 ? distance_[index] : static_cast<std::uint32_t>(front);
+  }
+
+  /// The least left to pay at a goal in this cell, in units; kUnreached where no goal is.
+  std::uint32_t atGoal(std::size_t index) const noexcept;
+
+  /// Where the field begins; a cell may stand there more than once.
+  const std::vector<Goal>& goals() const noexcept { return goals_; }
 
   /// Cells of the best way from a settled cell to a goal, both included; empty when there is none.
   std::vector<maps::Cell> path(maps::Cell from) const;
@@ -58,20 +77,10 @@ class CostToGo {
   using Bucket = std::vector<std::uint32_t>;
 
   bool settleBucketsUntil(std::uint32_t index, const StopCheck& stop);
-  void settleBelow(std::uint64_t bucket);
   void settleCurrent();
-  struct Seed {
-    std::uint32_t distance;
-    std::uint32_t index;
-  };
-  static bool fartherFirst(Seed a, Seed b) noexcept { return a.distance > b.distance; }
-
-  std::vector<Seed> cellsThatLostTheirWay(const std::vector<std::uint32_t>& suspects);
-  bool supported(std::size_t index) const noexcept;
-  std::uint32_t throughNeighbours(std::size_t index) const noexcept;
-  void plant(std::vector<Seed> seeds);
-  bool feed(std::uint64_t below);
-  bool endsAt(std::size_t index) const noexcept;
+  std::uint32_t leastTouched(CellBox changed) const noexcept;
+  void enqueue(std::size_t cell);
+  void seedGoals();
   template <typename Improved>
   void settleBucket(Bucket& bucket, Improved improved);
   void prefetch(std::size_t cell, std::ptrdiff_t stride) const noexcept;
@@ -79,12 +88,10 @@ class CostToGo {
   std::shared_ptr<const EdgeLayer> edges_;
   std::vector<std::uint32_t> distance_;  // padded, units
   std::vector<Bucket> buckets_;          // a ring; each holds indices of cells of like distance
-  std::vector<Seed> seeds_;              // of a repair, farthest first: wait for their bucket
   std::uint64_t current_ = 0;            // bucket whose turn it is, counted without wrapping
   std::uint64_t queued_ = 0;             // entries in all buckets
   std::uint64_t settled_ = 0;
-  std::vector<std::uint32_t> goals_;     // padded indices
-  std::vector<std::uint32_t> at_goals_;  // distances there at the beginning
+  std::vector<Goal> goals_;
   bool vectors_ = false;
   unsigned shift_ = 0;  // log2 of a bucket's width in units
 };

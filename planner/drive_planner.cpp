@@ -87,6 +87,37 @@ void DrivePlanner::improve(const PoseProblem& asked, const Problem& problem, Pos
   leg.cost_J = cost_J;
 }
 
+PosePlan DrivePlanner::drivenTo(PoseProblem asked, const Problem& problem, maps::Point end) {
+  asked.goal = end;
+  PosePlan leg = search_.plan(asked);
+  if (leg.status != RouteStatus::Found) return leg;
+  improve(asked, problem, leg);
+  if (!sampling_) return leg;
+  sampling_->seed = problem.seed;
+  if (sampling_->better) sampling_->better(leg.cost_J);
+  return improvedBySampling(asked, leg, *sampling_);
+}
+
+PosePlan DrivePlanner::drivenWithin(const PoseProblem& asked, const Problem& problem) {
+  Problem free = problem;
+  free.start = asked.start;
+  free.via.clear();
+  free.prove = false;
+  const Plan route = field_.plan(free);
+  PosePlan best;
+  best.status = route.status;
+  best.reason = route.reason;
+  if (route.status != RouteStatus::Found) return best;
+  best = drivenTo(asked, problem, route.points.back());
+  if (best.status == RouteStatus::Cancelled || route.points.back() == problem.goal ||
+      !MotionCost(problem.map).allowed(problem.goal))
+    return best;
+  PosePlan exact = drivenTo(asked, problem, problem.goal);
+  const bool better =
+      exact.status == RouteStatus::Found && (best.status != RouteStatus::Found || exact.cost_J < best.cost_J);
+  return better ? exact : best;
+}
+
 Plan DrivePlanner::plan(const Problem& problem) {
   if (!problem.map) throw std::invalid_argument("DrivePlanner: no map");
   std::vector<maps::Point> stops = problem.via;
@@ -103,21 +134,15 @@ Plan DrivePlanner::plan(const Problem& problem) {
   whole.status = RouteStatus::Found;
   whole.drive.start = {problem.start, problem.start_heading_rad.value_or(0.0)};
   for (std::size_t i = 0; i < stops.size(); ++i) {
-    asked.goal = stops[i];
-    if (i + 1 == stops.size()) asked.goal_heading_rad = problem.goal_heading_rad;
-    PosePlan leg = search_.plan(asked);
+    const bool last = i + 1 == stops.size();
+    const double tolerance_m = last ? problem.goal_tolerance_m : 0.0;
+    if (last) asked.goal_heading_rad = problem.goal_heading_rad;
+    PosePlan leg = tolerance_m > 0.0 ? drivenWithin(asked, problem) : drivenTo(asked, problem, stops[i]);
     if (leg.status != RouteStatus::Found) return ended(std::move(leg));
-    improve(asked, problem, leg);
-    if (sampling_) {
-      sampling_->seed = problem.seed;
-      if (sampling_->better) sampling_->better(leg.cost_J);
-      leg = improvedBySampling(asked, leg, *sampling_);
-      if (leg.status != RouteStatus::Found) return ended(std::move(leg));
-    }
     append(whole.drive, leg.path);
-    const Segment ends{asked.start, asked.goal};
-    const double bound_J = problem.prove ? bound_(problem.map, ends, 0.0, StopCheck(problem.watch))
-                                         : straightBound_J(*problem.map, ends);
+    const double bound_J =
+        problem.prove ? bound_(problem.map, {asked.start, stops[i]}, tolerance_m, StopCheck(problem.watch))
+                      : straightBound_J(*problem.map, {asked.start, stops[i]}, tolerance_m);
     whole.lower_bound_J += std::min(bound_J, leg.cost_J);
     asked.start = stops[i];
     asked.start_heading_rad = endOf(leg.path).heading_rad;

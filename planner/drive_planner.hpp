@@ -23,11 +23,13 @@ class DrivePlanner {
   /// Each leg is handed to improvedBySampling() too.
   void sample(const PoseSamplingSettings& settings) { sampling_ = settings; }
 
-  /// A drive, or why there is none. A goal tolerance is not made use of: the drive ends at the goal. Throws
-  /// std::invalid_argument without a map.
+  /// A drive, or why there is none. Within a goal tolerance it ends at the goal or where the any-angle route
+  /// does, whichever drive costs less. Throws std::invalid_argument without a map.
   Plan plan(const Problem& problem);
 
  private:
+  PosePlan drivenTo(PoseProblem asked, const Problem& problem, maps::Point end);
+  PosePlan drivenWithin(const PoseProblem& asked, const Problem& problem);
   void improve(const PoseProblem& asked, const Problem& problem, PosePlan& leg);
 
   std::optional<PoseSamplingSettings> sampling_;

@@ -148,9 +148,7 @@ void EdgeLayer::update(std::shared_ptr<const costmap::CostGrid> newer, const Edg
                        CellBox changed) {
   map_ = std::move(newer);
   units_ = units;
-  buildRows({{std::max(changed.first.column - 1, 0), std::max(changed.first.row - 1, 0)},
-             {std::min(changed.last.column + 1, padded_.width - 1),
-              std::min(changed.last.row + 1, padded_.height - 1)}});
+  buildRows(grown(changed, 1, padded_));
 }
 
 }  // namespace talus::planner

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -36,6 +37,13 @@ struct CellBox {
   maps::Cell first;
   maps::Cell last;
 };
+
+/// The box with so many cells more on every side, as far as the grid goes.
+inline CellBox grown(CellBox box, int cells, const PaddedGrid& grid) noexcept {
+  return {
+      {std::max(box.first.column - cells, 0), std::max(box.first.row - cells, 0)},
+      {std::min(box.last.column + cells, grid.width - 1), std::min(box.last.row + cells, grid.height - 1)}};
+}
 
 /// Cost of every step of the 8-neighbourhood on one version of the map, in units of EdgeUnits; 16 bytes a
 /// cell. A step is half a step in the cell it leaves and half in the one it enters, both in the heading of

@@ -38,17 +38,26 @@ Choice choiceAround(Turn turn, double step) {
   return choice;
 }
 
-double within(const costmap::CostGrid& map, maps::Cell cell, const Turn& from, const Turn& to) noexcept {
+// The cell of a motion, and the cells before and after it: a turn on an edge touches both its cells, so they
+// must allow the heading, too.
+struct Passage {
+  costmap::CellCode cell, before, after;
+};
+
+double within(const costmap::DriveCost& drive, const Passage& passage, const Turn& from,
+              const Turn& to) noexcept {
   const double dx = to.x - from.x, dy = to.y - from.y, length = std::sqrt(dx * dx + dy * dy);
   if (length == 0.0) return 0.0;
-  return length * static_cast<double>(HeadingCost(map.cost(), {dx / length, dy / length})(map.at(cell)));
+  const HeadingCost cost(drive, {dx / length, dy / length});
+  const bool turns = std::isfinite(cost(passage.before)) && std::isfinite(cost(passage.after));
+  return turns ? length * static_cast<double>(cost(passage.cell)) : kInfinity;
 }
 
-void choose(const costmap::CostGrid& map, maps::Cell cell, Choice& from, const Choice& to) {
+void choose(const costmap::DriveCost& drive, const Passage& passage, Choice& from, const Choice& to) {
   for (std::size_t a = 0; a < static_cast<std::size_t>(from.count); ++a) {
     from.best[a] = kInfinity;
     for (std::size_t b = 0; b < static_cast<std::size_t>(to.count); ++b) {
-      const double through = within(map, cell, from.places[a], to.places[b]) + to.best[b];
+      const double through = within(drive, passage, from.places[a], to.places[b]) + to.best[b];
       if (!(through < from.best[a])) continue;
       from.best[a] = through;
       from.next[a] = static_cast<int>(b);
@@ -62,7 +71,9 @@ void slideOnce(const costmap::CostGrid& map, EdgePath& path, double step) {
   for (std::size_t i = n; i-- > 0;) {
     const bool end = i == 0 || i + 1 == n;
     choices[i] = choiceAround(path.turns[i], end ? 2.0 : step);
-    if (i + 1 < n) choose(map, path.cells[i], choices[i], choices[i + 1]);
+    if (i + 1 == n) continue;
+    const auto at = [&](std::size_t k) { return map.at(path.cells[k]); };
+    choose(map.cost(), {at(i), at(i > 0 ? i - 1 : i), at(i + 2 < n ? i + 1 : i)}, choices[i], choices[i + 1]);
   }
   for (std::size_t i = 0, a = 0; i < n; ++i) {
     path.turns[i] = choices[i].places[a];

@@ -11,11 +11,7 @@
 #include <planner/remedy.hpp>
 
 namespace talus::planner {
-namespace {
-
 using maps::Point;
-
-}  // namespace
 
 Plan FieldPlanner::plan(const Problem& problem) {
   if (!problem.map) throw std::invalid_argument("FieldPlanner: no map");
@@ -62,10 +58,7 @@ bool FieldPlanner::repairTo(const Problem& problem) {
   const auto changed = changedCells(old, newer);
   edges_->update(problem.map, units, changed.value_or(CellBox{}));
   if (changed) refine_.forget({newer.grid().centre(changed->first), newer.grid().centre(changed->last)});
-  if (!changed || !field_) return true;
-  if (fieldGoals(MotionCost(problem.map), field_goal_, field_tolerance_m_) == field_goals_)
-    field_->repair(*changed);
-  else
+  if (field_ && fieldGoals(MotionCost(problem.map), field_goal_, field_tolerance_m_) != field_goals_)
     field_.reset();
   return true;
 }
@@ -76,9 +69,24 @@ bool FieldPlanner::prepareField(const MotionCost& cost, const Leg& leg) {
   field_.reset();
   if (field_goals_.empty()) return false;
   field_.emplace(edges_, field_goals_);
+  field_map_ = edges_->mapPointer();
   field_goal_ = leg.to;
   field_tolerance_m_ = leg.tolerance_m;
   return true;
+}
+
+// Down the field; where it is that of an older version of the map, by what the change touches, or by the
+// field repaired where that is less work.
+Polyline FieldPlanner::roughRoute(const MotionCost& cost, const Segment& places, const StopCheck& stop) {
+  if (field_map_ != edges_->mapPointer()) {
+    const auto changed = changedCells(*field_map_, edges_->map());
+    if (changed) {
+      if (auto route = gridRouteAfter(*changed, cost, *field_, places, stop)) return std::move(*route);
+      field_->repair(*changed);
+    }
+    field_map_ = edges_->mapPointer();
+  }
+  return gridRoute(cost, *field_, places, stop);
 }
 
 Plan FieldPlanner::planLeg(const Problem& problem, const Leg& leg, const StopCheck& stop) {
@@ -88,16 +96,20 @@ Plan FieldPlanner::planLeg(const Problem& problem, const Leg& leg, const StopChe
   if (!prepareEdges(problem, stop)) return stoppedBy(stop);
   if (!prepareField(cost, leg))
     return ended(RouteStatus::GoalInvalid, invalidPlace(*problem.map, "goal", leg.to));
-  auto rough = gridRoute(cost, *field_, {leg.from, leg.to}, stop);
+  auto rough = roughRoute(cost, {leg.from, leg.to}, stop);
   if (rough.empty()) {
     if (stop()) return stoppedBy(stop);
     return ended(RouteStatus::NoRoute, noWay(*edges_, leg.from, leg.to));
   }
-  Plan plan{RouteStatus::Found, {}, refine_(cost, std::move(rough), problem.threads, stop), 0.0, 0.0};
+  Plan plan{RouteStatus::Found,
+            {},
+            cutWithin(refine_(cost, std::move(rough), problem.threads, stop), leg.to, leg.tolerance_m),
+            0.0,
+            0.0};
   plan.cost_J = cost.along(plan.points);
   const Segment ends{leg.from, leg.to};
   const double bound_J = problem.prove ? bound_(problem.map, ends, leg.tolerance_m, stop)
-                                       : straightBound_J(*problem.map, {leg.from, plan.points.back()});
+                                       : straightBound_J(*problem.map, ends, leg.tolerance_m);
   plan.lower_bound_J = std::min(plan.cost_J, bound_J);
   return plan;
 }

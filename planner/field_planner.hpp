@@ -37,11 +37,13 @@ class FieldPlanner {
   static EdgeUnits unitsFor(const costmap::CostGrid& map);
   bool repairTo(const Problem& problem);
   bool prepareField(const MotionCost& cost, const Leg& leg);
+  Polyline roughRoute(const MotionCost& cost, const Segment& places, const StopCheck& stop);
 
   Refiner refine_;
   LowerBound bound_;
   std::shared_ptr<EdgeLayer> edges_;
   std::optional<CostToGo> field_;
+  std::shared_ptr<const costmap::CostGrid> field_map_;  // the version that the field is right for
   std::vector<FieldGoal> field_goals_;
   maps::Point field_goal_;
   double field_tolerance_m_ = 0.0;

@@ -17,7 +17,7 @@
 namespace talus {
 
 /// Grows with every change below that an older plugin or program would misread.
-inline constexpr int kPlannerInterfaceVersion = 1;
+inline constexpr int kPlannerInterfaceVersion = 2;
 
 /// What a plugin is and can do.
 struct PlannerCapabilities {
@@ -28,6 +28,7 @@ struct PlannerCapabilities {
   bool heading_dependent = false;     ///< climbing, descending and crossing a slope differ
   bool lower_bound = false;           ///< a route says how far from the best it can be at most
   bool via_points = false;            ///< PlanRequest::via is honoured
+  bool several_goals = false;         ///< PlanRequest::other_goals is honoured
   bool incremental_update = false;    ///< update() keeps what did not change
   bool deterministic = false;         ///< same input and seed, same route, as long as no clock stops the work
 };
@@ -44,7 +45,9 @@ struct PlannerSettings {
 struct PlanRequest {
   maps::Point start;
   maps::Point goal;
-  double tolerance_m = 0.0;        ///< the route may end this far from the goal, >= 0
+  std::vector<maps::Point>
+      other_goals{};               ///< the route may end at any of these as well: the cheapest is taken
+  double tolerance_m = 0.0;        ///< it may end this far from the goal, >= 0
   std::vector<maps::Point> via{};  ///< to be passed in this order
   Watch watch{};  ///< progress, and the cancel check: request a stop and plan() ends Cancelled
 };

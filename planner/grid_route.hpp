@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include <planner/cost_to_go.hpp>
 #include <planner/motion_cost.hpp>
 #include <planner/polyline.hpp>
@@ -11,5 +13,10 @@ namespace talus::planner {
 /// or when stopped. The field's goals must be fieldGoals() of the second place.
 Polyline gridRoute(const MotionCost& cost, CostToGo& field, const Segment& places,
                    const StopCheck& stop = {});
+
+/// The same after the edges of a box of cells changed, from the field before the change. Nothing when that
+/// takes more work than to repair the field.
+std::optional<Polyline> gridRouteAfter(CellBox changed, const MotionCost& cost, const CostToGo& before,
+                                       const Segment& places, const StopCheck& stop = {});
 
 }  // namespace talus::planner

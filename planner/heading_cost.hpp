@@ -13,12 +13,16 @@ namespace talus::planner {
 class HeadingCost {
  public:
   HeadingCost(const costmap::DriveCost& cost, costmap::Direction heading) noexcept
+      : HeadingCost(cost, heading.x * costmap::CellCode::kStep, heading.y * costmap::CellCode::kStep) {}
+
+  /// By the heading's unit vector times CellCode::kStep.
+  HeadingCost(const costmap::DriveCost& cost, double x, double y) noexcept
       : curves_(cost.curves().data()),
         curve_count_(cost.curves().size()),
         max_along_(cost.limits().max_along),
         max_across_(cost.limits().max_across),
-        x_(heading.x * costmap::CellCode::kStep),
-        y_(heading.y * costmap::CellCode::kStep) {}
+        x_(x),
+        y_(y) {}
 
   /// Joules a horizontal metre; infinite when not allowed.
   float operator()(costmap::CellCode cell) const noexcept {

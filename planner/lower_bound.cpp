@@ -28,12 +28,12 @@ constexpr double kSquare = 1.001;
 
 }  // namespace
 
-double straightBound_J(const costmap::CostGrid& map, const Segment& places) {
+double straightBound_J(const costmap::CostGrid& map, const Segment& places, double tolerance_m) {
   double cheapest = std::numeric_limits<double>::infinity();
   for (const auto& curve : map.cost().curves())
     for (const float value : curve.cost_J_per_m) cheapest = std::min(cheapest, static_cast<double>(value));
   const double metres = std::hypot(places.to.x_m - places.from.x_m, places.to.y_m - places.from.y_m);
-  return std::isfinite(cheapest) ? cheapest * metres : 0.0;
+  return std::isfinite(cheapest) ? cheapest * std::max(0.0, metres - tolerance_m) : 0.0;
 }
 
 double LowerBound::operator()(const std::shared_ptr<const costmap::CostGrid>& map, const Segment& places,
@@ -44,9 +44,7 @@ double LowerBound::operator()(const std::shared_ptr<const costmap::CostGrid>& ma
     map_ = map;
     edges_ = relaxedEdges(map, stop);
   }
-  const double metres = std::hypot(places.to.x_m - places.from.x_m, places.to.y_m - places.from.y_m);
-  const double share = metres > 0.0 ? std::max(0.0, 1.0 - goal_tolerance_m / metres) : 0.0;
-  const double straight_J = share * straightBound_J(*map, places);
+  const double straight_J = straightBound_J(*map, places, goal_tolerance_m);
   if (!edges_) return straight_J;
   if (!field_ || !(goal_ == places.to) || tolerance_m_ != goal_tolerance_m) {
     std::vector<FieldGoal> goals;

@@ -8,9 +8,9 @@
 
 namespace talus::planner {
 
-/// No motion of any shape between the two places costs less: their distance at the cheapest metre of any
-/// ground.
-double straightBound_J(const costmap::CostGrid& map, const Segment& places);
+/// No motion of any shape from the one place to within the tolerance of the other costs less: the distance at
+/// the cheapest metre of any ground.
+double straightBound_J(const costmap::CostGrid& map, const Segment& places, double tolerance_m = 0.0);
 
 /// What no route to a goal costs less than, whatever its shape and headings: the field over relaxedEdges(),
 /// or straightBound_J() where that is higher. Kept for a map and a goal, so that another start is answered at

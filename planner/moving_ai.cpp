@@ -31,7 +31,7 @@ std::shared_ptr<const costmap::CostGrid> readMap(const std::string& path) {
   file >> word >> type >> word >> grid.height >> word >> grid.width >> word;
   if (!file || word != "map" || grid.width < 1 || grid.height < 1 || grid.size() > 100'000'000)
     refuse(path, 4, "no MovingAI header (type, height, width, map)");
-  maps::Raster<costmap::CellCode> cells(grid, costmap::CellCode({.curve = costmap::CellCode::kBlocked}));
+  maps::Raster<std::uint8_t> walls(grid, 1);
   std::string row;
   std::getline(file, row);
   for (int r = 0; r < grid.height; ++r) {
@@ -39,9 +39,9 @@ std::shared_ptr<const costmap::CostGrid> readMap(const std::string& path) {
       refuse(path, static_cast<std::size_t>(r) + 5, "a row shorter than the width");
     for (int c = 0; c < grid.width; ++c)
       if (std::string(".GS").find(row[static_cast<std::size_t>(c)]) != std::string::npos)
-        cells[{c, grid.height - 1 - r}] = costmap::CellCode({.curve = 0});
+        walls[{c, grid.height - 1 - r}] = 0;
   }
-  return std::make_shared<costmap::CostGrid>(costmap::flattened(cells, flatCost()));
+  return evenGround(walls);
 }
 
 std::vector<Scenario> readScenarios(const std::string& path) {
@@ -73,6 +73,14 @@ std::string mapBeside(const std::string& scenario_path, const std::string& map) 
 }
 
 }  // namespace
+
+std::shared_ptr<const costmap::CostGrid> evenGround(const maps::Raster<std::uint8_t>& walls) {
+  maps::Raster<costmap::CellCode> cells(walls.grid());
+  for (std::size_t i = 0; i < walls.values().size(); ++i)
+    cells.values()[i] =
+        costmap::CellCode({.curve = walls.values()[i] == 0 ? std::uint8_t{0} : costmap::CellCode::kBlocked});
+  return std::make_shared<costmap::CostGrid>(costmap::flattened(cells, flatCost()));
+}
 
 std::vector<BenchmarkCase> readMovingAi(const std::string& scenario_path, std::size_t most) {
   const std::vector<Scenario> all = readScenarios(scenario_path);

@@ -13,4 +13,7 @@ namespace talus::planner {
 /// evenly over the file. Throws InputError naming file, line, reason and remedy.
 std::vector<BenchmarkCase> readMovingAi(const std::string& scenario_path, std::size_t most);
 
+/// A map of even ground at one joule a metre but for the cells that are not 0, which are blocked.
+std::shared_ptr<const costmap::CostGrid> evenGround(const maps::Raster<std::uint8_t>& walls);
+
 }  // namespace talus::planner

@@ -6,6 +6,8 @@
 
 #include <planner/drive_planner.hpp>
 #include <planner/field_planner.hpp>
+#include <planner/improvable_region.hpp>
+#include <planner/lower_bound.hpp>
 #include <planner/problem.hpp>
 #include <planner/sampling_planner.hpp>
 #include <planner/tube_planner.hpp>
@@ -36,17 +38,20 @@ class NamedPlanner {
   /// the whole: at twenty bytes a cell it would take more than 400 MB.
   static constexpr std::size_t kLarge = 20'000'000;
 
-  /// A route through all via points in order, or why there is none. Throws std::invalid_argument without a
-  /// map.
+  /// A route through all via points in order to the goal that costs least, or why there is none. Throws
+  /// std::invalid_argument without a map.
   Plan plan(const Problem& problem);
 
  private:
+  Plan planOne(const Problem& problem);
+  ImprovableRegion::Bound boundTo(const Problem& leg);
   Plan planField(const Problem& problem);
 
   SamplingSettings settings_;
   FieldPlanner field_;
   DrivePlanner drive_;
   TubePlanner tube_;
+  LowerBound bound_;
 };
 
 }  // namespace talus::planner

@@ -21,7 +21,8 @@ class Plugin final : public GlobalPlanner {
             .heading_dependent = true,
             .lower_bound = true,
             .via_points = true,
-            .incremental_update = false,
+            .several_goals = true,
+            .incremental_update = true,
             .deterministic = true};
   }
 
@@ -53,6 +54,7 @@ class Plugin final : public GlobalPlanner {
     const Plan plan = planner_->plan({.map = map_,
                                       .start = request.start,
                                       .goal = request.goal,
+                                      .other_goals = request.other_goals,
                                       .goal_tolerance_m = request.tolerance_m,
                                       .via = request.via,
                                       .time_limit_s = settings_.time_limit_s,

@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 
 #include <planner/polyline.hpp>
 
@@ -77,9 +79,67 @@ std::pair<Polyline, Polyline> splitAt(const Polyline& points, double left_m) {
   return {points, points};
 }
 
+Polyline cutWithin(Polyline points, maps::Point goal, double tolerance_m) {
+  if (!(tolerance_m > 0.0) || points.empty()) return points;
+  const double reach_m = tolerance_m * (1.0 - 1e-9);  // so that rounding leaves the end inside
+  const auto apart_m = [&](maps::Point p) { return std::hypot(p.x_m - goal.x_m, p.y_m - goal.y_m); };
+  const auto inside = std::ranges::find_if(points, [&](maps::Point p) { return apart_m(p) <= reach_m; });
+  // A leg may also pass through the circle between two places outside it.
+  for (auto to = points.begin() + 1; to != points.end() && to <= inside; ++to) {
+    const maps::Point from = *(to - 1);
+    const double dx = to->x_m - from.x_m, dy = to->y_m - from.y_m, square = dx * dx + dy * dy;
+    const double along = (goal.x_m - from.x_m) * dx + (goal.y_m - from.y_m) * dy;
+    const double far = apart_m(from);
+    const double root = along * along - square * (far * far - reach_m * reach_m);
+    if (far <= reach_m || !(square > 0.0) || root < 0.0 || along <= 0.0) continue;
+    const double t = (along - std::sqrt(root)) / square;
+    if (t > 1.0) continue;
+    *to = {from.x_m + t * dx, from.y_m + t * dy};
+    points.erase(to + 1, points.end());
+    return points;
+  }
+  if (inside != points.end()) points.erase(inside + 1, points.end());
+  return points;
+}
+
 void append(Polyline& points, const Polyline& piece) {
   for (const maps::Point p : piece)
     if (points.empty() || !(points.back() == p)) points.push_back(p);
+}
+
+namespace {
+
+std::uint64_t hashOf(maps::Point p) noexcept {
+  std::uint64_t hash = std::bit_cast<std::uint64_t>(p.x_m) * 0x9e3779b97f4a7c15U;
+  hash = (hash ^ (hash >> 32)) + std::bit_cast<std::uint64_t>(p.y_m);
+  hash *= 0xbf58476d1ce4e5b9U;
+  return hash ^ (hash >> 29);
+}
+
+}  // namespace
+
+std::vector<Polyline> cutAtMarks(const Polyline& points, double apart_m) {
+  std::vector<double> at_m(points.size(), 0.0);
+  std::vector<std::uint64_t> hash(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    hash[i] = hashOf(points[i]);
+    if (i > 0)
+      at_m[i] =
+          at_m[i - 1] + std::hypot(points[i].x_m - points[i - 1].x_m, points[i].y_m - points[i - 1].y_m);
+  }
+  const auto isMark = [&](std::size_t i) {
+    for (std::size_t k = i; k-- > 0 && at_m[i] - at_m[k] <= apart_m;)
+      if (hash[k] <= hash[i]) return false;
+    for (std::size_t k = i + 1; k < points.size() && at_m[k] - at_m[i] <= apart_m; ++k)
+      if (hash[k] <= hash[i]) return false;
+    return true;
+  };
+  std::vector<Polyline> pieces(1);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    pieces.back().push_back(points[i]);
+    if (i > 0 && i + 1 < points.size() && isMark(i)) pieces.push_back({points[i]});
+  }
+  return pieces;
 }
 
 }  // namespace talus::planner

@@ -20,8 +20,9 @@ struct Problem {
   std::shared_ptr<const costmap::CostGrid> map;  ///< the version to plan on; pinned while planning runs
   maps::Point start;
   maps::Point goal;
-  double goal_tolerance_m = 0.0;   ///< a route may end this far from the goal, >= 0
-  std::vector<maps::Point> via{};  ///< to be passed in this order
+  std::vector<maps::Point> other_goals{};  ///< a route may end at any of these as well: NamedPlanner's does
+  double goal_tolerance_m = 0.0;           ///< a route may end this far from the goal, >= 0
+  std::vector<maps::Point> via{};          ///< to be passed in this order
   double time_limit_s = std::numeric_limits<double>::infinity();  ///< > 0
   std::uint64_t seed = 1;                                         ///< same seed, same route
   int threads = 1;                                                ///< >= 1; the answer does not depend on it
@@ -42,7 +43,8 @@ struct Plan {
   std::vector<maps::Point> points;  ///< start, turns, goal
   double cost_J = std::numeric_limits<double>::infinity();  ///< exact, by MotionCost
   double lower_bound_J = 0.0;                               ///< no route costs less
-  PosePath drive{};  ///< of planners of drives: `points` are its chords; no legs for the others
+  std::size_t goal = 0;  ///< which goal it ends at: 0 is Problem::goal, then the other goals in order
+  PosePath drive{};      ///< of planners of drives: `points` are its chords; no legs for the others
 };
 
 }  // namespace talus::planner

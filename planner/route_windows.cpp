@@ -47,7 +47,11 @@ Parts partsOf(const Polyline& window, double end_m) {
 
 Polyline byWindows(const Polyline& route, const WindowCut& cut, const WindowWork& work, WindowMemo& memo,
                    int threads, const StopCheck& stop) {
-  auto windows = cutFromEnd(route, cut.length_m, cut.length_m);
+  return overWindows(cutFromEnd(route, cut.length_m, cut.length_m), cut, work, memo, threads, stop);
+}
+
+Polyline overWindows(std::vector<Polyline> windows, const WindowCut& cut, const WindowWork& work,
+                     WindowMemo& memo, int threads, const StopCheck& stop) {
   workOnAll(windows, {cut, work, memo, threads, stop});
   return joinWindows(windows, cut, work, memo, threads, stop);
 }

@@ -23,6 +23,10 @@ using WindowWork = std::function<Polyline(const Polyline&)>;
 Polyline byWindows(const Polyline& route, const WindowCut& cut, const WindowWork& work, WindowMemo& memo,
                    int threads = 1, const StopCheck& stop = {});
 
+/// The same over windows that are cut already, each beginning where the one before ends.
+Polyline overWindows(std::vector<Polyline> windows, const WindowCut& cut, const WindowWork& work,
+                     WindowMemo& memo, int threads = 1, const StopCheck& stop = {});
+
 /// The second half of it: of windows that were worked on, each beginning where the one before ends.
 Polyline joinWindows(const std::vector<Polyline>& windows, const WindowCut& cut, const WindowWork& work,
                      WindowMemo& memo, int threads = 1, const StopCheck& stop = {});

@@ -7,6 +7,7 @@ namespace talus::planner {
 namespace {
 
 constexpr std::size_t kBeginnings = 8;  // of motions of one length, within that length
+constexpr double kMarks = 8.0;          // pieces: how far apart marks lie at least
 
 double costOf(const MotionCost& cost, const Polyline& piece) noexcept {
   double sum = 0.0;
@@ -21,8 +22,27 @@ struct Choice {
   bool straight = false;  // there, else along the route
 };
 
+// The pieces of a route, and how many of them are left from each to the next mark: what changes elsewhere on
+// the route moves neither.
+struct Pieces {
+  std::vector<Polyline> all{};
+  std::vector<std::size_t> to_mark{};
+};
+
+Pieces piecesOf(const Polyline& route, double piece_m) {
+  Pieces pieces;
+  for (const Polyline& stretch : cutAtMarks(route, kMarks * piece_m)) {
+    auto cut = cutFromEnd(stretch, piece_m, piece_m);
+    for (std::size_t k = 0; k < cut.size(); ++k) {
+      pieces.to_mark.push_back(cut.size() - k);
+      pieces.all.push_back(std::move(cut[k]));
+    }
+  }
+  return pieces;
+}
+
 // Chooses at the beginning of piece i; choices behind it are made already.
-Choice chooseAt(const MotionCost& cost, const std::vector<Polyline>& pieces,
+Choice chooseAt(const MotionCost& cost, const std::vector<Polyline>& pieces, std::size_t to_mark,
                 const std::vector<Choice>& choices, std::size_t i) {
   const std::size_t to_end = pieces.size() - i;
   Choice best{costOf(cost, pieces[i]) + choices[i + 1].cost_J, i + 1, false};
@@ -34,7 +54,7 @@ Choice chooseAt(const MotionCost& cost, const std::vector<Polyline>& pieces,
   };
   consider(1);
   for (std::size_t count = 2; count <= to_end; count *= 2) {
-    const bool begins_here = to_end % std::max<std::size_t>(1, count / kBeginnings) == 0;
+    const bool begins_here = to_mark % std::max<std::size_t>(1, count / kBeginnings) == 0;
     if (!begins_here && i > 0) continue;
     consider(count);
     consider(count + count / 2);
@@ -45,11 +65,11 @@ Choice chooseAt(const MotionCost& cost, const std::vector<Polyline>& pieces,
 }  // namespace
 
 Polyline shortCut(const MotionCost& cost, const Polyline& route, double piece_m, const StopCheck& stop) {
-  const auto pieces = cutFromEnd(route, piece_m, piece_m);
+  const auto [pieces, to_mark] = piecesOf(route, piece_m);
   std::vector<Choice> choices(pieces.size() + 1);
   for (std::size_t i = pieces.size(); i-- > 0;) {
     if (stop()) return route;
-    choices[i] = chooseAt(cost, pieces, choices, i);
+    choices[i] = chooseAt(cost, pieces, to_mark[i], choices, i);
   }
   Polyline made;
   for (std::size_t i = 0; i < pieces.size(); i = choices[i].next)

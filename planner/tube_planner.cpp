@@ -94,9 +94,14 @@ Plan TubePlanner::planAlong(const Problem& problem, const Polyline& guide) {
 
 Plan TubePlanner::finished(const Problem& leg, Polyline way, const StopCheck& stop) {
   const MotionCost cost(leg.map);
-  Plan plan{RouteStatus::Found, {}, refine_(cost, std::move(way), leg.threads, stop), 0.0, 0.0};
+  Plan plan{RouteStatus::Found,
+            {},
+            cutWithin(refine_(cost, std::move(way), leg.threads, stop), leg.goal, leg.goal_tolerance_m),
+            0.0,
+            0.0};
   plan.cost_J = cost.along(plan.points);
-  plan.lower_bound_J = std::min(plan.cost_J, straightBound_J(*leg.map, {leg.start, plan.points.back()}));
+  plan.lower_bound_J =
+      std::min(plan.cost_J, straightBound_J(*leg.map, {leg.start, leg.goal}, leg.goal_tolerance_m));
   return plan;
 }
 

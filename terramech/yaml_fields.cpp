@@ -216,6 +216,23 @@ std::vector<double> YamlFields::numbers(const std::string& name) const {
   return values;
 }
 
+std::vector<std::string> YamlFields::texts(const std::string& name) const {
+  const auto found = findValue(*state_, name);
+  if (!found) return {};
+  if (found->value.IsScalar()) return {found->value.Scalar()};
+  const auto asText = [&](const YAML::Node& item) {
+    std::string text = item.IsScalar() ? item.Scalar() : "";
+    for (std::size_t i = 0; item.IsSequence() && i < item.size(); ++i)
+      if (item[i].IsScalar()) text += (i == 0 ? "" : ",") + item[i].Scalar();
+    if (text.empty()) fail(state_->where(item.Mark().line), name + " has an item that is no text", "mend it");
+    return text;
+  };
+  if (!found->value.IsSequence()) refuse(name, name + " is " + kindOf(found->value), "write a list [a, b]");
+  std::vector<std::string> all;
+  for (const auto& item : found->value) all.push_back(asText(item));
+  return all;
+}
+
 YamlFields YamlFields::fields(const std::string& name) const {
   const auto found = findValue(*state_, name);
   if (!found) refuse("", "lacks " + name, "add it");

@@ -52,6 +52,10 @@ class YamlFields {
   std::string word(const std::string& name, const std::string& fallback) const;
   std::vector<double> numbers(const std::string& name) const;  ///< a list; empty when absent
 
+  /// A list of texts, or a text alone; a list in the list becomes one text, its items parted by commas. Empty
+  /// when absent.
+  std::vector<std::string> texts(const std::string& name) const;
+
   /// The mapping under a name; throws when absent or no mapping.
   YamlFields fields(const std::string& name) const;
   /// The mappings of the list under a name; empty when absent.

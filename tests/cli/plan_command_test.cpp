@@ -129,6 +129,80 @@ TEST(PlanCommand, AMissionNeedsNothingElse) {
   EXPECT_EQ(json::parse(ran.out)["status"], "found");
 }
 
+TEST(PlanCommand, TakesTheCheapestOfSeveralGoalsAndPassesViaPoints) {
+  const Folder folder;
+  folder.write("dem.asc", dem());
+  const auto plan = [&folder](const std::vector<std::string>& more) {
+    std::vector<std::string> words{"plan",       "dem.asc",  "--resolution", "1",       "--soil",
+                                   "sandy_loam", "--rover",  "fido",         "--start", "5.5,4.5",
+                                   "--goal",     "26.5,4.5", "--goal",       "10.5,9.5"};
+    words.insert(words.end(), more.begin(), more.end());
+    return runTalus(words, folder.path());
+  };
+  const Ran json_run = plan({"--json"});
+  ASSERT_EQ(json_run.code, 0) << json_run.err;
+  EXPECT_EQ(json::parse(json_run.out)["goal"], "10.5,9.5");
+  EXPECT_THAT(plan({}).out, HasSubstr("10.5,9.5, number 2 of the 2 given"));
+  EXPECT_THAT(plan({"--in-memory", "10"}).err, HasSubstr("several goals"));
+
+  folder.write("mission.yaml",
+               "maps: {dem: dem.asc, resolution_m: 1}\nrover: fido\nsoil: sandy_loam\nstart: [5.5, 4.5]\n"
+               "goal: [[26.5, 4.5], '10.5,9.5']\nvia: [[5.5, 8.5], [8.5, 8.5]]\n");
+  const Ran mission = runTalus({"plan", "mission.yaml", "--json", "-o", "r.geojson"}, folder.path());
+  ASSERT_EQ(mission.code, 0) << mission.err;
+  EXPECT_EQ(json::parse(mission.out)["goal"], "10.5,9.5");
+  const json route = json::parse(fileContent(folder / "r.geojson"))["features"][0]["properties"];
+  const auto passed = [&](double x, double y) {
+    for (std::size_t i = 0; i < route["x_m"].size(); ++i)
+      if (route["x_m"][i] == x && route["y_m"][i] == y) return true;
+    return false;
+  };
+  EXPECT_TRUE(passed(5.5, 8.5) && passed(8.5, 8.5));
+
+  folder.write("bad.yaml", "maps: {dem: dem.asc}\nstart: [5.5, 4.5]\ngoal:\n  - {x: 1}\n");
+  const Ran bad = runTalus({"plan", "bad.yaml"}, folder.path());
+  EXPECT_EQ(bad.code, 2);
+  EXPECT_THAT(bad.err, HasSubstr("bad.yaml:4"));
+}
+
+// Swells as long as two wheelbases, level over the footprint that the map's slopes are taken over: score
+// refuses under --chassis what it takes without, and takes what plan --chassis drives.
+TEST(PlanCommand, ScoreHoldsARouteAgainstTheChassis) {
+  const Folder folder;
+  std::string text = "ncols 60\nnrows 50\nxllcorner 0\nyllcorner 0\ncellsize 0.2\nNODATA_value -9999\n";
+  for (int row = 0; row < 50; ++row) {
+    for (int column = 0; column < 60; ++column)
+      text +=
+          std::to_string(column >= 20 && column < 38 && row > 14 ? 0.03 * std::sin(M_PI * column / 6) : 0.0) +
+          " ";
+    text += "\n";
+  }
+  folder.write("swells.asc", text);
+  folder.write(
+      "low.yaml",
+      "name: low\nmass_kg: 40\ngravity_m_s2: 3.71\nwheelbase_m: 1.2\ntrack_m: 0.8\nclearance_m: 0.3\n"
+      "centre_of_mass_height_m: 0.3\nmax_pitch_deg: 2.5\nmax_roll_deg: 25\nmax_torque_Nm: 30\n"
+      "max_speed_mps: 0.1\nturning_radius_m: 0\nhotel_power_W: 5\nsteering: all_wheel\n"
+      "wheels: {count: 4, radius_m: 0.15, width_m: 0.1, grouser_height_m: 0.01, grouser_count: 20}\n");
+  folder.write("over.csv", "x_m,y_m\n2,2\n10,2\n");
+  const auto run = [&folder](const std::string& call, const std::vector<std::string>& more) {
+    std::vector<std::string> words{call,      "swells.asc", "--resolution", "0.2", "--soil", "sandy_loam",
+                                   "--rover", "low.yaml",   "--footprint",  "2",   "--json"};
+    words.insert(words.end(), more.begin(), more.end());
+    return runTalus(words, folder.path());
+  };
+  EXPECT_EQ(run("score", {"--path", "over.csv"}).code, 0);
+  const Ran held = run("score", {"--path", "over.csv", "--chassis", "rigid"});
+  EXPECT_EQ(held.code, 1);
+  EXPECT_EQ(json::parse(held.out)["status"], "infeasible");
+  EXPECT_THAT(held.out, HasSubstr("the chassis may pitch beyond its limit"));
+  const Ran around =
+      run("plan", {"--start", "2,2", "--goal", "10,2", "--chassis", "rigid", "-o", "r.geojson"});
+  ASSERT_EQ(around.code, 0) << around.err;
+  EXPECT_GT(json::parse(around.out)["length_m"], 10.0);
+  EXPECT_EQ(run("score", {"--path", "r.geojson", "--chassis", "rigid"}).code, 0);
+}
+
 // Property: a map read in windows gives a route that the whole map allows at the same price, near the one
 // planned on the whole.
 TEST(PlanCommand, PlansInWindowsOfAMapBeyondMemory) {

@@ -168,5 +168,35 @@ TEST(RouteCheckOfDrives, ATurnInPlaceNeedsEveryHeading) {
   EXPECT_FALSE(violations(grid, PosePath{.start = {{0.5, 0.5}, 0.0}, .legs = {{{}, 0.2}}}, 1.0).empty());
 }
 
+// Property: with a tolerance the drive ends within it, costs no more than to the goal itself, and a goal that
+// nobody may stand on is no hindrance.
+TEST(DrivePlanner, EndsWithinTheGoalTolerance) {
+  int shorter = 0;
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    const auto map = randomMap({.width = 40, .height = 40, .seed = seed, .blocked = 0.04});
+    Problem problem = across(map, 1.5);
+    const Plan exact = DrivePlanner().plan(problem);
+    problem.goal_tolerance_m = 5.0;
+    const Plan near = DrivePlanner().plan(problem);
+    if (exact.status != RouteStatus::Found) continue;
+    ASSERT_EQ(near.status, RouteStatus::Found) << near.reason;
+    EXPECT_LE(near.cost_J, exact.cost_J);
+    EXPECT_LE(near.lower_bound_J, near.cost_J);
+    EXPECT_LE(std::hypot(near.points.back().x_m - 37.5, near.points.back().y_m - 35.5), 5.0);
+    EXPECT_TRUE(drivable(*map, near.drive));
+    shorter += near.cost_J < exact.cost_J;
+  }
+  EXPECT_GT(shorter, 3);
+
+  Problem blocked{
+      .map = testing::drawn({"....................", ".................#..", "...................."}),
+      .start = {1.5, 1.5},
+      .goal = {17.5, 1.5},
+      .kinematics = {.turning_radius_m = 0.5}};
+  EXPECT_EQ(DrivePlanner().plan(blocked).status, RouteStatus::GoalInvalid);
+  blocked.goal_tolerance_m = 2.0;
+  EXPECT_EQ(DrivePlanner().plan(blocked).status, RouteStatus::Found);
+}
+
 }  // namespace
 }  // namespace talus::planner

@@ -103,6 +103,18 @@ TEST(FieldPlanner, ToleranceLetsARouteEndBesideABlockedGoal) {
   EXPECT_LE(std::hypot(plan.points.back().x_m - 4.5, plan.points.back().y_m - 0.5), 2.1);
 }
 
+TEST(FieldPlanner, ARouteEndsWhereItEntersTheTolerance) {
+  const auto map = drawn(std::vector<std::string>(10, std::string(40, '.')));
+  FieldPlanner planner;
+  auto asked = problem(map, {1.5, 5.5}, {35.5, 5.5});
+  asked.goal_tolerance_m = 4.0;
+  const Plan plan = planner.plan(asked);  // Closed form: 34 m less 4 at 10 J
+  EXPECT_NEAR(plan.cost_J, 300.0, 1e-3);
+  EXPECT_LE(plan.lower_bound_J, plan.cost_J);
+  asked.goal_tolerance_m = 34.5;
+  EXPECT_NEAR(planner.plan(asked).cost_J, 0.0, 1e-9);
+}
+
 TEST(FieldPlanner, PassesViaPoints) {
   const auto map = drawn(std::vector<std::string>(20, std::string(20, '.')));
   FieldPlanner planner;

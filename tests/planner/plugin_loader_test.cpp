@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -49,6 +50,22 @@ TEST(PluginLoader, ReplansOnANewerVersionOfTheMap) {
   EXPECT_THROW(planner->update(testing::drawn({"....", "...."})), std::invalid_argument);
 }
 
+TEST(PluginLoader, PassesViaPointsAndTakesTheCheapestGoal) {
+  const auto planner = loadPlugin(TALUS_PLUGIN);
+  EXPECT_TRUE(planner->capabilities().via_points);
+  EXPECT_TRUE(planner->capabilities().several_goals);
+  planner->set_map(testing::drawn({"..........", "..........", ".........."}));
+  PlanRequest request;
+  request.start = {1.5, 1.5};
+  request.goal = {9.5, 1.5};
+  request.other_goals = {{4.5, 1.5}};
+  EXPECT_NEAR(planner->plan(request).summary.length_m, 3.0, 1e-9);  // Closed form: straight to the nearer
+  request.via = {{7.5, 1.5}};
+  const Route route = planner->plan(request);  // Closed form: 6 to the via point, and 2 on beats 3 back
+  EXPECT_NEAR(route.summary.length_m, 8.0, 1e-9);
+  EXPECT_TRUE(std::ranges::any_of(route.vertices, [](const RouteVertex& v) { return v.x_m == 7.5; }));
+}
+
 TEST(PluginLoader, CancelledPlanningSaysSo) {
   const auto planner = loadPlugin(TALUS_PLUGIN);
   planner->set_map(testing::drawn({"....", "...."}));
@@ -75,7 +92,7 @@ TEST(PluginLoader, RefusesSettingsByName) {
 TEST(PluginLoader, AnotherInterfaceIsRefusedBeforeItIsTouched) {
   EXPECT_THAT([] { loadPlugin(TALUS_OTHER_PLUGIN); },
               ThrowsMessage<InputError>(AllOf(HasSubstr("built for planner interface 99"),
-                                              HasSubstr("this program has 1"), HasSubstr("rebuild"))));
+                                              HasSubstr("this program has 2"), HasSubstr("rebuild"))));
 }
 
 TEST(PluginLoader, WhatIsNoPluginIsRefusedByName) {

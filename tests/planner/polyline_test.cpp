@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -59,6 +60,46 @@ TEST(Polyline, IsSplitWhereSoMuchIsLeft) {
     EXPECT_EQ(before.front(), line.front());
     EXPECT_EQ(behind.back(), line.back());
   }
+}
+
+TEST(Polyline, IsCutWhereItEntersACircle) {
+  const Polyline line{{0, 0}, {10, 0}, {10, 10}};
+  const auto near = [](const Polyline& got, const Polyline& want) {
+    ASSERT_EQ(got.size(), want.size());
+    for (std::size_t i = 0; i < got.size(); ++i)
+      EXPECT_NEAR(std::hypot(got[i].x_m - want[i].x_m, got[i].y_m - want[i].y_m), 0.0, 1e-7);
+  };
+  near(cutWithin(line, {10, 10}, 4.0), {{0, 0}, {10, 0}, {10, 6}});
+  near(cutWithin(line, {5, 3}, 5.0), {{0, 0}, {1, 0}});  // 3-4-5, between two places outside
+  near(cutWithin(line, {5, 3}, 2.9), line);              // passes it by
+  near(cutWithin(line, {-1, 0}, 1.5), {{0, 0}});         // begins inside
+  near(cutWithin(line, {10, 10}, 0.0), line);
+}
+
+// Property: the pieces are the line, lie far enough apart, and a line that differs in one place is cut at the
+// same points elsewhere.
+TEST(Polyline, MarksAreWhereTheNeighbourhoodSaysSo) {
+  constexpr double kApart = 40.0;
+  std::size_t common = 0, all = 0;
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    const Polyline line = wandering(seed, 400);
+    Polyline other = line;
+    other.insert(other.begin() + 200, {line[200].x_m + 0.5, line[200].y_m + 9.0});
+    const auto pieces = cutAtMarks(line, kApart), others = cutAtMarks(other, kApart);
+    Polyline joined;
+    for (const Polyline& piece : pieces) {
+      append(joined, piece);
+      if (&piece != &pieces.front() && &piece != &pieces.back()) {
+        EXPECT_GT(length_m(piece), kApart);
+      }
+    }
+    EXPECT_EQ(joined, line);
+    EXPECT_GT(pieces.size(), 5U);
+    for (const Polyline& piece : pieces)
+      common += static_cast<std::size_t>(std::count(others.begin(), others.end(), piece));
+    all += pieces.size();
+  }
+  EXPECT_GE(common, all - 20 * 4);
 }
 
 }  // namespace
