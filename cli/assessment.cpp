@@ -53,7 +53,7 @@ AssessedTable assessReadings(const AssessOptions& options, const CategoryThresho
   const WheelRows rows =
       readWheelRows(options.table, {.rover = options.rover, .needs_slip = options.extrapolate}, watch);
   AssessedTable table{.rows = {}, .rejected = rows.rejected, .left_out = {}};
-  for (std::size_t k = 0; k < rows.samples.size(); ++k) {
+  for (std::size_t k = 0; k < rows.samples.size() && !watch.stopped(); ++k) {
     const WheelSample& s = rows.samples[k];
     const Wheel& wheel = rows.wheels[k];
     const double sinkage = s.sinkage_m / wheel.radius_m;
