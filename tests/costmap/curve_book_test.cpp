@@ -7,8 +7,8 @@ namespace {
 
 // Property: what a belief costs does not depend on which like it was asked for first.
 TEST(CurveBook, OrderDoesNotMatter) {
-  const GroundBelief sure{.pull = {0.1, 0.03}, .sinkage = {0.6, 0.01}};
-  const GroundBelief unsure{.pull = {0.1, 0.03}, .sinkage = {0.6, 0.3}};
+  const GroundBelief sure{.pull = {0.101, 0.031}, .sinkage = {0.6, 0.01}};
+  const GroundBelief unsure{.pull = {0.107, 0.038}, .sinkage = {0.6, 0.3}};
   CurveBook one(testGround()), other(testGround());
   const std::uint8_t a = one.learned(0, sure);
   const std::uint8_t b = other.learned(0, unsure);
