@@ -7,8 +7,12 @@
 namespace talus::costmap {
 namespace {
 
-double distance_m(const maps::Point& a, const maps::Point& b) {
-  return std::hypot(a.x_m - b.x_m, a.y_m - b.y_m);
+// Most pairs lie too far apart: they cost a comparison.
+double sparseKernel(const maps::Point& a, const maps::Point& b, double correlation_length_m) noexcept {
+  const double x_m = a.x_m - b.x_m, y_m = a.y_m - b.y_m;
+  const double squared = x_m * x_m + y_m * y_m;
+  if (squared >= correlation_length_m * correlation_length_m) return 0.0;
+  return costmap::sparseKernel(std::sqrt(squared), correlation_length_m);
 }
 
 // L of A = L L^T in place, row-major lower triangle; A is positive definite by its noise.
@@ -21,10 +25,13 @@ void factorise(std::vector<double>& a, std::size_t n) {
     }
 }
 
+// Zeros in front stay zeros.
 void solveLower(const std::vector<double>& l, std::vector<double>& x) {
   const std::size_t n = x.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t k = 0; k < i; ++k) x[i] -= l[i * n + k] * x[k];
+  std::size_t first = 0;
+  while (first < n && x[first] == 0.0) ++first;
+  for (std::size_t i = first; i < n; ++i) {
+    for (std::size_t k = first; k < i; ++k) x[i] -= l[i * n + k] * x[k];
     x[i] /= l[i * n + i];
   }
 }
@@ -61,7 +68,7 @@ GaussianProcess::GaussianProcess(std::vector<PlaceEvidence> evidence, const Vari
     for (std::size_t j = 0; j <= i; ++j)
       factor_[i * n + j] =
           amplitude_[i] * amplitude_[j] *
-          sparseKernel(distance_m(evidence_[i].place, evidence_[j].place), variation_.correlation_length_m);
+          sparseKernel(evidence_[i].place, evidence_[j].place, variation_.correlation_length_m);
     factor_[i * n + i] += evidence_[i].variance / prior;
     pull_.push_back(evidence_[i].pull);
     sinkage_.push_back(evidence_[i].sinkage);
@@ -77,8 +84,8 @@ double GaussianProcess::amplitude(const maps::Point& place) const noexcept {
   double most = 0.0;
   for (std::size_t i = 0; i < evidence_.size(); ++i)
     if (excess_[i] > 0.0)
-      most = std::fmax(most, excess_[i] * sparseKernel(distance_m(place, evidence_[i].place),
-                                                       variation_.correlation_length_m));
+      most = std::fmax(most,
+                       excess_[i] * sparseKernel(place, evidence_[i].place, variation_.correlation_length_m));
   return 1.0 + most;
 }
 
@@ -89,7 +96,7 @@ GroundBelief GaussianProcess::at(const maps::Point& place) const {
   const double here = amplitude(place);
   for (std::size_t i = 0; i < evidence_.size(); ++i) {
     k.push_back(here * amplitude_[i] *
-                sparseKernel(distance_m(place, evidence_[i].place), variation_.correlation_length_m));
+                sparseKernel(place, evidence_[i].place, variation_.correlation_length_m));
     belief.pull.mean += k[i] * pull_[i];
     belief.sinkage.mean += k[i] * sinkage_[i];
   }
@@ -107,8 +114,7 @@ GroundBelief kernelInference(const std::vector<PlaceEvidence>& evidence, const V
   const double prior = variation.pull_std * variation.pull_std;
   double weight = 1.0, pull = 0.0, sinkage = 0.0;
   for (const PlaceEvidence& e : evidence) {
-    const double w =
-        sparseKernel(distance_m(place, e.place), variation.correlation_length_m) * prior / e.variance;
+    const double w = sparseKernel(place, e.place, variation.correlation_length_m) * prior / e.variance;
     weight += w;
     pull += w * e.pull;
     sinkage += w * e.sinkage;

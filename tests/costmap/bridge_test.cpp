@@ -122,6 +122,36 @@ TEST(Bridge, GroundInFrontOfItSpeaksForTheRoadBeneath) {
   EXPECT_EQ(roadBelief(map, 22.0).pull_mean, away) << "beyond the correlation length";
 }
 
+// A road that climbs by a voxel every metre and a half, under a deck far above it.
+TEST(Bridge, AClimbingRoadIsOneFloor) {
+  octomap::OcTree tree(kVoxel_m);
+  const auto road_m = [](int x) { return kVoxel_m * (x / 3) + 0.25; };
+  for (int x = 0; x < 80; ++x)
+    for (int y = 0; y < 40; ++y) {
+      const auto voxel = [&](double z) {
+        return octomap::point3d(static_cast<float>(kVoxel_m * x + 0.25),
+                                static_cast<float>(kVoxel_m * y + 0.25), static_cast<float>(z));
+      };
+      tree.updateNode(voxel(road_m(x)), true);
+      if (x >= 32 && x < 48) tree.updateNode(voxel(14.25), true);
+    }
+  std::stringstream stream;
+  tree.writeBinaryConst(stream);
+  TraversabilityMap map = mapOf(octomapGround(stream, "bridge.bt"));
+  const float before = roadBelief(map, 17.7).pull_mean;
+  for (double x = 10.0; x < 15.5; x += 0.5)
+    addDrive(map, drive(road_m(static_cast<int>(2.0 * x)), x, x), nullptr);
+  const float away = static_cast<float>(map.evidence().classBelief(0).pull.mean);
+  EXPECT_LT(away, before);
+  EXPECT_LT(roadBelief(map, 17.7).pull_mean, away - 0.005F) << "told by ground half a metre and more below";
+  // Cells of a block whose road lies a voxel apart share what one of them told.
+  addDrive(map, drive(road_m(38) + 0.1, 19.2, 19.2), nullptr);
+  std::size_t with_own = 0;
+  for (double x = 17.2; x < 21.0; x += 0.5) with_own += roadBelief(map, x).evidence > 0.0F;
+  EXPECT_EQ(with_own, static_cast<std::size_t>(map.evidence().blockCells()));
+  EXPECT_EQ(map.evidence().floorEvidence().size(), 1U);
+}
+
 TEST(Bridge, WithoutAHeightOrAFloorARowIsOnTop) {
   TraversabilityMap map = mapOf(bridge());
   terramech::Telemetry rows = drive(kRoad_m, 17.0, 23.0);
@@ -133,6 +163,19 @@ TEST(Bridge, WithoutAHeightOrAFloorARowIsOnTop) {
   addDrive(plain, drive(kRoad_m, 2.0, 10.0), nullptr);
   addDrive(offset, drive(kRoad_m - 2500.0, 2.0, 10.0), nullptr);
   EXPECT_EQ(plain.belief(cellAt(plain, 6.0)), offset.belief(cellAt(offset, 6.0)));
+}
+
+// The slope of the deck says nothing about the road beneath it.
+TEST(Bridge, ARowWithoutASlopeTakesThatOfItsOwnLevel) {
+  TraversabilityMap map = mapOf(bridge());
+  const auto without_slope = [](double z_m) {
+    terramech::Telemetry rows = drive(z_m, 17.0, 23.0);
+    for (auto& column : rows.numbers)
+      if (column.name == "slope_rad") column.name = "heading_rad";  // eastwards
+    return rows;
+  };
+  EXPECT_EQ(addDrive(map, without_slope(kRoad_m), nullptr).used, 0U);
+  EXPECT_GT(addDrive(map, without_slope(kDeck_m), nullptr).used, 0U);
 }
 
 TEST(Bridge, BelowACeilingTheRoadIsTheMap) {

@@ -88,7 +88,10 @@ TEST(Reliability, OfCellsSaidToBeOfACategory) {
   tables[0].print("safe");
   tables[1].print("marginal");
   tables[2].print("dangerous");
-  EXPECT_LT(tables[0].worstBoast(500.0), 0.2);
+  // Property: no more is promised than holds. Cells of one world are alike, so that 60 worlds tell a share to
+  // about 0.05.
+  EXPECT_LT(tables[0].worstBoast(500.0), 0.05);
+  EXPECT_LT(tables[1].worstBoast(500.0), 0.1);
 }
 
 }  // namespace
