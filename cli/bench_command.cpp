@@ -1,4 +1,5 @@
 // talus bench SUITE: planners compared on the same questions.
+#include <algorithm>
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -35,20 +36,22 @@ void bind(CLI::App& command, Options& options) {
       ->capture_default_str();
   command.add_option("--planners", options.planners, "comma-separated; all by default")->delimiter(',');
   command.add_option("--runs", options.runs, "seeds a case and planner")
-      ->check(CLI::PositiveNumber)
+      ->check(positive())
       ->capture_default_str();
   command.add_option("--time", options.time_limit_s, "limit a run")
       ->type_name("S")
-      ->check(CLI::PositiveNumber)
+      ->check(positive())
       ->capture_default_str();
   command.add_option("--pairs", options.suite.pairs, "starts and goals a map")
-      ->check(CLI::PositiveNumber)
+      ->check(positive())
       ->capture_default_str();
   command
       .add_option("--turning-radius", options.suite.turning_radius_m,
                   "that planners of drives keep; 0: turns in place (default: the rover's)")
       ->type_name("METRES")
       ->check(notNegative());
+  addReadOptions(command, options.suite.ground.dem);
+  addGroundChoices(command, options.suite.ground);
   command.add_option("--side", options.suite.side_cells, "cells along a generated site")
       ->check(CLI::Range(32, 10000))
       ->capture_default_str();
@@ -64,11 +67,20 @@ std::string fileName(std::string name) {
 }
 
 // Made before the runs, so that a bad place is told at once; after the suite, so that a bad suite leaves
-// nothing.
-void makeFolder(const std::string& folder) {
+// nothing. Whether it was not there before.
+bool makeFolder(const std::string& folder) {
   std::error_code error;
-  std::filesystem::create_directories(folder, error);
+  const bool made = std::filesystem::create_directories(folder, error);
   if (error) throw InputError({folder, "cannot be made: " + error.message(), "name another folder with -o"});
+  OutputFile(std::filesystem::path(folder) / "table.txt").temporary();
+  return made;
+}
+
+// What is named twice would be counted twice.
+void refuseTwice(const std::string& what, std::vector<std::string> names) {
+  std::ranges::sort(names);
+  const auto twice = std::ranges::adjacent_find(names);
+  if (twice != names.end()) throw InputError({what + " " + *twice, "is named twice", "name it once"});
 }
 
 void write(const std::filesystem::path& folder, const planner::BenchmarkPlan& plan,
@@ -95,18 +107,23 @@ int run(const Options& options, Context& context) {
   const Campaign campaign;
   if (!campaign.leads()) context.quiet = true;
   planner::BenchmarkPlan plan;
+  refuseTwice("suite", options.suite.names);
   for (const std::string& name : options.planners.empty() ? planner::plannerNames() : options.planners)
     plan.planners.push_back(planner::plannerName(name));
+  refuseTwice("planner", plan.planners);
   plan.cases = suiteCases(options.suite, context);
   if (plan.cases.empty())
     throw InputError({"talus bench", "the suite has no two places far apart with a route between them",
-                      "take another --seed or --side"});
-  if (campaign.leads()) makeFolder(options.folder);
+                      "take another map, rover or --seed"});
+  const bool made = campaign.leads() && makeFolder(options.folder);
   plan.seeds = options.runs;
   plan.time_limit_s = options.time_limit_s;
   const auto runs = allRuns(plan, campaign, context);
   if (!campaign.leads()) return Exit::kDone;
-  if (context.stop.stop_requested()) return Exit::kCancelled;
+  if (context.stop.stop_requested()) {
+    if (made) std::filesystem::remove(options.folder);  // empty still
+    return Exit::kCancelled;
+  }
   write(options.folder, plan, runs);
   const auto lines = compared(plan, runs);
   if (context.json)

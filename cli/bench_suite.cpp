@@ -1,7 +1,9 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
 #include <random>
+#include <set>
 
 #include <cli/bench_suite.hpp>
 #include <cli/context.hpp>
@@ -34,16 +36,22 @@ std::vector<BenchmarkCase> pairsOn(const std::string& name,
   std::mt19937_64 random(seed);
   planner::FieldPlanner field;
   std::vector<BenchmarkCase> cases;
-  for (int tries = 0; tries < 1000 && static_cast<int>(cases.size()) < count; ++tries) {
+  // Places are drawn quickly; a field of the whole map that leads nowhere is not, so few are tried in vain.
+  int in_vain = 0;
+  for (int tries = 0; tries < 1000 && in_vain < 20 && static_cast<int>(cases.size()) < count; ++tries) {
     planner::Problem problem;
     problem.map = map;
+    problem.prove = false;
     problem.start = anywhere(grid, random);
     problem.goal = anywhere(grid, random);
     if (std::hypot(problem.goal.x_m - problem.start.x_m, problem.goal.y_m - problem.start.y_m) < least_m)
       continue;
     const planner::MotionCost cost(map);
     if (!cost.allowed(problem.start) || !cost.allowed(problem.goal)) continue;
-    if (field.plan(problem).status != planner::RouteStatus::Found) continue;
+    if (field.plan(problem).status != planner::RouteStatus::Found) {
+      ++in_vain;
+      continue;
+    }
     cases.push_back({.name = name + " " + std::to_string(cases.size() + 1),
                      .map = map,
                      .start = problem.start,
@@ -123,9 +131,9 @@ std::vector<BenchmarkCase> mapCases(const std::string& path, const SuiteOptions&
   const Ground read = readGround(ground, context);
   auto cases =
       pairsOn(std::filesystem::path(path).stem().string(), read.map.published(), options.pairs, context.seed);
-  if (cases.empty())
-    throw InputError(
-        {path, "no two places far apart with a route between them", "take another map or rover"});
+  if (static_cast<int>(cases.size()) < options.pairs)
+    context.warn(path + ": " + std::to_string(cases.size()) +
+                 " pairs of places far apart with a route between them, fewer than asked for");
   giveKinematics(cases, read.map.model(), options);
   return cases;
 }
@@ -139,12 +147,33 @@ std::vector<BenchmarkCase> casesOf(const std::string& name, const SuiteOptions& 
   return mapCases(name, options, context);
 }
 
+bool isMap(const std::string& name) {
+  return name != "generated" && name != "slip" && name != "grids" && !name.ends_with(".scen");
+}
+
+void refuseUnusedGround(const SuiteOptions& options) {
+  const GroundOptions& g = options.ground;
+  const bool given = !g.soil.empty() || !g.soils.empty() || !g.model.empty() || !g.rover.empty() ||
+                     !g.layers.terrain.empty() || !g.layers.rocks.empty() || !g.layers.keep_out.empty();
+  if (given && std::ranges::none_of(options.names, isMap))
+    throw InputError({"talus bench", "a soil, rover or layer is given, but no elevation map",
+                      "name a map; the other suites bring their own ground"});
+}
+
 }  // namespace
 
 std::vector<BenchmarkCase> suiteCases(const SuiteOptions& options, const Context& context) {
+  refuseUnusedGround(options);
   std::vector<BenchmarkCase> all;
+  std::set<std::string> names;
   for (const std::string& name : options.names)
-    for (BenchmarkCase& made : casesOf(name, options, context)) all.push_back(std::move(made));
+    for (BenchmarkCase& made : casesOf(name, options, context)) {
+      // Maps of the same name in two folders: a case's log is named after it.
+      std::string unique = made.name;
+      for (int k = 2; !names.insert(unique).second; ++k) unique = made.name + " of map " + std::to_string(k);
+      made.name = unique;
+      all.push_back(std::move(made));
+    }
   return all;
 }
 

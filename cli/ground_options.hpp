@@ -27,9 +27,12 @@ struct GroundOptions {
   costmap::DrivePolicy policy;
 };
 
-/// Declares what addMapOptions and addLayerOptions declare, and --map, --soils, --soil, --model, --rover,
-/// --footprint and the options of the policy.
+/// Declares what addMapOptions and addGroundChoices declare, and --map.
 void addGroundOptions(CLI::App& command, GroundOptions& options);
+
+/// Declares what holds for any map: addLayerOptions, --soils, --soil, --model, --rover, --footprint and the
+/// options of the policy.
+void addGroundChoices(CLI::App& command, GroundOptions& options);
 
 /// A built map, and what it took.
 struct Ground {

@@ -31,6 +31,15 @@ CLI::Validator notNegative() {
   return within(0.0, kNoEnd);
 }
 
+CLI::Validator positive() {
+  const auto check = [](const std::string& text) -> std::string {
+    double value = 0.0;
+    const bool number = CLI::detail::lexical_cast(text, value) && std::isfinite(value);
+    return number && value > 0.0 ? "" : text + ", must be finite, > 0";
+  };
+  return CLI::Validator(check, "");
+}
+
 CLI::Validator finite() {
   return within(-kNoEnd, kNoEnd);
 }

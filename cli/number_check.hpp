@@ -10,6 +10,9 @@ CLI::Validator within(double low, double high);
 /// Refuses what is not a finite number >= 0.
 CLI::Validator notNegative();
 
+/// Refuses what is not a finite number > 0.
+CLI::Validator positive();
+
 /// Refuses NaN and infinity.
 CLI::Validator finite();
 

@@ -2,7 +2,6 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <numbers>
 #include <optional>
 
 #include <fmt/format.h>
@@ -11,6 +10,7 @@
 #include <cli/campaign.hpp>
 #include <cli/command.hpp>
 #include <cli/commands.hpp>
+#include <cli/drive_options.hpp>
 #include <cli/mission.hpp>
 #include <cli/number_check.hpp>
 #include <cli/output_file.hpp>
@@ -30,7 +30,6 @@
 #include <planner/risk_planner.hpp>
 #include <planner/route_check.hpp>
 #include <planner/route_risk.hpp>
-#include <planner/turn_prices.hpp>
 
 namespace talus::cli {
 namespace {
@@ -44,40 +43,6 @@ constexpr int kParetoSteps = 6;
 struct Timing {
   double load_s, costmap_s, plan_s;
 };
-
-// A heading in radians, or in degrees under another name.
-void addHeading(CLI::App& command, const std::string& name, std::optional<double>& heading_rad) {
-  auto* radians = command
-                      .add_option_function<double>(
-                          name, [&heading_rad](double value) { heading_rad = value; },
-                          "which way the rover looks there, counter-clockwise from east; any if not given")
-                      ->type_name("RAD")
-                      ->check(finite());
-  command
-      .add_option_function<double>(
-          name + "-deg", [&heading_rad](double value) { heading_rad = value * std::numbers::pi / 180.0; },
-          "the same in degrees")
-      ->type_name("DEG")
-      ->check(finite())
-      ->excludes(radians);
-}
-
-void addDrive(CLI::App& command, DriveOptions& drive) {
-  addHeading(command, "--start-heading", drive.start_heading_rad);
-  addHeading(command, "--goal-heading", drive.goal_heading_rad);
-  command
-      .add_option_function<double>(
-          "--turning-radius", [&drive](double value) { drive.turning_radius_m = value; },
-          "smallest radius that hybrid may drive; 0: turns in place (default: the rover's)")
-      ->type_name("METRES")
-      ->check(notNegative());
-  command
-      .add_option("--chassis", drive.chassis,
-                  "keep clearance, pitch and roll of such a chassis along the whole motion (any planner)")
-      ->type_name("KIND")
-      ->check(CLI::IsMember({"rigid", "rocker-bogie"}));
-  command.add_flag("--no-reverse", drive.no_reverse, "hybrid: the rover may not drive backwards");
-}
 
 void bind(CLI::App& command, PlanOptions& options) {
   addGroundOptions(command, options.ground);
@@ -99,10 +64,10 @@ void bind(CLI::App& command, PlanOptions& options) {
   command.add_option("--planner", options.planner, "who plans: `talus plugins` lists them")
       ->type_name("NAME")
       ->capture_default_str();
-  addDrive(command, options.drive);
+  addDriveOptions(command, options.drive);
   command.add_option("--time", options.time_limit_s, "time limit of the planning")
       ->type_name("S")
-      ->check(CLI::PositiveNumber);
+      ->check(positive());
   command
       .add_option("--in-memory", options.in_memory,
                   "read a DEM of more cells in windows along a route over its overview")
@@ -135,13 +100,6 @@ void requirePlaces(const PlanOptions& options) {
   }
   if (options.start.empty()) throw InputError({"talus plan", "no start", "pass --start x,y"});
   if (options.goals.empty()) throw InputError({"talus plan", "no goal", "pass --goal x,y"});
-}
-
-planner::Kinematics kinematicsOf(const DriveOptions& drive, const costmap::TraversabilityMap& map) {
-  planner::Kinematics kinematics = planner::kinematicsOn(map.model(), map.published()->cost());
-  if (drive.turning_radius_m) kinematics.turning_radius_m = *drive.turning_radius_m;
-  kinematics.may_reverse = !drive.no_reverse;
-  return kinematics;
 }
 
 planner::Problem problemOf(const PlanOptions& options, const Ground& ground, const Context& context) {
@@ -177,18 +135,17 @@ void requireAllowed(const planner::Plan& plan, const costmap::CostGrid& map, dou
                                      violations[0].place.x_m, violations[0].place.y_m, violations[0].reason));
 }
 
-// The chassis that the call asks for.
-std::optional<planner::Chassis> chassisOf(const DriveOptions& drive, const costmap::TraversabilityMap& map) {
-  if (drive.chassis.empty()) return std::nullopt;
-  return planner::Chassis(
-      map.elevation().elevation_m, map.model().rover(),
-      drive.chassis == "rigid" ? planner::Suspension::Rigid : planner::Suspension::RockerBogie);
+// How the soil is drawn along a route.
+planner::RouteRiskOptions soilOf(const PlanOptions& options, std::uint64_t seed) {
+  return {.correlation_length_m = options.ground.policy.correlation_length_m, .seed = seed};
 }
 
 planner::Plan planOnce(const planner::Problem& problem, planner::NamedPlanner& planner,
                        const PlanOptions& options, const std::optional<planner::Chassis>& chassis) {
   const auto once = [&](const planner::Problem& p) {
-    return options.max_risk > 0.0 ? planner::planWithinRisk(p, planner, options.max_risk) : planner.plan(p);
+    return options.max_risk > 0.0
+               ? planner::planWithinRisk(p, planner, options.max_risk, soilOf(options, p.seed))
+               : planner.plan(p);
   };
   return chassis ? planner::planOnChassis(problem, *chassis, once) : once(problem);
 }
@@ -229,9 +186,7 @@ void writeFiles(const PlanOptions& options, const Ground& ground, const Route& r
 
 // The risk once more, with soil that is alike nearby.
 nlohmann::ordered_json riskJson(const Route& route, const PlanOptions& options, const Context& context) {
-  planner::RouteRiskOptions drawn;
-  drawn.correlation_length_m = options.ground.policy.correlation_length_m;
-  drawn.seed = context.seed;
+  const planner::RouteRiskOptions drawn = soilOf(options, context.seed);
   const planner::RouteRisk risk = planner::routeRisk(route, drawn);
   return {{"limit", options.max_risk},
           {"immobilisation", route.vertices.back().immobilisation_risk},
@@ -284,7 +239,7 @@ double since_s(std::chrono::steady_clock::time_point begin) {
 Planned planWhole(const PlanOptions& options, planner::NamedPlanner& planner, const Context& context) {
   Planned planned{.ground = readGround(options.ground, context), .problem = {}, .plan = {}};
   planned.problem = problemOf(options, planned.ground, context);
-  const auto chassis = chassisOf(options.drive, planned.ground.map);
+  const auto chassis = chassisOf(options.drive.chassis, planned.ground.map);
   const auto begin = std::chrono::steady_clock::now();
   planned.plan = planOnce(planned.problem, planner, options, chassis);
   planned.plan_s = since_s(begin);

@@ -19,6 +19,7 @@
 #include <cli/context.hpp>
 #include <cli/interrupt.hpp>
 #include <cli/nearest.hpp>
+#include <cli/number_check.hpp>
 #include <cli/program.hpp>
 
 namespace talus::cli {
@@ -114,6 +115,7 @@ void addGlobalOptions(CLI::App& app, Context& context) {
   app.add_flag("--json", context.json, "print the result as JSON");
   app.add_flag("--quiet", context.quiet, "no progress, no warnings");
   app.add_option("--seed", context.seed, "seed of every random number")
+      ->check(notNegative())
       ->type_name("N")
       ->capture_default_str();
   app.add_option("--threads", context.threads, "use at most N threads (default: one a core)")

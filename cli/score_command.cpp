@@ -7,6 +7,7 @@
 
 #include <cli/command.hpp>
 #include <cli/commands.hpp>
+#include <cli/drive_options.hpp>
 #include <cli/ground_options.hpp>
 #include <cli/path_reader.hpp>
 #include <cli/route_json.hpp>
@@ -21,6 +22,7 @@ namespace {
 struct Options {
   GroundOptions ground;
   std::string path;
+  std::string chassis;
 };
 
 nlohmann::ordered_json asJson(const std::vector<planner::Violation>& violations) {
@@ -47,6 +49,16 @@ void bind(CLI::App& command, Options& options) {
   command.add_option("--path", options.path, "polyline: GeoJSON LineString, or CSV with x_m, y_m")
       ->type_name("FILE")
       ->required();
+  addChassisOption(command, options.chassis);
+}
+
+// What forbids the polyline: the map, and the chassis where one is asked for.
+std::vector<planner::Violation> violationsOf(const std::vector<maps::Point>& points, const std::string& kind,
+                                             const costmap::TraversabilityMap& map) {
+  auto all = planner::violations(*map.published(), points);
+  if (const auto chassis = chassisOf(kind, map))
+    for (auto& violation : chassis->violations(points)) all.push_back(std::move(violation));
+  return all;
 }
 
 int run(const Options& options, Context& context) {
@@ -55,7 +67,7 @@ int run(const Options& options, Context& context) {
   const auto map = ground.map.published();
   planner::Plan plan;
   plan.points = readPath(options.path, ground.map.elevation());
-  const auto violations = planner::violations(*map, plan.points);
+  const auto violations = violationsOf(plan.points, options.chassis, ground.map);
   plan.status = violations.empty() ? planner::RouteStatus::Found : planner::RouteStatus::NoRoute;
   plan.cost_J = planner::MotionCost(map).along(plan.points);
   if (!violations.empty()) plan.cost_J = INFINITY;

@@ -64,13 +64,18 @@ ob::ProblemDefinitionPtr definitionOf(const Problem& leg, const ob::SpaceInforma
   return definition;
 }
 
-// Stops after the allotted work, at the time limit, or when asked to.
+// Whoever sets a time limit wants that time used; else the work ends it, alike on every machine.
+bool spent(const Problem& leg, const SamplingSettings& settings, const MeteredCost& cost) {
+  return std::isinf(leg.time_limit_s) && cost.work() >= settings.work;
+}
+
+// Stops after the allotted work or at the time limit, and when asked to.
 ob::PlannerTerminationCondition doneWhen(const Problem& leg, const SamplingSettings& settings,
                                          const std::shared_ptr<const MeteredCost>& cost) {
   const auto begin = Clock::now();
   return ob::PlannerTerminationCondition([=, &leg] {
     cost->iterated();
-    if (cost->work() >= settings.work || leg.watch.stopped()) return true;
+    if (spent(leg, settings, *cost) || leg.watch.stopped()) return true;
     return std::chrono::duration<double>(Clock::now() - begin).count() > leg.time_limit_s;
   });
 }
@@ -95,12 +100,13 @@ Plan explained(Plan plan, const Problem& leg, const MeteredCost& cost, const Sam
   if (plan.status == RouteStatus::Found && !stopped) return plan;
   plan.points.clear();
   plan.cost_J = std::numeric_limits<double>::infinity();
-  const bool spent = cost.work() >= settings.work;
-  plan.status = stopped ? RouteStatus::Cancelled : spent ? RouteStatus::NoRoute : RouteStatus::TimedOut;
-  plan.reason = settings.planner + (stopped ? " was cancelled"
-                                    : spent ? " found no route in its allotted work; planner 'field' can "
-                                              "tell whether there is one"
-                                            : " found no route in the time given; allow more or use 'field'");
+  const bool worked = spent(leg, settings, cost);
+  plan.status = stopped ? RouteStatus::Cancelled : worked ? RouteStatus::NoRoute : RouteStatus::TimedOut;
+  plan.reason =
+      settings.planner + (stopped  ? " was cancelled"
+                          : worked ? " found no route in its allotted work; planner 'field' can "
+                                     "tell whether there is one"
+                                   : " found no route in the time given; allow more or use 'field'");
   return plan;
 }
 

@@ -250,7 +250,7 @@ PosePlan improvedBySampling(const PoseProblem& problem, const PosePlan& known,
     planner.setup();
     planner.solve(ob::PlannerTerminationCondition([&] {
       metered.iterated();
-      return metered.work() >= settings.work || stop();
+      return (std::isinf(problem.time_limit_s) && metered.work() >= settings.work) || stop();
     }));
   });
   improve(plan, *definition, problem, cost);

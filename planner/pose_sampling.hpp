@@ -10,7 +10,8 @@ namespace talus::planner {
 /// How RRT* improves a drive.
 struct PoseSamplingSettings {
   std::uint64_t seed = 1;
-  std::uint64_t work = 1'000'000;  ///< cells' lengths priced before it stops, > 0: the same on every machine
+  std::uint64_t work = 1'000'000;  ///< cells' lengths priced before it stops, > 0: the same on every machine;
+                                   ///< only without time limit
   double range_cells = 30.0;       ///< longest curve added to the tree, > 0
   std::function<void(double)> better{};  ///< called with each better cost in joules
 };

@@ -96,7 +96,40 @@ TEST(BadInput, Score) {
                            {score({"--path", "text.json"}), 2, "text.json"},
                            {score({"--path", "point_less.json"}), 2, "point_less.json"},
                            {score({"--path", "folder"}), 2, "folder"},
+                           {score({"--path", "text.json", "--chassis", "tank"}), 2, "--chassis"},
                        });
+}
+
+TEST(BadInput, Bench) {
+  const BadFiles files;
+  expectRefused(files,
+                {
+                    {{"bench", "nosuite"}, 2, "nosuite: no such file"},
+                    {{"bench", "none.scen"}, 2, "none.scen"},
+                    {{"bench", "empty.csv"}, 2, "empty.csv"},
+                    {{"bench", "garbage.tif"}, 2, "garbage.tif"},
+                    {{"bench", "folder"}, 2, "is a directory"},
+                    {{"bench", "good.asc"}, 2, "--resolution"},
+                    {{"bench", "nodata.asc", "--resolution", "1"}, 2, "nodata.asc"},
+                    {{"bench", "one.asc", "--resolution", "1"}, 2, "no slope"},
+                    {{"bench", "grids", "nosuite"}, 2, "nosuite"},
+                    {{"bench", "grids", "grids"}, 2, "named twice"},
+                    {{"bench", "grids", "--planners", "field,Field"}, 2, "planner field: is named twice"},
+                    {{"bench", "grids", "--planners", "feild"}, 2, "nearest is 'field'"},
+                    {{"bench", "grids", "--planners", "PRM*"}, 2, "PRMstar"},
+                    {{"bench", "grids", "--runs", "-1"}, 2, "-1, must be finite, > 0"},
+                    {{"bench", "grids", "--pairs", "0"}, 2, "0, must be finite, > 0"},
+                    {{"bench", "grids", "--pairs", "99999999999"}, 2, "--pairs"},
+                    {{"bench", "grids", "--time", "nan"}, 2, "nan, must be finite, > 0"},
+                    {{"bench", "grids", "--time", "-2"}, 2, "--time"},
+                    {{"bench", "grids", "--seed", "-1"}, 2, "--seed"},
+                    {{"bench", "grids", "--side", "3"}, 2, "--side"},
+                    {{"bench", "grids", "--soil", "nope"}, 2, "no elevation map"},
+                    {{"bench", "good.asc", "--resolution", "1", "--soil", "nope"}, 2, "nope"},
+                    {{"bench", "grids", "-o", "good.asc"}, 2, "good.asc"},
+                    {{"bench", "grids", "-o", "good.asc/out"}, 2, "cannot be made"},
+                    {{"bench", "grids", "-o", "/proc/talus"}, 2, "cannot be made"},
+                });
 }
 
 TEST(BadInput, View) {

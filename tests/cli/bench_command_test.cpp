@@ -73,6 +73,22 @@ TEST(BenchCommand, TakesSeveralSuitesAndDrivesOverTheTrueSlip) {
   EXPECT_THAT(fileContent(folder / "out/index.html"), HasSubstr("Drives over the true slip"));
 }
 
+// Measured by others: OMPL's own reader, from Debian's ompl-demos, makes its database of the logs.
+TEST(BenchCommand, OmplsOwnReaderTakesTheLogs) {
+  if (std::system("command -v ompl_benchmark_statistics > /dev/null 2>&1") != 0)
+    GTEST_SKIP() << "ompl_benchmark_statistics (package ompl-demos) is not installed";
+  const Folder folder;
+  ASSERT_EQ(runTalus({"bench", room(folder), "--planners", "field,FMT", "--runs", "2", "--time", "0.2", "-o",
+                      folder / "out"})
+                .code,
+            0);
+  const std::string call =
+      "cd " + (folder / "out") + " && ompl_benchmark_statistics -d a.db *.log > said.txt 2>&1";
+  EXPECT_EQ(std::system(call.c_str()), 0) << fileContent(folder / "out/said.txt");
+  EXPECT_THAT(fileContent(folder / "out/said.txt"), HasSubstr("Parsing data for FMT"));
+  EXPECT_THAT(fileContent(folder / "out/a.db"), HasSubstr("room_1"));
+}
+
 TEST(BenchCommand, RanksOfMpiGiveWhatOneProcessGives) {
   if (!TALUS_HAS_MPI || std::system("mpirun --version > /dev/null 2>&1") != 0)
     GTEST_SKIP() << "built without Boost.MPI, or mpirun is not installed";

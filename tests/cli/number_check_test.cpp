@@ -16,6 +16,10 @@ TEST(NumberCheck, EndsThatDoNotBind) {
   std::string none = "nan";
   EXPECT_EQ(finite()(minus), "");
   EXPECT_EQ(notNegative()(minus), "-3, must be finite, >= 0");
+  for (std::string bad : {"0", "-1", "nan", "inf", "x"})
+    EXPECT_EQ(positive()(bad), bad + ", must be finite, > 0");
+  std::string little = "1e-300";
+  EXPECT_EQ(positive()(little), "");
   EXPECT_EQ(finite()(none), "nan, must be a finite number");
 }
 

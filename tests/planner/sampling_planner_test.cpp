@@ -86,6 +86,15 @@ TEST_P(EveryPlanner, SameSeedSameBytes) {
   EXPECT_NE(planBySampling(problem, settings, detour).points, first.points);
 }
 
+// Property: a time limit is used up, beyond the work that would end it else.
+TEST_P(EveryPlanner, TakesTheTimeItIsGiven) {
+  Problem problem = across(wall());
+  problem.time_limit_s = 0.3;
+  const Plan plan = planBySampling(problem, {.planner = GetParam(), .work = 1}, detour);
+  EXPECT_EQ(plan.status, RouteStatus::Found);
+  EXPECT_LT(plan.cost_J, detour(problem).plan.cost_J);  // work of 1 leaves the known route as it was
+}
+
 TEST_P(EveryPlanner, NeverClimbsWhereClimbingIsForbidden) {
   // Ground that rises eastwards and may be driven down but not up: west to east there is no route.
   const auto map = drivenDownOnly(
@@ -103,6 +112,18 @@ TEST_P(EveryPlanner, StopsWhenAsked) {
   Problem problem = across(wall());
   problem.watch.stop = stop.get_token();
   EXPECT_EQ(planBySampling(problem, {.planner = GetParam()}).status, RouteStatus::Cancelled);
+}
+
+// Property: whoever stops the work is told so, though a route is known already.
+TEST_P(EveryPlanner, IsCancelledThoughARouteIsKnown) {
+  std::stop_source stop;
+  Problem problem = across(wall());
+  problem.watch.stop = stop.get_token();
+  SamplingSettings settings{.planner = GetParam()};
+  settings.better = [&stop](double) { stop.request_stop(); };  // called with the known route first
+  const Plan plan = planBySampling(problem, settings, detour);
+  EXPECT_EQ(plan.status, RouteStatus::Cancelled);
+  EXPECT_TRUE(plan.points.empty());
 }
 
 TEST_P(EveryPlanner, EndsOnBlockedGroundAreNamed) {
