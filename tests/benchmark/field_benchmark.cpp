@@ -17,6 +17,7 @@
 #include <planner/field_planner.hpp>
 #include <planner/grid_links.hpp>
 #include <planner/grid_route.hpp>
+#include <planner/tube_planner.hpp>
 
 namespace {
 
@@ -177,6 +178,20 @@ void refinement(benchmark::State& state) {
   state.counters["grid_over_refined"] = cost.along(route) / refined_J;
 }
 
+// Through a tube on a map that was pooled already, and how much dearer than by the whole field.
+void tube(benchmark::State& state) {
+  auto problem = across(rollingGround(static_cast<int>(state.range(0))));
+  problem.threads = static_cast<int>(state.range(1));
+  TubePlanner planner;
+  planner.plan(problem);
+  double cost_J = 0.0;
+  for (auto _ : state) {
+    problem.start.x_m += 1.0;
+    cost_J = planner.plan(problem).cost_J;
+  }
+  state.counters["above_whole_percent"] = 100.0 * (cost_J / FieldPlanner().plan(problem).cost_J - 1.0);
+}
+
 // Routes between corners and sides, refined as planned and by a search twice as fine and three times as wide.
 void againstFinest(benchmark::State& state) {
   const auto map = rollingGround(static_cast<int>(state.range(0)));
@@ -254,6 +269,7 @@ BENCHMARK(refinement)->Arg(1000)->Arg(2000)->Unit(benchmark::kMillisecond);
 BENCHMARK(layersToRoute)->Args({1000, 1})->Args({1000, 2})->Args({2000, 1})->Unit(benchmark::kMillisecond);
 BENCHMARK(lowerBound)->Arg(1000)->Unit(benchmark::kMillisecond);
 BENCHMARK(anotherStart)->Arg(2000)->Unit(benchmark::kMillisecond);
+BENCHMARK(tube)->Args({2000, 1})->Args({8000, 1})->Args({8000, 2})->Unit(benchmark::kMillisecond);
 BENCHMARK(againstFinest)->Arg(1000)->Iterations(1)->Unit(benchmark::kMillisecond);
 BENCHMARK(cancelling)->Arg(1000)->Arg(2000)->Iterations(1)->Unit(benchmark::kMillisecond);
 BENCHMARK(replan)->Args({2000, 2})->Args({2000, 50})->Unit(benchmark::kMillisecond);
