@@ -117,7 +117,7 @@ EdgeLayer::EdgeLayer(std::shared_ptr<const costmap::CostGrid> map, const EdgeUni
       padded_{map_->grid().width, map_->grid().height},
       edges_(std::make_unique_for_overwrite<std::uint16_t[]>(8 * padded_.size())),
       complete_(true) {
-  std::fill_n(edges_.get(), 8 * padded_.size(), kBlocked);
+  blockBorder();
 }
 
 void EdgeLayer::blockBorder() {

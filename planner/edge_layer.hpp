@@ -58,7 +58,7 @@ class EdgeLayer {
   EdgeLayer(std::shared_ptr<const costmap::CostGrid> map, const EdgeUnits& units, int threads = 1,
             const StopCheck& stop = {}, Kernels kernels = Kernels::Best);
 
-  /// All steps blocked, to be filled through into().
+  /// Every step left open, to be filled through into().
   struct Unfilled {};
   EdgeLayer(std::shared_ptr<const costmap::CostGrid> map, const EdgeUnits& units, Unfilled);
 

@@ -44,21 +44,32 @@ struct Passage {
   costmap::CellCode cell, before, after;
 };
 
-double within(const costmap::DriveCost& drive, const Passage& passage, const Turn& from,
-              const Turn& to) noexcept {
-  const double dx = to.x - from.x, dy = to.y - from.y, length = std::sqrt(dx * dx + dy * dy);
-  if (length == 0.0) return 0.0;
-  const HeadingCost cost(drive, {dx / length, dy / length});
-  const bool turns = std::isfinite(cost(passage.before)) && std::isfinite(cost(passage.after));
-  return turns ? length * static_cast<double>(cost(passage.cell)) : kInfinity;
-}
+// One motion from place to place within its cell.
+struct Straight {
+  HeadingCost cost;
+  double length;
+
+  Straight(const costmap::DriveCost& drive, double dx, double dy) noexcept
+      : Straight(drive, dx, dy, std::sqrt(dx * dx + dy * dy)) {}
+  Straight(const costmap::DriveCost& drive, double dx, double dy, double far) noexcept
+      : cost(drive, far > 0.0 ? costmap::Direction{dx / far, dy / far} : costmap::Direction{1.0, 0.0}),
+        length(far) {}
+
+  double within(costmap::CellCode cell) const noexcept {
+    return length > 0.0 ? length * static_cast<double>(cost(cell)) : 0.0;
+  }
+  bool mayTurn(const Passage& passage) const noexcept {
+    return !(length > 0.0) || (std::isfinite(cost(passage.before)) && std::isfinite(cost(passage.after)));
+  }
+};
 
 void choose(const costmap::DriveCost& drive, const Passage& passage, Choice& from, const Choice& to) {
   for (std::size_t a = 0; a < static_cast<std::size_t>(from.count); ++a) {
     from.best[a] = kInfinity;
     for (std::size_t b = 0; b < static_cast<std::size_t>(to.count); ++b) {
-      const double through = within(drive, passage, from.places[a], to.places[b]) + to.best[b];
-      if (!(through < from.best[a])) continue;
+      const Straight motion(drive, to.places[b].x - from.places[a].x, to.places[b].y - from.places[a].y);
+      const double through = motion.within(passage.cell) + to.best[b];
+      if (!(through < from.best[a]) || !motion.mayTurn(passage)) continue;
       from.best[a] = through;
       from.next[a] = static_cast<int>(b);
     }

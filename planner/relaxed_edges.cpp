@@ -143,6 +143,7 @@ std::shared_ptr<const EdgeLayer> relaxedEdges(const std::shared_ptr<const costma
     std::uint16_t* steps = edges->into(edges->padded().index(cell));
     for (std::size_t k = 0; k < 8; ++k) {
       const maps::Cell from{cell.column + kStep[k].column, cell.row + kStep[k].row};
+      steps[k] = EdgeLayer::kBlocked;
       if (!grid.contains(from) || std::isinf(into[k])) continue;
       const double units = std::floor(static_cast<double>(into[k]) * side_m / unit_J);
       steps[k] = static_cast<std::uint16_t>(std::clamp(units, double{kCheapest}, EdgeUnits::kBlocked - 1.0));

@@ -1,14 +1,23 @@
 // The field planner by its parts, on rolling ground with blocked cells. Ratios within one run are what to
 // compare.
+#include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <ctime>
 #include <map>
 #include <memory>
 #include <random>
+#include <stop_token>
+#include <thread>
 
 #include <benchmark/benchmark.h>
+#include <pthread.h>
 
 #include <planner/any_angle.hpp>
 #include <planner/field_planner.hpp>
+#include <planner/grid_links.hpp>
+#include <planner/grid_route.hpp>
+#include <planner/tube_planner.hpp>
 
 namespace {
 
@@ -169,12 +178,100 @@ void refinement(benchmark::State& state) {
   state.counters["grid_over_refined"] = cost.along(route) / refined_J;
 }
 
+// Through a tube on a map that was pooled already, and how much dearer than by the whole field.
+void tube(benchmark::State& state) {
+  auto problem = across(rollingGround(static_cast<int>(state.range(0))));
+  problem.threads = static_cast<int>(state.range(1));
+  TubePlanner planner;
+  planner.plan(problem);
+  double cost_J = 0.0;
+  for (auto _ : state) {
+    problem.start.x_m += 1.0;
+    cost_J = planner.plan(problem).cost_J;
+  }
+  state.counters["above_whole_percent"] = 100.0 * (cost_J / FieldPlanner().plan(problem).cost_J - 1.0);
+}
+
+// Routes between corners and sides, refined as planned and by a search twice as fine and three times as wide.
+void againstFinest(benchmark::State& state) {
+  const auto map = rollingGround(static_cast<int>(state.range(0)));
+  const MotionCost cost(map);
+  RefineOptions finest;
+  finest.corridor.reach_cells = 10;
+  finest.corridor.points_per_edge = 6;
+  finest.slides = 6;
+  std::vector<double> gaps;
+  for (auto _ : state)
+    for (int k = 0; k < 12; ++k) {
+      const double side = map->grid().width, angle = 0.5236 * k;
+      const auto goals = fieldGoals(cost, {0.5 * side, 0.5 * side}, 3.0);
+      CostToGo field(std::make_shared<EdgeLayer>(map, EdgeUnits(map->cost(), 1.0)), goals);
+      const Segment ends{{side * (0.5 + 0.45 * std::cos(angle)), side * (0.5 + 0.45 * std::sin(angle))},
+                         {0.5 * side, 0.5 * side}};
+      const auto route = gridRoute(cost, field, ends);
+      if (route.empty()) continue;
+      const double plain_J = cost.along(refined(cost, route)),
+                   finest_J = cost.along(refined(cost, route, finest));
+      gaps.push_back(100.0 * (plain_J / std::min(plain_J, finest_J) - 1.0));
+    }
+  std::sort(gaps.begin(), gaps.end());
+  state.counters["routes"] = static_cast<double>(gaps.size());
+  state.counters["median_percent"] = gaps[gaps.size() / 2];
+  state.counters["worst_percent"] = gaps.back();
+}
+
+double cpu_ms(clockid_t clock) {
+  timespec now{};
+  clock_gettime(clock, &now);
+  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
+}
+
+// A plan with its proof, cancelled at forty moments: the longest that its thread still works, in its own
+// time.
+void cancelling(benchmark::State& state) {
+  auto problem = across(rollingGround(static_cast<int>(state.range(0))));
+  problem.prove = true;
+  double worst_ms = 0.0;
+  for (auto _ : state) {
+    const double begin_ms = cpu_ms(CLOCK_THREAD_CPUTIME_ID);
+    FieldPlanner().plan(problem);
+    const double whole_ms = cpu_ms(CLOCK_THREAD_CPUTIME_ID) - begin_ms;
+    for (int k = 0; k < 40; ++k) {
+      std::stop_source source;
+      problem.watch.stop = source.get_token();
+      double end_ms = 0.0;
+      std::jthread worker([&] {
+        FieldPlanner().plan(problem);
+        end_ms = cpu_ms(CLOCK_THREAD_CPUTIME_ID);
+      });
+      clockid_t its_time{};
+      if (pthread_getcpuclockid(worker.native_handle(), &its_time) != 0) continue;
+      const double stop_at_ms = whole_ms * (k + 0.5) / 40;
+      double asked_ms = cpu_ms(its_time);
+      while (asked_ms < stop_at_ms) {
+        std::this_thread::sleep_for(std::chrono::microseconds(200));
+        const double now_ms = cpu_ms(its_time);
+        if (!(now_ms > 0.0)) break;
+        asked_ms = now_ms;
+      }
+      source.request_stop();
+      worker.join();
+      worst_ms = std::max(worst_ms, end_ms - asked_ms);
+    }
+    problem.watch = {};
+  }
+  state.counters["worst_cpu_ms"] = worst_ms;
+}
+
 BENCHMARK(edgeLayer)->Args({2000, 0})->Args({2000, 1})->Unit(benchmark::kMillisecond);
 BENCHMARK(wholeField)->Args({2000, 0})->Args({2000, 1})->Args({4000, 0})->Unit(benchmark::kMillisecond);
 BENCHMARK(refinement)->Arg(1000)->Arg(2000)->Unit(benchmark::kMillisecond);
 BENCHMARK(layersToRoute)->Args({1000, 1})->Args({1000, 2})->Args({2000, 1})->Unit(benchmark::kMillisecond);
 BENCHMARK(lowerBound)->Arg(1000)->Unit(benchmark::kMillisecond);
 BENCHMARK(anotherStart)->Arg(2000)->Unit(benchmark::kMillisecond);
+BENCHMARK(tube)->Args({2000, 1})->Args({8000, 1})->Args({8000, 2})->Unit(benchmark::kMillisecond);
+BENCHMARK(againstFinest)->Arg(1000)->Iterations(1)->Unit(benchmark::kMillisecond);
+BENCHMARK(cancelling)->Arg(1000)->Arg(2000)->Iterations(1)->Unit(benchmark::kMillisecond);
 BENCHMARK(replan)->Args({2000, 2})->Args({2000, 50})->Unit(benchmark::kMillisecond);
 
 }  // namespace
