@@ -38,7 +38,11 @@ class Asker {
         white_(whitening.apply(residual)),
         marginal_(whitening.marginal(residual)),
         nuisance_white_(orthonormal(plan.nuisance_whitened)),
-        nuisance_(orthonormal(plan.nuisance_marginal)) {}
+        nuisance_(orthonormal(plan.nuisance_marginal)) {
+    if (plan.shared_error.size() == 0) return;
+    shared_white_ = whitening.apply(plan.shared_error);
+    shared_ = whitening.marginal(plan.shared_error);
+  }
 
   /// A dependence within one channel on the columns given by row; centred unless it is the constant itself.
   void ask(const std::string& name, int channel, Eigen::MatrixXd by_row, bool centre) {
@@ -101,6 +105,18 @@ class Asker {
     return sums;
   }
 
+  /// The shared error along all columns.
+  Eigen::RowVectorXd sharedProducts(Eigen::Index columns) const {
+    Eigen::RowVectorXd products = Eigen::RowVectorXd::Zero(columns);
+    if (shared_.size() == 0) return products;
+    Eigen::Index at = 0;
+    for (const Question& q : questions_) {
+      products.segment(at, q.columns.cols()) = (q.whitened ? shared_white_ : shared_).transpose() * q.columns;
+      at += q.columns.cols();
+    }
+    return products;
+  }
+
   std::vector<double> scores(const Eigen::RowVectorXd& products) const {
     std::vector<double> z;
     Eigen::Index at = 0;
@@ -115,7 +131,7 @@ class Asker {
 
   const Trial& trial_;
   const TestPlan& plan_;
-  Eigen::VectorXd white_, marginal_;
+  Eigen::VectorXd white_, marginal_, shared_white_, shared_;
   Eigen::MatrixXd nuisance_white_, nuisance_;
   std::vector<Question> questions_;
 };
@@ -127,6 +143,8 @@ std::vector<CovariateTest> Asker::answer() const {
   const std::vector<double> observed = scores(sums.colwise().sum());
   std::mt19937_64 random(plan_.seed);
   std::vector<double> most;
+  std::normal_distribution<double> normal;
+  const Eigen::RowVectorXd shared = sharedProducts(sums.cols());
   Eigen::RowVectorXd sign(sums.rows());
   for (int flip = 0; flip < plan_.flips; ++flip) {
     std::uint64_t bits = 0;
@@ -134,7 +152,7 @@ std::vector<CovariateTest> Asker::answer() const {
       if (g % 64 == 0) bits = random();
       sign[g] = (bits >> (g % 64)) & 1U ? 1.0 : -1.0;
     }
-    const auto z = scores(sign * sums);
+    const auto z = scores(sign * sums + normal(random) * shared);
     most.push_back(*std::max_element(z.begin(), z.end()));
   }
   std::sort(most.begin(), most.end());

@@ -30,7 +30,9 @@ struct TestPlan {
   std::vector<Direction> directions;  ///< of candidate effects, whitened
   Eigen::MatrixXd nuisance_whitened;  ///< derivatives by what was fitted already, whitened
   Eigen::MatrixXd nuisance_marginal;  ///< the same over marginal standard deviations
-  std::vector<int> group;             ///< number of the exchangeable unit of each row
+  Eigen::MatrixXd shared_error;  ///< rows x kChannels: a normal error of all rows at once, one std; may be
+                                 ///< empty
+  std::vector<int> group;        ///< number of the exchangeable unit of each row
   int flips = 1999;
   std::uint64_t seed = 1;
 };

@@ -28,12 +28,30 @@ Extent extentOf(const Eigen::VectorXd& x) {
   return v.empty() ? Extent{0.0, 1.0, 0.5} : Extent{v.front(), v.back(), v[v.size() / 2]};
 }
 
+/// The rim's speed where it is the ground's in other units, at one level of slip: nothing can tell them
+/// apart, and the rate forms are of the ground's.
+bool isTwin(const Trial& trial, const std::string& column) {
+  if (column != "rim_speed_mps") return false;
+  double n = 0.0, mean = 0.0, square = 0.0;
+  for (const WheelState& s : trial.states) {
+    const double ratio = s.speed_mps / s.rim_speed_mps;
+    if (!std::isfinite(ratio)) continue;
+    n += 1.0;
+    mean += ratio;
+    square += ratio * ratio;
+  }
+  if (2.0 * n < trial.rows()) return false;
+  mean /= n;
+  return square / n - mean * mean < 1e-3 * mean * mean;
+}
+
 class Collector {
  public:
   Collector(const Trial& trial, const Eigen::VectorXd& sinkage_m) : trial_(trial), sinkage_m_(sinkage_m) {}
 
   bool varies(const std::string& column) const {
-    return std::find(trial_.covariates.begin(), trial_.covariates.end(), column) != trial_.covariates.end();
+    return !isTwin(trial_, column) &&
+           std::find(trial_.covariates.begin(), trial_.covariates.end(), column) != trial_.covariates.end();
   }
 
   const std::vector<std::string>& covariates() const { return trial_.covariates; }
@@ -253,6 +271,7 @@ std::vector<Candidate> empiricalCandidates(const Trial& trial, const Eigen::Vect
   std::vector<std::string> names = trial.covariates;
   names.push_back("sinkage_m");
   for (const std::string& name : names) {
+    if (isTwin(trial, name)) continue;
     const Eigen::VectorXd x = covariateValues(trial, name, sinkage_m);
     std::size_t coarser = 1;
     for (int most : {5, std::clamp(trial.rows() / 10, 5, 9)}) {

@@ -115,6 +115,60 @@ bool correctOffset(TraceSearch& search, const Trial& trial, std::uint64_t seed,
   return true;
 }
 
+/// One order in which effects were taken in.
+struct Path {
+  TraceSearch search;
+  std::vector<TracedEffect> effects;
+  std::vector<Explanation> rejected;
+  std::vector<CovariateTest> first_tests, last_tests{};
+  std::size_t pinned = 0;  ///< effects at the front that stay
+  int barren = 0;          ///< times that an effect came and another went
+};
+
+/// Takes in what explains the residuals best until nothing is left to explain.
+void grow(Path& path, const Trial& trial, const TraceOptions& options, const Watch& watch) {
+  while (!watch.stopped()) {
+    const auto count = static_cast<int>(path.effects.size());
+    watch.report(count / (options.max_effects + 1.0));
+    const auto screened = path.search.screen();
+    const auto tests = path.search.test(screened);
+    if (path.first_tests.empty()) path.first_tests = tests;
+    path.last_tests = tests;
+    if (smallest(tests) > options.significance || count >= options.max_effects) break;
+    auto ranked = path.search.fitBest(screened);
+    // Only what answers a question that noise does not.
+    const auto answers = [&](const Explanation& e) {
+      return pValueOf(tests, e.candidate) <= options.significance;
+    };
+    const auto rest = std::stable_partition(ranked.begin(), ranked.end(), answers);
+    auto best = path.search.choose({ranked.begin(), rest});
+    if (!best && count > 0) best = path.search.choose(ranked);  // what is left mixes with what is in
+    const bool further = !path.effects.empty() || (best && inNoisyInput(ranked[*best], trial));
+    if (best && further && !matters(ranked[*best], trial)) best.reset();
+    path.rejected = ranked;
+    if (!best) break;
+    path.rejected.erase(path.rejected.begin() + static_cast<long>(*best));
+    path.search.accept(ranked[*best].candidate);
+    path.effects.push_back(traced(ranked, *best, pValueOf(tests, ranked[*best].candidate)));
+    reconsider(path.search, path.effects, path.pinned);
+    if (static_cast<int>(path.effects.size()) <= count && ++path.barren > 2) break;
+  }
+}
+
+/// Takes out, last first, what beside the others carries nothing that matters.
+void prune(Path& path, const Trial& trial) {
+  for (std::size_t k = path.effects.size(); k-- > path.pinned && path.effects.size() > 1;) {
+    TraceSearch without = path.search;
+    const double before = without.chi2();
+    without.leaveOut(k);
+    Explanation gain = path.effects[k].chosen;
+    gain.chi2_gain = without.chi2() - before;
+    if (matters(gain, trial)) continue;
+    path.search.drop(k);
+    path.effects.erase(path.effects.begin() + static_cast<long>(k));
+  }
+}
+
 /// Forms that were found together, each told for itself.
 std::vector<TracedEffect> apart(const std::vector<TracedEffect>& effects) {
   std::vector<TracedEffect> all;
@@ -159,35 +213,17 @@ ChannelErrors rmseOf(const RefinedModel& model, const Trial& trial) {
 
 TraceResult traceResiduals(const RefinedModel& base, const Trial& trial, const TraceOptions& options,
                            const Watch& watch) {
-  TraceSearch search{base, trial, options};
+  Path best{TraceSearch{base, trial, options}, {}, {}, {}};
   TraceResult result;
-  result.base = search.model();
-  const std::size_t pinned =
-      options.fit_soil && correctOffset(search, trial, options.seed, result.effects) ? 1 : 0;
-  for (int round = 0; round <= options.max_effects && !watch.stopped(); ++round) {
-    watch.report(round / (options.max_effects + 1.0));
-    const auto screened = search.screen();
-    auto tests = search.test(screened);
-    if (round == 0) result.first_tests = tests;
-    result.last_tests = tests;
-    if (smallest(tests) > options.significance || round == options.max_effects) break;
-    const auto ranked = search.fitBest(screened);
-    auto best = search.choose(ranked);
-    const bool further = !result.effects.empty() || (best && inNoisyInput(ranked[*best], trial));
-    if (best && further && !matters(ranked[*best], trial)) best.reset();
-    if (!best) {
-      result.rejected = ranked;
-      break;
-    }
-    search.accept(ranked[*best].candidate);
-    result.effects.push_back(
-        traced(ranked, *best, std::min(smallest(tests), pValueOf(tests, ranked[*best].candidate))));
-    result.rejected.clear();
-    for (std::size_t k = 0; k < ranked.size(); ++k)
-      if (k != *best) result.rejected.push_back(ranked[k]);
-    reconsider(search, result.effects, pinned);
-  }
-  search.finish(result);
+  result.base = best.search.model();
+  if (options.fit_soil) best.pinned = correctOffset(best.search, trial, options.seed, best.effects) ? 1 : 0;
+  grow(best, trial, options, watch);
+  prune(best, trial);
+  result.first_tests = best.first_tests;
+  result.effects = best.effects;
+  result.rejected = best.rejected;
+  result.last_tests = best.last_tests;
+  best.search.finish(result);
   result.effects = apart(result.effects);
   watch.report(1.0);
   return result;

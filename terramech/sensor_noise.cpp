@@ -125,8 +125,31 @@ InputSlopes inputSlopes(const RefinedModel& model, const Trial& trial, SolvedCon
           (moved(0.0, kStep) - moved(0.0, -kStep)) / (2.0 * kStep)};
 }
 
-Eigen::MatrixXd withoutSmooth(const Trial& trial, const Eigen::MatrixXd& residual) {
+bool slipIsSeen(const Trial& trial, const SensorNoise& noise) {
+  const Eigen::Map<const Eigen::ArrayXd> slip(trial.slip.data(), trial.rows());
+  const Eigen::ArrayXd error = (squared(noise.slip_absolute) + squared(noise.slip_relative) * slip.square())
+                                   .sqrt()
+                                   .min(0.1 * slip.abs());
+  return (slip - slip.mean()).square().mean() > 4.0 * error.square().mean();
+}
+
+double levelStd(const Trial& trial, const SensorNoise& noise) {
+  double sum = 0.0;
+  for (double slip : trial.slip) sum += squared(noise.slip_absolute) + squared(noise.slip_relative * slip);
+  return std::sqrt(sum) / trial.rows();
+}
+
+void setSlip(WheelState& state, double slip) {
+  const double ground = state.rim_speed_mps * (1.0 - state.slip);
+  if (std::abs(state.speed_mps - ground) <= 1e-3 * std::abs(state.rim_speed_mps))
+    state.speed_mps = state.rim_speed_mps * (1.0 - slip);
+  state.slip = slip;
+}
+
+Eigen::MatrixXd withoutSmooth(const Trial& trial, const Eigen::MatrixXd& residual, Smooth smooth) {
   Eigen::MatrixXd left = residual;
+  const auto& names = trial.covariates;
+  const bool tells_slip = std::find(names.begin(), names.end(), "rim_speed_mps") != names.end();
   for (int c = 0; c < kChannels; ++c) {
     std::vector<int> rows;
     for (int row = 0; row < trial.rows(); ++row)
@@ -137,6 +160,7 @@ Eigen::MatrixXd withoutSmooth(const Trial& trial, const Eigen::MatrixXd& residua
     Eigen::Index columns = 1;
     const auto room = n / 4;
     for (const std::string& name : trial.covariates) {
+      if (smooth == Smooth::AllButSlip && (name == "slip" || (name == "speed_mps" && tells_slip))) continue;
       Eigen::VectorXd x(n);
       for (Eigen::Index i = 0; i < n; ++i)
         x[i] = trial.states[static_cast<std::size_t>(rows[static_cast<std::size_t>(i)])].covariate(name);
@@ -229,6 +253,21 @@ std::vector<Posterior> deconvolve(const std::vector<double>& measured,
 
 }  // namespace
 
+namespace {
+
+/// Normal values with normal errors: the share of the scatter that is not error is kept.
+std::vector<Posterior> shrink(const std::vector<double>& measured, const std::vector<double>& std) {
+  const auto n = static_cast<Eigen::Index>(measured.size());
+  const Eigen::Map<const Eigen::ArrayXd> x(measured.data(), n), error(std.data(), n);
+  const double mean = x.mean(), scatter = (x - mean).square().mean();
+  const double kept = std::clamp(1.0 - error.square().mean() / (scatter + 1e-300), 0.0, 1.0);
+  std::vector<Posterior> out;
+  for (Eigen::Index i = 0; i < n; ++i) out.push_back({mean + kept * (x[i] - mean), kept * squared(error[i])});
+  return out;
+}
+
+}  // namespace
+
 void calibrateInputs(Trial& trial, const SensorNoise& noise) {
   const auto n = trial.states.size();
   std::vector<double> slip_std(n), log_load(n), load_std(n, noise.load_relative);
@@ -236,16 +275,17 @@ void calibrateInputs(Trial& trial, const SensorNoise& noise) {
     slip_std[i] = std::hypot(noise.slip_absolute, noise.slip_relative * trial.slip[i]);
     log_load[i] = std::log(trial.load_N[i]);
   }
-  const auto slips = deconvolve(
-      trial.slip, [&](double slip) { return std::hypot(noise.slip_absolute, noise.slip_relative * slip); });
+  // The mixture takes long to see that one level is one; nothing is lost where the scatter is mostly error.
+  const auto slips =
+      !slipIsSeen(trial, noise) ? shrink(trial.slip, slip_std) : deconvolve(trial.slip, [&](double slip) {
+        return std::hypot(noise.slip_absolute, noise.slip_relative * slip);
+      });
   const auto loads = deconvolve(log_load, [&](double) { return noise.load_relative; });
   for (std::size_t i = 0; i < n; ++i) {
     // A grid cannot place a value better than its step: precise inputs are left as measured.
     const auto row = static_cast<Eigen::Index>(i);
     const double trust = squared(slip_std[i]), trust_load = squared(load_std[i]);
-    trial.states[i].slip = std::clamp(
-        std::abs(slips[i].mean - trial.slip[i]) > 2.5 * slip_std[i] ? trial.slip[i] : slips[i].mean, -1.0,
-        1.0);
+    setSlip(trial.states[i], std::clamp(slips[i].mean, -1.0, 1.0));
     trial.slip_variance[row] = std::clamp(slips[i].variance, 0.3 * trust, trust);
     trial.states[i].load_N =
         std::abs(loads[i].mean - log_load[i]) > 2.5 * load_std[i] ? trial.load_N[i] : std::exp(loads[i].mean);

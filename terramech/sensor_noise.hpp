@@ -23,9 +23,24 @@ InputSlopes inputSlopes(const RefinedModel& model, const Trial& trial, SolvedCon
 SensorNoise fitNoise(const Trial& trial, const Eigen::MatrixXd& residual, const Eigen::MatrixXd& level,
                      const InputSlopes& slopes, const StatedSensors& stated);
 
-/// Residuals with an additive smooth of all covariates taken out, scaled up for the freedom that it took. NaN
-/// stay.
-Eigen::MatrixXd withoutSmooth(const Trial& trial, const Eigen::MatrixXd& residual);
+/// Residuals with an additive smooth of all covariates, or all but slip, taken out, scaled up for the freedom
+/// that it took. NaN stay.
+enum class Smooth { AllColumns, AllButSlip };
+Eigen::MatrixXd withoutSmooth(const Trial& trial, const Eigen::MatrixXd& residual,
+                              Smooth smooth = Smooth::AllColumns);
+
+/// Whether the measured slip varies by more than its own error may: by twice as much. Where it does not, what
+/// its error does to the readings is itself a smooth function of the measured slip, and a smooth of it would
+/// hide the error. `noise` is that of residuals without a smooth of slip; more than a tenth of the slip is
+/// not taken for error.
+bool slipIsSeen(const Trial& trial, const SensorNoise& noise);
+
+/// Standard deviation of the error that the mean of the measured slips has.
+double levelStd(const Trial& trial, const SensorNoise& noise);
+
+/// Sets a slip, and the speed over ground with it where the row's speeds agree with the slip it had: the
+/// three were then had from two.
+void setSlip(WheelState& state, double slip);
 
 /// Replaces slip and load of the states by their posterior means given what was measured, and sets their
 /// variances: the distribution of true values is found from all rows (nonparametric maximum likelihood,

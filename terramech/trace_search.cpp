@@ -69,17 +69,24 @@ Eigen::VectorXd TraceSearch::sinkages(const Eigen::MatrixXd& level) const {
 
 void TraceSearch::refresh() {
   for (std::size_t row = 0; row < trial_.states.size(); ++row) {
-    trial_.states[row].slip = trial_.slip[row];
+    setSlip(trial_.states[row], trial_.slip[row]);
     trial_.states[row].load_N = trial_.load_N[row];
   }
   level_ = predictRows(model_, trial_, solved_);
   InputSlopes slopes = inputSlopes(model_, trial_, solved_);
-  const Eigen::MatrixXd smooth = withoutSmooth(trial_, trial_.measured - level_);
+  const Eigen::MatrixXd measured = trial_.measured - level_;
+  Eigen::MatrixXd smooth = withoutSmooth(trial_, measured, Smooth::AllButSlip);
   model_.noise = fitNoise(trial_, smooth, level_, slopes, model_.stated);
+  if (slipIsSeen(trial_, model_.noise)) {
+    smooth = withoutSmooth(trial_, measured);
+    model_.noise = fitNoise(trial_, smooth, level_, slopes, model_.stated);
+  }
   calibrateInputs(trial_, model_.noise);
   level_ = predictRows(model_, trial_, solved_);
   slopes = inputSlopes(model_, trial_, solved_);
   residual_ = trial_.measured - level_;
+  by_slip_.reset();
+  if (!slipIsSeen(trial_, model_.noise)) by_slip_ = levelStd(trial_, model_.noise) * slopes.by_slip;
   whitening_ = whitening(trial_, level_, slopes, model_.noise);
   white_ = whitening_.apply(residual_);
   group_ = exchangeableGroups(trial_, whitening_, smooth);
@@ -169,12 +176,12 @@ TraceSearch::Screened TraceSearch::screenCurves(const Candidate& candidate, cons
 }
 
 std::vector<TraceSearch::Screened> TraceSearch::screen() {
-  const Eigen::MatrixXd nuisance = orthonormal(derivativeOf(model_, solved_));
+  const Eigen::MatrixXd known = orthonormal(derivativeOf(model_, solved_));
   std::vector<Screened> all;
   for (const Candidate& c : libraryCandidates(trial_, sinkages(level_)))
-    all.push_back(screenLibrary(c, nuisance));
+    all.push_back(screenLibrary(c, known));
   for (const Candidate& c : empiricalCandidates(trial_, sinkages(level_))) {
-    Screened s = screenCurves(c, nuisance);
+    Screened s = screenCurves(c, known);
     if (!s.candidate.parts.empty()) all.push_back(std::move(s));
   }
   std::stable_sort(all.begin(), all.end(),
@@ -187,10 +194,10 @@ std::vector<CovariateTest> TraceSearch::test(const std::vector<Screened>& screen
   plan.group = group_;
   plan.flips = options_.flips;
   plan.seed = options_.seed;
-  const auto free = planFor(model_).free;
   plan.nuisance_whitened = derivativeOf(model_, solved_);
-  plan.nuisance_marginal = jacobian(model_, trial_, free, solved_,
+  plan.nuisance_marginal = jacobian(model_, trial_, planFor(model_).free, solved_,
                                     [&](const Eigen::MatrixXd& m) { return whitening_.marginal(m); });
+  if (by_slip_) plan.shared_error = trial_.measured.array().isFinite().select(*by_slip_, 0.0);
   for (const Screened& s : screened)
     if (!s.candidate.empirical()) plan.directions.push_back({s.candidate.parts.front().name, s.direction});
   return testCovariates(trial_, whitening_, residual_, sinkages(level_), plan);
@@ -260,7 +267,7 @@ void TraceSearch::accept(const Candidate& candidate) {
   }
 }
 
-void TraceSearch::takeOut(std::size_t k) {
+void TraceSearch::leaveOut(std::size_t k) {
   const auto first =
       std::accumulate(part_count_.begin(), part_count_.begin() + static_cast<long>(k), std::size_t{0});
   const auto begin = model_.effects.begin() + static_cast<long>(first);
@@ -275,14 +282,14 @@ void TraceSearch::takeOut(std::size_t k) {
 
 std::vector<Explanation> TraceSearch::rivals(std::size_t k) {
   const TraceSearch kept = *this;
-  takeOut(k);
+  leaveOut(k);
   auto ranked = fitBest(screen());
   *this = kept;
   return ranked;
 }
 
 void TraceSearch::drop(std::size_t k) {
-  takeOut(k);
+  leaveOut(k);
   for (int round = 0; round < 2; ++round) {
     model_ = fitModel(model_, trial_, whitening_, planFor(model_), solved_).model;
     refresh();
@@ -290,8 +297,20 @@ void TraceSearch::drop(std::size_t k) {
 }
 
 void TraceSearch::replace(std::size_t k, const Candidate& candidate) {
-  takeOut(k);
+  leaveOut(k);
   accept(candidate);
+}
+
+Channel TraceSearch::strongest(std::size_t effect) {
+  RefinedModel without = model_;
+  without.effects.erase(without.effects.begin() + static_cast<long>(effect));
+  SolvedContacts solved = solved_;
+  const Eigen::VectorXd moved = whitening_.marginal(
+      trial_.measured.array().isFinite().select(predictRows(without, trial_, solved) - level_, 0.0));
+  std::array<double, kChannels> size{};
+  for (Eigen::Index i = 0; i < moved.size(); ++i)
+    size[static_cast<std::size_t>(i % kChannels)] += moved[i] * moved[i];
+  return static_cast<Channel>(std::max_element(size.begin(), size.end()) - size.begin());
 }
 
 void TraceSearch::finish(TraceResult& result) {
@@ -303,9 +322,11 @@ void TraceSearch::finish(TraceResult& result) {
   model_.fitted = plan.free;
   const Eigen::MatrixXd covariance = parameterCovariance(model_, trial_, whitening_, plan, solved_);
   model_.covariance.assign(covariance.data(), covariance.data() + covariance.size());
+  level_ = predictRows(model_, trial_, solved_);
   std::size_t at = 0;
   for (std::size_t k = 0; k < result.effects.size(); ++k) {
     auto& effect = result.effects[k];
+    if (part_count_[k] == 1) effect.channel = strongest(at);
     for (Effect& part : effect.chosen.candidate.parts) part = model_.effects[at++];
     effect.parameter_std.clear();
     for (std::size_t j = 0; j < plan.free.size(); ++j) {

@@ -46,6 +46,12 @@ class TraceSearch {
   /// Takes accepted candidate number k out, fits everything again and finds the noise anew.
   void drop(std::size_t k);
 
+  /// Takes accepted candidate number k out and fits the others again, the noise as it is.
+  void leaveOut(std::size_t k);
+
+  /// Squared length of the whitened residuals.
+  double chi2() const { return white_.squaredNorm(); }
+
   /// What would explain the rows in place of accepted candidate number k, the others kept and the noise as it
   /// is now known: before the first effect was in, the noise was only guessed.
   std::vector<Explanation> rivals(std::size_t k);
@@ -58,7 +64,8 @@ class TraceSearch {
 
  private:
   void refresh();
-  void takeOut(std::size_t k);
+  Channel strongest(std::size_t effect);  ///< where taking it out, all else left, changes most [noise]
+
   void fitSoil();
   FitPlan planFor(const RefinedModel& model) const;
   double penalty(const Candidate& candidate) const;
@@ -88,6 +95,8 @@ class TraceSearch {
   Trial trial_;
   SolvedContacts solved_;
   Eigen::MatrixXd level_, residual_;
+  std::optional<Eigen::MatrixXd> by_slip_;  ///< change by one std of the error of the slips' mean, where
+                                            ///< there is one level of slip
   Whitening whitening_;
   Eigen::VectorXd white_;
   std::vector<int> group_;
