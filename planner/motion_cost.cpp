@@ -134,23 +134,23 @@ bool touchesOnlyAllowed(const costmap::CostGrid& map, InCells p, costmap::Direct
   return true;
 }
 
+}  // namespace
+
 // A turn on an edge or corner must not slip between cells: both its headings need all cells it touches.
-bool turnAllowed(const costmap::CostGrid& map, const Segment& motion, maps::Point turn) noexcept {
-  const InCells p = inCells(map.grid(), turn);
+bool MotionCost::turnAllowed(const Segment& motion, maps::Point end) const noexcept {
+  const InCells p = inCells(map_->grid(), end);
   if (!onEdge(p.x) && !onEdge(p.y)) return true;
   const double dx = motion.to.x_m - motion.from.x_m, dy = motion.to.y_m - motion.from.y_m;
   const double length = std::hypot(dx, dy);
-  return length == 0.0 || touchesOnlyAllowed(map, p, {dx / length, dy / length});
+  return length == 0.0 || touchesOnlyAllowed(*map_, p, {dx / length, dy / length});
 }
-
-}  // namespace
 
 double MotionCost::along(const std::vector<maps::Point>& points) const noexcept {
   double sum = 0.0;
   for (std::size_t i = 1; i < points.size(); ++i) {
     const Segment motion{points[i - 1], points[i]};
-    if (i > 1 && !turnAllowed(*map_, motion, motion.from)) return kInfinity;
-    if (i + 1 < points.size() && !turnAllowed(*map_, motion, motion.to)) return kInfinity;
+    if (i > 1 && !turnAllowed(motion, motion.from)) return kInfinity;
+    if (i + 1 < points.size() && !turnAllowed(motion, motion.to)) return kInfinity;
     sum += (*this)(motion);
   }
   return sum;

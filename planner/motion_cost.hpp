@@ -32,6 +32,10 @@ class MotionCost {
   /// Cost of a polyline in joules; infinite when any part is not allowed. Zero for fewer than two points.
   double along(const std::vector<maps::Point>& points) const noexcept;
 
+  /// Whether a polyline may turn at an end of this motion as it begins or ends there: on an edge or a corner
+  /// its heading must be allowed in every cell touched. What along() asks of each turn.
+  bool turnAllowed(const Segment& motion, maps::Point end) const noexcept;
+
   /// Whether some heading may enter the cell of this point.
   bool allowed(maps::Point place) const noexcept;
 

@@ -18,14 +18,6 @@ Plan NamedPlanner::plan(const Problem& problem) {
   return planToCheapest(problem, [this](const Problem& one_goal) { return planOne(one_goal); });
 }
 
-// What is left to pay at least from any place: the field over relaxed steps, admissible for every route.
-ImprovableRegion::Bound NamedPlanner::boundTo(const Problem& leg) {
-  if (leg.map->grid().size() > kLarge) return {};
-  return [this, map = leg.map, goal = leg.goal, tolerance_m = leg.goal_tolerance_m](maps::Point place) {
-    return bound_(map, {place, goal}, tolerance_m);
-  };
-}
-
 Plan NamedPlanner::planOne(const Problem& problem) {
   if (settings_.planner == plannerNames().front()) return planField(problem);
   if (drives()) {
@@ -33,7 +25,7 @@ Plan NamedPlanner::planOne(const Problem& problem) {
     return drive_.plan(problem);
   }
   return planBySampling(problem, settings_, [this](const Problem& leg) {
-    return LegKnowledge{.plan = planField(leg), .from_start = {}, .to_goal = boundTo(leg)};
+    return LegKnowledge{.plan = planField(leg), .from_start = {}, .to_goal = {}};
   });
 }
 

@@ -6,8 +6,6 @@
 
 #include <planner/drive_planner.hpp>
 #include <planner/field_planner.hpp>
-#include <planner/improvable_region.hpp>
-#include <planner/lower_bound.hpp>
 #include <planner/problem.hpp>
 #include <planner/sampling_planner.hpp>
 #include <planner/tube_planner.hpp>
@@ -44,14 +42,12 @@ class NamedPlanner {
 
  private:
   Plan planOne(const Problem& problem);
-  ImprovableRegion::Bound boundTo(const Problem& leg);
   Plan planField(const Problem& problem);
 
   SamplingSettings settings_;
   FieldPlanner field_;
   DrivePlanner drive_;
   TubePlanner tube_;
-  LowerBound bound_;
 };
 
 }  // namespace talus::planner

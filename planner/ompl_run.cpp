@@ -115,7 +115,7 @@ Plan explained(Plan plan, const Problem& leg, const MeteredCost& cost, const Sam
 Plan runOmpl(const Problem& leg, const SamplingSettings& settings, const LegKnowledge& known) {
   const QuietOmpl quiet;
   const double range_m = settings.range_cells * leg.map->grid().resolution_m;
-  const auto cost = std::make_shared<const MeteredCost>(leg.map);
+  const auto cost = std::make_shared<const MeteredCost>(leg.map, Segment{leg.start, leg.goal});
   const auto region = regionOf(leg, known, settings);
   const auto space = spaceOf(leg, cost, region);
   const auto definition = definitionOf(leg, space, {.cost = cost, .region = region, .seed = leg.seed});

@@ -19,7 +19,7 @@ namespace og = ompl::geometric;
 struct Asked {
   explicit Asked(const std::shared_ptr<const costmap::CostGrid>& map)
       : space(std::make_shared<MapSpace>(map->grid())), info(std::make_shared<ob::SpaceInformation>(space)) {
-    const auto cost = std::make_shared<MeteredCost>(map);
+    const auto cost = std::make_shared<MeteredCost>(map, Segment{});
     info->setStateValidityChecker(std::make_shared<MapValidityChecker>(info, cost));
     info->setMotionValidator(std::make_shared<MapMotionValidator>(info, cost));
     info->setup();

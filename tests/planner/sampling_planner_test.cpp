@@ -1,8 +1,10 @@
 #include <cmath>
 
+#include <planner/field_planner.hpp>
 #include <planner/motion_cost.hpp>
 #include <planner/planner_names.hpp>
 #include <planner/sampling_planner.hpp>
+#include <planner/slip_world.hpp>
 
 #include "drawn_map.hpp"
 
@@ -152,6 +154,24 @@ TEST_P(EveryPlanner, PassesViaPointsInOrder) {
   const auto second = std::ranges::find(plan.points, problem.via[1]);
   ASSERT_NE(second, plan.points.end());
   EXPECT_LT(first, second);
+}
+
+// Property: what a planner says that it found is what it hands out, also where the route that it was given
+// turns on edges between cells and headings are forbidden cell by cell.
+TEST(SamplingPlanner, HandsOutTheCostThatItReports) {
+  for (const std::string name : {"RRTstar", "InformedRRTstar", "BITstar"})
+    for (const std::uint64_t seed : {std::uint64_t{1001}, std::uint64_t{1002}}) {
+      Problem problem{.map = slipWorld({.seed = seed}).map, .start = {8.5, 8.5}, .goal = {87.5, 87.5}};
+      problem.prove = false;
+      double reported_J = INFINITY;
+      SamplingSettings settings{.planner = name, .work = 1'000'000};
+      settings.better = [&reported_J](double cost_J) { reported_J = std::min(reported_J, cost_J); };
+      const Plan plan = planBySampling(problem, settings, [](const Problem& leg) {
+        return LegKnowledge{.plan = FieldPlanner().plan(leg), .from_start = {}, .to_goal = {}};
+      });
+      ASSERT_EQ(plan.status, RouteStatus::Found);
+      EXPECT_LE(plan.cost_J, reported_J * (1.0 + 1e-9)) << name << " seed " << seed;
+    }
 }
 
 TEST(SamplingPlanner, RefusesSettingsOutOfRange) {
