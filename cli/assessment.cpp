@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include <cli/assessment.hpp>
+#include <cli/pull_forecasts.hpp>
 #include <cli/wheel_rows.hpp>
 #include <terramech/model_file.hpp>
 #include <terramech/model_pull.hpp>
@@ -37,13 +38,13 @@ void judge(Assessment& a, const CategoryThresholds& limits) {
 // The pull at other slips: of the soils that all rows together allow, at each row's load.
 void extrapolate(const AssessOptions& options, const WheelRows& rows, const Watch& watch,
                  std::vector<Assessment>& result) {
-  const SoilPosterior soil = fitSoil(rows.wheel, rows.samples, thesisSoilsOrOther(),
-                                     {.noise = ReadingErrors::relative(std::max(options.noise, 1e-3))});
+  SoilFitOptions fit{.noise = ReadingErrors::relative(std::max(options.noise, 1e-3)), .watch = watch};
+  PullForecasts forecasts(fitSoil(rows.readings(), thesisSoilsOrOther(), fit), options.reference_slip);
   for (std::size_t k = 0; k < result.size() && !watch.stopped(); ++k) {
-    result[k].forecast = forecastPull(
-        rows.wheel, soil, {.load_N = rows.samples[k].load_N, .reference_slip = options.reference_slip});
+    result[k].forecast = forecasts.at(rows.wheels[k], rows.samples[k].load_N);
     watch.report(static_cast<double>(k) / static_cast<double>(result.size()));
   }
+  watch.report(1.0);
 }
 
 AssessedTable assessReadings(const AssessOptions& options, const CategoryThresholds& limits,
@@ -54,12 +55,13 @@ AssessedTable assessReadings(const AssessOptions& options, const CategoryThresho
   AssessedTable table{.rows = {}, .rejected = rows.rejected, .left_out = {}};
   for (std::size_t k = 0; k < rows.samples.size(); ++k) {
     const WheelSample& s = rows.samples[k];
-    const double sinkage = s.sinkage_m / rows.wheel.radius_m;
+    const Wheel& wheel = rows.wheels[k];
+    const double sinkage = s.sinkage_m / wheel.radius_m;
     Assessment a{.line = rows.lines[k],
                  .slip = s.slip,
-                 .pull = pullBy(options.formula, rows.wheel, s, errors),
+                 .pull = pullBy(options.formula, wheel, s, errors),
                  .sinkage_over_radius = {sinkage, errors.sinkage.std(sinkage)},
-                 .torque_over_load_radius = torqueOverLoadRadius(rows.wheel, s)};
+                 .torque_over_load_radius = torqueOverLoadRadius(wheel, s)};
     judge(a, limits);
     table.rows.push_back(a);
   }
@@ -112,6 +114,7 @@ AssessedTable assessByModel(const AssessOptions& options, const CategoryThreshol
     table.rows.push_back(a);
     watch.report(static_cast<double>(k) / static_cast<double>(states.size()));
   }
+  watch.report(1.0);
   return table;
 }
 

@@ -1,4 +1,8 @@
+#include <algorithm>
+#include <atomic>
 #include <cstdlib>
+#include <thread>
+#include <utility>
 
 #include <cli/campaign.hpp>
 
@@ -18,6 +22,24 @@ JobOutcome outcomeOf(const std::function<std::string(std::size_t)>& job, std::si
   } catch (const std::exception& error) {
     return {.failed = true, .text = error.what()};
   }
+}
+
+// Each job falls into its own place, so that order does not matter; the caller's thread reports.
+std::vector<JobOutcome> runHere(std::size_t count, const std::function<std::string(std::size_t)>& job,
+                                const Watch& watch, std::size_t workers) {
+  std::vector<JobOutcome> outcomes(count);
+  std::atomic<std::size_t> next{0}, done{0};
+  const auto work = [&](bool reports) {
+    for (std::size_t i = next++; i < count; i = next++) {
+      outcomes[i] = outcomeOf(job, i, watch);
+      ++done;
+      if (reports) watch.report(static_cast<double>(done) / static_cast<double>(count));
+    }
+  };
+  std::vector<std::jthread> threads;
+  for (std::size_t t = 1; t < std::min(workers, count); ++t) threads.emplace_back(work, false);
+  work(true);
+  return outcomes;
 }
 
 }  // namespace
@@ -82,39 +104,43 @@ bool Campaign::leads() const noexcept {
 
 Campaign::~Campaign() = default;
 
+#ifdef TALUS_MPI
+
+// The leading rank does its own share and takes in what the others send meanwhile, then the rest.
 std::vector<JobOutcome> Campaign::run(std::size_t count, const std::function<std::string(std::size_t)>& job,
-                                      const Watch& watch) const {
+                                      const Watch& watch, std::size_t workers) const {
+  if (!mpi_) return runHere(count, job, watch, workers);
   std::vector<JobOutcome> outcomes(leads() ? count : 0);
   std::size_t done = 0;
   const auto report = [&] { watch.report(static_cast<double>(++done) / static_cast<double>(count)); };
   const auto step = static_cast<std::size_t>(ranks());
-#ifdef TALUS_MPI
-  const auto first = mpi_ ? static_cast<std::size_t>(mpi_->world.rank()) : 0;
-#else
-  const std::size_t first = 0;
-#endif
-  for (std::size_t i = first; i < count; i += step) {
+  for (auto i = static_cast<std::size_t>(mpi_->world.rank()); i < count; i += step) {
     JobOutcome outcome = outcomeOf(job, i, watch);
-#ifdef TALUS_MPI
     if (!leads()) {
       mpi_->send(i, outcome);
       continue;
     }
-    while (mpi_ && mpi_->world.iprobe(boost::mpi::any_source, kIndexTag)) {
+    while (mpi_->world.iprobe(boost::mpi::any_source, kIndexTag)) {
       mpi_->receive(mpi_->world.probe(boost::mpi::any_source, kIndexTag).source(), outcomes);
       report();
     }
-#endif
     outcomes[i] = std::move(outcome);
     report();
   }
-#ifdef TALUS_MPI
-  for (; leads() && mpi_ && done < count;) {
+  while (leads() && done < count) {
     mpi_->receive(mpi_->world.probe(boost::mpi::any_source, kIndexTag).source(), outcomes);
     report();
   }
-#endif
   return outcomes;
 }
+
+#else
+
+std::vector<JobOutcome> Campaign::run(std::size_t count, const std::function<std::string(std::size_t)>& job,
+                                      const Watch& watch, std::size_t workers) const {
+  return runHere(count, job, watch, workers);
+}
+
+#endif
 
 }  // namespace talus::cli

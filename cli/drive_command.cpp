@@ -1,19 +1,19 @@
 // talus drive DEM --truth TRUTH.yaml: rehearse a traverse over soils that the planner does not know.
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <cli/campaign.hpp>
 #include <cli/command.hpp>
 #include <cli/commands.hpp>
 #include <cli/drive_page.hpp>
 #include <cli/drive_report.hpp>
 #include <cli/drive_telemetry.hpp>
+#include <cli/drive_worlds.hpp>
 #include <cli/ground_options.hpp>
 #include <cli/truth_file.hpp>
 #include <maps/place_reader.hpp>
@@ -50,7 +50,9 @@ void bind(CLI::App& command, Options& options) {
       ->capture_default_str();
   auto* worlds =
       command
-          .add_option("--worlds", options.worlds, "rehearse in so many random worlds, --threads at a time")
+          .add_option("--worlds", options.worlds,
+                      "rehearse in so many random worlds, --threads at a time, or over all ranks under "
+                      "mpirun")
           ->check(CLI::Range(1, 100000))
           ->type_name("N");
   command.add_option("--html", options.html, "write a page with a time slider, to watch the rehearsal")
@@ -65,49 +67,53 @@ Belief beliefOf(const std::string& word) {
   return *std::find_if(kBeliefs.begin(), kBeliefs.end(), [&](Belief b) { return planner::name(b) == word; });
 }
 
-// As many worlds at a time as there are workers; each falls into its own place, so that order does not
-// matter.
-std::vector<WorldResult> rehearseAll(const planner::RehearsalSite& site, Belief belief, std::size_t worlds,
-                                     const Context& context) {
-  std::vector<WorldResult> results(worlds);
-  const Watch watch = context.watch(fmt::format("rehearsing, {}", planner::name(belief)));
-  std::atomic<std::size_t> next{0};
-  const auto work = [&](bool reports) {
-    for (std::size_t i = next++; i < worlds && !watch.stopped(); i = next++) {
-      results[i] = site.world(belief, i, watch);
-      if (reports) watch.report(static_cast<double>(i + 1) / static_cast<double>(worlds));
-    }
-  };
-  std::vector<std::jthread> threads;
-  const auto workers = std::min(static_cast<std::size_t>(context.workers()), worlds);
-  for (std::size_t t = 1; t < workers; ++t) threads.emplace_back(work, false);
-  work(true);
-  return results;
+// What was asked for and where it runs.
+struct Campaigning {
+  const planner::RehearsalSite& site;
+  const Campaign& campaign;
+  const Context& context;
+};
+
+DrivenWorlds rehearsed(const Campaigning& on, const std::vector<Belief>& beliefs, std::size_t worlds) {
+  const Watch watch = on.context.watch("rehearsing");
+  const Watch inside{.progress = {}, .stop = watch.stop};
+  const WorldCount count{
+      .beliefs = beliefs.size(), .worlds = worlds, .workers = static_cast<std::size_t>(on.context.workers())};
+  DrivenWorlds driven = drivenWorlds(
+      count, [&](std::size_t b, std::size_t i) { return on.site.world(beliefs[b], i, inside); }, on.campaign,
+      watch);
+  for (const auto& failure : driven.failures)
+    on.context.warn(fmt::format("world {} failed and is left out: {}", failure.world, failure.reason));
+  return driven;
 }
 
+// The report, and which worlds failed.
 template <typename Results>
-void show(const Results& results, const Context& context) {
-  if (context.json)
-    printJson(asJson(results));
-  else
+int show(const Results& results, const DrivenWorlds& driven, const Campaigning& on) {
+  if (!on.campaign.leads()) return Exit::kDone;
+  if (on.context.stop.stop_requested()) return Exit::kCancelled;
+  if (!on.context.json) {
     print(asText(results));
+    return Exit::kDone;
+  }
+  nlohmann::ordered_json json = asJson(results);
+  json["failed"] = nlohmann::ordered_json::array();
+  for (const auto& failure : driven.failures)
+    json["failed"].push_back({{"world", failure.world}, {"reason", failure.reason}});
+  printJson(json);
+  return Exit::kDone;
 }
 
-int runAll(const planner::RehearsalSite& site, const Options& options, const Context& context) {
+int runAll(const Campaigning& on, const Options& options) {
+  const DrivenWorlds driven = rehearsed(on, {kBeliefs.begin(), kBeliefs.end()}, options.worlds);
   std::array<std::vector<WorldResult>, 4> results;
-  for (const Belief belief : kBeliefs)
-    results[static_cast<std::size_t>(belief)] = rehearseAll(site, belief, options.worlds, context);
-  if (context.stop.stop_requested()) return Exit::kCancelled;
-  show(results, context);
-  return Exit::kDone;
+  std::copy(driven.results.begin(), driven.results.end(), results.begin());
+  return show(results, driven, on);
 }
 
-int runMany(const planner::RehearsalSite& site, const Options& options, const Context& context) {
-  const std::vector<WorldResult> results =
-      rehearseAll(site, beliefOf(options.belief), options.worlds, context);
-  if (context.stop.stop_requested()) return Exit::kCancelled;
-  show(results, context);
-  return Exit::kDone;
+int runMany(const Campaigning& on, const Options& options) {
+  const DrivenWorlds driven = rehearsed(on, {beliefOf(options.belief)}, options.worlds);
+  return show(driven.results[0], driven, on);
 }
 
 int runOne(const planner::RehearsalSite& site, const Options& options, const Context& context,
@@ -146,6 +152,8 @@ planner::Truth truthFor(const costmap::GroundModel& model, const std::string& pa
 }
 
 int run(const Options& options, Context& context) {
+  const Campaign campaign;
+  if (!campaign.leads()) context.quiet = true;
   const Ground ground = readGround(options.ground, context);
   if (context.stop.stop_requested()) return Exit::kCancelled;
   const planner::RehearsalSite site(
@@ -154,9 +162,10 @@ int run(const Options& options, Context& context) {
                    .goal = maps::readPlace(options.goal, ground.map.elevation(), "--goal"),
                    .firm = terramech::loadSoil("bedrock"),
                    .seed = context.seed});
-  if (options.belief == "all") return runAll(site, options, context);
-  return options.worlds > 1 ? runMany(site, options, context)
-                            : runOne(site, options, context, ground.map.model().rover());
+  const Campaigning on{site, campaign, context};
+  if (options.belief == "all") return runAll(on, options);
+  if (options.worlds > 1) return runMany(on, options);
+  return campaign.leads() ? runOne(site, options, context, ground.map.model().rover()) : Exit::kDone;
 }
 
 }  // namespace

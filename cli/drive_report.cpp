@@ -62,6 +62,21 @@ ordered_json asJson(const planner::WorldResult& result) {
           {"categories_changed", result.categories_changed}};
 }
 
+planner::WorldResult worldResult(const ordered_json& json) {
+  planner::WorldResult result;
+  const auto outcome = json.at("outcome").get<std::string>();
+  result.drive.outcome = *std::find_if(kOutcomes.begin(), kOutcomes.end(),
+                                       [&](Outcome o) { return planner::name(o) == outcome; });
+  json.at("energy_J").get_to(result.drive.energy_J);
+  json.at("length_m").get_to(result.drive.length_m);
+  json.at("time_s").get_to(result.drive.time_s);
+  json.at("replans").get_to(result.drive.replans);
+  json.at("alarms").get_to(result.drive.alarms);
+  json.at("max_slip").get_to(result.drive.max_slip);
+  json.at("categories_changed").get_to(result.categories_changed);
+  return result;
+}
+
 ordered_json asJson(const std::vector<planner::WorldResult>& results) {
   const planner::Rates rates = planner::ratesOf(results);
   ordered_json out{{"worlds", rates.worlds}};

@@ -13,6 +13,9 @@ namespace talus::cli {
 /// One rehearsal: outcome, energy_J, length_m, time_s, replans, alarms, max_slip, categories_changed.
 nlohmann::ordered_json asJson(const planner::WorldResult& result);
 
+/// What asJson() of a world wrote; without track, events and records. Numbers come back to the bit.
+planner::WorldResult worldResult(const nlohmann::ordered_json& json);
+
 /// Many under one belief: the rate of each outcome with its 95 % interval, mean energy, and each world.
 nlohmann::ordered_json asJson(const std::vector<planner::WorldResult>& results);
 

@@ -44,6 +44,11 @@ void bind(CLI::App& command, EstimateOptions& options) {
       ->type_name("NAME|FILE");
   command.add_option("--rover", options.rover, "whose wheel, where the file does not say")
       ->type_name("NAME|FILE");
+  command
+      .add_option("--plate-width", options.plate_width_m,
+                  "b of the plate, where the file does not say (bevameter)")
+      ->check(CLI::Range(1e-3, 10.0))
+      ->type_name("M");
   command.add_option("--noise", options.noise, "relative error of each reading (wong-reece)")
       ->check(CLI::Range(1e-4, 0.5))
       ->capture_default_str();
@@ -100,6 +105,7 @@ Json jsonOf(const std::string& method, const SoilEstimate& e) {
             {"rows_rejected", e.rejected.size()},
             {"well_conditioned", e.unseen.empty()},
             {"unseen", e.unseen},
+            {"warnings", e.warnings},
             {"plausible", e.implausible().empty()},
             {"rejected", rejectedRows(e)}};
   if (std::isfinite(e.sinkage_exponent)) json["sinkage_exponent"] = e.sinkage_exponent;
@@ -213,12 +219,7 @@ int run(const EstimateOptions& options, Context& context) {
   }
   for (const std::string& text : estimate.unseen) context.warn("badly conditioned: " + text);
   if (const std::string why = estimate.implausible(); !why.empty()) context.warn(why);
-  constexpr double kMisfit = 3.0;
-  if (estimate.posterior && estimate.posterior->misfit > kMisfit) {
-    context.warn(fmt::format(
-        "no soil of the prior explains the readings (misfit {:.1f}, 1 expected); widen --prior or --noise",
-        estimate.posterior->misfit));
-  }
+  for (const std::string& text : estimate.warnings) context.warn(text);
   if (!options.html.empty()) writePage(options, estimate);
   if (context.json) {
     printJson(jsonOf(options.method, estimate));

@@ -147,7 +147,7 @@ Ground readGround(const GroundOptions& options, const Context& context) {
   if (!options.map_file.empty()) return fromMapFile(options, options.map_file, context);
   if (isBeliefMap(options.dem.path)) return fromMapFile(options, options.dem.path, context);
   auto begin = Clock::now();
-  maps::ElevationMap dem = readMap(options.dem, context);
+  auto [dem, floors] = readMapWithFloors(options.dem, context);
   const Assumed& assumed = assumedOn(dem);
   warnOfAssumptions(options, assumed, context);
   Layers layers = readLayers(options.layers, dem);
@@ -157,11 +157,13 @@ Ground readGround(const GroundOptions& options, const Context& context) {
   parts.rover = terramech::loadRover(options.rover.empty() ? assumed.rover : options.rover);
   parts.classes = groundClasses(options, assumed, parts.rover);
   parts.policy = options.policy;
+  const std::size_t cells = dem.grid().size();
   costmap::MapLayers content{std::move(dem),
                              std::move(layers.classes),
                              std::move(layers.rock_abundance),
                              std::move(layers.keep_out),
-                             {}};
+                             {},
+                             costmap::Floors(std::move(floors), cells)};
   costmap::TraversabilityMap map(std::move(content), std::make_shared<costmap::GroundModel>(std::move(parts)),
                                  {.footprint_radius_m = options.footprint_m, .threads = context.workers()},
                                  context.watch("costmap"));

@@ -32,10 +32,10 @@ ModulusCriterion criterionOf(const std::string& how) {
                                              : ModulusCriterion::Joint;
 }
 
-ModulusEstimate findModulus(ModulusCriterion criterion, const WheelRows& rows) {
+ModulusEstimate findModulus(ModulusCriterion criterion, const WheelRows& rows, const Watch& watch) {
   switch (criterion) {
     case ModulusCriterion::ErrorMinimisation:
-      return modulusByErrorMinimisation(rows.wheel, rows.samples);
+      return modulusByErrorMinimisation(rows.wheel, rows.samples, {}, watch);
     case ModulusCriterion::TorqueRatio:
       return modulusByTorqueRatio(rows.wheel, rows.samples);
     case ModulusCriterion::EffectiveTorque:
@@ -43,7 +43,7 @@ ModulusEstimate findModulus(ModulusCriterion criterion, const WheelRows& rows) {
     case ModulusCriterion::Joint:
       break;
   }
-  return modulusJointly(rows.wheel, rows.samples);
+  return modulusJointly(rows.wheel, rows.samples, {}, watch);
 }
 
 // The file's own column, where it has one value in all rows.
@@ -80,38 +80,45 @@ ShearStrength believed(const ShearStrength& fit, const std::vector<StrengthPrior
 // The line of a method at a known K, in constant memory; that of linear-offset with M1 where asked.
 class LineFit {
  public:
-  LineFit(const EstimateOptions& options, const Wheel& wheel)
-      : wheel_(wheel), pair_(pairOf(options.method)), whole_equation_(options.whole_equation) {}
+  explicit LineFit(const EstimateOptions& options)
+      : pair_(pairOf(options.method)), whole_equation_(options.whole_equation) {}
 
-  void add(const WheelSample& sample, double shear_modulus_m) {
+  void add(const Wheel& wheel, const WheelSample& sample, double shear_modulus_m) {
     if (whole_equation_) {
-      whole_.add(linearOffset(wheel_, sample, shear_modulus_m));
+      whole_.add(linearOffset(wheel, sample, shear_modulus_m));
     } else {
-      line_.add(pair_(wheel_, sample, shear_modulus_m));
+      line_.add(pair_(wheel, sample, shear_modulus_m));
     }
   }
   ShearStrength estimate() const { return whole_equation_ ? whole_.estimate() : line_.estimate(); }
 
  private:
-  Wheel wheel_;
   PairOf pair_;
   bool whole_equation_;
   MohrCoulombLine line_;
   LinearOffsetFit whole_;
 };
 
+// What the line is fitted to.
+std::vector<StressPair> pointsOf(const EstimateOptions& options, const WheelRows& rows, double modulus) {
+  std::vector<StressPair> points;
+  for (std::size_t k = 0; k < rows.samples.size(); ++k)
+    points.push_back(pairOf(options.method)(rows.wheels[k], rows.samples[k], modulus));
+  return points;
+}
+
 // All rows at once.
 void fitTogether(const EstimateOptions& options, const WheelRows& rows, const std::vector<SoilPrior>& priors,
-                 SoilEstimate& estimate) {
+                 const Watch& watch, SoilEstimate& estimate) {
   const auto known = knownModulus(options, priors);
   const auto modulus = known ? ModulusEstimate{.shear_modulus_m = *known}
-                             : findModulus(criterionOf(options.shear_modulus), rows);
+                             : findModulus(criterionOf(options.shear_modulus), rows, watch);
+  if (watch.stopped()) return;
   sayModulusUnseen(modulus, estimate);
-  LineFit line(options, rows.wheel);
-  for (const WheelSample& s : rows.samples) {
-    estimate.points.push_back(pairOf(options.method)(rows.wheel, s, modulus.shear_modulus_m));
-    line.add(s, modulus.shear_modulus_m);
-  }
+  LineFit line(options);
+  for (std::size_t k = 0; k < rows.samples.size(); ++k)
+    line.add(rows.wheels[k], rows.samples[k], modulus.shear_modulus_m);
+  estimate.points = pointsOf(options, rows, modulus.shear_modulus_m);
   estimate.take(believed(line.estimate(), strengthPriors(priors)));
   estimate.shear_modulus_m = modulus.shear_modulus_m;
 }
@@ -122,7 +129,7 @@ class Recursion {
   Recursion(const EstimateOptions& options, const Wheel& wheel, const std::vector<SoilPrior>& priors)
       : known_(knownModulus(options, priors)),
         priors_(strengthPriors(priors)),
-        line_(options, wheel),
+        line_(options),
         ladder_(wheel, {.criterion = criterionOf(options.shear_modulus), .pair = pairOf(options.method)}) {
     if (options.whole_equation && !known_) {
       throw InputError({.where = "--keep-m1",
@@ -132,9 +139,9 @@ class Recursion {
   }
 
   // False: the sample has no equation.
-  bool add(const WheelSample& sample) {
+  bool add(const Wheel& wheel, const WheelSample& sample) {
     if (!known_) return ladder_.add(sample);
-    line_.add(sample, *known_);
+    line_.add(wheel, sample, *known_);
     return true;
   }
   ShearStrength strength() const { return believed(known_ ? line_.estimate() : ladder_.strength(), priors_); }
@@ -162,10 +169,12 @@ RunningSoil runningOf(const Recursion& recursion) {
 }
 
 void fitRecursively(const EstimateOptions& options, const WheelRows& rows,
-                    const std::vector<SoilPrior>& priors, SoilEstimate& estimate) {
+                    const std::vector<SoilPrior>& priors, const Watch& watch, SoilEstimate& estimate) {
   Recursion recursion(options, rows.wheel, priors);
   for (std::size_t k = 0; k < rows.samples.size(); ++k) {
-    if (!recursion.add(rows.samples[k])) {
+    if (watch.stopped()) return;
+    watch.report(static_cast<double>(k) / static_cast<double>(rows.samples.size()));
+    if (!recursion.add(rows.wheels[k], rows.samples[k])) {
       estimate.rejected.push_back({.line = rows.lines[k], .reason = "torque_Nm must be > 0 to find K from"});
       --estimate.rows_used;
       continue;
@@ -173,12 +182,12 @@ void fitRecursively(const EstimateOptions& options, const WheelRows& rows,
     estimate.running.push_back(runningOf(recursion));
     estimate.running.back().line = rows.lines[k];
   }
+  watch.report(1.0);
   const ModulusEstimate modulus = recursion.modulus();
   sayModulusUnseen(modulus, estimate);
   estimate.take(recursion.strength());
   estimate.shear_modulus_m = modulus.shear_modulus_m;
-  for (const WheelSample& s : rows.samples)
-    estimate.points.push_back(pairOf(options.method)(rows.wheel, s, modulus.shear_modulus_m));
+  estimate.points = pointsOf(options, rows, modulus.shear_modulus_m);
 }
 
 }  // namespace
@@ -196,10 +205,16 @@ SoilEstimate lineEstimate(const EstimateOptions& options, const Watch& watch) {
   const bool spin = options.method == "sojourner";
   const WheelRows rows = readWheelRows(options.table, {.rover = options.rover, .needs_slip = !spin}, watch);
   const std::vector<SoilPrior> priors = soilPriors(options.prior);
+  if (!rows.one_wheel && !knownModulus(options, priors)) {
+    throw InputError(
+        {.where = rows.source,
+         .reason = "wheels of several sizes, and K is found by comparing rows of one",
+         .remedy = "state K with --shear-modulus, take --method wong-reece, or one file for each size"});
+  }
   SoilEstimate estimate;
   estimate.rejected = rows.rejected;
   estimate.rows_used = rows.samples.size();
-  (options.recursive ? fitRecursively : fitTogether)(options, rows, priors, estimate);
+  (options.recursive ? fitRecursively : fitTogether)(options, rows, priors, watch, estimate);
   return estimate;
 }
 

@@ -1,3 +1,6 @@
+#include <limits>
+#include <utility>
+
 #include <CLI/CLI.hpp>
 #include <cli/context.hpp>
 #include <cli/map_options.hpp>
@@ -27,6 +30,10 @@ void addReadOptions(CLI::App& command, MapOptions& options) {
       ->type_name("FACTOR");
   command.add_flag("--ignore-crs", read.ignore_crs,
                    "the CRS is wrong: read as local metres (with --resolution)");
+  command
+      .add_option("--below", options.below_m,
+                  "of an OctoMap: the ground at or below this height, as under a bridge")
+      ->type_name("METRES");
   command.add_option("--max-cells", read.max_cells, "refuse larger maps")
       ->type_name("N")
       ->capture_default_str();
@@ -35,25 +42,35 @@ void addReadOptions(CLI::App& command, MapOptions& options) {
 namespace {
 
 // An OctoMap brings its own grid; what says how to read a raster means nothing to it.
-maps::ElevationMap fromOctomap(const MapOptions& options, const std::string& type, const Context& context) {
+MapWithFloors fromOctomap(const MapOptions& options, const std::string& type, const Context& context) {
   const maps::ReadOptions& read = options.read;
   if (read.band || read.resolution_m || read.nodata || read.ignore_crs || !options.window.empty())
     context.warn(options.path +
                  ": an OctoMap has its own grid; --band, --resolution, --window, --nodata and "
                  "--ignore-crs are not used");
-  if (type != "TraversabilityTree") return costmap::octomapSurface(options.path);
-  return costmap::readMap(options.path, context.workers(), context.watch("read map")).elevation();
+  if (type == "TraversabilityTree")
+    return {costmap::readMap(options.path, context.workers(), context.watch("read map")).elevation(), {}};
+  auto ground =
+      costmap::octomapGround(options.path, options.below_m.value_or(std::numeric_limits<double>::infinity()));
+  return {std::move(ground.surface), std::move(ground.floors)};
 }
 
 }  // namespace
 
-maps::ElevationMap readMap(const MapOptions& options, const Context& context) {
+MapWithFloors readMapWithFloors(const MapOptions& options, const Context& context) {
   if (const auto type = costmap::octomapType(options.path)) return fromOctomap(options, *type, context);
+  if (options.below_m)
+    throw InputError({options.path, "--below chooses between the floors of an OctoMap, and this is a raster",
+                      "leave it out"});
   maps::ReadOptions read = options.read;
   if (!options.window.empty()) read.window = maps::parseWindow(options.window);
   maps::ElevationMap map = maps::readElevation(options.path, read);
   for (const std::string& note : map.notes) context.warn(options.path + ": " + note);
-  return map;
+  return {std::move(map), {}};
+}
+
+maps::ElevationMap readMap(const MapOptions& options, const Context& context) {
+  return readMapWithFloors(options, context).elevation;
 }
 
 void addLayerOptions(CLI::App& command, LayerOptions& options) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include <costmap/floors.hpp>
 #include <maps/elevation_reader.hpp>
 #include <maps/layer_reader.hpp>
 
@@ -18,11 +19,13 @@ struct Context;
 /// How the user names a DEM and says how to read it.
 struct MapOptions {
   std::string path;
-  std::string window;  ///< as typed
+  std::string window;             ///< as typed
+  std::optional<double> below_m;  ///< of an OctoMap: the ground at or below this height
   maps::ReadOptions read;
 };
 
-/// Declares --band, --resolution, --window, --nodata, --vertical-scale, --ignore-crs, --max-cells.
+/// Declares --band, --resolution, --window, --nodata, --vertical-scale, --ignore-crs, --max-cells,
+/// --below.
 void addReadOptions(CLI::App& command, MapOptions& options);
 
 /// Declares the positional DEM (or what `name` calls it) and addReadOptions().
@@ -30,6 +33,13 @@ void addMapOptions(CLI::App& command, MapOptions& options, const std::string& na
 
 /// Reads the map; what the reader decided goes to stderr as warnings. @throws InputError
 maps::ElevationMap readMap(const MapOptions& options, const Context& context);
+
+/// The same, and the other floors of an OctoMap's columns.
+struct MapWithFloors {
+  maps::ElevationMap elevation;
+  std::vector<costmap::Floor> floors;
+};
+MapWithFloors readMapWithFloors(const MapOptions& options, const Context& context);
 
 /// Layers that lie over the DEM; an empty path means none.
 struct LayerOptions {

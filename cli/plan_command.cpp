@@ -135,10 +135,17 @@ void requireAllowed(const planner::Plan& plan, const costmap::CostGrid& map, dou
                                      violations[0].place.x_m, violations[0].place.y_m, violations[0].reason));
 }
 
+// How the soil is drawn along a route.
+planner::RouteRiskOptions soilOf(const PlanOptions& options, std::uint64_t seed) {
+  return {.correlation_length_m = options.ground.policy.correlation_length_m, .seed = seed};
+}
+
 planner::Plan planOnce(const planner::Problem& problem, planner::NamedPlanner& planner,
                        const PlanOptions& options, const std::optional<planner::Chassis>& chassis) {
   const auto once = [&](const planner::Problem& p) {
-    return options.max_risk > 0.0 ? planner::planWithinRisk(p, planner, options.max_risk) : planner.plan(p);
+    return options.max_risk > 0.0
+               ? planner::planWithinRisk(p, planner, options.max_risk, soilOf(options, p.seed))
+               : planner.plan(p);
   };
   return chassis ? planner::planOnChassis(problem, *chassis, once) : once(problem);
 }
@@ -179,9 +186,7 @@ void writeFiles(const PlanOptions& options, const Ground& ground, const Route& r
 
 // The risk once more, with soil that is alike nearby.
 nlohmann::ordered_json riskJson(const Route& route, const PlanOptions& options, const Context& context) {
-  planner::RouteRiskOptions drawn;
-  drawn.correlation_length_m = options.ground.policy.correlation_length_m;
-  drawn.seed = context.seed;
+  const planner::RouteRiskOptions drawn = soilOf(options, context.seed);
   const planner::RouteRisk risk = planner::routeRisk(route, drawn);
   return {{"limit", options.max_risk},
           {"immobilisation", route.vertices.back().immobilisation_risk},

@@ -34,7 +34,8 @@ int run(const PredictOptions& options, Context& context) {
   if (!file.soil_given)
     throw InputError({options.model, "names no soil", "trace some data with it first: talus trace"});
   if (!options.rover.empty()) file.model.wheel = terramech::loadRover(options.rover).wheel;
-  const auto table = terramech::predictTable(options.table, file.model);
+  const auto table = terramech::predictTable(options.table, file.model, context.watch("predicting"));
+  if (context.stop.stop_requested()) return Exit::kCancelled;
   constexpr std::size_t kShown = 20;
   for (std::size_t k = 0; k < table.refused.size() && k < kShown; ++k)
     context.warn(fmt::format("{}:{}: {}", options.table, table.refused[k].line, table.refused[k].reason));

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -6,6 +7,7 @@
 #include <cli/line_estimate.hpp>
 #include <cli/prior_option.hpp>
 #include <cli/soil_estimate.hpp>
+#include <cli/soil_groups.hpp>
 #include <terramech/soil_filter.hpp>
 
 namespace talus::cli {
@@ -41,7 +43,7 @@ SoilPosterior filtered(const WheelRows& rows, const SoilMixture& prior, const So
   for (std::size_t k = 0; k < rows.samples.size(); ++k) {
     if (watch.stopped()) break;
     watch.report(static_cast<double>(k) / static_cast<double>(rows.samples.size()));
-    filter.add(rows.samples[k]);
+    filter.add({rows.wheels[k], rows.samples[k]});
     last = filter.posterior();
     running.push_back({.line = rows.lines[k],
                        .cohesion_Pa = last.mean.cohesion_Pa,
@@ -49,7 +51,28 @@ SoilPosterior filtered(const WheelRows& rows, const SoilMixture& prior, const So
                        .shear_modulus_m = last.mean.shear_modulus_m,
                        .covariance = last.strength_covariance});
   }
+  watch.report(1.0);
   return last;
+}
+
+// What the posterior takes for granted and these rows may not bear out.
+void sayWhatIsDoubtful(const WheelRows& rows, const SoilPosterior& posterior, const ReadingErrors& noise,
+                       std::vector<std::string>& warnings) {
+  constexpr double kMisfit = 3.0;
+  if (posterior.misfit > kMisfit) {
+    warnings.push_back(fmt::format(
+        "no soil of the prior explains the readings (misfit {:.1f}, 1 expected); widen --prior or --noise",
+        posterior.misfit));
+  }
+  if (const std::string text = groupsThatDisagree(rows, posterior, noise); !text.empty())
+    warnings.push_back(text);
+  const auto [narrow, wide] = std::ranges::minmax_element(rows.wheels, {}, &Wheel::width_m);
+  if (narrow->width_m < wide->width_m) {
+    warnings.push_back(
+        fmt::format("k = k_c/b + k_phi is taken as one value under wheels of {:g} to {:g} m width; where k_c "
+                    "matters, one file for each width",
+                    narrow->width_m, wide->width_m));
+  }
 }
 
 SoilEstimate posteriorEstimate(const EstimateOptions& options, const Watch& watch) {
@@ -61,15 +84,18 @@ SoilEstimate posteriorEstimate(const EstimateOptions& options, const Watch& watc
   SoilFitOptions fit;
   fit.noise = ReadingErrors::relative(options.noise);
   fit.draws = options.recursive ? 128 : 512;
+  fit.watch = watch;
   estimate.posterior = options.recursive ? filtered(rows, prior, fit, estimate.running, watch)
-                                         : fitSoil(rows.wheel, rows.samples, prior, fit);
+                                         : fitSoil(rows.readings(), prior, fit);
+  if (watch.stopped()) return estimate;
   take(*estimate.posterior, estimate);
+  sayWhatIsDoubtful(rows, *estimate.posterior, fit.noise, estimate.warnings);
   for (const SoilClass& soil : prior) estimate.class_names.push_back(soil.name);
   return estimate;
 }
 
 SoilEstimate bevameterEstimate(const EstimateOptions& options, const Watch& watch) {
-  const BevameterTable table = readBevameterTable(options.table, watch);
+  const BevameterTable table = readBevameterTable(options.table, options.plate_width_m, watch);
   const auto priors = strengthPriors(soilPriors(options.prior));
   if (!priors.empty() && table.shear.empty()) {
     throw InputError({.where = "--prior " + options.prior,
@@ -91,6 +117,11 @@ SoilEstimate bevameterEstimate(const EstimateOptions& options, const Watch& watc
     }
   }
   if (!table.plates.empty()) {
+    if (table.width_from_force) {
+      estimate.warnings.emplace_back(
+          "no plate_width_m: plates are taken as round, their diameters from F_N and the pressure; state "
+          "--plate-width where they are not");
+    }
     PressureSinkageFit fitter;
     for (const PlateReading& r : table.plates) fitter.add(r);
     const PressureSinkage fit = fitter.estimate();
@@ -98,6 +129,11 @@ SoilEstimate bevameterEstimate(const EstimateOptions& options, const Watch& watc
     estimate.plates = fit.plates;
     estimate.cohesive_modulus = fit.cohesive_modulus;
     estimate.frictional_modulus = fit.frictional_modulus;
+    if (fit.cohesive_modulus && *fit.cohesive_modulus < 0.0) {
+      estimate.warnings.emplace_back(
+          "k_c < 0: wider plates are stiffer, which no cohesion explains; take k of the plate nearest in "
+          "width");
+    }
     if (!fit.refused.empty())
       estimate.unseen.push_back("cohesive_modulus, frictional_modulus: " + fit.refused);
   }
@@ -145,6 +181,11 @@ SoilEstimate estimateSoil(const EstimateOptions& options, const Watch& watch) {
     throw InputError({.where = "--keep-m1",
                       .reason = "it is a term of linear-offset",
                       .remedy = "use --method linear-offset, or leave it out"});
+  }
+  if (options.plate_width_m > 0.0 && options.method != "bevameter") {
+    throw InputError({.where = "--plate-width",
+                      .reason = "it is a plate's",
+                      .remedy = "use --method bevameter, or leave it out"});
   }
   if (options.method == "wong-reece") return posteriorEstimate(options, watch);
   if (options.method != "bevameter") return lineEstimate(options, watch);

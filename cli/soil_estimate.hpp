@@ -24,6 +24,7 @@ struct EstimateOptions {
   std::string html;
   bool whole_equation = false;  ///< linear-offset: keep M1 of Eq. 2.9
   bool recursive = false;       ///< take the rows in one by one and keep each answer
+  double plate_width_m = 0.0;   ///< bevameter: of all plates [m], where the file has no such column; 0: none
   double noise = 0.05;          ///< relative standard deviation of each reading [-]
 };
 
@@ -55,6 +56,7 @@ struct SoilEstimate {
   std::size_t rows_used = 0;
   std::vector<terramech::RejectedRow> rejected;
   std::vector<std::string> unseen;            ///< parameters that the data do not show, with the reason
+  std::vector<std::string> warnings;          ///< what the user should know of how it was fitted
   std::vector<terramech::StressPair> points;  ///< what a line was fitted to, for a plot
   std::optional<terramech::SoilPosterior> posterior;  ///< of wong-reece
   std::vector<std::string> class_names;               ///< of its prior

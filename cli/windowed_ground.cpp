@@ -56,9 +56,9 @@ WindowedGround::WindowedGround(const GroundOptions& options, const Context& cont
       overview_(readGround(asOverview(options, grid_), context)) {
   context_.quiet = true;  // said for the overview already
   content_.grid = grid_;
-  content_.tiles.assign(static_cast<std::size_t>(tilesAcross(grid_.width)) *
-                            static_cast<std::size_t>(tilesAcross(grid_.height)),
-                        std::make_shared<const CostTile>());
+  content_.tiles = costmap::TileTable(static_cast<std::size_t>(tilesAcross(grid_.width)) *
+                                          static_cast<std::size_t>(tilesAcross(grid_.height)),
+                                      std::make_shared<const CostTile>());
   content_.version = 1;
 }
 
@@ -105,8 +105,8 @@ void WindowedGround::read(const std::set<Tile>& tiles) {
   content_.cost = version->content().cost;
   for (const auto& [row, column] : tiles) {
     const int r = row - first.row / kSide, c = column - first.column / kSide;
-    content_.tiles[static_cast<std::size_t>(row * tilesAcross(grid_.width) + column)] =
-        version->content().tiles[static_cast<std::size_t>(r * version->tileColumns() + c)];
+    content_.tiles.set(static_cast<std::size_t>(row * tilesAcross(grid_.width) + column),
+                       version->content().tiles[static_cast<std::size_t>(r * version->tileColumns() + c)]);
     maps::Grid own{kSide + 2,
                    kSide + 2,
                    grid_.resolution_m,

@@ -50,4 +50,10 @@ struct CellBelief {
   friend bool operator==(const CellBelief&, const CellBelief&) = default;
 };
 
+/// Whether it speaks for a floor beneath the top surface: wheels spoke for it, its shape is not known. Such a
+/// leaf stands for its own voxel and is never merged with others.
+inline bool ofFloor(const CellBelief& belief) noexcept {
+  return belief.evidence > 0.0F && has(belief.hazards, Hazard::Unknown);
+}
+
 }  // namespace talus::costmap

@@ -25,6 +25,26 @@ std::shared_ptr<const CostTile> cutTile(const maps::Raster<CellCode>& cells, map
 
 }  // namespace
 
+TileTable::TileTable(std::size_t tiles, const Shared& each) : TileTable(std::vector<Shared>(tiles, each)) {}
+
+TileTable::TileTable(const std::vector<Shared>& tiles) {
+  for (std::size_t first = 0; first < tiles.size(); first += kPage) {
+    auto page = std::make_shared<Page>();
+    for (std::size_t i = first; i < std::min(first + kPage, tiles.size()); ++i) {
+      (*page)[i - first] = tiles[i];
+      raw_.push_back(tiles[i].get());
+    }
+    pages_.push_back(std::move(page));
+  }
+}
+
+void TileTable::set(std::size_t i, Shared tile) {
+  auto page = std::make_shared<Page>(*pages_[i / kPage]);
+  raw_[i] = tile.get();
+  (*page)[i % kPage] = std::move(tile);
+  pages_[i / kPage] = std::move(page);
+}
+
 CostGrid::CostGrid(Content content)
     : content_(std::move(content)), tile_columns_(tilesAcross(content_.grid.width)) {
   const auto expected =
@@ -36,11 +56,11 @@ CostGrid::CostGrid(Content content)
 }
 
 CostGrid flattened(const maps::Raster<CellCode>& cells, std::shared_ptr<const DriveCost> cost) {
-  CostGrid::Tiles tiles;
+  std::vector<TileTable::Shared> tiles;
   for (int row = 0; row < cells.grid().height; row += CostTile::kSide)
     for (int column = 0; column < cells.grid().width; column += CostTile::kSide)
       tiles.push_back(cutTile(cells, {column, row}));
-  return CostGrid({.grid = cells.grid(), .tiles = std::move(tiles), .cost = std::move(cost), .version = 1});
+  return CostGrid({.grid = cells.grid(), .tiles = TileTable(tiles), .cost = std::move(cost), .version = 1});
 }
 
 CostGrid revised(const CostGrid& grid, const Revision& revision) {
@@ -51,7 +71,7 @@ CostGrid revised(const CostGrid& grid, const Revision& revision) {
         std::find_if(copies.begin(), copies.end(), [&](const auto& copy) { return copy.first == slot; });
     if (known != copies.end()) return *known->second;
     copies.emplace_back(slot, std::make_shared<CostTile>(*next.tiles[slot]));
-    next.tiles[slot] = copies.back().second;
+    next.tiles.set(slot, copies.back().second);
     return *copies.back().second;
   };
   for (const CellRange& range : revision.ranges)

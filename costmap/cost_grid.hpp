@@ -17,6 +17,29 @@ struct CostTile {
   std::array<CellCode, kSide * kSide> cells;
 };
 
+/// The tiles of a map, row-major. Copies share them by pages of 64, so that a copy costs next to nothing
+/// whatever the size of the map; changing one tile of a copy takes over its page alone.
+class TileTable {
+ public:
+  using Shared = std::shared_ptr<const CostTile>;
+
+  TileTable() = default;
+  TileTable(std::size_t tiles, const Shared& each);
+  explicit TileTable(const std::vector<Shared>& tiles);
+
+  std::size_t size() const noexcept { return raw_.size(); }
+  const CostTile& tile(std::size_t i) const noexcept { return *raw_[i]; }
+  const Shared& operator[](std::size_t i) const noexcept { return (*pages_[i / kPage])[i % kPage]; }
+  void set(std::size_t i, Shared tile);
+
+ private:
+  static constexpr std::size_t kPage = 64;
+  using Page = std::array<Shared, kPage>;
+
+  std::vector<const CostTile*> raw_;                // what readers follow
+  std::vector<std::shared_ptr<const Page>> pages_;  // what keeps them alive
+};
+
 /// A rectangle of cells, first to last inclusive.
 struct CellRange {
   maps::Cell first;
@@ -27,13 +50,10 @@ struct CellRange {
 /// readers. Versions share the tiles that did not change.
 class CostGrid {
  public:
-  using Tiles = std::vector<std::shared_ptr<const CostTile>>;  ///< row-major; tiles over the east and north
-                                                               ///< edge are padded
-
   /// The content of one version.
   struct Content {
     maps::Grid grid;
-    Tiles tiles;
+    TileTable tiles;  ///< those over the east and north edge are padded
     std::shared_ptr<const DriveCost> cost;
     std::uint64_t version = 0;
   };
@@ -49,7 +69,7 @@ class CostGrid {
   /// The cell's code; the cell must lie inside the grid.
   CellCode at(maps::Cell c) const noexcept {
     const auto tile = static_cast<std::size_t>((c.row >> 6) * tile_columns_ + (c.column >> 6));
-    return content_.tiles[tile]->cells[static_cast<std::size_t>((c.row & 63) << 6 | (c.column & 63))];
+    return content_.tiles.tile(tile).cells[static_cast<std::size_t>((c.row & 63) << 6 | (c.column & 63))];
   }
 
  private:

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -44,8 +45,13 @@ std::uint8_t CurveBook::learned(int class_index, const GroundBelief& belief) {
   const Key key = rounded(class_index, belief);
   if (const auto known = numbers_.find(key); known != numbers_.end()) return known->second;
   if (grounds_.size() >= CellCode::kUnknown) return nearest(key);
-  const GroundBelief middle{.pull = {key.pull * kPullStep, std::ldexp(kPullStdUnit, key.pull_std)},
-                            .sinkage = {std::max(key.sinkage * kSinkageStep, 0.0), belief.sinkage.std}};
+  // All of the key, so that a curve does not depend on who asked for it first; doubt about sinkage shrinks
+  // with that about pull.
+  const GroundClass& ground = model_->parts().classes[static_cast<std::size_t>(class_index)];
+  const double pull_std = std::ldexp(kPullStdUnit, key.pull_std);
+  const GroundBelief middle{.pull = {key.pull * kPullStep, pull_std},
+                            .sinkage = {std::max(key.sinkage * kSinkageStep, 0.0),
+                                        std::min(pull_std / ground.pull_std, 1.0) * ground.sinkage_std}};
   const auto number = static_cast<std::uint8_t>(grounds_.size());
   grounds_.push_back(model_->ground(class_index, middle));
   categories_.emplace_back(*model_, middle);
@@ -80,10 +86,22 @@ bool CurveBook::setPrior(int class_index, const GroundBelief& belief) {
   const auto same = [](const Estimate& a, const Estimate& b) { return a.mean == b.mean && a.std == b.std; };
   if (same(next.pull, priors_[i].pull) && same(next.sinkage, priors_[i].sinkage)) return false;
   priors_[i] = next;
-  grounds_[i] = model_->ground(class_index, next);
-  categories_[i] = CategoryTable(*model_, next);
+  const Worked& now = worked(class_index, next);
+  grounds_[i] = now.ground;
+  categories_[i] = now.categories;
   cost_.reset();
   return true;
+}
+
+const CurveBook::Worked& CurveBook::worked(int class_index, const GroundBelief& prior) {
+  constexpr std::size_t kRemembered = 64;
+  const auto bits = [](double value) { return std::bit_cast<std::int64_t>(value); };
+  const PriorKey key{class_index, bits(prior.pull.mean), bits(prior.pull.std), bits(prior.sinkage.mean),
+                     bits(prior.sinkage.std)};
+  if (const auto known = worked_.find(key); known != worked_.end()) return known->second;
+  if (worked_.size() >= kRemembered) worked_.clear();
+  return worked_.emplace(key, Worked{model_->ground(class_index, prior), CategoryTable(*model_, prior)})
+      .first->second;
 }
 
 std::shared_ptr<const DriveCost> CurveBook::cost() const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <compare>
 #include <cstdint>
 #include <map>
@@ -43,6 +44,14 @@ class CurveBook {
     auto operator<=>(const Key&) const = default;
   };
 
+  // The bits of a prior: while a class is learned it moves to and fro between a few.
+  using PriorKey = std::array<std::int64_t, 5>;
+  struct Worked {
+    DriveGround ground;
+    CategoryTable categories;
+  };
+  const Worked& worked(int class_index, const GroundBelief& prior);
+
   static Key rounded(int class_index, const GroundBelief& belief) noexcept;
   std::uint8_t nearest(const Key& key) const noexcept;
 
@@ -51,6 +60,7 @@ class CurveBook {
   std::vector<CategoryTable> categories_;
   std::vector<GroundBelief> priors_;
   std::map<Key, std::uint8_t> numbers_;
+  std::map<PriorKey, Worked> worked_;
   mutable std::shared_ptr<const DriveCost> cost_;
 };
 

@@ -24,6 +24,7 @@ class Rows {
         time_(telemetry.find("time_s")),
         torque_(telemetry.find("torque_Nm")),
         sinkage_(telemetry.find("sinkage_m")),
+        z_(telemetry.find("z_m")),
         slope_(telemetry.find("slope_rad")),
         heading_(telemetry.find("heading_rad")),
         pull_(telemetry.find("drawbar_pull_N")),
@@ -36,6 +37,7 @@ class Rows {
   WheelReading reading(std::size_t i) const {
     WheelReading r{.time_s = value(time_, i),
                    .place = {x_[i], y_[i]},
+                   .z_m = value(z_, i),
                    .load_N = load_[i],
                    .slip = slip_[i],
                    .torque_Nm = value(torque_, i),
@@ -44,7 +46,7 @@ class Rows {
                    .drawbar_pull_N = value(pull_, i),
                    .pass = 1};
     if (std::isfinite(value(pass_, i))) r.pass = static_cast<int>(value(pass_, i));
-    if (std::isnan(r.gradient)) r.gradient = mapGradient(r.place, heading(i));
+    if (std::isnan(r.gradient)) r.gradient = mapGradient(r, heading(i));
     return r;
   }
 
@@ -74,23 +76,24 @@ class Rows {
   std::string wheel(std::size_t i) const { return wheel_ ? (*wheel_)[i] : std::string(); }
   std::string run(std::size_t i) const { return run_ ? (*run_)[i] : std::string(); }
 
-  double mapGradient(const maps::Point& place, double heading_rad) const {
-    const auto cell = map_.grid().cellAt(place);
-    if (!cell || std::isnan(heading_rad)) return kNone;
+  // Of the top surface: that of a floor beneath it is not known.
+  double mapGradient(const WheelReading& r, double heading_rad) const {
+    const auto cell = map_.grid().cellAt(r.place);
+    if (!cell || std::isnan(heading_rad) || map_.floorAt(*cell, r.z_m)) return kNone;
     const CellCode code = map_.code(*cell);
     return code.dzDx() * std::cos(heading_rad) + code.dzDy() * std::sin(heading_rad);
   }
 
   const TraversabilityMap& map_;
   const std::vector<double>&x_, &y_, &load_, &slip_;
-  const std::vector<double>*time_, *torque_, *sinkage_, *slope_, *heading_, *pull_, *pass_;
+  const std::vector<double>*time_, *torque_, *sinkage_, *z_, *slope_, *heading_, *pull_, *pass_;
   const std::vector<std::string>*wheel_, *run_;
 };
 
-std::optional<int> classAt(const TraversabilityMap& map, const maps::Point& place) {
-  const auto cell = map.grid().cellAt(place);
-  if (!cell || map.classIndex(*cell) < 0) return std::nullopt;
-  return map.classIndex(*cell);
+std::optional<int> classAt(const TraversabilityMap& map, const WheelReading& reading) {
+  const auto cell = map.grid().cellAt(reading.place);
+  const int index = cell ? map.classIndex(*cell, reading.z_m) : -1;
+  return index < 0 ? std::nullopt : std::optional(index);
 }
 
 // The readings of one moment, with the loads that the slope gives them where the file has all wheels carry
@@ -167,7 +170,7 @@ class Listener {
     std::vector<std::size_t> who;
     for (std::size_t w = 0; w < moment.readings.size(); ++w) {
       Heard& heard = all.emplace_back(Heard{moment.readings[w], {}, {}});
-      const auto index = classAt(map_, heard.reading.place);
+      const auto index = classAt(map_, heard.reading);
       if (refused[w])
         heard.reason = *refused[w];
       else if (!index)
@@ -180,6 +183,7 @@ class Listener {
     }
     for (const auto& seen : observer_.observe(sound))
       if (seen) watch_.compare(*seen);
+    for (const auto& [index, reading] : sound) watch_.compareSlip(reading.slip - asked(index, reading));
     const auto seen = observer_.observe(believed);
     for (std::size_t i = 0; i < who.size(); ++i)
       if (seen[i])
@@ -187,6 +191,14 @@ class Listener {
       else
         all[who[i]].reason = "says nothing: neither slope, nor torque with sinkage, nor drawbar pull";
     return all;
+  }
+
+  // Slip of fresh ground of the class on the reading's slope; NaN where none is known or none holds it.
+  double asked(int class_index, const WheelReading& reading) const {
+    const GroundModel& model = map_.model();
+    if (std::isnan(reading.gradient) || reading.pass > 1) return kNone;
+    const DriveState state = model.state(class_index, model.prior(class_index), reading.gradient);
+    return state.refusal == Refusal::Pull ? kNone : static_cast<double>(state.slip);
   }
 
   const TraversabilityMap& map_;
@@ -219,7 +231,7 @@ DriveReport addDrive(TraversabilityMap& map, const terramech::Telemetry& telemet
     ++(row.accepted ? report.used : report.rejected);
     if (report.first_reason.empty()) report.first_reason = row.reason;
   });
-  map.publish();
+  map.publishAll();
   report.findings = listener.watch().findings();
   if (listener.transferred() > 0)
     report.findings.push_back(
@@ -235,7 +247,7 @@ DriveReport replay(TraversabilityMap& map, const EvidenceJournal& journal) {
     const bool used = row.accepted && map.learn(row.observation);
     ++(used ? report.used : report.rejected);
   });
-  map.publish();
+  map.publishAll();
   return report;
 }
 

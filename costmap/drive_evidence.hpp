@@ -19,10 +19,11 @@ struct DriveReport {
   std::vector<std::string> findings;  ///< what the sensors' watch saw, a line each
 };
 
-/// Puts the rows of a telemetry file into a map, in their order, and publishes the result. Columns x_m, y_m,
+/// Puts the rows of a telemetry file into a map, in their order, and publishes all of it anew, so
+/// that the map depends on the evidence alone and not on how it was divided. Columns x_m, y_m,
 /// load_N and slip must be there; torque_Nm, sinkage_m, slope_rad, drawbar_pull_N, heading_rad, time_s,
-/// pass_index help. The slope is the row's own; without it the map's along the heading. Every row goes into
-/// the journal, if there is one, before the map. Throws InputError when a column is missing.
+/// pass_index, z_m help. The slope is the row's own; without it the map's along the heading. Every row goes
+/// into the journal, if there is one, before the map. Throws InputError when a column is missing.
 DriveReport addDrive(TraversabilityMap& map, const terramech::Telemetry& telemetry,
                      EvidenceJournal* journal = nullptr);
 

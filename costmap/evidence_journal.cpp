@@ -10,7 +10,7 @@
 namespace talus::costmap {
 namespace {
 
-constexpr int kFormat = 1;
+constexpr int kFormat = 2;                // 1 had no z_m
 constexpr int kApplication = 0x54414c55;  // "TALU"
 
 constexpr const char* kSchema =
@@ -19,15 +19,15 @@ constexpr const char* kSchema =
     " accepted INTEGER NOT NULL, reason TEXT NOT NULL, time_s REAL, x_m REAL, y_m REAL, load_N REAL, slip "
     "REAL,"
     " torque_Nm REAL, sinkage_m REAL, gradient REAL, drawbar_pull_N REAL, pass_index INTEGER,"
-    " pull REAL, pull_std REAL, sinkage REAL, sinkage_std REAL)";
+    " pull REAL, pull_std REAL, sinkage REAL, sinkage_std REAL, z_m REAL)";
 constexpr const char* kInsert =
     "INSERT INTO evidence(source, line, accepted, reason, time_s, x_m, y_m, load_N, slip, torque_Nm, "
     "sinkage_m, gradient,"
-    " drawbar_pull_N, pass_index, pull, pull_std, sinkage, sinkage_std) "
-    "VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)";
+    " drawbar_pull_N, pass_index, pull, pull_std, sinkage, sinkage_std, z_m) "
+    "VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)";
 constexpr const char* kSelect =
     "SELECT source, line, accepted, reason, time_s, x_m, y_m, load_N, slip, torque_Nm, sinkage_m, gradient,"
-    " drawbar_pull_N, pass_index, pull, pull_std, sinkage, sinkage_std FROM evidence ORDER BY id";
+    " drawbar_pull_N, pass_index, pull, pull_std, sinkage, sinkage_std, z_m FROM evidence ORDER BY id";
 
 // NULL stands for NaN: SQLite has none.
 double number(sqlite3_stmt* row, int column) {
@@ -55,6 +55,7 @@ JournalRow readRow(sqlite3_stmt* row) {
                  .observation = {}};
   out.reading = {.time_s = number(row, 4),
                  .place = {number(row, 5), number(row, 6)},
+                 .z_m = number(row, 18),
                  .load_N = number(row, 7),
                  .slip = number(row, 8),
                  .torque_Nm = number(row, 9),
@@ -64,6 +65,7 @@ JournalRow readRow(sqlite3_stmt* row) {
                  .pass = sqlite3_column_int(row, 13)};
   out.observation = {.time_s = out.reading.time_s,
                      .place = out.reading.place,
+                     .z_m = out.reading.z_m,
                      .pull = {number(row, 14), number(row, 15)},
                      .sinkage = {number(row, 16), number(row, 17)},
                      .demand = out.reading.gradient,
@@ -94,10 +96,25 @@ EvidenceJournal::EvidenceJournal(const std::string& path) : path_(path) {
   if (application != kApplication) {
     // The mark comes before the table: a process killed in between leaves a journal, if an empty one.
     run(("PRAGMA application_id = " + std::to_string(kApplication)).c_str());
-    run(("PRAGMA user_version = " + std::to_string(kFormat)).c_str());
   }
   run(kSchema);
+  upgrade();
   insert_ = prepare(kInsert);
+}
+
+// Under a lock, so that two processes do not both add the column.
+void EvidenceJournal::upgrade() {
+  run("BEGIN IMMEDIATE");
+  const std::int64_t format = single("PRAGMA user_version");
+  if (format > kFormat)
+    throw InputError({path_,
+                      "an evidence journal of format " + std::to_string(format) + ", newer than " +
+                          std::to_string(kFormat),
+                      "use the program that wrote it"});
+  if (single("SELECT count(*) FROM pragma_table_info('evidence') WHERE name = 'z_m'") == 0)
+    run("ALTER TABLE evidence ADD COLUMN z_m REAL");
+  run(("PRAGMA user_version = " + std::to_string(kFormat)).c_str());
+  run("COMMIT");
 }
 
 EvidenceJournal::~EvidenceJournal() = default;
@@ -131,7 +148,8 @@ void EvidenceJournal::append(const JournalRow& row) {
                              r.gradient, r.drawbar_pull_N})
     bind(s, at++, value);
   sqlite3_bind_int(s, at++, r.pass);
-  for (const double value : {o.pull.mean, o.pull.std, o.sinkage.mean, o.sinkage.std}) bind(s, at++, value);
+  for (const double value : {o.pull.mean, o.pull.std, o.sinkage.mean, o.sinkage.std, r.z_m})
+    bind(s, at++, value);
   const int result = sqlite3_step(s);
   sqlite3_reset(s);
   if (result != SQLITE_DONE) fail();

@@ -53,6 +53,7 @@ class EvidenceJournal {
 
   Statement prepare(const char* sql) const;
   void run(const char* sql) const;
+  void upgrade();
   std::int64_t single(const char* sql) const;
   [[noreturn]] void fail() const;
 

@@ -105,6 +105,21 @@ void addSoil(const TraversabilityMap& map, maps::Cell cell, Explanation& out) {
                         static_cast<double>(belief.sinkage_std), wheels, ""});
 }
 
+// The other levels of a cell: what is believed there does not mix with its top.
+void addFloors(const TraversabilityMap& map, maps::Cell cell, Explanation& out) {
+  for (const Floor& floor : map.floors().of(map.grid().index(cell))) {
+    const CellBelief belief = map.belief(cell, floor);
+    const std::string there = "another level of this cell, beneath or above its surface";
+    out.causes.push_back(
+        {"floor_elevation_m", static_cast<double>(floor.height_m), kNotKnown, map.elevation().source, there});
+    out.causes.push_back({"floor_evidence_samples", static_cast<double>(belief.evidence), kNotKnown,
+                          "wheel telemetry on that level", ""});
+    out.causes.push_back({"floor_drawbar_pull_over_load", static_cast<double>(belief.pull_mean),
+                          static_cast<double>(belief.pull_std), "first class of ground and wheels there",
+                          ""});
+  }
+}
+
 void addDrive(const TraversabilityMap& map, maps::Cell cell, const Direction& heading, Explanation& out) {
   const auto grid = map.published();
   const CellCode code = grid->at(cell);
@@ -174,6 +189,7 @@ Explanation explain(const TraversabilityMap& map, maps::Cell cell, const std::op
   addShape(map, cell, out);
   addSoil(map, cell, out);
   addDrive(map, cell, direction, out);
+  addFloors(map, cell, out);
   return out;
 }
 

@@ -1,14 +1,21 @@
+#include <algorithm>
 #include <array>
 #include <bit>
+#include <cerrno>
+#include <charconv>
 #include <cmath>
+#include <csignal>
 #include <cstring>
+#include <deque>
 #include <filesystem>
 #include <fstream>
 #include <istream>
 #include <ostream>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <costmap/map_file.hpp>
@@ -21,7 +28,8 @@ static_assert(std::endian::native == std::endian::little,
               "the rasters of a map file are written as they lie in memory");
 
 constexpr std::array<char, 8> kMagic{'T', 'A', 'L', 'U', 'S', 'M', 'A', 'P'};
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kFlat = 1;    // version without floors
+constexpr std::uint32_t kFloors = 2;  // with a section FLOR
 constexpr std::uint64_t kMostText = 1U << 24;
 
 // FNV-1a over 8-byte words, then over the bytes left: guards against damage, not malice.
@@ -45,9 +53,9 @@ class Checksum {
 
 class TrailerWriter {
  public:
-  explicit TrailerWriter(std::ostream& stream) : stream_(stream) {
+  TrailerWriter(std::ostream& stream, std::uint32_t version) : stream_(stream) {
     raw(kMagic.data(), kMagic.size());
-    raw(&kVersion, sizeof kVersion);
+    raw(&version, sizeof version);
   }
   void section(const char (&tag)[5], const void* data, std::uint64_t size) {
     raw(tag, 4);
@@ -74,12 +82,21 @@ class TrailerReader {
  public:
   TrailerReader(std::istream& stream, std::string name) : stream_(stream), name_(std::move(name)) {
     std::array<char, 8> magic{};
-    std::uint32_t version = 0;
     raw(magic.data(), magic.size());
     if (magic != kMagic) fail("an octree without the trailer of a map");
-    raw(&version, sizeof version);
-    if (version != kVersion)
-      fail("version " + std::to_string(version) + " of the format, this program reads 1");
+    raw(&version_, sizeof version_);
+    if (version_ < kFlat || version_ > kFloors)
+      fail("version " + std::to_string(version_) + " of the format, this program reads 1 and 2");
+  }
+
+  bool hasFloors() const noexcept { return version_ == kFloors; }
+
+  std::vector<Floor> floors(const char (&tag)[5]) {
+    const std::uint64_t size = open(tag);
+    if (size % sizeof(Floor) != 0) fail("damaged section");
+    std::vector<Floor> floors(size / sizeof(Floor));
+    raw(floors.data(), size);
+    return floors;
   }
 
   std::string text(const char (&tag)[5]) {
@@ -139,6 +156,7 @@ class TrailerReader {
   std::istream& stream_;
   std::string name_;
   Checksum checksum_;
+  std::uint32_t version_ = 0;
 };
 
 maps::Raster<Hazard> declared(const TraversabilityMap& map) {
@@ -168,8 +186,9 @@ void requireSane(const maps::Grid& grid, const std::string& name) {
 }  // namespace
 
 void writeMap(const TraversabilityMap& map, std::ostream& stream) {
-  writeTree(map.tree(), stream);
-  TrailerWriter trailer(stream);
+  map.writeTree(stream);
+  const std::vector<Floor>& floors = map.floors().all();
+  TrailerWriter trailer(stream, floors.empty() ? kFlat : kFloors);
   const std::string text = written(textOf(map));
   trailer.section("TEXT", text.data(), text.size());
   const auto& elevation = map.elevation().elevation_m.values();
@@ -177,17 +196,53 @@ void writeMap(const TraversabilityMap& map, std::ostream& stream) {
   trailer.section("CLAS", map.classes().values().data(), map.classes().values().size());
   const maps::Raster<Hazard> hazards = declared(map);
   trailer.section("HAZD", hazards.values().data(), hazards.values().size());
+  if (!floors.empty()) trailer.section("FLOR", floors.data(), floors.size() * sizeof(Floor));
   trailer.finish();
 }
 
+namespace {
+
+constexpr const char* kBeside = ".tmp";  // and the number of the process that writes
+
+bool isGone(const std::string& process) noexcept {
+  int number = 0;
+  const char* end = process.data() + process.size();
+  if (process.empty() || std::from_chars(process.data(), end, number).ptr != end || number <= 0) return false;
+  return ::kill(number, 0) != 0 && errno == ESRCH;
+}
+
+// What a killed process left beside the map.
+void clearLeftovers(const std::filesystem::path& path) {
+  const std::string stem = path.filename().string() + kBeside;
+  std::error_code ignored;
+  const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (name.rfind(stem, 0) == 0 && isGone(name.substr(stem.size())))
+      std::filesystem::remove(entry.path(), ignored);
+  }
+}
+
+// Onto the disk, so that a power cut after the rename finds the whole file.
+bool synced(const std::string& path) noexcept {
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return false;
+  const bool done = ::fsync(file) == 0;
+  ::close(file);
+  return done;
+}
+
+}  // namespace
+
 void writeMap(const TraversabilityMap& map, const std::string& path) {
-  const std::string beside = path + ".tmp" + std::to_string(::getpid());
+  clearLeftovers(path);
+  const std::string beside = path + kBeside + std::to_string(::getpid());
   std::error_code failed;
   {
     std::ofstream stream(beside, std::ios::binary);
     writeMap(map, stream);
     stream.close();
-    if (!stream) failed = std::make_error_code(std::errc::io_error);
+    if (!stream || !synced(beside)) failed = std::make_error_code(std::errc::io_error);
   }
   if (!failed) std::filesystem::rename(beside, path, failed);
   if (!failed) return;
@@ -195,23 +250,33 @@ void writeMap(const TraversabilityMap& map, const std::string& path) {
   throw InputError({path, "cannot be written", "check that the folder exists and has room"});
 }
 
-// Leaves that wheels spoke for carry their block's evidence; cell by cell, so that the order is the writer's.
-void restoreEvidence(const TraversabilityTree& tree, TraversabilityMap& map) {
-  bool any = false;
-  for (int row = 0; row < map.grid().height; ++row)
-    for (int column = 0; column < map.grid().width; ++column) {
-      const float elevation = map.elevation().elevation_m[{column, row}];
-      if (std::isnan(elevation)) continue;
-      const CellBelief* saved = tree.find(map.keys().key({column, row}, static_cast<double>(elevation)));
-      if (!saved || saved->evidence <= 0.0F) continue;
-      map.restore({column, row}, *saved);
-      any = true;
-    }
-  if (any) map.publishAll();
+// Leaves that wheels spoke for carry their block's evidence. Where a leaf of the top is pruned it stands for
+// the cells whose elevation it holds; that of a floor is a voxel whose shape is unknown.
+void restoreEvidence(const std::deque<TreeLeaf>& leaves, TraversabilityMap& map) {
+  const maps::Grid& grid = map.grid();
+  const octomap::OcTreeKey first = map.keys().key({0, 0}, map.keys().baseElevation_m());
+  for (const TreeLeaf& leaf : leaves) {
+    const int west = leaf.low[0] - first[0], south = leaf.low[1] - first[1];
+    const int side = static_cast<int>(leaf.side);
+    for (int row = std::max(south, 0); row < std::min(south + side, grid.height); ++row)
+      for (int column = std::max(west, 0); column < std::min(west + side, grid.width); ++column) {
+        const float elevation = map.elevation().elevation_m[{column, row}];
+        if (std::isnan(elevation)) continue;
+        const int above = map.keys().key({column, row}, static_cast<double>(elevation))[2] - leaf.low[2];
+        if (ofFloor(leaf.belief))
+          map.restore({column, row}, leaf.low[2], leaf.belief);
+        else if (above >= 0 && above < side)
+          map.restore({column, row}, BlockEvidence::kTop, leaf.belief);
+      }
+  }
+  if (!leaves.empty()) map.publishAll();
 }
 
 TraversabilityMap readMap(std::istream& stream, const MapReading& reading, const Watch& watch) {
-  const TraversabilityTree tree = readTree(stream, reading.name);
+  std::deque<TreeLeaf> learned;
+  readLeaves(stream, reading.name, [&](const TreeLeaf& leaf) {
+    if (leaf.belief.evidence > 0.0F) learned.push_back(leaf);
+  });
   TrailerReader trailer(stream, reading.name);
   MapText text = parsed(trailer.text("TEXT"), reading.name);
   requireSane(text.grid, reading.name);
@@ -220,16 +285,19 @@ TraversabilityMap readMap(std::istream& stream, const MapReading& reading, const
   layers.elevation.elevation_m = trailer.raster<float>("ELEV", text.grid);
   layers.classes = trailer.raster<std::uint8_t>("CLAS", text.grid);
   layers.declared = trailer.raster<Hazard>("HAZD", text.grid);
+  std::vector<Floor> floors;
+  if (trailer.hasFloors()) floors = trailer.floors("FLOR");
   trailer.finish();
   if (layers.elevation.elevation_m.empty())
     throw InputError(
         {reading.name, "damaged: it holds no elevation", "write the map again with talus costmap"});
   try {
+    layers.floors = Floors(std::move(floors), text.grid.size());
     if (text.coordinate_system) layers.elevation.georeference.emplace(*text.coordinate_system);
     auto model = std::make_shared<GroundModel>(std::move(text.ground));
     TraversabilityMap map(std::move(layers), std::move(model),
                           {.footprint_radius_m = text.footprint_radius_m, .threads = reading.threads}, watch);
-    restoreEvidence(tree, map);
+    restoreEvidence(learned, map);
     return map;
   } catch (const std::invalid_argument& error) {
     throw InputError(

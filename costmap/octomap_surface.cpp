@@ -5,6 +5,7 @@
 #include <fstream>
 #include <limits>
 #include <sstream>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -121,17 +122,46 @@ Box boxOf(const std::vector<Leaf>& leaves) {
   return box;
 }
 
-maps::Raster<float> topOf(const std::vector<Leaf>& leaves, const maps::Grid& grid, const Box& box) {
-  maps::Raster<float> top(grid, std::numeric_limits<float>::quiet_NaN());
-  for (const Leaf& leaf : leaves) {
-    const auto height = static_cast<float>((leaf.z + leaf.side - 0.5 - kCentre) * grid.resolution_m);
+// The occupied voxels of a column from `low` to `high`, both included.
+struct Run {
+  std::uint32_t column, low, high;
+};
+
+// Runs by column, then upwards.
+std::vector<Run> runsOf(const std::vector<Leaf>& leaves, const maps::Grid& grid, const Box& box) {
+  std::vector<Run> runs;
+  for (const Leaf& leaf : leaves)
     for (std::uint32_t y = leaf.y - box.y0; y < leaf.y - box.y0 + leaf.side; ++y)
       for (std::uint32_t x = leaf.x - box.x0; x < leaf.x - box.x0 + leaf.side; ++x) {
-        float& at = top[{static_cast<int>(x), static_cast<int>(y)}];
-        if (std::isnan(at) || height > at) at = height;
+        const std::size_t column = grid.index({static_cast<int>(x), static_cast<int>(y)});
+        runs.push_back({static_cast<std::uint32_t>(column), leaf.z, leaf.z + leaf.side - 1});
       }
+  std::sort(runs.begin(), runs.end(),
+            [](const Run& a, const Run& b) { return std::tie(a.column, a.low) < std::tie(b.column, b.low); });
+  return runs;
+}
+
+// Keys of the voxels of each column that have headroom, lowest first, in the order of columns.
+std::vector<Floor> groundOf(const std::vector<Run>& runs, double resolution_m) {
+  const auto headroom =
+      std::max(2U, static_cast<std::uint32_t>(std::ceil(Floors::kHeadroom_m / resolution_m)));
+  std::vector<Floor> ground;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const bool last = i + 1 == runs.size() || runs[i + 1].column != runs[i].column;
+    if (!last && runs[i + 1].low <= runs[i].high + headroom) continue;
+    ground.push_back({.cell = runs[i].column,
+                      .height_m = static_cast<float>((runs[i].high + 0.5 - kCentre) * resolution_m)});
   }
-  return top;
+  return ground;
+}
+
+// The surface takes the highest of each column below the ceiling; the others stay.
+maps::Raster<float> takeSurface(std::vector<Floor>& ground, const maps::Grid& grid, double ceiling_m) {
+  maps::Raster<float> surface(grid, std::numeric_limits<float>::quiet_NaN());
+  for (const Floor& floor : ground)
+    if (static_cast<double>(floor.height_m) <= ceiling_m) surface.values()[floor.cell] = floor.height_m;
+  std::erase_if(ground, [&](const Floor& floor) { return surface.values()[floor.cell] == floor.height_m; });
+  return surface;
 }
 
 std::vector<Leaf> leavesOf(std::istream& stream, const Header& header, const std::string& name) {
@@ -158,7 +188,7 @@ std::optional<std::string> octomapType(const std::string& path) {
   return header ? std::optional(header->type) : std::nullopt;
 }
 
-maps::ElevationMap octomapSurface(std::istream& stream, const std::string& name) {
+OctomapGround octomapGround(std::istream& stream, const std::string& name, double ceiling_m) {
   const auto header = readHeader(stream);
   if (!header || !(header->resolution_m > 0.0))
     throw InputError({name, "not an OctoMap file", "give a .bt or .ot of type OcTree or ColorOcTree"});
@@ -176,16 +206,25 @@ maps::ElevationMap octomapSurface(std::istream& stream, const std::string& name)
   if (grid.size() > kMostColumns)
     throw InputError(
         {name, std::to_string(grid.size()) + " columns, more than 4e8", "crop it or lower its resolution"});
-  return {.elevation_m = topOf(leaves, grid, box),
-          .georeference = {},
-          .source = name,
-          .notes = {"top surface of an OctoMap, good to half a voxel"}};
+  std::vector<Floor> ground = groundOf(runsOf(leaves, grid, box), grid.resolution_m);
+  maps::Raster<float> surface = takeSurface(ground, grid, ceiling_m);
+  if (maps::validFraction(surface) == 0.0)
+    throw InputError(
+        {name, "no ground at or below " + std::to_string(ceiling_m) + " m", "raise the ceiling"});
+  std::vector<std::string> notes{"top surface of an OctoMap, good to half a voxel"};
+  if (!ground.empty())
+    notes.push_back(std::to_string(ground.size()) + " cells have ground beneath or above it, too");
+  return {.surface = {.elevation_m = std::move(surface),
+                      .georeference = {},
+                      .source = name,
+                      .notes = std::move(notes)},
+          .floors = std::move(ground)};
 }
 
-maps::ElevationMap octomapSurface(const std::string& path) {
+OctomapGround octomapGround(const std::string& path, double ceiling_m) {
   std::ifstream stream(path, std::ios::binary);
   if (!stream) throw InputError({path, "cannot be opened", "check the path"});
-  return octomapSurface(stream, path);
+  return octomapGround(stream, path, ceiling_m);
 }
 
 }  // namespace talus::costmap

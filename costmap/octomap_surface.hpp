@@ -1,9 +1,12 @@
 #pragma once
 
 #include <istream>
+#include <limits>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include <costmap/floors.hpp>
 #include <maps/elevation_map.hpp>
 
 namespace talus::costmap {
@@ -12,13 +15,22 @@ namespace talus::costmap {
 /// file cannot be opened or is no OctoMap.
 std::optional<std::string> octomapType(const std::string& path);
 
-/// The top surface of a point-cloud OctoMap, .bt or .ot of type OcTree or ColorOcTree: in each column of
-/// voxels the middle of the highest occupied one, NaN where there is none. Half a voxel is the most a flat
-/// surface is off. Local metres. Throws InputError for a file that is truncated, of another type, empty, or
-/// larger than 4e8 columns.
-maps::ElevationMap octomapSurface(const std::string& path);
+/// The ground of a point-cloud OctoMap: one surface, and what other floors its columns have.
+struct OctomapGround {
+  maps::ElevationMap surface;  ///< local metres
+  std::vector<Floor> floors;   ///< beneath the surface and, with a ceiling, above it
+};
+
+/// Reads a .bt or .ot of type OcTree or ColorOcTree. Its surface is, in each column of voxels, the middle of
+/// the highest occupied one whose middle is not above `ceiling_m`, NaN where there is none; half a voxel is
+/// the most a flat surface is off. A floor is any other occupied voxel with Floors::kHeadroom_m (and two
+/// voxels) of free or unknown space above. Throws InputError for a file that is truncated, of another type,
+/// empty (or empty below the ceiling), or larger than 4e8 columns.
+OctomapGround octomapGround(const std::string& path,
+                            double ceiling_m = std::numeric_limits<double>::infinity());
 
 /// The same from a stream; `name` for messages.
-maps::ElevationMap octomapSurface(std::istream& stream, const std::string& name);
+OctomapGround octomapGround(std::istream& stream, const std::string& name,
+                            double ceiling_m = std::numeric_limits<double>::infinity());
 
 }  // namespace talus::costmap

@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include <costmap/sensor_watch.hpp>
 
@@ -8,6 +10,11 @@ namespace {
 
 constexpr std::size_t kWindow = 5;
 constexpr const char* kSpike = "spike";
+
+constexpr std::array<std::pair<const char*, double WheelReading::*>, 3> kSensors{
+    {{"slip", &WheelReading::slip},
+     {"torque", &WheelReading::torque_Nm},
+     {"sinkage", &WheelReading::sinkage_m}}};
 
 double medianOf(const std::deque<WheelReading>& last, double WheelReading::*field) {
   std::vector<double> values;
@@ -49,6 +56,28 @@ bool SensorWatch::slipsBackwardsUphill(const WheelReading& reading) const noexce
          !(reading.torque_Nm <= 0.0);
 }
 
+// The reading as a whole, or one sensor that used to change from row to row. Counted before the reading is
+// taken in.
+std::optional<std::string> SensorWatch::stuck(Wheel& wheel, const WheelReading& reading) const {
+  if (wheel.last.empty()) return std::nullopt;
+  const WheelReading& before = wheel.last.back();
+  wheel.equal = sameReading(before, reading) ? wheel.equal + 1 : 0;
+  std::optional<std::string> reason;
+  for (std::size_t i = 0; i < kSensors.size(); ++i) {
+    const auto& [name, field] = kSensors[i];
+    Channel& channel = wheel.channels[i];
+    if (!std::isfinite(reading.*field) || !std::isfinite(before.*field)) continue;
+    channel.equal = reading.*field == before.*field ? channel.equal + 1 : 0;
+    const bool lively =
+        channel.rows >= limits_.stuck_rows &&
+        static_cast<double>(channel.changes) > limits_.lively * static_cast<double>(channel.rows);
+    if (channel.equal == 0) ++channel.changes;
+    if (channel.equal == 0 || !lively) ++channel.rows;
+    if (lively && channel.equal + 1 >= limits_.stuck_rows) reason = std::string(name) + " is stuck";
+  }
+  return wheel.equal + 1 >= limits_.stuck_rows ? "readings are stuck" : reason;
+}
+
 void SensorWatch::countGap(Wheel& wheel, double time_s) {
   constexpr std::size_t kKnown = 10;  // intervals that tell the usual one
   const double passed_s = time_s - wheel.time_s;
@@ -72,11 +101,12 @@ void SensorWatch::countDropout(Wheel& wheel, const WheelReading& reading) {
 std::vector<std::optional<std::string>> SensorWatch::refuse(const std::vector<Named>& moment) {
   std::vector<std::optional<std::string>> reasons;
   for (const Named& named : moment) reasons.push_back(judge(named));
-  const bool all_jump =
-      reasons.size() > 1 &&
-      std::all_of(reasons.begin(), reasons.end(), [](const auto& reason) { return reason == kSpike; });
+  // Wheels that are refused for another reason have no say.
+  const auto spikes = std::count(reasons.begin(), reasons.end(), kSpike);
+  const bool all_jump = spikes > 1 && std::all_of(reasons.begin(), reasons.end(),
+                                                  [](const auto& reason) { return reason.has_value(); });
   for (auto& reason : reasons)
-    if (all_jump)
+    if (all_jump && reason == kSpike)
       reason.reset();
     else if (reason)
       ++refusals_[*reason];
@@ -93,8 +123,7 @@ std::optional<std::string> SensorWatch::judge(const Named& named) {
     reason = "time goes back";
   else
     wheel.time_s = std::isnan(reading.time_s) ? wheel.time_s : reading.time_s;
-  wheel.equal = !wheel.last.empty() && sameReading(wheel.last.back(), reading) ? wheel.equal + 1 : 0;
-  if (!reason && wheel.equal + 1 >= limits_.stuck_rows) reason = "readings are stuck";
+  if (const auto still = stuck(wheel, reading); !reason) reason = still;
   if (!reason && isSpike(wheel, reading)) reason = kSpike;
   if (!reason && slipsBackwardsUphill(reading)) reason = "slips backwards on a climb: the slip is biased";
   wheel.last.push_back(reading);
@@ -108,9 +137,25 @@ void SensorWatch::compare(const WheelObservation& observation) {
   ++differences_;
 }
 
+void SensorWatch::compareSlip(double excess) {
+  if (!std::isfinite(excess)) return;
+  excess_sum_ += excess;
+  excess_squares_ += excess * excess;
+  ++excesses_;
+}
+
 std::optional<double> SensorWatch::bias() const {
   if (differences_ < limits_.bias_rows) return std::nullopt;
   return difference_sum_ / static_cast<double>(differences_);
+}
+
+std::optional<double> SensorWatch::slipExcess() const {
+  if (excesses_ < limits_.bias_rows) return std::nullopt;
+  const double mean = excess_sum_ / static_cast<double>(excesses_);
+  const double scatter =
+      std::sqrt(std::max(excess_squares_ / static_cast<double>(excesses_) - mean * mean, 0.0));
+  if (std::abs(mean) < std::max(limits_.slip_excess, scatter)) return std::nullopt;
+  return mean;
 }
 
 std::vector<std::string> SensorWatch::findings() const {
@@ -122,6 +167,11 @@ std::vector<std::string> SensorWatch::findings() const {
   if (gaps_ > 0)
     lines.push_back(std::to_string(gaps_) + " gaps in time, the longest of " +
                     std::to_string(longest_gap_s_) + " s");
+  if (const auto excess = slipExcess())
+    lines.push_back("wheels slip " + std::to_string(std::abs(*excess)) + (*excess > 0.0 ? " more" : " less") +
+                    " than the soil asks for on these slopes, on all ground alike: it is " +
+                    (*excess > 0.0 ? "weaker" : "firmer") +
+                    " than believed, or the slip is biased; one rover cannot tell which");
   if (biased())
     lines.push_back(
         "torque and sinkage say " + std::to_string(*bias()) +

@@ -20,6 +20,9 @@ class SurfaceKeys {
   /// The key of the cell at an elevation [m]; heights beyond the tree are clamped into it.
   octomap::OcTreeKey key(maps::Cell cell, double elevation_m) const noexcept;
 
+  /// The middle of a voxel with this height key [m].
+  double heightOf_m(octomap::key_type height) const noexcept;
+
   double baseElevation_m() const noexcept { return base_elevation_m_; }
   const maps::Grid& grid() const noexcept { return grid_; }
 

@@ -74,15 +74,20 @@ double footprintWidth(const maps::TerrainMetrics& metrics, double resolution_m, 
 
 std::shared_ptr<const GroundSite> siteOf(MapLayers& layers, std::shared_ptr<const GroundModel> model) {
   const SurfaceKeys keys(layers.elevation.grid(), middleElevation(layers.elevation.elevation_m));
-  return std::make_shared<GroundSite>(
-      GroundSite{std::move(layers.elevation), std::move(layers.classes), keys, std::move(model)});
+  return std::make_shared<GroundSite>(GroundSite{.elevation = std::move(layers.elevation),
+                                                 .classes = std::move(layers.classes),
+                                                 .keys = keys,
+                                                 .model = std::move(model),
+                                                 .floors = std::move(layers.floors)});
 }
 
-CostGrid::Tiles emptyTiles(const maps::Grid& grid) {
+std::vector<std::shared_ptr<CostTile>> emptyTiles(const maps::Grid& grid) {
   const auto across = [](int cells) {
     return static_cast<std::size_t>((cells + CostTile::kSide - 1) / CostTile::kSide);
   };
-  return CostGrid::Tiles(across(grid.width) * across(grid.height));
+  std::vector<std::shared_ptr<CostTile>> tiles(across(grid.width) * across(grid.height));
+  for (auto& tile : tiles) tile = std::make_shared<CostTile>();
+  return tiles;
 }
 
 // Ranges of a drive overlap: neighbours in time are joined where that covers little more than both.
@@ -105,6 +110,20 @@ std::vector<CellRange> joined(const std::vector<CellRange>& ranges) {
     out.push_back(range);
   }
   return out;
+}
+
+void tell(const GroundBelief& strength, CellBelief& belief) {
+  belief.pull_mean = static_cast<float>(strength.pull.mean);
+  belief.pull_std = static_cast<float>(strength.pull.std);
+  belief.sinkage_mean = static_cast<float>(strength.sinkage.mean);
+  belief.sinkage_std = static_cast<float>(strength.sinkage.std);
+}
+
+void tell(const BlockEvidence& own, CellBelief& belief) {
+  belief.evidence = own.weight;
+  belief.evidence_pull = own.pull;
+  belief.evidence_sinkage = own.sinkage;
+  belief.updated_s = own.updated_s;
 }
 
 }  // namespace
@@ -152,10 +171,8 @@ Hazard TraversabilityMap::layerHazards(const MapLayers& layers, std::size_t i) c
   return found;
 }
 
-CostGrid::Tiles TraversabilityMap::measure(const MapLayers& layers, const Options& options,
-                                           const Watch& watch) {
-  std::vector<std::shared_ptr<CostTile>> tiles(emptyTiles(grid()).size());
-  for (auto& tile : tiles) tile = std::make_shared<CostTile>();
+TileTable TraversabilityMap::measure(const MapLayers& layers, const Options& options, const Watch& watch) {
+  const std::vector<std::shared_ptr<CostTile>> tiles = emptyTiles(grid());
   const int tile_columns = (grid().width + CostTile::kSide - 1) / CostTile::kSide;
   const auto slot = [&](maps::Cell c) -> CellCode& {
     auto& tile = *tiles[static_cast<std::size_t>((c.row >> 6) * tile_columns + (c.column >> 6))];
@@ -185,7 +202,7 @@ CostGrid::Tiles TraversabilityMap::measure(const MapLayers& layers, const Option
       CellCode& code = slot({column, row});
       code = CellCode({.dz_dx = code.dzDx(), .dz_dy = code.dzDy(), .curve = priorCurve({column, row})});
     }
-  return {tiles.begin(), tiles.end()};
+  return TileTable(std::vector<TileTable::Shared>(tiles.begin(), tiles.end()));
 }
 
 std::uint8_t TraversabilityMap::priorCurve(maps::Cell cell) const noexcept {
@@ -224,17 +241,11 @@ CellBelief TraversabilityMap::belief(maps::Cell cell, EvidenceField::Beliefs& be
   belief.hazards = hazards_[cell];
   const int index = classIndex(cell);
   if (index < 0) return belief;
-  const GroundBelief& strength = beliefs.at(cell, index).ground;
-  belief.pull_mean = static_cast<float>(strength.pull.mean);
-  belief.pull_std = static_cast<float>(strength.pull.std);
-  belief.sinkage_mean = static_cast<float>(strength.sinkage.mean);
-  belief.sinkage_std = static_cast<float>(strength.sinkage.std);
-  if (const CellBelief* own = field_.evidence(cell); own && own->terrain_class == belief.terrain_class) {
-    belief.evidence = own->evidence;
-    belief.evidence_pull = own->evidence_pull;
-    belief.evidence_sinkage = own->evidence_sinkage;
-    belief.updated_s = own->updated_s;
-  }
+  belief.terrain_class =
+      static_cast<std::uint8_t>(model().parts().classes[static_cast<std::size_t>(index)].number);
+  tell(beliefs.at(cell, index).ground, belief);
+  if (const BlockEvidence* own = field_.evidence(cell); own && own->terrain_class == belief.terrain_class)
+    tell(*own, belief);
   const CellCode code = this->code(cell);
   if (code.curve() < CellCode::kUnknown) {
     const auto entry = book_.categories(code.curve()).at(code);
@@ -244,6 +255,15 @@ CellBelief TraversabilityMap::belief(maps::Cell cell, EvidenceField::Beliefs& be
     belief.category = static_cast<std::uint8_t>(terramech::Category::Dangerous);
     belief.confidence = 16;
   }
+  return belief;
+}
+
+CellBelief TraversabilityMap::belief(maps::Cell cell, const Floor& floor) const {
+  CellBelief belief;
+  belief.terrain_class = static_cast<std::uint8_t>(model().parts().classes[0].number);
+  belief.hazards = Hazard::Unknown;
+  tell(field_.floorBelief(cell, floor), belief);
+  if (const BlockEvidence* own = field_.evidence(cell, floor)) tell(*own, belief);
   return belief;
 }
 
@@ -319,9 +339,29 @@ void TraversabilityMap::publish(const std::vector<CellRange>& ranges) {
   published_->grid = std::make_shared<CostGrid>(std::move(next));
 }
 
+std::vector<FloorLeaf> TraversabilityMap::floorLeaves() const {
+  std::vector<FloorLeaf> leaves;
+  for (const auto& [cell, own] : field_.floorEvidence()) {
+    octomap::OcTreeKey key = keys().key(cell, keys().baseElevation_m());
+    key[2] = own.level;
+    leaves.push_back(
+        {key, belief(cell, Floor{.cell = static_cast<std::uint32_t>(grid().index(cell)),
+                                 .height_m = static_cast<float>(keys().heightOf_m(own.level))})});
+  }
+  return leaves;
+}
+
 TraversabilityTree TraversabilityMap::tree() const {
-  return surfaceTree({site_->elevation.elevation_m, site_->keys},
-                     [this](maps::Cell cell) { return belief(cell); });
+  EvidenceField::Beliefs beliefs(field_);
+  return surfaceTree({site_->elevation.elevation_m, site_->keys, floorLeaves()},
+                     [&](maps::Cell cell) { return belief(cell, beliefs); });
+}
+
+void TraversabilityMap::writeTree(std::ostream& stream) const {
+  EvidenceField::Beliefs beliefs(field_);
+  writeSurfaceTree(
+      {site_->elevation.elevation_m, site_->keys, floorLeaves()},
+      [&](maps::Cell cell) { return belief(cell, beliefs); }, stream);
 }
 
 }  // namespace talus::costmap

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <iosfwd>
 #include <memory>
 #include <optional>
 
@@ -12,6 +13,7 @@
 #include <costmap/ground_model.hpp>
 #include <costmap/hazards.hpp>
 #include <costmap/surface_cells.hpp>
+#include <costmap/surface_tree.hpp>
 #include <costmap/traversability_tree.hpp>
 #include <maps/elevation_map.hpp>
 #include <maps/terrain_metrics.hpp>
@@ -26,6 +28,7 @@ struct MapLayers {
   maps::Raster<float> rock_abundance;   ///< share of the ground, NaN = none there
   maps::Raster<std::uint8_t> keep_out;  ///< not 0: must not be entered
   maps::Raster<Hazard> declared;        ///< hazards judged elsewhere, as when a map is read back
+  Floors floors;                        ///< ground beneath overhangs, where the source is a point cloud
 };
 
 /// How many cells fall in each category, hazards counted as dangerous where they refuse the cell, unknown
@@ -35,7 +38,7 @@ struct CategoryCounts {
 };
 
 /// Everything that is believed of a site: its surface, the prior of each cell's ground, the evidence that the
-/// wheels brought, and the cost grid that planners read. Ten bytes a cell and an octree of what was learned.
+/// wheels brought, and the cost grid that planners read. Ten bytes a cell and twenty a block that was driven.
 ///
 /// One thread changes a map; published() may be called from any thread at any time and never waits.
 class TraversabilityMap {
@@ -69,6 +72,10 @@ class TraversabilityMap {
   Hazard hazards(maps::Cell cell) const noexcept { return hazards_[cell]; }
   /// Position of the cell's class in model().parts().classes, or -1.
   int classIndex(maps::Cell cell) const noexcept;
+  /// The same of the ground at a height there, which is the first class beneath an overhang.
+  int classIndex(maps::Cell cell, double z_m) const noexcept {
+    return floorAt(cell, z_m) ? 0 : classIndex(cell);
+  }
   /// Class number in the raster, 0 where there is no raster.
   int classNumber(maps::Cell cell) const noexcept;
 
@@ -77,6 +84,16 @@ class TraversabilityMap {
   /// The strength of its ground: prior of the class and evidence together; nothing where the cell has no
   /// class.
   std::optional<GroundBelief> ground(maps::Cell cell) const;
+
+  /// Ground beneath the top surface. It is no part of the cost grid: a planner drives on top.
+  const Floors& floors() const noexcept { return site_->floors; }
+  /// The floor that something at this height stands on; nothing where that is the top surface.
+  std::optional<Floor> floorAt(maps::Cell cell, double z_m) const noexcept {
+    return site_->floorAt(cell, z_m);
+  }
+  /// All that is believed of a cell's floor: the strength of its ground. Its shape is not judged:
+  /// Hazard::Unknown.
+  CellBelief belief(maps::Cell cell, const Floor& floor) const;
 
   CategoryCounts countCategories() const;
   /// Category for people of a cell as published: terramech::Category as a number, hazards as dangerous.
@@ -89,29 +106,36 @@ class TraversabilityMap {
   /// about.
   bool learn(const WheelObservation& observation);
   /// Puts saved evidence of a cell's block back, as read from a file; publishAll() afterwards.
-  void restore(maps::Cell cell, const CellBelief& saved) { field_.restore(cell, saved); }
+  void restore(maps::Cell cell, std::uint16_t level, const CellBelief& saved) {
+    field_.restore(cell, level, saved);
+  }
 
   /// Declares the ground around a place impassable, as a driver does who got stuck there: Hazard::Obstacle on
   /// every cell whose centre lies within the radius. Planners see it after publish().
   void refuse(const maps::Point& place, double radius_m);
 
   /// Publishes what was learned since the last time as a new version: rewrites the tiles it touches, shares
-  /// the others. Readers never wait; a planner that runs keeps its version.
+  /// the others. Readers never wait; a planner that runs keeps its version. Learned ground elsewhere keeps
+  /// its curve although its class as a whole moved a little: it has its own evidence.
   void publish();
   /// The same over all cells, as after restore().
   void publishAll();
 
-  /// The whole map as an octree of beliefs, for files.
+  /// The whole map as an octree of beliefs: every cell at its elevation, and the floors beneath it that
+  /// wheels spoke for.
   TraversabilityTree tree() const;
+  /// Writes that tree without holding it in memory; the stream must be able to seek.
+  void writeTree(std::ostream& stream) const;
   const SurfaceKeys& keys() const noexcept { return site_->keys; }
 
  private:
-  CostGrid::Tiles measure(const MapLayers& layers, const Options& options, const Watch& watch);
+  TileTable measure(const MapLayers& layers, const Options& options, const Watch& watch);
   CellBelief belief(maps::Cell cell, EvidenceField::Beliefs& beliefs) const;
   Hazard layerHazards(const MapLayers& layers, std::size_t index) const;
   std::uint8_t categoryOf(const CostGrid& grid, maps::Cell cell) const noexcept;
   std::uint8_t priorCurve(maps::Cell cell) const noexcept;
   void publish(const std::vector<CellRange>& ranges);
+  std::vector<FloorLeaf> floorLeaves() const;
   bool refreshPriors();
 
   std::shared_ptr<const GroundSite> site_;

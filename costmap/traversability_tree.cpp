@@ -78,6 +78,19 @@ bool plausible(const CellBelief& b) noexcept {
   return b.category <= 3 && b.confidence <= 16 && b.pull_std >= 0 && b.sinkage_std >= 0 && b.evidence >= 0;
 }
 
+std::istream& readBelief(std::istream& stream, CellBelief& belief) {
+  Payload bytes{};
+  if (!stream.read(bytes.data(), kPayloadBytes)) return stream;
+  belief = unpacked(bytes);
+  if (!plausible(belief)) stream.setstate(std::ios::failbit);
+  return stream;
+}
+
+bool readPreamble(std::istream& stream) {
+  std::array<char, kPreamble.size()> preamble{};
+  return stream.read(preamble.data(), preamble.size()) && preamble == kPreamble;
+}
+
 }  // namespace
 
 TraversabilityNode::TraversabilityNode(const TraversabilityNode& other) : OcTreeDataNode(other.value) {
@@ -93,11 +106,7 @@ std::ostream& TraversabilityNode::writeData(std::ostream& stream) const {
 }
 
 std::istream& TraversabilityNode::readData(std::istream& stream) {
-  Payload bytes{};
-  if (!stream.read(bytes.data(), kPayloadBytes)) return stream;
-  value = unpacked(bytes);
-  if (!plausible(value)) stream.setstate(std::ios::failbit);
-  return stream;
+  return readBelief(stream, value);
 }
 
 void TraversabilityNode::forgetChildren() noexcept {
@@ -154,10 +163,10 @@ std::ostream& TraversabilityTree::writeData(std::ostream& stream) const {
 
 std::istream& TraversabilityTree::readData(std::istream& stream) {
   clear();
-  std::array<char, kPreamble.size()> preamble{};
-  stream.read(preamble.data(), preamble.size());
-  if (preamble != kPreamble) stream.setstate(std::ios::failbit);
-  if (!stream) return stream;
+  if (!readPreamble(stream)) {
+    stream.setstate(std::ios::failbit);
+    return stream;
+  }
   makeRoot();
   if (!readNode(root, stream, 0)) {
     clear();
@@ -184,7 +193,7 @@ bool TraversabilityTree::isNodeCollapsible(const TraversabilityNode* node) const
     const TraversabilityNode* child = getNodeChild(node, i);
     if (nodeHasChildren(child)) return false;
     if (!first) first = child;
-    if (!(child->belief() == first->belief())) return false;
+    if (!(child->belief() == first->belief()) || ofFloor(child->belief())) return false;
   }
   return first != nullptr;
 }
@@ -210,13 +219,46 @@ void TraversabilityTree::prune() {
   if (root && nodeHasChildren(root)) pruneBelow(root);
 }
 
-void writeTree(const TraversabilityTree& tree, std::ostream& stream) {
+namespace {
+
+// As wide as any number of nodes, so that it can be written last.
+std::string sizeField(std::size_t nodes) {
+  std::string digits = std::to_string(nodes);
+  digits.resize(20, ' ');
+  return digits;
+}
+
+// Returns where the number of nodes stands.
+std::streampos writeHeader(std::ostream& stream, double resolution_m, std::size_t nodes) {
   std::array<char, 32> resolution{};
-  const auto end = std::to_chars(resolution.begin(), resolution.end(), tree.getResolution()).ptr;
+  const auto end = std::to_chars(resolution.begin(), resolution.end(), resolution_m).ptr;
   stream << "# Octomap OcTree file\n# payload and trailer: costmap/README.md of Talus\nid "
-            "TraversabilityTree\nsize "
-         << std::to_string(tree.size()) << "\nres " << std::string(resolution.begin(), end) << "\ndata\n";
+            "TraversabilityTree\nsize ";
+  const std::streampos size_at = stream.tellp();
+  stream << sizeField(nodes) << "\nres " << std::string(resolution.begin(), end) << "\ndata\n";
+  return size_at;
+}
+
+}  // namespace
+
+void writeTree(const TraversabilityTree& tree, std::ostream& stream) {
+  writeHeader(stream, tree.getResolution(), tree.size());
   if (tree.getRoot()) tree.writeData(stream);
+}
+
+TreeWriter::TreeWriter(std::ostream& stream, double resolution_m)
+    : stream_(stream), size_at_(writeHeader(stream, resolution_m, 0)) {}
+
+void TreeWriter::node(const CellBelief& belief, std::uint8_t children) {
+  if (nodes_++ == 0) stream_.write(kPreamble.data(), kPreamble.size());
+  stream_.write(packed(belief).data(), kPayloadBytes);
+  stream_.put(static_cast<char>(children));
+}
+
+void TreeWriter::finish() {
+  const std::streampos end = stream_.tellp();
+  stream_.seekp(size_at_) << sizeField(nodes_);
+  stream_.seekp(end);
 }
 
 namespace {
@@ -243,24 +285,81 @@ bool readHeader(std::istream& stream, Header& header) {
   return false;
 }
 
-}  // namespace
-
-TraversabilityTree readTree(std::istream& stream, const std::string& name) {
+Header requiredHeader(std::istream& stream, const std::string& name) {
   Header header;
   if (!readHeader(stream, header))
     throw InputError({name, "not an OctoMap .ot file", "write one with talus costmap -o"});
   if (header.id != "TraversabilityTree")
     throw InputError({name, "OctoMap tree of type '" + header.id + "', not TraversabilityTree",
                       "a point-cloud OctoMap is read as a DEM"});
-  TraversabilityTree tree(header.resolution_m);
-  if (header.size > 0 && !tree.readData(stream))
-    throw InputError({name, "truncated or damaged: its nodes cannot be read", "write the map again"});
-  if (tree.size() != header.size)
+  return header;
+}
+
+[[noreturn]] void truncated(const std::string& name) {
+  throw InputError({name, "truncated or damaged: its nodes cannot be read", "write the map again"});
+}
+
+void requireSize(std::size_t nodes, const Header& header, const std::string& name) {
+  if (nodes != header.size)
     throw InputError(
-        {name,
-         "damaged: " + std::to_string(tree.size()) + " nodes, its header says " + std::to_string(header.size),
+        {name, "damaged: " + std::to_string(nodes) + " nodes, its header says " + std::to_string(header.size),
          "write the map again"});
+}
+
+// Walks the nodes of a stream depth first and counts them.
+class LeafWalk {
+ public:
+  LeafWalk(std::istream& stream, const std::function<void(const TreeLeaf&)>& visit)
+      : stream_(stream), visit_(visit) {}
+
+  // The cube's belief is read here.
+  bool below(TreeLeaf cube) {
+    ++nodes_;
+    char bits = 0;
+    if (!readBelief(stream_, cube.belief) || !stream_.get(bits)) return false;
+    const auto children = static_cast<unsigned char>(bits);
+    if (children == 0) {
+      visit_(cube);
+      return true;
+    }
+    if (cube.side == 1) return false;
+    const unsigned half = cube.side / 2;
+    for (unsigned i = 0; i < 8; ++i) {
+      if (!(children >> i & 1U)) continue;
+      const auto shifted = [&](unsigned axis) {
+        return static_cast<octomap::key_type>(cube.low[axis] + (i >> axis & 1U ? half : 0));
+      };
+      if (!below({.low = {shifted(0), shifted(1), shifted(2)}, .side = half, .belief = {}})) return false;
+    }
+    return true;
+  }
+
+  std::size_t nodes() const noexcept { return nodes_; }
+
+ private:
+  std::istream& stream_;
+  const std::function<void(const TreeLeaf&)>& visit_;
+  std::size_t nodes_ = 0;
+};
+
+}  // namespace
+
+TraversabilityTree readTree(std::istream& stream, const std::string& name) {
+  const Header header = requiredHeader(stream, name);
+  TraversabilityTree tree(header.resolution_m);
+  if (header.size > 0 && !tree.readData(stream)) truncated(name);
+  requireSize(tree.size(), header, name);
   return tree;
+}
+
+void readLeaves(std::istream& stream, const std::string& name,
+                const std::function<void(const TreeLeaf&)>& visit) {
+  const Header header = requiredHeader(stream, name);
+  LeafWalk walk(stream, visit);
+  if (header.size > 0 &&
+      (!readPreamble(stream) || !walk.below({.low = {0, 0, 0}, .side = 1U << kDepth, .belief = {}})))
+    truncated(name);
+  requireSize(walk.nodes(), header, name);
 }
 
 }  // namespace talus::costmap

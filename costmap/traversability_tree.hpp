@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+#include <ios>
 #include <iosfwd>
 #include <string>
 
@@ -75,8 +77,35 @@ class TraversabilityTree : public octomap::OcTreeBaseImpl<TraversabilityNode, oc
 /// Writes header and nodes; same tree, same bytes.
 void writeTree(const TraversabilityTree& tree, std::ostream& stream);
 
+/// Writes the same bytes node by node, in depth-first order, for a tree that is held nowhere.
+class TreeWriter {
+ public:
+  /// Writes the header; the stream must be able to seek.
+  TreeWriter(std::ostream& stream, double resolution_m);
+  /// A node; bit i of `children`: child i follows.
+  void node(const CellBelief& belief, std::uint8_t children);
+  /// Puts the number of nodes into the header.
+  void finish();
+
+ private:
+  std::ostream& stream_;
+  std::streampos size_at_;
+  std::size_t nodes_ = 0;
+};
+
 /// Reads what writeTree wrote and leaves the stream behind the last node.
 /// Throws InputError (where = name) for a stream that is truncated, damaged or another tree type.
 TraversabilityTree readTree(std::istream& stream, const std::string& name);
+
+/// A cube of ground that shares one belief, by its lowest keys and its side in cells.
+struct TreeLeaf {
+  octomap::OcTreeKey low;
+  unsigned side = 1;
+  CellBelief belief;
+};
+
+/// Reads the same stream leaf by leaf, with no tree in memory. Throws as readTree does.
+void readLeaves(std::istream& stream, const std::string& name,
+                const std::function<void(const TreeLeaf&)>& visit);
 
 }  // namespace talus::costmap

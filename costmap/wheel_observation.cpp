@@ -97,6 +97,7 @@ std::optional<WheelObservation> WheelObserver::observed(const Wheel& w, double d
   const WheelReading& reading = w.read.reading;
   WheelObservation out{.time_s = reading.time_s,
                        .place = reading.place,
+                       .z_m = reading.z_m,
                        .pull = {},
                        .sinkage = {},
                        .demand = w.expected.gradient + departure,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -11,10 +12,11 @@ namespace talus::costmap {
 /// What one wheel read at one moment, corrected for nothing. NaN = not measured.
 struct WheelReading {
   double time_s = 0.0;
-  maps::Point place;       ///< of the wheel on the map
-  double load_N = 0.0;     ///< on the wheel, > 0
-  double slip = 0.0;       ///< [-1, 1]
-  double torque_Nm = 0.0;  ///< on the wheel
+  maps::Point place;                                      ///< of the wheel on the map
+  double z_m = std::numeric_limits<double>::quiet_NaN();  ///< its height, which tells floors apart
+  double load_N = 0.0;                                    ///< on the wheel, > 0
+  double slip = 0.0;                                      ///< [-1, 1]
+  double torque_Nm = 0.0;                                 ///< on the wheel
   double sinkage_m = 0.0;
   double gradient = 0.0;        ///< of the ground along the heading, rise over run
   double drawbar_pull_N = 0.0;  ///< where a test stand measures it
@@ -42,7 +44,8 @@ struct ReadingNoise {
 struct WheelObservation {
   double time_s = 0.0;
   maps::Point place;
-  Estimate pull;             ///< drawbar pull over load [-]
+  double z_m = std::numeric_limits<double>::quiet_NaN();  ///< height; NaN: on the top surface
+  Estimate pull;                                          ///< drawbar pull over load [-]
   Estimate sinkage;          ///< sinkage over radius [-]; std is infinite where nothing was measured
   double demand = 0.0;       ///< drawbar pull over load that the slope asked for [-]
   double from_torque = 0.0;  ///< drawbar pull over load by torque and sinkage [-]; NaN without them

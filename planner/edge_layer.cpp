@@ -23,7 +23,7 @@ constexpr Halves allBlocked() noexcept {
 // Where a cell lies in its tile; the rest of the tile's row follows.
 const costmap::CellCode& cellAt(const costmap::CostGrid& map, maps::Cell c) noexcept {
   const auto tile = static_cast<std::size_t>((c.row >> 6) * map.tileColumns() + (c.column >> 6));
-  return map.content().tiles[tile]->cells[static_cast<std::size_t>((c.row & 63) << 6 | (c.column & 63))];
+  return map.content().tiles.tile(tile).cells[static_cast<std::size_t>((c.row & 63) << 6 | (c.column & 63))];
 }
 
 // Halves of the cells of one row from column first - 1 to last + 1; blocked outside the map.

@@ -31,8 +31,8 @@ std::vector<double> cumulativeLength(const std::vector<maps::Point>& route) {
 
 double cheapestMetre_J(const costmap::CostGrid& map) {
   std::array<bool, 256> used{};
-  for (const auto& tile : map.content().tiles)
-    for (const costmap::CellCode cell : tile->cells) used[cell.curve()] = true;
+  for (std::size_t i = 0; i < map.content().tiles.size(); ++i)
+    for (const costmap::CellCode cell : map.content().tiles.tile(i).cells) used[cell.curve()] = true;
   float cheapest = std::numeric_limits<float>::infinity();
   const auto& curves = map.cost().curves();
   for (std::size_t k = 0; k < curves.size(); ++k)

@@ -31,11 +31,19 @@ std::string inWords(double probability) {
   return text.str();
 }
 
+double riskOf(const costmap::CostGrid& map, const Plan& plan, const RouteRiskOptions& soil) {
+  const Route route = annotated(plan, {.map = map, .elevation_m = nullptr, .planner = {}});
+  if (route.vertices.empty()) return 0.0;
+  const RouteRisk drawn = routeRisk(route, soil);
+  return std::max(route.vertices.back().immobilisation_risk,
+                  drawn.immobilisation + 2.0 * drawn.standard_error);
+}
+
 // Keeps the cheapest of the plans within the limit, and the least risk of all.
 class Search {
  public:
-  Search(const Problem& problem, NamedPlanner& planner, double max_risk)
-      : problem_(problem), planner_(planner), max_risk_(max_risk) {}
+  Search(const Problem& problem, NamedPlanner& planner, double max_risk, const RouteRiskOptions& soil)
+      : problem_(problem), planner_(planner), max_risk_(max_risk), soil_(soil) {}
 
   // Whether the price brings the risk within the limit; nothing when planning did not find a route.
   std::optional<bool> tried(double price_J) {
@@ -48,7 +56,7 @@ class Search {
       failure_ = std::move(plan);
       return std::nullopt;
     }
-    const double risk = demandOf(*problem_.map, plan).risk;
+    const double risk = riskOf(*problem_.map, plan, soil_);
     least_risk_ = std::min(least_risk_, risk);
     if (risk > max_risk_) return false;
     if (!best_ || plan.cost_J < best_->cost_J) best_ = std::move(plan);
@@ -73,6 +81,7 @@ class Search {
   const Problem& problem_;
   NamedPlanner& planner_;
   double max_risk_;
+  RouteRiskOptions soil_;
   double least_risk_ = 1.0;
   std::optional<Plan> best_;
   std::optional<Plan> failure_;
@@ -103,10 +112,11 @@ RouteDemand demandOf(const costmap::CostGrid& map, const Plan& plan) {
           .risk = route.vertices.empty() ? 0.0 : route.vertices.back().immobilisation_risk};
 }
 
-Plan planWithinRisk(const Problem& problem, NamedPlanner& planner, double max_risk) {
+Plan planWithinRisk(const Problem& problem, NamedPlanner& planner, double max_risk,
+                    const RouteRiskOptions& soil) {
   if (!(max_risk > 0 && max_risk < 1))
     throw std::invalid_argument("risk: " + inWords(max_risk) + ", must be above 0 and below 1");
-  Search search(problem, planner, max_risk);
+  Search search(problem, planner, max_risk, soil);
   const Plan own = planner.plan(problem);
   if (search.taken(own).value_or(true)) return search.result(own.lower_bound_J);
   // The lowest price that is known to do and the highest that is known not to, in powers of ten.

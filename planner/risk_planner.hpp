@@ -5,6 +5,7 @@
 #include <costmap/cost_weights.hpp>
 #include <planner/named_planner.hpp>
 #include <planner/problem.hpp>
+#include <planner/route_risk.hpp>
 
 namespace talus::planner {
 
@@ -20,11 +21,14 @@ struct RouteDemand {
 RouteDemand demandOf(const costmap::CostGrid& map, const Plan& plan);
 
 /// Plans under a chance constraint: the cheapest route found whose probability of immobilisation is at most
-/// max_risk, in (0, 1). The constraint enters the cost as a price on risk, raised until it is met and then
-/// lowered as far as it still is (Lagrangian relaxation; a route that no price picks out is missed
-/// [everett_1963]). NoRoute with the least risk found when none keeps the limit. Cost and bound are of the
-/// map's own weights. Throws std::invalid_argument out of range.
-Plan planWithinRisk(const Problem& problem, NamedPlanner& planner, double max_risk);
+/// max_risk, in (0, 1): by the hazard along it, and by routeRisk() over soil that is alike nearby, with two
+/// standard errors to spare. The hazard alone is far too low where much of a route is at risk: it counts soil
+/// as drawn once a correlation length. The constraint enters the cost as a price on risk, raised until it is
+/// met and then lowered as far as it still is (Lagrangian relaxation; a route that no price picks out is
+/// missed [everett_1963]). NoRoute with the least risk found when none keeps the limit. Cost and bound are of
+/// the map's own weights. Throws std::invalid_argument out of range.
+Plan planWithinRisk(const Problem& problem, NamedPlanner& planner, double max_risk,
+                    const RouteRiskOptions& soil = {});
 
 /// One way to trade energy, time and risk.
 struct ParetoRoute {

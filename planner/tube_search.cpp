@@ -48,7 +48,7 @@ class Window {
       : whole_(map), tiles_(tilesAround(map.grid(), guide, margin_cells)) {
     constexpr int kSide = CostTile::kSide;
     const maps::Grid& grid = map.grid();
-    content_.tiles.assign(static_cast<std::size_t>(columns() * rows()), unknownTile());
+    content_.tiles = costmap::TileTable(static_cast<std::size_t>(columns() * rows()), unknownTile());
     content_.cost = map.content().cost;
     content_.version = map.version();
     content_.grid = {std::min((tiles_.last.column + 1) * kSide, grid.width) - tiles_.first.column * kSide,
@@ -81,9 +81,9 @@ class Window {
     const CellBox near = tilesAround(whole_.grid(), {p}, margin_cells);
     for (int row = near.first.row; row <= near.last.row; ++row)
       for (int column = near.first.column; column <= near.last.column; ++column)
-        content_.tiles[static_cast<std::size_t>((row - tiles_.first.row) * columns() + column -
-                                                tiles_.first.column)] =
-            whole_.content().tiles[static_cast<std::size_t>(row * whole_.tileColumns() + column)];
+        content_.tiles.set(
+            static_cast<std::size_t>((row - tiles_.first.row) * columns() + column - tiles_.first.column),
+            whole_.content().tiles[static_cast<std::size_t>(row * whole_.tileColumns() + column)]);
   }
 
   bool leftOut(Point p) const {

@@ -31,10 +31,10 @@ struct Rows {
   std::vector<CsvRow> rows;
 };
 
-Rows readRows(const std::filesystem::path& path) {
+Rows readRows(const std::filesystem::path& path, const std::stop_token& stop) {
   CsvReader reader(path);
   Rows all{reader.header(), {}};
-  for (CsvRow row; reader.next(row);) {
+  for (CsvRow row; !stop.stop_requested() && reader.next(row);) {
     row.fields.resize(all.header.size());
     all.rows.push_back(row);
   }
@@ -93,8 +93,9 @@ void append(std::string& text, double value) {
 
 }  // namespace
 
-PredictionTable predictTable(const std::filesystem::path& path, const RefinedModel& model) {
-  const Rows all = readRows(path);
+PredictionTable predictTable(const std::filesystem::path& path, const RefinedModel& model,
+                             const Watch& watch) {
+  const Rows all = readRows(path, watch.stop);
   const auto states = statesOf(conditionsOf(all, path.string()), model);
   PredictionTable table;
   for (std::size_t k = 0; k < all.header.size(); ++k) {
@@ -107,7 +108,8 @@ PredictionTable predictTable(const std::filesystem::path& path, const RefinedMod
   for (const char* answer : kAnswers)
     table.text += std::string(",predicted_") + answer + ",predicted_" + answer + "_std";
   table.text += '\n';
-  for (std::size_t row = 0; row < all.rows.size(); ++row) {
+  for (std::size_t row = 0; row < all.rows.size() && !watch.stopped(); ++row) {
+    watch.report(static_cast<double>(row) / static_cast<double>(all.rows.size()));
     std::string line;
     for (std::size_t k = 0; k < all.header.size(); ++k)
       if (!isPrediction(all.header[k])) line += (k ? "," : "") + csvField(all.rows[row].fields[k]);
@@ -126,6 +128,7 @@ PredictionTable predictTable(const std::filesystem::path& path, const RefinedMod
     }
     table.text += line + '\n';
   }
+  watch.report(1.0);
   return table;
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <talus.hpp>
 #include <terramech/refined_model.hpp>
 #include <terramech/telemetry.hpp>
 
@@ -21,7 +22,8 @@ struct PredictionTable {
 /// Every row of a CSV with predicted_drawbar_pull_N, predicted_sinkage_m, predicted_torque_Nm,
 /// predicted_side_force_N and their _std appended. What was measured (drawbar_pull_N, sinkage_m, torque_Nm,
 /// side_force_N) is copied, never used. Throws InputError when the file cannot be read or has no load_N, slip
-/// or wheel.
-PredictionTable predictTable(const std::filesystem::path& path, const RefinedModel& model);
+/// or wheel. Stopped by its watch it ends early, the text unfinished.
+PredictionTable predictTable(const std::filesystem::path& path, const RefinedModel& model,
+                             const Watch& watch = {});
 
 }  // namespace talus::terramech

@@ -65,12 +65,12 @@ std::vector<const ContactSoil*> evenly(const std::vector<SoilDraw>& draws, int c
 Uncertain pullOverLoad(const Wheel& wheel, const WheelSample& sample, const SoilPosterior& posterior,
                        const ReadingErrors& noise) {
   const SoilClass any;
-  const SoilObjective objective(any, {wheel, noise, 0.0});
+  const SoilObjective objective(any, {noise, 0.0});
   const double lightest = kLightest / static_cast<double>(posterior.draws.size());
   Spread pull;
   for (const SoilDraw& d : posterior.draws) {
     if (d.weight < lightest) continue;
-    const ForceVector f = contactForces(d.soil, wheel, objective.likelyState(d.soil, sample));
+    const ForceVector f = contactForces(d.soil, wheel, objective.likelyState(d.soil, {wheel, sample}));
     pull.add(f[kPull] / f[kLoad], d.weight);
   }
   return pull.get();

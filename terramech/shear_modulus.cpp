@@ -45,6 +45,21 @@ double relativeTorqueError(const Wheel& wheel, std::span<const WheelSample> samp
   return line.relativeResidual();
 }
 
+// globalMinimum() of an error that takes long where samples are many.
+template <class Error>
+Minimum leastError(const Error& error, ModulusRange range, const Watch& watch) {
+  constexpr double kUsual = 110.0;  // evaluations
+  double count = 0.0;
+  const auto watched = [&](double k) {
+    if (watch.stopped()) return 0.0;
+    watch.report(std::min(1.0, ++count / kUsual));
+    return error(k);
+  };
+  const Minimum least = globalMinimum(watched, range.low_m, range.high_m);
+  watch.report(1.0);
+  return least;
+}
+
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
@@ -101,10 +116,9 @@ double modulusError_Pa(const Wheel& wheel, std::span<const WheelSample> samples,
 }
 
 ModulusEstimate modulusByErrorMinimisation(const Wheel& wheel, std::span<const WheelSample> samples,
-                                           ModulusRange range) {
+                                           ModulusRange range, const Watch& watch) {
   require(samples.size(), 3);
-  const auto error = [&](double k) { return modulusError_Pa(wheel, samples, k); };
-  const Minimum best = globalMinimum(error, range.low_m, range.high_m);
+  const Minimum best = leastError([&](double k) { return modulusError_Pa(wheel, samples, k); }, range, watch);
   return {.shear_modulus_m = best.at, .error = best.value, .at_bound = atBound(best.at, range)};
 }
 
@@ -134,10 +148,11 @@ ModulusEstimate modulusByTorqueRatio(const Wheel& wheel, std::span<const WheelSa
   return medianModulus(values);
 }
 
-ModulusEstimate modulusJointly(const Wheel& wheel, std::span<const WheelSample> samples, ModulusRange range) {
+ModulusEstimate modulusJointly(const Wheel& wheel, std::span<const WheelSample> samples, ModulusRange range,
+                               const Watch& watch) {
   require(samples.size(), 4);
-  const auto error = [&](double k) { return relativeTorqueError(wheel, samples, k); };
-  const Minimum best = globalMinimum(error, range.low_m, range.high_m);
+  const Minimum best =
+      leastError([&](double k) { return relativeTorqueError(wheel, samples, k); }, range, watch);
   return {.shear_modulus_m = best.at, .error = best.value, .at_bound = atBound(best.at, range)};
 }
 

@@ -2,13 +2,14 @@
 
 #include <span>
 
+#include <talus.hpp>
 #include <terramech/mohr_coulomb_line.hpp>
 #include <terramech/wheel.hpp>
 #include <terramech/wheel_sample.hpp>
 
 /// The shear deformation modulus K from wheel readings (thesis App. D). What each is worth, measured over
 /// Table 2.1: the minimum of D.1 lies low (0.8 K noise-free, 0.65 K at 5 % noise); D.8 as printed gives 0.5
-/// to 0.6 K.
+/// to 0.6 K. Once its watch is stopped a search ends with a K that means nothing.
 namespace talus::terramech {
 
 /// Where K is looked for [m].
@@ -31,7 +32,7 @@ double modulusError_Pa(const Wheel& wheel, std::span<const WheelSample> samples,
 /// The K_e of least Err(K_e), globally in the range (thesis App. D.1). Throws std::domain_error with fewer
 /// than three samples.
 ModulusEstimate modulusByErrorMinimisation(const Wheel& wheel, std::span<const WheelSample> samples,
-                                           ModulusRange range = {});
+                                           ModulusRange range = {}, const Watch& watch = {});
 
 /// K = -j(theta_m) / ln(1 - T/T_m), the median over the samples; T_m is the torque at the highest slip
 /// (thesis Eq. D.8, as printed; T and T_m per unit of load, since loads differ). Low: it takes A(i_max)
@@ -48,6 +49,6 @@ ModulusEstimate modulusByTorqueRatio(const Wheel& wheel, std::span<const WheelSa
 /// (ours). Each equation is multiplied back to the torque it came from, so a small K gains nothing by
 /// shrinking M3 and M4.
 ModulusEstimate modulusJointly(const Wheel& wheel, std::span<const WheelSample> samples,
-                               ModulusRange range = {});
+                               ModulusRange range = {}, const Watch& watch = {});
 
 }  // namespace talus::terramech

@@ -14,24 +14,27 @@ constexpr std::size_t kFresh = 4;
 
 SoilFilter::SoilFilter(const Wheel& wheel, SoilMixture prior, const Options& options)
     : wheel_(wheel), prior_(std::move(prior)), options_(options), tracks_(prior_.size()) {
-  checkFit(wheel_, {}, options_.fit);
+  validate(wheel_);
+  checkFit({}, options_.fit);
   if (prior_.empty() || options_.window < 1)
     throw std::invalid_argument("soil filter: no class of soil, or no window");
 }
 
 SoilObjective SoilFilter::objective(std::size_t soil_class) const {
-  return {prior_[soil_class], {wheel_, options_.fit.noise, options_.fit.outlier_share}};
+  return {prior_[soil_class], {options_.fit.noise, options_.fit.outlier_share, population_, {}}};
 }
 
-void SoilFilter::add(const WheelSample& sample) {
-  checkFit(wheel_, {&sample, 1}, options_.fit);
-  window_.push_back(sample);
+void SoilFilter::add(const WheelReading& reading) {
+  checkFit({&reading, 1}, options_.fit);
+  window_.push_back(reading);
+  population_.add(reading.sample, options_.fit.noise);
   ++count_;
   const bool full = window_.size() > options_.window;
   for (std::size_t k = 0; k < tracks_.size(); ++k) {
     Track& track = tracks_[k];
     if (full) {  // the oldest sample leaves: its quadratic about the mode stays
-      track.before = objective(k).absorb(track.mode.likelihood.at, window_.front(), track.before);
+      track.before =
+          objective(k).expandWhole(track.mode.likelihood.at, std::span(window_).first(1), track.before);
     }
     const auto kept = std::span(window_).subspan(full ? 1 : 0);
     track.mode = !full && count_ <= kFresh ? findModeAfresh(objective(k), kept)

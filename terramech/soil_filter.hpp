@@ -27,7 +27,8 @@ class SoilFilter {
 
   /// Takes one sample in. Throws std::invalid_argument for a sample that is not of a driven wheel; the filter
   /// is unchanged.
-  void add(const WheelSample& sample);
+  void add(const WheelSample& sample) { add({wheel_, sample}); }
+  void add(const WheelReading& reading);  ///< on a wheel of its own
 
   /// What is believed now, in full: importance samples over the window and what went before it. Slower than
   /// add().
@@ -51,7 +52,8 @@ class SoilFilter {
   SoilMixture prior_;
   Options options_;
   std::vector<Track> tracks_;
-  std::vector<WheelSample> window_;  // oldest first
+  std::vector<WheelReading> window_;  // oldest first
+  StatePopulation population_;        // of all samples
   std::size_t count_ = 0;
 };
 

@@ -16,12 +16,27 @@ constexpr double kOutlierScale = 10.0;  // an outlier errs ten times as much
 constexpr int kMostPasses = 40;         // of Gauss-Newton; five to ten are usual
 constexpr double kWiden = 1.2;          // draws a little wider than the quadratic, so that no tail is missed
 
+// The four readings with their errors, load and slip with what the others say of them.
+struct Readings {
+  Readings(const SoilObjective::Setting& setting, const WheelSample& s)
+      : load(setting.population.load(s, setting.noise)),
+        torque{s.torque_Nm, setting.noise.torque.std(s.torque_Nm)},
+        sinkage{s.sinkage_m, setting.noise.sinkage.std(s.sinkage_m)},
+        slip(setting.population.slip(s, setting.noise)) {}
+
+  ContactState state() const { return {.sinkage_m = sinkage.value, .slip = slip.value}; }
+  Eigen::Vector2d residual(const ForceVector& f) const {
+    return {load.value - f[kLoad], torque.value - f[kTorque]};
+  }
+
+  Reading load, torque, sinkage, slip;
+};
+
 // Covariance of (W, T) given a soil and the readings of z and i.
-Eigen::Matrix2d residualCovariance(const ReadingErrors& noise, const WheelSample& s,
-                                   const ContactDerivative& d) {
+Eigen::Matrix2d residualCovariance(const Readings& r, const ContactDerivative& d) {
   const Eigen::Matrix2d by_state = d.block<2, 2>(kLoad, kSinkage);
-  const Eigen::Vector2d state(noise.sinkage.std(s.sinkage_m), noise.slip.std(s.slip));
-  const Eigen::Vector2d reading(noise.load.std(s.load_N), noise.torque.std(s.torque_Nm));
+  const Eigen::Vector2d state(r.sinkage.std, r.slip.std);
+  const Eigen::Vector2d reading(r.load.std, r.torque.std);
   const Eigen::Matrix2d carried = by_state * state.cwiseAbs2().asDiagonal() * by_state.transpose();
   return carried + Eigen::Matrix2d(reading.cwiseAbs2().asDiagonal());
 }
@@ -57,13 +72,14 @@ SoilVector coordinateSlope(const SoilClass& soil, const SoilVector& x) {
 
 }  // namespace
 
-SampleMisfit SoilObjective::misfit(const SoilVector& y, const WheelSample& sample) const {
+SampleMisfit SoilObjective::misfit(const SoilVector& y, const WheelReading& reading) const {
+  const auto& [wheel, sample] = reading;
+  const Readings read(setting_, sample);
   ContactDerivative d;
-  const ForceVector f =
-      contactForces(soil_->at(y), setting_.wheel, {.sinkage_m = sample.sinkage_m, .slip = sample.slip}, d);
-  const Eigen::LLT<Eigen::Matrix2d> root(residualCovariance(setting_.noise, sample, d));
+  const ForceVector f = contactForces(soil_->at(y), wheel, read.state(), d);
+  const Eigen::LLT<Eigen::Matrix2d> root(residualCovariance(read, d));
   SampleMisfit m;
-  m.residual = root.matrixL().solve(Eigen::Vector2d(sample.load_N - f[kLoad], sample.torque_Nm - f[kTorque]));
+  m.residual = root.matrixL().solve(read.residual(f));
   m.derivative = root.matrixL().solve(d.topLeftCorner<2, kSoilParameters>() * soil_->slope(y).asDiagonal());
   applyRobustLoss(setting_.outlier_share, m);
   const double stiffness =
@@ -72,19 +88,17 @@ SampleMisfit SoilObjective::misfit(const SoilVector& y, const WheelSample& sampl
   return m;
 }
 
-ContactState SoilObjective::likelyState(const ContactSoil& soil, const WheelSample& sample) const {
+ContactState SoilObjective::likelyState(const ContactSoil& soil, const WheelReading& reading) const {
+  const auto& [wheel, sample] = reading;
+  const Readings read(setting_, sample);
   ContactDerivative d;
-  const ForceVector f =
-      contactForces(soil, setting_.wheel, {.sinkage_m = sample.sinkage_m, .slip = sample.slip}, d);
-  const Eigen::Vector2d residual(sample.load_N - f[kLoad], sample.torque_Nm - f[kTorque]);
-  const Eigen::Vector2d variance(std::pow(setting_.noise.sinkage.std(sample.sinkage_m), 2),
-                                 std::pow(setting_.noise.slip.std(sample.slip), 2));
+  const ForceVector f = contactForces(soil, wheel, read.state(), d);
+  const Eigen::Vector2d variance(std::pow(read.sinkage.std, 2), std::pow(read.slip.std, 2));
   const Eigen::Matrix2d by_state = d.block<2, 2>(kLoad, kSinkage);
   const Eigen::Vector2d move = variance.asDiagonal() * by_state.transpose() *
-                               residualCovariance(setting_.noise, sample, d).llt().solve(residual);
-  return {.sinkage_m =
-              std::clamp(sample.sinkage_m + move[0], 0.2 * sample.sinkage_m, 0.99 * setting_.wheel.radius_m),
-          .slip = std::clamp(sample.slip + move[1], 0.0, 1.0)};
+                               residualCovariance(read, d).llt().solve(read.residual(f));
+  return {.sinkage_m = std::clamp(sample.sinkage_m + move[0], 0.2 * sample.sinkage_m, 0.99 * wheel.radius_m),
+          .slip = std::clamp(read.slip.value + move[1], 0.0, 1.0)};
 }
 
 double SoilQuadratic::costAt(const SoilVector& y) const {
@@ -96,11 +110,11 @@ SoilQuadratic SoilQuadratic::movedTo(const SoilVector& y) const {
   return {.at = y, .cost = costAt(y), .gradient = gradientAt(y), .information = information};
 }
 
-SoilQuadratic SoilObjective::expand(const SoilVector& y, std::span<const WheelSample> samples,
+SoilQuadratic SoilObjective::expand(const SoilVector& y, std::span<const WheelReading> samples,
                                     const SoilQuadratic& before) const {
   SoilQuadratic sum = before.movedTo(y);
-  for (const WheelSample& s : samples) {
-    const SampleMisfit m = misfit(y, s);
+  for (const WheelReading& r : samples) {
+    const SampleMisfit m = misfit(y, r);
     sum.cost += m.cost;
     sum.gradient -= m.weight * m.derivative.transpose() * m.residual;
     sum.information += m.weight * m.derivative.transpose() * m.derivative;
@@ -108,26 +122,39 @@ SoilQuadratic SoilObjective::expand(const SoilVector& y, std::span<const WheelSa
   return sum;
 }
 
-SoilQuadratic SoilObjective::absorb(const SoilVector& y, const WheelSample& sample,
-                                    const SoilQuadratic& before) const {
-  constexpr double kStep = 1e-4;
-  SoilQuadratic sum = expand(y, {&sample, 1}, before);
-  sum.gradient = before.gradientAt(y);
-  for (int k = 0; k < kSoilParameters; ++k) {
-    const SoilVector step = kStep * SoilVector::Unit(k);
-    sum.gradient[k] += (misfit(y + step, sample).cost - misfit(y - step, sample).cost) / (2.0 * kStep);
+SoilQuadratic SoilObjective::expandWhole(const SoilVector& y, std::span<const WheelReading> samples,
+                                         const SoilQuadratic& before) const {
+  constexpr double kStep = 1e-6;
+  constexpr std::size_t kBlock = 1024;
+  SoilQuadratic sum = before.movedTo(y);
+  for (std::size_t row = 0; row < samples.size(); ++row) {
+    if (row % kBlock == 0 && row > 0) {
+      if (setting_.watch.stopped()) break;
+      setting_.watch.report(static_cast<double>(row) / static_cast<double>(samples.size()));
+    }
+    const SampleMisfit m = misfit(y, samples[row]);
+    sum.cost += m.cost;
+    sum.information += m.weight * m.derivative.transpose() * m.derivative;
+    for (int k = 0; k < kSoilParameters; ++k)
+      sum.gradient[k] += (misfit(y + kStep * SoilVector::Unit(k), samples[row]).cost - m.cost) / kStep;
   }
   return sum;
 }
 
-double SoilObjective::cost(const SoilVector& y, std::span<const WheelSample> samples,
+double SoilObjective::cost(const SoilVector& y, std::span<const WheelReading> samples,
                            const SoilQuadratic& before) const {
   double sum = before.costAt(y);
-  for (const WheelSample& s : samples) sum += misfit(y, s).cost;
+  for (const WheelReading& s : samples) sum += misfit(y, s).cost;
   return sum;
 }
 
-SoilMode findMode(const SoilObjective& objective, std::span<const WheelSample> samples,
+double SoilObjective::meanSquare(const SoilVector& y, std::span<const WheelReading> samples) const {
+  double sum = 0.0;
+  for (const WheelReading& r : samples) sum += misfit(y, r).residual.squaredNorm();
+  return sum / (2.0 * static_cast<double>(samples.size()));
+}
+
+SoilMode findMode(const SoilObjective& objective, std::span<const WheelReading> samples,
                   const SoilQuadratic& before, const SoilVector& start) {
   const SoilClass& soil = objective.soilClass();
   struct Local {
@@ -163,7 +190,7 @@ SoilMode findMode(const SoilObjective& objective, std::span<const WheelSample> s
   return {.x = x, .likelihood = here.likelihood, .log_evidence = -here.cost - log_root};
 }
 
-SoilMode findModeAfresh(const SoilObjective& objective, std::span<const WheelSample> samples) {
+SoilMode findModeAfresh(const SoilObjective& objective, std::span<const WheelReading> samples) {
   const SoilVector middle = SoilVector::Zero();
   const SoilMode near = findMode(objective, samples, {}, middle);
   const SoilMode led =

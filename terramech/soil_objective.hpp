@@ -5,7 +5,9 @@
 #include <Eigen/Core>
 
 #include <terramech/soil_posterior.hpp>
+#include <terramech/state_population.hpp>
 #include <terramech/truncated_gaussian.hpp>
+#include <terramech/wheel_reading.hpp>
 
 /// The inner workings of soil_posterior.hpp and soil_filter.hpp: the likelihood of samples under one class of
 /// soil, in the coordinates y of its prior.
@@ -39,34 +41,48 @@ class SoilObjective {
  public:
   /// What is the same for all classes.
   struct Setting {
-    Wheel wheel;
-    ReadingErrors noise;
+    ReadingErrors noise = {};
     double outlier_share = 0.01;
+    StatePopulation population = {};  ///< of all samples; none: readings are taken as they are
+    Watch watch = {};                 ///< told of each pass over many samples; stopped, passes end early
   };
 
   /// Refers to `soil`, which must outlive it.
   SoilObjective(const SoilClass& soil, const Setting& setting) : soil_(&soil), setting_(setting) {}
 
-  SampleMisfit misfit(const SoilVector& y, const WheelSample& sample) const;
+  SampleMisfit misfit(const SoilVector& y, const WheelReading& reading) const;
 
   /// The samples' likelihood to second order (Gauss-Newton) about y, on top of `before`.
-  SoilQuadratic expand(const SoilVector& y, std::span<const WheelSample> samples,
+  SoilQuadratic expand(const SoilVector& y, std::span<const WheelReading> samples,
                        const SoilQuadratic& before) const;
 
-  /// A sample taken into `before` for good: as expand(), with the slope of the whole cost. Gauss-Newton
-  /// leaves out that of the normalisation, which is small for one sample and adds up over many.
-  SoilQuadratic absorb(const SoilVector& y, const WheelSample& sample, const SoilQuadratic& before) const;
+  /// As expand(), with the slope of the whole cost. Gauss-Newton leaves out that of the normalisation, which
+  /// is small for a few samples and adds up over many. Six times the work.
+  SoilQuadratic expandWhole(const SoilVector& y, std::span<const WheelReading> samples,
+                            const SoilQuadratic& before) const;
 
   /// -log likelihood of the samples at y, and of `before`.
-  double cost(const SoilVector& y, std::span<const WheelSample> samples, const SoilQuadratic& before) const;
+  double cost(const SoilVector& y, std::span<const WheelReading> samples, const SoilQuadratic& before) const;
+
+  /// Mean square of the whitened residuals; about 1 where soil and noise hold.
+  double meanSquare(const SoilVector& y, std::span<const WheelReading> samples) const;
 
   /// The true (z, i) of a sample given the soil, to first order: the readings moved by what W and T say of
   /// them.
-  ContactState likelyState(const ContactSoil& soil, const WheelSample& sample) const;
+  ContactState likelyState(const ContactSoil& soil, const WheelReading& reading) const;
 
   /// The same with every sample taken at its word, to find a start from far away: where nothing fits yet, all
   /// samples look like outliers, and the robust loss is flat.
-  SoilObjective trusting() const { return {*soil_, {setting_.wheel, setting_.noise, 0.0}}; }
+  SoilObjective trusting() const {
+    return {*soil_, {setting_.noise, 0.0, setting_.population, setting_.watch}};
+  }
+
+  /// The same, its passes over many samples followed and stopped.
+  SoilObjective watchedBy(const Watch& watch) const {
+    SoilObjective watched = *this;
+    watched.setting_.watch = watch;
+    return watched;
+  }
 
   const SoilClass& soilClass() const { return *soil_; }
 
@@ -84,12 +100,12 @@ struct SoilMode {
 };
 
 /// Most likely x of samples on top of `before` by damped Gauss-Newton, from `start`.
-SoilMode findMode(const SoilObjective& objective, std::span<const WheelSample> samples,
+SoilMode findMode(const SoilObjective& objective, std::span<const WheelReading> samples,
                   const SoilQuadratic& before, const SoilVector& start);
 
 /// findMode() from the middle of the prior and from where the samples lead when all are trusted; the likelier
 /// of the two.
-SoilMode findModeAfresh(const SoilObjective& objective, std::span<const WheelSample> samples);
+SoilMode findModeAfresh(const SoilObjective& objective, std::span<const WheelReading> samples);
 
 /// Samples the posterior of one class: the likelihood's quadratic, cut to the prior's box.
 TruncatedGaussian proposal(const SoilClass& soil, const SoilQuadratic& likelihood);
@@ -102,11 +118,11 @@ struct ClassFit {
 };
 
 /// Importance samples of every class, weighed against each other, and their summary.
-SoilPosterior samplePosterior(const std::vector<ClassFit>& classes, std::span<const WheelSample> samples,
+SoilPosterior samplePosterior(const std::vector<ClassFit>& classes, std::span<const WheelReading> samples,
                               int draws);
 
 /// Throws as fitSoil() does.
-void checkFit(const Wheel& wheel, std::span<const WheelSample> samples, const SoilFitOptions& options);
+void checkFit(std::span<const WheelReading> samples, const SoilFitOptions& options);
 
 /// -log of the prior density of a class at y, inside its box.
 double priorCost(const SoilClass& soil, const SoilVector& y);

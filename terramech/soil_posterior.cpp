@@ -4,6 +4,7 @@
 
 #include <Eigen/QR>
 
+#include <terramech/many_samples.hpp>
 #include <terramech/normal_distribution.hpp>
 #include <terramech/range.hpp>
 #include <terramech/soil_objective.hpp>
@@ -15,6 +16,9 @@ namespace {
 // Classes less likely than this are not sampled.
 constexpr double kNegligible = 1e-6;
 
+// Up to so many samples Gauss-Newton's mode serves, which leaves out the slope of the normalisation.
+constexpr std::size_t kFew = 20;
+
 // Normalises exp(log_weights) to a sum of one.
 void normalise(std::vector<double>& log_weights) {
   const double most = *std::ranges::max_element(log_weights);
@@ -23,8 +27,8 @@ void normalise(std::vector<double>& log_weights) {
   for (double& w : log_weights) w /= sum;
 }
 
-void draw(const ClassFit& fit, int index, std::span<const WheelSample> samples, const Eigen::MatrixXd& points,
-          std::vector<SoilDraw>& draws, std::vector<double>& log_weights) {
+void draw(const ClassFit& fit, int index, std::span<const WheelReading> samples,
+          const Eigen::MatrixXd& points, std::vector<SoilDraw>& draws, std::vector<double>& log_weights) {
   const SoilClass& soil = fit.objective.soilClass();
   const TruncatedGaussian sampler = proposal(soil, fit.mode.likelihood);
   for (Eigen::Index k = 0; k < points.cols(); ++k) {
@@ -89,13 +93,6 @@ void summarise(SoilPosterior& p) {
   p.shear_modulus_m = interval(p.draws, &ContactSoil::shear_modulus_m);
 }
 
-double misfitOf(const ClassFit& fit, std::span<const WheelSample> samples) {
-  double sum = 0.0;
-  for (const WheelSample& s : samples)
-    sum += fit.objective.misfit(fit.mode.likelihood.at, s).residual.squaredNorm();
-  return sum / (2.0 * static_cast<double>(samples.size()));
-}
-
 // Variance of each parameter before any sample.
 SoilVector priorVariance(const std::vector<ClassFit>& classes) {
   constexpr Eigen::Index kPoints = 256;
@@ -130,7 +127,9 @@ void sayUnseen(const SoilVector& before, SoilPosterior& p) {
   }
 }
 
-void checkSample(const Wheel& wheel, const WheelSample& s) {
+void checkSample(const WheelReading& reading) {
+  const auto& [wheel, s] = reading;
+  validate(wheel);
   const RangeCheck range("soil fit");
   range.above("load_N", s.load_N, 0.0);
   range.finite("torque_Nm", s.torque_Nm);
@@ -152,7 +151,7 @@ double strengthDistance(const SoilPosterior& p, const ContactSoil& soil) {
   return scaled.dot(correlation.completeOrthogonalDecomposition().solve(scaled));
 }
 
-SoilPosterior samplePosterior(const std::vector<ClassFit>& classes, std::span<const WheelSample> samples,
+SoilPosterior samplePosterior(const std::vector<ClassFit>& classes, std::span<const WheelReading> samples,
                               int draws) {
   SoilPosterior posterior;
   std::vector<double>& probabilities = posterior.class_probabilities;
@@ -160,7 +159,8 @@ SoilPosterior samplePosterior(const std::vector<ClassFit>& classes, std::span<co
     probabilities.push_back(std::log(fit.objective.soilClass().probability) + fit.mode.log_evidence);
   }
   const auto best = std::ranges::max_element(probabilities) - probabilities.begin();
-  posterior.misfit = misfitOf(classes[static_cast<std::size_t>(best)], samples);
+  const ClassFit& likeliest = classes[static_cast<std::size_t>(best)];
+  posterior.misfit = likeliest.objective.meanSquare(likeliest.mode.likelihood.at, samples);
   normalise(probabilities);
   const Eigen::MatrixXd points = evenPoints(kSoilParameters, draws);
   std::vector<double> weights;
@@ -179,24 +179,36 @@ SoilPosterior samplePosterior(const std::vector<ClassFit>& classes, std::span<co
   return posterior;
 }
 
-void checkFit(const Wheel& wheel, std::span<const WheelSample> samples, const SoilFitOptions& options) {
-  validate(wheel);
-  for (const WheelSample& s : samples) checkSample(wheel, s);
+void checkFit(std::span<const WheelReading> samples, const SoilFitOptions& options) {
+  for (const WheelReading& s : samples) checkSample(s);
   const RangeCheck range("soil fit");
   range.within("outlier_share", options.outlier_share, {0.0, 0.5});
   range.atLeast("draws", options.draws, 16);
 }
 
+SoilPosterior fitSoil(std::span<const WheelReading> samples, const SoilMixture& prior,
+                      const SoilFitOptions& options) {
+  checkFit(samples, options);
+  if (samples.empty() || prior.empty()) throw std::domain_error("soil fit: no sample, or no class of soil");
+  StatePopulation population;
+  for (const WheelReading& s : samples) population.add(s.sample, options.noise);
+  std::vector<SoilObjective> classes;
+  for (const SoilClass& soil : prior)
+    classes.emplace_back(soil, SoilObjective::Setting{options.noise, options.outlier_share, population, {}});
+  if (samples.size() > kFew) return fitManySamples(classes, samples, options);
+  std::vector<ClassFit> fits;
+  for (const SoilObjective& objective : classes) {
+    fits.push_back({objective, {}, findModeAfresh(objective, samples)});
+  }
+  return samplePosterior(fits, samples, options.draws);
+}
+
 SoilPosterior fitSoil(const Wheel& wheel, std::span<const WheelSample> samples, const SoilMixture& prior,
                       const SoilFitOptions& options) {
-  checkFit(wheel, samples, options);
-  if (samples.empty() || prior.empty()) throw std::domain_error("soil fit: no sample, or no class of soil");
-  std::vector<ClassFit> classes;
-  for (const SoilClass& soil : prior) {
-    const SoilObjective objective(soil, {wheel, options.noise, options.outlier_share});
-    classes.push_back({objective, {}, findModeAfresh(objective, samples)});
-  }
-  return samplePosterior(classes, samples, options.draws);
+  validate(wheel);
+  std::vector<WheelReading> readings;
+  for (const WheelSample& s : samples) readings.push_back({wheel, s});
+  return fitSoil(readings, prior, options);
 }
 
 }  // namespace talus::terramech

@@ -9,8 +9,7 @@
 #include <talus.hpp>
 #include <terramech/reading_errors.hpp>
 #include <terramech/soil_mixture.hpp>
-#include <terramech/wheel.hpp>
-#include <terramech/wheel_sample.hpp>
+#include <terramech/wheel_reading.hpp>
 
 /// The soil under a wheel by Bayes' rule on the whole Wong-Reece contact (ours).
 ///
@@ -31,6 +30,7 @@ struct SoilFitOptions {
   ReadingErrors noise = {};
   double outlier_share = 0.01;  ///< of samples that err ten times as much, [0, 0.5)
   int draws = 256;              ///< importance samples a class, >= 16
+  Watch watch = {};             ///< followed and stopped by it where samples are many
 };
 
 /// One soil out of the posterior.
@@ -73,6 +73,11 @@ double strengthDistance(const SoilPosterior& posterior, const ContactSoil& soil)
 /// Throws std::domain_error without a sample, std::invalid_argument for a sample that is not of a driven
 /// wheel (load > 0, 0 < z < r, 0 <= slip <= 1) or options out of range.
 SoilPosterior fitSoil(const Wheel& wheel, std::span<const WheelSample> samples, const SoilMixture& prior,
+                      const SoilFitOptions& options = {});
+
+/// The same on wheels of several sizes. The soil's k = k_c/b + k_phi is taken as one value under all of them.
+/// Stopped by the options' watch it returns a posterior without draws.
+SoilPosterior fitSoil(std::span<const WheelReading> samples, const SoilMixture& prior,
                       const SoilFitOptions& options = {});
 
 }  // namespace talus::terramech

@@ -7,38 +7,14 @@
 #include <string>
 
 #include <benchmark/benchmark.h>
+#include <site_fixture.hpp>
 
 #include <costmap/traversability_map.hpp>
-#include <terramech/rover.hpp>
 
 namespace {
 
 using namespace talus;
 using costmap::TraversabilityMap;
-
-std::shared_ptr<const costmap::GroundModel> model() {
-  const terramech::Rover rover{.name = "benchmark",
-                               .mass_kg = 60.0,
-                               .gravity_m_s2 = 3.72,
-                               .wheel_count = 6,
-                               .wheel = {.radius_m = 0.12, .width_m = 0.12},
-                               .wheelbase_m = 0.8,
-                               .track_m = 0.6,
-                               .clearance_m = 0.2,
-                               .centre_of_mass_height_m = 0.3,
-                               .max_torque_Nm = 15.0,
-                               .max_speed_mps = 0.1,
-                               .hotel_power_W = 15.0};
-  const terramech::Soil sand{.name = "sand",
-                             .cohesion_Pa = 800.0,
-                             .friction_angle_rad = 0.63,
-                             .sinkage_exponent = 1.0,
-                             .cohesive_modulus = 1400.0,
-                             .frictional_modulus = 820000.0,
-                             .shear_modulus_m = 0.015};
-  return std::make_shared<costmap::GroundModel>(
-      costmap::GroundModel::Parts{.rover = rover, .classes = {{.number = 1, .soil = sand}}, .policy = {}});
-}
 
 std::unique_ptr<TraversabilityMap> mapOf(int side) {
   costmap::MapLayers layers;
@@ -48,7 +24,8 @@ std::unique_ptr<TraversabilityMap> mapOf(int side) {
     for (int column = 0; column < side; ++column)
       layers.elevation.elevation_m[{column, row}] =
           static_cast<float>(2.0 * std::sin(0.05 * column) * std::cos(0.04 * row));
-  return std::make_unique<TraversabilityMap>(std::move(layers), model(), TraversabilityMap::Options{});
+  return std::make_unique<TraversabilityMap>(std::move(layers), costmap::testGround(),
+                                             TraversabilityMap::Options{});
 }
 
 costmap::WheelObservation seen(const maps::Point& place, double pull) {

@@ -126,7 +126,10 @@ MapPointer patched(const MapPointer& map, maps::Point middle) {
          ++column) {
       if (!map->grid().contains({column, row})) continue;
       const auto t = static_cast<std::size_t>((row >> 6) * columns + (column >> 6));
-      if (!own[t]) content.tiles[t] = own[t] = std::make_shared<costmap::CostTile>(*content.tiles[t]);
+      if (!own[t]) {
+        own[t] = std::make_shared<costmap::CostTile>(content.tiles.tile(t));
+        content.tiles.set(t, own[t]);
+      }
       auto& cell = own[t]->cells[static_cast<std::size_t>((row & 63) << 6 | (column & 63))];
       if (cell.curve() < 4)
         cell = costmap::CellCode({.dz_dx = cell.dzDx(),

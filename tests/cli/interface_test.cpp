@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <terramech/soil_library.hpp>
@@ -178,8 +179,15 @@ TEST(Interface, TablesKeepTheirColumnsAndGetThePromisedOnes) {
 
 // Property: whoever presses Ctrl-C gets 130 and no half file, whatever was going on.
 TEST(Interface, AnInterruptEndsLongWorkWith130AndNoFile) {
+  std::string drive = "load_N,torque_Nm,sinkage_m,slip,wheel_radius_m,wheel_width_m\n";
+  for (int k = 0; k < 60000; ++k)
+    drive +=
+        fmt::format("{},{},0.0166,{},0.1,0.1\n", 60 + k % 41, 2.4 + 0.02 * (k % 83), 0.2 + 0.05 * (k % 13));
+  const std::string table = site().write("long.csv", drive);
   const std::vector<std::vector<std::string>> long_work{
       words(words({"drive"}, words(kGround, kEnds)), {"--truth", "truth.yaml", "--worlds", "100000"}),
+      {"estimate", table, "--method", "wong-reece", "--html", "late.html"},
+      {"assess", table, "--extrapolate", "--html", "late.html"},
       {"reproduce", "--goals", "--soils", "100000"},
       {"generate", "craters", "--size", "8000", "-o", "late.tif"}};
   for (const auto& work : long_work) {

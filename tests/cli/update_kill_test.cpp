@@ -102,6 +102,42 @@ TEST(UpdateCommand, KilledAtAnyMomentItLeavesWholeFilesAndItsJournal) {
   EXPECT_EQ(site.replay("evidence.db", "all.ot")["rows_used"], rows + 60);
 }
 
+// What a killed update left beside its map goes with the next; that of a process that still runs stays.
+TEST(UpdateCommand, ClearsWhatAKilledOneLeft) {
+  const Site site;
+  const pid_t child = ::fork();
+  if (child == 0) ::_exit(0);
+  ::waitpid(child, nullptr, 0);  // so that its number is no process's
+  const std::string left = "out.ot.tmp" + std::to_string(child),
+                    live = "out.ot.tmp" + std::to_string(::getpid());
+  for (const std::string& name :
+       {left, live, std::string("out.ot.tmpfile"), "other.ot.tmp" + std::to_string(child)})
+    site.folder.write(name, "half a map");
+  ASSERT_EQ(runTalus({"update", "map.ot", "t.csv", "-o", "out.ot"}, site.folder.path()).code, 0);
+  EXPECT_FALSE(std::filesystem::exists(site.folder / left));
+  EXPECT_TRUE(std::filesystem::exists(site.folder / live));
+  EXPECT_TRUE(std::filesystem::exists(site.folder / "out.ot.tmpfile"));
+  EXPECT_TRUE(std::filesystem::exists(site.folder / ("other.ot.tmp" + std::to_string(child))));
+}
+
+// Two updates in turn, each a process that reads the file of the one before, and one replay of both.
+TEST(UpdateCommand, DrivesInTurnAreTheJournalAtOnce) {
+  const Site site;
+  std::string text = "time_s,x_m,y_m,slope_rad,load_N,slip\n";
+  for (int row = 0; row < 60; ++row)
+    text += fmt::format("{},{},22.5,0.02,10,{}\n", 100 + row, 50.0 - 0.7 * row, 0.5 + 0.001 * (row % 7));
+  site.folder.write("back.csv", text);
+  ASSERT_EQ(
+      runTalus({"update", "map.ot", "t.csv", "-o", "first.ot", "--journal", "e.db"}, site.folder.path()).code,
+      0);
+  ASSERT_EQ(
+      runTalus({"update", "first.ot", "back.csv", "-o", "both.ot", "--journal", "e.db"}, site.folder.path())
+          .code,
+      0);
+  EXPECT_EQ(site.replay("e.db", "again.ot")["rows_used"], 120);
+  EXPECT_TRUE(site.content("both.ot") == site.content("again.ot"));
+}
+
 TEST(UpdateCommand, TwoAtOnceShareAJournal) {
   const Site site;
   const pid_t a = site.start("evidence.db", "a.ot"), b = site.start("evidence.db", "b.ot");

@@ -1,4 +1,7 @@
 #include <memory>
+#include <random>
+#include <utility>
+#include <vector>
 
 #include <costmap/cost_grid.hpp>
 
@@ -36,6 +39,34 @@ TEST(CostGrid, ARevisionSharesTheTilesItDoesNotTouch) {
   for (std::size_t i = 0; i < before.content().tiles.size(); ++i)
     shared += before.content().tiles[i] == after.content().tiles[i] ? 1 : 0;
   EXPECT_EQ(shared, 15);  // Closed form: 4x4 tiles, one touched
+}
+
+// Property: whatever tiles of copies are set, each table holds what a plain list of its own would.
+TEST(TileTable, CopiesShareAndDoNotInterfere) {
+  const auto tileOf = [](std::uint8_t curve) {
+    auto tile = std::make_shared<CostTile>();
+    tile->cells.fill(CellCode({.curve = curve}));
+    return TileTable::Shared(std::move(tile));
+  };
+  std::vector<std::vector<TileTable::Shared>> plain{std::vector<TileTable::Shared>(150, tileOf(0))};
+  std::vector<TileTable> tables{TileTable(plain[0])};
+  std::mt19937 random(5);
+  for (int i = 0; i < 60; ++i) {
+    const std::size_t from = random() % tables.size(), at = random() % 150;
+    TileTable next = tables[from];
+    std::vector<TileTable::Shared> same = plain[from];
+    same[at] = tileOf(static_cast<std::uint8_t>(i + 1));
+    next.set(at, same[at]);
+    tables.push_back(std::move(next));
+    plain.push_back(std::move(same));
+  }
+  for (std::size_t t = 0; t < tables.size(); ++t) {
+    ASSERT_EQ(tables[t].size(), 150U);
+    for (std::size_t i = 0; i < 150; ++i) {
+      ASSERT_EQ(tables[t][i], plain[t][i]);
+      ASSERT_EQ(&tables[t].tile(i), plain[t][i].get());
+    }
+  }
 }
 
 }  // namespace

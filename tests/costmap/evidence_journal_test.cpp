@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include <sqlite3.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -52,6 +53,37 @@ TEST_F(EvidenceJournalTest, GivesRowsBackToTheBit) {
     EXPECT_TRUE(std::isinf(back.observation.sinkage.std));
   });
   EXPECT_EQ(journal.size(), 1);
+}
+
+void change(const std::string& path, const char* sql) {
+  sqlite3* database = nullptr;
+  ASSERT_EQ(sqlite3_open(path.c_str(), &database), SQLITE_OK);
+  EXPECT_EQ(sqlite3_exec(database, sql, nullptr, nullptr, nullptr), SQLITE_OK) << sqlite3_errmsg(database);
+  sqlite3_close(database);
+}
+
+// Rows of a journal without heights are on top: theirs is not known.
+TEST_F(EvidenceJournalTest, TakesOverJournalsWithoutHeights) {
+  { EvidenceJournal(path()).append(row(7)); }
+  change(path(), "ALTER TABLE evidence DROP COLUMN z_m; PRAGMA user_version = 1");
+  EvidenceJournal journal(path());
+  JournalRow high = row(8);
+  high.reading.z_m = -2500.0 / 3.0;
+  journal.append(high);
+  std::vector<double> heights;
+  journal.forEach([&](const JournalRow& back) {
+    heights.push_back(back.reading.z_m);
+    EXPECT_TRUE(std::isnan(back.observation.z_m) || back.observation.z_m == back.reading.z_m);
+  });
+  ASSERT_EQ(heights.size(), 2U);
+  EXPECT_TRUE(std::isnan(heights[0]));
+  EXPECT_EQ(heights[1], -2500.0 / 3.0);
+}
+
+TEST_F(EvidenceJournalTest, RefusesAFormatOfTheFuture) {
+  { EvidenceJournal(path()).append(row(7)); }
+  change(path(), "PRAGMA user_version = 3");
+  EXPECT_THROW(EvidenceJournal{path()}, InputError);
 }
 
 TEST_F(EvidenceJournalTest, RefusesWhatIsNoJournal) {

@@ -27,13 +27,21 @@ void fill(Tree& tree) {
   tree.updateInnerOccupancy();
 }
 
-void expectSlopeUnderSlab(const maps::ElevationMap& map) {
+void expectSlopeUnderSlab(const OctomapGround& ground) {
+  const maps::ElevationMap& map = ground.surface;
   ASSERT_EQ(map.grid().width, 20);
   ASSERT_EQ(map.grid().height, 10);
   // Closed form: the drawing above; voxel middles, float heights.
   EXPECT_NEAR(map.elevation_m[(maps::Cell{2, 3})], 1.05, 1e-6);
   EXPECT_NEAR(map.elevation_m[(maps::Cell{12, 3})], 0.35, 1e-6);
   EXPECT_NEAR(map.grid().centre({12, 3}).x_m, 1.25, 1e-9);
+  // Closed form: five columns of ten cells lie under the slab, the first four at one step, the fifth at the
+  // next.
+  ASSERT_EQ(ground.floors.size(), 50U);
+  const Floors floors(ground.floors, map.grid().size());
+  ASSERT_EQ(floors.of(map.grid().index({2, 3})).size(), 1U);
+  EXPECT_NEAR(floors.of(map.grid().index({2, 3}))[0].height_m, 0.05, 1e-6);
+  EXPECT_NEAR(floors.of(map.grid().index({4, 3}))[0].height_m, 0.15, 1e-6);
 }
 
 TEST(OctomapSurface, ReadsFullAndBinaryAndColour) {
@@ -45,9 +53,36 @@ TEST(OctomapSurface, ReadsFullAndBinaryAndColour) {
   octomap::ColorOcTree colour(0.1);
   fill(colour);
   colour.write(coloured);
-  expectSlopeUnderSlab(octomapSurface(full, "a.ot"));
-  expectSlopeUnderSlab(octomapSurface(binary, "a.bt"));
-  expectSlopeUnderSlab(octomapSurface(coloured, "c.ot"));
+  expectSlopeUnderSlab(octomapGround(full, "a.ot"));
+  expectSlopeUnderSlab(octomapGround(binary, "a.bt"));
+  expectSlopeUnderSlab(octomapGround(coloured, "c.ot"));
+}
+
+TEST(OctomapSurface, TakesTheGroundBelowACeiling) {
+  octomap::OcTree tree(0.1);
+  fill(tree);
+  std::stringstream stream;
+  tree.writeBinaryConst(stream);
+  const OctomapGround ground = octomapGround(stream, "a.bt", 0.8);
+  EXPECT_NEAR(ground.surface.elevation_m[(maps::Cell{2, 3})], 0.05, 1e-6);
+  EXPECT_NEAR(ground.surface.elevation_m[(maps::Cell{12, 3})], 0.35, 1e-6);
+  ASSERT_EQ(ground.floors.size(), 50U) << "the slab is the other floor now";
+  EXPECT_NEAR(ground.floors[0].height_m, 1.05, 1e-6);
+  stream.seekg(0);
+  EXPECT_THROW(octomapGround(stream, "a.bt", -1.0), InputError);
+}
+
+// A rock of two voxels' height above the ground leaves no room to drive under, and a hole in a scan is none.
+TEST(OctomapSurface, AFloorNeedsHeadroom) {
+  for (const double slab_m : {0.35, 0.55, 0.65}) {
+    octomap::OcTree tree(0.1);
+    tree.updateNode(octomap::point3d(0.05F, 0.05F, 0.05F), true);
+    tree.updateNode(octomap::point3d(0.05F, 0.05F, static_cast<float>(slab_m)), true);
+    std::stringstream stream;
+    tree.write(stream);
+    // Closed form: free voxels between them are 2, 4 and 5 of the 5 that half a metre takes.
+    EXPECT_EQ(octomapGround(stream, "a.ot").floors.size(), slab_m > 0.6 ? 1U : 0U) << slab_m;
+  }
 }
 
 TEST(OctomapSurface, RefusesEveryTruncationAndSurvivesDamage) {
@@ -62,14 +97,14 @@ TEST(OctomapSurface, RefusesEveryTruncationAndSurvivesDamage) {
     const std::string bytes = out.str();
     for (std::size_t length = 0; length < bytes.size(); length += 3) {
       std::istringstream in(bytes.substr(0, length));
-      EXPECT_THROW(octomapSurface(in, "cut.ot"), InputError) << length;
+      EXPECT_THROW(octomapGround(in, "cut.ot"), InputError) << length;
     }
   }
 }
 
 TEST(OctomapSurface, NamesAForeignTree) {
   std::istringstream stream("# Octomap OcTree file\nid OcTreeStamped\nsize 1\nres 0.1\ndata\n");
-  EXPECT_THROW(octomapSurface(stream, "x.ot"), InputError);
+  EXPECT_THROW(octomapGround(stream, "x.ot"), InputError);
   EXPECT_FALSE(octomapType("/dev/null").has_value());
 }
 

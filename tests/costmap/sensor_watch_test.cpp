@@ -37,6 +37,44 @@ TEST(SensorWatch, SeesTimeGoingBackStuckValuesAndSpikes) {
   EXPECT_EQ(watch.findings().size(), 3U);
 }
 
+// One sensor of several stands still; one that is rounded to few steps may.
+TEST(SensorWatch, OneSensorThatStandsStillIsNamed) {
+  const auto model = testGround();
+  const auto reading = [](int i) {
+    WheelReading r = at(0.1 * i, 0.1 + 0.001 * (i % 7));
+    r.torque_Nm = 0.5 + 0.003 * (i % 11);
+    r.sinkage_m = 0.001 * (i / 40);  // in whole millimetres
+    return r;
+  };
+  SensorWatch watch(*model);
+  for (int i = 0; i < 40; ++i) EXPECT_FALSE(watch.refuse("w", reading(i)).has_value()) << i;
+  int believed = 0;
+  for (int i = 40; i < 100; ++i) {
+    WheelReading r = reading(i);
+    r.torque_Nm = 0.51;
+    const auto reason = watch.refuse("w", r);
+    believed += reason ? 0 : 1;
+    EXPECT_EQ(reason.value_or("torque is stuck"), "torque is stuck");
+  }
+  EXPECT_EQ(believed, 24);  // Closed form: the 25th equal reading is the first that is not believed
+  EXPECT_FALSE(watch.refuse("w", reading(100)).has_value()) << "it moves again";
+}
+
+TEST(SensorWatch, SlipThatAllGroundSharesIsReported) {
+  const auto model = testGround();
+  SensorWatch shared(*model), scattered(*model), little(*model);
+  for (int i = 0; i < 40; ++i) {
+    shared.compareSlip(0.1 + (i % 2 ? 0.02 : -0.02));
+    scattered.compareSlip(i % 4 ? 0.0 : 0.4);
+    little.compareSlip(-0.03);
+  }
+  ASSERT_TRUE(shared.slipExcess().has_value());
+  EXPECT_NEAR(*shared.slipExcess(), 0.1, 1e-12);
+  ASSERT_EQ(shared.findings().size(), 1U);
+  EXPECT_FALSE(scattered.slipExcess().has_value()) << "a quarter of the ground is soft: that is ground";
+  EXPECT_FALSE(little.slipExcess().has_value());
+}
+
 TEST(SensorWatch, AStepThatStaysIsGroundNotASpike) {
   const auto model = testGround();
   SensorWatch watch(*model);
@@ -100,6 +138,11 @@ TEST(SensorWatch, WhatJumpsAtAllWheelsIsTheRover) {
   const auto both = moment(3.0, 0.9, 0.91);
   EXPECT_FALSE(both[0].has_value());
   EXPECT_FALSE(both[1].has_value());
+  // A wheel that is refused for another reason has no say.
+  const auto three = watch.refuse({{"left", at(4.0, 0.1)}, {"right", at(4.0, 0.1)}, {"left", at(1.0, 0.1)}});
+  EXPECT_FALSE(three[0].has_value()) << three[0].value_or("");
+  EXPECT_FALSE(three[1].has_value());
+  EXPECT_EQ(three[2].value_or(""), "time goes back");
 }
 
 }  // namespace

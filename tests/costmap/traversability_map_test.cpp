@@ -1,4 +1,7 @@
+#include <array>
+#include <atomic>
 #include <cmath>
+#include <thread>
 
 #include <site_map.hpp>
 
@@ -93,6 +96,45 @@ TEST(TraversabilityMap, TreeHoldsEveryCellAtItsHeight) {
       ASSERT_NE(found, nullptr);
       EXPECT_EQ(*found, map.belief(cell)) << column << ' ' << row;
     }
+}
+
+// Readers on other threads, while versions come: each is whole (what was refused together is refused
+// together), none is older than the one before, and one that is held does not change.
+TEST(TraversabilityMap, ReadersSeeWholeVersionsInOrder) {
+  TraversabilityMap map = mapOf(std::vector<std::string>(20, std::string(300, '1')));
+  const auto refused = [](const CostGrid& grid, int column) {
+    return grid.at({column, 10}).curve() == CellCode::kBlocked;
+  };
+  std::atomic<bool> done{false};
+  std::atomic<int> torn{0}, backwards{0}, changed{0};
+  const auto read = [&] {
+    std::uint64_t newest = 0;
+    while (!done) {
+      const auto grid = map.published();
+      if (grid->version() < newest) ++backwards;
+      newest = grid->version();
+      std::array<bool, 100> before{};
+      for (int i = 0; i < 100; ++i) {
+        before[static_cast<std::size_t>(i)] = refused(*grid, i);
+        if (before[static_cast<std::size_t>(i)] != refused(*grid, 299 - i)) ++torn;
+      }
+      for (int i = 0; i < 100; ++i)
+        if (refused(*grid, i) != before[static_cast<std::size_t>(i)]) ++changed;
+    }
+  };
+  {
+    std::jthread first(read), second(read);
+    for (int i = 0; i < 100; ++i) {
+      map.refuse(map.grid().centre({i, 10}), 0.1);
+      map.refuse(map.grid().centre({299 - i, 10}), 0.1);
+      map.publish();
+    }
+    done = true;
+  }
+  EXPECT_EQ(map.published()->version(), 101U);
+  EXPECT_EQ(torn, 0);
+  EXPECT_EQ(backwards, 0);
+  EXPECT_EQ(changed, 0);
 }
 
 }  // namespace

@@ -153,7 +153,7 @@ TEST(FieldPlanner, ReplansAsIfAnew) {
   auto content = map->content();
   auto tile = std::make_shared<costmap::CostTile>(*content.tiles[5]);
   for (auto& cell : tile->cells) cell = costmap::CellCode({.dz_dx = 0.0, .dz_dy = 0.0, .curve = 4});
-  content.tiles[5] = tile;
+  content.tiles.set(5, tile);
   asked.map = std::make_shared<costmap::CostGrid>(content);
   FieldPlanner fresh;
   const Plan after = kept.plan(asked), anew = fresh.plan(asked);

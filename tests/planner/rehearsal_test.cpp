@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <memory>
 
 #include <site_fixture.hpp>
@@ -71,6 +72,28 @@ TEST(Rehearsal, NoWayRoundIsGivenUpNotTriedToDeath) {
   const Rehearsal drive = over(wall, true);
   EXPECT_EQ(drive.outcome, Outcome::GaveUp);
   for (const TrackPoint& at : drive.track) EXPECT_LT(at.place.x_m, 30.5);  // at most the front wheels were in
+}
+
+// Ground that slips more but holds, and a trap behind it: who backs out of the trap by its own length alone
+// would turn on ground that it has just felt to be weak.
+TEST(Rehearsal, BacksOutUntilItStandsOnSoundGround) {
+  terramech::Soil weak = testSand();
+  weak.friction_angle_rad = 0.44;
+  const Site site{
+      {.classes = {testSand()}, .patches = {{{30.0, 20.5}, 8.0, weak}, {{30.0, 20.5}, 4.0, testDust()}}},
+      0.0};
+  const Rehearsal drive = over(site, true);
+  EXPECT_EQ(drive.outcome, Outcome::Reached);
+  ASSERT_GE(drive.alarms, 1);
+  const auto out = std::find_if(drive.events.begin(), drive.events.end(),
+                                [](const DriveEvent& e) { return e.text == "backed out"; });
+  ASSERT_NE(out, drive.events.end());
+  const auto at = std::find_if(drive.track.begin(), drive.track.end(),
+                               [&](const TrackPoint& t) { return t.time_s >= out->time_s; });
+  ASSERT_NE(at, drive.track.end());
+  // Closed form: the weak ground begins 8 m, the trap 4 m before its middle at x = 30; a rover of 0.8 m by
+  // 0.6 m that stands before the former has its middle at least half a metre off.
+  EXPECT_LT(at->place.x_m, 23.0);
 }
 
 TEST(Rehearsal, FarTooSteepTips) {

@@ -24,6 +24,22 @@ TEST(PullForecast, PullAtTheSamplesIsNearTheTruth) {
   EXPECT_LT(std::sqrt(squares / count), 0.012);
 }
 
+TEST(PullForecast, TakesTheStateThatSoilAndReadingsMakeLikely) {
+  // Property: on the soil itself, a sinkage read 10 % high moves the pull by less than half of what it would
+  // move were it taken as read: load and torque speak against it.
+  ThesisRuns runs(33);
+  for (int k = 0; k < 6; ++k) {
+    const ThesisRun run = runs.next({.noise = 0.0});
+    SoilPosterior known;
+    known.draws = {{.soil = run.soil, .weight = 1.0}};
+    WheelSample s = run.truth[5];
+    s.sinkage_m *= 1.1;
+    const ForceVector raw = contactForces(run.soil, kThesisWheel, {.sinkage_m = s.sinkage_m, .slip = s.slip});
+    const double moved = pullOverLoad(kThesisWheel, s, known, {}).value - run.pull_over_load[5];
+    EXPECT_LT(std::abs(moved), 0.5 * std::abs(raw[kPull] / raw[kLoad] - run.pull_over_load[5]));
+  }
+}
+
 TEST(PullForecast, ReachesSlipsThatWereNotDriven) {
   // Property: from slips below 0.4, exact readings give DP/W at 0.5 and its maximum within 0.02 of the soil's
   // own.

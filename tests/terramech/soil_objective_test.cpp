@@ -22,10 +22,11 @@ TEST(SoilObjective, ResidualsVanishAtTheTruth) {
   ThesisRuns runs(3);
   const ThesisRun run = runs.next({.noise = 0.0});
   const SoilClass exact = known(run.soil);
-  const SoilObjective objective(exact, {.wheel = kThesisWheel, .noise = {}, .outlier_share = 0.01});
+  const SoilObjective objective(exact, {.noise = {}, .outlier_share = 0.01});
   for (const WheelSample& s : run.truth) {
-    EXPECT_LT(objective.misfit(SoilVector::Constant(0.5), s).residual.norm(), 0.01);
-    EXPECT_NEAR(objective.likelyState(run.soil, s).sinkage_m, s.sinkage_m, 1e-4 * s.sinkage_m);
+    EXPECT_LT(objective.misfit(SoilVector::Constant(0.5), {kThesisWheel, s}).residual.norm(), 0.01);
+    EXPECT_NEAR(objective.likelyState(run.soil, {kThesisWheel, s}).sinkage_m, s.sinkage_m,
+                1e-4 * s.sinkage_m);
   }
 }
 
@@ -39,9 +40,9 @@ TEST(SoilObjective, CostIsTheLikelihoodWithTheErrorsOfSinkageAndSlipIntegratedOu
   for (int k = 0; k < kSoils; ++k) {
     const ThesisRun run = runs.next({.noise = 0.02, .samples = kSamples});
     const SoilClass exact = known(run.soil);
-    const SoilObjective objective(exact, {kThesisWheel, ReadingErrors::relative(0.02), 0.0});
+    const SoilObjective objective(exact, {ReadingErrors::relative(0.02), 0.0});
     for (const WheelSample& s : run.samples) {
-      const double cost = objective.misfit(SoilVector::Zero(), s).cost;
+      const double cost = objective.misfit(SoilVector::Zero(), {kThesisWheel, s}).cost;
       const double apart = cost + std::log(s.sinkage_m * exactLikelihood(run.soil, s, 0.02));
       sum += apart;
       squares += apart * apart;
@@ -56,10 +57,10 @@ TEST(SoilObjective, LikelyStateMovesAReadingTowardsTheTruth) {
   ThesisRuns runs(4);
   const ThesisRun run = runs.next({.noise = 0.0});
   const SoilMixture classes = thesisSoils();
-  const SoilObjective objective(classes[0], {.wheel = kThesisWheel, .noise = {}, .outlier_share = 0.01});
+  const SoilObjective objective(classes[0], {.noise = {}, .outlier_share = 0.01});
   WheelSample s = run.truth[3];
   s.sinkage_m *= 1.1;
-  const double moved = objective.likelyState(run.soil, s).sinkage_m;
+  const double moved = objective.likelyState(run.soil, {kThesisWheel, s}).sinkage_m;
   EXPECT_LT(moved, s.sinkage_m - 0.02 * run.truth[3].sinkage_m);
   EXPECT_GT(moved, run.truth[3].sinkage_m * 0.98);
 }
@@ -80,11 +81,11 @@ TEST(SoilObjective, OutliersWeighLess) {
   ThesisRuns runs(5);
   const ThesisRun run = runs.next({.noise = 0.0});
   const SoilClass exact = known(run.soil);
-  const SoilObjective objective(exact, {.wheel = kThesisWheel, .noise = {}, .outlier_share = 0.01});
+  const SoilObjective objective(exact, {.noise = {}, .outlier_share = 0.01});
   WheelSample s = run.truth[2];
-  EXPECT_GT(objective.misfit(SoilVector::Zero(), s).weight, 0.99);
+  EXPECT_GT(objective.misfit(SoilVector::Zero(), {kThesisWheel, s}).weight, 0.99);
   s.torque_Nm *= 4.0;
-  EXPECT_LT(objective.misfit(SoilVector::Zero(), s).weight, 0.02);
+  EXPECT_LT(objective.misfit(SoilVector::Zero(), {kThesisWheel, s}).weight, 0.02);
 }
 
 }  // namespace

@@ -1,0 +1,150 @@
+// Planned risk against Monte-Carlo: rovers driven over ground whose pull is drawn, alike nearby, from the
+// same uncertainty that the planner knows.
+#include <cmath>
+#include <map>
+#include <random>
+
+#include <Eigen/Cholesky>
+
+#include <costmap/ground_model.hpp>
+#include <planner/annotation.hpp>
+#include <planner/named_planner.hpp>
+#include <planner/polyline.hpp>
+#include <planner/risk_planner.hpp>
+#include <planner/route_risk.hpp>
+
+#include "site_fixture.hpp"
+
+namespace talus::planner {
+namespace {
+
+constexpr double kCorrelation_m = 5.0;
+
+// Swells of a wheel's worth of doubt: gradients up to where the pull that the soil gives at most is two to
+// three deviations above what is asked. Whoever is stuck is held for good.
+struct RiskyGround {
+  std::shared_ptr<const costmap::CostGrid> map;
+  double most_pull = 0.0;  // mean of the pull over load at the strongest slip
+  double pull_std = 0.0;
+};
+
+RiskyGround riskyGround(double steepest) {
+  costmap::GroundModel::Parts parts;
+  parts.rover = costmap::testRover();
+  parts.classes = {{.number = 0, .soil = costmap::testSand(), .pull_std = 0.05}};
+  parts.policy.entrapment = 1.0;
+  parts.policy.correlation_length_m = kCorrelation_m;
+  parts.policy.allow_dangerous = true;
+  parts.policy.risk_weight_J = 0.0;
+  const costmap::GroundModel model(parts);
+  const auto curve = costmap::mobilityOf(parts.classes[0], parts.rover);
+  RiskyGround ground;
+  ground.pull_std = parts.classes[0].pull_std;
+  ground.most_pull = model.prior(0).pull.mean + std::max(0.0, curve.strongest().drawbar_pull_over_load -
+                                                                  curve.reference().drawbar_pull_over_load);
+  maps::Raster<costmap::CellCode> cells({.width = 60, .height = 40, .resolution_m = 1.0, .south_west = {}});
+  for (int row = 0; row < 40; ++row)
+    for (int column = 0; column < 60; ++column) {
+      const double swell = 0.5 + 0.5 * std::sin(0.5 * column) * std::cos(0.2 * row);
+      // Steep in the south, gentle in the north: what costs least is not what is safest.
+      const double share = swell * (1.0 - 0.4 * row / 40.0);
+      cells[{column, row}] =
+          costmap::CellCode({.dz_dx = (ground.most_pull - steepest * ground.pull_std) * share, .curve = 0});
+    }
+  const costmap::DriveCost::Limits limits{.max_along = 0.9, .max_across = 0.9};
+  ground.map = std::make_shared<costmap::CostGrid>(costmap::flattened(
+      cells, std::make_shared<costmap::DriveCost>(limits, std::vector{model.ground(0, model.prior(0))})));
+  return ground;
+}
+
+// Share of worlds in which the pull of some cell of the route falls short of the gradient. A cell has one
+// pull; the pulls of two cells are correlated exponentially by the distance of their middles.
+double stuckShare(const RiskyGround& ground, const std::vector<maps::Point>& route, int worlds) {
+  const maps::Grid& grid = ground.map->grid();
+  std::map<std::size_t, double> least;  // reserve of each cell entered, in deviations
+  const auto points = subdivided(route, 0.02);
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const maps::Point a = points[i - 1], b = points[i];
+    const double dx = b.x_m - a.x_m, dy = b.y_m - a.y_m, metres = std::hypot(dx, dy);
+    if (!(metres > 0.0)) continue;
+    const maps::Cell cell = *grid.cellAt({a.x_m + dx / 2, a.y_m + dy / 2});
+    const auto code = ground.map->at(cell);
+    const double gradient = (code.dzDx() * dx + code.dzDy() * dy) / metres;
+    const double reserve = (ground.most_pull - gradient) / ground.pull_std;
+    const auto [entry, fresh] = least.try_emplace(grid.index(cell), reserve);
+    if (!fresh) entry->second = std::min(entry->second, reserve);
+  }
+  std::vector<maps::Point> middles;
+  std::vector<double> reserve;
+  for (const auto& [index, value] : least) {
+    const int at = static_cast<int>(index);
+    middles.push_back(grid.centre({at % grid.width, at / grid.width}));
+    reserve.push_back(value);
+  }
+  const auto n = static_cast<Eigen::Index>(middles.size());
+  Eigen::MatrixXd covariance(n, n);
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index j = 0; j < n; ++j) {
+      const maps::Point a = middles[static_cast<std::size_t>(i)], b = middles[static_cast<std::size_t>(j)];
+      covariance(i, j) = std::exp(-std::hypot(a.x_m - b.x_m, a.y_m - b.y_m) / kCorrelation_m);
+    }
+  const Eigen::MatrixXd root = covariance.llt().matrixL();
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> gauss;
+  int stuck = 0;
+  Eigen::VectorXd white(n);
+  for (int world = 0; world < worlds; ++world) {
+    for (Eigen::Index i = 0; i < n; ++i) white(i) = gauss(random);
+    const Eigen::VectorXd u = root * white;
+    bool fails = false;
+    for (Eigen::Index i = 0; i < n && !fails; ++i) fails = reserve[static_cast<std::size_t>(i)] + u(i) < 0.0;
+    stuck += fails;
+  }
+  return static_cast<double>(stuck) / worlds;
+}
+
+Problem acrossSwells(const RiskyGround& ground) {
+  return {.map = ground.map, .start = {2.5, 4.5}, .goal = {57.5, 6.5}, .prove = false};
+}
+
+// Half the width of the interval that a share of so many worlds lies in but for 1 in 1000.
+double spread(double share, int worlds) {
+  return 3.3 * std::sqrt(share * (1.0 - share) / worlds);
+}
+
+TEST(RiskWorlds, PlannedRiskIsTheShareOfRoversStuck) {
+  for (const double steepest : {1.0, 1.5}) {
+    const RiskyGround ground = riskyGround(steepest);
+    NamedPlanner planner;
+    const Plan plan = planner.plan(acrossSwells(ground));
+    ASSERT_EQ(plan.status, RouteStatus::Found);
+    const Route route = annotated(plan, {.map = *ground.map, .elevation_m = nullptr, .planner = "field"});
+    const RouteRisk risk =
+        routeRisk(route, {.correlation_length_m = kCorrelation_m, .tail = 0.05, .worlds = 20000});
+    const double stuck = stuckShare(ground, plan.points, 20000);
+    // A cell that is only clipped counts less along the route than in the plane: an eighth at most.
+    EXPECT_NEAR(risk.immobilisation, stuck, stuck / 8 + spread(stuck, 10000)) << steepest;
+    // The hazard counts soil as drawn anew every five metres, and misses most of it.
+    EXPECT_LT(route.vertices.back().immobilisation_risk, stuck / 2) << steepest;
+  }
+}
+
+// Property: under a chance constraint the share of rovers stuck keeps the limit, where without one it does
+// not.
+TEST(RiskWorlds, TheChanceConstraintHoldsInDrawnWorlds) {
+  constexpr double kLimit = 0.08;
+  constexpr int kWorlds = 10000;
+  const RiskyGround ground = riskyGround(1.0);
+  NamedPlanner planner;
+  const Problem problem = acrossSwells(ground);
+  const double free = stuckShare(ground, planner.plan(problem).points, kWorlds);
+  EXPECT_GT(free - spread(free, kWorlds), kLimit);
+  const Plan safe =
+      planWithinRisk(problem, planner, kLimit, {.correlation_length_m = kCorrelation_m, .worlds = 4000});
+  ASSERT_EQ(safe.status, RouteStatus::Found) << safe.reason;
+  const double kept = stuckShare(ground, safe.points, kWorlds);
+  EXPECT_LE(kept - spread(kept, kWorlds), kLimit);
+}
+
+}  // namespace
+}  // namespace talus::planner
