@@ -77,8 +77,8 @@ void effects(HtmlReport& page, const TraceStory& story) {
       others += fmt::format("{}{} ({}; {:.1f} less)", others.empty() ? "" : ", ",
                             rival.candidate.parts.front().name, rival.candidate.covariate(),
                             e.chosen.score - rival.score);
-    rows.push_back({part.name, part.covariate, name(e.channel),
-                    form ? form->formula : "curve fitted to the residual", numbers,
+    rows.push_back({part.name, covariateOf(part) + (part.only_column.empty() ? "" : " = " + part.only_value),
+                    name(e.channel), form ? form->formula : "curve fitted to the residual", numbers,
                     fmt::format("{:.2g}", e.p_value), fmt::format("{:.1f}", 0.5 * e.chosen.chi2_gain),
                     others.empty() ? "nothing near" : others, separatingMeasurement(story.result.trial, e)});
   }

@@ -49,7 +49,7 @@ ordered_json stdJson(const TracedEffect& effect) {
 
 ordered_json rivalJson(const Explanation& e) {
   const Effect& part = e.candidate.parts.front();
-  ordered_json out{{"name", part.name}, {"covariate", part.covariate}};
+  ordered_json out{{"name", part.name}, {"covariate", covariateOf(part)}};
   if (!part.only_column.empty()) out["only"] = {{part.only_column, part.only_value}};
   out["log_likelihood_gain"] = 0.5 * e.chi2_gain;
   out["score"] = e.score;
@@ -75,7 +75,7 @@ ordered_json effectJson(const TraceStory& story, const TracedEffect& effect) {
   const Effect& part = effect.chosen.candidate.parts.front();
   ordered_json out{{"name", part.name},
                    {"family", effect.chosen.candidate.family},
-                   {"covariate", part.covariate},
+                   {"covariate", covariateOf(part)},
                    {"channel", name(effect.channel)}};
   if (!part.only_column.empty()) out["only"] = {{part.only_column, part.only_value}};
   out["parameters"] = parametersJson(effect.chosen.candidate);
@@ -120,8 +120,8 @@ double correlation(const Eigen::VectorXd& x, const Eigen::VectorXd& y) {
 std::string effectLine(const TracedEffect& effect) {
   const Effect& part = effect.chosen.candidate.parts.front();
   std::string line =
-      fmt::format("  {} in {} (covariate {}{})", part.name, name(effect.channel), part.covariate,
-                  part.only_column.empty() ? "" : ", only " + part.only_column + " = " + part.only_value);
+      fmt::format("  {} in {} (covariate {}{})", part.name, name(effect.channel), covariateOf(part),
+                  part.only_column.empty() ? "" : ", only where it is " + part.only_value);
   if (const EffectForm* form = findEffect(part.name)) {
     line += fmt::format("\n    {}   [{}]", form->formula, form->source);
     std::size_t at = 0;
@@ -144,6 +144,10 @@ std::string effectLine(const TracedEffect& effect) {
 }
 
 }  // namespace
+
+const std::string& covariateOf(const Effect& effect) {
+  return effect.only_column.empty() ? effect.covariate : effect.only_column;
+}
 
 std::vector<std::string> confounded(const Trial& trial, const std::string& covariate) {
   std::vector<std::string> close;

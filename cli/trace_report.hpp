@@ -23,6 +23,9 @@ struct TraceStory {
 /// apart.
 std::vector<std::string> confounded(const terramech::Trial& trial, const std::string& covariate);
 
+/// The column that explains an effect: of one on a single group of rows, the column that tells the group.
+const std::string& covariateOf(const terramech::Effect& effect);
+
 /// What one would have to measure to tell an effect from its nearest rival.
 std::string separatingMeasurement(const terramech::Trial& trial, const terramech::TracedEffect& effect);
 

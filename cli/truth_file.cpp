@@ -79,10 +79,13 @@ void readRandom(const YamlFields& random, const YamlFields& file, const std::str
 
 planner::Truth readTruth(const std::string& path) {
   const YamlFields file = YamlFields::file(path);
-  file.only({"classes", "terrain_classes", "soils", "patches", "random", "effects"});
+  const std::vector<std::string> more{"patches", "random", "effects"};
+  std::vector<std::string> known = more;
+  known.insert(known.end(), {"classes", "terrain_classes", "soils"});
+  file.only(known);
   planner::Truth truth;
   if (file.has("classes") || file.has("terrain_classes"))
-    for (const auto& [number, prior] : terramech::loadTerrainClasses(path))
+    for (const auto& [number, prior] : terramech::loadTerrainClasses(path, more))
       truth.classes[number] = prior.mean;
   for (const YamlFields& patch : file.list("patches")) truth.patches.push_back(patchOf(patch, file, path));
   truth.patch_soil = terramech::loadSoil("mars_drift");

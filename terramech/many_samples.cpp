@@ -178,6 +178,21 @@ std::vector<WheelReading> spreadEvenly(std::span<const WheelReading> samples, st
   return chosen;
 }
 
+namespace {
+
+// Carrying the errors of z and i to first order leaves up to 2 % of phi and K, however many samples there
+// are: beyond kTrusted they tell where the soil lies, but not more surely (ours; see README.md).
+SoilQuadratic noSurerThanTheModel(SoilQuadratic q, std::size_t samples) {
+  constexpr double kTrusted = 4000.0;
+  const double share = std::min(1.0, kTrusted / static_cast<double>(samples));
+  q.cost *= share;
+  q.gradient *= share;
+  q.information *= share;
+  return q;
+}
+
+}  // namespace
+
 SoilPosterior fitManySamples(const std::vector<SoilObjective>& classes, std::span<const WheelReading> samples,
                              const SoilFitOptions& options) {
   std::vector<Candidate> candidates;
@@ -196,8 +211,9 @@ SoilPosterior fitManySamples(const std::vector<SoilObjective>& classes, std::spa
   for (Candidate& c : candidates) {
     if (c.alive) {
       const SoilVector at = middle(c.objective, c.likelihood);
-      c.likelihood =
-          curved(c.objective.expandWhole(at, samples, {}), curvatureCorrection(c.objective, at, samples));
+      c.likelihood = noSurerThanTheModel(
+          curved(c.objective.expandWhole(at, samples, {}), curvatureCorrection(c.objective, at, samples)),
+          samples.size());
     }
     fits.push_back(
         {.objective = c.objective,

@@ -194,13 +194,17 @@ std::vector<SoilPrior> loadSoils(const std::string& path) {
   return listedSoils(root);
 }
 
-TerrainClasses loadTerrainClasses(const std::string& path) {
+TerrainClasses loadTerrainClasses(const std::string& path, const std::vector<std::string>& other_keys) {
   const YamlFields root = YamlFields::file(path);
   const auto listed = listedSoils(root);
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
   const std::string wrapper = root.has("terrain_classes") ? "terrain_classes" : "classes";
   const bool wrapped = root.has(wrapper);
-  if (wrapped) root.only({wrapper, "soils"});
+  if (wrapped) {
+    std::vector<std::string> known = other_keys;
+    known.insert(known.end(), {wrapper, "soils"});
+    root.only(known);
+  }
   const YamlFields classes = unwrapped(root, wrapper);
   TerrainClasses table;
   for (const std::string& key : classes.names())

@@ -32,8 +32,8 @@ using TerrainClasses = std::map<int, SoilPrior>;
 
 /// Reads {terrain_classes|classes: {1: SOIL, ...}} or the bare {1: SOIL, ...}, where SOIL is a library name,
 /// the name of a soil in the file's own `soils:` list, a path relative to the file, or an inline mapping of a
-/// soil.
-TerrainClasses loadTerrainClasses(const std::string& path);
+/// soil. A file that holds more than classes names its other keys; any further one is refused.
+TerrainClasses loadTerrainClasses(const std::string& path, const std::vector<std::string>& other_keys = {});
 
 /// A soil or rover from an open mapping, and all soils of a file's `soils:` list by name; refuse unknown
 /// keys.

@@ -108,6 +108,16 @@ TEST(DriveCommand, ThePageTellsTheDrive) {
     EXPECT_NE(page.find(part), std::string::npos) << part;
 }
 
+TEST(DriveCommand, TheTruthMayHoldAllItsPartsAtOnce) {
+  // Property: a class whose true soil is the one believed changes nothing.
+  const Folder folder;
+  const std::string others =
+      "patches:\n  - {x_m: 10, y_m: 10, radius_m: 1, soil: dry_sand}\nrandom: {spread: 0.1}\n"
+      "effects: [{name: bulldozing, parameters: [0.1]}]\n";
+  const json alone = outcomeOf(folder, drive(folder, others, {"--json"}));
+  EXPECT_EQ(outcomeOf(folder, drive(folder, "classes: {0: sandy_loam}\n" + others, {"--json"})), alone);
+}
+
 TEST(BadInput, Rehearsals) {
   const BadFiles files;
   const auto write = [&](const char* name, const char* text) { files.folder().write(name, text); };

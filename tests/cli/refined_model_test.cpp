@@ -3,6 +3,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include <terramech/soil_library.hpp>
+#include <terramech/wong_reece.hpp>
+
 #include "run_program.hpp"
 
 namespace talus::cli {
@@ -61,6 +64,38 @@ TEST_F(RefinedModelCommands, PlanAndCostmapTakeAModelAndKeepIt) {
   const Ran why = talus({"explain", "dem.asc", "--resolution", "1", "--rover", "fido", "--model",
                          "model.yaml", "--at", "20,20"});
   EXPECT_NE(why.out.find("bulldozing"), std::string::npos);
+}
+
+// Rows of four wheels by the forward model, two percent off; the load cell of wheel 2 pulls 6 N short.
+std::string oneWheelShort() {
+  std::string text =
+      "run,wheel,load_N,slip,torque_Nm,sinkage_m,drawbar_pull_N,wheel_radius_m,wheel_width_m\n";
+  const terramech::Soil soil = terramech::loadSoil("sandy_loam");
+  for (int row = 0; row < 120; ++row) {
+    const int wheel = row % 4;
+    const double load_N = 60.0 + 8.0 * (row % 6), slip = 0.1 + 0.05 * (row % 11);
+    const terramech::WheelForces forces =
+        equilibrium(soil, {.radius_m = 0.1, .width_m = 0.1}, {.load_N = load_N, .slip = slip});
+    const auto off = [row](double phase) { return 1.0 + 0.02 * std::sin(12.9 * row * row + phase); };
+    for (const double value :
+         {row / 12 + 0.0, wheel + 0.0, load_N, slip, forces.torque_Nm * off(1), forces.sinkage_m * off(2),
+          forces.drawbar_pull_N + load_N * (off(3) - 1.0) - (wheel == 2 ? 6.0 : 0.0), 0.1})
+      text += std::to_string(value) + ",";
+    text += "0.1\n";
+  }
+  return text;
+}
+
+TEST_F(RefinedModelCommands, AnEffectOfOneGroupIsSaidOfTheColumnThatTellsTheGroup) {
+  folder_.write("t.csv", oneWheelShort());
+  folder_.write("base.yaml", "{soil: sandy_loam, model: wong-reece}\n");
+  const Ran ran = talus({"trace", "t.csv", "--base", "base.yaml", "--json"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const auto effects = nlohmann::json::parse(ran.out)["effects"];
+  ASSERT_EQ(effects.size(), 1u) << ran.out;
+  EXPECT_EQ(effects[0]["covariate"], "wheel");
+  EXPECT_EQ(effects[0]["only"]["wheel"], "2.000000");
+  EXPECT_EQ(effects[0]["channel"], "drawbar_pull_over_load");
 }
 
 TEST_F(RefinedModelCommands, RefusesModelsThatCannotPlan) {

@@ -54,6 +54,17 @@ TEST(ManySamples, AgreeWhereDrawsAreStillWeighedAndWhereTheQuadraticServes) {
   EXPECT_NEAR(quadratic.misfit, weighed.misfit, 0.05);
 }
 
+TEST(ManySamples, AreNoSurerThanTheModelThatTheyAreReadBy) {
+  // Property: from 4000 samples on the standard deviation stays; counting them all it would shrink by 1.4.
+  ThesisRuns runs(74);
+  const ThesisRun run = runs.next({.noise = 0.05, .samples = 8000});
+  const SoilMixture known{thesisSoils()[static_cast<std::size_t>(run.soil_class)]};
+  const SoilPosterior half = fitSoil(kThesisWheel, std::span(run.samples).first(4000), known);
+  const SoilPosterior whole = fitSoil(kThesisWheel, run.samples, known);
+  for (const ContactColumn k : {kCohesion, kFriction})
+    EXPECT_NEAR(std::sqrt(whole.covariance(k, k) / half.covariance(k, k)), 1.0, 0.15);
+}
+
 TEST(ManySamples, TellHowFarTheyAreAndStop) {
   // Property: what is reported grows from 0 to 1; a stop asked for on the way leaves no draws.
   ThesisRuns runs(73);
