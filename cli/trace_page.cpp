@@ -52,6 +52,33 @@ Plot residualPlot(const TraceResult& r, const std::string& covariate, Channel ch
           .series = {base, refined}};
 }
 
+// The fitted parameters, each with its standard deviation.
+std::string sizes(const TracedEffect& effect) {
+  const Effect& part = effect.chosen.candidate.parts.front();
+  const EffectForm* form = findEffect(part.name);
+  std::string text;
+  std::size_t at = 0;
+  for (std::size_t k = 0; form && k < form->parameters.size(); ++k) {
+    const EffectParameter& parameter = form->parameters[k];
+    if (!parameter.fitted) continue;
+    const double std = at < effect.parameter_std.size() ? effect.parameter_std[at] : 0.0;
+    ++at;
+    text += fmt::format("{}{} = {:.3g} ± {:.2g}", text.empty() ? "" : "; ", parameter.name,
+                        part.parameters[k], std);
+    if (parameter.unit != std::string("-")) text += fmt::format(" {}", parameter.unit);
+  }
+  return text;
+}
+
+std::string rivals(const TracedEffect& effect) {
+  std::string text;
+  for (const Explanation& rival : effect.alternatives)
+    text +=
+        fmt::format("{}{} ({}; {:.1f} less)", text.empty() ? "" : ", ", rival.candidate.parts.front().name,
+                    rival.candidate.covariate(), effect.chosen.score - rival.score);
+  return text.empty() ? "nothing near" : text;
+}
+
 void effects(HtmlReport& page, const TraceStory& story) {
   page.heading("What the model lacked");
   if (story.result.effects.empty()) {
@@ -59,32 +86,20 @@ void effects(HtmlReport& page, const TraceStory& story) {
         "No effect found: what the base model leaves looks like noise in every column and channel.");
     return;
   }
-  std::vector<std::vector<std::string>> rows;
+  std::vector<std::vector<std::string>> found, forms;
   for (const TracedEffect& e : story.result.effects) {
     const Effect& part = e.chosen.candidate.parts.front();
     const EffectForm* form = findEffect(part.name);
-    std::string numbers;
-    std::size_t at = 0;
-    for (std::size_t k = 0; form && k < form->parameters.size(); ++k)
-      if (form->parameters[k].fitted) {
-        const double std = at < e.parameter_std.size() ? e.parameter_std[at] : 0.0;
-        ++at;
-        numbers += fmt::format("{}{} = {:.3g} ± {:.2g} {}", numbers.empty() ? "" : "; ",
-                               form->parameters[k].name, part.parameters[k], std, form->parameters[k].unit);
-      }
-    std::string others;
-    for (const Explanation& rival : e.alternatives)
-      others += fmt::format("{}{} ({}; {:.1f} less)", others.empty() ? "" : ", ",
-                            rival.candidate.parts.front().name, rival.candidate.covariate(),
-                            e.chosen.score - rival.score);
-    rows.push_back({part.name, covariateOf(part) + (part.only_column.empty() ? "" : " = " + part.only_value),
-                    name(e.channel), form ? form->formula : "curve fitted to the residual", numbers,
-                    fmt::format("{:.2g}", e.p_value), fmt::format("{:.1f}", 0.5 * e.chosen.chi2_gain),
-                    others.empty() ? "nothing near" : others, separatingMeasurement(story.result.trial, e)});
+    found.push_back({part.name, covariateOf(part) + (part.only_column.empty() ? "" : " = " + part.only_value),
+                     name(e.channel), sizes(e), fmt::format("{:.2g}", e.p_value),
+                     fmt::format("{:.1f}", 0.5 * e.chosen.chi2_gain)});
+    forms.push_back({part.name, form ? form->formula : "curve fitted to the residual", rivals(e),
+                     separatingMeasurement(story.result.trial, e)});
   }
-  page.table({"effect", "covariate", "channel", "form", "size (one standard deviation)", "p (all questions)",
-              "log-likelihood", "what else", "to tell apart"},
-             rows);
+  page.table({"effect", "covariate", "channel", "size (one standard deviation)", "p (all questions)",
+              "log-likelihood"},
+             found);
+  page.table({"effect", "form", "what else it could be", "what would tell them apart"}, forms);
 }
 
 void errors(HtmlReport& page, const TraceStory& story) {

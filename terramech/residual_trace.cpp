@@ -49,20 +49,24 @@ Channel strongest(const Explanation& e) {
   return static_cast<Channel>(most - e.by_channel.begin());
 }
 
+bool same(const Candidate& a, const Candidate& b) {
+  return a.parts.size() == b.parts.size() && a.parts.front().name == b.parts.front().name &&
+         a.covariate() == b.covariate() && a.parts.front().only_value == b.parts.front().only_value;
+}
+
+// Explanations by the same form from several starts count once.
 TracedEffect traced(const std::vector<Explanation>& ranked, std::size_t best, double p_value) {
   TracedEffect effect;
   effect.chosen = ranked[best];
   effect.channel = strongest(ranked[best]);
   effect.p_value = p_value;
-  for (std::size_t k = 0; k < ranked.size(); ++k)
-    if (k != best && ranked[k].score > ranked[best].score - 6.0 && effect.alternatives.size() < 6)
-      effect.alternatives.push_back(ranked[k]);
+  for (const Explanation& e : ranked) {
+    const auto like = [&e](const Explanation& other) { return same(e.candidate, other.candidate); };
+    if (e.score > ranked[best].score - 6.0 && effect.alternatives.size() < 6 && !like(effect.chosen) &&
+        std::none_of(effect.alternatives.begin(), effect.alternatives.end(), like))
+      effect.alternatives.push_back(e);
+  }
   return effect;
-}
-
-bool same(const Candidate& a, const Candidate& b) {
-  return a.parts.size() == b.parts.size() && a.parts.front().name == b.parts.front().name &&
-         a.covariate() == b.covariate() && a.parts.front().only_value == b.parts.front().only_value;
 }
 
 /// Looks at every effect again, the newest first, until none is better replaced.
