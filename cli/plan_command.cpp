@@ -125,16 +125,6 @@ planner::Problem problemOf(const PlanOptions& options, const Ground& ground, con
   return problem;
 }
 
-// What no planner may hand out: the check shares no code with any of them.
-void requireAllowed(const planner::Plan& plan, const costmap::CostGrid& map, double turning_radius_m) {
-  auto violations = planner::violations(map, plan.points);
-  if (violations.empty() && !plan.drive.legs.empty())
-    violations = planner::violations(map, plan.drive, turning_radius_m);
-  if (violations.empty()) return;
-  throw std::logic_error(fmt::format("the planner's route is not allowed at {:.2f},{:.2f}: {}",
-                                     violations[0].place.x_m, violations[0].place.y_m, violations[0].reason));
-}
-
 // How the soil is drawn along a route.
 planner::RouteRiskOptions soilOf(const PlanOptions& options, std::uint64_t seed) {
   return {.correlation_length_m = options.ground.policy.correlation_length_m, .seed = seed};
@@ -269,7 +259,7 @@ int runPairs(const PlanOptions& options, Context& context) {
 int finish(const PlanOptions& options, const Planned& planned, const planner::AnnotationInput& input,
            const Context& context) {
   if (planned.plan.status == RouteStatus::Found)
-    requireAllowed(planned.plan, *planned.problem.map, planned.problem.kinematics.turning_radius_m);
+    planner::requireAllowed(planned.plan, *planned.problem.map, planned.problem.kinematics.turning_radius_m);
   const Route route = annotated(planned.plan, input);
   if (planned.plan.status != RouteStatus::Found) return refuse(route, context);
   writeFiles(options, planned.ground, route, context);

@@ -36,15 +36,6 @@ std::array<std::optional<std::size_t>, kColumns.size()> columnsOf(const std::str
   return found;
 }
 
-// Status infeasible never leaves: a route that the check refuses is a failure of the program.
-void requireAllowed(const planner::Plan& plan, const planner::Problem& problem) {
-  auto violations = planner::violations(*problem.map, plan.points);
-  if (violations.empty() && !plan.drive.legs.empty())
-    violations = planner::violations(*problem.map, plan.drive, problem.kinematics.turning_radius_m);
-  if (!violations.empty())
-    throw std::logic_error("the planner's route is not allowed: " + violations[0].reason);
-}
-
 Json planned(const PlacePair& pair, planner::Problem problem, planner::NamedPlanner& planner) {
   problem.start = pair.start;
   problem.goal = pair.goal;
@@ -53,7 +44,7 @@ Json planned(const PlacePair& pair, planner::Problem problem, planner::NamedPlan
   const planner::Plan plan = planner.plan(problem);
   if (plan.status != planner::RouteStatus::Found)
     return {{"status", planner::name(plan.status)}, {"planner", planner.name()}, {"reason", plan.reason}};
-  requireAllowed(plan, problem);
+  planner::requireAllowed(plan, *problem.map, problem.kinematics.turning_radius_m);
   const planner::Route route = annotated(plan, {.map = *problem.map,
                                                 .elevation_m = nullptr,
                                                 .planner = planner.name(),

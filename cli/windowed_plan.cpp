@@ -1,6 +1,7 @@
 #include <cli/context.hpp>
 #include <cli/windowed_ground.hpp>
 #include <cli/windowed_plan.hpp>
+#include <planner/legs.hpp>
 #include <planner/tube_planner.hpp>
 
 namespace talus::cli {
@@ -28,23 +29,12 @@ planner::Plan planLeg(planner::Problem& leg, WindowedGround& ground, planner::Tu
 
 planner::Plan planInWindows(planner::Problem& problem, WindowedGround& ground) {
   planner::TubePlanner tube;
-  auto stops = problem.via;
-  stops.push_back(problem.goal);
-  planner::Plan whole{planner::RouteStatus::Found, {}, {problem.start}, 0.0, 0.0};
-  for (std::size_t k = 0; k < stops.size(); ++k) {
-    planner::Problem leg = problem;
-    leg.via.clear();
-    leg.start = whole.points.back();
-    leg.goal = stops[k];
-    if (k + 1 < stops.size()) leg.goal_tolerance_m = 0.0;
-    planner::Plan part = planLeg(leg, ground, tube);
+  return planner::planByLegs(problem, [&](const planner::Problem& asked) {
+    planner::Problem leg = asked;
+    planner::Plan plan = planLeg(leg, ground, tube);
     problem.map = leg.map;
-    if (part.status != planner::RouteStatus::Found) return part;
-    planner::append(whole.points, part.points);
-    whole.cost_J += part.cost_J;
-    whole.lower_bound_J += part.lower_bound_J;
-  }
-  return whole;
+    return plan;
+  });
 }
 
 }  // namespace talus::cli

@@ -6,6 +6,7 @@
 #include <planner/field_planner.hpp>
 #include <planner/grid_links.hpp>
 #include <planner/grid_route.hpp>
+#include <planner/legs.hpp>
 #include <planner/map_change.hpp>
 #include <planner/plan_end.hpp>
 #include <planner/remedy.hpp>
@@ -16,20 +17,9 @@ using maps::Point;
 Plan FieldPlanner::plan(const Problem& problem) {
   if (!problem.map) throw std::invalid_argument("FieldPlanner: no map");
   const StopCheck stop(problem.watch, problem.time_limit_s);
-  std::vector<Point> stops = problem.via;
-  stops.push_back(problem.goal);
-  Plan whole{RouteStatus::Found, {}, {problem.start}, 0.0, 0.0};
-  for (std::size_t i = 0; i < stops.size(); ++i) {
-    const bool last = i + 1 == stops.size();
-    const Leg leg{whole.points.back(), stops[i], last ? problem.goal_tolerance_m : 0.0};
-    Plan part = planLeg(problem, leg, stop);
-    if (part.status != RouteStatus::Found) return part;
-    append(whole.points, part.points);
-    whole.cost_J += part.cost_J;
-    whole.lower_bound_J += part.lower_bound_J;
-    problem.watch.report(static_cast<double>(i + 1) / static_cast<double>(stops.size()));
-  }
-  return whole;
+  return planByLegs(problem, [&](const Problem& leg) {
+    return planLeg(leg, {leg.start, leg.goal, leg.goal_tolerance_m}, stop);
+  });
 }
 
 // Units for this map: coarser on huge maps, so that sums along a route fit in 32 bits.

@@ -54,14 +54,11 @@ ImprovableRegion::ImprovableRegion(Parts parts)
 }
 
 double ImprovableRegion::fromStart(maps::Point place) const {
-  const double straight = between({parts_.start, place});
-  return parts_.from_start ? std::max(straight, parts_.from_start(place)) : straight;
+  return between({parts_.start, place});
 }
 
 double ImprovableRegion::toGoal(maps::Point place) const {
-  const double metres = std::max(0.0, distance(place, parts_.goal) - parts_.goal_tolerance_m);
-  return parts_.to_goal ? std::max(metres * cheapest_J_per_m_, parts_.to_goal(place))
-                        : metres * cheapest_J_per_m_;
+  return std::max(0.0, distance(place, parts_.goal) - parts_.goal_tolerance_m) * cheapest_J_per_m_;
 }
 
 double ImprovableRegion::between(const Segment& ends) const {

@@ -21,17 +21,12 @@ double cheapestMetre_J(const costmap::CostGrid& map);
 /// keep the planners complete. Immutable, safe to share between threads.
 class ImprovableRegion {
  public:
-  /// A lower bound in joules of any route between a place and one end; infinite where none exists.
-  using Bound = std::function<double(maps::Point)>;
-
   /// What it is made of.
   struct Parts {
     std::shared_ptr<const costmap::CostGrid> map;
     maps::Point start;
     maps::Point goal;
     double goal_tolerance_m = 0.0;         ///< the route may end so far from the goal
-    Bound from_start;                      ///< empty: straight line at the cheapest metre of the map
-    Bound to_goal;                         ///< the same
     std::vector<maps::Point> known_route;  ///< empty when none is known
     double known_cost_J = 0.0;             ///< of that route
     bool hand_out_route = false;           ///< samplers begin with the known route's points
@@ -41,7 +36,7 @@ class ImprovableRegion {
 
   explicit ImprovableRegion(Parts parts);
 
-  /// Admissible lower bounds in joules.
+  /// Admissible lower bounds in joules: straight at the cheapest metre of the map.
   double fromStart(maps::Point place) const;
   double toGoal(maps::Point place) const;
   double between(const Segment& ends) const;

@@ -24,9 +24,7 @@ Plan NamedPlanner::planOne(const Problem& problem) {
     if (name() == DrivePlanner::kSampling) drive_.sample({.better = settings_.better});
     return drive_.plan(problem);
   }
-  return planBySampling(problem, settings_, [this](const Problem& leg) {
-    return LegKnowledge{.plan = planField(leg), .from_start = {}, .to_goal = {}};
-  });
+  return planBySampling(problem, settings_, [this](const Problem& leg) { return planField(leg); });
 }
 
 }  // namespace talus::planner

@@ -21,19 +21,17 @@ namespace ob = ompl::base;
 namespace og = ompl::geometric;
 using Clock = std::chrono::steady_clock;
 
-std::shared_ptr<const ImprovableRegion> regionOf(const Problem& leg, const LegKnowledge& known,
+std::shared_ptr<const ImprovableRegion> regionOf(const Problem& leg, const Plan& known,
                                                  const SamplingSettings& settings) {
   const double spacing_m = settings.range_cells / 4 * leg.map->grid().resolution_m;
-  const bool seeded = known.plan.status == RouteStatus::Found;
+  const bool seeded = known.status == RouteStatus::Found;
   return std::make_shared<ImprovableRegion>(ImprovableRegion::Parts{
       .map = leg.map,
       .start = leg.start,
       .goal = leg.goal,
       .goal_tolerance_m = leg.goal_tolerance_m,
-      .from_start = known.from_start,
-      .to_goal = known.to_goal,
-      .known_route = seeded ? subdivided(known.plan.points, spacing_m) : std::vector<maps::Point>{},
-      .known_cost_J = known.plan.cost_J,
+      .known_route = seeded ? subdivided(known.points, spacing_m) : std::vector<maps::Point>{},
+      .known_cost_J = known.cost_J,
       .hand_out_route = !settings.planner.ends_with("RRTstar")});  // RRT* plants it instead
 }
 
@@ -112,7 +110,7 @@ Plan explained(Plan plan, const Problem& leg, const MeteredCost& cost, const Sam
 
 }  // namespace
 
-Plan runOmpl(const Problem& leg, const SamplingSettings& settings, const LegKnowledge& known) {
+Plan runOmpl(const Problem& leg, const SamplingSettings& settings, const Plan& known) {
   const QuietOmpl quiet;
   const double range_m = settings.range_cells * leg.map->grid().resolution_m;
   const auto cost = std::make_shared<const MeteredCost>(leg.map, Segment{leg.start, leg.goal});
@@ -132,7 +130,7 @@ Plan runOmpl(const Problem& leg, const SamplingSettings& settings, const LegKnow
         });
   planner->solve(doneWhen(leg, settings, cost));
   Plan plan = explained(priced(*definition, cost->motion()), leg, *cost, settings);
-  plan.lower_bound_J = std::max(known.plan.lower_bound_J, region->toGoal(leg.start));
+  plan.lower_bound_J = std::max(known.lower_bound_J, region->toGoal(leg.start));
   return plan;
 }
 

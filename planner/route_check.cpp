@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <stdexcept>
+#include <string>
 
 #include <costmap/drive_state.hpp>
 #include <planner/route_check.hpp>
@@ -210,6 +212,15 @@ std::vector<Violation> violations(const CostGrid& map, const PosePath& drive, do
     pose = after(pose, leg);
   }
   return checker.found;
+}
+
+void requireAllowed(const Plan& plan, const CostGrid& map, double turning_radius_m) {
+  auto found = violations(map, plan.points);
+  if (found.empty() && !plan.drive.legs.empty()) found = violations(map, plan.drive, turning_radius_m);
+  if (found.empty()) return;
+  const Point place = found.front().place;
+  throw std::logic_error("the planner's route is not allowed at " + std::to_string(place.x_m) + "," +
+                         std::to_string(place.y_m) + ": " + found.front().reason);
 }
 
 }  // namespace talus::planner

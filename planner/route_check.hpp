@@ -6,6 +6,7 @@
 #include <costmap/cost_grid.hpp>
 #include <maps/grid.hpp>
 #include <planner/pose_path.hpp>
+#include <planner/problem.hpp>
 
 namespace talus::planner {
 
@@ -29,5 +30,9 @@ std::vector<Violation> violations(const costmap::CostGrid& map, const std::vecto
 /// place included. Also reported: an arc that bends more than the radius allows.
 std::vector<Violation> violations(const costmap::CostGrid& map, const PosePath& drive,
                                   double turning_radius_m);
+
+/// Holds what a planner answered against violations(), along its drive where it has one. Throws
+/// std::logic_error, with the first place and its reason, for a plan that is not allowed.
+void requireAllowed(const Plan& plan, const costmap::CostGrid& map, double turning_radius_m);
 
 }  // namespace talus::planner

@@ -2,7 +2,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include <planner/legs.hpp>
 #include <planner/ompl_run.hpp>
+#include <planner/plan_end.hpp>
 #include <planner/planner_names.hpp>
 #include <planner/remedy.hpp>
 #include <planner/sampling_planner.hpp>
@@ -18,30 +20,6 @@ SamplingSettings validated(SamplingSettings settings) {
     throw std::invalid_argument("sampling: range_cells = " + std::to_string(settings.range_cells) +
                                 ", must be > 0");
   return settings;
-}
-
-std::vector<Problem> legsOf(const Problem& problem) {
-  std::vector<Problem> legs;
-  maps::Point from = problem.start;
-  for (std::size_t i = 0; i <= problem.via.size(); ++i) {
-    Problem leg = problem;
-    leg.via.clear();
-    leg.start = from;
-    const bool last = i == problem.via.size();
-    leg.goal = last ? problem.goal : problem.via[i];
-    leg.goal_tolerance_m = last ? problem.goal_tolerance_m : 0.0;
-    leg.time_limit_s = problem.time_limit_s / static_cast<double>(problem.via.size() + 1);
-    from = leg.goal;
-    legs.push_back(std::move(leg));
-  }
-  return legs;
-}
-
-Plan ended(RouteStatus status, std::string reason) {
-  Plan plan;
-  plan.status = status;
-  plan.reason = std::move(reason);
-  return plan;
 }
 
 Plan checkEnds(const Problem& leg) {
@@ -64,37 +42,23 @@ Plan planLeg(const Problem& leg, const SamplingSettings& settings, const LegScou
   if (Plan ends = checkEnds(leg); ends.status != RouteStatus::Found) return ends;
   const double apart_m = std::hypot(leg.goal.x_m - leg.start.x_m, leg.goal.y_m - leg.start.y_m);
   if (apart_m <= leg.goal_tolerance_m) return arrived(leg);
-  const LegKnowledge known = scout ? scout(leg) : LegKnowledge{};
-  if (known.plan.status == RouteStatus::Cancelled) return known.plan;
-  if (settings.better && known.plan.status == RouteStatus::Found) settings.better(known.plan.cost_J);
+  Plan known = scout ? scout(leg) : Plan{};
+  if (known.status == RouteStatus::Cancelled) return known;
+  if (settings.better && known.status == RouteStatus::Found) settings.better(known.cost_J);
   Plan found = runOmpl(leg, settings, known);
-  const bool known_better = known.plan.status == RouteStatus::Found && known.plan.cost_J <= found.cost_J;
-  if (known_better && found.status != RouteStatus::Cancelled) return known.plan;
+  const bool known_better = known.status == RouteStatus::Found && known.cost_J <= found.cost_J;
+  if (known_better && found.status != RouteStatus::Cancelled) return known;
   return found;
-}
-
-void append(Plan& whole, const Plan& leg) {
-  whole.points.insert(whole.points.end(), leg.points.begin() + (whole.points.empty() ? 0 : 1),
-                      leg.points.end());
-  whole.cost_J += leg.cost_J;
-  whole.lower_bound_J += leg.lower_bound_J;
 }
 
 }  // namespace
 
 Plan planBySampling(const Problem& problem, const SamplingSettings& settings, const LegScout& scout) {
   const SamplingSettings checked = validated(settings);
-  Plan whole;
-  whole.status = RouteStatus::Found;
-  whole.cost_J = 0.0;
-  const std::vector<Problem> legs = legsOf(problem);
-  for (std::size_t i = 0; i < legs.size(); ++i) {
-    const Plan leg = planLeg(legs[i], checked, scout);
-    if (leg.status != RouteStatus::Found) return leg;
-    append(whole, leg);
-    problem.watch.report(static_cast<double>(i + 1) / static_cast<double>(legs.size()));
-  }
-  return whole;
+  return planByLegs(problem, [&](Problem leg) {
+    leg.time_limit_s = problem.time_limit_s / static_cast<double>(problem.via.size() + 1);
+    return planLeg(leg, checked, scout);
+  });
 }
 
 }  // namespace talus::planner

@@ -19,15 +19,8 @@ struct SamplingSettings {
   std::function<void(double)> better{};  ///< called with each better cost of the leg in work, in joules
 };
 
-/// What is known of a leg before sampling begins.
-struct LegKnowledge {
-  Plan plan;                           ///< a route to improve on; not Found: none is known
-  ImprovableRegion::Bound from_start;  ///< admissible lower bounds; may be empty
-  ImprovableRegion::Bound to_goal;
-};
-
-/// Finds out what is known of a problem without via points.
-using LegScout = std::function<LegKnowledge(const Problem& leg)>;
+/// Finds a route to improve on for a problem without via points; not Found: none is known.
+using LegScout = std::function<Plan(const Problem& leg)>;
 
 /// Plans with OMPL's sampling planners under the exact cost, leg by leg through the via points; never returns
 /// a worse route than the scout knew, nor one that is not allowed along its whole length. The same bytes for

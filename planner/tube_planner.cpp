@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <planner/grid_links.hpp>
+#include <planner/legs.hpp>
 #include <planner/map_change.hpp>
 #include <planner/plan_end.hpp>
 #include <planner/pooled_grid.hpp>
@@ -41,23 +42,7 @@ RefineOptions TubePlanner::roughly() {
 Plan TubePlanner::plan(const Problem& problem) {
   if (!problem.map) throw std::invalid_argument("TubePlanner: no map");
   const StopCheck stop(problem.watch, problem.time_limit_s);
-  std::vector<maps::Point> stops = problem.via;
-  stops.push_back(problem.goal);
-  Plan whole{RouteStatus::Found, {}, {problem.start}, 0.0, 0.0};
-  Problem leg = problem;
-  leg.via.clear();
-  for (std::size_t i = 0; i < stops.size(); ++i) {
-    leg.start = whole.points.back();
-    leg.goal = stops[i];
-    leg.goal_tolerance_m = i + 1 == stops.size() ? problem.goal_tolerance_m : 0.0;
-    const Plan part = planLeg(leg, stop);
-    if (part.status != RouteStatus::Found) return part;
-    append(whole.points, part.points);
-    whole.cost_J += part.cost_J;
-    whole.lower_bound_J += part.lower_bound_J;
-    problem.watch.report(static_cast<double>(i + 1) / static_cast<double>(stops.size()));
-  }
-  return whole;
+  return planByLegs(problem, [&](const Problem& leg) { return planLeg(leg, stop); });
 }
 
 Plan TubePlanner::planLeg(const Problem& leg, const StopCheck& stop) {

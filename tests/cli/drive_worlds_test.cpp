@@ -7,6 +7,7 @@
 #include <cli/drive_worlds.hpp>
 
 #include "bad_input.hpp"
+#include "mpi_ranks.hpp"
 
 namespace talus::cli {
 namespace {
@@ -60,8 +61,7 @@ TEST(DriveWorlds, AFailedWorldIsNamedAndLeftOutUnderEveryBelief) {
 }
 
 TEST(DriveWorlds, RanksOfMpiGiveWhatOneProcessGives) {
-  if (!TALUS_HAS_MPI || std::system("mpirun --version > /dev/null 2>&1") != 0)
-    GTEST_SKIP() << "built without Boost.MPI, or mpirun is not installed";
+  if (!hasMpi()) GTEST_SKIP() << "built without Boost.MPI, or mpirun is not installed";
   const Folder folder;
   const std::string site = folder.write("flat.asc", asciiGrid(30, 20, [](int, int) { return 0.0; }));
   const std::string truth = folder.write(
@@ -77,10 +77,7 @@ TEST(DriveWorlds, RanksOfMpiGiveWhatOneProcessGives) {
   const std::string one = answer("");
   EXPECT_EQ(nlohmann::json::parse(one)["worlds"], 5);
   EXPECT_EQ(nlohmann::json::parse(one)["failed"].size(), 0U);
-  const std::string mpirun =
-      "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 mpirun --oversubscribe -np ";
-  EXPECT_EQ(answer(mpirun + "2 "), one);
-  EXPECT_EQ(answer(mpirun + "4 "), one);
+  expectRanksAgree(answer, one);
 }
 
 }  // namespace

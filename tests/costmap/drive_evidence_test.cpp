@@ -17,36 +17,34 @@ std::vector<std::string> wide() {
   return std::vector<std::string>(60, std::string(60, '1'));
 }
 
+// Columns of numbers, from rows of them.
+terramech::Telemetry tableOf(const std::string& source, const std::vector<std::string>& names,
+                             const std::vector<std::vector<double>>& rows) {
+  terramech::Telemetry out;
+  out.source = source;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    std::vector<double> column;
+    for (const auto& row : rows) column.push_back(row[k]);
+    out.numbers.push_back({names[k], column});
+  }
+  for (std::size_t line = 2; line < rows.size() + 2; ++line) out.lines.push_back(line);
+  return out;
+}
+
 // A drive east along the middle over ground that is dust, though the map takes it for sand; every tenth row
 // off the map.
 terramech::Telemetry drive() {
   const terramech::Rover rover = testRover();
   const double load_N = terramech::wheelLoad_N(rover);
-  terramech::Telemetry out;
-  out.source = "drive.csv";
-  std::vector<double> x, y, load, slip, torque, sinkage, slope, time;
-  for (std::size_t i = 0; i < 100; ++i) {
-    const double s = 0.4 + 0.002 * static_cast<double>(i);
-    const auto wheel = terramech::equilibrium(testDust(), rover.wheel, {.load_N = load_N, .slip = s});
-    x.push_back(i % 10 == 9 ? -50.0 : 110.0 + 0.4 * static_cast<double>(i));
-    y.push_back(230.5);
-    load.push_back(load_N);
-    slip.push_back(s);
-    torque.push_back(wheel.torque_Nm);
-    sinkage.push_back(wheel.sinkage_m);
-    slope.push_back(std::atan(wheel.drawbar_pull_N / load_N));
-    time.push_back(static_cast<double>(i));
-    out.lines.push_back(i + 2);
+  std::vector<std::vector<double>> rows;
+  for (int i = 0; i < 100; ++i) {
+    const double slip = 0.4 + 0.002 * i;
+    const auto wheel = terramech::equilibrium(testDust(), rover.wheel, {.load_N = load_N, .slip = slip});
+    rows.push_back({i % 10 == 9 ? -50.0 : 110.0 + 0.4 * i, 230.5, load_N, slip, wheel.torque_Nm,
+                    wheel.sinkage_m, std::atan(wheel.drawbar_pull_N / load_N), 1.0 * i});
   }
-  out.numbers = {{"x_m", x},
-                 {"y_m", y},
-                 {"load_N", load},
-                 {"slip", slip},
-                 {"torque_Nm", torque},
-                 {"sinkage_m", sinkage},
-                 {"slope_rad", slope},
-                 {"time_s", time}};
-  return out;
+  return tableOf("drive.csv",
+                 {"x_m", "y_m", "load_N", "slip", "torque_Nm", "sinkage_m", "slope_rad", "time_s"}, rows);
 }
 
 std::string bytesOf(const TraversabilityMap& map) {
@@ -73,35 +71,20 @@ terramech::Telemetry climb(bool told) {
   const double gradient = 0.15;
   const std::vector<double> along{0.4, 0.4, -0.4, -0.4};
   const auto loads_N = terramech::wheelLoads_N(rover, gradient, along);
-  terramech::Telemetry out;
-  out.source = "climb.csv";
-  std::vector<double> x, y, load, slip, torque, sinkage, slope, heading, time;
+  std::vector<std::vector<double>> rows;
   std::vector<std::string> wheel;
-  for (std::size_t moment = 0; moment < 30; ++moment)
+  for (int moment = 0; moment < 30; ++moment)
     for (std::size_t w = 0; w < 4; ++w) {
       const auto forces =
           terramech::equilibrium(testSand(), rover.wheel, {.load_N = loads_N[w], .slip = 0.3});
-      x.push_back(120.0 + 0.3 * static_cast<double>(moment) + along[w]);
-      y.push_back(230.5 + (w % 2 == 0 ? 0.3 : -0.3));
-      load.push_back(told ? loads_N[w] : terramech::wheelLoad_N(rover));
-      slip.push_back(0.3 + 1e-4 * static_cast<double>(moment));
-      torque.push_back(forces.torque_Nm);
-      sinkage.push_back(forces.sinkage_m);
-      slope.push_back(std::atan(gradient));
-      heading.push_back(0.0);
-      time.push_back(static_cast<double>(moment));
+      rows.push_back({120.0 + 0.3 * moment + along[w], 230.5 + (w % 2 == 0 ? 0.3 : -0.3),
+                      told ? loads_N[w] : terramech::wheelLoad_N(rover), 0.3 + 1e-4 * moment,
+                      forces.torque_Nm, forces.sinkage_m, std::atan(gradient), 0.0, 1.0 * moment});
       wheel.push_back("w" + std::to_string(w));
-      out.lines.push_back(out.lines.size() + 2);
     }
-  out.numbers = {{"x_m", x},
-                 {"y_m", y},
-                 {"load_N", load},
-                 {"slip", slip},
-                 {"torque_Nm", torque},
-                 {"sinkage_m", sinkage},
-                 {"slope_rad", slope},
-                 {"heading_rad", heading},
-                 {"time_s", time}};
+  terramech::Telemetry out = tableOf(
+      "climb.csv",
+      {"x_m", "y_m", "load_N", "slip", "torque_Nm", "sinkage_m", "slope_rad", "heading_rad", "time_s"}, rows);
   out.words = {{"wheel", wheel}};
   return out;
 }

@@ -29,11 +29,11 @@ Problem across(std::shared_ptr<const costmap::CostGrid> map) {
 }
 
 // A scout that knows one way round the wall, not the best.
-LegKnowledge detour(const Problem& leg) {
-  LegKnowledge known;
-  known.plan.points = {leg.start, {15.5, 2.5}, {45.5, 2.5}, leg.goal};
-  known.plan.cost_J = MotionCost(leg.map).along(known.plan.points);
-  known.plan.status = RouteStatus::Found;
+Plan detour(const Problem& leg) {
+  Plan known;
+  known.points = {leg.start, {15.5, 2.5}, {45.5, 2.5}, leg.goal};
+  known.cost_J = MotionCost(leg.map).along(known.points);
+  known.status = RouteStatus::Found;
   return known;
 }
 
@@ -72,7 +72,7 @@ TEST_P(EveryPlanner, RoundsTheWallExactly) {
 
 TEST_P(EveryPlanner, ImprovesOnTheRouteItIsGiven) {
   const Problem problem = across(wall());
-  const double known_J = detour(problem).plan.cost_J;
+  const double known_J = detour(problem).cost_J;
   const Plan plan = planBySampling(problem, {.planner = GetParam(), .work = 1'000'000}, detour);
   ASSERT_EQ(plan.status, RouteStatus::Found);
   EXPECT_LT(plan.cost_J, known_J);
@@ -94,7 +94,7 @@ TEST_P(EveryPlanner, TakesTheTimeItIsGiven) {
   problem.time_limit_s = 0.3;
   const Plan plan = planBySampling(problem, {.planner = GetParam(), .work = 1}, detour);
   EXPECT_EQ(plan.status, RouteStatus::Found);
-  EXPECT_LT(plan.cost_J, detour(problem).plan.cost_J);  // work of 1 leaves the known route as it was
+  EXPECT_LT(plan.cost_J, detour(problem).cost_J);  // work of 1 leaves the known route as it was
 }
 
 TEST_P(EveryPlanner, NeverClimbsWhereClimbingIsForbidden) {
@@ -166,9 +166,8 @@ TEST(SamplingPlanner, HandsOutTheCostThatItReports) {
       double reported_J = INFINITY;
       SamplingSettings settings{.planner = name, .work = 1'000'000};
       settings.better = [&reported_J](double cost_J) { reported_J = std::min(reported_J, cost_J); };
-      const Plan plan = planBySampling(problem, settings, [](const Problem& leg) {
-        return LegKnowledge{.plan = FieldPlanner().plan(leg), .from_start = {}, .to_goal = {}};
-      });
+      const Plan plan =
+          planBySampling(problem, settings, [](const Problem& leg) { return FieldPlanner().plan(leg); });
       ASSERT_EQ(plan.status, RouteStatus::Found);
       EXPECT_LE(plan.cost_J, reported_J * (1.0 + 1e-9)) << name << " seed " << seed;
     }
