@@ -24,38 +24,59 @@ std::array<std::ptrdiff_t, 8> neighbourOffsets(const PaddedGrid& padded) noexcep
 }
 
 // The headings, a bit each, whose neighbours come cheaper through the cell that `distance` points to.
-unsigned improvedByScalar(const std::uint32_t* distance, const std::uint16_t* into,
-                          std::ptrdiff_t stride) noexcept {
-  const std::uint32_t* above = distance + stride;
-  const std::uint32_t* below = distance - stride;
-  const std::array<std::uint32_t, 8> present{distance[1],  above[1],  above[0], above[-1],
-                                             distance[-1], below[-1], below[0], below[1]};
-  unsigned better = 0;
-  for (unsigned k = 0; k < 8; ++k)
-    if (into[k] != EdgeLayer::kBlocked && *distance + into[k] < present[k]) better |= 1U << k;
-  return better;
-}
+struct ImprovedByScalar {
+  static unsigned of(const std::uint32_t* distance, const std::uint16_t* into,
+                     std::ptrdiff_t stride) noexcept {
+    const std::uint32_t* above = distance + stride;
+    const std::uint32_t* below = distance - stride;
+    const std::array<std::uint32_t, 8> present{distance[1],  above[1],  above[0], above[-1],
+                                               distance[-1], below[-1], below[0], below[1]};
+    unsigned better = 0;
+    for (unsigned k = 0; k < 8; ++k)
+      if (into[k] != EdgeLayer::kBlocked && *distance + into[k] < present[k]) better |= 1U << k;
+    return better;
+  }
+};
 
 // The same eight comparisons at once.
-__attribute__((target("avx2"))) unsigned improvedByVector(const std::uint32_t* distance,
-                                                          const std::uint16_t* into,
-                                                          std::ptrdiff_t stride) noexcept {
-  const auto load = [](const std::uint32_t* from) __attribute__((target("avx2"))) {
-    return _mm_loadu_si128(reinterpret_cast<const __m128i*>(from));
-  };
-  const __m128i above = _mm_shuffle_epi32(load(distance + stride - 1), _MM_SHUFFLE(0, 1, 2, 3));  // . NE N NW
-  const __m128i below = _mm_shuffle_epi32(load(distance - stride - 1), _MM_SHUFFLE(2, 1, 0, 0));  // . SW S SE
-  const __m128i first = _mm_insert_epi32(above, static_cast<int>(distance[1]), 0);
-  const __m128i second = _mm_insert_epi32(below, static_cast<int>(distance[-1]), 0);
-  const __m256i present = _mm256_set_m128i(second, first);
-  const __m128i steps = _mm_loadu_si128(reinterpret_cast<const __m128i*>(into));
-  const __m256i edges = _mm256_cvtepu16_epi32(steps);
-  const __m256i through = _mm256_add_epi32(edges, _mm256_set1_epi32(static_cast<int>(*distance)));
-  const __m256i blocked = _mm256_cmpeq_epi32(edges, _mm256_set1_epi32(EdgeLayer::kBlocked));
-  const __m256i no_better = _mm256_cmpeq_epi32(_mm256_min_epu32(through, present), present);
-  const __m256i worse = _mm256_or_si256(blocked, no_better);
-  return ~static_cast<unsigned>(_mm256_movemask_ps(_mm256_castsi256_ps(worse))) & 0xffU;
-}
+struct ImprovedByVector {
+  __attribute__((target("avx2"))) static unsigned of(const std::uint32_t* distance, const std::uint16_t* into,
+                                                     std::ptrdiff_t stride) noexcept {
+    const auto load = [](const std::uint32_t* from) __attribute__((target("avx2"))) {
+      return _mm_loadu_si128(reinterpret_cast<const __m128i*>(from));
+    };
+    const __m128i above =
+        _mm_shuffle_epi32(load(distance + stride - 1), _MM_SHUFFLE(0, 1, 2, 3));  // . NE N NW
+    const __m128i below =
+        _mm_shuffle_epi32(load(distance - stride - 1), _MM_SHUFFLE(2, 1, 0, 0));  // . SW S SE
+    const __m128i first = _mm_insert_epi32(above, static_cast<int>(distance[1]), 0);
+    const __m128i second = _mm_insert_epi32(below, static_cast<int>(distance[-1]), 0);
+    const __m256i present = _mm256_set_m128i(second, first);
+    const __m128i steps = _mm_loadu_si128(reinterpret_cast<const __m128i*>(into));
+    const __m256i edges = _mm256_cvtepu16_epi32(steps);
+    const __m256i through = _mm256_add_epi32(edges, _mm256_set1_epi32(static_cast<int>(*distance)));
+    const __m256i blocked = _mm256_cmpeq_epi32(edges, _mm256_set1_epi32(EdgeLayer::kBlocked));
+    const __m256i no_better = _mm256_cmpeq_epi32(_mm256_min_epu32(through, present), present);
+    const __m256i worse = _mm256_or_si256(blocked, no_better);
+    return ~static_cast<unsigned>(_mm256_movemask_ps(_mm256_castsi256_ps(worse))) & 0xffU;
+  }
+};
+
+// Where a cell's surroundings lie in memory.
+struct Surroundings {
+  std::uint32_t* distance;
+  const std::uint16_t* edges;
+  std::ptrdiff_t stride;
+
+  const std::uint16_t* into(std::size_t cell) const noexcept { return edges + 8 * cell; }
+  void prefetch(std::size_t cell) const noexcept {
+    const std::uint32_t* at = distance + cell;
+    __builtin_prefetch(into(cell));
+    __builtin_prefetch(at - stride, 1);
+    __builtin_prefetch(at, 1);
+    __builtin_prefetch(at + stride, 1);
+  }
+};
 
 }  // namespace
 
@@ -114,44 +135,47 @@ bool CostToGo::settleBucketsUntil(std::uint32_t index, const StopCheck& stop) {
 void CostToGo::settleCurrent() {
   auto& bucket = buckets_[current_ & (buckets_.size() - 1)];
   if (vectors_)
-    settleBucket(bucket, improvedByVector);
+    settleByVector(bucket);
   else
-    settleBucket(bucket, improvedByScalar);
+    settleBucket<ImprovedByScalar>(bucket);
+}
+
+// The loop compiled for vectors as a whole, so that the kernel is part of it and no call.
+__attribute__((target("avx2"), flatten)) void CostToGo::settleByVector(Bucket& bucket) {
+  settleBucket<ImprovedByVector>(bucket);
 }
 
 // Settles cells one after the other. Both twins take the headings in the same order, so that even the queues
 // agree.
 template <typename Improved>
-void CostToGo::settleBucket(Bucket& bucket, Improved improved) {
-  const PaddedGrid& padded = edges_->padded();
-  const std::array<std::ptrdiff_t, 8> offsets = neighbourOffsets(padded);
-  const auto stride = static_cast<std::ptrdiff_t>(padded.stride());
+void CostToGo::settleBucket(Bucket& bucket) {
+  const Surroundings around{distance_.data(), edges_->into(0),
+                            static_cast<std::ptrdiff_t>(edges_->padded().stride())};
+  const std::array<std::ptrdiff_t, 8> offsets = neighbourOffsets(edges_->padded());
+  const std::size_t wrap = buckets_.size() - 1;
+  std::uint64_t pushed = 0, settled = 0;
   for (std::size_t i = 0; i < bucket.size(); ++i) {
-    if (i + kAhead < bucket.size()) prefetch(bucket[i + kAhead], stride);
+    if (i + kAhead < bucket.size()) around.prefetch(bucket[i + kAhead]);
     const std::size_t cell = bucket[i];
-    const std::uint32_t here = distance_[cell];
+    std::uint32_t* const distance = around.distance + cell;
+    const std::uint32_t here = *distance;
     if ((here >> shift_) != current_) continue;  // it was reached cheaper, and settled then
-    ++settled_;
-    const std::uint16_t* into = edges_->into(cell);
-    for (unsigned better = improved(&distance_[cell], into, stride); better != 0; better &= better - 1) {
+    ++settled;
+    const std::uint16_t* into = around.into(cell);
+    for (unsigned better = Improved::of(distance, into, around.stride); better != 0; better &= better - 1) {
       const auto heading = static_cast<std::size_t>(std::countr_zero(better));
-      const std::size_t neighbour = cell + static_cast<std::size_t>(offsets[heading]);
-      const std::uint32_t through = here + into[heading];
-      distance_[neighbour] = through;
-      buckets_[(through >> shift_) & (buckets_.size() - 1)].push_back(static_cast<std::uint32_t>(neighbour));
-      ++queued_;
+      const std::uint32_t through = here + into[heading], before = distance[offsets[heading]];
+      distance[offsets[heading]] = through;
+      if (((through ^ before) >> shift_) == 0) continue;  // it waits in that bucket already
+      buckets_[(through >> shift_) & wrap].push_back(
+          static_cast<std::uint32_t>(cell + static_cast<std::size_t>(offsets[heading])));
+      ++pushed;
     }
   }
+  settled_ += settled;
+  queued_ += pushed;
   queued_ -= bucket.size();
   bucket.clear();
-}
-
-void CostToGo::prefetch(std::size_t cell, std::ptrdiff_t stride) const noexcept {
-  const std::uint32_t* distance = &distance_[cell];
-  __builtin_prefetch(edges_->into(cell));
-  __builtin_prefetch(distance - stride, 1);
-  __builtin_prefetch(distance, 1);
-  __builtin_prefetch(distance + stride, 1);
 }
 
 std::optional<double> CostToGo::cost_J(maps::Cell cell) const noexcept {

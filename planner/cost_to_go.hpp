@@ -82,8 +82,8 @@ class CostToGo {
   void enqueue(std::size_t cell);
   void seedGoals();
   template <typename Improved>
-  void settleBucket(Bucket& bucket, Improved improved);
-  void prefetch(std::size_t cell, std::ptrdiff_t stride) const noexcept;
+  void settleBucket(Bucket& bucket);
+  void settleByVector(Bucket& bucket);
 
   std::shared_ptr<const EdgeLayer> edges_;
   std::vector<std::uint32_t> distance_;  // padded, units
