@@ -23,6 +23,11 @@ InCells inCells(const maps::Grid& grid, maps::Point p) noexcept {
           (p.y_m - grid.south_west.y_m) / grid.resolution_m};
 }
 
+// Cells are neither so many nor so small that squares overflow: std::hypot costs as much as five cells.
+double lengthOf(InCells delta) noexcept {
+  return std::sqrt(delta.x * delta.x + delta.y * delta.y);
+}
+
 bool onEdge(double coordinate) noexcept {
   return std::abs(coordinate - std::round(coordinate)) < kTouch;
 }
@@ -58,9 +63,10 @@ class Walk {
  public:
   Walk(const costmap::CostGrid& map, const HeadingCost& cost) noexcept : map_(map), cost_(cost) {}
 
-  double operator()(InCells from, InCells delta) const noexcept {
+  // `length` is that of delta.
+  double operator()(InCells from, InCells delta, double length) const noexcept {
     Axis x(from.x, delta.x), y(from.y, delta.y);
-    const double corner = kTouch / std::hypot(delta.x, delta.y);
+    const double corner = kTouch / length;
     double sum = 0.0, t = 0.0;
     for (;;) {
       const double next = std::min({x.next_t, y.next_t, 1.0});
@@ -91,13 +97,14 @@ class Walk {
 
 // A segment on the line between two columns (or rows) pays for the dearer side; the map's border has one
 // side.
-double alongEdge(const maps::Grid& grid, const Walk& walk, InCells from, InCells delta) noexcept {
+double alongEdge(const maps::Grid& grid, const Walk& walk, InCells from, InCells delta,
+                 double length) noexcept {
   const bool vertical = std::abs(delta.x) <= kTouch;
   double dearer = -1.0;
   for (const double side : {-0.5, 0.5}) {
     InCells shifted = from;
     (vertical ? shifted.x : shifted.y) += side;
-    if (insideWithBorder(grid, shifted)) dearer = std::max(dearer, walk(shifted, delta));
+    if (insideWithBorder(grid, shifted)) dearer = std::max(dearer, walk(shifted, delta, length));
   }
   return dearer;
 }
@@ -111,13 +118,14 @@ double MotionCost::operator()(const Segment& motion) const noexcept {
   const InCells from = inCells(grid, motion.from), to = inCells(grid, motion.to);
   if (!insideWithBorder(grid, from) || !insideWithBorder(grid, to)) return kInfinity;
   const InCells delta{to.x - from.x, to.y - from.y};
-  const double length = std::hypot(delta.x, delta.y);
+  const double length = lengthOf(delta);
   if (length <= kTouch) return allowed(motion.from) ? 0.0 : kInfinity;
   const HeadingCost cost(map_->cost(), {delta.x / length, delta.y / length});
   const Walk walk(*map_, cost);
   const bool edge =
       (std::abs(delta.x) <= kTouch && onEdge(from.x)) || (std::abs(delta.y) <= kTouch && onEdge(from.y));
-  return (edge ? alongEdge(grid, walk, from, delta) : walk(from, delta)) * length * grid.resolution_m;
+  return (edge ? alongEdge(grid, walk, from, delta, length) : walk(from, delta, length)) * length *
+         grid.resolution_m;
 }
 
 namespace {
