@@ -21,9 +21,10 @@ constexpr double kSlidingGains = 0.03;
 
 }  // namespace
 
-Polyline Refiner::acrossEdges(const MotionCost& cost, const Polyline& window) const {
+Polyline Refiner::acrossEdges(const MotionCost& cost, const CorridorSearch& search,
+                              const Polyline& window) const {
   const double before_J = cost.along(window);
-  EdgePath path = searchCorridor(cost, window, before_J * (1.0 + kSlidingGains), options_.corridor);
+  EdgePath path = search(window, before_J * (1.0 + kSlidingGains));
   if (path.empty()) return window;
   slideTurns(cost.map(), path, 0.5 / options_.corridor.points_per_edge, options_.slides);
   Polyline tried = path.points(cost.map().grid());
@@ -32,7 +33,8 @@ Polyline Refiner::acrossEdges(const MotionCost& cost, const Polyline& window) co
   return cost.along(tried) < before_J ? tried : window;
 }
 
-Polyline Refiner::refinedStretch(const MotionCost& cost, Polyline stretch, const StopCheck& stop) const {
+Polyline Refiner::refinedStretch(const MotionCost& cost, const CorridorSearch& search, Polyline stretch,
+                                 const StopCheck& stop) const {
   const double cell_m = cost.map().grid().resolution_m;
   double best_J = cost.along(stretch);
   const auto take = [&](Polyline tried) {
@@ -46,7 +48,7 @@ Polyline Refiner::refinedStretch(const MotionCost& cost, Polyline stretch, const
   WindowMemo none;
   take(byWindows(
       stretch, {kWindow * cell_m, kOverlap * cell_m},
-      [&](const Polyline& window) { return acrossEdges(cost, window); }, none, 1, stop));
+      [&](const Polyline& window) { return acrossEdges(cost, search, window); }, none, 1, stop));
   return stretch;
 }
 
@@ -63,10 +65,12 @@ Polyline Refiner::operator()(const MotionCost& cost, Polyline route, int threads
   };
   take(shortCut(cost, route, options_.short_cut_cells * cell_m, stop));
   const double reach_cells = 2 * options_.coarsest_cells + options_.corridor.reach_cells + 2;
+  const CorridorSearch search(cost, options_.corridor);
   const WindowCut cut{kMarks * cell_m, kAround * cell_m, reach_cells * cell_m};
   take(overWindows(
       cutAtMarks(route, cut.length_m), cut,
-      [&](const Polyline& stretch) { return refinedStretch(cost, stretch, stop); }, memo_, threads, stop));
+      [&](const Polyline& stretch) { return refinedStretch(cost, search, stretch, stop); }, memo_, threads,
+      stop));
   const Polyline fewer = withoutIdleTurns(cost, route);
   return cost.along(fewer) <= best_J * (1.0 + 1e-9) ? fewer : route;
 }

@@ -40,8 +40,9 @@ class Refiner {
   void clear() { memo_.clear(); }
 
  private:
-  Polyline refinedStretch(const MotionCost& cost, Polyline stretch, const StopCheck& stop) const;
-  Polyline acrossEdges(const MotionCost& cost, const Polyline& window) const;
+  Polyline refinedStretch(const MotionCost& cost, const CorridorSearch& search, Polyline stretch,
+                          const StopCheck& stop) const;
+  Polyline acrossEdges(const MotionCost& cost, const CorridorSearch& search, const Polyline& window) const;
 
   RefineOptions options_;
   WindowMemo memo_;

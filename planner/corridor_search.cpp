@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include <planner/corridor.hpp>
 #include <planner/corridor_search.hpp>
-#include <planner/edge_crossings.hpp>
 
 namespace talus::planner {
 namespace {
@@ -15,263 +15,256 @@ using maps::Cell;
 using maps::Point;
 
 constexpr float kFar = std::numeric_limits<float>::infinity();
-constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t kNone = Corridor::kNone;
+
+// Numbers in the order of labels, bucket by bucket; within a bucket as they came.
+class LabelQueue {
+ public:
+  // Labels that are queued at once lie within `reach` of each other.
+  LabelQueue(float width, float reach)
+      : per_bucket_(1.0F / width), ring_(std::bit_ceil(static_cast<std::size_t>(reach * per_bucket_) + 2)) {}
+
+  std::size_t bucketOf(float label) const noexcept { return static_cast<std::size_t>(label * per_bucket_); }
+
+  void push(float label, std::uint32_t number) {
+    Bucket& bucket = ring_[bucketOf(label) & (ring_.size() - 1)];
+    const auto entry = static_cast<std::uint32_t>(entries_.size());
+    (bucket.last == kNone ? bucket.first : entries_[bucket.last].next) = entry;
+    bucket.last = entry;
+    entries_.push_back({number, kNone});
+  }
+
+  // Calls take(number, bucket) for everything queued, and for what take() queues.
+  template <typename Take>
+  void run(Take take) {
+    for (std::size_t current = 0, taken = 0; taken < entries_.size(); ++current) {
+      Bucket& bucket = ring_[current & (ring_.size() - 1)];
+      for (std::uint32_t e = bucket.first; e != kNone; e = entries_[e].next, ++taken)
+        take(entries_[e].number, current);
+      bucket = {};
+    }
+  }
+
+ private:
+  struct Bucket {
+    std::uint32_t first = kNone, last = kNone;
+  };
+  struct Entry {
+    std::uint32_t number, next;
+  };
+
+  float per_bucket_;
+  std::vector<Bucket> ring_;
+  std::vector<Entry> entries_;
+};
+
+// A bucket no wider than the cheapest motion between two points, but not more than a thousand.
+LabelQueue queueFor(const CostRange& range, int points) {
+  const auto dearest = static_cast<float>(range.most_J_per_m * 1.5);  // across a cell
+  const auto cheapest = static_cast<float>(range.least_J_per_m * 0.7 / points);
+  return {std::max(cheapest, dearest / 1000.0F), dearest};
+}
 
 class Search {
  public:
-  Search(const MotionCost& cost, const std::vector<Point>& along, const CorridorOptions& options)
+  Search(const MotionCost& cost, const EdgeCrossings& crossings, Corridor& corridor, LabelQueue queue)
       : cost_(cost),
         grid_(cost.map().grid()),
-        points_(options.points_per_edge),
-        crossings_(cost.map().cost(), options.points_per_edge, options.kernels),
-        paid_(static_cast<std::size_t>(crossings_.count() + EdgeCrossings::kVector)) {
-    open(along, options.reach_cells);
-  }
+        points_(crossings.points()),
+        shift_(static_cast<int>(std::bit_width(static_cast<unsigned>(2 * points_ - 1)))),
+        crossings_(crossings),
+        corridor_(corridor),
+        paid_(static_cast<std::size_t>(crossings_.count() + EdgeCrossings::kVector)),
+        queue_(std::move(queue)) {}
 
-  EdgePath run(Point from, Point to, double below_J);
+  EdgePath run(const Segment& ends, double below_J);
 
  private:
-  // A point of a local cell's edge, and the cell beyond it.
+  // A point of a local cell's edge, where it is, and the price of the first or last motion to it.
   struct EdgePoint {
     std::uint32_t node;
     std::size_t cell, beyond;
+    Point place;
+    float price = kFar;
   };
 
-  void open(const std::vector<Point>& along, int reach);
-  double priceOfEnd(const Segment& motion, EdgePoint turn) const noexcept;
-  std::size_t local(Cell c) const noexcept {
-    return static_cast<std::size_t>(c.row - first_.row) * columns_ +
-           static_cast<std::size_t>(c.column - first_.column);
+  // The points of a cell's side follow each other from this node on.
+  std::uint32_t firstNode(std::size_t cell, int side) const noexcept {
+    const std::size_t holder = side == kEastSide || side == kNorthSide ? corridor_.beyond(cell, side) : cell;
+    return (corridor_.holder(holder) << shift_) +
+           (side >= kSouthSide ? static_cast<std::uint32_t>(points_) : 0U);
   }
-  std::uint32_t node(std::size_t cell, int side, int k) const noexcept {
-    const std::size_t holder = cell + (side == kEastSide ? 1 : side == kNorthSide ? columns_ : 0);
-    return static_cast<std::uint32_t>((2 * holder + (side >= kSouthSide ? 1 : 0)) *
-                                      static_cast<std::size_t>(points_)) +
-           static_cast<std::uint32_t>(k);
-  }
-  std::size_t beyond(std::size_t cell, int side) const noexcept {
-    return side == kWestSide    ? cell - 1
-           : side == kEastSide  ? cell + 1
-           : side == kSouthSide ? cell - columns_
-                                : cell + columns_;
-  }
-  bool turnsAllowed(std::size_t cell, int side, EdgeCrossings::End end, int i, int k) const noexcept;
-  Cell cellOf(std::size_t local) const noexcept {
-    return {first_.column + static_cast<int>(local % columns_),
-            first_.row + static_cast<int>(local / columns_)};
-  }
-  EdgeSpot spotOfNode(std::uint32_t node) const noexcept;
-  template <typename Each>
-  void forEachEdgePoint(Point place, Each each) const;
-  void reach(std::uint32_t node, float label, std::uint32_t from, std::uint32_t cell);
+  std::vector<EdgePoint> around(Point place);
+  EdgePath::Turn turnAt(Point p) const noexcept;
+  EdgePath::Turn turnAt(std::uint32_t node) const noexcept;
+  float priceOfEnd(const Segment& motion, const EdgePoint& turn) const noexcept;
+  void reach(std::uint32_t node, float label, std::uint32_t from, std::size_t cell);
   void settle(std::uint32_t node);
   void cross(std::uint32_t node, std::size_t cell, int side, int k);
-  std::size_t bucketOf(float label) const noexcept { return static_cast<std::size_t>(label * per_bucket_); }
+  EdgePath pathTo(std::uint32_t node, std::size_t last_cell, const Segment& ends) const;
 
   const MotionCost& cost_;
   const maps::Grid& grid_;
   int points_;
-  EdgeCrossings crossings_;
+  int shift_;  // nodes are numbered by holder, 2^shift_ of each, twice points_ of them used
+  const EdgeCrossings& crossings_;
+  Corridor& corridor_;
   std::vector<float> paid_;
-  Cell first_{};  // of the box, two cells of margin around: an end on an edge touches the next cell
-  std::size_t columns_ = 0;  // of the box
-  std::vector<CellCode> codes_;
-  std::vector<bool> free_;                // by local cell: every heading may be had
+  LabelQueue queue_;
   std::vector<float> label_, last_;       // by node: cost from the start; on to the end
   std::vector<std::uint32_t> from_, in_;  // node before (kNone: the start); local cell crossed
-  std::vector<std::vector<std::uint32_t>> ring_;
-  std::size_t queued_ = 0;
-  float per_bucket_ = 1.0F;
   float below_ = kFar;
 };
 
-// Copies the cells within reach of the way; all others stay unknown, which nothing may enter.
-void Search::open(const std::vector<Point>& along, int reach) {
-  Cell low{grid_.width, grid_.height}, high{-1, -1};
-  std::vector<Cell> on;
-  const auto add = [&](double x, double y) {
-    const Cell c{std::clamp(static_cast<int>(x), 0, grid_.width - 1),
-                 std::clamp(static_cast<int>(y), 0, grid_.height - 1)};
-    if (!on.empty() && on.back() == c) return;
-    on.push_back(c);
-    low = {std::min(low.column, c.column), std::min(low.row, c.row)};
-    high = {std::max(high.column, c.column), std::max(high.row, c.row)};
-  };
-  const auto inCells = [&](Point p) {
-    return EdgeSpot{(p.x_m - grid_.south_west.x_m) / grid_.resolution_m,
-                    (p.y_m - grid_.south_west.y_m) / grid_.resolution_m};
-  };
-  EdgeSpot before = inCells(along.front());
-  for (const Point p : along) {
-    const EdgeSpot here = inCells(p);
-    const int steps =
-        1 + static_cast<int>(std::max(std::abs(here.x - before.x), std::abs(here.y - before.y)));
-    for (int k = 1; k <= steps; ++k)
-      add(before.x + (here.x - before.x) * k / steps, before.y + (here.y - before.y) * k / steps);
-    before = here;
-  }
-  first_ = {low.column - reach - 2, low.row - reach - 2};
-  columns_ = static_cast<std::size_t>(high.column - low.column + 2 * reach + 5);
-  const std::size_t rows = static_cast<std::size_t>(high.row - low.row + 2 * reach + 5);
-  codes_.assign(columns_ * rows, CellCode());
-  free_.assign(codes_.size(), false);
-  std::vector<bool> done(codes_.size());
-  for (const Cell c : on) {
-    for (int row = std::max(c.row - reach, 0); row <= std::min(c.row + reach, grid_.height - 1); ++row)
-      for (int column = std::max(c.column - reach, 0); column <= std::min(c.column + reach, grid_.width - 1);
-           ++column) {
-        const std::size_t at = local({column, row});
-        if (done[at]) continue;
-        done[at] = true;
-        codes_[at] = cost_.map().at({column, row});
-        free_[at] = crossings_.free(codes_[at]);
-      }
-  }
-  const std::size_t nodes = codes_.size() * 2 * static_cast<std::size_t>(points_);
-  label_.assign(nodes, kFar);
-  last_.assign(nodes, kFar);
-  from_.assign(nodes, kNone);
-  in_.assign(nodes, kNone);
-}
-
-EdgeSpot Search::spotOfNode(std::uint32_t node) const noexcept {
-  const auto points = static_cast<std::uint32_t>(points_);
-  const Cell c = cellOf(node / points / 2);
-  const EdgeSpot in =
-      edgeSpot(node / points % 2 == 0 ? kWestSide : kSouthSide, static_cast<int>(node % points), points_);
-  return {c.column + in.x, c.row + in.y};
-}
-
-// Calls each(where, point) for the edge points of every cell that the place touches.
-template <typename Each>
-void Search::forEachEdgePoint(Point place, Each each) const {
+// The edge points of every cell that the place touches.
+std::vector<Search::EdgePoint> Search::around(Point place) {
+  std::vector<EdgePoint> found;
   const double x = (place.x_m - grid_.south_west.x_m) / grid_.resolution_m,
                y = (place.y_m - grid_.south_west.y_m) / grid_.resolution_m;
   constexpr double kTouch = 1e-6;
-  for (int row = static_cast<int>(std::floor(y - kTouch)); row <= static_cast<int>(std::floor(y + kTouch));
-       ++row)
-    for (int column = static_cast<int>(std::floor(x - kTouch));
-         column <= static_cast<int>(std::floor(x + kTouch)); ++column) {
+  const auto cellBelow = [](double at) { return static_cast<int>(std::floor(at - kTouch)); };
+  const auto cellAbove = [](double at) { return static_cast<int>(std::floor(at + kTouch)); };
+  for (int row = cellBelow(y); row <= cellAbove(y); ++row)
+    for (int column = cellBelow(x); column <= cellAbove(x); ++column) {
       if (!grid_.contains({column, row})) continue;
-      const std::size_t cell = local({column, row});
+      const std::size_t cell = corridor_.local({column, row});
+      corridor_.hold(cell);
       for (int side = 0; side < 4; ++side)
         for (int k = 0; k < points_; ++k) {
           const EdgeSpot in = edgeSpot(side, k, points_);
-          each({node(cell, side, k), cell, beyond(cell, side)},
-               Point{grid_.south_west.x_m + (column + in.x) * grid_.resolution_m,
-                     grid_.south_west.y_m + (row + in.y) * grid_.resolution_m});
+          found.push_back({firstNode(cell, side) + static_cast<std::uint32_t>(k),
+                           cell,
+                           corridor_.beyond(cell, side),
+                           {grid_.south_west.x_m + (column + in.x) * grid_.resolution_m,
+                            grid_.south_west.y_m + (row + in.y) * grid_.resolution_m}});
         }
     }
+  return found;
+}
+
+EdgePath::Turn Search::turnAt(Point p) const noexcept {
+  return {(p.x_m - grid_.south_west.x_m) / grid_.resolution_m,
+          (p.y_m - grid_.south_west.y_m) / grid_.resolution_m, false};
+}
+
+EdgePath::Turn Search::turnAt(std::uint32_t node) const noexcept {
+  const Cell c = corridor_.cell(corridor_.held(node >> shift_));
+  const int k = static_cast<int>(node & ((1U << shift_) - 1));
+  const bool vertical = k < points_;
+  const EdgeSpot in = edgeSpot(vertical ? kWestSide : kSouthSide, k % points_, points_);
+  return {c.column + in.x, c.row + in.y, vertical};
 }
 
 // Price of the first or the last motion; infinite where the cell beyond the edge does not allow its heading.
-double Search::priceOfEnd(const Segment& motion, EdgePoint turn) const noexcept {
+float Search::priceOfEnd(const Segment& motion, const EdgePoint& turn) const noexcept {
   const double dx = motion.to.x_m - motion.from.x_m, dy = motion.to.y_m - motion.from.y_m;
   const double length = std::hypot(dx, dy);
   if (length > 0.0 &&
-      std::isinf(cost_.map().cost().costPerMetre(codes_[turn.beyond], {dx / length, dy / length})))
+      std::isinf(cost_.map().cost().costPerMetre(corridor_.code(turn.beyond), {dx / length, dy / length})))
     return kFar;
-  return cost_(motion);
+  return static_cast<float>(cost_(motion) / grid_.resolution_m);
 }
 
-void Search::reach(std::uint32_t node, float label, std::uint32_t from, std::uint32_t cell) {
+void Search::reach(std::uint32_t node, float label, std::uint32_t from, std::size_t cell) {
   if (!(label < label_[node])) return;
   label_[node] = label;
   from_[node] = from;
-  in_[node] = cell;
-  ring_[bucketOf(label) & (ring_.size() - 1)].push_back(node);
-  ++queued_;
-}
-
-// Whether the heading of motion i from a point of a side may be had in the cells beyond both ends, too: a
-// turn on an edge touches both its cells.
-bool Search::turnsAllowed(std::size_t cell, int side, EdgeCrossings::End end, int i, int k) const noexcept {
-  const std::size_t before = beyond(cell, side), after = beyond(cell, end.side);
-  return (free_[before] || crossings_.allowed(side, k, i, codes_[before])) &&
-         (free_[after] || crossings_.allowed(side, k, i, codes_[after]));
+  in_[node] = static_cast<std::uint32_t>(cell);
+  queue_.push(label, node);
 }
 
 void Search::cross(std::uint32_t node, std::size_t cell, int side, int k) {
-  const CellCode code = codes_[cell];
+  const CellCode code = corridor_.code(cell);
   if (code.curve() >= cost_.map().cost().curves().size()) return;
-  const EdgeCrossings::End* end = crossings_.ends(side, k);
   crossings_.prices(side, k, code, label_[node], paid_.data());
-  for (int i = 0; i < crossings_.count(); ++i) {
-    const float through = paid_[static_cast<std::size_t>(i)];
-    const std::uint32_t to = this->node(cell, end[i].side, end[i].k);
-    if (through < below_ && through < label_[to] && turnsAllowed(cell, side, end[i], i, k))
-      reach(to, through, node, static_cast<std::uint32_t>(cell));
+  // A turn on an edge touches both its cells: the heading must be had beyond both ends, too.
+  const std::size_t before = corridor_.beyond(cell, side);
+  const bool before_free = corridor_.free(before);
+  for (int to = 0, i = 0; to < 4; ++to) {
+    if (to == side) continue;
+    const std::size_t after = corridor_.beyond(cell, to);
+    const bool both_free = before_free && corridor_.free(after);
+    const std::uint32_t first = firstNode(cell, to);
+    for (std::uint32_t l = 0; l < static_cast<std::uint32_t>(points_); ++l, ++i) {
+      const float through = paid_[static_cast<std::size_t>(i)];
+      if (!(through < below_ && through < label_[first + l])) continue;
+      if (both_free || (crossings_.allowed(side, k, i, corridor_.code(before)) &&
+                        crossings_.allowed(side, k, i, corridor_.code(after))))
+        reach(first + l, through, node, cell);
+    }
   }
 }
 
 void Search::settle(std::uint32_t node) {
-  const auto points = static_cast<std::uint32_t>(points_);
-  const std::size_t holder = node / points / 2;
-  const int k = static_cast<int>(node % points);
-  const bool vertical = node / points % 2 == 0;
-  const std::size_t before = holder - (vertical ? 1 : columns_);
-  if (in_[node] != holder) cross(node, holder, vertical ? kWestSide : kSouthSide, k);
-  if (in_[node] != before) cross(node, before, vertical ? kEastSide : kNorthSide, k);
+  const std::size_t holder = corridor_.held(node >> shift_);
+  const int k = static_cast<int>(node & ((1U << shift_) - 1));
+  const bool vertical = k < points_;
+  const std::size_t before = corridor_.beyond(holder, vertical ? kWestSide : kSouthSide);
+  if (in_[node] != holder) cross(node, holder, vertical ? kWestSide : kSouthSide, k % points_);
+  if (in_[node] != before) cross(node, before, vertical ? kEastSide : kNorthSide, k % points_);
 }
 
-EdgePath Search::run(Point from, Point to, double below_J) {
-  const double side_m = grid_.resolution_m;
-  float least = kFar, most = 0.0F;
-  for (const auto& curve : cost_.map().cost().curves())
-    for (const float value : curve.cost_J_per_m)
-      if (std::isfinite(value)) least = std::min(least, value), most = std::max(most, value);
-  if (!(most > 0.0F)) return {};
-  // A bucket no wider than the cheapest motion between two points, but not more than a thousand.
-  const float width = std::max(least * 0.7F / static_cast<float>(points_), most * 1.5F / 1000.0F);
-  per_bucket_ = 1.0F / width;
-  ring_.resize(std::bit_ceil(static_cast<std::size_t>(most * 1.5F * per_bucket_) + 2));
-  below_ = static_cast<float>(below_J / side_m);
-  std::vector<std::uint32_t> last_cell(label_.size(), kNone);
-  forEachEdgePoint(to, [&](EdgePoint at, Point p) {
-    const auto rest = static_cast<float>(priceOfEnd({p, to}, at) / side_m);
-    if (rest < last_[at.node])
-      last_[at.node] = rest, last_cell[at.node] = static_cast<std::uint32_t>(at.cell);
-  });
-  forEachEdgePoint(from, [&](EdgePoint at, Point p) {
-    const auto first = static_cast<float>(priceOfEnd({from, p}, at) / side_m);
-    if (first < below_) reach(at.node, first, kNone, static_cast<std::uint32_t>(at.cell));
-  });
-  std::uint32_t best = kNone;
-  for (std::size_t current = 0; queued_ > 0; ++current) {
-    auto& bucket = ring_[current & (ring_.size() - 1)];
-    for (std::size_t i = 0; i < bucket.size(); ++i) {
-      const std::uint32_t node = bucket[i];
-      if (bucketOf(label_[node]) != current) continue;
-      if (label_[node] + last_[node] < below_) below_ = label_[node] + last_[node], best = node;
-      settle(node);
-    }
-    queued_ -= bucket.size();
-    bucket.clear();
-  }
+EdgePath Search::pathTo(std::uint32_t node, std::size_t last_cell, const Segment& ends) const {
   EdgePath path;
-  if (best == kNone) return path;
-  const auto inCells = [&](Point p) {
-    return EdgePath::Turn{(p.x_m - grid_.south_west.x_m) / side_m, (p.y_m - grid_.south_west.y_m) / side_m,
-                          false};
-  };
-  path.turns.push_back(inCells(to));
-  path.cells.push_back(cellOf(last_cell[best]));
-  for (std::uint32_t at = best; at != kNone; at = from_[at]) {
-    const EdgeSpot s = spotOfNode(at);
-    path.turns.push_back({s.x, s.y, at / static_cast<std::uint32_t>(points_) % 2 == 0});
-    path.cells.push_back(cellOf(in_[at]));
+  path.turns.push_back(turnAt(ends.to));
+  path.cells.push_back(corridor_.cell(last_cell));
+  for (std::uint32_t at = node; at != kNone; at = from_[at]) {
+    path.turns.push_back(turnAt(at));
+    path.cells.push_back(corridor_.cell(in_[at]));
   }
-  path.turns.push_back(inCells(from));
+  path.turns.push_back(turnAt(ends.from));
   std::reverse(path.turns.begin(), path.turns.end());
   std::reverse(path.cells.begin(), path.cells.end());
   return path;
 }
 
+EdgePath Search::run(const Segment& ends, double below_J) {
+  const auto firsts = around(ends.from);
+  auto lasts = around(ends.to);
+  const std::size_t nodes = corridor_.holders() << shift_;
+  label_.assign(nodes, kFar);
+  last_.assign(nodes, kFar);
+  from_.resize(nodes);
+  in_.resize(nodes);
+  below_ = static_cast<float>(below_J / grid_.resolution_m);
+  for (EdgePoint& at : lasts) {
+    at.price = priceOfEnd({at.place, ends.to}, at);
+    last_[at.node] = std::min(last_[at.node], at.price);
+  }
+  for (const EdgePoint& at : firsts) {
+    const float first = priceOfEnd({ends.from, at.place}, at);
+    if (first < below_) reach(at.node, first, kNone, at.cell);
+  }
+  std::uint32_t best = kNone;
+  queue_.run([&](std::uint32_t node, std::size_t bucket) {
+    if (queue_.bucketOf(label_[node]) != bucket) return;
+    if (label_[node] + last_[node] < below_) below_ = label_[node] + last_[node], best = node;
+    settle(node);
+  });
+  if (best == kNone) return {};
+  const auto ending = std::ranges::find_if(
+      lasts, [&](const EdgePoint& at) { return at.node == best && at.price == last_[best]; });
+  return pathTo(best, ending->cell, ends);
+}
+
 }  // namespace
+
+CorridorSearch::CorridorSearch(const MotionCost& cost, const CorridorOptions& options)
+    : cost_(cost),
+      options_(options),
+      crossings_(cost.map().cost(), options.points_per_edge, options.kernels),
+      range_(costRange(cost.map().cost())) {}
+
+EdgePath CorridorSearch::operator()(const std::vector<Point>& along, double below_J) const {
+  if (!(range_.most_J_per_m > 0.0)) return {};
+  Corridor corridor(cost_.map(), crossings_, along, options_.reach_cells);
+  return Search(cost_, crossings_, corridor, queueFor(range_, options_.points_per_edge))
+      .run({along.front(), along.back()}, below_J);
+}
 
 EdgePath searchCorridor(const MotionCost& cost, const std::vector<Point>& along, double below_J,
                         const CorridorOptions& options) {
-  return Search(cost, along, options).run(along.front(), along.back(), below_J);
+  return CorridorSearch(cost, options)(along, below_J);
 }
 
 }  // namespace talus::planner

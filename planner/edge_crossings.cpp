@@ -127,8 +127,8 @@ bool EdgeCrossings::allowed(int side, int k, int i, CellCode cell) const noexcep
 
 bool EdgeCrossings::free(CellCode cell) const noexcept {
   if (cell.curve() >= cost_.curves().size()) return false;
-  const double steepest = std::hypot(cell.dzDx(), cell.dzDy());
-  return steepest <= free_up_to_[cell.curve()];
+  const double x = cell.dzDx(), y = cell.dzDy(), reach = free_up_to_[cell.curve()];
+  return x * x + y * y <= reach * reach;
 }
 
 }  // namespace talus::planner

@@ -33,6 +33,9 @@ class EdgeCrossings {
 
   EdgeCrossings(const costmap::DriveCost& cost, int points, Kernels kernels = Kernels::Best);
 
+  /// Points of a side.
+  int points() const noexcept { return points_; }
+
   /// Motions from one point.
   int count() const noexcept { return 3 * points_; }
 

@@ -14,33 +14,14 @@ using costmap::DriveCost;
 constexpr double kDiagonal = std::numbers::sqrt2 / 2;
 constexpr float kInfinite = std::numeric_limits<float>::infinity();
 
-// The cheapest and dearest metre of all curves.
-struct Range {
-  double least = std::numeric_limits<double>::infinity();
-  double most = 0.0;
-};
-
-Range costRange(const DriveCost& cost) {
-  Range range;
-  for (const auto& curve : cost.curves())
-    for (int bin = 0; bin < costmap::DriveCurve::kBins; ++bin) {
-      const auto value = static_cast<double>(curve.cost_J_per_m[static_cast<std::size_t>(bin)]);
-      const double gradient = (bin - costmap::DriveCurve::kBins / 2) / 256.0;
-      if (!std::isfinite(value) || std::abs(gradient) > cost.limits().max_along + 1.0 / 512) continue;
-      range.least = std::min(range.least, value);
-      range.most = std::max(range.most, value);
-    }
-  return range;
-}
-
 // Joules of a unit: fine enough that the dearest diagonal half just fits, but the cheapest straight half is
 // kept between 32 and 2048 units: coarser would spoil the search, finer would overflow 32 bits along a
 // route.
-double unitFor(const Range& range, double resolution_m) {
-  if (!(range.most > 0.0)) return 1.0;
-  const double least = std::max(range.least, range.most * 1e-6);
+double unitFor(const CostRange& range, double resolution_m) {
+  if (!(range.most_J_per_m > 0.0)) return 1.0;
+  const double least = std::max(range.least_J_per_m, range.most_J_per_m * 1e-6);
   const double cheapest_J = 0.5 * resolution_m * least;
-  const double fitting = EdgeUnits::kDearest / (std::numbers::sqrt2 * range.most / least);
+  const double fitting = EdgeUnits::kDearest / (std::numbers::sqrt2 * range.most_J_per_m / least);
   return cheapest_J / std::clamp(fitting, 32.0, 2048.0);
 }
 
@@ -62,9 +43,22 @@ int stepsWithin(double limit, double per_step) {
 
 }  // namespace
 
+CostRange costRange(const DriveCost& cost) {
+  CostRange range;
+  for (const auto& curve : cost.curves())
+    for (int bin = 0; bin < costmap::DriveCurve::kBins; ++bin) {
+      const auto value = static_cast<double>(curve.cost_J_per_m[static_cast<std::size_t>(bin)]);
+      const double gradient = (bin - costmap::DriveCurve::kBins / 2) / 256.0;
+      if (!std::isfinite(value) || std::abs(gradient) > cost.limits().max_along + 1.0 / 512) continue;
+      range.least_J_per_m = std::min(range.least_J_per_m, value);
+      range.most_J_per_m = std::max(range.most_J_per_m, value);
+    }
+  return range;
+}
+
 EdgeUnits::EdgeUnits(const DriveCost& cost, double resolution_m, double coarsening)
     : curves_(cost.curves().size()) {
-  const Range range = costRange(cost);
+  const CostRange range = costRange(cost);
   unit_J_ = unitFor(range, resolution_m) * coarsening;
   across_straight_ = stepsWithin(cost.limits().max_across, 1.0);
   across_diagonal_ = stepsWithin(cost.limits().max_across, kDiagonal);
@@ -84,10 +78,10 @@ EdgeUnits::EdgeUnits(const DriveCost& cost, double resolution_m, double coarseni
       straight_.push_back(inUnits(std::abs(steps) <= straight_reach ? at(1.0) : kInfinite, straight_units));
       diagonal_.push_back(inUnits(at(kDiagonal), diagonal_units));
     }
-  cheapest_edge_ =
-      std::isfinite(range.least)
-          ? std::max(2U, 2U * static_cast<unsigned>(inUnits(static_cast<float>(range.least), straight_units)))
-          : 1U;
+  cheapest_edge_ = std::isfinite(range.least_J_per_m)
+                       ? std::max(2U, 2U * static_cast<unsigned>(inUnits(
+                                               static_cast<float>(range.least_J_per_m), straight_units)))
+                       : 1U;
 }
 
 bool EdgeUnits::extends(const EdgeUnits& older) const noexcept {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <cstdlib>
+#include <limits>
 #include <vector>
 
 #include <costmap/drive_cost.hpp>
@@ -21,6 +22,13 @@ inline constexpr std::array<maps::Cell, 8> kStep{
 constexpr int opposite(int heading) noexcept {
   return heading ^ 4;
 }
+
+/// The cheapest and the dearest metre on any ground, of all gradients along the heading that are allowed.
+struct CostRange {
+  double least_J_per_m = std::numeric_limits<double>::infinity();  ///< infinite where nothing is allowed
+  double most_J_per_m = 0.0;
+};
+CostRange costRange(const costmap::DriveCost& cost);
 
 /// The cost of half a step, from a cell's centre to its edge or corner, for all eight headings: whole numbers
 /// of a unit of energy, so that sums do not depend on their order. 16 bits: an edge is the sum of two halves.
