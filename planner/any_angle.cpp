@@ -10,11 +10,11 @@ namespace {
 
 // Stretches between two marks are worked on, and remembered, as wholes; then what lies around the marks. In
 // cells, the first at least.
-constexpr double kMarks = 64.0, kAround = 32.0;
+constexpr double kMarks = 96.0, kAround = 20.0;
 
-// Windows of a stretch, in cells: long enough that where they meet matters little, short enough that a search
-// over their box of cells stays in the cache.
-constexpr double kWindow = 96.0, kOverlap = 16.0;
+// A search looks at windows of a stretch no longer than this, in cells, since it takes memory for a window's
+// bounding box: marks are turns, and long straight legs have none.
+constexpr double kWindow = 256.0;
 
 // The search crosses edges at a few points only; sliding them wins back more than this share.
 constexpr double kSlidingGains = 0.03;
@@ -47,7 +47,7 @@ Polyline Refiner::refinedStretch(const MotionCost& cost, const CorridorSearch& s
     take(shifted(cost, stretch, cells * cell_m, options_.shift, stop));
   WindowMemo none;
   take(byWindows(
-      stretch, {kWindow * cell_m, kOverlap * cell_m},
+      stretch, {kWindow * cell_m, kAround * cell_m},
       [&](const Polyline& window) { return acrossEdges(cost, search, window); }, none, 1, stop));
   return stretch;
 }

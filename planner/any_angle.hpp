@@ -13,10 +13,10 @@ namespace talus::planner {
 struct RefineOptions {
   double short_cut_cells = 8.0;  ///< how far apart the ends of short cuts lie along the route
   double coarsest_cells = 16.0;  ///< of the first stations along the route; halves from round to round
-  double finest_cells = 4.0;     ///< the last
+  double finest_cells = 8.0;     ///< the last
   ShiftOptions shift{};          ///< places beside the stations
   CorridorOptions corridor{};    ///< search over cell edges beside what the stations found
-  int slides = 4;                ///< rounds of moving turns along cell edges
+  int slides = 12;               ///< rounds of moving turns along cell edges
 };
 
 /// Makes routes of fewer, better turns: never dearer than the one given, the first and last points kept,

@@ -34,13 +34,19 @@ class LabelQueue {
     entries_.push_back({number, kNone});
   }
 
-  // Calls take(number, bucket) for everything queued, and for what take() queues.
-  template <typename Take>
-  void run(Take take) {
-    for (std::size_t current = 0, taken = 0; taken < entries_.size(); ++current) {
-      Bucket& bucket = ring_[current & (ring_.size() - 1)];
+  // Whether what waits with one label waits in the right place for another, too.
+  bool together(float label, float other) const noexcept {
+    return bucketOf(label) == bucketOf(other) && bucketOf(label) > current_;
+  }
+
+  // Calls take(number) for everything queued, and for what take() queues; numbers whose turn was earlier or
+  // comes later, by label(number), are left out.
+  template <typename Label, typename Take>
+  void run(Label label, Take take) {
+    for (std::size_t taken = 0; taken < entries_.size(); ++current_) {
+      Bucket& bucket = ring_[current_ & (ring_.size() - 1)];
       for (std::uint32_t e = bucket.first; e != kNone; e = entries_[e].next, ++taken)
-        take(entries_[e].number, current);
+        if (bucketOf(label(entries_[e].number)) == current_) take(entries_[e].number);
       bucket = {};
     }
   }
@@ -54,6 +60,7 @@ class LabelQueue {
   };
 
   float per_bucket_;
+  std::size_t current_ = 0;
   std::vector<Bucket> ring_;
   std::vector<Entry> entries_;
 };
@@ -166,11 +173,12 @@ float Search::priceOfEnd(const Segment& motion, const EdgePoint& turn) const noe
 }
 
 void Search::reach(std::uint32_t node, float label, std::uint32_t from, std::size_t cell) {
-  if (!(label < label_[node])) return;
+  const float before = label_[node];
+  if (!(label < before)) return;
   label_[node] = label;
   from_[node] = from;
   in_[node] = static_cast<std::uint32_t>(cell);
-  queue_.push(label, node);
+  if (before == kFar || !queue_.together(label, before)) queue_.push(label, node);
 }
 
 void Search::cross(std::uint32_t node, std::size_t cell, int side, int k) {
@@ -236,11 +244,11 @@ EdgePath Search::run(const Segment& ends, double below_J) {
     if (first < below_) reach(at.node, first, kNone, at.cell);
   }
   std::uint32_t best = kNone;
-  queue_.run([&](std::uint32_t node, std::size_t bucket) {
-    if (queue_.bucketOf(label_[node]) != bucket) return;
-    if (label_[node] + last_[node] < below_) below_ = label_[node] + last_[node], best = node;
-    settle(node);
-  });
+  queue_.run([&](std::uint32_t node) { return label_[node]; },
+             [&](std::uint32_t node) {
+               if (label_[node] + last_[node] < below_) below_ = label_[node] + last_[node], best = node;
+               settle(node);
+             });
   if (best == kNone) return {};
   const auto ending = std::ranges::find_if(
       lasts, [&](const EdgePoint& at) { return at.node == best && at.price == last_[best]; });

@@ -10,7 +10,7 @@
 namespace talus::planner {
 
 struct CorridorOptions {
-  int reach_cells = 3;      ///< how far from the given way the search may go
+  int reach_cells = 4;      ///< how far from the given way the search may go
   int points_per_edge = 3;  ///< where a cell's edge may be crossed
   Kernels kernels = Kernels::Best;
 };

@@ -27,16 +27,17 @@ const costmap::CellCode& cellAt(const costmap::CostGrid& map, maps::Cell c) noex
 }
 
 // Halves of the cells of one row from column first - 1 to last + 1; blocked outside the map.
-void fillRow(const costmap::CostGrid& map, const EdgeUnits& units, int row, CellBox box,
+void fillRow(const costmap::CostGrid& map, const EdgeUnits& units, int row, CellBox box, bool by_vectors,
              std::vector<Halves>& halves) {
   const int width = map.grid().width, first = box.first.column - 1, last = box.last.column + 1;
-  std::fill(halves.begin(), halves.end(), allBlocked());
-  if (row < 0 || row >= map.grid().height) return;
+  if (row < 0 || row >= map.grid().height) return std::fill(halves.begin(), halves.end(), allBlocked());
+  if (first < 0) halves.front() = allBlocked();
+  if (last >= width) halves.back() = allBlocked();
   for (int column = std::max(first, 0); column <= std::min(last, width - 1);) {
     const int tile_end = std::min({(column | (costmap::CostTile::kSide - 1)) + 1, last + 1, width});
-    const costmap::CellCode* cells = &cellAt(map, {column, row});
-    for (; column < tile_end; ++column)
-      halves[static_cast<std::size_t>(column - first)] = units.halves(*cells++);
+    units.halves(&cellAt(map, {column, row}), static_cast<std::size_t>(tile_end - column),
+                 &halves[static_cast<std::size_t>(column - first)], by_vectors);
+    column = tile_end;
   }
 }
 
@@ -45,8 +46,10 @@ std::uint16_t sum(std::uint16_t a, std::uint16_t b) noexcept {
                                                               : static_cast<std::uint16_t>(a + b);
 }
 
+using ThreeRows = std::array<const Halves*, 3>;
+
 // The eight steps into the middle cell of three rows of halves.
-void stepsInto(const std::array<const Halves*, 3>& rows, std::uint16_t* into) noexcept {
+void stepsInto(const ThreeRows& rows, std::uint16_t* into) noexcept {
   const auto at = [&](maps::Cell step) -> const Halves& {
     return rows[static_cast<std::size_t>(step.row + 1)][step.column];
   };
@@ -62,7 +65,7 @@ void stepsInto(const std::array<const Halves*, 3>& rows, std::uint16_t* into) no
 
 // The same with vectors: lane k holds the heading k until the end, when lanes turn from headings to where
 // they come from.
-__attribute__((target("sse4.1"))) void stepsIntoByVector(const std::array<const Halves*, 3>& rows,
+__attribute__((target("sse4.1"))) void stepsIntoByVector(const ThreeRows& rows,
                                                          std::uint16_t* into) noexcept {
   const auto at = [&rows](int row, int column) __attribute__((target("sse4.1"))) {
     return _mm_loadu_si128(
@@ -85,6 +88,16 @@ __attribute__((target("sse4.1"))) void stepsIntoByVector(const std::array<const 
   const __m128i steps =
       _mm_or_si128(cut, _mm_adds_epu16(at(0, 0), from));  // blocked + anything stays blocked
   _mm_storeu_si128(reinterpret_cast<__m128i*>(into), _mm_shuffle_epi32(steps, _MM_SHUFFLE(1, 0, 3, 2)));
+}
+
+// The steps into so many cells that follow each other.
+void rowInto(ThreeRows rows, std::size_t count, std::uint16_t* into) noexcept {
+  for (; count-- > 0; into += 8, ++rows[0], ++rows[1], ++rows[2]) stepsInto(rows, into);
+}
+
+__attribute__((target("sse4.1"))) void rowIntoByVector(ThreeRows rows, std::size_t count,
+                                                       std::uint16_t* into) noexcept {
+  for (; count-- > 0; into += 8, ++rows[0], ++rows[1], ++rows[2]) stepsIntoByVector(rows, into);
 }
 
 }  // namespace
@@ -131,15 +144,13 @@ void EdgeLayer::buildRows(CellBox box) {
   const auto width = static_cast<std::size_t>(box.last.column - box.first.column + 3);
   std::array<std::vector<Halves>, 3> rows{std::vector<Halves>(width), std::vector<Halves>(width),
                                           std::vector<Halves>(width)};
-  const auto combine = vectors_ ? stepsIntoByVector : stepsInto;
-  fillRow(*map_, units_, box.first.row - 1, box, rows[0]);
-  fillRow(*map_, units_, box.first.row, box, rows[1]);
+  const auto combine = vectors_ ? rowIntoByVector : rowInto;
+  fillRow(*map_, units_, box.first.row - 1, box, vectors_, rows[0]);
+  fillRow(*map_, units_, box.first.row, box, vectors_, rows[1]);
   for (int row = box.first.row; row <= box.last.row; ++row) {
-    fillRow(*map_, units_, row + 1, box, rows[2]);
-    for (int column = box.first.column; column <= box.last.column; ++column) {
-      const auto k = static_cast<std::size_t>(column - box.first.column + 1);
-      combine({&rows[0][k], &rows[1][k], &rows[2][k]}, edges_.get() + 8 * padded_.index({column, row}));
-    }
+    fillRow(*map_, units_, row + 1, box, vectors_, rows[2]);
+    combine({&rows[0][1], &rows[1][1], &rows[2][1]}, width - 2,
+            edges_.get() + 8 * padded_.index({box.first.column, row}));
     std::rotate(rows.begin(), rows.begin() + 1, rows.end());
   }
 }

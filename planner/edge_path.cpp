@@ -9,10 +9,13 @@
 namespace talus::planner {
 namespace {
 
-constexpr int kReach = 2;  // places to each side of a turn
+constexpr int kReach = 1;       // places to each side of a turn
+constexpr double kFiner = 0.7;  // of the distance of places, from round to round
 constexpr int kPlaces = 2 * kReach + 1;
 constexpr double kClear = 1.0 / 64;  // cells: turns keep this far from corners
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+constexpr double kEnd = 2.0;  // cells: a step so wide that the ends of a way have no place but theirs
 
 using Turn = EdgePath::Turn;
 
@@ -76,15 +79,22 @@ void choose(const costmap::DriveCost& drive, const Passage& passage, Choice& fro
   }
 }
 
-void slideOnce(const costmap::CostGrid& map, EdgePath& path, double step) {
+std::vector<Passage> passagesOf(const costmap::CostGrid& map, const EdgePath& path) {
+  std::vector<Passage> passages;
+  const std::size_t n = path.cells.size();
+  const auto at = [&](std::size_t k) { return map.at(path.cells[k]); };
+  for (std::size_t i = 0; i < n; ++i)
+    passages.push_back({at(i), at(i > 0 ? i - 1 : i), at(i + 1 < n ? i + 1 : i)});
+  return passages;
+}
+
+void slideOnce(const costmap::DriveCost& drive, const std::vector<Passage>& passages, double step,
+               std::vector<Choice>& choices, EdgePath& path) {
   const std::size_t n = path.turns.size();
-  std::vector<Choice> choices(n);
-  for (std::size_t i = n; i-- > 0;) {
-    const bool end = i == 0 || i + 1 == n;
-    choices[i] = choiceAround(path.turns[i], end ? 2.0 : step);
-    if (i + 1 == n) continue;
-    const auto at = [&](std::size_t k) { return map.at(path.cells[k]); };
-    choose(map.cost(), {at(i), at(i > 0 ? i - 1 : i), at(i + 2 < n ? i + 1 : i)}, choices[i], choices[i + 1]);
+  choices[n - 1] = choiceAround(path.turns[n - 1], kEnd);
+  for (std::size_t i = n - 1; i-- > 0;) {
+    choices[i] = choiceAround(path.turns[i], i == 0 ? kEnd : step);
+    choose(drive, passages[i], choices[i], choices[i + 1]);
   }
   for (std::size_t i = 0, a = 0; i < n; ++i) {
     path.turns[i] = choices[i].places[a];
@@ -104,7 +114,10 @@ std::vector<maps::Point> EdgePath::points(const maps::Grid& grid) const {
 
 void slideTurns(const costmap::CostGrid& map, EdgePath& path, double coarsest_cells, int rounds) {
   if (path.turns.size() < 3) return;
-  for (int k = 0; k < rounds; ++k) slideOnce(map, path, coarsest_cells / (1 << k));
+  const auto passages = passagesOf(map, path);
+  std::vector<Choice> choices(path.turns.size());
+  double step = coarsest_cells;
+  for (int k = 0; k < rounds; ++k, step *= kFiner) slideOnce(map.cost(), passages, step, choices, path);
 }
 
 }  // namespace talus::planner

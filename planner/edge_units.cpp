@@ -3,6 +3,8 @@
 #include <limits>
 #include <numbers>
 
+#include <immintrin.h>
+
 #include <planner/edge_units.hpp>
 
 namespace talus::planner {
@@ -78,10 +80,51 @@ EdgeUnits::EdgeUnits(const DriveCost& cost, double resolution_m, double coarseni
       straight_.push_back(inUnits(std::abs(steps) <= straight_reach ? at(1.0) : kInfinite, straight_units));
       diagonal_.push_back(inUnits(at(kDiagonal), diagonal_units));
     }
+  const auto append_pairs = [this](const std::vector<std::uint16_t>& halves) {
+    const auto row = static_cast<std::size_t>(2 * reach_ + 1);
+    for (std::size_t i = 0; i < halves.size(); ++i) {
+      const std::size_t opposite = i / row * row + (row - 1 - i % row);
+      pairs_.push_back(halves[i] | static_cast<std::uint32_t>(halves[opposite]) << 16);
+    }
+  };
+  append_pairs(straight_);
+  append_pairs(diagonal_);
   cheapest_edge_ = std::isfinite(range.least_J_per_m)
                        ? std::max(2U, 2U * static_cast<unsigned>(inUnits(
                                                static_cast<float>(range.least_J_per_m), straight_units)))
                        : 1U;
+}
+
+void EdgeUnits::halves(const CellCode* cells, std::size_t count, Halves* out,
+                       bool by_vectors) const noexcept {
+  if (by_vectors) return halvesByVector(cells, count, out);
+  for (std::size_t i = 0; i < count; ++i) out[i] = halves(cells[i]);
+}
+
+// Four lanes: the headings from east to north-west, each with its opposite.
+__attribute__((target("avx2"))) void EdgeUnits::halvesByVector(const CellCode* cells, std::size_t count,
+                                                               Halves* out) const noexcept {
+  const int row = 2 * reach_ + 1, diagonals = static_cast<int>(straight_.size());
+  const __m128i blocked = _mm_set1_epi32(-1), reach = _mm_set1_epi32(reach_);
+  const __m128i across_limit =
+      _mm_setr_epi32(across_straight_, across_diagonal_, across_straight_, across_diagonal_);
+  const __m128i level = _mm_setr_epi32(0, diagonals, 0, diagonals);
+  const __m128i headings_first = _mm_setr_epi8(0, 1, 4, 5, 8, 9, 12, 13, 2, 3, 6, 7, 10, 11, 14, 15);
+  const int* pairs = reinterpret_cast<const int*>(pairs_.data());
+  for (std::size_t i = 0; i < count; ++i) {
+    const CellCode cell = cells[i];
+    __m128i made = blocked;
+    if (cell.curve() < curves_) {
+      const int x = cell.stepsX(), y = cell.stepsY();
+      const __m128i along = _mm_setr_epi32(x, x + y, y, y - x), across = _mm_setr_epi32(y, y - x, x, x + y);
+      const __m128i refused = _mm_or_si128(_mm_cmpgt_epi32(_mm_abs_epi32(across), across_limit),
+                                           _mm_cmpgt_epi32(_mm_abs_epi32(along), reach));
+      const __m128i at =
+          _mm_add_epi32(_mm_add_epi32(along, level), _mm_set1_epi32(cell.curve() * row + reach_));
+      made = _mm_mask_i32gather_epi32(blocked, pairs, at, _mm_andnot_si128(refused, blocked), 4);
+    }
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(out[i].data()), _mm_shuffle_epi8(made, headings_first));
+  }
 }
 
 bool EdgeUnits::extends(const EdgeUnits& older) const noexcept {

@@ -59,12 +59,18 @@ class EdgeUnits {
   /// Halves of all headings in a cell.
   Halves halves(costmap::CellCode cell) const noexcept;
 
+  /// The same for cells that follow each other; by vectors (AVX2) the same bits.
+  void halves(const costmap::CellCode* cells, std::size_t count, Halves* out, bool by_vectors) const noexcept;
+
  private:
+  void halvesByVector(const costmap::CellCode* cells, std::size_t count, Halves* out) const noexcept;
+
   // Half costs of one curve over the gradient along the heading in steps of CellCode, from -reach_ to reach_.
   std::vector<std::uint16_t> straight_, diagonal_;
-  int reach_ = 0;            // steps along the heading covered by a table, one more than any allowed
-  int across_straight_ = 0;  // most steps across a straight heading
-  int across_diagonal_ = 0;  // the same for |dz/dx -+ dz/dy|
+  std::vector<std::uint32_t> pairs_;  // straight_, then diagonal_, each with its opposite in the upper half
+  int reach_ = 0;                     // steps along the heading covered by a table, one more than any allowed
+  int across_straight_ = 0;           // most steps across a straight heading
+  int across_diagonal_ = 0;           // the same for |dz/dx -+ dz/dy|
   std::size_t curves_ = 0;
   double unit_J_ = 1.0;
   std::uint32_t cheapest_edge_ = 1;

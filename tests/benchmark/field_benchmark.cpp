@@ -197,9 +197,10 @@ void againstFinest(benchmark::State& state) {
   const auto map = rollingGround(static_cast<int>(state.range(0)));
   const MotionCost cost(map);
   RefineOptions finest;
-  finest.corridor.reach_cells = 10;
+  finest.finest_cells = 4.0;
+  finest.corridor.reach_cells = 12;
   finest.corridor.points_per_edge = 6;
-  finest.slides = 6;
+  finest.slides = 20;
   std::vector<double> gaps;
   for (auto _ : state)
     for (int k = 0; k < 12; ++k) {
