@@ -83,8 +83,9 @@ struct Surroundings {
 CostToGo::CostToGo(std::shared_ptr<const EdgeLayer> edges, const std::vector<FieldGoal>& goals,
                    Kernels kernels)
     : edges_(std::move(edges)),
-      distance_(edges_->padded().size() + kOverhang, kUnreached),
+      distance_(makeLargeArray<std::uint32_t>(edges_->padded().size() + kOverhang)),
       vectors_(vectorsRun(kernels)) {
+  std::fill_n(distance_.get(), edges_->padded().size() + kOverhang, kUnreached);
   // A bucket no wider than the cheapest edge: its cells cannot improve each other, so they are final when its
   // turn comes and need no order among themselves (Denardo & Fox 1979 [denardo_fox_1979]).
   shift_ = static_cast<unsigned>(std::bit_width(edges_->units().cheapestEdge()) - 1);
@@ -149,7 +150,7 @@ __attribute__((target("avx2"), flatten)) void CostToGo::settleByVector(Bucket& b
 // agree.
 template <typename Improved>
 void CostToGo::settleBucket(Bucket& bucket) {
-  const Surroundings around{distance_.data(), edges_->into(0),
+  const Surroundings around{distance_.get(), edges_->into(0),
                             static_cast<std::ptrdiff_t>(edges_->padded().stride())};
   const std::array<std::ptrdiff_t, 8> offsets = neighbourOffsets(edges_->padded());
   const std::size_t wrap = buckets_.size() - 1;

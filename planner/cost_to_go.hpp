@@ -7,6 +7,8 @@
 #include <vector>
 
 #include <planner/edge_layer.hpp>
+#include <planner/large_array.hpp>
+
 namespace talus::planner {
 
 /// A cell where the field begins, and what is left to pay from its centre.
@@ -86,10 +88,10 @@ class CostToGo {
   void settleByVector(Bucket& bucket);
 
   std::shared_ptr<const EdgeLayer> edges_;
-  std::vector<std::uint32_t> distance_;  // padded, units
-  std::vector<Bucket> buckets_;          // a ring; each holds indices of cells of like distance
-  std::uint64_t current_ = 0;            // bucket whose turn it is, counted without wrapping
-  std::uint64_t queued_ = 0;             // entries in all buckets
+  LargeArray<std::uint32_t> distance_;  // padded, units
+  std::vector<Bucket> buckets_;         // a ring; each holds indices of cells of like distance
+  std::uint64_t current_ = 0;           // bucket whose turn it is, counted without wrapping
+  std::uint64_t queued_ = 0;            // entries in all buckets
   std::uint64_t settled_ = 0;
   std::vector<Goal> goals_;
   bool vectors_ = false;

@@ -107,7 +107,7 @@ EdgeLayer::EdgeLayer(std::shared_ptr<const costmap::CostGrid> map, const EdgeUni
     : map_(std::move(map)),
       units_(units),
       padded_{map_->grid().width, map_->grid().height},
-      edges_(std::make_unique_for_overwrite<std::uint16_t[]>(8 * padded_.size())),
+      edges_(makeLargeArray<std::uint16_t>(8 * padded_.size())),
       vectors_(vectorsRun(kernels)) {
   blockBorder();
   constexpr int kBlock = 64;
@@ -128,7 +128,7 @@ EdgeLayer::EdgeLayer(std::shared_ptr<const costmap::CostGrid> map, const EdgeUni
     : map_(std::move(map)),
       units_(units),
       padded_{map_->grid().width, map_->grid().height},
-      edges_(std::make_unique_for_overwrite<std::uint16_t[]>(8 * padded_.size())),
+      edges_(makeLargeArray<std::uint16_t>(8 * padded_.size())),
       complete_(true) {
   blockBorder();
 }

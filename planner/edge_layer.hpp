@@ -8,6 +8,7 @@
 #include <costmap/cost_grid.hpp>
 #include <planner/edge_units.hpp>
 #include <planner/kernels.hpp>
+#include <planner/large_array.hpp>
 #include <planner/stop_check.hpp>
 namespace talus::planner {
 
@@ -84,8 +85,7 @@ class EdgeLayer {
   std::shared_ptr<const costmap::CostGrid> map_;
   EdgeUnits units_;
   PaddedGrid padded_;
-  std::unique_ptr<std::uint16_t[]>
-      edges_;  // left raw at first: each page is touched once, by the thread that fills it
+  LargeArray<std::uint16_t> edges_;
   bool vectors_ = false;
   bool complete_ = false;
 };
