@@ -2,20 +2,19 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <utility>
 #include <vector>
 
-#include <planner/minorant.hpp>
+#include <planner/heading_minorant.hpp>
 #include <planner/relaxed_edges.hpp>
 
 namespace talus::planner {
 namespace {
 
-using Prices = std::array<float, 8>;  // joules a metre, by heading
+using Prices = HeadingMinorants::Prices;
 
 constexpr float kNone = std::numeric_limits<float>::infinity();  // no motion there to be bounded
-constexpr double kDiagonal = std::numbers::sqrt2 / 2;
+constexpr double kOctagon = 0.92387;  // cos(pi/8), rounded down by more than floats are off
 
 Prices nothing() noexcept {
   Prices prices{};
@@ -25,23 +24,17 @@ Prices nothing() noexcept {
 
 class Relaxation {
  public:
-  explicit Relaxation(const costmap::CostGrid& map) : map_(map), lines_(map.cost()) {}
+  explicit Relaxation(const costmap::CostGrid& map) : map_(map), lines_(map.cost()), headings_(map.cost()) {}
 
   // Price of a metre in a cell; none outside the map and where no heading is allowed.
-  Prices cell(maps::Cell at) const noexcept {
+  Prices cell(maps::Cell at) {
     if (!map_.grid().contains(at)) return nothing();
     const auto code = map_.at(at);
     if (code.curve() >= lines_.curves()) return nothing();
+    if (!onBorder(at)) return headings_.of(code);
     // In the outer half of border cells the field is continued straight outwards, which allows for no tilt.
-    const Minorant line = onBorder(at) ? lines_.level(code) : lines_.of(code);
-    const double octagon =
-        0.92387 * line.level_J_per_m;  // cos(pi/8), rounded down by more than floats are off
     Prices prices{};
-    for (std::size_t k = 0; k < 8; ++k) {
-      const double scale = k % 2 == 0 ? 1.0 : kDiagonal;
-      const double along = scale * (code.dzDx() * kStep[k].column + code.dzDy() * kStep[k].row);
-      prices[k] = static_cast<float>(octagon + line.tilt_J_per_m * along);
-    }
+    prices.fill(static_cast<float>(kOctagon * lines_.level(code).level_J_per_m));
     return prices;
   }
 
@@ -76,6 +69,7 @@ class Relaxation {
 
   const costmap::CostGrid& map_;
   Minorants lines_;
+  HeadingMinorants headings_;
 };
 
 // Prices of the squares above one row of cells, from the column before the first to the last.
@@ -84,7 +78,7 @@ void fillSquares(const std::vector<Prices>& lower, const std::vector<Prices>& up
   for (std::size_t i = 0; i < squares.size(); ++i) squares[i] = Relaxation::square(&lower[i], &upper[i]);
 }
 
-void fillCells(const Relaxation& relaxation, int row, std::vector<Prices>& cells) {
+void fillCells(Relaxation& relaxation, int row, std::vector<Prices>& cells) {
   for (std::size_t i = 0; i < cells.size(); ++i) cells[i] = relaxation.cell({static_cast<int>(i) - 1, row});
 }
 
@@ -105,8 +99,7 @@ Prices stepsInto(const Prices* below, const Prices* above) noexcept {
 
 // Calls each(cell, prices of the steps into it) for every cell, row by row; false when stopped.
 template <typename Each>
-bool forEachCell(const costmap::CostGrid& map, const Relaxation& relaxation, const StopCheck& stop,
-                 Each each) {
+bool forEachCell(const costmap::CostGrid& map, Relaxation& relaxation, const StopCheck& stop, Each each) {
   const auto width = static_cast<std::size_t>(map.grid().width);
   std::vector<Prices> cells(width + 2), next(width + 2), below(width + 1), above(width + 1);
   fillCells(relaxation, -1, cells);
@@ -128,7 +121,7 @@ bool forEachCell(const costmap::CostGrid& map, const Relaxation& relaxation, con
 
 std::shared_ptr<const EdgeLayer> relaxedEdges(const std::shared_ptr<const costmap::CostGrid>& map,
                                               const StopCheck& stop) {
-  const Relaxation relaxation(*map);
+  Relaxation relaxation(*map);
   const double side_m = map->grid().resolution_m;
   float least = kNone;
   const bool seen = forEachCell(*map, relaxation, stop, [&least](maps::Cell, const Prices& into) {

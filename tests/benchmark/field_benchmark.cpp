@@ -232,7 +232,9 @@ double cpu_ms(clockid_t clock) {
 void cancelling(benchmark::State& state) {
   auto problem = across(rollingGround(static_cast<int>(state.range(0))));
   problem.prove = true;
+  constexpr double kAsking_ms = 0.1;
   double worst_ms = 0.0;
+  int samples = 0;
   for (auto _ : state) {
     const double begin_ms = cpu_ms(CLOCK_THREAD_CPUTIME_ID);
     FieldPlanner().plan(problem);
@@ -255,13 +257,17 @@ void cancelling(benchmark::State& state) {
         if (!(now_ms > 0.0)) break;
         asked_ms = now_ms;
       }
+      asked_ms = cpu_ms(its_time);
       source.request_stop();
+      const double heard_ms = cpu_ms(its_time);
       worker.join();
-      worst_ms = std::max(worst_ms, end_ms - asked_ms);
+      // Where this thread had to wait for its turn while it asked, nobody knows when it asked.
+      if (heard_ms - asked_ms < kAsking_ms) worst_ms = std::max(worst_ms, end_ms - asked_ms), ++samples;
     }
     problem.watch = {};
   }
   state.counters["worst_cpu_ms"] = worst_ms;
+  state.counters["samples"] = samples;
 }
 
 BENCHMARK(edgeLayer)->Args({2000, 0})->Args({2000, 1})->Unit(benchmark::kMillisecond);
