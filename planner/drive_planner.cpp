@@ -15,6 +15,8 @@ namespace {
 // Between poses that a curve is fitted to: cells at least, and radii.
 constexpr double kPose_cells = 4.0;
 constexpr double kPose_radii = 2.0;
+// Poses that the search may try while another drive is known.
+constexpr std::uint64_t kBeside = 50'000;
 
 Plan ended(PosePlan leg) {
   Plan plan;
@@ -60,8 +62,9 @@ PosePath fitted(const std::vector<Pose>& poses, const PoseCost& cost, const Shor
 }  // namespace
 
 // Turning costs little where the radius is small against the bends of the route: then the any-angle route,
-// which the search's eight headings do not see, is the better seed.
-void DrivePlanner::improve(const PoseProblem& asked, const Problem& problem, PosePlan& leg) {
+// which the search's eight headings do not see, is the better seed; and it threads what motions of the
+// search's one length step over.
+PosePlan DrivePlanner::alongRoute(const PoseProblem& asked, const Problem& problem) {
   Problem free = problem;
   free.start = asked.start;
   free.goal = asked.goal;
@@ -69,30 +72,34 @@ void DrivePlanner::improve(const PoseProblem& asked, const Problem& problem, Pos
   free.goal_tolerance_m = 0.0;
   free.prove = false;
   const Plan route = field_.plan(free);
-  if (route.status != RouteStatus::Found || route.points.size() < 2 || route.cost_J >= leg.cost_J) return;
+  PosePlan drive;
+  if (route.status != RouteStatus::Found || route.points.size() < 2) return drive;
   const double cell_m = problem.map->grid().resolution_m;
   const double apart_m = std::max(kPose_cells * cell_m, kPose_radii * asked.kinematics.turning_radius_m);
   const MotionCost motion(problem.map);
   const PoseCost cost(motion, asked.kinematics);
   const auto points = subdivided(route.points, apart_m);
-  PosePath path =
+  drive.path =
       asked.kinematics.turning_radius_m <= 0.0
           ? turningDrive(points, {asked.start_heading_rad, asked.goal_heading_rad}, cost)
           : fitted(posesAlong(points, asked), cost,
                    {.joint_m = kPose_cells * cell_m, .cheapest_J_per_m = cheapestMetre_J(*problem.map)});
-  if (path.legs.empty()) return;
-  const double cost_J = cost(path);
-  if (cost_J >= leg.cost_J || !mayBeDriven(*problem.map, path, asked.kinematics)) return;
-  leg.path = std::move(path);
-  leg.cost_J = cost_J;
+  drive.cost_J = cost(drive.path);
+  const bool stands = !drive.path.legs.empty() && std::isfinite(drive.cost_J) &&
+                      mayBeDriven(*problem.map, drive.path, asked.kinematics);
+  if (stands) drive.status = RouteStatus::Found;
+  return drive;
 }
 
 PosePlan DrivePlanner::drivenTo(PoseProblem asked, const Problem& problem, maps::Point end) {
   asked.goal = end;
+  PosePlan along = alongRoute(asked, problem);
+  const bool known = along.status == RouteStatus::Found;
+  if (known) asked.most_expanded = kBeside;
   PosePlan leg = search_.plan(asked);
-  if (leg.status != RouteStatus::Found) return leg;
-  improve(asked, problem, leg);
-  if (!sampling_) return leg;
+  if (leg.status == RouteStatus::Cancelled) return leg;
+  if (known && (leg.status != RouteStatus::Found || along.cost_J < leg.cost_J)) leg = std::move(along);
+  if (leg.status != RouteStatus::Found || !sampling_) return leg;
   sampling_->seed = problem.seed;
   if (sampling_->better) sampling_->better(leg.cost_J);
   return improvedBySampling(asked, leg, *sampling_);

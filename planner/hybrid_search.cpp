@@ -69,7 +69,7 @@ class Search {
         if (stop_.cancelled()) return RouteStatus::Cancelled;
         return best_cost_ < kInfinity ? RouteStatus::Found : RouteStatus::TimedOut;
       }
-      if (expanded_ > options_.most_expanded)
+      if (expanded_ > std::min(options_.most_expanded, problem_.most_expanded))
         return best_cost_ < kInfinity ? RouteStatus::Found : RouteStatus::TimedOut;
       expand(next.node);
     }

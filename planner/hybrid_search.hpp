@@ -23,6 +23,8 @@ struct PoseProblem {
   Kinematics kinematics;
   double time_limit_s = std::numeric_limits<double>::infinity();  ///< > 0
   Watch watch;
+  std::uint64_t most_expanded =
+      std::numeric_limits<std::uint64_t>::max();  ///< poses, where fewer than HybridOptions allow
 };
 
 /// Choices of the search.

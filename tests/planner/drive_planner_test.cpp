@@ -4,6 +4,7 @@
 #include <planner/annotation.hpp>
 #include <planner/drive_planner.hpp>
 #include <planner/route_check.hpp>
+#include <planner/slip_world.hpp>
 
 #include "drawn_map.hpp"
 
@@ -166,6 +167,24 @@ TEST(RouteCheckOfDrives, ATurnInPlaceNeedsEveryHeading) {
   EXPECT_TRUE(violations(grid, PosePath{.start = {{0.5, 0.5}, 0.0}, .legs = {{{}, 0.2}}}, 0.0).empty());
   EXPECT_FALSE(violations(grid, PosePath{.start = {{0.5, 0.5}, 0.0}, .legs = {{{}, M_PI}}}, 0.0).empty());
   EXPECT_FALSE(violations(grid, PosePath{.start = {{0.5, 0.5}, 0.0}, .legs = {{{}, 0.2}}}, 1.0).empty());
+}
+
+// Property: on worlds of steep, slippery ground (slip_world.hpp), where a cell may be left in two narrow
+// cones of headings only, a rover that turns in place for free drives whatever route the field finds, and
+// pays no more for it.
+TEST(DrivePlanner, DrivesWhatTheFieldFindsWhereHeadingsAreFew) {
+  for (const std::uint64_t seed : {1001u, 1008u, 1010u, 1012u, 1014u}) {
+    const SlipWorld world = slipWorld({.seed = seed});
+    Problem problem{.map = world.map, .start = {8.5, 8.5}, .goal = {87.5, 87.5}, .prove = false};
+    const Plan route = FieldPlanner().plan(problem);
+    ASSERT_EQ(route.status, RouteStatus::Found);
+    const Plan plan = DrivePlanner().plan(problem);
+    ASSERT_EQ(plan.status, RouteStatus::Found) << seed << ": " << plan.reason;
+    EXPECT_LE(plan.cost_J, (1.0 + 1e-9) * route.cost_J) << seed;
+    EXPECT_TRUE(drivable(*world.map, plan.drive)) << seed;
+    EXPECT_TRUE(violations(*world.map, plan.drive, 0.0).empty()) << seed;
+    EXPECT_TRUE(violations(*world.map, plan.points).empty()) << seed;
+  }
 }
 
 // Property: with a tolerance the drive ends within it, costs no more than to the goal itself, and a goal that
