@@ -96,6 +96,7 @@ TEST(DrivePlanner, TheReportCountsTurning) {
   problem.start_heading_rad = M_PI / 2;
   problem.kinematics.may_reverse = false;
   problem.kinematics.stop = {.cost_J = 7.0, .energy_J = 6.0, .time_s = 2.0};  // and for the stop
+  problem.kinematics.turns.on_arc.cost_J = 50.0;                              // so that no arc is worth it
   const Plan plan = DrivePlanner().plan(problem);
   ASSERT_EQ(plan.status, RouteStatus::Found) << plan.reason;
   EXPECT_NEAR(plan.cost_J, 107.0 + 5.0 * M_PI / 2, 1e-3);
@@ -107,6 +108,23 @@ TEST(DrivePlanner, TheReportCountsTurning) {
   EXPECT_NEAR(route.vertices.front().turn_rad, -M_PI / 2, 1e-9);
   EXPECT_NEAR(route.vertices.front().heading_rad, M_PI / 2, 1e-9);
   EXPECT_NEAR(route.vertices[1].heading_rad, 0.0, 1e-9);
+}
+
+TEST(DrivePlanner, ARoverThatTurnsInPlaceNeedNotStopForABend) {
+  // Property: where a stop costs more than the few cells that an arc is longer, the drive around a corner
+  // bends.
+  std::vector<std::string> rows(24, std::string(24, '.'));
+  for (std::size_t row = 6; row < 18; ++row) rows[row].replace(6, 12, 12, '#');
+  Problem problem = across(testing::drawn(rows), 0.0);
+  problem.start = {2.5, 6.5};
+  problem.goal = {17.5, 21.5};
+  problem.kinematics.stop = {.cost_J = 100.0};
+  const Plan route = FieldPlanner().plan(problem);
+  const Plan plan = DrivePlanner().plan(problem);
+  ASSERT_EQ(plan.status, RouteStatus::Found) << plan.reason;
+  EXPECT_EQ(shape(plan.drive).turns_in_place, 0);
+  EXPECT_LT(plan.cost_J, route.cost_J + 50.0);
+  EXPECT_TRUE(violations(*problem.map, plan.drive, 0.0).empty());
 }
 
 TEST(DrivePlanner, AVertexInReverseLooksTheOtherWay) {
