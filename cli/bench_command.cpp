@@ -83,24 +83,46 @@ void refuseTwice(const std::string& what, std::vector<std::string> names) {
   if (twice != names.end()) throw InputError({what + " " + *twice, "is named twice", "name it once"});
 }
 
+std::string asText(const planner::BenchmarkPlan& plan, const std::vector<planner::BenchmarkRun>& runs) {
+  const std::size_t asked = planner::jobsOf(plan).size();
+  return (runs.size() < asked ? fmt::format("cancelled: {} of {} runs\n", runs.size(), asked) : "") +
+         asText(compared(plan, runs)) + asText(drivesOf(plan, runs));
+}
+
 void write(const std::filesystem::path& folder, const planner::BenchmarkPlan& plan,
            const std::vector<planner::BenchmarkRun>& runs) {
   for (std::size_t c = 0; c < plan.cases.size(); ++c)
-    writeFile(folder / (fileName(plan.cases[c].name) + ".log"), planner::benchmarkLog(plan, runs, c));
-  writeFile(folder / "table.txt", asText(compared(plan, runs)) + asText(drivesOf(plan, runs)));
+    if (std::ranges::any_of(runs, [c](const auto& run) { return run.case_index == c; }))
+      writeFile(folder / (fileName(plan.cases[c].name) + ".log"), planner::benchmarkLog(plan, runs, c));
+  writeFile(folder / "table.txt", asText(plan, runs));
   writeFile(folder / "index.html", asPage(plan, runs));
 }
 
+// Fewer when a stop is requested: those that had ended.
 std::vector<planner::BenchmarkRun> allRuns(const planner::BenchmarkPlan& plan, const Campaign& campaign,
                                            const Context& context) {
   const auto jobs = planner::jobsOf(plan);
   const Watch watch = campaign.leads() ? context.watch("bench") : Watch{.progress = {}, .stop = context.stop};
   const auto outcomes = campaign.run(
-      jobs.size(), [&](std::size_t i) { return planner::runIsolated(plan, jobs[i]); }, watch);
+      jobs.size(), [&](std::size_t i) { return planner::runIsolated(plan, jobs[i], watch); }, watch);
   std::vector<planner::BenchmarkRun> runs;
   for (std::size_t i = 0; i < outcomes.size(); ++i)
-    runs.push_back(planner::benchmarkRun(jobs[i], outcomes[i].failed ? std::string() : outcomes[i].text));
+    if (!outcomes[i].stopped)
+      runs.push_back(planner::benchmarkRun(jobs[i], outcomes[i].failed ? std::string() : outcomes[i].text));
   return runs;
+}
+
+// What had ended is kept, and said on stderr: a program that reads stdout gets the whole or nothing.
+int cancelled(const Options& options, const planner::BenchmarkPlan& plan,
+              const std::vector<planner::BenchmarkRun>& runs, bool made, const Context& context) {
+  if (!runs.empty()) {
+    write(options.folder, plan, runs);
+    context.warn(fmt::format("cancelled after {} of {} runs; what they gave lies in {}", runs.size(),
+                             planner::jobsOf(plan).size(), options.folder));
+  } else if (made) {
+    std::filesystem::remove(options.folder);  // empty still
+  }
+  return Exit::kCancelled;
 }
 
 int run(const Options& options, Context& context) {
@@ -119,17 +141,14 @@ int run(const Options& options, Context& context) {
   plan.seeds = options.runs;
   plan.time_limit_s = options.time_limit_s;
   const auto runs = allRuns(plan, campaign, context);
-  if (!campaign.leads()) return Exit::kDone;
-  if (context.stop.stop_requested()) {
-    if (made) std::filesystem::remove(options.folder);  // empty still
-    return Exit::kCancelled;
-  }
+  if (!campaign.leads()) return context.stop.stop_requested() ? Exit::kCancelled : Exit::kDone;
+  if (runs.size() < planner::jobsOf(plan).size()) return cancelled(options, plan, runs, made, context);
   write(options.folder, plan, runs);
   const auto lines = compared(plan, runs);
   if (context.json)
     printJson(asJson(lines, drivesOf(plan, runs)));
   else
-    print(asText(lines) + asText(drivesOf(plan, runs)));
+    print(asText(plan, runs));
   return Exit::kDone;
 }
 

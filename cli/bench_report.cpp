@@ -16,6 +16,8 @@ using planner::BenchmarkPlan;
 using planner::BenchmarkRun;
 using planner::RouteStatus;
 
+constexpr std::size_t kMostPlots = 12;  // that a page still shows well
+
 double median(std::vector<double> values) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
   std::ranges::sort(values);
@@ -30,6 +32,7 @@ BenchmarkLine lineOf(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>&
                      const std::string& planner) {
   BenchmarkLine line{.planner = planner};
   std::vector<double> gaps, seconds, clearances;
+  int standing = 0;
   for (const BenchmarkRun& run : runs) {
     if (run.planner != planner) continue;
     ++line.runs;
@@ -40,6 +43,8 @@ BenchmarkLine lineOf(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>&
     seconds.push_back(run.seconds);
     if (run.status != RouteStatus::Found) continue;
     ++line.found;
+    if (!planner::stands(run)) continue;
+    ++standing;
     line.mean_cusps += run.cusps;
     line.max_curvature_1_m = std::max(line.max_curvature_1_m, run.max_curvature_1_m);
     clearances.push_back(-run.clearance_cells);
@@ -47,7 +52,7 @@ BenchmarkLine lineOf(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>&
   }
   line.median_gap = median(gaps);
   line.worst_gap = largest(gaps);
-  line.mean_cusps /= std::max(1, line.found);
+  line.mean_cusps /= std::max(1, standing);
   line.least_clearance_cells = -largest(clearances);
   line.median_seconds = median(seconds);
   return line;
@@ -79,7 +84,6 @@ std::vector<std::string> words(const BenchmarkLine& line) {
           fmt::format("{:.2f}", line.least_clearance_cells)};
 }
 
-// Gap over time of every run of a case: each planner a curve of its first seed.
 Plot gapOverTime(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& runs, std::size_t case_index) {
   Plot plot{.title = plan.cases[case_index].name,
             .x = {"time [s]"},
@@ -90,7 +94,8 @@ Plot gapOverTime(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& run
   for (const BenchmarkRun& run : runs)
     if (run.case_index == case_index) end_s = std::max(end_s, run.seconds);
   for (const BenchmarkRun& run : runs) {
-    if (run.case_index != case_index || run.seed != 1 || run.progress.empty()) continue;
+    if (run.case_index != case_index || run.seed != 1 || !planner::stands(run) || run.progress.empty())
+      continue;
     Series series{.name = run.planner, .x = {}, .y = {}};
     for (const auto& at : run.progress) {
       if (!series.x.empty()) {  // a step: the old cost holds until the new one is found
@@ -209,12 +214,22 @@ nlohmann::ordered_json asJson(const std::vector<BenchmarkLine>& lines, const std
   return array;
 }
 
+std::vector<Plot> gapsOverTime(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& runs) {
+  std::vector<Plot> plots;
+  for (std::size_t c = 0; c < std::min(plan.cases.size(), kMostPlots); ++c)
+    plots.push_back(gapOverTime(plan, runs, c));
+  return plots;
+}
+
 std::string asPage(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& runs) {
   HtmlReport page("Planner benchmark");
   page.paragraph(fmt::format(
       "{} cases, {} seeds, {} s a run, each run in a process of its own. Gap: to the known optimum, "
-      "else to the best of all runs. Breached: the independent check refuses the route.",
+      "else to the best of all runs. Breached: the independent check refuses the route; its gap, bends and "
+      "clearance count nowhere.",
       plan.cases.size(), plan.seeds, plan.time_limit_s));
+  if (const std::size_t asked = planner::jobsOf(plan).size(); runs.size() < asked)
+    page.paragraph(fmt::format("Cancelled: {} of {} runs were made.", runs.size(), asked));
   std::vector<std::vector<std::string>> rows;
   for (const BenchmarkLine& line : compared(plan, runs)) rows.push_back(words(line));
   page.table(header(), rows);
@@ -223,10 +238,11 @@ std::string asPage(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& r
     page.table(drives.front(), {drives.begin() + 1, drives.end()});
   }
   page.heading("Cost over time");
-  std::vector<Plot> plots;
-  for (std::size_t c = 0; c < std::min<std::size_t>(plan.cases.size(), 12); ++c)
-    plots.push_back(gapOverTime(plan, runs, c));
-  page.charts(plots);
+  page.paragraph(
+      "The first seed of each planner whose last route stands up to the check. Costs on the way there are "
+      "the "
+      "planner's own; none is drawn below that of the last route.");
+  page.charts(gapsOverTime(plan, runs));
   return page.html();
 }
 

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <cli/plot.hpp>
 #include <planner/benchmark.hpp>
 
 namespace talus::cli {
@@ -16,7 +17,7 @@ struct BenchmarkLine {
   int found = 0;
   int breached = 0;  ///< routes that the independent check refuses
   int crashed = 0;
-  double median_gap = 0.0;  ///< to the best known [-]; NaN when nothing was found
+  double median_gap = 0.0;  ///< to the best known [-], as all that follows of routes that stand; NaN for none
   double worst_gap = 0.0;
   double median_seconds = 0.0;
   double worst_megabytes = 0.0;
@@ -44,6 +45,11 @@ std::vector<WorldLine> drivesOf(const planner::BenchmarkPlan& plan,
 
 /// Columns with 95 % intervals of the share that reached the goal; empty for none.
 std::string asText(const std::vector<WorldLine>& lines);
+
+/// Gap over time of the first cases: each planner a curve of its first seed, where its route stands up to the
+/// check.
+std::vector<Plot> gapsOverTime(const planner::BenchmarkPlan& plan,
+                               const std::vector<planner::BenchmarkRun>& runs);
 
 /// The comparison as columns for a terminal, as JSON, and as a page with the cost over time of every case.
 std::string asText(const std::vector<BenchmarkLine>& lines);

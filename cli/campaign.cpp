@@ -16,9 +16,11 @@ namespace talus::cli {
 namespace {
 
 JobOutcome outcomeOf(const std::function<std::string(std::size_t)>& job, std::size_t i, const Watch& watch) {
-  if (watch.stopped()) return {.failed = true, .text = "cancelled"};
+  const JobOutcome stopped{.failed = true, .stopped = true, .text = "cancelled"};
+  if (watch.stopped()) return stopped;
   try {
-    return {.failed = false, .text = job(i)};
+    JobOutcome made{.text = job(i)};
+    return made.text.empty() && watch.stopped() ? stopped : made;
   } catch (const std::exception& error) {
     return {.failed = true, .text = error.what()};
   }
@@ -55,7 +57,8 @@ bool startedByMpirun() {
 
 constexpr int kIndexTag = 1;
 constexpr int kFailedTag = 2;
-constexpr int kTextTag = 3;
+constexpr int kStoppedTag = 3;
+constexpr int kTextTag = 4;
 
 }  // namespace
 
@@ -66,6 +69,7 @@ struct Campaign::Ranks {
   void send(std::size_t i, const JobOutcome& outcome) const {
     world.send(0, kIndexTag, i);
     world.send(0, kFailedTag, outcome.failed);
+    world.send(0, kStoppedTag, outcome.stopped);
     world.send(0, kTextTag, outcome.text);
   }
 
@@ -73,6 +77,7 @@ struct Campaign::Ranks {
     std::size_t i = 0;
     world.recv(from, kIndexTag, i);
     world.recv(from, kFailedTag, outcomes[i].failed);
+    world.recv(from, kStoppedTag, outcomes[i].stopped);
     world.recv(from, kTextTag, outcomes[i].text);
   }
 };

@@ -6,6 +6,11 @@
 #include <cstring>
 #include <stdexcept>
 
+#include <poll.h>
+#include <signal.h>
+#ifdef __linux__
+#include <sys/prctl.h>
+#endif
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -79,10 +84,15 @@ void sendAll(int pipe, const void* data, std::size_t bytes) {
   }
 }
 
-std::string receivedAll(int pipe) {
+// Nothing once a stop is requested.
+std::string receivedAll(int pipe, const Watch& watch) {
+  constexpr int kLook_ms = 20;
   std::string bytes;
   char part[4096];
   for (;;) {
+    pollfd ready{.fd = pipe, .events = POLLIN, .revents = 0};
+    while (poll(&ready, 1, kLook_ms) <= 0)
+      if (watch.stopped()) return {};
     const ssize_t got = read(pipe, part, sizeof part);
     if (got < 0 && errno == EINTR) continue;
     if (got <= 0) return bytes;
@@ -109,6 +119,9 @@ std::string answered(const BenchmarkPlan& plan, const BenchmarkJob& job) {
   problem.seed = job.seed;
   problem.kinematics = asked.kinematics;
   const Plan found = named.plan(problem);
+  // What a planner spoke of on the way was not checked: no cost below that of the route it ends with stands.
+  if (found.status != RouteStatus::Found) progress.clear();
+  std::erase_if(progress, [&](const CostAtTime& at) { return at.cost_J < found.cost_J; });
   if (found.status == RouteStatus::Found) note(found.cost_J);
   const double seconds = elapsed();
   const Answer result{.status = found.status,
@@ -131,13 +144,16 @@ std::string answered(const BenchmarkPlan& plan, const BenchmarkJob& job) {
 
 }  // namespace
 
-std::string runIsolated(const BenchmarkPlan& plan, const BenchmarkJob& job) {
+std::string runIsolated(const BenchmarkPlan& plan, const BenchmarkJob& job, const Watch& watch) {
   int ends[2];
   if (pipe(ends) != 0) throw std::runtime_error(std::string("no pipe for a run: ") + std::strerror(errno));
   const pid_t child = fork();
   if (child < 0) throw std::runtime_error(std::string("no process for a run: ") + std::strerror(errno));
   if (child == 0) {
     close(ends[0]);
+#ifdef __linux__
+    prctl(PR_SET_PDEATHSIG, SIGKILL);  // no run outlives a program that was ended at once
+#endif
     alarm(static_cast<unsigned>(std::min(1e6, 10.0 * plan.time_limit_s + 60.0)));  // a run-away ends here
     try {
       const std::string bytes = answered(plan, job);
@@ -148,8 +164,9 @@ std::string runIsolated(const BenchmarkPlan& plan, const BenchmarkJob& job) {
     _exit(0);
   }
   close(ends[1]);
-  std::string bytes = receivedAll(ends[0]);
+  std::string bytes = receivedAll(ends[0], watch);
   close(ends[0]);
+  if (bytes.empty()) kill(child, SIGKILL);  // stopped, or dead already
   rusage used{};
   wait4(child, nullptr, 0, &used);
   if (bytes.size() < sizeof(Answer)) return {};
@@ -202,17 +219,23 @@ std::vector<BenchmarkRun> runBenchmark(const BenchmarkPlan& plan, const Watch& w
   std::vector<BenchmarkRun> runs;
   for (const BenchmarkJob& job : jobs) {
     if (watch.stopped()) return runs;
-    runs.push_back(benchmarkRun(job, runIsolated(plan, job)));
+    const std::string bytes = runIsolated(plan, job, watch);
+    if (bytes.empty() && watch.stopped()) return runs;
+    runs.push_back(benchmarkRun(job, bytes));
     watch.report(static_cast<double>(runs.size()) / static_cast<double>(jobs.size()));
   }
   return runs;
+}
+
+bool stands(const BenchmarkRun& run) noexcept {
+  return run.status == RouteStatus::Found && !run.crashed && !run.breached;
 }
 
 double bestKnown_J(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& runs, std::size_t case_index) {
   if (std::isfinite(plan.cases[case_index].optimum_J)) return plan.cases[case_index].optimum_J;
   double best_J = std::numeric_limits<double>::infinity();
   for (const BenchmarkRun& run : runs)
-    if (run.case_index == case_index && !run.breached) best_J = std::min(best_J, run.cost_J);
+    if (run.case_index == case_index && stands(run)) best_J = std::min(best_J, run.cost_J);
   return best_J;
 }
 

@@ -53,7 +53,7 @@ struct BenchmarkRun {
   bool reached = false;          ///< in worlds: the rover came to the goal
   double drive_s = 0.0;          ///< in worlds: time that the drive took
   double max_slip = 0.0;         ///< in worlds: largest slip met
-  std::vector<CostAtTime> progress;  ///< ever better costs
+  std::vector<CostAtTime> progress;  ///< ever better costs, none below the route's; empty without a route
 };
 
 /// What a benchmark runs.
@@ -76,9 +76,9 @@ std::vector<BenchmarkJob> jobsOf(const BenchmarkPlan& plan);
 
 /// One run in a process of its own: a crash, an abort or a run-away is a result, not the end of the
 /// benchmark. Call it while the program has no other threads. Returns the answer as bytes, for benchmarkRun()
-/// on this or another machine of the same kind; empty when the process did not live to answer. Throws
-/// std::runtime_error when none can be made.
-std::string runIsolated(const BenchmarkPlan& plan, const BenchmarkJob& job);
+/// on this or another machine of the same kind; empty when the process did not live to answer, and when a
+/// stop was requested, which ends it. Throws std::runtime_error when none can be made.
+std::string runIsolated(const BenchmarkPlan& plan, const BenchmarkJob& job, const Watch& watch = {});
 
 /// What the bytes say.
 BenchmarkRun benchmarkRun(const BenchmarkJob& job, const std::string& bytes);
@@ -86,8 +86,11 @@ BenchmarkRun benchmarkRun(const BenchmarkJob& job, const std::string& bytes);
 /// All jobs, one after another; fewer when a stop is requested.
 std::vector<BenchmarkRun> runBenchmark(const BenchmarkPlan& plan, const Watch& watch = {});
 
-/// The best cost known of a case: the optimum where it is known, else the best of all its runs [J]; infinite
-/// for none.
+/// Whether a run ended with a route that the independent check allows: only its costs mean anything.
+bool stands(const BenchmarkRun& run) noexcept;
+
+/// The best cost known of a case: the optimum where it is known, else the best of all its runs whose routes
+/// stand [J]; infinite for none.
 double bestKnown_J(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& runs, std::size_t case_index);
 
 }  // namespace talus::planner

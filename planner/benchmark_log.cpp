@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <sstream>
@@ -78,6 +79,16 @@ std::string oneWord(std::string name) {
   return name;
 }
 
+// Said of a case that a stop kept from all its runs.
+std::string cutShort(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& runs,
+                     std::size_t case_index) {
+  const auto asked = plan.planners.size() * static_cast<std::size_t>(plan.seeds);
+  const auto made = static_cast<std::size_t>(
+      std::ranges::count_if(runs, [&](const BenchmarkRun& run) { return run.case_index == case_index; }));
+  return made == asked ? ""
+                       : "\ncancelled: " + std::to_string(made) + " of " + std::to_string(asked) + " runs";
+}
+
 }  // namespace
 
 std::string benchmarkLog(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& runs,
@@ -91,7 +102,7 @@ std::string benchmarkLog(const BenchmarkPlan& plan, const std::vector<BenchmarkR
       << "\nresolution_m REAL = " << grid.resolution_m
       << "\nRunning on talus\nStarting at 1970-01-01 00:00:00\n<<<|\nfrom " << asked.start.x_m << ","
       << asked.start.y_m << " to " << asked.goal.x_m << "," << asked.goal.y_m
-      << "\n|>>>\n1 is the random seed\n"
+      << cutShort(plan, runs, case_index) << "\n|>>>\n1 is the random seed\n"
       << plan.time_limit_s << " seconds per run\n0 MB per run\n"
       << plan.seeds << " runs per planner\n";
   double total_s = 0.0;

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -15,6 +16,10 @@ namespace {
 // Between poses that a curve is fitted to: cells at least, and radii.
 constexpr double kPose_cells = 4.0;
 constexpr double kPose_radii = 2.0;
+// Radii that a rover which turns in place is offered beside.
+constexpr std::array kBend_cells{1.5, 4.0};
+// Poses that the search may try while another drive is known.
+constexpr std::uint64_t kBeside = 50'000;
 
 Plan ended(PosePlan leg) {
   Plan plan;
@@ -57,11 +62,44 @@ PosePath fitted(const std::vector<Pose>& poses, const PoseCost& cost, const Shor
   return shortened(path, cost, options);
 }
 
+// The drive along a polyline that keeps a radius; without one, of straight legs and turns in place.
+PosePath along(const std::vector<maps::Point>& points, const PoseProblem& asked, const PoseCost& cost) {
+  const double cell_m = asked.map->grid().resolution_m, radius_m = cost.kinematics().turning_radius_m;
+  const auto apart = subdivided(points, std::max(kPose_cells * cell_m, kPose_radii * radius_m));
+  if (radius_m <= 0.0) return turningDrive(apart, {asked.start_heading_rad, asked.goal_heading_rad}, cost);
+  return fitted(posesAlong(apart, asked), cost,
+                {.joint_m = kPose_cells * cell_m, .cheapest_J_per_m = cheapestMetre_J(*asked.map)});
+}
+
+// A rover that turns in place may bend its way as well, and need not stop for it.
+PosePlan cheapestAlong(const std::vector<maps::Point>& points, const PoseProblem& asked) {
+  const MotionCost motion(asked.map);
+  std::vector<double> radii_m{asked.kinematics.turning_radius_m};
+  if (radii_m.front() <= 0.0)
+    for (const double cells : kBend_cells) radii_m.push_back(cells * asked.map->grid().resolution_m);
+  PosePlan best;
+  for (const double radius_m : radii_m) {
+    Kinematics kinematics = asked.kinematics;
+    kinematics.turning_radius_m = radius_m;
+    const PoseCost cost(motion, kinematics);
+    PosePath path = along(points, asked, cost);
+    const double cost_J = cost(path);
+    const bool cheaper = best.status != RouteStatus::Found || cost_J < best.cost_J;
+    if (path.legs.empty() || !std::isfinite(cost_J) || !cheaper) continue;
+    if (!mayBeDriven(*asked.map, path, asked.kinematics)) continue;
+    best.status = RouteStatus::Found;
+    best.path = std::move(path);
+    best.cost_J = cost_J;
+  }
+  return best;
+}
+
 }  // namespace
 
 // Turning costs little where the radius is small against the bends of the route: then the any-angle route,
-// which the search's eight headings do not see, is the better seed.
-void DrivePlanner::improve(const PoseProblem& asked, const Problem& problem, PosePlan& leg) {
+// which the search's eight headings do not see, is the better seed; and it threads what motions of the
+// search's one length step over.
+PosePlan DrivePlanner::alongRoute(const PoseProblem& asked, const Problem& problem) {
   Problem free = problem;
   free.start = asked.start;
   free.goal = asked.goal;
@@ -69,30 +107,19 @@ void DrivePlanner::improve(const PoseProblem& asked, const Problem& problem, Pos
   free.goal_tolerance_m = 0.0;
   free.prove = false;
   const Plan route = field_.plan(free);
-  if (route.status != RouteStatus::Found || route.points.size() < 2 || route.cost_J >= leg.cost_J) return;
-  const double cell_m = problem.map->grid().resolution_m;
-  const double apart_m = std::max(kPose_cells * cell_m, kPose_radii * asked.kinematics.turning_radius_m);
-  const MotionCost motion(problem.map);
-  const PoseCost cost(motion, asked.kinematics);
-  const auto points = subdivided(route.points, apart_m);
-  PosePath path =
-      asked.kinematics.turning_radius_m <= 0.0
-          ? turningDrive(points, {asked.start_heading_rad, asked.goal_heading_rad}, cost)
-          : fitted(posesAlong(points, asked), cost,
-                   {.joint_m = kPose_cells * cell_m, .cheapest_J_per_m = cheapestMetre_J(*problem.map)});
-  if (path.legs.empty()) return;
-  const double cost_J = cost(path);
-  if (cost_J >= leg.cost_J || !mayBeDriven(*problem.map, path, asked.kinematics)) return;
-  leg.path = std::move(path);
-  leg.cost_J = cost_J;
+  if (route.status != RouteStatus::Found || route.points.size() < 2) return {};
+  return cheapestAlong(route.points, asked);
 }
 
 PosePlan DrivePlanner::drivenTo(PoseProblem asked, const Problem& problem, maps::Point end) {
   asked.goal = end;
+  PosePlan along = alongRoute(asked, problem);
+  const bool known = along.status == RouteStatus::Found;
+  if (known) asked.most_expanded = kBeside;
   PosePlan leg = search_.plan(asked);
-  if (leg.status != RouteStatus::Found) return leg;
-  improve(asked, problem, leg);
-  if (!sampling_) return leg;
+  if (leg.status == RouteStatus::Cancelled) return leg;
+  if (known && (leg.status != RouteStatus::Found || along.cost_J < leg.cost_J)) leg = std::move(along);
+  if (leg.status != RouteStatus::Found || !sampling_) return leg;
   sampling_->seed = problem.seed;
   if (sampling_->better) sampling_->better(leg.cost_J);
   return improvedBySampling(asked, leg, *sampling_);

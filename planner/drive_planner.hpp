@@ -11,7 +11,8 @@
 namespace talus::planner {
 
 /// Drives that keep the problem's kinematics, through all via points in order: HybridSearch leg by leg, each
-/// setting out as the one before arrived, or a curve fitted to FieldPlanner's route where that is cheaper.
+/// setting out as the one before arrived, or a curve fitted to FieldPlanner's route where that is cheaper or
+/// the search finds none.
 /// Keeps what the search knows of map and goal. Not thread-safe: one object a thread.
 class DrivePlanner {
  public:
@@ -30,7 +31,7 @@ class DrivePlanner {
  private:
   PosePlan drivenTo(PoseProblem asked, const Problem& problem, maps::Point end);
   PosePlan drivenWithin(const PoseProblem& asked, const Problem& problem);
-  void improve(const PoseProblem& asked, const Problem& problem, PosePlan& leg);
+  PosePlan alongRoute(const PoseProblem& asked, const Problem& problem);
 
   std::optional<PoseSamplingSettings> sampling_;
   HybridSearch search_;

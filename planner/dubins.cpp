@@ -24,14 +24,16 @@ struct Word {
 // Start at the origin looking at `alpha`, end at (d, 0) looking at `beta`, both from the line between them.
 struct Ends {
   double d, alpha, beta;
+  double sin_alpha = std::sin(alpha), cos_alpha = std::cos(alpha);
+  double sin_beta = std::sin(beta), cos_beta = std::cos(beta);
 };
 
 // Turn, straight, turn. With the centres of both circles known, `along` and `across` is the way from the
 // first to the last, and the straight piece its length (outer tangent) or the leg beside 2 (inner tangent).
 Word turnStraightTurn(const Ends& e, int first, int last) noexcept {
   Word none{.length = {std::numeric_limits<double>::infinity(), 0.0, 0.0}};
-  const double along = e.d - last * std::sin(e.beta) + first * std::sin(e.alpha);
-  const double across = last * std::cos(e.beta) - first * std::cos(e.alpha);
+  const double along = e.d - last * e.sin_beta + first * e.sin_alpha;
+  const double across = last * e.cos_beta - first * e.cos_alpha;
   const double square = along * along + across * across;
   double straight = std::sqrt(square), heading = std::atan2(across, along);
   if (first != last) {
@@ -46,8 +48,8 @@ Word turnStraightTurn(const Ends& e, int first, int last) noexcept {
 // Turn, turn the other way by more than half a circle, turn as before.
 Word threeTurns(const Ends& e, int side) noexcept {
   Word none{.length = {std::numeric_limits<double>::infinity(), 0.0, 0.0}};
-  const double along = e.d - side * std::sin(e.beta) + side * std::sin(e.alpha);
-  const double across = side * std::cos(e.beta) - side * std::cos(e.alpha);
+  const double along = e.d - side * e.sin_beta + side * e.sin_alpha;
+  const double across = side * e.cos_beta - side * e.cos_alpha;
   const double apart = std::hypot(along, across);
   if (apart > 4.0) return none;
   // The middle circle touches both, on the side that makes the middle turn more than half a circle.

@@ -18,6 +18,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kJoint_cells = 4.0;  // between the joints that shortening looks at
+constexpr double kBetter = 0.998;     // of the cost: worth to look on from there
 constexpr float kClosed = -std::numeric_limits<float>::infinity();
 constexpr std::uint64_t kNever = std::numeric_limits<std::uint64_t>::max();
 constexpr std::uint32_t kNone = 0xffffffff;
@@ -29,6 +30,7 @@ struct Node {
   std::uint32_t parent = kNone;
   std::int16_t heading = 0;   // by its number
   std::int8_t direction = 0;  // of travel: +1 forward, -1 reverse, 0 not moved yet
+  bool stands = false;        // what led here has passed the check
 };
 
 struct Queued {
@@ -48,6 +50,7 @@ class Search {
         field_(field),
         motion_cost_(problem.map),
         cost_(motion_cost_, problem.kinematics),
+        cheapest_J_per_m_(cheapestMetre_J(*problem.map)),
         motions_(*problem.map, problem.kinematics,
                  {.headings = options.headings,
                   .step_cells = options.step_cells,
@@ -58,32 +61,41 @@ class Search {
     while (!open_.empty()) {
       const Queued next = open_.top();
       if (next.estimate >= best_cost_ || expanded_ >= last_) return RouteStatus::Found;
+      if (last_ == kNever && best_cost_ <= options_.good * next.estimate)
+        last_ = expanded_ + options_.improve;
       open_.pop();
       if (best(nodes_[next.node]) != nodes_[next.node].cost) continue;  // a better one came later
       if ((++expanded_ & 63) == 0 && stop_()) {
         if (stop_.cancelled()) return RouteStatus::Cancelled;
         return best_cost_ < kInfinity ? RouteStatus::Found : RouteStatus::TimedOut;
       }
-      if (expanded_ > options_.most_expanded)
+      if (expanded_ > std::min(options_.most_expanded, problem_.most_expanded))
         return best_cost_ < kInfinity ? RouteStatus::Found : RouteStatus::TimedOut;
       expand(next.node);
     }
     return best_cost_ < kInfinity ? RouteStatus::Found : RouteStatus::NoRoute;
   }
 
-  PosePath path() const { return pathThrough(best_node_, best_finish_); }
+  PosePath path() const {
+    std::uint32_t root = best_node_;
+    while (nodes_[root].motion) root = nodes_[root].parent;
+    PosePath path = pathFrom(root, best_node_);
+    path.legs.insert(path.legs.end(), best_finish_.begin(), best_finish_.end());
+    return path;
+  }
 
   bool checked(const PosePath& path) const { return mayBeDriven(*problem_.map, path, problem_.kinematics); }
 
   std::uint64_t expanded() const noexcept { return expanded_; }
   const PoseCost& cost() const noexcept { return cost_; }
+  double cheapest_J_per_m() const noexcept { return cheapest_J_per_m_; }
 
  private:
-  PosePath pathThrough(std::uint32_t at, const std::vector<PosePath::Leg>& finish) const {
-    PosePath path{.start = {}, .legs = {finish.rbegin(), finish.rend()}};
-    for (; nodes_[at].motion; at = nodes_[at].parent) path.legs.push_back(nodes_[at].motion->leg);
+  // From one node to another that descends from it.
+  PosePath pathFrom(std::uint32_t first, std::uint32_t last) const {
+    PosePath path{.start = poseOf(nodes_[first]), .legs = {}};
+    for (; last != first; last = nodes_[last].parent) path.legs.push_back(nodes_[last].motion->leg);
     std::reverse(path.legs.begin(), path.legs.end());
-    path.start = poseOf(nodes_[at]);
     return path;
   }
 
@@ -169,14 +181,27 @@ class Search {
     PosePath rest{.start = poseOf(node), .legs = {}};
     rest.legs = cost_.direct(rest.start, {problem_.goal, goal_heading_rad});
     const bool turns = !rest.legs.empty() && node.direction * direction(rest.legs.front()) < 0;
-    const double so_far = static_cast<double>(node.cost);
-    const double cost = so_far + cost_(rest) + (turns ? problem_.kinematics.cusp.cost_J : 0.0);
-    if (cost >= best_cost_ || !checked(pathThrough(index, rest.legs))) return;
-    const bool good = cost - so_far <= options_.good * toGo(*problem_.map->grid().cellAt(node.place));
-    if (good && last_ == kNever) last_ = expanded_ + options_.improve;
+    const double so_far = static_cast<double>(node.cost) + (turns ? problem_.kinematics.cusp.cost_J : 0.0);
+    if (so_far + cheapest_J_per_m_ * length_m(rest) >= best_cost_) return;
+    const double cost = so_far + cost_(rest);
+    if (cost >= best_cost_ || !standsUp(index, rest.legs)) return;
+    if (last_ != kNever && cost < kBetter * best_cost_) last_ = expanded_ + options_.improve;
     best_cost_ = cost;
     best_node_ = index;
     best_finish_ = std::move(rest.legs);
+  }
+
+  // Whether the drive through a node stands up to the check. Legs are checked apart, and each once: with the
+  // leg before it, since the check looks at the turn between them too.
+  bool standsUp(std::uint32_t index, const std::vector<PosePath::Leg>& finish) {
+    std::uint32_t from = index;
+    while (nodes_[from].motion && !nodes_[from].stands) from = nodes_[from].parent;
+    if (from != index && !checked(pathFrom(nodes_[from].motion ? nodes_[from].parent : from, index)))
+      return false;
+    for (std::uint32_t at = index; at != from; at = nodes_[at].parent) nodes_[at].stands = true;
+    PosePath last = pathFrom(nodes_[index].motion ? nodes_[index].parent : index, index);
+    last.legs.insert(last.legs.end(), finish.begin(), finish.end());
+    return checked(last);
   }
 
   const PoseProblem& problem_;
@@ -185,6 +210,7 @@ class Search {
   CostToGo& field_;
   MotionCost motion_cost_;
   PoseCost cost_;
+  double cheapest_J_per_m_;
   MotionSet motions_;
   std::vector<Node> nodes_;
   PoseTable table_{problem_.map->grid().size(), static_cast<std::size_t>(2 * options_.headings)};
@@ -266,7 +292,7 @@ PosePlan HybridSearch::plan(const PoseProblem& problem) {
   plan.path = search.path();
   PosePath shorter = shortened(plan.path, search.cost(),
                                {.joint_m = kJoint_cells * problem.map->grid().resolution_m,
-                                .cheapest_J_per_m = cheapestMetre_J(*problem.map)});
+                                .cheapest_J_per_m = search.cheapest_J_per_m()});
   if (problem.kinematics.turning_radius_m <= 0.0) {
     std::vector<maps::Point> places;
     for (const Pose& pose : sampled(plan.path, kJoint_cells * problem.map->grid().resolution_m))

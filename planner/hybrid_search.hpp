@@ -23,6 +23,8 @@ struct PoseProblem {
   Kinematics kinematics;
   double time_limit_s = std::numeric_limits<double>::infinity();  ///< > 0
   Watch watch;
+  std::uint64_t most_expanded =
+      std::numeric_limits<std::uint64_t>::max();  ///< poses, where fewer than HybridOptions allow
 };
 
 /// Choices of the search.
@@ -30,8 +32,8 @@ struct HybridOptions {
   int headings = 72;        ///< headings told apart at a cell, >= 8
   double step_cells = 1.5;  ///< length of a motion; more than sqrt 2 leaves the cell
   double greed = 1.1;  ///< weight of the cost still to go, >= 1: more finds a drive sooner, and a dearer one
-  double good =
-      1.1;  ///< a direct curve to the goal that costs at most so many times the field ends the search soon
+  double good = 1.03;  ///< a drive that costs at most so many times the estimate of the most promising pose
+                       ///< left ends the search soon, >= 1
   std::uint64_t improve = 500;              ///< poses tried after that
   std::uint64_t most_expanded = 2'000'000;  ///< then it gives up, TimedOut
 };

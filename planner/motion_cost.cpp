@@ -144,6 +144,13 @@ bool touchesOnlyAllowed(const costmap::CostGrid& map, InCells p, costmap::Direct
 
 }  // namespace
 
+bool MotionCost::headingAllowed(maps::Point place, costmap::Direction heading) const noexcept {
+  const InCells p = inCells(map_->grid(), place);
+  if (onEdge(p.x) || onEdge(p.y)) return touchesOnlyAllowed(*map_, p, heading);
+  const auto cell = map_->grid().cellAt(place);
+  return cell && std::isfinite(map_->cost().costPerMetre(map_->at(*cell), heading));
+}
+
 // A turn on an edge or corner must not slip between cells: both its headings need all cells it touches.
 bool MotionCost::turnAllowed(const Segment& motion, maps::Point end) const noexcept {
   const InCells p = inCells(map_->grid(), end);

@@ -36,6 +36,10 @@ class MotionCost {
   /// its heading must be allowed in every cell touched. What along() asks of each turn.
   bool turnAllowed(const Segment& motion, maps::Point end) const noexcept;
 
+  /// Whether the heading, a unit vector, is allowed in every cell of the map that a place touches: two on an
+  /// edge, four on a corner.
+  bool headingAllowed(maps::Point place, costmap::Direction heading) const noexcept;
+
   /// Whether some heading may enter the cell of this point.
   bool allowed(maps::Point place) const noexcept;
 

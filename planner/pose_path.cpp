@@ -89,15 +89,13 @@ double PoseCost::arc(const Pose& from, const Arc& arc) const noexcept {
   return sum;
 }
 
+// Rounding along a drive moves a place on an edge to either side: a turn there needs both.
 double PoseCost::turnInPlace(const Pose& from, double turn_rad) const noexcept {
-  const auto& map = cost_.map();
-  const auto cell = map.grid().cellAt(from.place);
-  if (!cell) return kInfinity;
+  if (!cost_.map().grid().cellAt(from.place)) return kInfinity;
   const int steps = std::max(1, static_cast<int>(std::ceil(std::abs(turn_rad) / kBend_rad)));
   for (int k = 0; k <= steps; ++k) {
     const double heading = from.heading_rad + turn_rad * k / steps;
-    if (std::isinf(map.cost().costPerMetre(map.at(*cell), {std::cos(heading), std::sin(heading)})))
-      return kInfinity;
+    if (!cost_.headingAllowed(from.place, {std::cos(heading), std::sin(heading)})) return kInfinity;
   }
   return kinematics_.stop.cost_J + turnsAt(from.place).in_place.cost_J * std::abs(turn_rad);
 }

@@ -5,7 +5,7 @@
 namespace talus::planner {
 
 struct ShortenOptions {
-  double joint_m = 1.0;           ///< joints of the drive lie no further apart, > 0
+  double joint_m = 1.0;           ///< between joints of the drive in the first round, > 0; then finer
   double cheapest_J_per_m = 0.0;  ///< no metre costs less; tells which curves need not be priced
 };
 

@@ -77,12 +77,11 @@ class Checker {
   }
 
   void turn(const Pose& from, double turn_rad) {
-    const auto cell = map_.grid().cellAt(from.place);
-    if (!cell) return report(std::nullopt, from.place, "outside the map");
+    if (!map_.grid().cellAt(from.place)) return report(std::nullopt, from.place, "outside the map");
     const int parts = static_cast<int>(std::ceil(std::abs(turn_rad) / kApart_rad));
     for (int k = 0; k <= parts; ++k) {
       look(from.heading_rad + turn_rad * k / std::max(1, parts));
-      enter(*cell, from.place);
+      touch(from.place);
     }
   }
 

@@ -64,10 +64,19 @@ class Turning {
     return std::abs(by) > kNoTurn_rad ? cost_({at, from_rad}, PosePath::Leg{{}, by}) : 0.0;
   }
 
+  // The points of a route lie on edges of cells, and a leg between two of them goes another way than the
+  // route.
+  bool mayTurnAtEnds(std::size_t from, std::size_t to) const {
+    const Segment leg{points_[from], points_[to]};
+    return (from == 0 || cost_.motion().turnAllowed(leg, leg.from)) &&
+           (to + 1 == points_.size() || cost_.motion().turnAllowed(leg, leg.to));
+  }
+
   void arrive(std::size_t to, std::size_t from) {
     const maps::Point a = points_[from], b = points_[to];
     const double length = std::hypot(b.x_m - a.x_m, b.y_m - a.y_m);
-    const double straight = length > 0.0 ? cost_.motion()({a, b}) : kInfinity;
+    if (!(length > 0.0) || !mayTurnAtEnds(from, to)) return;
+    const double straight = cost_.motion()({a, b});
     if (straight == kInfinity) return;
     const double ahead = std::atan2(b.y_m - a.y_m, b.x_m - a.x_m);
     for (const bool reverse : {false, true}) {

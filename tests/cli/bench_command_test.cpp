@@ -1,4 +1,5 @@
 #include <cstdlib>
+#include <filesystem>
 
 #include <nlohmann/json.hpp>
 
@@ -102,6 +103,41 @@ TEST(BenchCommand, RanksOfMpiGiveWhatOneProcessGives) {
   };
   const auto one = answer("");
   expectRanksAgree(answer, one);
+}
+
+// The runs of a fast planner, then six of twenty seconds each, cut short.
+std::vector<std::string> longCampaign(const Folder& folder) {
+  return {"bench",  room(folder), "--planners", "field,BIT*",   "--runs", "2",
+          "--time", "20",         "-o",         folder / "out", "--json"};
+}
+
+void expectTheFastRunsKept(const Folder& folder) {
+  const std::string table = fileContent(folder / "out/table.txt");
+  EXPECT_THAT(table, HasSubstr("cancelled: 6 of 12 runs")) << table;
+  EXPECT_THAT(fileContent(folder / "out/index.html"), HasSubstr("Cancelled: 6 of 12 runs were made."));
+  EXPECT_THAT(fileContent(folder / "out/room_3.log"), HasSubstr("cancelled: 2 of 4 runs"));
+  for (const auto& entry : std::filesystem::directory_iterator(folder / "out"))
+    EXPECT_FALSE(entry.path().filename().string().starts_with('.')) << entry.path();
+}
+
+TEST(BenchCommand, ACancelledCampaignKeepsWhatIsDone) {
+  const Folder folder;
+  const Ran ran = runTalus(longCampaign(folder), folder.path(), 3.0);
+  EXPECT_EQ(ran.code, 130) << ran.err;
+  EXPECT_EQ(ran.out, "");  // a reader of stdout gets the whole or nothing
+  EXPECT_THAT(ran.err, HasSubstr("cancelled after 6 of 12 runs"));
+  expectTheFastRunsKept(folder);
+}
+
+TEST(BenchCommand, ACancelledCampaignOfRanksKeepsWhatIsDone) {
+  if (!hasMpi()) GTEST_SKIP() << "built without Boost.MPI, or mpirun is not installed";
+  const Folder folder;
+  std::string call =
+      "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 timeout --foreground -s INT 5 "
+      "mpirun --oversubscribe -np 2 " TALUS_PROGRAM;
+  for (const std::string& word : longCampaign(folder)) call += " '" + word + "'";
+  EXPECT_NE(std::system((call + " > " + (folder / "said.txt") + " 2>&1").c_str()), 0);
+  expectTheFastRunsKept(folder);
 }
 
 TEST(BenchCommand, MistakesAreOneLineWithTwo) {

@@ -1,4 +1,6 @@
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 #include <planner/benchmark.hpp>
 #include <planner/benchmark_log.hpp>
@@ -31,6 +33,9 @@ TEST(Benchmark, RunsEveryPlannerCaseAndSeed) {
     EXPECT_FALSE(run.breached);
     EXPECT_GT(run.megabytes, 1.0);
     EXPECT_EQ(run.status == RouteStatus::Found, run.case_index == 0);
+    // Property: no cost on the way is below that of the route that was checked; without one there is none.
+    EXPECT_EQ(run.progress.empty(), run.case_index != 0);
+    for (const CostAtTime& at : run.progress) EXPECT_GE(at.cost_J, run.cost_J);
   }
   // Property: what is found costs no less than its bound, and the best known is the least of all.
   EXPECT_GE(runs[0].cost_J, runs[0].lower_bound_J);
@@ -64,6 +69,20 @@ TEST(Benchmark, StopsBetweenRuns) {
   std::stop_source stop;
   stop.request_stop();
   EXPECT_TRUE(runBenchmark(smallPlan(), {.progress = {}, .stop = stop.get_token()}).empty());
+}
+
+TEST(Benchmark, AStopEndsTheRunInWork) {
+  BenchmarkPlan plan = smallPlan();
+  plan.planners = {"RRTstar"};
+  plan.time_limit_s = 600.0;
+  std::jthread stopper;
+  std::stop_source stop;
+  const Watch watch{.progress = {}, .stop = stop.get_token()};
+  stopper = std::jthread([&stop] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    stop.request_stop();
+  });
+  EXPECT_TRUE(runBenchmark(plan, watch).empty());  // else the test takes ten minutes
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <planner/annotation.hpp>
 #include <planner/drive_planner.hpp>
 #include <planner/route_check.hpp>
+#include <planner/slip_world.hpp>
 
 #include "drawn_map.hpp"
 
@@ -95,6 +96,7 @@ TEST(DrivePlanner, TheReportCountsTurning) {
   problem.start_heading_rad = M_PI / 2;
   problem.kinematics.may_reverse = false;
   problem.kinematics.stop = {.cost_J = 7.0, .energy_J = 6.0, .time_s = 2.0};  // and for the stop
+  problem.kinematics.turns.on_arc.cost_J = 50.0;                              // so that no arc is worth it
   const Plan plan = DrivePlanner().plan(problem);
   ASSERT_EQ(plan.status, RouteStatus::Found) << plan.reason;
   EXPECT_NEAR(plan.cost_J, 107.0 + 5.0 * M_PI / 2, 1e-3);
@@ -106,6 +108,23 @@ TEST(DrivePlanner, TheReportCountsTurning) {
   EXPECT_NEAR(route.vertices.front().turn_rad, -M_PI / 2, 1e-9);
   EXPECT_NEAR(route.vertices.front().heading_rad, M_PI / 2, 1e-9);
   EXPECT_NEAR(route.vertices[1].heading_rad, 0.0, 1e-9);
+}
+
+TEST(DrivePlanner, ARoverThatTurnsInPlaceNeedNotStopForABend) {
+  // Property: where a stop costs more than the few cells that an arc is longer, the drive around a corner
+  // bends.
+  std::vector<std::string> rows(24, std::string(24, '.'));
+  for (std::size_t row = 6; row < 18; ++row) rows[row].replace(6, 12, 12, '#');
+  Problem problem = across(testing::drawn(rows), 0.0);
+  problem.start = {2.5, 6.5};
+  problem.goal = {17.5, 21.5};
+  problem.kinematics.stop = {.cost_J = 100.0};
+  const Plan route = FieldPlanner().plan(problem);
+  const Plan plan = DrivePlanner().plan(problem);
+  ASSERT_EQ(plan.status, RouteStatus::Found) << plan.reason;
+  EXPECT_EQ(shape(plan.drive).turns_in_place, 0);
+  EXPECT_LT(plan.cost_J, route.cost_J + 50.0);
+  EXPECT_TRUE(violations(*problem.map, plan.drive, 0.0).empty());
 }
 
 TEST(DrivePlanner, AVertexInReverseLooksTheOtherWay) {
@@ -166,6 +185,24 @@ TEST(RouteCheckOfDrives, ATurnInPlaceNeedsEveryHeading) {
   EXPECT_TRUE(violations(grid, PosePath{.start = {{0.5, 0.5}, 0.0}, .legs = {{{}, 0.2}}}, 0.0).empty());
   EXPECT_FALSE(violations(grid, PosePath{.start = {{0.5, 0.5}, 0.0}, .legs = {{{}, M_PI}}}, 0.0).empty());
   EXPECT_FALSE(violations(grid, PosePath{.start = {{0.5, 0.5}, 0.0}, .legs = {{{}, 0.2}}}, 1.0).empty());
+}
+
+// Property: on worlds of steep, slippery ground (slip_world.hpp), where a cell may be left in two narrow
+// cones of headings only, a rover that turns in place for free drives whatever route the field finds, and
+// pays no more for it.
+TEST(DrivePlanner, DrivesWhatTheFieldFindsWhereHeadingsAreFew) {
+  for (const std::uint64_t seed : {1001u, 1008u, 1010u, 1012u, 1014u}) {
+    const SlipWorld world = slipWorld({.seed = seed});
+    Problem problem{.map = world.map, .start = {8.5, 8.5}, .goal = {87.5, 87.5}, .prove = false};
+    const Plan route = FieldPlanner().plan(problem);
+    ASSERT_EQ(route.status, RouteStatus::Found);
+    const Plan plan = DrivePlanner().plan(problem);
+    ASSERT_EQ(plan.status, RouteStatus::Found) << seed << ": " << plan.reason;
+    EXPECT_LE(plan.cost_J, (1.0 + 1e-9) * route.cost_J) << seed;
+    EXPECT_TRUE(drivable(*world.map, plan.drive)) << seed;
+    EXPECT_TRUE(violations(*world.map, plan.drive, 0.0).empty()) << seed;
+    EXPECT_TRUE(violations(*world.map, plan.points).empty()) << seed;
+  }
 }
 
 // Property: with a tolerance the drive ends within it, costs no more than to the goal itself, and a goal that

@@ -105,6 +105,27 @@ TEST(HybridSearch, WhatItFindsHoldsUnderADenseCheck) {
   }
 }
 
+TEST(HybridSearch, SearchesAsLongAsItIsTold) {
+  // Property: the less a drive has to be near the estimate, the fewer poses are tried and the dearer it is.
+  std::uint64_t expanded = 0, hasty_expanded = 0;
+  double cost_J = 0.0, hasty_cost_J = 0.0;
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    auto asked =
+        problem(randomMap({.width = 40, .height = 40, .seed = seed, .blocked = 0.08, .roughness = 0.15}));
+    asked.goal = {37.5, 35.5};
+    asked.kinematics.turning_radius_m = 4.0;
+    asked.start_heading_rad = 3.0;
+    asked.goal_heading_rad = -2.0;
+    const PosePlan plan = HybridSearch().plan(asked);
+    const PosePlan hasty = HybridSearch({.good = 1.5, .improve = 0}).plan(asked);
+    ASSERT_EQ(plan.status, hasty.status);
+    expanded += plan.expanded, hasty_expanded += hasty.expanded;
+    cost_J += plan.cost_J, hasty_cost_J += hasty.cost_J;
+  }
+  EXPECT_GT(expanded, 2 * hasty_expanded);
+  EXPECT_LT(cost_J, 0.95 * hasty_cost_J);
+}
+
 TEST(HybridSearch, RefusesWhatCannotStart) {
   HybridSearch search;
   auto outside = problem(drawn(room(20, 5)));
