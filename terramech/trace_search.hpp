@@ -99,7 +99,7 @@ class TraceSearch {
                                             ///< there is one level of slip
   Whitening whitening_;
   Eigen::VectorXd white_;
-  std::vector<int> group_;
+  ExchangeableUnits units_;
   std::optional<ParameterPrior> first_prior_;  ///< of a correction that is never taken out
   std::vector<std::size_t> part_count_;        ///< effects in the model of each accepted candidate
 };
