@@ -225,7 +225,10 @@ Explanation TraceSearch::fitted(const Candidate& candidate, const std::vector<He
   const RefinedModel grown = with(model_, candidate);
   SolvedContacts solved = solved_;
   FitPlan plan = planFor(grown);
-  plan.iterations = candidate.empirical() ? 5 : candidate.parts.size() > 1 ? 30 : 10;
+  plan.iterations = candidate.empirical()        ? 5
+                    : candidate.parts.size() > 2 ? 30
+                    : candidate.parts.size() > 1 ? 15
+                                                 : 10;
   const Fit fit = fitModel(grown, trial_, whitening_, plan, solved);
   Explanation e;
   e.candidate = candidate;
@@ -274,10 +277,7 @@ void TraceSearch::leaveOut(std::size_t k) {
   model_.effects.erase(begin, begin + static_cast<long>(part_count_[k]));
   part_count_.erase(part_count_.begin() + static_cast<long>(k));
   SolvedContacts solved = solved_;
-  model_ = fitModel(model_, trial_, whitening_, planFor(model_), solved).model;
-  level_ = predictRows(model_, trial_, solved_);
-  residual_ = trial_.measured - level_;
-  white_ = whitening_.apply(residual_);
+  setModel(fitModel(model_, trial_, whitening_, planFor(model_), solved).model);
 }
 
 std::vector<Explanation> TraceSearch::rivals(std::size_t k) {
