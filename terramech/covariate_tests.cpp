@@ -30,28 +30,6 @@ Eigen::MatrixXd without(const Eigen::MatrixXd& columns, const Eigen::MatrixXd& n
   return orthonormal(columns - nuisance * (nuisance.transpose() * columns));
 }
 
-/// Columns of a scaled space times this residual give what they give times the residual brought there.
-Eigen::MatrixXd pulledBack(const Eigen::MatrixXd& scaled, const std::vector<Eigen::Matrix4d>& factor) {
-  Eigen::MatrixXd raw(scaled.rows(), scaled.cols());
-  for (std::size_t row = 0; row < factor.size(); ++row) {
-    const auto at = static_cast<Eigen::Index>(row) * kChannels;
-    raw.middleRows<kChannels>(at) = factor[row].transpose() * scaled.middleRows<kChannels>(at);
-  }
-  return raw;
-}
-
-std::vector<Eigen::Matrix4d> marginalFactors(const Whitening& whitening) {
-  std::vector<Eigen::Matrix4d> all;
-  for (std::size_t row = 0; row < whitening.factor.size(); ++row) {
-    Eigen::Matrix4d f = Eigen::Matrix4d::Zero();
-    for (int c = 0; c < kChannels; ++c)
-      if (whitening.factor[row](c, c) != 0.0)
-        f(c, c) = 1.0 / whitening.std(static_cast<Eigen::Index>(row), c);
-    all.push_back(f);
-  }
-  return all;
-}
-
 /// Row by row, missing readings 0.
 Eigen::VectorXd stacked(const Eigen::MatrixXd& residual) {
   Eigen::VectorXd all(residual.rows() * kChannels);
@@ -70,7 +48,6 @@ class Asker {
         residual_(residual),
         white_(whitening.apply(residual)),
         marginal_(whitening.marginal(residual)),
-        marginal_factor_(marginalFactors(whitening)),
         nuisance_white_(orthonormal(plan.nuisance_whitened)),
         nuisance_(orthonormal(plan.nuisance_marginal)) {}
 
@@ -87,7 +64,7 @@ class Asker {
     Question q;
     q.test.covariate = name;
     q.test.channel = channel;
-    q.columns = pulledBack(without(full, nuisance_), marginal_factor_);
+    q.columns = whitening_.backFromMarginal(without(full, nuisance_));
     q.count = static_cast<int>(rows.size());
     for (int row : rows)
       q.total += marginal_[row * kChannels + channel] * marginal_[row * kChannels + channel];
@@ -97,7 +74,7 @@ class Asker {
   void askDirection(const Direction& direction) {
     Question q;
     q.test.covariate = direction.name;
-    q.columns = pulledBack(without(direction.columns, nuisance_white_), whitening_.factor);
+    q.columns = whitening_.backFromApply(without(direction.columns, nuisance_white_));
     q.total = white_.squaredNorm();
     q.count = static_cast<int>((trial_.measured.array().isFinite()).count());
     add(std::move(q));
@@ -161,7 +138,6 @@ class Asker {
   const Whitening& whitening_;
   const Eigen::MatrixXd& residual_;
   Eigen::VectorXd white_, marginal_;
-  std::vector<Eigen::Matrix4d> marginal_factor_;
   Eigen::MatrixXd nuisance_white_, nuisance_;
   std::vector<Question> questions_;
 };
@@ -175,8 +151,9 @@ Eigen::MatrixXd Asker::withinUnits(const Eigen::MatrixXd& columns) const {
   Eigen::VectorXd weight = Eigen::VectorXd::Zero(plan_.units.count() * kChannels);
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(weight.size(), columns.cols());
   const auto weightOf = [&](Eigen::Index i) {
-    const double s = marginal_factor_[static_cast<std::size_t>(i / kChannels)](i % kChannels, i % kChannels);
-    return s * s;
+    const auto row = i / kChannels, c = i % kChannels;
+    if (whitening_.factor[static_cast<std::size_t>(row)](c, c) == 0.0) return 0.0;
+    return 1.0 / (whitening_.std(row, c) * whitening_.std(row, c));
   };
   for (Eigen::Index i = 0; i < columns.rows(); ++i) {
     weight[cell(i)] += weightOf(i);

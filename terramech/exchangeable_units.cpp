@@ -204,7 +204,7 @@ ExchangeableUnits stretchesOfTime(const Trial& trial, const Whitening& whitening
     longest = std::max(
         longest, memory(series(smooth, whitening, c, order), series(without_time, whitening, c, order)));
   if (longest == 0) return {};
-  ExchangeableUnits units{std::vector<int>(order.size()), false};
+  ExchangeableUnits units{std::vector<int>(order.size()), false, without_time};
   const int length = std::max(2, 2 * longest), count = std::max(1, trial.rows() / length);
   for (std::size_t k = 0; k < order.size(); ++k)
     units.unit[static_cast<std::size_t>(order[k])] =
@@ -233,7 +233,7 @@ ExchangeableUnits exchangeableUnits(const Trial& trial, const Whitening& whiteni
       const Values v = valuesOf(left, whitening, c);
       if (v.value.size() > 8) strongest = std::max(strongest, runScore(v, run, trial, fixed));
     }
-    if (strongest > 2.4) return {run, true};
+    if (strongest > 2.4) return {run, true, left};
   }
   return stretchesOfTime(trial, whitening, residual);
 }

@@ -14,6 +14,7 @@ namespace talus::terramech {
 struct ExchangeableUnits {
   std::vector<int> unit;  ///< number of each row's unit from 0 on; empty: rows are on their own
   bool runs = false;      ///< units are the runs of the table, else stretches of time
+  Eigen::MatrixXd left;   ///< the residual without a smooth of the columns that do not follow the units
 
   int count() const;
 };

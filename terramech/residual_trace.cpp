@@ -26,6 +26,11 @@ double pValueOf(const std::vector<CovariateTest>& tests, const Candidate& chosen
   return p;
 }
 
+bool hasCurve(const Candidate& candidate) {
+  return std::any_of(candidate.parts.begin(), candidate.parts.end(),
+                     [](const Effect& e) { return e.empirical(); });
+}
+
 /// A curve in slip or load, which are measured with errors of their own; or in a speed where both speeds are
 /// at hand, since together they tell the error of the slip.
 bool inNoisyInput(const Explanation& e, const Trial& trial) {
@@ -40,11 +45,12 @@ bool inNoisyInput(const Explanation& e, const Trial& trial) {
 }
 
 /// Whether a further effect carries a share of the residual worth a name: what the form of the first leaves
-/// over is often certain and tiny. A curve in a noisy input must carry more, since its own errors, where they
-/// are not as normal as supposed, look like one. The shares come from worlds made for development.
+/// over is often certain and tiny. A curve must carry more than a known form, and one in a noisy input more
+/// again, since its own errors, where they are not as normal as supposed, look like one. The shares come from
+/// worlds made for development.
 bool matters(const Explanation& e, const Trial& trial) {
   const auto values = static_cast<double>(trial.measured.array().isFinite().count());
-  return e.chi2_gain > (inNoisyInput(e, trial) ? 0.5 : 0.1) * values;
+  return e.chi2_gain > (inNoisyInput(e, trial) ? 0.5 : hasCurve(e.candidate) ? 0.1 : 0.04) * values;
 }
 
 Channel strongest(const Explanation& e) {
@@ -160,11 +166,6 @@ void grow(Path& path, const Trial& trial, const TraceOptions& options, const Wat
     reconsider(path.search, path.effects, path.pinned);
     if (static_cast<int>(path.effects.size()) <= count && ++path.barren > 2) break;
   }
-}
-
-bool hasCurve(const Candidate& candidate) {
-  return std::any_of(candidate.parts.begin(), candidate.parts.end(),
-                     [](const Effect& e) { return e.empirical(); });
 }
 
 /// Whether a pair of known forms is the better account. Known forms are believed before a curve; in place of

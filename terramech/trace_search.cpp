@@ -4,6 +4,7 @@
 
 #include <Eigen/QR>
 
+#include <terramech/input_calibration.hpp>
 #include <terramech/spline_basis.hpp>
 #include <terramech/trace_search.hpp>
 
@@ -77,7 +78,7 @@ void TraceSearch::refresh() {
   const Eigen::MatrixXd measured = trial_.measured - level_;
   Eigen::MatrixXd smooth = withoutSmooth(trial_, measured, allButSlip(trial_));
   model_.noise = fitNoise(trial_, smooth, level_, slopes, model_.stated);
-  if (slipIsSeen(trial_, model_.noise)) {
+  if (slipIsSeen(trial_, model_.noise) && speedIsSeen(trial_, model_.noise)) {
     smooth = withoutSmooth(trial_, measured, trial_.covariates);
     model_.noise = fitNoise(trial_, smooth, level_, slopes, model_.stated);
   }
@@ -86,10 +87,12 @@ void TraceSearch::refresh() {
   slopes = inputSlopes(model_, trial_, solved_);
   residual_ = trial_.measured - level_;
   by_slip_.reset();
-  if (!slipIsSeen(trial_, model_.noise)) by_slip_ = levelStd(trial_, model_.noise) * slopes.by_slip;
+  const Eigen::VectorXd shared = sharedSlipStd(trial_, model_.noise);
+  if (shared.size() > 0) by_slip_ = shared.asDiagonal() * slopes.by_slip;
   whitening_ = whitening(trial_, level_, slopes, model_.noise);
-  white_ = whitening_.apply(residual_);
   units_ = exchangeableUnits(trial_, whitening_, residual_);
+  whitening_.share(units_.unit, units_.left);
+  white_ = whitening_.apply(residual_);
 }
 
 double TraceSearch::penalty(const Candidate& candidate) const {
@@ -251,13 +254,23 @@ std::optional<std::size_t> TraceSearch::choose(const std::vector<Explanation>& r
   };
   const auto first = std::find_if(ranked.begin(), ranked.end(), believable);
   if (first == ranked.end()) return {};
-  const auto best = static_cast<std::size_t>(first - ranked.begin());
-  if (!first->candidate.empirical()) return best;
-  // A known form that carries nearly all of what the curve does is the cause; its remainder is a correction.
+  auto best = static_cast<std::size_t>(first - ranked.begin());
+  if (first->candidate.empirical()) {
+    // A known form that carries nearly all of what the curve does is the cause; its remainder is a correction.
+    const auto known = std::find_if(first, ranked.end(), [&](const Explanation& e) {
+      return !e.candidate.empirical() && believable(e) && e.chi2_gain > 0.93 * first->chi2_gain;
+    });
+    if (known == ranked.end()) return best;
+    best = static_cast<std::size_t>(known - ranked.begin());
+  }
+  // A parameter more than another form needs must carry a share, as a further effect must.
+  const auto values = static_cast<double>(trial_.measured.array().isFinite().count());
+  const double spare = std::min(0.1 * values, 0.05 * ranked[best].chi2_gain);
+  const double enough = ranked[best].chi2_gain - spare;
   for (std::size_t k = best + 1; k < ranked.size(); ++k)
-    if (!ranked[k].candidate.empirical() && believable(ranked[k]) &&
-        ranked[k].chi2_gain > 0.93 * first->chi2_gain)
-      return k;
+    if (!ranked[k].candidate.empirical() && believable(ranked[k]) && ranked[k].chi2_gain > enough &&
+        ranked[k].candidate.parameters < ranked[best].candidate.parameters)
+      best = k;
   return best;
 }
 

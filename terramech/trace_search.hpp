@@ -109,8 +109,8 @@ class TraceSearch {
   Trial trial_;
   SolvedContacts solved_;
   Eigen::MatrixXd level_, residual_;
-  std::optional<Eigen::MatrixXd> by_slip_;  ///< change by one std of the error of the slips' mean, where
-                                            ///< there is one level of slip
+  std::optional<Eigen::MatrixXd> by_slip_;  ///< change by one std of the error that all slips share, where
+                                            ///< there is one level of slip or one speed
   Whitening whitening_;
   Eigen::VectorXd white_;
   ExchangeableUnits units_;
