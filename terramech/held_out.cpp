@@ -42,8 +42,9 @@ Eigen::MatrixXd asMeasured(const RefinedModel& model, Trial trial) {
 HeldOut holdOut(const TraceResult& result, const TraceOptions& options, const Folds& folds) {
   const Trial& trial = result.trial;
   SolvedContacts solved;
-  const Whitening all = whitening(trial, predictRows(result.refined, trial, solved),
-                                  inputSlopes(result.refined, trial, solved), result.refined.noise);
+  Whitening all = whitening(trial, predictRows(result.refined, trial, solved),
+                            inputSlopes(result.refined, trial, solved), result.refined.noise);
+  all.share(result.units.unit, result.units.left);
   Sums base, refined;
   for (int fold = 0; fold < folds.count; ++fold) {
     const std::vector<char> train = rowsOf(folds, fold, false);

@@ -8,6 +8,9 @@
 namespace talus::terramech {
 namespace {
 
+/// Above this p-value known forms are taken to have left nothing.
+constexpr double kDoubt = 0.05;
+
 double smallest(const std::vector<CovariateTest>& tests) {
   double p = 1.0;
   for (const CovariateTest& t : tests) p = std::min(p, t.p_value);
@@ -21,6 +24,11 @@ double pValueOf(const std::vector<CovariateTest>& tests, const Candidate& chosen
     if (t.channel < 0 ? t.covariate == chosen.parts.front().name : t.covariate == chosen.covariate())
       p = std::min(p, t.p_value);
   return p;
+}
+
+bool hasCurve(const Candidate& candidate) {
+  return std::any_of(candidate.parts.begin(), candidate.parts.end(),
+                     [](const Effect& e) { return e.empirical(); });
 }
 
 /// A curve in slip or load, which are measured with errors of their own; or in a speed where both speeds are
@@ -37,11 +45,12 @@ bool inNoisyInput(const Explanation& e, const Trial& trial) {
 }
 
 /// Whether a further effect carries a share of the residual worth a name: what the form of the first leaves
-/// over is often certain and tiny. A curve in a noisy input must carry more, since its own errors, where they
-/// are not as normal as supposed, look like one. The shares come from worlds made for development.
+/// over is often certain and tiny. A curve must carry more than a known form, and one in a noisy input more
+/// again, since its own errors, where they are not as normal as supposed, look like one. The shares come from
+/// worlds made for development.
 bool matters(const Explanation& e, const Trial& trial) {
   const auto values = static_cast<double>(trial.measured.array().isFinite().count());
-  return e.chi2_gain > (inNoisyInput(e, trial) ? 0.5 : 0.1) * values;
+  return e.chi2_gain > (inNoisyInput(e, trial) ? 0.5 : hasCurve(e.candidate) ? 0.1 : 0.04) * values;
 }
 
 Channel strongest(const Explanation& e) {
@@ -159,6 +168,49 @@ void grow(Path& path, const Trial& trial, const TraceOptions& options, const Wat
   }
 }
 
+/// Whether a pair of known forms is the better account. Known forms are believed before a curve; in place of
+/// known forms it must say more, and one more of them must carry what a further effect must.
+bool isBetter(const Explanation& pair, const Explanation& present, std::size_t members, const Trial& trial) {
+  if (pair.score < 2.0 || pair.in_sample < 2.0 || pair.spoils) return false;
+  if (hasCurve(present.candidate)) return pair.score > present.score;
+  Explanation further = pair;
+  further.chi2_gain -= present.chi2_gain;
+  return pair.score > present.score + 2.0 && (members > 1 || matters(further, trial));
+}
+
+/// Tries two known forms in place of each effect and of each two; true when something was replaced.
+bool reconsiderPairs(Path& path, const Trial& trial) {
+  const bool curved = std::any_of(path.effects.begin(), path.effects.end(),
+                                  [](const TracedEffect& e) { return hasCurve(e.chosen.candidate); });
+  if (!curved && smallest(path.last_tests) > kDoubt) return false;
+  const std::size_t n = path.effects.size();
+  std::vector<std::vector<std::size_t>> choices;
+  for (std::size_t k = path.pinned; k < n; ++k) choices.push_back({k});
+  for (std::size_t k = path.pinned; k < n; ++k)
+    for (std::size_t l = path.pinned; l < k; ++l) choices.push_back({l, k});
+  for (const auto& members : choices) {
+    Explanation present;
+    const auto ranked = path.search.pairsInPlaceOf(members, present);
+    const auto better = std::find_if(ranked.begin(), ranked.end(), [&](const Explanation& e) {
+      return isBetter(e, present, members.size(), trial);
+    });
+    if (better == ranked.end()) continue;
+    path.search.replaceByPair(members, better->candidate);
+    const double p_value = path.effects[members.front()].p_value;
+    for (auto k = members.rbegin(); k != members.rend(); ++k)
+      path.effects.erase(path.effects.begin() + static_cast<long>(*k));
+    for (const Effect& part : better->candidate.parts) {
+      TracedEffect effect;
+      effect.chosen = *better;
+      effect.chosen.candidate = {{part}, findEffect(part.name)->family, 0};
+      effect.p_value = p_value;
+      path.effects.push_back(effect);
+    }
+    return true;
+  }
+  return false;
+}
+
 /// Takes out, last first, what beside the others carries nothing that matters.
 void prune(Path& path, const Trial& trial) {
   for (std::size_t k = path.effects.size(); k-- > path.pinned && path.effects.size() > 1;) {
@@ -222,6 +274,11 @@ TraceResult traceResiduals(const RefinedModel& base, const Trial& trial, const T
   result.base = best.search.model();
   if (options.fit_soil) best.pinned = correctOffset(best.search, trial, options.seed, best.effects) ? 1 : 0;
   grow(best, trial, options, watch);
+  for (int round = 0; round < 3 && !watch.stopped() && reconsiderPairs(best, trial); ++round) {
+    reconsider(best.search, best.effects, best.pinned);
+    best.barren = 0;
+    grow(best, trial, options, watch);
+  }
   prune(best, trial);
   result.first_tests = best.first_tests;
   result.effects = best.effects;

@@ -16,31 +16,9 @@ double squared(double x) {
   return x * x;
 }
 
-/// Row covariances of scaled residuals.
-Eigen::Matrix4d covariance(const Trial& trial, int row, const Eigen::MatrixXd& level,
-                           const InputSlopes& slopes, const SensorNoise& noise, double slip_variance,
-                           double load_variance) {
-  Eigen::Matrix4d s = slip_variance * slopes.by_slip.row(row).transpose() * slopes.by_slip.row(row) +
-                      load_variance * slopes.by_load.row(row).transpose() * slopes.by_load.row(row);
-  for (int c = 0; c < kChannels; ++c) {
-    const auto k = static_cast<std::size_t>(c);
-    s(c, c) += squared(noise.absolute[k] / trial.denominator(row, static_cast<Channel>(c))) +
-               squared(noise.relative[k] * level(row, c)) + 1e-12;
-  }
-  return s;
-}
-
-/// Indices of the channels that a row measures.
-int present(const Eigen::MatrixXd& measured, int row, std::array<int, kChannels>& index) {
-  int count = 0;
-  for (int c = 0; c < kChannels; ++c)
-    if (std::isfinite(measured(row, c))) index[static_cast<std::size_t>(count++)] = c;
-  return count;
-}
-
 double rowLogLikelihood(const Eigen::Matrix4d& s, const Eigen::MatrixXd& residual, int row) {
   std::array<int, kChannels> index{};
-  const int n = present(residual, row, index);
+  const int n = presentChannels(residual, row, index);
   Eigen::Matrix<double, -1, -1, 0, 4, 4> part(n, n);
   Eigen::Matrix<double, -1, 1, 0, 4, 1> r(n);
   for (int i = 0; i < n; ++i) {
@@ -111,45 +89,18 @@ std::vector<Scale> scales(const Trial& trial, const Eigen::MatrixXd& residual, c
 
 }  // namespace
 
-InputSlopes inputSlopes(const RefinedModel& model, const Trial& trial, SolvedContacts& solved) {
-  constexpr double kStep = 0.004;
-  const auto moved = [&](double slip, double load) {
-    Trial copy = trial;
-    for (WheelState& s : copy.states) {
-      s.slip = std::clamp(s.slip + slip, -1.0, 1.0);
-      s.load_N *= 1.0 + load;
-    }
-    return predictRows(model, copy, solved);
-  };
-  return {(moved(kStep, 0.0) - moved(-kStep, 0.0)) / (2.0 * kStep),
-          (moved(0.0, kStep) - moved(0.0, -kStep)) / (2.0 * kStep)};
-}
-
-bool slipIsSeen(const Trial& trial, const SensorNoise& noise) {
-  const Eigen::Map<const Eigen::ArrayXd> slip(trial.slip.data(), trial.rows());
-  const Eigen::ArrayXd error = (squared(noise.slip_absolute) + squared(noise.slip_relative) * slip.square())
-                                   .sqrt()
-                                   .min(0.1 * slip.abs());
-  return (slip - slip.mean()).square().mean() > 4.0 * error.square().mean();
-}
-
-double levelStd(const Trial& trial, const SensorNoise& noise) {
-  double sum = 0.0;
-  for (double slip : trial.slip) sum += squared(noise.slip_absolute) + squared(noise.slip_relative * slip);
-  return std::sqrt(sum) / trial.rows();
-}
-
-void setSlip(WheelState& state, double slip) {
-  const double ground = state.rim_speed_mps * (1.0 - state.slip);
-  if (std::abs(state.speed_mps - ground) <= 1e-3 * std::abs(state.rim_speed_mps))
-    state.speed_mps = state.rim_speed_mps * (1.0 - slip);
-  state.slip = slip;
-}
-
-Eigen::MatrixXd withoutSmooth(const Trial& trial, const Eigen::MatrixXd& residual, Smooth smooth) {
-  Eigen::MatrixXd left = residual;
+std::vector<std::string> allButSlip(const Trial& trial) {
   const auto& names = trial.covariates;
   const bool tells_slip = std::find(names.begin(), names.end(), "rim_speed_mps") != names.end();
+  std::vector<std::string> others;
+  for (const std::string& name : names)
+    if (name != "slip" && !(name == "speed_mps" && tells_slip)) others.push_back(name);
+  return others;
+}
+
+Eigen::MatrixXd withoutSmooth(const Trial& trial, const Eigen::MatrixXd& residual,
+                              const std::vector<std::string>& names) {
+  Eigen::MatrixXd left = residual;
   for (int c = 0; c < kChannels; ++c) {
     std::vector<int> rows;
     for (int row = 0; row < trial.rows(); ++row)
@@ -159,8 +110,7 @@ Eigen::MatrixXd withoutSmooth(const Trial& trial, const Eigen::MatrixXd& residua
     std::vector<Eigen::MatrixXd> parts{Eigen::MatrixXd::Ones(n, 1)};
     Eigen::Index columns = 1;
     const auto room = n / 4;
-    for (const std::string& name : trial.covariates) {
-      if (smooth == Smooth::AllButSlip && (name == "slip" || (name == "speed_mps" && tells_slip))) continue;
+    for (const std::string& name : names) {
       Eigen::VectorXd x(n);
       for (Eigen::Index i = 0; i < n; ++i)
         x[i] = trial.states[static_cast<std::size_t>(rows[static_cast<std::size_t>(i)])].covariate(name);
@@ -200,7 +150,7 @@ SensorNoise fitNoise(const Trial& trial, const Eigen::MatrixXd& residual, const 
       const double slip = trial.states[static_cast<std::size_t>(row)].slip;
       const double variance = squared(noise.slip_absolute) + squared(noise.slip_relative * slip);
       sum -= rowLogLikelihood(
-          covariance(trial, row, level, slopes, noise, variance, squared(noise.load_relative)), residual,
+          rowCovariance(trial, row, level, slopes, noise, variance, squared(noise.load_relative)), residual,
           row);
     }
     return sum;
@@ -208,169 +158,6 @@ SensorNoise fitNoise(const Trial& trial, const Eigen::MatrixXd& residual, const 
   set(nelderMead(cost, std::vector<double>(all.size(), 0.0),
                  {.step = 0.7, .evaluations = 900, .tolerance = 1e-3}));
   return noise;
-}
-
-namespace {
-
-struct Posterior {
-  double mean, variance;
-};
-
-/// Posterior of each true value under the distribution of true values that makes the measured ones most
-/// likely: a mixture of atoms whose places and weights are found by expectation maximisation. `std_at` is the
-/// noise at a true value. Values that are known better than the atoms lie apart stay as measured.
-std::vector<Posterior> deconvolve(const std::vector<double>& measured,
-                                  const std::function<double(double)>& std_at) {
-  constexpr int kRounds = 200;
-  const auto n = static_cast<Eigen::Index>(measured.size());
-  const auto atoms = std::min<Eigen::Index>(50, std::max<Eigen::Index>(2, n / 2));
-  const Eigen::Map<const Eigen::ArrayXd> x(measured.data(), n);
-  const double spacing = (x.maxCoeff() - x.minCoeff()) / static_cast<double>(atoms) + 1e-12;
-  Eigen::ArrayXd place = Eigen::ArrayXd::LinSpaced(atoms, x.minCoeff(), x.maxCoeff());
-  Eigen::ArrayXd weight = Eigen::ArrayXd::Constant(atoms, 1.0 / static_cast<double>(atoms)), std(atoms);
-  Eigen::ArrayXXd share(n, atoms);
-  for (int round = 0; round < kRounds; ++round) {
-    for (Eigen::Index a = 0; a < atoms; ++a) std[a] = std::max(std_at(place[a]), 0.5 * spacing);
-    for (Eigen::Index a = 0; a < atoms; ++a)
-      share.col(a) = weight[a] / std[a] * (-0.5 * ((x - place[a]) / std[a]).square()).exp();
-    const Eigen::ArrayXd total = share.rowwise().sum() + 1e-300;
-    share.colwise() /= total;
-    for (Eigen::Index a = 0; a < atoms; ++a) {
-      const double mass = share.col(a).sum();
-      weight[a] = mass / static_cast<double>(n);
-      if (mass > 1e-6) place[a] = (share.col(a) * x).sum() / mass;
-    }
-  }
-  std::vector<Posterior> out;
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const double mean = (share.row(i).transpose() * place).sum();
-    const double spread = (share.row(i).transpose() * (place - mean).square()).sum();
-    const double own = std_at(x[i]);
-    out.push_back(own < 0.5 * spacing ? Posterior{x[i], own * own} : Posterior{mean, spread});
-  }
-  return out;
-}
-
-}  // namespace
-
-namespace {
-
-/// Normal values with normal errors: the share of the scatter that is not error is kept.
-std::vector<Posterior> shrink(const std::vector<double>& measured, const std::vector<double>& std) {
-  const auto n = static_cast<Eigen::Index>(measured.size());
-  const Eigen::Map<const Eigen::ArrayXd> x(measured.data(), n), error(std.data(), n);
-  const double mean = x.mean(), scatter = (x - mean).square().mean();
-  const double kept = std::clamp(1.0 - error.square().mean() / (scatter + 1e-300), 0.0, 1.0);
-  std::vector<Posterior> out;
-  for (Eigen::Index i = 0; i < n; ++i) out.push_back({mean + kept * (x[i] - mean), kept * squared(error[i])});
-  return out;
-}
-
-}  // namespace
-
-void calibrateInputs(Trial& trial, const SensorNoise& noise) {
-  const auto n = trial.states.size();
-  std::vector<double> slip_std(n), log_load(n), load_std(n, noise.load_relative);
-  for (std::size_t i = 0; i < n; ++i) {
-    slip_std[i] = std::hypot(noise.slip_absolute, noise.slip_relative * trial.slip[i]);
-    log_load[i] = std::log(trial.load_N[i]);
-  }
-  // The mixture takes long to see that one level is one; nothing is lost where the scatter is mostly error.
-  const auto slips =
-      !slipIsSeen(trial, noise) ? shrink(trial.slip, slip_std) : deconvolve(trial.slip, [&](double slip) {
-        return std::hypot(noise.slip_absolute, noise.slip_relative * slip);
-      });
-  const auto loads = deconvolve(log_load, [&](double) { return noise.load_relative; });
-  for (std::size_t i = 0; i < n; ++i) {
-    // A grid cannot place a value better than its step: precise inputs are left as measured.
-    const auto row = static_cast<Eigen::Index>(i);
-    const double trust = squared(slip_std[i]), trust_load = squared(load_std[i]);
-    setSlip(trial.states[i], std::clamp(slips[i].mean, -1.0, 1.0));
-    trial.slip_variance[row] = std::clamp(slips[i].variance, 0.3 * trust, trust);
-    trial.states[i].load_N =
-        std::abs(loads[i].mean - log_load[i]) > 2.5 * load_std[i] ? trial.load_N[i] : std::exp(loads[i].mean);
-    trial.load_variance[row] = std::clamp(loads[i].variance, 0.3 * trust_load, trust_load);
-  }
-}
-
-Whitening subset(const Whitening& whitening, const std::vector<char>& keep) {
-  Whitening part;
-  std::vector<Eigen::Index> rows;
-  for (std::size_t row = 0; row < keep.size(); ++row) {
-    if (!keep[row]) continue;
-    part.factor.push_back(whitening.factor[row]);
-    rows.push_back(static_cast<Eigen::Index>(row));
-  }
-  part.std = whitening.std(rows, Eigen::all);
-  return part;
-}
-
-Eigen::VectorXd Whitening::apply(const Eigen::MatrixXd& residual) const {
-  Eigen::VectorXd out(residual.rows() * kChannels);
-  for (Eigen::Index row = 0; row < residual.rows(); ++row) {
-    const Eigen::Vector4d r =
-        residual.row(row).transpose().unaryExpr([](double v) { return std::isfinite(v) ? v : 0.0; });
-    out.segment<kChannels>(row * kChannels) = factor[static_cast<std::size_t>(row)] * r;
-  }
-  return out;
-}
-
-Eigen::VectorXd Whitening::marginal(const Eigen::MatrixXd& residual) const {
-  Eigen::VectorXd out(residual.rows() * kChannels);
-  for (Eigen::Index row = 0; row < residual.rows(); ++row)
-    for (int c = 0; c < kChannels; ++c) {
-      const bool there =
-          factor[static_cast<std::size_t>(row)](c, c) != 0.0 && std::isfinite(residual(row, c));
-      out[row * kChannels + c] = there ? residual(row, c) / std(row, c) : 0.0;
-    }
-  return out;
-}
-
-namespace {
-
-/// No reading is trusted four times better than the median one: where a relative error meets a reading near
-/// zero the quadrature and the noise of slip and load, known to first order, would speak louder than the
-/// sensor.
-Eigen::Vector4d leastVariance(const Trial& trial, const Eigen::MatrixXd& level, const SensorNoise& noise) {
-  Eigen::Vector4d least;
-  for (int c = 0; c < kChannels; ++c) {
-    const auto k = static_cast<std::size_t>(c);
-    std::vector<double> variance;
-    for (int row = 0; row < trial.rows(); ++row)
-      variance.push_back(squared(noise.absolute[k] / trial.denominator(row, static_cast<Channel>(c))) +
-                         squared(noise.relative[k] * level(row, c)));
-    least[c] = medianOf(variance) / 16.0;
-  }
-  return least;
-}
-
-}  // namespace
-
-Whitening whitening(const Trial& trial, const Eigen::MatrixXd& level, const InputSlopes& slopes,
-                    const SensorNoise& noise) {
-  Whitening w;
-  w.std.resize(trial.rows(), kChannels);
-  const Eigen::Vector4d least = leastVariance(trial, level, noise);
-  for (int row = 0; row < trial.rows(); ++row) {
-    Eigen::Matrix4d s =
-        covariance(trial, row, level, slopes, noise, trial.slip_variance[row], trial.load_variance[row]);
-    s.diagonal() = s.diagonal().cwiseMax(least);
-    std::array<int, kChannels> index{};
-    const int n = present(trial.measured, row, index);
-    Eigen::MatrixXd part(n, n);
-    for (int i = 0; i < n; ++i)
-      for (int j = 0; j < n; ++j)
-        part(i, j) = s(index[static_cast<std::size_t>(i)], index[static_cast<std::size_t>(j)]);
-    const Eigen::MatrixXd inverse =
-        Eigen::LLT<Eigen::MatrixXd>(part).matrixL().solve(Eigen::MatrixXd::Identity(n, n));
-    Eigen::Matrix4d full = Eigen::Matrix4d::Zero();
-    for (int i = 0; i < n; ++i)
-      for (int j = 0; j < n; ++j)
-        full(index[static_cast<std::size_t>(i)], index[static_cast<std::size_t>(j)]) = inverse(i, j);
-    w.factor.push_back(full);
-    for (int c = 0; c < kChannels; ++c) w.std(row, c) = std::sqrt(s(c, c));
-  }
-  return w;
 }
 
 }  // namespace talus::terramech

@@ -4,6 +4,7 @@
 
 #include <Eigen/QR>
 
+#include <terramech/input_calibration.hpp>
 #include <terramech/spline_basis.hpp>
 #include <terramech/trace_search.hpp>
 
@@ -75,10 +76,10 @@ void TraceSearch::refresh() {
   level_ = predictRows(model_, trial_, solved_);
   InputSlopes slopes = inputSlopes(model_, trial_, solved_);
   const Eigen::MatrixXd measured = trial_.measured - level_;
-  Eigen::MatrixXd smooth = withoutSmooth(trial_, measured, Smooth::AllButSlip);
+  Eigen::MatrixXd smooth = withoutSmooth(trial_, measured, allButSlip(trial_));
   model_.noise = fitNoise(trial_, smooth, level_, slopes, model_.stated);
-  if (slipIsSeen(trial_, model_.noise)) {
-    smooth = withoutSmooth(trial_, measured);
+  if (slipIsSeen(trial_, model_.noise) && speedIsSeen(trial_, model_.noise)) {
+    smooth = withoutSmooth(trial_, measured, trial_.covariates);
     model_.noise = fitNoise(trial_, smooth, level_, slopes, model_.stated);
   }
   calibrateInputs(trial_, model_.noise);
@@ -86,10 +87,12 @@ void TraceSearch::refresh() {
   slopes = inputSlopes(model_, trial_, solved_);
   residual_ = trial_.measured - level_;
   by_slip_.reset();
-  if (!slipIsSeen(trial_, model_.noise)) by_slip_ = levelStd(trial_, model_.noise) * slopes.by_slip;
+  const Eigen::VectorXd shared = sharedSlipStd(trial_, model_.noise);
+  if (shared.size() > 0) by_slip_ = shared.asDiagonal() * slopes.by_slip;
   whitening_ = whitening(trial_, level_, slopes, model_.noise);
+  units_ = exchangeableUnits(trial_, whitening_, residual_);
+  whitening_.share(units_.unit, units_.left);
   white_ = whitening_.apply(residual_);
-  group_ = exchangeableGroups(trial_, whitening_, smooth);
 }
 
 double TraceSearch::penalty(const Candidate& candidate) const {
@@ -191,7 +194,7 @@ std::vector<TraceSearch::Screened> TraceSearch::screen() {
 
 std::vector<CovariateTest> TraceSearch::test(const std::vector<Screened>& screened) {
   TestPlan plan;
-  plan.group = group_;
+  plan.units = units_;
   plan.flips = options_.flips;
   plan.seed = options_.seed;
   plan.nuisance_whitened = derivativeOf(model_, solved_);
@@ -225,7 +228,10 @@ Explanation TraceSearch::fitted(const Candidate& candidate, const std::vector<He
   const RefinedModel grown = with(model_, candidate);
   SolvedContacts solved = solved_;
   FitPlan plan = planFor(grown);
-  plan.iterations = candidate.empirical() ? 5 : candidate.parts.size() > 1 ? 30 : 10;
+  plan.iterations = candidate.empirical()        ? 5
+                    : candidate.parts.size() > 2 ? 30
+                    : candidate.parts.size() > 1 ? 15
+                                                 : 10;
   const Fit fit = fitModel(grown, trial_, whitening_, plan, solved);
   Explanation e;
   e.candidate = candidate;
@@ -248,13 +254,23 @@ std::optional<std::size_t> TraceSearch::choose(const std::vector<Explanation>& r
   };
   const auto first = std::find_if(ranked.begin(), ranked.end(), believable);
   if (first == ranked.end()) return {};
-  const auto best = static_cast<std::size_t>(first - ranked.begin());
-  if (!first->candidate.empirical()) return best;
-  // A known form that carries nearly all of what the curve does is the cause; its remainder is a correction.
+  auto best = static_cast<std::size_t>(first - ranked.begin());
+  if (first->candidate.empirical()) {
+    // A known form that carries nearly all of what the curve does is the cause; its remainder is a correction.
+    const auto known = std::find_if(first, ranked.end(), [&](const Explanation& e) {
+      return !e.candidate.empirical() && believable(e) && e.chi2_gain > 0.93 * first->chi2_gain;
+    });
+    if (known == ranked.end()) return best;
+    best = static_cast<std::size_t>(known - ranked.begin());
+  }
+  // A parameter more than another form needs must carry a share, as a further effect must.
+  const auto values = static_cast<double>(trial_.measured.array().isFinite().count());
+  const double spare = std::min(0.1 * values, 0.05 * ranked[best].chi2_gain);
+  const double enough = ranked[best].chi2_gain - spare;
   for (std::size_t k = best + 1; k < ranked.size(); ++k)
-    if (!ranked[k].candidate.empirical() && believable(ranked[k]) &&
-        ranked[k].chi2_gain > 0.93 * first->chi2_gain)
-      return k;
+    if (!ranked[k].candidate.empirical() && believable(ranked[k]) && ranked[k].chi2_gain > enough &&
+        ranked[k].candidate.parameters < ranked[best].candidate.parameters)
+      best = k;
   return best;
 }
 
@@ -274,10 +290,7 @@ void TraceSearch::leaveOut(std::size_t k) {
   model_.effects.erase(begin, begin + static_cast<long>(part_count_[k]));
   part_count_.erase(part_count_.begin() + static_cast<long>(k));
   SolvedContacts solved = solved_;
-  model_ = fitModel(model_, trial_, whitening_, planFor(model_), solved).model;
-  level_ = predictRows(model_, trial_, solved_);
-  residual_ = trial_.measured - level_;
-  white_ = whitening_.apply(residual_);
+  setModel(fitModel(model_, trial_, whitening_, planFor(model_), solved).model);
 }
 
 std::vector<Explanation> TraceSearch::rivals(std::size_t k) {
@@ -363,8 +376,7 @@ void TraceSearch::finish(TraceResult& result) {
     }
     result.noise_floor[c] = count ? std::sqrt(sum / count) : std::nan("");
   }
-  for (std::size_t row = 0; row < group_.size(); ++row)
-    result.grouped_by_run |= row > 0 && group_[row] == group_[row - 1];
+  result.units = units_;
   result.trial = trial_;
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <terramech/covariate_tests.hpp>
+#include <terramech/input_calibration.hpp>
 #include <terramech/sensor_noise.hpp>
 
 namespace talus::terramech {
@@ -71,7 +72,45 @@ TEST(SensorNoise, OnlyASpeedThatAgreesWithTheSlipFollowsIt) {
 
 TEST(SensorNoise, TheirMeanErrsLess) {
   // Closed form: sigma / sqrt(n).
-  EXPECT_NEAR(levelStd(trialOf(std::vector<double>(100, 0.5)), slipNoise(0.04)), 0.02 / 10.0, 1e-12);
+  const Eigen::VectorXd shared = sharedSlipStd(trialOf(std::vector<double>(100, 0.5)), slipNoise(0.04));
+  ASSERT_EQ(shared.size(), 100);
+  EXPECT_NEAR(shared[7], 0.02 / 10.0, 1e-12);
+}
+
+/// True slips over a range, rims that make one travel speed of them; measured slips err by `relative`.
+Trial atOneSpeed(double relative, double speed_scatter) {
+  const std::vector<double> error = scattered(0.0, 1.0, 120), other = scattered(0.0, speed_scatter, 120);
+  std::vector<double> slips;
+  for (int k = 0; k < 120; ++k)
+    slips.push_back((0.1 + 0.005 * k) * (1.0 + relative * error[static_cast<std::size_t>(k)]));
+  Trial trial = trialOf(slips);
+  for (std::size_t k = 0; k < 120; ++k) {
+    WheelState& s = trial.states[k];
+    s.rim_speed_mps = 0.02 * std::exp(other[119 - k]) / (0.9 - 0.005 * static_cast<double>(k));
+    s.speed_mps = s.rim_speed_mps * (1.0 - s.slip);
+  }
+  return trial;
+}
+
+TEST(SensorNoise, OneSpeedOfTravelTellsTheSlips) {
+  Trial trial = atOneSpeed(0.04, 0.0);
+  ASSERT_TRUE(slipIsSeen(trial, slipNoise(0.04)));
+  EXPECT_FALSE(speedIsSeen(trial, slipNoise(0.04)));
+  EXPECT_GT(sharedSlipStd(trial, slipNoise(0.04)).size(), 0);
+  calibrateInputs(trial, slipNoise(0.04));
+  double worst = 0.0;
+  for (std::size_t k = 0; k < 120; ++k)
+    worst = std::max(worst, std::abs(trial.states[k].slip - (0.1 + 0.005 * static_cast<double>(k))));
+  // Property: errors of 0.004 to 0.03 become what is left of them in the mean speed.
+  EXPECT_LT(worst, 0.003);
+}
+
+TEST(SensorNoise, SpeedsThatVaryTellNoSlips) {
+  EXPECT_TRUE(speedIsSeen(atOneSpeed(0.04, 0.3), slipNoise(0.04)));
+  Trial own = atOneSpeed(0.04, 0.0);
+  own.states[3].speed_mps *= 1.1;
+  EXPECT_TRUE(speedIsSeen(own, slipNoise(0.04)));
+  EXPECT_EQ(sharedSlipStd(own, slipNoise(0.04)).size(), 0);
 }
 
 TEST(CovariateTests, AnErrorThatAllRowsShareIsNotAConstant) {
@@ -89,7 +128,6 @@ TEST(CovariateTests, AnErrorThatAllRowsShareIsNotAConstant) {
   const Whitening white = whitening(trial, none, {none, none}, noise);
   TestPlan plan;
   plan.nuisance_whitened = plan.nuisance_marginal = Eigen::MatrixXd(trial.rows() * kChannels, 0);
-  for (int row = 0; row < trial.rows(); ++row) plan.group.push_back(row);
   plan.flips = 999;
   const auto p = [&] {
     return testCovariates(trial, white, residual, Eigen::VectorXd::Zero(trial.rows()), plan).front().p_value;
