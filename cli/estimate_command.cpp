@@ -42,6 +42,12 @@ void bind(CLI::App& command, EstimateOptions& options) {
       .add_option("--prior", options.prior,
                   "soils with {mean, std} (default: wong-reece thesis Table 2.1, other methods none)")
       ->type_name("NAME|FILE");
+  command
+      .add_option(
+          "--model", options.model,
+          "a refined model whose effects act on the wheel (wong-reece): what they do to sinkage, torque and "
+          "pull is not laid to the soil")
+      ->type_name("M.yaml");
   command.add_option("--rover", options.rover, "whose wheel, where the file does not say")
       ->type_name("NAME|FILE");
   command
@@ -114,6 +120,7 @@ Json jsonOf(const std::string& method, const SoilEstimate& e) {
   for (const auto& plate : e.plates)
     json["plates"].push_back(
         {{"plate_width_m", plate.plate_width_m}, {"sinkage_modulus", plate.sinkage_modulus}});
+  if (!e.effects.empty()) json["effects"] = e.effects;
   if (!e.running.empty()) json["running"] = runningJson(e);
   if (e.posterior) json.update(posteriorJson(e));
   return json;
@@ -154,6 +161,7 @@ std::string textOf(const SoilEstimate& e) {
   for (std::size_t k = 0; k < e.class_names.size(); ++k) {
     text += fmt::format("{:15} {:9.3f}\n", e.class_names[k], e.posterior->class_probabilities[k]);
   }
+  if (!e.effects.empty()) text += fmt::format("effects         {}\n", fmt::join(e.effects, ", "));
   return text + fmt::format("rows            {} used, {} rejected\n", e.rows_used, e.rejected.size());
 }
 
@@ -238,7 +246,8 @@ void addEstimate(CLI::App& app, Context& context) {
        .group = Group::kSoil,
        .description = "the soil under a wheel from its telemetry",
        .examples = "  talus estimate drive.csv --method wong-reece --noise 0.03\n"
-                   "  talus estimate drive.csv --method linear-offset --shear-modulus 0.015\n"},
+                   "  talus estimate drive.csv --method linear-offset --shear-modulus 0.015\n"
+                   "  talus estimate drive.csv --method wong-reece --model refined.yaml\n"},
       bind, run);
 }
 

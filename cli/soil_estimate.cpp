@@ -5,6 +5,7 @@
 
 #include <cli/bevameter_table.hpp>
 #include <cli/line_estimate.hpp>
+#include <cli/model_estimate.hpp>
 #include <cli/prior_option.hpp>
 #include <cli/soil_estimate.hpp>
 #include <cli/soil_groups.hpp>
@@ -187,6 +188,7 @@ SoilEstimate estimateSoil(const EstimateOptions& options, const Watch& watch) {
                       .reason = "it is a plate's",
                       .remedy = "use --method bevameter, or leave it out"});
   }
+  if (!options.model.empty()) return modelEstimate(options, watch);
   if (options.method == "wong-reece") return posteriorEstimate(options, watch);
   if (options.method != "bevameter") return lineEstimate(options, watch);
   if (options.recursive) {

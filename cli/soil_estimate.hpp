@@ -21,6 +21,7 @@ struct EstimateOptions {
   std::string shear_modulus;  ///< a number [m], or the name of a method; empty: the file's column, else joint
   std::string prior;  ///< soil file or name; empty: for wong-reece the classes of thesis Table 2.1, else none
   std::string rover;
+  std::string model;  ///< wong-reece: a refined model whose effects act; empty: none
   std::string html;
   bool whole_equation = false;  ///< linear-offset: keep M1 of Eq. 2.9
   bool recursive = false;       ///< take the rows in one by one and keep each answer
@@ -57,6 +58,7 @@ struct SoilEstimate {
   std::vector<terramech::RejectedRow> rejected;
   std::vector<std::string> unseen;            ///< parameters that the data do not show, with the reason
   std::vector<std::string> warnings;          ///< what the user should know of how it was fitted
+  std::vector<std::string> effects;           ///< that acted, of --model
   std::vector<terramech::StressPair> points;  ///< what a line was fitted to, for a plot
   std::optional<terramech::SoilPosterior> posterior;  ///< of wong-reece
   std::vector<std::string> class_names;               ///< of its prior

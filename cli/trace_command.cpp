@@ -51,14 +51,23 @@ void warnOfRejected(const terramech::Telemetry& telemetry, const Context& contex
         fmt::format("{}: {} more rows rejected", telemetry.source, telemetry.rejected.size() - kShown));
 }
 
+std::vector<char> without(std::vector<char> rows) {
+  for (char& row : rows) row = !row;
+  return rows;
+}
+
 int run(const TraceCommandOptions& options, Context& context) {
   terramech::ModelFile base = baseOf(options);
   const terramech::Telemetry telemetry =
       terramech::readTelemetry(options.telemetry, {.required = {"load_N", "slip"}});
   warnOfRejected(telemetry, context);
-  terramech::Trial trial = terramech::makeTrial(telemetry, base.model);
+  const terramech::Trial all = terramech::makeTrial(telemetry, base.model);
+  const std::vector<char> sunk = terramech::beyondAxle(all);
+  const terramech::Trial trial = terramech::subset(all, without(sunk));
   if (trial.rows() < 8)
-    throw InputError({options.telemetry, fmt::format("{} usable rows, tracing needs 8", trial.rows()), ""});
+    throw InputError(
+        {options.telemetry,
+         fmt::format("{} usable rows with the wheel above its axle, tracing needs 8", trial.rows()), ""});
   base.model.slip_along_travel |= terramech::slipIsAlongTravel(trial.states);
   terramech::TraceOptions how{.significance = options.significance};
   how.fit_soil = !base.soil_given;
@@ -71,6 +80,9 @@ int run(const TraceCommandOptions& options, Context& context) {
                    {}};
   if (watch.stopped()) return Exit::kCancelled;
   story.held_out = terramech::holdOut(story.result, how);
+  story.beyond_axle = all.rows() - trial.rows();
+  if (story.beyond_axle > 0)
+    story.beyond_axle_rmse = terramech::rmseOf(story.result.refined, terramech::subset(all, sunk));
   story.applies = terramech::applicability(story.result, how);
   if (!options.model_out.empty()) writeFile(options.model_out, terramech::modelText(story.result.refined));
   if (!options.html.empty()) writeFile(options.html, tracePage(story));

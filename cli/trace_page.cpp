@@ -147,6 +147,7 @@ std::string tracePage(const TraceStory& story) {
   const TraceResult& r = story.result;
   HtmlReport page("Residuals of " + story.source);
   page.paragraph(fmt::format("{} rows used, {} rejected.", r.trial.rows(), story.rows_rejected));
+  if (story.beyond_axle > 0) page.paragraph(beyondAxleText(story) + ".");
   if (!story.applies.applies) page.paragraph("The model does not apply here: " + story.applies.reason + ".");
   effects(page, story);
   errors(page, story);

@@ -178,9 +178,27 @@ std::string separatingMeasurement(const Trial& trial, const TracedEffect& effect
 namespace {
 
 ordered_json schemeJson(const HeldOut& held) {
-  return {{"scheme", held.scheme},
-          {"base_rmse", errorsJson(held.base_rmse)},
-          {"refined_rmse", errorsJson(held.refined_rmse)}};
+  ordered_json out{{"scheme", held.scheme},
+                   {"base_rmse", errorsJson(held.base_rmse)},
+                   {"refined_rmse", errorsJson(held.refined_rmse)}};
+  for (const GroupErrors& g : held.groups)
+    out["groups"].push_back({{"column", g.column},
+                             {"value", g.value},
+                             {"rows", g.rows},
+                             {"base_rmse", errorsJson(g.base_rmse)},
+                             {"refined_rmse", errorsJson(g.refined_rmse)}});
+  return out;
+}
+
+std::string groupLines(const TraceStory& story, const HeldOut& held) {
+  std::string out;
+  for (const GroupErrors& g : held.groups) {
+    out += fmt::format("  of them {} {}, {} rows\n", g.column, g.value, g.rows);
+    for (Channel c : kAll)
+      if (const auto k = static_cast<std::size_t>(c); story.result.trial.has(c))
+        out += fmt::format("  {:26s} {:10.4f} {:10.4f}\n", name(c), g.base_rmse[k], g.refined_rmse[k]);
+  }
+  return out;
 }
 
 ordered_json heldOutJson(const TraceStory& story) {
@@ -190,6 +208,11 @@ ordered_json heldOutJson(const TraceStory& story) {
   for (std::size_t k = 1; k < story.held_out.size(); ++k) others.push_back(schemeJson(story.held_out[k]));
   out["others"] = others;
   return out;
+}
+
+ordered_json beyondAxleJson(const TraceStory& story) {
+  if (story.beyond_axle == 0) return {{"rows", 0}};
+  return {{"rows", story.beyond_axle}, {"refined_rmse", errorsJson(story.beyond_axle_rmse)}};
 }
 
 }  // namespace
@@ -215,7 +238,20 @@ ordered_json traceJson(const TraceStory& story) {
           {"applies", story.applies.applies},
           {"applies_reason", story.applies.reason},
           {"rows_used", r.trial.rows()},
-          {"rows_rejected", story.rows_rejected}};
+          {"rows_rejected", story.rows_rejected},
+          {"beyond_axle", beyondAxleJson(story)}};
+}
+
+std::string beyondAxleText(const TraceStory& story) {
+  std::string errors;
+  for (Channel c : kAll)
+    if (const double e = story.beyond_axle_rmse[static_cast<std::size_t>(c)]; std::isfinite(e))
+      errors += fmt::format("{}{} {:.3f}", errors.empty() ? "" : ", ", name(c), e);
+  return fmt::format(
+      "{} rows with the wheel sunk to its axle or deeper are left out: the contact law ends there; the "
+      "refined "
+      "model's error on them: {}",
+      story.beyond_axle, errors);
 }
 
 std::string traceText(const TraceStory& story) {
@@ -233,7 +269,9 @@ std::string traceText(const TraceStory& story) {
       out += fmt::format("  {:26s} {:10.4f} {:10.4f} {:12.4f}\n", name(c), held.base_rmse[k],
                          held.refined_rmse[k], r.noise_floor[k]);
     }
+    out += groupLines(story, held);
   }
+  if (story.beyond_axle > 0) out += beyondAxleText(story) + '\n';
   if (!story.applies.applies) out += "the model does not apply: " + story.applies.reason + "\n";
   return out;
 }

@@ -17,6 +17,8 @@ struct TraceStory {
   terramech::TraceResult result;
   std::vector<terramech::HeldOut> held_out;  ///< the first is the one that counts
   terramech::Applicability applies;
+  int beyond_axle = 0;                          ///< rows left out: terramech::beyondAxle()
+  terramech::ChannelErrors beyond_axle_rmse{};  ///< of the refined model there
 };
 
 /// Columns that move with a covariate so closely (|correlation| above 0.9) that the rows cannot tell them
@@ -28,6 +30,9 @@ const std::string& covariateOf(const terramech::Effect& effect);
 
 /// What one would have to measure to tell an effect from its nearest rival.
 std::string separatingMeasurement(const terramech::Trial& trial, const terramech::TracedEffect& effect);
+
+/// One line about the rows left out because the wheel is sunk to its axle; there must be some.
+std::string beyondAxleText(const TraceStory& story);
 
 nlohmann::ordered_json traceJson(const TraceStory& story);
 std::string traceText(const TraceStory& story);

@@ -81,7 +81,7 @@ class Collector {
   }
 
   /// Several forms as one explanation, at their typical sizes.
-  void addTogether(std::initializer_list<const char*> names) {
+  void addTogether(const std::vector<const char*>& names) {
     const std::size_t first = all_.size();
     for (const char* name : names) {
       const EffectForm& form = *findEffect(name);
@@ -189,6 +189,9 @@ void drift(Collector& to, const EffectForm& form) {
   }
 }
 
+/// Nothing by itself: these go with forms that dig or slide.
+void onlyTogether(Collector&, const EffectForm&) {}
+
 /// Only rows of a braked wheel can tell.
 void skid(Collector& to, const EffectForm& form) {
   if (to.extent("slip").low < -0.02) to.add(form, form.covariate);
@@ -196,6 +199,7 @@ void skid(Collector& to, const EffectForm& form) {
 
 Rule ruleOf(const EffectForm& form) {
   const std::string family = form.family, name = form.name;
+  if (name == "rear_fill" || name == "bulldozing_ahead") return onlyTogether;
   if (family == "rate") return rate;
   if (family == "multipass") return passes;
   if (family == "hardpan") return hardLayer;
@@ -215,14 +219,14 @@ Rule ruleOf(const EffectForm& form) {
 /// little.
 void together(Collector& to) {
   const bool braked = to.extent("slip").low < -0.02, sideways = to.varies("slip_angle_rad");
-  if (braked && sideways)
-    to.addTogether({"side_ploughing", "side_bulldozing", "skid_sinkage", "slip_sinkage_ding_quadratic",
-                    "bulldozing_two_term", "elastic_rebound"});
-  else if (sideways)
-    to.addTogether({"side_ploughing", "side_bulldozing", "slip_sinkage_ding_quadratic", "bulldozing_two_term",
-                    "elastic_rebound"});
-  else if (braked)
-    to.addTogether({"skid_sinkage", "slip_sinkage_ding_quadratic", "bulldozing_two_term", "elastic_rebound"});
+  if (!braked && !sideways) return;
+  std::vector<const char*> names;
+  if (sideways) names = {"side_ploughing", "side_bulldozing_rough"};
+  if (braked) names.push_back("skid_sinkage");
+  names.push_back("slip_sinkage_linear");
+  if (to.extent("grouser_height_m").high > 0.0) names.push_back("slip_sinkage_reece");
+  for (const char* name : {"rear_fill", "bulldozing_ahead", "elastic_rebound"}) names.push_back(name);
+  to.addTogether(names);
 }
 
 }  // namespace

@@ -65,8 +65,8 @@ void Reading::addScaled(Channel channel, double value) {
 const std::vector<EffectForm>& effectLibrary() {
   static const std::vector<EffectForm> library = [] {
     std::vector<EffectForm> all;
-    for (auto part :
-         {detail::contactEffects, detail::forceEffects, detail::sensorEffects, detail::driftEffects})
+    for (auto part : {detail::contactEffects, detail::diggingEffects, detail::forceEffects,
+                      detail::sensorEffects, detail::driftEffects})
       for (EffectForm& form : part()) all.push_back(std::move(form));
     return all;
   }();

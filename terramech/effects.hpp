@@ -24,6 +24,7 @@ struct Reading {
   double load_N = 0.0;
   double radius_m = 0.0;
   double sinkage_m = 0.0;
+  double dug_m = 0.0;  ///< of the model's sinkage, what the driven wheel threw behind itself; never measured
   double torque_Nm = 0.0;
   double drawbar_pull_N = 0.0;
   double side_force_N = 0.0;
@@ -100,11 +101,8 @@ class NaturalSpline {
 };
 
 namespace detail {
-/// Share of the passive pressure in front of a wheel that a travel at a slip angle mobilises: nearly all of
-/// it for little motion into the soil, none at 90 deg: g = 1.05 cos beta / (cos beta + 0.05) (ours).
-double intoTheSoil(double slip_angle_rad);
-
 std::vector<EffectForm> contactEffects();
+std::vector<EffectForm> diggingEffects();
 std::vector<EffectForm> forceEffects();
 std::vector<EffectForm> sensorEffects();
 std::vector<EffectForm> driftEffects();

@@ -18,12 +18,6 @@ double lugSides(const Wheel& wheel) {
   return h > 0.0 ? 0.64 * h / b * std::atan(b / h) : 0.0;
 }
 
-/// Square of the share of the travel that a braked wheel does not roll.
-double dragged(const WheelContact& c) {
-  const double share = std::max(0.0, 1.0 - c.rolling);
-  return share * share;
-}
-
 void strengthen(WheelContact& c, double factor) {
   c.cohesion_Pa *= std::max(factor, 0.05);
   c.tan_friction *= std::max(factor, 0.05);
@@ -68,29 +62,6 @@ std::vector<EffectForm> slipSinkage() {
              const double i = std::abs(in.state.slip);
              c.sinkage_gain *= (1.0 + i) / (1.0 - 0.5 * i);
            }},
-      {.name = "slip_sinkage_reece",
-       .family = "slip_sinkage",
-       .covariate = "slip",
-       .channel = Channel::Sinkage,
-       .formula = "z = z0 + a h i / (1 - i)",
-       .source = "reece_1965",
-       .signature = "sinkage of lugged wheels diverges towards slip 1",
-       .parameters = {{"a", "-", 0.0, 3.0, 1.0}},
-       .act =
-           [](Input in, WheelContact& c) {
-             const double i = std::min(std::abs(in.state.slip), 0.98);
-             c.extra_sinkage_m += in.parameter[0] * in.state.wheel.grouser_height_m * i / (1.0 - i);
-           }},
-      {.name = "skid_sinkage",
-       .family = "slip_sinkage",
-       .covariate = "slip",
-       .channel = Channel::Sinkage,
-       .formula = "z = z0 + a r (1 - r omega / v)^2 where the wheel is braked",
-       .source = "ours",
-       .signature = "sinkage of a dragged wheel grows to several times its static one, drawbar pull falls",
-       .parameters = {{"a", "-", 0.0, 2.0, 0.3}},
-       .act = [](Input in,
-                 WheelContact& c) { c.extra_sinkage_m += in.parameter[0] * c.radius_m * dragged(c); }},
   };
 }
 
@@ -300,28 +271,6 @@ std::vector<EffectForm> sideSlip() {
        .parameters = {{"n_y", "-", 0.0, 3.0, 0.3}},
        .act = [](Input in,
                  WheelContact& c) { c.sinkage_exponent += in.parameter[0] * std::abs(std::sin(in.x)); }},
-      {.name = "side_ploughing",
-       .family = "lateral_slip",
-       .covariate = "slip_angle_rad",
-       .channel = Channel::Sinkage,
-       .formula =
-           "z = z0 + a r e^{-cos beta / m} as far as the wheel rolls; contact behind: kappa -> 1 - (1 - "
-           "kappa) g(beta); lateral shear along the resultant, K -> K k",
-       .source = "ours",
-       .signature =
-           "sinkage grows steeply towards a slip angle of 90 deg, drawbar pull there is that of rotation "
-           "alone, side force odd",
-       .parameters = {{"a", "-", 0.0, 3.0, 0.7}, {"m", "-", 0.05, 2.0, 0.3}, {"k", "-", 0.1, 8.0, 1.0}},
-       .act =
-           [](Input in, WheelContact& c) {
-             const double cosine = std::max(std::cos(in.x), 0.0);
-             c.extra_sinkage_m += in.parameter[0] * c.radius_m *
-                                  (std::exp(-cosine / in.parameter[1]) - std::exp(-1.0 / in.parameter[1])) *
-                                  (1.0 - dragged(c));
-             c.rebound = 1.0 - (1.0 - c.rebound) * intoTheSoil(in.x);
-             c.slip_angle_rad = in.x;
-             c.shear_modulus_m *= in.parameter[2];
-           }},
       {.name = "side_slip",
        .family = "lateral_slip",
        .covariate = "slip_angle_rad",
@@ -340,12 +289,6 @@ std::vector<EffectForm> sideSlip() {
 }
 
 }  // namespace
-
-double intoTheSoil(double slip_angle_rad) {
-  constexpr double kHalf = 0.05;  // chosen on cmu_testbed
-  const double cosine = std::max(0.0, std::cos(slip_angle_rad));
-  return (1.0 + kHalf) * cosine / (cosine + kHalf);
-}
 
 std::vector<EffectForm> contactEffects() {
   std::vector<EffectForm> all;

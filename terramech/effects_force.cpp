@@ -33,8 +33,41 @@ double hegedus(const WheelContact& c, double z) {
   return c.width_m * front * (z * c.cohesion_Pa + 0.5 * c.density_kg_m3 * kGravity * z * z * heap);
 }
 
-double direction(const WheelState& state) {
-  return intoTheSoil(state.slip_angle_rad);
+/// Share of the passive pressure ahead that a wheel mobilises while it goes its own width sideways, by Janosi
+/// and Hanamoto's law: 1 - e^{-b cot beta / K} (ours); 1 straight on, 0 at 90 deg.
+double mobilised(const WheelState& state, const WheelContact& c) {
+  const double ahead = std::max(std::cos(state.slip_angle_rad), 0.0);
+  const double across = std::abs(std::sin(state.slip_angle_rad));
+  return -std::expm1(-c.width_m * ahead / std::max(across * c.shear_modulus_m, 1e-300));
+}
+
+/// Coulomb's passive coefficient of a vertical wall with friction tan delta.
+double passiveRough(double tan_friction, double tan_wall) {
+  const double phi = std::atan(tan_friction), delta = std::atan(tan_wall);
+  const double root = std::sqrt(std::sin(phi + delta) * std::sin(phi) / std::cos(delta));
+  const double ratio = std::cos(phi) / std::max(1.0 - root, 0.1);
+  return ratio * ratio / std::cos(delta);
+}
+
+/// What the soil beside a wheel that slides sideways does to its face.
+struct FaceForces {
+  double push_N;  ///< against the sideways motion
+  double pull_N;  ///< forward, by friction
+};
+
+/// The soil pushed aside rises along the face as its wedge does, at tan(45 deg - phi/2) of the sideways
+/// speed, while the face turns by at its mean height; wall friction acts against the resultant of the two.
+/// Its part upwards raises the passive pressure, its part along the wheel plane pulls or brakes.
+FaceForces faceForces(const WheelContact& c, double z, double slip_angle_rad, double tan_wall) {
+  const double along = std::cos(slip_angle_rad) - c.rolling * (1.0 - 0.5 * z / c.radius_m);
+  const double up = std::abs(std::sin(slip_angle_rad)) / std::sqrt(passive(c));
+  const double slide = std::max(std::hypot(along, up), 1e-12);
+  const double kp = passiveRough(c.tan_friction, tan_wall * up / slide);
+  const double chord = 2.0 * std::sqrt(std::max(0.0, z * (2.0 * c.radius_m - z)));
+  const double weight = c.density_kg_m3 * kGravity;
+  const double push = chord * z * (0.5 * weight * z * kp + 2.0 * c.cohesion_Pa * std::sqrt(kp)) *
+                      std::abs(std::sin(slip_angle_rad));
+  return {push, -tan_wall * push * along / slide};
 }
 
 std::vector<EffectForm> bulldozing() {
@@ -50,7 +83,7 @@ std::vector<EffectForm> bulldozing() {
        .read =
            [](Input in, const WheelContact& c, Reading& r) {
              const Wedge w = wedge(c, std::max(r.sinkage_m, 0.0), c.width_m);
-             r.drawbar_pull_N -= in.parameter[0] * (w.friction + w.cohesion) * direction(in.state);
+             r.drawbar_pull_N -= in.parameter[0] * (w.friction + w.cohesion) * mobilised(in.state, c);
            }},
       {.name = "bulldozing_two_term",
        .family = "bulldozing",
@@ -64,7 +97,7 @@ std::vector<EffectForm> bulldozing() {
            [](Input in, const WheelContact& c, Reading& r) {
              const Wedge w = wedge(c, std::max(r.sinkage_m, 0.0), c.width_m);
              r.drawbar_pull_N -=
-                 (in.parameter[0] * w.friction + in.parameter[1] * w.cohesion) * direction(in.state);
+                 (in.parameter[0] * w.friction + in.parameter[1] * w.cohesion) * mobilised(in.state, c);
            }},
       {.name = "bulldozing_hegedus",
        .family = "bulldozing",
@@ -78,7 +111,27 @@ std::vector<EffectForm> bulldozing() {
        .read =
            [](Input in, const WheelContact& c, Reading& r) {
              r.drawbar_pull_N -=
-                 in.parameter[0] * hegedus(c, std::max(r.sinkage_m, 0.0)) * direction(in.state);
+                 in.parameter[0] * hegedus(c, std::max(r.sinkage_m, 0.0)) * mobilised(in.state, c);
+           }},
+  };
+}
+
+/// Of a wheel that may also dig, brake or slide sideways.
+std::vector<EffectForm> pushing() {
+  return {
+      {.name = "bulldozing_ahead",
+       .family = "bulldozing",
+       .covariate = "sinkage_m",
+       .channel = Channel::DrawbarPull,
+       .formula = "R_b = a b gamma z_p^2 Kp / 2 of a heap without cohesion, z_p = z less what a driven wheel "
+                  "dug; times 1 - e^{-b cot beta / K}",
+       .source = "bekker_1969",
+       .signature = "as bulldozing, but not of a wheel that throws the soil behind itself",
+       .parameters = {{"a", "-", 0.0, 20.0, 1.0}},
+       .read =
+           [](Input in, const WheelContact& c, Reading& r) {
+             const Wedge w = wedge(c, std::max(r.sinkage_m - r.dug_m, 0.0), c.width_m);
+             r.drawbar_pull_N -= in.parameter[0] * w.friction * mobilised(in.state, c);
            }},
       {.name = "side_bulldozing",
        .family = "lateral_slip",
@@ -94,6 +147,24 @@ std::vector<EffectForm> bulldozing() {
              const double chord = 2.0 * std::sqrt(std::max(0.0, z * (2.0 * c.radius_m - z)));
              const Wedge w = wedge(c, z, chord);
              r.side_force_N -= in.parameter[0] * (w.friction + w.cohesion) * std::sin(in.x);
+           }},
+      {.name = "side_bulldozing_rough",
+       .family = "lateral_slip",
+       .covariate = "slip_angle_rad",
+       .channel = Channel::SideForce,
+       .formula =
+           "F -= a F_p(Kp(mu t_z)) sin beta, DP -= a mu |F_p sin beta| t_x, F_p as side_bulldozing with "
+           "Coulomb's Kp; (t_x, t_z) along (cos beta - (1 - z/2r) r omega/v, sin beta tan(45 deg - phi/2))",
+       .source = "ours",
+       .signature =
+           "side force grows with slip angle and sinkage and falls where the wheel spins, drawbar pull "
+           "rises there and falls where it is braked",
+       .parameters = {{"a", "-", 0.0, 20.0, 1.0}, {"mu", "-", 0.0, 1.0, 0.3}},
+       .read =
+           [](Input in, const WheelContact& c, Reading& r) {
+             const FaceForces face = faceForces(c, std::max(r.sinkage_m, 0.0), in.x, in.parameter[1]);
+             r.side_force_N -= in.parameter[0] * std::copysign(face.push_N, in.x);
+             r.drawbar_pull_N += in.parameter[0] * face.pull_N;
            }},
   };
 }
@@ -148,7 +219,7 @@ std::vector<EffectForm> weight() {
 
 std::vector<EffectForm> forceEffects() {
   std::vector<EffectForm> all;
-  for (auto part : {bulldozing, pile, weight})
+  for (auto part : {bulldozing, pushing, pile, weight})
     for (EffectForm& form : part()) all.push_back(std::move(form));
   return all;
 }

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include <terramech/held_out.hpp>
@@ -28,6 +29,49 @@ struct Sums {
   }
 };
 
+/// Those of one model on all rows, and on those of each group.
+class Tally {
+ public:
+  explicit Tally(const std::vector<std::string>& columns) : columns_(columns) {}
+
+  void add(const Trial& unseen, const Eigen::MatrixXd& residual) {
+    all_.add(residual);
+    for (const std::string& column : columns_)
+      for (int row = 0; row < unseen.rows(); ++row) {
+        const std::string label{unseen.states[static_cast<std::size_t>(row)].label(column)};
+        groups_[{column, label}].add(residual.row(row));
+        ++rows_[{column, label}];
+      }
+  }
+
+  ChannelErrors rmse() const { return all_.rmse(); }
+
+  static std::vector<GroupErrors> groups(const Tally& base, const Tally& refined) {
+    std::vector<GroupErrors> all;
+    for (const auto& [key, sums] : base.groups_)
+      all.push_back({.column = key.first,
+                     .value = key.second,
+                     .rows = base.rows_.at(key),
+                     .base_rmse = sums.rmse(),
+                     .refined_rmse = refined.groups_.at(key).rmse()});
+    return all;
+  }
+
+ private:
+  using Key = std::pair<std::string, std::string>;
+  std::vector<std::string> columns_;
+  Sums all_;
+  std::map<Key, Sums> groups_;
+  std::map<Key, int> rows_;
+};
+
+std::vector<std::string> columnsOfOneGroup(const RefinedModel& model) {
+  std::set<std::string> columns;
+  for (const Effect& e : model.effects)
+    if (!e.only_column.empty()) columns.insert(e.only_column);
+  return {columns.begin(), columns.end()};
+}
+
 Eigen::MatrixXd asMeasured(const RefinedModel& model, Trial trial) {
   for (std::size_t row = 0; row < trial.states.size(); ++row) {
     trial.states[row].slip = trial.slip[row];
@@ -45,7 +89,8 @@ HeldOut holdOut(const TraceResult& result, const TraceOptions& options, const Fo
   Whitening all = whitening(trial, predictRows(result.refined, trial, solved),
                             inputSlopes(result.refined, trial, solved), result.refined.noise);
   all.share(result.units.unit, result.units.left);
-  Sums base, refined;
+  const auto columns = columnsOfOneGroup(result.refined);
+  Tally base{columns}, refined{columns};
   for (int fold = 0; fold < folds.count; ++fold) {
     const std::vector<char> train = rowsOf(folds, fold, false);
     const Trial seen = subset(trial, train), unseen = subset(trial, rowsOf(folds, fold, true));
@@ -58,10 +103,10 @@ HeldOut holdOut(const TraceResult& result, const TraceOptions& options, const Fo
       if (result.first_prior && !model.effects.empty()) plan.effect_prior[0] = *result.first_prior;
       return fitModel(model, seen, white, plan, start).model;
     };
-    base.add(asMeasured(refit(result.base), unseen));
-    refined.add(asMeasured(refit(result.refined), unseen));
+    base.add(unseen, asMeasured(refit(result.base), unseen));
+    refined.add(unseen, asMeasured(refit(result.refined), unseen));
   }
-  return {folds.scheme, base.rmse(), refined.rmse()};
+  return {folds.scheme, base.rmse(), refined.rmse(), Tally::groups(base, refined)};
 }
 
 std::vector<HeldOut> holdOut(const TraceResult& result, const TraceOptions& options) {

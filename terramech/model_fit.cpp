@@ -87,6 +87,25 @@ class Search {
     return s;
   }
 
+  /// The step that solves the damped normal equations while parameters that stand at a bound and would leave
+  /// it stay: clamping them afterwards would make the others move for something that does not happen.
+  Eigen::VectorXd stepInside(Eigen::MatrixXd damped, Eigen::VectorXd gradient) const {
+    for (Eigen::Index held = 0; held <= gradient.size(); ++held) {
+      const Eigen::VectorXd step = damped.ldlt().solve(gradient);
+      bool leaves = false;
+      for (Eigen::Index k = 0; k < step.size(); ++k) {
+        if (!leavesBound(k, step[k])) continue;
+        leaves = true;
+        damped.row(k).setZero();
+        damped.col(k).setZero();
+        damped(k, k) = 1.0;
+        gradient[k] = 0.0;
+      }
+      if (!leaves) return step;
+    }
+    return Eigen::VectorXd::Zero(gradient.size());
+  }
+
   Eigen::MatrixXd jacobianHere() {
     Eigen::MatrixXd j = plan_.derivative
                             ? *plan_.derivative
@@ -110,6 +129,14 @@ class Search {
     const auto& priors = p.effect >= 0 ? plan_.effect_prior : plan_.soil_prior;
     const auto found = priors.find(p.effect >= 0 ? p.effect : p.index);
     return found == priors.end() ? std::nullopt : std::optional(found->second);
+  }
+
+  bool leavesBound(Eigen::Index k, double step) const {
+    const auto& p = plan_.free[static_cast<std::size_t>(k)];
+    if (isLogStiffness(p)) return false;
+    const ParameterRange range = rangeOf(model_, p);
+    const double now = value(model_, p);
+    return (step < 0.0 && now <= range.low) || (step > 0.0 && now >= range.high);
   }
 
   double valueOf(const RefinedModel& model, double log_stiffness, Eigen::Index k) const {
@@ -216,7 +243,7 @@ Fit fitModel(const RefinedModel& start, const Trial& trial, const Whitening& whi
     for (int attempt = 0; attempt < 6 && !moved; ++attempt, damping *= moved ? 1.0 : 8.0) {
       Eigen::MatrixXd damped = normal;
       damped.diagonal() += damping * normal.diagonal() + Eigen::VectorXd::Constant(n, 1e-9);
-      moved = search.tryStep(damped.ldlt().solve(gradient));
+      moved = search.tryStep(search.stepInside(damped, gradient));
     }
     damping = std::max(1e-6, damping * 0.2);
     if (!moved || before - search.cost() < 1e-3 + 1e-5 * before) break;

@@ -41,9 +41,13 @@ class Bound {
   std::vector<BoundEffect> effects_;
 };
 
+double cosineOf(double slip_angle_rad) {
+  return std::cos(std::min(std::abs(slip_angle_rad), kSteepestSlipAngle_rad));
+}
+
 /// r omega over the full speed; a wheel that spins in place counts as 1e3.
 double rolling(const WheelState& state, bool slip_along_travel) {
-  const double share = slip_along_travel ? 1.0 : std::max(std::cos(state.slip_angle_rad), 0.0);
+  const double share = slip_along_travel ? 1.0 : cosineOf(state.slip_angle_rad);
   return std::min(share / std::max(travelRatio(std::clamp(state.slip, -1.0, 1.0)), 1e-9), 1e3);
 }
 
@@ -83,6 +87,7 @@ Reading Bound::reading(const WheelState& state, const WheelContact& contact,
   Reading reading{.load_N = state.load_N,
                   .radius_m = state.wheel.radius_m,
                   .sinkage_m = forces.sinkage_m,
+                  .dug_m = forces.dug_m,
                   .torque_Nm = forces.torque_Nm,
                   .drawbar_pull_N = forces.drawbar_pull_N,
                   .side_force_N = forces.side_force_N};
@@ -115,7 +120,7 @@ double squared(double x) {
 
 double slipInWheelPlane(double slip_along_travel, double slip_angle_rad) {
   if (slip_along_travel <= -1.0) return -1.0;  // locked, whatever the angle
-  const double q = travelRatio(slip_along_travel) * std::max(std::cos(slip_angle_rad), 0.0);
+  const double q = travelRatio(slip_along_travel) * cosineOf(slip_angle_rad);
   return q <= 1.0 ? 1.0 - q : 1.0 / q - 1.0;
 }
 

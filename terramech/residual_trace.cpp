@@ -211,8 +211,19 @@ bool reconsiderPairs(Path& path, const Trial& trial) {
   return false;
 }
 
-/// Takes out, last first, what beside the others carries nothing that matters.
+double least(const Trial& trial) {
+  return 0.1 * static_cast<double>(trial.measured.array().isFinite().count());
+}
+
+/// Takes out, last first, what beside the others carries nothing that matters; of forms that came together
+/// each for itself.
 void prune(Path& path, const Trial& trial) {
+  for (std::size_t k = path.pinned; k < path.effects.size(); ++k) {
+    Candidate& chosen = path.effects[k].chosen.candidate;
+    if (chosen.empirical() || chosen.parts.size() == 1) continue;
+    path.search.thin(k, least(trial));
+    chosen.parts = path.search.parts(k);
+  }
   for (std::size_t k = path.effects.size(); k-- > path.pinned && path.effects.size() > 1;) {
     TraceSearch without = path.search;
     const double before = without.chi2();

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <numeric>
 
 #include <terramech/trace_search.hpp>
 
@@ -43,8 +44,7 @@ Eigen::MatrixXd TraceSearch::derivativeOf(const RefinedModel& model, SolvedConta
                   [&](const Eigen::MatrixXd& m) { return whitening_.apply(m); });
 }
 
-std::vector<TraceSearch::HeldRows> TraceSearch::heldRows() {
-  const Folds folds = foldsOf(trial_);
+std::vector<TraceSearch::HeldRows> TraceSearch::heldRows(const Folds& folds) {
   const Eigen::MatrixXd derivative = derivativeOf(model_, solved_);
   std::vector<HeldRows> all;
   for (int fold = 0; fold < folds.count; ++fold) {
@@ -63,6 +63,17 @@ std::vector<TraceSearch::HeldRows> TraceSearch::heldRows() {
   return all;
 }
 
+/// A curve over a column of few levels can take one knot a level and would pass any test that leaves rows of
+/// each level in: it must also tell levels that it has not seen. Empty where there are none to hold out.
+const std::vector<TraceSearch::HeldRows>& TraceSearch::heldLevels(const Candidate& curve,
+                                                                  HeldByColumn& known) {
+  const std::string& column = curve.covariate();
+  if (const auto found = known.find(column); found != known.end()) return found->second;
+  const Folds levels = levelFolds(trial_, column);
+  const bool each = levels.count > 0 && levels.count <= 8 && levels.scheme.starts_with("whole levels");
+  return known[column] = each ? heldRows(levels) : std::vector<HeldRows>{};
+}
+
 void TraceSearch::judgeHeldOut(const std::vector<HeldRows>& folds, const RefinedModel& fitted,
                                SolvedContacts& solved, Explanation& e) const {
   const Eigen::MatrixXd derivative = derivativeOf(fitted, solved);
@@ -79,6 +90,28 @@ void TraceSearch::judgeHeldOut(const std::vector<HeldRows>& folds, const Refined
   e.score = gain - e.candidate.parameters + (e.candidate.empirical() ? 0.0 : options_.library_bonus);
   for (std::size_t c = 0; c < kChannels; ++c)
     e.spoils |= after[c] > 1.05 * before[c] + 4.0;  // 2.5 % of the rms, and what chance does
+}
+
+void TraceSearch::thin(std::size_t k, double least_gain) {
+  const auto first =
+      std::accumulate(part_count_.begin(), part_count_.begin() + static_cast<long>(k), std::size_t{0});
+  for (std::size_t part = part_count_[k]; part-- > 0 && part_count_[k] > 1;) {
+    RefinedModel without = model_;
+    without.effects.erase(without.effects.begin() + static_cast<long>(first + part));
+    SolvedContacts solved = solved_;
+    const Fit fit = fitModel(without, trial_, whitening_, planFor(without), solved);
+    if (fit.chi2 - chi2() > least_gain) continue;
+    model_ = fit.model;
+    --part_count_[k];
+    refresh();
+  }
+}
+
+std::vector<Effect> TraceSearch::parts(std::size_t k) const {
+  const auto first =
+      std::accumulate(part_count_.begin(), part_count_.begin() + static_cast<long>(k), std::size_t{0});
+  const auto begin = model_.effects.begin() + static_cast<long>(first);
+  return {begin, begin + static_cast<long>(part_count_[k])};
 }
 
 }  // namespace talus::terramech

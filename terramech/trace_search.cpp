@@ -17,6 +17,14 @@ RefinedModel with(const RefinedModel& model, const Candidate& candidate) {
   return grown;
 }
 
+/// Whether a form of a candidate is in the model: several forms together are tried once.
+bool shares(const RefinedModel& model, const Candidate& candidate) {
+  return std::any_of(candidate.parts.begin(), candidate.parts.end(), [&](const Effect& part) {
+    return std::any_of(model.effects.begin(), model.effects.end(),
+                       [&](const Effect& e) { return e.name == part.name; });
+  });
+}
+
 Eigen::MatrixXd off(const Eigen::MatrixXd& columns, const Eigen::MatrixXd& orthonormal_nuisance) {
   if (orthonormal_nuisance.cols() == 0) return columns;
   return columns - orthonormal_nuisance * (orthonormal_nuisance.transpose() * columns);
@@ -121,6 +129,7 @@ TraceSearch::Screened TraceSearch::screenLibrary(const Candidate& candidate,
   Screened screened{candidate, off(columns, nuisance), 0.0};
   const Eigen::VectorXd weights = screened.direction.colPivHouseholderQr().solve(white_);
   double gain = (screened.direction * weights).squaredNorm();
+  if (!std::isfinite(gain)) gain = 0.0;  // a form that moves nothing has no direction
   if (free.empty()) gain = white_.squaredNorm() - (white_ - screened.direction.col(0)).squaredNorm();
   const EffectForm* form = findEffect(candidate.parts.front().name);
   if (!free.empty() && form->parameters.front().low >= 0.0 && weights[0] < 0.0) gain = 0.0;
@@ -182,7 +191,7 @@ std::vector<TraceSearch::Screened> TraceSearch::screen() {
   const Eigen::MatrixXd known = orthonormal(derivativeOf(model_, solved_));
   std::vector<Screened> all;
   for (const Candidate& c : libraryCandidates(trial_, sinkages(level_)))
-    all.push_back(screenLibrary(c, known));
+    if (c.parts.size() == 1 || !shares(model_, c)) all.push_back(screenLibrary(c, known));
   for (const Candidate& c : empiricalCandidates(trial_, sinkages(level_))) {
     Screened s = screenCurves(c, known);
     if (!s.candidate.parts.empty()) all.push_back(std::move(s));
@@ -209,7 +218,8 @@ std::vector<CovariateTest> TraceSearch::test(const std::vector<Screened>& screen
 std::vector<Explanation> TraceSearch::fitBest(const std::vector<Screened>& screened) {
   std::vector<Explanation> ranked;
   std::map<std::string, int> tried;
-  std::vector<HeldRows> folds = heldRows();
+  const std::vector<HeldRows> folds = heldRows(foldsOf(trial_));
+  HeldByColumn levels;
   int library = 0, empirical = 0;
   for (const Screened& s : screened) {
     int& count = s.candidate.empirical() ? empirical : library;
@@ -217,14 +227,15 @@ std::vector<Explanation> TraceSearch::fitBest(const std::vector<Screened>& scree
     if (count >= (s.candidate.empirical() ? 3 : options_.fits) || s.score < -2.0) continue;
     if (++tried[front.name + front.covariate + front.only_value] > 2) continue;
     ++count;
-    ranked.push_back(fitted(s.candidate, folds));
+    ranked.push_back(fitted(s.candidate, folds, levels));
   }
   std::stable_sort(ranked.begin(), ranked.end(),
                    [](const Explanation& a, const Explanation& b) { return a.score > b.score; });
   return ranked;
 }
 
-Explanation TraceSearch::fitted(const Candidate& candidate, const std::vector<HeldRows>& folds) {
+Explanation TraceSearch::fitted(const Candidate& candidate, const std::vector<HeldRows>& folds,
+                                HeldByColumn& levels) {
   const RefinedModel grown = with(model_, candidate);
   SolvedContacts solved = solved_;
   FitPlan plan = planFor(grown);
@@ -241,6 +252,12 @@ Explanation TraceSearch::fitted(const Candidate& candidate, const std::vector<He
   e.in_sample =
       0.5 * e.chi2_gain - penalty(candidate) + (candidate.empirical() ? 0.0 : options_.library_bonus);
   judgeHeldOut(folds, fit.model, solved, e);
+  if (candidate.empirical() && !heldLevels(candidate, levels).empty()) {
+    Explanation unseen = e;
+    judgeHeldOut(heldLevels(candidate, levels), fit.model, solved, unseen);
+    e.score = std::min(e.score, unseen.score);
+    e.spoils |= unseen.spoils;
+  }
   const Eigen::VectorXd before = whitening_.marginal(residual_),
                         after = whitening_.marginal(trial_.measured - predictRows(fit.model, trial_, solved));
   for (Eigen::Index i = 0; i < before.size(); ++i)

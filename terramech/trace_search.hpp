@@ -1,6 +1,8 @@
 #pragma once
 
+#include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <terramech/folds.hpp>
@@ -48,6 +50,13 @@ class TraceSearch {
 
   /// Takes accepted candidate number k out and fits the others again, the noise as it is.
   void leaveOut(std::size_t k);
+
+  /// Takes those forms out of accepted candidate number k, one by one, without which the squared length of
+  /// the whitened residuals, all else fitted again, is not larger by more than `least_gain`; one form stays.
+  void thin(std::size_t k, double least_gain);
+
+  /// The effects of accepted candidate number k as they are now in the model.
+  std::vector<Effect> parts(std::size_t k) const;
 
   /// Squared length of the whitened residuals.
   double chi2() const { return white_.squaredNorm(); }
@@ -99,8 +108,10 @@ class TraceSearch {
   };
   void judgeHeldOut(const std::vector<HeldRows>& folds, const RefinedModel& fitted, SolvedContacts& solved,
                     Explanation& candidate) const;
-  std::vector<HeldRows> heldRows();
-  Explanation fitted(const Candidate& candidate, const std::vector<HeldRows>& folds);
+  using HeldByColumn = std::map<std::string, std::vector<HeldRows>>;
+  std::vector<HeldRows> heldRows(const Folds& folds);
+  const std::vector<HeldRows>& heldLevels(const Candidate& curve, HeldByColumn& known);
+  Explanation fitted(const Candidate& candidate, const std::vector<HeldRows>& folds, HeldByColumn& levels);
   HeldRows errorsOn(const HeldRows& fold, const RefinedModel& start, const Eigen::MatrixXd& derivative) const;
   Eigen::MatrixXd derivativeOf(const RefinedModel& model, SolvedContacts& solved) const;
 

@@ -185,6 +185,13 @@ Trial makeTrial(const Telemetry& t, const RefinedModel& model) {
   return trial;
 }
 
+std::vector<char> beyondAxle(const Trial& trial) {
+  std::vector<char> sunk;
+  for (int row = 0; row < trial.rows(); ++row)
+    sunk.push_back(trial.measured(row, static_cast<int>(Channel::Sinkage)) >= 1.0);
+  return sunk;
+}
+
 Trial subset(const Trial& trial, const std::vector<char>& keep) {
   Trial part;
   part.covariates = trial.covariates;

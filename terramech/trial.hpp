@@ -40,6 +40,10 @@ std::vector<WheelState> statesOf(const Telemetry& telemetry, const RefinedModel&
 /// from speed_mps and rim_speed_mps of rows with a slip angle; false when they cannot tell.
 bool slipIsAlongTravel(const std::vector<WheelState>& states);
 
+/// Rows whose wheel is sunk to its axle or deeper, z >= r: the rim's contact ends at the axle's height in
+/// every model here, so that they say nothing of it and would bend it elsewhere.
+std::vector<char> beyondAxle(const Trial& trial);
+
 /// The rows of a trial that `keep` marks.
 Trial subset(const Trial& trial, const std::vector<char>& keep);
 

@@ -59,11 +59,12 @@ ShearDisplacement straight(const WheelContact& c, double entry) {
 }
 
 SideSlipDisplacement sideways(const WheelContact& c, double entry) {
-  return SideSlipDisplacement{{.shear_radius_m = c.shear_radius_m,
-                               .radius_m = c.radius_m,
-                               .slip = c.slip,
-                               .slip_angle_rad = std::clamp(c.slip_angle_rad, -1.5607, 1.5607),
-                               .entry_angle_rad = entry}};
+  return SideSlipDisplacement{
+      {.shear_radius_m = c.shear_radius_m,
+       .radius_m = c.radius_m,
+       .slip = c.slip,
+       .slip_angle_rad = std::clamp(c.slip_angle_rad, -kSteepestSlipAngle_rad, kSteepestSlipAngle_rad),
+       .entry_angle_rad = entry}};
 }
 
 template <class Rule>
@@ -125,7 +126,7 @@ ContactForces forcesOf(const RimForces& forces, double sinkage_m, double entry, 
 }
 
 bool digs(const WheelContact& c) {
-  return c.sinkage_gain != 1.0 || c.extra_sinkage_m != 0.0;
+  return c.sinkage_gain != 1.0 || c.dug_m != 0.0 || c.ploughed_m != 0.0 || c.extra_sinkage_m != 0.0;
 }
 
 bool isPlain(const WheelContact& c) {
@@ -169,9 +170,15 @@ ContactForces solveContact(const WheelContact& c, double entry_guess_rad) {
   const double static_entry = carried ? carried->entry_angle_rad : kDeepest;
   const double z0 = sinkageOf(c.radius_m, static_entry);
   if (carried && !digs(c)) return forcesOf(carried->forces, z0, static_entry, static_entry);
-  const double z = std::clamp(c.sinkage_gain * z0 + c.extra_sinkage_m, 1e-6 * c.radius_m, 1.95 * c.radius_m);
+  const double dug = (c.sinkage_gain - 1.0) * z0 + c.dug_m;
+  const double deeper = c.ploughed_m > 0.0 ? std::hypot(dug, c.ploughed_m) : dug;
+  const double z = std::clamp(z0 + deeper + c.extra_sinkage_m, 1e-6 * c.radius_m, 1.95 * c.radius_m);
   const double entry = entryOf(c.radius_m, z);
-  return forcesOf(imposed(c, entry), z, entry, static_entry);
+  WheelContact filled = c;
+  filled.rebound = std::min(1.0, c.rebound + c.rear_fill * std::max(0.0, dug) / z);
+  ContactForces forces = forcesOf(imposed(filled, entry), z, entry, static_entry);
+  forces.dug_m = std::clamp(deeper > 0.0 ? dug * dug / deeper : 0.0, 0.0, z);
+  return forces;
 }
 
 void solveContacts(std::vector<WheelContact> contacts, SolvedContacts& solved) {
@@ -197,8 +204,11 @@ void solveContacts(std::vector<WheelContact> contacts, SolvedContacts& solved) {
   for (std::size_t j = 0; j < plain.size(); ++j) {
     const WheelForces& f = batch[j];
     if (std::isfinite(f.drawbar_pull_N))
-      solved.forces[plain[j]] = {f.sinkage_m, f.entry_angle_rad, f.entry_angle_rad,
-                                 f.torque_Nm, f.drawbar_pull_N,  0.0};
+      solved.forces[plain[j]] = {.sinkage_m = f.sinkage_m,
+                                 .entry_angle_rad = f.entry_angle_rad,
+                                 .static_entry_rad = f.entry_angle_rad,
+                                 .torque_Nm = f.torque_Nm,
+                                 .drawbar_pull_N = f.drawbar_pull_N};
     else
       slowly(plain[j]);
   }

@@ -11,6 +11,10 @@
 /// load.
 namespace talus::terramech {
 
+/// Slip angles beyond it, 89.94 deg, count as it: at 90 deg the travel along the wheel plane is nothing and
+/// its tangent infinite, while their product, the travel across, is what shears the soil.
+inline constexpr double kSteepestSlipAngle_rad = 1.5698;
+
 /// What the contact of one wheel is solved from. SI; every field is already what acts, effects included.
 struct WheelContact {
   double load_N = 0.0;          ///< vertical load > 0
@@ -35,8 +39,13 @@ struct WheelContact {
   double hard_depth_m =
       std::numeric_limits<double>::infinity();  ///< H: below it pressure grows by hard_modulus
   double hard_modulus_Pa_m = 0.0;               ///< k_h of the lower layer
-  double sinkage_gain = 1.0;     ///< slip sinkage: the wheel digs to gain x static sinkage + extra_sinkage_m,
-  double extra_sinkage_m = 0.0;  ///< at most 1.95 r; the ground below then carries the load at a lower stress
+  // A wheel that digs: z = z0 + hypot(dug, ploughed_m) + extra_sinkage_m, dug = (gain - 1) z0 + dug_m, at
+  // most 1.95 r, z0 being the static sinkage; the ground below then carries the load at a lower stress.
+  double sinkage_gain = 1.0;
+  double dug_m = 0.0;            ///< along the wheel plane, by lugs
+  double ploughed_m = 0.0;       ///< across it
+  double extra_sinkage_m = 0.0;  ///< other
+  double rear_fill = 0.0;  ///< share of dug that lies behind: contact ends at theta_2 of kappa z + fill dug
 
   bool operator==(const WheelContact&) const = default;
 };
@@ -44,6 +53,7 @@ struct WheelContact {
 /// What the soil does to the wheel.
 struct ContactForces {
   double sinkage_m = 0.0;
+  double dug_m = 0.0;  ///< of the sinkage, what the driven wheel threw behind itself
   double entry_angle_rad = 0.0;
   double static_entry_rad = 0.0;  ///< before an imposed sinkage: what starts the next search best
   double torque_Nm = 0.0;

@@ -280,5 +280,40 @@ TEST(EstimateCommand, WritesAPage) {
   EXPECT_TRUE(fileContent(page).find("data:image/svg+xml") != std::string::npos);
 }
 
+TEST(EstimateCommand, TheEffectsOfAModelActAndAreNamed) {
+  const Folder folder;
+  const std::string table = folder.write("drive.csv", drive());
+  const std::string soil = "soil: loam\nmodel: wong-reece\n";
+  const std::string bare = folder.write("bare.yaml", soil);
+  const std::string digs = folder.write(
+      "digs.yaml", soil +
+                       "effects: [{name: slip_sinkage_ding, parameters: [0.6]}, {name: torque_offset, "
+                       "parameters: [0.8]}]\n");
+  const json plain = estimated({"--method", "wong-reece", "--model", bare}, table);
+  const json dug = estimated({"--method", "wong-reece", "--model", digs}, table);
+  EXPECT_FALSE(plain.contains("effects"));
+  EXPECT_EQ(dug.at("effects"), json({"slip_sinkage_ding", "torque_offset"}));
+  EXPECT_EQ(dug.at("rows_used"), 10);
+  // Property: torque that the sensor adds is not laid to the soil's strength.
+  const auto strength = [](const json& e) {
+    return e.at("cohesion_Pa").get<double>() + 10e3 * e.at("tan_friction").get<double>();
+  };
+  EXPECT_LT(strength(dug), strength(plain));
+}
+
+TEST(EstimateCommand, AModelGoesWithWongReeceAlone) {
+  const Folder folder;
+  const std::string table = folder.write("drive.csv", drive());
+  const std::string model = folder.write("m.yaml", "soil: loam\nmodel: wong-reece\n");
+  const Ran linear = runTalus({"estimate", table, "--method", "linear-offset", "--model", model});
+  EXPECT_EQ(linear.code, 2);
+  EXPECT_THAT(linear.err, HasSubstr("use --method wong-reece"));
+  const Ran row = runTalus({"estimate", table, "--method", "wong-reece", "--recursive", "--model", model});
+  EXPECT_EQ(row.code, 2);
+  EXPECT_THAT(row.err, HasSubstr("--recursive"));
+  const std::string formula = folder.write("f.yaml", "soil: loam\nmodel: linear-formula\n");
+  EXPECT_EQ(runTalus({"estimate", table, "--method", "wong-reece", "--model", formula}).code, 2);
+}
+
 }  // namespace
 }  // namespace talus::cli
