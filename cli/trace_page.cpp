@@ -121,11 +121,17 @@ void errors(HtmlReport& page, const TraceStory& story) {
   page.table({"held out", "channel", "base", "refined", "noise floor"}, rows);
 }
 
+const char* flippedTogether(const ExchangeableUnits& units) {
+  if (units.unit.empty()) return "rows";
+  return units.runs ? "what the rows of a run share, and of the rest of each row"
+                    : "what rows close in time share, and of the rest of each row";
+}
+
 void tests(HtmlReport& page, const TraceResult& r) {
   page.heading("What the base model's residuals were asked");
   page.paragraph(
       fmt::format("Strongest questions of {}; p-values hold over all of them together, by sign flips of {}.",
-                  r.first_tests.size(), r.grouped_by_run ? "whole runs" : "rows"));
+                  r.first_tests.size(), flippedTogether(r.units)));
   std::vector<std::vector<std::string>> rows;
   for (std::size_t k = 0; k < r.first_tests.size() && k < 15; ++k) {
     const CovariateTest& t = r.first_tests[k];

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <random>
-#include <set>
 
 #include <terramech/covariate_tests.hpp>
 #include <terramech/spline_basis.hpp>
@@ -16,12 +16,12 @@ double normalScore(double chi2, int freedom) {
   return (std::cbrt(std::max(chi2, 0.0) / freedom) - 1.0 + f) / std::sqrt(f);
 }
 
-/// A question: orthonormal columns and the residual that they are asked of.
+/// A question: columns that give, times the residual, its coordinates along orthonormal ones in the scaled
+/// space where it is asked.
 struct Question {
   CovariateTest test;
   Eigen::MatrixXd columns;
-  bool whitened = false;
-  double total = 0.0;  ///< squared length of the residual it looks at
+  double total = 0.0;  ///< squared length of the scaled residual it looks at
   int count = 0;       ///< its measured values
 };
 
@@ -30,19 +30,49 @@ Eigen::MatrixXd without(const Eigen::MatrixXd& columns, const Eigen::MatrixXd& n
   return orthonormal(columns - nuisance * (nuisance.transpose() * columns));
 }
 
+/// Columns of a scaled space times this residual give what they give times the residual brought there.
+Eigen::MatrixXd pulledBack(const Eigen::MatrixXd& scaled, const std::vector<Eigen::Matrix4d>& factor) {
+  Eigen::MatrixXd raw(scaled.rows(), scaled.cols());
+  for (std::size_t row = 0; row < factor.size(); ++row) {
+    const auto at = static_cast<Eigen::Index>(row) * kChannels;
+    raw.middleRows<kChannels>(at) = factor[row].transpose() * scaled.middleRows<kChannels>(at);
+  }
+  return raw;
+}
+
+std::vector<Eigen::Matrix4d> marginalFactors(const Whitening& whitening) {
+  std::vector<Eigen::Matrix4d> all;
+  for (std::size_t row = 0; row < whitening.factor.size(); ++row) {
+    Eigen::Matrix4d f = Eigen::Matrix4d::Zero();
+    for (int c = 0; c < kChannels; ++c)
+      if (whitening.factor[row](c, c) != 0.0)
+        f(c, c) = 1.0 / whitening.std(static_cast<Eigen::Index>(row), c);
+    all.push_back(f);
+  }
+  return all;
+}
+
+/// Row by row, missing readings 0.
+Eigen::VectorXd stacked(const Eigen::MatrixXd& residual) {
+  Eigen::VectorXd all(residual.rows() * kChannels);
+  for (Eigen::Index row = 0; row < residual.rows(); ++row)
+    for (int c = 0; c < kChannels; ++c)
+      all[row * kChannels + c] = std::isfinite(residual(row, c)) ? residual(row, c) : 0.0;
+  return all;
+}
+
 class Asker {
  public:
   Asker(const Trial& trial, const Whitening& whitening, const Eigen::MatrixXd& residual, const TestPlan& plan)
       : trial_(trial),
         plan_(plan),
+        whitening_(whitening),
+        residual_(residual),
         white_(whitening.apply(residual)),
         marginal_(whitening.marginal(residual)),
+        marginal_factor_(marginalFactors(whitening)),
         nuisance_white_(orthonormal(plan.nuisance_whitened)),
-        nuisance_(orthonormal(plan.nuisance_marginal)) {
-    if (plan.shared_error.size() == 0) return;
-    shared_white_ = whitening.apply(plan.shared_error);
-    shared_ = whitening.marginal(plan.shared_error);
-  }
+        nuisance_(orthonormal(plan.nuisance_marginal)) {}
 
   /// A dependence within one channel on the columns given by row; centred unless it is the constant itself.
   void ask(const std::string& name, int channel, Eigen::MatrixXd by_row, bool centre) {
@@ -57,7 +87,7 @@ class Asker {
     Question q;
     q.test.covariate = name;
     q.test.channel = channel;
-    q.columns = without(full, nuisance_);
+    q.columns = pulledBack(without(full, nuisance_), marginal_factor_);
     q.count = static_cast<int>(rows.size());
     for (int row : rows)
       q.total += marginal_[row * kChannels + channel] * marginal_[row * kChannels + channel];
@@ -67,8 +97,7 @@ class Asker {
   void askDirection(const Direction& direction) {
     Question q;
     q.test.covariate = direction.name;
-    q.columns = without(direction.columns, nuisance_white_);
-    q.whitened = true;
+    q.columns = pulledBack(without(direction.columns, nuisance_white_), whitening_.factor);
     q.total = white_.squaredNorm();
     q.count = static_cast<int>((trial_.measured.array().isFinite()).count());
     add(std::move(q));
@@ -88,34 +117,32 @@ class Asker {
     if (q.columns.cols() > 0 && q.total > 0.0) questions_.push_back(std::move(q));
   }
 
-  /// Sums over groups of column times residual, groups x all columns.
-  Eigen::MatrixXd groupSums() const {
-    Eigen::Index columns = 0;
-    for (const Question& q : questions_) columns += q.columns.cols();
-    const int groups = *std::max_element(plan_.group.begin(), plan_.group.end()) + 1;
-    Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(groups, columns);
+  Eigen::MatrixXd allColumns() const {
+    Eigen::Index count = 0;
+    for (const Question& q : questions_) count += q.columns.cols();
+    Eigen::MatrixXd all(white_.size(), count);
     Eigen::Index at = 0;
     for (const Question& q : questions_) {
-      const Eigen::VectorXd& r = q.whitened ? white_ : marginal_;
-      for (Eigen::Index i = 0; i < r.size(); ++i)
-        sums.row(plan_.group[static_cast<std::size_t>(i / kChannels)]).segment(at, q.columns.cols()) +=
-            q.columns.row(i) * r[i];
+      all.middleCols(at, q.columns.cols()) = q.columns;
       at += q.columns.cols();
     }
-    return sums;
+    return all;
   }
 
-  /// The shared error along all columns.
-  Eigen::RowVectorXd sharedProducts(Eigen::Index columns) const {
-    Eigen::RowVectorXd products = Eigen::RowVectorXd::Zero(columns);
-    if (shared_.size() == 0) return products;
-    Eigen::Index at = 0;
-    for (const Question& q : questions_) {
-      products.segment(at, q.columns.cols()) = (q.whitened ? shared_white_ : shared_).transpose() * q.columns;
-      at += q.columns.cols();
-    }
-    return products;
+  /// Less, in each channel, what the mean of its unit takes of a row: whatever signs rows are given, their
+  /// units' means stay nought.
+  Eigen::MatrixXd withinUnits(const Eigen::MatrixXd& columns) const;
+
+  Eigen::MatrixXd sums(const Eigen::MatrixXd& columns, const Eigen::VectorXd& residual,
+                       const std::vector<int>& group, int groups) const {
+    Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(groups, columns.cols());
+    for (Eigen::Index i = 0; i < residual.size(); ++i)
+      sum.row(group[static_cast<std::size_t>(i / kChannels)]) += columns.row(i) * residual[i];
+    return sum;
   }
+
+  /// Coordinates of flipped residuals, flips x all columns.
+  Eigen::MatrixXd flipped(const Eigen::MatrixXd& columns) const;
 
   std::vector<double> scores(const Eigen::RowVectorXd& products) const {
     std::vector<double> z;
@@ -131,36 +158,89 @@ class Asker {
 
   const Trial& trial_;
   const TestPlan& plan_;
-  Eigen::VectorXd white_, marginal_, shared_white_, shared_;
+  const Whitening& whitening_;
+  const Eigen::MatrixXd& residual_;
+  Eigen::VectorXd white_, marginal_;
+  std::vector<Eigen::Matrix4d> marginal_factor_;
   Eigen::MatrixXd nuisance_white_, nuisance_;
   std::vector<Question> questions_;
 };
 
+Eigen::MatrixXd Asker::withinUnits(const Eigen::MatrixXd& columns) const {
+  const std::vector<int>& unit = plan_.units.unit;
+  const auto cell = [&](Eigen::Index i) {
+    return static_cast<Eigen::Index>(unit[static_cast<std::size_t>(i / kChannels)]) * kChannels +
+           i % kChannels;
+  };
+  Eigen::VectorXd weight = Eigen::VectorXd::Zero(plan_.units.count() * kChannels);
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(weight.size(), columns.cols());
+  const auto weightOf = [&](Eigen::Index i) {
+    const double s = marginal_factor_[static_cast<std::size_t>(i / kChannels)](i % kChannels, i % kChannels);
+    return s * s;
+  };
+  for (Eigen::Index i = 0; i < columns.rows(); ++i) {
+    weight[cell(i)] += weightOf(i);
+    sum.row(cell(i)) += columns.row(i);
+  }
+  Eigen::MatrixXd within = columns;
+  for (Eigen::Index i = 0; i < columns.rows(); ++i)
+    if (weight[cell(i)] > 0.0) within.row(i) -= weightOf(i) / weight[cell(i)] * sum.row(cell(i));
+  return within;
+}
+
+Eigen::MatrixXd Asker::flipped(const Eigen::MatrixXd& columns) const {
+  std::mt19937_64 random(plan_.seed);
+  const auto signs = [&](Eigen::Index count) {
+    Eigen::MatrixXd sign(plan_.flips, count);
+    for (Eigen::Index flip = 0; flip < sign.rows(); ++flip) {
+      std::uint64_t bits = 0;
+      for (Eigen::Index k = 0; k < count; ++k) {
+        if (k % 64 == 0) bits = random();
+        sign(flip, k) = (bits >> (k % 64)) & 1U ? 1.0 : -1.0;
+      }
+    }
+    return sign;
+  };
+  std::vector<int> row(static_cast<std::size_t>(trial_.rows()));
+  std::iota(row.begin(), row.end(), 0);
+  Eigen::MatrixXd products;
+  if (plan_.units.unit.empty()) {
+    products = signs(trial_.rows()) * sums(columns, stacked(residual_), row, trial_.rows());
+  } else {
+    const Eigen::MatrixXd shared = unitMeans(residual_, whitening_.std, plan_.units.unit);
+    const int units = plan_.units.count();
+    products =
+        signs(trial_.rows()) * sums(withinUnits(columns), stacked(residual_ - shared), row, trial_.rows());
+    products += signs(units) * sums(columns, stacked(shared), plan_.units.unit, units);
+  }
+  if (plan_.shared_error.size() == 0) return products;
+  const Eigen::RowVectorXd common = stacked(plan_.shared_error).transpose() * columns;
+  std::normal_distribution<double> normal;
+  for (Eigen::Index flip = 0; flip < products.rows(); ++flip) products.row(flip) += normal(random) * common;
+  return products;
+}
+
 std::vector<CovariateTest> Asker::answer() const {
   std::vector<CovariateTest> tests;
   if (questions_.empty()) return tests;
-  const Eigen::MatrixXd sums = groupSums();
-  const std::vector<double> observed = scores(sums.colwise().sum());
-  std::mt19937_64 random(plan_.seed);
-  std::vector<double> most;
-  std::normal_distribution<double> normal;
-  const Eigen::RowVectorXd shared = sharedProducts(sums.cols());
-  Eigen::RowVectorXd sign(sums.rows());
-  for (int flip = 0; flip < plan_.flips; ++flip) {
-    std::uint64_t bits = 0;
-    for (Eigen::Index g = 0; g < sign.size(); ++g) {
-      if (g % 64 == 0) bits = random();
-      sign[g] = (bits >> (g % 64)) & 1U ? 1.0 : -1.0;
-    }
-    const auto z = scores(sign * sums + normal(random) * shared);
-    most.push_back(*std::max_element(z.begin(), z.end()));
+  const Eigen::MatrixXd columns = allColumns(), products = flipped(columns);
+  const auto count = static_cast<Eigen::Index>(questions_.size());
+  Eigen::ArrayXXd noise(products.rows(), count);
+  for (Eigen::Index flip = 0; flip < products.rows(); ++flip) {
+    const std::vector<double> z = scores(products.row(flip));
+    noise.row(flip) = Eigen::Map<const Eigen::ArrayXd>(z.data(), count);
   }
-  std::sort(most.begin(), most.end());
-  for (std::size_t k = 0; k < questions_.size(); ++k) {
-    const auto above = most.end() - std::lower_bound(most.begin(), most.end(), observed[k]);
-    tests.push_back(questions_[k].test);
-    tests.back().z = observed[k];
-    tests.back().p_value = (1.0 + static_cast<double>(above)) / (1.0 + plan_.flips);
+  const Eigen::ArrayXd mean = noise.colwise().mean().transpose();
+  const Eigen::ArrayXd std =
+      ((noise.rowwise() - mean.transpose()).square().colwise().mean().sqrt() + 1e-9).transpose();
+  const Eigen::ArrayXd most =
+      ((noise.rowwise() - mean.transpose()).rowwise() / std.transpose()).rowwise().maxCoeff();
+  const std::vector<double> raw = scores(stacked(residual_).transpose() * columns);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    CovariateTest test = questions_[static_cast<std::size_t>(k)].test;
+    test.z = (raw[static_cast<std::size_t>(k)] - mean[k]) / std[k];
+    test.p_value = (1.0 + static_cast<double>((most >= test.z).count())) / (1.0 + plan_.flips);
+    tests.push_back(std::move(test));
   }
   std::stable_sort(tests.begin(), tests.end(),
                    [](const CovariateTest& a, const CovariateTest& b) { return a.z > b.z; });
@@ -178,25 +258,6 @@ Eigen::MatrixXd indicator(const Trial& trial, const std::string& column) {
   return m;
 }
 
-/// Intraclass correlation of groups by its one-way F statistic, as a normal score.
-double withinScore(const std::vector<double>& value, const std::vector<int>& group) {
-  std::map<int, std::pair<double, int>> sums;
-  double mean = 0.0;
-  for (std::size_t i = 0; i < value.size(); ++i) {
-    auto& [sum, count] = sums[group[i]];
-    sum += value[i];
-    ++count;
-    mean += value[i] / static_cast<double>(value.size());
-  }
-  double between = 0.0, total = 0.0;
-  for (const auto& [key, part] : sums) between += part.second * std::pow(part.first / part.second - mean, 2);
-  for (double v : value) total += (v - mean) * (v - mean);
-  const auto k = static_cast<double>(sums.size()), n = static_cast<double>(value.size());
-  if (n - k < 4.0 || total <= 0.0) return 0.0;
-  const double excess = between / total - (k - 1.0) / (n - 1.0);
-  return excess / std::sqrt(2.0 * (k - 1.0) * (n - k)) * (n - 1.0) * std::sqrt(n + 1.0);
-}
-
 }  // namespace
 
 Eigen::VectorXd covariateValues(const Trial& trial, const std::string& name,
@@ -206,31 +267,6 @@ Eigen::VectorXd covariateValues(const Trial& trial, const std::string& name,
   for (int row = 0; row < trial.rows(); ++row)
     x[row] = trial.states[static_cast<std::size_t>(row)].covariate(name);
   return x;
-}
-
-std::vector<int> exchangeableGroups(const Trial& trial, const Whitening& whitening,
-                                    const Eigen::MatrixXd& smoothed) {
-  std::map<int, int> number;
-  std::vector<int> by_run, by_row;
-  for (int row = 0; row < trial.rows(); ++row) {
-    by_run.push_back(
-        number.try_emplace(trial.run[static_cast<std::size_t>(row)], static_cast<int>(number.size()))
-            .first->second);
-    by_row.push_back(row);
-  }
-  if (static_cast<int>(number.size()) == trial.rows() || number.size() < 2) return by_row;
-  double strongest = 0.0;
-  for (int c = 0; c < kChannels; ++c) {
-    std::vector<double> value;
-    std::vector<int> group;
-    for (int row = 0; row < trial.rows(); ++row) {
-      if (!std::isfinite(smoothed(row, c))) continue;
-      value.push_back(smoothed(row, c) / whitening.std(row, c));
-      group.push_back(by_run[static_cast<std::size_t>(row)]);
-    }
-    if (value.size() > 8) strongest = std::max(strongest, withinScore(value, group));
-  }
-  return strongest > 2.4 ? by_run : by_row;
 }
 
 std::vector<CovariateTest> testCovariates(const Trial& trial, const Whitening& whitening,

@@ -8,6 +8,9 @@
 namespace talus::terramech {
 namespace {
 
+/// Above this p-value known forms are taken to have left nothing.
+constexpr double kDoubt = 0.05;
+
 double smallest(const std::vector<CovariateTest>& tests) {
   double p = 1.0;
   for (const CovariateTest& t : tests) p = std::min(p, t.p_value);
@@ -160,6 +163,54 @@ void grow(Path& path, const Trial& trial, const TraceOptions& options, const Wat
   }
 }
 
+bool hasCurve(const Candidate& candidate) {
+  return std::any_of(candidate.parts.begin(), candidate.parts.end(),
+                     [](const Effect& e) { return e.empirical(); });
+}
+
+/// Whether a pair of known forms is the better account. Known forms are believed before a curve; in place of
+/// known forms it must say more, and one more of them must carry what a further effect must.
+bool isBetter(const Explanation& pair, const Explanation& present, std::size_t members, const Trial& trial) {
+  if (pair.score < 2.0 || pair.in_sample < 2.0 || pair.spoils) return false;
+  if (hasCurve(present.candidate)) return pair.score > present.score;
+  Explanation further = pair;
+  further.chi2_gain -= present.chi2_gain;
+  return pair.score > present.score + 2.0 && (members > 1 || matters(further, trial));
+}
+
+/// Tries two known forms in place of each effect and of each two; true when something was replaced.
+bool reconsiderPairs(Path& path, const Trial& trial) {
+  const bool curved = std::any_of(path.effects.begin(), path.effects.end(),
+                                  [](const TracedEffect& e) { return hasCurve(e.chosen.candidate); });
+  if (!curved && smallest(path.last_tests) > kDoubt) return false;
+  const std::size_t n = path.effects.size();
+  std::vector<std::vector<std::size_t>> choices;
+  for (std::size_t k = path.pinned; k < n; ++k) choices.push_back({k});
+  for (std::size_t k = path.pinned; k < n; ++k)
+    for (std::size_t l = path.pinned; l < k; ++l) choices.push_back({l, k});
+  for (const auto& members : choices) {
+    Explanation present;
+    const auto ranked = path.search.pairsInPlaceOf(members, present);
+    const auto better = std::find_if(ranked.begin(), ranked.end(), [&](const Explanation& e) {
+      return isBetter(e, present, members.size(), trial);
+    });
+    if (better == ranked.end()) continue;
+    path.search.replaceByPair(members, better->candidate);
+    const double p_value = path.effects[members.front()].p_value;
+    for (auto k = members.rbegin(); k != members.rend(); ++k)
+      path.effects.erase(path.effects.begin() + static_cast<long>(*k));
+    for (const Effect& part : better->candidate.parts) {
+      TracedEffect effect;
+      effect.chosen = *better;
+      effect.chosen.candidate = {{part}, findEffect(part.name)->family, 0};
+      effect.p_value = p_value;
+      path.effects.push_back(effect);
+    }
+    return true;
+  }
+  return false;
+}
+
 /// Takes out, last first, what beside the others carries nothing that matters.
 void prune(Path& path, const Trial& trial) {
   for (std::size_t k = path.effects.size(); k-- > path.pinned && path.effects.size() > 1;) {
@@ -233,6 +284,11 @@ TraceResult traceResiduals(const RefinedModel& base, const Trial& trial, const T
   result.base = best.search.model();
   if (options.fit_soil && trial.moment.empty()) best.pinned = correctOffset(best.search, trial, options.seed, best.effects) ? 1 : 0;
   grow(best, trial, options, watch);
+  for (int round = 0; round < 3 && !watch.stopped() && reconsiderPairs(best, trial); ++round) {
+    reconsider(best.search, best.effects, best.pinned);
+    best.barren = 0;
+    grow(best, trial, options, watch);
+  }
   prune(best, trial);
   result.first_tests = best.first_tests;
   result.effects = best.effects;

@@ -63,7 +63,7 @@ struct TraceResult {
   ChannelErrors base_rmse{}, refined_rmse{}, noise_floor{};
   std::optional<ParameterPrior>
       first_prior;  ///< of the first effect's first parameter, known beside the model
-  bool grouped_by_run = false;
+  ExchangeableUnits units;  ///< rows whose errors were found to belong together
 };
 
 /// Traces the residuals of `base` on the rows of `trial`. Deterministic for a seed. A stopped watch ends it

@@ -146,10 +146,18 @@ void setSlip(WheelState& state, double slip) {
   state.slip = slip;
 }
 
-Eigen::MatrixXd withoutSmooth(const Trial& trial, const Eigen::MatrixXd& residual, Smooth smooth) {
-  Eigen::MatrixXd left = residual;
+std::vector<std::string> allButSlip(const Trial& trial) {
   const auto& names = trial.covariates;
   const bool tells_slip = std::find(names.begin(), names.end(), "rim_speed_mps") != names.end();
+  std::vector<std::string> others;
+  for (const std::string& name : names)
+    if (name != "slip" && !(name == "speed_mps" && tells_slip)) others.push_back(name);
+  return others;
+}
+
+Eigen::MatrixXd withoutSmooth(const Trial& trial, const Eigen::MatrixXd& residual,
+                              const std::vector<std::string>& names) {
+  Eigen::MatrixXd left = residual;
   for (int c = 0; c < kChannels; ++c) {
     std::vector<int> rows;
     for (int row = 0; row < trial.rows(); ++row)
@@ -159,8 +167,7 @@ Eigen::MatrixXd withoutSmooth(const Trial& trial, const Eigen::MatrixXd& residua
     std::vector<Eigen::MatrixXd> parts{Eigen::MatrixXd::Ones(n, 1)};
     Eigen::Index columns = 1;
     const auto room = n / 4;
-    for (const std::string& name : trial.covariates) {
-      if (smooth == Smooth::AllButSlip && (name == "slip" || (name == "speed_mps" && tells_slip))) continue;
+    for (const std::string& name : names) {
       Eigen::VectorXd x(n);
       for (Eigen::Index i = 0; i < n; ++i)
         x[i] = trial.states[static_cast<std::size_t>(rows[static_cast<std::size_t>(i)])].covariate(name);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -23,11 +24,13 @@ InputSlopes inputSlopes(const RefinedModel& model, const Trial& trial, SolvedCon
 SensorNoise fitNoise(const Trial& trial, const Eigen::MatrixXd& residual, const Eigen::MatrixXd& level,
                      const InputSlopes& slopes, const StatedSensors& stated);
 
-/// Residuals with an additive smooth of all covariates, or all but slip, taken out, scaled up for the freedom
-/// that it took. NaN stay.
-enum class Smooth { AllColumns, AllButSlip };
+/// Residuals with an additive smooth of these columns taken out, scaled up for the freedom that it took. NaN
+/// stay.
 Eigen::MatrixXd withoutSmooth(const Trial& trial, const Eigen::MatrixXd& residual,
-                              Smooth smooth = Smooth::AllColumns);
+                              const std::vector<std::string>& columns);
+
+/// The covariates of a trial that do not tell its slip.
+std::vector<std::string> allButSlip(const Trial& trial);
 
 /// Whether the measured slip varies by more than its own error may: by twice as much. Where it does not, what
 /// its error does to the readings is itself a smooth function of the measured slip, and a smooth of it would

@@ -75,10 +75,10 @@ void TraceSearch::refresh() {
   level_ = predictRows(model_, trial_, solved_);
   InputSlopes slopes = inputSlopes(model_, trial_, solved_);
   const Eigen::MatrixXd measured = trial_.measured - level_;
-  Eigen::MatrixXd smooth = withoutSmooth(trial_, measured, Smooth::AllButSlip);
+  Eigen::MatrixXd smooth = withoutSmooth(trial_, measured, allButSlip(trial_));
   model_.noise = fitNoise(trial_, smooth, level_, slopes, model_.stated);
   if (slipIsSeen(trial_, model_.noise)) {
-    smooth = withoutSmooth(trial_, measured);
+    smooth = withoutSmooth(trial_, measured, trial_.covariates);
     model_.noise = fitNoise(trial_, smooth, level_, slopes, model_.stated);
   }
   calibrateInputs(trial_, model_.noise);
@@ -89,7 +89,7 @@ void TraceSearch::refresh() {
   if (!slipIsSeen(trial_, model_.noise)) by_slip_ = levelStd(trial_, model_.noise) * slopes.by_slip;
   whitening_ = whitening(trial_, level_, slopes, model_.noise);
   white_ = whitening_.apply(residual_);
-  group_ = exchangeableGroups(trial_, whitening_, smooth);
+  units_ = exchangeableUnits(trial_, whitening_, residual_);
 }
 
 double TraceSearch::penalty(const Candidate& candidate) const {
@@ -191,7 +191,7 @@ std::vector<TraceSearch::Screened> TraceSearch::screen() {
 
 std::vector<CovariateTest> TraceSearch::test(const std::vector<Screened>& screened) {
   TestPlan plan;
-  plan.group = group_;
+  plan.units = units_;
   plan.flips = options_.flips;
   plan.seed = options_.seed;
   plan.nuisance_whitened = derivativeOf(model_, solved_);
@@ -225,7 +225,10 @@ Explanation TraceSearch::fitted(const Candidate& candidate, const std::vector<He
   const RefinedModel grown = with(model_, candidate);
   SolvedContacts solved = solved_;
   FitPlan plan = planFor(grown);
-  plan.iterations = candidate.empirical() ? 5 : candidate.parts.size() > 1 ? 30 : 10;
+  plan.iterations = candidate.empirical()        ? 5
+                    : candidate.parts.size() > 2 ? 30
+                    : candidate.parts.size() > 1 ? 15
+                                                 : 10;
   const Fit fit = fitModel(grown, trial_, whitening_, plan, solved);
   Explanation e;
   e.candidate = candidate;
@@ -274,10 +277,7 @@ void TraceSearch::leaveOut(std::size_t k) {
   model_.effects.erase(begin, begin + static_cast<long>(part_count_[k]));
   part_count_.erase(part_count_.begin() + static_cast<long>(k));
   SolvedContacts solved = solved_;
-  model_ = fitModel(model_, trial_, whitening_, planFor(model_), solved).model;
-  level_ = predictRows(model_, trial_, solved_);
-  residual_ = trial_.measured - level_;
-  white_ = whitening_.apply(residual_);
+  setModel(fitModel(model_, trial_, whitening_, planFor(model_), solved).model);
 }
 
 std::vector<Explanation> TraceSearch::rivals(std::size_t k) {
@@ -363,8 +363,7 @@ void TraceSearch::finish(TraceResult& result) {
     }
     result.noise_floor[c] = count ? std::sqrt(sum / count) : std::nan("");
   }
-  for (std::size_t row = 0; row < group_.size(); ++row)
-    result.grouped_by_run |= row > 0 && group_[row] == group_[row - 1];
+  result.units = units_;
   result.trial = trial_;
 }
 

@@ -59,11 +59,25 @@ class TraceSearch {
   /// Takes accepted candidate number k out and puts another in, which becomes the last.
   void replace(std::size_t k, const Candidate& candidate);
 
+  /// What two known forms together would explain in place of accepted candidates, the others kept and the
+  /// noise as it is, best first; and what those candidates do themselves, judged in the same way. The first
+  /// of a pair is fitted alone, the second is the best beside it, then both are fitted together: one curve,
+  /// or a wider form, may take two effects at once so that neither is missed any more.
+  std::vector<Explanation> pairsInPlaceOf(std::vector<std::size_t> members, Explanation& present);
+
+  /// Takes accepted candidates out and puts a pair in, as the last two.
+  void replaceByPair(std::vector<std::size_t> members, const Candidate& pair);
+
   /// Fills the result's model, errors and standard deviations.
   void finish(TraceResult& result);
 
  private:
   void refresh();
+  void setModel(const RefinedModel& model);  ///< the noise as it is
+  /// Adds the best seconds beside a first that was fitted, to first order.
+  void addPairs(const Explanation& first, const std::vector<Screened>& screened,
+                std::vector<Screened>& pairs) const;
+  std::vector<Explanation> pairs();
   Channel strongest(std::size_t effect);  ///< where taking it out, all else left, changes most [noise]
 
   void fitSoil();
@@ -99,7 +113,7 @@ class TraceSearch {
                                             ///< there is one level of slip
   Whitening whitening_;
   Eigen::VectorXd white_;
-  std::vector<int> group_;
+  ExchangeableUnits units_;
   std::optional<ParameterPrior> first_prior_;  ///< of a correction that is never taken out
   std::vector<std::size_t> part_count_;        ///< effects in the model of each accepted candidate
 };

@@ -31,28 +31,43 @@ std::string World::yaml() const {
   return out.str();
 }
 
+namespace {
+
+bool isIn(const std::vector<std::string>& list, const std::string& word) {
+  return std::find(list.begin(), list.end(), word) != list.end();
+}
+
+bool locates(const Claim& claim, const Hidden& h) {
+  return isIn(h.covariates, claim.covariate) && isIn(h.channels, claim.channel);
+}
+
+bool names(const Claim& claim, const Hidden& h) {
+  if (h.family == "empirical") return claim.name.find("empirical") != std::string::npos;
+  std::string stem = h.kind.substr(0, h.kind.find('_'));
+  for (const char* word :
+       {"slip_sinkage", "rear_pile", "rate", "multipass", "rebound", "hardpan", "grouser", "load_transfer",
+        "flexibility", "torque_offset", "load_cell", "sinkage_datum", "drift", "slip_bias", "bulldozing"})
+    if (h.kind.find(word) == 0 || h.family == word) stem = word;
+  return claim.name.find(stem) != std::string::npos;
+}
+
+}  // namespace
+
 Marks judge(const World& world, const std::vector<Claim>& claims) {
   Marks marks;
   marks.hidden = static_cast<int>(world.hidden.size());
   marks.claimed = static_cast<int>(claims.size());
-  std::vector<char> used(claims.size(), 0);
-  for (const Hidden& h : world.hidden)
-    for (std::size_t k = 0; k < claims.size(); ++k) {
-      const auto in = [](const std::vector<std::string>& list, const std::string& word) {
-        return std::find(list.begin(), list.end(), word) != list.end();
-      };
-      if (used[k] || !in(h.covariates, claims[k].covariate) || !in(h.channels, claims[k].channel)) continue;
-      used[k] = 1;
-      ++marks.located;
-      std::string stem = h.kind.substr(0, h.kind.find('_'));
-      for (const char* word : {"slip_sinkage", "rear_pile", "rate", "multipass", "rebound", "hardpan",
-                               "grouser", "load_transfer", "flexibility", "torque_offset", "load_cell",
-                               "sinkage_datum", "drift", "slip_bias", "bulldozing"})
-        if (h.kind.find(word) == 0 || (h.family == word)) stem = word;
-      marks.family += h.family == "empirical" ? claims[k].name.find("empirical") != std::string::npos
-                                              : claims[k].name.find(stem) != std::string::npos;
-      break;
-    }
+  std::vector<char> used(claims.size(), 0), met(world.hidden.size(), 0);
+  // A claim goes first to the effect that it names; two effects may share a column.
+  for (const bool by_name : {true, false})
+    for (std::size_t h = 0; h < world.hidden.size(); ++h)
+      for (std::size_t k = 0; k < claims.size(); ++k) {
+        if (met[h] || used[k] || !locates(claims[k], world.hidden[h])) continue;
+        if (by_name && !names(claims[k], world.hidden[h])) continue;
+        met[h] = used[k] = 1;
+        ++marks.located;
+        marks.family += by_name;
+      }
   return marks;
 }
 

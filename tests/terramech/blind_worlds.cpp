@@ -97,7 +97,7 @@ Answer truth(const World& world, const Conditions& at) {
   }
   if (has(world, "grouser_radius", a)) m.rs += a * at.grouser;
   if (has(world, "load_transfer", a)) load *= std::cos(at.slope) - a * std::sin(at.slope);
-  if (has(world, "flexibility", a)) m.r *= 1.0 + a * load / 100.0, m.rs = m.r;
+  if (has(world, "flexibility", a)) m.r *= 1.0 + a * load / 100.0, m.rs *= 1.0 + a * load / 100.0;
   if (has(world, "drift_cohesion", a)) m.c *= std::max(0.0, 1.0 + a * at.time / 3600.0);
   if (has(world, "slip_bias", a)) slip = 1.0 - (1.0 - slip) / (1.0 + a);
   if (has(world, "form:stiffness_sine_dust", a)) m.k *= 1.0 + a * std::sin(at.dust * 6.0);

@@ -89,7 +89,6 @@ TEST(CovariateTests, AnErrorThatAllRowsShareIsNotAConstant) {
   const Whitening white = whitening(trial, none, {none, none}, noise);
   TestPlan plan;
   plan.nuisance_whitened = plan.nuisance_marginal = Eigen::MatrixXd(trial.rows() * kChannels, 0);
-  for (int row = 0; row < trial.rows(); ++row) plan.group.push_back(row);
   plan.flips = 999;
   const auto p = [&] {
     return testCovariates(trial, white, residual, Eigen::VectorXd::Zero(trial.rows()), plan).front().p_value;
