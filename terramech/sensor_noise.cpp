@@ -38,21 +38,25 @@ int present(const Eigen::MatrixXd& measured, int row, std::array<int, kChannels>
   return count;
 }
 
-double rowLogLikelihood(const Eigen::Matrix4d& s, const Eigen::MatrixXd& residual, int row) {
+/// Inverse of the lower Cholesky factor of the covariance of the channels that a row measures; zero elsewhere.
+Eigen::Matrix4d rowFactor(const Eigen::Matrix4d& s, const Eigen::MatrixXd& measured, int row) {
   std::array<int, kChannels> index{};
-  const int n = present(residual, row, index);
+  const int n = present(measured, row, index);
   Eigen::Matrix<double, -1, -1, 0, 4, 4> part(n, n);
-  Eigen::Matrix<double, -1, 1, 0, 4, 1> r(n);
-  for (int i = 0; i < n; ++i) {
-    r[i] = residual(row, index[static_cast<std::size_t>(i)]);
+  for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j)
       part(i, j) = s(index[static_cast<std::size_t>(i)], index[static_cast<std::size_t>(j)]);
-  }
-  const Eigen::LLT<decltype(part)> llt(part);
-  const auto u = llt.matrixL().solve(r).eval();
-  double sum = -0.5 * u.squaredNorm();
-  for (int i = 0; i < n; ++i) sum -= std::log(llt.matrixLLT()(i, i));
-  return sum;
+  const auto inverse =
+      Eigen::LLT<decltype(part)>(part).matrixL().solve(decltype(part)::Identity(n, n)).eval();
+  Eigen::Matrix4d full = Eigen::Matrix4d::Zero();
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j <= i; ++j)
+      full(index[static_cast<std::size_t>(i)], index[static_cast<std::size_t>(j)]) = inverse(i, j);
+  return full;
+}
+
+Eigen::Vector4d finiteOrZero(const Eigen::MatrixXd& residual, int row) {
+  return residual.row(row).transpose().unaryExpr([](double v) { return std::isfinite(v) ? v : 0.0; });
 }
 
 /// A positive number in a search on logarithms, with a log-normal prior.
@@ -192,6 +196,29 @@ Eigen::MatrixXd withoutSmooth(const Trial& trial, const Eigen::MatrixXd& residua
   return left;
 }
 
+namespace {
+
+double logLikelihood(const Trial& trial, const Eigen::MatrixXd& residual, const Eigen::MatrixXd& level,
+                     const InputSlopes& slopes, const SensorNoise& noise) {
+  MomentSlip shared{trial.moment, Eigen::MatrixXd::Zero(trial.rows(), kChannels)};
+  Eigen::VectorXd white(trial.rows() * kChannels);
+  double sum = 0.0;
+  for (int row = 0; row < trial.rows(); ++row) {
+    const double slip = trial.states[static_cast<std::size_t>(row)].slip;
+    const double variance = squared(noise.slip_absolute) + squared(noise.slip_relative * slip);
+    const double own = trial.moment.empty() ? variance : 0.0;
+    const Eigen::Matrix4d factor = rowFactor(
+        covariance(trial, row, level, slopes, noise, own, squared(noise.load_relative)), residual, row);
+    white.segment<kChannels>(row * kChannels) = factor * finiteOrZero(residual, row);
+    shared.moved.row(row) = std::sqrt(variance) * factor * slopes.by_slip.row(row).transpose();
+    for (int c = 0; c < kChannels; ++c)
+      if (factor(c, c) > 0.0) sum += std::log(factor(c, c));
+  }
+  return sum - 0.5 * white.squaredNorm() + shared.logLikelihood(white);
+}
+
+}  // namespace
+
 SensorNoise fitNoise(const Trial& trial, const Eigen::MatrixXd& residual, const Eigen::MatrixXd& level,
                      const InputSlopes& slopes, const StatedSensors& stated) {
   SensorNoise noise;
@@ -203,14 +230,7 @@ SensorNoise fitNoise(const Trial& trial, const Eigen::MatrixXd& residual, const 
     set(log_ratio);
     double sum = 0.0;
     for (std::size_t k = 0; k < all.size(); ++k) sum += 0.5 * squared(log_ratio[k] / all[k].spread);
-    for (int row = 0; row < trial.rows(); ++row) {
-      const double slip = trial.states[static_cast<std::size_t>(row)].slip;
-      const double variance = squared(noise.slip_absolute) + squared(noise.slip_relative * slip);
-      sum -= rowLogLikelihood(
-          covariance(trial, row, level, slopes, noise, variance, squared(noise.load_relative)), residual,
-          row);
-    }
-    return sum;
+    return sum - logLikelihood(trial, residual, level, slopes, noise);
   };
   set(nelderMead(cost, std::vector<double>(all.size(), 0.0),
                  {.step = 0.7, .evaluations = 900, .tolerance = 1e-3}));
@@ -309,16 +329,16 @@ Whitening subset(const Whitening& whitening, const std::vector<char>& keep) {
     rows.push_back(static_cast<Eigen::Index>(row));
   }
   part.std = whitening.std(rows, Eigen::all);
+  part.shared = subset(whitening.shared, keep);
   return part;
 }
 
 Eigen::VectorXd Whitening::apply(const Eigen::MatrixXd& residual) const {
   Eigen::VectorXd out(residual.rows() * kChannels);
-  for (Eigen::Index row = 0; row < residual.rows(); ++row) {
-    const Eigen::Vector4d r =
-        residual.row(row).transpose().unaryExpr([](double v) { return std::isfinite(v) ? v : 0.0; });
-    out.segment<kChannels>(row * kChannels) = factor[static_cast<std::size_t>(row)] * r;
-  }
+  for (int row = 0; row < residual.rows(); ++row)
+    out.segment<kChannels>(row * kChannels) =
+        factor[static_cast<std::size_t>(row)] * finiteOrZero(residual, row);
+  shared.takeOut(out);
   return out;
 }
 
@@ -358,25 +378,21 @@ Whitening whitening(const Trial& trial, const Eigen::MatrixXd& level, const Inpu
   Whitening w;
   w.std.resize(trial.rows(), kChannels);
   const Eigen::Vector4d least = leastVariance(trial, level, noise);
+  if (!trial.moment.empty()) w.shared = {trial.moment, Eigen::MatrixXd::Zero(trial.rows(), kChannels)};
   for (int row = 0; row < trial.rows(); ++row) {
-    Eigen::Matrix4d s =
-        covariance(trial, row, level, slopes, noise, trial.slip_variance[row], trial.load_variance[row]);
+    const double slip_variance = trial.slip_variance[row];
+    Eigen::Matrix4d s = covariance(trial, row, level, slopes, noise, trial.moment.empty() ? slip_variance : 0.0,
+                                   trial.load_variance[row]);
     s.diagonal() = s.diagonal().cwiseMax(least);
-    std::array<int, kChannels> index{};
-    const int n = present(trial.measured, row, index);
-    Eigen::MatrixXd part(n, n);
-    for (int i = 0; i < n; ++i)
-      for (int j = 0; j < n; ++j)
-        part(i, j) = s(index[static_cast<std::size_t>(i)], index[static_cast<std::size_t>(j)]);
-    const Eigen::MatrixXd inverse =
-        Eigen::LLT<Eigen::MatrixXd>(part).matrixL().solve(Eigen::MatrixXd::Identity(n, n));
-    Eigen::Matrix4d full = Eigen::Matrix4d::Zero();
-    for (int i = 0; i < n; ++i)
-      for (int j = 0; j < n; ++j)
-        full(index[static_cast<std::size_t>(i)], index[static_cast<std::size_t>(j)]) = inverse(i, j);
-    w.factor.push_back(full);
-    for (int c = 0; c < kChannels; ++c) w.std(row, c) = std::sqrt(s(c, c));
+    w.factor.push_back(rowFactor(s, trial.measured, row));
+    w.std.row(row) = s.diagonal().transpose();
+    if (!trial.moment.empty()) {
+      w.std.row(row) += slip_variance * slopes.by_slip.row(row).cwiseAbs2();
+      w.shared.moved.row(row) =
+          std::sqrt(slip_variance) * w.factor.back() * slopes.by_slip.row(row).transpose();
+    }
   }
+  w.std = w.std.cwiseSqrt();
   return w;
 }
 

@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 
+#include <terramech/moment_slip.hpp>
 #include <terramech/trial.hpp>
 
 namespace talus::terramech {
@@ -56,6 +57,7 @@ void calibrateInputs(Trial& trial, const SensorNoise& noise);
 struct Whitening {
   std::vector<Eigen::Matrix4d> factor;
   Eigen::MatrixXd std;  ///< marginal standard deviations, rows x kChannels
+  MomentSlip shared{};  ///< what is left common to rows of one moment
 
   Eigen::VectorXd apply(const Eigen::MatrixXd& residual) const;     ///< rows*kChannels; 0 where missing
   Eigen::VectorXd marginal(const Eigen::MatrixXd& residual) const;  ///< each over its std
