@@ -4,12 +4,12 @@
 
 #include <Eigen/Core>
 
-/// All wheels of a rover turn at one rate and its slip is read once a moment: rows of a moment share the error
-/// of that reading.
+/// All wheels of a rover turn at one rate and its slip is read once a moment: rows of a moment share the
+/// error of that reading.
 namespace talus::terramech {
 
-/// What the shared error does to rows that are otherwise independent, of unit variance and uncorrelated: their
-/// covariance is I + u u^T over each moment. Empty where rows share nothing.
+/// What the shared error does to rows that are otherwise independent, of unit variance and uncorrelated:
+/// their covariance is I + u u^T over each moment. Empty where rows share nothing.
 struct MomentSlip {
   std::vector<int> moment;  ///< number of each row's moment, from 0
   Eigen::MatrixXd moved;    ///< u, rows x channels: by one standard deviation of the slip's error

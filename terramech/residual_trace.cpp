@@ -143,9 +143,7 @@ void grow(Path& path, const Trial& trial, const TraceOptions& options, const Wat
     path.last_tests = tests;
     if (smallest(tests) > options.significance || count >= options.max_effects) break;
     // Only what answers a question that noise does not.
-    const auto answers = [&](const auto& e) {
-      return pValueOf(tests, e.candidate) <= options.significance;
-    };
+    const auto answers = [&](const auto& e) { return pValueOf(tests, e.candidate) <= options.significance; };
     std::stable_partition(screened.begin(), screened.end(), answers);
     auto ranked = path.search.fitBest(screened);
     const auto rest = std::stable_partition(ranked.begin(), ranked.end(), answers);
@@ -282,7 +280,8 @@ TraceResult traceResiduals(const RefinedModel& base, const Trial& trial, const T
   Path best{TraceSearch{withSlopeError(base, trial), trial, options}, {}, {}, {}};
   TraceResult result;
   result.base = best.search.model();
-  if (options.fit_soil && trial.moment.empty()) best.pinned = correctOffset(best.search, trial, options.seed, best.effects) ? 1 : 0;
+  if (options.fit_soil && trial.moment.empty())
+    best.pinned = correctOffset(best.search, trial, options.seed, best.effects) ? 1 : 0;
   grow(best, trial, options, watch);
   for (int round = 0; round < 3 && !watch.stopped() && reconsiderPairs(best, trial); ++round) {
     reconsider(best.search, best.effects, best.pinned);

@@ -38,7 +38,8 @@ int present(const Eigen::MatrixXd& measured, int row, std::array<int, kChannels>
   return count;
 }
 
-/// Inverse of the lower Cholesky factor of the covariance of the channels that a row measures; zero elsewhere.
+/// Inverse of the lower Cholesky factor of the covariance of the channels that a row measures; zero
+/// elsewhere.
 Eigen::Matrix4d rowFactor(const Eigen::Matrix4d& s, const Eigen::MatrixXd& measured, int row) {
   std::array<int, kChannels> index{};
   const int n = present(measured, row, index);
@@ -381,8 +382,8 @@ Whitening whitening(const Trial& trial, const Eigen::MatrixXd& level, const Inpu
   if (!trial.moment.empty()) w.shared = {trial.moment, Eigen::MatrixXd::Zero(trial.rows(), kChannels)};
   for (int row = 0; row < trial.rows(); ++row) {
     const double slip_variance = trial.slip_variance[row];
-    Eigen::Matrix4d s = covariance(trial, row, level, slopes, noise, trial.moment.empty() ? slip_variance : 0.0,
-                                   trial.load_variance[row]);
+    Eigen::Matrix4d s = covariance(trial, row, level, slopes, noise,
+                                   trial.moment.empty() ? slip_variance : 0.0, trial.load_variance[row]);
     s.diagonal() = s.diagonal().cwiseMax(least);
     w.factor.push_back(rowFactor(s, trial.measured, row));
     w.std.row(row) = s.diagonal().transpose();
