@@ -57,6 +57,19 @@ double slopeAtSlip_rad(const terramech::MobilityCurve& curve, double slip) {
   return 0.5 * (low + high);
 }
 
+bool knowsPasses(const GroundClass& ground) {
+  return std::any_of(ground.effects.begin(), ground.effects.end(),
+                     [](const terramech::Effect& e) { return e.covariate == "pass_index"; });
+}
+
+// In the rut of an equal wheel: as data have shown, or as rutted() supposes.
+terramech::MobilityCurve inRut(const GroundClass& ground, const terramech::Rover& rover) {
+  if (knowsPasses(ground)) return mobilityOf(ground, rover, {.first_pass = 2});
+  GroundClass rut = ground;
+  rut.soil = terramech::rutted(ground.soil);
+  return mobilityOf(rut, rover);
+}
+
 Category lower(Category category) {
   return category == Category::Safe       ? Category::Marginal
          : category == Category::Marginal ? Category::Dangerous
@@ -65,12 +78,13 @@ Category lower(Category category) {
 
 }  // namespace
 
-terramech::MobilityCurve mobilityOf(const GroundClass& ground, const terramech::Rover& rover) {
-  if (ground.effects.empty()) return {ground.soil, rover};
+terramech::MobilityCurve mobilityOf(const GroundClass& ground, const terramech::Rover& rover,
+                                    const terramech::MobilityOptions& options) {
+  if (ground.effects.empty()) return {ground.soil, rover, options};
   terramech::RefinedModel model;
   model.soil = ground.soil;
   model.effects = ground.effects;
-  return {model, rover};
+  return {model, rover, options};
 }
 
 GroundModel::GroundModel(Parts parts) : parts_(std::move(parts)) {
@@ -87,10 +101,10 @@ GroundModel::GroundModel(Parts parts) : parts_(std::move(parts)) {
   for (const GroundClass& c : parts_.classes) {
     if (&parts_.classes[static_cast<std::size_t>(classIndex(c.number))] != &c)
       throw std::invalid_argument("ground model: class " + std::to_string(c.number) + " is declared twice");
-    GroundClass rut = c;
-    rut.soil = terramech::rutted(c.soil);
-    curves_.push_back(mobilityOf(c, parts_.rover));
-    rut_curves_.push_back(mobilityOf(rut, parts_.rover));
+    wheel_curves_.push_back(mobilityOf(c, parts_.rover));
+    rut_curves_.push_back(inRut(c, parts_.rover));
+    curves_.push_back(knowsPasses(c) ? mobilityOf(c, parts_.rover, {.axles = parts_.rover.wheel_count / 2})
+                                     : wheel_curves_.back());
   }
 }
 
@@ -103,7 +117,7 @@ int GroundModel::classIndex(int number) const noexcept {
 GroundBelief GroundModel::prior(int class_index) const {
   const auto i = static_cast<std::size_t>(class_index);
   const GroundClass& c = parts_.classes[i];
-  const auto& reference = curves_[i].reference();
+  const auto& reference = wheel_curves_[i].reference();
   return {.pull = {reference.drawbar_pull_over_load, std::hypot(c.pull_std, c.mean_std)},
           .sinkage = {reference.sinkage_over_radius, c.sinkage_std}};
 }
@@ -165,7 +179,7 @@ DriveState GroundModel::state(int class_index, const GroundBelief& belief, doubl
   const auto& curve = curves_[static_cast<std::size_t>(class_index)];
   const auto& policy = parts_.policy;
   const terramech::Rover& rover = parts_.rover;
-  const auto& reference = curve.reference();
+  const auto& reference = wheel_curves_[static_cast<std::size_t>(class_index)].reference();
   const Estimate shift{belief.pull.mean - reference.drawbar_pull_over_load, belief.pull.std};
   const MobilityState s = curve.at(std::atan(gradient - shift.mean));
   const Expected expected = expectedDrive(curve, shift, gradient);

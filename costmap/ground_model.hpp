@@ -32,7 +32,8 @@ struct GroundClass {
 };
 
 /// What a slope asks of a rover on ground of a class. Throws std::invalid_argument as MobilityCurve does.
-terramech::MobilityCurve mobilityOf(const GroundClass& ground, const terramech::Rover& rover);
+terramech::MobilityCurve mobilityOf(const GroundClass& ground, const terramech::Rover& rover,
+                                    const terramech::MobilityOptions& options = {});
 
 /// What is believed of the strength of a piece of ground, both at the reference slip 0.5.
 struct GroundBelief {
@@ -108,7 +109,7 @@ class GroundModel {
 
  private:
   const terramech::MobilityCurve& curve(int class_index, bool in_rut) const noexcept {
-    return (in_rut ? rut_curves_ : curves_)[static_cast<std::size_t>(class_index)];
+    return (in_rut ? rut_curves_ : wheel_curves_)[static_cast<std::size_t>(class_index)];
   }
 
   // Drawbar pull over load at which a slope is no longer dangerous, and from which it is safe.
@@ -120,8 +121,9 @@ class GroundModel {
 
   Parts parts_;
   double tan_margin_ = 0.0;
-  std::vector<terramech::MobilityCurve> curves_;      // of each class
-  std::vector<terramech::MobilityCurve> rut_curves_;  // in the rut of an equal wheel
+  std::vector<terramech::MobilityCurve> curves_;        // of each class, all axles of the rover together
+  std::vector<terramech::MobilityCurve> wheel_curves_;  // one wheel on fresh ground
+  std::vector<terramech::MobilityCurve> rut_curves_;    // in the rut of an equal wheel
 };
 
 }  // namespace talus::costmap

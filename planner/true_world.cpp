@@ -30,12 +30,17 @@ struct Balance {
   bool stuck = true;
 };
 
-Balance balanced(const std::vector<const WheelTable*>& tables, const std::vector<double>& shares,
-                 double demand) {
+struct LoadedTable {
+  const WheelTable* table;
+  double load;   // over that on the flat
+  double share;  // of the rover's
+};
+
+Balance balanced(const std::vector<LoadedTable>& wheels, double demand) {
   double before = 0.0;
   for (std::size_t row = 0; row < WheelTable::kRows && WheelTable::slip(row) <= kHighestSlip; ++row) {
     double pull = 0.0;
-    for (std::size_t w = 0; w < tables.size(); ++w) pull += shares[w] * tables[w]->row(row).pull;
+    for (const LoadedTable& w : wheels) pull += w.share * w.table->row(row, w.load).pull;
     if (pull >= demand) {
       if (row == 0) return {-1.0, false};
       const double t = (demand - before) / (pull - before);
@@ -100,21 +105,21 @@ std::vector<TrueWorld::WheelState> TrueWorld::standing(const Motion& motion) con
 TrueWorld::Step TrueWorld::drive(const Motion& motion) const {
   Step step;
   step.wheels = standing(motion);
-  std::vector<const WheelTable*> tables;
-  for (const WheelState& w : step.wheels) {
-    const Tables& ground = tables_[soilAt(w.place)];
-    tables.push_back(w.passes > 0 ? &ground.rut : &ground.fresh);
-  }
   double load_N = 0.0;
   for (const WheelState& w : step.wheels) load_N += w.load_N;
-  std::vector<double> shares;
-  for (const WheelState& w : step.wheels) shares.push_back(w.load_N / load_N);
+  std::vector<LoadedTable> wheels;
+  for (const WheelState& w : step.wheels) {
+    const Tables& ground = tables_[soilAt(w.place)];
+    wheels.push_back({.table = w.passes > 0 ? &ground.rut : &ground.fresh,
+                      .load = w.load_N / terramech::wheelLoad_N(rover_),
+                      .share = w.load_N / load_N});
+  }
   const double demand = motion.gradient + slopeOutOf(motion.dug_m, rover_.wheel.radius_m);
-  const Balance balance = balanced(tables, shares, demand);
+  const Balance balance = balanced(wheels, demand);
   step.stuck = balance.stuck;
   step.slip = balance.slip;
-  for (std::size_t w = 0; w < tables.size(); ++w) {
-    step.wheels[w].forces = tables[w]->at(step.slip);
+  for (std::size_t w = 0; w < wheels.size(); ++w) {
+    step.wheels[w].forces = wheels[w].table->at(step.slip, wheels[w].load);
     step.torque_Nm += step.wheels[w].forces.torque * step.wheels[w].load_N * rover_.wheel.radius_m;
   }
   // Power of all wheels over the speed: T omega / v with omega = v/(r (1 - i)); a braking wheel gives nothing

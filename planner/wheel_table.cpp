@@ -8,8 +8,19 @@
 namespace talus::planner {
 namespace {
 
-WheelTable::Row solved(const terramech::Soil& soil, const terramech::Rover& rover, double slip) {
-  const double load_N = terramech::wheelLoad_N(rover);
+// A wheel of the rover under some load.
+struct Loaded {
+  const terramech::Rover& rover;
+  double load_N, slip;
+};
+
+WheelTable::Row between(const WheelTable::Row& a, const WheelTable::Row& b, double t) {
+  return {a.pull + t * (b.pull - a.pull), a.torque + t * (b.torque - a.torque),
+          a.sinkage + t * (b.sinkage - a.sinkage)};
+}
+
+WheelTable::Row solved(const terramech::Soil& soil, const Loaded& wheel) {
+  const auto& [rover, load_N, slip] = wheel;
   try {
     const auto f = terramech::equilibrium(soil, rover.wheel, {.load_N = load_N, .slip = slip});
     return {f.drawbar_pull_N / load_N, f.torque_Nm / (load_N * rover.wheel.radius_m),
@@ -19,10 +30,11 @@ WheelTable::Row solved(const terramech::Soil& soil, const terramech::Rover& rove
   }
 }
 
-WheelTable::Row predicted(const terramech::RefinedModel& model, const terramech::Rover& rover, double slip) {
+WheelTable::Row predicted(const terramech::RefinedModel& model, const Loaded& wheel) {
+  const auto& [rover, load_N, slip] = wheel;
   terramech::WheelState state;
   state.wheel = rover.wheel;
-  state.load_N = terramech::wheelLoad_N(rover);
+  state.load_N = load_N;
   state.slip = slip;
   state.rim_speed_mps = rover.max_speed_mps * (slip < 0.0 ? 1.0 + slip : 1.0);
   state.speed_mps = rover.max_speed_mps * (1.0 - std::max(slip, 0.0));
@@ -41,17 +53,24 @@ WheelTable::WheelTable(const terramech::Soil& soil, const terramech::Rover& rove
   terramech::RefinedModel model;
   model.soil = soil;
   model.effects = effects;
-  for (std::size_t i = 0; i < kRows; ++i)
-    rows_[i] = effects.empty() ? solved(soil, rover, slip(i)) : predicted(model, rover, slip(i));
+  for (std::size_t load = 0; load < kLoads.size(); ++load)
+    for (std::size_t i = 0; i < kRows; ++i) {
+      const Loaded wheel{rover, kLoads[load] * terramech::wheelLoad_N(rover), slip(i)};
+      rows_[load][i] = effects.empty() ? solved(soil, wheel) : predicted(model, wheel);
+    }
 }
 
-WheelTable::Row WheelTable::at(double slip) const noexcept {
+WheelTable::Row WheelTable::row(std::size_t i, double load) const noexcept {
+  constexpr double kStep = kLoads[1] - kLoads[0];
+  const double position = (std::clamp(load, kLoads.front(), kLoads.back()) - kLoads.front()) / kStep;
+  const auto k = std::min(static_cast<std::size_t>(position), kLoads.size() - 2);
+  return between(rows_[k][i], rows_[k + 1][i], position - static_cast<double>(k));
+}
+
+WheelTable::Row WheelTable::at(double slip, double load) const noexcept {
   const double position = (std::clamp(slip, -1.0, 1.0) + 1.0) * 0.5 * (kRows - 1);
   const auto i = std::min(static_cast<std::size_t>(position), kRows - 2);
-  const double t = position - static_cast<double>(i);
-  const Row &a = rows_[i], &b = rows_[i + 1];
-  return {a.pull + t * (b.pull - a.pull), a.torque + t * (b.torque - a.torque),
-          a.sinkage + t * (b.sinkage - a.sinkage)};
+  return between(row(i, load), row(i + 1, load), position - static_cast<double>(i));
 }
 
 }  // namespace talus::planner

@@ -9,8 +9,8 @@
 
 namespace talus::planner {
 
-/// What a wheel does on one soil, with the effects that act there, under its load on the flat, tabulated over
-/// slip -1 .. 1 by the forward model.
+/// What a wheel does on one soil, with the effects that act there, tabulated by the forward model over slip
+/// -1 .. 1 and over its load, 0.6 to 1.4 times that on the flat.
 class WheelTable {
  public:
   /// Forces over the load.
@@ -21,6 +21,7 @@ class WheelTable {
   };
 
   static constexpr std::size_t kRows = 81;
+  static constexpr std::array<double, 5> kLoads{0.6, 0.8, 1.0, 1.2, 1.4};  ///< over the load on the flat
 
   /// A soil that cannot carry the wheel pulls nothing.
   WheelTable(const terramech::Soil& soil, const terramech::Rover& rover,
@@ -30,12 +31,13 @@ class WheelTable {
   static constexpr double slip(std::size_t row) noexcept {
     return 2.0 * static_cast<double>(row) / (kRows - 1) - 1.0;
   }
-  const Row& row(std::size_t i) const noexcept { return rows_[i]; }
-  /// Interpolated at a slip, clamped to [-1, 1].
-  Row at(double slip) const noexcept;
+  /// Of a row, interpolated at a load, over that on the flat; beyond the table's ends their values.
+  Row row(std::size_t i, double load) const noexcept;
+  /// Interpolated at a slip, clamped to [-1, 1], too.
+  Row at(double slip, double load) const noexcept;
 
  private:
-  std::array<Row, kRows> rows_;
+  std::array<std::array<Row, kRows>, kLoads.size()> rows_;
 };
 
 }  // namespace talus::planner

@@ -138,8 +138,9 @@ void rate(Collector& to, const EffectForm& form) {
 
 void passes(Collector& to, const EffectForm& form) {
   if (!to.varies("pass_index")) return;
-  for (double scale : {0.6, 2.0})
-    to.add(form, "pass_index", {{"p0", scale}, {"first", to.extent("pass_index").low}});
+  const double first = to.extent("pass_index").low;
+  if (form.parameters.size() == 2) return to.add(form, "pass_index", {{"first", first}});
+  for (double scale : {0.6, 2.0}) to.add(form, "pass_index", {{"p0", scale}, {"first", first}});
 }
 
 void hardLayer(Collector& to, const EffectForm& form) {

@@ -153,6 +153,20 @@ std::vector<EffectForm> passes() {
              c.sinkage_modulus *= 1.0 + in.parameter[0] * g;
              c.cohesion_Pa *= 1.0 + in.parameter[3] * g;
            }},
+      {.name = "multipass_reload",
+       .family = "multipass",
+       .covariate = "pass_index",
+       .channel = Channel::Sinkage,
+       .formula = "k -> (1 + a) k, K -> K / sqrt(1 + a) from the second pass on",
+       .source = "wong_2001",
+       .signature = "sinkage falls at the second pass and stays, torque and drawbar pull rise at small slip",
+       .parameters = {{"a", "-", -0.5, 40.0, 1.0}, first},
+       .act =
+           [](Input in, WheelContact& c) {
+             if (in.x < in.parameter[1] + 0.5) return;
+             c.sinkage_modulus *= 1.0 + in.parameter[0];
+             c.shear_modulus_m /= std::sqrt(1.0 + in.parameter[0]);
+           }},
   };
 }
 

@@ -95,20 +95,38 @@ CarriedForces carriedBy(const Soil& soil, const Wheel& wheel) {
 }
 
 /// What a model says of a wheel of a rover at full speed.
-WheelForces predicted(const RefinedModel& model, const Rover& rover, const Station& at) {
+WheelForces predicted(const RefinedModel& model, const Rover& rover, const Station& at, int pass) {
   WheelState state;
   state.wheel = rover.wheel;
   state.load_N = at.load_N;
   state.slip = at.slip;
   state.rim_speed_mps = rover.max_speed_mps * (at.slip < 0.0 ? 1.0 + at.slip : 1.0);
   state.speed_mps = rover.max_speed_mps * (1.0 - std::max(at.slip, 0.0));
-  state.pass_index = 1.0;
+  state.pass_index = pass;
   state.slope_rad = at.slope_rad;
   const Reading reading = predict(model, state);
   return {.sinkage_m = reading.sinkage_m,
           .entry_angle_rad = 0.0,
           .torque_Nm = reading.torque_Nm,
           .drawbar_pull_N = reading.drawbar_pull_N};
+}
+
+bool knowsPasses(const RefinedModel& model) {
+  return std::any_of(model.effects.begin(), model.effects.end(),
+                     [](const Effect& e) { return e.covariate == "pass_index"; });
+}
+
+/// The mean wheel of axles that follow one another, sunk as the first.
+WheelForces meanOfAxles(const RefinedModel& model, const Rover& rover, const Station& at,
+                        const MobilityOptions& options) {
+  WheelForces mean = predicted(model, rover, at, options.first_pass);
+  if (!knowsPasses(model)) return mean;
+  for (int k = 1; k < options.axles; ++k) {
+    const WheelForces f = predicted(model, rover, at, options.first_pass + k);
+    mean.torque_Nm += (f.torque_Nm - mean.torque_Nm) / (k + 1);
+    mean.drawbar_pull_N += (f.drawbar_pull_N - mean.drawbar_pull_N) / (k + 1);
+  }
+  return mean;
 }
 
 }  // namespace
@@ -137,7 +155,7 @@ MobilityCurve::MobilityCurve(const RefinedModel& model, const Rover& rover, cons
         "model 'linear-formula' takes drawbar pull from a measured torque: it cannot say "
         "what a slope will ask, trace the data with model: wong-reece");
   const RefinedModel ground = withoutSensors(model);
-  const AxleForces forces = [&](const Station& at) { return predicted(ground, rover, at); };
+  const AxleForces forces = [&](const Station& at) { return meanOfAxles(ground, rover, at, options); };
   const CarriedForces carried = [&](const Station& at) -> std::optional<WheelForces> {
     const WheelForces f = forces(at);
     if (!(f.sinkage_m < (1.0 - 1e-9) * rover.wheel.radius_m)) return std::nullopt;
@@ -151,6 +169,8 @@ void MobilityCurve::tabulate(const Solver& solver) {
   const RangeCheck check{"mobility options"};
   check.within("reference_slip", options_.reference_slip, {1e-6, 1.0 - 1e-6});
   check.within("max_slip", options_.max_slip, {1e-6, 1.0});
+  check.atLeast("first_pass", options_.first_pass, 1.0);
+  check.atLeast("axles", options_.axles, 1.0);
   const auto flatAt = [&](double slip) {
     const Station flat{wheelLoad_N(rover_), slip, 0.0};
     const auto carried = solver.carried(flat);

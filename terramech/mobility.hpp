@@ -12,13 +12,15 @@ namespace talus::terramech {
 struct MobilityOptions {
   double reference_slip = 0.5;  ///< slip that traversability is judged at, (0, 1) (thesis 3.5)
   double max_slip = 0.8;        ///< more than this counts as stuck and without steering, (0, 1] (ours)
+  int first_pass = 1;  ///< pass of the first axle over its track, >= 1: 2 in the rut of an equal wheel
+  int axles = 1;       ///< that roll in one another's tracks, >= 1: the k-th at pass first_pass + k - 1
 };
 
 /// A rover driving steadily along a slope.
 struct MobilityState {
   double slip = 0.0;       ///< driven in [0, 1], braked in [-1, 0)
-  double sinkage_m = 0.0;  ///< of each wheel
-  double torque_Nm = 0.0;  ///< of each wheel; negative when it brakes
+  double sinkage_m = 0.0;  ///< of each wheel; of the first axle where they differ
+  double torque_Nm = 0.0;  ///< of each wheel, the mean where axles differ; negative when it brakes
   double energy_J_per_m =
       0.0;  ///< all wheels and hotel power, per metre driven along the surface; braking gives none back
   double speed_mps = 0.0;  ///< over the ground, along the surface
@@ -49,9 +51,10 @@ class MobilityCurve {
 
   /// The same of a model with effects. Those of sensors say nothing of the ground and are left out; those on
   /// columns that a drive does not have (a dust index, a session) stay neutral; slope, speed and rim speed
-  /// (the rover's greatest), and a first pass are known. The table is monotone all the same: where effects
-  /// make the pull fall with slip, the lesser slip holds. Throws as above, and for a linear-formula base,
-  /// which needs a measured torque.
+  /// (the rover's greatest), and the pass of each axle are known: where an effect of passes is among them the
+  /// axles are solved one by one, under equal loads, and their pulls and torques averaged. The table is
+  /// monotone all the same: where effects make the pull fall with slip, the lesser slip holds. Throws as
+  /// above, and for a linear-formula base, which needs a measured torque.
   MobilityCurve(const RefinedModel& model, const Rover& rover, const MobilityOptions& options = {});
 
   /// State on a slope along the heading, uphill > 0, in (-pi/2, pi/2). Where the slope is out of reach the

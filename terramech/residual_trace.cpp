@@ -143,16 +143,15 @@ void grow(Path& path, const Trial& trial, const TraceOptions& options, const Wat
   while (!watch.stopped()) {
     const auto count = static_cast<int>(path.effects.size());
     watch.report(count / (options.max_effects + 1.0));
-    const auto screened = path.search.screen();
+    auto screened = path.search.screen();
     const auto tests = path.search.test(screened);
     if (path.first_tests.empty()) path.first_tests = tests;
     path.last_tests = tests;
     if (smallest(tests) > options.significance || count >= options.max_effects) break;
-    auto ranked = path.search.fitBest(screened);
     // Only what answers a question that noise does not.
-    const auto answers = [&](const Explanation& e) {
-      return pValueOf(tests, e.candidate) <= options.significance;
-    };
+    const auto answers = [&](const auto& e) { return pValueOf(tests, e.candidate) <= options.significance; };
+    std::stable_partition(screened.begin(), screened.end(), answers);
+    auto ranked = path.search.fitBest(screened);
     const auto rest = std::stable_partition(ranked.begin(), ranked.end(), answers);
     auto best = path.search.choose({ranked.begin(), rest});
     if (!best && count > 0) best = path.search.choose(ranked);  // what is left mixes with what is in
@@ -262,6 +261,16 @@ std::vector<TracedEffect> apart(const std::vector<TracedEffect>& effects) {
   return all;
 }
 
+/// A rover's pull is known as its slope is: unless stated, to 0.3 degrees (an inclinometer's; ours).
+RefinedModel withSlopeError(RefinedModel model, const Trial& trial) {
+  constexpr double kSlopeError_rad = 0.005;
+  if (trial.moment.empty() || model.stated.drawbar_pull_N) return model;
+  double load_N = 0.0;
+  for (const double w : trial.load_N) load_N += w / trial.rows();
+  model.stated.drawbar_pull_N = kSlopeError_rad * load_N;
+  return model;
+}
+
 }  // namespace
 
 ChannelErrors rmseOf(const RefinedModel& model, const Trial& trial) {
@@ -280,10 +289,11 @@ ChannelErrors rmseOf(const RefinedModel& model, const Trial& trial) {
 
 TraceResult traceResiduals(const RefinedModel& base, const Trial& trial, const TraceOptions& options,
                            const Watch& watch) {
-  Path best{TraceSearch{base, trial, options}, {}, {}, {}};
+  Path best{TraceSearch{withSlopeError(base, trial), trial, options}, {}, {}, {}};
   TraceResult result;
   result.base = best.search.model();
-  if (options.fit_soil) best.pinned = correctOffset(best.search, trial, options.seed, best.effects) ? 1 : 0;
+  if (options.fit_soil && trial.moment.empty())
+    best.pinned = correctOffset(best.search, trial, options.seed, best.effects) ? 1 : 0;
   grow(best, trial, options, watch);
   for (int round = 0; round < 3 && !watch.stopped() && reconsiderPairs(best, trial); ++round) {
     reconsider(best.search, best.effects, best.pinned);

@@ -16,23 +16,6 @@ double squared(double x) {
   return x * x;
 }
 
-double rowLogLikelihood(const Eigen::Matrix4d& s, const Eigen::MatrixXd& residual, int row) {
-  std::array<int, kChannels> index{};
-  const int n = presentChannels(residual, row, index);
-  Eigen::Matrix<double, -1, -1, 0, 4, 4> part(n, n);
-  Eigen::Matrix<double, -1, 1, 0, 4, 1> r(n);
-  for (int i = 0; i < n; ++i) {
-    r[i] = residual(row, index[static_cast<std::size_t>(i)]);
-    for (int j = 0; j < n; ++j)
-      part(i, j) = s(index[static_cast<std::size_t>(i)], index[static_cast<std::size_t>(j)]);
-  }
-  const Eigen::LLT<decltype(part)> llt(part);
-  const auto u = llt.matrixL().solve(r).eval();
-  double sum = -0.5 * u.squaredNorm();
-  for (int i = 0; i < n; ++i) sum -= std::log(llt.matrixLLT()(i, i));
-  return sum;
-}
-
 /// A positive number in a search on logarithms, with a log-normal prior.
 struct Scale {
   double* target;
@@ -135,6 +118,29 @@ Eigen::MatrixXd withoutSmooth(const Trial& trial, const Eigen::MatrixXd& residua
   return left;
 }
 
+namespace {
+
+double logLikelihood(const Trial& trial, const Eigen::MatrixXd& residual, const Eigen::MatrixXd& level,
+                     const InputSlopes& slopes, const SensorNoise& noise) {
+  MomentSlip shared{trial.moment, Eigen::MatrixXd::Zero(trial.rows(), kChannels)};
+  Eigen::VectorXd white(trial.rows() * kChannels);
+  double sum = 0.0;
+  for (int row = 0; row < trial.rows(); ++row) {
+    const double slip = trial.states[static_cast<std::size_t>(row)].slip;
+    const double variance = squared(noise.slip_absolute) + squared(noise.slip_relative * slip);
+    const double own = trial.moment.empty() ? variance : 0.0;
+    const Eigen::Matrix4d factor = rowFactor(
+        rowCovariance(trial, row, level, slopes, noise, own, squared(noise.load_relative)), residual, row);
+    white.segment<kChannels>(row * kChannels) = factor * finiteOrZero(residual, row);
+    shared.moved.row(row) = std::sqrt(variance) * factor * slopes.by_slip.row(row).transpose();
+    for (int c = 0; c < kChannels; ++c)
+      if (factor(c, c) > 0.0) sum += std::log(factor(c, c));
+  }
+  return sum - 0.5 * white.squaredNorm() + shared.logLikelihood(white);
+}
+
+}  // namespace
+
 SensorNoise fitNoise(const Trial& trial, const Eigen::MatrixXd& residual, const Eigen::MatrixXd& level,
                      const InputSlopes& slopes, const StatedSensors& stated) {
   SensorNoise noise;
@@ -146,14 +152,7 @@ SensorNoise fitNoise(const Trial& trial, const Eigen::MatrixXd& residual, const 
     set(log_ratio);
     double sum = 0.0;
     for (std::size_t k = 0; k < all.size(); ++k) sum += 0.5 * squared(log_ratio[k] / all[k].spread);
-    for (int row = 0; row < trial.rows(); ++row) {
-      const double slip = trial.states[static_cast<std::size_t>(row)].slip;
-      const double variance = squared(noise.slip_absolute) + squared(noise.slip_relative * slip);
-      sum -= rowLogLikelihood(
-          rowCovariance(trial, row, level, slopes, noise, variance, squared(noise.load_relative)), residual,
-          row);
-    }
-    return sum;
+    return sum - logLikelihood(trial, residual, level, slopes, noise);
   };
   set(nelderMead(cost, std::vector<double>(all.size(), 0.0),
                  {.step = 0.7, .evaluations = 900, .tolerance = 1e-3}));

@@ -113,6 +113,59 @@ std::vector<int> runNumbers(const std::vector<WheelState>& states) {
   return run;
 }
 
+// Rows of one moment of one run, each of another wheel.
+std::vector<int> momentNumbers(const std::vector<WheelState>& states) {
+  std::map<std::pair<std::string_view, double>, std::set<std::string_view>> wheels;
+  std::map<std::pair<std::string_view, double>, int> numbers;
+  std::vector<int> moment;
+  std::size_t rows = 0;
+  for (const WheelState& s : states) {
+    const std::pair key{s.label("run"), s.time_s};
+    const std::string_view wheel = s.label("wheel");
+    if (!std::isfinite(s.time_s) || wheel.empty() || !wheels[key].insert(wheel).second) return {};
+    moment.push_back(numbers.try_emplace(key, static_cast<int>(numbers.size())).first->second);
+    ++rows;
+  }
+  return rows >= 2 * numbers.size() ? moment : std::vector<int>{};
+}
+
+// What the slope asks of the whole rover, for the first row of each moment: at a steady speed
+// sum(DP) = tan(slope) sum(W), the loads being normal to the ground.
+void balance(Trial& trial) {
+  std::set<int> seen;
+  for (int row = 0; row < trial.rows(); ++row) {
+    const auto r = static_cast<std::size_t>(row);
+    if (seen.insert(trial.moment[r]).second)
+      trial.measured(row, static_cast<int>(Channel::DrawbarPull)) = std::tan(trial.states[r].slope_rad);
+  }
+}
+
+// A drive whose wheels' pull nobody measured is asked for the rover's; the slope is then an answer, no cause.
+void addMoments(Trial& trial) {
+  if (trial.has(Channel::DrawbarPull)) return;
+  trial.moment = momentNumbers(trial.states);
+  if (trial.moment.empty()) return;
+  balance(trial);
+  std::erase(trial.covariates, "slope_rad");
+  if (std::set<int>(trial.run.begin(), trial.run.end()).size() < 5) trial.run = trial.moment;
+}
+
+// The pull of the whole rover in place of the first wheel's.
+void pullTogether(const Trial& trial, Eigen::MatrixXd& scaled) {
+  const int pull = static_cast<int>(Channel::DrawbarPull);
+  const int moments = *std::max_element(trial.moment.begin(), trial.moment.end()) + 1;
+  Eigen::VectorXd pull_N = Eigen::VectorXd::Zero(moments), load_N = Eigen::VectorXd::Zero(moments);
+  for (int row = 0; row < trial.rows(); ++row) {
+    const auto r = static_cast<std::size_t>(row);
+    pull_N[trial.moment[r]] += scaled(row, pull) * trial.load_N[r];
+    load_N[trial.moment[r]] += trial.load_N[r];
+  }
+  for (int row = 0; row < trial.rows(); ++row) {
+    const int m = trial.moment[static_cast<std::size_t>(row)];
+    scaled(row, pull) = pull_N[m] / load_N[m];
+  }
+}
+
 }  // namespace
 
 bool Trial::has(Channel channel) const {
@@ -182,6 +235,7 @@ Trial makeTrial(const Telemetry& t, const RefinedModel& model) {
   trial.run = runNumbers(trial.states);
   trial.covariates = varyingCovariates(trial.states);
   trial.groupings = groupingColumns(trial.states);
+  addMoments(trial);
   return trial;
 }
 
@@ -191,6 +245,21 @@ std::vector<char> beyondAxle(const Trial& trial) {
     sunk.push_back(trial.measured(row, static_cast<int>(Channel::Sinkage)) >= 1.0);
   return sunk;
 }
+
+namespace {
+
+// Without all of its wheels the rover's pull is not known.
+void dropBrokenMoments(const Trial& trial, const std::vector<char>& keep, Trial& part) {
+  std::set<int> broken;
+  for (std::size_t row = 0; row < trial.moment.size(); ++row)
+    if (!keep[row]) broken.insert(trial.moment[row]);
+  for (std::size_t row = 0; row < part.moment.size(); ++row)
+    if (broken.contains(part.moment[row]))
+      part.measured(static_cast<Eigen::Index>(row), static_cast<int>(Channel::DrawbarPull)) =
+          WheelState::kUnknown;
+}
+
+}  // namespace
 
 Trial subset(const Trial& trial, const std::vector<char>& keep) {
   Trial part;
@@ -208,11 +277,13 @@ Trial subset(const Trial& trial, const std::vector<char>& keep) {
     part.load_N.push_back(trial.load_N[r]);
     part.slip.push_back(trial.slip[r]);
     part.run.push_back(trial.run[r]);
+    if (!trial.moment.empty()) part.moment.push_back(trial.moment[r]);
     part.measured.row(to) = trial.measured.row(row);
     part.slip_variance[to] = trial.slip_variance[row];
     part.load_variance[to] = trial.load_variance[row];
     ++to;
   }
+  dropBrokenMoments(trial, keep, part);
   return part;
 }
 
@@ -224,6 +295,7 @@ Eigen::MatrixXd predictRows(const RefinedModel& model, const Trial& trial, Solve
     readings[r].load_N = trial.load_N[r];
     for (int c = 0; c < kChannels; ++c) out(row, c) = readings[r].scaled(static_cast<Channel>(c));
   }
+  if (!trial.moment.empty()) pullTogether(trial, out);
   return out;
 }
 

@@ -20,6 +20,9 @@ struct Trial {
   Eigen::VectorXd slip_variance;   ///< of the true slip about states' slip
   Eigen::VectorXd load_variance;   ///< of the true load about states' load, relative
   std::vector<int> run;  ///< number of the run of each row; a row of its own where there is no run column
+  /// Number of the moment of each row where a rover drove with several wheels and nobody measured their pull:
+  /// DP/W of a moment's first row is then the whole rover's, what the slope asks for. Empty otherwise.
+  std::vector<int> moment;
   std::vector<std::string> covariates;  ///< numeric columns that vary, answers left out
   std::vector<std::string> groupings;   ///< text columns of few words, runs left out
 
@@ -47,8 +50,9 @@ std::vector<char> beyondAxle(const Trial& trial);
 /// The rows of a trial that `keep` marks.
 Trial subset(const Trial& trial, const std::vector<char>& keep);
 
-/// Model readings of all rows over the measured load, rows x kChannels [-]. `solved` (may be
-/// empty at first) carries what was solved from call to call.
+/// Model readings of all rows over the measured load, rows x kChannels [-]; with moments, DP/W of a moment's
+/// first row is the sum of its wheels' pulls over the sum of their loads. `solved` (may be empty at first)
+/// carries what was solved from call to call.
 Eigen::MatrixXd predictRows(const RefinedModel& model, const Trial& trial, SolvedContacts& solved);
 
 }  // namespace talus::terramech

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <Eigen/Cholesky>
@@ -33,11 +34,27 @@ Eigen::Matrix4d rowCovariance(const Trial& trial, int row, const Eigen::MatrixXd
   return s;
 }
 
-int presentChannels(const Eigen::MatrixXd& measured, int row, std::array<int, kChannels>& index) {
-  int count = 0;
+Eigen::Matrix4d rowFactor(const Eigen::Matrix4d& covariance, const Eigen::MatrixXd& measured, int row) {
+  std::array<Eigen::Index, kChannels> index{};
+  std::size_t n = 0;
   for (int c = 0; c < kChannels; ++c)
-    if (std::isfinite(measured(row, c))) index[static_cast<std::size_t>(count++)] = c;
-  return count;
+    if (std::isfinite(measured(row, c))) index[n++] = c;
+  using Part = Eigen::Matrix<double, -1, -1, 0, kChannels, kChannels>;
+  const auto size = static_cast<Eigen::Index>(n);
+  Part part(size, size);
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < n; ++j)
+      part(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = covariance(index[i], index[j]);
+  const Part inverse = Eigen::LLT<Part>(part).matrixL().solve(Part::Identity(size, size));
+  Eigen::Matrix4d full = Eigen::Matrix4d::Zero();
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j <= i; ++j)
+      full(index[i], index[j]) = inverse(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+  return full;
+}
+
+Eigen::Vector4d finiteOrZero(const Eigen::MatrixXd& residual, int row) {
+  return residual.row(row).transpose().unaryExpr([](double v) { return std::isfinite(v) ? v : 0.0; });
 }
 
 InputSlopes inputSlopes(const RefinedModel& model, const Trial& trial, SolvedContacts& solved) {
@@ -63,6 +80,7 @@ Whitening subset(const Whitening& whitening, const std::vector<char>& keep) {
     rows.push_back(static_cast<Eigen::Index>(row));
   }
   part.std = whitening.std(rows, Eigen::all);
+  part.slip = subset(whitening.slip, keep);
   for (Eigen::Index row : rows)
     if (!whitening.unit.empty()) part.unit.push_back(whitening.unit[static_cast<std::size_t>(row)]);
   part.shared_white = whitening.shared_white;
@@ -72,11 +90,10 @@ Whitening subset(const Whitening& whitening, const std::vector<char>& keep) {
 
 Eigen::VectorXd Whitening::ownApply(const Eigen::MatrixXd& residual) const {
   Eigen::VectorXd out(residual.rows() * kChannels);
-  for (Eigen::Index row = 0; row < residual.rows(); ++row) {
-    const Eigen::Vector4d r =
-        residual.row(row).transpose().unaryExpr([](double v) { return std::isfinite(v) ? v : 0.0; });
-    out.segment<kChannels>(row * kChannels) = factor[static_cast<std::size_t>(row)] * r;
-  }
+  for (int row = 0; row < residual.rows(); ++row)
+    out.segment<kChannels>(row * kChannels) =
+        factor[static_cast<std::size_t>(row)] * finiteOrZero(residual, row);
+  slip.takeOut(out);
   return out;
 }
 
@@ -124,7 +141,10 @@ Eigen::VectorXd Whitening::marginal(const Eigen::MatrixXd& residual) const {
 
 Eigen::MatrixXd Whitening::backFromApply(const Eigen::MatrixXd& columns) const {
   Eigen::MatrixXd back = columns;
-  for (Eigen::Index k = 0; k < back.cols(); ++k) settle(back.col(k), shared_white);
+  for (Eigen::Index k = 0; k < back.cols(); ++k) {
+    settle(back.col(k), shared_white);
+    slip.takeOut(back.col(k));
+  }
   for (std::size_t row = 0; row < factor.size(); ++row) {
     auto part = back.middleRows<kChannels>(static_cast<Eigen::Index>(row) * kChannels);
     part = (factor[row].transpose() * part).eval();
@@ -213,25 +233,20 @@ Whitening whitening(const Trial& trial, const Eigen::MatrixXd& level, const Inpu
   Whitening w;
   w.std.resize(trial.rows(), kChannels);
   const Eigen::Vector4d least = leastVariance(trial, level, noise);
+  const bool alone = trial.moment.empty();
+  if (!alone) w.slip = {trial.moment, Eigen::MatrixXd::Zero(trial.rows(), kChannels)};
   for (int row = 0; row < trial.rows(); ++row) {
-    Eigen::Matrix4d s =
-        rowCovariance(trial, row, level, slopes, noise, trial.slip_variance[row], trial.load_variance[row]);
+    const double slip_variance = trial.slip_variance[row];
+    Eigen::Matrix4d s = rowCovariance(trial, row, level, slopes, noise, alone ? slip_variance : 0.0,
+                                      trial.load_variance[row]);
     s.diagonal() = s.diagonal().cwiseMax(least);
-    std::array<int, kChannels> index{};
-    const int n = presentChannels(trial.measured, row, index);
-    Eigen::MatrixXd part(n, n);
-    for (int i = 0; i < n; ++i)
-      for (int j = 0; j < n; ++j)
-        part(i, j) = s(index[static_cast<std::size_t>(i)], index[static_cast<std::size_t>(j)]);
-    const Eigen::MatrixXd inverse =
-        Eigen::LLT<Eigen::MatrixXd>(part).matrixL().solve(Eigen::MatrixXd::Identity(n, n));
-    Eigen::Matrix4d full = Eigen::Matrix4d::Zero();
-    for (int i = 0; i < n; ++i)
-      for (int j = 0; j < n; ++j)
-        full(index[static_cast<std::size_t>(i)], index[static_cast<std::size_t>(j)]) = inverse(i, j);
-    w.factor.push_back(full);
-    for (int c = 0; c < kChannels; ++c) w.std(row, c) = std::sqrt(s(c, c));
+    w.factor.push_back(rowFactor(s, trial.measured, row));
+    w.std.row(row) = s.diagonal().transpose();
+    if (alone) continue;
+    w.std.row(row) += slip_variance * slopes.by_slip.row(row).cwiseAbs2();
+    w.slip.moved.row(row) = std::sqrt(slip_variance) * w.factor.back() * slopes.by_slip.row(row).transpose();
   }
+  w.std = w.std.cwiseSqrt();
   return w;
 }
 

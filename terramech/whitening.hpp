@@ -1,10 +1,10 @@
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include <terramech/moment_slip.hpp>
 #include <terramech/trial.hpp>
 
 namespace talus::terramech {
@@ -21,15 +21,20 @@ Eigen::Matrix4d rowCovariance(const Trial& trial, int row, const Eigen::MatrixXd
                               const InputSlopes& slopes, const SensorNoise& noise, double slip_variance,
                               double load_variance);
 
-/// Puts the channels that a row measures to the front of `index`; how many there are.
-int presentChannels(const Eigen::MatrixXd& measured, int row, std::array<int, kChannels>& index);
+/// Inverse of the lower Cholesky factor of a row's covariance, zero rows and columns for the channels that it
+/// does not measure.
+Eigen::Matrix4d rowFactor(const Eigen::Matrix4d& covariance, const Eigen::MatrixXd& measured, int row);
 
-/// Makes residuals of unit variance and uncorrelated: per row the inverse of the lower Cholesky factor of
-/// their covariance, zero rows and columns for missing channels; then, where rows of a unit share an error,
+/// A row with 0 where nothing was measured.
+Eigen::Vector4d finiteOrZero(const Eigen::MatrixXd& residual, int row);
+
+/// Makes residuals of unit variance and uncorrelated: rowFactor() of their covariance; what rows of one moment
+/// share of its slip's error taken out; then, where rows of a unit share an error,
 /// their mean is shrunk by what it scatters too much.
 struct Whitening {
   std::vector<Eigen::Matrix4d> factor;
   Eigen::MatrixXd std;    ///< marginal standard deviations of a row's own error, rows x kChannels
+  MomentSlip slip{};      ///< error of the slip that rows of a moment share
   std::vector<int> unit;  ///< of each row; empty: rows are on their own
   Eigen::Vector4d shared_white = Eigen::Vector4d::Zero();  ///< variance that a unit shares over that of a
                                                            ///< row, by channel of apply()

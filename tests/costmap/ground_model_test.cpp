@@ -38,6 +38,28 @@ TEST(GroundModel, GroundWeakerByDDrivesLikeASlopeSteeperByD) {
   EXPECT_NEAR(model->state(0, weaker, 0.03).slip, model->state(0, certain(*model), 0.07).slip, 1e-6);
 }
 
+TEST(GroundModel, WheelsBehindDriveInTheRutsThatAModelKnows) {
+  GroundModel::Parts parts = testGround()->parts();
+  const GroundModel plain(parts);
+  parts.classes[0].effects = {
+      {.name = "multipass_reload", .covariate = "pass_index", .parameters = {3.0, 1.0}}};
+  const GroundModel model(parts);
+  const auto& ground = parts.classes[0];
+  const auto rover = terramech::MobilityCurve({.soil = ground.soil, .effects = ground.effects}, parts.rover,
+                                              {.axles = parts.rover.wheel_count / 2});
+  for (const double gradient : {0.0, 0.08}) {
+    // Closed form: the rover as a whole by the curve of its axles.
+    EXPECT_NEAR(model.state(0, certain(model), gradient).slip, rover.at(std::atan(gradient)).slip, 1e-5);
+    // Property: ruts help.
+    EXPECT_LT(model.state(0, certain(model), gradient).slip, plain.state(0, certain(plain), gradient).slip);
+  }
+  // What is believed of ground is still said of a wheel on fresh ground: two rules of one integral, 1e-6
+  // apart.
+  EXPECT_NEAR(model.prior(0).pull.mean, plain.prior(0).pull.mean, 1e-5);
+  EXPECT_NEAR(model.steady(0, {.slip = 0.3}).gradient, plain.steady(0, {.slip = 0.3}).gradient, 1e-4);
+  EXPECT_GT(model.steady(0, {.slip = 0.3, .in_rut = true}).gradient, model.steady(0, {.slip = 0.3}).gradient);
+}
+
 TEST(GroundModel, ClimbingCostsMoreThanDescending) {
   const auto model = testGround();
   const GroundBelief belief = certain(*model);

@@ -201,6 +201,34 @@ TEST(Mobility, ResistanceCostsSlipEnergyAndTheSteepestSlopes) {
   EXPECT_LT(curve.reference().drawbar_pull_over_load, plain.reference().drawbar_pull_over_load);
 }
 
+TEST(Mobility, AxlesThatFollowOneAnotherPullTogether) {
+  const RefinedModel model = withEffect("multipass_reload", {3.0, 1.0});
+  const MobilityCurve curve{model, rover(), {.axles = 3}}, first{model, rover()},
+      rut{model, rover(), {.first_pass = 2}};
+  for (const double slope : {0.02, 0.1}) {
+    const MobilityState s = curve.at(slope);
+    WheelState wheel;
+    wheel.wheel = rover().wheel;
+    wheel.load_N = wheelLoad_N(rover()) * std::cos(slope);
+    wheel.slip = s.slip;
+    double pull_N = 0.0, torque_Nm = 0.0;
+    for (const double pass : {1.0, 2.0, 3.0}) {
+      wheel.pass_index = pass;
+      pull_N += predict(model, wheel).drawbar_pull_N;
+      torque_Nm += predict(model, wheel).torque_Nm;
+    }
+    // Closed form: one wheel of each axle at its own pass, by the model itself; the table's stated accuracy.
+    EXPECT_NEAR(pull_N / (3.0 * wheel.load_N), std::tan(slope), 1e-3) << slope;
+    EXPECT_NEAR(torque_Nm / 3.0, s.torque_Nm, 1e-3) << slope;
+    // Property: it sinks as its first wheel does and drives better than on fresh ground alone, worse than in
+    // a rut.
+    EXPECT_GT(s.sinkage_m, rut.at(slope).sinkage_m) << slope;
+    EXPECT_LT(s.slip, first.at(slope).slip) << slope;
+    EXPECT_GT(s.slip, rut.at(slope).slip) << slope;
+  }
+  EXPECT_THROW((MobilityCurve{model, rover(), {.axles = 0}}), std::invalid_argument);
+}
+
 TEST(Mobility, WhatSensorsErrDoesNotMoveTheGround) {
   for (const char* name : {"load_cell_tilt", "torque_offset", "sinkage_datum", "slip_bias"}) {
     const MobilityCurve curve{withEffect(name, {0.05}), rover()};
