@@ -50,7 +50,7 @@ bool inNoisyInput(const Explanation& e, const Trial& trial) {
 /// worlds made for development.
 bool matters(const Explanation& e, const Trial& trial) {
   const auto values = static_cast<double>(trial.measured.array().isFinite().count());
-  return e.chi2_gain > (inNoisyInput(e, trial) ? 0.5 : hasCurve(e.candidate) ? 0.1 : 0.04) * values;
+  return e.chi2_gain > (inNoisyInput(e, trial) ? 0.5 : hasCurve(e.candidate) ? 0.1 : 0.06) * values;
 }
 
 Channel strongest(const Explanation& e) {
@@ -78,9 +78,16 @@ TracedEffect traced(const std::vector<Explanation>& ranked, std::size_t best, do
   return effect;
 }
 
+/// How often something is tried again whose cost grows with rows and parameters: four times and more in small
+/// tables, once in large ones, so that 700 rows take no more than a few times what 200 do.
+int attempts(const TraceSearch& search) {
+  return static_cast<int>(std::clamp(16'000.0 / search.work(), 1.0, 6.0));
+}
+
 /// Looks at every effect again, the newest first, until none is better replaced.
 void reconsider(TraceSearch& search, std::vector<TracedEffect>& effects, std::size_t pinned) {
   int replacements = 0;
+  const int most = std::min(4, attempts(search));
   for (std::size_t looked = 0; looked + pinned < effects.size();) {
     const std::size_t k = effects.size() - 1 - looked;
     const auto ranked = search.rivals(k);
@@ -90,7 +97,7 @@ void reconsider(TraceSearch& search, std::vector<TracedEffect>& effects, std::si
       search.drop(k);
       effects.erase(effects.begin() + static_cast<long>(k));
       looked = 0;
-      if (++replacements > 4) return;
+      if (++replacements > most) return;
       continue;
     }
     TracedEffect again = traced(ranked, *best, effects[k].p_value);
@@ -98,7 +105,7 @@ void reconsider(TraceSearch& search, std::vector<TracedEffect>& effects, std::si
       effects[k] = again;
       continue;
     }
-    if (++replacements > 4) return;
+    if (++replacements > most) return;
     search.replace(k, ranked[*best].candidate);
     effects.erase(effects.begin() + static_cast<long>(k));
     effects.push_back(again);
@@ -177,17 +184,30 @@ bool isBetter(const Explanation& pair, const Explanation& present, std::size_t m
   return pair.score > present.score + 2.0 && (members > 1 || matters(further, trial));
 }
 
-/// Tries two known forms in place of each effect and of each two; true when something was replaced.
-bool reconsiderPairs(Path& path, const Trial& trial) {
-  const bool curved = std::any_of(path.effects.begin(), path.effects.end(),
-                                  [](const TracedEffect& e) { return hasCurve(e.chosen.candidate); });
-  if (!curved && smallest(path.last_tests) > kDoubt) return false;
-  const std::size_t n = path.effects.size();
+/// Effects, and twos of them, for which a pair of known forms might stand: those with a curve, or any where
+/// the last tests leave a doubt. Forms that came in together stay.
+std::vector<std::vector<std::size_t>> replaceable(const Path& path) {
+  const bool doubt = smallest(path.last_tests) <= kDoubt;
+  std::vector<std::size_t> open;
+  for (std::size_t k = path.pinned; k < path.effects.size(); ++k) {
+    const Candidate& c = path.effects[k].chosen.candidate;
+    if (c.empirical() || c.parts.size() == 1) open.push_back(k);
+  }
+  const auto curve = [&](std::size_t k) { return hasCurve(path.effects[k].chosen.candidate); };
   std::vector<std::vector<std::size_t>> choices;
-  for (std::size_t k = path.pinned; k < n; ++k) choices.push_back({k});
-  for (std::size_t k = path.pinned; k < n; ++k)
-    for (std::size_t l = path.pinned; l < k; ++l) choices.push_back({l, k});
-  for (const auto& members : choices) {
+  for (const std::size_t k : open)
+    if (doubt || curve(k)) choices.push_back({k});
+  for (std::size_t i = 0; open.size() == 2 && i < open.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (doubt || curve(open[i]) || curve(open[j])) choices.push_back({open[j], open[i]});
+  return choices;
+}
+
+/// Tries two known forms in place of effects; true when something was replaced.
+bool reconsiderPairs(Path& path, const Trial& trial) {
+  int left = attempts(path.search);
+  for (const auto& members : replaceable(path)) {
+    if (left-- == 0) return false;
     Explanation present;
     const auto ranked = path.search.pairsInPlaceOf(members, present);
     const auto better = std::find_if(ranked.begin(), ranked.end(), [&](const Explanation& e) {
@@ -295,12 +315,15 @@ TraceResult traceResiduals(const RefinedModel& base, const Trial& trial, const T
   if (options.fit_soil && trial.moment.empty())
     best.pinned = correctOffset(best.search, trial, options.seed, best.effects) ? 1 : 0;
   grow(best, trial, options, watch);
-  for (int round = 0; round < 3 && !watch.stopped() && reconsiderPairs(best, trial); ++round) {
+  for (int round = 0;
+       round < (attempts(best.search) > 2 ? 2 : 1) && !watch.stopped() && reconsiderPairs(best, trial);
+       ++round) {
     reconsider(best.search, best.effects, best.pinned);
     best.barren = 0;
     grow(best, trial, options, watch);
   }
   prune(best, trial);
+  best.search.refineCurves();
   result.first_tests = best.first_tests;
   result.effects = best.effects;
   result.rejected = best.rejected;

@@ -1,6 +1,8 @@
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
+#include <terramech/spline_basis.hpp>
 #include <terramech/trace_search.hpp>
 
 namespace talus::terramech {
@@ -63,15 +65,18 @@ std::vector<TraceSearch::HeldRows> TraceSearch::heldRows(const Folds& folds) {
   return all;
 }
 
+TraceSearch::Held TraceSearch::held() {
+  return {heldRows(foldsOf(trial_)), {}};
+}
+
 /// A curve over a column of few levels can take one knot a level and would pass any test that leaves rows of
 /// each level in: it must also tell levels that it has not seen. Empty where there are none to hold out.
-const std::vector<TraceSearch::HeldRows>& TraceSearch::heldLevels(const Candidate& curve,
-                                                                  HeldByColumn& known) {
+const std::vector<TraceSearch::HeldRows>& TraceSearch::heldLevels(const Candidate& curve, Held& known) {
   const std::string& column = curve.covariate();
-  if (const auto found = known.find(column); found != known.end()) return found->second;
+  if (const auto found = known.levels.find(column); found != known.levels.end()) return found->second;
   const Folds levels = levelFolds(trial_, column);
   const bool each = levels.count > 0 && levels.count <= 8 && levels.scheme.starts_with("whole levels");
-  return known[column] = each ? heldRows(levels) : std::vector<HeldRows>{};
+  return known.levels[column] = each ? heldRows(levels) : std::vector<HeldRows>{};
 }
 
 void TraceSearch::judgeHeldOut(const std::vector<HeldRows>& folds, const RefinedModel& fitted,
@@ -112,6 +117,58 @@ std::vector<Effect> TraceSearch::parts(std::size_t k) const {
       std::accumulate(part_count_.begin(), part_count_.begin() + static_cast<long>(k), std::size_t{0});
   const auto begin = model_.effects.begin() + static_cast<long>(first);
   return {begin, begin + static_cast<long>(part_count_[k])};
+}
+
+std::optional<std::size_t> TraceSearch::choose(const std::vector<Explanation>& ranked) const {
+  const auto believable = [](const Explanation& e) {
+    return e.score >= 2.0 && e.in_sample >= 2.0 && !e.spoils;
+  };
+  const auto first = std::find_if(ranked.begin(), ranked.end(), believable);
+  if (first == ranked.end()) return {};
+  auto best = static_cast<std::size_t>(first - ranked.begin());
+  if (first->candidate.empirical()) {
+    // A known form that carries nearly all of what the curve does is the cause; its remainder is a
+    // correction.
+    const auto known = std::find_if(first, ranked.end(), [&](const Explanation& e) {
+      return !e.candidate.empirical() && believable(e) && e.chi2_gain > 0.93 * first->chi2_gain;
+    });
+    if (known == ranked.end()) return best;
+    best = static_cast<std::size_t>(known - ranked.begin());
+  }
+  // A parameter more than another form needs must carry a share, as a further effect must.
+  const auto values = static_cast<double>(trial_.measured.array().isFinite().count());
+  const double spare = std::min(0.1 * values, 0.05 * ranked[best].chi2_gain);
+  const double enough = ranked[best].chi2_gain - spare;
+  for (std::size_t k = best + 1; k < ranked.size(); ++k)
+    if (!ranked[k].candidate.empirical() && believable(ranked[k]) && ranked[k].chi2_gain > enough &&
+        ranked[k].candidate.parameters < ranked[best].candidate.parameters)
+      best = k;
+  return best;
+}
+
+void TraceSearch::refineCurves() {
+  bool refined = false;
+  for (std::size_t k = 0; k < model_.effects.size(); ++k) {
+    if (!model_.effects[k].empirical()) continue;
+    const Eigen::VectorXd x = covariateValues(trial_, model_.effects[k].covariate, sinkages(level_));
+    for (const int most : {7, 9, 13}) {
+      const Effect coarse = model_.effects[k];
+      const auto knots = quantileKnots(x, std::min(most, trial_.rows() / 10));
+      if (knots.size() <= coarse.knots.size()) continue;
+      RefinedModel finer = model_;
+      finer.effects[k].knots = knots;
+      finer.effects[k].parameters.clear();
+      const NaturalSpline curve{coarse.knots, coarse.parameters};
+      for (const double knot : knots) finer.effects[k].parameters.push_back(curve(knot));
+      SolvedContacts solved = solved_;
+      const Fit fit = fitModel(finer, trial_, whitening_, planFor(finer), solved);
+      const auto more = static_cast<double>(knots.size() - coarse.knots.size());
+      if (chi2() - fit.cost() < more * std::log(static_cast<double>(trial_.rows())) + 4.0) continue;
+      setModel(fit.model);
+      refined = true;
+    }
+  }
+  if (refined) refresh();
 }
 
 }  // namespace talus::terramech

@@ -9,21 +9,13 @@ namespace talus::terramech {
 
 namespace {
 
-constexpr int kFirsts = 6, kSeconds = 4, kPairs = 8;
+constexpr int kFirsts = 6, kSeconds = 4, kPairs = 6;
+
+/// Share of what is to be replaced that a pair must promise to first order.
+constexpr double kHopeful = 0.6;
 
 std::string nameOf(const Effect& e) {
   return e.name + "|" + e.covariate + "|" + e.only_value;
-}
-
-/// The best known form of each family, best first.
-std::vector<Explanation> bestOfFamilies(const std::vector<Explanation>& ranked) {
-  std::vector<Explanation> best;
-  std::set<std::string> families;
-  for (const Explanation& e : ranked)
-    if (!e.candidate.empirical() && e.candidate.parts.size() == 1 &&
-        static_cast<int>(best.size()) < kFirsts && families.insert(e.candidate.family).second)
-      best.push_back(e);
-  return best;
 }
 
 }  // namespace
@@ -62,19 +54,40 @@ void TraceSearch::addPairs(const Explanation& first, const std::vector<Screened>
               pairs.end());
 }
 
-std::vector<Explanation> TraceSearch::pairs() {
+std::vector<Explanation> TraceSearch::firsts(const std::vector<Screened>& screened) const {
+  std::vector<Explanation> all;
+  std::set<std::string> families;
+  for (const Screened& s : screened) {
+    if (static_cast<int>(all.size()) == kFirsts) break;
+    if (s.candidate.empirical() || s.candidate.parts.size() > 1 || s.score < -2.0) continue;
+    if (!families.insert(s.candidate.family).second) continue;
+    RefinedModel grown = model_;
+    grown.effects.push_back(s.candidate.parts.front());
+    SolvedContacts solved = solved_;
+    FitPlan plan = planFor(grown);
+    plan.iterations = 10;
+    const Fit fit = fitModel(grown, trial_, whitening_, plan, solved);
+    Explanation e;
+    e.candidate = s.candidate;
+    e.candidate.parts = {fit.model.effects.back()};
+    e.chi2_gain = chi2() - fit.cost();
+    all.push_back(std::move(e));
+  }
+  return all;
+}
+
+std::vector<Explanation> TraceSearch::pairs(double gain, Held& held) {
   const std::vector<Screened> screened = screen();
   std::vector<Screened> all;
-  for (const Explanation& first : bestOfFamilies(fitBest(screened))) addPairs(first, screened, all);
+  for (const Explanation& first : firsts(screened)) addPairs(first, screened, all);
   std::stable_sort(all.begin(), all.end(),
                    [](const Screened& a, const Screened& b) { return a.score > b.score; });
-  const std::vector<HeldRows> folds = heldRows();
   std::vector<Explanation> ranked;
   std::set<std::set<std::string>> tried;
   for (const Screened& s : all) {
-    if (static_cast<int>(ranked.size()) == kPairs) break;
+    if (static_cast<int>(ranked.size()) == kPairs || s.score < 0.5 * kHopeful * gain) break;
     if (tried.insert({nameOf(s.candidate.parts.front()), nameOf(s.candidate.parts.back())}).second)
-      ranked.push_back(fitted(s.candidate, folds));
+      ranked.push_back(fitted(s.candidate, held));
   }
   std::stable_sort(ranked.begin(), ranked.end(),
                    [](const Explanation& a, const Explanation& b) { return a.score > b.score; });
@@ -96,8 +109,9 @@ std::vector<Explanation> TraceSearch::pairsInPlaceOf(std::vector<std::size_t> me
   }
   // A curve in front makes the whole empirical: no bonus for a known form.
   std::stable_partition(all.parts.begin(), all.parts.end(), [](const Effect& e) { return e.empirical(); });
-  present = without.fitted(all, without.heldRows());
-  return without.pairs();
+  Held rows = without.held();
+  present = without.fitted(all, rows);
+  return without.pairs(present.chi2_gain, rows);
 }
 
 void TraceSearch::replaceByPair(std::vector<std::size_t> members, const Candidate& pair) {

@@ -32,6 +32,10 @@ Eigen::MatrixXd off(const Eigen::MatrixXd& columns, const Eigen::MatrixXd& ortho
 
 }  // namespace
 
+double TraceSearch::work() const {
+  return trial_.rows() * (static_cast<double>(planFor(model_).free.size()) + 3.0);
+}
+
 TraceSearch::TraceSearch(const RefinedModel& base, const Trial& trial, const TraceOptions& options)
     : options_(options), model_(base), trial_(trial) {
   refresh();
@@ -76,29 +80,47 @@ Eigen::VectorXd TraceSearch::sinkages(const Eigen::MatrixXd& level) const {
   return z;
 }
 
-void TraceSearch::refresh() {
+void TraceSearch::backToMeasured() {
   for (std::size_t row = 0; row < trial_.states.size(); ++row) {
     setSlip(trial_.states[row], trial_.slip[row]);
     trial_.states[row].load_N = trial_.load_N[row];
   }
-  level_ = predictRows(model_, trial_, solved_);
-  InputSlopes slopes = inputSlopes(model_, trial_, solved_);
-  const Eigen::MatrixXd measured = trial_.measured - level_;
-  Eigen::MatrixXd smooth = withoutSmooth(trial_, measured, allButSlip(trial_));
-  model_.noise = fitNoise(trial_, smooth, level_, slopes, model_.stated);
-  if (slipIsSeen(trial_, model_.noise) && speedIsSeen(trial_, model_.noise)) {
-    smooth = withoutSmooth(trial_, measured, trial_.covariates);
-    model_.noise = fitNoise(trial_, smooth, level_, slopes, model_.stated);
-  }
+}
+
+void TraceSearch::settle(const Eigen::MatrixXd& noise_alone, const Eigen::MatrixXd& level,
+                         const InputSlopes& measured_slopes) {
+  backToMeasured();
+  model_.noise = fitNoise(trial_, noise_alone, level, measured_slopes, model_.stated);
   calibrateInputs(trial_, model_.noise);
   level_ = predictRows(model_, trial_, solved_);
-  slopes = inputSlopes(model_, trial_, solved_);
   residual_ = trial_.measured - level_;
+  const InputSlopes slopes = inputSlopes(model_, trial_, solved_);
   by_slip_.reset();
   const Eigen::VectorXd shared = sharedSlipStd(trial_, model_.noise);
   if (shared.size() > 0) by_slip_ = shared.asDiagonal() * slopes.by_slip;
   whitening_ = whitening(trial_, level_, slopes, model_.noise);
+}
+
+void TraceSearch::refresh() {
+  backToMeasured();
+  const Eigen::MatrixXd level = predictRows(model_, trial_, solved_);
+  const InputSlopes slopes = inputSlopes(model_, trial_, solved_);
+  const Eigen::MatrixXd measured = trial_.measured - level;
+  // Whatever its error, a slip that varies much is seen; only where that is in doubt must the error be known.
+  const SensorNoise unlimited{.slip_relative = 1.0};
+  const auto isSeen = [&](const SensorNoise& n) { return slipIsSeen(trial_, n) && speedIsSeen(trial_, n); };
+  Eigen::MatrixXd smooth = withoutSmooth(trial_, measured, trial_.covariates);
+  if (!isSeen(unlimited)) {
+    const Eigen::MatrixXd left = withoutSmooth(trial_, measured, allButSlip(trial_));
+    if (!isSeen(fitNoise(trial_, left, level, slopes, model_.stated))) smooth = left;
+  }
+  settle(smooth, level, slopes);
   units_ = exchangeableUnits(trial_, whitening_, residual_);
+  if (!units_.unit.empty()) {  // what rows share is no noise of theirs
+    const double rows = trial_.rows(), kept = rows - units_.count();
+    smooth -= unitMeans(smooth, whitening_.std, units_.unit);
+    if (kept > 4.0) settle(std::sqrt(rows / kept) * smooth, level, slopes);
+  }
   whitening_.share(units_.unit, units_.left);
   white_ = whitening_.apply(residual_);
 }
@@ -218,8 +240,7 @@ std::vector<CovariateTest> TraceSearch::test(const std::vector<Screened>& screen
 std::vector<Explanation> TraceSearch::fitBest(const std::vector<Screened>& screened) {
   std::vector<Explanation> ranked;
   std::map<std::string, int> tried;
-  const std::vector<HeldRows> folds = heldRows(foldsOf(trial_));
-  HeldByColumn levels;
+  Held rows = held();
   int library = 0, empirical = 0;
   for (const Screened& s : screened) {
     int& count = s.candidate.empirical() ? empirical : library;
@@ -227,15 +248,14 @@ std::vector<Explanation> TraceSearch::fitBest(const std::vector<Screened>& scree
     if (count >= (s.candidate.empirical() ? 3 : options_.fits) || s.score < -2.0) continue;
     if (++tried[front.name + front.covariate + front.only_value] > 2) continue;
     ++count;
-    ranked.push_back(fitted(s.candidate, folds, levels));
+    ranked.push_back(fitted(s.candidate, rows));
   }
   std::stable_sort(ranked.begin(), ranked.end(),
                    [](const Explanation& a, const Explanation& b) { return a.score > b.score; });
   return ranked;
 }
 
-Explanation TraceSearch::fitted(const Candidate& candidate, const std::vector<HeldRows>& folds,
-                                HeldByColumn& levels) {
+Explanation TraceSearch::fitted(const Candidate& candidate, Held& held) {
   const RefinedModel grown = with(model_, candidate);
   SolvedContacts solved = solved_;
   FitPlan plan = planFor(grown);
@@ -251,10 +271,10 @@ Explanation TraceSearch::fitted(const Candidate& candidate, const std::vector<He
   e.chi2_gain = white_.squaredNorm() - fit.chi2 - fit.prior_chi2;
   e.in_sample =
       0.5 * e.chi2_gain - penalty(candidate) + (candidate.empirical() ? 0.0 : options_.library_bonus);
-  judgeHeldOut(folds, fit.model, solved, e);
-  if (candidate.empirical() && !heldLevels(candidate, levels).empty()) {
+  judgeHeldOut(held.folds, fit.model, solved, e);
+  if (candidate.empirical() && !heldLevels(candidate, held).empty()) {
     Explanation unseen = e;
-    judgeHeldOut(heldLevels(candidate, levels), fit.model, solved, unseen);
+    judgeHeldOut(heldLevels(candidate, held), fit.model, solved, unseen);
     e.score = std::min(e.score, unseen.score);
     e.spoils |= unseen.spoils;
   }
@@ -263,32 +283,6 @@ Explanation TraceSearch::fitted(const Candidate& candidate, const std::vector<He
   for (Eigen::Index i = 0; i < before.size(); ++i)
     e.by_channel[static_cast<std::size_t>(i % kChannels)] += before[i] * before[i] - after[i] * after[i];
   return e;
-}
-
-std::optional<std::size_t> TraceSearch::choose(const std::vector<Explanation>& ranked) const {
-  const auto believable = [](const Explanation& e) {
-    return e.score >= 2.0 && e.in_sample >= 2.0 && !e.spoils;
-  };
-  const auto first = std::find_if(ranked.begin(), ranked.end(), believable);
-  if (first == ranked.end()) return {};
-  auto best = static_cast<std::size_t>(first - ranked.begin());
-  if (first->candidate.empirical()) {
-    // A known form that carries nearly all of what the curve does is the cause; its remainder is a correction.
-    const auto known = std::find_if(first, ranked.end(), [&](const Explanation& e) {
-      return !e.candidate.empirical() && believable(e) && e.chi2_gain > 0.93 * first->chi2_gain;
-    });
-    if (known == ranked.end()) return best;
-    best = static_cast<std::size_t>(known - ranked.begin());
-  }
-  // A parameter more than another form needs must carry a share, as a further effect must.
-  const auto values = static_cast<double>(trial_.measured.array().isFinite().count());
-  const double spare = std::min(0.1 * values, 0.05 * ranked[best].chi2_gain);
-  const double enough = ranked[best].chi2_gain - spare;
-  for (std::size_t k = best + 1; k < ranked.size(); ++k)
-    if (!ranked[k].candidate.empirical() && believable(ranked[k]) && ranked[k].chi2_gain > enough &&
-        ranked[k].candidate.parameters < ranked[best].candidate.parameters)
-      best = k;
-  return best;
 }
 
 void TraceSearch::accept(const Candidate& candidate) {

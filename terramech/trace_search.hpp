@@ -18,6 +18,10 @@ class TraceSearch {
 
   const RefinedModel& model() const { return model_; }
 
+  /// Rows that one derivative of the model by its free parameters solves, and a few more: what a step of the
+  /// search costs, the same on any machine.
+  double work() const;
+
   /// A candidate tried to first order.
   struct Screened {
     Candidate candidate;        ///< empirical ones only with the channels that pay
@@ -77,16 +81,21 @@ class TraceSearch {
   /// Takes accepted candidates out and puts a pair in, as the last two.
   void replaceByPair(std::vector<std::size_t> members, const Candidate& pair);
 
+  /// Gives curves more knots where the rows they were fitted to pay for them. Which curve there is was judged
+  /// on rows held out in bands; how fine it is cannot be, since a band that is not seen asks what lies
+  /// between.
+  void refineCurves();
+
   /// Fills the result's model, errors and standard deviations.
   void finish(TraceResult& result);
 
  private:
   void refresh();
-  void setModel(const RefinedModel& model);  ///< the noise as it is
-  /// Adds the best seconds beside a first that was fitted, to first order.
-  void addPairs(const Explanation& first, const std::vector<Screened>& screened,
-                std::vector<Screened>& pairs) const;
-  std::vector<Explanation> pairs();
+  void backToMeasured();
+  /// Fits the noise to residuals that hold nothing else, at the measured inputs, and all that follows from
+  /// it.
+  void settle(const Eigen::MatrixXd& noise_alone, const Eigen::MatrixXd& level,
+              const InputSlopes& measured_slopes);
   Channel strongest(std::size_t effect);  ///< where taking it out, all else left, changes most [noise]
 
   void fitSoil();
@@ -108,10 +117,23 @@ class TraceSearch {
   };
   void judgeHeldOut(const std::vector<HeldRows>& folds, const RefinedModel& fitted, SolvedContacts& solved,
                     Explanation& candidate) const;
-  using HeldByColumn = std::map<std::string, std::vector<HeldRows>>;
+  /// All rows in folds, and by a curve's column, once asked for, in whole levels of it.
+  struct Held {
+    std::vector<HeldRows> folds;
+    std::map<std::string, std::vector<HeldRows>> levels;
+  };
   std::vector<HeldRows> heldRows(const Folds& folds);
-  const std::vector<HeldRows>& heldLevels(const Candidate& curve, HeldByColumn& known);
-  Explanation fitted(const Candidate& candidate, const std::vector<HeldRows>& folds, HeldByColumn& levels);
+  Held held();
+  const std::vector<HeldRows>& heldLevels(const Candidate& curve, Held& known);
+  void setModel(const RefinedModel& model);  ///< the noise as it is
+  /// Adds the best seconds beside a first that was fitted, to first order.
+  void addPairs(const Explanation& first, const std::vector<Screened>& screened,
+                std::vector<Screened>& pairs) const;
+  /// The best known form of each family, fitted alone and not judged.
+  std::vector<Explanation> firsts(const std::vector<Screened>& screened) const;
+  /// Pairs in addition to the model, in place of what gains so much chi-squared.
+  std::vector<Explanation> pairs(double gain, Held& held);
+  Explanation fitted(const Candidate& candidate, Held& held);
   HeldRows errorsOn(const HeldRows& fold, const RefinedModel& start, const Eigen::MatrixXd& derivative) const;
   Eigen::MatrixXd derivativeOf(const RefinedModel& model, SolvedContacts& solved) const;
 
