@@ -124,10 +124,10 @@ EdgeLayer::EdgeLayer(std::shared_ptr<const costmap::CostGrid> map, const EdgeUni
   complete_ = !stop();
 }
 
-EdgeLayer::EdgeLayer(std::shared_ptr<const costmap::CostGrid> map, const EdgeUnits& units, Unfilled)
+EdgeLayer::EdgeLayer(std::shared_ptr<const costmap::CostGrid> map, const EdgeUnits& units, Unfilled points)
     : map_(std::move(map)),
       units_(units),
-      padded_{map_->grid().width, map_->grid().height},
+      padded_{points.width, points.height},
       edges_(makeLargeArray<std::uint16_t>(8 * padded_.size())),
       complete_(true) {
   blockBorder();

@@ -59,9 +59,13 @@ class EdgeLayer {
   EdgeLayer(std::shared_ptr<const costmap::CostGrid> map, const EdgeUnits& units, int threads = 1,
             const StopCheck& stop = {}, Kernels kernels = Kernels::Best);
 
-  /// Every step left open, to be filled through into().
-  struct Unfilled {};
-  EdgeLayer(std::shared_ptr<const costmap::CostGrid> map, const EdgeUnits& units, Unfilled);
+  /// Steps between other points than the map's cells, so many columns and rows of them, to be filled through
+  /// into().
+  struct Unfilled {
+    int width;
+    int height;
+  };
+  EdgeLayer(std::shared_ptr<const costmap::CostGrid> map, const EdgeUnits& units, Unfilled points);
 
   std::uint16_t* into(std::size_t index) noexcept { return edges_.get() + 8 * index; }
 

@@ -8,22 +8,21 @@
 namespace talus::planner {
 namespace {
 
-// All cells within so many cells of a place, by column and by row.
-std::vector<maps::Cell> cellsWithin(const maps::Grid& grid, maps::Point place, double cells) {
+// All corners of cells within so many cells of a place, by column and by row.
+std::vector<maps::Cell> cornersWithin(const maps::Grid& grid, maps::Point place, double cells) {
   std::vector<maps::Cell> found;
-  const double column = (place.x_m - grid.south_west.x_m) / grid.resolution_m - 0.5;
-  const double row = (place.y_m - grid.south_west.y_m) / grid.resolution_m - 0.5;
+  const double column = (place.x_m - grid.south_west.x_m) / grid.resolution_m;
+  const double row = (place.y_m - grid.south_west.y_m) / grid.resolution_m;
   const auto from = [cells](double at) { return static_cast<int>(std::max(std::ceil(at - cells), 0.0)); };
   const auto to = [cells](double at, int count) {
-    return static_cast<int>(std::min(std::floor(at + cells), count - 1.0));
+    return static_cast<int>(std::min(std::floor(at + cells), static_cast<double>(count)));
   };
   for (int r = from(row); r <= to(row, grid.height); ++r)
     for (int c = from(column); c <= to(column, grid.width); ++c) found.push_back({c, r});
   return found;
 }
 
-// Any place lies in a square of centres that are less than this many cells away, also in the outer half of
-// border cells.
+// The corners of a place's cell, of both its cells where it lies on an edge, are no farther away.
 constexpr double kSquare = 1.001;
 
 }  // namespace
@@ -48,16 +47,17 @@ double LowerBound::operator()(const std::shared_ptr<const costmap::CostGrid>& ma
   if (!edges_) return straight_J;
   if (!field_ || !(goal_ == places.to) || tolerance_m_ != goal_tolerance_m) {
     std::vector<FieldGoal> goals;
-    for (const maps::Cell cell : cellsWithin(grid, places.to, kSquare + goal_tolerance_m / grid.resolution_m))
-      goals.push_back({cell, 0.0});
+    for (const maps::Cell corner :
+         cornersWithin(grid, places.to, kSquare + goal_tolerance_m / grid.resolution_m))
+      goals.push_back({corner, 0.0});
     field_.emplace(edges_, goals);
     goal_ = places.to;
     tolerance_m_ = goal_tolerance_m;
   }
   double least_J = std::numeric_limits<double>::infinity();
-  for (const maps::Cell cell : cellsWithin(grid, places.from, kSquare)) {
-    if (!field_->settle(cell, stop)) return straight_J;
-    least_J = std::min(least_J, field_->cost_J(cell).value_or(least_J));
+  for (const maps::Cell corner : cornersWithin(grid, places.from, kSquare)) {
+    if (!field_->settle(corner, stop)) return straight_J;
+    least_J = std::min(least_J, field_->cost_J(corner).value_or(least_J));
   }
   return std::isfinite(least_J) ? std::max(least_J, straight_J) : straight_J;
 }

@@ -6,19 +6,19 @@
 
 namespace talus::planner {
 
-/// Steps of the 8-neighbourhood so cheap that the field over them is below the cost of every continuous
-/// route, of any shape and any headings, not of grid routes only.
+/// Steps between neighbouring corners of cells, along edges and across cells, so cheap that the field over
+/// them is below the cost of every continuous route, of any shape and any headings, not of grid routes only.
+/// Corners are numbered as cells are, the one in the south-west of a cell like it, one more column and row of
+/// them.
 ///
-/// Why it is a bound (ours). In each square between four cell centres let w_k be, for the eight headings, the
-/// least over the four cells of their HeadingMinorants, lowered until sqrt(2) w_k <= w_(k-1) + w_(k+1). The norm
-/// N that has w_k at the eight headings and is linear between them is then convex, and nowhere above the drive
-/// cost of the four cells, since it is nowhere above the gauge of any of them. (In the outer half of border
-/// cells: cos(pi/8) times the least level under the curve; between two headings the octagon exceeds the circle
-/// by 1 / cos(pi/8) at most.) A field over centres whose differences along the sides and both diagonals of the square stay within
-/// w_k, taken as linear along its sides, changes between any two points of its boundary by no more than N; so
-/// it can be continued into the square without changing faster than N (McShane 1934 [mcshane_1934]).
-/// Continued so everywhere, it changes along any allowed motion by no more than the motion's cost. A step
-/// along a side takes the lesser price of the two squares beside it. Whole units are rounded down.
+/// Why it is a bound (ours). In each cell let w_k be its HeadingMinorants, for the eight headings, lowered
+/// until sqrt(2) w_k <= w_(k-1) + w_(k+1). The norm N that has w_k at the eight headings and is linear
+/// between them is then convex, and nowhere above the drive cost of the cell. A field over corners whose
+/// differences along the sides and both diagonals of the cell stay within w_k, taken as linear along its
+/// sides, changes between any two points of its boundary by no more than N; so it can be continued into the
+/// cell without changing faster than N (McShane 1934 [mcshane_1934]). Continued so everywhere, it changes
+/// along any allowed motion by no more than the motion's cost. A step along a side takes the lesser price of
+/// the two cells beside it. Whole units are rounded down.
 ///
 /// Null when stopped, or where some ground costs nothing.
 std::shared_ptr<const EdgeLayer> relaxedEdges(const std::shared_ptr<const costmap::CostGrid>& map,

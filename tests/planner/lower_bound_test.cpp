@@ -99,6 +99,50 @@ TEST(LowerBound, IsBelowEveryRouteFound) {
   }
 }
 
+// Ramps of one gradient and soil, 20 cells wide: ground on which the bound is sharp enough to be wrong.
+std::shared_ptr<const costmap::CostGrid> ramps(unsigned seed) {
+  std::mt19937 random(seed);
+  std::vector<costmap::CellCode> patches;
+  const auto gradient = [&random] { return (static_cast<int>(random() % 400) - 200) / 1024.0; };
+  for (int k = 0; k < 16; ++k)
+    patches.push_back(costmap::CellCode(
+        {.dz_dx = gradient(), .dz_dy = gradient(), .curve = static_cast<std::uint8_t>(random() % 3)}));
+  maps::Raster<costmap::CellCode> cells({.width = 80, .height = 80, .resolution_m = 1.0, .south_west = {}});
+  for (int row = 0; row < 80; ++row)
+    for (int column = 0; column < 80; ++column)
+      cells[{column, row}] = patches[static_cast<std::size_t>(row / 20 * 4 + column / 20)];
+  return std::make_shared<costmap::CostGrid>(costmap::flattened(cells, testing::driveCost()));
+}
+
+// Property: no motion that happens to be allowed costs less, straight or bent once, of any length and
+// heading, also along the map's border.
+TEST(LowerBound, IsBelowRandomMotions) {
+  int tried = 0, sharp = 0;
+  for (unsigned seed = 1; seed <= 12; ++seed) {
+    const auto map = ramps(seed);
+    const MotionCost cost(map);
+    std::mt19937 random(seed);
+    const auto place = [&random] {
+      return maps::Point{static_cast<double>(random() % 801) / 10, static_cast<double>(random() % 801) / 10};
+    };
+    for (int g = 0; g < 4; ++g) {
+      const maps::Point goal = place();
+      LowerBound bound;
+      for (int k = 0; k < 500; ++k) {
+        const maps::Point start = place();
+        const double cost_J = k % 2 == 0 ? cost({start, goal}) : cost.along({start, place(), goal});
+        if (!std::isfinite(cost_J)) continue;
+        const double bound_J = bound(map, {start, goal}, 0.0);
+        ASSERT_LE(bound_J, cost_J * (1 + 1e-9)) << seed << " " << g << " " << k;
+        ++tried;
+        if (bound_J > 0.85 * cost_J) ++sharp;
+      }
+    }
+  }
+  EXPECT_GT(tried, 10'000);
+  EXPECT_GT(sharp, 100);
+}
+
 TEST(LowerBound, IsWithinTheOctagonOnEvenGround) {
   const auto map = drawn(std::vector<std::string>(200, std::string(200, '.')));
   // Closed form: 10 J/m; the octagon gives away up to 7.6 %, the squares about the ends two cells each.
