@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <queue>
 #include <stdexcept>
 #include <vector>
@@ -44,9 +45,10 @@ struct Queued {
 // One search; HybridSearch keeps what outlives it.
 class Search {
  public:
-  Search(const PoseProblem& problem, const HybridOptions& options, CostToGo& field)
+  Search(const PoseProblem& problem, const HybridOptions& options, CostToGo& field, const StopCheck& stop)
       : problem_(problem),
         options_(options),
+        stop_(stop),
         field_(field),
         motion_cost_(problem.map),
         cost_(motion_cost_, problem.kinematics),
@@ -206,7 +208,7 @@ class Search {
 
   const PoseProblem& problem_;
   const HybridOptions& options_;
-  StopCheck stop_{problem_.watch, problem_.time_limit_s};
+  const StopCheck& stop_;
   CostToGo& field_;
   MotionCost motion_cost_;
   PoseCost cost_;
@@ -229,6 +231,15 @@ PosePlan refused(RouteStatus status, const char* reason) {
   return plan;
 }
 
+// Where no motion of one length from one of the headings passes, shorter ones between more may.
+HybridOptions finerThan(HybridOptions options) {
+  constexpr std::uint64_t kMostFine = 200'000;
+  options.headings *= 2;
+  options.step_cells = std::max(1.0, options.step_cells / 1.5);
+  options.most_expanded = std::min(options.most_expanded, kMostFine);
+  return options;
+}
+
 std::string whyNot(RouteStatus status) {
   switch (status) {
     case RouteStatus::Cancelled:
@@ -236,8 +247,9 @@ std::string whyNot(RouteStatus status) {
     case RouteStatus::TimedOut:
       return "gave up after the most poses it may try; a smaller map or more headings may help";
     default:
-      return "no drive joins start and goal within the turning radius; try another heading, or a tighter "
-             "radius";
+      return "no drive was found that joins start and goal within the turning radius; try another heading, "
+             "or "
+             "a tighter radius";
   }
 }
 
@@ -281,10 +293,19 @@ PosePlan HybridSearch::plan(const PoseProblem& problem) {
     return refused(RouteStatus::GoalInvalid,
                    "the goal is outside the map or on a cell that may not be entered");
   if (!prepareField(problem)) return refused(RouteStatus::Cancelled, "cancelled");
-  Search search(problem, options_, *field_);
+  const StopCheck stop(problem.watch, problem.time_limit_s);
+  std::optional<Search> made(std::in_place, problem, options_, *field_, stop);
   PosePlan plan;
-  plan.status = search.run();
-  plan.expanded = search.expanded();
+  plan.status = made->run();
+  plan.expanded = made->expanded();
+  const HybridOptions finer = finerThan(options_);
+  if (plan.status == RouteStatus::NoRoute && plan.expanded > 1) {
+    made.emplace(problem, finer, *field_, stop);
+    const RouteStatus again = made->run();
+    if (again == RouteStatus::Found || again == RouteStatus::Cancelled) plan.status = again;
+    plan.expanded += made->expanded();
+  }
+  const Search& search = *made;
   if (plan.status != RouteStatus::Found) {
     plan.reason = whyNot(plan.status);
     return plan;

@@ -54,9 +54,10 @@ bool mayBeDriven(const costmap::CostGrid& map, const PosePath& path, const Kinem
 /// curvature from continuous poses, one pose kept a cell and heading, led by the anisotropic cost-to-go field
 /// of the goal, and finished by shortest curves; then shortened wherever a direct curve is cheaper. Motions
 /// are priced by a few cells while they wait and held against the exact cost when their turn comes. The field
-/// sees slope, soil and hazards but not turning, so that little is searched in vain. Not optimal: a drivable
-/// answer, and a seed. What it answers stands up to violations() of route_check.hpp. Keeps the field of the
-/// last map and goal. Deterministic. One object one thread.
+/// sees slope, soil and hazards but not turning, so that little is searched in vain. Where it finds none it
+/// tries once more with twice the headings and shorter motions. Not optimal: a drivable answer, and a seed.
+/// What it answers stands up to violations() of route_check.hpp. Keeps the field of the last map and goal.
+/// Deterministic. One object one thread.
 class HybridSearch {
  public:
   explicit HybridSearch(const HybridOptions& options = {});
