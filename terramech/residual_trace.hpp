@@ -62,7 +62,7 @@ struct TraceResult {
   std::vector<CovariateTest> last_tests;   ///< of the refined model
   ChannelErrors base_rmse{}, refined_rmse{}, noise_floor{};
   std::optional<ParameterPrior>
-      first_prior;  ///< of the first effect's first parameter, known beside the model
+      first_prior;          ///< of the first effect's first parameter, known beside the model
   ExchangeableUnits units;  ///< rows whose errors were found to belong together
 };
 

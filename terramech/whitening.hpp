@@ -31,8 +31,8 @@ struct Whitening {
   std::vector<Eigen::Matrix4d> factor;
   Eigen::MatrixXd std;    ///< marginal standard deviations of a row's own error, rows x kChannels
   std::vector<int> unit;  ///< of each row; empty: rows are on their own
-  Eigen::Vector4d shared_white = Eigen::Vector4d::Zero();  ///< variance that a unit shares over that of a
-                                                           ///< row, by channel of apply()
+  Eigen::Vector4d shared_white = Eigen::Vector4d::Zero();     ///< variance that a unit shares over that of a
+                                                              ///< row, by channel of apply()
   Eigen::Vector4d shared_marginal = Eigen::Vector4d::Zero();  ///< the same of marginal()
 
   /// Finds the shared variances (one-way analysis of variance) from `left`, residuals without what else is
