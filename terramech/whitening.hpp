@@ -36,8 +36,8 @@ struct Whitening {
   Eigen::MatrixXd std;    ///< marginal standard deviations of a row's own error, rows x kChannels
   MomentSlip slip{};      ///< error of the slip that rows of a moment share
   std::vector<int> unit;  ///< of each row; empty: rows are on their own
-  Eigen::Vector4d shared_white = Eigen::Vector4d::Zero();  ///< variance that a unit shares over that of a
-                                                           ///< row, by channel of apply()
+  Eigen::Vector4d shared_white = Eigen::Vector4d::Zero();     ///< variance that a unit shares over that of a
+                                                              ///< row, by channel of apply()
   Eigen::Vector4d shared_marginal = Eigen::Vector4d::Zero();  ///< the same of marginal()
 
   /// Finds the shared variances (one-way analysis of variance) from `left`, residuals without what else is
