@@ -64,7 +64,8 @@ std::vector<TraceSearch::HeldRows> TraceSearch::heldRows(const Folds& folds) {
 }
 
 /// A curve over a column of few levels can take one knot a level and would pass any test that leaves rows of
-/// each level in: it must also tell levels that it has not seen. Empty where there are none to hold out.
+/// each level in: it must also tell levels that it has not seen (a knot that only such rows tell is held near
+/// 0 by its prior, so that coarse curves pass more easily). Empty where there are none to hold out.
 const std::vector<TraceSearch::HeldRows>& TraceSearch::heldLevels(const Candidate& curve,
                                                                   HeldByColumn& known) {
   const std::string& column = curve.covariate();
