@@ -70,7 +70,8 @@ TraceSearch::Held TraceSearch::held() {
 }
 
 /// A curve over a column of few levels can take one knot a level and would pass any test that leaves rows of
-/// each level in: it must also tell levels that it has not seen. Empty where there are none to hold out.
+/// each level in: it must also tell levels that it has not seen (a knot that only such rows tell is held near
+/// 0 by its prior, so that coarse curves pass more easily). Empty where there are none to hold out.
 const std::vector<TraceSearch::HeldRows>& TraceSearch::heldLevels(const Candidate& curve, Held& known) {
   const std::string& column = curve.covariate();
   if (const auto found = known.levels.find(column); found != known.levels.end()) return found->second;

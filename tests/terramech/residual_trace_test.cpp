@@ -4,6 +4,7 @@
 #include <terramech/residual_trace.hpp>
 
 #include "blind_worlds.hpp"
+#include "made_rows.hpp"
 
 namespace talus::terramech {
 namespace {
@@ -105,6 +106,31 @@ TEST(HeldOut, WholeBandsAreHeldOut) {
   const HeldOut held = holdOut(result, {}).front();
   EXPECT_FALSE(held.scheme.empty());
   EXPECT_LT(held.refined_rmse[1], held.base_rmse[1]);
+}
+
+TEST(ResidualTrace, ACurveOverAFewLevelsMustTellLevelsThatItHasNotSeen) {
+  // Five boxes whose pull is off by turns: no curve over their number foretells the sixth.
+  RefinedModel base;
+  base.soil = {.name = "sand",
+               .cohesion_Pa = 800.0,
+               .friction_angle_rad = 0.55,
+               .sinkage_exponent = 1.1,
+               .cohesive_modulus = 900.0,
+               .frictional_modulus = 1.5e6,
+               .shear_modulus_m = 0.016};
+  std::vector<std::string> columns = wheelColumns();
+  columns.emplace_back("box");
+  MadeRows rows(columns);
+  std::mt19937_64 random(3);
+  for (int k = 0; k < 100; ++k) {
+    const int box = (k * 7) % 5;
+    std::vector<double> row = wheelRow(base.soil, 50.0 + k % 30, 0.1 + 0.05 * (k % 12), 0.02, random);
+    row[4] += (box % 2 == 0 ? 0.06 : -0.06) * row[0];
+    row.push_back(box);
+    rows.add(row);
+  }
+  const TraceResult result = traceResiduals(base, makeTrial(rows.telemetry(), base), {.flips = 499});
+  for (const TracedEffect& e : result.effects) EXPECT_NE(e.chosen.candidate.covariate(), "box");
 }
 
 }  // namespace
