@@ -53,24 +53,23 @@ WheelTable::WheelTable(const terramech::Soil& soil, const terramech::Rover& rove
   terramech::RefinedModel model;
   model.soil = soil;
   model.effects = effects;
-  for (std::size_t load = 0; load < kLoads.size(); ++load)
+  for (std::size_t layer = 0; layer < kLoads; ++layer)
     for (std::size_t i = 0; i < kRows; ++i) {
-      const Loaded wheel{rover, kLoads[load] * terramech::wheelLoad_N(rover), slip(i)};
-      rows_[load][i] = effects.empty() ? solved(soil, wheel) : predicted(model, wheel);
+      const Loaded wheel{rover, load(layer) * terramech::wheelLoad_N(rover), slip(i)};
+      rows_[layer][i] = effects.empty() ? solved(soil, wheel) : predicted(model, wheel);
     }
 }
 
-WheelTable::Row WheelTable::row(std::size_t i, double load) const noexcept {
-  constexpr double kStep = kLoads[1] - kLoads[0];
-  const double position = (std::clamp(load, kLoads.front(), kLoads.back()) - kLoads.front()) / kStep;
-  const auto k = std::min(static_cast<std::size_t>(position), kLoads.size() - 2);
+WheelTable::Row WheelTable::row(std::size_t i, double load_over_flat) const noexcept {
+  const double position = std::clamp((load_over_flat - load(0)) / (load(1) - load(0)), 0.0, kLoads - 1.0);
+  const auto k = std::min(static_cast<std::size_t>(position), kLoads - 2);
   return between(rows_[k][i], rows_[k + 1][i], position - static_cast<double>(k));
 }
 
-WheelTable::Row WheelTable::at(double slip, double load) const noexcept {
+WheelTable::Row WheelTable::at(double slip, double load_over_flat) const noexcept {
   const double position = (std::clamp(slip, -1.0, 1.0) + 1.0) * 0.5 * (kRows - 1);
   const auto i = std::min(static_cast<std::size_t>(position), kRows - 2);
-  return between(row(i, load), row(i + 1, load), position - static_cast<double>(i));
+  return between(row(i, load_over_flat), row(i + 1, load_over_flat), position - static_cast<double>(i));
 }
 
 }  // namespace talus::planner

@@ -3,6 +3,7 @@
 
 #include <terramech/closure_offset.hpp>
 #include <terramech/residual_trace.hpp>
+#include <terramech/rut.hpp>
 #include <terramech/trace_search.hpp>
 
 namespace talus::terramech {
@@ -281,13 +282,23 @@ std::vector<TracedEffect> apart(const std::vector<TracedEffect>& effects) {
   return all;
 }
 
-/// A rover's pull is known as its slope is: unless stated, to 0.3 degrees (an inclinometer's; ours).
-RefinedModel withSlopeError(RefinedModel model, const Trial& trial) {
+/// What is known of a rover's own drive beforehand. Its pull is known as its slope is: unless stated, to 0.3
+/// degrees (an inclinometer's; ours). Wheels that follow another drive in its rut (rut.hpp); how stiff that
+/// is is fitted.
+RefinedModel asDriven(RefinedModel model, const Trial& trial) {
   constexpr double kSlopeError_rad = 0.005;
-  if (trial.moment.empty() || model.stated.drawbar_pull_N) return model;
+  if (trial.moment.empty()) return model;
   double load_N = 0.0;
   for (const double w : trial.load_N) load_N += w / trial.rows();
-  model.stated.drawbar_pull_N = kSlopeError_rad * load_N;
+  if (!model.stated.drawbar_pull_N) model.stated.drawbar_pull_N = kSlopeError_rad * load_N;
+  const auto& columns = trial.covariates;
+  const bool known = std::any_of(model.effects.begin(), model.effects.end(),
+                                 [](const Effect& e) { return e.covariate == "pass_index"; });
+  if (known || std::find(columns.begin(), columns.end(), "pass_index") == columns.end()) return model;
+  model.effects.push_back({.name = "multipass_reload",
+                           .covariate = "pass_index",
+                           .channel = Channel::Sinkage,
+                           .parameters = {kReloadStiffness - 1.0, 1.0}});
   return model;
 }
 
@@ -309,7 +320,7 @@ ChannelErrors rmseOf(const RefinedModel& model, const Trial& trial) {
 
 TraceResult traceResiduals(const RefinedModel& base, const Trial& trial, const TraceOptions& options,
                            const Watch& watch) {
-  Path best{TraceSearch{withSlopeError(base, trial), trial, options}, {}, {}, {}};
+  Path best{TraceSearch{asDriven(base, trial), trial, options}, {}, {}, {}};
   TraceResult result;
   result.base = best.search.model();
   if (options.fit_soil && trial.moment.empty())

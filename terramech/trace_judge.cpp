@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include <terramech/spline_basis.hpp>
 #include <terramech/trace_search.hpp>
@@ -99,8 +98,7 @@ void TraceSearch::judgeHeldOut(const std::vector<HeldRows>& folds, const Refined
 }
 
 void TraceSearch::thin(std::size_t k, double least_gain) {
-  const auto first =
-      std::accumulate(part_count_.begin(), part_count_.begin() + static_cast<long>(k), std::size_t{0});
+  const std::size_t first = firstPart(k);
   for (std::size_t part = part_count_[k]; part-- > 0 && part_count_[k] > 1;) {
     RefinedModel without = model_;
     without.effects.erase(without.effects.begin() + static_cast<long>(first + part));
@@ -114,8 +112,7 @@ void TraceSearch::thin(std::size_t k, double least_gain) {
 }
 
 std::vector<Effect> TraceSearch::parts(std::size_t k) const {
-  const auto first =
-      std::accumulate(part_count_.begin(), part_count_.begin() + static_cast<long>(k), std::size_t{0});
+  const std::size_t first = firstPart(k);
   const auto begin = model_.effects.begin() + static_cast<long>(first);
   return {begin, begin + static_cast<long>(part_count_[k])};
 }

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <numeric>
 #include <set>
 
 #include <terramech/spline_basis.hpp>
@@ -99,8 +98,7 @@ std::vector<Explanation> TraceSearch::pairsInPlaceOf(std::vector<std::size_t> me
   Candidate all;
   std::sort(members.rbegin(), members.rend());
   for (std::size_t k : members) {
-    const auto first = static_cast<std::size_t>(
-        std::accumulate(part_count_.begin(), part_count_.begin() + static_cast<long>(k), std::size_t{0}));
+    const std::size_t first = firstPart(k);
     for (std::size_t part = first; part < first + part_count_[k]; ++part) {
       all.parts.push_back(model_.effects[part]);
       all.parameters += static_cast<int>(parametersOf(model_, static_cast<int>(part)).size());

@@ -37,7 +37,7 @@ double TraceSearch::work() const {
 }
 
 TraceSearch::TraceSearch(const RefinedModel& base, const Trial& trial, const TraceOptions& options)
-    : options_(options), model_(base), trial_(trial) {
+    : options_(options), model_(base), trial_(trial), given_effects_(base.effects.size()) {
   refresh();
   if (!planFor(model_).free.empty()) fitSoil();
 }
@@ -78,51 +78,6 @@ Eigen::VectorXd TraceSearch::sinkages(const Eigen::MatrixXd& level) const {
   for (int row = 0; row < trial_.rows(); ++row)
     z[row] = level(row, static_cast<int>(Channel::Sinkage)) * trial_.denominator(row, Channel::Sinkage);
   return z;
-}
-
-void TraceSearch::backToMeasured() {
-  for (std::size_t row = 0; row < trial_.states.size(); ++row) {
-    setSlip(trial_.states[row], trial_.slip[row]);
-    trial_.states[row].load_N = trial_.load_N[row];
-  }
-}
-
-void TraceSearch::settle(const Eigen::MatrixXd& noise_alone, const Eigen::MatrixXd& level,
-                         const InputSlopes& measured_slopes) {
-  backToMeasured();
-  model_.noise = fitNoise(trial_, noise_alone, level, measured_slopes, model_.stated);
-  calibrateInputs(trial_, model_.noise);
-  level_ = predictRows(model_, trial_, solved_);
-  residual_ = trial_.measured - level_;
-  const InputSlopes slopes = inputSlopes(model_, trial_, solved_);
-  by_slip_.reset();
-  const Eigen::VectorXd shared = sharedSlipStd(trial_, model_.noise);
-  if (shared.size() > 0) by_slip_ = shared.asDiagonal() * slopes.by_slip;
-  whitening_ = whitening(trial_, level_, slopes, model_.noise);
-}
-
-void TraceSearch::refresh() {
-  backToMeasured();
-  const Eigen::MatrixXd level = predictRows(model_, trial_, solved_);
-  const InputSlopes slopes = inputSlopes(model_, trial_, solved_);
-  const Eigen::MatrixXd measured = trial_.measured - level;
-  // Whatever its error, a slip that varies much is seen; only where that is in doubt must the error be known.
-  const SensorNoise unlimited{.slip_relative = 1.0};
-  const auto isSeen = [&](const SensorNoise& n) { return slipIsSeen(trial_, n) && speedIsSeen(trial_, n); };
-  Eigen::MatrixXd smooth = withoutSmooth(trial_, measured, trial_.covariates);
-  if (!isSeen(unlimited)) {
-    const Eigen::MatrixXd left = withoutSmooth(trial_, measured, allButSlip(trial_));
-    if (!isSeen(fitNoise(trial_, left, level, slopes, model_.stated))) smooth = left;
-  }
-  settle(smooth, level, slopes);
-  units_ = exchangeableUnits(trial_, whitening_, residual_);
-  if (!units_.unit.empty()) {  // what rows share is no noise of theirs
-    const double rows = trial_.rows(), kept = rows - units_.count();
-    smooth -= unitMeans(smooth, whitening_.std, units_.unit);
-    if (kept > 4.0) settle(std::sqrt(rows / kept) * smooth, level, slopes);
-  }
-  whitening_.share(units_.unit, units_.left);
-  white_ = whitening_.apply(residual_);
 }
 
 double TraceSearch::penalty(const Candidate& candidate) const {
@@ -294,9 +249,12 @@ void TraceSearch::accept(const Candidate& candidate) {
   }
 }
 
+std::size_t TraceSearch::firstPart(std::size_t k) const {
+  return std::accumulate(part_count_.begin(), part_count_.begin() + static_cast<long>(k), given_effects_);
+}
+
 void TraceSearch::leaveOut(std::size_t k) {
-  const auto first =
-      std::accumulate(part_count_.begin(), part_count_.begin() + static_cast<long>(k), std::size_t{0});
+  const std::size_t first = firstPart(k);
   const auto begin = model_.effects.begin() + static_cast<long>(first);
   model_.effects.erase(begin, begin + static_cast<long>(part_count_[k]));
   part_count_.erase(part_count_.begin() + static_cast<long>(k));
@@ -347,7 +305,7 @@ void TraceSearch::finish(TraceResult& result) {
   const Eigen::MatrixXd covariance = parameterCovariance(model_, trial_, whitening_, plan, solved_);
   model_.covariance.assign(covariance.data(), covariance.data() + covariance.size());
   level_ = predictRows(model_, trial_, solved_);
-  std::size_t at = 0;
+  std::size_t at = given_effects_;
   for (std::size_t k = 0; k < result.effects.size(); ++k) {
     auto& effect = result.effects[k];
     if (part_count_[k] == 1) effect.channel = strongest(at);

@@ -96,10 +96,13 @@ class TraceSearch {
   /// it.
   void settle(const Eigen::MatrixXd& noise_alone, const Eigen::MatrixXd& level,
               const InputSlopes& measured_slopes);
+  /// Finds what rows of a run or of a stretch of time share, and the noise without it.
+  void shareWithin(Eigen::MatrixXd smooth, const Eigen::MatrixXd& level, const InputSlopes& measured_slopes);
   Channel strongest(std::size_t effect);  ///< where taking it out, all else left, changes most [noise]
 
   void fitSoil();
   FitPlan planFor(const RefinedModel& model) const;
+  std::size_t firstPart(std::size_t k) const;  ///< of accepted candidate number k among the model's effects
   double penalty(const Candidate& candidate) const;
   Eigen::VectorXd sinkages(const Eigen::MatrixXd& level) const;
   Screened screenLibrary(const Candidate& candidate, const Eigen::MatrixXd& nuisance);
@@ -148,6 +151,7 @@ class TraceSearch {
   Eigen::VectorXd white_;
   ExchangeableUnits units_;
   std::optional<ParameterPrior> first_prior_;  ///< of a correction that is never taken out
+  std::size_t given_effects_;                  ///< of the base, in front; fitted, never taken out
   std::vector<std::size_t> part_count_;        ///< effects in the model of each accepted candidate
 };
 

@@ -188,7 +188,7 @@ double sharedVariance(const std::vector<double>& value, const std::vector<int>& 
 }  // namespace
 
 void Whitening::share(const std::vector<int>& of_row, const Eigen::MatrixXd& left) {
-  unit = of_row;
+  unit = slip.moment.empty() ? of_row : std::vector<int>{};
   shared_white.setZero();
   shared_marginal.setZero();
   if (unit.empty()) return;

@@ -28,9 +28,9 @@ Eigen::Matrix4d rowFactor(const Eigen::Matrix4d& covariance, const Eigen::Matrix
 /// A row with 0 where nothing was measured.
 Eigen::Vector4d finiteOrZero(const Eigen::MatrixXd& residual, int row);
 
-/// Makes residuals of unit variance and uncorrelated: rowFactor() of their covariance; what rows of one moment
-/// share of its slip's error taken out; then, where rows of a unit share an error,
-/// their mean is shrunk by what it scatters too much.
+/// Makes residuals of unit variance and uncorrelated: rowFactor() of their covariance; what rows of one
+/// moment share of its slip's error taken out; then, where rows of a unit share an error, their mean is
+/// shrunk by what it scatters too much.
 struct Whitening {
   std::vector<Eigen::Matrix4d> factor;
   Eigen::MatrixXd std;    ///< marginal standard deviations of a row's own error, rows x kChannels
@@ -41,7 +41,8 @@ struct Whitening {
   Eigen::Vector4d shared_marginal = Eigen::Vector4d::Zero();  ///< the same of marginal()
 
   /// Finds the shared variances (one-way analysis of variance) from `left`, residuals without what else is
-  /// known to move them. An empty `unit` leaves rows on their own.
+  /// known to move them. An empty `unit` leaves rows on their own, and so do moments, whose shared error is
+  /// known.
   void share(const std::vector<int>& of_row, const Eigen::MatrixXd& left);
 
   Eigen::VectorXd apply(const Eigen::MatrixXd& residual) const;     ///< rows*kChannels; 0 where missing

@@ -67,6 +67,49 @@ TEST_F(RefinedModelCommands, PlanAndCostmapTakeAModelAndKeepIt) {
   EXPECT_NE(why.out.find("bulldozing"), std::string::npos);
 }
 
+// A rehearsed drive over the hills, blind to what acts on the ground; `ground`: what the rover believes.
+std::vector<std::string> rehearsal(const std::vector<std::string>& ground) {
+  std::vector<std::string> words{"drive",  "dem.asc", "--resolution", "1",       "--rover",
+                                 "fido",   "--truth", "truth.yaml",   "--start", "5,5",
+                                 "--goal", "40,40",   "--belief",     "prior",   "--json"};
+  words.insert(words.end(), ground.begin(), ground.end());
+  return words;
+}
+
+TEST_F(RefinedModelCommands, TheFirstTraverseMendsTheNext) {
+  folder_.write("base.yaml", std::string(kSoil) + "model: wong-reece\nsensors: {slip: 0.02}\n");
+  folder_.write("truth.yaml", "effects: [{name: slip_sinkage_ding, parameters: [0.4]}]\n");
+  const auto errors = [&](const std::vector<std::string>& ground) {
+    const Ran ran = talus(rehearsal(ground));
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    return nlohmann::json::parse(ran.out, nullptr, false)["prediction"];
+  };
+  const auto before = errors({"--soil", "soil.yaml", "--telemetry", "t.csv"});
+  const Ran traced =
+      talus({"trace", "t.csv", "--base", "base.yaml", "--rover", "fido", "--json", "--model-out", "m.yaml"});
+  ASSERT_EQ(traced.code, 0) << traced.err;
+  const auto effects = nlohmann::json::parse(traced.out)["effects"];
+  ASSERT_EQ(effects.size(), 1u) << traced.out;
+  EXPECT_EQ(effects[0]["family"], "slip_sinkage");
+  const auto after = errors({"--model", "m.yaml"});
+  // Property: what was learned on one traverse foretells the next one better: half the error at least.
+  EXPECT_LT(after["slip_rmse"].get<double>(), 0.5 * before["slip_rmse"].get<double>());
+  EXPECT_LT(after["energy_rmse"].get<double>(), 0.5 * before["energy_rmse"].get<double>());
+  // Effects of the base stay.
+  const Ran again = talus({"trace", "t.csv", "--base", "m.yaml", "--json", "--model-out", "again.yaml"});
+  ASSERT_EQ(again.code, 0) << again.err;
+  EXPECT_NE(fileContent(folder_ / "again.yaml").find("name: slip_sinkage"), std::string::npos);
+}
+
+TEST_F(RefinedModelCommands, ATraverseOverGroundAsBelievedShowsNothing) {
+  folder_.write("base.yaml", std::string(kSoil) + "model: wong-reece\nsensors: {slip: 0.02}\n");
+  folder_.write("truth.yaml", "{}\n");
+  ASSERT_EQ(talus(rehearsal({"--soil", "soil.yaml", "--telemetry", "t.csv"})).code, 0);
+  const Ran traced = talus({"trace", "t.csv", "--base", "base.yaml", "--rover", "fido", "--json"});
+  ASSERT_EQ(traced.code, 0) << traced.err;
+  EXPECT_TRUE(nlohmann::json::parse(traced.out)["effects"].empty()) << traced.out;
+}
+
 // Rows of four wheels by the forward model, two percent off; the load cell of wheel 2 pulls 6 N short.
 std::string oneWheelShort() {
   std::string text =
