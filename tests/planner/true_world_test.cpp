@@ -40,7 +40,7 @@ TEST(WheelTable, HoldsTheForwardModel) {
   // Property: between two nodes it lies between them, beyond the last it stays.
   EXPECT_GT(table.at(0.3, 1.05).sinkage, table.at(0.3, 1.0).sinkage);
   EXPECT_LT(table.at(0.3, 1.05).sinkage, table.at(0.3, 1.15).sinkage);
-  EXPECT_EQ(table.at(0.3, 2.5).sinkage, table.at(0.3, 1.9).sinkage);
+  EXPECT_NEAR(table.at(0.3, 2.5).sinkage, table.at(0.3, 1.9).sinkage, 1e-12);
 }
 
 TEST(TrueWorld, WheelsTogetherPullWhatTheSlopeAsks) {
