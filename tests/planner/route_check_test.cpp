@@ -23,6 +23,24 @@ TEST(RouteCheck, NamesPlaceAndReason) {
   EXPECT_EQ(found[1], (Violation{{3.5, 0.5}, "nobody has seen this cell"}));
 }
 
+TEST(RouteCheck, WhatIsNotAllowedIsNotHandedOut) {
+  const auto map = drawn({".#."});
+  Plan plan;
+  plan.points = {{0.5, 0.5}, {0.9, 0.5}};
+  requireAllowed(plan, *map, 0.0);
+  plan.drive = {.start = {{0.5, 0.5}, 0.0}, .legs = {{{1.0, 0.0}, 0.0}}};  // the drive goes on into the wall
+  EXPECT_THROW(requireAllowed(plan, *map, 0.0), std::logic_error);
+  plan.drive = {};
+  plan.points.push_back({2.5, 0.5});
+  try {
+    requireAllowed(plan, *map, 0.0);
+    FAIL() << "handed out";
+  } catch (const std::logic_error& error) {
+    EXPECT_NE(std::string(error.what()).find("1.500000,0.500000: blocked"), std::string::npos)
+        << error.what();
+  }
+}
+
 TEST(RouteCheck, LeavingTheMapIsOne) {
   const auto found = violations(*drawn({"..."}), {{0.5, 0.5}, {0.5, 3.5}});
   ASSERT_FALSE(found.empty());
