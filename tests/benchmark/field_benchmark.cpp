@@ -261,8 +261,10 @@ void cancelling(benchmark::State& state) {
       source.request_stop();
       const double heard_ms = cpu_ms(its_time);
       worker.join();
-      // Where this thread had to wait for its turn while it asked, nobody knows when it asked.
-      if (heard_ms - asked_ms < kAsking_ms) worst_ms = std::max(worst_ms, end_ms - asked_ms), ++samples;
+      // Where this thread had to wait for its turn while it asked, nobody knows when it asked; and the clock
+      // of a thread that had ended before reads nothing.
+      if (asked_ms > 0.0 && heard_ms - asked_ms < kAsking_ms)
+        worst_ms = std::max(worst_ms, end_ms - asked_ms), ++samples;
     }
     problem.watch = {};
   }
