@@ -34,7 +34,7 @@ class HeadingMinorants {
 
  private:
   static constexpr int kParts = 8;    // of the 45 degrees between two headings
-  static constexpr int kSteps = 16;    // a square's side
+  static constexpr int kSteps = 16;   // a square's side
   static constexpr int kReach = 512;  // steps: steeper cells are left to Minorants
 
   struct Square {

@@ -42,7 +42,8 @@ Folds foldsOf(const Trial& trial) {
     std::vector<int> fold;
     for (int run : trial.run)
       fold.push_back(static_cast<int>(std::distance(runs.begin(), runs.find(run))) % kFolds);
-    return {"whole runs, five folds", fold, kFolds};
+    const bool moments = trial.run == trial.moment;
+    return {moments ? "whole moments of the drive, five folds" : "whole runs, five folds", fold, kFolds};
   }
   std::vector<int> level = levels(trial.slip, 0.02);
   const auto count = static_cast<std::size_t>(*std::max_element(level.begin(), level.end())) + 1;

@@ -81,30 +81,37 @@ Eigen::MatrixXd asMeasured(const RefinedModel& model, Trial trial) {
   return trial.measured - predictRows(model, trial, solved);
 }
 
+/// Each model is fitted under the errors that it would have: what the noise of slip and load does depends on
+/// it.
+Whitening whiteningOf(const RefinedModel& model, const TraceResult& result) {
+  SolvedContacts solved;
+  Whitening all = whitening(result.trial, predictRows(model, result.trial, solved),
+                            inputSlopes(model, result.trial, solved), model.noise);
+  all.share(result.units.unit, result.units.left);
+  return all;
+}
+
 }  // namespace
 
 HeldOut holdOut(const TraceResult& result, const TraceOptions& options, const Folds& folds) {
   const Trial& trial = result.trial;
-  SolvedContacts solved;
-  Whitening all = whitening(trial, predictRows(result.refined, trial, solved),
-                            inputSlopes(result.refined, trial, solved), result.refined.noise);
-  all.share(result.units.unit, result.units.left);
+  const Whitening of_base = whiteningOf(result.base, result),
+                  of_refined = whiteningOf(result.refined, result);
   const auto columns = columnsOfOneGroup(result.refined);
   Tally base{columns}, refined{columns};
   for (int fold = 0; fold < folds.count; ++fold) {
     const std::vector<char> train = rowsOf(folds, fold, false);
     const Trial seen = subset(trial, train), unseen = subset(trial, rowsOf(folds, fold, true));
     if (unseen.rows() == 0 || seen.rows() == 0) continue;
-    const Whitening white = subset(all, train);
-    const auto refit = [&](const RefinedModel& model) {
+    const auto refit = [&](const RefinedModel& model, const Whitening& all) {
       SolvedContacts start;
       FitPlan plan = fitPlan(model, options.fit_soil);
       plan.iterations = 8;
       if (result.first_prior && !model.effects.empty()) plan.effect_prior[0] = *result.first_prior;
-      return fitModel(model, seen, white, plan, start).model;
+      return fitModel(model, seen, subset(all, train), plan, start).model;
     };
-    base.add(unseen, asMeasured(refit(result.base), unseen));
-    refined.add(unseen, asMeasured(refit(result.refined), unseen));
+    base.add(unseen, asMeasured(refit(result.base, of_base), unseen));
+    refined.add(unseen, asMeasured(refit(result.refined, of_refined), unseen));
   }
   return {folds.scheme, base.rmse(), refined.rmse(), Tally::groups(base, refined)};
 }

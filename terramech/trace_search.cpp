@@ -227,7 +227,8 @@ Explanation TraceSearch::fitted(const Candidate& candidate, Held& held) {
   e.in_sample =
       0.5 * e.chi2_gain - penalty(candidate) + (candidate.empirical() ? 0.0 : options_.library_bonus);
   judgeHeldOut(held.folds, fit.model, solved, e);
-  // What comes on top of other effects must hold between the levels, too; a first dependence is told as it is.
+  // What comes on top of other effects must hold between the levels, too; a first dependence is told as it
+  // is.
   const bool further = model_.effects.size() > given_effects_;
   if (further && candidate.empirical() && !heldLevels(candidate, held).empty()) {
     Explanation unseen = e;
