@@ -95,10 +95,16 @@ TEST_F(RefinedModelCommands, TheFirstTraverseMendsTheNext) {
   // Property: what was learned on one traverse foretells the next one better: half the error at least.
   EXPECT_LT(after["slip_rmse"].get<double>(), 0.5 * before["slip_rmse"].get<double>());
   EXPECT_LT(after["energy_rmse"].get<double>(), 0.5 * before["energy_rmse"].get<double>());
-  // Effects of the base stay.
-  const Ran again = talus({"trace", "t.csv", "--base", "m.yaml", "--json", "--model-out", "again.yaml"});
+  // An effect that the base states stays, and is not found again.
+  folder_.write("stated.yaml", std::string(kSoil) +
+                                   "model: wong-reece\nsensors: {slip: 0.02}\n"
+                                   "effects: [{name: slip_sinkage_ding, parameters: [0.3]}]\n");
+  const Ran again = talus(
+      {"trace", "t.csv", "--base", "stated.yaml", "--rover", "fido", "--json", "--model-out", "again.yaml"});
   ASSERT_EQ(again.code, 0) << again.err;
-  EXPECT_NE(fileContent(folder_ / "again.yaml").find("name: slip_sinkage"), std::string::npos);
+  for (const auto& effect : nlohmann::json::parse(again.out)["effects"])
+    EXPECT_NE(effect["family"], "slip_sinkage") << again.out;
+  EXPECT_NE(fileContent(folder_ / "again.yaml").find("name: slip_sinkage_ding"), std::string::npos);
 }
 
 TEST_F(RefinedModelCommands, ATraverseOverGroundAsBelievedShowsNothing) {
