@@ -57,14 +57,9 @@ double slopeAtSlip_rad(const terramech::MobilityCurve& curve, double slip) {
   return 0.5 * (low + high);
 }
 
-bool knowsPasses(const GroundClass& ground) {
-  return std::any_of(ground.effects.begin(), ground.effects.end(),
-                     [](const terramech::Effect& e) { return e.covariate == "pass_index"; });
-}
-
 // In the rut of an equal wheel: as data have shown, or as rutted() supposes.
 terramech::MobilityCurve inRut(const GroundClass& ground, const terramech::Rover& rover) {
-  if (knowsPasses(ground)) return mobilityOf(ground, rover, {.first_pass = 2});
+  if (terramech::knowsPasses(ground.effects)) return mobilityOf(ground, rover, {.first_pass = 2});
   GroundClass rut = ground;
   rut.soil = terramech::rutted(ground.soil);
   return mobilityOf(rut, rover);
@@ -103,8 +98,9 @@ GroundModel::GroundModel(Parts parts) : parts_(std::move(parts)) {
       throw std::invalid_argument("ground model: class " + std::to_string(c.number) + " is declared twice");
     wheel_curves_.push_back(mobilityOf(c, parts_.rover));
     rut_curves_.push_back(inRut(c, parts_.rover));
-    curves_.push_back(knowsPasses(c) ? mobilityOf(c, parts_.rover, {.axles = parts_.rover.wheel_count / 2})
-                                     : wheel_curves_.back());
+    curves_.push_back(terramech::knowsPasses(c.effects)
+                          ? mobilityOf(c, parts_.rover, {.axles = parts_.rover.wheel_count / 2})
+                          : wheel_curves_.back());
   }
 }
 

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <unordered_map>
 
 #include <terramech/effects.hpp>
@@ -60,6 +61,11 @@ void Reading::addScaled(Channel channel, double value) {
       side_force_N += value * load_N;
       break;
   }
+}
+
+bool knowsPasses(std::span<const Effect> effects) {
+  return std::any_of(effects.begin(), effects.end(),
+                     [](const Effect& e) { return e.covariate == "pass_index"; });
 }
 
 const std::vector<EffectForm>& effectLibrary() {

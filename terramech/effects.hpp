@@ -88,6 +88,9 @@ struct Effect {
   bool empirical() const { return name.starts_with("empirical"); }
 };
 
+/// Whether one of them depends on how often a track was driven (pass_index).
+bool knowsPasses(std::span<const Effect> effects);
+
 /// Natural cubic spline through (knots, values), constant outside; one knot: a constant, none: 0.
 class NaturalSpline {
  public:

@@ -111,16 +111,11 @@ WheelForces predicted(const RefinedModel& model, const Rover& rover, const Stati
           .drawbar_pull_N = reading.drawbar_pull_N};
 }
 
-bool knowsPasses(const RefinedModel& model) {
-  return std::any_of(model.effects.begin(), model.effects.end(),
-                     [](const Effect& e) { return e.covariate == "pass_index"; });
-}
-
 /// The mean wheel of axles that follow one another, sunk as the first.
 WheelForces meanOfAxles(const RefinedModel& model, const Rover& rover, const Station& at,
                         const MobilityOptions& options) {
   WheelForces mean = predicted(model, rover, at, options.first_pass);
-  if (!knowsPasses(model)) return mean;
+  if (!knowsPasses(model.effects)) return mean;
   for (int k = 1; k < options.axles; ++k) {
     const WheelForces f = predicted(model, rover, at, options.first_pass + k);
     mean.torque_Nm += (f.torque_Nm - mean.torque_Nm) / (k + 1);

@@ -292,9 +292,8 @@ RefinedModel asDriven(RefinedModel model, const Trial& trial) {
   for (const double w : trial.load_N) load_N += w / trial.rows();
   if (!model.stated.drawbar_pull_N) model.stated.drawbar_pull_N = kSlopeError_rad * load_N;
   const auto& columns = trial.covariates;
-  const bool known = std::any_of(model.effects.begin(), model.effects.end(),
-                                 [](const Effect& e) { return e.covariate == "pass_index"; });
-  if (known || std::find(columns.begin(), columns.end(), "pass_index") == columns.end()) return model;
+  const bool told = std::find(columns.begin(), columns.end(), "pass_index") != columns.end();
+  if (!told || knowsPasses(model.effects)) return model;
   model.effects.push_back({.name = "multipass_reload",
                            .covariate = "pass_index",
                            .channel = Channel::Sinkage,

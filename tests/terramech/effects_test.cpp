@@ -5,18 +5,14 @@
 #include <terramech/effects.hpp>
 #include <terramech/refined_model.hpp>
 
+#include "made_rows.hpp"
+
 namespace talus::terramech {
 namespace {
 
 RefinedModel base() {
   RefinedModel model;
-  model.soil = {.name = "sand",
-                .cohesion_Pa = 800.0,
-                .friction_angle_rad = 0.55,
-                .sinkage_exponent = 1.1,
-                .cohesive_modulus = 900.0,
-                .frictional_modulus = 1.5e6,
-                .shear_modulus_m = 0.016};
+  model.soil = madeSand();
   return model;
 }
 

@@ -10,6 +10,17 @@
 
 namespace talus::terramech {
 
+/// A sand that is no one's.
+inline Soil madeSand() {
+  return {.name = "sand",
+          .cohesion_Pa = 800.0,
+          .friction_angle_rad = 0.55,
+          .sinkage_exponent = 1.1,
+          .cohesive_modulus = 900.0,
+          .frictional_modulus = 1.5e6,
+          .shear_modulus_m = 0.016};
+}
+
 /// Rows of made-up telemetry, a number a column.
 class MadeRows {
  public:

@@ -112,13 +112,7 @@ TEST(HeldOut, WholeBandsAreHeldOut) {
 // the sinkage's zero.
 std::vector<std::string> causesInBoxes(double datum_m) {
   RefinedModel base;
-  base.soil = {.name = "sand",
-               .cohesion_Pa = 800.0,
-               .friction_angle_rad = 0.55,
-               .sinkage_exponent = 1.1,
-               .cohesive_modulus = 900.0,
-               .frictional_modulus = 1.5e6,
-               .shear_modulus_m = 0.016};
+  base.soil = madeSand();
   std::vector<std::string> columns = wheelColumns();
   columns.emplace_back("box");
   MadeRows rows(columns);

@@ -3,21 +3,13 @@
 #include <terramech/wheel_contact.hpp>
 #include <terramech/wong_reece.hpp>
 
+#include "made_rows.hpp"
+
 namespace talus::terramech {
 namespace {
 
-Soil sand() {
-  return {.name = "sand",
-          .cohesion_Pa = 800.0,
-          .friction_angle_rad = 0.55,
-          .sinkage_exponent = 1.1,
-          .cohesive_modulus = 900.0,
-          .frictional_modulus = 1.5e6,
-          .shear_modulus_m = 0.016};
-}
-
 WheelContact loaded(double load_N, double slip) {
-  WheelContact contact = contactOf(sand(), Wheel{});
+  WheelContact contact = contactOf(madeSand(), Wheel{});
   contact.load_N = load_N;
   contact.slip = slip;
   return contact;
@@ -27,7 +19,7 @@ TEST(WheelContact, IsTheWongReeceWheelWhenNothingIsChanged) {
   // Property: two integrators of one model, 8 points here and 24 there, differ by their quadrature alone.
   for (const double load : {15.0, 80.0, 250.0})
     for (const double slip : {-0.9, -0.3, 0.0, 0.1, 0.4, 0.9}) {
-      const auto exact = equilibrium(sand(), Wheel{}, {.load_N = load, .slip = slip});
+      const auto exact = equilibrium(madeSand(), Wheel{}, {.load_N = load, .slip = slip});
       const auto fast = solveContact(loaded(load, slip));
       constexpr double tolerance = 1e-6;
       EXPECT_NEAR(fast.sinkage_m, exact.sinkage_m, tolerance * exact.sinkage_m) << load << ' ' << slip;
