@@ -31,7 +31,7 @@ class InputError : public std::runtime_error {
 };
 
 /// How a caller follows long work and stops it. Copyable; both parts may be empty.
-struct Watch {
+struct ProgressMonitor {
   std::function<void(double)>
       progress;          ///< called now and then with the fraction done, 0 to 1, from one thread
   std::stop_token stop;  ///< work ends early, at its next check, once a stop is requested

@@ -27,10 +27,12 @@ function(talus_module name)
   add_library(talus::${name} ALIAS talus_${name})
   set_target_properties(talus_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON
                         CXX_EXTENSIONS OFF VERIFY_INTERFACE_HEADER_SETS ON)
-  target_sources(talus_${name} PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${arg_HEADERS})
+  cmake_path(RELATIVE_PATH CMAKE_CURRENT_SOURCE_DIR BASE_DIRECTORY ${PROJECT_SOURCE_DIR} OUTPUT_VARIABLE room)
+  list(TRANSFORM arg_HEADERS PREPEND ${TALUS_INCLUDE_DIR}/talus/${room}/)
+  target_sources(talus_${name} PUBLIC FILE_SET HEADERS BASE_DIRS ${TALUS_INCLUDE_DIR} FILES ${arg_HEADERS})
   target_link_libraries(talus_${name} PUBLIC talus::common ${arg_DEPENDS} PRIVATE ${arg_PRIVATE_DEPENDS})
   talus_warnings(talus_${name})
-  install(TARGETS talus_${name} EXPORT talus FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/talus)
+  install(TARGETS talus_${name} EXPORT talus FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 endfunction()
 
 # talus_quick_build(TARGET): code that is read once a run is compiled for build time, not for speed.
@@ -38,12 +40,14 @@ function(talus_quick_build target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()
 
-# talus_test(NAME SOURCES ... DEPENDS ...): one GoogleTest program; each of its tests is a ctest case.
+# talus_test(NAME SOURCES ... DEPENDS ...): one GoogleTest program; each of its tests is a ctest case. What tests of a
+# room share lies beside its CMakeLists.txt.
 function(talus_test name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;DEPENDS")
   add_executable(${name} ${arg_SOURCES})
   set_target_properties(${name} PROPERTIES CXX_EXTENSIONS OFF)
   target_link_libraries(${name} PRIVATE talus::common ${arg_DEPENDS} GTest::gmock_main)
+  target_include_directories(${name} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
   target_precompile_headers(${name} PRIVATE <gmock/gmock.h> <gtest/gtest.h>)
   talus_quick_build(${name})
   talus_warnings(${name})

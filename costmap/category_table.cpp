@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include <costmap/category_table.hpp>
+#include <talus/costmap/category_table.hpp>
 
 namespace talus::costmap {
 namespace {

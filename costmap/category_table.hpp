@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include <costmap/drive_cost.hpp>
-#include <costmap/ground_model.hpp>
+#include <talus/costmap/drive_cost.hpp>
+#include <talus/costmap/ground_model.hpp>
 
 namespace talus::costmap {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <utility>
 
-#include <costmap/cost_grid.hpp>
+#include <talus/costmap/cost_grid.hpp>
 
 namespace talus::costmap {
 namespace {

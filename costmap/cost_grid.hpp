@@ -6,8 +6,8 @@
 #include <memory>
 #include <vector>
 
-#include <costmap/drive_cost.hpp>
-#include <maps/grid.hpp>
+#include <talus/costmap/drive_cost.hpp>
+#include <talus/maps/grid.hpp>
 
 namespace talus::costmap {
 

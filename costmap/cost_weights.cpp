@@ -1,7 +1,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include <costmap/cost_weights.hpp>
+#include <talus/costmap/cost_weights.hpp>
 
 namespace talus::costmap {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include <costmap/cost_grid.hpp>
+#include <talus/costmap/cost_grid.hpp>
 
 namespace talus::costmap {
 

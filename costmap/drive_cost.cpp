@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include <costmap/drive_cost.hpp>
+#include <talus/costmap/drive_cost.hpp>
 
 namespace talus::costmap {
 

@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include <costmap/drive_state.hpp>
+#include <talus/costmap/drive_state.hpp>
 
 namespace talus::costmap {
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <utility>
 
-#include <costmap/drive_evidence.hpp>
-#include <terramech/load_transfer.hpp>
+#include <talus/costmap/drive_evidence.hpp>
+#include <talus/terramech/contact/load_transfer.hpp>
 
 namespace talus::costmap {
 namespace {
@@ -134,25 +134,25 @@ Moment momentAt(const Rows& rows, std::size_t first, const terramech::Rover& rov
 }
 
 // Puts the moments of a drive through watch and observer, one after the other.
-class Listener {
+class TelemetryProcessor {
  public:
-  Listener(TraversabilityMap& map, const Rows& rows)
+  TelemetryProcessor(TraversabilityMap& map, const Rows& rows)
       : map_(map), rows_(rows), watch_(map.model()), observer_(map.model()) {}
 
   // Of one wheel: why it is not believed, and what it says if it is.
-  struct Heard {
+  struct Result {
     WheelReading reading;
     std::string reason;
     WheelObservation observation;
   };
 
-  // Calls take(row, heard) for every row in order. `without_torque`: torque and sinkage are not believed.
+  // Calls take(row, result) for every row in order. `without_torque`: torque and sinkage are not believed.
   template <typename Take>
-  void listen(bool without_torque, Take&& take) {
+  void processRows(bool without_torque, Take&& take) {
     for (std::size_t first = 0; first < rows_.size();) {
       const Moment moment = momentAt(rows_, first, map_.model().rover());
       transferred_ += moment.transferred ? moment.readings.size() : 0;
-      for (Heard& heard : understood(moment, without_torque)) take(first++, std::move(heard));
+      for (Result& result : process(moment, without_torque)) take(first++, std::move(result));
     }
   }
 
@@ -160,23 +160,23 @@ class Listener {
   std::size_t transferred() const noexcept { return transferred_; }
 
  private:
-  std::vector<Heard> understood(const Moment& moment, bool without_torque) {
+  std::vector<Result> process(const Moment& moment, bool without_torque) {
     std::vector<SensorWatch::Named> named;
     for (std::size_t w = 0; w < moment.readings.size(); ++w)
       named.push_back({rows_.series(moment.first + w), moment.readings[w]});
     const auto refused = watch_.refuse(named);
-    std::vector<Heard> all;
+    std::vector<Result> all;
     std::vector<ClassReading> sound, believed;
     std::vector<std::size_t> who;
     for (std::size_t w = 0; w < moment.readings.size(); ++w) {
-      Heard& heard = all.emplace_back(Heard{moment.readings[w], {}, {}});
-      const auto index = classAt(map_, heard.reading);
+      Result& result = all.emplace_back(Result{moment.readings[w], {}, {}});
+      const auto index = classAt(map_, result.reading);
       if (refused[w])
-        heard.reason = *refused[w];
+        result.reason = *refused[w];
       else if (!index)
-        heard.reason = "outside the map or on ground without a soil";
-      if (!heard.reason.empty()) continue;
-      sound.push_back({*index, heard.reading});
+        result.reason = "outside the map or on ground without a soil";
+      if (!result.reason.empty()) continue;
+      sound.push_back({*index, result.reading});
       believed.push_back(sound.back());
       if (without_torque) believed.back().reading.torque_Nm = believed.back().reading.sinkage_m = kNone;
       who.push_back(w);
@@ -213,29 +213,29 @@ class Listener {
 DriveReport addDrive(TraversabilityMap& map, const terramech::Telemetry& telemetry,
                      EvidenceJournal* journal) {
   const Rows rows(telemetry, map);
-  // The first look: is there a bias in torque or sinkage that all ground shares?
-  Listener first_look(map, rows);
-  first_look.listen(false, [](std::size_t, Listener::Heard&&) {});
-  Listener listener(map, rows);
+  // The first pass: is there a bias in torque or sinkage that all ground shares?
+  TelemetryProcessor first_pass(map, rows);
+  first_pass.processRows(false, [](std::size_t, TelemetryProcessor::Result&&) {});
+  TelemetryProcessor processor(map, rows);
   DriveReport report;
-  listener.listen(first_look.watch().biased(), [&](std::size_t i, Listener::Heard&& heard) {
-    if (heard.reason.empty() && !map.learn(heard.observation))
-      heard.reason = "no ground to learn about there";
+  processor.processRows(first_pass.watch().biased(), [&](std::size_t i, TelemetryProcessor::Result&& result) {
+    if (result.reason.empty() && !map.learn(result.observation))
+      result.reason = "no ground to learn about there";
     const JournalRow row{.source = telemetry.source,
                          .line = static_cast<std::int64_t>(telemetry.lines[i]),
-                         .accepted = heard.reason.empty(),
-                         .reason = heard.reason,
+                         .accepted = result.reason.empty(),
+                         .reason = result.reason,
                          .reading = rows.reading(i),
-                         .observation = heard.observation};
+                         .observation = result.observation};
     if (journal) journal->append(row);
     ++(row.accepted ? report.used : report.rejected);
     if (report.first_reason.empty()) report.first_reason = row.reason;
   });
   map.publishAll();
-  report.findings = listener.watch().findings();
-  if (listener.transferred() > 0)
+  report.findings = processor.watch().findings();
+  if (processor.transferred() > 0)
     report.findings.push_back(
-        std::to_string(listener.transferred()) +
+        std::to_string(processor.transferred()) +
         " rows: load_N is the even share of the weight on a slope; the load transfer was "
         "worked out from the wheels' places");
   return report;

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include <costmap/evidence_journal.hpp>
-#include <costmap/sensor_watch.hpp>
-#include <costmap/traversability_map.hpp>
-#include <terramech/telemetry.hpp>
+#include <talus/costmap/evidence_journal.hpp>
+#include <talus/costmap/sensor_watch.hpp>
+#include <talus/costmap/traversability_map.hpp>
+#include <talus/terramech/estimate/telemetry.hpp>
 
 namespace talus::costmap {
 

@@ -1,4 +1,4 @@
-#include <costmap/drive_state.hpp>
+#include <talus/costmap/drive_state.hpp>
 
 namespace talus::costmap {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include <terramech/category.hpp>
+#include <talus/terramech/mobility/category.hpp>
 
 namespace talus::costmap {
 

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <tuple>
 
-#include <costmap/evidence_bricks.hpp>
+#include <talus/costmap/evidence_bricks.hpp>
 
 namespace talus::costmap {
 namespace {

@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include <maps/grid.hpp>
+#include <talus/maps/grid.hpp>
 
 namespace talus::costmap {
 

@@ -3,7 +3,7 @@
 #include <set>
 #include <utility>
 
-#include <costmap/evidence_field.hpp>
+#include <talus/costmap/evidence_field.hpp>
 
 namespace talus::costmap {
 namespace {

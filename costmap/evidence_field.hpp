@@ -8,15 +8,15 @@
 #include <tuple>
 #include <vector>
 
-#include <costmap/cell_belief.hpp>
-#include <costmap/cost_grid.hpp>
-#include <costmap/evidence_bricks.hpp>
-#include <costmap/floors.hpp>
-#include <costmap/ground_model.hpp>
-#include <costmap/spreading.hpp>
-#include <costmap/surface_cells.hpp>
-#include <costmap/wheel_observation.hpp>
-#include <maps/elevation_map.hpp>
+#include <talus/costmap/cell_belief.hpp>
+#include <talus/costmap/cost_grid.hpp>
+#include <talus/costmap/evidence_bricks.hpp>
+#include <talus/costmap/floors.hpp>
+#include <talus/costmap/ground_model.hpp>
+#include <talus/costmap/spreading.hpp>
+#include <talus/costmap/surface_cells.hpp>
+#include <talus/costmap/wheel_observation.hpp>
+#include <talus/maps/elevation_map.hpp>
 
 namespace talus::costmap {
 

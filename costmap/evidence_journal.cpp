@@ -4,8 +4,8 @@
 
 #include <sqlite3.h>
 
-#include <costmap/evidence_journal.hpp>
-#include <talus.hpp>
+#include <talus/costmap/evidence_journal.hpp>
+#include <talus/talus.hpp>
 
 namespace talus::costmap {
 namespace {

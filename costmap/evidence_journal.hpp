@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include <costmap/wheel_observation.hpp>
+#include <talus/costmap/wheel_observation.hpp>
 
 struct sqlite3;
 struct sqlite3_stmt;

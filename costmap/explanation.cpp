@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include <costmap/explanation.hpp>
+#include <talus/costmap/explanation.hpp>
 
 namespace talus::costmap {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <costmap/traversability_map.hpp>
+#include <talus/costmap/traversability_map.hpp>
 
 namespace talus::costmap {
 

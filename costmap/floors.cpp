@@ -5,7 +5,7 @@
 #include <tuple>
 #include <utility>
 
-#include <costmap/floors.hpp>
+#include <talus/costmap/floors.hpp>
 
 namespace talus::costmap {
 

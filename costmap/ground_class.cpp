@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include <costmap/ground_class.hpp>
+#include <talus/costmap/ground_class.hpp>
 
 namespace talus::costmap {
 namespace {

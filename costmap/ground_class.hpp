@@ -1,7 +1,7 @@
 #pragma once
 
-#include <costmap/ground_model.hpp>
-#include <terramech/soil_prior.hpp>
+#include <talus/costmap/ground_model.hpp>
+#include <talus/terramech/estimate/soil_prior.hpp>
 
 namespace talus::costmap {
 

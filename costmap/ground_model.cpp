@@ -6,9 +6,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include <costmap/ground_model.hpp>
-#include <terramech/range.hpp>
-#include <terramech/rut.hpp>
+#include <talus/costmap/ground_model.hpp>
+#include <talus/terramech/mobility/rut.hpp>
+#include <talus/terramech/numerics/range.hpp>
 
 namespace talus::costmap {
 namespace {

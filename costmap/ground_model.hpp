@@ -4,13 +4,13 @@
 #include <string>
 #include <vector>
 
-#include <costmap/drive_cost.hpp>
-#include <costmap/drive_policy.hpp>
-#include <terramech/category.hpp>
-#include <terramech/effects.hpp>
-#include <terramech/mobility.hpp>
-#include <terramech/rover.hpp>
-#include <terramech/soil.hpp>
+#include <talus/costmap/drive_cost.hpp>
+#include <talus/costmap/drive_policy.hpp>
+#include <talus/terramech/contact/rover.hpp>
+#include <talus/terramech/contact/soil.hpp>
+#include <talus/terramech/effects/effects.hpp>
+#include <talus/terramech/mobility/category.hpp>
+#include <talus/terramech/mobility/mobility.hpp>
 
 namespace talus::costmap {
 

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <vector>
 
-#include <costmap/hazards.hpp>
+#include <talus/costmap/hazards.hpp>
 
 namespace talus::costmap {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <cstdint>
 
-#include <costmap/cell_belief.hpp>
-#include <maps/grid.hpp>
-#include <terramech/rover.hpp>
+#include <talus/costmap/cell_belief.hpp>
+#include <talus/maps/grid.hpp>
+#include <talus/terramech/contact/rover.hpp>
 
 namespace talus::costmap {
 

@@ -18,8 +18,8 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <costmap/map_file.hpp>
-#include <costmap/map_text.hpp>
+#include <talus/costmap/map_file.hpp>
+#include <talus/costmap/map_text.hpp>
 
 namespace talus::costmap {
 namespace {
@@ -272,7 +272,7 @@ void restoreEvidence(const std::deque<TreeLeaf>& leaves, TraversabilityMap& map)
   if (!leaves.empty()) map.publishAll();
 }
 
-TraversabilityMap readMap(std::istream& stream, const MapReading& reading, const Watch& watch) {
+TraversabilityMap readMap(std::istream& stream, const MapReading& reading, const ProgressMonitor& watch) {
   std::deque<TreeLeaf> learned;
   readLeaves(stream, reading.name, [&](const TreeLeaf& leaf) {
     if (leaf.belief.evidence > 0.0F) learned.push_back(leaf);
@@ -305,7 +305,7 @@ TraversabilityMap readMap(std::istream& stream, const MapReading& reading, const
   }
 }
 
-TraversabilityMap readMap(const std::string& path, int threads, const Watch& watch) {
+TraversabilityMap readMap(const std::string& path, int threads, const ProgressMonitor& watch) {
   std::ifstream stream(path, std::ios::binary);
   if (!stream) throw InputError({path, "cannot be opened", "check the path"});
   return readMap(stream, {.name = path, .threads = threads}, watch);

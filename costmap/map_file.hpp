@@ -3,7 +3,7 @@
 #include <iosfwd>
 #include <string>
 
-#include <costmap/traversability_map.hpp>
+#include <talus/costmap/traversability_map.hpp>
 
 namespace talus::costmap {
 
@@ -25,9 +25,9 @@ struct MapReading {
 
 /// Reads a map and builds its cost grid. Throws InputError for a file that is truncated, damaged or no such
 /// map.
-TraversabilityMap readMap(std::istream& stream, const MapReading& reading, const Watch& watch = {});
+TraversabilityMap readMap(std::istream& stream, const MapReading& reading, const ProgressMonitor& watch = {});
 
 /// Opens and reads. Throws InputError also when it cannot be opened.
-TraversabilityMap readMap(const std::string& path, int threads = 1, const Watch& watch = {});
+TraversabilityMap readMap(const std::string& path, int threads = 1, const ProgressMonitor& watch = {});
 
 }  // namespace talus::costmap

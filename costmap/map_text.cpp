@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include <costmap/map_text.hpp>
-#include <talus.hpp>
+#include <talus/costmap/map_text.hpp>
+#include <talus/talus.hpp>
 
 namespace talus::costmap {
 namespace {

@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include <costmap/ground_model.hpp>
-#include <maps/elevation_map.hpp>
+#include <talus/costmap/ground_model.hpp>
+#include <talus/maps/elevation_map.hpp>
 
 namespace talus::costmap {
 

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include <costmap/octomap_surface.hpp>
-#include <talus.hpp>
+#include <talus/costmap/octomap_surface.hpp>
+#include <talus/talus.hpp>
 
 namespace talus::costmap {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include <costmap/floors.hpp>
-#include <maps/elevation_map.hpp>
+#include <talus/costmap/floors.hpp>
+#include <talus/maps/elevation_map.hpp>
 
 namespace talus::costmap {
 

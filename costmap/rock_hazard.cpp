@@ -1,7 +1,7 @@
 #include <cmath>
 #include <numbers>
 
-#include <costmap/rock_hazard.hpp>
+#include <talus/costmap/rock_hazard.hpp>
 
 namespace talus::costmap {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include <costmap/sensor_watch.hpp>
+#include <talus/costmap/sensor_watch.hpp>
 
 namespace talus::costmap {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include <costmap/wheel_observation.hpp>
+#include <talus/costmap/wheel_observation.hpp>
 
 namespace talus::costmap {
 

@@ -2,7 +2,7 @@
 #include <numbers>
 #include <utility>
 
-#include <costmap/spreading.hpp>
+#include <talus/costmap/spreading.hpp>
 
 namespace talus::costmap {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include <costmap/ground_model.hpp>
-#include <maps/grid.hpp>
+#include <talus/costmap/ground_model.hpp>
+#include <talus/maps/grid.hpp>
 
 /// How what the wheels learned at some places tells about others. Two published methods over the same
 /// evidence; costmap/README.md has the measurement by which the map uses the Gaussian process.

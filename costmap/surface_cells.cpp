@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <string>
 
-#include <costmap/surface_cells.hpp>
+#include <talus/costmap/surface_cells.hpp>
 
 namespace talus::costmap {
 namespace {

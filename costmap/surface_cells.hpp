@@ -5,7 +5,7 @@
 
 #include <octomap/OcTreeKey.h>
 
-#include <maps/grid.hpp>
+#include <talus/maps/grid.hpp>
 
 namespace talus::costmap {
 

@@ -6,7 +6,7 @@
 #include <type_traits>
 #include <utility>
 
-#include <costmap/surface_tree.hpp>
+#include <talus/costmap/surface_tree.hpp>
 
 namespace talus::costmap {
 namespace {

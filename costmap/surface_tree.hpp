@@ -7,8 +7,8 @@
 
 #include <octomap/ColorOcTree.h>
 
-#include <costmap/surface_cells.hpp>
-#include <costmap/traversability_tree.hpp>
+#include <talus/costmap/surface_cells.hpp>
+#include <talus/costmap/traversability_tree.hpp>
 
 namespace talus::costmap {
 

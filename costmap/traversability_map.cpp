@@ -4,9 +4,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include <costmap/rock_hazard.hpp>
-#include <costmap/surface_tree.hpp>
-#include <costmap/traversability_map.hpp>
+#include <talus/costmap/rock_hazard.hpp>
+#include <talus/costmap/surface_tree.hpp>
+#include <talus/costmap/traversability_map.hpp>
 
 namespace talus::costmap {
 namespace {
@@ -136,7 +136,7 @@ TraversabilityMap::TraversabilityMap(TraversabilityMap&&) noexcept = default;
 TraversabilityMap::~TraversabilityMap() = default;
 
 TraversabilityMap::TraversabilityMap(MapLayers layers, std::shared_ptr<const GroundModel> model,
-                                     const Options& options, const Watch& watch)
+                                     const Options& options, const ProgressMonitor& watch)
     : site_(siteOf(layers, std::move(model))),
       limits_(HazardLimits::of(site_->model->rover())),
       footprint_radius_m_(footprintRadius(options, site_->model->rover())),
@@ -171,7 +171,8 @@ Hazard TraversabilityMap::layerHazards(const MapLayers& layers, std::size_t i) c
   return found;
 }
 
-TileTable TraversabilityMap::measure(const MapLayers& layers, const Options& options, const Watch& watch) {
+TileTable TraversabilityMap::measure(const MapLayers& layers, const Options& options,
+                                     const ProgressMonitor& watch) {
   const std::vector<std::shared_ptr<CostTile>> tiles = emptyTiles(grid());
   const int tile_columns = (grid().width + CostTile::kSide - 1) / CostTile::kSide;
   const auto slot = [&](maps::Cell c) -> CellCode& {

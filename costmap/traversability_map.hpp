@@ -6,18 +6,18 @@
 #include <memory>
 #include <optional>
 
-#include <costmap/category_table.hpp>
-#include <costmap/cost_grid.hpp>
-#include <costmap/curve_book.hpp>
-#include <costmap/evidence_field.hpp>
-#include <costmap/ground_model.hpp>
-#include <costmap/hazards.hpp>
-#include <costmap/surface_cells.hpp>
-#include <costmap/surface_tree.hpp>
-#include <costmap/traversability_tree.hpp>
-#include <maps/elevation_map.hpp>
-#include <maps/terrain_metrics.hpp>
-#include <talus.hpp>
+#include <talus/costmap/category_table.hpp>
+#include <talus/costmap/cost_curve_table.hpp>
+#include <talus/costmap/cost_grid.hpp>
+#include <talus/costmap/evidence_field.hpp>
+#include <talus/costmap/ground_model.hpp>
+#include <talus/costmap/hazards.hpp>
+#include <talus/costmap/surface_cells.hpp>
+#include <talus/costmap/surface_tree.hpp>
+#include <talus/costmap/traversability_tree.hpp>
+#include <talus/maps/elevation_map.hpp>
+#include <talus/maps/terrain_metrics.hpp>
+#include <talus/talus.hpp>
 
 namespace talus::costmap {
 
@@ -52,7 +52,7 @@ class TraversabilityMap {
   /// Builds the map. Cells of a class without a soil count as obstacles, cells that the class raster leaves
   /// out as unknown. Throws std::invalid_argument when a layer lies on another grid.
   TraversabilityMap(MapLayers layers, std::shared_ptr<const GroundModel> model, const Options& options,
-                    const Watch& watch = {});
+                    const ProgressMonitor& watch = {});
   TraversabilityMap(TraversabilityMap&&) noexcept;
   ~TraversabilityMap();
 
@@ -129,7 +129,7 @@ class TraversabilityMap {
   const SurfaceKeys& keys() const noexcept { return site_->keys; }
 
  private:
-  TileTable measure(const MapLayers& layers, const Options& options, const Watch& watch);
+  TileTable measure(const MapLayers& layers, const Options& options, const ProgressMonitor& watch);
   CellBelief belief(maps::Cell cell, EvidenceField::Beliefs& beliefs) const;
   Hazard layerHazards(const MapLayers& layers, std::size_t index) const;
   std::uint8_t categoryOf(const CostGrid& grid, maps::Cell cell) const noexcept;
@@ -142,7 +142,7 @@ class TraversabilityMap {
   HazardLimits limits_;
   double footprint_radius_m_ = 0.0;
   maps::Raster<Hazard> hazards_;
-  CurveBook book_;
+  CostCurveTable book_;
   EvidenceField field_;
   std::vector<CellRange> dirty_;
   struct Published;

@@ -9,7 +9,7 @@
 #include <octomap/OcTreeBaseImpl.h>
 #include <octomap/OcTreeDataNode.h>
 
-#include <costmap/cell_belief.hpp>
+#include <talus/costmap/cell_belief.hpp>
 
 namespace talus::costmap {
 

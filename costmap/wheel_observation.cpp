@@ -2,7 +2,7 @@
 #include <cmath>
 #include <limits>
 
-#include <costmap/wheel_observation.hpp>
+#include <talus/costmap/wheel_observation.hpp>
 
 namespace talus::costmap {
 namespace {

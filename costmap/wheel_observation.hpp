@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include <costmap/ground_model.hpp>
-#include <maps/grid.hpp>
+#include <talus/costmap/ground_model.hpp>
+#include <talus/maps/grid.hpp>
 
 namespace talus::costmap {
 

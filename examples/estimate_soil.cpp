@@ -6,8 +6,8 @@
 #include <cstdio>
 #include <numbers>
 
-#include <terramech/linear_offset.hpp>
-#include <terramech/wong_reece.hpp>
+#include <talus/terramech/contact/wong_reece.hpp>
+#include <talus/terramech/estimate/linear_offset.hpp>
 
 namespace {
 

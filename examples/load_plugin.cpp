@@ -8,8 +8,8 @@
 #include <memory>
 #include <vector>
 
-#include <costmap/traversability_map.hpp>
-#include <planner/plugin_loader.hpp>
+#include <talus/costmap/traversability_map.hpp>
+#include <talus/planner/plugin/plugin_loader.hpp>
 
 namespace {
 

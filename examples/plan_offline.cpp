@@ -8,11 +8,11 @@
 #include <memory>
 #include <numbers>
 
-#include <costmap/traversability_map.hpp>
-#include <maps/elevation_reader.hpp>
-#include <planner/annotation.hpp>
-#include <planner/named_planner.hpp>
-#include <terramech/soil_library.hpp>
+#include <talus/costmap/traversability_map.hpp>
+#include <talus/maps/elevation_reader.hpp>
+#include <talus/planner/check/annotation.hpp>
+#include <talus/planner/plugin/named_planner.hpp>
+#include <talus/terramech/io/soil_library.hpp>
 
 namespace {
 

@@ -9,8 +9,8 @@
 #include <stop_token>
 #include <vector>
 
-#include <costmap/traversability_map.hpp>
-#include <planner/named_planner.hpp>
+#include <talus/costmap/traversability_map.hpp>
+#include <talus/planner/plugin/named_planner.hpp>
 
 namespace {
 

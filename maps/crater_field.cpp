@@ -2,8 +2,8 @@
 #include <cmath>
 #include <numbers>
 
-#include <maps/crater_field.hpp>
-#include <maps/value_noise.hpp>
+#include <talus/maps/crater_field.hpp>
+#include <talus/maps/value_noise.hpp>
 
 namespace talus::maps {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <maps/grid.hpp>
+#include <talus/maps/grid.hpp>
 
 namespace talus::maps {
 

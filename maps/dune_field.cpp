@@ -2,7 +2,7 @@
 #include <cmath>
 #include <numbers>
 
-#include <maps/dune_field.hpp>
+#include <talus/maps/dune_field.hpp>
 
 namespace talus::maps {
 

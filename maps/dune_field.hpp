@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include <maps/value_noise.hpp>
+#include <talus/maps/value_noise.hpp>
 
 namespace talus::maps {
 

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <maps/elevation_map.hpp>
+#include <talus/maps/elevation_map.hpp>
 
 namespace talus::maps {
 

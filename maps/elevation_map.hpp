@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include <maps/georeference.hpp>
-#include <maps/grid.hpp>
+#include <talus/maps/georeference.hpp>
+#include <talus/maps/grid.hpp>
 
 namespace talus::maps {
 

@@ -4,12 +4,12 @@
 
 #include <gdal_priv.h>
 
-#include <maps/elevation_reader.hpp>
-#include <maps/elevation_values.hpp>
-#include <maps/numpy_raster.hpp>
-#include <maps/raster_band.hpp>
-#include <maps/raster_frame.hpp>
-#include <talus.hpp>
+#include <talus/maps/elevation_reader.hpp>
+#include <talus/maps/elevation_values.hpp>
+#include <talus/maps/numpy_raster.hpp>
+#include <talus/maps/raster_band.hpp>
+#include <talus/maps/raster_frame.hpp>
+#include <talus/talus.hpp>
 
 namespace talus::maps {
 namespace {

@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include <maps/elevation_map.hpp>
-#include <maps/place.hpp>
+#include <talus/maps/elevation_map.hpp>
+#include <talus/maps/place.hpp>
 
 namespace talus::maps {
 

@@ -8,7 +8,7 @@
 
 #include <gdal_priv.h>
 
-#include <maps/elevation_values.hpp>
+#include <talus/maps/elevation_values.hpp>
 
 namespace talus::maps {
 namespace {

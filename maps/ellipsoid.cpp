@@ -2,7 +2,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include <maps/ellipsoid.hpp>
+#include <talus/maps/ellipsoid.hpp>
 
 namespace talus::maps {
 namespace {

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include <maps/footprint.hpp>
+#include <talus/maps/footprint.hpp>
 
 namespace talus::maps {
 

@@ -9,8 +9,8 @@
 #include <gdal_priv.h>
 #include <unistd.h>
 
-#include <maps/gdal_dataset.hpp>
-#include <talus.hpp>
+#include <talus/maps/gdal_dataset.hpp>
+#include <talus/talus.hpp>
 
 namespace talus::maps {
 namespace {

@@ -5,9 +5,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include <maps/gdal_dataset.hpp>
-#include <maps/geojson.hpp>
-#include <talus.hpp>
+#include <talus/maps/gdal_dataset.hpp>
+#include <talus/maps/geojson.hpp>
+#include <talus/talus.hpp>
 
 namespace talus::maps {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include <maps/elevation_map.hpp>
+#include <talus/maps/elevation_map.hpp>
 
 namespace talus::maps {
 

@@ -5,8 +5,8 @@
 
 #include <GeographicLib/Geodesic.hpp>
 
-#include <maps/georeference.hpp>
-#include <maps/projection.hpp>
+#include <talus/maps/georeference.hpp>
+#include <talus/maps/projection.hpp>
 
 namespace talus::maps {
 namespace {

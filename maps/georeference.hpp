@@ -3,8 +3,8 @@
 #include <memory>
 #include <string>
 
-#include <maps/ellipsoid.hpp>
-#include <maps/grid.hpp>
+#include <talus/maps/ellipsoid.hpp>
+#include <talus/maps/grid.hpp>
 
 namespace talus::maps {
 

@@ -9,10 +9,10 @@
 #include <ogr_spatialref.h>
 #include <unistd.h>
 
-#include <maps/gdal_dataset.hpp>
-#include <maps/geotiff_writer.hpp>
-#include <maps/spatial_reference.hpp>
-#include <talus.hpp>
+#include <talus/maps/gdal_dataset.hpp>
+#include <talus/maps/geotiff_writer.hpp>
+#include <talus/maps/spatial_reference.hpp>
+#include <talus/talus.hpp>
 
 namespace talus::maps {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <maps/elevation_map.hpp>
+#include <talus/maps/elevation_map.hpp>
 
 namespace talus::maps {
 

@@ -1,1 +1,1 @@
-#include <maps/grid.hpp>
+#include <talus/maps/grid.hpp>

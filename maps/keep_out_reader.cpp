@@ -9,11 +9,11 @@
 #include <nlohmann/json.hpp>
 #include <ogr_geometry.h>
 
-#include <maps/gdal_dataset.hpp>
-#include <maps/geojson.hpp>
-#include <maps/layer_reader.hpp>
-#include <maps/place.hpp>
-#include <talus.hpp>
+#include <talus/maps/gdal_dataset.hpp>
+#include <talus/maps/geojson.hpp>
+#include <talus/maps/layer_reader.hpp>
+#include <talus/maps/place.hpp>
+#include <talus/talus.hpp>
 
 namespace talus::maps {
 namespace {

@@ -3,10 +3,10 @@
 #include <numbers>
 #include <stdexcept>
 
-#include <maps/crater_field.hpp>
-#include <maps/dune_field.hpp>
-#include <maps/landscape.hpp>
-#include <maps/value_noise.hpp>
+#include <talus/maps/crater_field.hpp>
+#include <talus/maps/dune_field.hpp>
+#include <talus/maps/landscape.hpp>
+#include <talus/maps/value_noise.hpp>
 
 namespace talus::maps {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include <maps/site_generator.hpp>
+#include <talus/maps/site_generator.hpp>
 
 namespace talus::maps {
 

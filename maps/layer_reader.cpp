@@ -8,12 +8,12 @@
 #include <gdal_priv.h>
 #include <ogr_spatialref.h>
 
-#include <maps/gdal_dataset.hpp>
-#include <maps/layer_reader.hpp>
-#include <maps/place.hpp>
-#include <maps/raster_band.hpp>
-#include <maps/warp.hpp>
-#include <talus.hpp>
+#include <talus/maps/gdal_dataset.hpp>
+#include <talus/maps/layer_reader.hpp>
+#include <talus/maps/place.hpp>
+#include <talus/maps/raster_band.hpp>
+#include <talus/maps/warp.hpp>
+#include <talus/talus.hpp>
 
 namespace talus::maps {
 namespace {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include <maps/elevation_map.hpp>
+#include <talus/maps/elevation_map.hpp>
 
 namespace talus::maps {
 

@@ -6,8 +6,8 @@
 #include <cstring>
 #include <regex>
 
-#include <maps/numpy_array.hpp>
-#include <talus.hpp>
+#include <talus/maps/numpy_array.hpp>
+#include <talus/talus.hpp>
 
 namespace talus::maps {
 namespace {

@@ -10,9 +10,9 @@
 #include <gdal_priv.h>
 #include <ogr_spatialref.h>
 
-#include <maps/numpy_array.hpp>
-#include <maps/numpy_raster.hpp>
-#include <talus.hpp>
+#include <talus/maps/numpy_array.hpp>
+#include <talus/maps/numpy_raster.hpp>
+#include <talus/talus.hpp>
 
 namespace talus::maps {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include <maps/gdal_dataset.hpp>
+#include <talus/maps/gdal_dataset.hpp>
 
 namespace talus::maps {
 

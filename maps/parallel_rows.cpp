@@ -3,11 +3,11 @@
 #include <thread>
 #include <vector>
 
-#include <maps/parallel_rows.hpp>
+#include <talus/maps/parallel_rows.hpp>
 
 namespace talus::maps {
 
-void forEachStrip(const RowWork& what, const Watch& watch, const std::function<void(Rows)>& work) {
+void forEachStrip(const RowWork& what, const ProgressMonitor& watch, const std::function<void(Rows)>& work) {
   constexpr int kStripRows = 64;
   const int strips = (what.rows + kStripRows - 1) / kStripRows;
   std::atomic<int> next{0};

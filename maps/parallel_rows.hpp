@@ -2,7 +2,7 @@
 
 #include <functional>
 
-#include <talus.hpp>
+#include <talus/talus.hpp>
 
 namespace talus::maps {
 
@@ -21,6 +21,6 @@ struct RowWork {
 /// Calls work(strip) once for each strip of 64 rows, on several threads at once; this thread takes part and
 /// alone reports progress. Once a stop is requested the strips not yet begun are left out. The work must not
 /// throw.
-void forEachStrip(const RowWork& what, const Watch& watch, const std::function<void(Rows)>& work);
+void forEachStrip(const RowWork& what, const ProgressMonitor& watch, const std::function<void(Rows)>& work);
 
 }  // namespace talus::maps

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <limits>
 
-#include <maps/partial_plane.hpp>
+#include <talus/maps/partial_plane.hpp>
 
 namespace talus::maps {
 namespace {

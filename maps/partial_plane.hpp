@@ -2,8 +2,8 @@
 
 #include <optional>
 
-#include <maps/footprint.hpp>
-#include <maps/grid.hpp>
+#include <talus/maps/footprint.hpp>
+#include <talus/maps/grid.hpp>
 
 namespace talus::maps {
 

@@ -5,8 +5,8 @@
 #include <numbers>
 #include <vector>
 
-#include <maps/place.hpp>
-#include <talus.hpp>
+#include <talus/maps/place.hpp>
+#include <talus/talus.hpp>
 
 namespace talus::maps {
 namespace {

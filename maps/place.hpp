@@ -4,7 +4,7 @@
 #include <string_view>
 #include <variant>
 
-#include <maps/elevation_map.hpp>
+#include <talus/maps/elevation_map.hpp>
 
 namespace talus::maps {
 

@@ -2,9 +2,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include <maps/geojson.hpp>
-#include <maps/place_reader.hpp>
-#include <talus.hpp>
+#include <talus/maps/geojson.hpp>
+#include <talus/maps/place_reader.hpp>
+#include <talus/talus.hpp>
 
 namespace talus::maps {
 namespace {

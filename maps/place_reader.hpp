@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include <maps/place.hpp>
+#include <talus/maps/place.hpp>
 
 namespace talus::maps {
 

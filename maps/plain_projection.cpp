@@ -6,7 +6,7 @@
 
 #include <GeographicLib/Ellipsoid.hpp>
 
-#include <maps/projection.hpp>
+#include <talus/maps/projection.hpp>
 
 namespace talus::maps {
 namespace {

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <cstring>
 
-#include <maps/plane_kernel.hpp>
+#include <talus/maps/plane_kernel.hpp>
 
 namespace talus::maps {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <maps/footprint.hpp>
+#include <talus/maps/footprint.hpp>
 
 namespace talus::maps {
 

@@ -7,7 +7,7 @@
 #include <GeographicLib/PolarStereographic.hpp>
 #include <GeographicLib/TransverseMercator.hpp>
 
-#include <maps/projection.hpp>
+#include <talus/maps/projection.hpp>
 
 namespace talus::maps {
 namespace {

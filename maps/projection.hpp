@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include <maps/georeference.hpp>
+#include <talus/maps/georeference.hpp>
 
 namespace talus::maps {
 

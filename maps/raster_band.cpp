@@ -5,9 +5,9 @@
 
 #include <gdal_priv.h>
 
-#include <maps/gdal_dataset.hpp>
-#include <maps/raster_band.hpp>
-#include <talus.hpp>
+#include <talus/maps/gdal_dataset.hpp>
+#include <talus/maps/raster_band.hpp>
+#include <talus/talus.hpp>
 
 namespace talus::maps {
 namespace {

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include <maps/grid.hpp>
+#include <talus/maps/grid.hpp>
 
 class GDALDataset;
 

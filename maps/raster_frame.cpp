@@ -9,10 +9,10 @@
 #include <gdal_priv.h>
 #include <ogr_spatialref.h>
 
-#include <maps/raster_frame.hpp>
-#include <maps/spatial_reference.hpp>
-#include <maps/warp.hpp>
-#include <talus.hpp>
+#include <talus/maps/raster_frame.hpp>
+#include <talus/maps/spatial_reference.hpp>
+#include <talus/maps/warp.hpp>
+#include <talus/talus.hpp>
 
 namespace talus::maps {
 namespace {

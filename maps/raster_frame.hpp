@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include <maps/elevation_reader.hpp>
-#include <maps/gdal_dataset.hpp>
+#include <talus/maps/elevation_reader.hpp>
+#include <talus/maps/gdal_dataset.hpp>
 
 namespace talus::maps {
 

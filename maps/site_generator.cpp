@@ -4,11 +4,11 @@
 #include <numbers>
 #include <stdexcept>
 
-#include <maps/landscape.hpp>
-#include <maps/parallel_rows.hpp>
-#include <maps/rock_field.hpp>
-#include <maps/site_generator.hpp>
-#include <maps/value_noise.hpp>
+#include <talus/maps/landscape.hpp>
+#include <talus/maps/parallel_rows.hpp>
+#include <talus/maps/rock_field.hpp>
+#include <talus/maps/site_generator.hpp>
+#include <talus/maps/value_noise.hpp>
 
 namespace talus::maps {
 namespace {
@@ -77,7 +77,7 @@ void setRocks(Site& site, const SiteOptions& options) {
 
 }  // namespace
 
-Site generateSite(const SiteOptions& options, const Watch& watch) {
+Site generateSite(const SiteOptions& options, const ProgressMonitor& watch) {
   check(options);
   const Grid grid{.width = options.width, .height = options.height, .resolution_m = options.resolution_m};
   Site site{.map = {.elevation_m = Raster<float>(grid),

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <string>
 
-#include <maps/elevation_map.hpp>
-#include <talus.hpp>
+#include <talus/maps/elevation_map.hpp>
+#include <talus/talus.hpp>
 
 namespace talus::maps {
 
@@ -37,6 +37,6 @@ struct Site {
 
 /// Makes a site; a stop request throws nothing and leaves the map empty.
 /// @throws std::invalid_argument on an option out of range
-Site generateSite(const SiteOptions& options, const Watch& watch = {});
+Site generateSite(const SiteOptions& options, const ProgressMonitor& watch = {});
 
 }  // namespace talus::maps

@@ -11,8 +11,8 @@
 #include <cpl_conv.h>
 #include <ogr_spatialref.h>
 
-#include <maps/spatial_reference.hpp>
-#include <talus.hpp>
+#include <talus/maps/spatial_reference.hpp>
+#include <talus/talus.hpp>
 
 namespace talus::maps {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include <maps/georeference.hpp>
+#include <talus/maps/georeference.hpp>
 
 class OGRSpatialReference;
 

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include <maps/footprint.hpp>
-#include <maps/parallel_rows.hpp>
-#include <maps/partial_plane.hpp>
-#include <maps/plane_kernel.hpp>
-#include <maps/terrain_metrics.hpp>
+#include <talus/maps/footprint.hpp>
+#include <talus/maps/parallel_rows.hpp>
+#include <talus/maps/partial_plane.hpp>
+#include <talus/maps/plane_kernel.hpp>
+#include <talus/maps/terrain_metrics.hpp>
 
 namespace talus::maps {
 namespace {
@@ -106,7 +106,7 @@ float TerrainMetrics::aspect_rad(Cell c) const {
 }
 
 TerrainMetrics terrainMetrics(const Raster<float>& elevation_m, const FootprintOptions& options,
-                              const Watch& watch) {
+                              const ProgressMonitor& watch) {
   check(options);
   const Grid& grid = elevation_m.grid();
   const double radius_cells = options.radius_m / grid.resolution_m;

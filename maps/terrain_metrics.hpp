@@ -1,7 +1,7 @@
 #pragma once
 
-#include <maps/grid.hpp>
-#include <talus.hpp>
+#include <talus/maps/grid.hpp>
+#include <talus/talus.hpp>
 
 namespace talus::maps {
 
@@ -35,6 +35,6 @@ struct TerrainMetrics {
 /// vectorised. Once a stop is requested the rows not yet done stay NaN.
 /// @throws std::invalid_argument on a radius that is negative or not finite, or threads < 1
 TerrainMetrics terrainMetrics(const Raster<float>& elevation_m, const FootprintOptions& options,
-                              const Watch& watch = {});
+                              const ProgressMonitor& watch = {});
 
 }  // namespace talus::maps

@@ -7,8 +7,8 @@
 #include <gdal_priv.h>
 #include <gdal_utils.h>
 
-#include <maps/warp.hpp>
-#include <talus.hpp>
+#include <talus/maps/warp.hpp>
+#include <talus/talus.hpp>
 
 namespace talus::maps {
 namespace {

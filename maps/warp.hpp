@@ -3,8 +3,8 @@
 #include <optional>
 #include <string>
 
-#include <maps/gdal_dataset.hpp>
-#include <maps/grid.hpp>
+#include <talus/maps/gdal_dataset.hpp>
+#include <talus/maps/grid.hpp>
 
 namespace talus::maps {
 

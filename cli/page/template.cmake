@@ -9,5 +9,5 @@ add_custom_command(OUTPUT ${page_template}
   DEPENDS ${page_dir}/assemble.cmake ${page_dir}/body.html ${page_dir}/head.html ${page_dir}/map.js
           ${page_dir}/modules.js ${page_dir}/page.css ${page_dir}/page.js ${page_dir}/profiles.js
   VERBATIM)
-set_source_files_properties(page_template.cpp PROPERTIES OBJECT_DEPENDS ${page_template}
+set_source_files_properties(draw/page_template.cpp PROPERTIES OBJECT_DEPENDS ${page_template}
                             COMPILE_DEFINITIONS TALUS_PAGE_TEMPLATE="${page_template}")

@@ -2,10 +2,10 @@
 // is timed is one sample in and the estimate out.
 #include <benchmark/benchmark.h>
 
-#include <terramech/iagnemma.hpp>
-#include <terramech/modulus_ladder.hpp>
-#include <terramech/soil_filter.hpp>
-#include <terramech/thesis_runs.hpp>
+#include <talus/terramech/estimate/iagnemma.hpp>
+#include <talus/terramech/estimate/shear_modulus_grid.hpp>
+#include <talus/terramech/estimate/soil_filter.hpp>
+#include <talus/terramech/estimate/thesis_runs.hpp>
 
 namespace talus::terramech {
 namespace {
@@ -30,7 +30,7 @@ BENCHMARK_CAPTURE(known, iagnemma, iagnemmaPair);
 
 void ladder(benchmark::State& state, ModulusCriterion criterion) {
   std::size_t k = 0;
-  ModulusLadder rungs(kThesisWheel, {.criterion = criterion});
+  ShearModulusGrid rungs(kThesisWheel, {.criterion = criterion});
   for (; k < 4; ++k) rungs.add(samples()[k]);
   for (auto _ : state) {
     k = (k + 1) % samples().size();

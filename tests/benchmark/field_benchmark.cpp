@@ -13,11 +13,11 @@
 #include <benchmark/benchmark.h>
 #include <pthread.h>
 
-#include <planner/any_angle.hpp>
-#include <planner/field_planner.hpp>
-#include <planner/grid_links.hpp>
-#include <planner/grid_route.hpp>
-#include <planner/tube_planner.hpp>
+#include <talus/planner/field/grid_links.hpp>
+#include <talus/planner/field/grid_route.hpp>
+#include <talus/planner/grid/field_planner.hpp>
+#include <talus/planner/grid/tube_planner.hpp>
+#include <talus/planner/refine/any_angle.hpp>
 
 namespace {
 

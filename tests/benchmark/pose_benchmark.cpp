@@ -9,11 +9,11 @@
 
 #include <benchmark/benchmark.h>
 
-#include <costmap/ground_class.hpp>
-#include <costmap/traversability_map.hpp>
-#include <maps/site_generator.hpp>
-#include <planner/hybrid_search.hpp>
-#include <terramech/soil_library.hpp>
+#include <talus/costmap/ground_class.hpp>
+#include <talus/costmap/traversability_map.hpp>
+#include <talus/maps/site_generator.hpp>
+#include <talus/planner/pose/hybrid_search.hpp>
+#include <talus/terramech/io/soil_library.hpp>
 
 namespace {
 

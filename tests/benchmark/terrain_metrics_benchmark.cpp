@@ -11,11 +11,11 @@
 #include <gdal_priv.h>
 #include <gdal_utils.h>
 
-#include <maps/elevation_reader.hpp>
-#include <maps/geotiff_writer.hpp>
-#include <maps/plane_kernel.hpp>
-#include <maps/site_generator.hpp>
-#include <maps/terrain_metrics.hpp>
+#include <talus/maps/elevation_reader.hpp>
+#include <talus/maps/geotiff_writer.hpp>
+#include <talus/maps/plane_kernel.hpp>
+#include <talus/maps/site_generator.hpp>
+#include <talus/maps/terrain_metrics.hpp>
 
 namespace {
 

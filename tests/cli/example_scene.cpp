@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include <cli/output_file.hpp>
+#include <talus/cli/app/output_file.hpp>
 
 namespace talus::cli {
 namespace {

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <cli/scene.hpp>
-#include <maps/elevation_map.hpp>
-#include <planner/route.hpp>
+#include <talus/cli/draw/scene.hpp>
+#include <talus/maps/elevation_map.hpp>
+#include <talus/planner/route/route.hpp>
 
 namespace talus::cli {
 

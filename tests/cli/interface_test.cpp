@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <terramech/soil_library.hpp>
-#include <terramech/wong_reece.hpp>
+#include <talus/terramech/contact/wong_reece.hpp>
+#include <talus/terramech/io/soil_library.hpp>
 
 #include "run_program.hpp"
 

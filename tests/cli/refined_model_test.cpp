@@ -4,8 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include <terramech/soil_library.hpp>
-#include <terramech/wong_reece.hpp>
+#include <talus/terramech/contact/wong_reece.hpp>
+#include <talus/terramech/io/soil_library.hpp>
 
 #include "run_program.hpp"
 
@@ -67,8 +67,8 @@ TEST_F(RefinedModelCommands, PlanAndCostmapTakeAModelAndKeepIt) {
   EXPECT_NE(why.out.find("bulldozing"), std::string::npos);
 }
 
-// A rehearsed drive over the hills, blind to what acts on the ground; `ground`: what the rover believes.
-std::vector<std::string> rehearsal(const std::vector<std::string>& ground) {
+// a simulated drive over the hills, blind to what acts on the ground; `ground`: what the rover believes.
+std::vector<std::string> simulatedTraverse(const std::vector<std::string>& ground) {
   std::vector<std::string> words{"drive",  "dem.asc", "--resolution", "1",       "--rover",
                                  "fido",   "--truth", "truth.yaml",   "--start", "5,5",
                                  "--goal", "40,40",   "--belief",     "prior",   "--json"};
@@ -80,7 +80,7 @@ TEST_F(RefinedModelCommands, TheFirstTraverseMendsTheNext) {
   folder_.write("base.yaml", std::string(kSoil) + "model: wong-reece\nsensors: {slip: 0.02}\n");
   folder_.write("truth.yaml", "effects: [{name: slip_sinkage_ding, parameters: [0.4]}]\n");
   const auto errors = [&](const std::vector<std::string>& ground) {
-    const Ran ran = talus(rehearsal(ground));
+    const Ran ran = talus(simulatedTraverse(ground));
     EXPECT_EQ(ran.code, 0) << ran.err;
     return nlohmann::json::parse(ran.out, nullptr, false)["prediction"];
   };
@@ -113,7 +113,7 @@ TEST_F(RefinedModelCommands, TheFirstTraverseMendsTheNext) {
 TEST_F(RefinedModelCommands, ATraverseOverGroundAsBelievedShowsNothing) {
   folder_.write("base.yaml", std::string(kSoil) + "model: wong-reece\nsensors: {slip: 0.02}\n");
   folder_.write("truth.yaml", "{}\n");
-  ASSERT_EQ(talus(rehearsal({"--soil", "soil.yaml", "--telemetry", "t.csv"})).code, 0);
+  ASSERT_EQ(talus(simulatedTraverse({"--soil", "soil.yaml", "--telemetry", "t.csv"})).code, 0);
   const Ran traced = talus({"trace", "t.csv", "--base", "base.yaml", "--rover", "fido", "--json"});
   ASSERT_EQ(traced.code, 0) << traced.err;
   EXPECT_TRUE(nlohmann::json::parse(traced.out)["effects"].empty()) << traced.out;

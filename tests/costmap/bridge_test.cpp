@@ -8,10 +8,10 @@
 #include <site_fixture.hpp>
 #include <unistd.h>
 
-#include <costmap/drive_evidence.hpp>
-#include <costmap/explanation.hpp>
-#include <costmap/map_file.hpp>
-#include <costmap/octomap_surface.hpp>
+#include <talus/costmap/drive_evidence.hpp>
+#include <talus/costmap/explanation.hpp>
+#include <talus/costmap/map_file.hpp>
+#include <talus/costmap/octomap_surface.hpp>
 
 namespace talus::costmap {
 namespace {

@@ -5,10 +5,10 @@
 #include <site_map.hpp>
 #include <unistd.h>
 
-#include <costmap/drive_evidence.hpp>
-#include <costmap/map_file.hpp>
-#include <terramech/load_transfer.hpp>
-#include <terramech/wong_reece.hpp>
+#include <talus/costmap/drive_evidence.hpp>
+#include <talus/costmap/map_file.hpp>
+#include <talus/terramech/contact/load_transfer.hpp>
+#include <talus/terramech/contact/wong_reece.hpp>
 
 namespace talus::costmap {
 namespace {

@@ -2,7 +2,7 @@
 #include <random>
 #include <tuple>
 
-#include <costmap/evidence_bricks.hpp>
+#include <talus/costmap/evidence_bricks.hpp>
 
 namespace talus::costmap {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <site_map.hpp>
 
-#include <costmap/evidence_field.hpp>
-#include <costmap/map_file.hpp>
+#include <talus/costmap/evidence_field.hpp>
+#include <talus/costmap/map_file.hpp>
 
 namespace talus::costmap {
 namespace {

@@ -9,8 +9,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <costmap/evidence_journal.hpp>
-#include <talus.hpp>
+#include <talus/costmap/evidence_journal.hpp>
+#include <talus/talus.hpp>
 
 namespace talus::costmap {
 namespace {

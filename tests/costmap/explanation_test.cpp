@@ -3,7 +3,7 @@
 
 #include <site_map.hpp>
 
-#include <costmap/explanation.hpp>
+#include <talus/costmap/explanation.hpp>
 
 namespace talus::costmap {
 namespace {

@@ -2,7 +2,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include <costmap/floors.hpp>
+#include <talus/costmap/floors.hpp>
 
 namespace talus::costmap {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <site_fixture.hpp>
 
-#include <costmap/ground_class.hpp>
+#include <talus/costmap/ground_class.hpp>
 
 namespace talus::costmap {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <site_fixture.hpp>
 
-#include <costmap/ground_model.hpp>
-#include <terramech/wong_reece.hpp>
+#include <talus/costmap/ground_model.hpp>
+#include <talus/terramech/contact/wong_reece.hpp>
 
 namespace talus::costmap {
 namespace {

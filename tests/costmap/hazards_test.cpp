@@ -3,7 +3,7 @@
 
 #include <site_fixture.hpp>
 
-#include <costmap/hazards.hpp>
+#include <talus/costmap/hazards.hpp>
 
 namespace talus::costmap {
 namespace {

@@ -4,7 +4,7 @@
 #include <octomap/AbstractOcTree.h>
 #include <site_map.hpp>
 
-#include <costmap/map_file.hpp>
+#include <talus/costmap/map_file.hpp>
 
 namespace talus::costmap {
 namespace {

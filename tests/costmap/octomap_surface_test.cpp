@@ -5,8 +5,8 @@
 #include <octomap/ColorOcTree.h>
 #include <octomap/OcTree.h>
 
-#include <costmap/octomap_surface.hpp>
-#include <talus.hpp>
+#include <talus/costmap/octomap_surface.hpp>
+#include <talus/talus.hpp>
 
 namespace talus::costmap {
 namespace {

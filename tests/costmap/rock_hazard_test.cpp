@@ -2,7 +2,7 @@
 #include <limits>
 #include <numbers>
 
-#include <costmap/rock_hazard.hpp>
+#include <talus/costmap/rock_hazard.hpp>
 
 namespace talus::costmap {
 namespace {

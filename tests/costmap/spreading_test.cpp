@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include <costmap/spreading.hpp>
+#include <talus/costmap/spreading.hpp>
 
 namespace talus::costmap {
 namespace {

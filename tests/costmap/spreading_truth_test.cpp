@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include <costmap/spreading.hpp>
+#include <talus/costmap/spreading.hpp>
 
 namespace talus::costmap {
 namespace {

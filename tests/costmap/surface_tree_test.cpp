@@ -7,7 +7,7 @@
 #include <octomap/ColorOcTree.h>
 #include <site_map.hpp>
 
-#include <costmap/surface_tree.hpp>
+#include <talus/costmap/surface_tree.hpp>
 
 namespace talus::costmap {
 namespace {

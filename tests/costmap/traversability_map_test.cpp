@@ -5,7 +5,7 @@
 
 #include <site_map.hpp>
 
-#include <costmap/traversability_map.hpp>
+#include <talus/costmap/traversability_map.hpp>
 
 namespace talus::costmap {
 namespace {

@@ -1,8 +1,8 @@
 #include <memory>
 #include <sstream>
 
-#include <costmap/traversability_tree.hpp>
-#include <talus.hpp>
+#include <talus/costmap/traversability_tree.hpp>
+#include <talus/talus.hpp>
 
 namespace talus::costmap {
 namespace {

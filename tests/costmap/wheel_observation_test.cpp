@@ -4,9 +4,9 @@
 
 #include <site_fixture.hpp>
 
-#include <costmap/wheel_observation.hpp>
-#include <terramech/rut.hpp>
-#include <terramech/wong_reece.hpp>
+#include <talus/costmap/wheel_observation.hpp>
+#include <talus/terramech/contact/wong_reece.hpp>
+#include <talus/terramech/mobility/rut.hpp>
 
 namespace talus::costmap {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <gmock/gmock.h>
 
-#include <maps/crater_field.hpp>
+#include <talus/maps/crater_field.hpp>
 
 namespace talus::maps {
 namespace {

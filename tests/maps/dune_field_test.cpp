@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include <maps/dune_field.hpp>
+#include <talus/maps/dune_field.hpp>
 
 namespace talus::maps {
 namespace {

@@ -2,9 +2,9 @@
 #include <cstdlib>
 #include <numbers>
 
-#include <tests/maps/raster_fixture.hpp>
+#include <talus/maps/elevation_reader.hpp>
 
-#include <maps/elevation_reader.hpp>
+#include "raster_fixture.hpp"
 
 namespace talus::maps {
 namespace {

@@ -2,7 +2,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include <maps/georeference.hpp>
+#include <talus/maps/georeference.hpp>
 
 namespace talus::maps {
 namespace {

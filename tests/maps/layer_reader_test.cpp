@@ -1,11 +1,11 @@
 #include <cmath>
 
-#include <tests/maps/raster_fixture.hpp>
+#include <talus/maps/elevation_reader.hpp>
+#include <talus/maps/geotiff_writer.hpp>
+#include <talus/maps/layer_reader.hpp>
+#include <talus/maps/place_reader.hpp>
 
-#include <maps/elevation_reader.hpp>
-#include <maps/geotiff_writer.hpp>
-#include <maps/layer_reader.hpp>
-#include <maps/place_reader.hpp>
+#include "raster_fixture.hpp"
 
 namespace talus::maps {
 namespace {

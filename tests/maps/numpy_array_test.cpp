@@ -1,5 +1,5 @@
-#include <maps/numpy_array.hpp>
-#include <talus.hpp>
+#include <talus/maps/numpy_array.hpp>
+#include <talus/talus.hpp>
 
 namespace talus::maps {
 namespace {

@@ -2,7 +2,7 @@
 #include <thread>
 #include <vector>
 
-#include <maps/parallel_rows.hpp>
+#include <talus/maps/parallel_rows.hpp>
 
 namespace talus::maps {
 namespace {
@@ -22,13 +22,13 @@ TEST(ParallelRows, ReportsFromTheCallersThreadAndStops) {
   std::stop_source source;
   const auto caller = std::this_thread::get_id();
   std::atomic<int> strips{0};
-  const Watch watch{.progress =
-                        [&](double fraction) {
-                          EXPECT_EQ(std::this_thread::get_id(), caller);
-                          EXPECT_TRUE(fraction > 0 && fraction <= 1);
-                          source.request_stop();
-                        },
-                    .stop = source.get_token()};
+  const ProgressMonitor watch{.progress =
+                                  [&](double fraction) {
+                                    EXPECT_EQ(std::this_thread::get_id(), caller);
+                                    EXPECT_TRUE(fraction > 0 && fraction <= 1);
+                                    source.request_stop();
+                                  },
+                              .stop = source.get_token()};
   forEachStrip({.rows = 64 * 1000, .threads = 1}, watch, [&](Rows) { ++strips; });
   EXPECT_EQ(strips, 1);
 }

@@ -1,7 +1,7 @@
 #include <numbers>
 
-#include <maps/place.hpp>
-#include <talus.hpp>
+#include <talus/maps/place.hpp>
+#include <talus/talus.hpp>
 
 namespace talus::maps {
 namespace {

@@ -14,7 +14,7 @@
 #include <gdal_priv.h>
 #include <ogr_spatialref.h>
 
-#include <talus.hpp>
+#include <talus/talus.hpp>
 
 namespace talus::maps {
 

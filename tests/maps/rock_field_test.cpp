@@ -3,7 +3,7 @@
 
 #include <gmock/gmock.h>
 
-#include <maps/rock_field.hpp>
+#include <talus/maps/rock_field.hpp>
 
 namespace talus::maps {
 namespace {

@@ -4,8 +4,8 @@
 #include <map>
 #include <stdexcept>
 
-#include <maps/site_generator.hpp>
-#include <maps/terrain_metrics.hpp>
+#include <talus/maps/site_generator.hpp>
+#include <talus/maps/terrain_metrics.hpp>
 
 namespace talus::maps {
 namespace {

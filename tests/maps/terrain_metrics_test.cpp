@@ -4,9 +4,9 @@
 
 #include <Eigen/Dense>
 
-#include <maps/footprint.hpp>
-#include <maps/plane_kernel.hpp>
-#include <maps/terrain_metrics.hpp>
+#include <talus/maps/footprint.hpp>
+#include <talus/maps/plane_kernel.hpp>
+#include <talus/maps/terrain_metrics.hpp>
 
 namespace talus::maps {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include <costmap/cost_grid.hpp>
+#include <talus/costmap/cost_grid.hpp>
 
 namespace talus::planner::testing {
 

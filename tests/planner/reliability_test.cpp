@@ -6,7 +6,7 @@
 
 #include <site_fixture.hpp>
 
-#include <planner/rehearsal_site.hpp>
+#include <talus/planner/simulation/simulation_site.hpp>
 
 namespace talus::planner {
 namespace {
@@ -54,7 +54,7 @@ class Table {
   std::array<Bin, 4> bins_{};
 };
 
-bool nearTrack(const Rehearsal& drive, const maps::Point& place) {
+bool nearTrack(const TraverseSimulation& drive, const maps::Point& place) {
   for (const TrackPoint& at : drive.track)
     if (std::hypot(at.place.x_m - place.x_m, at.place.y_m - place.y_m) < 2.5) return true;
   return false;
@@ -67,14 +67,14 @@ TEST(Reliability, OfCellsSaidToBeOfACategory) {
   truth.random_patches = 6;
   truth.patch_radius_m = 3.0;
   truth.patch_soil = costmap::testDust();
-  const RehearsalSite site(
+  const SimulationSite site(
       map, {.truth = truth, .start = {5.5, 5.5}, .goal = {54.5, 54.5}, .firm = {}, .seed = 31});
   std::array<Table, 3> tables;
   for (std::size_t i = 0; i < 60; ++i) {
     const TrueWorld world = site.trueWorld(i);
     const auto known = site.believed(Belief::Clairvoyant, world);
     auto learned = site.believed(Belief::OnLine, world);
-    const Rehearsal drive = rehearse(learned, world, site.options(Belief::OnLine, i));
+    const TraverseSimulation drive = simulateTraverse(learned, world, site.options(Belief::OnLine, i));
     for (int row = 0; row < 60; ++row)
       for (int column = 0; column < 60; ++column) {
         const maps::Cell cell{column, row};

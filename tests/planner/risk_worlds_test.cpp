@@ -6,12 +6,12 @@
 
 #include <Eigen/Cholesky>
 
-#include <costmap/ground_model.hpp>
-#include <planner/annotation.hpp>
-#include <planner/named_planner.hpp>
-#include <planner/polyline.hpp>
-#include <planner/risk_planner.hpp>
-#include <planner/route_risk.hpp>
+#include <talus/costmap/ground_model.hpp>
+#include <talus/planner/check/annotation.hpp>
+#include <talus/planner/check/route_risk.hpp>
+#include <talus/planner/plugin/named_planner.hpp>
+#include <talus/planner/plugin/risk_planner.hpp>
+#include <talus/planner/route/polyline.hpp>
 
 #include "site_fixture.hpp"
 

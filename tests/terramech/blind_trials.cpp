@@ -8,7 +8,7 @@
 #include <ctime>
 #include <string>
 
-#include <terramech/residual_trace.hpp>
+#include <talus/terramech/trace/residual_trace.hpp>
 
 #include "blind_worlds.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <terramech/category.hpp>
+#include <talus/terramech/mobility/category.hpp>
 
 #include "reference_table.hpp"
 

@@ -5,13 +5,13 @@
 #include <utility>
 #include <vector>
 
-#include <terramech/category.hpp>
-#include <terramech/contact_geometry.hpp>
-#include <terramech/drawbar_pull.hpp>
-#include <terramech/linear_offset.hpp>
-#include <terramech/linear_stress.hpp>
-#include <terramech/thesis_runs.hpp>
-#include <terramech/wong_reece.hpp>
+#include <talus/terramech/contact/contact_geometry.hpp>
+#include <talus/terramech/contact/linear_stress.hpp>
+#include <talus/terramech/contact/wong_reece.hpp>
+#include <talus/terramech/estimate/drawbar_pull.hpp>
+#include <talus/terramech/estimate/linear_offset.hpp>
+#include <talus/terramech/estimate/thesis_runs.hpp>
+#include <talus/terramech/mobility/category.hpp>
 
 namespace talus::terramech {
 namespace {

@@ -7,8 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include <terramech/wheel.hpp>
-#include <terramech/wheel_sample.hpp>
+#include <talus/terramech/contact/wheel.hpp>
+#include <talus/terramech/contact/wheel_sample.hpp>
 
 /// The reference cases of the linear estimators, made by an independent implementation; only read by tests.
 namespace talus::terramech {

@@ -1,11 +1,11 @@
 #include <cmath>
 
-#include <tests/terramech/estimator_cases.hpp>
+#include <talus/terramech/estimate/iagnemma.hpp>
+#include <talus/terramech/estimate/linear_offset.hpp>
+#include <talus/terramech/estimate/shear_modulus.hpp>
+#include <talus/terramech/estimate/sojourner.hpp>
 
-#include <terramech/iagnemma.hpp>
-#include <terramech/linear_offset.hpp>
-#include <terramech/shear_modulus.hpp>
-#include <terramech/sojourner.hpp>
+#include "estimator_cases.hpp"
 
 // Every intermediate and result of the linear estimators against an independent implementation.
 // Tolerance: the coefficients are closed forms, 1e-10; least squares loses digits by its condition, 1e-7.

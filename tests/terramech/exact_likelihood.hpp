@@ -3,8 +3,8 @@
 #include <cmath>
 #include <cstdlib>
 
-#include <terramech/contact_response.hpp>
-#include <terramech/thesis_runs.hpp>
+#include <talus/terramech/contact/contact_response.hpp>
+#include <talus/terramech/estimate/thesis_runs.hpp>
 
 /// The likelihood of soil_posterior.hpp by quadrature instead of by linearisation. For tests.
 namespace talus::terramech {

@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include <terramech/contact_geometry.hpp>
-#include <terramech/linear_stress.hpp>
-#include <terramech/wheel_sample.hpp>
+#include <talus/terramech/contact/contact_geometry.hpp>
+#include <talus/terramech/contact/linear_stress.hpp>
+#include <talus/terramech/contact/wheel_sample.hpp>
 
 /// A world whose stresses really are those of the linear-offset method: its estimators must be exact there.
 /// For tests.

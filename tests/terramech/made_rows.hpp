@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include <terramech/telemetry.hpp>
-#include <terramech/wong_reece.hpp>
+#include <talus/terramech/contact/wong_reece.hpp>
+#include <talus/terramech/estimate/telemetry.hpp>
 
 namespace talus::terramech {
 

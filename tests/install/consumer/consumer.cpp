@@ -1,8 +1,8 @@
 #include <cstdio>
 #include <exception>
 
-#include <planner/plugin_loader.hpp>
-#include <terramech/soil.hpp>
+#include <talus/planner/plugin/plugin_loader.hpp>
+#include <talus/terramech/contact/soil.hpp>
 
 // Uses the installed headers and libraries alone: a room's function, and the installed plugin.
 int main(int argc, char** argv) try {

@@ -1,0 +1,152 @@
+#include <algorithm>
+#include <atomic>
+#include <cstdlib>
+#include <thread>
+#include <utility>
+
+#include <talus/cli/app/campaign.hpp>
+
+#ifdef TALUS_MPI
+#include <boost/mpi/communicator.hpp>
+#include <boost/mpi/environment.hpp>
+#include <boost/serialization/string.hpp>
+#endif
+
+namespace talus::cli {
+namespace {
+
+JobOutcome outcomeOf(const std::function<std::string(std::size_t)>& job, std::size_t i,
+                     const ProgressMonitor& watch) {
+  const JobOutcome stopped{.failed = true, .stopped = true, .text = "cancelled"};
+  if (watch.stopped()) return stopped;
+  try {
+    JobOutcome made{.text = job(i)};
+    return made.text.empty() && watch.stopped() ? stopped : made;
+  } catch (const std::exception& error) {
+    return {.failed = true, .text = error.what()};
+  }
+}
+
+// Each job falls into its own place, so that order does not matter; the caller's thread reports.
+std::vector<JobOutcome> runHere(std::size_t count, const std::function<std::string(std::size_t)>& job,
+                                const ProgressMonitor& watch, std::size_t workers) {
+  std::vector<JobOutcome> outcomes(count);
+  std::atomic<std::size_t> next{0}, done{0};
+  const auto work = [&](bool reports) {
+    for (std::size_t i = next++; i < count; i = next++) {
+      outcomes[i] = outcomeOf(job, i, watch);
+      ++done;
+      if (reports) watch.report(static_cast<double>(done) / static_cast<double>(count));
+    }
+  };
+  std::vector<std::jthread> threads;
+  for (std::size_t t = 1; t < std::min(workers, count); ++t) threads.emplace_back(work, false);
+  work(true);
+  return outcomes;
+}
+
+}  // namespace
+
+#ifdef TALUS_MPI
+
+namespace {
+
+// Set by Open MPI's and by other launchers (PMI).
+bool startedByMpirun() {
+  return std::getenv("OMPI_COMM_WORLD_SIZE") || std::getenv("PMI_SIZE");
+}
+
+constexpr int kIndexTag = 1;
+constexpr int kFailedTag = 2;
+constexpr int kStoppedTag = 3;
+constexpr int kTextTag = 4;
+
+}  // namespace
+
+struct Campaign::Ranks {
+  boost::mpi::environment environment;
+  boost::mpi::communicator world;
+
+  void send(std::size_t i, const JobOutcome& outcome) const {
+    world.send(0, kIndexTag, i);
+    world.send(0, kFailedTag, outcome.failed);
+    world.send(0, kStoppedTag, outcome.stopped);
+    world.send(0, kTextTag, outcome.text);
+  }
+
+  void receive(int from, std::vector<JobOutcome>& outcomes) const {
+    std::size_t i = 0;
+    world.recv(from, kIndexTag, i);
+    world.recv(from, kFailedTag, outcomes[i].failed);
+    world.recv(from, kStoppedTag, outcomes[i].stopped);
+    world.recv(from, kTextTag, outcomes[i].text);
+  }
+};
+
+Campaign::Campaign() {
+  if (startedByMpirun()) mpi_ = std::make_unique<Ranks>();
+}
+
+int Campaign::ranks() const noexcept {
+  return mpi_ ? mpi_->world.size() : 1;
+}
+bool Campaign::leads() const noexcept {
+  return !mpi_ || mpi_->world.rank() == 0;
+}
+
+#else
+
+struct Campaign::Ranks {};
+
+Campaign::Campaign() = default;
+int Campaign::ranks() const noexcept {
+  return 1;
+}
+bool Campaign::leads() const noexcept {
+  return true;
+}
+
+#endif
+
+Campaign::~Campaign() = default;
+
+#ifdef TALUS_MPI
+
+// The leading rank does its own share and takes in what the others send meanwhile, then the rest.
+std::vector<JobOutcome> Campaign::run(std::size_t count, const std::function<std::string(std::size_t)>& job,
+                                      const ProgressMonitor& watch, std::size_t workers) const {
+  if (!mpi_) return runHere(count, job, watch, workers);
+  std::vector<JobOutcome> outcomes(leads() ? count : 0);
+  std::size_t done = 0;
+  const auto report = [&] { watch.report(static_cast<double>(++done) / static_cast<double>(count)); };
+  const auto step = static_cast<std::size_t>(ranks());
+  for (auto i = static_cast<std::size_t>(mpi_->world.rank()); i < count; i += step) {
+    JobOutcome outcome = outcomeOf(job, i, watch);
+    if (!leads()) {
+      mpi_->send(i, outcome);
+      continue;
+    }
+    while (mpi_->world.iprobe(boost::mpi::any_source, kIndexTag)) {
+      mpi_->receive(mpi_->world.probe(boost::mpi::any_source, kIndexTag).source(), outcomes);
+      report();
+    }
+    outcomes[i] = std::move(outcome);
+    report();
+  }
+  while (leads() && done < count) {
+    mpi_->receive(mpi_->world.probe(boost::mpi::any_source, kIndexTag).source(), outcomes);
+    report();
+  }
+  return outcomes;
+}
+
+#else
+
+std::vector<JobOutcome> Campaign::run(std::size_t count, const std::function<std::string(std::size_t)>& job,
+                                      const ProgressMonitor& watch, std::size_t workers) const {
+  return runHere(count, job, watch, workers);
+}
+
+#endif
+
+}  // namespace talus::cli

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include <talus/cli/app/context.hpp>
+
+namespace talus::cli {
+
+/// Headings of `talus --help`.
+struct Group {
+  static constexpr const char* kRoutes = "Routes";
+  static constexpr const char* kMaps = "Maps";
+  static constexpr const char* kSoil = "Wheels and soil";
+};
+
+/// How a subcommand presents itself.
+struct CommandText {
+  std::string name;
+  std::string group;        ///< one of Group
+  std::string description;  ///< one line
+  std::string examples;     ///< shown under the options; may be empty
+};
+
+/// Registers a subcommand. `bind` declares its options onto a plain struct; `run` gets that struct once the
+/// whole line is parsed, and its result is the program's exit code. Errors are thrown, and printed by main.
+template <typename Options>
+CLI::App& addCommand(CLI::App& app, Context& context, const CommandText& text,
+                     void (*bind)(CLI::App&, Options&), int (*run)(const Options&, Context&)) {
+  CLI::App& command = *app.add_subcommand(text.name, text.description)->group(text.group);
+  if (!text.examples.empty()) command.footer("Examples:\n" + text.examples);
+  auto options = std::make_shared<Options>();
+  bind(command, *options);
+  command.callback([options, run, &context] { context.exit_code = run(*options, context); });
+  return command;
+}
+
+}  // namespace talus::cli

@@ -1,0 +1,77 @@
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdio>
+#include <thread>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include <talus/cli/app/context.hpp>
+
+namespace talus::cli {
+namespace {
+
+/// A bar of 30 marks, drawn again only when its percentage changes, erased when full.
+class Bar {
+ public:
+  explicit Bar(std::string_view what) : what_(what) {}
+
+  void operator()(double fraction) {
+    const int percent = static_cast<int>(100.0 * std::fmin(std::fmax(fraction, 0.0), 1.0));
+    if (percent == shown_) return;
+    shown_ = percent;
+    if (percent == 100) return erase();
+    fmt::print(stderr, "\r{} [{:<30}] {:3d} %", what_,
+               std::string(static_cast<std::size_t>(percent * 30 / 100), '#'), percent);
+    std::fflush(stderr);
+  }
+
+ private:
+  static void erase() {
+    fmt::print(stderr, "\r\033[K");
+    std::fflush(stderr);
+  }
+
+  std::string what_;
+  int shown_ = -1;
+};
+
+}  // namespace
+
+ProgressMonitor Context::watch(std::string_view what) const {
+  ProgressMonitor watch{.progress = {}, .stop = stop};
+  if (!quiet && isatty(STDERR_FILENO) != 0) watch.progress = Bar(what);
+  return watch;
+}
+
+int Context::workers() const noexcept {
+  return threads > 0 ? threads : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+}
+
+void Context::warn(std::string_view text) const {
+  if (!quiet) fmt::print(stderr, "talus: warning: {}\n", oneLine(text));
+}
+
+void printJson(const nlohmann::ordered_json& value) {
+  print(value.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+}
+
+void print(std::string_view text) {
+  std::fwrite(text.data(), 1, text.size(), stdout);
+}
+
+std::string oneLine(std::string_view text) {
+  while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back())) != 0) text.remove_suffix(1);
+  std::string line;
+  for (const char c : text) {
+    if (c == '\n')
+      line += "; ";
+    else
+      line += std::iscntrl(static_cast<unsigned char>(c)) != 0 ? ' ' : c;
+  }
+  return line;
+}
+
+}  // namespace talus::cli

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <iosfwd>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <talus/talus.hpp>
+
+/// The program: thin, one file a subcommand.
+namespace talus::cli {
+
+/// Exit codes that other programs rely on.
+struct Exit {
+  static constexpr int kDone = 0;         ///< done
+  static constexpr int kNo = 1;           ///< a well-posed question with the answer no: no route, no fit
+  static constexpr int kInput = 2;        ///< the call or an input is wrong
+  static constexpr int kInternal = 3;     ///< our failure
+  static constexpr int kCancelled = 130;  ///< stopped by the user
+};
+
+/// What every subcommand shares: the global options, and the way to the terminal.
+struct Context {
+  bool json = false;       ///< results as JSON on stdout
+  bool quiet = false;      ///< no progress, no warnings
+  std::uint64_t seed = 1;  ///< of every random number
+  int threads = 0;         ///< at most so many; 0: one a core
+  std::stop_token stop;    ///< set by Ctrl-C
+  int exit_code = Exit::kDone;
+
+  /// Follows one stretch of work: a bar on stderr where that is a terminal (silent in a pipe), stopped by
+  /// Ctrl-C.
+  ProgressMonitor watch(std::string_view what) const;
+
+  /// Threads to work with: what the user allows, else one a core; at least 1.
+  int workers() const noexcept;
+
+  /// One line "talus: warning: TEXT" on stderr, unless quiet.
+  void warn(std::string_view text) const;
+};
+
+/// Prints a result as indented JSON on stdout; a NaN or an infinity becomes null.
+void printJson(const nlohmann::ordered_json& value);
+
+/// Prints a result that a person reads on stdout.
+void print(std::string_view text);
+
+/// The text on one line: line breaks become "; ", other control characters blanks.
+std::string oneLine(std::string_view text);
+
+}  // namespace talus::cli

@@ -1,0 +1,190 @@
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <talus/cli/app/command.hpp>
+#include <talus/cli/app/commands.hpp>
+#include <talus/cli/app/output_file.hpp>
+#include <talus/cli/draw/html_report.hpp>
+#include <talus/cli/soil/assessment.hpp>
+
+namespace talus::cli {
+namespace {
+
+using namespace terramech;
+using Json = nlohmann::ordered_json;
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+void bind(CLI::App& command, AssessOptions& options) {
+  command.add_option("table", options.table, "wheel telemetry")->required()->type_name("T.csv");
+  command.add_option("--slope", options.slope_rad, "slope that must be climbed")
+      ->type_name("RAD")
+      ->capture_default_str();
+  command.add_option("--margin", options.margin_rad, "doubt of the slope, either way")
+      ->type_name("RAD")
+      ->capture_default_str();
+  command.add_option("--z-threshold", options.z_threshold, "z/r from which a rank is lost")
+      ->capture_default_str();
+  command.add_option("--z-critical", options.z_critical, "z/r above which ground is dangerous")
+      ->capture_default_str();
+  auto* model = command.add_option("--model", options.model,
+                                   "pull by this model (talus trace --model-out, a base model or a soil)");
+  model->type_name("M.yaml");
+  command
+      .add_option("--formula", options.formula, "drawbar pull from W, T, z (thesis 3.6, 3.12, 3.21, or ours)")
+      ->check(CLI::IsMember({"single-force", "small-angle", "triangular", "plane"}))
+      ->capture_default_str()
+      ->excludes(model);
+  command.add_flag("--extrapolate", options.extrapolate,
+                   "also the pull at the reference slip and the greatest, by the soil that all rows show, or "
+                   "by the model");
+  command.add_option("--reference-slip", options.reference_slip, "slip to extrapolate to (thesis 3.5)")
+      ->check(CLI::Range(0.01, 1.0))
+      ->capture_default_str();
+  command.add_option("--rover", options.rover, "whose wheel, where the file does not say")
+      ->type_name("NAME|FILE");
+  command.add_option("--noise", options.noise, "relative error of each reading")
+      ->check(CLI::Range(0.0, 0.5))
+      ->capture_default_str();
+  command.add_option("--html", options.html, "a page with the traversability map")->type_name("R.html");
+}
+
+Json jsonOf(const Uncertain& pull) {
+  const Uncertain slope = climbableSlope_rad(pull);
+  return {{"drawbar_pull_over_load", pull.value},
+          {"std", pull.std},
+          {"climbable_slope_rad", slope.value},
+          {"climbable_slope_std_rad", slope.std}};
+}
+
+Json jsonOf(const PullForecast& f, double reference_slip) {
+  Json reference{{"slip", reference_slip}};
+  reference.update(jsonOf(f.at_reference));
+  reference["sinkage_over_radius"] = f.sinkage_over_radius.value;
+  reference["sinkage_over_radius_std"] = f.sinkage_over_radius.std;
+  Json most{{"slip", f.most_slip}};
+  most.update(jsonOf(f.most));
+  return {{"at_reference_slip", reference}, {"greatest", most}};
+}
+
+Json jsonOf(const std::vector<Assessment>& rows, double reference_slip) {
+  Json list = Json::array();
+  for (const Assessment& a : rows) {
+    const Uncertain slope = climbableSlope_rad(a.pull);
+    Json row{{"row", a.line - 1},
+             {"line", a.line},
+             {"drawbar_pull_over_load", a.pull.value},
+             {"std", a.pull.std},
+             {"sinkage_over_radius", a.sinkage_over_radius.value},
+             {"sinkage_over_radius_std", a.sinkage_over_radius.std},
+             {"torque_over_load_radius", a.torque_over_load_radius},
+             {"category", name(a.category)},
+             {"probability",
+              {{"safe", a.probability[0]}, {"marginal", a.probability[1]}, {"dangerous", a.probability[2]}}},
+             {"climbable_slope_rad", slope.value},
+             {"climbable_slope_std_rad", slope.std}};
+    if (a.forecast) row.update(jsonOf(*a.forecast, reference_slip));
+    list.push_back(row);
+  }
+  return list;
+}
+
+std::string textOf(const AssessOptions& options, const std::vector<Assessment>& rows) {
+  std::string text =
+      "  line     DP/W      +-     z/r   T/rW  climbs deg  category   (safe marginal dangerous)";
+  if (options.extrapolate)
+    text += fmt::format("  DP/W at slip {:.2f}     greatest at slip  climbs deg", options.reference_slip);
+  text += '\n';
+  for (const Assessment& a : rows) {
+    text += fmt::format("{:6}  {:7.3f}  {:6.3f}  {:6.3f} {:6.3f}  {:10.1f}  {:9}  ({:.2f} {:.2f} {:.2f})",
+                        a.line, a.pull.value, a.pull.std, a.sinkage_over_radius.value,
+                        a.torque_over_load_radius, std::atan(a.pull.value) / kDegree, name(a.category),
+                        a.probability[0], a.probability[1], a.probability[2]);
+    if (a.forecast) {
+      const PullForecast& f = *a.forecast;
+      text += fmt::format("         {:7.3f} +-{:6.3f}  {:7.3f} +-{:6.3f}  {:4.1f}  {:4.1f} +-{:4.1f}",
+                          f.at_reference.value, f.at_reference.std, f.most.value, f.most.std, f.most_slip,
+                          f.climbable_slope_rad.value / kDegree, f.climbable_slope_rad.std / kDegree);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+// The plane of thesis Figs. 3.10 to 3.12: where each row stands in it.
+Plot mapOf(const std::vector<Assessment>& rows) {
+  Plot plot{
+      .title = "Traversability map", .x = {.label = "T/(rW) [-]"}, .y = {.label = "z/r [-]"}, .series = {}};
+  constexpr std::array kColours{rgb(0x2e9e4f), rgb(0xe0a020), rgb(0xc83030)};
+  for (const Category c : {Category::Safe, Category::Marginal, Category::Dangerous}) {
+    Series cloud{.name = name(c),
+                 .x = {},
+                 .y = {},
+                 .mark = Series::Mark::Points,
+                 .colour = kColours[static_cast<std::size_t>(c)]};
+    for (const Assessment& a : rows) {
+      if (a.category != c) continue;
+      cloud.x.push_back(a.torque_over_load_radius);
+      cloud.y.push_back(a.sinkage_over_radius.value);
+    }
+    if (!cloud.x.empty()) plot.series.push_back(cloud);
+  }
+  return plot;
+}
+
+void writePage(const AssessOptions& options, const std::vector<Assessment>& rows) {
+  HtmlReport page("Traversability of " + options.table);
+  page.paragraph(fmt::format(
+      "Slope to climb {:.1f} +- {:.1f} deg; z/r below {:.2f} keeps the rank, above {:.2f} is dangerous.",
+      options.slope_rad / kDegree, options.margin_rad / kDegree, options.z_threshold, options.z_critical));
+  page.charts({mapOf(rows)});
+  std::vector<std::vector<std::string>> cells;
+  cells.reserve(rows.size());
+  for (const Assessment& a : rows) {
+    cells.push_back({fmt::format("{}", a.line), fmt::format("{:.3f}", a.pull.value),
+                     fmt::format("{:.3f}", a.pull.std), fmt::format("{:.3f}", a.sinkage_over_radius.value),
+                     name(a.category)});
+  }
+  page.table({"line", "DP/W", "std", "z/r", "category"}, cells);
+  writeFile(options.html, page.html());
+}
+
+int run(const AssessOptions& options, Context& context) {
+  const AssessedTable table = assessTable(options, context.watch("assessing"));
+  if (context.stop.stop_requested()) return Exit::kCancelled;
+  if (!table.rejected.empty()) {
+    const auto& first = table.rejected.front();
+    context.warn(fmt::format("{}:{}: {} ({} rows rejected)", options.table, first.line, first.reason,
+                             table.rejected.size()));
+  }
+  for (const std::string& name : table.left_out) {
+    context.warn(options.model + ": " + name +
+                 " is a fault of a sensor; the pull is given without it, other than in talus predict");
+  }
+  if (!options.html.empty()) writePage(options, table.rows);
+  if (context.json) {
+    printJson(jsonOf(table.rows, options.reference_slip));
+  } else {
+    print(textOf(options, table.rows));
+  }
+  return Exit::kDone;
+}
+
+}  // namespace
+
+void addAssess(CLI::App& app, Context& context) {
+  addCommand<AssessOptions>(
+      app, context,
+      {.name = "assess",
+       .group = Group::kSoil,
+       .description = "drawbar pull and traversability category of each row of telemetry",
+       .examples = "  talus assess drive.csv --slope 0.26 --margin 0.087\n"
+                   "  talus assess drive.csv --model refined.yaml --extrapolate\n"},
+      bind, run);
+}
+
+}  // namespace talus::cli

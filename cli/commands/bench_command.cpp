@@ -1,0 +1,170 @@
+// talus bench SUITE: planners compared on the same questions.
+#include <algorithm>
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <talus/cli/app/campaign.hpp>
+#include <talus/cli/app/command.hpp>
+#include <talus/cli/app/commands.hpp>
+#include <talus/cli/app/number_check.hpp>
+#include <talus/cli/app/output_file.hpp>
+#include <talus/cli/study/bench_report.hpp>
+#include <talus/cli/study/bench_suite.hpp>
+#include <talus/planner/bench/benchmark_log.hpp>
+#include <talus/planner/route/planner_names.hpp>
+
+namespace talus::cli {
+namespace {
+
+struct Options {
+  SuiteOptions suite;
+  std::vector<std::string> planners;
+  int runs = 3;
+  double time_limit_s = 2.0;
+  std::string folder = "bench";
+};
+
+void bind(CLI::App& command, Options& options) {
+  command
+      .add_option("suite", options.suite.names,
+                  "one or more of: generated (crater field, dunes, rocks), slip (terrains of unsure slip, "
+                  "routes driven "
+                  "over the true one), grids (walls, optimum known), an elevation file, a MovingAI .scen "
+                  "beside its .map")
+      ->capture_default_str();
+  command.add_option("--planners", options.planners, "comma-separated; all by default")->delimiter(',');
+  command.add_option("--runs", options.runs, "seeds a case and planner")
+      ->check(positive())
+      ->capture_default_str();
+  command.add_option("--time", options.time_limit_s, "limit a run")
+      ->type_name("S")
+      ->check(positive())
+      ->capture_default_str();
+  command.add_option("--pairs", options.suite.pairs, "starts and goals a map")
+      ->check(positive())
+      ->capture_default_str();
+  command
+      .add_option("--turning-radius", options.suite.turning_radius_m,
+                  "that planners of drives keep; 0: turns in place (default: the rover's)")
+      ->type_name("METRES")
+      ->check(notNegative());
+  addReadOptions(command, options.suite.ground.dem);
+  addGroundChoices(command, options.suite.ground);
+  command.add_option("--side", options.suite.side_cells, "cells along a generated site")
+      ->check(CLI::Range(32, 10000))
+      ->capture_default_str();
+  command.add_option("-o,--output", options.folder, "folder for the logs, the table and the page")
+      ->type_name("FOLDER")
+      ->capture_default_str();
+}
+
+std::string fileName(std::string name) {
+  for (char& c : name)
+    if (c == ' ' || c == '/') c = '_';
+  return name;
+}
+
+// Made before the runs, so that a bad place is told at once; after the suite, so that a bad suite leaves
+// nothing. Whether it was not there before.
+bool makeFolder(const std::string& folder) {
+  std::error_code error;
+  const bool made = std::filesystem::create_directories(folder, error);
+  if (error) throw InputError({folder, "cannot be made: " + error.message(), "name another folder with -o"});
+  OutputFile(std::filesystem::path(folder) / "table.txt").temporary();
+  return made;
+}
+
+// What is named twice would be counted twice.
+void refuseTwice(const std::string& what, std::vector<std::string> names) {
+  std::ranges::sort(names);
+  const auto twice = std::ranges::adjacent_find(names);
+  if (twice != names.end()) throw InputError({what + " " + *twice, "is named twice", "name it once"});
+}
+
+std::string asText(const planner::BenchmarkPlan& plan, const std::vector<planner::BenchmarkRun>& runs) {
+  const std::size_t asked = planner::jobsOf(plan).size();
+  return (runs.size() < asked ? fmt::format("cancelled: {} of {} runs\n", runs.size(), asked) : "") +
+         asText(compared(plan, runs)) + asText(drivesOf(plan, runs));
+}
+
+void write(const std::filesystem::path& folder, const planner::BenchmarkPlan& plan,
+           const std::vector<planner::BenchmarkRun>& runs) {
+  for (std::size_t c = 0; c < plan.cases.size(); ++c)
+    if (std::ranges::any_of(runs, [c](const auto& run) { return run.case_index == c; }))
+      writeFile(folder / (fileName(plan.cases[c].name) + ".log"), planner::benchmarkLog(plan, runs, c));
+  writeFile(folder / "table.txt", asText(plan, runs));
+  writeFile(folder / "index.html", asPage(plan, runs));
+}
+
+// Fewer when a stop is requested: those that had ended.
+std::vector<planner::BenchmarkRun> allRuns(const planner::BenchmarkPlan& plan, const Campaign& campaign,
+                                           const Context& context) {
+  const auto jobs = planner::jobsOf(plan);
+  const ProgressMonitor watch =
+      campaign.leads() ? context.watch("bench") : ProgressMonitor{.progress = {}, .stop = context.stop};
+  const auto outcomes = campaign.run(
+      jobs.size(), [&](std::size_t i) { return planner::runIsolated(plan, jobs[i], watch); }, watch);
+  std::vector<planner::BenchmarkRun> runs;
+  for (std::size_t i = 0; i < outcomes.size(); ++i)
+    if (!outcomes[i].stopped)
+      runs.push_back(planner::benchmarkRun(jobs[i], outcomes[i].failed ? std::string() : outcomes[i].text));
+  return runs;
+}
+
+// What had ended is kept, and said on stderr: a program that reads stdout gets the whole or nothing.
+int cancelled(const Options& options, const planner::BenchmarkPlan& plan,
+              const std::vector<planner::BenchmarkRun>& runs, bool made, const Context& context) {
+  if (!runs.empty()) {
+    write(options.folder, plan, runs);
+    context.warn(fmt::format("cancelled after {} of {} runs; what they gave lies in {}", runs.size(),
+                             planner::jobsOf(plan).size(), options.folder));
+  } else if (made) {
+    std::filesystem::remove(options.folder);  // empty still
+  }
+  return Exit::kCancelled;
+}
+
+int run(const Options& options, Context& context) {
+  const Campaign campaign;
+  if (!campaign.leads()) context.quiet = true;
+  planner::BenchmarkPlan plan;
+  refuseTwice("suite", options.suite.names);
+  for (const std::string& name : options.planners.empty() ? planner::plannerNames() : options.planners)
+    plan.planners.push_back(planner::plannerName(name));
+  refuseTwice("planner", plan.planners);
+  plan.cases = suiteCases(options.suite, context);
+  if (plan.cases.empty())
+    throw InputError({"talus bench", "the suite has no two places far apart with a route between them",
+                      "take another map, rover or --seed"});
+  const bool made = campaign.leads() && makeFolder(options.folder);
+  plan.seeds = options.runs;
+  plan.time_limit_s = options.time_limit_s;
+  const auto runs = allRuns(plan, campaign, context);
+  if (!campaign.leads()) return context.stop.stop_requested() ? Exit::kCancelled : Exit::kDone;
+  if (runs.size() < planner::jobsOf(plan).size()) return cancelled(options, plan, runs, made, context);
+  write(options.folder, plan, runs);
+  const auto lines = compared(plan, runs);
+  if (context.json)
+    printJson(asJson(lines, drivesOf(plan, runs)));
+  else
+    print(asText(plan, runs));
+  return Exit::kDone;
+}
+
+}  // namespace
+
+void addBench(CLI::App& app, Context& context) {
+  addCommand<Options>(app, context,
+                      {.name = "bench",
+                       .group = Group::kRoutes,
+                       .description = "compare the planners; writes OMPL logs, a table and a page",
+                       .examples = "  talus bench --planners field,RRTstar --time 5\n"
+                                   "  talus bench gale.tif --pairs 10 -o gale_bench\n"
+                                   "  talus bench room.scen --planners field\n"
+                                   "  talus bench generated slip grids maps/*.tif --pairs 4\n"},
+                      bind, run);
+}
+
+}  // namespace talus::cli

@@ -1,0 +1,110 @@
+// talus costmap DEM -o MAP.ot: what is believed of every cell, as files.
+#include <fstream>
+#include <string>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <talus/cli/app/command.hpp>
+#include <talus/cli/app/commands.hpp>
+#include <talus/cli/app/output_file.hpp>
+#include <talus/cli/draw/picture.hpp>
+#include <talus/cli/ground/ground_options.hpp>
+#include <talus/cli/ground/site_layers.hpp>
+#include <talus/costmap/map_file.hpp>
+#include <talus/costmap/surface_tree.hpp>
+
+namespace talus::cli {
+namespace {
+
+struct Options {
+  GroundOptions ground;
+  std::string output;
+  std::string geotiff;
+  std::string png;
+  std::string octovis;
+};
+
+void bind(CLI::App& command, Options& options) {
+  addGroundOptions(command, options.ground);
+  command.add_option("-o,--output", options.output, "belief map to write")->type_name("MAP.ot");
+  command.add_option("--geotiff", options.geotiff, "layers to write as a GeoTIFF")->type_name("FILE.tif");
+  command.add_option("--png", options.png, "picture to write")->type_name("FILE.png");
+  command.add_option("--octovis", options.octovis, "ColorOcTree to write, for octovis")->type_name("FILE.ot");
+}
+
+void writeOctovis(const costmap::TraversabilityMap& map, const std::string& path) {
+  OutputFile file(path);
+  std::ofstream stream(file.temporary(), std::ios::binary);
+  const auto tree = costmap::colorTree({map.elevation().elevation_m, map.keys()},
+                                       [&](maps::Cell cell) { return map.belief(cell); });
+  tree->write(stream);
+  stream.close();
+  if (!stream) throw InputError({path, "cannot be written", "check that the disk has room"});
+  file.commit();
+}
+
+void writeFiles(const Options& options, const costmap::TraversabilityMap& map, const Context& context) {
+  if (!options.output.empty()) costmap::writeMap(map, options.output);
+  if (!options.geotiff.empty()) {
+    const auto& georeference = map.elevation().georeference;
+    maps::writeGeoTiff({.path = options.geotiff, .georeference = georeference ? &*georeference : nullptr},
+                       siteLayers(map, context.workers()));
+  }
+  if (!options.png.empty()) savePicture(options.png, sceneOf(map, {.title = map.elevation().source}));
+  if (!options.octovis.empty()) writeOctovis(map, options.octovis);
+}
+
+std::string asText(const Ground& site, const costmap::CategoryCounts& counts) {
+  const auto share = [&](std::size_t n) {
+    return 100.0 * static_cast<double>(n) / static_cast<double>(site.map.grid().size());
+  };
+  return fmt::format("cells       {} x {} of {:.6g} m, measured over {:.3g} m\n", site.map.grid().width,
+                     site.map.grid().height, site.map.grid().resolution_m,
+                     2.0 * site.map.footprintRadius_m()) +
+         fmt::format("rover       {}\n", site.map.model().rover().name) +
+         fmt::format(
+             "safe        {:.1f} %\nmarginal    {:.1f} %\ndangerous   {:.1f} %\nunknown     {:.1f} %\n",
+             share(counts.safe), share(counts.marginal), share(counts.dangerous), share(counts.unknown)) +
+         fmt::format("seconds     {:.3f} reading, {:.3f} building\n", site.load_s, site.build_s);
+}
+
+nlohmann::ordered_json asJson(const Ground& site, const costmap::CategoryCounts& counts) {
+  return {{"cells", site.map.grid().size()},
+          {"categories",
+           {{"safe", counts.safe},
+            {"marginal", counts.marginal},
+            {"dangerous", counts.dangerous},
+            {"unknown", counts.unknown}}},
+          {"seconds", site.load_s + site.build_s},
+          {"seconds_load", site.load_s},
+          {"seconds_costmap", site.build_s},
+          {"rover", site.map.model().rover().name}};
+}
+
+int run(const Options& options, Context& context) {
+  const Ground site = readGround(options.ground, context);
+  if (context.stop.stop_requested()) return Exit::kCancelled;
+  const costmap::CategoryCounts counts = site.map.countCategories();
+  writeFiles(options, site.map, context);
+  if (context.json)
+    printJson(asJson(site, counts));
+  else
+    print(asText(site, counts));
+  return Exit::kDone;
+}
+
+}  // namespace
+
+void addCostmap(CLI::App& app, Context& context) {
+  addCommand<Options>(
+      app, context,
+      {.name = "costmap",
+       .group = Group::kMaps,
+       .description = "believe: categories, pull, energy of every cell of a site",
+       .examples = "  talus costmap gale.tif -o gale.ot --geotiff layers.tif\n"
+                   "  talus costmap dem.tif --terrain classes.tif --soils soils.yaml -o map.ot\n"},
+      bind, run);
+}
+
+}  // namespace talus::cli

@@ -1,0 +1,190 @@
+// talus drive DEM --truth TRUTH.yaml: simulateTraverse a traverse over soils that the planner does not know.
+#include <algorithm>
+#include <array>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <talus/cli/app/campaign.hpp>
+#include <talus/cli/app/command.hpp>
+#include <talus/cli/app/commands.hpp>
+#include <talus/cli/ground/ground_options.hpp>
+#include <talus/cli/ground/truth_file.hpp>
+#include <talus/cli/route/drive_page.hpp>
+#include <talus/cli/route/drive_report.hpp>
+#include <talus/cli/route/drive_telemetry.hpp>
+#include <talus/cli/route/drive_worlds.hpp>
+#include <talus/maps/place_reader.hpp>
+#include <talus/planner/simulation/simulation_site.hpp>
+#include <talus/terramech/io/soil_library.hpp>
+
+namespace talus::cli {
+namespace {
+
+using planner::Belief;
+using planner::WorldResult;
+
+constexpr std::array<Belief, 4> kBeliefs{Belief::Geometry, Belief::Prior, Belief::OnLine,
+                                         Belief::Clairvoyant};
+
+struct Options {
+  GroundOptions ground;
+  std::string truth, start, goal, html, telemetry;
+  std::string belief = "online";
+  std::size_t worlds = 1;
+};
+
+void bind(CLI::App& command, Options& options) {
+  addGroundOptions(command, options.ground);
+  command.add_option("--truth", options.truth, "true soils, patches, random spread; its format stands below")
+      ->required()
+      ->type_name("TRUTH.yaml");
+  command.add_option("--start", options.start, "where to start")->required()->type_name("P");
+  command.add_option("--goal", options.goal, "where to go")->required()->type_name("P");
+  command
+      .add_option("--belief", options.belief,
+                  "what the rover goes by; `all` compares the four in the same worlds")
+      ->check(CLI::IsMember({"geometry", "prior", "online", "clairvoyant", "all"}))
+      ->capture_default_str();
+  auto* worlds =
+      command
+          .add_option(
+              "--worlds", options.worlds,
+              "simulateTraverse in so many random worlds, --threads at a time, or over all ranks under "
+              "mpirun")
+          ->check(CLI::Range(1, 100000))
+          ->type_name("N");
+  command
+      .add_option("--html", options.html, "write a page with a time slider, to watch the traverse simulation")
+      ->type_name("R.html")
+      ->excludes(worlds);
+  command.add_option("--telemetry", options.telemetry, "write what the wheels read, for `talus update`")
+      ->type_name("T.csv")
+      ->excludes(worlds);
+}
+
+Belief beliefOf(const std::string& word) {
+  return *std::find_if(kBeliefs.begin(), kBeliefs.end(), [&](Belief b) { return planner::name(b) == word; });
+}
+
+// What was asked for and where it runs.
+struct Campaigning {
+  const planner::SimulationSite& site;
+  const Campaign& campaign;
+  const Context& context;
+};
+
+DrivenWorlds simulated(const Campaigning& on, const std::vector<Belief>& beliefs, std::size_t worlds) {
+  const ProgressMonitor watch = on.context.watch("simulating");
+  const ProgressMonitor inside{.progress = {}, .stop = watch.stop};
+  const WorldCount count{
+      .beliefs = beliefs.size(), .worlds = worlds, .workers = static_cast<std::size_t>(on.context.workers())};
+  DrivenWorlds driven = drivenWorlds(
+      count, [&](std::size_t b, std::size_t i) { return on.site.world(beliefs[b], i, inside); }, on.campaign,
+      watch);
+  for (const auto& failure : driven.failures)
+    on.context.warn(fmt::format("world {} failed and is left out: {}", failure.world, failure.reason));
+  return driven;
+}
+
+// The report, and which worlds failed.
+template <typename Results>
+int show(const Results& results, const DrivenWorlds& driven, const Campaigning& on) {
+  if (!on.campaign.leads()) return Exit::kDone;
+  if (on.context.stop.stop_requested()) return Exit::kCancelled;
+  if (!on.context.json) {
+    print(asText(results));
+    return Exit::kDone;
+  }
+  nlohmann::ordered_json json = asJson(results);
+  json["failed"] = nlohmann::ordered_json::array();
+  for (const auto& failure : driven.failures)
+    json["failed"].push_back({{"world", failure.world}, {"reason", failure.reason}});
+  printJson(json);
+  return Exit::kDone;
+}
+
+int runAll(const Campaigning& on, const Options& options) {
+  const DrivenWorlds driven = simulated(on, {kBeliefs.begin(), kBeliefs.end()}, options.worlds);
+  std::array<std::vector<WorldResult>, 4> results;
+  std::copy(driven.results.begin(), driven.results.end(), results.begin());
+  return show(results, driven, on);
+}
+
+int runMany(const Campaigning& on, const Options& options) {
+  const DrivenWorlds driven = simulated(on, {beliefOf(options.belief)}, options.worlds);
+  return show(driven.results[0], driven, on);
+}
+
+int runOne(const planner::SimulationSite& site, const Options& options, const Context& context,
+           const terramech::Rover& rover) {
+  const Belief belief = beliefOf(options.belief);
+  const WatchedDrive drive = watchedDrive(site, belief, context.watch("simulating"));
+  if (context.stop.stop_requested()) return Exit::kCancelled;
+  if (!options.html.empty()) saveDrivePage(options.html, site, belief, drive);
+  if (!options.telemetry.empty()) saveTelemetry(options.telemetry, drive.result.drive, rover);
+  if (context.json) {
+    nlohmann::ordered_json json = asJson(drive.result);
+    json["prediction"] = {{"steps", drive.prediction.steps},
+                          {"slip_rmse", drive.prediction.slip_rmse},
+                          {"energy_rmse", drive.prediction.energy_rmse},
+                          {"energy_error", drive.prediction.energy_error}};
+    printJson(json);
+  } else {
+    print(asText(drive.result) +
+          fmt::format("{:<24} slip to {:.3f} rms, energy of the whole drive {:+.1f} % off\n", "predicted",
+                      drive.prediction.slip_rmse, 100.0 * drive.prediction.energy_error));
+  }
+  return drive.result.drive.outcome == planner::Outcome::Reached ? Exit::kDone : Exit::kNo;
+}
+
+// The truth, whose classes must be classes of the map.
+planner::Truth truthFor(const costmap::GroundModel& model, const std::string& path) {
+  planner::Truth truth = readTruth(path);
+  std::string known;
+  for (const costmap::GroundClass& ground : model.parts().classes)
+    known += (known.empty() ? "" : ", ") + std::to_string(ground.number);
+  for (const auto& [number, soil] : truth.classes)
+    if (model.classIndex(number) < 0)
+      throw InputError({path, fmt::format("class {} is no class of the map", number),
+                        fmt::format("its classes are {}", known)});
+  return truth;
+}
+
+int run(const Options& options, Context& context) {
+  const Campaign campaign;
+  if (!campaign.leads()) context.quiet = true;
+  const Ground ground = readGround(options.ground, context);
+  if (context.stop.stop_requested()) return Exit::kCancelled;
+  const planner::SimulationSite site(
+      ground.map, {.truth = truthFor(ground.map.model(), options.truth),
+                   .start = maps::readPlace(options.start, ground.map.elevation(), "--start"),
+                   .goal = maps::readPlace(options.goal, ground.map.elevation(), "--goal"),
+                   .firm = terramech::loadSoil("bedrock"),
+                   .seed = context.seed});
+  const Campaigning on{site, campaign, context};
+  if (options.belief == "all") return runAll(on, options);
+  if (options.worlds > 1) return runMany(on, options);
+  return campaign.leads() ? runOne(site, options, context, ground.map.model().rover()) : Exit::kDone;
+}
+
+}  // namespace
+
+void addDrive(CLI::App& app, Context& context) {
+  addCommand<Options>(
+      app, context,
+      {.name = "drive",
+       .group = Group::kRoutes,
+       .description = "simulateTraverse: drive the route over soils that the planner does not know",
+       .examples =
+           std::string(
+               "  talus drive dem.tif --truth truth.yaml --start 10,10 --goal 90,90 --html drive.html\n"
+               "  talus drive dem.tif --truth truth.yaml --start 10,10 --goal 90,90 --worlds 100 "
+               "--belief all\n\n") +
+           kTruthFormat},
+      bind, run);
+}
+
+}  // namespace talus::cli

@@ -1,0 +1,254 @@
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <talus/cli/app/command.hpp>
+#include <talus/cli/app/commands.hpp>
+#include <talus/cli/app/output_file.hpp>
+#include <talus/cli/draw/html_report.hpp>
+#include <talus/cli/soil/soil_estimate.hpp>
+
+namespace talus::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+void bind(CLI::App& command, EstimateOptions& options) {
+  command.add_option("table", options.table, "wheel telemetry, or plate tests for bevameter")
+      ->required()
+      ->type_name("T.csv");
+  command.add_option("--method", options.method, "how")
+      ->required()
+      ->check(CLI::IsMember({"bevameter", "sojourner", "iagnemma", "linear-offset", "wong-reece"}));
+  command
+      .add_option("--shear-modulus", options.shear_modulus,
+                  "K in metres, or how to find it: error-minimisation, effective-torque, "
+                  "effective-torque-printed, joint "
+                  "(default: the file's shear_modulus_m, else the prior's, else joint; wong-reece infers it)")
+      ->type_name("M|HOW")
+      ->check([](const std::string& word) -> std::string {
+        for (const char* how :
+             {"error-minimisation", "effective-torque", "effective-torque-printed", "joint"}) {
+          if (word == how) return {};
+        }
+        return CLI::Number(word).empty() ? std::string()
+                                         : "'" + word + "' is neither metres nor a way to find K";
+      });
+  command
+      .add_option("--prior", options.prior,
+                  "soils with {mean, std} (default: wong-reece thesis Table 2.1, other methods none)")
+      ->type_name("NAME|FILE");
+  command
+      .add_option(
+          "--model", options.model,
+          "a refined model whose effects act on the wheel (wong-reece): what they do to sinkage, torque and "
+          "pull is not laid to the soil")
+      ->type_name("M.yaml");
+  command.add_option("--rover", options.rover, "whose wheel, where the file does not say")
+      ->type_name("NAME|FILE");
+  command
+      .add_option("--plate-width", options.plate_width_m,
+                  "b of the plate, where the file does not say (bevameter)")
+      ->check(CLI::Range(1e-3, 10.0))
+      ->type_name("M");
+  command.add_option("--noise", options.noise, "relative error of each reading (wong-reece)")
+      ->check(CLI::Range(1e-4, 0.5))
+      ->capture_default_str();
+  command.add_flag("--keep-m1", options.whole_equation,
+                   "solve the whole Eq. 2.9, M1 included, in place of 2.11 (linear-offset)");
+  command.add_flag("--recursive", options.recursive,
+                   "take the rows in one by one, in constant memory, and print the estimate after each");
+  command.add_option("--html", options.html, "a page with the fit")->type_name("R.html");
+}
+
+Json rejectedRows(const SoilEstimate& e) {
+  Json rows = Json::array();
+  for (const auto& row : e.rejected) rows.push_back({{"line", row.line}, {"reason", row.reason}});
+  return rows;
+}
+
+Json runningJson(const SoilEstimate& e) {
+  Json rows = Json::array();
+  for (const RunningSoil& r : e.running) {
+    rows.push_back({{"line", r.line},
+                    {"cohesion_Pa", r.cohesion_Pa},
+                    {"cohesion_std_Pa", std::sqrt(r.covariance(0, 0))},
+                    {"friction_angle_rad", r.friction_angle_rad},
+                    {"friction_angle_std_rad", frictionStd_rad(r.covariance, r.friction_angle_rad)},
+                    {"shear_modulus_m", r.shear_modulus_m}});
+  }
+  return rows;
+}
+
+Json posteriorJson(const SoilEstimate& e) {
+  const auto& p = *e.posterior;
+  const auto range = [](const terramech::CredibleInterval& i) { return Json{i.low, i.high}; };
+  Json classes = Json::object();
+  for (std::size_t k = 0; k < e.class_names.size(); ++k) classes[e.class_names[k]] = p.class_probabilities[k];
+  return {{"interval_95",
+           {{"cohesion_Pa", range(p.cohesion_Pa)},
+            {"friction_angle_rad", range(p.friction_angle_rad)},
+            {"shear_modulus_m", range(p.shear_modulus_m)}}},
+          {"class_probabilities", classes},
+          {"ellipse_95", p.ellipse_95},
+          {"misfit", p.misfit},
+          {"effective_draws", p.effective_draws}};
+}
+
+Json jsonOf(const std::string& method, const SoilEstimate& e) {
+  const auto& c = e.covariance;
+  Json json{{"method", method},
+            {"cohesion_Pa", e.cohesion_Pa},
+            {"friction_angle_rad", e.friction_angle_rad},
+            {"tan_friction", e.tan_friction},
+            {"shear_modulus_m", e.shear_modulus_m},
+            {"covariance", {{c(0, 0), c(0, 1)}, {c(1, 0), c(1, 1)}}},
+            {"rows_used", e.rows_used},
+            {"rows_rejected", e.rejected.size()},
+            {"well_conditioned", e.unseen.empty()},
+            {"unseen", e.unseen},
+            {"warnings", e.warnings},
+            {"plausible", e.implausible().empty()},
+            {"rejected", rejectedRows(e)}};
+  if (std::isfinite(e.sinkage_exponent)) json["sinkage_exponent"] = e.sinkage_exponent;
+  if (e.cohesive_modulus) json["cohesive_modulus"] = *e.cohesive_modulus;
+  if (e.frictional_modulus) json["frictional_modulus"] = *e.frictional_modulus;
+  for (const auto& plate : e.plates)
+    json["plates"].push_back(
+        {{"plate_width_m", plate.plate_width_m}, {"sinkage_modulus", plate.sinkage_modulus}});
+  if (!e.effects.empty()) json["effects"] = e.effects;
+  if (!e.running.empty()) json["running"] = runningJson(e);
+  if (e.posterior) json.update(posteriorJson(e));
+  return json;
+}
+
+std::string runningText(const SoilEstimate& e) {
+  if (e.running.empty()) return {};
+  std::string text = "  line     c kPa      +-   phi deg      +-    K mm\n";
+  for (const RunningSoil& r : e.running) {
+    if (std::isnan(r.cohesion_Pa)) {
+      text += fmt::format("{:6}  too few rows yet\n", r.line);
+      continue;
+    }
+    text +=
+        fmt::format("{:6}  {:8.3f}  {:6.3f}  {:8.2f}  {:6.2f}  {:6.2f}\n", r.line, 1e-3 * r.cohesion_Pa,
+                    1e-3 * std::sqrt(r.covariance(0, 0)), r.friction_angle_rad / kDegree,
+                    frictionStd_rad(r.covariance, r.friction_angle_rad) / kDegree, 1e3 * r.shear_modulus_m);
+  }
+  return text + '\n';
+}
+
+std::string textOf(const SoilEstimate& e) {
+  std::string text = runningText(e);
+  if (std::isfinite(e.cohesion_Pa)) {
+    text += fmt::format("cohesion        {:9.3f} kPa  +- {:.3f}\n", 1e-3 * e.cohesion_Pa,
+                        1e-3 * std::sqrt(e.covariance(0, 0)));
+    text += fmt::format("friction angle  {:9.2f} deg  +- {:.2f}\n", e.friction_angle_rad / kDegree,
+                        frictionStd_rad(e.covariance, e.friction_angle_rad) / kDegree);
+  }
+  if (std::isfinite(e.shear_modulus_m))
+    text += fmt::format("shear modulus   {:9.2f} mm\n", 1e3 * e.shear_modulus_m);
+  if (std::isfinite(e.sinkage_exponent)) text += fmt::format("exponent n      {:9.3f}\n", e.sinkage_exponent);
+  for (const auto& plate : e.plates)
+    text += fmt::format("k at b {:5.1f} mm {:9.3g} N/m^(n+2)\n", 1e3 * plate.plate_width_m,
+                        plate.sinkage_modulus);
+  if (e.cohesive_modulus) text += fmt::format("k_c             {:9.3g} N/m^(n+1)\n", *e.cohesive_modulus);
+  if (e.frictional_modulus) text += fmt::format("k_phi           {:9.3g} N/m^(n+2)\n", *e.frictional_modulus);
+  for (std::size_t k = 0; k < e.class_names.size(); ++k) {
+    text += fmt::format("{:15} {:9.3f}\n", e.class_names[k], e.posterior->class_probabilities[k]);
+  }
+  if (!e.effects.empty()) text += fmt::format("effects         {}\n", fmt::join(e.effects, ", "));
+  return text + fmt::format("rows            {} used, {} rejected\n", e.rows_used, e.rejected.size());
+}
+
+Plot strengthPlot(const SoilEstimate& e) {
+  Series points{.name = "samples", .x = {}, .y = {}, .mark = Series::Mark::Points};
+  double most = 0.0;
+  for (const auto& p : e.points) {
+    points.x.push_back(1e-3 * p.normal_Pa);
+    points.y.push_back(1e-3 * p.shear_Pa);
+    most = std::max(most, points.x.back());
+  }
+  const Series line{.name = "c + sigma tan(phi)",
+                    .x = {0.0, 1.1 * most},
+                    .y = {1e-3 * e.cohesion_Pa, 1e-3 * e.cohesion_Pa + 1.1 * most * e.tan_friction}};
+  return {.title = "Shear strength",
+          .x = {.label = "normal stress [kPa]"},
+          .y = {.label = "shear stress [kPa]"},
+          .series = {line, points}};
+}
+
+Plot posteriorPlot(const SoilEstimate& e) {
+  Plot plot{.title = "Soils that the readings allow",
+            .x = {.label = "cohesion [kPa]"},
+            .y = {.label = "friction angle [deg]"},
+            .series = {}};
+  double heaviest = 0.0;
+  for (const auto& d : e.posterior->draws) heaviest = std::max(heaviest, d.weight);
+  for (std::size_t k = 0; k < e.class_names.size(); ++k) {
+    Series cloud{.name = e.class_names[k], .x = {}, .y = {}, .mark = Series::Mark::Points};
+    for (const auto& d : e.posterior->draws) {
+      if (d.soil_class != static_cast<int>(k) || d.weight < 0.02 * heaviest) continue;
+      cloud.x.push_back(1e-3 * d.soil.cohesion_Pa);
+      cloud.y.push_back(d.soil.friction_angle_rad / kDegree);
+    }
+    if (!cloud.x.empty()) plot.series.push_back(cloud);
+  }
+  return plot;
+}
+
+void writePage(const EstimateOptions& options, const SoilEstimate& e) {
+  HtmlReport page("Soil from " + options.table);
+  page.paragraph(
+      fmt::format("Method {}, {} rows used, {} rejected.", options.method, e.rows_used, e.rejected.size()));
+  page.table({"quantity", "value", "standard deviation"},
+             {{"cohesion [kPa]", fmt::format("{:.3f}", 1e-3 * e.cohesion_Pa),
+               fmt::format("{:.3f}", 1e-3 * std::sqrt(e.covariance(0, 0)))},
+              {"tan(friction angle)", fmt::format("{:.4f}", e.tan_friction),
+               fmt::format("{:.4f}", std::sqrt(e.covariance(1, 1)))},
+              {"shear modulus [mm]", fmt::format("{:.2f}", 1e3 * e.shear_modulus_m), ""}});
+  for (const std::string& text : e.unseen) page.paragraph("Not seen by these data: " + text);
+  if (!e.points.empty()) page.charts({strengthPlot(e)});
+  if (e.posterior) page.charts({posteriorPlot(e)});
+  writeFile(options.html, page.html());
+}
+
+int run(const EstimateOptions& options, Context& context) {
+  const SoilEstimate estimate = estimateSoil(options, context.watch("estimating"));
+  if (context.stop.stop_requested()) return Exit::kCancelled;
+  if (!estimate.rejected.empty()) {
+    const auto& first = estimate.rejected.front();
+    context.warn(fmt::format("{}:{}: {} ({} rows rejected; --json lists them)", options.table, first.line,
+                             first.reason, estimate.rejected.size()));
+  }
+  for (const std::string& text : estimate.unseen) context.warn("badly conditioned: " + text);
+  if (const std::string why = estimate.implausible(); !why.empty()) context.warn(why);
+  for (const std::string& text : estimate.warnings) context.warn(text);
+  if (!options.html.empty()) writePage(options, estimate);
+  if (context.json) {
+    printJson(jsonOf(options.method, estimate));
+  } else {
+    print(textOf(estimate));
+  }
+  return Exit::kDone;
+}
+
+}  // namespace
+
+void addEstimate(CLI::App& app, Context& context) {
+  addCommand<EstimateOptions>(
+      app, context,
+      {.name = "estimate",
+       .group = Group::kSoil,
+       .description = "the soil under a wheel from its telemetry",
+       .examples = "  talus estimate drive.csv --method wong-reece --noise 0.03\n"
+                   "  talus estimate drive.csv --method linear-offset --shear-modulus 0.015\n"
+                   "  talus estimate drive.csv --method wong-reece --model refined.yaml\n"},
+      bind, run);
+}
+
+}  // namespace talus::cli

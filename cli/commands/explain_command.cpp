@@ -1,0 +1,92 @@
+// talus explain DEM --at P [--heading RAD]: why a cell is what it is.
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <talus/cli/app/command.hpp>
+#include <talus/cli/app/commands.hpp>
+#include <talus/cli/app/number_check.hpp>
+#include <talus/cli/ground/ground_options.hpp>
+#include <talus/costmap/explanation.hpp>
+#include <talus/maps/place_reader.hpp>
+
+namespace talus::cli {
+namespace {
+
+struct Options {
+  GroundOptions ground;
+  std::string at;
+  std::optional<double> heading_rad;
+};
+
+void bind(CLI::App& command, Options& options) {
+  addGroundOptions(command, options.ground);
+  command.add_option("--at", options.at, "place: x,y or lat,lon with a d on each, or a GeoJSON point")
+      ->required()
+      ->type_name("P");
+  command
+      .add_option("--heading", options.heading_rad,
+                  "heading, counter-clockwise from east; else the worst one")
+      ->type_name("RAD")
+      ->check(finite());
+}
+
+nlohmann::ordered_json asJson(const costmap::Explanation& why, const maps::Point& point,
+                              const maps::Cell& cell) {
+  nlohmann::ordered_json causes = nlohmann::ordered_json::array();
+  for (const costmap::Cause& cause : why.causes)
+    causes.push_back({{"name", cause.name},
+                      {"value", cause.value},
+                      {"std", cause.std},
+                      {"source", cause.source},
+                      {"remark", cause.remark}});
+  return {{"category", terramech::name(why.category)},
+          {"probability", why.probability},
+          {"verdict", why.verdict},
+          {"x_m", point.x_m},
+          {"y_m", point.y_m},
+          {"column", cell.column},
+          {"row", cell.row},
+          {"causes", causes}};
+}
+
+std::string asText(const costmap::Explanation& why, const std::string& place) {
+  std::string text = fmt::format("{}\n{} (probability {:.2f})\n", place, why.verdict, why.probability);
+  for (const costmap::Cause& cause : why.causes) {
+    const std::string std = std::isnan(cause.std) ? "" : fmt::format(" +- {:.3g}", cause.std);
+    text += fmt::format("  {:<28} {:>12.5g}{:<12} {}{}{}\n", cause.name, cause.value, std, cause.source,
+                        cause.remark.empty() ? "" : "; ", cause.remark);
+  }
+  return text;
+}
+
+int run(const Options& options, Context& context) {
+  const Ground site = readGround(options.ground, context);
+  if (context.stop.stop_requested()) return Exit::kCancelled;
+  const maps::Point point = maps::readPlace(options.at, site.map.elevation(), "--at");
+  const maps::Cell cell = *site.map.grid().cellAt(point);
+  std::optional<costmap::Direction> heading;
+  if (options.heading_rad) heading = {std::cos(*options.heading_rad), std::sin(*options.heading_rad)};
+  const costmap::Explanation why = costmap::explain(site.map, cell, heading);
+  if (context.json)
+    printJson(asJson(why, point, cell));
+  else
+    print(asText(why, maps::describe(point, site.map.elevation())));
+  return Exit::kDone;
+}
+
+}  // namespace
+
+void addExplain(CLI::App& app, Context& context) {
+  addCommand<Options>(app, context,
+                      {.name = "explain",
+                       .group = Group::kMaps,
+                       .description = "why a cell is what it is: each number, its source, its uncertainty",
+                       .examples = "  talus explain gale.tif --at -4.7d,137.5d --heading 1.57\n"},
+                      bind, run);
+}
+
+}  // namespace talus::cli

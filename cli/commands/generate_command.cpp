@@ -1,0 +1,157 @@
+// talus generate KIND: an example site with all its layers.
+#include <filesystem>
+#include <optional>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <talus/cli/app/command.hpp>
+#include <talus/cli/app/commands.hpp>
+#include <talus/cli/app/output_file.hpp>
+#include <talus/cli/ground/site_description.hpp>
+#include <talus/maps/geotiff_writer.hpp>
+#include <talus/maps/site_generator.hpp>
+#include <talus/talus.hpp>
+
+namespace talus::cli {
+namespace {
+
+struct Options {
+  std::string site;                 ///< a kind, or the path of a description
+  std::optional<std::string> size;  ///< as typed
+  std::optional<double> resolution_m;
+  std::string output;
+};
+
+// Soil of each class. Loose lunar soils: ours, weaker than the nominal one within the ranges of
+// [heiken_1991].
+constexpr const char* kLunarSoils = R"(terrain_classes:
+  1: lunar_nominal
+  2: {name: lunar_loose, cohesion_Pa: 100, friction_angle_deg: 32, sinkage_exponent: 1.0, cohesive_modulus: 1000,
+      frictional_modulus: 400000, shear_modulus_mm: 20, density_kg_m3: 1400}
+  3: {name: lunar_very_loose, cohesion_Pa: 50, friction_angle_deg: 28, sinkage_exponent: 1.0, cohesive_modulus: 500,
+      frictional_modulus: 150000, shear_modulus_mm: 25, density_kg_m3: 1250}
+  4: bedrock
+)";
+
+constexpr const char* kMartianSoils = R"(terrain_classes:
+  1: mars_crusty
+  2: dry_sand
+  3: mars_drift
+  4: bedrock
+)";
+
+struct Size {
+  int width, height;
+};
+
+// "512" or "512x400", cells.
+Size parseSize(const std::string& text) {
+  const auto refuse = [&]() -> Size {
+    throw InputError(
+        {"--size " + text, "is not a number of cells", "write N or WIDTHxHEIGHT, 8 to 20000 each"});
+  };
+  const auto number = [&](const std::string& word) {
+    const bool digits =
+        !word.empty() && word.size() <= 5 && word.find_first_not_of("0123456789") == word.npos;
+    const int n = digits ? std::stoi(word) : 0;
+    return n >= 8 && n <= 20000 ? n : refuse().width;
+  };
+  const std::size_t cross = text.find('x');
+  if (cross == text.npos) return {number(text), number(text)};
+  return {number(text.substr(0, cross)), number(text.substr(cross + 1))};
+}
+
+// site.tif -> site_classes.tif
+std::string beside(const std::string& output, const std::string& suffix) {
+  std::filesystem::path path(output);
+  return (path.parent_path() / (path.stem().string() + suffix)).string();
+}
+
+struct Paths {
+  std::string map, classes, rocks, soils;
+};
+
+Paths write(const maps::Site& site, maps::SiteKind kind, const std::string& output) {
+  Paths paths{output, beside(output, "_classes.tif"), beside(output, "_rocks.tif"),
+              beside(output, "_soils.yaml")};
+  const maps::Georeference* georeference = &*site.map.georeference;
+  maps::writeGeoTiff({paths.map, georeference}, {{"elevation", "m", site.map.elevation_m}});
+  maps::writeGeoTiff({paths.classes, georeference}, "terrain class", site.classes, std::nullopt);
+  maps::writeGeoTiff({paths.rocks, georeference}, {{"rock abundance", "", site.rock_abundance}});
+  writeFile(paths.soils, kind == maps::SiteKind::Craters ? kLunarSoils : kMartianSoils);
+  return paths;
+}
+
+bool isDescription(const std::string& site) {
+  return site.ends_with(".yaml") || site.ends_with(".yml");
+}
+
+// A description is complete; words of the call that are there override it.
+maps::SiteOptions siteOptions(const Options& options, const Context& context) {
+  maps::SiteOptions out;
+  if (isDescription(options.site)) {
+    out = loadSite(options.site);
+  } else {
+    out.kind = siteKind(options.site);
+    out.seed = context.seed;
+  }
+  if (options.size) {
+    const Size size = parseSize(*options.size);
+    out.width = size.width;
+    out.height = size.height;
+  }
+  if (options.resolution_m) out.resolution_m = *options.resolution_m;
+  out.threads = context.workers();
+  return out;
+}
+
+void bind(CLI::App& command, Options& options) {
+  command
+      .add_option("KIND", options.site,
+                  "craters (Moon), dunes or rocks (Mars), or a YAML description (see maps/sites)")
+      ->required();
+  command.add_option("--size", options.size, "cells a side, or WIDTHxHEIGHT (default 512)")->type_name("N");
+  command.add_option("--resolution", options.resolution_m, "side of a cell (default 1)")
+      ->type_name("METRES")
+      ->check(CLI::Range(0.01, 1000.0));
+  command
+      .add_option("-o,--output", options.output, "elevation map to write; its layers are written beside it")
+      ->type_name("FILE.tif")
+      ->required();
+}
+
+int run(const Options& options, Context& context) {
+  const maps::SiteOptions wanted = siteOptions(options, context);
+  const OutputFile folder_can_be_written(options.output);
+  const maps::Site site = maps::generateSite(wanted, context.watch("site"));
+  if (context.stop.stop_requested()) return Exit::kCancelled;
+  const Paths paths = write(site, wanted.kind, options.output);
+  if (context.json)
+    printJson({{"map", paths.map},
+               {"classes", paths.classes},
+               {"rocks", paths.rocks},
+               {"soils", paths.soils},
+               {"width", wanted.width},
+               {"height", wanted.height},
+               {"resolution_m", wanted.resolution_m},
+               {"seed", wanted.seed}});
+  else
+    print(fmt::format("{}\n{}\n{}\n{}\n", paths.map, paths.classes, paths.rocks, paths.soils));
+  return Exit::kDone;
+}
+
+}  // namespace
+
+void addGenerate(CLI::App& app, Context& context) {
+  addCommand<Options>(
+      app, context,
+      {.name = "generate",
+       .group = Group::kMaps,
+       .description = "make an example site: elevation, terrain classes, rocks and soils",
+       .examples = "  talus generate craters --size 1000 --resolution 0.5 --seed 7 -o site.tif\n"
+                   "  talus plan site.tif --terrain site_classes.tif --soils site_soils.yaml ...\n"},
+      bind, run);
+}
+
+}  // namespace talus::cli

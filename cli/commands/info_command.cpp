@@ -1,0 +1,145 @@
+// talus info DEM: what a map is, before anyone plans on it.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <talus/cli/app/command.hpp>
+#include <talus/cli/app/commands.hpp>
+#include <talus/cli/ground/map_options.hpp>
+#include <talus/maps/terrain_metrics.hpp>
+
+namespace talus::cli {
+namespace {
+
+struct Options {
+  MapOptions map;
+  double footprint_m = 0.0;
+};
+
+struct Quantiles {
+  double p50 = std::nan("");
+  double p90 = std::nan("");
+  double p99 = std::nan("");
+};
+
+// Slopes of the valid cells, degrees.
+std::vector<float> slopes_deg(const maps::TerrainMetrics& metrics) {
+  std::vector<float> out;
+  const maps::Grid& grid = metrics.dz_dx.grid();
+  for (int row = 0; row < grid.height; ++row)
+    for (int column = 0; column < grid.width; ++column) {
+      const float slope = metrics.slope_rad({column, row});
+      if (!std::isnan(slope)) out.push_back(slope * static_cast<float>(180 / std::numbers::pi));
+    }
+  return out;
+}
+
+// The value below which the share lies (nearest rank).
+double quantile(std::vector<float>& values, double share) {
+  const auto rank = std::lround(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + rank, values.end());
+  return static_cast<double>(values[static_cast<std::size_t>(rank)]);
+}
+
+Quantiles quantiles(std::vector<float> values) {
+  if (values.empty()) return {};
+  return {quantile(values, 0.5), quantile(values, 0.9), quantile(values, 0.99)};
+}
+
+struct Range {
+  double lowest_m, highest_m;
+};
+
+Range heightRange(const maps::Raster<float>& elevation_m) {
+  Range range{INFINITY, -INFINITY};
+  for (float z : elevation_m.values()) {
+    range.lowest_m = std::fmin(range.lowest_m, static_cast<double>(z));
+    range.highest_m = std::fmax(range.highest_m, static_cast<double>(z));
+  }
+  return range;
+}
+
+nlohmann::ordered_json asJson(const maps::ElevationMap& map, const maps::TerrainMetrics& metrics) {
+  const maps::Grid& grid = map.grid();
+  const Quantiles slope = quantiles(slopes_deg(metrics));
+  const Range height = heightRange(map.elevation_m);
+  nlohmann::ordered_json out;
+  out["width"] = grid.width;
+  out["height"] = grid.height;
+  out["resolution_m"] = grid.resolution_m;
+  out["crs"] = map.georeference ? map.georeference->system().name : "local";
+  out["body"] =
+      map.georeference ? nlohmann::ordered_json(map.georeference->body()) : nlohmann::ordered_json();
+  out["valid_fraction"] = maps::validFraction(map.elevation_m);
+  out["slope_deg"] = {{"p50", slope.p50}, {"p90", slope.p90}, {"p99", slope.p99}};
+  out["elevation_m"] = {{"min", height.lowest_m}, {"max", height.highest_m}};
+  out["x_m"] = {grid.south_west.x_m, grid.south_west.x_m + grid.width * grid.resolution_m};
+  out["y_m"] = {grid.south_west.y_m, grid.south_west.y_m + grid.height * grid.resolution_m};
+  out["footprint_cells"] = metrics.footprint_cells;
+  return out;
+}
+
+std::string latitudes(const maps::ElevationMap& map) {
+  if (!map.georeference) return "";
+  const maps::Grid& grid = map.grid();
+  const maps::Point middle{grid.south_west.x_m + 0.5 * grid.width * grid.resolution_m,
+                           grid.south_west.y_m + 0.5 * grid.height * grid.resolution_m};
+  return fmt::format("middle      {}\n", maps::describe(middle, map));
+}
+
+std::string asText(const maps::ElevationMap& map, const nlohmann::ordered_json& facts) {
+  const maps::Grid& grid = map.grid();
+  const auto number = [&](const char* object, const char* key) { return facts[object][key].get<double>(); };
+  return fmt::format("map         {}\n", map.source) +
+         fmt::format("cells       {} x {} of {:.6g} m ({:.4g} x {:.4g} km)\n", grid.width, grid.height,
+                     grid.resolution_m, grid.width * grid.resolution_m / 1000,
+                     grid.height * grid.resolution_m / 1000) +
+         fmt::format("CRS         {}{}\n", facts["crs"].get<std::string>(),
+                     map.georeference ? " (" + map.georeference->body() + ")" : " metres") +
+         fmt::format("extent      {}\n", maps::extent(grid)) + latitudes(map) +
+         fmt::format("valid       {:.1f} % of the cells\n", 100 * facts["valid_fraction"].get<double>()) +
+         fmt::format("elevation   {:.1f} to {:.1f} m\n", number("elevation_m", "min"),
+                     number("elevation_m", "max")) +
+         fmt::format("slope       50 % of the cells below {:.1f} deg, 90 % below {:.1f}, 99 % below {:.1f}\n",
+                     number("slope_deg", "p50"), number("slope_deg", "p90"), number("slope_deg", "p99"));
+}
+
+void bind(CLI::App& command, Options& options) {
+  addMapOptions(command, options.map);
+  command
+      .add_option("--footprint", options.footprint_m,
+                  "radius of the disc over which slope is taken (default: 3 x 3 cells)")
+      ->type_name("METRES");
+}
+
+int run(const Options& options, Context& context) {
+  const maps::ElevationMap map = readMap(options.map, context);
+  const maps::TerrainMetrics metrics =
+      maps::terrainMetrics(map.elevation_m, {.radius_m = options.footprint_m, .threads = context.workers()},
+                           context.watch("slopes"));
+  if (context.stop.stop_requested()) return Exit::kCancelled;
+  const nlohmann::ordered_json facts = asJson(map, metrics);
+  if (context.json)
+    printJson(facts);
+  else
+    print(asText(map, facts));
+  return Exit::kDone;
+}
+
+}  // namespace
+
+void addInfo(CLI::App& app, Context& context) {
+  addCommand<Options>(
+      app, context,
+      {.name = "info",
+       .group = Group::kMaps,
+       .description = "size, CRS, body, share of data and slopes of an elevation map",
+       .examples = "  talus info gale.tif\n  talus info --resolution 0.094 yard.tif --json\n"},
+      bind, run);
+}
+
+}  // namespace talus::cli

@@ -1,0 +1,5 @@
+#include <talus/cli/commands/program.hpp>
+
+int main(int argc, char** argv) {
+  return talus::cli::run(argc, argv);
+}

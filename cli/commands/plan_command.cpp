@@ -1,0 +1,346 @@
+// talus plan DEM --start P --goal P: a route.
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <talus/cli/app/campaign.hpp>
+#include <talus/cli/app/command.hpp>
+#include <talus/cli/app/commands.hpp>
+#include <talus/cli/app/number_check.hpp>
+#include <talus/cli/app/output_file.hpp>
+#include <talus/cli/draw/page.hpp>
+#include <talus/cli/draw/pareto_chart.hpp>
+#include <talus/cli/draw/picture.hpp>
+#include <talus/cli/draw/route_summary.hpp>
+#include <talus/cli/draw/scene.hpp>
+#include <talus/cli/ground/drive_options.hpp>
+#include <talus/cli/ground/mission.hpp>
+#include <talus/cli/ground/windowed_ground.hpp>
+#include <talus/cli/ground/windowed_plan.hpp>
+#include <talus/cli/route/plan_pairs.hpp>
+#include <talus/cli/route/route_json.hpp>
+#include <talus/maps/place_reader.hpp>
+#include <talus/planner/check/annotation.hpp>
+#include <talus/planner/check/chassis_planner.hpp>
+#include <talus/planner/check/route_check.hpp>
+#include <talus/planner/check/route_risk.hpp>
+#include <talus/planner/plugin/named_planner.hpp>
+#include <talus/planner/plugin/risk_planner.hpp>
+
+namespace talus::cli {
+namespace {
+
+using planner::Route;
+using planner::RouteStatus;
+
+// Prices of time and of risk that are tried for the Pareto set, each.
+constexpr int kParetoSteps = 6;
+
+struct Timing {
+  double load_s, costmap_s, plan_s;
+};
+
+void bind(CLI::App& command, PlanOptions& options) {
+  addGroundOptions(command, options.ground);
+  command
+      .add_option("--start", options.start, "x,y in map metres; lat,lon with a d on each; or a GeoJSON point")
+      ->type_name("PLACE");
+  command
+      .add_option("--goal", options.goals, "the same; may be repeated: the goal that costs least is taken")
+      ->type_name("PLACE");
+  command.add_option("--via", options.via, "to be passed on the way; may be repeated")->type_name("PLACE");
+  command
+      .add_option("--pairs", options.pairs,
+                  "many routes over the one map: CSV with start_x_m, start_y_m, goal_x_m, goal_y_m; a row of "
+                  "results each, to -o FILE.csv or stdout; over all ranks under mpirun")
+      ->type_name("FILE.csv");
+  command.add_option("--tolerance", options.tolerance_m, "the route may end this far from the goal")
+      ->type_name("METRES")
+      ->check(notNegative());
+  command.add_option("--planner", options.planner, "who plans: `talus plugins` lists them")
+      ->type_name("NAME")
+      ->capture_default_str();
+  addDriveOptions(command, options.drive);
+  command.add_option("--time", options.time_limit_s, "time limit of the planning")
+      ->type_name("S")
+      ->check(positive());
+  command
+      .add_option("--in-memory", options.in_memory,
+                  "read a DEM of more cells in windows along a route over its overview")
+      ->type_name("CELLS")
+      ->capture_default_str();
+  command.add_flag("--whole-field", options.whole_field,
+                   "read and settle the whole map, however large, instead of a tube around a coarse route");
+  command
+      .add_option("--risk", options.max_risk, "the route's probability of immobilisation stays within this")
+      ->type_name("ALPHA")
+      ->check(CLI::Range(0.0, 1.0));
+  command
+      .add_option("--pareto", options.pareto,
+                  "draw what energy, time and risk may be traded: .png, .svg or .html")
+      ->type_name("FILE");
+  command.add_option("-o,--output", options.output, "the route as GeoJSON")->type_name("ROUTE.geojson");
+  command.add_option("--html", options.html, "the route as a page to look at")->type_name("PAGE.html");
+  command.add_option("--png", options.png, "the route as a picture")->type_name("FILE.png");
+}
+
+void requirePlaces(const PlanOptions& options) {
+  if (!options.pairs.empty()) {
+    if (!options.start.empty() || !options.goals.empty() || !options.via.empty() || !options.html.empty() ||
+        !options.png.empty() || !options.pareto.empty() || options.max_risk > 0.0 ||
+        !options.drive.chassis.empty())
+      throw InputError({"--pairs " + options.pairs,
+                        "goes without --start, --goal, --via, --html, --png, --pareto, --risk and --chassis",
+                        "leave them out, or plan the routes one by one"});
+    return;
+  }
+  if (options.start.empty()) throw InputError({"talus plan", "no start", "pass --start x,y"});
+  if (options.goals.empty()) throw InputError({"talus plan", "no goal", "pass --goal x,y"});
+}
+
+planner::Problem problemOf(const PlanOptions& options, const Ground& ground, const Context& context) {
+  const maps::ElevationMap& map = ground.map.elevation();
+  planner::Problem problem;
+  problem.map = ground.map.published();
+  if (options.pairs.empty()) {
+    problem.start = maps::readPlace(options.start, map, "--start");
+    problem.goal = maps::readPlace(options.goals.front(), map, "--goal");
+    for (auto goal = options.goals.begin() + 1; goal != options.goals.end(); ++goal)
+      problem.other_goals.push_back(maps::readPlace(*goal, map, "--goal"));
+  }
+  for (const std::string& place : options.via) problem.via.push_back(maps::readPlace(place, map, "--via"));
+  problem.goal_tolerance_m = options.tolerance_m;
+  if (options.time_limit_s > 0.0) problem.time_limit_s = options.time_limit_s;
+  problem.seed = context.seed;
+  problem.threads = context.workers();
+  problem.start_heading_rad = options.drive.start_heading_rad;
+  problem.goal_heading_rad = options.drive.goal_heading_rad;
+  problem.kinematics = kinematicsOf(options.drive, ground.map);
+  problem.whole_field = options.whole_field;
+  problem.watch = context.watch("plan");
+  return problem;
+}
+
+// How the soil is drawn along a route.
+planner::RouteRiskOptions soilOf(const PlanOptions& options, std::uint64_t seed) {
+  return {.correlation_length_m = options.ground.policy.correlation_length_m, .seed = seed};
+}
+
+planner::Plan planOnce(const planner::Problem& problem, planner::NamedPlanner& planner,
+                       const PlanOptions& options, const std::optional<planner::Chassis>& chassis) {
+  const auto once = [&](const planner::Problem& p) {
+    return options.max_risk > 0.0
+               ? planner::planWithinRisk(p, planner, options.max_risk, soilOf(options, p.seed))
+               : planner.plan(p);
+  };
+  return chassis ? planner::planOnChassis(problem, *chassis, once) : once(problem);
+}
+
+// Which of several goals the route ends at.
+std::string goalText(const PlanOptions& options, const planner::Plan& plan) {
+  if (options.goals.size() < 2) return "";
+  return fmt::format("{:<14}{}, number {} of the {} given: none costs less\n", "goal",
+                     options.goals[plan.goal], plan.goal + 1, options.goals.size());
+}
+
+std::string asText(const Route& route, const Timing& seconds) {
+  return summaryText(route) +
+         fmt::format("{:<14}{:.3f} s to load, {:.3f} s for the costmap, {:.3f} s to plan\n", "took",
+                     seconds.load_s, seconds.costmap_s, seconds.plan_s);
+}
+
+// A bad place is told before the work, not after it.
+void checkOutputs(const PlanOptions& options) {
+  for (const std::string& path : {options.output, options.html, options.png})
+    if (!path.empty()) OutputFile(path).temporary();
+}
+
+void writeFiles(const PlanOptions& options, const Ground& ground, const Route& route,
+                const Context& context) {
+  if (!options.output.empty()) {
+    const auto document =
+        routeGeoJson(route, ground.map.elevation(), {.files = ground.files, .seed = context.seed});
+    writeFile(options.output, document.dump() + "\n");
+  }
+  if (options.html.empty() && options.png.empty()) return;
+  const std::string name = std::filesystem::path(ground.map.elevation().source).filename().string();
+  Scene scene = sceneOf(ground.map, {.title = "Route across " + name});
+  addRoute(scene, route);
+  if (!options.png.empty()) savePicture(options.png, scene);
+  if (!options.html.empty()) savePage(options.html, scene);
+}
+
+// The risk once more, with soil that is alike nearby.
+nlohmann::ordered_json riskJson(const Route& route, const PlanOptions& options, const Context& context) {
+  const planner::RouteRiskOptions drawn = soilOf(options, context.seed);
+  const planner::RouteRisk risk = planner::routeRisk(route, drawn);
+  return {{"limit", options.max_risk},
+          {"immobilisation", route.vertices.back().immobilisation_risk},
+          {"correlated_soil",
+           {{"immobilisation", risk.immobilisation},
+            {"standard_error", risk.standard_error},
+            {"cvar_reserve_std", risk.cvar},
+            {"tail", drawn.tail},
+            {"worst_x_m", risk.worst_x_m},
+            {"worst_y_m", risk.worst_y_m}}}};
+}
+
+int exitOf(RouteStatus status) {
+  switch (status) {
+    case RouteStatus::Found:
+      return Exit::kDone;
+    case RouteStatus::Cancelled:
+      return Exit::kCancelled;
+    case RouteStatus::StartInvalid:
+    case RouteStatus::GoalInvalid:
+      return Exit::kInput;
+    default:
+      return Exit::kNo;
+  }
+}
+
+// Says why there is no route; the exit code tells a wrong call from the answer no.
+int refuse(const Route& route, const Context& context) {
+  if (context.json) {
+    auto json = summaryJson(route);
+    json["reason"] = route.reason;
+    printJson(json);
+  }
+  fmt::print(stderr, "talus: {}\n", oneLine(route.reason));
+  return exitOf(route.status);
+}
+
+// A plan, and the ground that it was made on.
+struct Planned {
+  Ground ground;             // of large maps the overview
+  planner::Problem problem;  // its map holds the tiles that were read
+  planner::Plan plan;
+  double plan_s = 0.0;
+};
+
+double since_s(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+Planned planWhole(const PlanOptions& options, planner::NamedPlanner& planner, const Context& context) {
+  Planned planned{.ground = readGround(options.ground, context), .problem = {}, .plan = {}};
+  planned.problem = problemOf(options, planned.ground, context);
+  const auto chassis = chassisOf(options.drive.chassis, planned.ground.map);
+  const auto begin = std::chrono::steady_clock::now();
+  planned.plan = planOnce(planned.problem, planner, options, chassis);
+  planned.plan_s = since_s(begin);
+  return planned;
+}
+
+// Many routes over one map, over all ranks of an MPI run.
+int runPairs(const PlanOptions& options, Context& context) {
+  const Campaign campaign;
+  if (!campaign.leads()) context.quiet = true;
+  const auto pairs = readPairs(options.pairs);
+  if (campaign.leads()) checkOutputs(options);
+  const Ground ground = readGround(options.ground, context);
+  if (context.stop.stop_requested()) return Exit::kCancelled;
+  const auto lines = planPairs(pairs, problemOf(options, ground, context), options.planner, campaign);
+  if (!campaign.leads()) return Exit::kDone;
+  if (context.stop.stop_requested()) return Exit::kCancelled;
+  if (!options.output.empty()) writeFile(options.output, pairsCsv(lines));
+  if (context.json)
+    printJson(nlohmann::ordered_json(lines));
+  else if (options.output.empty())
+    print(pairsCsv(lines));
+  return Exit::kDone;
+}
+
+// What is done with a plan, whichever way it was made.
+int finish(const PlanOptions& options, const Planned& planned, const planner::AnnotationInput& input,
+           const Context& context) {
+  if (planned.plan.status == RouteStatus::Found)
+    planner::requireAllowed(planned.plan, *planned.problem.map, planned.problem.kinematics.turning_radius_m);
+  const Route route = annotated(planned.plan, input);
+  if (planned.plan.status != RouteStatus::Found) return refuse(route, context);
+  writeFiles(options, planned.ground, route, context);
+  const Timing seconds{planned.ground.load_s, planned.ground.build_s, planned.plan_s};
+  if (context.json) {
+    auto json = summaryJson(route);
+    if (options.goals.size() > 1) json["goal"] = options.goals[planned.plan.goal];
+    if (options.max_risk > 0.0) json["risk"] = riskJson(route, options, context);
+    json["seconds"] = {{"load", seconds.load_s}, {"costmap", seconds.costmap_s}, {"plan", seconds.plan_s}};
+    printJson(json);
+  } else {
+    print(goalText(options, planned.plan) + asText(route, seconds));
+  }
+  return Exit::kDone;
+}
+
+void refuseInWindows(const PlanOptions& options) {
+  const bool other = options.planner != "field" || options.max_risk > 0.0 || !options.pareto.empty() ||
+                     !options.pairs.empty() || !options.drive.chassis.empty() || options.goals.size() > 1;
+  if (!other) return;
+  throw InputError({options.ground.dem.path,
+                    "is too large for --planner, --pairs, --risk, --pareto, --chassis and several goals",
+                    "read a part with --window, or the whole with --whole-field"});
+}
+
+int runInWindows(const PlanOptions& options, const Context& context) {
+  refuseInWindows(options);
+  WindowedGround ground(options.ground, context);
+  if (context.stop.stop_requested()) return Exit::kCancelled;
+  planner::Problem problem = problemOf(options, ground.overview(), context);
+  const auto begin = std::chrono::steady_clock::now();
+  planner::Plan plan = planInWindows(problem, ground);
+  const double plan_s = since_s(begin);
+  if (!problem.map) problem.map = ground.overview().map.published();
+  const planner::AnnotationInput input{.map = *problem.map,
+                                       .elevation_m = [&](maps::Point p) { return ground.elevation_m(p); },
+                                       .planner = options.planner};
+  return finish(options, {std::move(ground).takeOverview(), problem, std::move(plan), plan_s}, input,
+                context);
+}
+
+int run(const PlanOptions& asked, Context& context) {
+  PlanOptions options = asked;
+  if (isMission(options.ground.dem.path)) readMission(options);
+  requirePlaces(options);
+  if (options.pairs.empty()) checkOutputs(options);
+  planner::NamedPlanner planner(options.planner);
+  if (options.drive.any() && !planner.drives())
+    throw InputError({"planner '" + planner.name() + "'", "knows no heading and no turning radius",
+                      "pass --planner hybrid, or leave out --start-heading, --goal-heading, --turning-radius "
+                      "and --no-reverse"});
+  if (!options.whole_field && WindowedGround::needed(options.ground, options.in_memory))
+    return runInWindows(options, context);
+  if (!options.pairs.empty()) return runPairs(options, context);
+  const Planned planned = planWhole(options, planner, context);
+  if (context.stop.stop_requested() && planned.plan.points.empty()) return Exit::kCancelled;
+  const maps::Raster<float>& heights = planned.ground.map.elevation().elevation_m;
+  const int code = finish(options, planned,
+                          {.map = *planned.problem.map,
+                           .elevation_m = maps::elevationOf(heights),
+                           .planner = planner.name(),
+                           .kinematics = planned.problem.kinematics},
+                          context);
+  if (code == Exit::kDone && !options.pareto.empty())
+    saveParetoChart(options.pareto, planner::paretoSet(planned.problem, planner, kParetoSteps));
+  return code;
+}
+
+}  // namespace
+
+void addPlan(CLI::App& app, Context& context) {
+  addCommand<PlanOptions>(
+      app, context,
+      {.name = "plan",
+       .group = Group::kRoutes,
+       .description =
+           "a route from start to goal, with its energy, time, slip and how far it may be from the best",
+       .examples =
+           "  talus plan gale.tif --rover mer --start -4.59d,137.44d --goal -4.6d,137.5d -o route.geojson\n"
+           "  talus plan mission.yaml\n"},
+      bind, run);
+}
+
+}  // namespace talus::cli

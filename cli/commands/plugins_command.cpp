@@ -1,0 +1,65 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include <talus/cli/app/command.hpp>
+#include <talus/cli/app/commands.hpp>
+#include <talus/planner/plugin/plugin_loader.hpp>
+#include <talus/planner/route/planner_names.hpp>
+
+namespace talus::cli {
+namespace {
+
+struct Options {
+  std::string file;
+};
+
+std::vector<std::string> features(const PlannerCapabilities& offers) {
+  std::vector<std::string> words;
+  if (offers.heading_dependent) words.emplace_back("heading-dependent cost");
+  if (offers.lower_bound) words.emplace_back("lower bound");
+  if (offers.via_points) words.emplace_back("via points");
+  if (offers.several_goals) words.emplace_back("several goals");
+  if (offers.incremental_update) words.emplace_back("incremental update");
+  if (offers.deterministic) words.emplace_back("deterministic");
+  return words;
+}
+
+int run(const Options& options, Context& context) {
+  PlannerCapabilities offers{
+      .name = "talus, built in", .version = TALUS_VERSION, .planners = planner::plannerNames()};
+  if (!options.file.empty()) offers = planner::loadPlugin(options.file)->capabilities();
+  if (context.json) {
+    printJson(
+        {{"file", options.file.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(options.file)},
+         {"name", offers.name},
+         {"version", offers.version},
+         {"interface_version", offers.interface_version},
+         {"planners", offers.planners},
+         {"features", features(offers)}});
+    return Exit::kDone;
+  }
+  print(fmt::format("{} {}, planner interface {}\n", offers.name, offers.version, offers.interface_version));
+  print(fmt::format("planners: {}\n", fmt::join(offers.planners, ", ")));
+  if (const auto words = features(offers); !words.empty())
+    print(fmt::format("features: {}\n", fmt::join(words, ", ")));
+  return Exit::kDone;
+}
+
+void bind(CLI::App& app, Options& options) {
+  app.add_option("file", options.file,
+                 "A planner's shared library; without one, the planners that are built in");
+}
+
+}  // namespace
+
+void addPlugins(CLI::App& app, Context& context) {
+  addCommand<Options>(app, context,
+                      {.name = "plugins",
+                       .group = Group::kRoutes,
+                       .description = "what a planner plugin offers",
+                       .examples = "  talus plugins\n  talus plugins /usr/lib/talus/libtalus_planner.so"},
+                      bind, run);
+}
+
+}  // namespace talus::cli

@@ -1,0 +1,67 @@
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <talus/cli/app/command.hpp>
+#include <talus/cli/app/commands.hpp>
+#include <talus/cli/app/output_file.hpp>
+#include <talus/terramech/io/model_file.hpp>
+#include <talus/terramech/io/soil_library.hpp>
+#include <talus/terramech/trace/prediction_table.hpp>
+
+namespace talus::cli {
+namespace {
+
+struct PredictOptions {
+  std::string table, model, rover, output;
+};
+
+void bind(CLI::App& command, PredictOptions& options) {
+  command.add_option("telemetry", options.table, "conditions a row: load_N, slip, ...")
+      ->required()
+      ->type_name("T.csv");
+  command.add_option("--model", options.model, "refined or base model, or a soil")
+      ->required()
+      ->type_name("M.yaml");
+  command.add_option("--rover", options.rover, "whose wheel it is, where the data do not say")
+      ->type_name("NAME|FILE");
+  command.add_option("-o,--output", options.output, "the rows with predictions appended")
+      ->required()
+      ->type_name("OUT.csv");
+}
+
+int run(const PredictOptions& options, Context& context) {
+  terramech::ModelFile file = terramech::loadModel(options.model);
+  if (!file.soil_given)
+    throw InputError({options.model, "names no soil", "trace some data with it first: talus trace"});
+  if (!options.rover.empty()) file.model.wheel = terramech::loadRover(options.rover).wheel;
+  const auto table = terramech::predictTable(options.table, file.model, context.watch("predicting"));
+  if (context.stop.stop_requested()) return Exit::kCancelled;
+  constexpr std::size_t kShown = 20;
+  for (std::size_t k = 0; k < table.refused.size() && k < kShown; ++k)
+    context.warn(fmt::format("{}:{}: {}", options.table, table.refused[k].line, table.refused[k].reason));
+  if (table.replaced) context.warn(options.table + ": holds columns of predictions; they are made anew");
+  writeFile(options.output, table.text);
+  auto refused = nlohmann::ordered_json::array();
+  for (const auto& row : table.refused) refused.push_back({{"line", row.line}, {"reason", row.reason}});
+  if (context.json)
+    printJson(
+        {{"rows_predicted", table.predicted}, {"rows_refused", table.refused.size()}, {"refused", refused}});
+  else
+    print(fmt::format("{}: {} rows predicted, {} refused\n", options.output, table.predicted,
+                      table.refused.size()));
+  return Exit::kDone;
+}
+
+}  // namespace
+
+void addPredict(CLI::App& app, Context& context) {
+  addCommand<PredictOptions>(
+      app, context,
+      {.name = "predict",
+       .group = Group::kSoil,
+       .description = "what a model says that wheels will measure, a row",
+       .examples = "  talus predict drive.csv --model refined.yaml -o predicted.csv\n"},
+      bind, run);
+}
+
+}  // namespace talus::cli

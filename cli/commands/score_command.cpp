@@ -1,0 +1,102 @@
+// talus score DEM --path FILE: what any polyline costs under the cost that the planners minimise.
+#include <chrono>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <talus/cli/app/command.hpp>
+#include <talus/cli/app/commands.hpp>
+#include <talus/cli/ground/drive_options.hpp>
+#include <talus/cli/ground/ground_options.hpp>
+#include <talus/cli/ground/path_reader.hpp>
+#include <talus/cli/route/route_json.hpp>
+#include <talus/planner/bound/lower_bound.hpp>
+#include <talus/planner/check/annotation.hpp>
+#include <talus/planner/check/route_check.hpp>
+#include <talus/planner/route/motion_cost.hpp>
+
+namespace talus::cli {
+namespace {
+
+struct Options {
+  GroundOptions ground;
+  std::string path;
+  std::string chassis;
+};
+
+nlohmann::ordered_json asJson(const std::vector<planner::Violation>& violations) {
+  auto list = nlohmann::ordered_json::array();
+  for (const auto& v : violations)
+    list.push_back({{"x_m", v.place.x_m}, {"y_m", v.place.y_m}, {"reason", v.reason}});
+  return list;
+}
+
+std::string asText(const planner::Route& route, const std::vector<planner::Violation>& violations) {
+  const planner::RouteSummary& s = route.summary;
+  std::string text =
+      fmt::format("cost        {:.6g} J (no route costs less than {:.6g} J)\n", s.cost, s.lower_bound) +
+      fmt::format("energy      {:.6g} J\ntime        {:.6g} s\nlength      {:.6g} m\n", s.energy_J, s.time_s,
+                  s.length_m) +
+      fmt::format("violations  {}\n", violations.size());
+  for (const auto& v : violations)
+    text += fmt::format("  {:.2f},{:.2f}: {}\n", v.place.x_m, v.place.y_m, v.reason);
+  return text;
+}
+
+void bind(CLI::App& command, Options& options) {
+  addGroundOptions(command, options.ground);
+  command.add_option("--path", options.path, "polyline: GeoJSON LineString, or CSV with x_m, y_m")
+      ->type_name("FILE")
+      ->required();
+  addChassisOption(command, options.chassis);
+}
+
+// What forbids the polyline: the map, and the chassis where one is asked for.
+std::vector<planner::Violation> violationsOf(const std::vector<maps::Point>& points, const std::string& kind,
+                                             const costmap::TraversabilityMap& map) {
+  auto all = planner::violations(*map.published(), points);
+  if (const auto chassis = chassisOf(kind, map))
+    for (auto& violation : chassis->violations(points)) all.push_back(std::move(violation));
+  return all;
+}
+
+int run(const Options& options, Context& context) {
+  const Ground ground = readGround(options.ground, context);
+  if (context.stop.stop_requested()) return Exit::kCancelled;
+  const auto map = ground.map.published();
+  planner::Plan plan;
+  plan.points = readPath(options.path, ground.map.elevation());
+  const auto violations = violationsOf(plan.points, options.chassis, ground.map);
+  plan.status = violations.empty() ? planner::RouteStatus::Found : planner::RouteStatus::NoRoute;
+  plan.cost_J = planner::MotionCost(map).along(plan.points);
+  if (!violations.empty()) plan.cost_J = INFINITY;
+  const planner::Segment ends{plan.points.front(), plan.points.back()};
+  plan.lower_bound_J = std::min(plan.cost_J, planner::LowerBound()(map, ends, 0.0, context.watch("bound")));
+  const planner::Route route = annotated(
+      plan,
+      {.map = *map, .elevation_m = maps::elevationOf(ground.map.elevation().elevation_m), .planner = "none"});
+  if (context.json) {
+    auto json = summaryJson(route);
+    if (!violations.empty()) json["status"] = "infeasible";
+    json["violations"] = asJson(violations);
+    json["seconds"] = {{"load", ground.load_s}, {"costmap", ground.build_s}};
+    printJson(json);
+  } else {
+    print(asText(route, violations));
+  }
+  return violations.empty() ? Exit::kDone : Exit::kNo;
+}
+
+}  // namespace
+
+void addScore(CLI::App& app, Context& context) {
+  addCommand<Options>(app, context,
+                      {.name = "score",
+                       .group = Group::kRoutes,
+                       .description = "what any polyline costs, and why it may not be driven if so",
+                       .examples = "  talus score dem.tif --path route.geojson --rover mer --json\n"},
+                      bind, run);
+}
+
+}  // namespace talus::cli

@@ -1,0 +1,109 @@
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <talus/cli/app/command.hpp>
+#include <talus/cli/app/commands.hpp>
+#include <talus/cli/app/output_file.hpp>
+#include <talus/cli/soil/trace_report.hpp>
+#include <talus/terramech/io/model_file.hpp>
+#include <talus/terramech/io/soil_library.hpp>
+#include <talus/terramech/io/telemetry_reader.hpp>
+
+namespace talus::cli {
+namespace {
+
+struct TraceCommandOptions {
+  std::string telemetry, base, rover, model_out, html;
+  double significance = terramech::TraceOptions{}.significance;
+};
+
+void bind(CLI::App& command, TraceCommandOptions& options) {
+  command.add_option("telemetry", options.telemetry, "measured wheel data")->required()->type_name("T.csv");
+  command
+      .add_option("--base", options.base, "soil or model to start from (default: a soil fitted to the data)")
+      ->type_name("B.yaml");
+  command.add_option("--rover", options.rover, "whose wheel it is, where the data do not say")
+      ->type_name("NAME|FILE");
+  command.add_option("--model-out", options.model_out, "writes the refined model")->type_name("M.yaml");
+  command.add_option("--html", options.html, "writes a page with charts")->type_name("R.html");
+  command
+      .add_option("--significance", options.significance,
+                  "false alarms that are accepted, over all questions")
+      ->check(CLI::Range(1e-3, 0.5))
+      ->capture_default_str();
+}
+
+terramech::ModelFile baseOf(const TraceCommandOptions& options) {
+  terramech::ModelFile file;
+  if (!options.base.empty()) file = terramech::loadModel(options.base);
+  if (options.base.empty()) file = terramech::unknownSoil();
+  if (!options.rover.empty()) file.model.wheel = terramech::loadRover(options.rover).wheel;
+  return file;
+}
+
+void warnOfRejected(const terramech::Telemetry& telemetry, const Context& context) {
+  constexpr std::size_t kShown = 20;
+  for (std::size_t k = 0; k < telemetry.rejected.size() && k < kShown; ++k)
+    context.warn(
+        fmt::format("{}:{}: {}", telemetry.source, telemetry.rejected[k].line, telemetry.rejected[k].reason));
+  if (telemetry.rejected.size() > kShown)
+    context.warn(
+        fmt::format("{}: {} more rows rejected", telemetry.source, telemetry.rejected.size() - kShown));
+}
+
+std::vector<char> without(std::vector<char> rows) {
+  for (char& row : rows) row = !row;
+  return rows;
+}
+
+int run(const TraceCommandOptions& options, Context& context) {
+  terramech::ModelFile base = baseOf(options);
+  const terramech::Telemetry telemetry =
+      terramech::readTelemetry(options.telemetry, {.required = {"load_N", "slip"}});
+  warnOfRejected(telemetry, context);
+  const terramech::Trial all = terramech::makeTrial(telemetry, base.model);
+  const std::vector<char> sunk = terramech::beyondAxle(all);
+  const terramech::Trial trial = terramech::subset(all, without(sunk));
+  if (trial.rows() < 8)
+    throw InputError(
+        {options.telemetry,
+         fmt::format("{} usable rows with the wheel above its axle, tracing needs 8", trial.rows()), ""});
+  base.model.slip_along_travel |= terramech::slipIsAlongTravel(trial.states);
+  terramech::TraceOptions how{.significance = options.significance};
+  how.fit_soil = !base.soil_given;
+  how.seed = context.seed;
+  const ProgressMonitor watch = context.watch("tracing");
+  TraceStory story{options.telemetry,
+                   telemetry.rejected.size(),
+                   terramech::traceResiduals(base.model, trial, how, watch),
+                   {},
+                   {}};
+  if (watch.stopped()) return Exit::kCancelled;
+  story.held_out = terramech::holdOut(story.result, how);
+  story.beyond_axle = all.rows() - trial.rows();
+  if (story.beyond_axle > 0)
+    story.beyond_axle_rmse = terramech::rmseOf(story.result.refined, terramech::subset(all, sunk));
+  story.applies = terramech::applicability(story.result, how);
+  if (!options.model_out.empty()) writeFile(options.model_out, terramech::modelText(story.result.refined));
+  if (!options.html.empty()) writeFile(options.html, tracePage(story));
+  if (context.json)
+    printJson(traceJson(story));
+  else
+    print(traceText(story));
+  return story.applies.applies ? Exit::kDone : Exit::kNo;
+}
+
+}  // namespace
+
+void addTrace(CLI::App& app, Context& context) {
+  addCommand<TraceCommandOptions>(
+      app, context,
+      {.name = "trace",
+       .group = Group::kSoil,
+       .description = "find what a wheel model lacks: residual, its cause, the model with the effect added",
+       .examples = "  talus trace drive.csv --base soil.yaml --model-out refined.yaml --html residuals.html\n"
+                   "  talus trace drive.csv --json\n"},
+      bind, run);
+}
+
+}  // namespace talus::cli

@@ -1,0 +1,135 @@
+// talus update MAP.ot T.csv -o MAP2.ot: put a drive's telemetry into a map.
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <talus/cli/app/command.hpp>
+#include <talus/cli/app/commands.hpp>
+#include <talus/costmap/drive_evidence.hpp>
+#include <talus/costmap/map_file.hpp>
+#include <talus/terramech/io/telemetry_reader.hpp>
+
+namespace talus::cli {
+namespace {
+
+struct Options {
+  std::string map;
+  std::string telemetry;
+  std::string output;
+  std::string journal;
+  bool replay = false;
+};
+
+void bind(CLI::App& command, Options& options) {
+  command.add_option("MAP", options.map, "belief map made by `talus costmap`")
+      ->required()
+      ->type_name("MAP.ot");
+  command.add_option("TELEMETRY", options.telemetry, "wheel telemetry")->type_name("T.csv");
+  command.add_option("-o,--output", options.output, "map to write")->required()->type_name("MAP2.ot");
+  auto* journal = command.add_option("--journal", options.journal, "journal of every row, kept or refused")
+                      ->type_name("EVIDENCE.db");
+  command.add_flag("--replay", options.replay, "put the whole journal into the map instead of a file")
+      ->needs(journal);
+}
+
+// What a cell costs and is, before and after.
+struct Snapshot {
+  std::shared_ptr<const costmap::CostGrid> grid;
+  std::vector<std::uint8_t> categories;
+};
+
+Snapshot snapshotOf(const costmap::TraversabilityMap& map) {
+  Snapshot snapshot{map.published(), {}};
+  snapshot.categories.reserve(map.grid().size());
+  for (int row = 0; row < map.grid().height; ++row)
+    for (int column = 0; column < map.grid().width; ++column)
+      snapshot.categories.push_back(map.category({column, row}));
+  return snapshot;
+}
+
+struct Difference {
+  std::size_t cells = 0;
+  std::size_t categories = 0;
+};
+
+bool sameCost(const Snapshot& a, const Snapshot& b, maps::Cell cell) {
+  const std::size_t from = a.grid->at(cell).curve(), to = b.grid->at(cell).curve();
+  const auto& before = a.grid->cost().curves();
+  const auto& after = b.grid->cost().curves();
+  if (from >= before.size() || to >= after.size()) return from == to;
+  return before[from].cost_J_per_m == after[to].cost_J_per_m;
+}
+
+Difference between(const Snapshot& before, const Snapshot& after) {
+  Difference difference;
+  const maps::Grid& grid = before.grid->grid();
+  for (int row = 0; row < grid.height; ++row)
+    for (int column = 0; column < grid.width; ++column) {
+      const std::size_t i = grid.index({column, row});
+      difference.categories += before.categories[i] != after.categories[i] ? 1U : 0U;
+      difference.cells += sameCost(before, after, {column, row}) ? 0U : 1U;
+    }
+  return difference;
+}
+
+int run(const Options& options, Context& context) {
+  if (options.telemetry.empty() != options.replay)
+    throw InputError({options.replay ? options.telemetry : "talus update",
+                      options.replay ? "telemetry and --replay together" : "no telemetry",
+                      "give T.csv, or --replay with --journal"});
+  costmap::TraversabilityMap map =
+      costmap::readMap(options.map, context.workers(), context.watch("reading the map"));
+  const Snapshot before = snapshotOf(map);
+  std::unique_ptr<costmap::EvidenceJournal> journal;
+  if (!options.journal.empty()) journal = std::make_unique<costmap::EvidenceJournal>(options.journal);
+  costmap::DriveReport report;
+  std::size_t unreadable = 0;
+  if (options.replay) {
+    report = costmap::replay(map, *journal);
+  } else {
+    const auto telemetry = terramech::readTelemetry(
+        options.telemetry,
+        {.required = {"x_m", "y_m", "load_N", "slip"}, .wheel_radius_m = map.model().rover().wheel.radius_m},
+        context.watch("reading telemetry"));
+    unreadable = telemetry.rejected.size();
+    for (const auto& row : telemetry.rejected)
+      context.warn(fmt::format("{}:{}: {}", options.telemetry, row.line, row.reason));
+    report = costmap::addDrive(map, telemetry, journal.get());
+    if (report.used == 0)
+      throw InputError({options.telemetry, fmt::format("none of its {} rows could be used", report.rejected),
+                        "the first: " + report.first_reason});
+  }
+  for (const std::string& finding : report.findings) context.warn(finding);
+  if (context.stop.stop_requested()) return Exit::kCancelled;
+  costmap::writeMap(map, options.output);
+  const Difference difference = between(before, snapshotOf(map));
+  const std::size_t rejected = report.rejected + unreadable;
+  if (context.json)
+    printJson({{"rows_used", report.used},
+               {"rows_rejected", rejected},
+               {"cells_changed", difference.cells},
+               {"categories_changed", difference.categories},
+               {"findings", report.findings}});
+  else
+    print(fmt::format("rows        {} used, {} rejected\ncells       {} changed, {} of them their category\n",
+                      report.used, rejected, difference.cells, difference.categories));
+  return Exit::kDone;
+}
+
+}  // namespace
+
+void addUpdate(CLI::App& app, Context& context) {
+  addCommand<Options>(app, context,
+                      {.name = "update",
+                       .group = Group::kMaps,
+                       .description = "put a drive's telemetry into a map",
+                       .examples = "  talus update map.ot drive.csv -o map2.ot --journal evidence.db\n"
+                                   "  talus update map.ot --replay --journal evidence.db -o rebuilt.ot\n"},
+                      bind, run);
+}
+
+}  // namespace talus::cli

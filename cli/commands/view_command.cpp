@@ -1,0 +1,120 @@
+// talus view ROUTE|MAP: one page to look at.
+#include <filesystem>
+#include <optional>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <talus/cli/app/command.hpp>
+#include <talus/cli/app/commands.hpp>
+#include <talus/cli/app/output_file.hpp>
+#include <talus/cli/app/sha256.hpp>
+#include <talus/cli/draw/page.hpp>
+#include <talus/cli/draw/picture.hpp>
+#include <talus/cli/draw/scene.hpp>
+#include <talus/cli/ground/map_options.hpp>
+#include <talus/cli/route/route_reader.hpp>
+#include <talus/costmap/map_file.hpp>
+#include <talus/costmap/octomap_surface.hpp>
+#include <talus/costmap/traversability_map.hpp>
+
+namespace talus::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  MapOptions file;
+  std::string map;
+  std::string title;
+  std::string html;
+  std::string png;
+};
+
+void bind(CLI::App& command, Options& options) {
+  addMapOptions(command, options.file, "FILE");
+  command.get_option("FILE")->description("route that `talus plan` wrote, map of beliefs, or elevation map");
+  command
+      .add_option("--map", options.map,
+                  "the map under a route (default: the one it was planned on, looked for "
+                  "beside the route and here)")
+      ->type_name("MAP");
+  command.add_option("--title", options.title, "heading of the page")->type_name("TEXT");
+  command.add_option("-o,--html", options.html, "page to write (default: FILE with .html, in this folder)")
+      ->type_name("PAGE.html");
+  command.add_option("--png", options.png, "picture to write as well")->type_name("FILE.png");
+}
+
+Scene mapScene(const Options& options, const std::string& path, const Context& context) {
+  const SceneOptions scene{.title =
+                               options.title.empty() ? fs::path(path).filename().string() : options.title};
+  if (costmap::octomapType(path) == "TraversabilityTree")
+    return sceneOf(costmap::readMap(path, context.workers(), context.watch("read map")), scene);
+  MapOptions dem = options.file;
+  dem.path = path;
+  return sceneOf(readMap(dem, context), scene);
+}
+
+/// The first input of the route that lies beside it or in this folder and is a map; its name has to be that
+/// of a DEM or a map of beliefs, which come first.
+std::optional<std::string> findMap(const RouteFile& file, const std::string& route_path,
+                                   const Context& context) {
+  if (file.inputs.empty()) return std::nullopt;
+  const RouteInput& input = file.inputs.front();
+  for (const fs::path& folder : {fs::path(route_path).parent_path(), fs::path(".")}) {
+    const fs::path path = folder / input.file;
+    std::error_code error;
+    if (!fs::is_regular_file(path, error)) continue;
+    if (sha256OfFile(path.string()) == input.sha256) return path.string();
+    context.warn(path.string() + " is not the file that the route was planned on: it was changed since");
+  }
+  context.warn("the map " + input.file + " of the route was not found: shown without; pass --map");
+  return std::nullopt;
+}
+
+Scene routeScene(const Options& options, const Context& context) {
+  const RouteFile file = readRoute(options.file.path);
+  const std::string name = fs::path(options.file.path).filename().string();
+  Options titled = options;
+  if (titled.title.empty()) titled.title = name;
+  const std::optional<std::string> map =
+      options.map.empty() ? findMap(file, options.file.path, context) : std::optional(options.map);
+  if (!map) return sceneOf(file.route, {.title = titled.title});
+  Scene scene = mapScene(titled, *map, context);
+  if (!scene.grid().cellAt({file.route.vertices.front().x_m, file.route.vertices.front().y_m}))
+    throw InputError(
+        {*map, "does not hold the start of the route", "pass the map that the route was planned on"});
+  addRoute(scene, file.route);
+  return scene;
+}
+
+int run(const Options& options, Context& context) {
+  const fs::path named(options.html);
+  const fs::path html = named.empty() ? fs::path(options.file.path).stem().concat(".html") : named;
+  OutputFile(html).temporary();  // a bad place is told before the work, not after it
+  if (!options.png.empty()) OutputFile(options.png).temporary();
+  const Scene scene = looksLikeJson(options.file.path) ? routeScene(options, context)
+                                                       : mapScene(options, options.file.path, context);
+  if (context.stop.stop_requested()) return Exit::kCancelled;
+  if (!options.png.empty()) savePicture(options.png, scene);
+  savePage(html, scene);
+  if (context.json)
+    printJson({{"html", html.string()}, {"facts", nlohmann::ordered_json(scene.facts)}});
+  else
+    print(fmt::format("page        {}\n", html.string()));
+  return Exit::kDone;
+}
+
+}  // namespace
+
+void addView(CLI::App& app, Context& context) {
+  addCommand<Options>(app, context,
+                      {.name = "view",
+                       .group = Group::kRoutes,
+                       .description = "one self-contained page: map with layers, route, profiles",
+                       .examples = "  talus view route.geojson\n"
+                                   "  talus view gale.ot -o gale.html --png gale.png\n"},
+                      bind, run);
+}
+
+}  // namespace talus::cli

@@ -1,0 +1,137 @@
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <talus/cli/app/command.hpp>
+#include <talus/cli/app/commands.hpp>
+#include <talus/cli/app/number_check.hpp>
+#include <talus/cli/app/output_file.hpp>
+#include <talus/cli/soil/wheel_report.hpp>
+#include <talus/cli/soil/wheel_table.hpp>
+#include <talus/terramech/contact/wong_reece.hpp>
+#include <talus/terramech/io/soil_library.hpp>
+
+namespace talus::cli {
+namespace {
+
+struct WheelOptions {
+  std::string soil, rover;
+  double load_N = std::nan(""), slip = std::nan("");
+  std::string html;
+  std::string cases, output;
+};
+
+void bind(CLI::App& command, WheelOptions& options) {
+  auto* soil = command.add_option("--soil", options.soil, "soil of the library, or a YAML file")
+                   ->type_name("NAME|FILE");
+  auto* rover =
+      command.add_option("--rover", options.rover, "rover of the library, or a YAML file; its wheel is used")
+          ->type_name("NAME|FILE");
+  auto* load = command.add_option("--load", options.load_N, "load on the wheel [N] (default: the rover's)")
+                   ->type_name("N")
+                   ->check(finite());
+  auto* slip = command.add_option("--slip", options.slip, "-1 (locked) to 1 (spinning in place)")
+                   ->type_name("I")
+                   ->check(within(-1.0, 1.0));
+  auto* html = command.add_option("--html", options.html, "write a page with stresses and curves over slip")
+                   ->type_name("FILE.html");
+  auto* cases =
+      command.add_option("--cases", options.cases, "solve each row of a CSV instead")->type_name("IN.csv");
+  command.add_option("-o,--output", options.output, "where --cases writes")
+      ->type_name("OUT.csv")
+      ->needs(cases);
+  for (auto* single : {soil, rover, load, slip, html}) cases->excludes(single);
+}
+
+[[noreturn]] void lacking(const std::string& option) {
+  throw InputError({.where = "talus wheel",
+                    .reason = "lacks " + option,
+                    .remedy = "give --soil, --rover and --slip, or --cases IN.csv -o OUT.csv"});
+}
+
+nlohmann::ordered_json refusedRows(const WheelTable& table) {
+  auto rows = nlohmann::ordered_json::array();
+  for (const auto& row : table.refused) rows.push_back({{"line", row.line}, {"reason", row.reason}});
+  return rows;
+}
+
+void warnOfRefused(const WheelTable& table, const std::string& path, const Context& context) {
+  constexpr std::size_t kShown = 20;
+  for (std::size_t k = 0; k < table.refused.size() && k < kShown; ++k)
+    context.warn(fmt::format("{}:{}: {}", path, table.refused[k].line, table.refused[k].reason));
+  if (table.refused.size() > kShown)
+    context.warn(
+        fmt::format("{}: {} more rows refused; --json lists all", path, table.refused.size() - kShown));
+}
+
+int runTable(const WheelOptions& options, Context& context) {
+  if (options.output.empty()) lacking("-o OUT.csv");
+  const WheelTable table = solveWheelTable(options.cases, options.output, context.watch("wheels"));
+  if (table.replaced) context.warn(options.cases + ": holds result columns; they are computed anew");
+  warnOfRefused(table, options.cases, context);
+  if (context.json)
+    printJson({{"rows_solved", table.solved},
+               {"rows_refused", table.refused.size()},
+               {"refused", refusedRows(table)}});
+  else
+    print(
+        fmt::format("{}: {} rows solved, {} refused\n", options.output, table.solved, table.refused.size()));
+  return Exit::kDone;
+}
+
+std::string report(const terramech::WheelForces& forces, double load_N, double radius_m) {
+  return fmt::format(
+      "sinkage       {:10.3f} mm   z/r  {:.3f}\n"
+      "entry angle   {:10.3f} deg\n"
+      "torque        {:10.3f} Nm   T/rW {:.3f}\n"
+      "drawbar pull  {:10.3f} N    DP/W {:.3f}\n",
+      1e3 * forces.sinkage_m, forces.sinkage_m / radius_m, forces.entry_angle_rad * 180.0 / std::numbers::pi,
+      forces.torque_Nm, forces.torque_Nm / (radius_m * load_N), forces.drawbar_pull_N,
+      forces.drawbar_pull_N / load_N);
+}
+
+int runOne(const WheelOptions& options, const Context& context) {
+  if (options.soil.empty()) lacking("--soil");
+  if (options.rover.empty()) lacking("--rover");
+  if (std::isnan(options.slip)) lacking("--slip");
+  const terramech::Soil soil = terramech::loadSoil(options.soil);
+  const terramech::Rover rover = terramech::loadRover(options.rover);
+  const double load_N = std::isnan(options.load_N) ? terramech::wheelLoad_N(rover) : options.load_N;
+  const auto forces = terramech::equilibrium(soil, rover.wheel, {.load_N = load_N, .slip = options.slip});
+  if (!options.html.empty()) writeFile(options.html, wheelReport({soil, rover, load_N, options.slip}));
+  if (context.json)
+    printJson({{"soil", soil.name},
+               {"rover", rover.name},
+               {"load_N", load_N},
+               {"slip", options.slip},
+               {"sinkage_m", forces.sinkage_m},
+               {"entry_angle_rad", forces.entry_angle_rad},
+               {"torque_Nm", forces.torque_Nm},
+               {"drawbar_pull_N", forces.drawbar_pull_N}});
+  else
+    print(report(forces, load_N, rover.wheel.radius_m));
+  return Exit::kDone;
+}
+
+int run(const WheelOptions& options, Context& context) {
+  return options.cases.empty() ? runOne(options, context) : runTable(options, context);
+}
+
+}  // namespace
+
+void addWheel(CLI::App& app, Context& context) {
+  addCommand<WheelOptions>(
+      app, context,
+      {.name = "wheel",
+       .group = Group::kSoil,
+       .description = "forces on a wheel: sinkage, torque, drawbar pull",
+       .examples = "  talus wheel --soil lunar_nominal --rover lunar_micro --slip 0.3\n"
+                   "  talus wheel --cases cases.csv -o forces.csv\n" +
+                   fmt::format("Soils: {}\nRovers: {}\n", fmt::join(terramech::librarySoils(), " "),
+                               fmt::join(terramech::libraryRovers(), " "))},
+      bind, run);
+}
+
+}  // namespace talus::cli

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include <talus/maps/grid.hpp>
+
+namespace talus::cli {
+
+/// A grid seen coarser: blocks of factor x factor cells become one; blocks over the edge are cut.
+class Blocks {
+ public:
+  /// The smallest factor that brings both sides to max_side cells or fewer.
+  Blocks(const maps::Grid& fine, int max_side)
+      : fine_(fine), factor_(std::max(1, (std::max(fine.width, fine.height) + max_side - 1) / max_side)) {
+    const auto count = [this](int cells) { return (cells + factor_ - 1) / factor_; };
+    coarse_ = {count(fine.width), count(fine.height), fine.resolution_m * factor_, fine.south_west};
+  }
+
+  const maps::Grid& coarse() const noexcept { return coarse_; }
+
+  /// Calls visit(cell) for a regular sample of at most 8 x 8 cells of the block.
+  template <typename Visit>
+  void forEach(maps::Cell block, Visit visit) const {
+    const int stride = std::max(1, factor_ / 8);
+    const int right = std::min(fine_.width, (block.column + 1) * factor_);
+    const int top = std::min(fine_.height, (block.row + 1) * factor_);
+    for (int row = block.row * factor_; row < top; row += stride)
+      for (int column = block.column * factor_; column < right; column += stride)
+        visit(maps::Cell{column, row});
+  }
+
+  /// Mean over each block of value(cell), NaNs left out; NaN where there is nothing else.
+  template <typename Value>
+  maps::Raster<float> mean(Value value) const {
+    maps::Raster<float> out(coarse_, std::nanf(""));
+    for (int row = 0; row < coarse_.height; ++row) {
+      for (int column = 0; column < coarse_.width; ++column) {
+        double sum = 0.0;
+        int count = 0;
+        forEach({column, row}, [&](maps::Cell cell) {
+          const auto v = static_cast<double>(value(cell));
+          if (std::isnan(v)) return;
+          sum += v;
+          ++count;
+        });
+        if (count > 0) out[{column, row}] = static_cast<float>(sum / count);
+      }
+    }
+    return out;
+  }
+
+ private:
+  maps::Grid fine_;
+  int factor_;
+  maps::Grid coarse_;
+};
+
+}  // namespace talus::cli

@@ -1,0 +1,167 @@
+#include <array>
+#include <numbers>
+#include <stdexcept>
+
+#include <cairo-svg.h>
+#include <cairo.h>
+
+#include <talus/cli/draw/canvas.hpp>
+#include <talus/cli/draw/image.hpp>
+
+namespace talus::cli {
+namespace {
+
+cairo_status_t append(void* text, const unsigned char* data, unsigned length) {
+  static_cast<std::string*>(text)->append(reinterpret_cast<const char*>(data), length);
+  return CAIRO_STATUS_SUCCESS;
+}
+
+void setColour(cairo_t* cairo, Colour c) {
+  cairo_set_source_rgba(cairo, c.red, c.green, c.blue, c.alpha);
+}
+
+void trace(cairo_t* cairo, std::span<const Spot> spots) {
+  cairo_new_path(cairo);
+  for (const Spot& s : spots) cairo_line_to(cairo, s.x, s.y);
+}
+
+void setFont(cairo_t* cairo, const TextStyle& style) {
+  cairo_select_font_face(cairo, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL,
+                         style.bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
+  cairo_set_font_size(cairo, style.size);
+}
+
+}  // namespace
+
+struct Canvas::Surface {
+  std::string svg;  // filled when the surface is finished
+  cairo_surface_t* surface = nullptr;
+  cairo_t* cairo = nullptr;
+
+  Surface() = default;
+  Surface(const Surface&) = delete;
+  Surface& operator=(const Surface&) = delete;
+  ~Surface() {
+    cairo_destroy(cairo);
+    cairo_surface_destroy(surface);
+  }
+};
+
+Canvas::Canvas(const Options& o) : surface_(std::make_unique<Surface>()) {
+  surface_->surface = o.kind == Kind::Svg
+                          ? cairo_svg_surface_create_for_stream(append, &surface_->svg, o.width, o.height)
+                          : cairo_image_surface_create(
+                                o.transparent ? CAIRO_FORMAT_ARGB32 : CAIRO_FORMAT_RGB24, o.width, o.height);
+  surface_->cairo = cairo_create(surface_->surface);
+  if (const cairo_status_t status = cairo_status(surface_->cairo); status != CAIRO_STATUS_SUCCESS)
+    throw std::runtime_error(std::string("cannot draw: ") + cairo_status_to_string(status));
+  cairo_set_line_join(surface_->cairo, CAIRO_LINE_JOIN_ROUND);
+  cairo_set_line_cap(surface_->cairo, CAIRO_LINE_CAP_ROUND);
+  if (!o.transparent)
+    fill({0, 0, static_cast<double>(o.width), static_cast<double>(o.height)}, rgb(0xFFFFFF));
+}
+
+Canvas::~Canvas() = default;
+Canvas::Canvas(Canvas&&) noexcept = default;
+
+void Canvas::fill(const Box& box, Colour colour) {
+  setColour(surface_->cairo, colour);
+  cairo_rectangle(surface_->cairo, box.x, box.y, box.width, box.height);
+  cairo_fill(surface_->cairo);
+}
+
+void Canvas::line(std::span<const Spot> spots, const Stroke& stroke) {
+  cairo_t* c = surface_->cairo;
+  setColour(c, stroke.colour);
+  cairo_set_line_width(c, stroke.width);
+  const std::array dash{5.0, 4.0};
+  cairo_set_dash(c, dash.data(), stroke.dashed ? 2 : 0, 0.0);
+  trace(c, spots);
+  cairo_stroke(c);
+}
+
+void Canvas::polygon(std::span<const Spot> spots, Colour colour) {
+  setColour(surface_->cairo, colour);
+  trace(surface_->cairo, spots);
+  cairo_fill(surface_->cairo);
+}
+
+void Canvas::disc(Spot centre, double radius, Colour colour) {
+  setColour(surface_->cairo, colour);
+  cairo_new_path(surface_->cairo);
+  cairo_arc(surface_->cairo, centre.x, centre.y, radius, 0.0, 2.0 * std::numbers::pi);
+  cairo_fill(surface_->cairo);
+}
+
+void Canvas::text(const std::string& text, Spot spot, const TextStyle& style) {
+  cairo_t* c = surface_->cairo;
+  cairo_save(c);
+  setFont(c, style);
+  cairo_translate(c, spot.x, spot.y);
+  if (style.upright) cairo_rotate(c, -std::numbers::pi / 2.0);
+  cairo_move_to(c, -style.anchor * textWidth(text, style), 0.0);
+  if (style.halo) {
+    cairo_text_path(c, text.c_str());
+    setColour(c, faded(rgb(0xFFFFFF), 0.85));
+    cairo_set_line_width(c, style.size / 4.0);
+    cairo_set_dash(c, nullptr, 0, 0.0);
+    cairo_stroke_preserve(c);
+    setColour(c, style.colour);
+    cairo_fill(c);
+  } else {
+    setColour(c, style.colour);
+    cairo_show_text(c, text.c_str());
+  }
+  cairo_restore(c);
+}
+
+double Canvas::textWidth(const std::string& text, const TextStyle& style) {
+  setFont(surface_->cairo, style);
+  cairo_text_extents_t extents;
+  cairo_text_extents(surface_->cairo, text.c_str(), &extents);
+  return extents.x_advance;
+}
+
+void Canvas::image(const Image& image, const Box& box) {
+  cairo_t* c = surface_->cairo;
+  auto* data = reinterpret_cast<unsigned char*>(const_cast<std::uint32_t*>(image.argb.data()));  // read only
+  cairo_surface_t* source = cairo_image_surface_create_for_data(data, CAIRO_FORMAT_ARGB32, image.width,
+                                                                image.height, 4 * image.width);
+  cairo_save(c);
+  cairo_translate(c, box.x, box.y);
+  cairo_scale(c, box.width / image.width, box.height / image.height);
+  cairo_set_source_surface(c, source, 0.0, 0.0);
+  cairo_pattern_set_filter(cairo_get_source(c),
+                           box.width > image.width ? CAIRO_FILTER_NEAREST : CAIRO_FILTER_GOOD);
+  cairo_paint(c);
+  cairo_restore(c);
+  cairo_surface_destroy(source);
+}
+
+void Canvas::clip(const Box& box) {
+  cairo_save(surface_->cairo);
+  cairo_rectangle(surface_->cairo, box.x, box.y, box.width, box.height);
+  cairo_clip(surface_->cairo);
+}
+
+void Canvas::unclip() {
+  cairo_restore(surface_->cairo);
+}
+
+std::string Canvas::bytes() {
+  std::string bytes;
+  if (cairo_surface_get_type(surface_->surface) == CAIRO_SURFACE_TYPE_IMAGE) {
+    cairo_surface_write_to_png_stream(surface_->surface, append, &bytes);
+    return bytes;
+  }
+  cairo_surface_finish(surface_->surface);
+  return surface_->svg;
+}
+
+void outline(Canvas& canvas, const Box& b, const Stroke& stroke) {
+  const std::array<Spot, 5> corners{
+      {{b.x, b.y}, {b.x + b.width, b.y}, {b.x + b.width, b.y + b.height}, {b.x, b.y + b.height}, {b.x, b.y}}};
+  canvas.line(corners, stroke);
+}
+
+}  // namespace talus::cli

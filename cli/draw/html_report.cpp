@@ -1,0 +1,88 @@
+#include <cstdlib>
+
+#include <fmt/format.h>
+
+#include <talus/cli/draw/html_report.hpp>
+#include <talus/cli/draw/image.hpp>
+
+namespace talus::cli {
+namespace {
+
+constexpr const char* kStyle = R"(
+body { font: 16px/1.5 system-ui, sans-serif; color: #222; max-width: 66rem; margin: 0 auto; padding: 1rem; }
+h1 { font-size: 1.5rem; } h2 { font-size: 1.15rem; margin-top: 2rem; }
+img { max-width: 100%; height: auto; }
+div.table { overflow-x: auto; }
+table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
+th, td { padding: .25rem .75rem; border-bottom: 1px solid #ddd; text-align: left; }
+td.number { text-align: right; })";
+
+bool isNumber(const std::string& text) {
+  char* end = nullptr;
+  std::strtod(text.c_str(), &end);
+  return end != text.c_str() && (*end == '\0' || *end == ' ' || *end == '%');
+}
+
+}  // namespace
+
+std::string escaped(const std::string& text) {
+  std::string html;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        html += "&amp;";
+        break;
+      case '<':
+        html += "&lt;";
+        break;
+      case '>':
+        html += "&gt;";
+        break;
+      case '"':
+        html += "&quot;";
+        break;
+      default:
+        html += c;
+    }
+  }
+  return html;
+}
+
+void HtmlReport::heading(const std::string& text) {
+  body_ += fmt::format("<h2>{}</h2>\n", escaped(text));
+}
+
+void HtmlReport::paragraph(const std::string& text) {
+  body_ += fmt::format("<p>{}</p>\n", escaped(text));
+}
+
+void HtmlReport::table(const std::vector<std::string>& header,
+                       const std::vector<std::vector<std::string>>& rows) {
+  body_ += "<div class=\"table\"><table>\n<tr>";
+  for (const std::string& cell : header) body_ += fmt::format("<th>{}</th>", escaped(cell));
+  body_ += "</tr>\n";
+  for (const auto& row : rows) {
+    body_ += "<tr>";
+    for (const std::string& cell : row)
+      body_ += fmt::format("<td{}>{}</td>", isNumber(cell) ? " class=\"number\"" : "", escaped(cell));
+    body_ += "</tr>\n";
+  }
+  body_ += "</table></div>\n";
+}
+
+void HtmlReport::charts(const std::vector<Plot>& plots, const PlotLayout& layout) {
+  body_ += fmt::format("<p><img alt=\"{}\" src=\"data:image/svg+xml;base64,{}\"></p>\n",
+                       escaped(plots.empty() ? "" : plots.front().title),
+                       base64(draw(plots, Canvas::Kind::Svg, layout)));
+}
+
+std::string HtmlReport::html() const {
+  return fmt::format(
+      "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; style-src "
+      "'unsafe-inline'\">\n<title>{0}</title>\n<style>{1}</style>\n<h1>{0}</h1>\n{2}</html>\n",
+      escaped(title_), kStyle, body_);
+}
+
+}  // namespace talus::cli

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <talus/cli/draw/plot.hpp>
+
+namespace talus::cli {
+
+/// Text with the characters that HTML reads as markup escaped.
+std::string escaped(const std::string& text);
+
+/// A self-contained HTML page of headings, paragraphs, tables and charts, in the order they are added.
+class HtmlReport {
+ public:
+  explicit HtmlReport(std::string title) : title_(std::move(title)) {}
+
+  void heading(const std::string& text);
+  void paragraph(const std::string& text);
+  /// Cells that read as a number are set right.
+  void table(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows);
+  void charts(const std::vector<Plot>& plots, const PlotLayout& layout = {});
+
+  /// The finished page.
+  std::string html() const;
+
+ private:
+  std::string title_;
+  std::string body_;
+};
+
+}  // namespace talus::cli

@@ -1,0 +1,168 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <talus/cli/app/output_file.hpp>
+#include <talus/cli/draw/html_report.hpp>
+#include <talus/cli/draw/map_image.hpp>
+#include <talus/cli/draw/page.hpp>
+#include <talus/cli/draw/page_template.hpp>
+#include <talus/cli/draw/route_summary.hpp>
+
+namespace talus::cli {
+namespace {
+
+using nlohmann::ordered_json;
+
+std::string dataUri(const Image& image) {
+  return "data:image/png;base64," + base64(png(image));
+}
+
+std::string hex(Colour c) {
+  return fmt::format("#{:06x}", pixel(c) & 0xFFFFFFU);
+}
+
+ordered_json categoryLegend() {
+  ordered_json legend = ordered_json::array();
+  for (const auto category : {terramech::Category::Safe, terramech::Category::Marginal,
+                              terramech::Category::Dangerous, terramech::Category::Unknown})
+    legend.push_back({{"colour", hex(colourOf(category))}, {"label", terramech::name(category)}});
+  return legend;
+}
+
+ordered_json scaleLegend(const ValueLayer& layer) {
+  ordered_json legend = ordered_json::array();
+  constexpr int kSteps = 6;
+  for (int i = 0; i < kSteps; ++i) {
+    const double t = i / (kSteps - 1.0);
+    const double value = layer.range.low + t * (layer.range.high - layer.range.low);
+    legend.push_back(
+        {{"colour", hex(at(scaleOf(layer), t))}, {"label", fmt::format("{:.3g} {}", value, layer.unit)}});
+  }
+  return legend;
+}
+
+ordered_json layersOf(const Scene& scene) {
+  ordered_json layers = ordered_json::array();
+  if (!scene.categories.empty())
+    layers.push_back({{"name", "categories"},
+                      {"image", dataUri(categoryImage(scene.categories))},
+                      {"legend", categoryLegend()}});
+  for (const ValueLayer& layer : scene.layers)
+    layers.push_back(
+        {{"name", layer.name}, {"image", dataUri(valueImage(layer))}, {"legend", scaleLegend(layer)}});
+  return layers;
+}
+
+/// Shorter numbers for the page: nine significant digits; null for NaN.
+ordered_json number(double value) {
+  if (!std::isfinite(value)) return nullptr;
+  return std::stod(fmt::format("{:.9g}", value));
+}
+
+/// Every vertex, or for a very long route an even selection with both ends.
+std::vector<std::size_t> selection(std::size_t count) {
+  constexpr std::size_t kMost = 4000;
+  std::vector<std::size_t> chosen;
+  const std::size_t n = std::min(count, kMost);
+  for (std::size_t i = 0; i < n; ++i) chosen.push_back(n < 2 ? 0 : i * (count - 1) / (n - 1));
+  return chosen;
+}
+
+ordered_json routeOf(const planner::Route& route) {
+  constexpr double kDegrees = 180.0 / std::numbers::pi;
+  const std::vector<double> s = distances_m(route);
+  ordered_json points = ordered_json::array();
+  for (const std::size_t i : selection(s.size())) {
+    const planner::RouteVertex& v = route.vertices[i];
+    points.push_back({{"s", number(s[i])},
+                      {"x", number(v.x_m)},
+                      {"y", number(v.y_m)},
+                      {"elevation", number(v.elevation_m)},
+                      {"slope", number(kDegrees * v.slope_along_rad)},
+                      {"across", number(kDegrees * v.slope_across_rad)},
+                      {"slip", number(v.slip)},
+                      {"energy", number(v.energy_J / 1000.0)},
+                      {"time", number(v.time_s)},
+                      {"category", terramech::name(v.category)}});
+    if (v.reverse) points.back()["reverse"] = true;
+    if (v.turn_rad != 0.0) points.back()["turn"] = number(v.turn_rad);
+  }
+  return points;
+}
+
+ordered_json places(const std::vector<maps::Point>& points) {
+  ordered_json out = ordered_json::array();
+  for (const maps::Point& p : points) out.push_back({number(p.x_m), number(p.y_m)});
+  return out;
+}
+
+// Rows of plain numbers: a drive has thousands of moments.
+ordered_json storyOf(const DriveStory& story) {
+  ordered_json out{{"track", ordered_json::array()},
+                   {"events", ordered_json::array()},
+                   {"changes", ordered_json::array()},
+                   {"patches", ordered_json::array()},
+                   {"cell", story.grid.resolution_m}};
+  for (const planner::TrackPoint& t : story.drive.track)
+    out["track"].push_back({number(t.time_s), number(t.place.x_m), number(t.place.y_m), number(t.slip),
+                            number(t.energy_J / 1000.0), number(t.sinkage_m)});
+  for (const planner::DriveEvent& e : story.drive.events)
+    out["events"].push_back({{"time", number(e.time_s)}, {"text", e.text}, {"route", places(e.route)}});
+  for (const CellChange& c : story.changes) {
+    const maps::Point centre = story.grid.centre(c.cell);
+    out["changes"].push_back({number(c.time_s), number(centre.x_m), number(centre.y_m),
+                              hex(colourOf(static_cast<terramech::Category>(c.category)))});
+  }
+  for (const planner::SoilPatch& p : story.patches)
+    out["patches"].push_back({number(p.centre.x_m), number(p.centre.y_m), number(p.radius_m)});
+  return out;
+}
+
+ordered_json dataOf(const Scene& scene) {
+  const maps::Grid& grid = scene.grid();
+  ordered_json data;
+  data["bounds"] = {{"west", grid.south_west.x_m},
+                    {"south", grid.south_west.y_m},
+                    {"east", grid.south_west.x_m + grid.width * grid.resolution_m},
+                    {"north", grid.south_west.y_m + grid.height * grid.resolution_m}};
+  data["shade"] = dataUri(shadeImage(hillshade(scene.elevation_m)));
+  data["layers"] = layersOf(scene);
+  data["facts"] = scene.facts;
+  data["route"] = scene.route ? routeOf(*scene.route) : ordered_json::array();
+  if (scene.story) data["story"] = storyOf(*scene.story);
+  return data;
+}
+
+/// JSON that may stand inside a script element.
+std::string embedded(const ordered_json& data) {
+  std::string text = data.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+  for (std::size_t at = text.find("</"); at != std::string::npos; at = text.find("</", at + 3))
+    text.insert(at + 1, "\\");
+  return text;
+}
+
+void replaceAll(std::string& text, const std::string& from, const std::string& to) {
+  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
+    text.replace(at, from.size(), to);
+}
+
+}  // namespace
+
+std::string page(const Scene& scene) {
+  // The head is filled before the data are put in, so that no text of the user's is taken for a place-holder.
+  std::string html(pageTemplate());
+  replaceAll(html, "@TALUS_TITLE@", escaped(scene.title));
+  replaceAll(html, "@TALUS_SUBTITLE@", escaped(scene.subtitle));
+  const std::string place = "@TALUS_DATA@";
+  return html.replace(html.rfind(place), place.size(), embedded(dataOf(scene)));
+}
+
+void savePage(const std::filesystem::path& path, const Scene& scene) {
+  writeFile(path, page(scene));
+}
+
+}  // namespace talus::cli

@@ -1,0 +1,214 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <talus/cli/app/output_file.hpp>
+#include <talus/cli/draw/canvas.hpp>
+#include <talus/cli/draw/map_image.hpp>
+#include <talus/cli/draw/picture.hpp>
+#include <talus/cli/draw/ticks.hpp>
+
+namespace talus::cli {
+namespace {
+
+constexpr double kMargin = 24.0;
+constexpr double kHead = 64.0;
+constexpr double kLegend = 210.0;
+constexpr Colour kRoute = rgb(0x1B3FBF);
+constexpr Colour kReverse = rgb(0xB3202C);
+constexpr Colour kWhite = rgb(0xFFFFFF);
+constexpr Colour kInk = rgb(0x222222);
+
+/// Colours lit by the hillshade: shadow darkens them, light leaves them.
+Image lit(Image colours, const maps::Raster<float>& shade) {
+  for (int y = 0; y < colours.height; ++y) {
+    for (int x = 0; x < colours.width; ++x) {
+      const float light = shade[{x, colours.height - 1 - y}];
+      std::uint32_t& p = colours.at(x, y);
+      if (p == 0 || std::isnan(light)) continue;
+      const double f = 0.35 + 0.75 * static_cast<double>(light);
+      const auto part = [&](int shift) { return std::min(255.0, f * (p >> shift & 255U)) / 255.0; };
+      p = pixel({part(16), part(8), part(0), 1.0});
+    }
+  }
+  return colours;
+}
+
+/// A picture being drawn.
+class Picture {
+ public:
+  explicit Picture(const Scene& scene)
+      : scene_(scene),
+        scale_(pixelsPerCell(scene.grid())),
+        map_{kMargin, kHead, scene.grid().width * scale_, scene.grid().height * scale_},
+        canvas_({.width = static_cast<int>(std::ceil(map_.width + kLegend + 3 * kMargin)),
+                 .height = static_cast<int>(std::ceil(kHead + kMargin + std::max(map_.height, 420.0)))}) {}
+
+  std::string draw() {
+    canvas_.text(scene_.title, {kMargin, 30}, {.size = 18, .bold = true});
+    canvas_.text(scene_.subtitle, {kMargin, 50}, {.size = 12, .colour = rgb(0x555555)});
+    canvas_.fill(map_, rgb(0xECECEC));
+    ground();
+    canvas_.clip(map_);
+    route();
+    scaleBar();
+    canvas_.unclip();
+    outline(canvas_, map_, {.colour = rgb(0x888888)});
+    legend();
+    return canvas_.bytes();
+  }
+
+ private:
+  /// Small maps are enlarged by a whole number so that the longer side has some 900 pixels.
+  static double pixelsPerCell(const maps::Grid& grid) {
+    return std::max(1.0, std::floor(900.0 / std::max(grid.width, grid.height)));
+  }
+
+  Spot spot(double x_m, double y_m) const {
+    const maps::Grid& grid = scene_.grid();
+    const double pixel_m = grid.resolution_m / scale_;
+    return {map_.x + (x_m - grid.south_west.x_m) / pixel_m,
+            map_.y + map_.height - (y_m - grid.south_west.y_m) / pixel_m};
+  }
+
+  void ground() {
+    const maps::Raster<float> shade = hillshade(scene_.elevation_m);
+    canvas_.image(shadeImage(shade), map_);
+    if (!scene_.categories.empty())
+      canvas_.image(lit(categoryImage(scene_.categories), shade), map_);
+    else if (!scene_.layers.empty())
+      canvas_.image(lit(valueImage(scene_.layers.front()), shade), map_);
+  }
+
+  void route() {
+    if (!scene_.route || scene_.route->vertices.empty()) return;
+    std::vector<Spot> spots;
+    for (const planner::RouteVertex& v : scene_.route->vertices) spots.push_back(spot(v.x_m, v.y_m));
+    canvas_.line(spots, {.colour = kWhite, .width = 5.5});
+    canvas_.line(spots, {.colour = kRoute, .width = 2.8});
+    manoeuvres(spots);
+    mark(spots.front(), "S");
+    mark(spots.back(), "G");
+  }
+
+  // Where the rover drives backwards, and dots where it changes direction or turns in place.
+  void manoeuvres(const std::vector<Spot>& spots) {
+    const auto& vertices = scene_.route->vertices;
+    for (std::size_t i = 0; i + 1 < spots.size(); ++i) {
+      if (vertices[i].reverse)
+        canvas_.line(std::array{spots[i], spots[i + 1]}, {.colour = kReverse, .width = 2.8});
+      if (vertices[i].turn_rad != 0.0 || (i > 0 && vertices[i].reverse != vertices[i - 1].reverse))
+        canvas_.disc(spots[i], 3.5, kReverse);
+    }
+  }
+
+  void mark(Spot at, const char* letter) {
+    canvas_.disc(at, 10.5, kWhite);
+    canvas_.disc(at, 9.0, kRoute);
+    canvas_.text(letter, {at.x, at.y + 4.5}, {.size = 12, .colour = kWhite, .bold = true, .anchor = 0.5});
+  }
+
+  void scaleBar() {
+    const double pixel_m = scene_.grid().resolution_m / scale_;
+    const double length_m = roundBelow(0.25 * map_.width * pixel_m);
+    const double length = length_m / pixel_m;
+    const Spot left{map_.x + 16, map_.y + map_.height - 18};
+    canvas_.line(std::array{left, Spot{left.x + length, left.y}}, {.colour = kWhite, .width = 8});
+    canvas_.line(std::array{left, Spot{left.x + length, left.y}}, {.colour = kInk, .width = 4});
+    const std::string label =
+        length_m >= 1000.0 ? fmt::format("{:g} km", length_m / 1000.0) : fmt::format("{:g} m", length_m);
+    canvas_.text(label, {left.x + length / 2, left.y - 10},
+                 {.size = 13, .bold = true, .anchor = 0.5, .halo = true});
+  }
+
+  void northArrow(Spot tip) {
+    canvas_.polygon(
+        std::array{tip, Spot{tip.x + 9, tip.y + 27}, Spot{tip.x, tip.y + 21}, Spot{tip.x - 9, tip.y + 27}},
+        kInk);
+    canvas_.text("N", {tip.x, tip.y - 5}, {.size = 13, .bold = true, .anchor = 0.5});
+  }
+
+  void legend() {
+    Spot at{map_.x + map_.width + kMargin, map_.y + 8};
+    if (!scene_.categories.empty())
+      categoryLegend(at);
+    else if (!scene_.layers.empty())
+      scaleLegend(at, scene_.layers.front());
+    if (scene_.route && !scene_.route->vertices.empty()) {
+      canvas_.line(std::array{at, Spot{at.x + 26, at.y}}, {.colour = kRoute, .width = 3});
+      canvas_.text("route, S to G", {at.x + 36, at.y + 4}, {});
+      at.y += 24;
+      if (scene_.route->summary.drive) {
+        canvas_.line(std::array{at, Spot{at.x + 26, at.y}}, {.colour = kReverse, .width = 3});
+        canvas_.text("in reverse; dot: turns", {at.x + 36, at.y + 4}, {});
+        at.y += 24;
+      }
+    }
+    elevations(at);
+    northArrow({at.x + 12, at.y + 80});
+  }
+
+  void categoryLegend(Spot& at) {
+    std::array<double, 4> share{};
+    double total = 0.0;
+    for (const CategoryShares& s : scene_.categories.values()) {
+      for (std::size_t i = 0; i < 4; ++i) {
+        share[i] += s.count[i];
+        total += s.count[i];
+      }
+    }
+    for (std::size_t i = 0; i < 4; ++i) {
+      const auto category = static_cast<terramech::Category>(i);
+      canvas_.fill({at.x, at.y - 8, 26, 16}, colourOf(category));
+      canvas_.text(
+          fmt::format("{}, {:.1f} %", terramech::name(category), 100.0 * share[i] / std::max(1.0, total)),
+          {at.x + 36, at.y + 4});
+      at.y += 24;
+    }
+  }
+
+  void scaleLegend(Spot& at, const ValueLayer& layer) {
+    canvas_.text(layer.name + (layer.unit.empty() ? "" : " [" + layer.unit + "]"), {at.x, at.y + 4},
+                 {.bold = true});
+    at.y += 16;
+    constexpr int kSteps = 96;
+    for (int i = 0; i < kSteps; ++i)
+      canvas_.fill({at.x + 2.0 * i, at.y, 2.0, 14}, cli::at(scaleOf(layer), i / (kSteps - 1.0)));
+    canvas_.text(fmt::format("{:.3g}", layer.range.low), {at.x, at.y + 30}, {.size = 11});
+    canvas_.text(fmt::format("{:.3g}", layer.range.high), {at.x + 2.0 * kSteps, at.y + 30},
+                 {.size = 11, .anchor = 1.0});
+    at.y += 52;
+  }
+
+  void elevations(Spot at) {
+    float low = INFINITY;
+    float high = -INFINITY;
+    for (const float z : scene_.elevation_m.values()) {
+      low = std::fmin(low, z);
+      high = std::fmax(high, z);
+    }
+    if (!(low <= high)) return;
+    canvas_.text(fmt::format("elevation {:.1f} to {:.1f} m", low, high), {at.x, at.y + 8}, {.size = 11});
+    canvas_.text("lit from the north-west", {at.x, at.y + 24}, {.size = 11});
+    canvas_.text("light grey: no data", {at.x, at.y + 40}, {.size = 11});
+  }
+
+  const Scene& scene_;
+  double scale_;
+  Box map_;
+  Canvas canvas_;
+};
+
+}  // namespace
+
+std::string drawPicture(const Scene& scene) {
+  return Picture(scene).draw();
+}
+
+void savePicture(const std::filesystem::path& path, const Scene& scene) {
+  writeFile(path, drawPicture(scene));
+}
+
+}  // namespace talus::cli

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include <talus/cli/draw/scene.hpp>
+
+namespace talus::cli {
+
+/// The scene as one PNG: hillshade under categories (or the first value layer where there are none), route,
+/// start, goal, scale bar, north arrow, legend, title.
+std::string drawPicture(const Scene& scene);
+
+/// Writes the picture, whole or not at all. @throws InputError when the file cannot be written
+void savePicture(const std::filesystem::path& path, const Scene& scene);
+
+}  // namespace talus::cli

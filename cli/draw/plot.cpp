@@ -1,0 +1,226 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include <talus/cli/app/output_file.hpp>
+#include <talus/cli/draw/plot.hpp>
+#include <talus/cli/draw/ticks.hpp>
+
+namespace talus::cli {
+namespace {
+
+constexpr Colour kInk = rgb(0x333333);
+constexpr Colour kFaint = rgb(0xE4E4E4);
+
+void check(const Series& s) {
+  if (s.x.size() == s.y.size() && (s.y_std.empty() || s.y_std.size() == s.y.size())) return;
+  throw std::invalid_argument(fmt::format("series '{}': x, y, y_std have {}, {}, {} values, must be as many",
+                                          s.name, s.x.size(), s.y.size(), s.y_std.size()));
+}
+
+/// The finite values' range, widened a little; fixed ends win.
+class Extent {
+ public:
+  void add(double value) {
+    if (!std::isfinite(value)) return;
+    range_.low = std::min(range_.low, value);
+    range_.high = std::max(range_.high, value);
+  }
+
+  Range range(const Axis& axis) const {
+    Range r = range_.low <= range_.high ? range_ : Range{0.0, 1.0};
+    const double margin = r.high > r.low ? 0.04 * (r.high - r.low) : std::max(0.5, 0.05 * std::abs(r.low));
+    r = {axis.low.value_or(r.low - margin), axis.high.value_or(r.high + margin)};
+    if (!(r.high > r.low)) r.high = r.low + 1.0;
+    return r;
+  }
+
+ private:
+  Range range_{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+};
+
+/// One chart on its way onto the canvas.
+class Panel {
+ public:
+  Panel(Canvas& canvas, const Plot& plot, const Box& box) : canvas_(canvas), plot_(plot) {
+    frame_ = {box.x + 68, box.y + 38, box.width - 68 - 18, box.height - 38 - 52};
+    Extent x;
+    Extent y;
+    for (const Series& s : plot.series) {
+      for (std::size_t i = 0; i < s.x.size(); ++i) {
+        const double spread = s.y_std.empty() || !std::isfinite(s.y_std[i]) ? 0.0 : s.y_std[i];
+        x.add(s.x[i]);
+        y.add(s.y[i] - spread);
+        y.add(s.y[i] + spread);
+      }
+    }
+    x_ = x.range(plot.x);
+    y_ = y.range(plot.y);
+  }
+
+  void draw() {
+    axes();
+    canvas_.clip(frame_);
+    for (std::size_t i = 0; i < plot_.series.size(); ++i) series(plot_.series[i], colour(i));
+    canvas_.unclip();
+    outline(canvas_, frame_, {.colour = kInk});
+    legend();
+  }
+
+ private:
+  Spot spot(double x, double y) const {
+    return {frame_.x + (x - x_.low) / (x_.high - x_.low) * frame_.width,
+            frame_.y + (y_.high - y) / (y_.high - y_.low) * frame_.height};
+  }
+
+  Colour colour(std::size_t i) const { return plot_.series[i].colour.value_or(seriesColour(i)); }
+
+  void axes() {
+    const double bottom = frame_.y + frame_.height;
+    const std::vector<double> xs = ticks(x_, 6);
+    const std::vector<double> ys = ticks(y_, 5);
+    const auto step = [](const std::vector<double>& v) { return v.size() > 1 ? v[1] - v[0] : 1.0; };
+    for (const double x : xs) {
+      canvas_.line(std::array{spot(x, y_.low), spot(x, y_.high)}, {.colour = kFaint});
+      canvas_.text(tickLabel(x, step(xs)), {spot(x, 0).x, bottom + 16}, {.size = 11, .anchor = 0.5});
+    }
+    for (const double y : ys) {
+      canvas_.line(std::array{spot(x_.low, y), spot(x_.high, y)}, {.colour = kFaint});
+      canvas_.text(tickLabel(y, step(ys)), {frame_.x - 6, spot(0, y).y + 4}, {.size = 11, .anchor = 1.0});
+    }
+    const double middle = frame_.x + frame_.width / 2;
+    canvas_.text(plot_.title, {middle, frame_.y - 14}, {.size = 13, .bold = true, .anchor = 0.5});
+    canvas_.text(plot_.x.label, {middle, bottom + 38}, {.anchor = 0.5});
+    canvas_.text(plot_.y.label, {frame_.x - 52, frame_.y + frame_.height / 2},
+                 {.anchor = 0.5, .upright = true});
+  }
+
+  void series(const Series& s, Colour c) {
+    if (s.mark == Series::Mark::Line) {
+      band(s, c);
+      runs(s, c);
+      return;
+    }
+    for (std::size_t i = 0; i < s.x.size(); ++i) {
+      if (!std::isfinite(s.x[i]) || !std::isfinite(s.y[i])) continue;
+      if (!s.y_std.empty() && std::isfinite(s.y_std[i]))
+        canvas_.line(std::array{spot(s.x[i], s.y[i] - s.y_std[i]), spot(s.x[i], s.y[i] + s.y_std[i])},
+                     {.colour = faded(c, 0.5)});
+      canvas_.disc(spot(s.x[i], s.y[i]), s.x.size() > 400 ? 1.6 : 2.8,
+                   faded(c, s.x.size() > 400 ? 0.5 : 0.85));
+    }
+  }
+
+  /// A line between each pair of breaks.
+  void runs(const Series& s, Colour c) {
+    std::vector<Spot> run;
+    for (std::size_t i = 0; i <= s.x.size(); ++i) {
+      if (i < s.x.size() && std::isfinite(s.x[i]) && std::isfinite(s.y[i])) {
+        run.push_back(spot(s.x[i], s.y[i]));
+        continue;
+      }
+      if (run.size() > 1) canvas_.line(run, {.colour = c, .width = 1.8, .dashed = s.dashed});
+      run.clear();
+    }
+  }
+
+  void band(const Series& s, Colour c) {
+    if (s.y_std.empty()) return;
+    std::vector<Spot> rim;
+    for (std::size_t i = 0; i < s.x.size(); ++i)
+      if (std::isfinite(s.y[i] + s.y_std[i])) rim.push_back(spot(s.x[i], s.y[i] + s.y_std[i]));
+    for (std::size_t i = s.x.size(); i-- > 0;)
+      if (std::isfinite(s.y[i] + s.y_std[i])) rim.push_back(spot(s.x[i], s.y[i] - s.y_std[i]));
+    canvas_.polygon(rim, faded(c, 0.18));
+  }
+
+  void legend() {
+    double width = 0.0;
+    int rows = 0;
+    for (const Series& s : plot_.series) {
+      if (s.name.empty()) continue;
+      width = std::max(width, canvas_.textWidth(s.name, {.size = 11}));
+      ++rows;
+    }
+    if (rows == 0) return;
+    const Box box = emptiestCorner({0, 0, width + 42, rows * 17.0 + 8});
+    canvas_.fill(box, faded(rgb(0xFFFFFF), 0.85));
+    outline(canvas_, box, {.colour = kFaint});
+    double y = box.y + 16;
+    for (std::size_t i = 0; i < plot_.series.size(); ++i) {
+      const Series& s = plot_.series[i];
+      if (s.name.empty()) continue;
+      if (s.mark == Series::Mark::Line)
+        canvas_.line(std::array{Spot{box.x + 8, y - 4}, Spot{box.x + 28, y - 4}},
+                     {.colour = colour(i), .width = 1.8, .dashed = s.dashed});
+      else
+        canvas_.disc({box.x + 18, y - 4}, 3.0, colour(i));
+      canvas_.text(s.name, {box.x + 34, y}, {.size = 11});
+      y += 17;
+    }
+  }
+
+  /// The box in the corner of the frame where it covers the fewest points.
+  Box emptiestCorner(Box box) const {
+    Box best = box;
+    std::size_t fewest = std::numeric_limits<std::size_t>::max();
+    for (const double right : {1.0, 0.0}) {
+      for (const double low : {0.0, 1.0}) {
+        box.x = frame_.x + 8 + right * (frame_.width - box.width - 16);
+        box.y = frame_.y + 8 + low * (frame_.height - box.height - 16);
+        const std::size_t n = covered(box);
+        if (n >= fewest) continue;
+        fewest = n;
+        best = box;
+      }
+    }
+    return best;
+  }
+
+  std::size_t covered(const Box& b) const {
+    std::size_t n = 0;
+    for (const Series& s : plot_.series) {
+      for (std::size_t i = 0; i < s.x.size(); ++i) {
+        const Spot p = spot(s.x[i], s.y[i]);
+        if (p.x >= b.x && p.x <= b.x + b.width && p.y >= b.y && p.y <= b.y + b.height) ++n;
+      }
+    }
+    return n;
+  }
+
+  Canvas& canvas_;
+  const Plot& plot_;
+  Box frame_;
+  Range x_;
+  Range y_;
+};
+
+}  // namespace
+
+std::string draw(const std::vector<Plot>& plots, Canvas::Kind kind, const PlotLayout& layout) {
+  for (const Plot& plot : plots)
+    for (const Series& s : plot.series) check(s);
+  const int count = std::max(1, static_cast<int>(plots.size()));
+  const int columns = std::clamp(layout.columns, 1, count);
+  const int rows = (count + columns - 1) / columns;
+  Canvas canvas({.width = columns * layout.panel_width, .height = rows * layout.panel_height, .kind = kind});
+  for (int i = 0; i < static_cast<int>(plots.size()); ++i) {
+    const int column = i % columns;
+    const int row = i / columns;
+    const Box box{static_cast<double>(column * layout.panel_width),
+                  static_cast<double>(row * layout.panel_height), static_cast<double>(layout.panel_width),
+                  static_cast<double>(layout.panel_height)};
+    Panel(canvas, plots[static_cast<std::size_t>(i)], box).draw();
+  }
+  return canvas.bytes();
+}
+
+void save(const std::filesystem::path& path, const std::vector<Plot>& plots, const PlotLayout& layout) {
+  writeFile(path, draw(plots, path.extension() == ".svg" ? Canvas::Kind::Svg : Canvas::Kind::Png, layout));
+}
+
+}  // namespace talus::cli

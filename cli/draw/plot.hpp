@@ -1,0 +1,57 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <talus/cli/draw/canvas.hpp>
+#include <talus/cli/draw/colour.hpp>
+
+/// Simple charts of lines and points.
+namespace talus::cli {
+
+/// One curve or cloud of points.
+struct Series {
+  enum class Mark { Line, Points };
+
+  std::string name = {};           ///< in the legend; empty: not there
+  std::vector<double> x;           ///< in the unit of the axis
+  std::vector<double> y;           ///< as many; a NaN breaks the line
+  std::vector<double> y_std = {};  ///< none, or as many: drawn as a band (Line) or bars (Points) of one std
+  Mark mark = Mark::Line;
+  bool dashed = false;
+  std::optional<Colour> colour = {};  ///< none: the next that stays apart from the others
+};
+
+/// One axis.
+struct Axis {
+  std::string label;               ///< with its unit: "slip [-]"
+  std::optional<double> low = {};  ///< none: from the data
+  std::optional<double> high = {};
+};
+
+/// One chart.
+struct Plot {
+  std::string title;
+  Axis x;
+  Axis y;
+  std::vector<Series> series;
+};
+
+/// How charts share a page.
+struct PlotLayout {
+  int columns = 2;
+  int panel_width = 520;   ///< pixels
+  int panel_height = 380;  ///< pixels
+};
+
+/// Draws the charts row by row; the bytes of a PNG or SVG file.
+/// @throws std::invalid_argument when x, y or y_std of a series differ in length
+std::string draw(const std::vector<Plot>& plots, Canvas::Kind kind, const PlotLayout& layout = {});
+
+/// Writes the charts as PNG or, for the extension .svg, as SVG; whole or not at all.
+/// @throws InputError when the file cannot be written
+void save(const std::filesystem::path& path, const std::vector<Plot>& plots, const PlotLayout& layout = {});
+
+}  // namespace talus::cli

@@ -1,0 +1,198 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include <talus/cli/draw/route_summary.hpp>
+
+namespace talus::cli {
+namespace {
+
+using planner::Route;
+using planner::RouteVertex;
+using Facts = std::vector<std::pair<std::string, std::string>>;
+
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+
+std::string lengthText(double metres) {
+  return metres >= 2000.0 ? fmt::format("{:.2f} km", metres / 1000.0) : fmt::format("{:.4g} m", metres);
+}
+
+/// Largest and mean of a field over the motions, by length; not known where no motion has it.
+struct Profile {
+  double highest = -INFINITY;
+  double lowest = INFINITY;
+  double mean = 0.0;
+  std::size_t lowest_at = 0;
+
+  bool known() const { return highest >= lowest; }
+};
+
+Profile profile(const Route& route, double RouteVertex::*field) {
+  Profile p;
+  const std::vector<double> s = distances_m(route);
+  double length = 0.0;
+  for (std::size_t i = 0; i + 1 < s.size(); ++i) {
+    const double value = route.vertices[i].*field;
+    if (std::isnan(value)) continue;
+    p.highest = std::max(p.highest, value);
+    if (value < p.lowest) p.lowest_at = i;
+    p.lowest = std::min(p.lowest, value);
+    p.mean += value * (s[i + 1] - s[i]);
+    length += s[i + 1] - s[i];
+  }
+  if (length > 0.0) p.mean /= length;
+  return p;
+}
+
+std::string straightText(const Route& route) {
+  const RouteVertex& a = route.vertices.front();
+  const RouteVertex& b = route.vertices.back();
+  const double straight = std::hypot(b.x_m - a.x_m, b.y_m - a.y_m);
+  if (!(straight > 0.0)) return "";
+  return fmt::format(", {:.2f} times the straight line", route.summary.length_m / straight);
+}
+
+std::string climbText(const Route& route) {
+  double up = 0.0;
+  double down = 0.0;
+  for (std::size_t i = 0; i + 1 < route.vertices.size(); ++i) {
+    const double dz = route.vertices[i + 1].elevation_m - route.vertices[i].elevation_m;
+    if (dz > 0.0) up += dz;
+    if (dz < 0.0) down -= dz;
+  }
+  return fmt::format("{:.4g} m up, {:.4g} m down", up, down);
+}
+
+std::string slopeText(const Route& route) {
+  const Profile along = profile(route, &RouteVertex::slope_along_rad);
+  const Profile across = profile(route, &RouteVertex::slope_across_rad);
+  if (!along.known()) return "";
+  return fmt::format("at most {:.1f} deg up, {:.1f} deg down, {:.1f} deg across",
+                     kDegrees * std::max(0.0, along.highest), kDegrees * std::max(0.0, -along.lowest),
+                     kDegrees * std::max(std::abs(across.highest), std::abs(across.lowest)));
+}
+
+std::string marginText(const Route& route) {
+  const Profile margin = profile(route, &RouteVertex::drawbar_pull_margin);
+  if (!margin.known()) return "";
+  const RouteVertex& at = route.vertices[margin.lowest_at];
+  return fmt::format("least {:+.3f} of the load, {} from the start at {:.1f},{:.1f}", margin.lowest,
+                     lengthText(distances_m(route)[margin.lowest_at]), at.x_m, at.y_m);
+}
+
+std::string groundText(const Route& route) {
+  std::array<double, 4> length{};
+  double total = 0.0;
+  const std::vector<double> s = distances_m(route);
+  for (std::size_t i = 0; i + 1 < s.size(); ++i) {
+    length[static_cast<std::size_t>(route.vertices[i].category)] += s[i + 1] - s[i];
+    total += s[i + 1] - s[i];
+  }
+  std::string text;
+  for (std::size_t c = 0; c < length.size() && total > 0.0; ++c) {
+    if (length[c] <= 0.0) continue;
+    if (!text.empty()) text += ", ";
+    text += fmt::format("{:.1f} % {}", 100.0 * length[c] / total,
+                        terramech::name(static_cast<terramech::Category>(c)));
+  }
+  return text;
+}
+
+std::string wheelText(const Route& route) {
+  const Profile sinkage = profile(route, &RouteVertex::sinkage_m);
+  const Profile torque = profile(route, &RouteVertex::torque_Nm);
+  if (!sinkage.known() || !torque.known()) return "";
+  return fmt::format("sinks {:.1f} mm at most, {:.1f} mm on average; torque up to {:.3g} Nm",
+                     1000.0 * sinkage.highest, 1000.0 * sinkage.mean,
+                     std::max(torque.highest, -torque.lowest));
+}
+
+std::string slipText(const Route& route) {
+  const Profile slip = profile(route, &RouteVertex::slip);
+  if (!slip.known()) return "";
+  return fmt::format("{:.2f} to {:.2f}, mean {:.2f}", slip.lowest, slip.highest, slip.mean);
+}
+
+/// How far from the best it may be, where the bound says anything of use.
+std::string statusText(const Route& route) {
+  const planner::RouteSummary& s = route.summary;
+  if (!(s.gap < 1.0)) return fmt::format("found by {}; how far from the cheapest is not known", s.planner);
+  return fmt::format("found by {}, within {:.1f} % of the cheapest there can be", s.planner, 100.0 * s.gap);
+}
+
+std::string riskText(double probability) {
+  if (probability > 0.99) return "more than 99 % to get stuck on the way";
+  return fmt::format("{:.2g} % to get stuck on the way", 100.0 * probability);
+}
+
+std::string driveText(const Route& route) {
+  if (!route.summary.drive) return "";
+  const planner::DriveShape& d = *route.summary.drive;
+  const std::string radius = d.max_curvature_1_m > 0.0
+                                 ? fmt::format("arcs of {:.3g} m and more", 1.0 / d.max_curvature_1_m)
+                                 : "straight between turns";
+  return fmt::format("{}, {} reversals, {} turns in place, {:.0f} deg turned in all", radius, d.cusps,
+                     d.turns_in_place, kDegrees * d.turned_rad);
+}
+
+}  // namespace
+
+std::vector<double> distances_m(const Route& route) {
+  std::vector<double> s;
+  for (std::size_t i = 0; i < route.vertices.size(); ++i) {
+    const RouteVertex& b = route.vertices[i];
+    const RouteVertex& a = route.vertices[i == 0 ? 0 : i - 1];
+    s.push_back((i == 0 ? 0.0 : s.back()) + std::hypot(b.x_m - a.x_m, b.y_m - a.y_m));
+  }
+  return s;
+}
+
+std::string energyText(double joules) {
+  if (joules >= 1e6) return fmt::format("{:.4g} MJ", joules / 1e6);
+  return joules >= 1e4 ? fmt::format("{:.4g} kJ", joules / 1e3) : fmt::format("{:.4g} J", joules);
+}
+
+std::string durationText(double seconds) {
+  if (!std::isfinite(seconds)) return "for ever";
+  const auto minutes = static_cast<long long>(std::llround(seconds / 60.0));
+  if (seconds < 100.0) return fmt::format("{:.0f} s", seconds);
+  if (minutes < 60) return fmt::format("{} min", minutes);
+  if (minutes < 48 * 60) return fmt::format("{} h {:02} min", minutes / 60, minutes % 60);
+  return fmt::format("{} d {:02} h", minutes / 1440, minutes % 1440 / 60);
+}
+
+Facts summaryOf(const Route& route) {
+  if (route.status != planner::RouteStatus::Found || route.vertices.empty())
+    return {{"route", fmt::format("{}: {}", planner::name(route.status), route.reason)}};
+  const planner::RouteSummary& s = route.summary;
+  if (!(s.length_m > 0.0)) return {{"route", "nothing to drive: the start is at the goal"}};
+  const double risk = route.vertices.back().immobilisation_risk;
+  Facts facts{
+      {"route", statusText(route)},
+      {"length", lengthText(s.length_m) + straightText(route)},
+      {"driving time",
+       fmt::format("{}, {:.3g} m/s on average", durationText(s.time_s), s.length_m / s.time_s)},
+      {"energy", fmt::format("{} ({:.4g} Wh), {:.4g} J/m; cost with time and risk {}", energyText(s.energy_J),
+                             s.energy_J / 3600.0, s.energy_J / s.length_m, energyText(s.cost))},
+      {"manoeuvres", driveText(route)},
+      {"climb", climbText(route)},
+      {"slope", slopeText(route)},
+      {"slip", slipText(route)},
+      {"wheel", wheelText(route)},
+      {"pull to spare", marginText(route)},
+      {"ground", groundText(route)},
+      {"risk", riskText(risk)}};
+  std::erase_if(facts, [](const auto& fact) { return fact.second.empty(); });
+  return facts;
+}
+
+std::string summaryText(const Route& route) {
+  std::string text;
+  for (const auto& [what, value] : summaryOf(route)) text += fmt::format("{:<14}{}\n", what, value);
+  return text;
+}
+
+}  // namespace talus::cli

@@ -1,0 +1,176 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include <talus/cli/draw/block_mean.hpp>
+#include <talus/cli/draw/route_summary.hpp>
+#include <talus/cli/draw/scene.hpp>
+#include <talus/costmap/traversability_map.hpp>
+
+namespace talus::cli {
+namespace {
+
+using maps::Cell;
+using maps::Raster;
+
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+
+/// Smallest and largest of the values between their 2 % and 98 % quantiles, so that a few outliers do not
+/// take all colours.
+Range inner(const Raster<float>& values) {
+  std::vector<float> finite;
+  for (const float v : values.values())
+    if (std::isfinite(v)) finite.push_back(v);
+  if (finite.empty()) return {0.0, 1.0};
+  const auto quantile = [&finite](double share) {
+    const auto at =
+        finite.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(finite.size() - 1));
+    std::nth_element(finite.begin(), at, finite.end());
+    return static_cast<double>(*at);
+  };
+  const Range range{quantile(0.02), quantile(0.98)};
+  return range.high > range.low ? range : Range{range.low, range.low + 1.0};
+}
+
+/// Slope of the cells as they are drawn, by central differences [deg].
+Raster<float> slope_deg(const Raster<float>& z) {
+  const maps::Grid& grid = z.grid();
+  Raster<float> out(grid, std::nanf(""));
+  for (int r = 1; r + 1 < grid.height; ++r) {
+    for (int c = 1; c + 1 < grid.width; ++c) {
+      const float dx = z[{c + 1, r}] - z[{c - 1, r}];
+      const float dy = z[{c, r + 1}] - z[{c, r - 1}];
+      out[{c, r}] = static_cast<float>(
+          kDegrees * std::atan(std::hypot(static_cast<double>(dx), static_cast<double>(dy)) /
+                               (2.0 * grid.resolution_m)));
+    }
+  }
+  return out;
+}
+
+Raster<CategoryShares> categoryShares(const costmap::TraversabilityMap& map, const Blocks& blocks) {
+  Raster<CategoryShares> out(blocks.coarse());
+  for (int row = 0; row < blocks.coarse().height; ++row) {
+    for (int column = 0; column < blocks.coarse().width; ++column) {
+      CategoryShares& shares = out[{column, row}];
+      blocks.forEach({column, row}, [&](Cell cell) { ++shares.count[map.belief(cell).category & 3U]; });
+    }
+  }
+  return out;
+}
+
+void addBeliefLayers(Scene& scene, const costmap::TraversabilityMap& map, const Blocks& blocks) {
+  const auto mean = [&](float costmap::CellBelief::*field) {
+    return blocks.mean([&map, field](Cell cell) {
+      const costmap::CellBelief belief = map.belief(cell);
+      return belief.category < 3 ? belief.*field : std::nanf("");
+    });
+  };
+  const auto add = [&scene](ValueLayer layer) {
+    layer.range = inner(layer.values);
+    scene.layers.push_back(std::move(layer));
+  };
+  add({.name = "drawbar pull / load",
+       .unit = "",
+       .values = mean(&costmap::CellBelief::pull_mean),
+       .range = {}});
+  add({.name = "its uncertainty (std)",
+       .unit = "",
+       .values = mean(&costmap::CellBelief::pull_std),
+       .range = {}});
+  add({.name = "sinkage / radius",
+       .unit = "",
+       .values = mean(&costmap::CellBelief::sinkage_mean),
+       .range = {}});
+}
+
+/// Names of the soils that the map's classes stand for.
+std::string soilNames(const costmap::TraversabilityMap& map) {
+  std::string names;
+  for (const costmap::GroundClass& one : map.model().parts().classes)
+    names += (names.empty() ? "" : ", ") + one.soil.name;
+  return names;
+}
+
+/// "4 x 3.00 km, cells of 5 m".
+std::string sizeText(const maps::Grid& grid) {
+  const double width_m = grid.width * grid.resolution_m;
+  const double height_m = grid.height * grid.resolution_m;
+  const bool large = std::max(width_m, height_m) >= 2000.0;
+  const double unit = large ? 1000.0 : 1.0;
+  return fmt::format("{:.4g} x {:.4g} {}, cells of {:.4g} m", width_m / unit, height_m / unit,
+                     large ? "km" : "m", grid.resolution_m);
+}
+
+std::string frameText(const maps::ElevationMap& map) {
+  return map.georeference ? map.georeference->body() + ", " + map.georeference->system().name
+                          : "local metres";
+}
+
+Scene ground(const maps::ElevationMap& map, const Blocks& blocks, const SceneOptions& options) {
+  Scene scene;
+  scene.title = options.title;
+  scene.subtitle = sizeText(map.grid()) + ", " + frameText(map);
+  scene.elevation_m = blocks.mean([&map](Cell cell) { return map.elevation_m[cell]; });
+  return scene;
+}
+
+}  // namespace
+
+Scene sceneOf(const maps::ElevationMap& map, const SceneOptions& options) {
+  const Blocks blocks(map.grid(), options.max_side);
+  Scene scene = ground(map, blocks, options);
+  ValueLayer slope{.name = "slope", .unit = "deg", .values = slope_deg(scene.elevation_m), .range = {}};
+  slope.range = {0.0, std::max(1.0, inner(slope.values).high)};
+  scene.layers.push_back(std::move(slope));
+  return scene;
+}
+
+Scene sceneOf(const costmap::TraversabilityMap& map, const SceneOptions& options) {
+  const Blocks blocks(map.grid(), options.max_side);
+  Scene scene = ground(map.elevation(), blocks, options);
+  scene.categories = categoryShares(map, blocks);
+  const auto version = map.published();
+  ValueLayer slope{.name = "slope",
+                   .unit = "deg",
+                   .values = blocks.mean([&](Cell cell) {
+                     if (has(map.hazards(cell), costmap::Hazard::Unknown)) return std::nan("");
+                     const costmap::CellCode code = version->at(cell);
+                     return kDegrees * std::atan(std::hypot(code.dzDx(), code.dzDy()));
+                   }),
+                   .range = {}};
+  slope.range = {0.0, std::max(1.0, inner(slope.values).high)};
+  scene.layers.push_back(std::move(slope));
+  addBeliefLayers(scene, map, blocks);
+  scene.facts.emplace_back("rover", map.model().rover().name);
+  scene.facts.emplace_back("soil", soilNames(map));
+  return scene;
+}
+
+Scene sceneOf(const planner::Route& route, const SceneOptions& options) {
+  double west = INFINITY, south = INFINITY, east = -INFINITY, north = -INFINITY;
+  for (const planner::RouteVertex& v : route.vertices) {
+    west = std::min(west, v.x_m);
+    east = std::max(east, v.x_m);
+    south = std::min(south, v.y_m);
+    north = std::max(north, v.y_m);
+  }
+  constexpr int kCells = 100;
+  const double side_m = 1.2 * std::max({east - west, north - south, 1.0});
+  const maps::Point corner{0.5 * (west + east - side_m), 0.5 * (south + north - side_m)};
+  Scene scene;
+  scene.title = options.title;
+  scene.subtitle = "the route alone: its map was not found";
+  scene.elevation_m = Raster<float>({kCells, kCells, side_m / kCells, corner}, std::nanf(""));
+  addRoute(scene, route);
+  return scene;
+}
+
+void addRoute(Scene& scene, const planner::Route& route) {
+  scene.route = route;
+  for (Fact& fact : summaryOf(route)) scene.facts.push_back(std::move(fact));
+}
+
+}  // namespace talus::cli

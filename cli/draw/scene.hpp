@@ -1,0 +1,72 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <talus/cli/draw/colour.hpp>
+#include <talus/cli/draw/drive_story.hpp>
+#include <talus/cli/draw/ticks.hpp>
+#include <talus/maps/elevation_map.hpp>
+#include <talus/planner/route/route.hpp>
+
+namespace talus::costmap {
+class TraversabilityMap;
+}
+
+namespace talus::cli {
+
+/// How many of a block's cells fall in each terramech::Category, by its number.
+struct CategoryShares {
+  std::array<std::uint8_t, 4> count{};
+};
+
+/// A quantity over the map that is shown in colours.
+struct ValueLayer {
+  std::string name;             ///< "slope"
+  std::string unit;             ///< "deg"; empty for a ratio
+  maps::Raster<float> values;   ///< NaN where there is none
+  Range range;                  ///< values at the two ends of the scale
+  bool zero_in_middle = false;  ///< colours diverge from the middle
+};
+
+/// A line of a summary: what, and its value with unit.
+using Fact = std::pair<std::string, std::string>;
+
+/// All that a picture or a page shows, at the scale it is shown: rasters share one grid, at most a few
+/// pixels' worth of cells a side.
+struct Scene {
+  std::string title;
+  std::string subtitle;
+  maps::Raster<float> elevation_m;          ///< NaN: no data
+  maps::Raster<CategoryShares> categories;  ///< empty: not known
+  std::vector<ValueLayer> layers;
+  std::vector<Fact> facts;
+  std::optional<planner::Route> route;
+  std::optional<DriveStory> story;  ///< a simulated drive, to be run through
+
+  const maps::Grid& grid() const noexcept { return elevation_m.grid(); }
+};
+
+/// How large a scene may be.
+struct SceneOptions {
+  std::string title;
+  int max_side = 1200;  ///< cells; larger maps are averaged over blocks
+};
+
+/// A map alone: elevation and slope.
+Scene sceneOf(const maps::ElevationMap& map, const SceneOptions& options);
+
+/// A map of beliefs: also categories, drawbar pull, its uncertainty and sinkage.
+Scene sceneOf(const costmap::TraversabilityMap& map, const SceneOptions& options);
+
+/// A route without its map: an empty ground around it.
+Scene sceneOf(const planner::Route& route, const SceneOptions& options);
+
+/// Puts a route on a scene, with the facts of its summary.
+void addRoute(Scene& scene, const planner::Route& route);
+
+}  // namespace talus::cli

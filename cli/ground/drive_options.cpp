@@ -1,0 +1,65 @@
+#include <numbers>
+
+#include <CLI/CLI.hpp>
+
+#include <talus/cli/app/number_check.hpp>
+#include <talus/cli/ground/drive_options.hpp>
+#include <talus/planner/route/turn_prices.hpp>
+
+namespace talus::cli {
+namespace {
+
+// A heading in radians, or in degrees under another name.
+void addHeading(CLI::App& command, const std::string& name, std::optional<double>& heading_rad) {
+  auto* radians = command
+                      .add_option_function<double>(
+                          name, [&heading_rad](double value) { heading_rad = value; },
+                          "which way the rover looks there, counter-clockwise from east; any if not given")
+                      ->type_name("RAD")
+                      ->check(finite());
+  command
+      .add_option_function<double>(
+          name + "-deg", [&heading_rad](double value) { heading_rad = value * std::numbers::pi / 180.0; },
+          "the same in degrees")
+      ->type_name("DEG")
+      ->check(finite())
+      ->excludes(radians);
+}
+
+}  // namespace
+
+void addDriveOptions(CLI::App& command, DriveOptions& drive) {
+  addHeading(command, "--start-heading", drive.start_heading_rad);
+  addHeading(command, "--goal-heading", drive.goal_heading_rad);
+  command
+      .add_option_function<double>(
+          "--turning-radius", [&drive](double value) { drive.turning_radius_m = value; },
+          "smallest radius that hybrid may drive; 0: turns in place (default: the rover's)")
+      ->type_name("METRES")
+      ->check(notNegative());
+  addChassisOption(command, drive.chassis);
+  command.add_flag("--no-reverse", drive.no_reverse, "hybrid: the rover may not drive backwards");
+}
+
+void addChassisOption(CLI::App& command, std::string& chassis) {
+  command
+      .add_option("--chassis", chassis,
+                  "keep clearance, pitch and roll of such a chassis along the whole motion (any planner)")
+      ->type_name("KIND")
+      ->check(CLI::IsMember({"rigid", "rocker-bogie"}));
+}
+
+planner::Kinematics kinematicsOf(const DriveOptions& drive, const costmap::TraversabilityMap& map) {
+  planner::Kinematics kinematics = planner::kinematicsOn(map.model(), map.published()->cost());
+  if (drive.turning_radius_m) kinematics.turning_radius_m = *drive.turning_radius_m;
+  kinematics.may_reverse = !drive.no_reverse;
+  return kinematics;
+}
+
+std::optional<planner::Chassis> chassisOf(const std::string& kind, const costmap::TraversabilityMap& map) {
+  if (kind.empty()) return std::nullopt;
+  return planner::Chassis(map.elevation().elevation_m, map.model().rover(),
+                          kind == "rigid" ? planner::Suspension::Rigid : planner::Suspension::RockerBogie);
+}
+
+}  // namespace talus::cli

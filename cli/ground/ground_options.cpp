@@ -1,0 +1,174 @@
+#include <chrono>
+#include <fstream>
+#include <numbers>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+
+#include <talus/cli/app/context.hpp>
+#include <talus/cli/app/number_check.hpp>
+#include <talus/cli/ground/ground_options.hpp>
+#include <talus/costmap/ground_class.hpp>
+#include <talus/costmap/map_file.hpp>
+#include <talus/costmap/octomap_surface.hpp>
+#include <talus/terramech/io/model_file.hpp>
+#include <talus/terramech/io/soil_library.hpp>
+
+namespace talus::cli {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double since_s(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+// What to assume where the user says nothing, by the body the map lies on.
+struct Assumed {
+  const char* body;
+  const char* soil;
+  const char* rover;
+};
+constexpr Assumed kAssumed[] = {{"Moon", "lunar_nominal", "lunar_micro"},
+                                {"Mars", "mars_blocky", "mer"},
+                                {"", "testbed_topsoil", "fido"}};
+
+const Assumed& assumedOn(const maps::ElevationMap& map) {
+  const std::string body = map.georeference ? map.georeference->body() : "";
+  for (const Assumed& one : kAssumed)
+    if (body == one.body) return one;
+  return kAssumed[2];
+}
+
+bool isBeliefMap(const std::string& path) {
+  return costmap::octomapType(path) == "TraversabilityTree";
+}
+
+void addPolicy(CLI::App& command, costmap::DrivePolicy& policy) {
+  command.add_flag("--no-marginal{false}", policy.allow_marginal, "refuse marginal ground, too");
+  command.add_flag("--allow-dangerous", policy.allow_dangerous,
+                   "take dangerous ground that the soil can carry");
+  command.add_flag("--allow-unknown", policy.allow_unknown, "take cells without data for flat ground");
+  command
+      .add_option_function<double>(
+          "--slope-margin", [&policy](double deg) { policy.slope_margin_rad = deg * std::numbers::pi / 180; },
+          "doubt of the slope on either side of a category's edge (default 5)")
+      ->type_name("DEG");
+  command.add_option("--time-weight", policy.time_weight_W, "joules that a second is worth")
+      ->type_name("W")
+      ->capture_default_str();
+  command.add_option("--risk-weight", policy.risk_weight_J, "joules that the loss of the rover is worth")
+      ->type_name("J")
+      ->capture_default_str();
+}
+
+costmap::GroundClass modelledGround(const std::string& path, const terramech::Rover& rover) {
+  const terramech::ModelFile file = terramech::loadModel(path);
+  if (!file.soil_given)
+    throw InputError({path, "names no soil", "trace some data with it first: talus trace --model-out"});
+  try {
+    return costmap::groundClass(0, file.model, rover);
+  } catch (const std::invalid_argument& e) {
+    throw InputError({path, e.what(), ""});
+  }
+}
+
+// The class for ground that no raster names first, then those of the classes file.
+std::vector<costmap::GroundClass> groundClasses(const GroundOptions& options, const Assumed& assumed,
+                                                const terramech::Rover& rover) {
+  std::vector<costmap::GroundClass> classes;
+  const bool classes_only = !options.soils.empty() && options.soil.empty() && options.model.empty();
+  if (!options.model.empty())
+    classes.push_back(modelledGround(options.model, rover));
+  else if (!classes_only)
+    classes.push_back(costmap::groundClass(
+        0, terramech::loadSoilPrior(options.soil.empty() ? assumed.soil : options.soil), rover));
+  if (options.soils.empty()) return classes;
+  for (const auto& [number, prior] : terramech::loadTerrainClasses(options.soils)) {
+    if (number == 0 && !classes.empty()) classes.erase(classes.begin());
+    classes.push_back(costmap::groundClass(number, prior, rover));
+  }
+  return classes;
+}
+
+std::vector<std::string> filesOf(const GroundOptions& options) {
+  std::vector<std::string> files{options.dem.path};
+  for (const std::string& path : {options.map_file, options.layers.terrain, options.layers.rocks,
+                                  options.soils, options.soil, options.model, options.rover})
+    if (std::ifstream(path).good()) files.push_back(path);
+  files.insert(files.end(), options.layers.keep_out.begin(), options.layers.keep_out.end());
+  return files;
+}
+
+Ground fromMapFile(const GroundOptions& options, const std::string& path, const Context& context) {
+  const auto begin = Clock::now();
+  Ground ground{costmap::readMap(path, context.workers(), context.watch("read map")), filesOf(options)};
+  ground.load_s = since_s(begin);
+  return ground;
+}
+
+void warnOfAssumptions(const GroundOptions& options, const Assumed& assumed, const Context& context) {
+  if (options.soil.empty() && options.soils.empty() && options.model.empty())
+    context.warn(std::string("no --soil or --soils: the ground is taken for ") + assumed.soil);
+  if (options.rover.empty()) context.warn(std::string("no --rover: ") + assumed.rover + " is taken");
+}
+
+}  // namespace
+
+void addGroundOptions(CLI::App& command, GroundOptions& options) {
+  addMapOptions(command, options.dem);
+  command.add_option("--map", options.map_file, "map of beliefs made by `talus costmap` or `talus update`")
+      ->type_name("MAP.ot");
+  addGroundChoices(command, options);
+}
+
+void addGroundChoices(CLI::App& command, GroundOptions& options) {
+  addLayerOptions(command, options.layers);
+  command.add_option("--soils", options.soils, "soil of each terrain class")->type_name("FILE");
+  auto* soil = command
+                   .add_option("--soil", options.soil,
+                               "soil of ground without a class: a name of the library or a file")
+                   ->type_name("SOIL");
+  command
+      .add_option("--model", options.model,
+                  "refined model of ground without a class, made by `talus trace`, in place of --soil")
+      ->type_name("M.yaml")
+      ->excludes(soil);
+  command.add_option("--rover", options.rover, "the rover: a name of the library or a file")
+      ->type_name("ROVER");
+  command
+      .add_option("--footprint", options.footprint_m,
+                  "radius that slopes are taken over (default: the rover's)")
+      ->type_name("METRES")
+      ->check(notNegative());
+  addPolicy(command, options.policy);
+}
+
+Ground readGround(const GroundOptions& options, const Context& context) {
+  if (!options.map_file.empty()) return fromMapFile(options, options.map_file, context);
+  if (isBeliefMap(options.dem.path)) return fromMapFile(options, options.dem.path, context);
+  auto begin = Clock::now();
+  auto [dem, floors] = readMapWithFloors(options.dem, context);
+  const Assumed& assumed = assumedOn(dem);
+  warnOfAssumptions(options, assumed, context);
+  Layers layers = readLayers(options.layers, dem);
+  const double load_s = since_s(begin);
+  begin = Clock::now();
+  costmap::GroundModel::Parts parts;
+  parts.rover = terramech::loadRover(options.rover.empty() ? assumed.rover : options.rover);
+  parts.classes = groundClasses(options, assumed, parts.rover);
+  parts.policy = options.policy;
+  const std::size_t cells = dem.grid().size();
+  costmap::MapLayers content{std::move(dem),
+                             std::move(layers.classes),
+                             std::move(layers.rock_abundance),
+                             std::move(layers.keep_out),
+                             {},
+                             costmap::Floors(std::move(floors), cells)};
+  costmap::TraversabilityMap map(std::move(content), std::make_shared<costmap::GroundModel>(std::move(parts)),
+                                 {.footprint_radius_m = options.footprint_m, .threads = context.workers()},
+                                 context.watch("costmap"));
+  return {std::move(map), filesOf(options), load_s, since_s(begin)};
+}
+
+}  // namespace talus::cli

@@ -1,0 +1,100 @@
+#include <limits>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+
+#include <talus/cli/app/context.hpp>
+#include <talus/cli/ground/map_options.hpp>
+#include <talus/costmap/map_file.hpp>
+#include <talus/costmap/octomap_surface.hpp>
+
+namespace talus::cli {
+
+void addMapOptions(CLI::App& command, MapOptions& options, const std::string& name) {
+  command.add_option(name, options.path, "elevation map: anything GDAL opens, a NumPy .npz, or an OctoMap")
+      ->required();
+  addReadOptions(command, options);
+}
+
+void addReadOptions(CLI::App& command, MapOptions& options) {
+  maps::ReadOptions& read = options.read;
+  command.add_option("--band", read.band, "band that holds the heights, from 1")->type_name("N");
+  command
+      .add_option("--resolution", read.resolution_m, "cell side; needed without a CRS, resamples with one")
+      ->type_name("METRES");
+  command
+      .add_option("--window", options.window,
+                  "read only this part: x0,y0,x1,y1 or lat,lon,lat,lon with a d on each")
+      ->type_name("BOX");
+  command.add_option("--nodata", read.nodata, "value that means no data")->type_name("VALUE");
+  command.add_option("--vertical-scale", read.vertical_scale, "metres per unit of height")
+      ->type_name("FACTOR");
+  command.add_flag("--ignore-crs", read.ignore_crs,
+                   "the CRS is wrong: read as local metres (with --resolution)");
+  command
+      .add_option("--below", options.below_m,
+                  "of an OctoMap: the ground at or below this height, as under a bridge")
+      ->type_name("METRES");
+  command.add_option("--max-cells", read.max_cells, "refuse larger maps")
+      ->type_name("N")
+      ->capture_default_str();
+}
+
+namespace {
+
+// An OctoMap brings its own grid; what says how to read a raster means nothing to it.
+MapWithFloors fromOctomap(const MapOptions& options, const std::string& type, const Context& context) {
+  const maps::ReadOptions& read = options.read;
+  if (read.band || read.resolution_m || read.nodata || read.ignore_crs || !options.window.empty())
+    context.warn(options.path +
+                 ": an OctoMap has its own grid; --band, --resolution, --window, --nodata and "
+                 "--ignore-crs are not used");
+  if (type == "TraversabilityTree")
+    return {costmap::readMap(options.path, context.workers(), context.watch("read map")).elevation(), {}};
+  auto ground =
+      costmap::octomapGround(options.path, options.below_m.value_or(std::numeric_limits<double>::infinity()));
+  return {std::move(ground.surface), std::move(ground.floors)};
+}
+
+}  // namespace
+
+MapWithFloors readMapWithFloors(const MapOptions& options, const Context& context) {
+  if (const auto type = costmap::octomapType(options.path)) return fromOctomap(options, *type, context);
+  if (options.below_m)
+    throw InputError({options.path, "--below chooses between the floors of an OctoMap, and this is a raster",
+                      "leave it out"});
+  maps::ReadOptions read = options.read;
+  if (!options.window.empty()) read.window = maps::parseWindow(options.window);
+  maps::ElevationMap map = maps::readElevation(options.path, read);
+  for (const std::string& note : map.notes) context.warn(options.path + ": " + note);
+  return {std::move(map), {}};
+}
+
+maps::ElevationMap readMap(const MapOptions& options, const Context& context) {
+  return readMapWithFloors(options, context).elevation;
+}
+
+void addLayerOptions(CLI::App& command, LayerOptions& options) {
+  command.add_option("--terrain", options.terrain, "raster of terrain classes")->type_name("FILE");
+  command.add_option("--terrain-band", options.terrain_band, "its band, from 1")->type_name("N");
+  command.add_option("--rocks", options.rocks, "raster of rock abundance, 0 to 1")->type_name("FILE");
+  command.add_option("--rocks-band", options.rocks_band, "its band, from 1")->type_name("N");
+  command.add_option("--keep-out", options.keep_out, "GeoJSON polygons not to enter; may be repeated")
+      ->type_name("FILE");
+}
+
+Layers readLayers(const LayerOptions& options, const maps::ElevationMap& map) {
+  Layers layers;
+  if (!options.terrain.empty())
+    layers.classes = maps::readTerrainClasses({options.terrain, options.terrain_band}, map);
+  if (!options.rocks.empty())
+    layers.rock_abundance = maps::readRockAbundance({options.rocks, options.rocks_band}, map);
+  for (const std::string& path : options.keep_out) {
+    const maps::Raster<std::uint8_t> mask = maps::readKeepOut(path, map);
+    if (layers.keep_out.empty()) layers.keep_out = maps::Raster<std::uint8_t>(map.grid());
+    for (std::size_t i = 0; i < mask.values().size(); ++i) layers.keep_out.values()[i] |= mask.values()[i];
+  }
+  return layers;
+}
+
+}  // namespace talus::cli

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <talus/costmap/floors.hpp>
+#include <talus/maps/elevation_reader.hpp>
+#include <talus/maps/layer_reader.hpp>
+
+namespace CLI {
+class App;
+}
+
+namespace talus::cli {
+
+struct Context;
+
+/// How the user names a DEM and says how to read it.
+struct MapOptions {
+  std::string path;
+  std::string window;             ///< as typed
+  std::optional<double> below_m;  ///< of an OctoMap: the ground at or below this height
+  maps::ReadOptions read;
+};
+
+/// Declares --band, --resolution, --window, --nodata, --vertical-scale, --ignore-crs, --max-cells,
+/// --below.
+void addReadOptions(CLI::App& command, MapOptions& options);
+
+/// Declares the positional DEM (or what `name` calls it) and addReadOptions().
+void addMapOptions(CLI::App& command, MapOptions& options, const std::string& name = "DEM");
+
+/// Reads the map; what the reader decided goes to stderr as warnings. @throws InputError
+maps::ElevationMap readMap(const MapOptions& options, const Context& context);
+
+/// The same, and the other floors of an OctoMap's columns.
+struct MapWithFloors {
+  maps::ElevationMap elevation;
+  std::vector<costmap::Floor> floors;
+};
+MapWithFloors readMapWithFloors(const MapOptions& options, const Context& context);
+
+/// Layers that lie over the DEM; an empty path means none.
+struct LayerOptions {
+  std::string terrain;  ///< class raster
+  std::optional<int> terrain_band;
+  std::string rocks;  ///< rock-abundance raster
+  std::optional<int> rocks_band;
+  std::vector<std::string> keep_out;  ///< GeoJSON polygons
+};
+
+/// The layers on the map's grid; a raster is empty where the user named no file.
+struct Layers {
+  maps::Raster<std::uint8_t> classes;   ///< maps::kNoClass where there is none
+  maps::Raster<float> rock_abundance;   ///< NaN where there is none
+  maps::Raster<std::uint8_t> keep_out;  ///< not 0: must not be entered
+};
+
+/// Declares --terrain, --terrain-band, --rocks, --rocks-band and --keep-out.
+void addLayerOptions(CLI::App& command, LayerOptions& options);
+
+/// Reads and aligns them. @throws InputError
+Layers readLayers(const LayerOptions& options, const maps::ElevationMap& map);
+
+}  // namespace talus::cli

@@ -1,0 +1,110 @@
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include <talus/cli/ground/mission.hpp>
+#include <talus/terramech/io/yaml_fields.hpp>
+
+namespace talus::cli {
+namespace {
+
+using terramech::YamlFields;
+
+// A path as the mission means it: relative to the mission's folder; a library name stays as it is.
+std::string resolved(const std::string& path, const std::filesystem::path& folder) {
+  const std::filesystem::path beside = folder / path;
+  return !path.empty() && std::filesystem::exists(beside) ? beside.string() : path;
+}
+
+void take(std::string& option, const YamlFields& fields, const std::string& name) {
+  if (option.empty()) option = fields.word(name, "");
+}
+
+// "x,y" from a text or from a list of two numbers.
+std::string place(const YamlFields& fields, const std::string& name) {
+  if (!fields.has(name)) return "";
+  try {
+    const auto numbers = fields.numbers(name);
+    if (numbers.size() == 2) return fmt::format("{},{}", numbers[0], numbers[1]);
+  } catch (const InputError&) {
+  }
+  return fields.word(name);
+}
+
+// One place, or a list of them.
+std::vector<std::string> places(const YamlFields& fields, const std::string& name) {
+  try {
+    if (fields.numbers(name).size() == 2) return {place(fields, name)};
+  } catch (const InputError&) {
+  }
+  return fields.texts(name);
+}
+
+void readMaps(const YamlFields& maps, GroundOptions& ground, const std::filesystem::path& folder) {
+  maps.only({"dem", "map", "terrain", "rocks", "keep_out", "resolution_m", "ignore_crs"});
+  ground.dem.path = resolved(maps.word("dem", ""), folder);
+  take(ground.map_file, maps, "map");
+  take(ground.layers.terrain, maps, "terrain");
+  take(ground.layers.rocks, maps, "rocks");
+  if (maps.has("keep_out")) ground.layers.keep_out.push_back(resolved(maps.word("keep_out"), folder));
+  if (maps.has("resolution_m")) ground.dem.read.resolution_m = maps.number("resolution_m");
+  if (maps.flag("ignore_crs", false)) ground.dem.read.ignore_crs = true;
+  for (std::string* path : {&ground.map_file, &ground.layers.terrain, &ground.layers.rocks})
+    *path = resolved(*path, folder);
+  if (ground.dem.path.empty() && ground.map_file.empty())
+    maps.refuse("", "names no map", "give dem: FILE, or map: FILE.ot");
+  if (ground.dem.path.empty()) ground.dem.path = ground.map_file;
+}
+
+void readThresholds(const YamlFields& fields, costmap::DrivePolicy& policy) {
+  fields.only({"slope_margin_rad", "sinkage_threshold", "sinkage_critical", "max_immobilisation",
+               "allow_marginal", "allow_dangerous", "allow_unknown", "time_weight_W", "risk_weight_J"});
+  policy.slope_margin_rad = fields.number("slope_margin_rad", policy.slope_margin_rad);
+  policy.sinkage_threshold = fields.number("sinkage_threshold", policy.sinkage_threshold);
+  policy.sinkage_critical = fields.number("sinkage_critical", policy.sinkage_critical);
+  policy.max_immobilisation = fields.number("max_immobilisation", policy.max_immobilisation);
+  policy.allow_marginal = fields.flag("allow_marginal", policy.allow_marginal);
+  policy.allow_dangerous = fields.flag("allow_dangerous", policy.allow_dangerous);
+  policy.allow_unknown = fields.flag("allow_unknown", policy.allow_unknown);
+  policy.time_weight_W = fields.number("time_weight_W", policy.time_weight_W);
+  policy.risk_weight_J = fields.number("risk_weight_J", policy.risk_weight_J);
+}
+
+}  // namespace
+
+bool isMission(const std::string& path) {
+  const std::string extension = std::filesystem::path(path).extension().string();
+  return extension == ".yaml" || extension == ".yml";
+}
+
+void readMission(PlanOptions& options) {
+  const std::filesystem::path path = options.ground.dem.path;
+  const std::filesystem::path folder = path.parent_path();
+  const YamlFields fields = YamlFields::file(path.string());
+  fields.only({"maps", "rover", "soil", "model", "soils", "thresholds", "planner", "start", "goal", "via",
+               "tolerance_m", "time_s", "start_heading_rad", "goal_heading_rad", "reverse", "output"});
+  readMaps(fields.fields("maps"), options.ground, folder);
+  take(options.ground.rover, fields, "rover");
+  take(options.ground.soil, fields, "soil");
+  take(options.ground.model, fields, "model");
+  take(options.ground.soils, fields, "soils");
+  for (std::string* file :
+       {&options.ground.rover, &options.ground.soil, &options.ground.model, &options.ground.soils})
+    *file = resolved(*file, folder);
+  if (fields.has("thresholds")) readThresholds(fields.fields("thresholds"), options.ground.policy);
+  if (options.planner == "field") options.planner = fields.word("planner", "field");
+  if (options.start.empty()) options.start = place(fields, "start");
+  if (options.goals.empty()) options.goals = places(fields, "goal");
+  if (options.via.empty()) options.via = places(fields, "via");
+  for (const auto& [heading, key] : {std::pair{&options.drive.start_heading_rad, "start_heading_rad"},
+                                     std::pair{&options.drive.goal_heading_rad, "goal_heading_rad"}})
+    if (!*heading && fields.has(key)) *heading = fields.number(key);
+  if (!fields.flag("reverse", true)) options.drive.no_reverse = true;
+  if (options.tolerance_m == 0.0) options.tolerance_m = fields.number("tolerance_m", 0.0);
+  if (options.time_limit_s == 0.0) options.time_limit_s = fields.number("time_s", 0.0);
+  take(options.output, fields, "output");
+}
+
+}  // namespace talus::cli

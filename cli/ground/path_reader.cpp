@@ -1,0 +1,88 @@
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <talus/cli/ground/path_reader.hpp>
+#include <talus/maps/geojson.hpp>
+#include <talus/talus.hpp>
+#include <talus/terramech/io/csv_reader.hpp>
+
+namespace talus::cli {
+namespace {
+
+using maps::Point;
+using nlohmann::json;
+
+std::size_t columnOf(const terramech::CsvReader& reader, const std::string& name, const std::string& path) {
+  const auto& header = reader.header();
+  const auto found = std::find(header.begin(), header.end(), name);
+  if (found == header.end())
+    throw InputError(
+        {path, fmt::format("no column {}", name), "a path needs the columns x_m and y_m, or GeoJSON"});
+  return static_cast<std::size_t>(found - header.begin());
+}
+
+std::vector<Point> readCsv(const std::string& path) {
+  terramech::CsvReader reader(path);
+  const std::size_t x = columnOf(reader, "x_m", path), y = columnOf(reader, "y_m", path);
+  std::vector<Point> points;
+  for (terramech::CsvRow row; reader.next(row);) {
+    Point p;
+    const bool good = row.fault.empty() && terramech::parseNumber(row.fields[x], p.x_m) &&
+                      terramech::parseNumber(row.fields[y], p.y_m) && std::isfinite(p.x_m) &&
+                      std::isfinite(p.y_m);
+    if (!good)
+      throw InputError({fmt::format("{}:{}", path, row.line),
+                        row.fault.empty() ? "x_m, y_m are not two finite numbers" : row.fault,
+                        "mend the row"});
+    points.push_back(p);
+  }
+  return points;
+}
+
+// The map metres that a route of ours carries besides its coordinates.
+std::vector<Point> ownMetres(const json& document) {
+  std::vector<Point> points;
+  if (document.value("type", "") != "FeatureCollection" || !document.contains("features")) return points;
+  const json& features = document["features"];
+  if (!features.is_array() || features.empty() || !features[0].contains("properties")) return points;
+  const json& properties = features[0]["properties"];
+  if (!properties.is_object() || !properties.contains("x_m") || !properties.contains("y_m")) return points;
+  const json &x = properties["x_m"], &y = properties["y_m"];
+  if (!x.is_array() || !y.is_array() || x.size() != y.size()) return points;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (!x[i].is_number() || !y[i].is_number()) return {};
+    points.push_back({x[i].get<double>(), y[i].get<double>()});
+  }
+  return points;
+}
+
+std::vector<Point> readLine(const std::string& path, const maps::ElevationMap& map) {
+  const json document = maps::readGeoJson(path);
+  if (auto points = ownMetres(document); !points.empty()) return points;
+  const maps::PositionReader read(document, map, path);
+  for (const json& geometry : maps::geometries(document)) {
+    if (geometry.value("type", "") != "LineString" || !geometry["coordinates"].is_array()) continue;
+    std::vector<Point> points;
+    for (const json& position : geometry["coordinates"]) points.push_back(read(position));
+    return points;
+  }
+  throw InputError({path, "holds no LineString", "a path is a GeoJSON LineString, or CSV with x_m, y_m"});
+}
+
+}  // namespace
+
+std::vector<Point> readPath(const std::string& path, const maps::ElevationMap& map) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  const bool table = extension == ".csv" || extension == ".txt";
+  std::vector<Point> points = table ? readCsv(path) : readLine(path, map);
+  if (points.empty()) throw InputError({path, "holds no point", "a path needs at least one"});
+  return points;
+}
+
+}  // namespace talus::cli

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <vector>
+
+#include <talus/costmap/traversability_map.hpp>
+#include <talus/maps/geotiff_writer.hpp>
+
+namespace talus::cli {
+
+/// The layers of a map as GeoTIFF bands: elevation, slope, aspect, roughness, step, class, category,
+/// drawbar_pull_over_load, drawbar_pull_over_load_std, sinkage_over_radius, energy_per_metre_uphill,
+/// energy_per_metre_downhill. SI and radians; NaN where not known; category 0 safe, 1 marginal, 2 dangerous,
+/// 3 unknown, hazards counted as dangerous.
+std::vector<maps::Layer> siteLayers(const costmap::TraversabilityMap& map, int threads);
+
+}  // namespace talus::cli

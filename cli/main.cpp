@@ -1,5 +1,0 @@
-#include <cli/program.hpp>
-
-int main(int argc, char** argv) {
-  return talus::cli::run(argc, argv);
-}

@@ -1,0 +1,67 @@
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <talus/cli/draw/page.hpp>
+#include <talus/cli/route/drive_page.hpp>
+
+namespace talus::cli {
+namespace {
+
+Scene sceneBefore(const costmap::TraversabilityMap& map, const planner::WorldResult& result,
+                  planner::Belief belief) {
+  Scene scene = sceneOf(
+      map, SceneOptions{.title = fmt::format("TraverseSimulation: {}", planner::name(result.drive.outcome))});
+  scene.subtitle = fmt::format("belief: {}; categories as believed before the drive", planner::name(belief));
+  const planner::TraverseSimulation& drive = result.drive;
+  scene.facts = {{"outcome", std::string(planner::name(drive.outcome))},
+                 {"driven", fmt::format("{:.1f} m", drive.length_m)},
+                 {"time", fmt::format("{:.0f} s", drive.time_s)},
+                 {"energy", fmt::format("{:.2f} kJ", drive.energy_J / 1000.0)},
+                 {"largest slip", fmt::format("{:.2f}", drive.max_slip)},
+                 {"alarms", std::to_string(drive.alarms)},
+                 {"replans", std::to_string(drive.replans)},
+                 {"cells with a new category", std::to_string(result.categories_changed)}};
+  return scene;
+}
+
+}  // namespace
+
+WatchedDrive watchedDrive(const planner::SimulationSite& site, planner::Belief belief,
+                          const ProgressMonitor& watch) {
+  const planner::TrueWorld world = site.trueWorld(0);
+  costmap::TraversabilityMap map = site.believed(belief, world);
+  WatchedDrive out{{}, {{}, {}, world.patches(), map.grid()}};
+  const std::vector<std::uint8_t> before = planner::categoriesOf(map);
+  std::vector<std::uint8_t> known = before;
+  planner::SimulationOptions options = site.options(belief, 0);
+  options.watch = {.progress = {}, .stop = watch.stop};
+  options.record = true;
+  planner::DriveLog log;
+  options.on_step = [&](const planner::DriveStep& step) { log.record(step); };
+  options.on_learned = [&](double time_s) {
+    std::vector<std::uint8_t> now = planner::categoriesOf(map);
+    const int width = map.grid().width;
+    for (std::size_t i = 0; i < now.size(); ++i)
+      if (now[i] != known[i])
+        out.story.changes.push_back(
+            {time_s, {static_cast<int>(i) % width, static_cast<int>(i) / width}, now[i]});
+    known = std::move(now);
+  };
+  out.result.drive = planner::simulateTraverse(map, world, options);
+  for (std::size_t i = 0; i < before.size(); ++i)
+    out.result.categories_changed += before[i] != known[i] ? 1U : 0U;
+  out.story.drive = out.result.drive;
+  out.prediction = log.errors();
+  return out;
+}
+
+void saveDrivePage(const std::filesystem::path& path, const planner::SimulationSite& site,
+                   planner::Belief belief, const WatchedDrive& drive) {
+  Scene scene = sceneBefore(site.believed(belief, site.trueWorld(0)), drive.result, belief);
+  scene.story = drive.story;
+  savePage(path, scene);
+}
+
+}  // namespace talus::cli

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <filesystem>
+
+#include <talus/cli/draw/drive_story.hpp>
+#include <talus/planner/simulation/drive_log.hpp>
+#include <talus/planner/simulation/simulation_site.hpp>
+
+namespace talus::cli {
+
+/// World 0 of a site, watched: the same result as site.world(), with records of the wheels and what changed
+/// when.
+struct WatchedDrive {
+  planner::WorldResult result;
+  DriveStory story;
+  planner::PredictionErrors prediction{};  ///< of what the map said of each step before it was driven
+};
+WatchedDrive watchedDrive(const planner::SimulationSite& site, planner::Belief belief,
+                          const ProgressMonitor& watch);
+
+/// Writes a page on which a slider runs through the drive: track, plan in force, cells that changed their
+/// category, what happened. @throws InputError when the file cannot be written
+void saveDrivePage(const std::filesystem::path& path, const planner::SimulationSite& site,
+                   planner::Belief belief, const WatchedDrive& drive);
+
+}  // namespace talus::cli

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include <talus/planner/simulation/traverse_simulation.hpp>
+#include <talus/terramech/contact/rover.hpp>
+
+namespace talus::cli {
+
+/// Writes what the wheels of a traverse simulation read as a telemetry CSV, which `talus update` takes.
+/// @throws InputError when the file cannot be written
+void saveTelemetry(const std::filesystem::path& path, const planner::TraverseSimulation& drive,
+                   const terramech::Rover& rover);
+
+}  // namespace talus::cli

@@ -1,0 +1,118 @@
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+
+#include <nlohmann/json.hpp>
+
+#include <talus/cli/app/sha256.hpp>
+#include <talus/cli/route/route_json.hpp>
+
+namespace talus::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using planner::Route;
+using planner::RouteVertex;
+
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+
+Json position(const RouteVertex& vertex, const maps::ElevationMap& map) {
+  Json made = Json::array();
+  if (map.georeference) {
+    const maps::GeoPoint place = map.georeference->reverse({vertex.x_m, vertex.y_m});
+    made = {place.longitude_rad * kDegrees, place.latitude_rad * kDegrees};
+  } else {
+    made = {vertex.x_m, vertex.y_m};
+  }
+  if (std::isfinite(vertex.elevation_m)) made.push_back(vertex.elevation_m);
+  return made;
+}
+
+template <typename Value>
+Json values(const Route& route, Value value) {
+  Json made = Json::array();
+  for (const RouteVertex& vertex : route.vertices) made.push_back(value(vertex));
+  return made;
+}
+
+void addVertices(Json& properties, const Route& route) {
+  const auto add = [&](const char* key, double RouteVertex::*field) {
+    properties[key] = values(route, [field](const RouteVertex& vertex) { return vertex.*field; });
+  };
+  add("x_m", &RouteVertex::x_m);
+  add("y_m", &RouteVertex::y_m);
+  add("elevation_m", &RouteVertex::elevation_m);
+  add("heading_rad", &RouteVertex::heading_rad);
+  add("slope_along_rad", &RouteVertex::slope_along_rad);
+  add("slope_across_rad", &RouteVertex::slope_across_rad);
+  add("slip", &RouteVertex::slip);
+  add("sinkage_m", &RouteVertex::sinkage_m);
+  add("torque_Nm", &RouteVertex::torque_Nm);
+  add("drawbar_pull_margin", &RouteVertex::drawbar_pull_margin);
+  properties["category"] =
+      values(route, [](const RouteVertex& vertex) { return terramech::name(vertex.category); });
+  // Totals that JSON readers should not confuse with these arrays stand under "summary".
+  add("energy_J", &RouteVertex::energy_J);
+  add("time_s", &RouteVertex::time_s);
+  add("immobilisation_risk", &RouteVertex::immobilisation_risk);
+  if (!route.summary.drive) return;
+  add("curvature_1_m", &RouteVertex::curvature_1_m);
+  add("turn_rad", &RouteVertex::turn_rad);
+  properties["reverse"] = values(route, [](const RouteVertex& vertex) { return vertex.reverse; });
+}
+
+Json originJson(const RouteOrigin& origin) {
+  Json files = Json::array();
+  for (const std::string& path : origin.files)
+    files.push_back(
+        {{"file", std::filesystem::path(path).filename().string()}, {"sha256", sha256OfFile(path)}});
+  return {{"files", files}, {"seed", origin.seed}, {"version", TALUS_VERSION}};
+}
+
+}  // namespace
+
+Json summaryJson(const Route& route) {
+  const planner::RouteSummary& s = route.summary;
+  Json made;
+  made["status"] = std::string(planner::name(route.status));
+  made["cost"] = s.cost;
+  made["energy_J"] = s.energy_J;
+  made["time_s"] = s.time_s;
+  made["length_m"] = s.length_m;
+  made["max_slip"] = s.max_slip;
+  made["max_slope_rad"] = s.max_slope_rad;
+  made["lower_bound"] = s.lower_bound;
+  made["gap"] = s.gap;
+  made["immobilisation_risk"] = route.vertices.empty() ? 0.0 : route.vertices.back().immobilisation_risk;
+  made["planner"] = s.planner;
+  if (s.drive)
+    made["drive"] = {{"cusps", s.drive->cusps},
+                     {"turns_in_place", s.drive->turns_in_place},
+                     {"turned_rad", s.drive->turned_rad},
+                     {"max_curvature_1_m", s.drive->max_curvature_1_m}};
+  return made;
+}
+
+Json routeGeoJson(const Route& route, const maps::ElevationMap& map, const RouteOrigin& origin) {
+  Json line = values(route, [&map](const RouteVertex& vertex) { return position(vertex, map); });
+  if (line.size() == 1) line.push_back(line.front());
+  const Json summary = summaryJson(route);
+  Json properties = summary;
+  properties["summary"] = summary;
+  addVertices(properties, route);
+  properties["inputs"] = originJson(origin);
+  properties["seed"] = origin.seed;
+  properties["version"] = TALUS_VERSION;
+  if (!map.georeference) properties["crs"] = "local";
+  Json feature;
+  feature["type"] = "Feature";
+  feature["geometry"] = {{"type", "LineString"}, {"coordinates", line}};
+  feature["properties"] = properties;
+  Json made;
+  made["type"] = "FeatureCollection";
+  if (!map.georeference) made["crs"] = "local";
+  made["features"] = Json::array({feature});
+  return made;
+}
+
+}  // namespace talus::cli

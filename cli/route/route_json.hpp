@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <talus/maps/elevation_map.hpp>
+#include <talus/planner/route/route.hpp>
+
+namespace talus::cli {
+
+/// What it takes to make a route again.
+struct RouteOrigin {
+  std::vector<std::string> files;  ///< that were read
+  std::uint64_t seed = 1;
+};
+
+/// The summary fields of a route, with its status.
+nlohmann::ordered_json summaryJson(const planner::Route& route);
+
+/// The route as a GeoJSON FeatureCollection: longitude, latitude and elevation where the map has a CRS, else
+/// map metres and "crs": "local"; a LineString needs two positions, so a standstill is repeated. Layout: docs
+/// of `talus plan`.
+nlohmann::ordered_json routeGeoJson(const planner::Route& route, const maps::ElevationMap& map,
+                                    const RouteOrigin& origin);
+
+}  // namespace talus::cli

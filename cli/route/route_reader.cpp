@@ -1,0 +1,184 @@
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <talus/cli/route/route_reader.hpp>
+#include <talus/talus.hpp>
+
+namespace talus::cli {
+namespace {
+
+using nlohmann::json;
+using planner::RouteVertex;
+
+constexpr const char* kRemedy = "pass a route that `talus plan -o` wrote";
+
+/// Fields of a JSON object, with errors that name file and field.
+class Fields {
+ public:
+  Fields(std::string path, const json& object) : path_(std::move(path)), object_(object) {
+    if (!object.is_object()) refuse("properties", "is missing");
+  }
+
+  double number(const char* field) const {
+    const json& value = at(field);
+    if (value.is_null()) return std::nan("");
+    if (!value.is_number()) refuse(field, "is not a number");
+    return value.get<double>();
+  }
+
+  std::string text(const char* field) const {
+    const json& value = at(field);
+    if (!value.is_string()) refuse(field, "is not a text");
+    return value.get<std::string>();
+  }
+
+  const json& array(const char* field) const {
+    const json& value = at(field);
+    if (!value.is_array()) refuse(field, "is not an array");
+    return value;
+  }
+
+  /// One value a vertex; null is NaN.
+  void fill(const char* field, double RouteVertex::*member, std::vector<RouteVertex>& vertices) const {
+    const json& values = array(field);
+    if (values.size() != vertices.size())
+      refuse(field, fmt::format("has {} values for {} vertices", values.size(), vertices.size()));
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (!values[i].is_number() && !values[i].is_null()) refuse(field, "holds something else than numbers");
+      vertices[i].*member = values[i].is_null() ? std::nan("") : values[i].get<double>();
+    }
+  }
+
+  [[noreturn]] void refuse(const char* field, const std::string& what) const {
+    throw InputError({.where = path_, .reason = fmt::format("'{}' {}", field, what), .remedy = kRemedy});
+  }
+
+ private:
+  const json& at(const char* field) const {
+    const auto found = object_.find(field);
+    if (found == object_.end()) refuse(field, "is missing");
+    return *found;
+  }
+
+  std::string path_;
+  const json& object_;
+};
+
+json parsed(const std::string& path) {
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) throw InputError({.where = path, .reason = "cannot be opened", .remedy = "check the path"});
+  json document = json::parse(stream, nullptr, false);
+  if (document.is_discarded())
+    throw InputError({.where = path, .reason = "is not valid JSON", .remedy = kRemedy});
+  return document;
+}
+
+terramech::Category categoryOf(const Fields& fields, const json& word) {
+  using terramech::Category;
+  for (const Category c : {Category::Safe, Category::Marginal, Category::Dangerous, Category::Unknown})
+    if (word == terramech::name(c)) return c;
+  fields.refuse("category", "holds an unknown word");
+}
+
+void readVertices(const Fields& fields, std::vector<RouteVertex>& vertices) {
+  vertices.resize(fields.array("x_m").size());
+  if (vertices.empty()) fields.refuse("x_m", "is empty");
+  fields.fill("x_m", &RouteVertex::x_m, vertices);
+  fields.fill("y_m", &RouteVertex::y_m, vertices);
+  for (const RouteVertex& v : vertices)
+    if (!std::isfinite(v.x_m) || !std::isfinite(v.y_m))
+      fields.refuse("x_m, y_m", "hold something else than numbers");
+  fields.fill("elevation_m", &RouteVertex::elevation_m, vertices);
+  fields.fill("heading_rad", &RouteVertex::heading_rad, vertices);
+  fields.fill("slope_along_rad", &RouteVertex::slope_along_rad, vertices);
+  fields.fill("slope_across_rad", &RouteVertex::slope_across_rad, vertices);
+  fields.fill("slip", &RouteVertex::slip, vertices);
+  fields.fill("sinkage_m", &RouteVertex::sinkage_m, vertices);
+  fields.fill("torque_Nm", &RouteVertex::torque_Nm, vertices);
+  fields.fill("drawbar_pull_margin", &RouteVertex::drawbar_pull_margin, vertices);
+  fields.fill("energy_J", &RouteVertex::energy_J, vertices);
+  fields.fill("time_s", &RouteVertex::time_s, vertices);
+  fields.fill("immobilisation_risk", &RouteVertex::immobilisation_risk, vertices);
+  const json& categories = fields.array("category");
+  if (categories.size() != vertices.size()) fields.refuse("category", "has another length than x_m");
+  for (std::size_t i = 0; i < vertices.size(); ++i) vertices[i].category = categoryOf(fields, categories[i]);
+}
+
+// What only a drive has.
+void readDrive(const Fields& fields, std::vector<RouteVertex>& vertices) {
+  fields.fill("curvature_1_m", &RouteVertex::curvature_1_m, vertices);
+  fields.fill("turn_rad", &RouteVertex::turn_rad, vertices);
+  const json& reverse = fields.array("reverse");
+  if (reverse.size() != vertices.size()) fields.refuse("reverse", "has another length than x_m");
+  for (std::size_t i = 0; i < vertices.size(); ++i) vertices[i].reverse = reverse[i] == json(true);
+}
+
+planner::DriveShape shapeFrom(const Fields& drive) {
+  return {.cusps = static_cast<int>(drive.number("cusps")),
+          .turns_in_place = static_cast<int>(drive.number("turns_in_place")),
+          .turned_rad = drive.number("turned_rad"),
+          .max_curvature_1_m = drive.number("max_curvature_1_m")};
+}
+
+planner::RouteSummary summaryFrom(const Fields& summary) {
+  return {.cost = summary.number("cost"),
+          .energy_J = summary.number("energy_J"),
+          .time_s = summary.number("time_s"),
+          .length_m = summary.number("length_m"),
+          .max_slip = summary.number("max_slip"),
+          .max_slope_rad = summary.number("max_slope_rad"),
+          .lower_bound = summary.number("lower_bound"),
+          .gap = summary.number("gap"),
+          .planner = summary.text("planner")};
+}
+
+/// A member of an object; null where there is no such object or member.
+json member(const json& object, const char* key) {
+  return object.is_object() && object.contains(key) ? object.at(key) : json();
+}
+
+std::vector<RouteInput> inputsOf(const json& properties) {
+  std::vector<RouteInput> inputs;
+  for (const json& file : member(member(properties, "inputs"), "files")) {
+    const json name = member(file, "file");
+    const json sha256 = member(file, "sha256");
+    if (name.is_string() && sha256.is_string())
+      inputs.push_back({name.get<std::string>(), sha256.get<std::string>()});
+  }
+  return inputs;
+}
+
+}  // namespace
+
+bool looksLikeJson(const std::string& path) {
+  std::ifstream stream(path, std::ios::binary);
+  char c = ' ';
+  while (std::isspace(static_cast<unsigned char>(c)) != 0 && stream.get(c)) continue;
+  return c == '{';
+}
+
+RouteFile readRoute(const std::string& path) {
+  const json document = parsed(path);
+  const auto place = json::json_pointer("/features/0/properties");
+  const json properties = document.contains(place) ? document.at(place) : json();
+  const Fields fields(path, properties);
+  RouteFile file;
+  file.route.status = planner::RouteStatus::Found;
+  readVertices(fields, file.route.vertices);
+  const json summary = member(properties, "summary");
+  file.route.summary = summaryFrom(Fields(path, summary));
+  if (const json drive = member(summary, "drive"); drive.is_object()) {
+    readDrive(fields, file.route.vertices);
+    file.route.summary.drive = shapeFrom(Fields(path, drive));
+  }
+  file.inputs = inputsOf(properties);
+  return file;
+}
+
+}  // namespace talus::cli

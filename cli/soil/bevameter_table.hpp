@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include <talus/talus.hpp>
+#include <talus/terramech/estimate/bevameter.hpp>
+#include <talus/terramech/estimate/telemetry.hpp>
+
+namespace talus::cli {
+
+/// Plate tests out of a CSV: rows of a shear test (normal_stress_Pa, shear_stress_Pa, shear_displacement_m),
+/// of a pressure-sinkage test (plate_width_m or plate_d_m, pressure_Pa or p_Pa, sinkage_m or z_m), or both.
+/// The diameter plate_d_m of a round plate is taken as its smaller dimension b (thesis A.1); wong_2001 takes
+/// the radius, which halves k_c. Where the width is neither stated nor a column, it is the diameter of the
+/// round plate that F_N and the pressure tell, test by test; a test whose F_N over pressure changes was not
+/// made with a plate.
+struct BevameterTable {
+  std::vector<terramech::ShearReading> shear;
+  std::vector<terramech::PlateReading> plates;
+  std::vector<terramech::RejectedRow> rejected;
+  bool width_from_force = false;  ///< the widths are not the file's own
+};
+
+/// A stated plate width [m] holds for all rows, 0: none stated. Throws InputError when the file has the
+/// columns of neither test, or no usable row.
+BevameterTable readBevameterTable(const std::filesystem::path& path, double plate_width_m,
+                                  const ProgressMonitor& watch);
+
+}  // namespace talus::cli

@@ -1,0 +1,92 @@
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <talus/cli/soil/line_estimate.hpp>
+#include <talus/cli/soil/model_estimate.hpp>
+#include <talus/terramech/io/model_file.hpp>
+#include <talus/terramech/io/soil_library.hpp>
+#include <talus/terramech/io/telemetry_reader.hpp>
+#include <talus/terramech/trace/model_soil.hpp>
+
+namespace talus::cli {
+namespace {
+
+using namespace terramech;
+
+constexpr double kMisfit = 3.0;  // above it the model does not describe the rows
+
+RefinedModel modelOf(const EstimateOptions& options) {
+  RefinedModel model = loadModel(options.model).model;
+  if (model.base != BaseModel::WongReece)
+    throw InputError({.where = options.model,
+                      .reason = "its base is the linear formula, which has no soil",
+                      .remedy = "take a model whose base is wong-reece"});
+  if (!options.rover.empty()) model.wheel = loadRover(options.rover).wheel;
+  return model;
+}
+
+void refuseWhatDoesNotGo(const EstimateOptions& options) {
+  const auto refuse = [](const char* where, const char* reason, const char* remedy) {
+    throw InputError({.where = where, .reason = reason, .remedy = remedy});
+  };
+  if (options.method != "wong-reece")
+    refuse("--model", "its effects act on the whole contact, which this method does not solve",
+           "use --method wong-reece, or leave it out");
+  if (options.recursive) refuse("--recursive", "with --model all rows are fitted at once", "leave it out");
+}
+
+ModelSoilOptions howOf(const EstimateOptions& options) {
+  ModelSoilOptions how{.noise = options.noise};
+  how.shear_modulus_m = options.shear_modulus.empty() ? std::nullopt : statedModulus(options);
+  if (options.prior.empty()) return how;
+  how.prior = loadModel(options.prior).model;
+  if (how.prior->soil_prior_std.empty())
+    throw InputError({.where = "--prior " + options.prior,
+                      .reason = "states no standard deviation, so that nothing is left to find",
+                      .remedy = "{mean: ..., std: ...} for what is not known"});
+  return how;
+}
+
+}  // namespace
+
+SoilEstimate modelEstimate(const EstimateOptions& options, const ProgressMonitor& watch) {
+  refuseWhatDoesNotGo(options);
+  RefinedModel model = modelOf(options);
+  TelemetryOptions reading{.required = {"load_N", "slip"}};
+  if (model.wheel) reading.wheel_radius_m = model.wheel->radius_m;
+  const Telemetry telemetry = readTelemetry(options.table, reading, watch);
+  const Trial all = makeTrial(telemetry, model);
+  std::vector<char> above = beyondAxle(all);
+  for (char& row : above) row = !row;
+  const Trial trial = subset(all, above);
+  if (trial.rows() == 0)
+    throw InputError(
+        {.where = options.table, .reason = "in every row the wheel is sunk to its axle", .remedy = ""});
+  model.slip_along_travel |= slipIsAlongTravel(trial.states);
+  const ModelSoil found = soilUnder(model, trial, howOf(options));
+  SoilEstimate estimate;
+  estimate.rejected = telemetry.rejected;
+  estimate.rows_used = static_cast<std::size_t>(trial.rows());
+  estimate.cohesion_Pa = found.soil.cohesion_Pa;
+  estimate.friction_angle_rad = found.soil.friction_angle_rad;
+  estimate.tan_friction = std::tan(found.soil.friction_angle_rad);
+  estimate.shear_modulus_m = found.soil.shear_modulus_m;
+  estimate.covariance = found.strength_covariance;
+  estimate.sinkage_exponent = found.soil.sinkage_exponent;
+  estimate.cohesive_modulus = found.soil.cohesive_modulus;
+  estimate.frictional_modulus = found.soil.frictional_modulus;
+  estimate.unseen = found.unseen;
+  for (const Effect& effect : model.effects) estimate.effects.push_back(effect.name);
+  if (found.misfit > kMisfit)
+    estimate.warnings.push_back(fmt::format(
+        "with the effects of {} no soil explains the readings (misfit {:.1f}, 1 expected); trace these "
+        "rows anew, or widen --noise",
+        options.model, found.misfit));
+  if (trial.rows() < all.rows())
+    estimate.warnings.push_back(fmt::format("{} rows with the wheel sunk to its axle or deeper were left out",
+                                            all.rows() - trial.rows()));
+  return estimate;
+}
+
+}  // namespace talus::cli

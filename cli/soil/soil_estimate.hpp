@@ -1,0 +1,81 @@
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <talus/cli/soil/wheel_rows.hpp>
+#include <talus/terramech/estimate/bevameter.hpp>
+#include <talus/terramech/estimate/mohr_coulomb_line.hpp>
+#include <talus/terramech/estimate/soil_posterior.hpp>
+
+namespace talus::cli {
+
+/// What `talus estimate` is asked for.
+struct EstimateOptions {
+  std::string table;
+  std::string method;
+  std::string shear_modulus;  ///< a number [m], or the name of a method; empty: the file's column, else joint
+  std::string prior;  ///< soil file or name; empty: for wong-reece the classes of thesis Table 2.1, else none
+  std::string rover;
+  std::string model;  ///< wong-reece: a refined model whose effects act; empty: none
+  std::string html;
+  bool whole_equation = false;  ///< linear-offset: keep M1 of Eq. 2.9
+  bool recursive = false;       ///< take the rows in one by one and keep each answer
+  double plate_width_m = 0.0;   ///< bevameter: of all plates [m], where the file has no such column; 0: none
+  double noise = 0.05;          ///< relative standard deviation of each reading [-]
+};
+
+/// What was believed after a row of the table; NaN where nothing could be said yet.
+struct RunningSoil {
+  static constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+  std::size_t line = 0;  ///< of the table
+  double cohesion_Pa = kNan;
+  double friction_angle_rad = kNan;
+  double shear_modulus_m = kNan;
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Constant(kNan);  ///< of (c, tan phi)
+};
+
+/// Standard deviation of phi [rad] from that of tan(phi): by its slope at phi.
+double frictionStd_rad(const Eigen::Matrix2d& covariance, double friction_angle_rad);
+
+/// What any method answers; a number it cannot give is NaN.
+struct SoilEstimate {
+  double cohesion_Pa;
+  double tan_friction;
+  double shear_modulus_m;
+  Eigen::Matrix2d covariance;  ///< of (c, tan phi)
+  double friction_angle_rad;
+  double sinkage_exponent;
+  std::optional<double> cohesive_modulus;
+  std::optional<double> frictional_modulus;
+  std::vector<terramech::PlateModulus> plates;  ///< of bevameter
+  std::size_t rows_used = 0;
+  std::vector<terramech::RejectedRow> rejected;
+  std::vector<std::string> unseen;            ///< parameters that the data do not show, with the reason
+  std::vector<std::string> warnings;          ///< what the user should know of how it was fitted
+  std::vector<std::string> effects;           ///< that acted, of --model
+  std::vector<terramech::StressPair> points;  ///< what a line was fitted to, for a plot
+  std::optional<terramech::SoilPosterior> posterior;  ///< of wong-reece
+  std::vector<std::string> class_names;               ///< of its prior
+  std::vector<RunningSoil> running;                   ///< a row used, when asked to be recursive
+
+  SoilEstimate();
+
+  /// Takes c, tan(phi), their covariance and what was not seen from a fitted line.
+  void take(const terramech::ShearStrength& fit);
+
+  /// What no soil is like, by more than two standard deviations: c < 0, phi below 0 or above 60 deg. Empty
+  /// where it may be one.
+  std::string implausible() const;
+};
+
+/// Runs the method on the table. Throws InputError for what is wrong with the input, std::domain_error when
+/// there is no fit.
+SoilEstimate estimateSoil(const EstimateOptions& options, const ProgressMonitor& watch);
+
+}  // namespace talus::cli

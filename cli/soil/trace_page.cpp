@@ -1,0 +1,170 @@
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include <fmt/format.h>
+
+#include <talus/cli/draw/html_report.hpp>
+#include <talus/cli/soil/trace_report.hpp>
+
+namespace talus::cli {
+namespace {
+
+using namespace terramech;
+
+constexpr Channel kAll[] = {Channel::DrawbarPull, Channel::Sinkage, Channel::Torque, Channel::SideForce};
+
+/// Covariates worth a chart: those of effects, then those that the tests found strongest.
+std::vector<std::string> shown(const TraceResult& r) {
+  std::vector<std::string> names;
+  const auto add = [&](const std::string& name) {
+    const bool known = name == "sinkage_m" || std::find(r.trial.covariates.begin(), r.trial.covariates.end(),
+                                                        name) != r.trial.covariates.end();
+    if (known && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  };
+  for (const TracedEffect& e : r.effects) add(e.chosen.candidate.covariate());
+  add("slip");
+  add("load_N");
+  for (const CovariateTest& t : r.first_tests)
+    if (names.size() < 8) add(t.covariate);
+  for (const std::string& name : r.trial.covariates)
+    if (names.size() < 8) add(name);
+  return names;
+}
+
+Plot residualPlot(const TraceResult& r, const std::string& covariate, Channel channel,
+                  const Eigen::MatrixXd& before, const Eigen::MatrixXd& after,
+                  const Eigen::VectorXd& sinkage) {
+  const Eigen::VectorXd x = covariateValues(r.trial, covariate, sinkage);
+  Series base{.name = "base", .x = {}, .y = {}, .mark = Series::Mark::Points};
+  Series refined{.name = "refined", .x = {}, .y = {}, .mark = Series::Mark::Points};
+  const auto c = static_cast<Eigen::Index>(channel);
+  for (Eigen::Index row = 0; row < x.size(); ++row) {
+    if (!std::isfinite(x[row]) || !std::isfinite(before(row, c))) continue;
+    base.x.push_back(x[row]);
+    base.y.push_back(before(row, c));
+    refined.x.push_back(x[row]);
+    refined.y.push_back(after(row, c));
+  }
+  return {.title = std::string(name(channel)) + " over " + covariate,
+          .x = {.label = covariate},
+          .y = {.label = "measured less model [-]"},
+          .series = {base, refined}};
+}
+
+// The fitted parameters, each with its standard deviation.
+std::string sizes(const TracedEffect& effect) {
+  const Effect& part = effect.chosen.candidate.parts.front();
+  const EffectForm* form = findEffect(part.name);
+  std::string text;
+  std::size_t at = 0;
+  for (std::size_t k = 0; form && k < form->parameters.size(); ++k) {
+    const EffectParameter& parameter = form->parameters[k];
+    if (!parameter.fitted) continue;
+    const double std = at < effect.parameter_std.size() ? effect.parameter_std[at] : 0.0;
+    ++at;
+    text += fmt::format("{}{} = {:.3g} ± {:.2g}", text.empty() ? "" : "; ", parameter.name,
+                        part.parameters[k], std);
+    if (parameter.unit != std::string("-")) text += fmt::format(" {}", parameter.unit);
+  }
+  return text;
+}
+
+std::string rivals(const TracedEffect& effect) {
+  std::string text;
+  for (const Explanation& rival : effect.alternatives)
+    text +=
+        fmt::format("{}{} ({}; {:.1f} less)", text.empty() ? "" : ", ", rival.candidate.parts.front().name,
+                    rival.candidate.covariate(), effect.chosen.score - rival.score);
+  return text.empty() ? "nothing near" : text;
+}
+
+void effects(HtmlReport& page, const TraceStory& story) {
+  page.heading("What the model lacked");
+  if (story.result.effects.empty()) {
+    page.paragraph(
+        "No effect found: what the base model leaves looks like noise in every column and channel.");
+    return;
+  }
+  std::vector<std::vector<std::string>> found, forms;
+  for (const TracedEffect& e : story.result.effects) {
+    const Effect& part = e.chosen.candidate.parts.front();
+    const EffectForm* form = findEffect(part.name);
+    found.push_back({part.name, covariateOf(part) + (part.only_column.empty() ? "" : " = " + part.only_value),
+                     name(e.channel), sizes(e), fmt::format("{:.2g}", e.p_value),
+                     fmt::format("{:.1f}", 0.5 * e.chosen.chi2_gain)});
+    forms.push_back({part.name, form ? form->formula : "curve fitted to the residual", rivals(e),
+                     separatingMeasurement(story.result.trial, e)});
+  }
+  page.table({"effect", "covariate", "channel", "size (one standard deviation)", "p (all questions)",
+              "log-likelihood"},
+             found);
+  page.table({"effect", "form", "what else it could be", "what would tell them apart"}, forms);
+}
+
+void errors(HtmlReport& page, const TraceStory& story) {
+  page.heading("Error before and after");
+  const TraceResult& r = story.result;
+  const auto row = [&](const char* rows, Channel c, const ChannelErrors& base, const ChannelErrors& refined) {
+    const auto k = static_cast<std::size_t>(c);
+    return std::vector<std::string>{rows, name(c), fmt::format("{:.4f}", base[k]),
+                                    fmt::format("{:.4f}", refined[k]),
+                                    fmt::format("{:.4f}", r.noise_floor[k])};
+  };
+  std::vector<std::vector<std::string>> rows;
+  for (const HeldOut& held : story.held_out)
+    for (Channel c : kAll)
+      if (r.trial.has(c)) rows.push_back(row(held.scheme.c_str(), c, held.base_rmse, held.refined_rmse));
+  for (Channel c : kAll)
+    if (r.trial.has(c)) rows.push_back(row("none: the rows of the fit", c, r.base_rmse, r.refined_rmse));
+  page.paragraph("Root mean squares. The noise floor is what the sensors alone would leave.");
+  page.table({"held out", "channel", "base", "refined", "noise floor"}, rows);
+}
+
+const char* flippedTogether(const ExchangeableUnits& units) {
+  if (units.unit.empty()) return "rows";
+  return units.runs ? "what the rows of a run share, and of the rest of each row"
+                    : "what rows close in time share, and of the rest of each row";
+}
+
+void tests(HtmlReport& page, const TraceResult& r) {
+  page.heading("What the base model's residuals were asked");
+  page.paragraph(
+      fmt::format("Strongest questions of {}; p-values hold over all of them together, by sign flips of {}.",
+                  r.first_tests.size(), flippedTogether(r.units)));
+  std::vector<std::vector<std::string>> rows;
+  for (std::size_t k = 0; k < r.first_tests.size() && k < 15; ++k) {
+    const CovariateTest& t = r.first_tests[k];
+    rows.push_back({t.covariate, t.channel < 0 ? "all" : name(static_cast<Channel>(t.channel)),
+                    fmt::format("{:.2f}", t.z), fmt::format("{:.4f}", t.p_value)});
+  }
+  page.table({"column or effect", "channel", "normal score", "p"}, rows);
+}
+
+}  // namespace
+
+std::string tracePage(const TraceStory& story) {
+  const TraceResult& r = story.result;
+  HtmlReport page("Residuals of " + story.source);
+  page.paragraph(fmt::format("{} rows used, {} rejected.", r.trial.rows(), story.rows_rejected));
+  if (story.beyond_axle > 0) page.paragraph(beyondAxleText(story) + ".");
+  if (!story.applies.applies) page.paragraph("The model does not apply here: " + story.applies.reason + ".");
+  effects(page, story);
+  errors(page, story);
+  terramech::SolvedContacts solved;
+  const Eigen::MatrixXd before = r.trial.measured - predictRows(r.base, r.trial, solved);
+  const Eigen::MatrixXd level = predictRows(r.refined, r.trial, solved), after = r.trial.measured - level;
+  Eigen::VectorXd sinkage(level.rows());
+  for (int row = 0; row < r.trial.rows(); ++row)
+    sinkage[row] = level(row, 1) * r.trial.denominator(row, Channel::Sinkage);
+  page.heading("Residual over each covariate, before and after");
+  std::vector<Plot> plots;
+  for (const std::string& covariate : shown(r))
+    for (Channel c : kAll)
+      if (r.trial.has(c)) plots.push_back(residualPlot(r, covariate, c, before, after, sinkage));
+  page.charts(plots, {.columns = 3, .panel_width = 420, .panel_height = 300});
+  tests(page, r);
+  return page.html();
+}
+
+}  // namespace talus::cli

@@ -1,0 +1,279 @@
+#include <cmath>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <talus/cli/soil/trace_report.hpp>
+
+namespace talus::cli {
+namespace {
+
+using nlohmann::ordered_json;
+using namespace terramech;
+
+constexpr Channel kAll[] = {Channel::DrawbarPull, Channel::Sinkage, Channel::Torque, Channel::SideForce};
+
+ordered_json errorsJson(const ChannelErrors& errors) {
+  ordered_json out = ordered_json::object();
+  for (Channel c : kAll)
+    if (std::isfinite(errors[static_cast<std::size_t>(c)]))
+      out[name(c)] = errors[static_cast<std::size_t>(c)];
+  return out;
+}
+
+/// Parameters of an effect by name; curves as knots and values a channel.
+ordered_json parametersJson(const Candidate& candidate) {
+  ordered_json out = ordered_json::object();
+  for (const Effect& part : candidate.parts) {
+    if (part.empirical()) {
+      out[name(part.channel)] = {{"knots", part.knots}, {"values", part.parameters}};
+      continue;
+    }
+    const EffectForm* form = findEffect(part.name);
+    for (std::size_t k = 0; k < part.parameters.size(); ++k)
+      out[form->parameters[k].name] = part.parameters[k];
+  }
+  return out;
+}
+
+ordered_json stdJson(const TracedEffect& effect) {
+  ordered_json out = ordered_json::object();
+  const Effect& part = effect.chosen.candidate.parts.front();
+  if (part.empirical()) return effect.parameter_std;
+  const EffectForm* form = findEffect(part.name);
+  std::size_t at = 0;
+  for (const EffectParameter& p : form->parameters)
+    if (p.fitted && at < effect.parameter_std.size()) out[p.name] = effect.parameter_std[at++];
+  return out;
+}
+
+ordered_json rivalJson(const Explanation& e) {
+  const Effect& part = e.candidate.parts.front();
+  ordered_json out{{"name", part.name}, {"covariate", covariateOf(part)}};
+  if (!part.only_column.empty()) out["only"] = {{part.only_column, part.only_value}};
+  out["log_likelihood_gain"] = 0.5 * e.chi2_gain;
+  out["score"] = e.score;
+  return out;
+}
+
+ordered_json evidenceJson(const TraceStory& story, const TracedEffect& effect) {
+  ordered_json by_channel = ordered_json::object();
+  for (Channel c : kAll)
+    if (story.result.trial.has(c))
+      by_channel[name(c)] = effect.chosen.by_channel[static_cast<std::size_t>(c)];
+  ordered_json rivals = ordered_json::array();
+  for (const Explanation& e : effect.alternatives) rivals.push_back(rivalJson(e));
+  return {{"log_likelihood_gain", 0.5 * effect.chosen.chi2_gain},
+          {"score", effect.chosen.score},
+          {"chi2_gain_by_channel", by_channel},
+          {"alternatives", rivals},
+          {"confounded_with", confounded(story.result.trial, effect.chosen.candidate.covariate())},
+          {"to_tell_apart", separatingMeasurement(story.result.trial, effect)}};
+}
+
+ordered_json effectJson(const TraceStory& story, const TracedEffect& effect) {
+  const Effect& part = effect.chosen.candidate.parts.front();
+  ordered_json out{{"name", part.name},
+                   {"family", effect.chosen.candidate.family},
+                   {"covariate", covariateOf(part)},
+                   {"channel", name(effect.channel)}};
+  if (!part.only_column.empty()) out["only"] = {{part.only_column, part.only_value}};
+  out["parameters"] = parametersJson(effect.chosen.candidate);
+  out["parameters_std"] = stdJson(effect);
+  out["p_value"] = effect.p_value;
+  out["evidence"] = evidenceJson(story, effect);
+  if (const EffectForm* form = findEffect(part.name)) {
+    out["formula"] = form->formula;
+    out["source"] = form->source;
+    out["signature"] = form->signature;
+  } else {
+    out["formula"] = "natural cubic spline through (knots, values), fitted; no physical cause is claimed";
+  }
+  return out;
+}
+
+ordered_json rejectedJson(const TraceResult& result) {
+  ordered_json out = ordered_json::array();
+  for (const Explanation& e : result.rejected) {
+    ordered_json one = rivalJson(e);
+    one["reason"] = result.effects.empty() ? "does not beat noise" : "explains less than what was chosen";
+    out.push_back(one);
+  }
+  return out;
+}
+
+double correlation(const Eigen::VectorXd& x, const Eigen::VectorXd& y) {
+  double n = 0.0, mx = 0.0, my = 0.0;
+  for (Eigen::Index i = 0; i < x.size(); ++i)
+    if (std::isfinite(x[i]) && std::isfinite(y[i])) n += 1.0, mx += x[i], my += y[i];
+  double xx = 0.0, yy = 0.0, xy = 0.0;
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    if (!std::isfinite(x[i]) || !std::isfinite(y[i])) continue;
+    const double a = x[i] - mx / n, b = y[i] - my / n;
+    xx += a * a;
+    yy += b * b;
+    xy += a * b;
+  }
+  return xx > 0.0 && yy > 0.0 ? xy / std::sqrt(xx * yy) : 0.0;
+}
+
+std::string effectLine(const TracedEffect& effect) {
+  const Effect& part = effect.chosen.candidate.parts.front();
+  std::string line =
+      fmt::format("  {} in {} (covariate {}{})", part.name, name(effect.channel), covariateOf(part),
+                  part.only_column.empty() ? "" : ", only where it is " + part.only_value);
+  if (const EffectForm* form = findEffect(part.name)) {
+    line += fmt::format("\n    {}   [{}]", form->formula, form->source);
+    std::size_t at = 0;
+    for (std::size_t k = 0; k < form->parameters.size(); ++k) {
+      const EffectParameter& p = form->parameters[k];
+      if (!p.fitted) continue;
+      line += fmt::format("\n    {} = {:.4g} +- {:.2g} {}", p.name, part.parameters[k],
+                          at < effect.parameter_std.size() ? effect.parameter_std[at] : 0.0, p.unit);
+      ++at;
+    }
+  } else {
+    line += "\n    a curve fitted to the residual; no known effect has its shape";
+  }
+  line +=
+      fmt::format("\n    p = {:.2g}, log-likelihood + {:.1f}", effect.p_value, 0.5 * effect.chosen.chi2_gain);
+  for (const Explanation& e : effect.alternatives)
+    line += fmt::format("\n    nearly as good: {} ({}), {:.1f} less", e.candidate.parts.front().name,
+                        e.candidate.covariate(), effect.chosen.score - e.score);
+  return line + "\n";
+}
+
+}  // namespace
+
+const std::string& covariateOf(const Effect& effect) {
+  return effect.only_column.empty() ? effect.covariate : effect.only_column;
+}
+
+std::vector<std::string> confounded(const Trial& trial, const std::string& covariate) {
+  std::vector<std::string> close;
+  const Eigen::VectorXd x = covariateValues(trial, covariate, Eigen::VectorXd::Zero(trial.rows()));
+  for (const std::string& other : trial.covariates)
+    if (other != covariate &&
+        std::abs(correlation(x, covariateValues(trial, other, Eigen::VectorXd::Zero(trial.rows())))) > 0.9)
+      close.push_back(other);
+  return close;
+}
+
+std::string separatingMeasurement(const Trial& trial, const TracedEffect& effect) {
+  const std::string& own = effect.chosen.candidate.covariate();
+  for (const Explanation& rival : effect.alternatives)
+    if (rival.candidate.covariate() != own)
+      return "rows in which " + own + " and " + rival.candidate.covariate() +
+             " do not move together would tell " + effect.chosen.candidate.parts.front().name + " from " +
+             rival.candidate.parts.front().name;
+  const auto close = confounded(trial, own);
+  if (!close.empty())
+    return own + " moves with " + close.front() + " in these rows; vary one with the other held";
+  if (!effect.alternatives.empty())
+    return "rows over a wider range of " + own + " would tell " + effect.chosen.candidate.parts.front().name +
+           " from " + effect.alternatives.front().candidate.parts.front().name;
+  return "nothing else comes near";
+}
+
+namespace {
+
+ordered_json schemeJson(const HeldOut& held) {
+  ordered_json out{{"scheme", held.scheme},
+                   {"base_rmse", errorsJson(held.base_rmse)},
+                   {"refined_rmse", errorsJson(held.refined_rmse)}};
+  for (const GroupErrors& g : held.groups)
+    out["groups"].push_back({{"column", g.column},
+                             {"value", g.value},
+                             {"rows", g.rows},
+                             {"base_rmse", errorsJson(g.base_rmse)},
+                             {"refined_rmse", errorsJson(g.refined_rmse)}});
+  return out;
+}
+
+std::string groupLines(const TraceStory& story, const HeldOut& held) {
+  std::string out;
+  for (const GroupErrors& g : held.groups) {
+    out += fmt::format("  of them {} {}, {} rows\n", g.column, g.value, g.rows);
+    for (Channel c : kAll)
+      if (const auto k = static_cast<std::size_t>(c); story.result.trial.has(c))
+        out += fmt::format("  {:26s} {:10.4f} {:10.4f}\n", name(c), g.base_rmse[k], g.refined_rmse[k]);
+  }
+  return out;
+}
+
+ordered_json heldOutJson(const TraceStory& story) {
+  ordered_json out = schemeJson(story.held_out.front());
+  out["noise_floor"] = errorsJson(story.result.noise_floor);
+  ordered_json others = ordered_json::array();
+  for (std::size_t k = 1; k < story.held_out.size(); ++k) others.push_back(schemeJson(story.held_out[k]));
+  out["others"] = others;
+  return out;
+}
+
+ordered_json beyondAxleJson(const TraceStory& story) {
+  if (story.beyond_axle == 0) return {{"rows", 0}};
+  return {{"rows", story.beyond_axle}, {"refined_rmse", errorsJson(story.beyond_axle_rmse)}};
+}
+
+}  // namespace
+
+ordered_json traceJson(const TraceStory& story) {
+  const TraceResult& r = story.result;
+  ordered_json effects = ordered_json::array();
+  for (const TracedEffect& e : r.effects) effects.push_back(effectJson(story, e));
+  ordered_json tests = ordered_json::array();
+  for (std::size_t k = 0; k < r.first_tests.size() && k < 12; ++k) {
+    const CovariateTest& t = r.first_tests[k];
+    tests.push_back({{"what", t.covariate},
+                     {"channel", t.channel < 0 ? "all" : name(static_cast<Channel>(t.channel))},
+                     {"z", t.z},
+                     {"p_value", t.p_value}});
+  }
+  return {{"base", {{"rmse", errorsJson(r.base_rmse)}}},
+          {"effects", effects},
+          {"rejected", rejectedJson(r)},
+          {"refined", {{"rmse", errorsJson(r.refined_rmse)}}},
+          {"held_out", heldOutJson(story)},
+          {"tests", tests},
+          {"applies", story.applies.applies},
+          {"applies_reason", story.applies.reason},
+          {"rows_used", r.trial.rows()},
+          {"rows_rejected", story.rows_rejected},
+          {"beyond_axle", beyondAxleJson(story)}};
+}
+
+std::string beyondAxleText(const TraceStory& story) {
+  std::string errors;
+  for (Channel c : kAll)
+    if (const double e = story.beyond_axle_rmse[static_cast<std::size_t>(c)]; std::isfinite(e))
+      errors += fmt::format("{}{} {:.3f}", errors.empty() ? "" : ", ", name(c), e);
+  return fmt::format(
+      "{} rows with the wheel sunk to its axle or deeper are left out: the contact law ends there; the "
+      "refined "
+      "model's error on them: {}",
+      story.beyond_axle, errors);
+}
+
+std::string traceText(const TraceStory& story) {
+  const TraceResult& r = story.result;
+  std::string out =
+      fmt::format("{}: {} rows used, {} rejected\n", story.source, r.trial.rows(), story.rows_rejected);
+  if (r.effects.empty()) out += "no effect found: what is left looks like noise\n";
+  for (const TracedEffect& e : r.effects) out += effectLine(e);
+  for (const HeldOut& held : story.held_out) {
+    out += fmt::format("held out ({})\n  {:26s} {:>10s} {:>10s} {:>12s}\n", held.scheme, "rmse of", "base",
+                       "refined", "noise floor");
+    for (Channel c : kAll) {
+      const auto k = static_cast<std::size_t>(c);
+      if (!r.trial.has(c)) continue;
+      out += fmt::format("  {:26s} {:10.4f} {:10.4f} {:12.4f}\n", name(c), held.base_rmse[k],
+                         held.refined_rmse[k], r.noise_floor[k]);
+    }
+    out += groupLines(story, held);
+  }
+  if (story.beyond_axle > 0) out += beyondAxleText(story) + '\n';
+  if (!story.applies.applies) out += "the model does not apply: " + story.applies.reason + "\n";
+  return out;
+}
+
+}  // namespace talus::cli

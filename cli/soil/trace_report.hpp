@@ -1,0 +1,41 @@
+#pragma once
+
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <talus/terramech/trace/held_out.hpp>
+#include <talus/terramech/trace/model_validity.hpp>
+#include <talus/terramech/trace/residual_trace.hpp>
+
+namespace talus::cli {
+
+/// Everything that a tracing has to tell.
+struct TraceStory {
+  std::string source;  ///< the file
+  std::size_t rows_rejected = 0;
+  terramech::TraceResult result;
+  std::vector<terramech::HeldOut> held_out;  ///< the first is the one that counts
+  terramech::Applicability applies;
+  int beyond_axle = 0;                          ///< rows left out: terramech::beyondAxle()
+  terramech::ChannelErrors beyond_axle_rmse{};  ///< of the refined model there
+};
+
+/// Columns that move with a covariate so closely (|correlation| above 0.9) that the rows cannot tell them
+/// apart.
+std::vector<std::string> confounded(const terramech::Trial& trial, const std::string& covariate);
+
+/// The column that explains an effect: of one on a single group of rows, the column that tells the group.
+const std::string& covariateOf(const terramech::Effect& effect);
+
+/// What one would have to measure to tell an effect from its nearest rival.
+std::string separatingMeasurement(const terramech::Trial& trial, const terramech::TracedEffect& effect);
+
+/// One line about the rows left out because the wheel is sunk to its axle; there must be some.
+std::string beyondAxleText(const TraceStory& story);
+
+nlohmann::ordered_json traceJson(const TraceStory& story);
+std::string traceText(const TraceStory& story);
+std::string tracePage(const TraceStory& story);
+
+}  // namespace talus::cli

@@ -1,0 +1,77 @@
+#include <numbers>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include <talus/cli/draw/html_report.hpp>
+#include <talus/cli/soil/wheel_report.hpp>
+#include <talus/terramech/contact/wong_reece.hpp>
+
+namespace talus::cli {
+namespace {
+
+using terramech::WheelForces;
+
+Plot stressPlot(const WheelAtWork& work) {
+  Series normal{.name = "normal", .x = {}, .y = {}}, shear{.name = "shear", .x = {}, .y = {}};
+  for (const auto& s : terramech::stressDistribution(work.soil, work.rover.wheel,
+                                                     {.load_N = work.load_N, .slip = work.slip}, 301)) {
+    const double degrees = s.angle_rad * 180.0 / std::numbers::pi;
+    normal.x.push_back(degrees);
+    shear.x.push_back(degrees);
+    normal.y.push_back(1e-3 * s.normal_Pa);
+    shear.y.push_back(1e-3 * s.shear_Pa);
+  }
+  return {"Stress along the rim",
+          {.label = "angle from the vertical, forward [deg]"},
+          {.label = "stress [kPa]"},
+          {normal, shear}};
+}
+
+/// A quantity over slip, braked to driven; breaks where the soil cannot carry the wheel.
+template <class Quantity>
+Plot overSlip(const WheelAtWork& work, const std::string& title, const Quantity& quantity) {
+  Series curve{.x = {}, .y = {}};
+  for (int k = -100; k <= 100; ++k) {
+    const double slip = 0.01 * k;
+    curve.x.push_back(slip);
+    try {
+      curve.y.push_back(quantity(
+          terramech::equilibrium(work.soil, work.rover.wheel, {.load_N = work.load_N, .slip = slip})));
+    } catch (const std::domain_error&) {
+      curve.y.push_back(std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+  return {title, {.label = "slip [-], braked < 0"}, {.label = title + " [-]"}, {curve}};
+}
+
+std::vector<std::vector<std::string>> forceRows(const WheelAtWork& work) {
+  const WheelForces f =
+      terramech::equilibrium(work.soil, work.rover.wheel, {.load_N = work.load_N, .slip = work.slip});
+  const double r = work.rover.wheel.radius_m;
+  return {{"sinkage", fmt::format("{:.3f}", 1e3 * f.sinkage_m), "mm", fmt::format("{:.3f}", f.sinkage_m / r)},
+          {"entry angle", fmt::format("{:.2f}", f.entry_angle_rad * 180.0 / std::numbers::pi), "deg", ""},
+          {"torque", fmt::format("{:.3f}", f.torque_Nm), "Nm",
+           fmt::format("{:.3f}", f.torque_Nm / (r * work.load_N))},
+          {"drawbar pull", fmt::format("{:.3f}", f.drawbar_pull_N), "N",
+           fmt::format("{:.3f}", f.drawbar_pull_N / work.load_N)}};
+}
+
+}  // namespace
+
+std::string wheelReport(const WheelAtWork& work) {
+  const double r = work.rover.wheel.radius_m, load_N = work.load_N;
+  HtmlReport report{fmt::format("A wheel of {} on {}", work.rover.name, work.soil.name)};
+  report.paragraph(
+      fmt::format("Load {:.4g} N, slip {:.3g}; radius {:.4g} m, width {:.4g} m. Wong-Reece equilibrium "
+                  "(thesis C.2 to C.10).",
+                  load_N, work.slip, r, work.rover.wheel.width_m));
+  report.table({"", "value", "unit", "z/r, T/(rW), DP/W"}, forceRows(work));
+  report.charts({stressPlot(work),
+                 overSlip(work, "DP/W", [&](const WheelForces& f) { return f.drawbar_pull_N / load_N; }),
+                 overSlip(work, "T/(rW)", [&](const WheelForces& f) { return f.torque_Nm / (r * load_N); }),
+                 overSlip(work, "z/r", [&](const WheelForces& f) { return f.sinkage_m / r; })});
+  return report.html();
+}
+
+}  // namespace talus::cli

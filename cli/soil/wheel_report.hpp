@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+
+#include <talus/terramech/contact/rover.hpp>
+#include <talus/terramech/contact/soil.hpp>
+
+namespace talus::cli {
+
+/// One wheel at work.
+struct WheelAtWork {
+  terramech::Soil soil;
+  terramech::Rover rover;
+  double load_N = 0.0;
+  double slip = 0.0;
+};
+
+/// A self-contained HTML page on it: its forces, the stresses along its rim (thesis Fig. C.4), and drawbar
+/// pull, torque and sinkage over slip (Figs. 3.8, D.3). Throws as terramech::equilibrium().
+std::string wheelReport(const WheelAtWork& work);
+
+}  // namespace talus::cli

@@ -1,0 +1,98 @@
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include <talus/cli/soil/wheel_rows.hpp>
+#include <talus/terramech/io/soil_library.hpp>
+#include <talus/terramech/io/telemetry_reader.hpp>
+
+namespace talus::cli {
+namespace {
+
+using terramech::Telemetry;
+
+// The wheel of each row: the rover's, or the file's own.
+std::vector<terramech::Wheel> wheelsOf(const Telemetry& table, const WheelRowOptions& options) {
+  if (!options.rover.empty()) return {table.size(), terramech::loadRover(options.rover).wheel};
+  const auto* radius = table.find("wheel_radius_m");
+  const auto* width = table.find("wheel_width_m");
+  if (radius == nullptr || width == nullptr) {
+    throw InputError(
+        {.where = table.source,
+         .reason = fmt::format("lacks column {}", radius == nullptr ? "wheel_radius_m" : "wheel_width_m"),
+         .remedy = "add it, or name the rover with --rover"});
+  }
+  std::vector<terramech::Wheel> wheels;
+  for (std::size_t k = 0; k < table.size(); ++k) {
+    if (!std::isfinite((*radius)[k]) || !std::isfinite((*width)[k])) {
+      throw InputError({.where = fmt::format("{}:{}", table.source, table.lines[k]),
+                        .reason = "has no wheel_radius_m or wheel_width_m",
+                        .remedy = "fill it in, or name the rover with --rover"});
+    }
+    wheels.push_back({.radius_m = (*radius)[k], .width_m = (*width)[k]});
+  }
+  return wheels;
+}
+
+bool sameSize(const terramech::Wheel& a, const terramech::Wheel& b) {
+  return a.radius_m == b.radius_m && a.width_m == b.width_m;
+}
+
+std::optional<std::string> unusable(const terramech::WheelSample& s, const WheelRowOptions& options) {
+  if (!(s.sinkage_m > 0.0)) return "sinkage_m = 0: the wheel has no contact to infer stresses from";
+  if (options.needs_slip && !(s.slip > 0.0))
+    return fmt::format("slip = {:g}, must be > 0: a driven wheel", s.slip);
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::vector<terramech::WheelReading> WheelRows::readings() const {
+  std::vector<terramech::WheelReading> readings;
+  for (std::size_t k = 0; k < samples.size(); ++k) readings.push_back({wheels[k], samples[k]});
+  return readings;
+}
+
+WheelRows readWheelRows(const std::filesystem::path& path, const WheelRowOptions& options,
+                        const ProgressMonitor& watch) {
+  terramech::TelemetryOptions reading{.required = {"load_N", "torque_Nm", "sinkage_m"}};
+  if (options.needs_slip) reading.required.emplace_back("slip");
+  if (!options.rover.empty()) reading.wheel_radius_m = terramech::loadRover(options.rover).wheel.radius_m;
+  const Telemetry table = terramech::readTelemetry(path, reading, watch);
+  const std::vector<terramech::Wheel> wheels = wheelsOf(table, options);
+  WheelRows rows{.source = table.source,
+                 .wheel = wheels.front(),
+                 .samples = {},
+                 .wheels = {},
+                 .lines = {},
+                 .words = {},
+                 .rejected = table.rejected};
+  for (const auto& column : table.words) rows.words.push_back({.name = column.name, .values = {}});
+  const auto* slip = table.find("slip");
+  for (std::size_t k = 0; k < table.size(); ++k) {
+    const terramech::WheelSample sample{.load_N = table.at("load_N")[k],
+                                        .torque_Nm = table.at("torque_Nm")[k],
+                                        .sinkage_m = table.at("sinkage_m")[k],
+                                        .slip = slip == nullptr || std::isnan((*slip)[k]) ? 0.0 : (*slip)[k]};
+    if (const auto reason = unusable(sample, options)) {
+      rows.rejected.push_back({.line = table.lines[k], .reason = *reason});
+      continue;
+    }
+    if (rows.samples.empty()) rows.wheel = wheels[k];
+    rows.one_wheel = rows.one_wheel && sameSize(rows.wheel, wheels[k]);
+    rows.samples.push_back(sample);
+    rows.wheels.push_back(wheels[k]);
+    rows.lines.push_back(table.lines[k]);
+    for (std::size_t w = 0; w < table.words.size(); ++w)
+      rows.words[w].values.push_back(table.words[w].values[k]);
+  }
+  std::ranges::stable_sort(rows.rejected, {}, &terramech::RejectedRow::line);
+  if (!rows.samples.empty()) return rows;
+  throw InputError({.where = fmt::format("{}:{}", rows.source, rows.rejected.front().line),
+                    .reason = fmt::format("no usable row: {}", rows.rejected.front().reason),
+                    .remedy = ""});
+}
+
+}  // namespace talus::cli

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <talus/talus.hpp>
+#include <talus/terramech/estimate/telemetry.hpp>
+#include <talus/terramech/estimate/wheel_reading.hpp>
+
+namespace talus::cli {
+
+/// Rows of wheel telemetry that an estimator can use, and those that it cannot.
+struct WheelRows {
+  std::string source;      ///< the file
+  terramech::Wheel wheel;  ///< of the first row, where all have the same
+  bool one_wheel = true;   ///< false: wheels of several sizes
+  std::vector<terramech::WheelSample> samples;
+  std::vector<terramech::Wheel> wheels;            ///< of each sample
+  std::vector<std::size_t> lines;                  ///< of each sample in the file
+  std::vector<terramech::Telemetry::Words> words;  ///< the file's columns of words, of each sample
+  std::vector<terramech::RejectedRow> rejected;    ///< by the reader or by the method, in the file's order
+  /// The samples with their wheels.
+  std::vector<terramech::WheelReading> readings() const;
+
+  const terramech::RejectedRow* firstRejected() const {
+    return rejected.empty() ? nullptr : &rejected.front();
+  }
+};
+
+/// How rows are read.
+struct WheelRowOptions {
+  std::string rover;       ///< whose wheel it is, where the file has no wheel_radius_m and wheel_width_m
+  bool needs_slip = true;  ///< slip > 0: the method needs a driven wheel that slips
+};
+
+/// Reads load_N, torque_Nm, sinkage_m and, where needed, slip. Leaves out rows without contact (sinkage 0),
+/// or of a wheel that is not driven where slip is needed. Throws InputError when a column is missing, a row
+/// has no wheel, or no row is left.
+WheelRows readWheelRows(const std::filesystem::path& path, const WheelRowOptions& options,
+                        const ProgressMonitor& watch);
+
+}  // namespace talus::cli

@@ -1,0 +1,194 @@
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <talus/cli/app/output_file.hpp>
+#include <talus/cli/soil/wheel_table.hpp>
+#include <talus/terramech/contact/wong_reece_batch.hpp>
+#include <talus/terramech/io/csv_reader.hpp>
+
+namespace talus::cli {
+namespace {
+
+using terramech::CsvReader;
+using terramech::CsvRow;
+using terramech::WheelCase;
+using terramech::WheelForces;
+
+struct InputColumn {
+  const char* name;
+  double WheelCase::*field;
+  bool optional = false;
+};
+
+constexpr InputColumn kInputs[] = {{"cohesion_Pa", &WheelCase::cohesion_Pa},
+                                   {"friction_angle_rad", &WheelCase::friction_angle_rad},
+                                   {"sinkage_exponent", &WheelCase::sinkage_exponent},
+                                   {"sinkage_modulus", &WheelCase::sinkage_modulus},
+                                   {"shear_modulus_m", &WheelCase::shear_modulus_m},
+                                   {"c1", &WheelCase::c1, true},
+                                   {"c2", &WheelCase::c2, true},
+                                   {"wheel_radius_m", &WheelCase::wheel_radius_m},
+                                   {"wheel_width_m", &WheelCase::wheel_width_m},
+                                   {"load_N", &WheelCase::load_N},
+                                   {"slip", &WheelCase::slip}};
+
+constexpr const char* kResults[] = {"sinkage_m", "entry_angle_rad", "torque_Nm", "drawbar_pull_N"};
+
+bool isResult(const std::string& name) {
+  return std::find(std::begin(kResults), std::end(kResults), name) != std::end(kResults);
+}
+
+/// Where in a row each input stands.
+std::vector<std::optional<std::size_t>> positions(const CsvReader& reader, const std::string& path) {
+  std::vector<std::optional<std::size_t>> at;
+  std::string missing;
+  for (const InputColumn& input : kInputs) {
+    const auto found = std::find(reader.header().begin(), reader.header().end(), input.name);
+    at.emplace_back();
+    if (found != reader.header().end())
+      at.back() = static_cast<std::size_t>(found - reader.header().begin());
+    else if (!input.optional)
+      missing += (missing.empty() ? "" : ", ") + std::string(input.name);
+  }
+  if (missing.empty()) return at;
+  throw InputError({.where = path + ":1",
+                    .reason = "no column " + missing,
+                    .remedy = "name it in the header row, in SI units"});
+}
+
+/// A row and its case; `fault` says why there is none.
+struct Entry {
+  CsvRow row;
+  WheelCase wheel_case;
+  std::string fault;
+};
+
+Entry entryOf(CsvRow row, const std::vector<std::optional<std::size_t>>& at) {
+  Entry entry{std::move(row), {}, {}};
+  entry.fault = entry.row.fault;
+  for (std::size_t k = 0; k < at.size() && entry.fault.empty(); ++k) {
+    if (!at[k]) continue;
+    const std::string& field = entry.row.fields[*at[k]];
+    if (!terramech::parseNumber(field, entry.wheel_case.*kInputs[k].field))
+      entry.fault = fmt::format("{} = '{}', must be a number", kInputs[k].name, field);
+  }
+  return entry;
+}
+
+std::string reasonOf(const WheelCase& wheel_case) {
+  try {
+    static_cast<void>(terramech::equilibrium(wheel_case));
+  } catch (const std::exception& e) {
+    return e.what();
+  }
+  return "has no answer";
+}
+
+class Writer {
+ public:
+  Writer(const std::filesystem::path& path, const std::vector<std::string>& header)
+      : file_(path), header_(header) {
+    out_.open(file_.temporary(), std::ios::binary);
+    writeKept(header);
+    for (const char* name : kResults) out_ << ',' << name;
+    out_ << '\n';
+  }
+
+  void write(const Entry& entry, const WheelForces* forces) {
+    writeKept(entry.row.fields);
+    if (forces)
+      out_ << fmt::format(",{},{},{},{}\n", forces->sinkage_m, forces->entry_angle_rad, forces->torque_Nm,
+                          forces->drawbar_pull_N);
+    else
+      out_ << ",,,,\n";
+  }
+
+  void commit() {
+    out_.close();
+    file_.commit();
+  }
+
+ private:
+  void writeKept(const std::vector<std::string>& fields) {
+    bool first = true;
+    for (std::size_t k = 0; k < header_.size(); ++k) {
+      if (isResult(header_[k])) continue;
+      if (!first) out_ << ',';
+      first = false;
+      if (k < fields.size()) out_ << terramech::csvField(fields[k]);
+    }
+  }
+
+  OutputFile file_;
+  std::vector<std::string> header_;
+  std::ofstream out_;
+};
+
+void solveAll(const std::vector<Entry>& entries, std::vector<WheelForces>& forces) {
+  std::vector<WheelCase> cases;
+  cases.reserve(entries.size());
+  for (const Entry& entry : entries) cases.push_back(entry.wheel_case);
+  forces.resize(cases.size());
+  // Blocks of a multiple of four: a case's lane, and so nothing else, depends on them.
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, cases.size(), 256), [&](const auto& range) {
+    const auto part = [&](auto& all) { return std::span(all).subspan(range.begin(), range.size()); };
+    terramech::equilibria(part(cases), part(forces));
+  });
+}
+
+void writeBlock(const std::vector<Entry>& entries, Writer& writer, WheelTable& table) {
+  std::vector<WheelForces> forces;
+  solveAll(entries, forces);
+  for (std::size_t k = 0; k < entries.size(); ++k) {
+    std::string fault = entries[k].fault;
+    if (fault.empty() && std::isnan(forces[k].sinkage_m)) fault = reasonOf(entries[k].wheel_case);
+    writer.write(entries[k], fault.empty() ? &forces[k] : nullptr);
+    if (fault.empty())
+      ++table.solved;
+    else
+      table.refused.push_back({entries[k].row.line, fault});
+  }
+}
+
+void checkSolved(const WheelTable& table, const std::string& path) {
+  if (table.solved > 0) return;
+  if (table.refused.empty())
+    throw InputError({.where = path, .reason = "no rows below the header", .remedy = "add cases"});
+  throw InputError({.where = path + ":" + std::to_string(table.refused.front().line),
+                    .reason = "no row can be solved, this one because " + table.refused.front().reason,
+                    .remedy = "correct the rows"});
+}
+
+}  // namespace
+
+WheelTable solveWheelTable(const std::filesystem::path& input, const std::filesystem::path& output,
+                           const ProgressMonitor& watch) {
+  constexpr std::size_t kBlock = 16384;
+  CsvReader reader{input};
+  const auto at = positions(reader, input.string());
+  Writer writer{output, reader.header()};
+  WheelTable table;
+  table.replaced = std::any_of(reader.header().begin(), reader.header().end(), isResult);
+  std::vector<Entry> entries;
+  for (bool more = true; more;) {
+    CsvRow row;
+    while (entries.size() < kBlock && (more = reader.next(row)))
+      entries.push_back(entryOf(std::move(row), at));
+    writeBlock(entries, writer, table);
+    entries.clear();
+    if (watch.stopped()) throw std::runtime_error("cancelled");
+    watch.report(reader.fraction());
+  }
+  checkSolved(table, input.string());
+  writer.commit();
+  return table;
+}
+
+}  // namespace talus::cli

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <vector>
+
+#include <talus/talus.hpp>
+#include <talus/terramech/estimate/telemetry.hpp>
+
+namespace talus::cli {
+
+/// What became of a table of wheel cases.
+struct WheelTable {
+  std::size_t solved = 0;
+  std::vector<terramech::RejectedRow> refused;  ///< kept in the output with empty results
+  bool replaced = false;                        ///< the input had result columns, which were computed anew
+};
+
+/// Solves each row of a CSV of wheel cases and writes all its columns with sinkage_m, entry_angle_rad,
+/// torque_Nm and drawbar_pull_N after them. Streams; solves on all threads; the same bytes whatever their
+/// number. The output appears whole or not at all. Throws InputError when the input cannot be read, lacks a
+/// column, or no row can be solved.
+WheelTable solveWheelTable(const std::filesystem::path& input, const std::filesystem::path& output,
+                           const ProgressMonitor& watch);
+
+}  // namespace talus::cli

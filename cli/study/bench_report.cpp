@@ -1,0 +1,249 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <talus/cli/draw/html_report.hpp>
+#include <talus/cli/study/bench_report.hpp>
+#include <talus/planner/simulation/simulation_rates.hpp>
+
+namespace talus::cli {
+namespace {
+
+using planner::BenchmarkPlan;
+using planner::BenchmarkRun;
+using planner::RouteStatus;
+
+constexpr std::size_t kMostPlots = 12;  // that a page still shows well
+
+double median(std::vector<double> values) {
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  std::ranges::sort(values);
+  return (values[(values.size() - 1) / 2] + values[values.size() / 2]) / 2;
+}
+
+double largest(const std::vector<double>& values) {
+  return values.empty() ? std::numeric_limits<double>::quiet_NaN() : std::ranges::max(values);
+}
+
+BenchmarkLine lineOf(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& runs,
+                     const std::string& planner) {
+  BenchmarkLine line{.planner = planner};
+  std::vector<double> gaps, seconds, clearances;
+  int standing = 0;
+  for (const BenchmarkRun& run : runs) {
+    if (run.planner != planner) continue;
+    ++line.runs;
+    line.crashed += run.crashed;
+    line.breached += run.breached;
+    line.worst_megabytes = std::max(line.worst_megabytes, run.megabytes);
+    if (run.crashed) continue;
+    seconds.push_back(run.seconds);
+    if (run.status != RouteStatus::Found) continue;
+    ++line.found;
+    if (!planner::stands(run)) continue;
+    ++standing;
+    line.mean_cusps += run.cusps;
+    line.max_curvature_1_m = std::max(line.max_curvature_1_m, run.max_curvature_1_m);
+    clearances.push_back(-run.clearance_cells);
+    gaps.push_back(run.cost_J / planner::bestKnown_J(plan, runs, run.case_index) - 1.0);
+  }
+  line.median_gap = median(gaps);
+  line.worst_gap = largest(gaps);
+  line.mean_cusps /= std::max(1, standing);
+  line.least_clearance_cells = -largest(clearances);
+  line.median_seconds = median(seconds);
+  return line;
+}
+
+std::string percent(double share) {
+  return std::isfinite(share) ? fmt::format("{:.2f}", 100 * share) : "-";
+}
+
+const std::vector<std::string>& header() {
+  static const std::vector<std::string> words{"planner", "runs",      "found",     "breached",
+                                              "crashed", "gap p50 %", "gap max %", "time p50 s",
+                                              "MB max",  "cusps",     "bend 1/m",  "clear cells"};
+  return words;
+}
+
+std::vector<std::string> words(const BenchmarkLine& line) {
+  return {line.planner,
+          std::to_string(line.runs),
+          std::to_string(line.found),
+          std::to_string(line.breached),
+          std::to_string(line.crashed),
+          percent(line.median_gap),
+          percent(line.worst_gap),
+          fmt::format("{:.4f}", line.median_seconds),
+          fmt::format("{:.0f}", line.worst_megabytes),
+          fmt::format("{:.2f}", line.mean_cusps),
+          fmt::format("{:.3g}", line.max_curvature_1_m),
+          fmt::format("{:.2f}", line.least_clearance_cells)};
+}
+
+Plot gapOverTime(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& runs, std::size_t case_index) {
+  Plot plot{.title = plan.cases[case_index].name,
+            .x = {"time [s]"},
+            .y = {"gap to the best known [%]"},
+            .series = {}};
+  const double best_J = planner::bestKnown_J(plan, runs, case_index);
+  double end_s = 0.0;
+  for (const BenchmarkRun& run : runs)
+    if (run.case_index == case_index) end_s = std::max(end_s, run.seconds);
+  for (const BenchmarkRun& run : runs) {
+    if (run.case_index != case_index || run.seed != 1 || !planner::stands(run) || run.progress.empty())
+      continue;
+    Series series{.name = run.planner, .x = {}, .y = {}};
+    for (const auto& at : run.progress) {
+      if (!series.x.empty()) {  // a step: the old cost holds until the new one is found
+        series.x.push_back(at.seconds);
+        series.y.push_back(series.y.back());
+      }
+      series.x.push_back(at.seconds);
+      series.y.push_back(100 * (at.cost_J / best_J - 1.0));
+    }
+    series.x.push_back(end_s);  // what was found holds on
+    series.y.push_back(series.y.back());
+    plot.series.push_back(std::move(series));
+  }
+  return plot;
+}
+
+// Groups of worlds in the order of the cases.
+std::vector<std::string> groupsOf(const BenchmarkPlan& plan) {
+  std::vector<std::string> groups;
+  for (const auto& asked : plan.cases)
+    if (asked.world && std::ranges::find(groups, asked.group) == groups.end()) groups.push_back(asked.group);
+  return groups;
+}
+
+// With the header first.
+std::vector<std::vector<std::string>> worldRows(const std::vector<WorldLine>& lines) {
+  std::vector<std::vector<std::string>> rows{
+      {"belief", "planner", "runs", "reached %", "95 %", "drive p50 s", "slip max p50"}};
+  for (const WorldLine& line : lines) {
+    const auto rate =
+        planner::share(static_cast<std::size_t>(line.reached), static_cast<std::size_t>(line.runs));
+    rows.push_back({line.group, line.planner, std::to_string(line.runs),
+                    fmt::format("{:.1f}", 100 * rate.value),
+                    fmt::format("{:.1f}-{:.1f}", 100 * rate.interval_95[0], 100 * rate.interval_95[1]),
+                    std::isfinite(line.median_drive_s) ? fmt::format("{:.0f}", line.median_drive_s) : "-",
+                    std::isfinite(line.median_max_slip) ? fmt::format("{:.2f}", line.median_max_slip) : "-"});
+  }
+  return rows;
+}
+
+}  // namespace
+
+std::vector<BenchmarkLine> compared(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& runs) {
+  std::vector<BenchmarkLine> lines;
+  for (const std::string& planner : plan.planners) lines.push_back(lineOf(plan, runs, planner));
+  return lines;
+}
+
+std::vector<WorldLine> drivesOf(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& runs) {
+  std::vector<WorldLine> lines;
+  for (const std::string& group : groupsOf(plan))
+    for (const std::string& planner : plan.planners) {
+      WorldLine line{.group = group, .planner = planner};
+      std::vector<double> seconds, slips;
+      for (const BenchmarkRun& run : runs) {
+        if (run.planner != planner || plan.cases[run.case_index].group != group) continue;
+        ++line.runs;
+        line.reached += run.reached;
+        if (run.reached) seconds.push_back(run.drive_s);
+        if (run.status == RouteStatus::Found && !run.crashed) slips.push_back(run.max_slip);
+      }
+      line.median_drive_s = median(seconds);
+      line.median_max_slip = median(slips);
+      lines.push_back(std::move(line));
+    }
+  return lines;
+}
+
+std::string asText(const std::vector<WorldLine>& lines) {
+  if (lines.empty()) return "";
+  std::string text = "\n";
+  for (const auto& row : worldRows(lines)) {
+    text += fmt::format("{:<12}{:<16}", row[0], row[1]);
+    for (std::size_t i = 2; i < row.size(); ++i) text += fmt::format("{:>14}", row[i]);
+    text += "\n";
+  }
+  return text;
+}
+
+std::string asText(const std::vector<BenchmarkLine>& lines) {
+  std::string text = fmt::format("{:<16}", header()[0]);
+  for (std::size_t i = 1; i < header().size(); ++i) text += fmt::format("{:>12}", header()[i]);
+  text += "\n";
+  for (const BenchmarkLine& line : lines) {
+    const auto cells = words(line);
+    text += fmt::format("{:<16}", cells[0]);
+    for (std::size_t i = 1; i < cells.size(); ++i) text += fmt::format("{:>12}", cells[i]);
+    text += "\n";
+  }
+  return text;
+}
+
+nlohmann::ordered_json asJson(const std::vector<BenchmarkLine>& lines, const std::vector<WorldLine>& drives) {
+  auto array = nlohmann::ordered_json::array();
+  for (const BenchmarkLine& line : lines) {
+    array.push_back({{"planner", line.planner},
+                     {"runs", line.runs},
+                     {"found", line.found},
+                     {"breached", line.breached},
+                     {"crashed", line.crashed},
+                     {"median_gap", line.median_gap},
+                     {"worst_gap", line.worst_gap},
+                     {"median_seconds", line.median_seconds},
+                     {"worst_megabytes", line.worst_megabytes},
+                     {"mean_cusps", line.mean_cusps},
+                     {"max_curvature_1_m", line.max_curvature_1_m},
+                     {"least_clearance_cells", line.least_clearance_cells}});
+    for (const WorldLine& drive : drives)
+      if (drive.planner == line.planner)
+        array.back()["drives"].push_back({{"belief", drive.group},
+                                          {"runs", drive.runs},
+                                          {"reached", drive.reached},
+                                          {"median_drive_s", drive.median_drive_s},
+                                          {"median_max_slip", drive.median_max_slip}});
+  }
+  return array;
+}
+
+std::vector<Plot> gapsOverTime(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& runs) {
+  std::vector<Plot> plots;
+  for (std::size_t c = 0; c < std::min(plan.cases.size(), kMostPlots); ++c)
+    plots.push_back(gapOverTime(plan, runs, c));
+  return plots;
+}
+
+std::string asPage(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& runs) {
+  HtmlReport page("Planner benchmark");
+  page.paragraph(fmt::format(
+      "{} cases, {} seeds, {} s a run, each run in a process of its own. Gap: to the known optimum, "
+      "else to the best of all runs. Breached: the independent check refuses the route; its gap, bends and "
+      "clearance count nowhere.",
+      plan.cases.size(), plan.seeds, plan.time_limit_s));
+  if (const std::size_t asked = planner::jobsOf(plan).size(); runs.size() < asked)
+    page.paragraph(fmt::format("Cancelled: {} of {} runs were made.", runs.size(), asked));
+  std::vector<std::vector<std::string>> rows;
+  for (const BenchmarkLine& line : compared(plan, runs)) rows.push_back(words(line));
+  page.table(header(), rows);
+  if (const auto drives = worldRows(drivesOf(plan, runs)); drives.size() > 1) {
+    page.heading("Drives over the true slip");
+    page.table(drives.front(), {drives.begin() + 1, drives.end()});
+  }
+  page.heading("Cost over time");
+  page.paragraph(
+      "The first seed of each planner whose last route stands up to the check. Costs on the way there are "
+      "the "
+      "planner's own; none is drawn below that of the last route.");
+  page.charts(gapsOverTime(plan, runs));
+  return page.html();
+}
+
+}  // namespace talus::cli

@@ -1,0 +1,67 @@
+#include <cmath>
+
+#include <talus/cli/study/figure_parts.hpp>
+#include <talus/terramech/contact/wong_reece.hpp>
+#include <talus/terramech/estimate/linear_offset.hpp>
+
+namespace talus::cli {
+
+using namespace terramech;
+
+ContactSoil middle(std::size_t soil_class) {
+  return thesisSoils()[soil_class].at(SoilVector::Constant(0.5));
+}
+
+WheelSample drive(const ContactSoil& soil, double load, double slip) {
+  const WheelForces f = equilibrium(soilOf(soil), kThesisWheel, {.load_N = load, .slip = slip});
+  return {load, f.torque_Nm, f.sinkage_m, slip};
+}
+
+Series line(const std::string& name) {
+  return {.name = name, .x = {}, .y = {}};
+}
+
+std::vector<Series> lines(std::initializer_list<const char*> names) {
+  std::vector<Series> all;
+  for (const char* name : names) all.push_back(line(name));
+  return all;
+}
+
+Series points(const std::string& name) {
+  return {.name = name, .x = {}, .y = {}, .mark = Series::Mark::Points};
+}
+
+void put(Series& series, double x, double y) {
+  series.x.push_back(x);
+  series.y.push_back(y);
+}
+
+Series straight(const std::string& name, double offset, double slope, double most) {
+  return {.name = name, .x = {0.0, most}, .y = {offset, offset + slope * most}};
+}
+
+FittedPoints fittedPoints(const ThesisRun& run, double modulus, const std::string& name) {
+  FittedPoints f{points(name), {}};
+  MohrCoulombLine through;
+  for (const WheelSample& s : run.samples) {
+    const StressPair p = linearOffset(kThesisWheel, s, modulus).pair();
+    put(f.cloud, 1e-3 * p.normal_Pa, 1e-3 * p.shear_Pa);
+    through.add(p);
+  }
+  f.fit = through.estimate();
+  return f;
+}
+
+ThesisRun clayRun(std::uint64_t seed, double noise) {
+  ThesisRuns runs(seed);
+  for (;;) {
+    ThesisRun run = runs.next({.noise = noise});
+    if (run.soil_class == 1 && run.soil.cohesion_Pa > 6500.0) return run;
+  }
+}
+
+double MeanAndStd::std() const {
+  return std::sqrt(squares_ / count_ - mean() * mean());
+}
+
+}  // namespace talus::cli

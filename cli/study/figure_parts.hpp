@@ -1,0 +1,50 @@
+#pragma once
+
+#include <initializer_list>
+#include <string>
+#include <vector>
+
+#include <talus/cli/study/thesis_figures.hpp>
+#include <talus/terramech/estimate/mohr_coulomb_line.hpp>
+#include <talus/terramech/estimate/thesis_runs.hpp>
+
+/// What the figures of the thesis are drawn with.
+namespace talus::cli {
+
+/// A soil in the middle of a class of Table 2.1; the thesis does not say which it drew.
+terramech::ContactSoil middle(std::size_t soil_class);
+
+/// What a wheel of the thesis reads on a soil at a load [N] and slip.
+terramech::WheelSample drive(const terramech::ContactSoil& soil, double load_N, double slip);
+
+/// An empty line, several, an empty cloud of points; and a point more.
+Series line(const std::string& name);
+std::vector<Series> lines(std::initializer_list<const char*> names);
+Series points(const std::string& name);
+void put(Series& series, double x, double y);
+
+/// Straight line y = offset + slope x over [0, most].
+Series straight(const std::string& name, double offset, double slope, double most);
+
+/// Of values added one at a time.
+class MeanAndStd {
+ public:
+  void add(double value) { sum_ += value, squares_ += value * value, count_ += 1.0; }
+  double mean() const { return sum_ / count_; }
+  double std() const;
+
+ private:
+  double sum_ = 0.0, squares_ = 0.0, count_ = 0.0;
+};
+
+/// The points (M3, M4) of a run at a shear modulus [m] and the line fitted to them.
+struct FittedPoints {
+  Series cloud;
+  terramech::ShearStrength fit;
+};
+FittedPoints fittedPoints(const terramech::ThesisRun& run, double shear_modulus_m, const std::string& name);
+
+/// A clay run with the most cohesion that the seed gives.
+terramech::ThesisRun clayRun(std::uint64_t seed, double noise);
+
+}  // namespace talus::cli

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <talus/talus.hpp>
+
+namespace talus::cli {
+
+/// One line of the table of what the estimators reach.
+struct GoalLine {
+  std::string quantity;
+  std::string reached;
+  std::string goal;  ///< empty: for comparison only
+};
+
+/// What is measured.
+struct GoalOptions {
+  std::uint64_t seed = 1;
+  int soils = 500;
+  std::string measured;  ///< CSV with torque, sinkage and drawbar pull measured; empty: that line is left out
+};
+
+/// Measures every estimation goal over thesis Table 2.1, in the thesis' pattern of ten samples. The same
+/// numbers for the same seed, the times apart.
+std::vector<GoalLine> measureGoals(const GoalOptions& options, const ProgressMonitor& watch);
+
+}  // namespace talus::cli

@@ -1,0 +1,242 @@
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <cstring>
+#include <stdexcept>
+
+#include <poll.h>
+#include <signal.h>
+#ifdef __linux__
+#include <sys/prctl.h>
+#endif
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <talus/planner/bench/benchmark.hpp>
+#include <talus/planner/bench/slip_world.hpp>
+#include <talus/planner/check/route_check.hpp>
+#include <talus/planner/plugin/named_planner.hpp>
+#include <talus/planner/route/polyline.hpp>
+
+namespace talus::planner {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// What a run sends home through a pipe: this, then its progress. Same program on both ends, so the layout
+// agrees.
+struct Answer {
+  RouteStatus status = RouteStatus::NoRoute;
+  bool breached = false;
+  double seconds = 0.0, cost_J = 0.0, lower_bound_J = 0.0, length_m = 0.0;
+  int turns = 0;
+  DriveShape drive;
+  double clearance_cells = 0.0;
+  double megabytes = 0.0;
+  SlipDrive went;
+};
+
+double lengthOf(const std::vector<maps::Point>& points) {
+  double metres = 0.0;
+  for (std::size_t i = 1; i < points.size(); ++i)
+    metres += std::hypot(points[i].x_m - points[i - 1].x_m, points[i].y_m - points[i - 1].y_m);
+  return metres;
+}
+
+bool breached(const BenchmarkCase& asked, const Plan& found) {
+  return (!found.points.empty() && !violations(*asked.map, found.points).empty()) ||
+         (!found.drive.legs.empty() &&
+          !violations(*asked.map, found.drive, asked.kinematics.turning_radius_m).empty());
+}
+
+// From points half a cell apart to the nearest edge of a cell that no heading may enter, in cells; 10 when
+// there is none so near.
+double clearance_cells(const costmap::CostGrid& map, const std::vector<maps::Point>& points) {
+  constexpr int kReach = 10;
+  const maps::Grid& grid = map.grid();
+  double least = kReach;
+  for (const maps::Point p : subdivided(points, 0.5 * grid.resolution_m)) {
+    const double x = (p.x_m - grid.south_west.x_m) / grid.resolution_m,
+                 y = (p.y_m - grid.south_west.y_m) / grid.resolution_m;
+    const int reach = static_cast<int>(std::ceil(least)), column = static_cast<int>(x),
+              row = static_cast<int>(y);
+    for (int r = row - reach; r <= row + reach; ++r)
+      for (int c = column - reach; c <= column + reach; ++c) {
+        if (!grid.contains({c, r}) || map.at({c, r}).curve() < map.cost().curves().size()) continue;
+        least =
+            std::min(least, std::hypot(std::max({c - x, x - c - 1, 0.0}), std::max({r - y, y - r - 1, 0.0})));
+      }
+  }
+  return least;
+}
+
+void sendAll(int pipe, const void* data, std::size_t bytes) {
+  const char* from = static_cast<const char*>(data);
+  while (bytes > 0) {
+    const ssize_t sent = write(pipe, from, bytes);
+    if (sent < 0 && errno == EINTR) continue;
+    if (sent <= 0) return;
+    from += sent;
+    bytes -= static_cast<std::size_t>(sent);
+  }
+}
+
+// Nothing once a stop is requested.
+std::string receivedAll(int pipe, const ProgressMonitor& watch) {
+  constexpr int kLook_ms = 20;
+  std::string bytes;
+  char part[4096];
+  for (;;) {
+    pollfd ready{.fd = pipe, .events = POLLIN, .revents = 0};
+    while (poll(&ready, 1, kLook_ms) <= 0)
+      if (watch.stopped()) return {};
+    const ssize_t got = read(pipe, part, sizeof part);
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) return bytes;
+    bytes.append(part, static_cast<std::size_t>(got));
+  }
+}
+
+std::string answered(const BenchmarkPlan& plan, const BenchmarkJob& job) {
+  const BenchmarkCase& asked = plan.cases[job.case_index];
+  std::vector<CostAtTime> progress;
+  const auto begin = Clock::now();
+  const auto elapsed = [begin] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
+  NamedPlanner named(job.planner);
+  const auto note = [&](double cost_J) {
+    // A planner starts from a route it was given; its own first ones may be worse.
+    if (progress.empty() || cost_J < progress.back().cost_J) progress.push_back({elapsed(), cost_J});
+  };
+  named.onBetter(note);
+  Problem problem;
+  problem.map = asked.map;
+  problem.start = asked.start;
+  problem.goal = asked.goal;
+  problem.time_limit_s = plan.time_limit_s;
+  problem.seed = job.seed;
+  problem.kinematics = asked.kinematics;
+  const Plan found = named.plan(problem);
+  // What a planner spoke of on the way was not checked: no cost below that of the route it ends with stands.
+  if (found.status != RouteStatus::Found) progress.clear();
+  std::erase_if(progress, [&](const CostAtTime& at) { return at.cost_J < found.cost_J; });
+  if (found.status == RouteStatus::Found) note(found.cost_J);
+  const double seconds = elapsed();
+  const Answer result{.status = found.status,
+                      .breached = breached(asked, found),
+                      .seconds = seconds,
+                      .cost_J = found.cost_J,
+                      .lower_bound_J = found.lower_bound_J,
+                      .length_m = lengthOf(found.points),
+                      .turns = std::max(0, static_cast<int>(found.points.size()) - 2),
+                      .drive = shape(found.drive),
+                      .clearance_cells = clearance_cells(*asked.map, found.points),
+                      .megabytes = 0.0,
+                      .went = asked.world ? driven(*asked.world, found.points) : SlipDrive{}};
+  std::string bytes(sizeof result + progress.size() * sizeof(CostAtTime), '\0');
+  std::memcpy(bytes.data(), &result, sizeof result);
+  if (!progress.empty())
+    std::memcpy(bytes.data() + sizeof result, progress.data(), bytes.size() - sizeof result);
+  return bytes;
+}
+
+}  // namespace
+
+std::string runIsolated(const BenchmarkPlan& plan, const BenchmarkJob& job, const ProgressMonitor& watch) {
+  int ends[2];
+  if (pipe(ends) != 0) throw std::runtime_error(std::string("no pipe for a run: ") + std::strerror(errno));
+  const pid_t child = fork();
+  if (child < 0) throw std::runtime_error(std::string("no process for a run: ") + std::strerror(errno));
+  if (child == 0) {
+    close(ends[0]);
+#ifdef __linux__
+    prctl(PR_SET_PDEATHSIG, SIGKILL);  // no run outlives a program that was ended at once
+#endif
+    alarm(static_cast<unsigned>(std::min(1e6, 10.0 * plan.time_limit_s + 60.0)));  // a run-away ends here
+    try {
+      const std::string bytes = answered(plan, job);
+      sendAll(ends[1], bytes.data(), bytes.size());
+    } catch (...) {  // the border of the process: no answer is the answer
+      _exit(1);
+    }
+    _exit(0);
+  }
+  close(ends[1]);
+  std::string bytes = receivedAll(ends[0], watch);
+  close(ends[0]);
+  if (bytes.empty()) kill(child, SIGKILL);  // stopped, or dead already
+  rusage used{};
+  wait4(child, nullptr, 0, &used);
+  if (bytes.size() < sizeof(Answer)) return {};
+  const double megabytes = static_cast<double>(used.ru_maxrss) / 1024.0;
+  std::memcpy(bytes.data() + offsetof(Answer, megabytes), &megabytes, sizeof megabytes);
+  return bytes;
+}
+
+BenchmarkRun benchmarkRun(const BenchmarkJob& job, const std::string& bytes) {
+  BenchmarkRun run;
+  run.planner = job.planner;
+  run.case_index = job.case_index;
+  run.seed = job.seed;
+  run.crashed = bytes.size() < sizeof(Answer);
+  if (run.crashed) return run;
+  Answer result;
+  std::memcpy(&result, bytes.data(), sizeof result);
+  run.progress.resize((bytes.size() - sizeof result) / sizeof(CostAtTime));
+  if (!run.progress.empty())
+    std::memcpy(run.progress.data(), bytes.data() + sizeof result, run.progress.size() * sizeof(CostAtTime));
+  run.status = result.status;
+  run.breached = result.breached;
+  run.seconds = result.seconds;
+  run.megabytes = result.megabytes;
+  run.cost_J = result.cost_J;
+  run.lower_bound_J = result.lower_bound_J;
+  run.length_m = result.length_m;
+  run.turns = result.turns;
+  run.cusps = result.drive.cusps;
+  run.turns_in_place = result.drive.turns_in_place;
+  run.max_curvature_1_m = result.drive.max_curvature_1_m;
+  run.clearance_cells = result.clearance_cells;
+  run.reached = result.status == RouteStatus::Found && result.went.reached;
+  run.drive_s = result.went.time_s;
+  run.max_slip = result.went.max_slip;
+  return run;
+}
+
+std::vector<BenchmarkJob> jobsOf(const BenchmarkPlan& plan) {
+  std::vector<BenchmarkJob> jobs;
+  for (const std::string& planner : plan.planners)
+    for (std::size_t c = 0; c < plan.cases.size(); ++c)
+      for (int seed = 1; seed <= plan.seeds; ++seed)
+        jobs.push_back({.planner = planner, .case_index = c, .seed = static_cast<std::uint64_t>(seed)});
+  return jobs;
+}
+
+std::vector<BenchmarkRun> runBenchmark(const BenchmarkPlan& plan, const ProgressMonitor& watch) {
+  const std::vector<BenchmarkJob> jobs = jobsOf(plan);
+  std::vector<BenchmarkRun> runs;
+  for (const BenchmarkJob& job : jobs) {
+    if (watch.stopped()) return runs;
+    const std::string bytes = runIsolated(plan, job, watch);
+    if (bytes.empty() && watch.stopped()) return runs;
+    runs.push_back(benchmarkRun(job, bytes));
+    watch.report(static_cast<double>(runs.size()) / static_cast<double>(jobs.size()));
+  }
+  return runs;
+}
+
+bool stands(const BenchmarkRun& run) noexcept {
+  return run.status == RouteStatus::Found && !run.crashed && !run.breached;
+}
+
+double bestKnown_J(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& runs, std::size_t case_index) {
+  if (std::isfinite(plan.cases[case_index].optimum_J)) return plan.cases[case_index].optimum_J;
+  double best_J = std::numeric_limits<double>::infinity();
+  for (const BenchmarkRun& run : runs)
+    if (run.case_index == case_index && stands(run)) best_J = std::min(best_J, run.cost_J);
+  return best_J;
+}
+
+}  // namespace talus::planner

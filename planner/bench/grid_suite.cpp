@@ -1,0 +1,209 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <limits>
+#include <queue>
+#include <random>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include <talus/planner/bench/grid_suite.hpp>
+#include <talus/planner/bench/moving_ai.hpp>
+
+namespace talus::planner {
+namespace {
+
+using maps::Cell;
+using Walls = maps::Raster<std::uint8_t>;  // 1: blocked
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// A place on the lattice of half cells: cell centres are odd, corners even.
+struct Place {
+  int x = 0, y = 0;
+};
+
+bool blocked(const Walls& walls, Cell cell) {
+  return !walls.grid().contains(cell) || walls[cell] != 0;
+}
+
+// Whether the open segment between two places enters no blocked cell; running along a wall is seeing. In
+// every column of cells that it crosses, those are entered whose rows overlap its heights there; all in whole
+// numbers.
+bool sees(const Walls& walls, Place a, Place b) {
+  if (a.x > b.x) std::swap(a, b);
+  const long dx = b.x - a.x, dy = b.y - a.y;
+  const auto open = [&](long column, long row) {
+    return !blocked(walls, {static_cast<int>(column), static_cast<int>(row)});
+  };
+  if (dx == 0) {
+    const long column = a.x / 2, besides = a.x % 2 == 0 ? column - 1 : column;
+    for (long row = std::min(a.y, b.y) / 2; 2 * row < std::max(a.y, b.y); ++row)
+      if (!open(column, row) && !open(besides, row)) return false;
+    return true;
+  }
+  const long row_height = 2 * dx;
+  for (long column = a.x / 2; 2 * column < b.x; ++column) {
+    const auto height = [&](long x) { return a.y * dx + (std::clamp<long>(x, a.x, b.x) - a.x) * dy; };
+    const auto [least, most] = std::minmax({height(2 * column), height(2 * column + 2)});
+    if (least == most && least % row_height == 0) {  // along a row of corners
+      if (!open(column, least / row_height) && !open(column, least / row_height - 1)) return false;
+      continue;
+    }
+    for (long row = least / row_height; row * row_height < most || row * row_height < least + 1; ++row)
+      if (!open(column, row)) return false;
+  }
+  return true;
+}
+
+// Corners that a shortest way may bend at: one blocked cell of the four around, or two across from each
+// other.
+std::vector<Place> bends(const Walls& walls) {
+  std::vector<Place> found;
+  const maps::Grid& grid = walls.grid();
+  for (int row = 1; row < grid.height; ++row)
+    for (int column = 1; column < grid.width; ++column) {
+      const int around = blocked(walls, {column - 1, row - 1}) + blocked(walls, {column, row - 1}) +
+                         blocked(walls, {column - 1, row}) + blocked(walls, {column, row});
+      if (around == 1) found.push_back({2 * column, 2 * row});
+    }
+  return found;
+}
+
+double apart_m(Place a, Place b) {
+  return 0.5 * std::hypot(a.x - b.x, a.y - b.y);
+}
+
+// Dijkstra over the places, each joined to all that it sees.
+double shortest_m(const Walls& walls, const std::vector<Place>& places, std::size_t from, std::size_t to) {
+  std::vector<double> best(places.size(), kInfinity);
+  std::vector<bool> done(places.size());
+  using Entry = std::pair<double, std::size_t>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
+  best[from] = 0.0;
+  open.emplace(0.0, from);
+  while (!open.empty()) {
+    const std::size_t at = open.top().second;
+    open.pop();
+    if (done[at]) continue;
+    if (at == to) return best[to];
+    done[at] = true;
+    for (std::size_t next = 0; next < places.size(); ++next) {
+      const double through = best[at] + apart_m(places[at], places[next]);
+      if (done[next] || through >= best[next] || !sees(walls, places[at], places[next])) continue;
+      best[next] = through;
+      open.emplace(through, next);
+    }
+  }
+  return kInfinity;
+}
+
+Walls wallsOf(const costmap::CostGrid& map) {
+  Walls walls(map.grid());
+  for (int row = 0; row < map.grid().height; ++row)
+    for (int column = 0; column < map.grid().width; ++column)
+      walls[{column, row}] = map.at({column, row}).curve() >= costmap::CellCode::kUnknown;
+  return walls;
+}
+
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : engine_(seed) {}
+  int below(int n) { return static_cast<int>(engine_() % static_cast<std::uint64_t>(n)); }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+// A tenth of the ground under blocks; closed corners between diagonal blocks are filled, so that no way leads
+// through a single point.
+Walls blocks(const maps::Grid& grid, Random& random) {
+  Walls walls(grid);
+  const int largest = std::max(2, grid.width / 6);
+  for (int covered = 0; covered * 5 < grid.width * grid.height;) {
+    const Cell low{random.below(grid.width), random.below(grid.height)};
+    const int width = 1 + random.below(largest), height = 1 + random.below(largest);
+    covered += width * height;
+    for (int row = low.row; row < std::min(grid.height, low.row + height); ++row)
+      for (int column = low.column; column < std::min(grid.width, low.column + width); ++column)
+        walls[{column, row}] = 1;
+  }
+  return walls;
+}
+
+// Square rooms with walls of one cell; each wall between two rooms has a door of one to three cells.
+Walls rooms(const maps::Grid& grid, Random& random) {
+  Walls walls(grid);
+  const int room = std::max(7, grid.width / 8);
+  for (int row = 0; row < grid.height; ++row)
+    for (int column = 0; column < grid.width; ++column)
+      walls[{column, row}] = row % room == room - 1 || column % room == room - 1;
+  for (int y = 0; y < grid.height; y += room)
+    for (int x = 0; x < grid.width; x += room)
+      for (const bool east : {true, false}) {
+        const int wide = 1 + random.below(3), at = 1 + random.below(room - 2 - wide);
+        for (int k = 0; k < wide; ++k) {
+          const Cell door = east ? Cell{x + room - 1, y + at + k} : Cell{x + at + k, y + room - 1};
+          if (grid.contains(door)) walls[door] = 0;
+        }
+      }
+  return walls;
+}
+
+// Blocked cells that meet at a corner only leave a way through a point, which nothing can drive.
+void closeDiagonals(Walls& walls) {
+  const maps::Grid& grid = walls.grid();
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (int row = 0; row + 1 < grid.height; ++row)
+      for (int column = 0; column + 1 < grid.width; ++column) {
+        auto &a = walls[{column, row}], &b = walls[{column + 1, row}], &c = walls[{column, row + 1}],
+             &d = walls[{column + 1, row + 1}];
+        if (a == d && b == c && a != b) {
+          a = b = c = d = 1;
+          changed = true;
+        }
+      }
+  }
+}
+
+}  // namespace
+
+double shortestAroundWalls_m(const costmap::CostGrid& map, Cell from, Cell to) {
+  const Walls walls = wallsOf(map);
+  auto places = bends(walls);
+  places.push_back({2 * from.column + 1, 2 * from.row + 1});
+  places.push_back({2 * to.column + 1, 2 * to.row + 1});
+  return map.grid().resolution_m * shortest_m(walls, places, places.size() - 2, places.size() - 1);
+}
+
+std::vector<BenchmarkCase> gridCases(int side, int pairs, std::uint64_t seed) {
+  if (side < 16) throw std::invalid_argument("grids: side = " + std::to_string(side) + ", must be >= 16");
+  if (pairs < 1) throw std::invalid_argument("grids: pairs = " + std::to_string(pairs) + ", must be > 0");
+  const maps::Grid grid{.width = side, .height = side, .resolution_m = 1.0, .south_west = {0.0, 0.0}};
+  Random random(seed);
+  std::vector<BenchmarkCase> cases;
+  for (const bool blocky : {true, false}) {
+    Walls walls = blocky ? blocks(grid, random) : rooms(grid, random);
+    closeDiagonals(walls);
+    const auto map = evenGround(walls);
+    int made = 0;
+    for (int tries = 0; tries < 1000 && made < pairs; ++tries) {
+      const Cell from{random.below(side), random.below(side)}, to{random.below(side), random.below(side)};
+      if (walls[from] || walls[to] || std::hypot(to.column - from.column, to.row - from.row) < side / 2.0)
+        continue;
+      const double optimum_m = shortestAroundWalls_m(*map, from, to);
+      if (std::isinf(optimum_m)) continue;
+      cases.push_back({.name = (blocky ? "blocks " : "rooms ") + std::to_string(++made),
+                       .map = map,
+                       .start = grid.centre(from),
+                       .goal = grid.centre(to),
+                       .optimum_J = optimum_m});
+    }
+  }
+  return cases;
+}
+
+}  // namespace talus::planner

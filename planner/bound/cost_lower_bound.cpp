@@ -1,0 +1,77 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <talus/planner/bound/cost_lower_bound.hpp>
+
+namespace talus::planner {
+namespace {
+
+using costmap::DriveCurve;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr int kMiddle = DriveCurve::kBins / 2;
+constexpr double kBinWidth = 1.0 / 256.0;
+// The line stays above this share of its level whatever the heading, so that every step has a price.
+constexpr double kLeastShare = 0.1;
+
+double valueAt(const DriveCurve& curve, int bin) noexcept {
+  const int at = bin + kMiddle;
+  return at >= 0 && at < DriveCurve::kBins
+             ? static_cast<double>(curve.cost_J_per_m[static_cast<std::size_t>(at)])
+             : kInfinity;
+}
+
+// The highest level that a line of this tilt can have below the curve, over whole bins.
+double levelUnder(const DriveCurve& curve, int reach, double tilt) noexcept {
+  double level = kInfinity;
+  for (int bin = -reach; bin <= reach; ++bin)
+    level = std::min(level, valueAt(curve, bin) - tilt * bin * kBinWidth - std::abs(tilt) * kBinWidth / 2);
+  return level;
+}
+
+// The tilt of the curve about level ground: of the chord over four bins to either side.
+double tiltOf(const DriveCurve& curve) noexcept {
+  const double rise = valueAt(curve, 4) - valueAt(curve, -4);
+  return std::isfinite(rise) ? rise / (8 * kBinWidth) : 0.0;
+}
+
+CostLowerBound lineUnder(const DriveCurve& curve, int reach) noexcept {
+  CostLowerBound best{std::max(levelUnder(curve, reach, 0.0), 0.0), 0.0};
+  if (!std::isfinite(best.level_J_per_m)) return best;
+  const double steepest = (reach + 0.5) * kBinWidth;
+  for (double share = 1.0; share > 0.1; share /= 2) {
+    const double tilt = share * tiltOf(curve), level = levelUnder(curve, reach, tilt);
+    if (level * (1.0 - kLeastShare) * 0.92 < std::abs(tilt) * steepest) continue;
+    return {level, tilt};
+  }
+  return best;
+}
+
+}  // namespace
+
+CostLowerBounds::CostLowerBounds(const costmap::DriveCost& cost)
+    : lines_(cost.curves().size()), levels_(cost.curves().size()) {
+  for (std::size_t k = 0; k < lines_.size(); ++k)
+    for (std::size_t reach = 0; reach <= kReach; ++reach) {
+      lines_[k][reach] = lineUnder(cost.curves()[k], static_cast<int>(reach));
+      levels_[k][reach] = std::max(levelUnder(cost.curves()[k], static_cast<int>(reach), 0.0), 0.0);
+    }
+}
+
+int CostLowerBounds::reachOf(costmap::CellCode cell) noexcept {
+  const double steepest = std::hypot(cell.dzDx(), cell.dzDy());
+  return std::min(static_cast<int>(std::ceil(steepest / kBinWidth + 0.5)), kReach);
+}
+
+CostLowerBound CostLowerBounds::of(costmap::CellCode cell) const noexcept {
+  const int reach = reachOf(cell);
+  if (reach == kReach) return level(cell);  // steeper than the table: no tilt is known to stay below
+  return lines_[cell.curve()][static_cast<std::size_t>(reach)];
+}
+
+CostLowerBound CostLowerBounds::level(costmap::CellCode cell) const noexcept {
+  return {levels_[cell.curve()][static_cast<std::size_t>(reachOf(cell))], 0.0};
+}
+
+}  // namespace talus::planner

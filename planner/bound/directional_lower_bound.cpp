@@ -1,0 +1,196 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+#include <talus/planner/bound/directional_lower_bound.hpp>
+
+namespace talus::planner {
+namespace {
+
+using costmap::CellCode;
+using costmap::DriveCurve;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kBin = 1.0 / 256.0;  // gradients of one bin of a curve
+constexpr int kMiddle = DriveCurve::kBins / 2;
+constexpr double kOctagon = 0.92387;  // cos(pi/8), rounded down by more than floats are off
+constexpr int kRounds =
+    4;  // of raising prices: more of them favour single headings, whose neighbours then are cheap
+constexpr double kRounding = 1.0 - 1e-6;  // prices are stored as floats
+constexpr double kLeastShare = 0.1;       // of the least price without tilt: every step has a price
+constexpr double kDiagonal = std::numbers::sqrt2 / 2;
+
+double valueAt(const DriveCurve& curve, int bin) noexcept {
+  const int at = bin + kMiddle;
+  return at >= 0 && at < DriveCurve::kBins
+             ? static_cast<double>(curve.cost_J_per_m[static_cast<std::size_t>(at)])
+             : kInfinity;
+}
+
+// A lower bound of cost less tilt * gradient, over all gradients of a range.
+double leastIn(const DriveCurve& curve, double tilt, double from, double to) noexcept {
+  double least = kInfinity;
+  for (int bin = static_cast<int>(std::floor(from / kBin)); bin <= static_cast<int>(std::ceil(to / kBin));
+       ++bin)
+    least = std::min(least, valueAt(curve, bin) - tilt * bin * kBin - std::abs(tilt) * kBin / 2);
+  return least;
+}
+
+// Rise along a heading of the grid.
+double along(double dz_dx, double dz_dy, std::size_t k) noexcept {
+  const double scale = k % 2 == 0 ? 1.0 : kDiagonal;
+  return scale * (dz_dx * kStep[k].column + dz_dy * kStep[k].row);
+}
+
+constexpr int kParts = 8;  // of the 45 degrees between two headings
+constexpr std::size_t kDirections = 8 * kParts;
+constexpr double kPart = std::numbers::pi / 4 / kParts;
+
+using ByDirection = std::array<double, kDirections>;
+
+// The directions; and as what p times a heading and q times the next one a direction j parts away from the
+// first is made: 1 / p and q / p.
+struct Directions {
+  std::array<double, kDirections + 1> x{}, y{};
+  std::array<double, kParts> inverse_p{}, q_over_p{};
+
+  Directions() noexcept {
+    for (std::size_t i = 0; i <= kDirections; ++i) {
+      x[i] = std::cos(static_cast<double>(i) * kPart);
+      y[i] = std::sin(static_cast<double>(i) * kPart);
+    }
+    for (int j = 0; j < kParts; ++j) {
+      const double p = std::sin((kParts - j) * kPart), q = std::sin(j * kPart);
+      inverse_p[static_cast<std::size_t>(j)] = std::sin(kParts * kPart) / p;
+      q_over_p[static_cast<std::size_t>(j)] = q / p;
+    }
+  }
+};
+
+const Directions& directions() noexcept {
+  static const Directions all;
+  return all;
+}
+
+// Room above before[k] under the limits of the directions around it, the neighbours being as they were.
+double roomAt(std::size_t k, const ByDirection& limit, const std::array<double, 8>& before) noexcept {
+  const Directions& mix = directions();
+  const double left = before[(k + 1) % 8], right = before[(k + 7) % 8];
+  double most = (left + right) * kDiagonal;  // more would not be convex, and lowered again
+  for (std::size_t j = 0; j < kParts; ++j) {
+    const double on_left = limit[(k * kParts + j) % kDirections],
+                 on_right = limit[(k * kParts + kDirections - j) % kDirections];
+    most = std::min({most, on_left * mix.inverse_p[j] - mix.q_over_p[j] * left,
+                     on_right * mix.inverse_p[j] - mix.q_over_p[j] * right});
+  }
+  return std::max(0.0, most - before[k]);
+}
+
+// Prices under the limits. Neighbours that take half of the room that each of them sees keep within it
+// together.
+std::array<double, 8> raised(const ByDirection& limit) noexcept {
+  std::array<double, 8> prices{};
+  prices.fill(std::max(0.0, kOctagon * *std::ranges::min_element(limit)));
+  for (int round = 0; round < kRounds; ++round) {
+    const std::array<double, 8> before = prices;
+    for (std::size_t k = 0; k < 8; ++k) prices[k] += 0.5 * roomAt(k, limit, before);
+  }
+  return prices;
+}
+
+// What the prices must keep below in each direction for a gradient; nothing where no direction is allowed.
+std::optional<ByDirection> limitsOf(const DriveCurve& curve, double tilt, double dz_dx, double dz_dy,
+                                    double off_gradient) {
+  const double bulge = 1.0 - std::cos(kPart / 2);
+  const double slack = off_gradient + std::hypot(dz_dx, dz_dy) * bulge + 1e-9;
+  const Directions& all = directions();
+  const auto rise = [&](std::size_t i) { return dz_dx * all.x[i] + dz_dy * all.y[i]; };
+  ByDirection least{}, limit{};
+  double most = 0.0, from = rise(0);
+  for (std::size_t i = 0; i < kDirections; ++i) {
+    const double to = rise(i + 1);
+    least[i] = leastIn(curve, tilt, std::min(from, to) - slack, std::max(from, to) + slack);
+    if (std::isfinite(least[i])) most = std::max(most, least[i]);
+    from = to;
+  }
+  if (!(most > 0.0)) return std::nullopt;
+  // Where nothing is allowed any price will do; one that is dear keeps the sums finite.
+  for (std::size_t i = 0; i < kDirections; ++i)
+    limit[i] = std::min({least[i], least[(i + kDirections - 1) % kDirections], 2 * most}) * (1.0 - bulge) *
+               kRounding;
+  return limit;
+}
+
+}  // namespace
+
+DirectionalLowerBounds::DirectionalLowerBounds(const costmap::DriveCost& cost)
+    : cost_(cost), lines_(cost), squares_(cost.curves().size()) {}
+
+DirectionalLowerBounds::Square DirectionalLowerBounds::squareWith(std::size_t curve, double dz_dx,
+                                                                  double dz_dy, double tilt_J_per_m) const {
+  Square made{true, {}, tilt_J_per_m};
+  made.own.fill(std::numeric_limits<float>::infinity());
+  const double off_middle = std::numbers::sqrt2 * 0.5 * (kSteps - 1) * CellCode::kStep;
+  const auto limit = limitsOf(cost_.curves()[curve], tilt_J_per_m, dz_dx, dz_dy, off_middle);
+  if (!limit) return made;
+  const auto prices = raised(*limit);
+  for (std::size_t k = 0; k < 8; ++k) made.own[k] = static_cast<float>(prices[k]);
+  return made;
+}
+
+// With the tilt of which the prices' sum is highest, among those that leave a price to every heading.
+DirectionalLowerBounds::Square DirectionalLowerBounds::squareOf(std::size_t curve, double dz_dx,
+                                                                double dz_dy) const {
+  const DriveCurve& of = cost_.curves()[curve];
+  const double chord = (valueAt(of, 4) - valueAt(of, -4)) / (8 * kBin);
+  const double tilt = std::isfinite(chord) ? chord : 0.0;
+  Square best = squareWith(curve, dz_dx, dz_dy, 0.0);
+  if (std::isinf(best.own[0])) return best;
+  const auto sum = [](const Square& square) {
+    double all = 0.0;
+    for (const float price : square.own) all += static_cast<double>(price);
+    return all;
+  };
+  for (const double part : {0.5, 1.0}) {
+    const Square tried = squareWith(curve, dz_dx, dz_dy, part * tilt);
+    const double least = kLeastShare * static_cast<double>(*std::ranges::min_element(tried.own));
+    const double slack = std::abs(part * tilt) * kSteps * CellCode::kStep;
+    bool priced = least > 0.0;
+    for (std::size_t k = 0; k < 8; ++k)
+      priced =
+          priced && static_cast<double>(tried.own[k]) + part * tilt * along(dz_dx, dz_dy, k) - slack >= least;
+    if (priced && sum(tried) > sum(best)) best = tried;
+  }
+  return best;
+}
+
+DirectionalLowerBounds::Prices DirectionalLowerBounds::steep(CellCode cell) const {
+  const CostLowerBound line = lines_.of(cell);
+  Prices prices{};
+  for (std::size_t k = 0; k < 8; ++k)
+    prices[k] = static_cast<float>(kOctagon * line.level_J_per_m +
+                                   line.tilt_J_per_m * along(cell.dzDx(), cell.dzDy(), k));
+  return prices;
+}
+
+DirectionalLowerBounds::Prices DirectionalLowerBounds::of(CellCode cell) {
+  const int x = cell.stepsX() + kReach, y = cell.stepsY() + kReach;
+  if (x < 0 || y < 0 || x >= 2 * kReach || y >= 2 * kReach) return steep(cell);
+  constexpr int kSquares = 2 * kReach / kSteps;
+  auto& squares = squares_[cell.curve()];
+  if (squares.empty()) squares.resize(std::size_t{kSquares} * kSquares);
+  Square& square = squares[static_cast<std::size_t>(y / kSteps * kSquares + x / kSteps)];
+  const auto middle = [](int steps) {
+    return (steps / kSteps * kSteps - kReach + 0.5 * (kSteps - 1)) * CellCode::kStep;
+  };
+  if (!square.known) square = squareOf(cell.curve(), middle(x), middle(y));
+  Prices prices = square.own;
+  if (square.tilt_J_per_m != 0.0)
+    for (std::size_t k = 0; k < 8; ++k)
+      prices[k] += static_cast<float>(square.tilt_J_per_m * along(cell.dzDx(), cell.dzDy(), k));
+  return prices;
+}
+
+}  // namespace talus::planner

@@ -1,0 +1,223 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include <talus/costmap/drive_state.hpp>
+#include <talus/maps/elevation_map.hpp>
+#include <talus/planner/check/annotation.hpp>
+#include <talus/planner/route/motion_cost.hpp>
+
+namespace talus::planner {
+namespace {
+
+using costmap::Direction;
+using maps::Point;
+
+// Vertices nearer together than this share of a cell are one.
+constexpr double kTogether = 1e-3;
+
+// Shares of a segment at which it passes from cell to cell, both ends included, sorted.
+std::vector<double> passages(const maps::Grid& grid, const Segment& motion) {
+  std::vector<double> shares{0.0, 1.0};
+  const auto add = [&](double from, double to) {
+    for (double line = std::ceil(std::min(from, to)); line <= std::max(from, to) && from != to; line += 1.0)
+      shares.push_back((line - from) / (to - from));
+  };
+  const Point corner = grid.south_west;
+  add((motion.from.x_m - corner.x_m) / grid.resolution_m, (motion.to.x_m - corner.x_m) / grid.resolution_m);
+  add((motion.from.y_m - corner.y_m) / grid.resolution_m, (motion.to.y_m - corner.y_m) / grid.resolution_m);
+  std::sort(shares.begin(), shares.end());
+  return shares;
+}
+
+// How a straight piece belongs to a drive.
+struct Motion {
+  bool reverse = false;
+  double curvature_1_m = 0.0;
+};
+
+class Annotator {
+ public:
+  explicit Annotator(const AnnotationInput& input) : input_(input), grid_(input.map.grid()) {}
+
+  void drive(const Segment& motion, const Motion& how = {}) {
+    how_ = how;
+    const double length_m = std::hypot(motion.to.x_m - motion.from.x_m, motion.to.y_m - motion.from.y_m);
+    if (!(length_m > 0.0)) return;
+    const Direction heading{(motion.to.x_m - motion.from.x_m) / length_m,
+                            (motion.to.y_m - motion.from.y_m) / length_m};
+    const auto shares = passages(grid_, motion);
+    double emitted = -1.0;
+    for (std::size_t i = 1; i < shares.size(); ++i) {
+      const double metres = (shares[i] - shares[i - 1]) * length_m;
+      if (!(metres > 0.0)) continue;
+      const auto at = [&](double share) {
+        return Point{motion.from.x_m + share * (motion.to.x_m - motion.from.x_m),
+                     motion.from.y_m + share * (motion.to.y_m - motion.from.y_m)};
+      };
+      const RouteVertex vertex = looked(at((shares[i] + shares[i - 1]) / 2), at(shares[i - 1]), heading);
+      if ((shares[i - 1] - emitted) * length_m >= kTogether * grid_.resolution_m &&
+          metres >= kTogether * grid_.resolution_m) {
+        vertices.push_back(vertex);
+        emitted = shares[i - 1];
+      } else if (emitted < 0.0) {
+        vertices.push_back(vertex);
+        emitted = 0.0;
+      }
+      spend(vertex, metres);
+    }
+    length_m_ += length_m;
+  }
+
+  // A turn in place, or the turning of an arc.
+  void turn(double turn_rad, Point place) {
+    const auto cell = grid_.cellAt(place);
+    const TurnPrices& prices =
+        cell ? input_.kinematics.turnsOn(input_.map.at(*cell).curve()) : input_.kinematics.turns;
+    const bool in_place = how_.curvature_1_m == 0.0;
+    spend(in_place ? prices.in_place : prices.on_arc, std::abs(turn_rad));
+  }
+
+  // The vertex at which the rover stands and turns.
+  void stand(const Pose& pose, double turn_rad) {
+    how_ = {};
+    RouteVertex vertex =
+        looked(pose.place, pose.place, {std::cos(pose.heading_rad), std::sin(pose.heading_rad)});
+    vertex.turn_rad = turn_rad;
+    vertices.push_back(vertex);
+    spend(input_.kinematics.stop, 1.0);
+    turn(turn_rad, pose.place);
+  }
+
+  void cusp() { spend(input_.kinematics.cusp, 1.0); }
+
+  void arrive(Point end) {
+    RouteVertex last = vertices.empty() ? looked(end, end, {1.0, 0.0}) : vertices.back();
+    last.x_m = end.x_m;
+    last.y_m = end.y_m;
+    last.elevation_m = elevation(end);
+    count(last);
+    vertices.push_back(last);
+  }
+
+  RouteSummary summary() const {
+    RouteSummary made;
+    made.energy_J = energy_J_;
+    made.time_s = time_s_;
+    made.length_m = length_m_;
+    made.max_slip = max_slip_;
+    made.max_slope_rad = max_slope_rad_;
+    return made;
+  }
+
+  std::vector<RouteVertex> vertices;
+
+ private:
+  // What holds in the cell of `inside` for the heading, at the place `at`.
+  RouteVertex looked(Point inside, Point at, Direction heading) {
+    RouteVertex vertex;
+    vertex.x_m = at.x_m;
+    vertex.y_m = at.y_m;
+    vertex.elevation_m = elevation(at);
+    const double side = how_.reverse ? -1.0 : 1.0;
+    vertex.heading_rad = std::atan2(side * heading.y, side * heading.x);
+    vertex.reverse = how_.reverse;
+    vertex.curvature_1_m = how_.curvature_1_m;
+    state_ = {};
+    if (const auto cell = grid_.cellAt(inside)) {
+      const auto code = input_.map.at(*cell);
+      state_ = input_.map.cost().detail(code, heading);
+      vertex.slope_along_rad = std::atan(code.dzDx() * heading.x + code.dzDy() * heading.y);
+      vertex.slope_across_rad = std::atan(code.dzDy() * heading.x - code.dzDx() * heading.y);
+      vertex.slip = static_cast<double>(state_.slip);
+      vertex.sinkage_m = static_cast<double>(state_.sinkage_m);
+      vertex.torque_Nm = static_cast<double>(state_.torque_Nm);
+      vertex.drawbar_pull_margin = static_cast<double>(state_.pull_margin);
+      vertex.category = state_.category;
+    }
+    count(vertex);
+    return vertex;
+  }
+
+  void count(RouteVertex& vertex) const {
+    vertex.energy_J = energy_J_;
+    vertex.time_s = time_s_;
+    vertex.immobilisation_risk = -std::expm1(-hazard_);
+  }
+
+  void spend(const RouteVertex& vertex, double metres) {
+    const auto finite = [](float value) { return std::isfinite(value) ? static_cast<double>(value) : 0.0; };
+    energy_J_ += finite(state_.energy_J_per_m) * metres;
+    time_s_ += finite(state_.time_s_per_m) * metres;
+    hazard_ += finite(state_.risk_per_m) * metres;
+    max_slip_ = std::fmax(max_slip_, std::abs(vertex.slip));
+    max_slope_rad_ = std::fmax(max_slope_rad_, std::abs(vertex.slope_along_rad));
+  }
+
+  void spend(const TurnPrice& price, double times) {
+    energy_J_ += price.energy_J * times;
+    time_s_ += price.time_s * times;
+  }
+
+  double elevation(Point p) const {
+    if (!input_.elevation_m) return kNotKnown;
+    return input_.elevation_m(p).value_or(kNotKnown);
+  }
+
+  const AnnotationInput& input_;
+  const maps::Grid& grid_;
+  Motion how_;
+  costmap::DriveState state_;  // of the cell looked at last
+  double energy_J_ = 0.0, time_s_ = 0.0, hazard_ = 0.0, length_m_ = 0.0, max_slip_ = 0.0,
+         max_slope_rad_ = 0.0;
+};
+
+void driveAlong(const PosePath& drive, const costmap::CostGrid& map, Annotator& annotator) {
+  Pose pose = drive.start;
+  int last = 0;
+  for (const PosePath::Leg& leg : drive.legs) {
+    const int now = direction(leg);
+    if (now * last < 0) annotator.cusp();
+    if (now != 0) last = now;
+    if (leg.turn_rad != 0.0) annotator.stand(pose, leg.turn_rad);
+    const auto poses = chords({.start = pose, .legs = {leg}}, map);
+    for (std::size_t i = 1; i < poses.size() && leg.turn_rad == 0.0; ++i) {
+      annotator.drive({poses[i - 1].place, poses[i].place},
+                      {.reverse = now < 0, .curvature_1_m = leg.arc.curvature_1_m});
+      if (leg.arc.curvature_1_m != 0.0)
+        annotator.turn(poses[i].heading_rad - poses[i - 1].heading_rad, poses[i - 1].place);
+    }
+    pose = poses.back();
+  }
+}
+
+}  // namespace
+
+double gapOf(double cost, double lower_bound) noexcept {
+  if (lower_bound > 0.0) return cost / lower_bound - 1.0;
+  return cost > 0.0 ? std::numeric_limits<double>::infinity() : 0.0;
+}
+
+Route annotated(const Plan& plan, const AnnotationInput& input) {
+  Route route;
+  route.status = plan.status;
+  route.reason = plan.reason;
+  route.summary.planner = input.planner;
+  if (plan.points.empty()) return route;
+  Annotator annotator(input);
+  driveAlong(plan.drive, input.map, annotator);
+  for (std::size_t i = 1; i < plan.points.size() && plan.drive.legs.empty(); ++i)
+    annotator.drive({plan.points[i - 1], plan.points[i]});
+  annotator.arrive(plan.points.back());
+  route.summary = annotator.summary();
+  route.summary.planner = input.planner;
+  if (!plan.drive.legs.empty()) route.summary.drive = shape(plan.drive);
+  route.summary.cost = plan.cost_J;
+  route.summary.lower_bound = plan.lower_bound_J;
+  route.summary.gap = gapOf(plan.cost_J, plan.lower_bound_J);
+  route.vertices = std::move(annotator.vertices);
+  return route;
+}
+
+}  // namespace talus::planner

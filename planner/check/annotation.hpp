@@ -1,0 +1,34 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <talus/costmap/cost_grid.hpp>
+#include <talus/maps/grid.hpp>
+#include <talus/planner/route/problem.hpp>
+#include <talus/planner/route/route.hpp>
+
+namespace talus::planner {
+
+/// What a bare polyline is annotated from.
+struct AnnotationInput {
+  const costmap::CostGrid& map;
+  std::function<std::optional<double>(maps::Point)> elevation_m = nullptr;  ///< none: vertices have none
+  std::string planner = {};                                                 ///< its name, for the summary
+  Kinematics kinematics = {};                                               ///< prices of turning, for drives
+};
+
+/// The plan as a route for reports and controllers: a vertex at each turn and wherever the route enters
+/// another cell, so that what a vertex says of slope, slip and soil holds exactly until the next one. Energy,
+/// time and risk are integrals of DriveCost::detail along the plan; the risk is 1 - exp(-sum of hazard rate
+/// times length). A polyline that may not be driven is annotated, too: its cost is infinite, energy and time
+/// count what the map can say. A drive has a vertex more wherever an arc is cut into chords, and two where
+/// the rover turns in place; turning counts. Status and reason are the plan's.
+Route annotated(const Plan& plan, const AnnotationInput& input);
+
+/// cost / lower bound - 1; 0 where both are 0, infinite for a bound of 0.
+double gapOf(double cost, double lower_bound) noexcept;
+
+}  // namespace talus::planner

@@ -1,0 +1,225 @@
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include <talus/costmap/drive_state.hpp>
+#include <talus/planner/check/route_check.hpp>
+
+namespace talus::planner {
+namespace {
+
+using costmap::CostGrid;
+using costmap::Direction;
+using maps::Cell;
+using maps::Point;
+
+// Nearer to a corner or an edge than this share of a cell counts as on it.
+constexpr double kOn = 1e-6;
+// Headings asked for along an arc lie no further apart.
+constexpr double kApart_rad = 0.01;
+
+class Checker {
+ public:
+  explicit Checker(const CostGrid& map) : map_(map), side_m_(map.grid().resolution_m) {}
+
+  void segment(Point from, Point to) {
+    const double length_m = std::hypot(to.x_m - from.x_m, to.y_m - from.y_m);
+    if (!(length_m > kOn * side_m_)) return place(from);
+    heading_ = {(to.x_m - from.x_m) / length_m, (to.y_m - from.y_m) / length_m};
+    const std::vector<double> cuts = crossings(from, to);
+    for (std::size_t i = 1; i < cuts.size(); ++i) {
+      if ((cuts[i] - cuts[i - 1]) * length_m > kOn * side_m_)
+        stretch(along(from, to, (cuts[i] + cuts[i - 1]) / 2));
+      const Point crossing = along(from, to, cuts[i]);
+      if (i + 1 < cuts.size() && onCorner(crossing)) touch(crossing);
+    }
+  }
+
+  // All cells that a point touches, in the present heading.
+  void touch(Point p) {
+    for (const double dx : {-2 * kOn, 2 * kOn})
+      for (const double dy : {-2 * kOn, 2 * kOn}) {
+        const auto cell = map_.grid().cellAt({p.x_m + dx * side_m_, p.y_m + dy * side_m_});
+        if (cell) enter(*cell, p);
+      }
+  }
+
+  void place(Point p) {
+    const auto cell = map_.grid().cellAt(p);
+    if (!cell) return report(std::nullopt, p, "outside the map");
+    if (map_.at(*cell).curve() >= map_.cost().curves().size()) enter(*cell, p);
+  }
+
+  // An arc: straight when it does not bend.
+  void arc(const Pose& from, const Arc& arc) {
+    const Pose end = after(from, arc);
+    if (std::abs(arc.curvature_1_m * arc.length_m) < 1e-9) return segment(from.place, end.place);
+    const std::vector<double> cuts = crossings(from, arc);
+    const double way = arc.length_m > 0.0 ? 0.0 : M_PI;
+    for (std::size_t i = 1; i < cuts.size(); ++i) {
+      if ((cuts[i] - cuts[i - 1]) * std::abs(arc.length_m) <= kOn * side_m_) continue;
+      const double bend = std::abs(arc.curvature_1_m * arc.length_m) * (cuts[i] - cuts[i - 1]);
+      const int parts = static_cast<int>(std::ceil(bend / kApart_rad)) + 1;
+      const Pose middle = after(from, Arc{arc.length_m * (cuts[i] + cuts[i - 1]) / 2, arc.curvature_1_m});
+      const auto cell = map_.grid().cellAt(middle.place);
+      if (!cell) {
+        report(std::nullopt, middle.place, "outside the map");
+        continue;
+      }
+      for (int k = 0; k < parts; ++k) {
+        const double share = cuts[i - 1] + (cuts[i] - cuts[i - 1]) * (k + 0.5) / parts;
+        look(from.heading_rad + arc.curvature_1_m * arc.length_m * share + way);
+        enter(*cell, middle.place);
+      }
+    }
+  }
+
+  void turn(const Pose& from, double turn_rad) {
+    if (!map_.grid().cellAt(from.place)) return report(std::nullopt, from.place, "outside the map");
+    const int parts = static_cast<int>(std::ceil(std::abs(turn_rad) / kApart_rad));
+    for (int k = 0; k <= parts; ++k) {
+      look(from.heading_rad + turn_rad * k / std::max(1, parts));
+      touch(from.place);
+    }
+  }
+
+  void report(std::optional<Cell> cell, Point where, std::string reason) {
+    if (!found.empty() && cell == last_ && found.back().reason == reason) return;
+    last_ = cell;
+    found.push_back({where, std::move(reason)});
+  }
+
+  std::vector<Violation> found;
+
+ private:
+  void look(double heading_rad) noexcept { heading_ = {std::cos(heading_rad), std::sin(heading_rad)}; }
+
+  static Point along(Point from, Point to, double t) noexcept {
+    return {from.x_m + t * (to.x_m - from.x_m), from.y_m + t * (to.y_m - from.y_m)};
+  }
+
+  static double offLine(double coordinate) noexcept { return std::abs(coordinate - std::round(coordinate)); }
+
+  bool onCorner(Point p) const noexcept {
+    const auto& corner = map_.grid().south_west;
+    return offLine((p.x_m - corner.x_m) / side_m_) < kOn && offLine((p.y_m - corner.y_m) / side_m_) < kOn;
+  }
+
+  // Shares of the segment at which it crosses a line between columns or rows, with both ends, sorted.
+  std::vector<double> crossings(Point from, Point to) const {
+    std::vector<double> cuts{0.0, 1.0};
+    const auto add = [&cuts](double a, double b) {
+      for (double line = std::ceil(std::min(a, b)); line <= std::max(a, b); line += 1.0)
+        if (std::abs(b - a) > kOn) cuts.push_back(std::clamp((line - a) / (b - a), 0.0, 1.0));
+    };
+    const auto& corner = map_.grid().south_west;
+    add((from.x_m - corner.x_m) / side_m_, (to.x_m - corner.x_m) / side_m_);
+    add((from.y_m - corner.y_m) / side_m_, (to.y_m - corner.y_m) / side_m_);
+    std::sort(cuts.begin(), cuts.end());
+    return cuts;
+  }
+
+  // Shares of an arc at which it crosses a line between columns or rows, with both ends, sorted. With the
+  // centre of its circle at c, x = c_x + r sin(heading) and y = c_y - r cos(heading).
+  std::vector<double> crossings(const Pose& from, const Arc& arc) const {
+    const double r = 1.0 / arc.curvature_1_m, turn = arc.length_m * arc.curvature_1_m;
+    const Point centre{from.place.x_m - r * std::sin(from.heading_rad),
+                       from.place.y_m + r * std::cos(from.heading_rad)};
+    std::vector<double> cuts{0.0, 1.0};
+    const auto atHeading = [&](double heading) {
+      for (double full = std::floor((std::min(0.0, turn) - heading + from.heading_rad) / (2 * M_PI));;
+           ++full) {
+        const double turned = heading + 2 * M_PI * full - from.heading_rad;
+        if (turned > std::max(0.0, turn)) return;
+        if (turned >= std::min(0.0, turn)) cuts.push_back(turned / turn);
+      }
+    };
+    const auto lines = [&](double middle, double corner, auto headings) {
+      const double low = (middle - std::abs(r) - corner) / side_m_,
+                   high = (middle + std::abs(r) - corner) / side_m_;
+      for (double line = std::ceil(low); line <= high; line += 1.0)
+        headings(std::clamp((corner + line * side_m_ - middle) / r, -1.0, 1.0));
+    };
+    const Point& corner = map_.grid().south_west;
+    lines(centre.x_m, corner.x_m, [&](double sine) {
+      atHeading(std::asin(sine));
+      atHeading(M_PI - std::asin(sine));
+    });
+    lines(centre.y_m, corner.y_m, [&](double minus_cosine) {
+      atHeading(std::acos(-minus_cosine));
+      atHeading(-std::acos(-minus_cosine));
+    });
+    std::sort(cuts.begin(), cuts.end());
+    return cuts;
+  }
+
+  // The inside of a cell, or the line between two cells, both of which then count.
+  void stretch(Point middle) {
+    const Point left{-heading_.y * 2 * kOn * side_m_, heading_.x * 2 * kOn * side_m_};
+    bool inside = false;
+    for (const double side : {-1.0, 1.0}) {
+      const auto cell = map_.grid().cellAt({middle.x_m + side * left.x_m, middle.y_m + side * left.y_m});
+      inside = inside || cell;
+      if (cell) enter(*cell, middle);
+    }
+    if (!inside) report(std::nullopt, middle, "outside the map");
+  }
+
+  void enter(Cell cell, Point where) {
+    const auto code = map_.at(cell);
+    if (std::isfinite(map_.cost().costPerMetre(code, heading_))) return;
+    const auto refusal = map_.cost().detail(code, heading_).refusal;
+    const bool said = refusal != costmap::Refusal::None;
+    report(cell, where, said ? costmap::toText(refusal) : "the ground refuses this heading");
+  }
+
+  const CostGrid& map_;
+  double side_m_;
+  Direction heading_;
+  std::optional<Cell> last_;
+};
+
+}  // namespace
+
+std::vector<Violation> violations(const CostGrid& map, const std::vector<Point>& route) {
+  Checker checker(map);
+  if (route.size() == 1) checker.place(route.front());
+  for (std::size_t i = 1; i < route.size(); ++i) {
+    checker.segment(route[i - 1], route[i]);
+    if (i > 1) checker.touch(route[i - 1]);
+    if (i + 1 < route.size()) checker.touch(route[i]);
+  }
+  return checker.found;
+}
+
+std::vector<Violation> violations(const CostGrid& map, const PosePath& drive, double turning_radius_m) {
+  Checker checker(map);
+  checker.place(drive.start.place);
+  Pose pose = drive.start;
+  for (const PosePath::Leg& leg : drive.legs) {
+    if (std::abs(leg.arc.curvature_1_m) * turning_radius_m > 1.0 + 1e-9)
+      checker.report(std::nullopt, pose.place, "an arc tighter than the turning radius");
+    if (leg.turn_rad != 0.0) {
+      if (turning_radius_m > 0.0)
+        checker.report(std::nullopt, pose.place, "a turn in place by a rover that cannot");
+      checker.turn(pose, leg.turn_rad);
+    } else {
+      checker.arc(pose, leg.arc);
+    }
+    pose = after(pose, leg);
+  }
+  return checker.found;
+}
+
+void requireAllowed(const Plan& plan, const CostGrid& map, double turning_radius_m) {
+  auto found = violations(map, plan.points);
+  if (found.empty() && !plan.drive.legs.empty()) found = violations(map, plan.drive, turning_radius_m);
+  if (found.empty()) return;
+  const Point place = found.front().place;
+  throw std::logic_error("the planner's route is not allowed at " + std::to_string(place.x_m) + "," +
+                         std::to_string(place.y_m) + ": " + found.front().reason);
+}
+
+}  // namespace talus::planner

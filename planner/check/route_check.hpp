@@ -1,0 +1,38 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <talus/costmap/cost_grid.hpp>
+#include <talus/maps/grid.hpp>
+#include <talus/planner/route/pose_path.hpp>
+#include <talus/planner/route/problem.hpp>
+
+namespace talus::planner {
+
+/// A place on a route that a constraint forbids.
+struct Violation {
+  maps::Point place;
+  std::string reason;  ///< "the soil cannot give the pull that the slope asks for"
+
+  friend bool operator==(const Violation&, const Violation&) = default;
+};
+
+/// Every cell that the polyline drives, touches at a corner or turns on, held against every constraint that
+/// the map knows for its heading: category, tilt along and across, hazards, unknown ground, the map's edge.
+/// One violation a cell; empty for a route that may be driven. It shares no code with the planners, nor with
+/// MotionCost: the crossings of cell edges are sorted and the middle of each stretch is looked up. Exact, not
+/// sampled.
+std::vector<Violation> violations(const costmap::CostGrid& map, const std::vector<maps::Point>& route);
+
+/// The same of a drive, along its arcs themselves: where each crosses the lines between cells is found in
+/// closed form, and every cell is asked for headings no more than 0.01 rad apart, those passed in a turn in
+/// place included. Also reported: an arc that bends more than the radius allows.
+std::vector<Violation> violations(const costmap::CostGrid& map, const PosePath& drive,
+                                  double turning_radius_m);
+
+/// Holds what a planner answered against violations(), along its drive where it has one. Throws
+/// std::logic_error, with the first place and its reason, for a plan that is not allowed.
+void requireAllowed(const Plan& plan, const costmap::CostGrid& map, double turning_radius_m);
+
+}  // namespace talus::planner

@@ -1,0 +1,39 @@
+// Repair of a field after edges changed: back to where it stood when the first changed cell was reached.
+#include <algorithm>
+
+#include <talus/planner/field/cost_to_go.hpp>
+
+namespace talus::planner {
+
+// The least distance of any cell with a step that changed. A cell nearer than that has no such step on its
+// way, neither before nor after: the last cell with one goes on by a step that did not change.
+std::uint32_t CostToGo::leastTouched(CellBox changed) const noexcept {
+  const PaddedGrid& padded = edges_->padded();
+  const CellBox box = grown(changed, 1, padded);
+  std::uint32_t least = kUnreached;
+  for (int row = box.first.row; row <= box.last.row; ++row)
+    for (int column = box.first.column; column <= box.last.column; ++column)
+      least = std::min(least, units({column, row}));
+  return least;
+}
+
+void CostToGo::repair(CellBox changed) {
+  const std::uint64_t front = queued_ > 0 ? current_ << shift_ : kUnreached;
+  const std::uint64_t stays = std::min<std::uint64_t>(leastTouched(changed), front);
+  if (stays == kUnreached) return;
+  for (Bucket& bucket : buckets_) bucket.clear();
+  queued_ = settled_ = 0;
+  // Cells that stay and have steps to cells that do not take their turn again.
+  const std::uint64_t again = stays - std::min<std::uint64_t>(stays, EdgeLayer::kBlocked);
+  current_ = again >> shift_;
+  for (std::size_t cell = 0; cell < edges_->padded().size(); ++cell) {
+    if (distance_[cell] >= stays) distance_[cell] = kUnreached;
+    if (distance_[cell] >> shift_ < current_)
+      ++settled_;
+    else if (distance_[cell] != kUnreached)
+      enqueue(cell);
+  }
+  seedGoals();
+}
+
+}  // namespace talus::planner

@@ -1,0 +1,107 @@
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include <talus/planner/field/grid_links.hpp>
+#include <talus/planner/field/grid_route.hpp>
+#include <talus/planner/field/map_change.hpp>
+#include <talus/planner/field/remedy.hpp>
+#include <talus/planner/grid/field_planner.hpp>
+#include <talus/planner/route/legs.hpp>
+#include <talus/planner/route/plan_end.hpp>
+
+namespace talus::planner {
+using maps::Point;
+
+Plan FieldPlanner::plan(const Problem& problem) {
+  if (!problem.map) throw std::invalid_argument("FieldPlanner: no map");
+  const StopCheck stop(problem.watch, problem.time_limit_s);
+  return planByLegs(problem, [&](const Problem& leg) {
+    return planLeg(leg, {leg.start, leg.goal, leg.goal_tolerance_m}, stop);
+  });
+}
+
+// Units for this map: coarser on huge maps, so that sums along a route fit in 32 bits.
+EdgeUnits FieldPlanner::unitsFor(const costmap::CostGrid& map) {
+  const double side = map.grid().width + map.grid().height;
+  return {map.cost(), map.grid().resolution_m, std::max(1.0, side / 16384.0)};
+}
+
+bool FieldPlanner::prepareEdges(const Problem& problem, const StopCheck& stop) {
+  if (edges_ && (edges_->mapPointer() == problem.map || repairTo(problem))) return true;
+  field_.reset();
+  edges_.reset();
+  refine_.clear();
+  auto edges = std::make_shared<EdgeLayer>(problem.map, unitsFor(*problem.map), problem.threads, stop);
+  if (!edges->complete()) return false;
+  edges_ = std::move(edges);
+  return true;
+}
+
+// Moves edges and field on to a newer version of the map; false when it is another map altogether.
+bool FieldPlanner::repairTo(const Problem& problem) {
+  const costmap::CostGrid &old = edges_->map(), &newer = *problem.map;
+  if (!(old.grid() == newer.grid())) return false;
+  const EdgeUnits units = unitsFor(newer);
+  if (!units.extends(edges_->units())) return false;
+  const auto changed = changedCells(old, newer);
+  edges_->update(problem.map, units, changed.value_or(CellBox{}));
+  if (changed) refine_.forget({newer.grid().centre(changed->first), newer.grid().centre(changed->last)});
+  if (field_ && fieldGoals(MotionCost(problem.map), field_goal_, field_tolerance_m_) != field_goals_)
+    field_.reset();
+  return true;
+}
+
+bool FieldPlanner::prepareField(const MotionCost& cost, const Leg& leg) {
+  if (field_ && field_goal_ == leg.to && field_tolerance_m_ == leg.tolerance_m) return true;
+  field_goals_ = fieldGoals(cost, leg.to, leg.tolerance_m);
+  field_.reset();
+  if (field_goals_.empty()) return false;
+  field_.emplace(edges_, field_goals_);
+  field_map_ = edges_->mapPointer();
+  field_goal_ = leg.to;
+  field_tolerance_m_ = leg.tolerance_m;
+  return true;
+}
+
+// Down the field; where it is that of an older version of the map, by what the change touches, or by the
+// field repaired where that is less work.
+Polyline FieldPlanner::roughRoute(const MotionCost& cost, const Segment& places, const StopCheck& stop) {
+  if (field_map_ != edges_->mapPointer()) {
+    const auto changed = changedCells(*field_map_, edges_->map());
+    if (changed) {
+      if (auto route = gridRouteAfter(*changed, cost, *field_, places, stop)) return std::move(*route);
+      field_->repair(*changed);
+    }
+    field_map_ = edges_->mapPointer();
+  }
+  return gridRoute(cost, *field_, places, stop);
+}
+
+Plan FieldPlanner::planLeg(const Problem& problem, const Leg& leg, const StopCheck& stop) {
+  const MotionCost cost(problem.map);
+  if (!cost.allowed(leg.from))
+    return failedPlan(RouteStatus::StartInvalid, invalidPlace(*problem.map, "start", leg.from));
+  if (!prepareEdges(problem, stop)) return cancelledPlan(stop);
+  if (!prepareField(cost, leg))
+    return failedPlan(RouteStatus::GoalInvalid, invalidPlace(*problem.map, "goal", leg.to));
+  auto rough = roughRoute(cost, {leg.from, leg.to}, stop);
+  if (rough.empty()) {
+    if (stop()) return cancelledPlan(stop);
+    return failedPlan(RouteStatus::NoRoute, noWay(*edges_, leg.from, leg.to));
+  }
+  Plan plan{RouteStatus::Found,
+            {},
+            cutWithin(refine_(cost, std::move(rough), problem.threads, stop), leg.to, leg.tolerance_m),
+            0.0,
+            0.0};
+  plan.cost_J = cost.along(plan.points);
+  const Segment ends{leg.from, leg.to};
+  const double bound_J = problem.prove ? bound_(problem.map, ends, leg.tolerance_m, stop)
+                                       : straightBound_J(*problem.map, ends, leg.tolerance_m);
+  plan.lower_bound_J = std::min(plan.cost_J, bound_J);
+  return plan;
+}
+
+}  // namespace talus::planner

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <talus/planner/bound/lower_bound.hpp>
+#include <talus/planner/field/cost_to_go.hpp>
+#include <talus/planner/refine/any_angle.hpp>
+#include <talus/planner/route/problem.hpp>
+
+namespace talus::planner {
+
+/// Plans by the whole cost-to-go field of the goal and any-angle refinement of the grid route under the exact
+/// cost.
+///
+/// What it worked out for a map and a goal is kept: another start to the same goal costs a walk down the
+/// field and the refinement only. Deterministic, for any number of threads, as long as no time limit cuts the
+/// work short. Not thread-safe: one object a thread; they may share a map.
+class FieldPlanner {
+ public:
+  explicit FieldPlanner(const RefineOptions& refine = {}) : refine_(refine) {}
+
+  /// A route through all via points in order, or why there is none. Throws std::invalid_argument without a
+  /// map.
+  Plan plan(const Problem& problem);
+
+ private:
+  struct Leg {
+    maps::Point from;
+    maps::Point to;
+    double tolerance_m;
+  };
+
+  Plan planLeg(const Problem& problem, const Leg& leg, const StopCheck& stop);
+  bool prepareEdges(const Problem& problem, const StopCheck& stop);
+  static EdgeUnits unitsFor(const costmap::CostGrid& map);
+  bool repairTo(const Problem& problem);
+  bool prepareField(const MotionCost& cost, const Leg& leg);
+  Polyline roughRoute(const MotionCost& cost, const Segment& places, const StopCheck& stop);
+
+  Refiner refine_;
+  LowerBound bound_;
+  std::shared_ptr<EdgeLayer> edges_;
+  std::optional<CostToGo> field_;
+  std::shared_ptr<const costmap::CostGrid> field_map_;  // the version that the field is right for
+  std::vector<FieldGoal> field_goals_;
+  maps::Point field_goal_;
+  double field_tolerance_m_ = 0.0;
+};
+
+}  // namespace talus::planner

@@ -1,0 +1,30 @@
+#include <talus/planner/grid/goal_choice.hpp>
+#include <talus/planner/plugin/named_planner.hpp>
+#include <talus/planner/route/planner_names.hpp>
+
+namespace talus::planner {
+
+NamedPlanner::NamedPlanner(const std::string& name) {
+  settings_.planner = plannerName(name);
+}
+
+Plan NamedPlanner::planField(const Problem& problem) {
+  const bool large = problem.map && problem.map->grid().size() > kLarge;
+  return large && !problem.whole_field ? tube_.plan(problem) : field_.plan(problem);
+}
+
+Plan NamedPlanner::plan(const Problem& problem) {
+  if (problem.other_goals.empty()) return planOne(problem);
+  return planToCheapest(problem, [this](const Problem& one_goal) { return planOne(one_goal); });
+}
+
+Plan NamedPlanner::planOne(const Problem& problem) {
+  if (settings_.planner == plannerNames().front()) return planField(problem);
+  if (drives()) {
+    if (name() == DrivePlanner::kSampling) drive_.sample({.better = settings_.better});
+    return drive_.plan(problem);
+  }
+  return planBySampling(problem, settings_, [this](const Problem& leg) { return planField(leg); });
+}
+
+}  // namespace talus::planner

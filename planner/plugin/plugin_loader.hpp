@@ -1,0 +1,15 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include <talus/planner/plugin/global_planner.hpp>
+
+namespace talus::planner {
+
+/// A planner from a shared library; the library stays loaded as long as the planner lives.
+/// Throws talus::InputError naming the file when it is missing, is no library, exports no `talus_planner`, or
+/// was built for another interface version.
+std::shared_ptr<GlobalPlanner> loadPlugin(const std::string& path);
+
+}  // namespace talus::planner

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <vector>
+
+#include <talus/costmap/cost_weights.hpp>
+#include <talus/planner/check/route_risk.hpp>
+#include <talus/planner/plugin/named_planner.hpp>
+#include <talus/planner/route/problem.hpp>
+
+namespace talus::planner {
+
+/// What a route asks of rover and mission. Energy in joules, time in seconds, risk = probability of
+/// immobilisation.
+struct RouteDemand {
+  double energy_J = 0.0;
+  double time_s = 0.0;
+  double risk = 0.0;
+};
+
+/// The demand of a plan on a map, integrated along it.
+RouteDemand demandOf(const costmap::CostGrid& map, const Plan& plan);
+
+/// Plans under a chance constraint: the cheapest route found whose probability of immobilisation is at most
+/// max_risk, in (0, 1): by the hazard along it, and by routeRisk() over soil that is alike nearby, with two
+/// standard errors to spare. The hazard alone is far too low where much of a route is at risk: it counts soil
+/// as drawn once a correlation length. The constraint enters the cost as a price on risk, raised until it is
+/// met and then lowered as far as it still is (Lagrangian relaxation; a route that no price picks out is
+/// missed [everett_1963]). NoRoute with the least risk found when none keeps the limit. Cost and bound are of
+/// the map's own weights. Throws std::invalid_argument out of range.
+Plan planWithinRisk(const Problem& problem, NamedPlanner& planner, double max_risk,
+                    const RouteRiskOptions& soil = {});
+
+/// One way to trade energy, time and risk.
+struct ParetoRoute {
+  Plan plan;
+  RouteDemand demand;
+  costmap::CostWeights weights;  ///< that picked it
+};
+
+/// Routes of which none is better than another in energy, time and risk together, by rising energy: those
+/// that some prices of time and risk pick out, among `steps` by `steps` prices. Empty when there is no
+/// route.
+std::vector<ParetoRoute> paretoSet(const Problem& problem, NamedPlanner& planner, int steps);
+
+}  // namespace talus::planner

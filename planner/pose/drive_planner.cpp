@@ -1,0 +1,185 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include <talus/planner/bound/improvable_region.hpp>
+#include <talus/planner/pose/drive_planner.hpp>
+#include <talus/planner/pose/pose_shortcut.hpp>
+#include <talus/planner/pose/turning_drive.hpp>
+#include <talus/planner/route/polyline.hpp>
+
+namespace talus::planner {
+namespace {
+
+// Between poses that a curve is fitted to: cells at least, and radii.
+constexpr double kPose_cells = 4.0;
+constexpr double kPose_radii = 2.0;
+// Radii that a rover which turns in place is offered beside.
+constexpr std::array kBend_cells{1.5, 4.0};
+// Poses that the search may try while another drive is known.
+constexpr std::uint64_t kBeside = 50'000;
+
+Plan ended(PosePlan leg) {
+  Plan plan;
+  plan.status = leg.status;
+  plan.reason = std::move(leg.reason);
+  return plan;
+}
+
+Pose endOf(const PosePath& path) {
+  Pose pose = path.start;
+  for (const PosePath::Leg& leg : path.legs) pose = after(pose, leg);
+  return pose;
+}
+
+void append(PosePath& whole, const PosePath& leg) {
+  if (whole.legs.empty()) whole.start = leg.start;
+  whole.legs.insert(whole.legs.end(), leg.legs.begin(), leg.legs.end());
+}
+
+// Poses along a polyline, looking along it: half way between the ways in and out where it bends.
+std::vector<Pose> posesAlong(const std::vector<maps::Point>& points, const PoseProblem& asked) {
+  std::vector<Pose> poses;
+  const auto heading = [&](std::size_t i) {
+    return std::atan2(points[i + 1].y_m - points[i].y_m, points[i + 1].x_m - points[i].x_m);
+  };
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double out = heading(std::min(i, points.size() - 2)), in = heading(i == 0 ? 0 : i - 1);
+    poses.push_back({points[i], in + 0.5 * std::remainder(out - in, 2.0 * M_PI)});
+  }
+  poses.front().heading_rad = asked.start_heading_rad.value_or(poses.front().heading_rad);
+  poses.back().heading_rad = asked.goal_heading_rad.value_or(poses.back().heading_rad);
+  return poses;
+}
+
+// Shortest curves from pose to pose, shortened as a whole. Where some may not be driven, others bridge them.
+PosePath fitted(const std::vector<Pose>& poses, const PoseCost& cost, const ShortenOptions& options) {
+  PosePath path{.start = poses.front(), .legs = {}};
+  for (std::size_t i = 1; i < poses.size(); ++i)
+    for (const PosePath::Leg& leg : cost.direct(poses[i - 1], poses[i])) path.legs.push_back(leg);
+  return shortened(path, cost, options);
+}
+
+// The drive along a polyline that keeps a radius; without one, of straight legs and turns in place.
+PosePath along(const std::vector<maps::Point>& points, const PoseProblem& asked, const PoseCost& cost) {
+  const double cell_m = asked.map->grid().resolution_m, radius_m = cost.kinematics().turning_radius_m;
+  const auto apart = subdivided(points, std::max(kPose_cells * cell_m, kPose_radii * radius_m));
+  if (radius_m <= 0.0) return turningDrive(apart, {asked.start_heading_rad, asked.goal_heading_rad}, cost);
+  return fitted(posesAlong(apart, asked), cost,
+                {.joint_m = kPose_cells * cell_m, .cheapest_J_per_m = cheapestMetre_J(*asked.map)});
+}
+
+// A rover that turns in place may bend its way as well, and need not stop for it.
+PosePlan cheapestAlong(const std::vector<maps::Point>& points, const PoseProblem& asked) {
+  const MotionCost motion(asked.map);
+  std::vector<double> radii_m{asked.kinematics.turning_radius_m};
+  if (radii_m.front() <= 0.0)
+    for (const double cells : kBend_cells) radii_m.push_back(cells * asked.map->grid().resolution_m);
+  PosePlan best;
+  for (const double radius_m : radii_m) {
+    Kinematics kinematics = asked.kinematics;
+    kinematics.turning_radius_m = radius_m;
+    const PoseCost cost(motion, kinematics);
+    PosePath path = along(points, asked, cost);
+    const double cost_J = cost(path);
+    const bool cheaper = best.status != RouteStatus::Found || cost_J < best.cost_J;
+    if (path.legs.empty() || !std::isfinite(cost_J) || !cheaper) continue;
+    if (!mayBeDriven(*asked.map, path, asked.kinematics)) continue;
+    best.status = RouteStatus::Found;
+    best.path = std::move(path);
+    best.cost_J = cost_J;
+  }
+  return best;
+}
+
+}  // namespace
+
+// Turning costs little where the radius is small against the bends of the route: then the any-angle route,
+// which the search's eight headings do not see, is the better seed; and it threads what motions of the
+// search's one length step over.
+PosePlan DrivePlanner::alongRoute(const PoseProblem& asked, const Problem& problem) {
+  Problem free = problem;
+  free.start = asked.start;
+  free.goal = asked.goal;
+  free.via.clear();
+  free.goal_tolerance_m = 0.0;
+  free.prove = false;
+  const Plan route = field_.plan(free);
+  if (route.status != RouteStatus::Found || route.points.size() < 2) return {};
+  return cheapestAlong(route.points, asked);
+}
+
+PosePlan DrivePlanner::drivenTo(PoseProblem asked, const Problem& problem, maps::Point end) {
+  asked.goal = end;
+  PosePlan along = alongRoute(asked, problem);
+  const bool known = along.status == RouteStatus::Found;
+  if (known) asked.most_expanded = kBeside;
+  PosePlan leg = search_.plan(asked);
+  if (leg.status == RouteStatus::Cancelled) return leg;
+  if (known && (leg.status != RouteStatus::Found || along.cost_J < leg.cost_J)) leg = std::move(along);
+  if (leg.status != RouteStatus::Found || !sampling_) return leg;
+  sampling_->seed = problem.seed;
+  if (sampling_->better) sampling_->better(leg.cost_J);
+  return improvedBySampling(asked, leg, *sampling_);
+}
+
+PosePlan DrivePlanner::drivenWithin(const PoseProblem& asked, const Problem& problem) {
+  Problem free = problem;
+  free.start = asked.start;
+  free.via.clear();
+  free.prove = false;
+  const Plan route = field_.plan(free);
+  PosePlan best;
+  best.status = route.status;
+  best.reason = route.reason;
+  if (route.status != RouteStatus::Found) return best;
+  best = drivenTo(asked, problem, route.points.back());
+  if (best.status == RouteStatus::Cancelled || route.points.back() == problem.goal ||
+      !MotionCost(problem.map).allowed(problem.goal))
+    return best;
+  PosePlan exact = drivenTo(asked, problem, problem.goal);
+  const bool better =
+      exact.status == RouteStatus::Found && (best.status != RouteStatus::Found || exact.cost_J < best.cost_J);
+  return better ? exact : best;
+}
+
+Plan DrivePlanner::plan(const Problem& problem) {
+  if (!problem.map) throw std::invalid_argument("DrivePlanner: no map");
+  std::vector<maps::Point> stops = problem.via;
+  stops.push_back(problem.goal);
+  PoseProblem asked{.map = problem.map,
+                    .start = problem.start,
+                    .goal = {},
+                    .start_heading_rad = problem.start_heading_rad,
+                    .goal_heading_rad = {},
+                    .kinematics = problem.kinematics,
+                    .time_limit_s = problem.time_limit_s / static_cast<double>(stops.size()),
+                    .watch = problem.watch};
+  Plan whole;
+  whole.status = RouteStatus::Found;
+  whole.drive.start = {problem.start, problem.start_heading_rad.value_or(0.0)};
+  for (std::size_t i = 0; i < stops.size(); ++i) {
+    const bool last = i + 1 == stops.size();
+    const double tolerance_m = last ? problem.goal_tolerance_m : 0.0;
+    if (last) asked.goal_heading_rad = problem.goal_heading_rad;
+    PosePlan leg = tolerance_m > 0.0 ? drivenWithin(asked, problem) : drivenTo(asked, problem, stops[i]);
+    if (leg.status != RouteStatus::Found) return ended(std::move(leg));
+    append(whole.drive, leg.path);
+    const double bound_J =
+        problem.prove ? bound_(problem.map, {asked.start, stops[i]}, tolerance_m, StopCheck(problem.watch))
+                      : straightBound_J(*problem.map, {asked.start, stops[i]}, tolerance_m);
+    whole.lower_bound_J += std::min(bound_J, leg.cost_J);
+    asked.start = stops[i];
+    asked.start_heading_rad = endOf(leg.path).heading_rad;
+    problem.watch.report(static_cast<double>(i + 1) / static_cast<double>(stops.size()));
+  }
+  for (const Pose& pose : chords(whole.drive, *problem.map))
+    if (whole.points.empty() || !(whole.points.back() == pose.place)) whole.points.push_back(pose.place);
+  const MotionCost motion(problem.map);
+  whole.cost_J = PoseCost(motion, problem.kinematics)(whole.drive);
+  return whole;
+}
+
+}  // namespace talus::planner

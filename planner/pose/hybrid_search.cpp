@@ -1,0 +1,331 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <queue>
+#include <stdexcept>
+#include <vector>
+
+#include <talus/planner/bound/improvable_region.hpp>
+#include <talus/planner/check/route_check.hpp>
+#include <talus/planner/pose/hybrid_search.hpp>
+#include <talus/planner/pose/motion_set.hpp>
+#include <talus/planner/pose/pose_shortcut.hpp>
+#include <talus/planner/pose/pose_table.hpp>
+#include <talus/planner/pose/turning_drive.hpp>
+
+namespace talus::planner {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kJoint_cells = 4.0;  // between the joints that shortening looks at
+constexpr double kBetter = 0.998;     // of the cost: worth to look on from there
+constexpr float kClosed = -std::numeric_limits<float>::infinity();
+constexpr std::uint64_t kNever = std::numeric_limits<std::uint64_t>::max();
+constexpr std::uint32_t kNone = 0xffffffff;
+
+struct Node {
+  maps::Point place;
+  float cost = 0.0F;
+  const MotionSet::Motion* motion = nullptr;  // that led here; null at the start
+  std::uint32_t parent = kNone;
+  std::int16_t heading = 0;   // by its number
+  std::int8_t direction = 0;  // of travel: +1 forward, -1 reverse, 0 not moved yet
+  bool stands = false;        // what led here has passed the check
+};
+
+struct Queued {
+  double estimate;
+  std::uint32_t node;
+  bool operator<(const Queued& other) const noexcept {
+    return estimate != other.estimate ? estimate > other.estimate : node > other.node;
+  }
+};
+
+// One search; HybridSearch keeps what outlives it.
+class Search {
+ public:
+  Search(const PoseProblem& problem, const HybridOptions& options, CostToGo& field, const StopCheck& stop)
+      : problem_(problem),
+        options_(options),
+        stop_(stop),
+        field_(field),
+        motion_cost_(problem.map),
+        cost_(motion_cost_, problem.kinematics),
+        cheapest_J_per_m_(cheapestMetre_J(*problem.map)),
+        motions_(*problem.map, problem.kinematics,
+                 {.headings = options.headings,
+                  .step_cells = options.step_cells,
+                  .offset_rad = problem.start_heading_rad.value_or(0.0)}) {}
+
+  RouteStatus run() {
+    begin();
+    while (!open_.empty()) {
+      const Queued next = open_.top();
+      if (next.estimate >= best_cost_ || expanded_ >= last_) return RouteStatus::Found;
+      if (last_ == kNever && best_cost_ <= options_.suboptimality_bound * next.estimate)
+        last_ = expanded_ + options_.improve;
+      open_.pop();
+      if (best(nodes_[next.node]) != nodes_[next.node].cost) continue;  // a better one came later
+      if ((++expanded_ & 63) == 0 && stop_()) {
+        if (stop_.cancelled()) return RouteStatus::Cancelled;
+        return best_cost_ < kInfinity ? RouteStatus::Found : RouteStatus::TimedOut;
+      }
+      if (expanded_ > std::min(options_.most_expanded, problem_.most_expanded))
+        return best_cost_ < kInfinity ? RouteStatus::Found : RouteStatus::TimedOut;
+      expand(next.node);
+    }
+    return best_cost_ < kInfinity ? RouteStatus::Found : RouteStatus::NoRoute;
+  }
+
+  PosePath path() const {
+    std::uint32_t root = best_node_;
+    while (nodes_[root].motion) root = nodes_[root].parent;
+    PosePath path = pathFrom(root, best_node_);
+    path.legs.insert(path.legs.end(), best_finish_.begin(), best_finish_.end());
+    return path;
+  }
+
+  bool checked(const PosePath& path) const { return mayBeDriven(*problem_.map, path, problem_.kinematics); }
+
+  std::uint64_t expanded() const noexcept { return expanded_; }
+  const PoseCost& cost() const noexcept { return cost_; }
+  double cheapest_J_per_m() const noexcept { return cheapest_J_per_m_; }
+
+ private:
+  // From one node to another that descends from it.
+  PosePath pathFrom(std::uint32_t first, std::uint32_t last) const {
+    PosePath path{.start = poseOf(nodes_[first]), .legs = {}};
+    for (; last != first; last = nodes_[last].parent) path.legs.push_back(nodes_[last].motion->leg);
+    std::reverse(path.legs.begin(), path.legs.end());
+    return path;
+  }
+
+  Pose poseOf(const Node& node) const noexcept { return {node.place, motions_.heading_rad(node.heading)}; }
+
+  void begin() {
+    const int ways = problem_.start_heading_rad ? 1 : options_.headings;
+    for (int k = 0; k < ways; ++k) offer({.place = problem_.start, .heading = static_cast<std::int16_t>(k)});
+  }
+
+  // The motion that led to a node was priced quickly; here it is held against the exact cost.
+  bool stands(const Node& node) const {
+    return !node.motion || cost_(poseOf(nodes_[node.parent]), node.motion->leg) < kInfinity;
+  }
+
+  void expand(std::uint32_t index) {
+    if (!stands(nodes_[index])) {
+      best(nodes_[index]) = std::numeric_limits<float>::infinity();
+      return;
+    }
+    best(nodes_[index]) = kClosed;
+    if (due(nodes_[index])) finish(index);
+    const Node from = nodes_[index];
+    for (const auto& motion : motions_.from(from.heading)) {
+      const double cost = static_cast<double>(from.cost) + motions_.quickCost(motion, from.place) +
+                          (from.direction * motion.direction < 0 ? problem_.kinematics.cusp.cost_J : 0.0);
+      if (cost >= best_cost_) continue;
+      const int way = motion.direction == 0 ? from.direction : motion.direction;
+      offer({.place = {from.place.x_m + motion.dx_m, from.place.y_m + motion.dy_m},
+             .cost = static_cast<float>(cost),
+             .motion = &motion,
+             .parent = index,
+             .heading = static_cast<std::int16_t>(motion.heading),
+             .direction = static_cast<std::int8_t>(way)});
+    }
+  }
+
+  // Keeps the node when it is the best at its cell and heading.
+  void offer(const Node& node) {
+    const auto cell = problem_.map->grid().cellAt(node.place);
+    if (!cell) return;
+    const double rest = toGo(*cell);
+    const auto cost = static_cast<double>(node.cost);
+    if (cost + rest >= best_cost_) return;
+    float& least = best(node);
+    if (least <= node.cost) return;
+    least = node.cost;
+    open_.push({cost + options_.heuristic_weight * rest, static_cast<std::uint32_t>(nodes_.size())});
+    nodes_.push_back(node);
+  }
+
+  double toGo(maps::Cell cell) {
+    field_.settle(cell, stop_);
+    return field_.cost_J(cell).value_or(kInfinity);
+  }
+
+  // The least cost at the node's cell and heading, by direction where changing it has a price.
+  float& best(const Node& node) {
+    const maps::Grid& grid = problem_.map->grid();
+    const bool apart = problem_.kinematics.cusp.cost_J > 0.0 && node.direction < 0;
+    return table_.at(grid.index(*grid.cellAt(node.place)),
+                     static_cast<std::size_t>(node.heading + (apart ? options_.headings : 0)));
+  }
+
+  // A direct curve is tried more often the nearer the goal is.
+  bool due(const Node& node) const {
+    const double cells = std::hypot(node.place.x_m - problem_.goal.x_m, node.place.y_m - problem_.goal.y_m) /
+                         problem_.map->grid().resolution_m;
+    const auto every = static_cast<std::uint64_t>(std::clamp(cells / 4.0, 1.0, 64.0));
+    return expanded_ % every == 0 || !node.motion;
+  }
+
+  void finish(std::uint32_t index) {
+    const maps::Point place = nodes_[index].place, goal = problem_.goal;
+    if (problem_.goal_heading_rad) return finish(index, *problem_.goal_heading_rad);
+    const double facing = std::atan2(goal.y_m - place.y_m, goal.x_m - place.x_m);
+    finish(index, facing);
+    if (problem_.kinematics.may_reverse) finish(index, facing + M_PI);
+  }
+
+  void finish(std::uint32_t index, double goal_heading_rad) {
+    const Node& node = nodes_[index];
+    PosePath rest{.start = poseOf(node), .legs = {}};
+    rest.legs = cost_.direct(rest.start, {problem_.goal, goal_heading_rad});
+    const bool turns = !rest.legs.empty() && node.direction * direction(rest.legs.front()) < 0;
+    const double so_far = static_cast<double>(node.cost) + (turns ? problem_.kinematics.cusp.cost_J : 0.0);
+    if (so_far + cheapest_J_per_m_ * length_m(rest) >= best_cost_) return;
+    const double cost = so_far + cost_(rest);
+    if (cost >= best_cost_ || !standsUp(index, rest.legs)) return;
+    if (last_ != kNever && cost < kBetter * best_cost_) last_ = expanded_ + options_.improve;
+    best_cost_ = cost;
+    best_node_ = index;
+    best_finish_ = std::move(rest.legs);
+  }
+
+  // Whether the drive through a node stands up to the check. Legs are checked apart, and each once: with the
+  // leg before it, since the check looks at the turn between them too.
+  bool standsUp(std::uint32_t index, const std::vector<PosePath::Leg>& finish) {
+    std::uint32_t from = index;
+    while (nodes_[from].motion && !nodes_[from].stands) from = nodes_[from].parent;
+    if (from != index && !checked(pathFrom(nodes_[from].motion ? nodes_[from].parent : from, index)))
+      return false;
+    for (std::uint32_t at = index; at != from; at = nodes_[at].parent) nodes_[at].stands = true;
+    PosePath last = pathFrom(nodes_[index].motion ? nodes_[index].parent : index, index);
+    last.legs.insert(last.legs.end(), finish.begin(), finish.end());
+    return checked(last);
+  }
+
+  const PoseProblem& problem_;
+  const HybridOptions& options_;
+  const StopCheck& stop_;
+  CostToGo& field_;
+  MotionCost motion_cost_;
+  PoseCost cost_;
+  double cheapest_J_per_m_;
+  MotionSet motions_;
+  std::vector<Node> nodes_;
+  PoseTable table_{problem_.map->grid().size(), static_cast<std::size_t>(2 * options_.headings)};
+  std::priority_queue<Queued> open_;
+  std::uint64_t expanded_ = 0;
+  std::uint64_t last_ = kNever;
+  double best_cost_ = kInfinity;
+  std::uint32_t best_node_ = 0;
+  std::vector<PosePath::Leg> best_finish_;
+};
+
+PosePlan refused(RouteStatus status, const char* reason) {
+  PosePlan plan;
+  plan.status = status;
+  plan.reason = reason;
+  return plan;
+}
+
+// Where no motion of one length from one of the headings passes, shorter ones between more may.
+HybridOptions finerThan(HybridOptions options) {
+  constexpr std::uint64_t kMostFine = 200'000;
+  options.headings *= 2;
+  options.step_cells = std::max(1.0, options.step_cells / 1.5);
+  options.most_expanded = std::min(options.most_expanded, kMostFine);
+  return options;
+}
+
+std::string whyNot(RouteStatus status) {
+  switch (status) {
+    case RouteStatus::Cancelled:
+      return "cancelled";
+    case RouteStatus::TimedOut:
+      return "gave up after the most poses it may try; a smaller map or more headings may help";
+    default:
+      return "no drive was found that joins start and goal within the turning radius; try another heading, "
+             "or "
+             "a tighter radius";
+  }
+}
+
+}  // namespace
+
+bool mayBeDriven(const costmap::CostGrid& map, const PosePath& path, const Kinematics& kinematics) {
+  std::vector<maps::Point> points;
+  for (const Pose& pose : chords(path, map)) points.push_back(pose.place);
+  return violations(map, path, kinematics.turning_radius_m).empty() && violations(map, points).empty();
+}
+
+HybridSearch::HybridSearch(const HybridOptions& options) : options_(options) {
+  if (options.headings < 8)
+    throw std::invalid_argument("hybrid search: headings = " + std::to_string(options.headings) +
+                                ", must be >= 8");
+}
+
+bool HybridSearch::prepareField(const PoseProblem& problem) {
+  const maps::Cell goal = *problem.map->grid().cellAt(problem.goal);
+  const bool same_map = edges_ && edges_->mapPointer() == problem.map;
+  if (!same_map)
+    edges_ = std::make_shared<const EdgeLayer>(
+        problem.map, EdgeUnits(problem.map->cost(), problem.map->grid().resolution_m), 1, problem.watch);
+  if (!edges_->complete()) {
+    edges_.reset();
+    return false;
+  }
+  if (!same_map || !field_ || !(field_goal_ == goal))
+    field_.emplace(edges_, std::vector<FieldGoal>{{.cell = goal}});
+  field_goal_ = goal;
+  return true;
+}
+
+PosePlan HybridSearch::plan(const PoseProblem& problem) {
+  if (!problem.map) throw std::invalid_argument("hybrid search: no map");
+  const MotionCost allowed(problem.map);
+  if (!allowed.allowed(problem.start))
+    return refused(RouteStatus::StartInvalid,
+                   "the start is outside the map or on a cell that may not be entered");
+  if (!allowed.allowed(problem.goal))
+    return refused(RouteStatus::GoalInvalid,
+                   "the goal is outside the map or on a cell that may not be entered");
+  if (!prepareField(problem)) return refused(RouteStatus::Cancelled, "cancelled");
+  const StopCheck stop(problem.watch, problem.time_limit_s);
+  std::optional<Search> made(std::in_place, problem, options_, *field_, stop);
+  PosePlan plan;
+  plan.status = made->run();
+  plan.expanded = made->expanded();
+  const HybridOptions finer = finerThan(options_);
+  if (plan.status == RouteStatus::NoRoute && plan.expanded > 1) {
+    made.emplace(problem, finer, *field_, stop);
+    const RouteStatus again = made->run();
+    if (again == RouteStatus::Found || again == RouteStatus::Cancelled) plan.status = again;
+    plan.expanded += made->expanded();
+  }
+  const Search& search = *made;
+  if (plan.status != RouteStatus::Found) {
+    plan.reason = whyNot(plan.status);
+    return plan;
+  }
+  plan.path = search.path();
+  PosePath shorter = shortened(plan.path, search.cost(),
+                               {.joint_m = kJoint_cells * problem.map->grid().resolution_m,
+                                .cheapest_J_per_m = search.cheapest_J_per_m()});
+  if (problem.kinematics.turning_radius_m <= 0.0) {
+    std::vector<maps::Point> places;
+    for (const Pose& pose : sampled(plan.path, kJoint_cells * problem.map->grid().resolution_m))
+      if (places.empty() || !(places.back() == pose.place)) places.push_back(pose.place);
+    PosePath turning =
+        turningDrive(places, {problem.start_heading_rad, problem.goal_heading_rad}, search.cost());
+    if (!turning.legs.empty() && search.cost()(turning) < search.cost()(shorter))
+      shorter = std::move(turning);
+  }
+  if (search.checked(shorter)) plan.path = std::move(shorter);
+  plan.cost_J = search.cost()(plan.path);
+  return plan;
+}
+
+}  // namespace talus::planner

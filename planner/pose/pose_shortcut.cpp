@@ -1,0 +1,171 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <talus/planner/pose/pose_shortcut.hpp>
+
+namespace talus::planner {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr std::array<std::size_t, 8> kSpans{2, 3, 4, 6, 8, 12, 16, 24};
+constexpr std::array kSpacings{1.0, 0.35, 0.35};  // of the joints, a round: first far, then fine
+constexpr double kWorthwhile = 2e-3;  // share of the price below which another fine round is not tried
+constexpr double kStraight = 1.1;  // forward curves no longer than so many times the straight line are taken
+
+double apart_m(const Pose& a, const Pose& b) noexcept {
+  return std::hypot(b.place.x_m - a.place.x_m, b.place.y_m - a.place.y_m);
+}
+
+const double J1 = getenv("J1") ? atof(getenv("J1")) : 1, J2 = getenv("J2") ? atof(getenv("J2")) : 1;
+const int RR = getenv("RR") ? atoi(getenv("RR")) : 2;
+using Legs = std::vector<PosePath::Leg>;
+
+bool goesOn(const PosePath::Leg& leg, const PosePath::Leg& next) noexcept {
+  return leg.turn_rad == 0.0 && next.turn_rad == 0.0 && direction(leg) == direction(next) &&
+         leg.arc.curvature_1_m == next.arc.curvature_1_m;
+}
+
+// The same drive, what goes on alike as one leg.
+Legs joined(const Legs& legs) {
+  Legs long_legs;
+  for (const auto& leg : legs)
+    if (!long_legs.empty() && goesOn(long_legs.back(), leg))
+      long_legs.back().arc.length_m += leg.arc.length_m;
+    else
+      long_legs.push_back(leg);
+  return long_legs;
+}
+
+// The same drive in stretches of about so many metres; none goes on through a cusp or a turn in place.
+std::vector<Legs> divided(const PosePath& path, double apart_m) {
+  std::vector<Legs> stretches;
+  double room_m = 0.0;  // of the last stretch
+  int way = 0;
+  for (const auto& leg : joined(path.legs)) {
+    if (direction(leg) != way || leg.turn_rad != 0.0) room_m = 0.0;
+    way = direction(leg);
+    const double length_m = std::abs(leg.arc.length_m);
+    const int parts = std::max(1, static_cast<int>(std::ceil(length_m / apart_m)));
+    for (int k = 0; k < parts; ++k) {
+      if (room_m < 0.5 * length_m / parts || stretches.empty()) {
+        stretches.emplace_back();
+        room_m = apart_m;
+      }
+      stretches.back().push_back({{leg.arc.length_m / parts, leg.arc.curvature_1_m}, leg.turn_rad});
+      room_m -= length_m / parts;
+    }
+    if (leg.turn_rad != 0.0) room_m = 0.0;
+  }
+  return stretches;
+}
+
+Pose after(Pose pose, const Legs& legs) noexcept {
+  for (const auto& leg : legs) pose = after(pose, leg);
+  return pose;
+}
+
+// The best way found to a joint of the drive.
+struct Joint {
+  Pose pose;
+  double price = kInfinity;
+  std::size_t from = 0;  // joint before
+  Legs legs;             // from there to here
+  int direction = 0;     // of travel on arrival
+};
+
+// Dynamic programming over the joints of a drive: each is reached from the one before by the drive's own leg,
+// or by the direct curve from a joint further back.
+class Shortening {
+ public:
+  Shortening(const Pose& start, const std::vector<Legs>& path, const PoseCost& cost, double cheapest_J_per_m)
+      : cost_(cost), cheapest_J_per_m_(cheapest_J_per_m), joints_(path.size() + 1) {
+    joints_[0].pose = start;
+    joints_[0].price = 0.0;
+    for (std::size_t k = 1; k < joints_.size(); ++k) {
+      joints_[k].pose = after(joints_[k - 1].pose, path[k - 1]);
+      reach(k, k - 1, path[k - 1]);
+      for (const std::size_t span : kSpans) {
+        if (span > k) break;
+        if (promising(k, k - span)) reach(k, k - span, direct(path, k - span, k));
+      }
+    }
+  }
+
+  // The drive itself where its end cannot be reached.
+  PosePath result(const PosePath& given) const {
+    if (joints_.back().price == kInfinity) return given;
+    std::vector<std::size_t> chain;
+    for (std::size_t k = joints_.size() - 1; k > 0; k = joints_[k].from) chain.push_back(k);
+    PosePath path{.start = joints_[0].pose, .legs = {}};
+    for (auto k = chain.rbegin(); k != chain.rend(); ++k)
+      path.legs.insert(path.legs.end(), joints_[*k].legs.begin(), joints_[*k].legs.end());
+    return path;
+  }
+
+ private:
+  bool promising(std::size_t to, std::size_t from) const noexcept {
+    return joints_[from].price + cheapest_J_per_m_ * apart_m(joints_[from].pose, joints_[to].pose) <
+           joints_[to].price;
+  }
+
+  // Where the drive goes forward at both ends, a forward curve is found sooner than one that may reverse. It
+  // is taken far apart, where reversing would not pay, and where hardly anything can be shorter.
+  Legs direct(const std::vector<Legs>& path, std::size_t from, std::size_t to) const {
+    const Pose &a = joints_[from].pose, &b = joints_[to].pose;
+    if (direction(path[from].front()) > 0 && direction(path[to - 1].back()) > 0) {
+      const double apart = apart_m(a, b);
+      Legs legs = cost_.direct(a, b, true);
+      if (apart > 4.0 * cost_.kinematics().turning_radius_m || length_m({a, legs}) < kStraight * apart)
+        return legs;
+    }
+    return cost_.direct(a, b);
+  }
+
+  void reach(std::size_t to, std::size_t from, Legs legs) {
+    Joint& there = joints_[to];
+    double price = joints_[from].price;
+    int way = joints_[from].direction;
+    Pose pose = joints_[from].pose;
+    for (const auto& leg : legs) {
+      const int now = direction(leg);
+      if (now * way < 0) price += cost_.kinematics().cusp.cost_J;
+      if (now != 0) way = now;
+      price += cheapest_J_per_m_ * std::abs(leg.arc.length_m);
+    }
+    if (price >= there.price) return;
+    for (const auto& leg : legs) {
+      price += cost_(pose, leg) - cheapest_J_per_m_ * std::abs(leg.arc.length_m);
+      if (price >= there.price) return;
+      pose = after(pose, leg);
+    }
+    there.price = price;
+    there.from = from;
+    there.legs = std::move(legs);
+    there.direction = way;
+  }
+
+  const PoseCost& cost_;
+  double cheapest_J_per_m_;
+  std::vector<Joint> joints_;
+};
+
+}  // namespace
+
+PosePath shortened(const PosePath& path, const PoseCost& cost, const ShortenOptions& options) {
+  PosePath best = path;
+  double price = cost(best);
+  for (const double spacing : kSpacings) {
+    const auto stretches = divided(best, spacing * options.joint_m);
+    PosePath shorter = Shortening(best.start, stretches, cost, options.cheapest_J_per_m).result(best);
+    const double shorter_price = cost(shorter);
+    const bool worthwhile = shorter_price < price * (1.0 - kWorthwhile);
+    if (shorter_price < price) best = std::move(shorter), price = shorter_price;
+    if (!worthwhile && spacing < 1.0) break;
+  }
+  return best;
+}
+
+}  // namespace talus::planner

@@ -1,0 +1,83 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <talus/planner/refine/any_angle.hpp>
+#include <talus/planner/refine/route_windows.hpp>
+
+namespace talus::planner {
+namespace {
+
+// Stretches between two marks are worked on, and remembered, as wholes; then what lies around the marks. In
+// cells, the first at least.
+constexpr double kMarks = 96.0, kAround = 20.0;
+
+// A search looks at windows of a stretch no longer than this, in cells, since it takes memory for a window's
+// bounding box: marks are turns, and long straight legs have none.
+constexpr double kWindow = 256.0;
+
+// The search crosses edges at a few points only; sliding them wins back more than this share.
+constexpr double kSlidingGains = 0.03;
+
+}  // namespace
+
+Polyline Refiner::acrossEdges(const MotionCost& cost, const CorridorSearch& search,
+                              const Polyline& window) const {
+  const double before_J = cost.along(window);
+  EdgePath path = search(window, before_J * (1.0 + kSlidingGains));
+  if (path.empty()) return window;
+  slideTurns(cost.map(), path, 0.5 / options_.corridor.points_per_edge, options_.slides);
+  Polyline tried = path.points(cost.map().grid());
+  tried.front() = window.front();
+  tried.back() = window.back();
+  return cost.along(tried) < before_J ? tried : window;
+}
+
+Polyline Refiner::refinedStretch(const MotionCost& cost, const CorridorSearch& search, Polyline stretch,
+                                 const StopCheck& stop) const {
+  const double cell_m = cost.map().grid().resolution_m;
+  double best_J = cost.along(stretch);
+  const auto take = [&](Polyline tried) {
+    const double tried_J = cost.along(tried);
+    if (!(tried_J < best_J)) return;
+    best_J = tried_J;
+    stretch = std::move(tried);
+  };
+  for (double cells = options_.coarsest_cells; cells >= options_.finest_cells && !stop(); cells /= 2)
+    take(shifted(cost, stretch, cells * cell_m, options_.shift, stop));
+  RefinementCache none;
+  take(byWindows(
+      stretch, {kWindow * cell_m, kAround * cell_m},
+      [&](const Polyline& window) { return acrossEdges(cost, search, window); }, none, 1, stop));
+  return stretch;
+}
+
+Polyline Refiner::operator()(const MotionCost& cost, Polyline route, int threads, const StopCheck& stop) {
+  memo_.newRound();
+  if (route.size() < 2) return route;
+  const double cell_m = cost.map().grid().resolution_m;
+  double best_J = cost.along(route);
+  const auto take = [&](Polyline tried) {
+    const double tried_J = cost.along(tried);
+    if (!(tried_J <= best_J)) return;
+    best_J = tried_J;
+    route = std::move(tried);
+  };
+  take(shortCut(cost, route, options_.short_cut_cells * cell_m, stop));
+  const double reach_cells = 2 * options_.coarsest_cells + options_.corridor.reach_cells + 2;
+  const CorridorSearch search(cost, options_.corridor);
+  const WindowCut cut{kMarks * cell_m, kAround * cell_m, reach_cells * cell_m};
+  take(overWindows(
+      cutAtMarks(route, cut.length_m), cut,
+      [&](const Polyline& stretch) { return refinedStretch(cost, search, stretch, stop); }, memo_, threads,
+      stop));
+  const Polyline fewer = withoutIdleTurns(cost, route);
+  return cost.along(fewer) <= best_J * (1.0 + 1e-9) ? fewer : route;
+}
+
+Polyline refined(const MotionCost& cost, Polyline route, const RefineOptions& options,
+                 const StopCheck& stop) {
+  return Refiner(options)(cost, std::move(route), 1, stop);
+}
+
+}  // namespace talus::planner

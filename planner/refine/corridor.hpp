@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include <talus/planner/refine/edge_crossings.hpp>
+#include <talus/planner/route/motion_cost.hpp>
+
+namespace talus::planner {
+
+/// The cells within reach of a way, copied from the map into a box with a margin of two cells (a way that
+/// ends on an edge touches the next cell). Other cells of the box are unknown, which nothing may enter. Cells
+/// are numbered row by row within the box.
+class Corridor {
+ public:
+  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+  /// The way must lie inside the map.
+  Corridor(const costmap::CostGrid& map, const EdgeCrossings& crossings,
+           const std::vector<maps::Point>& along, int reach_cells);
+
+  std::size_t local(maps::Cell c) const noexcept {
+    return static_cast<std::size_t>(c.row - first_.row) * columns_ +
+           static_cast<std::size_t>(c.column - first_.column);
+  }
+  maps::Cell cell(std::size_t local) const noexcept {
+    return {first_.column + static_cast<int>(local % columns_),
+            first_.row + static_cast<int>(local / columns_)};
+  }
+
+  /// The cell on the other side of a cell's CellSide.
+  std::size_t beyond(std::size_t cell, int side) const noexcept {
+    return side == kWestSide    ? cell - 1
+           : side == kEastSide  ? cell + 1
+           : side == kSouthSide ? cell - columns_
+                                : cell + columns_;
+  }
+
+  costmap::CellCode code(std::size_t cell) const noexcept { return codes_[cell]; }
+
+  /// Whether every heading may be had in a cell.
+  bool free(std::size_t cell) const noexcept { return free_[cell] != 0; }
+
+  /// West and south edges are held by their cell; holders, the cells of the corridor and their neighbours in
+  /// the east and north, are numbered from 0 on.
+  std::uint32_t holder(std::size_t cell) const noexcept { return holder_[cell]; }
+  std::size_t held(std::uint32_t holder) const noexcept { return held_[holder]; }
+  std::size_t holders() const noexcept { return held_.size(); }
+
+  /// Makes holders of a cell and its neighbours in the east and north, one row from the margin at least.
+  void hold(std::size_t cell);
+
+ private:
+  void open(const costmap::CostGrid& map, const EdgeCrossings& crossings, maps::Cell around, int reach_cells);
+
+  maps::Cell first_;
+  std::size_t columns_ = 0;
+  std::vector<costmap::CellCode> codes_;
+  std::vector<std::uint8_t> free_, open_;
+  std::vector<std::uint32_t> holder_, held_;
+};
+
+}  // namespace talus::planner

@@ -1,0 +1,134 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <immintrin.h>
+
+#include <talus/planner/refine/edge_crossings.hpp>
+#include <talus/planner/route/heading_cost.hpp>
+
+namespace talus::planner {
+namespace {
+
+using costmap::CellCode;
+using costmap::DriveCost;
+using costmap::DriveCurve;
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+// Headings of motions and their lengths, from the first on.
+struct Motions {
+  const double *x, *y;
+  const float* length;
+};
+
+void pricesByScalar(const DriveCost& cost, CellCode cell, float here, const Motions& motions, int count,
+                    float* paid) noexcept {
+  for (int i = 0; i < count; ++i)
+    paid[i] = here + HeadingCost(cost, motions.x[i], motions.y[i])(cell) * motions.length[i];
+}
+
+// The same four at a time: the operations of HeadingCost, lane by lane.
+__attribute__((target("avx2"))) void pricesByVector(const DriveCost& cost, CellCode cell, float here,
+                                                    const Motions& motions, int count, float* paid) noexcept {
+  const __m256d steps_x = _mm256_set1_pd(cell.stepsX()), steps_y = _mm256_set1_pd(cell.stepsY());
+  const __m256d most_along = _mm256_set1_pd(cost.limits().max_along),
+                most_across = _mm256_set1_pd(cost.limits().max_across);
+  const __m256d no_sign = _mm256_castsi256_pd(_mm256_set1_epi64x(0x7fffffffffffffff));
+  const __m256d half = _mm256_set1_pd(0.5), minus_half = _mm256_set1_pd(-0.5), one = _mm256_set1_pd(1.0);
+  const __m256i evens = _mm256_setr_epi32(0, 2, 4, 6, 0, 2, 4, 6);
+  const float* curve = cost.curves()[cell.curve()].cost_J_per_m.data();
+  for (int i = 0; i < count; i += EdgeCrossings::kVector) {
+    const __m256d x = _mm256_loadu_pd(motions.x + i), y = _mm256_loadu_pd(motions.y + i);
+    const __m256d along = _mm256_add_pd(_mm256_mul_pd(steps_x, x), _mm256_mul_pd(steps_y, y));
+    const __m256d across = _mm256_sub_pd(_mm256_mul_pd(steps_y, x), _mm256_mul_pd(steps_x, y));
+    const __m256d allowed =
+        _mm256_and_pd(_mm256_cmp_pd(_mm256_and_pd(along, no_sign), most_along, _CMP_LE_OQ),
+                      _mm256_cmp_pd(_mm256_and_pd(across, no_sign), most_across, _CMP_LE_OQ));
+    const __m256d bins = _mm256_mul_pd(along, _mm256_set1_pd(256.0));
+    const __m256d whole = _mm256_cvtepi32_pd(_mm256_cvttpd_epi32(bins)), rest = _mm256_sub_pd(bins, whole);
+    const __m256d up = _mm256_and_pd(_mm256_cmp_pd(rest, half, _CMP_GE_OQ), one),
+                  down = _mm256_and_pd(_mm256_cmp_pd(rest, minus_half, _CMP_LE_OQ), one);
+    const __m128i bin = _mm_add_epi32(_mm256_cvttpd_epi32(_mm256_sub_pd(_mm256_add_pd(whole, up), down)),
+                                      _mm_set1_epi32(DriveCurve::kBins / 2));
+    const __m128i in_table = _mm_and_si128(_mm_cmpgt_epi32(bin, _mm_set1_epi32(-1)),
+                                           _mm_cmpgt_epi32(_mm_set1_epi32(DriveCurve::kBins), bin));
+    const __m128i lanes =
+        _mm256_castsi256_si128(_mm256_permutevar8x32_epi32(_mm256_castpd_si256(allowed), evens));
+    const __m128 known = _mm_castsi128_ps(_mm_and_si128(lanes, in_table));
+    const __m128 price = _mm_mask_i32gather_ps(_mm_set1_ps(kInfinity), curve, bin, known, 4);
+    _mm_storeu_ps(paid + i,
+                  _mm_add_ps(_mm_set1_ps(here), _mm_mul_ps(price, _mm_loadu_ps(motions.length + i))));
+  }
+}
+
+// The steepest gradient up to which the curve and the limits allow every heading.
+double freeUpTo(const DriveCost& cost, const DriveCurve& curve) noexcept {
+  const double most = std::min(cost.limits().max_along, cost.limits().max_across);
+  int reach = 0;
+  const auto finite = [&](int bin) {
+    return curve.cost_J_per_m[static_cast<std::size_t>(bin + DriveCurve::kBins / 2)] < kInfinity;
+  };
+  while (reach < DriveCurve::kBins / 2 && finite(-reach) && (reach == 0 || finite(reach))) ++reach;
+  return std::min(most, (reach - 1) / 256.0);
+}
+
+}  // namespace
+
+EdgeSpot edgeSpot(int side, int k, int points) noexcept {
+  const double t = (k + 0.5) / points;
+  switch (side) {
+    case kWestSide:
+      return {0.0, t};
+    case kEastSide:
+      return {1.0, t};
+    case kSouthSide:
+      return {t, 0.0};
+    default:
+      return {t, 1.0};
+  }
+}
+
+EdgeCrossings::EdgeCrossings(const DriveCost& cost, int points, Kernels kernels)
+    : cost_(cost),
+      points_(points),
+      padded_((3 * points + kVector - 1) / kVector * kVector),
+      vectors_(vectorsRun(kernels)) {
+  for (const DriveCurve& curve : cost.curves()) free_up_to_.push_back(freeUpTo(cost, curve));
+  const auto add = [this](End end, double x, double y, double length) {
+    ends_.push_back(end);
+    x_.push_back(x * CellCode::kStep);
+    y_.push_back(y * CellCode::kStep);
+    length_.push_back(static_cast<float>(length));
+  };
+  for (int side = 0; side < 4; ++side)
+    for (int k = 0; k < points; ++k) {
+      const EdgeSpot a = edgeSpot(side, k, points);
+      for (int to = 0; to < 4; ++to)
+        for (int l = 0; l < points && to != side; ++l) {
+          const EdgeSpot b = edgeSpot(to, l, points);
+          const double dx = b.x - a.x, dy = b.y - a.y, length = std::sqrt(dx * dx + dy * dy);
+          add({to, l}, dx / length, dy / length, length);
+        }
+      for (int idle = count(); idle < padded_; ++idle) add({side, k}, 1.0, 0.0, 1.0);
+    }
+}
+
+void EdgeCrossings::prices(int side, int k, CellCode cell, float here, float* paid) const noexcept {
+  const std::size_t at = first(side, k);
+  const Motions motions{&x_[at], &y_[at], &length_[at]};
+  (vectors_ ? pricesByVector : pricesByScalar)(cost_, cell, here, motions, count(), paid);
+}
+
+bool EdgeCrossings::allowed(int side, int k, int i, CellCode cell) const noexcept {
+  const std::size_t at = first(side, k) + static_cast<std::size_t>(i);
+  return HeadingCost(cost_, x_[at], y_[at])(cell) < kInfinity;
+}
+
+bool EdgeCrossings::free(CellCode cell) const noexcept {
+  if (cell.curve() >= cost_.curves().size()) return false;
+  const double x = cell.dzDx(), y = cell.dzDy(), reach = free_up_to_[cell.curve()];
+  return x * x + y * y <= reach * reach;
+}
+
+}  // namespace talus::planner

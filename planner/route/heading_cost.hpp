@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include <talus/costmap/drive_cost.hpp>
+
+namespace talus::planner {
+
+/// DriveCost::costPerMetre with the heading fixed, for loops over many cells. Same bits as the original; it
+/// points into the DriveCost, which must outlive it.
+class HeadingCost {
+ public:
+  HeadingCost(const costmap::DriveCost& cost, costmap::Direction heading) noexcept
+      : HeadingCost(cost, heading.x * costmap::CellCode::kStep, heading.y * costmap::CellCode::kStep) {}
+
+  /// By the heading's unit vector times CellCode::kStep.
+  HeadingCost(const costmap::DriveCost& cost, double x, double y) noexcept
+      : curves_(cost.curves().data()),
+        curve_count_(cost.curves().size()),
+        max_along_(cost.limits().max_along),
+        max_across_(cost.limits().max_across),
+        x_(x),
+        y_(y) {}
+
+  /// Joules a horizontal metre; infinite when not allowed.
+  float operator()(costmap::CellCode cell) const noexcept {
+    if (cell.curve() >= curve_count_) return kBlocked;
+    const double along = cell.stepsX() * x_ + cell.stepsY() * y_;
+    const double across = cell.stepsY() * x_ - cell.stepsX() * y_;
+    if (!(std::abs(along) <= max_along_ && std::abs(across) <= max_across_)) return kBlocked;
+    const int bin = rounded(along * 256.0) + costmap::DriveCurve::kBins / 2;
+    if (static_cast<unsigned>(bin) >= costmap::DriveCurve::kBins) return kBlocked;
+    return curves_[cell.curve()].cost_J_per_m[static_cast<std::size_t>(bin)];
+  }
+
+ private:
+  // lround, halves away from zero, without the call.
+  static int rounded(double value) noexcept {
+    const int whole = static_cast<int>(value);
+    const double rest = value - whole;
+    return whole + static_cast<int>(rest >= 0.5) - static_cast<int>(rest <= -0.5);
+  }
+
+  static constexpr float kBlocked = std::numeric_limits<float>::infinity();
+
+  const costmap::DriveCurve* curves_;
+  std::size_t curve_count_;
+  double max_along_, max_across_;
+  double x_, y_;  // unit vector times the gradient step
+};
+
+}  // namespace talus::planner

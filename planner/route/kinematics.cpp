@@ -1,0 +1,98 @@
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include <ompl/base/spaces/ReedsSheppStateSpace.h>
+
+#include <talus/planner/route/dubins.hpp>
+#include <talus/planner/route/kinematics.hpp>
+
+namespace talus::planner {
+namespace {
+
+namespace ob = ompl::base;
+
+void set(ob::State* state, const Pose& pose) {
+  auto* se2 = state->as<ob::SE2StateSpace::StateType>();
+  se2->setXY(pose.place.x_m, pose.place.y_m);
+  se2->setYaw(std::remainder(pose.heading_rad, 2.0 * M_PI));
+}
+
+// Both ends as states of a space, freed with it.
+struct States {
+  States(const ob::StateSpace& of, const std::pair<Pose, Pose>& ends)
+      : space(of), from(of.allocState()), to(of.allocState()) {
+    set(from, ends.first);
+    set(to, ends.second);
+  }
+  ~States() {
+    space.freeState(from);
+    space.freeState(to);
+  }
+  States(const States&) = delete;
+  States& operator=(const States&) = delete;
+
+  const ob::StateSpace& space;
+  ob::State* from;
+  ob::State* to;
+};
+
+// Segments in units of the radius, signed; `side` is +1 left, 0 straight, -1 right.
+void append(std::vector<Arc>& arcs, double length, int side, double radius_m) {
+  if (std::abs(length) > 1e-12) arcs.push_back({length * radius_m, side / radius_m});
+}
+
+std::vector<Arc> reedsShepp(const ob::ReedsSheppStateSpace& space, const std::pair<Pose, Pose>& ends,
+                            double radius_m) {
+  using Space = ob::ReedsSheppStateSpace;
+  const States states(space, ends);
+  const auto path = space.reedsShepp(states.from, states.to);
+  std::vector<Arc> arcs;
+  for (int k = 0; k < 5 && path.type_[k] != Space::RS_NOP; ++k) {
+    const int side = path.type_[k] == Space::RS_LEFT ? 1 : path.type_[k] == Space::RS_RIGHT ? -1 : 0;
+    append(arcs, path.length_[k], side, radius_m);
+  }
+  return arcs;
+}
+
+}  // namespace
+
+struct ShortestCurves::Spaces {
+  explicit Spaces(double radius_m) : reeds_shepp(radius_m) {}
+  ob::ReedsSheppStateSpace reeds_shepp;
+};
+
+ShortestCurves::ShortestCurves(const Kinematics& kinematics)
+    : radius_m_(kinematics.turning_radius_m), may_reverse_(kinematics.may_reverse) {
+  if (!(radius_m_ > 0.0))
+    throw std::invalid_argument("kinematics: turning_radius_m = " + std::to_string(radius_m_) +
+                                ", must be > 0 for a shortest curve");
+  spaces_ = std::make_unique<const Spaces>(radius_m_);
+}
+ShortestCurves::~ShortestCurves() = default;
+ShortestCurves::ShortestCurves(ShortestCurves&&) noexcept = default;
+
+std::vector<Arc> ShortestCurves::operator()(const Pose& from, const Pose& to) const {
+  return may_reverse_ ? reedsShepp(spaces_->reeds_shepp, {from, to}, radius_m_) : forward(from, to);
+}
+
+std::vector<Arc> ShortestCurves::forward(const Pose& from, const Pose& to) const {
+  return shortestForward(from, to, radius_m_);
+}
+
+Pose after(const Pose& from, const Arc& arc) noexcept {
+  const double turn = arc.length_m * arc.curvature_1_m;
+  // Chord of the arc: length times sinc(turn / 2), at the mean heading.
+  const double half = 0.5 * turn;
+  const double chord = std::abs(half) < 1e-9 ? arc.length_m : arc.length_m * std::sin(half) / half;
+  const double mean = from.heading_rad + half;
+  return {{from.place.x_m + chord * std::cos(mean), from.place.y_m + chord * std::sin(mean)},
+          from.heading_rad + turn};
+}
+
+std::vector<Arc> shortestArcs(const Pose& from, const Pose& to, const Kinematics& kinematics) {
+  return ShortestCurves(kinematics)(from, to);
+}
+
+}  // namespace talus::planner

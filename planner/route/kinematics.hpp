@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <talus/maps/grid.hpp>
+#include <talus/terramech/contact/rover.hpp>
+
+/// How a rover may move in the plane, and what turning takes.
+namespace talus::planner {
+
+/// Where the rover is and where it looks.
+struct Pose {
+  maps::Point place;
+  double heading_rad = 0.0;  ///< counter-clockwise from x
+};
+
+/// What a radian of heading, or a change of direction, takes beside the path's own length.
+struct TurnPrice {
+  double cost_J = 0.0;    ///< under the one cost function, >= 0
+  double energy_J = 0.0;  ///< >= 0
+  double time_s = 0.0;    ///< >= 0
+};
+
+/// A radian of heading on one ground.
+struct TurnPrices {
+  TurnPrice on_arc;
+  TurnPrice in_place;
+};
+
+/// What bends a route. The defaults are a rover that may do anything for free.
+struct Kinematics {
+  double turning_radius_m = 0.0;             ///< smallest radius of an arc, >= 0; 0: turns in place
+  bool may_reverse = true;                   ///< Reeds-Shepp when true, Dubins when false
+  TurnPrices turns{};                        ///< a radian, on ground that `turns_by_curve` leaves out
+  std::vector<TurnPrices> turns_by_curve{};  ///< by the number of the drive curve
+  TurnPrice cusp{};                          ///< a change between forward and reverse
+  TurnPrice stop{};  ///< for each turn in place: to stop, to set the wheels, to start again
+
+  /// What turning takes on ground of a curve.
+  const TurnPrices& turnsOn(std::uint8_t curve) const noexcept {
+    return curve < turns_by_curve.size() ? turns_by_curve[curve] : turns;
+  }
+};
+
+/// A stretch of constant curvature.
+struct Arc {
+  double length_m = 0.0;       ///< > 0 forward, < 0 in reverse
+  double curvature_1_m = 0.0;  ///< left > 0 as the rover looks
+};
+
+/// The pose at the end of an arc that starts at a pose.
+Pose after(const Pose& from, const Arc& arc) noexcept;
+
+/// The shortest ways between poses for a turning radius > 0: Reeds-Shepp with reversing, else Dubins
+/// (reeds_shepp_1990, by OMPL; dubins.hpp). Immutable, safe to share between threads.
+class ShortestCurves {
+ public:
+  /// Throws std::invalid_argument for a radius that is not > 0.
+  explicit ShortestCurves(const Kinematics& kinematics);
+  ~ShortestCurves();
+  ShortestCurves(ShortestCurves&&) noexcept;
+
+  std::vector<Arc> operator()(const Pose& from, const Pose& to) const;
+
+  /// The same without reversing.
+  std::vector<Arc> forward(const Pose& from, const Pose& to) const;
+
+ private:
+  struct Spaces;
+  std::unique_ptr<const Spaces> spaces_;
+  double radius_m_;
+  bool may_reverse_;
+};
+
+/// ShortestCurves for one pair.
+std::vector<Arc> shortestArcs(const Pose& from, const Pose& to, const Kinematics& kinematics);
+
+}  // namespace talus::planner

@@ -1,0 +1,26 @@
+#include <talus/planner/route/legs.hpp>
+#include <talus/planner/route/polyline.hpp>
+
+namespace talus::planner {
+
+Plan planByLegs(const Problem& problem, const std::function<Plan(const Problem& leg)>& plan_leg) {
+  std::vector<maps::Point> stops = problem.via;
+  stops.push_back(problem.goal);
+  Plan whole{RouteStatus::Found, {}, {problem.start}, 0.0, 0.0};
+  Problem leg = problem;
+  leg.via.clear();
+  for (std::size_t i = 0; i < stops.size(); ++i) {
+    leg.start = whole.points.back();
+    leg.goal = stops[i];
+    leg.goal_tolerance_m = i + 1 == stops.size() ? problem.goal_tolerance_m : 0.0;
+    Plan part = plan_leg(leg);
+    if (part.status != RouteStatus::Found) return part;
+    append(whole.points, part.points);
+    whole.cost_J += part.cost_J;
+    whole.lower_bound_J += part.lower_bound_J;
+    problem.watch.report(static_cast<double>(i + 1) / static_cast<double>(stops.size()));
+  }
+  return whole;
+}
+
+}  // namespace talus::planner

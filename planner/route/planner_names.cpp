@@ -1,0 +1,114 @@
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <numeric>
+#include <stdexcept>
+
+#include <talus/planner/route/planner_names.hpp>
+
+namespace talus::planner {
+namespace {
+
+struct Refused {
+  std::string_view name;
+  std::string_view reason;
+};
+
+constexpr std::string_view kShared =
+    "it drives every edge both ways, and where climbing is forbidden but descending is not its route cannot "
+    "be driven";
+constexpr std::string_view kUntried = "it is not shown to be right where there and back differ";
+constexpr std::string_view kBlind = "it does not look at the cost of a motion";
+
+constexpr std::array kRefused{
+    Refused{"PRM", kShared},
+    Refused{"PRMstar", kShared},
+    Refused{"LazyPRM", kShared},
+    Refused{"LazyPRMstar", kShared},
+    Refused{"SPARS", kShared},
+    Refused{"SPARStwo", kShared},
+    Refused{"BFMT", kShared},
+    Refused{"LBTRRT", kBlind},
+    Refused{"LazyLBTRRT", kBlind},
+    Refused{"AITstar",
+            "OMPL 1.5.2's does not end or never finds a route under a cost that depends on the heading"},
+    Refused{"RRTXstatic", kUntried},
+    Refused{"RRTsharp", kUntried},
+    Refused{"CForest", "its threads make the route differ from run to run"},
+    Refused{"AnytimePathShortening", "its shortcuts do not look at the cost of a motion"},
+    Refused{"SORRTstar", kUntried},
+    Refused{"RRT", kBlind},
+    Refused{"RRTConnect", kBlind},
+    Refused{"LazyRRT", kBlind},
+    Refused{"TRRT", "it looks at the cost of places, not of motions"},
+    Refused{"BiTRRT", "it looks at the cost of places, not of motions"},
+    Refused{"EST", kBlind},
+    Refused{"BiEST", kBlind},
+    Refused{"ProjEST", kBlind},
+    Refused{"KPIECE1", kBlind},
+    Refused{"BKPIECE1", kBlind},
+    Refused{"LBKPIECE1", kBlind},
+    Refused{"SBL", kBlind},
+    Refused{"PDST", kBlind},
+    Refused{"STRIDE", kBlind},
+};
+
+// "Informed-RRT*" and "informedrrtstar" are the same name.
+std::string plain(std::string_view name) {
+  std::string result;
+  for (const char c : name) {
+    if (c == '*') result += "star";
+    if (std::isalnum(static_cast<unsigned char>(c)))
+      result += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  }
+  return result;
+}
+
+// Levenshtein's distance between two words.
+std::size_t distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0]++;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
+    }
+  }
+  return row.back();
+}
+
+const std::string& nearest(const std::string& word) {
+  return *std::ranges::min_element(plannerNames(), {},
+                                   [&](const std::string& n) { return distance(plain(n), word); });
+}
+
+std::string offered() {
+  std::string list;
+  for (const std::string& name : plannerNames()) list += (list.empty() ? "" : ", ") + name;
+  return list;
+}
+
+}  // namespace
+
+const std::vector<std::string>& plannerNames() {
+  static const std::vector<std::string> names{
+      "field", "hybrid", "RRTstarSE2", "RRTstar", "InformedRRTstar", "BITstar", "ABITstar", "SST", "FMT"};
+  return names;
+}
+
+std::string plannerName(std::string_view asked) {
+  if (asked.empty()) return plannerNames().front();
+  const std::string word = plain(asked);
+  for (const std::string& name : plannerNames())
+    if (plain(name) == word) return name;
+  for (const Refused& refused : kRefused)
+    if (plain(refused.name) == word)
+      throw std::invalid_argument("planner '" + std::string(refused.name) + "' is refused: " +
+                                  std::string(refused.reason) + "; use one of " + offered());
+  throw std::invalid_argument("planner '" + std::string(asked) + "' is unknown; the nearest is '" +
+                              nearest(word) + "', there are " + offered());
+}
+
+}  // namespace talus::planner

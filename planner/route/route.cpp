@@ -1,0 +1,23 @@
+#include <talus/planner/route/route.hpp>
+
+namespace talus::planner {
+
+std::string_view name(RouteStatus status) noexcept {
+  switch (status) {
+    case RouteStatus::Found:
+      return "found";
+    case RouteStatus::NoRoute:
+      return "no_route";
+    case RouteStatus::StartInvalid:
+      return "start_invalid";
+    case RouteStatus::GoalInvalid:
+      return "goal_invalid";
+    case RouteStatus::TimedOut:
+      return "timed_out";
+    case RouteStatus::Cancelled:
+      return "cancelled";
+  }
+  return "unknown";
+}
+
+}  // namespace talus::planner

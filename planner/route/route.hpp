@@ -1,0 +1,82 @@
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <talus/terramech/mobility/category.hpp>
+
+namespace talus::planner {
+
+/// How planning ended. Everything but a failure of the program itself is one of these.
+enum class RouteStatus {
+  Found,         ///< a route that keeps every constraint along its whole length
+  NoRoute,       ///< start and goal stand, but nothing connects them
+  StartInvalid,  ///< the start is outside the map or on a cell no heading may enter
+  GoalInvalid,   ///< the same of the goal or of a via point
+  TimedOut,      ///< the time limit passed before any route was found
+  Cancelled,     ///< the caller asked to stop
+};
+
+/// The status as files and JSON spell it: "found", "no_route", "start_invalid", "goal_invalid", "timed_out",
+/// "cancelled".
+std::string_view name(RouteStatus status) noexcept;
+
+/// A value that is not known: a layer that the map does not have.
+inline constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
+
+/// The rover at one point of a route, driving on to the next (at the last one: as it arrived).
+/// Slip, sinkage, torque, margin and category belong to the motion that leaves the vertex.
+struct RouteVertex {
+  double x_m = 0.0;
+  double y_m = 0.0;
+  double elevation_m = kNotKnown;          ///< of the ground, NaN when not known
+  double heading_rad = 0.0;                ///< counter-clockwise from x (east), (-pi, pi]
+  double slope_along_rad = 0.0;            ///< climbing > 0
+  double slope_across_rad = 0.0;           ///< left side higher > 0
+  double slip = kNotKnown;                 ///< [-], driven > 0, braked < 0
+  double sinkage_m = kNotKnown;            ///< of one wheel, >= 0
+  double torque_Nm = kNotKnown;            ///< of one wheel
+  double drawbar_pull_margin = kNotKnown;  ///< DP/W less tan of the slope asked for [-]
+  terramech::Category category = terramech::Category::Unknown;
+  double energy_J = 0.0;             ///< from the start to here
+  double time_s = 0.0;               ///< from the start to here
+  double immobilisation_risk = 0.0;  ///< probability of getting stuck between the start and here, 0 to 1
+  bool reverse = false;        ///< drives on backwards: heading_rad is where it looks, not where it goes
+  double curvature_1_m = 0.0;  ///< of the motion that leaves the vertex, left > 0
+  double turn_rad = 0.0;       ///< turned in place here before going on, left > 0
+};
+
+/// What a controller would notice of a drive.
+struct DriveShape {
+  int cusps = 0;  ///< changes between forward and reverse
+  int turns_in_place = 0;
+  double turned_rad = 0.0;         ///< all changes of heading
+  double max_curvature_1_m = 0.0;  ///< never more than one over the turning radius
+};
+
+/// A route as a whole.
+struct RouteSummary {
+  double cost = 0.0;           ///< under the one cost function, in joules (energy + weighted time and risk)
+  double energy_J = 0.0;       ///< of driving
+  double time_s = 0.0;         ///< of driving
+  double length_m = 0.0;       ///< along the map plane
+  double max_slip = 0.0;       ///< largest magnitude along the route [-]
+  double max_slope_rad = 0.0;  ///< steepest inclination along the heading, as a magnitude
+  double lower_bound = 0.0;    ///< no route between these places costs less, same unit as cost
+  double gap = 0.0;            ///< cost / lower_bound - 1 [-]: the route is at most so far from the best
+  std::string planner;         ///< name of the planner that found it
+  std::optional<DriveShape> drive{};  ///< of routes that keep a turning radius
+};
+
+/// A route with everything a report or a controller asks for.
+struct Route {
+  RouteStatus status = RouteStatus::NoRoute;
+  std::string reason;  ///< why there is no route and what to do about it, one line; empty when Found
+  std::vector<RouteVertex> vertices;
+  RouteSummary summary;
+};
+
+}  // namespace talus::planner

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <ompl/base/State.h>
+#include <ompl/base/spaces/RealVectorStateSpace.h>
+
+#include <talus/maps/grid.hpp>
+
+namespace talus::planner {
+
+/// The map plane as an OMPL state space: R^2 in map metres, bounded by the map's outer edge, with a
+/// projection of 16x16 cells set (OMPL's own default projection aborts in R^2).
+class MapSpace : public ompl::base::RealVectorStateSpace {
+ public:
+  explicit MapSpace(const maps::Grid& grid);
+
+  const maps::Grid& grid() const noexcept { return grid_; }
+
+  /// The place a state of this space stands for.
+  static maps::Point place(const ompl::base::State* state) noexcept {
+    const double* values = state->as<StateType>()->values;
+    return {values[0], values[1]};
+  }
+
+  /// Moves a state of this space to a place.
+  static void setPlace(ompl::base::State* state, maps::Point place) noexcept {
+    double* values = state->as<StateType>()->values;
+    values[0] = place.x_m;
+    values[1] = place.y_m;
+  }
+
+  void registerProjections() override;
+
+ private:
+  maps::Grid grid_;
+};
+
+}  // namespace talus::planner

@@ -1,0 +1,137 @@
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include <ompl/base/goals/GoalState.h>
+#include <ompl/geometric/PathGeometric.h>
+
+#include <talus/planner/route/polyline.hpp>
+#include <talus/planner/sampling/drive_objective.hpp>
+#include <talus/planner/sampling/map_space.hpp>
+#include <talus/planner/sampling/map_validity.hpp>
+#include <talus/planner/sampling/ompl_guard.hpp>
+#include <talus/planner/sampling/ompl_planner.hpp>
+#include <talus/planner/sampling/ompl_run.hpp>
+#include <talus/planner/sampling/region_sampler.hpp>
+
+namespace talus::planner {
+namespace {
+
+namespace ob = ompl::base;
+namespace og = ompl::geometric;
+using Clock = std::chrono::steady_clock;
+
+std::shared_ptr<const ImprovableRegion> regionOf(const Problem& leg, const Plan& known,
+                                                 const SamplingSettings& settings) {
+  const double spacing_m = settings.range_cells / 4 * leg.map->grid().resolution_m;
+  const bool seeded = known.status == RouteStatus::Found;
+  return std::make_shared<ImprovableRegion>(ImprovableRegion::Parts{
+      .map = leg.map,
+      .start = leg.start,
+      .goal = leg.goal,
+      .goal_tolerance_m = leg.goal_tolerance_m,
+      .known_route = seeded ? subdivided(known.points, spacing_m) : std::vector<maps::Point>{},
+      .known_cost_J = known.cost_J,
+      .hand_out_route = !settings.planner.ends_with("RRTstar")});  // RRT* plants it instead
+}
+
+ob::SpaceInformationPtr spaceOf(const Problem& leg, const std::shared_ptr<const MeteredCost>& cost,
+                                const std::shared_ptr<const ImprovableRegion>& region) {
+  auto space = std::make_shared<MapSpace>(leg.map->grid());
+  space->setStateSamplerAllocator([region, seed = leg.seed](const ob::StateSpace* of) {
+    return std::make_shared<RegionSampler>(of, region, seed);
+  });
+  auto information = std::make_shared<ob::SpaceInformation>(space);
+  information->setStateValidityChecker(std::make_shared<MapValidityChecker>(information, cost));
+  information->setMotionValidator(std::make_shared<MapMotionValidator>(information, cost));
+  information->setup();
+  return information;
+}
+
+ob::ProblemDefinitionPtr definitionOf(const Problem& leg, const ob::SpaceInformationPtr& space,
+                                      const DriveObjective::Parts& parts) {
+  auto definition = std::make_shared<ob::ProblemDefinition>(space);
+  ob::ScopedState<MapSpace> start(space);
+  ob::ScopedState<MapSpace> goal(space);
+  MapSpace::setPlace(start.get(), leg.start);
+  MapSpace::setPlace(goal.get(), leg.goal);
+  // A threshold of 0 would never be met: OMPL asks for a distance below it.
+  const double threshold_m = std::max(leg.goal_tolerance_m, 1e-9 * leg.map->grid().resolution_m);
+  definition->setStartAndGoalStates(start, goal, threshold_m);
+  definition->setOptimizationObjective(std::make_shared<DriveObjective>(space, parts));
+  return definition;
+}
+
+// Whoever sets a time limit wants that time used; else the work ends it, alike on every machine.
+bool spent(const Problem& leg, const SamplingSettings& settings, const MeteredCost& cost) {
+  return std::isinf(leg.time_limit_s) && cost.work() >= settings.work;
+}
+
+// Stops after the allotted work or at the time limit, and when asked to.
+ob::PlannerTerminationCondition doneWhen(const Problem& leg, const SamplingSettings& settings,
+                                         const std::shared_ptr<const MeteredCost>& cost) {
+  const auto begin = Clock::now();
+  return ob::PlannerTerminationCondition([=, &leg] {
+    cost->iterated();
+    if (spent(leg, settings, *cost) || leg.watch.stopped()) return true;
+    return std::chrono::duration<double>(Clock::now() - begin).count() > leg.time_limit_s;
+  });
+}
+
+// The best of what the planner found, priced anew: OMPL's own sums may hold blocked motions.
+Plan priced(const ob::ProblemDefinition& definition, const MotionCost& cost) {
+  Plan best;
+  for (const ob::PlannerSolution& solution : definition.getSolutions()) {
+    if (solution.approximate_) continue;
+    Plan plan;
+    const auto path = std::dynamic_pointer_cast<og::PathGeometric>(solution.path_);
+    for (const ob::State* state : path->getStates()) plan.points.push_back(MapSpace::place(state));
+    plan.cost_J = cost.along(plan.points);
+    if (plan.cost_J < best.cost_J) best = std::move(plan);
+  }
+  if (std::isfinite(best.cost_J)) best.status = RouteStatus::Found;
+  return best;
+}
+
+Plan explained(Plan plan, const Problem& leg, const MeteredCost& cost, const SamplingSettings& settings) {
+  const bool stopped = leg.watch.stopped();
+  if (plan.status == RouteStatus::Found && !stopped) return plan;
+  plan.points.clear();
+  plan.cost_J = std::numeric_limits<double>::infinity();
+  const bool worked = spent(leg, settings, cost);
+  plan.status = stopped ? RouteStatus::Cancelled : worked ? RouteStatus::NoRoute : RouteStatus::TimedOut;
+  plan.reason =
+      settings.planner + (stopped  ? " was cancelled"
+                          : worked ? " found no route in its allotted work; planner 'field' can "
+                                     "tell whether there is one"
+                                   : " found no route in the time given; allow more or use 'field'");
+  return plan;
+}
+
+}  // namespace
+
+Plan runOmpl(const Problem& leg, const SamplingSettings& settings, const Plan& known) {
+  const QuietOmpl quiet;
+  const double range_m = settings.range_cells * leg.map->grid().resolution_m;
+  const auto cost = std::make_shared<const MeteredCost>(leg.map, Segment{leg.start, leg.goal});
+  const auto region = regionOf(leg, known, settings);
+  const auto space = spaceOf(leg, cost, region);
+  const auto definition = definitionOf(leg, space, {.cost = cost, .region = region, .seed = leg.seed});
+  const PlannerParts parts{.space = space,
+                           .definition = definition,
+                           .known_route = region->parts().known_route,
+                           .range_m = range_m,
+                           .seed = leg.seed};
+  const ob::PlannerPtr planner = makeOmplPlanner(settings.planner, parts);
+  if (settings.better)
+    definition->setIntermediateSolutionCallback(
+        [&settings](const ob::Planner*, const std::vector<const ob::State*>&, ob::Cost found) {
+          if (found.value() < kBlockedMotionCost_J) settings.better(found.value());
+        });
+  planner->solve(doneWhen(leg, settings, cost));
+  Plan plan = explained(priced(*definition, cost->motion()), leg, *cost, settings);
+  plan.lower_bound_J = std::max(known.lower_bound_J, region->toGoal(leg.start));
+  return plan;
+}
+
+}  // namespace talus::planner

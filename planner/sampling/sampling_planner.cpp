@@ -1,0 +1,65 @@
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+
+#include <talus/planner/field/remedy.hpp>
+#include <talus/planner/route/legs.hpp>
+#include <talus/planner/route/plan_end.hpp>
+#include <talus/planner/route/planner_names.hpp>
+#include <talus/planner/sampling/ompl_run.hpp>
+#include <talus/planner/sampling/sampling_planner.hpp>
+
+namespace talus::planner {
+namespace {
+
+SamplingSettings validated(SamplingSettings settings) {
+  settings.planner = plannerName(settings.planner);
+  if (settings.planner == "field") throw std::invalid_argument("planner 'field' does not sample");
+  if (settings.work == 0) throw std::invalid_argument("sampling: work = 0, must be > 0");
+  if (!(settings.range_cells > 0))
+    throw std::invalid_argument("sampling: range_cells = " + std::to_string(settings.range_cells) +
+                                ", must be > 0");
+  return settings;
+}
+
+Plan checkEnds(const Problem& leg) {
+  const MotionCost cost(leg.map);
+  if (!cost.allowed(leg.start))
+    return failedPlan(RouteStatus::StartInvalid, invalidPlace(*leg.map, "start", leg.start));
+  if (!cost.allowed(leg.goal) && !(leg.goal_tolerance_m > 0))
+    return failedPlan(RouteStatus::GoalInvalid, invalidPlace(*leg.map, "goal", leg.goal));
+  return failedPlan(RouteStatus::Found, {});
+}
+
+Plan arrived(const Problem& leg) {
+  Plan plan = failedPlan(RouteStatus::Found, {});
+  plan.points = {leg.start};
+  plan.cost_J = 0.0;
+  return plan;
+}
+
+Plan planLeg(const Problem& leg, const SamplingSettings& settings, const InitialPathProvider& scout) {
+  if (Plan ends = checkEnds(leg); ends.status != RouteStatus::Found) return ends;
+  const double apart_m = std::hypot(leg.goal.x_m - leg.start.x_m, leg.goal.y_m - leg.start.y_m);
+  if (apart_m <= leg.goal_tolerance_m) return arrived(leg);
+  Plan known = scout ? scout(leg) : Plan{};
+  if (known.status == RouteStatus::Cancelled) return known;
+  if (settings.better && known.status == RouteStatus::Found) settings.better(known.cost_J);
+  Plan found = runOmpl(leg, settings, known);
+  const bool known_better = known.status == RouteStatus::Found && known.cost_J <= found.cost_J;
+  if (known_better && found.status != RouteStatus::Cancelled) return known;
+  return found;
+}
+
+}  // namespace
+
+Plan planBySampling(const Problem& problem, const SamplingSettings& settings,
+                    const InitialPathProvider& scout) {
+  const SamplingSettings checked = validated(settings);
+  return planByLegs(problem, [&](Problem leg) {
+    leg.time_limit_s = problem.time_limit_s / static_cast<double>(problem.via.size() + 1);
+    return planLeg(leg, checked, scout);
+  });
+}
+
+}  // namespace talus::planner

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include <talus/costmap/traversability_map.hpp>
+#include <talus/planner/simulation/traverse_simulation.hpp>
+#include <talus/planner/simulation/world_draw.hpp>
+
+namespace talus::planner {
+
+/// What a rover goes by.
+enum class Belief {
+  Geometry,     ///< slopes and hazards alone, all ground as firm as rock; drives blindly
+  Prior,        ///< the soils of the map; drives blindly
+  OnLine,       ///< the soils of the map, and what its wheels tell
+  Clairvoyant,  ///< the true soils, patches and all
+};
+
+/// "geometry", "prior", "online", "clairvoyant".
+std::string_view name(Belief belief) noexcept;
+
+/// What came of one world.
+struct WorldResult {
+  TraverseSimulation drive;
+  std::size_t categories_changed = 0;  ///< cells whose category for people is another after the drive
+};
+
+/// Worlds to simulateTraverse in, by their numbers.
+struct WorldRange {
+  Belief belief = Belief::OnLine;
+  std::size_t first = 0;
+  std::size_t count = 1;
+};
+
+/// A site as it is known, what is true of it, and a drive across it: makes as many random worlds as one asks
+/// for. Immutable; safe to share between threads.
+class SimulationSite {
+ public:
+  /// What every world shares.
+  struct Parts {
+    Truth truth;
+    maps::Point start;
+    maps::Point goal;
+    terramech::Soil firm;    ///< what Belief::Geometry takes all ground for
+    std::uint64_t seed = 1;  ///< world i is drawn with seed + i
+  };
+
+  /// The map is kept by reference.
+  SimulationSite(const costmap::TraversabilityMap& map, Parts parts);
+
+  /// World number i under a belief: depends on nothing else.
+  WorldResult world(Belief belief, std::size_t i, const ProgressMonitor& watch = {}) const;
+
+  /// Worlds first .. first + count - 1, in that order; the same results however they are divided.
+  std::vector<WorldResult> worlds(const WorldRange& range, const ProgressMonitor& watch = {}) const;
+
+  /// The true soils of world number i.
+  TrueWorld trueWorld(std::size_t i) const;
+  /// What the rover believes before it drives there.
+  costmap::TraversabilityMap believed(Belief belief, const TrueWorld& world) const;
+  /// The options that a traverse simulation in world number i is run with.
+  SimulationOptions options(Belief belief, std::size_t i) const;
+
+ private:
+  const costmap::TraversabilityMap& map_;
+  Parts parts_;
+};
+
+/// Category for people of every cell, row by row from the south-west.
+std::vector<std::uint8_t> categoriesOf(const costmap::TraversabilityMap& map);
+
+}  // namespace talus::planner

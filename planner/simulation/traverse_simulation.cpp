@@ -1,0 +1,354 @@
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <random>
+#include <utility>
+
+#include <talus/costmap/wheel_observation.hpp>
+#include <talus/planner/grid/field_planner.hpp>
+#include <talus/planner/route/motion_cost.hpp>
+#include <talus/planner/simulation/traverse_simulation.hpp>
+
+namespace talus::planner {
+namespace {
+
+using costmap::Direction;
+
+// Standard deviations of the rover's sensors: those that WheelObserver expects.
+constexpr double kSlipNoise = 0.02, kTorqueNoise = 0.05, kSinkageNoise = 0.03;
+// The route is planned anew when what is left of it costs this much more than when it was planned.
+constexpr double kDearer = 1.3;
+// Depth that a wheel digs on the spot per metre of rim travel (ours: Spirit went in to the hub in some
+// metres).
+constexpr double kDugPerMetre = 0.05;
+
+double distance_m(const maps::Point& a, const maps::Point& b) {
+  return std::hypot(a.x_m - b.x_m, a.y_m - b.y_m);
+}
+
+Direction directionTo(const maps::Point& from, const maps::Point& to) {
+  const double d = distance_m(from, to);
+  return {(to.x_m - from.x_m) / d, (to.y_m - from.y_m) / d};
+}
+
+// One drive, step by step.
+class Drive {
+ public:
+  Drive(costmap::TraversabilityMap& map, const TrueWorld& world, const SimulationOptions& options)
+      : map_(map),
+        world_(world),
+        options_(options),
+        observer_(map.model()),
+        random_(options.seed),
+        ruts_(map.model().rover().wheel.width_m),
+        here_(options.start) {}
+
+  TraverseSimulation run() {
+    arriveAt(here_, {});
+    while (!options_.watch.stopped()) {
+      if (!plan()) return ended(Outcome::GaveUp);
+      const Leg leg = follow();
+      if (leg == Leg::Arrived) return ended(Outcome::Reached);
+      if (leg == Leg::Stuck) return ended(Outcome::Immobilised);
+      if (leg == Leg::Tipped) return ended(Outcome::Tipped);
+      if (++result_.replans > options_.max_replans) return ended(Outcome::GaveUp);
+    }
+    return ended(Outcome::GaveUp);
+  }
+
+ private:
+  enum class Leg { Arrived, Stuck, Tipped, Replan };
+
+  TraverseSimulation ended(Outcome outcome) {
+    result_.outcome = outcome;
+    tell(std::string(name(outcome)));
+    return std::move(result_);
+  }
+
+  void tell(std::string text, std::vector<maps::Point> route = {}) {
+    result_.events.push_back({result_.time_s, std::move(text), std::move(route)});
+  }
+
+  // Where what was learned refuses the ground under the rover, it first goes back to ground that it knows.
+  bool plan() {
+    const MotionCost cost(map_.published());
+    while (options_.senses && !cost.allowed(here_))
+      if (!backOneStep(0.0)) return false;
+    Problem problem;
+    problem.map = map_.published();
+    problem.start = here_;
+    problem.goal = options_.goal;
+    problem.goal_tolerance_m = options_.goal_tolerance_m;
+    problem.prove = false;
+    problem.watch = {.progress = {}, .stop = options_.watch.stop};
+    Plan plan = planner_.plan(problem);
+    if (plan.status != RouteStatus::Found) return false;
+    route_ = std::move(plan.points);
+    next_ = 1;
+    planned_J_ = plan.cost_J;
+    tell("planned", route_);
+    return true;
+  }
+
+  Leg follow() {
+    while (next_ < route_.size()) {
+      const double left = distance_m(here_, route_[next_]);
+      if (left < 1e-9) {
+        ++next_;
+        continue;
+      }
+      if (options_.watch.stopped()) return Leg::Replan;
+      const Direction heading = directionTo(here_, route_[next_]);
+      if (tipped(heading)) return Leg::Tipped;
+      const TrueWorld::Step step =
+          world_.drive({.place = here_, .heading = heading, .gradient = gradient(heading), .ruts = &ruts_});
+      result_.max_slip = std::max(result_.max_slip, step.slip);
+      const auto reason = alarm(step, heading);
+      const bool learned = look(step, heading, step.stuck || reason);
+      if (step.stuck && !options_.senses) return Leg::Stuck;
+      if (reason) return retreat(step, heading, *reason);
+      if (learned && routeTurnedDear()) return retreat(step, heading, "ground turned out weaker");
+      report(step, heading, std::min(left, options_.step_m));
+      advance(step, heading, std::min(left, options_.step_m));
+    }
+    return Leg::Arrived;
+  }
+
+  void report(const TrueWorld::Step& step, const Direction& heading, double length_m) const {
+    if (!options_.on_step) return;
+    const costmap::DriveState state = expected(here_, heading);
+    const double slope = gradient(heading);
+    options_.on_step(
+        {.time_s = result_.time_s,
+         .place = here_,
+         .heading = heading,
+         .gradient = slope,
+         .length_m = length_m,
+         .expected_slip = static_cast<double>(state.slip),
+         .expected_energy_J_per_m = static_cast<double>(state.energy_J_per_m) / std::hypot(1.0, slope),
+         .truth = step});
+  }
+
+  double gradient(const Direction& heading) const {
+    const auto cell = map_.grid().cellAt(here_);
+    if (!cell) return 0.0;
+    const costmap::CellCode code = map_.code(*cell);
+    return code.dzDx() * heading.x + code.dzDy() * heading.y;
+  }
+
+  // What the map says before this step's readings are in; its class says it where the cell is refused.
+  costmap::DriveState expected(const maps::Point& place, const Direction& heading) const {
+    const auto cell = map_.grid().cellAt(place);
+    if (!cell) return {};
+    const auto grid = map_.published();
+    const costmap::CellCode code = grid->at(*cell);
+    const bool refused = code.curve() >= costmap::CellCode::kUnknown;
+    const int index = std::max(map_.classIndex(*cell), 0);
+    return grid->cost().detail(refused ? code.withCurve(static_cast<std::uint8_t>(index)) : code, heading);
+  }
+  double expectedSlip(const Direction& heading) const {
+    return static_cast<double>(expected(here_, heading).slip);
+  }
+
+  // By how much a wheel on fresh ground sinks deeper than the map says, over its radius.
+  double sinksDeeper(const TrueWorld::WheelState& wheel, const Direction& heading) const {
+    if (wheel.passes > 0) return 0.0;
+    const double radius_m = map_.model().rover().wheel.radius_m;
+    return wheel.forces.sinkage - static_cast<double>(expected(wheel.place, heading).sinkage_m) / radius_m;
+  }
+
+  // What a rover that watches its wheels stops for.
+  std::optional<std::string> alarm(const TrueWorld::Step& step, const Direction& heading) const {
+    if (!options_.senses) return std::nullopt;
+    if (step.stuck) return "no pull";
+    if (step.slip > expectedSlip(heading) + options_.alarm_slip) return "slips";
+    for (const TrueWorld::WheelState& wheel : step.wheels)
+      if (sinksDeeper(wheel, heading) > options_.alarm_sinkage) return "sinks";
+    return std::nullopt;
+  }
+
+  bool tipped(const Direction& heading) const {
+    const auto& rover = map_.model().rover();
+    return std::abs(std::atan(gradient(heading))) > 1.5 * rover.max_pitch_rad ||
+           std::abs(std::atan(gradient({-heading.y, heading.x}))) > 1.5 * rover.max_roll_rad;
+  }
+
+  void spend(const TrueWorld::Step& step, double length_m, double gradient) {
+    const double surface_m = length_m * std::hypot(1.0, gradient);
+    result_.energy_J += step.energy_J_per_m * surface_m;
+    result_.time_s += surface_m / step.speed_mps;
+    result_.length_m += length_m;
+    for (const TrueWorld::WheelState& wheel : step.wheels) ruts_.press(wheel.place);
+    ruts_.moved(length_m);
+  }
+
+  void arriveAt(const maps::Point& place, const TrueWorld::Step& step) {
+    here_ = place;
+    double deepest = 0.0;
+    for (const TrueWorld::WheelState& wheel : step.wheels) deepest = std::max(deepest, wheel.forces.sinkage);
+    result_.track.push_back(
+        {place, result_.time_s, result_.energy_J, step.slip, deepest * map_.model().rover().wheel.radius_m});
+  }
+
+  void advance(const TrueWorld::Step& step, const Direction& heading, double length_m) {
+    spend(step, length_m, gradient(heading));
+    since_sensing_m_ += length_m;
+    way_back_.push_back(here_);
+    arriveAt({here_.x_m + length_m * heading.x, here_.y_m + length_m * heading.y}, step);
+    if (distance_m(here_, route_[next_]) < 1e-9) ++next_;
+  }
+
+  // One step back along the way it came; false where that way ends or the wheels find no hold.
+  bool backOneStep(double dug_m) {
+    while (!way_back_.empty() && distance_m(way_back_.back(), here_) < 1e-9) way_back_.pop_back();
+    if (way_back_.empty()) return false;
+    const maps::Point to = way_back_.back();
+    const Direction heading = directionTo(here_, to);
+    const double slope = gradient(heading);
+    const TrueWorld::Step step =
+        world_.drive({.place = here_, .heading = heading, .gradient = slope, .dug_m = dug_m, .ruts = &ruts_});
+    if (step.stuck) {
+      held_ = true;
+      return false;
+    }
+    way_back_.pop_back();
+    spend(step, distance_m(here_, to), slope);
+    arriveAt(to, step);
+    return true;
+  }
+
+  // Whether all ground within the rover's outline is as strong as its class, give or take what a class
+  // varies.
+  bool standsSound() const {
+    const auto& model = map_.model();
+    const double reach_m = 0.5 * std::hypot(model.rover().wheelbase_m, model.rover().track_m);
+    for (const auto& [x, y] : {std::pair{1.0, 0.0}, {0.0, 1.0}, {-1.0, 0.0}, {0.0, -1.0}}) {
+      const auto cell = map_.grid().cellAt({here_.x_m + x * reach_m, here_.y_m + y * reach_m});
+      const auto ground = cell ? map_.ground(*cell) : std::nullopt;
+      if (!ground) continue;
+      const int index = map_.classIndex(*cell);
+      const double ordinary = map_.evidence().classBelief(index).pull.mean -
+                              model.parts().classes[static_cast<std::size_t>(index)].pull_std;
+      if (ground->pull.mean < ordinary) return false;
+    }
+    return true;
+  }
+
+  // Backs out along the ruts it came in: by one length of the rover, and until it stands on sound ground,
+  // where it may turn. Ground that gave the alarm is not tried again.
+  Leg retreat(const TrueWorld::Step& stopped, const Direction& heading, const std::string& reason) {
+    tell(reason);
+    const double radius_m = map_.model().rover().wheel.radius_m;
+    const bool spun = stopped.slip > expectedSlip(heading) + options_.alarm_slip;
+    const double spun_m = spun ? options_.stall_detection_m * stopped.slip : 0.0;
+    result_.energy_J += std::max(stopped.torque_Nm, 0.0) * spun_m / radius_m;
+    for (const TrueWorld::WheelState& wheel : stopped.wheels) ruts_.press(wheel.place);
+    ruts_.turnBack();
+    double dug_m = kDugPerMetre * spun_m;
+    const double from_m = result_.length_m;
+    while ((result_.length_m - from_m < options_.keep_out_radius_m || !standsSound()) &&
+           backOneStep(std::exchange(dug_m, 0.0))) {
+    }
+    ruts_.turnBack();
+    if (held_) return Leg::Stuck;
+    tell("backed out");
+    if (alarm(stopped, heading)) refuseGround(stopped, heading);
+    return Leg::Replan;
+  }
+
+  // The wheels that sank, or the foremost two where all merely slipped; not the ground that it now stands on.
+  void refuseGround(const TrueWorld::Step& stopped, const Direction& heading) {
+    ++result_.alarms;
+    const double outline_m = 0.5 * std::hypot(map_.model().rover().wheelbase_m, map_.model().rover().track_m);
+    for (std::size_t w = 0; w < stopped.wheels.size(); ++w) {
+      const TrueWorld::WheelState& wheel = stopped.wheels[w];
+      if (w >= 2 && sinksDeeper(wheel, heading) <= options_.alarm_sinkage) continue;
+      const double room_m = distance_m(wheel.place, here_) - outline_m;
+      if (room_m > 0.0) map_.refuse(wheel.place, std::min(options_.keep_out_radius_m, room_m));
+    }
+    map_.publish();
+    if (options_.on_learned) options_.on_learned(result_.time_s);
+  }
+
+  // What the wheels read, noise and all.
+  std::vector<costmap::WheelReading> readings(const TrueWorld::Step& step, const Direction& heading) {
+    const double radius_m = map_.model().rover().wheel.radius_m;
+    std::normal_distribution<double> noise;
+    std::vector<costmap::WheelReading> out;
+    const double slip = std::clamp(step.slip + kSlipNoise * noise(random_), -1.0, 1.0);
+    for (const TrueWorld::WheelState& wheel : step.wheels) {
+      const double torque = wheel.forces.torque * (1.0 + kTorqueNoise * noise(random_));
+      const double sinkage = wheel.forces.sinkage * (1.0 + kSinkageNoise * noise(random_));
+      out.push_back({.time_s = result_.time_s,
+                     .place = wheel.place,
+                     .load_N = wheel.load_N,
+                     .slip = slip,
+                     .torque_Nm = torque * wheel.load_N * radius_m,
+                     .sinkage_m = sinkage * radius_m,
+                     .gradient = step.stuck ? std::nan("") : gradient(heading),
+                     .drawbar_pull_N = std::nan(""),
+                     .pass = wheel.passes + 1});
+      if (options_.record)
+        result_.records.push_back({out.size() - 1, std::atan2(heading.y, heading.x), out.back()});
+    }
+    return out;
+  }
+
+  // Reads the wheels, if it is time or must be now, and puts it into the map. True when the map changed.
+  bool look(const TrueWorld::Step& step, const Direction& heading, bool now) {
+    const bool blind = !options_.senses && !options_.record;
+    if (blind || (!now && since_sensing_m_ < options_.sensing_interval_m)) return false;
+    since_sensing_m_ = 0.0;
+    const std::vector<costmap::WheelReading> read = readings(step, heading);
+    if (!options_.senses) return false;
+    std::vector<costmap::ClassReading> together;
+    for (const costmap::WheelReading& reading : read) {
+      const auto cell = map_.grid().cellAt(reading.place);
+      if (cell && map_.classIndex(*cell) >= 0) together.push_back({map_.classIndex(*cell), reading});
+    }
+    for (const auto& seen : observer_.observe(together))
+      if (seen) map_.learn(*seen);
+    map_.publish();
+    if (options_.on_learned) options_.on_learned(result_.time_s);
+    return true;
+  }
+
+  bool routeTurnedDear() {
+    const MotionCost cost(map_.published());
+    double left_J = cost({here_, route_[std::min(next_, route_.size() - 1)]});
+    for (std::size_t i = next_; i + 1 < route_.size(); ++i) left_J += cost({route_[i], route_[i + 1]});
+    const bool dear = !(left_J <= kDearer * planned_J_);
+    planned_J_ = std::min(planned_J_, left_J);
+    return dear;
+  }
+
+  costmap::TraversabilityMap& map_;
+  const TrueWorld& world_;
+  const SimulationOptions& options_;
+  costmap::WheelObserver observer_;
+  std::mt19937_64 random_;
+  FieldPlanner planner_;
+  Ruts ruts_;
+  maps::Point here_;
+  std::vector<maps::Point> way_back_;
+  std::vector<maps::Point> route_;
+  std::size_t next_ = 1;
+  double planned_J_ = 0.0;
+  double since_sensing_m_ = 0.0;
+  bool held_ = false;
+  TraverseSimulation result_;
+};
+
+}  // namespace
+
+std::string_view name(Outcome outcome) noexcept {
+  constexpr std::string_view kNames[] = {"reached", "immobilised", "tipped", "gave_up"};
+  return kNames[static_cast<int>(outcome)];
+}
+
+TraverseSimulation simulateTraverse(costmap::TraversabilityMap& map, const TrueWorld& world,
+                                    const SimulationOptions& options) {
+  return Drive(map, world, options).run();
+}
+
+}  // namespace talus::planner

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include <talus/terramech/contact/rover.hpp>
+#include <talus/terramech/contact/soil.hpp>
+#include <talus/terramech/effects/effects.hpp>
+
+namespace talus::planner {
+
+/// What a wheel does on one soil, with the effects that act there, tabulated by the forward model over slip
+/// -1 .. 1 and over its load, 0.25 to 1.9 times that on the flat.
+class WheelTable {
+ public:
+  /// Forces over the load.
+  struct Row {
+    double pull = 0.0;     ///< drawbar pull over load [-]
+    double torque = 0.0;   ///< torque over load and radius [-]
+    double sinkage = 0.0;  ///< sinkage over radius [-]
+  };
+
+  static constexpr std::size_t kRows = 81;
+  static constexpr std::size_t kLoads = 12;
+
+  /// Load of a layer, over that on the flat: 0.25 to 1.9.
+  static constexpr double load(std::size_t layer) noexcept {
+    return 0.25 + 0.15 * static_cast<double>(layer);
+  }
+
+  /// A soil that cannot carry the wheel pulls nothing.
+  WheelTable(const terramech::Soil& soil, const terramech::Rover& rover,
+             const std::vector<terramech::Effect>& effects = {});
+
+  /// Slip of a row.
+  static constexpr double slip(std::size_t row) noexcept {
+    return 2.0 * static_cast<double>(row) / (kRows - 1) - 1.0;
+  }
+  /// Of a row, interpolated at a load, over that on the flat; beyond the table's ends their values.
+  Row row(std::size_t i, double load_over_flat) const noexcept;
+  /// Interpolated at a slip, clamped to [-1, 1], too.
+  Row at(double slip, double load_over_flat) const noexcept;
+
+ private:
+  std::array<std::array<Row, kRows>, kLoads> rows_;
+};
+
+}  // namespace talus::planner

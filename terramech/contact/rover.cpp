@@ -1,0 +1,31 @@
+#include <talus/terramech/contact/rover.hpp>
+#include <talus/terramech/numerics/range.hpp>
+
+namespace talus::terramech {
+
+double wheelLoad_N(const Rover& rover) {
+  return rover.mass_kg * rover.gravity_m_s2 / rover.wheel_count;
+}
+
+void validate(const Rover& rover) {
+  const RangeCheck check{"rover '" + rover.name + "'"};
+  check.above("mass_kg", rover.mass_kg, 0.0);
+  check.above("gravity_m_s2", rover.gravity_m_s2, 0.0);
+  check.atLeast("wheels.count", rover.wheel_count, 2.0);
+  check.above("wheels.radius_m", rover.wheel.radius_m, 0.0);
+  check.above("wheels.width_m", rover.wheel.width_m, 0.0);
+  check.atLeast("wheels.grouser_height_m", rover.wheel.grouser_height_m, 0.0);
+  check.atLeast("wheels.grouser_count", rover.wheel.grouser_count, 0.0);
+  check.above("wheelbase_m", rover.wheelbase_m, 0.0);
+  check.above("track_m", rover.track_m, 0.0);
+  check.above("clearance_m", rover.clearance_m, 0.0);
+  check.atLeast("centre_of_mass_height_m", rover.centre_of_mass_height_m, 0.0);
+  check.within("max_pitch_rad", rover.max_pitch_rad, {0.0, 1.5707963});
+  check.within("max_roll_rad", rover.max_roll_rad, {0.0, 1.5707963});
+  check.above("max_torque_Nm", rover.max_torque_Nm, 0.0);
+  check.above("max_speed_mps", rover.max_speed_mps, 0.0);
+  check.atLeast("turning_radius_m", rover.turning_radius_m, 0.0);
+  check.atLeast("hotel_power_W", rover.hotel_power_W, 0.0);
+}
+
+}  // namespace talus::terramech

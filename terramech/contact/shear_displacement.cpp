@@ -1,0 +1,27 @@
+#include <algorithm>
+
+#include <talus/terramech/contact/shear_displacement.hpp>
+
+namespace talus::terramech {
+
+double ShearDisplacement::signChange_rad(double lowest_rad) const {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  // j grows from 0 at the entry only if q cos theta_1 < 1, is largest where q cos theta = 1, and falls below
+  // that.
+  if (p_.slip >= 0.0 || !(travel_ * std::cos(p_.entry_angle_rad) < 1.0)) return kNone;
+  double positive = std::acos(1.0 / travel_), negative = lowest_rad;
+  if (at_m(negative) >= 0.0) return kNone;
+  for (int step = 0; step < 60; ++step) {
+    const double middle = 0.5 * (positive + negative);
+    (at_m(middle) > 0.0 ? positive : negative) = middle;
+  }
+  return 0.5 * (positive + negative);
+}
+
+SideSlipDisplacement::SideSlipDisplacement(const Parameters& p)
+    : p_(p),
+      travel_(std::min(travelRatio(p.slip), 1e6)),
+      lateral_m_(p.radius_m * travel_ * std::tan(p.slip_angle_rad)),
+      sin_entry_(std::sin(p.entry_angle_rad)) {}
+
+}  // namespace talus::terramech

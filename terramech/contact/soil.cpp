@@ -1,0 +1,23 @@
+#include <talus/terramech/contact/soil.hpp>
+#include <talus/terramech/numerics/range.hpp>
+
+namespace talus::terramech {
+
+double sinkageModulus(const Soil& soil, double width_m) {
+  return soil.cohesive_modulus / width_m + soil.frictional_modulus;
+}
+
+void validate(const Soil& soil) {
+  const RangeCheck check{"soil '" + soil.name + "'"};
+  check.atLeast("cohesion_Pa", soil.cohesion_Pa, 0.0);
+  check.within("friction_angle_rad", soil.friction_angle_rad, {0.0, 1.5707963});
+  check.above("sinkage_exponent", soil.sinkage_exponent, 0.0);
+  check.finite("cohesive_modulus", soil.cohesive_modulus);
+  check.finite("frictional_modulus", soil.frictional_modulus);
+  check.above("shear_modulus_m", soil.shear_modulus_m, 0.0);
+  check.finite("c1", soil.c1);
+  check.finite("c2", soil.c2);
+  check.above("density_kg_m3", soil.density_kg_m3, 0.0);
+}
+
+}  // namespace talus::terramech

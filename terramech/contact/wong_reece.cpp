@@ -1,0 +1,122 @@
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include <talus/terramech/contact/rim_contact.hpp>
+#include <talus/terramech/contact/wong_reece.hpp>
+#include <talus/terramech/numerics/range.hpp>
+
+namespace talus::terramech {
+namespace {
+
+double checkedModulus(const Soil& soil, const Wheel& wheel) {
+  validate(soil);
+  validate(wheel);
+  const double k = sinkageModulus(soil, wheel.width_m);
+  RangeCheck{"soil '" + soil.name + "'"}.above("cohesive_modulus / width_m + frictional_modulus", k, 0.0);
+  return k;
+}
+
+double checkedPeak(const Soil& soil, double slip) {
+  const double fraction = soil.c1 + soil.c2 * slip;
+  if (fraction < 0.0 || fraction > 1.0)
+    throw std::domain_error("soil '" + soil.name + "': the stress peak c1 + c2 slip = " +
+                            std::to_string(fraction) + " lies outside the contact, [0, 1]");
+  return fraction;
+}
+
+void check(const WheelOperation& operation) {
+  const RangeCheck range{"wheel operation"};
+  range.within("slip", operation.slip, {-1.0, 1.0});
+  range.within("rebound", operation.rebound, {0.0, 0.999});
+}
+
+double sinkage_m(const Wheel& wheel, double entry) {
+  const double half = std::sin(0.5 * entry);
+  return 2.0 * wheel.radius_m * half * half;  // r (1 - cos theta_1) without cancellation
+}
+
+WheelForces wheelForces(const Wheel& wheel, const RimEquilibrium& rim) {
+  return {sinkage_m(wheel, rim.entry_angle_rad), rim.entry_angle_rad, rim.forces.torque_Nm,
+          rim.forces.drawbar_pull_N};
+}
+
+}  // namespace
+
+WongReece::WongReece(const Soil& soil, const Wheel& wheel, const WheelOperation& operation)
+    : modulus_(checkedModulus(soil, wheel)),
+      exponent_(soil.sinkage_exponent),
+      cohesion_Pa_(soil.cohesion_Pa),
+      tan_friction_(std::tan(soil.friction_angle_rad)),
+      shear_modulus_m_(soil.shear_modulus_m),
+      peak_fraction_(checkedPeak(soil, operation.slip)),
+      rebound_(operation.rebound),
+      radius_m_(wheel.radius_m),
+      width_m_(wheel.width_m) {
+  check(operation);
+}
+
+double WongReece::pressure_Pa(double depth_m) const {
+  return modulus_ * std::pow(depth_m, exponent_);
+}
+
+double WongReece::shear_Pa(double normal_Pa, double displacement_m) const {
+  const double mobilised = -std::expm1(-std::abs(displacement_m) / shear_modulus_m_);
+  return std::copysign((cohesion_Pa_ + normal_Pa * tan_friction_) * mobilised, displacement_m);
+}
+
+double WongReece::exit_rad(double entry_rad) const {
+  if (rebound_ == 0.0) return 0.0;
+  // acos(1 - kappa (1 - cos theta_1)) without cancellation.
+  return -2.0 * std::asin(std::sqrt(rebound_) * std::sin(0.5 * entry_rad));
+}
+
+double WongReece::smallAngleEntry_rad(double load_N) const {
+  // W ~ r b k (r/2)^n theta_1^(2n+1) int_0^1 (1 - (1 - (1 - m) s)^2)^n ds, the integral by the midpoint
+  // value.
+  const double a = 1.0 - 0.5 * (1.0 - peak_fraction_);
+  const double shape = std::pow(1.0 - a * a, exponent_);
+  const double unit = radius_m_ * width_m_ * modulus_ * std::pow(0.5 * radius_m_, exponent_) * shape;
+  return std::pow(load_N / unit, 1.0 / (2.0 * exponent_ + 1.0));
+}
+
+WheelForces equilibrium(const Soil& soil, const Wheel& wheel, const WheelOperation& operation) {
+  RangeCheck{"wheel operation"}.above("load_N", operation.load_N, 0.0);
+  const WongReece law{soil, wheel, operation};
+  return wheelForces(wheel, rimEquilibrium(law, wheel,
+                                           {.load_N = operation.load_N,
+                                            .slip = operation.slip,
+                                            .first_guess = law.smallAngleEntry_rad(operation.load_N),
+                                            .growth = 2.0 * soil.sinkage_exponent + 1.0}));
+}
+
+ImposedContact forcesAtEntry(const Soil& soil, const Wheel& wheel, const WheelOperation& operation,
+                             double entry_rad) {
+  RangeCheck{"wheel operation"}.within("entry angle", entry_rad, {1e-12, 1.5707963267948966});
+  const WongReece law{soil, wheel, operation};
+  const RimForces forces =
+      rimForces(law, wheel, ShearDisplacement{{wheel.radius_m, operation.slip, entry_rad}});
+  return {forces.load_N, wheelForces(wheel, {entry_rad, forces})};
+}
+
+std::vector<RimStress> stressDistribution(const Soil& soil, const Wheel& wheel,
+                                          const WheelOperation& operation, int count) {
+  RangeCheck{"stress distribution"}.atLeast("count", count, 2.0);
+  const WongReece law{soil, wheel, operation};
+  const double entry = equilibrium(soil, wheel, operation).entry_angle_rad;
+  const double peak = law.peak_rad(entry), exit = law.exit_rad(entry);
+  const ShearDisplacement displacement{{wheel.radius_m, operation.slip, entry}};
+  std::vector<RimStress> stresses;
+  for (int k = 0; k < count; ++k) {
+    const double theta = exit + (entry - exit) * k / (count - 1.0);
+    // In the rear half the angle in front with the same stress (C.3).
+    const double mirrored = theta >= peak ? theta : entry - (entry - peak) * (theta - exit) / (peak - exit);
+    const double depth = wheel.radius_m * (std::cos(mirrored) - std::cos(entry));
+    const double sigma = law.pressure_Pa(depth > 0.0 ? depth : 0.0);
+    const double j = theta < entry ? displacement.at_m(theta) : 0.0;
+    stresses.push_back({theta, sigma, law.shear_Pa(sigma, j), j});
+  }
+  return stresses;
+}
+
+}  // namespace talus::terramech

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <span>
+
+#include <talus/terramech/contact/wong_reece.hpp>
+
+/// Many rigid wheels at once.
+namespace talus::terramech {
+
+/// A wheel on a soil at a slip, flat, as a row of a table.
+struct WheelCase {
+  double cohesion_Pa = 0.0;         ///< >= 0
+  double friction_angle_rad = 0.0;  ///< [0, pi/2)
+  double sinkage_exponent = 1.0;    ///< n > 0 [-]
+  double sinkage_modulus = 0.0;     ///< k_c/b + k_phi > 0 [N/m^(n+2)]
+  double shear_modulus_m = 0.02;    ///< K > 0
+  double c1 = 0.43;                 ///< [-]
+  double c2 = 0.32;                 ///< [-]
+  double wheel_radius_m = 0.1;      ///< > 0
+  double wheel_width_m = 0.1;       ///< > 0
+  double load_N = 0.0;              ///< > 0
+  double slip = 0.0;                ///< [-1, 1], as WheelOperation::slip
+};
+
+/// The case of a soil, a wheel and its operation; the operation's rebound must be 0.
+WheelCase wheelCase(const Soil& soil, const Wheel& wheel, const WheelOperation& operation);
+
+/// One case by the solver of wong_reece.hpp, with its errors.
+WheelForces equilibrium(const WheelCase& wheel_case);
+
+/// Whether the batch's kernel takes a case: valid and driven, away from what would overflow it.
+bool isFastCase(const WheelCase& wheel_case);
+
+/// What becomes of a case that the kernel does not solve.
+enum class Leftover {
+  Equilibrium,  ///< goes through equilibrium()
+  Nan           ///< is left as NaN, to a caller who has another solver
+};
+
+/// Which code computes a batch. Both give the same bits.
+enum class BatchKernel {
+  Best,    ///< Avx2 where the machine has it, else Scalar
+  Scalar,  ///< one case at a time
+  Avx2     ///< four at a time
+};
+
+/// Solves every case: `forces` gets as many entries as `cases`, every number NaN where the case has no answer
+/// (equilibrium() tells why). Agrees with equilibrium() to 1e-7 relative, drawbar pull to 1e-7 of the load.
+/// Braked wheels, slip below 0.01, and r theta_1 / K > 12 are left over. Throws
+/// std::invalid_argument when the sizes differ or the machine lacks the kernel asked for. Thread-safe.
+void equilibria(std::span<const WheelCase> cases, std::span<WheelForces> forces,
+                BatchKernel kernel = BatchKernel::Best, Leftover leftover = Leftover::Equilibrium);
+
+}  // namespace talus::terramech

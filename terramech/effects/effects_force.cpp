@@ -1,0 +1,227 @@
+#include <algorithm>
+#include <cmath>
+
+#include <talus/terramech/effects/effects.hpp>
+
+namespace talus::terramech::detail {
+namespace {
+
+using Input = const EffectInput&;
+constexpr double kGravity = 9.80665;  // the tests of the literature were made on Earth
+
+double passive(const WheelContact& c) {  // Kp = tan^2(45 deg + phi/2)
+  const double t = std::tan(0.785398163397448 + 0.5 * std::atan(c.tan_friction));
+  return t * t;
+}
+
+/// Passive wedge in front of a blade of height z: frictional and cohesive part [N].
+struct Wedge {
+  double friction, cohesion;
+};
+
+Wedge wedge(const WheelContact& c, double z, double width) {
+  const double kp = passive(c), weight = c.density_kg_m3 * kGravity;
+  return {width * 0.5 * weight * z * z * kp, width * 2.0 * c.cohesion_Pa * z * std::sqrt(kp)};
+}
+
+/// Hegedus' resistance of a vertical blade of height z, a' = 0, X = 45 deg - phi/2 [N].
+double hegedus(const WheelContact& c, double z) {
+  const double phi = std::atan(c.tan_friction), x = 0.785398163397448 - 0.5 * phi;
+  const double cot_x = 1.0 / std::tan(x), front = cot_x + std::tan(x + phi);
+  const double tan_phi = std::max(c.tan_friction, 1e-3);
+  const double heap = cot_x + cot_x * cot_x * tan_phi;
+  return c.width_m * front * (z * c.cohesion_Pa + 0.5 * c.density_kg_m3 * kGravity * z * z * heap);
+}
+
+/// Share of the passive pressure ahead that a wheel mobilises while it goes its own width sideways, by Janosi
+/// and Hanamoto's law: 1 - e^{-b cot beta / K} (ours); 1 straight on, 0 at 90 deg.
+double mobilised(const WheelState& state, const WheelContact& c) {
+  const double ahead = std::max(std::cos(state.slip_angle_rad), 0.0);
+  const double across = std::abs(std::sin(state.slip_angle_rad));
+  return -std::expm1(-c.width_m * ahead / std::max(across * c.shear_modulus_m, 1e-300));
+}
+
+/// Coulomb's passive coefficient of a vertical wall with friction tan delta.
+double passiveRough(double tan_friction, double tan_wall) {
+  const double phi = std::atan(tan_friction), delta = std::atan(tan_wall);
+  const double root = std::sqrt(std::sin(phi + delta) * std::sin(phi) / std::cos(delta));
+  const double ratio = std::cos(phi) / std::max(1.0 - root, 0.1);
+  return ratio * ratio / std::cos(delta);
+}
+
+/// What the soil beside a wheel that slides sideways does to its face.
+struct FaceForces {
+  double push_N;  ///< against the sideways motion
+  double pull_N;  ///< forward, by friction
+};
+
+/// The soil pushed aside rises along the face as its wedge does, at tan(45 deg - phi/2) of the sideways
+/// speed, while the face turns by at its mean height; wall friction acts against the resultant of the two.
+/// Its part upwards raises the passive pressure, its part along the wheel plane pulls or brakes.
+FaceForces faceForces(const WheelContact& c, double z, double slip_angle_rad, double tan_wall) {
+  const double along = std::cos(slip_angle_rad) - c.rolling * (1.0 - 0.5 * z / c.radius_m);
+  const double up = std::abs(std::sin(slip_angle_rad)) / std::sqrt(passive(c));
+  const double slide = std::max(std::hypot(along, up), 1e-12);
+  const double kp = passiveRough(c.tan_friction, tan_wall * up / slide);
+  const double chord = 2.0 * std::sqrt(std::max(0.0, z * (2.0 * c.radius_m - z)));
+  const double weight = c.density_kg_m3 * kGravity;
+  const double push = chord * z * (0.5 * weight * z * kp + 2.0 * c.cohesion_Pa * std::sqrt(kp)) *
+                      std::abs(std::sin(slip_angle_rad));
+  return {push, -tan_wall * push * along / slide};
+}
+
+std::vector<EffectForm> bulldozing() {
+  return {
+      {.name = "bulldozing",
+       .family = "bulldozing",
+       .covariate = "sinkage_m",
+       .channel = Channel::DrawbarPull,
+       .formula = "R_b = a b (gamma z^2 Kp / 2 + 2 c z sqrt(Kp))",
+       .source = "bekker_1969",
+       .signature = "drawbar pull alone falls, between linear and square in sinkage",
+       .parameters = {{"a", "-", 0.0, 20.0, 1.0}},
+       .read =
+           [](Input in, const WheelContact& c, Reading& r) {
+             const Wedge w = wedge(c, std::max(r.sinkage_m, 0.0), c.width_m);
+             r.drawbar_pull_N -= in.parameter[0] * (w.friction + w.cohesion) * mobilised(in.state, c);
+           }},
+      {.name = "bulldozing_two_term",
+       .family = "bulldozing",
+       .covariate = "sinkage_m",
+       .channel = Channel::DrawbarPull,
+       .formula = "R_b = b (a_g gamma z^2 Kp / 2 + a_c 2 c z sqrt(Kp))",
+       .source = "bekker_1969",
+       .signature = "as bulldozing, weights of soil weight and cohesion apart",
+       .parameters = {{"a_g", "-", 0.0, 30.0, 1.0}, {"a_c", "-", 0.0, 20.0, 1.0}},
+       .read =
+           [](Input in, const WheelContact& c, Reading& r) {
+             const Wedge w = wedge(c, std::max(r.sinkage_m, 0.0), c.width_m);
+             r.drawbar_pull_N -=
+                 (in.parameter[0] * w.friction + in.parameter[1] * w.cohesion) * mobilised(in.state, c);
+           }},
+      {.name = "bulldozing_hegedus",
+       .family = "bulldozing",
+       .covariate = "sinkage_m",
+       .channel = Channel::DrawbarPull,
+       .formula = "R_b = a b (cot X + tan(X + phi)) (z c + rho g z^2/2 (cot X + cot^2 X tan phi)), X = 45 "
+                  "deg - phi/2",
+       .source = "hegedus_1960",
+       .signature = "as bulldozing",
+       .parameters = {{"a", "-", 0.0, 20.0, 1.0}},
+       .read =
+           [](Input in, const WheelContact& c, Reading& r) {
+             r.drawbar_pull_N -=
+                 in.parameter[0] * hegedus(c, std::max(r.sinkage_m, 0.0)) * mobilised(in.state, c);
+           }},
+  };
+}
+
+/// Of a wheel that may also dig, brake or slide sideways.
+std::vector<EffectForm> pushing() {
+  return {
+      {.name = "bulldozing_ahead",
+       .family = "bulldozing",
+       .covariate = "sinkage_m",
+       .channel = Channel::DrawbarPull,
+       .formula = "R_b = a b gamma z_p^2 Kp / 2 of a heap without cohesion, z_p = z less what a driven wheel "
+                  "dug; times 1 - e^{-b cot beta / K}",
+       .source = "bekker_1969",
+       .signature = "as bulldozing, but not of a wheel that throws the soil behind itself",
+       .parameters = {{"a", "-", 0.0, 20.0, 1.0}},
+       .read =
+           [](Input in, const WheelContact& c, Reading& r) {
+             const Wedge w = wedge(c, std::max(r.sinkage_m - r.dug_m, 0.0), c.width_m);
+             r.drawbar_pull_N -= in.parameter[0] * w.friction * mobilised(in.state, c);
+           }},
+      {.name = "side_bulldozing",
+       .family = "lateral_slip",
+       .covariate = "slip_angle_rad",
+       .channel = Channel::SideForce,
+       .formula = "F -= a sin beta l z (gamma z Kp/2 + 2 c sqrt(Kp)), l = 2 r sin theta_1",
+       .source = "ishigami_2007",
+       .signature = "side force grows with slip angle and sinkage",
+       .parameters = {{"a", "-", 0.0, 20.0, 1.0}},
+       .read =
+           [](Input in, const WheelContact& c, Reading& r) {
+             const double z = std::max(r.sinkage_m, 0.0);
+             const double chord = 2.0 * std::sqrt(std::max(0.0, z * (2.0 * c.radius_m - z)));
+             const Wedge w = wedge(c, z, chord);
+             r.side_force_N -= in.parameter[0] * (w.friction + w.cohesion) * std::sin(in.x);
+           }},
+      {.name = "side_bulldozing_rough",
+       .family = "lateral_slip",
+       .covariate = "slip_angle_rad",
+       .channel = Channel::SideForce,
+       .formula =
+           "F -= a F_p(Kp(mu t_z)) sin beta, DP -= a mu |F_p sin beta| t_x, F_p as side_bulldozing with "
+           "Coulomb's Kp; (t_x, t_z) along (cos beta - (1 - z/2r) r omega/v, sin beta tan(45 deg - phi/2))",
+       .source = "ours",
+       .signature =
+           "side force grows with slip angle and sinkage and falls where the wheel spins, drawbar pull "
+           "rises there and falls where it is braked",
+       .parameters = {{"a", "-", 0.0, 20.0, 1.0}, {"mu", "-", 0.0, 1.0, 0.3}},
+       .read =
+           [](Input in, const WheelContact& c, Reading& r) {
+             const FaceForces face = faceForces(c, std::max(r.sinkage_m, 0.0), in.x, in.parameter[1]);
+             r.side_force_N -= in.parameter[0] * std::copysign(face.push_N, in.x);
+             r.drawbar_pull_N += in.parameter[0] * face.pull_N;
+           }},
+  };
+}
+
+std::vector<EffectForm> pile() {
+  return {
+      {.name = "rear_pile",
+       .family = "rear_pile",
+       .covariate = "slip",
+       .channel = Channel::DrawbarPull,
+       .formula = "dDP = a W max(0, i - i0)^2",
+       .source = "kang_2003",
+       .signature = "drawbar pull alone rises, from a slip on, convex",
+       .parameters = {{"a", "-", 0.0, 5.0, 0.5}, {"i0", "-", 0.0, 0.8, 0.4}},
+       .read =
+           [](Input in, const WheelContact&, Reading& r) {
+             const double over = std::max(0.0, in.x - in.parameter[1]);
+             r.drawbar_pull_N += in.parameter[0] * r.load_N * over * over;
+           }},
+      {.name = "rear_pile_passive",
+       .family = "rear_pile",
+       .covariate = "slip",
+       .channel = Channel::DrawbarPull,
+       .formula = "dDP = gamma b h^2 Kp / 2, h = h1 max(0, i - i0)",
+       .source = "ours",
+       .signature = "as rear_pile, but not in proportion to load",
+       .parameters = {{"h1", "m", 0.0, 1.0, 0.05}, {"i0", "-", 0.0, 0.8, 0.2}},
+       .read =
+           [](Input in, const WheelContact& c, Reading& r) {
+             const double h = in.parameter[0] * std::max(0.0, in.x - in.parameter[1]);
+             r.drawbar_pull_N += wedge(c, h, c.width_m).friction;
+           }},
+  };
+}
+
+std::vector<EffectForm> weight() {
+  return {
+      {.name = "slope_weight_component",
+       .family = "load_transfer",
+       .covariate = "slope_rad",
+       .channel = Channel::DrawbarPull,
+       .formula = "DP -= a W sin alpha",
+       .source = "iagnemma_dubowsky_2004",
+       .signature = "drawbar pull alone, odd in slope",
+       .parameters = {{"a", "-", -1.5, 1.5, 0.5}},
+       .read = [](Input in, const WheelContact&,
+                  Reading& r) { r.drawbar_pull_N -= in.parameter[0] * r.load_N * std::sin(in.x); }},
+  };
+}
+
+}  // namespace
+
+std::vector<EffectForm> forceEffects() {
+  std::vector<EffectForm> all;
+  for (auto part : {bulldozing, pushing, pile, weight})
+    for (EffectForm& form : part()) all.push_back(std::move(form));
+  return all;
+}
+
+}  // namespace talus::terramech::detail

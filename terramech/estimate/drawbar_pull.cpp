@@ -1,0 +1,111 @@
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+#include <talus/terramech/contact/contact_geometry.hpp>
+#include <talus/terramech/estimate/drawbar_pull.hpp>
+#include <talus/terramech/numerics/range.hpp>
+
+namespace talus::terramech {
+namespace {
+
+// Below this ratio of eigenvalues of the features' correlation the samples lie on a line (ours).
+constexpr double kLeastSpread = 1e-10;
+
+double entryOf(const Wheel& wheel, const WheelSample& sample) {
+  RangeCheck("drawbar pull").above("load_N", sample.load_N, 0.0);
+  return entryAngle_rad(wheel, sample.sinkage_m);
+}
+
+// Change of the estimate when one reading moves by its standard deviation, from both sides.
+double effect(const Wheel& wheel, const WheelSample& sample, double WheelSample::*field, double std,
+              const PullAngleModel& model) {
+  if (!(std > 0.0)) return 0.0;
+  const auto moved = [&](double step) {
+    WheelSample s = sample;
+    s.*field += step;
+    return pullOfSingleForce(wheel, s, model.angle_rad(wheel, s));
+  };
+  const double step = field == &WheelSample::sinkage_m ? std::min(std, 0.5 * sample.sinkage_m) : 1e-3 * std;
+  return (moved(step) - moved(-step)) / (2.0 * step) * std;
+}
+
+}  // namespace
+
+double torqueOverLoadRadius(const Wheel& wheel, const WheelSample& sample) {
+  RangeCheck("drawbar pull").above("load_N", sample.load_N, 0.0);
+  return sample.torque_Nm / (wheel.radius_m * sample.load_N);
+}
+
+double pullOfSingleForce(const Wheel& wheel, const WheelSample& sample, double theta_rad) {
+  return torqueOverLoadRadius(wheel, sample) / std::cos(theta_rad) - std::tan(theta_rad);
+}
+
+double pullAtSmallAngle(const Wheel& wheel, const WheelSample& sample) {
+  return torqueOverLoadRadius(wheel, sample) - 0.5 * entryOf(wheel, sample);
+}
+
+double pullOfTriangularStress(const Wheel& wheel, const WheelSample& sample) {
+  const double theta_1 = entryOf(wheel, sample);
+  const double quarter = 0.25 * theta_1;
+  const double sinc = quarter > 0.0 ? std::sin(quarter) / quarter : 1.0;
+  return sinc * sinc / std::cos(0.5 * theta_1) * torqueOverLoadRadius(wheel, sample) -
+         std::tan(0.5 * theta_1);
+}
+
+double PullPlane::at(const Wheel& wheel, const WheelSample& sample) const {
+  return c1 * torqueOverLoadRadius(wheel, sample) + c2 * sample.sinkage_m / wheel.radius_m + c3;
+}
+
+void PullPlaneFitter::add(const Wheel& wheel, const WheelSample& sample, double pull_over_load) {
+  const Eigen::Vector4d row(torqueOverLoadRadius(wheel, sample), sample.sinkage_m / wheel.radius_m, 1.0,
+                            pull_over_load);
+  gram_ += row * row.transpose();
+  ++count_;
+}
+
+PullPlaneFit PullPlaneFitter::estimate() const {
+  if (count_ < 4) throw std::domain_error("plane fit of drawbar pull: four samples at least");
+  const Eigen::Matrix3d normal = gram_.topLeftCorner<3, 3>();
+  const Eigen::Vector3d scale = normal.diagonal().cwiseSqrt().cwiseInverse();
+  const auto spread =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scale.asDiagonal() * normal * scale.asDiagonal())
+          .eigenvalues();
+  if (!(spread[0] > kLeastSpread * spread[2])) {
+    throw std::domain_error("plane fit of drawbar pull: the samples lie on a line; vary load and slip");
+  }
+  const Eigen::Vector3d c = normal.ldlt().solve(gram_.topRightCorner<3, 1>());
+  const Eigen::Vector4d residual(c[0], c[1], c[2], -1.0);
+  const double variance = std::max(0.0, residual.dot(gram_ * residual)) / (static_cast<double>(count_) - 3.0);
+  return {.plane = {c[0], c[1], c[2]},
+          .covariance = variance * normal.inverse(),
+          .residual_std = std::sqrt(variance),
+          .samples = count_};
+}
+
+double PullAngleModel::angle_rad(const Wheel& wheel, const WheelSample& sample) const {
+  const double theta_1 = entryOf(wheel, sample);
+  return (a0 + a1 * sample.slip + a2 * theta_1 + a3 * torqueOverLoadRadius(wheel, sample)) * theta_1;
+}
+
+Uncertain pullOverLoad(const Wheel& wheel, const WheelSample& sample, const ReadingErrors& noise,
+                       const PullAngleModel& model) {
+  const double value = pullOfSingleForce(wheel, sample, model.angle_rad(wheel, sample));
+  const double load = effect(wheel, sample, &WheelSample::load_N, noise.load.std(sample.load_N), model);
+  const double torque =
+      effect(wheel, sample, &WheelSample::torque_Nm, noise.torque.std(sample.torque_Nm), model);
+  const double sinkage =
+      effect(wheel, sample, &WheelSample::sinkage_m, noise.sinkage.std(sample.sinkage_m), model);
+  const double slip = effect(wheel, sample, &WheelSample::slip, noise.slip.std(sample.slip), model);
+  return {.value = value, .std = std::hypot(std::hypot(load, torque), std::hypot(sinkage, slip), model.std)};
+}
+
+Uncertain climbableSlope_rad(const Uncertain& pull_over_load) {
+  const double p = pull_over_load.value;
+  return {.value = std::atan(p), .std = pull_over_load.std / (1.0 + p * p)};
+}
+
+}  // namespace talus::terramech

@@ -1,0 +1,116 @@
+#include <algorithm>
+
+#include <talus/terramech/estimate/model_pull.hpp>
+#include <talus/terramech/numerics/range.hpp>
+
+namespace talus::terramech {
+namespace {
+
+// Keeps the fitted numbers that `keep` marks, with their rows and columns of the covariance.
+void keepFitted(RefinedModel& model, const std::vector<char>& keep) {
+  const std::size_t n = model.fitted.size();
+  std::vector<FittedParameter> fitted;
+  std::vector<double> covariance;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!keep[i]) continue;
+    fitted.push_back(model.fitted[i]);
+    for (std::size_t j = 0; j < n && !model.covariance.empty(); ++j) {
+      if (keep[j]) covariance.push_back(model.covariance[i * n + j]);
+    }
+  }
+  model.fitted = std::move(fitted);
+  model.covariance = std::move(covariance);
+}
+
+void dropSensorFaults(RefinedModel& model) {
+  std::vector<int> place;  // of each effect after the others are gone, -1: gone
+  std::vector<Effect> left;
+  for (const Effect& effect : model.effects) {
+    const bool fault = isSensorFault(effect);
+    place.push_back(fault ? -1 : static_cast<int>(left.size()));
+    if (!fault) left.push_back(effect);
+  }
+  std::vector<char> keep;
+  for (FittedParameter& p : model.fitted) {
+    const int at = p.effect < 0 ? p.effect : place[static_cast<std::size_t>(p.effect)];
+    keep.push_back(p.effect < 0 || at >= 0);
+    p.effect = at;
+  }
+  model.effects = std::move(left);
+  keepFitted(model, keep);
+}
+
+void takePriorAsCovariance(RefinedModel& model) {
+  const auto& parameters = soilParameters();
+  std::vector<double> variances;
+  for (std::size_t k = 0; k < parameters.size(); ++k) {
+    const auto std = model.soil_prior_std.find(parameters[k].name);
+    if (std == model.soil_prior_std.end()) continue;
+    model.fitted.push_back({.effect = -1, .index = static_cast<int>(k)});
+    variances.push_back(std->second * std->second);
+  }
+  model.covariance.assign(variances.size() * variances.size(), 0.0);
+  for (std::size_t k = 0; k < variances.size(); ++k)
+    model.covariance[k * (variances.size() + 1)] = variances[k];
+}
+
+}  // namespace
+
+bool isSensorFault(const Effect& effect) {
+  if (effect.empirical()) return false;
+  const auto names = [&](const std::vector<EffectForm>& forms) {
+    return std::ranges::any_of(
+        forms, [&](const EffectForm& f) { return effect.name == f.name && f.read != nullptr; });
+  };
+  return names(detail::sensorEffects()) || names(detail::driftEffects());
+}
+
+RefinedModel groundTruthOf(const RefinedModel& model) {
+  RefinedModel truth = model;
+  truth.noise.absolute = {};
+  truth.noise.relative = {};
+  if (truth.noise.slip_absolute == 0.0 && truth.noise.slip_relative == 0.0)
+    truth.noise.slip_absolute = truth.stated.slip.value_or(0.0);
+  if (truth.fitted.empty()) takePriorAsCovariance(truth);
+  dropSensorFaults(truth);
+  return truth;
+}
+
+ModelPull pullOf(const RefinedModel& truth, const WheelState& state) {
+  RefinedModel here = truth;
+  if (here.noise.load_relative == 0.0)
+    here.noise.load_relative = here.stated.load_N.value_or(0.0) / state.load_N;
+  const Prediction p = predictWithStd(here, state);
+  const auto of = [&](Channel c) {
+    return Uncertain{p.mean.scaled(c), p.scaled_std[static_cast<std::size_t>(c)]};
+  };
+  return {.pull_over_load = of(Channel::DrawbarPull),
+          .sinkage_over_radius = of(Channel::Sinkage),
+          .torque_over_load_radius = p.mean.scaled(Channel::Torque)};
+}
+
+PullForecast forecastPull(const RefinedModel& truth, const WheelState& state, double reference_slip) {
+  const RangeCheck range("pull forecast");
+  range.above("reference_slip", reference_slip, 0.0);
+  range.within("reference_slip", reference_slip, {0.0, 1.0});
+  RefinedModel chosen = truth;
+  chosen.noise.slip_absolute = chosen.noise.slip_relative = 0.0;
+  WheelState at = state;
+  at.slip = reference_slip;
+  const ModelPull reference = pullOf(chosen, at);
+  at.slip = kForecastSlips.front();
+  for (const double slip : kForecastSlips) {
+    WheelState next = state;
+    next.slip = slip;
+    const auto pull = [&](const WheelState& s) { return predict(chosen, s).scaled(Channel::DrawbarPull); };
+    if (pull(next) > pull(at)) at = next;
+  }
+  const Uncertain most = pullOf(chosen, at).pull_over_load;
+  return {.at_reference = reference.pull_over_load,
+          .most = most,
+          .most_slip = at.slip,
+          .sinkage_over_radius = reference.sinkage_over_radius,
+          .climbable_slope_rad = climbableSlope_rad(most)};
+}
+
+}  // namespace talus::terramech

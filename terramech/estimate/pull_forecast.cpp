@@ -1,0 +1,108 @@
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+#include <talus/terramech/contact/wong_reece.hpp>
+#include <talus/terramech/estimate/pull_forecast.hpp>
+#include <talus/terramech/estimate/soil_objective.hpp>
+#include <talus/terramech/estimate/thesis_runs.hpp>
+#include <talus/terramech/numerics/range.hpp>
+
+namespace talus::terramech {
+namespace {
+
+// Draws lighter than this part of an even share are left out; together they cannot matter.
+constexpr double kLightest = 1e-3;
+
+// Weighted mean and variance, one value at a time.
+class Spread {
+ public:
+  void add(double value, double weight) {
+    weight_ += weight;
+    const double away = value - mean_;
+    mean_ += away * weight / weight_;
+    squares_ += weight * away * (value - mean_);
+  }
+  Uncertain get() const { return {.value = mean_, .std = std::sqrt(squares_ / weight_)}; }
+
+ private:
+  double weight_ = 0.0;
+  double mean_ = 0.0;
+  double squares_ = 0.0;
+};
+
+struct Reply {
+  double pull_over_load = 0.0;
+  double sinkage_over_radius = 1.0;
+};
+
+Reply reply(const Wheel& wheel, const Soil& soil, const WheelOperation& operation) {
+  try {
+    const WheelForces f = equilibrium(soil, wheel, operation);
+    return {f.drawbar_pull_N / operation.load_N, f.sinkage_m / wheel.radius_m};
+  } catch (const std::domain_error&) {  // sunk to the axle
+    return {};
+  }
+}
+
+// Every k-th soil of the cumulated weight: an even sample of the posterior.
+std::vector<const ContactSoil*> evenly(const std::vector<SoilDraw>& draws, int count) {
+  std::vector<const ContactSoil*> chosen;
+  double sum = 0.0;
+  for (const SoilDraw& d : draws) {
+    sum += d.weight;
+    while (static_cast<double>(chosen.size()) + 0.5 < sum * count &&
+           static_cast<int>(chosen.size()) < count) {
+      chosen.push_back(&d.soil);
+    }
+  }
+  return chosen;
+}
+
+}  // namespace
+
+Uncertain pullOverLoad(const Wheel& wheel, const WheelSample& sample, const SoilPosterior& posterior,
+                       const ReadingErrors& noise) {
+  const SoilClass any;
+  const SoilObjective objective(any, {noise, 0.0});
+  const double lightest = kLightest / static_cast<double>(posterior.draws.size());
+  Spread pull;
+  for (const SoilDraw& d : posterior.draws) {
+    if (d.weight < lightest) continue;
+    const ForceVector f = contactForces(d.soil, wheel, objective.likelyState(d.soil, {wheel, sample}));
+    pull.add(f[kPull] / f[kLoad], d.weight);
+  }
+  return pull.get();
+}
+
+PullForecast forecastPull(const Wheel& wheel, const SoilPosterior& posterior,
+                          const PullForecastOptions& options) {
+  const RangeCheck range("pull forecast");
+  range.above("load_N", options.load_N, 0.0);
+  range.above("reference_slip", options.reference_slip, 0.0);
+  range.within("reference_slip", options.reference_slip, {0.0, 1.0});
+  range.atLeast("draws", options.draws, 1);
+  Spread reference, most, slip_of_most, sinkage;
+  for (const ContactSoil* drawn : evenly(posterior.draws, options.draws)) {
+    const Soil soil = soilOf(*drawn);
+    const Reply at = reply(wheel, soil, {.load_N = options.load_N, .slip = options.reference_slip});
+    reference.add(at.pull_over_load, 1.0);
+    sinkage.add(at.sinkage_over_radius, 1.0);
+    double best = -1e9;
+    double best_slip = 0.0;
+    for (const double slip : kForecastSlips) {
+      const double pull = reply(wheel, soil, {.load_N = options.load_N, .slip = slip}).pull_over_load;
+      if (pull > best) best = pull, best_slip = slip;
+    }
+    most.add(best, 1.0);
+    slip_of_most.add(best_slip, 1.0);
+  }
+  return {.at_reference = reference.get(),
+          .most = most.get(),
+          .most_slip = slip_of_most.get().value,
+          .sinkage_over_radius = sinkage.get(),
+          .climbable_slope_rad = climbableSlope_rad(most.get())};
+}
+
+}  // namespace talus::terramech

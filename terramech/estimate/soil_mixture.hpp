@@ -1,0 +1,72 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <talus/terramech/contact/contact_response.hpp>
+
+/// What is believed of a soil before a wheel has touched it.
+namespace talus::terramech {
+
+/// c, phi, n, k, K: the first five columns of ContactDerivative.
+inline constexpr int kSoilParameters = 5;
+using SoilVector = Eigen::Matrix<double, kSoilParameters, 1>;
+using SoilMatrix = Eigen::Matrix<double, kSoilParameters, kSoilParameters>;
+
+/// Prior of one parameter, over a coordinate y in which it is flat on [0, 1] (bounded) or the unit Gaussian.
+class Marginal {
+ public:
+  Marginal() = default;  ///< fixed at 0
+
+  static Marginal fixed(double value);
+
+  /// Even between two bounds, low < high: value = low + (high - low) y.
+  static Marginal uniform(double low, double high);
+
+  /// Even in the logarithm between two bounds, 0 < low < high.
+  static Marginal logUniform(double low, double high);
+
+  /// Gaussian; what lies below `least` is put on it.
+  static Marginal normal(double mean, double std, double least);
+
+  double at(double y) const;
+  double slope(double y) const;  ///< d at(y) / dy
+  bool bounded() const { return shape_ != Shape::Normal; }
+
+ private:
+  enum class Shape { Uniform, LogUniform, Normal };
+
+  Shape shape_ = Shape::Uniform;
+  double low_ = 0.0;  // Normal: least
+  double high_ = 0.0;
+  double mean_ = 0.0;
+  double std_ = 0.0;
+};
+
+/// A kind of soil.
+struct SoilClass {
+  std::string name;
+  double probability = 1.0;  ///< before any data; those of a prior are scaled to add up to 1
+  std::array<Marginal, kSoilParameters> parameters{};  ///< c [Pa], phi [rad], n, k [N/m^(n+2)], K [m]
+  double c1 = 0.43;
+  double c2 = 0.32;
+
+  ContactSoil at(const SoilVector& y) const;
+  SoilVector slope(const SoilVector& y) const;
+};
+
+/// A mixture of kinds of soil.
+using SoilMixture = std::vector<SoilClass>;
+
+/// Sand, clay, loam and firm soil with the ranges of thesis Table 2.1, each as likely.
+SoilMixture thesisSoils();
+
+/// thesisSoils() and, with the given probability in [0, 1), a class "other" wide enough for any natural or
+/// simulant soil: c 0 to 20 kPa, phi 15 to 50 deg, n 0.3 to 1.8, k 1e4 to 1e8, K 3 to 60 mm (ranges ours,
+/// about thesis Tables 2.3 and A.1).
+SoilMixture thesisSoilsOrOther(double other_probability = 0.02);
+
+}  // namespace talus::terramech

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <talus/terramech/contact/soil.hpp>
+
+namespace talus::terramech {
+
+/// Standard deviation of each soil parameter, in its unit; 0 where it is taken as known.
+struct SoilDeviation {
+  double cohesion_Pa = 0.0;
+  double friction_angle_rad = 0.0;
+  double sinkage_exponent = 0.0;
+  double cohesive_modulus = 0.0;
+  double frictional_modulus = 0.0;
+  double shear_modulus_m = 0.0;
+  double c1 = 0.0;
+  double c2 = 0.0;
+  double density_kg_m3 = 0.0;
+};
+
+/// What is believed of a soil before it is driven on: independent Gaussians.
+struct SoilPrior {
+  Soil mean;
+  SoilDeviation deviation;
+};
+
+}  // namespace talus::terramech

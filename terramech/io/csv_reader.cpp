@@ -1,0 +1,166 @@
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <deque>
+#include <fstream>
+#include <new>
+
+#include <csv.h>
+
+#include <talus/talus.hpp>
+#include <talus/terramech/io/csv_reader.hpp>
+
+namespace talus::terramech {
+
+/// libcsv hands out fields and record ends through callbacks; finished records wait in a queue.
+struct CsvReader::Parser {
+  explicit Parser(const std::filesystem::path& file_path);
+  ~Parser() { csv_free(&csv); }
+  Parser(const Parser&) = delete;
+  Parser& operator=(const Parser&) = delete;
+
+  void open();
+  void readHeader();
+  bool pop(CsvRow& row);
+  void feed();
+  void endRecord(int terminator);
+  std::string faultOf(const CsvRow& row) const;
+  [[noreturn]] void refuse(const std::string& reason, const std::string& remedy) const;
+
+  std::filesystem::path path;
+  std::ifstream file;
+  std::uintmax_t size = 0, read = 0;
+  csv_parser csv{};
+  std::vector<std::string> header;
+  std::deque<CsvRow> ready;
+  CsvRow current;
+  std::size_t line = 1;       // of the record that is being read
+  bool after_return = false;  // the last record ended with CR: a LF that follows belongs to it
+  bool done = false;
+};
+
+CsvReader::Parser::Parser(const std::filesystem::path& file_path) : path(file_path) {
+  if (csv_init(&csv, CSV_REPALL_NL) != 0) throw std::bad_alloc();
+}
+
+void CsvReader::Parser::open() {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) refuse("is a directory", "name a CSV file");
+  file.open(path, std::ios::binary);
+  if (!file) refuse(std::strerror(errno), "check the path and its permissions");
+  size = std::filesystem::file_size(path, error);
+  readHeader();
+}
+
+void CsvReader::Parser::refuse(const std::string& reason, const std::string& remedy) const {
+  throw InputError({.where = path.string(), .reason = reason, .remedy = remedy});
+}
+
+void CsvReader::Parser::readHeader() {
+  CsvRow row;
+  if (!pop(row)) refuse("is empty", "the first row names the columns");
+  header = row.fields;
+  if (header.size() == 1 && header[0].find(';') != std::string::npos)
+    refuse("fields are separated by ';'", "separate them by commas");
+  for (std::size_t k = 0; k < header.size(); ++k)
+    if (!header[k].empty() && std::find(header.begin(), header.begin() + static_cast<std::ptrdiff_t>(k),
+                                        header[k]) != header.begin() + static_cast<std::ptrdiff_t>(k))
+      throw InputError({.where = path.string() + ":" + std::to_string(row.line),
+                        .reason = "column " + header[k] + " stands twice in the header",
+                        .remedy = "rename one"});
+}
+
+bool CsvReader::Parser::pop(CsvRow& row) {
+  while (ready.empty() && !done) feed();
+  if (ready.empty()) return false;
+  row = std::move(ready.front());
+  ready.pop_front();
+  if (!header.empty()) row.fault = row.fault.empty() ? faultOf(row) : row.fault;
+  return true;
+}
+
+void CsvReader::Parser::feed() {
+  std::array<char, 1 << 16> buffer;
+  file.read(buffer.data(), buffer.size());
+  const auto count = static_cast<std::size_t>(file.gcount());
+  if (read == 0 && std::memchr(buffer.data(), 0, count))
+    refuse("is not text", "save it as UTF-8 text with commas");
+  const bool byte_order_mark =
+      read == 0 && std::string_view(buffer.data(), count).starts_with("\xEF\xBB\xBF");
+  const std::size_t skip = byte_order_mark ? 3 : 0;
+  read += count;
+  const auto field = [](void* text, std::size_t length, void* parser) {
+    static_cast<Parser*>(parser)->current.fields.emplace_back(static_cast<const char*>(text), length);
+  };
+  const auto end_of_record = [](int terminator, void* parser) {
+    static_cast<Parser*>(parser)->endRecord(terminator);
+  };
+  if (csv_parse(&csv, buffer.data() + skip, count - skip, field, end_of_record, this) != count - skip)
+    refuse(csv_strerror(csv_error(&csv)), "");
+  if (file) return;
+  done = true;
+  constexpr int kFieldBegun = 2;  // libcsv's state inside a field
+  const bool open_quote = csv.pstate == kFieldBegun && csv.quoted;
+  const std::size_t before = ready.size();
+  csv_fini(&csv, field, end_of_record, this);
+  if (open_quote && ready.size() > before) ready.back().fault = "a quote is opened and never closed";
+}
+
+void CsvReader::Parser::endRecord(int terminator) {
+  if (terminator == '\n' && after_return && current.fields.empty()) {
+    after_return = false;
+    return;
+  }
+  after_return = terminator == '\r';
+  current.line = line;
+  for (const auto& f : current.fields) line += static_cast<std::size_t>(std::count(f.begin(), f.end(), '\n'));
+  ++line;
+  if (!current.fields.empty()) ready.push_back(std::move(current));
+  current = {};
+}
+
+std::string CsvReader::Parser::faultOf(const CsvRow& row) const {
+  if (row.fields == header) return "repeats the header";
+  if (row.fields.size() == header.size()) return "";
+  const bool only_blanks_beyond = row.fields.size() > header.size() &&
+                                  std::all_of(row.fields.begin() + static_cast<std::ptrdiff_t>(header.size()),
+                                              row.fields.end(), [](const auto& f) { return f.empty(); });
+  if (only_blanks_beyond) return "";
+  return "has " + std::to_string(row.fields.size()) + " fields, the header " + std::to_string(header.size());
+}
+
+CsvReader::CsvReader(const std::filesystem::path& path) : parser_(std::make_unique<Parser>(path)) {
+  parser_->open();
+}
+
+CsvReader::~CsvReader() = default;
+
+const std::vector<std::string>& CsvReader::header() const noexcept {
+  return parser_->header;
+}
+
+bool CsvReader::next(CsvRow& row) {
+  return parser_->pop(row);
+}
+
+double CsvReader::fraction() const noexcept {
+  return parser_->size ? static_cast<double>(parser_->read) / static_cast<double>(parser_->size) : 1.0;
+}
+
+bool parseNumber(std::string_view field, double& value) noexcept {
+  if (field.starts_with('+')) field.remove_prefix(1);
+  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
+  return error == std::errc{} && end == field.data() + field.size();
+}
+
+std::string csvField(std::string_view text) {
+  const bool outer_blank = !text.empty() && (text.front() == ' ' || text.back() == ' ');
+  if (!outer_blank && text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + '"';
+}
+
+}  // namespace talus::terramech

@@ -1,0 +1,292 @@
+#include <cmath>
+#include <filesystem>
+#include <sstream>
+
+#include <talus/terramech/io/model_file.hpp>
+#include <talus/terramech/io/soil_library.hpp>
+#include <talus/terramech/io/yaml_fields.hpp>
+
+namespace talus::terramech {
+namespace {
+
+constexpr Channel kAll[] = {Channel::DrawbarPull, Channel::Sinkage, Channel::Torque, Channel::SideForce};
+constexpr const char* kColumn[] = {"drawbar_pull_N", "sinkage_m", "torque_Nm", "side_force_N"};
+constexpr const char* kRelative[] = {"drawbar_pull_relative", "sinkage_relative", "torque_relative",
+                                     "side_force_relative"};
+
+void setDeviation(RefinedModel& model, const SoilPrior& prior) {
+  const SoilDeviation& d = prior.deviation;
+  const std::pair<const char*, double> all[] = {{"cohesion_Pa", d.cohesion_Pa},
+                                                {"friction_angle_rad", d.friction_angle_rad},
+                                                {"sinkage_exponent", d.sinkage_exponent},
+                                                {"shear_modulus_m", d.shear_modulus_m},
+                                                {"c1", d.c1},
+                                                {"c2", d.c2},
+                                                {"density_kg_m3", d.density_kg_m3}};
+  for (const auto& [name, std] : all)
+    if (std > 0.0) model.soil_prior_std[name] = std;
+  const double width = model.wheel.value_or(Wheel{}).width_m;
+  const double stiffness = std::hypot(d.cohesive_modulus / width, d.frictional_modulus);
+  for (const SoilParameter& p : soilParameters()) model.soil_prior_mean[p.name] = p.get(prior.mean);
+  if (stiffness > 0.0) model.soil_prior_std["log_stiffness"] = stiffness / sinkageModulus(prior.mean, width);
+}
+
+void readSoilInto(const YamlFields& root, RefinedModel& model) {
+  const SoilPrior prior =
+      root.isMapping("soil") ? readSoil(root.fields("soil")) : loadSoilPrior(root.word("soil"));
+  model.soil = prior.mean;
+  setDeviation(model, prior);
+}
+
+/// Where a fit starts when nobody names a soil.
+Soil startingSoil() {
+  return {.name = "fitted",
+          .cohesion_Pa = 1000.0,
+          .friction_angle_rad = 0.55,
+          .sinkage_exponent = 1.0,
+          .cohesive_modulus = 0.0,
+          .frictional_modulus = 1e6,
+          .shear_modulus_m = 0.015};
+}
+
+Wheel readWheel(const YamlFields& f) {
+  f.only({"radius_m", "width_m", "grouser_height_m", "grouser_count"});
+  Wheel wheel{f.number("radius_m"), f.number("width_m"), f.number("grouser_height_m", 0.0),
+              f.integer("grouser_count", 0)};
+  try {
+    validate(wheel);
+  } catch (const std::invalid_argument& e) {
+    f.refuse(e);
+  }
+  return wheel;
+}
+
+std::optional<double> positive(const YamlFields& f, const char* name) {
+  if (!f.has(name)) return {};
+  const double value = f.number(name);
+  if (!(value >= 0.0) || !std::isfinite(value)) f.refuse(name, "must be a standard deviation >= 0", "");
+  return value;
+}
+
+StatedSensors readSensors(const YamlFields& f) {
+  f.only({"load_N", "slip", "torque_Nm", "sinkage_m", "drawbar_pull_N", "side_force_N"});
+  return {positive(f, "load_N"),    positive(f, "slip"),           positive(f, "torque_Nm"),
+          positive(f, "sinkage_m"), positive(f, "drawbar_pull_N"), positive(f, "side_force_N")};
+}
+
+SensorNoise readNoise(const YamlFields& f) {
+  SensorNoise noise;
+  std::vector<std::string> known{"slip", "slip_relative", "load_relative"};
+  for (int c = 0; c < kChannels; ++c) {
+    known.emplace_back(kColumn[c]);
+    known.emplace_back(kRelative[c]);
+  }
+  f.only(known);
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    noise.absolute[c] = f.number(kColumn[c], 0.0);
+    noise.relative[c] = f.number(kRelative[c], 0.0);
+  }
+  noise.slip_absolute = f.number("slip", 0.0);
+  noise.slip_relative = f.number("slip_relative", 0.0);
+  noise.load_relative = f.number("load_relative", 0.0);
+  return noise;
+}
+
+Channel readChannel(const YamlFields& f) {
+  const std::string word = f.word("channel");
+  for (Channel c : kAll)
+    if (word == name(c)) return c;
+  f.refuse("channel", "'" + word + "' is no channel",
+           std::string("one of ") + name(kAll[0]) + ", " + name(kAll[1]) + ", " + name(kAll[2]) + ", " +
+               name(kAll[3]));
+}
+
+Effect readEffect(const YamlFields& f) {
+  f.only({"name", "covariate", "channel", "parameters", "knots", "only"});
+  Effect effect;
+  effect.name = f.word("name");
+  effect.parameters = f.numbers("parameters");
+  effect.knots = f.numbers("knots");
+  if (f.has("only")) {
+    effect.only_column = f.fields("only").word("column");
+    effect.only_value = f.fields("only").word("value");
+  }
+  const EffectForm* form = findEffect(effect.name);
+  if (!form && !effect.empirical()) {
+    std::vector<std::string> names;
+    for (const EffectForm& known : effectLibrary()) names.emplace_back(known.name);
+    const std::string nearest = nearestName(effect.name, names);
+    f.refuse("name", "no effect '" + effect.name + "'",
+             nearest.empty() ? "" : "did you mean " + nearest + "?");
+  }
+  effect.covariate = form ? f.word("covariate", form->covariate) : f.word("covariate");
+  effect.channel = form && !f.has("channel") ? form->channel : readChannel(f);
+  const std::size_t wanted = form ? form->parameters.size() : effect.knots.size();
+  if (effect.parameters.size() != wanted || wanted == 0)
+    if (!form || wanted != effect.parameters.size())
+      f.refuse("parameters", "needs " + std::to_string(wanted) + " numbers", "");
+  return effect;
+}
+
+void readFit(const YamlFields& root, RefinedModel& model) {
+  for (const YamlFields& f : root.list("fitted")) {
+    f.only({"effect", "index"});
+    model.fitted.push_back({f.integer("effect"), f.integer("index")});
+    const auto& p = model.fitted.back();
+    const bool known =
+        p.effect < 0
+            ? p.index >= 0 && p.index < static_cast<int>(soilParameters().size())
+            : p.effect < static_cast<int>(model.effects.size()) && p.index >= 0 &&
+                  p.index <
+                      static_cast<int>(model.effects[static_cast<std::size_t>(p.effect)].parameters.size());
+    if (!known) f.refuse("index", "names no parameter", "");
+  }
+  model.covariance = root.numbers("covariance");
+  if (model.covariance.size() != model.fitted.size() * model.fitted.size())
+    root.refuse("covariance", "needs the square of the number of fitted parameters", "");
+}
+
+BaseModel readBase(const YamlFields& root) {
+  const std::string word = root.word("model", "wong-reece");
+  if (word == "wong-reece") return BaseModel::WongReece;
+  if (word == "linear-formula") return BaseModel::LinearFormula;
+  root.refuse("model", "no model '" + word + "'", "wong-reece or linear-formula");
+}
+
+}  // namespace
+
+std::vector<Effect> readEffects(const YamlFields& root) {
+  std::vector<Effect> effects;
+  for (const YamlFields& f : root.list("effects")) effects.push_back(readEffect(f));
+  return effects;
+}
+
+ModelFile unknownSoil() {
+  ModelFile file;
+  file.soil_given = false;
+  file.model.soil = startingSoil();
+  return file;
+}
+
+ModelFile loadModel(const std::string& path) {
+  ModelFile file;
+  const YamlFields root =
+      std::filesystem::exists(path) ? YamlFields::file(path) : YamlFields::text("{}", path);
+  const bool is_model = root.has("model") || root.has("effects") || root.has("sensors") || root.has("soil");
+  if (!is_model) {
+    const SoilPrior prior = loadSoilPrior(path);
+    file.model.soil = prior.mean;
+    setDeviation(file.model, prior);
+    return file;
+  }
+  root.only({"name", "soil", "model", "sensors", "wheel", "slip_along_travel", "effects", "noise", "fitted",
+             "covariance"});
+  RefinedModel& model = file.model;
+  model.base = readBase(root);
+  if (root.has("wheel")) model.wheel = readWheel(root.fields("wheel"));
+  file.soil_given = root.has("soil");
+  if (file.soil_given)
+    readSoilInto(root, model);
+  else
+    model.soil = startingSoil();
+  model.slip_along_travel = root.flag("slip_along_travel", false);
+  if (root.has("sensors")) model.stated = readSensors(root.fields("sensors"));
+  if (root.has("noise")) model.noise = readNoise(root.fields("noise"));
+  model.effects = readEffects(root);
+  if (root.has("fitted")) readFit(root, model);
+  return file;
+}
+
+namespace {
+
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + "\"";
+}
+
+class Writer {
+ public:
+  Writer() { out_.precision(17); }
+
+  template <class T>
+  Writer& operator<<(const T& value) {
+    out_ << value;
+    return *this;
+  }
+
+  void list(const char* key, const std::vector<double>& values) {
+    out_ << key << ": [";
+    for (std::size_t k = 0; k < values.size(); ++k) out_ << (k ? ", " : "") << values[k];
+    out_ << "]";
+  }
+
+  std::string text() const { return out_.str(); }
+
+ private:
+  std::ostringstream out_;
+};
+
+void writeSoil(Writer& w, const Soil& s) {
+  w << "soil:\n  name: " << quoted(s.name) << "\n  cohesion_Pa: " << s.cohesion_Pa
+    << "\n  friction_angle_rad: " << s.friction_angle_rad << "\n  sinkage_exponent: " << s.sinkage_exponent
+    << "\n  cohesive_modulus: " << s.cohesive_modulus << "\n  frictional_modulus: " << s.frictional_modulus
+    << "\n  shear_modulus_m: " << s.shear_modulus_m << "\n  c1: " << s.c1 << "\n  c2: " << s.c2
+    << "\n  density_kg_m3: " << s.density_kg_m3 << "\n";
+}
+
+void writeEffect(Writer& w, const Effect& e) {
+  const EffectForm* form = findEffect(e.name);
+  if (form) w << "  # " << form->formula << "\n";
+  w << "  - name: " << e.name << "\n    covariate: " << quoted(e.covariate)
+    << "\n    channel: " << name(e.channel) << "\n    ";
+  w.list("parameters", e.parameters);
+  if (form && !form->parameters.empty()) {
+    w << "  #";
+    for (const EffectParameter& p : form->parameters) w << ' ' << p.name << " [" << p.unit << ']';
+  }
+  if (!e.knots.empty()) {
+    w << "\n    ";
+    w.list("knots", e.knots);
+  }
+  if (!e.only_column.empty())
+    w << "\n    only: {column: " << quoted(e.only_column) << ", value: " << quoted(e.only_value) << "}";
+  w << "\n";
+}
+
+void writeNoise(Writer& w, const SensorNoise& n) {
+  w << "noise:\n";
+  for (std::size_t c = 0; c < kChannels; ++c)
+    w << "  " << kColumn[c] << ": " << n.absolute[c] << "\n  " << kRelative[c] << ": " << n.relative[c]
+      << "\n";
+  w << "  slip: " << n.slip_absolute << "\n  slip_relative: " << n.slip_relative
+    << "\n  load_relative: " << n.load_relative << "\n";
+}
+
+}  // namespace
+
+std::string modelText(const RefinedModel& model) {
+  Writer w;
+  w << "model: " << (model.base == BaseModel::WongReece ? "wong-reece" : "linear-formula") << "\n";
+  writeSoil(w, model.soil);
+  if (model.wheel)
+    w << "wheel: {radius_m: " << model.wheel->radius_m << ", width_m: " << model.wheel->width_m
+      << ", grouser_height_m: " << model.wheel->grouser_height_m
+      << ", grouser_count: " << model.wheel->grouser_count << "}\n";
+  w << "slip_along_travel: " << (model.slip_along_travel ? "true" : "false") << "\n";
+  if (!model.effects.empty()) w << "effects:\n";
+  for (const Effect& e : model.effects) writeEffect(w, e);
+  writeNoise(w, model.noise);
+  if (model.covariance.empty()) return w.text();
+  w << "fitted:\n";
+  for (const FittedParameter& p : model.fitted)
+    w << "  - {effect: " << p.effect << ", index: " << p.index << "}\n";
+  w.list("covariance", model.covariance);
+  w << "\n";
+  return w.text();
+}
+
+}  // namespace talus::terramech

@@ -1,0 +1,225 @@
+#include <algorithm>
+#include <filesystem>
+#include <stdexcept>
+
+#include <talus/talus.hpp>
+#include <talus/terramech/io/library_text.hpp>
+#include <talus/terramech/io/soil_library.hpp>
+#include <talus/terramech/io/yaml_fields.hpp>
+
+namespace talus::terramech {
+namespace {
+
+bool isFile(const std::filesystem::path& path) {
+  std::error_code error;
+  return std::filesystem::exists(path, error);
+}
+
+const std::string* findText(const std::map<std::string, std::string>& texts, const std::string& name) {
+  const auto found = texts.find(name);
+  return found == texts.end() ? nullptr : &found->second;
+}
+
+std::vector<std::string> namesOf(const std::map<std::string, std::string>& texts) {
+  std::vector<std::string> names;
+  names.reserve(texts.size());
+  for (const auto& [name, text] : texts) names.push_back(name);
+  return names;
+}
+
+/// The root mapping of a library entry or of a file; throws naming the nearest library entry when it is
+/// neither.
+YamlFields open(const std::string& name, const std::map<std::string, std::string>& texts,
+                const std::string& what) {
+  if (const auto* text = findText(texts, name)) return YamlFields::text(*text, "talus library, " + name);
+  if (isFile(name)) return YamlFields::file(name);
+  const std::string nearest = nearestName(name, namesOf(texts));
+  throw InputError({.where = name,
+                    .reason = "no such file, and no " + what + " of this name in the library",
+                    .remedy = nearest.empty() ? "name a YAML file" : "did you mean " + nearest + "?"});
+}
+
+/// The mapping under a wrapper key, or the root itself where there is no such key.
+YamlFields unwrapped(const YamlFields& root, const std::string& wrapper) {
+  return root.has(wrapper) ? root.fields(wrapper) : root;
+}
+
+std::vector<SoilPrior> listedSoils(const YamlFields& root) {
+  std::vector<SoilPrior> soils;
+  for (const YamlFields& item : root.list("soils")) soils.push_back(readSoil(unwrapped(item, "soil")));
+  return soils;
+}
+
+const SoilPrior* named(const std::vector<SoilPrior>& soils, const std::string& name) {
+  const auto found =
+      std::find_if(soils.begin(), soils.end(), [&](const auto& s) { return s.mean.name == name; });
+  return found == soils.end() ? nullptr : &*found;
+}
+
+SoilPrior onlySoil(const std::vector<SoilPrior>& soils, const YamlFields& root, const std::string& wanted) {
+  if (const auto* soil = named(soils, wanted)) return *soil;
+  if (wanted.empty() && soils.size() == 1) return soils.front();
+  std::string names;
+  for (const auto& soil : soils) names += (names.empty() ? "" : ", ") + soil.mean.name;
+  root.refuse("soils",
+              wanted.empty() ? "holds " + std::to_string(soils.size()) + " soils" : "has no soil " + wanted,
+              "pick one as FILE#NAME of " + names);
+}
+
+SoilPrior soilOfClass(const YamlFields& classes, const std::string& key, const std::vector<SoilPrior>& listed,
+                      const std::filesystem::path& folder) {
+  if (classes.isMapping(key)) return readSoil(unwrapped(classes.fields(key), "soil"));
+  const std::string name = classes.word(key);
+  if (const auto* soil = named(listed, name)) return *soil;
+  if (!findText(librarySoilTexts(), name) && isFile(folder / name))
+    return loadSoilPrior((folder / name).string());
+  try {
+    return loadSoilPrior(name);
+  } catch (const InputError& e) {
+    if (e.parts().where != name) throw;
+    classes.refuse(key, "class " + key + ": no soil '" + name + "'", e.parts().remedy);
+  }
+}
+
+int classNumber(const YamlFields& classes, const std::string& key) {
+  try {
+    std::size_t used = 0;
+    const int number = std::stoi(key, &used);
+    if (used == key.size()) return number;
+  } catch (const std::exception&) {
+  }
+  classes.refuse(key, "'" + key + "' is no class number", "write lines `1: soil name`");
+}
+
+Steering steeringOf(const YamlFields& fields) {
+  const std::string word = fields.word("steering", "skid");
+  if (word == "skid") return Steering::Skid;
+  if (word == "ackermann") return Steering::Ackermann;
+  if (word == "all_wheel") return Steering::AllWheel;
+  fields.refuse("steering", "steering = '" + word + "'", "write skid, ackermann or all_wheel");
+}
+
+void readWheels(const YamlFields& fields, Rover& rover) {
+  fields.only({"count", "radius_m", "width_m", "grouser_height_m", "grouser_count"});
+  rover.wheel_count = fields.integer("count");
+  rover.wheel.radius_m = fields.number("radius_m");
+  rover.wheel.width_m = fields.number("width_m");
+  rover.wheel.grouser_height_m = fields.number("grouser_height_m", 0.0);
+  rover.wheel.grouser_count = fields.integer("grouser_count", 0);
+}
+
+}  // namespace
+
+SoilPrior readSoil(const YamlFields& fields) {
+  fields.only({"name", "cohesion_Pa", "friction_angle_rad", "sinkage_exponent", "cohesive_modulus",
+               "frictional_modulus", "shear_modulus_m", "c1", "c2", "density_kg_m3"});
+  SoilPrior soil;
+  const Soil defaults;
+  const auto take = [&](double Soil::*value, double SoilDeviation::*deviation, const StatedNumber& stated) {
+    soil.mean.*value = stated.mean;
+    soil.deviation.*deviation = stated.std;
+  };
+  soil.mean.name = fields.word("name", "unnamed");
+  take(&Soil::cohesion_Pa, &SoilDeviation::cohesion_Pa, fields.stated("cohesion_Pa"));
+  take(&Soil::friction_angle_rad, &SoilDeviation::friction_angle_rad, fields.stated("friction_angle_rad"));
+  take(&Soil::sinkage_exponent, &SoilDeviation::sinkage_exponent, fields.stated("sinkage_exponent"));
+  take(&Soil::cohesive_modulus, &SoilDeviation::cohesive_modulus, fields.stated("cohesive_modulus", 0.0));
+  take(&Soil::frictional_modulus, &SoilDeviation::frictional_modulus,
+       fields.stated("frictional_modulus", 0.0));
+  take(&Soil::shear_modulus_m, &SoilDeviation::shear_modulus_m, fields.stated("shear_modulus_m"));
+  take(&Soil::c1, &SoilDeviation::c1, fields.stated("c1", defaults.c1));
+  take(&Soil::c2, &SoilDeviation::c2, fields.stated("c2", defaults.c2));
+  take(&Soil::density_kg_m3, &SoilDeviation::density_kg_m3,
+       fields.stated("density_kg_m3", defaults.density_kg_m3));
+  if (soil.mean.cohesive_modulus == 0.0 && soil.mean.frictional_modulus == 0.0)
+    fields.refuse("", "lacks cohesive_modulus and frictional_modulus", "add at least one, above 0");
+  try {
+    validate(soil.mean);
+  } catch (const std::invalid_argument& e) {
+    fields.refuse(e);
+  }
+  return soil;
+}
+
+Rover readRover(const YamlFields& fields) {
+  fields.only({"name", "mass_kg", "gravity_m_s2", "wheels", "wheelbase_m", "track_m", "clearance_m",
+               "centre_of_mass_height_m", "max_pitch_rad", "max_roll_rad", "max_torque_Nm", "max_speed_mps",
+               "turning_radius_m", "hotel_power_W", "steering"});
+  Rover rover;
+  rover.name = fields.word("name", "unnamed");
+  rover.mass_kg = fields.number("mass_kg");
+  rover.gravity_m_s2 = fields.number("gravity_m_s2", rover.gravity_m_s2);
+  const YamlFields wheels = fields.fields("wheels");
+  readWheels(wheels, rover);
+  rover.wheelbase_m = fields.number("wheelbase_m");
+  rover.track_m = fields.number("track_m");
+  rover.clearance_m = fields.number("clearance_m");
+  rover.centre_of_mass_height_m = fields.number("centre_of_mass_height_m", 0.0);
+  rover.max_pitch_rad = fields.number("max_pitch_rad", rover.max_pitch_rad);
+  rover.max_roll_rad = fields.number("max_roll_rad", rover.max_roll_rad);
+  rover.max_torque_Nm = fields.number("max_torque_Nm");
+  rover.max_speed_mps = fields.number("max_speed_mps", rover.max_speed_mps);
+  rover.turning_radius_m = fields.number("turning_radius_m", 0.0);
+  rover.hotel_power_W = fields.number("hotel_power_W", 0.0);
+  rover.steering = steeringOf(fields);
+  try {
+    validate(rover);
+  } catch (const std::invalid_argument& e) {
+    (std::string(e.what()).find("wheels.") == std::string::npos ? fields : wheels).refuse(e);
+  }
+  return rover;
+}
+
+SoilPrior loadSoilPrior(const std::string& name_or_path) {
+  const auto hash = name_or_path.rfind('#');
+  const bool picks = hash != std::string::npos && !isFile(name_or_path);
+  const std::string path = name_or_path.substr(0, picks ? hash : std::string::npos);
+  const std::string wanted = picks ? name_or_path.substr(hash + 1) : "";
+  const YamlFields root = open(path, librarySoilTexts(), "soil");
+  if (!root.has("soils")) return readSoil(unwrapped(root, "soil"));
+  return onlySoil(listedSoils(root), root, wanted);
+}
+
+Soil loadSoil(const std::string& name_or_path) {
+  return loadSoilPrior(name_or_path).mean;
+}
+
+Rover loadRover(const std::string& name_or_path) {
+  return readRover(unwrapped(open(name_or_path, libraryRoverTexts(), "rover"), "rover"));
+}
+
+std::vector<SoilPrior> loadSoils(const std::string& path) {
+  const YamlFields root = YamlFields::file(path);
+  if (!root.has("soils")) return {readSoil(unwrapped(root, "soil"))};
+  return listedSoils(root);
+}
+
+TerrainClasses loadTerrainClasses(const std::string& path, const std::vector<std::string>& other_keys) {
+  const YamlFields root = YamlFields::file(path);
+  const auto listed = listedSoils(root);
+  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  const std::string wrapper = root.has("terrain_classes") ? "terrain_classes" : "classes";
+  const bool wrapped = root.has(wrapper);
+  if (wrapped) {
+    std::vector<std::string> known = other_keys;
+    known.insert(known.end(), {wrapper, "soils"});
+    root.only(known);
+  }
+  const YamlFields classes = unwrapped(root, wrapper);
+  TerrainClasses table;
+  for (const std::string& key : classes.names())
+    if (wrapped || key != "soils")
+      table[classNumber(classes, key)] = soilOfClass(classes, key, listed, folder);
+  if (table.empty()) root.refuse("", "names no terrain class", "write lines `1: soil name`");
+  return table;
+}
+
+std::vector<std::string> librarySoils() {
+  return namesOf(librarySoilTexts());
+}
+
+std::vector<std::string> libraryRovers() {
+  return namesOf(libraryRoverTexts());
+}
+
+}  // namespace talus::terramech

@@ -1,0 +1,198 @@
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <sstream>
+#include <utility>
+
+#include <talus/terramech/io/csv_reader.hpp>
+#include <talus/terramech/io/telemetry_reader.hpp>
+
+namespace talus::terramech {
+namespace {
+
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+/// A range that a known column must keep.
+struct Rule {
+  const char* column;
+  bool (*holds)(double);
+  const char* bound;
+};
+
+constexpr Rule kRules[] = {
+    {"load_N", [](double x) { return x > 0.0; }, "> 0"},
+    {"sinkage_m", [](double x) { return x >= 0.0; }, ">= 0"},
+    {"slip", [](double x) { return x >= -1.0 && x <= 1.0; }, "in [-1, 1]"},
+    {"wheel_radius_m", [](double x) { return x > 0.0; }, "> 0"},
+    {"wheel_width_m", [](double x) { return x > 0.0; }, "> 0"},
+    {"grouser_height_m", [](double x) { return x >= 0.0; }, ">= 0"},
+    {"grouser_count", [](double x) { return x >= 0.0; }, ">= 0"},
+    {"shear_modulus_m", [](double x) { return x > 0.0; }, "> 0"},
+};
+
+std::string shown(double value) {
+  std::ostringstream out;
+  out << value;
+  return out.str();
+}
+
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// What becomes of one column of the file.
+struct Column {
+  std::string name;
+  bool known = false;     // numbers only; a fault refuses the row
+  bool required = false;  // never empty
+  const Rule* rule = nullptr;
+  std::vector<double> numbers;
+  std::vector<std::string> words;  // of unknown columns, until it is clear whether they are numbers
+};
+
+Column columnNamed(const std::string& name, const TelemetryOptions& options) {
+  Column column;
+  column.name = name;
+  column.known = contains(knownTelemetryColumns(), name) || contains(options.required, name);
+  column.required = contains(options.required, name);
+  for (const Rule& rule : kRules)
+    if (name == rule.column) column.rule = &rule;
+  return column;
+}
+
+/// The number in a field of a known column; sets `fault` when the row must go.
+double checkedNumber(const Column& column, const std::string& field, std::string& fault) {
+  if (field.empty()) {
+    if (column.required) fault = column.name + " is empty";
+    return kMissing;
+  }
+  double value = 0.0;
+  if (!parseNumber(field, value)) {
+    fault = column.name + " = '" + field + "', must be a number";
+  } else if (!std::isfinite(value)) {
+    fault = column.name + " = " + field + ", must be finite";
+  } else if (column.rule && !column.rule->holds(value)) {
+    fault = column.name + " = " + field + ", must be " + column.rule->bound;
+  }
+  return value;
+}
+
+class Table {
+ public:
+  Table(const std::vector<std::string>& header, const TelemetryOptions& options)
+      : radius_m_(options.wheel_radius_m) {
+    for (const auto& name : header) columns_.push_back(columnNamed(name, options));
+    for (std::size_t k = 0; k < columns_.size(); ++k) {
+      if (columns_[k].name == "sinkage_m") sinkage_ = k;
+      if (columns_[k].name == "wheel_radius_m") radius_ = k;
+    }
+    values_.resize(columns_.size());
+  }
+
+  /// Takes the row, or says why not.
+  std::string add(const CsvRow& row) {
+    std::string fault = row.fault;
+    for (std::size_t k = 0; k < columns_.size() && fault.empty(); ++k)
+      if (columns_[k].known) values_[k] = checkedNumber(columns_[k], row.fields[k], fault);
+    if (fault.empty()) fault = sinkageFault();
+    if (!fault.empty()) return fault;
+    for (std::size_t k = 0; k < columns_.size(); ++k) {
+      if (columns_[k].known)
+        columns_[k].numbers.push_back(values_[k]);
+      else
+        columns_[k].words.push_back(row.fields[k]);
+    }
+    return "";
+  }
+
+  void moveInto(Telemetry& telemetry) {
+    for (Column& column : columns_) {
+      if (column.name.empty()) continue;
+      if (column.known || allNumbers(column))
+        telemetry.numbers.push_back({column.name, std::move(column.numbers)});
+      else
+        telemetry.words.push_back({column.name, std::move(column.words)});
+    }
+  }
+
+ private:
+  static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+
+  std::string sinkageFault() const {
+    if (sinkage_ == kNone) return "";
+    const double radius = radius_ != kNone && !std::isnan(values_[radius_]) ? values_[radius_] : radius_m_;
+    if (radius <= 0.0 || !(values_[sinkage_] >= 2.0 * radius)) return "";
+    return "sinkage_m = " + shown(values_[sinkage_]) + ", must be < the wheel's diameter, " +
+           shown(2.0 * radius);
+  }
+
+  /// Fills `numbers` from `words` where every filled field is a number and there is one.
+  static bool allNumbers(Column& column) {
+    if (column.name == "run" || column.name == "wheel") return false;
+    bool any = false;
+    std::vector<double> numbers;
+    for (const auto& word : column.words) {
+      double value = kMissing;
+      if (!word.empty() && !parseNumber(word, value)) return false;
+      any |= !word.empty();
+      numbers.push_back(std::isfinite(value) ? value : kMissing);
+    }
+    if (any) column.numbers = std::move(numbers);
+    return any;
+  }
+
+  std::vector<Column> columns_;
+  std::vector<double> values_;
+  std::size_t sinkage_ = kNone, radius_ = kNone;
+  double radius_m_;
+};
+
+void checkColumns(const std::vector<std::string>& header, const std::vector<std::string>& required,
+                  const std::string& where) {
+  std::string missing;
+  for (const auto& name : required)
+    if (!contains(header, name)) missing += (missing.empty() ? "" : ", ") + name;
+  if (missing.empty()) return;
+  throw InputError({.where = where + ":1",
+                    .reason = "no column " + missing,
+                    .remedy = "name it in the header row, with its unit as suffix"});
+}
+
+void checkUsable(const Telemetry& telemetry) {
+  if (telemetry.size() > 0) return;
+  if (telemetry.rejected.empty())
+    throw InputError(
+        {.where = telemetry.source, .reason = "no rows below the header", .remedy = "add measurements"});
+  const auto& first = telemetry.rejected.front();
+  throw InputError({.where = telemetry.source + ":" + std::to_string(first.line),
+                    .reason = "no usable row; " + std::to_string(telemetry.rejected.size()) +
+                              " refused, this one because " + first.reason,
+                    .remedy = "correct the rows"});
+}
+
+}  // namespace
+
+Telemetry readTelemetry(const std::filesystem::path& path, const TelemetryOptions& options,
+                        const ProgressMonitor& watch) {
+  CsvReader reader{path};
+  Telemetry telemetry;
+  telemetry.source = path.string();
+  checkColumns(reader.header(), options.required, telemetry.source);
+  Table table{reader.header(), options};
+  CsvRow row;
+  for (std::size_t count = 0; reader.next(row); ++count) {
+    if (std::string fault = table.add(row); fault.empty())
+      telemetry.lines.push_back(row.line);
+    else
+      telemetry.rejected.push_back({row.line, std::move(fault)});
+    if (count % 65536 != 65535) continue;
+    if (watch.stopped()) break;
+    watch.report(reader.fraction());
+  }
+  table.moveInto(telemetry);
+  checkUsable(telemetry);
+  return telemetry;
+}
+
+}  // namespace talus::terramech

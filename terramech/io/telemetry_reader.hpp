@@ -1,0 +1,29 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <talus/talus.hpp>
+#include <talus/terramech/estimate/telemetry.hpp>
+
+namespace talus::terramech {
+
+/// How telemetry is read.
+struct TelemetryOptions {
+  std::vector<std::string>
+      required;  ///< columns of numbers that must be there, and filled in every row that is used
+  double wheel_radius_m = 0.0;  ///< for the sinkage check where the file has no wheel_radius_m; 0: not known
+};
+
+/// Reads a telemetry CSV: header row, columns in any order, `.` decimals, UTF-8 with or without a byte order
+/// mark, LF or CRLF, quoted fields, empty field = missing. A row is left out, with line and reason in
+/// Telemetry::rejected, when a known column holds NaN, infinity or words, when a required field is empty, the
+/// load is not above 0, the sinkage is outside [0, 2r), the slip outside [-1, 1], a wheel dimension out of
+/// range, or the row is cut short. In unknown columns NaN counts as missing. Read in pieces: memory holds the
+/// columns, never the file. Throws InputError when the file cannot be read, has no header or one with a name
+/// twice, lacks a required column, or no row can be used.
+Telemetry readTelemetry(const std::filesystem::path& path, const TelemetryOptions& options = {},
+                        const ProgressMonitor& watch = {});
+
+}  // namespace talus::terramech

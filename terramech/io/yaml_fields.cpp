@@ -1,0 +1,318 @@
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <numeric>
+#include <set>
+#include <sstream>
+#include <utility>
+
+#include <yaml-cpp/yaml.h>
+
+#include <talus/talus.hpp>
+#include <talus/terramech/io/csv_reader.hpp>
+#include <talus/terramech/io/unit.hpp>
+#include <talus/terramech/io/yaml_fields.hpp>
+
+namespace talus::terramech {
+
+struct YamlFields::State {
+  YAML::Node node;
+  std::string origin;
+  std::string what;  // "" at the root, else the name it stands under
+
+  std::string where(int line) const { return line < 0 ? origin : origin + ":" + std::to_string(line + 1); }
+};
+
+namespace {
+
+[[noreturn]] void fail(const std::string& where, const std::string& reason, const std::string& remedy) {
+  throw InputError({.where = where, .reason = reason, .remedy = remedy});
+}
+
+/// A value of the mapping and the factor from the unit that it is stated in.
+struct Found {
+  YAML::Node value;
+  double factor = 1.0;
+};
+
+double moduliFactor(std::string_view suffix) {
+  for (const auto& [name, factor] :
+       {std::pair{"_N", 1.0}, {"_kN", 1e3}, {"_MN", 1e6}, {"_Pa", 1.0}, {"_kPa", 1e3}, {"_MPa", 1e6}})
+    if (suffix == name) return factor;
+  return 0.0;
+}
+
+/// Factor by which a key of the file states a field, 0 when it is another field.
+double factorOf(const std::string& key, const std::string& name) {
+  if (key == name) return 1.0;
+  if (name.ends_with("_modulus"))
+    return key.starts_with(name) ? moduliFactor(std::string_view(key).substr(name.size())) : 0.0;
+  const std::string_view unit = unitOf(name), given = unitOf(key);
+  if (unit.empty() || given.empty()) return 0.0;
+  const auto stem = [](std::string_view text, std::string_view suffix) {
+    return text.substr(0, text.size() - suffix.size());
+  };
+  if (stem(key, given) != stem(name, unit)) return 0.0;
+  return conversion(given, unit).value_or(0.0);
+}
+
+std::string kindOf(const YAML::Node& node) {
+  if (node.IsMap()) return "a mapping";
+  if (node.IsSequence()) return "a list";
+  return node.IsNull() ? "empty" : "'" + node.Scalar() + "'";
+}
+
+}  // namespace
+
+YamlFields YamlFields::of(const YAML::Node& node, const std::string& origin, const std::string& what) {
+  auto state = std::make_shared<State>(State{node, origin, what});
+  const std::string where = state->where(node.Mark().line);
+  if (!node.IsMap())
+    fail(where, (what.empty() ? "the file" : what) + " is " + kindOf(node), "write `name: value` lines");
+  std::set<std::string> seen;
+  for (const auto& entry : node) {
+    if (!entry.first.IsScalar()) fail(where, "a name is " + kindOf(entry.first), "write `name: value` lines");
+    if (!seen.insert(entry.first.Scalar()).second)
+      fail(state->where(entry.first.Mark().line), entry.first.Scalar() + " stands twice", "remove one");
+  }
+  return YamlFields{state};
+}
+
+YamlFields YamlFields::file(const std::string& path) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) fail(path, "is a directory", "name a YAML file");
+  std::ifstream in(path, std::ios::binary);
+  if (!in) fail(path, "cannot be read", "check the path and its permissions");
+  std::stringstream content;
+  content << in.rdbuf();
+  return text(content.str(), path);
+}
+
+YamlFields YamlFields::text(const std::string& yaml, const std::string& origin) {
+  try {
+    const YAML::Node root = YAML::Load(yaml);
+    if (root.IsNull()) fail(origin, "is empty", "write `name: value` lines");
+    return of(root, origin, "");
+  } catch (const YAML::Exception& e) {
+    fail(origin + ":" + std::to_string(e.mark.line + 1), "not YAML: " + e.msg, "correct the syntax");
+  }
+}
+
+namespace {
+
+/// The value that states a field, in whatever unit; throws when two do.
+template <class State>
+std::optional<Found> findValue(const State& state, const std::string& name) {
+  std::optional<Found> found;
+  for (const auto& entry : state.node) {
+    const double factor = factorOf(entry.first.Scalar(), name);
+    if (factor == 0.0) continue;
+    if (found) fail(state.where(entry.first.Mark().line), name + " is stated twice", "keep one unit");
+    found = Found{entry.second, factor};
+  }
+  return found;
+}
+
+template <class State>
+double toNumber(const State& state, const std::string& name, const YAML::Node& value, double factor) {
+  double number = 0.0;
+  const std::string where = state.where(value.Mark().line);
+  if (!value.IsScalar()) fail(where, name + " is " + kindOf(value), "give one number");
+  std::string text = value.Scalar();
+  if (text == ".nan" || text == ".NaN" || text == ".NAN") text = "nan";
+  if (text.ends_with(".inf") || text.ends_with(".Inf") || text.ends_with(".INF")) text = "inf";
+  if (!parseNumber(text, number))
+    fail(where, name + " = '" + value.Scalar() + "', must be a number", "write it without a unit");
+  if (!std::isfinite(number))
+    fail(where, name + " = " + value.Scalar() + ", must be finite", "state a number");
+  return number * factor;
+}
+
+template <class State>
+StatedNumber toStated(const State& state, const std::string& name, const Found& found) {
+  if (!found.value.IsMap()) return {toNumber(state, name, found.value, found.factor), 0.0};
+  StatedNumber stated;
+  bool has_mean = false, has_std = false;
+  for (const auto& entry : found.value) {
+    const std::string key = entry.first.Scalar();
+    if (key != "mean" && key != "std")
+      fail(state.where(entry.first.Mark().line), name + ": unknown key '" + key + "'",
+           "write {mean: M, std: S}");
+    (key == "mean" ? stated.mean : stated.std) =
+        toNumber(state, name + "." + key, entry.second, found.factor);
+    (key == "mean" ? has_mean : has_std) = true;
+  }
+  const std::string where = state.where(found.value.Mark().line);
+  if (!has_mean || !has_std)
+    fail(where, name + " lacks its " + (has_mean ? "std" : "mean"), "write {mean: M, std: S}");
+  if (stated.std < 0.0) fail(where, name + ".std must be >= 0", "a standard deviation is not negative");
+  return stated;
+}
+
+}  // namespace
+
+bool YamlFields::has(const std::string& name) const {
+  return findValue(*state_, name).has_value();
+}
+
+double YamlFields::number(const std::string& name) const {
+  const auto found = findValue(*state_, name);
+  if (!found) refuse("", "lacks " + name, "add it");
+  return toNumber(*state_, name, found->value, found->factor);
+}
+
+double YamlFields::number(const std::string& name, double fallback) const {
+  return has(name) ? number(name) : fallback;
+}
+
+StatedNumber YamlFields::stated(const std::string& name) const {
+  const auto found = findValue(*state_, name);
+  if (!found) refuse("", "lacks " + name, "add it as a number or {mean: M, std: S}");
+  return toStated(*state_, name, *found);
+}
+
+StatedNumber YamlFields::stated(const std::string& name, double fallback) const {
+  return has(name) ? stated(name) : StatedNumber{fallback, 0.0};
+}
+
+int YamlFields::integer(const std::string& name) const {
+  const double value = number(name);
+  if (value != std::floor(value) || std::abs(value) > 1e9)
+    refuse(name, name + " must be a whole number", "round it");
+  return static_cast<int>(value);
+}
+
+int YamlFields::integer(const std::string& name, int fallback) const {
+  return has(name) ? integer(name) : fallback;
+}
+
+bool YamlFields::flag(const std::string& name, bool fallback) const {
+  const auto found = findValue(*state_, name);
+  if (!found) return fallback;
+  bool value = false;
+  if (!found->value.IsScalar() || !YAML::convert<bool>::decode(found->value, value))
+    refuse(name, name + " is " + kindOf(found->value), "write true or false");
+  return value;
+}
+
+std::string YamlFields::word(const std::string& name) const {
+  const auto found = findValue(*state_, name);
+  if (!found) refuse("", "lacks " + name, "add it");
+  if (!found->value.IsScalar()) refuse(name, name + " is " + kindOf(found->value), "write one word");
+  return found->value.Scalar();
+}
+
+std::string YamlFields::word(const std::string& name, const std::string& fallback) const {
+  return has(name) ? word(name) : fallback;
+}
+
+std::vector<double> YamlFields::numbers(const std::string& name) const {
+  const auto found = findValue(*state_, name);
+  if (!found) return {};
+  if (!found->value.IsSequence()) refuse(name, name + " is " + kindOf(found->value), "write a list [a, b]");
+  std::vector<double> values;
+  for (const auto& item : found->value) values.push_back(toNumber(*state_, name, item, found->factor));
+  return values;
+}
+
+std::vector<std::string> YamlFields::texts(const std::string& name) const {
+  const auto found = findValue(*state_, name);
+  if (!found) return {};
+  if (found->value.IsScalar()) return {found->value.Scalar()};
+  const auto asText = [&](const YAML::Node& item) {
+    std::string text = item.IsScalar() ? item.Scalar() : "";
+    for (std::size_t i = 0; item.IsSequence() && i < item.size(); ++i)
+      if (item[i].IsScalar()) text += (i == 0 ? "" : ",") + item[i].Scalar();
+    if (text.empty()) fail(state_->where(item.Mark().line), name + " has an item that is no text", "mend it");
+    return text;
+  };
+  if (!found->value.IsSequence()) refuse(name, name + " is " + kindOf(found->value), "write a list [a, b]");
+  std::vector<std::string> all;
+  for (const auto& item : found->value) all.push_back(asText(item));
+  return all;
+}
+
+YamlFields YamlFields::fields(const std::string& name) const {
+  const auto found = findValue(*state_, name);
+  if (!found) refuse("", "lacks " + name, "add it");
+  return of(found->value, state_->origin, name);
+}
+
+std::vector<YamlFields> YamlFields::list(const std::string& name) const {
+  const auto found = findValue(*state_, name);
+  if (!found) return {};
+  if (!found->value.IsSequence())
+    refuse(name, name + " is " + kindOf(found->value), "write a list, each item after `- `");
+  std::vector<YamlFields> items;
+  for (const auto& item : found->value) items.push_back(of(item, state_->origin, "an item of " + name));
+  return items;
+}
+
+bool YamlFields::isMapping(const std::string& name) const {
+  const auto found = findValue(*state_, name);
+  return found && found->value.IsMap();
+}
+
+std::vector<std::string> YamlFields::names() const {
+  std::vector<std::string> names;
+  for (const auto& entry : state_->node) names.push_back(entry.first.Scalar());
+  return names;
+}
+
+void YamlFields::only(const std::vector<std::string>& known) const {
+  for (const auto& entry : state_->node) {
+    const std::string key = entry.first.Scalar();
+    const auto states = [&](const std::string& name) { return factorOf(key, name) != 0.0; };
+    if (std::any_of(known.begin(), known.end(), states)) continue;
+    const std::string nearest = nearestName(key, known);
+    fail(state_->where(entry.first.Mark().line), "unknown key '" + key + "'",
+         nearest.empty() ? "remove it" : "did you mean " + nearest + "?");
+  }
+}
+
+void YamlFields::refuse(const std::string& name, const std::string& reason, const std::string& remedy) const {
+  const std::string owner = name.empty() && !state_->what.empty() ? state_->what + " " : "";
+  fail(where(name), owner + reason, remedy);
+}
+
+void YamlFields::refuse(const std::exception& range_error) const {
+  const std::string text = range_error.what();
+  const auto end = text.find(" = "), begin = text.rfind(": ", end);
+  const bool named = end != std::string::npos && begin != std::string::npos;
+  std::string field = named ? text.substr(begin + 2, end - begin - 2) : "";
+  if (const auto dot = field.rfind('.'); dot != std::string::npos) field = field.substr(dot + 1);
+  fail(where(field), text, "correct the value");
+}
+
+std::string YamlFields::where(const std::string& name) const {
+  for (const auto& entry : state_->node)
+    if (!name.empty() && factorOf(entry.first.Scalar(), name) != 0.0)
+      return state_->where(entry.first.Mark().line);
+  return state_->where(state_->node.Mark().line);
+}
+
+std::string nearestName(const std::string& word, const std::vector<std::string>& candidates) {
+  std::string best;
+  std::size_t fewest = std::max<std::size_t>(3, word.size() / 3) + 1;
+  for (const auto& candidate : candidates) {
+    std::vector<std::size_t> row(candidate.size() + 1);
+    std::iota(row.begin(), row.end(), 0U);
+    for (std::size_t i = 0; i < word.size(); ++i) {
+      std::size_t diagonal = row[0];
+      row[0] = i + 1;
+      for (std::size_t j = 0; j < candidate.size(); ++j) {
+        const std::size_t edit = diagonal + (word[i] == candidate[j] ? 0 : 1);
+        diagonal = row[j + 1];
+        row[j + 1] = std::min({row[j] + 1, row[j + 1] + 1, edit});
+      }
+    }
+    if (row.back() < fewest) {
+      fewest = row.back();
+      best = candidate;
+    }
+  }
+  return best;
+}
+
+}  // namespace talus::terramech

@@ -1,0 +1,75 @@
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include <talus/terramech/mobility/category.hpp>
+#include <talus/terramech/numerics/range.hpp>
+
+namespace talus::terramech {
+namespace {
+
+constexpr int kSafe = 0, kMarginal = 1, kDangerous = 2;
+
+int rankOf(double dp, const CategoryThresholds& t) {
+  if (dp < t.dp_low) return kDangerous;
+  return dp > t.dp_high ? kSafe : kMarginal;
+}
+
+/// Ranks lost to a quantity that should stay small.
+int demotion(double value, std::optional<double> threshold, std::optional<double> critical) {
+  if (critical && value > *critical) return kDangerous;
+  return threshold && !(value < *threshold) ? 1 : 0;
+}
+
+bool unknown(const WheelCondition& c) {
+  return std::isnan(c.drawbar_pull_over_load) || std::isnan(c.sinkage_over_radius) ||
+         std::isnan(c.torque_over_load_radius.value_or(0.0)) || std::isnan(c.slip.value_or(0.0));
+}
+
+void checkOrder(const char* what, double low, double high) {
+  if (low <= high) return;
+  throw std::invalid_argument(std::string("category thresholds: ") + what + " = " + std::to_string(low) +
+                              ", must be <= " + std::to_string(high));
+}
+
+}  // namespace
+
+const char* name(Category category) {
+  constexpr const char* kNames[] = {"safe", "marginal", "dangerous", "unknown"};
+  return kNames[static_cast<int>(category)];
+}
+
+CategoryThresholds thresholds(const MissionSlope& mission) {
+  const RangeCheck check{"mission slope"};
+  check.within("slope_rad", mission.slope_rad, {0.0, 1.57});
+  check.within("margin_rad", mission.margin_rad, {0.0, 1.57 - mission.slope_rad});
+  return {.dp_low = std::tan(mission.slope_rad - mission.margin_rad),
+          .dp_high = std::tan(mission.slope_rad + mission.margin_rad)};
+}
+
+void validate(const CategoryThresholds& t) {
+  const RangeCheck check{"category thresholds"};
+  check.finite("dp_low", t.dp_low);
+  check.finite("dp_high", t.dp_high);
+  check.finite("z_threshold", t.z_threshold);
+  check.finite("z_critical", t.z_critical);
+  check.finite("t_threshold", t.t_threshold.value_or(0.0));
+  check.finite("t_critical", t.t_critical.value_or(0.0));
+  check.within("steering_slip", t.steering_slip.value_or(0.0), {0.0, 1.0});
+  checkOrder("dp_low", t.dp_low, t.dp_high);
+  checkOrder("z_threshold", t.z_threshold, t.z_critical);
+  if (t.t_threshold && t.t_critical) checkOrder("t_threshold", *t.t_threshold, *t.t_critical);
+}
+
+Category categorise(const WheelCondition& condition, const CategoryThresholds& t) {
+  if (unknown(condition)) return Category::Unknown;
+  int rank = rankOf(condition.drawbar_pull_over_load, t);
+  rank += demotion(condition.sinkage_over_radius, t.z_threshold, t.z_critical);
+  if (condition.torque_over_load_radius)
+    rank += demotion(*condition.torque_over_load_radius, t.t_threshold, t.t_critical);
+  if (condition.slip) rank += demotion(*condition.slip, {}, t.steering_slip);
+  return static_cast<Category>(std::min(rank, kDangerous));
+}
+
+}  // namespace talus::terramech

@@ -1,0 +1,240 @@
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <optional>
+#include <stdexcept>
+#include <vector>
+
+#include <talus/terramech/contact/wong_reece.hpp>
+#include <talus/terramech/mobility/mobility.hpp>
+#include <talus/terramech/numerics/range.hpp>
+
+namespace talus::terramech {
+namespace {
+
+/// A wheel somewhere.
+struct Station {
+  double load_N;
+  double slip;
+  double slope_rad;
+};
+
+/// Forces there; none where the soil cannot carry the wheel.
+using CarriedForces = std::function<std::optional<WheelForces>(const Station&)>;
+
+/// One steady drive: the slope that a slip holds on.
+struct Drive {
+  double slip;
+  double slope_rad;
+  WheelForces wheel;
+};
+
+/// The slope on which a wheel at this slip drives steadily: DP(i, W cos alpha) = W sin alpha. A fixed point,
+/// since DP/N hardly depends on the load N. None where the soil cannot carry the wheel.
+std::optional<Drive> driveAt(const CarriedForces& carried, const Rover& rover, double slip) {
+  const double weight_N = wheelLoad_N(rover);
+  Drive drive{slip, 0.0, {}};
+  for (int iteration = 0; iteration < 60; ++iteration) {
+    const double load_N = weight_N * std::cos(drive.slope_rad);
+    const auto forces = carried({load_N, slip, drive.slope_rad});
+    if (!forces) return std::nullopt;
+    drive.wheel = *forces;
+    const double slope = std::atan(drive.wheel.drawbar_pull_N / load_N);
+    const double change = std::abs(slope - drive.slope_rad);
+    drive.slope_rad = slope;
+    if (change < 1e-10) break;
+  }
+  return drive;
+}
+
+/// Drives at rising slip from a start, as long as the slope keeps rising (sign 1) or falling (sign -1).
+void follow(const CarriedForces& carried, const Rover& rover, const std::vector<double>& slips, double sign,
+            std::vector<Drive>& drives) {
+  for (const double slip : slips) {
+    const auto drive = driveAt(carried, rover, slip);
+    if (!drive) return;
+    if (drives.empty() || sign * (drive->slope_rad - drives.back().slope_rad) > 1e-9)
+      drives.push_back(*drive);
+  }
+}
+
+/// Slips of the table: closer near 0, where slope changes fastest with slip, and near 1.
+std::vector<double> drivenSlips() {
+  std::vector<double> slips;
+  for (int k = 0; k <= 40; ++k) slips.push_back(0.5 * (1.0 - std::cos(std::numbers::pi * k / 40.0)));
+  return slips;
+}
+
+std::vector<double> brakedSlips() {
+  std::vector<double> slips;
+  for (int k = 0; k <= 32; ++k) slips.push_back(-0.5 * (1.0 - std::cos(std::numbers::pi * k / 32.0)));
+  return slips;
+}
+
+/// All steady drives, slope strictly rising.
+std::vector<Drive> steadyDrives(const CarriedForces& carried, const Rover& rover) {
+  std::vector<Drive> up, down;
+  follow(carried, rover, drivenSlips(), 1.0, up);
+  follow(carried, rover, brakedSlips(), -1.0, down);
+  if (!down.empty()) up.insert(up.begin(), down.rbegin(), down.rend() - 1);
+  return up;
+}
+
+/// Forces of a wheel on its axle, for the record.
+using AxleForces = std::function<WheelForces(const Station&)>;
+
+CarriedForces carriedBy(const Soil& soil, const Wheel& wheel) {
+  return [&soil, wheel](const Station& at) -> std::optional<WheelForces> {
+    try {
+      return equilibrium(soil, wheel, {.load_N = at.load_N, .slip = at.slip});
+    } catch (const std::domain_error&) {
+      return std::nullopt;
+    }
+  };
+}
+
+/// What a model says of a wheel of a rover at full speed.
+WheelForces predicted(const RefinedModel& model, const Rover& rover, const Station& at, int pass) {
+  WheelState state;
+  state.wheel = rover.wheel;
+  state.load_N = at.load_N;
+  state.slip = at.slip;
+  state.rim_speed_mps = rover.max_speed_mps * (at.slip < 0.0 ? 1.0 + at.slip : 1.0);
+  state.speed_mps = rover.max_speed_mps * (1.0 - std::max(at.slip, 0.0));
+  state.pass_index = pass;
+  state.slope_rad = at.slope_rad;
+  const Reading reading = predict(model, state);
+  return {.sinkage_m = reading.sinkage_m,
+          .entry_angle_rad = 0.0,
+          .torque_Nm = reading.torque_Nm,
+          .drawbar_pull_N = reading.drawbar_pull_N};
+}
+
+/// The mean wheel of axles that follow one another, sunk as the first.
+WheelForces meanOfAxles(const RefinedModel& model, const Rover& rover, const Station& at,
+                        const MobilityOptions& options) {
+  WheelForces mean = predicted(model, rover, at, options.first_pass);
+  if (!knowsPasses(model.effects)) return mean;
+  for (int k = 1; k < options.axles; ++k) {
+    const WheelForces f = predicted(model, rover, at, options.first_pass + k);
+    mean.torque_Nm += (f.torque_Nm - mean.torque_Nm) / (k + 1);
+    mean.drawbar_pull_N += (f.drawbar_pull_N - mean.drawbar_pull_N) / (k + 1);
+  }
+  return mean;
+}
+
+}  // namespace
+
+/// How a curve asks for forces.
+struct MobilityCurve::Solver {
+  CarriedForces carried;
+  AxleForces on_axle;
+};
+
+MobilityCurve::MobilityCurve(const Soil& soil, const Rover& rover, const MobilityOptions& options)
+    : rover_(rover), options_(options) {
+  validate(soil);
+  tabulate({carriedBy(soil, rover.wheel), [&](const Station& at) {
+              return forcesAtEntry(soil, rover.wheel, {.load_N = at.load_N, .slip = at.slip},
+                                   0.5 * std::numbers::pi)
+                  .forces;
+            }});
+}
+
+MobilityCurve::MobilityCurve(const RefinedModel& model, const Rover& rover, const MobilityOptions& options)
+    : rover_(rover), options_(options) {
+  validate(model.soil);
+  if (model.base == BaseModel::LinearFormula)
+    throw std::invalid_argument(
+        "model 'linear-formula' takes drawbar pull from a measured torque: it cannot say "
+        "what a slope will ask, trace the data with model: wong-reece");
+  const RefinedModel ground = withoutSensors(model);
+  const AxleForces forces = [&](const Station& at) { return meanOfAxles(ground, rover, at, options); };
+  const CarriedForces carried = [&](const Station& at) -> std::optional<WheelForces> {
+    const WheelForces f = forces(at);
+    if (!(f.sinkage_m < (1.0 - 1e-9) * rover.wheel.radius_m)) return std::nullopt;
+    return f;
+  };
+  tabulate({carried, forces});
+}
+
+void MobilityCurve::tabulate(const Solver& solver) {
+  validate(rover_);
+  const RangeCheck check{"mobility options"};
+  check.within("reference_slip", options_.reference_slip, {1e-6, 1.0 - 1e-6});
+  check.within("max_slip", options_.max_slip, {1e-6, 1.0});
+  check.atLeast("first_pass", options_.first_pass, 1.0);
+  check.atLeast("axles", options_.axles, 1.0);
+  const auto flatAt = [&](double slip) {
+    const Station flat{wheelLoad_N(rover_), slip, 0.0};
+    const auto carried = solver.carried(flat);
+    const WheelForces f = carried ? *carried : solver.on_axle(flat);
+    const double radius_m = rover_.wheel.radius_m;
+    return MobilityReference{slip, f.drawbar_pull_N / flat.load_N, std::min(f.sinkage_m / radius_m, 1.0),
+                             f.torque_Nm / (flat.load_N * radius_m)};
+  };
+  reference_ = strongest_ = flatAt(options_.reference_slip);
+  const std::vector<Drive> drives = steadyDrives(solver.carried, rover_);
+  if (drives.size() < 2) return;
+  std::vector<double> slope, slip, sinkage, torque;
+  for (const Drive& drive : drives) {
+    slope.push_back(drive.slope_rad);
+    slip.push_back(drive.slip);
+    sinkage.push_back(drive.wheel.sinkage_m);
+    torque.push_back(drive.wheel.torque_Nm);
+  }
+  min_slope_rad_ = slope.front();
+  max_slope_rad_ = slope.back();
+  locked_pull_ = std::tan(min_slope_rad_);
+  strongest_ = flatAt(drives.back().slip);
+  slip_ = {slope, slip};
+  sinkage_m_ = {slope, sinkage};
+  torque_Nm_ = {slope, torque};
+}
+
+MobilityState MobilityCurve::at(double slope_rad) const noexcept {
+  MobilityState state;
+  const double demand = std::tan(slope_rad);
+  state.drawbar_pull_margin = reference_.drawbar_pull_over_load - demand;
+  if (max_slope_rad_ < min_slope_rad_) {
+    state.slip = 1.0;
+    state.sinkage_m = rover_.wheel.radius_m;
+    return state;
+  }
+  state.drawbar_pull_margin = std::min(state.drawbar_pull_margin, demand - locked_pull_);
+  state.slip = slip_.at(slope_rad);
+  state.sinkage_m = sinkage_m_.at(slope_rad);
+  state.torque_Nm = torque_Nm_.at(slope_rad);
+  state.speed_mps = rover_.max_speed_mps * (1.0 - std::max(state.slip, 0.0));
+  // P = count T omega + P_hotel with omega = v / (r (1 - i)); a braking wheel gives nothing back.
+  const double drive_J_per_m = std::max(state.torque_Nm, 0.0) * rover_.wheel_count *
+                               (state.slip < 0.0 ? 1.0 + state.slip : 1.0 / (1.0 - state.slip)) /
+                               rover_.wheel.radius_m;
+  state.energy_J_per_m = drive_J_per_m + rover_.hotel_power_W / state.speed_mps;
+  state.feasible = slope_rad >= min_slope_rad_ && slope_rad <= max_slope_rad_ &&
+                   state.slip <= options_.max_slip && std::abs(state.torque_Nm) <= rover_.max_torque_Nm;
+  return state;
+}
+
+double slipOnSlope(const Soil& soil, const Rover& rover, double slope_rad) {
+  const double load_N = wheelLoad_N(rover) * std::cos(slope_rad);
+  const auto excess = [&](double slip) {
+    return equilibrium(soil, rover.wheel, {.load_N = load_N, .slip = slip}).drawbar_pull_N / load_N -
+           std::tan(slope_rad);
+  };
+  double low = excess(0.0) > 0.0 ? -1.0 : 0.0, high = low < 0.0 ? 0.0 : 0.01;
+  if (low < 0.0 && excess(-1.0) > 0.0) throw std::domain_error("locked wheels slide down this slope");
+  while (excess(high) < 0.0) {
+    if (high >= 1.0) throw std::domain_error("no slip pulls the rover up this slope");
+    low = high;
+    high = std::min(1.0, high + 0.01);
+  }
+  for (int step = 0; step < 50; ++step) {
+    const double middle = 0.5 * (low + high);
+    (excess(middle) < 0.0 ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+}  // namespace talus::terramech

@@ -1,0 +1,131 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include <talus/terramech/trace/held_out.hpp>
+
+namespace talus::terramech {
+namespace {
+
+/// Squared errors summed by channel.
+struct Sums {
+  ChannelErrors sum{};
+  std::array<int, kChannels> count{};
+
+  void add(const Eigen::MatrixXd& residual) {
+    for (int c = 0; c < kChannels; ++c)
+      for (double r : residual.col(c))
+        if (std::isfinite(r)) {
+          sum[static_cast<std::size_t>(c)] += r * r;
+          ++count[static_cast<std::size_t>(c)];
+        }
+  }
+
+  ChannelErrors rmse() const {
+    ChannelErrors e{};
+    for (std::size_t c = 0; c < kChannels; ++c) e[c] = count[c] ? std::sqrt(sum[c] / count[c]) : std::nan("");
+    return e;
+  }
+};
+
+/// Those of one model on all rows, and on those of each group.
+class Tally {
+ public:
+  explicit Tally(const std::vector<std::string>& columns) : columns_(columns) {}
+
+  void add(const Trial& unseen, const Eigen::MatrixXd& residual) {
+    all_.add(residual);
+    for (const std::string& column : columns_)
+      for (int row = 0; row < unseen.rows(); ++row) {
+        const std::string label{unseen.states[static_cast<std::size_t>(row)].label(column)};
+        groups_[{column, label}].add(residual.row(row));
+        ++rows_[{column, label}];
+      }
+  }
+
+  ChannelErrors rmse() const { return all_.rmse(); }
+
+  static std::vector<GroupErrors> groups(const Tally& base, const Tally& refined) {
+    std::vector<GroupErrors> all;
+    for (const auto& [key, sums] : base.groups_)
+      all.push_back({.column = key.first,
+                     .value = key.second,
+                     .rows = base.rows_.at(key),
+                     .base_rmse = sums.rmse(),
+                     .refined_rmse = refined.groups_.at(key).rmse()});
+    return all;
+  }
+
+ private:
+  using Key = std::pair<std::string, std::string>;
+  std::vector<std::string> columns_;
+  Sums all_;
+  std::map<Key, Sums> groups_;
+  std::map<Key, int> rows_;
+};
+
+std::vector<std::string> columnsOfOneGroup(const RefinedModel& model) {
+  std::set<std::string> columns;
+  for (const Effect& e : model.effects)
+    if (!e.only_column.empty()) columns.insert(e.only_column);
+  return {columns.begin(), columns.end()};
+}
+
+Eigen::MatrixXd asMeasured(const RefinedModel& model, Trial trial) {
+  for (std::size_t row = 0; row < trial.states.size(); ++row) {
+    trial.states[row].slip = trial.slip[row];
+    trial.states[row].load_N = trial.load_N[row];
+  }
+  SolvedContacts solved;
+  return trial.measured - predictRows(model, trial, solved);
+}
+
+/// Each model is fitted under the errors that it would have: what the noise of slip and load does depends on
+/// it.
+Whitening whiteningOf(const RefinedModel& model, const TraceResult& result) {
+  SolvedContacts solved;
+  Whitening all = whitening(result.trial, predictRows(model, result.trial, solved),
+                            inputSlopes(model, result.trial, solved), model.noise);
+  all.share(result.units.unit, result.units.left);
+  return all;
+}
+
+}  // namespace
+
+HeldOut holdOut(const TraceResult& result, const TraceOptions& options, const Folds& folds) {
+  const Trial& trial = result.trial;
+  const Whitening of_base = whiteningOf(result.base, result),
+                  of_refined = whiteningOf(result.refined, result);
+  const auto columns = columnsOfOneGroup(result.refined);
+  Tally base{columns}, refined{columns};
+  for (int fold = 0; fold < folds.count; ++fold) {
+    const std::vector<char> train = rowsOf(folds, fold, false);
+    const Trial seen = subset(trial, train), unseen = subset(trial, rowsOf(folds, fold, true));
+    if (unseen.rows() == 0 || seen.rows() == 0) continue;
+    const auto refit = [&](const RefinedModel& model, const Whitening& all) {
+      SolvedContacts start;
+      FitPlan plan = fitPlan(model, options.fit_soil);
+      plan.iterations = 8;
+      if (result.first_prior && !model.effects.empty()) plan.effect_prior[0] = *result.first_prior;
+      return fitModel(model, seen, subset(all, train), plan, start).model;
+    };
+    base.add(unseen, asMeasured(refit(result.base, of_base), unseen));
+    refined.add(unseen, asMeasured(refit(result.refined, of_refined), unseen));
+  }
+  return {folds.scheme, base.rmse(), refined.rmse(), Tally::groups(base, refined)};
+}
+
+std::vector<HeldOut> holdOut(const TraceResult& result, const TraceOptions& options) {
+  std::vector<HeldOut> all{holdOut(result, options, foldsOf(result.trial))};
+  std::set<std::string> columns;
+  for (const TracedEffect& e : result.effects) columns.insert(e.chosen.candidate.covariate());
+  for (const std::string& column : columns) {
+    if (column == "slip" && all.front().scheme.find("slip") != std::string::npos) continue;
+    const Folds folds = levelFolds(result.trial, column);
+    if (folds.count > 0) all.push_back(holdOut(result, options, folds));
+  }
+  return all;
+}
+
+}  // namespace talus::terramech

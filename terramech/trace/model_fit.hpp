@@ -1,0 +1,64 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <talus/terramech/trace/sensor_noise.hpp>
+#include <talus/terramech/trace/trial.hpp>
+
+namespace talus::terramech {
+
+/// Prior of a soil parameter in its own unit (a step from the start for log_stiffness).
+struct ParameterPrior {
+  double mean, std;
+};
+
+/// What a fit moves and what it knows beforehand.
+struct FitPlan {
+  std::vector<FittedParameter> free;
+  std::map<int, ParameterPrior> soil_prior;    ///< by index into soilParameters()
+  std::map<int, ParameterPrior> effect_prior;  ///< by number of an effect, of its first parameter
+  int iterations = 12;
+  const Eigen::MatrixXd* derivative =
+      nullptr;  ///< whitened, kept for all iterations; null: taken anew in each
+};
+
+/// A fitted model.
+struct Fit {
+  RefinedModel model;
+  double chi2 = 0.0;  ///< of the whitened residuals, priors left out
+  double prior_chi2 = 0.0;
+  double cost() const { return chi2 + prior_chi2; }
+};
+
+/// Levenberg-Marquardt on whitened residuals inside the parameters' bounds. `solved` as predictRows().
+Fit fitModel(const RefinedModel& start, const Trial& trial, const Whitening& whitening, const FitPlan& plan,
+             SolvedContacts& solved);
+
+/// Covariance of the free parameters [own units] about a model that was fitted.
+Eigen::MatrixXd parameterCovariance(const RefinedModel& fitted, const Trial& trial,
+                                    const Whitening& whitening, const FitPlan& plan, SolvedContacts& solved);
+
+/// Whitened (or marginally scaled) derivative of the readings by each parameter, rows*kChannels x parameters.
+Eigen::MatrixXd jacobian(const RefinedModel& model, const Trial& trial,
+                         const std::vector<FittedParameter>& free, SolvedContacts& solved,
+                         const std::function<Eigen::VectorXd(const Eigen::MatrixXd&)>& scale);
+
+/// Everything that a model lets a fit move: its effects, and the soil's parameters that are stated with a
+/// standard deviation, or all of them, under vague priors, when `fit_soil`.
+FitPlan fitPlan(const RefinedModel& model, bool fit_soil);
+
+/// All fitted numbers of effect number `effect`.
+std::vector<FittedParameter> parametersOf(const RefinedModel& model, int effect);
+
+/// Typical step of a parameter and its bounds.
+struct ParameterRange {
+  double low, high, scale;
+};
+ParameterRange rangeOf(const RefinedModel& model, const FittedParameter& parameter);
+
+}  // namespace talus::terramech

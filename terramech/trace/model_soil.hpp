@@ -1,0 +1,36 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <talus/terramech/effects/refined_model.hpp>
+#include <talus/terramech/trace/trial.hpp>
+
+namespace talus::terramech {
+
+/// How a soil is found under a model's effects.
+struct ModelSoilOptions {
+  std::optional<RefinedModel>
+      prior;  ///< whose stated soil is the prior; none: vague, as where `trace` fits one
+  std::optional<double> shear_modulus_m;  ///< K as stated [m], then not fitted
+  double noise = 0.05;  ///< relative standard deviation of readings that the model's file says nothing of [-]
+};
+
+/// A soil, and how well it is known.
+struct ModelSoil {
+  Soil soil;
+  Eigen::Matrix2d strength_covariance = Eigen::Matrix2d::Zero();  ///< of (c [Pa], tan phi), priors included
+  double misfit = 0.0;  ///< mean square of the whitened residuals; about 1 where model and noise hold
+  std::vector<std::string> unseen;  ///< parameters that the rows say little about: no narrower than the prior
+};
+
+/// The most likely soil under rows of a wheel, by all channels that they measure, the effects of `model`
+/// acting as its file states them: what they do to sinkage, torque and pull is not laid to the soil. Its own
+/// soil is where the search starts, beside the one of a wheel of which nothing is known; the likelier end
+/// counts.
+ModelSoil soilUnder(const RefinedModel& model, const Trial& trial, const ModelSoilOptions& options = {});
+
+}  // namespace talus::terramech

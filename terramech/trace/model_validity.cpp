@@ -1,0 +1,81 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+#include <talus/terramech/trace/closure_offset.hpp>
+#include <talus/terramech/trace/held_out.hpp>
+#include <talus/terramech/trace/model_validity.hpp>
+
+namespace talus::terramech {
+namespace {
+
+constexpr double kLeastShare = 0.1, kFarOff = 0.15, kLoudest = 0.25;
+
+struct Scatter {
+  double mean = 0.0, std = 0.0;
+};
+
+Scatter scatterOf(const Trial& trial, int channel) {
+  double n = 0.0, sum = 0.0, square = 0.0;
+  for (double v : trial.measured.col(channel))
+    if (std::isfinite(v)) n += 1.0, sum += v, square += v * v;
+  if (n < 2.0) return {};
+  return {sum / n, std::sqrt(std::max(0.0, square / n - (sum / n) * (sum / n)))};
+}
+
+/// Whether a channel moves by more than its noise, or by so much that no sensor's noise is that large.
+bool moves(const Scatter& scatter, int channel, double noise_floor) {
+  const bool ratio =
+      channel == static_cast<int>(Channel::Sinkage) || channel == static_cast<int>(Channel::Torque);
+  return scatter.std > 2.0 * noise_floor || (ratio && scatter.std > kLoudest * std::abs(scatter.mean));
+}
+
+double medianClosureError(const Trial& trial) {
+  std::vector<double> errors;
+  for (double e : closureErrors(trial))
+    if (std::isfinite(e)) errors.push_back(std::abs(e));
+  if (errors.size() < 8) return 0.0;
+  std::nth_element(errors.begin(), errors.begin() + static_cast<long>(errors.size() / 2), errors.end());
+  return errors[errors.size() / 2];
+}
+
+std::string number(double value) {
+  char text[24];
+  std::snprintf(text, sizeof text, "%.2f", value);
+  return text;
+}
+
+}  // namespace
+
+Applicability applicability(const TraceResult& result, const TraceOptions& options) {
+  TraceResult physics = result;
+  std::erase_if(physics.refined.effects, [](const Effect& e) { return e.empirical(); });
+  const HeldOut held = holdOut(physics, options, foldsOf(result.trial));
+  int asked = 0, silent = 0;
+  bool absurd = false;
+  std::string shares;
+  for (int c = 0; c < kChannels; ++c) {
+    const auto k = static_cast<std::size_t>(c);
+    if (!result.trial.has(static_cast<Channel>(c))) continue;
+    const Scatter scatter = scatterOf(result.trial, c);
+    if (!moves(scatter, c, result.noise_floor[k])) continue;
+    const double share = 1.0 - std::pow(held.refined_rmse[k] / scatter.std, 2);
+    ++asked;
+    silent += share < kLeastShare;
+    absurd |= share < -1.0;
+    shares += std::string(shares.empty() ? "" : ", ") + name(static_cast<Channel>(c)) + " " + number(share);
+  }
+  if (absurd || (asked > 0 && silent == asked))
+    return {false, "on rows held out its physics explains too little of the variance (" + shares +
+                       "): a rigid wheel on soil does not describe them"};
+  const double closure = medianClosureError(result.trial);
+  if (closure > kFarOff && held.refined_rmse[0] > kFarOff)
+    return {false,
+            "drawbar pull differs by " + number(closure) +
+                " of the load from what torque and sinkage allow a rigid wheel on any soil (median): no "
+                "cohesion and friction can explain that"};
+  return {};
+}
+
+}  // namespace talus::terramech

@@ -1,0 +1,135 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include <talus/talus.hpp>
+#include <talus/terramech/io/csv_reader.hpp>
+#include <talus/terramech/trace/prediction_table.hpp>
+#include <talus/terramech/trace/trial.hpp>
+
+namespace talus::terramech {
+namespace {
+
+constexpr std::array<const char*, kChannels> kAnswers{"drawbar_pull_N", "sinkage_m", "torque_Nm",
+                                                      "side_force_N"};
+
+bool isAnswer(const std::string& name) {
+  return std::find(kAnswers.begin(), kAnswers.end(), name) != kAnswers.end();
+}
+
+bool isPrediction(const std::string& name) {
+  return name.starts_with("predicted_");
+}
+
+bool alwaysWords(const std::string& name) {
+  return name == "run" || name == "wheel";
+}
+
+struct Rows {
+  std::vector<std::string> header;
+  std::vector<CsvRow> rows;
+};
+
+Rows readRows(const std::filesystem::path& path, const std::stop_token& stop) {
+  CsvReader reader(path);
+  Rows all{reader.header(), {}};
+  for (CsvRow row; !stop.stop_requested() && reader.next(row);) {
+    row.fields.resize(all.header.size());
+    all.rows.push_back(row);
+  }
+  return all;
+}
+
+/// A column as numbers; false when a field holds words.
+bool numbersOf(const Rows& all, std::size_t column, std::vector<double>& values) {
+  bool any = false;
+  for (const CsvRow& row : all.rows) {
+    double value = WheelState::kUnknown;
+    if (!row.fields[column].empty() && !parseNumber(row.fields[column], value)) return false;
+    any |= !row.fields[column].empty();
+    values.push_back(std::isfinite(value) ? value : WheelState::kUnknown);
+  }
+  return any;
+}
+
+/// The conditions alone: a telemetry without the answers.
+Telemetry conditionsOf(const Rows& all, const std::string& source) {
+  Telemetry t;
+  t.source = source;
+  for (std::size_t k = 0; k < all.header.size(); ++k) {
+    const std::string& name = all.header[k];
+    if (name.empty() || isAnswer(name) || isPrediction(name)) continue;
+    std::vector<double> numbers;
+    const auto& known = knownTelemetryColumns();
+    const bool must = std::find(known.begin(), known.end(), name) != known.end();
+    if (!alwaysWords(name) && (numbersOf(all, k, numbers) || must)) {
+      numbers.resize(all.rows.size(), WheelState::kUnknown);
+      t.numbers.push_back({name, numbers});
+    } else {
+      t.words.push_back({name, {}});
+      for (const CsvRow& row : all.rows) t.words.back().values.push_back(row.fields[k]);
+    }
+  }
+  for (const CsvRow& row : all.rows) t.lines.push_back(row.line);
+  return t;
+}
+
+std::string faultOf(const CsvRow& row, const WheelState& s) {
+  if (!row.fault.empty()) return row.fault;
+  if (!std::isfinite(s.load_N)) return "load_N is missing";
+  if (!(s.load_N > 0.0)) return "load_N must be > 0";
+  if (!std::isfinite(s.slip)) return "slip is missing";
+  if (std::abs(s.slip) > 1.0) return "slip must be in [-1, 1]";
+  if (!(s.wheel.radius_m > 0.0 && s.wheel.width_m > 0.0)) return "the wheel's radius and width must be > 0";
+  return "";
+}
+
+void append(std::string& text, double value) {
+  char field[40];
+  std::snprintf(field, sizeof field, ",%.9g", value);
+  text += field;
+}
+
+}  // namespace
+
+PredictionTable predictTable(const std::filesystem::path& path, const RefinedModel& model,
+                             const ProgressMonitor& watch) {
+  const Rows all = readRows(path, watch.stop);
+  const auto states = statesOf(conditionsOf(all, path.string()), model);
+  PredictionTable table;
+  for (std::size_t k = 0; k < all.header.size(); ++k) {
+    if (isPrediction(all.header[k])) {
+      table.replaced = true;
+      continue;
+    }
+    table.text += (table.text.empty() ? "" : ",") + csvField(all.header[k]);
+  }
+  for (const char* answer : kAnswers)
+    table.text += std::string(",predicted_") + answer + ",predicted_" + answer + "_std";
+  table.text += '\n';
+  for (std::size_t row = 0; row < all.rows.size() && !watch.stopped(); ++row) {
+    watch.report(static_cast<double>(row) / static_cast<double>(all.rows.size()));
+    std::string line;
+    for (std::size_t k = 0; k < all.header.size(); ++k)
+      if (!isPrediction(all.header[k])) line += (k ? "," : "") + csvField(all.rows[row].fields[k]);
+    const std::string fault = faultOf(all.rows[row], states[row]);
+    if (!fault.empty()) {
+      table.refused.push_back({all.rows[row].line, fault});
+      line += std::string(2 * kAnswers.size(), ',');
+    } else {
+      const Prediction p = predictWithStd(model, states[row]);
+      for (std::size_t c = 0; c < kChannels; ++c) {
+        const auto channel = static_cast<Channel>(c);
+        append(line, p.mean.scaled(channel) * p.mean.denominator(channel));
+        append(line, p.scaled_std[c] * p.mean.denominator(channel));
+      }
+      ++table.predicted;
+    }
+    table.text += line + '\n';
+  }
+  watch.report(1.0);
+  return table;
+}
+
+}  // namespace talus::terramech

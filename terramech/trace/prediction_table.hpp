@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <talus/talus.hpp>
+#include <talus/terramech/effects/refined_model.hpp>
+#include <talus/terramech/estimate/telemetry.hpp>
+
+namespace talus::terramech {
+
+/// What predictTable() did.
+struct PredictionTable {
+  std::string text;                  ///< the CSV with predictions appended
+  std::size_t predicted = 0;         ///< rows with predictions
+  std::vector<RejectedRow> refused;  ///< rows without, their fields left empty
+  bool replaced = false;             ///< the input held columns of predictions; they are made anew
+};
+
+/// Every row of a CSV with predicted_drawbar_pull_N, predicted_sinkage_m, predicted_torque_Nm,
+/// predicted_side_force_N and their _std appended. What was measured (drawbar_pull_N, sinkage_m, torque_Nm,
+/// side_force_N) is copied, never used. Throws InputError when the file cannot be read or has no load_N, slip
+/// or wheel. Stopped by its watch it ends early, the text unfinished.
+PredictionTable predictTable(const std::filesystem::path& path, const RefinedModel& model,
+                             const ProgressMonitor& watch = {});
+
+}  // namespace talus::terramech

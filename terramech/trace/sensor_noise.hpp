@@ -1,0 +1,29 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <talus/terramech/trace/trial.hpp>
+#include <talus/terramech/trace/whitening.hpp>
+
+namespace talus::terramech {
+
+/// Maximum a posteriori noise of sensors and inputs from what is left of the residuals once every smooth
+/// dependence on a covariate is taken out (so that a missing effect does not pass for noise). Errors of slip
+/// and load show as deviations that move all channels along `slopes` together. Stated standard deviations are
+/// priors of 25 %, others are 3 % within a factor 2. `level` is the model's reading, for the relative parts.
+SensorNoise fitNoise(const Trial& trial, const Eigen::MatrixXd& residual, const Eigen::MatrixXd& level,
+                     const InputSlopes& slopes, const StatedSensors& stated);
+
+/// Residuals with an additive smooth of these columns taken out, scaled up for the freedom that it took. NaN
+/// stay.
+Eigen::MatrixXd withoutSmooth(const Trial& trial, const Eigen::MatrixXd& residual,
+                              const std::vector<std::string>& columns);
+
+/// The covariates of a trial that do not tell its slip.
+std::vector<std::string> allButSlip(const Trial& trial);
+
+}  // namespace talus::terramech

@@ -1,0 +1,61 @@
+#include <cmath>
+
+#include <talus/terramech/trace/input_calibration.hpp>
+#include <talus/terramech/trace/trace_search.hpp>
+
+namespace talus::terramech {
+
+void TraceSearch::backToMeasured() {
+  for (std::size_t row = 0; row < trial_.states.size(); ++row) {
+    setSlip(trial_.states[row], trial_.slip[row]);
+    trial_.states[row].load_N = trial_.load_N[row];
+  }
+}
+
+void TraceSearch::settle(const Eigen::MatrixXd& noise_alone, const Eigen::MatrixXd& level,
+                         const InputSlopes& measured_slopes) {
+  backToMeasured();
+  model_.noise = fitNoise(trial_, noise_alone, level, measured_slopes, model_.stated);
+  calibrateInputs(trial_, model_.noise);
+  level_ = predictRows(model_, trial_, solved_);
+  residual_ = trial_.measured - level_;
+  const InputSlopes slopes = inputSlopes(model_, trial_, solved_);
+  by_slip_.reset();
+  const Eigen::VectorXd shared = sharedSlipStd(trial_, model_.noise);
+  if (shared.size() > 0) by_slip_ = shared.asDiagonal() * slopes.by_slip;
+  whitening_ = whitening(trial_, level_, slopes, model_.noise);
+}
+
+void TraceSearch::shareWithin(Eigen::MatrixXd smooth, const Eigen::MatrixXd& level,
+                              const InputSlopes& measured_slopes) {
+  units_ = exchangeableUnits(trial_, whitening_, residual_);
+  if (!units_.unit.empty()) {  // what rows share is no noise of theirs
+    const double rows = trial_.rows(), kept = rows - units_.count();
+    smooth -= unitMeans(smooth, whitening_.std, units_.unit);
+    if (kept > 4.0) settle(std::sqrt(rows / kept) * smooth, level, measured_slopes);
+  }
+  whitening_.share(units_.unit, units_.left);
+}
+
+void TraceSearch::refresh() {
+  backToMeasured();
+  const Eigen::MatrixXd level = predictRows(model_, trial_, solved_);
+  const InputSlopes slopes = inputSlopes(model_, trial_, solved_);
+  const Eigen::MatrixXd measured = trial_.measured - level;
+  // Whatever its error, a slip that varies much is seen; only where that is in doubt must the error be known.
+  const SensorNoise unlimited{.slip_relative = 1.0};
+  const auto isSeen = [&](const SensorNoise& n) { return slipIsSeen(trial_, n) && speedIsSeen(trial_, n); };
+  Eigen::MatrixXd smooth = withoutSmooth(trial_, measured, trial_.covariates);
+  if (!isSeen(unlimited)) {
+    const Eigen::MatrixXd left = withoutSmooth(trial_, measured, allButSlip(trial_));
+    if (!isSeen(fitNoise(trial_, left, level, slopes, model_.stated))) smooth = left;
+  }
+  settle(smooth, level, slopes);
+  if (trial_.moment.empty())
+    shareWithin(smooth, level, slopes);
+  else  // what rows of a moment share is their slip's error, which the whitening takes out
+    units_ = {.unit = trial_.moment, .runs = true, .left = {}};
+  white_ = whitening_.apply(residual_);
+}
+
+}  // namespace talus::terramech

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <talus/terramech/effects/refined_model.hpp>
+#include <talus/terramech/estimate/telemetry.hpp>
+
+namespace talus::terramech {
+
+/// Measured rows as residual tracing sees them. Channels of `measured` are those of Channel, scaled; NaN =
+/// missing.
+struct Trial {
+  std::vector<WheelState> states;  ///< slip and load replaced by their best solved once inputs are calibrated
+  std::vector<double> load_N;      ///< as measured: the denominator of every ratio
+  std::vector<double> slip;        ///< as measured
+  Eigen::MatrixXd measured;        ///< rows x kChannels [-]
+  Eigen::VectorXd slip_variance;   ///< of the true slip about states' slip
+  Eigen::VectorXd load_variance;   ///< of the true load about states' load, relative
+  std::vector<int> run;  ///< number of the run of each row; a row of its own where there is no run column
+  /// Number of the moment of each row where a rover drove with several wheels and nobody measured their pull:
+  /// DP/W of a moment's first row is then the whole rover's, what the slope asks for. Empty otherwise.
+  std::vector<int> moment;
+  std::vector<std::string> covariates;  ///< numeric columns that vary, answers left out
+  std::vector<std::string> groupings;   ///< text columns of few words, runs left out
+
+  int rows() const { return static_cast<int>(states.size()); }
+  bool has(Channel channel) const;  ///< whether any row measures it
+  double denominator(int row, Channel channel) const;
+};
+
+/// Rows of telemetry as a trial. `fallback` is the wheel of rows that do not say theirs. Throws InputError
+/// when no load, slip or answer is measured, or no wheel is known.
+Trial makeTrial(const Telemetry& telemetry, const RefinedModel& model);
+
+/// The state of each row of telemetry, answers left out: what predictions are made from. Errors as
+/// makeTrial().
+std::vector<WheelState> statesOf(const Telemetry& telemetry, const RefinedModel& model);
+
+/// Whether slip was measured with the full speed of travel rather than its part along the wheel plane, told
+/// from speed_mps and rim_speed_mps of rows with a slip angle; false when they cannot tell.
+bool slipIsAlongTravel(const std::vector<WheelState>& states);
+
+/// Rows whose wheel is sunk to its axle or deeper, z >= r: the rim's contact ends at the axle's height in
+/// every model here, so that they say nothing of it and would bend it elsewhere.
+std::vector<char> beyondAxle(const Trial& trial);
+
+/// The rows of a trial that `keep` marks.
+Trial subset(const Trial& trial, const std::vector<char>& keep);
+
+/// Model readings of all rows over the measured load, rows x kChannels [-]; with moments, DP/W of a moment's
+/// first row is the sum of its wheels' pulls over the sum of their loads. `solved` (may be empty at first)
+/// carries what was solved from call to call.
+Eigen::MatrixXd predictRows(const RefinedModel& model, const Trial& trial, SolvedContacts& solved);
+
+}  // namespace talus::terramech

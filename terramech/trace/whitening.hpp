@@ -1,0 +1,67 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <talus/terramech/trace/moment_slip.hpp>
+#include <talus/terramech/trace/trial.hpp>
+
+namespace talus::terramech {
+
+/// Slopes of the scaled readings in the two inputs that are themselves measured, rows x kChannels.
+struct InputSlopes {
+  Eigen::MatrixXd by_slip;  ///< per unit of slip
+  Eigen::MatrixXd by_load;  ///< per relative change of load, forces over the measured load
+};
+InputSlopes inputSlopes(const RefinedModel& model, const Trial& trial, SolvedContacts& solved);
+
+/// Covariance of one row's scaled residuals. `slip_variance` absolute, `load_variance` relative.
+Eigen::Matrix4d rowCovariance(const Trial& trial, int row, const Eigen::MatrixXd& level,
+                              const InputSlopes& slopes, const SensorNoise& noise, double slip_variance,
+                              double load_variance);
+
+/// Inverse of the lower Cholesky factor of a row's covariance, zero rows and columns for the channels that it
+/// does not measure.
+Eigen::Matrix4d rowFactor(const Eigen::Matrix4d& covariance, const Eigen::MatrixXd& measured, int row);
+
+/// A row with 0 where nothing was measured.
+Eigen::Vector4d finiteOrZero(const Eigen::MatrixXd& residual, int row);
+
+/// Makes residuals of unit variance and uncorrelated: rowFactor() of their covariance; what rows of one
+/// moment share of its slip's error taken out; then, where rows of a unit share an error, their mean is
+/// shrunk by what it scatters too much.
+struct Whitening {
+  std::vector<Eigen::Matrix4d> factor;
+  Eigen::MatrixXd std;    ///< marginal standard deviations of a row's own error, rows x kChannels
+  MomentSlip slip{};      ///< error of the slip that rows of a moment share
+  std::vector<int> unit;  ///< of each row; empty: rows are on their own
+  Eigen::Vector4d shared_white = Eigen::Vector4d::Zero();     ///< variance that a unit shares over that of a
+                                                              ///< row, by channel of apply()
+  Eigen::Vector4d shared_marginal = Eigen::Vector4d::Zero();  ///< the same of marginal()
+
+  /// Finds the shared variances (one-way analysis of variance) from `left`, residuals without what else is
+  /// known to move them. An empty `unit` leaves rows on their own, and so do moments, whose shared error is
+  /// known.
+  void share(const std::vector<int>& of_row, const Eigen::MatrixXd& left);
+
+  Eigen::VectorXd apply(const Eigen::MatrixXd& residual) const;     ///< rows*kChannels; 0 where missing
+  Eigen::VectorXd marginal(const Eigen::MatrixXd& residual) const;  ///< each over its std
+
+  /// Columns that give, times a residual (row by row, 0 where missing), what the given ones give times
+  /// apply() or marginal() of it.
+  Eigen::MatrixXd backFromApply(const Eigen::MatrixXd& columns) const;
+  Eigen::MatrixXd backFromMarginal(const Eigen::MatrixXd& columns) const;
+
+ private:
+  Eigen::VectorXd ownApply(const Eigen::MatrixXd& residual) const;
+  Eigen::VectorXd ownMarginal(const Eigen::MatrixXd& residual) const;
+  void settle(Eigen::Ref<Eigen::VectorXd> scaled, const Eigen::Vector4d& shared) const;
+};
+/// The rows that `keep` marks.
+Whitening subset(const Whitening& whitening, const std::vector<char>& keep);
+
+Whitening whitening(const Trial& trial, const Eigen::MatrixXd& level, const InputSlopes& slopes,
+                    const SensorNoise& noise);
+
+}  // namespace talus::terramech

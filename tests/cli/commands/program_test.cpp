@@ -1,0 +1,47 @@
+#include <talus/cli/commands/program.hpp>
+
+#include "run_program.hpp"
+
+namespace talus::cli {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::StartsWith;
+
+/// A wrong call: its words, and what its one line must say.
+struct WrongCall {
+  std::vector<std::string> words;
+  std::string says;
+
+  friend void PrintTo(const WrongCall& call, std::ostream* os) { *os << testing::PrintToString(call.words); }
+};
+
+class WrongCalls : public testing::TestWithParam<WrongCall> {};
+
+TEST_P(WrongCalls, EndWithOneLineAndCode2) {
+  const Ran ran = runTalus(GetParam().words);
+  EXPECT_EQ(ran.code, 2);
+  EXPECT_THAT(ran.err, StartsWith("talus: "));
+  EXPECT_THAT(ran.err, HasSubstr(GetParam().says));
+  EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
+  EXPECT_THAT(ran.out, IsEmpty());
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Program, WrongCalls,
+    testing::Values(WrongCall{{}, "no subcommand; see talus --help"},
+                    WrongCall{{"xyzzy"}, "unknown subcommand 'xyzzy'"},
+                    WrongCall{{"--thread", "2"}, "unknown option '--thread', did you mean '--threads'?"},
+                    WrongCall{{"--seed", "many"}, "--seed"}, WrongCall{{"--threads", "0"}, "--threads"}));
+
+TEST(Program, HelpAndVersionGoToStandardOutput) {
+  EXPECT_THAT(runTalus({"--version"}).out, StartsWith("talus "));
+  const Ran help = runTalus({"--help"});
+  EXPECT_EQ(help.code, 0);
+  EXPECT_THAT(help.out, HasSubstr("Usage: talus"));
+  EXPECT_THAT(help.err, IsEmpty());
+}
+
+}  // namespace
+}  // namespace talus::cli

@@ -1,0 +1,162 @@
+#include <cmath>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <talus/terramech/contact/rover.hpp>
+#include <talus/terramech/contact/wong_reece.hpp>
+#include <talus/terramech/io/soil_library.hpp>
+
+#include "bad_input.hpp"
+#include "run_program.hpp"
+
+namespace talus::cli {
+namespace {
+
+using nlohmann::json;
+
+const std::vector<std::string> kGround{"flat.asc", "--ignore-crs", "--resolution", "1",
+                                       "--soil",   "sandy_loam",   "--rover",      "sojourner"};
+
+// A flat site taken for sandy loam, and its map of beliefs.
+class Site {
+ public:
+  Site() {
+    folder.write("flat.asc", asciiGrid(60, 40, [](int, int) { return 0.0; }));
+    std::vector<std::string> words{"costmap"};
+    words.insert(words.end(), kGround.begin(), kGround.end());
+    words.insert(words.end(), {"-o", "map.ot"});
+    EXPECT_EQ(runTalus(words, folder.path()).code, 0);
+  }
+
+  json run(const std::vector<std::string>& words) const {
+    const Ran ran = runTalus(words, folder.path());
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    warnings = ran.err;
+    return json::parse(ran.out);
+  }
+
+  // A number behind a cell of a map.
+  double cause(const std::string& map, const std::string& place, const std::string& name) const {
+    const json why = run({"explain", map, "--at", place, "--json"});
+    for (const json& cause : why["causes"])
+      if (cause["name"] == name) return cause["value"];
+    ADD_FAILURE() << name;
+    return std::nan("");
+  }
+
+  Folder folder;
+  mutable std::string warnings;
+};
+
+// A drive east along y = 20 over ground of a soil, of the rover's four wheels at ten moments; `off_Nm` is an
+// offset in the torque.
+std::string driveOver(const terramech::Soil& soil, double off_Nm = 0.0) {
+  const terramech::Rover rover = terramech::loadRover("sojourner");
+  const double load_N = terramech::wheelLoad_N(rover);
+  std::string text = "run,wheel,time_s,x_m,y_m,heading_rad,slope_rad,load_N,slip,torque_Nm,sinkage_m\n";
+  for (int moment = 0; moment < 20; ++moment)
+    for (int wheel = 0; wheel < 4; ++wheel) {
+      const double slip = 0.35 + 0.01 * moment;
+      const auto forces = terramech::equilibrium(soil, rover.wheel, {.load_N = load_N, .slip = slip});
+      text += fmt::format("a,w{},{},{},{},0,{},{},{},{},{}\n", wheel, moment, 10 + moment + 0.3 * (wheel / 2),
+                          20.2 - 0.4 * (wheel % 2), std::atan(forces.drawbar_pull_N / load_N), load_N, slip,
+                          forces.torque_Nm + off_Nm, forces.sinkage_m);
+    }
+  return text;
+}
+
+terramech::Soil weak() {
+  terramech::Soil soil = terramech::loadSoil("sandy_loam");
+  soil.friction_angle_rad *= 0.8;
+  soil.cohesion_Pa *= 0.5;
+  return soil;
+}
+
+TEST(UpdateCommand, ADriveOverWeakGroundIsLearnedAndExplained) {
+  const Site site;
+  site.folder.write("t.csv", driveOver(weak()));
+  const json out = site.run({"update", "map.ot", "t.csv", "-o", "map2.ot", "--json"});
+  EXPECT_EQ(out["rows_used"], 80);
+  EXPECT_EQ(out["rows_rejected"], 0);
+  EXPECT_GT(out["cells_changed"].get<int>(), 50);
+  EXPECT_TRUE(out["categories_changed"].is_number());
+  const double before = site.cause("map.ot", "20,20", "drawbar_pull_over_load"),
+               after = site.cause("map2.ot", "20,20", "drawbar_pull_over_load");
+  const terramech::Rover rover = terramech::loadRover("sojourner");
+  const double load_N = terramech::wheelLoad_N(rover);
+  // Closed form: the forward model at the reference slip on the soil that was driven
+  const double truth =
+      terramech::equilibrium(weak(), rover.wheel, {.load_N = load_N, .slip = 0.5}).drawbar_pull_N / load_N;
+  EXPECT_LT(std::abs(after - truth), 0.4 * std::abs(before - truth))
+      << before << ' ' << after << ' ' << truth;
+}
+
+TEST(UpdateCommand, TwoUpdatesMakeOneMap) {
+  const Site site;
+  site.folder.write("t.csv", driveOver(weak()));
+  site.run({"update", "map.ot", "t.csv", "-o", "a.ot", "--journal", "e.db", "--json"});
+  site.run({"update", "map.ot", "t.csv", "-o", "b.ot", "--json"});
+  site.run({"update", "map.ot", "--replay", "--journal", "e.db", "-o", "c.ot", "--json"});
+  EXPECT_EQ(fileContent(site.folder / "a.ot"), fileContent(site.folder / "b.ot"));
+  EXPECT_EQ(fileContent(site.folder / "a.ot"), fileContent(site.folder / "c.ot"));
+  EXPECT_NE(fileContent(site.folder / "a.ot"), fileContent(site.folder / "map.ot"));
+}
+
+TEST(UpdateCommand, RowsThatCannotBeUsedAreCountedAndTold) {
+  const Site site;
+  const std::string text = driveOver(weak()) + "a,w0,30,500,20,0,0,10,0.2,0.1,0.01\n" +  // off the map
+                           "a,w0,31,20,20,0,0,-3,0.2,0.1,0.01\n" +                       // load <= 0
+                           "a,w0,2,20,20,0,0,10,0.4,0.1,0.01\n";                         // time goes back
+  site.folder.write("t.csv", text);
+  const json out = site.run({"update", "map.ot", "t.csv", "-o", "map2.ot", "--json"});
+  EXPECT_EQ(out["rows_used"], 80);
+  EXPECT_EQ(out["rows_rejected"], 3);
+  EXPECT_NE(site.warnings.find("t.csv:83"), std::string::npos) << site.warnings;
+  EXPECT_NE(site.warnings.find("time goes back"), std::string::npos) << site.warnings;
+}
+
+TEST(UpdateCommand, FrictionInTheTorqueIsToldAndLeftOut) {
+  const Site site;
+  site.folder.write("t.csv", driveOver(weak()));
+  site.folder.write("biased.csv", driveOver(weak(), 0.3));
+  site.run({"update", "map.ot", "t.csv", "-o", "sound.ot", "--json"});
+  site.run({"update", "map.ot", "biased.csv", "-o", "biased.ot", "--json"});
+  EXPECT_NE(site.warnings.find("torque offset"), std::string::npos) << site.warnings;
+  EXPECT_NEAR(site.cause("biased.ot", "20,20", "drawbar_pull_over_load"),
+              site.cause("sound.ot", "20,20", "drawbar_pull_over_load"), 0.03);
+}
+
+TEST(UpdateCommand, ARehearsalsTelemetryTeachesTheMap) {
+  const Site site;
+  site.folder.write("truth.yaml", "classes: {0: lunar_nominal}\n");
+  std::vector<std::string> words{"drive"};
+  words.insert(words.end(), kGround.begin(), kGround.end());
+  words.insert(words.end(), {"--truth", "truth.yaml", "--start", "5,20", "--goal", "50,20", "--telemetry",
+                             "t.csv", "--json"});
+  const Ran ran = runTalus(words, site.folder.path());
+  ASSERT_TRUE(ran.code == 0 || ran.code == 1) << ran.err;
+  const json out = site.run({"update", "map.ot", "t.csv", "-o", "map2.ot", "--json"});
+  EXPECT_GT(out["rows_used"].get<int>(), 4);
+  EXPECT_EQ(out["rows_rejected"], 0) << site.warnings;
+  EXPECT_GT(out["cells_changed"].get<int>(), 0);
+}
+
+TEST(BadInput, Updates) {
+  const Site site;
+  const BadFiles files;
+  std::filesystem::copy(site.folder / "map.ot", files.folder() / "map.ot");
+  files.folder().write("off.csv", "x_m,y_m,load_N,slip,slope_rad\n900,900,10,0.2,0\n");
+  expectRefused(files, {
+                           {{"update", "map.ot", "missing.csv", "-o", "m.ot"}, 2, "missing.csv"},
+                           {{"update", "map.ot", "empty.csv", "-o", "m.ot"}, 2, "empty.csv"},
+                           {{"update", "map.ot", "wrong_columns.csv", "-o", "m.ot"}, 2, "wrong_columns.csv"},
+                           {{"update", "map.ot", "off.csv", "-o", "m.ot"}, 2, "off.csv"},
+                           {{"update", "map.ot", "-o", "m.ot"}, 2, "telemetry"},
+                           {{"update", "map.ot", "--replay", "-o", "m.ot"}, 2, "--journal"},
+                           {{"update", "map.ot", "off.csv", "-o", "no/m.ot"}, 2, "no"},
+                       });
+}
+
+}  // namespace
+}  // namespace talus::cli

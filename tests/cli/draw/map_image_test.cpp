@@ -1,0 +1,61 @@
+#include <cmath>
+
+#include <talus/cli/draw/map_image.hpp>
+
+namespace talus::cli {
+namespace {
+
+maps::Raster<float> plane(double per_column, double per_row) {
+  maps::Raster<float> z({8, 8, 1.0, {0.0, 0.0}});
+  for (int row = 0; row < 8; ++row)
+    for (int column = 0; column < 8; ++column)
+      z[{column, row}] = static_cast<float>(per_column * column + per_row * row);
+  return z;
+}
+
+TEST(Hillshade, FacingTheSunInTheNorthWestIsBrighter) {
+  // Property: a slope that falls to the north-west is brighter than flat ground, one that falls to the
+  // south-east darker.
+  const float flat = hillshade(plane(0.0, 0.0))[{4, 4}];
+  EXPECT_GT((hillshade(plane(0.3, -0.3))[{4, 4}]), flat);
+  EXPECT_LT((hillshade(plane(-0.3, 0.3))[{4, 4}]), flat);
+}
+
+TEST(Hillshade, NoDataStaysAndDoesNotSpread) {
+  maps::Raster<float> z = plane(0.1, 0.0);
+  const float whole = hillshade(z)[{0, 0}];
+  z[{4, 4}] = std::nanf("");
+  const maps::Raster<float> shade = hillshade(z);
+  EXPECT_TRUE(std::isnan((shade[{4, 4}])));
+  EXPECT_NEAR((shade[{5, 4}]), whole, 1e-6);  // float rounding of the elevations
+}
+
+TEST(MapImage, TopRowIsNorth) {
+  maps::Raster<CategoryShares> categories({1, 2, 1.0, {0.0, 0.0}});
+  categories[{0, 0}].count[2] = 1;  // south: dangerous
+  categories[{0, 1}].count[0] = 1;  // north: safe
+  Image image = categoryImage(categories);
+  EXPECT_EQ(image.at(0, 0), pixel(colourOf(terramech::Category::Safe)));
+  EXPECT_EQ(image.at(0, 1), pixel(colourOf(terramech::Category::Dangerous)));
+}
+
+TEST(MapImage, MixesTheCategoriesOfABlock) {
+  maps::Raster<CategoryShares> categories({1, 1, 1.0, {0.0, 0.0}});
+  categories[{0, 0}].count = {1, 0, 1, 0};
+  const Colour a = colourOf(terramech::Category::Safe);
+  const Colour b = colourOf(terramech::Category::Dangerous);
+  EXPECT_EQ(categoryImage(categories).at(0, 0),
+            pixel({(a.red + b.red) / 2, (a.green + b.green) / 2, (a.blue + b.blue) / 2, 1.0}));
+}
+
+TEST(MapImage, NoValueIsTransparent) {
+  ValueLayer layer{.name = "slope", .unit = "deg", .values = plane(1.0, 0.0), .range = {0.0, 7.0}};
+  layer.values[{3, 3}] = std::nanf("");
+  Image image = valueImage(layer);
+  EXPECT_EQ(image.at(3, 4), 0U);
+  EXPECT_EQ(image.at(0, 0), pixel(viridis().front()));
+  EXPECT_EQ(image.at(7, 0), pixel(viridis().back()));
+}
+
+}  // namespace
+}  // namespace talus::cli

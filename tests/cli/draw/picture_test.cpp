@@ -1,0 +1,34 @@
+#include <talus/cli/draw/picture.hpp>
+
+#include "example_scene.hpp"
+#include "run_program.hpp"
+
+namespace talus::cli {
+namespace {
+
+using testing::StartsWith;
+
+TEST(Picture, OfAMapWithARoute) {
+  const std::string bytes = drawPicture(exampleScene());
+  EXPECT_THAT(bytes, StartsWith("\x89PNG"));
+  keep("picture.png", bytes);
+}
+
+TEST(Picture, OfAMapWithoutCategoriesShowsItsFirstLayer) {
+  const std::string bytes = drawPicture(sceneOf(exampleMap(), {.title = "Slope of the example"}));
+  EXPECT_THAT(bytes, StartsWith("\x89PNG"));
+  keep("picture_slope.png", bytes);
+}
+
+TEST(Picture, StandsOneCellAndNoData) {
+  maps::ElevationMap map;
+  map.elevation_m = maps::Raster<float>({1, 1, 1.0, {0.0, 0.0}}, std::nanf(""));
+  EXPECT_THAT(drawPicture(sceneOf(map, {.title = "nothing"})), StartsWith("\x89PNG"));
+}
+
+TEST(Picture, IsTheSameTwice) {
+  EXPECT_EQ(drawPicture(exampleScene()), drawPicture(exampleScene()));
+}
+
+}  // namespace
+}  // namespace talus::cli

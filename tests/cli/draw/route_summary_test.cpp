@@ -1,0 +1,58 @@
+#include <algorithm>
+
+#include <talus/cli/draw/route_summary.hpp>
+
+#include "example_scene.hpp"
+
+namespace talus::cli {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+using testing::Pair;
+using testing::StartsWith;
+
+TEST(RouteSummary, SaysWhatARoverEngineerAsks) {
+  const auto facts = summaryOf(exampleRoute());
+  EXPECT_THAT(facts, Contains(Pair("length", StartsWith("512.6 m, 1.00 times"))));
+  EXPECT_THAT(facts, Contains(Pair("driving time", StartsWith("2 h 50 min, 0.0503 m/s"))));
+  EXPECT_THAT(
+      facts, Contains(Pair("energy", StartsWith("54 kJ (15 Wh), 105.3 J/m; cost with time and risk 60 kJ"))));
+  EXPECT_THAT(facts,
+              Contains(Pair("slope", StartsWith("at most 11.5 deg up, 11.5 deg down, 2.9 deg across"))));
+  EXPECT_THAT(facts, Contains(Pair("ground", "66.7 % safe, 33.3 % marginal")));
+  EXPECT_THAT(facts, Contains(Pair("pull to spare", HasSubstr("least +0.100 of the load"))));
+  EXPECT_LE(facts.size(), 11U);
+}
+
+TEST(RouteSummary, LeavesOutWhatIsNotKnown) {
+  planner::Route route = exampleRoute();
+  for (auto& v : route.vertices) v.slip = v.sinkage_m = planner::kNotKnown;
+  for (const auto& [what, value] : summaryOf(route)) {
+    EXPECT_NE(what, "slip");
+    EXPECT_THAT(value, testing::Not(HasSubstr("nan")));
+  }
+}
+
+TEST(RouteSummary, OfARouteWithoutLengthSaysSo) {
+  planner::Route route = exampleRoute();
+  route.vertices.resize(1);
+  route.summary.length_m = route.summary.time_s = 0.0;
+  EXPECT_EQ(summaryText(route), "route         nothing to drive: the start is at the goal\n");
+}
+
+TEST(RouteSummary, OfNoRouteIsItsReason) {
+  planner::Route route;
+  route.reason = "a cliff";
+  EXPECT_EQ(summaryText(route), "route         no_route: a cliff\n");
+}
+
+TEST(RouteSummary, Durations) {
+  EXPECT_EQ(durationText(45.0), "45 s");
+  EXPECT_EQ(durationText(1800.0), "30 min");
+  EXPECT_EQ(durationText(7500.0), "2 h 05 min");
+  EXPECT_EQ(durationText(3.0 * 86400.0 + 4.0 * 3600.0), "3 d 04 h");
+}
+
+}  // namespace
+}  // namespace talus::cli

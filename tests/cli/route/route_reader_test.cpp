@@ -1,0 +1,97 @@
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include <talus/cli/route/route_json.hpp>
+#include <talus/cli/route/route_reader.hpp>
+#include <talus/talus.hpp>
+
+#include "example_scene.hpp"
+#include "run_program.hpp"
+
+namespace talus::cli {
+namespace {
+
+using testing::HasSubstr;
+
+/// A route as it lies on disk.
+nlohmann::ordered_json written() {
+  return routeGeoJson(exampleRoute(), exampleMap(), {.files = {}, .seed = 7});
+}
+
+std::string refusal(const nlohmann::ordered_json& document) {
+  const Folder folder;
+  try {
+    readRoute(folder.write("r.geojson", document.dump()));
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST(RouteReader, ReadsBackWhatPlanWrites) {
+  const Folder folder;
+  planner::Route route = exampleRoute();
+  route.vertices[3].slip = planner::kNotKnown;
+  const std::string path =
+      folder.write("r.geojson", routeGeoJson(route, exampleMap(), {.files = {}, .seed = 7}).dump());
+  EXPECT_TRUE(looksLikeJson(path));
+  const planner::Route back = readRoute(path).route;
+  ASSERT_EQ(back.vertices.size(), route.vertices.size());
+  EXPECT_TRUE(std::isnan(back.vertices[3].slip));
+  for (std::size_t i = 4; i < route.vertices.size(); ++i) {
+    EXPECT_EQ(back.vertices[i].x_m, route.vertices[i].x_m);
+    EXPECT_EQ(back.vertices[i].slip, route.vertices[i].slip);
+    EXPECT_EQ(back.vertices[i].energy_J, route.vertices[i].energy_J);
+    EXPECT_EQ(back.vertices[i].category, route.vertices[i].category);
+  }
+  EXPECT_EQ(back.summary.cost, route.summary.cost);
+  EXPECT_EQ(back.summary.planner, route.summary.planner);
+}
+
+TEST(RouteReader, RefusalNamesFileAndField) {
+  auto document = written();
+  auto& properties = document["features"][0]["properties"];
+  EXPECT_EQ(refusal(document), "");
+  properties["slip"].erase(0);
+  EXPECT_THAT(refusal(document), HasSubstr("r.geojson: 'slip' has 60 values for 61 vertices; pass a route"));
+  document = written();
+  document["features"][0]["properties"]["category"][5] = "soggy";
+  EXPECT_THAT(refusal(document), HasSubstr("'category' holds an unknown word"));
+  document = written();
+  document["features"][0]["properties"]["x_m"][5] = nullptr;
+  EXPECT_THAT(refusal(document), HasSubstr("hold something else than numbers"));
+  document = written();
+  document["features"][0]["properties"]["summary"]["cost"] = "much";
+  EXPECT_THAT(refusal(document), HasSubstr("'cost' is not a number"));
+}
+
+TEST(RouteReader, StandsAnyCutOfAFile) {
+  // Property: a route cut anywhere is refused, never half read. Every 97th length, the file being long.
+  const Folder folder;
+  const std::string whole = written().dump();
+  for (std::size_t length = 0; length < whole.size(); length += 97)
+    EXPECT_THROW(readRoute(folder.write("cut.geojson", whole.substr(0, length))), InputError);
+}
+
+TEST(RouteReader, StandsAnyFieldOfAnotherKind) {
+  // Property: each property replaced by a word, a number, an empty array or nothing is refused or read, never
+  // worse.
+  const Folder folder;
+  const auto properties = written()["features"][0]["properties"];
+  for (const auto& [key, value] : properties.items()) {
+    for (const nlohmann::ordered_json& other : {nlohmann::ordered_json("word"), nlohmann::ordered_json(3.5),
+                                                nlohmann::ordered_json::array(), nlohmann::ordered_json()}) {
+      auto document = written();
+      document["features"][0]["properties"][key] = other;
+      try {
+        readRoute(folder.write("other.geojson", document.dump()));
+      } catch (const InputError&) {
+        continue;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace talus::cli

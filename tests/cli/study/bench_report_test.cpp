@@ -1,0 +1,75 @@
+#include <cmath>
+
+#include <gmock/gmock.h>
+
+#include <talus/cli/study/bench_report.hpp>
+#include <talus/costmap/cost_grid.hpp>
+
+namespace talus::cli {
+namespace {
+
+using planner::BenchmarkPlan;
+using planner::BenchmarkRun;
+using planner::RouteStatus;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+BenchmarkPlan plan() {
+  return {.cases = {{.name = "gap"}, {.name = "wall"}}, .planners = {"field", "RRTstar"}, .seeds = 1};
+}
+
+BenchmarkRun run(const std::string& planner, std::size_t case_index, double cost_J) {
+  BenchmarkRun made;
+  made.planner = planner;
+  made.case_index = case_index;
+  made.status = RouteStatus::Found;
+  made.cost_J = cost_J;
+  made.seconds = 1.0;
+  made.progress = {{0.25, 2.0 * cost_J}, {1.0, cost_J}};
+  return made;
+}
+
+// Two planners on two cases; RRTstar's route on the first is refused by the check, though it costs half.
+std::vector<BenchmarkRun> runs() {
+  std::vector<BenchmarkRun> all{run("field", 0, 100.0), run("field", 1, 120.0), run("RRTstar", 0, 50.0),
+                                run("RRTstar", 1, 100.0)};
+  all[2].breached = true;
+  all[2].cusps = 8;
+  all[2].max_curvature_1_m = 9.0;
+  return all;
+}
+
+// Closed form: by hand from the costs above.
+TEST(BenchReport, ARefusedRouteCountsAsNoCost) {
+  const auto lines = compared(plan(), runs());
+  ASSERT_EQ(lines.size(), 2u);
+  EXPECT_DOUBLE_EQ(lines[0].worst_gap, 0.2);  // on the first case the field's 100 J are the best that stand
+  EXPECT_NEAR(lines[0].median_gap, 0.1, 1e-12);
+  EXPECT_EQ(lines[1].found, 2);
+  EXPECT_EQ(lines[1].breached, 1);
+  EXPECT_DOUBLE_EQ(lines[1].worst_gap, 0.0);
+  EXPECT_DOUBLE_EQ(lines[1].median_gap, 0.0);
+  EXPECT_DOUBLE_EQ(lines[1].mean_cusps, 0.0);
+  EXPECT_DOUBLE_EQ(lines[1].max_curvature_1_m, 0.0);
+}
+
+// Property: each planner whose route stands has a curve, in percent of the best route that stands.
+TEST(BenchReport, ARefusedRouteIsNotDrawn) {
+  const auto plots = gapsOverTime(plan(), runs());
+  ASSERT_EQ(plots.size(), 2u);
+  ASSERT_EQ(plots[0].series.size(), 1u);
+  EXPECT_EQ(plots[0].series[0].name, "field");
+  EXPECT_NEAR(plots[0].series[0].y.front(), 100.0, 1e-9);
+  EXPECT_NEAR(plots[0].series[0].y.back(), 0.0, 1e-9);
+  EXPECT_EQ(plots[1].series.size(), 2u);
+}
+
+TEST(BenchReport, SaysThatItWasCutShort) {
+  auto some = runs();
+  some.pop_back();
+  EXPECT_THAT(asPage(plan(), some), HasSubstr("Cancelled: 3 of 4 runs were made."));
+  EXPECT_THAT(asPage(plan(), runs()), Not(HasSubstr("Cancelled")));
+}
+
+}  // namespace
+}  // namespace talus::cli

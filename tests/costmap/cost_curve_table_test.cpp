@@ -1,0 +1,42 @@
+#include <site_fixture.hpp>
+
+#include <talus/costmap/cost_curve_table.hpp>
+
+namespace talus::costmap {
+namespace {
+
+// Property: what a belief costs does not depend on which like it was asked for first.
+TEST(CostCurveTable, OrderDoesNotMatter) {
+  const GroundBelief sure{.pull = {0.101, 0.031}, .sinkage = {0.6, 0.01}};
+  const GroundBelief unsure{.pull = {0.107, 0.038}, .sinkage = {0.6, 0.3}};
+  CostCurveTable one(testGround()), other(testGround());
+  const std::uint8_t a = one.learned(0, sure);
+  const std::uint8_t b = other.learned(0, unsure);
+  EXPECT_EQ(one.learned(0, unsure), a) << "alike after rounding";
+  EXPECT_EQ(other.learned(0, sure), b);
+  int different = 0;
+  for (int step = -300; step <= 300; ++step) {
+    const CellCode cell({.dz_dx = step / 1024.0});
+    const auto x = one.categories(a).at(cell), y = other.categories(b).at(cell);
+    different += x.category != y.category || x.confidence != y.confidence;
+  }
+  EXPECT_EQ(different, 0);
+}
+
+// Property: a prior that moves to and fro comes to the same each time.
+TEST(CostCurveTable, APriorThatComesBackIsTheSame) {
+  CostCurveTable book(testGround());
+  const GroundBelief low{.pull = {0.2, 0.06}, .sinkage = {0.2, 0.1}};
+  const GroundBelief high{.pull = {0.21, 0.06}, .sinkage = {0.2, 0.1}};
+  ASSERT_TRUE(book.setPrior(0, low));
+  const auto first = book.cost()->curves()[0].cost_J_per_m;
+  ASSERT_TRUE(book.setPrior(0, high));
+  const auto between = book.cost()->curves()[0].cost_J_per_m;
+  ASSERT_TRUE(book.setPrior(0, low));
+  EXPECT_FALSE(book.setPrior(0, low));
+  EXPECT_EQ(book.cost()->curves()[0].cost_J_per_m, first);
+  EXPECT_NE(between, first);
+}
+
+}  // namespace
+}  // namespace talus::costmap

@@ -1,0 +1,84 @@
+#include <cmath>
+#include <functional>
+#include <queue>
+#include <vector>
+
+#include <talus/planner/bench/grid_suite.hpp>
+#include <talus/planner/bench/moving_ai.hpp>
+#include <talus/planner/grid/field_planner.hpp>
+
+#include "drawn_map.hpp"
+
+namespace talus::planner {
+namespace {
+
+using testing::drawn;
+
+// Eight neighbours, no corner cut: what MovingAI's scenario files call the optimum.
+double octile(const costmap::CostGrid& map, maps::Cell from, maps::Cell to) {
+  const maps::Grid& grid = map.grid();
+  const auto open = [&](maps::Cell c) { return grid.contains(c) && map.at(c).curve() == 0; };
+  std::vector<double> best(grid.size(), INFINITY);
+  using Entry = std::pair<double, std::size_t>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+  best[grid.index(from)] = 0.0;
+  queue.emplace(0.0, grid.index(from));
+  while (!queue.empty()) {
+    const auto [cost, index] = queue.top();
+    queue.pop();
+    if (cost > best[index]) continue;
+    const maps::Cell at{static_cast<int>(index) % grid.width, static_cast<int>(index) / grid.width};
+    for (int dr = -1; dr <= 1; ++dr)
+      for (int dc = -1; dc <= 1; ++dc) {
+        const maps::Cell next{at.column + dc, at.row + dr};
+        if (!open(next) || !open({at.column + dc, at.row}) || !open({at.column, at.row + dr})) continue;
+        const double through = cost + std::hypot(dc, dr);
+        if (through >= best[grid.index(next)]) continue;
+        best[grid.index(next)] = through;
+        queue.emplace(through, grid.index(next));
+      }
+  }
+  return best[grid.index(to)];
+}
+
+TEST(GridSuite, KnowsTheWayRoundACorner) {
+  const auto map = drawn({".....", ".###.", ".###.", "....."});
+  // Closed form: from 0.5,0.5 past the corner 4,1 to 4.5,3.5: hypot(3.5, 0.5) + hypot(0.5, 2.5).
+  EXPECT_NEAR(shortestAroundWalls_m(*map, {0, 0}, {4, 3}), std::hypot(3.5, 0.5) + std::hypot(0.5, 2.5),
+              1e-12);
+  EXPECT_NEAR(shortestAroundWalls_m(*map, {0, 0}, {4, 0}), 4.0, 1e-12);
+  EXPECT_NEAR(shortestAroundWalls_m(*map, {4, 0}, {4, 3}), 3.0, 1e-12);
+  EXPECT_TRUE(std::isinf(shortestAroundWalls_m(*drawn({"..#..", "..#.."}), {0, 0}, {4, 1})));
+}
+
+// Property: the any-angle optimum is no longer than the eight-neighbour one, and the field's route no shorter
+// than the optimum nor more than a hundredth longer.
+TEST(GridSuite, TheFieldReachesTheOptimum) {
+  double worst = 0.0;
+  std::size_t cases = 0;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed)
+    for (const BenchmarkCase& asked : gridCases(64, 4, seed)) {
+      ++cases;
+      const maps::Grid& grid = asked.map->grid();
+      const double grid_m = octile(*asked.map, *grid.cellAt(asked.start), *grid.cellAt(asked.goal));
+      EXPECT_LE(asked.optimum_J, grid_m + 1e-9) << asked.name;
+      Problem problem;
+      problem.map = asked.map;
+      problem.start = asked.start;
+      problem.goal = asked.goal;
+      const Plan plan = FieldPlanner().plan(problem);
+      ASSERT_EQ(plan.status, RouteStatus::Found) << asked.name;
+      EXPECT_GE(plan.cost_J, asked.optimum_J * (1.0 - 1e-6)) << asked.name;  // prices are floats
+      worst = std::max(worst, plan.cost_J / asked.optimum_J - 1.0);
+    }
+  EXPECT_EQ(cases, 24u);
+  EXPECT_LT(worst, 0.01);
+}
+
+TEST(GridSuite, RefusesOptionsOutOfRange) {
+  EXPECT_THROW(gridCases(8, 1, 1), std::invalid_argument);
+  EXPECT_THROW(gridCases(32, 0, 1), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace talus::planner

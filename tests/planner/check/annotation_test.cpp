@@ -1,0 +1,71 @@
+#include <cmath>
+
+#include <talus/costmap/drive_state.hpp>
+#include <talus/planner/check/annotation.hpp>
+#include <talus/planner/route/motion_cost.hpp>
+
+#include "drawn_map.hpp"
+
+namespace talus::planner {
+namespace {
+
+// Flat and sloping ground whose states say what a metre is like.
+std::shared_ptr<const costmap::CostGrid> mapWithStates() {
+  auto states = std::make_shared<costmap::DriveTable>();
+  for (int bin = 0; bin < 512; ++bin) {
+    auto& state = (*states)[static_cast<std::size_t>(bin)];
+    const float g = static_cast<float>(bin - 256) / 256.0F;
+    state.slip = g;
+    state.energy_J_per_m = 10.0F + 100.0F * std::max(g, 0.0F);
+    state.time_s_per_m = 2.0F;
+    state.risk_per_m = 0.01F;
+    state.category = terramech::Category::Safe;
+  }
+  const auto cost = std::make_shared<costmap::DriveCost>(
+      costmap::DriveCost::Limits{}, std::vector<costmap::DriveGround>{{testing::curve({}), states}});
+  maps::Raster<costmap::CellCode> cells({.width = 4, .height = 2, .resolution_m = 1.0, .south_west = {}},
+                                        costmap::CellCode({.dz_dx = 0.0, .dz_dy = 0.0, .curve = 0}));
+  cells[{2, 0}] = costmap::CellCode({.dz_dx = 0.25, .dz_dy = 0.125, .curve = 0});
+  return std::make_shared<costmap::CostGrid>(costmap::flattened(cells, cost));
+}
+
+TEST(Annotation, VerticesWhereCellsChange) {
+  const auto map = mapWithStates();
+  Plan plan{RouteStatus::Found, {}, {{0.5, 0.5}, {3.5, 0.5}}, 40.0, 20.0};
+  const Route route = annotated(plan, {.map = *map, .planner = "field"});
+  ASSERT_EQ(route.vertices.size(), 5U);  // start, three borders, end
+  const RouteVertex& slope = route.vertices[2];
+  EXPECT_EQ(slope.x_m, 2.0);
+  EXPECT_NEAR(slope.slope_along_rad, std::atan(0.25), 1e-12);
+  EXPECT_NEAR(slope.slope_across_rad, std::atan(0.125), 1e-12);
+  EXPECT_NEAR(slope.slip, 0.25, 1e-6);
+  EXPECT_EQ(slope.category, terramech::Category::Safe);
+  EXPECT_NEAR(slope.energy_J, 15.0, 1e-6);
+  // Closed form: 3 m at 10 J/m and 25 J of climbing; 2 s/m; 1 - exp(-0.03).
+  EXPECT_NEAR(route.summary.energy_J, 55.0, 1e-5);
+  EXPECT_NEAR(route.vertices.back().energy_J, 55.0, 1e-5);
+  EXPECT_NEAR(route.summary.time_s, 6.0, 1e-6);
+  EXPECT_NEAR(route.vertices.back().immobilisation_risk, 1 - std::exp(-0.03), 1e-6);
+  EXPECT_EQ(route.summary.length_m, 3.0);
+  EXPECT_NEAR(route.summary.max_slip, 0.25, 1e-6);
+  EXPECT_NEAR(route.summary.gap, 1.0, 1e-12);
+}
+
+TEST(Annotation, DrivingBackDescends) {
+  const auto map = mapWithStates();
+  const Plan back{RouteStatus::Found, {}, {{3.5, 0.5}, {0.5, 0.5}}, 40.0, 20.0};
+  const Route route = annotated(back, {.map = *map});
+  EXPECT_NEAR(route.vertices[1].slope_along_rad, -std::atan(0.25), 1e-12);
+  EXPECT_NEAR(route.vertices[1].heading_rad, std::acos(-1.0), 1e-12);
+  EXPECT_NEAR(route.summary.energy_J, 30.0, 1e-5);
+}
+
+TEST(Annotation, AStandstillHasOneVertex) {
+  const auto map = mapWithStates();
+  const Route route = annotated({RouteStatus::Found, {}, {{0.5, 0.5}}, 0.0, 0.0}, {.map = *map});
+  EXPECT_EQ(route.vertices.size(), 1U);
+  EXPECT_EQ(route.summary.gap, 0.0);
+}
+
+}  // namespace
+}  // namespace talus::planner

@@ -1,0 +1,178 @@
+#include <cmath>
+#include <stop_token>
+
+#include <talus/planner/check/route_check.hpp>
+#include <talus/planner/grid/field_planner.hpp>
+
+#include "drawn_map.hpp"
+
+namespace talus::planner {
+namespace {
+
+using testing::drawn;
+using ::testing::HasSubstr;
+using testing::randomMap;
+using MapPointer = std::shared_ptr<const costmap::CostGrid>;
+
+Problem problem(MapPointer map, maps::Point start, maps::Point goal) {
+  Problem made;
+  made.map = std::move(map);
+  made.start = start;
+  made.goal = goal;
+  return made;
+}
+
+TEST(FieldPlanner, RoundsAWallWithoutCuttingItsCorner) {
+  const auto map = drawn({".......", "..###..", "....#..", "....#..", "......."});
+  FieldPlanner planner;
+  const Plan plan = planner.plan(problem(map, {3.5, 1.5}, {5.5, 2.5}));
+  ASSERT_EQ(plan.status, RouteStatus::Found) << plan.reason;
+  EXPECT_TRUE(violations(*map, plan.points).empty());
+  EXPECT_EQ(plan.points.front(), (maps::Point{3.5, 1.5}));
+  EXPECT_EQ(plan.points.back(), (maps::Point{5.5, 2.5}));
+  EXPECT_LE(plan.lower_bound_J, plan.cost_J);
+}
+
+// Property: routes over random maps keep every constraint, cost at most the grid's, and NoRoute is said
+// exactly where a flood over the grid says so.
+TEST(FieldPlanner, RoutesOnRandomMapsAreAllowed) {
+  int found = 0, none = 0;
+  for (unsigned seed = 1; seed <= 60; ++seed) {
+    const auto map = randomMap({.width = 40, .height = 30, .seed = seed, .blocked = 0.3, .roughness = 0.2});
+    FieldPlanner planner;
+    const Plan plan = planner.plan(problem(map, {2.3, 2.7}, {36.2, 27.9}));
+    if (plan.status == RouteStatus::Found) {
+      ++found;
+      EXPECT_TRUE(violations(*map, plan.points).empty()) << seed;
+      EXPECT_NEAR(plan.cost_J, MotionCost(map).along(plan.points), 1e-9 * plan.cost_J);
+      EXPECT_LE(plan.lower_bound_J, plan.cost_J);
+    } else {
+      ++none;
+      EXPECT_FALSE(plan.reason.empty());
+    }
+  }
+  EXPECT_GT(found, 5);
+  EXPECT_GT(none, 5);
+}
+
+TEST(FieldPlanner, ThereAndBackDiffer) {
+  // A ridge with a gentle, long side in the north: up over the steep side is dearer than down it.
+  const auto map = drawn({"..>>..", "..>>..", "..>>.."});
+  FieldPlanner planner;
+  const double up = planner.plan(problem(map, {0.5, 1.5}, {5.5, 1.5})).cost_J;
+  const double down = planner.plan(problem(map, {5.5, 1.5}, {0.5, 1.5})).cost_J;
+  EXPECT_GT(up, down + 30.0);
+}
+
+// Property: on flat ground there and back cost the same.
+TEST(FieldPlanner, FlatGroundIsSymmetric) {
+  const auto map = randomMap({.width = 30, .height = 30, .seed = 4, .blocked = 0.1, .roughness = 0.0});
+  FieldPlanner planner;
+  const double there = planner.plan(problem(map, {1.5, 1.5}, {28.5, 27.5})).cost_J;
+  const double back = planner.plan(problem(map, {28.5, 27.5}, {1.5, 1.5})).cost_J;
+  EXPECT_NEAR(there, back, 0.02 * there);
+}
+
+TEST(FieldPlanner, SaysWhyThereIsNoRoute) {
+  const auto map = drawn({"..#..", "..#..", "..#?."});
+  FieldPlanner planner;
+  const Plan walled = planner.plan(problem(map, {0.5, 0.5}, {4.5, 1.5}));
+  EXPECT_EQ(walled.status, RouteStatus::NoRoute);
+  EXPECT_THAT(walled.reason,
+              HasSubstr("the start reaches 6 cells; the nearest of them to the goal is 1.50,1.50"));
+  const Plan on_wall = planner.plan(problem(map, {2.5, 0.5}, {4.5, 1.5}));
+  EXPECT_EQ(on_wall.status, RouteStatus::StartInvalid);
+  EXPECT_THAT(on_wall.reason,
+              HasSubstr("start 2.50,0.50 lies on a blocked cell; the nearest place that will do is"));
+  const Plan unseen = planner.plan(problem(map, {0.5, 0.5}, {3.5, 0.5}));
+  EXPECT_EQ(unseen.status, RouteStatus::GoalInvalid);
+  EXPECT_THAT(unseen.reason, HasSubstr("goal 3.50,0.50 lies on ground that nobody has seen"));
+  const Plan outside = planner.plan(problem(map, {-3.0, 0.5}, {3.5, 0.5}));
+  EXPECT_EQ(outside.status, RouteStatus::StartInvalid);
+  EXPECT_THAT(outside.reason, HasSubstr("outside the map"));
+}
+
+TEST(FieldPlanner, ToleranceLetsARouteEndBesideABlockedGoal) {
+  const auto map = drawn({".....", "...##", "...##"});
+  FieldPlanner planner;
+  auto asked = problem(map, {0.5, 0.5}, {4.5, 0.5});
+  EXPECT_EQ(planner.plan(asked).status, RouteStatus::GoalInvalid);
+  asked.goal_tolerance_m = 2.1;
+  const Plan plan = planner.plan(asked);
+  ASSERT_EQ(plan.status, RouteStatus::Found) << plan.reason;
+  EXPECT_LE(std::hypot(plan.points.back().x_m - 4.5, plan.points.back().y_m - 0.5), 2.1);
+}
+
+TEST(FieldPlanner, ARouteEndsWhereItEntersTheTolerance) {
+  const auto map = drawn(std::vector<std::string>(10, std::string(40, '.')));
+  FieldPlanner planner;
+  auto asked = problem(map, {1.5, 5.5}, {35.5, 5.5});
+  asked.goal_tolerance_m = 4.0;
+  const Plan plan = planner.plan(asked);  // Closed form: 34 m less 4 at 10 J
+  EXPECT_NEAR(plan.cost_J, 300.0, 1e-3);
+  EXPECT_LE(plan.lower_bound_J, plan.cost_J);
+  asked.goal_tolerance_m = 34.5;
+  EXPECT_NEAR(planner.plan(asked).cost_J, 0.0, 1e-9);
+}
+
+TEST(FieldPlanner, PassesViaPoints) {
+  const auto map = drawn(std::vector<std::string>(20, std::string(20, '.')));
+  FieldPlanner planner;
+  auto asked = problem(map, {1.5, 1.5}, {18.5, 1.5});
+  asked.via = {{10.5, 15.5}};
+  const Plan plan = planner.plan(asked);
+  ASSERT_EQ(plan.status, RouteStatus::Found);
+  EXPECT_NE(std::find(plan.points.begin(), plan.points.end(), asked.via[0]), plan.points.end());
+}
+
+TEST(FieldPlanner, StartIsTheGoal) {
+  FieldPlanner planner;
+  const Plan plan = planner.plan(problem(drawn({"...", "..."}), {1.2, 0.7}, {1.2, 0.7}));
+  EXPECT_EQ(plan.status, RouteStatus::Found);
+  EXPECT_NEAR(plan.cost_J, 0.0, 1e-9);
+}
+
+TEST(FieldPlanner, SameBytesForAnyNumberOfThreadsAndAgain) {
+  const auto map = randomMap({.width = 200, .height = 150, .seed = 12, .blocked = 0.1, .roughness = 0.15});
+  auto asked = problem(map, {3.5, 4.5}, {190.1, 140.2});
+  FieldPlanner one, two;
+  const Plan first = one.plan(asked), again = one.plan(asked);
+  asked.threads = 2;
+  const Plan other = two.plan(asked);
+  EXPECT_EQ(first.points, again.points);
+  EXPECT_EQ(first.points, other.points);
+}
+
+// Property: after a patch changed, the kept field gives the same bytes as a planner that starts from nothing.
+TEST(FieldPlanner, ReplansAsIfAnew) {
+  const auto map = randomMap({.width = 200, .height = 200, .seed = 3, .blocked = 0.05, .roughness = 0.15});
+  auto asked = problem(map, {5.5, 5.5}, {190.5, 180.5});
+  FieldPlanner kept;
+  const Plan before = kept.plan(asked);
+  ASSERT_EQ(before.status, RouteStatus::Found);
+  auto content = map->content();
+  auto tile = std::make_shared<costmap::CostTile>(*content.tiles[5]);
+  for (auto& cell : tile->cells) cell = costmap::CellCode({.dz_dx = 0.0, .dz_dy = 0.0, .curve = 4});
+  content.tiles.set(5, tile);
+  asked.map = std::make_shared<costmap::CostGrid>(content);
+  FieldPlanner fresh;
+  const Plan after = kept.plan(asked), anew = fresh.plan(asked);
+  EXPECT_EQ(after.points, anew.points);
+  EXPECT_NE(after.points, before.points);
+}
+
+TEST(FieldPlanner, CancelAndTimeLimitAreStatuses) {
+  const auto map = randomMap({.width = 60, .height = 60, .blocked = 0.0});
+  FieldPlanner planner;
+  auto asked = problem(map, {1.5, 1.5}, {50.5, 50.5});
+  std::stop_source source;
+  source.request_stop();
+  asked.watch.stop = source.get_token();
+  EXPECT_EQ(planner.plan(asked).status, RouteStatus::Cancelled);
+  asked.watch = {};
+  asked.time_limit_s = 1e-9;
+  EXPECT_EQ(planner.plan(asked).status, RouteStatus::TimedOut);
+}
+
+}  // namespace
+}  // namespace talus::planner

@@ -1,0 +1,100 @@
+#include <stdexcept>
+
+#include <talus/planner/plugin/risk_planner.hpp>
+#include <talus/planner/route/motion_cost.hpp>
+
+#include "drawn_map.hpp"
+
+namespace talus::planner {
+namespace {
+
+using ::testing::HasSubstr;
+
+// Ground 0: dear and safe; 1: cheap and risky; 2: as cheap, slower, half as risky.
+std::shared_ptr<const costmap::CostGrid> withRisk(const std::vector<std::string>& rows) {
+  const auto ground = [](double energy, double time, double risk) {
+    costmap::DriveState state;
+    state.energy_J_per_m = static_cast<float>(energy);
+    state.time_s_per_m = static_cast<float>(time);
+    state.risk_per_m = static_cast<float>(risk);
+    auto table = std::make_shared<costmap::DriveTable>();
+    table->fill(state);
+    return costmap::DriveGround{.curve = {}, .states = table};
+  };
+  auto content = testing::drawn(rows)->content();
+  content.cost = std::make_shared<costmap::DriveCost>(
+      costmap::DriveCost::Limits{},
+      std::vector{ground(20, 5, 1e-6), ground(10, 5, 1e-2), ground(10, 9, 5e-3)});
+  return costmap::reweighted(costmap::CostGrid(content), {.energy = 1.0, .time_W = 1.0, .risk_J = 1.0});
+}
+
+// Risky ground lies between start and goal; safe ground around it.
+Problem acrossRisk() {
+  std::vector<std::string> rows(20, std::string(40, '0'));
+  for (std::size_t r = 8; r < 20; ++r) rows[r].replace(5, 30, 30, '1');
+  Problem problem;
+  problem.map = withRisk(rows);
+  problem.start = {2.5, 5.5};
+  problem.goal = {37.5, 5.5};
+  return problem;
+}
+
+TEST(RiskPlanner, KeepsTheLimitAtAPrice) {
+  const Problem problem = acrossRisk();
+  NamedPlanner planner;
+  const Plan free = planner.plan(problem);
+  ASSERT_EQ(free.status, RouteStatus::Found);
+  const double free_risk = demandOf(*problem.map, free).risk;
+  EXPECT_NEAR(free_risk, 1 - std::exp(-0.30), 0.01);  // Closed form: 30 m of 1e-2 per metre
+  const Plan safe = planWithinRisk(problem, planner, 0.05);
+  ASSERT_EQ(safe.status, RouteStatus::Found) << safe.reason;
+  EXPECT_LE(demandOf(*problem.map, safe).risk, 0.05);
+  EXPECT_GT(safe.cost_J, free.cost_J);
+  EXPECT_GE(safe.cost_J, safe.lower_bound_J);
+  // Property: the price is paid in the map's own cost.
+  EXPECT_DOUBLE_EQ(safe.cost_J, MotionCost(problem.map).along(safe.points));
+}
+
+TEST(RiskPlanner, ALimitThatHoldsAnywayChangesNothing) {
+  const Problem problem = acrossRisk();
+  NamedPlanner planner;
+  EXPECT_EQ(planWithinRisk(problem, planner, 0.9).points, planner.plan(problem).points);
+}
+
+TEST(RiskPlanner, ALimitThatNothingKeepsIsNoRoute) {
+  Problem problem = acrossRisk();
+  problem.map = withRisk(std::vector<std::string>(20, std::string(40, '1')));
+  NamedPlanner planner;
+  const Plan plan = planWithinRisk(problem, planner, 0.01);
+  EXPECT_EQ(plan.status, RouteStatus::NoRoute);
+  EXPECT_THAT(plan.reason, HasSubstr("the safest one found has 0.5"));
+  EXPECT_THROW(planWithinRisk(problem, planner, 0.0), std::invalid_argument);
+  EXPECT_THROW(planWithinRisk(problem, planner, 1.0), std::invalid_argument);
+}
+
+TEST(RiskPlanner, NoRouteOfTheParetoSetBeatsAnother) {
+  std::vector<std::string> rows(20, std::string(40, '0'));
+  for (std::size_t r = 4; r < 12; ++r) rows[r].replace(5, 30, 30, '2');
+  for (std::size_t r = 12; r < 20; ++r) rows[r].replace(5, 30, 30, '1');
+  Problem problem = acrossRisk();
+  problem.map = withRisk(rows);
+  NamedPlanner planner;
+  const auto front = paretoSet(problem, planner, 9);
+  ASSERT_GE(front.size(), 3u);  // Property: each of the three grounds is best at something
+  for (const ParetoRoute& a : front)
+    for (const ParetoRoute& b : front)
+      EXPECT_FALSE(a.demand.energy_J < b.demand.energy_J && a.demand.time_s < b.demand.time_s &&
+                   a.demand.risk < b.demand.risk);
+  for (std::size_t i = 1; i < front.size(); ++i)
+    EXPECT_GE(front[i].demand.energy_J, front[i - 1].demand.energy_J);
+}
+
+TEST(RiskPlanner, AMapWithoutNumbersToWeighSaysSo) {
+  Problem problem = acrossRisk();
+  problem.map = testing::drawn({"...", "..."});
+  NamedPlanner planner;
+  EXPECT_THROW(paretoSet(problem, planner, 2), std::domain_error);
+}
+
+}  // namespace
+}  // namespace talus::planner

@@ -1,0 +1,68 @@
+#include <cmath>
+
+#include <ompl/base/ScopedState.h>
+
+#include <talus/planner/pose/pose_sampling.hpp>
+#include <talus/planner/pose/pose_space.hpp>
+
+#include "drawn_map.hpp"
+
+namespace talus::planner {
+namespace {
+
+PoseProblem across(unsigned seed, const Kinematics& kinematics) {
+  return {.map = testing::randomMap(
+              {.width = 40, .height = 40, .seed = seed, .blocked = 0.03, .roughness = 0.15}),
+          .start = {2.5, 2.5},
+          .goal = {36.5, 35.5},
+          .start_heading_rad = 0.0,
+          .kinematics = kinematics,
+          .watch = {}};
+}
+
+TEST(PoseSampling, NeverDearerNeverRefusedAndTheSameAgain) {
+  // Property: over random maps and all three ways to move.
+  double gained = 0.0;
+  for (unsigned seed = 1; seed <= 4; ++seed)
+    for (const Kinematics& kinematics :
+         {Kinematics{.turning_radius_m = 2.0}, Kinematics{.turning_radius_m = 2.0, .may_reverse = false},
+          Kinematics{}}) {
+      const PoseProblem problem = across(seed, kinematics);
+      const PosePlan known = HybridSearch({.heuristic_weight = 2.0}).plan(problem);
+      if (known.status != RouteStatus::Found) continue;
+      const PoseSamplingSettings settings{.seed = seed, .work = 20'000};
+      const PosePlan better = improvedBySampling(problem, known, settings);
+      ASSERT_EQ(better.status, RouteStatus::Found);
+      EXPECT_LE(better.cost_J, known.cost_J);
+      EXPECT_TRUE(mayBeDriven(*problem.map, better.path, problem.kinematics));
+      const Pose end = chords(better.path, *problem.map).back(),
+                 asked = chords(known.path, *problem.map).back();
+      EXPECT_NEAR(end.place.x_m, asked.place.x_m, 1e-5);
+      EXPECT_NEAR(std::remainder(end.heading_rad - asked.heading_rad, 2 * M_PI), 0.0, 1e-5);
+      EXPECT_EQ(improvedBySampling(problem, known, settings).cost_J, better.cost_J);
+      gained += known.cost_J - better.cost_J;
+    }
+  EXPECT_GT(gained, 0.0);
+}
+
+TEST(PoseSpace, WalksItsOwnCurves) {
+  const auto map = testing::drawn(std::vector<std::string>(20, std::string(20, '.')));
+  const MotionCost motion(map);
+  for (const bool reverse : {true, false}) {
+    const PoseCost cost(motion, {.turning_radius_m = 2.0, .may_reverse = reverse});
+    const auto space = std::make_shared<PoseSpace>(cost);
+    space->setup();
+    ompl::base::ScopedState<PoseSpace> a(space), b(space), middle(space);
+    PoseSpace::setPose(a.get(), {{5.0, 5.0}, 0.3});
+    PoseSpace::setPose(b.get(), {{14.0, 9.0}, 2.0});
+    const double whole = space->distance(a.get(), b.get());
+    space->interpolate(a.get(), b.get(), 0.4, middle.get());
+    // Property: what is left from a place on the shortest curve is the rest of it.
+    EXPECT_NEAR(space->distance(middle.get(), b.get()), 0.6 * whole, 1e-6);
+    space->interpolate(a.get(), b.get(), 1.0, middle.get());
+    EXPECT_NEAR(PoseSpace::pose(middle.get()).place.x_m, 14.0, 1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace talus::planner

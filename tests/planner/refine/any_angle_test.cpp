@@ -1,0 +1,56 @@
+#include <cmath>
+
+#include <talus/planner/refine/any_angle.hpp>
+
+#include "drawn_map.hpp"
+
+namespace talus::planner {
+namespace {
+
+using testing::drawn;
+using testing::randomMap;
+
+TEST(AnyAngle, StraightensOnFlatGround) {
+  const MotionCost cost(drawn(std::vector<std::string>(40, std::string(60, '.'))));
+  const std::vector<maps::Point> grid{{0.5, 0.5}, {30.5, 30.5}, {55.5, 30.5}};
+  const auto route = refined(cost, grid);
+  // Closed form: on ground of one cost the straight line is best.
+  EXPECT_NEAR(cost.along(route), 10.0 * std::hypot(55.0, 30.0), 1e-3);
+  EXPECT_EQ(route.size(), 2U);
+}
+
+TEST(AnyAngle, RefractsAtABorderLikeLight) {
+  // Two half planes, 10 and 30 J/m: sin of the angles to the normal stand as 3 to 1 (Snell).
+  std::vector<std::string> rows(60, std::string(120, '.'));
+  for (auto& row : rows) row.replace(60, 60, std::string(60, '2'));
+  const MotionCost cost(drawn(rows));
+  const maps::Point a{20.5, 10.5}, b{99.5, 50.5};
+  double best = 1e9;  // Closed form, by scanning where the border is crossed.
+  for (double y = 10.5; y < 50.5; y += 1e-4)
+    best = std::min(best, 10 * std::hypot(60 - a.x_m, y - a.y_m) + 30 * std::hypot(b.x_m - 60, b.y_m - y));
+  const auto route = refined(cost, {a, {60.5, 50.5}, b});
+  EXPECT_NEAR(cost.along(route), best, 5e-4 * best);
+}
+
+// Property: never dearer, ends kept, allowed.
+TEST(AnyAngle, NeverWorse) {
+  for (unsigned seed = 1; seed <= 10; ++seed) {
+    const MotionCost cost(
+        randomMap({.width = 40, .height = 40, .seed = seed, .blocked = 0.0, .roughness = 0.1}));
+    const std::vector<maps::Point> grid{{1.5, 1.5}, {20.5, 1.5}, {20.5, 20.5}, {38.5, 38.5}};
+    const double before = cost.along(grid);
+    const auto route = refined(cost, grid);
+    EXPECT_LT(cost.along(route), before);
+    EXPECT_EQ(route.front(), grid.front());
+    EXPECT_EQ(route.back(), grid.back());
+  }
+}
+
+TEST(AnyAngle, DropsIdleTurns) {
+  const MotionCost cost(drawn({".....", ".#...", "....."}));
+  const auto route = withoutIdleTurns(cost, {{0.5, 0.5}, {1.5, 0.5}, {2.5, 0.5}, {2.5, 2.5}});
+  EXPECT_EQ(route.size(), 3U);
+}
+
+}  // namespace
+}  // namespace talus::planner

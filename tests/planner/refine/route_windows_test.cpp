@@ -1,0 +1,77 @@
+#include <atomic>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include <talus/planner/refine/route_windows.hpp>
+
+namespace talus::planner {
+namespace {
+
+Polyline wave(double from_m, double to_m) {
+  Polyline line;
+  for (double x = from_m; x <= to_m; x += 1.0) line.push_back({x, 3.0 * std::sin(0.2 * x)});
+  return line;
+}
+
+// Work that leaves a trace on every window: its middle point is lifted.
+Polyline lifted(const Polyline& window) {
+  Polyline made = window;
+  if (made.size() > 2) made[made.size() / 2].y_m += 1.0;
+  return made;
+}
+
+constexpr WindowCut kCut{.length_m = 20.0, .overlap_m = 5.0, .reach_m = 2.0};
+
+TEST(RouteWindows, SameBytesWithOneOrTwoThreadsAndAMemo) {
+  RefinementCache one, two, again;
+  const Polyline route = wave(0.0, 200.0);
+  const Polyline made = byWindows(route, kCut, lifted, one, 1);
+  EXPECT_NE(made, route);
+  EXPECT_EQ(made.front(), route.front());
+  EXPECT_EQ(made.back(), route.back());
+  EXPECT_EQ(made, byWindows(route, kCut, lifted, two, 2));
+  byWindows(wave(50.0, 200.0), kCut, lifted, again, 1);
+  EXPECT_EQ(made, byWindows(route, kCut, lifted, again, 1));
+}
+
+TEST(RouteWindows, KnownGroundIsNotWorkedOnTwice) {
+  RefinementCache memo;
+  std::atomic<int> worked{0};
+  const auto work = [&worked](const Polyline& window) {
+    ++worked;
+    return lifted(window);
+  };
+  const Polyline route = wave(0.0, 200.0);
+  byWindows(route, kCut, work, memo, 2);
+  const int whole = worked.exchange(0);
+  EXPECT_GT(whole, 12);
+  byWindows(route, kCut, work, memo, 2);
+  EXPECT_EQ(worked.exchange(0), 0);
+  memo.forget({{100.0, 0.0}, {101.0, 0.0}});  // inside one window, maybe within reach of a joint
+  byWindows(route, kCut, work, memo, 2);
+  const int part = worked.exchange(0);
+  EXPECT_GE(part, 1);
+  EXPECT_LE(part, 4);
+  memo.forget({{300.0, 0.0}, {301.0, 0.0}});
+  byWindows(route, kCut, work, memo, 2);
+  EXPECT_EQ(worked.exchange(0), 0);
+  memo.newRound();
+  memo.newRound();
+  byWindows(route, kCut, work, memo, 2);
+  EXPECT_EQ(worked.exchange(0), whole);
+}
+
+TEST(RouteWindows, StoppedLeavesTheRoute) {
+  RefinementCache memo;
+  std::stop_source source;
+  source.request_stop();
+  ProgressMonitor watch;
+  watch.stop = source.get_token();
+  const Polyline route = wave(0.0, 100.0);
+  const Polyline made = byWindows(route, kCut, lifted, memo, 1, StopCheck(watch));
+  EXPECT_NEAR(length_m(made), length_m(route), 1e-9);
+}
+
+}  // namespace
+}  // namespace talus::planner

@@ -1,0 +1,50 @@
+#include <cmath>
+#include <random>
+#include <stdexcept>
+
+#include <talus/planner/route/kinematics.hpp>
+
+namespace talus::planner {
+namespace {
+
+Pose end(Pose pose, const std::vector<Arc>& arcs) {
+  for (const Arc& arc : arcs) pose = after(pose, arc);
+  return pose;
+}
+
+TEST(Kinematics, AQuarterCircleEndsWhereItShould) {
+  const Pose left = after({{0.0, 0.0}, 0.0}, Arc{M_PI, 0.5});
+  // Closed form: radius 2 about (0, 2).
+  EXPECT_NEAR(left.place.x_m, 2.0, 1e-12);
+  EXPECT_NEAR(left.place.y_m, 2.0, 1e-12);
+  EXPECT_NEAR(left.heading_rad, M_PI / 2, 1e-12);
+}
+
+TEST(Kinematics, ShortestCurvesArriveAndKeepTheRadius) {
+  // Property: over random poses both families end at the target, and reversing never makes the way longer.
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> place(-5.0, 5.0), heading(-4.0, 4.0);
+  for (int k = 0; k < 500; ++k) {
+    const Pose from{{place(random), place(random)}, heading(random)},
+        to{{place(random), place(random)}, heading(random)};
+    double length[2] = {0.0, 0.0};
+    for (const bool reverse : {false, true}) {
+      const auto arcs = shortestArcs(from, to, {.turning_radius_m = 1.5, .may_reverse = reverse});
+      const Pose reached = end(from, arcs);
+      EXPECT_NEAR(reached.place.x_m, to.place.x_m, 1e-6);
+      EXPECT_NEAR(reached.place.y_m, to.place.y_m, 1e-6);
+      EXPECT_NEAR(std::remainder(reached.heading_rad - to.heading_rad, 2 * M_PI), 0.0, 1e-6);
+      for (const Arc& arc : arcs) {
+        EXPECT_LE(std::abs(arc.curvature_1_m), 1.0 / 1.5 + 1e-12);
+        if (!reverse) {
+          EXPECT_GT(arc.length_m, 0.0);
+        }
+        length[reverse ? 1 : 0] += std::abs(arc.length_m);
+      }
+    }
+    EXPECT_LE(length[1], length[0] + 1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace talus::planner

@@ -1,0 +1,37 @@
+#include <stdexcept>
+
+#include <talus/planner/route/planner_names.hpp>
+
+namespace talus::planner {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+TEST(PlannerNames, SpellingIsForgiven) {
+  EXPECT_EQ(plannerName(""), "field");
+  EXPECT_EQ(plannerName("RRT*"), "RRTstar");
+  EXPECT_EQ(plannerName("informed-rrt*"), "InformedRRTstar");
+  EXPECT_EQ(plannerName("bit_star"), "BITstar");
+  EXPECT_EQ(plannerName("ABIT*"), "ABITstar");
+  for (const std::string& name : plannerNames()) EXPECT_EQ(plannerName(name), name);
+}
+
+TEST(PlannerNames, ARefusedPlannerSaysWhy) {
+  EXPECT_THAT([] { plannerName("PRM*"); },
+              ThrowsMessage<std::invalid_argument>(AllOf(HasSubstr("PRMstar"), HasSubstr("both ways"))));
+  for (const char* name : {"PRM*", "LazyPRM*", "SPARS", "BFMT", "LBTRRT", "AIT*", "RRTConnect"})
+    EXPECT_THAT([&] { plannerName(name); }, ThrowsMessage<std::invalid_argument>(HasSubstr("is refused: ")))
+        << name;
+}
+
+TEST(PlannerNames, AnUnknownOneNamesTheNearest) {
+  EXPECT_THAT([] { plannerName("feild"); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("nearest is 'field'")));
+  EXPECT_THAT([] { plannerName("BITsta"); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("nearest is 'BITstar'")));
+}
+
+}  // namespace
+}  // namespace talus::planner

@@ -1,0 +1,183 @@
+#include <cmath>
+
+#include <talus/planner/bench/slip_world.hpp>
+#include <talus/planner/grid/field_planner.hpp>
+#include <talus/planner/route/motion_cost.hpp>
+#include <talus/planner/route/planner_names.hpp>
+#include <talus/planner/sampling/sampling_planner.hpp>
+
+#include "drawn_map.hpp"
+
+namespace talus::planner {
+namespace {
+
+using testing::drawn;
+
+// A wall with a gap near its south end; the direct way from west to east is shut.
+std::shared_ptr<const costmap::CostGrid> wall() {
+  std::vector<std::string> rows(40, std::string(60, '.'));
+  for (std::size_t r = 0; r < 34; ++r) rows[r][30] = '#';
+  return drawn(rows);
+}
+
+Problem across(std::shared_ptr<const costmap::CostGrid> map) {
+  Problem problem;
+  problem.map = std::move(map);
+  problem.start = {5.5, 20.5};
+  problem.goal = {54.5, 20.5};
+  return problem;
+}
+
+// A scout that knows one way round the wall, not the best.
+Plan detour(const Problem& leg) {
+  Plan known;
+  known.points = {leg.start, {15.5, 2.5}, {45.5, 2.5}, leg.goal};
+  known.cost_J = MotionCost(leg.map).along(known.points);
+  known.status = RouteStatus::Found;
+  return known;
+}
+
+// The same map under a cost that forbids climbing.
+std::shared_ptr<const costmap::CostGrid> drivenDownOnly(const std::shared_ptr<const costmap::CostGrid>& map) {
+  costmap::DriveCurve curve;
+  for (std::size_t bin = 0; bin < costmap::DriveCurve::kBins; ++bin)
+    curve.cost_J_per_m[bin] =
+        bin > costmap::DriveCurve::kBins / 2 ? std::numeric_limits<float>::infinity() : 10.0F;
+  auto content = map->content();
+  content.cost = std::make_shared<costmap::DriveCost>(costmap::DriveCost::Limits{}, std::vector{curve});
+  return std::make_shared<costmap::CostGrid>(content);
+}
+
+class EveryPlanner : public ::testing::TestWithParam<std::string> {};
+
+INSTANTIATE_TEST_SUITE_P(Ompl, EveryPlanner,
+                         ::testing::Values("RRTstar", "InformedRRTstar", "BITstar", "ABITstar", "SST",
+                                           "FMT"));
+
+TEST_P(EveryPlanner, RoundsTheWallExactly) {
+  const Problem problem = across(wall());
+  const Plan plan = planBySampling(problem, {.planner = GetParam(), .work = 1'000'000});
+  ASSERT_EQ(plan.status, RouteStatus::Found) << plan.reason;
+  EXPECT_EQ(plan.points.front(), problem.start);
+  EXPECT_EQ(plan.points.back(), problem.goal);
+  // Property: the plan's cost is what the one cost function says of its points.
+  EXPECT_DOUBLE_EQ(plan.cost_J, MotionCost(problem.map).along(plan.points));
+  // Closed form: no way is shorter than over the wall's south end, (30, 6) to (31, 6), at 10 J/m on the flat.
+  const double best_J = 10 * (std::hypot(24.5, 14.5) + 1 + std::hypot(23.5, 14.5));
+  EXPECT_GE(plan.cost_J, best_J * (1 - 1e-12));
+  // Asymptotically optimal planners stopped early; SST is so only up to its pruning radius.
+  EXPECT_LE(plan.cost_J, best_J * (GetParam() == "SST" ? 1.3 : 1.1));
+  EXPECT_LE(plan.lower_bound_J, best_J);
+}
+
+TEST_P(EveryPlanner, ImprovesOnTheRouteItIsGiven) {
+  const Problem problem = across(wall());
+  const double known_J = detour(problem).cost_J;
+  const Plan plan = planBySampling(problem, {.planner = GetParam(), .work = 1'000'000}, detour);
+  ASSERT_EQ(plan.status, RouteStatus::Found);
+  EXPECT_LT(plan.cost_J, known_J);
+}
+
+TEST_P(EveryPlanner, SameSeedSameBytes) {
+  Problem problem = across(wall());
+  const SamplingSettings settings{.planner = GetParam(), .work = 1'000'000};
+  const Plan first = planBySampling(problem, settings, detour);
+  const Plan second = planBySampling(problem, settings, detour);
+  EXPECT_EQ(first.points, second.points);
+  problem.seed = 2;
+  EXPECT_NE(planBySampling(problem, settings, detour).points, first.points);
+}
+
+// Property: a time limit is used up, beyond the work that would end it else.
+TEST_P(EveryPlanner, TakesTheTimeItIsGiven) {
+  Problem problem = across(wall());
+  problem.time_limit_s = 0.3;
+  const Plan plan = planBySampling(problem, {.planner = GetParam(), .work = 1}, detour);
+  EXPECT_EQ(plan.status, RouteStatus::Found);
+  EXPECT_LT(plan.cost_J, detour(problem).cost_J);  // work of 1 leaves the known route as it was
+}
+
+TEST_P(EveryPlanner, NeverClimbsWhereClimbingIsForbidden) {
+  // Ground that rises eastwards and may be driven down but not up: west to east there is no route.
+  const auto map = drivenDownOnly(
+      drawn(std::vector<std::string>(20, std::string(20, '.') + ">>>>" + std::string(20, '.'))));
+  Problem up{.map = map, .start = {5.5, 10.5}, .goal = {38.5, 10.5}};
+  Problem down{.map = map, .start = {38.5, 10.5}, .goal = {5.5, 10.5}};
+  const SamplingSettings settings{.planner = GetParam(), .work = 1'000'000, .range_cells = 10};
+  EXPECT_EQ(planBySampling(up, settings).status, RouteStatus::NoRoute);
+  EXPECT_EQ(planBySampling(down, settings).status, RouteStatus::Found);
+}
+
+TEST_P(EveryPlanner, StopsWhenAsked) {
+  std::stop_source stop;
+  stop.request_stop();
+  Problem problem = across(wall());
+  problem.watch.stop = stop.get_token();
+  EXPECT_EQ(planBySampling(problem, {.planner = GetParam()}).status, RouteStatus::Cancelled);
+}
+
+// Property: whoever stops the work is told so, though a route is known already.
+TEST_P(EveryPlanner, IsCancelledThoughARouteIsKnown) {
+  std::stop_source stop;
+  Problem problem = across(wall());
+  problem.watch.stop = stop.get_token();
+  SamplingSettings settings{.planner = GetParam()};
+  settings.better = [&stop](double) { stop.request_stop(); };  // called with the known route first
+  const Plan plan = planBySampling(problem, settings, detour);
+  EXPECT_EQ(plan.status, RouteStatus::Cancelled);
+  EXPECT_TRUE(plan.points.empty());
+}
+
+TEST_P(EveryPlanner, EndsOnBlockedGroundAreNamed) {
+  Problem problem = across(wall());
+  problem.start = {30.5, 30.5};
+  EXPECT_EQ(planBySampling(problem, {.planner = GetParam()}).status, RouteStatus::StartInvalid);
+  problem = across(wall());
+  problem.goal = {1000, 1000};
+  EXPECT_EQ(planBySampling(problem, {.planner = GetParam()}).status, RouteStatus::GoalInvalid);
+}
+
+TEST_P(EveryPlanner, AStartAtTheGoalIsARouteOfNoCost) {
+  Problem problem = across(wall());
+  problem.goal = problem.start;
+  const Plan plan = planBySampling(problem, {.planner = GetParam(), .work = 10'000});
+  EXPECT_EQ(plan.status, RouteStatus::Found);
+  EXPECT_EQ(plan.cost_J, 0.0);
+}
+
+TEST_P(EveryPlanner, PassesViaPointsInOrder) {
+  Problem problem = across(wall());
+  problem.via = {{10.5, 35.5}, {50.5, 35.5}};
+  const Plan plan = planBySampling(problem, {.planner = GetParam(), .work = 1'000'000});
+  ASSERT_EQ(plan.status, RouteStatus::Found);
+  const auto first = std::ranges::find(plan.points, problem.via[0]);
+  const auto second = std::ranges::find(plan.points, problem.via[1]);
+  ASSERT_NE(second, plan.points.end());
+  EXPECT_LT(first, second);
+}
+
+// Property: what a planner says that it found is what it hands out, also where the route that it was given
+// turns on edges between cells and headings are forbidden cell by cell.
+TEST(SamplingPlanner, HandsOutTheCostThatItReports) {
+  for (const std::string name : {"RRTstar", "InformedRRTstar", "BITstar"})
+    for (const std::uint64_t seed : {std::uint64_t{1001}, std::uint64_t{1002}}) {
+      Problem problem{.map = slipWorld({.seed = seed}).map, .start = {8.5, 8.5}, .goal = {87.5, 87.5}};
+      problem.prove = false;
+      double reported_J = INFINITY;
+      SamplingSettings settings{.planner = name, .work = 1'000'000};
+      settings.better = [&reported_J](double cost_J) { reported_J = std::min(reported_J, cost_J); };
+      const Plan plan =
+          planBySampling(problem, settings, [](const Problem& leg) { return FieldPlanner().plan(leg); });
+      ASSERT_EQ(plan.status, RouteStatus::Found);
+      EXPECT_LE(plan.cost_J, reported_J * (1.0 + 1e-9)) << name << " seed " << seed;
+    }
+}
+
+TEST(SamplingPlanner, RefusesSettingsOutOfRange) {
+  EXPECT_THROW(planBySampling(across(wall()), {.work = 0}), std::invalid_argument);
+  EXPECT_THROW(planBySampling(across(wall()), {.range_cells = -1}), std::invalid_argument);
+  EXPECT_THROW(planBySampling(across(wall()), {.planner = "field"}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace talus::planner

@@ -1,0 +1,127 @@
+#include <algorithm>
+#include <memory>
+
+#include <site_fixture.hpp>
+
+#include <talus/planner/simulation/traverse_simulation.hpp>
+
+namespace talus::planner {
+namespace {
+
+using costmap::testDust;
+using costmap::testRover;
+using costmap::testSand;
+
+maps::Grid grid() {
+  return {.width = 60, .height = 40, .resolution_m = 1.0, .south_west = {}};
+}
+
+// A plane that rises eastwards, taken for sand.
+costmap::TraversabilityMap planeMap(double rise) {
+  costmap::MapLayers layers;
+  layers.elevation.elevation_m = maps::Raster<float>(grid());
+  for (int row = 0; row < grid().height; ++row)
+    for (int column = 0; column < grid().width; ++column)
+      layers.elevation.elevation_m[{column, row}] = static_cast<float>(rise * column);
+  return {std::move(layers), costmap::testGround(), {}};
+}
+
+struct Site {
+  WorldSoils soils;
+  double rise = 0.0;
+};
+
+TraverseSimulation over(const Site& site, bool senses) {
+  const TrueWorld world(site.soils, testRover(), maps::Raster<std::uint8_t>(grid(), 0));
+  costmap::TraversabilityMap map = planeMap(site.rise);
+  SimulationOptions options;
+  options.start = {5.5, 20.5};
+  options.goal = {54.5, 20.5};
+  options.senses = senses;
+  return simulateTraverse(map, world, options);
+}
+
+Site trapped(double rise = 0.0) {
+  return {{.classes = {testSand()}, .patches = {{{30.0, 20.5}, 4.0, testDust()}}}, rise};
+}
+
+TEST(TraverseSimulation, GroundThatIsAsBelievedIsDrivenAtOnce) {
+  const TraverseSimulation drive = over({{.classes = {testSand()}, .patches = {}}}, true);
+  EXPECT_EQ(drive.outcome, Outcome::Reached);
+  EXPECT_EQ(drive.alarms, 0);
+  EXPECT_NEAR(drive.length_m, 49.0, 0.5);  // Closed form: straight over flat ground, to the goal
+}
+
+TEST(TraverseSimulation, AnUndeclaredTrapHoldsWhoDrivesInBlindly) {
+  EXPECT_EQ(over(trapped(), false).outcome, Outcome::Immobilised);
+}
+
+TEST(TraverseSimulation, WhoWatchesItsWheelsBacksOutAndGoesRound) {
+  for (const double rise : {0.0, 0.06, -0.06}) {
+    const TraverseSimulation drive = over(trapped(rise), true);
+    EXPECT_EQ(drive.outcome, Outcome::Reached) << rise;
+    EXPECT_GE(drive.alarms, 1) << rise;
+    EXPECT_GE(drive.replans, drive.alarms) << rise;
+    EXPECT_GT(drive.length_m, 50.0) << rise;
+    EXPECT_LT(drive.length_m, 85.0) << rise;
+  }
+}
+
+TEST(TraverseSimulation, NoWayRoundIsGivenUpNotTriedToDeath) {
+  const Site wall{{.classes = {testSand()}, .patches = {{{1030.0, 20.5}, 1000.0, testDust()}}}, 0.0};
+  const TraverseSimulation drive = over(wall, true);
+  EXPECT_EQ(drive.outcome, Outcome::GaveUp);
+  for (const TrackPoint& at : drive.track) EXPECT_LT(at.place.x_m, 30.5);  // at most the front wheels were in
+}
+
+// Ground that slips more but holds, and a trap behind it: who backs out of the trap by its own length alone
+// would turn on ground that it has just felt to be weak.
+TEST(TraverseSimulation, BacksOutUntilItStandsOnSoundGround) {
+  terramech::Soil weak = testSand();
+  weak.friction_angle_rad = 0.44;
+  const Site site{
+      {.classes = {testSand()}, .patches = {{{30.0, 20.5}, 8.0, weak}, {{30.0, 20.5}, 4.0, testDust()}}},
+      0.0};
+  const TraverseSimulation drive = over(site, true);
+  EXPECT_EQ(drive.outcome, Outcome::Reached);
+  ASSERT_GE(drive.alarms, 1);
+  const auto out = std::find_if(drive.events.begin(), drive.events.end(),
+                                [](const DriveEvent& e) { return e.text == "backed out"; });
+  ASSERT_NE(out, drive.events.end());
+  const auto at = std::find_if(drive.track.begin(), drive.track.end(),
+                               [&](const TrackPoint& t) { return t.time_s >= out->time_s; });
+  ASSERT_NE(at, drive.track.end());
+  // Closed form: the weak ground begins 8 m, the trap 4 m before its middle at x = 30; a rover of 0.8 m by
+  // 0.6 m that stands before the former has its middle at least half a metre off.
+  EXPECT_LT(at->place.x_m, 23.0);
+}
+
+TEST(TraverseSimulation, FarTooSteepTips) {
+  EXPECT_EQ(over({{.classes = {testSand()}, .patches = {}}, 0.9}, false).outcome, Outcome::GaveUp);
+}
+
+TEST(TraverseSimulation, TheTrackTellsTheDrive) {
+  const TraverseSimulation drive = over(trapped(), true);
+  ASSERT_GT(drive.track.size(), 10U);
+  double length_m = 0.0;
+  for (std::size_t i = 1; i < drive.track.size(); ++i) {
+    const TrackPoint &a = drive.track[i - 1], &b = drive.track[i];
+    length_m += std::hypot(b.place.x_m - a.place.x_m, b.place.y_m - a.place.y_m);
+    EXPECT_GE(b.time_s, a.time_s);
+    EXPECT_GE(b.energy_J, a.energy_J);
+  }
+  EXPECT_NEAR(length_m, drive.length_m, 1e-6);
+  EXPECT_EQ(drive.events.front().text, "planned");
+  EXPECT_EQ(drive.events.back().text, "reached");
+  EXPECT_GE(drive.events.front().route.size(), 2U);
+}
+
+TEST(TraverseSimulation, SameSeedSameDrive) {
+  const TraverseSimulation a = over(trapped(), true), b = over(trapped(), true);
+  EXPECT_EQ(a.energy_J, b.energy_J);
+  EXPECT_EQ(a.length_m, b.length_m);
+  EXPECT_EQ(a.track.size(), b.track.size());
+}
+
+}  // namespace
+}  // namespace talus::planner

@@ -1,0 +1,137 @@
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include <site_fixture.hpp>
+
+#include <talus/planner/simulation/true_world.hpp>
+#include <talus/terramech/contact/wong_reece.hpp>
+
+namespace talus::planner {
+namespace {
+
+using costmap::testDust;
+using costmap::testRover;
+using costmap::testSand;
+
+maps::Raster<std::uint8_t> oneClass() {
+  return maps::Raster<std::uint8_t>({.width = 60, .height = 40, .resolution_m = 1.0, .south_west = {}}, 0);
+}
+
+// Sand, but for dust east of x = 30.
+TrueWorld dustInTheEast() {
+  return {
+      {.classes = {testSand()}, .patches = {{{1030.0, 20.0}, 1000.0, testDust()}}}, testRover(), oneClass()};
+}
+
+TEST(WheelTable, HoldsTheForwardModel) {
+  const terramech::Rover rover = testRover();
+  const WheelTable table(testSand(), rover);
+  for (std::size_t layer = 0; layer < WheelTable::kLoads; ++layer)
+    for (const double slip : {-0.5, 0.0, 0.3, 0.5}) {
+      // Closed form: the table's own nodes, which lie at every 0.025 of slip
+      const double load = WheelTable::load(layer), load_N = load * terramech::wheelLoad_N(rover);
+      const auto wheel = terramech::equilibrium(testSand(), rover.wheel, {.load_N = load_N, .slip = slip});
+      const WheelTable::Row row = table.at(slip, load);
+      EXPECT_NEAR(row.pull, wheel.drawbar_pull_N / load_N, 1e-12);
+      EXPECT_NEAR(row.sinkage, wheel.sinkage_m / rover.wheel.radius_m, 1e-12);
+      EXPECT_NEAR(row.torque, wheel.torque_Nm / (load_N * rover.wheel.radius_m), 1e-12);
+    }
+  // Property: between two nodes it lies between them, beyond the last it stays.
+  EXPECT_GT(table.at(0.3, 1.05).sinkage, table.at(0.3, 1.0).sinkage);
+  EXPECT_LT(table.at(0.3, 1.05).sinkage, table.at(0.3, 1.15).sinkage);
+  EXPECT_NEAR(table.at(0.3, 2.5).sinkage, table.at(0.3, 1.9).sinkage, 1e-12);
+}
+
+TEST(TrueWorld, WheelsTogetherPullWhatTheSlopeAsks) {
+  const TrueWorld world = dustInTheEast();
+  const std::vector<std::pair<double, double>> cases{
+      {-0.1, 10.0}, {0.0, 10.0}, {0.1, 10.0}, {-0.1, 29.8}, {-0.05, 29.8}};
+  for (const auto& [gradient, x] : cases) {
+    const auto step = world.drive({.place = {x, 20.0}, .heading = {1.0, 0.0}, .gradient = gradient});
+    ASSERT_FALSE(step.stuck) << gradient << ' ' << x;
+    double pull_N = 0.0, load_N = 0.0;
+    for (const auto& wheel : step.wheels) {
+      pull_N += wheel.forces.pull * wheel.load_N;
+      load_N += wheel.load_N;
+    }
+    EXPECT_NEAR(pull_N / load_N, gradient, 2e-3);  // Property: balance, to the table's interpolation
+  }
+}
+
+TEST(TrueWorld, TheFirstAxleMeetsThePatchFirst) {
+  const TrueWorld world = dustInTheEast();
+  const auto before = world.drive({.place = {29.0, 20.0}, .heading = {1.0, 0.0}});
+  const auto half = world.drive({.place = {29.8, 20.0}, .heading = {1.0, 0.0}});
+  ASSERT_EQ(half.wheels.size(), 4U);
+  EXPECT_GT(half.slip, before.slip);
+  EXPECT_GT(half.wheels[0].forces.sinkage, 2.0 * half.wheels[2].forces.sinkage);
+  EXPECT_LT(half.wheels[0].forces.pull, 0.0);
+  EXPECT_GT(half.wheels[2].forces.pull, 0.0);
+}
+
+TEST(TrueWorld, WithAllWheelsInNothingHelps) {
+  EXPECT_TRUE(dustInTheEast().drive({.place = {35.0, 20.0}, .heading = {1.0, 0.0}}).stuck);
+}
+
+TEST(TrueWorld, WhoStopsAtTheEdgeBacksOutInItsRuts) {
+  const TrueWorld world = dustInTheEast();
+  Ruts ruts(testRover().wheel.width_m);
+  for (double x = 28.0; x < 29.81; x += 0.1) {
+    for (const auto& wheel : world.drive({.place = {x, 20.0}, .heading = {1.0, 0.0}, .ruts = &ruts}).wheels)
+      ruts.press(wheel.place);
+    ruts.moved(0.1);
+  }
+  ruts.turnBack();
+  const auto back =
+      world.drive({.place = {29.8, 20.0}, .heading = {-1.0, 0.0}, .dug_m = 0.003, .ruts = &ruts});
+  EXPECT_FALSE(back.stuck);
+  for (const auto& wheel : back.wheels) EXPECT_GT(wheel.passes, 0);
+  // Property: holes cost slip.
+  EXPECT_GT(back.slip, world.drive({.place = {29.8, 20.0}, .heading = {-1.0, 0.0}, .ruts = &ruts}).slip);
+}
+
+TEST(TrueWorld, TheSecondWheelInARutPullsMoreThanTheFirst) {
+  const TrueWorld world = dustInTheEast();
+  Ruts ruts(testRover().wheel.width_m);
+  for (double x = 8.0; x < 10.0; x += 0.1) {
+    for (const auto& wheel : world.drive({.place = {x, 20.0}, .heading = {1.0, 0.0}, .ruts = &ruts}).wheels)
+      ruts.press(wheel.place);
+    ruts.moved(0.1);
+  }
+  const auto step = world.drive({.place = {10.0, 20.0}, .heading = {1.0, 0.0}, .ruts = &ruts});
+  EXPECT_EQ(step.wheels[0].passes, 0);
+  EXPECT_EQ(step.wheels[2].passes, 1);
+  EXPECT_GT(step.wheels[2].forces.pull, step.wheels[0].forces.pull);
+}
+
+TEST(TrueWorld, EachSoilOncePatchesEachTheirOwn) {
+  terramech::Soil mud = testDust();
+  mud.cohesion_Pa = 0.0;
+  const TrueWorld world({.classes = {testSand()},
+                         .patches = {{{10.0, 10.0}, 2.0, testDust()},
+                                     {{20.0, 10.0}, 2.0, mud},
+                                     {{30.0, 10.0}, 2.0, testDust()}}},
+                        testRover(), oneClass());
+  EXPECT_EQ(world.soils().size(), 3U);
+  EXPECT_EQ(world.soilAt({10.0, 10.0}), 1U);
+  EXPECT_EQ(world.soilAt({20.0, 10.0}), 2U);
+  EXPECT_EQ(world.soilAt({30.0, 10.0}), 1U);
+  EXPECT_EQ(world.soilAt({30.0, 13.0}), 0U);
+  EXPECT_EQ(world.soilAt({30.0, 13.0}, 1.5), 1U);
+}
+
+TEST(TrueWorld, EnergyIsWorkAgainstSlipAndHotel) {
+  const terramech::Rover rover = testRover();
+  const TrueWorld world = dustInTheEast();
+  const auto step = world.drive({.place = {10.0, 20.0}, .heading = {1.0, 0.0}, .gradient = 0.05});
+  const double left = 1.0 - step.slip;
+  // Closed form: sum T / (r (1 - i)) + P / (v0 (1 - i))
+  EXPECT_NEAR(
+      step.energy_J_per_m,
+      step.torque_Nm / (rover.wheel.radius_m * left) + rover.hotel_power_W / (rover.max_speed_mps * left),
+      1e-9);
+}
+
+}  // namespace
+}  // namespace talus::planner

@@ -1,0 +1,123 @@
+#include <cmath>
+#include <stdexcept>
+
+#include <talus/terramech/contact/pneumatic_tyre.hpp>
+#include <talus/terramech/contact/wong_reece.hpp>
+
+namespace talus::terramech {
+namespace {
+
+Soil loam() {
+  return {.name = "loam",
+          .cohesion_Pa = 3000.0,
+          .friction_angle_rad = 0.5,
+          .sinkage_exponent = 0.8,
+          .frictional_modulus = 2e6,
+          .shear_modulus_m = 0.02};
+}
+
+Tyre tyre(double inflation_Pa) {
+  return {.wheel = {.radius_m = 0.4, .width_m = 0.25}, .inflation_Pa = inflation_Pa, .carcass_Pa = 1e4};
+}
+
+TEST(PneumaticTyre, OnRigidGroundTheFlatCarriesTheLoadAtItsPressure) {
+  const TyreForces forces = tyreOnRigidGround(tyre(5e4), {.load_N = 3000.0, .slip = 0.1});
+  EXPECT_DOUBLE_EQ(forces.flat_length_m, 3000.0 / (6e4 * 0.25));  // Closed form.
+  const double half = 0.5 * forces.flat_length_m;
+  EXPECT_NEAR(std::pow(0.4 - forces.deflection_m, 2) + half * half, 0.16,
+              1e-14);  // Closed form: chord of a circle.
+}
+
+TEST(PneumaticTyre, OnRigidGroundThrustRisesWithSlipToFriction) {
+  double last = -1.0;
+  for (const double slip : {0.0, 0.001, 0.01, 0.1, 1.0}) {
+    const double pull = tyreOnRigidGround(tyre(5e4), {.load_N = 3000.0, .slip = slip}).drawbar_pull_N;
+    EXPECT_GE(pull, last);
+    EXPECT_LE(pull, 0.7 * 3000.0);
+    last = pull;
+  }
+  EXPECT_NEAR(last, 0.7 * 3000.0, 0.01 * 2100.0);
+}
+
+TEST(PneumaticTyre, AHardTyreIsARigidWheelAndASoftOneFlattens) {
+  const TyreOperation operation{.load_N = 1500.0, .slip = 0.2};
+  const double critical = criticalPressure_Pa(loam(), tyre(0.0).wheel, 1500.0);
+  const TyreForces hard = tyreOnSoftGround(tyre(critical), loam(), operation);
+  EXPECT_EQ(hard.mode, TyreMode::Rigid);
+  EXPECT_DOUBLE_EQ(hard.sinkage_m,
+                   equilibrium(loam(), tyre(0.0).wheel, {.load_N = 1500.0, .slip = 0.2}).sinkage_m);
+  const TyreForces soft = tyreOnSoftGround(tyre(0.4 * critical - 1e4), loam(), operation);
+  EXPECT_EQ(soft.mode, TyreMode::Flattened);
+  EXPECT_LT(soft.sinkage_m, hard.sinkage_m);
+  EXPECT_GT(soft.flat_length_m, 0.0);
+  EXPECT_GT(soft.drawbar_pull_N,
+            hard.drawbar_pull_N);  // Measured by others: why tyres are let down on sand (wong_2001).
+}
+
+TEST(PneumaticTyre, ForcesAreTheStressesSummedUp) {
+  // Property: load, torque and pull by the midpoint rule over the round part and the flat, from the laws as
+  // the header states them.
+  const double r = 0.4, b = 0.25;
+  const Soil soil = loam();
+  for (const double slip : {0.0, 0.3}) {
+    const Tyre soft = tyre(1e4);
+    const TyreForces f = tyreOnSoftGround(soft, soil, {.load_N = 1500.0, .slip = slip});
+    ASSERT_EQ(f.mode, TyreMode::Flattened);
+    const double entry = std::acos(1.0 - (f.deflection_m + f.sinkage_m) / r);
+    const double flat = std::acos(1.0 - f.deflection_m / r);
+    const auto j = [&](double a) {  // thesis C.6
+      return r * (entry - a - (1.0 - slip) * (std::sin(entry) - std::sin(a)));
+    };
+    const auto tau = [&](double sigma, double at) {
+      return (3000.0 + sigma * std::tan(0.5)) * (1.0 - std::exp(-at / 0.02));
+    };
+    double load = 2e4 * f.flat_length_m, torque = 0.0, pull = 0.0;
+    constexpr int kSteps = 20000;
+    for (int k = 0; k < kSteps; ++k) {
+      const double a = flat + (entry - flat) * (k + 0.5) / kSteps, ds = r * (entry - flat) / kSteps;
+      const double sigma = 2e6 * std::pow(r * (std::cos(a) - std::cos(entry)), 0.8);
+      const double t = tau(sigma, j(a));
+      load += (sigma * std::cos(a) + t * std::sin(a)) * ds;
+      pull += (t * std::cos(a) - sigma * std::sin(a)) * ds;
+      torque += r * t * ds;
+      const double dx = f.flat_length_m / kSteps;
+      const double along = tau(2e4, j(flat) + slip * (k + 0.5) * dx) * dx;
+      pull += along;
+      torque += (r - f.deflection_m) * along;
+    }
+    EXPECT_NEAR(b * load, 1500.0, 0.01);
+    EXPECT_NEAR(f.torque_Nm / (b * torque), 1.0, 1e-5);
+    EXPECT_NEAR(f.drawbar_pull_N, b * pull, 0.01);
+  }
+}
+
+TEST(PneumaticTyre, LessPressureSinksLessAndFlattensMore) {
+  TyreForces last = tyreOnSoftGround(tyre(2.2e4), loam(), {.load_N = 1500.0, .slip = 0.2});
+  for (const double p : {1.8e4, 1.4e4, 1e4, 5e3}) {  // Property: monotone.
+    const TyreForces forces = tyreOnSoftGround(tyre(p), loam(), {.load_N = 1500.0, .slip = 0.2});
+    EXPECT_LT(forces.sinkage_m, last.sinkage_m);
+    EXPECT_GT(forces.deflection_m, last.deflection_m);
+    last = forces;
+  }
+}
+
+TEST(PneumaticTyre, CriticalPressureIsThatUnderARigidWheelByBekker) {
+  // Closed form: for n = 1 and small angles W = b k sqrt(D z) (3 - n) z / 3 and p = k z.
+  Soil soil = loam();
+  soil.sinkage_exponent = 1.0;
+  const Wheel wheel{.radius_m = 0.4, .width_m = 0.25};
+  const double z = 0.01, load = 0.25 * 2e6 * std::sqrt(0.8 * z) * 2.0 / 3.0 * z;
+  EXPECT_NEAR(criticalPressure_Pa(soil, wheel, load) / (2e6 * z), 1.0, 1e-12);
+}
+
+TEST(PneumaticTyre, RefusesWhatHasNoAnswer) {
+  EXPECT_THROW(tyreOnRigidGround(tyre(1e3), {.load_N = 1e5, .slip = 0.1}), std::domain_error);
+  EXPECT_THROW(tyreOnSoftGround(tyre(-1.0), loam(), {.load_N = 100.0}), std::invalid_argument);
+  EXPECT_THROW(tyreOnSoftGround(tyre(1e3), loam(), {.load_N = 1e6, .slip = 0.2}), std::domain_error);
+  Soil soil = loam();
+  soil.sinkage_exponent = 3.0;
+  EXPECT_THROW(criticalPressure_Pa(soil, {}, 100.0), std::domain_error);
+}
+
+}  // namespace
+}  // namespace talus::terramech

@@ -1,0 +1,26 @@
+#include <stdexcept>
+
+#include <talus/terramech/contact/rigid_ground.hpp>
+
+namespace talus::terramech {
+namespace {
+
+TEST(RigidGround, PullsTorqueOverRadiusUntilItSlips) {
+  const Wheel wheel{.radius_m = 0.2, .width_m = 0.1};
+  const GroundFriction friction{.static_coefficient = 0.7, .kinetic_coefficient = 0.5};
+  // Closed form: C.11.
+  EXPECT_DOUBLE_EQ(rigidGroundForces(wheel, friction, 100.0, 10.0).drawbar_pull_N, 50.0);
+  EXPECT_FALSE(rigidGroundForces(wheel, friction, 100.0, 0.2 * 0.7 * 100.0).slips);
+  const RigidGroundForces slipping = rigidGroundForces(wheel, friction, 100.0, -14.1);
+  EXPECT_TRUE(slipping.slips);
+  EXPECT_DOUBLE_EQ(slipping.drawbar_pull_N, -50.0);
+}
+
+TEST(RigidGround, RefusesBadInput) {
+  EXPECT_THROW(rigidGroundForces({}, {}, 0.0, 1.0), std::invalid_argument);
+  EXPECT_THROW(rigidGroundForces({}, {.static_coefficient = 0.1, .kinetic_coefficient = 0.5}, 1.0, 1.0),
+               std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace talus::terramech

@@ -1,0 +1,277 @@
+#include <cmath>
+#include <random>
+#include <stdexcept>
+
+#include <boost/math/quadrature/tanh_sinh.hpp>
+
+#include <talus/terramech/contact/shear_displacement.hpp>
+#include <talus/terramech/contact/wong_reece.hpp>
+
+#include "reference_table.hpp"
+
+namespace talus::terramech {
+namespace {
+
+Soil soilOf(test::Row& row) {
+  return {.name = "case",
+          .cohesion_Pa = row["cohesion_Pa"],
+          .friction_angle_rad = row["friction_angle_rad"],
+          .sinkage_exponent = row["sinkage_exponent"],
+          .frictional_modulus = row["sinkage_modulus"],
+          .shear_modulus_m = row["shear_modulus_m"],
+          .c1 = row["c1"],
+          .c2 = row["c2"]};
+}
+
+Soil sand() {
+  return {.name = "sand",
+          .cohesion_Pa = 800.0,
+          .friction_angle_rad = 0.56,
+          .sinkage_exponent = 0.9,
+          .frictional_modulus = 1.6e6,
+          .shear_modulus_m = 0.018};
+}
+
+// Independent of the code under test: C.4 to C.10 as printed, adaptive quadrature over the angle itself.
+ImposedContact adaptive(const Soil& soil, const Wheel& wheel, const WheelOperation& operation, double entry) {
+  const double r = wheel.radius_m, k = soil.cohesive_modulus / wheel.width_m + soil.frictional_modulus;
+  const double peak = (soil.c1 + soil.c2 * operation.slip) * entry;
+  const double exit = -std::acos(1.0 - operation.rebound * (1.0 - std::cos(entry)));
+  const double q = operation.slip >= 0.0 ? 1.0 - operation.slip : 1.0 / (1.0 + operation.slip);
+  const auto sigma = [&](double theta) {
+    const double front = theta >= peak ? theta : entry - (entry - peak) * (theta - exit) / (peak - exit);
+    return k * std::pow(std::max(0.0, r * (std::cos(front) - std::cos(entry))), soil.sinkage_exponent);
+  };
+  const auto tau = [&](double theta) {
+    const double j = r * ((entry - theta) - q * (std::sin(entry) - std::sin(theta)));
+    const double sign = j < 0.0 ? -1.0 : 1.0;
+    const double strength = soil.cohesion_Pa + sigma(theta) * std::tan(soil.friction_angle_rad);
+    return theta >= entry ? 0.0 : sign * strength * (1.0 - std::exp(-std::abs(j) / soil.shear_modulus_m));
+  };
+  boost::math::quadrature::tanh_sinh<double> rule{12};
+  const auto integral = [&](auto f) {
+    double sum = 0.0;
+    std::vector<double> ends{exit, peak, entry};
+    const double zero = ShearDisplacement{{r, operation.slip, entry}}.signChange_rad(exit);
+    if (zero == zero) ends.insert(ends.begin() + (zero > peak ? 2 : 1), zero);
+    for (std::size_t i = 0; i + 1 < ends.size(); ++i)
+      if (ends[i + 1] - ends[i] > 1e-12)
+        sum += rule.integrate([&](double t) { return f(ends[i] + t); }, 0.0, ends[i + 1] - ends[i], 1e-12);
+    return sum;
+  };
+  using std::cos, std::sin;
+  const double rb = r * wheel.width_m;
+  return {rb * integral([&](double t) { return sigma(t) * cos(t) + tau(t) * sin(t); }),
+          {r * (1.0 - cos(entry)), entry, r * rb * integral(tau),
+           rb * integral([&](double t) { return tau(t) * cos(t) - sigma(t) * sin(t); })}};
+}
+
+TEST(WongReece, AgreesWithTheReferenceCases) {
+  if (test::referenceFolder().empty()) GTEST_SKIP() << "TALUS_REFERENCE is not set";
+  for (auto row : test::readTable(test::referenceFolder() + "/forward_cases.csv")) {
+    const Wheel wheel{.radius_m = row["wheel_radius_m"], .width_m = row["wheel_width_m"]};
+    const WheelForces got = equilibrium(soilOf(row), wheel, {.load_N = row["load_N"], .slip = row["slip"]});
+    // Closed form: independent adaptive quadrature, printed to 1e-8.
+    EXPECT_NEAR(got.sinkage_m / row["sinkage_m"], 1.0, 1e-7);
+    EXPECT_NEAR(got.entry_angle_rad / row["entry_angle_rad"], 1.0, 1e-7);
+    EXPECT_NEAR(got.torque_Nm / row["torque_Nm"], 1.0, 1e-7);
+    EXPECT_NEAR(got.drawbar_pull_N, row["drawbar_pull_N"], 1e-7 * row["load_N"]);
+  }
+}
+
+TEST(WongReece, IntegralsAgreeWithAdaptiveQuadratureOverTheWholeRange) {
+  std::mt19937_64 random{1};
+  const auto between = [&](double low, double high) {
+    return std::uniform_real_distribution<double>{low, high}(random);
+  };
+  double worst = 0.0;
+  for (int k = 0; k < 400; ++k) {
+    const Soil soil{.name = "random",
+                    .cohesion_Pa = between(0.0, 2e4),
+                    .friction_angle_rad = between(0.0, 0.8),
+                    .sinkage_exponent = between(0.1, 2.0),
+                    .frictional_modulus = 1.5e6,
+                    .shear_modulus_m = between(0.004, 0.05)};
+    const Wheel wheel{.radius_m = between(0.03, 0.6), .width_m = between(0.02, 0.5)};
+    const WheelOperation operation{.slip = between(-0.98, 1.0), .rebound = k % 3 ? 0.0 : between(0.0, 0.3)};
+    const double entry = between(0.01, 1.5);
+    const ImposedContact got = forcesAtEntry(soil, wheel, operation, entry);
+    const ImposedContact want = adaptive(soil, wheel, operation, entry);
+    const double scale = std::abs(want.load_N) + std::abs(want.forces.drawbar_pull_N);
+    worst = std::max({worst, std::abs(got.load_N - want.load_N) / scale,
+                      std::abs(got.forces.torque_Nm - want.forces.torque_Nm) / (scale * wheel.radius_m),
+                      std::abs(got.forces.drawbar_pull_N - want.forces.drawbar_pull_N) / scale});
+  }
+  // Closed form: tanh-sinh to 1e-12.
+  EXPECT_LT(worst, 1e-8);
+}
+
+TEST(WongReece, CarriesTheLoadItWasGiven) {
+  std::mt19937_64 random{2};
+  std::uniform_real_distribution<double> slip{-1.0, 1.0}, load{0.5, 300.0};
+  for (int k = 0; k < 200; ++k) {
+    const WheelOperation operation{.load_N = load(random), .slip = slip(random), .rebound = 0.1 * (k % 2)};
+    const WheelForces forces = equilibrium(sand(), Wheel{}, operation);
+    const ImposedContact contact = forcesAtEntry(sand(), Wheel{}, operation, forces.entry_angle_rad);
+    // Property: equilibrium.
+    EXPECT_NEAR(contact.load_N / operation.load_N, 1.0, 1e-11);
+  }
+}
+
+TEST(WongReece, BrakedAndDrivenMeetAtNoSlip) {
+  const auto at = [](double slip) { return equilibrium(sand(), Wheel{}, {.load_N = 80.0, .slip = slip}); };
+  // Property: both slip definitions agree to first order at 0.
+  EXPECT_NEAR(at(-1e-9).drawbar_pull_N, at(1e-9).drawbar_pull_N, 1e-5);
+  EXPECT_NEAR(at(-1e-9).torque_Nm, at(0.0).torque_Nm, 1e-6);
+}
+
+TEST(WongReece, ALockedWheelFeelsTheWholeShearStrength) {
+  const Soil soil = sand();
+  const WheelOperation locked{.load_N = 40.0, .slip = -1.0};
+  const auto stresses = stressDistribution(soil, Wheel{}, locked, 11);
+  for (std::size_t k = 0; k + 1 < stresses.size(); ++k)  // Closed form: Mohr-Coulomb, against the motion
+    EXPECT_NEAR(stresses[k].shear_Pa,
+                -(soil.cohesion_Pa + stresses[k].normal_Pa * std::tan(soil.friction_angle_rad)), 1e-9);
+  const WheelForces forces = equilibrium(soil, Wheel{}, locked);
+  EXPECT_LT(forces.torque_Nm, 0.0);
+  EXPECT_LT(forces.drawbar_pull_N, equilibrium(soil, Wheel{}, {.load_N = 40.0, .slip = -0.5}).drawbar_pull_N);
+}
+
+TEST(WongReece, StressesVanishAtBothEndsAndPeakWhereC2Says) {
+  const auto stresses =
+      stressDistribution(sand(), Wheel{}, {.load_N = 80.0, .slip = 0.5, .rebound = 0.1}, 1001);
+  EXPECT_NEAR(stresses.front().normal_Pa, 0.0, 1.0);
+  EXPECT_EQ(stresses.back().normal_Pa, 0.0);
+  EXPECT_LT(stresses.front().angle_rad, 0.0);
+  const auto highest = std::max_element(stresses.begin(), stresses.end(), [](const auto& a, const auto& b) {
+    return a.normal_Pa < b.normal_Pa;
+  });
+  EXPECT_NEAR(highest->angle_rad / stresses.back().angle_rad, 0.43 + 0.32 * 0.5, 2e-3);  // Closed form: C.2
+}
+
+// A soil, wheel and operation from the far ends of what is allowed.
+struct Extreme {
+  Soil soil;
+  Wheel wheel;
+  WheelOperation operation;
+};
+
+Extreme extreme(std::mt19937_64& random) {
+  std::uniform_real_distribution<double> even{0.0, 1.0};
+  const auto log = [&](double low, double high) { return low * std::pow(high / low, even(random)); };
+  const auto pick = random() % 8;
+  const double slips[] = {-1.0, -1e-12, 0.0, 1e-12, 1.0};
+  const double slip = pick < 5 ? slips[pick] : 2.0 * even(random) - 1.0;
+  return {
+      .soil = {.name = "extreme",
+               .cohesion_Pa = pick == 5 ? 0.0 : log(1.0, 1e5),
+               .friction_angle_rad = pick == 6 ? 0.0 : 1.4 * even(random),
+               .sinkage_exponent = 0.1 + 1.9 * even(random),
+               .frictional_modulus = log(1e2, 1e9),
+               .shear_modulus_m = log(1e-5, 1.0)},
+      .wheel = {.radius_m = log(0.005, 2.0), .width_m = log(0.002, 2.0)},
+      .operation = {.load_N = log(1e-3, 1e8), .slip = slip, .rebound = pick == 7 ? 0.9 * even(random) : 0.0}};
+}
+
+TEST(WongReece, AlwaysAnswersOrRefuses) {
+  // Property: numbers that carry the load, or std::domain_error; never NaN, never a search without end.
+  std::mt19937_64 random{7};
+  int answered = 0;
+  for (int k = 0; k < 5000; ++k) {
+    const Extreme e = extreme(random);
+    try {
+      const WheelForces f = equilibrium(e.soil, e.wheel, e.operation);
+      ASSERT_TRUE(std::isfinite(f.torque_Nm) && std::isfinite(f.drawbar_pull_N));
+      ASSERT_GT(f.entry_angle_rad, 0.0);
+      ASSERT_LE(f.entry_angle_rad, 1.5707963267948968);
+      const double carried = forcesAtEntry(e.soil, e.wheel, e.operation, f.entry_angle_rad).load_N;
+      EXPECT_NEAR(carried / e.operation.load_N, 1.0, 1e-6);
+      ++answered;
+    } catch (const std::domain_error&) {
+    }
+  }
+  EXPECT_GT(answered, 1500);  // about half of these soils carry their load
+}
+
+TEST(WongReece, ScalesAsItsUnitsDo) {
+  // Property: lengths times a, stresses times s (k_phi of N/m^(n+2) times s/a^n): forces times s a^2, torque
+  // s a^3, the same angle.
+  std::mt19937_64 random{8};
+  for (int k = 0; k < 300; ++k) {
+    const Extreme e = extreme(random);
+    const double a = 0.37, s = 11.0;
+    Extreme scaled = e;
+    scaled.wheel = {.radius_m = a * e.wheel.radius_m, .width_m = a * e.wheel.width_m};
+    scaled.soil.cohesion_Pa *= s;
+    scaled.soil.frictional_modulus *= s / std::pow(a, e.soil.sinkage_exponent);
+    scaled.soil.shear_modulus_m *= a;
+    constexpr double kEntry = 0.6;
+    const auto f = forcesAtEntry(e.soil, e.wheel, e.operation, kEntry);
+    const auto g = forcesAtEntry(scaled.soil, scaled.wheel, scaled.operation, kEntry);
+    const double scale = std::abs(f.load_N) + std::abs(f.forces.drawbar_pull_N);
+    EXPECT_NEAR(g.load_N / (s * a * a) / scale, f.load_N / scale, 1e-10);
+    EXPECT_NEAR(g.forces.drawbar_pull_N / (s * a * a) / scale, f.forces.drawbar_pull_N / scale, 1e-10);
+    EXPECT_NEAR(g.forces.torque_Nm / (s * a * a * a), f.forces.torque_Nm,
+                1e-9 * std::abs(f.forces.torque_Nm));
+  }
+}
+
+TEST(WongReece, WorkGoesIntoShearAndCompaction) {
+  // Property: T omega - DP v = r b int tau (r omega - v cos) + sigma v sin, the rates at which rim and soil
+  // rub and the soil is pressed down; stresses taken apart from the integrals, by the trapezoid.
+  for (const double slip : {-0.4, 0.0, 0.2, 0.7}) {
+    const Wheel wheel{.radius_m = 0.12, .width_m = 0.08};
+    const WheelOperation operation{.load_N = 70.0, .slip = slip, .rebound = 0.1};
+    const WheelForces f = equilibrium(sand(), wheel, operation);
+    const double omega = 1.0, v = travelRatio(slip) * wheel.radius_m * omega;
+    const auto stresses = stressDistribution(sand(), wheel, operation, 20001);
+    double lost = 0.0;
+    for (std::size_t k = 0; k + 1 < stresses.size(); ++k) {
+      const auto& p = stresses[k];
+      lost += (p.shear_Pa * (wheel.radius_m * omega - v * std::cos(p.angle_rad)) +
+               p.normal_Pa * v * std::sin(p.angle_rad)) *
+              (stresses[k + 1].angle_rad - p.angle_rad);
+    }
+    lost *= wheel.radius_m * wheel.width_m;
+    EXPECT_NEAR((f.torque_Nm * omega - f.drawbar_pull_N * v) / lost, 1.0, 2e-4) << slip;
+    EXPECT_GT(lost, 0.0);
+  }
+}
+
+TEST(WongReece, MoreSlipPullsMoreWhereThePeakStays) {
+  // Property: with c2 = 0 the normal stress at a sinkage does not depend on slip, j grows with slip
+  // everywhere, and so do torque and pull.
+  std::mt19937_64 random{9};
+  for (int k = 0; k < 100; ++k) {
+    Extreme e = extreme(random);
+    e.soil.c2 = 0.0;
+    ImposedContact last = forcesAtEntry(e.soil, e.wheel, {.load_N = 1.0, .slip = -1.0}, 0.7);
+    for (int i = -9; i <= 10; ++i) {
+      const auto here = forcesAtEntry(e.soil, e.wheel, {.load_N = 1.0, .slip = 0.1 * i}, 0.7);
+      const double rounding = 1e-9 * std::abs(here.load_N);
+      EXPECT_GE(here.forces.torque_Nm, last.forces.torque_Nm - rounding * e.wheel.radius_m);
+      EXPECT_GE(here.forces.drawbar_pull_N, last.forces.drawbar_pull_N - rounding);
+      last = here;
+    }
+  }
+}
+
+TEST(WongReece, RefusesWhatHasNoAnswer) {
+  const Wheel wheel{};
+  EXPECT_THROW(equilibrium(sand(), wheel, {.load_N = 1e6, .slip = 0.2}), std::domain_error);
+  EXPECT_THROW(equilibrium(sand(), wheel, {.load_N = 0.0, .slip = 0.2}), std::invalid_argument);
+  EXPECT_THROW(equilibrium(sand(), wheel, {.load_N = 50.0, .slip = 1.1}), std::invalid_argument);
+  EXPECT_THROW(equilibrium(sand(), wheel, {.load_N = 50.0, .slip = std::nan("")}), std::invalid_argument);
+  for (const double rebound : {-0.1, 1.0})
+    EXPECT_THROW(equilibrium(sand(), wheel, {.load_N = 50.0, .slip = 0.2, .rebound = rebound}),
+                 std::invalid_argument);
+  Soil soil = sand();
+  soil.frictional_modulus = -1.0;
+  EXPECT_THROW(equilibrium(soil, wheel, {.load_N = 50.0, .slip = 0.2}), std::invalid_argument);
+  soil = sand();
+  soil.c2 = 0.9;
+  EXPECT_THROW(equilibrium(soil, wheel, {.load_N = 50.0, .slip = 0.8}), std::domain_error);
+}
+
+}  // namespace
+}  // namespace talus::terramech

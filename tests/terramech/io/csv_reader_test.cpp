@@ -1,0 +1,114 @@
+#include <cmath>
+
+#include <talus/talus.hpp>
+#include <talus/terramech/io/csv_reader.hpp>
+
+#include "temporary_file.hpp"
+
+namespace talus::terramech {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+std::vector<CsvRow> rowsOf(const std::string& content) {
+  const test::TemporaryFile file{content};
+  CsvReader reader{file.path()};
+  std::vector<CsvRow> rows;
+  for (CsvRow row; reader.next(row);) rows.push_back(row);
+  return rows;
+}
+
+TEST(CsvReader, TakesEveryLineEndingQuotesAndTheByteOrderMark) {
+  for (const char* end : {"\n", "\r\n", "\r"}) {
+    const std::string e = end;
+    const test::TemporaryFile file{"\xEF\xBB\xBF\"a\", b ,c" + e + "1,\"x, \"\"y\"\"\",3" + e + e + "4,,6" +
+                                   e};
+    CsvReader reader{file.path()};
+    EXPECT_THAT(reader.header(), ElementsAre("a", "b", "c"));
+    CsvRow row;
+    ASSERT_TRUE(reader.next(row));
+    EXPECT_THAT(row.fields, ElementsAre("1", "x, \"y\"", "3"));
+    EXPECT_EQ(row.line, 2U);
+    ASSERT_TRUE(reader.next(row));
+    EXPECT_THAT(row.fields, ElementsAre("4", "", "6"));
+    EXPECT_EQ(row.line, 4U);
+    EXPECT_FALSE(reader.next(row));
+  }
+}
+
+TEST(CsvReader, CountsLinesInsideQuotes) {
+  const auto rows = rowsOf("a,b\n\"1\n2\",3\n4,5\n");
+  ASSERT_EQ(rows.size(), 2U);
+  EXPECT_EQ(rows[0].line, 2U);
+  EXPECT_EQ(rows[1].line, 4U);
+}
+
+TEST(CsvReader, TellsTheFaultOfARecord) {
+  const auto rows = rowsOf("a,b\n1\n1,2,3\n1,2,\na,b\n1,2\n7");
+  ASSERT_EQ(rows.size(), 6U);
+  EXPECT_EQ(rows[0].fault, "has 1 fields, the header 2");
+  EXPECT_EQ(rows[1].fault, "has 3 fields, the header 2");
+  EXPECT_EQ(rows[2].fault, "");  // a comma at the end of the line
+  EXPECT_EQ(rows[3].fault, "repeats the header");
+  EXPECT_EQ(rows[4].fault, "");
+  EXPECT_EQ(rows[5].fault, "has 1 fields, the header 2");
+}
+
+TEST(CsvReader, TellsAQuoteThatIsNeverClosed) {
+  const auto rows = rowsOf("a,b\n1,2\n3,\"4\n5,6\n");
+  ASSERT_EQ(rows.size(), 2U);
+  EXPECT_EQ(rows[1].line, 3U);
+  EXPECT_THAT(rows[1].fault, HasSubstr("never closed"));
+}
+
+std::string errorOf(const std::string& path) {
+  try {
+    CsvReader reader{path};
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "no error";
+}
+
+TEST(CsvReader, RefusesWhatIsNoTable) {
+  EXPECT_THAT(errorOf("/nowhere/at_all.csv"), HasSubstr("/nowhere/at_all.csv: No such file"));
+  EXPECT_THAT(errorOf("/tmp"), HasSubstr("is a directory"));
+  const test::TemporaryFile nothing{""}, empty{"\n\n"}, twice{"a,b,a\n"}, semicolons{"a;b\n1;2\n"};
+  EXPECT_THAT(errorOf(nothing.path()), HasSubstr("is empty; the first row names the columns"));
+  EXPECT_THAT(errorOf(empty.path()), HasSubstr("is empty"));
+  EXPECT_THAT(errorOf(twice.path()), HasSubstr(":1: column a stands twice"));
+  EXPECT_THAT(errorOf(semicolons.path()), HasSubstr("separated by ';'"));
+  const test::TemporaryFile binary{std::string("a\0b\n", 4)};
+  EXPECT_THAT(errorOf(binary.path()), HasSubstr("is not text"));
+}
+
+TEST(CsvReader, StreamsAcrossItsBuffer) {
+  std::string content = "k,word\n";
+  for (int k = 0; k < 20000; ++k) content += std::to_string(k) + ",\"some words\"\n";
+  const auto rows = rowsOf(content);
+  ASSERT_EQ(rows.size(), 20000U);
+  EXPECT_EQ(rows.back().fields[0], "19999");
+  EXPECT_EQ(rows.back().line, 20001U);
+}
+
+TEST(ParseNumber, TakesWholeFieldsOnly) {
+  double value = 0.0;
+  EXPECT_TRUE(parseNumber("-2.5e3", value));
+  EXPECT_EQ(value, -2500.0);
+  EXPECT_TRUE(parseNumber("+4", value));
+  EXPECT_TRUE(parseNumber("nan", value));
+  EXPECT_TRUE(std::isnan(value));
+  for (const char* bad : {"", "1,5", "3 m", "0x10", "--1", "one"})
+    EXPECT_FALSE(parseNumber(bad, value)) << bad;
+}
+
+TEST(CsvField, QuotesOnlyWhereNeeded) {
+  EXPECT_EQ(csvField("plain"), "plain");
+  EXPECT_EQ(csvField("a,b"), "\"a,b\"");
+  EXPECT_EQ(csvField("say \"so\""), "\"say \"\"so\"\"\"");
+  EXPECT_EQ(csvField(" x"), "\" x\"");
+}
+
+}  // namespace
+}  // namespace talus::terramech

@@ -1,0 +1,105 @@
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include <unistd.h>
+
+#include <talus/talus.hpp>
+#include <talus/terramech/io/model_file.hpp>
+#include <talus/terramech/trace/prediction_table.hpp>
+
+namespace talus::terramech {
+namespace {
+
+using testing::HasSubstr;
+
+std::string written(const std::string& name, const std::string& text) {
+  const auto path = std::filesystem::temp_directory_path() / ("talus_" + std::to_string(::getpid()) + name);
+  std::ofstream(path) << text;
+  return path.string();
+}
+
+RefinedModel refined() {
+  RefinedModel model;
+  model.soil = {.name = "a \"quoted\" sand",
+                .cohesion_Pa = 812.5,
+                .friction_angle_rad = 0.55,
+                .sinkage_exponent = 1.1,
+                .cohesive_modulus = 900.0,
+                .frictional_modulus = 1.5e6};
+  Effect effect;
+  effect.name = "slip_sinkage_ding";
+  effect.covariate = "slip";
+  effect.channel = Channel::Sinkage;
+  effect.parameters = {1.0 / 3.0};
+  Effect curve;
+  curve.name = "empirical";
+  curve.covariate = "dust";
+  curve.parameters = {0.0, 0.1, -0.05};
+  curve.knots = {0.0, 1.0, 2.5};
+  curve.only_column = "source";
+  curve.only_value = "b";
+  model.effects = {effect, curve};
+  model.noise.slip_relative = 0.03;
+  model.fitted = {{0, 0}};
+  model.covariance = {1e-4};
+  return model;
+}
+
+TEST(ModelFile, ReadsBackToTheSameBits) {
+  const auto path = written("model.yaml", modelText(refined()));
+  const RefinedModel back = loadModel(path).model;
+  EXPECT_EQ(modelText(back), modelText(refined()));
+  EXPECT_EQ(back.effects[0].parameters, refined().effects[0].parameters);
+  EXPECT_EQ(back.effects[1].knots, refined().effects[1].knots);
+  std::filesystem::remove(path);
+}
+
+TEST(ModelFile, RefusesWhatItCannotMean) {
+  const std::pair<const char*, const char*> bad[] = {
+      {"model: wong-rece\nsoil: sand\n", "no model 'wong-rece'"},
+      {"soil: sand\neffects:\n  - {name: slip_sinkage_dang, covariate: slip, channel: sinkage_over_radius, "
+       "parameters: [1]}\n",
+       "did you mean slip_sinkage_ding?"},
+      {"soil: sand\neffects:\n  - {name: slip_sinkage_ding, covariate: slip, channel: sinkage_over_radius, "
+       "parameters: [1, 2]}\n",
+       "needs 1 numbers"},
+      {"soil: sand\nsensors: {slip: -1}\n", "standard deviation"},
+  };
+  for (const auto& [text, reason] : bad) {
+    const auto path = written("bad.yaml", text);
+    try {
+      loadModel(path);
+      ADD_FAILURE() << text;
+    } catch (const InputError& e) {
+      EXPECT_THAT(e.what(), HasSubstr(reason));
+    }
+    std::filesystem::remove(path);
+  }
+}
+
+TEST(PredictionTable, NeverReadsTheMeasuredAnswer) {
+  const std::string head = "load_N,slip,drawbar_pull_N,sinkage_m,torque_Nm,wheel_radius_m,wheel_width_m\n";
+  const auto honest = written("a.csv", head + "80,0.3,5,0.01,2,0.1,0.1\n");
+  const auto absurd = written("b.csv", head + "80,0.3,nan,,-7e9,0.1,0.1\n");
+  const auto tail = [](const std::string& text) { return text.substr(text.find("0.1,0.1,")); };
+  const auto a = predictTable(honest, refined()), b = predictTable(absurd, refined());
+  EXPECT_EQ(a.predicted, 1U);
+  EXPECT_EQ(tail(a.text), tail(b.text));
+  EXPECT_THAT(a.text, HasSubstr("predicted_drawbar_pull_N,predicted_drawbar_pull_N_std,predicted_sinkage_m"));
+  for (const auto& path : {honest, absurd}) std::filesystem::remove(path);
+}
+
+TEST(PredictionTable, ARowThatCannotBePredictedKeepsItsPlace) {
+  const auto path = written(
+      "c.csv", "load_N,slip,wheel_radius_m,wheel_width_m\n80,,0.1,0.1\n-2,0.3,0.1,0.1\n80,0.3,0.1,0.1\n");
+  const auto table = predictTable(path, refined());
+  EXPECT_EQ(table.predicted, 1U);
+  ASSERT_EQ(table.refused.size(), 2U);
+  EXPECT_EQ(table.refused[0].line, 2U);
+  EXPECT_EQ(std::count(table.text.begin(), table.text.end(), '\n'), 4);
+  std::filesystem::remove(path);
+}
+
+}  // namespace
+}  // namespace talus::terramech

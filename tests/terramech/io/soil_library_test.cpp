@@ -1,0 +1,210 @@
+#include <cmath>
+#include <fstream>
+#include <numbers>
+
+#include <talus/talus.hpp>
+#include <talus/terramech/io/soil_library.hpp>
+#include <talus/terramech/mobility/mobility.hpp>
+
+#include "temporary_file.hpp"
+
+namespace talus::terramech {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+const std::string kSoil =
+    "cohesion_kPa: {mean: 2, std: 0.5}\n"
+    "friction_angle_deg: 30\n"
+    "sinkage_exponent: 0.9\n"
+    "frictional_modulus_kN: 1500\n"
+    "shear_modulus_cm: 2\n";
+
+const std::string kRover =
+    "name: cart\nmass_kg: 50\nwheelbase_m: 0.6\ntrack_cm: 50\nclearance_m: 0.2\nmax_torque_Nm: 10\n"
+    "max_pitch_deg: 20\nsteering: ackermann\nturning_radius_m: 1.5\n"
+    "wheels: {count: 4, radius_mm: 125, width_m: 0.1}\n";
+
+std::string errorOf(const std::string& yaml, bool rover = false) {
+  const test::TemporaryFile file{yaml, ".yaml"};
+  try {
+    rover ? void(loadRover(file.path())) : void(loadSoil(file.path()));
+  } catch (const InputError& e) {
+    std::string text = e.what();
+    if (const auto at = text.find(file.path()); at == 0) text.erase(0, file.path().size());
+    return text;
+  }
+  return "no error";
+}
+
+TEST(SoilLibrary, ReadsUnitsPriorsAndDefaults) {
+  const test::TemporaryFile file{kSoil, ".yaml"};
+  const SoilPrior soil = loadSoilPrior(file.path());
+  EXPECT_DOUBLE_EQ(soil.mean.cohesion_Pa, 2000.0);
+  EXPECT_DOUBLE_EQ(soil.deviation.cohesion_Pa, 500.0);
+  EXPECT_DOUBLE_EQ(soil.mean.friction_angle_rad, 30.0 * kDegree);
+  EXPECT_EQ(soil.deviation.friction_angle_rad, 0.0);
+  EXPECT_DOUBLE_EQ(soil.mean.frictional_modulus, 1.5e6);
+  EXPECT_DOUBLE_EQ(soil.mean.shear_modulus_m, 0.02);
+  EXPECT_DOUBLE_EQ(soil.mean.c1, 0.43);
+}
+
+TEST(SoilLibrary, TakesTheWrapperAndTheList) {
+  std::string indented;
+  std::stringstream lines(kSoil);
+  for (std::string line; std::getline(lines, line);) indented += "    " + line + "\n";
+  const test::TemporaryFile wrapped{"soil:\n" + indented, ".yaml"};
+  EXPECT_DOUBLE_EQ(loadSoil(wrapped.path()).cohesion_Pa, 2000.0);
+  const test::TemporaryFile list{"soils:\n  - name: a\n" + indented + "  - name: b\n" + indented, ".yaml"};
+  EXPECT_EQ(loadSoil(list.path() + "#b").name, "b");
+  EXPECT_EQ(loadSoils(list.path()).size(), 2U);
+  EXPECT_THROW(loadSoil(list.path()), InputError);
+  EXPECT_THROW(loadSoil(list.path() + "#c"), InputError);
+}
+
+TEST(SoilLibrary, SoilMistakesAreToldWithTheirLine) {
+  struct Case {
+    std::string yaml;
+    const char* error;
+  };
+  for (const Case& c :
+       {Case{kSoil + "cohesion_pa: 3\n", ":6: unknown key 'cohesion_pa'; did you mean cohesion_Pa?"},
+        Case{"cohesion_m: 3\n", ":1: unknown key 'cohesion_m'; did you mean cohesion_Pa?"},
+        Case{"cohesion_kPa: 1\nfriction_angle_deg: .nan\n" + kSoil.substr(kSoil.find("sinkage")),
+             ":2: friction_angle_rad = .nan, must be finite"},
+        Case{"cohesion_kPa: 1\n" + kSoil.substr(kSoil.find("friction")) + "c1: [0.4]\n", ":6: c1 is a list"},
+        Case{"cohesion_kPa: -1\n" + kSoil.substr(kSoil.find("friction")),
+             ":1: soil 'unnamed': cohesion_Pa = -1000, must be >= 0"},
+        Case{"cohesion_kPa: 2 kPa\n", ":1: cohesion_Pa = '2 kPa', must be a number"},
+        Case{kSoil + "cohesion_Pa: 5\n", "cohesion_Pa is stated twice"},
+        Case{kSoil + "c1: 0.4\nc1: 0.5\n", ":7: c1 stands twice"},
+        Case{"friction_angle_deg: 30\n", ":1: lacks cohesion_Pa"},
+        Case{"cohesion_kPa: {mean: 2}\n", ":1: cohesion_Pa lacks its std"},
+        Case{"cohesion_kPa: {mean: 2, sd: 3}\n", ":1: cohesion_Pa: unknown key 'sd'"},
+        Case{"cohesion_kPa: {mean: 2, std: -3}\n", ":1: cohesion_Pa.std must be >= 0"},
+        Case{"- 1\n- 2\n", "the file is a list"}, Case{"just words\n", "the file is 'just words'"},
+        Case{"a: [1\n", "not YAML"}, Case{"", "is empty"}}) {
+    EXPECT_THAT(errorOf(c.yaml), HasSubstr(c.error)) << c.yaml;
+  }
+}
+
+TEST(SoilLibrary, RoverMistakesAreToldWithTheirLine) {
+  EXPECT_EQ(errorOf(kRover, true), "no error");
+  const auto with = [](const std::string& from, const std::string& to) {
+    std::string yaml = kRover;
+    return yaml.replace(yaml.find(from), from.size(), to);
+  };
+  EXPECT_THAT(errorOf(with("mass_kg: 50", "mass_kg: -50"), true),
+              HasSubstr(":2: rover 'cart': mass_kg = -50"));
+  EXPECT_THAT(errorOf(with("radius_mm: 125", "radius_mm: 0"), true),
+              HasSubstr(":10: rover 'cart': wheels.radius_m = 0"));
+  EXPECT_THAT(errorOf(with("count: 4", "cuont: 4"), true),
+              HasSubstr(":10: unknown key 'cuont'; did you mean count?"));
+  EXPECT_THAT(errorOf(with("ackermann", "crab"), true),
+              HasSubstr(":8: steering = 'crab'; write skid, ackermann"));
+  EXPECT_THAT(errorOf(with("count: 4", "count: 4.5"), true), HasSubstr("count must be a whole number"));
+  EXPECT_THAT(errorOf(with("mass_kg: 50\n", ""), true), HasSubstr("lacks mass_kg"));
+}
+
+TEST(SoilLibrary, ReadsARover) {
+  const test::TemporaryFile file{kRover, ".yaml"};
+  const Rover rover = loadRover(file.path());
+  EXPECT_DOUBLE_EQ(rover.wheel.radius_m, 0.125);
+  EXPECT_DOUBLE_EQ(rover.track_m, 0.5);
+  EXPECT_DOUBLE_EQ(rover.max_pitch_rad, 20.0 * kDegree);
+  EXPECT_EQ(rover.steering, Steering::Ackermann);
+  EXPECT_DOUBLE_EQ(rover.gravity_m_s2, 9.80665);
+}
+
+TEST(SoilLibrary, NamesTheNearestEntry) {
+  try {
+    loadSoil("lunar_nomnal");
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_THAT(e.what(), HasSubstr("did you mean lunar_nominal?"));
+  }
+  EXPECT_THROW(loadRover("curiosity"), InputError);
+}
+
+TEST(SoilLibrary, EveryEntryLoadsAndEveryRoverDrivesOnMostSoils) {
+  for (const auto& rover_name : libraryRovers()) {
+    const Rover rover = loadRover(rover_name);
+    EXPECT_EQ(rover.name, rover_name);
+    int drivable = 0;
+    for (const auto& soil_name : librarySoils()) {
+      const Soil soil = loadSoil(soil_name);
+      EXPECT_EQ(soil.name, soil_name);
+      drivable += MobilityCurve{soil, rover}.at(0.0).feasible;
+    }
+    EXPECT_GE(drivable, 14) << rover_name;  // Property: these rovers drove on such ground.
+  }
+}
+
+TEST(SoilLibrary, HoldsTheNumbersOfItsSources) {
+  const SoilPrior loam = loadSoilPrior("loam");
+  // Printed in: thesis Table 2.1, c 2 to 4 kPa, phi 20 to 30 deg, k 1500 to 2000 kN/m^(n+2), n 0.5 to 1.2, K
+  // 10 to 30 mm.
+  EXPECT_NEAR(loam.mean.cohesion_Pa, 3000.0, 1e-9);
+  EXPECT_NEAR(loam.deviation.cohesion_Pa, 2000.0 / std::sqrt(12.0), 1.0);
+  EXPECT_NEAR(loam.deviation.friction_angle_rad, 10.0 * kDegree / std::sqrt(12.0), 1e-4);
+  EXPECT_NEAR(loam.deviation.frictional_modulus, 5e5 / std::sqrt(12.0), 100.0);
+  EXPECT_NEAR(loam.deviation.sinkage_exponent, 0.7 / std::sqrt(12.0), 1e-3);
+  EXPECT_NEAR(loam.deviation.shear_modulus_m, 0.02 / std::sqrt(12.0), 1e-5);
+  const Soil moon = loadSoil("lunar_nominal");
+  EXPECT_EQ(moon.cohesive_modulus, 1400.0);
+  EXPECT_EQ(moon.frictional_modulus, 820000.0);
+}
+
+TEST(SoilLibrary, EveryNumberHasASource) {
+  for (const char* kind : {"soils", "rovers"})
+    for (const auto& name : kind == std::string("soils") ? librarySoils() : libraryRovers()) {
+      std::ifstream file(std::string(TALUS_SOURCE_DIR) + "/terramech/library/" + kind + "/" + name + ".yaml");
+      std::string line, text;
+      while (std::getline(file, line)) text += line + "\n";
+      EXPECT_THAT(text,
+                  testing::AnyOf(HasSubstr("_19"), HasSubstr("_20"), HasSubstr("ours"), HasSubstr("Ours")))
+          << name;
+    }
+}
+
+TEST(TerrainClasses, TakesLibraryNamesInlineSoilsAndItsOwnList) {
+  const std::string own =
+      "soils:\n  - {name: mud, " + std::string(
+                                       "cohesion_kPa: 1, friction_angle_deg: 10, sinkage_exponent: 1, "
+                                       "frictional_modulus_kN: 500, shear_modulus_mm: 30}\n");
+  const std::string body =
+      "  1: loam\n  2: mud\n  7: {name: inline, cohesion_kPa: 1, friction_angle_deg: 10, "
+      "sinkage_exponent: 1, frictional_modulus_kN: 500, shear_modulus_mm: 30}\n";
+  for (const char* wrapper : {"terrain_classes:\n", "classes:\n"}) {
+    const test::TemporaryFile file{own + wrapper + body, ".yaml"};
+    const TerrainClasses classes = loadTerrainClasses(file.path());
+    ASSERT_EQ(classes.size(), 3U);
+    EXPECT_EQ(classes.at(1).mean.name, "loam");
+    EXPECT_EQ(classes.at(2).mean.name, "mud");
+    EXPECT_EQ(classes.at(7).mean.name, "inline");
+  }
+  const test::TemporaryFile bare{"1: sand\n3: clay\n", ".yaml"};
+  EXPECT_EQ(loadTerrainClasses(bare.path()).at(3).mean.name, "clay");
+}
+
+TEST(TerrainClasses, MistakesAreToldWithTheirLine) {
+  const auto error = [](const std::string& yaml) -> std::string {
+    const test::TemporaryFile file{yaml, ".yaml"};
+    try {
+      loadTerrainClasses(file.path());
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "no error";
+  };
+  EXPECT_THAT(error("1: sand\n2: loan\n"), HasSubstr(":2: class 2: no soil 'loan'; did you mean loam?"));
+  EXPECT_THAT(error("1: sand\ntwo: loam\n"), HasSubstr(":2: 'two' is no class number"));
+  EXPECT_THAT(error("classes: {}\n"), HasSubstr("names no terrain class"));
+  EXPECT_THAT(error("classes: {1: sand}\nclases: {2: sand}\n"), HasSubstr(":2: unknown key 'clases'"));
+}
+
+}  // namespace
+}  // namespace talus::terramech

@@ -1,0 +1,121 @@
+#include <cmath>
+
+#include <talus/terramech/io/telemetry_reader.hpp>
+
+#include "temporary_file.hpp"
+
+namespace talus::terramech {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+Telemetry read(const std::string& content, const TelemetryOptions& options = {}) {
+  const test::TemporaryFile file{content};
+  return readTelemetry(file.path(), options);
+}
+
+std::string errorOf(const std::string& content, const TelemetryOptions& options = {}) {
+  try {
+    read(content, options);
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "no error";
+}
+
+TEST(TelemetryReader, KeepsEveryColumnInWhateverOrder) {
+  const Telemetry t = read("note,slip,moisture,load_N,run,wheel\nwet,0.2,3.5,80,1,2\ndry,-1,,81,2,FL\n");
+  EXPECT_THAT(t.at("slip"), ElementsAre(0.2, -1.0));
+  EXPECT_THAT(*t.findWords("note"), ElementsAre("wet", "dry"));
+  EXPECT_THAT(*t.findWords("run"), ElementsAre("1", "2"));
+  EXPECT_EQ(t.at("moisture")[0], 3.5);
+  EXPECT_TRUE(std::isnan(t.at("moisture")[1]));
+  EXPECT_EQ(t.find("torque_Nm"), nullptr);
+  EXPECT_THAT(t.lines, ElementsAre(2, 3));
+}
+
+TEST(TelemetryReader, RejectsRowsByLineAndReason) {
+  struct Case {
+    const char* row;
+    const char* reason;
+  };
+  const std::string good = "80,0.02,0.3,0.1\n";
+  for (const Case& c : {Case{"0,0.02,0.3,0.1", "load_N = 0, must be > 0"},
+                        {"nan,0.02,0.3,0.1", "load_N = nan, must be finite"},
+                        {"80,0.02,inf,0.1", "slip = inf, must be finite"},
+                        {"80,-0.001,0.3,0.1", "sinkage_m = -0.001, must be >= 0"},
+                        {"80,0.2,0.3,0.1", "sinkage_m = 0.2, must be < the wheel's diameter, 0.2"},
+                        {"80,0.02,1.01,0.1", "slip = 1.01, must be in [-1, 1]"},
+                        {"80,0.02,-1.01,0.1", "slip = -1.01, must be in [-1, 1]"},
+                        {"80,0.02,0.3,-0.1", "wheel_radius_m = -0.1, must be > 0"},
+                        {"heavy,0.02,0.3,0.1", "load_N = 'heavy', must be a number"},
+                        {"80,0.02", "has 2 fields, the header 4"},
+                        {"load_N,sinkage_m,slip,wheel_radius_m", "repeats the header"}}) {
+    const Telemetry t = read("load_N,sinkage_m,slip,wheel_radius_m\n" + good + c.row + "\n" + good);
+    ASSERT_EQ(t.rejected.size(), 1U) << c.row;
+    EXPECT_EQ(t.rejected[0].line, 3U);
+    EXPECT_EQ(t.rejected[0].reason, c.reason);
+    EXPECT_EQ(t.size(), 2U);
+  }
+}
+
+TEST(TelemetryReader, TakesTheEdgesOfEachRange) {
+  const Telemetry t = read("slip,sinkage_m\n1,0\n-1,0.1\n");
+  EXPECT_EQ(t.size(), 2U);
+  EXPECT_EQ(t.rejected.size(), 0U);
+}
+
+TEST(TelemetryReader, RejectsALastRowThatIsCutShort) {
+  const Telemetry t = read("load_N,slip,torque_Nm\n80,0.2,1\n80,0.");
+  EXPECT_EQ(t.size(), 1U);
+  EXPECT_EQ(t.rejected[0].line, 3U);
+}
+
+TEST(TelemetryReader, NeedsItsRequiredColumnsInEveryRow) {
+  EXPECT_THAT(errorOf("slip\n0.1\n", {.required = {"slip", "load_N", "torque_Nm"}}),
+              HasSubstr(":1: no column load_N, torque_Nm"));
+  const Telemetry t = read("slip,load_N\n0.1,\n0.2,80\n", {.required = {"slip", "load_N"}});
+  EXPECT_EQ(t.rejected[0].reason, "load_N is empty");
+  EXPECT_EQ(t.size(), 1U);
+}
+
+TEST(TelemetryReader, UsesTheGivenRadiusWhereTheFileHasNone) {
+  EXPECT_THAT(errorOf("sinkage_m\n0.3\n", {.required = {}, .wheel_radius_m = 0.1}),
+              HasSubstr("must be < the wheel's"));
+  EXPECT_EQ(read("sinkage_m\n0.3\n").size(), 1U);
+}
+
+TEST(TelemetryReader, AFileWithoutAUsableRowIsAnError) {
+  EXPECT_THAT(errorOf("load_N\n"), HasSubstr("no rows below the header"));
+  EXPECT_THAT(errorOf("load_N\n-1\n-2\n"),
+              HasSubstr(":2: no usable row; 2 refused, this one because load_N = -1"));
+}
+
+TEST(TelemetryReader, StopsAndReportsWhenWatched) {
+  std::string content = "slip\n";
+  for (int k = 0; k < 200000; ++k) content += "0.5\n";
+  const test::TemporaryFile file{content};
+  std::stop_source stop;
+  double last = 0.0;
+  const ProgressMonitor watch{[&](double fraction) {
+                                EXPECT_GE(fraction, last);
+                                last = fraction;
+                                if (fraction > 0.3) stop.request_stop();
+                              },
+                              stop.get_token()};
+  EXPECT_LT(readTelemetry(file.path(), {}, watch).size(), 200000U);
+  EXPECT_GT(last, 0.3);
+}
+
+TEST(TelemetryReader, MeasuredFilesAreRead) {
+  const char* folder = std::getenv("TALUS_MEASURED_DATA");
+  if (!folder) GTEST_SKIP() << "TALUS_MEASURED_DATA is not set";
+  const Telemetry ding = readTelemetry(std::string(folder) + "/single_wheel_digitised/points.csv");
+  EXPECT_EQ(ding.size() + ding.rejected.size(), 11U);
+  const Telemetry cmu = readTelemetry(std::string(folder) + "/cmu_testbed/runs.csv");
+  EXPECT_EQ(cmu.size() + cmu.rejected.size(), 216U);
+}
+
+}  // namespace
+}  // namespace talus::terramech

@@ -1,0 +1,72 @@
+#include <talus/talus.hpp>
+#include <talus/terramech/io/yaml_fields.hpp>
+
+namespace talus::terramech {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+YamlFields of(const std::string& yaml) {
+  return YamlFields::text(yaml, "f.yaml");
+}
+
+TEST(YamlFields, ReadsEachKind) {
+  const YamlFields f =
+      of("a_m: 2\nb: word\nc: yes\nd: [1, 2]\ne: {mean: 3, std: 1}\ng: {h: 4}\ni:\n - {h: 5}\n - {h: 6}\n");
+  EXPECT_EQ(f.number("a_m"), 2.0);
+  EXPECT_EQ(f.integer("a_m"), 2);
+  EXPECT_EQ(f.word("b"), "word");
+  EXPECT_TRUE(f.flag("c", false));
+  EXPECT_THAT(f.numbers("d"), ElementsAre(1.0, 2.0));
+  EXPECT_EQ(f.stated("e").std, 1.0);
+  EXPECT_EQ(f.fields("g").number("h"), 4.0);
+  EXPECT_EQ(f.list("i")[1].number("h"), 6.0);
+  EXPECT_EQ(f.number("absent", 7.0), 7.0);
+  EXPECT_EQ(f.word("absent", "x"), "x");
+  EXPECT_THAT(f.names(), ElementsAre("a_m", "b", "c", "d", "e", "g", "i"));
+}
+
+TEST(YamlFields, ConvertsUnitsOfOneKind) {
+  EXPECT_DOUBLE_EQ(of("a_mm: 250").number("a_m"), 0.25);
+  EXPECT_DOUBLE_EQ(of("p_kPa: [1, 2]").numbers("p_Pa")[1], 2000.0);
+  EXPECT_DOUBLE_EQ(of("t_Ncm: 5").number("t_Nm"), 0.05);
+  EXPECT_DOUBLE_EQ(of("v_kmph: 36").number("v_mps"), 10.0);
+  EXPECT_DOUBLE_EQ(of("k_modulus_kN: 3").stated("k_modulus").mean, 3000.0);
+  EXPECT_FALSE(of("a_kg: 1").has("a_m"));
+}
+
+TEST(YamlFields, RefusesUnknownNamesWithTheNearest) {
+  EXPECT_THAT(
+      [] {
+        of("mass_kg: 1\nraduis_m: 2").only({"mass_kg", "radius_m"});
+      },
+      ThrowsMessage<InputError>("f.yaml:2: unknown key 'raduis_m'; did you mean radius_m?"));
+  EXPECT_THAT([] { of("zzz: 1").only({"mass_kg"}); },
+              ThrowsMessage<InputError>("f.yaml:1: unknown key 'zzz'; remove it"));
+  EXPECT_NO_THROW(of("mass_g: 1\nradius_cm: 2").only({"mass_kg", "radius_m"}));
+}
+
+TEST(YamlFields, ErrorsHaveFileAndLine) {
+  EXPECT_THAT([] { of("a: 1\nb: {c: x}").fields("b").number("c"); },
+              ThrowsMessage<InputError>(HasSubstr("f.yaml:2: c = 'x', must be a number")));
+  EXPECT_THAT([] { of("a: 1\nb: 2").fields("b"); },
+              ThrowsMessage<InputError>(HasSubstr("f.yaml:2: b is '2'")));
+  EXPECT_THAT([] { of("a: 1\nb: 2").list("b"); }, ThrowsMessage<InputError>(HasSubstr("f.yaml:2: b is '2'")));
+  EXPECT_THAT([] { of("a: [1, .inf]").numbers("a"); },
+              ThrowsMessage<InputError>(HasSubstr("must be finite")));
+  EXPECT_THAT([] { of("a: maybe").flag("a", true); },
+              ThrowsMessage<InputError>(HasSubstr("write true or false")));
+  EXPECT_THAT([] { YamlFields::file("/nowhere.yaml"); },
+              ThrowsMessage<InputError>(HasSubstr("/nowhere.yaml: cannot")));
+  EXPECT_THAT([] { YamlFields::file("/tmp"); }, ThrowsMessage<InputError>(HasSubstr("is a directory")));
+}
+
+TEST(YamlFields, NearestNameCountsEdits) {
+  EXPECT_EQ(nearestName("cohesion", {"cohesive", "friction"}), "cohesive");
+  EXPECT_EQ(nearestName("completely_else", {"a", "b"}), "");
+}
+
+}  // namespace
+}  // namespace talus::terramech

@@ -1,0 +1,101 @@
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include <talus/terramech/mobility/category.hpp>
+
+namespace talus::terramech {
+namespace {
+
+const CategoryThresholds kLimits{.dp_low = 0.125,
+                                 .dp_high = 0.375,
+                                 .z_threshold = 0.5,
+                                 .z_critical = 0.75,
+                                 .t_threshold = 1.0,
+                                 .t_critical = 1.5};
+
+Category of(double dp, double z, std::optional<double> t = {}) {
+  return categorise({.drawbar_pull_over_load = dp, .sinkage_over_radius = z, .torque_over_load_radius = t},
+                    kLimits);
+}
+
+double above(double x) {
+  return std::nextafter(x, std::numeric_limits<double>::infinity());
+}
+double below(double x) {
+  return std::nextafter(x, -std::numeric_limits<double>::infinity());
+}
+
+// Printed in: thesis 3.5, whose inequalities are strict.
+TEST(Category, DrawbarPullOnItsEdgesIsMarginal) {
+  EXPECT_EQ(of(below(0.125), 0.0), Category::Dangerous);
+  EXPECT_EQ(of(0.125, 0.0), Category::Marginal);
+  EXPECT_EQ(of(0.375, 0.0), Category::Marginal);
+  EXPECT_EQ(of(above(0.375), 0.0), Category::Safe);
+}
+
+TEST(Category, SinkageCostsARankFromTheThresholdToTheCriticalValue) {
+  EXPECT_EQ(of(0.5, below(0.5)), Category::Safe);
+  EXPECT_EQ(of(0.5, 0.5), Category::Marginal);
+  EXPECT_EQ(of(0.5, 0.75), Category::Marginal);
+  EXPECT_EQ(of(0.5, above(0.75)), Category::Dangerous);
+  EXPECT_EQ(of(0.25, 0.5), Category::Dangerous);
+}
+
+TEST(Category, TorqueCostsARankTooAndRanksAddUp) {
+  EXPECT_EQ(of(0.5, 0.0, below(1.0)), Category::Safe);
+  EXPECT_EQ(of(0.5, 0.0, 1.0), Category::Marginal);
+  EXPECT_EQ(of(0.5, 0.0, 1.5), Category::Marginal);
+  EXPECT_EQ(of(0.5, 0.0, above(1.5)), Category::Dangerous);
+  EXPECT_EQ(of(0.5, 0.6, 1.2), Category::Dangerous);
+}
+
+TEST(Category, ASlipBeyondTheSteeringLimitIsDangerous) {
+  CategoryThresholds limits = kLimits;
+  limits.steering_slip = 0.6;
+  WheelCondition condition{.drawbar_pull_over_load = 0.5, .slip = 0.6};
+  EXPECT_EQ(categorise(condition, limits), Category::Safe);
+  condition.slip = above(0.6);
+  EXPECT_EQ(categorise(condition, limits), Category::Dangerous);
+  EXPECT_EQ(categorise(condition, kLimits), Category::Safe);
+}
+
+TEST(Category, NotANumberIsUnknown) {
+  const double nan = std::nan("");
+  EXPECT_EQ(of(nan, 0.0), Category::Unknown);
+  EXPECT_EQ(of(0.5, nan), Category::Unknown);
+  EXPECT_EQ(of(0.5, 0.0, nan), Category::Unknown);
+}
+
+TEST(Category, NeverImprovesAsPullFallsOrSinkageOrTorqueRises) {
+  // Property: monotone in each number.
+  for (double dp = -0.5; dp < 1.0; dp += 0.0625)
+    for (double z = 0.0; z < 1.0; z += 0.0625)
+      for (double t = 0.0; t < 2.0; t += 0.125) {
+        EXPECT_GE(of(dp, z, t), of(dp + 0.0625, z, t));
+        EXPECT_LE(of(dp, z, t), of(dp, z + 0.0625, t));
+        EXPECT_LE(of(dp, z, t), of(dp, z, t + 0.125));
+      }
+}
+
+TEST(Category, ThresholdsComeFromTheMissionSlope) {
+  constexpr double kDegree = 0.017453292519943295;
+  const CategoryThresholds t = thresholds({.slope_rad = 15.0 * kDegree, .margin_rad = 5.0 * kDegree});
+  // Printed in: thesis 3.5, tan 10 deg and tan 20 deg.
+  EXPECT_NEAR(t.dp_low, std::tan(10.0 * kDegree), 1e-15);
+  EXPECT_NEAR(t.dp_high, std::tan(20.0 * kDegree), 1e-15);
+  EXPECT_THROW(thresholds({.slope_rad = 1.5, .margin_rad = 0.2}), std::invalid_argument);
+}
+
+TEST(Category, DisorderedThresholdsAreRefused) {
+  CategoryThresholds t = kLimits;
+  t.dp_low = 0.4;
+  EXPECT_THROW(validate(t), std::invalid_argument);
+  t = kLimits;
+  t.z_critical = std::nan("");
+  EXPECT_THROW(validate(t), std::invalid_argument);
+  EXPECT_NO_THROW(validate(kLimits));
+}
+
+}  // namespace
+}  // namespace talus::terramech

@@ -1,0 +1,34 @@
+#include <cmath>
+#include <stdexcept>
+
+#include <talus/terramech/numerics/normal_distribution.hpp>
+
+namespace talus::terramech {
+namespace {
+
+TEST(NormalDistribution, QuantileInvertsTheDistribution) {
+  // Property, over the whole range down to the far tail.
+  for (const double x : {-30.0, -8.0, -2.0, -0.3, 0.0, 0.7, 3.0, 6.0}) {
+    const double p = normalProbability(x);
+    // Above the median p itself is rounded to 1e-16.
+    const double tolerance = 1e-10 + (x > 0.0 ? 1e-16 / normalDensity(x) : 0.0);
+    EXPECT_NEAR(normalQuantile(p), x, tolerance);
+  }
+}
+
+TEST(NormalDistribution, QuantileOfNinetySevenAndAHalfPerCent) {
+  // Closed form: 1.959963984540054.
+  EXPECT_NEAR(normalQuantile(0.975), 1.959963984540054, 1e-12);
+  EXPECT_THROW((void)normalQuantile(0.0), std::invalid_argument);
+}
+
+TEST(EvenPoints, FillTheCubeEvenly) {
+  // Property: the mean of each coordinate of a Halton sequence is 1/2 to about log(n)/n.
+  const auto points = evenPoints(5, 1024);
+  for (int row = 0; row < 5; ++row) EXPECT_NEAR(points.row(row).mean(), 0.5, 0.01);
+  EXPECT_GT(points.minCoeff(), 0.0);
+  EXPECT_LT(points.maxCoeff(), 1.0);
+}
+
+}  // namespace
+}  // namespace talus::terramech
