@@ -9,7 +9,8 @@
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/draw/html_report.hpp>
-#include <talus/cli/soil/assessment.hpp>
+#include <talus/terramech/estimate/pull_formula.hpp>
+#include <talus/terramech/tables/assessment.hpp>
 
 namespace talus::cli {
 namespace {
@@ -19,7 +20,11 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-void bind(CLI::App& command, AssessOptions& options) {
+struct AssessCommand : AssessOptions {
+  std::string html;  // page to write; empty: none
+};
+
+void bind(CLI::App& command, AssessCommand& options) {
   command.add_option("table", options.table, "wheel telemetry")->required()->type_name("T.csv");
   command.add_option("--slope", options.slope_rad, "slope that must be climbed")
       ->type_name("RAD")
@@ -36,7 +41,7 @@ void bind(CLI::App& command, AssessOptions& options) {
   model->type_name("M.yaml");
   command
       .add_option("--formula", options.formula, "drawbar pull from W, T, z (thesis 3.6, 3.12, 3.21, or ours)")
-      ->check(CLI::IsMember({"single-force", "small-angle", "triangular", "plane"}))
+      ->check(CLI::IsMember(pullFormulas()))
       ->capture_default_str()
       ->excludes(model);
   command.add_flag("--extrapolate", options.extrapolate,
@@ -136,7 +141,7 @@ Plot mapOf(const std::vector<Assessment>& rows) {
   return plot;
 }
 
-void writePage(const AssessOptions& options, const std::vector<Assessment>& rows) {
+void writePage(const AssessCommand& options, const std::vector<Assessment>& rows) {
   HtmlReport page("Traversability of " + options.table);
   page.paragraph(fmt::format(
       "Slope to climb {:.1f} +- {:.1f} deg; z/r below {:.2f} keeps the rank, above {:.2f} is dangerous.",
@@ -153,7 +158,7 @@ void writePage(const AssessOptions& options, const std::vector<Assessment>& rows
   writeFile(options.html, page.html());
 }
 
-int run(const AssessOptions& options, Context& context) {
+int run(const AssessCommand& options, Context& context) {
   const AssessedTable table = assessTable(options, context.watch("assessing"));
   if (context.stop.stop_requested()) return Exit::kCancelled;
   if (!table.rejected.empty()) {
@@ -177,7 +182,7 @@ int run(const AssessOptions& options, Context& context) {
 }  // namespace
 
 void addAssess(CLI::App& app, Context& context) {
-  addCommand<AssessOptions>(
+  addCommand<AssessCommand>(
       app, context,
       {.name = "assess",
        .group = Group::kSoil,

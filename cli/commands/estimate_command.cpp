@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -8,7 +9,7 @@
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/draw/html_report.hpp>
-#include <talus/cli/soil/soil_estimate.hpp>
+#include <talus/terramech/tables/estimate_soil.hpp>
 
 namespace talus::cli {
 namespace {
@@ -17,13 +18,17 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-void bind(CLI::App& command, EstimateOptions& options) {
+using namespace terramech;
+
+struct EstimateCommand : EstimateOptions {
+  std::string html;  // page to write; empty: none
+};
+
+void bind(CLI::App& command, EstimateCommand& options) {
   command.add_option("table", options.table, "wheel telemetry, or plate tests for bevameter")
       ->required()
       ->type_name("T.csv");
-  command.add_option("--method", options.method, "how")
-      ->required()
-      ->check(CLI::IsMember({"bevameter", "sojourner", "iagnemma", "linear-offset", "wong-reece"}));
+  command.add_option("--method", options.method, "how")->required()->check(CLI::IsMember(estimateMethods()));
   command
       .add_option("--shear-modulus", options.shear_modulus,
                   "K in metres, or how to find it: error-minimisation, effective-torque, "
@@ -31,10 +36,7 @@ void bind(CLI::App& command, EstimateOptions& options) {
                   "(default: the file's shear_modulus_m, else the prior's, else joint; wong-reece infers it)")
       ->type_name("M|HOW")
       ->check([](const std::string& word) -> std::string {
-        for (const char* how :
-             {"error-minimisation", "effective-torque", "effective-torque-printed", "joint"}) {
-          if (word == how) return {};
-        }
+        if (std::ranges::find(modulusMethods(), word) != modulusMethods().end()) return {};
         return CLI::Number(word).empty() ? std::string()
                                          : "'" + word + "' is neither metres nor a way to find K";
       });
@@ -86,7 +88,7 @@ Json runningJson(const SoilEstimate& e) {
 
 Json posteriorJson(const SoilEstimate& e) {
   const auto& p = *e.posterior;
-  const auto range = [](const terramech::CredibleInterval& i) { return Json{i.low, i.high}; };
+  const auto range = [](const CredibleInterval& i) { return Json{i.low, i.high}; };
   Json classes = Json::object();
   for (std::size_t k = 0; k < e.class_names.size(); ++k) classes[e.class_names[k]] = p.class_probabilities[k];
   return {{"interval_95",
@@ -201,7 +203,7 @@ Plot posteriorPlot(const SoilEstimate& e) {
   return plot;
 }
 
-void writePage(const EstimateOptions& options, const SoilEstimate& e) {
+void writePage(const EstimateCommand& options, const SoilEstimate& e) {
   HtmlReport page("Soil from " + options.table);
   page.paragraph(
       fmt::format("Method {}, {} rows used, {} rejected.", options.method, e.rows_used, e.rejected.size()));
@@ -217,7 +219,7 @@ void writePage(const EstimateOptions& options, const SoilEstimate& e) {
   writeFile(options.html, page.html());
 }
 
-int run(const EstimateOptions& options, Context& context) {
+int run(const EstimateCommand& options, Context& context) {
   const SoilEstimate estimate = estimateSoil(options, context.watch("estimating"));
   if (context.stop.stop_requested()) return Exit::kCancelled;
   if (!estimate.rejected.empty()) {
@@ -240,7 +242,7 @@ int run(const EstimateOptions& options, Context& context) {
 }  // namespace
 
 void addEstimate(CLI::App& app, Context& context) {
-  addCommand<EstimateOptions>(
+  addCommand<EstimateCommand>(
       app, context,
       {.name = "estimate",
        .group = Group::kSoil,

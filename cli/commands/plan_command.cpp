@@ -20,7 +20,6 @@
 #include <talus/cli/ground/drive_options.hpp>
 #include <talus/cli/ground/mission.hpp>
 #include <talus/cli/ground/windowed_ground.hpp>
-#include <talus/cli/ground/windowed_plan.hpp>
 #include <talus/cli/route/plan_pairs.hpp>
 #include <talus/cli/route/route_json.hpp>
 #include <talus/maps/place_reader.hpp>
@@ -28,6 +27,7 @@
 #include <talus/planner/check/chassis_planner.hpp>
 #include <talus/planner/check/route_check.hpp>
 #include <talus/planner/check/route_risk.hpp>
+#include <talus/planner/grid/windowed_plan.hpp>
 #include <talus/planner/plugin/named_planner.hpp>
 #include <talus/planner/plugin/risk_planner.hpp>
 
@@ -287,18 +287,17 @@ void refuseInWindows(const PlanOptions& options) {
 
 int runInWindows(const PlanOptions& options, const Context& context) {
   refuseInWindows(options);
-  WindowedGround ground(options.ground, context);
+  Ground overview = readOverview(options.ground, context);
   if (context.stop.stop_requested()) return Exit::kCancelled;
-  planner::Problem problem = problemOf(options, ground.overview(), context);
+  planner::WindowedMap map = windowsOn(options.ground, overview, context);
+  planner::Problem problem = problemOf(options, overview, context);
   const auto begin = std::chrono::steady_clock::now();
-  planner::Plan plan = planInWindows(problem, ground);
+  planner::Plan plan = planner::planInWindows(problem, map);
   const double plan_s = since_s(begin);
-  if (!problem.map) problem.map = ground.overview().map.published();
   const planner::AnnotationInput input{.map = *problem.map,
-                                       .elevation_m = [&](maps::Point p) { return ground.elevation_m(p); },
+                                       .elevation_m = [&](maps::Point p) { return map.elevation_m(p); },
                                        .planner = options.planner};
-  return finish(options, {std::move(ground).takeOverview(), problem, std::move(plan), plan_s}, input,
-                context);
+  return finish(options, {std::move(overview), problem, std::move(plan), plan_s}, input, context);
 }
 
 int run(const PlanOptions& asked, Context& context) {
@@ -311,7 +310,7 @@ int run(const PlanOptions& asked, Context& context) {
     throw InputError({"planner '" + planner.name() + "'", "knows no heading and no turning radius",
                       "pass --planner hybrid, or leave out --start-heading, --goal-heading, --turning-radius "
                       "and --no-reverse"});
-  if (!options.whole_field && WindowedGround::needed(options.ground, options.in_memory))
+  if (!options.whole_field && needsWindows(options.ground, options.in_memory))
     return runInWindows(options, context);
   if (!options.pairs.empty()) return runPairs(options, context);
   const Planned planned = planWhole(options, planner, context);

@@ -1,6 +1,7 @@
 #pragma once
 
-#include <talus/planner/sampling/sampling_planner.hpp>
+#include <talus/planner/route/problem.hpp>
+#include <talus/planner/sampling/sampling_settings.hpp>
 
 namespace talus::planner {
 

@@ -1,19 +1,16 @@
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 
-#include <talus/cli/soil/line_estimate.hpp>
-#include <talus/cli/soil/prior_option.hpp>
 #include <talus/terramech/estimate/iagnemma.hpp>
 #include <talus/terramech/estimate/shear_modulus_grid.hpp>
 #include <talus/terramech/estimate/sojourner.hpp>
+#include <talus/terramech/io/soil_priors.hpp>
 #include <talus/terramech/io/telemetry_reader.hpp>
+#include <talus/terramech/tables/line_estimate.hpp>
 
-namespace talus::cli {
+namespace talus::terramech {
 namespace {
-
-using namespace terramech;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
@@ -193,15 +190,6 @@ void fitRecursively(const EstimateOptions& options, const WheelRows& rows,
 
 }  // namespace
 
-std::optional<double> statedModulus(const EstimateOptions& options) {
-  const std::string& word = options.shear_modulus;
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc{} || end != word.data() + word.size()) return std::nullopt;
-  if (value > 0.0 && std::isfinite(value)) return value;
-  throw InputError({.where = "--shear-modulus " + word, .reason = "must be > 0 [m]", .remedy = ""});
-}
-
 SoilEstimate lineEstimate(const EstimateOptions& options, const ProgressMonitor& watch) {
   const bool spin = options.method == "sojourner";
   const WheelRows rows = readWheelRows(options.table, {.rover = options.rover, .needs_slip = !spin}, watch);
@@ -219,4 +207,4 @@ SoilEstimate lineEstimate(const EstimateOptions& options, const ProgressMonitor&
   return estimate;
 }
 
-}  // namespace talus::cli
+}  // namespace talus::terramech

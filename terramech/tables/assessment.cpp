@@ -1,29 +1,17 @@
 #include <cmath>
 
-#include <talus/cli/soil/assessment.hpp>
-#include <talus/cli/soil/pull_forecasts.hpp>
-#include <talus/cli/soil/wheel_rows.hpp>
 #include <talus/terramech/estimate/model_pull.hpp>
+#include <talus/terramech/estimate/pull_forecasts.hpp>
+#include <talus/terramech/estimate/pull_formula.hpp>
 #include <talus/terramech/io/model_file.hpp>
 #include <talus/terramech/io/soil_library.hpp>
 #include <talus/terramech/io/telemetry_reader.hpp>
+#include <talus/terramech/io/wheel_rows.hpp>
+#include <talus/terramech/tables/assessment.hpp>
 #include <talus/terramech/trace/trial.hpp>
 
-namespace talus::cli {
+namespace talus::terramech {
 namespace {
-
-using namespace terramech;
-
-// Each formula with the scatter that it has over thesis Table 2.1 (talus reproduce --goals), and the
-// readings' errors.
-Uncertain pullBy(const std::string& formula, const Wheel& wheel, const WheelSample& s,
-                 const ReadingErrors& errors) {
-  const Uncertain ours = pullOverLoad(wheel, s, errors);
-  if (formula == "small-angle") return {pullAtSmallAngle(wheel, s), std::hypot(ours.std, 0.013)};
-  if (formula == "triangular") return {pullOfTriangularStress(wheel, s), std::hypot(ours.std, 0.014)};
-  if (formula == "plane") return {kThesisPlane.at(wheel, s), std::hypot(ours.std, 0.028)};
-  return ours;
-}
 
 void judge(Assessment& a, const CategoryThresholds& limits) {
   const WheelCondition mean{.drawbar_pull_over_load = a.pull.value,
@@ -59,7 +47,7 @@ AssessedTable assessReadings(const AssessOptions& options, const CategoryThresho
     const double sinkage = s.sinkage_m / wheel.radius_m;
     Assessment a{.line = rows.lines[k],
                  .slip = s.slip,
-                 .pull = pullBy(options.formula, wheel, s, errors),
+                 .pull = pullOverLoadBy(options.formula, wheel, s, errors),
                  .sinkage_over_radius = {sinkage, errors.sinkage.std(sinkage)},
                  .torque_over_load_radius = torqueOverLoadRadius(wheel, s)};
     judge(a, limits);
@@ -129,4 +117,4 @@ AssessedTable assessTable(const AssessOptions& options, const ProgressMonitor& w
                                : assessByModel(options, limits, watch);
 }
 
-}  // namespace talus::cli
+}  // namespace talus::terramech

@@ -8,24 +8,22 @@
 #include <talus/terramech/estimate/telemetry.hpp>
 #include <talus/terramech/estimate/wheel_reading.hpp>
 
-namespace talus::cli {
+namespace talus::terramech {
 
 /// Rows of wheel telemetry that an estimator can use, and those that it cannot.
 struct WheelRows {
-  std::string source;      ///< the file
-  terramech::Wheel wheel;  ///< of the first row, where all have the same
-  bool one_wheel = true;   ///< false: wheels of several sizes
-  std::vector<terramech::WheelSample> samples;
-  std::vector<terramech::Wheel> wheels;            ///< of each sample
-  std::vector<std::size_t> lines;                  ///< of each sample in the file
-  std::vector<terramech::Telemetry::Words> words;  ///< the file's columns of words, of each sample
-  std::vector<terramech::RejectedRow> rejected;    ///< by the reader or by the method, in the file's order
+  std::string source;     ///< the file
+  Wheel wheel;            ///< of the first row, where all have the same
+  bool one_wheel = true;  ///< false: wheels of several sizes
+  std::vector<WheelSample> samples;
+  std::vector<Wheel> wheels;            ///< of each sample
+  std::vector<std::size_t> lines;       ///< of each sample in the file
+  std::vector<Telemetry::Words> words;  ///< the file's columns of words, of each sample
+  std::vector<RejectedRow> rejected;    ///< by the reader or by the method, in the file's order
   /// The samples with their wheels.
-  std::vector<terramech::WheelReading> readings() const;
+  std::vector<WheelReading> readings() const;
 
-  const terramech::RejectedRow* firstRejected() const {
-    return rejected.empty() ? nullptr : &rejected.front();
-  }
+  const RejectedRow* firstRejected() const { return rejected.empty() ? nullptr : &rejected.front(); }
 };
 
 /// How rows are read.
@@ -40,4 +38,4 @@ struct WheelRowOptions {
 WheelRows readWheelRows(const std::filesystem::path& path, const WheelRowOptions& options,
                         const ProgressMonitor& watch);
 
-}  // namespace talus::cli
+}  // namespace talus::terramech

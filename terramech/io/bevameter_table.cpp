@@ -4,13 +4,11 @@
 #include <map>
 #include <numbers>
 
-#include <talus/cli/soil/bevameter_table.hpp>
+#include <talus/terramech/io/bevameter_table.hpp>
 #include <talus/terramech/io/telemetry_reader.hpp>
 
-namespace talus::cli {
+namespace talus::terramech {
 namespace {
-
-using terramech::Telemetry;
 
 const std::vector<double>* either(const Telemetry& table, const char* name, const char* other) {
   const auto* column = table.find(name);
@@ -51,7 +49,7 @@ std::vector<double> widthsOfRoundPlates(const Telemetry& table, const std::vecto
 
 BevameterTable readBevameterTable(const std::filesystem::path& path, double plate_width_m,
                                   const ProgressMonitor& watch) {
-  const Telemetry table = terramech::readTelemetry(path, {}, watch);
+  const Telemetry table = readTelemetry(path, {}, watch);
   const auto* normal = table.find("normal_stress_Pa");
   const auto* shear = table.find("shear_stress_Pa");
   const auto* moved = table.find("shear_displacement_m");
@@ -95,4 +93,4 @@ BevameterTable readBevameterTable(const std::filesystem::path& path, double plat
                     .remedy = "pressures and displacements must be > 0"});
 }
 
-}  // namespace talus::cli
+}  // namespace talus::terramech

@@ -1,14 +1,12 @@
 #pragma once
 
+#include <talus/planner/grid/windowed_map.hpp>
 #include <talus/planner/route/problem.hpp>
-#include <talus/planner/route/route.hpp>
 
-namespace talus::cli {
-
-class WindowedGround;
+namespace talus::planner {
 
 /// A route on a map that is not held in memory: the overview's route guides, and each leg is planned in the
 /// tiles beside it. The problem's map becomes that of the last leg.
-planner::Plan planInWindows(planner::Problem& problem, WindowedGround& ground);
+Plan planInWindows(Problem& problem, WindowedMap& map);
 
-}  // namespace talus::cli
+}  // namespace talus::planner

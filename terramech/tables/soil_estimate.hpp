@@ -7,22 +7,25 @@
 
 #include <Eigen/Core>
 
-#include <talus/cli/soil/wheel_rows.hpp>
 #include <talus/terramech/estimate/bevameter.hpp>
 #include <talus/terramech/estimate/mohr_coulomb_line.hpp>
 #include <talus/terramech/estimate/soil_posterior.hpp>
+#include <talus/terramech/io/wheel_rows.hpp>
 
-namespace talus::cli {
+namespace talus::terramech {
 
-/// What `talus estimate` is asked for.
+/// How the soil is found from a table: one of the methods
+///   bevameter       plate tests (plate_estimate.hpp)
+///   sojourner, iagnemma, linear-offset   straight lines in (sigma, tau) (line_estimate.hpp)
+///   wong-reece      the posterior by the wheel's equilibrium (posterior_estimate.hpp, model_estimate.hpp)
 struct EstimateOptions {
-  std::string table;
-  std::string method;
-  std::string shear_modulus;  ///< a number [m], or the name of a method; empty: the file's column, else joint
+  std::string table;   ///< path of the CSV
+  std::string method;  ///< one of estimateMethods()
+  std::string
+      shear_modulus;  ///< K: a number [m], or one of modulusMethods(); empty: the file's column, else the prior's, else joint
   std::string prior;  ///< soil file or name; empty: for wong-reece the classes of thesis Table 2.1, else none
-  std::string rover;
+  std::string rover;  ///< library name or file: whose wheel, where the table has no wheel size; may be empty
   std::string model;  ///< wong-reece: a refined model whose effects act; empty: none
-  std::string html;
   bool whole_equation = false;  ///< linear-offset: keep M1 of Eq. 2.9
   bool recursive = false;       ///< take the rows in one by one and keep each answer
   double plate_width_m = 0.0;   ///< bevameter: of all plates [m], where the file has no such column; 0: none
@@ -40,6 +43,9 @@ struct RunningSoil {
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Constant(kNan);  ///< of (c, tan phi)
 };
 
+/// options.shear_modulus as a number [m], if it is one. Throws InputError where it is not > 0.
+std::optional<double> statedModulus(const EstimateOptions& options);
+
 /// Standard deviation of phi [rad] from that of tan(phi): by its slope at phi.
 double frictionStd_rad(const Eigen::Matrix2d& covariance, double friction_angle_rad);
 
@@ -53,29 +59,25 @@ struct SoilEstimate {
   double sinkage_exponent;
   std::optional<double> cohesive_modulus;
   std::optional<double> frictional_modulus;
-  std::vector<terramech::PlateModulus> plates;  ///< of bevameter
+  std::vector<PlateModulus> plates;  ///< of bevameter
   std::size_t rows_used = 0;
-  std::vector<terramech::RejectedRow> rejected;
-  std::vector<std::string> unseen;            ///< parameters that the data do not show, with the reason
-  std::vector<std::string> warnings;          ///< what the user should know of how it was fitted
-  std::vector<std::string> effects;           ///< that acted, of --model
-  std::vector<terramech::StressPair> points;  ///< what a line was fitted to, for a plot
-  std::optional<terramech::SoilPosterior> posterior;  ///< of wong-reece
-  std::vector<std::string> class_names;               ///< of its prior
-  std::vector<RunningSoil> running;                   ///< a row used, when asked to be recursive
+  std::vector<RejectedRow> rejected;
+  std::vector<std::string> unseen;         ///< parameters that the data do not show, with the reason
+  std::vector<std::string> warnings;       ///< what the user should know of how it was fitted
+  std::vector<std::string> effects;        ///< that acted, of --model
+  std::vector<StressPair> points;          ///< what a line was fitted to, for a plot
+  std::optional<SoilPosterior> posterior;  ///< of wong-reece
+  std::vector<std::string> class_names;    ///< of its prior
+  std::vector<RunningSoil> running;        ///< a row used, when asked to be recursive
 
   SoilEstimate();
 
   /// Takes c, tan(phi), their covariance and what was not seen from a fitted line.
-  void take(const terramech::ShearStrength& fit);
+  void take(const ShearStrength& fit);
 
   /// What no soil is like, by more than two standard deviations: c < 0, phi below 0 or above 60 deg. Empty
   /// where it may be one.
   std::string implausible() const;
 };
 
-/// Runs the method on the table. Throws InputError for what is wrong with the input, std::domain_error when
-/// there is no fit.
-SoilEstimate estimateSoil(const EstimateOptions& options, const ProgressMonitor& watch);
-
-}  // namespace talus::cli
+}  // namespace talus::terramech

@@ -1,11 +1,9 @@
 #include <cmath>
 
-#include <talus/cli/soil/pull_forecasts.hpp>
+#include <talus/terramech/estimate/pull_forecasts.hpp>
 
-namespace talus::cli {
+namespace talus::terramech {
 namespace {
-
-using namespace terramech;
 
 constexpr double kStep = 0.01;  // of ln W
 
@@ -37,4 +35,4 @@ PullForecast PullForecasts::at(const Wheel& wheel, double load_N) {
           .climbable_slope_rad = between(a.climbable_slope_rad, b.climbable_slope_rad, share)};
 }
 
-}  // namespace talus::cli
+}  // namespace talus::terramech

@@ -5,13 +5,11 @@
 #include <Eigen/Core>
 #include <fmt/format.h>
 
-#include <talus/cli/soil/soil_groups.hpp>
 #include <talus/terramech/estimate/soil_objective.hpp>
+#include <talus/terramech/tables/soil_groups.hpp>
 
-namespace talus::cli {
+namespace talus::terramech {
 namespace {
-
-using namespace terramech;
 
 constexpr double kLarge = 0.5;   // mean departure of a group, in standard deviations of one reading
 constexpr double kChance = 5.0;  // of a column's chi-squared, in its standard deviations
@@ -79,4 +77,4 @@ std::string groupsThatDisagree(const WheelRows& rows, const SoilPosterior& poste
       *worst, name, group.departure());
 }
 
-}  // namespace talus::cli
+}  // namespace talus::terramech

@@ -2,17 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <talus/cli/soil/line_estimate.hpp>
-#include <talus/cli/soil/model_estimate.hpp>
 #include <talus/terramech/io/model_file.hpp>
 #include <talus/terramech/io/soil_library.hpp>
 #include <talus/terramech/io/telemetry_reader.hpp>
+#include <talus/terramech/tables/model_estimate.hpp>
 #include <talus/terramech/trace/model_soil.hpp>
 
-namespace talus::cli {
+namespace talus::terramech {
 namespace {
-
-using namespace terramech;
 
 constexpr double kMisfit = 3.0;  // above it the model does not describe the rows
 
@@ -89,4 +86,4 @@ SoilEstimate modelEstimate(const EstimateOptions& options, const ProgressMonitor
   return estimate;
 }
 
-}  // namespace talus::cli
+}  // namespace talus::terramech

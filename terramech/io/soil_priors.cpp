@@ -1,13 +1,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include <talus/cli/soil/prior_option.hpp>
 #include <talus/terramech/io/soil_library.hpp>
+#include <talus/terramech/io/soil_priors.hpp>
 
-namespace talus::cli {
+namespace talus::terramech {
 namespace {
-
-using namespace terramech;
 
 Marginal marginal(double mean, double std, double least) {
   return std > 0.0 ? Marginal::normal(mean, std, least) : Marginal::fixed(mean);
@@ -56,4 +54,4 @@ double meanModulus(const std::vector<SoilPrior>& soils) {
   return sum / static_cast<double>(soils.size());
 }
 
-}  // namespace talus::cli
+}  // namespace talus::terramech

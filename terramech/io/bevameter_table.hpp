@@ -7,7 +7,7 @@
 #include <talus/terramech/estimate/bevameter.hpp>
 #include <talus/terramech/estimate/telemetry.hpp>
 
-namespace talus::cli {
+namespace talus::terramech {
 
 /// Plate tests out of a CSV: rows of a shear test (normal_stress_Pa, shear_stress_Pa, shear_displacement_m),
 /// of a pressure-sinkage test (plate_width_m or plate_d_m, pressure_Pa or p_Pa, sinkage_m or z_m), or both.
@@ -16,9 +16,9 @@ namespace talus::cli {
 /// round plate that F_N and the pressure tell, test by test; a test whose F_N over pressure changes was not
 /// made with a plate.
 struct BevameterTable {
-  std::vector<terramech::ShearReading> shear;
-  std::vector<terramech::PlateReading> plates;
-  std::vector<terramech::RejectedRow> rejected;
+  std::vector<ShearReading> shear;
+  std::vector<PlateReading> plates;
+  std::vector<RejectedRow> rejected;
   bool width_from_force = false;  ///< the widths are not the file's own
 };
 
@@ -27,4 +27,4 @@ struct BevameterTable {
 BevameterTable readBevameterTable(const std::filesystem::path& path, double plate_width_m,
                                   const ProgressMonitor& watch);
 
-}  // namespace talus::cli
+}  // namespace talus::terramech

@@ -5,25 +5,25 @@
 
 #include <talus/terramech/estimate/pull_forecast.hpp>
 
-namespace talus::cli {
+namespace talus::terramech {
 
 /// Forecasts at many loads on one soil, each by a straight line between two loads 1 % apart that were solved
 /// and are kept: a table of any length costs as many solutions as it has distinct loads, at most 140 a wheel
 /// size where they differ by a factor of two.
 class PullForecasts {
  public:
-  PullForecasts(terramech::SoilPosterior soil, double reference_slip)
+  PullForecasts(SoilPosterior soil, double reference_slip)
       : soil_(std::move(soil)), reference_slip_(reference_slip) {}
 
   /// At a load [N] > 0 on a wheel.
-  terramech::PullForecast at(const terramech::Wheel& wheel, double load_N);
+  PullForecast at(const Wheel& wheel, double load_N);
 
  private:
-  const terramech::PullForecast& solved(const terramech::Wheel& wheel, int step);
+  const PullForecast& solved(const Wheel& wheel, int step);
 
-  terramech::SoilPosterior soil_;
+  SoilPosterior soil_;
   double reference_slip_;
-  std::map<std::tuple<double, double, int>, terramech::PullForecast> kept_;  // by radius, width, step of load
+  std::map<std::tuple<double, double, int>, PullForecast> kept_;  // by radius, width, step of load
 };
 
-}  // namespace talus::cli
+}  // namespace talus::terramech

@@ -4,18 +4,16 @@
 
 #include <fmt/format.h>
 
-#include <talus/cli/soil/wheel_rows.hpp>
 #include <talus/terramech/io/soil_library.hpp>
 #include <talus/terramech/io/telemetry_reader.hpp>
+#include <talus/terramech/io/wheel_rows.hpp>
 
-namespace talus::cli {
+namespace talus::terramech {
 namespace {
 
-using terramech::Telemetry;
-
 // The wheel of each row: the rover's, or the file's own.
-std::vector<terramech::Wheel> wheelsOf(const Telemetry& table, const WheelRowOptions& options) {
-  if (!options.rover.empty()) return {table.size(), terramech::loadRover(options.rover).wheel};
+std::vector<Wheel> wheelsOf(const Telemetry& table, const WheelRowOptions& options) {
+  if (!options.rover.empty()) return {table.size(), loadRover(options.rover).wheel};
   const auto* radius = table.find("wheel_radius_m");
   const auto* width = table.find("wheel_width_m");
   if (radius == nullptr || width == nullptr) {
@@ -24,7 +22,7 @@ std::vector<terramech::Wheel> wheelsOf(const Telemetry& table, const WheelRowOpt
          .reason = fmt::format("lacks column {}", radius == nullptr ? "wheel_radius_m" : "wheel_width_m"),
          .remedy = "add it, or name the rover with --rover"});
   }
-  std::vector<terramech::Wheel> wheels;
+  std::vector<Wheel> wheels;
   for (std::size_t k = 0; k < table.size(); ++k) {
     if (!std::isfinite((*radius)[k]) || !std::isfinite((*width)[k])) {
       throw InputError({.where = fmt::format("{}:{}", table.source, table.lines[k]),
@@ -36,11 +34,11 @@ std::vector<terramech::Wheel> wheelsOf(const Telemetry& table, const WheelRowOpt
   return wheels;
 }
 
-bool sameSize(const terramech::Wheel& a, const terramech::Wheel& b) {
+bool sameSize(const Wheel& a, const Wheel& b) {
   return a.radius_m == b.radius_m && a.width_m == b.width_m;
 }
 
-std::optional<std::string> unusable(const terramech::WheelSample& s, const WheelRowOptions& options) {
+std::optional<std::string> unusable(const WheelSample& s, const WheelRowOptions& options) {
   if (!(s.sinkage_m > 0.0)) return "sinkage_m = 0: the wheel has no contact to infer stresses from";
   if (options.needs_slip && !(s.slip > 0.0))
     return fmt::format("slip = {:g}, must be > 0: a driven wheel", s.slip);
@@ -49,19 +47,19 @@ std::optional<std::string> unusable(const terramech::WheelSample& s, const Wheel
 
 }  // namespace
 
-std::vector<terramech::WheelReading> WheelRows::readings() const {
-  std::vector<terramech::WheelReading> readings;
+std::vector<WheelReading> WheelRows::readings() const {
+  std::vector<WheelReading> readings;
   for (std::size_t k = 0; k < samples.size(); ++k) readings.push_back({wheels[k], samples[k]});
   return readings;
 }
 
 WheelRows readWheelRows(const std::filesystem::path& path, const WheelRowOptions& options,
                         const ProgressMonitor& watch) {
-  terramech::TelemetryOptions reading{.required = {"load_N", "torque_Nm", "sinkage_m"}};
+  TelemetryOptions reading{.required = {"load_N", "torque_Nm", "sinkage_m"}};
   if (options.needs_slip) reading.required.emplace_back("slip");
-  if (!options.rover.empty()) reading.wheel_radius_m = terramech::loadRover(options.rover).wheel.radius_m;
-  const Telemetry table = terramech::readTelemetry(path, reading, watch);
-  const std::vector<terramech::Wheel> wheels = wheelsOf(table, options);
+  if (!options.rover.empty()) reading.wheel_radius_m = loadRover(options.rover).wheel.radius_m;
+  const Telemetry table = readTelemetry(path, reading, watch);
+  const std::vector<Wheel> wheels = wheelsOf(table, options);
   WheelRows rows{.source = table.source,
                  .wheel = wheels.front(),
                  .samples = {},
@@ -72,10 +70,10 @@ WheelRows readWheelRows(const std::filesystem::path& path, const WheelRowOptions
   for (const auto& column : table.words) rows.words.push_back({.name = column.name, .values = {}});
   const auto* slip = table.find("slip");
   for (std::size_t k = 0; k < table.size(); ++k) {
-    const terramech::WheelSample sample{.load_N = table.at("load_N")[k],
-                                        .torque_Nm = table.at("torque_Nm")[k],
-                                        .sinkage_m = table.at("sinkage_m")[k],
-                                        .slip = slip == nullptr || std::isnan((*slip)[k]) ? 0.0 : (*slip)[k]};
+    const WheelSample sample{.load_N = table.at("load_N")[k],
+                             .torque_Nm = table.at("torque_Nm")[k],
+                             .sinkage_m = table.at("sinkage_m")[k],
+                             .slip = slip == nullptr || std::isnan((*slip)[k]) ? 0.0 : (*slip)[k]};
     if (const auto reason = unusable(sample, options)) {
       rows.rejected.push_back({.line = table.lines[k], .reason = *reason});
       continue;
@@ -88,11 +86,11 @@ WheelRows readWheelRows(const std::filesystem::path& path, const WheelRowOptions
     for (std::size_t w = 0; w < table.words.size(); ++w)
       rows.words[w].values.push_back(table.words[w].values[k]);
   }
-  std::ranges::stable_sort(rows.rejected, {}, &terramech::RejectedRow::line);
+  std::ranges::stable_sort(rows.rejected, {}, &RejectedRow::line);
   if (!rows.samples.empty()) return rows;
   throw InputError({.where = fmt::format("{}:{}", rows.source, rows.rejected.front().line),
                     .reason = fmt::format("no usable row: {}", rows.rejected.front().reason),
                     .remedy = ""});
 }
 
-}  // namespace talus::cli
+}  // namespace talus::terramech

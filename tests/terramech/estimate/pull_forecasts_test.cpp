@@ -1,10 +1,8 @@
-#include <talus/cli/soil/pull_forecasts.hpp>
+#include <talus/terramech/estimate/pull_forecasts.hpp>
 #include <talus/terramech/estimate/thesis_runs.hpp>
 
-namespace talus::cli {
+namespace talus::terramech {
 namespace {
-
-using namespace terramech;
 
 TEST(PullForecasts, AreThoseOfEachLoadAndWheel) {
   // Property: a line between loads 1 % apart leaves less than 1e-4; another wheel has forecasts of its own.
@@ -28,4 +26,4 @@ TEST(PullForecasts, AreThoseOfEachLoadAndWheel) {
 }
 
 }  // namespace
-}  // namespace talus::cli
+}  // namespace talus::terramech

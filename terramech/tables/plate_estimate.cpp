@@ -1,0 +1,55 @@
+#include <cmath>
+
+#include <talus/terramech/io/bevameter_table.hpp>
+#include <talus/terramech/io/soil_priors.hpp>
+#include <talus/terramech/tables/plate_estimate.hpp>
+
+namespace talus::terramech {
+
+SoilEstimate plateEstimate(const EstimateOptions& options, const ProgressMonitor& watch) {
+  const BevameterTable table = readBevameterTable(options.table, options.plate_width_m, watch);
+  const auto priors = strengthPriors(soilPriors(options.prior));
+  if (!priors.empty() && table.shear.empty()) {
+    throw InputError({.where = "--prior " + options.prior,
+                      .reason = "cohesion and friction take a prior, and the table has no shear test",
+                      .remedy = "leave it out, or add shear_stress_Pa"});
+  }
+  SoilEstimate estimate;
+  estimate.rejected = table.rejected;
+  estimate.rows_used = table.shear.size() + table.plates.size();
+  if (!table.shear.empty()) {
+    const ShearFit fit = fitShear(table.shear);
+    estimate.take(priors.empty() ? fit.strength : withPrior(fit.strength, priors));
+    estimate.shear_modulus_m = fit.shear_modulus_m;
+    if (fit.modulus_at_bound)
+      estimate.unseen.emplace_back("shear_modulus_m: the displacements do not show it");
+    for (const ShearReading& r : table.shear) {
+      const double share = -std::expm1(-r.displacement_m / fit.shear_modulus_m);
+      estimate.points.push_back({.normal_Pa = r.normal_Pa, .shear_Pa = r.shear_Pa / share});
+    }
+  }
+  if (!table.plates.empty()) {
+    if (table.width_from_force) {
+      estimate.warnings.emplace_back(
+          "no plate_width_m: plates are taken as round, their diameters from F_N and the pressure; state "
+          "--plate-width where they are not");
+    }
+    PressureSinkageFit fitter;
+    for (const PlateReading& r : table.plates) fitter.add(r);
+    const PressureSinkage fit = fitter.estimate();
+    estimate.sinkage_exponent = fit.sinkage_exponent;
+    estimate.plates = fit.plates;
+    estimate.cohesive_modulus = fit.cohesive_modulus;
+    estimate.frictional_modulus = fit.frictional_modulus;
+    if (fit.cohesive_modulus && *fit.cohesive_modulus < 0.0) {
+      estimate.warnings.emplace_back(
+          "k_c < 0: wider plates are stiffer, which no cohesion explains; take k of the plate nearest in "
+          "width");
+    }
+    if (!fit.refused.empty())
+      estimate.unseen.push_back("cohesive_modulus, frictional_modulus: " + fit.refused);
+  }
+  return estimate;
+}
+
+}  // namespace talus::terramech

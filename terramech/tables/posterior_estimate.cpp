@@ -1,0 +1,94 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include <talus/terramech/estimate/soil_filter.hpp>
+#include <talus/terramech/io/soil_priors.hpp>
+#include <talus/terramech/tables/posterior_estimate.hpp>
+#include <talus/terramech/tables/soil_groups.hpp>
+
+namespace talus::terramech {
+namespace {
+
+SoilMixture priorOf(const EstimateOptions& options, double width_m) {
+  SoilMixture prior =
+      options.prior.empty() ? thesisSoilsOrOther() : mixtureOf(soilPriors(options.prior), width_m);
+  if (const auto stated = statedModulus(options)) {
+    for (SoilClass& soil : prior) soil.parameters[kShear] = Marginal::fixed(*stated);
+  }
+  return prior;
+}
+
+void take(const SoilPosterior& p, SoilEstimate& estimate) {
+  estimate.cohesion_Pa = p.mean.cohesion_Pa;
+  estimate.friction_angle_rad = p.mean.friction_angle_rad;
+  estimate.tan_friction = p.tan_friction;
+  estimate.shear_modulus_m = p.mean.shear_modulus_m;
+  estimate.covariance = p.strength_covariance;
+  estimate.sinkage_exponent = p.mean.sinkage_exponent;
+  estimate.frictional_modulus = p.mean.sinkage_modulus;
+  estimate.unseen = p.unseen;
+}
+
+// Row by row in constant memory.
+SoilPosterior filtered(const WheelRows& rows, const SoilMixture& prior, const SoilFitOptions& fit,
+                       std::vector<RunningSoil>& running, const ProgressMonitor& watch) {
+  SoilFilter filter(rows.wheel, prior, {.fit = fit});
+  SoilPosterior last;
+  for (std::size_t k = 0; k < rows.samples.size(); ++k) {
+    if (watch.stopped()) break;
+    watch.report(static_cast<double>(k) / static_cast<double>(rows.samples.size()));
+    filter.add({rows.wheels[k], rows.samples[k]});
+    last = filter.posterior();
+    running.push_back({.line = rows.lines[k],
+                       .cohesion_Pa = last.mean.cohesion_Pa,
+                       .friction_angle_rad = last.mean.friction_angle_rad,
+                       .shear_modulus_m = last.mean.shear_modulus_m,
+                       .covariance = last.strength_covariance});
+  }
+  watch.report(1.0);
+  return last;
+}
+
+// What the posterior takes for granted and these rows may not bear out.
+void sayWhatIsDoubtful(const WheelRows& rows, const SoilPosterior& posterior, const ReadingErrors& noise,
+                       std::vector<std::string>& warnings) {
+  constexpr double kMisfit = 3.0;
+  if (posterior.misfit > kMisfit) {
+    warnings.push_back(fmt::format(
+        "no soil of the prior explains the readings (misfit {:.1f}, 1 expected); widen --prior or --noise",
+        posterior.misfit));
+  }
+  if (const std::string text = groupsThatDisagree(rows, posterior, noise); !text.empty())
+    warnings.push_back(text);
+  const auto [narrow, wide] = std::ranges::minmax_element(rows.wheels, {}, &Wheel::width_m);
+  if (narrow->width_m < wide->width_m) {
+    warnings.push_back(
+        fmt::format("k = k_c/b + k_phi is taken as one value under wheels of {:g} to {:g} m width; where k_c "
+                    "matters, one file for each width",
+                    narrow->width_m, wide->width_m));
+  }
+}
+
+}  // namespace
+
+SoilEstimate posteriorEstimate(const EstimateOptions& options, const ProgressMonitor& watch) {
+  const WheelRows rows = readWheelRows(options.table, {.rover = options.rover, .needs_slip = true}, watch);
+  const SoilMixture prior = priorOf(options, rows.wheel.width_m);
+  SoilEstimate estimate;
+  estimate.rejected = rows.rejected;
+  estimate.rows_used = rows.samples.size();
+  SoilFitOptions fit;
+  fit.noise = ReadingErrors::relative(options.noise);
+  fit.draws = options.recursive ? 128 : 512;
+  fit.watch = watch;
+  estimate.posterior = options.recursive ? filtered(rows, prior, fit, estimate.running, watch)
+                                         : fitSoil(rows.readings(), prior, fit);
+  if (watch.stopped()) return estimate;
+  take(*estimate.posterior, estimate);
+  sayWhatIsDoubtful(rows, *estimate.posterior, fit.noise, estimate.warnings);
+  for (const SoilClass& soil : prior) estimate.class_names.push_back(soil.name);
+  return estimate;
+}
+
+}  // namespace talus::terramech

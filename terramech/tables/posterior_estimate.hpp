@@ -1,0 +1,10 @@
+#pragma once
+
+#include <talus/terramech/tables/soil_estimate.hpp>
+
+namespace talus::terramech {
+
+/// The posterior of the soil by the wheel's equilibrium: wong-reece without a model. Throws as estimateSoil().
+SoilEstimate posteriorEstimate(const EstimateOptions& options, const ProgressMonitor& watch);
+
+}  // namespace talus::terramech
