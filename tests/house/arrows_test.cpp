@@ -74,6 +74,17 @@ TEST(House, NoPartOfARoomIncludesOneAboveIt) {
       if (left.contains(other)) ADD_FAILURE() << part << " and " << other << " stand in a circle of includes";
 }
 
+TEST(House, TheCheckerOfRoutesSharesNothing) {
+  // Property: tests/safety includes no header of ours and links no target of ours.
+  for (const auto& file : files("tests/safety", {".hpp", ".cpp", ".txt"})) {
+    const std::string source = text(file);
+    EXPECT_EQ(source.find("<talus/"), std::string::npos) << file;
+    EXPECT_EQ(source.find("talus::"), std::string::npos) << file;
+    EXPECT_EQ(source.find("talus_test("), std::string::npos) << file << ": links talus::common";
+  }
+  EXPECT_GT(files("tests/safety", {".cpp"}).size(), 8U);
+}
+
 TEST(House, FilesHaveOneIdea) {
   for (const auto& [room, below] : roomsBelow())
     for (const auto& file : files(room, {".hpp", ".cpp"})) {

@@ -1,0 +1,80 @@
+// Errands in every test run; ./dev safety judges thousands.
+#include "campaign.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include <unistd.h>
+
+namespace safety {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A folder of one test, gone afterwards.
+class Folder {
+ public:
+  explicit Folder(const char* name)
+      : path_(fs::path(testing::TempDir()) / (name + std::to_string(getpid()))) {
+    fs::remove_all(path_);
+    fs::create_directories(path_);
+  }
+  ~Folder() { fs::remove_all(path_); }
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+Places placesIn(const Folder& folder) {
+  const char* maps = std::getenv("TALUS_REAL_MAPS");
+  return {SAFETY_PROGRAM, SAFETY_LIBRARY, maps ? maps : "", folder.path()};
+}
+
+void expectSound(const std::vector<Result>& results) {
+  EXPECT_TRUE(std::all_of(results.begin(), results.end(),
+                          [](const Result& r) { return r.violations.empty() && r.exit <= 2; }))
+      << table(results) << "again: safety_campaign PROGRAM LIBRARY FOLDER 1 NUMBER";
+}
+
+// In four parts, which run beside each other.
+class SafetyCampaign : public testing::TestWithParam<int> {};
+
+TEST_P(SafetyCampaign, NoRouteOfFiftyIsRefused) {
+  const Folder folder("safety_campaign");
+  Campaign campaign(placesIn(folder), (folder.path() / "results.csv").string());
+  const auto first = static_cast<std::uint64_t>(GetParam()) * 3 * Campaign::routesPerSite();
+  campaign.run(first, 50, [](const std::string& text) { ADD_FAILURE() << text; });
+  const auto results = campaign.results();
+  ASSERT_EQ(results.size(), 50U);
+  expectSound(results);
+  const auto routes =
+      std::count_if(results.begin(), results.end(), [](const Result& r) { return r.exit == 0; });
+  EXPECT_GT(routes, 25);
+}
+
+INSTANTIATE_TEST_SUITE_P(Parts, SafetyCampaign, testing::Range(1, 4));
+
+TEST(SafetyCampaignFile, GoesOnWhereItWasStopped) {
+  const Folder folder("safety_resume");
+  const std::string file = (folder.path() / "results.csv").string();
+  const auto fail = [](const std::string& text) { ADD_FAILURE() << text; };
+  Campaign(placesIn(folder), file).run(0, 3, fail);
+  // Stopped in the middle of a line.
+  std::ofstream(file, std::ios::app) << "\n3;rocks;mer;0;RRT";
+  Campaign again(placesIn(folder), file);
+  ASSERT_EQ(again.results().size(), 3U);
+  again.run(0, 5, fail);
+  const auto results = again.results();
+  ASSERT_EQ(results.size(), 5U);
+  // Property: the same errands whether stopped or not.
+  Campaign whole(placesIn(folder), (folder.path() / "whole.csv").string());
+  whole.run(0, 2, fail);
+  EXPECT_EQ(whole.results()[1].length_m, results[1].length_m);
+  EXPECT_EQ(whole.results()[1].planner, results[1].planner);
+}
+
+}  // namespace
+}  // namespace safety

@@ -1,0 +1,160 @@
+#include "judge.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+namespace safety {
+namespace {
+
+constexpr double kMargin_rad = 5.0 * std::numbers::pi / 180.0;  // of the categories (thesis 3.5)
+constexpr double kSlipStep = 0.02;
+
+Place shifted(const Station& at, double ahead_m, double left_m) {
+  const double c = std::cos(at.heading_rad), s = std::sin(at.heading_rad);
+  return {at.place.x_m + ahead_m * c - left_m * s, at.place.y_m + ahead_m * s + left_m * c};
+}
+
+}  // namespace
+
+// The worst of each cause.
+class Judge::Findings {
+ public:
+  void add(const char* cause, const Station& at, double amount) {
+    if (!(amount > 0.0)) return;
+    const auto [known, fresh] = worst_.try_emplace(cause, Violation{cause, at.place, at.heading_rad, amount});
+    if (!fresh && amount > known->second.amount) known->second = {cause, at.place, at.heading_rad, amount};
+  }
+  std::vector<Violation> list() const {
+    std::vector<Violation> out;
+    for (const auto& [cause, violation] : worst_) out.push_back(violation);
+    return out;
+  }
+
+ private:
+  std::map<std::string, Violation> worst_;
+};
+
+std::vector<Violation> Judge::judge(const Route& route) const {
+  Findings findings;
+  const double step_m = std::max(0.25 * site_.elevation_m.cell_m, 0.1);
+  for (const Station& at : route.stations(step_m)) {
+    ground(at, findings);
+    width(at, findings);
+  }
+  heights(route, findings);
+  return findings.list();
+}
+
+void Judge::ground(const Station& at, Findings& findings) const {
+  const auto cell = site_.elevation_m.cellAt(at.place);
+  if (!cell) return findings.add("outside the map", at, 1.0);
+  const Plane plane = planeUnder(site_.elevation_m, *cell, site_.footprint_m());
+  if (!plane.known) return findings.add("unknown ground", at, 1.0);
+  const double c = std::cos(at.heading_rad), s = std::sin(at.heading_rad);
+  const double along = plane.east * c + plane.north * s, across = plane.north * c - plane.east * s;
+  findings.add(
+      "pitch", at,
+      std::abs(along) - std::tan(site_.rover.max_pitch_rad) - allowance_.gradient - allowance_.curve);
+  findings.add("roll", at, std::abs(across) - std::tan(site_.rover.max_roll_rad) - allowance_.gradient);
+  // Where cells are larger than the rover, relief counts in proportion (docs/limits.md).
+  const double footprint_m = 2.0 * std::max(site_.footprint_m(), site_.elevation_m.cell_m);
+  const double larger = std::max(footprint_m / site_.rover.wheelbase_m, 1.0);
+  findings.add("relief", at, plane.relief_m - (1.0 + 1e-3) * larger * site_.rover.clearance_m);
+  findings.add("roughness", at, plane.roughness_m - (1.0 + 1e-3) * larger * site_.rover.clearance_m / 3.0);
+  if (!at.turning) equilibrium(at, along, findings);
+}
+
+// The rover's whole width, at its middle and at both axles.
+void Judge::width(const Station& at, Findings& findings) const {
+  if (refused(at.place)) return findings.add("centre on refused ground", at, 1.0);
+  const double half_m = 0.5 * (site_.rover.track_m + site_.rover.wheel_width_m) - allowance_.clear_m;
+  for (const double share : {-1.0, -0.5, 0.5, 1.0})
+    if (refused(shifted(at, 0.0, share * half_m))) findings.add("width over refused ground", at, 1.0);
+  for (const double end : {-0.5, 0.5})
+    for (const double side : {-0.5, 0.5})
+      if (refused(shifted(at, end * site_.rover.wheelbase_m, side * site_.rover.track_m)))
+        findings.add("wheel on refused ground", at, 1.0);
+}
+
+std::optional<std::vector<Judge::Wheel>> Judge::wheels(const Station& at, double gradient) const {
+  const Rover& rover = site_.rover;
+  const int axles = std::max(rover.wheels / 2, 2);
+  std::vector<Wheel> found;
+  double squares = 0.0;
+  for (int k = 0; k < axles; ++k) squares += 2.0 * std::pow(rover.wheelbase_m * (0.5 - k / (axles - 1.0)), 2);
+  for (int k = 0; k < axles; ++k)
+    for (const double side : {0.5, -0.5}) {
+      const double ahead_m = rover.wheelbase_m * (0.5 - k / (axles - 1.0)), even = 0.5 / axles;
+      Wheel w{.place = shifted(at, ahead_m, side * rover.track_m)};
+      const auto number = site_.classAt(w.place);
+      if (!number) return std::nullopt;
+      w.share = std::max(even - gradient * rover.centre_of_mass_height_m * ahead_m / squares, 0.1 * even);
+      w.curve = &site_.kinds.at(*number)->fresh;
+      w.departure = belief_.at(*number, w.place);
+      w.deeper = belief_.deeper(*number, w.place);
+      found.push_back(w);
+    }
+  return found;
+}
+
+double Judge::pull(const std::vector<Wheel>& wheels, double slip) {
+  double sum = 0.0, load = 0.0;
+  for (const Wheel& w : wheels) {
+    const double relative = w.share * static_cast<double>(wheels.size());
+    sum += w.share * (w.curve->pull(slip, std::clamp(relative, 0.3, 1.6)) + w.departure.mean);
+    load += w.share;
+  }
+  return sum / load;
+}
+
+double Judge::mostPull(const std::vector<Wheel>& wheels) {
+  double most = -1.0;
+  for (double slip = 0.0; slip <= PullCurve::kMostSlip + 1e-9; slip += kSlipStep)
+    most = std::max(most, pull(wheels, slip));
+  return most;
+}
+
+void Judge::equilibrium(const Station& at, double gradient, Findings& findings) const {
+  const auto stand = wheels(at, gradient);
+  if (!stand) return;
+  double learned = 0.0;
+  for (const Wheel& w : *stand) learned += w.departure.learned / static_cast<double>(stand->size());
+  const double allowed =
+      allowance_.gradient + allowance_.curve + allowance_.pull + allowance_.belief * learned;
+  findings.add("pull", at, gradient - mostPull(*stand) - allowed);
+  const double edge = std::tan(std::atan(gradient) - kMargin_rad);
+  findings.add("category", at, edge - pull(*stand, PullCurve::kReferenceSlip) - allowed);
+  double slip = -1.0;
+  while (slip < PullCurve::kMostSlip && pull(*stand, slip) < gradient) slip += kSlipStep;
+  if (slip <= -1.0) findings.add("braking", at, pull(*stand, -1.0) - gradient - allowed);
+  const double load_N = site_.rover.wheelLoad_N(), radius_m = site_.rover.wheel_radius_m;
+  for (const Wheel& w : *stand) {
+    const double share = std::clamp(w.share * static_cast<double>(stand->size()), 0.3, 1.6);
+    const double torque_Nm = std::abs(w.curve->torque(slip, share)) * share * load_N * radius_m;
+    findings.add("torque", at, torque_Nm - site_.rover.max_torque_Nm * (1.0 + allowance_.torque));
+    findings.add("sinkage", at,
+                 w.curve->sinkage(slip, share) * w.deeper * radius_m - site_.rover.clearance_m);
+  }
+}
+
+// That both read the same ground: the height that the route has in the middle of a cell's neighbourhood.
+void Judge::heights(const Route& route, Findings& findings) const {
+  for (std::size_t i = 0; i < route.vertices.size(); ++i) {
+    const auto cell = site_.elevation_m.cellAt(route.vertices[i]);
+    if (!cell || std::isnan(route.elevation_m[i])) continue;
+    double low = 1e300, high = -1e300;
+    for (int dy = -1; dy <= 1; ++dy)
+      for (int dx = -1; dx <= 1; ++dx) {
+        const Cell there{cell->column + dx, cell->row + dy};
+        if (!site_.elevation_m.holds(there) || std::isnan(site_.elevation_m.at(there))) continue;
+        low = std::min(low, site_.elevation_m.at(there));
+        high = std::max(high, site_.elevation_m.at(there));
+      }
+    const double z_m = route.elevation_m[i];
+    findings.add("height", {route.vertices[i], 0.0, 0.0, false}, std::max(low - z_m, z_m - high) - 0.01);
+  }
+}
+
+}  // namespace safety

@@ -1,0 +1,185 @@
+// The judge must see: each test plants one fault in a site that is otherwise sound.
+#include "judge.hpp"
+
+#include <cmath>
+#include <limits>
+#include <set>
+
+namespace safety {
+namespace {
+
+const Rover kMer{.mass_kg = 176,
+                 .gravity_m_s2 = 3.71,
+                 .wheel_radius_m = 0.125,
+                 .wheel_width_m = 0.16,
+                 .wheelbase_m = 1.22,
+                 .track_m = 1.06,
+                 .clearance_m = 0.29,
+                 .centre_of_mass_height_m = 0.47,
+                 .max_pitch_rad = 0.436,
+                 .max_roll_rad = 0.436,
+                 .max_torque_Nm = 45};
+
+// Its greatest pull up to slip 0.8 is 0.26 of this rover's load, 0.148 at slip 0.5.
+SoilPrior loam() {
+  return {.mean = {.cohesion_Pa = 7445,
+                   .friction_angle_rad = 0.4398,
+                   .sinkage_exponent = 0.7,
+                   .cohesive_modulus = 5270,
+                   .frictional_modulus = 1515040}};
+}
+SoilPrior dust() {
+  return {.mean = {.friction_angle_rad = 0.42,
+                   .cohesive_modulus = 1400,
+                   .frictional_modulus = 300000,
+                   .shear_modulus_m = 0.015}};
+}
+
+// 20 m by 20 m, rising eastwards, of class 1.
+Site plain(double gradient = 0.0) {
+  Site site{.rover = kMer};
+  site.elevation_m = {.width = 40, .height = 40, .cell_m = 0.5, .values = {}};
+  for (int row = 0; row < 40; ++row)
+    for (int column = 0; column < 40; ++column)
+      site.elevation_m.values.push_back(gradient * 0.5 * (column + 0.5));
+  site.classes = site.elevation_m;
+  site.classes->values.assign(1600, 1.0);
+  site.kinds = {{1, groundKind(loam(), kMer)}, {2, groundKind(dust(), kMer)}};
+  return site;
+}
+
+void setCells(Raster& raster, Cell first, Cell last, double value) {
+  for (int row = first.row; row <= last.row; ++row)
+    for (int column = first.column; column <= last.column; ++column)
+      raster.values[static_cast<std::size_t>(row * raster.width + column)] = value;
+}
+
+Route line(Place from, Place to) {
+  Route route;
+  route.vertices = {from, to};
+  route.elevation_m = {std::nan(""), std::nan("")};
+  route.turn_rad = {0.0, 0.0};
+  route.heading_rad = {0.0, 0.0};
+  return route;
+}
+
+const Route kEast = line({5, 10.1}, {15, 10.1});
+
+std::set<std::string> causes(const Site& site, const Route& route, const std::vector<JournalRow>& rows = {}) {
+  const Belief belief(site, rows);
+  std::set<std::string> found;
+  for (const Violation& violation : Judge(site, belief).judge(route)) found.insert(violation.cause);
+  return found;
+}
+
+using Causes = std::set<std::string>;
+
+TEST(SafetyJudge, SoundGroundIsNotCharged) {
+  EXPECT_EQ(causes(plain(), kEast), Causes{});
+  EXPECT_EQ(causes(plain(0.1), kEast), Causes{});
+}
+
+TEST(SafetyJudge, ASlopeBeyondThePullIsCharged) {
+  EXPECT_TRUE(causes(plain(0.32), kEast).contains("pull"));
+  EXPECT_TRUE(causes(plain(0.4), kEast).contains("category"));
+  EXPECT_EQ(causes(plain(0.32), line({10.1, 5}, {10.1, 15})), Causes{});  // across the slope
+}
+
+TEST(SafetyJudge, TiltIsChargedInItsDirection) {
+  EXPECT_TRUE(causes(plain(0.5), kEast).contains("pitch"));
+  EXPECT_EQ(causes(plain(0.5), line({10.1, 5}, {10.1, 15})), Causes{"roll"});
+}
+
+TEST(SafetyJudge, HolesAndTheMapsEdgeAreCharged) {
+  Site site = plain();
+  setCells(site.elevation_m, {20, 20}, {20, 20}, std::numeric_limits<double>::quiet_NaN());
+  EXPECT_TRUE(causes(site, kEast).contains("unknown ground"));
+  EXPECT_TRUE(causes(plain(), line({5, 10}, {25, 10})).contains("outside the map"));
+}
+
+TEST(SafetyJudge, TheWidthCountsBesideTheLine) {
+  Site site = plain();
+  // The line runs at y = 10.1; these cells begin 0.4 m to its left, the outer wheels reach 0.61 m.
+  setCells(site.classes.value(), {20, 21}, {20, 21}, 9.0);
+  EXPECT_EQ(causes(site, kEast), (Causes{"wheel on refused ground", "width over refused ground"}));
+  EXPECT_EQ(causes(site, line({5, 9.85}, {15, 9.85})), Causes{});
+}
+
+TEST(SafetyJudge, KeepOutIsCharged) {
+  Site site = plain();
+  site.keep_out = {{{10.0, 10.4}, {10.5, 10.4}, {10.2, 11.0}, {10.0, 10.4}}};
+  EXPECT_TRUE(causes(site, kEast).contains("width over refused ground"));
+}
+
+TEST(SafetyJudge, HalfTheWheelsInATrapPullLess) {
+  // Dust under the left wheels alone, on a slope that loam climbs and dust does not.
+  Site site = plain(0.17);
+  setCells(site.classes.value(), {0, 21}, {39, 39}, 2.0);
+  EXPECT_EQ(causes(plain(0.17), kEast), Causes{});
+  EXPECT_TRUE(causes(site, kEast).contains("pull"));
+}
+
+TEST(SafetyJudge, AnEdgeUnderTheRoverIsCharged) {
+  Site site = plain();
+  for (int row = 0; row < 40; ++row) setCells(site.elevation_m, {20, row}, {39, row}, 0.8);
+  EXPECT_TRUE(causes(site, kEast).contains("relief"));
+}
+
+// Six wheels read at one moment: slip on a gradient.
+std::vector<JournalRow> moment(Place middle, double slip, double gradient, double time_s) {
+  std::vector<JournalRow> rows;
+  for (int w = 0; w < 6; ++w)
+    rows.push_back({.source = "made",
+                    .accepted = true,
+                    .time_s = time_s,
+                    .place = {middle.x_m + 0.6 * (w / 2 - 1), middle.y_m + (w % 2 ? 0.5 : -0.5)},
+                    .load_N = kMer.wheelLoad_N(),
+                    .slip = slip,
+                    .torque_Nm = std::nan(""),
+                    .sinkage_m = std::nan(""),
+                    .gradient = gradient,
+                    .pass = 1});
+  return rows;
+}
+
+TEST(SafetyJudge, EvidenceOfWeakGroundIsCharged) {
+  // Wheels that slipped 0.5 on the flat, where loam pulls 0.15: it was so much weaker there.
+  std::vector<JournalRow> rows;
+  for (int k = 0; k < 4; ++k)
+    for (const JournalRow& row : moment({10.0, 10.1}, 0.5, 0.0, k)) rows.push_back(row);
+  EXPECT_EQ(causes(plain(0.18), kEast), Causes{});
+  EXPECT_TRUE(causes(plain(0.18), kEast, rows).contains("pull"));
+  // Refused rows that speak for danger count as well.
+  for (JournalRow& row : rows) row.accepted = false;
+  EXPECT_TRUE(causes(plain(0.18), kEast, rows).contains("pull"));
+}
+
+TEST(SafetyJudge, OnePlaceDoesNotRaiseABelief) {
+  const Site site = plain(0.32);
+  std::vector<JournalRow> rows;
+  for (int k = 0; k < 20; ++k)
+    for (JournalRow row : moment({10.0, 10.1}, 0.05, 0.3, k)) {
+      row.place = {10.0, 10.1};
+      rows.push_back(row);
+    }
+  EXPECT_TRUE(causes(site, kEast, rows).contains("pull"));
+  EXPECT_LE(Belief(site, rows).at(1, {10.0, 10.1}).mean, 0.0);
+}
+
+TEST(SafetyBelief, AnswersAsOneGaussianOverOnePlace) {
+  const Site site = plain();
+  const auto rows = moment({10.0, 10.0}, 0.5, 0.0, 1.0);
+  std::vector<JournalRow> one(rows.begin(), rows.begin() + 1);
+  one[0].place = {10.625, 10.625};  // the middle of a square
+  const Departure here = Belief(site, one).at(1, one[0].place);
+  const double prior = 0.05 * 0.05 + 0.05 * 0.05;
+  const double seen = -site.kinds.at(1)->fresh.pull(0.5);
+  const double slope = 0.5 * (site.kinds.at(1)->fresh.pull(0.53) - site.kinds.at(1)->fresh.pull(0.47));
+  const double variance = 0.01 * 0.01 + 0.02 * 0.02 + slope * slope + 0.022 * 0.022;
+  // Closed form: two Gaussians in one dimension.
+  EXPECT_NEAR(here.mean, seen * prior / (prior + variance), 1e-9);
+  EXPECT_NEAR(here.deviation, std::sqrt(prior * variance / (prior + variance)), 1e-9);
+}
+
+}  // namespace
+}  // namespace safety

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+/// A checker of routes that shares nothing with Talus: it reads files and has its own formulas (README.md).
+namespace safety {
+
+/// A place on the map: x east, y north [m].
+struct Place {
+  double x_m = 0.0;
+  double y_m = 0.0;
+};
+
+/// Column from the west, row from the south.
+struct Cell {
+  int column = 0;
+  int row = 0;
+};
+
+/// One band of a raster, rows from south to north; NaN where it holds no data.
+struct Raster {
+  int width = 0;
+  int height = 0;
+  double west_m = 0.0;
+  double south_m = 0.0;
+  double cell_m = 1.0;
+  std::vector<double> values;
+
+  bool holds(Cell c) const { return c.column >= 0 && c.row >= 0 && c.column < width && c.row < height; }
+  double at(Cell c) const {
+    return values[static_cast<std::size_t>(c.row) * static_cast<std::size_t>(width) +
+                  static_cast<std::size_t>(c.column)];
+  }
+  std::optional<Cell> cellAt(Place p) const;
+  Place centre(Cell c) const {
+    return {west_m + (c.column + 0.5) * cell_m, south_m + (c.row + 0.5) * cell_m};
+  }
+};
+
+/// Reads the first band of a file whose rows run along the axes. Throws std::runtime_error.
+Raster readRaster(const std::string& path);
+
+/// Writes an ESRI ASCII grid, NaN as its no-data value.
+void writeAscii(const Raster& raster, const std::string& path);
+
+/// The part of a raster from a cell on, in metres of its own.
+Raster part(const Raster& raster, Cell south_west, int width, int height);
+
+}  // namespace safety

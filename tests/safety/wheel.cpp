@@ -1,0 +1,141 @@
+#include "wheel.hpp"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace safety {
+namespace {
+
+struct Forces {
+  double load = 0.0, pull = 0.0, torque = 0.0;
+};
+
+Forces operator+(const Forces& a, const Forces& b) {
+  return {a.load + b.load, a.pull + b.pull, a.torque + b.torque};
+}
+Forces operator*(double s, const Forces& f) {
+  return {s * f.load, s * f.pull, s * f.torque};
+}
+double largest(const Forces& f) {
+  return std::fmax(std::abs(f.load), std::fmax(std::abs(f.pull), std::abs(f.torque)));
+}
+
+// The contact at one entry angle.
+class Contact {
+ public:
+  Contact(const Soil& soil, const LoadedWheel& wheel, double entry)
+      : soil_(soil),
+        wheel_(wheel),
+        entry_(entry),
+        peak_((soil.c1 + soil.c2 * wheel.slip) * entry),
+        modulus_(soil.cohesive_modulus / wheel.width_m + soil.frictional_modulus) {}
+
+  // In newtons, torque over r. The square root's end at the entry is taken out by t = t1 - s^2.
+  Forces forces() const {
+    const auto rear = [this](double t) { return at(t); };
+    const auto front = [this](double s) { return 2.0 * s * at(entry_ - s * s); };
+    return wheel_.radius_m * wheel_.width_m *
+           (integral(rear, 0.0, peak_) + integral(front, 0.0, std::sqrt(entry_ - peak_)));
+  }
+
+ private:
+  Forces at(double t) const {
+    const double mirrored = t >= peak_ ? t : entry_ - t / peak_ * (entry_ - peak_);
+    const double depth = wheel_.radius_m * std::fmax(std::cos(mirrored) - std::cos(entry_), 0.0);
+    const double sigma = modulus_ * std::pow(depth, soil_.sinkage_exponent);
+    const double j = displacement(t);
+    const double strength = soil_.cohesion_Pa + sigma * std::tan(soil_.friction_angle_rad);
+    const double tau = std::copysign(strength * (1.0 - std::exp(-std::abs(j) / soil_.shear_modulus_m)), j);
+    return {sigma * std::cos(t) + tau * std::sin(t), tau * std::cos(t) - sigma * std::sin(t), tau};
+  }
+
+  double displacement(double t) const {
+    const double sines = std::sin(entry_) - std::sin(t), i = wheel_.slip;
+    if (i >= 0.0) return wheel_.radius_m * (entry_ - t - (1.0 - i) * sines);
+    return i > -1.0 ? wheel_.radius_m * (entry_ - t - sines / (1.0 + i)) : -1e9;
+  }
+
+  template <typename F>
+  static Forces integral(const F& f, double a, double b) {
+    if (!(b > a)) return {};
+    constexpr int kParts = 2;
+    Forces sum;
+    for (int k = 0; k < kParts; ++k) {
+      const double low = a + (b - a) * k / kParts, high = a + (b - a) * (k + 1) / kParts;
+      const Forces fl = f(low), fm = f(0.5 * (low + high)), fh = f(high);
+      const Forces whole = (high - low) / 6.0 * (fl + 4.0 * fm + fh);
+      sum = sum + refined(f, {low, high, fl, fm, fh, whole}, 20);
+    }
+    return sum;
+  }
+
+  struct Piece {
+    double low, high;
+    Forces at_low, at_middle, at_high, sum;
+  };
+
+  template <typename F>
+  static Forces refined(const F& f, const Piece& p, int depth) {
+    const double middle = 0.5 * (p.low + p.high);
+    const Forces l = f(0.5 * (p.low + middle)), h = f(0.5 * (middle + p.high));
+    const Forces left = (middle - p.low) / 6.0 * (p.at_low + 4.0 * l + p.at_middle);
+    const Forces right = (p.high - middle) / 6.0 * (p.at_middle + 4.0 * h + p.at_high);
+    const Forces change = left + right + -1.0 * p.sum;
+    if (depth == 0 || largest(change) <= 1e-7 * largest(left + right))
+      return left + right + 1.0 / 15.0 * change;
+    return refined(f, {p.low, middle, p.at_low, l, p.at_middle, left}, depth - 1) +
+           refined(f, {middle, p.high, p.at_middle, h, p.at_high, right}, depth - 1);
+  }
+
+  const Soil& soil_;
+  const LoadedWheel& wheel_;
+  double entry_, peak_, modulus_;
+};
+
+// Entry angle that carries the load, between the two: log W is all but straight over log t1, so that the false
+// position with halved ends (Illinois) is there in a few steps.
+double entryFor(const Soil& soil, const LoadedWheel& wheel, double low, double high) {
+  const auto excess = [&](double log_entry) {
+    return std::log(std::fmax(Contact(soil, wheel, std::exp(log_entry)).forces().load, 1e-12) / wheel.load_N);
+  };
+  double a = std::log(low), b = std::log(high), at_a = excess(a), at_b = excess(b);
+  int last = 0;
+  for (int step = 0; step < 100 && b - a > 1e-12; ++step) {
+    const double c = (a * at_b - b * at_a) / (at_b - at_a), at_c = excess(c);
+    if (std::abs(at_c) < 1e-9) return std::exp(c);
+    // The end that stays twice in a row counts half.
+    if (at_c < 0.0) {
+      a = c, at_a = at_c;
+      if (last < 0) at_b *= 0.5;
+    } else {
+      b = c, at_b = at_c;
+      if (last > 0) at_a *= 0.5;
+    }
+    last = at_c < 0.0 ? -1 : 1;
+  }
+  return std::exp(0.5 * (a + b));
+}
+
+}  // namespace
+
+WheelAnswer drive(const Soil& soil, const LoadedWheel& wheel) {
+  constexpr double kAxle = 0.5 * std::numbers::pi;
+  WheelAnswer answer;
+  answer.carried = Contact(soil, wheel, kAxle).forces().load > wheel.load_N;
+  const double entry = answer.carried ? entryFor(soil, wheel, 1e-3, kAxle) : kAxle;
+  const Forces forces = Contact(soil, wheel, entry).forces();
+  answer.sinkage_m = wheel.radius_m * (1.0 - std::cos(entry));
+  answer.drawbar_pull_N = forces.pull;
+  answer.torque_Nm = wheel.radius_m * forces.torque;
+  return answer;
+}
+
+Soil inRut(Soil soil) {
+  soil.cohesive_modulus *= 4.0;
+  soil.frictional_modulus *= 4.0;
+  soil.shear_modulus_m /= 2.0;
+  return soil;
+}
+
+}  // namespace safety

@@ -1,0 +1,44 @@
+#pragma once
+
+namespace safety {
+
+/// Soil in SI units.
+struct Soil {
+  double cohesion_Pa = 0.0;
+  double friction_angle_rad = 0.0;
+  double sinkage_exponent = 1.0;
+  double cohesive_modulus = 0.0;
+  double frictional_modulus = 0.0;
+  double shear_modulus_m = 0.02;
+  double c1 = 0.43;
+  double c2 = 0.32;
+};
+
+/// A rigid wheel and how it is used.
+struct LoadedWheel {
+  double radius_m = 0.1;
+  double width_m = 0.1;
+  double load_N = 50.0;
+  double slip = 0.0;  ///< driven 1 - v/(r omega) in [0, 1]; braked r omega/v - 1 in [-1, 0)
+};
+
+/// What the soil does to it.
+struct WheelAnswer {
+  bool carried = false;  ///< false: it sinks to its axle, and the forces are those there
+  double sinkage_m = 0.0;
+  double torque_Nm = 0.0;
+  double drawbar_pull_N = 0.0;
+};
+
+/// Wong and Reece's rigid wheel as the thesis writes it (kang_2003, App. C, contact from the axle forward):
+///   sigma = k r^n (cos t - cos t1)^n in front of t_m, the mirrored stress behind it, t_m = (c1 + c2 i) t1
+///   tau = (c + sigma tan phi)(1 - e^(-j/K)), odd in j, j = r [t1 - t - (1 - i)(sin t1 - sin t)] driven,
+///         j = r [t1 - t - (sin t1 - sin t)/(1 + i)] braked
+///   W, DP, T = r b int (sigma cos t + tau sin t), r b int (tau cos t - sigma sin t), r^2 b int tau
+/// with t1 by false position of W and the integrals by adaptive Simpson: slow and plain.
+WheelAnswer drive(const Soil& soil, const LoadedWheel& wheel);
+
+/// Soil in the rut of an equal wheel: four times as stiff, half the shear displacement (docs/simulation.md).
+Soil inRut(Soil soil);
+
+}  // namespace safety
