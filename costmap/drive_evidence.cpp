@@ -1,5 +1,6 @@
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -136,8 +137,8 @@ Moment momentAt(const Rows& rows, std::size_t first, const terramech::Rover& rov
 // Puts the moments of a drive through watch and observer, one after the other.
 class TelemetryProcessor {
  public:
-  TelemetryProcessor(TraversabilityMap& map, const Rows& rows)
-      : map_(map), rows_(rows), watch_(map.model()), observer_(map.model()) {}
+  explicit TelemetryProcessor(const TraversabilityMap& map)
+      : map_(map), watch_(map.model()), observer_(map.model()) {}
 
   // Of one wheel: why it is not believed, and what it says if it is.
   struct Result {
@@ -148,11 +149,11 @@ class TelemetryProcessor {
 
   // Calls take(row, result) for every row in order. `without_torque`: torque and sinkage are not believed.
   template <typename Take>
-  void processRows(bool without_torque, Take&& take) {
-    for (std::size_t first = 0; first < rows_.size();) {
-      const Moment moment = momentAt(rows_, first, map_.model().rover());
+  void processRows(const Rows& rows, bool without_torque, Take&& take) {
+    for (std::size_t first = 0; first < rows.size();) {
+      const Moment moment = momentAt(rows, first, map_.model().rover());
       transferred_ += moment.transferred ? moment.readings.size() : 0;
-      for (Result& result : process(moment, without_torque)) take(first++, std::move(result));
+      for (Result& result : process(rows, moment, without_torque)) take(first++, std::move(result));
     }
   }
 
@@ -160,10 +161,10 @@ class TelemetryProcessor {
   std::size_t transferred() const noexcept { return transferred_; }
 
  private:
-  std::vector<Result> process(const Moment& moment, bool without_torque) {
+  std::vector<Result> process(const Rows& rows, const Moment& moment, bool without_torque) {
     std::vector<SensorWatch::Named> named;
     for (std::size_t w = 0; w < moment.readings.size(); ++w)
-      named.push_back({rows_.series(moment.first + w), moment.readings[w]});
+      named.push_back({rows.series(moment.first + w), moment.readings[w]});
     const auto refused = watch_.refuse(named);
     std::vector<Result> all;
     std::vector<ClassReading> sound, believed;
@@ -202,7 +203,6 @@ class TelemetryProcessor {
   }
 
   const TraversabilityMap& map_;
-  const Rows& rows_;
   SensorWatch watch_;
   WheelObserver observer_;
   std::size_t transferred_ = 0;
@@ -210,15 +210,18 @@ class TelemetryProcessor {
 
 }  // namespace
 
-DriveReport addDrive(TraversabilityMap& map, const terramech::Telemetry& telemetry,
-                     EvidenceJournal* journal) {
+struct DriveIntake::State {
+  TraversabilityMap& map;
+  EvidenceJournal* journal;
+  TelemetryProcessor processor;
+  DriveReport report{};
+
+  void put(const terramech::Telemetry& telemetry, bool without_torque);
+};
+
+void DriveIntake::State::put(const terramech::Telemetry& telemetry, bool without_torque) {
   const Rows rows(telemetry, map);
-  // The first pass: is there a bias in torque or sinkage that all ground shares?
-  TelemetryProcessor first_pass(map, rows);
-  first_pass.processRows(false, [](std::size_t, TelemetryProcessor::Result&&) {});
-  TelemetryProcessor processor(map, rows);
-  DriveReport report;
-  processor.processRows(first_pass.watch().biased(), [&](std::size_t i, TelemetryProcessor::Result&& result) {
+  processor.processRows(rows, without_torque, [&](std::size_t i, TelemetryProcessor::Result&& result) {
     if (result.reason.empty() && !map.learn(result.observation))
       result.reason = "no ground to learn about there";
     const JournalRow row{.source = telemetry.source,
@@ -231,14 +234,37 @@ DriveReport addDrive(TraversabilityMap& map, const terramech::Telemetry& telemet
     ++(row.accepted ? report.used : report.rejected);
     if (report.first_reason.empty()) report.first_reason = row.reason;
   });
-  map.publishAll();
-  report.findings = processor.watch().findings();
-  if (processor.transferred() > 0)
+}
+
+DriveIntake::DriveIntake(TraversabilityMap& map, EvidenceJournal* journal)
+    : state_(std::make_unique<State>(State{map, journal, TelemetryProcessor(map)})) {}
+
+DriveIntake::~DriveIntake() = default;
+
+void DriveIntake::add(const terramech::Telemetry& telemetry) {
+  state_->put(telemetry, state_->processor.watch().biased());
+}
+
+DriveReport DriveIntake::report() const {
+  DriveReport report = state_->report;
+  report.findings = state_->processor.watch().findings();
+  if (const std::size_t rows = state_->processor.transferred(); rows > 0)
     report.findings.push_back(
-        std::to_string(processor.transferred()) +
+        std::to_string(rows) +
         " rows: load_N is the even share of the weight on a slope; the load transfer was "
         "worked out from the wheels' places");
   return report;
+}
+
+DriveReport addDrive(TraversabilityMap& map, const terramech::Telemetry& telemetry,
+                     EvidenceJournal* journal) {
+  // The first pass: is there a bias in torque or sinkage that all ground shares?
+  TelemetryProcessor first_pass(map);
+  first_pass.processRows(Rows(telemetry, map), false, [](std::size_t, TelemetryProcessor::Result&&) {});
+  DriveIntake intake(map, journal);
+  intake.state_->put(telemetry, first_pass.watch().biased());
+  map.publishAll();
+  return intake.report();
 }
 
 DriveReport replay(TraversabilityMap& map, const EvidenceJournal& journal) {

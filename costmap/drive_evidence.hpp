@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,29 @@ struct DriveReport {
   std::size_t rejected = 0;           ///< by the sensors' watch, or without a place on the map
   std::string first_reason;           ///< of the first row rejected; empty when none was
   std::vector<std::string> findings;  ///< what the sensors' watch saw, a line each
+};
+
+/// Puts telemetry into a map while it comes in, part by part: what the sensors' watch knows is kept from one
+/// part to the next. A part holds whole moments: all wheels that were read at one time. Where addDrive() sees
+/// a whole drive first, here a bias of torque or sinkage counts from the part after it shows. Planners see
+/// what was learned after map.publish(). Not thread-safe.
+class DriveIntake {
+ public:
+  /// Both are kept by reference; `journal` may be null.
+  explicit DriveIntake(TraversabilityMap& map, EvidenceJournal* journal = nullptr);
+  ~DriveIntake();
+  DriveIntake(const DriveIntake&) = delete;
+  DriveIntake& operator=(const DriveIntake&) = delete;
+
+  /// Columns and errors as addDrive().
+  void add(const terramech::Telemetry& telemetry);
+  /// Of all parts so far.
+  DriveReport report() const;
+
+ private:
+  friend DriveReport addDrive(TraversabilityMap&, const terramech::Telemetry&, EvidenceJournal*);
+  struct State;
+  std::unique_ptr<State> state_;
 };
 
 /// Puts the rows of a telemetry file into a map, in their order, and publishes all of it anew, so

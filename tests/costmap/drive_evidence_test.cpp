@@ -64,6 +64,27 @@ TEST(AddDrive, DustDrivenAsSandIsLearnedAsWeak) {
   EXPECT_NE(map.belief({30, 30}).category, static_cast<std::uint8_t>(terramech::Category::Safe));
 }
 
+// Rows first .. end - 1.
+terramech::Telemetry partOf(terramech::Telemetry whole, std::ptrdiff_t first, std::ptrdiff_t end) {
+  for (auto& column : whole.numbers)
+    column.values = {column.values.begin() + first, column.values.begin() + end};
+  whole.lines = {whole.lines.begin() + first, whole.lines.begin() + end};
+  return whole;
+}
+
+TEST(DriveIntake, PartsTeachWhatTheWholeDoes) {
+  TraversabilityMap whole = mapOf(wide()), parts = mapOf(wide());
+  const DriveReport expected = addDrive(whole, drive());
+  DriveIntake intake(parts);
+  for (std::ptrdiff_t first = 0; first < 100; first += 5) intake.add(partOf(drive(), first, first + 5));
+  parts.publishAll();
+  // Property: the same rows in the same order, however divided, where no sensor is biased.
+  EXPECT_EQ(intake.report().used, expected.used);
+  EXPECT_EQ(intake.report().rejected, expected.rejected);
+  EXPECT_EQ(intake.report().findings, expected.findings);
+  EXPECT_EQ(bytesOf(parts), bytesOf(whole));
+}
+
 // Four wheels up a slope at one slip, each with the torque of its own load; `told`: the load column is right,
 // else it holds the even share.
 terramech::Telemetry climb(bool told) {
