@@ -1,12 +1,20 @@
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <functional>
+#include <numbers>
 #include <stdexcept>
 #include <stop_token>
 #include <string>
+#include <string_view>
+#include <vector>
 
-/// The few words that every room shares: how bad input is reported, how long work is watched and stopped.
+/// The few words that every room shares: how bad input is reported, how long work is watched and stopped, and the
+/// unit of angle that people read.
 namespace talus {
+
+inline constexpr double kDegree = std::numbers::pi / 180.0;  ///< one degree [rad]
 
 /// A file or a value handed in by the user cannot be used; what() is one line: what, where, remedy.
 class InputError : public std::runtime_error {
@@ -29,6 +37,35 @@ class InputError : public std::runtime_error {
 
   Parts parts_;
 };
+
+/// The fewest edits that make one word the other: insert, delete or replace a letter, swap two neighbours (optimal
+/// string alignment).
+inline std::size_t editDistance(std::string_view a, std::string_view b) {
+  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+  for (std::size_t i = 0; i <= a.size(); ++i)
+    for (std::size_t j = 0; j <= b.size(); ++j) {
+      d[i][j] = i + j;
+      if (i == 0 || j == 0) continue;
+      const std::size_t replaced = d[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+      d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, replaced});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+    }
+  return d[a.size()][b.size()];
+}
+
+/// The known name that a mistyped word most likely means: fewest edits; empty where none is within a third of the
+/// word's length (two edits for short words).
+inline std::string nearestName(std::string_view word, const std::vector<std::string>& known) {
+  std::string nearest;
+  std::size_t fewest = std::max<std::size_t>(2, word.size() / 3) + 1;
+  for (const std::string& name : known)
+    if (const std::size_t edits = editDistance(word, name); edits < fewest) {
+      fewest = edits;
+      nearest = name;
+    }
+  return nearest;
+}
 
 /// How a caller follows long work and stops it. Copyable; both parts may be empty.
 struct ProgressMonitor {

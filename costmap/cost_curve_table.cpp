@@ -36,9 +36,9 @@ CostCurveTable::CostCurveTable(std::shared_ptr<const GroundModel> model) : model
 
 CostCurveTable::Key CostCurveTable::rounded(int class_index, const GroundBelief& belief) noexcept {
   return {.class_index = class_index,
-          .pull = stepsOf(belief.pull.mean, kPullStep),
+          .pull = stepsOf(belief.pull.value, kPullStep),
           .pull_std = octave(belief.pull.std, kPullStdUnit),
-          .sinkage = stepsOf(belief.sinkage.mean, kSinkageStep)};
+          .sinkage = stepsOf(belief.sinkage.value, kSinkageStep)};
 }
 
 std::uint8_t CostCurveTable::learned(int class_index, const GroundBelief& belief) {
@@ -76,14 +76,14 @@ std::uint8_t CostCurveTable::nearest(const Key& key) const noexcept {
 bool CostCurveTable::setPrior(int class_index, const GroundBelief& belief) {
   const auto i = static_cast<std::size_t>(class_index);
   const auto rounded_to = [](const Estimate& e, double step) {
-    return Estimate{std::round(e.mean / step) * step, std::ceil(e.std / step) * step};
+    return Estimate{std::round(e.value / step) * step, std::ceil(e.std / step) * step};
   };
   const GroundBelief exact = model_->prior(class_index);
-  const bool untouched = belief.pull.mean == exact.pull.mean && belief.pull.std == exact.pull.std;
+  const bool untouched = belief.pull.value == exact.pull.value && belief.pull.std == exact.pull.std;
   const GroundBelief next = untouched ? exact
                                       : GroundBelief{.pull = rounded_to(belief.pull, 0.005),
                                                      .sinkage = rounded_to(belief.sinkage, 0.02)};
-  const auto same = [](const Estimate& a, const Estimate& b) { return a.mean == b.mean && a.std == b.std; };
+  const auto same = [](const Estimate& a, const Estimate& b) { return a.value == b.value && a.std == b.std; };
   if (same(next.pull, priors_[i].pull) && same(next.sinkage, priors_[i].sinkage)) return false;
   priors_[i] = next;
   const Worked& now = worked(class_index, next);
@@ -96,7 +96,7 @@ bool CostCurveTable::setPrior(int class_index, const GroundBelief& belief) {
 const CostCurveTable::Worked& CostCurveTable::worked(int class_index, const GroundBelief& prior) {
   constexpr std::size_t kRemembered = 64;
   const auto bits = [](double value) { return std::bit_cast<std::int64_t>(value); };
-  const PriorKey key{class_index, bits(prior.pull.mean), bits(prior.pull.std), bits(prior.sinkage.mean),
+  const PriorKey key{class_index, bits(prior.pull.value), bits(prior.pull.std), bits(prior.sinkage.value),
                      bits(prior.sinkage.std)};
   if (const auto known = worked_.find(key); known != worked_.end()) return known->second;
   if (worked_.size() >= kRemembered) worked_.clear();

@@ -74,7 +74,7 @@ CostGrid revised(const CostGrid& grid, const Revision& revision) {
     next.tiles.set(slot, copies.back().second);
     return *copies.back().second;
   };
-  for (const CellRange& range : revision.ranges)
+  for (const maps::CellBox& range : revision.ranges)
     for (int tile_row = range.first.row >> 6; tile_row <= range.last.row >> 6; ++tile_row)
       for (int tile_column = range.first.column >> 6; tile_column <= range.last.column >> 6; ++tile_column) {
         CostTile& tile = writable(static_cast<std::size_t>(tile_row * grid.tileColumns() + tile_column));

@@ -40,12 +40,6 @@ class TileTable {
   std::vector<std::shared_ptr<const Page>> pages_;  // what keeps them alive
 };
 
-/// A rectangle of cells, first to last inclusive.
-struct CellRange {
-  maps::Cell first;
-  maps::Cell last;
-};
-
 /// One version of the map as planners read it: immutable, so readers never wait and writers never wait for
 /// readers. Versions share the tiles that did not change.
 class CostGrid {
@@ -82,7 +76,7 @@ CostGrid flattened(const maps::Raster<CellCode>& cells, std::shared_ptr<const Dr
 
 /// What a new version changes.
 struct Revision {
-  std::vector<CellRange> ranges;  ///< inside the grid; nothing else changes
+  std::vector<maps::CellBox> ranges;  ///< inside the grid; nothing else changes
   std::function<CellCode(maps::Cell, CellCode)>
       code;  ///< the new code of a cell of the ranges, given its old one
   std::function<std::shared_ptr<const DriveCost>()>

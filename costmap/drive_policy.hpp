@@ -1,6 +1,6 @@
 #pragma once
 
-#include <numbers>
+#include <talus/talus.hpp>
 
 namespace talus::costmap {
 
@@ -10,9 +10,8 @@ struct DrivePolicy {
   bool allow_dangerous = false;  ///< drive dangerous ground too, as long as the soil can give the pull
   bool allow_unknown = false;    ///< treat cells without elevation as flat ground of the default class
 
-  double slope_margin_rad =
-      5.0 * std::numbers::pi / 180.0;  ///< category edges: tan(slope -+ margin), thesis 3.5: 5 deg
-  double sinkage_threshold = 0.5;      ///< sinkage over radius below which the category stays, thesis 3.5 [-]
+  double slope_margin_rad = 5.0 * kDegree;  ///< category edges: tan(slope -+ margin), thesis 3.5: 5 deg
+  double sinkage_threshold = 0.5;  ///< sinkage over radius below which the category stays, thesis 3.5 [-]
   double sinkage_critical =
       0.0;  ///< above which ground is dangerous [-]; 0: the rover's clearance over wheel radius
   double max_immobilisation =

@@ -122,14 +122,14 @@ void EvidenceField::contribute(const BlockEvidence& block, int class_index, std:
   const double block_m = (1 << block_shift_) * site_->keys.grid().resolution_m;
   const double places = std::min(1.0, 1.5 * block_m / site_->model->parts().policy.correlation_length_m);
   const double variance = ground.pull_std * ground.pull_std;
-  const double departure = static_cast<double>(block.pull) - prior.pull.mean;
+  const double departure = static_cast<double>(block.pull) - prior.pull.value;
   const double spread = variance + ground.mean_std * ground.mean_std + measuredVariance(block);
   const double alike = std::min(1.0, (kFreedom + 1.0) / (kFreedom + departure * departure / spread));
   const double weight = alike * places * variance / (variance + measuredVariance(block));
   ClassSums& sums = sums_[static_cast<std::size_t>(class_index)];
   sums.weight += sign * fixed(weight);
   sums.pull += sign * fixed(weight * departure);
-  sums.sinkage += sign * fixed(weight * (static_cast<double>(block.sinkage) - prior.sinkage.mean));
+  sums.sinkage += sign * fixed(weight * (static_cast<double>(block.sinkage) - prior.sinkage.value));
 }
 
 // Conjugate normal update of the class mean: prior mean_std, places that scatter by pull_std about it.
@@ -152,19 +152,19 @@ void EvidenceField::refresh(int class_index) {
 void EvidenceField::weigh(const WheelObservation& observation, BlockEvidence& block) const {
   const double share = kReferenceStd / observation.pull.std;
   const auto weight = static_cast<float>(std::min(share * share, kMostPerSample));
-  if (observation.pull.mean < static_cast<double>(block.pull) - kContradicts * observation.pull.std)
+  if (observation.pull.value < static_cast<double>(block.pull) - kContradicts * observation.pull.std)
     block.weight = std::min(block.weight, weight);
   const float gain = weight / (block.weight + weight);
-  block.pull += gain * (static_cast<float>(observation.pull.mean) - block.pull);
+  block.pull += gain * (static_cast<float>(observation.pull.value) - block.pull);
   if (std::isfinite(observation.sinkage.std))
-    block.sinkage += gain * (static_cast<float>(observation.sinkage.mean) - block.sinkage);
+    block.sinkage += gain * (static_cast<float>(observation.sinkage.value) - block.sinkage);
   block.weight += weight;
   block.updated_s = observation.time_s > 0.0 && observation.time_s < 4294967295.0
                         ? static_cast<std::uint32_t>(observation.time_s)
                         : 0U;
 }
 
-std::optional<CellRange> EvidenceField::add(const WheelObservation& observation) {
+std::optional<maps::CellBox> EvidenceField::add(const WheelObservation& observation) {
   const maps::Grid& grid = site_->grid();
   const auto cell = grid.cellAt(observation.place);
   if (!cell || std::isnan(site_->elevation.elevation_m[*cell])) return std::nullopt;
@@ -179,7 +179,7 @@ std::optional<CellRange> EvidenceField::add(const WheelObservation& observation)
   BlockEvidence& block = bricks_.at(where);
   if (!known) {
     block.terrain_class = static_cast<std::uint8_t>(number);
-    block.sinkage = static_cast<float>(site_->model->prior(class_index).sinkage.mean);
+    block.sinkage = static_cast<float>(site_->model->prior(class_index).sinkage.value);
   }
   contribute(block, class_index, -1);
   weigh(observation, block);
@@ -189,7 +189,7 @@ std::optional<CellRange> EvidenceField::add(const WheelObservation& observation)
   const int reach =
       static_cast<int>(std::ceil(site_->model->parts().policy.correlation_length_m / grid.resolution_m)) +
       side;
-  return CellRange{
+  return maps::CellBox{
       {std::max(cell->column - reach, 0), std::max(cell->row - reach, 0)},
       {std::min(cell->column + reach, grid.width - 1), std::min(cell->row + reach, grid.height - 1)}};
 }
@@ -232,8 +232,8 @@ std::vector<EvidenceField::FloorEvidence> EvidenceField::floorEvidence() const {
 PlaceEvidence EvidenceField::placed(maps::Cell block, const BlockEvidence& evidence,
                                     const GroundBelief& mean) const {
   return {.place = middleOf(block),
-          .pull = static_cast<double>(evidence.pull) - mean.pull.mean,
-          .sinkage = static_cast<double>(evidence.sinkage) - mean.sinkage.mean,
+          .pull = static_cast<double>(evidence.pull) - mean.pull.value,
+          .sinkage = static_cast<double>(evidence.sinkage) - mean.sinkage.value,
           .variance = measuredVariance(evidence)};
 }
 
@@ -313,9 +313,9 @@ GroundBelief EvidenceField::combined(int class_index, const GroundBelief& depart
   const GroundBelief prior = site_->model->prior(class_index);
   const ClassPosterior& posterior = posteriors_[i];
   const double open = std::min(departure.pull.std / ground.pull_std, 1.0);
-  return {.pull = {prior.pull.mean + posterior.pull.mean + departure.pull.mean,
+  return {.pull = {prior.pull.value + posterior.pull.value + departure.pull.value,
                    std::hypot(departure.pull.std, open * posterior.pull.std)},
-          .sinkage = {std::max(prior.sinkage.mean + posterior.sinkage.mean + departure.sinkage.mean, 0.0),
+          .sinkage = {std::max(prior.sinkage.value + posterior.sinkage.value + departure.sinkage.value, 0.0),
                       departure.sinkage.std}};
 }
 

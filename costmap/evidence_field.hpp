@@ -60,7 +60,7 @@ class EvidenceField {
 
   /// Takes an observation in and returns the cells whose belief it may change (besides those of the class as
   /// a whole); nothing when the place is outside the map or has no elevation or class.
-  std::optional<CellRange> add(const WheelObservation& observation);
+  std::optional<maps::CellBox> add(const WheelObservation& observation);
 
   static constexpr int kPatchBlocks = 8;
 

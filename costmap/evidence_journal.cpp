@@ -148,7 +148,7 @@ void EvidenceJournal::append(const JournalRow& row) {
                              r.gradient, r.drawbar_pull_N})
     bind(s, at++, value);
   sqlite3_bind_int(s, at++, r.pass);
-  for (const double value : {o.pull.mean, o.pull.std, o.sinkage.mean, o.sinkage.std, r.z_m})
+  for (const double value : {o.pull.value, o.pull.std, o.sinkage.value, o.sinkage.std, r.z_m})
     bind(s, at++, value);
   const int result = sqlite3_step(s);
   sqlite3_reset(s);

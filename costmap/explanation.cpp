@@ -93,7 +93,7 @@ void addSoil(const TraversabilityMap& map, maps::Cell cell, Explanation& out) {
   for (const terramech::Effect& e : ground.effects) effects += " + " + e.name;
   const std::string source = "soil '" + ground.soil.name + "'" + effects + " under rover '" +
                              map.model().rover().name + "', slip 0.5";
-  out.causes.push_back({"prior_drawbar_pull_over_load", prior.pull.mean, prior.pull.std, source, ""});
+  out.causes.push_back({"prior_drawbar_pull_over_load", prior.pull.value, prior.pull.std, source, ""});
   const CellBelief belief = map.belief(cell);
   const std::string wheels = belief.evidence > 0.0F ? "prior and wheels together" : source;
   out.causes.push_back({"evidence_samples", static_cast<double>(belief.evidence), kNotKnown,
@@ -176,7 +176,7 @@ void judge(const TraversabilityMap& map, maps::Cell cell, const Direction& headi
   out.category = ranked.category;
   out.probability = ranked.probability;
   out.verdict = std::string(terramech::name(out.category)) +
-                ": the ground gives a drawbar pull over load of " + std::to_string(ground->pull.mean) +
+                ": the ground gives a drawbar pull over load of " + std::to_string(ground->pull.value) +
                 ", the slope asks for " + std::to_string(along);
 }
 

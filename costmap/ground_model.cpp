@@ -22,8 +22,8 @@ double normalCdf(double x) {
 
 // P(value < bound) for a normal estimate; a step where it is certain.
 double probabilityBelow(const Estimate& value, double bound) {
-  if (value.std <= 0.0) return value.mean < bound ? 1.0 : 0.0;
-  return normalCdf((bound - value.mean) / value.std);
+  if (value.std <= 0.0) return value.value < bound ? 1.0 : 0.0;
+  return normalCdf((bound - value.value) / value.std);
 }
 
 struct Expected {
@@ -39,7 +39,7 @@ Expected expectedDrive(const terramech::MobilityCurve& curve, const Estimate& sh
   Expected sum;
   double weight = 0.0;
   for (const auto& [x, w] : kPoints) {
-    const MobilityState s = curve.at(std::atan(gradient - shift.mean - x * shift.std));
+    const MobilityState s = curve.at(std::atan(gradient - shift.value - x * shift.std));
     if (!s.feasible) continue;
     sum.energy_J_per_m += w * s.energy_J_per_m;
     sum.time_s_per_m += w / s.speed_mps;
@@ -164,10 +164,10 @@ Ranked GroundModel::category(const GroundBelief& belief, double gradient) const 
       {{std::numeric_limits<double>::infinity(), 1.0 - below_high},
        {gradient, below_high - below_low},
        {-std::numeric_limits<double>::infinity(), below_low}}};
-  const Category mean = categoryAt(belief.pull.mean, belief.sinkage.mean, gradient);
+  const Category mean = categoryAt(belief.pull.value, belief.sinkage.value, gradient);
   double probability = 0.0;
   for (const auto& [pull, chance] : ranks)
-    if (categoryAt(pull, belief.sinkage.mean, gradient) == mean) probability += chance;
+    if (categoryAt(pull, belief.sinkage.value, gradient) == mean) probability += chance;
   return {mean, probability};
 }
 
@@ -176,18 +176,18 @@ DriveState GroundModel::state(int class_index, const GroundBelief& belief, doubl
   const auto& policy = parts_.policy;
   const terramech::Rover& rover = parts_.rover;
   const auto& reference = wheel_curves_[static_cast<std::size_t>(class_index)].reference();
-  const Estimate shift{belief.pull.mean - reference.drawbar_pull_over_load, belief.pull.std};
-  const MobilityState s = curve.at(std::atan(gradient - shift.mean));
+  const Estimate shift{belief.pull.value - reference.drawbar_pull_over_load, belief.pull.std};
+  const MobilityState s = curve.at(std::atan(gradient - shift.value));
   const Expected expected = expectedDrive(curve, shift, gradient);
   const double surface = std::hypot(1.0, gradient);
   const double deeper =
-      reference.sinkage_over_radius > 0.0 ? belief.sinkage.mean / reference.sinkage_over_radius : 1.0;
+      reference.sinkage_over_radius > 0.0 ? belief.sinkage.value / reference.sinkage_over_radius : 1.0;
   const auto& ground = parts_.classes[static_cast<std::size_t>(class_index)];
   // At most, the ground pulls what it pulls at its strongest slip. What is uncertain of the class as a whole
   // is met once on a route and shows in the category's probability; only what differs from place to place is
   // a hazard that every metre has.
   const double reserve = curve.strongest().drawbar_pull_over_load - reference.drawbar_pull_over_load;
-  const Estimate most{belief.pull.mean + std::max(reserve, 0.0), std::min(belief.pull.std, ground.pull_std)};
+  const Estimate most{belief.pull.value + std::max(reserve, 0.0), std::min(belief.pull.std, ground.pull_std)};
   const double stuck = probabilityBelow(most, gradient);
 
   DriveState state;
@@ -198,8 +198,8 @@ DriveState GroundModel::state(int class_index, const GroundBelief& belief, doubl
   state.time_s_per_m = static_cast<float>(expected.time_s_per_m * surface);
   state.risk_per_m = static_cast<float>(-std::log1p(-policy.entrapment * std::min(stuck, 1.0 - 1e-12)) /
                                         policy.correlation_length_m);
-  state.pull_margin = static_cast<float>(belief.pull.mean - gradient);
-  state.category = categoryAt(belief.pull.mean, belief.sinkage.mean, gradient);
+  state.pull_margin = static_cast<float>(belief.pull.value - gradient);
+  state.category = categoryAt(belief.pull.value, belief.sinkage.value, gradient);
 
   const bool refused = (state.category == Category::Dangerous && !policy.allow_dangerous) ||
                        (state.category == Category::Marginal && !policy.allow_marginal);

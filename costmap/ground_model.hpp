@@ -11,14 +11,11 @@
 #include <talus/terramech/effects/effects.hpp>
 #include <talus/terramech/mobility/category.hpp>
 #include <talus/terramech/mobility/mobility.hpp>
+#include <talus/terramech/numerics/estimate.hpp>
 
 namespace talus::costmap {
 
-/// A number and how far it may be off.
-struct Estimate {
-  double mean = 0.0;
-  double std = 0.0;
-};
+using terramech::Estimate;
 
 /// A terrain class as a prior for the ground of its cells. Plain data.
 struct GroundClass {

@@ -97,8 +97,8 @@ GroundBelief GaussianProcess::at(const maps::Point& place) const {
   for (std::size_t i = 0; i < evidence_.size(); ++i) {
     k.push_back(here * amplitude_[i] *
                 sparseKernel(place, evidence_[i].place, variation_.correlation_length_m));
-    belief.pull.mean += k[i] * pull_[i];
-    belief.sinkage.mean += k[i] * sinkage_[i];
+    belief.pull.value += k[i] * pull_[i];
+    belief.sinkage.value += k[i] * sinkage_[i];
   }
   solveLower(factor_, k);
   double explained = 0.0;

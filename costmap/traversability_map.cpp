@@ -91,15 +91,15 @@ std::vector<std::shared_ptr<CostTile>> emptyTiles(const maps::Grid& grid) {
 }
 
 // Ranges of a drive overlap: neighbours in time are joined where that covers little more than both.
-std::vector<CellRange> joined(const std::vector<CellRange>& ranges) {
-  const auto area = [](const CellRange& r) {
+std::vector<maps::CellBox> joined(const std::vector<maps::CellBox>& ranges) {
+  const auto area = [](const maps::CellBox& r) {
     return static_cast<double>(r.last.column - r.first.column + 1) * (r.last.row - r.first.row + 1);
   };
-  std::vector<CellRange> out;
-  for (const CellRange& range : ranges) {
+  std::vector<maps::CellBox> out;
+  for (const maps::CellBox& range : ranges) {
     if (!out.empty()) {
-      const CellRange& last = out.back();
-      const CellRange both{
+      const maps::CellBox& last = out.back();
+      const maps::CellBox both{
           {std::min(last.first.column, range.first.column), std::min(last.first.row, range.first.row)},
           {std::max(last.last.column, range.last.column), std::max(last.last.row, range.last.row)}};
       if (area(both) < 1.3 * std::max(area(last), area(range))) {
@@ -113,9 +113,9 @@ std::vector<CellRange> joined(const std::vector<CellRange>& ranges) {
 }
 
 void tell(const GroundBelief& strength, CellBelief& belief) {
-  belief.pull_mean = static_cast<float>(strength.pull.mean);
+  belief.pull_mean = static_cast<float>(strength.pull.value);
   belief.pull_std = static_cast<float>(strength.pull.std);
-  belief.sinkage_mean = static_cast<float>(strength.sinkage.mean);
+  belief.sinkage_mean = static_cast<float>(strength.sinkage.value);
   belief.sinkage_std = static_cast<float>(strength.sinkage.std);
 }
 
@@ -297,8 +297,8 @@ void TraversabilityMap::refuse(const maps::Point& place, double radius_m) {
   const double x = (place.x_m - grid().south_west.x_m) / cell_m,
                y = (place.y_m - grid().south_west.y_m) / cell_m;
   const double reach = radius_m / cell_m;
-  const CellRange range{{clamped(x - reach, grid().width), clamped(y - reach, grid().height)},
-                        {clamped(x + reach, grid().width), clamped(y + reach, grid().height)}};
+  const maps::CellBox range{{clamped(x - reach, grid().width), clamped(y - reach, grid().height)},
+                            {clamped(x + reach, grid().width), clamped(y + reach, grid().height)}};
   for (int row = range.first.row; row <= range.last.row; ++row)
     for (int column = range.first.column; column <= range.last.column; ++column) {
       const maps::Point centre = grid().centre({column, row});
@@ -324,7 +324,7 @@ void TraversabilityMap::publishAll() {
   publish({{{0, 0}, {grid().width - 1, grid().height - 1}}});
 }
 
-void TraversabilityMap::publish(const std::vector<CellRange>& ranges) {
+void TraversabilityMap::publish(const std::vector<maps::CellBox>& ranges) {
   const bool priors_moved = refreshPriors();
   if (ranges.empty() && !priors_moved) return;
   EvidenceField::Beliefs beliefs(field_);

@@ -134,7 +134,7 @@ class TraversabilityMap {
   Hazard layerHazards(const MapLayers& layers, std::size_t index) const;
   std::uint8_t categoryOf(const CostGrid& grid, maps::Cell cell) const noexcept;
   std::uint8_t priorCurve(maps::Cell cell) const noexcept;
-  void publish(const std::vector<CellRange>& ranges);
+  void publish(const std::vector<maps::CellBox>& ranges);
   std::vector<FloorLeaf> floorLeaves() const;
   bool refreshPriors();
 
@@ -144,7 +144,7 @@ class TraversabilityMap {
   maps::Raster<Hazard> hazards_;
   CostCurveTable book_;
   EvidenceField field_;
-  std::vector<CellRange> dirty_;
+  std::vector<maps::CellBox> dirty_;
   struct Published;
   std::unique_ptr<Published> published_;  // the atomic in it cannot move
 };

@@ -24,7 +24,7 @@ bool known(double value) noexcept {
 // Two estimates of one number.
 Estimate combined(const Estimate& a, const Estimate& b) noexcept {
   const double wa = 1.0 / (a.std * a.std), wb = 1.0 / (b.std * b.std);
-  return {(wa * a.mean + wb * b.mean) / (wa + wb), 1.0 / std::sqrt(wa + wb)};
+  return {(wa * a.value + wb * b.value) / (wa + wb), 1.0 / std::sqrt(wa + wb)};
 }
 
 }  // namespace
@@ -78,7 +78,7 @@ WheelObserver::Wheel WheelObserver::expected(const ClassReading& read) const {
                       {t * mobilised, noise_.torque_share * t * mobilised +
                                           noise_.mobilised * std::abs(mobilised - 1.0) + noise_.model_pull});
   }
-  w.by_torque = {pullFromTorque(torque.mean, depth) - class_pull,
+  w.by_torque = {pullFromTorque(torque.value, depth) - class_pull,
                  std::hypot(torque.std, noise_.sinkage_share, noise_.model_pull)};
   return w;
 }
@@ -111,11 +111,11 @@ std::optional<WheelObservation> WheelObserver::observed(const Wheel& w, double d
   }
   if (!known(seen.std)) return std::nullopt;
   const GroundBelief prior = model_.prior(w.read.class_index);
-  out.pull = {prior.pull.mean + seen.mean, std::hypot(seen.std, kRutDoubt * w.rut_gain)};
-  out.sinkage = {prior.sinkage.mean, std::numeric_limits<double>::infinity()};
+  out.pull = {prior.pull.value + seen.value, std::hypot(seen.std, kRutDoubt * w.rut_gain)};
+  out.sinkage = {prior.sinkage.value, std::numeric_limits<double>::infinity()};
   const double z = reading.sinkage_m / model_.rover().wheel.radius_m;
   if (reading.pass <= 1 && z >= 0.0 && z < 1.0 && w.expected.sinkage_over_radius > 0.0) {
-    const double deeper = prior.sinkage.mean / w.expected.sinkage_over_radius;
+    const double deeper = prior.sinkage.value / w.expected.sinkage_over_radius;
     out.sinkage = {deeper * z, deeper * noise_.sinkage_share};
   }
   return out;

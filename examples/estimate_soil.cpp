@@ -4,16 +4,14 @@
 
 #include <cmath>
 #include <cstdio>
-#include <numbers>
 
+#include <talus/talus.hpp>
 #include <talus/terramech/contact/wong_reece.hpp>
 #include <talus/terramech/estimate/linear_offset.hpp>
 
 namespace {
 
 namespace tm = talus::terramech;
-
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 // What the wheel would feel at a slip: here from the Wong-Reece equilibrium, on a rover from its sensors.
 tm::WheelSample felt(const tm::Soil& soil, const tm::Wheel& wheel, tm::WheelOperation operation) {
@@ -29,7 +27,7 @@ tm::WheelSample felt(const tm::Soil& soil, const tm::Wheel& wheel, tm::WheelOper
 int main() {
   const tm::Soil soil{.name = "dry sand",
                       .cohesion_Pa = 800.0,
-                      .friction_angle_rad = 30.0 / kDegrees,
+                      .friction_angle_rad = 30.0 * talus::kDegree,
                       .sinkage_exponent = 1.1,
                       .cohesive_modulus = 1000.0,
                       .frictional_modulus = 1500000.0,
@@ -43,10 +41,10 @@ int main() {
     if (k % 10 != 9) continue;
     const tm::ShearStrength strength = fit.estimate();
     std::printf("%2d samples: cohesion %5.0f Pa, friction angle %4.1f deg\n", k + 1, strength.cohesion_Pa,
-                std::atan(strength.tan_friction) * kDegrees);
+                std::atan(strength.tan_friction) / talus::kDegree);
   }
   std::printf("the soil   : cohesion %5.0f Pa, friction angle %4.1f deg\n", soil.cohesion_Pa,
-              soil.friction_angle_rad * kDegrees);
+              soil.friction_angle_rad / talus::kDegree);
   std::puts("what is left is the method's own error: its stresses are straight lines, the wheel's are not");
   return 0;
 }

@@ -6,12 +6,12 @@
 #include <cstdio>
 #include <exception>
 #include <memory>
-#include <numbers>
 
 #include <talus/costmap/traversability_map.hpp>
 #include <talus/maps/elevation_reader.hpp>
 #include <talus/planner/check/annotation.hpp>
 #include <talus/planner/plugin/named_planner.hpp>
+#include <talus/talus.hpp>
 #include <talus/terramech/io/soil_library.hpp>
 
 namespace {
@@ -21,7 +21,7 @@ using talus::planner::Route;
 void print(const char* title, const Route& route) {
   std::printf("%s: %.1f m, %.0f J, %.0f s, steepest %.1f deg, largest slip %.2f\n", title,
               route.summary.length_m, route.summary.energy_J, route.summary.time_s,
-              route.summary.max_slope_rad * 180.0 / std::numbers::pi, route.summary.max_slip);
+              route.summary.max_slope_rad / talus::kDegree, route.summary.max_slip);
 }
 
 int run(const char* file) {

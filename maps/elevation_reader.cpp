@@ -31,12 +31,7 @@ Point corner(const Place& place, const std::optional<Georeference>& georeference
   throw InputError({path, "has no CRS for a window in degrees", "give --window in map metres"});
 }
 
-// Columns and rows of the grid (row 0 south) that the window touches.
-struct CellBox {
-  Cell first;
-  Cell last;  // past the end
-};
-
+// The grid's cells that the window touches.
 CellBox cellsOf(const Window& window, const FramedRaster& from, const std::string& path) {
   const Grid& grid = from.grid;
   const Point a = corner(window.first, from.georeference, path);
@@ -51,15 +46,15 @@ CellBox cellsOf(const Window& window, const FramedRaster& from, const std::strin
   constexpr double kRounding = 1e-6;
   const CellBox box{{static_cast<int>(std::floor(column(std::min(a.x_m, b.x_m), kRounding))),
                      static_cast<int>(std::floor(row(std::min(a.y_m, b.y_m), kRounding)))},
-                    {static_cast<int>(std::ceil(column(std::max(a.x_m, b.x_m), -kRounding))),
-                     static_cast<int>(std::ceil(row(std::max(a.y_m, b.y_m), -kRounding)))}};
-  if (box.last.column > box.first.column && box.last.row > box.first.row) return box;
+                    {static_cast<int>(std::ceil(column(std::max(a.x_m, b.x_m), -kRounding))) - 1,
+                     static_cast<int>(std::ceil(row(std::max(a.y_m, b.y_m), -kRounding))) - 1}};
+  if (box.width() > 0 && box.height() > 0) return box;
   throw InputError({path, "the window lies outside the map", "it " + extent(grid)});
 }
 
 Grid part(const Grid& grid, const CellBox& box) {
-  return {.width = box.last.column - box.first.column,
-          .height = box.last.row - box.first.row,
+  return {.width = box.width(),
+          .height = box.height(),
           .resolution_m = grid.resolution_m,
           .south_west = {grid.south_west.x_m + box.first.column * grid.resolution_m,
                          grid.south_west.y_m + box.first.row * grid.resolution_m}};
@@ -91,8 +86,8 @@ struct Selection {
 
 // A box of whole overview cells; what is left over in the north and east is left out.
 CellBox wholeCells(CellBox box, int overview) {
-  const auto whole = [overview](int first, int last) { return first + (last - first) / overview * overview; };
-  return {box.first, {whole(box.first.column, box.last.column), whole(box.first.row, box.last.row)}};
+  const auto last = [overview](int first, int size) { return first + size / overview * overview - 1; };
+  return {box.first, {last(box.first.column, box.width()), last(box.first.row, box.height())}};
 }
 
 Selection select(const std::string& path, const ReadOptions& options, std::vector<std::string>& notes) {
@@ -109,7 +104,7 @@ Selection select(const std::string& path, const ReadOptions& options, std::vecto
   code.scale *= options.vertical_scale;
   code.offset_m *= options.vertical_scale;
   FramedRaster from = frame(std::move(file), band, options, path, notes);
-  const CellBox whole{{0, 0}, {from.grid.width, from.grid.height}};
+  const CellBox whole{{0, 0}, {from.grid.width - 1, from.grid.height - 1}};
   const CellBox box =
       wholeCells(options.window ? cellsOf(*options.window, from, path) : whole, options.overview);
   Grid grid = part(from.grid, box);
@@ -128,9 +123,8 @@ ElevationMap readElevation(const std::string& path, const ReadOptions& options) 
   const Selection chosen = select(path, options, map.notes);
   const auto& [from, code, box, grid] = chosen;
   refuseSize(grid, options, path);
-  const int first_row = from.north_up ? from.grid.height - box.last.row : box.first.row;
-  const PixelBox pixels{box.first.column, first_row, box.last.column - box.first.column,
-                        box.last.row - box.first.row};
+  const int first_row = from.north_up ? from.grid.height - 1 - box.last.row : box.first.row;
+  const PixelBox pixels{box.first.column, first_row, box.width(), box.height()};
   std::vector<float> values = readPixels(*from.raster, from.band, pixels, path, options.overview);
   decodeHeights(values, code, map.notes);
   map.elevation_m = from.north_up ? northUp(grid, std::move(values)) : Raster<float>(grid, std::move(values));

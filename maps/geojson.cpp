@@ -1,7 +1,6 @@
 // RFC 7946, with one word of our own: "crs": "local" for map metres.
 #include <cmath>
 #include <fstream>
-#include <numbers>
 
 #include <nlohmann/json.hpp>
 
@@ -13,8 +12,6 @@ namespace talus::maps {
 namespace {
 
 using nlohmann::json;
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 std::string typeOf(const json& object) {
   if (!object.is_object()) return "";

@@ -7,11 +7,11 @@
 
 #include <talus/maps/georeference.hpp>
 #include <talus/maps/projection.hpp>
+#include <talus/talus.hpp>
 
 namespace talus::maps {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kQuarterTurn = std::numbers::pi / 2;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 

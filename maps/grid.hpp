@@ -26,6 +26,14 @@ struct Cell {
   friend bool operator==(const Cell&, const Cell&) = default;
 };
 
+/// A rectangle of cells, both corners included.
+struct CellBox {
+  Cell first;  ///< south-west
+  Cell last;   ///< north-east
+  int width() const noexcept { return last.column - first.column + 1; }
+  int height() const noexcept { return last.row - first.row + 1; }
+};
+
 /// Where the square cells of a raster lie. Row 0 is the southernmost: y grows with the row.
 struct Grid {
   int width = 0;              ///< cells west to east

@@ -1,8 +1,7 @@
 #include <algorithm>
-#include <atomic>
 #include <thread>
-#include <vector>
 
+#include <talus/maps/parallel_for.hpp>
 #include <talus/maps/parallel_rows.hpp>
 
 namespace talus::maps {
@@ -10,16 +9,13 @@ namespace talus::maps {
 void forEachStrip(const RowWork& what, const ProgressMonitor& watch, const std::function<void(Rows)>& work) {
   constexpr int kStripRows = 64;
   const int strips = (what.rows + kStripRows - 1) / kStripRows;
-  std::atomic<int> next{0};
-  const auto take = [&](bool reports) {
-    for (int strip = next++; strip < strips && !watch.stopped(); strip = next++) {
-      work({strip * kStripRows, std::min((strip + 1) * kStripRows, what.rows)});
-      if (reports) watch.report((strip + 1.0) / strips);
-    }
-  };
-  std::vector<std::jthread> helpers;
-  for (int i = 1; i < std::min(what.threads, strips); ++i) helpers.emplace_back(take, false);
-  take(true);
+  const auto caller = std::this_thread::get_id();
+  parallelFor(static_cast<std::size_t>(strips), what.threads, [&](std::size_t k) {
+    if (watch.stopped()) return;
+    const int first = static_cast<int>(k) * kStripRows;
+    work({first, std::min(first + kStripRows, what.rows)});
+    if (std::this_thread::get_id() == caller) watch.report((static_cast<double>(k) + 1.0) / strips);
+  });
 }
 
 }  // namespace talus::maps

@@ -2,7 +2,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
-#include <numbers>
 #include <vector>
 
 #include <talus/maps/place.hpp>
@@ -10,8 +9,6 @@
 
 namespace talus::maps {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 struct Coordinate {
   double value = 0.0;

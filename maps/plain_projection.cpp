@@ -7,11 +7,11 @@
 #include <GeographicLib/Ellipsoid.hpp>
 
 #include <talus/maps/projection.hpp>
+#include <talus/talus.hpp>
 
 namespace talus::maps {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 using Figure = GeographicLib::Ellipsoid;

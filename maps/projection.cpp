@@ -1,5 +1,4 @@
 #include <cmath>
-#include <numbers>
 
 #include <GeographicLib/AlbersEqualArea.hpp>
 #include <GeographicLib/AzimuthalEquidistant.hpp>
@@ -8,11 +7,10 @@
 #include <GeographicLib/TransverseMercator.hpp>
 
 #include <talus/maps/projection.hpp>
+#include <talus/talus.hpp>
 
 namespace talus::maps {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 // Projections of GeographicLib whose calls read Forward(lon0, lat, lon, x, y): degrees, y from an origin of
 // their own, which is moved to the latitude of origin.

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
-#include <numbers>
 #include <utility>
 
 #include <gdal_priv.h>
@@ -17,7 +16,6 @@
 namespace talus::maps {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kMostStretch = 0.05;  // map metre against ground metre, beyond which a map is resampled
 constexpr double kWidestSpan_rad =
     20 * kDegree;  // of a geographic raster: one local projection serves no more

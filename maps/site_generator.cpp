@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <numbers>
 #include <stdexcept>
 
 #include <talus/maps/landscape.hpp>
@@ -9,11 +8,10 @@
 #include <talus/maps/rock_field.hpp>
 #include <talus/maps/site_generator.hpp>
 #include <talus/maps/value_noise.hpp>
+#include <talus/talus.hpp>
 
 namespace talus::maps {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 // Metres true at the site's middle, on the body itself; x and y count from the south-west corner.
 Georeference georeference(const SiteOptions& options) {

@@ -17,8 +17,6 @@
 namespace talus::maps {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
-
 // Parameters by their WKT 1 names, metres and radians.
 class Parameters {
  public:

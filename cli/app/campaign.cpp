@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <talus/cli/app/campaign.hpp>
+#include <talus/maps/parallel_for.hpp>
 
 #ifdef TALUS_MPI
 #include <boost/mpi/communicator.hpp>
@@ -31,17 +32,14 @@ JobOutcome outcomeOf(const std::function<std::string(std::size_t)>& job, std::si
 std::vector<JobOutcome> runHere(std::size_t count, const std::function<std::string(std::size_t)>& job,
                                 const ProgressMonitor& watch, std::size_t workers) {
   std::vector<JobOutcome> outcomes(count);
-  std::atomic<std::size_t> next{0}, done{0};
-  const auto work = [&](bool reports) {
-    for (std::size_t i = next++; i < count; i = next++) {
-      outcomes[i] = outcomeOf(job, i, watch);
-      ++done;
-      if (reports) watch.report(static_cast<double>(done) / static_cast<double>(count));
-    }
-  };
-  std::vector<std::jthread> threads;
-  for (std::size_t t = 1; t < std::min(workers, count); ++t) threads.emplace_back(work, false);
-  work(true);
+  std::atomic<std::size_t> done{0};
+  const auto caller = std::this_thread::get_id();
+  maps::parallelFor(count, static_cast<int>(workers), [&](std::size_t i) {
+    outcomes[i] = outcomeOf(job, i, watch);
+    ++done;
+    if (std::this_thread::get_id() == caller)
+      watch.report(static_cast<double>(done) / static_cast<double>(count));
+  });
   return outcomes;
 }
 

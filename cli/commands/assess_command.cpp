@@ -1,6 +1,5 @@
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -9,6 +8,7 @@
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/draw/html_report.hpp>
+#include <talus/talus.hpp>
 #include <talus/terramech/estimate/pull_formula.hpp>
 #include <talus/terramech/tables/assessment.hpp>
 
@@ -17,8 +17,6 @@ namespace {
 
 using namespace terramech;
 using Json = nlohmann::ordered_json;
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 struct AssessCommand : AssessOptions {
   std::string html;  // page to write; empty: none
@@ -58,8 +56,8 @@ void bind(CLI::App& command, AssessCommand& options) {
   command.add_option("--html", options.html, "a page with the traversability map")->type_name("R.html");
 }
 
-Json jsonOf(const Uncertain& pull) {
-  const Uncertain slope = climbableSlope_rad(pull);
+Json jsonOf(const Estimate& pull) {
+  const Estimate slope = climbableSlope_rad(pull);
   return {{"drawbar_pull_over_load", pull.value},
           {"std", pull.std},
           {"climbable_slope_rad", slope.value},
@@ -79,7 +77,7 @@ Json jsonOf(const PullForecast& f, double reference_slip) {
 Json jsonOf(const std::vector<Assessment>& rows, double reference_slip) {
   Json list = Json::array();
   for (const Assessment& a : rows) {
-    const Uncertain slope = climbableSlope_rad(a.pull);
+    const Estimate slope = climbableSlope_rad(a.pull);
     Json row{{"row", a.line - 1},
              {"line", a.line},
              {"drawbar_pull_over_load", a.pull.value},

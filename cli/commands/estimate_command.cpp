@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -9,14 +8,13 @@
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/draw/html_report.hpp>
+#include <talus/talus.hpp>
 #include <talus/terramech/tables/estimate_soil.hpp>
 
 namespace talus::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 using namespace terramech;
 

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -11,6 +10,7 @@
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/ground/map_options.hpp>
 #include <talus/maps/terrain_metrics.hpp>
+#include <talus/talus.hpp>
 
 namespace talus::cli {
 namespace {
@@ -33,7 +33,7 @@ std::vector<float> slopes_deg(const maps::TerrainMetrics& metrics) {
   for (int row = 0; row < grid.height; ++row)
     for (int column = 0; column < grid.width; ++column) {
       const float slope = metrics.slope_rad({column, row});
-      if (!std::isnan(slope)) out.push_back(slope * static_cast<float>(180 / std::numbers::pi));
+      if (!std::isnan(slope)) out.push_back(slope / static_cast<float>(kDegree));
     }
   return out;
 }

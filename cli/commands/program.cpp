@@ -12,15 +12,14 @@
 #include <nlohmann/json.hpp>
 #include <ompl/util/Console.h>
 #include <spdlog/spdlog.h>
-#include <tbb/global_control.h>
 #include <yaml-cpp/exceptions.h>
 
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/context.hpp>
 #include <talus/cli/app/interrupt.hpp>
-#include <talus/cli/app/nearest.hpp>
 #include <talus/cli/app/number_check.hpp>
 #include <talus/cli/commands/program.hpp>
+#include <talus/talus.hpp>
 
 namespace talus::cli {
 namespace {
@@ -88,7 +87,7 @@ std::string suggestion(const CLI::App& app, const std::string& word) {
   } else if (word.front() != '-') {
     known = subcommandNames(app);
   }
-  const std::string near = nearest(word.substr(0, word.find('=')), known);
+  const std::string near = nearestName(word.substr(0, word.find('=')), known);
   return near.empty() ? "" : fmt::format(", did you mean '{}'?", near);
 }
 
@@ -156,13 +155,7 @@ int run(int argc, const char* const* argv) {
   int code = Exit::kDone;
   try {
     CLI::App app("Safe routes for rovers over soft, sloping ground.", "talus");
-    std::optional<tbb::global_control> limit;
     addGlobalOptions(app, context);
-    app.parse_complete_callback([&] {
-      if (context.threads > 0)
-        limit.emplace(tbb::global_control::max_allowed_parallelism,
-                      static_cast<std::size_t>(context.threads));
-    });
     addCommands(app, context);
     code = parseAndRun(app, context, words(argc, argv));
   } catch (...) {

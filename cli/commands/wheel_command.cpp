@@ -1,5 +1,4 @@
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -10,6 +9,7 @@
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/soil/wheel_report.hpp>
 #include <talus/cli/soil/wheel_table.hpp>
+#include <talus/talus.hpp>
 #include <talus/terramech/contact/wong_reece.hpp>
 #include <talus/terramech/io/soil_library.hpp>
 
@@ -68,7 +68,8 @@ void warnOfRefused(const WheelTable& table, const std::string& path, const Conte
 
 int runTable(const WheelOptions& options, Context& context) {
   if (options.output.empty()) lacking("-o OUT.csv");
-  const WheelTable table = solveWheelTable(options.cases, options.output, context.watch("wheels"));
+  const WheelTable table =
+      solveWheelTable(options.cases, options.output, context.workers(), context.watch("wheels"));
   if (table.replaced) context.warn(options.cases + ": holds result columns; they are computed anew");
   warnOfRefused(table, options.cases, context);
   if (context.json)
@@ -87,9 +88,8 @@ std::string report(const terramech::WheelForces& forces, double load_N, double r
       "entry angle   {:10.3f} deg\n"
       "torque        {:10.3f} Nm   T/rW {:.3f}\n"
       "drawbar pull  {:10.3f} N    DP/W {:.3f}\n",
-      1e3 * forces.sinkage_m, forces.sinkage_m / radius_m, forces.entry_angle_rad * 180.0 / std::numbers::pi,
-      forces.torque_Nm, forces.torque_Nm / (radius_m * load_N), forces.drawbar_pull_N,
-      forces.drawbar_pull_N / load_N);
+      1e3 * forces.sinkage_m, forces.sinkage_m / radius_m, forces.entry_angle_rad / kDegree, forces.torque_Nm,
+      forces.torque_Nm / (radius_m * load_N), forces.drawbar_pull_N, forces.drawbar_pull_N / load_N);
 }
 
 int runOne(const WheelOptions& options, const Context& context) {

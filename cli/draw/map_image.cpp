@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include <talus/cli/draw/map_image.hpp>
+#include <talus/talus.hpp>
 
 namespace talus::cli {
 namespace {
@@ -48,7 +49,7 @@ double exaggeration(const Raster<float>& z) {
   const auto p90 =
       steepness.begin() + static_cast<std::ptrdiff_t>(0.9 * static_cast<double>(steepness.size() - 1));
   std::nth_element(steepness.begin(), p90, steepness.end());
-  return std::clamp(std::tan(25.0 * std::numbers::pi / 180.0) / std::max(*p90, 1e-6), 1.0, 20.0);
+  return std::clamp(std::tan(25.0 * kDegree) / std::max(*p90, 1e-6), 1.0, 20.0);
 }
 
 /// Fills an image from the north: draw(cell) gives each pixel.

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -11,6 +10,7 @@
 #include <talus/cli/draw/page.hpp>
 #include <talus/cli/draw/page_template.hpp>
 #include <talus/cli/draw/route_summary.hpp>
+#include <talus/talus.hpp>
 
 namespace talus::cli {
 namespace {
@@ -73,7 +73,6 @@ std::vector<std::size_t> selection(std::size_t count) {
 }
 
 ordered_json routeOf(const planner::Route& route) {
-  constexpr double kDegrees = 180.0 / std::numbers::pi;
   const std::vector<double> s = distances_m(route);
   ordered_json points = ordered_json::array();
   for (const std::size_t i : selection(s.size())) {
@@ -82,8 +81,8 @@ ordered_json routeOf(const planner::Route& route) {
                       {"x", number(v.x_m)},
                       {"y", number(v.y_m)},
                       {"elevation", number(v.elevation_m)},
-                      {"slope", number(kDegrees * v.slope_along_rad)},
-                      {"across", number(kDegrees * v.slope_across_rad)},
+                      {"slope", number(v.slope_along_rad / kDegree)},
+                      {"across", number(v.slope_across_rad / kDegree)},
                       {"slip", number(v.slip)},
                       {"energy", number(v.energy_J / 1000.0)},
                       {"time", number(v.time_s)},

@@ -1,11 +1,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 
 #include <talus/cli/draw/route_summary.hpp>
+#include <talus/talus.hpp>
 
 namespace talus::cli {
 namespace {
@@ -13,8 +13,6 @@ namespace {
 using planner::Route;
 using planner::RouteVertex;
 using Facts = std::vector<std::pair<std::string, std::string>>;
-
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 std::string lengthText(double metres) {
   return metres >= 2000.0 ? fmt::format("{:.2f} km", metres / 1000.0) : fmt::format("{:.4g} m", metres);
@@ -71,8 +69,8 @@ std::string slopeText(const Route& route) {
   const Profile across = profile(route, &RouteVertex::slope_across_rad);
   if (!along.known()) return "";
   return fmt::format("at most {:.1f} deg up, {:.1f} deg down, {:.1f} deg across",
-                     kDegrees * std::max(0.0, along.highest), kDegrees * std::max(0.0, -along.lowest),
-                     kDegrees * std::max(std::abs(across.highest), std::abs(across.lowest)));
+                     std::max(0.0, along.highest) / kDegree, std::max(0.0, -along.lowest) / kDegree,
+                     std::max(std::abs(across.highest), std::abs(across.lowest)) / kDegree);
 }
 
 std::string marginText(const Route& route) {
@@ -135,7 +133,7 @@ std::string driveText(const Route& route) {
                                  ? fmt::format("arcs of {:.3g} m and more", 1.0 / d.max_curvature_1_m)
                                  : "straight between turns";
   return fmt::format("{}, {} reversals, {} turns in place, {:.0f} deg turned in all", radius, d.cusps,
-                     d.turns_in_place, kDegrees * d.turned_rad);
+                     d.turns_in_place, d.turned_rad / kDegree);
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 
@@ -8,14 +7,13 @@
 #include <talus/cli/draw/route_summary.hpp>
 #include <talus/cli/draw/scene.hpp>
 #include <talus/costmap/traversability_map.hpp>
+#include <talus/talus.hpp>
 
 namespace talus::cli {
 namespace {
 
 using maps::Cell;
 using maps::Raster;
-
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 /// Smallest and largest of the values between their 2 % and 98 % quantiles, so that a few outliers do not
 /// take all colours.
@@ -42,9 +40,9 @@ Raster<float> slope_deg(const Raster<float>& z) {
     for (int c = 1; c + 1 < grid.width; ++c) {
       const float dx = z[{c + 1, r}] - z[{c - 1, r}];
       const float dy = z[{c, r + 1}] - z[{c, r - 1}];
-      out[{c, r}] = static_cast<float>(
-          kDegrees * std::atan(std::hypot(static_cast<double>(dx), static_cast<double>(dy)) /
-                               (2.0 * grid.resolution_m)));
+      const double gradient =
+          std::hypot(static_cast<double>(dx), static_cast<double>(dy)) / (2.0 * grid.resolution_m);
+      out[{c, r}] = static_cast<float>(std::atan(gradient) / kDegree);
     }
   }
   return out;
@@ -138,7 +136,7 @@ Scene sceneOf(const costmap::TraversabilityMap& map, const SceneOptions& options
                    .values = blocks.mean([&](Cell cell) {
                      if (has(map.hazards(cell), costmap::Hazard::Unknown)) return std::nan("");
                      const costmap::CellCode code = version->at(cell);
-                     return kDegrees * std::atan(std::hypot(code.dzDx(), code.dzDy()));
+                     return std::atan(std::hypot(code.dzDx(), code.dzDy())) / kDegree;
                    }),
                    .range = {}};
   slope.range = {0.0, std::max(1.0, inner(slope.values).high)};

@@ -1,10 +1,10 @@
-#include <numbers>
 
 #include <CLI/CLI.hpp>
 
 #include <talus/cli/app/number_check.hpp>
 #include <talus/cli/ground/drive_options.hpp>
 #include <talus/planner/route/turn_prices.hpp>
+#include <talus/talus.hpp>
 
 namespace talus::cli {
 namespace {
@@ -19,7 +19,7 @@ void addHeading(CLI::App& command, const std::string& name, std::optional<double
                       ->check(finite());
   command
       .add_option_function<double>(
-          name + "-deg", [&heading_rad](double value) { heading_rad = value * std::numbers::pi / 180.0; },
+          name + "-deg", [&heading_rad](double value) { heading_rad = value * kDegree; },
           "the same in degrees")
       ->type_name("DEG")
       ->check(finite())

@@ -1,6 +1,5 @@
 #include <chrono>
 #include <fstream>
-#include <numbers>
 #include <utility>
 
 #include <CLI/CLI.hpp>
@@ -11,6 +10,7 @@
 #include <talus/costmap/ground_class.hpp>
 #include <talus/costmap/map_file.hpp>
 #include <talus/costmap/octomap_surface.hpp>
+#include <talus/talus.hpp>
 #include <talus/terramech/io/model_file.hpp>
 #include <talus/terramech/io/soil_library.hpp>
 
@@ -51,7 +51,7 @@ void addPolicy(CLI::App& command, costmap::DrivePolicy& policy) {
   command.add_flag("--allow-unknown", policy.allow_unknown, "take cells without data for flat ground");
   command
       .add_option_function<double>(
-          "--slope-margin", [&policy](double deg) { policy.slope_margin_rad = deg * std::numbers::pi / 180; },
+          "--slope-margin", [&policy](double deg) { policy.slope_margin_rad = deg * kDegree; },
           "doubt of the slope on either side of a category's edge (default 5)")
       ->type_name("DEG");
   command.add_option("--time-weight", policy.time_weight_W, "joules that a second is worth")

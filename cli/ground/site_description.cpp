@@ -1,7 +1,6 @@
 #include <array>
 #include <utility>
 
-#include <talus/cli/app/nearest.hpp>
 #include <talus/cli/ground/site_description.hpp>
 #include <talus/talus.hpp>
 #include <talus/terramech/io/yaml_fields.hpp>
@@ -18,7 +17,7 @@ constexpr std::array<std::pair<const char*, maps::SiteKind>, 3> kKinds{{{"crater
 maps::SiteKind siteKind(const std::string& name) {
   for (const auto& [word, kind] : kKinds)
     if (name == word) return kind;
-  const std::string near = nearest(name, {"craters", "dunes", "rocks"});
+  const std::string near = nearestName(name, {"craters", "dunes", "rocks"});
   throw InputError({"site '" + name + "'", "is no kind of site",
                     near.empty() ? "choose craters, dunes or rocks" : "did you mean '" + near + "'?"});
 }

@@ -1,11 +1,11 @@
 #include <cmath>
 #include <filesystem>
-#include <numbers>
 
 #include <nlohmann/json.hpp>
 
 #include <talus/cli/app/sha256.hpp>
 #include <talus/cli/route/route_json.hpp>
+#include <talus/talus.hpp>
 
 namespace talus::cli {
 namespace {
@@ -14,13 +14,11 @@ using Json = nlohmann::ordered_json;
 using planner::Route;
 using planner::RouteVertex;
 
-constexpr double kDegrees = 180.0 / std::numbers::pi;
-
 Json position(const RouteVertex& vertex, const maps::ElevationMap& map) {
   Json made = Json::array();
   if (map.georeference) {
     const maps::GeoPoint place = map.georeference->reverse({vertex.x_m, vertex.y_m});
-    made = {place.longitude_rad * kDegrees, place.latitude_rad * kDegrees};
+    made = {place.longitude_rad / kDegree, place.latitude_rad / kDegree};
   } else {
     made = {vertex.x_m, vertex.y_m};
   }

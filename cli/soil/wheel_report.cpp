@@ -1,10 +1,10 @@
-#include <numbers>
 #include <stdexcept>
 
 #include <fmt/format.h>
 
 #include <talus/cli/draw/html_report.hpp>
 #include <talus/cli/soil/wheel_report.hpp>
+#include <talus/talus.hpp>
 #include <talus/terramech/contact/wong_reece.hpp>
 
 namespace talus::cli {
@@ -16,7 +16,7 @@ Plot stressPlot(const WheelAtWork& work) {
   Series normal{.name = "normal", .x = {}, .y = {}}, shear{.name = "shear", .x = {}, .y = {}};
   for (const auto& s : terramech::stressDistribution(work.soil, work.rover.wheel,
                                                      {.load_N = work.load_N, .slip = work.slip}, 301)) {
-    const double degrees = s.angle_rad * 180.0 / std::numbers::pi;
+    const double degrees = s.angle_rad / kDegree;
     normal.x.push_back(degrees);
     shear.x.push_back(degrees);
     normal.y.push_back(1e-3 * s.normal_Pa);
@@ -50,7 +50,7 @@ std::vector<std::vector<std::string>> forceRows(const WheelAtWork& work) {
       terramech::equilibrium(work.soil, work.rover.wheel, {.load_N = work.load_N, .slip = work.slip});
   const double r = work.rover.wheel.radius_m;
   return {{"sinkage", fmt::format("{:.3f}", 1e3 * f.sinkage_m), "mm", fmt::format("{:.3f}", f.sinkage_m / r)},
-          {"entry angle", fmt::format("{:.2f}", f.entry_angle_rad * 180.0 / std::numbers::pi), "deg", ""},
+          {"entry angle", fmt::format("{:.2f}", f.entry_angle_rad / kDegree), "deg", ""},
           {"torque", fmt::format("{:.3f}", f.torque_Nm), "Nm",
            fmt::format("{:.3f}", f.torque_Nm / (r * work.load_N))},
           {"drawbar pull", fmt::format("{:.3f}", f.drawbar_pull_N), "N",

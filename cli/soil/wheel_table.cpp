@@ -6,10 +6,10 @@
 #include <string>
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/soil/wheel_table.hpp>
+#include <talus/maps/parallel_for.hpp>
 #include <talus/terramech/contact/wong_reece_batch.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
 
@@ -131,21 +131,23 @@ class Writer {
   std::ofstream out_;
 };
 
-void solveAll(const std::vector<Entry>& entries, std::vector<WheelForces>& forces) {
+std::vector<WheelForces> solved(const std::vector<Entry>& entries, int threads) {
   std::vector<WheelCase> cases;
   cases.reserve(entries.size());
   for (const Entry& entry : entries) cases.push_back(entry.wheel_case);
-  forces.resize(cases.size());
+  std::vector<WheelForces> forces(cases.size());
   // Blocks of a multiple of four: a case's lane, and so nothing else, depends on them.
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, cases.size(), 256), [&](const auto& range) {
-    const auto part = [&](auto& all) { return std::span(all).subspan(range.begin(), range.size()); };
+  constexpr std::size_t kBlock = 256;
+  maps::parallelFor((cases.size() + kBlock - 1) / kBlock, threads, [&](std::size_t k) {
+    const std::size_t first = k * kBlock, count = std::min(kBlock, cases.size() - first);
+    const auto part = [&](auto& all) { return std::span(all).subspan(first, count); };
     terramech::equilibria(part(cases), part(forces));
   });
+  return forces;
 }
 
-void writeBlock(const std::vector<Entry>& entries, Writer& writer, WheelTable& table) {
-  std::vector<WheelForces> forces;
-  solveAll(entries, forces);
+void writeBlock(const std::vector<Entry>& entries, const std::vector<WheelForces>& forces, Writer& writer,
+                WheelTable& table) {
   for (std::size_t k = 0; k < entries.size(); ++k) {
     std::string fault = entries[k].fault;
     if (fault.empty() && std::isnan(forces[k].sinkage_m)) fault = reasonOf(entries[k].wheel_case);
@@ -169,7 +171,7 @@ void checkSolved(const WheelTable& table, const std::string& path) {
 }  // namespace
 
 WheelTable solveWheelTable(const std::filesystem::path& input, const std::filesystem::path& output,
-                           const ProgressMonitor& watch) {
+                           int threads, const ProgressMonitor& watch) {
   constexpr std::size_t kBlock = 16384;
   CsvReader reader{input};
   const auto at = positions(reader, input.string());
@@ -181,7 +183,7 @@ WheelTable solveWheelTable(const std::filesystem::path& input, const std::filesy
     CsvRow row;
     while (entries.size() < kBlock && (more = reader.next(row)))
       entries.push_back(entryOf(std::move(row), at));
-    writeBlock(entries, writer, table);
+    writeBlock(entries, solved(entries, threads), writer, table);
     entries.clear();
     if (watch.stopped()) throw std::runtime_error("cancelled");
     watch.report(reader.fraction());

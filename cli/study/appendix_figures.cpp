@@ -1,11 +1,11 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
 #include <fmt/format.h>
 
 #include <talus/cli/study/figure_parts.hpp>
+#include <talus/talus.hpp>
 #include <talus/terramech/contact/shear_stress.hpp>
 #include <talus/terramech/contact/wong_reece.hpp>
 #include <talus/terramech/estimate/linear_offset.hpp>
@@ -15,8 +15,6 @@ namespace talus::cli {
 namespace {
 
 using namespace terramech;
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 ThesisFigure shearCurve() {
   Series janosi = line("Janosi-Hanamoto (A.4)"), plastic = line("elasto-plastic (A.3)");

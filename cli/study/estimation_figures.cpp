@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 
 #include <talus/cli/study/figure_parts.hpp>
+#include <talus/talus.hpp>
 #include <talus/terramech/estimate/linear_offset.hpp>
 #include <talus/terramech/estimate/soil_filter.hpp>
 #include <talus/terramech/estimate/thesis_runs.hpp>
@@ -13,8 +13,6 @@ namespace talus::cli {
 namespace {
 
 using namespace terramech;
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 ThesisFigure coefficients(std::uint64_t seed) {
   const ContactSoil soil = middle(2);

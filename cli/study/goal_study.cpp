@@ -1,11 +1,11 @@
 #include <cmath>
 #include <ctime>
 #include <map>
-#include <numbers>
 
 #include <fmt/format.h>
 
 #include <talus/cli/study/goal_study.hpp>
+#include <talus/talus.hpp>
 #include <talus/terramech/estimate/drawbar_pull.hpp>
 #include <talus/terramech/estimate/iagnemma.hpp>
 #include <talus/terramech/estimate/linear_offset.hpp>
@@ -19,8 +19,6 @@ namespace talus::cli {
 namespace {
 
 using namespace terramech;
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 // Root mean square, one error at a time.
 class Rms {

@@ -1,11 +1,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 
 #include <talus/cli/study/thesis_figures.hpp>
+#include <talus/talus.hpp>
 #include <talus/terramech/contact/wong_reece.hpp>
 #include <talus/terramech/estimate/drawbar_pull.hpp>
 #include <talus/terramech/estimate/thesis_runs.hpp>
@@ -15,8 +15,6 @@ namespace talus::cli {
 namespace {
 
 using namespace terramech;
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 // One simulated state of the wheel.
 struct State {

@@ -9,6 +9,7 @@
 #include <talus/maps/value_noise.hpp>
 #include <talus/planner/bench/slip_world.hpp>
 #include <talus/planner/route/polyline.hpp>
+#include <talus/talus.hpp>
 
 namespace talus::planner {
 namespace {
@@ -195,7 +196,7 @@ std::shared_ptr<const costmap::CostGrid> believedMap(const SlipWorld& world, con
 }  // namespace
 
 double SlipTerrain::slip(double gradient) const noexcept {
-  const double degrees = std::atan(gradient) * 180.0 / std::numbers::pi;
+  const double degrees = std::atan(gradient) / kDegree;
   return offset + std::copysign(gain_deg2 * degrees * degrees, gradient);
 }
 

@@ -1,12 +1,11 @@
 #include <algorithm>
 #include <array>
-#include <atomic>
-#include <thread>
 #include <utility>
 #include <vector>
 
 #include <immintrin.h>
 
+#include <talus/maps/parallel_for.hpp>
 #include <talus/planner/field/edge_layer.hpp>
 
 namespace talus::planner {
@@ -111,16 +110,11 @@ EdgeLayer::EdgeLayer(std::shared_ptr<const costmap::CostGrid> map, const EdgeUni
       vectors_(vectorsRun(kernels)) {
   blockBorder();
   constexpr int kBlock = 64;
-  std::atomic<int> next{0};
-  const auto work = [&] {
-    for (int row = kBlock * next++; row < padded_.height && !stop(); row = kBlock * next++)
-      buildRows({{0, row}, {padded_.width - 1, std::min(row + kBlock, padded_.height) - 1}});
-  };
-  {
-    std::vector<std::jthread> helpers;
-    for (int k = 1; k < threads; ++k) helpers.emplace_back(work);
-    work();
-  }
+  const auto blocks = static_cast<std::size_t>((padded_.height + kBlock - 1) / kBlock);
+  maps::parallelFor(blocks, threads, [&](std::size_t k) {
+    const int row = kBlock * static_cast<int>(k);
+    if (!stop()) buildRows({{0, row}, {padded_.width - 1, std::min(row + kBlock, padded_.height) - 1}});
+  });
   complete_ = !stop();
 }
 

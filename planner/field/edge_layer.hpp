@@ -33,11 +33,7 @@ struct PaddedGrid {
   }
 };
 
-/// A box of cells, both corners included.
-struct CellBox {
-  maps::Cell first;
-  maps::Cell last;
-};
+using maps::CellBox;
 
 /// The box with so many cells more on every side, as far as the grid goes.
 inline CellBox grown(CellBox box, int cells, const PaddedGrid& grid) noexcept {

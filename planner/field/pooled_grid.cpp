@@ -4,9 +4,9 @@
 #include <limits>
 #include <vector>
 
+#include <talus/maps/parallel_for.hpp>
 #include <talus/planner/field/pooled_grid.hpp>
 #include <talus/planner/route/heading_cost.hpp>
-#include <talus/planner/route/parallel_for.hpp>
 
 namespace talus::planner {
 namespace {
@@ -113,7 +113,7 @@ std::shared_ptr<const costmap::CostGrid> pooled(const costmap::CostGrid& map, in
                           fine.resolution_m * factor, fine.south_west};
   const Pooling pooling(map, factor);
   maps::Raster<CellCode> cells(coarse);
-  parallelFor(static_cast<std::size_t>(coarse.height), threads, [&](std::size_t k) {
+  maps::parallelFor(static_cast<std::size_t>(coarse.height), threads, [&](std::size_t k) {
     const int row = static_cast<int>(k);
     for (int column = 0; column < coarse.width && !stop(); ++column)
       cells[{column, row}] = pooling.code({column, row});

@@ -18,7 +18,7 @@ Plan FieldPlanner::plan(const Problem& problem) {
   if (!problem.map) throw std::invalid_argument("FieldPlanner: no map");
   const StopCheck stop(problem.watch, problem.time_limit_s);
   return planByLegs(problem, [&](const Problem& leg) {
-    return planLeg(leg, {leg.start, leg.goal, leg.goal_tolerance_m}, stop);
+    return planStage(leg, {leg.start, leg.goal, leg.goal_tolerance_m}, stop);
   });
 }
 
@@ -53,15 +53,15 @@ bool FieldPlanner::repairTo(const Problem& problem) {
   return true;
 }
 
-bool FieldPlanner::prepareField(const MotionCost& cost, const Leg& leg) {
-  if (field_ && field_goal_ == leg.to && field_tolerance_m_ == leg.tolerance_m) return true;
-  field_goals_ = fieldGoals(cost, leg.to, leg.tolerance_m);
+bool FieldPlanner::prepareField(const MotionCost& cost, const Stage& stage) {
+  if (field_ && field_goal_ == stage.to && field_tolerance_m_ == stage.tolerance_m) return true;
+  field_goals_ = fieldGoals(cost, stage.to, stage.tolerance_m);
   field_.reset();
   if (field_goals_.empty()) return false;
   field_.emplace(edges_, field_goals_);
   field_map_ = edges_->mapPointer();
-  field_goal_ = leg.to;
-  field_tolerance_m_ = leg.tolerance_m;
+  field_goal_ = stage.to;
+  field_tolerance_m_ = stage.tolerance_m;
   return true;
 }
 
@@ -79,27 +79,27 @@ Polyline FieldPlanner::roughRoute(const MotionCost& cost, const Segment& places,
   return gridRoute(cost, *field_, places, stop);
 }
 
-Plan FieldPlanner::planLeg(const Problem& problem, const Leg& leg, const StopCheck& stop) {
+Plan FieldPlanner::planStage(const Problem& problem, const Stage& stage, const StopCheck& stop) {
   const MotionCost cost(problem.map);
-  if (!cost.allowed(leg.from))
-    return failedPlan(RouteStatus::StartInvalid, invalidPlace(*problem.map, "start", leg.from));
+  if (!cost.allowed(stage.from))
+    return failedPlan(RouteStatus::StartInvalid, invalidPlace(*problem.map, "start", stage.from));
   if (!prepareEdges(problem, stop)) return cancelledPlan(stop);
-  if (!prepareField(cost, leg))
-    return failedPlan(RouteStatus::GoalInvalid, invalidPlace(*problem.map, "goal", leg.to));
-  auto rough = roughRoute(cost, {leg.from, leg.to}, stop);
+  if (!prepareField(cost, stage))
+    return failedPlan(RouteStatus::GoalInvalid, invalidPlace(*problem.map, "goal", stage.to));
+  auto rough = roughRoute(cost, {stage.from, stage.to}, stop);
   if (rough.empty()) {
     if (stop()) return cancelledPlan(stop);
-    return failedPlan(RouteStatus::NoRoute, noWay(*edges_, leg.from, leg.to));
+    return failedPlan(RouteStatus::NoRoute, noWay(*edges_, stage.from, stage.to));
   }
   Plan plan{RouteStatus::Found,
             {},
-            cutWithin(refine_(cost, std::move(rough), problem.threads, stop), leg.to, leg.tolerance_m),
+            cutWithin(refine_(cost, std::move(rough), problem.threads, stop), stage.to, stage.tolerance_m),
             0.0,
             0.0};
   plan.cost_J = cost.along(plan.points);
-  const Segment ends{leg.from, leg.to};
-  const double bound_J = problem.prove ? bound_(problem.map, ends, leg.tolerance_m, stop)
-                                       : straightBound_J(*problem.map, ends, leg.tolerance_m);
+  const Segment ends{stage.from, stage.to};
+  const double bound_J = problem.prove ? bound_(problem.map, ends, stage.tolerance_m, stop)
+                                       : straightBound_J(*problem.map, ends, stage.tolerance_m);
   plan.lower_bound_J = std::min(plan.cost_J, bound_J);
   return plan;
 }

@@ -26,17 +26,18 @@ class FieldPlanner {
   Plan plan(const Problem& problem);
 
  private:
-  struct Leg {
+  // The way from one place asked for to the next.
+  struct Stage {
     maps::Point from;
     maps::Point to;
     double tolerance_m;
   };
 
-  Plan planLeg(const Problem& problem, const Leg& leg, const StopCheck& stop);
+  Plan planStage(const Problem& problem, const Stage& stage, const StopCheck& stop);
   bool prepareEdges(const Problem& problem, const StopCheck& stop);
   static EdgeUnits unitsFor(const costmap::CostGrid& map);
   bool repairTo(const Problem& problem);
-  bool prepareField(const MotionCost& cost, const Leg& leg);
+  bool prepareField(const MotionCost& cost, const Stage& stage);
   Polyline roughRoute(const MotionCost& cost, const Segment& places, const StopCheck& stop);
 
   Refiner refine_;

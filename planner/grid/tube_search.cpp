@@ -3,12 +3,12 @@
 #include <optional>
 #include <utility>
 
+#include <talus/maps/parallel_for.hpp>
 #include <talus/planner/field/edge_units.hpp>
 #include <talus/planner/field/grid_links.hpp>
 #include <talus/planner/field/grid_route.hpp>
 #include <talus/planner/grid/tube_search.hpp>
 #include <talus/planner/refine/route_windows.hpp>
-#include <talus/planner/route/parallel_for.hpp>
 
 namespace talus::planner {
 namespace {
@@ -41,7 +41,7 @@ CellBox tilesAround(const maps::Grid& grid, const Polyline& line, double margin_
            tile(high.y_m, grid.south_west.y_m, margin_cells, grid.height)}};
 }
 
-// A box of tiles of the map around a leg, those beside the tube left unknown.
+// A box of tiles of the map around a section, those beside the tube left unknown.
 class Window {
  public:
   Window(const CostGrid& map, const Polyline& guide, double margin_cells)
@@ -101,7 +101,7 @@ class Window {
   MapPointer map_;
 };
 
-struct Leg {
+struct TubeSection {
   Polyline guide;  // from place to place
   double tolerance_m = 0.0;
   Polyline way{};  // empty: none found
@@ -112,13 +112,13 @@ class Tube {
   Tube(const Problem& problem, const TubeOptions& options, const StopCheck& stop)
       : problem_(problem), options_(options), stop_(stop), cell_m_(problem.map->grid().resolution_m) {}
 
-  std::vector<Leg> cut(const Polyline& guide) const;
-  bool searchAll(std::vector<Leg>& legs) const;
-  Polyline joined(const std::vector<Leg>& legs) const;
+  std::vector<TubeSection> cut(const Polyline& guide) const;
+  bool searchAll(std::vector<TubeSection>& sections) const;
+  Polyline joined(const std::vector<TubeSection>& sections) const;
 
  private:
-  Polyline search(const Leg& leg) const;
-  Polyline searchWithin(const Window& window, const Leg& leg) const;
+  Polyline search(const TubeSection& section) const;
+  Polyline searchWithin(const Window& window, const TubeSection& section) const;
   std::optional<Point> placeNear(const MotionCost& cost, Point p) const;
 
   const Problem& problem_;
@@ -143,9 +143,9 @@ std::optional<Point> Tube::placeNear(const MotionCost& cost, Point p) const {
 }
 
 // Legs between places on the guide; the last ends at the goal.
-std::vector<Leg> Tube::cut(const Polyline& guide) const {
+std::vector<TubeSection> Tube::cut(const Polyline& guide) const {
   const MotionCost cost(problem_.map);
-  std::vector<Leg> legs;
+  std::vector<TubeSection> sections;
   Polyline at = {guide.front()};
   auto pieces = cutFromEnd(guide, options_.leg_cells * cell_m_, options_.leg_cells * cell_m_);
   for (std::size_t k = 0; k < pieces.size(); ++k) {
@@ -154,59 +154,60 @@ std::vector<Leg> Tube::cut(const Polyline& guide) const {
     const auto place = last ? std::optional(guide.back()) : placeNear(cost, pieces[k].back());
     if (place) pieces[k].back() = *place;
     append(at, pieces[k]);
-    if (!place) continue;  // nothing to stand on: one longer leg
-    legs.push_back({at, last ? problem_.goal_tolerance_m : 0.0});
+    if (!place) continue;  // nothing to stand on: one longer section
+    sections.push_back({at, last ? problem_.goal_tolerance_m : 0.0});
     at = {*place};
   }
-  return legs;
+  return sections;
 }
 
-Polyline Tube::searchWithin(const Window& window, const Leg& leg) const {
+Polyline Tube::searchWithin(const Window& window, const TubeSection& section) const {
   const MotionCost cost(window.map());
-  const Segment places{leg.guide.front(), leg.guide.back()};
+  const Segment places{section.guide.front(), section.guide.back()};
   const double longest = window.map()->grid().width + window.map()->grid().height;
   const EdgeUnits units(window.map()->cost(), cell_m_, std::max(1.0, longest / 16384.0));
   const auto edges = std::make_shared<EdgeLayer>(window.map(), units, 1, stop_);
-  const auto goals = fieldGoals(cost, places.to, leg.tolerance_m);
+  const auto goals = fieldGoals(cost, places.to, section.tolerance_m);
   if (!edges->complete() || goals.empty()) return {};
   CostToGo field(edges, goals);
   return gridRoute(cost, field, places, stop_);
 }
 
-Polyline Tube::search(const Leg& leg) const {
+Polyline Tube::search(const TubeSection& section) const {
   Polyline way;
   double margin = options_.margin_cells;
   for (int k = 0; k <= options_.widenings && !stop_(); ++k, margin *= 2) {
-    const Window window(*problem_.map, leg.guide, margin);
-    way = searchWithin(window, leg);
+    const Window window(*problem_.map, section.guide, margin);
+    way = searchWithin(window, section);
     if (!way.empty() && !window.touchesWall(way)) return way;
   }
   return way;
 }
 
-// Searches every leg; one without a way is joined with its neighbour. False when a single leg is left and has
+// Searches every section; one without a way is joined with its neighbour. False when a single section is left and has
 // none.
-bool Tube::searchAll(std::vector<Leg>& legs) const {
+bool Tube::searchAll(std::vector<TubeSection>& sections) const {
   for (;;) {
-    parallelFor(legs.size(), problem_.threads, [&](std::size_t k) {
-      if (legs[k].way.empty()) legs[k].way = search(legs[k]);
+    maps::parallelFor(sections.size(), problem_.threads, [&](std::size_t k) {
+      if (sections[k].way.empty()) sections[k].way = search(sections[k]);
     });
-    const auto lost = std::find_if(legs.begin(), legs.end(), [](const Leg& leg) { return leg.way.empty(); });
-    if (lost == legs.end()) return true;
-    if (legs.size() == 1 || stop_()) return false;
-    const auto first = lost + 1 == legs.end() ? lost - 1 : lost;
+    const auto lost = std::find_if(sections.begin(), sections.end(),
+                                   [](const TubeSection& section) { return section.way.empty(); });
+    if (lost == sections.end()) return true;
+    if (sections.size() == 1 || stop_()) return false;
+    const auto first = lost + 1 == sections.end() ? lost - 1 : lost;
     append(first->guide, (first + 1)->guide);
     first->tolerance_m = (first + 1)->tolerance_m;
     first->way.clear();
-    legs.erase(first + 1);
+    sections.erase(first + 1);
   }
 }
 
-// One way, searched again around the places where legs meet.
-Polyline Tube::joined(const std::vector<Leg>& legs) const {
+// One way, searched again around the places where sections meet.
+Polyline Tube::joined(const std::vector<TubeSection>& sections) const {
   const MotionCost cost(problem_.map);
   std::vector<Polyline> ways;
-  for (const Leg& leg : legs) ways.push_back(leg.way);
+  for (const TubeSection& section : sections) ways.push_back(section.way);
   const auto again = [&](const Polyline& joint) {
     if (joint.size() < 2 || length_m(joint) < 2 * cell_m_) return joint;
     const Polyline way = search({joint, 0.0});
@@ -223,9 +224,9 @@ Polyline tubeRoute(const Problem& problem, const Polyline& guide, const TubeOpti
                    const StopCheck& stop) {
   if (guide.size() < 2) return {problem.start};  // nothing to drive
   const Tube tube(problem, options, stop);
-  auto legs = tube.cut(guide);
-  if (!tube.searchAll(legs)) return {};
-  return tube.joined(legs);
+  auto sections = tube.cut(guide);
+  if (!tube.searchAll(sections)) return {};
+  return tube.joined(sections);
 }
 
 }  // namespace talus::planner

@@ -40,9 +40,10 @@ double riskOf(const costmap::CostGrid& map, const Plan& plan, const RouteRiskOpt
 }
 
 // Keeps the cheapest of the plans within the limit, and the least risk of all.
-class Search {
+class RiskBoundedSearch {
  public:
-  Search(const Problem& problem, NamedPlanner& planner, double max_risk, const RouteRiskOptions& soil)
+  RiskBoundedSearch(const Problem& problem, NamedPlanner& planner, double max_risk,
+                    const RouteRiskOptions& soil)
       : problem_(problem), planner_(planner), max_risk_(max_risk), soil_(soil) {}
 
   // Whether the price brings the risk within the limit; nothing when planning did not find a route.
@@ -116,7 +117,7 @@ Plan planWithinRisk(const Problem& problem, NamedPlanner& planner, double max_ri
                     const RouteRiskOptions& soil) {
   if (!(max_risk > 0 && max_risk < 1))
     throw std::invalid_argument("risk: " + inWords(max_risk) + ", must be above 0 and below 1");
-  Search search(problem, planner, max_risk, soil);
+  RiskBoundedSearch search(problem, planner, max_risk, soil);
   const Plan own = planner.plan(problem);
   if (search.taken(own).value_or(true)) return search.result(own.lower_bound_J);
   // The lowest price that is known to do and the highest that is known not to, in powers of ten.

@@ -43,9 +43,10 @@ struct Queued {
 };
 
 // One search; HybridSearch keeps what outlives it.
-class Search {
+class HybridAStar {
  public:
-  Search(const PoseProblem& problem, const HybridOptions& options, CostToGo& field, const StopCheck& stop)
+  HybridAStar(const PoseProblem& problem, const HybridOptions& options, CostToGo& field,
+              const StopCheck& stop)
       : problem_(problem),
         options_(options),
         stop_(stop),
@@ -294,7 +295,7 @@ PosePlan HybridSearch::plan(const PoseProblem& problem) {
                    "the goal is outside the map or on a cell that may not be entered");
   if (!prepareField(problem)) return refused(RouteStatus::Cancelled, "cancelled");
   const StopCheck stop(problem.watch, problem.time_limit_s);
-  std::optional<Search> made(std::in_place, problem, options_, *field_, stop);
+  std::optional<HybridAStar> made(std::in_place, problem, options_, *field_, stop);
   PosePlan plan;
   plan.status = made->run();
   plan.expanded = made->expanded();
@@ -305,7 +306,7 @@ PosePlan HybridSearch::plan(const PoseProblem& problem) {
     if (again == RouteStatus::Found || again == RouteStatus::Cancelled) plan.status = again;
     plan.expanded += made->expanded();
   }
-  const Search& search = *made;
+  const HybridAStar& search = *made;
   if (plan.status != RouteStatus::Found) {
     plan.reason = whyNot(plan.status);
     return plan;

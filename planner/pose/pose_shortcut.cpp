@@ -19,8 +19,6 @@ double apart_m(const Pose& a, const Pose& b) noexcept {
   return std::hypot(b.place.x_m - a.place.x_m, b.place.y_m - a.place.y_m);
 }
 
-const double J1 = getenv("J1") ? atof(getenv("J1")) : 1, J2 = getenv("J2") ? atof(getenv("J2")) : 1;
-const int RR = getenv("RR") ? atoi(getenv("RR")) : 2;
 using Legs = std::vector<PosePath::Leg>;
 
 bool goesOn(const PosePath::Leg& leg, const PosePath::Leg& next) noexcept {

@@ -72,9 +72,10 @@ LabelQueue queueFor(const CostRange& range, int points) {
   return {std::max(cheapest, dearest / 1000.0F), dearest};
 }
 
-class Search {
+class EdgePointSearch {
  public:
-  Search(const MotionCost& cost, const EdgeCrossings& crossings, Corridor& corridor, LabelQueue queue)
+  EdgePointSearch(const MotionCost& cost, const EdgeCrossings& crossings, Corridor& corridor,
+                  LabelQueue queue)
       : cost_(cost),
         grid_(cost.map().grid()),
         points_(crossings.points()),
@@ -124,7 +125,7 @@ class Search {
 };
 
 // The edge points of every cell that the place touches.
-std::vector<Search::EdgePoint> Search::around(Point place) {
+std::vector<EdgePointSearch::EdgePoint> EdgePointSearch::around(Point place) {
   std::vector<EdgePoint> found;
   const double x = (place.x_m - grid_.south_west.x_m) / grid_.resolution_m,
                y = (place.y_m - grid_.south_west.y_m) / grid_.resolution_m;
@@ -149,12 +150,12 @@ std::vector<Search::EdgePoint> Search::around(Point place) {
   return found;
 }
 
-EdgePath::Turn Search::turnAt(Point p) const noexcept {
+EdgePath::Turn EdgePointSearch::turnAt(Point p) const noexcept {
   return {(p.x_m - grid_.south_west.x_m) / grid_.resolution_m,
           (p.y_m - grid_.south_west.y_m) / grid_.resolution_m, false};
 }
 
-EdgePath::Turn Search::turnAt(std::uint32_t node) const noexcept {
+EdgePath::Turn EdgePointSearch::turnAt(std::uint32_t node) const noexcept {
   const Cell c = corridor_.cell(corridor_.held(node >> shift_));
   const int k = static_cast<int>(node & ((1U << shift_) - 1));
   const bool vertical = k < points_;
@@ -163,7 +164,7 @@ EdgePath::Turn Search::turnAt(std::uint32_t node) const noexcept {
 }
 
 // Price of the first or the last motion; infinite where the cell beyond the edge does not allow its heading.
-float Search::priceOfEnd(const Segment& motion, const EdgePoint& turn) const noexcept {
+float EdgePointSearch::priceOfEnd(const Segment& motion, const EdgePoint& turn) const noexcept {
   const double dx = motion.to.x_m - motion.from.x_m, dy = motion.to.y_m - motion.from.y_m;
   const double length = std::hypot(dx, dy);
   if (length > 0.0 &&
@@ -172,7 +173,7 @@ float Search::priceOfEnd(const Segment& motion, const EdgePoint& turn) const noe
   return static_cast<float>(cost_(motion) / grid_.resolution_m);
 }
 
-void Search::reach(std::uint32_t node, float label, std::uint32_t from, std::size_t cell) {
+void EdgePointSearch::reach(std::uint32_t node, float label, std::uint32_t from, std::size_t cell) {
   const float before = label_[node];
   if (!(label < before)) return;
   label_[node] = label;
@@ -181,7 +182,7 @@ void Search::reach(std::uint32_t node, float label, std::uint32_t from, std::siz
   if (before == kFar || !queue_.together(label, before)) queue_.push(label, node);
 }
 
-void Search::cross(std::uint32_t node, std::size_t cell, int side, int k) {
+void EdgePointSearch::cross(std::uint32_t node, std::size_t cell, int side, int k) {
   const CellCode code = corridor_.code(cell);
   if (code.curve() >= cost_.map().cost().curves().size()) return;
   crossings_.prices(side, k, code, label_[node], paid_.data());
@@ -203,7 +204,7 @@ void Search::cross(std::uint32_t node, std::size_t cell, int side, int k) {
   }
 }
 
-void Search::settle(std::uint32_t node) {
+void EdgePointSearch::settle(std::uint32_t node) {
   const std::size_t holder = corridor_.held(node >> shift_);
   const int k = static_cast<int>(node & ((1U << shift_) - 1));
   const bool vertical = k < points_;
@@ -212,7 +213,7 @@ void Search::settle(std::uint32_t node) {
   if (in_[node] != before) cross(node, before, vertical ? kEastSide : kNorthSide, k % points_);
 }
 
-EdgePath Search::pathTo(std::uint32_t node, std::size_t last_cell, const Segment& ends) const {
+EdgePath EdgePointSearch::pathTo(std::uint32_t node, std::size_t last_cell, const Segment& ends) const {
   EdgePath path;
   path.turns.push_back(turnAt(ends.to));
   path.cells.push_back(corridor_.cell(last_cell));
@@ -226,7 +227,7 @@ EdgePath Search::pathTo(std::uint32_t node, std::size_t last_cell, const Segment
   return path;
 }
 
-EdgePath Search::run(const Segment& ends, double below_J) {
+EdgePath EdgePointSearch::run(const Segment& ends, double below_J) {
   const auto firsts = around(ends.from);
   auto lasts = around(ends.to);
   const std::size_t nodes = corridor_.holders() << shift_;
@@ -266,7 +267,7 @@ CorridorSearch::CorridorSearch(const MotionCost& cost, const CorridorOptions& op
 EdgePath CorridorSearch::operator()(const std::vector<Point>& along, double below_J) const {
   if (!(range_.most_J_per_m > 0.0)) return {};
   Corridor corridor(cost_.map(), crossings_, along, options_.reach_cells);
-  return Search(cost_, crossings_, corridor, queueFor(range_, options_.points_per_edge))
+  return EdgePointSearch(cost_, crossings_, corridor, queueFor(range_, options_.points_per_edge))
       .run({along.front(), along.back()}, below_J);
 }
 

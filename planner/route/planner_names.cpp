@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <numeric>
 #include <stdexcept>
 
 #include <talus/planner/route/planner_names.hpp>
+#include <talus/talus.hpp>
 
 namespace talus::planner {
 namespace {
@@ -64,24 +64,13 @@ std::string plain(std::string_view name) {
   return result;
 }
 
-// Levenshtein's distance between two words.
-std::size_t distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0]++;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
-    }
-  }
-  return row.back();
-}
-
-const std::string& nearest(const std::string& word) {
-  return *std::ranges::min_element(plannerNames(), {},
-                                   [&](const std::string& n) { return distance(plain(n), word); });
+// "; the nearest is 'field'" where a name is near.
+std::string suggestion(const std::string& word) {
+  std::vector<std::string> plain_names;
+  for (const std::string& name : plannerNames()) plain_names.push_back(plain(name));
+  const auto near = std::ranges::find(plain_names, nearestName(word, plain_names));
+  if (near == plain_names.end()) return "";
+  return "; the nearest is '" + plannerNames()[static_cast<std::size_t>(near - plain_names.begin())] + "'";
 }
 
 std::string offered() {
@@ -107,8 +96,8 @@ std::string plannerName(std::string_view asked) {
     if (plain(refused.name) == word)
       throw std::invalid_argument("planner '" + std::string(refused.name) + "' is refused: " +
                                   std::string(refused.reason) + "; use one of " + offered());
-  throw std::invalid_argument("planner '" + std::string(asked) + "' is unknown; the nearest is '" +
-                              nearest(word) + "', there are " + offered());
+  throw std::invalid_argument("planner '" + std::string(asked) + "' is unknown" + suggestion(word) +
+                              ", there are " + offered());
 }
 
 }  // namespace talus::planner

@@ -47,17 +47,17 @@ class Drive {
     arriveAt(here_, {});
     while (!options_.watch.stopped()) {
       if (!plan()) return ended(Outcome::GaveUp);
-      const Leg leg = follow();
-      if (leg == Leg::Arrived) return ended(Outcome::Reached);
-      if (leg == Leg::Stuck) return ended(Outcome::Immobilised);
-      if (leg == Leg::Tipped) return ended(Outcome::Tipped);
+      const FollowEnd end = follow();
+      if (end == FollowEnd::Arrived) return ended(Outcome::Reached);
+      if (end == FollowEnd::Stuck) return ended(Outcome::Immobilised);
+      if (end == FollowEnd::Tipped) return ended(Outcome::Tipped);
       if (++result_.replans > options_.max_replans) return ended(Outcome::GaveUp);
     }
     return ended(Outcome::GaveUp);
   }
 
  private:
-  enum class Leg { Arrived, Stuck, Tipped, Replan };
+  enum class FollowEnd { Arrived, Stuck, Tipped, Replan };
 
   TraverseSimulation ended(Outcome outcome) {
     result_.outcome = outcome;
@@ -90,28 +90,28 @@ class Drive {
     return true;
   }
 
-  Leg follow() {
+  FollowEnd follow() {
     while (next_ < route_.size()) {
       const double left = distance_m(here_, route_[next_]);
       if (left < 1e-9) {
         ++next_;
         continue;
       }
-      if (options_.watch.stopped()) return Leg::Replan;
+      if (options_.watch.stopped()) return FollowEnd::Replan;
       const Direction heading = directionTo(here_, route_[next_]);
-      if (tipped(heading)) return Leg::Tipped;
+      if (tipped(heading)) return FollowEnd::Tipped;
       const TrueWorld::Step step =
           world_.drive({.place = here_, .heading = heading, .gradient = gradient(heading), .ruts = &ruts_});
       result_.max_slip = std::max(result_.max_slip, step.slip);
       const auto reason = alarm(step, heading);
       const bool learned = look(step, heading, step.stuck || reason);
-      if (step.stuck && !options_.senses) return Leg::Stuck;
+      if (step.stuck && !options_.senses) return FollowEnd::Stuck;
       if (reason) return retreat(step, heading, *reason);
       if (learned && routeTurnedDear()) return retreat(step, heading, "ground turned out weaker");
       report(step, heading, std::min(left, options_.step_m));
       advance(step, heading, std::min(left, options_.step_m));
     }
-    return Leg::Arrived;
+    return FollowEnd::Arrived;
   }
 
   void report(const TrueWorld::Step& step, const Direction& heading, double length_m) const {
@@ -227,16 +227,16 @@ class Drive {
       const auto ground = cell ? map_.ground(*cell) : std::nullopt;
       if (!ground) continue;
       const int index = map_.classIndex(*cell);
-      const double ordinary = map_.evidence().classBelief(index).pull.mean -
+      const double ordinary = map_.evidence().classBelief(index).pull.value -
                               model.parts().classes[static_cast<std::size_t>(index)].pull_std;
-      if (ground->pull.mean < ordinary) return false;
+      if (ground->pull.value < ordinary) return false;
     }
     return true;
   }
 
   // Backs out along the ruts it came in: by one length of the rover, and until it stands on sound ground,
   // where it may turn. Ground that gave the alarm is not tried again.
-  Leg retreat(const TrueWorld::Step& stopped, const Direction& heading, const std::string& reason) {
+  FollowEnd retreat(const TrueWorld::Step& stopped, const Direction& heading, const std::string& reason) {
     tell(reason);
     const double radius_m = map_.model().rover().wheel.radius_m;
     const bool spun = stopped.slip > expectedSlip(heading) + options_.alarm_slip;
@@ -250,10 +250,10 @@ class Drive {
            backOneStep(std::exchange(dug_m, 0.0))) {
     }
     ruts_.turnBack();
-    if (held_) return Leg::Stuck;
+    if (held_) return FollowEnd::Stuck;
     tell("backed out");
     if (alarm(stopped, heading)) refuseGround(stopped, heading);
-    return Leg::Replan;
+    return FollowEnd::Replan;
   }
 
   // The wheels that sank, or the foremost two where all merely slipped; not the ground that it now stands on.

@@ -91,8 +91,8 @@ double PullAngleModel::angle_rad(const Wheel& wheel, const WheelSample& sample) 
   return (a0 + a1 * sample.slip + a2 * theta_1 + a3 * torqueOverLoadRadius(wheel, sample)) * theta_1;
 }
 
-Uncertain pullOverLoad(const Wheel& wheel, const WheelSample& sample, const ReadingErrors& noise,
-                       const PullAngleModel& model) {
+Estimate pullOverLoad(const Wheel& wheel, const WheelSample& sample, const ReadingErrors& noise,
+                      const PullAngleModel& model) {
   const double value = pullOfSingleForce(wheel, sample, model.angle_rad(wheel, sample));
   const double load = effect(wheel, sample, &WheelSample::load_N, noise.load.std(sample.load_N), model);
   const double torque =
@@ -103,7 +103,7 @@ Uncertain pullOverLoad(const Wheel& wheel, const WheelSample& sample, const Read
   return {.value = value, .std = std::hypot(std::hypot(load, torque), std::hypot(sinkage, slip), model.std)};
 }
 
-Uncertain climbableSlope_rad(const Uncertain& pull_over_load) {
+Estimate climbableSlope_rad(const Estimate& pull_over_load) {
   const double p = pull_over_load.value;
   return {.value = std::atan(p), .std = pull_over_load.std / (1.0 + p * p)};
 }

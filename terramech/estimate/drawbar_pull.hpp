@@ -7,6 +7,7 @@
 #include <talus/terramech/contact/wheel.hpp>
 #include <talus/terramech/contact/wheel_sample.hpp>
 #include <talus/terramech/estimate/reading_errors.hpp>
+#include <talus/terramech/numerics/estimate.hpp>
 
 /// Drawbar pull over load, DP/W [-], from readings of load, torque, sinkage (and slip), without knowing the
 /// soil (thesis chapter 3). rms error over thesis Table 2.1, noise-free: 3.6 and 3.15 0.013, 3.21 0.028, ours
@@ -61,12 +62,6 @@ class PullPlaneFitter {
   std::size_t count_ = 0;
 };
 
-/// A value and its standard deviation.
-struct Uncertain {
-  double value = 0.0;
-  double std = 0.0;
-};
-
 /// Angle at which one force would act, theta = (a0 + a1 i + a2 theta_1 + a3 T/(rW)) theta_1 (ours).
 struct PullAngleModel {
   double a0 = 0.4597;
@@ -83,11 +78,11 @@ struct PullAngleModel {
 /// 0.95, z/r below 0.6, in equal parts with the thesis' wheel; rms error 0.002 on the thesis' wheel, 0.003 on
 /// the others, 0.007 on soils far outside Table 2.1. The standard deviation carries the readings' errors and
 /// the model's.
-Uncertain pullOverLoad(const Wheel& wheel, const WheelSample& sample,
-                       const ReadingErrors& noise = ReadingErrors::relative(0.0),
-                       const PullAngleModel& model = {});
+Estimate pullOverLoad(const Wheel& wheel, const WheelSample& sample,
+                      const ReadingErrors& noise = ReadingErrors::relative(0.0),
+                      const PullAngleModel& model = {});
 
 /// The slope [rad] that a wheel can climb with a pull DP/W: arctan, with its standard deviation (thesis 3.5).
-Uncertain climbableSlope_rad(const Uncertain& pull_over_load);
+Estimate climbableSlope_rad(const Estimate& pull_over_load);
 
 }  // namespace talus::terramech

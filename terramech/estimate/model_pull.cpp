@@ -82,7 +82,7 @@ ModelPull pullOf(const RefinedModel& truth, const WheelState& state) {
     here.noise.load_relative = here.stated.load_N.value_or(0.0) / state.load_N;
   const Prediction p = predictWithStd(here, state);
   const auto of = [&](Channel c) {
-    return Uncertain{p.mean.scaled(c), p.scaled_std[static_cast<std::size_t>(c)]};
+    return Estimate{p.mean.scaled(c), p.scaled_std[static_cast<std::size_t>(c)]};
   };
   return {.pull_over_load = of(Channel::DrawbarPull),
           .sinkage_over_radius = of(Channel::Sinkage),
@@ -105,7 +105,7 @@ PullForecast forecastPull(const RefinedModel& truth, const WheelState& state, do
     const auto pull = [&](const WheelState& s) { return predict(chosen, s).scaled(Channel::DrawbarPull); };
     if (pull(next) > pull(at)) at = next;
   }
-  const Uncertain most = pullOf(chosen, at).pull_over_load;
+  const Estimate most = pullOf(chosen, at).pull_over_load;
   return {.at_reference = reference.pull_over_load,
           .most = most,
           .most_slip = at.slip,

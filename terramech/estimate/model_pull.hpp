@@ -16,8 +16,8 @@ RefinedModel groundTruthOf(const RefinedModel& model);
 
 /// DP/W and z/r of a wheel.
 struct ModelPull {
-  Uncertain pull_over_load;
-  Uncertain sinkage_over_radius;
+  Estimate pull_over_load;
+  Estimate sinkage_over_radius;
   double torque_over_load_radius = 0.0;
 };
 

@@ -24,7 +24,7 @@ class Spread {
     mean_ += away * weight / weight_;
     squares_ += weight * away * (value - mean_);
   }
-  Uncertain get() const { return {.value = mean_, .std = std::sqrt(squares_ / weight_)}; }
+  Estimate get() const { return {.value = mean_, .std = std::sqrt(squares_ / weight_)}; }
 
  private:
   double weight_ = 0.0;
@@ -62,8 +62,8 @@ std::vector<const ContactSoil*> evenly(const std::vector<SoilDraw>& draws, int c
 
 }  // namespace
 
-Uncertain pullOverLoad(const Wheel& wheel, const WheelSample& sample, const SoilPosterior& posterior,
-                       const ReadingErrors& noise) {
+Estimate pullOverLoad(const Wheel& wheel, const WheelSample& sample, const SoilPosterior& posterior,
+                      const ReadingErrors& noise) {
   const SoilClass any;
   const SoilObjective objective(any, {noise, 0.0});
   const double lightest = kLightest / static_cast<double>(posterior.draws.size());

@@ -11,16 +11,16 @@ namespace talus::terramech {
 
 /// DP/W at a sample, by the contact at the (z, i) that the soil makes most likely, averaged over the
 /// posterior.
-Uncertain pullOverLoad(const Wheel& wheel, const WheelSample& sample, const SoilPosterior& posterior,
-                       const ReadingErrors& noise);
+Estimate pullOverLoad(const Wheel& wheel, const WheelSample& sample, const SoilPosterior& posterior,
+                      const ReadingErrors& noise);
 
 /// What the soil will bear, at one load.
 struct PullForecast {
-  Uncertain at_reference;         ///< DP/W at the reference slip
-  Uncertain most;                 ///< DP/W at the slip of greatest pull
-  double most_slip = 0.0;         ///< that slip, its mean [-]
-  Uncertain sinkage_over_radius;  ///< z/r at the reference slip
-  Uncertain climbable_slope_rad;  ///< arctan of `most`
+  Estimate at_reference;         ///< DP/W at the reference slip
+  Estimate most;                 ///< DP/W at the slip of greatest pull
+  double most_slip = 0.0;        ///< that slip, its mean [-]
+  Estimate sinkage_over_radius;  ///< z/r at the reference slip
+  Estimate climbable_slope_rad;  ///< arctan of `most`
 };
 
 /// Slips among which the greatest pull is sought.

@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kStep = 0.01;  // of ln W
 
-Uncertain between(const Uncertain& a, const Uncertain& b, double share) {
+Estimate between(const Estimate& a, const Estimate& b, double share) {
   return {.value = std::lerp(a.value, b.value, share), .std = std::lerp(a.std, b.std, share)};
 }
 

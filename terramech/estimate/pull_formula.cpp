@@ -10,9 +10,9 @@ const std::vector<std::string>& pullFormulas() {
   return names;
 }
 
-Uncertain pullOverLoadBy(const std::string& formula, const Wheel& wheel, const WheelSample& sample,
-                         const ReadingErrors& errors) {
-  const Uncertain ours = pullOverLoad(wheel, sample, errors);
+Estimate pullOverLoadBy(const std::string& formula, const Wheel& wheel, const WheelSample& sample,
+                        const ReadingErrors& errors) {
+  const Estimate ours = pullOverLoad(wheel, sample, errors);
   if (formula == "single-force") return ours;
   if (formula == "small-angle") return {pullAtSmallAngle(wheel, sample), std::hypot(ours.std, 0.013)};
   if (formula == "triangular") return {pullOfTriangularStress(wheel, sample), std::hypot(ours.std, 0.014)};

@@ -14,7 +14,7 @@ const std::vector<std::string>& pullFormulas();
 /// DP/W [-] by the formula of that name. The standard deviation carries the readings' errors and the
 /// formula's own rms error over thesis Table 2.1 (`talus reproduce --goals`). Throws std::invalid_argument for
 /// another name, and as drawbar_pull.hpp.
-Uncertain pullOverLoadBy(const std::string& formula, const Wheel& wheel, const WheelSample& sample,
-                         const ReadingErrors& errors);
+Estimate pullOverLoadBy(const std::string& formula, const Wheel& wheel, const WheelSample& sample,
+                        const ReadingErrors& errors);
 
 }  // namespace talus::terramech

@@ -1,14 +1,12 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include <talus/talus.hpp>
 #include <talus/terramech/estimate/soil_mixture.hpp>
 #include <talus/terramech/numerics/range.hpp>
 
 namespace talus::terramech {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 // Table 2.1: what one class differs in.
 struct TableRow {

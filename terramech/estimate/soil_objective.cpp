@@ -29,7 +29,7 @@ struct Readings {
     return {load.value - f[kLoad], torque.value - f[kTorque]};
   }
 
-  Reading load, torque, sinkage, slip;
+  Estimate load, torque, sinkage, slip;
 };
 
 // Covariance of (W, T) given a soil and the readings of z and i.

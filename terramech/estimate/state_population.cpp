@@ -6,13 +6,13 @@
 namespace talus::terramech {
 namespace {
 
-Reading logLoad(const WheelSample& sample, const ReadingErrors& errors) {
+Estimate logLoad(const WheelSample& sample, const ReadingErrors& errors) {
   return {.value = std::log(sample.load_N), .std = errors.load.std(sample.load_N) / sample.load_N};
 }
 
 }  // namespace
 
-void StatePopulation::Spread::add(const Reading& reading) {
+void StatePopulation::Spread::add(const Estimate& reading) {
   count += 1.0;
   const double away = reading.value - mean;
   mean += away / count;
@@ -21,7 +21,7 @@ void StatePopulation::Spread::add(const Reading& reading) {
 }
 
 // The variance of a further reading, by Student's t of the ones seen, less that of its error.
-Reading StatePopulation::Spread::combine(const Reading& reading) const {
+Estimate StatePopulation::Spread::combine(const Estimate& reading) const {
   if (count <= 3.0) return reading;
   const double of_readings = squares / (count - 1.0) * (count + 1.0) / count * (count - 1.0) / (count - 3.0);
   const double least = error_variance / count;
@@ -35,14 +35,14 @@ void StatePopulation::add(const WheelSample& sample, const ReadingErrors& errors
   slip_.add({.value = sample.slip, .std = errors.slip.std(sample.slip)});
 }
 
-Reading StatePopulation::load(const WheelSample& sample, const ReadingErrors& errors) const {
-  const Reading log_load = log_load_.combine(logLoad(sample, errors));
+Estimate StatePopulation::load(const WheelSample& sample, const ReadingErrors& errors) const {
+  const Estimate log_load = log_load_.combine(logLoad(sample, errors));
   const double load = std::exp(log_load.value);
   return {.value = load, .std = log_load.std * load};
 }
 
-Reading StatePopulation::slip(const WheelSample& sample, const ReadingErrors& errors) const {
-  const Reading slip = slip_.combine({.value = sample.slip, .std = errors.slip.std(sample.slip)});
+Estimate StatePopulation::slip(const WheelSample& sample, const ReadingErrors& errors) const {
+  const Estimate slip = slip_.combine({.value = sample.slip, .std = errors.slip.std(sample.slip)});
   return {.value = std::clamp(slip.value, 0.0, 1.0), .std = slip.std};
 }
 

@@ -1,17 +1,12 @@
 #pragma once
 
 #include <talus/terramech/estimate/reading_errors.hpp>
+#include <talus/terramech/numerics/estimate.hpp>
 
 /// Where the loads and slips of a drive lie, learned from their readings (ours: empirical Bayes). A reading
 /// far from all others is more likely far by error than in truth; an estimator that does not know this
 /// mistakes the errors' scatter for the drive's and answers wrongly, the more surely the more rows it has.
 namespace talus::terramech {
-
-/// A value and its standard deviation, in the reading's unit.
-struct Reading {
-  double value = 0.0;
-  double std = 0.0;
-};
 
 /// Mean and spread of the true ln W and of the true slip, taken as Gaussian; one reading at a time, in
 /// constant memory. Without readings, or too few to tell a spread, it knows nothing and leaves readings as
@@ -22,13 +17,13 @@ class StatePopulation {
 
   /// The reading of the load [N] or slip [-] combined with what the others say of it: W* = mean + s (W -
   /// mean), s = V/(V + std^2), of standard deviation sqrt(s) std.
-  Reading load(const WheelSample& sample, const ReadingErrors& errors) const;
-  Reading slip(const WheelSample& sample, const ReadingErrors& errors) const;
+  Estimate load(const WheelSample& sample, const ReadingErrors& errors) const;
+  Estimate slip(const WheelSample& sample, const ReadingErrors& errors) const;
 
  private:
   struct Spread {
-    void add(const Reading& reading);
-    Reading combine(const Reading& reading) const;
+    void add(const Estimate& reading);
+    Estimate combine(const Estimate& reading) const;
 
     double count = 0.0, mean = 0.0, squares = 0.0, error_variance = 0.0;
   };

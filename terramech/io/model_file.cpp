@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <sstream>
 
+#include <talus/talus.hpp>
 #include <talus/terramech/io/model_file.hpp>
 #include <talus/terramech/io/soil_library.hpp>
 #include <talus/terramech/io/yaml_fields.hpp>

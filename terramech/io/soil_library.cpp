@@ -115,8 +115,8 @@ SoilPrior readSoil(const YamlFields& fields) {
                "frictional_modulus", "shear_modulus_m", "c1", "c2", "density_kg_m3"});
   SoilPrior soil;
   const Soil defaults;
-  const auto take = [&](double Soil::*value, double SoilDeviation::*deviation, const StatedNumber& stated) {
-    soil.mean.*value = stated.mean;
+  const auto take = [&](double Soil::*value, double SoilDeviation::*deviation, const Estimate& stated) {
+    soil.mean.*value = stated.value;
     soil.deviation.*deviation = stated.std;
   };
   soil.mean.name = fields.word("name", "unnamed");

@@ -1,5 +1,5 @@
-#include <numbers>
 
+#include <talus/talus.hpp>
 #include <talus/terramech/io/unit.hpp>
 
 namespace talus::terramech {
@@ -11,8 +11,6 @@ struct Unit {
   char kind;
   double factor;
 };
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 constexpr Unit kUnits[] = {
     {"rad", 'a', 1.0},   {"deg", 'a', kDegree},                                            // angle

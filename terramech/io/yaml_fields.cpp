@@ -2,7 +2,6 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <numeric>
 #include <set>
 #include <sstream>
 #include <utility>
@@ -130,16 +129,16 @@ double toNumber(const State& state, const std::string& name, const YAML::Node& v
 }
 
 template <class State>
-StatedNumber toStated(const State& state, const std::string& name, const Found& found) {
+Estimate toStated(const State& state, const std::string& name, const Found& found) {
   if (!found.value.IsMap()) return {toNumber(state, name, found.value, found.factor), 0.0};
-  StatedNumber stated;
+  Estimate stated;
   bool has_mean = false, has_std = false;
   for (const auto& entry : found.value) {
     const std::string key = entry.first.Scalar();
     if (key != "mean" && key != "std")
       fail(state.where(entry.first.Mark().line), name + ": unknown key '" + key + "'",
            "write {mean: M, std: S}");
-    (key == "mean" ? stated.mean : stated.std) =
+    (key == "mean" ? stated.value : stated.std) =
         toNumber(state, name + "." + key, entry.second, found.factor);
     (key == "mean" ? has_mean : has_std) = true;
   }
@@ -166,14 +165,14 @@ double YamlFields::number(const std::string& name, double fallback) const {
   return has(name) ? number(name) : fallback;
 }
 
-StatedNumber YamlFields::stated(const std::string& name) const {
+Estimate YamlFields::stated(const std::string& name) const {
   const auto found = findValue(*state_, name);
   if (!found) refuse("", "lacks " + name, "add it as a number or {mean: M, std: S}");
   return toStated(*state_, name, *found);
 }
 
-StatedNumber YamlFields::stated(const std::string& name, double fallback) const {
-  return has(name) ? stated(name) : StatedNumber{fallback, 0.0};
+Estimate YamlFields::stated(const std::string& name, double fallback) const {
+  return has(name) ? stated(name) : Estimate{fallback, 0.0};
 }
 
 int YamlFields::integer(const std::string& name) const {
@@ -290,29 +289,6 @@ std::string YamlFields::where(const std::string& name) const {
     if (!name.empty() && factorOf(entry.first.Scalar(), name) != 0.0)
       return state_->where(entry.first.Mark().line);
   return state_->where(state_->node.Mark().line);
-}
-
-std::string nearestName(const std::string& word, const std::vector<std::string>& candidates) {
-  std::string best;
-  std::size_t fewest = std::max<std::size_t>(3, word.size() / 3) + 1;
-  for (const auto& candidate : candidates) {
-    std::vector<std::size_t> row(candidate.size() + 1);
-    std::iota(row.begin(), row.end(), 0U);
-    for (std::size_t i = 0; i < word.size(); ++i) {
-      std::size_t diagonal = row[0];
-      row[0] = i + 1;
-      for (std::size_t j = 0; j < candidate.size(); ++j) {
-        const std::size_t edit = diagonal + (word[i] == candidate[j] ? 0 : 1);
-        diagonal = row[j + 1];
-        row[j + 1] = std::min({row[j] + 1, row[j + 1] + 1, edit});
-      }
-    }
-    if (row.back() < fewest) {
-      fewest = row.back();
-      best = candidate;
-    }
-  }
-  return best;
 }
 
 }  // namespace talus::terramech

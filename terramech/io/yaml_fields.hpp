@@ -6,18 +6,14 @@
 #include <string>
 #include <vector>
 
+#include <talus/terramech/numerics/estimate.hpp>
+
 namespace YAML {
 class Node;
 }
 
 /// Reads configuration files strictly: every field by name and unit, every mistake with file and line.
 namespace talus::terramech {
-
-/// A number with its standard deviation, 0 where the file states none.
-struct StatedNumber {
-  double mean = 0.0;
-  double std = 0.0;
-};
 
 /// One mapping of a YAML file. A field is asked for by its name with SI unit suffix (`cohesion_Pa`); the file
 /// may state it in another unit of the same kind (`cohesion_kPa`), which is converted. only() refuses names
@@ -43,8 +39,8 @@ class YamlFields {
 
   double number(const std::string& name) const;
   double number(const std::string& name, double fallback) const;
-  StatedNumber stated(const std::string& name) const;  ///< a number or {mean, std}
-  StatedNumber stated(const std::string& name, double fallback) const;
+  Estimate stated(const std::string& name) const;  ///< a number or {mean, std}
+  Estimate stated(const std::string& name, double fallback) const;
   int integer(const std::string& name) const;
   int integer(const std::string& name, int fallback) const;
   bool flag(const std::string& name, bool fallback) const;
@@ -82,9 +78,5 @@ class YamlFields {
 
   std::shared_ptr<State> state_;
 };
-
-/// The candidate that needs the fewest edits to become the word (Levenshtein), empty when there is none
-/// within a third of its length or three edits.
-std::string nearestName(const std::string& word, const std::vector<std::string>& candidates);
 
 }  // namespace talus::terramech

@@ -69,8 +69,8 @@ RefinedModel modelOf(const AssessOptions& options, std::vector<std::string>& lef
 }
 
 // What was read of the sinkage goes before what the model foretells.
-Uncertain sinkageOf(const std::vector<double>* read, std::size_t row, const WheelState& state,
-                    const ModelPull& pull, double noise) {
+Estimate sinkageOf(const std::vector<double>* read, std::size_t row, const WheelState& state,
+                   const ModelPull& pull, double noise) {
   if (read == nullptr || !std::isfinite((*read)[row])) return pull.sinkage_over_radius;
   const double sinkage = (*read)[row] / state.wheel.radius_m;
   return {sinkage, noise * sinkage};

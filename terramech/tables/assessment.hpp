@@ -31,8 +31,8 @@ struct AssessOptions {
 struct Assessment {
   std::size_t line = 0;
   double slip = 0.0;
-  Uncertain pull;  ///< DP/W
-  Uncertain sinkage_over_radius;
+  Estimate pull;  ///< DP/W
+  Estimate sinkage_over_radius;
   double torque_over_load_radius = 0.0;
   Category category = Category::Unknown;
   CategoryProbability probability{};

@@ -9,14 +9,14 @@ namespace talus::terramech {
 namespace {
 
 /// Standard deviations that a soil is believed to have when nobody states it, own units.
-const std::map<std::string, ParameterPrior>& vagueSoil() {
-  static const std::map<std::string, ParameterPrior> prior{{"cohesion_Pa", {1500.0, 2000.0}},
-                                                           {"friction_angle_rad", {0.55, 0.12}},
-                                                           {"sinkage_exponent", {1.0, 0.25}},
-                                                           {"log_stiffness", {0.0, 3.0}},
-                                                           {"shear_modulus_m", {0.02, 0.012}},
-                                                           {"c1", {0.43, 0.08}},
-                                                           {"c2", {0.32, 0.12}}};
+const std::map<std::string, Estimate>& vagueSoil() {
+  static const std::map<std::string, Estimate> prior{{"cohesion_Pa", {1500.0, 2000.0}},
+                                                     {"friction_angle_rad", {0.55, 0.12}},
+                                                     {"sinkage_exponent", {1.0, 0.25}},
+                                                     {"log_stiffness", {0.0, 3.0}},
+                                                     {"shear_modulus_m", {0.02, 0.012}},
+                                                     {"c1", {0.43, 0.08}},
+                                                     {"c2", {0.32, 0.12}}};
   return prior;
 }
 
@@ -26,10 +26,10 @@ bool isLogStiffness(const FittedParameter& p) {
 }
 
 /// A point of the search: the model, its whitened residuals and how far priors are left.
-class Search {
+class FitPoint {
  public:
-  Search(const RefinedModel& start, const Trial& trial, const Whitening& whitening, const FitPlan& plan,
-         SolvedContacts& solved)
+  FitPoint(const RefinedModel& start, const Trial& trial, const Whitening& whitening, const FitPlan& plan,
+           SolvedContacts& solved)
       : trial_(trial),
         whitening_(whitening),
         plan_(plan),
@@ -54,7 +54,7 @@ class Search {
       if (!prior) continue;
       const double s = scale(k) / prior->std;
       normal(k, k) += s * s;
-      gradient[k] += s * (prior->mean - valueOf(model_, log_stiffness_, k)) / prior->std;
+      gradient[k] += s * (prior->value - valueOf(model_, log_stiffness_, k)) / prior->std;
     }
   }
 
@@ -120,11 +120,11 @@ class Search {
     return rangeOf(model_, plan_.free[static_cast<std::size_t>(k)]).scale;
   }
 
-  std::optional<ParameterPrior> priorOf(Eigen::Index k) const {
+  std::optional<Estimate> priorOf(Eigen::Index k) const {
     const auto& p = plan_.free[static_cast<std::size_t>(k)];
     // A knot without rows near it would be anything.
     if (p.effect >= 0 && model_.effects[static_cast<std::size_t>(p.effect)].empirical())
-      return ParameterPrior{0.0, 0.3};
+      return Estimate{0.0, 0.3};
     if (p.effect >= 0 && p.index > 0) return {};
     const auto& priors = p.effect >= 0 ? plan_.effect_prior : plan_.soil_prior;
     const auto found = priors.find(p.effect >= 0 ? p.effect : p.index);
@@ -147,7 +147,8 @@ class Search {
   Eigen::VectorXd priorResidual(const RefinedModel& model, double log_stiffness) const {
     Eigen::VectorXd r = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(plan_.free.size()));
     for (Eigen::Index k = 0; k < r.size(); ++k)
-      if (const auto prior = priorOf(k)) r[k] = (valueOf(model, log_stiffness, k) - prior->mean) / prior->std;
+      if (const auto prior = priorOf(k))
+        r[k] = (valueOf(model, log_stiffness, k) - prior->value) / prior->std;
     return r;
   }
 
@@ -231,7 +232,7 @@ Eigen::MatrixXd jacobian(const RefinedModel& model, const Trial& trial,
 
 Fit fitModel(const RefinedModel& start, const Trial& trial, const Whitening& whitening, const FitPlan& plan,
              SolvedContacts& solved) {
-  Search search{start, trial, whitening, plan, solved};
+  FitPoint search{start, trial, whitening, plan, solved};
   const auto n = static_cast<Eigen::Index>(plan.free.size());
   Eigen::MatrixXd normal(n, n);
   Eigen::VectorXd gradient(n);
@@ -253,7 +254,7 @@ Fit fitModel(const RefinedModel& start, const Trial& trial, const Whitening& whi
 
 Eigen::MatrixXd parameterCovariance(const RefinedModel& fitted, const Trial& trial,
                                     const Whitening& whitening, const FitPlan& plan, SolvedContacts& solved) {
-  Search search{fitted, trial, whitening, plan, solved};
+  FitPoint search{fitted, trial, whitening, plan, solved};
   const auto n = static_cast<Eigen::Index>(plan.free.size());
   Eigen::MatrixXd normal(n, n);
   Eigen::VectorXd gradient(n);

@@ -7,21 +7,18 @@
 
 #include <Eigen/Core>
 
+#include <talus/terramech/numerics/estimate.hpp>
 #include <talus/terramech/trace/sensor_noise.hpp>
 #include <talus/terramech/trace/trial.hpp>
 
 namespace talus::terramech {
 
-/// Prior of a soil parameter in its own unit (a step from the start for log_stiffness).
-struct ParameterPrior {
-  double mean, std;
-};
-
 /// What a fit moves and what it knows beforehand.
 struct FitPlan {
   std::vector<FittedParameter> free;
-  std::map<int, ParameterPrior> soil_prior;    ///< by index into soilParameters()
-  std::map<int, ParameterPrior> effect_prior;  ///< by number of an effect, of its first parameter
+  /// By index into soilParameters(), in the parameter's unit (a step from the start for log_stiffness).
+  std::map<int, Estimate> soil_prior;
+  std::map<int, Estimate> effect_prior;  ///< by number of an effect, of its first parameter
   int iterations = 12;
   const Eigen::MatrixXd* derivative =
       nullptr;  ///< whitened, kept for all iterations; null: taken anew in each

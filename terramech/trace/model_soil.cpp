@@ -35,9 +35,10 @@ FitPlan planOf(const RefinedModel& model, const ModelSoilOptions& options) {
 }
 
 /// A model on the way, and the noise as the readings that it foretells make it.
-class Search {
+class SoilModelFit {
  public:
-  Search(const Trial& trial, const FitPlan& plan, double noise) : trial_(trial), plan_(plan), noise_(noise) {
+  SoilModelFit(const Trial& trial, const FitPlan& plan, double noise)
+      : trial_(trial), plan_(plan), noise_(noise) {
     // The row's own errors of slip and load are all that is known of them.
     const auto rows = static_cast<std::size_t>(trial_.rows());
     for (std::size_t row = 0; row < rows; ++row) slips_.push_back(trial_.slip[row]);
@@ -111,7 +112,7 @@ Eigen::Matrix2d strengthCovariance(const FitPlan& plan, const Eigen::MatrixXd& c
 
 ModelSoil soilUnder(const RefinedModel& model, const Trial& trial, const ModelSoilOptions& options) {
   const FitPlan plan = planOf(model, options);
-  Search search{trial, plan, options.noise};
+  SoilModelFit search{trial, plan, options.noise};
   const Soil& afresh = options.prior ? options.prior->soil : unknownSoil().model.soil;
   Fit best = search.from(withSoil(model, afresh, options));
   // A soil that the prior fixes in part is no place for the model's own.

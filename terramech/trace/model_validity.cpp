@@ -12,11 +12,7 @@ namespace {
 
 constexpr double kLeastShare = 0.1, kFarOff = 0.15, kLoudest = 0.25;
 
-struct Scatter {
-  double mean = 0.0, std = 0.0;
-};
-
-Scatter scatterOf(const Trial& trial, int channel) {
+Estimate scatterOf(const Trial& trial, int channel) {
   double n = 0.0, sum = 0.0, square = 0.0;
   for (double v : trial.measured.col(channel))
     if (std::isfinite(v)) n += 1.0, sum += v, square += v * v;
@@ -25,10 +21,10 @@ Scatter scatterOf(const Trial& trial, int channel) {
 }
 
 /// Whether a channel moves by more than its noise, or by so much that no sensor's noise is that large.
-bool moves(const Scatter& scatter, int channel, double noise_floor) {
+bool moves(const Estimate& scatter, int channel, double noise_floor) {
   const bool ratio =
       channel == static_cast<int>(Channel::Sinkage) || channel == static_cast<int>(Channel::Torque);
-  return scatter.std > 2.0 * noise_floor || (ratio && scatter.std > kLoudest * std::abs(scatter.mean));
+  return scatter.std > 2.0 * noise_floor || (ratio && scatter.std > kLoudest * std::abs(scatter.value));
 }
 
 double medianClosureError(const Trial& trial) {
@@ -58,7 +54,7 @@ Applicability applicability(const TraceResult& result, const TraceOptions& optio
   for (int c = 0; c < kChannels; ++c) {
     const auto k = static_cast<std::size_t>(c);
     if (!result.trial.has(static_cast<Channel>(c))) continue;
-    const Scatter scatter = scatterOf(result.trial, c);
+    const Estimate scatter = scatterOf(result.trial, c);
     if (!moves(scatter, c, result.noise_floor[k])) continue;
     const double share = 1.0 - std::pow(held.refined_rmse[k] / scatter.std, 2);
     ++asked;

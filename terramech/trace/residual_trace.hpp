@@ -61,9 +61,8 @@ struct TraceResult {
   std::vector<CovariateTest> first_tests;  ///< of the base model, strongest first
   std::vector<CovariateTest> last_tests;   ///< of the refined model
   ChannelErrors base_rmse{}, refined_rmse{}, noise_floor{};
-  std::optional<ParameterPrior>
-      first_prior;          ///< of the first effect's first parameter, known beside the model
-  ExchangeableUnits units;  ///< rows whose errors were found to belong together
+  std::optional<Estimate> first_prior;  ///< of the first effect's first parameter, known beside the model
+  ExchangeableUnits units;              ///< rows whose errors were found to belong together
 };
 
 /// Traces the residuals of `base` on the rows of `trial`. Deterministic for a seed. A stopped watch ends it

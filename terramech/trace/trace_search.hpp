@@ -47,7 +47,7 @@ class TraceSearch {
   void accept(const Candidate& candidate);
 
   /// Keeps the first parameter of the effect accepted first near what was known of it before.
-  void trust(const ParameterPrior& prior) { first_prior_ = prior; }
+  void trust(const Estimate& prior) { first_prior_ = prior; }
 
   /// Takes accepted candidate number k out, fits everything again and finds the noise anew.
   void drop(std::size_t k);
@@ -150,9 +150,9 @@ class TraceSearch {
   Whitening whitening_;
   Eigen::VectorXd white_;
   ExchangeableUnits units_;
-  std::optional<ParameterPrior> first_prior_;  ///< of a correction that is never taken out
-  std::size_t given_effects_;                  ///< of the base, in front; fitted, never taken out
-  std::vector<std::size_t> part_count_;        ///< effects in the model of each accepted candidate
+  std::optional<Estimate> first_prior_;  ///< of a correction that is never taken out
+  std::size_t given_effects_;            ///< of the base, in front; fitted, never taken out
+  std::vector<std::size_t> part_count_;  ///< effects in the model of each accepted candidate
 };
 
 }  // namespace talus::terramech

@@ -70,7 +70,7 @@ void patch(benchmark::State& state) {
   bool on = false;
   for (auto _ : state) {
     on = !on;
-    const costmap::CellRange range{{side / 2, side / 2}, {side / 2 + 199, side / 2 + 199}};
+    const maps::CellBox range{{side / 2, side / 2}, {side / 2 + 199, side / 2 + 199}};
     grid = std::make_shared<costmap::CostGrid>(revised(
         *grid, {.ranges = {range},
                 .code = [&](maps::Cell, costmap::CellCode code) { return on ? refused : code.withCurve(0); },

@@ -8,6 +8,7 @@
 #include <boost/math/quadrature/tanh_sinh.hpp>
 #include <boost/math/tools/toms748_solve.hpp>
 
+#include <talus/talus.hpp>
 #include <talus/terramech/contact/wong_reece_batch.hpp>
 
 // Wheel equilibria per second over the soils of thesis Table 2.1 (wheel r = b = 0.1 m, 60 to 100 N, slip 0.2
@@ -22,7 +23,6 @@ std::vector<WheelCase> tableCases(std::size_t count) {
   const auto between = [&](double low, double high) {
     return std::uniform_real_distribution<double>{low, high}(random);
   };
-  constexpr double kDegree = 0.017453292519943295;
   struct Range {
     double c_low, c_high, phi_low, phi_high, k_low, k_high;
   };

@@ -84,7 +84,7 @@ TEST(Bridge, WhatIsDrivenBeneathTellsNothingAboutTheDeck) {
   EXPECT_EQ(deck.evidence, 0.0F);
   EXPECT_GT(below.evidence, 0.0F);
   EXPECT_LT(below.pull_mean, road.pull_mean - 0.05F);
-  EXPECT_EQ(after.pull_mean, static_cast<float>(map.evidence().classBelief(0).pull.mean));
+  EXPECT_EQ(after.pull_mean, static_cast<float>(map.evidence().classBelief(0).pull.value));
   EXPECT_GT(after.pull_mean, below.pull_mean + 0.03F);
   EXPECT_TRUE(has(below.hazards, Hazard::Unknown)) << "its shape is not judged";
 }
@@ -111,13 +111,13 @@ TEST(Bridge, TheDeckTellsNothingAboutTheRoad) {
   addDrive(map, drive(kDeck_m, 17.0, 23.0), nullptr);
   EXPECT_GT(map.belief(cellAt(map, 20.0)).evidence, 0.0F);
   EXPECT_EQ(roadBelief(map, 20.0).evidence, 0.0F);
-  EXPECT_EQ(roadBelief(map, 20.0).pull_mean, static_cast<float>(map.evidence().classBelief(0).pull.mean));
+  EXPECT_EQ(roadBelief(map, 20.0).pull_mean, static_cast<float>(map.evidence().classBelief(0).pull.value));
 }
 
 TEST(Bridge, GroundInFrontOfItSpeaksForTheRoadBeneath) {
   TraversabilityMap map = mapOf(bridge());
   addDrive(map, drive(kRoad_m, 8.0, 15.5), nullptr);
-  const float away = static_cast<float>(map.evidence().classBelief(0).pull.mean);
+  const float away = static_cast<float>(map.evidence().classBelief(0).pull.value);
   EXPECT_LT(roadBelief(map, 16.3).pull_mean, away - 0.02F) << "a metre beneath the deck";
   EXPECT_EQ(roadBelief(map, 22.0).pull_mean, away) << "beyond the correlation length";
 }
@@ -141,7 +141,7 @@ TEST(Bridge, AClimbingRoadIsOneFloor) {
   const float before = roadBelief(map, 17.7).pull_mean;
   for (double x = 10.0; x < 15.5; x += 0.5)
     addDrive(map, drive(road_m(static_cast<int>(2.0 * x)), x, x), nullptr);
-  const float away = static_cast<float>(map.evidence().classBelief(0).pull.mean);
+  const float away = static_cast<float>(map.evidence().classBelief(0).pull.value);
   EXPECT_LT(away, before);
   EXPECT_LT(roadBelief(map, 17.7).pull_mean, away - 0.005F) << "told by ground half a metre and more below";
   // Cells of a block whose road lies a voxel apart share what one of them told.

@@ -16,7 +16,7 @@ CostGrid plain(int side) {
 
 TEST(CostGrid, ARevisionChangesItsRangeAndNothingElse) {
   const CostGrid before = plain(200);
-  const CellRange range{{60, 60}, {70, 66}};
+  const maps::CellBox range{{60, 60}, {70, 66}};
   const CostGrid after =
       revised(before, {.ranges = {range},
                        .code = [](maps::Cell, CellCode code) { return code.withCurve(CellCode::kBlocked); },

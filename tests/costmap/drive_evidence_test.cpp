@@ -60,7 +60,7 @@ TEST(AddDrive, DustDrivenAsSandIsLearnedAsWeak) {
   EXPECT_EQ(report.used, 90U);
   EXPECT_EQ(report.rejected, 10U);
   const GroundBelief after = *map.ground({30, 30});
-  EXPECT_LT(after.pull.mean, before.pull.mean - 0.1);
+  EXPECT_LT(after.pull.value, before.pull.value - 0.1);
   EXPECT_NE(map.belief({30, 30}).category, static_cast<std::uint8_t>(terramech::Category::Safe));
 }
 
@@ -117,7 +117,7 @@ TEST(AddDrive, LoadTransferIsWorkedOutWhereTheFileLeavesItOut) {
   ASSERT_EQ(report.findings.size(), 1U);
   EXPECT_NE(report.findings[0].find("load transfer"), std::string::npos);
   // Closed form: corrected, both files say the same
-  EXPECT_NEAR(even.ground({24, 30})->pull.mean, right.ground({24, 30})->pull.mean, 1e-6);
+  EXPECT_NEAR(even.ground({24, 30})->pull.value, right.ground({24, 30})->pull.value, 1e-6);
 }
 
 TEST(Replay, RebuildsTheMapFromTheJournalToTheBit) {

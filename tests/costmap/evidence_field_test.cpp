@@ -21,7 +21,7 @@ WheelObservation soft(double x, double y) {
 WheelObservation weaker(double x, double y, double by) {
   return {.time_s = 12.0,
           .place = {100.0 + x, 200.0 + y},
-          .pull = {testGround()->prior(0).pull.mean - by, 0.05},
+          .pull = {testGround()->prior(0).pull.value - by, 0.05},
           .sinkage = {0.2, 0.05}};
 }
 
@@ -31,11 +31,11 @@ TEST(TraversabilityMap, LearnsWhereItDroveAndDoubtsFarAway) {
   for (int i = 0; i < 20; ++i) EXPECT_TRUE(map.learn(soft(30.5, 30.5)));
   map.publish();
   const GroundBelief here = *map.ground({30, 30}), near = *map.ground({32, 30}), far = *map.ground({50, 50});
-  EXPECT_LT(here.pull.mean, before.pull.mean - 0.05);
+  EXPECT_LT(here.pull.value, before.pull.value - 0.05);
   EXPECT_LT(here.pull.std, before.pull.std);
-  EXPECT_LT(here.pull.mean, near.pull.mean);
-  EXPECT_LT(near.pull.mean, far.pull.mean);
-  EXPECT_LT(far.pull.mean, before.pull.mean) << "the class as a whole learned a little";
+  EXPECT_LT(here.pull.value, near.pull.value);
+  EXPECT_LT(near.pull.value, far.pull.value);
+  EXPECT_LT(far.pull.value, before.pull.value) << "the class as a whole learned a little";
   EXPECT_GT(far.pull.std, 0.9 * before.pull.std);
 }
 
@@ -61,7 +61,7 @@ TEST(TraversabilityMap, EvidenceDoesNotCrossIntoAnotherClass) {
   const GroundBelief dust = *map.ground({32, 30});
   for (int i = 0; i < 20; ++i) map.learn(soft(30.5, 30.5));
   map.publish();
-  EXPECT_EQ(map.ground({32, 30})->pull.mean, dust.pull.mean);
+  EXPECT_EQ(map.ground({32, 30})->pull.value, dust.pull.value);
 }
 
 TEST(TraversabilityMap, EvidenceSurvivesAFileToTheBit) {
@@ -92,7 +92,7 @@ TEST(EvidenceField, ManyPlacesMoveTheClassOnePlaceHardly) {
   EXPECT_LT(one.evidence().posterior(0).places, 1.0);
   EXPECT_GT(many.evidence().posterior(0).places,
             8.0);  // Closed form: 50 m over integral scales of 3.3 m, less noise
-  EXPECT_LT(many.evidence().posterior(0).pull.mean, one.evidence().posterior(0).pull.mean);
+  EXPECT_LT(many.evidence().posterior(0).pull.value, one.evidence().posterior(0).pull.value);
 }
 
 TEST(EvidenceField, OtherGroundThatNoRasterShowsIsNotTheClass) {
@@ -104,10 +104,10 @@ TEST(EvidenceField, OtherGroundThatNoRasterShowsIsNotTheClass) {
   map.publish();
   // Property: seven standard deviations off move the class less than one does, yet are believed where they
   // lie.
-  EXPECT_GT(map.evidence().posterior(0).pull.mean, -0.05);
-  const double prior = map.model().prior(0).pull.mean;
-  EXPECT_LT(map.ground({30, 30})->pull.mean, prior - 0.3);
-  EXPECT_NEAR(map.ground({45, 45})->pull.mean, prior, 0.05);
+  EXPECT_GT(map.evidence().posterior(0).pull.value, -0.05);
+  const double prior = map.model().prior(0).pull.value;
+  EXPECT_LT(map.ground({30, 30})->pull.value, prior - 0.3);
+  EXPECT_NEAR(map.ground({45, 45})->pull.value, prior, 0.05);
 }
 
 TEST(EvidenceField, ABlockIsAsWeakAsItsWeakestPart) {
@@ -115,7 +115,7 @@ TEST(EvidenceField, ABlockIsAsWeakAsItsWeakestPart) {
   for (int i = 0; i < 50; ++i) map.learn(weaker(30.5, 30.5, 0.0));
   for (int i = 0; i < 3; ++i) map.learn(weaker(30.5, 30.5, 0.4));
   map.publish();
-  EXPECT_LT(map.ground({30, 30})->pull.mean, map.model().prior(0).pull.mean - 0.2);
+  EXPECT_LT(map.ground({30, 30})->pull.value, map.model().prior(0).pull.value - 0.2);
 }
 
 TEST(TraversabilityMap, RefusedGroundStaysRefused) {

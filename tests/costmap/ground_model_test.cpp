@@ -33,7 +33,7 @@ TEST(GroundModel, CertainPriorIsTheSoilsOwnMobilityCurve) {
 TEST(GroundModel, GroundWeakerByDDrivesLikeASlopeSteeperByD) {
   const auto model = testGround();
   GroundBelief weaker = certain(*model);
-  weaker.pull.mean -= 0.04;
+  weaker.pull.value -= 0.04;
   // Property: the definition of the shift.
   EXPECT_NEAR(model->state(0, weaker, 0.03).slip, model->state(0, certain(*model), 0.07).slip, 1e-6);
 }
@@ -55,7 +55,7 @@ TEST(GroundModel, WheelsBehindDriveInTheRutsThatAModelKnows) {
   }
   // What is believed of ground is still said of a wheel on fresh ground: two rules of one integral, 1e-6
   // apart.
-  EXPECT_NEAR(model.prior(0).pull.mean, plain.prior(0).pull.mean, 1e-5);
+  EXPECT_NEAR(model.prior(0).pull.value, plain.prior(0).pull.value, 1e-5);
   EXPECT_NEAR(model.steady(0, {.slip = 0.3}).gradient, plain.steady(0, {.slip = 0.3}).gradient, 1e-4);
   EXPECT_GT(model.steady(0, {.slip = 0.3, .in_rut = true}).gradient, model.steady(0, {.slip = 0.3}).gradient);
 }
@@ -92,8 +92,8 @@ TEST(GroundModel, RefusesWithTheReason) {
   const auto model = testGround();
   GroundBelief belief = certain(*model);
   EXPECT_EQ(model->state(0, belief, 0.0).refusal, Refusal::None);
-  EXPECT_EQ(model->state(0, belief, belief.pull.mean + 0.3).refusal, Refusal::Pull);
-  belief.sinkage.mean *= 1e3;
+  EXPECT_EQ(model->state(0, belief, belief.pull.value + 0.3).refusal, Refusal::Pull);
+  belief.sinkage.value *= 1e3;
   EXPECT_EQ(model->state(0, belief, 0.0).refusal, Refusal::Sinkage);
 }
 
@@ -144,7 +144,7 @@ TEST(GroundModel, SteadyWheelsAreThoseOfTheForwardModel) {
     EXPECT_LT(model->steady(0, {.slip = slip, .in_rut = true}).sinkage_over_radius,
               0.6 * steady.sinkage_over_radius);
   }
-  EXPECT_DOUBLE_EQ(model->reference(0, false).gradient, model->prior(0).pull.mean);
+  EXPECT_DOUBLE_EQ(model->reference(0, false).gradient, model->prior(0).pull.value);
 }
 
 TEST(GroundModel, CategoryEdgesAreTheTangentsOfSlopeAndMargin) {

@@ -70,7 +70,7 @@ TEST(MapFile, KeepsTheEffectsOfItsGround) {
   EXPECT_EQ(read.channel, curve.channel);
   EXPECT_EQ(read.only_value, curve.only_value);
   // Property: ground that digs is not the ground of its soil alone.
-  EXPECT_NE(back.model().prior(0).pull.mean, testGround()->prior(0).pull.mean);
+  EXPECT_NE(back.model().prior(0).pull.value, testGround()->prior(0).pull.value);
 }
 
 TEST(MapFile, StockOctoMapReadsItAndStopsBehindTheNodes) {

@@ -17,9 +17,9 @@ TEST(GaussianProcess, OnePlaceIsTheConjugateUpdate) {
   const GaussianProcess process({{.place = {0, 0}, .pull = 0.1, .sinkage = 0.0, .variance = 0.0025}},
                                 kVariation);
   // Closed form: prior and measurement of equal variance meet half way.
-  EXPECT_NEAR(process.at({0, 0}).pull.mean, 0.05, 1e-12);
+  EXPECT_NEAR(process.at({0, 0}).pull.value, 0.05, 1e-12);
   EXPECT_NEAR(process.at({0, 0}).pull.std, 0.05 * std::sqrt(0.5), 1e-12);
-  EXPECT_EQ(process.at({5, 0}).pull.mean, 0.0);
+  EXPECT_EQ(process.at({5, 0}).pull.value, 0.0);
   EXPECT_EQ(process.at({5, 0}).pull.std, 0.05);
 }
 
@@ -35,7 +35,7 @@ TEST(GaussianProcess, RepeatingAPlaceDoesNotMakeItsNeighboursCertain) {
 
 TEST(KernelInference, OnePlaceIsTheConjugateUpdate) {
   const std::vector<PlaceEvidence> one{{.place = {0, 0}, .pull = 0.1, .sinkage = 0.0, .variance = 0.0025}};
-  EXPECT_NEAR(kernelInference(one, kVariation, {0, 0}).pull.mean, 0.05, 1e-12);
+  EXPECT_NEAR(kernelInference(one, kVariation, {0, 0}).pull.value, 0.05, 1e-12);
 }
 
 }  // namespace

@@ -43,8 +43,8 @@ struct Score {
   int within = 0, count = 0;
 
   void add(double truth, const Estimate& estimate) {
-    const double z = (truth - estimate.mean) / estimate.std;
-    squares += (truth - estimate.mean) * (truth - estimate.mean);
+    const double z = (truth - estimate.value) / estimate.std;
+    squares += (truth - estimate.value) * (truth - estimate.value);
     surprise += 0.5 * z * z + std::log(estimate.std);
     within += std::abs(z) < 1.0 ? 1 : 0;
     ++count;
@@ -90,7 +90,7 @@ class Reliability {
  public:
   void add(const Estimate& said, double truth) {
     const double probability =
-        0.5 * std::erfc((said.mean - kWeak) / said.std / std::numbers::sqrt2);  // P(pull < kWeak)
+        0.5 * std::erfc((said.value - kWeak) / said.std / std::numbers::sqrt2);  // P(pull < kWeak)
     Bin& bin = bins_[std::min(static_cast<std::size_t>(probability * 5.0), std::size_t{4})];
     bin.said += probability;
     bin.were += truth < kWeak ? 1.0 : 0.0;

@@ -35,8 +35,8 @@ TEST(WheelObserver, GroundThatIsItsClassShowsNoDeparture) {
     const auto seen = WheelObserver(*model).observe(0, reading(testSand(), slip));
     ASSERT_TRUE(seen.has_value());
     // Property: reading and class agree; Eq. 3.12 is good to 0.03, and the slope outweighs it.
-    EXPECT_NEAR(seen->pull.mean, model->prior(0).pull.mean, 0.02) << slip;
-    EXPECT_NEAR(seen->sinkage.mean, model->prior(0).sinkage.mean, 0.02) << slip;
+    EXPECT_NEAR(seen->pull.value, model->prior(0).pull.value, 0.02) << slip;
+    EXPECT_NEAR(seen->sinkage.value, model->prior(0).sinkage.value, 0.02) << slip;
   }
 }
 
@@ -45,8 +45,8 @@ TEST(WheelObserver, SeesThatSandIsDust) {
   for (const double slip : {0.3, 0.5}) {
     const auto seen = WheelObserver(*model).observe(0, reading(testDust(), slip));
     ASSERT_TRUE(seen.has_value());
-    EXPECT_NEAR(seen->pull.mean, model->prior(1).pull.mean, 2.0 * seen->pull.std) << slip;
-    EXPECT_LT(seen->pull.mean, model->prior(0).pull.mean - 2.0 * seen->pull.std) << slip;
+    EXPECT_NEAR(seen->pull.value, model->prior(1).pull.value, 2.0 * seen->pull.std) << slip;
+    EXPECT_LT(seen->pull.value, model->prior(0).pull.value - 2.0 * seen->pull.std) << slip;
   }
 }
 
@@ -56,7 +56,7 @@ TEST(WheelObserver, SlipAndSlopeAloneTellEnough) {
   blind.torque_Nm = blind.sinkage_m = kNone;
   const auto seen = WheelObserver(*model).observe(0, blind);
   ASSERT_TRUE(seen.has_value());
-  EXPECT_NEAR(seen->pull.mean, model->prior(1).pull.mean, 0.02);
+  EXPECT_NEAR(seen->pull.value, model->prior(1).pull.value, 0.02);
   EXPECT_TRUE(std::isinf(seen->sinkage.std));
 }
 
@@ -86,10 +86,10 @@ TEST(WheelObserver, TheWheelsInDustAreToldFromThoseOnSand) {
   const auto model = testGround();
   for (const double slip : {0.2, 0.4, 0.7}) {
     const auto seen = WheelObserver(*model).observe(halfAndHalf(testDust(), testSand(), slip));
-    const double sand = model->prior(0).pull.mean, dust = model->prior(1).pull.mean;
-    EXPECT_LT(seen[0]->pull.mean, sand - 0.45 * (sand - dust)) << slip;
-    EXPECT_NEAR(seen[3]->pull.mean, sand, 2.0 * seen[3]->pull.std) << slip;
-    EXPECT_GT(seen[3]->pull.mean, seen[0]->pull.mean + 0.1) << slip;
+    const double sand = model->prior(0).pull.value, dust = model->prior(1).pull.value;
+    EXPECT_LT(seen[0]->pull.value, sand - 0.45 * (sand - dust)) << slip;
+    EXPECT_NEAR(seen[3]->pull.value, sand, 2.0 * seen[3]->pull.std) << slip;
+    EXPECT_GT(seen[3]->pull.value, seen[0]->pull.value + 0.1) << slip;
   }
 }
 
@@ -97,7 +97,7 @@ TEST(WheelObserver, LittleSlipYetDeepIsASign) {
   const auto model = testGround();
   const auto seen = WheelObserver(*model).observe(halfAndHalf(testDust(), testSand(), 0.05));
   // Property: weaker by more than the class varies from place to place
-  EXPECT_LT(seen[0]->pull.mean, model->prior(0).pull.mean - 0.05);
+  EXPECT_LT(seen[0]->pull.value, model->prior(0).pull.value - 0.05);
 }
 
 TEST(WheelObserver, ARutIsNotTakenForFirmGround) {
@@ -105,11 +105,11 @@ TEST(WheelObserver, ARutIsNotTakenForFirmGround) {
   std::vector<ClassReading> all = halfAndHalf(testSand(), terramech::rutted(testSand()), 0.3);
   all[2].reading.pass = all[3].reading.pass = 2;
   const auto told = WheelObserver(*model).observe(all);
-  for (const auto& seen : told) EXPECT_NEAR(seen->pull.mean, model->prior(0).pull.mean, 0.03);
+  for (const auto& seen : told) EXPECT_NEAR(seen->pull.value, model->prior(0).pull.value, 0.03);
   EXPECT_GT(told[2]->pull.std, told[0]->pull.std) << "a rut says less about fresh ground";
   EXPECT_TRUE(std::isinf(told[2]->sinkage.std)) << "and nothing about its depth";
   all[2].reading.pass = all[3].reading.pass = 1;
-  EXPECT_GT(WheelObserver(*model).observe(all)[2]->pull.mean, model->prior(0).pull.mean + 0.05);
+  EXPECT_GT(WheelObserver(*model).observe(all)[2]->pull.value, model->prior(0).pull.value + 0.05);
 }
 
 TEST(WheelObserver, StuckWheelsSayThatTheGroundIsWeak) {
@@ -117,7 +117,7 @@ TEST(WheelObserver, StuckWheelsSayThatTheGroundIsWeak) {
   WheelReading spun = reading(testDust(), 0.98);
   spun.gradient = kNone;
   const auto seen = WheelObserver(*model).observe(0, spun);
-  EXPECT_NEAR(seen->pull.mean, model->prior(1).pull.mean, 0.1);
+  EXPECT_NEAR(seen->pull.value, model->prior(1).pull.value, 0.1);
 }
 
 TEST(PullFromTorque, FlatWheelPullsItsTorque) {

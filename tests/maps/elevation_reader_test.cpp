@@ -1,8 +1,8 @@
 #include <cmath>
 #include <cstdlib>
-#include <numbers>
 
 #include <talus/maps/elevation_reader.hpp>
+#include <talus/talus.hpp>
 
 #include "raster_fixture.hpp"
 
@@ -11,8 +11,6 @@ namespace {
 
 using testing::Contains;
 using testing::HasSubstr;
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 const std::vector<std::vector<double>> kHill = drawn({"1234",  //
                                                       "2345",  //

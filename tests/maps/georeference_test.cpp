@@ -3,11 +3,10 @@
 #include <stdexcept>
 
 #include <talus/maps/georeference.hpp>
+#include <talus/talus.hpp>
 
 namespace talus::maps {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 CoordinateSystem lunarPole() {
   return {.name = "lunar south pole",

@@ -4,6 +4,7 @@
 #include <talus/maps/geotiff_writer.hpp>
 #include <talus/maps/layer_reader.hpp>
 #include <talus/maps/place_reader.hpp>
+#include <talus/talus.hpp>
 
 #include "raster_fixture.hpp"
 
@@ -117,8 +118,7 @@ TEST(KeepOut, DegreesOnTheMapsOwnBody) {
                           folder / "mars.tif"));
   const auto corner = [&](double x, double y) {
     const GeoPoint p = mars.georeference->reverse({x, y});
-    const double degree = 3.14159265358979323846 / 180;
-    return "[" + std::to_string(p.longitude_rad / degree) + "," + std::to_string(p.latitude_rad / degree) +
+    return "[" + std::to_string(p.longitude_rad / kDegree) + "," + std::to_string(p.latitude_rad / kDegree) +
            "]";
   };
   const std::string ring = "[" + corner(8142401, -276501) + "," + corner(8142409, -276501) + "," +

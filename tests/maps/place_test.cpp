@@ -1,4 +1,3 @@
-#include <numbers>
 
 #include <talus/maps/place.hpp>
 #include <talus/talus.hpp>
@@ -7,8 +6,6 @@ namespace talus::maps {
 namespace {
 
 using testing::HasSubstr;
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 std::string refusal(const auto& call) {
   try {

@@ -14,8 +14,6 @@
 namespace talus::maps {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
-
 OGRSpatialReference reference(const std::string& definition) {
   OGRSpatialReference out;
   EXPECT_EQ(out.SetFromUserInput(definition.c_str()), OGRERR_NONE) << definition;

@@ -40,8 +40,8 @@ RiskyGround riskyGround(double steepest) {
   const auto curve = costmap::mobilityOf(parts.classes[0], parts.rover);
   RiskyGround ground;
   ground.pull_std = parts.classes[0].pull_std;
-  ground.most_pull = model.prior(0).pull.mean + std::max(0.0, curve.strongest().drawbar_pull_over_load -
-                                                                  curve.reference().drawbar_pull_over_load);
+  ground.most_pull = model.prior(0).pull.value + std::max(0.0, curve.strongest().drawbar_pull_over_load -
+                                                                   curve.reference().drawbar_pull_over_load);
   maps::Raster<costmap::CellCode> cells({.width = 60, .height = 40, .resolution_m = 1.0, .south_west = {}});
   for (int row = 0; row < 40; ++row)
     for (int column = 0; column < 60; ++column) {

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include <talus/talus.hpp>
 #include <talus/terramech/contact/contact_geometry.hpp>
 #include <talus/terramech/contact/linear_stress.hpp>
 #include <talus/terramech/contact/wong_reece.hpp>
@@ -115,7 +116,7 @@ TEST(Errata, MobilisationIsFarFromOne) {
 }
 
 TEST(Errata, TopsoilOfSection35IsNotSafeByEquation321) {
-  const auto limits = thresholds({.slope_rad = 10.0 * 3.14159265358979 / 180.0, .margin_rad = 0.0});
+  const auto limits = thresholds({.slope_rad = 10.0 * kDegree, .margin_rad = 0.0});
   for (const auto& [torque, sinkage] : {std::pair{0.1, 0.2}, std::pair{0.3, 0.4}}) {
     const WheelSample s{.load_N = 80.0, .torque_Nm = 8.0 * torque, .sinkage_m = 0.1 * sinkage, .slip = 0.5};
     const double pull = kThesisPlane.at(kThesisWheel, s);

@@ -3,6 +3,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <talus/talus.hpp>
+
 #include "run_program.hpp"
 
 namespace talus::cli {
@@ -76,7 +78,7 @@ TEST(EstimateCommand, PriorNarrowsWongReece) {
       "4e5}, shear_modulus_m: {mean: 0.02, std: 0.005}}\n");
   const json result = estimated({"--method", "wong-reece", "--prior", prior}, table);
   EXPECT_NEAR(result["cohesion_Pa"], 2400.0, 40.0);
-  EXPECT_NEAR(result["friction_angle_rad"], 25.0 * 3.14159265 / 180.0, 0.01);
+  EXPECT_NEAR(result["friction_angle_rad"], 25.0 * kDegree, 0.01);
 }
 
 TEST(EstimateCommand, PriorNarrowsTheLinearMethods) {
@@ -95,7 +97,7 @@ TEST(EstimateCommand, PriorNarrowsTheLinearMethods) {
   for (const char* method : {"iagnemma", "linear-offset", "sojourner"}) {
     const json fixed = estimated({"--method", method, "--prior", known}, table);
     EXPECT_NEAR(fixed["cohesion_Pa"], 2400.0, 1e-6) << method;
-    EXPECT_NEAR(fixed["friction_angle_rad"], 25.0 * 3.14159265358979 / 180.0, 1e-9) << method;
+    EXPECT_NEAR(fixed["friction_angle_rad"], 25.0 * kDegree, 1e-9) << method;
     const json free = estimated({"--method", method, "--shear-modulus", "0.013"}, table);
     const json open = estimated({"--method", method, "--prior", vague}, table);
     EXPECT_NEAR(open["cohesion_Pa"].get<double>(), free["cohesion_Pa"].get<double>(), 0.1) << method;

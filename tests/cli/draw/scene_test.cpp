@@ -1,8 +1,8 @@
 #include <cmath>
-#include <numbers>
 
 #include <talus/cli/draw/block_mean.hpp>
 #include <talus/cli/draw/scene.hpp>
+#include <talus/talus.hpp>
 
 #include "example_scene.hpp"
 
@@ -35,7 +35,7 @@ TEST(Scene, SlopeOfAPlaneIsItsAngle) {
   const Scene scene = sceneOf(map, {.title = "plane"});
   ASSERT_EQ(scene.layers.size(), 1U);
   // Closed form: atan of the gradient; 1e-4 deg for elevations stored as float.
-  EXPECT_NEAR((scene.layers[0].values[{10, 10}]), 0.3 * 180.0 / std::numbers::pi, 1e-4);
+  EXPECT_NEAR((scene.layers[0].values[{10, 10}]), 0.3 / kDegree, 1e-4);
 }
 
 TEST(Scene, OfALargeMapIsSmall) {

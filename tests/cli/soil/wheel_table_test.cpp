@@ -28,7 +28,7 @@ std::vector<std::vector<std::string>> rowsOf(const std::string& path) {
 
 std::string errorOf(const Folder& folder, const std::string& content) {
   try {
-    solveWheelTable(folder.write("in.csv", content), folder / "out.csv", {});
+    solveWheelTable(folder.write("in.csv", content), folder / "out.csv", 2, {});
   } catch (const InputError& e) {
     return e.what();
   }
@@ -37,7 +37,8 @@ std::string errorOf(const Folder& folder, const std::string& content) {
 
 TEST(WheelTable, AppendsTheForcesAndKeepsEveryColumn) {
   const Folder folder;
-  const WheelTable table = solveWheelTable(folder.write("in.csv", kHeader + kGood), folder / "out.csv", {});
+  const WheelTable table =
+      solveWheelTable(folder.write("in.csv", kHeader + kGood), folder / "out.csv", 2, {});
   EXPECT_EQ(table.solved, 1U);
   const auto rows = rowsOf(folder / "out.csv");
   ASSERT_THAT(rows, SizeIs(2));
@@ -66,7 +67,7 @@ TEST(WheelTable, ReportsBadRowsByLineAndKeepsThem) {
   const std::string input = kHeader + kGood + with(",80,", ",-80,") + with("0.56", "steep") +
                             with(",0.3,", ",1.5,") + with(",80,", ",1e9,") + "1,2,3\n" + with("800", "nan") +
                             kGood;
-  const WheelTable table = solveWheelTable(folder.write("in.csv", input), folder / "out.csv", {});
+  const WheelTable table = solveWheelTable(folder.write("in.csv", input), folder / "out.csv", 2, {});
   EXPECT_EQ(table.solved, 2U);
   ASSERT_THAT(table.refused, SizeIs(6));
   EXPECT_EQ(table.refused[0].line, 3U);
@@ -83,8 +84,8 @@ TEST(WheelTable, ReportsBadRowsByLineAndKeepsThem) {
 
 TEST(WheelTable, ComputesResultColumnsAnew) {
   const Folder folder;
-  const WheelTable table =
-      solveWheelTable(folder.write("in.csv", "torque_Nm," + kHeader + "99," + kGood), folder / "out.csv", {});
+  const WheelTable table = solveWheelTable(folder.write("in.csv", "torque_Nm," + kHeader + "99," + kGood),
+                                           folder / "out.csv", 2, {});
   EXPECT_TRUE(table.replaced);
   EXPECT_THAT(rowsOf(folder / "out.csv")[0], SizeIs(17));
 }

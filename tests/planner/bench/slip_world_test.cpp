@@ -5,6 +5,7 @@
 #include <talus/planner/check/route_check.hpp>
 #include <talus/planner/grid/field_planner.hpp>
 #include <talus/planner/route/motion_cost.hpp>
+#include <talus/talus.hpp>
 
 namespace talus::planner {
 namespace {
@@ -15,8 +16,8 @@ using ::testing::ThrowsMessage;
 TEST(SlipWorld, SlipIsThePublishedCurve) {
   const SlipTerrain terrain{.gain_deg2 = 4e-3, .offset = 0.05, .noise = 0.05};
   // Closed form: 0.05 +- 4e-3 10^2.
-  EXPECT_NEAR(terrain.slip(std::tan(10.0 * M_PI / 180.0)), 0.45, 1e-12);
-  EXPECT_NEAR(terrain.slip(-std::tan(10.0 * M_PI / 180.0)), -0.35, 1e-12);
+  EXPECT_NEAR(terrain.slip(std::tan(10.0 * kDegree)), 0.45, 1e-12);
+  EXPECT_NEAR(terrain.slip(-std::tan(10.0 * kDegree)), -0.35, 1e-12);
   EXPECT_NEAR(terrain.slip(0.0), 0.05, 1e-12);
 }
 

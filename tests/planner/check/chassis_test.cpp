@@ -8,6 +8,7 @@
 #include <talus/planner/check/chassis.hpp>
 #include <talus/planner/check/chassis_planner.hpp>
 #include <talus/planner/grid/field_planner.hpp>
+#include <talus/talus.hpp>
 
 #include "drawn_map.hpp"
 
@@ -249,7 +250,7 @@ TEST(Chassis, ATurnInPlaceSweepsEveryWheelsCircle) {
   // The front left wheel passes a rock 107 degrees round its circle, between the poses at both ends and the
   // middle.
   maps::Raster<float> flat({.width = 80, .height = 80, .resolution_m = 0.1, .south_west = {}});
-  const double around = 107.0 * M_PI / 180.0;
+  const double around = 107.0 * kDegree;
   const auto cell = flat.grid().cellAt({4.0 + 0.781 * std::cos(around), 4.0 + 0.781 * std::sin(around)});
   flat[*cell] = 1.5F;
   auto cart = rover(4);

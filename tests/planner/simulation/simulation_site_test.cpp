@@ -60,12 +60,12 @@ TEST(SimulationSite, ClairvoyanceKnowsEveryPatchBySoil) {
   const SimulationSite site(map, across(truth));
   const TrueWorld world = site.trueWorld(0);
   const auto believed = site.believed(Belief::Clairvoyant, world);
-  const auto pull = [&](maps::Point p) { return believed.ground(*believed.grid().cellAt(p))->pull.mean; };
+  const auto pull = [&](maps::Point p) { return believed.ground(*believed.grid().cellAt(p))->pull.value; };
   const auto model = costmap::testGround();
   // Closed form: the soil's own pull, each patch its own
-  EXPECT_NEAR(pull({112.5, 215.5}), model->prior(1).pull.mean, 1e-9);
-  EXPECT_NEAR(pull({105.5, 215.5}), model->prior(0).pull.mean, 1e-9);
-  EXPECT_GT(pull({125.5, 215.5}), model->prior(0).pull.mean + 0.05);
+  EXPECT_NEAR(pull({112.5, 215.5}), model->prior(1).pull.value, 1e-9);
+  EXPECT_NEAR(pull({105.5, 215.5}), model->prior(0).pull.value, 1e-9);
+  EXPECT_GT(pull({125.5, 215.5}), model->prior(0).pull.value + 0.05);
   EXPECT_EQ(site.world(Belief::Clairvoyant, 0).drive.outcome, Outcome::Reached);
   EXPECT_EQ(site.world(Belief::Prior, 0).drive.outcome, Outcome::Immobilised);
 }
@@ -75,8 +75,8 @@ TEST(SimulationSite, GeometryTakesAllGroundForFirm) {
   const SimulationSite site(map, across({}));
   const TrueWorld world = site.trueWorld(0);
   const auto believed = site.believed(Belief::Geometry, world);
-  EXPECT_GT(believed.ground({5, 5})->pull.mean,
-            site.believed(Belief::Prior, world).ground({5, 5})->pull.mean + 0.2);
+  EXPECT_GT(believed.ground({5, 5})->pull.value,
+            site.believed(Belief::Prior, world).ground({5, 5})->pull.value + 0.2);
 }
 
 TEST(SimulationSite, KeepOutStaysUnderEveryBelief) {

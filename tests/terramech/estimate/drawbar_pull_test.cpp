@@ -126,7 +126,7 @@ TEST(DrawbarPull, StandardDeviationIsTheScatterOfNoisyReadings) {
     const auto noisy = [&](double v) { return v * (1.0 + 0.05 * normal(random)); };
     const WheelSample s{noisy(kSample.load_N), noisy(kSample.torque_Nm), noisy(kSample.sinkage_m),
                         noisy(kSample.slip)};
-    const Uncertain pull = pullOverLoad(kThesisWheel, s, ReadingErrors::relative(0.05));
+    const Estimate pull = pullOverLoad(kThesisWheel, s, ReadingErrors::relative(0.05));
     squares += std::pow(pull.value - truth, 2) / 400.0;
     stated += pull.std / 400.0;
   }
@@ -155,7 +155,7 @@ TEST(DrawbarPull, EachReadingsErrorIsCarriedThrough) {
 
 TEST(DrawbarPull, ClimbableSlopeIsItsArctan) {
   // Closed form.
-  const Uncertain slope = climbableSlope_rad({.value = std::tan(0.3), .std = 0.01});
+  const Estimate slope = climbableSlope_rad({.value = std::tan(0.3), .std = 0.01});
   EXPECT_NEAR(slope.value, 0.3, 1e-15);
   EXPECT_NEAR(slope.std, 0.01 * std::pow(std::cos(0.3), 2), 1e-15);
 }

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include <talus/talus.hpp>
 #include <talus/terramech/estimate/soil_mixture.hpp>
 
 namespace talus::terramech {
@@ -12,7 +13,7 @@ TEST(SoilMixture, ThesisSoilsSpanTable21) {
   ASSERT_EQ(soils.size(), 4u);
   const ContactSoil clay = soils[1].at(SoilVector::Zero());
   EXPECT_NEAR(clay.cohesion_Pa, 5000.0, 1e-9);
-  EXPECT_NEAR(clay.friction_angle_rad * 180.0 / 3.14159265358979, 20.0, 1e-9);
+  EXPECT_NEAR(clay.friction_angle_rad / kDegree, 20.0, 1e-9);
   EXPECT_NEAR(clay.sinkage_exponent, 0.5, 1e-12);
   const ContactSoil firm = soils[3].at(SoilVector::Ones());
   EXPECT_NEAR(firm.sinkage_modulus, 3e6, 1e-3);

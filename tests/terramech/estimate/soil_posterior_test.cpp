@@ -4,6 +4,7 @@
 
 #include <Eigen/LU>
 
+#include <talus/talus.hpp>
 #include <talus/terramech/estimate/soil_posterior.hpp>
 #include <talus/terramech/estimate/thesis_runs.hpp>
 #include <talus/terramech/numerics/normal_distribution.hpp>
@@ -12,8 +13,6 @@
 
 namespace talus::terramech {
 namespace {
-
-constexpr double kDegree = 3.14159265358979323846 / 180.0;
 
 TEST(SoilPosterior, EqualsBruteForce) {
   // Property: means, standard deviations and class probabilities are those of soils drawn from the prior and

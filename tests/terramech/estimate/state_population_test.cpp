@@ -39,7 +39,7 @@ TEST(StatePopulation, CombinesAReadingWithItsPopulation) {
   }
   double squares = 0.0, stated = 0.0, slip_squares = 0.0;
   for (int k = 0; k < kCount; ++k) {
-    const Reading load = population.load(readings[static_cast<std::size_t>(k)], kErrors);
+    const Estimate load = population.load(readings[static_cast<std::size_t>(k)], kErrors);
     squares += std::pow(std::log(load.value) - truth[static_cast<std::size_t>(k)], 2) / kCount;
     stated += std::pow(load.std / load.value, 2) / kCount;
     slip_squares +=

@@ -1,6 +1,5 @@
 #include <cmath>
 #include <fstream>
-#include <numbers>
 
 #include <talus/talus.hpp>
 #include <talus/terramech/io/soil_library.hpp>
@@ -13,8 +12,6 @@ namespace {
 
 using testing::Contains;
 using testing::HasSubstr;
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 const std::string kSoil =
     "cohesion_kPa: {mean: 2, std: 0.5}\n"

@@ -33,7 +33,7 @@ TEST(YamlFields, ConvertsUnitsOfOneKind) {
   EXPECT_DOUBLE_EQ(of("p_kPa: [1, 2]").numbers("p_Pa")[1], 2000.0);
   EXPECT_DOUBLE_EQ(of("t_Ncm: 5").number("t_Nm"), 0.05);
   EXPECT_DOUBLE_EQ(of("v_kmph: 36").number("v_mps"), 10.0);
-  EXPECT_DOUBLE_EQ(of("k_modulus_kN: 3").stated("k_modulus").mean, 3000.0);
+  EXPECT_DOUBLE_EQ(of("k_modulus_kN: 3").stated("k_modulus").value, 3000.0);
   EXPECT_FALSE(of("a_kg: 1").has("a_m"));
 }
 

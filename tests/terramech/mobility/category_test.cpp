@@ -2,6 +2,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include <talus/talus.hpp>
 #include <talus/terramech/mobility/category.hpp>
 
 namespace talus::terramech {
@@ -79,7 +80,6 @@ TEST(Category, NeverImprovesAsPullFallsOrSinkageOrTorqueRises) {
 }
 
 TEST(Category, ThresholdsComeFromTheMissionSlope) {
-  constexpr double kDegree = 0.017453292519943295;
   const CategoryThresholds t = thresholds({.slope_rad = 15.0 * kDegree, .margin_rad = 5.0 * kDegree});
   // Printed in: thesis 3.5, tan 10 deg and tan 20 deg.
   EXPECT_NEAR(t.dp_low, std::tan(10.0 * kDegree), 1e-15);
