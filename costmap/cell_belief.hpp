@@ -37,8 +37,8 @@ struct CellBelief {
   float pull_std = 0.0F;      ///< its standard deviation [-]
   float sinkage_mean = 0.0F;  ///< sinkage over wheel radius at the reference slip [-], posterior mean
   float sinkage_std = 0.0F;   ///< its standard deviation [-]
-  float evidence =
-      0.0F;  ///< samples that speak for this cell, each weighed by its nearness [-]; 0 = prior only
+  /// Samples that speak for this cell, each weighed by its nearness [-]; 0 = prior only.
+  float evidence = 0.0F;
   float evidence_pull = 0.0F;      ///< their weighed mean of drawbar pull over load [-]
   float evidence_sinkage = 0.0F;   ///< their weighed mean of sinkage over radius [-]
   std::uint32_t updated_s = 0;     ///< telemetry time of the newest sample, rounded down [s]

@@ -77,10 +77,10 @@ CostGrid flattened(const maps::Raster<CellCode>& cells, std::shared_ptr<const Dr
 /// What a new version changes.
 struct Revision {
   std::vector<maps::CellBox> ranges;  ///< inside the grid; nothing else changes
-  std::function<CellCode(maps::Cell, CellCode)>
-      code;  ///< the new code of a cell of the ranges, given its old one
-  std::function<std::shared_ptr<const DriveCost>()>
-      cost;  ///< of the new version, asked once all codes are known
+  /// The new code of a cell of the ranges, given its old one.
+  std::function<CellCode(maps::Cell, CellCode)> code;
+  /// Of the new version, asked once all codes are known.
+  std::function<std::shared_ptr<const DriveCost>()> cost;
 };
 
 /// The next version: copies the tiles that the ranges touch and shares the others.

@@ -12,15 +12,15 @@ struct DrivePolicy {
 
   double slope_margin_rad = 5.0 * kDegree;  ///< category edges: tan(slope -+ margin), thesis 3.5: 5 deg
   double sinkage_threshold = 0.5;  ///< sinkage over radius below which the category stays, thesis 3.5 [-]
-  double sinkage_critical =
-      0.0;  ///< above which ground is dangerous [-]; 0: the rover's clearance over wheel radius
-  double max_immobilisation =
-      0.5;  ///< refuse where the soil's pull falls short of the demand with more than this P [-]
+  /// Above which ground is dangerous [-]; 0: the rover's clearance over wheel radius.
+  double sinkage_critical = 0.0;
+  /// Refuse where the soil's pull falls short of the demand with more than this P [-].
+  double max_immobilisation = 0.5;
 
   double time_weight_W = 1.0;  ///< joules that one second is worth
-  double entrapment =
-      0.01;  ///< share of the places where the ground pulls less than asked that hold the rover for
-             ///< good: mostly it notices and backs out (ours, not from the literature) [-]
+  /// Share of the places where the ground pulls less than asked that hold the rover for good: mostly it
+  /// notices and backs out (ours, not from the literature) [-].
+  double entrapment = 0.01;
   double risk_weight_J = 1e8;         ///< joules that the loss of the rover is worth
   double correlation_length_m = 5.0;  ///< over which the soil of one class stays alike
 };

@@ -59,7 +59,8 @@ class EvidenceField {
   explicit EvidenceField(std::shared_ptr<const GroundSite> site);
 
   /// Takes an observation in and returns the cells whose belief it may change (besides those of the class as
-  /// a whole); nothing when the place is outside the map or has no elevation or class.
+  /// a whole); nothing when the place is outside the map, has no elevation or class, or lies in a block that
+  /// was first driven on ground of another class.
   std::optional<maps::CellBox> add(const WheelObservation& observation);
 
   static constexpr int kPatchBlocks = 8;

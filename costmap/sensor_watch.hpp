@@ -21,8 +21,8 @@ struct SensorLimits {
   double lively = 0.8;          ///< share of rows in which a value changed that is not rounded to few steps
   double slip_excess = 0.05;  ///< mean slip beyond what the soil asks for on these slopes that is spoken of,
                               ///< where it is also more than its scatter
-  double bias =
-      0.04;  ///< pull by torque and sinkage less pull asked for, on average, that betrays a sensor [-]
+  /// Pull by torque and sinkage less pull asked for, on average, that betrays a sensor [-].
+  double bias = 0.04;
   std::size_t bias_rows = 30;    ///< rows before a bias is spoken of
   double climb = 0.03;           ///< gradient from which a driven wheel cannot slip backwards [-]
   double backward_slip = -0.03;  ///< slip below which it would

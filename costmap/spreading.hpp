@@ -59,8 +59,8 @@ class GaussianProcess {
 
 /// Bayesian generalised kernel inference (doherty_2019): a weighed mean of the evidence around a place,
 /// conjugate to the prior.
-///   mean = sum k y w / (1 + sum k w),  variance = prior / (1 + sum k w),  w = prior variance / measurement
-///   variance
+///   mean = sum k y w / (1 + sum k w),  variance = prior / (1 + sum k w)
+///   w = prior variance / measurement variance
 GroundBelief kernelInference(const std::vector<PlaceEvidence>& evidence, const Variation& variation,
                              const maps::Point& place);
 

@@ -36,8 +36,8 @@ struct ReadingNoise {
   double torque_share = 0.05;   ///< of T/(rW)
   double sinkage_share = 0.05;  ///< of the wheel radius, times z/r's slope
   double mobilised = 0.15;      ///< of torque taken to the reference slip, per share by which it grows [-]
-  double model_pull =
-      0.02;  ///< of thesis Eq. 3.12 as a model of DP/W, and of a wheel pulling its own share [-]
+  /// Of thesis Eq. 3.12 as a model of DP/W, and of a wheel pulling its own share [-].
+  double model_pull = 0.02;
 };
 
 /// What a reading says about the ground under the wheel, at the reference slip.

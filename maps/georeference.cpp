@@ -6,7 +6,7 @@
 #include <GeographicLib/Geodesic.hpp>
 
 #include <talus/maps/georeference.hpp>
-#include <talus/maps/projection.hpp>
+#include <talus/maps/transform.hpp>
 #include <talus/talus.hpp>
 
 namespace talus::maps {

@@ -5,37 +5,9 @@
 
 #include <talus/maps/ellipsoid.hpp>
 #include <talus/maps/grid.hpp>
+#include <talus/maps/projection.hpp>
 
 namespace talus::maps {
-
-/// The map projections that Georeference knows.
-enum class ProjectionMethod {
-  TransverseMercator,
-  Mercator,               ///< one standard parallel (standard_parallel_1_rad), scale there
-  Equirectangular,        ///< on the sphere of the equatorial radius, as PROJ has it; true along
-                          ///< standard_parallel_1_rad
-  PolarStereographic,     ///< scale along standard_parallel_1_rad, whose sign picks the pole
-  Stereographic,          ///< oblique, on the conformal sphere [snyder1987]
-  LambertConformalConic,  ///< standard parallels 1 and 2 (equal for one)
-  AlbersEqualArea,        ///< standard parallels 1 and 2
-  CylindricalEqualArea,   ///< standard_parallel_1_rad
-  LambertAzimuthalEqualArea,
-  AzimuthalEquidistant,
-  Orthographic,
-  Sinusoidal,
-};
-
-/// A projection's parameters; those that the method does not use are ignored.
-struct Projection {
-  ProjectionMethod method = ProjectionMethod::TransverseMercator;
-  double latitude_of_origin_rad = 0.0;
-  double central_meridian_rad = 0.0;  ///< from the body's prime meridian, east positive
-  double standard_parallel_1_rad = 0.0;
-  double standard_parallel_2_rad = 0.0;
-  double scale = 1.0;  ///< scale factor at the origin [-], > 0
-  double false_easting_m = 0.0;
-  double false_northing_m = 0.0;
-};
 
 /// What a file says of its coordinates.
 struct CoordinateSystem {
@@ -46,6 +18,8 @@ struct CoordinateSystem {
       false;          ///< latitudes are angles at the centre of the ellipsoid, not of its surface normal
   std::string wkt{};  ///< the file's own words, written back into the layers made from it; may be empty
 };
+
+class Transform;
 
 /// Carries places between map metres and latitude, longitude on the body's own ellipsoid, the latitude of the
 /// kind that the coordinate system has (planetocentric or geographic; the same on a sphere). Through
@@ -71,9 +45,6 @@ class Georeference {
   Point groundScale(Point at) const;
 
   std::string body() const { return bodyName(system().ellipsoid); }
-
-  /// Forward and reverse of one projection, false origin left out. Defined in projection.hpp.
-  class Transform;
 
  private:
   GeoPoint geographic(Point point) const;

@@ -2,7 +2,8 @@
 
 #include <memory>
 
-#include <talus/maps/site_generator.hpp>
+#include <talus/maps/grid.hpp>
+#include <talus/maps/site_options.hpp>
 
 namespace talus::maps {
 

@@ -6,7 +6,7 @@
 
 #include <GeographicLib/Ellipsoid.hpp>
 
-#include <talus/maps/projection.hpp>
+#include <talus/maps/transform.hpp>
 #include <talus/talus.hpp>
 
 namespace talus::maps {
@@ -21,7 +21,7 @@ Figure figure(const Ellipsoid& e) {
 }
 
 // x = a cos(phi_1) lambda, y = a (phi - phi_0): PROJ's eqc, spherical also on an ellipsoid.
-class Equirectangular final : public Georeference::Transform {
+class Equirectangular final : public Transform {
  public:
   Equirectangular(const Ellipsoid& e, const Projection& p)
       : radius_m_(e.equatorial_radius_m),
@@ -45,7 +45,7 @@ class Equirectangular final : public Georeference::Transform {
 };
 
 // y = length of the meridian, x = lambda times the radius of the parallel.
-class Sinusoidal final : public Georeference::Transform {
+class Sinusoidal final : public Transform {
  public:
   explicit Sinusoidal(const Ellipsoid& e) : figure_(figure(e)) {}
 
@@ -93,7 +93,7 @@ struct ObliqueFrame {
 };
 
 // Snyder, Eqs. 21-24 to 21-28 [snyder1987]: stereographic from the conformal sphere.
-class Stereographic final : public Georeference::Transform {
+class Stereographic final : public Transform {
  public:
   Stereographic(const Ellipsoid& e, const Projection& p)
       : figure_(figure(e)),
@@ -121,7 +121,7 @@ class Stereographic final : public Georeference::Transform {
 };
 
 // Snyder, Eqs. 24-17 to 24-26 [snyder1987]: Lambert's azimuthal equal area from the authalic sphere.
-class LambertAzimuthal final : public Georeference::Transform {
+class LambertAzimuthal final : public Transform {
  public:
   LambertAzimuthal(const Ellipsoid& e, const Projection& p)
       : figure_(figure(e)),
@@ -155,7 +155,7 @@ class LambertAzimuthal final : public Georeference::Transform {
 };
 
 // The ellipsoid seen from far above the origin: east and north of the tangent frame there.
-class Orthographic final : public Georeference::Transform {
+class Orthographic final : public Transform {
  public:
   Orthographic(const Ellipsoid& e, const Projection& p)
       : a_(e.equatorial_radius_m),
@@ -204,7 +204,7 @@ class Orthographic final : public Georeference::Transform {
 
 }  // namespace
 
-std::unique_ptr<const Georeference::Transform> makePlainTransform(const Ellipsoid& e, const Projection& p) {
+std::unique_ptr<const Transform> makePlainTransform(const Ellipsoid& e, const Projection& p) {
   switch (p.method) {
     case ProjectionMethod::Equirectangular:
       return std::make_unique<Equirectangular>(e, p);

@@ -4,8 +4,9 @@
 #include <string>
 #include <vector>
 
-#include <talus/maps/elevation_reader.hpp>
 #include <talus/maps/gdal_dataset.hpp>
+#include <talus/maps/georeference.hpp>
+#include <talus/maps/read_options.hpp>
 
 namespace talus::maps {
 

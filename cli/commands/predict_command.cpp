@@ -33,7 +33,7 @@ int run(const PredictOptions& options, Context& context) {
   terramech::ModelFile file = terramech::loadModel(options.model);
   if (!file.soil_given)
     throw InputError({options.model, "names no soil", "trace some data with it first: talus trace"});
-  if (!options.rover.empty()) file.model.wheel = terramech::loadRover(options.rover).wheel;
+  if (!options.rover.empty()) file.model.takeRover(terramech::loadRover(options.rover));
   const auto table = terramech::predictTable(options.table, file.model, context.watch("predicting"));
   if (context.stop.stop_requested()) return Exit::kCancelled;
   constexpr std::size_t kShown = 20;

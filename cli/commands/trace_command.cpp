@@ -37,7 +37,7 @@ terramech::ModelFile baseOf(const TraceCommandOptions& options) {
   terramech::ModelFile file;
   if (!options.base.empty()) file = terramech::loadModel(options.base);
   if (options.base.empty()) file = terramech::unknownSoil();
-  if (!options.rover.empty()) file.model.wheel = terramech::loadRover(options.rover).wheel;
+  if (!options.rover.empty()) file.model.takeRover(terramech::loadRover(options.rover));
   return file;
 }
 

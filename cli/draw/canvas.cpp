@@ -158,6 +158,13 @@ std::string Canvas::bytes() {
   return surface_->svg;
 }
 
+std::string png(const Image& image) {
+  Canvas canvas(
+      {.width = image.width, .height = image.height, .kind = Canvas::Kind::Png, .transparent = true});
+  canvas.image(image, {0.0, 0.0, static_cast<double>(image.width), static_cast<double>(image.height)});
+  return canvas.bytes();
+}
+
 void outline(Canvas& canvas, const Box& b, const Stroke& stroke) {
   const std::array<Spot, 5> corners{
       {{b.x, b.y}, {b.x + b.width, b.y}, {b.x + b.width, b.y + b.height}, {b.x, b.y + b.height}, {b.x, b.y}}};

@@ -78,6 +78,9 @@ class Canvas {
   std::unique_ptr<Surface> surface_;
 };
 
+/// The image as a PNG file.
+std::string png(const Image& image);
+
 /// The box outline of a stroke.
 void outline(Canvas& canvas, const Box& box, const Stroke& stroke);
 

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <talus/cli/draw/canvas.hpp>
 #include <talus/cli/draw/image.hpp>
 
 namespace talus::cli {
@@ -12,13 +11,6 @@ std::uint32_t pixel(Colour c) {
   };
   return byte(c.alpha) << 24 | byte(c.red * c.alpha) << 16 | byte(c.green * c.alpha) << 8 |
          byte(c.blue * c.alpha);
-}
-
-std::string png(const Image& image) {
-  Canvas canvas(
-      {.width = image.width, .height = image.height, .kind = Canvas::Kind::Png, .transparent = true});
-  canvas.image(image, {0.0, 0.0, static_cast<double>(image.width), static_cast<double>(image.height)});
-  return canvas.bytes();
 }
 
 std::string base64(const std::string& bytes) {

@@ -27,9 +27,6 @@ struct Image {
 /// A colour as one pixel.
 std::uint32_t pixel(Colour colour);
 
-/// The image as a PNG file.
-std::string png(const Image& image);
-
 /// Base64 of bytes, for data URIs.
 std::string base64(const std::string& bytes);
 

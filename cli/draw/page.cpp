@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include <talus/cli/app/output_file.hpp>
+#include <talus/cli/draw/canvas.hpp>
 #include <talus/cli/draw/html_report.hpp>
 #include <talus/cli/draw/map_image.hpp>
 #include <talus/cli/draw/page.hpp>

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <utility>
 
+#if defined(__x86_64__)
 #include <immintrin.h>
+#endif
 
 #include <talus/planner/field/cost_to_go.hpp>
 #include <talus/planner/field/descent.hpp>
@@ -38,6 +40,7 @@ struct ImprovedByScalar {
   }
 };
 
+#if defined(__x86_64__)
 // The same eight comparisons at once.
 struct ImprovedByVector {
   __attribute__((target("avx2"))) static unsigned of(const std::uint32_t* distance, const std::uint16_t* into,
@@ -61,6 +64,9 @@ struct ImprovedByVector {
     return ~static_cast<unsigned>(_mm256_movemask_ps(_mm256_castsi256_ps(worse))) & 0xffU;
   }
 };
+#else
+using ImprovedByVector = ImprovedByScalar;
+#endif
 
 // Where a cell's surroundings lie in memory.
 struct Surroundings {
@@ -142,7 +148,10 @@ void CostToGo::settleCurrent() {
 }
 
 // The loop compiled for vectors as a whole, so that the kernel is part of it and no call.
-__attribute__((target("avx2"), flatten)) void CostToGo::settleByVector(Bucket& bucket) {
+#if defined(__x86_64__)
+__attribute__((target("avx2"), flatten))
+#endif
+void CostToGo::settleByVector(Bucket& bucket) {
   settleBucket<ImprovedByVector>(bucket);
 }
 

@@ -3,7 +3,9 @@
 #include <utility>
 #include <vector>
 
+#if defined(__x86_64__)
 #include <immintrin.h>
+#endif
 
 #include <talus/maps/parallel_for.hpp>
 #include <talus/planner/field/edge_layer.hpp>
@@ -62,8 +64,14 @@ void stepsInto(const ThreeRows& rows, std::uint16_t* into) noexcept {
   }
 }
 
-// The same with vectors: lane k holds the heading k until the end, when lanes turn from headings to where
-// they come from.
+// The steps into so many cells that follow each other.
+void rowInto(ThreeRows rows, std::size_t count, std::uint16_t* into) noexcept {
+  for (; count-- > 0; into += 8, ++rows[0], ++rows[1], ++rows[2]) stepsInto(rows, into);
+}
+
+#if defined(__x86_64__)
+// The steps into one cell with vectors: lane k holds the heading k until the end, when lanes turn from
+// headings to where they come from.
 __attribute__((target("sse4.1"))) void stepsIntoByVector(const ThreeRows& rows,
                                                          std::uint16_t* into) noexcept {
   const auto at = [&rows](int row, int column) __attribute__((target("sse4.1"))) {
@@ -89,15 +97,13 @@ __attribute__((target("sse4.1"))) void stepsIntoByVector(const ThreeRows& rows,
   _mm_storeu_si128(reinterpret_cast<__m128i*>(into), _mm_shuffle_epi32(steps, _MM_SHUFFLE(1, 0, 3, 2)));
 }
 
-// The steps into so many cells that follow each other.
-void rowInto(ThreeRows rows, std::size_t count, std::uint16_t* into) noexcept {
-  for (; count-- > 0; into += 8, ++rows[0], ++rows[1], ++rows[2]) stepsInto(rows, into);
-}
-
 __attribute__((target("sse4.1"))) void rowIntoByVector(ThreeRows rows, std::size_t count,
                                                        std::uint16_t* into) noexcept {
   for (; count-- > 0; into += 8, ++rows[0], ++rows[1], ++rows[2]) stepsIntoByVector(rows, into);
 }
+#else
+constexpr auto rowIntoByVector = rowInto;
+#endif
 
 }  // namespace
 

@@ -3,7 +3,9 @@
 #include <limits>
 #include <numbers>
 
+#if defined(__x86_64__)
 #include <immintrin.h>
+#endif
 
 #include <talus/planner/field/edge_units.hpp>
 
@@ -101,6 +103,7 @@ void EdgeUnits::halves(const CellCode* cells, std::size_t count, Halves* out,
   for (std::size_t i = 0; i < count; ++i) out[i] = halves(cells[i]);
 }
 
+#if defined(__x86_64__)
 // Four lanes: the headings from east to north-west, each with its opposite.
 __attribute__((target("avx2"))) void EdgeUnits::halvesByVector(const CellCode* cells, std::size_t count,
                                                                Halves* out) const noexcept {
@@ -126,6 +129,11 @@ __attribute__((target("avx2"))) void EdgeUnits::halvesByVector(const CellCode* c
     _mm_storeu_si128(reinterpret_cast<__m128i*>(out[i].data()), _mm_shuffle_epi8(made, headings_first));
   }
 }
+#else
+void EdgeUnits::halvesByVector(const CellCode* cells, std::size_t count, Halves* out) const noexcept {
+  halves(cells, count, out, false);
+}
+#endif
 
 bool EdgeUnits::extends(const EdgeUnits& older) const noexcept {
   const auto begins = [](const std::vector<std::uint16_t>& longer,

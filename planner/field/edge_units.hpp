@@ -68,7 +68,7 @@ class EdgeUnits {
   // Half costs of one curve over the gradient along the heading in steps of CellCode, from -reach_ to reach_.
   std::vector<std::uint16_t> straight_, diagonal_;
   std::vector<std::uint32_t> pairs_;  // straight_, then diagonal_, each with its opposite in the upper half
-  int reach_ = 0;                     // steps along the heading covered by a table, one more than any allowed
+  int reach_ = 0;                     // most steps along a diagonal heading that the limit allows
   int across_straight_ = 0;           // most steps across a straight heading
   int across_diagonal_ = 0;           // the same for |dz/dx -+ dz/dy|
   std::size_t curves_ = 0;

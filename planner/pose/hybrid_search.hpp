@@ -23,19 +23,19 @@ struct PoseProblem {
   Kinematics kinematics;
   double time_limit_s = std::numeric_limits<double>::infinity();  ///< > 0
   ProgressMonitor watch;
-  std::uint64_t most_expanded =
-      std::numeric_limits<std::uint64_t>::max();  ///< poses, where fewer than HybridOptions allow
+  /// poses, where fewer than HybridOptions allow.
+  std::uint64_t most_expanded = std::numeric_limits<std::uint64_t>::max();
 };
 
 /// Choices of the search.
 struct HybridOptions {
   int headings = 72;        ///< headings told apart at a cell, >= 8
   double step_cells = 1.5;  ///< length of a motion; more than sqrt 2 leaves the cell
-  double heuristic_weight =
-      1.1;  ///< weight of the cost still to go, >= 1: more finds a drive sooner, and a dearer one
-  double suboptimality_bound =
-      1.03;  ///< a drive that costs at most so many times the estimate of the most promising pose
-             ///< left ends the search soon, >= 1
+  /// Weight of the cost still to go, >= 1: more finds a drive sooner, and a dearer one.
+  double heuristic_weight = 1.1;
+  /// A drive that costs at most so many times the estimate of the most promising pose left ends the search
+  /// soon, >= 1.
+  double suboptimality_bound = 1.03;
   std::uint64_t improve = 500;              ///< poses tried after that
   std::uint64_t most_expanded = 2'000'000;  ///< then it gives up, TimedOut
 };

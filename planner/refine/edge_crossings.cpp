@@ -2,7 +2,9 @@
 #include <cmath>
 #include <limits>
 
+#if defined(__x86_64__)
 #include <immintrin.h>
+#endif
 
 #include <talus/planner/refine/edge_crossings.hpp>
 #include <talus/planner/route/heading_cost.hpp>
@@ -28,6 +30,7 @@ void pricesByScalar(const DriveCost& cost, CellCode cell, float here, const Moti
     paid[i] = here + HeadingCost(cost, motions.x[i], motions.y[i])(cell) * motions.length[i];
 }
 
+#if defined(__x86_64__)
 // The same four at a time: the operations of HeadingCost, lane by lane.
 __attribute__((target("avx2"))) void pricesByVector(const DriveCost& cost, CellCode cell, float here,
                                                     const Motions& motions, int count, float* paid) noexcept {
@@ -61,6 +64,9 @@ __attribute__((target("avx2"))) void pricesByVector(const DriveCost& cost, CellC
                   _mm_add_ps(_mm_set1_ps(here), _mm_mul_ps(price, _mm_loadu_ps(motions.length + i))));
   }
 }
+#else
+constexpr auto pricesByVector = pricesByScalar;
+#endif
 
 // The steepest gradient up to which the curve and the limits allow every heading.
 double freeUpTo(const DriveCost& cost, const DriveCurve& curve) noexcept {

@@ -12,8 +12,8 @@ struct EdgePath {
   struct Turn {
     double x = 0.0;
     double y = 0.0;
-    bool on_vertical =
-        false;  ///< on the edge between two columns, free to move along y; else between two rows
+    /// On the edge between two columns, free to move along y; else between two rows.
+    bool on_vertical = false;
   };
   std::vector<Turn> turns;        ///< first and last are the ends and stay
   std::vector<maps::Cell> cells;  ///< cells[i] holds the motion from turns[i] to turns[i + 1]

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include <talus/planner/route/kinematics.hpp>
+#include <talus/planner/route/arc.hpp>
 
 namespace talus::planner {
 

@@ -4,17 +4,11 @@
 #include <memory>
 #include <vector>
 
-#include <talus/maps/grid.hpp>
+#include <talus/planner/route/arc.hpp>
 #include <talus/terramech/contact/rover.hpp>
 
 /// How a rover may move in the plane, and what turning takes.
 namespace talus::planner {
-
-/// Where the rover is and where it looks.
-struct Pose {
-  maps::Point place;
-  double heading_rad = 0.0;  ///< counter-clockwise from x
-};
 
 /// What a radian of heading, or a change of direction, takes beside the path's own length.
 struct TurnPrice {
@@ -43,15 +37,6 @@ struct Kinematics {
     return curve < turns_by_curve.size() ? turns_by_curve[curve] : turns;
   }
 };
-
-/// A stretch of constant curvature.
-struct Arc {
-  double length_m = 0.0;       ///< > 0 forward, < 0 in reverse
-  double curvature_1_m = 0.0;  ///< left > 0 as the rover looks
-};
-
-/// The pose at the end of an arc that starts at a pose.
-Pose after(const Pose& from, const Arc& arc) noexcept;
 
 /// The shortest ways between poses for a turning radius > 0: Reeds-Shepp with reversing, else Dubins
 /// (reeds_shepp_1990, by OMPL; dubins.hpp). Immutable, safe to share between threads.

@@ -26,12 +26,12 @@ struct Problem {
   double time_limit_s = std::numeric_limits<double>::infinity();  ///< > 0
   std::uint64_t seed = 1;                                         ///< same seed, same route
   int threads = 1;                                                ///< >= 1; the answer does not depend on it
-  bool prove =
-      true;  ///< also work out the best lower bound, for about the time of a field; else a simple one
+  /// Also work out the best lower bound, for about the time of a field; else a simple one.
+  bool prove = true;
   bool whole_field = false;  ///< settle the whole map even where it is large (NamedPlanner)
   ProgressMonitor watch{};
-  std::optional<double>
-      start_heading_rad{};  ///< which way the rover looks; for planners of drives, any if none
+  /// Which way the rover looks; for planners of drives, any if none.
+  std::optional<double> start_heading_rad{};
   std::optional<double> goal_heading_rad{};  ///< the same on arrival
   Kinematics kinematics{};                   ///< what planners of drives keep
 };

@@ -41,13 +41,13 @@ struct SimulationOptions {
   maps::Point start;
   maps::Point goal;
   double goal_tolerance_m = 0.0;  ///< >= 0
-  bool senses =
-      true;  ///< the rover watches its slip, learns and replans; else it drives the first route blindly
+  /// The rover watches its slip, learns and replans; else it drives the first route blindly.
+  bool senses = true;
   double alarm_slip = 0.2;  ///< it stops and backs out when it slips so much more than the map says
-  double alarm_sinkage =
-      0.08;  ///< and when a wheel sinks so much deeper than the map says, over its radius [-]
-  double keep_out_radius_m =
-      1.0;  ///< so far it backs out at least, and so wide a berth it gives the ground that gave the alarm
+  /// And when a wheel sinks so much deeper than the map says, over its radius [-].
+  double alarm_sinkage = 0.08;
+  /// So far it backs out at least, and so wide a berth it gives the ground that gave the alarm.
+  double keep_out_radius_m = 1.0;
   double stall_detection_m =
       0.06;             ///< rim travel on the spot before a rover that does not move notices (ours: a
                         ///< quarter of a small wheel's diameter, as visual odometry resolves)

@@ -39,6 +39,7 @@ WheelTable::Row predicted(const terramech::RefinedModel& model, const Loaded& wh
   state.rim_speed_mps = rover.max_speed_mps * (slip < 0.0 ? 1.0 + slip : 1.0);
   state.speed_mps = rover.max_speed_mps * (1.0 - std::max(slip, 0.0));
   state.slope_rad = 0.0;
+  state.gravity_m_s2 = rover.gravity_m_s2;
   state.pass_index = 1.0;
   const terramech::Reading r = terramech::predict(model, state);
   if (r.sinkage_m >= rover.wheel.radius_m) return {-1.0, 1.0, 1.0};

@@ -12,8 +12,8 @@ namespace talus::terramech {
 ///     integral of cos = P/h,  P = 2 cos h - cos 2h - 1 = 4 cos h sin^2(h/2)
 ///     integral of sin = Q/h,  Q = 2 sin h - sin 2h     = 4 sin h sin^2(h/2)
 /// and the offset term 1 - theta/h on [0, h] has
-///     integral of cos = (1 - cos h)/h,  integral of sin = 1 - sin(h)/h   (2.3 corrected: the thesis prints
-///     another term).
+///     integral of cos = (1 - cos h)/h,  integral of sin = 1 - sin(h)/h
+/// (2.3 corrected: the thesis prints another term).
 /// The product forms keep their digits at small h.
 struct LinearStressMoments {
   explicit LinearStressMoments(double entry_angle_rad);

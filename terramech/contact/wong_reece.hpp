@@ -12,9 +12,9 @@ namespace talus::terramech {
 struct WheelOperation {
   double load_N = 0.0;  ///< vertical load > 0
   double slip = 0.0;    ///< [-1, 1]: driven 1 - v/(r omega) >= 0, braked r omega/v - 1 < 0, locked -1
-  double rebound =
-      0.0;  ///< kappa in [0, 1): the soil springs back by kappa z behind the wheel, so that contact ends at
-            ///< theta_2 = -acos(1 - kappa z/r); 0 ends it under the axle (theta_2 = 0, as the thesis)
+  /// Kappa in [0, 1): the soil springs back by kappa z behind the wheel, so that contact ends at theta_2 =
+  /// -acos(1 - kappa z/r); 0 ends it under the axle (theta_2 = 0, as the thesis).
+  double rebound = 0.0;
 };
 
 /// What the soil does to a wheel.

@@ -19,6 +19,7 @@ void scalarGroup(const WheelCase* cases, WheelForces* forces, bool* left) {
     lanes::solveGroup<double>(cases + lane, forces + lane, left + lane);
 }
 
+#if defined(__x86_64__)
 __attribute__((target("avx2"))) void avx2Group(const WheelCase* cases, WheelForces* forces, bool* left) {
   lanes::solveGroup<lanes::Four>(cases, forces, left);
 }
@@ -26,6 +27,13 @@ __attribute__((target("avx2"))) void avx2Group(const WheelCase* cases, WheelForc
 bool haveAvx2() {
   return __builtin_cpu_supports("avx2") != 0;
 }
+#else
+constexpr Group avx2Group = scalarGroup;
+
+constexpr bool haveAvx2() {
+  return false;
+}
+#endif
 
 Group groupOf(BatchKernel kernel) {
   if (kernel == BatchKernel::Avx2 && !haveAvx2())

@@ -2,25 +2,11 @@
 
 #include <span>
 
+#include <talus/terramech/contact/wheel_case.hpp>
 #include <talus/terramech/contact/wong_reece.hpp>
 
 /// Many rigid wheels at once.
 namespace talus::terramech {
-
-/// A wheel on a soil at a slip, flat, as a row of a table.
-struct WheelCase {
-  double cohesion_Pa = 0.0;         ///< >= 0
-  double friction_angle_rad = 0.0;  ///< [0, pi/2)
-  double sinkage_exponent = 1.0;    ///< n > 0 [-]
-  double sinkage_modulus = 0.0;     ///< k_c/b + k_phi > 0 [N/m^(n+2)]
-  double shear_modulus_m = 0.02;    ///< K > 0
-  double c1 = 0.43;                 ///< [-]
-  double c2 = 0.32;                 ///< [-]
-  double wheel_radius_m = 0.1;      ///< > 0
-  double wheel_width_m = 0.1;       ///< > 0
-  double load_N = 0.0;              ///< > 0
-  double slip = 0.0;                ///< [-1, 1], as WheelOperation::slip
-};
 
 /// The case of a soil, a wheel and its operation; the operation's rebound must be 0.
 WheelCase wheelCase(const Soil& soil, const Wheel& wheel, const WheelOperation& operation);

@@ -4,7 +4,8 @@
 #include <cmath>
 #include <cstddef>
 
-#include <talus/terramech/contact/wong_reece_batch.hpp>
+#include <talus/terramech/contact/wheel_case.hpp>
+#include <talus/terramech/contact/wong_reece.hpp>
 #include <talus/terramech/numerics/gauss_legendre.hpp>
 #include <talus/terramech/numerics/lane_math.hpp>
 

@@ -7,7 +7,6 @@ namespace talus::terramech::detail {
 namespace {
 
 using Input = const EffectInput&;
-constexpr double kGravity = 9.80665;  // the tests of the literature were made on Earth
 
 double passive(const WheelContact& c) {  // Kp = tan^2(45 deg + phi/2)
   const double t = std::tan(0.785398163397448 + 0.5 * std::atan(c.tan_friction));
@@ -20,7 +19,7 @@ struct Wedge {
 };
 
 Wedge wedge(const WheelContact& c, double z, double width) {
-  const double kp = passive(c), weight = c.density_kg_m3 * kGravity;
+  const double kp = passive(c), weight = c.density_kg_m3 * c.gravity_m_s2;
   return {width * 0.5 * weight * z * z * kp, width * 2.0 * c.cohesion_Pa * z * std::sqrt(kp)};
 }
 
@@ -30,7 +29,7 @@ double hegedus(const WheelContact& c, double z) {
   const double cot_x = 1.0 / std::tan(x), front = cot_x + std::tan(x + phi);
   const double tan_phi = std::max(c.tan_friction, 1e-3);
   const double heap = cot_x + cot_x * cot_x * tan_phi;
-  return c.width_m * front * (z * c.cohesion_Pa + 0.5 * c.density_kg_m3 * kGravity * z * z * heap);
+  return c.width_m * front * (z * c.cohesion_Pa + 0.5 * c.density_kg_m3 * c.gravity_m_s2 * z * z * heap);
 }
 
 /// Share of the passive pressure ahead that a wheel mobilises while it goes its own width sideways, by Janosi
@@ -64,7 +63,7 @@ FaceForces faceForces(const WheelContact& c, double z, double slip_angle_rad, do
   const double slide = std::max(std::hypot(along, up), 1e-12);
   const double kp = passiveRough(c.tan_friction, tan_wall * up / slide);
   const double chord = 2.0 * std::sqrt(std::max(0.0, z * (2.0 * c.radius_m - z)));
-  const double weight = c.density_kg_m3 * kGravity;
+  const double weight = c.density_kg_m3 * c.gravity_m_s2;
   const double push = chord * z * (0.5 * weight * z * kp + 2.0 * c.cohesion_Pa * std::sqrt(kp)) *
                       std::abs(std::sin(slip_angle_rad));
   return {push, -tan_wall * push * along / slide};

@@ -66,6 +66,7 @@ void Bound::bend(const BoundEffect& curve, double x, WheelContact& contact) {
 WheelContact Bound::contact(const WheelState& state) const {
   WheelContact contact = contactOf(model_.soil, state.wheel);
   contact.load_N = state.load_N;
+  contact.gravity_m_s2 = state.gravity_m_s2;
   contact.slip = model_.slip_along_travel ? slipInWheelPlane(state.slip, state.slip_angle_rad) : state.slip;
   contact.rolling = rolling(state, model_.slip_along_travel);
   for (const BoundEffect& e : effects_) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <talus/terramech/contact/rover.hpp>
 #include <talus/terramech/contact/soil.hpp>
 #include <talus/terramech/effects/effects.hpp>
 #include <talus/terramech/effects/wheel_state.hpp>
@@ -51,10 +52,17 @@ struct RefinedModel {
   bool slip_along_travel =
       false;                   ///< slip was measured with the full speed, not its part along the wheel plane
   std::optional<Wheel> wheel;  ///< for rows that do not say which wheel they are of
+  double gravity_m_s2 = 9.80665;  ///< where those rows were measured
   StatedSensors stated;
   SensorNoise noise;                    ///< for standard deviations of predictions
   std::vector<FittedParameter> fitted;  ///< order of covariance
   std::vector<double> covariance;       ///< row-major, of fitted, in their own units; empty: not known
+
+  /// Rows that do not say otherwise are of this rover's wheel, in the gravity where it drives.
+  void takeRover(const Rover& rover) {
+    wheel = rover.wheel;
+    gravity_m_s2 = rover.gravity_m_s2;
+  }
 };
 
 /// What the model says that the sensors will read. Never throws on a state that validate()s;

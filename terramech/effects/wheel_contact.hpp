@@ -32,13 +32,14 @@ struct WheelContact {
   double tan_friction = 0.0;      ///< tan phi
   double shear_modulus_m = 0.02;  ///< K
   double density_kg_m3 = 1600.0;  ///< for forces that move soil
+  double gravity_m_s2 = 9.80665;  ///< the same
   double c1 = 0.43;               ///< theta_m = (c1 + c2 i) theta_1
   double c2 = 0.32;
 
   double rebound = 0.0;  ///< kappa [-]: contact ends at theta_2 = -acos(1 - kappa z/r)
-  double hard_depth_m =
-      std::numeric_limits<double>::infinity();  ///< H: below it pressure grows by hard_modulus
-  double hard_modulus_Pa_m = 0.0;               ///< k_h of the lower layer
+  /// H: below it pressure grows by hard_modulus.
+  double hard_depth_m = std::numeric_limits<double>::infinity();
+  double hard_modulus_Pa_m = 0.0;  ///< k_h of the lower layer
   // A wheel that digs: z = z0 + hypot(dug, ploughed_m) + extra_sinkage_m, dug = (gain - 1) z0 + dug_m, at
   // most 1.95 r, z0 being the static sinkage; the ground below then carries the load at a lower stress.
   double sinkage_gain = 1.0;
@@ -68,9 +69,8 @@ WheelContact contactOf(const Soil& soil, const Wheel& wheel);
 /// A load that the soil cannot carry above the axle gives the wheel sunk to its axle, the stress scaled to
 /// carry it: fits pass through such points, and none of them is a fit. Contact ends at the axle's height
 /// whatever the sinkage. Never throws. Thread-safe. Integrals: rimForces();
-///   tau = (c + sigma tan phi)(1 - e^{-j/K}) along the resultant displacement j = hypot(j_x, j_y), which is
-///   the
-/// friction circle of an isotropic soil (ishigami_2007).
+///   tau = (c + sigma tan phi)(1 - e^{-j/K}) along the resultant displacement j = hypot(j_x, j_y),
+/// which is the friction circle of an isotropic soil (ishigami_2007).
 ContactForces solveContact(const WheelContact& contact, double entry_guess_rad = 0.0);
 
 /// Contacts in their order and what the soil does to each: the memory of who solves nearly the same ones

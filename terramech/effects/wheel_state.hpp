@@ -22,11 +22,12 @@ struct WheelState {
   double speed_mps = kUnknown;
   double rim_speed_mps = kUnknown;
   double time_s = kUnknown;
-  double pass_index = kUnknown;  ///< how often this track was driven, this pass included
-  double slope_rad = kUnknown;   ///< along the heading, uphill > 0
+  double pass_index = kUnknown;   ///< how often this track was driven, this pass included
+  double slope_rad = kUnknown;    ///< along the heading, uphill > 0
+  double gravity_m_s2 = 9.80665;  ///< > 0, of the body it drives on
 
-  double measured_torque_Nm =
-      kUnknown;  ///< readings that the linear formula starts from; no other model uses them
+  /// Readings that the linear formula starts from; no other model uses them.
+  double measured_torque_Nm = kUnknown;
   double measured_sinkage_m = kUnknown;
 
   std::vector<std::pair<std::string, double>> extra;       ///< further numeric columns

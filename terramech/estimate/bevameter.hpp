@@ -27,8 +27,8 @@ struct PlateModulus {
 struct PressureSinkage {
   double sinkage_exponent = 0.0;     ///< n [-], common to all plates
   std::vector<PlateModulus> plates;  ///< k of each plate size
-  std::optional<double>
-      cohesive_modulus;  ///< k_c [N/m^(n+1)]; empty when the sizes cannot separate it from k_phi
+  /// k_c [N/m^(n+1)]; empty when the sizes cannot separate it from k_phi.
+  std::optional<double> cohesive_modulus;
   std::optional<double> frictional_modulus;  ///< k_phi [N/m^(n+2)]; empty likewise
   double residual_std = 0.0;                 ///< pressure-weighted scatter of ln(sigma) [-]
   std::string refused;                       ///< why k_c and k_phi are empty; empty otherwise

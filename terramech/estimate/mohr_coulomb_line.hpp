@@ -24,8 +24,8 @@ struct ShearStrength {
   double residual_std_Pa = 0.0;  ///< scatter about the line [Pa]
   double condition = 0.0;        ///< 2-norm condition number of K_1 with its columns scaled alike [-]
   std::size_t samples = 0;
-  std::vector<std::string>
-      unseen;  ///< parameters that the data cannot see, each with the reason; empty: all seen
+  /// Parameters that the data cannot see, each with the reason; empty: all seen.
+  std::vector<std::string> unseen;
 
   /// phi = arctan(tan_friction) [rad].
   double frictionAngle_rad() const;

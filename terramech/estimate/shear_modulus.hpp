@@ -21,8 +21,8 @@ struct ModulusRange {
 /// K and the criterion at it.
 struct ModulusEstimate {
   double shear_modulus_m = 0.0;
-  double error =
-      0.0;  ///< of the criterion: [Pa] for D.1, relative torque [-] for the joint fit, [m] spread for D.8
+  /// Of the criterion: [Pa] for D.1, relative torque [-] for the joint fit, [m] spread for D.8.
+  double error = 0.0;
   bool at_bound = false;  ///< the data do not see K: the criterion has no minimum inside the range
 };
 

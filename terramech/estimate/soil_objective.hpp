@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include <talus/terramech/estimate/soil_posterior.hpp>
+#include <talus/terramech/estimate/soil_fit.hpp>
 #include <talus/terramech/estimate/state_population.hpp>
 #include <talus/terramech/estimate/truncated_gaussian.hpp>
 #include <talus/terramech/estimate/wheel_reading.hpp>

@@ -1,15 +1,8 @@
 #pragma once
 
 #include <span>
-#include <string>
-#include <vector>
 
-#include <Eigen/Core>
-
-#include <talus/talus.hpp>
-#include <talus/terramech/estimate/reading_errors.hpp>
-#include <talus/terramech/estimate/soil_mixture.hpp>
-#include <talus/terramech/estimate/wheel_reading.hpp>
+#include <talus/terramech/estimate/soil_fit.hpp>
 
 /// The soil under a wheel by Bayes' rule on the whole Wong-Reece contact (ours).
 ///
@@ -24,47 +17,6 @@
 /// itself. What is returned is the mean over the mixture of classes, which has the least mean square error,
 /// not the mode.
 namespace talus::terramech {
-
-/// How to fit.
-struct SoilFitOptions {
-  ReadingErrors noise = {};
-  double outlier_share = 0.01;  ///< of samples that err ten times as much, [0, 0.5)
-  int draws = 256;              ///< importance samples a class, >= 16
-  ProgressMonitor watch = {};   ///< followed and stopped by it where samples are many
-};
-
-/// One soil out of the posterior.
-struct SoilDraw {
-  ContactSoil soil;
-  double weight = 0.0;  ///< those of all draws add up to 1
-  int soil_class = 0;   ///< index into the prior
-};
-
-/// A range that holds the truth with 95 % probability.
-struct CredibleInterval {
-  double low = 0.0;
-  double high = 0.0;
-};
-
-/// What is believed after the samples.
-struct SoilPosterior {
-  ContactSoil mean;
-  SoilMatrix covariance = SoilMatrix::Zero();                     ///< of (c, phi, n, k, K), SI
-  double tan_friction = 0.0;                                      ///< mean of tan(phi) [-]
-  Eigen::Matrix2d strength_covariance = Eigen::Matrix2d::Zero();  ///< of (c [Pa], tan phi)
-  /// (x - mean)' strength_covariance^-1 (x - mean) <= this, x = (c, tan phi), holds 95 % of the
-  /// posterior. 5.99 were it Gaussian; less where the bounds of a class cut it off.
-  double ellipse_95 = 0.0;
-  CredibleInterval cohesion_Pa;
-  CredibleInterval friction_angle_rad;
-  CredibleInterval shear_modulus_m;
-  std::vector<double> class_probabilities;  ///< in the order of the prior
-  std::vector<SoilDraw> draws;
-  double effective_draws = 0.0;  ///< of the weighted draws; below about 20 the figures are rough
-  double misfit =
-      0.0;  ///< mean square of the whitened residuals of the best class; about 1 when model and noise hold
-  std::vector<std::string> unseen;  ///< parameters that the samples said little about, each with the reason
-};
 
 /// Squared distance of a soil from the mean in units of the posterior's covariance of (c, tan phi): compare
 /// with ellipse_95. What the prior fixes does not count.

@@ -180,11 +180,13 @@ ModelFile loadModel(const std::string& path) {
     setDeviation(file.model, prior);
     return file;
   }
-  root.only({"name", "soil", "model", "sensors", "wheel", "slip_along_travel", "effects", "noise", "fitted",
-             "covariance"});
+  root.only({"name", "soil", "model", "sensors", "wheel", "gravity_m_s2", "slip_along_travel", "effects",
+             "noise", "fitted", "covariance"});
   RefinedModel& model = file.model;
   model.base = readBase(root);
   if (root.has("wheel")) model.wheel = readWheel(root.fields("wheel"));
+  model.gravity_m_s2 = root.number("gravity_m_s2", model.gravity_m_s2);
+  if (model.gravity_m_s2 <= 0.0) root.refuse("gravity_m_s2", "gravity_m_s2 must be > 0", "correct it");
   file.soil_given = root.has("soil");
   if (file.soil_given)
     readSoilInto(root, model);
@@ -277,6 +279,7 @@ std::string modelText(const RefinedModel& model) {
     w << "wheel: {radius_m: " << model.wheel->radius_m << ", width_m: " << model.wheel->width_m
       << ", grouser_height_m: " << model.wheel->grouser_height_m
       << ", grouser_count: " << model.wheel->grouser_count << "}\n";
+  w << "gravity_m_s2: " << model.gravity_m_s2 << "\n";
   w << "slip_along_travel: " << (model.slip_along_travel ? "true" : "false") << "\n";
   if (!model.effects.empty()) w << "effects:\n";
   for (const Effect& e : model.effects) writeEffect(w, e);

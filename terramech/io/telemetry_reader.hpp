@@ -11,8 +11,8 @@ namespace talus::terramech {
 
 /// How telemetry is read.
 struct TelemetryOptions {
-  std::vector<std::string>
-      required;  ///< columns of numbers that must be there, and filled in every row that is used
+  /// Columns of numbers that must be there, and filled in every row that is used.
+  std::vector<std::string> required;
   double wheel_radius_m = 0.0;  ///< for the sinkage check where the file has no wheel_radius_m; 0: not known
 };
 

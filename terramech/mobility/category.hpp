@@ -28,8 +28,8 @@ struct CategoryThresholds {
   double z_critical = 0.75;                ///< z/r above this is dangerous
   std::optional<double> t_threshold = {};  ///< T/(rW) from here on costs a rank
   std::optional<double> t_critical = {};   ///< T/(rW) above this is dangerous
-  std::optional<double> steering_slip =
-      {};  ///< slip above this is dangerous: the wheel cannot be steered (ours)
+  /// Slip above this is dangerous: the wheel cannot be steered (ours).
+  std::optional<double> steering_slip = {};
 };
 
 /// Slopes that set the drawbar pull thresholds.

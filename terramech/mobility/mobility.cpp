@@ -48,7 +48,8 @@ std::optional<Drive> driveAt(const CarriedForces& carried, const Rover& rover, d
   return drive;
 }
 
-/// Drives at rising slip from a start, as long as the slope keeps rising (sign 1) or falling (sign -1).
+/// Drives at rising slip, as far as there is one: those whose slope goes beyond all before, upwards
+/// (sign 1) or downwards (sign -1).
 void follow(const CarriedForces& carried, const Rover& rover, const std::vector<double>& slips, double sign,
             std::vector<Drive>& drives) {
   for (const double slip : slips) {
@@ -104,6 +105,7 @@ WheelForces predicted(const RefinedModel& model, const Rover& rover, const Stati
   state.speed_mps = rover.max_speed_mps * (1.0 - std::max(at.slip, 0.0));
   state.pass_index = pass;
   state.slope_rad = at.slope_rad;
+  state.gravity_m_s2 = rover.gravity_m_s2;
   const Reading reading = predict(model, state);
   return {.sinkage_m = reading.sinkage_m,
           .entry_angle_rad = 0.0,

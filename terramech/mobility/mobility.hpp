@@ -21,12 +21,12 @@ struct MobilityState {
   double slip = 0.0;       ///< driven in [0, 1], braked in [-1, 0)
   double sinkage_m = 0.0;  ///< of each wheel; of the first axle where they differ
   double torque_Nm = 0.0;  ///< of each wheel, the mean where axles differ; negative when it brakes
-  double energy_J_per_m =
-      0.0;  ///< all wheels and hotel power, per metre driven along the surface; braking gives none back
+  /// All wheels and hotel power, per metre driven along the surface; braking gives none back.
+  double energy_J_per_m = 0.0;
   double speed_mps = 0.0;  ///< over the ground, along the surface
-  double drawbar_pull_margin =
-      0.0;  ///< pull that is left, over the load [-]: the least of DP/N at the reference slip less
-            ///< tan(slope), and tan(slope) less DP/N of a locked wheel; < 0 when it must fail
+  /// Pull that is left, over the load [-]: the least of DP/N at the reference slip less tan(slope), and
+  /// tan(slope) less DP/N of a locked wheel; < 0 when it must fail.
+  double drawbar_pull_margin = 0.0;
   bool feasible = false;  ///< slip <= max_slip, |torque| <= the rover's, the locked wheels hold downhill
 };
 

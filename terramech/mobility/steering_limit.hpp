@@ -9,8 +9,8 @@ namespace talus::terramech {
 struct SteeringDemand {
   double load_N = 0.0;             ///< on the wheel, > 0
   double slip_angle_rad = 0.2618;  ///< largest angle between wheel and travel, (0, pi/2); 15 deg
-  double side_force_over_load =
-      0.1;  ///< force across the wheel that turning or a side slope asks for, over the load [-]
+  /// Force across the wheel that turning or a side slope asks for, over the load [-].
+  double side_force_over_load = 0.1;
 };
 
 /// The slip in [0, 1] above which the wheel cannot give the side force at the slip angle: a spinning wheel

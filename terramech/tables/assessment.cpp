@@ -61,7 +61,7 @@ RefinedModel modelOf(const AssessOptions& options, std::vector<std::string>& lef
   ModelFile file = loadModel(options.model);
   if (!file.soil_given)
     throw InputError({options.model, "names no soil", "trace some data with it first: talus trace"});
-  if (!options.rover.empty()) file.model.wheel = loadRover(options.rover).wheel;
+  if (!options.rover.empty()) file.model.takeRover(loadRover(options.rover));
   for (const Effect& effect : file.model.effects) {
     if (isSensorFault(effect)) left_out.push_back(effect.name);
   }

@@ -19,7 +19,7 @@ RefinedModel modelOf(const EstimateOptions& options) {
     throw InputError({.where = options.model,
                       .reason = "its base is the linear formula, which has no soil",
                       .remedy = "take a model whose base is wong-reece"});
-  if (!options.rover.empty()) model.wheel = loadRover(options.rover).wheel;
+  if (!options.rover.empty()) model.takeRover(loadRover(options.rover));
   return model;
 }
 

@@ -21,8 +21,8 @@ struct ClosureOffset {
 std::vector<double> closureErrors(const Trial& trial);
 
 /// Checks DP against measured T and z by the relation that needs no soil (kang_2003, Eq. 3.12),
-///   DP/W = -tan(theta_1/2) + [sin(theta_1/4)/(theta_1/4)]^2 / cos(theta_1/2) T/(rW),  theta_1 = acos(1 -
-///   z/r),
+///   DP/W = -tan(theta_1/2) + [sin(theta_1/4)/(theta_1/4)]^2 / cos(theta_1/2) T/(rW)
+///   theta_1 = acos(1 - z/r)
 /// good to 0.03 for soils of 0 to 3 kPa and 20 to 37 deg: finds the group of a text column that differs from
 /// the others by more than 0.06, twice that, which a freely fitted soil would hide. The group that is further
 /// from the relation is the one that is off. Empty where no row has all three, or nothing stands out at p

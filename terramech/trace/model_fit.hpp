@@ -20,8 +20,8 @@ struct FitPlan {
   std::map<int, Estimate> soil_prior;
   std::map<int, Estimate> effect_prior;  ///< by number of an effect, of its first parameter
   int iterations = 12;
-  const Eigen::MatrixXd* derivative =
-      nullptr;  ///< whitened, kept for all iterations; null: taken anew in each
+  /// whitened, kept for all iterations; null: taken anew in each.
+  const Eigen::MatrixXd* derivative = nullptr;
 };
 
 /// A fitted model.

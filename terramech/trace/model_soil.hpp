@@ -13,8 +13,8 @@ namespace talus::terramech {
 
 /// How a soil is found under a model's effects.
 struct ModelSoilOptions {
-  std::optional<RefinedModel>
-      prior;  ///< whose stated soil is the prior; none: vague, as where `trace` fits one
+  /// Whose stated soil is the prior; none: vague, as where `trace` fits one.
+  std::optional<RefinedModel> prior;
   std::optional<double> shear_modulus_m;  ///< K as stated [m], then not fitted
   double noise = 0.05;  ///< relative standard deviation of readings that the model's file says nothing of [-]
 };

@@ -303,20 +303,6 @@ RefinedModel asDriven(RefinedModel model, const Trial& trial) {
 
 }  // namespace
 
-ChannelErrors rmseOf(const RefinedModel& model, const Trial& trial) {
-  SolvedContacts solved;
-  const Eigen::MatrixXd residual = trial.measured - predictRows(model, trial, solved);
-  ChannelErrors errors{};
-  for (int c = 0; c < kChannels; ++c) {
-    double sum = 0.0;
-    int count = 0;
-    for (double r : residual.col(c))
-      if (std::isfinite(r)) sum += r * r, ++count;
-    errors[static_cast<std::size_t>(c)] = count ? std::sqrt(sum / count) : std::nan("");
-  }
-  return errors;
-}
-
 TraceResult traceResiduals(const RefinedModel& base, const Trial& trial, const TraceOptions& options,
                            const ProgressMonitor& watch) {
   Path best{TraceSearch{asDriven(base, trial), trial, options}, {}, {}, {}};

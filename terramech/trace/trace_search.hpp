@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <talus/terramech/trace/folds.hpp>
-#include <talus/terramech/trace/residual_trace.hpp>
+#include <talus/terramech/trace/trace_result.hpp>
 
 namespace talus::terramech {
 

@@ -39,6 +39,7 @@ WheelState stateAt(const Telemetry& t, std::size_t row, const RefinedModel& mode
   constexpr double kUnknown = WheelState::kUnknown;
   WheelState s;
   s.wheel = wheelAt(t, row, model);
+  s.gravity_m_s2 = model.gravity_m_s2;
   s.load_N = numberAt(t.find("load_N"), row, kUnknown);
   s.slip = numberAt(t.find("slip"), row, kUnknown);
   s.slip_angle_rad = numberAt(t.find("slip_angle_rad"), row, 0.0);

@@ -85,6 +85,29 @@ TEST(House, TheCheckerOfRoutesSharesNothing) {
   EXPECT_GT(files("tests/safety", {".cpp"}).size(), 8U);
 }
 
+// What each unit (a header and its source) includes of the rooms.
+Rooms unitsIncluded() {
+  const std::regex include(R"(#include <talus/([a-z_0-9/]+)\.hpp>)");
+  Rooms arrows;
+  for (const auto& [room, below] : roomsBelow())
+    for (const auto& file : files(room, {".hpp", ".cpp"})) {
+      const std::string source = text(file);
+      const std::string unit = file.lexically_relative(TALUS_SOURCE_DIR).replace_extension().generic_string();
+      for (std::sregex_iterator i(source.begin(), source.end(), include), end; i != end; ++i)
+        if ((*i)[1] != unit) arrows[unit].insert((*i)[1]);
+    }
+  return arrows;
+}
+
+TEST(House, NoTwoUnitsIncludeEachOther) {
+  const Rooms arrows = unitsIncluded();
+  ASSERT_GT(arrows.size(), 200U);
+  for (const auto& [unit, others] : arrows)
+    for (const auto& other : others)
+      if (unit < other && arrows.contains(other))
+        EXPECT_FALSE(arrows.at(other).contains(unit)) << unit << " and " << other << " include each other";
+}
+
 TEST(House, FilesHaveOneIdea) {
   for (const auto& [room, below] : roomsBelow())
     for (const auto& file : files(room, {".hpp", ".cpp"})) {

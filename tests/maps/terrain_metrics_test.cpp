@@ -175,6 +175,7 @@ TEST(TerrainMetrics, RefusesNonsense) {
 }
 
 // The vector kernel against its twin for any processor.
+#if defined(__x86_64__)
 TEST(PlaneKernel, BothTwinsGiveTheSameBits) {
   if (!__builtin_cpu_supports("avx2")) GTEST_SKIP() << "this processor has no AVX2";
   const Footprint footprint = discFootprint(3.2);
@@ -203,6 +204,7 @@ TEST(PlaneKernel, BothTwinsGiveTheSameBits) {
   };
   EXPECT_EQ(bits(fitPlanesBaseline), bits(fitPlanesAvx2));
 }
+#endif
 
 }  // namespace
 }  // namespace talus::maps

@@ -84,12 +84,14 @@ TEST(WongReeceBatch, AgreesWithTheReferenceCases) {
   }
 }
 
+#if defined(__x86_64__)
 TEST(WongReeceBatch, KernelsGiveTheSameBits) {
   if (!__builtin_cpu_supports("avx2")) GTEST_SKIP() << "no AVX2 here";
   const auto cases = wideCases(4003);
   const auto scalar = solved(cases, BatchKernel::Scalar), avx2 = solved(cases, BatchKernel::Avx2);
   EXPECT_EQ(std::memcmp(scalar.data(), avx2.data(), scalar.size() * sizeof(WheelForces)), 0);
 }
+#endif
 
 TEST(WongReeceBatch, ACaseDoesNotSeeItsNeighbours) {
   const auto cases = wideCases(400);

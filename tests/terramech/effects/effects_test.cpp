@@ -194,6 +194,23 @@ TEST(Effects, SoilBehindADiggingWheelPushesItAndItDoesNotBulldozeWhatItDug) {
               2.0 * state().wheel.width_m * 0.5 * 1600.0 * 9.80665 * pushed * pushed * kp, 1e-6);
 }
 
+TEST(Effects, SoilMovedInFrontWeighsWhatItDoesWhereTheRoverDrives) {
+  RefinedModel model = base();
+  model.soil.cohesion_Pa = 0.0;
+  const auto resistance = [&](const char* effect, std::vector<double> parameters, double gravity_m_s2) {
+    WheelState s = straightOn(0.6);
+    s.gravity_m_s2 = gravity_m_s2;
+    model.effects.clear();
+    const double without = predict(model, s).drawbar_pull_N;
+    model.effects = {with(effect, std::move(parameters))};
+    return without - predict(model, s).drawbar_pull_N;
+  };
+  // Closed form: without cohesion the resistance is proportional to the soil's weight.
+  const double earth = resistance("bulldozing", {1.0}, 9.80665), moon = resistance("bulldozing", {1.0}, 1.62);
+  EXPECT_GT(moon, 0.0);
+  EXPECT_NEAR(moon / earth, 1.62 / 9.80665, 1e-9);
+}
+
 TEST(Effects, ARoughFaceBrakesALockedWheelPushesASpinningOneAndBearsLessBesideIt) {
   RefinedModel model = base();
   model.slip_along_travel = true;

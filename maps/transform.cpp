@@ -6,7 +6,7 @@
 #include <GeographicLib/PolarStereographic.hpp>
 #include <GeographicLib/TransverseMercator.hpp>
 
-#include <talus/maps/projection.hpp>
+#include <talus/maps/transform.hpp>
 #include <talus/talus.hpp>
 
 namespace talus::maps {
@@ -15,7 +15,7 @@ namespace {
 // Projections of GeographicLib whose calls read Forward(lon0, lat, lon, x, y): degrees, y from an origin of
 // their own, which is moved to the latitude of origin.
 template <typename Engine>
-class FromEngine final : public Georeference::Transform {
+class FromEngine final : public Transform {
  public:
   FromEngine(Engine engine, double latitude_of_origin_rad) : engine_(std::move(engine)) {
     origin_y_m_ = forward({latitude_of_origin_rad, 0.0}).y_m;
@@ -40,7 +40,7 @@ class FromEngine final : public Georeference::Transform {
   double origin_y_m_ = 0.0;
 };
 
-class PolarStereographic final : public Georeference::Transform {
+class PolarStereographic final : public Transform {
  public:
   PolarStereographic(const Ellipsoid& e, const Projection& p)
       : engine_(e.equatorial_radius_m, e.flattening, p.scale), north_(p.standard_parallel_1_rad > 0) {
@@ -65,7 +65,7 @@ class PolarStereographic final : public Georeference::Transform {
   bool north_;
 };
 
-class AzimuthalEquidistant final : public Georeference::Transform {
+class AzimuthalEquidistant final : public Transform {
  public:
   AzimuthalEquidistant(const Ellipsoid& e, const Projection& p)
       : engine_(GeographicLib::Geodesic(e.equatorial_radius_m, e.flattening)),
@@ -90,7 +90,7 @@ class AzimuthalEquidistant final : public Georeference::Transform {
 };
 
 template <typename Engine>
-std::unique_ptr<const Georeference::Transform> fromEngine(Engine engine, double latitude_of_origin_rad) {
+std::unique_ptr<const Transform> fromEngine(Engine engine, double latitude_of_origin_rad) {
   return std::make_unique<FromEngine<Engine>>(std::move(engine), latitude_of_origin_rad);
 }
 
@@ -103,9 +103,9 @@ double equatorScale(const Ellipsoid& e, const Projection& p) {
 }
 
 // North and south exchanged: GeographicLib 2.1 errs in Albers' projection of parallels in the south.
-class Mirrored final : public Georeference::Transform {
+class Mirrored final : public Transform {
  public:
-  explicit Mirrored(std::unique_ptr<const Georeference::Transform> inner) : inner_(std::move(inner)) {}
+  explicit Mirrored(std::unique_ptr<const Transform> inner) : inner_(std::move(inner)) {}
 
   Point forward(GeoPoint p) const override {
     const Point out = inner_->forward({-p.latitude_rad, p.longitude_rad});
@@ -118,10 +118,10 @@ class Mirrored final : public Georeference::Transform {
   }
 
  private:
-  std::unique_ptr<const Georeference::Transform> inner_;
+  std::unique_ptr<const Transform> inner_;
 };
 
-std::unique_ptr<const Georeference::Transform> albers(const Ellipsoid& e, const Projection& p) {
+std::unique_ptr<const Transform> albers(const Ellipsoid& e, const Projection& p) {
   const bool south = p.standard_parallel_1_rad + p.standard_parallel_2_rad < 0;
   const double sign = south ? -1.0 : 1.0;
   auto northern =
@@ -134,7 +134,7 @@ std::unique_ptr<const Georeference::Transform> albers(const Ellipsoid& e, const 
 
 }  // namespace
 
-std::unique_ptr<const Georeference::Transform> makeTransform(const Ellipsoid& e, const Projection& p) {
+std::unique_ptr<const Transform> makeTransform(const Ellipsoid& e, const Projection& p) {
   using enum ProjectionMethod;
   const double a = e.equatorial_radius_m;
   const double f = e.flattening;
