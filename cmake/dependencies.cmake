@@ -24,6 +24,7 @@ if(TALUS_OFFLINE)
   find_package(spdlog 1.10 REQUIRED)
   find_package(PkgConfig REQUIRED)
   pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo)
+  pkg_check_modules(NETTLE REQUIRED IMPORTED_TARGET nettle)
   find_library(CSV_LIBRARY csv REQUIRED)
 endif()
 # Campaigns over many ranks, where Boost.MPI is installed.

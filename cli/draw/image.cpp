@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <nettle/base64.h>
+
 #include <talus/cli/draw/image.hpp>
 
 namespace talus::cli {
@@ -14,16 +16,8 @@ std::uint32_t pixel(Colour c) {
 }
 
 std::string base64(const std::string& bytes) {
-  static constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t block = 0;
-    const std::size_t n = std::min<std::size_t>(3, bytes.size() - i);
-    for (std::size_t k = 0; k < 3; ++k)
-      block = block << 8 | (k < n ? static_cast<std::uint8_t>(bytes[i + k]) : std::uint8_t{0});
-    for (std::size_t k = 0; k < 4; ++k) text += k <= n ? kDigits[block >> (18 - 6 * k) & 63] : '=';
-  }
+  std::string text(BASE64_ENCODE_RAW_LENGTH(bytes.size()), ' ');
+  base64_encode_raw(text.data(), bytes.size(), reinterpret_cast<const std::uint8_t*>(bytes.data()));
   return text;
 }
 

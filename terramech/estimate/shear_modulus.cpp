@@ -48,7 +48,7 @@ double relativeTorqueError(const Wheel& wheel, std::span<const WheelSample> samp
 // globalMinimum() of an error that takes long where samples are many.
 template <class Error>
 Minimum leastError(const Error& error, ModulusRange range, const ProgressMonitor& watch) {
-  constexpr double kUsual = 110.0;  // evaluations
+  constexpr double kUsual = 85.0;  // evaluations
   double count = 0.0;
   const auto watched = [&](double k) {
     if (watch.stopped()) return 0.0;

@@ -1,8 +1,9 @@
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+
+#include <boost/math/special_functions/erf.hpp>
 
 #include <talus/terramech/numerics/normal_distribution.hpp>
 
@@ -30,17 +31,8 @@ double normalProbability(double x) {
 
 double normalQuantile(double p) {
   if (!(p > 0.0 && p < 1.0)) throw std::invalid_argument("normal quantile: probability must be in (0, 1)");
-  const double tail = std::min(p, 1.0 - p);
-  // Lower half only, so that erfc keeps its digits; the crude tail form is within 0.5, Halley's step is
-  // cubic.
-  const double t = std::sqrt(-2.0 * std::log(tail));
-  double x = -(t - (2.515517 + 0.802853 * t + 0.010328 * t * t) /
-                       (1.0 + 1.432788 * t + 0.189269 * t * t + 0.001308 * t * t * t));
-  for (int step = 0; step < 3; ++step) {
-    const double ratio = (normalProbability(x) - tail) / normalDensity(x);
-    x -= ratio / (1.0 + 0.5 * x * ratio);
-  }
-  return p < 0.5 ? x : -x;
+  using InDouble = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
+  return -std::numbers::sqrt2 * boost::math::erfc_inv(2.0 * p, InDouble());
 }
 
 Eigen::MatrixXd evenPoints(Eigen::Index rows, Eigen::Index count) {

@@ -10,7 +10,7 @@ namespace talus::terramech {
 double normalDensity(double x);
 double normalProbability(double x);
 
-/// x with normalProbability(x) = p, p in (0, 1), to 1e-12 or so: Newton-Halley steps from a logistic start.
+/// x with normalProbability(x) = p, p in (0, 1), to 1e-12 or so.
 double normalQuantile(double p);
 
 /// Points spread evenly over the open unit cube: a Halton sequence (bases 2, 3, 5, 7, ...; at most eight

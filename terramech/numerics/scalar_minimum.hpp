@@ -1,7 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <concepts>
+#include <utility>
+
+#include <boost/math/tools/minima.hpp>
 
 namespace talus::terramech {
 
@@ -11,8 +15,8 @@ struct Minimum {
   double value;
 };
 
-/// Least value of f over [low, high], both > 0: a scan of `rungs` points even in log, then golden sections
-/// about the best.
+/// Least value of f over [low, high], both > 0: a scan of `rungs` points even in log, then Brent's method about
+/// the best, to 1e-8 of the abscissa.
 template <std::invocable<double> F>
 Minimum globalMinimum(F&& f, double low, double high, int rungs = 64) {
   const double step = std::log(high / low) / (rungs - 1);
@@ -23,23 +27,10 @@ Minimum globalMinimum(F&& f, double low, double high, int rungs = 64) {
     const double value = f(rung(i));
     if (value < best.value) best = {rung(i), value}, index = i;
   }
-  constexpr double kGolden = 0.6180339887498949;
-  double a = rung(std::max(0, index - 1));
-  double b = rung(std::min(rungs - 1, index + 1));
-  double x = b - kGolden * (b - a);
-  double y = a + kGolden * (b - a);
-  double fx = f(x);
-  double fy = f(y);
-  while (b - a > 1e-9 * b) {
-    if (fx < fy) {
-      b = y, y = x, fy = fx;
-      fx = f(x = b - kGolden * (b - a));
-    } else {
-      a = x, x = y, fx = fy;
-      fy = f(y = a + kGolden * (b - a));
-    }
-  }
-  const Minimum refined = fx < fy ? Minimum{x, fx} : Minimum{y, fy};
+  // Half of the digits: nearer to its minimum a smooth f does not change any more.
+  const auto [at, value] = boost::math::tools::brent_find_minima(
+      std::forward<F>(f), rung(std::max(0, index - 1)), rung(std::min(rungs - 1, index + 1)), 26);
+  const Minimum refined{at, value};
   return refined.value < best.value ? refined : best;
 }
 

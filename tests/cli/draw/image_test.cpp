@@ -1,0 +1,16 @@
+#include <talus/cli/draw/image.hpp>
+
+namespace talus::cli {
+namespace {
+
+TEST(Base64, OfTheTestVectors) {
+  // Printed in: RFC 4648, section 10.
+  EXPECT_EQ(base64(""), "");
+  EXPECT_EQ(base64("f"), "Zg==");
+  EXPECT_EQ(base64("fo"), "Zm8=");
+  EXPECT_EQ(base64("foo"), "Zm9v");
+  EXPECT_EQ(base64("foobar"), "Zm9vYmFy");
+}
+
+}  // namespace
+}  // namespace talus::cli
