@@ -190,7 +190,7 @@ class TelemetryProcessor {
       if (seen[i])
         all[who[i]].observation = *seen[i];
       else
-        all[who[i]].reason = "says nothing: neither slope, nor torque with sinkage, nor drawbar pull";
+        all[who[i]].reason = "insufficient measurements: needs slope, torque with sinkage, or drawbar pull";
     return all;
   }
 
@@ -222,8 +222,7 @@ struct DriveIntake::State {
 void DriveIntake::State::put(const terramech::Telemetry& telemetry, bool without_torque) {
   const Rows rows(telemetry, map);
   processor.processRows(rows, without_torque, [&](std::size_t i, TelemetryProcessor::Result&& result) {
-    if (result.reason.empty() && !map.learn(result.observation))
-      result.reason = "no ground to learn about there";
+    if (result.reason.empty() && !map.learn(result.observation)) result.reason = "no soil cell there";
     const JournalRow row{.source = telemetry.source,
                          .line = static_cast<std::int64_t>(telemetry.lines[i]),
                          .accepted = result.reason.empty(),
@@ -249,10 +248,9 @@ DriveReport DriveIntake::report() const {
   DriveReport report = state_->report;
   report.findings = state_->processor.watch().findings();
   if (const std::size_t rows = state_->processor.transferred(); rows > 0)
-    report.findings.push_back(
-        std::to_string(rows) +
-        " rows: load_N is the even share of the weight on a slope; the load transfer was "
-        "worked out from the wheels' places");
+    report.findings.push_back(std::to_string(rows) +
+                              " rows: load_N is an equal share of the weight on a slope; the load transfer "
+                              "was computed from the wheel positions");
   return report;
 }
 

@@ -7,21 +7,21 @@ const char* toText(Refusal refusal) noexcept {
     case Refusal::None:
       return "allowed";
     case Refusal::Unknown:
-      return "nobody has seen this cell";
+      return "unobserved cell";
     case Refusal::Blocked:
-      return "blocked whatever the heading";
+      return "blocked for any heading";
     case Refusal::Pitch:
-      return "steeper along the heading than the rover may pitch";
+      return "slope along the heading above the pitch limit";
     case Refusal::Roll:
-      return "steeper across the heading than the rover may roll";
+      return "slope across the heading above the roll limit";
     case Refusal::Pull:
-      return "the soil cannot give the pull that the slope asks for";
+      return "required drawbar pull above the available drawbar pull";
     case Refusal::Torque:
-      return "the motors cannot give the torque";
+      return "required torque above the motor limit";
     case Refusal::Sinkage:
-      return "the wheels sink until the belly touches";
+      return "sinkage above the ground clearance";
     case Refusal::Category:
-      return "the category at this slope is refused by the policy";
+      return "category at this slope excluded by the policy";
   }
   return "";
 }

@@ -37,21 +37,21 @@ std::string limitRemark(double value, double limit) {
 const char* hazardText(Hazard hazard) {
   switch (hazard) {
     case Hazard::Unknown:
-      return "no elevation or no terrain class is known there";
+      return "elevation or terrain class unknown";
     case Hazard::Slope:
-      return "too steep for the rover in any heading";
+      return "too steep for the rover at any heading";
     case Hazard::Step:
-      return "an edge higher than the rover clears";
+      return "step above the ground clearance";
     case Hazard::Roughness:
-      return "ground rougher than the belly clears";
+      return "roughness above the ground clearance";
     case Hazard::Rocks:
-      return "rocks that it cannot cross are too likely";
+      return "probability of a rock above the ground clearance too high";
     case Hazard::KeepOut:
       return "inside a keep-out polygon";
     case Hazard::Obstacle:
-      return "its terrain class has no soil and counts as an obstacle";
+      return "terrain class without a soil, treated as an obstacle";
     case Hazard::Near:
-      return "the rover's width would touch a refused cell";
+      return "an excluded cell lies within the rover's width";
     case Hazard::None:
       break;
   }
@@ -85,7 +85,7 @@ void addShape(const TraversabilityMap& map, maps::Cell cell, Explanation& out) {
 void addSoil(const TraversabilityMap& map, maps::Cell cell, Explanation& out) {
   const int index = map.classIndex(cell);
   out.causes.push_back({"terrain_class", static_cast<double>(map.classNumber(cell)), kNotKnown,
-                        "class raster", index < 0 ? "no soil is declared for it" : ""});
+                        "class raster", index < 0 ? "no soil defined for this class" : ""});
   if (index < 0) return;
   const GroundClass& ground = map.model().parts().classes[static_cast<std::size_t>(index)];
   const GroundBelief prior = map.model().prior(index);
@@ -95,10 +95,10 @@ void addSoil(const TraversabilityMap& map, maps::Cell cell, Explanation& out) {
                              map.model().rover().name + "', slip 0.5";
   out.causes.push_back({"prior_drawbar_pull_over_load", prior.pull.value, prior.pull.std, source, ""});
   const CellBelief belief = map.belief(cell);
-  const std::string wheels = belief.evidence > 0.0F ? "prior and wheels together" : source;
+  const std::string wheels = belief.evidence > 0.0F ? "prior and wheel telemetry" : source;
   out.causes.push_back({"evidence_samples", static_cast<double>(belief.evidence), kNotKnown,
                         "wheel telemetry nearby",
-                        belief.evidence > 0.0F ? "" : "nobody drove here: the prior speaks alone"});
+                        belief.evidence > 0.0F ? "" : "no telemetry here; prior only"});
   out.causes.push_back({"drawbar_pull_over_load", static_cast<double>(belief.pull_mean),
                         static_cast<double>(belief.pull_std), wheels, ""});
   out.causes.push_back({"sinkage_over_radius", static_cast<double>(belief.sinkage_mean),
@@ -109,14 +109,14 @@ void addSoil(const TraversabilityMap& map, maps::Cell cell, Explanation& out) {
 void addFloors(const TraversabilityMap& map, maps::Cell cell, Explanation& out) {
   for (const Floor& floor : map.floors().of(map.grid().index(cell))) {
     const CellBelief belief = map.belief(cell, floor);
-    const std::string there = "another level of this cell, beneath or above its surface";
+    const std::string there = "other level of this cell, below or above its surface";
     out.causes.push_back(
         {"floor_elevation_m", static_cast<double>(floor.height_m), kNotKnown, map.elevation().source, there});
     out.causes.push_back({"floor_evidence_samples", static_cast<double>(belief.evidence), kNotKnown,
                           "wheel telemetry on that level", ""});
     out.causes.push_back({"floor_drawbar_pull_over_load", static_cast<double>(belief.pull_mean),
-                          static_cast<double>(belief.pull_std), "first class of ground and wheels there",
-                          ""});
+                          static_cast<double>(belief.pull_std),
+                          "first soil class and telemetry on that level", ""});
   }
 }
 
@@ -126,13 +126,13 @@ void addDrive(const TraversabilityMap& map, maps::Cell cell, const Direction& he
   const double along = code.dzDx() * heading.x + code.dzDy() * heading.y;
   const double margin = map.model().parts().policy.slope_margin_rad;
   const DriveState state = grid->cost().detail(code, heading);
-  const std::string asks = "the slope along the heading";
-  const std::string drives = "mobility curve at the pull believed";
+  const std::string asks = "slope along the heading";
+  const std::string drives = "mobility curve at the estimated DP/W";
   out.causes.push_back({"slope_along_rad", std::atan(along), kNotKnown, asks, ""});
   out.causes.push_back({"dangerous_below", std::tan(std::atan(along) - margin), kNotKnown, asks,
-                        "drawbar pull over load below this is dangerous (thesis 3.5)"});
+                        "DP/W below this is dangerous (thesis 3.5)"});
   out.causes.push_back({"safe_above", std::tan(std::atan(along) + margin), kNotKnown, asks,
-                        "drawbar pull over load above this is safe (thesis 3.5)"});
+                        "DP/W above this is safe (thesis 3.5)"});
   if (code.curve() >= CellCode::kUnknown) return;
   out.causes.push_back(
       {"drawbar_pull_margin", static_cast<double>(state.pull_margin), kNotKnown, drives, ""});
@@ -144,9 +144,9 @@ void addDrive(const TraversabilityMap& map, maps::Cell cell, const Direction& he
        limitRemark(static_cast<double>(state.torque_Nm), map.model().rover().max_torque_Nm)});
   out.causes.push_back({"energy_J_per_m", static_cast<double>(state.energy_J_per_m), kNotKnown, drives, ""});
   out.causes.push_back({"immobilisation_per_m", static_cast<double>(state.risk_per_m), kNotKnown,
-                        "pull believed against the pull asked for", ""});
+                        "estimated DP/W compared with required DP/W", ""});
   out.causes.push_back({"cost_J_per_m", static_cast<double>(grid->cost().costPerMetre(code, heading)),
-                        kNotKnown, "energy, time and risk as the policy weighs them", toText(state.refusal)});
+                        kNotKnown, "weighted sum of energy, time and risk", toText(state.refusal)});
 }
 
 Direction steepest(CellCode code) {
@@ -158,7 +158,7 @@ void judge(const TraversabilityMap& map, maps::Cell cell, const Direction& headi
   const Hazard hazards = map.hazards(cell);
   for (const Hazard one : kHazards)
     if (has(hazards, one))
-      out.causes.push_back({"hazard", 1.0, kNotKnown, hazardText(one), "refused whatever the soil"});
+      out.causes.push_back({"hazard", 1.0, kNotKnown, hazardText(one), "excluded for any soil"});
   const CellBelief belief = map.belief(cell);
   out.category = static_cast<terramech::Category>(belief.category);
   out.probability = belief.confidence / 16.0;
@@ -175,9 +175,8 @@ void judge(const TraversabilityMap& map, maps::Cell cell, const Direction& headi
   const Ranked ranked = map.model().category(*ground, along);
   out.category = ranked.category;
   out.probability = ranked.probability;
-  out.verdict = std::string(terramech::name(out.category)) +
-                ": the ground gives a drawbar pull over load of " + std::to_string(ground->pull.value) +
-                ", the slope asks for " + std::to_string(along);
+  out.verdict = std::string(terramech::name(out.category)) + ": available DP/W " +
+                std::to_string(ground->pull.value) + ", required DP/W " + std::to_string(along);
 }
 
 }  // namespace

@@ -24,8 +24,7 @@
 namespace talus::costmap {
 namespace {
 
-static_assert(std::endian::native == std::endian::little,
-              "the rasters of a map file are written as they lie in memory");
+static_assert(std::endian::native == std::endian::little, "map files require a little-endian machine");
 
 constexpr std::array<char, 8> kMagic{'T', 'A', 'L', 'U', 'S', 'M', 'A', 'P'};
 constexpr std::uint32_t kFlat = 1;    // version without floors
@@ -86,7 +85,7 @@ class TrailerReader {
     if (magic != kMagic) fail("an octree without the trailer of a map");
     raw(&version_, sizeof version_);
     if (version_ < kFlat || version_ > kFloors)
-      fail("version " + std::to_string(version_) + " of the format, this program reads 1 and 2");
+      fail("version " + std::to_string(version_) + " of the format; this program reads 1 and 2");
   }
 
   bool hasFloors() const noexcept { return version_ == kFloors; }
@@ -124,8 +123,7 @@ class TrailerReader {
     std::uint64_t sum = 0;
     raw(tag.data(), tag.size());
     raw(&sum, sizeof sum);
-    if (std::memcmp(tag.data(), "SUM ", 4) != 0 || sum != expected)
-      fail("damaged: its checksum does not fit");
+    if (std::memcmp(tag.data(), "SUM ", 4) != 0 || sum != expected) fail("damaged: checksum mismatch");
   }
 
  private:
@@ -180,7 +178,7 @@ MapText textOf(const TraversabilityMap& map) {
 void requireSane(const maps::Grid& grid, const std::string& name) {
   if (grid.width < 1 || grid.height < 1 || grid.width > 65536 || grid.height > 65536 ||
       !(grid.resolution_m > 0.0))
-    throw InputError({name, "damaged: its grid is impossible", "write the map again with talus costmap"});
+    throw InputError({name, "damaged: invalid grid", "write the map again with talus costmap"});
 }
 
 }  // namespace

@@ -109,7 +109,7 @@ class Reader {
       value = static_cast<T>(number);
     } else if (std::from_chars(text.data(), text.data() + text.size(), value).ptr !=
                text.data() + text.size())
-      fail("'" + name + "' is no number");
+      fail("'" + name + "' is not a number");
   }
   [[noreturn]] void fail(const std::string& reason) const {
     throw InputError(

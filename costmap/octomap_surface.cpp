@@ -209,11 +209,10 @@ OctomapGround octomapGround(std::istream& stream, const std::string& name, doubl
   std::vector<Floor> ground = groundOf(runsOf(leaves, grid, box), grid.resolution_m);
   maps::Raster<float> surface = takeSurface(ground, grid, ceiling_m);
   if (maps::validFraction(surface) == 0.0)
-    throw InputError(
-        {name, "no ground at or below " + std::to_string(ceiling_m) + " m", "raise the ceiling"});
-  std::vector<std::string> notes{"top surface of an OctoMap, good to half a voxel"};
+    throw InputError({name, "no ground at or below " + std::to_string(ceiling_m) + " m", "increase --below"});
+  std::vector<std::string> notes{"top surface of an OctoMap, accurate to half a voxel"};
   if (!ground.empty())
-    notes.push_back(std::to_string(ground.size()) + " cells have ground beneath or above it, too");
+    notes.push_back(std::to_string(ground.size()) + " cells have other levels below or above it");
   return {.surface = {.elevation_m = std::move(surface),
                       .georeference = {},
                       .source = name,

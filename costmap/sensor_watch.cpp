@@ -120,12 +120,12 @@ std::optional<std::string> SensorWatch::judge(const Named& named) {
   countGap(wheel, reading.time_s);
   countDropout(wheel, reading);
   if (reading.time_s < wheel.time_s)
-    reason = "time goes back";
+    reason = "time decreases";
   else
     wheel.time_s = std::isnan(reading.time_s) ? wheel.time_s : reading.time_s;
   if (const auto still = stuck(wheel, reading); !reason) reason = still;
   if (!reason && isSpike(wheel, reading)) reason = kSpike;
-  if (!reason && slipsBackwardsUphill(reading)) reason = "slips backwards on a climb: the slip is biased";
+  if (!reason && slipsBackwardsUphill(reading)) reason = "negative slip on a climb: the slip is biased";
   wheel.last.push_back(reading);
   if (wheel.last.size() > kWindow) wheel.last.pop_front();
   return reason;
@@ -169,15 +169,15 @@ std::vector<std::string> SensorWatch::findings() const {
                     std::to_string(longest_gap_s_) + " s");
   if (const auto excess = slipExcess())
     lines.push_back("wheels slip " + std::to_string(std::abs(*excess)) + (*excess > 0.0 ? " more" : " less") +
-                    " than the soil asks for on these slopes, on all ground alike: it is " +
+                    " than the soil model predicts on these slopes, in all cells: the soil is " +
                     (*excess > 0.0 ? "weaker" : "firmer") +
-                    " than believed, or the slip is biased; one rover cannot tell which");
+                    " than estimated, or the slip is biased; one rover cannot distinguish the two");
   if (biased())
     lines.push_back(
-        "torque and sinkage say " + std::to_string(*bias()) +
-        " of the load more pull than the slope asks for: a torque offset of " +
+        "torque and sinkage imply " + std::to_string(*bias()) +
+        " DP/W more than the slope requires: a torque offset of " +
         std::to_string(*bias() * model_.rover().wheel.radius_m * terramech::wheelLoad_N(model_.rover())) +
-        " Nm, or a sinkage datum that is off; both are left out");
+        " Nm, or a wrong sinkage datum; both channels are excluded");
   return lines;
 }
 

@@ -301,9 +301,10 @@ Header requiredHeader(std::istream& stream, const std::string& name) {
 
 void requireSize(std::size_t nodes, const Header& header, const std::string& name) {
   if (nodes != header.size)
-    throw InputError(
-        {name, "damaged: " + std::to_string(nodes) + " nodes, its header says " + std::to_string(header.size),
-         "write the map again"});
+    throw InputError({name,
+                      "damaged: " + std::to_string(nodes) + " nodes, the number in its header is " +
+                          std::to_string(header.size),
+                      "write the map again"});
 }
 
 // Walks the nodes of a stream depth first and counts them.

@@ -41,8 +41,7 @@ double metres(std::string unit, std::vector<std::string>& notes) {
     if (factor != 1.0) notes.push_back("heights in " + unit + " converted to metres");
     return factor;
   }
-  notes.push_back("unit of height '" + unit +
-                  "' is not known: taken as metres (--vertical-scale corrects it)");
+  notes.push_back("unit of height '" + unit + "' is unknown: assuming metres (--vertical-scale corrects it)");
   return 1.0;
 }
 
@@ -74,7 +73,7 @@ void blankMarks(std::vector<float>& values, std::optional<double> nodata, std::v
   } else if (const auto mark = undeclaredMark(values)) {
     const std::size_t count = blank(values, [=](float v) { return v == *mark; });
     notes.push_back(std::to_string(count) + " cells of " + std::to_string(static_cast<long>(*mark)) +
-                    " taken as no data although the file does not say so (--nodata corrects it)");
+                    " treated as no data although the file declares none (--nodata corrects it)");
   }
   blank(values, [](float v) { return std::abs(v) > kBeyondAnyHeight; });
 }
@@ -91,7 +90,7 @@ HeightCode heightCode(GDALRasterBand& band, double body_radius_m, std::vector<st
   code.offset_m = band.GetOffset() * unit;
   if (body_radius_m > 0 && std::abs(code.offset_m - body_radius_m) < 0.01 * body_radius_m) {
     code.offset_m -= body_radius_m;
-    notes.emplace_back("heights count from the body's centre: its radius taken off");
+    notes.emplace_back("elevations are measured from the body's centre: radius subtracted");
   }
   return code;
 }

@@ -80,11 +80,11 @@ Point PositionReader::operator()(const json& position) const {
   const double y = position[1];
   if (georeference_ == nullptr) return {x, y};
   if (std::abs(x) > 360 || std::abs(y) > 90)
-    throw InputError({path_, "position " + position.dump() + " is no longitude and latitude",
+    throw InputError({path_, "position " + position.dump() + " is not a longitude and latitude",
                       "write degrees, or \"crs\": \"local\" beside \"type\" for map metres"});
   const Point point = georeference_->forward({y * kDegree, x * kDegree});
   if (std::isnan(point.x_m))
-    throw InputError({path_, "position " + position.dump() + " is beyond the reach of the map's CRS", ""});
+    throw InputError({path_, "position " + position.dump() + " is outside the range of the map's CRS", ""});
   return point;
 }
 

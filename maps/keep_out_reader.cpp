@@ -51,7 +51,7 @@ std::vector<OGRPolygon> polygons(const json& document, const PositionReader& rea
       for (const json& rings : coordinates) out.push_back(polygon(rings, read, path));
     }
   }
-  if (out.empty()) throw InputError({path, "holds no Polygon", "draw the areas to keep out of as polygons"});
+  if (out.empty()) throw InputError({path, "holds no Polygon", "write the keep-out areas as polygons"});
   return out;
 }
 
@@ -87,7 +87,7 @@ Raster<std::uint8_t> readKeepOut(const std::string& path, const ElevationMap& ma
   GDALAllRegister();
   burn(areas, mask, path);
   if (std::find(mask.values().begin(), mask.values().end(), 1) == mask.values().end())
-    throw InputError({path, "no area meets map '" + map.source + "'", "the map " + extent(map.grid())});
+    throw InputError({path, "no polygon overlaps map '" + map.source + "'", "the map " + extent(map.grid())});
   return mask;
 }
 

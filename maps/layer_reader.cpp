@@ -82,7 +82,7 @@ Raster<std::uint8_t> readTerrainClasses(const LayerSource& source, const Elevati
     if (std::isnan(v) || v == static_cast<float>(kNoClass)) continue;
     if (!(v >= 0 && v < kNoClass) || v != std::floor(v))
       throw InputError({source.path + ", band " + std::to_string(band),
-                        "value " + number(static_cast<double>(v)) + " is no class number (0 to 254)",
+                        "value " + number(static_cast<double>(v)) + " is not a class number (0 to 254)",
                         "name the band of classes"});
     classes.values()[i] = static_cast<std::uint8_t>(v);
   }
@@ -103,7 +103,7 @@ Raster<float> readRockAbundance(const LayerSource& source, const ElevationMap& m
   for (float v : share.values())
     if (v < 0 || v > 1)
       throw InputError({source.path + ", band " + std::to_string(band),
-                        "rock abundance " + number(static_cast<double>(v)) + " is not a share from 0 to 1",
+                        "rock abundance " + number(static_cast<double>(v)) + " is not a fraction from 0 to 1",
                         v > 1 && v <= 100 ? "divide percents by 100" : "name the band of rock abundance"});
   return share;
 }

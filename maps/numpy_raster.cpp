@@ -51,7 +51,7 @@ Arrays readArchive(const std::string& path) {
         parseNumpy(slurp(archive + "/" + name, path), path + ", " + name);
   }
   if (arrays.empty())
-    throw InputError({path, "is no NumPy archive (no .npy inside)", "save it with numpy.savez"});
+    throw InputError({path, "is not a NumPy archive (no .npy inside)", "save it with numpy.savez"});
   return arrays;
 }
 

@@ -64,8 +64,8 @@ int chooseBand(GDALDataset& file, const BandWish& wish, std::vector<std::string>
     if (holdsOneOf(name, wish.words) && !holdsOneOf(name, wish.others)) chosen = band;
   }
   if (isPicture(*file.GetRasterBand(chosen)))
-    throw InputError({wish.path, "is a picture of colours, not of heights or classes",
-                      "name a band with --band if it is meant"});
+    throw InputError({wish.path, "is a colour image without elevations or classes",
+                      "select a band with --band if it is intended"});
   if (count > 1) notes.push_back("took " + description(file, chosen) + " of " + std::to_string(count));
   return chosen;
 }

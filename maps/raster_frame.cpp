@@ -110,7 +110,7 @@ void refuseWholeBodies(const Pixels& p, const ReadOptions& options, const std::s
   const double span =
       std::max(p.width * std::hypot(p.c[1], p.c[4]), p.height * std::hypot(p.c[2], p.c[5])) * kDegree;
   if (span <= kWidestSpan_rad || options.window) return;
-  throw InputError({path, "spans " + number(span / kDegree) + " degrees, too much for one map in metres",
+  throw InputError({path, "spans " + number(span / kDegree) + " degrees, too large for one map in metres",
                     "read a part with --window LATd,LONd,LATd,LONd or project it with gdalwarp"});
 }
 
@@ -159,14 +159,14 @@ FramedRaster projected(Dataset file, int band, const OGRSpatialReference& crs, c
   const Point middle = p.at(p.width / 2.0, p.height / 2.0);
   const Point ground = georeference.groundScale({middle.x_m * metres, middle.y_m * metres});
   if (!std::isfinite(ground.x_m) || !std::isfinite(ground.y_m))
-    throw InputError({path, "lies outside the reach of its CRS '" + georeference.system().name + "'",
+    throw InputError({path, "lies outside the range of its CRS '" + georeference.system().name + "'",
                       "correct the CRS or read with --ignore-crs --resolution METRES"});
   const double finest_m = p.meanSide() * metres * std::sqrt(ground.x_m * ground.y_m);
   const double stretch = std::max(std::abs(ground.x_m - 1), std::abs(ground.y_m - 1));
   if (stretch > kMostStretch) {
     const GeoPoint centre = georeference.reverse({middle.x_m * metres, middle.y_m * metres});
     const double resolution_m = options.resolution_m.value_or(finest_m);
-    notes.push_back("a metre of its CRS is " + number(ground.x_m) + " m of ground eastward, " +
+    notes.push_back("one metre of its CRS is " + number(ground.x_m) + " m of ground eastward, " +
                     number(ground.y_m) +
                     " m northward: resampled to true metres in a local projection, cells of " +
                     number(resolution_m) + " m");

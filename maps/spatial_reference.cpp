@@ -195,7 +195,7 @@ CoordinateSystem coordinateSystem(const OGRSpatialReference& reference, const st
   const std::string name = text(reference.GetName());
   if (!reference.IsProjected()) throw InputError({where, "CRS '" + name + "' is not projected", ""});
   if (countsWestward(reference))
-    throw InputError({where, "CRS '" + name + "' counts x to the west",
+    throw InputError({where, "CRS '" + name + "' has a westward x axis",
                       "gdalwarp -t_srs to a CRS whose x axis points east"});
   const std::string method = text(reference.GetAttrValue("PROJECTION"));
   std::optional<Projection> projection = projectionOf(method, Parameters(reference));

@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include <talus/cli/app/context.hpp>
+#include <talus/cli/app/help_format.hpp>
 
 namespace talus::cli {
 
@@ -16,12 +17,12 @@ struct Group {
   static constexpr const char* kSoil = "Wheels and soil";
 };
 
-/// How a subcommand presents itself.
+/// What --help says of a subcommand.
 struct CommandText {
   std::string name;
   std::string group;        ///< one of Group
-  std::string description;  ///< one line
-  std::string examples;     ///< shown under the options; may be empty
+  std::string description;  ///< its purpose, one line
+  std::string examples;     ///< two calls at least, each on lines indented by two blanks
 };
 
 /// Registers a subcommand. `bind` declares its options onto a plain struct; `run` gets that struct once the
@@ -30,10 +31,14 @@ template <typename Options>
 CLI::App& addCommand(CLI::App& app, Context& context, const CommandText& text,
                      void (*bind)(CLI::App&, Options&), int (*run)(const Options&, Context&)) {
   CLI::App& command = *app.add_subcommand(text.name, text.description)->group(text.group);
-  if (!text.examples.empty()) command.footer("Examples:\n" + text.examples);
+  command.set_help_flag("-h,--help", "print this help; `talus --help` lists the options of all calls");
+  command.footer("Examples:\n" + text.examples);
   auto options = std::make_shared<Options>();
   bind(command, *options);
-  command.callback([options, run, &context] { context.exit_code = run(*options, context); });
+  command.callback([options, run, &command, &context] {
+    for (const std::string& warning : oldNamesUsed(command)) context.warn(warning);
+    context.exit_code = run(*options, context);
+  });
   return command;
 }
 

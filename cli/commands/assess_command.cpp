@@ -23,37 +23,45 @@ struct AssessCommand : AssessOptions {
 };
 
 void bind(CLI::App& command, AssessCommand& options) {
-  command.add_option("table", options.table, "wheel telemetry")->required()->type_name("T.csv");
-  command.add_option("--slope", options.slope_rad, "slope that must be climbed")
+  command.add_option("table", options.table, "wheel telemetry, one row per wheel and moment")
+      ->required()
+      ->type_name("T.csv");
+  command.add_option("--slope", options.slope_rad, "slope to climb")->type_name("RAD")->capture_default_str();
+  command.add_option("--slope-uncertainty", options.margin_rad, "uncertainty of the slope, plus or minus")
       ->type_name("RAD")
       ->capture_default_str();
-  command.add_option("--margin", options.margin_rad, "doubt of the slope, either way")
-      ->type_name("RAD")
+  makeOldName(*command.add_option("--margin", options.margin_rad), "--slope-uncertainty");
+  command.add_option("--z-threshold", options.z_threshold, "z/r above which the category drops one level")
       ->capture_default_str();
-  command.add_option("--z-threshold", options.z_threshold, "z/r from which a rank is lost")
+  command.add_option("--z-critical", options.z_critical, "z/r above which the category is dangerous")
       ->capture_default_str();
-  command.add_option("--z-critical", options.z_critical, "z/r above which ground is dangerous")
-      ->capture_default_str();
-  auto* model = command.add_option("--model", options.model,
-                                   "pull by this model (talus trace --model-out, a base model or a soil)");
+  groupOptions(command, "Category");
+  auto* model = command.add_option(
+      "--model", options.model,
+      "model that gives the drawbar pull: from `talus trace --model-out`, a base model or a soil");
   model->type_name("M.yaml");
   command
-      .add_option("--formula", options.formula, "drawbar pull from W, T, z (thesis 3.6, 3.12, 3.21, or ours)")
+      .add_option("--formula", options.formula,
+                  "formula of drawbar pull from W, T and z: thesis 3.6, 3.12, 3.21, or single-force (ours)")
       ->check(CLI::IsMember(pullFormulas()))
       ->capture_default_str()
       ->excludes(model);
   command.add_flag("--extrapolate", options.extrapolate,
-                   "also the pull at the reference slip and the greatest, by the soil that all rows show, or "
-                   "by the model");
-  command.add_option("--reference-slip", options.reference_slip, "slip to extrapolate to (thesis 3.5)")
+                   "also forecast the drawbar pull at the reference slip and its maximum over slip, from the "
+                   "soil estimated on all rows or from the model");
+  command
+      .add_option("--reference-slip", options.reference_slip, "reference slip of --extrapolate (thesis 3.5)")
       ->check(CLI::Range(0.01, 1.0))
       ->capture_default_str();
-  command.add_option("--rover", options.rover, "whose wheel, where the file does not say")
+  command.add_option("--rover", options.rover, "rover that supplies wheel dimensions missing from the file")
       ->type_name("NAME|FILE");
-  command.add_option("--noise", options.noise, "relative error of each reading")
+  command.add_option("--noise", options.noise, "relative standard deviation of each reading")
       ->check(CLI::Range(0.0, 0.5))
       ->capture_default_str();
-  command.add_option("--html", options.html, "a page with the traversability map")->type_name("R.html");
+  groupOptions(command, "Drawbar pull");
+  command.add_option("--html", options.html, "page to write, with the traversability diagram")
+      ->type_name("R.html");
+  groupOptions(command, "Output");
 }
 
 Json jsonOf(const Estimate& pull) {
@@ -98,9 +106,10 @@ Json jsonOf(const std::vector<Assessment>& rows, double reference_slip) {
 
 std::string textOf(const AssessOptions& options, const std::vector<Assessment>& rows) {
   std::string text =
-      "  line     DP/W      +-     z/r   T/rW  climbs deg  category   (safe marginal dangerous)";
+      "  line     DP/W     std     z/r   T/rW   max slope  category   probability of (safe, marginal, "
+      "dangerous)";
   if (options.extrapolate)
-    text += fmt::format("  DP/W at slip {:.2f}     greatest at slip  climbs deg", options.reference_slip);
+    text += fmt::format("  DP/W at slip {:.2f}     max DP/W   at slip  max slope", options.reference_slip);
   text += '\n';
   for (const Assessment& a : rows) {
     text += fmt::format("{:6}  {:7.3f}  {:6.3f}  {:6.3f} {:6.3f}  {:10.1f}  {:9}  ({:.2f} {:.2f} {:.2f})",
@@ -120,8 +129,10 @@ std::string textOf(const AssessOptions& options, const std::vector<Assessment>& 
 
 // The plane of thesis Figs. 3.10 to 3.12: where each row stands in it.
 Plot mapOf(const std::vector<Assessment>& rows) {
-  Plot plot{
-      .title = "Traversability map", .x = {.label = "T/(rW) [-]"}, .y = {.label = "z/r [-]"}, .series = {}};
+  Plot plot{.title = "Traversability diagram",
+            .x = {.label = "T/(rW) [-]"},
+            .y = {.label = "z/r [-]"},
+            .series = {}};
   constexpr std::array kColours{rgb(0x2e9e4f), rgb(0xe0a020), rgb(0xc83030)};
   for (const Category c : {Category::Safe, Category::Marginal, Category::Dangerous}) {
     Series cloud{.name = name(c),
@@ -142,7 +153,8 @@ Plot mapOf(const std::vector<Assessment>& rows) {
 void writePage(const AssessCommand& options, const std::vector<Assessment>& rows) {
   HtmlReport page("Traversability of " + options.table);
   page.paragraph(fmt::format(
-      "Slope to climb {:.1f} +- {:.1f} deg; z/r below {:.2f} keeps the rank, above {:.2f} is dangerous.",
+      "Slope to climb: {:.1f} +- {:.1f} deg. Above z/r = {:.2f} the category drops one level; above {:.2f} "
+      "it is dangerous.",
       options.slope_rad / kDegree, options.margin_rad / kDegree, options.z_threshold, options.z_critical));
   page.charts({mapOf(rows)});
   std::vector<std::vector<std::string>> cells;
@@ -166,7 +178,8 @@ int run(const AssessCommand& options, Context& context) {
   }
   for (const std::string& name : table.left_out) {
     context.warn(options.model + ": " + name +
-                 " is a fault of a sensor; the pull is given without it, other than in talus predict");
+                 " describes a sensor error; assess gives the true drawbar pull and leaves this effect out "
+                 "(talus predict includes it)");
   }
   if (!options.html.empty()) writePage(options, table.rows);
   if (context.json) {
@@ -180,14 +193,13 @@ int run(const AssessCommand& options, Context& context) {
 }  // namespace
 
 void addAssess(CLI::App& app, Context& context) {
-  addCommand<AssessCommand>(
-      app, context,
-      {.name = "assess",
-       .group = Group::kSoil,
-       .description = "drawbar pull and traversability category of each row of telemetry",
-       .examples = "  talus assess drive.csv --slope 0.26 --margin 0.087\n"
-                   "  talus assess drive.csv --model refined.yaml --extrapolate\n"},
-      bind, run);
+  addCommand<AssessCommand>(app, context,
+                            {.name = "assess",
+                             .group = Group::kSoil,
+                             .description = "compute the drawbar pull and the category of each telemetry row",
+                             .examples = "  talus assess drive.csv --slope 0.26 --slope-uncertainty 0.087\n"
+                                         "  talus assess drive.csv --model refined.yaml --extrapolate\n"},
+                            bind, run);
 }
 
 }  // namespace talus::cli

@@ -29,35 +29,39 @@ struct Options {
 void bind(CLI::App& command, Options& options) {
   command
       .add_option("suite", options.suite.names,
-                  "one or more of: generated (crater field, dunes, rocks), slip (terrains of unsure slip, "
-                  "routes driven "
-                  "over the true one), grids (walls, optimum known), an elevation file, a MovingAI .scen "
-                  "beside its .map")
+                  "one or more of: generated (crater field, dunes, rocks), slip (uncertain slip; routes are "
+                  "driven over the true slip), grids (walls, known optimum), an elevation file, a MovingAI "
+                  ".scen beside its .map")
       ->capture_default_str();
-  command.add_option("--planners", options.planners, "comma-separated; all by default")->delimiter(',');
-  command.add_option("--runs", options.runs, "seeds a case and planner")
+  command
+      .add_option("--planners", options.planners, "planners to compare, separated by commas (default: all)")
+      ->delimiter(',');
+  command.add_option("--runs", options.runs, "runs per case and planner, each with its own seed")
       ->check(positive())
       ->capture_default_str();
-  command.add_option("--time", options.time_limit_s, "limit a run")
+  command.add_option("--time", options.time_limit_s, "time limit of one run")
       ->type_name("S")
       ->check(positive())
       ->capture_default_str();
-  command.add_option("--pairs", options.suite.pairs, "starts and goals a map")
+  command.add_option("--pairs", options.suite.pairs, "start and goal pairs per map")
       ->check(positive())
       ->capture_default_str();
   command
       .add_option("--turning-radius", options.suite.turning_radius_m,
-                  "that planners of drives keep; 0: turns in place (default: the rover's)")
+                  "minimum turning radius of planners with kinematics; 0: the rover turns in place (default: "
+                  "the rover's)")
       ->type_name("METRES")
       ->check(notNegative());
-  addReadOptions(command, options.suite.ground.dem);
-  addGroundChoices(command, options.suite.ground);
-  command.add_option("--side", options.suite.side_cells, "cells along a generated site")
+  command.add_option("--side", options.suite.side_cells, "side of a generated site, in cells")
       ->check(CLI::Range(32, 10000))
       ->capture_default_str();
-  command.add_option("-o,--output", options.folder, "folder for the logs, the table and the page")
+  groupOptions(command, "Cases and runs");
+  addReadOptions(command, options.suite.ground.dem);
+  addGroundChoices(command, options.suite.ground);
+  command.add_option("-o,--output", options.folder, "folder for the OMPL logs, the table and the page")
       ->type_name("FOLDER")
       ->capture_default_str();
+  groupOptions(command, "Output");
 }
 
 std::string fileName(std::string name) {
@@ -71,7 +75,8 @@ std::string fileName(std::string name) {
 bool makeFolder(const std::string& folder) {
   std::error_code error;
   const bool made = std::filesystem::create_directories(folder, error);
-  if (error) throw InputError({folder, "cannot be made: " + error.message(), "name another folder with -o"});
+  if (error)
+    throw InputError({folder, "cannot be created: " + error.message(), "name another folder with -o"});
   OutputFile(std::filesystem::path(folder) / "table.txt").temporary();
   return made;
 }
@@ -118,7 +123,7 @@ int cancelled(const Options& options, const planner::BenchmarkPlan& plan,
               const std::vector<planner::BenchmarkRun>& runs, bool made, const Context& context) {
   if (!runs.empty()) {
     write(options.folder, plan, runs);
-    context.warn(fmt::format("cancelled after {} of {} runs; what they gave lies in {}", runs.size(),
+    context.warn(fmt::format("cancelled after {} of {} runs; their results are in {}", runs.size(),
                              planner::jobsOf(plan).size(), options.folder));
   } else if (made) {
     std::filesystem::remove(options.folder);  // empty still
@@ -136,8 +141,8 @@ int run(const Options& options, Context& context) {
   refuseTwice("planner", plan.planners);
   plan.cases = suiteCases(options.suite, context);
   if (plan.cases.empty())
-    throw InputError({"talus bench", "the suite has no two places far apart with a route between them",
-                      "take another map, rover or --seed"});
+    throw InputError({"talus bench", "the suite has no pair of distant places with a route between them",
+                      "choose another map, rover or --seed"});
   const bool made = campaign.leads() && makeFolder(options.folder);
   plan.seeds = options.runs;
   plan.time_limit_s = options.time_limit_s;
@@ -159,7 +164,7 @@ void addBench(CLI::App& app, Context& context) {
   addCommand<Options>(app, context,
                       {.name = "bench",
                        .group = Group::kRoutes,
-                       .description = "compare the planners; writes OMPL logs, a table and a page",
+                       .description = "compare planners on the same cases; write logs, a table and a page",
                        .examples = "  talus bench --planners field,RRTstar --time 5\n"
                                    "  talus bench gale.tif --pairs 10 -o gale_bench\n"
                                    "  talus bench room.scen --planners field\n"

@@ -27,10 +27,12 @@ struct Options {
 
 void bind(CLI::App& command, Options& options) {
   addGroundOptions(command, options.ground);
-  command.add_option("-o,--output", options.output, "belief map to write")->type_name("MAP.ot");
-  command.add_option("--geotiff", options.geotiff, "layers to write as a GeoTIFF")->type_name("FILE.tif");
+  command.add_option("-o,--output", options.output, "traversability map to write")->type_name("MAP.ot");
+  command.add_option("--geotiff", options.geotiff, "GeoTIFF of layers to write")->type_name("FILE.tif");
   command.add_option("--png", options.png, "picture to write")->type_name("FILE.png");
-  command.add_option("--octovis", options.octovis, "ColorOcTree to write, for octovis")->type_name("FILE.ot");
+  command.add_option("--octovis", options.octovis, "ColorOcTree to write, for display in octovis")
+      ->type_name("FILE.ot");
+  groupOptions(command, "Output");
 }
 
 void writeOctovis(const costmap::TraversabilityMap& map, const std::string& path) {
@@ -40,7 +42,7 @@ void writeOctovis(const costmap::TraversabilityMap& map, const std::string& path
                                        [&](maps::Cell cell) { return map.belief(cell); });
   tree->write(stream);
   stream.close();
-  if (!stream) throw InputError({path, "cannot be written", "check that the disk has room"});
+  if (!stream) throw InputError({path, "cannot be written", "check the free disk space"});
   file.commit();
 }
 
@@ -59,14 +61,14 @@ std::string asText(const Ground& site, const costmap::CategoryCounts& counts) {
   const auto share = [&](std::size_t n) {
     return 100.0 * static_cast<double>(n) / static_cast<double>(site.map.grid().size());
   };
-  return fmt::format("cells       {} x {} of {:.6g} m, measured over {:.3g} m\n", site.map.grid().width,
+  return fmt::format("cells       {} x {} of {:.6g} m, footprint diameter {:.3g} m\n", site.map.grid().width,
                      site.map.grid().height, site.map.grid().resolution_m,
                      2.0 * site.map.footprintRadius_m()) +
          fmt::format("rover       {}\n", site.map.model().rover().name) +
          fmt::format(
              "safe        {:.1f} %\nmarginal    {:.1f} %\ndangerous   {:.1f} %\nunknown     {:.1f} %\n",
              share(counts.safe), share(counts.marginal), share(counts.dangerous), share(counts.unknown)) +
-         fmt::format("seconds     {:.3f} reading, {:.3f} building\n", site.load_s, site.build_s);
+         fmt::format("run time    load {:.3f} s, costmap {:.3f} s\n", site.load_s, site.build_s);
 }
 
 nlohmann::ordered_json asJson(const Ground& site, const costmap::CategoryCounts& counts) {
@@ -101,7 +103,7 @@ void addCostmap(CLI::App& app, Context& context) {
       app, context,
       {.name = "costmap",
        .group = Group::kMaps,
-       .description = "believe: categories, pull, energy of every cell of a site",
+       .description = "build the traversability map: category, drawbar pull, energy per cell",
        .examples = "  talus costmap gale.tif -o gale.ot --geotiff layers.tif\n"
                    "  talus costmap dem.tif --terrain classes.tif --soils soils.yaml -o map.ot\n"},
       bind, run);

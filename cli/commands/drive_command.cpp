@@ -1,4 +1,4 @@
-// talus drive DEM --truth TRUTH.yaml: simulateTraverse a traverse over soils that the planner does not know.
+// talus drive DEM --truth TRUTH.yaml: a simulated traverse over soils that the planner does not know.
 #include <algorithm>
 #include <array>
 #include <string>
@@ -27,7 +27,7 @@ using planner::Belief;
 using planner::WorldResult;
 
 constexpr std::array<Belief, 4> kBeliefs{Belief::Geometry, Belief::Prior, Belief::OnLine,
-                                         Belief::Clairvoyant};
+                                         Belief::PerfectKnowledge};
 
 struct Options {
   GroundOptions ground;
@@ -36,37 +36,50 @@ struct Options {
   std::size_t worlds = 1;
 };
 
+const Belief* findBelief(const std::string& word) {
+  if (word == "perfect-knowledge") return &kBeliefs.back();
+  const auto* found =
+      std::find_if(kBeliefs.begin(), kBeliefs.end(), [&](Belief b) { return planner::name(b) == word; });
+  return found == kBeliefs.end() ? nullptr : found;
+}
+
+// The check of --belief: a reason, or an empty text.
+std::string refusedBelief(const std::string& word) {
+  if (word == "all" || findBelief(word) != nullptr) return "";
+  return word + ", must be one of geometry, prior, online, perfect-knowledge, all";
+}
+
 void bind(CLI::App& command, Options& options) {
   addGroundOptions(command, options.ground);
-  command.add_option("--truth", options.truth, "true soils, patches, random spread; its format stands below")
+  command.add_option("--truth", options.truth, "true soils, soft patches and random variation; format below")
       ->required()
       ->type_name("TRUTH.yaml");
-  command.add_option("--start", options.start, "where to start")->required()->type_name("P");
-  command.add_option("--goal", options.goal, "where to go")->required()->type_name("P");
+  command.add_option("--start", options.start, "start of the traverse (format as in `talus plan --help`)")
+      ->required()
+      ->type_name("P");
+  command.add_option("--goal", options.goal, "goal of the traverse")->required()->type_name("P");
   command
-      .add_option("--belief", options.belief,
-                  "what the rover goes by; `all` compares the four in the same worlds")
-      ->check(CLI::IsMember({"geometry", "prior", "online", "clairvoyant", "all"}))
+      .add_option(
+          "--belief", options.belief,
+          "what the planner knows of the soil: geometry only, the prior, the prior updated online by "
+          "telemetry, or the true soil (perfect knowledge); `all` compares the four in the same worlds")
+      ->check(CLI::Validator(refusedBelief, "{geometry,prior,online,perfect-knowledge,all}"))
       ->capture_default_str();
   auto* worlds =
       command
-          .add_option(
-              "--worlds", options.worlds,
-              "simulateTraverse in so many random worlds, --threads at a time, or over all ranks under "
-              "mpirun")
+          .add_option("--worlds", options.worlds,
+                      "number of random worlds; --threads run at a time, or one per rank under mpirun")
           ->check(CLI::Range(1, 100000))
           ->type_name("N");
-  command
-      .add_option("--html", options.html, "write a page with a time slider, to watch the traverse simulation")
+  groupOptions(command, "Simulation");
+  command.add_option("--html", options.html, "page to write: the simulated traverse with a time slider")
       ->type_name("R.html")
       ->excludes(worlds);
-  command.add_option("--telemetry", options.telemetry, "write what the wheels read, for `talus update`")
+  command
+      .add_option("--telemetry", options.telemetry, "simulated wheel telemetry to write, for `talus update`")
       ->type_name("T.csv")
       ->excludes(worlds);
-}
-
-Belief beliefOf(const std::string& word) {
-  return *std::find_if(kBeliefs.begin(), kBeliefs.end(), [&](Belief b) { return planner::name(b) == word; });
+  groupOptions(command, "Output");
 }
 
 // What was asked for and where it runs.
@@ -85,7 +98,7 @@ DrivenWorlds simulated(const Campaigning& on, const std::vector<Belief>& beliefs
       count, [&](std::size_t b, std::size_t i) { return on.site.world(beliefs[b], i, inside); }, on.campaign,
       watch);
   for (const auto& failure : driven.failures)
-    on.context.warn(fmt::format("world {} failed and is left out: {}", failure.world, failure.reason));
+    on.context.warn(fmt::format("world {} failed and is excluded: {}", failure.world, failure.reason));
   return driven;
 }
 
@@ -114,13 +127,13 @@ int runAll(const Campaigning& on, const Options& options) {
 }
 
 int runMany(const Campaigning& on, const Options& options) {
-  const DrivenWorlds driven = simulated(on, {beliefOf(options.belief)}, options.worlds);
+  const DrivenWorlds driven = simulated(on, {*findBelief(options.belief)}, options.worlds);
   return show(driven.results[0], driven, on);
 }
 
 int runOne(const planner::SimulationSite& site, const Options& options, const Context& context,
            const terramech::Rover& rover) {
-  const Belief belief = beliefOf(options.belief);
+  const Belief belief = *findBelief(options.belief);
   const WatchedDrive drive = watchedDrive(site, belief, context.watch("simulating"));
   if (context.stop.stop_requested()) return Exit::kCancelled;
   if (!options.html.empty()) saveDrivePage(options.html, site, belief, drive);
@@ -133,9 +146,9 @@ int runOne(const planner::SimulationSite& site, const Options& options, const Co
                           {"energy_error", drive.prediction.energy_error}};
     printJson(json);
   } else {
-    print(asText(drive.result) +
-          fmt::format("{:<24} slip to {:.3f} rms, energy of the whole drive {:+.1f} % off\n", "predicted",
-                      drive.prediction.slip_rmse, 100.0 * drive.prediction.energy_error));
+    print(asText(drive.result) + fmt::format("{:<24} slip error {:.3f} rms, total energy error {:+.1f} %\n",
+                                             "predicted", drive.prediction.slip_rmse,
+                                             100.0 * drive.prediction.energy_error));
   }
   return drive.result.drive.outcome == planner::Outcome::Reached ? Exit::kDone : Exit::kNo;
 }
@@ -148,7 +161,7 @@ planner::Truth truthFor(const costmap::GroundModel& model, const std::string& pa
     known += (known.empty() ? "" : ", ") + std::to_string(ground.number);
   for (const auto& [number, soil] : truth.classes)
     if (model.classIndex(number) < 0)
-      throw InputError({path, fmt::format("class {} is no class of the map", number),
+      throw InputError({path, fmt::format("class {} is not a class of the map", number),
                         fmt::format("its classes are {}", known)});
   return truth;
 }
@@ -177,12 +190,13 @@ void addDrive(CLI::App& app, Context& context) {
       app, context,
       {.name = "drive",
        .group = Group::kRoutes,
-       .description = "simulateTraverse: drive the route over soils that the planner does not know",
+       .description = "simulate a traverse over soils that the planner does not know",
        .examples =
            std::string(
                "  talus drive dem.tif --truth truth.yaml --start 10,10 --goal 90,90 --html drive.html\n"
-               "  talus drive dem.tif --truth truth.yaml --start 10,10 --goal 90,90 --worlds 100 "
-               "--belief all\n\n") +
+               "  talus drive dem.tif --truth truth.yaml --start 10,10 --goal 90,90 --worlds 100 --belief "
+               "all\n"
+               "\n") +
            kTruthFormat},
       bind, run);
 }

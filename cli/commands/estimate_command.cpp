@@ -23,46 +23,51 @@ struct EstimateCommand : EstimateOptions {
 };
 
 void bind(CLI::App& command, EstimateCommand& options) {
-  command.add_option("table", options.table, "wheel telemetry, or plate tests for bevameter")
+  command.add_option("table", options.table, "wheel telemetry, or plate and shear tests for bevameter")
       ->required()
       ->type_name("T.csv");
-  command.add_option("--method", options.method, "how")->required()->check(CLI::IsMember(estimateMethods()));
+  command.add_option("--method", options.method, "estimation method")
+      ->required()
+      ->check(CLI::IsMember(estimateMethods()));
   command
       .add_option("--shear-modulus", options.shear_modulus,
-                  "K in metres, or how to find it: error-minimisation, effective-torque, "
-                  "effective-torque-printed, joint "
-                  "(default: the file's shear_modulus_m, else the prior's, else joint; wong-reece infers it)")
+                  "K in metres, or the method that finds it: error-minimisation, effective-torque, "
+                  "effective-torque-printed or joint (default: the file's shear_modulus_m, else the prior's, "
+                  "else joint; wong-reece infers it)")
       ->type_name("M|HOW")
       ->check([](const std::string& word) -> std::string {
         if (std::ranges::find(modulusMethods(), word) != modulusMethods().end()) return {};
-        return CLI::Number(word).empty() ? std::string()
-                                         : "'" + word + "' is neither metres nor a way to find K";
+        return CLI::Number(word).empty()
+                   ? std::string()
+                   : "'" + word + "' is neither a length in metres nor a method that finds K";
       });
   command
-      .add_option("--prior", options.prior,
-                  "soils with {mean, std} (default: wong-reece thesis Table 2.1, other methods none)")
+      .add_option(
+          "--prior", options.prior,
+          "prior soils with {mean, std} (default: thesis Table 2.1 for wong-reece, none for other methods)")
       ->type_name("NAME|FILE");
   command
-      .add_option(
-          "--model", options.model,
-          "a refined model whose effects act on the wheel (wong-reece): what they do to sinkage, torque and "
-          "pull is not laid to the soil")
+      .add_option("--model", options.model,
+                  "refined model; its effects on sinkage, torque and drawbar pull are modelled and not "
+                  "attributed to the soil (wong-reece)")
       ->type_name("M.yaml");
-  command.add_option("--rover", options.rover, "whose wheel, where the file does not say")
+  command.add_option("--rover", options.rover, "rover that supplies wheel dimensions missing from the file")
       ->type_name("NAME|FILE");
   command
       .add_option("--plate-width", options.plate_width_m,
-                  "b of the plate, where the file does not say (bevameter)")
+                  "plate width b where it is missing from the file (bevameter)")
       ->check(CLI::Range(1e-3, 10.0))
       ->type_name("M");
-  command.add_option("--noise", options.noise, "relative error of each reading (wong-reece)")
+  command.add_option("--noise", options.noise, "relative standard deviation of each reading (wong-reece)")
       ->check(CLI::Range(1e-4, 0.5))
       ->capture_default_str();
   command.add_flag("--keep-m1", options.whole_equation,
-                   "solve the whole Eq. 2.9, M1 included, in place of 2.11 (linear-offset)");
+                   "solve the full Eq. 2.9 with the term M1 instead of Eq. 2.11 (linear-offset)");
   command.add_flag("--recursive", options.recursive,
-                   "take the rows in one by one, in constant memory, and print the estimate after each");
-  command.add_option("--html", options.html, "a page with the fit")->type_name("R.html");
+                   "process the rows one by one in constant memory; print the estimate after each row");
+  groupOptions(command, "Method");
+  command.add_option("--html", options.html, "page to write, with the fit")->type_name("R.html");
+  groupOptions(command, "Output");
 }
 
 Json rejectedRows(const SoilEstimate& e) {
@@ -128,10 +133,10 @@ Json jsonOf(const std::string& method, const SoilEstimate& e) {
 
 std::string runningText(const SoilEstimate& e) {
   if (e.running.empty()) return {};
-  std::string text = "  line     c kPa      +-   phi deg      +-    K mm\n";
+  std::string text = "  line     c kPa     std   phi deg     std    K mm\n";
   for (const RunningSoil& r : e.running) {
     if (std::isnan(r.cohesion_Pa)) {
-      text += fmt::format("{:6}  too few rows yet\n", r.line);
+      text += fmt::format("{:6}  too few rows so far\n", r.line);
       continue;
     }
     text +=
@@ -183,7 +188,7 @@ Plot strengthPlot(const SoilEstimate& e) {
 }
 
 Plot posteriorPlot(const SoilEstimate& e) {
-  Plot plot{.title = "Soils that the readings allow",
+  Plot plot{.title = "Posterior samples",
             .x = {.label = "cohesion [kPa]"},
             .y = {.label = "friction angle [deg]"},
             .series = {}};
@@ -202,7 +207,7 @@ Plot posteriorPlot(const SoilEstimate& e) {
 }
 
 void writePage(const EstimateCommand& options, const SoilEstimate& e) {
-  HtmlReport page("Soil from " + options.table);
+  HtmlReport page("Soil estimated from " + options.table);
   page.paragraph(
       fmt::format("Method {}, {} rows used, {} rejected.", options.method, e.rows_used, e.rejected.size()));
   page.table({"quantity", "value", "standard deviation"},
@@ -211,7 +216,7 @@ void writePage(const EstimateCommand& options, const SoilEstimate& e) {
               {"tan(friction angle)", fmt::format("{:.4f}", e.tan_friction),
                fmt::format("{:.4f}", std::sqrt(e.covariance(1, 1)))},
               {"shear modulus [mm]", fmt::format("{:.2f}", 1e3 * e.shear_modulus_m), ""}});
-  for (const std::string& text : e.unseen) page.paragraph("Not seen by these data: " + text);
+  for (const std::string& text : e.unseen) page.paragraph("Not identifiable from these data: " + text);
   if (!e.points.empty()) page.charts({strengthPlot(e)});
   if (e.posterior) page.charts({posteriorPlot(e)});
   writeFile(options.html, page.html());
@@ -225,7 +230,7 @@ int run(const EstimateCommand& options, Context& context) {
     context.warn(fmt::format("{}:{}: {} ({} rows rejected; --json lists them)", options.table, first.line,
                              first.reason, estimate.rejected.size()));
   }
-  for (const std::string& text : estimate.unseen) context.warn("badly conditioned: " + text);
+  for (const std::string& text : estimate.unseen) context.warn("ill-conditioned: " + text);
   if (const std::string why = estimate.implausible(); !why.empty()) context.warn(why);
   for (const std::string& text : estimate.warnings) context.warn(text);
   if (!options.html.empty()) writePage(options, estimate);
@@ -244,7 +249,7 @@ void addEstimate(CLI::App& app, Context& context) {
       app, context,
       {.name = "estimate",
        .group = Group::kSoil,
-       .description = "the soil under a wheel from its telemetry",
+       .description = "estimate soil parameters from wheel telemetry",
        .examples = "  talus estimate drive.csv --method wong-reece --noise 0.03\n"
                    "  talus estimate drive.csv --method linear-offset --shear-modulus 0.015\n"
                    "  talus estimate drive.csv --method wong-reece --model refined.yaml\n"},

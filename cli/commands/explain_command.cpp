@@ -24,14 +24,17 @@ struct Options {
 
 void bind(CLI::App& command, Options& options) {
   addGroundOptions(command, options.ground);
-  command.add_option("--at", options.at, "place: x,y or lat,lon with a d on each, or a GeoJSON point")
+  command
+      .add_option("--at", options.at,
+                  "place: x,y in map metres; lat,lon with the suffix d on each; or a GeoJSON point file")
       ->required()
       ->type_name("P");
   command
       .add_option("--heading", options.heading_rad,
-                  "heading, counter-clockwise from east; else the worst one")
+                  "heading, counter-clockwise from east (default: the worst heading)")
       ->type_name("RAD")
       ->check(finite());
+  groupOptions(command, "Place");
 }
 
 nlohmann::ordered_json asJson(const costmap::Explanation& why, const maps::Point& point,
@@ -84,7 +87,7 @@ void addExplain(CLI::App& app, Context& context) {
   addCommand<Options>(app, context,
                       {.name = "explain",
                        .group = Group::kMaps,
-                       .description = "why a cell is what it is: each number, its source, its uncertainty",
+                       .description = "explain the category of a cell: quantities, sources, uncertainties",
                        .examples = "  talus explain gale.tif --at -4.7d,137.5d --heading 1.57\n"},
                       bind, run);
 }

@@ -49,7 +49,7 @@ struct Size {
 Size parseSize(const std::string& text) {
   const auto refuse = [&]() -> Size {
     throw InputError(
-        {"--size " + text, "is not a number of cells", "write N or WIDTHxHEIGHT, 8 to 20000 each"});
+        {"--size " + text, "is not a size in cells", "write N or WIDTHxHEIGHT, 8 to 20000 each"});
   };
   const auto number = [&](const std::string& word) {
     const bool digits =
@@ -111,12 +111,13 @@ void bind(CLI::App& command, Options& options) {
       .add_option("KIND", options.site,
                   "craters (Moon), dunes or rocks (Mars), or a YAML description (see maps/sites)")
       ->required();
-  command.add_option("--size", options.size, "cells a side, or WIDTHxHEIGHT (default 512)")->type_name("N");
-  command.add_option("--resolution", options.resolution_m, "side of a cell (default 1)")
+  command.add_option("--size", options.size, "side in cells, or WIDTHxHEIGHT (default: 512)")->type_name("N");
+  command.add_option("--resolution", options.resolution_m, "cell size (default: 1)")
       ->type_name("METRES")
       ->check(CLI::Range(0.01, 1000.0));
   command
-      .add_option("-o,--output", options.output, "elevation map to write; its layers are written beside it")
+      .add_option("-o,--output", options.output,
+                  "elevation map to write; its layers are written to the same folder")
       ->type_name("FILE.tif")
       ->required();
 }
@@ -148,9 +149,9 @@ void addGenerate(CLI::App& app, Context& context) {
       app, context,
       {.name = "generate",
        .group = Group::kMaps,
-       .description = "make an example site: elevation, terrain classes, rocks and soils",
+       .description = "generate an example site: elevation, classes, rocks and soils",
        .examples = "  talus generate craters --size 1000 --resolution 0.5 --seed 7 -o site.tif\n"
-                   "  talus plan site.tif --terrain site_classes.tif --soils site_soils.yaml ...\n"},
+                   "  talus generate dunes --size 400x300 -o dunes.tif\n"},
       bind, run);
 }
 

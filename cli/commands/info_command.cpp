@@ -88,7 +88,7 @@ std::string latitudes(const maps::ElevationMap& map) {
   const maps::Grid& grid = map.grid();
   const maps::Point middle{grid.south_west.x_m + 0.5 * grid.width * grid.resolution_m,
                            grid.south_west.y_m + 0.5 * grid.height * grid.resolution_m};
-  return fmt::format("middle      {}\n", maps::describe(middle, map));
+  return fmt::format("centre      {}\n", maps::describe(middle, map));
 }
 
 std::string asText(const maps::ElevationMap& map, const nlohmann::ordered_json& facts) {
@@ -101,18 +101,19 @@ std::string asText(const maps::ElevationMap& map, const nlohmann::ordered_json& 
          fmt::format("CRS         {}{}\n", facts["crs"].get<std::string>(),
                      map.georeference ? " (" + map.georeference->body() + ")" : " metres") +
          fmt::format("extent      {}\n", maps::extent(grid)) + latitudes(map) +
-         fmt::format("valid       {:.1f} % of the cells\n", 100 * facts["valid_fraction"].get<double>()) +
+         fmt::format("valid       {:.1f} % of cells\n", 100 * facts["valid_fraction"].get<double>()) +
          fmt::format("elevation   {:.1f} to {:.1f} m\n", number("elevation_m", "min"),
                      number("elevation_m", "max")) +
-         fmt::format("slope       50 % of the cells below {:.1f} deg, 90 % below {:.1f}, 99 % below {:.1f}\n",
-                     number("slope_deg", "p50"), number("slope_deg", "p90"), number("slope_deg", "p99"));
+         fmt::format(
+             "slope       median {:.1f} deg, 90th percentile {:.1f} deg, 99th percentile {:.1f} deg\n",
+             number("slope_deg", "p50"), number("slope_deg", "p90"), number("slope_deg", "p99"));
 }
 
 void bind(CLI::App& command, Options& options) {
   addMapOptions(command, options.map);
   command
       .add_option("--footprint", options.footprint_m,
-                  "radius of the disc over which slope is taken (default: 3 x 3 cells)")
+                  "radius of the disc over which slope is computed (default: 3 x 3 cells)")
       ->type_name("METRES");
 }
 
@@ -137,7 +138,7 @@ void addInfo(CLI::App& app, Context& context) {
       app, context,
       {.name = "info",
        .group = Group::kMaps,
-       .description = "size, CRS, body, share of data and slopes of an elevation map",
+       .description = "summarise an elevation map: size, CRS, body, valid fraction and slopes",
        .examples = "  talus info gale.tif\n  talus info --resolution 0.094 yard.tif --json\n"},
       bind, run);
 }

@@ -44,48 +44,62 @@ struct Timing {
   double load_s, costmap_s, plan_s;
 };
 
+void addOutputs(CLI::App& command, PlanOptions& options) {
+  command.add_option("-o,--output", options.output, "route to write, as GeoJSON")->type_name("ROUTE.geojson");
+  command.add_option("--html", options.html, "page to write: map, route and profiles")
+      ->type_name("PAGE.html");
+  command.add_option("--png", options.png, "picture to write")->type_name("FILE.png");
+  command
+      .add_option("--pareto", options.pareto,
+                  "plot of the Pareto set of energy, time and risk to write: .png, .svg or .html")
+      ->type_name("FILE");
+  groupOptions(command, "Output");
+}
+
 void bind(CLI::App& command, PlanOptions& options) {
   addGroundOptions(command, options.ground);
   command
-      .add_option("--start", options.start, "x,y in map metres; lat,lon with a d on each; or a GeoJSON point")
+      .add_option("--start", options.start,
+                  "start: x,y in map metres; lat,lon with the suffix d on each; or a GeoJSON point file")
       ->type_name("PLACE");
   command
-      .add_option("--goal", options.goals, "the same; may be repeated: the goal that costs least is taken")
+      .add_option("--goal", options.goals,
+                  "goal, in the same formats; may be repeated: the goal of least cost is chosen")
       ->type_name("PLACE");
-  command.add_option("--via", options.via, "to be passed on the way; may be repeated")->type_name("PLACE");
+  command.add_option("--via", options.via, "via point; may be repeated")->type_name("PLACE");
   command
       .add_option("--pairs", options.pairs,
-                  "many routes over the one map: CSV with start_x_m, start_y_m, goal_x_m, goal_y_m; a row of "
-                  "results each, to -o FILE.csv or stdout; over all ranks under mpirun")
+                  "plan many routes over one map: CSV with start_x_m, start_y_m, goal_x_m, goal_y_m; one row "
+                  "of results each, to -o FILE.csv or stdout; distributed over all ranks under mpirun")
       ->type_name("FILE.csv");
-  command.add_option("--tolerance", options.tolerance_m, "the route may end this far from the goal")
+  command
+      .add_option("--tolerance", options.tolerance_m,
+                  "goal tolerance: largest distance between the end of the route and the goal")
       ->type_name("METRES")
       ->check(notNegative());
-  command.add_option("--planner", options.planner, "who plans: `talus plugins` lists them")
+  groupOptions(command, "Places");
+  command.add_option("--planner", options.planner, "planner; `talus plugins` lists them")
       ->type_name("NAME")
       ->capture_default_str();
-  addDriveOptions(command, options.drive);
-  command.add_option("--time", options.time_limit_s, "time limit of the planning")
+  command.add_option("--time", options.time_limit_s, "time limit of planning")
       ->type_name("S")
       ->check(positive());
   command
-      .add_option("--in-memory", options.in_memory,
-                  "read a DEM of more cells in windows along a route over its overview")
+      .add_option(
+          "--in-memory", options.in_memory,
+          "largest DEM that is read whole; a larger one is read in windows along a route over its overview")
       ->type_name("CELLS")
       ->capture_default_str();
-  command.add_flag("--whole-field", options.whole_field,
-                   "read and settle the whole map, however large, instead of a tube around a coarse route");
+  command.add_flag(
+      "--whole-field", options.whole_field,
+      "read and search the whole map at full resolution instead of a corridor around a coarse route");
   command
-      .add_option("--risk", options.max_risk, "the route's probability of immobilisation stays within this")
+      .add_option("--risk", options.max_risk, "upper limit of the immobilisation probability of the route")
       ->type_name("ALPHA")
       ->check(CLI::Range(0.0, 1.0));
-  command
-      .add_option("--pareto", options.pareto,
-                  "draw what energy, time and risk may be traded: .png, .svg or .html")
-      ->type_name("FILE");
-  command.add_option("-o,--output", options.output, "the route as GeoJSON")->type_name("ROUTE.geojson");
-  command.add_option("--html", options.html, "the route as a page to look at")->type_name("PAGE.html");
-  command.add_option("--png", options.png, "the route as a picture")->type_name("FILE.png");
+  groupOptions(command, "Planner");
+  addDriveOptions(command, options.drive);
+  addOutputs(command, options);
 }
 
 void requirePlaces(const PlanOptions& options) {
@@ -93,9 +107,10 @@ void requirePlaces(const PlanOptions& options) {
     if (!options.start.empty() || !options.goals.empty() || !options.via.empty() || !options.html.empty() ||
         !options.png.empty() || !options.pareto.empty() || options.max_risk > 0.0 ||
         !options.drive.chassis.empty())
-      throw InputError({"--pairs " + options.pairs,
-                        "goes without --start, --goal, --via, --html, --png, --pareto, --risk and --chassis",
-                        "leave them out, or plan the routes one by one"});
+      throw InputError(
+          {"--pairs " + options.pairs,
+           "cannot be combined with --start, --goal, --via, --html, --png, --pareto, --risk or --chassis",
+           "remove them, or plan the routes one by one"});
     return;
   }
   if (options.start.empty()) throw InputError({"talus plan", "no start", "pass --start x,y"});
@@ -143,14 +158,14 @@ planner::Plan planOnce(const planner::Problem& problem, planner::NamedPlanner& p
 // Which of several goals the route ends at.
 std::string goalText(const PlanOptions& options, const planner::Plan& plan) {
   if (options.goals.size() < 2) return "";
-  return fmt::format("{:<14}{}, number {} of the {} given: none costs less\n", "goal",
-                     options.goals[plan.goal], plan.goal + 1, options.goals.size());
+  return summaryLine("goal", fmt::format("{}, number {} of {}: the goal of least cost",
+                                         options.goals[plan.goal], plan.goal + 1, options.goals.size()));
 }
 
 std::string asText(const Route& route, const Timing& seconds) {
   return summaryText(route) +
-         fmt::format("{:<14}{:.3f} s to load, {:.3f} s for the costmap, {:.3f} s to plan\n", "took",
-                     seconds.load_s, seconds.costmap_s, seconds.plan_s);
+         summaryLine("run time", fmt::format("load {:.3f} s, costmap {:.3f} s, plan {:.3f} s", seconds.load_s,
+                                             seconds.costmap_s, seconds.plan_s));
 }
 
 // A bad place is told before the work, not after it.
@@ -280,9 +295,10 @@ void refuseInWindows(const PlanOptions& options) {
   const bool other = options.planner != "field" || options.max_risk > 0.0 || !options.pareto.empty() ||
                      !options.pairs.empty() || !options.drive.chassis.empty() || options.goals.size() > 1;
   if (!other) return;
-  throw InputError({options.ground.dem.path,
-                    "is too large for --planner, --pairs, --risk, --pareto, --chassis and several goals",
-                    "read a part with --window, or the whole with --whole-field"});
+  throw InputError(
+      {options.ground.dem.path,
+       "is too large to be combined with --planner, --pairs, --risk, --pareto, --chassis or several goals",
+       "read a part with --window, or the whole with --whole-field"});
 }
 
 int runInWindows(const PlanOptions& options, const Context& context) {
@@ -307,8 +323,8 @@ int run(const PlanOptions& asked, Context& context) {
   if (options.pairs.empty()) checkOutputs(options);
   planner::NamedPlanner planner(options.planner);
   if (options.drive.any() && !planner.drives())
-    throw InputError({"planner '" + planner.name() + "'", "knows no heading and no turning radius",
-                      "pass --planner hybrid, or leave out --start-heading, --goal-heading, --turning-radius "
+    throw InputError({"planner '" + planner.name() + "'", "supports neither headings nor a turning radius",
+                      "pass --planner hybrid, or remove --start-heading, --goal-heading, --turning-radius "
                       "and --no-reverse"});
   if (!options.whole_field && needsWindows(options.ground, options.in_memory))
     return runInWindows(options, context);
@@ -334,11 +350,10 @@ void addPlan(CLI::App& app, Context& context) {
       app, context,
       {.name = "plan",
        .group = Group::kRoutes,
-       .description =
-           "a route from start to goal, with its energy, time, slip and how far it may be from the best",
+       .description = "plan a route of least cost from start to goal",
        .examples =
            "  talus plan gale.tif --rover mer --start -4.59d,137.44d --goal -4.6d,137.5d -o route.geojson\n"
-           "  talus plan mission.yaml\n"},
+           "  talus plan mission.yaml --html route.html\n"},
       bind, run);
 }
 

@@ -52,8 +52,7 @@ int run(const Options& options, Context& context) {
 }
 
 void bind(CLI::App& app, Options& options) {
-  app.add_option("file", options.file,
-                 "A planner's shared library; without one, the planners that are built in");
+  app.add_option("file", options.file, "shared library of a planner plugin (default: the built-in planners)");
 }
 
 }  // namespace
@@ -62,8 +61,9 @@ void addPlugins(CLI::App& app, Context& context) {
   addCommand<Options>(app, context,
                       {.name = "plugins",
                        .group = Group::kRoutes,
-                       .description = "what a planner plugin offers",
-                       .examples = "  talus plugins\n  talus plugins /usr/lib/talus/libtalus_planner.so"},
+                       .description = "list the planners and features of a plugin or of the program",
+                       .examples = "  talus plugins\n"
+                                   "  talus plugins /usr/lib/talus/libtalus_planner.so\n"},
                       bind, run);
 }
 

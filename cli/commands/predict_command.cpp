@@ -16,15 +16,15 @@ struct PredictOptions {
 };
 
 void bind(CLI::App& command, PredictOptions& options) {
-  command.add_option("telemetry", options.table, "conditions a row: load_N, slip, ...")
+  command.add_option("telemetry", options.table, "operating conditions, one row each: load_N, slip, ...")
       ->required()
       ->type_name("T.csv");
   command.add_option("--model", options.model, "refined or base model, or a soil")
       ->required()
       ->type_name("M.yaml");
-  command.add_option("--rover", options.rover, "whose wheel it is, where the data do not say")
+  command.add_option("--rover", options.rover, "rover that supplies wheel dimensions missing from the file")
       ->type_name("NAME|FILE");
-  command.add_option("-o,--output", options.output, "the rows with predictions appended")
+  command.add_option("-o,--output", options.output, "rows to write, with predictions appended")
       ->required()
       ->type_name("OUT.csv");
 }
@@ -32,14 +32,14 @@ void bind(CLI::App& command, PredictOptions& options) {
 int run(const PredictOptions& options, Context& context) {
   terramech::ModelFile file = terramech::loadModel(options.model);
   if (!file.soil_given)
-    throw InputError({options.model, "names no soil", "trace some data with it first: talus trace"});
+    throw InputError({options.model, "defines no soil", "fit one first: talus trace --model-out"});
   if (!options.rover.empty()) file.model.takeRover(terramech::loadRover(options.rover));
   const auto table = terramech::predictTable(options.table, file.model, context.watch("predicting"));
   if (context.stop.stop_requested()) return Exit::kCancelled;
   constexpr std::size_t kShown = 20;
   for (std::size_t k = 0; k < table.refused.size() && k < kShown; ++k)
     context.warn(fmt::format("{}:{}: {}", options.table, table.refused[k].line, table.refused[k].reason));
-  if (table.replaced) context.warn(options.table + ": holds columns of predictions; they are made anew");
+  if (table.replaced) context.warn(options.table + ": contains prediction columns; they are replaced");
   writeFile(options.output, table.text);
   auto refused = nlohmann::ordered_json::array();
   for (const auto& row : table.refused) refused.push_back({{"line", row.line}, {"reason", row.reason}});
@@ -59,8 +59,10 @@ void addPredict(CLI::App& app, Context& context) {
       app, context,
       {.name = "predict",
        .group = Group::kSoil,
-       .description = "what a model says that wheels will measure, a row",
-       .examples = "  talus predict drive.csv --model refined.yaml -o predicted.csv\n"},
+       .description = "predict sinkage, torque and drawbar pull of each row with a model",
+       .examples =
+           "  talus predict drive.csv --model refined.yaml -o predicted.csv\n"
+           "  talus predict campaign.csv --model lunar_nominal --rover lunar_micro -o predicted.csv\n"},
       bind, run);
 }
 

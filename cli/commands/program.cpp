@@ -1,6 +1,7 @@
 #include <cstdio>
 #include <exception>
 #include <iostream>
+#include <memory>
 #include <new>
 #include <optional>
 #include <string>
@@ -16,6 +17,7 @@
 
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/context.hpp>
+#include <talus/cli/app/help_format.hpp>
 #include <talus/cli/app/interrupt.hpp>
 #include <talus/cli/app/mpi_launch.hpp>
 #include <talus/cli/app/number_check.hpp>
@@ -57,20 +59,24 @@ int failure() {
   } catch (const std::exception& e) {
     return fail(Exit::kInternal, fmt::format("internal failure: {}; please report it", e.what()));
   } catch (...) {
-    return fail(Exit::kInternal, "internal failure of unknown kind; please report it");
+    return fail(Exit::kInternal, "internal failure of unknown type; please report it");
   }
 }
 
-std::vector<std::string> subcommandNames(const CLI::App& app) {
-  std::vector<std::string> names;
+using Names = std::vector<std::string>;
+
+Names subcommandNames(const CLI::App& app) {
+  Names names;
   for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
   return names;
 }
 
-std::vector<std::string> optionNames(const CLI::App& app) {
-  std::vector<std::string> names;
+// Old names are accepted, but not suggested.
+Names optionNames(const CLI::App& app) {
+  Names names;
   for (const CLI::Option* option : app.get_options())
-    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    for (const std::string& name : option->get_group().empty() ? Names{} : option->get_lnames())
+      names.push_back("--" + name);
   return names;
 }
 
@@ -112,13 +118,13 @@ int parseFailure(const CLI::App& app, const CLI::ParseError& error) {
 void addGlobalOptions(CLI::App& app, Context& context) {
   app.set_version_flag("--version", "talus " TALUS_VERSION);
   app.set_help_flag("-h,--help", "print this help");
-  app.add_flag("--json", context.json, "print the result as JSON");
-  app.add_flag("--quiet", context.quiet, "no progress, no warnings");
-  app.add_option("--seed", context.seed, "seed of every random number")
+  app.add_flag("--json", context.json, "print results as JSON");
+  app.add_flag("--quiet", context.quiet, "print no progress and no warnings");
+  app.add_option("--seed", context.seed, "seed of the random numbers")
       ->check(notNegative())
       ->type_name("N")
       ->capture_default_str();
-  app.add_option("--threads", context.threads, "use at most N threads (default: one a core)")
+  app.add_option("--threads", context.threads, "maximum number of threads (default: one per core)")
       ->type_name("N")
       ->check(CLI::Range(1, 1024));
   app.fallthrough();
@@ -156,7 +162,8 @@ int run(int argc, const char* const* argv) {
   int code = Exit::kDone;
   try {
     requireMpiForRanks();
-    CLI::App app("Safe routes for rovers over soft, sloping ground.", "talus");
+    CLI::App app("Plan safe routes for rovers over soft, sloping ground.", "talus");
+    app.formatter(std::make_shared<HelpFormat>());
     addGlobalOptions(app, context);
     addCommands(app, context);
     code = parseAndRun(app, context, words(argc, argv));

@@ -24,13 +24,13 @@ void bind(CLI::App& command, ReproduceOptions& options) {
   command.add_option("-o,--output", options.output, "folder for validation.md and validation/*.png")
       ->type_name("DIR")
       ->capture_default_str();
-  command.add_flag("--goals", options.goals_only, "measure the estimators alone and print the table");
-  command.add_option("--soils", options.soils, "soils drawn from thesis Table 2.1")
+  command.add_flag("--goals", options.goals_only, "only measure the estimators and print the table");
+  command.add_option("--soils", options.soils, "number of soils sampled from thesis Table 2.1")
       ->check(CLI::Range(8, 100000))
       ->capture_default_str();
   command
       .add_option("--measured", options.measured,
-                  "CSV with load, torque, sinkage, slip and drawbar pull measured")
+                  "CSV of measured load, torque, sinkage, slip and drawbar pull")
       ->type_name("M.csv");
 }
 
@@ -49,9 +49,12 @@ std::string pictureName(const ThesisFigure& figure) {
 
 // The errata that tests/terramech/errata_test.cpp checks, in our words.
 constexpr const char* kErrata =
-    "## Where the thesis prints something wrong\n\n"
-    "Each is checked by a test of its own (`ctest -R Errata`); the right form is the one implemented.\n\n"
-    "| where | printed | right |\n|---|---|---|\n"
+    "## Errata of the thesis\n"
+    "\n"
+    "Each erratum has a test (`ctest -R Errata`); the corrected form is implemented.\n"
+    "\n"
+    "| where | printed | correct |\n"
+    "|---|---|---|\n"
     "| Eq. 2.3, offset term | cos(theta_m) - sin(theta_m)/theta_m + theta_m | 1 - sin(theta_m)/theta_m; Eq. "
     "2.10 follows from this one only |\n"
     "| before Eq. 3.12 | theta_1 = arctan(1 - z/r) | arccos(1 - z/r) |\n"
@@ -65,7 +68,8 @@ constexpr const char* kErrata =
     "| Eq. B.5, second member | r b before the first bracket only | before both |\n"
     "| App. B.3 | c1 + c2 i between 0.4 and 0.6 | 0.49 to 0.69 with Table 2.1 and slip 0.2 to 0.8 |\n"
     "| App. D.2 | A near 1 at high slip, B near 1 | A is 0.6 to 0.75 at slip 0.8 over Table 2.1 |\n"
-    "| Sec. 3.5 | topsoil (0.3, 0.4) is safe at 10 deg | Eq. 3.21 gives DP/W = -0.20: dangerous |\n\n";
+    "| Sec. 3.5 | topsoil (0.3, 0.4) is safe at 10 deg | Eq. 3.21 gives DP/W = -0.20: dangerous |\n"
+    "\n";
 
 constexpr const char* kNotes =
     "Which prior a line has: \"four classes\" and the posterior's DP/W, the four rows of Table 2.1 with "
@@ -89,18 +93,28 @@ std::string page(const std::vector<ThesisFigure>& figures, const std::vector<Goa
                   options.measured.empty()
                       ? ""
                       : " --measured " + std::filesystem::path(options.measured).filename().string());
-  std::string text = "# The thesis, made anew\n\nEvery number and figure here comes from one command, `" +
-                     call +
-                     "`, which also writes this page.\nThe thesis is kang_2003 in REFERENCES.bib. What does "
-                     "not reproduce says so, and why.\n\n"
-                     "## Figures\n\n| figure | the thesis says | we get | verdict |\n|---|---|---|---|\n";
+  std::string text =
+      "# Reproduction of the thesis\n"
+      "\n"
+      "Every number and figure on this page comes from one command, `" +
+      call +
+      "`, which also writes this page.\n"
+      "The thesis is kang_2003 in REFERENCES.bib. Deviations are marked and explained.\n"
+      "\n"
+      "## Figures\n"
+      "\n"
+      "| figure | thesis | result | verdict |\n"
+      "|---|---|---|---|\n";
   for (const ThesisFigure& f : figures)
     text += fmt::format("| {} {} | {} | {} | {} |\n", f.number, f.title, f.claim, f.found, f.verdict);
   text +=
-      "\n## What the estimators reach\n\nSoils even over Table 2.1, ten samples in the thesis' slip pattern, "
-      "loads 60 to 100 N, relative "
-      "Gaussian errors on W, T, z and i.\nMeasured by `talus reproduce --goals` with the same seed; times "
-      "depend on the machine.\n\n";
+      "\n"
+      "## Accuracy of the estimators\n"
+      "\n"
+      "Soils uniform over Table 2.1, ten samples in the thesis' slip pattern, loads 60 to 100 N, relative "
+      "Gaussian errors on W, T, z and i.\n"
+      "Measured by `talus reproduce --goals` with the same seed; times depend on the machine.\n"
+      "\n";
   text += kNotes;
   text += goalTable(goals) + "\n" + kErrata + "## Pictures\n\n";
   for (const ThesisFigure& f : figures)
@@ -114,7 +128,7 @@ std::filesystem::path madeFolder(const ReproduceOptions& options) {
   std::filesystem::create_directories(folder / "validation", failed);
   if (failed) {
     throw InputError(
-        {.where = options.output, .reason = failed.message(), .remedy = "name a folder that can be made"});
+        {.where = options.output, .reason = failed.message(), .remedy = "name a folder that can be created"});
   }
   return folder;
 }
@@ -153,7 +167,7 @@ void addReproduce(CLI::App& app, Context& context) {
       app, context,
       {.name = "reproduce",
        .group = Group::kSoil,
-       .description = "the thesis' figures and numbers made anew, and what the estimators reach",
+       .description = "reproduce the thesis; measure the accuracy of the estimators",
        .examples = "  talus reproduce -o docs\n  talus reproduce --goals --soils 500\n"},
       bind, run);
 }

@@ -34,11 +34,10 @@ nlohmann::ordered_json asJson(const std::vector<planner::Violation>& violations)
 
 std::string asText(const planner::Route& route, const std::vector<planner::Violation>& violations) {
   const planner::RouteSummary& s = route.summary;
-  std::string text =
-      fmt::format("cost        {:.6g} J (no route costs less than {:.6g} J)\n", s.cost, s.lower_bound) +
-      fmt::format("energy      {:.6g} J\ntime        {:.6g} s\nlength      {:.6g} m\n", s.energy_J, s.time_s,
-                  s.length_m) +
-      fmt::format("violations  {}\n", violations.size());
+  std::string text = fmt::format("cost        {:.6g} J (lower bound {:.6g} J)\n", s.cost, s.lower_bound) +
+                     fmt::format("energy      {:.6g} J\ntime        {:.6g} s\nlength      {:.6g} m\n",
+                                 s.energy_J, s.time_s, s.length_m) +
+                     fmt::format("violations  {}\n", violations.size());
   for (const auto& v : violations)
     text += fmt::format("  {:.2f},{:.2f}: {}\n", v.place.x_m, v.place.y_m, v.reason);
   return text;
@@ -50,6 +49,7 @@ void bind(CLI::App& command, Options& options) {
       ->type_name("FILE")
       ->required();
   addChassisOption(command, options.chassis);
+  groupOptions(command, "Path");
 }
 
 // What forbids the polyline: the map, and the chassis where one is asked for.
@@ -91,12 +91,14 @@ int run(const Options& options, Context& context) {
 }  // namespace
 
 void addScore(CLI::App& app, Context& context) {
-  addCommand<Options>(app, context,
-                      {.name = "score",
-                       .group = Group::kRoutes,
-                       .description = "what any polyline costs, and why it may not be driven if so",
-                       .examples = "  talus score dem.tif --path route.geojson --rover mer --json\n"},
-                      bind, run);
+  addCommand<Options>(
+      app, context,
+      {.name = "score",
+       .group = Group::kRoutes,
+       .description = "compute the cost of a polyline and list its violations",
+       .examples = "  talus score dem.tif --path route.geojson --rover mer --json\n"
+                   "  talus score dem.tif --path waypoints.csv --rover mer --chassis rocker-bogie\n"},
+      bind, run);
 }
 
 }  // namespace talus::cli

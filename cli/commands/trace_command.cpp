@@ -18,19 +18,22 @@ struct TraceCommandOptions {
 };
 
 void bind(CLI::App& command, TraceCommandOptions& options) {
-  command.add_option("telemetry", options.telemetry, "measured wheel data")->required()->type_name("T.csv");
-  command
-      .add_option("--base", options.base, "soil or model to start from (default: a soil fitted to the data)")
+  command.add_option("telemetry", options.telemetry, "measured wheel telemetry")
+      ->required()
+      ->type_name("T.csv");
+  command.add_option("--base", options.base, "base soil or model (default: a soil fitted to the data)")
       ->type_name("B.yaml");
-  command.add_option("--rover", options.rover, "whose wheel it is, where the data do not say")
+  command.add_option("--rover", options.rover, "rover that supplies wheel dimensions missing from the file")
       ->type_name("NAME|FILE");
-  command.add_option("--model-out", options.model_out, "writes the refined model")->type_name("M.yaml");
-  command.add_option("--html", options.html, "writes a page with charts")->type_name("R.html");
   command
       .add_option("--significance", options.significance,
-                  "false alarms that are accepted, over all questions")
+                  "family-wise significance level over all hypothesis tests")
       ->check(CLI::Range(1e-3, 0.5))
       ->capture_default_str();
+  groupOptions(command, "Analysis");
+  command.add_option("--model-out", options.model_out, "refined model to write")->type_name("M.yaml");
+  command.add_option("--html", options.html, "page to write, with charts")->type_name("R.html");
+  groupOptions(command, "Output");
 }
 
 terramech::ModelFile baseOf(const TraceCommandOptions& options) {
@@ -67,7 +70,9 @@ int run(const TraceCommandOptions& options, Context& context) {
   if (trial.rows() < 8)
     throw InputError(
         {options.telemetry,
-         fmt::format("{} usable rows with the wheel above its axle, tracing needs 8", trial.rows()), ""});
+         fmt::format("{} usable rows with sinkage below the wheel radius; tracing needs at least 8",
+                     trial.rows()),
+         ""});
   base.model.slip_along_travel |= terramech::slipIsAlongTravel(trial.states);
   terramech::TraceOptions how{.significance = options.significance};
   how.fit_soil = !base.soil_given;
@@ -100,7 +105,7 @@ void addTrace(CLI::App& app, Context& context) {
       app, context,
       {.name = "trace",
        .group = Group::kSoil,
-       .description = "find what a wheel model lacks: residual, its cause, the model with the effect added",
+       .description = "find effects missing from a wheel model; write the refined model",
        .examples = "  talus trace drive.csv --base soil.yaml --model-out refined.yaml --html residuals.html\n"
                    "  talus trace drive.csv --json\n"},
       bind, run);

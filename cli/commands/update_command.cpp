@@ -25,14 +25,15 @@ struct Options {
 };
 
 void bind(CLI::App& command, Options& options) {
-  command.add_option("MAP", options.map, "belief map made by `talus costmap`")
+  command.add_option("MAP", options.map, "traversability map from `talus costmap`")
       ->required()
       ->type_name("MAP.ot");
   command.add_option("TELEMETRY", options.telemetry, "wheel telemetry")->type_name("T.csv");
   command.add_option("-o,--output", options.output, "map to write")->required()->type_name("MAP2.ot");
-  auto* journal = command.add_option("--journal", options.journal, "journal of every row, kept or refused")
-                      ->type_name("EVIDENCE.db");
-  command.add_flag("--replay", options.replay, "put the whole journal into the map instead of a file")
+  auto* journal =
+      command.add_option("--journal", options.journal, "SQLite journal of every row, accepted or rejected")
+          ->type_name("EVIDENCE.db");
+  command.add_flag("--replay", options.replay, "replay the whole journal instead of a telemetry file")
       ->needs(journal);
 }
 
@@ -100,8 +101,8 @@ int run(const Options& options, Context& context) {
       context.warn(fmt::format("{}:{}: {}", options.telemetry, row.line, row.reason));
     report = costmap::addDrive(map, telemetry, journal.get());
     if (report.used == 0)
-      throw InputError({options.telemetry, fmt::format("none of its {} rows could be used", report.rejected),
-                        "the first: " + report.first_reason});
+      throw InputError({options.telemetry, fmt::format("none of its {} rows is usable", report.rejected),
+                        "first reason: " + report.first_reason});
   }
   for (const std::string& finding : report.findings) context.warn(finding);
   if (context.stop.stop_requested()) return Exit::kCancelled;
@@ -115,8 +116,10 @@ int run(const Options& options, Context& context) {
                {"categories_changed", difference.categories},
                {"findings", report.findings}});
   else
-    print(fmt::format("rows        {} used, {} rejected\ncells       {} changed, {} of them their category\n",
-                      report.used, rejected, difference.cells, difference.categories));
+    print(
+        fmt::format("rows        {} used, {} rejected\n"
+                    "cells       {} changed, {} with a new category\n",
+                    report.used, rejected, difference.cells, difference.categories));
   return Exit::kDone;
 }
 
@@ -126,7 +129,7 @@ void addUpdate(CLI::App& app, Context& context) {
   addCommand<Options>(app, context,
                       {.name = "update",
                        .group = Group::kMaps,
-                       .description = "put a drive's telemetry into a map",
+                       .description = "update a traversability map with the telemetry of a drive",
                        .examples = "  talus update map.ot drive.csv -o map2.ot --journal evidence.db\n"
                                    "  talus update map.ot --replay --journal evidence.db -o rebuilt.ot\n"},
                       bind, run);

@@ -33,16 +33,19 @@ struct Options {
 
 void bind(CLI::App& command, Options& options) {
   addMapOptions(command, options.file, "FILE");
-  command.get_option("FILE")->description("route that `talus plan` wrote, map of beliefs, or elevation map");
+  command.get_option("FILE")->description("route from `talus plan`, traversability map, or elevation map");
   command
       .add_option("--map", options.map,
-                  "the map under a route (default: the one it was planned on, looked for "
-                  "beside the route and here)")
+                  "map of a route (default: the map it was planned on, searched in the folder of the route "
+                  "and in the current folder)")
       ->type_name("MAP");
-  command.add_option("--title", options.title, "heading of the page")->type_name("TEXT");
-  command.add_option("-o,--html", options.html, "page to write (default: FILE with .html, in this folder)")
+  command.add_option("--title", options.title, "title of the page")->type_name("TEXT");
+  command
+      .add_option("-o,--html", options.html,
+                  "page to write (default: FILE with the ending .html in the current folder)")
       ->type_name("PAGE.html");
-  command.add_option("--png", options.png, "picture to write as well")->type_name("FILE.png");
+  command.add_option("--png", options.png, "picture to write")->type_name("FILE.png");
+  groupOptions(command, "Page");
 }
 
 Scene mapScene(const Options& options, const std::string& path, const Context& context) {
@@ -66,9 +69,9 @@ std::optional<std::string> findMap(const RouteFile& file, const std::string& rou
     std::error_code error;
     if (!fs::is_regular_file(path, error)) continue;
     if (sha256OfFile(path.string()) == input.sha256) return path.string();
-    context.warn(path.string() + " is not the file that the route was planned on: it was changed since");
+    context.warn(path.string() + " is not the file that the route was planned on: its checksum differs");
   }
-  context.warn("the map " + input.file + " of the route was not found: shown without; pass --map");
+  context.warn("the map " + input.file + " of the route was not found; the page shows no map; pass --map");
   return std::nullopt;
 }
 
@@ -83,7 +86,7 @@ Scene routeScene(const Options& options, const Context& context) {
   Scene scene = mapScene(titled, *map, context);
   if (!scene.grid().cellAt({file.route.vertices.front().x_m, file.route.vertices.front().y_m}))
     throw InputError(
-        {*map, "does not hold the start of the route", "pass the map that the route was planned on"});
+        {*map, "does not contain the start of the route", "pass the map that the route was planned on"});
   addRoute(scene, file.route);
   return scene;
 }
@@ -111,7 +114,7 @@ void addView(CLI::App& app, Context& context) {
   addCommand<Options>(app, context,
                       {.name = "view",
                        .group = Group::kRoutes,
-                       .description = "one self-contained page: map with layers, route, profiles",
+                       .description = "write a self-contained HTML page: map layers, route and profiles",
                        .examples = "  talus view route.geojson\n"
                                    "  talus view gale.ot -o gale.html --png gale.png\n"},
                       bind, run);

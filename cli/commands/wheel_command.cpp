@@ -24,30 +24,33 @@ struct WheelOptions {
 };
 
 void bind(CLI::App& command, WheelOptions& options) {
-  auto* soil = command.add_option("--soil", options.soil, "soil of the library, or a YAML file")
+  auto* soil = command.add_option("--soil", options.soil, "soil: a library name or a YAML file")
                    ->type_name("NAME|FILE");
   auto* rover =
-      command.add_option("--rover", options.rover, "rover of the library, or a YAML file; its wheel is used")
+      command.add_option("--rover", options.rover, "rover with the wheel: a library name or a YAML file")
           ->type_name("NAME|FILE");
-  auto* load = command.add_option("--load", options.load_N, "load on the wheel [N] (default: the rover's)")
+  auto* load = command.add_option("--load", options.load_N, "wheel load [N] (default: the rover's)")
                    ->type_name("N")
                    ->check(finite());
-  auto* slip = command.add_option("--slip", options.slip, "-1 (locked) to 1 (spinning in place)")
+  auto* slip = command.add_option("--slip", options.slip, "slip, from -1 (locked) to 1 (spinning in place)")
                    ->type_name("I")
                    ->check(within(-1.0, 1.0));
-  auto* html = command.add_option("--html", options.html, "write a page with stresses and curves over slip")
-                   ->type_name("FILE.html");
+  auto* html =
+      command.add_option("--html", options.html, "page to write, with stresses and curves over slip")
+          ->type_name("FILE.html");
+  groupOptions(command, "One wheel");
   auto* cases =
-      command.add_option("--cases", options.cases, "solve each row of a CSV instead")->type_name("IN.csv");
-  command.add_option("-o,--output", options.output, "where --cases writes")
+      command.add_option("--cases", options.cases, "solve each row of a CSV file")->type_name("IN.csv");
+  command.add_option("-o,--output", options.output, "results of --cases to write")
       ->type_name("OUT.csv")
       ->needs(cases);
   for (auto* single : {soil, rover, load, slip, html}) cases->excludes(single);
+  groupOptions(command, "A table of wheels");
 }
 
 [[noreturn]] void lacking(const std::string& option) {
   throw InputError({.where = "talus wheel",
-                    .reason = "lacks " + option,
+                    .reason = "missing " + option,
                     .remedy = "give --soil, --rover and --slip, or --cases IN.csv -o OUT.csv"});
 }
 
@@ -70,7 +73,7 @@ int runTable(const WheelOptions& options, Context& context) {
   if (options.output.empty()) lacking("-o OUT.csv");
   const WheelTable table =
       solveWheelTable(options.cases, options.output, context.workers(), context.watch("wheels"));
-  if (table.replaced) context.warn(options.cases + ": holds result columns; they are computed anew");
+  if (table.replaced) context.warn(options.cases + ": contains result columns; they are replaced");
   warnOfRefused(table, options.cases, context);
   if (context.json)
     printJson({{"rows_solved", table.solved},
@@ -119,19 +122,24 @@ int run(const WheelOptions& options, Context& context) {
   return options.cases.empty() ? runOne(options, context) : runTable(options, context);
 }
 
+std::string libraryText() {
+  return wrapped("Soils: " + fmt::format("{}", fmt::join(terramech::librarySoils(), ", ")), kHelpWidth) +
+         "\n" +
+         wrapped("Rovers: " + fmt::format("{}", fmt::join(terramech::libraryRovers(), ", ")), kHelpWidth) +
+         "\n";
+}
+
 }  // namespace
 
 void addWheel(CLI::App& app, Context& context) {
-  addCommand<WheelOptions>(
-      app, context,
-      {.name = "wheel",
-       .group = Group::kSoil,
-       .description = "forces on a wheel: sinkage, torque, drawbar pull",
-       .examples = "  talus wheel --soil lunar_nominal --rover lunar_micro --slip 0.3\n"
-                   "  talus wheel --cases cases.csv -o forces.csv\n" +
-                   fmt::format("Soils: {}\nRovers: {}\n", fmt::join(terramech::librarySoils(), " "),
-                               fmt::join(terramech::libraryRovers(), " "))},
-      bind, run);
+  addCommand<WheelOptions>(app, context,
+                           {.name = "wheel",
+                            .group = Group::kSoil,
+                            .description = "compute the forces on a wheel: sinkage, torque and drawbar pull",
+                            .examples = "  talus wheel --soil lunar_nominal --rover lunar_micro --slip 0.3\n"
+                                        "  talus wheel --cases cases.csv -o forces.csv\n\n" +
+                                        libraryText()},
+                           bind, run);
 }
 
 }  // namespace talus::cli

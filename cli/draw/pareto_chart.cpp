@@ -19,12 +19,14 @@ std::vector<Plot> charts(const std::vector<planner::ParetoRoute>& front) {
     time.x.push_back(above_least);
     time.y.push_back(route.demand.time_s / 3600);
   }
-  return {
-      {.title = "Energy and risk",
-       .x = {"energy above the least [%]"},
-       .y = {"probability of immobilisation [%]"},
-       .series = {risk}},
-      {.title = "Energy and time", .x = {"energy above the least [%]"}, .y = {"time [h]"}, .series = {time}}};
+  return {{.title = "Energy and risk",
+           .x = {"energy above the minimum [%]"},
+           .y = {"immobilisation probability [%]"},
+           .series = {risk}},
+          {.title = "Energy and time",
+           .x = {"energy above the minimum [%]"},
+           .y = {"time [h]"},
+           .series = {time}}};
 }
 
 }  // namespace
@@ -38,8 +40,8 @@ void saveParetoChart(const std::string& path, const std::vector<planner::ParetoR
     rows.push_back({fmt::format("{:.1f}", route.demand.energy_J / 1e3),
                     fmt::format("{:.2f}", route.demand.time_s / 3600),
                     fmt::format("{:.4f}", 100 * route.demand.risk)});
-  page.paragraph("No route of these is better than another in energy, time and risk together.");
-  page.table({"energy kJ", "time h", "risk %"}, rows);
+  page.paragraph("The Pareto set: no other route is better in energy, time and risk at once.");
+  page.table({"energy [kJ]", "time [h]", "immobilisation probability [%]"}, rows);
   page.charts(charts(front));
   writeFile(path, page.html());
 }

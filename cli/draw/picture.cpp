@@ -138,11 +138,11 @@ class Picture {
       scaleLegend(at, scene_.layers.front());
     if (scene_.route && !scene_.route->vertices.empty()) {
       canvas_.line(std::array{at, Spot{at.x + 26, at.y}}, {.colour = kRoute, .width = 3});
-      canvas_.text("route, S to G", {at.x + 36, at.y + 4}, {});
+      canvas_.text("route, start S to goal G", {at.x + 36, at.y + 4}, {});
       at.y += 24;
       if (scene_.route->summary.drive) {
         canvas_.line(std::array{at, Spot{at.x + 26, at.y}}, {.colour = kReverse, .width = 3});
-        canvas_.text("in reverse; dot: turns", {at.x + 36, at.y + 4}, {});
+        canvas_.text("reverse; dots: turns in place", {at.x + 36, at.y + 4}, {});
         at.y += 24;
       }
     }
@@ -191,7 +191,7 @@ class Picture {
     }
     if (!(low <= high)) return;
     canvas_.text(fmt::format("elevation {:.1f} to {:.1f} m", low, high), {at.x, at.y + 8}, {.size = 11});
-    canvas_.text("lit from the north-west", {at.x, at.y + 24}, {.size = 11});
+    canvas_.text("hillshade from the north-west", {at.x, at.y + 24}, {.size = 11});
     canvas_.text("light grey: no data", {at.x, at.y + 40}, {.size = 11});
   }
 

@@ -50,7 +50,7 @@ std::string straightText(const Route& route) {
   const RouteVertex& b = route.vertices.back();
   const double straight = std::hypot(b.x_m - a.x_m, b.y_m - a.y_m);
   if (!(straight > 0.0)) return "";
-  return fmt::format(", {:.2f} times the straight line", route.summary.length_m / straight);
+  return fmt::format(", detour factor {:.2f}", route.summary.length_m / straight);
 }
 
 std::string climbText(const Route& route) {
@@ -61,14 +61,14 @@ std::string climbText(const Route& route) {
     if (dz > 0.0) up += dz;
     if (dz < 0.0) down -= dz;
   }
-  return fmt::format("{:.4g} m up, {:.4g} m down", up, down);
+  return fmt::format("ascent {:.4g} m, descent {:.4g} m", up, down);
 }
 
 std::string slopeText(const Route& route) {
   const Profile along = profile(route, &RouteVertex::slope_along_rad);
   const Profile across = profile(route, &RouteVertex::slope_across_rad);
   if (!along.known()) return "";
-  return fmt::format("at most {:.1f} deg up, {:.1f} deg down, {:.1f} deg across",
+  return fmt::format("max uphill {:.1f} deg, downhill {:.1f} deg, cross-slope {:.1f} deg",
                      std::max(0.0, along.highest) / kDegree, std::max(0.0, -along.lowest) / kDegree,
                      std::max(std::abs(across.highest), std::abs(across.lowest)) / kDegree);
 }
@@ -77,7 +77,7 @@ std::string marginText(const Route& route) {
   const Profile margin = profile(route, &RouteVertex::drawbar_pull_margin);
   if (!margin.known()) return "";
   const RouteVertex& at = route.vertices[margin.lowest_at];
-  return fmt::format("least {:+.3f} of the load, {} from the start at {:.1f},{:.1f}", margin.lowest,
+  return fmt::format("min {:+.3f} (DP/W), {} from the start at {:.1f},{:.1f}", margin.lowest,
                      lengthText(distances_m(route)[margin.lowest_at]), at.x_m, at.y_m);
 }
 
@@ -93,8 +93,8 @@ std::string groundText(const Route& route) {
   for (std::size_t c = 0; c < length.size() && total > 0.0; ++c) {
     if (length[c] <= 0.0) continue;
     if (!text.empty()) text += ", ";
-    text += fmt::format("{:.1f} % {}", 100.0 * length[c] / total,
-                        terramech::name(static_cast<terramech::Category>(c)));
+    text += fmt::format("{} {:.1f} %", terramech::name(static_cast<terramech::Category>(c)),
+                        100.0 * length[c] / total);
   }
   return text;
 }
@@ -103,36 +103,35 @@ std::string wheelText(const Route& route) {
   const Profile sinkage = profile(route, &RouteVertex::sinkage_m);
   const Profile torque = profile(route, &RouteVertex::torque_Nm);
   if (!sinkage.known() || !torque.known()) return "";
-  return fmt::format("sinks {:.1f} mm at most, {:.1f} mm on average; torque up to {:.3g} Nm",
-                     1000.0 * sinkage.highest, 1000.0 * sinkage.mean,
-                     std::max(torque.highest, -torque.lowest));
+  return fmt::format("sinkage max {:.1f} mm, mean {:.1f} mm; torque max {:.3g} Nm", 1000.0 * sinkage.highest,
+                     1000.0 * sinkage.mean, std::max(torque.highest, -torque.lowest));
 }
 
 std::string slipText(const Route& route) {
   const Profile slip = profile(route, &RouteVertex::slip);
   if (!slip.known()) return "";
-  return fmt::format("{:.2f} to {:.2f}, mean {:.2f}", slip.lowest, slip.highest, slip.mean);
+  return fmt::format("min {:.2f}, max {:.2f}, mean {:.2f}", slip.lowest, slip.highest, slip.mean);
 }
 
-/// How far from the best it may be, where the bound says anything of use.
+/// The planner and the optimality gap, where a useful bound is known.
 std::string statusText(const Route& route) {
   const planner::RouteSummary& s = route.summary;
-  if (!(s.gap < 1.0)) return fmt::format("found by {}; how far from the cheapest is not known", s.planner);
-  return fmt::format("found by {}, within {:.1f} % of the cheapest there can be", s.planner, 100.0 * s.gap);
+  if (!(s.gap < 1.0)) return fmt::format("found by {}; optimality gap not known", s.planner);
+  return fmt::format("found by {}; proven optimality gap <= {:.1f} %", s.planner, 100.0 * s.gap);
 }
 
 std::string riskText(double probability) {
-  if (probability > 0.99) return "more than 99 % to get stuck on the way";
-  return fmt::format("{:.2g} % to get stuck on the way", 100.0 * probability);
+  if (probability > 0.99) return "immobilisation probability > 0.99";
+  return fmt::format("immobilisation probability {:.2g}", 100.0 * probability);
 }
 
 std::string driveText(const Route& route) {
   if (!route.summary.drive) return "";
   const planner::DriveShape& d = *route.summary.drive;
   const std::string radius = d.max_curvature_1_m > 0.0
-                                 ? fmt::format("arcs of {:.3g} m and more", 1.0 / d.max_curvature_1_m)
-                                 : "straight between turns";
-  return fmt::format("{}, {} reversals, {} turns in place, {:.0f} deg turned in all", radius, d.cusps,
+                                 ? fmt::format("min turning radius {:.3g} m", 1.0 / d.max_curvature_1_m)
+                                 : "no arcs";
+  return fmt::format("{}, {} reversals, {} turns in place, total heading change {:.0f} deg", radius, d.cusps,
                      d.turns_in_place, d.turned_rad / kDegree);
 }
 
@@ -154,7 +153,7 @@ std::string energyText(double joules) {
 }
 
 std::string durationText(double seconds) {
-  if (!std::isfinite(seconds)) return "for ever";
+  if (!std::isfinite(seconds)) return "unbounded";
   const auto minutes = static_cast<long long>(std::llround(seconds / 60.0));
   if (seconds < 100.0) return fmt::format("{:.0f} s", seconds);
   if (minutes < 60) return fmt::format("{} min", minutes);
@@ -166,30 +165,34 @@ Facts summaryOf(const Route& route) {
   if (route.status != planner::RouteStatus::Found || route.vertices.empty())
     return {{"route", fmt::format("{}: {}", planner::name(route.status), route.reason)}};
   const planner::RouteSummary& s = route.summary;
-  if (!(s.length_m > 0.0)) return {{"route", "nothing to drive: the start is at the goal"}};
+  if (!(s.length_m > 0.0)) return {{"route", "empty: the start is at the goal"}};
   const double risk = route.vertices.back().immobilisation_risk;
-  Facts facts{
-      {"route", statusText(route)},
-      {"length", lengthText(s.length_m) + straightText(route)},
-      {"driving time",
-       fmt::format("{}, {:.3g} m/s on average", durationText(s.time_s), s.length_m / s.time_s)},
-      {"energy", fmt::format("{} ({:.4g} Wh), {:.4g} J/m; cost with time and risk {}", energyText(s.energy_J),
-                             s.energy_J / 3600.0, s.energy_J / s.length_m, energyText(s.cost))},
-      {"manoeuvres", driveText(route)},
-      {"climb", climbText(route)},
-      {"slope", slopeText(route)},
-      {"slip", slipText(route)},
-      {"wheel", wheelText(route)},
-      {"pull to spare", marginText(route)},
-      {"ground", groundText(route)},
-      {"risk", riskText(risk)}};
+  Facts facts{{"route", statusText(route)},
+              {"length", lengthText(s.length_m) + straightText(route)},
+              {"driving time",
+               fmt::format("{}, mean speed {:.3g} m/s", durationText(s.time_s), s.length_m / s.time_s)},
+              {"energy", fmt::format("{} ({:.4g} Wh), {:.4g} J/m; cost including time and risk {}",
+                                     energyText(s.energy_J), s.energy_J / 3600.0, s.energy_J / s.length_m,
+                                     energyText(s.cost))},
+              {"manoeuvres", driveText(route)},
+              {"elevation", climbText(route)},
+              {"slope", slopeText(route)},
+              {"slip", slipText(route)},
+              {"wheel", wheelText(route)},
+              {"drawbar-pull margin", marginText(route)},
+              {"traversability", groundText(route)},
+              {"risk", riskText(risk)}};
   std::erase_if(facts, [](const auto& fact) { return fact.second.empty(); });
   return facts;
 }
 
+std::string summaryLine(std::string_view what, std::string_view value) {
+  return fmt::format("{:<21}{}\n", what, value);
+}
+
 std::string summaryText(const Route& route) {
   std::string text;
-  for (const auto& [what, value] : summaryOf(route)) text += fmt::format("{:<14}{}\n", what, value);
+  for (const auto& [what, value] : summaryOf(route)) text += summaryLine(what, value);
   return text;
 }
 

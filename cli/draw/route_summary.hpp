@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -11,11 +12,14 @@ namespace talus::cli {
 /// Map distance from the start to each vertex [m].
 std::vector<double> distances_m(const planner::Route& route);
 
-/// The ten lines that a rover engineer wants of a route: what, and its value with unit; fewer where a
-/// quantity is not known. For a route that was not found, its status and reason.
+/// The summary of a route, ten quantities, each with its value and unit; fewer where one is not known. For a
+/// route that was not found, its status and reason.
 std::vector<std::pair<std::string, std::string>> summaryOf(const planner::Route& route);
 
-/// The same as aligned text, a line each.
+/// One aligned line of text: a quantity and its value.
+std::string summaryLine(std::string_view what, std::string_view value);
+
+/// The summary as lines of text.
 std::string summaryText(const planner::Route& route);
 
 /// Joules as J, kJ or MJ, four digits.

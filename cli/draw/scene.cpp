@@ -70,15 +70,15 @@ void addBeliefLayers(Scene& scene, const costmap::TraversabilityMap& map, const 
     layer.range = inner(layer.values);
     scene.layers.push_back(std::move(layer));
   };
-  add({.name = "drawbar pull / load",
+  add({.name = "DP/W (drawbar pull / load)",
        .unit = "",
        .values = mean(&costmap::CellBelief::pull_mean),
        .range = {}});
-  add({.name = "its uncertainty (std)",
+  add({.name = "DP/W standard deviation",
        .unit = "",
        .values = mean(&costmap::CellBelief::pull_std),
        .range = {}});
-  add({.name = "sinkage / radius",
+  add({.name = "z/r (sinkage / wheel radius)",
        .unit = "",
        .values = mean(&costmap::CellBelief::sinkage_mean),
        .range = {}});
@@ -160,7 +160,7 @@ Scene sceneOf(const planner::Route& route, const SceneOptions& options) {
   const maps::Point corner{0.5 * (west + east - side_m), 0.5 * (south + north - side_m)};
   Scene scene;
   scene.title = options.title;
-  scene.subtitle = "the route alone: its map was not found";
+  scene.subtitle = "route without map: the map was not found";
   scene.elevation_m = Raster<float>({kCells, kCells, side_m / kCells, corner}, std::nanf(""));
   addRoute(scene, route);
   return scene;

@@ -1,6 +1,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <talus/cli/app/help_format.hpp>
 #include <talus/cli/app/number_check.hpp>
 #include <talus/cli/ground/drive_options.hpp>
 #include <talus/planner/route/turn_prices.hpp>
@@ -14,7 +15,7 @@ void addHeading(CLI::App& command, const std::string& name, std::optional<double
   auto* radians = command
                       .add_option_function<double>(
                           name, [&heading_rad](double value) { heading_rad = value; },
-                          "which way the rover looks there, counter-clockwise from east; any if not given")
+                          "heading of the rover there, counter-clockwise from east (default: any)")
                       ->type_name("RAD")
                       ->check(finite());
   command
@@ -34,17 +35,18 @@ void addDriveOptions(CLI::App& command, DriveOptions& drive) {
   command
       .add_option_function<double>(
           "--turning-radius", [&drive](double value) { drive.turning_radius_m = value; },
-          "smallest radius that hybrid may drive; 0: turns in place (default: the rover's)")
+          "minimum turning radius of hybrid; 0: turns in place (default: the rover's)")
       ->type_name("METRES")
       ->check(notNegative());
   addChassisOption(command, drive.chassis);
-  command.add_flag("--no-reverse", drive.no_reverse, "hybrid: the rover may not drive backwards");
+  command.add_flag("--no-reverse", drive.no_reverse, "hybrid: do not drive in reverse");
+  groupOptions(command, "Motion");
 }
 
 void addChassisOption(CLI::App& command, std::string& chassis) {
   command
       .add_option("--chassis", chassis,
-                  "keep clearance, pitch and roll of such a chassis along the whole motion (any planner)")
+                  "check clearance, pitch and roll of this chassis along the whole motion (any planner)")
       ->type_name("KIND")
       ->check(CLI::IsMember({"rigid", "rocker-bogie"}));
 }

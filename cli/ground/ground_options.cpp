@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 
 #include <talus/cli/app/context.hpp>
+#include <talus/cli/app/help_format.hpp>
 #include <talus/cli/app/number_check.hpp>
 #include <talus/cli/ground/ground_options.hpp>
 #include <talus/costmap/ground_class.hpp>
@@ -45,27 +46,28 @@ bool isBeliefMap(const std::string& path) {
 }
 
 void addPolicy(CLI::App& command, costmap::DrivePolicy& policy) {
-  command.add_flag("--no-marginal{false}", policy.allow_marginal, "refuse marginal ground, too");
+  command.add_flag("--no-marginal{false}", policy.allow_marginal, "exclude marginal cells");
   command.add_flag("--allow-dangerous", policy.allow_dangerous,
-                   "take dangerous ground that the soil can carry");
-  command.add_flag("--allow-unknown", policy.allow_unknown, "take cells without data for flat ground");
+                   "allow dangerous cells where the drawbar pull is sufficient");
+  command.add_flag("--allow-unknown", policy.allow_unknown, "treat cells without data as flat ground");
+  const auto uncertainty = [&policy](double deg) { policy.slope_margin_rad = deg * kDegree; };
   command
-      .add_option_function<double>(
-          "--slope-margin", [&policy](double deg) { policy.slope_margin_rad = deg * kDegree; },
-          "doubt of the slope on either side of a category's edge (default 5)")
+      .add_option_function<double>("--slope-uncertainty-deg", uncertainty,
+                                   "slope uncertainty on either side of a category threshold (default: 5)")
       ->type_name("DEG");
-  command.add_option("--time-weight", policy.time_weight_W, "joules that a second is worth")
+  makeOldName(*command.add_option_function<double>("--slope-margin", uncertainty), "--slope-uncertainty-deg");
+  command.add_option("--time-weight", policy.time_weight_W, "cost of time, joules per second")
       ->type_name("W")
       ->capture_default_str();
-  command.add_option("--risk-weight", policy.risk_weight_J, "joules that the loss of the rover is worth")
+  command.add_option("--risk-weight", policy.risk_weight_J, "cost of losing the rover, joules")
       ->type_name("J")
       ->capture_default_str();
+  groupOptions(command, "Cost and thresholds");
 }
 
 costmap::GroundClass modelledGround(const std::string& path, const terramech::Rover& rover) {
   const terramech::ModelFile file = terramech::loadModel(path);
-  if (!file.soil_given)
-    throw InputError({path, "names no soil", "trace some data with it first: talus trace --model-out"});
+  if (!file.soil_given) throw InputError({path, "defines no soil", "fit one first: talus trace --model-out"});
   try {
     return costmap::groundClass(0, file.model, rover);
   } catch (const std::invalid_argument& e) {
@@ -109,38 +111,39 @@ Ground fromMapFile(const GroundOptions& options, const std::string& path, const 
 
 void warnOfAssumptions(const GroundOptions& options, const Assumed& assumed, const Context& context) {
   if (options.soil.empty() && options.soils.empty() && options.model.empty())
-    context.warn(std::string("no --soil or --soils: the ground is taken for ") + assumed.soil);
-  if (options.rover.empty()) context.warn(std::string("no --rover: ") + assumed.rover + " is taken");
+    context.warn(std::string("no --soil or --soils: using default soil ") + assumed.soil);
+  if (options.rover.empty())
+    context.warn(std::string("no --rover: using default rover ") + assumed.rover + "");
 }
 
 }  // namespace
 
 void addGroundOptions(CLI::App& command, GroundOptions& options) {
   addMapOptions(command, options.dem);
-  command.add_option("--map", options.map_file, "map of beliefs made by `talus costmap` or `talus update`")
+  command.add_option("--map", options.map_file, "traversability map from `talus costmap` or `talus update`")
       ->type_name("MAP.ot");
+  groupOptions(command, "Elevation map");
   addGroundChoices(command, options);
 }
 
 void addGroundChoices(CLI::App& command, GroundOptions& options) {
   addLayerOptions(command, options.layers);
   command.add_option("--soils", options.soils, "soil of each terrain class")->type_name("FILE");
-  auto* soil = command
-                   .add_option("--soil", options.soil,
-                               "soil of ground without a class: a name of the library or a file")
-                   ->type_name("SOIL");
+  auto* soil =
+      command.add_option("--soil", options.soil, "soil of cells without a class: a library name or a file")
+          ->type_name("SOIL");
   command
       .add_option("--model", options.model,
-                  "refined model of ground without a class, made by `talus trace`, in place of --soil")
+                  "refined model of cells without a class, from `talus trace`, instead of --soil")
       ->type_name("M.yaml")
       ->excludes(soil);
-  command.add_option("--rover", options.rover, "the rover: a name of the library or a file")
-      ->type_name("ROVER");
+  command.add_option("--rover", options.rover, "rover: a library name or a file")->type_name("ROVER");
   command
       .add_option("--footprint", options.footprint_m,
-                  "radius that slopes are taken over (default: the rover's)")
+                  "radius over which slopes are computed (default: the rover's)")
       ->type_name("METRES")
       ->check(notNegative());
+  groupOptions(command, "Soil and rover");
   addPolicy(command, options.policy);
 }
 

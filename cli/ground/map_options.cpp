@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include <talus/cli/app/context.hpp>
+#include <talus/cli/app/help_format.hpp>
 #include <talus/cli/ground/map_options.hpp>
 #include <talus/costmap/map_file.hpp>
 #include <talus/costmap/octomap_surface.hpp>
@@ -11,33 +12,35 @@
 namespace talus::cli {
 
 void addMapOptions(CLI::App& command, MapOptions& options, const std::string& name) {
-  command.add_option(name, options.path, "elevation map: anything GDAL opens, a NumPy .npz, or an OctoMap")
+  command.add_option(name, options.path, "elevation map: any GDAL raster, a NumPy .npz, or an OctoMap")
       ->required();
   addReadOptions(command, options);
 }
 
 void addReadOptions(CLI::App& command, MapOptions& options) {
   maps::ReadOptions& read = options.read;
-  command.add_option("--band", read.band, "band that holds the heights, from 1")->type_name("N");
+  command.add_option("--band", read.band, "band of elevations, counted from 1")->type_name("N");
   command
-      .add_option("--resolution", read.resolution_m, "cell side; needed without a CRS, resamples with one")
+      .add_option("--resolution", read.resolution_m,
+                  "cell size; required without a CRS; resamples with a CRS")
       ->type_name("METRES");
   command
       .add_option("--window", options.window,
-                  "read only this part: x0,y0,x1,y1 or lat,lon,lat,lon with a d on each")
+                  "read only this window: x0,y0,x1,y1, or lat,lon,lat,lon with the suffix d on each")
       ->type_name("BOX");
-  command.add_option("--nodata", read.nodata, "value that means no data")->type_name("VALUE");
-  command.add_option("--vertical-scale", read.vertical_scale, "metres per unit of height")
+  command.add_option("--nodata", read.nodata, "value of cells without data")->type_name("VALUE");
+  command.add_option("--vertical-scale", read.vertical_scale, "metres per unit of elevation")
       ->type_name("FACTOR");
   command.add_flag("--ignore-crs", read.ignore_crs,
-                   "the CRS is wrong: read as local metres (with --resolution)");
+                   "ignore a wrong CRS and read as local metres (with --resolution)");
   command
       .add_option("--below", options.below_m,
-                  "of an OctoMap: the ground at or below this height, as under a bridge")
+                  "of an OctoMap: use the ground at or below this elevation, as under a bridge")
       ->type_name("METRES");
-  command.add_option("--max-cells", read.max_cells, "refuse larger maps")
+  command.add_option("--max-cells", read.max_cells, "largest accepted map, in cells")
       ->type_name("N")
       ->capture_default_str();
+  groupOptions(command, "Elevation map");
 }
 
 namespace {
@@ -61,8 +64,8 @@ MapWithFloors fromOctomap(const MapOptions& options, const std::string& type, co
 MapWithFloors readMapWithFloors(const MapOptions& options, const Context& context) {
   if (const auto type = costmap::octomapType(options.path)) return fromOctomap(options, *type, context);
   if (options.below_m)
-    throw InputError({options.path, "--below chooses between the floors of an OctoMap, and this is a raster",
-                      "leave it out"});
+    throw InputError(
+        {options.path, "--below selects a level of an OctoMap, and this is a raster", "remove --below"});
   maps::ReadOptions read = options.read;
   if (!options.window.empty()) read.window = maps::parseWindow(options.window);
   maps::ElevationMap map = maps::readElevation(options.path, read);
@@ -76,11 +79,14 @@ maps::ElevationMap readMap(const MapOptions& options, const Context& context) {
 
 void addLayerOptions(CLI::App& command, LayerOptions& options) {
   command.add_option("--terrain", options.terrain, "raster of terrain classes")->type_name("FILE");
-  command.add_option("--terrain-band", options.terrain_band, "its band, from 1")->type_name("N");
+  command.add_option("--terrain-band", options.terrain_band, "band of the raster, counted from 1")
+      ->type_name("N");
   command.add_option("--rocks", options.rocks, "raster of rock abundance, 0 to 1")->type_name("FILE");
-  command.add_option("--rocks-band", options.rocks_band, "its band, from 1")->type_name("N");
-  command.add_option("--keep-out", options.keep_out, "GeoJSON polygons not to enter; may be repeated")
+  command.add_option("--rocks-band", options.rocks_band, "band of the raster, counted from 1")
+      ->type_name("N");
+  command.add_option("--keep-out", options.keep_out, "GeoJSON polygons to keep out of; may be repeated")
       ->type_name("FILE");
+  groupOptions(command, "Layers");
 }
 
 Layers readLayers(const LayerOptions& options, const maps::ElevationMap& map) {

@@ -54,7 +54,7 @@ void readMaps(const YamlFields& maps, GroundOptions& ground, const std::filesyst
   for (std::string* path : {&ground.map_file, &ground.layers.terrain, &ground.layers.rocks})
     *path = resolved(*path, folder);
   if (ground.dem.path.empty() && ground.map_file.empty())
-    maps.refuse("", "names no map", "give dem: FILE, or map: FILE.ot");
+    maps.refuse("", "defines no map", "give dem: FILE, or map: FILE.ot");
   if (ground.dem.path.empty()) ground.dem.path = ground.map_file;
 }
 

@@ -37,7 +37,7 @@ std::vector<Point> readCsv(const std::string& path) {
     if (!good)
       throw InputError({fmt::format("{}:{}", path, row.line),
                         row.fault.empty() ? "x_m, y_m are not two finite numbers" : row.fault,
-                        "mend the row"});
+                        "fix the row"});
     points.push_back(p);
   }
   return points;
@@ -70,7 +70,7 @@ std::vector<Point> readLine(const std::string& path, const maps::ElevationMap& m
     for (const json& position : geometry["coordinates"]) points.push_back(read(position));
     return points;
   }
-  throw InputError({path, "holds no LineString", "a path is a GeoJSON LineString, or CSV with x_m, y_m"});
+  throw InputError({path, "contains no LineString", "a path is a GeoJSON LineString, or CSV with x_m, y_m"});
 }
 
 }  // namespace
@@ -81,7 +81,7 @@ std::vector<Point> readPath(const std::string& path, const maps::ElevationMap& m
                  [](unsigned char c) { return std::tolower(c); });
   const bool table = extension == ".csv" || extension == ".txt";
   std::vector<Point> points = table ? readCsv(path) : readLine(path, map);
-  if (points.empty()) throw InputError({path, "holds no point", "a path needs at least one"});
+  if (points.empty()) throw InputError({path, "contains no point", "a path needs at least one"});
   return points;
 }
 

@@ -18,7 +18,7 @@ maps::SiteKind siteKind(const std::string& name) {
   for (const auto& [word, kind] : kKinds)
     if (name == word) return kind;
   const std::string near = nearestName(name, {"craters", "dunes", "rocks"});
-  throw InputError({"site '" + name + "'", "is no kind of site",
+  throw InputError({"site '" + name + "'", "is not a kind of site",
                     near.empty() ? "choose craters, dunes or rocks" : "did you mean '" + near + "'?"});
 }
 

@@ -14,19 +14,19 @@ using terramech::YamlFields;
 
 const char* const kTruthFormat =
     "TRUTH.yaml, all parts optional (docs/simulation.md):\n"
-    "  classes: {1: dry_sand, 2: SOIL}         true soils of terrain classes, where not as believed\n"
-    "  patches:                                soft ground that no class raster shows, in every world\n"
+    "  classes: {1: dry_sand, 2: SOIL}   true soils of terrain classes, if different from the map\n"
+    "  patches:                          soft patches in every world, not in the class raster\n"
     "    - {x_m: 40, y_m: 25, radius_m: 4, soil: mars_drift}\n"
-    "  random:                                 what differs from world to world\n"
-    "    spread: 0.1                           relative std of cohesion, tan(friction), moduli\n"
-    "    patches: 8                            so many more, anywhere but at start and goal\n"
-    "    patch_radius_m: 3                     their mean radius, +-50 %\n"
+    "  random:                           variation between worlds\n"
+    "    spread: 0.1                     relative std of cohesion, tan(friction) and moduli\n"
+    "    patches: 8                      number of random patches, away from start and goal\n"
+    "    patch_radius_m: 3               mean patch radius; each varies by +-50 %\n"
     "    patch_soil: mars_drift\n"
-    "  effects:                                what acts on all soils and nobody declared (talus trace "
-    "--help)\n"
+    "  effects:                          effects on all soils, unknown to the planner\n"
     "    - {name: slip_sinkage_ding, parameters: [0.4]}\n"
-    "  soils: [{name: SOIL, cohesion_kPa: 0.2, friction_angle_deg: 24, ...}]   soils of one's own\n"
-    "SOIL is a name in the library or in `soils:`, a YAML file, or the fields of a soil in braces.\n";
+    "  soils:                            soils defined in this file\n"
+    "    - {name: SOIL, cohesion_kPa: 0.2, friction_angle_deg: 24, ...}\n"
+    "SOIL: a name in the library or in `soils:`, a YAML file, or the fields of a soil in braces.\n";
 
 namespace {
 
@@ -56,8 +56,8 @@ double positive(const YamlFields& fields, const std::string& name, double fallba
 planner::SoilPatch patchOf(const YamlFields& fields, const YamlFields& file, const std::string& path) {
   fields.only({"x_m", "y_m", "radius_m", "soil"});
   planner::SoilPatch patch{{fields.number("x_m"), fields.number("y_m")}, 0.0, {}};
-  if (!std::isfinite(patch.centre.x_m)) fields.refuse("x_m", "x_m is not a place", "");
-  if (!std::isfinite(patch.centre.y_m)) fields.refuse("y_m", "y_m is not a place", "");
+  if (!std::isfinite(patch.centre.x_m)) fields.refuse("x_m", "x_m is not a finite number", "");
+  if (!std::isfinite(patch.centre.y_m)) fields.refuse("y_m", "y_m is not a finite number", "");
   patch.radius_m = positive(fields, "radius_m", 0.0);
   patch.soil = soilUnder(fields, "soil", file, path);
   return patch;

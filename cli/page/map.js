@@ -1,4 +1,4 @@
-// The map: metres as they are (CRS.Simple), hillshade below, one coloured layer over it, the route on top.
+// The map in metres (CRS.Simple): hillshade, one coloured layer, the route.
 function drawMap(element, data) {
   const b = data.bounds, at = p => [p.y, p.x];
   const box = [[b.south, b.west], [b.north, b.east]];
@@ -10,7 +10,7 @@ function drawMap(element, data) {
     layers[layer.name] = L.imageOverlay(layer.image, box, {opacity: 0.6, alt: layer.name});
     layers[layer.name].legend = layer.legend;
   }
-  layers["hillshade alone"] = L.layerGroup();
+  layers["hillshade only"] = L.layerGroup();
   const first = Object.keys(layers)[0];
   layers[first].addTo(map);
   showLegend(first, layers[first].legend);
@@ -21,7 +21,7 @@ function drawMap(element, data) {
     ? [...data.story.track.map(([, x, y]) => ({x, y})), ...data.story.events.flatMap(e => e.route.map(([x, y]) => ({x, y})))]
     : data.route;
   const view = way.length ? L.latLngBounds(way.map(at)).pad(0.15) : L.latLngBounds(box);
-  map.fitBounds(view, {paddingBottomRight: [narrow ? 0 : 170, 0]});  // room for the list of layers
+  map.fitBounds(view, {paddingBottomRight: [narrow ? 0 : 170, 0]});  // space for the list of layers
   return map;
 }
 
@@ -38,7 +38,7 @@ function showLegend(name, entries) {
   }
 }
 
-// Draws the route and returns {mark(point)}; told of the pointer through onHover(point).
+// Draws the route and returns {mark(point)}; calls onHover(point) when the pointer moves.
 function drawRoute(map, points, onHover) {
   const line = points.map(p => [p.y, p.x]);
   L.polyline(line, {color: "#fff", weight: 7, interactive: false}).addTo(map);

@@ -1,4 +1,4 @@
-// Puts map, profiles and summary together.
+// Builds the page from map, profiles and summary.
 function pointAt(points, s) {
   let low = 0, high = points.length - 1;
   while (high - low > 1) {
@@ -11,7 +11,7 @@ function pointAt(points, s) {
 function reading(p) {
   const show = (value, digits, unit) => value === null ? "" : `${value.toFixed(digits)} ${unit}`;
   return [`${show(p.s, 1, "m")} from the start`, `at ${p.x.toFixed(1)}, ${p.y.toFixed(1)}`,
-          show(p.elevation, 1, "m high"), show(p.slope, 1, "deg along"), show(p.across, 1, "deg across"),
+          show(p.elevation, 1, "m elevation"), show(p.slope, 1, "deg slope along"), show(p.across, 1, "deg slope across"),
           p.slip === null ? "" : `slip ${p.slip.toFixed(2)}`, show(p.energy, 2, "kJ"), p.category]
     .filter(text => text).join(" · ");
 }
@@ -29,14 +29,14 @@ function start() {
   const data = JSON.parse(document.getElementById("data").textContent);
   const map = drawMap(document.getElementById("map"), data);
   showFacts(data.facts);
-  if (data.story) tellStory(map, data.story);
+  if (data.story) showStory(map, data.story);
   const points = data.route;
   if (points.length < 2) {
     document.getElementById("profiles").hidden = true;
     return;
   }
   const text = document.getElementById("reading");
-  text.textContent = "Point at a profile or at the route.";
+  text.textContent = "Hover over the profile or the route.";
   const here = p => { text.textContent = reading(p); route.mark(p); };
   const profiles = drawProfiles(document.getElementById("charts"), points, s => here(pointAt(points, s)));
   const route = drawRoute(map, points, p => { profiles.mark(p.s); here(p); });

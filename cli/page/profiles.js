@@ -1,4 +1,4 @@
-// The profiles: one panel a quantity over the distance along the route, sharing one rule under the pointer.
+// The profiles: one panel per quantity over the distance along the route, with one common rule at the pointer.
 const panels = [
   {field: "elevation", title: "elevation [m]", zero: false},
   {field: "slope", title: "slope along [deg]", zero: true},
@@ -53,7 +53,7 @@ function profileSpec(points, unit) {
   };
 }
 
-// Draws the profiles and returns {mark(s)}; told of the pointer through onHover(s), both in metres from the start.
+// Draws the profiles and returns {mark(s)}; calls onHover(s) when the pointer moves; s in metres from the start.
 function drawProfiles(element, points, onHover) {
   const need = name => vegaModules["vega-" + name];
   for (const kind of ["transforms", "view-transforms", "encode"]) Object.assign(need("dataflow").transforms, need(kind));

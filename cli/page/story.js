@@ -1,9 +1,9 @@
-// A rehearsed drive: the slider picks a moment of the track; the map shows what was driven, planned and believed
-// by then, and rings around the ground that the rover could not know.
-function tellStory(map, story) {
+// A simulated traverse: the slider selects a time; the map shows the track, the planned route and the reclassified
+// cells at that time, and rings around the soft patches that the planner does not know.
+function showStory(map, story) {
   const at = ([x, y]) => [y, x];
   const track = story.track.map(([time, x, y, slip, energy, sinkage]) => ({time, x, y, slip, energy, sinkage}));
-  const moment = document.getElementById("moment"), told = document.getElementById("told");
+  const moment = document.getElementById("moment"), status = document.getElementById("status");
   const play = document.getElementById("play");
   document.getElementById("story").hidden = false;
   moment.max = track.length - 1;
@@ -40,8 +40,8 @@ function tellStory(map, story) {
     rover.setLatLng([now.y, now.x]);
     showCells(now.time);
     const latest = past.slice(-4).map(event => `${event.time.toFixed(0)} s ${event.text}`).join(" · ");
-    told.textContent = `${now.time.toFixed(0)} s · slip ${now.slip.toFixed(2)} · sinkage ${(1000 * now.sinkage).toFixed(0)} mm · ` +
-      `${now.energy.toFixed(2)} kJ · ${drawn.length} changes of category\n${latest}`;
+    status.textContent = `${now.time.toFixed(0)} s · slip ${now.slip.toFixed(2)} · sinkage ${(1000 * now.sinkage).toFixed(0)} mm · ` +
+      `${now.energy.toFixed(2)} kJ · ${drawn.length} cells reclassified\n${latest}`;
   }
 
   let timer = 0;
@@ -58,7 +58,7 @@ function tellStory(map, story) {
     }, 40);
   });
   moment.addEventListener("input", () => { stop(); show(+moment.value); });
-  const asked = /^#(\d+)$/.exec(location.hash);  // page.html#120 opens at the 120th step
-  moment.value = asked ? Math.min(+asked[1], track.length - 1) : 0;
+  const step = /^#(\d+)$/.exec(location.hash);  // page.html#120 opens at the 120th step
+  moment.value = step ? Math.min(+step[1], track.length - 1) : 0;
   show(+moment.value);
 }

@@ -5,24 +5,25 @@
 
 #include <talus/cli/draw/page.hpp>
 #include <talus/cli/route/drive_page.hpp>
+#include <talus/cli/route/drive_report.hpp>
 
 namespace talus::cli {
 namespace {
 
 Scene sceneBefore(const costmap::TraversabilityMap& map, const planner::WorldResult& result,
                   planner::Belief belief) {
-  Scene scene = sceneOf(
-      map, SceneOptions{.title = fmt::format("TraverseSimulation: {}", planner::name(result.drive.outcome))});
-  scene.subtitle = fmt::format("belief: {}; categories as believed before the drive", planner::name(belief));
+  Scene scene =
+      sceneOf(map, SceneOptions{.title = fmt::format("Simulated traverse: {}", label(result.drive.outcome))});
+  scene.subtitle = fmt::format("soil knowledge: {}; categories before the drive", label(belief));
   const planner::TraverseSimulation& drive = result.drive;
-  scene.facts = {{"outcome", std::string(planner::name(drive.outcome))},
-                 {"driven", fmt::format("{:.1f} m", drive.length_m)},
+  scene.facts = {{"outcome", label(drive.outcome)},
+                 {"distance", fmt::format("{:.1f} m", drive.length_m)},
                  {"time", fmt::format("{:.0f} s", drive.time_s)},
                  {"energy", fmt::format("{:.2f} kJ", drive.energy_J / 1000.0)},
-                 {"largest slip", fmt::format("{:.2f}", drive.max_slip)},
+                 {"maximum slip", fmt::format("{:.2f}", drive.max_slip)},
                  {"alarms", std::to_string(drive.alarms)},
                  {"replans", std::to_string(drive.replans)},
-                 {"cells with a new category", std::to_string(result.categories_changed)}};
+                 {"cells reclassified", std::to_string(result.categories_changed)}};
   return scene;
 }
 

@@ -11,6 +11,7 @@ namespace talus::cli {
 namespace {
 
 using nlohmann::ordered_json;
+using planner::Belief;
 using planner::Outcome;
 
 constexpr std::array<Outcome, 4> kOutcomes{Outcome::Reached, Outcome::Immobilised, Outcome::Tipped,
@@ -25,13 +26,6 @@ void addRates(ordered_json& out, const planner::Rates& rates) {
     out[std::string(planner::name(outcome))] = asJson(rates.outcome[static_cast<std::size_t>(outcome)]);
 }
 
-// "immobilised" for "immobilised", "gave up" for "gave_up".
-std::string inWords(Outcome outcome) {
-  std::string word(planner::name(outcome));
-  std::replace(word.begin(), word.end(), '_', ' ');
-  return word;
-}
-
 // "12.5 % [8.1, 18.7]"
 std::string percent(const planner::Sampled& share) {
   if (std::isnan(share.value)) return "-";
@@ -43,13 +37,21 @@ std::string line(const std::string& name, const std::string& value) {
   return fmt::format("{:<24} {}\n", name, value);
 }
 
-std::size_t safeWorlds(const std::vector<planner::WorldResult>& clairvoyant) {
+std::size_t safeWorlds(const std::vector<planner::WorldResult>& perfect) {
   return static_cast<std::size_t>(
-      std::count_if(clairvoyant.begin(), clairvoyant.end(),
+      std::count_if(perfect.begin(), perfect.end(),
                     [](const planner::WorldResult& r) { return r.drive.outcome == Outcome::Reached; }));
 }
 
 }  // namespace
+
+std::string label(Belief belief) {
+  return belief == Belief::PerfectKnowledge ? "perfect knowledge" : std::string(planner::name(belief));
+}
+
+std::string label(Outcome outcome) {
+  return outcome == Outcome::GaveUp ? "no feasible route" : std::string(planner::name(outcome));
+}
 
 ordered_json asJson(const planner::WorldResult& result) {
   return {{"outcome", planner::name(result.drive.outcome)},
@@ -88,57 +90,58 @@ ordered_json asJson(const std::vector<planner::WorldResult>& results) {
 }
 
 ordered_json asJson(const std::array<std::vector<planner::WorldResult>, 4>& beliefs) {
-  const auto& clairvoyant = beliefs[static_cast<std::size_t>(planner::Belief::Clairvoyant)];
-  ordered_json out{{"worlds", clairvoyant.size()}, {"worlds_with_a_safe_route", safeWorlds(clairvoyant)}};
+  const auto& perfect = beliefs[static_cast<std::size_t>(Belief::PerfectKnowledge)];
+  ordered_json out{{"worlds", perfect.size()}, {"worlds_with_a_safe_route", safeWorlds(perfect)}};
+  const std::string energy_key = "energy_over_" + std::string(planner::name(Belief::PerfectKnowledge));
   for (std::size_t b = 0; b < beliefs.size(); ++b) {
-    const planner::Comparison against = planner::compared(beliefs[b], clairvoyant);
+    const planner::Comparison against = planner::compared(beliefs[b], perfect);
     ordered_json one;
     addRates(one, against.rates);
-    one["energy_over_clairvoyant"] = {{"mean", against.energy_over_clairvoyant.value},
-                                      {"interval_95", against.energy_over_clairvoyant.interval_95}};
-    out[std::string(planner::name(static_cast<planner::Belief>(b)))] = one;
+    one[energy_key] = {{"mean", against.energy_over_perfect_knowledge.value},
+                       {"interval_95", against.energy_over_perfect_knowledge.interval_95}};
+    out[std::string(planner::name(static_cast<Belief>(b)))] = one;
   }
   return out;
 }
 
 std::string asText(const planner::WorldResult& result) {
   const planner::TraverseSimulation& drive = result.drive;
-  return line("outcome", inWords(drive.outcome)) + line("energy", energyText(drive.energy_J)) +
-         line("driven", fmt::format("{:.1f} m", drive.length_m)) + line("time", durationText(drive.time_s)) +
-         line("largest slip", fmt::format("{:.2f}", drive.max_slip)) +
+  return line("outcome", label(drive.outcome)) + line("energy", energyText(drive.energy_J)) +
+         line("distance", fmt::format("{:.1f} m", drive.length_m)) +
+         line("time", durationText(drive.time_s)) +
+         line("maximum slip", fmt::format("{:.2f}", drive.max_slip)) +
          line("alarms, replans", fmt::format("{}, {}", drive.alarms, drive.replans)) +
-         line("cells of new category", std::to_string(result.categories_changed));
+         line("cells reclassified", std::to_string(result.categories_changed));
 }
 
 std::string asText(const std::vector<planner::WorldResult>& results) {
   const planner::Rates rates = planner::ratesOf(results);
   std::string text = line("worlds", std::to_string(rates.worlds));
   for (const Outcome outcome : kOutcomes)
-    text += line(inWords(outcome), percent(rates.outcome[static_cast<std::size_t>(outcome)]));
-  if (!std::isnan(rates.energy_J))
-    text += line("energy where reached", energyText(rates.energy_J) + " on average");
+    text += line(label(outcome), percent(rates.outcome[static_cast<std::size_t>(outcome)]));
+  if (!std::isnan(rates.energy_J)) text += line("mean energy (if reached)", energyText(rates.energy_J));
   return text;
 }
 
 std::string asText(const std::array<std::vector<planner::WorldResult>, 4>& beliefs) {
-  const auto& clairvoyant = beliefs[static_cast<std::size_t>(planner::Belief::Clairvoyant)];
+  const auto& perfect = beliefs[static_cast<std::size_t>(Belief::PerfectKnowledge)];
   std::string text =
-      fmt::format("{} worlds; a safe route, which the clairvoyant drove, in {} of them, and there:\n",
-                  clairvoyant.size(), safeWorlds(clairvoyant));
-  text += fmt::format("{:<12}", "belief");
-  for (const Outcome outcome : kOutcomes) text += fmt::format(" {:<22}", inWords(outcome));
-  text += " energy over the clairvoyant's\n";
+      fmt::format("{} worlds; perfect knowledge reaches the goal in {} of them; energy is compared there.\n",
+                  perfect.size(), safeWorlds(perfect));
+  text += fmt::format("{:<18}", "soil knowledge");
+  for (const Outcome outcome : kOutcomes) text += fmt::format(" {:<22}", label(outcome));
+  text += " energy relative to perfect knowledge\n";
   for (std::size_t b = 0; b < beliefs.size(); ++b) {
-    const planner::Comparison against = planner::compared(beliefs[b], clairvoyant);
-    text += fmt::format("{:<12}", planner::name(static_cast<planner::Belief>(b)));
+    const planner::Comparison against = planner::compared(beliefs[b], perfect);
+    text += fmt::format("{:<18}", label(static_cast<Belief>(b)));
     for (const planner::Sampled& share : against.rates.outcome)
       text += fmt::format(" {:<22}", percent(share));
-    const planner::Sampled& energy = against.energy_over_clairvoyant;
+    const planner::Sampled& energy = against.energy_over_perfect_knowledge;
     text += std::isnan(energy.value) ? std::string(" -\n")
                                      : fmt::format(" {:.3f} [{:.3f}, {:.3f}]\n", energy.value,
                                                    energy.interval_95[0], energy.interval_95[1]);
   }
-  return text + "In brackets: 95 % intervals.\n";
+  return text + "95 % confidence intervals in brackets.\n";
 }
 
 }  // namespace talus::cli

@@ -10,20 +10,25 @@
 
 namespace talus::cli {
 
+/// The belief as people read it: the name of planner::Belief, or "perfect knowledge".
+std::string label(planner::Belief belief);
+
+/// The outcome as people read it: the name of planner::Outcome, or "no feasible route".
+std::string label(planner::Outcome outcome);
+
 /// One traverse simulation: outcome, energy_J, length_m, time_s, replans, alarms, max_slip, categories_changed.
 nlohmann::ordered_json asJson(const planner::WorldResult& result);
 
-/// What asJson() of a world wrote; without track, events and records. Numbers come back to the bit.
+/// The inverse of asJson() of a world, without track, events and records; numbers are exact.
 planner::WorldResult worldResult(const nlohmann::ordered_json& json);
 
 /// Many under one belief: the rate of each outcome with its 95 % interval, mean energy, and each world.
 nlohmann::ordered_json asJson(const std::vector<planner::WorldResult>& results);
 
-/// All beliefs in the same worlds, against the clairvoyant, which comes last. In the order of
-/// planner::Belief.
+/// All beliefs in the same worlds, compared with perfect knowledge. In the order of planner::Belief.
 nlohmann::ordered_json asJson(const std::array<std::vector<planner::WorldResult>, 4>& beliefs);
 
-/// The same for a person, a line or a table.
+/// The same as text: lines or a table.
 std::string asText(const planner::WorldResult& result);
 std::string asText(const std::vector<planner::WorldResult>& results);
 std::string asText(const std::array<std::vector<planner::WorldResult>, 4>& beliefs);

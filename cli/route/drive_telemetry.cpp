@@ -24,7 +24,7 @@ void saveTelemetry(const std::filesystem::path& path, const planner::TraverseSim
   for (const planner::WheelRecord& r : drive.records) {
     const costmap::WheelReading& w = r.reading;
     text +=
-        fmt::format("rehearsal,w{},{},{}\n", r.wheel + 1, w.pass,
+        fmt::format("simulation,w{},{},{}\n", r.wheel + 1, w.pass,
                     fmt::join(std::vector{field(w.time_s), field(w.place.x_m), field(w.place.y_m),
                                           field(r.heading_rad), field(std::atan(w.gradient)), field(w.slip),
                                           field(w.load_N), field(w.torque_Nm), field(w.sinkage_m),

@@ -67,7 +67,7 @@ std::vector<PlacePair> readPairs(const std::string& path) {
   terramech::CsvRow row;
   while (reader.next(row)) {
     const std::string where = fmt::format("{}:{}", path, row.line);
-    if (!row.fault.empty()) throw InputError({where, row.fault, "mend the line"});
+    if (!row.fault.empty()) throw InputError({where, row.fault, "fix the line"});
     std::array<std::optional<double>, kColumns.size()> values;
     for (std::size_t k = 0; k < kColumns.size(); ++k) {
       double value = 0.0;
@@ -75,12 +75,12 @@ std::vector<PlacePair> readPairs(const std::string& path) {
       if (field.empty() && k >= kNeeded) continue;
       if (!terramech::parseNumber(field, value) || !std::isfinite(value))
         throw InputError(
-            {where, fmt::format("{} = '{}' is no finite number", kColumns[k], field), "mend the line"});
+            {where, fmt::format("{} = '{}' is not a finite number", kColumns[k], field), "fix the line"});
       values[k] = value;
     }
     pairs.push_back({{*values[0], *values[1]}, {*values[2], *values[3]}, values[4], values[5]});
   }
-  if (pairs.empty()) throw InputError({path, "has no pair", "give a line for each start and goal"});
+  if (pairs.empty()) throw InputError({path, "contains no pair", "add one line per start and goal"});
   return pairs;
 }
 

@@ -16,7 +16,7 @@ namespace {
 using nlohmann::json;
 using planner::RouteVertex;
 
-constexpr const char* kRemedy = "pass a route that `talus plan -o` wrote";
+constexpr const char* kRemedy = "pass a route from `talus plan -o`";
 
 /// Fields of a JSON object, with errors that name file and field.
 class Fields {
@@ -50,7 +50,8 @@ class Fields {
     if (values.size() != vertices.size())
       refuse(field, fmt::format("has {} values for {} vertices", values.size(), vertices.size()));
     for (std::size_t i = 0; i < values.size(); ++i) {
-      if (!values[i].is_number() && !values[i].is_null()) refuse(field, "holds something else than numbers");
+      if (!values[i].is_number() && !values[i].is_null())
+        refuse(field, "contains values that are not numbers");
       vertices[i].*member = values[i].is_null() ? std::nan("") : values[i].get<double>();
     }
   }
@@ -83,7 +84,7 @@ terramech::Category categoryOf(const Fields& fields, const json& word) {
   using terramech::Category;
   for (const Category c : {Category::Safe, Category::Marginal, Category::Dangerous, Category::Unknown})
     if (word == terramech::name(c)) return c;
-  fields.refuse("category", "holds an unknown word");
+  fields.refuse("category", "contains an unknown word");
 }
 
 void readVertices(const Fields& fields, std::vector<RouteVertex>& vertices) {
@@ -93,7 +94,7 @@ void readVertices(const Fields& fields, std::vector<RouteVertex>& vertices) {
   fields.fill("y_m", &RouteVertex::y_m, vertices);
   for (const RouteVertex& v : vertices)
     if (!std::isfinite(v.x_m) || !std::isfinite(v.y_m))
-      fields.refuse("x_m, y_m", "hold something else than numbers");
+      fields.refuse("x_m, y_m", "contain values that are not numbers");
   fields.fill("elevation_m", &RouteVertex::elevation_m, vertices);
   fields.fill("heading_rad", &RouteVertex::heading_rad, vertices);
   fields.fill("slope_along_rad", &RouteVertex::slope_along_rad, vertices);
@@ -106,7 +107,7 @@ void readVertices(const Fields& fields, std::vector<RouteVertex>& vertices) {
   fields.fill("time_s", &RouteVertex::time_s, vertices);
   fields.fill("immobilisation_risk", &RouteVertex::immobilisation_risk, vertices);
   const json& categories = fields.array("category");
-  if (categories.size() != vertices.size()) fields.refuse("category", "has another length than x_m");
+  if (categories.size() != vertices.size()) fields.refuse("category", "differs in length from x_m");
   for (std::size_t i = 0; i < vertices.size(); ++i) vertices[i].category = categoryOf(fields, categories[i]);
 }
 
@@ -115,7 +116,7 @@ void readDrive(const Fields& fields, std::vector<RouteVertex>& vertices) {
   fields.fill("curvature_1_m", &RouteVertex::curvature_1_m, vertices);
   fields.fill("turn_rad", &RouteVertex::turn_rad, vertices);
   const json& reverse = fields.array("reverse");
-  if (reverse.size() != vertices.size()) fields.refuse("reverse", "has another length than x_m");
+  if (reverse.size() != vertices.size()) fields.refuse("reverse", "differs in length from x_m");
   for (std::size_t i = 0; i < vertices.size(); ++i) vertices[i].reverse = reverse[i] == json(true);
 }
 

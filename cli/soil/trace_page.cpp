@@ -48,7 +48,7 @@ Plot residualPlot(const TraceResult& r, const std::string& covariate, Channel ch
   }
   return {.title = std::string(name(channel)) + " over " + covariate,
           .x = {.label = covariate},
-          .y = {.label = "measured less model [-]"},
+          .y = {.label = "residual (measured - model) [-]"},
           .series = {base, refined}};
 }
 
@@ -73,17 +73,18 @@ std::string sizes(const TracedEffect& effect) {
 std::string rivals(const TracedEffect& effect) {
   std::string text;
   for (const Explanation& rival : effect.alternatives)
-    text +=
-        fmt::format("{}{} ({}; {:.1f} less)", text.empty() ? "" : ", ", rival.candidate.parts.front().name,
-                    rival.candidate.covariate(), effect.chosen.score - rival.score);
-  return text.empty() ? "nothing near" : text;
+    text += fmt::format("{}{} ({}; lower by {:.1f})", text.empty() ? "" : ", ",
+                        rival.candidate.parts.front().name, rival.candidate.covariate(),
+                        effect.chosen.score - rival.score);
+  return text.empty() ? "no close alternative" : text;
 }
 
 void effects(HtmlReport& page, const TraceStory& story) {
-  page.heading("What the model lacked");
+  page.heading("Effects missing from the base model");
   if (story.result.effects.empty()) {
     page.paragraph(
-        "No effect found: what the base model leaves looks like noise in every column and channel.");
+        "No effect found: the residuals of the base model are consistent with noise in every column and "
+        "channel.");
     return;
   }
   std::vector<std::vector<std::string>> found, forms;
@@ -96,14 +97,14 @@ void effects(HtmlReport& page, const TraceStory& story) {
     forms.push_back({part.name, form ? form->formula : "curve fitted to the residual", rivals(e),
                      separatingMeasurement(story.result.trial, e)});
   }
-  page.table({"effect", "covariate", "channel", "size (one standard deviation)", "p (all questions)",
-              "log-likelihood"},
+  page.table({"effect", "covariate", "channel", "parameters (standard deviation)", "p (all tests)",
+              "log-likelihood gain"},
              found);
-  page.table({"effect", "form", "what else it could be", "what would tell them apart"}, forms);
+  page.table({"effect", "form", "alternatives", "how to discriminate"}, forms);
 }
 
 void errors(HtmlReport& page, const TraceStory& story) {
-  page.heading("Error before and after");
+  page.heading("Error of the base and the refined model");
   const TraceResult& r = story.result;
   const auto row = [&](const char* rows, Channel c, const ChannelErrors& base, const ChannelErrors& refined) {
     const auto k = static_cast<std::size_t>(c);
@@ -116,21 +117,22 @@ void errors(HtmlReport& page, const TraceStory& story) {
     for (Channel c : kAll)
       if (r.trial.has(c)) rows.push_back(row(held.scheme.c_str(), c, held.base_rmse, held.refined_rmse));
   for (Channel c : kAll)
-    if (r.trial.has(c)) rows.push_back(row("none: the rows of the fit", c, r.base_rmse, r.refined_rmse));
-  page.paragraph("Root mean squares. The noise floor is what the sensors alone would leave.");
+    if (r.trial.has(c)) rows.push_back(row("none (rows of the fit)", c, r.base_rmse, r.refined_rmse));
+  page.paragraph("Root mean square errors. The noise floor is the error from sensor noise alone.");
   page.table({"held out", "channel", "base", "refined", "noise floor"}, rows);
 }
 
 const char* flippedTogether(const ExchangeableUnits& units) {
   if (units.unit.empty()) return "rows";
-  return units.runs ? "what the rows of a run share, and of the rest of each row"
-                    : "what rows close in time share, and of the rest of each row";
+  return units.runs ? "the common part of each run and of the remainder of each row"
+                    : "the common part of rows close in time and of the remainder of each row";
 }
 
 void tests(HtmlReport& page, const TraceResult& r) {
-  page.heading("What the base model's residuals were asked");
+  page.heading("Hypothesis tests on the residuals of the base model");
   page.paragraph(
-      fmt::format("Strongest questions of {}; p-values hold over all of them together, by sign flips of {}.",
+      fmt::format("The strongest of {} tests. The p-values are corrected for all tests together, by random "
+                  "sign flips of {}.",
                   r.first_tests.size(), flippedTogether(r.units)));
   std::vector<std::vector<std::string>> rows;
   for (std::size_t k = 0; k < r.first_tests.size() && k < 15; ++k) {
@@ -138,7 +140,7 @@ void tests(HtmlReport& page, const TraceResult& r) {
     rows.push_back({t.covariate, t.channel < 0 ? "all" : name(static_cast<Channel>(t.channel)),
                     fmt::format("{:.2f}", t.z), fmt::format("{:.4f}", t.p_value)});
   }
-  page.table({"column or effect", "channel", "normal score", "p"}, rows);
+  page.table({"column or effect", "channel", "z-score", "p"}, rows);
 }
 
 }  // namespace
@@ -157,7 +159,7 @@ std::string tracePage(const TraceStory& story) {
   Eigen::VectorXd sinkage(level.rows());
   for (int row = 0; row < r.trial.rows(); ++row)
     sinkage[row] = level(row, 1) * r.trial.denominator(row, Channel::Sinkage);
-  page.heading("Residual over each covariate, before and after");
+  page.heading("Residuals over each covariate, base and refined model");
   std::vector<Plot> plots;
   for (const std::string& covariate : shown(r))
     for (Channel c : kAll)

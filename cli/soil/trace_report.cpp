@@ -96,7 +96,8 @@ ordered_json rejectedJson(const TraceResult& result) {
   ordered_json out = ordered_json::array();
   for (const Explanation& e : result.rejected) {
     ordered_json one = rivalJson(e);
-    one["reason"] = result.effects.empty() ? "does not beat noise" : "explains less than what was chosen";
+    one["reason"] =
+        result.effects.empty() ? "not significant against noise" : "explains less than the selected effect";
     out.push_back(one);
   }
   return out;
@@ -121,7 +122,7 @@ std::string effectLine(const TracedEffect& effect) {
   const Effect& part = effect.chosen.candidate.parts.front();
   std::string line =
       fmt::format("  {} in {} (covariate {}{})", part.name, name(effect.channel), covariateOf(part),
-                  part.only_column.empty() ? "" : ", only where it is " + part.only_value);
+                  part.only_column.empty() ? "" : ", only for the value " + part.only_value);
   if (const EffectForm* form = findEffect(part.name)) {
     line += fmt::format("\n    {}   [{}]", form->formula, form->source);
     std::size_t at = 0;
@@ -133,13 +134,19 @@ std::string effectLine(const TracedEffect& effect) {
       ++at;
     }
   } else {
-    line += "\n    a curve fitted to the residual; no known effect has its shape";
+    line +=
+        "\n"
+        "    curve fitted to the residual; it matches no known effect";
   }
-  line +=
-      fmt::format("\n    p = {:.2g}, log-likelihood + {:.1f}", effect.p_value, 0.5 * effect.chosen.chi2_gain);
+  line += fmt::format(
+      "\n"
+      "    p = {:.2g}, log-likelihood gain {:.1f}",
+      effect.p_value, 0.5 * effect.chosen.chi2_gain);
   for (const Explanation& e : effect.alternatives)
-    line += fmt::format("\n    nearly as good: {} ({}), {:.1f} less", e.candidate.parts.front().name,
-                        e.candidate.covariate(), effect.chosen.score - e.score);
+    line += fmt::format(
+        "\n"
+        "    alternative: {} ({}), log-likelihood lower by {:.1f}",
+        e.candidate.parts.front().name, e.candidate.covariate(), effect.chosen.score - e.score);
   return line + "\n";
 }
 
@@ -163,16 +170,18 @@ std::string separatingMeasurement(const Trial& trial, const TracedEffect& effect
   const std::string& own = effect.chosen.candidate.covariate();
   for (const Explanation& rival : effect.alternatives)
     if (rival.candidate.covariate() != own)
-      return "rows in which " + own + " and " + rival.candidate.covariate() +
-             " do not move together would tell " + effect.chosen.candidate.parts.front().name + " from " +
+      return "measure rows in which " + own + " and " + rival.candidate.covariate() +
+             " vary independently, to discriminate " + effect.chosen.candidate.parts.front().name + " from " +
              rival.candidate.parts.front().name;
   const auto close = confounded(trial, own);
   if (!close.empty())
-    return own + " moves with " + close.front() + " in these rows; vary one with the other held";
+    return own + " is correlated with " + close.front() +
+           " in these rows; vary one and keep the other constant";
   if (!effect.alternatives.empty())
-    return "rows over a wider range of " + own + " would tell " + effect.chosen.candidate.parts.front().name +
-           " from " + effect.alternatives.front().candidate.parts.front().name;
-  return "nothing else comes near";
+    return "measure rows over a wider range of " + own + ", to discriminate " +
+           effect.chosen.candidate.parts.front().name + " from " +
+           effect.alternatives.front().candidate.parts.front().name;
+  return "no close alternative";
 }
 
 namespace {
@@ -193,7 +202,7 @@ ordered_json schemeJson(const HeldOut& held) {
 std::string groupLines(const TraceStory& story, const HeldOut& held) {
   std::string out;
   for (const GroupErrors& g : held.groups) {
-    out += fmt::format("  of them {} {}, {} rows\n", g.column, g.value, g.rows);
+    out += fmt::format("  {} = {}, {} rows\n", g.column, g.value, g.rows);
     for (Channel c : kAll)
       if (const auto k = static_cast<std::size_t>(c); story.result.trial.has(c))
         out += fmt::format("  {:26s} {:10.4f} {:10.4f}\n", name(c), g.base_rmse[k], g.refined_rmse[k]);
@@ -248,9 +257,8 @@ std::string beyondAxleText(const TraceStory& story) {
     if (const double e = story.beyond_axle_rmse[static_cast<std::size_t>(c)]; std::isfinite(e))
       errors += fmt::format("{}{} {:.3f}", errors.empty() ? "" : ", ", name(c), e);
   return fmt::format(
-      "{} rows with the wheel sunk to its axle or deeper are left out: the contact law ends there; the "
-      "refined "
-      "model's error on them: {}",
+      "{} rows with sinkage at or above the axle are excluded, outside the range of the contact model; rmse "
+      "of the refined model on them: {}",
       story.beyond_axle, errors);
 }
 
@@ -258,11 +266,13 @@ std::string traceText(const TraceStory& story) {
   const TraceResult& r = story.result;
   std::string out =
       fmt::format("{}: {} rows used, {} rejected\n", story.source, r.trial.rows(), story.rows_rejected);
-  if (r.effects.empty()) out += "no effect found: what is left looks like noise\n";
+  if (r.effects.empty()) out += "no effect found: the residuals are consistent with noise\n";
   for (const TracedEffect& e : r.effects) out += effectLine(e);
   for (const HeldOut& held : story.held_out) {
-    out += fmt::format("held out ({})\n  {:26s} {:>10s} {:>10s} {:>12s}\n", held.scheme, "rmse of", "base",
-                       "refined", "noise floor");
+    out += fmt::format(
+        "held out: {}\n"
+        "  {:26s} {:>10s} {:>10s} {:>12s}\n",
+        held.scheme, "rmse", "base", "refined", "noise floor");
     for (Channel c : kAll) {
       const auto k = static_cast<std::size_t>(c);
       if (!r.trial.has(c)) continue;

@@ -42,7 +42,7 @@ Plot overSlip(const WheelAtWork& work, const std::string& title, const Quantity&
       curve.y.push_back(std::numeric_limits<double>::quiet_NaN());
     }
   }
-  return {title, {.label = "slip [-], braked < 0"}, {.label = title + " [-]"}, {curve}};
+  return {title, {.label = "slip [-], negative: braked"}, {.label = title + " [-]"}, {curve}};
 }
 
 std::vector<std::vector<std::string>> forceRows(const WheelAtWork& work) {
@@ -61,7 +61,7 @@ std::vector<std::vector<std::string>> forceRows(const WheelAtWork& work) {
 
 std::string wheelReport(const WheelAtWork& work) {
   const double r = work.rover.wheel.radius_m, load_N = work.load_N;
-  HtmlReport report{fmt::format("A wheel of {} on {}", work.rover.name, work.soil.name)};
+  HtmlReport report{fmt::format("Wheel of {} on {}", work.rover.name, work.soil.name)};
   report.paragraph(
       fmt::format("Load {:.4g} N, slip {:.3g}; radius {:.4g} m, width {:.4g} m. Wong-Reece equilibrium "
                   "(thesis C.2 to C.10).",

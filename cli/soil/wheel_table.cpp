@@ -60,7 +60,7 @@ std::vector<std::optional<std::size_t>> positions(const CsvReader& reader, const
   if (missing.empty()) return at;
   throw InputError({.where = path + ":1",
                     .reason = "no column " + missing,
-                    .remedy = "name it in the header row, in SI units"});
+                    .remedy = "add it to the header row, in SI units"});
 }
 
 /// A row and its case; `fault` says why there is none.
@@ -88,7 +88,7 @@ std::string reasonOf(const WheelCase& wheel_case) {
   } catch (const std::exception& e) {
     return e.what();
   }
-  return "has no answer";
+  return "has no equilibrium";
 }
 
 class Writer {
@@ -162,9 +162,9 @@ void writeBlock(const std::vector<Entry>& entries, const std::vector<WheelForces
 void checkSolved(const WheelTable& table, const std::string& path) {
   if (table.solved > 0) return;
   if (table.refused.empty())
-    throw InputError({.where = path, .reason = "no rows below the header", .remedy = "add cases"});
+    throw InputError({.where = path, .reason = "no rows after the header", .remedy = "add rows"});
   throw InputError({.where = path + ":" + std::to_string(table.refused.front().line),
-                    .reason = "no row can be solved, this one because " + table.refused.front().reason,
+                    .reason = "no row can be solved; first reason: " + table.refused.front().reason,
                     .remedy = "correct the rows"});
 }
 

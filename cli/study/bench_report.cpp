@@ -63,9 +63,9 @@ std::string percent(double share) {
 }
 
 const std::vector<std::string>& header() {
-  static const std::vector<std::string> words{"planner", "runs",      "found",     "breached",
+  static const std::vector<std::string> words{"planner", "runs",      "solved",    "invalid",
                                               "crashed", "gap p50 %", "gap max %", "time p50 s",
-                                              "MB max",  "cusps",     "bend 1/m",  "clear cells"};
+                                              "MB max",  "cusps",     "curv. 1/m", "clearance"};
   return words;
 }
 
@@ -87,7 +87,7 @@ std::vector<std::string> words(const BenchmarkLine& line) {
 Plot gapOverTime(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& runs, std::size_t case_index) {
   Plot plot{.title = plan.cases[case_index].name,
             .x = {"time [s]"},
-            .y = {"gap to the best known [%]"},
+            .y = {"gap to the best known cost [%]"},
             .series = {}};
   const double best_J = planner::bestKnown_J(plan, runs, case_index);
   double end_s = 0.0;
@@ -123,7 +123,7 @@ std::vector<std::string> groupsOf(const BenchmarkPlan& plan) {
 // With the header first.
 std::vector<std::vector<std::string>> worldRows(const std::vector<WorldLine>& lines) {
   std::vector<std::vector<std::string>> rows{
-      {"belief", "planner", "runs", "reached %", "95 %", "drive p50 s", "slip max p50"}};
+      {"belief", "planner", "runs", "success %", "95 %", "time p50 s", "slip max p50"}};
   for (const WorldLine& line : lines) {
     const auto rate =
         planner::share(static_cast<std::size_t>(line.reached), static_cast<std::size_t>(line.runs));
@@ -224,24 +224,23 @@ std::vector<Plot> gapsOverTime(const BenchmarkPlan& plan, const std::vector<Benc
 std::string asPage(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& runs) {
   HtmlReport page("Planner benchmark");
   page.paragraph(fmt::format(
-      "{} cases, {} seeds, {} s a run, each run in a process of its own. Gap: to the known optimum, "
-      "else to the best of all runs. Breached: the independent check refuses the route; its gap, bends and "
-      "clearance count nowhere.",
+      "{} cases, {} runs per case and planner, time limit {} s per run, each run in its own process. Gap: "
+      "relative to the known optimum, or to the best of all runs. Invalid: the independent check rejects the "
+      "route; its gap, curvature and clearance are not counted. Clearance is in cells.",
       plan.cases.size(), plan.seeds, plan.time_limit_s));
   if (const std::size_t asked = planner::jobsOf(plan).size(); runs.size() < asked)
-    page.paragraph(fmt::format("Cancelled: {} of {} runs were made.", runs.size(), asked));
+    page.paragraph(fmt::format("Cancelled after {} of {} runs.", runs.size(), asked));
   std::vector<std::vector<std::string>> rows;
   for (const BenchmarkLine& line : compared(plan, runs)) rows.push_back(words(line));
   page.table(header(), rows);
   if (const auto drives = worldRows(drivesOf(plan, runs)); drives.size() > 1) {
-    page.heading("Drives over the true slip");
+    page.heading("Simulated drives over the true slip");
     page.table(drives.front(), {drives.begin() + 1, drives.end()});
   }
   page.heading("Cost over time");
   page.paragraph(
-      "The first seed of each planner whose last route stands up to the check. Costs on the way there are "
-      "the "
-      "planner's own; none is drawn below that of the last route.");
+      "The first seed of each planner whose final route passes the check. Intermediate costs are those that "
+      "the planner reports; none is drawn below the cost of the final route.");
   page.charts(gapsOverTime(plan, runs));
   return page.html();
 }

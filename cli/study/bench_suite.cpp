@@ -133,7 +133,7 @@ std::vector<BenchmarkCase> mapCases(const std::string& path, const SuiteOptions&
       pairsOn(std::filesystem::path(path).stem().string(), read.map.published(), options.pairs, context.seed);
   if (static_cast<int>(cases.size()) < options.pairs)
     context.warn(path + ": " + std::to_string(cases.size()) +
-                 " pairs of places far apart with a route between them, fewer than asked for");
+                 " pairs of distant places with a route between them, fewer than requested");
   giveKinematics(cases, read.map.model(), options);
   return cases;
 }
@@ -156,8 +156,8 @@ void refuseUnusedGround(const SuiteOptions& options) {
   const bool given = !g.soil.empty() || !g.soils.empty() || !g.model.empty() || !g.rover.empty() ||
                      !g.layers.terrain.empty() || !g.layers.rocks.empty() || !g.layers.keep_out.empty();
   if (given && std::ranges::none_of(options.names, isMap))
-    throw InputError({"talus bench", "a soil, rover or layer is given, but no elevation map",
-                      "name a map; the other suites bring their own ground"});
+    throw InputError({"talus bench", "a soil, rover or layer is given without an elevation map",
+                      "name a map; the other suites have their own terrain"});
 }
 
 }  // namespace

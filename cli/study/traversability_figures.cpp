@@ -88,7 +88,7 @@ ThesisFigure sameReadings(const std::vector<State>& all) {
   return {
       "3.5",
       "Drawbar pull at the same readings on different soils",
-      "DP hardly varies between soils where W, T and z are alike",
+      "DP hardly varies between soils at equal W, T and z",
       fmt::format("standard deviation of DP/W {:.3f} within cells of 0.02 in T/(rW) and z/r, {:.3f} over all",
                   cells.within, cells.between),
       verdictOf(cells.within < 0.2 * cells.between, "not reproduced"),
@@ -214,7 +214,7 @@ ThesisFigure traversabilityMap() {
   const Category bentonite = category(0.1, 0.2), topsoil = category(0.3, 0.4);
   return {
       "3.12",
-      "Traversability map, 10 deg, z/r 0.5",
+      "Traversability diagram, 10 deg, z/r 0.5",
       "(T/rW, z/r) = (0.1, 0.2), bentonite, is dangerous and (0.3, 0.4), topsoil, is safe",
       fmt::format(
           "by Eq. 3.21, DP/W is {:.2f} for bentonite, which is {}, and {:.2f} for topsoil, which is {}",

@@ -241,12 +241,12 @@ std::optional<double> Chassis::underRockerBogie(const Place& place, const Tilt& 
 
 std::string_view Chassis::refusal(const Pose& pose, const Slack& slack) const {
   const auto found = stance(pose, slack);
-  if (!found) return "the ground under the chassis is not known";
+  if (!found) return "elevation under the chassis unknown";
   if (found->pitch_rad.high > rover_.max_pitch_rad || found->pitch_rad.low < -rover_.max_pitch_rad)
-    return "the chassis may pitch beyond its limit";
+    return "chassis pitch above its limit";
   if (found->roll_rad.high > rover_.max_roll_rad || found->roll_rad.low < -rover_.max_roll_rad)
-    return "the chassis may roll beyond its limit";
-  return found->clearance_m < 0.0 ? "the belly may touch the ground" : "";
+    return "chassis roll above its limit";
+  return found->clearance_m < 0.0 ? "ground clearance of the chassis too small" : "";
 }
 
 std::vector<Violation> Chassis::violations(const PosePath& drive) const {

@@ -76,7 +76,7 @@ Plan planOnChassis(const Problem& problem, const Chassis& chassis,
     Plan plan = planner(open);
     if (plan.status != RouteStatus::Found) {
       if (round > 0 && plan.status != RouteStatus::Cancelled && plan.status != RouteStatus::TimedOut)
-        return refused(RouteStatus::NoRoute, "no way around where " + reason + "; " + plan.reason);
+        return refused(RouteStatus::NoRoute, "no detour found where: " + reason + "; " + plan.reason);
       return plan;
     }
     const auto violations = along(chassis, plan);
@@ -86,13 +86,13 @@ Plan planOnChassis(const Problem& problem, const Chassis& chassis,
       reason = violation.reason;
       if (problem.map->grid().cellAt(violation.place) == start)
         return refused(RouteStatus::StartInvalid,
-                       "at the start " + reason + "; take another place or heading");
+                       "at the start " + reason + "; choose another place or heading");
       close(open.map->grid(), chassis, {violation.place, headingAt(plan, violation.place)}, closed);
     }
     if (start) closed.erase({start->row, start->column});
     open.map = without(*open.map, closed);
   }
-  return refused(RouteStatus::NoRoute, "gave up going around places where " + reason);
+  return refused(RouteStatus::NoRoute, "no feasible route found around places where: " + reason);
 }
 
 }  // namespace talus::planner

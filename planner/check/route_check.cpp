@@ -174,7 +174,7 @@ class Checker {
     if (std::isfinite(map_.cost().costPerMetre(code, heading_))) return;
     const auto refusal = map_.cost().detail(code, heading_).refusal;
     const bool said = refusal != costmap::Refusal::None;
-    report(cell, where, said ? costmap::toText(refusal) : "the ground refuses this heading");
+    report(cell, where, said ? costmap::toText(refusal) : "this heading is not allowed on this cell");
   }
 
   const CostGrid& map_;
@@ -202,10 +202,10 @@ std::vector<Violation> violations(const CostGrid& map, const PosePath& drive, do
   Pose pose = drive.start;
   for (const PosePath::Leg& leg : drive.legs) {
     if (std::abs(leg.arc.curvature_1_m) * turning_radius_m > 1.0 + 1e-9)
-      checker.report(std::nullopt, pose.place, "an arc tighter than the turning radius");
+      checker.report(std::nullopt, pose.place, "arc radius below the minimum turning radius");
     if (leg.turn_rad != 0.0) {
       if (turning_radius_m > 0.0)
-        checker.report(std::nullopt, pose.place, "a turn in place by a rover that cannot");
+        checker.report(std::nullopt, pose.place, "turn in place by a rover that cannot turn in place");
       checker.turn(pose, leg.turn_rad);
     } else {
       checker.arc(pose, leg.arc);

@@ -42,7 +42,7 @@ std::string whyInvalid(const costmap::CostGrid& map, Point place) {
   const auto cell = map.grid().cellAt(place);
   if (!cell) return "lies outside the map";
   const auto curve = map.at(*cell).curve();
-  if (curve == costmap::CellCode::kUnknown) return "lies on ground that nobody has seen";
+  if (curve == costmap::CellCode::kUnknown) return "lies on an unobserved cell";
   if (curve == costmap::CellCode::kBlocked) return "lies on a blocked cell";
   return "lies on a dangerous cell: no heading is allowed there";
 }
@@ -75,8 +75,8 @@ std::string invalidPlace(const costmap::CostGrid& map, const std::string& which,
   std::string line = which + " " + text(place) + " " + whyInvalid(map, place);
   const MotionCost cost(std::make_shared<costmap::CostGrid>(map));
   const auto cell = nearest(map.grid(), place, [&](Cell c) { return cost.allowed(map.grid().centre(c)); });
-  if (!cell) return line + "; no cell of this map may be driven on";
-  return line + "; the nearest place that will do is " + text(map.grid().centre(*cell));
+  if (!cell) return line + "; no cell of this map is traversable";
+  return line + "; the nearest traversable cell is " + text(map.grid().centre(*cell));
 }
 
 std::string noWay(const EdgeLayer& edges, Point start, Point goal) {
@@ -86,8 +86,8 @@ std::string noWay(const EdgeLayer& edges, Point start, Point goal) {
   for (const bool one : seen) count += one ? 1U : 0U;
   const maps::Grid& grid = edges.map().grid();
   const auto cell = nearest(grid, goal, [&](Cell c) { return seen[edges.padded().index(c)]; });
-  std::string line = "no route from " + text(start) + " to " + text(goal) + ": the start reaches " +
-                     std::to_string(count) + " cells";
+  std::string line = "no route from " + text(start) + " to " + text(goal) +
+                     ": reachable from the start: " + std::to_string(count) + " cells";
   if (!cell) return line + "; choose another start";
   char away[48];
   std::snprintf(away, sizeof away, " (%.1f m from the goal)",

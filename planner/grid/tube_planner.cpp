@@ -72,8 +72,9 @@ Plan TubePlanner::planAlong(const Problem& problem, const Polyline& guide) {
   Polyline way = tubeRoute(problem, guide, options_, stop);
   if (stop()) return cancelledPlan(stop);
   if (way.empty())
-    return failedPlan(RouteStatus::NoRoute,
-                      "no way near the route over the overview; read a part with --window, or the whole map");
+    return failedPlan(
+        RouteStatus::NoRoute,
+        "no route found near the route over the overview; read a part with --window, or the whole map");
   return finished(problem, std::move(way), stop);
 }
 

@@ -11,7 +11,8 @@ Plan planLeg(Problem& leg, WindowedMap& map, TubePlanner& tube) {
   if (guide.empty()) {
     Plan none;
     none.reason =
-        "the overview shows no way; plan on a part with --window, or on the whole with --whole-field";
+        "no route found on the overview; plan on a part with --window, or on the whole map with "
+        "--whole-field";
     return none;
   }
   Plan plan;

@@ -73,8 +73,8 @@ class RiskBoundedSearch {
     if (failure_) return *failure_;
     Plan none;
     none.reason = "no route keeps the risk of immobilisation within " + inWords(max_risk_) +
-                  ": the safest one found has " + inWords(least_risk_) +
-                  "; allow more risk or take another goal";
+                  ": the safest route found has " + inWords(least_risk_) +
+                  "; increase the limit or choose another goal";
     return none;
   }
 

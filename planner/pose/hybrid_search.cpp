@@ -246,11 +246,10 @@ std::string whyNot(RouteStatus status) {
     case RouteStatus::Cancelled:
       return "cancelled";
     case RouteStatus::TimedOut:
-      return "gave up after the most poses it may try; a smaller map or more headings may help";
+      return "no feasible route found within the limit of poses; try a smaller map or more headings";
     default:
-      return "no drive was found that joins start and goal within the turning radius; try another heading, "
-             "or "
-             "a tighter radius";
+      return "no feasible route found from start to goal with this turning radius; try another heading or a "
+             "smaller radius";
   }
 }
 

@@ -19,7 +19,7 @@ inline Plan failedPlan(RouteStatus status, std::string reason) {
 /// The same for work that was stopped.
 inline Plan cancelledPlan(const StopCheck& stop) {
   if (stop.cancelled()) return failedPlan(RouteStatus::Cancelled, "cancelled before a route was found");
-  return failedPlan(RouteStatus::TimedOut, "the time limit passed before a route was found; allow more time");
+  return failedPlan(RouteStatus::TimedOut, "the time limit passed before a route was found; increase it");
 }
 
 }  // namespace talus::planner

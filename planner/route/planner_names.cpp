@@ -15,10 +15,10 @@ struct Refused {
 };
 
 constexpr std::string_view kShared =
-    "it drives every edge both ways, and where climbing is forbidden but descending is not its route cannot "
-    "be driven";
-constexpr std::string_view kUntried = "it is not shown to be right where there and back differ";
-constexpr std::string_view kBlind = "it does not look at the cost of a motion";
+    "it assumes that every edge is traversable in both directions; its route is invalid where only "
+    "descending is allowed";
+constexpr std::string_view kUntried = "it is not proven correct for direction-dependent cost";
+constexpr std::string_view kBlind = "it ignores the cost of a motion";
 
 constexpr std::array kRefused{
     Refused{"PRM", kShared},
@@ -31,17 +31,17 @@ constexpr std::array kRefused{
     Refused{"LBTRRT", kBlind},
     Refused{"LazyLBTRRT", kBlind},
     Refused{"AITstar",
-            "OMPL 1.5.2's does not end or never finds a route under a cost that depends on the heading"},
+            "in OMPL 1.5.2 it does not terminate or finds no route under a direction-dependent cost"},
     Refused{"RRTXstatic", kUntried},
     Refused{"RRTsharp", kUntried},
-    Refused{"CForest", "its threads make the route differ from run to run"},
-    Refused{"AnytimePathShortening", "its shortcuts do not look at the cost of a motion"},
+    Refused{"CForest", "its result depends on thread timing"},
+    Refused{"AnytimePathShortening", "its shortcuts ignore the cost of a motion"},
     Refused{"SORRTstar", kUntried},
     Refused{"RRT", kBlind},
     Refused{"RRTConnect", kBlind},
     Refused{"LazyRRT", kBlind},
-    Refused{"TRRT", "it looks at the cost of places, not of motions"},
-    Refused{"BiTRRT", "it looks at the cost of places, not of motions"},
+    Refused{"TRRT", "it considers the cost of states, not of motions"},
+    Refused{"BiTRRT", "it considers the cost of states, not of motions"},
     Refused{"EST", kBlind},
     Refused{"BiEST", kBlind},
     Refused{"ProjEST", kBlind},

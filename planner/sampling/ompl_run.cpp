@@ -101,10 +101,10 @@ Plan explained(Plan plan, const Problem& leg, const MeteredCost& cost, const Sam
   const bool worked = spent(leg, settings, cost);
   plan.status = stopped ? RouteStatus::Cancelled : worked ? RouteStatus::NoRoute : RouteStatus::TimedOut;
   plan.reason =
-      settings.planner + (stopped  ? " was cancelled"
-                          : worked ? " found no route in its allotted work; planner 'field' can "
-                                     "tell whether there is one"
-                                   : " found no route in the time given; allow more or use 'field'");
+      settings.planner +
+      (stopped  ? " was cancelled"
+       : worked ? " found no route within its work limit; planner 'field' decides whether a route exists"
+                : " found no route within the time limit; increase it or use planner 'field'");
   return plan;
 }
 

@@ -51,16 +51,16 @@ Rates ratesOf(const std::vector<WorldResult>& results) {
   return rates;
 }
 
-Comparison compared(const std::vector<WorldResult>& results, const std::vector<WorldResult>& clairvoyant) {
-  if (results.size() != clairvoyant.size())
+Comparison compared(const std::vector<WorldResult>& results, const std::vector<WorldResult>& perfect) {
+  if (results.size() != perfect.size())
     throw std::invalid_argument("compared: " + std::to_string(results.size()) + " worlds against " +
-                                std::to_string(clairvoyant.size()) + ", must be as many");
+                                std::to_string(perfect.size()) + ", must be as many");
   std::vector<WorldResult> passable;
   std::vector<double> ratios;
   for (std::size_t i = 0; i < results.size(); ++i) {
-    if (!reached(clairvoyant[i])) continue;
+    if (!reached(perfect[i])) continue;
     passable.push_back(results[i]);
-    if (reached(results[i])) ratios.push_back(results[i].drive.energy_J / clairvoyant[i].drive.energy_J);
+    if (reached(results[i])) ratios.push_back(results[i].drive.energy_J / perfect[i].drive.energy_J);
   }
   return {ratesOf(passable), mean(ratios)};
 }

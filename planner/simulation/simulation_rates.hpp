@@ -29,14 +29,14 @@ struct Rates {
 
 Rates ratesOf(const std::vector<WorldResult>& results);
 
-/// A belief against the clairvoyant in the same worlds, counted where a safe route exists: where the
-/// clairvoyant reached the goal.
+/// A belief compared with perfect knowledge in the same worlds, counted where a safe route exists: where
+/// perfect knowledge reached the goal.
 struct Comparison {
-  Rates rates;                        ///< over those worlds
-  Sampled energy_over_clairvoyant{};  ///< mean ratio, where both reached the goal [-]
+  Rates rates;                              ///< over those worlds
+  Sampled energy_over_perfect_knowledge{};  ///< mean ratio, where both reached the goal [-]
 };
 
 /// Both hold the same worlds in the same order. Throws std::invalid_argument when they are not as many.
-Comparison compared(const std::vector<WorldResult>& results, const std::vector<WorldResult>& clairvoyant);
+Comparison compared(const std::vector<WorldResult>& results, const std::vector<WorldResult>& perfect);
 
 }  // namespace talus::planner

@@ -71,7 +71,7 @@ costmap::TraversabilityMap SimulationSite::believed(Belief belief, const TrueWor
       ground.soil = parts_.firm;
       ground.effects.clear();
     }
-  if (belief == Belief::Clairvoyant) tellTruth(world, map_.footprintRadius_m(), layers, parts);
+  if (belief == Belief::PerfectKnowledge) tellTruth(world, map_.footprintRadius_m(), layers, parts);
   return {std::move(layers),
           std::make_shared<costmap::GroundModel>(std::move(parts)),
           {.footprint_radius_m = map_.footprintRadius_m(), .threads = 1}};

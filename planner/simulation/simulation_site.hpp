@@ -11,15 +11,15 @@
 
 namespace talus::planner {
 
-/// What a rover goes by.
+/// What the planner knows of the soil.
 enum class Belief {
-  Geometry,     ///< slopes and hazards alone, all ground as firm as rock; drives blindly
-  Prior,        ///< the soils of the map; drives blindly
-  OnLine,       ///< the soils of the map, and what its wheels tell
-  Clairvoyant,  ///< the true soils, patches and all
+  Geometry,          ///< slopes and hazards only, all ground as firm as rock; telemetry is not used
+  Prior,             ///< the soils of the map; telemetry is not used
+  OnLine,            ///< the soils of the map, updated by the telemetry of the drive
+  PerfectKnowledge,  ///< the true soils, with all patches
 };
 
-/// "geometry", "prior", "online", "clairvoyant".
+/// The names in calls and in JSON: "geometry", "prior", "online", "clairvoyant".
 std::string_view name(Belief belief) noexcept;
 
 /// What came of one world.

@@ -107,7 +107,7 @@ class Drive {
       const bool learned = look(step, heading, step.stuck || reason);
       if (step.stuck && !options_.senses) return FollowEnd::Stuck;
       if (reason) return retreat(step, heading, *reason);
-      if (learned && routeTurnedDear()) return retreat(step, heading, "ground turned out weaker");
+      if (learned && routeTurnedDear()) return retreat(step, heading, "soil weaker than estimated");
       report(step, heading, std::min(left, options_.step_m));
       advance(step, heading, std::min(left, options_.step_m));
     }
@@ -160,7 +160,7 @@ class Drive {
   // What a rover that watches its wheels stops for.
   std::optional<std::string> alarm(const TrueWorld::Step& step, const Direction& heading) const {
     if (!options_.senses) return std::nullopt;
-    if (step.stuck) return "no pull";
+    if (step.stuck) return "no traction";
     if (step.slip > expectedSlip(heading) + options_.alarm_slip) return "slips";
     for (const TrueWorld::WheelState& wheel : step.wheels)
       if (sinksDeeper(wheel, heading) > options_.alarm_sinkage) return "sinks";
@@ -251,7 +251,7 @@ class Drive {
     }
     ruts_.turnBack();
     if (held_) return FollowEnd::Stuck;
-    tell("backed out");
+    tell("reversed");
     if (alarm(stopped, heading)) refuseGround(stopped, heading);
     return FollowEnd::Replan;
   }

@@ -56,7 +56,7 @@ std::vector<EffectForm> driven() {
            "theta_2 = -acos(1 - (kappa z + a (z - z0))/r) of a driven wheel that digs; a = 1: all of it lies "
            "behind",
        .source = "kang_2003",
-       .signature = "drawbar pull of a wheel that digs falls less than its sinkage says",
+       .signature = "drawbar pull of a digging wheel falls less than expected from its sinkage",
        .parameters = {{"a", "-", 0.0, 1.0, 0.5}},
        .act = [](Input in, WheelContact& c) { c.rear_fill = in.parameter[0]; }},
   };

@@ -16,10 +16,10 @@ constexpr double kLeastModulus_m = 1e-4;
 constexpr double kMostModulus_m = 0.2;
 
 std::string widthsRefusal(const std::vector<PlateModulus>& plates) {
-  if (plates.size() < 2) return "one plate size: k_c/b and k_phi cannot be told apart";
+  if (plates.size() < 2) return "one plate size: k_c/b and k_phi are not identifiable separately";
   const auto [narrow, wide] = std::ranges::minmax_element(plates, {}, &PlateModulus::plate_width_m);
   if (wide->plate_width_m > kLeastWidthRatio * narrow->plate_width_m) return {};
-  return "plate sizes within 20 % of each other: k_c/b and k_phi cannot be told apart";
+  return "plate sizes within 20 % of each other: k_c/b and k_phi are not identifiable separately";
 }
 
 // Line k = k_phi + k_c/b through the plates.
@@ -81,7 +81,7 @@ PressureSinkage PressureSinkageFit::estimate() const {
   double weight = 0.0;
   for (const Plate& p : plates_) xx += p.xx, xy += p.xy, yy += p.yy, weight += p.weight;
   if (!(xx > 0.0))
-    throw std::domain_error("pressure-sinkage: each plate needs two depths, or n cannot be seen");
+    throw std::domain_error("pressure-sinkage: n is identifiable only with two depths per plate");
   PressureSinkage fit;
   fit.sinkage_exponent = xy / xx;
   for (const Plate& p : plates_) {
@@ -94,7 +94,7 @@ PressureSinkage PressureSinkageFit::estimate() const {
 }
 
 ShearFit fitShear(std::span<const ShearReading> readings) {
-  if (readings.size() < 3) throw std::domain_error("shear test: three readings at least");
+  if (readings.size() < 3) throw std::domain_error("shear test: at least three readings are required");
   const auto error = [&](double k) { return mobilisedLine(readings, k).relativeResidual(); };
   const Minimum best = globalMinimum(error, kLeastModulus_m, kMostModulus_m);
   return {.strength = mobilisedLine(readings, best.at).estimate(),

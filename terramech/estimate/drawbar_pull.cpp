@@ -68,7 +68,7 @@ void PullPlaneFitter::add(const Wheel& wheel, const WheelSample& sample, double 
 }
 
 PullPlaneFit PullPlaneFitter::estimate() const {
-  if (count_ < 4) throw std::domain_error("plane fit of drawbar pull: four samples at least");
+  if (count_ < 4) throw std::domain_error("plane fit of drawbar pull: at least four samples are required");
   const Eigen::Matrix3d normal = gram_.topLeftCorner<3, 3>();
   const Eigen::Vector3d scale = normal.diagonal().cwiseSqrt().cwiseInverse();
   const auto spread =

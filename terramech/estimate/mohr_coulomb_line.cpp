@@ -45,7 +45,8 @@ double MohrCoulombLine::relativeResidual() const {
 
 ShearStrength MohrCoulombLine::estimate() const {
   if (count_ < 2)
-    throw std::domain_error("cohesion and friction: two samples at least, got " + std::to_string(count_));
+    throw std::domain_error("cohesion and friction: at least two samples are required, got " +
+                            std::to_string(count_));
   if (!(normal_normal_ > 0.0)) {
     throw std::domain_error(
         "cohesion and friction: all samples have the same normal stress; vary load or slip");
@@ -71,12 +72,12 @@ std::vector<std::string> unseenStrength(const ShearStrength& fit) {
   const bool alike = fit.condition > kWorstCondition;
   if (alike || std::sqrt(fit.covariance(1, 1)) > kWidestTanFriction) {
     unseen.emplace_back(
-        alike ? "friction_angle_rad: the samples' normal stresses are almost alike; vary load or slip"
+        alike ? "friction_angle_rad: the normal stresses of the samples are almost equal; vary load or slip"
               : "friction_angle_rad: the samples scatter too much for their range of normal stress");
   }
   if (alike || std::sqrt(fit.covariance(0, 0)) > kWidestCohesion_Pa) {
-    unseen.emplace_back(alike ? "cohesion_Pa: it cannot be told from friction at a single normal stress"
-                              : "cohesion_Pa: the line has to be carried too far, to normal stress zero");
+    unseen.emplace_back(alike ? "cohesion_Pa: not identifiable at a single normal stress"
+                              : "cohesion_Pa: the extrapolation to zero normal stress is too long");
   }
   return unseen;
 }

@@ -16,7 +16,7 @@ namespace {
 
 void require(std::size_t samples, std::size_t least) {
   if (samples >= least) return;
-  throw std::domain_error("shear modulus: " + std::to_string(least) + " samples at least, got " +
+  throw std::domain_error("shear modulus: at least " + std::to_string(least) + " samples are required, got " +
                           std::to_string(samples));
 }
 
@@ -69,8 +69,8 @@ double median(std::vector<double> values) {
 ModulusEstimate medianModulus(const std::vector<double>& values) {
   if (values.empty()) {
     throw std::domain_error(
-        "shear modulus by effective torque: no sample slips less, at less torque per load, than the "
-        "one at the highest slip; vary the slip");
+        "shear modulus by effective torque: no sample has less slip and less torque per load than the sample "
+        "of highest slip; vary the slip");
   }
   const double middle = median(values);
   std::vector<double> spread;

@@ -79,8 +79,8 @@ double ShearModulusGrid::squaredError(const GridValue& rung) const {
 
 ShearModulusGrid::Place ShearModulusGrid::best() const {
   if (count_ < kLeastSamples) {
-    throw std::domain_error("shear modulus: " + std::to_string(kLeastSamples) + " samples at least, got " +
-                            std::to_string(count_));
+    throw std::domain_error("shear modulus: at least " + std::to_string(kLeastSamples) +
+                            " samples are required, got " + std::to_string(count_));
   }
   std::array<double, kValues> error{};
   for (std::size_t i = 0; i < kValues; ++i) error[i] = squaredError(values_[i]);

@@ -118,9 +118,10 @@ SoilVector priorVariance(const std::vector<ClassFit>& classes) {
 void sayUnseen(const SoilVector& before, SoilPosterior& p) {
   constexpr double kSeen = 0.9;
   const std::pair<ContactColumn, const char*> names[] = {
-      {kCohesion, "cohesion_Pa: the samples hardly narrow the prior; vary the load"},
-      {kFriction, "friction_angle_rad: the samples hardly narrow the prior; vary the load"},
-      {kShear, "shear_modulus_m: the samples hardly narrow the prior; vary the slip, low slips above all"}};
+      {kCohesion, "cohesion_Pa: the posterior is almost as wide as the prior; vary the load"},
+      {kFriction, "friction_angle_rad: the posterior is almost as wide as the prior; vary the load"},
+      {kShear,
+       "shear_modulus_m: the posterior is almost as wide as the prior; vary the slip, mainly at low slip"}};
   for (const auto& [column, text] : names) {
     if (before[column] > 0.0 && p.covariance(column, column) > kSeen * kSeen * before[column])
       p.unseen.emplace_back(text);

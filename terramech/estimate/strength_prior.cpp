@@ -45,7 +45,7 @@ ShearStrength withPrior(const ShearStrength& fit, std::span<const StrengthPrior>
   if (priors.empty()) throw std::invalid_argument("strength prior: no kind of soil");
   if (!fit.covariance.allFinite()) {
     throw std::domain_error(
-        "strength prior: it is weighed against the scatter about the line; three samples at least");
+        "strength prior: at least three samples are required to estimate the scatter about the line");
   }
   const Eigen::Vector2d reading(fit.cohesion_Pa, fit.tan_friction);
   const Eigen::Matrix2d scatter = fit.covariance + Eigen::Matrix2d(kLeastVariance.asDiagonal());

@@ -70,7 +70,7 @@ BevameterTable readBevameterTable(const std::filesystem::path& path, double plat
   const bool pressed = width != nullptr && pressure != nullptr && sinkage != nullptr;
   if (!sheared && !pressed) {
     throw InputError({.where = table.source,
-                      .reason = "lacks the columns of a plate test",
+                      .reason = "lacks the columns of a plate test or a shear test",
                       .remedy = "a shear test has normal_stress_Pa, shear_stress_Pa, shear_displacement_m; a "
                                 "pressure-sinkage test plate_width_m (or state --plate-width), pressure_Pa, "
                                 "sinkage_m"});
@@ -83,9 +83,8 @@ BevameterTable readBevameterTable(const std::filesystem::path& path, double plat
     if (shear_row || press_row) continue;
     const bool no_plate = result.width_from_force && (*pressure)[k] > 0.0 && std::isnan((*width)[k]);
     result.rejected.push_back(
-        {table.lines[k], no_plate ? "F_N over pressure changes during the test: no flat plate"
-                                  : "no load yet: pressure, sinkage or shear "
-                                    "displacement is not above 0"});
+        {table.lines[k], no_plate ? "F_N / pressure changes during the test: the plate is not flat"
+                                  : "unloaded: pressure, sinkage or shear displacement is not above 0"});
   }
   if (!result.shear.empty() || !result.plates.empty()) return result;
   throw InputError({.where = table.source,

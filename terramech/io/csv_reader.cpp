@@ -68,7 +68,7 @@ void CsvReader::Parser::readHeader() {
     if (!header[k].empty() && std::find(header.begin(), header.begin() + static_cast<std::ptrdiff_t>(k),
                                         header[k]) != header.begin() + static_cast<std::ptrdiff_t>(k))
       throw InputError({.where = path.string() + ":" + std::to_string(row.line),
-                        .reason = "column " + header[k] + " stands twice in the header",
+                        .reason = "column " + header[k] + " appears twice in the header",
                         .remedy = "rename one"});
 }
 
@@ -105,7 +105,7 @@ void CsvReader::Parser::feed() {
   const bool open_quote = csv.pstate == kFieldBegun && csv.quoted;
   const std::size_t before = ready.size();
   csv_fini(&csv, field, end_of_record, this);
-  if (open_quote && ready.size() > before) ready.back().fault = "a quote is opened and never closed";
+  if (open_quote && ready.size() > before) ready.back().fault = "an opening quote has no closing quote";
 }
 
 void CsvReader::Parser::endRecord(int terminator) {

@@ -97,7 +97,7 @@ Channel readChannel(const YamlFields& f) {
   const std::string word = f.word("channel");
   for (Channel c : kAll)
     if (word == name(c)) return c;
-  f.refuse("channel", "'" + word + "' is no channel",
+  f.refuse("channel", "'" + word + "' is not a channel",
            std::string("one of ") + name(kAll[0]) + ", " + name(kAll[1]) + ", " + name(kAll[2]) + ", " +
                name(kAll[3]));
 }

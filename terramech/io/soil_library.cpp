@@ -88,7 +88,7 @@ int classNumber(const YamlFields& classes, const std::string& key) {
     if (used == key.size()) return number;
   } catch (const std::exception&) {
   }
-  classes.refuse(key, "'" + key + "' is no class number", "write lines `1: soil name`");
+  classes.refuse(key, "'" + key + "' is not a class number", "write lines `1: soil name`");
 }
 
 Steering steeringOf(const YamlFields& fields) {

@@ -20,14 +20,14 @@ std::vector<Wheel> wheelsOf(const Telemetry& table, const WheelRowOptions& optio
     throw InputError(
         {.where = table.source,
          .reason = fmt::format("lacks column {}", radius == nullptr ? "wheel_radius_m" : "wheel_width_m"),
-         .remedy = "add it, or name the rover with --rover"});
+         .remedy = "add it, or pass --rover"});
   }
   std::vector<Wheel> wheels;
   for (std::size_t k = 0; k < table.size(); ++k) {
     if (!std::isfinite((*radius)[k]) || !std::isfinite((*width)[k])) {
       throw InputError({.where = fmt::format("{}:{}", table.source, table.lines[k]),
                         .reason = "has no wheel_radius_m or wheel_width_m",
-                        .remedy = "fill it in, or name the rover with --rover"});
+                        .remedy = "fill it in, or pass --rover"});
     }
     wheels.push_back({.radius_m = (*radius)[k], .width_m = (*width)[k]});
   }
@@ -39,9 +39,9 @@ bool sameSize(const Wheel& a, const Wheel& b) {
 }
 
 std::optional<std::string> unusable(const WheelSample& s, const WheelRowOptions& options) {
-  if (!(s.sinkage_m > 0.0)) return "sinkage_m = 0: the wheel has no contact to infer stresses from";
+  if (!(s.sinkage_m > 0.0)) return "sinkage_m = 0: no contact area to infer stresses from";
   if (options.needs_slip && !(s.slip > 0.0))
-    return fmt::format("slip = {:g}, must be > 0: a driven wheel", s.slip);
+    return fmt::format("slip = {:g}, must be > 0 (driven wheel)", s.slip);
   return std::nullopt;
 }
 

@@ -73,7 +73,7 @@ YamlFields YamlFields::of(const YAML::Node& node, const std::string& origin, con
   for (const auto& entry : node) {
     if (!entry.first.IsScalar()) fail(where, "a name is " + kindOf(entry.first), "write `name: value` lines");
     if (!seen.insert(entry.first.Scalar()).second)
-      fail(state->where(entry.first.Mark().line), entry.first.Scalar() + " stands twice", "remove one");
+      fail(state->where(entry.first.Mark().line), entry.first.Scalar() + " appears twice", "remove one");
   }
   return YamlFields{state};
 }
@@ -107,7 +107,7 @@ std::optional<Found> findValue(const State& state, const std::string& name) {
   for (const auto& entry : state.node) {
     const double factor = factorOf(entry.first.Scalar(), name);
     if (factor == 0.0) continue;
-    if (found) fail(state.where(entry.first.Mark().line), name + " is stated twice", "keep one unit");
+    if (found) fail(state.where(entry.first.Mark().line), name + " is given twice", "keep one unit");
     found = Found{entry.second, factor};
   }
   return found;
@@ -223,7 +223,7 @@ std::vector<std::string> YamlFields::texts(const std::string& name) const {
     std::string text = item.IsScalar() ? item.Scalar() : "";
     for (std::size_t i = 0; item.IsSequence() && i < item.size(); ++i)
       if (item[i].IsScalar()) text += (i == 0 ? "" : ",") + item[i].Scalar();
-    if (text.empty()) fail(state_->where(item.Mark().line), name + " has an item that is no text", "mend it");
+    if (text.empty()) fail(state_->where(item.Mark().line), name + " has an item that is not text", "fix it");
     return text;
   };
   if (!found->value.IsSequence()) refuse(name, name + " is " + kindOf(found->value), "write a list [a, b]");

@@ -149,8 +149,8 @@ MobilityCurve::MobilityCurve(const RefinedModel& model, const Rover& rover, cons
   validate(model.soil);
   if (model.base == BaseModel::LinearFormula)
     throw std::invalid_argument(
-        "model 'linear-formula' takes drawbar pull from a measured torque: it cannot say "
-        "what a slope will ask, trace the data with model: wong-reece");
+        "model 'linear-formula' computes drawbar pull from a measured torque and cannot predict slip on a "
+        "slope; trace the data with model: wong-reece");
   const RefinedModel ground = withoutSensors(model);
   const AxleForces forces = [&](const Station& at) { return meanOfAxles(ground, rover, at, options); };
   const CarriedForces carried = [&](const Station& at) -> std::optional<WheelForces> {
@@ -228,7 +228,8 @@ double slipOnSlope(const Soil& soil, const Rover& rover, double slope_rad) {
   double low = excess(0.0) > 0.0 ? -1.0 : 0.0, high = low < 0.0 ? 0.0 : 0.01;
   if (low < 0.0 && excess(-1.0) > 0.0) throw std::domain_error("locked wheels slide down this slope");
   while (excess(high) < 0.0) {
-    if (high >= 1.0) throw std::domain_error("no slip pulls the rover up this slope");
+    if (high >= 1.0)
+      throw std::domain_error("the required drawbar pull exceeds the available drawbar pull at any slip");
     low = high;
     high = std::min(1.0, high + 0.01);
   }

@@ -60,7 +60,7 @@ AssessedTable assessReadings(const AssessOptions& options, const CategoryThresho
 RefinedModel modelOf(const AssessOptions& options, std::vector<std::string>& left_out) {
   ModelFile file = loadModel(options.model);
   if (!file.soil_given)
-    throw InputError({options.model, "names no soil", "trace some data with it first: talus trace"});
+    throw InputError({options.model, "defines no soil", "fit one first: talus trace --model-out"});
   if (!options.rover.empty()) file.model.takeRover(loadRover(options.rover));
   for (const Effect& effect : file.model.effects) {
     if (isSensorFault(effect)) left_out.push_back(effect.name);

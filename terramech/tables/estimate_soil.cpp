@@ -23,13 +23,13 @@ void validate(const EstimateOptions& options) {
     requireOneOf(options.shear_modulus, modulusMethods(), "--shear-modulus");
   if (options.whole_equation && options.method != "linear-offset") {
     throw InputError({.where = "--keep-m1",
-                      .reason = "it is a term of linear-offset",
-                      .remedy = "use --method linear-offset, or leave it out"});
+                      .reason = "applies to linear-offset only",
+                      .remedy = "use --method linear-offset, or remove the option"});
   }
   if (options.plate_width_m > 0.0 && options.method != "bevameter") {
     throw InputError({.where = "--plate-width",
-                      .reason = "it is a plate's",
-                      .remedy = "use --method bevameter, or leave it out"});
+                      .reason = "applies to plate tests only",
+                      .remedy = "use --method bevameter, or remove the option"});
   }
 }
 
@@ -54,8 +54,8 @@ SoilEstimate estimateSoil(const EstimateOptions& options, const ProgressMonitor&
   if (options.method != "bevameter") return lineEstimate(options, watch);
   if (options.recursive) {
     throw InputError({.where = "--recursive",
-                      .reason = "--method bevameter fits a whole test at once",
-                      .remedy = "leave it out"});
+                      .reason = "cannot be combined with --method bevameter, which fits a whole test at once",
+                      .remedy = "remove one of the two"});
   }
   return plateEstimate(options, watch);
 }

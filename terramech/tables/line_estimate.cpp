@@ -68,7 +68,7 @@ std::optional<double> knownModulus(const EstimateOptions& options, const std::ve
 void sayModulusUnseen(const ModulusEstimate& k, SoilEstimate& estimate) {
   if (!k.at_bound) return;
   estimate.unseen.emplace_back(
-      "shear_modulus_m: no best value between 2 and 100 mm; vary the slip, or state it");
+      "shear_modulus_m: no minimum between 2 and 100 mm; vary the slip, or pass --shear-modulus");
 }
 
 ShearStrength believed(const ShearStrength& fit, const std::vector<StrengthPrior>& priors) {
@@ -131,8 +131,8 @@ class Recursion {
         ladder_(wheel, {.criterion = criterionOf(options.shear_modulus), .pair = pairOf(options.method)}) {
     if (options.whole_equation && !known_) {
       throw InputError({.where = "--keep-m1",
-                        .reason = "K has to be known to take rows in one by one",
-                        .remedy = "state --shear-modulus in metres"});
+                        .reason = "--recursive requires a known K",
+                        .remedy = "pass --shear-modulus in metres"});
     }
   }
 
@@ -174,7 +174,7 @@ void fitRecursively(const EstimateOptions& options, const WheelRows& rows,
     if (watch.stopped()) return;
     watch.report(static_cast<double>(k) / static_cast<double>(rows.samples.size()));
     if (!recursion.add(rows.wheels[k], rows.samples[k])) {
-      estimate.rejected.push_back({.line = rows.lines[k], .reason = "torque_Nm must be > 0 to find K from"});
+      estimate.rejected.push_back({.line = rows.lines[k], .reason = "torque_Nm must be > 0 to find K"});
       --estimate.rows_used;
       continue;
     }
@@ -198,8 +198,8 @@ SoilEstimate lineEstimate(const EstimateOptions& options, const ProgressMonitor&
   if (!rows.one_wheel && !knownModulus(options, priors)) {
     throw InputError(
         {.where = rows.source,
-         .reason = "wheels of several sizes, and K is found by comparing rows of one",
-         .remedy = "state K with --shear-modulus, take --method wong-reece, or one file for each size"});
+         .reason = "contains wheels of several sizes; K is found by comparing rows of one size",
+         .remedy = "pass K with --shear-modulus, use --method wong-reece, or split the file by size"});
   }
   SoilEstimate estimate;
   estimate.rejected = rows.rejected;

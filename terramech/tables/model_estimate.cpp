@@ -17,8 +17,8 @@ RefinedModel modelOf(const EstimateOptions& options) {
   RefinedModel model = loadModel(options.model).model;
   if (model.base != BaseModel::WongReece)
     throw InputError({.where = options.model,
-                      .reason = "its base is the linear formula, which has no soil",
-                      .remedy = "take a model whose base is wong-reece"});
+                      .reason = "its base is linear-formula, which has no soil",
+                      .remedy = "use a model with the base wong-reece"});
   if (!options.rover.empty()) model.takeRover(loadRover(options.rover));
   return model;
 }
@@ -28,9 +28,11 @@ void refuseWhatDoesNotGo(const EstimateOptions& options) {
     throw InputError({.where = where, .reason = reason, .remedy = remedy});
   };
   if (options.method != "wong-reece")
-    refuse("--model", "its effects act on the whole contact, which this method does not solve",
-           "use --method wong-reece, or leave it out");
-  if (options.recursive) refuse("--recursive", "with --model all rows are fitted at once", "leave it out");
+    refuse("--model", "its effects act on the contact stresses, which this method does not solve",
+           "use --method wong-reece, or remove the option");
+  if (options.recursive)
+    refuse("--recursive", "cannot be combined with --model, which fits all rows at once",
+           "remove one of the two");
 }
 
 ModelSoilOptions howOf(const EstimateOptions& options) {
@@ -40,8 +42,8 @@ ModelSoilOptions howOf(const EstimateOptions& options) {
   how.prior = loadModel(options.prior).model;
   if (how.prior->soil_prior_std.empty())
     throw InputError({.where = "--prior " + options.prior,
-                      .reason = "states no standard deviation, so that nothing is left to find",
-                      .remedy = "{mean: ..., std: ...} for what is not known"});
+                      .reason = "gives no standard deviation, so no parameter is free",
+                      .remedy = "write {mean: ..., std: ...} for each unknown parameter"});
   return how;
 }
 
@@ -59,7 +61,7 @@ SoilEstimate modelEstimate(const EstimateOptions& options, const ProgressMonitor
   const Trial trial = subset(all, above);
   if (trial.rows() == 0)
     throw InputError(
-        {.where = options.table, .reason = "in every row the wheel is sunk to its axle", .remedy = ""});
+        {.where = options.table, .reason = "in every row the sinkage reaches the axle", .remedy = ""});
   model.slip_along_travel |= slipIsAlongTravel(trial.states);
   const ModelSoil found = soilUnder(model, trial, howOf(options));
   SoilEstimate estimate;
@@ -76,13 +78,13 @@ SoilEstimate modelEstimate(const EstimateOptions& options, const ProgressMonitor
   estimate.unseen = found.unseen;
   for (const Effect& effect : model.effects) estimate.effects.push_back(effect.name);
   if (found.misfit > kMisfit)
-    estimate.warnings.push_back(fmt::format(
-        "with the effects of {} no soil explains the readings (misfit {:.1f}, 1 expected); trace these "
-        "rows anew, or widen --noise",
-        options.model, found.misfit));
+    estimate.warnings.push_back(
+        fmt::format("with the effects of {} no soil explains the readings (misfit {:.1f}, 1 expected); trace "
+                    "these rows again, or increase --noise",
+                    options.model, found.misfit));
   if (trial.rows() < all.rows())
-    estimate.warnings.push_back(fmt::format("{} rows with the wheel sunk to its axle or deeper were left out",
-                                            all.rows() - trial.rows()));
+    estimate.warnings.push_back(
+        fmt::format("{} rows with sinkage at or above the axle were excluded", all.rows() - trial.rows()));
   return estimate;
 }
 

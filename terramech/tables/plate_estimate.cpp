@@ -11,8 +11,8 @@ SoilEstimate plateEstimate(const EstimateOptions& options, const ProgressMonitor
   const auto priors = strengthPriors(soilPriors(options.prior));
   if (!priors.empty() && table.shear.empty()) {
     throw InputError({.where = "--prior " + options.prior,
-                      .reason = "cohesion and friction take a prior, and the table has no shear test",
-                      .remedy = "leave it out, or add shear_stress_Pa"});
+                      .reason = "the prior applies to cohesion and friction, and the table has no shear test",
+                      .remedy = "remove --prior, or add shear_stress_Pa"});
   }
   SoilEstimate estimate;
   estimate.rejected = table.rejected;
@@ -22,7 +22,7 @@ SoilEstimate plateEstimate(const EstimateOptions& options, const ProgressMonitor
     estimate.take(priors.empty() ? fit.strength : withPrior(fit.strength, priors));
     estimate.shear_modulus_m = fit.shear_modulus_m;
     if (fit.modulus_at_bound)
-      estimate.unseen.emplace_back("shear_modulus_m: the displacements do not show it");
+      estimate.unseen.emplace_back("shear_modulus_m: not identifiable from the displacements");
     for (const ShearReading& r : table.shear) {
       const double share = -std::expm1(-r.displacement_m / fit.shear_modulus_m);
       estimate.points.push_back({.normal_Pa = r.normal_Pa, .shear_Pa = r.shear_Pa / share});
@@ -31,8 +31,8 @@ SoilEstimate plateEstimate(const EstimateOptions& options, const ProgressMonitor
   if (!table.plates.empty()) {
     if (table.width_from_force) {
       estimate.warnings.emplace_back(
-          "no plate_width_m: plates are taken as round, their diameters from F_N and the pressure; state "
-          "--plate-width where they are not");
+          "no plate_width_m: assuming round plates with diameters from F_N and the pressure; pass "
+          "--plate-width for other plates");
     }
     PressureSinkageFit fitter;
     for (const PlateReading& r : table.plates) fitter.add(r);
@@ -43,7 +43,7 @@ SoilEstimate plateEstimate(const EstimateOptions& options, const ProgressMonitor
     estimate.frictional_modulus = fit.frictional_modulus;
     if (fit.cohesive_modulus && *fit.cohesive_modulus < 0.0) {
       estimate.warnings.emplace_back(
-          "k_c < 0: wider plates are stiffer, which no cohesion explains; take k of the plate nearest in "
+          "k_c < 0: wider plates are stiffer, which cohesion cannot explain; use k of the plate nearest in "
           "width");
     }
     if (!fit.refused.empty())

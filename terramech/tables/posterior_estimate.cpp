@@ -56,17 +56,18 @@ void sayWhatIsDoubtful(const WheelRows& rows, const SoilPosterior& posterior, co
                        std::vector<std::string>& warnings) {
   constexpr double kMisfit = 3.0;
   if (posterior.misfit > kMisfit) {
-    warnings.push_back(fmt::format(
-        "no soil of the prior explains the readings (misfit {:.1f}, 1 expected); widen --prior or --noise",
-        posterior.misfit));
+    warnings.push_back(
+        fmt::format("no soil of the prior explains the readings (misfit {:.1f}, 1 expected); widen --prior "
+                    "or increase --noise",
+                    posterior.misfit));
   }
   if (const std::string text = groupsThatDisagree(rows, posterior, noise); !text.empty())
     warnings.push_back(text);
   const auto [narrow, wide] = std::ranges::minmax_element(rows.wheels, {}, &Wheel::width_m);
   if (narrow->width_m < wide->width_m) {
     warnings.push_back(
-        fmt::format("k = k_c/b + k_phi is taken as one value under wheels of {:g} to {:g} m width; where k_c "
-                    "matters, one file for each width",
+        fmt::format("k = k_c/b + k_phi is assumed constant for wheels {:g} to {:g} m wide; if k_c matters, "
+                    "split the file by width",
                     narrow->width_m, wide->width_m));
   }
 }

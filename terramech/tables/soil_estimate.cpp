@@ -40,10 +40,11 @@ std::string SoilEstimate::implausible() const {
   const bool no_friction = tan_friction + doubt < 0.0 || tan_friction - doubt > kSteepest;
   if (!no_cohesion && !no_friction) return {};
   return fmt::format(
-      "{} no soil has: the rows do not behave as the method assumes (one soil, no slip-sinkage, no grousers)",
-      no_cohesion && no_friction ? "a cohesion and a friction angle that"
-      : no_cohesion              ? "a cohesion that"
-                                 : "a friction angle that");
+      "{} outside the range of any soil: the rows violate the assumptions of the method (one soil, no "
+      "slip-sinkage, no grousers)",
+      no_cohesion && no_friction ? "a cohesion and a friction angle"
+      : no_cohesion              ? "a cohesion"
+                                 : "a friction angle");
 }
 
 double frictionStd_rad(const Eigen::Matrix2d& covariance, double friction_angle_rad) {

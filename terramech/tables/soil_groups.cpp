@@ -72,8 +72,7 @@ std::string groupsThatDisagree(const WheelRows& rows, const SoilPosterior& poste
   const auto& [name, group] = *std::ranges::max_element(
       worst_groups, {}, [](const auto& entry) { return entry.second.chiSquared(); });
   return fmt::format(
-      "one soil does not explain rows of every {0}: those of {0} = {1} lie {2:.1f} standard deviations of a "
-      "reading off the fit on average; fit each {0} in a file of its own",
+      "one soil does not fit all values of {0}: mean residual {2:.1f} sigma at {0} = {1}; split the file by {0}",
       *worst, name, group.departure());
 }
 

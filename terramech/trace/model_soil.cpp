@@ -130,7 +130,7 @@ ModelSoil soilUnder(const RefinedModel& model, const Trial& trial, const ModelSo
     if (std::sqrt(std::max(0.0, covariance(at, at))) > kTold * prior)
       found.unseen.push_back(
           std::string(soilParameters()[static_cast<std::size_t>(plan.free[k].index)].name) +
-          ": the readings hardly narrow its prior");
+          ": the posterior is almost as wide as the prior");
   }
   return found;
 }

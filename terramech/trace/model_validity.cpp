@@ -63,14 +63,13 @@ Applicability applicability(const TraceResult& result, const TraceOptions& optio
     shares += std::string(shares.empty() ? "" : ", ") + name(static_cast<Channel>(c)) + " " + number(share);
   }
   if (absurd || (asked > 0 && silent == asked))
-    return {false, "on rows held out its physics explains too little of the variance (" + shares +
-                       "): a rigid wheel on soil does not describe them"};
+    return {false, "on held-out rows its physics explains too little of the variance (" + shares +
+                       "): the model of a rigid wheel on soil does not fit"};
   const double closure = medianClosureError(result.trial);
   if (closure > kFarOff && held.refined_rmse[0] > kFarOff)
-    return {false,
-            "drawbar pull differs by " + number(closure) +
-                " of the load from what torque and sinkage allow a rigid wheel on any soil (median): no "
-                "cohesion and friction can explain that"};
+    return {false, "drawbar pull differs by " + number(closure) +
+                       " of the load (median) from the value that torque and sinkage imply for a rigid wheel "
+                       "on any soil: no cohesion and friction angle explain it"};
   return {};
 }
 

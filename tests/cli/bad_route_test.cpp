@@ -52,7 +52,7 @@ TEST(BadInput, Plan) {
           {plan("good.asc", {"--start", "5,5", "--goal", "9,9", "--soils", "list.yaml"}), 2, "list.yaml"},
           {plan("good.asc", {"--start", "5,5", "--goal", "9,9", "--footprint", "nan"}), 2, "--footprint"},
           {plan("good.asc", {"--start", "5,5", "--goal", "9,9", "--risk-weight", "nan"}), 2, "risk_weight_J"},
-          {plan("good.asc", {"--start", "5,5", "--goal", "9,9", "--slope-margin", "200"}), 2,
+          {plan("good.asc", {"--start", "5,5", "--goal", "9,9", "--slope-uncertainty-deg", "200"}), 2,
            "slope_margin_rad"},
           {{"plan", "missing.yaml"}, 2, "missing.yaml"},
           {{"plan", "garbage.yaml"}, 2, "garbage.yaml"},
@@ -124,11 +124,11 @@ TEST(BadInput, Bench) {
                     {{"bench", "grids", "--time", "-2"}, 2, "--time"},
                     {{"bench", "grids", "--seed", "-1"}, 2, "--seed"},
                     {{"bench", "grids", "--side", "3"}, 2, "--side"},
-                    {{"bench", "grids", "--soil", "nope"}, 2, "no elevation map"},
+                    {{"bench", "grids", "--soil", "nope"}, 2, "without an elevation map"},
                     {{"bench", "good.asc", "--resolution", "1", "--soil", "nope"}, 2, "nope"},
                     {{"bench", "grids", "-o", "good.asc"}, 2, "good.asc"},
-                    {{"bench", "grids", "-o", "good.asc/out"}, 2, "cannot be made"},
-                    {{"bench", "grids", "-o", "/proc/talus"}, 2, "cannot be made"},
+                    {{"bench", "grids", "-o", "good.asc/out"}, 2, "cannot be created"},
+                    {{"bench", "grids", "-o", "/proc/talus"}, 2, "cannot be created"},
                 });
 }
 

@@ -11,8 +11,8 @@ TEST(BadInput, Wheel) {
     return words;
   };
   std::vector<BadCall> calls{
-      {{"wheel"}, 2, "lacks --soil"},
-      {wheel({"--load", "100"}), 2, "lacks --slip"},
+      {{"wheel"}, 2, "missing --soil"},
+      {wheel({"--load", "100"}), 2, "missing --slip"},
       {wheel({"--load", "-1", "--slip", "0.2"}), 2, "load_N = -1, must be > 0"},
       {wheel({"--load", "nan", "--slip", "0.2"}), 2, "--load: nan, must be a finite number"},
       {wheel({"--load", "100", "--slip", "2"}), 2, "--slip: 2, must be -1 to 1"},

@@ -72,7 +72,7 @@ TEST(Reliability, OfCellsSaidToBeOfACategory) {
   std::array<Table, 3> tables;
   for (std::size_t i = 0; i < 60; ++i) {
     const TrueWorld world = site.trueWorld(i);
-    const auto known = site.believed(Belief::Clairvoyant, world);
+    const auto known = site.believed(Belief::PerfectKnowledge, world);
     auto learned = site.believed(Belief::OnLine, world);
     const TraverseSimulation drive = simulateTraverse(learned, world, site.options(Belief::OnLine, i));
     for (int row = 0; row < 60; ++row)

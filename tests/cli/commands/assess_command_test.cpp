@@ -91,7 +91,7 @@ TEST(AssessCommand, SaysWhichFaultsOfSensorsItLeavesOut) {
   const Ran without = runTalus({"--json", "assess", drive, "--model", plain});
   const Ran with = runTalus({"--json", "assess", drive, "--model", tilted});
   ASSERT_EQ(with.code, 0) << with.err;
-  EXPECT_THAT(with.err, HasSubstr("load_cell_tilt is a fault of a sensor"));
+  EXPECT_THAT(with.err, HasSubstr("load_cell_tilt describes a sensor error"));
   EXPECT_EQ(with.out, without.out);
   EXPECT_TRUE(without.err.empty());
 }

@@ -44,7 +44,7 @@ TEST(BenchCommand, ComparesPlannersAndWritesLogsTableAndPage) {
   EXPECT_EQ(json[0]["breached"], 0);
   EXPECT_EQ(json[1]["planner"], "BITstar");
   EXPECT_THAT(fileContent(folder / "out/room_1.log"), HasSubstr("OMPL version"));
-  EXPECT_THAT(fileContent(folder / "out/index.html"), HasSubstr("else to the best of all runs"));
+  EXPECT_THAT(fileContent(folder / "out/index.html"), HasSubstr("or to the best of all runs"));
   EXPECT_THAT(fileContent(folder / "out/table.txt"), HasSubstr("field"));
 }
 
@@ -72,7 +72,7 @@ TEST(BenchCommand, TakesSeveralSuitesAndDrivesOverTheTrueSlip) {
   EXPECT_EQ(line["drives"][1]["runs"], 2);
   EXPECT_LE(line["drives"][1]["reached"].get<int>(), 2);
   EXPECT_THAT(fileContent(folder / "out/table.txt"), HasSubstr("slip tail"));
-  EXPECT_THAT(fileContent(folder / "out/index.html"), HasSubstr("Drives over the true slip"));
+  EXPECT_THAT(fileContent(folder / "out/index.html"), HasSubstr("Simulated drives over the true slip"));
 }
 
 // Measured by others: OMPL's own reader, from Debian's ompl-demos, makes its database of the logs.
@@ -114,7 +114,7 @@ std::vector<std::string> longCampaign(const Folder& folder) {
 void expectTheFastRunsKept(const Folder& folder) {
   const std::string table = fileContent(folder / "out/table.txt");
   EXPECT_THAT(table, HasSubstr("cancelled: 6 of 12 runs")) << table;
-  EXPECT_THAT(fileContent(folder / "out/index.html"), HasSubstr("Cancelled: 6 of 12 runs were made."));
+  EXPECT_THAT(fileContent(folder / "out/index.html"), HasSubstr("Cancelled after 6 of 12 runs."));
   EXPECT_THAT(fileContent(folder / "out/room_3.log"), HasSubstr("cancelled: 2 of 4 runs"));
   for (const auto& entry : std::filesystem::directory_iterator(folder / "out"))
     EXPECT_FALSE(entry.path().filename().string().starts_with('.')) << entry.path();

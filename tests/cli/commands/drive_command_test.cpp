@@ -145,7 +145,7 @@ TEST(BadInput, Rehearsals) {
                            {call("t_place.yaml"), 2, "x_m"},
                            {call("t_spread.yaml"), 2, "spread"},
                            {call("t_many.yaml"), 2, "patches"},
-                           {call("t_class.yaml"), 2, "class 7 is no class of the map"},
+                           {call("t_class.yaml"), 2, "class 7 is not a class of the map"},
                            {call("truth.yaml", {"--belief", "faith"}), 2, "faith"},
                            {call("truth.yaml", {"--worlds", "0"}), 2, "--worlds"},
                            {call("truth.yaml", {"--worlds", "2", "--html", "r.html"}), 2, "--html"},

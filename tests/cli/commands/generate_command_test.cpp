@@ -49,7 +49,7 @@ TEST(GenerateCommand, BadInputIsOneLineAndCodeTwo) {
   const std::vector<Case> cases{
       {{"generate", "craters"}, "--output is required"},
       {{"generate", "crater", "-o", out}, "did you mean 'craters'?"},
-      {{"generate", "craters", "--size", "4", "-o", out}, "--size 4: is not a number of cells"},
+      {{"generate", "craters", "--size", "4", "-o", out}, "--size 4: is not a size in cells"},
       {{"generate", "craters", "--size", "axb", "-o", out}, "--size axb"},
       {{"generate", "craters", "--resolution", "0", "-o", out}, "--resolution"},
       {{"generate", "craters", "-o", folder / "no/where.tif"}, "where.tif"},

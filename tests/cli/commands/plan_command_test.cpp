@@ -142,7 +142,7 @@ TEST(PlanCommand, TakesTheCheapestOfSeveralGoalsAndPassesViaPoints) {
   const Ran json_run = plan({"--json"});
   ASSERT_EQ(json_run.code, 0) << json_run.err;
   EXPECT_EQ(json::parse(json_run.out)["goal"], "10.5,9.5");
-  EXPECT_THAT(plan({}).out, HasSubstr("10.5,9.5, number 2 of the 2 given"));
+  EXPECT_THAT(plan({}).out, HasSubstr("10.5,9.5, number 2 of 2"));
   EXPECT_THAT(plan({"--in-memory", "10"}).err, HasSubstr("several goals"));
 
   folder.write("mission.yaml",

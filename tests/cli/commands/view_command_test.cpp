@@ -25,7 +25,7 @@ TEST(ViewCommand, ShowsTheRouteThatPlanWroteOnItsMap) {
                 "3,3", "--goal", "35,30", "-o", "route.geojson", "--html", "plan.html", "--png", "plan.png"},
                folder.path());
   ASSERT_EQ(plan.code, 0) << plan.err;
-  EXPECT_THAT(plan.out, HasSubstr("pull to spare"));
+  EXPECT_THAT(plan.out, HasSubstr("drawbar-pull margin"));
   EXPECT_THAT(fileContent(folder / "plan.html"), HasSubstr("\"name\":\"categories\""));
   EXPECT_THAT(fileContent(folder / "plan.png"), StartsWith("\x89PNG"));
 

@@ -59,9 +59,9 @@ TEST(WheelCommand, MistakesAreOneLineWithTheirExitCode) {
            {{"wheel", "--soil", "sand", "--rover", "mer", "--slip", "0.2", "--load", "1e9"},
             1,
             "sinks to its axle"},
-           {{"wheel", "--soil", "sand", "--slip", "0.2"}, 2, "lacks --rover"},
+           {{"wheel", "--soil", "sand", "--slip", "0.2"}, 2, "missing --rover"},
            {{"wheel", "--cases", "/nowhere.csv", "-o", folder / "o.csv"}, 2, "/nowhere.csv"},
-           {{"wheel", "--cases", "in.csv"}, 2, "lacks -o OUT.csv"}}) {
+           {{"wheel", "--cases", "in.csv"}, 2, "missing -o OUT.csv"}}) {
     const Ran ran = runTalus(c.words);
     EXPECT_EQ(ran.code, c.code) << ran.err;
     EXPECT_THAT(ran.err, StartsWith("talus: "));

@@ -14,14 +14,16 @@ using testing::StartsWith;
 
 TEST(RouteSummary, SaysWhatARoverEngineerAsks) {
   const auto facts = summaryOf(exampleRoute());
-  EXPECT_THAT(facts, Contains(Pair("length", StartsWith("512.6 m, 1.00 times"))));
-  EXPECT_THAT(facts, Contains(Pair("driving time", StartsWith("2 h 50 min, 0.0503 m/s"))));
+  EXPECT_THAT(facts, Contains(Pair("length", StartsWith("512.6 m, detour factor 1.00"))));
+  EXPECT_THAT(facts, Contains(Pair("driving time", StartsWith("2 h 50 min, mean speed 0.0503 m/s"))));
   EXPECT_THAT(
-      facts, Contains(Pair("energy", StartsWith("54 kJ (15 Wh), 105.3 J/m; cost with time and risk 60 kJ"))));
-  EXPECT_THAT(facts,
-              Contains(Pair("slope", StartsWith("at most 11.5 deg up, 11.5 deg down, 2.9 deg across"))));
-  EXPECT_THAT(facts, Contains(Pair("ground", "66.7 % safe, 33.3 % marginal")));
-  EXPECT_THAT(facts, Contains(Pair("pull to spare", HasSubstr("least +0.100 of the load"))));
+      facts,
+      Contains(Pair("energy", StartsWith("54 kJ (15 Wh), 105.3 J/m; cost including time and risk 60 kJ"))));
+  EXPECT_THAT(
+      facts,
+      Contains(Pair("slope", StartsWith("max uphill 11.5 deg, downhill 11.5 deg, cross-slope 2.9 deg"))));
+  EXPECT_THAT(facts, Contains(Pair("traversability", "safe 66.7 %, marginal 33.3 %")));
+  EXPECT_THAT(facts, Contains(Pair("drawbar-pull margin", HasSubstr("min +0.100 (DP/W)"))));
   EXPECT_LE(facts.size(), 11U);
 }
 
@@ -38,13 +40,13 @@ TEST(RouteSummary, OfARouteWithoutLengthSaysSo) {
   planner::Route route = exampleRoute();
   route.vertices.resize(1);
   route.summary.length_m = route.summary.time_s = 0.0;
-  EXPECT_EQ(summaryText(route), "route         nothing to drive: the start is at the goal\n");
+  EXPECT_EQ(summaryText(route), "route                empty: the start is at the goal\n");
 }
 
 TEST(RouteSummary, OfNoRouteIsItsReason) {
   planner::Route route;
   route.reason = "a cliff";
-  EXPECT_EQ(summaryText(route), "route         no_route: a cliff\n");
+  EXPECT_EQ(summaryText(route), "route                no_route: a cliff\n");
 }
 
 TEST(RouteSummary, Durations) {

@@ -96,7 +96,7 @@ TEST(PlanPairs, MistakesAreOneLine) {
            {plan(header + "1,1,9\n"), ".csv:2"},
            {plan(header + "1,1,9,x\n"), "goal_y_m = 'x'"},
            {plan(header + "1,1,9,inf\n"), "goal_y_m = 'inf'"},
-           {plan(header + "1,1,9,9\n", {"--start", "5,5"}), "goes without"},
+           {plan(header + "1,1,9,9\n", {"--start", "5,5"}), "cannot be combined with"},
            {plan(header + "1,1,9,9\n", {"--planner", "PRM"}), "refused"}}) {
     expectRefused(files, {{words, 2, says}});
   }

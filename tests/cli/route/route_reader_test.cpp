@@ -57,10 +57,10 @@ TEST(RouteReader, RefusalNamesFileAndField) {
   EXPECT_THAT(refusal(document), HasSubstr("r.geojson: 'slip' has 60 values for 61 vertices; pass a route"));
   document = written();
   document["features"][0]["properties"]["category"][5] = "soggy";
-  EXPECT_THAT(refusal(document), HasSubstr("'category' holds an unknown word"));
+  EXPECT_THAT(refusal(document), HasSubstr("'category' contains an unknown word"));
   document = written();
   document["features"][0]["properties"]["x_m"][5] = nullptr;
-  EXPECT_THAT(refusal(document), HasSubstr("hold something else than numbers"));
+  EXPECT_THAT(refusal(document), HasSubstr("contain values that are not numbers"));
   document = written();
   document["features"][0]["properties"]["summary"]["cost"] = "much";
   EXPECT_THAT(refusal(document), HasSubstr("'cost' is not a number"));

@@ -67,7 +67,7 @@ TEST(BenchReport, ARefusedRouteIsNotDrawn) {
 TEST(BenchReport, SaysThatItWasCutShort) {
   auto some = runs();
   some.pop_back();
-  EXPECT_THAT(asPage(plan(), some), HasSubstr("Cancelled: 3 of 4 runs were made."));
+  EXPECT_THAT(asPage(plan(), some), HasSubstr("Cancelled after 3 of 4 runs."));
   EXPECT_THAT(asPage(plan(), runs()), Not(HasSubstr("Cancelled")));
 }
 

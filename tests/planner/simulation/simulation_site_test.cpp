@@ -59,14 +59,14 @@ TEST(SimulationSite, ClairvoyanceKnowsEveryPatchBySoil) {
   truth.patches = {{{112.5, 215.5}, 2.0, testDust()}, {{125.5, 215.5}, 2.0, firm}};
   const SimulationSite site(map, across(truth));
   const TrueWorld world = site.trueWorld(0);
-  const auto believed = site.believed(Belief::Clairvoyant, world);
+  const auto believed = site.believed(Belief::PerfectKnowledge, world);
   const auto pull = [&](maps::Point p) { return believed.ground(*believed.grid().cellAt(p))->pull.value; };
   const auto model = costmap::testGround();
   // Closed form: the soil's own pull, each patch its own
   EXPECT_NEAR(pull({112.5, 215.5}), model->prior(1).pull.value, 1e-9);
   EXPECT_NEAR(pull({105.5, 215.5}), model->prior(0).pull.value, 1e-9);
   EXPECT_GT(pull({125.5, 215.5}), model->prior(0).pull.value + 0.05);
-  EXPECT_EQ(site.world(Belief::Clairvoyant, 0).drive.outcome, Outcome::Reached);
+  EXPECT_EQ(site.world(Belief::PerfectKnowledge, 0).drive.outcome, Outcome::Reached);
   EXPECT_EQ(site.world(Belief::Prior, 0).drive.outcome, Outcome::Immobilised);
 }
 
@@ -85,7 +85,7 @@ TEST(SimulationSite, KeepOutStaysUnderEveryBelief) {
   const auto map = costmap::mapOf(rows);
   const SimulationSite site(map, across({}));
   const TrueWorld world = site.trueWorld(0);
-  for (const Belief belief : {Belief::Geometry, Belief::Prior, Belief::OnLine, Belief::Clairvoyant})
+  for (const Belief belief : {Belief::Geometry, Belief::Prior, Belief::OnLine, Belief::PerfectKnowledge})
     EXPECT_TRUE(has(site.believed(belief, world).hazards({20, 19}), costmap::Hazard::KeepOut))
         << name(belief);
 }
@@ -149,8 +149,8 @@ TEST(Compared, CountsWhereTheClairvoyantGotThrough) {
   EXPECT_EQ(out.rates.worlds, 3U);
   EXPECT_NEAR(out.rates.outcome[static_cast<std::size_t>(Outcome::Immobilised)].value, 1.0 / 3.0, 1e-12);
   EXPECT_DOUBLE_EQ(out.rates.outcome[static_cast<std::size_t>(Outcome::GaveUp)].value, 0.0);
-  EXPECT_NEAR(out.energy_over_clairvoyant.value, 1.2, 1e-12);
-  EXPECT_NEAR(out.energy_over_clairvoyant.interval_95[1] - 1.2, 1.959964 * 0.1,
+  EXPECT_NEAR(out.energy_over_perfect_knowledge.value, 1.2, 1e-12);
+  EXPECT_NEAR(out.energy_over_perfect_knowledge.interval_95[1] - 1.2, 1.959964 * 0.1,
               1e-6);  // std 0.1414 / sqrt(2)
   EXPECT_THROW(compared(mine, {}), std::invalid_argument);
 }

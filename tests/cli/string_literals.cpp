@@ -1,0 +1,27 @@
+#include "string_literals.hpp"
+
+#include <regex>
+
+namespace talus::cli {
+
+std::vector<std::string> stringLiterals(const std::string& source) {
+  // What is skipped comes first, so that a quote within it opens nothing.
+  static const std::regex piece(R"re(//[^\n]*|/\*[^]*?\*/|#include[^\n]*|'(?:\\.|[^'\\])'|\d'(?=\d))re"
+                                R"re(|R"\(([^]*?)\)"|"((?:\\.|[^"\\])*)"|[^\s"'/]+|/)re");
+  std::vector<std::string> literals;
+  bool joined = false;  // whether a literal directly before goes on in the next
+  for (auto at = source.cbegin(); at != source.cend();) {
+    std::smatch found;
+    if (!std::regex_search(at, source.cend(), found, piece)) break;
+    at = found[0].second;
+    if (found[2].matched && joined)
+      literals.back() += found[2];
+    else if (found[1].matched || found[2].matched)
+      literals.push_back(found[1].matched ? found[1] : found[2]);
+    const bool comment = found.str().starts_with("//") || found.str().starts_with("/*");
+    joined = found[2].matched || (comment && joined);
+  }
+  return literals;
+}
+
+}  // namespace talus::cli
