@@ -104,8 +104,9 @@ TEST(House, NoTwoUnitsIncludeEachOther) {
   ASSERT_GT(arrows.size(), 200U);
   for (const auto& [unit, others] : arrows)
     for (const auto& other : others)
-      if (unit < other && arrows.contains(other))
+      if (unit < other && arrows.contains(other)) {
         EXPECT_FALSE(arrows.at(other).contains(unit)) << unit << " and " << other << " include each other";
+      }
 }
 
 TEST(House, FilesHaveOneIdea) {

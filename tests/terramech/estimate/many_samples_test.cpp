@@ -2,6 +2,7 @@
 #include <stop_token>
 
 #include <talus/terramech/estimate/many_samples.hpp>
+#include <talus/terramech/estimate/soil_posterior.hpp>
 #include <talus/terramech/estimate/thesis_runs.hpp>
 
 namespace talus::terramech {
