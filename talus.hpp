@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
-/// The few words that every room shares: how bad input is reported, how long work is watched and stopped, and the
-/// unit of angle that people read.
+/// The few words that every room shares: how bad input is reported, how long work is watched and stopped, and
+/// the unit of angle that people read.
 namespace talus {
 
 inline constexpr double kDegree = std::numbers::pi / 180.0;  ///< one degree [rad]
@@ -19,7 +19,7 @@ inline constexpr double kDegree = std::numbers::pi / 180.0;  ///< one degree [ra
 /// A file or a value handed in by the user cannot be used; what() is one line: what, where, remedy.
 class InputError : public std::runtime_error {
  public:
-  /// The parts of the line. `where` is a path with a line, band or cell; `remedy` tells what to do about it.
+  /// The parts of the line. `where` is a path with a line, band or cell; `remedy` is what to do about it.
   struct Parts {
     std::string where;   ///< "site.tif, band 2" or "drive.csv:17"
     std::string reason;  ///< "no CRS"
@@ -38,8 +38,8 @@ class InputError : public std::runtime_error {
   Parts parts_;
 };
 
-/// The fewest edits that make one word the other: insert, delete or replace a letter, swap two neighbours (optimal
-/// string alignment).
+/// The fewest edits that make one word the other: insert, delete or replace a letter, swap two neighbours
+/// (optimal string alignment).
 inline std::size_t editDistance(std::string_view a, std::string_view b) {
   std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
   for (std::size_t i = 0; i <= a.size(); ++i)
@@ -54,8 +54,8 @@ inline std::size_t editDistance(std::string_view a, std::string_view b) {
   return d[a.size()][b.size()];
 }
 
-/// The known name that a mistyped word most likely means: fewest edits; empty where none is within a third of the
-/// word's length (two edits for short words).
+/// The known name that a mistyped word most likely means: fewest edits; empty where none is within a third of
+/// the word's length (two edits for short words).
 inline std::string nearestName(std::string_view word, const std::vector<std::string>& known) {
   std::string nearest;
   std::size_t fewest = std::max<std::size_t>(2, word.size() / 3) + 1;

@@ -20,7 +20,7 @@ struct Direction {
 /// clamped to [-2, 2).
 class CellCode {
  public:
-  static constexpr std::uint8_t kUnknown = 254;  ///< curve number of a cell nobody has seen
+  static constexpr std::uint8_t kUnknown = 254;  ///< curve number of an unobserved cell
   static constexpr std::uint8_t kBlocked = 255;  ///< curve number of a cell no heading may enter
 
   /// The parts that are packed.
@@ -73,7 +73,7 @@ struct DriveCurve {
 /// One kind of ground: what a metre costs for the hot loop, and the numbers behind it.
 struct DriveGround {
   DriveCurve curve;
-  std::shared_ptr<const DriveTable> states;  ///< may be null where nobody asks for details (tests)
+  std::shared_ptr<const DriveTable> states;  ///< may be null where details are not needed (tests)
 };
 
 /// The one cost function: what grid search, sampling planners, the final check and the reports all call.

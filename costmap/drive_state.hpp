@@ -11,21 +11,21 @@ namespace talus::costmap {
 /// Why a motion over a cell is refused.
 enum class Refusal : std::uint8_t {
   None,      ///< allowed
-  Unknown,   ///< nobody has seen the cell
+  Unknown,   ///< the cell is unobserved
   Blocked,   ///< a hazard that no heading avoids; the map knows which
   Pitch,     ///< steeper along the heading than the rover may pitch
   Roll,      ///< steeper across the heading than the rover may roll
-  Pull,      ///< the soil cannot give the pull that the slope asks for
+  Pull,      ///< required drawbar pull above the available drawbar pull
   Torque,    ///< the motors cannot give the torque
   Sinkage,   ///< the wheels sink to where the belly touches
   Category,  ///< the category at this slope is refused by the policy
 };
 
-/// The refusal in words for a person: "the soil cannot give the pull that the slope asks for".
+/// The reason of a refusal as text: "required drawbar pull above the available drawbar pull".
 const char* toText(Refusal refusal) noexcept;
 
 /// What driving over one kind of ground at one gradient is like: the numbers behind a cost. A wheel's worth
-/// where it says wheel, else the rover's. Metres are horizontal.
+/// where it is of a wheel, else the rover's. Metres are horizontal.
 struct DriveState {
   float slip = 0.0F;            ///< [-], driven > 0, braked < 0
   float sinkage_m = 0.0F;       ///< of a wheel

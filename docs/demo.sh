@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # docs/demo.sh TALUS [OUTPUT_DIR]: plans across a real map that Debian ships (Jacksboro fault, python-matplotlib-data) and
-# across a generated lunar crater field; of each a route, a picture, a page and a summary.
+# across a generated lunar crater field; for each it writes a route, a picture and a page, and prints a summary.
 set -euo pipefail
 talus=$(realpath "${1:?usage: docs/demo.sh PATH_TO_TALUS [OUTPUT_DIR]}")
 mkdir -p "${2:-demo}"
@@ -9,13 +9,13 @@ cd "${2:-demo}"
 jacksboro=/usr/share/matplotlib/mpl-data/sample_data/jacksboro_fault_dem.npz
 [ -f "$jacksboro" ] || { echo "demo: $jacksboro is missing; apt-get install python-matplotlib-data" >&2; exit 2; }
 
-# plan NAME ARGUMENT...: a route and all there is to look at.
+# plan NAME ARGUMENT...: a route, its picture and its page.
 plan() {
   local name=$1
   shift
   echo "== $name"
   "$talus" plan "$@" -o "$name.geojson" --png "$name.png" --html "$name.html"
-  echo "see         $PWD/$name.html"
+  echo "page                 $PWD/$name.html"
   echo
 }
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# docs/make.sh TALUS: makes the figures of docs/ anew: the validation page, and the README's picture from the demo.
+# docs/make.sh TALUS: generates the figures of docs/: the validation page, and the README's picture from the demo.
 set -euo pipefail
 talus=$(realpath "${1:?usage: docs/make.sh PATH_TO_TALUS}")
 cd "$(dirname "$0")"

@@ -34,7 +34,8 @@ struct CraterOptions {
 /// grid and a margin around it, large before small; most are worn.
 std::vector<Crater> craterField(const Grid& grid, const CraterOptions& options);
 
-/// Craters in square bins, each with those that reach into it, so that a place asks few of them. Immutable.
+/// Craters in square bins, each with those that reach into it, so that a place evaluates few of them.
+/// Immutable.
 class CraterBins {
  public:
   CraterBins(const Grid& grid, std::vector<Crater> craters);

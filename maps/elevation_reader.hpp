@@ -9,7 +9,7 @@ namespace talus::maps {
 
 /// Reads a DEM: whatever GDAL opens, or a NumPy .npz archive with the arrays elevation, xmin, xmax, ymin,
 /// ymax (degrees), as matplotlib ships one. Degrees, rotated and non-square pixels are resampled to square
-/// cells in metres (the map's notes say so).
+/// cells in metres (recorded in the map's notes).
 /// @throws InputError naming file, reason and remedy
 ElevationMap readElevation(const std::string& path, const ReadOptions& options = {});
 

@@ -7,7 +7,7 @@
 
 namespace talus::maps {
 
-/// What a kind of ground says of one place, before rocks are set on it.
+/// Elevation and class of one place of a site, before rocks are added.
 struct Ground {
   double height_m = 0.0;
   SiteClass soil = SiteClass::Firm;

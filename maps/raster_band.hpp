@@ -14,12 +14,12 @@ namespace talus::maps {
 /// Which band of a file to take when the user names none.
 struct BandWish {
   std::string path{};                      ///< opens error lines
-  std::optional<int> band{};               ///< from 1, as the user asked
+  std::optional<int> band{};               ///< from 1, as the user selected
   std::vector<std::string_view> words{};   ///< parts of a description that mark the band, in lower case
   std::vector<std::string_view> others{};  ///< parts that rule it out
 };
 
-/// The band asked for, else the first whose description fits, else the first; a choice among several is said
+/// The selected band, else the first whose description fits, else the first; a choice among several is said
 /// in `notes`. @throws InputError on a band that does not exist, or a picture (colours) when none was asked
 /// for
 int chooseBand(GDALDataset& file, const BandWish& wish, std::vector<std::string>& notes);

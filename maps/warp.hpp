@@ -15,7 +15,7 @@ struct WarpTarget {
   double resolution = 0.0;       ///< cell side in units of the target CRS; 0: as many cells as the source has
   std::optional<Grid> grid{};    ///< exactly these cells, instead of resolution
   std::string method = "cubic";  ///< GDAL's name: near, bilinear, cubic, average
-  std::optional<double> nodata{};  ///< value of the source that means no data, over what the file says
+  std::optional<double> nodata{};  ///< no-data value of the source; overrides the file
 };
 
 /// The band as a virtual raster that is computed where it is read. @throws InputError; `where` opens its line

@@ -30,7 +30,7 @@ class Campaign {
   Campaign& operator=(const Campaign&) = delete;
 
   int ranks() const noexcept;
-  bool leads() const noexcept;  ///< rank 0, which alone gets the results and speaks to the user
+  bool leads() const noexcept;  ///< rank 0, the only one that gets the results and prints
 
   /// Outcomes of job(0) .. job(count - 1) in order; empty on the other ranks. A job that throws has failed
   /// and stops nothing; a requested stop ends each rank after its job in work, and the rest have failed and

@@ -17,7 +17,7 @@ struct Group {
   static constexpr const char* kSoil = "Wheels and soil";
 };
 
-/// What --help says of a subcommand.
+/// The text of a subcommand in --help.
 struct CommandText {
   std::string name;
   std::string group;        ///< one of Group

@@ -26,8 +26,8 @@ class HelpFormat : public CLI::Formatter {
 /// Puts the options of the command that have no heading in --help yet under this one.
 void groupOptions(CLI::App& command, const std::string& heading);
 
-/// Makes the option the old name of another: it stays accepted, is hidden from --help, and a call that uses it
-/// gets a warning.
+/// Makes the option the old name of another: it stays accepted, is hidden from --help, and a call that uses
+/// it gets a warning.
 void makeOldName(CLI::Option& option, const std::string& new_name);
 
 /// "'--old' is deprecated: use '--new'" of each old name that the call used.

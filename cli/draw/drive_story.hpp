@@ -16,7 +16,7 @@ struct CellChange {
   std::uint8_t category = 0;  ///< terramech::Category as a number
 };
 
-/// a simulated drive as a page tells it: what happened when, what changed in the map, and what the rover
+/// a simulated drive as a page shows it: what happened when, what changed in the map, and what the rover
 /// could not know.
 struct DriveStory {
   planner::TraverseSimulation drive;

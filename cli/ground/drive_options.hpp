@@ -21,7 +21,7 @@ void addDriveOptions(CLI::App& command, DriveOptions& drive);
 /// Declares --chassis.
 void addChassisOption(CLI::App& command, std::string& chassis);
 
-/// What the rover keeps on the map, as far as the call does not say otherwise.
+/// What the rover keeps on the map, unless the call overrides it.
 planner::Kinematics kinematicsOf(const DriveOptions& drive, const costmap::TraversabilityMap& map);
 
 /// The chassis of that kind, "rigid" or "rocker-bogie"; none for an empty one. Keeps the map by reference.

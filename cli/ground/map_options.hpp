@@ -16,7 +16,7 @@ namespace talus::cli {
 
 struct Context;
 
-/// How the user names a DEM and says how to read it.
+/// A DEM as named by the user, and how to read it.
 struct MapOptions {
   std::string path;
   std::string window;             ///< as typed

@@ -19,7 +19,7 @@ struct DriveOptions {
   bool any() const { return start_heading_rad || goal_heading_rad || turning_radius_m || no_reverse; }
 };
 
-/// Everything that `talus plan` asks: on the command line or in a mission file.
+/// Everything that `talus plan` needs: on the command line or in a mission file.
 struct PlanOptions {
   GroundOptions ground;
   std::string start;

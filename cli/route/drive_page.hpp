@@ -13,7 +13,7 @@ namespace talus::cli {
 struct WatchedDrive {
   planner::WorldResult result;
   DriveStory story;
-  planner::PredictionErrors prediction{};  ///< of what the map said of each step before it was driven
+  planner::PredictionErrors prediction{};  ///< of the map's prediction of each step
 };
 WatchedDrive watchedDrive(const planner::SimulationSite& site, planner::Belief belief,
                           const ProgressMonitor& watch);

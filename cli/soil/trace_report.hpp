@@ -10,7 +10,7 @@
 
 namespace talus::cli {
 
-/// Everything that a tracing has to tell.
+/// The results of residual tracing.
 struct TraceStory {
   std::string source;  ///< the file
   std::size_t rows_rejected = 0;
@@ -25,10 +25,10 @@ struct TraceStory {
 /// apart.
 std::vector<std::string> confounded(const terramech::Trial& trial, const std::string& covariate);
 
-/// The column that explains an effect: of one on a single group of rows, the column that tells the group.
+/// The column that explains an effect: of one on a single group of rows, the column of the group.
 const std::string& covariateOf(const terramech::Effect& effect);
 
-/// What one would have to measure to tell an effect from its nearest rival.
+/// The measurement that would discriminate between an effect and its closest alternative.
 std::string separatingMeasurement(const terramech::Trial& trial, const terramech::TracedEffect& effect);
 
 /// One line about the rows left out because the wheel is sunk to its axle; there must be some.

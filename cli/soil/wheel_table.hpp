@@ -13,13 +13,13 @@ namespace talus::cli {
 struct WheelTable {
   std::size_t solved = 0;
   std::vector<terramech::RejectedRow> refused;  ///< kept in the output with empty results
-  bool replaced = false;                        ///< the input had result columns, which were computed anew
+  bool replaced = false;                        ///< the input had result columns, which were replaced
 };
 
 /// Solves each row of a CSV of wheel cases and writes all its columns with sinkage_m, entry_angle_rad,
-/// torque_Nm and drawbar_pull_N after them. Streams; solves on `threads` threads, >= 1; the same bytes whatever their
-/// number. The output appears whole or not at all. Throws InputError when the input cannot be read, lacks a
-/// column, or no row can be solved.
+/// torque_Nm and drawbar_pull_N after them. Streams; solves on `threads` threads, >= 1; the same bytes
+/// whatever their number. The output appears whole or not at all. Throws InputError when the input cannot be
+/// read, lacks a column, or no row can be solved.
 WheelTable solveWheelTable(const std::filesystem::path& input, const std::filesystem::path& output,
                            int threads, const ProgressMonitor& watch);
 

@@ -11,7 +11,7 @@ namespace talus::cli {
 
 struct Context;
 
-/// Which questions are asked.
+/// Which cases are planned.
 struct SuiteOptions {
   std::vector<std::string> names{"generated"};  ///< "generated", "slip", "grids", DEMs, MovingAI .scen files
   int pairs = 3;                                ///< starts and goals a map, > 0; worlds of "slip"

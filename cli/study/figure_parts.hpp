@@ -11,7 +11,7 @@
 /// What the figures of the thesis are drawn with.
 namespace talus::cli {
 
-/// A soil in the middle of a class of Table 2.1; the thesis does not say which it drew.
+/// A soil in the middle of a class of Table 2.1; the thesis does not state which soil it used.
 terramech::ContactSoil middle(std::size_t soil_class);
 
 /// What a wheel of the thesis reads on a soil at a load [N] and slip.

@@ -8,11 +8,11 @@
 
 namespace talus::cli {
 
-/// A figure of the thesis made anew: what it claims, what comes out.
+/// A reproduced figure of the thesis: its claim and the result.
 struct ThesisFigure {
   std::string number;  ///< "2.5"
   std::string title;
-  std::string claim;    ///< what the thesis says
+  std::string claim;    ///< the statement of the thesis
   std::string found;    ///< what we get, with its numbers
   std::string verdict;  ///< "reproduced", "in part: why", "not reproduced: why"
   std::vector<Plot> plots;

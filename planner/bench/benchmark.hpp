@@ -22,7 +22,7 @@ struct BenchmarkCase {
   maps::Point goal;
   double optimum_J = std::numeric_limits<double>::quiet_NaN();  ///< where it is known, else NaN
   Kinematics kinematics{};                                      ///< that planners of drives keep
-  std::shared_ptr<const SlipWorld> world{};  ///< over which routes are driven; null: nobody drives
+  std::shared_ptr<const SlipWorld> world{};  ///< over which routes are driven; null: not driven
   std::string group{};                       ///< worlds of one group are scored together
 };
 
@@ -81,7 +81,7 @@ std::vector<BenchmarkJob> jobsOf(const BenchmarkPlan& plan);
 std::string runIsolated(const BenchmarkPlan& plan, const BenchmarkJob& job,
                         const ProgressMonitor& watch = {});
 
-/// What the bytes say.
+/// The inverse: a run from its bytes.
 BenchmarkRun benchmarkRun(const BenchmarkJob& job, const std::string& bytes);
 
 /// All jobs, one after another; fewer when a stop is requested.

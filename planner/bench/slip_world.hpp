@@ -21,7 +21,7 @@ struct SlipTerrain {
   double slip(double gradient) const noexcept;
 };
 
-/// How a slip world is drawn and what of it is believed.
+/// How a slip world is sampled and what the planner knows of it.
 struct SlipWorldOptions {
   int side = 96;                        ///< cells of a metre, >= 8
   std::uint64_t seed = 1;               ///< same seed, same world

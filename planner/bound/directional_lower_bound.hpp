@@ -10,8 +10,8 @@ namespace talus::planner {
 
 /// Prices of a metre along the eight grid headings such that the gauge with these values there, linear
 /// between neighbouring headings, is nowhere above the drive cost of a cell: a metre along p e_k + q e_(k+1),
-/// p, q >= 0, costs at least p w_k + q w_(k+1). Tighter than a CostLowerBound, since each heading has its own part
-/// of the curve.
+/// p, q >= 0, costs at least p w_k + q w_(k+1). Tighter than a CostLowerBound, since each heading has its own
+/// part of the curve.
 ///
 /// How (ours). The cost of a metre is H(s) + tilt * s, s the gradient along it; the second term is linear in
 /// the direction, so the gauge repeats it. Directions are taken in eighths of 45 degrees, gradients in
@@ -22,7 +22,7 @@ namespace talus::planner {
 /// price for all headings each is raised by half of what its directions and its neighbours leave it, some
 /// rounds.
 ///
-/// Squares are worked out when first asked for. Not thread-safe. The DriveCost must outlive it.
+/// Squares are computed at their first use. Not thread-safe. The DriveCost must outlive it.
 class DirectionalLowerBounds {
  public:
   using Prices = std::array<float, 8>;  ///< joules a metre, > 0, by GridHeading

@@ -40,7 +40,7 @@ struct Stance {
 /// the body's height; the belly held against the highest ground that each part of it can be above. Wheels are
 /// evenly spaced on two rows and touch at a point below their middle (their radius smooths what they cross,
 /// which the bounds do not make use of). Pitch and roll are those of the axes, asin of their rise; they hold
-/// as long as the body tilts within the rover's limits, which is what they are asked for. Immutable; safe to
+/// as long as the body tilts within the rover's limits, the range they are used in. Immutable; safe to
 /// share between threads.
 class Chassis {
  public:

@@ -14,7 +14,7 @@ struct PosePath;
 /// A place on a route that a constraint forbids.
 struct Violation {
   maps::Point place;
-  std::string reason;  ///< "the soil cannot give the pull that the slope asks for"
+  std::string reason;  ///< "required drawbar pull above the available drawbar pull"
 
   friend bool operator==(const Violation&, const Violation&) = default;
 };
@@ -27,7 +27,7 @@ struct Violation {
 std::vector<Violation> violations(const costmap::CostGrid& map, const std::vector<maps::Point>& route);
 
 /// The same of a drive, along its arcs themselves: where each crosses the lines between cells is found in
-/// closed form, and every cell is asked for headings no more than 0.01 rad apart, those passed in a turn in
+/// closed form, and every cell is checked for headings no more than 0.01 rad apart, those passed in a turn in
 /// place included. Also reported: an arc that bends more than the radius allows.
 std::vector<Violation> violations(const costmap::CostGrid& map, const PosePath& drive,
                                   double turning_radius_m);

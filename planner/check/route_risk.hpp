@@ -8,13 +8,13 @@ namespace talus::planner {
 
 /// How the risk of a route is drawn.
 struct RouteRiskOptions {
-  double correlation_length_m = 5.0;  ///< over which the soil stays alike, as DrivePolicy's, > 0
+  double correlation_length_m = 5.0;  ///< of the soil, as DrivePolicy's, > 0
   double tail = 0.05;                 ///< share of the worst worlds that cvar looks at, in (0, 1]
   int worlds = 4000;                  ///< drawn, > 0
   std::uint64_t seed = 1;
 };
 
-/// What may befall a rover on a route over soil that is alike nearby and differs far off.
+/// The risk of a route over spatially correlated soil.
 struct RouteRisk {
   double immobilisation = 0.0;  ///< probability that the soil fails the rover somewhere on the route
   double standard_error = 0.0;  ///< of that, from the number of worlds drawn

@@ -10,7 +10,7 @@ namespace talus::planner {
 
 /// Indices in the order of whole-number keys, bucket by bucket; within a bucket as they came. What lies
 /// farther ahead than the ring reaches is handed out too early, and what lies behind at once: whoever takes
-/// an index asks for its key again.
+/// an index reads its key again.
 class BucketQueue {
  public:
   /// Buckets of 2^shift keys, for keys that lie up to `reach` apart.

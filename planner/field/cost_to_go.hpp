@@ -20,9 +20,9 @@ struct FieldGoal {
 };
 
 /// What the best way along the grid's eight headings costs from every cell to the nearest of the goals,
-/// climbing and descending told apart. Settled from the goals outwards, only as far as asked; asking further
-/// goes on from there. Exact in the units of EdgeUnits, so the same whatever the order of work. One object
-/// one thread at a time.
+/// climbing and descending distinguished. Settled from the goals outwards, only as far as needed; going
+/// further goes on from there. Exact in the units of EdgeUnits, so the same whatever the order of work. One
+/// object one thread at a time.
 class CostToGo {
  public:
   static constexpr std::uint32_t kUnreached = std::numeric_limits<std::uint32_t>::max();
@@ -43,8 +43,8 @@ class CostToGo {
   bool settleAll(const StopCheck& stop = {});
 
   /// Takes in that the edge layer was updated for cells of this box: afterwards the field is the one that
-  /// would be found anew. What is nearer to the goal than anything in the box stays; the rest is settled
-  /// again when it is asked for. PatchedField answers for one start with less work.
+  /// would be found by a new search. What is nearer to the goal than anything in the box stays; the rest is
+  /// settled again when it is needed. PatchedField serves one start with less work.
   void repair(CellBox changed);
 
   /// Cost from the cell's centre to a goal's centre, in units; kUnreached when there is no way. Final for

@@ -44,14 +44,14 @@ inline CellBox grown(CellBox box, int cells, const PaddedGrid& grid) noexcept {
 
 /// Cost of every step of the 8-neighbourhood on one version of the map, in units of EdgeUnits; 16 bytes a
 /// cell. A step is half a step in the cell it leaves and half in the one it enters, both in the heading of
-/// the step: what MotionCost says of the segment between the centres. A diagonal needs both cells beside it,
+/// the step: MotionCost of the segment between the centres. A diagonal needs both cells beside it,
 /// too.
 class EdgeLayer {
  public:
   static constexpr std::uint16_t kBlocked = EdgeUnits::kBlocked;
 
   /// Builds with `threads` threads (the result is the same for any number). Ends early, incomplete, when a
-  /// stop is requested; complete() tells.
+  /// stop is requested; see complete().
   EdgeLayer(std::shared_ptr<const costmap::CostGrid> map, const EdgeUnits& units, int threads = 1,
             const StopCheck& stop = {}, Kernels kernels = Kernels::Best);
 

@@ -32,7 +32,7 @@ CostRange costRange(const costmap::DriveCost& cost);
 
 /// The cost of half a step, from a cell's centre to its edge or corner, for all eight headings: whole numbers
 /// of a unit of energy, so that sums do not depend on their order. 16 bits: an edge is the sum of two halves.
-/// kBlocked where the heading may not enter; anything dearer than kDearest is priced at kDearest, so a sum
+/// kBlocked where the heading may not enter; any higher cost than kDearest is stored as kDearest, so a sum
 /// never exceeds the true cost by more than half a unit a half step.
 class EdgeUnits {
  public:

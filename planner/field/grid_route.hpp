@@ -9,7 +9,7 @@
 namespace talus::planner {
 
 /// The cheapest way along the grid between two places: to the centre of a cell beside the first, from centre
-/// to centre down the field, on to the second where the field's goal asks for it. Empty when there is none,
+/// to centre down the field, on to the second where the field's goal requires it. Empty when there is none,
 /// or when stopped. The field's goals must be fieldGoals() of the second place.
 Polyline gridRoute(const MotionCost& cost, CostToGo& field, const Segment& places,
                    const StopCheck& stop = {});

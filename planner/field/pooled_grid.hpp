@@ -11,8 +11,8 @@ namespace talus::planner {
 /// A coarse picture of a map to find the rough course of a route on: one cell for each factor x factor cells,
 /// with their mean gradient, the curve that most of them have, and a surcharge so that a metre over all
 /// headings costs what it costs on average in the cells (in every fourth of them), ground that is blocked in
-/// part dearer by that part. Blocked where less than a third may be entered. Not a bound of anything. Null
-/// when stopped. factor >= 2.
+/// part more expensive by that part. Blocked where less than a third may be entered. Not a bound of anything.
+/// Null when stopped. factor >= 2.
 std::shared_ptr<const costmap::CostGrid> pooled(const costmap::CostGrid& map, int factor, int threads = 1,
                                                 const StopCheck& stop = {});
 

@@ -26,7 +26,7 @@ class FieldPlanner {
   Plan plan(const Problem& problem);
 
  private:
-  // The way from one place asked for to the next.
+  // The route from one required place to the next.
   struct Stage {
     maps::Point from;
     maps::Point to;

@@ -14,7 +14,7 @@ namespace talus::planner {
 /// route. Takes a byte a cell of pooled map and a few tubes' boxes, where FieldPlanner takes twenty bytes a
 /// cell; routes may differ from its routes by the ways that are not seen on the pooled map.
 ///
-/// The pooled map is kept, and a newer version pooled anew only where it changed. Deterministic for any
+/// The pooled map is kept, and a newer version pooled only where it changed. Deterministic for any
 /// number of threads. Not thread-safe.
 class TubePlanner {
  public:

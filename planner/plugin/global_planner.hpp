@@ -30,7 +30,7 @@ struct PlannerCapabilities {
   std::vector<std::string> planners;  ///< names that configure() takes, the default first
   std::string planner;                ///< the one configured now: what follows holds for it
   bool heading_dependent = false;     ///< climbing, descending and crossing a slope differ
-  bool lower_bound = false;           ///< a route says how far from the best it can be at most
+  bool lower_bound = false;           ///< a route has a proven optimality gap
   bool via_points = false;            ///< PlanRequest::via is honoured
   bool several_goals = false;         ///< PlanRequest::other_goals is honoured
   bool headings = false;              ///< PlanRequest::start_heading_rad and goal_heading_rad are honoured

@@ -32,7 +32,7 @@ class NamedPlanner {
   /// via points.
   void onBetter(std::function<void(double)> better) { settings_.better = std::move(better); }
 
-  /// From this many cells on the field is settled in a tube only (TubePlanner), unless the problem asks for
+  /// From this many cells on the field is settled in a tube only (TubePlanner), unless the problem requires
   /// the whole: at twenty bytes a cell it would take more than 400 MB.
   static constexpr std::size_t kLarge = 20'000'000;
 

@@ -9,7 +9,7 @@
 
 namespace talus::planner {
 
-/// What a route asks of rover and mission. Energy in joules, time in seconds, risk = probability of
+/// The objectives of a route. Energy in joules, time in seconds, risk = probability of
 /// immobilisation.
 struct RouteDemand {
   double energy_J = 0.0;
@@ -21,7 +21,7 @@ struct RouteDemand {
 RouteDemand demandOf(const costmap::CostGrid& map, const Plan& plan);
 
 /// Plans under a chance constraint: the cheapest route found whose probability of immobilisation is at most
-/// max_risk, in (0, 1): by the hazard along it, and by routeRisk() over soil that is alike nearby, with two
+/// max_risk, in (0, 1): by the hazard along it, and by routeRisk() over spatially correlated soil, with two
 /// standard errors to spare. The hazard alone is far too low where much of a route is at risk: it counts soil
 /// as drawn once a correlation length. The constraint enters the cost as a price on risk, raised until it is
 /// met and then lowered as far as it still is (Lagrangian relaxation; a route that no price picks out is

@@ -13,7 +13,7 @@
 
 namespace talus::planner {
 
-/// What a search for a drive is asked.
+/// The input of a search for a drive.
 struct PoseProblem {
   std::shared_ptr<const costmap::CostGrid> map;  ///< pinned while the search runs
   maps::Point start;
@@ -29,7 +29,7 @@ struct PoseProblem {
 
 /// Choices of the search.
 struct HybridOptions {
-  int headings = 72;        ///< headings told apart at a cell, >= 8
+  int headings = 72;        ///< discrete headings of a cell, >= 8
   double step_cells = 1.5;  ///< length of a motion; more than sqrt 2 leaves the cell
   /// Weight of the cost still to go, >= 1: more finds a drive sooner, and a dearer one.
   double heuristic_weight = 1.1;
@@ -37,7 +37,7 @@ struct HybridOptions {
   /// soon, >= 1.
   double suboptimality_bound = 1.03;
   std::uint64_t improve = 500;              ///< poses tried after that
-  std::uint64_t most_expanded = 2'000'000;  ///< then it gives up, TimedOut
+  std::uint64_t most_expanded = 2'000'000;  ///< then it ends, TimedOut
 };
 
 /// What the search answers.

@@ -17,9 +17,9 @@ struct PoseSamplingSettings {
 };
 
 /// RRT* [karaman_frazzoli_2011] by OMPL over PoseSpace, its tree begun with a drive known already, sampling
-/// beside that drive and wherever a better one can still pass (ImprovableRegion). Never answers a dearer
-/// drive than it was given, nor one that mayBeDriven() refuses. The same bytes for the same seed as long as
-/// the work ends before the problem's time limit.
+/// beside that drive and wherever a better one can still pass (ImprovableRegion). Never returns a more
+/// expensive drive than it was given, nor one that mayBeDriven() refuses. The same bytes for the same seed as
+/// long as the work ends before the problem's time limit.
 PosePlan improvedBySampling(const PoseProblem& problem, const PosePlan& known,
                             const PoseSamplingSettings& settings);
 

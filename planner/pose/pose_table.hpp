@@ -8,7 +8,7 @@
 namespace talus::planner {
 
 /// The least cost found so far at every cell and heading of a lattice; headings of a cell lie side by side,
-/// since a search asks for neighbours. Cells cost four bytes until they are reached.
+/// since a search reads neighbours. Cells cost four bytes until they are reached.
 class PoseTable {
  public:
   PoseTable(std::size_t cells, std::size_t headings) : block_(cells, 0), headings_(headings) {

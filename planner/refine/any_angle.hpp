@@ -19,8 +19,8 @@ struct RefineOptions {
   int slides = 12;               ///< rounds of moving turns along cell edges
 };
 
-/// Makes routes of fewer, better turns: never dearer than the one given, the first and last points kept,
-/// every motion allowed.
+/// Makes routes of fewer, better turns: never more expensive than the given one, the first and last points
+/// kept, every motion allowed.
 ///
 /// First the parts that a straight motion does cheaper are cut short. Then, from coarse to fine, places
 /// beside stations are chosen; then the cheapest way over points of the cells' edges near the route is
@@ -32,7 +32,7 @@ class Refiner {
  public:
   explicit Refiner(const RefineOptions& options = {}) : options_(options) {}
 
-  /// The route given must be allowed. Ends early, with the best so far, when `stop` says so.
+  /// The route given must be allowed. Ends early, with the best so far, at a stop request.
   Polyline operator()(const MotionCost& cost, Polyline route, int threads = 1, const StopCheck& stop = {});
 
   /// The ground changed between two opposite corners / altogether.

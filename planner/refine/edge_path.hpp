@@ -23,7 +23,7 @@ struct EdgePath {
 };
 
 /// Moves the turns along the edges that they lie on so that the way gets cheaper: dynamic programming over a
-/// few places around each, ever closer, from `coarsest_cells` on for `rounds` rounds. Never dearer.
+/// few places around each, ever closer, from `coarsest_cells` on for `rounds` rounds. Never more expensive.
 void slideTurns(const costmap::CostGrid& map, EdgePath& path, double coarsest_cells, int rounds);
 
 }  // namespace talus::planner

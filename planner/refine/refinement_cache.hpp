@@ -25,7 +25,7 @@ class RefinementCache {
 
   void clear() { known_.clear(); }
 
-  /// A new route is worked on: what nobody asked for since the last call is dropped.
+  /// A new route begins: entries not used since the last call are dropped.
   void newRound();
 
  private:

@@ -20,7 +20,7 @@ struct FreeMemory {
 template <typename T>
 using LargeArray = std::unique_ptr<T[], FreeMemory>;
 
-/// Takes memory for so many. Large arrays ask the system for huge pages: pages of 4 KiB cost more to touch
+/// Allocates memory for so many. Large arrays request huge pages: pages of 4 KiB cost more to touch
 /// first and to give back than the edges of a map take to be priced, and giving back is work that a cancelled
 /// plan waits for. Throws std::bad_alloc.
 template <typename T>

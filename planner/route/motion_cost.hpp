@@ -18,8 +18,8 @@ struct Segment {
 ///
 /// A motion is not allowed (infinite) where it leaves the map or enters a cell that the heading may not
 /// enter. Cells are closed: a segment through a corner needs both cells beside it, a segment along an edge
-/// needs both sides and pays for the dearer one; so nothing slips between two blocked cells that meet at a
-/// corner. Cells crossed: Amanatides & Woo 1987 [amanatides_woo_1987]. Immutable, safe to share between
+/// needs both sides and costs the more expensive one; so nothing slips between two blocked cells that meet at
+/// a corner. Cells crossed: Amanatides & Woo 1987 [amanatides_woo_1987]. Immutable, safe to share between
 /// threads.
 class MotionCost {
  public:
@@ -33,7 +33,7 @@ class MotionCost {
   double along(const std::vector<maps::Point>& points) const noexcept;
 
   /// Whether a polyline may turn at an end of this motion as it begins or ends there: on an edge or a corner
-  /// its heading must be allowed in every cell touched. What along() asks of each turn.
+  /// its heading must be allowed in every cell touched. The check of along() at each turn.
   bool turnAllowed(const Segment& motion, maps::Point end) const noexcept;
 
   /// Whether the heading, a unit vector, is allowed in every cell of the map that a place touches: two on an

@@ -15,7 +15,7 @@
 
 namespace talus::planner {
 
-/// What a planner is asked.
+/// The input of a planner.
 struct Problem {
   std::shared_ptr<const costmap::CostGrid> map;  ///< the version to plan on; pinned while planning runs
   maps::Point start;

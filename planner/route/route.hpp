@@ -17,7 +17,7 @@ enum class RouteStatus {
   StartInvalid,  ///< the start is outside the map or on a cell no heading may enter
   GoalInvalid,   ///< the same of the goal or of a via point
   TimedOut,      ///< the time limit passed before any route was found
-  Cancelled,     ///< the caller asked to stop
+  Cancelled,     ///< the caller requested a stop
 };
 
 /// The status as files and JSON spell it: "found", "no_route", "start_invalid", "goal_invalid", "timed_out",
@@ -39,7 +39,7 @@ struct RouteVertex {
   double slip = kNotKnown;                 ///< [-], driven > 0, braked < 0
   double sinkage_m = kNotKnown;            ///< of one wheel, >= 0
   double torque_Nm = kNotKnown;            ///< of one wheel
-  double drawbar_pull_margin = kNotKnown;  ///< DP/W less tan of the slope asked for [-]
+  double drawbar_pull_margin = kNotKnown;  ///< available DP/W minus required DP/W, tan(slope) [-]
   terramech::Category category = terramech::Category::Unknown;
   double energy_J = 0.0;             ///< from the start to here
   double time_s = 0.0;               ///< from the start to here
@@ -71,7 +71,7 @@ struct RouteSummary {
   std::optional<DriveShape> drive{};  ///< of routes that keep a turning radius
 };
 
-/// A route with everything a report or a controller asks for.
+/// A route with everything that a report or a controller needs.
 struct Route {
   RouteStatus status = RouteStatus::NoRoute;
   std::string reason;  ///< why there is no route and what to do about it, one line; empty when Found

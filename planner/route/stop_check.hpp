@@ -8,7 +8,7 @@
 
 namespace talus::planner {
 
-/// Whether long work should end: the caller asked, or the time is up. Cheap to ask; copyable.
+/// Whether long work should end: a stop was requested or the time limit passed. Cheap; copyable.
 class StopCheck {
  public:
   StopCheck() = default;

@@ -18,7 +18,7 @@ struct TurningGround {
 /// Soil pushed aside by the side of a wheel that is dragged sideways [N]: passive earth pressure on the sunk
 /// part of its side, (rho g z^2 K_p / 2 + 2 c z sqrt(K_p)) l with K_p = tan^2(pi/4 + phi/2) after Rankine and
 /// l = 2 sqrt(2 r z - z^2), the chord of the wheel in the surface. Ours; deeper than the mean depth of the
-/// sunk side, so rather dear.
+/// sunk side, so rather expensive.
 double bulldozing_N(const terramech::Soil& soil, const terramech::Rover& rover, double sinkage_m) noexcept;
 
 /// A radian of heading for a rover whose wheels are evenly spaced on two rows. By Steering:

@@ -9,7 +9,7 @@
 namespace talus::planner {
 
 /// MotionCost that counts its work, so that a planner can be stopped after the same work on every machine,
-/// and that remembers its last answer, since OMPL asks for the cost of a motion and then whether it is valid.
+/// and that stores its last result, since OMPL requests the cost of a motion and then its validity.
 /// Any place but start and goal may become a turn, so a motion must be one that a route may turn into and out
 /// of (MotionCost::turnAllowed): else the routes that a planner joins from motions are refused in the end.
 /// One object a planning run: not thread-safe.
@@ -23,7 +23,7 @@ class MeteredCost {
   /// Exact cost in joules, infinite when the motion is not allowed.
   double operator()(const Segment& motion) const noexcept;
 
-  /// Counts one iteration of a planner, as dear as a hundred cells.
+  /// Counts one iteration of a planner as a hundred cells.
   void iterated() const noexcept { work_ += 100; }
 
   /// Work done so far, in cells' lengths evaluated [-].

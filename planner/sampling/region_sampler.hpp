@@ -11,7 +11,7 @@
 
 namespace talus::planner {
 
-/// Random places of an ImprovableRegion from a seed of its own; where the region asks for it, the known
+/// Random places of an ImprovableRegion from a seed of its own; where the region requires it, the known
 /// route's points first.
 class RegionSource {
  public:
@@ -30,7 +30,7 @@ class RegionSource {
   std::size_t handed_out_ = 0;
 };
 
-/// Samples MapSpace inside an ImprovableRegion, from a seed of its own. For planners that ask for plain
+/// Samples MapSpace inside an ImprovableRegion, from a seed of its own. For planners that request plain
 /// samples.
 class RegionSampler : public ompl::base::StateSampler {
  public:
@@ -45,7 +45,7 @@ class RegionSampler : public ompl::base::StateSampler {
   RegionSource source_;
 };
 
-/// The same for planners that ask for samples below a cost. Its measure of the region is the map's area: an
+/// The same for planners that request samples below a cost. Its measure of the region is the map's area: an
 /// upper bound.
 class RegionInformedSampler : public ompl::base::InformedSampler {
  public:

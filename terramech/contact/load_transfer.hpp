@@ -6,7 +6,7 @@
 
 namespace talus::terramech {
 
-/// Loads [N] of alike wheels on a plane of this gradient along the heading (rise over run), for wheels that
+/// Loads [N] of equal wheels on a plane of this gradient along the heading (rise over run), for wheels that
 /// stand `along_m` ahead of their middle. On a slope weight moves back by the moment of the weight's part
 /// along it about the ground:
 ///   N_k = m g cos(alpha) (1/n - tan(alpha) h a_k / sum a^2)

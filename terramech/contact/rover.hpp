@@ -9,7 +9,7 @@ namespace talus::terramech {
 /// How a rover turns.
 enum class Steering { Skid, Ackermann, AllWheel };
 
-/// A rover as route planning sees it; every wheel alike. Plain data, SI.
+/// A rover as route planning models it, with equal wheels. Plain data, SI.
 struct Rover {
   std::string name;                      ///< for reports
   double mass_kg = 0.0;                  ///< > 0

@@ -31,9 +31,9 @@ enum class BatchKernel {
 };
 
 /// Solves every case: `forces` gets as many entries as `cases`, every number NaN where the case has no answer
-/// (equilibrium() tells why). Agrees with equilibrium() to 1e-7 relative, drawbar pull to 1e-7 of the load.
-/// Braked wheels, slip below 0.01, and r theta_1 / K > 12 are left over. Throws
-/// std::invalid_argument when the sizes differ or the machine lacks the kernel asked for. Thread-safe.
+/// (equilibrium() gives the reason). Agrees with equilibrium() to 1e-7 relative, drawbar pull to 1e-7 of the
+/// load. Braked wheels, slip below 0.01, and r theta_1 / K > 12 are left over. Throws
+/// std::invalid_argument when the sizes differ or the machine lacks the selected kernel. Thread-safe.
 void equilibria(std::span<const WheelCase> cases, std::span<WheelForces> forces,
                 BatchKernel kernel = BatchKernel::Best, Leftover leftover = Leftover::Equilibrium);
 

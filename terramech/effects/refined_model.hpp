@@ -23,7 +23,7 @@ struct SensorNoise {
   double load_relative = 0.0;                ///< of the load
 };
 
-/// Standard deviations as a base file states them, in the unit of the column; empty where it says nothing.
+/// Standard deviations as a base file states them, in the unit of the column; empty where it states none.
 struct StatedSensors {
   std::optional<double> load_N, slip, torque_Nm, sinkage_m, drawbar_pull_N, side_force_N;
 };
@@ -65,7 +65,7 @@ struct RefinedModel {
   }
 };
 
-/// What the model says that the sensors will read. Never throws on a state that validate()s;
+/// The readings of the sensors that the model predicts. Never throws on a state that validate()s;
 /// `entry_guess_rad`, where given, starts the search for the sinkage and receives its result. Thread-safe.
 Reading predict(const RefinedModel& model, const WheelState& state, double* entry_guess_rad = nullptr);
 

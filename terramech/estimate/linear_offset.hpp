@@ -50,8 +50,8 @@ double linearOffsetDrawbarPull_N(const Wheel& wheel, const WheelSample& sample, 
 /// Least squares of the whole Eq. 2.9, M1 included, in constant memory.
 ///
 /// The residual M1 c t + c + M3 t - M4, t = tan(phi), is linear in (c t, c, t, -1), so the 4x4 Gram matrix of
-/// (M1, 1, M3, M4) holds all that the samples say; estimate() minimises the sum of squares by Gauss-Newton on
-/// it.
+/// (M1, 1, M3, M4) holds all information of the samples; estimate() minimises the sum of squares by
+/// Gauss-Newton on it.
 class LinearOffsetFit {
  public:
   void add(const LinearOffsetCoefficients& m);

@@ -3,7 +3,7 @@
 #include <talus/terramech/effects/refined_model.hpp>
 #include <talus/terramech/estimate/pull_forecast.hpp>
 
-/// What a base or refined model says that a wheel really pulls (ours): predict() says what sensors will read.
+/// The true drawbar pull of a base or refined model (ours); predict() gives the readings of the sensors.
 namespace talus::terramech {
 
 /// Whether an effect changes what a sensor reads and nothing of the contact.

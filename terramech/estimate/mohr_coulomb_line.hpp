@@ -14,7 +14,7 @@ struct StressPair {
   double shear_Pa = 0.0;
 };
 
-/// Cohesion and friction with their uncertainty, and what the data could not tell.
+/// Cohesion and friction with their uncertainty, and the parameters that were not identifiable.
 struct ShearStrength {
   double cohesion_Pa = 0.0;   ///< c; not clipped: a negative value shows the method's error
   double tan_friction = 0.0;  ///< tan(phi) [-]
@@ -22,7 +22,7 @@ struct ShearStrength {
   /// samples.
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
   double residual_std_Pa = 0.0;  ///< scatter about the line [Pa]
-  double condition = 0.0;        ///< 2-norm condition number of K_1 with its columns scaled alike [-]
+  double condition = 0.0;        ///< 2-norm condition number of K_1 with its columns scaled equally [-]
   std::size_t samples = 0;
   /// Parameters that the data cannot see, each with the reason; empty: all seen.
   std::vector<std::string> unseen;

@@ -7,7 +7,7 @@
 
 namespace talus::terramech {
 
-/// What tells K (thesis App. D): see shear_modulus.hpp.
+/// How K is found (thesis App. D): see shear_modulus.hpp.
 enum class ModulusCriterion {
   Joint,              ///< least relative error of the torque
   ErrorMinimisation,  ///< D.1, by root mean square of the distances from the line

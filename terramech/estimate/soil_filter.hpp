@@ -10,10 +10,10 @@ namespace talus::terramech {
 
 /// The soil's posterior as samples come in, one at a time, in constant memory (ours).
 ///
-/// The latest samples are kept as they are, and each update finds every class' mode anew from where it was; a
-/// sample that leaves the window is replaced by its quadratic about the mode of that moment. With as many
-/// samples as the window holds the result is fitSoil()'s. An update costs about a tenth of a millisecond a
-/// class. Not thread-safe; copyable.
+/// The latest samples are kept as they are, and each update finds every class' mode again from its last
+/// value; a sample that leaves the window is replaced by its quadratic about the mode of that moment. With as
+/// many samples as the window holds the result is fitSoil()'s. An update costs about a tenth of a millisecond
+/// a class. Not thread-safe; copyable.
 class SoilFilter {
  public:
   /// How much is kept and how it is fitted.
@@ -34,7 +34,7 @@ class SoilFilter {
   void add(const WheelSample& sample);
   void add(const WheelReading& reading);  ///< on a wheel of its own
 
-  /// What is believed now, in full: importance samples over the window and what went before it. Slower than
+  /// The current posterior in full: importance samples over the window and what went before it. Slower than
   /// add().
   SoilPosterior posterior() const;
 

@@ -8,7 +8,7 @@
 
 #include <talus/terramech/contact/contact_response.hpp>
 
-/// What is believed of a soil before a wheel has touched it.
+/// The prior of a soil before any wheel reading.
 namespace talus::terramech {
 
 /// c, phi, n, k, K: the first five columns of ContactDerivative.

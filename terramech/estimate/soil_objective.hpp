@@ -36,7 +36,7 @@ struct SoilQuadratic {
   SoilQuadratic movedTo(const SoilVector& y) const;
 };
 
-/// What samples say of one class of soil.
+/// The log-posterior cost of one class of soil given samples.
 class SoilObjective {
  public:
   /// What is the same for all classes.
@@ -44,7 +44,7 @@ class SoilObjective {
     ReadingErrors noise = {};
     double outlier_share = 0.01;
     StatePopulation population = {};  ///< of all samples; none: readings are taken as they are
-    ProgressMonitor watch = {};       ///< told of each pass over many samples; stopped, passes end early
+    ProgressMonitor watch = {};       ///< notified of each pass over many samples; stopping ends passes early
   };
 
   /// Refers to `soil`, which must outlive it.
@@ -110,7 +110,7 @@ SoilMode findModeAfresh(const SoilObjective& objective, std::span<const WheelRea
 /// Samples the posterior of one class: the likelihood's quadratic, cut to the prior's box.
 TruncatedGaussian proposal(const SoilClass& soil, const SoilQuadratic& likelihood);
 
-/// A class with its mode, and what samples no longer at hand said of it.
+/// A class with its mode, and the information of samples no longer stored.
 struct ClassFit {
   SoilObjective objective;
   SoilQuadratic before;

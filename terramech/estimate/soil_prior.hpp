@@ -17,7 +17,7 @@ struct SoilDeviation {
   double density_kg_m3 = 0.0;
 };
 
-/// What is believed of a soil before it is driven on: independent Gaussians.
+/// The prior of a soil: independent Gaussians.
 struct SoilPrior {
   Soil mean;
   SoilDeviation deviation;

@@ -19,7 +19,7 @@ struct StrengthPrior {
 /// The same of a soil's prior: std(tan phi) = std(phi)/cos(phi)^2.
 StrengthPrior strengthPrior(const SoilPrior& soil);
 
-/// A fitted line and what was believed before, by Bayes' rule (ours): the fit with its covariance as one
+/// A fitted line and a prior, combined by Bayes' rule (ours): the fit with its covariance as one
 /// reading of (c, tan phi), each kind of soil weighed by how well it foretold the fit. Mean and covariance of
 /// the mixture; the rest of `fit` is kept, `unseen` too: it tells of the data. Throws std::domain_error where
 /// the fit has no covariance, that is with fewer than three samples, std::invalid_argument without a prior.

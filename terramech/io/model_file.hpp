@@ -27,7 +27,7 @@ class YamlFields;
 /// its own.
 std::vector<Effect> readEffects(const YamlFields& root);
 
-/// Where a fit starts when nobody names a soil.
+/// The start of a fit when no soil is given.
 ModelFile unknownSoil();
 
 /// The text of a file that loadModel() reads back to the same bits.

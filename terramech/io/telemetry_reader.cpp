@@ -163,7 +163,7 @@ void checkUsable(const Telemetry& telemetry) {
   if (telemetry.size() > 0) return;
   if (telemetry.rejected.empty())
     throw InputError(
-        {.where = telemetry.source, .reason = "no rows below the header", .remedy = "add measurements"});
+        {.where = telemetry.source, .reason = "no rows after the header", .remedy = "add measurements"});
   const auto& first = telemetry.rejected.front();
   throw InputError({.where = telemetry.source + ":" + std::to_string(first.line),
                     .reason = "no usable row; " + std::to_string(telemetry.rejected.size()) +

@@ -35,7 +35,7 @@ struct CategoryThresholds {
 /// Slopes that set the drawbar pull thresholds.
 struct MissionSlope {
   double slope_rad = 0.0;   ///< steepest slope that the mission must climb, [0, pi/2)
-  double margin_rad = 0.0;  ///< doubt either way, >= 0
+  double margin_rad = 0.0;  ///< uncertainty of the slope, plus or minus, >= 0
 };
 
 /// dp_low = tan(slope - margin), dp_high = tan(slope + margin) (thesis 3.5: 15 deg +- 5 deg gives tan 10 deg,

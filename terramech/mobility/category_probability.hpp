@@ -6,7 +6,7 @@
 
 namespace talus::terramech {
 
-/// What is believed of a wheel at the reference slip: DP/W and z/r Gaussian; torque and slip as they are.
+/// The estimate of a wheel at the reference slip: DP/W and z/r Gaussian; torque and slip as they are.
 struct ConditionBelief {
   WheelCondition mean;                      ///< its drawbar pull and sinkage are means
   double drawbar_pull_over_load_std = 0.0;  ///< [-] >= 0; 0: known

@@ -5,7 +5,7 @@
 #include <talus/terramech/effects/refined_model.hpp>
 #include <talus/terramech/numerics/monotone_curve.hpp>
 
-/// What a slope asks of a rover on a soil: slip, torque and energy along the heading.
+/// The state of a rover driving on a slope of a soil: slip, torque and energy along the heading.
 namespace talus::terramech {
 
 /// Choices behind a mobility curve.
@@ -39,7 +39,7 @@ struct MobilityReference {
 };
 
 /// Slope along the heading to slip, sinkage, torque, energy and speed, for one soil and one rover in its own
-/// gravity. On a slope alpha each of the alike wheels carries W cos(alpha) and must pull W sin(alpha), so
+/// gravity. On a slope alpha each of the equal wheels carries W cos(alpha) and must pull W sin(alpha), so
 /// DP/N = tan(alpha). Load transfer between axles is left out. Tabulated over slip, where the curve is
 /// smooth, and read with monotone cubic interpolation: slip within 1e-3 of the exact solution, and never
 /// falling while the slope rises. Immutable; safe to share between threads.
@@ -49,7 +49,7 @@ class MobilityCurve {
   /// wheel at all is not an error: nothing is feasible on it.
   MobilityCurve(const Soil& soil, const Rover& rover, const MobilityOptions& options = {});
 
-  /// The same of a model with effects. Those of sensors say nothing of the ground and are left out; those on
+  /// The same of a model with effects. Those of sensors do not act on the soil and are left out; those on
   /// columns that a drive does not have (a dust index, a session) stay neutral; slope, speed and rim speed
   /// (the rover's greatest), and the pass of each axle are known: where an effect of passes is among them the
   /// axles are solved one by one, under equal loads, and their pulls and torques averaged. The table is

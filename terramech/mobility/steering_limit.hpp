@@ -5,7 +5,7 @@
 
 namespace talus::terramech {
 
-/// What steering asks of a wheel.
+/// The lateral force that steering requires of a wheel.
 struct SteeringDemand {
   double load_N = 0.0;             ///< on the wheel, > 0
   double slip_angle_rad = 0.2618;  ///< largest angle between wheel and travel, (0, pi/2); 15 deg

@@ -33,7 +33,7 @@ struct EstimateOptions {
   double noise = 0.05;          ///< relative standard deviation of each reading [-]
 };
 
-/// What was believed after a row of the table; NaN where nothing could be said yet.
+/// The estimate after a row of the table; NaN where there is none yet.
 struct RunningSoil {
   static constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
@@ -69,7 +69,7 @@ struct SoilEstimate {
   std::vector<StressPair> points;          ///< what a line was fitted to, for a plot
   std::optional<SoilPosterior> posterior;  ///< of wong-reece
   std::vector<std::string> class_names;    ///< of its prior
-  std::vector<RunningSoil> running;        ///< a row used, when asked to be recursive
+  std::vector<RunningSoil> running;        ///< per used row, if recursive
 
   SoilEstimate();
 

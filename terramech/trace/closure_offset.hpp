@@ -9,7 +9,7 @@
 
 namespace talus::terramech {
 
-/// A group of rows whose force sensor reads off from what its own torque and sinkage say.
+/// A group of rows whose force readings differ from the value implied by torque and sinkage.
 struct ClosureOffset {
   std::string column, value;  ///< the text column and the group in it
   double offset = 0.0;        ///< of DP/W [-]
@@ -17,7 +17,8 @@ struct ClosureOffset {
   double p_value = 1.0;       ///< over all groups and columns, by shuffling rows among groups
 };
 
-/// DP/W measured less what torque and sinkage say by the relation below, a row; NaN where one is missing.
+/// Measured DP/W minus the value from torque and sinkage by the relation below, a row; NaN where one is
+/// missing.
 std::vector<double> closureErrors(const Trial& trial);
 
 /// Checks DP against measured T and z by the relation that needs no soil (kang_2003, Eq. 3.12),

@@ -27,7 +27,7 @@ struct Direction {
   Eigen::MatrixXd columns;
 };
 
-/// What is asked.
+/// The hypothesis to test.
 struct TestPlan {
   std::vector<Direction> directions;  ///< of candidate effects, whitened
   Eigen::MatrixXd nuisance_whitened;  ///< derivatives by what was fitted already, whitened

@@ -15,11 +15,11 @@ struct GroupErrors {
   ChannelErrors base_rmse{}, refined_rmse{};
 };
 
-/// Errors on rows that the fit has not seen. The parameters are fitted anew without each fold; which effects
+/// Errors on rows that the fit has not seen. The parameters are fitted again without each fold; which effects
 /// the model has was chosen on all rows.
 struct HeldOut {
   std::string scheme;         ///< what was held out together
-  ChannelErrors base_rmse{};  ///< of the base model, its soil fitted anew where it was fitted at all
+  ChannelErrors base_rmse{};  ///< of the base model, its soil fitted again where it was fitted
   ChannelErrors refined_rmse{};
   std::vector<GroupErrors> groups;  ///< of each text column of which an effect acts on one group alone
 };

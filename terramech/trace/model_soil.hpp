@@ -16,7 +16,7 @@ struct ModelSoilOptions {
   /// Whose stated soil is the prior; none: vague, as where `trace` fits one.
   std::optional<RefinedModel> prior;
   std::optional<double> shear_modulus_m;  ///< K as stated [m], then not fitted
-  double noise = 0.05;  ///< relative standard deviation of readings that the model's file says nothing of [-]
+  double noise = 0.05;  ///< relative standard deviation of readings without one in the model file [-]
 };
 
 /// A soil, and how well it is known.
@@ -24,7 +24,7 @@ struct ModelSoil {
   Soil soil;
   Eigen::Matrix2d strength_covariance = Eigen::Matrix2d::Zero();  ///< of (c [Pa], tan phi), priors included
   double misfit = 0.0;  ///< mean square of the whitened residuals; about 1 where model and noise hold
-  std::vector<std::string> unseen;  ///< parameters that the rows say little about: no narrower than the prior
+  std::vector<std::string> unseen;  ///< parameters not identifiable from the rows: as wide as the prior
 };
 
 /// The most likely soil under rows of a wheel, by all channels that they measure, the effects of `model`

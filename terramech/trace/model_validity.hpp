@@ -6,7 +6,7 @@
 
 namespace talus::terramech {
 
-/// Whether a rigid wheel on soil, with physical effects, says anything of the rows at all.
+/// Whether a rigid wheel on soil, with physical effects, describes the rows.
 struct Applicability {
   bool applies = true;
   std::string reason;  ///< why not

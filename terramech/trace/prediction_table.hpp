@@ -16,7 +16,7 @@ struct PredictionTable {
   std::string text;                  ///< the CSV with predictions appended
   std::size_t predicted = 0;         ///< rows with predictions
   std::vector<RejectedRow> refused;  ///< rows without, their fields left empty
-  bool replaced = false;             ///< the input held columns of predictions; they are made anew
+  bool replaced = false;             ///< the input held columns of predictions; they are replaced
 };
 
 /// Every row of a CSV with predicted_drawbar_pull_N, predicted_sinkage_m, predicted_torque_Nm,

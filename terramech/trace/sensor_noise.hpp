@@ -23,7 +23,7 @@ SensorNoise fitNoise(const Trial& trial, const Eigen::MatrixXd& residual, const 
 Eigen::MatrixXd withoutSmooth(const Trial& trial, const Eigen::MatrixXd& residual,
                               const std::vector<std::string>& columns);
 
-/// The covariates of a trial that do not tell its slip.
+/// The covariates of a trial that do not determine its slip.
 std::vector<std::string> allButSlip(const Trial& trial);
 
 }  // namespace talus::terramech

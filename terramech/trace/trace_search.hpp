@@ -39,17 +39,17 @@ class TraceSearch {
   /// The most promising candidates fitted inside the full model, ranked by their likelihood on rows held out.
   std::vector<Explanation> fitBest(const std::vector<Screened>& screened);
 
-  /// Which of the ranked is believed: the best known form unless a curve says clearly more; none when nothing
-  /// pays.
+  /// Which of the ranked is selected: the best known form unless a curve explains clearly more; none when
+  /// nothing pays.
   std::optional<std::size_t> choose(const std::vector<Explanation>& ranked) const;
 
-  /// Puts a candidate into the model, fits everything again and finds the noise anew.
+  /// Puts a candidate into the model, fits everything again and estimates the noise again.
   void accept(const Candidate& candidate);
 
   /// Keeps the first parameter of the effect accepted first near what was known of it before.
   void trust(const Estimate& prior) { first_prior_ = prior; }
 
-  /// Takes accepted candidate number k out, fits everything again and finds the noise anew.
+  /// Takes accepted candidate number k out, fits everything again and estimates the noise again.
   void drop(std::size_t k);
 
   /// Takes accepted candidate number k out and fits the others again, the noise as it is.

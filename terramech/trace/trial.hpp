@@ -20,8 +20,8 @@ struct Trial {
   Eigen::VectorXd slip_variance;   ///< of the true slip about states' slip
   Eigen::VectorXd load_variance;   ///< of the true load about states' load, relative
   std::vector<int> run;  ///< number of the run of each row; a row of its own where there is no run column
-  /// Number of the moment of each row where a rover drove with several wheels and nobody measured their pull:
-  /// DP/W of a moment's first row is then the whole rover's, what the slope asks for. Empty otherwise.
+  /// Number of the moment of each row where a rover drove with several wheels of unmeasured drawbar pull:
+  /// DP/W of a moment's first row is then the whole rover's, as the slope requires. Empty otherwise.
   std::vector<int> moment;
   std::vector<std::string> covariates;  ///< numeric columns that vary, answers left out
   std::vector<std::string> groupings;   ///< text columns of few words, runs left out
@@ -31,7 +31,7 @@ struct Trial {
   double denominator(int row, Channel channel) const;
 };
 
-/// Rows of telemetry as a trial. `fallback` is the wheel of rows that do not say theirs. Throws InputError
+/// Rows of telemetry as a trial. `fallback` is the wheel of rows without wheel dimensions. Throws InputError
 /// when no load, slip or answer is measured, or no wheel is known.
 Trial makeTrial(const Telemetry& telemetry, const RefinedModel& model);
 
@@ -40,7 +40,7 @@ Trial makeTrial(const Telemetry& telemetry, const RefinedModel& model);
 std::vector<WheelState> statesOf(const Telemetry& telemetry, const RefinedModel& model);
 
 /// Whether slip was measured with the full speed of travel rather than its part along the wheel plane, told
-/// from speed_mps and rim_speed_mps of rows with a slip angle; false when they cannot tell.
+/// from speed_mps and rim_speed_mps of rows with a slip angle; false when undecided.
 bool slipIsAlongTravel(const std::vector<WheelState>& states);
 
 /// Rows whose wheel is sunk to its axle or deeper, z >= r: the rim's contact ends at the axle's height in

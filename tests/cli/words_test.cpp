@@ -25,7 +25,8 @@ constexpr Replaced kReplaced[] = {
     {"cheapest there can be|cheapest possible", "proven optimality gap"},
     {"get stuck on the way", "immobilisation probability"},
     {"times the straight line", "detour factor"},
-    {"ground 100|hillshade alone|its uncertainty", "traversability; hillshade only; standard deviation"},
+    {"ground 100|hillshade alone|its uncertainty \\(std",
+     "traversability; hillshade only; standard deviation"},
     {"point at (a|the) ", "hover over"},
     {"asks? for|asked for|the (ground|soil) (can )?gives?|ask of", "required DP/W, available DP/W"},
     {"nobody (drove|has seen|declared)|prior speaks|speaks alone", "no telemetry; prior only"},
@@ -55,7 +56,7 @@ constexpr Replaced kReplaced[] = {
     {"beliefs? map|maps? of beliefs?", "traversability map"},
     {"\\bbelieved?\\b", "estimated; build the traversability map"},
     {"who plans|goes by\\b", "planner; soil knowledge"},
-    {"for ever", "unbounded"},
+    {"\\bfor ever\\b", "unbounded"},
     {"to look at\\b", "page"},
     {"\\bunlike\\b|\\balike\\b", "different; equal"},
     {"ways? around|no way\\b", "no detour; no route found"},
@@ -115,8 +116,12 @@ TEST(Words, OfMessagesArePlain) {
         EXPECT_EQ(promised().contains(literal) ? "" : complaint(literal), "") << file;
 }
 
-TEST(Words, OfPagesArePlain) {
+TEST(Words, OfPagesAndDocumentsArePlain) {
   for (const fs::path& file : filesBelow("cli/page", {".js", ".html"})) expectPlainLines(file);
+  for (const std::string folder : {"docs", "terramech", "maps", "costmap", "planner", "cli"})
+    for (const fs::path& file : filesBelow(folder, {".md"})) expectPlainLines(file);
+  for (const auto& entry : fs::directory_iterator(TALUS_SOURCE_DIR))
+    if (entry.path().extension() == ".md") expectPlainLines(entry.path());
 }
 
 /// Names of the calls that `talus --help` lists.

@@ -28,7 +28,7 @@ TEST(SensorWatch, SeesTimeGoingBackStuckValuesAndSpikes) {
   const auto model = testGround();
   SensorWatch watch(*model, {.stuck_rows = 8});
   for (int i = 0; i < 10; ++i) watch.refuse("w", at(0.1 * i, 0.1 + 0.01 * (i % 3)));
-  EXPECT_EQ(watch.refuse("w", at(0.2, 0.11)).value_or(""), "time goes back");
+  EXPECT_EQ(watch.refuse("w", at(0.2, 0.11)).value_or(""), "time decreases");
   EXPECT_EQ(watch.refuse("w", at(2.0, 0.9)).value_or(""), "spike");
   EXPECT_FALSE(watch.refuse("w", at(2.1, 0.12)).has_value()) << "one spike does not spoil what follows";
   std::optional<std::string> last;
@@ -142,7 +142,7 @@ TEST(SensorWatch, WhatJumpsAtAllWheelsIsTheRover) {
   const auto three = watch.refuse({{"left", at(4.0, 0.1)}, {"right", at(4.0, 0.1)}, {"left", at(1.0, 0.1)}});
   EXPECT_FALSE(three[0].has_value()) << three[0].value_or("");
   EXPECT_FALSE(three[1].has_value());
-  EXPECT_EQ(three[2].value_or(""), "time goes back");
+  EXPECT_EQ(three[2].value_or(""), "time decreases");
 }
 
 }  // namespace

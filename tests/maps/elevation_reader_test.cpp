@@ -122,7 +122,7 @@ TEST(ElevationReader, UndeclaredMarksAreNoData) {
   rows[0][0] = -9999;
   const ElevationMap map = readElevation(write({.rows = rows}, folder / "undeclared.tif"));
   EXPECT_TRUE(std::isnan(map.elevation_m[{0, 4}]));
-  EXPECT_THAT(map.notes, Contains(HasSubstr("1 cells of -9999 taken as no data")));
+  EXPECT_THAT(map.notes, Contains(HasSubstr("1 cells of -9999 treated as no data")));
   rows[0][0] = -3.4e38;
   EXPECT_TRUE(std::isnan(readElevation(write({.rows = rows}, folder / "huge.tif")).elevation_m[{0, 4}]));
   EXPECT_TRUE(std::isnan(readElevation(folder / "huge.tif", {.nodata = 8}).elevation_m[{3, 0}]));
@@ -256,7 +256,7 @@ TEST(ElevationReader, BadInputIsOneLineWithARemedy) {
       {folder / "folder.tif", {}, "is a directory"},
       {folder.write("empty.tif", ""), {}, "is empty"},
       {folder.write("text.tif", "hello, this is no raster at all\n"), {}, "GDAL opens no raster"},
-      {folder.write("half.npz", "PK\x03\x04 half"), {}, "is no NumPy archive"},
+      {folder.write("half.npz", "PK\x03\x04 half"), {}, "is not a NumPy archive"},
       {folder.write("text.npy", "hello, this is no array"), {}, "not a NumPy array"},
       {ascii, {}, "cut short"},
       {cut, {}, "cut short"},

@@ -81,7 +81,7 @@ TEST(LayerReader, RockAbundanceFindsItsBandAndIsAShare) {
   EXPECT_FLOAT_EQ((readRockAbundance({.path = path}, map(folder))[{2, 1}]), 0.25F);
   const std::string percent = write({.rows = drawn({"0090", "0000", "0000"})}, folder / "percent.tif");
   EXPECT_THAT(refusal([&] { readRockAbundance({.path = percent}, map(folder)); }),
-              HasSubstr("rock abundance 9 is not a share from 0 to 1; divide percents by 100"));
+              HasSubstr("rock abundance 9 is not a fraction from 0 to 1; divide percents by 100"));
 }
 
 TEST(LayerReader, BadLayersAreRefused) {
@@ -96,7 +96,7 @@ TEST(LayerReader, BadLayersAreRefused) {
   auto rows = drawn({"1111", "1111", "1111"});
   rows[1][1] = 2.5;
   EXPECT_THAT(refusal([&] { readTerrainClasses({.path = write({.rows = rows}, folder / "half.tif")}, dem); }),
-              HasSubstr("value 2.5 is no class number (0 to 254)"));
+              HasSubstr("value 2.5 is not a class number (0 to 254)"));
   EXPECT_THAT(refusal([&] { readTerrainClasses({.path = folder / "half.tif", .band = 7}, dem); }),
               HasSubstr("no such band"));
 }
@@ -144,9 +144,9 @@ TEST(KeepOut, BadFilesAreRefused) {
   EXPECT_THAT(line(R"({"type":"Polygon","coordinates":[[["a",0],[1,1],[1,0],[0,0]]]})"),
               HasSubstr("not an array of numbers"));
   EXPECT_THAT(line(R"({"type":"Polygon","coordinates":[[[500011,4999971],[1,1],[1,0],[0,0]]]})"),
-              HasSubstr("no longitude and latitude"));
+              HasSubstr("not a longitude and latitude"));
   EXPECT_THAT(line(R"({"type":"Polygon","coordinates":[[[0,0],[1,1],[1,0],[0,0]]]})"),
-              HasSubstr("no area meets map"));
+              HasSubstr("no polygon overlaps map"));
   EXPECT_THAT(refusal([&] { readKeepOut(folder / "none.geojson", dem); }), HasSubstr("no such file"));
 }
 

@@ -132,7 +132,7 @@ TEST(SpatialReference, RefusesWhatItCannotProject) {
   EXPECT_THAT(refusal("+proj=robin +R=3396190"), testing::HasSubstr("map.tif: projection 'Robinson'"));
   EXPECT_THAT(refusal("+proj=robin +R=3396190"), testing::HasSubstr("gdalwarp"));
   EXPECT_THAT(refusal("EPSG:4326"), testing::HasSubstr("is not projected"));
-  EXPECT_THAT(refusal("IAU_2015:49911"), testing::HasSubstr("counts x to the west"));
+  EXPECT_THAT(refusal("IAU_2015:49911"), testing::HasSubstr("has a westward x axis"));
 }
 
 TEST(SpatialReference, LocalProjectionIsTrueAtItsCentre) {

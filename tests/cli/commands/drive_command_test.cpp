@@ -104,7 +104,7 @@ TEST(DriveCommand, ThePageTellsTheDrive) {
   const json out = outcomeOf(folder, drive(folder, kTrap, {"--html", "r.html", "--json"}));
   EXPECT_EQ(out, outcomeOf(folder, drive(folder, kTrap, {"--json"})));
   const std::string page = fileContent(folder / "r.html");
-  for (const char* part : {"\"story\":{\"track\":[[", "\"text\":\"planned\"", "backed out", "id=\"moment\""})
+  for (const char* part : {"\"story\":{\"track\":[[", "\"text\":\"planned\"", "reversed", "id=\"moment\""})
     EXPECT_NE(page.find(part), std::string::npos) << part;
 }
 

@@ -100,7 +100,7 @@ TEST(PlanCommand, EveryBadCallIsOneLineAndACode) {
       {{"plan", "dem.asc", "--resolution", "1", "--start", "-5,2", "--goal", "2,2"}, 2, "--start"},
       {{"plan", "dem.asc", "--resolution", "1", "--start", "15.5,2.5", "--goal", "2,2"},
        2,
-       "the nearest place"},
+       "the nearest traversable cell"},
       {{"plan", "missing.tif", "--start", "1,1", "--goal", "2,2"}, 2, "missing.tif"},
       {{"plan", "dem.asc", "--start", "1,1", "--goal", "2,2", "-o", "no/such/folder.geojson"}, 2, "folder"},
       {{"plan", "mission.yaml"}, 2, "start"},
@@ -195,7 +195,7 @@ TEST(PlanCommand, ScoreHoldsARouteAgainstTheChassis) {
   const Ran held = run("score", {"--path", "over.csv", "--chassis", "rigid"});
   EXPECT_EQ(held.code, 1);
   EXPECT_EQ(json::parse(held.out)["status"], "infeasible");
-  EXPECT_THAT(held.out, HasSubstr("the chassis may pitch beyond its limit"));
+  EXPECT_THAT(held.out, HasSubstr("chassis pitch above its limit"));
   const Ran around =
       run("plan", {"--start", "2,2", "--goal", "10,2", "--chassis", "rigid", "-o", "r.geojson"});
   ASSERT_EQ(around.code, 0) << around.err;

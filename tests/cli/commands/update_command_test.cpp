@@ -113,7 +113,7 @@ TEST(UpdateCommand, RowsThatCannotBeUsedAreCountedAndTold) {
   EXPECT_EQ(out["rows_used"], 80);
   EXPECT_EQ(out["rows_rejected"], 3);
   EXPECT_NE(site.warnings.find("t.csv:83"), std::string::npos) << site.warnings;
-  EXPECT_NE(site.warnings.find("time goes back"), std::string::npos) << site.warnings;
+  EXPECT_NE(site.warnings.find("time decreases"), std::string::npos) << site.warnings;
 }
 
 TEST(UpdateCommand, FrictionInTheTorqueIsToldAndLeftOut) {

@@ -94,7 +94,7 @@ TEST(WheelTable, RefusesWhatItCannotUseAndLeavesNothingBehind) {
   const Folder folder;
   EXPECT_THAT(errorOf(folder, "load_N,slip\n80,0.2\n"),
               HasSubstr("in.csv:1: no column cohesion_Pa, friction_angle_rad"));
-  EXPECT_THAT(errorOf(folder, kHeader), HasSubstr("no rows below the header"));
+  EXPECT_THAT(errorOf(folder, kHeader), HasSubstr("no rows after the header"));
   EXPECT_THAT(errorOf(folder, kHeader + "1,2\n"), HasSubstr("in.csv:2: no row can be solved"));
   EXPECT_THAT(folder.names(), ElementsAre("in.csv"));
 }

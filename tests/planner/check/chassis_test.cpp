@@ -237,7 +237,7 @@ TEST(Chassis, ARockBetweenTheWheelsIsWhatTheBellyMeets) {
   const auto cart = rover(4);
   const Chassis chassis(flat, cart, Suspension::Rigid);
   const Pose over{{4.05, 4.05}, 0.0}, beside{{4.05, 6.0}, 0.0};
-  EXPECT_EQ(chassis.refusal(over), "the belly may touch the ground");
+  EXPECT_EQ(chassis.refusal(over), "ground clearance of the chassis too small");
   EXPECT_EQ(chassis.refusal(beside), "");
   const auto violations = chassis.violations(std::vector<maps::Point>{{1.5, 4.05}, {6.5, 4.05}});
   ASSERT_FALSE(violations.empty());
@@ -276,7 +276,7 @@ TEST(ChassisPlanner, GoesAroundWhatTheBellyWouldMeet) {
   const auto plan = planOnChassis(problem, chassis, [&](const Problem& p) { return field.plan(p); });
   // The gap is two cells and the edge of the raster: too narrow for wheels half a metre from the middle.
   EXPECT_EQ(plan.status, RouteStatus::NoRoute);
-  EXPECT_NE(plan.reason.find("no way around where"), std::string::npos) << plan.reason;
+  EXPECT_NE(plan.reason.find("no detour found where"), std::string::npos) << plan.reason;
   for (int r = 3; r < 7; ++r) ground[{10, r}] = 0.0F;
   const auto open = planOnChassis(problem, chassis, [&](const Problem& p) { return field.plan(p); });
   ASSERT_EQ(open.status, RouteStatus::Found) << open.reason;

@@ -20,8 +20,8 @@ TEST(RouteCheck, FindsNothingOnGoodGround) {
 TEST(RouteCheck, NamesPlaceAndReason) {
   const auto found = violations(*drawn({".#.?."}), {{0.5, 0.5}, {4.5, 0.5}});
   ASSERT_EQ(found.size(), 2U);
-  EXPECT_EQ(found[0], (Violation{{1.5, 0.5}, "blocked whatever the heading"}));
-  EXPECT_EQ(found[1], (Violation{{3.5, 0.5}, "nobody has seen this cell"}));
+  EXPECT_EQ(found[0], (Violation{{1.5, 0.5}, "blocked for any heading"}));
+  EXPECT_EQ(found[1], (Violation{{3.5, 0.5}, "unobserved cell"}));
 }
 
 TEST(RouteCheck, WhatIsNotAllowedIsNotHandedOut) {
@@ -62,7 +62,7 @@ TEST(RouteCheck, TiltDependsOnTheHeading) {
   EXPECT_TRUE(violations(map, {{0.5, 1.5}, {2.5, 1.5}}).empty());
   const auto across = violations(map, {{1.5, 0.5}, {1.5, 2.5}});
   ASSERT_FALSE(across.empty());
-  EXPECT_EQ(across[0].reason, "steeper across the heading than the rover may roll");
+  EXPECT_EQ(across[0].reason, "slope across the heading above the roll limit");
 }
 
 // Property: a polyline has violations exactly where MotionCost is infinite, and where fine sampling meets a

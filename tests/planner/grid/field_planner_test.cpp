@@ -79,14 +79,14 @@ TEST(FieldPlanner, SaysWhyThereIsNoRoute) {
   const Plan walled = planner.plan(problem(map, {0.5, 0.5}, {4.5, 1.5}));
   EXPECT_EQ(walled.status, RouteStatus::NoRoute);
   EXPECT_THAT(walled.reason,
-              HasSubstr("the start reaches 6 cells; the nearest of them to the goal is 1.50,1.50"));
+              HasSubstr("reachable from the start: 6 cells; the nearest of them to the goal is 1.50,1.50"));
   const Plan on_wall = planner.plan(problem(map, {2.5, 0.5}, {4.5, 1.5}));
   EXPECT_EQ(on_wall.status, RouteStatus::StartInvalid);
   EXPECT_THAT(on_wall.reason,
-              HasSubstr("start 2.50,0.50 lies on a blocked cell; the nearest place that will do is"));
+              HasSubstr("start 2.50,0.50 lies on a blocked cell; the nearest traversable cell is"));
   const Plan unseen = planner.plan(problem(map, {0.5, 0.5}, {3.5, 0.5}));
   EXPECT_EQ(unseen.status, RouteStatus::GoalInvalid);
-  EXPECT_THAT(unseen.reason, HasSubstr("goal 3.50,0.50 lies on ground that nobody has seen"));
+  EXPECT_THAT(unseen.reason, HasSubstr("goal 3.50,0.50 lies on an unobserved cell"));
   const Plan outside = planner.plan(problem(map, {-3.0, 0.5}, {3.5, 0.5}));
   EXPECT_EQ(outside.status, RouteStatus::StartInvalid);
   EXPECT_THAT(outside.reason, HasSubstr("outside the map"));

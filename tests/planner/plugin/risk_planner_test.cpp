@@ -67,7 +67,7 @@ TEST(RiskPlanner, ALimitThatNothingKeepsIsNoRoute) {
   NamedPlanner planner;
   const Plan plan = planWithinRisk(problem, planner, 0.01);
   EXPECT_EQ(plan.status, RouteStatus::NoRoute);
-  EXPECT_THAT(plan.reason, HasSubstr("the safest one found has 0.5"));
+  EXPECT_THAT(plan.reason, HasSubstr("the safest route found has 0.5"));
   EXPECT_THROW(planWithinRisk(problem, planner, 0.0), std::invalid_argument);
   EXPECT_THROW(planWithinRisk(problem, planner, 1.0), std::invalid_argument);
 }

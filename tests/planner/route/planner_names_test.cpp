@@ -19,8 +19,8 @@ TEST(PlannerNames, SpellingIsForgiven) {
 }
 
 TEST(PlannerNames, ARefusedPlannerSaysWhy) {
-  EXPECT_THAT([] { plannerName("PRM*"); },
-              ThrowsMessage<std::invalid_argument>(AllOf(HasSubstr("PRMstar"), HasSubstr("both ways"))));
+  EXPECT_THAT([] { plannerName("PRM*"); }, ThrowsMessage<std::invalid_argument>(
+                                               AllOf(HasSubstr("PRMstar"), HasSubstr("both directions"))));
   for (const char* name : {"PRM*", "LazyPRM*", "SPARS", "BFMT", "LBTRRT", "AIT*", "RRTConnect"})
     EXPECT_THAT([&] { plannerName(name); }, ThrowsMessage<std::invalid_argument>(HasSubstr("is refused: ")))
         << name;

@@ -86,7 +86,7 @@ TEST(TraverseSimulation, BacksOutUntilItStandsOnSoundGround) {
   EXPECT_EQ(drive.outcome, Outcome::Reached);
   ASSERT_GE(drive.alarms, 1);
   const auto out = std::find_if(drive.events.begin(), drive.events.end(),
-                                [](const DriveEvent& e) { return e.text == "backed out"; });
+                                [](const DriveEvent& e) { return e.text == "reversed"; });
   ASSERT_NE(out, drive.events.end());
   const auto at = std::find_if(drive.track.begin(), drive.track.end(),
                                [&](const TrackPoint& t) { return t.time_s >= out->time_s; });

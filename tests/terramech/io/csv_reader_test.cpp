@@ -59,7 +59,7 @@ TEST(CsvReader, TellsAQuoteThatIsNeverClosed) {
   const auto rows = rowsOf("a,b\n1,2\n3,\"4\n5,6\n");
   ASSERT_EQ(rows.size(), 2U);
   EXPECT_EQ(rows[1].line, 3U);
-  EXPECT_THAT(rows[1].fault, HasSubstr("never closed"));
+  EXPECT_THAT(rows[1].fault, HasSubstr("has no closing quote"));
 }
 
 std::string errorOf(const std::string& path) {
@@ -77,7 +77,7 @@ TEST(CsvReader, RefusesWhatIsNoTable) {
   const test::TemporaryFile nothing{""}, empty{"\n\n"}, twice{"a,b,a\n"}, semicolons{"a;b\n1;2\n"};
   EXPECT_THAT(errorOf(nothing.path()), HasSubstr("is empty; the first row names the columns"));
   EXPECT_THAT(errorOf(empty.path()), HasSubstr("is empty"));
-  EXPECT_THAT(errorOf(twice.path()), HasSubstr(":1: column a stands twice"));
+  EXPECT_THAT(errorOf(twice.path()), HasSubstr(":1: column a appears twice"));
   EXPECT_THAT(errorOf(semicolons.path()), HasSubstr("separated by ';'"));
   const test::TemporaryFile binary{std::string("a\0b\n", 4)};
   EXPECT_THAT(errorOf(binary.path()), HasSubstr("is not text"));

@@ -76,7 +76,7 @@ TEST(SoilLibrary, SoilMistakesAreToldWithTheirLine) {
         Case{"cohesion_kPa: -1\n" + kSoil.substr(kSoil.find("friction")),
              ":1: soil 'unnamed': cohesion_Pa = -1000, must be >= 0"},
         Case{"cohesion_kPa: 2 kPa\n", ":1: cohesion_Pa = '2 kPa', must be a number"},
-        Case{kSoil + "cohesion_Pa: 5\n", "cohesion_Pa is stated twice"},
+        Case{kSoil + "cohesion_Pa: 5\n", "cohesion_Pa is given twice"},
         Case{kSoil + "c1: 0.4\nc1: 0.5\n", ":7: c1 stands twice"},
         Case{"friction_angle_deg: 30\n", ":1: lacks cohesion_Pa"},
         Case{"cohesion_kPa: {mean: 2}\n", ":1: cohesion_Pa lacks its std"},
@@ -198,7 +198,7 @@ TEST(TerrainClasses, MistakesAreToldWithTheirLine) {
     return "no error";
   };
   EXPECT_THAT(error("1: sand\n2: loan\n"), HasSubstr(":2: class 2: no soil 'loan'; did you mean loam?"));
-  EXPECT_THAT(error("1: sand\ntwo: loam\n"), HasSubstr(":2: 'two' is no class number"));
+  EXPECT_THAT(error("1: sand\ntwo: loam\n"), HasSubstr(":2: 'two' is not a class number"));
   EXPECT_THAT(error("classes: {}\n"), HasSubstr("names no terrain class"));
   EXPECT_THAT(error("classes: {1: sand}\nclases: {2: sand}\n"), HasSubstr(":2: unknown key 'clases'"));
 }

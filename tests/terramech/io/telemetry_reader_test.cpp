@@ -88,7 +88,7 @@ TEST(TelemetryReader, UsesTheGivenRadiusWhereTheFileHasNone) {
 }
 
 TEST(TelemetryReader, AFileWithoutAUsableRowIsAnError) {
-  EXPECT_THAT(errorOf("load_N\n"), HasSubstr("no rows below the header"));
+  EXPECT_THAT(errorOf("load_N\n"), HasSubstr("no rows after the header"));
   EXPECT_THAT(errorOf("load_N\n-1\n-2\n"),
               HasSubstr(":2: no usable row; 2 refused, this one because load_N = -1"));
 }

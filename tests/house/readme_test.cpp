@@ -1,0 +1,92 @@
+// A room's README is one page that has a line for each part; commands named in documents exist.
+#include <algorithm>
+#include <regex>
+#include <set>
+
+#include "source_files.hpp"
+
+namespace talus::house {
+namespace {
+
+namespace fs = std::filesystem;
+
+const char* const kRooms[] = {"terramech", "maps", "costmap", "planner", "cli"};
+
+TEST(Readme, HasALineForEachPartOfTheRoom) {
+  int parts = 0;
+  for (const std::string room : kRooms) {
+    const std::string page = text(fs::path(TALUS_SOURCE_DIR) / room / "README.md");
+    for (const auto& entry : fs::directory_iterator(fs::path(TALUS_SOURCE_DIR) / room)) {
+      if (!entry.is_directory()) continue;
+      ++parts;
+      const std::string part = "`" + entry.path().filename().string() + "/`";
+      EXPECT_NE(page.find(part), std::string::npos) << room << "/README.md has no line for " << part;
+    }
+  }
+  EXPECT_GT(parts, 20);
+}
+
+TEST(Readme, OfAFlatRoomNamesEveryHeaderOfItsTypes) {
+  // costmap has no parts: its table names headers, which exist.
+  const std::string page = text(TALUS_SOURCE_DIR "/costmap/README.md");
+  const std::regex header(R"(([a-z_]+\.hpp))");
+  int named = 0;
+  for (std::sregex_iterator i(page.begin(), page.end(), header), end; i != end; ++i) {
+    if (i->prefix().str().ends_with('/')) continue;  // of another room
+    ++named;
+    EXPECT_TRUE(fs::exists(fs::path(TALUS_SOURCE_DIR) / "costmap" / (*i)[1].str())) << (*i)[1];
+  }
+  EXPECT_GT(named, 15);
+}
+
+TEST(Readme, IsOnePage) {
+  for (const std::string room : kRooms) {
+    const std::string page = text(fs::path(TALUS_SOURCE_DIR) / room / "README.md");
+    EXPECT_LE(std::count(page.begin(), page.end(), '\n'), 100) << room << "/README.md";
+  }
+}
+
+std::vector<fs::path> documents() {
+  std::vector<fs::path> found;
+  for (const std::string folder : {"docs", "terramech", "maps", "costmap", "planner", "cli"})
+    for (const auto& file : files(folder, {".md"})) found.push_back(file);
+  for (const auto& entry : fs::directory_iterator(TALUS_SOURCE_DIR))
+    if (entry.path().extension() == ".md") found.push_back(entry.path());
+  return found;
+}
+
+/// What the pattern's first group matches in the documents.
+std::set<std::string> named(const std::regex& pattern) {
+  std::set<std::string> words;
+  for (const auto& file : documents()) {
+    const std::string page = text(file);
+    for (std::sregex_iterator i(page.begin(), page.end(), pattern), end; i != end; ++i) words.insert((*i)[1]);
+  }
+  return words;
+}
+
+TEST(Documents, NameOnlyCallsThatExist) {
+  const auto calls = named(std::regex(R"((?:`|\n {4}|\n)talus ([a-z]+)\b)"));
+  EXPECT_GT(calls.size(), 10U);
+  for (const std::string& call : calls)
+    EXPECT_TRUE(fs::exists(fs::path(TALUS_SOURCE_DIR) / "cli/commands" / (call + "_command.cpp"))) << call;
+}
+
+TEST(Documents, NameOnlyJobsOfDevThatExist) {
+  const std::string dev = text(TALUS_SOURCE_DIR "/dev");
+  const auto jobs = named(std::regex(R"(\./dev ([a-z]+)\b)"));
+  EXPECT_GT(jobs.size(), 3U);
+  for (const std::string& job : jobs) EXPECT_NE(dev.find("\n  " + job + ")"), std::string::npos) << job;
+}
+
+TEST(Documents, LinkOnlyToFilesThatExist) {
+  const std::regex link(R"(\]\(([^)#:]+)\))");
+  for (const auto& file : documents()) {
+    const std::string page = text(file);
+    for (std::sregex_iterator i(page.begin(), page.end(), link), end; i != end; ++i)
+      EXPECT_TRUE(fs::exists(file.parent_path() / (*i)[1].str())) << file << " links to " << (*i)[1];
+  }
+}
+
+}  // namespace
+}  // namespace talus::house
