@@ -8,8 +8,9 @@
 
 namespace talus::maps {
 
-/// Calls each(k) for k = 0 .. count - 1, on `threads` threads, this one among them. Calls for different k must not
-/// depend on each other. The first exception ends the loop, once calls that have begun are done, and is thrown here.
+/// Calls each(k) for k = 0 .. count - 1, on `threads` threads, this one among them. Calls for different k
+/// must not depend on each other. The first exception ends the loop, once calls that have begun are done, and
+/// is thrown here.
 template <typename Each>
 void parallelFor(std::size_t count, int threads, Each each) {
   std::atomic<std::size_t> next{0};

@@ -19,8 +19,8 @@ struct RowWork {
 };
 
 /// Calls work(strip) once for each strip of 64 rows, on several threads at once; this thread takes part and
-/// alone reports progress. Once a stop is requested the strips not yet begun are left out. The first exception
-/// of the work is thrown here.
+/// alone reports progress. Once a stop is requested the strips not yet begun are left out. The first
+/// exception of the work is thrown here.
 void forEachStrip(const RowWork& what, const ProgressMonitor& watch, const std::function<void(Rows)>& work);
 
 }  // namespace talus::maps

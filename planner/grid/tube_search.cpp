@@ -184,8 +184,8 @@ Polyline Tube::search(const TubeSection& section) const {
   return way;
 }
 
-// Searches every section; one without a way is joined with its neighbour. False when a single section is left and has
-// none.
+// Searches every section; one without a way is joined with its neighbour. False when a single section is left
+// and has none.
 bool Tube::searchAll(std::vector<TubeSection>& sections) const {
   for (;;) {
     maps::parallelFor(sections.size(), problem_.threads, [&](std::size_t k) {

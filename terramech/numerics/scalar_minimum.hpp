@@ -15,8 +15,8 @@ struct Minimum {
   double value;
 };
 
-/// Least value of f over [low, high], both > 0: a scan of `rungs` points even in log, then Brent's method about
-/// the best, to 1e-8 of the abscissa.
+/// Least value of f over [low, high], both > 0: a scan of `rungs` points even in log, then Brent's method
+/// about the best, to 1e-8 of the abscissa.
 template <std::invocable<double> F>
 Minimum globalMinimum(F&& f, double low, double high, int rungs = 64) {
   const double step = std::log(high / low) / (rungs - 1);
