@@ -4,7 +4,7 @@ function(put text)
   file(APPEND "${OUTPUT}" "${text}")
 endfunction()
 
-# A page without a network asks for no source maps, and for none of Leaflet's pictures.
+# A page without network access loads no source maps and no pictures of Leaflet.
 function(put_script path)
   file(READ "${path}" text)
   string(REGEX REPLACE "//# sourceMappingURL=[^\n]*" "" text "${text}")
