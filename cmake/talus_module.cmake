@@ -18,21 +18,23 @@ function(talus_warnings target)
   endif()
 endfunction()
 
-# talus_module(NAME HEADERS ... SOURCES ... [DEPENDS ...] [PRIVATE_DEPENDS ...])
-# One library target talus::NAME of a room; public headers are a verified file set installed under include/talus.
-# Paths are relative to the calling room.
+# talus_module(NAME PUBLIC ... SOURCES ... [DEPENDS ...] [PRIVATE_DEPENDS ...])
+# One library target talus::NAME of a room, and the component NAME of the installed package. Its public headers, which are
+# its entry header and what that includes, are a verified file set installed under include/talus; all other headers are
+# inner and are not installed. Paths are relative to the calling room.
 function(talus_module name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "HEADERS;SOURCES;DEPENDS;PRIVATE_DEPENDS")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "PUBLIC;SOURCES;DEPENDS;PRIVATE_DEPENDS")
   add_library(talus_${name} ${arg_SOURCES})
   add_library(talus::${name} ALIAS talus_${name})
   set_target_properties(talus_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON
                         CXX_EXTENSIONS OFF VERIFY_INTERFACE_HEADER_SETS ON)
   cmake_path(RELATIVE_PATH CMAKE_CURRENT_SOURCE_DIR BASE_DIRECTORY ${PROJECT_SOURCE_DIR} OUTPUT_VARIABLE room)
-  list(TRANSFORM arg_HEADERS PREPEND ${TALUS_INCLUDE_DIR}/talus/${room}/)
-  target_sources(talus_${name} PUBLIC FILE_SET HEADERS BASE_DIRS ${TALUS_INCLUDE_DIR} FILES ${arg_HEADERS})
+  list(TRANSFORM arg_PUBLIC PREPEND ${TALUS_INCLUDE_DIR}/talus/${room}/)
+  target_sources(talus_${name} PUBLIC FILE_SET HEADERS BASE_DIRS ${TALUS_INCLUDE_DIR} FILES ${arg_PUBLIC})
   target_link_libraries(talus_${name} PUBLIC talus::common ${arg_DEPENDS} PRIVATE ${arg_PRIVATE_DEPENDS})
   talus_warnings(talus_${name})
-  install(TARGETS talus_${name} EXPORT talus FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+  install(TARGETS talus_${name} EXPORT talus-${name} FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+  set_property(GLOBAL APPEND PROPERTY TALUS_COMPONENTS ${name})
 endfunction()
 
 # talus_quick_build(TARGET): code that is read once a run is compiled for build time, not for speed.

@@ -5,9 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include <talus/talus.hpp>
-#include <talus/terramech/contact/wong_reece.hpp>
-#include <talus/terramech/estimate/linear_offset.hpp>
+#include <talus/terramech/terramech.hpp>
 
 namespace {
 

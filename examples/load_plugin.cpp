@@ -8,8 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include <talus/costmap/traversability_map.hpp>
-#include <talus/planner/plugin/plugin_loader.hpp>
+#include <talus/planner/planner.hpp>
 
 namespace {
 

@@ -6,13 +6,11 @@
 #include <cstdio>
 #include <exception>
 #include <memory>
+#include <utility>
 
-#include <talus/costmap/traversability_map.hpp>
-#include <talus/maps/elevation_reader.hpp>
-#include <talus/planner/check/annotation.hpp>
-#include <talus/planner/plugin/named_planner.hpp>
-#include <talus/talus.hpp>
-#include <talus/terramech/io/soil_library.hpp>
+#include <talus/maps/maps_io.hpp>
+#include <talus/planner/planner.hpp>
+#include <talus/terramech/terramech_io.hpp>
 
 namespace {
 
@@ -29,7 +27,6 @@ int run(const char* file) {
   talus::maps::ReadOptions options;
   options.resolution_m = 1.0;  // the file names no coordinate system
   layers.elevation = talus::maps::readElevation(file, options);
-  const talus::maps::Raster<float> elevation = layers.elevation.elevation_m;
   talus::costmap::GroundModel::Parts ground;
   ground.rover = talus::terramech::loadRover("mer");
   ground.classes = {{.soil = talus::terramech::loadSoil("sand")}};
@@ -37,23 +34,21 @@ int run(const char* file) {
   const talus::costmap::TraversabilityMap map(
       std::move(layers), std::make_shared<const talus::costmap::GroundModel>(std::move(ground)), {});
 
-  talus::planner::NamedPlanner planner("field");
-  talus::planner::Problem problem;
-  problem.map = map.published();
-  problem.start = problem.map->grid().centre({4, 10});
-  problem.goal = problem.map->grid().centre({35, 22});
-  const auto there = planner.plan(problem);
-  std::swap(problem.start, problem.goal);
-  const auto back = planner.plan(problem);
+  const auto planner = talus::planner::makePlanner("field");
+  planner->set_map(map.published());
+  talus::PlanRequest request;
+  request.start = map.grid().centre({4, 10});
+  request.goal = map.grid().centre({35, 22});
+  const Route there = planner->plan(request);
+  std::swap(request.start, request.goal);
+  const Route back = planner->plan(request);
   if (there.status != talus::planner::RouteStatus::Found ||
       back.status != talus::planner::RouteStatus::Found) {
     std::printf("no route: %s%s\n", there.reason.c_str(), back.reason.c_str());
     return 1;
   }
-  const talus::planner::AnnotationInput input{
-      .map = *problem.map, .elevation_m = talus::maps::elevationOf(elevation), .planner = planner.name()};
-  print("there", annotated(there, input));
-  print("back ", annotated(back, input));
+  print("there", there);
+  print("back ", back);
   return 0;
 }
 

@@ -9,8 +9,7 @@
 #include <stop_token>
 #include <vector>
 
-#include <talus/costmap/traversability_map.hpp>
-#include <talus/planner/plugin/named_planner.hpp>
+#include <talus/planner/planner.hpp>
 
 namespace {
 
@@ -74,42 +73,40 @@ class Knowledge {
   talus::maps::Raster<std::uint8_t> rocks_{kGrid, 0};
 };
 
-// The place some metres along the polyline.
-Point along(const std::vector<Point>& route, double metres) {
+// The place some metres along the route.
+Point along(const std::vector<talus::planner::RouteVertex>& route, double metres) {
   for (std::size_t i = 1; i < route.size(); ++i) {
-    const double leg = std::hypot(route[i].x_m - route[i - 1].x_m, route[i].y_m - route[i - 1].y_m);
-    const double t = metres / leg;
-    if (t < 1.0)
-      return {route[i - 1].x_m + t * (route[i].x_m - route[i - 1].x_m),
-              route[i - 1].y_m + t * (route[i].y_m - route[i - 1].y_m)};
+    const double dx = route[i].x_m - route[i - 1].x_m, dy = route[i].y_m - route[i - 1].y_m;
+    const double leg = std::hypot(dx, dy);
+    if (metres < leg) return {route[i - 1].x_m + metres / leg * dx, route[i - 1].y_m + metres / leg * dy};
     metres -= leg;
   }
-  return route.back();
+  return {route.back().x_m, route.back().y_m};
 }
 
 }  // namespace
 
 int main() {
   Knowledge knowledge;
-  talus::planner::NamedPlanner planner("field");
+  const auto planner = talus::planner::makePlanner("field");
+  planner->configure({.planner = "field", .time_limit_s = 5.0});
+  planner->set_map(knowledge.map());
   std::stop_source stop;  // another thread may ask to stop at any time
-  talus::planner::Problem problem;
-  problem.start = {5.0, 10.0};
-  problem.goal = {55.0, 10.0};
-  problem.time_limit_s = 5.0;
-  problem.watch.stop = stop.get_token();
-  problem.map = knowledge.map();
-  for (int step = 0; step < 100 && !(problem.start == problem.goal); ++step) {
-    const bool news = knowledge.look(problem.start);
-    if (news) problem.map = knowledge.map();
-    const talus::planner::Plan plan = planner.plan(problem);
-    if (plan.status != talus::planner::RouteStatus::Found) {
-      std::printf("stopped: %s\n", plan.reason.c_str());
+  talus::PlanRequest request;
+  request.start = {5.0, 10.0};
+  request.goal = {55.0, 10.0};
+  request.watch.stop = stop.get_token();
+  for (int step = 0; step < 100 && !(request.start == request.goal); ++step) {
+    const bool news = knowledge.look(request.start);
+    if (news) planner->update(knowledge.map());
+    const talus::planner::Route route = planner->plan(request);
+    if (route.status != talus::planner::RouteStatus::Found) {
+      std::printf("stopped: %s\n", route.reason.c_str());
       return 1;
     }
-    std::printf("step %2d at (%4.1f, %4.1f) m, cost to go %6.0f J%s\n", step, problem.start.x_m,
-                problem.start.y_m, plan.cost_J, news ? ", rocks seen, planned anew" : "");
-    problem.start = along(plan.points, 3.0);
+    std::printf("step %2d at (%4.1f, %4.1f) m, cost to go %6.0f J%s\n", step, request.start.x_m,
+                request.start.y_m, route.summary.cost, news ? ", rocks seen, planned anew" : "");
+    request.start = along(route.vertices, 3.0);
   }
-  return problem.start == problem.goal ? 0 : 1;
+  return request.start == request.goal ? 0 : 1;
 }

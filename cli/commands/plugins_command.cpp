@@ -20,6 +20,11 @@ std::vector<std::string> features(const PlannerCapabilities& offers) {
   if (offers.lower_bound) words.emplace_back("lower bound");
   if (offers.via_points) words.emplace_back("via points");
   if (offers.several_goals) words.emplace_back("several goals");
+  if (offers.headings) words.emplace_back("headings");
+  if (offers.turning_radius) words.emplace_back("turning radius");
+  if (offers.reversing) words.emplace_back("reversing");
+  if (offers.chassis) words.emplace_back("chassis");
+  if (offers.risk_limit) words.emplace_back("risk limit");
   if (offers.incremental_update) words.emplace_back("incremental update");
   if (offers.deterministic) words.emplace_back("deterministic");
   return words;

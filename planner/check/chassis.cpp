@@ -4,6 +4,7 @@
 
 #include <talus/maps/elevation_map.hpp>
 #include <talus/planner/check/chassis.hpp>
+#include <talus/planner/route/pose_path.hpp>
 
 namespace talus::planner {
 namespace {

@@ -7,7 +7,7 @@
 #include <talus/maps/grid.hpp>
 #include <talus/planner/check/route_check.hpp>
 #include <talus/planner/route/kinematics.hpp>
-#include <talus/planner/route/problem.hpp>
+#include <talus/terramech/contact/rover.hpp>
 
 /// How a rover may stand on the ground along a motion: bounds that hold whatever its wheels find under them.
 namespace talus::planner {

@@ -6,6 +6,8 @@
 
 #include <talus/costmap/drive_state.hpp>
 #include <talus/planner/check/route_check.hpp>
+#include <talus/planner/route/pose_path.hpp>
+#include <talus/planner/route/problem.hpp>
 
 namespace talus::planner {
 namespace {

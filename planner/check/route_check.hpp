@@ -5,10 +5,11 @@
 
 #include <talus/costmap/cost_grid.hpp>
 #include <talus/maps/grid.hpp>
-#include <talus/planner/route/pose_path.hpp>
-#include <talus/planner/route/problem.hpp>
 
 namespace talus::planner {
+
+struct Plan;
+struct PosePath;
 
 /// A place on a route that a constraint forbids.
 struct Violation {

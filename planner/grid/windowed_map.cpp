@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include <talus/planner/grid/windowed_map.hpp>
+#include <talus/planner/route/polyline.hpp>
 
 namespace talus::planner {
 namespace {

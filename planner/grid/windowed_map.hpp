@@ -7,11 +7,11 @@
 #include <optional>
 #include <set>
 #include <utility>
+#include <vector>
 
 #include <talus/costmap/cost_grid.hpp>
 #include <talus/costmap/traversability_map.hpp>
 #include <talus/maps/grid.hpp>
-#include <talus/planner/route/polyline.hpp>
 #include <talus/talus.hpp>
 
 namespace talus::planner {
@@ -41,7 +41,7 @@ class WindowedMap {
   /// The map with the tiles that lie within a margin [cells] of a line, and those that were built before; all
   /// others unknown. The same tiles, to the bit, as of a map that is built as a whole. Ends early when asked
   /// to stop. Throws std::invalid_argument where what was built is not the cells of the box.
-  std::shared_ptr<const costmap::CostGrid> around(const Polyline& line, double margin_cells,
+  std::shared_ptr<const costmap::CostGrid> around(const std::vector<maps::Point>& line, double margin_cells,
                                                   const ProgressMonitor& watch = {});
 
   /// Elevation [m] on tiles that were built.
@@ -53,7 +53,7 @@ class WindowedMap {
 
  private:
   using Tile = std::pair<int, int>;  // row, column
-  std::set<Tile> missing(const Polyline& line, double margin_cells) const;
+  std::set<Tile> missing(const std::vector<maps::Point>& line, double margin_cells) const;
   void build(const std::set<Tile>& tiles);
   void take(const costmap::TraversabilityMap& built, maps::Cell first, const std::set<Tile>& tiles);
 

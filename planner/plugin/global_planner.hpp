@@ -3,32 +3,41 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <talus/costmap/cost_grid.hpp>
 #include <talus/maps/grid.hpp>
+#include <talus/planner/check/chassis.hpp>
+#include <talus/planner/route/kinematics.hpp>
 #include <talus/planner/route/route.hpp>
 #include <talus/talus.hpp>
 
-/// The planner plugin: what a shared library offers and what a rover's program asks of it. One page on
-/// purpose. A library exports one object named `talus_planner` (planner/plugin_export.hpp);
-/// planner/plugin_loader.hpp loads it.
+/// The one way to ask for a route: of Talus' own planners (plugin/make_planner.hpp) and of those in a shared
+/// library, which exports one object named `talus_planner` (plugin/plugin_export.hpp) for
+/// plugin/plugin_loader.hpp to load. One page on purpose.
 namespace talus {
 
-/// Grows with every change below that an older plugin or program would misclassification_rate.
-inline constexpr int kPlannerInterfaceVersion = 2;
+/// Grows with every change below that an older plugin or program would misread.
+inline constexpr int kPlannerInterfaceVersion = 3;
 
-/// What a plugin is and can do.
+/// What a plugin is, and what the planner that it is configured for can do.
 struct PlannerCapabilities {
   int interface_version = kPlannerInterfaceVersion;
   std::string name;                   ///< of the plugin
   std::string version;                ///< of the plugin
   std::vector<std::string> planners;  ///< names that configure() takes, the default first
+  std::string planner;                ///< the one configured now: what follows holds for it
   bool heading_dependent = false;     ///< climbing, descending and crossing a slope differ
   bool lower_bound = false;           ///< a route says how far from the best it can be at most
   bool via_points = false;            ///< PlanRequest::via is honoured
   bool several_goals = false;         ///< PlanRequest::other_goals is honoured
+  bool headings = false;              ///< PlanRequest::start_heading_rad and goal_heading_rad are honoured
+  bool turning_radius = false;        ///< PlanRequest::kinematics is honoured
+  bool reversing = false;             ///< Kinematics::may_reverse = false is honoured as well
+  bool chassis = false;               ///< PlanRequest::chassis is honoured
+  bool risk_limit = false;            ///< PlanRequest::risk_limit is honoured
   bool incremental_update = false;    ///< update() keeps what did not change
   bool deterministic = false;         ///< same input and seed, same route, as long as no clock stops the work
 };
@@ -41,7 +50,14 @@ struct PlannerSettings {
   double time_limit_s = std::numeric_limits<double>::infinity();  ///< > 0; stop and give the best so far
 };
 
-/// Where to drive.
+/// A chance constraint on the rover's immobilisation.
+struct RiskLimit {
+  double immobilisation = 0.01;       ///< probability over the whole route, above 0 and below 1
+  double correlation_length_m = 5.0;  ///< over which the soil stays alike, as DrivePolicy's, > 0
+};
+
+/// Where to drive, and how. A field that the configured planner does not honour is refused when it is set,
+/// never ignored: plan() throws std::invalid_argument naming it (plugin/request_check.hpp).
 struct PlanRequest {
   maps::Point start;
   maps::Point goal;
@@ -49,6 +65,13 @@ struct PlanRequest {
       other_goals{};               ///< the route may end at any of these as well: the cheapest is taken
   double tolerance_m = 0.0;        ///< it may end this far from the goal, >= 0
   std::vector<maps::Point> via{};  ///< to be passed in this order
+  std::optional<double> start_heading_rad{};  ///< where the rover looks at the start; none: anywhere
+  std::optional<double> goal_heading_rad{};   ///< the same on arrival
+  /// Turning radius, reversing and what turning takes, from planner::kinematicsOn(); none: turning is free.
+  std::optional<planner::Kinematics> kinematics{};
+  /// Clearance, pitch and roll are kept along the whole motion; none: the cost map's own judgement holds.
+  std::shared_ptr<const planner::Chassis> chassis{};
+  std::optional<RiskLimit> risk_limit{};  ///< none: risk counts by its price alone
   ProgressMonitor watch{};  ///< progress, and the cancel check: request a stop and plan() ends Cancelled
 };
 
@@ -71,7 +94,8 @@ class GlobalPlanner {
   /// The next plan() is the same as after set_map(). Throws std::invalid_argument when the grids differ.
   virtual void update(std::shared_ptr<const costmap::CostGrid> newer) = 0;
 
-  /// A route, or the status and reason why there is none. Throws std::logic_error before set_map().
+  /// A route, or the status and reason why there is none. Throws std::logic_error before set_map(),
+  /// std::invalid_argument for a field out of its range or not honoured.
   virtual planner::Route plan(const PlanRequest& request) = 0;
 
   /// A fresh planner of the same kind, with default settings and no map.

@@ -1,6 +1,9 @@
+#include <utility>
+
 #include <boost/dll/shared_library.hpp>
 
 #include <talus/planner/plugin/plugin_loader.hpp>
+#include <talus/planner/plugin/request_check.hpp>
 
 namespace talus::planner {
 namespace {
@@ -29,21 +32,38 @@ void requireInterface(const boost::dll::shared_library& library, const std::stri
                       "rebuild the plugin against the installed talus"});
 }
 
-// Declared in this order so that the planner goes before the code it runs.
-struct Loaded {
-  boost::dll::shared_library library;
-  std::unique_ptr<GlobalPlanner> planner;
+// A planner of a library, which stays loaded as long as it lives. What the planner does not honour is refused
+// here, so that no plugin can ignore it.
+class Loaded final : public GlobalPlanner {
+ public:
+  Loaded(std::shared_ptr<boost::dll::shared_library> library, std::unique_ptr<GlobalPlanner> planner)
+      : library_(std::move(library)), planner_(std::move(planner)) {}
+
+  PlannerCapabilities capabilities() const override { return planner_->capabilities(); }
+  void configure(const PlannerSettings& settings) override { planner_->configure(settings); }
+  void set_map(std::shared_ptr<const costmap::CostGrid> map) override { planner_->set_map(std::move(map)); }
+  void update(std::shared_ptr<const costmap::CostGrid> newer) override { planner_->update(std::move(newer)); }
+  Route plan(const PlanRequest& request) override {
+    requireHonoured(request, planner_->capabilities());
+    return planner_->plan(request);
+  }
+  std::unique_ptr<GlobalPlanner> create() const override {
+    return std::make_unique<Loaded>(library_, planner_->create());
+  }
+
+ private:
+  // Declared in this order so that the planner goes before the code it runs.
+  std::shared_ptr<boost::dll::shared_library> library_;
+  std::unique_ptr<GlobalPlanner> planner_;
 };
 
 }  // namespace
 
-std::shared_ptr<GlobalPlanner> loadPlugin(const std::string& path) {
-  auto loaded = std::make_shared<Loaded>();
-  loaded->library = opened(path);
-  requireInterface(loaded->library, path);
-  loaded->planner = loaded->library.get_alias<GlobalPlanner>("talus_planner").create();
-  GlobalPlanner* planner = loaded->planner.get();
-  return {std::move(loaded), planner};
+std::unique_ptr<GlobalPlanner> loadPlugin(const std::string& path) {
+  auto library = std::make_shared<boost::dll::shared_library>(opened(path));
+  requireInterface(*library, path);
+  auto planner = library->get_alias<GlobalPlanner>("talus_planner").create();
+  return std::make_unique<Loaded>(std::move(library), std::move(planner));
 }
 
 }  // namespace talus::planner

@@ -7,9 +7,10 @@
 
 namespace talus::planner {
 
-/// A planner from a shared library; the library stays loaded as long as the planner lives.
+/// A planner from a shared library; the library stays loaded as long as the planner, or one that
+/// it created, lives. A field of a request that the planner does not honour is refused, whatever the plugin does.
 /// Throws talus::InputError naming the file when it is missing, is no library, exports no `talus_planner`, or
 /// was built for another interface version.
-std::shared_ptr<GlobalPlanner> loadPlugin(const std::string& path);
+std::unique_ptr<GlobalPlanner> loadPlugin(const std::string& path);
 
 }  // namespace talus::planner

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <vector>
 
-#include <talus/terramech/estimate/soil_objective.hpp>
 #include <talus/terramech/estimate/soil_posterior.hpp>
 
 namespace talus::terramech {
@@ -24,10 +24,14 @@ class SoilFilter {
 
   /// Throws as fitSoil() does for a prior or options out of range.
   SoilFilter(const Wheel& wheel, SoilMixture prior, const Options& options);
+  SoilFilter(const SoilFilter& other);
+  SoilFilter(SoilFilter&&) noexcept;
+  SoilFilter& operator=(SoilFilter other) noexcept;
+  ~SoilFilter();
 
   /// Takes one sample in. Throws std::invalid_argument for a sample that is not of a driven wheel; the filter
   /// is unchanged.
-  void add(const WheelSample& sample) { add({wheel_, sample}); }
+  void add(const WheelSample& sample);
   void add(const WheelReading& reading);  ///< on a wheel of its own
 
   /// What is believed now, in full: importance samples over the window and what went before it. Slower than
@@ -38,23 +42,11 @@ class SoilFilter {
   ContactSoil mode() const;
   std::vector<double> classProbabilities() const;
 
-  std::size_t samples() const { return count_; }
+  std::size_t samples() const;
 
  private:
-  struct Track {  // of one class
-    SoilQuadratic before;
-    SoilMode mode;
-  };
-
-  SoilObjective objective(std::size_t soil_class) const;
-
-  Wheel wheel_;
-  SoilMixture prior_;
-  Options options_;
-  std::vector<Track> tracks_;
-  std::vector<WheelReading> window_;  // oldest first
-  StatePopulation population_;        // of all samples
-  std::size_t count_ = 0;
+  struct State;
+  std::unique_ptr<State> state_;
 };
 
 }  // namespace talus::terramech

@@ -7,6 +7,7 @@
 #include <talus/terramech/estimate/sojourner.hpp>
 #include <talus/terramech/io/soil_priors.hpp>
 #include <talus/terramech/io/telemetry_reader.hpp>
+#include <talus/terramech/io/wheel_rows.hpp>
 #include <talus/terramech/tables/line_estimate.hpp>
 
 namespace talus::terramech {

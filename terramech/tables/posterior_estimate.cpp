@@ -4,6 +4,7 @@
 
 #include <talus/terramech/estimate/soil_filter.hpp>
 #include <talus/terramech/io/soil_priors.hpp>
+#include <talus/terramech/io/wheel_rows.hpp>
 #include <talus/terramech/tables/posterior_estimate.hpp>
 #include <talus/terramech/tables/soil_groups.hpp>
 

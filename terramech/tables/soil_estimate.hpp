@@ -7,10 +7,11 @@
 
 #include <Eigen/Core>
 
+#include <talus/talus.hpp>
 #include <talus/terramech/estimate/bevameter.hpp>
 #include <talus/terramech/estimate/mohr_coulomb_line.hpp>
 #include <talus/terramech/estimate/soil_posterior.hpp>
-#include <talus/terramech/io/wheel_rows.hpp>
+#include <talus/terramech/estimate/telemetry.hpp>
 
 namespace talus::terramech {
 

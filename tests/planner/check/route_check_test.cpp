@@ -3,6 +3,7 @@
 
 #include <talus/planner/check/route_check.hpp>
 #include <talus/planner/route/motion_cost.hpp>
+#include <talus/planner/route/problem.hpp>
 
 #include "drawn_map.hpp"
 

@@ -89,10 +89,28 @@ TEST(PluginLoader, RefusesSettingsByName) {
   EXPECT_THROW(planner->set_map(nullptr), std::invalid_argument);
 }
 
+TEST(PluginLoader, RefusesWhatThePlannerDoesNotHonour) {
+  const auto planner = loadPlugin(TALUS_PLUGIN);
+  planner->set_map(testing::drawn({"....", "...."}));
+  PlanRequest request;
+  request.start_heading_rad = 0.0;
+  EXPECT_THAT([&] { planner->plan(request); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("start_heading_rad is not honoured")));
+}
+
+TEST(PluginLoader, TheLibraryStaysAsLongAsWhatItCreated) {
+  std::unique_ptr<GlobalPlanner> another = loadPlugin(TALUS_PLUGIN)->create();
+  another->set_map(testing::drawn({"....", "...."}));
+  PlanRequest request;
+  request.start = {0.5, 0.5};
+  request.goal = {3.5, 0.5};
+  EXPECT_EQ(another->plan(request).status, RouteStatus::Found);
+}
+
 TEST(PluginLoader, AnotherInterfaceIsRefusedBeforeItIsTouched) {
   EXPECT_THAT([] { loadPlugin(TALUS_OTHER_PLUGIN); },
               ThrowsMessage<InputError>(AllOf(HasSubstr("built for planner interface 99"),
-                                              HasSubstr("this program has 2"), HasSubstr("rebuild"))));
+                                              HasSubstr("this program has 3"), HasSubstr("rebuild"))));
 }
 
 TEST(PluginLoader, WhatIsNoPluginIsRefusedByName) {

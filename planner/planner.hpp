@@ -1,0 +1,12 @@
+#pragma once
+
+/// Entry header of talus::planner: routes by Talus' own planners or by one from a shared library, and the
+/// independent check of a route.
+
+#include <talus/costmap/costmap.hpp>
+#include <talus/planner/check/chassis.hpp>
+#include <talus/planner/check/route_check.hpp>
+#include <talus/planner/plugin/make_planner.hpp>
+#include <talus/planner/plugin/plugin_loader.hpp>
+#include <talus/planner/plugin/windowed_route.hpp>
+#include <talus/planner/route/turn_prices.hpp>

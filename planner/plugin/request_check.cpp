@@ -1,0 +1,55 @@
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+#include <talus/planner/plugin/request_check.hpp>
+
+namespace talus::planner {
+namespace {
+
+[[noreturn]] void outOfRange(const std::string& field, double value, const std::string& bound) {
+  std::ostringstream text;
+  text << "PlanRequest: " << field << " = " << value << ", must be " << bound;
+  throw std::invalid_argument(text.str());
+}
+
+void requireRanges(const PlanRequest& request) {
+  const auto finite = [](const char* field, const std::optional<double>& heading_rad) {
+    if (heading_rad && !std::isfinite(*heading_rad)) outOfRange(field, *heading_rad, "finite");
+  };
+  finite("start_heading_rad", request.start_heading_rad);
+  finite("goal_heading_rad", request.goal_heading_rad);
+  if (!(request.tolerance_m >= 0)) outOfRange("tolerance_m", request.tolerance_m, ">= 0");
+  if (request.kinematics && !(request.kinematics->turning_radius_m >= 0))
+    outOfRange("kinematics.turning_radius_m", request.kinematics->turning_radius_m, ">= 0");
+  if (!request.risk_limit) return;
+  const RiskLimit& risk = *request.risk_limit;
+  if (!(risk.immobilisation > 0 && risk.immobilisation < 1))
+    outOfRange("risk_limit.immobilisation", risk.immobilisation, "above 0 and below 1");
+  if (!(risk.correlation_length_m > 0))
+    outOfRange("risk_limit.correlation_length_m", risk.correlation_length_m, "> 0");
+}
+
+}  // namespace
+
+void requireHonoured(const PlanRequest& request, const PlannerCapabilities& offers) {
+  const auto refuse = [&offers](bool asked, bool honoured, const char* field) {
+    if (asked && !honoured)
+      throw std::invalid_argument(std::string("PlanRequest: ") + field + " is not honoured by planner '" +
+                                  offers.planner + "' of " + offers.name +
+                                  "; configure one that does, or leave it out");
+  };
+  refuse(!request.via.empty(), offers.via_points, "via");
+  refuse(!request.other_goals.empty(), offers.several_goals, "other_goals");
+  refuse(request.start_heading_rad.has_value(), offers.headings, "start_heading_rad");
+  refuse(request.goal_heading_rad.has_value(), offers.headings, "goal_heading_rad");
+  refuse(request.kinematics.has_value(), offers.turning_radius, "kinematics");
+  refuse(request.kinematics && !request.kinematics->may_reverse, offers.reversing,
+         "kinematics.may_reverse = false");
+  refuse(request.chassis != nullptr, offers.chassis, "chassis");
+  refuse(request.risk_limit.has_value(), offers.risk_limit, "risk_limit");
+  requireRanges(request);
+}
+
+}  // namespace talus::planner

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <talus/planner/plugin/global_planner.hpp>
+
+namespace talus::planner {
+
+/// Throws std::invalid_argument naming the first field of the request that is set and that a planner of these
+/// capabilities does not honour, or that leaves its range. Every planner that loadPlugin() or makePlanner()
+/// gives is asked through it.
+void requireHonoured(const PlanRequest& request, const PlannerCapabilities& offers);
+
+}  // namespace talus::planner

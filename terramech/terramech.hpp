@@ -1,0 +1,15 @@
+#pragma once
+
+/// Entry header of talus::terramech: forces on a wheel, what a slope costs a rover, categories, and the soil
+/// and the pull from what wheels read.
+
+#include <talus/terramech/contact/rover.hpp>
+#include <talus/terramech/contact/wong_reece.hpp>
+#include <talus/terramech/estimate/drawbar_pull.hpp>
+#include <talus/terramech/estimate/linear_offset.hpp>
+#include <talus/terramech/estimate/pull_forecast.hpp>
+#include <talus/terramech/estimate/soil_filter.hpp>
+#include <talus/terramech/estimate/soil_posterior.hpp>
+#include <talus/terramech/mobility/category.hpp>
+#include <talus/terramech/mobility/category_probability.hpp>
+#include <talus/terramech/mobility/mobility.hpp>

@@ -1,0 +1,53 @@
+// An embedder includes entry headers alone: what examples and installed consumers show is the one way in.
+#include <map>
+#include <regex>
+#include <set>
+
+#include "source_files.hpp"
+
+namespace talus::house {
+namespace {
+
+TEST(House, ExamplesAndConsumersIncludeEntryHeadersOnly) {
+  const std::set<std::string> entries{"talus.hpp",
+                                      "terramech/terramech.hpp",
+                                      "terramech/terramech_io.hpp",
+                                      "terramech/calibration.hpp",
+                                      "maps/maps.hpp",
+                                      "maps/maps_io.hpp",
+                                      "costmap/costmap.hpp",
+                                      "planner/planner.hpp",
+                                      "planner/simulation/simulation.hpp"};
+  const std::regex include(R"(#include <talus/([a-z_0-9/]+\.hpp)>)");
+  int seen = 0;
+  for (const std::string folder : {"examples", "tests/install"})
+    for (const auto& file : files(folder, {".cpp"})) {
+      const std::string source = text(file);
+      for (std::sregex_iterator i(source.begin(), source.end(), include), end; i != end; ++i, ++seen)
+        EXPECT_TRUE(entries.contains((*i)[1])) << file << " includes <talus/" << (*i)[1] << ">";
+    }
+  EXPECT_GE(seen, 6);
+}
+
+// Headers that include each other, directly or by others, name no order in which they can be read.
+TEST(House, NoHeaderIncludesItselfByOthers) {
+  const std::regex include(R"(#include <talus/([a-z_0-9/]+\.hpp)>)");
+  std::map<std::string, std::set<std::string>> left;
+  for (const std::string room : {"terramech", "maps", "costmap", "planner", "cli"})
+    for (const auto& file : files(room, {".hpp"})) {
+      const std::string source = text(file);
+      auto& below = left[file.lexically_relative(TALUS_SOURCE_DIR).generic_string()];
+      for (std::sregex_iterator i(source.begin(), source.end(), include), end; i != end; ++i)
+        if ((*i)[1] != "talus.hpp") below.insert((*i)[1]);
+    }
+  ASSERT_GT(left.size(), 100U);
+  for (bool found = true; found;) {
+    found = std::erase_if(left, [](const auto& header) { return header.second.empty(); }) > 0;
+    for (auto& [header, below] : left)
+      std::erase_if(below, [&](const std::string& other) { return !left.contains(other); });
+  }
+  for (const auto& [header, below] : left) ADD_FAILURE() << header << " stands in a circle of includes";
+}
+
+}  // namespace
+}  // namespace talus::house

@@ -1,0 +1,85 @@
+#include <talus/planner/plugin/request_check.hpp>
+
+#include "drawn_map.hpp"
+
+namespace talus::planner {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+TEST(RequestCheck, EachFieldThatIsNotHonouredIsRefusedByName) {
+  // Property: a request with one field set passes exactly where the capability of that field is stated.
+  struct Case {
+    const char* field;
+    void (*set)(PlanRequest&);
+    void (*honour)(PlannerCapabilities&);
+  };
+  const Case cases[] = {
+      {"via",
+       [](PlanRequest& r) {
+         r.via = {{1, 1}};
+       },
+       [](auto& c) { c.via_points = true; }},
+      {"other_goals",
+       [](PlanRequest& r) {
+         r.other_goals = {{1, 1}};
+       },
+       [](auto& c) { c.several_goals = true; }},
+      {"start_heading_rad", [](PlanRequest& r) { r.start_heading_rad = 0.0; },
+       [](auto& c) { c.headings = true; }},
+      {"goal_heading_rad", [](PlanRequest& r) { r.goal_heading_rad = 0.0; },
+       [](auto& c) { c.headings = true; }},
+      {"kinematics", [](PlanRequest& r) { r.kinematics = Kinematics{}; },
+       [](auto& c) { c.turning_radius = true; }},
+      {"may_reverse", [](PlanRequest& r) { r.kinematics = Kinematics{.may_reverse = false}; },
+       [](auto& c) { c.turning_radius = c.reversing = true; }},
+      {"risk_limit", [](PlanRequest& r) { r.risk_limit = RiskLimit{}; },
+       [](auto& c) { c.risk_limit = true; }},
+  };
+  EXPECT_NO_THROW(requireHonoured({}, {}));
+  for (const Case& c : cases) {
+    PlanRequest request;
+    c.set(request);
+    PlannerCapabilities offers{.name = "made", .planner = "plain"};
+    if (std::string(c.field) == "may_reverse") offers.turning_radius = true;
+    EXPECT_THAT([&] { requireHonoured(request, offers); },
+                ThrowsMessage<std::invalid_argument>(
+                    AllOf(HasSubstr(c.field), HasSubstr("not honoured by planner 'plain' of made"))));
+    c.honour(offers);
+    EXPECT_NO_THROW(requireHonoured(request, offers)) << c.field;
+  }
+}
+
+TEST(RequestCheck, AChassisIsRefusedWhereItIsNotHonoured) {
+  const maps::Raster<float> flat({.width = 4, .height = 4, .resolution_m = 1.0, .south_west = {}}, 0.0F);
+  terramech::Rover rover;
+  rover.wheelbase_m = rover.track_m = 0.5;
+  PlanRequest request;
+  request.chassis = std::make_shared<const Chassis>(flat, rover, Suspension::Rigid);
+  EXPECT_THROW(requireHonoured(request, {}), std::invalid_argument);
+  EXPECT_NO_THROW(requireHonoured(request, {.chassis = true}));
+}
+
+TEST(RequestCheck, ValuesOutOfRangeAreRefusedWithTheirBound) {
+  const PlannerCapabilities all{.headings = true, .turning_radius = true, .risk_limit = true};
+  const auto refused = [&all](const PlanRequest& request) { return [&] { requireHonoured(request, all); }; };
+  PlanRequest request;
+  request.start_heading_rad = NAN;
+  EXPECT_THAT(refused(request),
+              ThrowsMessage<std::invalid_argument>(HasSubstr("start_heading_rad = nan, must be finite")));
+  request = {};
+  request.tolerance_m = -1.0;
+  EXPECT_THAT(refused(request),
+              ThrowsMessage<std::invalid_argument>(HasSubstr("tolerance_m = -1, must be >= 0")));
+  request = {};
+  request.kinematics = Kinematics{.turning_radius_m = -2.0};
+  EXPECT_THAT(refused(request), ThrowsMessage<std::invalid_argument>(HasSubstr("turning_radius_m = -2")));
+  request = {};
+  request.risk_limit = RiskLimit{.immobilisation = 1.0};
+  EXPECT_THAT(refused(request), ThrowsMessage<std::invalid_argument>(HasSubstr("above 0 and below 1")));
+}
+
+}  // namespace
+}  // namespace talus::planner
