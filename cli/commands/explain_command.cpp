@@ -88,7 +88,8 @@ void addExplain(CLI::App& app, Context& context) {
                       {.name = "explain",
                        .group = Group::kMaps,
                        .description = "explain the category of a cell: quantities, sources, uncertainties",
-                       .examples = "  talus explain gale.tif --at -4.7d,137.5d --heading 1.57\n"},
+                       .examples = "  talus explain gale.tif --at -4.7d,137.5d --heading 1.57\n"
+                                   "  talus explain map.ot --at 120,80\n"},
                       bind, run);
 }
 

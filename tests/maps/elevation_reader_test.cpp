@@ -277,7 +277,7 @@ TEST(ElevationReader, BadInputIsOneLineWithARemedy) {
       {write({.rows = kHill, .crs = "EPSG:4326", .transform = std::array<double, 6>{0, 10, 0, 50, 0, -10}},
              folder / "globe.tif"),
        {},
-       "too much for one map in metres; read a part with --window"},
+       "too large for one map in metres; read a part with --window"},
       {write({.rows = kHill, .crs = "+proj=robin +R=3396190"}, folder / "robin.tif"),
        {},
        "projection 'Robinson'"},

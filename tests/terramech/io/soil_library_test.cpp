@@ -77,7 +77,7 @@ TEST(SoilLibrary, SoilMistakesAreToldWithTheirLine) {
              ":1: soil 'unnamed': cohesion_Pa = -1000, must be >= 0"},
         Case{"cohesion_kPa: 2 kPa\n", ":1: cohesion_Pa = '2 kPa', must be a number"},
         Case{kSoil + "cohesion_Pa: 5\n", "cohesion_Pa is given twice"},
-        Case{kSoil + "c1: 0.4\nc1: 0.5\n", ":7: c1 stands twice"},
+        Case{kSoil + "c1: 0.4\nc1: 0.5\n", ":7: c1 appears twice"},
         Case{"friction_angle_deg: 30\n", ":1: lacks cohesion_Pa"},
         Case{"cohesion_kPa: {mean: 2}\n", ":1: cohesion_Pa lacks its std"},
         Case{"cohesion_kPa: {mean: 2, sd: 3}\n", ":1: cohesion_Pa: unknown key 'sd'"},
