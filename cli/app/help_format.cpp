@@ -130,8 +130,8 @@ std::vector<std::string> oldNamesUsed(CLI::App& command) {
   std::vector<std::string> used;
   for (const CLI::Option* option : command.get_options())
     if (option->get_group().empty() && option->count() > 0)
-      used.push_back(
-          fmt::format("'{}' is deprecated: use '{}'", option->get_name(), option->get_description()));
+      used.push_back(fmt::format("'--{}' is deprecated: use '{}'", option->get_lnames().front(),
+                                 option->get_description()));
   return used;
 }
 
