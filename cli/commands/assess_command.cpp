@@ -106,13 +106,13 @@ Json jsonOf(const std::vector<Assessment>& rows, double reference_slip) {
 
 std::string textOf(const AssessOptions& options, const std::vector<Assessment>& rows) {
   std::string text =
-      "  line     DP/W     std     z/r   T/rW   max slope  category   probability of (safe, marginal, "
+      "  line     DP/W     std     z/r   T/rW  slope [deg]  category   probability of (safe, marginal, "
       "dangerous)";
   if (options.extrapolate)
-    text += fmt::format("  DP/W at slip {:.2f}     max DP/W   at slip  max slope", options.reference_slip);
+    text += fmt::format("  DP/W at slip {:.2f}     max DP/W   at slip  slope [deg]", options.reference_slip);
   text += '\n';
   for (const Assessment& a : rows) {
-    text += fmt::format("{:6}  {:7.3f}  {:6.3f}  {:6.3f} {:6.3f}  {:10.1f}  {:9}  ({:.2f} {:.2f} {:.2f})",
+    text += fmt::format("{:6}  {:7.3f}  {:6.3f}  {:6.3f} {:6.3f}  {:11.1f}  {:9}  ({:.2f} {:.2f} {:.2f})",
                         a.line, a.pull.value, a.pull.std, a.sinkage_over_radius.value,
                         a.torque_over_load_radius, std::atan(a.pull.value) / kDegree, name(a.category),
                         a.probability[0], a.probability[1], a.probability[2]);

@@ -32,7 +32,7 @@ std::vector<std::string> features(const PlannerCapabilities& offers) {
 
 int run(const Options& options, Context& context) {
   PlannerCapabilities offers{
-      .name = "talus, built in", .version = TALUS_VERSION, .planners = planner::plannerNames()};
+      .name = "talus (built-in)", .version = TALUS_VERSION, .planners = planner::plannerNames()};
   if (!options.file.empty()) offers = planner::loadPlugin(options.file)->capabilities();
   if (context.json) {
     printJson(

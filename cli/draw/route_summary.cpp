@@ -122,7 +122,7 @@ std::string statusText(const Route& route) {
 
 std::string riskText(double probability) {
   if (probability > 0.99) return "immobilisation probability > 0.99";
-  return fmt::format("immobilisation probability {:.2g}", 100.0 * probability);
+  return fmt::format("immobilisation probability {:.2g}", probability);
 }
 
 std::string driveText(const Route& route) {

@@ -129,7 +129,7 @@ std::string effectLine(const TracedEffect& effect) {
     for (std::size_t k = 0; k < form->parameters.size(); ++k) {
       const EffectParameter& p = form->parameters[k];
       if (!p.fitted) continue;
-      line += fmt::format("\n    {} = {:.4g} +- {:.2g} {}", p.name, part.parameters[k],
+      line += fmt::format("\n    {} = {:.4g} +- {:.2g} [{}]", p.name, part.parameters[k],
                           at < effect.parameter_std.size() ? effect.parameter_std[at] : 0.0, p.unit);
       ++at;
     }

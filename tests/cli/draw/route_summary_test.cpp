@@ -24,6 +24,8 @@ TEST(RouteSummary, SaysWhatARoverEngineerAsks) {
       Contains(Pair("slope", StartsWith("max uphill 11.5 deg, downhill 11.5 deg, cross-slope 2.9 deg"))));
   EXPECT_THAT(facts, Contains(Pair("traversability", "safe 66.7 %, marginal 33.3 %")));
   EXPECT_THAT(facts, Contains(Pair("drawbar-pull margin", HasSubstr("min +0.100 (DP/W)"))));
+  // Closed form: the last vertex of the example carries 60 x 0.0002, a probability and not per cent.
+  EXPECT_THAT(facts, Contains(Pair("risk", "immobilisation probability 0.012")));
   EXPECT_LE(facts.size(), 11U);
 }
 
