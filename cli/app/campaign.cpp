@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <atomic>
-#include <cstdlib>
 #include <thread>
 #include <utility>
 
 #include <talus/cli/app/campaign.hpp>
+#include <talus/cli/app/mpi_launch.hpp>
 #include <talus/maps/parallel_for.hpp>
 
 #ifdef TALUS_MPI
@@ -49,11 +49,6 @@ std::vector<JobOutcome> runHere(std::size_t count, const std::function<std::stri
 
 namespace {
 
-// Set by Open MPI's and by other launchers (PMI).
-bool startedByMpirun() {
-  return std::getenv("OMPI_COMM_WORLD_SIZE") || std::getenv("PMI_SIZE");
-}
-
 constexpr int kIndexTag = 1;
 constexpr int kFailedTag = 2;
 constexpr int kStoppedTag = 3;
@@ -82,7 +77,13 @@ struct Campaign::Ranks {
 };
 
 Campaign::Campaign() {
-  if (startedByMpirun()) mpi_ = std::make_unique<Ranks>();
+  if (!mpiLaunch()) return;
+  mpi_ = std::make_unique<Ranks>();
+  const int joined = ranks();
+  if (joined < mpiLaunch()->ranks)
+    mpi_.reset();  // its end would abort the process while an exception is on the way
+  requireJoinedRanks(joined,
+                     "the launcher belongs to another MPI than this program; start it by Open MPI's mpirun");
 }
 
 int Campaign::ranks() const noexcept {

@@ -17,6 +17,7 @@
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/context.hpp>
 #include <talus/cli/app/interrupt.hpp>
+#include <talus/cli/app/mpi_launch.hpp>
 #include <talus/cli/app/number_check.hpp>
 #include <talus/cli/commands/program.hpp>
 #include <talus/talus.hpp>
@@ -154,6 +155,7 @@ int run(int argc, const char* const* argv) {
   context.stop = interrupt.token();
   int code = Exit::kDone;
   try {
+    requireMpiForRanks();
     CLI::App app("Safe routes for rovers over soft, sloping ground.", "talus");
     addGlobalOptions(app, context);
     addCommands(app, context);

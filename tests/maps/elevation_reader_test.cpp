@@ -5,6 +5,7 @@
 #include <talus/talus.hpp>
 
 #include "raster_fixture.hpp"
+#include "requirement.hpp"
 
 namespace talus::maps {
 namespace {
@@ -322,7 +323,7 @@ TEST(ElevationReader, DamagedFilesAreReadOrRefused) {
 
 TEST(ElevationReader, ReadsTheMapOfJacksboroThatMatplotlibShips) {
   const std::string path = "/usr/share/matplotlib/mpl-data/sample_data/jacksboro_fault_dem.npz";
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << "python-matplotlib-data is not installed";
+  TALUS_REQUIRE(std::filesystem::exists(path), "python-matplotlib-data is not installed");
   const ElevationMap map = readElevation(path);
   EXPECT_THAT(map.notes, Contains(HasSubstr("ymin and ymax are in the wrong order")));
   // Printed in: the file. 403 x 344 cells of 3 arc seconds about 36.59 N, 84.25 W, heights 238 to 1076 m.
@@ -339,7 +340,7 @@ TEST(ElevationReader, ReadsTheMapOfJacksboroThatMatplotlibShips) {
 
 TEST(ElevationReader, ReadsEveryRealMap) {
   const char* folder = std::getenv("TALUS_REAL_MAPS");
-  if (folder == nullptr) GTEST_SKIP() << "TALUS_REAL_MAPS is not set";
+  TALUS_REQUIRE(folder != nullptr, "TALUS_REAL_MAPS is not set");
   int count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     if (entry.path().extension() != ".tif" || entry.path().string().find("class") != std::string::npos)

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <fstream>
 #include <sstream>
 #include <string>
@@ -13,9 +12,7 @@ namespace safety {
 namespace {
 
 TEST(SafetyWheel, ReferenceCases) {
-  const char* folder = std::getenv("TALUS_REFERENCE");
-  if (!folder) GTEST_SKIP() << "TALUS_REFERENCE is not set";
-  std::ifstream file(std::string(folder) + "/forward_cases.csv");
+  std::ifstream file(SAFETY_EQUILIBRIA);
   std::string line;
   std::getline(file, line);
   int cases = 0;
@@ -29,13 +26,14 @@ TEST(SafetyWheel, ReferenceCases) {
         soil.shear_modulus_m >> soil.c1 >> soil.c2 >> wheel.radius_m >> wheel.width_m >> wheel.load_N >>
         wheel.slip >> sinkage_m >> entry >> torque_Nm >> pull_N;
     const WheelAnswer a = drive(soil, wheel);
-    // Computed by others: forward_cases.csv, to 1e-8; Simpson's rule stops at 1e-7 of each piece.
+    // Closed form: equilibria.csv by independent quadrature, to 1e-8; Simpson's rule stops at 1e-7 of each
+    // piece.
     EXPECT_NEAR(a.sinkage_m, sinkage_m, 1e-6 * wheel.radius_m) << line;
     EXPECT_NEAR(a.torque_Nm, torque_Nm, 1e-5 * wheel.load_N * wheel.radius_m) << line;
     EXPECT_NEAR(a.drawbar_pull_N, pull_N, 1e-5 * wheel.load_N) << line;
     ++cases;
   }
-  EXPECT_GT(cases, 40);
+  EXPECT_EQ(cases, 53);
 }
 
 TEST(SafetyWheel, TheCurveKeepsToTheModelBetweenItsRows) {

@@ -92,7 +92,7 @@ TEST(BenchCommand, OmplsOwnReaderTakesTheLogs) {
 }
 
 TEST(BenchCommand, RanksOfMpiGiveWhatOneProcessGives) {
-  if (!hasMpi()) GTEST_SKIP() << "built without Boost.MPI, or mpirun is not installed";
+  TALUS_REQUIRE_MPI();
   const Folder folder;
   const std::string call = std::string(TALUS_PROGRAM) + " bench " + room(folder) +
                            " --planners field --runs 2 --json -o " + folder / "out";
@@ -130,11 +130,9 @@ TEST(BenchCommand, ACancelledCampaignKeepsWhatIsDone) {
 }
 
 TEST(BenchCommand, ACancelledCampaignOfRanksKeepsWhatIsDone) {
-  if (!hasMpi()) GTEST_SKIP() << "built without Boost.MPI, or mpirun is not installed";
+  TALUS_REQUIRE_MPI();
   const Folder folder;
-  std::string call =
-      "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 timeout --foreground -s INT 5 "
-      "mpirun --oversubscribe -np 2 " TALUS_PROGRAM;
+  std::string call = mpirun(2, "timeout --foreground -s INT 5 ") + TALUS_PROGRAM;
   for (const std::string& word : longCampaign(folder)) call += " '" + word + "'";
   EXPECT_NE(std::system((call + " > " + (folder / "said.txt") + " 2>&1").c_str()), 0);
   expectTheFastRunsKept(folder);

@@ -3,6 +3,7 @@
 #include <talus/cli/draw/page.hpp>
 
 #include "example_scene.hpp"
+#include "requirement.hpp"
 #include "run_program.hpp"
 
 namespace talus::cli {
@@ -17,11 +18,10 @@ struct Shown {
   std::string console;
 };
 
-#ifdef TALUS_CHROMIUM
 Shown show(const std::string& html) {
   const Folder folder;
   const std::string path = folder.write("page.html", html);
-  const std::string line = std::string("HOME='") + folder.path().string() + "' '" TALUS_CHROMIUM "'" +
+  const std::string line = std::string("HOME='") + folder.path().string() + "' chromium" +
                            " --headless --no-sandbox --disable-gpu --disable-quic --no-first-run"
                            " --disable-background-networking --disable-component-update --disable-sync"
                            " --disable-dev-shm-usage --enable-logging=stderr --virtual-time-budget=4000"
@@ -31,7 +31,6 @@ Shown show(const std::string& html) {
   EXPECT_EQ(std::system(line.c_str()), 0);  // NOLINT(cert-env33-c)
   return {fileContent(folder / "dom"), fileContent(folder / "console")};
 }
-#endif
 
 bool ready(const Shown& shown) {
   return shown.dom.find("data-state=\"ready\"") != std::string::npos;
@@ -71,9 +70,7 @@ TEST(Page, EscapesWhatTheUserNamed) {
 }
 
 TEST(Page, DrawsMapProfilesAndSummary) {
-#ifndef TALUS_CHROMIUM
-  GTEST_SKIP() << "no chromium";
-#else
+  TALUS_REQUIRE(test::installed("chromium"), "chromium is not installed");
   const Shown shown = show(page(exampleScene()));
   EXPECT_TRUE(ready(shown)) << shown.console;
   EXPECT_TRUE(bodyHas(shown, "alt=\"hillshade\""));
@@ -83,13 +80,10 @@ TEST(Page, DrawsMapProfilesAndSummary) {
   EXPECT_TRUE(bodyHas(shown, "<th>energy</th><td>54 kJ (15 Wh)"));
   EXPECT_TRUE(bodyHas(shown, "leaflet-control-scale-line"));
   EXPECT_THAT(shown.console, Not(HasSubstr("CONSOLE"))) << "the page complains";
-#endif
 }
 
 TEST(Page, PointingAtTheProfileMarksThePlaceOnTheMap) {
-#ifndef TALUS_CHROMIUM
-  GTEST_SKIP() << "no chromium";
-#else
+  TALUS_REQUIRE(test::installed("chromium"), "chromium is not installed");
   const Shown shown = show(played(exampleScene(), R"(
     const svg = document.querySelector("#charts svg"), box = svg.getBoundingClientRect();
     svg.dispatchEvent(new MouseEvent("mousemove", {bubbles: true, clientX: box.left + box.width / 2, clientY: box.top + 60}));
@@ -97,13 +91,10 @@ TEST(Page, PointingAtTheProfileMarksThePlaceOnTheMap) {
   EXPECT_TRUE(ready(shown)) << shown.console;
   EXPECT_TRUE(bodyHas(shown, "data-dots=\"1\""));
   EXPECT_TRUE(bodyMatches(shown, "id=\"reading\"[^>]*>2[0-9][0-9]\\.[0-9] m from the start"));
-#endif
 }
 
 TEST(Page, PointingAtTheRouteMarksTheProfile) {
-#ifndef TALUS_CHROMIUM
-  GTEST_SKIP() << "no chromium";
-#else
+  TALUS_REQUIRE(test::installed("chromium"), "chromium is not installed");
   const Shown shown = show(played(exampleScene(), R"(
     const rule = () => document.querySelector("#charts .mark-rule:last-of-type line").getAttribute("transform");
     const path = document.querySelector("path.leaflet-interactive"), box = path.getBoundingClientRect();
@@ -115,18 +106,14 @@ TEST(Page, PointingAtTheRouteMarksTheProfile) {
     }, 200);)"));
   EXPECT_TRUE(bodyMatches(shown, "data-reading=\"2[0-9][0-9]\\.[0-9] m from the start")) << shown.console;
   EXPECT_TRUE(bodyMatches(shown, "data-rule=\"translate\\([1-9]"));
-#endif
 }
 
 TEST(Page, OfAMapWithoutARouteHasNoProfiles) {
-#ifndef TALUS_CHROMIUM
-  GTEST_SKIP() << "no chromium";
-#else
+  TALUS_REQUIRE(test::installed("chromium"), "chromium is not installed");
   const Shown shown = show(page(sceneOf(exampleMap(), {.title = "map"})));
   EXPECT_TRUE(ready(shown)) << shown.console;
   EXPECT_TRUE(bodyHas(shown, "alt=\"slope\""));
   EXPECT_TRUE(bodyMatches(shown, "id=\"profiles\"[^>]*hidden"));
-#endif
 }
 
 }  // namespace

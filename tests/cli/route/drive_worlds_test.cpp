@@ -61,7 +61,7 @@ TEST(DriveWorlds, AFailedWorldIsNamedAndLeftOutUnderEveryBelief) {
 }
 
 TEST(DriveWorlds, RanksOfMpiGiveWhatOneProcessGives) {
-  if (!hasMpi()) GTEST_SKIP() << "built without Boost.MPI, or mpirun is not installed";
+  TALUS_REQUIRE_MPI();
   const Folder folder;
   const std::string site = folder.write("flat.asc", asciiGrid(30, 20, [](int, int) { return 0.0; }));
   const std::string truth = folder.write(

@@ -63,7 +63,7 @@ TEST(PlanPairs, WritesATable) {
 }
 
 TEST(PlanPairs, RanksOfMpiGiveWhatOneProcessGives) {
-  if (!hasMpi()) GTEST_SKIP() << "built without Boost.MPI, or mpirun is not installed";
+  TALUS_REQUIRE_MPI();
   const Folder folder;
   const auto answer = [&](const std::string& before) {
     const std::string file = folder / "answer.csv";

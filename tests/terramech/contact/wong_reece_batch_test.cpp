@@ -6,7 +6,7 @@
 
 #include <talus/terramech/contact/wong_reece_batch.hpp>
 
-#include "reference_table.hpp"
+#include "reference/reference_table.hpp"
 
 namespace talus::terramech {
 namespace {
@@ -69,10 +69,9 @@ TEST(WongReeceBatch, AgreesWithTheGeneralSolver) {
 }
 
 TEST(WongReeceBatch, AgreesWithTheReferenceCases) {
-  if (test::referenceFolder().empty()) GTEST_SKIP() << "TALUS_REFERENCE is not set";
-  auto rows = test::readTable(test::referenceFolder() + "/forward_cases.csv");
+  const auto rows = test::referenceTable("equilibria");
   std::vector<WheelCase> cases;
-  for (auto& row : rows)
+  for (const auto& row : rows)
     cases.push_back({row["cohesion_Pa"], row["friction_angle_rad"], row["sinkage_exponent"],
                      row["sinkage_modulus"], row["shear_modulus_m"], row["c1"], row["c2"],
                      row["wheel_radius_m"], row["wheel_width_m"], row["load_N"], row["slip"]});

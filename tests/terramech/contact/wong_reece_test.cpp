@@ -7,12 +7,12 @@
 #include <talus/terramech/contact/shear_displacement.hpp>
 #include <talus/terramech/contact/wong_reece.hpp>
 
-#include "reference_table.hpp"
+#include "reference/reference_table.hpp"
 
 namespace talus::terramech {
 namespace {
 
-Soil soilOf(test::Row& row) {
+Soil soilOf(const test::ReferenceRow& row) {
   return {.name = "case",
           .cohesion_Pa = row["cohesion_Pa"],
           .friction_angle_rad = row["friction_angle_rad"],
@@ -67,8 +67,9 @@ ImposedContact adaptive(const Soil& soil, const Wheel& wheel, const WheelOperati
 }
 
 TEST(WongReece, AgreesWithTheReferenceCases) {
-  if (test::referenceFolder().empty()) GTEST_SKIP() << "TALUS_REFERENCE is not set";
-  for (auto row : test::readTable(test::referenceFolder() + "/forward_cases.csv")) {
+  const auto rows = test::referenceTable("equilibria");
+  EXPECT_EQ(rows.size(), 53u);
+  for (const auto& row : rows) {
     const Wheel wheel{.radius_m = row["wheel_radius_m"], .width_m = row["wheel_width_m"]};
     const WheelForces got = equilibrium(soilOf(row), wheel, {.load_N = row["load_N"], .slip = row["slip"]});
     // Closed form: independent adaptive quadrature, printed to 1e-8.

@@ -2,6 +2,7 @@
 
 #include <talus/terramech/io/telemetry_reader.hpp>
 
+#include "requirement.hpp"
 #include "temporary_file.hpp"
 
 namespace talus::terramech {
@@ -110,7 +111,7 @@ TEST(TelemetryReader, StopsAndReportsWhenWatched) {
 
 TEST(TelemetryReader, MeasuredFilesAreRead) {
   const char* folder = std::getenv("TALUS_MEASURED_DATA");
-  if (!folder) GTEST_SKIP() << "TALUS_MEASURED_DATA is not set";
+  TALUS_REQUIRE(folder != nullptr, "TALUS_MEASURED_DATA is not set");
   const Telemetry ding = readTelemetry(std::string(folder) + "/single_wheel_digitised/points.csv");
   EXPECT_EQ(ding.size() + ding.rejected.size(), 11U);
   const Telemetry cmu = readTelemetry(std::string(folder) + "/cmu_testbed/runs.csv");

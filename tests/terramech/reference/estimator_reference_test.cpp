@@ -1,0 +1,105 @@
+#include <cmath>
+
+#include <talus/terramech/estimate/iagnemma.hpp>
+#include <talus/terramech/estimate/linear_offset.hpp>
+#include <talus/terramech/estimate/shear_modulus.hpp>
+#include <talus/terramech/estimate/sojourner.hpp>
+
+#include "estimator_cases.hpp"
+
+// Closed form: every intermediate and result of the linear estimators by an independent implementation.
+// Tolerance: the coefficients are closed forms, 1e-10; least squares loses digits by its condition, 1e-7.
+namespace talus::terramech {
+namespace {
+
+using test::estimatorCases;
+using test::sampleOf;
+using test::samplesOf;
+
+void expectClose(double got, double expected, double relative) {
+  EXPECT_NEAR(got, expected, relative * (1.0 + std::abs(expected)));
+}
+
+TEST(EstimatorReference, Iagnemma) {
+  for (const auto& c : estimatorCases()) {
+    MohrCoulombLine line;
+    for (const auto& row : c.rows) {
+      const StressPair pair = iagnemmaPair(c.wheel(), sampleOf(row), c.shearModulus_m());
+      const PeakStresses peak = trianglePeaks(c.wheel(), sampleOf(row));
+      expectClose(pair.normal_Pa, row["iagnemma_normal_Pa"], 1e-10);
+      expectClose(pair.shear_Pa, row["iagnemma_shear_Pa"], 1e-10);
+      expectClose(peak.normal_Pa, row["peak_normal_Pa"], 1e-10);
+      expectClose(peak.shear_Pa, row["peak_shear_Pa"], 1e-10);
+      line.add(pair);
+    }
+    expectClose(line.estimate().cohesion_Pa, c.results["iagnemma_cohesion_Pa"], 1e-7);
+    expectClose(line.estimate().tan_friction, c.results["iagnemma_tan_friction"], 1e-7);
+  }
+}
+
+TEST(EstimatorReference, LinearOffset) {
+  for (const auto& c : estimatorCases()) {
+    MohrCoulombLine simplified;
+    LinearOffsetFit whole;
+    for (const auto& row : c.rows) {
+      const LinearOffsetCoefficients m = linearOffset(c.wheel(), sampleOf(row), c.shearModulus_m());
+      expectClose(m.m1, row["m1"], 1e-10);
+      expectClose(m.m3_Pa, row["m3_Pa"], 1e-10);
+      expectClose(m.m4_Pa, row["m4_Pa"], 1e-10);
+      simplified.add(m.pair());
+      whole.add(m);
+    }
+    expectClose(simplified.estimate().cohesion_Pa, c.results["offset_cohesion_Pa"], 1e-7);
+    expectClose(simplified.estimate().tan_friction, c.results["offset_tan_friction"], 1e-7);
+    expectClose(whole.estimate().cohesion_Pa, c.results["offset_whole_cohesion_Pa"], 1e-6);
+    expectClose(whole.estimate().tan_friction, c.results["offset_whole_tan_friction"], 1e-6);
+  }
+}
+
+TEST(EstimatorReference, LinearOffsetStresses) {
+  for (const auto& c : estimatorCases()) {
+    const ShearSoil soil{.cohesion_Pa = c.results["offset_cohesion_Pa"],
+                         .shear_modulus_m = c.shearModulus_m()};
+    for (const auto& row : c.rows) {
+      const LinearOffsetStresses s = linearOffsetStresses(c.wheel(), sampleOf(row), soil);
+      expectClose(s.sigma_m_Pa, row["sigma_m_Pa"], 1e-9);
+      expectClose(s.tau_m_Pa, row["tau_m_Pa"], 1e-9);
+      expectClose(s.tau_offset_Pa, row["tau_offset_Pa"], 1e-9);
+      expectClose(linearOffsetDrawbarPull_N(c.wheel(), sampleOf(row), soil), row["drawbar_pull_N"], 1e-9);
+    }
+  }
+}
+
+TEST(EstimatorReference, Sojourner) {
+  for (const auto& c : estimatorCases()) {
+    MohrCoulombLine line;
+    for (const auto& row : c.rows) {
+      const StressPair pair = sojournerPair(c.wheel(), sampleOf(row));
+      expectClose(pair.normal_Pa, row["sojourner_normal_Pa"], 1e-10);
+      expectClose(pair.shear_Pa, row["sojourner_shear_Pa"], 1e-10);
+      line.add(pair);
+    }
+    expectClose(line.estimate().cohesion_Pa, c.results["sojourner_cohesion_Pa"], 1e-7);
+    expectClose(line.estimate().tan_friction, c.results["sojourner_tan_friction"], 1e-7);
+  }
+}
+
+TEST(EstimatorReference, ShearModulusByErrorMinimisation) {
+  for (const auto& c : estimatorCases()) {
+    for (const auto& row : c.modulus_errors)
+      expectClose(modulusError_Pa(c.wheel(), samplesOf(c), row["shear_modulus_m"]), row["error_Pa"], 1e-7);
+    const ModulusEstimate best = modulusByErrorMinimisation(c.wheel(), samplesOf(c));
+    // The reference searched to 1e-5 or so; the criterion's value is flat there.
+    EXPECT_NEAR(best.shear_modulus_m, c.results["error_modulus_m"], 1e-5 * c.results["error_modulus_m"]);
+    expectClose(best.error, c.results["error_minimum_Pa"], 1e-5);
+  }
+}
+
+TEST(EstimatorReference, EightSoilsOfTenReadings) {
+  const auto cases = estimatorCases();
+  EXPECT_EQ(cases.size(), 8u);
+  for (const auto& c : cases) EXPECT_EQ(c.rows.size() + c.modulus_errors.size(), 19u);
+}
+
+}  // namespace
+}  // namespace talus::terramech
