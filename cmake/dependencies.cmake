@@ -35,7 +35,7 @@ if(TALUS_OFFLINE)
     set(TALUS_MPI ON)
   endif()
 endif()
-add_feature_info(MPI TALUS_MPI "talus bench over several ranks (libboost-mpi-dev, libopenmpi-dev)")
+add_feature_info("MPI ranks" TALUS_MPI "campaigns over several ranks (libboost-mpi-dev, libopenmpi-dev)")
 
 if(TALUS_TESTS)
   find_package(GTest 1.12 QUIET)

@@ -22,8 +22,8 @@ struct JobOutcome {
 /// results do not depend on how many there are.
 class Campaign {
  public:
-  /// Joins the MPI run that the process was started in, if any. Throws std::invalid_argument where the launcher belongs
-  /// to another MPI, so that its ranks would not know of each other.
+  /// Joins the MPI run that the process was started in, if any. Throws std::invalid_argument where the
+  /// launcher belongs to another MPI, so that its ranks would not know of each other.
   Campaign();
   ~Campaign();
   Campaign(const Campaign&) = delete;

@@ -26,7 +26,8 @@ TEST(SafetyWheel, ReferenceCases) {
         soil.shear_modulus_m >> soil.c1 >> soil.c2 >> wheel.radius_m >> wheel.width_m >> wheel.load_N >>
         wheel.slip >> sinkage_m >> entry >> torque_Nm >> pull_N;
     const WheelAnswer a = drive(soil, wheel);
-    // Closed form: equilibria.csv by independent quadrature, to 1e-8; Simpson's rule stops at 1e-7 of each piece.
+    // Closed form: equilibria.csv by independent quadrature, to 1e-8; Simpson's rule stops at 1e-7 of each
+    // piece.
     EXPECT_NEAR(a.sinkage_m, sinkage_m, 1e-6 * wheel.radius_m) << line;
     EXPECT_NEAR(a.torque_Nm, torque_Nm, 1e-5 * wheel.load_N * wheel.radius_m) << line;
     EXPECT_NEAR(a.drawbar_pull_N, pull_N, 1e-5 * wheel.load_N) << line;

@@ -21,7 +21,8 @@ inline bool runsEveryTest() {
 
 }  // namespace talus::test
 
-/// What a test needs and not every machine has. Without it the test is skipped, in CI it fails; both say what is missing.
+/// What a test needs and not every machine has. Without it the test is skipped, in CI it fails; both say
+/// what is missing.
 #define TALUS_REQUIRE(available, missing)                                                             \
   if (!(available)) {                                                                                 \
     if (::talus::test::runsEveryTest()) GTEST_FAIL() << (missing) << "; CI=true asks for every test"; \

@@ -35,8 +35,8 @@ Campaigned planned(const std::string& before) {
   return campaigned;
 }
 
-// Property: four processes that do not know of each other would write one file; whatever the program was built
-// with, the ranks that these variables speak of are not there to be joined.
+// Property: four processes that do not know of each other would write one file; whatever the program was
+// built with, the ranks that these variables speak of are not there to be joined.
 TEST(MpiLaunch, RanksThatCannotBeJoinedAreRefused) {
   for (const std::string variable : {"OMPI_COMM_WORLD_SIZE", "MV2_COMM_WORLD_SIZE", "PMI_SIZE"}) {
     const Campaigned refused = planned("OMPI_ALLOW_RUN_AS_ROOT=1 " + variable + "=4 ");
