@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -6,6 +7,7 @@
 #include <utility>
 
 #include <talus/costmap/drive_evidence.hpp>
+#include <talus/costmap/sensor_proof.hpp>
 #include <talus/terramech/contact/load_transfer.hpp>
 
 namespace talus::costmap {
@@ -16,8 +18,9 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 // The columns of a telemetry file as readings.
 class Rows {
  public:
-  Rows(const terramech::Telemetry& telemetry, const TraversabilityMap& map)
+  Rows(const terramech::Telemetry& telemetry, const TraversabilityMap& map, const IntakeOptions& options)
       : map_(map),
+        options_(options),
         x_(telemetry.at("x_m")),
         y_(telemetry.at("y_m")),
         load_(telemetry.at("load_N")),
@@ -30,28 +33,36 @@ class Rows {
         heading_(telemetry.find("heading_rad")),
         pull_(telemetry.find("drawbar_pull_N")),
         pass_(telemetry.find("pass_index")),
+        pose_(telemetry.find("pose_std_m")),
         wheel_(telemetry.findWords("wheel")),
         run_(telemetry.findWords("run")) {}
 
   std::size_t size() const noexcept { return x_.size(); }
 
   WheelReading reading(std::size_t i) const {
-    WheelReading r{.time_s = value(time_, i),
-                   .place = {x_[i], y_[i]},
-                   .z_m = value(z_, i),
-                   .load_N = load_[i],
-                   .slip = slip_[i],
-                   .torque_Nm = value(torque_, i),
-                   .sinkage_m = value(sinkage_, i),
-                   .gradient = std::tan(value(slope_, i)),
-                   .drawbar_pull_N = value(pull_, i),
-                   .pass = 1};
+    WheelReading r{
+        .time_s = value(time_, i),
+        .place = {x_[i], y_[i]},
+        .z_m = value(z_, i),
+        .load_N = load_[i],
+        .slip = slip_[i],
+        .torque_Nm = value(torque_, i),
+        .sinkage_m = value(sinkage_, i),
+        .gradient = std::tan(value(slope_, i)),
+        .drawbar_pull_N = value(pull_, i),
+        .pose_std_m = std::isfinite(value(pose_, i)) ? std::max(value(pose_, i), 0.0) : options_.pose_std_m,
+        .pass = 1};
     if (std::isfinite(value(pass_, i))) r.pass = static_cast<int>(value(pass_, i));
     if (std::isnan(r.gradient)) r.gradient = mapGradient(r, heading(i));
     return r;
   }
 
   double heading(std::size_t i) const { return value(heading_, i); }
+  std::string wheel(std::size_t i) const { return wheel_ ? (*wheel_)[i] : std::string(); }
+  std::string run(std::size_t i) const { return run_ ? (*run_)[i] : std::string(); }
+  // Along the heading: as the rover measured it, and as the map has it.
+  double measuredGradient(std::size_t i) const { return std::tan(value(slope_, i)); }
+  double mapGradient(std::size_t i) const { return mapGradient(reading(i), heading(i)); }
 
   // Wheel and run together name a series in time.
   std::string series(std::size_t i) const { return run(i) + '/' + wheel(i); }
@@ -74,8 +85,6 @@ class Rows {
   static double value(const std::vector<double>* column, std::size_t i) {
     return column ? (*column)[i] : kNone;
   }
-  std::string wheel(std::size_t i) const { return wheel_ ? (*wheel_)[i] : std::string(); }
-  std::string run(std::size_t i) const { return run_ ? (*run_)[i] : std::string(); }
 
   // Of the top surface: that of a floor beneath it is not known.
   double mapGradient(const WheelReading& r, double heading_rad) const {
@@ -86,8 +95,9 @@ class Rows {
   }
 
   const TraversabilityMap& map_;
+  const IntakeOptions& options_;
   const std::vector<double>&x_, &y_, &load_, &slip_;
-  const std::vector<double>*time_, *torque_, *sinkage_, *z_, *slope_, *heading_, *pull_, *pass_;
+  const std::vector<double>*time_, *torque_, *sinkage_, *z_, *slope_, *heading_, *pull_, *pass_, *pose_;
   const std::vector<std::string>*wheel_, *run_;
 };
 
@@ -134,64 +144,137 @@ Moment momentAt(const Rows& rows, std::size_t first, const terramech::Rover& rov
   return moment;
 }
 
+constexpr double kDangerSlip = 0.7;  // beyond any that a drive plans
+constexpr double kFarBelow = 2.0;    // standard deviations
+
+// Whether a reading is evidence of danger, whatever else it is suspected of.
+bool pointsToDanger(const GroundModel& model, const ClassReading& read, const WheelObservation& seen) {
+  const double z = read.reading.sinkage_m / model.rover().wheel.radius_m;
+  const double class_std = model.parts().classes[static_cast<std::size_t>(read.class_index)].pull_std;
+  const double below = model.prior(read.class_index).pull.value - seen.pull.value;
+  return read.reading.slip >= kDangerSlip || z >= model.parts().policy.sinkage_threshold ||
+         std::abs(read.reading.torque_Nm) >= model.rover().max_torque_Nm ||
+         below > kFarBelow * std::hypot(seen.pull.std, class_std);
+}
+
+ClassReading withoutTorque(ClassReading read) {
+  read.reading.torque_Nm = read.reading.sinkage_m = kNone;
+  return read;
+}
+
+// What a drive is judged by: its own rows so far, or those of a first pass.
+struct Verdict {
+  bool without_torque = false;  // torque and sinkage are off: they count only where they point to danger
+  const SensorProof* proof = nullptr;
+};
+
 // Puts the moments of a drive through watch and observer, one after the other.
 class TelemetryProcessor {
  public:
   explicit TelemetryProcessor(const TraversabilityMap& map)
       : map_(map), watch_(map.model()), observer_(map.model()) {}
 
-  // Of one wheel: why it is not believed, and what it says if it is.
+  // Of one wheel: why it is not believed, or only as evidence of danger, and what it says if it is.
   struct Result {
     WheelReading reading;
-    std::string reason;
-    WheelObservation observation;
+    std::string reason{};
+    std::optional<WheelObservation> observation{};
   };
 
-  // Calls take(row, result) for every row in order. `without_torque`: torque and sinkage are not believed.
+  // Calls take(row, result) for every row in order.
   template <typename Take>
-  void processRows(const Rows& rows, bool without_torque, Take&& take) {
+  void processRows(const Rows& rows, const Verdict& verdict, Take&& take) {
     for (std::size_t first = 0; first < rows.size();) {
       const Moment moment = momentAt(rows, first, map_.model().rover());
       transferred_ += moment.transferred ? moment.readings.size() : 0;
-      for (Result& result : process(rows, moment, without_torque)) take(first++, std::move(result));
+      for (Result& result : process(rows, moment, verdict)) take(first++, std::move(result));
     }
   }
 
+  Verdict verdict() const noexcept { return {watch_.biased(), &proof_}; }
   const SensorWatch& watch() const noexcept { return watch_; }
   std::size_t transferred() const noexcept { return transferred_; }
 
  private:
-  std::vector<Result> process(const Rows& rows, const Moment& moment, bool without_torque) {
+  std::vector<Result> process(const Rows& rows, const Moment& moment, const Verdict& verdict) {
     std::vector<SensorWatch::Named> named;
     for (std::size_t w = 0; w < moment.readings.size(); ++w)
       named.push_back({rows.series(moment.first + w), moment.readings[w]});
-    const auto refused = watch_.refuse(named);
+    const auto suspected = watch_.refuse(named);
     std::vector<Result> all;
-    std::vector<ClassReading> sound, believed;
+    std::vector<ClassReading> sound;
     std::vector<std::size_t> who;
     for (std::size_t w = 0; w < moment.readings.size(); ++w) {
-      Result& result = all.emplace_back(Result{moment.readings[w], {}, {}});
+      Result& result = all.emplace_back(Result{moment.readings[w]});
       const auto index = classAt(map_, result.reading);
-      if (refused[w])
-        result.reason = *refused[w];
-      else if (!index)
+      if (!index) {
         result.reason = "outside the map or on ground without a soil";
-      if (!result.reason.empty()) continue;
-      sound.push_back({*index, result.reading});
-      believed.push_back(sound.back());
-      if (without_torque) believed.back().reading.torque_Nm = believed.back().reading.sinkage_m = kNone;
-      who.push_back(w);
+      } else if (suspected[w]) {
+        result.reason = *suspected[w];
+        result.observation = danger({*index, result.reading});
+      } else {
+        sound.push_back({*index, result.reading});
+        who.push_back(w);
+      }
     }
-    for (const auto& seen : observer_.observe(sound))
+    const auto seen = observed(sound, verdict);
+    for (std::size_t i = 0; i < who.size(); ++i) {
+      Result& result = all[who[i]];
+      result.observation = seen[i];
+      prove(rows, moment.first + who[i], sound[i], seen[i]);
+      if (!seen[i])
+        result.reason = "says nothing: neither slope, nor torque with sinkage, nor drawbar pull";
+      else
+        allow(rows, moment.first + who[i], verdict, *result.observation);
+    }
+    return all;
+  }
+
+  // Of a wheel that is suspected, by itself.
+  std::optional<WheelObservation> danger(const ClassReading& read) const {
+    auto seen = observer_.observe({read}).front();
+    return seen && pointsToDanger(map_.model(), read, *seen) ? seen : std::nullopt;
+  }
+
+  // Of sound wheels together; where torque and sinkage are off, without them, but for what points to danger.
+  std::vector<std::optional<WheelObservation>> observed(const std::vector<ClassReading>& sound,
+                                                        const Verdict& verdict) {
+    auto whole = observer_.observe(sound);
+    for (const auto& seen : whole)
       if (seen) watch_.compare(*seen);
     for (const auto& [index, reading] : sound) watch_.compareSlip(reading.slip - asked(index, reading));
-    const auto seen = observer_.observe(believed);
-    for (std::size_t i = 0; i < who.size(); ++i)
-      if (seen[i])
-        all[who[i]].observation = *seen[i];
-      else
-        all[who[i]].reason = "says nothing: neither slope, nor torque with sinkage, nor drawbar pull";
-    return all;
+    if (!verdict.without_torque) return whole;
+    std::vector<ClassReading> without;
+    for (const ClassReading& read : sound) without.push_back(withoutTorque(read));
+    auto seen = observer_.observe(without);
+    for (std::size_t i = 0; i < seen.size(); ++i)
+      if (whole[i] && pointsToDanger(map_.model(), sound[i], *whole[i]) &&
+          (!seen[i] || whole[i]->pull.value < seen[i]->pull.value || std::isfinite(whole[i]->sinkage.std)))
+        seen[i] = whole[i];
+    return seen;
+  }
+
+  void prove(const Rows& rows, std::size_t row, const ClassReading& read,
+             const std::optional<WheelObservation>& seen) {
+    const GroundModel& model = map_.model();
+    const auto level = model.state(read.class_index, model.prior(read.class_index), 0.0);
+    proof_.take({.run = rows.run(row),
+                 .wheel = rows.wheel(row),
+                 .reading = read.reading,
+                 .measured_gradient = rows.measuredGradient(row),
+                 .map_gradient = rows.mapGradient(row),
+                 .level_slip = static_cast<double>(level.slip),
+                 .torque_pull = seen ? seen->from_torque : kNone});
+  }
+
+  // Torque and sinkage that are off raise nothing.
+  void allow(const Rows& rows, std::size_t row, const Verdict& verdict, WheelObservation& seen) const {
+    if (!verdict.proof || proof_.displaced(rows.run(row))) return;
+    const bool with_torque = std::isfinite(seen.from_torque);
+    seen.pull_may_raise =
+        verdict.proof->pullSound(rows.run(row), rows.wheel(row)) && !(with_torque && verdict.without_torque);
+    seen.sinkage_may_raise =
+        !verdict.without_torque && verdict.proof->sinkageSound(rows.run(row), rows.wheel(row));
   }
 
   // Slip of fresh ground of the class on the reading's slope; NaN where none is known or none holds it.
@@ -204,6 +287,7 @@ class TelemetryProcessor {
 
   const TraversabilityMap& map_;
   SensorWatch watch_;
+  SensorProof proof_;
   WheelObserver observer_;
   std::size_t transferred_ = 0;
 };
@@ -213,36 +297,41 @@ class TelemetryProcessor {
 struct DriveIntake::State {
   TraversabilityMap& map;
   EvidenceJournal* journal;
+  IntakeOptions options;
   TelemetryProcessor processor;
   DriveReport report{};
 
-  void put(const terramech::Telemetry& telemetry, bool without_torque);
+  void put(const terramech::Telemetry& telemetry, const Verdict& verdict);
 };
 
-void DriveIntake::State::put(const terramech::Telemetry& telemetry, bool without_torque) {
-  const Rows rows(telemetry, map);
-  processor.processRows(rows, without_torque, [&](std::size_t i, TelemetryProcessor::Result&& result) {
-    if (result.reason.empty() && !map.learn(result.observation))
+void DriveIntake::State::put(const terramech::Telemetry& telemetry, const Verdict& verdict) {
+  const Rows rows(telemetry, map, options);
+  processor.processRows(rows, verdict, [&](std::size_t i, TelemetryProcessor::Result&& result) {
+    bool accepted = result.observation.has_value();
+    if (accepted && !map.learn(*result.observation)) {
+      accepted = false;
       result.reason = "no ground to learn about there";
+    }
     const JournalRow row{.source = telemetry.source,
                          .line = static_cast<std::int64_t>(telemetry.lines[i]),
-                         .accepted = result.reason.empty(),
+                         .accepted = accepted,
                          .reason = result.reason,
                          .reading = rows.reading(i),
-                         .observation = result.observation};
+                         .observation = result.observation.value_or(WheelObservation{})};
     if (journal) journal->append(row);
-    ++(row.accepted ? report.used : report.rejected);
-    if (report.first_reason.empty()) report.first_reason = row.reason;
+    ++(accepted ? report.used : report.rejected);
+    if (accepted && row.observation.pull_may_raise) ++report.raising;
+    if (!accepted && report.first_reason.empty()) report.first_reason = row.reason;
   });
 }
 
-DriveIntake::DriveIntake(TraversabilityMap& map, EvidenceJournal* journal)
-    : state_(std::make_unique<State>(State{map, journal, TelemetryProcessor(map)})) {}
+DriveIntake::DriveIntake(TraversabilityMap& map, EvidenceJournal* journal, const IntakeOptions& options)
+    : state_(std::make_unique<State>(State{map, journal, options, TelemetryProcessor(map)})) {}
 
 DriveIntake::~DriveIntake() = default;
 
 void DriveIntake::add(const terramech::Telemetry& telemetry) {
-  state_->put(telemetry, state_->processor.watch().biased());
+  state_->put(telemetry, state_->processor.verdict());
 }
 
 DriveReport DriveIntake::report() const {
@@ -256,13 +345,14 @@ DriveReport DriveIntake::report() const {
   return report;
 }
 
-DriveReport addDrive(TraversabilityMap& map, const terramech::Telemetry& telemetry,
-                     EvidenceJournal* journal) {
-  // The first pass: is there a bias in torque or sinkage that all ground shares?
+DriveReport addDrive(TraversabilityMap& map, const terramech::Telemetry& telemetry, EvidenceJournal* journal,
+                     const IntakeOptions& options) {
+  // The first pass: do torque and sinkage have a bias that all ground shares, and which sensors prove sound?
   TelemetryProcessor first_pass(map);
-  first_pass.processRows(Rows(telemetry, map), false, [](std::size_t, TelemetryProcessor::Result&&) {});
-  DriveIntake intake(map, journal);
-  intake.state_->put(telemetry, first_pass.watch().biased());
+  first_pass.processRows(Rows(telemetry, map, options), {false, nullptr},
+                         [](std::size_t, TelemetryProcessor::Result&&) {});
+  DriveIntake intake(map, journal, options);
+  intake.state_->put(telemetry, first_pass.verdict());
   map.publishAll();
   return intake.report();
 }
@@ -272,6 +362,7 @@ DriveReport replay(TraversabilityMap& map, const EvidenceJournal& journal) {
   journal.forEach([&](const JournalRow& row) {
     const bool used = row.accepted && map.learn(row.observation);
     ++(used ? report.used : report.rejected);
+    if (used && row.observation.pull_may_raise) ++report.raising;
   });
   map.publishAll();
   return report;

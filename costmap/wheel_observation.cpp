@@ -101,7 +101,8 @@ std::optional<WheelObservation> WheelObserver::observed(const Wheel& w, double d
                        .pull = {},
                        .sinkage = {},
                        .demand = w.expected.gradient + departure,
-                       .from_torque = w.from_torque};
+                       .from_torque = w.from_torque,
+                       .pose_std_m = reading.pose_std_m};
   Estimate seen = w.by_torque;
   if (known(departure))
     seen = known(seen.std) ? combined(bySlope(w, departure, own), seen) : bySlope(w, departure, own);
@@ -110,6 +111,10 @@ std::optional<WheelObservation> WheelObserver::observed(const Wheel& w, double d
     seen = bySlope(w, pull, 0.0);
   }
   if (!known(seen.std)) return std::nullopt;
+  // What says that ground is stronger than its class is the slope: neither torque and sinkage, nor one wheel
+  // against its fellows, goes beyond that.
+  const double by_slope = known(departure) ? departure + std::min(own, std::max(-departure, 0.0)) : 0.0;
+  if (!known(reading.drawbar_pull_N)) seen.value = std::min(seen.value, std::max(by_slope, 0.0));
   const GroundBelief prior = model_.prior(w.read.class_index);
   out.pull = {prior.pull.value + seen.value, std::hypot(seen.std, kRutDoubt * w.rut_gain)};
   out.sinkage = {prior.sinkage.value, std::numeric_limits<double>::infinity()};

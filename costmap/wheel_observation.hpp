@@ -20,6 +20,7 @@ struct WheelReading {
   double sinkage_m = 0.0;
   double gradient = 0.0;        ///< of the ground along the heading, rise over run
   double drawbar_pull_N = 0.0;  ///< where a test stand measures it
+  double pose_std_m = 0.0;      ///< how well the place is known
   int pass = 1;  ///< how many wheels rolled here, this one included: from the second on it is in a rut
 };
 
@@ -49,6 +50,10 @@ struct WheelObservation {
   Estimate sinkage;          ///< sinkage over radius [-]; std is infinite where nothing was measured
   double demand = 0.0;       ///< drawbar pull over load that the slope asked for [-]
   double from_torque = 0.0;  ///< drawbar pull over load by torque and sinkage [-]; NaN without them
+  double pose_std_m = 0.0;   ///< how well the place is known, one standard deviation
+  bool pull_may_raise =
+      false;  ///< whether the sensors behind the pull are known to be sound; else it can only lower the belief
+  bool sinkage_may_raise = false;  ///< the same of the sinkage
 };
 
 /// Turns readings into observations of fresh ground at the reference slip, by two ways that are weighed by

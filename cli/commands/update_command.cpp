@@ -22,6 +22,7 @@ struct Options {
   std::string output;
   std::string journal;
   bool replay = false;
+  costmap::IntakeOptions intake;
 };
 
 void bind(CLI::App& command, Options& options) {
@@ -32,6 +33,11 @@ void bind(CLI::App& command, Options& options) {
   command.add_option("-o,--output", options.output, "map to write")->required()->type_name("MAP2.ot");
   auto* journal = command.add_option("--journal", options.journal, "journal of every row, kept or refused")
                       ->type_name("EVIDENCE.db");
+  command
+      .add_option("--pose-error", options.intake.pose_std_m,
+                  "standard deviation of x_m and y_m where there is no column pose_std_m [m]")
+      ->check(CLI::Range(0.0, 10.0))
+      ->capture_default_str();
   command.add_flag("--replay", options.replay, "put the whole journal into the map instead of a file")
       ->needs(journal);
 }
@@ -98,7 +104,7 @@ int run(const Options& options, Context& context) {
     unreadable = telemetry.rejected.size();
     for (const auto& row : telemetry.rejected)
       context.warn(fmt::format("{}:{}: {}", options.telemetry, row.line, row.reason));
-    report = costmap::addDrive(map, telemetry, journal.get());
+    report = costmap::addDrive(map, telemetry, journal.get(), options.intake);
     if (report.used == 0)
       throw InputError({options.telemetry, fmt::format("none of its {} rows could be used", report.rejected),
                         "the first: " + report.first_reason});
@@ -111,12 +117,15 @@ int run(const Options& options, Context& context) {
   if (context.json)
     printJson({{"rows_used", report.used},
                {"rows_rejected", rejected},
+               {"rows_raising", report.raising},
                {"cells_changed", difference.cells},
                {"categories_changed", difference.categories},
                {"findings", report.findings}});
   else
-    print(fmt::format("rows        {} used, {} rejected\ncells       {} changed, {} of them their category\n",
-                      report.used, rejected, difference.cells, difference.categories));
+    print(
+        fmt::format("rows        {} used, {} rejected; {} may raise a belief\ncells       {} changed, {} of "
+                    "them their category\n",
+                    report.used, rejected, report.raising, difference.cells, difference.categories));
   return Exit::kDone;
 }
 

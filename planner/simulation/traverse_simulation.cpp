@@ -306,8 +306,11 @@ class Drive {
       const auto cell = map_.grid().cellAt(reading.place);
       if (cell && map_.classIndex(*cell) >= 0) together.push_back({map_.classIndex(*cell), reading});
     }
-    for (const auto& seen : observer_.observe(together))
-      if (seen) map_.learn(*seen);
+    for (auto& seen : observer_.observe(together)) {
+      if (!seen) continue;
+      seen->pull_may_raise = seen->sinkage_may_raise = true;  // these sensors have noise and no faults
+      map_.learn(*seen);
+    }
     map_.publish();
     if (options_.on_learned) options_.on_learned(result_.time_s);
     return true;
