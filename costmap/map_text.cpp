@@ -218,8 +218,11 @@ void visitPolicy(V& v, P& policy) {
   v("policy.sinkage_threshold", policy.sinkage_threshold);
   v("policy.sinkage_critical", policy.sinkage_critical);
   v("policy.max_immobilisation", policy.max_immobilisation);
+  v("policy.pose_error_m", policy.pose_error_m);
   v("policy.time_weight_W", policy.time_weight_W);
   v("policy.entrapment", policy.entrapment);
+  v("policy.blind_entrapment", policy.blind_entrapment);
+  v("policy.blind", policy.blind);
   v("policy.risk_weight_J", policy.risk_weight_J);
   v("policy.correlation_length_m", policy.correlation_length_m);
 }

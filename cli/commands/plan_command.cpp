@@ -141,16 +141,17 @@ planner::Problem problemOf(const PlanOptions& options, const Ground& ground, con
 }
 
 // How the soil is drawn along a route.
-planner::RouteRiskOptions soilOf(const PlanOptions& options, std::uint64_t seed) {
-  return {.correlation_length_m = options.ground.policy.correlation_length_m, .seed = seed};
+planner::RouteRiskOptions soilOf(const planner::Problem& problem) {
+  planner::RouteRiskOptions options = planner::riskOptions(problem.map->cost());
+  options.seed = problem.seed;
+  return options;
 }
 
 planner::Plan planOnce(const planner::Problem& problem, planner::NamedPlanner& planner,
                        const PlanOptions& options, const std::optional<planner::Chassis>& chassis) {
   const auto once = [&](const planner::Problem& p) {
-    return options.max_risk > 0.0
-               ? planner::planWithinRisk(p, planner, options.max_risk, soilOf(options, p.seed))
-               : planner.plan(p);
+    return options.max_risk > 0.0 ? planner::planWithinRisk(p, planner, options.max_risk, soilOf(p))
+                                  : planner.plan(p);
   };
   return chassis ? planner::planOnChassis(problem, *chassis, once) : once(problem);
 }
@@ -190,8 +191,9 @@ void writeFiles(const PlanOptions& options, const Ground& ground, const Route& r
 }
 
 // The risk once more, with soil that is alike nearby.
-nlohmann::ordered_json riskJson(const Route& route, const PlanOptions& options, const Context& context) {
-  const planner::RouteRiskOptions drawn = soilOf(options, context.seed);
+nlohmann::ordered_json riskJson(const Route& route, const PlanOptions& options,
+                                const planner::Problem& problem) {
+  const planner::RouteRiskOptions drawn = soilOf(problem);
   const planner::RouteRisk risk = planner::routeRisk(route, drawn);
   return {{"limit", options.max_risk},
           {"immobilisation", route.vertices.back().immobilisation_risk},
@@ -282,7 +284,7 @@ int finish(const PlanOptions& options, const Planned& planned, const planner::An
   if (context.json) {
     auto json = summaryJson(route);
     if (options.goals.size() > 1) json["goal"] = options.goals[planned.plan.goal];
-    if (options.max_risk > 0.0) json["risk"] = riskJson(route, options, context);
+    if (options.max_risk > 0.0) json["risk"] = riskJson(route, options, planned.problem);
     json["seconds"] = {{"load", seconds.load_s}, {"costmap", seconds.costmap_s}, {"plan", seconds.plan_s}};
     printJson(json);
   } else {

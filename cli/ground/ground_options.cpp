@@ -59,6 +59,20 @@ void addPolicy(CLI::App& command, costmap::DrivePolicy& policy) {
   command.add_option("--time-weight", policy.time_weight_W, "cost of time, joules per second")
       ->type_name("W")
       ->capture_default_str();
+  command
+      .add_option("--entrapment", policy.entrapment,
+                  "share of the places with too weak soil that hold a rover that watches its slip")
+      ->type_name("SHARE")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  command.add_flag("--blind", policy.blind,
+                   "the drive is not watched: every place with too weak soil holds the rover");
+  command
+      .add_option("--pose-error", policy.pose_error_m,
+                  "how far the rover may be off its route: soil is judged that much wider")
+      ->type_name("METRES")
+      ->check(CLI::Range(0.0, 100.0))
+      ->capture_default_str();
   command.add_option("--risk-weight", policy.risk_weight_J, "cost of losing the rover, joules")
       ->type_name("J")
       ->capture_default_str();

@@ -6,6 +6,7 @@
 #include <talus/costmap/drive_state.hpp>
 #include <talus/maps/elevation_map.hpp>
 #include <talus/planner/check/annotation.hpp>
+#include <talus/planner/check/route_risk.hpp>
 #include <talus/planner/route/motion_cost.hpp>
 
 namespace talus::planner {
@@ -135,6 +136,10 @@ class Annotator {
       vertex.torque_Nm = static_cast<double>(state_.torque_Nm);
       vertex.drawbar_pull_margin = static_cast<double>(state_.pull_margin);
       vertex.category = state_.category;
+      vertex.hazard_per_m = std::isfinite(state_.risk_per_m) ? static_cast<double>(state_.risk_per_m) : 0.0;
+      vertex.soil_class = state_.class_index;
+      const auto& shared = input_.map.cost().doubt().shared;
+      vertex.shared_doubt = state_.class_index < shared.size() ? shared[state_.class_index] : 0.0;
     }
     count(vertex);
     return vertex;
@@ -194,6 +199,20 @@ void driveAlong(const PosePath& drive, const costmap::CostGrid& map, Annotator& 
 
 }  // namespace
 
+namespace {
+
+// Vertices hold the additive hazard until here: right where nothing is known of how doubts hang together.
+void tellRisk(Route& route, const costmap::DriveCost& cost) {
+  constexpr int kWorlds = 400;  // a few per cent of the risk
+  if (!(cost.doubt().correlation_length_m > 0.0)) return;
+  RouteRiskOptions options = riskOptions(cost);
+  options.worlds = kWorlds;
+  const std::vector<double> risk = riskAlong(route, options);
+  for (std::size_t i = 0; i < risk.size(); ++i) route.vertices[i].immobilisation_risk = risk[i];
+}
+
+}  // namespace
+
 double gapOf(double cost, double lower_bound) noexcept {
   if (lower_bound > 0.0) return cost / lower_bound - 1.0;
   return cost > 0.0 ? std::numeric_limits<double>::infinity() : 0.0;
@@ -217,6 +236,7 @@ Route annotated(const Plan& plan, const AnnotationInput& input) {
   route.summary.lower_bound = plan.lower_bound_J;
   route.summary.gap = gapOf(plan.cost_J, plan.lower_bound_J);
   route.vertices = std::move(annotator.vertices);
+  tellRisk(route, input.map.cost());
   return route;
 }
 
