@@ -10,7 +10,7 @@ constexpr double kPullStep = 0.02;
 constexpr double kPullStdUnit = 0.02;
 constexpr double kSinkageStep = 0.1;
 constexpr double kSame = 1e-6;  // of a step: what has been rounded stays
-constexpr int kLeastOctave = -1, kMostOctave = 9;
+constexpr int kMostOctave = 8;
 constexpr double kMostSteps = 1e6;
 
 int bounded(double steps) {
@@ -29,9 +29,9 @@ int stepsAbove(double value, double step, int level) {
 
 int octavesAbove(double value, int level) {
   const double octave = std::log2(std::max(value, 1e-6) / kPullStdUnit);
-  const int every = level + 1;
+  const int every = level < 2 ? 1 : 2;
   const int up = static_cast<int>(std::ceil(octave / every - kSame)) * every;
-  return std::clamp(up, kLeastOctave, kMostOctave / every * every);
+  return std::clamp(up, every == 1 ? -1 : 0, kMostOctave);
 }
 
 }  // namespace

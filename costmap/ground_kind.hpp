@@ -8,7 +8,7 @@ namespace talus::costmap {
 
 /// A belief in whole steps, rounded towards danger: pull down in steps of 0.02, its standard deviation up to a
 /// power of two of 0.02, sinkage over radius up in steps of 0.1. At level n steps are 2^n times as large, and
-/// those of the deviation n + 1 octaves. What is rounded twice, to the same level or a higher one, is rounded
+/// those of the deviation two octaves from level 2 on. What is rounded twice, to the same level or a higher one, is rounded
 /// as at once.
 struct GroundKind {
   static constexpr int kCoarsest = 3;  ///< highest level

@@ -323,6 +323,7 @@ void TraversabilityMap::publish() {
 }
 
 void TraversabilityMap::publishAll() {
+  curves_.restart(0);
   learned_.clear();
   refused_ = {everywhere()};
   publish({everywhere()});

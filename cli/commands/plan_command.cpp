@@ -272,12 +272,31 @@ int runPairs(const PlanOptions& options, Context& context) {
   return Exit::kDone;
 }
 
+// A route of ours that the check refuses is an error of ours: it is kept to be sent, and none is handed out.
+int refuseOwn(const PlanOptions& options, const Planned& planned, const Route& route,
+              const planner::Violation& violation, const Context& context) {
+  const std::string file = options.output.empty() ? "refused.geojson" : options.output + ".refused.geojson";
+  const auto document = routeGeoJson(route, planned.ground.map.elevation(),
+                                     {.files = planned.ground.files, .seed = context.seed});
+  writeFile(file, document.dump() + "\n");
+  Route none;
+  none.status = RouteStatus::NoRoute;
+  none.summary.planner = route.summary.planner;
+  none.reason = fmt::format(
+      "no route: the check refuses the one that '{}' found at {:.2f},{:.2f}: {}; please "
+      "report it with {} and the call",
+      route.summary.planner, violation.place.x_m, violation.place.y_m, violation.reason, file);
+  return refuse(none, context);
+}
+
 // What is done with a plan, whichever way it was made.
 int finish(const PlanOptions& options, const Planned& planned, const planner::AnnotationInput& input,
            const Context& context) {
-  if (planned.plan.status == RouteStatus::Found)
-    planner::requireAllowed(planned.plan, *planned.problem.map, planned.problem.kinematics.turning_radius_m);
   const Route route = annotated(planned.plan, input);
+  if (planned.plan.status == RouteStatus::Found)
+    if (const auto refused =
+            planner::refusal(planned.plan, *planned.problem.map, planned.problem.kinematics.turning_radius_m))
+      return refuseOwn(options, planned, route, *refused, context);
   if (planned.plan.status != RouteStatus::Found) return refuse(route, context);
   writeFiles(options, planned.ground, route, context);
   const Timing seconds{planned.ground.load_s, planned.ground.build_s, planned.plan_s};

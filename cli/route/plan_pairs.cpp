@@ -44,7 +44,11 @@ Json planned(const PlacePair& pair, planner::Problem problem, planner::NamedPlan
   const planner::Plan plan = planner.plan(problem);
   if (plan.status != planner::RouteStatus::Found)
     return {{"status", planner::name(plan.status)}, {"planner", planner.name()}, {"reason", plan.reason}};
-  planner::requireAllowed(plan, *problem.map, problem.kinematics.turning_radius_m);
+  if (const auto refused = planner::refusal(plan, *problem.map, problem.kinematics.turning_radius_m))
+    return {{"status", planner::name(planner::RouteStatus::NoRoute)},
+            {"planner", planner.name()},
+            {"reason", fmt::format("the check refuses the planner's route at {},{}: {}; please report it",
+                                   refused->place.x_m, refused->place.y_m, refused->reason)}};
   const planner::Route route = annotated(plan, {.map = *problem.map,
                                                 .elevation_m = nullptr,
                                                 .planner = planner.name(),

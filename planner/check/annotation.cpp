@@ -16,7 +16,7 @@ using costmap::Direction;
 using maps::Point;
 
 // Vertices nearer together than this share of a cell are one.
-constexpr double kTogether = 1e-3;
+constexpr double kTogether = 1e-2;
 
 // Shares of a segment at which it passes from cell to cell, both ends included, sorted.
 std::vector<double> passages(const maps::Grid& grid, const Segment& motion) {
@@ -58,13 +58,13 @@ class Annotator {
                      motion.from.y_m + share * (motion.to.y_m - motion.from.y_m)};
       };
       const RouteVertex vertex = looked(at((shares[i] + shares[i - 1]) / 2), at(shares[i - 1]), heading);
-      if ((shares[i - 1] - emitted) * length_m >= kTogether * grid_.resolution_m &&
-          metres >= kTogether * grid_.resolution_m) {
+      const bool first = emitted < 0.0;
+      if (first) leaveOutNear(vertex);
+      if (first || ((shares[i - 1] - emitted) * length_m >= kTogether * grid_.resolution_m &&
+                    metres >= kTogether * grid_.resolution_m)) {
         vertices.push_back(vertex);
-        emitted = shares[i - 1];
-      } else if (emitted < 0.0) {
-        vertices.push_back(vertex);
-        emitted = 0.0;
+        emitted = std::max(shares[i - 1], 0.0);
+        if (first) turns_ = vertices.size();
       }
       spend(vertex, metres);
     }
@@ -86,7 +86,9 @@ class Annotator {
     RouteVertex vertex =
         looked(pose.place, pose.place, {std::cos(pose.heading_rad), std::sin(pose.heading_rad)});
     vertex.turn_rad = turn_rad;
+    leaveOutNear(vertex);
     vertices.push_back(vertex);
+    turns_ = vertices.size();
     spend(input_.kinematics.stop, 1.0);
     turn(turn_rad, pose.place);
   }
@@ -99,6 +101,7 @@ class Annotator {
     last.y_m = end.y_m;
     last.elevation_m = elevation(end);
     count(last);
+    leaveOutNear(last);
     vertices.push_back(last);
   }
 
@@ -145,6 +148,14 @@ class Annotator {
     return vertex;
   }
 
+  // Turns stay; where the route only enters another cell next to one, the turn is enough.
+  void leaveOutNear(const RouteVertex& vertex) {
+    const auto near = [&](const RouteVertex& other) {
+      return std::hypot(vertex.x_m - other.x_m, vertex.y_m - other.y_m) < kTogether * grid_.resolution_m;
+    };
+    while (vertices.size() > turns_ && near(vertices.back())) vertices.pop_back();
+  }
+
   void count(RouteVertex& vertex) const {
     vertex.energy_J = energy_J_;
     vertex.time_s = time_s_;
@@ -172,6 +183,7 @@ class Annotator {
 
   const AnnotationInput& input_;
   const maps::Grid& grid_;
+  std::size_t turns_ = 0;  // vertices up to the last at which the route turns, or begins
   Motion how_;
   costmap::DriveState state_;  // of the cell looked at last
   double energy_J_ = 0.0, time_s_ = 0.0, hazard_ = 0.0, length_m_ = 0.0, max_slip_ = 0.0,

@@ -40,16 +40,16 @@ TEST(GroundKind, RoundsTowardsDanger) {
 
 TEST(GroundKind, StepsAreThoseStated) {
   const GroundClass ground{.soil = testSand()};
-  // Closed form: 0.117 down to 0.10, 0.03 up to 0.04, 0.41 up to 0.5; at level 1 steps of 0.04, 4 and 0.2.
+  // Closed form: 0.117 down to 0.10, 0.03 up to 0.04, 0.41 up to 0.5; at level 2 steps of 0.08, 4 and 0.4.
   const GroundBelief belief{.pull = {0.117, 0.03}, .sinkage = {0.41, 0.1}};
   const GroundBelief fine = GroundKind::of(0, 0, belief).belief(ground);
   EXPECT_DOUBLE_EQ(fine.pull.value, 0.10);
   EXPECT_DOUBLE_EQ(fine.pull.std, 0.04);
   EXPECT_DOUBLE_EQ(fine.sinkage.value, 0.5);
-  const GroundBelief coarse = GroundKind::of(0, 0, belief, 1).belief(ground);
+  const GroundBelief coarse = GroundKind::of(0, 0, belief, 2).belief(ground);
   EXPECT_DOUBLE_EQ(coarse.pull.value, 0.08);
   EXPECT_DOUBLE_EQ(coarse.pull.std, 0.08);
-  EXPECT_NEAR(coarse.sinkage.value, 0.6, 1e-12);
+  EXPECT_NEAR(coarse.sinkage.value, 0.8, 1e-12);
 }
 
 }  // namespace

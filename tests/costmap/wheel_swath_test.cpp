@@ -38,14 +38,14 @@ TEST(WheelSwath, OneGroundStaysWhatItIs) {
   EXPECT_EQ(judged.weakest_class, 0);
 }
 
-TEST(WheelSwath, HalfTheWheelsInATrapBesidePullByTheMean) {
+TEST(WheelSwath, WheelsInATrapBesidePullByTheMean) {
   const WheelSwath swath(testRover(), 1.0, 0.0);
   Around around = all(swath, strong());
   for (int row = -swath.reach(); row <= swath.reach(); ++row) at(around, swath, {1, row}) = trap();
   const WheelSwath::Judged judged = swath.judged(around);
-  // Closed form: of four wheels two stand beyond the edge, the middle on it, whatever the heading between
-  // along and across; three never do, for the rover is alike on both sides of its middle.
-  EXPECT_NEAR(judged.belief.pull.value, 0.5 * (0.3 - 0.25), 1e-12);
+  // Closed form: the middle on the edge, one wheel stands beyond it, and where the edge runs along a diagonal of
+  // the rover the two wheels on that touch it with their width: three of four. The fourth never does.
+  EXPECT_NEAR(judged.belief.pull.value, 0.25 * 0.3 - 0.75 * 0.25, 1e-12);
   EXPECT_EQ(judged.weakest_class, 1);
   EXPECT_DOUBLE_EQ(judged.belief.sinkage.value, 0.8) << "the deepest wheel";
   EXPECT_DOUBLE_EQ(judged.belief.pull.std, 0.05) << "the greatest doubt";
