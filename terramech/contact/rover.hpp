@@ -19,7 +19,10 @@ struct Rover {
   double wheelbase_m = 0.0;              ///< first to last axle, > 0
   double track_m = 0.0;                  ///< left to right wheel centres, > 0
   double clearance_m = 0.0;              ///< ground to belly, > 0
-  double centre_of_mass_height_m = 0.0;  ///< above ground, >= 0
+  double centre_of_mass_height_m =
+      0.0;  ///< above ground, >= 0; 0: unknown, no load moves on a slope, none tips
+  double centre_of_mass_ahead_m = 0.0;   ///< of the middle of the wheelbase, within it
+  double centre_of_mass_left_m = 0.0;    ///< of the middle of the track, within it
   double max_pitch_rad = 0.35;           ///< tilt along the heading, (0, pi/2)
   double max_roll_rad = 0.35;            ///< tilt across the heading, (0, pi/2)
   double max_torque_Nm = 0.0;            ///< per wheel, > 0

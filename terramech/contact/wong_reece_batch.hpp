@@ -20,6 +20,11 @@ struct WheelCase {
   double wheel_width_m = 0.1;       ///< > 0
   double load_N = 0.0;              ///< > 0
   double slip = 0.0;                ///< [-1, 1], as WheelOperation::slip
+  double slip_angle_rad = 0.0;      ///< [-pi/2, pi/2], as WheelOperation; 0: none of what follows acts
+  double density_kg_m3 = 1600.0;    ///< > 0
+  double gravity_m_s2 = 9.80665;    ///< > 0
+  double digging_exponent = 0.4;    ///< >= 0, as Soil
+  double side_bulldozing = 1.0;     ///< >= 0, as Soil
 };
 
 /// The case of a soil, a wheel and its operation; the operation's rebound must be 0.
@@ -45,8 +50,9 @@ enum class BatchKernel {
 };
 
 /// Solves every case: `forces` gets as many entries as `cases`, every number NaN where the case has no answer
-/// (equilibrium() tells why). Agrees with equilibrium() to 1e-7 relative, drawbar pull to 1e-7 of the load.
-/// Braked wheels, slip below 0.01, and r theta_1 / K > 12 are left over. Throws
+/// (equilibrium() tells why). Agrees with equilibrium() to 1e-7 relative, drawbar pull to 1e-7 of the load;
+/// to 1e-6 at a slip angle. Left over are, straight on, braked wheels, slip below 0.01, and r theta_1 / K >
+/// 12; at a slip angle, slip below -0.9 or braked below 0.3 rad, and a way of a rim point over K > 40. Throws
 /// std::invalid_argument when the sizes differ or the machine lacks the kernel asked for. Thread-safe.
 void equilibria(std::span<const WheelCase> cases, std::span<WheelForces> forces,
                 BatchKernel kernel = BatchKernel::Best, Leftover leftover = Leftover::Equilibrium);

@@ -19,6 +19,7 @@ struct WheelState {
   double load_N = 0.0;          ///< > 0
   double slip = 0.0;            ///< [-1, 1], as the sensors give it
   double slip_angle_rad = 0.0;  ///< between wheel plane and travel
+  double gravity_m_s2 = 9.80665;  ///< of soil pushed aside
   double speed_mps = kUnknown;
   double rim_speed_mps = kUnknown;
   double time_s = kUnknown;

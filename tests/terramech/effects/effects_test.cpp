@@ -2,6 +2,7 @@
 #include <set>
 #include <string>
 
+#include <talus/terramech/contact/wong_reece.hpp>
 #include <talus/terramech/effects/effects.hpp>
 #include <talus/terramech/effects/refined_model.hpp>
 
@@ -211,6 +212,34 @@ TEST(Effects, ARoughFaceBrakesALockedWheelPushesASpinningOneAndBearsLessBesideIt
   // Property: what friction does along is lost to what it holds down (side force < 0 against the motion).
   EXPECT_LT(added(-0.7, Channel::SideForce), added(0.8, Channel::SideForce));
   EXPECT_LT(added(0.8, Channel::SideForce), 0.0);
+}
+
+TEST(Effects, OfTheSideStandInPlaceOfTheBases) {
+  RefinedModel model = base();
+  const Reading plain = predict(model, state());
+  RefinedModel bare = model;
+  bare.soil.digging_exponent = bare.soil.side_bulldozing = 0.0;
+  // Property: a form that adds nothing takes the base's term of its kind out, and no other.
+  model.effects = {with("side_bulldozing", {0.0}), with("side_slip_sinkage", {0.0})};
+  const Reading none = predict(model, state()), want = predict(bare, state());
+  EXPECT_EQ(none.side_force_N, want.side_force_N);
+  EXPECT_EQ(none.sinkage_m, want.sinkage_m);
+  model.effects = {with("side_bulldozing", {0.0})};
+  EXPECT_EQ(predict(model, state()).sinkage_m, plain.sinkage_m);
+  EXPECT_GT(std::abs(plain.side_force_N), std::abs(predict(model, state()).side_force_N));
+}
+
+TEST(Effects, TheBaseAtASlipAngleIsTheWheelOfTheLiterature) {
+  for (const double slip : {-1.0, -0.4, 0.0, 0.3, 0.9}) {
+    const WheelState s = state(slip);
+    const Reading r = predict(base(), s);
+    const WheelForces f = equilibrium(base().soil, s.wheel,
+                                      {.load_N = s.load_N, .slip = slip, .slip_angle_rad = s.slip_angle_rad});
+    // Property: two solvers of one wheel; 1e-4 for the quicker rule of a dragged one.
+    EXPECT_NEAR(r.side_force_N / s.load_N, f.side_force_N / s.load_N, 1e-4) << slip;
+    EXPECT_NEAR(r.drawbar_pull_N / s.load_N, f.drawbar_pull_N / s.load_N, 1e-4) << slip;
+    EXPECT_NEAR(r.sinkage_m / f.sinkage_m, 1.0, 1e-4) << slip;
+  }
 }
 
 TEST(Effects, SideForceIsSteadyThroughNinetyDegrees) {
