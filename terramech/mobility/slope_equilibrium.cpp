@@ -164,7 +164,7 @@ SlopeEquilibrium::Scan SlopeEquilibrium::scan(const Planar& demand) const noexce
         const double share = last && hold > last_side ? (wanted - last_side) / (hold - last_side) : 1.0;
         out.start.slip = last ? last_slip + share * (slip - last_slip) : slip;
         out.start.angle_rad =
-            -side * (a == 0 ? 0.0 : beta - (1.0 - share) * WheelForcesTable::kAngleStep_rad);
+            0.0 - side * (a == 0 ? 0.0 : beta - (1.0 - share) * WheelForcesTable::kAngleStep_rad);
         out.found = true;
       }
     }
@@ -199,7 +199,7 @@ void SlopeEquilibrium::fill(const Planar& demand, double normal, const Unknowns&
   state.slip_angle_rad =
       rover_.steering == Steering::Ackermann ? u.angle_rad - 0.5 * u.difference : u.angle_rad;
   (skids ? state.slip_difference : state.steering_rad) = u.difference;
-  state.body_turn_rad = crabs ? 0.0 : -u.angle_rad;
+  state.body_turn_rad = crabs ? 0.0 : 0.0 - u.angle_rad;
   const double turn = -state.body_turn_rad, c = std::cos(turn), s = std::sin(turn);
   const auto shares = stance_.shares({demand.x * c - demand.y * s, demand.x * s + demand.y * c});
   const double radius = rover_.wheel.radius_m;

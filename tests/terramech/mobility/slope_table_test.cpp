@@ -45,7 +45,7 @@ TEST(SlopeTable, AllowsNothingThatTheEquilibriumRefuses) {
       const Gradient g{any(engine), any(engine)};
       const SlopeState exact = equilibrium.at(g), read = table.at(g);
       // Property: conservative; what it refuses lies within one step of what fails.
-      if (read.holds()) EXPECT_TRUE(exact.holds()) << g.along << ' ' << g.across;
+      EXPECT_TRUE(exact.holds() || !read.holds()) << g.along << ' ' << g.across;
       if (exact.holds() && !read.holds()) {
         ++wary;
         bool near = false;
