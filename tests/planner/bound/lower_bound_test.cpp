@@ -1,8 +1,6 @@
 #include <cmath>
 #include <random>
 
-#include <talus/planner/bound/cost_lower_bound.hpp>
-#include <talus/planner/bound/directional_lower_bound.hpp>
 #include <talus/planner/bound/lower_bound.hpp>
 #include <talus/planner/grid/field_planner.hpp>
 
@@ -13,70 +11,6 @@ namespace {
 
 using testing::drawn;
 using testing::randomMap;
-
-// Property: no allowed metre in any heading costs less than the line says.
-TEST(CostLowerBounds, StayBelowTheCost) {
-  const auto cost = testing::driveCost({.max_along = 0.4, .max_across = 0.4});
-  const CostLowerBounds lines(*cost);
-  std::mt19937 random(2);
-  for (int k = 0; k < 20'000; ++k) {
-    const costmap::CellCode cell({.dz_dx = (static_cast<int>(random() % 800) - 400) / 1024.0,
-                                  .dz_dy = (static_cast<int>(random() % 800) - 400) / 1024.0,
-                                  .curve = static_cast<std::uint8_t>(random() % 5)});
-    const CostLowerBound line = lines.of(cell);
-    for (int h = 0; h < 48; ++h) {
-      const costmap::Direction heading{std::cos(h * 0.1309), std::sin(h * 0.1309)};
-      const double along = cell.dzDx() * heading.x + cell.dzDy() * heading.y;
-      const double below = line.level_J_per_m + line.tilt_J_per_m * along;
-      ASSERT_LE(below, static_cast<double>(cost->costPerMetre(cell, heading)) * (1 + 1e-6));
-      ASSERT_GT(below, 0.0);
-    }
-  }
-}
-
-// Curves of many shapes: bends, jumps and holes, not only valleys.
-std::shared_ptr<const costmap::DriveCost> jaggedCost() {
-  std::mt19937 random(7);
-  const auto unit = [&random] { return static_cast<double>(random()) / 4294967296.0; };
-  std::vector<costmap::DriveCurve> curves;
-  for (int k = 0; k < 6; ++k) {
-    costmap::DriveCurve made = testing::curve({.factor = 1.0 + k, .steepest = 0.1 + 0.1 * k});
-    for (float& value : made.cost_J_per_m) value *= static_cast<float>(1.0 + 0.3 * k * unit());
-    if (k > 3) made.cost_J_per_m[static_cast<std::size_t>(costmap::DriveCurve::kBins / 2 + 7 * k)] = INFINITY;
-    curves.push_back(made);
-  }
-  return std::make_shared<costmap::DriveCost>(costmap::DriveCost::Limits{.max_along = 0.5, .max_across = 0.4},
-                                              curves);
-}
-
-// Property: the gauge between the prices of neighbouring headings is nowhere above the cost, in any
-// direction, and every heading has a price.
-TEST(DirectionalLowerBounds, TheirGaugeStaysBelowTheCost) {
-  for (const auto& cost : {testing::driveCost({.max_along = 0.4, .max_across = 0.4}), jaggedCost()}) {
-    DirectionalLowerBounds headings(*cost);
-    std::mt19937 random(3);
-    for (int n = 0; n < 4'000; ++n) {
-      const int most = n % 2 == 0 ? 300 : 900;
-      const auto gradient = [&] { return (static_cast<int>(random()) % most) / 1024.0; };
-      const costmap::CellCode cell({.dz_dx = gradient(),
-                                    .dz_dy = gradient(),
-                                    .curve = static_cast<std::uint8_t>(random() % cost->curves().size())});
-      const auto prices = headings.of(cell);
-      for (const float price : prices) ASSERT_GT(price, 0.0F);
-      for (int d = 0; d < 360; ++d) {
-        const double angle = 0.017453292519943295 * d, eighth = 0.78539816339744831;
-        const auto k = static_cast<std::size_t>(angle / eighth);
-        const double p = std::sin(eighth - (angle - static_cast<double>(k) * eighth)) / std::sin(eighth),
-                     q = std::sin(angle - static_cast<double>(k) * eighth) / std::sin(eighth);
-        const float price = cost->costPerMetre(cell, {std::cos(angle), std::sin(angle)});
-        if (std::isinf(price)) continue;
-        const double gauge =
-            p * static_cast<double>(prices[k % 8]) + q * static_cast<double>(prices[(k + 1) % 8]);
-        ASSERT_LE(gauge, static_cast<double>(price)) << n << " " << d;
-      }
-    }
-  }
-}
 
 // Property: no polyline costs less, of which the best that the planner finds, refined as hard as we can, is
 // the sharpest.

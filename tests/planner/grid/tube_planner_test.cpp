@@ -1,7 +1,6 @@
 #include <cmath>
 
 #include <talus/planner/check/route_check.hpp>
-#include <talus/planner/field/pooled_grid.hpp>
 #include <talus/planner/grid/tube_planner.hpp>
 
 #include "drawn_map.hpp"
@@ -89,52 +88,6 @@ TEST(TubePlanner, SaysWhatIsWrongWithAPlace) {
   Problem back = problem;
   std::swap(back.start, back.goal);
   EXPECT_EQ(TubePlanner().plan(back).status, RouteStatus::GoalInvalid);
-}
-
-TEST(PooledGrid, KeepsMeanGradientAndCost) {
-  std::vector<std::string> rows(16, std::string(16, '^'));
-  const auto map = drawn(rows);
-  const auto coarse = pooled(*map, 8);
-  EXPECT_EQ(coarse->grid().width, 2);
-  EXPECT_EQ(coarse->grid().resolution_m, 8.0);
-  const costmap::Direction north{0.0, 1.0};
-  EXPECT_EQ(coarse->at({1, 1}).dzDy(), map->at({0, 0}).dzDy());
-  EXPECT_EQ(coarse->cost().costPerMetre(coarse->at({0, 1}), north),
-            map->cost().costPerMetre(map->at({0, 0}), north));
-}
-
-// Closed form: half of the cells cost 10 and half 50 J/m on the flat: 30 on average, which the levels of
-// surcharge round by an eighth at most; mostly blocked ground is blocked, a third blocked costs half as much
-// again.
-TEST(PooledGrid, SurchargesWhatIsMixedOrBlocked) {
-  std::vector<std::string> rows;
-  for (int row = 0; row < 8; ++row) rows.push_back("..44..44########.....###");
-  const auto coarse = pooled(*drawn(rows), 8);
-  const costmap::Direction east{1.0, 0.0};
-  EXPECT_NEAR(static_cast<double>(coarse->cost().costPerMetre(coarse->at({0, 0}), east)), 30.0, 30.0 / 8);
-  EXPECT_TRUE(std::isinf(coarse->cost().costPerMetre(coarse->at({1, 0}), east)));
-  EXPECT_NEAR(static_cast<double>(coarse->cost().costPerMetre(coarse->at({2, 0}), east)), 10.0 * 8 / 5,
-              16.0 / 8);
-}
-
-TEST(PooledGrid, RepooledIsPooledAnew) {
-  const MapPointer map = rough(5);
-  const CellBox box{{37, 80}, {90, 131}};
-  const costmap::Revision revision{
-      .ranges = {{box.first, box.last}},
-      .code = [](maps::Cell cell,
-                 costmap::CellCode code) { return code.withCurve(cell.row % 3 == 0 ? 255 : 2); },
-      .cost = [&] { return map->content().cost; }};
-  const costmap::CostGrid newer = costmap::revised(*map, revision);
-  const auto part = repooled(*pooled(*map, 8), newer, 8, box), anew = pooled(newer, 8, 2);
-  const auto before = pooled(*map, 8);
-  bool differs = false;
-  for (int row = 0; row < anew->grid().height; ++row)
-    for (int column = 0; column < anew->grid().width; ++column) {
-      ASSERT_EQ(part->at({column, row}), anew->at({column, row}));
-      differs = differs || !(before->at({column, row}) == anew->at({column, row}));
-    }
-  EXPECT_TRUE(differs);
 }
 
 }  // namespace

@@ -46,11 +46,5 @@ TEST(AnyAngle, NeverWorse) {
   }
 }
 
-TEST(AnyAngle, DropsIdleTurns) {
-  const MotionCost cost(drawn({".....", ".#...", "....."}));
-  const auto route = withoutIdleTurns(cost, {{0.5, 0.5}, {1.5, 0.5}, {2.5, 0.5}, {2.5, 2.5}});
-  EXPECT_EQ(route.size(), 3U);
-}
-
 }  // namespace
 }  // namespace talus::planner

@@ -1,0 +1,56 @@
+#include <cmath>
+#include <random>
+
+#include <talus/planner/bound/directional_lower_bound.hpp>
+
+#include "drawn_map.hpp"
+
+namespace talus::planner {
+namespace {
+
+// Curves of many shapes: bends, jumps and holes, not only valleys.
+std::shared_ptr<const costmap::DriveCost> jaggedCost() {
+  std::mt19937 random(7);
+  const auto unit = [&random] { return static_cast<double>(random()) / 4294967296.0; };
+  std::vector<costmap::DriveCurve> curves;
+  for (int k = 0; k < 6; ++k) {
+    costmap::DriveCurve made = testing::curve({.factor = 1.0 + k, .steepest = 0.1 + 0.1 * k});
+    for (float& value : made.cost_J_per_m) value *= static_cast<float>(1.0 + 0.3 * k * unit());
+    if (k > 3) made.cost_J_per_m[static_cast<std::size_t>(costmap::DriveCurve::kBins / 2 + 7 * k)] = INFINITY;
+    curves.push_back(made);
+  }
+  return std::make_shared<costmap::DriveCost>(costmap::DriveCost::Limits{.max_along = 0.5, .max_across = 0.4},
+                                              curves);
+}
+
+// Property: the gauge between the prices of neighbouring headings is nowhere above the cost, in any
+// direction, and every heading has a price.
+TEST(DirectionalLowerBounds, TheirGaugeStaysBelowTheCost) {
+  for (const auto& cost : {testing::driveCost({.max_along = 0.4, .max_across = 0.4}), jaggedCost()}) {
+    DirectionalLowerBounds headings(*cost);
+    std::mt19937 random(3);
+    for (int n = 0; n < 4'000; ++n) {
+      const int most = n % 2 == 0 ? 300 : 900;
+      const auto gradient = [&] { return (static_cast<int>(random()) % most) / 1024.0; };
+      const costmap::CellCode cell({.dz_dx = gradient(),
+                                    .dz_dy = gradient(),
+                                    .curve = static_cast<std::uint8_t>(random() % cost->curves().size())});
+      const auto prices = headings.of(cell);
+      for (const float price : prices) ASSERT_GT(price, 0.0F);
+      for (int d = 0; d < 360; ++d) {
+        const double angle = 0.017453292519943295 * d, eighth = 0.78539816339744831;
+        const auto k = static_cast<std::size_t>(angle / eighth);
+        const double p = std::sin(eighth - (angle - static_cast<double>(k) * eighth)) / std::sin(eighth),
+                     q = std::sin(angle - static_cast<double>(k) * eighth) / std::sin(eighth);
+        const float price = cost->costPerMetre(cell, {std::cos(angle), std::sin(angle)});
+        if (std::isinf(price)) continue;
+        const double gauge =
+            p * static_cast<double>(prices[k % 8]) + q * static_cast<double>(prices[(k + 1) % 8]);
+        ASSERT_LE(gauge, static_cast<double>(price)) << n << " " << d;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace talus::planner

@@ -1,0 +1,85 @@
+#include <cmath>
+#include <random>
+
+#include <talus/planner/field/edge_units.hpp>
+#include <talus/planner/route/kernels.hpp>
+
+#include "drawn_map.hpp"
+
+namespace talus::planner {
+namespace {
+
+std::vector<costmap::CellCode> randomCells(unsigned count) {
+  std::mt19937 random(5);
+  std::vector<costmap::CellCode> cells;
+  const auto gradient = [&random] { return (static_cast<int>(random() % 900) - 450) / 1024.0; };
+  for (unsigned k = 0; k < count; ++k) {
+    const auto curve = static_cast<std::uint8_t>(k % 11 == 0 ? 254U + k % 2U : random() % 5U);
+    cells.push_back(costmap::CellCode({.dz_dx = gradient(), .dz_dy = gradient(), .curve = curve}));
+  }
+  return cells;
+}
+
+// Property: half a step costs half the cell's side (or diagonal) at DriveCost's price, to half a unit, and is
+// blocked where DriveCost refuses it; on other resolutions, limits and units too.
+TEST(EdgeUnits, AreHalfStepsOfDriveCost) {
+  int allowed = 0;
+  for (const double limit : {0.2, 0.29, 0.4})
+    for (const double coarsening : {1.0, 3.0}) {
+      const auto cost = testing::driveCost({.max_along = 0.3, .max_across = limit});
+      const EdgeUnits units(*cost, 2.5, coarsening);
+      for (const costmap::CellCode cell : randomCells(3'000)) {
+        const EdgeUnits::Halves halves = units.halves(cell);
+        for (std::size_t k = 0; k < 8; ++k) {
+          const maps::Cell step = kStep[k];
+          const double length = std::hypot(step.column, step.row);
+          const auto metre_J =
+              static_cast<double>(cost->costPerMetre(cell, {step.column / length, step.row / length}));
+          ASSERT_EQ(halves[k] != EdgeUnits::kBlocked, std::isfinite(metre_J)) << k;
+          if (std::isinf(metre_J)) continue;
+          ++allowed;
+          ASSERT_NEAR(halves[k], 0.5 * 2.5 * length * metre_J / units.unit_J(), 0.5 + 1e-4);
+          ASSERT_GE(2 * halves[k] + 1, static_cast<int>(units.cheapestEdge()));
+        }
+      }
+    }
+  EXPECT_GT(allowed, 20'000);
+}
+
+TEST(EdgeUnits, VectorsAndScalarsAgree) {
+  if (!vectorsRun(Kernels::Best)) GTEST_SKIP() << "no AVX2 on this machine";
+  const EdgeUnits units(*testing::driveCost(), 1.0);
+  const auto cells = randomCells(5'000);
+  std::vector<EdgeUnits::Halves> scalar(cells.size()), vector(cells.size());
+  units.halves(cells.data(), cells.size(), scalar.data(), false);
+  units.halves(cells.data(), cells.size(), vector.data(), true);
+  EXPECT_EQ(scalar, vector);
+}
+
+// Closed form: 10 J on the flat, and going down 10 + 400 g^2 never below that; the dearest is five times the
+// steepest climb in the table, 76/256.
+TEST(EdgeUnits, TheRangeIsOfAllAllowedMetres) {
+  const CostRange range = costRange(*testing::driveCost());
+  const double g = 76.0 / 256;
+  EXPECT_NEAR(range.least_J_per_m, 10.0, 1e-6);
+  EXPECT_NEAR(range.most_J_per_m, 5 * (10 + 100 * g + 400 * g * g), 1e-4);
+  EXPECT_TRUE(
+      std::isinf(costRange(costmap::DriveCost({}, std::vector<costmap::DriveCurve>{})).least_J_per_m));
+}
+
+TEST(EdgeUnits, ExtendWhereCurvesWereOnlyAdded) {
+  const auto curves = testing::driveCost()->curves();
+  const auto of = [](std::vector<costmap::DriveCurve> some) {
+    return EdgeUnits(costmap::DriveCost({}, std::move(some)), 1.0);
+  };
+  // The cheapest and the dearest stay in front: the unit hangs on them.
+  const std::vector<costmap::DriveCurve> two{curves[0], curves[4]}, three{curves[0], curves[4], curves[2]},
+      swapped{curves[4], curves[0]};
+  EXPECT_TRUE(of(three).extends(of(two)));
+  EXPECT_FALSE(of(two).extends(of(three)));
+  EXPECT_FALSE(of(swapped).extends(of(two)));
+  EXPECT_FALSE(EdgeUnits(costmap::DriveCost({}, two), 2.0).extends(of(two)));
+}
+
+}  // namespace
+}  // namespace talus::planner

@@ -1,0 +1,48 @@
+#include <talus/planner/field/patch_bound.hpp>
+
+#include "changed_map.hpp"
+
+namespace talus::planner {
+namespace {
+
+using testing::Change;
+using testing::drawn;
+using testing::randomTrial;
+using testing::Trial;
+
+// Property: the bound is never above the field found anew, at any cell; and where nothing became cheaper it
+// is not below the old field, which is what keeps the search narrow.
+TEST(PatchBound, NeverAboveTheNewField) {
+  int held = 0, gained = 0;
+  for (const Change change : {Change::Anew, Change::Cheaper, Change::Dearer, Change::Either})
+    for (unsigned seed = 1; seed <= 60; ++seed) {
+      const Trial trial = randomTrial(seed, change);
+      const PatchBound bound(trial.before, trial.box);
+      if (!bound.holds()) continue;
+      ++held;
+      for (int row = 0; row < 60; ++row)
+        for (int column = 0; column < 70; ++column) {
+          const std::size_t cell = trial.edges->padded().index({column, row});
+          ASSERT_LE(bound(cell), trial.anew.units({column, row})) << seed << ": " << column << "," << row;
+          if (change == Change::Dearer) {
+            ASSERT_GE(bound(cell), trial.before.atLeast(cell)) << seed;
+          }
+          gained += trial.anew.units({column, row}) < trial.before.atLeast(cell);
+        }
+    }
+  EXPECT_GT(held, 200);
+  EXPECT_GT(gained, 10'000);
+}
+
+// A wall that opens lets ground reach the goal that could not before: the old field bounds nothing there.
+TEST(PatchBound, SaysWhenItDoesNotHold) {
+  const std::vector<std::string> walled(11, ".....#.....");
+  auto opened = walled;
+  opened[5] = "...........";
+  const auto map = drawn(walled), newer = drawn(opened);
+  const Trial trial(map, newer, {{5, 5}, {5, 5}}, {{.cell = {0, 5}}}, {10, 5}, true);
+  EXPECT_FALSE(PatchBound(trial.before, trial.box).holds());
+}
+
+}  // namespace
+}  // namespace talus::planner
