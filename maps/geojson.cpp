@@ -31,7 +31,7 @@ void collect(const json& object, std::vector<json>& out) {
     list("geometries");
   else if (type == "Feature" && object.contains("geometry"))
     collect(object["geometry"], out);
-  else if (object.is_object() && object.contains("coordinates"))
+  else if (!type.empty() && object.contains("coordinates"))
     out.push_back(object);
 }
 

@@ -24,8 +24,9 @@ class RandomRow {
   std::uint64_t state_;
 };
 
-/// Smooth noise over the plane in [-1, 1], known at any place without its neighbours: random slopes at whole
-/// numbers, joined by fifth-order curves (gradient noise). Distances in units of its wavelength.
+/// Smooth noise over the plane, mostly in [-1, 1] and never beyond sqrt(2), known at any place without its
+/// neighbours: random slopes at whole numbers, joined by fifth-order curves (gradient noise). Distances in
+/// units of its wavelength.
 class GradientNoise {
  public:
   explicit GradientNoise(std::uint64_t seed) noexcept : seed_(mixed(seed)) {}
