@@ -33,6 +33,17 @@ TEST(ElevationMap, ElevationBetweenCentresIsBilinear) {
   }
 }
 
+// Closed form: between the outermost centres and the edge of the map nothing is extrapolated.
+TEST(ElevationMap, BeyondTheOutermostCentresTheElevationIsTheirs) {
+  Raster<float> z(Grid{.width = 3, .height = 2, .resolution_m = 2.0});
+  for (int r = 0; r < 2; ++r)
+    for (int c = 0; c < 3; ++c) z[{c, r}] = static_cast<float>(10 * c + r);
+  EXPECT_EQ(elevationAt(z, {0.1, 0.1}), 0.0);
+  EXPECT_EQ(elevationAt(z, {5.9, 3.9}), 21.0);
+  EXPECT_EQ(elevationAt(z, {2.0, 3.9}), 6.0);
+  EXPECT_FALSE(elevationAt(z, {6.0, 1.0}));
+}
+
 TEST(ElevationMap, NoElevationOutsideTheMapOrBesideAHole) {
   Raster<float> z({.width = 4, .height = 4, .resolution_m = 1.0, .south_west = {}}, 5.0F);
   z[{1, 1}] = kNaN;

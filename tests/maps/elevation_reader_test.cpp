@@ -13,12 +13,6 @@ namespace {
 using testing::Contains;
 using testing::HasSubstr;
 
-const std::vector<std::vector<double>> kHill = drawn({"1234",  //
-                                                      "2345",  //
-                                                      "345.",  //
-                                                      "4567",  //
-                                                      "5678"});
-
 TEST(ElevationReader, RowsBecomeSouthFirstAndNodataNaN) {
   const TemporaryFolder folder;
   const ElevationMap map = readElevation(write({.rows = kHill, .nodata = -1}, folder / "hill.tif"));
@@ -81,53 +75,6 @@ TEST(ElevationReader, EveryFormatGivesTheSameMap) {
   }
 }
 
-TEST(ElevationReader, ScaleOffsetUnitAndIntegers) {
-  const TemporaryFolder folder;
-  const ElevationMap scaled = readElevation(write(
-      {.rows = kHill, .type = GDT_Int16, .nodata = -1, .scale = 0.5, .offset = 100}, folder / "scaled.tif"));
-  EXPECT_FLOAT_EQ((scaled.elevation_m[{0, 0}]), 102.5F);
-  EXPECT_TRUE(std::isnan(scaled.elevation_m[{3, 2}]));
-  const ElevationMap feet = readElevation(write({.rows = kHill, .unit = "ft"}, folder / "feet.tif"));
-  EXPECT_FLOAT_EQ((feet.elevation_m[{0, 0}]), 5 * 0.3048F);
-  EXPECT_THAT(feet.notes, Contains(HasSubstr("ft converted")));
-  const ElevationMap twice = readElevation(folder / "feet.tif", {.vertical_scale = 2});
-  EXPECT_FLOAT_EQ((twice.elevation_m[{0, 0}]), 10 * 0.3048F);
-}
-
-TEST(ElevationReader, HeightsFromTheBodysCentreLoseItsRadius) {
-  const TemporaryFolder folder;
-  const std::string path = write({.rows = kHill,
-                                  .crs = "IAU_2015:30135",
-                                  .transform = std::array<double, 6>{1000, 10, 0, 1000, 0, -10},
-                                  .type = GDT_Int16,
-                                  .scale = 0.5,
-                                  .offset = 1737400},
-                                 folder / "ldem.tif");
-  EXPECT_FLOAT_EQ((readElevation(path).elevation_m[{0, 0}]), 2.5F);
-}
-
-TEST(ElevationReader, TakesTheBandNamedLikeElevation) {
-  const TemporaryFolder folder;
-  const std::string path =
-      write({.rows = kHill, .names = {"slope of dem", "DEM", "rocks"}}, folder / "stack.tif");
-  const ElevationMap map = readElevation(path);
-  EXPECT_EQ((map.elevation_m[{0, 0}]), 1005);
-  EXPECT_THAT(map.notes, Contains(HasSubstr("took band 2 'DEM' of 3")));
-  EXPECT_EQ((readElevation(path, {.band = 3}).elevation_m[{0, 0}]), 2005);
-}
-
-TEST(ElevationReader, UndeclaredMarksAreNoData) {
-  const TemporaryFolder folder;
-  auto rows = kHill;
-  rows[0][0] = -9999;
-  const ElevationMap map = readElevation(write({.rows = rows}, folder / "undeclared.tif"));
-  EXPECT_TRUE(std::isnan(map.elevation_m[{0, 4}]));
-  EXPECT_THAT(map.notes, Contains(HasSubstr("1 cells of -9999 treated as no data")));
-  rows[0][0] = -3.4e38;
-  EXPECT_TRUE(std::isnan(readElevation(write({.rows = rows}, folder / "huge.tif")).elevation_m[{0, 4}]));
-  EXPECT_TRUE(std::isnan(readElevation(folder / "huge.tif", {.nodata = 8}).elevation_m[{3, 0}]));
-}
-
 TEST(ElevationReader, WindowIsTheSamePartOfTheMap) {
   const TemporaryFolder folder;
   const std::string path = write({.rows = kHill, .nodata = -1}, folder / "hill.tif");
@@ -152,80 +99,6 @@ TEST(ElevationReader, SouthUpRastersAreTurned) {
                           folder / "south.tif"));
   EXPECT_EQ(down.grid(), up.grid());
   EXPECT_EQ(down.elevation_m.values(), up.elevation_m.values());
-}
-
-TEST(ElevationReader, WithoutACrsTheResolutionMustBeGiven) {
-  const TemporaryFolder folder;
-  const std::string path =
-      write({.rows = kHill, .crs = "", .transform = std::array<double, 6>{-20, 0.5, 0, 30, 0, -0.5}},
-            folder / "yard.tif");
-  const ElevationMap map = readElevation(path, {.resolution_m = 0.5});
-  EXPECT_FALSE(map.georeference);
-  EXPECT_EQ(map.grid(), (Grid{.width = 4, .height = 5, .resolution_m = 0.5, .south_west = {-20, 27.5}}));
-  // A pixel size that is not the one stated: the file's coordinates mean nothing.
-  EXPECT_EQ(readElevation(path, {.resolution_m = 0.1}).grid().south_west, (Point{0, 0}));
-  const std::string bogus = write({.rows = kHill, .crs = "EPSG:4326"}, folder / "bogus.tif");
-  EXPECT_EQ(readElevation(bogus, {.resolution_m = 2.0, .ignore_crs = true}).grid().resolution_m, 2.0);
-}
-
-// A cone of 20 degrees on a map of degrees keeps its slope once it is in metres.
-TEST(ElevationReader, DegreesBecomeTrueMetresOnEachBody) {
-  const TemporaryFolder folder;
-  for (const auto& [crs, radius_m, latitude_deg] :
-       {std::tuple{"EPSG:4326", 6371000.0, 62.0}, std::tuple{"IAU_2015:49900", 3396190.0, -4.6},
-        std::tuple{"IAU_2015:30100", 1737400.0, -86.0}}) {
-    const double step_deg = 30.0 / (radius_m * kDegree);
-    const double east_deg = 40;
-    RasterFile file{
-        .rows = {},
-        .crs = crs,
-        .transform = std::array<double, 6>{east_deg, 2 * step_deg, 0, latitude_deg, 0, -step_deg}};
-    const double south = latitude_deg - 60 * step_deg;
-    const double east_m =
-        2 * step_deg * kDegree * radius_m * std::cos((latitude_deg - 30 * step_deg) * kDegree);
-    for (int r = 0; r < 60; ++r) {
-      file.rows.emplace_back();
-      for (int c = 0; c < 60; ++c) file.rows.back().push_back(0.3 * (59.5 - r) * 30 + 0.2 * c * east_m);
-    }
-    const ElevationMap map = readElevation(write(file, folder / "degrees.tif"));
-    const Georeference& g = *map.georeference;
-    const Point a = g.forward({(south + 20 * step_deg) * kDegree, (east_deg + 40 * step_deg) * kDegree});
-    const Point b = g.forward({(south + 40 * step_deg) * kDegree, (east_deg + 80 * step_deg) * kDegree});
-    // Closed form: heights at two places of known latitude and longitude.
-    EXPECT_NEAR(elevationAt(map.elevation_m, a).value(), 0.3 * 20 * 30 + 0.2 * 19.5 * east_m, 0.5) << crs;
-    EXPECT_NEAR(elevationAt(map.elevation_m, b).value(), 0.3 * 40 * 30 + 0.2 * 39.5 * east_m, 0.5) << crs;
-    const double ground_m = std::hypot(20 * 30.0, 20 * east_m);
-    EXPECT_NEAR(std::hypot(b.x_m - a.x_m, b.y_m - a.y_m) / ground_m, 1.0, 5e-3) << crs;
-  }
-}
-
-TEST(ElevationReader, ObliqueAndOblongPixelsAreResampled) {
-  const TemporaryFolder folder;
-  std::vector<std::vector<double>> rows(40, std::vector<double>(40));
-  const std::array<double, 6> turned{500000, 8, 6, 5000000, 6, -8};
-  for (int r = 0; r < 40; ++r)
-    for (int c = 0; c < 40; ++c)
-      rows[static_cast<std::size_t>(r)][static_cast<std::size_t>(c)] = 0.1 * ((c + 0.5) * 8 + (r + 0.5) * 6);
-  const ElevationMap map = readElevation(write({.rows = rows, .transform = turned}, folder / "turned.tif"));
-  EXPECT_NEAR(map.grid().resolution_m, 10, 1e-9);
-  EXPECT_THAT(map.notes, Contains(HasSubstr("resampled to square cells of 10 m")));
-  // Closed form: height is a tenth of the way east.
-  EXPECT_NEAR(elevationAt(map.elevation_m, {500280, 5000000}).value(), 28.0, 0.01);
-  EXPECT_NEAR(elevationAt(map.elevation_m, {500300, 4999990}).value(), 30.0, 0.01);
-}
-
-TEST(ElevationReader, StretchedProjectionsAreMadeTrue) {
-  const TemporaryFolder folder;
-  // At 60 degrees north this projection shows a metre of ground as two from west to east.
-  const std::string path =
-      write({.rows = std::vector<std::vector<double>>(20, std::vector<double>(40, 7.0)),
-             .crs = "IAU_2015:49910",
-             .transform = std::array<double, 6>{0, 20, 0, 60 * kDegree * 3396190, 0, -20}},
-            folder / "north.tif");
-  const ElevationMap map = readElevation(path);
-  EXPECT_THAT(map.notes, Contains(HasSubstr("resampled to true metres")));
-  EXPECT_NEAR(map.grid().width * map.grid().resolution_m, 400, 30);
-  EXPECT_NEAR(map.grid().height * map.grid().resolution_m, 400, 30);
 }
 
 TEST(ElevationReader, CoarserOnRequestIsTheMean) {
@@ -319,23 +192,6 @@ TEST(ElevationReader, DamagedFilesAreReadOrRefused) {
     EXPECT_THAT(line, testing::AnyOf("accepted", HasSubstr(path)));
     EXPECT_THAT(line, testing::Not(HasSubstr("another error")));
   }
-}
-
-TEST(ElevationReader, ReadsTheMapOfJacksboroThatMatplotlibShips) {
-  const std::string path = "/usr/share/matplotlib/mpl-data/sample_data/jacksboro_fault_dem.npz";
-  TALUS_REQUIRE(std::filesystem::exists(path), "python-matplotlib-data is not installed");
-  const ElevationMap map = readElevation(path);
-  EXPECT_THAT(map.notes, Contains(HasSubstr("ymin and ymax are in the wrong order")));
-  // Printed in: the file. 403 x 344 cells of 3 arc seconds about 36.59 N, 84.25 W, heights 238 to 1076 m.
-  const Point middle = map.georeference->forward({36.5895833 * kDegree, -84.2458333 * kDegree});
-  EXPECT_NEAR(middle.x_m, 0, 1);
-  EXPECT_NEAR(middle.y_m, 0, 1);
-  EXPECT_NEAR(map.grid().width * map.grid().resolution_m, 30100, 150);
-  EXPECT_NEAR(map.grid().height * map.grid().resolution_m, 31850, 150);
-  // Row 20 of column 30 holds 507 m, which is found in the north only when the limits are swapped back.
-  const Point inside = map.georeference->forward({36.7158333 * kDegree, -84.3883333 * kDegree});
-  EXPECT_NEAR(elevationAt(map.elevation_m, inside).value(), 507,
-              8);  // between cells: neighbours differ by that
 }
 
 TEST(ElevationReader, ReadsEveryRealMap) {

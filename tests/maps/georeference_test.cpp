@@ -75,15 +75,5 @@ TEST(Georeference, RefusesParametersOutOfRange) {
   EXPECT_THROW(Georeference{system}, std::invalid_argument);
 }
 
-TEST(Ellipsoid, BodiesByTheirRadius) {
-  EXPECT_EQ(bodyName(kEarth), "Earth");
-  EXPECT_EQ(bodyName(kMoon), "Moon");
-  EXPECT_EQ(bodyName(kMars), "Mars");
-  // A map of HiRISE lies on a sphere of Mars' radius at its latitude.
-  EXPECT_EQ(bodyName({3376234.0, 0.0}), "Mars");
-  EXPECT_EQ(bodyName({252100.0, 0.0}), "Vesta");
-  EXPECT_EQ(bodyName({11267.0, 0.0}), "body of radius 11.3 km");
-}
-
 }  // namespace
 }  // namespace talus::maps

@@ -1,4 +1,3 @@
-
 #include <talus/maps/place.hpp>
 #include <talus/talus.hpp>
 
@@ -69,19 +68,6 @@ TEST(Place, WindowHasFourNumbers) {
   const Window window = parseWindow("1,2,3,4");
   EXPECT_EQ(std::get<Point>(window.second), (Point{3, 4}));
   EXPECT_THAT(refusal([] { parseWindow("1,2,3"); }), HasSubstr("has not 4 numbers"));
-}
-
-TEST(ElevationMap, HeightBetweenCellsIsBilinear) {
-  Raster<float> z(Grid{.width = 3, .height = 2, .resolution_m = 2.0});
-  for (int r = 0; r < 2; ++r)
-    for (int c = 0; c < 3; ++c) z[{c, r}] = static_cast<float>(10 * c + r);
-  EXPECT_DOUBLE_EQ(elevationAt(z, {2.0, 2.0}).value(), 5.5);
-  EXPECT_DOUBLE_EQ(elevationAt(z, {3.0, 1.0}).value(), 10.0);
-  EXPECT_DOUBLE_EQ(elevationAt(z, {0.1, 0.1}).value(), 0.0);
-  EXPECT_FALSE(elevationAt(z, {6.0, 1.0}));
-  z[{2, 1}] = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_FALSE(elevationAt(z, {4.0, 2.0}));
-  EXPECT_DOUBLE_EQ(elevationAt(z, {3.0, 1.0}).value(), 10.0);
 }
 
 }  // namespace

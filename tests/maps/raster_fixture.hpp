@@ -109,6 +109,13 @@ inline std::vector<std::vector<double>> drawn(const std::vector<std::string>& li
   return rows;
 }
 
+/// A hill of 4 x 5 cells with one hole.
+inline const std::vector<std::vector<double>> kHill = drawn({"1234",  //
+                                                             "2345",  //
+                                                             "345.",  //
+                                                             "4567",  //
+                                                             "5678"});
+
 /// The line that a call throws as InputError, or what it did instead.
 template <typename Call>
 std::string refusal(const Call& call) {

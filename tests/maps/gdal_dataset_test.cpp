@@ -1,0 +1,69 @@
+#include <filesystem>
+
+#include <talus/maps/gdal_dataset.hpp>
+
+#include "raster_fixture.hpp"
+
+namespace talus::maps {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(GdalDataset, OnlyAFileWithBytesIsReadable) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "inner");
+  const auto line = [](const std::string& path) { return refusal([&] { requireReadableFile(path); }); };
+  EXPECT_THAT(line(folder / "none"), HasSubstr("none: no such file"));
+  EXPECT_THAT(line(folder / "inner"), HasSubstr("is a directory"));
+  EXPECT_THAT(line(folder.write("empty", "")), HasSubstr("is empty"));
+  EXPECT_EQ(line(folder.write("full", "x")), "accepted");
+  EXPECT_EQ(line("/vsimem/whatever"), "accepted");  // GDAL's own file systems answer for themselves
+}
+
+TEST(GdalDataset, OpensARasterAndRefusesTheRest) {
+  const TemporaryFolder folder;
+  const Dataset raster = openRaster(write({.rows = kHill}, folder / "hill.tif"));
+  EXPECT_EQ(raster->GetRasterXSize(), 4);
+  EXPECT_EQ(raster->GetRasterYSize(), 5);
+  EXPECT_THAT(refusal([&] { openRaster(folder.write("text.tif", "no raster")); }),
+              HasSubstr("GDAL opens no raster"));
+}
+
+// Closed form: 4 x 5 cells of 4 bytes; one byte less is a file cut short.
+TEST(GdalDataset, AnEnviFileHasAllItsBytes) {
+  const TemporaryFolder folder;
+  const std::string path = write({.rows = kHill, .driver = "ENVI"}, folder / "hill.img");
+  EXPECT_EQ(refusal([&] { openRaster(path); }), "accepted");
+  std::filesystem::resize_file(path, 79);
+  EXPECT_THAT(refusal([&] { openRaster(path); }), HasSubstr("is cut short: 79 of 80 bytes"));
+}
+
+TEST(GdalDataset, ErrorsAreKeptAndNotPrinted) {
+  testing::internal::CaptureStderr();
+  {
+    const GdalErrors errors;
+    EXPECT_FALSE(errors.any());
+    EXPECT_EQ(errors.last(), "unknown error");
+    CPLError(CE_Warning, CPLE_AppDefined, "a warning");
+    EXPECT_FALSE(errors.any());
+    CPLError(CE_Failure, CPLE_AppDefined, "first line\nsecond line");
+    EXPECT_TRUE(errors.any());
+    EXPECT_EQ(errors.last(), "first line");
+    const GdalErrors later;
+    EXPECT_FALSE(later.any()) << "counts from its construction";
+  }
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+TEST(GdalDataset, AMemoryRasterIsOneBandOfZeros) {
+  const Dataset raster = memoryRaster(3, 2);
+  ASSERT_EQ(raster->GetRasterCount(), 1);
+  std::array<float, 6> values{1, 1, 1, 1, 1, 1};
+  ASSERT_EQ(raster->GetRasterBand(1)->RasterIO(GF_Read, 0, 0, 3, 2, values.data(), 3, 2, GDT_Float32, 0, 0,
+                                               nullptr),
+            CE_None);
+  EXPECT_THAT(values, testing::Each(0.0F));
+}
+
+}  // namespace
+}  // namespace talus::maps

@@ -1,0 +1,87 @@
+#include <nlohmann/json.hpp>
+
+#include <talus/maps/geojson.hpp>
+#include <talus/talus.hpp>
+
+#include "raster_fixture.hpp"
+
+namespace talus::maps {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+ElevationMap lunarMap() {
+  ElevationMap map{.elevation_m = Raster<float>(Grid{.width = 10, .height = 10}),
+                   .georeference = std::nullopt,
+                   .source = "moon.tif",
+                   .notes = {}};
+  map.georeference.emplace(CoordinateSystem{.name = "Moon", .ellipsoid = kMoon});
+  return map;
+}
+
+TEST(GeoJson, GeometriesOfEveryNestingInOrder) {
+  const json document = json::parse(R"({"type":"FeatureCollection","features":[
+    {"type":"Feature","geometry":{"type":"Point","coordinates":[1,2]}},
+    {"type":"Feature","geometry":null},
+    {"type":"Feature","geometry":{"type":"GeometryCollection","geometries":[
+      {"type":"Point","coordinates":[3,4]},{"type":"LineString","coordinates":[[5,6],[7,8]]}]}}]})");
+  const std::vector<json> found = geometries(document);
+  ASSERT_EQ(found.size(), 3U);
+  EXPECT_EQ(found[0]["coordinates"], json({1, 2}));
+  EXPECT_EQ(found[1]["coordinates"], json({3, 4}));
+  EXPECT_EQ(found[2]["type"], "LineString");
+}
+
+// Property: what has coordinates and no type, or a type that is no word, is no geometry.
+TEST(GeoJson, WithoutATypeThereIsNoGeometry) {
+  EXPECT_TRUE(geometries(json::parse(R"({"type":"FeatureCollection","features":[{"coordinates":[1,2]},
+    {"type":7,"coordinates":[1,2]}, 3, null, "x"]})"))
+                  .empty());
+  EXPECT_TRUE(geometries(json::parse(R"({"type":"Feature","geometry":{"coordinates":[1,2]}})")).empty());
+  EXPECT_TRUE(geometries(json::parse(R"({"type":"FeatureCollection","features":{}})")).empty());
+}
+
+TEST(GeoJson, DegreesGoThroughTheMapsGeoreference) {
+  const ElevationMap map = lunarMap();
+  const json position = {0.03, -0.01, 12.0};
+  const Point p = PositionReader(json{{"type", "Point"}}, map, "p.geojson")(position);
+  const Point expected = map.georeference->forward({-0.01 * kDegree, 0.03 * kDegree});
+  EXPECT_EQ(p, expected);
+}
+
+TEST(GeoJson, LocalMetresWhereTheDocumentSaysSoOrTheMapHasNoCrs) {
+  const ElevationMap map = lunarMap();
+  for (const char* text :
+       {R"({"type":"Point","crs":"local"})", R"({"type":"Feature","properties":{"crs":"local"}})",
+        R"({"type":"FeatureCollection","features":[{"type":"Feature","properties":{"crs":"local"}}]})"})
+    EXPECT_EQ(PositionReader(json::parse(text), map, "")(json{700.0, 800.0}), (Point{700, 800})) << text;
+  ElevationMap yard = map;
+  yard.georeference.reset();
+  EXPECT_EQ(PositionReader(json{{"type", "Point"}}, yard, "")(json{700.0, 800.0}), (Point{700, 800}));
+}
+
+TEST(GeoJson, APositionThatIsNoneIsRefused) {
+  const ElevationMap map = lunarMap();
+  const PositionReader read(json{{"type", "Point"}}, map, "p.geojson");
+  for (const char* text : {"7", "[]", "[1]", R"(["1",2])", "[1,null]", "{}", "null"})
+    EXPECT_THAT(refusal([&] { read(json::parse(text)); }),
+                HasSubstr("p.geojson: a position is not an array of numbers"))
+        << text;
+  EXPECT_THAT(refusal([&] { read(json{0, 90.1}); }), HasSubstr("[0,90.1] is not a longitude and latitude"));
+  EXPECT_THAT(refusal([&] { read(json{361, 0}); }), HasSubstr("is not a longitude and latitude"));
+}
+
+TEST(GeoJson, AFileThatIsNoGeoJsonIsRefused) {
+  const TemporaryFolder folder;
+  const auto line = [&](const std::string& content) {
+    return refusal([&] { readGeoJson(folder.write("a.json", content)); });
+  };
+  EXPECT_THAT(line(R"({"type":"Point",)"), HasSubstr("is not JSON"));
+  EXPECT_THAT(line("7"), HasSubstr("is not GeoJSON"));
+  EXPECT_THAT(line(R"({"type":7})"), HasSubstr("is not GeoJSON"));
+  EXPECT_EQ(line(R"({"type":"Point","coordinates":[1,2]})"), "accepted");
+}
+
+}  // namespace
+}  // namespace talus::maps

@@ -1,0 +1,58 @@
+#include "layer_fixture.hpp"
+
+namespace talus::maps {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(KeepOutReader, EveryCellThatAnAreaTouches) {
+  const TemporaryFolder folder;
+  const std::string path = folder.write("k.geojson", R"({"type":"FeatureCollection","crs":"local","features":[
+    {"type":"Feature","properties":{},"geometry":{"type":"Polygon","coordinates":
+      [[[500011,4999971],[500019,4999971],[500021,4999995],[500011,4999971]]]}}]})");
+  EXPECT_EQ(drawing(readKeepOut(path, map(folder))), "0110\n0110\n0100\n");
+}
+
+TEST(KeepOutReader, DegreesOnTheMapsOwnBody) {
+  const TemporaryFolder folder;
+  const ElevationMap mars =
+      readElevation(write({.rows = drawn({"1234", "2345", "3456"}),
+                           .crs = "IAU_2015:49910",
+                           .transform = std::array<double, 6>{8142400, 10, 0, -276500, 0, -10}},
+                          folder / "mars.tif"));
+  const auto corner = [&](double x, double y) {
+    const GeoPoint p = mars.georeference->reverse({x, y});
+    return "[" + std::to_string(p.longitude_rad / kDegree) + "," + std::to_string(p.latitude_rad / kDegree) +
+           "]";
+  };
+  const std::string ring = "[" + corner(8142401, -276501) + "," + corner(8142409, -276501) + "," +
+                           corner(8142409, -276529) + "," + corner(8142401, -276529) + "," +
+                           corner(8142401, -276501) + "]";
+  const std::string path =
+      folder.write("k.geojson", R"({"type":"MultiPolygon","coordinates":[[)" + ring + "]]}");
+  EXPECT_EQ(drawing(readKeepOut(path, mars)), "1000\n1000\n1000\n");
+}
+
+TEST(KeepOutReader, BadFilesAreRefused) {
+  const TemporaryFolder folder;
+  const ElevationMap dem = map(folder);
+  const auto line = [&](const std::string& content) {
+    return refusal([&] { readKeepOut(folder.write("k.geojson", content), dem); });
+  };
+  EXPECT_THAT(line(""), HasSubstr("is empty"));
+  EXPECT_THAT(line("{"), HasSubstr("is not JSON"));
+  EXPECT_THAT(line("[1]"), HasSubstr("is not GeoJSON"));
+  EXPECT_THAT(line(R"({"type":"Point","coordinates":[0,0]})"), HasSubstr("holds no Polygon"));
+  EXPECT_THAT(line(R"({"type":"Polygon","coordinates":[[[0,0],[1,1]]]})"),
+              HasSubstr("fewer than four positions"));
+  EXPECT_THAT(line(R"({"type":"Polygon","coordinates":[[["a",0],[1,1],[1,0],[0,0]]]})"),
+              HasSubstr("not an array of numbers"));
+  EXPECT_THAT(line(R"({"type":"Polygon","coordinates":[[[500011,4999971],[1,1],[1,0],[0,0]]]})"),
+              HasSubstr("not a longitude and latitude"));
+  EXPECT_THAT(line(R"({"type":"Polygon","coordinates":[[[0,0],[1,1],[1,0],[0,0]]]})"),
+              HasSubstr("no polygon overlaps map"));
+  EXPECT_THAT(refusal([&] { readKeepOut(folder / "none.geojson", dem); }), HasSubstr("no such file"));
+}
+
+}  // namespace
+}  // namespace talus::maps
