@@ -98,5 +98,18 @@ TEST(WheelContact, SoilThatCannotCarryGivesAWheelSunkToItsAxle) {
   EXPECT_NEAR(solveContact(contact).sinkage_m, contact.radius_m, 1e-9);
 }
 
+TEST(WheelContact, WhatIsDugAlongAndPloughedAcrossAddAsPaths) {
+  WheelContact c = contactOf(madeSand(), Wheel{.radius_m = 0.12, .grouser_height_m = 0.01});
+  c.load_N = 80.0;
+  c.slip = 0.4;
+  const double z0 = solveContact(c).sinkage_m;
+  c.dug_m = 0.003;
+  c.ploughed_m = 0.004;
+  c.extra_sinkage_m = 0.001;
+  const ContactForces forces = solveContact(c);
+  EXPECT_NEAR(forces.sinkage_m, z0 + 0.005 + 0.001, 1e-12);  // Closed form: hypot(3, 4) = 5.
+  EXPECT_NEAR(forces.dug_m, 0.005 * 9.0 / 25.0, 1e-12);      // Closed form: its share of the square.
+}
+
 }  // namespace
 }  // namespace talus::terramech

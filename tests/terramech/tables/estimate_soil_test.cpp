@@ -59,18 +59,5 @@ TEST(EstimateSoil, NamesThatAreNotOnOfferAreRefused) {
   EXPECT_THROW(assessTable({.table = table.path(), .formula = "no-such"}, {}), std::invalid_argument);
 }
 
-TEST(EstimateSoil, AssessmentGivesThePullOfEachRow) {
-  const Table table;
-  const AssessedTable assessed = assessTable({.table = table.path()}, {});
-  ASSERT_EQ(assessed.rows.size(), 12U);
-  for (const Assessment& row : assessed.rows) {
-    const double load_N = 120.0 + 30.0 * static_cast<double>((row.line - 2) % 3);
-    const WheelForces f =
-        equilibrium(kSoil, {.radius_m = 0.15, .width_m = 0.15}, {.load_N = load_N, .slip = row.slip});
-    // Our estimator's error is 0.002 to 0.007 (drawbar_pull.hpp).
-    EXPECT_NEAR(row.pull.value, f.drawbar_pull_N / load_N, 0.01);
-  }
-}
-
 }  // namespace
 }  // namespace talus::terramech

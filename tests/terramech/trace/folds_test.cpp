@@ -71,13 +71,5 @@ TEST(Folds, HeldAndSeenRowsAreEachOthersComplement) {
   EXPECT_EQ(rowsOf(folds, 0, false), (std::vector<char>{0, 1, 0, 1}));
 }
 
-TEST(Trial, AWheelSunkToItsAxleIsBeyondItAndUnknownSinkageIsNot) {
-  MadeRows rows(wheelColumns());
-  for (const double z : {0.05, 0.0999, 0.1, 0.15}) rows.add({60.0, 0.2, 2.0, z, 5.0, 0.1, 0.1});
-  rows.add({60.0, 0.2, 2.0, std::nan(""), 5.0, 0.1, 0.1});
-  // Closed form: z >= r = 0.1 m.
-  EXPECT_EQ(beyondAxle(makeTrial(rows.telemetry(), {})), (std::vector<char>{0, 0, 1, 1, 0}));
-}
-
 }  // namespace
 }  // namespace talus::terramech

@@ -4,6 +4,8 @@
 
 #include <talus/terramech/trace/trial.hpp>
 
+#include "made_rows.hpp"
+
 namespace talus::terramech {
 namespace {
 
@@ -83,6 +85,14 @@ TEST(Trial, RowsThatAreNoDriveShareNothing) {
   Telemetry unnamed = drive(80.0);
   unnamed.words.pop_back();
   EXPECT_TRUE(makeTrial(unnamed, RefinedModel{}).moment.empty());
+}
+
+TEST(Trial, AWheelSunkToItsAxleIsBeyondItAndUnknownSinkageIsNot) {
+  MadeRows rows(wheelColumns());
+  for (const double z : {0.05, 0.0999, 0.1, 0.15}) rows.add({60.0, 0.2, 2.0, z, 5.0, 0.1, 0.1});
+  rows.add({60.0, 0.2, 2.0, std::nan(""), 5.0, 0.1, 0.1});
+  // Closed form: z >= r = 0.1 m.
+  EXPECT_EQ(beyondAxle(makeTrial(rows.telemetry(), {})), (std::vector<char>{0, 0, 1, 1, 0}));
 }
 
 }  // namespace

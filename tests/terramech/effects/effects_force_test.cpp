@@ -1,0 +1,115 @@
+#include <cmath>
+
+#include "effects_fixture.hpp"
+
+namespace talus::terramech {
+namespace {
+
+TEST(EffectsForce, SoilMovedInFrontWeighsWhatItDoesWhereTheRoverDrives) {
+  RefinedModel model = base();
+  model.soil.cohesion_Pa = 0.0;
+  const auto resistance = [&](const char* effect, std::vector<double> parameters, double gravity_m_s2) {
+    WheelState s = straightOn(0.6);
+    s.gravity_m_s2 = gravity_m_s2;
+    model.effects.clear();
+    const double without = predict(model, s).drawbar_pull_N;
+    model.effects = {with(effect, std::move(parameters))};
+    return without - predict(model, s).drawbar_pull_N;
+  };
+  // Closed form: without cohesion the resistance is proportional to the soil's weight.
+  const double earth = resistance("bulldozing", {1.0}, 9.80665), moon = resistance("bulldozing", {1.0}, 1.62);
+  EXPECT_GT(moon, 0.0);
+  EXPECT_NEAR(moon / earth, 1.62 / 9.80665, 1e-9);
+}
+
+TEST(EffectsForce, ARoughFaceBrakesALockedWheelPushesASpinningOneAndBearsLessBesideIt) {
+  RefinedModel model = base();
+  model.slip_along_travel = true;
+  model.effects = {with("side_ploughing", {0.5, 1.0}), with("side_bulldozing_rough", {1.0, 0.0})};
+  RefinedModel rough = model;
+  rough.effects[1].parameters[1] = 0.4;
+  const auto added = [&](double slip, Channel channel) {
+    WheelState s = state(slip);
+    s.slip_angle_rad = 1.2;
+    return predict(rough, s).scaled(channel) - predict(model, s).scaled(channel);
+  };
+  // Property: friction acts against the way that the face slides over the soil.
+  EXPECT_LT(added(-1.0, Channel::DrawbarPull), -0.01);
+  EXPECT_GT(added(0.8, Channel::DrawbarPull), 0.01);
+  // Property: what friction does along is lost to what it holds down (side force < 0 against the motion).
+  EXPECT_LT(added(-0.7, Channel::SideForce), added(0.8, Channel::SideForce));
+  EXPECT_LT(added(0.8, Channel::SideForce), 0.0);
+}
+
+Reading sunk(double z_m) {
+  return {.load_N = 100.0, .radius_m = 0.2, .sinkage_m = z_m};
+}
+
+WheelContact soilOf(double friction_angle_rad) {
+  WheelContact c = plainContact();
+  c.tan_friction = std::tan(friction_angle_rad);
+  c.density_kg_m3 = 1500.0;
+  c.gravity_m_s2 = 10.0;
+  return c;
+}
+
+TEST(EffectsForce, BulldozingIsThePassiveWedge) {
+  // Closed form: Kp = 3 at 30 deg; b (gamma z^2 Kp / 2 + 2 c z sqrt(Kp)), b = 0.1 m, z = 0.02 m.
+  const double friction = 0.1 * 15000.0 * 0.0004 * 3.0 / 2.0,
+               cohesion = 0.1 * 2.0 * 1000.0 * 0.02 * std::sqrt(3.0);
+  const WheelContact c = soilOf(M_PI / 6);
+  EXPECT_NEAR(readWith("bulldozing", {2.0}, 0.02, {}, c, sunk(0.02)).drawbar_pull_N,
+              -2.0 * (friction + cohesion), 1e-9);
+  EXPECT_NEAR(readWith("bulldozing_two_term", {3.0, 0.5}, 0.02, {}, c, sunk(0.02)).drawbar_pull_N,
+              -(3.0 * friction + 0.5 * cohesion), 1e-9);
+  // Closed form: X = 45 deg at phi = 0, so b 2 (z c + gamma z^2 / 2).
+  EXPECT_NEAR(readWith("bulldozing_hegedus", {1.0}, 0.02, {}, soilOf(0.0), sunk(0.02)).drawbar_pull_N,
+              -0.2 * (0.02 * 1000.0 + 0.5 * 15000.0 * 0.0004), 0.02);  // tan phi is taken as 0.001 at least
+}
+
+// Property: a wheel that moves across its plane pushes nothing ahead of itself.
+TEST(EffectsForce, NothingIsPushedAheadAtNinetyDegrees) {
+  const WheelState across{.slip_angle_rad = M_PI / 2};
+  for (const char* name : {"bulldozing", "bulldozing_hegedus", "bulldozing_ahead"})
+    EXPECT_NEAR(readWith(name, {1.0}, 0.02, across, soilOf(0.5), sunk(0.02)).drawbar_pull_N, 0.0, 1e-9)
+        << name;
+}
+
+TEST(EffectsForce, ASmoothFaceHasRankinesPressureUnderCoulombsLaw) {
+  // Closed form: Coulomb's passive coefficient without wall friction is tan^2(45 deg + phi/2).
+  for (const double angle : {-1.0, 0.3, 1.4}) {
+    const WheelContact c = soilOf(0.6);
+    const Reading plain = readWith("side_bulldozing", {1.0}, angle, {}, c, sunk(0.03));
+    const Reading rough = readWith("side_bulldozing_rough", {1.0, 0.0}, angle, {}, c, sunk(0.03));
+    EXPECT_NEAR(rough.side_force_N, plain.side_force_N, 1e-9 * std::abs(plain.side_force_N));
+    EXPECT_EQ(rough.drawbar_pull_N, 0.0);
+    EXPECT_LT(plain.side_force_N * angle, 0.0);
+  }
+}
+
+TEST(EffectsForce, PilesAndTheSlopesShareOfTheWeight) {
+  const WheelContact c = soilOf(M_PI / 6);
+  // Closed form: a W (i - i0)^2 = 0.5 x 100 x 0.04; gamma b h^2 Kp / 2 with h = 0.5 x 0.2; nothing below i0.
+  EXPECT_NEAR(readWith("rear_pile", {0.5, 0.4}, 0.6, {}, c, sunk(0.01)).drawbar_pull_N, 2.0, 1e-12);
+  EXPECT_EQ(readWith("rear_pile", {0.5, 0.4}, 0.3, {}, c, sunk(0.01)).drawbar_pull_N, 0.0);
+  EXPECT_NEAR(readWith("rear_pile_passive", {0.5, 0.4}, 0.6, {}, c, sunk(0.01)).drawbar_pull_N,
+              15000.0 * 0.1 * 0.01 * 3.0 / 2.0, 1e-9);
+  EXPECT_NEAR(readWith("slope_weight_component", {0.5}, M_PI / 6, {}, c, sunk(0.01)).drawbar_pull_N, -25.0,
+              1e-12);
+}
+
+TEST(EffectsForce, ARoughFaceHasCoulombsPressure) {
+  // Closed form: phi = delta = 30 deg gives Kp = cos 30 deg / (1 - sqrt(1/2))^2 = 10.095. A locked wheel at
+  // 90 deg slides along its face upwards alone, so that all friction counts and none pulls or brakes.
+  WheelContact c = soilOf(M_PI / 6);
+  c.cohesion_Pa = 0.0;
+  c.rolling = 0.0;
+  const double kp = std::cos(M_PI / 6) / std::pow(1.0 - std::sqrt(0.5), 2);
+  const double z = 0.02, chord = 2.0 * std::sqrt(z * (0.4 - z));
+  const Reading r = readWith("side_bulldozing_rough", {1.0, std::tan(M_PI / 6)}, M_PI / 2, {}, c, sunk(z));
+  EXPECT_NEAR(r.side_force_N, -chord * 0.5 * 15000.0 * z * z * kp, 1e-9);
+  EXPECT_NEAR(r.drawbar_pull_N, 0.0, 1e-9);
+}
+
+}  // namespace
+}  // namespace talus::terramech

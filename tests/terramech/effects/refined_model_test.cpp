@@ -1,0 +1,124 @@
+#include <cmath>
+
+#include "effects_fixture.hpp"
+
+namespace talus::terramech {
+namespace {
+
+TEST(RefinedModel, AnUnknownCovariateLeavesTheModelNeutral) {
+  for (const EffectForm& form : effectLibrary()) {
+    RefinedModel model = base();
+    model.effects = {typical(form)};
+    model.effects[0].covariate = "no_such_column";
+    EXPECT_EQ(change(predict(model, state()), predict(base(), state())), 0.0) << form.name;
+  }
+}
+
+TEST(RefinedModel, TheLinearFormulaStartsFromWhatWasMeasured) {
+  RefinedModel model = base();
+  model.base = BaseModel::LinearFormula;
+  WheelState s = state();
+  const Reading solved = predict(model, s);
+  // Closed form: T/(rW) - z/r - 0.1.
+  EXPECT_NEAR(solved.scaled(Channel::DrawbarPull),
+              solved.scaled(Channel::Torque) - solved.scaled(Channel::Sinkage) - 0.1, 1e-12);
+  s.measured_torque_Nm = 0.4 * 80.0 * 0.12;
+  s.measured_sinkage_m = 0.06 * 0.12;
+  EXPECT_NEAR(predict(model, s).scaled(Channel::DrawbarPull), 0.4 - 0.06 - 0.1, 1e-12);
+  EXPECT_EQ(predict(model, s).torque_Nm, solved.torque_Nm);
+}
+
+TEST(RefinedModel, SlipInTheWheelPlaneGrowsWithTheSlipAngle) {
+  // Closed form: 1 - 0.8 cos 60 deg = 0.6; a wheel braked along the travel may be driven in its own plane.
+  EXPECT_NEAR(slipInWheelPlane(0.2, std::acos(0.5)), 0.6, 1e-12);
+  EXPECT_NEAR(slipInWheelPlane(-0.5, std::acos(0.5)), 0.0, 1e-12);
+}
+
+TEST(RefinedModel, StdHoldsTheSensorsAndTheSlip) {
+  RefinedModel model = base();
+  model.noise.absolute[0] = 0.02 * 80.0;
+  EXPECT_NEAR(predictWithStd(model, state()).scaled_std[0], 0.02, 1e-12);
+  model.noise.slip_absolute = 0.02;
+  EXPECT_GT(predictWithStd(model, state(0.05)).scaled_std[0], 0.02);
+}
+
+TEST(RefinedModel, AnEffectOfOneGroupLeavesTheOthersAlone) {
+  RefinedModel model = base();
+  model.effects = {typical(*findEffect("load_cell_tilt"))};
+  model.effects[0].only_column = "source";
+  model.effects[0].only_value = "b";
+  WheelState a = state(), b = state();
+  a.group = {{"source", "a"}};
+  b.group = {{"source", "b"}};
+  EXPECT_EQ(change(predict(model, a), predict(base(), a)), 0.0);
+  // Closed form: DP cos e + W sin e.
+  const double dp = predict(base(), b).drawbar_pull_N;
+  EXPECT_NEAR(predict(model, b).drawbar_pull_N, dp * std::cos(0.02) + 80.0 * std::sin(0.02), 1e-12);
+}
+
+TEST(RefinedModel, ManyStatesAtOnceReadAsOneByOne) {
+  // Property: to the kernel's accuracy, 1e-6 of the load, with effects and without.
+  RefinedModel refined = base();
+  refined.effects = {typical(*findEffect("slip_sinkage_linear")), typical(*findEffect("bulldozing")),
+                     typical(*findEffect("torque_offset"))};
+  for (const RefinedModel& model : {base(), refined}) {
+    std::vector<WheelState> states;
+    for (int k = 0; k < 9; ++k) states.push_back(straightOn(0.1 * k));
+    SolvedContacts solved;
+    const std::vector<Reading> readings = predict(model, states, solved);
+    for (std::size_t k = 0; k < states.size(); ++k)
+      EXPECT_LT(change(readings[k], predict(model, states[k])), 2e-6) << k;
+  }
+}
+
+TEST(RefinedModel, WithoutSensorsOnlyTheGroundActs) {
+  RefinedModel model = base();
+  model.effects = {typical(*findEffect("torque_offset")), typical(*findEffect("bulldozing")),
+                   typical(*findEffect("slip_bias"))};
+  const RefinedModel ground = withoutSensors(model);
+  ASSERT_EQ(ground.effects.size(), 1U);
+  EXPECT_EQ(ground.effects[0].name, "bulldozing");
+}
+
+TEST(RefinedModel, CurvesMultiplyTheSoilOrAddToAChannel) {
+  // Closed form: one knot is a constant curve; e^{ln 2} k, and 0.1 W.
+  RefinedModel model = base(), stiff = base();
+  stiff.soil.cohesive_modulus *= 2.0;
+  stiff.soil.frictional_modulus *= 2.0;
+  model.effects = {
+      {.name = "empirical_stiffness", .covariate = "slip", .parameters = {std::log(2.0)}, .knots = {0.3}}};
+  EXPECT_LT(change(predict(model, state()), predict(stiff, state())), 1e-9);
+  model.effects[0].name = "empirical";
+  model.effects[0].parameters = {0.1};
+  EXPECT_NEAR(predict(model, state()).drawbar_pull_N - predict(base(), state()).drawbar_pull_N, 8.0, 1e-9);
+}
+
+TEST(RefinedModel, FittedNumbersAreReadAndSet) {
+  RefinedModel model = base();
+  model.effects = {with("bulldozing_two_term", {1.0, 2.0})};
+  EXPECT_EQ(value(model, {.effect = 0, .index = 1}), 2.0);
+  setValue(model, {.effect = 0, .index = 1}, 3.5);
+  EXPECT_EQ(model.effects[0].parameters[1], 3.5);
+  for (std::size_t k = 0; k < soilParameters().size(); ++k) {
+    const SoilParameter& p = soilParameters()[k];
+    if (std::string_view(p.name) == "log_stiffness") continue;  // a step, not a value
+    const double middle = 0.5 * (p.low + p.high);
+    setValue(model, {.effect = -1, .index = static_cast<int>(k)}, middle);
+    EXPECT_DOUBLE_EQ(value(model, {.effect = -1, .index = static_cast<int>(k)}), middle) << p.name;
+  }
+}
+
+TEST(RefinedModel, StdHoldsTheFittedParameters) {
+  // Closed form: DP_m = DP + F0, so the std of DP/W is that of F0 over W; nothing else is moved.
+  RefinedModel model = base();
+  model.effects = {with("drawbar_zero", {1.0})};
+  model.fitted = {{.effect = 0, .index = 0}};
+  model.covariance = {16.0};
+  const Prediction p = predictWithStd(model, state());
+  EXPECT_NEAR(p.scaled_std[0], 4.0 / 80.0, 1e-9);
+  EXPECT_NEAR(p.scaled_std[1], 0.0, 1e-9);
+  EXPECT_NEAR(p.scaled_std[2], 0.0, 1e-9);
+}
+
+}  // namespace
+}  // namespace talus::terramech
