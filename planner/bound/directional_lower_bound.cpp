@@ -109,13 +109,17 @@ std::optional<ByDirection> limitsOf(const DriveCurve& curve, double tilt, double
   const auto rise = [&](std::size_t i) { return dz_dx * all.x[i] + dz_dy * all.y[i]; };
   ByDirection least{}, limit{};
   double most = 0.0, from = rise(0);
+  bool allowed = false;
   for (std::size_t i = 0; i < kDirections; ++i) {
     const double to = rise(i + 1);
     least[i] = leastIn(curve, tilt, std::min(from, to) - slack, std::max(from, to) + slack);
-    if (std::isfinite(least[i])) most = std::max(most, least[i]);
+    if (std::isfinite(least[i])) {
+      most = std::max(most, least[i]);
+      allowed = true;
+    }
     from = to;
   }
-  if (!(most > 0.0)) return std::nullopt;
+  if (!allowed) return std::nullopt;
   // Where nothing is allowed any price will do; one that is dear keeps the sums finite.
   for (std::size_t i = 0; i < kDirections; ++i)
     limit[i] = std::min({least[i], least[(i + kDirections - 1) % kDirections], 2 * most}) * (1.0 - bulge) *

@@ -52,5 +52,34 @@ TEST(DirectionalLowerBounds, TheirGaugeStaysBelowTheCost) {
   }
 }
 
+// A cart that rolls at `level` joules a metre and lifts its weight: downhill it never pays less than nothing.
+std::shared_ptr<const costmap::DriveCost> rollingCart(double level_J_per_m, double weight_N) {
+  costmap::DriveCurve curve;
+  for (int bin = 0; bin < costmap::DriveCurve::kBins; ++bin)
+    curve.cost_J_per_m[static_cast<std::size_t>(bin)] = static_cast<float>(
+        std::max(0.1 * level_J_per_m, level_J_per_m + weight_N * costmap::DriveCurve::gradient(bin)));
+  return std::make_shared<costmap::DriveCost>(costmap::DriveCost::Limits{}, std::vector{curve});
+}
+
+// Property: where a heading is allowed, prices are finite and no higher than the cost of their own heading,
+// also where the slope outweighs the rolling many times or the ground costs nothing.
+TEST(DirectionalLowerBounds, AreFiniteWhereverAHeadingIsAllowed) {
+  for (const double level_J_per_m : {100.0, 10.0, 1.0, 0.0}) {
+    const auto cost = rollingCart(level_J_per_m, 1000.0);
+    DirectionalLowerBounds headings(*cost);
+    for (int x = -380; x <= 380; x += 19)
+      for (int y = -380; y <= 380; y += 19) {
+        const costmap::CellCode cell({.dz_dx = x / 1024.0, .dz_dy = y / 1024.0, .curve = 0});
+        const auto prices = headings.of(cell);
+        for (std::size_t k = 0; k < 8; ++k) {
+          const double length = std::hypot(kStep[k].column, kStep[k].row);
+          const float exact = cost->costPerMetre(cell, {kStep[k].column / length, kStep[k].row / length});
+          ASSERT_LE(prices[k], exact) << level_J_per_m << ": " << x << "," << y << " " << k;
+          ASSERT_GE(prices[k], 0.0F);
+        }
+      }
+  }
+}
+
 }  // namespace
 }  // namespace talus::planner

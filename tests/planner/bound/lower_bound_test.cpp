@@ -102,5 +102,24 @@ TEST(LowerBound, ToleranceLowersIt) {
   EXPECT_LT(LowerBound()(map, ends, 20.0), LowerBound()(map, ends, 0.0));
 }
 
+// Closed form: 50 m along a track of 1 J/m cost 50 J, though climbing there costs a thousand times that and
+// the ground beside it ten times.
+TEST(LowerBound, KnowsTheTrackWhoseSlopesOutweighItsRolling) {
+  costmap::DriveCurve track, ground;
+  ground.cost_J_per_m.fill(10.0F);
+  for (int bin = 0; bin < costmap::DriveCurve::kBins; ++bin)
+    track.cost_J_per_m[static_cast<std::size_t>(bin)] =
+        static_cast<float>(std::max(0.1, 1.0 + 1000.0 * costmap::DriveCurve::gradient(bin)));
+  maps::Raster<costmap::CellCode> cells({.width = 60, .height = 20, .resolution_m = 1.0, .south_west = {}},
+                                        costmap::CellCode({.curve = 1}));
+  for (int column = 0; column < 60; ++column) cells[{column, 10}] = costmap::CellCode({.curve = 0});
+  const auto cost =
+      std::make_shared<costmap::DriveCost>(costmap::DriveCost::Limits{}, std::vector{track, ground});
+  const auto map = std::make_shared<costmap::CostGrid>(costmap::flattened(cells, cost));
+  const Segment ends{{5.5, 10.5}, {55.5, 10.5}};
+  EXPECT_NEAR(MotionCost(map)(ends), 50.0, 1e-6);
+  EXPECT_LE(LowerBound()(map, ends, 0.0), 50.0);
+}
+
 }  // namespace
 }  // namespace talus::planner
