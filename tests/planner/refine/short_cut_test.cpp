@@ -1,5 +1,5 @@
 #include <cmath>
-#include <numeric>
+#include <stop_token>
 
 #include <talus/planner/refine/short_cut.hpp>
 
@@ -10,6 +10,47 @@ namespace {
 
 using testing::drawn;
 using testing::randomMap;
+
+// Closed form: on even ground the straight line is best, and a motion over all pieces is among those tried.
+TEST(ShortCut, AZigzagOnEvenGroundBecomesStraight) {
+  const MotionCost cost(drawn(std::vector<std::string>(20, std::string(70, '.'))));
+  Polyline zigzag;
+  for (int k = 0; k <= 16; ++k) zigzag.push_back({2.5 + 4.0 * k, k % 2 == 0 ? 5.5 : 12.5});
+  const Polyline made = shortCut(cost, zigzag, 100.0);
+  EXPECT_NEAR(cost.along(shortCut(cost, zigzag, 2.0)), 640.0, 0.05 * 640.0);
+  EXPECT_EQ(made, (Polyline{zigzag.front(), zigzag.back()}));
+}
+
+// Property: never dearer, ends kept, and cheaper on some ground; a cheap detour is not cut.
+TEST(ShortCut, NeverDearer) {
+  double saved = 0.0;
+  for (unsigned seed = 1; seed <= 30; ++seed) {
+    const MotionCost cost(
+        randomMap({.width = 40, .height = 40, .seed = seed, .blocked = 0.0, .roughness = 0.15}));
+    const Polyline route{{1.5, 1.5}, {12.4, 3.3}, {20.5, 16.5}, {22.7, 30.1}, {38.5, 38.5}};
+    const double before_J = cost.along(route);
+    if (!std::isfinite(before_J)) continue;
+    const Polyline made = shortCut(cost, route, 3.0);
+    EXPECT_LE(cost.along(made), before_J * (1 + 1e-9)) << seed;
+    EXPECT_EQ(made.front(), route.front());
+    EXPECT_EQ(made.back(), route.back());
+    saved += before_J - cost.along(made);
+  }
+  EXPECT_GT(saved, 100.0);
+  std::vector<std::string> rows(12, std::string(40, '4'));
+  rows[0] = std::string(40, '.');
+  const MotionCost dear_inside(drawn(rows));
+  const Polyline detour{{1.5, 11.5}, {20.5, 11.5}, {38.5, 11.5}};
+  EXPECT_NEAR(dear_inside.along(shortCut(dear_inside, detour, 3.0)), 370.0, 1e-3);
+}
+
+TEST(ShortCut, StoppedLeavesTheRoute) {
+  const MotionCost cost(drawn({".....", "....."}));
+  std::stop_source source;
+  source.request_stop();
+  const Polyline route{{0.5, 0.5}, {2.5, 1.5}, {4.5, 0.5}};
+  EXPECT_EQ(shortCut(cost, route, 1.0, ProgressMonitor{.progress = {}, .stop = source.get_token()}), route);
+}
 
 TEST(ShortCut, DropsIdleTurns) {
   const MotionCost cost(drawn({".....", ".#...", "....."}));

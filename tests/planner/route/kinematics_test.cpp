@@ -12,14 +12,6 @@ Pose end(Pose pose, const std::vector<Arc>& arcs) {
   return pose;
 }
 
-TEST(Kinematics, AQuarterCircleEndsWhereItShould) {
-  const Pose left = after({{0.0, 0.0}, 0.0}, Arc{M_PI, 0.5});
-  // Closed form: radius 2 about (0, 2).
-  EXPECT_NEAR(left.place.x_m, 2.0, 1e-12);
-  EXPECT_NEAR(left.place.y_m, 2.0, 1e-12);
-  EXPECT_NEAR(left.heading_rad, M_PI / 2, 1e-12);
-}
-
 TEST(Kinematics, ShortestCurvesArriveAndKeepTheRadius) {
   // Property: over random poses both families end at the target, and reversing never makes the way longer.
   std::mt19937 random(3);

@@ -1,0 +1,107 @@
+#include <cmath>
+#include <random>
+#include <stop_token>
+
+#include <talus/planner/bound/admissible_edges.hpp>
+#include <talus/planner/field/cost_to_go.hpp>
+#include <talus/planner/route/motion_cost.hpp>
+
+#include "drawn_map.hpp"
+
+namespace talus::planner {
+namespace {
+
+using testing::drawn;
+using testing::randomMap;
+
+// Property: the field over the corners is below the cost of every allowed motion between two corners, straight
+// or bent once, whatever its heading; on even patches, where it is sharp enough to be wrong.
+TEST(AdmissibleEdges, TheirFieldIsBelowEveryMotion) {
+  int tried = 0, sharp = 0;
+  for (unsigned seed = 1; seed <= 8; ++seed) {
+    std::mt19937 random(seed);
+    const auto below = [&random](unsigned limit) { return static_cast<int>(random() % limit); };
+    maps::Raster<costmap::CellCode> cells({.width = 24, .height = 24, .resolution_m = 2.0, .south_west = {}});
+    std::vector<costmap::CellCode> patches;
+    for (int k = 0; k < 9; ++k)
+      patches.push_back(costmap::CellCode({.dz_dx = (below(300) - 150) / 1024.0,
+                                           .dz_dy = (below(300) - 150) / 1024.0,
+                                           .curve = static_cast<std::uint8_t>(below(3))}));
+    for (int row = 0; row < 24; ++row)
+      for (int column = 0; column < 24; ++column)
+        cells[{column, row}] = patches[static_cast<std::size_t>(row / 8 * 3 + column / 8)];
+    const auto map = std::make_shared<costmap::CostGrid>(costmap::flattened(cells, testing::driveCost()));
+    const MotionCost cost(map);
+    const auto edges = admissibleEdges(map);
+    ASSERT_TRUE(edges);
+    const auto corner = [&below] { return maps::Cell{below(25), below(25)}; };
+    const auto place = [](maps::Cell c) { return maps::Point{2.0 * c.column, 2.0 * c.row}; };
+    for (int g = 0; g < 4; ++g) {
+      const maps::Cell goal = corner();
+      CostToGo field(edges, {{.cell = goal}});
+      ASSERT_TRUE(field.settleAll());
+      for (int k = 0; k < 400; ++k) {
+        const maps::Cell start = corner();
+        const double cost_J = k % 2 == 0 ? cost({place(start), place(goal)})
+                                         : cost.along({place(start), place(corner()), place(goal)});
+        if (!std::isfinite(cost_J)) continue;
+        ++tried;
+        const auto bound_J = field.cost_J(start);
+        ASSERT_TRUE(bound_J);
+        ASSERT_LE(*bound_J, cost_J * (1 + 1e-9)) << seed;
+        sharp += *bound_J > 0.85 * cost_J;
+      }
+    }
+  }
+  EXPECT_GT(tried, 2'000);
+  EXPECT_GT(sharp, 50);
+}
+
+// Closed form: on even ground of 10 J/m no heading is dearer than another; the octagon under that circle has
+// edges no lower than cos(22.5 degrees) of it, and whole units take a 64th.
+TEST(AdmissibleEdges, OnEvenGroundAreNearTheOctagon) {
+  const auto edges = admissibleEdges(drawn({"....", "....", "...."}));
+  ASSERT_TRUE(edges);
+  EXPECT_EQ(edges->padded().width, 5);  // corners, one more than cells
+  EXPECT_EQ(edges->padded().height, 4);
+  for (std::size_t k = 0; k < 8; ++k) {
+    const double step_J = edges->into(edges->padded().index({2, 2}))[k] * edges->units().unit_J();
+    const double exact_J = 10.0 * std::hypot(kStep[k].column, kStep[k].row);
+    EXPECT_LE(step_J, exact_J);
+    EXPECT_GT(step_J, 0.92 * exact_J * 63 / 64);
+  }
+}
+
+// Closed form: a step along a side takes the cheaper of its two cells, 10 of 10 and 50 J/m; a step across a
+// blocked cell, or off the map, is none.
+TEST(AdmissibleEdges, ASideTakesTheCheaperCellAndBlockedGroundNone) {
+  const auto edges = admissibleEdges(drawn({"44", "..", "##"}));
+  const auto step_J = [&](maps::Cell into, int heading) {
+    return edges->into(edges->padded().index(into))[heading] * edges->units().unit_J();
+  };
+  EXPECT_LE(step_J({1, 2}, kEast), 10.0);
+  EXPECT_GT(step_J({1, 3}, kEast), 40.0);
+  EXPECT_EQ(edges->into(edges->padded().index({1, 0}))[kEast], EdgeLayer::kBlocked);
+  EXPECT_EQ(edges->into(edges->padded().index({1, 1}))[kSouthEast], EdgeLayer::kBlocked);
+  EXPECT_EQ(edges->into(edges->padded().index({2, 2}))[kEast], EdgeLayer::kBlocked);
+}
+
+TEST(AdmissibleEdges, NoneWhenStopped) {
+  std::stop_source source;
+  source.request_stop();
+  EXPECT_EQ(admissibleEdges(drawn({".."}), ProgressMonitor{.progress = {}, .stop = source.get_token()}),
+            nullptr);
+}
+
+TEST(AdmissibleEdges, NoneWhereGroundCostsNothing) {
+  costmap::DriveCurve free_of_charge;
+  free_of_charge.cost_J_per_m.fill(0.0F);
+  const maps::Raster<costmap::CellCode> cells(
+      {.width = 3, .height = 3, .resolution_m = 1.0, .south_west = {}}, costmap::CellCode({.curve = 0}));
+  const auto cost =
+      std::make_shared<costmap::DriveCost>(costmap::DriveCost::Limits{}, std::vector{free_of_charge});
+  EXPECT_EQ(admissibleEdges(std::make_shared<costmap::CostGrid>(costmap::flattened(cells, cost))), nullptr);
+}
+
+}  // namespace
+}  // namespace talus::planner

@@ -1,0 +1,32 @@
+#include <cstdint>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include <talus/planner/route/large_array.hpp>
+
+namespace talus::planner {
+namespace {
+
+// Property: every element can be written, arrays of a cache line and more begin on one, and from two huge
+// pages on they begin on a huge page of 2 MiB.
+TEST(LargeArray, IsAlignedAndHoldsWhatItWasAskedFor) {
+  for (const std::size_t count : {1UL, 15UL, 16UL, 17UL, (1UL << 20) - 1, 1UL << 20, (1UL << 20) + 1}) {
+    const auto array = makeLargeArray<std::uint32_t>(count);
+    const auto address = reinterpret_cast<std::uintptr_t>(array.get());
+    EXPECT_EQ(address % 64, 0U) << count;
+    if (count >= 1UL << 20) {
+      EXPECT_EQ(address % (1UL << 21), 0U) << count;
+    }
+    for (std::size_t i = 0; i < count; ++i) array[i] = static_cast<std::uint32_t>(i);
+    for (std::size_t i = 0; i < count; i += 997) ASSERT_EQ(array[i], i);
+    EXPECT_EQ(array[count - 1], count - 1);
+  }
+}
+
+TEST(LargeArray, WhatCannotBeHadIsBadAlloc) {
+  EXPECT_THROW(makeLargeArray<std::uint64_t>(std::size_t{1} << 58), std::bad_alloc);
+}
+
+}  // namespace
+}  // namespace talus::planner

@@ -1,0 +1,33 @@
+#include <cmath>
+#include <stop_token>
+
+#include <gmock/gmock.h>
+
+#include <talus/planner/route/plan_end.hpp>
+
+namespace talus::planner {
+namespace {
+
+TEST(PlanEnd, AFailedPlanHasItsReasonAndNoRoute) {
+  const Plan plan = failedPlan(RouteStatus::NoRoute, "walled in");
+  EXPECT_EQ(plan.status, RouteStatus::NoRoute);
+  EXPECT_EQ(plan.reason, "walled in");
+  EXPECT_TRUE(plan.points.empty());
+  EXPECT_TRUE(std::isinf(plan.cost_J));
+}
+
+// Property: a request to stop counts more than a time limit that has passed as well.
+TEST(PlanEnd, StoppedWorkSaysByWhat) {
+  std::stop_source source;
+  const StopCheck late(ProgressMonitor{.progress = {}, .stop = source.get_token()}, 0.0);
+  const Plan timed_out = cancelledPlan(late);
+  EXPECT_EQ(timed_out.status, RouteStatus::TimedOut);
+  EXPECT_THAT(timed_out.reason, ::testing::HasSubstr("time limit"));
+  source.request_stop();
+  const Plan cancelled = cancelledPlan(late);
+  EXPECT_EQ(cancelled.status, RouteStatus::Cancelled);
+  EXPECT_THAT(cancelled.reason, ::testing::HasSubstr("cancelled"));
+}
+
+}  // namespace
+}  // namespace talus::planner

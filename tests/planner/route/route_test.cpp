@@ -1,0 +1,35 @@
+#include <cmath>
+#include <set>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include <talus/planner/route/route.hpp>
+
+namespace talus::planner {
+namespace {
+
+// The spellings are a promise to programs that read the output.
+TEST(Route, EveryStatusHasTheNameThatFilesPromise) {
+  const std::pair<RouteStatus, const char*> promised[] = {{RouteStatus::Found, "found"},
+                                                          {RouteStatus::NoRoute, "no_route"},
+                                                          {RouteStatus::StartInvalid, "start_invalid"},
+                                                          {RouteStatus::GoalInvalid, "goal_invalid"},
+                                                          {RouteStatus::TimedOut, "timed_out"},
+                                                          {RouteStatus::Cancelled, "cancelled"}};
+  for (const auto& [status, word] : promised) EXPECT_EQ(name(status), word);
+}
+
+// Property: what a layer does not know is told by NaN, which no comparison takes for a value; a route that
+// was not planned is none.
+TEST(Route, WhatIsNotKnownIsNoNumber) {
+  const RouteVertex vertex;
+  for (const double value :
+       {vertex.elevation_m, vertex.slip, vertex.sinkage_m, vertex.torque_Nm, vertex.drawbar_pull_margin})
+    EXPECT_TRUE(std::isnan(value));
+  EXPECT_EQ(vertex.category, terramech::Category::Unknown);
+  EXPECT_EQ(Route{}.status, RouteStatus::NoRoute);
+}
+
+}  // namespace
+}  // namespace talus::planner

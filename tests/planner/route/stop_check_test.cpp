@@ -1,0 +1,38 @@
+#include <limits>
+#include <stop_token>
+
+#include <gtest/gtest.h>
+
+#include <talus/planner/route/plan_end.hpp>
+#include <talus/planner/route/stop_check.hpp>
+
+namespace talus::planner {
+namespace {
+
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
+TEST(StopCheck, NothingStopsWorkThatNobodyWatches) {
+  EXPECT_FALSE(StopCheck()());
+  EXPECT_FALSE(StopCheck(ProgressMonitor{}, kNever)());
+  EXPECT_FALSE(StopCheck(ProgressMonitor{}, 1e300)());  // longer than a clock counts: no overflow
+}
+
+TEST(StopCheck, ARequestStopsEveryCopy) {
+  std::stop_source source;
+  const StopCheck check(ProgressMonitor{.progress = {}, .stop = source.get_token()}, kNever), copy = check;
+  EXPECT_FALSE(check() || copy());
+  source.request_stop();
+  EXPECT_TRUE(check() && copy() && copy.cancelled());
+  EXPECT_FALSE(copy.timedOut());
+}
+
+// Closed form: a limit of no time has passed at once.
+TEST(StopCheck, ALimitThatHasPassedIsNoCancel) {
+  const StopCheck check(ProgressMonitor{}, 0.0);
+  EXPECT_TRUE(check() && check.timedOut());
+  EXPECT_FALSE(check.cancelled());
+  EXPECT_EQ(cancelledPlan(check).status, RouteStatus::TimedOut);
+}
+
+}  // namespace
+}  // namespace talus::planner
