@@ -43,9 +43,9 @@ PlannerCapabilities OwnPlanner::capabilities() const {
 }
 
 void OwnPlanner::configure(const PlannerSettings& settings) {
-  const PlannerSettings& checked = validated(settings);
-  planner_.emplace(checked.planner);
-  settings_ = checked;
+  const std::string name = plannerName(validated(settings).planner);  // throws before anything is changed
+  planner_.emplace(name);
+  settings_ = settings;
 }
 
 void OwnPlanner::set_map(std::shared_ptr<const costmap::CostGrid> map) {

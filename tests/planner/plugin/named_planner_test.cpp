@@ -1,0 +1,72 @@
+#include <cmath>
+
+#include <talus/planner/plugin/named_planner.hpp>
+#include <talus/planner/route/planner_names.hpp>
+
+#include "drawn_map.hpp"
+
+namespace talus::planner {
+namespace {
+
+using testing::drawn;
+using testing::randomMap;
+
+Problem across(unsigned seed) {
+  return {.map = randomMap({.width = 40, .height = 40, .seed = seed, .blocked = 0.03, .roughness = 0.1}),
+          .start = {3.5, 3.5},
+          .goal = {36.5, 35.5},
+          .prove = false,
+          .kinematics = {.turning_radius_m = 1.5}};
+}
+
+TEST(NamedPlanner, IsTheFieldUnlessNamed) {
+  EXPECT_EQ(NamedPlanner().name(), plannerNames().front());
+  EXPECT_EQ(NamedPlanner("rrt*").name(), "RRTstar");  // spelling is forgiven
+  EXPECT_THROW(NamedPlanner("no-such"), std::invalid_argument);
+  EXPECT_THROW(NamedPlanner().plan({}), std::invalid_argument);  // no map
+}
+
+// Property: exactly the planners that say so hand out drives.
+TEST(NamedPlanner, DrivesAreOfThosePlannersThatSaySo) {
+  int drives = 0;
+  for (const std::string name : {"field", "hybrid", "RRTstarSE2"}) {
+    NamedPlanner planner(name);
+    Problem problem = across(2);
+    const Plan plan = planner.plan(problem);
+    ASSERT_EQ(plan.status, RouteStatus::Found) << plan.reason;
+    EXPECT_EQ(planner.drives(), !plan.drive.legs.empty()) << name;
+    drives += planner.drives();
+  }
+  EXPECT_EQ(drives, 2);
+}
+
+// Property: what is kept from one plan to the next does not change the next; other maps and goals between.
+TEST(NamedPlanner, AnswersDoNotDependOnEarlierOnes) {
+  NamedPlanner kept;
+  int found = 0;
+  for (unsigned seed = 1; seed <= 4; ++seed)
+    for (const maps::Point goal : {maps::Point{36.5, 35.5}, {30.5, 5.5}}) {
+      Problem problem = across(seed % 2 + 1);
+      problem.goal = goal;
+      const Plan plan = kept.plan(problem), fresh = NamedPlanner().plan(problem);
+      EXPECT_EQ(plan.points, fresh.points);
+      EXPECT_EQ(plan.cost_J, fresh.cost_J);
+      found += plan.status == RouteStatus::Found;
+    }
+  EXPECT_GT(found, 3);
+}
+
+// Property: each cost that is called back with is lower than the one before, and the last is the plan's.
+TEST(NamedPlanner, CallsBackWithBetterCostsWhileSampling) {
+  NamedPlanner planner("InformedRRTstar");
+  std::vector<double> costs;
+  planner.onBetter([&costs](double cost_J) { costs.push_back(cost_J); });
+  const Plan plan = planner.plan(across(1));
+  ASSERT_EQ(plan.status, RouteStatus::Found) << plan.reason;
+  ASSERT_FALSE(costs.empty());
+  EXPECT_TRUE(std::ranges::is_sorted(costs, std::greater<>()));
+  EXPECT_NEAR(costs.back(), plan.cost_J, 1e-9 * plan.cost_J);
+}
+
+}  // namespace
+}  // namespace talus::planner

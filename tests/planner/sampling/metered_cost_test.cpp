@@ -1,0 +1,64 @@
+#include <cmath>
+#include <random>
+
+#include <talus/planner/sampling/metered_cost.hpp>
+
+#include "drawn_map.hpp"
+
+namespace talus::planner {
+namespace {
+
+using testing::drawn;
+using testing::randomMap;
+
+// Property: MotionCost's value wherever a route may turn at both ends, else infinite: joined at any place that
+// a route turns on, finite motions make an allowed route.
+TEST(MeteredCost, IsMotionCostWhereARouteMayTurn) {
+  const auto map = randomMap({.seed = 4, .blocked = 0.1, .roughness = 0.3});
+  const MotionCost exact(map);
+  const MeteredCost cost(map, {{0.5, 0.5}, {19.5, 19.5}});
+  std::mt19937 random(2);
+  // Half metres: one place in two lies on an edge, one in four on a corner.
+  const auto place = [&random] {
+    return maps::Point{0.5 * static_cast<double>(random() % 41), 0.5 * static_cast<double>(random() % 41)};
+  };
+  int finite = 0, joined = 0;
+  for (int k = 0; k < 20'000; ++k) {
+    const maps::Point a = place(), b{a.x_m + 0.5 * static_cast<double>(random() % 5), a.y_m + 0.5},
+                      c = place();
+    const double first = cost({a, b}), second = cost({b, c});
+    if (!std::isfinite(first)) continue;
+    ++finite;
+    EXPECT_EQ(first, exact({a, b}));
+    if (!std::isfinite(second)) continue;
+    ++joined;
+    EXPECT_TRUE(std::isfinite(exact.along({a, b, c})));
+  }
+  EXPECT_GT(finite, 1'000);
+  EXPECT_GT(joined, 20);
+}
+
+// Closed form: one and a cell's length each, so 1 + 3 for 3.5 m; asked again at once nothing; an iteration
+// counts a hundred.
+TEST(MeteredCost, CountsCellLengths) {
+  const MeteredCost cost(drawn({".....", "....."}), {{0.5, 0.5}, {4.5, 0.5}});
+  EXPECT_EQ(cost.work(), 0U);
+  EXPECT_NEAR(cost({{0.5, 0.5}, {4.0, 0.5}}), 35.0, 1e-6);
+  EXPECT_EQ(cost.work(), 4U);
+  EXPECT_NEAR(cost({{0.5, 0.5}, {4.0, 0.5}}), 35.0, 1e-6);
+  EXPECT_EQ(cost.work(), 4U);
+  cost({{4.0, 0.5}, {0.5, 0.5}});
+  cost.iterated();
+  EXPECT_EQ(cost.work(), 108U);
+}
+
+// The ends of the problem turn nothing: they may lie on an edge beside blocked ground.
+TEST(MeteredCost, StartAndGoalNeedNotBeTurns) {
+  const auto map = drawn({"##", ".."});
+  const Segment up{{0.5, 1.0}, {1.5, 0.5}};
+  EXPECT_TRUE(std::isinf(MeteredCost(map, {{0.1, 0.1}, {1.9, 0.1}})(up)));
+  EXPECT_EQ(std::isfinite(MotionCost(map)(up)), std::isfinite(MeteredCost(map, {up.from, up.to})(up)));
+}
+
+}  // namespace
+}  // namespace talus::planner
