@@ -27,7 +27,7 @@ constexpr Colour faded(Colour c, double alpha) {
   return c;
 }
 
-/// Green, amber, red, grey of a category. Their lightness differs (55, 75, 38, 68 of CIE L*), so that they
+/// Green, amber, red, grey of a category. Their lightness differs (58, 76, 39, 68 of CIE L*), so that they
 /// stay apart for every kind of colour vision and in grey print.
 Colour colourOf(terramech::Category category);
 

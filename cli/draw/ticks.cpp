@@ -17,8 +17,7 @@ std::vector<double> ticks(Range range, int count) {
   const double span = range.high - range.low;
   if (!(span > 0.0) || !std::isfinite(span)) return {range.low};
   double step = roundBelow(span / count);
-  while (span / step > 1.6 * count) step *= 2.0 + 1e-12;
-  step = roundBelow(step * (1.0 + 1e-9));
+  while (span / step > 1.6 * count) step = roundBelow(2.5 * step * (1.0 + 1e-9));  // the next round number
   std::vector<double> marks;
   for (double k = std::ceil(range.low / step - 1e-9); k * step <= range.high + 1e-9 * span; ++k)
     marks.push_back(k * step);

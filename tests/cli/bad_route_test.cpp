@@ -1,4 +1,4 @@
-// Calls of plan, score and view that cannot be answered.
+// Calls of plan, bench and view that cannot be answered.
 #include "bad_input.hpp"
 
 namespace talus::cli {
@@ -76,28 +76,6 @@ TEST(BadInput, SoilsAndRovers) {
          "no_such"});
   }
   expectRefused(files, calls);
-}
-
-TEST(BadInput, Score) {
-  const BadFiles files;
-  const auto score = [](const Words& more) {
-    Words words{"score", "good.asc", "--resolution", "1", "--soil", "sandy_loam", "--rover", "fido"};
-    words.insert(words.end(), more.begin(), more.end());
-    return words;
-  };
-  expectRefused(files, {
-                           {score({}), 2, "--path"},
-                           {score({"--path", "missing.csv"}), 2, "missing.csv"},
-                           {score({"--path", "empty.csv"}), 2, "empty.csv"},
-                           {score({"--path", "head_only.csv"}), 2, "head_only.csv"},
-                           {score({"--path", "wrong_columns.csv"}), 2, "wrong_columns.csv"},
-                           {score({"--path", "words.csv"}), 2, "words.csv"},
-                           {score({"--path", "garbage.csv"}), 2, "garbage.csv"},
-                           {score({"--path", "text.json"}), 2, "text.json"},
-                           {score({"--path", "point_less.json"}), 2, "point_less.json"},
-                           {score({"--path", "folder"}), 2, "folder"},
-                           {score({"--path", "text.json", "--chassis", "tank"}), 2, "--chassis"},
-                       });
 }
 
 TEST(BadInput, Bench) {

@@ -1,11 +1,7 @@
 // From residual to route: a model refined by `talus trace` and taken by the commands that plan.
 #include <cmath>
-#include <set>
 
 #include <nlohmann/json.hpp>
-
-#include <talus/terramech/contact/wong_reece.hpp>
-#include <talus/terramech/io/soil_library.hpp>
 
 #include "run_program.hpp"
 
@@ -117,74 +113,6 @@ TEST_F(RefinedModelCommands, ATraverseOverGroundAsBelievedShowsNothing) {
   const Ran traced = talus({"trace", "t.csv", "--base", "base.yaml", "--rover", "fido", "--json"});
   ASSERT_EQ(traced.code, 0) << traced.err;
   EXPECT_TRUE(nlohmann::json::parse(traced.out)["effects"].empty()) << traced.out;
-}
-
-// Rows of four wheels by the forward model, two percent off; the load cell of wheel 2 pulls 6 N short.
-std::string oneWheelShort() {
-  std::string text =
-      "run,wheel,load_N,slip,torque_Nm,sinkage_m,drawbar_pull_N,wheel_radius_m,wheel_width_m\n";
-  const terramech::Soil soil = terramech::loadSoil("sandy_loam");
-  for (int row = 0; row < 120; ++row) {
-    const int wheel = row % 4;
-    const double load_N = 60.0 + 8.0 * (row % 6), slip = 0.1 + 0.05 * (row % 11);
-    const terramech::WheelForces forces =
-        equilibrium(soil, {.radius_m = 0.1, .width_m = 0.1}, {.load_N = load_N, .slip = slip});
-    const auto off = [row](double phase) { return 1.0 + 0.02 * std::sin(12.9 * row * row + phase); };
-    for (const double value :
-         {row / 12 + 0.0, wheel + 0.0, load_N, slip, forces.torque_Nm * off(1), forces.sinkage_m * off(2),
-          forces.drawbar_pull_N + load_N * (off(3) - 1.0) - (wheel == 2 ? 6.0 : 0.0), 0.1})
-      text += std::to_string(value) + ",";
-    text += "0.1\n";
-  }
-  return text;
-}
-
-TEST_F(RefinedModelCommands, AnEffectOfOneGroupIsSaidOfTheColumnThatTellsTheGroup) {
-  folder_.write("t.csv", oneWheelShort());
-  folder_.write("base.yaml", "{soil: sandy_loam, model: wong-reece}\n");
-  const Ran ran = talus({"trace", "t.csv", "--base", "base.yaml", "--json"});
-  ASSERT_EQ(ran.code, 0) << ran.err;
-  const auto effects = nlohmann::json::parse(ran.out)["effects"];
-  ASSERT_EQ(effects.size(), 1u) << ran.out;
-  EXPECT_EQ(effects[0]["covariate"], "wheel");
-  EXPECT_EQ(effects[0]["only"]["wheel"], "2.000000");
-  EXPECT_EQ(effects[0]["channel"], "drawbar_pull_over_load");
-}
-
-TEST_F(RefinedModelCommands, AnAlternativeIsAnotherFormOrColumnAndNamedOnce) {
-  std::string table =
-      "run,pass_index,load_N,slip,torque_Nm,sinkage_m,drawbar_pull_N,wheel_radius_m,wheel_width_m\n";
-  terramech::Soil soil = terramech::loadSoil("sandy_loam");
-  const terramech::Soil fresh = soil;
-  for (int row = 0; row < 120; ++row) {
-    const int pass = 1 + row % 3;
-    const double load_N = 60.0 + 8.0 * (row % 5), slip = 0.1 + 0.05 * (row % 11);
-    soil.frictional_modulus = fresh.frictional_modulus * (2.5 - 1.5 * std::exp(1.0 - pass));
-    soil.cohesive_modulus = fresh.cohesive_modulus * (2.5 - 1.5 * std::exp(1.0 - pass));
-    const terramech::WheelForces forces =
-        equilibrium(soil, {.radius_m = 0.1, .width_m = 0.1}, {.load_N = load_N, .slip = slip});
-    const auto off = [row](double phase) { return 1.0 + 0.02 * std::sin(12.9 * row * row + phase); };
-    for (const double value :
-         {row / 12 + 0.0, pass + 0.0, load_N, slip, forces.torque_Nm * off(1), forces.sinkage_m * off(2),
-          forces.drawbar_pull_N + load_N * (off(3) - 1.0), 0.1})
-      table += std::to_string(value) + ",";
-    table += "0.1\n";
-  }
-  folder_.write("t.csv", table);
-  folder_.write("base.yaml", "{soil: sandy_loam, model: wong-reece}\n");
-  const Ran ran = talus({"trace", "t.csv", "--base", "base.yaml", "--json"});
-  ASSERT_EQ(ran.code, 0) << ran.err;
-  const auto effects = nlohmann::json::parse(ran.out)["effects"];
-  ASSERT_FALSE(effects.empty());
-  EXPECT_EQ(effects[0]["covariate"], "pass_index");
-  EXPECT_EQ(effects[0]["family"], "multipass");
-  for (const auto& effect : effects) {
-    std::set<std::string> named{effect["name"].get<std::string>() + effect["covariate"].get<std::string>()};
-    for (const auto& other : effect["evidence"]["alternatives"]) {
-      const std::string one = other["name"].get<std::string>() + other["covariate"].get<std::string>();
-      EXPECT_TRUE(named.insert(one).second) << one;
-    }
-  }
 }
 
 TEST_F(RefinedModelCommands, RefusesModelsThatCannotPlan) {

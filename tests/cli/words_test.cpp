@@ -159,19 +159,5 @@ TEST(Words, HelpFitsThePageAndShowsTwoExamples) {
   for (const std::string& call : names) expectHelp(runTalus({call, "--help"}).out, call);
 }
 
-TEST(Words, OldNamesOfOptionsAreAcceptedWithAWarning) {
-  const Folder folder;
-  const std::string table = folder.write("t.csv",
-                                         "load_N,torque_Nm,sinkage_m,slip,wheel_radius_m,wheel_width_m\n"
-                                         "80,4,0.02,0.3,0.15,0.15\n");
-  const Ran now = runTalus({"assess", table, "--slope-uncertainty", "0.2"});
-  const Ran old = runTalus({"assess", table, "--margin", "0.2"});
-  EXPECT_EQ(now.code, 0) << now.err;
-  EXPECT_EQ(now.err, "");
-  EXPECT_EQ(old.err, "talus: warning: '--margin' is deprecated: use '--slope-uncertainty'\n");
-  EXPECT_EQ(old.out, now.out);
-  EXPECT_NE(old.out, runTalus({"assess", table}).out);
-}
-
 }  // namespace
 }  // namespace talus::cli

@@ -1,10 +1,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include <talus/cli/draw/html_report.hpp>
-#include <talus/cli/draw/image.hpp>
 #include <talus/cli/draw/plot.hpp>
-#include <talus/cli/draw/ticks.hpp>
 
 #include "example_scene.hpp"
 #include "run_program.hpp"
@@ -12,9 +9,7 @@
 namespace talus::cli {
 namespace {
 
-using testing::ElementsAre;
 using testing::HasSubstr;
-using testing::Not;
 using testing::StartsWith;
 
 Plot example() {
@@ -31,22 +26,6 @@ Plot example() {
   line.y[20] = std::nan("");
   plot.series = {line, points};
   return plot;
-}
-
-TEST(Ticks, AreRoundAndInside) {
-  EXPECT_THAT(ticks({0.0, 1.0}, 5),
-              ElementsAre(0.0, 0.2, testing::DoubleEq(0.4), testing::DoubleNear(0.6, 1e-12), 0.8, 1.0));
-  EXPECT_THAT(ticks({-3.0, 7.0}, 5), ElementsAre(-2.0, 0.0, 2.0, 4.0, 6.0));
-  EXPECT_THAT(ticks({2.0, 2.0}, 5), ElementsAre(2.0));
-  EXPECT_EQ(tickLabel(0.30000000000000004, 0.1), "0.3");
-  EXPECT_EQ(tickLabel(-1e-18, 0.1), "0.0");
-}
-
-TEST(Ticks, RoundBelowIsTheLargestRoundNumber) {
-  EXPECT_DOUBLE_EQ(roundBelow(1.0), 1.0);
-  EXPECT_DOUBLE_EQ(roundBelow(0.049), 0.02);
-  EXPECT_DOUBLE_EQ(roundBelow(999.0), 500.0);
-  EXPECT_DOUBLE_EQ(roundBelow(1000.0), 1000.0);
 }
 
 TEST(Plot, IsAPngOrAnSvg) {
@@ -73,23 +52,6 @@ TEST(Plot, IsWrittenByItsExtension) {
   save(folder / "a.png", {example()});
   EXPECT_THAT(fileContent(folder / "a.svg"), HasSubstr("<svg"));
   EXPECT_THAT(fileContent(folder / "a.png"), StartsWith("\x89PNG"));
-}
-
-TEST(HtmlReport, EscapesAndEmbeds) {
-  HtmlReport report("a < b");
-  report.table({"name", "value"}, {{"x & y", "1.5"}});
-  report.charts({example()});
-  EXPECT_THAT(report.html(), HasSubstr("<h1>a &lt; b</h1>"));
-  EXPECT_THAT(report.html(), HasSubstr("<td>x &amp; y</td><td class=\"number\">1.5</td>"));
-  EXPECT_THAT(report.html(), HasSubstr("data:image/svg+xml;base64,"));
-  EXPECT_THAT(report.html(), Not(HasSubstr("http://")));
-}
-
-TEST(Image, Base64) {
-  // Printed in: RFC 4648, section 10.
-  EXPECT_EQ(base64("f"), "Zg==");
-  EXPECT_EQ(base64("foob"), "Zm9vYg==");
-  EXPECT_EQ(base64("foobar"), "Zm9vYmFy");
 }
 
 }  // namespace

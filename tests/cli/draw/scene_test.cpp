@@ -1,6 +1,5 @@
 #include <cmath>
 
-#include <talus/cli/draw/block_mean.hpp>
 #include <talus/cli/draw/scene.hpp>
 #include <talus/talus.hpp>
 
@@ -8,23 +7,6 @@
 
 namespace talus::cli {
 namespace {
-
-TEST(Blocks, CoverTheMapAndLeaveOutNoData) {
-  maps::Raster<float> fine({5, 4, 2.0, {10.0, 20.0}}, 1.0F);
-  fine[{4, 0}] = 3.0F;
-  fine[{0, 0}] = std::nanf("");
-  const Blocks blocks(fine.grid(), 3);
-  EXPECT_EQ(blocks.coarse(), (maps::Grid{3, 2, 4.0, {10.0, 20.0}}));
-  const maps::Raster<float> mean = blocks.mean([&](maps::Cell c) { return fine[c]; });
-  EXPECT_EQ((mean[{0, 0}]), 1.0F);
-  EXPECT_EQ((mean[{2, 0}]), 2.0F);  // the cut block: one cell of 3 and one of 1
-}
-
-TEST(Blocks, ABlockWithoutDataHasNone) {
-  const maps::Grid grid{4, 4, 1.0, {0.0, 0.0}};
-  const maps::Raster<float> mean = Blocks(grid, 2).mean([](maps::Cell) { return std::nanf(""); });
-  EXPECT_TRUE(std::isnan(mean[{1, 1}]));
-}
 
 TEST(Scene, SlopeOfAPlaneIsItsAngle) {
   maps::ElevationMap map;

@@ -1,0 +1,63 @@
+#include <cmath>
+#include <stop_token>
+
+#include <nlohmann/json.hpp>
+
+#include <talus/cli/app/context.hpp>
+
+namespace talus::cli {
+namespace {
+
+TEST(Context, AnyTextIsOneLine) {
+  EXPECT_EQ(oneLine("first\nsecond"), "first; second");
+  EXPECT_EQ(oneLine("tab\there\x1b[31m"), "tab here [31m");
+  EXPECT_EQ(oneLine("trailing \r\n\n"), "trailing");
+  EXPECT_EQ(oneLine("\xc3\xa9t\xc3\xa9"), "\xc3\xa9t\xc3\xa9");  // letters beyond ASCII stay
+  EXPECT_EQ(oneLine(""), "");
+}
+
+TEST(Context, WarningsAreOneLineOnStderrUnlessQuiet) {
+  Context context;
+  testing::internal::CaptureStderr();
+  context.warn("no rover\ngiven");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "talus: warning: no rover; given\n");
+  context.quiet = true;
+  testing::internal::CaptureStderr();
+  context.warn("no rover");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+// Property: what is printed parses again; what JSON has no number for is null, bytes that are no text are
+// replaced.
+TEST(Context, PrintedJsonParses) {
+  testing::internal::CaptureStdout();
+  printJson({{"cost", NAN}, {"bound", INFINITY}, {"name", "a\xff"}, {"length_m", 0.1}});
+  const std::string printed = testing::internal::GetCapturedStdout();
+  const auto json = nlohmann::json::parse(printed);
+  EXPECT_TRUE(json["cost"].is_null() && json["bound"].is_null());
+  EXPECT_EQ(json["length_m"].get<double>(), 0.1);
+  EXPECT_EQ(printed.back(), '\n');
+}
+
+TEST(Context, WorkersAreAsManyAsAllowedAndAtLeastOne) {
+  Context context;
+  EXPECT_GE(context.workers(), 1);
+  context.threads = 3;
+  EXPECT_EQ(context.workers(), 3);
+}
+
+// Property: work is stopped by Ctrl-C, and in a pipe no bar is drawn.
+TEST(Context, TheWatchPassesTheStopOn) {
+  std::stop_source source;
+  Context context;
+  context.quiet = true;
+  context.stop = source.get_token();
+  const ProgressMonitor watch = context.watch("plan");
+  EXPECT_FALSE(watch.progress);
+  EXPECT_FALSE(watch.stopped());
+  source.request_stop();
+  EXPECT_TRUE(watch.stopped());
+}
+
+}  // namespace
+}  // namespace talus::cli

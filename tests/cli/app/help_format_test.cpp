@@ -1,0 +1,70 @@
+#include <sstream>
+
+#include <talus/cli/app/help_format.hpp>
+
+#include "run_program.hpp"
+
+namespace talus::cli {
+namespace {
+
+using testing::HasSubstr;
+
+// Property: the words stay, in order, on lines of no more than the width, and no two lines would fit on one.
+TEST(HelpFormat, TextIsWrappedAtBlanks) {
+  const std::string text =
+      "a rover drives over  soft ground\nand an-overlong-word-stays-whole on its own line";
+  for (const std::size_t width : {8U, 12U, 20U, 200U}) {
+    std::istringstream lines(wrapped(text, width));
+    std::string joined, before(width, 'x');
+    for (std::string line; std::getline(lines, line);) {
+      EXPECT_TRUE(line.size() <= width || line.find(' ') == std::string::npos) << line;
+      EXPECT_GT(before.size() + 1 + line.substr(0, line.find(' ')).size(), width);
+      joined += (joined.empty() ? "" : " ") + line;
+      before = line;
+    }
+    EXPECT_EQ(joined, "a rover drives over soft ground and an-overlong-word-stays-whole on its own line");
+  }
+  EXPECT_EQ(wrapped("", 10), "");
+}
+
+TEST(HelpFormat, AnOptionShowsItsValueChoicesDefaultAndWhatItExcludes) {
+  CLI::App app("purpose", "talus");
+  app.formatter(std::make_shared<HelpFormat>());
+  std::string kind = "rigid";
+  int side = 5;
+  bool fast = false;
+  auto* first = app.add_option("--kind", kind, "of chassis")
+                    ->type_name("KIND")
+                    ->check(CLI::IsMember({"rigid", "rocker"}));
+  app.add_option("--side", side, "in cells")
+      ->type_name("N")
+      ->check(CLI::Range(1, 9))
+      ->capture_default_str()
+      ->excludes(first);
+  app.add_flag("--fast", fast, "hurry");
+  groupOptions(app, "Ground");
+  makeOldName(*app.add_option("--sort", kind), "--kind");
+  const std::string help = app.help();
+  EXPECT_THAT(help, HasSubstr("\nGround:\n"));
+  EXPECT_THAT(help, HasSubstr("--kind KIND"));
+  EXPECT_THAT(help, HasSubstr("of chassis [one of rigid, rocker; not with --side]"));
+  EXPECT_THAT(help, HasSubstr("in cells [1 to 9; default: 5; not with --kind]"));
+  EXPECT_THAT(help, testing::Not(HasSubstr("--sort")));
+}
+
+TEST(HelpFormat, OldNamesOfOptionsAreAcceptedWithAWarning) {
+  const Folder folder;
+  const std::string table = folder.write("t.csv",
+                                         "load_N,torque_Nm,sinkage_m,slip,wheel_radius_m,wheel_width_m\n"
+                                         "80,4,0.02,0.3,0.15,0.15\n");
+  const Ran now = runTalus({"assess", table, "--slope-uncertainty", "0.2"});
+  const Ran old = runTalus({"assess", table, "--margin", "0.2"});
+  EXPECT_EQ(now.code, 0) << now.err;
+  EXPECT_EQ(now.err, "");
+  EXPECT_EQ(old.err, "talus: warning: '--margin' is deprecated: use '--slope-uncertainty'\n");
+  EXPECT_EQ(old.out, now.out);
+  EXPECT_NE(old.out, runTalus({"assess", table}).out);
+}
+
+}  // namespace
+}  // namespace talus::cli
