@@ -44,6 +44,10 @@ class Writer {
   void count(const std::string& name, const std::vector<T>& list) {
     if (!list.empty()) (*this)(name, list.size());
   }
+  /// A line only where it holds: files without it stay as they were.
+  void flag(const std::string& name, bool value) {
+    if (value) (*this)(name, value);
+  }
   std::string take() { return std::move(lines_); }
 
  private:
@@ -91,6 +95,10 @@ class Reader {
     list.resize(size);
   }
 
+  void flag(const std::string& name, bool& value) {
+    if (values_.contains(name)) (*this)(name, value);
+  }
+
   void done() const {
     if (!values_.empty()) fail("'" + values_.begin()->first + "' is unknown");
   }
@@ -107,9 +115,10 @@ class Reader {
       int number = 0;
       read(name, text, number);
       value = static_cast<T>(number);
-    } else if (std::from_chars(text.data(), text.data() + text.size(), value).ptr !=
-               text.data() + text.size())
-      fail("'" + name + "' is not a number");
+    } else {
+      const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+      if (error != std::errc{} || end != text.data() + text.size()) fail("'" + name + "' is not a number");
+    }
   }
   [[noreturn]] void fail(const std::string& reason) const {
     throw InputError(
@@ -144,6 +153,7 @@ void visitCoordinates(V& v, S& system) {
   v("crs.scale", p.scale);
   v("crs.false_easting_m", p.false_easting_m);
   v("crs.false_northing_m", p.false_northing_m);
+  v.flag("crs.planetocentric", system.planetocentric);
   v("crs.wkt", system.wkt);
 }
 
