@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
@@ -6,7 +5,6 @@
 
 #include <talus/talus.hpp>
 #include <talus/terramech/io/model_file.hpp>
-#include <talus/terramech/trace/prediction_table.hpp>
 
 namespace talus::terramech {
 namespace {
@@ -76,29 +74,6 @@ TEST(ModelFile, RefusesWhatItCannotMean) {
     }
     std::filesystem::remove(path);
   }
-}
-
-TEST(PredictionTable, NeverReadsTheMeasuredAnswer) {
-  const std::string head = "load_N,slip,drawbar_pull_N,sinkage_m,torque_Nm,wheel_radius_m,wheel_width_m\n";
-  const auto honest = written("a.csv", head + "80,0.3,5,0.01,2,0.1,0.1\n");
-  const auto absurd = written("b.csv", head + "80,0.3,nan,,-7e9,0.1,0.1\n");
-  const auto tail = [](const std::string& text) { return text.substr(text.find("0.1,0.1,")); };
-  const auto a = predictTable(honest, refined()), b = predictTable(absurd, refined());
-  EXPECT_EQ(a.predicted, 1U);
-  EXPECT_EQ(tail(a.text), tail(b.text));
-  EXPECT_THAT(a.text, HasSubstr("predicted_drawbar_pull_N,predicted_drawbar_pull_N_std,predicted_sinkage_m"));
-  for (const auto& path : {honest, absurd}) std::filesystem::remove(path);
-}
-
-TEST(PredictionTable, ARowThatCannotBePredictedKeepsItsPlace) {
-  const auto path = written(
-      "c.csv", "load_N,slip,wheel_radius_m,wheel_width_m\n80,,0.1,0.1\n-2,0.3,0.1,0.1\n80,0.3,0.1,0.1\n");
-  const auto table = predictTable(path, refined());
-  EXPECT_EQ(table.predicted, 1U);
-  ASSERT_EQ(table.refused.size(), 2U);
-  EXPECT_EQ(table.refused[0].line, 2U);
-  EXPECT_EQ(std::count(table.text.begin(), table.text.end(), '\n'), 4);
-  std::filesystem::remove(path);
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 #include "noise_table.hpp"
+#include "slip_rows.hpp"
 
 namespace talus::terramech {
 namespace {
@@ -20,6 +21,33 @@ TEST(CovariateTests, WhatVariesWithinRunsIsFoundInFourOfThem) {
   EXPECT_TRUE(table.units().runs);
   EXPECT_LE(table.pValue("slip"), 0.01);
   EXPECT_GT(table.pValue("time_s"), 0.05);
+}
+
+TEST(CovariateTests, AnErrorThatAllRowsShareIsNotAConstant) {
+  // Property: an offset of two standard deviations of a shared error is certain without it, and not with it.
+  const std::vector<double> wobble = scattered(0.0, 0.01, 120);
+  Trial trial = trialOf(std::vector<double>(120, 0.3));
+  for (int row = 0; row < trial.rows(); ++row)
+    for (int c = 1; c < kChannels; ++c) trial.measured(row, c) = std::nan("");
+  Eigen::MatrixXd residual = trial.measured;
+  for (int row = 0; row < trial.rows(); ++row)
+    residual(row, 0) = 0.02 + wobble[static_cast<std::size_t>(row)];
+  SensorNoise noise;
+  noise.absolute[0] = 0.5;
+  const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(trial.rows(), kChannels);
+  const Whitening white = whitening(trial, none, {none, none}, noise);
+  TestPlan plan;
+  plan.nuisance_whitened = plan.nuisance_marginal = Eigen::MatrixXd(trial.rows() * kChannels, 0);
+  plan.flips = 999;
+  const auto p = [&] {
+    return testCovariates(trial, white, residual, Eigen::VectorXd::Zero(trial.rows()), plan).front().p_value;
+  };
+  EXPECT_LT(p(), 0.002);
+  plan.shared_error = Eigen::MatrixXd::Zero(trial.rows(), kChannels);
+  plan.shared_error.col(0).setConstant(0.01);
+  const double shared = p();
+  EXPECT_GT(shared, 0.02);
+  EXPECT_LT(shared, 0.09);
 }
 
 }  // namespace

@@ -1,4 +1,7 @@
+#include <optional>
+
 #include <talus/terramech/trace/residual_trace.hpp>
+#include <talus/terramech/trace/trace_search.hpp>
 
 #include "made_rows.hpp"
 
@@ -34,6 +37,46 @@ TEST(TraceJudge, AFurtherCurveMustTellLevelsThatItHasNotSeen) {
   // differ; beside a known effect it is not taken for a part of the model.
   EXPECT_THAT(causesInBoxes(0.0), ::testing::ElementsAre("box"));
   EXPECT_THAT(causesInBoxes(0.02), ::testing::ElementsAre("constant"));
+}
+
+Explanation explanation(const char* name, double score, double gain, int parameters = 1) {
+  Explanation e;
+  e.candidate = {{{.name = name, .covariate = "slip"}}, "family", parameters};
+  e.score = e.in_sample = score;
+  e.chi2_gain = gain;
+  return e;
+}
+
+// Which of ranked explanations is taken for thirty rows of one reading.
+std::optional<std::size_t> chosen(const std::vector<Explanation>& ranked) {
+  RefinedModel base;
+  base.soil = madeSand();
+  MadeRows rows(wheelColumns());
+  std::mt19937_64 random(1);
+  for (int k = 0; k < 30; ++k) rows.add(wheelRow(base.soil, 50.0 + k, 0.1 + 0.02 * k, 0.02, random));
+  return TraceSearch(base, makeTrial(rows.telemetry(), base), {}).choose(ranked);
+}
+
+// Closed form: what traceResiduals() promises of its choice, at either side of each bound.
+TEST(TraceJudge, OnlyWhatPaysIsChosen) {
+  EXPECT_EQ(chosen({}), std::nullopt);
+  EXPECT_EQ(chosen({explanation("bulldozing", 1.9, 50.0)}), std::nullopt);
+  EXPECT_EQ(chosen({explanation("bulldozing", 2.1, 50.0)}), 0U);
+  Explanation spoiler = explanation("bulldozing", 9.0, 50.0);
+  spoiler.spoils = true;
+  EXPECT_EQ(chosen({spoiler, explanation("rear_pile", 5.0, 40.0)}), 1U);
+}
+
+TEST(TraceJudge, AKnownFormGoesBeforeACurveThatDoesHardlyMore) {
+  const Explanation curve = explanation("empirical", 20.0, 100.0, 4);
+  EXPECT_EQ(chosen({curve, explanation("bulldozing", 10.0, 92.0)}), 0U);
+  EXPECT_EQ(chosen({curve, explanation("bulldozing", 10.0, 94.0)}), 1U);
+}
+
+TEST(TraceJudge, AFurtherParameterMustCarryAShare) {
+  const Explanation wide = explanation("rear_pile", 20.0, 100.0, 2);
+  EXPECT_EQ(chosen({wide, explanation("bulldozing", 18.0, 94.0)}), 0U);
+  EXPECT_EQ(chosen({wide, explanation("bulldozing", 18.0, 96.0)}), 1U);
 }
 
 }  // namespace

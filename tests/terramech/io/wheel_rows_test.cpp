@@ -1,0 +1,70 @@
+#include <string>
+
+#include <talus/terramech/io/soil_library.hpp>
+#include <talus/terramech/io/wheel_rows.hpp>
+
+#include "temporary_file.hpp"
+
+namespace talus::terramech {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+const std::string kHead = "load_N,torque_Nm,sinkage_m,slip,wheel_radius_m,wheel_width_m,run\n";
+
+WheelRows read(const std::string& content, const WheelRowOptions& options = {}) {
+  const test::TemporaryFile file{content};
+  return readWheelRows(file.path(), options, {});
+}
+
+TEST(WheelRows, SamplesWithTheirWheelsLinesAndWords) {
+  const WheelRows rows =
+      read(kHead + "80,2,0.01,0.3,0.1,0.2,a\n81,2,0,0.3,0.1,0.2,b\n82,3,0.02,0.4,0.15,0.2,c\n");
+  ASSERT_EQ(rows.samples.size(), 2U);
+  EXPECT_EQ(rows.samples[1].load_N, 82.0);
+  EXPECT_EQ(rows.samples[1].slip, 0.4);
+  EXPECT_THAT(rows.lines, ElementsAre(2, 4));
+  EXPECT_THAT(rows.words.front().values, ElementsAre("a", "c"));
+  EXPECT_FALSE(rows.one_wheel);
+  EXPECT_EQ(rows.wheel.radius_m, 0.1);
+  EXPECT_EQ(rows.readings()[1].wheel.radius_m, 0.15);
+  ASSERT_NE(rows.firstRejected(), nullptr);
+  EXPECT_EQ(rows.firstRejected()->line, 3U);
+  EXPECT_THAT(rows.firstRejected()->reason, HasSubstr("sinkage_m = 0"));
+}
+
+TEST(WheelRows, ABrakedWheelCountsOnlyWhereNoSlipIsNeeded) {
+  const std::string content = kHead + "80,2,0.01,-0.3,0.1,0.2,a\n80,2,0.01,0.3,0.1,0.2,a\n";
+  EXPECT_EQ(read(content).samples.size(), 1U);
+  EXPECT_EQ(read(content, {.needs_slip = false}).samples.size(), 2U);
+  EXPECT_EQ(read("load_N,torque_Nm,sinkage_m,wheel_radius_m,wheel_width_m\n80,2,0.01,0.1,0.2\n",
+                 {.needs_slip = false})
+                .samples[0]
+                .slip,
+            0.0);
+}
+
+TEST(WheelRows, TheRoversWheelGoesBeforeTheFiles) {
+  const std::string rover = libraryRovers().front();
+  const WheelRows rows = read(kHead + "80,2,0.01,0.3,0.9,0.9,a\n", {.rover = rover});
+  EXPECT_EQ(rows.wheel.radius_m, loadRover(rover).wheel.radius_m);
+  EXPECT_EQ(rows.wheels[0].width_m, loadRover(rover).wheel.width_m);
+}
+
+TEST(WheelRows, WhatIsMissingIsNamed) {
+  EXPECT_THAT([] { read("load_N,torque_Nm,sinkage_m,slip\n80,2,0.01,0.3\n"); },
+              ThrowsMessage<InputError>(HasSubstr("lacks column wheel_radius_m; add it, or pass --rover")));
+  EXPECT_THAT([] { read("load_N,torque_Nm,slip,wheel_radius_m,wheel_width_m\n80,2,0.3,0.1,0.1\n"); },
+              ThrowsMessage<InputError>(HasSubstr("sinkage_m")));
+  EXPECT_THAT([] { read(kHead + "80,2,0.01,0.3,,,a\n"); },
+              ThrowsMessage<InputError>(HasSubstr("has no wheel_radius_m or wheel_width_m")));
+  EXPECT_THAT([] { read(kHead + "80,2,0,0.3,0.1,0.2,a\n"); },
+              ThrowsMessage<InputError>(HasSubstr("no usable row: sinkage_m = 0")));
+  EXPECT_THROW(read(kHead + "-80,2,0.01,0.3,0.1,0.2,a\n"), InputError);
+  EXPECT_THROW(read(kHead), InputError);
+}
+
+}  // namespace
+}  // namespace talus::terramech

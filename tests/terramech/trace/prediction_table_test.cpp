@@ -1,0 +1,75 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include <talus/terramech/trace/prediction_table.hpp>
+
+#include "made_rows.hpp"
+#include "temporary_file.hpp"
+
+namespace talus::terramech {
+namespace {
+
+using testing::HasSubstr;
+
+RefinedModel refined() {
+  RefinedModel model;
+  model.soil = madeSand();
+  model.noise.slip_relative = 0.03;
+  return model;
+}
+
+PredictionTable predicted(const std::string& content) {
+  const test::TemporaryFile file{content};
+  return predictTable(file.path(), refined());
+}
+
+TEST(PredictionTable, NeverReadsTheMeasuredAnswer) {
+  const std::string head = "load_N,slip,drawbar_pull_N,sinkage_m,torque_Nm,wheel_radius_m,wheel_width_m\n";
+  const auto tail = [](const std::string& text) { return text.substr(text.find("0.1,0.1,")); };
+  const auto honest = predicted(head + "80,0.3,5,0.01,2,0.1,0.1\n");
+  const auto absurd = predicted(head + "80,0.3,nan,,-7e9,0.1,0.1\n");
+  EXPECT_EQ(honest.predicted, 1U);
+  EXPECT_EQ(tail(honest.text), tail(absurd.text));
+  EXPECT_THAT(honest.text,
+              HasSubstr("predicted_drawbar_pull_N,predicted_drawbar_pull_N_std,predicted_sinkage_m"));
+}
+
+TEST(PredictionTable, ARowThatCannotBePredictedKeepsItsPlace) {
+  const auto table =
+      predicted("load_N,slip,wheel_radius_m,wheel_width_m\n80,,0.1,0.1\n-2,0.3,0.1,0.1\n80,0.3,0.1,0.1\n");
+  EXPECT_EQ(table.predicted, 1U);
+  ASSERT_EQ(table.refused.size(), 2U);
+  EXPECT_EQ(table.refused[0].line, 2U);
+  EXPECT_THAT(table.refused[1].reason, HasSubstr("load_N must be > 0"));
+  EXPECT_EQ(std::count(table.text.begin(), table.text.end(), '\n'), 4);
+  EXPECT_THAT(table.text, HasSubstr("80,,0.1,0.1,,,,,,,,\n"));
+}
+
+TEST(PredictionTable, OfAPlainSoilItIsTheEquilibrium) {
+  const PredictionTable table = predicted("load_N,slip,wheel_radius_m,wheel_width_m\n80,0.3,0.1,0.1\n");
+  const WheelForces f =
+      equilibrium(madeSand(), Wheel{.radius_m = 0.1, .width_m = 0.1}, {.load_N = 80.0, .slip = 0.3});
+  double pull = 0.0, pull_std = 0.0, sinkage = 0.0, sinkage_std = 0.0, torque = 0.0;
+  const std::string row = table.text.substr(table.text.find('\n') + 1);
+  ASSERT_EQ(std::sscanf(row.c_str(), "80,0.3,0.1,0.1,%lf,%lf,%lf,%lf,%lf", &pull, &pull_std, &sinkage,
+                        &sinkage_std, &torque),
+            5);
+  // Property: two integrators of one model; 1e-6 of the load.
+  EXPECT_NEAR(pull, f.drawbar_pull_N, 1e-6 * 80.0);
+  EXPECT_NEAR(sinkage, f.sinkage_m, 1e-6 * f.sinkage_m);
+  EXPECT_NEAR(torque, f.torque_Nm, 1e-6 * 8.0);
+  EXPECT_GT(pull_std, 0.0);
+}
+
+TEST(PredictionTable, OlderPredictionsAreReplacedAndOtherColumnsKept) {
+  const PredictionTable table = predicted(
+      "predicted_sinkage_m,note,load_N,slip,wheel_radius_m,wheel_width_m\n9,\"a,b\",80,0.3,0.1,0.1\n");
+  EXPECT_TRUE(table.replaced);
+  EXPECT_THAT(table.text, HasSubstr("\"a,b\",80,0.3,0.1,0.1,"));
+  EXPECT_EQ(table.text.find("predicted_sinkage_m,"), table.text.rfind("predicted_sinkage_m,"));
+}
+
+}  // namespace
+}  // namespace talus::terramech
