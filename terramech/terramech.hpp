@@ -13,3 +13,4 @@
 #include <talus/terramech/mobility/category.hpp>
 #include <talus/terramech/mobility/category_probability.hpp>
 #include <talus/terramech/mobility/mobility.hpp>
+#include <talus/terramech/mobility/slope_equilibrium.hpp>

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <numbers>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -18,7 +19,7 @@ namespace {
 
 struct WheelOptions {
   std::string soil, rover;
-  double load_N = std::nan(""), slip = std::nan("");
+  double load_N = std::nan(""), slip = std::nan(""), slip_angle_rad = 0.0;
   std::string html;
   std::string cases, output;
 };
@@ -35,6 +36,11 @@ void bind(CLI::App& command, WheelOptions& options) {
   auto* slip = command.add_option("--slip", options.slip, "slip, from -1 (locked) to 1 (spinning in place)")
                    ->type_name("I")
                    ->check(within(-1.0, 1.0));
+  auto* angle = command
+                    .add_option("--slip-angle", options.slip_angle_rad,
+                                "slip angle [rad] from the wheel plane to the travel, left positive")
+                    ->type_name("RAD")
+                    ->check(within(-0.5 * std::numbers::pi, 0.5 * std::numbers::pi));
   auto* html =
       command.add_option("--html", options.html, "page to write, with stresses and curves over slip")
           ->type_name("FILE.html");
@@ -44,7 +50,7 @@ void bind(CLI::App& command, WheelOptions& options) {
   command.add_option("-o,--output", options.output, "results of --cases to write")
       ->type_name("OUT.csv")
       ->needs(cases);
-  for (auto* single : {soil, rover, load, slip, html}) cases->excludes(single);
+  for (auto* single : {soil, rover, load, slip, angle, html}) cases->excludes(single);
   groupOptions(command, "A table of wheels");
 }
 
@@ -90,9 +96,11 @@ std::string report(const terramech::WheelForces& forces, double load_N, double r
       "sinkage       {:10.3f} mm   z/r  {:.3f}\n"
       "entry angle   {:10.3f} deg\n"
       "torque        {:10.3f} Nm   T/rW {:.3f}\n"
-      "drawbar pull  {:10.3f} N    DP/W {:.3f}\n",
+      "drawbar pull  {:10.3f} N    DP/W {:.3f}\n"
+      "side force    {:10.3f} N    F/W  {:.3f}\n",
       1e3 * forces.sinkage_m, forces.sinkage_m / radius_m, forces.entry_angle_rad / kDegree, forces.torque_Nm,
-      forces.torque_Nm / (radius_m * load_N), forces.drawbar_pull_N, forces.drawbar_pull_N / load_N);
+      forces.torque_Nm / (radius_m * load_N), forces.drawbar_pull_N, forces.drawbar_pull_N / load_N,
+      forces.side_force_N, forces.side_force_N / load_N);
 }
 
 int runOne(const WheelOptions& options, const Context& context) {
@@ -102,17 +110,24 @@ int runOne(const WheelOptions& options, const Context& context) {
   const terramech::Soil soil = terramech::loadSoil(options.soil);
   const terramech::Rover rover = terramech::loadRover(options.rover);
   const double load_N = std::isnan(options.load_N) ? terramech::wheelLoad_N(rover) : options.load_N;
-  const auto forces = terramech::equilibrium(soil, rover.wheel, {.load_N = load_N, .slip = options.slip});
-  if (!options.html.empty()) writeFile(options.html, wheelReport({soil, rover, load_N, options.slip}));
+  const auto forces = terramech::equilibrium(soil, rover.wheel,
+                                             {.load_N = load_N,
+                                              .slip = options.slip,
+                                              .slip_angle_rad = options.slip_angle_rad,
+                                              .gravity_m_s2 = rover.gravity_m_s2});
+  if (!options.html.empty())
+    writeFile(options.html, wheelReport({soil, rover, load_N, options.slip, options.slip_angle_rad}));
   if (context.json)
     printJson({{"soil", soil.name},
                {"rover", rover.name},
                {"load_N", load_N},
                {"slip", options.slip},
+               {"slip_angle_rad", options.slip_angle_rad},
                {"sinkage_m", forces.sinkage_m},
                {"entry_angle_rad", forces.entry_angle_rad},
                {"torque_Nm", forces.torque_Nm},
-               {"drawbar_pull_N", forces.drawbar_pull_N}});
+               {"drawbar_pull_N", forces.drawbar_pull_N},
+               {"side_force_N", forces.side_force_N}});
   else
     print(report(forces, load_N, rover.wheel.radius_m));
   return Exit::kDone;
@@ -132,14 +147,15 @@ std::string libraryText() {
 }  // namespace
 
 void addWheel(CLI::App& app, Context& context) {
-  addCommand<WheelOptions>(app, context,
-                           {.name = "wheel",
-                            .group = Group::kSoil,
-                            .description = "compute the forces on a wheel: sinkage, torque and drawbar pull",
-                            .examples = "  talus wheel --soil lunar_nominal --rover lunar_micro --slip 0.3\n"
-                                        "  talus wheel --cases cases.csv -o forces.csv\n\n" +
-                                        libraryText()},
-                           bind, run);
+  addCommand<WheelOptions>(
+      app, context,
+      {.name = "wheel",
+       .group = Group::kSoil,
+       .description = "compute sinkage, torque, drawbar pull and side force of a wheel",
+       .examples = "  talus wheel --soil lunar_nominal --rover lunar_micro --slip 0.3\n"
+                   "  talus wheel --cases cases.csv -o forces.csv\n\n" +
+                   libraryText()},
+      bind, run);
 }
 
 }  // namespace talus::cli

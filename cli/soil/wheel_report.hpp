@@ -13,6 +13,7 @@ struct WheelAtWork {
   terramech::Rover rover;
   double load_N = 0.0;
   double slip = 0.0;
+  double slip_angle_rad = 0.0;
 };
 
 /// A self-contained HTML page on it: its forces, the stresses along its rim (thesis Fig. C.4), and drawbar

@@ -37,9 +37,19 @@ constexpr InputColumn kInputs[] = {{"cohesion_Pa", &WheelCase::cohesion_Pa},
                                    {"wheel_radius_m", &WheelCase::wheel_radius_m},
                                    {"wheel_width_m", &WheelCase::wheel_width_m},
                                    {"load_N", &WheelCase::load_N},
-                                   {"slip", &WheelCase::slip}};
+                                   {"slip", &WheelCase::slip},
+                                   {"slip_angle_rad", &WheelCase::slip_angle_rad, true},
+                                   {"density_kg_m3", &WheelCase::density_kg_m3, true},
+                                   {"gravity_m_s2", &WheelCase::gravity_m_s2, true},
+                                   {"digging_exponent", &WheelCase::digging_exponent, true},
+                                   {"side_bulldozing", &WheelCase::side_bulldozing, true}};
 
-constexpr const char* kResults[] = {"sinkage_m", "entry_angle_rad", "torque_Nm", "drawbar_pull_N"};
+constexpr const char* kResults[] = {"sinkage_m", "entry_angle_rad", "torque_Nm", "drawbar_pull_N",
+                                    "side_force_N"};
+
+constexpr double WheelForces::*kResultFields[] = {&WheelForces::sinkage_m, &WheelForces::entry_angle_rad,
+                                                  &WheelForces::torque_Nm, &WheelForces::drawbar_pull_N,
+                                                  &WheelForces::side_force_N};
 
 bool isResult(const std::string& name) {
   return std::find(std::begin(kResults), std::end(kResults), name) != std::end(kResults);
@@ -91,23 +101,28 @@ std::string reasonOf(const WheelCase& wheel_case) {
   return "has no equilibrium";
 }
 
+/// Whether the table has wheels at an angle, which alone have a side force.
+bool hasSlipAngle(const std::vector<std::string>& header) {
+  return std::find(header.begin(), header.end(), "slip_angle_rad") != header.end();
+}
+
 class Writer {
  public:
   Writer(const std::filesystem::path& path, const std::vector<std::string>& header)
-      : file_(path), header_(header) {
+      : file_(path), header_(header), results_(std::size(kResults) - (hasSlipAngle(header) ? 0 : 1)) {
     out_.open(file_.temporary(), std::ios::binary);
     writeKept(header);
-    for (const char* name : kResults) out_ << ',' << name;
+    for (std::size_t k = 0; k < results_; ++k) out_ << ',' << kResults[k];
     out_ << '\n';
   }
 
   void write(const Entry& entry, const WheelForces* forces) {
     writeKept(entry.row.fields);
-    if (forces)
-      out_ << fmt::format(",{},{},{},{}\n", forces->sinkage_m, forces->entry_angle_rad, forces->torque_Nm,
-                          forces->drawbar_pull_N);
-    else
-      out_ << ",,,,\n";
+    for (std::size_t k = 0; k < results_; ++k) {
+      out_ << ',';
+      if (forces) out_ << fmt::format("{}", forces->*kResultFields[k]);
+    }
+    out_ << '\n';
   }
 
   void commit() {
@@ -128,6 +143,7 @@ class Writer {
 
   OutputFile file_;
   std::vector<std::string> header_;
+  std::size_t results_;
   std::ofstream out_;
 };
 

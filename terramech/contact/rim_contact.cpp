@@ -8,14 +8,14 @@
 
 namespace talus::terramech::detail {
 
-Breaks breaks(const ShearDisplacement& displacement, double peak_rad, double exit_rad) {
-  const double zero = displacement.signChange_rad(exit_rad);
+Breaks breaksAt(double zero, const Halves& h) {
   if (!(zero == zero)) return {};
-  const double entry = displacement.entryAngle_rad();
-  return {
-      {0.0, zero > peak_rad ? (entry - zero) / (entry - peak_rad) : (zero - exit_rad) / (peak_rad - exit_rad),
-       1.0},
-      3};
+  const bool in_front = zero > h.peak_rad;
+  return {{0.0,
+           in_front ? (h.entry_rad - zero) / (h.entry_rad - h.peak_rad)
+                    : (zero - h.exit_rad) / (h.peak_rad - h.exit_rad),
+           1.0},
+          3};
 }
 
 void throwSunk(double load_N) {

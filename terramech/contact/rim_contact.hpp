@@ -65,10 +65,13 @@ struct Breaks {
   int count = 2;
 };
 
-Breaks breaks(const ShearDisplacement& displacement, double peak_rad, double exit_rad);
-inline Breaks breaks(const SideSlipDisplacement&, double, double) {
-  return {};
-}  // a resultant has no sign
+/// What the integral is split by: the ends of the halves, and where the displacement along the wheel plane
+/// changes sign, where a resultant turns quickly at a small slip angle.
+struct Halves {
+  double entry_rad, peak_rad, exit_rad;
+};
+
+Breaks breaksAt(double sign_change_rad, const Halves& halves);
 
 /// Sum of the forces of one point of the front half and its mirror point in the rear half, which share sigma
 /// (C.3).
@@ -125,7 +128,9 @@ class RimIntegrand {
 template <class Rule = FineRimRule, class Law, class Displacement>
 RimForces rimForces(const Law& law, const Wheel& wheel, const Displacement& displacement) {
   const detail::RimIntegrand integrand{law, displacement, wheel.radius_m};
-  const auto breaks = detail::breaks(displacement, integrand.peak_rad(), integrand.exit_rad());
+  const auto breaks =
+      detail::breaksAt(displacement.signChange_rad(integrand.exit_rad()),
+                       {displacement.entryAngle_rad(), integrand.peak_rad(), integrand.exit_rad()});
   RimForces sum;
   for (int piece = 0; piece + 1 < breaks.count; ++piece) {
     const double start = Rule::inverse(breaks.s[static_cast<std::size_t>(piece)]);

@@ -20,6 +20,10 @@ void validate(const Rover& rover) {
   check.above("track_m", rover.track_m, 0.0);
   check.above("clearance_m", rover.clearance_m, 0.0);
   check.atLeast("centre_of_mass_height_m", rover.centre_of_mass_height_m, 0.0);
+  // Outside the wheels it would stand on some of them only, or on none.
+  const double most_ahead = 0.499 * rover.wheelbase_m, most_left = 0.499 * rover.track_m;
+  check.within("centre_of_mass_ahead_m", rover.centre_of_mass_ahead_m, {-most_ahead, most_ahead});
+  check.within("centre_of_mass_left_m", rover.centre_of_mass_left_m, {-most_left, most_left});
   check.within("max_pitch_rad", rover.max_pitch_rad, {0.0, 1.5707963});
   check.within("max_roll_rad", rover.max_roll_rad, {0.0, 1.5707963});
   check.above("max_torque_Nm", rover.max_torque_Nm, 0.0);

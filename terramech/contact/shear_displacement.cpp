@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include <talus/terramech/contact/shear_displacement.hpp>
 
@@ -18,10 +19,23 @@ double ShearDisplacement::signChange_rad(double lowest_rad) const {
   return 0.5 * (positive + negative);
 }
 
+double resultantSlip(double slip, double slip_angle_rad) {
+  const double beta = std::min(std::abs(slip_angle_rad), kSteepestSlipAngle_rad);
+  const double c = std::cos(beta), s = std::sin(beta);
+  if (slip < 0.0) return std::hypot(slip * c, s);  // over v; r omega = (1 + slip) v cos beta
+  return std::hypot(slip * c, (1.0 - slip) * s) /
+         std::max(c, 1.0 - slip);  // over r omega, both times cos beta
+}
+
 SideSlipDisplacement::SideSlipDisplacement(const Parameters& p)
     : p_(p),
       travel_(std::min(travelRatio(p.slip), 1e6)),
-      lateral_m_(p.radius_m * travel_ * std::tan(p.slip_angle_rad)),
+      lateral_m_(p.radius_m * travel_ *
+                 std::tan(std::clamp(p.slip_angle_rad, -kSteepestSlipAngle_rad, kSteepestSlipAngle_rad))),
       sin_entry_(std::sin(p.entry_angle_rad)) {}
+
+double SideSlipDisplacement::signChange_rad(double lowest_rad) const {
+  return ShearDisplacement{{p_.shear_radius_m, p_.slip, p_.entry_angle_rad}}.signChange_rad(lowest_rad);
+}
 
 }  // namespace talus::terramech

@@ -18,6 +18,8 @@ void validate(const Soil& soil) {
   check.finite("c1", soil.c1);
   check.finite("c2", soil.c2);
   check.above("density_kg_m3", soil.density_kg_m3, 0.0);
+  check.atLeast("digging_exponent", soil.digging_exponent, 0.0);
+  check.atLeast("side_bulldozing", soil.side_bulldozing, 0.0);
 }
 
 }  // namespace talus::terramech

@@ -15,7 +15,13 @@ struct Soil {
   double shear_modulus_m = 0.02;    ///< shear deformation modulus K > 0
   double c1 = 0.43;                 ///< theta_m / theta_1 at no slip [-] (Wong and Reece; wong_reece_1967a)
   double c2 = 0.32;                 ///< its growth with slip [-]
-  double density_kg_m3 = 1600.0;    ///< bulk density > 0, for the effects that move soil
+  double density_kg_m3 = 1600.0;    ///< bulk density > 0, of soil that is moved
+  /// n_d >= 0 [-] of a wheel that slides sideways: n = n0 + n_d (s_R - |i|), s_R = resultantSlip(). The form
+  /// and size of ding_2010's growth with slip (n1 0.2 to 0.6, number unverified), taken over the resultant:
+  /// ours.
+  double digging_exponent = 0.4;
+  /// Share >= 0 of Hegedus' pressure on the side of a wheel that slides sideways, 1 as ishigami_2007 [-].
+  double side_bulldozing = 1.0;
 };
 
 /// k = k_c/b + k_phi [N/m^(n+2)] for a wheel or plate of smaller dimension width_m (thesis Eq. A.1).

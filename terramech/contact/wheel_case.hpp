@@ -15,6 +15,11 @@ struct WheelCase {
   double wheel_width_m = 0.1;       ///< > 0
   double load_N = 0.0;              ///< > 0
   double slip = 0.0;                ///< [-1, 1], as WheelOperation::slip
+  double slip_angle_rad = 0.0;      ///< [-pi/2, pi/2], as WheelOperation; 0: none of what follows acts
+  double density_kg_m3 = 1600.0;    ///< > 0
+  double gravity_m_s2 = 9.80665;    ///< > 0
+  double digging_exponent = 0.4;    ///< >= 0, as Soil
+  double side_bulldozing = 1.0;     ///< >= 0, as Soil
 };
 
 }  // namespace talus::terramech

@@ -1,8 +1,10 @@
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <string>
 
 #include <talus/terramech/contact/rim_contact.hpp>
+#include <talus/terramech/contact/side_bulldozing.hpp>
 #include <talus/terramech/contact/wong_reece.hpp>
 #include <talus/terramech/numerics/range.hpp>
 
@@ -29,6 +31,8 @@ void check(const WheelOperation& operation) {
   const RangeCheck range{"wheel operation"};
   range.within("slip", operation.slip, {-1.0, 1.0});
   range.within("rebound", operation.rebound, {0.0, 0.999});
+  range.within("slip_angle_rad", operation.slip_angle_rad, {-0.5 * std::numbers::pi, 0.5 * std::numbers::pi});
+  range.above("gravity_m_s2", operation.gravity_m_s2, 0.0);
 }
 
 double sinkage_m(const Wheel& wheel, double entry) {
@@ -38,14 +42,44 @@ double sinkage_m(const Wheel& wheel, double entry) {
 
 WheelForces wheelForces(const Wheel& wheel, const RimEquilibrium& rim) {
   return {sinkage_m(wheel, rim.entry_angle_rad), rim.entry_angle_rad, rim.forces.torque_Nm,
-          rim.forces.drawbar_pull_N};
+          rim.forces.drawbar_pull_N, rim.forces.side_force_N};
+}
+
+double digging(const Soil& soil, const WheelOperation& operation) {
+  if (operation.slip_angle_rad == 0.0) return 0.0;
+  return soil.digging_exponent *
+         (resultantSlip(operation.slip, operation.slip_angle_rad) - std::abs(operation.slip));
+}
+
+/// What the soil beside the wheel adds to the side force [N].
+double bulldozing_N(const Soil& soil, const Wheel& wheel, const WheelOperation& operation, double entry_rad) {
+  const Hegedus push = hegedus({.cohesion_Pa = soil.cohesion_Pa,
+                                .tan_friction = std::tan(soil.friction_angle_rad),
+                                .weight_N_m3 = soil.density_kg_m3 * operation.gravity_m_s2});
+  return -soil.side_bulldozing * std::sin(operation.slip_angle_rad) *
+         faceResistance_N(push, {.radius_m = wheel.radius_m, .entry_angle_rad = entry_rad});
+}
+
+SideSlipDisplacement sideways(const Wheel& wheel, const WheelOperation& operation, double entry_rad) {
+  return SideSlipDisplacement{{.shear_radius_m = wheel.radius_m,
+                               .radius_m = wheel.radius_m,
+                               .slip = operation.slip,
+                               .slip_angle_rad = operation.slip_angle_rad,
+                               .entry_angle_rad = entry_rad}};
+}
+
+RimLoad wantedLoad(const WongReece& law, double exponent, const WheelOperation& operation) {
+  return {.load_N = operation.load_N,
+          .slip = operation.slip,
+          .first_guess = law.smallAngleEntry_rad(operation.load_N),
+          .growth = 2.0 * exponent + 1.0};
 }
 
 }  // namespace
 
 WongReece::WongReece(const Soil& soil, const Wheel& wheel, const WheelOperation& operation)
     : modulus_(checkedModulus(soil, wheel)),
-      exponent_(soil.sinkage_exponent),
+      exponent_(soil.sinkage_exponent + digging(soil, operation)),
       cohesion_Pa_(soil.cohesion_Pa),
       tan_friction_(std::tan(soil.friction_angle_rad)),
       shear_modulus_m_(soil.shear_modulus_m),
@@ -63,6 +97,11 @@ double WongReece::pressure_Pa(double depth_m) const {
 double WongReece::shear_Pa(double normal_Pa, double displacement_m) const {
   const double mobilised = -std::expm1(-std::abs(displacement_m) / shear_modulus_m_);
   return std::copysign((cohesion_Pa_ + normal_Pa * tan_friction_) * mobilised, displacement_m);
+}
+
+Tangent WongReece::shear_Pa(double normal_Pa, const Tangent& displacement_m) const {
+  const double path = std::hypot(displacement_m.along, displacement_m.across);
+  return alongDisplacement(shear_Pa(normal_Pa, path), displacement_m, path);
 }
 
 double WongReece::exit_rad(double entry_rad) const {
@@ -83,19 +122,27 @@ double WongReece::smallAngleEntry_rad(double load_N) const {
 WheelForces equilibrium(const Soil& soil, const Wheel& wheel, const WheelOperation& operation) {
   RangeCheck{"wheel operation"}.above("load_N", operation.load_N, 0.0);
   const WongReece law{soil, wheel, operation};
-  return wheelForces(wheel, rimEquilibrium(law, wheel,
-                                           {.load_N = operation.load_N,
-                                            .slip = operation.slip,
-                                            .first_guess = law.smallAngleEntry_rad(operation.load_N),
-                                            .growth = 2.0 * soil.sinkage_exponent + 1.0}));
+  const RimLoad wanted = wantedLoad(law, soil.sinkage_exponent, operation);
+  if (operation.slip_angle_rad == 0.0) return wheelForces(wheel, rimEquilibrium(law, wheel, wanted));
+  const auto found = findEquilibrium<FineRimRule>(
+      law, wheel, wanted, [&](double entry) { return sideways(wheel, operation, entry); });
+  if (!found) detail::throwSunk(operation.load_N);
+  WheelForces forces = wheelForces(wheel, *found);
+  forces.side_force_N += bulldozing_N(soil, wheel, operation, found->entry_angle_rad);
+  return forces;
 }
 
 ImposedContact forcesAtEntry(const Soil& soil, const Wheel& wheel, const WheelOperation& operation,
                              double entry_rad) {
   RangeCheck{"wheel operation"}.within("entry angle", entry_rad, {1e-12, 1.5707963267948966});
   const WongReece law{soil, wheel, operation};
-  const RimForces forces =
-      rimForces(law, wheel, ShearDisplacement{{wheel.radius_m, operation.slip, entry_rad}});
+  if (operation.slip_angle_rad == 0.0) {
+    const RimForces forces =
+        rimForces(law, wheel, ShearDisplacement{{wheel.radius_m, operation.slip, entry_rad}});
+    return {forces.load_N, wheelForces(wheel, {entry_rad, forces})};
+  }
+  RimForces forces = rimForces(law, wheel, sideways(wheel, operation, entry_rad));
+  forces.side_force_N += bulldozing_N(soil, wheel, operation, entry_rad);
   return {forces.load_N, wheelForces(wheel, {entry_rad, forces})};
 }
 
@@ -105,7 +152,9 @@ std::vector<RimStress> stressDistribution(const Soil& soil, const Wheel& wheel,
   const WongReece law{soil, wheel, operation};
   const double entry = equilibrium(soil, wheel, operation).entry_angle_rad;
   const double peak = law.peak_rad(entry), exit = law.exit_rad(entry);
+  const bool straight = operation.slip_angle_rad == 0.0;
   const ShearDisplacement displacement{{wheel.radius_m, operation.slip, entry}};
+  const SideSlipDisplacement resultant = sideways(wheel, operation, entry);
   std::vector<RimStress> stresses;
   for (int k = 0; k < count; ++k) {
     const double theta = exit + (entry - exit) * k / (count - 1.0);
@@ -114,7 +163,8 @@ std::vector<RimStress> stressDistribution(const Soil& soil, const Wheel& wheel,
     const double depth = wheel.radius_m * (std::cos(mirrored) - std::cos(entry));
     const double sigma = law.pressure_Pa(depth > 0.0 ? depth : 0.0);
     const double j = theta < entry ? displacement.at_m(theta) : 0.0;
-    stresses.push_back({theta, sigma, law.shear_Pa(sigma, j), j});
+    const double tau = straight ? law.shear_Pa(sigma, j) : law.shear_Pa(sigma, resultant.at_m(theta)).along;
+    stresses.push_back({theta, sigma, tau, j});
   }
   return stresses;
 }

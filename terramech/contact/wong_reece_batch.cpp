@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 
+#include <talus/terramech/contact/shear_displacement.hpp>
 #include <talus/terramech/contact/wong_reece_batch.hpp>
 #include <talus/terramech/contact/wong_reece_kernel.hpp>
 
@@ -11,75 +13,109 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr int kLanes = 4;
+// Of wheels that slide sideways: a braked one at a small angle turns its shear within a small part of the
+// rim.
+constexpr double kMostBraked = -0.9, kSmallestAngle_rad = 1e-4, kSmallestAngleBraked_rad = 0.3;
 
 using Group = void (*)(const WheelCase*, WheelForces*, bool*);
 
+/// The code of a batch, for wheels that roll straight and for those that slide sideways.
+struct Groups {
+  Group straight, sideways;
+};
+
+template <bool Sideways>
 void scalarGroup(const WheelCase* cases, WheelForces* forces, bool* left) {
   for (int lane = 0; lane < kLanes; ++lane)
-    lanes::solveGroup<double>(cases + lane, forces + lane, left + lane);
+    lanes::solveGroup<Sideways, double>(cases + lane, forces + lane, left + lane);
 }
 
 #if defined(__x86_64__)
+template <bool Sideways>
 __attribute__((target("avx2"))) void avx2Group(const WheelCase* cases, WheelForces* forces, bool* left) {
-  lanes::solveGroup<lanes::Four>(cases, forces, left);
+  lanes::solveGroup<Sideways, lanes::Four>(cases, forces, left);
 }
 
 bool haveAvx2() {
   return __builtin_cpu_supports("avx2") != 0;
 }
 #else
-constexpr Group avx2Group = scalarGroup;
+template <bool Sideways>
+constexpr Group avx2Group = scalarGroup<Sideways>;
 
 constexpr bool haveAvx2() {
   return false;
 }
 #endif
 
-Group groupOf(BatchKernel kernel) {
+Groups groupsOf(BatchKernel kernel) {
   if (kernel == BatchKernel::Avx2 && !haveAvx2())
     throw std::invalid_argument("equilibria: this machine has no AVX2; use BatchKernel::Best");
-  return kernel == BatchKernel::Scalar || !haveAvx2() ? scalarGroup : avx2Group;
+  if (kernel == BatchKernel::Scalar || !haveAvx2()) return {scalarGroup<false>, scalarGroup<true>};
+  return {avx2Group<false>, avx2Group<true>};
 }
 
 WheelForces general(const WheelCase& c, Leftover leftover) {
-  if (leftover == Leftover::Nan) return {kNan, kNan, kNan, kNan};
+  if (leftover == Leftover::Nan) return {kNan, kNan, kNan, kNan, kNan};
   try {
     return equilibrium(c);
   } catch (const std::logic_error&) {
-    return {kNan, kNan, kNan, kNan};
+    return {kNan, kNan, kNan, kNan, kNan};
   }
 }
 
-/// Up to four cases; a short group is filled with copies of its first fast case, a slow case replaced by one.
-void solveSome(std::span<const WheelCase> cases, std::span<WheelForces> forces, Group group,
-               Leftover leftover) {
-  const auto fast = std::find_if(cases.begin(), cases.end(), isFastCase);
-  std::array<bool, kLanes> left;
-  left.fill(true);
-  if (fast != cases.end()) {
-    std::array<WheelCase, kLanes> lane;
-    lane.fill(*fast);
-    for (std::size_t k = 0; k < cases.size(); ++k)
-      if (isFastCase(cases[k])) lane[k] = cases[k];
-    std::array<WheelForces, kLanes> solved;
-    group(lane.data(), solved.data(), left.data());
-    std::copy_n(solved.begin(), cases.size(), forces.begin());
-  }
+/// Which of up to four cases a group takes.
+using Taken = std::array<bool, kLanes>;
+
+/// Solves the cases that are taken; the others' lanes hold copies of the first of them.
+void solveTaken(std::span<const WheelCase> cases, std::span<WheelForces> forces, Group group, Taken& taken) {
+  const auto first = std::find(taken.begin(), taken.end(), true);
+  if (first == taken.end()) return;
+  std::array<WheelCase, kLanes> lane;
+  lane.fill(cases[static_cast<std::size_t>(first - taken.begin())]);
   for (std::size_t k = 0; k < cases.size(); ++k)
-    if (left[k] || !isFastCase(cases[k])) forces[k] = general(cases[k], leftover);
+    if (taken[k]) lane[k] = cases[k];
+  std::array<WheelForces, kLanes> solved;
+  std::array<bool, kLanes> left;
+  group(lane.data(), solved.data(), left.data());
+  for (std::size_t k = 0; k < cases.size(); ++k) {
+    taken[k] = taken[k] && !left[k];
+    if (taken[k]) forces[k] = solved[k];
+  }
+}
+
+/// Up to four cases.
+void solveSome(std::span<const WheelCase> cases, std::span<WheelForces> forces, const Groups& groups,
+               Leftover leftover) {
+  Taken straight{}, sideways{};
+  for (std::size_t k = 0; k < cases.size(); ++k)
+    if (isFastCase(cases[k])) (cases[k].slip_angle_rad == 0.0 ? straight : sideways)[k] = true;
+  solveTaken(cases, forces, groups.straight, straight);
+  solveTaken(cases, forces, groups.sideways, sideways);
+  for (std::size_t k = 0; k < cases.size(); ++k)
+    if (!straight[k] && !sideways[k]) forces[k] = general(cases[k], leftover);
+}
+
+/// Near no slip the shear displacement is a small difference, which lane_math.hpp does not resolve; sideways
+/// it is added to a large one.
+bool takesMotion(const WheelCase& c) {
+  if (c.slip_angle_rad == 0.0) return c.slip >= 0.01 && c.slip <= 1.0;
+  const double angle = std::abs(c.slip_angle_rad);
+  const double smallest = c.slip < 0.0 ? kSmallestAngleBraked_rad : kSmallestAngle_rad;
+  return c.slip >= kMostBraked && c.slip <= 1.0 && angle >= smallest && angle <= kSteepestSlipAngle_rad;
 }
 
 }  // namespace
 
 bool isFastCase(const WheelCase& c) {
-  // Near no slip the shear displacement is a small difference, which lane_math.hpp does not resolve.
   const double peak = c.c1 + c.c2 * c.slip;
   const auto ordinary = [](double x) { return x > 1e-9 && x < 1e12; };
-  return c.slip >= 0.01 && c.slip <= 1.0 && peak > 0.0 && peak < 0.999 && c.cohesion_Pa >= 0.0 &&
-         c.cohesion_Pa < 1e9 && c.friction_angle_rad >= 0.0 && c.friction_angle_rad < 1.5 &&
-         c.sinkage_exponent >= 0.1 && c.sinkage_exponent <= 2.0 && ordinary(c.sinkage_modulus) &&
-         ordinary(c.shear_modulus_m) && ordinary(c.wheel_radius_m) && ordinary(c.wheel_width_m) &&
-         ordinary(c.load_N);
+  return takesMotion(c) && peak > 0.0 && peak < 0.999 && c.cohesion_Pa >= 0.0 && c.cohesion_Pa < 1e9 &&
+         c.friction_angle_rad >= 0.0 && c.friction_angle_rad < 1.5 && c.sinkage_exponent >= 0.1 &&
+         c.sinkage_exponent <= 2.0 && ordinary(c.sinkage_modulus) && ordinary(c.shear_modulus_m) &&
+         ordinary(c.wheel_radius_m) && ordinary(c.wheel_width_m) && ordinary(c.load_N) &&
+         ordinary(c.density_kg_m3) && ordinary(c.gravity_m_s2) && c.digging_exponent >= 0.0 &&
+         c.digging_exponent <= 2.0 && c.side_bulldozing >= 0.0 && c.side_bulldozing < 1e6;
 }
 
 WheelCase wheelCase(const Soil& soil, const Wheel& wheel, const WheelOperation& operation) {
@@ -93,7 +129,12 @@ WheelCase wheelCase(const Soil& soil, const Wheel& wheel, const WheelOperation& 
           .wheel_radius_m = wheel.radius_m,
           .wheel_width_m = wheel.width_m,
           .load_N = operation.load_N,
-          .slip = operation.slip};
+          .slip = operation.slip,
+          .slip_angle_rad = operation.slip_angle_rad,
+          .density_kg_m3 = soil.density_kg_m3,
+          .gravity_m_s2 = operation.gravity_m_s2,
+          .digging_exponent = soil.digging_exponent,
+          .side_bulldozing = soil.side_bulldozing};
 }
 
 WheelForces equilibrium(const WheelCase& c) {
@@ -104,19 +145,26 @@ WheelForces equilibrium(const WheelCase& c) {
                   .frictional_modulus = c.sinkage_modulus,
                   .shear_modulus_m = c.shear_modulus_m,
                   .c1 = c.c1,
-                  .c2 = c.c2};
+                  .c2 = c.c2,
+                  .density_kg_m3 = c.density_kg_m3,
+                  .digging_exponent = c.digging_exponent,
+                  .side_bulldozing = c.side_bulldozing};
   const Wheel wheel{.radius_m = c.wheel_radius_m, .width_m = c.wheel_width_m};
-  return equilibrium(soil, wheel, {.load_N = c.load_N, .slip = c.slip});
+  return equilibrium(soil, wheel,
+                     {.load_N = c.load_N,
+                      .slip = c.slip,
+                      .slip_angle_rad = c.slip_angle_rad,
+                      .gravity_m_s2 = c.gravity_m_s2});
 }
 
 void equilibria(std::span<const WheelCase> cases, std::span<WheelForces> forces, BatchKernel kernel,
                 Leftover leftover) {
   if (cases.size() != forces.size())
     throw std::invalid_argument("equilibria: as many forces as cases are needed");
-  const Group group = groupOf(kernel);
+  const Groups groups = groupsOf(kernel);
   for (std::size_t k = 0; k < cases.size(); k += kLanes) {
     const std::size_t count = std::min<std::size_t>(kLanes, cases.size() - k);
-    solveSome(cases.subspan(k, count), forces.subspan(k, count), group, leftover);
+    solveSome(cases.subspan(k, count), forces.subspan(k, count), groups, leftover);
   }
 }
 

@@ -32,8 +32,9 @@ enum class BatchKernel {
 
 /// Solves every case: `forces` gets as many entries as `cases`, every number NaN where the case has no answer
 /// (equilibrium() gives the reason). Agrees with equilibrium() to 1e-7 relative, drawbar pull to 1e-7 of the
-/// load. Braked wheels, slip below 0.01, and r theta_1 / K > 12 are left over. Throws
-/// std::invalid_argument when the sizes differ or the machine lacks the selected kernel. Thread-safe.
+/// load; to 1e-6 at a slip angle. Left over are, straight on, braked wheels, slip below 0.01, and r theta_1 /
+/// K > 12; at a slip angle, slip below -0.9 or braked below 0.3 rad, and a way of a rim point over K > 40.
+/// Throws std::invalid_argument when the sizes differ or the machine lacks the selected kernel. Thread-safe.
 void equilibria(std::span<const WheelCase> cases, std::span<WheelForces> forces,
                 BatchKernel kernel = BatchKernel::Best, Leftover leftover = Leftover::Equilibrium);
 

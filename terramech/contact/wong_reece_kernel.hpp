@@ -34,10 +34,16 @@ constexpr PowerRule<N> powerRule(int power) {
 inline constexpr auto kCoarse = powerRule<4>(2);  // to start the search
 inline constexpr auto kFine = powerRule<12>(3);   // 1e-7 up to r theta_1 / K = 12
 
+/// r times the way over K up to which the fine rule is right to its stated accuracy; a resultant has no
+/// steep change of sign.
+template <bool Sideways>
+inline constexpr double kStiffest = Sideways ? 40.0 : 12.0;
+
 /// Forces over r b (torque: over r^2 b).
 template <class T>
 struct Sums {
   T load, torque, pull;
+  T side{};  // 0 of a wheel that rolls straight
 };
 
 /// Constants of the lanes' cases.
@@ -48,6 +54,7 @@ struct Constants {
   T radius_over_k, travel;   // r/K, 1 - i
   T peak;                    // theta_m / theta_1
   T log_load;                // ln(W / (r b))
+  T across{};                // (1 - i) tan beta: way across over the rolled arc
 };
 
 /// Angle of a rim point below the entry, as the terms that its stresses need.
@@ -56,10 +63,28 @@ struct RimPoint {
   T sine, cosine;  // of theta
   T weight;        // d theta / ds
   T displacement_over_r;
+  T arc;  // theta_1 - theta
 };
 
+/// Shear along the resultant displacement.
 template <class T>
+TALUS_LANES void addSlidingPoint(const Constants<T>& c, const RimPoint<T>& p, T sigma, double ds,
+                                 Sums<T>& sums) {
+  const T jx = p.displacement_over_r, jy = c.across * p.arc;
+  const T square = jx * jx + jy * jy + 1e-200;
+  const T inverse = inverseRoot(square);
+  const T mobilised = 1.0 - exponential(-c.radius_over_k * (square * inverse));
+  const T tau = (c.cohesion + sigma * c.tan_friction) * mobilised * inverse;  // over the displacement
+  const T w = p.weight * ds, along = tau * jx;
+  sums.load = sums.load + w * (sigma * p.cosine + along * p.sine);
+  sums.torque = sums.torque + w * along;
+  sums.pull = sums.pull + w * (along * p.cosine - sigma * p.sine);
+  sums.side = sums.side - w * (tau * jy);
+}
+
+template <bool Sideways, class T>
 TALUS_LANES void addPoint(const Constants<T>& c, const RimPoint<T>& p, T sigma, double ds, Sums<T>& sums) {
+  if constexpr (Sideways) return addSlidingPoint(c, p, sigma, ds, sums);
   const T mobilised = 1.0 - exponential(-c.radius_over_k * p.displacement_over_r);
   const T tau = (c.cohesion + sigma * c.tan_friction) * mobilised;
   const T w = p.weight * ds;
@@ -70,23 +95,25 @@ TALUS_LANES void addPoint(const Constants<T>& c, const RimPoint<T>& p, T sigma, 
 
 /// C.8 to C.10 at entry angle x: each s gives a point in front and its mirror behind, which share sigma
 /// (C.3).
-template <std::size_t N, class T>
+template <bool Sideways, std::size_t N, class T>
 TALUS_LANES Sums<T> sumsAt(const Constants<T>& c, T x, const PowerRule<N>& rule) {
   const T sin_x = sine(x), cos_x = 1.0 - versine(x);
   const T front = x * (1.0 - c.peak), rear = x * c.peak;
-  Sums<T> sums{T{}, T{}, T{}};
+  Sums<T> sums{T{}, T{}, T{}, T{}};
   for (std::size_t k = 0; k < N; ++k) {
     const T delta = front * rule.s[k];  // theta_1 - theta in front
     const T sin_d = sine(delta), vers_d = versine(delta);
     const T cos_difference = sin_x * sin_d - cos_x * vers_d;  // cos theta - cos theta_1 > 0
     const T sin_difference = sin_x * vers_d + cos_x * sin_d;  // sin theta_1 - sin theta
     const T sigma = exponential(c.log_modulus + c.exponent * logarithm(cos_difference));
-    addPoint(c, {sin_x - sin_difference, cos_x + cos_difference, front, delta - c.travel * sin_difference},
-             sigma, rule.ds[k], sums);
+    addPoint<Sideways>(
+        c, {sin_x - sin_difference, cos_x + cos_difference, front, delta - c.travel * sin_difference, delta},
+        sigma, rule.ds[k], sums);
     const T theta = rear * rule.s[k];
     const T sin_r = sine(theta);
-    addPoint(c, {sin_r, 1.0 - versine(theta), rear, (x - theta) - c.travel * (sin_x - sin_r)}, sigma,
-             rule.ds[k], sums);
+    addPoint<Sideways>(
+        c, {sin_r, 1.0 - versine(theta), rear, (x - theta) - c.travel * (sin_x - sin_r), x - theta}, sigma,
+        rule.ds[k], sums);
   }
   return sums;
 }
@@ -98,9 +125,9 @@ struct Trial {
   Sums<T> sums;
 };
 
-template <std::size_t N, class T>
+template <bool Sideways, std::size_t N, class T>
 TALUS_LANES Trial<T> trialAt(const Constants<T>& c, T u, const PowerRule<N>& rule) {
-  const Sums<T> sums = sumsAt(c, exponential(u), rule);
+  const Sums<T> sums = sumsAt<Sideways>(c, exponential(u), rule);
   return {u, logarithm(sums.load) - c.log_load, sums};
 }
 
@@ -141,7 +168,7 @@ TALUS_LANES Found<T> extrapolated(const Trial<T>& a, const Trial<T>& b) {
   const T f = step * inverse;
   return {b.u + step,
           {b.sums.load + f * (b.sums.load - a.sums.load), b.sums.torque + f * (b.sums.torque - a.sums.torque),
-           b.sums.pull + f * (b.sums.pull - a.sums.pull)},
+           b.sums.pull + f * (b.sums.pull - a.sums.pull), b.sums.side + f * (b.sums.side - a.sums.side)},
           spread<T>(1.0)};
 }
 
@@ -155,18 +182,18 @@ TALUS_LANES bool allConverged(const Found<T>& found) {
 }
 
 /// Finds theta_1 in every lane; a lane that is done keeps its result, so that lanes do not see each other.
-template <class T>
+template <bool Sideways, class T>
 TALUS_LANES Found<T> solve(const Constants<T>& c, T u) {
   constexpr double kGood = 1e-8;  // product of the last two excesses
   const T growth = 2.0 * c.exponent + 1.0;
-  Trial<T> last = trialAt(c, u, kCoarse);
-  Trial<T> trial = trialAt(c, stepped(last, growth), kCoarse);
+  Trial<T> last = trialAt<Sideways>(c, u, kCoarse);
+  Trial<T> trial = trialAt<Sideways>(c, stepped(last, growth), kCoarse);
   T slope = slopeOf(last, trial, growth);
   last = trial;
-  trial = trialAt(c, stepped(last, slope), kCoarse);
+  trial = trialAt<Sideways>(c, stepped(last, slope), kCoarse);
   slope = slopeOf(last, trial, slope);
-  last = trialAt(c, stepped(trial, slope), kFine);
-  trial = trialAt(c, stepped(last, slope), kFine);
+  last = trialAt<Sideways>(c, stepped(trial, slope), kFine);
+  trial = trialAt<Sideways>(c, stepped(last, slope), kFine);
   Found<T> found{trial.u, trial.sums, T{}};
   for (int iteration = 0; iteration < 12; ++iteration) {
     const T product = trial.excess * last.excess;
@@ -177,11 +204,12 @@ TALUS_LANES Found<T> solve(const Constants<T>& c, T u) {
     found.sums.load = pick(fresh, candidate.sums.load, found.sums.load);
     found.sums.torque = pick(fresh, candidate.sums.torque, found.sums.torque);
     found.sums.pull = pick(fresh, candidate.sums.pull, found.sums.pull);
+    if constexpr (Sideways) found.sums.side = pick(fresh, candidate.sums.side, found.sums.side);
     found.converged = pick(fresh, spread<T>(1.0), found.converged);
     if (allConverged(found)) break;
     slope = slopeOf(last, trial, slope);
     last = trial;
-    trial = trialAt(c, stepped(last, slope), kFine);
+    trial = trialAt<Sideways>(c, stepped(last, slope), kFine);
   }
   return found;
 }
@@ -209,13 +237,74 @@ TALUS_LANES double laneOf(const T& value, int lane) {
     return value[lane];
 }
 
-/// Solves the next one or four cases, which must be valid and driven; `sunk` marks lanes left to the general
-/// solver.
+/// The angle across the travel, kept off 90 deg as everywhere, and what follows from it.
 template <class T>
+struct SideMotion {
+  T sine, cosine;  // of |beta|
+  T across;        // (travel over rolled arc) tan beta, signed
+  T slip;          // resultantSlip()
+};
+
+template <class T>
+TALUS_LANES SideMotion<T> sideMotion(T slip, T travel, T beta) {
+  const T size = pick(beta < T{}, -beta, beta);
+  const T s = sine(size), c = 1.0 - versine(size);
+  const T rolled =
+      pick(slip < T{}, spread<T>(1.0), 1.0 - slip);  // times cos beta: the speed along over the scale
+  const T scale = pick(slip < T{}, spread<T>(1.0), pick(c > rolled, c, rolled));
+  const T x = slip * c, y = rolled * s;
+  const T square = x * x + y * y + 1e-200;
+  const T across = travel * s / c;
+  return {s, c, pick(beta < T{}, -across, across), square * inverseRoot(square) / scale};
+}
+
+/// faceResistance_N() / (r^2), of the soil's Hegedus numbers times r.
+template <class T>
+TALUS_LANES T faceOverSquare(T per_depth, T per_depth_squared_r, T theta) {
+  const T s = sine(theta), c = 1.0 - versine(theta), t2 = theta * theta, t3 = t2 * theta;
+  const auto small = theta < spread<T>(0.3);
+  const T area = pick(small, t3 * (2.0 / 3.0 - t2 * (2.0 / 15.0 - t2 * (4.0 / 315.0 - t2 * (2.0 / 2835.0)))),
+                      theta - s * c);
+  const T square = pick(
+      small, t3 * t2 * (2.0 / 15.0 - t2 * (11.0 / 315.0 - t2 * (17.0 / 3780.0 - t2 * (461.0 / 1247400.0)))),
+      s - s * s * s * (1.0 / 3.0) - theta * c);
+  return per_depth * area + 2.0 * per_depth_squared_r * square;
+}
+
+/// What the soil beside the wheel adds to the side force [N]; hegedus() in lanes, with tan X = cos phi / (1 +
+/// sin phi) and tan(X + phi) = cot X.
+template <class T>
+TALUS_LANES T bulldozing(const WheelCase* cases, T entry, T beta) {
+  const T phi = gather<T>(cases, &WheelCase::friction_angle_rad),
+          r = gather<T>(cases, &WheelCase::wheel_radius_m);
+  const T cos_phi = 1.0 - versine(phi), cot_x = (1.0 + sine(phi)) / cos_phi;
+  const T front = 2.0 * cot_x, heap = cot_x + cot_x * cot_x * (sine(phi) / cos_phi);
+  const T weight = gather<T>(cases, &WheelCase::density_kg_m3) * gather<T>(cases, &WheelCase::gravity_m_s2);
+  return -gather<T>(cases, &WheelCase::side_bulldozing) * sine(beta) * (r * r) *
+         faceOverSquare<T>(front * gather<T>(cases, &WheelCase::cohesion_Pa), 0.5 * front * heap * weight * r,
+                           entry);
+}
+
+/// Travel over rolled arc, travelRatio() in lanes; the straight kernel knows driven wheels only.
+template <bool Sideways, class T>
+TALUS_LANES T travelOf(T slip) {
+  if constexpr (Sideways) return pick(slip < T{}, 1.0 / (1.0 + slip), 1.0 - slip);
+  return 1.0 - slip;
+}
+
+/// Solves the next one or four cases, which isFastCase() takes; `left` marks lanes left to the general
+/// solver.
+template <bool Sideways, class T>
 TALUS_LANES void solveGroup(const WheelCase* cases, WheelForces* forces, bool* left) {
   const T r = gather<T>(cases, &WheelCase::wheel_radius_m), b = gather<T>(cases, &WheelCase::wheel_width_m);
-  const T n = gather<T>(cases, &WheelCase::sinkage_exponent);
   const T load = gather<T>(cases, &WheelCase::load_N), slip = gather<T>(cases, &WheelCase::slip);
+  const T beta = gather<T>(cases, &WheelCase::slip_angle_rad), travel = travelOf<Sideways>(slip);
+  T n = gather<T>(cases, &WheelCase::sinkage_exponent), across{};
+  if constexpr (Sideways) {
+    const SideMotion<T> motion = sideMotion(slip, travel, beta);
+    n = n + gather<T>(cases, &WheelCase::digging_exponent) * (motion.slip - pick(slip < T{}, -slip, slip));
+    across = motion.across;
+  }
   const T peak = gather<T>(cases, &WheelCase::c1) + gather<T>(cases, &WheelCase::c2) * slip;
   const T log_r = logarithm(r);
   const T r_over_k = r / gather<T>(cases, &WheelCase::shear_modulus_m);
@@ -226,19 +315,26 @@ TALUS_LANES void solveGroup(const WheelCase* cases, WheelForces* forces, bool* l
                        gather<T>(cases, &WheelCase::cohesion_Pa),
                        tangent(gather<T>(cases, &WheelCase::friction_angle_rad)),
                        r_over_k,
-                       1.0 - slip,
+                       travel,
                        peak,
-                       log_load};
+                       log_load,
+                       across};
   // Small-angle load without shear, at the midpoint of s: W ~ r b k (r theta_1^2 (1 - a^2) / 2)^n theta_1.
   const T a = 0.5 + 0.5 * peak;
   const T shape = logarithm(0.5 * (1.0 - a * a) + 1e-9);
-  const Found<T> found = solve(c, (log_load - log_modulus - n * shape) / (2.0 * n + 1.0));
+  const Found<T> found = solve<Sideways>(c, (log_load - log_modulus - n * shape) / (2.0 * n + 1.0));
   const T entry = exponential(found.u);
   const T z = r * versine(entry), torque = found.sums.torque * (r * r * b), pull = found.sums.pull * (r * b);
+  T side{};
+  if constexpr (Sideways) side = found.sums.side * (r * b) + bulldozing(cases, entry, beta);
+  T way = spread<T>(1.0);  // that a rim point goes over the soil, over its arc
+  if constexpr (Sideways) way = pick(slip < T{}, travel, way) + pick(across < T{}, -across, across);
   for (int lane = 0; lane < Traits<T>::kLanes; ++lane) {
-    forces[lane] = {laneOf(z, lane), laneOf(entry, lane), laneOf(torque, lane), laneOf(pull, lane)};
-    const double stiffness = laneOf(r_over_k, lane) * laneOf(entry, lane);
-    left[lane] = laneOf(found.converged, lane) == 0.0 || stiffness > 12.0 || laneOf(entry, lane) > 1.57;
+    forces[lane] = {laneOf(z, lane), laneOf(entry, lane), laneOf(torque, lane), laneOf(pull, lane),
+                    laneOf(side, lane)};
+    const double stiffness = laneOf(r_over_k, lane) * laneOf(entry, lane) * laneOf(way, lane);
+    left[lane] =
+        laneOf(found.converged, lane) == 0.0 || stiffness > kStiffest<Sideways> || laneOf(entry, lane) > 1.57;
   }
 }
 

@@ -259,45 +259,45 @@ std::vector<EffectForm> ground() {
   };
 }
 
+/// Sinkage of a wheel at a slip angle by a law that stands in place of the base's.
+void dig(WheelContact& c, double exponent, double slip_angle_rad) {
+  c.digging_exponent = 0.0;
+  c.sinkage_exponent += exponent * std::abs(std::sin(slip_angle_rad));
+}
+
 std::vector<EffectForm> sideSlip() {
-  const auto resolve = [](Input in, WheelContact& c) {
-    c.slip_angle_rad = in.x;
-    c.shear_modulus_m *= in.parameter[0];
-  };
+  const auto resolve = [](Input in, WheelContact& c) { c.shear_modulus_m *= in.parameter[0]; };
   return {
       {.name = "side_slip_lateral_shear",
        .family = "lateral_slip",
        .covariate = "slip_angle_rad",
        .channel = Channel::DrawbarPull,
-       .formula =
-           "j_y = r (1 - i)(theta_1 - theta) tan beta, tau along the resultant of j_x and j_y, K -> K a",
+       .formula = "K -> K a of the shear along the resultant of j_x and j_y",
        .source = "ishigami_2007",
        .signature = "drawbar pull falls, even in the slip angle; side force odd in it",
-       .parameters = {{"a", "-", 0.2, 8.0, 1.0}},
+       .parameters = {{"a", "-", 0.2, 8.0, 1.5}},
        .act = +resolve},
       {.name = "side_slip_sinkage",
        .family = "lateral_slip",
        .covariate = "slip_angle_rad",
        .channel = Channel::Sinkage,
-       .formula = "n = n0 + n_y |sin beta|",
+       .formula = "n = n0 + n_y |sin beta| in place of the base's n_d",
        .source = "ours",
        .signature = "sinkage grows with the slip angle, as slip sinkage does with slip",
        .parameters = {{"n_y", "-", 0.0, 3.0, 0.3}},
-       .act = [](Input in,
-                 WheelContact& c) { c.sinkage_exponent += in.parameter[0] * std::abs(std::sin(in.x)); }},
+       .act = [](Input in, WheelContact& c) { dig(c, in.parameter[0], in.x); }},
       {.name = "side_slip",
        .family = "lateral_slip",
        .covariate = "slip_angle_rad",
        .channel = Channel::SideForce,
-       .formula = "lateral shear along the resultant, K -> K a; n = n0 + n_y |sin beta|",
+       .formula = "K -> K a; n = n0 + n_y |sin beta| in place of the base's n_d",
        .source = "ishigami_2007",
        .signature = "side force odd in the slip angle; sinkage grows and drawbar pull falls, even in it",
        .parameters = {{"a", "-", 0.2, 8.0, 1.0}, {"n_y", "-", 0.0, 3.0, 0.3}},
        .act =
            [](Input in, WheelContact& c) {
-             c.slip_angle_rad = in.x;
              c.shear_modulus_m *= in.parameter[0];
-             c.sinkage_exponent += in.parameter[1] * std::abs(std::sin(in.x));
+             dig(c, in.parameter[1], in.x);
            }},
   };
 }

@@ -80,7 +80,7 @@ std::vector<EffectForm> dragging() {
        .channel = Channel::Sinkage,
        .formula =
            "z = z0 + a r J^2 as far as the wheel rolls, J = sin beta / (sin beta + m cos beta); contact "
-           "behind: kappa -> 1 - (1 - kappa)(1 - J); lateral shear along the resultant",
+           "behind: kappa -> 1 - (1 - kappa)(1 - J); in place of the base's n_d",
        .source = "ours",
        .signature =
            "sinkage grows with the slip angle, most towards 90 deg, drawbar pull falls, side force odd",
@@ -90,7 +90,7 @@ std::vector<EffectForm> dragging() {
              const double path = sidewaysPath(in.x, in.parameter[1]);
              c.ploughed_m += in.parameter[0] * c.radius_m * path * path * (1.0 - dragged(c));
              c.rebound = 1.0 - (1.0 - c.rebound) * (1.0 - path);
-             c.slip_angle_rad = in.x;
+             c.digging_exponent = 0.0;
            }},
   };
 }

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <talus/terramech/contact/side_bulldozing.hpp>
 #include <talus/terramech/effects/effects.hpp>
 
 namespace talus::terramech::detail {
@@ -23,13 +24,12 @@ Wedge wedge(const WheelContact& c, double z, double width) {
   return {width * 0.5 * weight * z * z * kp, width * 2.0 * c.cohesion_Pa * z * std::sqrt(kp)};
 }
 
-/// Hegedus' resistance of a vertical blade of height z, a' = 0, X = 45 deg - phi/2 [N].
-double hegedus(const WheelContact& c, double z) {
-  const double phi = std::atan(c.tan_friction), x = 0.785398163397448 - 0.5 * phi;
-  const double cot_x = 1.0 / std::tan(x), front = cot_x + std::tan(x + phi);
-  const double tan_phi = std::max(c.tan_friction, 1e-3);
-  const double heap = cot_x + cot_x * cot_x * tan_phi;
-  return c.width_m * front * (z * c.cohesion_Pa + 0.5 * c.density_kg_m3 * c.gravity_m_s2 * z * z * heap);
+/// Hegedus' resistance of the wheel's front to a height z [N].
+double hegedusAhead_N(const WheelContact& c, double z) {
+  const PushedSoil soil{.cohesion_Pa = c.cohesion_Pa,
+                        .tan_friction = c.tan_friction,
+                        .weight_N_m3 = c.density_kg_m3 * c.gravity_m_s2};
+  return c.width_m * hegedus(soil).resistance_N_m(z);
 }
 
 /// Share of the passive pressure ahead that a wheel mobilises while it goes its own width sideways, by Janosi
@@ -67,6 +67,11 @@ FaceForces faceForces(const WheelContact& c, double z, double slip_angle_rad, do
   const double push = chord * z * (0.5 * weight * z * kp + 2.0 * c.cohesion_Pa * std::sqrt(kp)) *
                       std::abs(std::sin(slip_angle_rad));
   return {push, -tan_wall * push * along / slide};
+}
+
+/// A law of the soil beside the wheel stands in place of the base's.
+void noBaseBulldozing(Input, WheelContact& c) {
+  c.side_bulldozing = 0.0;
 }
 
 std::vector<EffectForm> bulldozing() {
@@ -110,7 +115,7 @@ std::vector<EffectForm> bulldozing() {
        .read =
            [](Input in, const WheelContact& c, Reading& r) {
              r.drawbar_pull_N -=
-                 in.parameter[0] * hegedus(c, std::max(r.sinkage_m, 0.0)) * mobilised(in.state, c);
+                 in.parameter[0] * hegedusAhead_N(c, std::max(r.sinkage_m, 0.0)) * mobilised(in.state, c);
            }},
   };
 }
@@ -136,10 +141,12 @@ std::vector<EffectForm> pushing() {
        .family = "lateral_slip",
        .covariate = "slip_angle_rad",
        .channel = Channel::SideForce,
-       .formula = "F -= a sin beta l z (gamma z Kp/2 + 2 c sqrt(Kp)), l = 2 r sin theta_1",
+       .formula =
+           "F -= a sin beta l z (gamma z Kp/2 + 2 c sqrt(Kp)), l = 2 r sin theta_1, in place of the base's",
        .source = "ishigami_2007",
        .signature = "side force grows with slip angle and sinkage",
        .parameters = {{"a", "-", 0.0, 20.0, 1.0}},
+       .act = noBaseBulldozing,
        .read =
            [](Input in, const WheelContact& c, Reading& r) {
              const double z = std::max(r.sinkage_m, 0.0);
@@ -159,6 +166,7 @@ std::vector<EffectForm> pushing() {
            "side force grows with slip angle and sinkage and falls where the wheel spins, drawbar pull "
            "rises there and falls where it is braked",
        .parameters = {{"a", "-", 0.0, 20.0, 1.0}, {"mu", "-", 0.0, 1.0, 0.3}},
+       .act = noBaseBulldozing,
        .read =
            [](Input in, const WheelContact& c, Reading& r) {
              const FaceForces face = faceForces(c, std::max(r.sinkage_m, 0.0), in.x, in.parameter[1]);

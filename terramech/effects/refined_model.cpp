@@ -67,6 +67,7 @@ WheelContact Bound::contact(const WheelState& state) const {
   WheelContact contact = contactOf(model_.soil, state.wheel);
   contact.load_N = state.load_N;
   contact.gravity_m_s2 = state.gravity_m_s2;
+  contact.slip_angle_rad = std::isfinite(state.slip_angle_rad) ? state.slip_angle_rad : 0.0;
   contact.slip = model_.slip_along_travel ? slipInWheelPlane(state.slip, state.slip_angle_rad) : state.slip;
   contact.rolling = rolling(state, model_.slip_along_travel);
   for (const BoundEffect& e : effects_) {
@@ -176,6 +177,10 @@ const std::vector<SoilParameter>& soilParameters() {
       {"c2", -1.0, 1.0, 0.05, [](const Soil& s) { return s.c2; }, [](Soil& s, double v) { s.c2 = v; }},
       {"density_kg_m3", 200.0, 5000.0, 100.0, [](const Soil& s) { return s.density_kg_m3; },
        [](Soil& s, double v) { s.density_kg_m3 = v; }},
+      {"digging_exponent", 0.0, 2.0, 0.1, [](const Soil& s) { return s.digging_exponent; },
+       [](Soil& s, double v) { s.digging_exponent = v; }},
+      {"side_bulldozing", 0.0, 10.0, 0.3, [](const Soil& s) { return s.side_bulldozing; },
+       [](Soil& s, double v) { s.side_bulldozing = v; }},
   };
   return all;
 }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include <talus/terramech/contact/rim_contact.hpp>
+#include <talus/terramech/contact/side_bulldozing.hpp>
 #include <talus/terramech/contact/wong_reece_batch.hpp>
 #include <talus/terramech/effects/wheel_contact.hpp>
 
@@ -30,9 +31,8 @@ class EffectLaw {
   }
 
   Tangent shear_Pa(double normal_Pa, const Tangent& displacement_m) const {
-    const double path = std::hypot(displacement_m.along, displacement_m.across) + 1e-300;
-    const double tau = strength_Pa(normal_Pa, path) / path;
-    return {tau * displacement_m.along, tau * displacement_m.across};
+    const double path = std::hypot(displacement_m.along, displacement_m.across);
+    return alongDisplacement(strength_Pa(normal_Pa, path), displacement_m, path);
   }
 
   double peak_rad(double entry_rad) const { return peak_fraction_ * entry_rad; }
@@ -59,12 +59,11 @@ ShearDisplacement straight(const WheelContact& c, double entry) {
 }
 
 SideSlipDisplacement sideways(const WheelContact& c, double entry) {
-  return SideSlipDisplacement{
-      {.shear_radius_m = c.shear_radius_m,
-       .radius_m = c.radius_m,
-       .slip = c.slip,
-       .slip_angle_rad = std::clamp(c.slip_angle_rad, -kSteepestSlipAngle_rad, kSteepestSlipAngle_rad),
-       .entry_angle_rad = entry}};
+  return SideSlipDisplacement{{.shear_radius_m = c.shear_radius_m,
+                               .radius_m = c.radius_m,
+                               .slip = c.slip,
+                               .slip_angle_rad = c.slip_angle_rad,
+                               .entry_angle_rad = entry}};
 }
 
 template <class Rule>
@@ -130,8 +129,7 @@ bool digs(const WheelContact& c) {
 }
 
 bool isPlain(const WheelContact& c) {
-  return c.slip_angle_rad == 0.0 && c.rebound == 0.0 && c.shear_radius_m == c.radius_m &&
-         c.hard_modulus_Pa_m == 0.0 && !digs(c);
+  return c.rebound == 0.0 && c.shear_radius_m == c.radius_m && c.hard_modulus_Pa_m == 0.0 && !digs(c);
 }
 
 WheelCase caseOf(const WheelContact& c) {
@@ -145,7 +143,44 @@ WheelCase caseOf(const WheelContact& c) {
           .wheel_radius_m = c.radius_m,
           .wheel_width_m = c.width_m,
           .load_N = c.load_N,
-          .slip = c.slip};
+          .slip = c.slip,
+          .slip_angle_rad = c.slip_angle_rad,
+          .density_kg_m3 = c.density_kg_m3,
+          .gravity_m_s2 = c.gravity_m_s2,
+          .digging_exponent = c.digging_exponent,
+          .side_bulldozing = c.side_bulldozing};
+}
+
+/// The contact with the sinkage exponent of its resultant slip.
+WheelContact dugSideways(WheelContact c) {
+  if (c.slip_angle_rad != 0.0)
+    c.sinkage_exponent += c.digging_exponent * (resultantSlip(c.slip, c.slip_angle_rad) - std::abs(c.slip));
+  return c;
+}
+
+double bulldozing_N(const WheelContact& c, double entry) {
+  const Hegedus push = hegedus({.cohesion_Pa = c.cohesion_Pa,
+                                .tan_friction = c.tan_friction,
+                                .weight_N_m3 = c.density_kg_m3 * c.gravity_m_s2});
+  const double beta = std::clamp(c.slip_angle_rad, -0.5 * std::numbers::pi, 0.5 * std::numbers::pi);
+  return -c.side_bulldozing * std::sin(beta) *
+         faceResistance_N(push, {.radius_m = c.radius_m, .entry_angle_rad = entry});
+}
+
+ContactForces solveRim(const WheelContact& c, double entry_guess_rad) {
+  const auto carried = carry(c, entry_guess_rad);
+  const double static_entry = carried ? carried->entry_angle_rad : kDeepest;
+  const double z0 = sinkageOf(c.radius_m, static_entry);
+  if (carried && !digs(c)) return forcesOf(carried->forces, z0, static_entry, static_entry);
+  const double dug = (c.sinkage_gain - 1.0) * z0 + c.dug_m;
+  const double deeper = c.ploughed_m > 0.0 ? std::hypot(dug, c.ploughed_m) : dug;
+  const double z = std::clamp(z0 + deeper + c.extra_sinkage_m, 1e-6 * c.radius_m, 1.95 * c.radius_m);
+  const double entry = entryOf(c.radius_m, z);
+  WheelContact filled = c;
+  filled.rebound = std::min(1.0, c.rebound + c.rear_fill * std::max(0.0, dug) / z);
+  ContactForces forces = forcesOf(imposed(filled, entry), z, entry, static_entry);
+  forces.dug_m = std::clamp(deeper > 0.0 ? dug * dug / deeper : 0.0, 0.0, z);
+  return forces;
 }
 
 }  // namespace
@@ -160,24 +195,16 @@ WheelContact contactOf(const Soil& soil, const Wheel& wheel) {
   c.tan_friction = std::tan(soil.friction_angle_rad);
   c.shear_modulus_m = soil.shear_modulus_m;
   c.density_kg_m3 = soil.density_kg_m3;
+  c.digging_exponent = soil.digging_exponent;
+  c.side_bulldozing = soil.side_bulldozing;
   c.c1 = soil.c1;
   c.c2 = soil.c2;
   return c;
 }
 
-ContactForces solveContact(const WheelContact& c, double entry_guess_rad) {
-  const auto carried = carry(c, entry_guess_rad);
-  const double static_entry = carried ? carried->entry_angle_rad : kDeepest;
-  const double z0 = sinkageOf(c.radius_m, static_entry);
-  if (carried && !digs(c)) return forcesOf(carried->forces, z0, static_entry, static_entry);
-  const double dug = (c.sinkage_gain - 1.0) * z0 + c.dug_m;
-  const double deeper = c.ploughed_m > 0.0 ? std::hypot(dug, c.ploughed_m) : dug;
-  const double z = std::clamp(z0 + deeper + c.extra_sinkage_m, 1e-6 * c.radius_m, 1.95 * c.radius_m);
-  const double entry = entryOf(c.radius_m, z);
-  WheelContact filled = c;
-  filled.rebound = std::min(1.0, c.rebound + c.rear_fill * std::max(0.0, dug) / z);
-  ContactForces forces = forcesOf(imposed(filled, entry), z, entry, static_entry);
-  forces.dug_m = std::clamp(deeper > 0.0 ? dug * dug / deeper : 0.0, 0.0, z);
+ContactForces solveContact(const WheelContact& contact, double entry_guess_rad) {
+  ContactForces forces = solveRim(dugSideways(contact), entry_guess_rad);
+  if (contact.slip_angle_rad != 0.0) forces.side_force_N += bulldozing_N(contact, forces.entry_angle_rad);
   return forces;
 }
 
@@ -208,7 +235,8 @@ void solveContacts(std::vector<WheelContact> contacts, SolvedContacts& solved) {
                                  .entry_angle_rad = f.entry_angle_rad,
                                  .static_entry_rad = f.entry_angle_rad,
                                  .torque_Nm = f.torque_Nm,
-                                 .drawbar_pull_N = f.drawbar_pull_N};
+                                 .drawbar_pull_N = f.drawbar_pull_N,
+                                 .side_force_N = f.side_force_N};
     else
       slowly(plain[j]);
   }

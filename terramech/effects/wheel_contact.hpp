@@ -11,10 +11,6 @@
 /// load.
 namespace talus::terramech {
 
-/// Slip angles beyond it, 89.94 deg, count as it: at 90 deg the travel along the wheel plane is nothing and
-/// its tangent infinite, while their product, the travel across, is what shears the soil.
-inline constexpr double kSteepestSlipAngle_rad = 1.5698;
-
 /// What the contact of one wheel is solved from. SI; every field is already what acts, effects included.
 struct WheelContact {
   double load_N = 0.0;          ///< vertical load > 0
@@ -33,7 +29,10 @@ struct WheelContact {
   double shear_modulus_m = 0.02;  ///< K
   double density_kg_m3 = 1600.0;  ///< for forces that move soil
   double gravity_m_s2 = 9.80665;  ///< the same
-  double c1 = 0.43;               ///< theta_m = (c1 + c2 i) theta_1
+  /// As Soil, of a wheel that slides sideways; an effect with a law of its own takes either out.
+  double digging_exponent = 0.0;
+  double side_bulldozing = 0.0;
+  double c1 = 0.43;  ///< theta_m = (c1 + c2 i) theta_1
   double c2 = 0.32;
 
   double rebound = 0.0;  ///< kappa [-]: contact ends at theta_2 = -acos(1 - kappa z/r)
@@ -66,9 +65,10 @@ struct ContactForces {
 WheelContact contactOf(const Soil& soil, const Wheel& wheel);
 
 /// Forces on the wheel at the sinkage that carries its load; `entry_guess_rad` starts the search, 0: none.
-/// A load that the soil cannot carry above the axle gives the wheel sunk to its axle, the stress scaled to
-/// carry it: fits pass through such points, and none of them is a fit. Contact ends at the axle's height
-/// whatever the sinkage. Never throws. Thread-safe. Integrals: rimForces();
+/// A wheel at a slip angle digs and pushes soil aside as in wong_reece.hpp. A load that the soil cannot carry
+/// above the axle gives the wheel sunk to its axle, the stress scaled to carry it: fits pass through such
+/// points, and none of them is a fit. Contact ends at the axle's height whatever the sinkage. Never throws.
+/// Thread-safe. Integrals: rimForces();
 ///   tau = (c + sigma tan phi)(1 - e^{-j/K}) along the resultant displacement j = hypot(j_x, j_y),
 /// which is the friction circle of an isotropic soil (ishigami_2007).
 ContactForces solveContact(const WheelContact& contact, double entry_guess_rad = 0.0);

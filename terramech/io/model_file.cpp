@@ -23,7 +23,9 @@ void setDeviation(RefinedModel& model, const SoilPrior& prior) {
                                                 {"shear_modulus_m", d.shear_modulus_m},
                                                 {"c1", d.c1},
                                                 {"c2", d.c2},
-                                                {"density_kg_m3", d.density_kg_m3}};
+                                                {"density_kg_m3", d.density_kg_m3},
+                                                {"digging_exponent", d.digging_exponent},
+                                                {"side_bulldozing", d.side_bulldozing}};
   for (const auto& [name, std] : all)
     if (std > 0.0) model.soil_prior_std[name] = std;
   const double width = model.wheel.value_or(Wheel{}).width_m;
@@ -238,7 +240,8 @@ void writeSoil(Writer& w, const Soil& s) {
     << "\n  friction_angle_rad: " << s.friction_angle_rad << "\n  sinkage_exponent: " << s.sinkage_exponent
     << "\n  cohesive_modulus: " << s.cohesive_modulus << "\n  frictional_modulus: " << s.frictional_modulus
     << "\n  shear_modulus_m: " << s.shear_modulus_m << "\n  c1: " << s.c1 << "\n  c2: " << s.c2
-    << "\n  density_kg_m3: " << s.density_kg_m3 << "\n";
+    << "\n  density_kg_m3: " << s.density_kg_m3 << "\n  digging_exponent: " << s.digging_exponent
+    << "\n  side_bulldozing: " << s.side_bulldozing << "\n";
 }
 
 void writeEffect(Writer& w, const Effect& e) {

@@ -112,7 +112,8 @@ void readWheels(const YamlFields& fields, Rover& rover) {
 
 SoilPrior readSoil(const YamlFields& fields) {
   fields.only({"name", "cohesion_Pa", "friction_angle_rad", "sinkage_exponent", "cohesive_modulus",
-               "frictional_modulus", "shear_modulus_m", "c1", "c2", "density_kg_m3"});
+               "frictional_modulus", "shear_modulus_m", "c1", "c2", "density_kg_m3", "digging_exponent",
+               "side_bulldozing"});
   SoilPrior soil;
   const Soil defaults;
   const auto take = [&](double Soil::*value, double SoilDeviation::*deviation, const Estimate& stated) {
@@ -131,6 +132,10 @@ SoilPrior readSoil(const YamlFields& fields) {
   take(&Soil::c2, &SoilDeviation::c2, fields.stated("c2", defaults.c2));
   take(&Soil::density_kg_m3, &SoilDeviation::density_kg_m3,
        fields.stated("density_kg_m3", defaults.density_kg_m3));
+  take(&Soil::digging_exponent, &SoilDeviation::digging_exponent,
+       fields.stated("digging_exponent", defaults.digging_exponent));
+  take(&Soil::side_bulldozing, &SoilDeviation::side_bulldozing,
+       fields.stated("side_bulldozing", defaults.side_bulldozing));
   if (soil.mean.cohesive_modulus == 0.0 && soil.mean.frictional_modulus == 0.0)
     fields.refuse("", "lacks cohesive_modulus and frictional_modulus", "add at least one, above 0");
   try {
@@ -143,8 +148,9 @@ SoilPrior readSoil(const YamlFields& fields) {
 
 Rover readRover(const YamlFields& fields) {
   fields.only({"name", "mass_kg", "gravity_m_s2", "wheels", "wheelbase_m", "track_m", "clearance_m",
-               "centre_of_mass_height_m", "max_pitch_rad", "max_roll_rad", "max_torque_Nm", "max_speed_mps",
-               "turning_radius_m", "hotel_power_W", "steering"});
+               "centre_of_mass_height_m", "centre_of_mass_ahead_m", "centre_of_mass_left_m", "max_pitch_rad",
+               "max_roll_rad", "max_torque_Nm", "max_speed_mps", "turning_radius_m", "hotel_power_W",
+               "steering"});
   Rover rover;
   rover.name = fields.word("name", "unnamed");
   rover.mass_kg = fields.number("mass_kg");
@@ -155,6 +161,8 @@ Rover readRover(const YamlFields& fields) {
   rover.track_m = fields.number("track_m");
   rover.clearance_m = fields.number("clearance_m");
   rover.centre_of_mass_height_m = fields.number("centre_of_mass_height_m", 0.0);
+  rover.centre_of_mass_ahead_m = fields.number("centre_of_mass_ahead_m", 0.0);
+  rover.centre_of_mass_left_m = fields.number("centre_of_mass_left_m", 0.0);
   rover.max_pitch_rad = fields.number("max_pitch_rad", rover.max_pitch_rad);
   rover.max_roll_rad = fields.number("max_roll_rad", rover.max_roll_rad);
   rover.max_torque_Nm = fields.number("max_torque_Nm");

@@ -81,6 +81,16 @@ TALUS_LANES T logarithm(T x) {
   return e * 0.6931471805599453 + 2.0 * f * p;
 }
 
+/// 1 / sqrt x for normal x > 0, relative error below 1e-15: halved exponent, then Newton's method.
+template <class T>
+TALUS_LANES T inverseRoot(T x) {
+  using Bits = typename Traits<T>::Bits;
+  T y = __builtin_bit_cast(T, Bits(0x5fe6eb50c7b537a9ULL - (__builtin_bit_cast(Bits, x) >> 1)));
+  const T half = 0.5 * x;
+  for (int step = 0; step < 4; ++step) y = y * (1.5 - half * y * y);
+  return y;
+}
+
 /// sin x for |x| <= pi/2, relative error below 3e-11, by a Chebyshev polynomial in x^2.
 template <class T>
 TALUS_LANES T sine(T x) {

@@ -21,6 +21,23 @@ TEST(WheelCommand, PrintsTheForcesForAPersonAndForAMachine) {
     EXPECT_TRUE(json.at(field).is_number()) << field;
 }
 
+TEST(WheelCommand, GivesTheSideForceOfASlipAngle) {
+  std::vector<std::string> call{"wheel",  "--soil", "sand",   "--rover",     "mer",
+                                "--slip", "0.2",    "--json", "--slip-angle"};
+  const auto side = [&](const std::string& angle) {
+    auto full = call;
+    full.push_back(angle);
+    return nlohmann::json::parse(runTalus(full).out)["side_force_N"].get<double>();
+  };
+  EXPECT_LT(side("0.3"), 0.0);
+  EXPECT_EQ(side("-0.3"), -side("0.3"));  // Property: odd in the angle.
+  EXPECT_EQ(side("0"), 0.0);
+  call.push_back("1.7");
+  const Ran refused = runTalus(call);
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("--slip-angle"));
+}
+
 TEST(WheelCommand, TakesALockedWheelAndTheRoversOwnLoad) {
   const Ran ran = runTalus({"wheel", "--soil", "sand", "--rover", "mer", "--slip", "-1", "--json"});
   ASSERT_EQ(ran.code, 0) << ran.err;

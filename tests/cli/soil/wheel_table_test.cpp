@@ -58,6 +58,31 @@ TEST(WheelTable, AppendsTheForcesAndKeepsEveryColumn) {
   EXPECT_NEAR(std::stod(rows[1][16]), want.drawbar_pull_N, 1e-6);
 }
 
+TEST(WheelTable, AnAngleGivesASideForce) {
+  const Folder folder;
+  std::string header = kHeader, good = kGood;
+  header.replace(header.find("slip,"), 5, "slip,slip_angle_rad,");
+  good.replace(good.find("0.3,"), 4, "0.3,0.25,");
+  std::string bad = good;
+  bad.replace(bad.find("0.25"), 4, "1.9");
+  const WheelTable table =
+      solveWheelTable(folder.write("in.csv", header + good + bad), folder / "out.csv", 2, {});
+  const auto rows = rowsOf(folder / "out.csv");
+  ASSERT_THAT(rows[0], SizeIs(19));
+  EXPECT_EQ(rows[0][18], "side_force_N");
+  const auto want = terramech::equilibrium({.name = "",
+                                            .cohesion_Pa = 800.0,
+                                            .friction_angle_rad = 0.56,
+                                            .sinkage_exponent = 0.9,
+                                            .frictional_modulus = 1.6e6,
+                                            .shear_modulus_m = 0.018},
+                                           {}, {.load_N = 80.0, .slip = 0.3, .slip_angle_rad = 0.25});
+  EXPECT_NEAR(std::stod(rows[1][18]), want.side_force_N,
+              1e-4);  // Property: as the solver says, to the batch's 1e-6.
+  ASSERT_THAT(table.refused, SizeIs(1));
+  EXPECT_THAT(table.refused[0].reason, HasSubstr("slip_angle_rad = 1.9"));
+}
+
 TEST(WheelTable, ReportsBadRowsByLineAndKeepsThem) {
   const Folder folder;
   const auto with = [](const std::string& from, const std::string& to) {

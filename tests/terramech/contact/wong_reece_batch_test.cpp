@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <random>
@@ -68,6 +69,52 @@ TEST(WongReeceBatch, AgreesWithTheGeneralSolver) {
   EXPECT_GT(answered, 3500);
 }
 
+/// The same at slip angles, braked more often.
+std::vector<WheelCase> slidingCases(std::size_t count) {
+  Random random{13};
+  std::vector<WheelCase> cases = wideCases(count);
+  for (WheelCase& c : cases) {
+    c.slip = random.between(-0.95, 1.0);
+    c.slip_angle_rad = random.between(-1.57, 1.57);
+    c.digging_exponent = random.between(0.0, 0.6);
+    c.side_bulldozing = random.between(0.0, 2.0);
+    c.gravity_m_s2 = random.between(1.0, 10.0);
+  }
+  return cases;
+}
+
+TEST(WongReeceBatch, AgreesWithTheGeneralSolverAtSlipAngles) {
+  const auto cases = slidingCases(3001);
+  std::vector<WheelForces> forces(cases.size());
+  equilibria(cases, forces, BatchKernel::Best, Leftover::Nan);
+  int fast = 0;
+  for (std::size_t k = 0; k < cases.size(); ++k) {
+    if (std::isnan(forces[k].sinkage_m)) continue;
+    ++fast;
+    const WheelForces want = equilibrium(cases[k]);
+    const double load = cases[k].load_N;
+    // Property: two codes, quadratures and root searches agree; 1e-6 is the batch's stated accuracy there.
+    EXPECT_NEAR(forces[k].sinkage_m / want.sinkage_m, 1.0, 1e-6) << k;
+    EXPECT_NEAR(forces[k].drawbar_pull_N, want.drawbar_pull_N, 1e-6 * load) << k;
+    EXPECT_NEAR(forces[k].side_force_N, want.side_force_N, 1e-6 * std::max(load, std::abs(want.side_force_N)))
+        << k;
+    EXPECT_NEAR(forces[k].torque_Nm, want.torque_Nm, 1e-6 * load * cases[k].wheel_radius_m) << k;
+  }
+  EXPECT_GT(fast, 1500);
+}
+
+TEST(WongReeceBatch, AStraightWheelDoesNotSeeItsSlidingNeighbours) {
+  auto mixed = wideCases(400);
+  const auto straight = solved(mixed);
+  const auto sliding = slidingCases(400);
+  for (std::size_t k = 0; k < mixed.size(); k += 3) mixed[k] = sliding[k];
+  const auto together = solved(mixed);
+  for (std::size_t k = 0; k < mixed.size(); ++k) {
+    if (k % 3 == 0) continue;
+    EXPECT_EQ(std::memcmp(&straight[k], &together[k], sizeof(WheelForces)), 0) << k;
+  }
+}
+
 TEST(WongReeceBatch, AgreesWithTheReferenceCases) {
   const auto rows = test::referenceTable("equilibria");
   std::vector<WheelCase> cases;
@@ -90,6 +137,9 @@ TEST(WongReeceBatch, KernelsGiveTheSameBits) {
   const auto cases = wideCases(4003);
   const auto scalar = solved(cases, BatchKernel::Scalar), avx2 = solved(cases, BatchKernel::Avx2);
   EXPECT_EQ(std::memcmp(scalar.data(), avx2.data(), scalar.size() * sizeof(WheelForces)), 0);
+  const auto sliding = slidingCases(2003);
+  const auto one = solved(sliding, BatchKernel::Scalar), four = solved(sliding, BatchKernel::Avx2);
+  EXPECT_EQ(std::memcmp(one.data(), four.data(), one.size() * sizeof(WheelForces)), 0);
 }
 #endif
 

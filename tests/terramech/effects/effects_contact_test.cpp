@@ -85,7 +85,6 @@ TEST(EffectsContact, SlopeMovesLoadAndSideSlipDeepens) {
   const WheelContact both = acted("side_slip", {2.0, 0.6}, -M_PI / 6);
   EXPECT_NEAR(both.sinkage_exponent, 1.3, 1e-12);
   EXPECT_NEAR(both.shear_modulus_m, 0.04, 1e-12);
-  EXPECT_EQ(both.slip_angle_rad, -M_PI / 6);
 }
 
 TEST(EffectsContact, DingsExponentGrowsWithSlipEitherWay) {

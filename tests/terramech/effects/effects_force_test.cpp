@@ -1,5 +1,7 @@
 #include <cmath>
 
+#include <talus/terramech/contact/wong_reece.hpp>
+
 #include "effects_fixture.hpp"
 
 namespace talus::terramech {
@@ -109,6 +111,34 @@ TEST(EffectsForce, ARoughFaceHasCoulombsPressure) {
   const Reading r = readWith("side_bulldozing_rough", {1.0, std::tan(M_PI / 6)}, M_PI / 2, {}, c, sunk(z));
   EXPECT_NEAR(r.side_force_N, -chord * 0.5 * 15000.0 * z * z * kp, 1e-9);
   EXPECT_NEAR(r.drawbar_pull_N, 0.0, 1e-9);
+}
+
+TEST(EffectsForce, OfTheSideStandInPlaceOfTheBases) {
+  RefinedModel model = base();
+  const Reading plain = predict(model, state());
+  RefinedModel bare = model;
+  bare.soil.digging_exponent = bare.soil.side_bulldozing = 0.0;
+  // Property: a form that adds nothing takes the base's term of its kind out, and no other.
+  model.effects = {with("side_bulldozing", {0.0}), with("side_slip_sinkage", {0.0})};
+  const Reading none = predict(model, state()), want = predict(bare, state());
+  EXPECT_EQ(none.side_force_N, want.side_force_N);
+  EXPECT_EQ(none.sinkage_m, want.sinkage_m);
+  model.effects = {with("side_bulldozing", {0.0})};
+  EXPECT_EQ(predict(model, state()).sinkage_m, plain.sinkage_m);
+  EXPECT_GT(std::abs(plain.side_force_N), std::abs(predict(model, state()).side_force_N));
+}
+
+TEST(EffectsForce, TheBaseAtASlipAngleIsTheWheelOfTheLiterature) {
+  for (const double slip : {-1.0, -0.4, 0.0, 0.3, 0.9}) {
+    const WheelState s = state(slip);
+    const Reading r = predict(base(), s);
+    const WheelForces f = equilibrium(base().soil, s.wheel,
+                                      {.load_N = s.load_N, .slip = slip, .slip_angle_rad = s.slip_angle_rad});
+    // Property: two solvers of one wheel; 1e-4 for the quicker rule of a dragged one.
+    EXPECT_NEAR(r.side_force_N / s.load_N, f.side_force_N / s.load_N, 1e-4) << slip;
+    EXPECT_NEAR(r.drawbar_pull_N / s.load_N, f.drawbar_pull_N / s.load_N, 1e-4) << slip;
+    EXPECT_NEAR(r.sinkage_m / f.sinkage_m, 1.0, 1e-4) << slip;
+  }
 }
 
 }  // namespace

@@ -1,0 +1,261 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include <talus/terramech/contact/wong_reece.hpp>
+#include <talus/terramech/mobility/mobility.hpp>
+#include <talus/terramech/mobility/slope_equilibrium.hpp>
+
+namespace talus::terramech {
+namespace {
+
+Soil sand() {
+  return {.name = "sand",
+          .cohesion_Pa = 600.0,
+          .friction_angle_rad = 0.55,
+          .sinkage_exponent = 1.0,
+          .frictional_modulus = 1.5e6,
+          .shear_modulus_m = 0.015};
+}
+
+Rover rover(Steering steering = Steering::AllWheel) {
+  return {.name = "box",
+          .mass_kg = 40.0,
+          .wheel_count = 4,
+          .wheel = {.radius_m = 0.12, .width_m = 0.1},
+          .wheelbase_m = 0.8,
+          .track_m = 0.7,
+          .clearance_m = 0.2,
+          .centre_of_mass_height_m = 0.3,
+          .max_torque_Nm = 40.0,
+          .hotel_power_W = 10.0,
+          .steering = steering};
+}
+
+constexpr Steering kSteerings[] = {Steering::Skid, Steering::Ackermann, Steering::AllWheel};
+
+/// Net force [N] and yaw moment [Nm] on a rover, in three dimensions and in the map's axes, from wheels each
+/// solved anew.
+struct Net {
+  double along, across, normal, yaw, pitch, roll;
+};
+
+struct Vec {
+  double x, y, z;
+};
+Vec operator+(Vec a, Vec b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+Vec operator*(double s, Vec a) {
+  return {s * a.x, s * a.y, s * a.z};
+}
+Vec cross(Vec a, Vec b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+double dot(Vec a, Vec b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+Vec unit(Vec a) {
+  return (1.0 / std::sqrt(dot(a, a))) * a;
+}
+
+Net netOf(const Soil& soil, const Rover& r, const Gradient& g, const SlopeState& state,
+          const std::vector<WheelOnSlope>& wheels) {
+  const Vec ahead = unit({1.0, 0.0, g.along}), up = unit({-g.along, -g.across, 1.0}), left = cross(up, ahead);
+  const auto inPlane = [&](double angle) { return std::cos(angle) * ahead + std::sin(angle) * left; };
+  const Vec body = inPlane(state.body_turn_rad),
+            body_left = inPlane(state.body_turn_rad + 0.5 * std::numbers::pi);
+  const Vec weight{0.0, 0.0, -r.mass_kg * r.gravity_m_s2};
+  Vec force = weight, moment{0.0, 0.0, 0.0};
+  for (std::size_t k = 0; k < wheels.size(); ++k) {
+    const WheelOnSlope& w = wheels[k];
+    const WheelForces f = equilibrium(soil, r.wheel,
+                                      {.load_N = w.load_N,
+                                       .slip = w.slip,
+                                       .slip_angle_rad = w.slip_angle_rad,
+                                       .gravity_m_s2 = r.gravity_m_s2});
+    const Vec on = inPlane(-w.slip_angle_rad), across = inPlane(-w.slip_angle_rad + 0.5 * std::numbers::pi);
+    const Vec here = f.drawbar_pull_N * on + f.side_force_N * across + w.load_N * up;
+    const double x = (k / 2 == 0 ? 0.5 : -0.5) * r.wheelbase_m, y = (k % 2 == 0 ? 0.5 : -0.5) * r.track_m;
+    const Vec arm = (x - r.centre_of_mass_ahead_m) * body + (y - r.centre_of_mass_left_m) * body_left +
+                    (-r.centre_of_mass_height_m) * up;
+    force = force + here;
+    moment = moment + cross(arm, here);
+  }
+  return {dot(force, ahead), dot(force, left),       dot(force, up),
+          dot(moment, up),   dot(moment, body_left), dot(moment, body)};
+}
+
+TEST(SlopeEquilibrium, WheelsSolvedAnewBalanceTheWeight) {
+  for (const Steering steering : kSteerings) {
+    Rover r = rover(steering);
+    r.centre_of_mass_ahead_m = 0.06;
+    const SlopeEquilibrium equilibrium{sand(), r};
+    const double weight = r.mass_kg * r.gravity_m_s2;
+    int held = 0;
+    for (double a = -0.35; a <= 0.36; a += 0.07)
+      for (double c = -0.35; c <= 0.36; c += 0.07) {
+        const SlopeState state = equilibrium.at({a, c});
+        if (!state.holds()) continue;
+        ++held;
+        const Net net = netOf(sand(), r, {a, c}, state, equilibrium.wheels({a, c}, state));
+        // Property: forces and moments in three dimensions vanish; 0.005 of the weight for the table of wheel
+        // forces.
+        EXPECT_NEAR(net.along / weight, 0.0, 0.005) << a << ' ' << c;
+        EXPECT_NEAR(net.across / weight, 0.0, 0.005) << a << ' ' << c;
+        EXPECT_NEAR(net.normal / weight, 0.0, 1e-9);
+        EXPECT_NEAR(net.yaw / (weight * r.wheelbase_m), 0.0, 0.004) << a << ' ' << c;
+        // The loads carry the moments that the height makes of the wheels' forces.
+        EXPECT_NEAR(net.pitch / (weight * r.wheelbase_m), 0.0, 0.004);
+        EXPECT_NEAR(net.roll / (weight * r.track_m), 0.0, 0.004);
+      }
+    EXPECT_GT(held, 30);
+  }
+}
+
+TEST(SlopeEquilibrium, AlongASlopeIsTheMobilityCurve) {
+  Rover r = rover();
+  r.centre_of_mass_height_m = 0.0;  // the curve moves no load
+  const SlopeEquilibrium equilibrium{sand(), r};
+  const MobilityCurve curve{sand(), r};
+  for (double slope = -0.3; slope <= 0.3; slope += 0.05) {
+    const SlopeState state = equilibrium.at({std::tan(slope), 0.0});
+    const MobilityState want = curve.at(slope);
+    ASSERT_EQ(state.holds(), want.feasible) << slope;
+    if (!want.feasible) continue;
+    // Property: two codes; the tables are off by up to 0.004 in DP/N, times the slope of slip over DP/N.
+    EXPECT_NEAR(state.slip, want.slip, 0.006) << slope;
+    EXPECT_NEAR(state.energy_J_per_m, want.energy_J_per_m, 0.02 * want.energy_J_per_m + 0.5) << slope;
+    EXPECT_NEAR(state.slip_angle_rad, 0.0, 1e-9);
+  }
+}
+
+TEST(SlopeEquilibrium, MirrorsLeftAndRight) {
+  for (const Steering steering : kSteerings) {
+    const SlopeEquilibrium equilibrium{sand(), rover(steering)};
+    for (const double a : {-0.2, 0.0, 0.15})
+      for (const double c : {0.05, 0.2, 0.3}) {
+        const SlopeState left = equilibrium.at({a, c}), right = equilibrium.at({a, -c});
+        // Property: a plane and its mirror; rounding of the Newton steps.
+        EXPECT_EQ(left.failure, right.failure);
+        EXPECT_NEAR(left.slip, right.slip, 1e-8);
+        EXPECT_NEAR(left.slip_angle_rad, -right.slip_angle_rad, 1e-8);
+        EXPECT_NEAR(left.body_turn_rad, -right.body_turn_rad, 1e-8);
+        EXPECT_NEAR(left.energy_J_per_m, right.energy_J_per_m, 1e-6 * left.energy_J_per_m + 1e-9);
+      }
+  }
+}
+
+TEST(SlopeEquilibrium, TheSteeperAcrossTheMoreSlipAngle) {
+  for (const Steering steering : kSteerings) {
+    const SlopeEquilibrium equilibrium{sand(), rover(steering)};
+    double last = -1.0, energy = 0.0;
+    for (double c = 0.0; c < 0.6; c += 0.02) {
+      const SlopeState state = equilibrium.at({0.0, c});
+      if (!state.holds()) break;
+      // Property: what must be held grows, and what it costs to crab or turn.
+      EXPECT_GT(-state.slip_angle_rad, last) << c;
+      EXPECT_GE(state.energy_J_per_m, energy * (1.0 - 1e-3)) << c;
+      last = -state.slip_angle_rad;
+      energy = state.energy_J_per_m;
+    }
+    EXPECT_GT(last, 0.1);
+  }
+}
+
+TEST(SlopeEquilibrium, TheBodyTurnsUphillUnlessAllWheelsSteer) {
+  const Gradient across{0.0, 0.2};  // rises to the left
+  EXPECT_EQ(SlopeEquilibrium(sand(), rover(Steering::AllWheel)).at(across).body_turn_rad, 0.0);
+  EXPECT_GT(SlopeEquilibrium(sand(), rover(Steering::Skid)).at(across).body_turn_rad, 0.02);
+  EXPECT_GT(SlopeEquilibrium(sand(), rover(Steering::Ackermann)).at(across).body_turn_rad, 0.02);
+}
+
+/// Whether any slip and slip angle within the limits give the force wanted along and at least that wanted
+/// across, all wheels alike under even loads: what an equilibrium without load transfer must find, by trying
+/// them.
+bool anyHolds(const Soil& soil, const Rover& r, const Gradient& g) {
+  const double steep = std::sqrt(1.0 + g.along * g.along + g.across * g.across);
+  const double load = wheelLoad_N(r) / steep;
+  const double run = std::sqrt(1.0 + g.along * g.along);
+  const double along = g.along * steep / run, across = g.across / run;
+  for (double angle = 0.0; angle <= 0.7854; angle += 0.02) {
+    double last_x = 0.0, last_y = 0.0;
+    bool first = true;
+    for (double slip = -1.0; slip <= 0.8001; slip += 0.02) {
+      const WheelForces f = equilibrium(soil, r.wheel,
+                                        {.load_N = load,
+                                         .slip = std::min(slip, 0.8),
+                                         .slip_angle_rad = -angle,
+                                         .gravity_m_s2 = r.gravity_m_s2});
+      const double c = std::cos(angle), s = std::sin(angle);
+      const double x = (f.drawbar_pull_N * c - f.side_force_N * s) / load;
+      const double y = (f.side_force_N * c + f.drawbar_pull_N * s) / load;
+      if (!first && (last_x - along) * (x - along) <= 0.0 && std::max(y, last_y) >= across) return true;
+      last_x = x;
+      last_y = y;
+      first = false;
+    }
+  }
+  return false;
+}
+
+TEST(SlopeEquilibrium, FindsOneWhereverOneIs) {
+  Rover r = rover();
+  r.centre_of_mass_height_m = 0.0;
+  const SlopeEquilibrium equilibrium{sand(), r};
+  std::mt19937_64 engine{3};
+  std::uniform_real_distribution<double> any{-0.7, 0.7};
+  int held = 0, none = 0;
+  for (int k = 0; k < 40; ++k) {
+    const Gradient g{any(engine), std::abs(any(engine))};
+    const bool want = anyHolds(sand(), r, g);
+    // Property: existence by brute force; where the two differ the edge lies within 0.02 of gradient.
+    if (equilibrium.at(g).holds() != want) {
+      const auto holds = [&](double a, double c) {
+        return equilibrium.at({g.along + a, g.across + c}).holds();
+      };
+      const bool edge = holds(0.0, -0.02) != holds(0.0, 0.02) || holds(-0.02, 0.0) != holds(0.02, 0.0);
+      EXPECT_TRUE(edge) << g.along << ' ' << g.across << ' ' << want;
+    }
+    ++(want ? held : none);
+  }
+  EXPECT_GT(held, 8);
+  EXPECT_GT(none, 8);
+}
+
+TEST(SlopeEquilibrium, SaysWhyNothingHolds) {
+  const SlopeEquilibrium equilibrium{sand(), rover()};
+  EXPECT_EQ(equilibrium.at({0.7, 0.0}).failure, SlopeFailure::CannotPull);
+  EXPECT_EQ(equilibrium.at({0.0, 0.9}).failure, SlopeFailure::Slides);
+  EXPECT_EQ(equilibrium.at({-1.2, 0.0}).failure, SlopeFailure::Slides);
+  EXPECT_EQ(equilibrium.at({0.0, 1.3}).failure, SlopeFailure::Tips);
+  Rover weak = rover();
+  weak.max_torque_Nm = 0.5;
+  EXPECT_EQ(SlopeEquilibrium(sand(), weak).at({0.05, 0.0}).failure, SlopeFailure::Torque);
+  Soil bog = sand();
+  bog.frictional_modulus = 2e3;
+  EXPECT_EQ(SlopeEquilibrium(bog, rover()).at({0.0, 0.0}).failure, SlopeFailure::Sinks);
+}
+
+TEST(SlopeEquilibrium, ALockedRoverHoldsDownhillUntilItSlides) {
+  const SlopeEquilibrium equilibrium{sand(), rover()};
+  const double even = wheelLoad_N(rover());
+  const WheelForces locked = terramech::equilibrium(sand(), rover().wheel, {.load_N = even, .slip = -1.0});
+  const double steepest = -locked.drawbar_pull_N / even;
+  // Closed form: locked wheels hold tan(slope) = -DP/N; 0.03 for the load that moves and the cosine.
+  EXPECT_TRUE(equilibrium.at({-(steepest - 0.04), 0.0}).holds());
+  EXPECT_FALSE(equilibrium.at({-(steepest + 0.06), 0.0}).holds());
+}
+
+TEST(SlopeEquilibrium, SaysWhatItAssumes) {
+  EXPECT_TRUE(slopeAssumptions(rover()).empty());
+  Rover r = rover();
+  r.centre_of_mass_height_m = 0.0;
+  ASSERT_EQ(slopeAssumptions(r).size(), 1u);
+  EXPECT_NE(slopeAssumptions(r)[0].find("rover 'box': centre_of_mass_height_m is not given"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace talus::terramech
