@@ -34,6 +34,8 @@ struct Options {
   std::string truth, start, goal, html, telemetry;
   std::string belief = "online";
   std::size_t worlds = 1;
+  planner::SensorOptions sensors;
+  std::string fault = "none", noise = "on";
 };
 
 const Belief* findBelief(const std::string& word) {
@@ -47,6 +49,31 @@ const Belief* findBelief(const std::string& word) {
 std::string refusedBelief(const std::string& word) {
   if (word == "all" || findBelief(word) != nullptr) return "";
   return word + ", must be one of geometry, prior, online, perfect-knowledge, all";
+}
+
+void bindSensors(CLI::App& command, Options& options) {
+  const auto& faults = planner::sensorFaultNames();
+  command.add_option("--fault", options.fault, "sensor fault during the whole traverse")
+      ->check(CLI::IsMember(std::vector<std::string>(faults.begin(), faults.end())))
+      ->capture_default_str();
+  command
+      .add_option("--pose-drift", options.sensors.pose_drift,
+                  "drift of the estimated pose per metre driven")
+      ->check(CLI::Range(0.0, 1.0))
+      ->type_name("SHARE")
+      ->capture_default_str();
+  command.add_option("--noise", options.noise, "noise and dropouts of slip, torque and sinkage")
+      ->check(CLI::IsMember({"on", "off"}))
+      ->capture_default_str();
+}
+
+planner::SensorOptions sensorsOf(const Options& options) {
+  planner::SensorOptions sensors = options.sensors;
+  const auto& faults = planner::sensorFaultNames();
+  const auto named = std::find(faults.begin(), faults.end(), options.fault);
+  sensors.fault = static_cast<planner::SensorFault>(named - faults.begin());
+  sensors.noise = options.noise == "on";
+  return sensors;
 }
 
 void bind(CLI::App& command, Options& options) {
@@ -71,6 +98,7 @@ void bind(CLI::App& command, Options& options) {
                       "number of random worlds; --threads run at a time, or one per rank under mpirun")
           ->check(CLI::Range(1, 100000))
           ->type_name("N");
+  bindSensors(command, options);
   groupOptions(command, "Simulation");
   command.add_option("--html", options.html, "page to write: the simulated traverse with a time slider")
       ->type_name("R.html")
@@ -176,7 +204,8 @@ int run(const Options& options, Context& context) {
                    .start = maps::readPlace(options.start, ground.map.elevation(), "--start"),
                    .goal = maps::readPlace(options.goal, ground.map.elevation(), "--goal"),
                    .firm = terramech::loadSoil("bedrock"),
-                   .seed = context.seed});
+                   .seed = context.seed,
+                   .sensors = sensorsOf(options)});
   const Campaigning on{site, campaign, context};
   if (options.belief == "all") return runAll(on, options);
   if (options.worlds > 1) return runMany(on, options);

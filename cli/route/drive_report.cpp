@@ -55,6 +55,7 @@ std::string label(Outcome outcome) {
 
 ordered_json asJson(const planner::WorldResult& result) {
   return {{"outcome", planner::name(result.drive.outcome)},
+          {"cause", result.drive.cause},
           {"energy_J", result.drive.energy_J},
           {"length_m", result.drive.length_m},
           {"time_s", result.drive.time_s},
@@ -69,6 +70,7 @@ planner::WorldResult worldResult(const ordered_json& json) {
   const auto outcome = json.at("outcome").get<std::string>();
   result.drive.outcome = *std::find_if(kOutcomes.begin(), kOutcomes.end(),
                                        [&](Outcome o) { return planner::name(o) == outcome; });
+  json.at("cause").get_to(result.drive.cause);
   json.at("energy_J").get_to(result.drive.energy_J);
   json.at("length_m").get_to(result.drive.length_m);
   json.at("time_s").get_to(result.drive.time_s);
@@ -106,7 +108,8 @@ ordered_json asJson(const std::array<std::vector<planner::WorldResult>, 4>& beli
 
 std::string asText(const planner::WorldResult& result) {
   const planner::TraverseSimulation& drive = result.drive;
-  return line("outcome", label(drive.outcome)) + line("energy", energyText(drive.energy_J)) +
+  return line("outcome", label(drive.outcome)) + (drive.cause.empty() ? "" : line("cause", drive.cause)) +
+         line("energy", energyText(drive.energy_J)) +
          line("distance", fmt::format("{:.1f} m", drive.length_m)) +
          line("time", durationText(drive.time_s)) +
          line("maximum slip", fmt::format("{:.2f}", drive.max_slip)) +

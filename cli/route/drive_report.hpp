@@ -16,8 +16,8 @@ std::string label(planner::Belief belief);
 /// The outcome as people read it: the name of planner::Outcome, or "no feasible route".
 std::string label(planner::Outcome outcome);
 
-/// One traverse simulation: outcome, energy_J, length_m, time_s, replans, alarms, max_slip,
-/// categories_changed.
+/// One traverse simulation: outcome, cause (empty where it reached the goal), energy_J, length_m, time_s,
+/// replans, alarms, max_slip, categories_changed.
 nlohmann::ordered_json asJson(const planner::WorldResult& result);
 
 /// The inverse of asJson() of a world, without track, events and records; numbers are exact.

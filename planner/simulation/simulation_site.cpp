@@ -78,11 +78,14 @@ costmap::TraversabilityMap SimulationSite::believed(Belief belief, const TrueWor
 }
 
 SimulationOptions SimulationSite::options(Belief belief, std::size_t i) const {
+  SensorOptions sensors = parts_.sensors;
+  sensors.seed = parts_.seed + i;
+  if (belief == Belief::PerfectKnowledge) sensors.pose_drift = 0.0;  // it knows where it is, too
   return {.start = parts_.start,
           .goal = parts_.goal,
           .goal_tolerance_m = map_.grid().resolution_m,
           .senses = belief == Belief::OnLine,
-          .seed = parts_.seed + i};
+          .sensors = sensors};
 }
 
 WorldResult SimulationSite::world(Belief belief, std::size_t i, const ProgressMonitor& watch) const {

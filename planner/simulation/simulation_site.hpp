@@ -44,8 +44,9 @@ class SimulationSite {
     Truth truth;
     maps::Point start;
     maps::Point goal;
-    terramech::Soil firm;    ///< what Belief::Geometry takes all ground for
-    std::uint64_t seed = 1;  ///< world i is drawn with seed + i
+    terramech::Soil firm;     ///< what Belief::Geometry takes all ground for
+    std::uint64_t seed = 1;   ///< world i is drawn with seed + i
+    SensorOptions sensors{};  ///< of a rover that goes by its sensors; their seed is that of the world
   };
 
   /// The map is kept by reference.

@@ -1,12 +1,12 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <random>
 #include <utility>
 
-#include <talus/costmap/wheel_observation.hpp>
+#include <talus/costmap/drive_evidence.hpp>
 #include <talus/planner/grid/field_planner.hpp>
 #include <talus/planner/route/motion_cost.hpp>
+#include <talus/planner/simulation/loss_report.hpp>
 #include <talus/planner/simulation/traverse_simulation.hpp>
 
 namespace talus::planner {
@@ -14,8 +14,6 @@ namespace {
 
 using costmap::Direction;
 
-// Standard deviations of the rover's sensors: those that WheelObserver expects.
-constexpr double kSlipNoise = 0.02, kTorqueNoise = 0.05, kSinkageNoise = 0.03;
 // The route is planned anew when what is left of it costs this much more than when it was planned.
 constexpr double kDearer = 1.3;
 // Depth that a wheel digs on the spot per metre of rim travel (ours: Spirit went in to the hub in some
@@ -38,29 +36,34 @@ class Drive {
       : map_(map),
         world_(world),
         options_(options),
-        observer_(map.model()),
-        random_(options.seed),
+        intake_(map),
+        sensors_(options.sensors, map.model().rover()),
+        alarm_(options.alarm, map.model().rover().wheel.radius_m),
         ruts_(map.model().rover().wheel.width_m),
         here_(options.start) {}
 
   TraverseSimulation run() {
     arriveAt(here_, {});
     while (!options_.watch.stopped()) {
-      if (!plan()) return ended(Outcome::GaveUp);
+      if (!plan()) return held_ ? ended(Outcome::Immobilised) : ended(Outcome::GaveUp, "no route is left");
       const FollowEnd end = follow();
       if (end == FollowEnd::Arrived) return ended(Outcome::Reached);
       if (end == FollowEnd::Stuck) return ended(Outcome::Immobilised);
       if (end == FollowEnd::Tipped) return ended(Outcome::Tipped);
-      if (++result_.replans > options_.max_replans) return ended(Outcome::GaveUp);
+      if (++result_.replans > options_.max_replans) return ended(Outcome::GaveUp, "too many replans");
     }
-    return ended(Outcome::GaveUp);
+    return ended(Outcome::GaveUp, "cancelled");
   }
 
  private:
   enum class FollowEnd { Arrived, Stuck, Tipped, Replan };
 
-  TraverseSimulation ended(Outcome outcome) {
+  TraverseSimulation ended(Outcome outcome, std::string cause = {}) {
     result_.outcome = outcome;
+    if (!cause.empty())
+      result_.cause = std::move(cause);
+    else if (outcome == Outcome::Immobilised)
+      result_.cause = causeOfLoss({map_, world_, last_step_, seen_, believed(), why_it_stopped_});
     tell(std::string(name(outcome)));
     return std::move(result_);
   }
@@ -72,11 +75,11 @@ class Drive {
   // Where what was learned refuses the ground under the rover, it first goes back to ground that it knows.
   bool plan() {
     const MotionCost cost(map_.published());
-    while (options_.senses && !cost.allowed(here_))
+    while (options_.senses && !cost.allowed(believed()))
       if (!backOneStep(0.0)) return false;
     Problem problem;
     problem.map = map_.published();
-    problem.start = here_;
+    problem.start = believed();
     problem.goal = options_.goal;
     problem.goal_tolerance_m = options_.goal_tolerance_m;
     problem.prove = false;
@@ -90,33 +93,57 @@ class Drive {
     return true;
   }
 
+  // Where it takes itself to be.
+  maps::Point believed() const { return sensors_.believed(here_); }
+
   FollowEnd follow() {
     while (next_ < route_.size()) {
-      const double left = distance_m(here_, route_[next_]);
+      const double left = distance_m(believed(), route_[next_]);
       if (left < 1e-9) {
         ++next_;
         continue;
       }
       if (options_.watch.stopped()) return FollowEnd::Replan;
-      const Direction heading = directionTo(here_, route_[next_]);
+      const Direction heading = directionTo(believed(), route_[next_]);
       if (tipped(heading)) return FollowEnd::Tipped;
-      const TrueWorld::Step step =
-          world_.drive({.place = here_, .heading = heading, .gradient = gradient(heading), .ruts = &ruts_});
-      result_.max_slip = std::max(result_.max_slip, step.slip);
-      const auto reason = alarm(step, heading);
-      const bool learned = look(step, heading, step.stuck || reason);
-      if (step.stuck && !options_.senses) return FollowEnd::Stuck;
-      if (reason) return retreat(step, heading, *reason);
-      if (learned && routeTurnedDear()) return retreat(step, heading, "soil weaker than estimated");
-      report(step, heading, std::min(left, options_.step_m));
-      advance(step, heading, std::min(left, options_.step_m));
+      const auto end = lookAndStep(heading, std::min(left, options_.step_m));
+      if (end) return *end;
     }
     return FollowEnd::Arrived;
   }
 
+  // One look at the wheels; then on by one step, unless something ends the leg.
+  std::optional<FollowEnd> lookAndStep(const Direction& heading, double length_m) {
+    const TrueWorld::Step step = world_.drive(
+        {.place = here_, .heading = heading, .gradient = gradient(heading), .dug_m = dug_m_, .ruts = &ruts_});
+    result_.max_slip = std::max(result_.max_slip, step.slip);
+    last_step_ = step;
+    seen_ = sensors_.look(step, {result_.time_s, heading, gradient(heading), dug_m_});
+    if (step.stuck && !options_.senses) return FollowEnd::Stuck;
+    const WheelAlarm::Heard heard =
+        options_.senses ? alarm_.hear(seen_, expectations(step, heading)) : WheelAlarm::Heard{};
+    const bool learned = learn(heard.reason.has_value());
+    if (heard.reason) return retreat(step, heard);
+    if (step.stuck) return dig(step);
+    if (learned && routeTurnedDear()) return retreat(step, {"soil weaker than estimated", {}});
+    report(step, heading, length_m);
+    advance(step, heading, length_m);
+    return std::nullopt;
+  }
+
+  // Spins on the spot and does not know it.
+  std::optional<FollowEnd> dig(const TrueWorld::Step& step) {
+    const double radius_m = map_.model().rover().wheel.radius_m;
+    dug_m_ += kDugPerMetre * options_.step_m;
+    result_.energy_J += std::max(step.torque_Nm, 0.0) * options_.step_m / radius_m;
+    result_.time_s += options_.step_m / map_.model().rover().max_speed_mps;
+    why_it_stopped_.clear();
+    return dug_m_ > radius_m ? std::optional(FollowEnd::Stuck) : std::nullopt;
+  }
+
   void report(const TrueWorld::Step& step, const Direction& heading, double length_m) const {
     if (!options_.on_step) return;
-    const costmap::DriveState state = expected(here_, heading);
+    const costmap::DriveState state = expected(believed(), heading);
     const double slope = gradient(heading);
     options_.on_step(
         {.time_s = result_.time_s,
@@ -136,35 +163,33 @@ class Drive {
     return code.dzDx() * heading.x + code.dzDy() * heading.y;
   }
 
-  // What the map says before this step's readings are in; its class says it where the cell is refused.
+  // What the map says of ground on the slope that the rover stands on, which it measures itself, before this
+  // step's readings are in; its class says it where the cell is refused.
   costmap::DriveState expected(const maps::Point& place, const Direction& heading) const {
     const auto cell = map_.grid().cellAt(place);
     if (!cell) return {};
     const auto grid = map_.published();
-    const costmap::CellCode code = grid->at(*cell);
-    const bool refused = code.curve() >= costmap::CellCode::kUnknown;
-    const int index = std::max(map_.classIndex(*cell), 0);
-    return grid->cost().detail(refused ? code.withCurve(static_cast<std::uint8_t>(index)) : code, heading);
+    const std::uint8_t curve = grid->at(*cell).curve();
+    const bool refused = curve >= costmap::CellCode::kUnknown;
+    const double slope = gradient(heading);
+    return grid->cost().detail(
+        costmap::CellCode(
+            {.dz_dx = slope * heading.x,
+             .dz_dy = slope * heading.y,
+             .curve = refused ? static_cast<std::uint8_t>(std::max(map_.classIndex(*cell), 0)) : curve}),
+        heading);
   }
   double expectedSlip(const Direction& heading) const {
-    return static_cast<double>(expected(here_, heading).slip);
+    return static_cast<double>(expected(believed(), heading).slip);
   }
-
-  // By how much a wheel on fresh ground sinks deeper than the map says, over its radius.
-  double sinksDeeper(const TrueWorld::WheelState& wheel, const Direction& heading) const {
-    if (wheel.passes > 0) return 0.0;
-    const double radius_m = map_.model().rover().wheel.radius_m;
-    return wheel.forces.sinkage - static_cast<double>(expected(wheel.place, heading).sinkage_m) / radius_m;
-  }
-
-  // What a rover that watches its wheels stops for.
-  std::optional<std::string> alarm(const TrueWorld::Step& step, const Direction& heading) const {
-    if (!options_.senses) return std::nullopt;
-    if (step.stuck) return "no traction";
-    if (step.slip > expectedSlip(heading) + options_.alarm_slip) return "slips";
+  std::vector<WheelExpectation> expectations(const TrueWorld::Step& step, const Direction& heading) const {
+    const double slip = expectedSlip(heading), radius_m = map_.model().rover().wheel.radius_m;
+    std::vector<WheelExpectation> of_wheels;
     for (const TrueWorld::WheelState& wheel : step.wheels)
-      if (sinksDeeper(wheel, heading) > options_.alarm_sinkage) return "sinks";
-    return std::nullopt;
+      of_wheels.push_back(
+          {slip,
+           static_cast<double>(expected(sensors_.believed(wheel.place), heading).sinkage_m) / radius_m});
+    return of_wheels;
   }
 
   bool tipped(const Direction& heading) const {
@@ -180,6 +205,7 @@ class Drive {
     result_.length_m += length_m;
     for (const TrueWorld::WheelState& wheel : step.wheels) ruts_.press(wheel.place);
     ruts_.moved(length_m);
+    sensors_.moved(length_m);
   }
 
   void arriveAt(const maps::Point& place, const TrueWorld::Step& step) {
@@ -191,11 +217,13 @@ class Drive {
   }
 
   void advance(const TrueWorld::Step& step, const Direction& heading, double length_m) {
+    const bool there = length_m >= distance_m(believed(), route_[next_]) - 1e-9;
+    dug_m_ = 0.0;
     spend(step, length_m, gradient(heading));
     since_sensing_m_ += length_m;
     way_back_.push_back(here_);
     arriveAt({here_.x_m + length_m * heading.x, here_.y_m + length_m * heading.y}, step);
-    if (distance_m(here_, route_[next_]) < 1e-9) ++next_;
+    if (there) ++next_;
   }
 
   // One step back along the way it came; false where that way ends or the wheels find no hold.
@@ -209,6 +237,7 @@ class Drive {
         world_.drive({.place = here_, .heading = heading, .gradient = slope, .dug_m = dug_m, .ruts = &ruts_});
     if (step.stuck) {
       held_ = true;
+      last_step_ = step;
       return false;
     }
     way_back_.pop_back();
@@ -223,7 +252,7 @@ class Drive {
     const auto& model = map_.model();
     const double reach_m = 0.5 * std::hypot(model.rover().wheelbase_m, model.rover().track_m);
     for (const auto& [x, y] : {std::pair{1.0, 0.0}, {0.0, 1.0}, {-1.0, 0.0}, {0.0, -1.0}}) {
-      const auto cell = map_.grid().cellAt({here_.x_m + x * reach_m, here_.y_m + y * reach_m});
+      const auto cell = map_.grid().cellAt({believed().x_m + x * reach_m, believed().y_m + y * reach_m});
       const auto ground = cell ? map_.ground(*cell) : std::nullopt;
       if (!ground) continue;
       const int index = map_.classIndex(*cell);
@@ -236,78 +265,49 @@ class Drive {
 
   // Backs out along the ruts it came in: by one length of the rover, and until it stands on sound ground,
   // where it may turn. Ground that gave the alarm is not tried again.
-  FollowEnd retreat(const TrueWorld::Step& stopped, const Direction& heading, const std::string& reason) {
-    tell(reason);
+  FollowEnd retreat(const TrueWorld::Step& stopped, const WheelAlarm::Heard& heard) {
+    tell(*heard.reason);
+    why_it_stopped_ = *heard.reason;
     const double radius_m = map_.model().rover().wheel.radius_m;
-    const bool spun = stopped.slip > expectedSlip(heading) + options_.alarm_slip;
-    const double spun_m = spun ? options_.stall_detection_m * stopped.slip : 0.0;
+    const double spun_m = stopped.stuck ? options_.stall_detection_m * stopped.slip : 0.0;
     result_.energy_J += std::max(stopped.torque_Nm, 0.0) * spun_m / radius_m;
     for (const TrueWorld::WheelState& wheel : stopped.wheels) ruts_.press(wheel.place);
     ruts_.turnBack();
-    double dug_m = kDugPerMetre * spun_m;
+    double hole_m = std::exchange(dug_m_, 0.0) + kDugPerMetre * spun_m;
     const double from_m = result_.length_m;
     while ((result_.length_m - from_m < options_.keep_out_radius_m || !standsSound()) &&
-           backOneStep(std::exchange(dug_m, 0.0))) {
+           backOneStep(std::exchange(hole_m, 0.0))) {
     }
     ruts_.turnBack();
     if (held_) return FollowEnd::Stuck;
     tell("reversed");
-    if (alarm(stopped, heading)) refuseGround(stopped, heading);
+    if (!heard.sank.empty()) refuseGround(stopped, heard);
     return FollowEnd::Replan;
   }
 
   // The wheels that sank, or the foremost two where all merely slipped; not the ground that it now stands on.
-  void refuseGround(const TrueWorld::Step& stopped, const Direction& heading) {
+  void refuseGround(const TrueWorld::Step& stopped, const WheelAlarm::Heard& heard) {
     ++result_.alarms;
     const double outline_m = 0.5 * std::hypot(map_.model().rover().wheelbase_m, map_.model().rover().track_m);
     for (std::size_t w = 0; w < stopped.wheels.size(); ++w) {
-      const TrueWorld::WheelState& wheel = stopped.wheels[w];
-      if (w >= 2 && sinksDeeper(wheel, heading) <= options_.alarm_sinkage) continue;
-      const double room_m = distance_m(wheel.place, here_) - outline_m;
-      if (room_m > 0.0) map_.refuse(wheel.place, std::min(options_.keep_out_radius_m, room_m));
+      if (w >= 2 && !heard.sank[w]) continue;
+      const maps::Point& wheel = stopped.wheels[w].place;
+      const double room_m = distance_m(wheel, here_) - outline_m;
+      if (room_m > 0.0) map_.refuse(sensors_.believed(wheel), std::min(options_.keep_out_radius_m, room_m));
     }
     map_.publish();
     if (options_.on_learned) options_.on_learned(result_.time_s);
   }
 
-  // What the wheels read, noise and all.
-  std::vector<costmap::WheelReading> readings(const TrueWorld::Step& step, const Direction& heading) {
-    const double radius_m = map_.model().rover().wheel.radius_m;
-    std::normal_distribution<double> noise;
-    std::vector<costmap::WheelReading> out;
-    const double slip = std::clamp(step.slip + kSlipNoise * noise(random_), -1.0, 1.0);
-    for (const TrueWorld::WheelState& wheel : step.wheels) {
-      const double torque = wheel.forces.torque * (1.0 + kTorqueNoise * noise(random_));
-      const double sinkage = wheel.forces.sinkage * (1.0 + kSinkageNoise * noise(random_));
-      out.push_back({.time_s = result_.time_s,
-                     .place = wheel.place,
-                     .load_N = wheel.load_N,
-                     .slip = slip,
-                     .torque_Nm = torque * wheel.load_N * radius_m,
-                     .sinkage_m = sinkage * radius_m,
-                     .gradient = step.stuck ? std::nan("") : gradient(heading),
-                     .drawbar_pull_N = std::nan(""),
-                     .pass = wheel.passes + 1});
-      if (options_.record)
-        result_.records.push_back({out.size() - 1, std::atan2(heading.y, heading.x), out.back()});
-    }
-    return out;
-  }
-
-  // Reads the wheels, if it is time or must be now, and puts it into the map. True when the map changed.
-  bool look(const TrueWorld::Step& step, const Direction& heading, bool now) {
+  // Puts what the wheels read into the map, if it is time or must be now. True when the map changed.
+  bool learn(bool now) {
     const bool blind = !options_.senses && !options_.record;
     if (blind || (!now && since_sensing_m_ < options_.sensing_interval_m)) return false;
     since_sensing_m_ = 0.0;
-    const std::vector<costmap::WheelReading> read = readings(step, heading);
+    for (std::size_t w = 0; w < seen_.wheels.size() && options_.record; ++w)
+      result_.records.push_back({w, seen_.heading_rad, seen_.wheels[w]});
     if (!options_.senses) return false;
-    std::vector<costmap::ClassReading> together;
-    for (const costmap::WheelReading& reading : read) {
-      const auto cell = map_.grid().cellAt(reading.place);
-      if (cell && map_.classIndex(*cell) >= 0) together.push_back({map_.classIndex(*cell), reading});
-    }
-    for (const auto& seen : observer_.observe(together))
-      if (seen) map_.learn(*seen);
+    intake_.add(telemetryOf(seen_));
     map_.publish();
     if (options_.on_learned) options_.on_learned(result_.time_s);
     return true;
@@ -315,7 +315,7 @@ class Drive {
 
   bool routeTurnedDear() {
     const MotionCost cost(map_.published());
-    double left_J = cost({here_, route_[std::min(next_, route_.size() - 1)]});
+    double left_J = cost({believed(), route_[std::min(next_, route_.size() - 1)]});
     for (std::size_t i = next_; i + 1 < route_.size(); ++i) left_J += cost({route_[i], route_[i + 1]});
     const bool dear = !(left_J <= kDearer * planned_J_);
     planned_J_ = std::min(planned_J_, left_J);
@@ -325,8 +325,9 @@ class Drive {
   costmap::TraversabilityMap& map_;
   const TrueWorld& world_;
   const SimulationOptions& options_;
-  costmap::WheelObserver observer_;
-  std::mt19937_64 random_;
+  costmap::DriveIntake intake_;
+  SimulatedSensors sensors_;
+  WheelAlarm alarm_;
   FieldPlanner planner_;
   Ruts ruts_;
   maps::Point here_;
@@ -335,6 +336,10 @@ class Drive {
   std::size_t next_ = 1;
   double planned_J_ = 0.0;
   double since_sensing_m_ = 0.0;
+  double dug_m_ = 0.0;         // depth of the holes that the wheels stand in
+  TrueWorld::Step last_step_;  // that was tried
+  WheelLook seen_;             // what the wheels read before it
+  std::string why_it_stopped_;
   bool held_ = false;
   TraverseSimulation result_;
 };

@@ -7,8 +7,9 @@
 #include <vector>
 
 #include <talus/costmap/traversability_map.hpp>
-#include <talus/costmap/wheel_observation.hpp>
+#include <talus/planner/simulation/simulated_sensors.hpp>
 #include <talus/planner/simulation/true_world.hpp>
+#include <talus/planner/simulation/wheel_alarm.hpp>
 #include <talus/talus.hpp>
 
 namespace talus::planner {
@@ -41,17 +42,16 @@ struct SimulationOptions {
   maps::Point start;
   maps::Point goal;
   double goal_tolerance_m = 0.0;  ///< >= 0
-  /// The rover watches its slip, learns and replans; else it drives the first route blindly.
+  /// The rover watches its wheels, learns and replans; else it drives the first route blindly.
   bool senses = true;
-  double alarm_slip = 0.2;  ///< it stops and backs out when it slips so much more than the map says
-  /// And when a wheel sinks so much deeper than the map says, over its radius [-].
-  double alarm_sinkage = 0.08;
+  AlarmLimits alarm{};      ///< at which it stops and backs out
+  SensorOptions sensors{};  ///< how well it senses
   /// So far it backs out at least, and so wide a berth it gives the ground that gave the alarm.
   double keep_out_radius_m = 1.0;
   double stall_detection_m =
-      0.06;             ///< rim travel on the spot before a rover that does not move notices (ours: a
-                        ///< quarter of a small wheel's diameter, as visual odometry resolves)
-  double step_m = 0.1;  ///< between two looks at the slip, > 0
+      0.06;              ///< rim travel on the spot before a rover that does not move notices (ours: a
+                         ///< quarter of a small wheel's diameter, as visual odometry resolves)
+  double step_m = 0.03;  ///< between two looks at the wheels, > 0
   double sensing_interval_m = 0.5;  ///< between two readings of the wheels that the map learns from, > 0
   int max_replans = 60;             ///< then it gives up
   std::uint64_t seed = 1;           ///< of the sensors' noise
@@ -87,6 +87,7 @@ struct WheelRecord {
 /// What came of it.
 struct TraverseSimulation {
   Outcome outcome = Outcome::GaveUp;
+  std::string cause;  ///< of not reaching the goal, in one line; empty where it did
   double energy_J = 0.0;
   double time_s = 0.0;
   double length_m = 0.0;  ///< driven, backing out included
@@ -98,9 +99,10 @@ struct TraverseSimulation {
   std::vector<WheelRecord> records;  ///< where SimulationOptions::record asks for them
 };
 
-/// Drives a rover over a true world with what a map believes, changing the map as it learns. A rover that
-/// senses watches its slip at every short step; at the alarm it backs out in its own ruts and plans anew.
-/// Deterministic in its seed.
+/// Drives a rover over a true world with what a map believes, changing the map as it learns: what its
+/// simulated sensors read goes through DriveIntake, as a telemetry file does. A rover that senses watches its
+/// wheels at every short step; at the alarm it backs out in its own ruts and plans anew. Only the physics know
+/// the truth. Deterministic in the sensors' seed.
 TraverseSimulation simulateTraverse(costmap::TraversabilityMap& map, const TrueWorld& world,
                                     const SimulationOptions& options);
 

@@ -68,6 +68,8 @@ class TrueWorld {
 
   /// Which of soils() lies at a place; patches reach `margin_m` further than they do.
   std::size_t soilAt(const maps::Point& place, double margin_m = 0.0) const noexcept;
+  /// Whether ground that no class shows lies there.
+  bool inPatch(const maps::Point& place) const noexcept { return soilAt(place) >= classes_; }
   /// The classes' soils in their order, then those of the patches, each once.
   const std::vector<terramech::Soil>& soils() const noexcept { return soils_; }
   /// Effects that act on all of them.

@@ -43,7 +43,8 @@ TEST(DriveCommand, GroundAsBelievedIsReachedUnderEveryBelief) {
     ASSERT_EQ(ran.code, 0) << ran.err;
     const json out = json::parse(ran.out);
     EXPECT_EQ(out["outcome"], "reached") << belief;
-    EXPECT_NEAR(out["length_m"].get<double>(), 30.0, 1.0) << belief;  // Closed form: straight
+    // Closed form: straight to a metre from the goal, where the believed pose is off by at most 1 % of the way.
+    EXPECT_NEAR(out["length_m"].get<double>(), 29.0, 0.3) << belief;
     EXPECT_GT(out["energy_J"].get<double>(), 0.0);
     EXPECT_EQ(out["replans"], 0);
     EXPECT_LT(out["max_slip"].get<double>(), 0.5);

@@ -31,13 +31,14 @@ struct Site {
   double rise = 0.0;
 };
 
-TraverseSimulation over(const Site& site, bool senses) {
+TraverseSimulation over(const Site& site, bool senses, const SensorOptions& sensors = {.pose_drift = 0.0}) {
   const TrueWorld world(site.soils, testRover(), maps::Raster<std::uint8_t>(grid(), 0));
   costmap::TraversabilityMap map = planeMap(site.rise);
   SimulationOptions options;
   options.start = {5.5, 20.5};
   options.goal = {54.5, 20.5};
   options.senses = senses;
+  options.sensors = sensors;
   return simulateTraverse(map, world, options);
 }
 
@@ -64,6 +65,16 @@ TEST(TraverseSimulation, WhoWatchesItsWheelsBacksOutAndGoesRound) {
     EXPECT_GE(drive.replans, drive.alarms) << rise;
     EXPECT_GT(drive.length_m, 50.0) << rise;
     EXPECT_LT(drive.length_m, 85.0) << rise;
+  }
+}
+
+// Property: a pose that drifts costs detours about ground that was noted in the wrong place, never the rover.
+TEST(TraverseSimulation, ADriftingPoseLosesNoRover) {
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    const TraverseSimulation drive = over(trapped(), true, {.pose_drift = 0.01, .seed = seed});
+    EXPECT_NE(drive.outcome, Outcome::Immobilised) << seed;
+    EXPECT_NE(drive.outcome, Outcome::Tipped) << seed;
+    EXPECT_GE(drive.alarms, 1) << seed;
   }
 }
 

@@ -1,0 +1,59 @@
+#include <cmath>
+
+#include <talus/planner/simulation/wheel_alarm.hpp>
+
+namespace talus::planner {
+namespace {
+
+constexpr double kRadius_m = 0.1;
+
+// Six wheels, the middle and rear ones in ruts.
+WheelLook quiet() {
+  WheelLook look;
+  for (int w = 0; w < 6; ++w) look.wheels.push_back({.slip = 0.1, .sinkage_m = 0.01, .pass = w / 2 + 1});
+  return look;
+}
+
+const std::vector<WheelExpectation> kExpected(6, {.slip = 0.1, .sinkage_over_radius = 0.1});
+
+TEST(WheelAlarm, QuietWheelsGiveNone) {
+  WheelAlarm alarm({}, kRadius_m);
+  for (int k = 0; k < 200; ++k) EXPECT_FALSE(alarm.hear(quiet(), kExpected).reason);
+}
+
+TEST(WheelAlarm, OneSlipSensorNeitherStopsTheRoverNorKeepsItFromStopping) {
+  WheelAlarm alarm({}, kRadius_m);
+  WheelLook one = quiet();
+  one.wheels[2].slip = 0.9;
+  EXPECT_FALSE(alarm.hear(one, kExpected).reason);
+  WheelLook all = quiet();
+  for (auto& wheel : all.wheels) wheel.slip = 0.9;
+  all.wheels[4].slip = 0.1;
+  all.wheels[5].slip = std::nan("");
+  EXPECT_EQ(alarm.hear(all, kExpected).reason, "slips");
+}
+
+TEST(WheelAlarm, OneWheelThatSinksIsEnough) {
+  WheelAlarm alarm({}, kRadius_m);
+  WheelLook look = quiet();
+  look.wheels[1].sinkage_m = 0.02;
+  const WheelAlarm::Heard heard = alarm.hear(look, kExpected);
+  EXPECT_EQ(heard.reason, "sinks");
+  EXPECT_EQ(heard.sank, (std::vector<bool>{false, true, false, false, false, false}));
+  look.wheels[1].pass = 2;  // in a rut of its own fellow nothing is known of fresh ground
+  EXPECT_FALSE(alarm.hear(look, kExpected).reason);
+}
+
+TEST(WheelAlarm, ADatumThatWasOffAllTheWayIsTakenOffAndAJumpIsStillHeard) {
+  for (const double datum_m : {0.007, -0.007}) {
+    WheelAlarm alarm({}, kRadius_m);
+    WheelLook look = quiet();
+    look.wheels[0].sinkage_m += datum_m;
+    for (int k = 0; k < 50; ++k) EXPECT_FALSE(alarm.hear(look, kExpected).reason) << datum_m;
+    look.wheels[0].sinkage_m += 0.009;
+    EXPECT_EQ(alarm.hear(look, kExpected).reason, "sinks") << datum_m;
+  }
+}
+
+}  // namespace
+}  // namespace talus::planner
