@@ -49,7 +49,8 @@ void readMaps(const YamlFields& maps, GroundOptions& ground, const std::filesyst
   take(ground.layers.terrain, maps, "terrain");
   take(ground.layers.rocks, maps, "rocks");
   if (maps.has("keep_out")) ground.layers.keep_out.push_back(resolved(maps.word("keep_out"), folder));
-  if (maps.has("resolution_m")) ground.dem.read.resolution_m = maps.number("resolution_m");
+  if (maps.has("resolution_m") && !ground.dem.read.resolution_m)
+    ground.dem.read.resolution_m = maps.number("resolution_m");
   if (maps.flag("ignore_crs", false)) ground.dem.read.ignore_crs = true;
   for (std::string* path : {&ground.map_file, &ground.layers.terrain, &ground.layers.rocks})
     *path = resolved(*path, folder);
@@ -58,18 +59,28 @@ void readMaps(const YamlFields& maps, GroundOptions& ground, const std::filesyst
   if (ground.dem.path.empty()) ground.dem.path = ground.map_file;
 }
 
+// What differs from its default was said on the command line and holds.
 void readThresholds(const YamlFields& fields, costmap::DrivePolicy& policy) {
   fields.only({"slope_margin_rad", "sinkage_threshold", "sinkage_critical", "max_immobilisation",
                "allow_marginal", "allow_dangerous", "allow_unknown", "time_weight_W", "risk_weight_J"});
-  policy.slope_margin_rad = fields.number("slope_margin_rad", policy.slope_margin_rad);
-  policy.sinkage_threshold = fields.number("sinkage_threshold", policy.sinkage_threshold);
-  policy.sinkage_critical = fields.number("sinkage_critical", policy.sinkage_critical);
-  policy.max_immobilisation = fields.number("max_immobilisation", policy.max_immobilisation);
-  policy.allow_marginal = fields.flag("allow_marginal", policy.allow_marginal);
-  policy.allow_dangerous = fields.flag("allow_dangerous", policy.allow_dangerous);
-  policy.allow_unknown = fields.flag("allow_unknown", policy.allow_unknown);
-  policy.time_weight_W = fields.number("time_weight_W", policy.time_weight_W);
-  policy.risk_weight_J = fields.number("risk_weight_J", policy.risk_weight_J);
+  const costmap::DrivePolicy defaults;
+  const auto number = [&](double costmap::DrivePolicy::*field, const char* name) {
+    const double said = fields.number(name, policy.*field);
+    if (policy.*field == defaults.*field) policy.*field = said;
+  };
+  const auto flag = [&](bool costmap::DrivePolicy::*field, const char* name) {
+    const bool said = fields.flag(name, policy.*field);
+    if (policy.*field == defaults.*field) policy.*field = said;
+  };
+  number(&costmap::DrivePolicy::slope_margin_rad, "slope_margin_rad");
+  number(&costmap::DrivePolicy::sinkage_threshold, "sinkage_threshold");
+  number(&costmap::DrivePolicy::sinkage_critical, "sinkage_critical");
+  number(&costmap::DrivePolicy::max_immobilisation, "max_immobilisation");
+  flag(&costmap::DrivePolicy::allow_marginal, "allow_marginal");
+  flag(&costmap::DrivePolicy::allow_dangerous, "allow_dangerous");
+  flag(&costmap::DrivePolicy::allow_unknown, "allow_unknown");
+  number(&costmap::DrivePolicy::time_weight_W, "time_weight_W");
+  number(&costmap::DrivePolicy::risk_weight_J, "risk_weight_J");
 }
 
 }  // namespace

@@ -43,7 +43,7 @@ Soil soilUnder(const YamlFields& fields, const std::string& name, const YamlFiel
   try {
     return terramech::loadSoil(word);
   } catch (const InputError& error) {
-    fields.refuse(name, error.parts().reason, error.parts().remedy);
+    fields.refuse(name, word + ": " + error.parts().reason, error.parts().remedy);
   }
 }
 

@@ -1,0 +1,67 @@
+#include <nlohmann/json.hpp>
+
+#include "bad_input.hpp"
+
+namespace talus::cli {
+namespace {
+
+using nlohmann::json;
+
+// Level, with a block of two metres that no rover climbs.
+double block(int column, int row) {
+  return column >= 20 && column < 24 && row >= 10 && row < 14 ? 2.0 : 0.0;
+}
+
+json run(const Folder& folder, std::vector<std::string> words) {
+  words.insert(words.begin(), {"--json", "--quiet", "costmap"});
+  const Ran ran = runTalus(words, folder.path());
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  return json::parse(ran.out, nullptr, false);
+}
+
+// Property: categories count every cell, a map that is read back counts the same, and stricter thresholds never
+// make more ground safe.
+TEST(CostmapCommand, CategoriesCountEveryCellAndStay) {
+  const Folder folder;
+  folder.write("dem.asc", asciiGrid(50, 40, block));
+  const std::vector<std::string> ground{"dem.asc",    "--resolution", "1",   "--soil",
+                                        "sandy_loam", "--rover",      "mer"};
+  const auto with = [&ground](const std::vector<std::string>& more) {
+    auto words = ground;
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  };
+  const json built = run(folder, with({"-o", "map.ot", "--octovis", "colour.ot", "--geotiff", "layers.tif"}));
+  const auto count = [](const json& of, const char* category) {
+    return of["categories"][category].get<int>();
+  };
+  EXPECT_EQ(built["cells"], 2000);
+  EXPECT_EQ(
+      count(built, "safe") + count(built, "marginal") + count(built, "dangerous") + count(built, "unknown"),
+      2000);
+  EXPECT_GT(count(built, "safe"), 1500);
+  EXPECT_GT(count(built, "dangerous"), 16);  // the block and what the footprint touches
+  EXPECT_EQ(built["rover"], "mer");
+  EXPECT_EQ(run(folder, {"map.ot"})["categories"], built["categories"]);
+  const json strict = run(folder, with({"--slope-uncertainty-deg", "20"}));
+  EXPECT_LE(count(strict, "safe"), count(built, "safe"));
+  // Printed in: the OctoMap file format and TIFF 6.0, their first bytes.
+  EXPECT_THAT(fileContent(folder / "colour.ot"), testing::HasSubstr("id ColorOcTree"));
+  EXPECT_THAT(fileContent(folder / "map.ot"), testing::HasSubstr("id TraversabilityTree"));
+  EXPECT_THAT(fileContent(folder / "layers.tif"), testing::StartsWith("II"));
+}
+
+TEST(CostmapCommand, MistakesAreOneLineAndLeaveNoFile) {
+  const std::vector<std::string> ground{"costmap", "good.asc",   "--resolution", "1",
+                                        "--soil",  "sandy_loam", "--rover",      "mer"};
+  std::vector<BadCall> calls;
+  for (const char* option : {"-o", "--geotiff", "--png", "--octovis"}) {
+    auto words = ground;
+    words.insert(words.end(), {option, "no/file"});
+    calls.push_back({words, 2, "no"});
+  }
+  expectRefused(BadFiles(), calls);
+}
+
+}  // namespace
+}  // namespace talus::cli

@@ -1,0 +1,72 @@
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include "bad_input.hpp"
+
+namespace talus::cli {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+double ramp(int column, int) {
+  return 0.1 * column;
+}
+
+std::vector<std::string> explain(const std::vector<std::string>& more) {
+  std::vector<std::string> words{"explain",    "dem.asc", "--resolution", "1",      "--soil",
+                                 "sandy_loam", "--rover", "fido",         "--quiet"};
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+// Closed form: a plane that rises by 0.1 eastwards: slope atan 0.1 along east, the same downwards along west, and
+// none along north.
+TEST(ExplainCommand, NamesTheCellAndTheSlopeAlongTheHeading) {
+  const Folder folder;
+  folder.write("dem.asc", asciiGrid(40, 40, ramp));
+  const auto slopes = [&folder](const std::string& heading) {
+    const Ran ran = runTalus(explain({"--at", "20.5,12.5", "--json", "--heading", heading}), folder.path());
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    const json why = json::parse(ran.out, nullptr, false);
+    EXPECT_EQ(why["column"], 20);
+    EXPECT_EQ(why["row"], 12);
+    EXPECT_EQ(why["category"].get<std::string>().empty(), false);
+    double along = NAN;
+    for (const json& cause : why["causes"])
+      if (cause["name"].get<std::string>() == "slope_along_rad") along = cause["value"];
+    return along;
+  };
+  EXPECT_NEAR(slopes("0"), std::atan(0.1), 1e-3);
+  EXPECT_NEAR(slopes("3.14159265"), -std::atan(0.1), 1e-3);
+  EXPECT_NEAR(slopes("1.57079633"), 0.0, 1e-3);
+}
+
+// Property: text and JSON list the same causes.
+TEST(ExplainCommand, TextListsWhatTheJsonLists) {
+  const Folder folder;
+  folder.write("dem.asc", asciiGrid(40, 40, ramp));
+  const json why = json::parse(runTalus(explain({"--at", "20.5,12.5", "--json"}), folder.path()).out);
+  const std::string text = runTalus(explain({"--at", "20.5,12.5"}), folder.path()).out;
+  EXPECT_GT(why["causes"].size(), 3U);
+  for (const json& cause : why["causes"]) EXPECT_THAT(text, HasSubstr(cause["name"].get<std::string>()));
+  EXPECT_THAT(text, HasSubstr(why["verdict"].get<std::string>()));
+}
+
+TEST(ExplainCommand, MistakesAreOneLineWithTheirExitCode) {
+  const std::vector<std::string> ground{"explain", "good.asc",   "--resolution", "1",
+                                        "--soil",  "sandy_loam", "--rover",      "fido"};
+  const auto with = [&ground](const std::vector<std::string>& more) {
+    auto words = ground;
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  };
+  expectRefused(BadFiles(), {{with({}), 2, "--at"},
+                             {with({"--at", "999,5"}), 2, "outside"},
+                             {with({"--at", "five"}), 2, "five"},
+                             {with({"--at", "5,5", "--heading", "nan"}), 2, "--heading"}});
+}
+
+}  // namespace
+}  // namespace talus::cli

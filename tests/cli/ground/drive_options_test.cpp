@@ -1,0 +1,50 @@
+#include <cmath>
+
+#include <CLI/CLI.hpp>
+#include <site_map.hpp>
+
+#include <talus/cli/ground/drive_options.hpp>
+
+namespace talus::cli {
+namespace {
+
+DriveOptions parsed(const std::string& line) {
+  CLI::App app;
+  DriveOptions drive;
+  addDriveOptions(app, drive);
+  app.parse(line);
+  return drive;
+}
+
+// Closed form: degrees as radians.
+TEST(DriveOptions, HeadingsInRadiansOrDegrees) {
+  EXPECT_EQ(*parsed("--start-heading 1.5").start_heading_rad, 1.5);
+  EXPECT_NEAR(*parsed("--goal-heading-deg 90").goal_heading_rad, M_PI / 2, 1e-12);
+  EXPECT_FALSE(parsed("").any());
+  EXPECT_THROW(parsed("--start-heading 1 --start-heading-deg 2"), CLI::ExcludesError);
+  EXPECT_THROW(parsed("--start-heading nan"), CLI::ValidationError);
+  EXPECT_THROW(parsed("--turning-radius -1"), CLI::ValidationError);
+  EXPECT_THROW(parsed("--chassis tank"), CLI::ValidationError);
+}
+
+TEST(DriveOptions, TheLineOverridesTheRoversKinematics) {
+  const auto map = costmap::mapOf({"111", "111"});
+  const planner::Kinematics own = kinematicsOf(parsed(""), map);
+  EXPECT_EQ(own.turning_radius_m, map.model().rover().turning_radius_m);
+  EXPECT_TRUE(own.may_reverse);
+  const planner::Kinematics said = kinematicsOf(parsed("--turning-radius 3.5 --no-reverse"), map);
+  EXPECT_EQ(said.turning_radius_m, 3.5);
+  EXPECT_FALSE(said.may_reverse);
+}
+
+TEST(DriveOptions, TheChassisIsOfTheKindNamed) {
+  const auto map = costmap::mapOf(std::vector<std::string>(8, "11111111"));
+  EXPECT_FALSE(chassisOf("", map));
+  const auto rigid = chassisOf(parsed("--chassis rigid").chassis, map);
+  ASSERT_TRUE(rigid);
+  EXPECT_EQ(rigid->refusal({{104.0, 204.0}, 0.0}), "");                 // Closed form: level ground
+  EXPECT_THROW(chassisOf("rocker-bogie", map), std::invalid_argument);  // four wheels
+}
+
+}  // namespace
+}  // namespace talus::cli

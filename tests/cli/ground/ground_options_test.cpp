@@ -1,0 +1,85 @@
+#include <CLI/CLI.hpp>
+
+#include <talus/cli/app/context.hpp>
+#include <talus/cli/ground/ground_options.hpp>
+#include <talus/costmap/map_file.hpp>
+#include <talus/talus.hpp>
+
+#include "bad_input.hpp"
+
+namespace talus::cli {
+namespace {
+
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+double flat(int, int) {
+  return 5.0;
+}
+
+GroundOptions parsed(const std::string& line) {
+  CLI::App app;
+  GroundOptions options;
+  addGroundOptions(app, options);
+  app.parse(line);
+  return options;
+}
+
+Context quiet() {
+  Context context;
+  context.quiet = true;
+  context.threads = 1;
+  return context;
+}
+
+// Closed form: degrees as radians; a flag turns its threshold over.
+TEST(GroundOptions, ThePolicyIsWhatTheLineSays) {
+  const auto policy =
+      parsed("dem.tif --no-marginal --allow-unknown --slope-uncertainty-deg 10 --time-weight 3").policy;
+  EXPECT_FALSE(policy.allow_marginal);
+  EXPECT_TRUE(policy.allow_unknown);
+  EXPECT_FALSE(policy.allow_dangerous);
+  EXPECT_NEAR(policy.slope_margin_rad, 10.0 * kDegree, 1e-12);
+  EXPECT_EQ(policy.time_weight_W, 3.0);
+  EXPECT_EQ(policy.risk_weight_J, costmap::DrivePolicy{}.risk_weight_J);
+  EXPECT_THROW(parsed("dem.tif --soil a --model b.yaml"), CLI::ExcludesError);
+}
+
+TEST(GroundOptions, GroundIsOfTheSoilAndRoverNamed) {
+  const Folder folder;
+  const std::string dem = folder.write("dem.asc", asciiGrid(20, 20, flat));
+  const Ground ground =
+      readGround(parsed(dem + " --resolution 1 --soil sandy_loam --rover fido --footprint 1.5"), quiet());
+  EXPECT_EQ(ground.map.model().rover().name, "fido");
+  ASSERT_EQ(ground.map.model().parts().classes.size(), 1U);
+  EXPECT_EQ(ground.map.footprintRadius_m(), 1.5);
+  EXPECT_EQ(ground.files.front(), dem);
+  // Property: a map that was built is taken for what it is, whichever way it is named.
+  const std::string built = folder / "map.ot";
+  costmap::writeMap(ground.map, built);
+  for (const std::string& line : {built, "any.tif --map " + built}) {
+    const Ground again = readGround(parsed(line), quiet());
+    EXPECT_EQ(again.map.model().rover().name, "fido");
+    EXPECT_EQ(again.map.countCategories().safe, ground.map.countCategories().safe);
+  }
+}
+
+// A classes file replaces the soil of the body where it defines class 0, and is added to a soil that is named.
+TEST(GroundOptions, ClassesOfTheFileAndTheSoilNamed) {
+  const Folder folder;
+  const std::string dem = folder.write("dem.asc", asciiGrid(20, 20, flat)) + " --resolution 1 --rover fido";
+  const std::string classes = folder.write("soils.yaml", "terrain_classes: {1: dry_sand, 2: sandy_loam}\n");
+  const auto numbers = [](const Ground& ground) {
+    std::vector<int> made;
+    for (const auto& one : ground.map.model().parts().classes) made.push_back(one.number);
+    return made;
+  };
+  EXPECT_THAT(numbers(readGround(parsed(dem + " --soils " + classes), quiet())), testing::ElementsAre(1, 2));
+  EXPECT_THAT(numbers(readGround(parsed(dem + " --soils " + classes + " --soil sandy_loam"), quiet())),
+              testing::ElementsAre(0, 1, 2));
+  EXPECT_THAT([&] { readGround(parsed(dem + " --soil no_such"), quiet()); },
+              ThrowsMessage<InputError>(HasSubstr("no_such")));
+}
+
+}  // namespace
+}  // namespace talus::cli

@@ -1,0 +1,81 @@
+#include <cmath>
+
+#include <CLI/CLI.hpp>
+
+#include <talus/cli/app/context.hpp>
+#include <talus/cli/ground/map_options.hpp>
+#include <talus/talus.hpp>
+
+#include "bad_input.hpp"
+
+namespace talus::cli {
+namespace {
+
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+double ramp(int column, int row) {
+  return column + 100.0 * row;
+}
+
+Context quiet() {
+  Context context;
+  context.quiet = true;
+  return context;
+}
+
+MapOptions parsed(const std::string& line) {
+  CLI::App app;
+  MapOptions options;
+  addMapOptions(app, options);
+  app.parse(line);
+  return options;
+}
+
+// Closed form: heights of the cells' columns and rows; a window keeps the cells inside it.
+TEST(MapOptions, TheMapIsReadAsTheLineSays) {
+  const Folder folder;
+  const std::string dem = folder.write("dem.asc", asciiGrid(12, 9, ramp));
+  const auto whole = readMap(parsed(dem + " --resolution 1"), quiet());
+  EXPECT_EQ(whole.grid().width, 12);
+  EXPECT_NEAR((whole.elevation_m[{5, 3}]), 305.0, 1e-4);
+  const auto part = readMap(parsed(dem + " --resolution 1 --window 2,3,6,8"), quiet());
+  EXPECT_EQ(part.grid().width, 4);
+  EXPECT_EQ(part.grid().height, 5);
+  EXPECT_NEAR((part.elevation_m[{0, 0}]), 302.0, 1e-4);
+  const auto scaled = readMap(parsed(dem + " --resolution 1 --vertical-scale 0.5 --nodata 7"), quiet());
+  EXPECT_NEAR((scaled.elevation_m[{5, 3}]), 152.5, 1e-4);
+  EXPECT_TRUE(std::isnan(scaled.elevation_m[{7, 0}]));
+}
+
+TEST(MapOptions, WhatDoesNotFitTheFileIsRefused) {
+  const Folder folder;
+  const std::string dem = folder.write("dem.asc", asciiGrid(12, 9, ramp));
+  EXPECT_THAT([&] { readMap(parsed(dem + " --resolution 1 --below 3"), quiet()); },
+              ThrowsMessage<InputError>(HasSubstr("remove --below")));
+  EXPECT_THAT([&] { readMap(parsed(dem + " --resolution 1 --max-cells 50"), quiet()); },
+              ThrowsMessage<InputError>(HasSubstr("12 x 9 cells are too many")));
+  EXPECT_THROW(parsed("--band 1"), CLI::RequiredError);
+}
+
+// Closed form: two squares of keep-out, of which either shuts its cells; no other layer where none is named.
+TEST(MapOptions, SeveralKeepOutFilesAddUp) {
+  const Folder folder;
+  const auto square = [&folder](const std::string& name, int x) {
+    const std::string a = std::to_string(x) + ".2", b = std::to_string(x) + ".8";
+    return folder.write(name, R"({"type":"Polygon","crs":"local","coordinates":[[[)" + a + ",1.2],[" + b +
+                                  ",1.2],[" + b + ",1.8],[" + a + ",1.8],[" + a + ",1.2]]]}");
+  };
+  const auto map =
+      readMap(parsed(folder.write("dem.asc", asciiGrid(12, 9, ramp)) + " --resolution 1"), quiet());
+  LayerOptions options;
+  options.keep_out = {square("a.json", 2), square("b.json", 7)};
+  const Layers layers = readLayers(options, map);
+  EXPECT_TRUE(layers.classes.empty() && layers.rock_abundance.empty());
+  for (int row = 0; row < 9; ++row)
+    for (int column = 0; column < 12; ++column)
+      EXPECT_EQ((layers.keep_out[{column, row}]) != 0, row == 1 && (column == 2 || column == 7));
+}
+
+}  // namespace
+}  // namespace talus::cli

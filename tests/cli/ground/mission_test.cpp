@@ -1,0 +1,97 @@
+#include <talus/cli/ground/mission.hpp>
+#include <talus/talus.hpp>
+
+#include "run_program.hpp"
+
+namespace talus::cli {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+constexpr const char* kMission =
+    "maps: {dem: dem.tif, terrain: classes.tif, keep_out: area.json, resolution_m: 2}\n"
+    "rover: mer\nsoils: soils.yaml\n"
+    "thresholds: {slope_margin_deg: 10, allow_marginal: true, risk_weight_J: 5e6, time_weight_W: 3}\n"
+    "planner: hybrid\nstart: [1, 2]\ngoal: [[10, 20], '30,40']\nvia: '5,6'\n"
+    "tolerance_m: 1.5\ntime_s: 20\nstart_heading_deg: 90\nreverse: false\noutput: r.geojson\n";
+
+PlanOptions readIn(const Folder& folder, PlanOptions options = {}) {
+  options.ground.dem.path = folder.write("m.yaml", kMission);
+  readMission(options);
+  return options;
+}
+
+TEST(Mission, IsToldByItsExtension) {
+  EXPECT_TRUE(isMission("a/b.yaml") && isMission("m.yml"));
+  EXPECT_FALSE(isMission("yaml") || isMission("m.tif") || isMission("m.yaml.tif"));
+}
+
+// Closed form: degrees as radians; files beside the mission by their path, others as they stand.
+TEST(Mission, SaysAllThatAPlanNeeds) {
+  const Folder folder;
+  folder.write("dem.tif", "x");
+  folder.write("soils.yaml", "x");
+  const PlanOptions plan = readIn(folder);
+  EXPECT_EQ(plan.ground.dem.path, folder / "dem.tif");
+  EXPECT_EQ(plan.ground.soils, folder / "soils.yaml");
+  EXPECT_EQ(plan.ground.layers.terrain, "classes.tif");  // not there: the reader will say so
+  EXPECT_EQ(plan.ground.rover, "mer");
+  EXPECT_THAT(plan.ground.layers.keep_out, ElementsAre("area.json"));
+  EXPECT_EQ(plan.ground.dem.read.resolution_m, 2.0);
+  EXPECT_NEAR(plan.ground.policy.slope_margin_rad, 10.0 * kDegree, 1e-12);
+  EXPECT_EQ(plan.ground.policy.risk_weight_J, 5e6);
+  EXPECT_EQ(plan.planner, "hybrid");
+  EXPECT_EQ(plan.start, "1,2");
+  EXPECT_THAT(plan.goals, ElementsAre("10,20", "30,40"));
+  EXPECT_THAT(plan.via, ElementsAre("5,6"));
+  EXPECT_NEAR(*plan.drive.start_heading_rad, 90.0 * kDegree, 1e-12);
+  EXPECT_TRUE(plan.drive.no_reverse);
+  EXPECT_EQ(plan.tolerance_m, 1.5);
+  EXPECT_EQ(plan.time_limit_s, 20.0);
+  EXPECT_EQ(plan.output, "r.geojson");
+}
+
+// Property: what the command line says holds over the file, stricter thresholds above all.
+TEST(Mission, TheCommandLineHolds) {
+  const Folder folder;
+  PlanOptions said;
+  said.ground.rover = "fido";
+  said.ground.dem.read.resolution_m = 0.5;
+  said.ground.policy.allow_marginal = false;
+  said.ground.policy.risk_weight_J = 7e8;
+  said.goals = {"3,3"};
+  said.planner = "RRTstar";
+  said.tolerance_m = 0.25;
+  said.drive.start_heading_rad = 0.1;
+  const PlanOptions plan = readIn(folder, said);
+  EXPECT_EQ(plan.ground.rover, "fido");
+  EXPECT_EQ(plan.ground.dem.read.resolution_m, 0.5);
+  EXPECT_FALSE(plan.ground.policy.allow_marginal);
+  EXPECT_EQ(plan.ground.policy.risk_weight_J, 7e8);
+  EXPECT_EQ(plan.ground.policy.time_weight_W, 3.0);  // not said on the line
+  EXPECT_THAT(plan.goals, ElementsAre("3,3"));
+  EXPECT_EQ(plan.planner, "RRTstar");
+  EXPECT_EQ(plan.tolerance_m, 0.25);
+  EXPECT_EQ(plan.drive.start_heading_rad, 0.1);
+}
+
+TEST(Mission, MistakesNameTheFileAndTheField) {
+  const Folder folder;
+  const auto refused = [&folder](const std::string& text) {
+    return [path = folder.write("bad.yaml", text)] {
+      PlanOptions options;
+      options.ground.dem.path = path;
+      readMission(options);
+    };
+  };
+  EXPECT_THAT(refused("maps: {dem: a.tif}\ngoals: [1, 2]\n"), ThrowsMessage<InputError>(HasSubstr("goal")));
+  EXPECT_THAT(refused("maps: {terrain: a.tif}\n"), ThrowsMessage<InputError>(HasSubstr("defines no map")));
+  EXPECT_THAT(refused("maps: {dem: a.tif}\nthresholds: {allow_marginal: maybe}\n"),
+              ThrowsMessage<InputError>(HasSubstr("bad.yaml:2")));
+  EXPECT_THAT(refused("rover: mer\n"), ThrowsMessage<InputError>(HasSubstr("maps")));
+}
+
+}  // namespace
+}  // namespace talus::cli

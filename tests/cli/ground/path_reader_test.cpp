@@ -1,0 +1,61 @@
+#include <talus/cli/ground/path_reader.hpp>
+#include <talus/talus.hpp>
+
+#include "example_scene.hpp"
+#include "run_program.hpp"
+
+namespace talus::cli {
+namespace {
+
+using maps::Point;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+std::vector<Point> read(const std::string& name, const std::string& content) {
+  const Folder folder;
+  return readPath(folder.write(name, content), exampleMap());
+}
+
+TEST(PathReader, TakesTablesWithTheTwoColumnsInAnyOrder) {
+  EXPECT_THAT(read("p.csv", "name,y_m,x_m\na,2,1\nb,4.5,3e1\n"), ElementsAre(Point{1, 2}, Point{30, 4.5}));
+  EXPECT_THAT(read("p.TXT", "x_m,y_m\n1,2\n"), ElementsAre(Point{1, 2}));
+}
+
+// Property: a route of ours gives back its map metres to the last bit, whatever its coordinates are rounded to.
+TEST(PathReader, TakesTheMetresOfOurOwnRoutes) {
+  EXPECT_THAT(read("r.geojson", R"({"type":"FeatureCollection","crs":"local","features":[{"type":"Feature",
+      "geometry":{"type":"LineString","coordinates":[[1,2],[3,4]]},
+      "properties":{"x_m":[0.1,0.30000000000000004],"y_m":[7,8]}}]})"),
+              ElementsAre(Point{0.1, 7}, Point{0.30000000000000004, 8}));
+}
+
+TEST(PathReader, TakesTheFirstLineOfAnyGeoJson) {
+  EXPECT_THAT(read("l.json", R"({"type":"GeometryCollection","crs":"local","geometries":[
+      {"type":"Point","coordinates":[9,9]},{"type":"LineString","coordinates":[[1,2],[3,4]]}]})"),
+              ElementsAre(Point{1, 2}, Point{3, 4}));
+}
+
+TEST(PathReader, WhatIsNoPathIsOneLine) {
+  struct Case {
+    const char* name;
+    const char* content;
+    const char* says;
+  };
+  for (const Case& c :
+       {Case{"a.csv", "x_m,z_m\n1,2\n", "no column y_m"},
+        {"b.csv", "x_m,y_m\n1,2\n3,inf\n", "b.csv:3"},
+        {"c.csv", "x_m,y_m\n", "contains no point"},
+        {"d.json", R"({"type":"FeatureCollection","features":[]})", "contains no LineString"},
+        {"e.json", R"({"type":"FeatureCollection","features":[7,{"properties":[]}]})",
+         "contains no LineString"},
+        {"f.json", R"({"type":"LineString"})", "contains no LineString"},
+        {"g.json", R"({"type":"LineString","crs":"local","coordinates":[["a",2]]})", "g.json"},
+        {"h.json", R"({"type":"FeatureCollection","features":[{"type":"Feature","properties":
+            {"x_m":[1,"b"],"y_m":[1,2]},"geometry":null}]})",
+         "contains no LineString"}})
+    EXPECT_THAT([&] { read(c.name, c.content); }, ThrowsMessage<InputError>(HasSubstr(c.says))) << c.name;
+}
+
+}  // namespace
+}  // namespace talus::cli

@@ -1,0 +1,47 @@
+#include <cmath>
+#include <map>
+
+#include <site_map.hpp>
+
+#include <talus/cli/ground/site_layers.hpp>
+
+namespace talus::cli {
+namespace {
+
+std::map<std::string, maps::Raster<float>> layersOf(const costmap::TraversabilityMap& map) {
+  std::map<std::string, maps::Raster<float>> layers;
+  for (maps::Layer& layer : siteLayers(map, 1)) layers.emplace(layer.name, std::move(layer.values));
+  return layers;
+}
+
+// Closed form: a plane that rises by 0.1 eastwards has the slope atan 0.1 everywhere and climbs to the east;
+// uphill costs more than downhill, and a cell without elevation has no number but its category.
+TEST(SiteLayers, OfAPlane) {
+  const std::vector<std::string> rows(14, "1111111?222222");
+  auto layers = layersOf(costmap::mapOf(rows, 0.1));
+  EXPECT_EQ(layers.size(), 12U);
+  const maps::Cell sand{3, 7}, hole{7, 7}, dust{11, 7};
+  EXPECT_NEAR(layers["slope"][sand], std::atan(0.1), 1e-4);
+  EXPECT_NEAR(layers["elevation"][sand], 1000.3, 1e-3);
+  EXPECT_NEAR(layers["step"][sand], layers["step"][dust], 1e-3);
+  EXPECT_GT(layers["energy_per_metre_uphill"][sand], layers["energy_per_metre_downhill"][sand]);
+  EXPECT_EQ(layers["class"][sand], 1.0F);
+  EXPECT_EQ(layers["class"][dust], 2.0F);
+  EXPECT_TRUE(std::isnan(layers["elevation"][hole]));
+  EXPECT_TRUE(std::isnan(layers["energy_per_metre_uphill"][hole]));
+}
+
+// Property: the weaker soil pulls less and sinks more, and categories are those of the map.
+TEST(SiteLayers, SayWhatTheMapSays) {
+  const auto map = costmap::mapOf({"1111111222222", "1111111222222", "11111112222#2", "1111111222222"});
+  auto layers = layersOf(map);
+  EXPECT_GT((layers["drawbar_pull_over_load"][{2, 1}]), (layers["drawbar_pull_over_load"][{11, 2}]));
+  EXPECT_LT((layers["sinkage_over_radius"][{2, 1}]), (layers["sinkage_over_radius"][{11, 2}]));
+  for (int row = 0; row < 4; ++row)
+    for (int column = 0; column < 13; ++column)
+      EXPECT_EQ((layers["category"][{column, row}]), static_cast<float>(map.belief({column, row}).category));
+  EXPECT_TRUE(std::isnan(layers["energy_per_metre_uphill"][{11, 1}]));  // kept out
+}
+
+}  // namespace
+}  // namespace talus::cli

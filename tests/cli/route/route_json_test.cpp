@@ -1,0 +1,84 @@
+#include <nlohmann/json.hpp>
+
+#include <talus/cli/route/route_json.hpp>
+
+#include "example_scene.hpp"
+#include "run_program.hpp"
+
+namespace talus::cli {
+namespace {
+
+// The fields that the interface promises of a route.
+constexpr const char* kSummary[] = {"status",   "cost",          "energy_J",    "time_s", "length_m",
+                                    "max_slip", "max_slope_rad", "lower_bound", "gap",    "planner"};
+constexpr const char* kArrays[] = {"x_m",
+                                   "y_m",
+                                   "elevation_m",
+                                   "heading_rad",
+                                   "slip",
+                                   "sinkage_m",
+                                   "slope_along_rad",
+                                   "slope_across_rad",
+                                   "torque_Nm",
+                                   "category",
+                                   "drawbar_pull_margin",
+                                   "energy_J",
+                                   "time_s",
+                                   "immobilisation_risk"};
+
+// Property: every promised field is there, one value a vertex, and a vertex's numbers come back to the bit.
+TEST(RouteJson, HasThePromisedFieldsAndAValueAVertex) {
+  const planner::Route route = exampleRoute();
+  const auto document = nlohmann::json::parse(routeGeoJson(route, exampleMap(), {.seed = 7}).dump());
+  const auto& feature = document["features"][0];
+  const auto& properties = feature["properties"];
+  for (const char* key : kArrays) EXPECT_EQ(properties[key].size(), route.vertices.size()) << key;
+  for (const char* key : kSummary) EXPECT_TRUE(properties["summary"].contains(key)) << key;
+  EXPECT_EQ(document["crs"], "local");  // the map has none
+  EXPECT_EQ(properties["inputs"]["seed"], 7);
+  EXPECT_EQ(feature["geometry"]["type"], "LineString");
+  for (std::size_t i = 0; i < route.vertices.size(); ++i) {
+    EXPECT_EQ(properties["x_m"][i].get<double>(), route.vertices[i].x_m);
+    EXPECT_EQ(properties["slip"][i].get<double>(), route.vertices[i].slip);
+    EXPECT_EQ(feature["geometry"]["coordinates"][i][1].get<double>(), route.vertices[i].y_m);
+  }
+  EXPECT_EQ(properties["category"][50], "marginal");
+}
+
+// Closed form: RFC 7946 wants two positions of a line, so a standstill is there twice; what is not known is
+// null, and an elevation that is not known is left out of the position.
+TEST(RouteJson, AStandstillIsALineAndTheUnknownIsNull) {
+  planner::Route route = exampleRoute();
+  route.vertices.resize(1);
+  route.vertices[0].elevation_m = route.vertices[0].slip = planner::kNotKnown;
+  const auto document = nlohmann::json::parse(routeGeoJson(route, exampleMap(), {}).dump());
+  const auto& line = document["features"][0]["geometry"]["coordinates"];
+  ASSERT_EQ(line.size(), 2U);
+  EXPECT_EQ(line[0], line[1]);
+  EXPECT_EQ(line[0].size(), 2U);
+  EXPECT_TRUE(document["features"][0]["properties"]["slip"][0].is_null());
+}
+
+// Printed in: FIPS 180-2, appendix B.1: the SHA-256 of "abc".
+TEST(RouteJson, TheInputsAreNamedWithTheirDigest) {
+  const Folder folder;
+  const auto document =
+      routeGeoJson(exampleRoute(), exampleMap(), {.files = {folder.write("dem.tif", "abc")}});
+  const auto& file = document["features"][0]["properties"]["inputs"]["files"][0];
+  EXPECT_EQ(file["file"], "dem.tif");
+  EXPECT_EQ(file["sha256"], "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+}
+
+// Property: what a controller would notice is there for drives alone.
+TEST(RouteJson, DrivesHaveTheirShape) {
+  planner::Route route = exampleRoute();
+  EXPECT_FALSE(summaryJson(route).contains("drive"));
+  EXPECT_FALSE(routeGeoJson(route, exampleMap(), {})["features"][0]["properties"].contains("reverse"));
+  route.summary.drive = planner::DriveShape{.cusps = 2, .turns_in_place = 1};
+  EXPECT_EQ(summaryJson(route)["drive"]["cusps"], 2);
+  EXPECT_EQ(routeGeoJson(route, exampleMap(), {})["features"][0]["properties"]["reverse"].size(),
+            route.vertices.size());
+}
+
+}  // namespace
+}  // namespace talus::cli

@@ -1,0 +1,76 @@
+#include <cmath>
+#include <random>
+
+#include <talus/cli/soil/trace_report.hpp>
+
+namespace talus::cli {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+// Rows in which "temperature" follows "depth" closely, "same" is depth turned over and "noise" is of its own.
+terramech::Trial trial() {
+  std::mt19937 random(4);
+  std::normal_distribution<double> normal;
+  terramech::Trial made;
+  made.covariates = {"depth", "temperature", "same", "noise", "steady"};
+  for (int row = 0; row < 200; ++row) {
+    terramech::WheelState state;
+    const double depth = normal(random);
+    state.extra = {{"depth", depth},
+                   {"temperature", 3.0 * depth + 0.5 * normal(random)},
+                   {"same", row == 7 ? std::nan("") : -2.0 * depth},
+                   {"noise", normal(random)},
+                   {"steady", 5.0}};
+    made.states.push_back(state);
+  }
+  return made;
+}
+
+terramech::Explanation explanation(const std::string& name, const std::string& covariate) {
+  terramech::Explanation made;
+  made.candidate.parts = {{.name = name, .covariate = covariate}};
+  return made;
+}
+
+// Closed form: 3 x + 0.5 e has the correlation 3 / sqrt(9.25) = 0.986 with x, -2 x has -1; both are above 0.9
+// in size. A column that does not vary has none, nor does a missing value count.
+TEST(TraceReport, ConfoundedColumnsMoveTogether) {
+  EXPECT_THAT(confounded(trial(), "depth"), ElementsAre("temperature", "same"));
+  EXPECT_TRUE(confounded(trial(), "noise").empty());
+  EXPECT_TRUE(confounded(trial(), "steady").empty());
+}
+
+TEST(TraceReport, AnEffectOfOneGroupIsOfTheColumnOfTheGroup) {
+  EXPECT_EQ(covariateOf({.name = "a", .covariate = "constant", .only_column = "wheel", .only_value = "2"}),
+            "wheel");
+  EXPECT_EQ(covariateOf({.name = "a", .covariate = "depth"}), "depth");
+}
+
+// Property: a rival in another column is told first, then a confounded column, then a rival form, then none.
+TEST(TraceReport, TheMeasurementSeparatesTheNearestAlternative) {
+  terramech::TracedEffect effect;
+  effect.chosen = explanation("ding", "depth");
+  effect.alternatives = {explanation("lyasko", "depth"), explanation("drift", "noise")};
+  EXPECT_THAT(separatingMeasurement(trial(), effect), HasSubstr("depth and noise vary independently"));
+  effect.alternatives.resize(1);
+  EXPECT_THAT(separatingMeasurement(trial(), effect), HasSubstr("depth is correlated with temperature"));
+  effect.chosen = explanation("ding", "noise");
+  effect.alternatives = {explanation("lyasko", "noise")};
+  EXPECT_THAT(separatingMeasurement(trial(), effect), HasSubstr("over a wider range of noise"));
+  effect.alternatives.clear();
+  EXPECT_EQ(separatingMeasurement(trial(), effect), "no close alternative");
+}
+
+TEST(TraceReport, RowsBeyondTheAxleAreSaidWithTheirErrors) {
+  TraceStory story;
+  story.beyond_axle = 3;
+  story.beyond_axle_rmse = {0.125, NAN, 0.5, NAN};
+  EXPECT_THAT(beyondAxleText(story), HasSubstr("3 rows with sinkage at or above the axle are excluded"));
+  EXPECT_THAT(beyondAxleText(story),
+              testing::EndsWith("drawbar_pull_over_load 0.125, torque_over_load_radius 0.500"));
+}
+
+}  // namespace
+}  // namespace talus::cli

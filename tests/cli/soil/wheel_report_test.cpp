@@ -1,0 +1,49 @@
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include <talus/cli/soil/wheel_report.hpp>
+#include <talus/terramech/contact/wong_reece.hpp>
+#include <talus/terramech/io/soil_library.hpp>
+
+namespace talus::cli {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+WheelAtWork work() {
+  return {terramech::loadSoil("sandy_loam"), terramech::loadRover("fido"), 80.0, 0.3};
+}
+
+// Property: the page states the forces of the equilibrium, in the units that it names and over r, rW and W.
+TEST(WheelReport, StatesTheForcesOfTheEquilibrium) {
+  const WheelAtWork at = work();
+  const double r = at.rover.wheel.radius_m;
+  const auto f = terramech::equilibrium(at.soil, at.rover.wheel, {.load_N = 80.0, .slip = 0.3});
+  const std::string page = wheelReport(at);
+  const auto row = [](const std::string& name, double value, const std::string& unit, double ratio) {
+    return fmt::format(
+        "<td>{}</td><td class=\"number\">{:.3f}</td><td>{}</td><td class=\"number\">{:.3f}</td>", name, value,
+        unit, ratio);
+  };
+  EXPECT_THAT(page, HasSubstr(row("sinkage", 1e3 * f.sinkage_m, "mm", f.sinkage_m / r)));
+  EXPECT_THAT(page, HasSubstr(row("torque", f.torque_Nm, "Nm", f.torque_Nm / (r * 80.0))));
+  EXPECT_THAT(page, HasSubstr(row("drawbar pull", f.drawbar_pull_N, "N", f.drawbar_pull_N / 80.0)));
+  EXPECT_THAT(page, HasSubstr("data:image/svg+xml;base64,"));
+}
+
+TEST(WheelReport, NamesAreNoMarkup) {
+  WheelAtWork at = work();
+  at.soil.name = "<b>sand</b>";
+  EXPECT_THAT(wheelReport(at), Not(HasSubstr("<b>sand")));
+}
+
+TEST(WheelReport, ALoadThatSinksTheWheelHasNoPage) {
+  WheelAtWork at = work();
+  at.load_N = 1e9;
+  EXPECT_THROW(wheelReport(at), std::domain_error);
+}
+
+}  // namespace
+}  // namespace talus::cli
