@@ -13,6 +13,8 @@ namespace {
 
 using nlohmann::json;
 
+constexpr int kDeepest = 100;  // ten serve all geometries; what walks through a value takes stack for each
+
 std::string typeOf(const json& object) {
   if (!object.is_object()) return "";
   const auto type = object.find("type");
@@ -53,7 +55,12 @@ bool saysLocal(const json& document) {
 json readGeoJson(const std::string& path) {
   requireReadableFile(path);
   std::ifstream file(path);
-  json document = json::parse(file, nullptr, false);
+  const auto shallow = [&](int depth, json::parse_event_t, const json&) {
+    if (depth > kDeepest)
+      throw InputError({path, "nests deeper than " + std::to_string(kDeepest) + " levels", "see RFC 7946"});
+    return true;
+  };
+  json document = json::parse(file, shallow, false);
   if (document.is_discarded())
     throw InputError({path, "is not JSON", "check it for a missing bracket or comma"});
   if (typeOf(document).empty())

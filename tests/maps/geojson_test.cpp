@@ -81,6 +81,9 @@ TEST(GeoJson, AFileThatIsNoGeoJsonIsRefused) {
   EXPECT_THAT(line("7"), HasSubstr("is not GeoJSON"));
   EXPECT_THAT(line(R"({"type":7})"), HasSubstr("is not GeoJSON"));
   EXPECT_EQ(line(R"({"type":"Point","coordinates":[1,2]})"), "accepted");
+  std::string deep = R"({"type":"Point","coordinates":)";
+  deep += std::string(100000, '[') + std::string(100000, ']') + "}";
+  EXPECT_THAT(line(deep), HasSubstr("nests deeper than 100 levels"));
 }
 
 }  // namespace

@@ -78,5 +78,37 @@ TEST(PlaneKernel, EveryKernelGivesTheSameBits) {
   }
 }
 
+// Far below the datum, where floats are coarse.
+#if defined(__x86_64__)
+TEST(PlaneKernel, BothTwinsGiveTheSameBitsFarFromTheDatum) {
+  if (!__builtin_cpu_supports("avx2")) GTEST_SKIP() << "this processor has no AVX2";
+  const Footprint footprint = discFootprint(3.2);
+  const int width = 61;
+  const int stride = width + 2 * footprint.reach + kPlaneLanes;
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> uniform(-4501.0F, -4499.0F);
+  std::vector<float> heights(static_cast<std::size_t>(stride * (2 * footprint.reach + 1)));
+  for (float& h : heights) h = uniform(random);
+  heights[200] = std::numeric_limits<float>::quiet_NaN();
+  std::vector<const float*> rows;
+  for (int r = 0; r <= 2 * footprint.reach; ++r)
+    rows.push_back(heights.data() + r * stride + footprint.reach);
+  const auto bits = [&](PlaneKernel kernel) {
+    std::vector<float> out(static_cast<std::size_t>(4 * width));
+    kernel(footprint, {.heights = rows.data(),
+                       .width = width,
+                       .cells_per_metre = 0.3F,
+                       .dz_dx = out.data(),
+                       .dz_dy = out.data() + width,
+                       .roughness_m = out.data() + 2 * width,
+                       .step_m = out.data() + 3 * width});
+    std::vector<std::uint32_t> words;
+    for (float v : out) words.push_back(std::bit_cast<std::uint32_t>(v));
+    return words;
+  };
+  EXPECT_EQ(bits(fitPlanesBaseline), bits(fitPlanesAvx2));
+}
+#endif
+
 }  // namespace
 }  // namespace talus::maps
