@@ -5,7 +5,6 @@
 #include <site_fixture.hpp>
 
 #include <talus/planner/simulation/true_world.hpp>
-#include <talus/terramech/contact/wong_reece.hpp>
 
 namespace talus::planner {
 namespace {
@@ -22,25 +21,6 @@ maps::Raster<std::uint8_t> oneClass() {
 TrueWorld dustInTheEast() {
   return {
       {.classes = {testSand()}, .patches = {{{1030.0, 20.0}, 1000.0, testDust()}}}, testRover(), oneClass()};
-}
-
-TEST(WheelTable, HoldsTheForwardModel) {
-  const terramech::Rover rover = testRover();
-  const WheelTable table(testSand(), rover);
-  for (std::size_t layer = 0; layer < WheelTable::kLoads; ++layer)
-    for (const double slip : {-0.5, 0.0, 0.3, 0.5}) {
-      // Closed form: the table's own nodes, which lie at every 0.025 of slip
-      const double load = WheelTable::load(layer), load_N = load * terramech::wheelLoad_N(rover);
-      const auto wheel = terramech::equilibrium(testSand(), rover.wheel, {.load_N = load_N, .slip = slip});
-      const WheelTable::Row row = table.at(slip, load);
-      EXPECT_NEAR(row.pull, wheel.drawbar_pull_N / load_N, 1e-12);
-      EXPECT_NEAR(row.sinkage, wheel.sinkage_m / rover.wheel.radius_m, 1e-12);
-      EXPECT_NEAR(row.torque, wheel.torque_Nm / (load_N * rover.wheel.radius_m), 1e-12);
-    }
-  // Property: between two nodes it lies between them, beyond the last it stays.
-  EXPECT_GT(table.at(0.3, 1.05).sinkage, table.at(0.3, 1.0).sinkage);
-  EXPECT_LT(table.at(0.3, 1.05).sinkage, table.at(0.3, 1.15).sinkage);
-  EXPECT_NEAR(table.at(0.3, 2.5).sinkage, table.at(0.3, 1.9).sinkage, 1e-12);
 }
 
 TEST(TrueWorld, WheelsTogetherPullWhatTheSlopeAsks) {
