@@ -27,5 +27,17 @@ TEST(PlaceReader, FirstPointOfAGeoJsonFile) {
   EXPECT_THAT(refusal([&] { readPlace(line, dem, "--goal"); }), HasSubstr("holds no Point"));
 }
 
+TEST(PlaceReader, OfSeveralPointsItIsTheFirst) {
+  const TemporaryFolder folder;
+  const ElevationMap dem = map(folder);
+  const std::string many = folder.write(
+      "m.geojson",
+      R"({"type":"MultiPoint","crs":"local","coordinates":[[500015,4999985],[500025,4999975]]})");
+  EXPECT_EQ(readPlace(many, dem, "--start"), (Point{500015, 4999985}));
+  const std::string empty =
+      folder.write("e.geojson", R"({"type":"MultiPoint","crs":"local","coordinates":[]})");
+  EXPECT_THAT(refusal([&] { readPlace(empty, dem, "--start"); }), HasSubstr("holds no Point"));
+}
+
 }  // namespace
 }  // namespace talus::maps

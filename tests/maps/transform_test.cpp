@@ -127,5 +127,21 @@ TEST(Transform, AlbersInTheSouthMirrorsTheNorth) {
   }
 }
 
+// Property: a conic is true along its standard parallels, on either half of the body.
+TEST(Transform, ConicsAreTrueAlongTheirParallels) {
+  for (ProjectionMethod method : {LambertConformalConic, AlbersEqualArea})
+    for (const double half : {1.0, -1.0}) {
+      const auto transform = makeTransform(kFlat, {.method = method,
+                                                   .latitude_of_origin_rad = half * 35 * kDegree,
+                                                   .standard_parallel_1_rad = half * 30 * kDegree,
+                                                   .standard_parallel_2_rad = half * 50 * kDegree});
+      EXPECT_NEAR(transform->forward({half * 35 * kDegree, 0.0}).y_m, 0.0, 1e-6);
+      for (const double parallel : {30.0, 50.0}) {
+        const Jacobian j = jacobian(*transform, kFlat, {half * parallel * kDegree, 0.1});
+        EXPECT_NEAR(std::hypot(j.east.x_m, j.east.y_m), 1.0, 1e-7) << static_cast<int>(method) << half;
+      }
+    }
+}
+
 }  // namespace
 }  // namespace talus::maps

@@ -71,5 +71,21 @@ TEST(EffectsDigging, SoilBehindADiggingWheelPushesItAndItDoesNotBulldozeWhatItDu
               2.0 * state().wheel.width_m * 0.5 * 1600.0 * 9.80665 * pushed * pushed * kp, 1e-6);
 }
 
+TEST(EffectsDigging, PloughingGrowsWithThePathAcross) {
+  // Closed form: J = sin b / (sin b + m cos b) at 45 deg is 1/2 for m = 1 and 1/4 for m = 3; a r J^2 with
+  // a r = 0.1 m, and contact behind 1 - (1 - J). A locked wheel only drags.
+  const WheelContact one = acted("side_ploughing", {0.5, 1.0}, M_PI / 4),
+                     three = acted("side_ploughing", {0.5, 3.0}, -M_PI / 4);
+  EXPECT_NEAR(one.ploughed_m, 0.1 / 4, 1e-12);
+  EXPECT_NEAR(one.rebound, 0.5, 1e-12);
+  EXPECT_NEAR(three.ploughed_m, 0.1 / 16, 1e-12);
+  EXPECT_NEAR(three.rebound, 0.25, 1e-12);
+  WheelContact locked = plainContact();
+  locked.rolling = 0.0;
+  const double parameters[] = {0.5, 1.0};
+  findEffect("side_ploughing")->act({parameters, {}, M_PI / 4}, locked);
+  EXPECT_EQ(locked.ploughed_m, 0.0);
+}
+
 }  // namespace
 }  // namespace talus::terramech

@@ -120,5 +120,14 @@ TEST(RefinedModel, StdHoldsTheFittedParameters) {
   EXPECT_NEAR(p.scaled_std[2], 0.0, 1e-9);
 }
 
+TEST(RefinedModel, StdHoldsWhatParametersShare) {
+  // Closed form: of a sum of two offsets the variance is 4 + 9 + 2 (-2) = 9.
+  RefinedModel model = base();
+  model.effects = {with("drawbar_zero", {1.0}), with("drawbar_zero", {-2.0})};
+  model.fitted = {{.effect = 0, .index = 0}, {.effect = 1, .index = 0}};
+  model.covariance = {4.0, -2.0, -2.0, 9.0};
+  EXPECT_NEAR(predictWithStd(model, state()).scaled_std[0], 3.0 / 80.0, 1e-9);
+}
+
 }  // namespace
 }  // namespace talus::terramech
