@@ -42,8 +42,8 @@ TEST(InterruptDeathTest, TheSecondEndsTheProcessWithThePromisedCode) {
   EXPECT_EXIT(interruptedTwice(), testing::ExitedWithCode(Exit::kCancelled), "");
 }
 
-// Property: its end is no interrupt, though it wakes the listener by a signal.
-TEST(InterruptDeathTest, EndsInPeace) {
+// Property: its destructor wakes the listener by a signal that is not taken for the user's.
+TEST(InterruptDeathTest, ItsOwnEndIsNoInterrupt) {
   EXPECT_EXIT(
       {
         { const Interrupt interrupt; }
