@@ -37,10 +37,10 @@ struct CellBelief {
   float pull_std = 0.0F;      ///< its standard deviation [-]
   float sinkage_mean = 0.0F;  ///< sinkage over wheel radius at the reference slip [-], posterior mean
   float sinkage_std = 0.0F;   ///< its standard deviation [-]
-  /// Samples that speak for this cell, each weighed by its nearness [-]; 0 = prior only.
+  /// Samples in its block, each weighed by its certainty [-]; 0 = nobody drove there.
   float evidence = 0.0F;
-  float evidence_pull = 0.0F;      ///< their weighed mean of drawbar pull over load [-]
-  float evidence_sinkage = 0.0F;   ///< their weighed mean of sinkage over radius [-]
+  float evidence_pull = 0.0F;      ///< drawbar pull over load of the weakest part of them [-]
+  float evidence_sinkage = 0.0F;   ///< sinkage over radius of the deepest [-]; 0: none was measured
   std::uint32_t updated_s = 0;     ///< telemetry time of the newest sample, rounded down [s]
   std::uint8_t terrain_class = 0;  ///< number in the terrain-class raster; 0 where there is none
   std::uint8_t category = 3;       ///< terramech::Category as a number: safe, marginal, dangerous, unknown

@@ -1,247 +1,69 @@
-#include <cmath>
-#include <limits>
-#include <memory>
-#include <optional>
 #include <string>
 #include <utility>
 
 #include <talus/costmap/drive_evidence.hpp>
-#include <talus/terramech/contact/load_transfer.hpp>
+#include <talus/costmap/telemetry_processor.hpp>
 
 namespace talus::costmap {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-// The columns of a telemetry file as readings.
-class Rows {
- public:
-  Rows(const terramech::Telemetry& telemetry, const TraversabilityMap& map)
-      : map_(map),
-        x_(telemetry.at("x_m")),
-        y_(telemetry.at("y_m")),
-        load_(telemetry.at("load_N")),
-        slip_(telemetry.at("slip")),
-        time_(telemetry.find("time_s")),
-        torque_(telemetry.find("torque_Nm")),
-        sinkage_(telemetry.find("sinkage_m")),
-        z_(telemetry.find("z_m")),
-        slope_(telemetry.find("slope_rad")),
-        heading_(telemetry.find("heading_rad")),
-        pull_(telemetry.find("drawbar_pull_N")),
-        pass_(telemetry.find("pass_index")),
-        wheel_(telemetry.findWords("wheel")),
-        run_(telemetry.findWords("run")) {}
-
-  std::size_t size() const noexcept { return x_.size(); }
-
-  WheelReading reading(std::size_t i) const {
-    WheelReading r{.time_s = value(time_, i),
-                   .place = {x_[i], y_[i]},
-                   .z_m = value(z_, i),
-                   .load_N = load_[i],
-                   .slip = slip_[i],
-                   .torque_Nm = value(torque_, i),
-                   .sinkage_m = value(sinkage_, i),
-                   .gradient = std::tan(value(slope_, i)),
-                   .drawbar_pull_N = value(pull_, i),
-                   .pass = 1};
-    if (std::isfinite(value(pass_, i))) r.pass = static_cast<int>(value(pass_, i));
-    if (std::isnan(r.gradient)) r.gradient = mapGradient(r, heading(i));
-    return r;
+// Calls take(row, result) for every row in order.
+template <typename Take>
+void processRows(const TelemetryRows& rows, const TraversabilityMap& map, TelemetryProcessor& processor,
+                 const DriveVerdict& verdict, Take&& take) {
+  for (std::size_t first = 0; first < rows.size();) {
+    const Moment moment = momentAt(rows, first, map.model().rover());
+    for (auto& result : processor.process(rows, moment, verdict)) take(first++, std::move(result));
   }
-
-  double heading(std::size_t i) const { return value(heading_, i); }
-
-  // Wheel and run together name a series in time.
-  std::string series(std::size_t i) const { return run(i) + '/' + wheel(i); }
-
-  // One past the last row that was read at the same moment of the same run as this one, by another wheel.
-  std::size_t endOfMoment(std::size_t first) const {
-    std::size_t end = first + 1;
-    if (!time_ || !wheel_ || !std::isfinite(value(time_, first))) return end;
-    const auto seen = [&](std::size_t i) {
-      for (std::size_t j = first; j < i; ++j)
-        if (wheel(j) == wheel(i)) return true;
-      return false;
-    };
-    while (end < size() && value(time_, end) == value(time_, first) && run(end) == run(first) && !seen(end))
-      ++end;
-    return end;
-  }
-
- private:
-  static double value(const std::vector<double>* column, std::size_t i) {
-    return column ? (*column)[i] : kNone;
-  }
-  std::string wheel(std::size_t i) const { return wheel_ ? (*wheel_)[i] : std::string(); }
-  std::string run(std::size_t i) const { return run_ ? (*run_)[i] : std::string(); }
-
-  // Of the top surface: that of a floor beneath it is not known.
-  double mapGradient(const WheelReading& r, double heading_rad) const {
-    const auto cell = map_.grid().cellAt(r.place);
-    if (!cell || std::isnan(heading_rad) || map_.floorAt(*cell, r.z_m)) return kNone;
-    const CellCode code = map_.code(*cell);
-    return code.dzDx() * std::cos(heading_rad) + code.dzDy() * std::sin(heading_rad);
-  }
-
-  const TraversabilityMap& map_;
-  const std::vector<double>&x_, &y_, &load_, &slip_;
-  const std::vector<double>*time_, *torque_, *sinkage_, *z_, *slope_, *heading_, *pull_, *pass_;
-  const std::vector<std::string>*wheel_, *run_;
-};
-
-std::optional<int> classAt(const TraversabilityMap& map, const WheelReading& reading) {
-  const auto cell = map.grid().cellAt(reading.place);
-  const int index = cell ? map.classIndex(*cell, reading.z_m) : -1;
-  return index < 0 ? std::nullopt : std::optional(index);
 }
-
-// The readings of one moment, with the loads that the slope gives them where the file has all wheels carry
-// the same: such a column is the weight's even share and not a measurement.
-struct Moment {
-  std::size_t first = 0;
-  std::vector<WheelReading> readings;
-  bool transferred = false;
-};
-
-constexpr double kSameLoad = 0.01;       // of the load: less is the same number
-constexpr double kLevelGradient = 0.03;  // less moves no load worth speaking of
-
-Moment momentAt(const Rows& rows, std::size_t first, const terramech::Rover& rover) {
-  Moment moment{.first = first, .readings = {}};
-  maps::Point middle{0.0, 0.0};
-  const std::size_t end = rows.endOfMoment(first);
-  bool same = true;
-  for (std::size_t i = first; i < end; ++i) {
-    const WheelReading& r = moment.readings.emplace_back(rows.reading(i));
-    middle.x_m += r.place.x_m / static_cast<double>(end - first);
-    middle.y_m += r.place.y_m / static_cast<double>(end - first);
-    const double even_N = terramech::wheelLoad_N(rover);
-    same =
-        same && std::abs(r.load_N - even_N) < kSameLoad * even_N && r.gradient == moment.readings[0].gradient;
-  }
-  const double gradient = moment.readings[0].gradient, heading = rows.heading(first);
-  const bool whole = moment.readings.size() == static_cast<std::size_t>(rover.wheel_count);
-  if (!same || !whole || !(std::abs(gradient) > kLevelGradient) || std::isnan(heading)) return moment;
-  std::vector<double> along_m;
-  for (const WheelReading& r : moment.readings)
-    along_m.push_back((r.place.x_m - middle.x_m) * std::cos(heading) +
-                      (r.place.y_m - middle.y_m) * std::sin(heading));
-  const std::vector<double> loads_N = terramech::wheelLoads_N(rover, gradient, along_m);
-  for (std::size_t w = 0; w < loads_N.size(); ++w) moment.readings[w].load_N = loads_N[w];
-  moment.transferred = true;
-  return moment;
-}
-
-// Puts the moments of a drive through watch and observer, one after the other.
-class TelemetryProcessor {
- public:
-  explicit TelemetryProcessor(const TraversabilityMap& map)
-      : map_(map), watch_(map.model()), observer_(map.model()) {}
-
-  // Of one wheel: why it is not believed, and what it says if it is.
-  struct Result {
-    WheelReading reading;
-    std::string reason;
-    WheelObservation observation;
-  };
-
-  // Calls take(row, result) for every row in order. `without_torque`: torque and sinkage are not believed.
-  template <typename Take>
-  void processRows(const Rows& rows, bool without_torque, Take&& take) {
-    for (std::size_t first = 0; first < rows.size();) {
-      const Moment moment = momentAt(rows, first, map_.model().rover());
-      transferred_ += moment.transferred ? moment.readings.size() : 0;
-      for (Result& result : process(rows, moment, without_torque)) take(first++, std::move(result));
-    }
-  }
-
-  const SensorWatch& watch() const noexcept { return watch_; }
-  std::size_t transferred() const noexcept { return transferred_; }
-
- private:
-  std::vector<Result> process(const Rows& rows, const Moment& moment, bool without_torque) {
-    std::vector<SensorWatch::Named> named;
-    for (std::size_t w = 0; w < moment.readings.size(); ++w)
-      named.push_back({rows.series(moment.first + w), moment.readings[w]});
-    const auto refused = watch_.refuse(named);
-    std::vector<Result> all;
-    std::vector<ClassReading> sound, believed;
-    std::vector<std::size_t> who;
-    for (std::size_t w = 0; w < moment.readings.size(); ++w) {
-      Result& result = all.emplace_back(Result{moment.readings[w], {}, {}});
-      const auto index = classAt(map_, result.reading);
-      if (refused[w])
-        result.reason = *refused[w];
-      else if (!index)
-        result.reason = "outside the map or on ground without a soil";
-      if (!result.reason.empty()) continue;
-      sound.push_back({*index, result.reading});
-      believed.push_back(sound.back());
-      if (without_torque) believed.back().reading.torque_Nm = believed.back().reading.sinkage_m = kNone;
-      who.push_back(w);
-    }
-    for (const auto& seen : observer_.observe(sound))
-      if (seen) watch_.compare(*seen);
-    for (const auto& [index, reading] : sound) watch_.compareSlip(reading.slip - asked(index, reading));
-    const auto seen = observer_.observe(believed);
-    for (std::size_t i = 0; i < who.size(); ++i)
-      if (seen[i])
-        all[who[i]].observation = *seen[i];
-      else
-        all[who[i]].reason = "insufficient measurements: needs slope, torque with sinkage, or drawbar pull";
-    return all;
-  }
-
-  // Slip of fresh ground of the class on the reading's slope; NaN where none is known or none holds it.
-  double asked(int class_index, const WheelReading& reading) const {
-    const GroundModel& model = map_.model();
-    if (std::isnan(reading.gradient) || reading.pass > 1) return kNone;
-    const DriveState state = model.state(class_index, model.prior(class_index), reading.gradient);
-    return state.refusal == Refusal::Pull ? kNone : static_cast<double>(state.slip);
-  }
-
-  const TraversabilityMap& map_;
-  SensorWatch watch_;
-  WheelObserver observer_;
-  std::size_t transferred_ = 0;
-};
 
 }  // namespace
 
 struct DriveIntake::State {
   TraversabilityMap& map;
   EvidenceJournal* journal;
+  IntakeOptions options;
   TelemetryProcessor processor;
   DriveReport report{};
 
-  void put(const terramech::Telemetry& telemetry, bool without_torque);
+  void learn(const terramech::Telemetry& telemetry, const TelemetryRows& rows, std::size_t i,
+             TelemetryProcessor::Result&& result);
+  void put(const terramech::Telemetry& telemetry, const DriveVerdict& verdict);
 };
 
-void DriveIntake::State::put(const terramech::Telemetry& telemetry, bool without_torque) {
-  const Rows rows(telemetry, map);
-  processor.processRows(rows, without_torque, [&](std::size_t i, TelemetryProcessor::Result&& result) {
-    if (result.reason.empty() && !map.learn(result.observation)) result.reason = "no soil cell there";
-    const JournalRow row{.source = telemetry.source,
-                         .line = static_cast<std::int64_t>(telemetry.lines[i]),
-                         .accepted = result.reason.empty(),
-                         .reason = result.reason,
-                         .reading = rows.reading(i),
-                         .observation = result.observation};
-    if (journal) journal->append(row);
-    ++(row.accepted ? report.used : report.rejected);
-    if (report.first_reason.empty()) report.first_reason = row.reason;
+void DriveIntake::State::learn(const terramech::Telemetry& telemetry, const TelemetryRows& rows,
+                               std::size_t i, TelemetryProcessor::Result&& result) {
+  bool accepted = result.observation.has_value();
+  if (accepted && !map.learn(*result.observation)) {
+    accepted = false;
+    result.reason = "no ground to learn about there";
+  }
+  const JournalRow row{.source = telemetry.source,
+                       .line = static_cast<std::int64_t>(telemetry.lines[i]),
+                       .accepted = accepted,
+                       .reason = result.reason,
+                       .reading = rows.reading(i),
+                       .observation = result.observation.value_or(WheelObservation{})};
+  if (journal) journal->append(row);
+  ++(accepted ? report.used : report.rejected);
+  if (accepted && row.observation.pull_may_raise) ++report.raising;
+  if (!accepted && report.first_reason.empty()) report.first_reason = row.reason;
+}
+
+void DriveIntake::State::put(const terramech::Telemetry& telemetry, const DriveVerdict& verdict) {
+  const TelemetryRows rows(telemetry, map, options.pose_std_m);
+  processRows(rows, map, processor, verdict, [&](std::size_t i, TelemetryProcessor::Result&& result) {
+    learn(telemetry, rows, i, std::move(result));
   });
 }
 
-DriveIntake::DriveIntake(TraversabilityMap& map, EvidenceJournal* journal)
-    : state_(std::make_unique<State>(State{map, journal, TelemetryProcessor(map)})) {}
+DriveIntake::DriveIntake(TraversabilityMap& map, EvidenceJournal* journal, const IntakeOptions& options)
+    : state_(std::make_unique<State>(State{map, journal, options, TelemetryProcessor(map)})) {}
 
 DriveIntake::~DriveIntake() = default;
 
 void DriveIntake::add(const terramech::Telemetry& telemetry) {
-  state_->put(telemetry, state_->processor.watch().biased());
+  state_->put(telemetry, state_->processor.verdict());
 }
 
 DriveReport DriveIntake::report() const {
@@ -254,13 +76,14 @@ DriveReport DriveIntake::report() const {
   return report;
 }
 
-DriveReport addDrive(TraversabilityMap& map, const terramech::Telemetry& telemetry,
-                     EvidenceJournal* journal) {
-  // The first pass: is there a bias in torque or sinkage that all ground shares?
+DriveReport addDrive(TraversabilityMap& map, const terramech::Telemetry& telemetry, EvidenceJournal* journal,
+                     const IntakeOptions& options) {
+  // The first pass: do torque and sinkage have a bias that all ground shares, and which sensors prove sound?
   TelemetryProcessor first_pass(map);
-  first_pass.processRows(Rows(telemetry, map), false, [](std::size_t, TelemetryProcessor::Result&&) {});
-  DriveIntake intake(map, journal);
-  intake.state_->put(telemetry, first_pass.watch().biased());
+  processRows(TelemetryRows(telemetry, map, options.pose_std_m), map, first_pass, {},
+              [](std::size_t, TelemetryProcessor::Result&&) {});
+  DriveIntake intake(map, journal, options);
+  intake.state_->put(telemetry, first_pass.verdict());
   map.publishAll();
   return intake.report();
 }
@@ -270,6 +93,7 @@ DriveReport replay(TraversabilityMap& map, const EvidenceJournal& journal) {
   journal.forEach([&](const JournalRow& row) {
     const bool used = row.accepted && map.learn(row.observation);
     ++(used ? report.used : report.rejected);
+    if (used && row.observation.pull_may_raise) ++report.raising;
   });
   map.publishAll();
   return report;

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include <talus/costmap/evidence_journal.hpp>
-#include <talus/costmap/sensor_watch.hpp>
 #include <talus/costmap/traversability_map.hpp>
 #include <talus/terramech/estimate/telemetry.hpp>
 
@@ -15,9 +14,16 @@ namespace talus::costmap {
 /// What putting a drive into a map came to.
 struct DriveReport {
   std::size_t used = 0;
+  std::size_t raising = 0;            ///< of those, what may raise a belief: by sensors that proved sound
   std::size_t rejected = 0;           ///< by the sensors' watch, or without a place on the map
   std::string first_reason;           ///< of the first row rejected; empty when none was
   std::vector<std::string> findings;  ///< what the sensors' watch saw, a line each
+};
+
+/// What a telemetry file does not say about itself.
+struct IntakeOptions {
+  double pose_std_m =
+      0.5;  ///< how well places are known where there is no column pose_std_m, one standard deviation
 };
 
 /// Puts telemetry into a map while it comes in, part by part: what the sensors' watch knows is kept from one
@@ -27,7 +33,8 @@ struct DriveReport {
 class DriveIntake {
  public:
   /// Both are kept by reference; `journal` may be null.
-  explicit DriveIntake(TraversabilityMap& map, EvidenceJournal* journal = nullptr);
+  explicit DriveIntake(TraversabilityMap& map, EvidenceJournal* journal = nullptr,
+                       const IntakeOptions& options = {});
   ~DriveIntake();
   DriveIntake(const DriveIntake&) = delete;
   DriveIntake& operator=(const DriveIntake&) = delete;
@@ -38,7 +45,8 @@ class DriveIntake {
   DriveReport report() const;
 
  private:
-  friend DriveReport addDrive(TraversabilityMap&, const terramech::Telemetry&, EvidenceJournal*);
+  friend DriveReport addDrive(TraversabilityMap&, const terramech::Telemetry&, EvidenceJournal*,
+                              const IntakeOptions&);
   struct State;
   std::unique_ptr<State> state_;
 };
@@ -46,10 +54,14 @@ class DriveIntake {
 /// Puts the rows of a telemetry file into a map, in their order, and publishes all of it anew, so
 /// that the map depends on the evidence alone and not on how it was divided. Columns x_m, y_m,
 /// load_N and slip must be there; torque_Nm, sinkage_m, slope_rad, drawbar_pull_N, heading_rad, time_s,
-/// pass_index, z_m help. The slope is the row's own; without it the map's along the heading. Every row goes
-/// into the journal, if there is one, before the map. Throws InputError when a column is missing.
+/// pass_index, z_m, pose_std_m help. The slope is the row's own; without it the map's along the heading. Every row
+/// goes into the journal, if there is one, before the map. Throws InputError when a column is missing.
+///
+/// A reading that the sensors' watch suspects counts all the same where it points to danger, though it raises
+/// nothing: much slip, a sinkage of half a radius, or pull far below the class's. What may raise is what
+/// SensorProof allows; it takes heading_rad, slope_rad and slopes that vary.
 DriveReport addDrive(TraversabilityMap& map, const terramech::Telemetry& telemetry,
-                     EvidenceJournal* journal = nullptr);
+                     EvidenceJournal* journal = nullptr, const IntakeOptions& options = {});
 
 /// Puts every accepted row of a journal into a map and publishes: same map before, same journal, same map
 /// after, to the bit.

@@ -1,5 +1,5 @@
 #include <algorithm>
-#include <tuple>
+#include <limits>
 
 #include <talus/costmap/evidence_bricks.hpp>
 
@@ -9,13 +9,24 @@ namespace {
 constexpr int kShift = 3;  // 8x8 blocks a brick
 constexpr int kMask = (1 << kShift) - 1;
 
-std::uint8_t placeOf(int column, int row) noexcept {
-  return static_cast<std::uint8_t>((row & kMask) << kShift | (column & kMask));
+// Order within a brick: place, level, class.
+std::uint32_t keyOf(const BlockLevel& block) noexcept {
+  const auto place = static_cast<std::uint32_t>((block.row & kMask) << kShift | (block.column & kMask));
+  return place << 24 | static_cast<std::uint32_t>(block.level) << 8 | block.terrain_class;
+}
+std::uint32_t keyOf(const BlockEvidence& e) noexcept {
+  return static_cast<std::uint32_t>(e.place_in_brick) << 24 | static_cast<std::uint32_t>(e.level) << 8 |
+         e.terrain_class;
 }
 
-// Order within a brick; `place` alone stands before all its levels.
-bool before(const BlockEvidence& a, const std::tuple<std::uint8_t, std::uint16_t>& b) noexcept {
-  return std::tuple(a.place_in_brick, a.level) < b;
+bool before(const BlockEvidence& e, std::uint32_t key) noexcept {
+  return keyOf(e) < key;
+}
+
+// Doubling would leave half of the memory of a large map unused.
+template <typename T>
+void makeRoom(std::vector<T>& list) {
+  if (list.size() == list.capacity()) list.reserve(list.size() + 4 + list.size() / 8);
 }
 
 int bricksAcross(int blocks) noexcept {
@@ -38,45 +49,81 @@ std::size_t EvidenceBricks::brickOf(int column, int row) const noexcept {
 
 const BlockEvidence* EvidenceBricks::find(const BlockLevel& block) const noexcept {
   if (!contains(block.column, block.row)) return nullptr;
-  const Brick& brick = bricks_[brickOf(block.column, block.row)];
-  const std::tuple key(placeOf(block.column, block.row), block.level);
-  const auto found = std::lower_bound(brick.begin(), brick.end(), key, before);
-  return found != brick.end() && std::tuple(found->place_in_brick, found->level) == key ? &*found : nullptr;
+  const auto& blocks = bricks_[brickOf(block.column, block.row)].blocks;
+  const std::uint32_t key = keyOf(block);
+  const auto found = std::lower_bound(blocks.begin(), blocks.end(), key, before);
+  return found != blocks.end() && keyOf(*found) == key ? &*found : nullptr;
 }
 
 BlockEvidence& EvidenceBricks::at(const BlockLevel& block) {
-  Brick& brick = bricks_[brickOf(block.column, block.row)];
-  const std::tuple key(placeOf(block.column, block.row), block.level);
-  auto found = std::lower_bound(brick.begin(), brick.end(), key, before);
-  if (found == brick.end() || std::tuple(found->place_in_brick, found->level) != key)
-    found = brick.insert(found, {.level = block.level, .place_in_brick = std::get<0>(key)});
-  return *found;
+  auto& blocks = bricks_[brickOf(block.column, block.row)].blocks;
+  const std::uint32_t key = keyOf(block);
+  auto found = std::lower_bound(blocks.begin(), blocks.end(), key, before);
+  if (found != blocks.end() && keyOf(*found) == key) return *found;
+  const auto place = found - blocks.begin();
+  makeRoom(blocks);
+  return *blocks.insert(blocks.begin() + place, {.level = block.level,
+                                                 .terrain_class = block.terrain_class,
+                                                 .place_in_brick = static_cast<std::uint8_t>(key >> 24)});
 }
 
-std::vector<const BlockEvidence*> EvidenceBricks::levels(int column, int row) const {
-  std::vector<const BlockEvidence*> out;
-  if (!contains(column, row)) return out;
-  const Brick& brick = bricks_[brickOf(column, row)];
-  const std::uint8_t place = placeOf(column, row);
-  for (auto at = std::lower_bound(brick.begin(), brick.end(), std::tuple(place, std::uint16_t{0}), before);
-       at != brick.end() && at->place_in_brick == place; ++at)
-    out.push_back(&*at);
+std::vector<ReadingCount> EvidenceBricks::counts(const BlockLevel& block) const {
+  std::vector<ReadingCount> out;
+  if (!contains(block.column, block.row)) return out;
+  const auto& heard = bricks_[brickOf(block.column, block.row)].heard;
+  const std::uint32_t key = keyOf(block);
+  const auto first = std::lower_bound(heard.begin(), heard.end(), key,
+                                      [](const Heard& h, std::uint32_t k) { return h.block < k; });
+  for (auto at = first; at != heard.end() && at->block == key; ++at) out.push_back(at->reading);
   return out;
 }
 
-void EvidenceBricks::visitTop(
-    const Box& box, const std::function<void(const BlockLevel&, const BlockEvidence&)>& visit) const {
+void EvidenceBricks::count(const BlockLevel& block, const ReadingCount& reading) {
+  auto& heard = bricks_[brickOf(block.column, block.row)].heard;
+  const auto order = [](const Heard& h) {
+    return static_cast<std::uint64_t>(h.block) << 16 | static_cast<unsigned>(h.reading.kind) << 8 |
+           h.reading.step;
+  };
+  const Heard added{keyOf(block), reading};
+  auto found = std::lower_bound(heard.begin(), heard.end(), order(added),
+                                [&](const Heard& h, std::uint64_t key) { return order(h) < key; });
+  if (found != heard.end() && order(*found) == order(added)) {
+    const unsigned sum = found->reading.count + static_cast<unsigned>(reading.count);
+    found->reading.count =
+        static_cast<std::uint16_t>(std::min<unsigned>(sum, std::numeric_limits<std::uint16_t>::max()));
+    return;
+  }
+  const auto place = found - heard.begin();
+  makeRoom(heard);
+  heard.insert(heard.begin() + place, added);
+}
+
+void EvidenceBricks::visitLevels(int column, int row, const Visit& visit) const {
+  if (!contains(column, row)) return;
+  const auto& blocks = bricks_[brickOf(column, row)].blocks;
+  const std::uint32_t first = keyOf(BlockLevel{column, row, 0, 0});
+  for (auto at = std::lower_bound(blocks.begin(), blocks.end(), first, before);
+       at != blocks.end() && at->place_in_brick == first >> 24; ++at)
+    visit({column, row, at->level, at->terrain_class}, *at);
+}
+
+void EvidenceBricks::visitTop(const Box& box, const Visit& visit) const {
   const int west = std::max(box.west, 0), east = std::min(box.east, columns_ - 1);
   const int south = std::max(box.south, 0), north = std::min(box.north, rows_ - 1);
   for (int y = south >> kShift; y <= north >> kShift; ++y)
     for (int x = west >> kShift; x <= east >> kShift; ++x)
-      for (const BlockEvidence& e : bricks_[brickOf(x << kShift, y << kShift)]) {
+      for (const BlockEvidence& e : bricks_[brickOf(x << kShift, y << kShift)].blocks) {
         const int column = (x << kShift) + (e.place_in_brick & kMask);
         const int row = (y << kShift) + (e.place_in_brick >> kShift);
         if (e.level == BlockEvidence::kTop && column >= west && column <= east && row >= south &&
             row <= north)
-          visit({column, row, e.level}, e);
+          visit({column, row, e.level, e.terrain_class}, e);
       }
+}
+
+void EvidenceBricks::visitAll(const Visit& visit) const {
+  for (int row = 0; row < rows_; ++row)
+    for (int column = 0; column < columns_; ++column) visitLevels(column, row, visit);
 }
 
 }  // namespace talus::costmap

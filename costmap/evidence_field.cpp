@@ -1,167 +1,158 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <utility>
 
 #include <talus/costmap/evidence_field.hpp>
+#include <talus/costmap/evidence_store.hpp>
 
 namespace talus::costmap {
 namespace {
 
-constexpr double kBlocksPerLength = 4.0;
-constexpr double kReferenceStd = 0.05;   // of the sample that counts as one
-constexpr double kMostPerSample = 25.0;  // no sample counts for more
-constexpr double kNugget =
-    0.01;  // of a block's mean however many samples it has: ground varies inside it too
 constexpr std::size_t kMostNeighbours = 64;
-constexpr double kFreedom = 4.0;              // of Student's t
-constexpr double kContradicts = 1.5;          // standard deviations
-constexpr std::size_t kMostRemembered = 512;  // patches
-constexpr double kUnit = 1048576.0;           // of the fixed-point sums
+constexpr double kOrdinary = 2.0;          // standard deviations that a class explains
+constexpr double kPoseReach = 2.0;         // standard deviations of the pose
+constexpr double kFarthestReach_m = 25.5;  // as BlockEvidence keeps it
+constexpr double kPlaceStd = 0.06;         // a place is known that is known so well: by some readings
 constexpr double kSteepest =
     0.6;  // gradient of ground that joins places of one floor: more than rovers drive
 
-int shiftFor(double correlation_length_m, double resolution_m) {
-  const double cells = correlation_length_m / kBlocksPerLength / resolution_m;
-  return std::clamp(static_cast<int>(std::floor(std::log2(std::max(cells, 1.0)))), 0, 8);
-}
-
-std::int64_t fixed(double value) {
-  return static_cast<std::int64_t>(std::llround(value * kUnit));
+std::uint32_t secondsOf(double time_s) noexcept {
+  return time_s > 0.0 && time_s < 4294967295.0 ? static_cast<std::uint32_t>(time_s) : 0U;
 }
 
 }  // namespace
 
 EvidenceField::EvidenceField(std::shared_ptr<const GroundSite> site)
-    : site_(std::move(site)),
-      block_shift_(
-          shiftFor(site_->model->parts().policy.correlation_length_m, site_->keys.grid().resolution_m)),
-      first_block_(blockOf({0, 0})),
-      bricks_([this] {
-        const maps::Grid& grid = site_->grid();
-        const BlockLevel last = topOf(blockOf({grid.width - 1, grid.height - 1}));
-        return EvidenceBricks(last.column + 1, last.row + 1);
-      }()),
-      sums_(site_->model->parts().classes.size()),
-      posteriors_(site_->model->parts().classes.size()) {
-  for (std::size_t i = 0; i < posteriors_.size(); ++i) refresh(static_cast<int>(i));
+    : site_(std::move(site)), store_(std::make_unique<EvidenceStore>(site_)) {}
+
+EvidenceField::~EvidenceField() = default;
+EvidenceField::EvidenceField(EvidenceField&&) noexcept = default;
+EvidenceField& EvidenceField::operator=(EvidenceField&&) noexcept = default;
+
+const ClassPosterior& EvidenceField::posterior(int class_index) const {
+  return store_->lessons[static_cast<std::size_t>(class_index)].posterior();
 }
 
-maps::Cell EvidenceField::cellOf(const BlockLevel& block) const noexcept {
-  return {first_block_.column + block.column * (1 << block_shift_),
-          first_block_.row + block.row * (1 << block_shift_)};
+int EvidenceField::blockCells() const noexcept {
+  return store_->blocks.side();
 }
 
-BlockLevel EvidenceField::topOf(maps::Cell block) const noexcept {
-  return {(block.column - first_block_.column) >> block_shift_,
-          (block.row - first_block_.row) >> block_shift_, BlockEvidence::kTop};
-}
-
-// Blocks lie on the octree's own lines: a block is named by its south-west cell, which may lie outside the
-// grid.
-maps::Cell EvidenceField::blockOf(maps::Cell cell) const noexcept {
-  const octomap::OcTreeKey first = site_->keys.key({0, 0}, site_->keys.baseElevation_m());
-  const auto snapped = [&](int value, int origin) {
-    return static_cast<int>((static_cast<unsigned>(origin + value) >> block_shift_) << block_shift_) - origin;
-  };
-  return {snapped(cell.column, first[0]), snapped(cell.row, first[1])};
-}
-
-maps::Point EvidenceField::middleOf(maps::Cell block) const noexcept {
-  const maps::Grid& grid = site_->keys.grid();
-  const double half = 0.5 * (1 << block_shift_);
-  return {grid.south_west.x_m + (block.column + half) * grid.resolution_m,
-          grid.south_west.y_m + (block.row + half) * grid.resolution_m};
-}
-
-std::uint16_t EvidenceField::keyOf(float height_m) const noexcept {
-  return site_->keys.key({0, 0}, static_cast<double>(height_m))[2];
-}
-
-// Of a block's first cell with an elevation.
-std::optional<std::uint16_t> EvidenceField::topKey(maps::Cell block) const noexcept {
-  const maps::Grid& grid = site_->grid();
-  const int side = 1 << block_shift_;
-  for (int row = std::max(block.row, 0); row < std::min(block.row + side, grid.height); ++row)
-    for (int column = std::max(block.column, 0); column < std::min(block.column + side, grid.width);
-         ++column) {
-      const float elevation = site_->elevation.elevation_m[{column, row}];
-      if (!std::isnan(elevation)) return keyOf(elevation);
-    }
-  return std::nullopt;
+BlockLevel EvidenceField::topOf(maps::Cell cell, int class_index) const noexcept {
+  return {store_->blocks.columnOf(cell), store_->blocks.rowOf(cell), BlockEvidence::kTop,
+          static_cast<std::uint8_t>(groundOf(class_index).number)};
 }
 
 // The block's level of a floor: one that is known within half the headroom, else a new one.
 BlockLevel EvidenceField::levelOf(maps::Cell cell, const Floor& floor) const {
-  BlockLevel out = topOf(blockOf(cell));
-  out.level = keyOf(floor.height_m);
+  BlockLevel out = topOf(cell, 0);
+  out.level = store_->blocks.keyOf(floor.height_m);
   const int same = std::max(1, static_cast<int>(0.5 * Floors::kHeadroom_m / site_->grid().resolution_m));
-  for (const BlockEvidence* known : bricks_.levels(out.column, out.row))
-    if (known->level != BlockEvidence::kTop && std::abs(known->level - keyOf(floor.height_m)) <= same)
-      out.level = known->level;
+  store_->bricks.visitLevels(out.column, out.row, [&](const BlockLevel& known, const BlockEvidence&) {
+    if (known.level != BlockEvidence::kTop &&
+        std::abs(known.level - store_->blocks.keyOf(floor.height_m)) <= same)
+      out.level = known.level;
+  });
   return out;
 }
 
-int EvidenceField::reachBlocks() const noexcept {
-  const double block_m = (1 << block_shift_) * site_->grid().resolution_m;
-  return static_cast<int>(std::ceil(site_->model->parts().policy.correlation_length_m / block_m));
-}
-
-double EvidenceField::measuredVariance(const BlockEvidence& block) const noexcept {
-  return kReferenceStd * kReferenceStd / static_cast<double>(block.weight) + kNugget * kNugget;
+Variation EvidenceField::variationOf(int class_index) const noexcept {
+  const GroundClass& ground = groundOf(class_index);
+  return {.pull_std = ground.pull_std,
+          .sinkage_std = ground.sinkage_std,
+          .correlation_length_m = site_->model->parts().policy.correlation_length_m};
 }
 
 // One block speaks for as many independent places as its length holds integral scales (2/3 of the correlation
-// length). Ground that departs from its class by much more than the class varies is other ground that no
-// class raster shows: it counts for less by the weight of Student's t with four degrees of freedom
-// (lange_1989).
-void EvidenceField::contribute(const BlockEvidence& block, int class_index, std::int64_t sign) {
-  if (block.weight <= 0.0F || (block.level != BlockEvidence::kTop && !site_->classes.empty())) return;
-  const GroundClass& ground = site_->model->parts().classes[static_cast<std::size_t>(class_index)];
+// length), and for no departure beyond what its class explains: what is more is other ground that no class
+// raster shows.
+std::optional<BlockLesson> EvidenceField::lessonOf(const BlockEvidence& block, int class_index) const {
+  if (!teachesClass(block.level)) return std::nullopt;
+  const GroundClass& ground = groundOf(class_index);
   const GroundBelief prior = site_->model->prior(class_index);
-  const double block_m = (1 << block_shift_) * site_->keys.grid().resolution_m;
-  const double places = std::min(1.0, 1.5 * block_m / site_->model->parts().policy.correlation_length_m);
+  const bool raises = !std::isnan(block.pull);
+  const double measured = static_cast<double>(raises ? block.variance : block.weak_variance);
+  double pull = raises ? static_cast<double>(block.pull) - prior.pull.value : 0.0;
+  if (block.lowers) pull = std::min(pull, static_cast<double>(block.weak_pull) - prior.pull.value);
   const double variance = ground.pull_std * ground.pull_std;
-  const double departure = static_cast<double>(block.pull) - prior.pull.value;
-  const double spread = variance + ground.mean_std * ground.mean_std + measuredVariance(block);
-  const double alike = std::min(1.0, (kFreedom + 1.0) / (kFreedom + departure * departure / spread));
-  const double weight = alike * places * variance / (variance + measuredVariance(block));
-  ClassSums& sums = sums_[static_cast<std::size_t>(class_index)];
-  sums.weight += sign * fixed(weight);
-  sums.pull += sign * fixed(weight * departure);
-  sums.sinkage += sign * fixed(weight * (static_cast<double>(block.sinkage) - prior.sinkage.value));
+  const double most = kOrdinary * std::sqrt(variance + ground.mean_std * ground.mean_std + measured);
+  BlockLesson lesson{.weight = std::min(1.0, 1.5 * store_->blocks.side_m() /
+                                                 site_->model->parts().policy.correlation_length_m) *
+                               variance / (variance + measured),
+                     .pull = std::clamp(pull, -most, most),
+                     .sinkage = std::nullopt,
+                     .raises = raises};
+  if (std::isnan(block.sinkage)) return lesson;
+  const double most_sinkage = kOrdinary * ground.sinkage_std;
+  const double sinkage = static_cast<double>(block.sinkage) - prior.sinkage.value;
+  lesson.sinkage = std::clamp(sinkage, block.sinkage_raises ? -most_sinkage : 0.0, most_sinkage);
+  return lesson;
 }
 
-// Conjugate normal update of the class mean: prior mean_std, places that scatter by pull_std about it.
-void EvidenceField::refresh(int class_index) {
-  const auto i = static_cast<std::size_t>(class_index);
-  const GroundClass& ground = site_->model->parts().classes[i];
-  ClassPosterior& out = posteriors_[i];
-  out.places = static_cast<double>(sums_[i].weight) / kUnit;
-  const double variance = ground.pull_std * ground.pull_std;
-  const double prior = ground.mean_std * ground.mean_std;
-  const double gain = prior / (prior * out.places + variance);
-  out.pull = {gain * static_cast<double>(sums_[i].pull) / kUnit,
-              std::sqrt(prior * variance / (prior * out.places + variance))};
-  const double sinkage_share = ground.sinkage_std / ground.pull_std;
-  out.sinkage = {gain * static_cast<double>(sums_[i].sinkage) / kUnit, out.pull.std * sinkage_share};
+// By how much the weakest block of a square departs from its class, of those that are known or weak beyond their
+// doubt.
+std::optional<float> EvidenceField::squareStrength(const IndependentPlaces::Square& square,
+                                                   int class_index) const {
+  const int side = store_->blocks.reach();
+  const double prior = site_->model->prior(class_index).pull.value;
+  bool driven = false, raises = false;
+  double least = std::numeric_limits<double>::infinity();
+  const int number = groundOf(class_index).number;
+  const auto take = [&](const BlockLevel& at, const BlockEvidence& e) {
+    if (at.terrain_class != number || !teachesClass(at.level)) return;
+    driven = true;
+    const double pull = static_cast<double>(e.pull) - prior, variance = static_cast<double>(e.variance);
+    const bool is_known = variance <= kPlaceStd * kPlaceStd;
+    raises |= is_known;
+    if (is_known || pull < -std::sqrt(variance)) least = std::fmin(least, pull);
+    if (e.lowers) least = std::fmin(least, static_cast<double>(e.weak_pull) - prior);
+  };
+  for (int row = square.second * side; row < (square.second + 1) * side; ++row)
+    for (int column = square.first * side; column < (square.first + 1) * side; ++column)
+      store_->bricks.visitLevels(column, row, take);
+  if (!driven) return std::nullopt;
+  return raises ? static_cast<float>(least) : -std::numeric_limits<float>::infinity();
 }
 
-// A block is as weak as its weakest part: what stronger ground in it told before counts no more than the
-// sample that contradicts it.
-void EvidenceField::weigh(const WheelObservation& observation, BlockEvidence& block) const {
-  const double share = kReferenceStd / observation.pull.std;
-  const auto weight = static_cast<float>(std::min(share * share, kMostPerSample));
-  if (observation.pull.value < static_cast<double>(block.pull) - kContradicts * observation.pull.std)
-    block.weight = std::min(block.weight, weight);
-  const float gain = weight / (block.weight + weight);
-  block.pull += gain * (static_cast<float>(observation.pull.value) - block.pull);
-  if (std::isfinite(observation.sinkage.std))
-    block.sinkage += gain * (static_cast<float>(observation.sinkage.value) - block.sinkage);
-  block.weight += weight;
-  block.updated_s = observation.time_s > 0.0 && observation.time_s < 4294967295.0
-                        ? static_cast<std::uint32_t>(observation.time_s)
-                        : 0U;
+// Takes readings into a block, and what it then says into the lessons of its class.
+void EvidenceField::hear(const BlockLevel& where, const SavedBlock& heard) {
+  const int class_index = site_->model->classIndex(where.terrain_class);
+  ClassLessons& lessons = store_->lessons[static_cast<std::size_t>(class_index)];
+  if (const BlockEvidence* known = store_->bricks.find(where))
+    if (const auto before = lessonOf(*known, class_index)) lessons.remove(*before);
+  for (const ReadingCount& reading : heard.heard) store_->bricks.count(where, reading);
+  BlockEvidence& block = store_->bricks.at(where);
+  block.updated_s = std::max(block.updated_s, heard.updated_s);
+  block.reach = std::max(block.reach, heard.reach);
+  farthest_reach_m_ = std::max(farthest_reach_m_, block.reach_m());
+  summarise(store_->bricks.counts(where),
+            {site_->model->prior(class_index).pull.value, groundOf(class_index).pull_std}, block);
+  const auto lesson = lessonOf(block, class_index);
+  if (!lesson) return;
+  lessons.add(*lesson);
+  const IndependentPlaces::Square square{where.column / store_->blocks.reach(),
+                                         where.row / store_->blocks.reach()};
+  lessons.places().set(square, squareStrength(square, class_index));
+  lessons.refresh();
+}
+
+// Whether all ground that the wheel may have stood on is of the class.
+bool EvidenceField::standsOnOneClass(const WheelObservation& observation, int class_index) const {
+  const maps::Grid& grid = site_->grid();
+  const double reach_m = kPoseReach * observation.pose_std_m;
+  if (reach_m > kFarthestReach_m) return false;
+  const int reach = static_cast<int>(std::ceil(reach_m / grid.resolution_m));
+  const auto here = *grid.cellAt(observation.place);
+  for (int row = std::max(here.row - reach, 0); row <= std::min(here.row + reach, grid.height - 1); ++row)
+    for (int column = std::max(here.column - reach, 0);
+         column <= std::min(here.column + reach, grid.width - 1); ++column) {
+      const maps::Point centre = grid.centre({column, row});
+      const bool near = std::abs(centre.x_m - observation.place.x_m) <= reach_m + 0.5 * grid.resolution_m &&
+                        std::abs(centre.y_m - observation.place.y_m) <= reach_m + 0.5 * grid.resolution_m;
+      if (near && site_->classIndex({column, row}) != class_index) return false;
+    }
+  return true;
 }
 
 std::optional<maps::CellBox> EvidenceField::add(const WheelObservation& observation) {
@@ -170,51 +161,63 @@ std::optional<maps::CellBox> EvidenceField::add(const WheelObservation& observat
   if (!cell || std::isnan(site_->elevation.elevation_m[*cell])) return std::nullopt;
   const auto floor = site_->floorAt(*cell, observation.z_m);
   const int class_index = floor ? 0 : site_->classIndex(*cell);
-  if (class_index < 0) return std::nullopt;
-  const int number = site_->model->parts().classes[static_cast<std::size_t>(class_index)].number;
-  const BlockLevel where = floor ? levelOf(*cell, *floor) : topOf(blockOf(*cell));
-  const BlockEvidence* known = bricks_.find(where);
-  if (known && known->terrain_class != number)
-    return std::nullopt;  // a block speaks for the class that was driven first in it
-  BlockEvidence& block = bricks_.at(where);
-  if (!known) {
-    block.terrain_class = static_cast<std::uint8_t>(number);
-    block.sinkage = static_cast<float>(site_->model->prior(class_index).sinkage.value);
-  }
-  contribute(block, class_index, -1);
-  weigh(observation, block);
-  contribute(block, class_index, 1);
-  refresh(class_index);
-  const int side = 1 << block_shift_;
+  if (class_index < 0 || !std::isfinite(observation.pull.value) || !(observation.pull.std > 0.0))
+    return std::nullopt;
+  const bool sure = floor || observation.pose_std_m <= 0.0 || standsOnOneClass(observation, class_index);
+  const double correlation_length_m = site_->model->parts().policy.correlation_length_m;
+  SavedBlock heard{.block = floor ? levelOf(*cell, *floor) : topOf(*cell, class_index),
+                   .updated_s = secondsOf(observation.time_s),
+                   .reach = static_cast<std::uint8_t>(
+                       std::clamp(std::ceil(10.0 * kPoseReach * observation.pose_std_m - 1e-9), 0.0, 255.0)),
+                   .heard = {}};
+  // Of ground a pose error away, which may be what was read, only so much is this ground's.
+  Estimate pull = observation.pull;
+  const double alike = sparseKernel(observation.pose_std_m, correlation_length_m);
+  const bool raises = sure && observation.pull_may_raise;
+  if (raises)
+    pull.std = std::hypot(pull.std, groundOf(class_index).pull_std * std::sqrt(1.0 - alike * alike));
+  heard.heard.push_back(pullReading(pull, raises));
+  if (std::isfinite(observation.sinkage.std))
+    heard.heard.push_back(sinkageReading(observation.sinkage.value, sure && observation.sinkage_may_raise));
+  hear(heard.block, heard);
+  const int side = store_->blocks.side();
   const int reach =
-      static_cast<int>(std::ceil(site_->model->parts().policy.correlation_length_m / grid.resolution_m)) +
-      side;
+      static_cast<int>(std::ceil((correlation_length_m + 0.1 * heard.reach) / grid.resolution_m)) + side;
   return maps::CellBox{
       {std::max(cell->column - reach, 0), std::max(cell->row - reach, 0)},
       {std::min(cell->column + reach, grid.width - 1), std::min(cell->row + reach, grid.height - 1)}};
 }
 
-void EvidenceField::restore(maps::Cell cell, std::uint16_t level, const CellBelief& saved) {
-  const int class_index = site_->model->classIndex(saved.terrain_class);
-  BlockLevel where = topOf(blockOf(cell));
-  where.level = level;
-  if (class_index < 0 || saved.evidence <= 0.0F || bricks_.find(where)) return;
-  BlockEvidence& block = bricks_.at(where);
-  block.weight = saved.evidence;
-  block.pull = saved.evidence_pull;
-  block.sinkage = saved.evidence_sinkage;
-  block.updated_s = saved.updated_s;
-  block.terrain_class = saved.terrain_class;
-  contribute(block, class_index, 1);
-  refresh(class_index);
+void EvidenceField::visit(const std::function<void(const SavedBlock&)>& visit) const {
+  store_->bricks.visitAll([&](const BlockLevel& at, const BlockEvidence& e) {
+    visit({.block = at, .updated_s = e.updated_s, .reach = e.reach, .heard = store_->bricks.counts(at)});
+  });
+}
+
+bool EvidenceField::restore(const SavedBlock& saved) {
+  if (saved.block.column < 0 || saved.block.row < 0 || saved.block.column >= store_->blocks.columns() ||
+      saved.block.row >= store_->blocks.rows() || site_->model->classIndex(saved.block.terrain_class) < 0)
+    return false;
+  hear(saved.block, saved);
+  return true;
 }
 
 const BlockEvidence* EvidenceField::evidence(maps::Cell cell) const noexcept {
-  return bricks_.find(topOf(blockOf(cell)));
+  const int class_index = site_->classIndex(cell);
+  return class_index < 0 ? nullptr : store_->bricks.find(topOf(cell, class_index));
 }
 
 const BlockEvidence* EvidenceField::evidence(maps::Cell cell, const Floor& floor) const {
-  return bricks_.find(levelOf(cell, floor));
+  return store_->bricks.find(levelOf(cell, floor));
+}
+
+double EvidenceField::samplesOf(maps::Cell cell) const {
+  const int class_index = site_->classIndex(cell);
+  return class_index < 0 ? 0.0 : samples(store_->bricks.counts(topOf(cell, class_index)));
+}
+
+double EvidenceField::samplesOf(maps::Cell cell, const Floor& floor) const {
+  return samples(store_->bricks.counts(levelOf(cell, floor)));
 }
 
 std::vector<EvidenceField::FloorEvidence> EvidenceField::floorEvidence() const {
@@ -229,130 +232,140 @@ std::vector<EvidenceField::FloorEvidence> EvidenceField::floorEvidence() const {
   return out;
 }
 
-PlaceEvidence EvidenceField::placed(maps::Cell block, const BlockEvidence& evidence,
-                                    const GroundBelief& mean) const {
-  return {.place = middleOf(block),
-          .pull = static_cast<double>(evidence.pull) - mean.pull.value,
-          .sinkage = static_cast<double>(evidence.sinkage) - mean.sinkage.value,
-          .variance = measuredVariance(evidence)};
-}
-
-// Evidence of the class on top that can reach a patch of blocks.
-GaussianProcess EvidenceField::process(const BlockLevel& patch, int class_index) const {
-  const int number = site_->model->parts().classes[static_cast<std::size_t>(class_index)].number;
-  const GroundBelief mean = classBelief(class_index);
-  const int reach = reachBlocks();
-  std::vector<PlaceEvidence> found;
-  bricks_.visitTop({patch.column - reach, patch.row - reach, patch.column + kPatchBlocks + reach - 1,
-                    patch.row + kPatchBlocks + reach - 1},
-                   [&](const BlockLevel& block, const BlockEvidence& e) {
-                     if (e.terrain_class == number) found.push_back(placed(cellOf(block), e, mean));
-                   });
-  const maps::Point low = middleOf(cellOf(patch));
-  const double half_m = 0.5 * kPatchBlocks * (1 << block_shift_) * site_->grid().resolution_m;
-  return processOf(std::move(found), {low.x_m + half_m, low.y_m + half_m}, class_index);
-}
-
-// Nearest to the middle first where there is more than enough.
-GaussianProcess EvidenceField::processOf(std::vector<PlaceEvidence> found, const maps::Point& middle,
-                                         int class_index) const {
-  if (found.size() > kMostNeighbours) {
-    const auto far = [&](const PlaceEvidence& e) {
-      return std::hypot(e.place.x_m - middle.x_m, e.place.y_m - middle.y_m);
-    };
-    std::stable_sort(found.begin(), found.end(),
-                     [&](const PlaceEvidence& a, const PlaceEvidence& b) { return far(a) < far(b); });
-    found.resize(kMostNeighbours);
+// What may raise goes into the process; what is weaker than its class explains, and what may only lower, speaks
+// for itself. Ground of other classes says something only as far as it may have been this.
+void EvidenceField::place(const BlockLevel& block, const BlockEvidence& e, NearbyEvidence& nearby) const {
+  const int own = site_->model->classIndex(block.terrain_class);
+  const GroundBelief mean = classBelief(nearby.class_index), prior = site_->model->prior(nearby.class_index);
+  const GroundClass& ground = groundOf(own);
+  const maps::Point middle = store_->blocks.middleOf(store_->blocks.blockAt(block.column, block.row));
+  const bool alike = own == nearby.class_index;
+  const double variance = static_cast<double>(e.weak_variance);
+  const double below = static_cast<double>(e.weak_pull) - site_->model->prior(own).pull.value;
+  const double deeper = static_cast<double>(e.sinkage) - site_->model->prior(own).sinkage.value;
+  const bool weak = below < -kOrdinary * std::sqrt(ground.pull_std * ground.pull_std + variance);
+  const bool own_lowers = alike && e.lowers;
+  const bool deep = deeper > (own_lowers ? 0.0 : kOrdinary * ground.sinkage_std);
+  if (alike && !std::isnan(e.pull)) {
+    const double sinkage = static_cast<double>(e.sinkage) - mean.sinkage.value;
+    nearby.places.push_back(
+        {.place = middle,
+         .pull = static_cast<double>(e.pull) - mean.pull.value,
+         .sinkage = e.sinkage_raises || std::isnan(sinkage) ? sinkage : std::fmax(sinkage, 0.0),
+         .variance = static_cast<double>(e.variance)});
   }
-  const GroundClass& ground = site_->model->parts().classes[static_cast<std::size_t>(class_index)];
-  return GaussianProcess(std::move(found),
-                         {.pull_std = ground.pull_std,
-                          .sinkage_std = ground.sinkage_std,
-                          .correlation_length_m = site_->model->parts().policy.correlation_length_m});
+  const bool may_be_here = alike || e.reach > 0;
+  const bool pulls_less = weak || (own_lowers && below < 0.0);
+  if (!may_be_here || !(pulls_less || deep)) return;
+  const double pull = static_cast<double>(e.weak_pull) - prior.pull.value;
+  const double sinkage = static_cast<double>(e.sinkage) - prior.sinkage.value;
+  nearby.weak.push_back({.place = middle,
+                         .pull = pulls_less ? std::fmin(pull, 0.0) : 0.0,
+                         .variance = variance,
+                         .sinkage = std::isnan(sinkage) ? 0.0 : std::fmax(sinkage, 0.0),
+                         .reach_m = e.reach_m() + (alike ? 0.0 : 0.5 * store_->blocks.side_m()),
+                         .beyond_reach = alike});
+}
+
+// Evidence on top that can reach a patch of blocks.
+LocalGround EvidenceField::around(const BlockLevel& patch, int class_index) const {
+  const int reach =
+      store_->blocks.reach() + static_cast<int>(std::ceil(farthest_reach_m_ / store_->blocks.side_m()));
+  NearbyEvidence nearby{.class_index = class_index, .places = {}, .weak = {}};
+  store_->bricks.visitTop({patch.column - reach, patch.row - reach, patch.column + kPatchBlocks + reach - 1,
+                           patch.row + kPatchBlocks + reach - 1},
+                          [&](const BlockLevel& at, const BlockEvidence& e) { place(at, e, nearby); });
+  const maps::Point low = store_->blocks.middleOf(store_->blocks.blockAt(patch.column, patch.row));
+  const double half_m = 0.5 * (kPatchBlocks - 1) * store_->blocks.side_m();
+  return grounded(std::move(nearby), {low.x_m + half_m, low.y_m + half_m});
+}
+
+// Where there is more than enough the nearest count, those of the patch itself among them; what is weak of the
+// others speaks for itself.
+LocalGround EvidenceField::grounded(NearbyEvidence nearby, const maps::Point& middle) const {
+  std::vector<PlaceEvidence>& places = nearby.places;
+  if (places.size() > kMostNeighbours) {
+    const auto far = [&](const PlaceEvidence& e) {
+      return std::fmax(std::abs(e.place.x_m - middle.x_m), std::abs(e.place.y_m - middle.y_m));
+    };
+    std::stable_sort(places.begin(), places.end(),
+                     [&](const PlaceEvidence& a, const PlaceEvidence& b) { return far(a) < far(b); });
+    const ClassPosterior& mean = posterior(nearby.class_index);
+    for (std::size_t i = kMostNeighbours; i < places.size(); ++i)
+      nearby.weak.push_back({.place = places[i].place,
+                             .pull = std::fmin(places[i].pull + mean.pull.value, 0.0),
+                             .variance = places[i].variance,
+                             .sinkage = std::fmax(places[i].sinkage + mean.sinkage.value, 0.0)});
+    places.resize(kMostNeighbours);
+  }
+  return {GaussianProcess(std::move(places), variationOf(nearby.class_index)), std::move(nearby.weak)};
 }
 
 // Evidence of ground, on top or not, that one can drive to from a floor without climbing.
-std::vector<PlaceEvidence> EvidenceField::levelWith(maps::Cell block, std::uint16_t level) const {
-  const int number = site_->model->parts().classes[0].number;
-  const GroundBelief mean = classBelief(0);
-  const int side = 1 << block_shift_;
-  const int reach = reachBlocks() * side;
+LocalGround EvidenceField::levelWith(maps::Cell block, std::uint16_t level) const {
+  const int side = store_->blocks.side();
+  const int reach = store_->blocks.reach() * side;
   const double resolution_m = site_->grid().resolution_m;
-  std::vector<PlaceEvidence> found;
+  NearbyEvidence nearby;
   for (int row = block.row - reach; row <= block.row + reach; row += side)
     for (int column = block.column - reach; column <= block.column + reach; column += side) {
-      const BlockLevel there = topOf({column, row});
+      const BlockLevel there = topOf({column, row}, 0);
       const double away_m = resolution_m * std::hypot(column - block.column, row - block.row);
-      for (const BlockEvidence* e : bricks_.levels(there.column, there.row)) {
-        const auto key = e->level == BlockEvidence::kTop ? topKey({column, row}) : e->level;
+      store_->bricks.visitLevels(there.column, there.row, [&](const BlockLevel& at, const BlockEvidence& e) {
+        const auto key = e.level == BlockEvidence::kTop ? store_->blocks.topKey({column, row}) : e.level;
         const bool near =
             key && std::abs(*key - level) * resolution_m <= 0.5 * Floors::kHeadroom_m + kSteepest * away_m;
-        if (near && e->terrain_class == number) found.push_back(placed({column, row}, *e, mean));
-      }
+        if (near && e.terrain_class == groundOf(0).number) place(at, e, nearby);
+      });
     }
-  return found;
+  return grounded(std::move(nearby), store_->blocks.middleOf(block));
 }
 
 GroundBelief EvidenceField::floorBelief(maps::Cell cell, const Floor& floor) const {
-  const maps::Cell block = blockOf(cell);
-  const maps::Point middle = middleOf(block);
-  return combined(0, processOf(levelWith(block, levelOf(cell, floor).level), middle, 0).at(middle));
+  const maps::Cell block = store_->blocks.blockOf(cell);
+  return believed(levelWith(block, levelOf(cell, floor).level), 0, store_->blocks.middleOf(block)).ground;
+}
+
+// No better than the class away from evidence until enough places say so, and never better than any place that
+// is weak leaves it.
+EvidenceField::Belief EvidenceField::believed(const LocalGround& ground, int class_index,
+                                              const maps::Point& at) const {
+  const GroundBelief away = classBelief(class_index), prior = site_->model->prior(class_index);
+  const GroundClass& c = groundOf(class_index);
+  const ClassLessons& lessons = store_->lessons[static_cast<std::size_t>(class_index)];
+  GroundBelief out = ground.process.empty() ? away : combined(class_index, ground.process.at(at));
+  if (lessons.mayRaise())
+    out.pull.value =
+        std::min(out.pull.value, std::max(away.pull.value, prior.pull.value + lessons.mostRise()));
+  else
+    out = weaker(out, away);
+  const Variation variation = variationOf(class_index);
+  for (const WeakPlace& weak : ground.weak)
+    if (const auto left = weakness(weak, variation, at)) {
+      const double open = std::min(left->pull.std / c.pull_std, 1.0);
+      out = weaker(
+          out, {.pull = {prior.pull.value + left->pull.value, std::hypot(left->pull.std, open * c.mean_std)},
+                .sinkage = {prior.sinkage.value + left->sinkage.value, left->sinkage.std}});
+    }
+  return {out, out.pull.value != away.pull.value || out.pull.std != away.pull.std ||
+                   out.sinkage.value != away.sinkage.value};
 }
 
 GroundBelief EvidenceField::classBelief(int class_index) const {
-  return combined(
-      class_index,
-      {.pull = {0.0, site_->model->parts().classes[static_cast<std::size_t>(class_index)].pull_std},
-       .sinkage = {0.0, site_->model->parts().classes[static_cast<std::size_t>(class_index)].sinkage_std}});
+  const GroundClass& ground = groundOf(class_index);
+  return combined(class_index, {.pull = {0.0, ground.pull_std}, .sinkage = {0.0, ground.sinkage_std}});
 }
 
 // Doubt about the class as a whole counts as far as the place itself is not known.
 GroundBelief EvidenceField::combined(int class_index, const GroundBelief& departure) const {
-  const auto i = static_cast<std::size_t>(class_index);
-  const GroundClass& ground = site_->model->parts().classes[i];
+  const GroundClass& ground = groundOf(class_index);
   const GroundBelief prior = site_->model->prior(class_index);
-  const ClassPosterior& posterior = posteriors_[i];
+  const ClassPosterior& known = posterior(class_index);
   const double open = std::min(departure.pull.std / ground.pull_std, 1.0);
-  return {.pull = {prior.pull.value + posterior.pull.value + departure.pull.value,
-                   std::hypot(departure.pull.std, open * posterior.pull.std)},
-          .sinkage = {std::max(prior.sinkage.value + posterior.sinkage.value + departure.sinkage.value, 0.0),
+  return {.pull = {prior.pull.value + known.pull.value + departure.pull.value,
+                   std::hypot(departure.pull.std, open * known.pull.std)},
+          .sinkage = {std::max(prior.sinkage.value + known.sinkage.value + departure.sinkage.value, 0.0),
                       departure.sinkage.std}};
-}
-
-const EvidenceField::Belief& EvidenceField::Beliefs::away(int class_index) {
-  auto known = away_.find(class_index);
-  if (known == away_.end())
-    known = away_.emplace(class_index, Belief{field_.classBelief(class_index), false}).first;
-  return known->second;
-}
-
-// Patches are forgotten when there are many, so that a whole map is worked out in little memory.
-EvidenceField::Beliefs::Patch& EvidenceField::Beliefs::patchAt(const BlockLevel& block, int class_index) {
-  const BlockLevel first{block.column / kPatchBlocks * kPatchBlocks, block.row / kPatchBlocks * kPatchBlocks,
-                         BlockEvidence::kTop};
-  const Key key{first.column, first.row, class_index};
-  if (last_ && key == last_key_) return *last_;
-  if (patches_.size() >= kMostRemembered) patches_.clear();
-  auto patch = patches_.find(key);
-  if (patch == patches_.end())
-    patch = patches_.emplace(key, Patch{field_.process(first, class_index), {}}).first;
-  last_key_ = key;
-  return *(last_ = &patch->second);
-}
-
-const EvidenceField::Belief& EvidenceField::Beliefs::at(maps::Cell cell, int class_index) {
-  const BlockLevel block = field_.topOf(cell);
-  Patch& patch = patchAt(block, class_index);
-  if (patch.process.empty()) return away(class_index);
-  std::optional<Belief>& known = patch.known[static_cast<std::size_t>(
-      block.row % kPatchBlocks * kPatchBlocks + block.column % kPatchBlocks)];
-  if (!known) {
-    const GroundBelief departure = patch.process.at(field_.middleOf(field_.cellOf(block)));
-    const double prior_std =
-        field_.site_->model->parts().classes[static_cast<std::size_t>(class_index)].pull_std;
-    known = Belief{field_.combined(class_index, departure), departure.pull.std != prior_std};
-  }
-  return *known;
 }
 
 }  // namespace talus::costmap

@@ -1,62 +1,56 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
 #include <tuple>
+#include <utility>
 #include <vector>
 
-#include <talus/costmap/cell_belief.hpp>
 #include <talus/costmap/cost_grid.hpp>
 #include <talus/costmap/evidence_bricks.hpp>
-#include <talus/costmap/floors.hpp>
-#include <talus/costmap/ground_model.hpp>
-#include <talus/costmap/spreading.hpp>
-#include <talus/costmap/surface_cells.hpp>
+#include <talus/costmap/ground_site.hpp>
 #include <talus/costmap/wheel_observation.hpp>
-#include <talus/maps/elevation_map.hpp>
 
 namespace talus::costmap {
 
-/// The soil posterior of a terrain class: how its mean pull departs from the prior's after all evidence.
-struct ClassPosterior {
-  Estimate pull;        ///< departure of drawbar pull over load [-]
-  Estimate sinkage;     ///< departure of sinkage over radius [-]
-  double places = 0.0;  ///< independent places that speak for it [-]
+/// What a file keeps of a block: its south-west cell counted from the map's, its level and class, and all that
+/// it heard.
+struct SavedBlock {
+  BlockLevel block;
+  std::uint32_t updated_s = 0;
+  std::uint8_t reach = 0;  ///< steps of 0.1 m
+  std::vector<ReadingCount> heard;
 };
 
-/// The ground as it was before anybody drove on it: what a map and its evidence share and never change.
-struct GroundSite {
-  maps::ElevationMap elevation;
-  maps::Raster<std::uint8_t> classes;  ///< class numbers; empty: all of the first class
-  SurfaceKeys keys;
-  std::shared_ptr<const GroundModel> model;
-  Floors floors{};  ///< beneath the elevation, which is the top surface
+struct BlockLesson;
+struct ClassPosterior;
+struct EvidenceStore;
+struct LocalGround;
+struct NearbyEvidence;
+struct Variation;
 
-  const maps::Grid& grid() const noexcept { return elevation.grid(); }
-  /// Position of a cell's class in the model's classes, or -1 when it has no soil.
-  int classIndex(maps::Cell cell) const noexcept {
-    return classes.empty() ? 0 : model->classIndex(classes[cell]);
-  }
-  /// The floor beneath the top surface that a wheel at this height stands on; nothing where it is on top.
-  std::optional<Floor> floorAt(maps::Cell cell, double z_m) const noexcept {
-    return floors.under(grid().index(cell), z_m, static_cast<double>(elevation.elevation_m[cell]));
-  }
-};
-
-/// What the wheels told, where: blocks of ground with their own evidence, spread to neighbours of the same
-/// class by a Gaussian process over the class mean, and a posterior of each class.
+/// What the wheels told, where: blocks of ground, each class of ground in a block with its own evidence, spread
+/// to neighbours of the same class by a Gaussian process over the class mean, and a posterior of each class.
 ///
 /// A block is the largest power of two of cells no wider than a quarter of the correlation length, on the
 /// octree's own lines, so that a sample's work does not depend on the map's resolution. What was driven
 /// beneath an overhang stays on its floor: it tells nothing about the top, and about the first class of
-/// ground only where no raster names classes. Same evidence in the same order, same bits. Not thread-safe
+/// ground only where no raster names classes. Same evidence in any order, same bits. Not thread-safe
 /// while changed.
+///
+/// Evidence lowers a belief at once and for all: around each place that is weaker than its class explains, or
+/// that may only lower, no ground is believed to be better than that place by itself leaves it. Evidence raises
+/// it, or makes it surer, only where at least three independent places of the class may raise, and by no more
+/// than each of them reaches; until then no belief is better than that of the class away from any evidence.
 class EvidenceField {
  public:
   explicit EvidenceField(std::shared_ptr<const GroundSite> site);
+  ~EvidenceField();
+  EvidenceField(EvidenceField&&) noexcept;
+  EvidenceField& operator=(EvidenceField&&) noexcept;
 
   /// Takes an observation in and returns the cells whose belief it may change (besides those of the class as
   /// a whole); nothing when the place is outside the map, has no elevation or class, or lies in a block that
@@ -79,26 +73,26 @@ class EvidenceField {
     const Belief& at(maps::Cell cell, int class_index);
 
    private:
-    struct Patch {
-      GaussianProcess process;
-      std::array<std::optional<Belief>, kPatchBlocks * kPatchBlocks> known;
-    };
+    struct Patch;
     using Key = std::tuple<int, int, int>;
 
     Patch& patchAt(const BlockLevel& block, int class_index);
     const Belief& away(int class_index);
 
     const EvidenceField& field_;
-    std::map<Key, Patch> patches_;
+    std::map<Key, std::shared_ptr<Patch>> patches_;
     Key last_key_{0, 0, -1};
     Patch* last_ = nullptr;
     std::map<int, Belief> away_;  // from any evidence, a class each
   };
 
-  /// Own evidence of the block that holds the cell, on top; null where nobody drove.
+  /// Own evidence, of the cell's class, of the block that holds the cell, on top; null where nobody drove.
   const BlockEvidence* evidence(maps::Cell cell) const noexcept;
   /// The same of a floor beneath it.
   const BlockEvidence* evidence(maps::Cell cell, const Floor& floor) const;
+  /// Readings behind it, each weighed by its certainty [-].
+  double samplesOf(maps::Cell cell) const;
+  double samplesOf(maps::Cell cell, const Floor& floor) const;
   /// What is believed of the ground of a floor: its own evidence and that of ground level with it.
   GroundBelief floorBelief(maps::Cell cell, const Floor& floor) const;
 
@@ -110,48 +104,42 @@ class EvidenceField {
   /// All of them, in a fixed order.
   std::vector<FloorEvidence> floorEvidence() const;
 
-  const ClassPosterior& posterior(int class_index) const {
-    return posteriors_[static_cast<std::size_t>(class_index)];
-  }
+  const ClassPosterior& posterior(int class_index) const;
   /// Belief of ground of a class away from any evidence.
   GroundBelief classBelief(int class_index) const;
 
-  int blockCells() const noexcept { return 1 << block_shift_; }
+  /// Side of a block.
+  int blockCells() const noexcept;
 
-  /// Puts a block's saved evidence back, as read from a file; `level` as in BlockEvidence.
-  void restore(maps::Cell cell, std::uint16_t level, const CellBelief& saved);
+  /// All evidence in a fixed order, as a file keeps it, and putting it back into a field of the same site: false
+  /// where that has no such block or class.
+  void visit(const std::function<void(const SavedBlock&)>& visit) const;
+  bool restore(const SavedBlock& saved);
 
  private:
-  // Exact sums, so that a contribution can be taken out again and order does not matter.
-  struct ClassSums {
-    std::int64_t weight = 0, pull = 0, sinkage = 0;
-  };
-
-  maps::Cell blockOf(maps::Cell cell) const noexcept;
-  maps::Point middleOf(maps::Cell block) const noexcept;
-  maps::Cell cellOf(const BlockLevel& block) const noexcept;
-  int reachBlocks() const noexcept;
-  BlockLevel topOf(maps::Cell block) const noexcept;
+  const GroundClass& groundOf(int class_index) const noexcept {
+    return site_->model->parts().classes[static_cast<std::size_t>(class_index)];
+  }
+  bool teachesClass(std::uint16_t level) const noexcept {
+    return level == BlockEvidence::kTop || site_->classes.empty();
+  }
+  BlockLevel topOf(maps::Cell cell, int class_index) const noexcept;
   BlockLevel levelOf(maps::Cell cell, const Floor& floor) const;
-  std::uint16_t keyOf(float height_m) const noexcept;
-  std::optional<std::uint16_t> topKey(maps::Cell block) const noexcept;
-  void weigh(const WheelObservation& observation, BlockEvidence& block) const;
-  void contribute(const BlockEvidence& block, int class_index, std::int64_t sign);
-  void refresh(int class_index);
-  double measuredVariance(const BlockEvidence& block) const noexcept;
-  GaussianProcess process(const BlockLevel& patch, int class_index) const;
-  std::vector<PlaceEvidence> levelWith(maps::Cell block, std::uint16_t level) const;
-  GaussianProcess processOf(std::vector<PlaceEvidence> found, const maps::Point& middle,
-                            int class_index) const;
-  PlaceEvidence placed(maps::Cell block, const BlockEvidence& evidence, const GroundBelief& mean) const;
+  bool standsOnOneClass(const WheelObservation& observation, int class_index) const;
+  void hear(const BlockLevel& where, const SavedBlock& heard);
+  std::optional<BlockLesson> lessonOf(const BlockEvidence& block, int class_index) const;
+  std::optional<float> squareStrength(const std::pair<int, int>& square, int class_index) const;
+  LocalGround around(const BlockLevel& patch, int class_index) const;
+  LocalGround levelWith(maps::Cell block, std::uint16_t level) const;
+  void place(const BlockLevel& block, const BlockEvidence& evidence, NearbyEvidence& nearby) const;
+  LocalGround grounded(NearbyEvidence nearby, const maps::Point& middle) const;
+  Variation variationOf(int class_index) const noexcept;
+  Belief believed(const LocalGround& ground, int class_index, const maps::Point& at) const;
   GroundBelief combined(int class_index, const GroundBelief& departure) const;
 
   std::shared_ptr<const GroundSite> site_;
-  int block_shift_ = 0;
-  maps::Cell first_block_;
-  EvidenceBricks bricks_;
-  std::vector<ClassSums> sums_;
-  std::vector<ClassPosterior> posteriors_;
+  std::unique_ptr<EvidenceStore> store_;
+  double farthest_reach_m_ = 0.0;  // of any weak place
 };
 
 }  // namespace talus::costmap

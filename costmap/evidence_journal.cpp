@@ -1,6 +1,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <sqlite3.h>
 
@@ -10,7 +11,7 @@
 namespace talus::costmap {
 namespace {
 
-constexpr int kFormat = 2;                // 1 had no z_m
+constexpr int kFormat = 3;                // 1 had no z_m, 2 no pose_std_m nor what may raise
 constexpr int kApplication = 0x54414c55;  // "TALU"
 
 constexpr const char* kSchema =
@@ -19,15 +20,26 @@ constexpr const char* kSchema =
     " accepted INTEGER NOT NULL, reason TEXT NOT NULL, time_s REAL, x_m REAL, y_m REAL, load_N REAL, slip "
     "REAL,"
     " torque_Nm REAL, sinkage_m REAL, gradient REAL, drawbar_pull_N REAL, pass_index INTEGER,"
-    " pull REAL, pull_std REAL, sinkage REAL, sinkage_std REAL, z_m REAL)";
+    " pull REAL, pull_std REAL, sinkage REAL, sinkage_std REAL, z_m REAL,"
+    " pose_std_m REAL NOT NULL DEFAULT 0, pull_may_raise INTEGER NOT NULL DEFAULT 0,"
+    " sinkage_may_raise INTEGER NOT NULL DEFAULT 0)";
 constexpr const char* kInsert =
     "INSERT INTO evidence(source, line, accepted, reason, time_s, x_m, y_m, load_N, slip, torque_Nm, "
     "sinkage_m, gradient,"
-    " drawbar_pull_N, pass_index, pull, pull_std, sinkage, sinkage_std, z_m) "
-    "VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)";
+    " drawbar_pull_N, pass_index, pull, pull_std, sinkage, sinkage_std, z_m, pose_std_m,"
+    " pull_may_raise, sinkage_may_raise) "
+    "VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)";
 constexpr const char* kSelect =
     "SELECT source, line, accepted, reason, time_s, x_m, y_m, load_N, slip, torque_Nm, sinkage_m, gradient,"
-    " drawbar_pull_N, pass_index, pull, pull_std, sinkage, sinkage_std, z_m FROM evidence ORDER BY id";
+    " drawbar_pull_N, pass_index, pull, pull_std, sinkage, sinkage_std, z_m, pose_std_m,"
+    " pull_may_raise, sinkage_may_raise FROM evidence ORDER BY id";
+
+// Columns that older journals lack: what they hold may not raise.
+constexpr std::array<std::pair<const char*, const char*>, 4> kAdded{
+    {{"z_m", "REAL"},
+     {"pose_std_m", "REAL NOT NULL DEFAULT 0"},
+     {"pull_may_raise", "INTEGER NOT NULL DEFAULT 0"},
+     {"sinkage_may_raise", "INTEGER NOT NULL DEFAULT 0"}}};
 
 // NULL stands for NaN: SQLite has none.
 double number(sqlite3_stmt* row, int column) {
@@ -62,6 +74,7 @@ JournalRow readRow(sqlite3_stmt* row) {
                  .sinkage_m = number(row, 10),
                  .gradient = number(row, 11),
                  .drawbar_pull_N = number(row, 12),
+                 .pose_std_m = number(row, 19),
                  .pass = sqlite3_column_int(row, 13)};
   out.observation = {.time_s = out.reading.time_s,
                      .place = out.reading.place,
@@ -69,7 +82,10 @@ JournalRow readRow(sqlite3_stmt* row) {
                      .pull = {number(row, 14), number(row, 15)},
                      .sinkage = {number(row, 16), number(row, 17)},
                      .demand = out.reading.gradient,
-                     .from_torque = std::numeric_limits<double>::quiet_NaN()};
+                     .from_torque = std::numeric_limits<double>::quiet_NaN(),
+                     .pose_std_m = out.reading.pose_std_m,
+                     .pull_may_raise = sqlite3_column_int(row, 20) != 0,
+                     .sinkage_may_raise = sqlite3_column_int(row, 21) != 0};
   return out;
 }
 
@@ -111,8 +127,10 @@ void EvidenceJournal::upgrade() {
                       "an evidence journal of format " + std::to_string(format) + ", newer than " +
                           std::to_string(kFormat),
                       "use the program that wrote it"});
-  if (single("SELECT count(*) FROM pragma_table_info('evidence') WHERE name = 'z_m'") == 0)
-    run("ALTER TABLE evidence ADD COLUMN z_m REAL");
+  for (const auto& [name, type] : kAdded)
+    if (single(("SELECT count(*) FROM pragma_table_info('evidence') WHERE name = '" + std::string(name) + "'")
+                   .c_str()) == 0)
+      run(("ALTER TABLE evidence ADD COLUMN " + std::string(name) + ' ' + type).c_str());
   run(("PRAGMA user_version = " + std::to_string(kFormat)).c_str());
   run("COMMIT");
 }
@@ -148,8 +166,10 @@ void EvidenceJournal::append(const JournalRow& row) {
                              r.gradient, r.drawbar_pull_N})
     bind(s, at++, value);
   sqlite3_bind_int(s, at++, r.pass);
-  for (const double value : {o.pull.value, o.pull.std, o.sinkage.value, o.sinkage.std, r.z_m})
+  for (const double value : {o.pull.value, o.pull.std, o.sinkage.value, o.sinkage.std, r.z_m, r.pose_std_m})
     bind(s, at++, value);
+  sqlite3_bind_int(s, at++, o.pull_may_raise ? 1 : 0);
+  sqlite3_bind_int(s, at, o.sinkage_may_raise ? 1 : 0);
   const int result = sqlite3_step(s);
   sqlite3_reset(s);
   if (result != SQLITE_DONE) fail();

@@ -6,12 +6,12 @@
 #include <cmath>
 #include <csignal>
 #include <cstring>
-#include <deque>
 #include <filesystem>
 #include <fstream>
 #include <istream>
 #include <ostream>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -27,9 +27,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "map files require a little-endian machine");
 
 constexpr std::array<char, 8> kMagic{'T', 'A', 'L', 'U', 'S', 'M', 'A', 'P'};
-constexpr std::uint32_t kFlat = 1;    // version without floors
-constexpr std::uint32_t kFloors = 2;  // with a section FLOR
-constexpr std::uint64_t kMostText = 1U << 24;
+constexpr std::uint32_t kVersion = 3;
 
 // FNV-1a over 8-byte words, then over the bytes left: guards against damage, not malice.
 class Checksum {
@@ -52,9 +50,9 @@ class Checksum {
 
 class TrailerWriter {
  public:
-  TrailerWriter(std::ostream& stream, std::uint32_t version) : stream_(stream) {
+  explicit TrailerWriter(std::ostream& stream) : stream_(stream) {
     raw(kMagic.data(), kMagic.size());
-    raw(&version, sizeof version);
+    raw(&kVersion, sizeof kVersion);
   }
   void section(const char (&tag)[5], const void* data, std::uint64_t size) {
     raw(tag, 4);
@@ -83,12 +81,12 @@ class TrailerReader {
     std::array<char, 8> magic{};
     raw(magic.data(), magic.size());
     if (magic != kMagic) fail("an octree without the trailer of a map");
-    raw(&version_, sizeof version_);
-    if (version_ < kFlat || version_ > kFloors)
-      fail("version " + std::to_string(version_) + " of the format; this program reads 1 and 2");
+    std::uint32_t version = 0;
+    raw(&version, sizeof version);
+    if (version != kVersion)
+      fail("version " + std::to_string(version) + " of the format; this program reads " +
+           std::to_string(kVersion));
   }
-
-  bool hasFloors() const noexcept { return version_ == kFloors; }
 
   std::vector<Floor> floors(const char (&tag)[5]) {
     const std::uint64_t size = open(tag);
@@ -98,10 +96,8 @@ class TrailerReader {
     return floors;
   }
 
-  std::string text(const char (&tag)[5]) {
-    const std::uint64_t size = open(tag);
-    if (size > kMostText) fail("damaged section");
-    std::string bytes(size, '\0');
+  std::string bytes(const char (&tag)[5]) {
+    std::string bytes(open(tag), '\0');
     raw(bytes.data(), bytes.size());
     return bytes;
   }
@@ -154,7 +150,6 @@ class TrailerReader {
   std::istream& stream_;
   std::string name_;
   Checksum checksum_;
-  std::uint32_t version_ = 0;
 };
 
 maps::Raster<Hazard> declared(const TraversabilityMap& map) {
@@ -163,6 +158,57 @@ maps::Raster<Hazard> declared(const TraversabilityMap& map) {
   for (std::size_t i = 0; i < hazards.values().size(); ++i)
     hazards.values()[i] = static_cast<Hazard>(static_cast<std::uint8_t>(map.hazards().values()[i]) & kept);
   return hazards;
+}
+
+// A block as it stands in the file, before its readings.
+struct BlockHeader {
+  std::int32_t column = 0, row = 0;
+  std::uint32_t updated_s = 0;
+  std::uint16_t level = 0;
+  std::uint8_t terrain_class = 0, reach = 0;
+  std::uint32_t readings = 0;
+};
+static_assert(sizeof(BlockHeader) == 20 && sizeof(ReadingCount) == 4);
+
+std::string evidenceOf(const TraversabilityMap& map) {
+  std::string bytes;
+  const auto put = [&](const void* data, std::size_t size) {
+    bytes.append(static_cast<const char*>(data), size);
+  };
+  map.evidence().visit([&](const SavedBlock& saved) {
+    const BlockHeader header{.column = saved.block.column,
+                             .row = saved.block.row,
+                             .updated_s = saved.updated_s,
+                             .level = saved.block.level,
+                             .terrain_class = saved.block.terrain_class,
+                             .reach = saved.reach,
+                             .readings = static_cast<std::uint32_t>(saved.heard.size())};
+    put(&header, sizeof header);
+    put(saved.heard.data(), saved.heard.size() * sizeof(ReadingCount));
+  });
+  return bytes;
+}
+
+// False for bytes that no writer wrote.
+bool restoreEvidence(std::string_view bytes, TraversabilityMap& map) {
+  while (!bytes.empty()) {
+    BlockHeader header;
+    if (bytes.size() < sizeof header) return false;
+    std::memcpy(&header, bytes.data(), sizeof header);
+    bytes.remove_prefix(sizeof header);
+    if (bytes.size() / sizeof(ReadingCount) < header.readings) return false;
+    SavedBlock saved{.block = {header.column, header.row, header.level, header.terrain_class},
+                     .updated_s = header.updated_s,
+                     .reach = header.reach,
+                     .heard = std::vector<ReadingCount>(header.readings)};
+    std::memcpy(saved.heard.data(), bytes.data(), header.readings * sizeof(ReadingCount));
+    bytes.remove_prefix(header.readings * sizeof(ReadingCount));
+    const bool kinds = std::all_of(saved.heard.begin(), saved.heard.end(), [](const ReadingCount& r) {
+      return r.kind < reading_kind::kCount && r.count > 0;
+    });
+    if (!kinds || saved.heard.empty() || !map.restore(saved)) return false;
+  }
+  return true;
 }
 
 MapText textOf(const TraversabilityMap& map) {
@@ -186,7 +232,7 @@ void requireSane(const maps::Grid& grid, const std::string& name) {
 void writeMap(const TraversabilityMap& map, std::ostream& stream) {
   map.writeTree(stream);
   const std::vector<Floor>& floors = map.floors().all();
-  TrailerWriter trailer(stream, floors.empty() ? kFlat : kFloors);
+  TrailerWriter trailer(stream);
   const std::string text = written(textOf(map));
   trailer.section("TEXT", text.data(), text.size());
   const auto& elevation = map.elevation().elevation_m.values();
@@ -194,7 +240,9 @@ void writeMap(const TraversabilityMap& map, std::ostream& stream) {
   trailer.section("CLAS", map.classes().values().data(), map.classes().values().size());
   const maps::Raster<Hazard> hazards = declared(map);
   trailer.section("HAZD", hazards.values().data(), hazards.values().size());
-  if (!floors.empty()) trailer.section("FLOR", floors.data(), floors.size() * sizeof(Floor));
+  trailer.section("FLOR", floors.data(), floors.size() * sizeof(Floor));
+  const std::string evidence = evidenceOf(map);
+  trailer.section("EVID", evidence.data(), evidence.size());
   trailer.finish();
 }
 
@@ -248,43 +296,19 @@ void writeMap(const TraversabilityMap& map, const std::string& path) {
   throw InputError({path, "cannot be written", "check that the folder exists and has room"});
 }
 
-// Leaves that wheels spoke for carry their block's evidence. Where a leaf of the top is pruned it stands for
-// the cells whose elevation it holds; that of a floor is a voxel whose shape is unknown.
-void restoreEvidence(const std::deque<TreeLeaf>& leaves, TraversabilityMap& map) {
-  const maps::Grid& grid = map.grid();
-  const octomap::OcTreeKey first = map.keys().key({0, 0}, map.keys().baseElevation_m());
-  for (const TreeLeaf& leaf : leaves) {
-    const int west = leaf.low[0] - first[0], south = leaf.low[1] - first[1];
-    const int side = static_cast<int>(leaf.side);
-    for (int row = std::max(south, 0); row < std::min(south + side, grid.height); ++row)
-      for (int column = std::max(west, 0); column < std::min(west + side, grid.width); ++column) {
-        const float elevation = map.elevation().elevation_m[{column, row}];
-        if (std::isnan(elevation)) continue;
-        const int above = map.keys().key({column, row}, static_cast<double>(elevation))[2] - leaf.low[2];
-        if (ofFloor(leaf.belief))
-          map.restore({column, row}, leaf.low[2], leaf.belief);
-        else if (above >= 0 && above < side)
-          map.restore({column, row}, BlockEvidence::kTop, leaf.belief);
-      }
-  }
-  if (!leaves.empty()) map.publishAll();
-}
-
 TraversabilityMap readMap(std::istream& stream, const MapReading& reading, const ProgressMonitor& watch) {
-  std::deque<TreeLeaf> learned;
-  readLeaves(stream, reading.name, [&](const TreeLeaf& leaf) {
-    if (leaf.belief.evidence > 0.0F) learned.push_back(leaf);
-  });
+  readLeaves(stream, reading.name,
+             [](const TreeLeaf&) {});  // what follows says the same, and how it came to it
   TrailerReader trailer(stream, reading.name);
-  MapText text = parsed(trailer.text("TEXT"), reading.name);
+  MapText text = parsed(trailer.bytes("TEXT"), reading.name);
   requireSane(text.grid, reading.name);
   MapLayers layers;
   layers.elevation.source = text.source;
   layers.elevation.elevation_m = trailer.raster<float>("ELEV", text.grid);
   layers.classes = trailer.raster<std::uint8_t>("CLAS", text.grid);
   layers.declared = trailer.raster<Hazard>("HAZD", text.grid);
-  std::vector<Floor> floors;
-  if (trailer.hasFloors()) floors = trailer.floors("FLOR");
+  std::vector<Floor> floors = trailer.floors("FLOR");
+  const std::string evidence = trailer.bytes("EVID");
   trailer.finish();
   if (layers.elevation.elevation_m.empty())
     throw InputError(
@@ -295,7 +319,8 @@ TraversabilityMap readMap(std::istream& stream, const MapReading& reading, const
     auto model = std::make_shared<GroundModel>(std::move(text.ground));
     TraversabilityMap map(std::move(layers), std::move(model),
                           {.footprint_radius_m = text.footprint_radius_m, .threads = reading.threads}, watch);
-    restoreEvidence(learned, map);
+    if (!restoreEvidence(evidence, map)) throw std::invalid_argument("its evidence is impossible");
+    if (!evidence.empty()) map.publishAll();
     return map;
   } catch (const std::invalid_argument& error) {
     throw InputError(

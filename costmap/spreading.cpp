@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -6,6 +7,8 @@
 
 namespace talus::costmap {
 namespace {
+
+constexpr double kOrdinary = 2.0;  // standard deviations that a class explains
 
 // Most pairs lie too far apart: they cost a comparison.
 double sparseKernel(const maps::Point& a, const maps::Point& b, double correlation_length_m) noexcept {
@@ -55,58 +58,90 @@ double sparseKernel(double distance_m, double correlation_length_m) noexcept {
 
 GaussianProcess::GaussianProcess(std::vector<PlaceEvidence> evidence, const Variation& variation)
     : evidence_(std::move(evidence)), variation_(variation) {
-  constexpr double kOrdinary = 2.0;  // standard deviations that its class explains
   const std::size_t n = evidence_.size();
   const double prior = variation_.pull_std * variation_.pull_std;
-  for (const PlaceEvidence& e : evidence_) {
-    const double needed = (e.pull * e.pull / (kOrdinary * kOrdinary) - e.variance) / prior;
-    excess_.push_back(std::sqrt(std::fmax(needed, 1.0)) - 1.0);
+  const double most_sinkage = kOrdinary * variation_.sinkage_std;
+  for (PlaceEvidence& e : evidence_) {
+    e.pull = std::min(e.pull, kOrdinary * std::sqrt(prior + e.variance));
+    e.sinkage = e.sinkage < -most_sinkage ? -most_sinkage : e.sinkage;
   }
-  for (const PlaceEvidence& e : evidence_) amplitude_.push_back(amplitude(e.place));
   factor_.assign(n * n, 0.0);
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = 0; j <= i; ++j)
       factor_[i * n + j] =
-          amplitude_[i] * amplitude_[j] *
           sparseKernel(evidence_[i].place, evidence_[j].place, variation_.correlation_length_m);
     factor_[i * n + i] += evidence_[i].variance / prior;
-    pull_.push_back(evidence_[i].pull);
-    sinkage_.push_back(evidence_[i].sinkage);
   }
   factorise(factor_, n);
-  for (std::vector<double>* y : {&pull_, &sinkage_}) {
-    solveLower(factor_, *y);
-    solveUpper(factor_, *y);
-  }
-}
-
-double GaussianProcess::amplitude(const maps::Point& place) const noexcept {
-  double most = 0.0;
-  for (std::size_t i = 0; i < evidence_.size(); ++i)
-    if (excess_[i] > 0.0)
-      most = std::fmax(most,
-                       excess_[i] * sparseKernel(place, evidence_[i].place, variation_.correlation_length_m));
-  return 1.0 + most;
 }
 
 GroundBelief GaussianProcess::at(const maps::Point& place) const {
-  std::vector<double> k;
-  k.reserve(evidence_.size());
-  GroundBelief belief;
-  const double here = amplitude(place);
-  for (std::size_t i = 0; i < evidence_.size(); ++i) {
-    k.push_back(here * amplitude_[i] *
-                sparseKernel(place, evidence_[i].place, variation_.correlation_length_m));
-    belief.pull.value += k[i] * pull_[i];
-    belief.sinkage.value += k[i] * sinkage_[i];
-  }
-  solveLower(factor_, k);
+  std::vector<double> weight;
+  weight.reserve(evidence_.size());
+  for (const PlaceEvidence& e : evidence_)
+    weight.push_back(sparseKernel(place, e.place, variation_.correlation_length_m));
+  solveLower(factor_, weight);
   double explained = 0.0;
-  for (const double v : k) explained += v * v;
-  const double left = std::sqrt(std::fmax(here * here - explained, 0.0));
+  for (const double v : weight) explained += v * v;
+  solveUpper(factor_, weight);
+  double sum = 0.0, positive = 0.0;
+  for (const double w : weight) {
+    sum += w;
+    positive += std::fmax(w, 0.0);
+  }
+  const double scale = positive > 0.0 ? std::clamp(sum, 0.0, 1.0) / positive : 0.0;
+  GroundBelief belief;
+  for (std::size_t i = 0; i < evidence_.size(); ++i) {
+    const PlaceEvidence& e = evidence_[i];
+    const double w = std::fmax(weight[i], 0.0);
+    belief.pull.value += (e.pull > 0.0 ? scale * w : w) * e.pull;
+    if (!std::isnan(e.sinkage)) belief.sinkage.value += (e.sinkage < 0.0 ? scale * w : w) * e.sinkage;
+  }
+  const double left = std::sqrt(std::fmax(1.0 - explained, 0.0));
   belief.pull.std = left * variation_.pull_std;
   belief.sinkage.std = left * variation_.sinkage_std;
   return belief;
+}
+
+namespace {
+
+// Squared, in units of the class's variance.
+double amplitude2(const Departure& reading, double class_std) noexcept {
+  const double ordinary = reading.departure / kOrdinary;
+  return std::fmax((ordinary * ordinary - reading.variance) / (class_std * class_std), 1.0);
+}
+
+}  // namespace
+
+double believedAlone(const Departure& reading, double class_std) noexcept {
+  const double a2 = amplitude2(reading, class_std);
+  return reading.departure * a2 / (a2 + reading.variance / (class_std * class_std));
+}
+
+std::optional<GroundBelief> weakness(const WeakPlace& weak, const Variation& variation,
+                                     const maps::Point& place) {
+  const double off_m = std::hypot(place.x_m - weak.place.x_m, place.y_m - weak.place.y_m) - weak.reach_m;
+  if (off_m > 0.0 && !weak.beyond_reach) return std::nullopt;
+  const double k = sparseKernel(std::fmax(off_m, 0.0), variation.correlation_length_m);
+  if (k <= 0.0) return std::nullopt;
+  const Departure reading{weak.pull, weak.variance};
+  const double a2 = amplitude2(reading, variation.pull_std);
+  const double a = std::sqrt(a2), here = 1.0 + (a - 1.0) * k;
+  const double share = a2 / (a2 + weak.variance / (variation.pull_std * variation.pull_std));
+  return GroundBelief{
+      .pull = {here / a * k * share * weak.pull,
+               here * variation.pull_std * std::sqrt(std::fmax(1.0 - k * k * share, 0.0))},
+      .sinkage = {k * weak.sinkage, variation.sinkage_std * std::sqrt(std::fmax(1.0 - k * k, 0.0))}};
+}
+
+GroundBelief weaker(const GroundBelief& a, const GroundBelief& b) noexcept {
+  constexpr double kTail = 6.0;
+  const double pull = std::fmin(a.pull.value, b.pull.value);
+  const double low = std::fmin(a.pull.value - kTail * a.pull.std, b.pull.value - kTail * b.pull.std);
+  const double sinkage = std::fmax(a.sinkage.value, b.sinkage.value);
+  const double deep =
+      std::fmax(a.sinkage.value + kTail * a.sinkage.std, b.sinkage.value + kTail * b.sinkage.std);
+  return {.pull = {pull, (pull - low) / kTail}, .sinkage = {sinkage, (deep - sinkage) / kTail}};
 }
 
 GroundBelief kernelInference(const std::vector<PlaceEvidence>& evidence, const Variation& variation,

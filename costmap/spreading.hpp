@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <talus/costmap/ground_model.hpp>
@@ -13,7 +14,7 @@ namespace talus::costmap {
 struct PlaceEvidence {
   maps::Point place;
   double pull = 0.0;      ///< drawbar pull over load less the class's [-]
-  double sinkage = 0.0;   ///< sinkage over radius less the class's [-]
+  double sinkage = 0.0;   ///< sinkage over radius less the class's [-]; NaN where none was measured
   double variance = 0.0;  ///< of the pull as measured there, > 0 [-]
 };
 
@@ -30,12 +31,10 @@ struct Variation {
 double sparseKernel(double distance_m, double correlation_length_m) noexcept;
 
 /// Gaussian-process regression of the departure (rasmussen_williams_2006, Eqs. 2.25, 2.26): factorised once
-/// for a set of evidence, then asked at any number of places.
-///
-/// Ground varies by its class's pull_std, but for patches of other ground that no class raster shows: around
-/// evidence that departs by more than two standard deviations the process varies by as much as explains it,
-///   cov(x, x') = a(x) a(x') k(|x - x'|),  a(x) = 1 + max_i (a_i - 1) k(|x - x_i|) in units of pull_std,
-/// a_i the least amplitude under which evidence i lies within two standard deviations (ours).
+/// for a set of evidence, then asked at any number of places. Two things differ, so that weaker evidence never
+/// makes any place look stronger (ours): ground that is stronger than its class by more than two standard
+/// deviations counts as if by two; and weights of evidence that the regression would have below 0 are 0, for which
+/// those of ground stronger than its class are scaled down to the sum of all, 1 at most.
 class GaussianProcess {
  public:
   /// Evidence that is empty leaves the prior.
@@ -47,15 +46,41 @@ class GaussianProcess {
   GroundBelief at(const maps::Point& place) const;
 
  private:
-  double amplitude(const maps::Point& place) const noexcept;
-
   std::vector<PlaceEvidence> evidence_;
   Variation variation_;
-  std::vector<double> excess_;          // a_i - 1
-  std::vector<double> amplitude_;       // a at each evidence
-  std::vector<double> factor_;          // lower Cholesky factor of K + noise, in units of the prior variance
-  std::vector<double> pull_, sinkage_;  // (K + noise)^-1 y
+  std::vector<double> factor_;  // lower Cholesky factor of K + noise, in units of the prior variance
 };
+
+/// A departure from a class's mean and its variance.
+struct Departure {
+  double departure = 0.0;
+  double variance = 0.0;
+};
+
+/// What is left of a reading's departure where nothing else is known: a^2 y/(a^2 + v), in units of the class's
+/// std. Ground varies by that std, but for patches of other ground that no class raster shows: the amplitude a
+/// is the least, from 1 on, under which the reading lies within two standard deviations (ours).
+double believedAlone(const Departure& reading, double class_std) noexcept;
+
+/// Ground that is weaker than its class, or sinks deeper, as one place says by itself. Whatever else is known,
+/// no place near it is believed to be better than this leaves it.
+struct WeakPlace {
+  maps::Point place;
+  double pull = 0.0;         ///< departure of drawbar pull over load from the prior of its class, <= 0 [-]
+  double variance = 0.0;     ///< of the pull as measured there, > 0 [-]
+  double sinkage = 0.0;      ///< departure of sinkage over radius, >= 0 [-]
+  double reach_m = 0.0;      ///< how far off the place may be: all ground within counts as the place itself
+  bool beyond_reach = true;  ///< whether it says anything of ground beyond that; not of other classes
+};
+
+/// Departure from the prior that a weak place leaves to another, by a process of amplitude
+/// 1 + (a - 1) k(d) there, a as in believedAlone; nothing where it says nothing.
+std::optional<GroundBelief> weakness(const WeakPlace& weak, const Variation& variation,
+                                     const maps::Point& place);
+
+/// Two beliefs of the same ground, both of which must hold: the lesser mean and the lesser mean less six
+/// standard deviations of the pull; the greater ones of the sinkage. In any order the same.
+GroundBelief weaker(const GroundBelief& a, const GroundBelief& b) noexcept;
 
 /// Bayesian generalised kernel inference (doherty_2019): a weighed mean of the evidence around a place,
 /// conjugate to the prior.

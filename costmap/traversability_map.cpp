@@ -91,25 +91,22 @@ std::vector<std::shared_ptr<CostTile>> emptyTiles(const maps::Grid& grid) {
 }
 
 // Ranges of a drive overlap: neighbours in time are joined where that covers little more than both.
-std::vector<maps::CellBox> joined(const std::vector<maps::CellBox>& ranges) {
+std::vector<maps::CellBox> joined(std::vector<maps::CellBox> ranges, const maps::CellBox& range) {
   const auto area = [](const maps::CellBox& r) {
     return static_cast<double>(r.last.column - r.first.column + 1) * (r.last.row - r.first.row + 1);
   };
-  std::vector<maps::CellBox> out;
-  for (const maps::CellBox& range : ranges) {
-    if (!out.empty()) {
-      const maps::CellBox& last = out.back();
-      const maps::CellBox both{
-          {std::min(last.first.column, range.first.column), std::min(last.first.row, range.first.row)},
-          {std::max(last.last.column, range.last.column), std::max(last.last.row, range.last.row)}};
-      if (area(both) < 1.3 * std::max(area(last), area(range))) {
-        out.back() = both;
-        continue;
-      }
+  if (!ranges.empty()) {
+    maps::CellBox& last = ranges.back();
+    const maps::CellBox both{
+        {std::min(last.first.column, range.first.column), std::min(last.first.row, range.first.row)},
+        {std::max(last.last.column, range.last.column), std::max(last.last.row, range.last.row)}};
+    if (area(both) < 1.3 * std::max(area(last), area(range))) {
+      last = both;
+      return ranges;
     }
-    out.push_back(range);
   }
-  return out;
+  ranges.push_back(range);
+  return ranges;
 }
 
 void tell(const GroundBelief& strength, CellBelief& belief) {
@@ -119,10 +116,10 @@ void tell(const GroundBelief& strength, CellBelief& belief) {
   belief.sinkage_std = static_cast<float>(strength.sinkage.std);
 }
 
-void tell(const BlockEvidence& own, CellBelief& belief) {
-  belief.evidence = own.weight;
-  belief.evidence_pull = own.pull;
-  belief.evidence_sinkage = own.sinkage;
+void tell(const BlockEvidence& own, double samples, CellBelief& belief) {
+  belief.evidence = static_cast<float>(samples);
+  belief.evidence_pull = own.weak_pull;
+  belief.evidence_sinkage = std::isnan(own.sinkage) ? 0.0F : own.sinkage;
   belief.updated_s = own.updated_s;
 }
 
@@ -245,8 +242,7 @@ CellBelief TraversabilityMap::belief(maps::Cell cell, EvidenceField::Beliefs& be
   belief.terrain_class =
       static_cast<std::uint8_t>(model().parts().classes[static_cast<std::size_t>(index)].number);
   tell(beliefs.at(cell, index).ground, belief);
-  if (const BlockEvidence* own = field_.evidence(cell); own && own->terrain_class == belief.terrain_class)
-    tell(*own, belief);
+  if (const BlockEvidence* own = field_.evidence(cell)) tell(*own, field_.samplesOf(cell), belief);
   const CellCode code = this->code(cell);
   if (code.curve() < CellCode::kUnknown) {
     const auto entry = book_.categories(code.curve()).at(code);
@@ -264,7 +260,8 @@ CellBelief TraversabilityMap::belief(maps::Cell cell, const Floor& floor) const 
   belief.terrain_class = static_cast<std::uint8_t>(model().parts().classes[0].number);
   belief.hazards = Hazard::Unknown;
   tell(field_.floorBelief(cell, floor), belief);
-  if (const BlockEvidence* own = field_.evidence(cell, floor)) tell(*own, belief);
+  if (const BlockEvidence* own = field_.evidence(cell, floor))
+    tell(*own, field_.samplesOf(cell, floor), belief);
   return belief;
 }
 
@@ -285,7 +282,7 @@ std::uint8_t TraversabilityMap::categoryOf(const CostGrid& grid, maps::Cell cell
 
 bool TraversabilityMap::learn(const WheelObservation& observation) {
   const auto range = field_.add(observation);
-  if (range) dirty_.push_back(*range);
+  if (range) dirty_ = joined(std::move(dirty_), *range);
   return range.has_value();
 }
 
@@ -316,7 +313,7 @@ bool TraversabilityMap::refreshPriors() {
 }
 
 void TraversabilityMap::publish() {
-  publish(joined(std::exchange(dirty_, {})));
+  publish(std::exchange(dirty_, {}));
 }
 
 void TraversabilityMap::publishAll() {

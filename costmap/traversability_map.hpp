@@ -38,7 +38,7 @@ struct CategoryCounts {
 };
 
 /// Everything that is believed of a site: its surface, the prior of each cell's ground, the evidence that the
-/// wheels brought, and the cost grid that planners read. Ten bytes a cell and twenty a block that was driven.
+/// wheels brought, and the cost grid that planners read. Ten bytes a cell and some sixty a block that was driven.
 ///
 /// One thread changes a map; published() may be called from any thread at any time and never waits.
 class TraversabilityMap {
@@ -105,10 +105,9 @@ class TraversabilityMap {
   /// Takes an observation in; planners see it after publish(). False when the place has no ground to learn
   /// about.
   bool learn(const WheelObservation& observation);
-  /// Puts saved evidence of a cell's block back, as read from a file; publishAll() afterwards.
-  void restore(maps::Cell cell, std::uint16_t level, const CellBelief& saved) {
-    field_.restore(cell, level, saved);
-  }
+  /// Puts saved evidence of a block back, as read from a file; publishAll() afterwards. False when the map has no
+  /// such block or class.
+  bool restore(const SavedBlock& saved) { return field_.restore(saved); }
 
   /// Declares the ground around a place impassable, as a driver does who got stuck there: Hazard::Obstacle on
   /// every cell whose centre lies within the radius. Planners see it after publish().

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <charconv>
@@ -18,9 +19,10 @@ using octomap::OcTreeKey;
 
 constexpr unsigned kDepth = 16;
 constexpr std::size_t kPayloadBytes = 36;
+constexpr std::size_t kVersionAt = 6;  // in the preamble
 using Payload = std::array<char, kPayloadBytes>;
 constexpr std::array<char, 8> kPreamble{'T', 'A', 'L', 'U',
-                                        'S', 'T', 1,   0};  // last two: version 1, little-endian
+                                        'S', 'T', 2,   0};  // last two: version 2, little-endian
 
 template <typename T>
 T littleEndian(T value) noexcept {
@@ -86,9 +88,10 @@ std::istream& readBelief(std::istream& stream, CellBelief& belief) {
   return stream;
 }
 
-bool readPreamble(std::istream& stream) {
-  std::array<char, kPreamble.size()> preamble{};
-  return stream.read(preamble.data(), preamble.size()) && preamble == kPreamble;
+using Preamble = std::array<char, kPreamble.size()>;
+
+bool readPreamble(std::istream& stream, Preamble& preamble) {
+  return stream.read(preamble.data(), std::ssize(preamble)) && preamble == kPreamble;
 }
 
 }  // namespace
@@ -163,7 +166,8 @@ std::ostream& TraversabilityTree::writeData(std::ostream& stream) const {
 
 std::istream& TraversabilityTree::readData(std::istream& stream) {
   clear();
-  if (!readPreamble(stream)) {
+  Preamble preamble{};
+  if (!readPreamble(stream, preamble)) {
     stream.setstate(std::ios::failbit);
     return stream;
   }
@@ -299,6 +303,15 @@ Header requiredHeader(std::istream& stream, const std::string& name) {
   throw InputError({name, "truncated or damaged: its nodes cannot be read", "write the map again"});
 }
 
+[[noreturn]] void refused(const Preamble& found, const std::string& name) {
+  const bool known = std::equal(found.begin(), found.begin() + kVersionAt, kPreamble.begin());
+  if (!known || found[kVersionAt] == kPreamble[kVersionAt]) truncated(name);
+  throw InputError({name,
+                    "version " + std::to_string(static_cast<unsigned char>(found[kVersionAt])) +
+                        " of the format; this program reads " + std::to_string(int{kPreamble[kVersionAt]}),
+                    "write the map again with talus costmap, and put the telemetry into it again"});
+}
+
 void requireSize(std::size_t nodes, const Header& header, const std::string& name) {
   if (nodes != header.size)
     throw InputError({name,
@@ -357,9 +370,9 @@ void readLeaves(std::istream& stream, const std::string& name,
                 const std::function<void(const TreeLeaf&)>& visit) {
   const Header header = requiredHeader(stream, name);
   LeafWalk walk(stream, visit);
-  if (header.size > 0 &&
-      (!readPreamble(stream) || !walk.below({.low = {0, 0, 0}, .side = 1U << kDepth, .belief = {}})))
-    truncated(name);
+  Preamble preamble{};
+  if (header.size > 0 && !readPreamble(stream, preamble)) refused(preamble, name);
+  if (header.size > 0 && !walk.below({.low = {0, 0, 0}, .side = 1U << kDepth, .belief = {}})) truncated(name);
   requireSize(walk.nodes(), header, name);
 }
 

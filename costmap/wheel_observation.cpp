@@ -15,6 +15,7 @@ constexpr double kShiftPerSlip = 0.06;
 constexpr double kShiftPerSlipAndDeparture = 1.2;
 constexpr double kFlatFrom = 0.25;  // further from the reference slip than this both curves are flat
 constexpr double kFelt = 0.1;       // of the torque at the reference slip: less tells nothing about it
+constexpr double kStanding = 0.9;   // slip from which a rover may as well not move (ours)
 constexpr double kRutDoubt = 1.0;   // of what a rut adds: its stiffness is known to a factor (ours)
 
 bool known(double value) noexcept {
@@ -93,7 +94,20 @@ Estimate WheelObserver::bySlope(const Wheel& w, double departure, double own) co
                            std::hypot(w.steepness, extrapolation))};
 }
 
-std::optional<WheelObservation> WheelObserver::observed(const Wheel& w, double departure, double own) const {
+// Of a rover that all but stands: what is weaker of the balance and torque with sinkage, if that is known.
+Estimate WheelObserver::upperBound(const Wheel& w, double departure) const {
+  Estimate most = w.by_torque;
+  if (known(departure)) {
+    const Estimate slope = bySlope(w, departure, 0.0);
+    if (!known(most.std) || slope.value < most.value) most = slope;
+  }
+  most.value = std::min(most.value, 0.0);
+  return most;
+}
+
+std::optional<WheelObservation> WheelObserver::observed(const Wheel& w, const Balance& balance,
+                                                        double own) const {
+  const double departure = balance.departure;
   const WheelReading& reading = w.read.reading;
   WheelObservation out{.time_s = reading.time_s,
                        .place = reading.place,
@@ -101,7 +115,10 @@ std::optional<WheelObservation> WheelObserver::observed(const Wheel& w, double d
                        .pull = {},
                        .sinkage = {},
                        .demand = w.expected.gradient + departure,
-                       .from_torque = w.from_torque};
+                       .from_torque = w.from_torque,
+                       .pose_std_m = reading.pose_std_m,
+                       .bound = balance.standing && !known(reading.drawbar_pull_N)};
+  const GroundBelief prior = model_.prior(w.read.class_index);
   Estimate seen = w.by_torque;
   if (known(departure))
     seen = known(seen.std) ? combined(bySlope(w, departure, own), seen) : bySlope(w, departure, own);
@@ -109,9 +126,18 @@ std::optional<WheelObservation> WheelObserver::observed(const Wheel& w, double d
     const double pull = reading.drawbar_pull_N / reading.load_N - w.expected.gradient;
     seen = bySlope(w, pull, 0.0);
   }
+  if (out.bound) seen = upperBound(w, departure);
   if (!known(seen.std)) return std::nullopt;
-  const GroundBelief prior = model_.prior(w.read.class_index);
-  out.pull = {prior.pull.value + seen.value, std::hypot(seen.std, kRutDoubt * w.rut_gain)};
+  // What says that ground is stronger than its class is the slope: neither torque and sinkage, nor one wheel
+  // against its fellows, goes beyond that.
+  const double by_slope = known(departure) ? departure + std::min(own, std::max(-departure, 0.0)) : 0.0;
+  if (!known(reading.drawbar_pull_N)) seen.value = std::min(seen.value, std::max(by_slope, 0.0));
+  const double rut = kRutDoubt * w.rut_gain;
+  if (known(departure)) {
+    const Estimate slope = bySlope(w, departure, 0.0);
+    out.by_slope = {prior.pull.value + slope.value, std::hypot(slope.std, rut)};
+  }
+  out.pull = {prior.pull.value + seen.value, std::hypot(seen.std, rut)};
   out.sinkage = {prior.sinkage.value, std::numeric_limits<double>::infinity()};
   const double z = reading.sinkage_m / model_.rover().wheel.radius_m;
   if (reading.pass <= 1 && z >= 0.0 && z < 1.0 && w.expected.sinkage_over_radius > 0.0) {
@@ -130,11 +156,13 @@ std::vector<std::optional<WheelObservation>> WheelObserver::observe(
   const auto usable = [](const ClassReading& c) { return known(c.reading.slip) && c.reading.load_N > 0.0; };
   std::vector<Wheel> wheels;
   double load = 0.0, departure = 0.0, felt_load = 0.0, felt = 0.0;
+  bool standing = false;
   for (const ClassReading& read : together) {
     if (!usable(read)) continue;
     const Wheel& w = wheels.emplace_back(expected(read));
     const double load_N = read.reading.load_N;
     load += load_N;
+    standing |= read.reading.slip >= kStanding;
     departure += load_N * (read.reading.gradient - w.expected.gradient);
     if (!known(w.from_torque)) continue;
     felt_load += load_N;
@@ -149,7 +177,7 @@ std::vector<std::optional<WheelObservation>> WheelObserver::observe(
     }
     const Wheel& w = wheels[next++];
     const double own = w.from_torque - w.expected.gradient - felt / felt_load;
-    out.push_back(observed(w, departure / load, known(own) ? own : 0.0));
+    out.push_back(observed(w, {departure / load, standing}, known(own) ? own : 0.0));
   }
   return out;
 }

@@ -20,6 +20,7 @@ struct WheelReading {
   double sinkage_m = 0.0;
   double gradient = 0.0;        ///< of the ground along the heading, rise over run
   double drawbar_pull_N = 0.0;  ///< where a test stand measures it
+  double pose_std_m = 0.0;      ///< how well the place is known
   int pass = 1;  ///< how many wheels rolled here, this one included: from the second on it is in a rut
 };
 
@@ -49,6 +50,13 @@ struct WheelObservation {
   Estimate sinkage;          ///< sinkage over radius [-]; std is infinite where nothing was measured
   double demand = 0.0;       ///< drawbar pull over load that the slope asked for [-]
   double from_torque = 0.0;  ///< drawbar pull over load by torque and sinkage [-]; NaN without them
+  Estimate by_slope{std::numeric_limits<double>::quiet_NaN(),
+                    0.0};   ///< pull by slip and slope alone; NaN without
+  double pose_std_m = 0.0;  ///< how well the place is known, one standard deviation
+  bool bound = false;  ///< the rover all but stood: the ground pulls no more than this, and may pull less
+  bool pull_may_raise =
+      false;  ///< whether the sensors behind the pull are known to be sound; else it can only lower the belief
+  bool sinkage_may_raise = false;  ///< the same of the sinkage
 };
 
 /// Turns readings into observations of fresh ground at the reference slip, by two ways that are weighed by
@@ -58,7 +66,9 @@ struct WheelObservation {
 /// curve, of its class and of fresh ground or a rut, says at which gradient it would drive at its slip; by
 /// how much the slope departs from what the wheels should pull together is the departure of the ground under
 /// all of them, the shift of GroundModel. How they share it, torque and sinkage say: a wheel that pulls less
-/// than its fellows, as on the edge of a soft patch, stands on weaker ground.
+/// than its fellows, as on the edge of a soft patch, stands on weaker ground. From slip 0.9 of any wheel on the rover
+/// may as well have stood, and pulled less than the slope asks: the balance is then only an upper bound, and
+/// says nothing better than the class.
 ///
 /// Torque and sinkage: what a wheel pulls is a function of both (thesis Eq. 3.12). On the way to the
 /// reference slip both grow as they do on ground of the class: torque as shear is mobilised, sinkage as the
@@ -78,10 +88,16 @@ class WheelObserver {
 
  private:
   struct Wheel;
+  // Of all wheels of a moment.
+  struct Balance {
+    double departure = 0.0;  // of the slope from what they should pull together; NaN without a slope
+    bool standing = false;
+  };
 
   Wheel expected(const ClassReading& read) const;
   Estimate bySlope(const Wheel& wheel, double departure, double own) const;
-  std::optional<WheelObservation> observed(const Wheel& wheel, double departure, double own) const;
+  Estimate upperBound(const Wheel& wheel, double departure) const;
+  std::optional<WheelObservation> observed(const Wheel& wheel, const Balance& balance, double own) const;
 
   const GroundModel& model_;
   ReadingNoise noise_;

@@ -22,6 +22,7 @@ struct Options {
   std::string output;
   std::string journal;
   bool replay = false;
+  costmap::IntakeOptions intake;
 };
 
 void bind(CLI::App& command, Options& options) {
@@ -33,6 +34,11 @@ void bind(CLI::App& command, Options& options) {
   auto* journal =
       command.add_option("--journal", options.journal, "SQLite journal of every row, accepted or rejected")
           ->type_name("EVIDENCE.db");
+  command
+      .add_option("--pose-error", options.intake.pose_std_m,
+                  "standard deviation of x_m and y_m if there is no column pose_std_m [m]")
+      ->check(CLI::Range(0.0, 10.0))
+      ->capture_default_str();
   command.add_flag("--replay", options.replay, "replay the whole journal instead of a telemetry file")
       ->needs(journal);
 }
@@ -99,7 +105,7 @@ int run(const Options& options, Context& context) {
     unreadable = telemetry.rejected.size();
     for (const auto& row : telemetry.rejected)
       context.warn(fmt::format("{}:{}: {}", options.telemetry, row.line, row.reason));
-    report = costmap::addDrive(map, telemetry, journal.get());
+    report = costmap::addDrive(map, telemetry, journal.get(), options.intake);
     if (report.used == 0)
       throw InputError({options.telemetry, fmt::format("none of its {} rows is usable", report.rejected),
                         "first reason: " + report.first_reason});
@@ -112,14 +118,15 @@ int run(const Options& options, Context& context) {
   if (context.json)
     printJson({{"rows_used", report.used},
                {"rows_rejected", rejected},
+               {"rows_raising", report.raising},
                {"cells_changed", difference.cells},
                {"categories_changed", difference.categories},
                {"findings", report.findings}});
   else
     print(
-        fmt::format("rows        {} used, {} rejected\n"
+        fmt::format("rows        {} used, {} rejected; {} may raise the estimate\n"
                     "cells       {} changed, {} with a new category\n",
-                    report.used, rejected, difference.cells, difference.categories));
+                    report.used, rejected, report.raising, difference.cells, difference.categories));
   return Exit::kDone;
 }
 

@@ -170,25 +170,37 @@ class Drive {
     if (!cell) return {};
     const auto grid = map_.published();
     const std::uint8_t curve = grid->at(*cell).curve();
-    const bool refused = curve >= costmap::CellCode::kUnknown;
+    return onCurve(*grid, curve >= costmap::CellCode::kUnknown ? classCurve(*cell) : curve, heading);
+  }
+  // The same, though no weaker than the class: ground that it just learned to be weak still gives the alarm.
+  costmap::DriveState expectedOfClass(const maps::Point& place, const Direction& heading) const {
+    const auto cell = map_.grid().cellAt(place);
+    if (!cell) return {};
+    costmap::DriveState state = expected(place, heading);
+    const costmap::DriveState of_class = onCurve(*map_.published(), classCurve(*cell), heading);
+    state.slip = std::min(state.slip, of_class.slip);
+    state.sinkage_m = std::min(state.sinkage_m, of_class.sinkage_m);
+    return state;
+  }
+  std::uint8_t classCurve(maps::Cell cell) const noexcept {
+    return static_cast<std::uint8_t>(std::max(map_.classIndex(cell), 0));
+  }
+  costmap::DriveState onCurve(const costmap::CostGrid& grid, std::uint8_t curve,
+                              const Direction& heading) const {
     const double slope = gradient(heading);
-    return grid->cost().detail(
-        costmap::CellCode(
-            {.dz_dx = slope * heading.x,
-             .dz_dy = slope * heading.y,
-             .curve = refused ? static_cast<std::uint8_t>(std::max(map_.classIndex(*cell), 0)) : curve}),
-        heading);
+    return grid.cost().detail(
+        costmap::CellCode({.dz_dx = slope * heading.x, .dz_dy = slope * heading.y, .curve = curve}), heading);
   }
   double expectedSlip(const Direction& heading) const {
-    return static_cast<double>(expected(believed(), heading).slip);
+    return static_cast<double>(expectedOfClass(believed(), heading).slip);
   }
   std::vector<WheelExpectation> expectations(const TrueWorld::Step& step, const Direction& heading) const {
     const double slip = expectedSlip(heading), radius_m = map_.model().rover().wheel.radius_m;
     std::vector<WheelExpectation> of_wheels;
     for (const TrueWorld::WheelState& wheel : step.wheels)
       of_wheels.push_back(
-          {slip,
-           static_cast<double>(expected(sensors_.believed(wheel.place), heading).sinkage_m) / radius_m});
+          {slip, static_cast<double>(expectedOfClass(sensors_.believed(wheel.place), heading).sinkage_m) /
+                     radius_m});
     return of_wheels;
   }
 

@@ -29,7 +29,12 @@ std::unique_ptr<TraversabilityMap> mapOf(int side) {
 }
 
 costmap::WheelObservation seen(const maps::Point& place, double pull) {
-  return {.time_s = 1.0, .place = place, .pull = {pull, 0.05}, .sinkage = {0.17, 0.05}};
+  return {.time_s = 1.0,
+          .place = place,
+          .pull = {pull, 0.05},
+          .sinkage = {0.17, 0.05},
+          .pull_may_raise = true,
+          .sinkage_may_raise = true};
 }
 
 // Six wheels at 100 Hz along a line, as a rover samples: learned and published one by one.

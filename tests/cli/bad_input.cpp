@@ -36,7 +36,7 @@ std::string garbage() {
 
 }  // namespace
 
-std::string asciiGrid(int columns, int rows, double (*height_m)(int, int)) {
+std::string asciiGrid(int columns, int rows, const std::function<double(int, int)>& height_m) {
   std::string text = fmt::format(
       "ncols {}\nnrows {}\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -9999\n", columns, rows);
   for (int row = rows - 1; row >= 0; --row) {

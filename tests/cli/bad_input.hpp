@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,6 @@ class BadFiles {
 void expectRefused(const BadFiles& files, const std::vector<BadCall>& calls);
 
 /// An ESRI ASCII grid of one metre cells with the lower left corner at 0,0.
-std::string asciiGrid(int columns, int rows, double (*height_m)(int column, int row));
+std::string asciiGrid(int columns, int rows, const std::function<double(int column, int row)>& height_m);
 
 }  // namespace talus::cli

@@ -82,7 +82,7 @@ TEST_F(EvidenceJournalTest, TakesOverJournalsWithoutHeights) {
 
 TEST_F(EvidenceJournalTest, RefusesAFormatOfTheFuture) {
   { EvidenceJournal(path()).append(row(7)); }
-  change(path(), "PRAGMA user_version = 3");
+  change(path(), "PRAGMA user_version = 4");
   EXPECT_THROW(EvidenceJournal{path()}, InputError);
 }
 

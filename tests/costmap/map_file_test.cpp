@@ -95,6 +95,24 @@ TEST(MapFile, RefusesEveryDamagedByteOfTheTrailer) {
   }
 }
 
+// A map of the version before, of the tree and of the trailer: one line that says so and what to do.
+TEST(MapFile, NamesTheVersionThatItCannotRead) {
+  const auto said = [](std::string bytes, std::size_t at, char version) {
+    bytes[at] = version;
+    try {
+      fromBytes(bytes);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("nothing");
+  };
+  const std::string bytes = bytesOf(site());
+  EXPECT_NE(said(bytes, bytes.find("TALUST") + 6, 1).find("version 1 of the format; this program reads 2"),
+            std::string::npos);
+  EXPECT_NE(said(bytes, bytes.find("TALUSMAP") + 8, 2).find("version 2 of the format; this program reads 3"),
+            std::string::npos);
+}
+
 TEST(MapFile, SaysWhatIsMissing) {
   EXPECT_THROW(readMap("/nonexistent/map.ot"), InputError);
   EXPECT_THROW(writeMap(site(), "/nonexistent/map.ot"), InputError);

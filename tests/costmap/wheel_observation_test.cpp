@@ -124,5 +124,29 @@ TEST(PullFromTorque, FlatWheelPullsItsTorque) {
   EXPECT_DOUBLE_EQ(pullFromTorque(0.4, 0.0), 0.4);  // Closed form: no sinkage, no resistance
 }
 
+// Property: from slip 0.9 on a balance says nothing better than the class; what is weaker is kept.
+TEST(WheelObserver, ARoverThatMayHaveStoodGivesAnUpperBound) {
+  const auto ground = testGround();
+  const WheelObserver observer(*ground);
+  const double prior = ground->prior(0).pull.value;
+  for (const double slip : {0.9, 0.98})
+    for (const double gradient : {-0.1, 0.0, 0.2, 0.4, 0.6}) {
+      WheelReading reading{.load_N = 55.0,
+                           .slip = slip,
+                           .torque_Nm = std::nan(""),
+                           .sinkage_m = std::nan(""),
+                           .gradient = gradient,
+                           .drawbar_pull_N = std::nan("")};
+      const auto seen = observer.observe(0, reading);
+      ASSERT_TRUE(seen);
+      EXPECT_TRUE(seen->bound);
+      EXPECT_LE(seen->pull.value, prior);
+      const double departure = gradient - ground->steady(0, {slip, false}).gradient;
+      EXPECT_NEAR(seen->pull.value, prior + std::min(departure, 0.0), 1e-9);
+      reading.slip = 0.85;
+      EXPECT_FALSE(observer.observe(0, reading)->bound);
+    }
+}
+
 }  // namespace
 }  // namespace talus::costmap

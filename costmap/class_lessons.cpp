@@ -1,0 +1,82 @@
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+
+#include <talus/costmap/class_lessons.hpp>
+
+namespace talus::costmap {
+namespace {
+
+constexpr double kUnit = 1048576.0;  // of the fixed-point sums
+
+std::int64_t fixed(double value) {
+  return static_cast<std::int64_t>(std::llround(value * kUnit));
+}
+
+}  // namespace
+
+void IndependentPlaces::set(const Square& square, std::optional<float> departure) {
+  Colour& colour =
+      colours_[(static_cast<unsigned>(square.first) & 1U) << 1 | (static_cast<unsigned>(square.second) & 1U)];
+  const auto known = colour.known.find(square);
+  if (known != colour.known.end()) {
+    if (departure == known->second) return;
+    colour.sorted.erase(colour.sorted.find(known->second));
+    if (!departure) colour.known.erase(known);
+  }
+  if (!departure) return;
+  colour.known[square] = *departure;
+  colour.sorted.insert(*departure);
+}
+
+std::size_t IndependentPlaces::driven() const noexcept {
+  std::size_t most = 0;
+  for (const Colour& colour : colours_) most = std::max(most, colour.sorted.size());
+  return most;
+}
+
+double IndependentPlaces::agreed(std::size_t places) const noexcept {
+  double most = -std::numeric_limits<double>::infinity();
+  for (const Colour& colour : colours_)
+    if (colour.sorted.size() >= places)
+      most = std::max(most, static_cast<double>(
+                                *std::next(colour.sorted.rbegin(), static_cast<std::ptrdiff_t>(places) - 1)));
+  return most;
+}
+
+void ClassLessons::sum(const BlockLesson& lesson, std::int64_t sign) {
+  weight_ += sign * fixed(lesson.weight);
+  pull_ += sign * fixed(lesson.weight * lesson.pull);
+  if (lesson.raises) raising_weight_ += sign * fixed(lesson.weight);
+  if (!lesson.sinkage) return;
+  sinkage_weight_ += sign * fixed(lesson.weight);
+  sinkage_ += sign * fixed(lesson.weight * *lesson.sinkage);
+}
+
+double ClassLessons::mostRise() const noexcept {
+  return std::max(places_.agreed(kPlaces), 0.0);
+}
+
+void ClassLessons::refresh() {
+  const double variance = ground_.pull_std * ground_.pull_std;
+  const double prior = ground_.mean_std * ground_.mean_std;
+  const auto mean = [&](std::int64_t weight, std::int64_t sum) {
+    return prior * static_cast<double>(sum) / kUnit /
+           (prior * static_cast<double>(weight) / kUnit + variance);
+  };
+  const double heard = std::clamp(
+      (static_cast<double>(places_.driven()) - 1.0) / (static_cast<double>(kPlaces) - 1.0), 0.0, 1.0);
+  posterior_.places = static_cast<double>(weight_) / kUnit;
+  posterior_.pull = {std::min(heard * mean(weight_, pull_), mostRise()), ground_.mean_std};
+  posterior_.sinkage.value = heard * mean(sinkage_weight_, sinkage_);
+  if (mayRaise()) {
+    const double raising = static_cast<double>(raising_weight_) / kUnit;
+    posterior_.pull.std = std::sqrt(prior * variance / (prior * raising + variance));
+  } else {
+    posterior_.sinkage.value = std::max(posterior_.sinkage.value, 0.0);
+  }
+  posterior_.sinkage.std = posterior_.pull.std * ground_.sinkage_std / ground_.pull_std;
+}
+
+}  // namespace talus::costmap

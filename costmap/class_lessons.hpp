@@ -1,0 +1,85 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include <talus/costmap/ground_model.hpp>
+
+namespace talus::costmap {
+
+/// The soil posterior of a terrain class: how its mean pull departs from the prior's after all evidence.
+struct ClassPosterior {
+  Estimate pull;        ///< departure of drawbar pull over load [-]
+  Estimate sinkage;     ///< departure of sinkage over radius [-]
+  double places = 0.0;  ///< independent places that speak for it [-]
+};
+
+/// Squares of ground about a correlation length wide, of which those are counted that lie as far apart.
+class IndependentPlaces {
+ public:
+  using Square = std::pair<int, int>;  ///< column and row
+
+  /// What is known of a square: how far its weakest ground departs from its class, -infinity where nothing may
+  /// raise; nothing where nobody drove.
+  void set(const Square& square, std::optional<float> departure);
+
+  /// Places where somebody drove.
+  std::size_t driven() const noexcept;
+  /// The departure that so many of them reach or pass; -infinity where there are fewer.
+  double agreed(std::size_t places) const noexcept;
+
+ private:
+  // Squares of one colour, of four, do not touch.
+  struct Colour {
+    std::map<Square, float> known;
+    std::multiset<float> sorted;
+  };
+  std::array<Colour, 4> colours_;
+};
+
+/// What one block tells of its class.
+struct BlockLesson {
+  double weight = 0.0;            ///< independent places that it stands for [-]
+  double pull = 0.0;              ///< departure from the prior [-]
+  std::optional<double> sinkage;  ///< likewise; nothing where none was measured
+  bool raises = false;            ///< whether it may raise, and make surer
+};
+
+/// What all blocks together tell of a class. Exact sums: a lesson can be taken out again, and the order in which
+/// they come does not matter.
+class ClassLessons {
+ public:
+  explicit ClassLessons(const GroundClass& ground) : ground_(ground) { refresh(); }
+
+  void add(const BlockLesson& lesson) { sum(lesson, 1); }
+  void remove(const BlockLesson& lesson) { sum(lesson, -1); }
+  IndependentPlaces& places() noexcept { return places_; }
+  /// After any change.
+  void refresh();
+
+  /// Conjugate normal update of the class mean (prior mean_std, places that scatter by pull_std about it). One
+  /// place moves it by nothing, two by half, three as told: what one place says it says of itself. It rises, and
+  /// is surer, only where kPlaces places say so, and no higher than each of them.
+  const ClassPosterior& posterior() const noexcept { return posterior_; }
+  /// Whether enough places may raise that the belief in ground of the class may rise at all.
+  bool mayRaise() const noexcept { return std::isfinite(places_.agreed(kPlaces)); }
+  /// The most by which it may: what as many places agree on; >= 0.
+  double mostRise() const noexcept;
+
+  static constexpr std::size_t kPlaces = 3;
+
+ private:
+  void sum(const BlockLesson& lesson, std::int64_t sign);
+
+  GroundClass ground_;
+  std::int64_t weight_ = 0, raising_weight_ = 0, sinkage_weight_ = 0, pull_ = 0, sinkage_ = 0;
+  IndependentPlaces places_;
+  ClassPosterior posterior_;
+};
+
+}  // namespace talus::costmap

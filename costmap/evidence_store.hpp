@@ -1,0 +1,40 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <talus/costmap/block_grid.hpp>
+#include <talus/costmap/class_lessons.hpp>
+#include <talus/costmap/evidence_bricks.hpp>
+#include <talus/costmap/spreading.hpp>
+
+/// What an EvidenceField is made of; not for its users.
+namespace talus::costmap {
+
+/// Evidence that can reach a piece of ground of one class.
+struct NearbyEvidence {
+  int class_index = 0;
+  std::vector<PlaceEvidence> places;  ///< departures from the class's posterior mean, of what may raise
+  std::vector<WeakPlace> weak;        ///< departures from the class's prior
+};
+
+/// The same, ready to be asked.
+struct LocalGround {
+  GaussianProcess process;
+  std::vector<WeakPlace> weak;
+  bool empty() const noexcept { return process.empty() && weak.empty(); }
+};
+
+/// Blocks, what they heard, and what that teaches of classes.
+struct EvidenceStore {
+  explicit EvidenceStore(const std::shared_ptr<const GroundSite>& site)
+      : blocks(site),
+        bricks(blocks.columns(), blocks.rows()),
+        lessons(site->model->parts().classes.begin(), site->model->parts().classes.end()) {}
+
+  BlockGrid blocks;
+  EvidenceBricks bricks;
+  std::vector<ClassLessons> lessons;  // a class each
+};
+
+}  // namespace talus::costmap

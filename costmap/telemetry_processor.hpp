@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <talus/costmap/sensor_proof.hpp>
+#include <talus/costmap/sensor_watch.hpp>
+#include <talus/costmap/telemetry_rows.hpp>
+
+namespace talus::costmap {
+
+/// What a drive is judged by: its own rows so far, or those of a first pass.
+struct DriveVerdict {
+  bool without_torque = false;  ///< torque and sinkage are off: they count only where they point to danger
+  const SensorProof* proof = nullptr;  ///< null: nothing may raise a belief
+};
+
+/// Puts the moments of a drive through watch, observer and proof, one after the other. Keeps a reference to the map.
+///
+/// A moment may raise a belief only where each of its wheels, all of the rover's or the only one of the
+/// file, is proven sound. It then raises by what is left when slip is taken relative to level ground, as if whatever
+/// it is low there were a bias, and slopes relative to the map's; a wheel that does not climb raises nothing. It raises
+/// nothing by a wheel that then slips 0.7, nor by a drawbar pull that nothing else confirms, nor where torque and
+/// sinkage are off.
+class TelemetryProcessor {
+ public:
+  explicit TelemetryProcessor(const TraversabilityMap& map);
+
+  /// Of one wheel: why it is not believed, or only as evidence of danger, and what it says if it is.
+  struct Result {
+    WheelReading reading;
+    std::string reason{};
+    std::optional<WheelObservation> observation{};
+  };
+
+  /// Results of the rows of a moment, in their order.
+  std::vector<Result> process(const TelemetryRows& rows, const Moment& moment, const DriveVerdict& verdict);
+
+  DriveVerdict verdict() const { return {watch_.biased(), &proof_}; }
+  const SensorWatch& watch() const noexcept { return watch_; }
+  /// Rows whose loads were computed.
+  std::size_t transferred() const noexcept { return transferred_; }
+
+ private:
+  // Wheels of a moment that nothing is held against, and their rows.
+  struct Sound {
+    std::vector<ClassReading> read;
+    std::vector<std::size_t> row;
+  };
+
+  std::optional<WheelObservation> danger(const ClassReading& read) const;
+  std::vector<std::optional<WheelObservation>> observed(const std::vector<ClassReading>& sound,
+                                                        const DriveVerdict& verdict);
+  void prove(const TelemetryRows& rows, const Sound& sound,
+             const std::vector<std::optional<WheelObservation>>& seen);
+  static bool torqueSound(const TelemetryRows& rows, std::size_t row, const DriveVerdict& verdict);
+  bool mayRaise(const TelemetryRows& rows, const Moment& moment, const Sound& sound,
+                const DriveVerdict& verdict) const;
+  void allow(const TelemetryRows& rows, const Sound& sound, const DriveVerdict& verdict,
+             std::vector<std::optional<WheelObservation>>& seen) const;
+  double slipOfClasses(const std::vector<ClassReading>& together, double gradient) const;
+  double asked(const ClassReading& read) const;
+
+  const TraversabilityMap& map_;
+  SensorWatch watch_;
+  SensorProof proof_;
+  WheelObserver observer_;
+  std::size_t transferred_ = 0;
+};
+
+}  // namespace talus::costmap

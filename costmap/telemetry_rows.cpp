@@ -1,0 +1,109 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <talus/costmap/telemetry_rows.hpp>
+#include <talus/terramech/contact/load_transfer.hpp>
+
+namespace talus::costmap {
+namespace {
+
+constexpr double kSameLoad = 0.01;       // of the load: less is the same number
+constexpr double kLevelGradient = 0.03;  // less moves no load worth speaking of
+
+}  // namespace
+
+TelemetryRows::TelemetryRows(const terramech::Telemetry& telemetry, const TraversabilityMap& map,
+                             double pose_std_m)
+    : map_(map),
+      pose_std_m_(pose_std_m),
+      x_(telemetry.at("x_m")),
+      y_(telemetry.at("y_m")),
+      load_(telemetry.at("load_N")),
+      slip_(telemetry.at("slip")),
+      time_(telemetry.find("time_s")),
+      torque_(telemetry.find("torque_Nm")),
+      sinkage_(telemetry.find("sinkage_m")),
+      z_(telemetry.find("z_m")),
+      slope_(telemetry.find("slope_rad")),
+      heading_(telemetry.find("heading_rad")),
+      pull_(telemetry.find("drawbar_pull_N")),
+      pass_(telemetry.find("pass_index")),
+      pose_(telemetry.find("pose_std_m")),
+      wheel_(telemetry.findWords("wheel")),
+      run_(telemetry.findWords("run")) {}
+
+double TelemetryRows::value(const std::vector<double>* column, std::size_t i) {
+  return column ? (*column)[i] : std::numeric_limits<double>::quiet_NaN();
+}
+
+WheelReading TelemetryRows::reading(std::size_t i) const {
+  WheelReading r{.time_s = value(time_, i),
+                 .place = {x_[i], y_[i]},
+                 .z_m = value(z_, i),
+                 .load_N = load_[i],
+                 .slip = slip_[i],
+                 .torque_Nm = value(torque_, i),
+                 .sinkage_m = value(sinkage_, i),
+                 .gradient = measuredGradient(i),
+                 .drawbar_pull_N = value(pull_, i),
+                 .pose_std_m = std::isfinite(value(pose_, i)) ? std::max(value(pose_, i), 0.0) : pose_std_m_,
+                 .pass = 1};
+  if (std::isfinite(value(pass_, i))) r.pass = static_cast<int>(value(pass_, i));
+  if (std::isnan(r.gradient)) r.gradient = mapGradient(r, heading(i));
+  return r;
+}
+
+double TelemetryRows::measuredGradient(std::size_t i) const {
+  return std::tan(value(slope_, i));
+}
+
+// Of the top surface: that of a floor beneath it is not known.
+double TelemetryRows::mapGradient(const WheelReading& r, double heading_rad) const {
+  const auto cell = map_.grid().cellAt(r.place);
+  if (!cell || std::isnan(heading_rad) || map_.floorAt(*cell, r.z_m))
+    return std::numeric_limits<double>::quiet_NaN();
+  const CellCode code = map_.code(*cell);
+  return code.dzDx() * std::cos(heading_rad) + code.dzDy() * std::sin(heading_rad);
+}
+
+std::size_t TelemetryRows::endOfMoment(std::size_t first) const {
+  std::size_t end = first + 1;
+  if (!time_ || !wheel_ || !std::isfinite(value(time_, first))) return end;
+  const auto seen = [&](std::size_t i) {
+    for (std::size_t j = first; j < i; ++j)
+      if (wheel(j) == wheel(i)) return true;
+    return false;
+  };
+  while (end < size() && value(time_, end) == value(time_, first) && run(end) == run(first) && !seen(end))
+    ++end;
+  return end;
+}
+
+Moment momentAt(const TelemetryRows& rows, std::size_t first, const terramech::Rover& rover) {
+  Moment moment{.first = first, .readings = {}};
+  maps::Point middle{0.0, 0.0};
+  const std::size_t end = rows.endOfMoment(first);
+  bool same = true;
+  for (std::size_t i = first; i < end; ++i) {
+    const WheelReading& r = moment.readings.emplace_back(rows.reading(i));
+    middle.x_m += r.place.x_m / static_cast<double>(end - first);
+    middle.y_m += r.place.y_m / static_cast<double>(end - first);
+    const double even_N = terramech::wheelLoad_N(rover);
+    same =
+        same && std::abs(r.load_N - even_N) < kSameLoad * even_N && r.gradient == moment.readings[0].gradient;
+  }
+  const double gradient = moment.readings[0].gradient, heading = rows.heading(first);
+  const bool whole = moment.readings.size() == static_cast<std::size_t>(rover.wheel_count);
+  if (!same || !whole || !(std::abs(gradient) > kLevelGradient) || std::isnan(heading)) return moment;
+  std::vector<double> along_m;
+  for (const WheelReading& r : moment.readings)
+    along_m.push_back((r.place.x_m - middle.x_m) * std::cos(heading) +
+                      (r.place.y_m - middle.y_m) * std::sin(heading));
+  const std::vector<double> loads_N = terramech::wheelLoads_N(rover, gradient, along_m);
+  for (std::size_t w = 0; w < loads_N.size(); ++w) moment.readings[w].load_N = loads_N[w];
+  moment.transferred = true;
+  return moment;
+}
+
+}  // namespace talus::costmap

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include <talus/costmap/traversability_map.hpp>
+#include <talus/costmap/wheel_observation.hpp>
+#include <talus/terramech/estimate/telemetry.hpp>
+
+namespace talus::costmap {
+
+/// The columns of a telemetry file as readings on a map. Keeps references to both.
+class TelemetryRows {
+ public:
+  /// `pose_std_m`: of rows that do not say it. Throws InputError when x_m, y_m, load_N or slip is missing.
+  TelemetryRows(const terramech::Telemetry& telemetry, const TraversabilityMap& map, double pose_std_m);
+
+  std::size_t size() const noexcept { return x_.size(); }
+
+  /// The slope is the row's own; without it the map's along the heading.
+  WheelReading reading(std::size_t i) const;
+  double heading(std::size_t i) const { return value(heading_, i); }
+  std::string wheel(std::size_t i) const { return wheel_ ? (*wheel_)[i] : std::string(); }
+  std::string run(std::size_t i) const { return run_ ? (*run_)[i] : std::string(); }
+  /// Wheel and run together name a series in time.
+  std::string series(std::size_t i) const { return run(i) + '/' + wheel(i); }
+  /// Along the heading, as the rover measured it and as the map has it; NaN = not known.
+  double measuredGradient(std::size_t i) const;
+  double mapGradient(std::size_t i) const { return mapGradient(reading(i), heading(i)); }
+  /// One past the last row that was read at the same moment of the same run as this one, by another wheel.
+  std::size_t endOfMoment(std::size_t first) const;
+
+ private:
+  static double value(const std::vector<double>* column, std::size_t i);
+  double mapGradient(const WheelReading& reading, double heading_rad) const;
+
+  const TraversabilityMap& map_;
+  double pose_std_m_;
+  const std::vector<double>&x_, &y_, &load_, &slip_;
+  const std::vector<double>*time_, *torque_, *sinkage_, *z_, *slope_, *heading_, *pull_, *pass_, *pose_;
+  const std::vector<std::string>*wheel_, *run_;
+};
+
+/// The readings of one moment, with the loads that the slope gives them where the file has all wheels carry
+/// the same: such a column is the weight's even share and not a measurement.
+struct Moment {
+  std::size_t first = 0;  ///< row
+  std::vector<WheelReading> readings;
+  bool transferred = false;  ///< whether the loads are computed
+};
+
+/// The moment that begins with a row.
+Moment momentAt(const TelemetryRows& rows, std::size_t first, const terramech::Rover& rover);
+
+}  // namespace talus::costmap
