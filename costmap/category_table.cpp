@@ -13,8 +13,11 @@ CategoryTable::CategoryTable(const GroundModel& model, const GroundBelief& belie
   entries_.reserve(kSteps);
   for (int step = 0; step < kSteps; ++step) {
     const Ranked ranked = model.category(belief, step * CellCode::kStep);
-    entries_.push_back({static_cast<std::uint8_t>(ranked.category),
-                        static_cast<std::uint8_t>(std::lround(16.0 * ranked.probability))});
+    // Of danger the nearest step, of all else the one below: no more is promised than is believed.
+    const double steps = 16.0 * ranked.probability;
+    const double told =
+        ranked.category == terramech::Category::Dangerous ? std::round(steps) : std::floor(steps);
+    entries_.push_back({static_cast<std::uint8_t>(ranked.category), static_cast<std::uint8_t>(told)});
   }
 }
 

@@ -15,7 +15,7 @@ class CategoryTable {
   /// A row of the table.
   struct Entry {
     std::uint8_t category;    ///< terramech::Category as a number
-    std::uint8_t confidence;  ///< probability in steps of 1/16, rounded
+    std::uint8_t confidence;  ///< probability in steps of 1/16, rounded down unless it is of danger
   };
 
   CategoryTable(const GroundModel& model, const GroundBelief& belief);

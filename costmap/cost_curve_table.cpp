@@ -1,8 +1,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 #include <talus/costmap/cost_curve_table.hpp>
@@ -10,82 +11,90 @@
 namespace talus::costmap {
 namespace {
 
-constexpr double kPullStep = 0.02;
-constexpr double kPullStdUnit = 0.02;
-constexpr double kSinkageStep = 0.1;
+constexpr std::size_t kNumbers = CellCode::kUnknown;
+constexpr double kSame = 1e-6;  // of a step: what has been rounded stays
 
-int stepsOf(double value, double step) {
-  return static_cast<int>(std::lround(value / step));
+double below(double value, double step) {
+  return std::floor(value / step + kSame) * step;
 }
 
-// Power of two of the unit that is nearest above: a doubt is never rounded down.
-int octave(double value, double unit) {
-  return std::clamp(static_cast<int>(std::ceil(std::log2(std::max(value, 1e-6) / unit))), -1, 4);
+double above(double value, double step) {
+  return std::ceil(value / step - kSame) * step;
 }
 
 }  // namespace
 
 CostCurveTable::CostCurveTable(std::shared_ptr<const GroundModel> model) : model_(std::move(model)) {
-  const int classes = static_cast<int>(model_->parts().classes.size());
-  for (int i = 0; i < classes; ++i) {
-    priors_.push_back(model_->prior(i));
-    grounds_.push_back(model_->ground(i, priors_.back()));
-    categories_.emplace_back(*model_, priors_.back());
+  if (classes() > kNumbers)
+    throw std::invalid_argument("cost curves: " + std::to_string(classes()) +
+                                " classes of ground, must be <= " + std::to_string(kNumbers));
+  for (int i = 0; i < static_cast<int>(classes()); ++i) {
+    beliefs_.push_back(model_->prior(i));
+    grounds_.push_back(model_->ground(i, beliefs_.back()));
+    categories_.emplace_back(*model_, beliefs_.back());
   }
 }
 
-CostCurveTable::Key CostCurveTable::rounded(int class_index, const GroundBelief& belief) noexcept {
-  return {.class_index = class_index,
-          .pull = stepsOf(belief.pull.value, kPullStep),
-          .pull_std = octave(belief.pull.std, kPullStdUnit),
-          .sinkage = stepsOf(belief.sinkage.value, kSinkageStep)};
-}
-
-std::uint8_t CostCurveTable::learned(int class_index, const GroundBelief& belief) {
-  const Key key = rounded(class_index, belief);
-  if (const auto known = numbers_.find(key); known != numbers_.end()) return known->second;
-  if (grounds_.size() >= CellCode::kUnknown) return nearest(key);
-  // All of the key, so that a curve does not depend on who asked for it first; doubt about sinkage shrinks
-  // with that about pull.
-  const GroundClass& ground = model_->parts().classes[static_cast<std::size_t>(class_index)];
-  const double pull_std = std::ldexp(kPullStdUnit, key.pull_std);
-  const GroundBelief middle{.pull = {key.pull * kPullStep, pull_std},
-                            .sinkage = {std::max(key.sinkage * kSinkageStep, 0.0),
-                                        std::min(pull_std / ground.pull_std, 1.0) * ground.sinkage_std}};
+std::uint8_t CostCurveTable::learned(int class_index, int other_class, const GroundBelief& belief) {
+  const GroundKind kind = GroundKind::of(class_index, other_class, belief, level_);
+  if (const auto known = numbers_.find(kind); known != numbers_.end()) return known->second;
+  if (grounds_.size() >= kNumbers) {
+    overflowed_ = true;
+    return standIn(kind);
+  }
+  // All of the kind, so that a curve does not depend on who asked for it first.
+  const GroundBelief worst = kind.belief(model_->parts().classes[static_cast<std::size_t>(class_index)]);
   const auto number = static_cast<std::uint8_t>(grounds_.size());
-  grounds_.push_back(model_->ground(class_index, middle));
-  categories_.emplace_back(*model_, middle);
-  numbers_.emplace(key, number);
+  grounds_.push_back(model_->ground(class_index, other_class, worst));
+  beliefs_.push_back(worst);
+  categories_.emplace_back(*model_, worst);
+  numbers_.emplace(kind, number);
   cost_.reset();
   return number;
 }
 
-std::uint8_t CostCurveTable::nearest(const Key& key) const noexcept {
-  std::uint8_t best = prior(key.class_index);
-  int least = std::numeric_limits<int>::max();
-  for (const auto& [known, number] : numbers_) {
-    const int distance = 4 * std::abs(known.pull - key.pull) + 2 * std::abs(known.pull_std - key.pull_std) +
-                         3 * std::abs(known.sinkage - key.sinkage);
-    if (known.class_index != key.class_index || distance >= least) continue;
-    least = distance;
-    best = number;
+// The strongest of the known beliefs on the same classes that are no better in anything.
+std::uint8_t CostCurveTable::standIn(const GroundKind& kind) const {
+  const GroundKind* best = nullptr;
+  std::uint8_t number = CellCode::kBlocked;
+  for (const auto& [known, its] : numbers_) {
+    const bool same = known.class_index == kind.class_index && known.other_class == kind.other_class;
+    const bool no_better =
+        known.pull <= kind.pull && known.pull_std >= kind.pull_std && known.sinkage >= kind.sinkage;
+    if (!same || !no_better || (best && known.pull <= best->pull)) continue;
+    best = &known;
+    number = its;
   }
-  return best;
+  return number;
+}
+
+double CostCurveTable::used() const noexcept {
+  const std::size_t all = kNumbers - classes();
+  return all > 0 ? static_cast<double>(grounds_.size() - classes()) / static_cast<double>(all) : 1.0;
+}
+
+void CostCurveTable::restart(int level) {
+  level_ = level;
+  overflowed_ = false;
+  grounds_.resize(classes());
+  beliefs_.resize(classes());
+  categories_.erase(categories_.begin() + static_cast<std::ptrdiff_t>(classes()), categories_.end());
+  numbers_.clear();
+  cost_.reset();
 }
 
 bool CostCurveTable::setPrior(int class_index, const GroundBelief& belief) {
   const auto i = static_cast<std::size_t>(class_index);
-  const auto rounded_to = [](const Estimate& e, double step) {
-    return Estimate{std::round(e.value / step) * step, std::ceil(e.std / step) * step};
-  };
   const GroundBelief exact = model_->prior(class_index);
   const bool untouched = belief.pull.value == exact.pull.value && belief.pull.std == exact.pull.std;
-  const GroundBelief next = untouched ? exact
-                                      : GroundBelief{.pull = rounded_to(belief.pull, 0.005),
-                                                     .sinkage = rounded_to(belief.sinkage, 0.02)};
+  const GroundBelief next =
+      untouched
+          ? exact
+          : GroundBelief{.pull = {below(belief.pull.value, 0.005), above(belief.pull.std, 0.005)},
+                         .sinkage = {above(belief.sinkage.value, 0.02), above(belief.sinkage.std, 0.02)}};
   const auto same = [](const Estimate& a, const Estimate& b) { return a.value == b.value && a.std == b.std; };
-  if (same(next.pull, priors_[i].pull) && same(next.sinkage, priors_[i].sinkage)) return false;
-  priors_[i] = next;
+  if (same(next.pull, beliefs_[i].pull) && same(next.sinkage, beliefs_[i].sinkage)) return false;
+  beliefs_[i] = next;
   const Worked& now = worked(class_index, next);
   grounds_[i] = now.ground;
   categories_[i] = now.categories;
@@ -104,8 +113,20 @@ const CostCurveTable::Worked& CostCurveTable::worked(int class_index, const Grou
       .first->second;
 }
 
+// What a class's belief is less sure of than the scatter from place to place, all of its ground shares.
+SoilDoubt CostCurveTable::doubt() const {
+  const GroundModel::Parts& parts = model_->parts();
+  SoilDoubt doubt{.correlation_length_m = parts.policy.correlation_length_m,
+                  .entrapment = parts.policy.held()};
+  for (std::size_t i = 0; i < classes(); ++i) {
+    const double all = beliefs_[i].pull.std, apart = parts.classes[i].pull_std;
+    doubt.shared.push_back(all > apart ? 1.0 - apart * apart / (all * all) : 0.0);
+  }
+  return doubt;
+}
+
 std::shared_ptr<const DriveCost> CostCurveTable::cost() const {
-  if (!cost_) cost_ = std::make_shared<DriveCost>(model_->limits(), grounds_);
+  if (!cost_) cost_ = std::make_shared<DriveCost>(model_->limits(), grounds_, doubt());
   return cost_;
 }
 

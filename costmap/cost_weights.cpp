@@ -28,7 +28,7 @@ std::shared_ptr<const CostGrid> reweighted(const CostGrid& map, const CostWeight
     grounds.push_back(std::move(ground));
   }
   CostGrid::Content content = map.content();
-  content.cost = std::make_shared<const DriveCost>(map.cost().limits(), grounds);
+  content.cost = std::make_shared<const DriveCost>(map.cost().limits(), grounds, map.cost().doubt());
   return std::make_shared<const CostGrid>(std::move(content));
 }
 

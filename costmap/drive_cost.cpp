@@ -50,8 +50,9 @@ DriveCost::DriveCost(const Limits& limits, std::vector<DriveCurve> curves)
                                 " drive curves, must be <= 254");
 }
 
-DriveCost::DriveCost(const Limits& limits, const std::vector<DriveGround>& grounds)
+DriveCost::DriveCost(const Limits& limits, const std::vector<DriveGround>& grounds, SoilDoubt doubt)
     : DriveCost(limits, curvesOf(grounds)) {
+  doubt_ = std::move(doubt);
   for (std::size_t i = 0; i < grounds.size(); ++i) states_[i] = grounds[i].states;
 }
 

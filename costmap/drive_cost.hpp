@@ -76,6 +76,13 @@ struct DriveGround {
   std::shared_ptr<const DriveTable> states;  ///< may be null where details are not needed (tests)
 };
 
+/// How the doubts about the soil of two places hang together, and what a place does whose soil is too weak.
+struct SoilDoubt {
+  double correlation_length_m = 0.0;  ///< over which soil stays alike; 0: not known, each metre by itself
+  double entrapment = 1.0;            ///< share of the places with too weak soil that hold the rover [-]
+  std::vector<double> shared{};       ///< by class: share of the pull's variance that all of it has in common
+};
+
 /// The one cost function: what grid search, sampling planners, the final check and the reports all call.
 /// Immutable; safe to share between threads.
 class DriveCost {
@@ -88,7 +95,7 @@ class DriveCost {
 
   /// Throws std::invalid_argument for more than 254 curves.
   DriveCost(const Limits& limits, std::vector<DriveCurve> curves);
-  DriveCost(const Limits& limits, const std::vector<DriveGround>& grounds);
+  DriveCost(const Limits& limits, const std::vector<DriveGround>& grounds, SoilDoubt doubt = {});
 
   /// Cost of driving one horizontal metre over the cell in a direction, in joules; infinite when not allowed.
   float costPerMetre(CellCode cell, Direction heading) const noexcept;
@@ -98,6 +105,8 @@ class DriveCost {
   DriveState detail(CellCode cell, Direction heading) const noexcept;
 
   const Limits& limits() const noexcept { return limits_; }
+  /// What the risk of a whole route follows from, beside the hazard of each metre.
+  const SoilDoubt& doubt() const noexcept { return doubt_; }
   const std::vector<DriveCurve>& curves() const noexcept { return curves_; }
   /// The numbers behind each curve; null where a curve was made without.
   const std::vector<std::shared_ptr<const DriveTable>>& states() const noexcept { return states_; }
@@ -106,6 +115,7 @@ class DriveCost {
   Limits limits_;
   std::vector<DriveCurve> curves_;
   std::vector<std::shared_ptr<const DriveTable>> states_;
+  SoilDoubt doubt_;
 };
 
 }  // namespace talus::costmap

@@ -17,12 +17,20 @@ struct DrivePolicy {
   /// Refuse where the soil's pull falls short of the demand with more than this P [-].
   double max_immobilisation = 0.5;
 
+  double pose_error_m =
+      0.0;  ///< the rover's middle may be so far from where its route has it: soil is judged that much wider
+
   double time_weight_W = 1.0;  ///< joules that one second is worth
-  /// Share of the places where the ground pulls less than asked that hold the rover for good: mostly it
-  /// notices and backs out (ours, not from the literature) [-].
-  double entrapment = 0.01;
+  double entrapment =
+      0.01;  ///< share of the places where the ground pulls less than required that hold for good a rover
+             ///< that watches its slip: mostly it notices and backs out (ours, not from the literature) [-]
+  double unmonitored_entrapment = 1.0;  ///< the same of a rover that does not [-]
+  bool unmonitored = false;             ///< nobody watches the slip on this drive
   double risk_weight_J = 1e8;         ///< joules that the loss of the rover is worth
   double correlation_length_m = 5.0;  ///< over which the soil of one class stays alike
+
+  /// Share of the too weak places that hold the rover for good on this drive.
+  double held() const noexcept { return unmonitored ? unmonitored_entrapment : entrapment; }
 };
 
 }  // namespace talus::costmap

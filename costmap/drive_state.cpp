@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <cmath>
+
 #include <talus/costmap/drive_state.hpp>
 
 namespace talus::costmap {
@@ -24,6 +27,20 @@ const char* toText(Refusal refusal) noexcept {
       return "category at this slope excluded by the policy";
   }
   return "";
+}
+
+DriveState worse(const DriveState& a, const DriveState& b) noexcept {
+  const auto farther = [](float x, float y) { return std::abs(x) < std::abs(y) ? y : x; };
+  return {.slip = farther(a.slip, b.slip),
+          .sinkage_m = std::max(a.sinkage_m, b.sinkage_m),
+          .torque_Nm = farther(a.torque_Nm, b.torque_Nm),
+          .energy_J_per_m = std::max(a.energy_J_per_m, b.energy_J_per_m),
+          .time_s_per_m = std::max(a.time_s_per_m, b.time_s_per_m),
+          .risk_per_m = std::max(a.risk_per_m, b.risk_per_m),
+          .pull_margin = std::min(a.pull_margin, b.pull_margin),
+          .category = std::max(a.category, b.category),
+          .refusal = a.refusal != Refusal::None ? a.refusal : b.refusal,
+          .class_index = a.class_index};
 }
 
 }  // namespace talus::costmap

@@ -36,7 +36,11 @@ struct DriveState {
   float pull_margin = 0.0F;     ///< drawbar pull over load at the reference slip minus the slope's demand [-]
   terramech::Category category = terramech::Category::Unknown;  ///< at this gradient along the heading
   Refusal refusal = Refusal::None;
+  std::uint8_t class_index = 0;  ///< of the ground, in the model's classes
 };
+
+/// The worse of two states in each of their numbers; the first refusal of the two.
+DriveState worse(const DriveState& a, const DriveState& b) noexcept;
 
 /// A curve's numbers over the gradient, the bins of DriveCurve.
 using DriveTable = std::array<DriveState, 512>;

@@ -103,6 +103,13 @@ void addSoil(const TraversabilityMap& map, maps::Cell cell, Explanation& out) {
                         static_cast<double>(belief.pull_std), wheels, ""});
   out.causes.push_back({"sinkage_over_radius", static_cast<double>(belief.sinkage_mean),
                         static_cast<double>(belief.sinkage_std), wheels, ""});
+  const auto published = map.publishedGround(cell);
+  if (!published) return;
+  const std::string swath = "weakest standing of the wheels about the cell, rounded towards danger";
+  out.causes.push_back({"swath_drawbar_pull_over_load", published->pull.value, published->pull.std, swath,
+                        "cost is made from it"});
+  out.causes.push_back(
+      {"swath_sinkage_over_radius", published->sinkage.value, published->sinkage.std, swath, ""});
 }
 
 // The other levels of a cell: what is believed there does not mix with its top.
@@ -168,15 +175,20 @@ void judge(const TraversabilityMap& map, maps::Cell cell, const Direction& headi
       out.verdict += std::string(": ") + hazardText(one);
       return;
     }
-  const auto ground = map.ground(cell);
-  if (!ground) return;
+  const auto ground = map.publishedGround(cell);
+  if (!ground) {
+    out.verdict += ": no cost curve is left for this ground";
+    return;
+  }
+  // What is said is what planners read, at the gradient that they read it at.
   const CellCode code = map.code(cell);
   const double along = code.dzDx() * heading.x + code.dzDy() * heading.y;
-  const Ranked ranked = map.model().category(*ground, along);
-  out.category = ranked.category;
-  out.probability = ranked.probability;
+  const DriveState state = map.published()->cost().detail(code, heading);
+  out.category = state.category;
+  out.probability = map.model().category(*ground, DriveCurve::gradient(DriveCurve::bin(along))).probability;
   out.verdict = std::string(terramech::name(out.category)) + ": available DP/W " +
                 std::to_string(ground->pull.value) + ", required DP/W " + std::to_string(along);
+  if (state.refusal != Refusal::None) out.verdict += std::string("; refused: ") + toText(state.refusal);
 }
 
 }  // namespace

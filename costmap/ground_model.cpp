@@ -2,12 +2,12 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <stdexcept>
 #include <utility>
 
 #include <talus/costmap/ground_model.hpp>
 #include <talus/terramech/mobility/rut.hpp>
+#include <talus/terramech/numerics/normal_distribution.hpp>
 #include <talus/terramech/numerics/range.hpp>
 
 namespace talus::costmap {
@@ -16,36 +16,10 @@ namespace {
 using terramech::Category;
 using terramech::MobilityState;
 
-double normalCdf(double x) {
-  return 0.5 * std::erfc(-x / std::numbers::sqrt2);
-}
-
 // P(value < bound) for a normal estimate; a step where it is certain.
 double probabilityBelow(const Estimate& value, double bound) {
   if (value.std <= 0.0) return value.value < bound ? 1.0 : 0.0;
-  return normalCdf((bound - value.value) / value.std);
-}
-
-struct Expected {
-  double energy_J_per_m = 0.0;
-  double time_s_per_m = 0.0;
-};
-
-// Three-point Gauss-Hermite expectation over the pull, of the drives that are possible at all, along the
-// surface.
-Expected expectedDrive(const terramech::MobilityCurve& curve, const Estimate& shift, double gradient) {
-  constexpr std::array<std::pair<double, double>, 3> kPoints{
-      {{-1.7320508075688772, 1.0 / 6.0}, {0.0, 2.0 / 3.0}, {1.7320508075688772, 1.0 / 6.0}}};
-  Expected sum;
-  double weight = 0.0;
-  for (const auto& [x, w] : kPoints) {
-    const MobilityState s = curve.at(std::atan(gradient - shift.value - x * shift.std));
-    if (!s.feasible) continue;
-    sum.energy_J_per_m += w * s.energy_J_per_m;
-    sum.time_s_per_m += w / s.speed_mps;
-    weight += w;
-  }
-  return weight > 0.0 ? Expected{sum.energy_J_per_m / weight, sum.time_s_per_m / weight} : Expected{};
+  return terramech::normalProbability((bound - value.value) / value.std);
 }
 
 double slopeAtSlip_rad(const terramech::MobilityCurve& curve, double slip) {
@@ -63,12 +37,6 @@ terramech::MobilityCurve inRut(const GroundClass& ground, const terramech::Rover
   GroundClass rut = ground;
   rut.soil = terramech::rutted(ground.soil);
   return mobilityOf(rut, rover);
-}
-
-Category lower(Category category) {
-  return category == Category::Safe       ? Category::Marginal
-         : category == Category::Marginal ? Category::Dangerous
-                                          : category;
 }
 
 }  // namespace
@@ -89,8 +57,10 @@ GroundModel::GroundModel(Parts parts) : parts_(std::move(parts)) {
   check.within("slope_margin_rad", parts_.policy.slope_margin_rad, {0.0, 0.5});
   tan_margin_ = std::tan(parts_.policy.slope_margin_rad);
   check.within("max_immobilisation", parts_.policy.max_immobilisation, {0.0, 1.0});
+  check.within("pose_error_m", parts_.policy.pose_error_m, {0.0, 100.0});
   check.atLeast("time_weight_W", parts_.policy.time_weight_W, 0.0);
   check.within("entrapment", parts_.policy.entrapment, {0.0, 1.0});
+  check.within("unmonitored_entrapment", parts_.policy.unmonitored_entrapment, {0.0, 1.0});
   check.atLeast("risk_weight_J", parts_.policy.risk_weight_J, 0.0);
   check.above("correlation_length_m", parts_.policy.correlation_length_m, 0.0);
   for (const GroundClass& c : parts_.classes) {
@@ -101,6 +71,7 @@ GroundModel::GroundModel(Parts parts) : parts_(std::move(parts)) {
     curves_.push_back(terramech::knowsPasses(c.effects)
                           ? mobilityOf(c, parts_.rover, {.axles = parts_.rover.wheel_count / 2})
                           : wheel_curves_.back());
+    drives_.emplace_back(curves_.back());
   }
 }
 
@@ -142,16 +113,18 @@ GroundModel::Edges GroundModel::edges(double gradient) const noexcept {
           .high = left > 0.0 ? (gradient + tan_margin_) / left : kSteeper};
 }
 
+double GroundModel::criticalSinkage() const noexcept {
+  const double stated = parts_.policy.sinkage_critical;
+  return stated > 0.0 ? stated : parts_.rover.clearance_m / parts_.rover.wheel.radius_m;
+}
+
 Category GroundModel::categoryAt(double pull, double sinkage, double gradient) const {
-  const DrivePolicy& policy = parts_.policy;
   const Edges edge = edges(gradient);
-  const double critical = policy.sinkage_critical > 0.0
-                              ? policy.sinkage_critical
-                              : parts_.rover.clearance_m / parts_.rover.wheel.radius_m;
+  const double critical = criticalSinkage();
   return terramech::categorise({.drawbar_pull_over_load = pull, .sinkage_over_radius = sinkage},
                                {.dp_low = edge.low,
                                 .dp_high = edge.high,
-                                .z_threshold = std::min(policy.sinkage_threshold, critical),
+                                .z_threshold = std::min(parts_.policy.sinkage_threshold, critical),
                                 .z_critical = critical});
 }
 
@@ -159,58 +132,72 @@ Ranked GroundModel::category(const GroundBelief& belief, double gradient) const 
   const Edges edge = edges(gradient);
   const double below_low = probabilityBelow(belief.pull, edge.low);
   const double below_high = probabilityBelow(belief.pull, edge.high);
-  // What each of the three pull ranks becomes at the believed sinkage; their chances add up.
-  const std::array<std::pair<double, double>, 3> ranks{
-      {{std::numeric_limits<double>::infinity(), 1.0 - below_high},
-       {gradient, below_high - below_low},
-       {-std::numeric_limits<double>::infinity(), below_low}}};
+  const double critical = criticalSinkage(), threshold = std::min(parts_.policy.sinkage_threshold, critical);
+  const double carried = probabilityBelow(belief.sinkage, threshold);
+  const double free = probabilityBelow(belief.sinkage, critical);
+  // What each of the three pull ranks becomes at each of the three of sinkage; their chances add up.
+  constexpr double kMost = std::numeric_limits<double>::infinity();
+  const std::array<std::pair<double, double>, 3> pulls{
+      {{kMost, 1.0 - below_high}, {gradient, below_high - below_low}, {-kMost, below_low}}};
+  const std::array<std::pair<double, double>, 3> sinkages{
+      {{-kMost, carried}, {threshold, free - carried}, {kMost, 1.0 - free}}};
   const Category mean = categoryAt(belief.pull.value, belief.sinkage.value, gradient);
   double probability = 0.0;
-  for (const auto& [pull, chance] : ranks)
-    if (categoryAt(pull, belief.sinkage.value, gradient) == mean) probability += chance;
+  for (const auto& [pull, chance] : pulls)
+    for (const auto& [sinkage, share] : sinkages)
+      if (chance * share > 1e-9 && categoryAt(pull, sinkage, gradient) == mean) probability += chance * share;
   return {mean, probability};
 }
 
+// At most, the ground pulls what it pulls at its strongest slip. Where even the mean falls short it is taken
+// for certain: doubt is no hope.
+double GroundModel::weakProbability(int class_index, const Estimate& pull, double gradient) const noexcept {
+  const auto i = static_cast<std::size_t>(class_index);
+  const double reference = wheel_curves_[i].reference().drawbar_pull_over_load;
+  const double strongest = curves_[i].strongest().drawbar_pull_over_load;
+  const double reserve = std::max({strongest, drives_[i].last(), reference}) - reference;
+  const Estimate most{pull.value + reserve, pull.std};
+  return gradient > most.value ? 1.0 : probabilityBelow(most, gradient);
+}
+
+Refusal GroundModel::refusal(const DriveState& state, double weak, double demand,
+                             int class_index) const noexcept {
+  const DrivePolicy& policy = parts_.policy;
+  const ExpectedDrive& drive = drives_[static_cast<std::size_t>(class_index)];
+  if (static_cast<double>(std::abs(state.torque_Nm)) > parts_.rover.max_torque_Nm) return Refusal::Torque;
+  if (demand < drive.first() || demand > drive.last() || weak > policy.max_immobilisation)
+    return Refusal::Pull;
+  if (static_cast<double>(state.sinkage_m) >= parts_.rover.clearance_m) return Refusal::Sinkage;
+  const bool refused = (state.category == Category::Dangerous && !policy.allow_dangerous) ||
+                       (state.category == Category::Marginal && !policy.allow_marginal);
+  return refused ? Refusal::Category : Refusal::None;
+}
+
 DriveState GroundModel::state(int class_index, const GroundBelief& belief, double gradient) const {
-  const auto& curve = curves_[static_cast<std::size_t>(class_index)];
-  const auto& policy = parts_.policy;
-  const terramech::Rover& rover = parts_.rover;
-  const auto& reference = wheel_curves_[static_cast<std::size_t>(class_index)].reference();
-  const Estimate shift{belief.pull.value - reference.drawbar_pull_over_load, belief.pull.std};
-  const MobilityState s = curve.at(std::atan(gradient - shift.value));
-  const Expected expected = expectedDrive(curve, shift, gradient);
+  const auto i = static_cast<std::size_t>(class_index);
+  const DrivePolicy& policy = parts_.policy;
+  const auto& reference = wheel_curves_[i].reference();
+  const Estimate demand{gradient - (belief.pull.value - reference.drawbar_pull_over_load), belief.pull.std};
+  const double least = std::min(gradient, 0.0), mean = std::max(demand.value, least);
+  const MobilityState s = curves_[i].at(std::atan(mean));
+  const ExpectedCost expected = drives_[i].at(demand, least);
   const double surface = std::hypot(1.0, gradient);
   const double deeper =
       reference.sinkage_over_radius > 0.0 ? belief.sinkage.value / reference.sinkage_over_radius : 1.0;
-  const auto& ground = parts_.classes[static_cast<std::size_t>(class_index)];
-  // At most, the ground pulls what it pulls at its strongest slip. What is uncertain of the class as a whole
-  // is met once on a route and shows in the category's probability; only what differs from place to place is
-  // a hazard that every metre has.
-  const double reserve = curve.strongest().drawbar_pull_over_load - reference.drawbar_pull_over_load;
-  const Estimate most{belief.pull.value + std::max(reserve, 0.0), std::min(belief.pull.std, ground.pull_std)};
-  const double stuck = probabilityBelow(most, gradient);
+  const double weak = weakProbability(class_index, belief.pull, gradient);
 
   DriveState state;
   state.slip = static_cast<float>(s.slip);
-  state.sinkage_m = static_cast<float>(s.sinkage_m * deeper);
+  state.sinkage_m = static_cast<float>(std::max(s.sinkage_m, drives_[i].sinkage_m(mean)) * deeper);
   state.torque_Nm = static_cast<float>(s.torque_Nm);
   state.energy_J_per_m = static_cast<float>(expected.energy_J_per_m * surface);
   state.time_s_per_m = static_cast<float>(expected.time_s_per_m * surface);
-  state.risk_per_m = static_cast<float>(-std::log1p(-policy.entrapment * std::min(stuck, 1.0 - 1e-12)) /
+  state.risk_per_m = static_cast<float>(-std::log1p(-policy.held() * std::min(weak, 1.0 - 1e-12)) /
                                         policy.correlation_length_m);
   state.pull_margin = static_cast<float>(belief.pull.value - gradient);
   state.category = categoryAt(belief.pull.value, belief.sinkage.value, gradient);
-
-  const bool refused = (state.category == Category::Dangerous && !policy.allow_dangerous) ||
-                       (state.category == Category::Marginal && !policy.allow_marginal);
-  if (std::abs(s.torque_Nm) > rover.max_torque_Nm)
-    state.refusal = Refusal::Torque;
-  else if (!s.feasible || stuck > policy.max_immobilisation)
-    state.refusal = Refusal::Pull;
-  else if (static_cast<double>(state.sinkage_m) >= rover.clearance_m)
-    state.refusal = Refusal::Sinkage;
-  else if (refused)
-    state.refusal = Refusal::Category;
+  state.class_index = static_cast<std::uint8_t>(class_index);
+  state.refusal = refusal(state, weak, mean, class_index);
   return state;
 }
 
@@ -221,18 +208,13 @@ double GroundModel::cost_J_per_m(const DriveState& state) const noexcept {
          parts_.policy.risk_weight_J * static_cast<double>(state.risk_per_m);
 }
 
-DriveGround GroundModel::ground(int class_index, const GroundBelief& belief, bool demoted) const {
+DriveGround GroundModel::ground(int class_index, int other_class, const GroundBelief& belief) const {
   DriveGround ground;
   auto states = std::make_shared<DriveTable>();
   for (int bin = 0; bin < DriveCurve::kBins; ++bin) {
     DriveState& s = (*states)[static_cast<std::size_t>(bin)];
     s = state(class_index, belief, DriveCurve::gradient(bin));
-    if (demoted) {
-      s.category = lower(s.category);
-      const bool refused = (s.category == Category::Dangerous && !parts_.policy.allow_dangerous) ||
-                           (s.category == Category::Marginal && !parts_.policy.allow_marginal);
-      if (s.refusal == Refusal::None && refused) s.refusal = Refusal::Category;
-    }
+    if (other_class != class_index) s = worse(s, state(other_class, belief, DriveCurve::gradient(bin)));
     ground.curve.cost_J_per_m[static_cast<std::size_t>(bin)] = static_cast<float>(cost_J_per_m(s));
   }
   ground.states = std::move(states);

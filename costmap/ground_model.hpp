@@ -6,6 +6,7 @@
 
 #include <talus/costmap/drive_cost.hpp>
 #include <talus/costmap/drive_policy.hpp>
+#include <talus/costmap/expected_drive.hpp>
 #include <talus/terramech/contact/rover.hpp>
 #include <talus/terramech/contact/soil.hpp>
 #include <talus/terramech/effects/effects.hpp>
@@ -14,8 +15,6 @@
 #include <talus/terramech/numerics/estimate.hpp>
 
 namespace talus::costmap {
-
-using terramech::Estimate;
 
 /// A terrain class as a prior for the ground of its cells. Plain data.
 struct GroundClass {
@@ -60,7 +59,9 @@ struct Ranked {
 /// The ground of one rover on one body: per class the mobility curve of its soil, and from it what any belief
 /// costs. Ground whose pull is believed to be less than its class's by d drives as the class does on a slope
 /// steeper by d: the shift of the curve is the extra resistance or missing thrust (ours; at the reference
-/// slip it is exact). Immutable.
+/// slip it is exact). Ground that pulls more drives as on a flatter slope, at most as on the level. Cost and
+/// risk never fall as a standard deviation grows, nor, from the level upwards, as the gradient grows
+/// (ExpectedDrive). Immutable.
 class GroundModel {
  public:
   /// Everything the model is made from.
@@ -88,9 +89,12 @@ class GroundModel {
   /// The same at the reference slip.
   SteadyWheel reference(int class_index, bool in_rut) const noexcept;
 
-  /// Drive curve and states of ground of a class under a belief; `demoted`: one category lower (rocks,
-  /// doubtful map).
-  DriveGround ground(int class_index, const GroundBelief& belief, bool demoted = false) const;
+  /// Drive curve and states of ground of a class under a belief.
+  DriveGround ground(int class_index, const GroundBelief& belief) const {
+    return ground(class_index, class_index, belief);
+  }
+  /// The same of ground that may be of either class: the worse of both in everything.
+  DriveGround ground(int class_index, int other_class, const GroundBelief& belief) const;
 
   /// State at one gradient along the heading (rise over run), as ground() tabulates it.
   DriveState state(int class_index, const GroundBelief& belief, double gradient) const;
@@ -114,11 +118,15 @@ class GroundModel {
     double low, high;
   };
   Edges edges(double gradient) const noexcept;
+  double criticalSinkage() const noexcept;
+  double weakProbability(int class_index, const Estimate& pull, double gradient) const noexcept;
+  Refusal refusal(const DriveState& state, double weak, double demand, int class_index) const noexcept;
   terramech::Category categoryAt(double pull, double sinkage, double gradient) const;
 
   Parts parts_;
   double tan_margin_ = 0.0;
   std::vector<terramech::MobilityCurve> curves_;        // of each class, all axles of the rover together
+  std::vector<ExpectedDrive> drives_;                   // the same over the demand
   std::vector<terramech::MobilityCurve> wheel_curves_;  // one wheel on fresh ground
   std::vector<terramech::MobilityCurve> rut_curves_;    // in the rut of an equal wheel
 };

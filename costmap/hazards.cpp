@@ -11,14 +11,14 @@ bool touches(Hazard a, Hazard set) noexcept {
   return (static_cast<std::uint8_t>(a) & static_cast<std::uint8_t>(set)) != 0;
 }
 
-// Offsets of the cells whose nearest point lies closer than the radius to a cell at the origin.
+// Offsets of the cells some place of which lies closer than the radius to a cell at the origin.
 std::vector<maps::Cell> discOffsets(double radius_cells) {
   std::vector<maps::Cell> disc;
   const int reach = static_cast<int>(std::ceil(radius_cells + 0.5));
   for (int row = -reach; row <= reach; ++row)
     for (int column = -reach; column <= reach; ++column) {
-      const double dx = std::max(std::abs(column) - 0.5, 0.0);
-      const double dy = std::max(std::abs(row) - 0.5, 0.0);
+      const double dx = std::max(std::abs(column) - 1.0, 0.0);
+      const double dy = std::max(std::abs(row) - 1.0, 0.0);
       if ((row != 0 || column != 0) && std::hypot(dx, dy) < radius_cells) disc.push_back({column, row});
     }
   return disc;
@@ -65,9 +65,25 @@ Hazard ShapeJudge::operator()(const GroundShape& shape) const noexcept {
   return found;
 }
 
+namespace {
+
+// Outside the map nothing is seen either.
+void keepOffEdge(maps::Raster<Hazard>& hazards, int cells) {
+  const maps::Grid& grid = hazards.grid();
+  for (int row = 0; row < grid.height; ++row)
+    for (int column = 0; column < grid.width; ++column) {
+      const int off = std::min({column, row, grid.width - 1 - column, grid.height - 1 - row});
+      if (off < cells) hazards[{column, row}] |= Hazard::Near;
+    }
+}
+
+}  // namespace
+
 void inflate(maps::Raster<Hazard>& hazards, const HazardLimits& limits, Hazard spreading) {
   const maps::Grid& grid = hazards.grid();
   const auto disc = discOffsets(limits.inflation_m / grid.resolution_m);
+  if (touches(Hazard::Unknown, spreading))
+    keepOffEdge(hazards, static_cast<int>(std::ceil(limits.inflation_m / grid.resolution_m)));
   for (int row = 0; row < grid.height; ++row)
     for (int column = 0; column < grid.width; ++column) {
       const maps::Cell cell{column, row};

@@ -53,8 +53,8 @@ class ShapeJudge {
 /// Hazards that the rover's whole width must keep clear of.
 inline constexpr Hazard kKeptClearOf = Hazard::KeepOut | Hazard::Obstacle | Hazard::Unknown;
 
-/// Marks as Near the cells whose centre lies closer than inflation_m to the edge of a cell with one of these
-/// hazards.
+/// Marks as Near the cells some place of which lies closer than inflation_m to a cell with one of these hazards; where
+/// Unknown is one of them, to the outside of the map, too.
 void inflate(maps::Raster<Hazard>& hazards, const HazardLimits& limits, Hazard spreading = kKeptClearOf);
 
 }  // namespace talus::costmap

@@ -41,6 +41,10 @@ class Writer {
     lines_ += name + ' ' + text(value) + '\n';
   }
   template <typename T>
+  void added(const std::string& name, const T& value) {
+    (*this)(name, value);
+  }
+  template <typename T>
   void count(const std::string& name, const std::vector<T>& list) {
     if (!list.empty()) (*this)(name, list.size());
   }
@@ -84,6 +88,12 @@ class Reader {
     if (found == values_.end()) fail("'" + name + "' is missing");
     read(found->first, found->second, value);
     values_.erase(found);
+  }
+
+  /// A value that older maps do not have: it stays as it is.
+  template <typename T>
+  void added(const std::string& name, T& value) {
+    if (values_.contains(name)) (*this)(name, value);
   }
 
   /// Makes the list as long as is written; none where nothing is.
@@ -228,8 +238,11 @@ void visitPolicy(V& v, P& policy) {
   v("policy.sinkage_threshold", policy.sinkage_threshold);
   v("policy.sinkage_critical", policy.sinkage_critical);
   v("policy.max_immobilisation", policy.max_immobilisation);
+  v.added("policy.pose_error_m", policy.pose_error_m);
   v("policy.time_weight_W", policy.time_weight_W);
   v("policy.entrapment", policy.entrapment);
+  v.added("policy.unmonitored_entrapment", policy.unmonitored_entrapment);
+  v.added("policy.unmonitored", policy.unmonitored);
   v("policy.risk_weight_J", policy.risk_weight_J);
   v("policy.correlation_length_m", policy.correlation_length_m);
 }

@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include <talus/costmap/ground_curves.hpp>
 #include <talus/costmap/rock_hazard.hpp>
 #include <talus/costmap/surface_tree.hpp>
 #include <talus/costmap/traversability_map.hpp>
@@ -138,15 +139,18 @@ TraversabilityMap::TraversabilityMap(MapLayers layers, std::shared_ptr<const Gro
       limits_(HazardLimits::of(site_->model->rover())),
       footprint_radius_m_(footprintRadius(options, site_->model->rover())),
       hazards_(grid(), Hazard::None),
-      book_(site_->model),
+      curves_(std::make_unique<GroundCurves>(site_)),
       field_(site_),
       published_(std::make_unique<Published>()) {
   requireGrid(site_->classes, grid(), "classes");
   requireGrid(layers.rock_abundance, grid(), "rock_abundance");
   requireGrid(layers.keep_out, grid(), "keep_out");
   requireGrid(layers.declared, grid(), "declared");
-  published_->grid = std::make_shared<CostGrid>(CostGrid::Content{
-      .grid = grid(), .tiles = measure(layers, options, watch), .cost = book_.cost(), .version = 1});
+  published_->grid = std::make_shared<CostGrid>(CostGrid::Content{.grid = grid(),
+                                                                  .tiles = measure(layers, options, watch),
+                                                                  .cost = curves_->table().cost(),
+                                                                  .version = 1});
+  if (curves_->table().overflowed()) published_->grid = renumbered();
 }
 
 Hazard TraversabilityMap::layerHazards(const MapLayers& layers, std::size_t i) const {
@@ -198,16 +202,17 @@ TileTable TraversabilityMap::measure(const MapLayers& layers, const Options& opt
   for (int row = 0; row < grid().height; ++row)
     for (int column = 0; column < grid().width; ++column) {
       CellCode& code = slot({column, row});
-      code = CellCode({.dz_dx = code.dzDx(), .dz_dy = code.dzDy(), .curve = priorCurve({column, row})});
+      code = coded({column, row}, code);
     }
   return TileTable(std::vector<TileTable::Shared>(tiles.begin(), tiles.end()));
 }
 
-std::uint8_t TraversabilityMap::priorCurve(maps::Cell cell) const noexcept {
+CellCode TraversabilityMap::coded(maps::Cell cell, CellCode code) {
   const Hazard found = hazards_[cell];
-  if (found == Hazard::None) return book_.prior(classIndex(cell));
-  if (found != Hazard::Unknown) return CellCode::kBlocked;
-  return model().parts().policy.allow_unknown ? book_.prior(0) : CellCode::kUnknown;
+  if (found == Hazard::None) return code.withCurve(curves_->number(cell));
+  if (found != Hazard::Unknown) return code.withCurve(CellCode::kBlocked);
+  const bool open = model().parts().policy.allow_unknown;
+  return code.withCurve(open ? curves_->table().prior(0) : CellCode::kUnknown);
 }
 
 std::shared_ptr<const CostGrid> TraversabilityMap::published() const noexcept {
@@ -228,6 +233,12 @@ std::optional<GroundBelief> TraversabilityMap::ground(maps::Cell cell) const {
   return EvidenceField::Beliefs(field_).at(cell, index).ground;
 }
 
+std::optional<GroundBelief> TraversabilityMap::publishedGround(maps::Cell cell) const {
+  const std::uint8_t number = code(cell).curve();
+  if (number >= CellCode::kUnknown) return std::nullopt;
+  return curves_->table().belief(number);
+}
+
 CellBelief TraversabilityMap::belief(maps::Cell cell) const {
   EvidenceField::Beliefs beliefs(field_);
   return belief(cell, beliefs);
@@ -245,7 +256,7 @@ CellBelief TraversabilityMap::belief(maps::Cell cell, EvidenceField::Beliefs& be
   if (const BlockEvidence* own = field_.evidence(cell)) tell(*own, field_.samplesOf(cell), belief);
   const CellCode code = this->code(cell);
   if (code.curve() < CellCode::kUnknown) {
-    const auto entry = book_.categories(code.curve()).at(code);
+    const auto entry = curves_->table().categories(code.curve()).at(code);
     belief.category = entry.category;
     belief.confidence = entry.confidence;
   } else if (!has(belief.hazards, Hazard::Unknown)) {
@@ -275,14 +286,14 @@ CategoryCounts TraversabilityMap::countCategories() const {
 
 std::uint8_t TraversabilityMap::categoryOf(const CostGrid& grid, maps::Cell cell) const noexcept {
   const CellCode code = grid.at(cell);
-  if (code.curve() < CellCode::kUnknown) return book_.categories(code.curve()).at(code).category;
+  if (code.curve() < CellCode::kUnknown) return curves_->table().categories(code.curve()).at(code).category;
   return static_cast<std::uint8_t>(has(hazards_[cell], Hazard::Unknown) ? terramech::Category::Unknown
                                                                         : terramech::Category::Dangerous);
 }
 
 bool TraversabilityMap::learn(const WheelObservation& observation) {
   const auto range = field_.add(observation);
-  if (range) dirty_ = joined(std::move(dirty_), *range);
+  if (range) learned_ = joined(std::move(learned_), *range);
   return range.has_value();
 }
 
@@ -302,39 +313,54 @@ void TraversabilityMap::refuse(const maps::Point& place, double radius_m) {
       if (std::hypot(centre.x_m - place.x_m, centre.y_m - place.y_m) <= radius_m)
         hazards_[{column, row}] |= Hazard::Obstacle;
     }
-  dirty_.push_back(range);
-}
-
-bool TraversabilityMap::refreshPriors() {
-  bool changed = false;
-  for (int i = 0; i < static_cast<int>(model().parts().classes.size()); ++i)
-    changed |= book_.setPrior(i, field_.classBelief(i));
-  return changed;
+  refused_.push_back(range);
 }
 
 void TraversabilityMap::publish() {
-  publish(std::exchange(dirty_, {}));
+  publish(std::exchange(learned_, {}));
 }
 
 void TraversabilityMap::publishAll() {
-  dirty_.clear();
-  publish({{{0, 0}, {grid().width - 1, grid().height - 1}}});
+  curves_->restart(0);
+  learned_.clear();
+  refused_ = {everywhere()};
+  publish({everywhere()});
 }
 
-void TraversabilityMap::publish(const std::vector<maps::CellBox>& ranges) {
-  const bool priors_moved = refreshPriors();
-  if (ranges.empty() && !priors_moved) return;
-  EvidenceField::Beliefs beliefs(field_);
-  const auto recode = [&](maps::Cell cell, CellCode code) {
-    if (hazards_[cell] != Hazard::None) return code.withCurve(priorCurve(cell));
-    const int index = classIndex(cell);
-    const EvidenceField::Belief& belief = beliefs.at(cell, index);
-    return code.withCurve(belief.learned ? book_.learned(index, belief.ground) : book_.prior(index));
+void TraversabilityMap::publish(std::vector<maps::CellBox> learned) {
+  std::vector<maps::CellBox> changed = std::exchange(refused_, {});
+  const bool any = !learned.empty() || !changed.empty();
+  const auto append = [](std::vector<maps::CellBox>& to, const std::vector<maps::CellBox>& more) {
+    to.insert(to.end(), more.begin(), more.end());
   };
-  // The cost is asked for after the codes are made: they may bring new curves.
-  CostGrid next =
-      revised(*published(), {.ranges = ranges, .code = recode, .cost = [&] { return book_.cost(); }});
-  published_->grid = std::make_shared<CostGrid>(std::move(next));
+  const bool classes_moved = curves_->learnClasses(field_);
+  if (!any && !classes_moved) return;
+  if (classes_moved) append(learned, curves_->learnedBoxes());
+  EvidenceField::Beliefs beliefs(field_);
+  append(changed, curves_->learn(beliefs, learned));
+  if (classes_moved) append(changed, curves_->mixedRanges());
+  std::shared_ptr<const CostGrid> next = rewritten(changed);
+  const bool coarser_exists = curves_->table().level() < GroundKind::kCoarsest;
+  published_->grid = curves_->table().overflowed() && coarser_exists ? renumbered() : std::move(next);
+}
+
+// In the finest steps that leave room for what is yet to be learned.
+std::shared_ptr<const CostGrid> TraversabilityMap::renumbered() {
+  constexpr double kFull = 0.75;
+  for (int level = 0;; ++level) {
+    curves_->restart(level);
+    auto next = rewritten({everywhere()});
+    const bool room = !curves_->table().overflowed() && curves_->table().used() <= kFull;
+    if (room || level == GroundKind::kCoarsest) return next;
+  }
+}
+
+// The cost is asked for after the codes are made: they may bring new curves.
+std::shared_ptr<const CostGrid> TraversabilityMap::rewritten(const std::vector<maps::CellBox>& ranges) {
+  return std::make_shared<CostGrid>(
+      revised(*published(), {.ranges = ranges,
+                             .code = [&](maps::Cell cell, CellCode code) { return coded(cell, code); },
+                             .cost = [&] { return curves_->table().cost(); }}));
 }
 
 std::vector<FloorLeaf> TraversabilityMap::floorLeaves() const {

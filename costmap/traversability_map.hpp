@@ -6,8 +6,6 @@
 #include <memory>
 #include <optional>
 
-#include <talus/costmap/category_table.hpp>
-#include <talus/costmap/cost_curve_table.hpp>
 #include <talus/costmap/cost_grid.hpp>
 #include <talus/costmap/evidence_field.hpp>
 #include <talus/costmap/ground_model.hpp>
@@ -20,6 +18,8 @@
 #include <talus/talus.hpp>
 
 namespace talus::costmap {
+
+class GroundCurves;
 
 /// What a map is built from; layers on the elevation's grid, empty where nobody gave one.
 struct MapLayers {
@@ -79,6 +79,10 @@ class TraversabilityMap {
   /// Class number in the raster, 0 where there is no raster.
   int classNumber(maps::Cell cell) const noexcept;
 
+  /// The ground that the published cost of a cell was made from: what its wheels' swath and the rounding of the
+  /// cost curves make of ground(); nothing where no heading may enter or nobody has seen it.
+  std::optional<GroundBelief> publishedGround(maps::Cell cell) const;
+
   /// All that is believed of a cell inside the map.
   CellBelief belief(maps::Cell cell) const;
   /// The strength of its ground: prior of the class and evidence together; nothing where the cell has no
@@ -113,9 +117,10 @@ class TraversabilityMap {
   /// every cell whose centre lies within the radius. Planners see it after publish().
   void refuse(const maps::Point& place, double radius_m);
 
-  /// Publishes what was learned since the last time as a new version: rewrites the tiles it touches, shares
-  /// the others. Readers never wait; a planner that runs keeps its version. Learned ground elsewhere keeps
-  /// its curve although its class as a whole moved a little: it has its own evidence.
+  /// Publishes what was learned since the last time as a new version: rewrites the cells whose ground changed,
+  /// or that of a cell within reach of their wheels, and shares the tiles that hold none. Readers never wait; a
+  /// planner that runs keeps its version. Where the numbers of cost curves run out all cells are given theirs
+  /// anew, in steps as coarse as it takes (GroundKind).
   void publish();
   /// The same over all cells, as after restore().
   void publishAll();
@@ -132,18 +137,21 @@ class TraversabilityMap {
   CellBelief belief(maps::Cell cell, EvidenceField::Beliefs& beliefs) const;
   Hazard layerHazards(const MapLayers& layers, std::size_t index) const;
   std::uint8_t categoryOf(const CostGrid& grid, maps::Cell cell) const noexcept;
-  std::uint8_t priorCurve(maps::Cell cell) const noexcept;
-  void publish(const std::vector<maps::CellBox>& ranges);
+  CellCode coded(maps::Cell cell, CellCode code);
+  void publish(std::vector<maps::CellBox> learned);
+  std::shared_ptr<const CostGrid> rewritten(const std::vector<maps::CellBox>& ranges);
+  std::shared_ptr<const CostGrid> renumbered();
+  maps::CellBox everywhere() const noexcept { return {{0, 0}, {grid().width - 1, grid().height - 1}}; }
   std::vector<FloorLeaf> floorLeaves() const;
-  bool refreshPriors();
 
   std::shared_ptr<const GroundSite> site_;
   HazardLimits limits_;
   double footprint_radius_m_ = 0.0;
   maps::Raster<Hazard> hazards_;
-  CostCurveTable book_;
+  std::unique_ptr<GroundCurves> curves_;
   EvidenceField field_;
-  std::vector<maps::CellBox> dirty_;
+  std::vector<maps::CellBox> learned_;  // since the last version
+  std::vector<maps::CellBox> refused_;
   struct Published;
   std::unique_ptr<Published> published_;  // the atomic in it cannot move
 };

@@ -141,16 +141,17 @@ planner::Problem problemOf(const PlanOptions& options, const Ground& ground, con
 }
 
 // How the soil is drawn along a route.
-planner::RouteRiskOptions soilOf(const PlanOptions& options, std::uint64_t seed) {
-  return {.correlation_length_m = options.ground.policy.correlation_length_m, .seed = seed};
+planner::RouteRiskOptions soilOf(const planner::Problem& problem) {
+  planner::RouteRiskOptions options = planner::riskOptions(*problem.map);
+  options.seed = problem.seed;
+  return options;
 }
 
 planner::Plan planOnce(const planner::Problem& problem, planner::NamedPlanner& planner,
                        const PlanOptions& options, const std::optional<planner::Chassis>& chassis) {
   const auto once = [&](const planner::Problem& p) {
-    return options.max_risk > 0.0
-               ? planner::planWithinRisk(p, planner, options.max_risk, soilOf(options, p.seed))
-               : planner.plan(p);
+    return options.max_risk > 0.0 ? planner::planWithinRisk(p, planner, options.max_risk, soilOf(p))
+                                  : planner.plan(p);
   };
   return chassis ? planner::planOnChassis(problem, *chassis, once) : once(problem);
 }
@@ -190,8 +191,9 @@ void writeFiles(const PlanOptions& options, const Ground& ground, const Route& r
 }
 
 // The risk once more, with soil that is alike nearby.
-nlohmann::ordered_json riskJson(const Route& route, const PlanOptions& options, const Context& context) {
-  const planner::RouteRiskOptions drawn = soilOf(options, context.seed);
+nlohmann::ordered_json riskJson(const Route& route, const PlanOptions& options,
+                                const planner::Problem& problem) {
+  const planner::RouteRiskOptions drawn = soilOf(problem);
   const planner::RouteRisk risk = planner::routeRisk(route, drawn);
   return {{"limit", options.max_risk},
           {"immobilisation", route.vertices.back().immobilisation_risk},
@@ -270,19 +272,38 @@ int runPairs(const PlanOptions& options, Context& context) {
   return Exit::kDone;
 }
 
+// A route of ours that the check refuses is an error of ours: it is kept to be sent, and none is handed out.
+int refuseOwn(const PlanOptions& options, const Planned& planned, const Route& route,
+              const planner::Violation& violation, const Context& context) {
+  const std::string file = options.output.empty() ? "refused.geojson" : options.output + ".refused.geojson";
+  const auto document = routeGeoJson(route, planned.ground.map.elevation(),
+                                     {.files = planned.ground.files, .seed = context.seed});
+  writeFile(file, document.dump() + "\n");
+  Route none;
+  none.status = RouteStatus::NoRoute;
+  none.summary.planner = route.summary.planner;
+  none.reason = fmt::format(
+      "no route: the check refuses the one that '{}' found at {:.2f},{:.2f}: {}; please "
+      "report it with {} and the call",
+      route.summary.planner, violation.place.x_m, violation.place.y_m, violation.reason, file);
+  return refuse(none, context);
+}
+
 // What is done with a plan, whichever way it was made.
 int finish(const PlanOptions& options, const Planned& planned, const planner::AnnotationInput& input,
            const Context& context) {
-  if (planned.plan.status == RouteStatus::Found)
-    planner::requireAllowed(planned.plan, *planned.problem.map, planned.problem.kinematics.turning_radius_m);
   const Route route = annotated(planned.plan, input);
+  if (planned.plan.status == RouteStatus::Found)
+    if (const auto refused =
+            planner::refusal(planned.plan, *planned.problem.map, planned.problem.kinematics.turning_radius_m))
+      return refuseOwn(options, planned, route, *refused, context);
   if (planned.plan.status != RouteStatus::Found) return refuse(route, context);
   writeFiles(options, planned.ground, route, context);
   const Timing seconds{planned.ground.load_s, planned.ground.build_s, planned.plan_s};
   if (context.json) {
     auto json = summaryJson(route);
     if (options.goals.size() > 1) json["goal"] = options.goals[planned.plan.goal];
-    if (options.max_risk > 0.0) json["risk"] = riskJson(route, options, context);
+    if (options.max_risk > 0.0) json["risk"] = riskJson(route, options, planned.problem);
     json["seconds"] = {{"load", seconds.load_s}, {"costmap", seconds.costmap_s}, {"plan", seconds.plan_s}};
     printJson(json);
   } else {

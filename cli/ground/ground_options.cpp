@@ -59,6 +59,20 @@ void addPolicy(CLI::App& command, costmap::DrivePolicy& policy) {
   command.add_option("--time-weight", policy.time_weight_W, "cost of time, joules per second")
       ->type_name("W")
       ->capture_default_str();
+  command
+      .add_option("--entrapment", policy.entrapment,
+                  "fraction of the places with too weak soil that immobilise a rover that monitors its slip")
+      ->type_name("FRACTION")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  command.add_flag("--unmonitored", policy.unmonitored,
+                   "slip is not monitored: every place with too weak soil immobilises the rover");
+  command
+      .add_option("--pose-error", policy.pose_error_m,
+                  "position error of the rover: soil is evaluated that far beyond the wheels")
+      ->type_name("METRES")
+      ->check(CLI::Range(0.0, 100.0))
+      ->capture_default_str();
   command.add_option("--risk-weight", policy.risk_weight_J, "cost of losing the rover, joules")
       ->type_name("J")
       ->capture_default_str();

@@ -41,10 +41,10 @@ Json planned(const PlacePair& pair, planner::Problem problem, planner::NamedPlan
   problem.goal = pair.goal;
   if (pair.start_heading_rad) problem.start_heading_rad = pair.start_heading_rad;
   if (pair.goal_heading_rad) problem.goal_heading_rad = pair.goal_heading_rad;
-  const planner::Plan plan = planner.plan(problem);
+  const planner::Plan plan =
+      planner::checkedPlan(planner.plan(problem), *problem.map, problem.kinematics.turning_radius_m);
   if (plan.status != planner::RouteStatus::Found)
     return {{"status", planner::name(plan.status)}, {"planner", planner.name()}, {"reason", plan.reason}};
-  planner::requireAllowed(plan, *problem.map, problem.kinematics.turning_radius_m);
   const planner::Route route = annotated(plan, {.map = *problem.map,
                                                 .elevation_m = nullptr,
                                                 .planner = planner.name(),

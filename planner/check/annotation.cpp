@@ -6,6 +6,7 @@
 #include <talus/costmap/drive_state.hpp>
 #include <talus/maps/elevation_map.hpp>
 #include <talus/planner/check/annotation.hpp>
+#include <talus/planner/check/route_risk.hpp>
 #include <talus/planner/route/motion_cost.hpp>
 
 namespace talus::planner {
@@ -15,7 +16,7 @@ using costmap::Direction;
 using maps::Point;
 
 // Vertices nearer together than this share of a cell are one.
-constexpr double kTogether = 1e-3;
+constexpr double kTogether = 1e-2;
 
 // Shares of a segment at which it passes from cell to cell, both ends included, sorted.
 std::vector<double> passages(const maps::Grid& grid, const Segment& motion) {
@@ -57,13 +58,13 @@ class Annotator {
                      motion.from.y_m + share * (motion.to.y_m - motion.from.y_m)};
       };
       const RouteVertex vertex = looked(at((shares[i] + shares[i - 1]) / 2), at(shares[i - 1]), heading);
-      if ((shares[i - 1] - emitted) * length_m >= kTogether * grid_.resolution_m &&
-          metres >= kTogether * grid_.resolution_m) {
+      const bool first = emitted < 0.0;
+      if (first) leaveOutNear(vertex);
+      if (first || ((shares[i - 1] - emitted) * length_m >= kTogether * grid_.resolution_m &&
+                    metres >= kTogether * grid_.resolution_m)) {
         vertices.push_back(vertex);
-        emitted = shares[i - 1];
-      } else if (emitted < 0.0) {
-        vertices.push_back(vertex);
-        emitted = 0.0;
+        emitted = std::max(shares[i - 1], 0.0);
+        if (first) turns_ = vertices.size();
       }
       spend(vertex, metres);
     }
@@ -85,7 +86,9 @@ class Annotator {
     RouteVertex vertex =
         looked(pose.place, pose.place, {std::cos(pose.heading_rad), std::sin(pose.heading_rad)});
     vertex.turn_rad = turn_rad;
+    leaveOutNear(vertex);
     vertices.push_back(vertex);
+    turns_ = vertices.size();
     spend(input_.kinematics.stop, 1.0);
     turn(turn_rad, pose.place);
   }
@@ -98,6 +101,7 @@ class Annotator {
     last.y_m = end.y_m;
     last.elevation_m = elevation(end);
     count(last);
+    leaveOutNear(last);
     vertices.push_back(last);
   }
 
@@ -135,9 +139,21 @@ class Annotator {
       vertex.torque_Nm = static_cast<double>(state_.torque_Nm);
       vertex.drawbar_pull_margin = static_cast<double>(state_.pull_margin);
       vertex.category = state_.category;
+      vertex.hazard_per_m = std::isfinite(state_.risk_per_m) ? static_cast<double>(state_.risk_per_m) : 0.0;
+      vertex.soil_class = state_.class_index;
+      const auto& shared = input_.map.cost().doubt().shared;
+      vertex.shared_doubt = state_.class_index < shared.size() ? shared[state_.class_index] : 0.0;
     }
     count(vertex);
     return vertex;
+  }
+
+  // Turns stay; where the route only enters another cell next to one, the turn is enough.
+  void leaveOutNear(const RouteVertex& vertex) {
+    const auto near = [&](const RouteVertex& other) {
+      return std::hypot(vertex.x_m - other.x_m, vertex.y_m - other.y_m) < kTogether * grid_.resolution_m;
+    };
+    while (vertices.size() > turns_ && near(vertices.back())) vertices.pop_back();
   }
 
   void count(RouteVertex& vertex) const {
@@ -167,6 +183,7 @@ class Annotator {
 
   const AnnotationInput& input_;
   const maps::Grid& grid_;
+  std::size_t turns_ = 0;  // vertices up to the last at which the route turns, or begins
   Motion how_;
   costmap::DriveState state_;  // of the cell looked at last
   double energy_J_ = 0.0, time_s_ = 0.0, hazard_ = 0.0, length_m_ = 0.0, max_slip_ = 0.0,
@@ -194,6 +211,20 @@ void driveAlong(const PosePath& drive, const costmap::CostGrid& map, Annotator& 
 
 }  // namespace
 
+namespace {
+
+// Vertices hold the additive hazard until here: right where nothing is known of how doubts hang together.
+void tellRisk(Route& route, const costmap::CostGrid& map) {
+  constexpr int kWorlds = 400;  // a few per cent of the risk
+  if (!(map.cost().doubt().correlation_length_m > 0.0)) return;
+  RouteRiskOptions options = riskOptions(map);
+  options.worlds = kWorlds;
+  const std::vector<double> risk = riskAlong(route, options);
+  for (std::size_t i = 0; i < risk.size(); ++i) route.vertices[i].immobilisation_risk = risk[i];
+}
+
+}  // namespace
+
 double gapOf(double cost, double lower_bound) noexcept {
   if (lower_bound > 0.0) return cost / lower_bound - 1.0;
   return cost > 0.0 ? std::numeric_limits<double>::infinity() : 0.0;
@@ -217,6 +248,7 @@ Route annotated(const Plan& plan, const AnnotationInput& input) {
   route.summary.lower_bound = plan.lower_bound_J;
   route.summary.gap = gapOf(plan.cost_J, plan.lower_bound_J);
   route.vertices = std::move(annotator.vertices);
+  tellRisk(route, input.map);
   return route;
 }
 

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <stdexcept>
 #include <string>
 
 #include <talus/costmap/drive_state.hpp>
@@ -35,7 +34,8 @@ class Checker {
       if ((cuts[i] - cuts[i - 1]) * length_m > kOn * side_m_)
         stretch(along(from, to, (cuts[i] + cuts[i - 1]) / 2));
       const Point crossing = along(from, to, cuts[i]);
-      if (i + 1 < cuts.size() && onCorner(crossing)) touch(crossing);
+      const double rest = std::min(cuts[i], 1.0 - cuts[i]) * length_m;
+      if (rest > kOn * side_m_ && onCorner(crossing)) touch(crossing);
     }
   }
 
@@ -46,6 +46,11 @@ class Checker {
         const auto cell = map_.grid().cellAt({p.x_m + dx * side_m_, p.y_m + dy * side_m_});
         if (cell) enter(*cell, p);
       }
+  }
+
+  // The cell that an end of the route belongs to.
+  void end(Point p) {
+    if (map_.grid().cellAt(p)) place(p);
   }
 
   void place(Point p) {
@@ -187,12 +192,15 @@ class Checker {
 
 std::vector<Violation> violations(const CostGrid& map, const std::vector<Point>& route) {
   Checker checker(map);
+  if (route.empty()) return {};
+  checker.end(route.front());
   if (route.size() == 1) checker.place(route.front());
   for (std::size_t i = 1; i < route.size(); ++i) {
     checker.segment(route[i - 1], route[i]);
     if (i > 1) checker.touch(route[i - 1]);
     if (i + 1 < route.size()) checker.touch(route[i]);
   }
+  checker.end(route.back());
   return checker.found;
 }
 
@@ -215,13 +223,21 @@ std::vector<Violation> violations(const CostGrid& map, const PosePath& drive, do
   return checker.found;
 }
 
-void requireAllowed(const Plan& plan, const CostGrid& map, double turning_radius_m) {
+std::optional<Violation> refusal(const Plan& plan, const CostGrid& map, double turning_radius_m) {
   auto found = violations(map, plan.points);
   if (found.empty() && !plan.drive.legs.empty()) found = violations(map, plan.drive, turning_radius_m);
-  if (found.empty()) return;
-  const Point place = found.front().place;
-  throw std::logic_error("the planner's route is not allowed at " + std::to_string(place.x_m) + "," +
-                         std::to_string(place.y_m) + ": " + found.front().reason);
+  if (found.empty()) return std::nullopt;
+  return found.front();
+}
+
+Plan checkedPlan(Plan plan, const CostGrid& map, double turning_radius_m) {
+  if (plan.status != RouteStatus::Found) return plan;
+  const auto refused = refusal(plan, map, turning_radius_m);
+  if (!refused) return plan;
+  Plan none;
+  none.reason = "no route: the check refuses the one found at " + std::to_string(refused->place.x_m) + ',' +
+                std::to_string(refused->place.y_m) + " m: " + refused->reason + "; please report it";
+  return none;
 }
 
 }  // namespace talus::planner

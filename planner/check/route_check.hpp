@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,7 +22,8 @@ struct Violation {
 
 /// Every cell that the polyline drives, touches at a corner or turns on, held against every constraint that
 /// the map knows for its heading: category, tilt along and across, hazards, unknown ground, the map's edge.
-/// One violation a cell; empty for a route that may be driven. It shares no code with the planners, nor with
+/// A route ends in the cell that Grid::cellAt gives it and need not be allowed in others that its ends touch:
+/// it does not turn there. One violation a cell; empty for a route that may be driven. It shares no code with the planners, nor with
 /// MotionCost: the crossings of cell edges are sorted and the middle of each stretch is looked up. Exact, not
 /// sampled.
 std::vector<Violation> violations(const costmap::CostGrid& map, const std::vector<maps::Point>& route);
@@ -32,8 +34,11 @@ std::vector<Violation> violations(const costmap::CostGrid& map, const std::vecto
 std::vector<Violation> violations(const costmap::CostGrid& map, const PosePath& drive,
                                   double turning_radius_m);
 
-/// Holds what a planner answered against violations(), along its drive where it has one. Throws
-/// std::logic_error, with the first place and its reason, for a plan that is not allowed.
-void requireAllowed(const Plan& plan, const costmap::CostGrid& map, double turning_radius_m);
+/// Holds what a planner answered against violations(), along its drive where it has one: the first of them.
+std::optional<Violation> refusal(const Plan& plan, const costmap::CostGrid& map, double turning_radius_m);
+
+/// The plan where it found a route that refusal() has nothing against, or found none; else NoRoute, with where and
+/// why the check refuses the planner's route.
+Plan checkedPlan(Plan plan, const costmap::CostGrid& map, double turning_radius_m);
 
 }  // namespace talus::planner

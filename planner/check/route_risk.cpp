@@ -1,13 +1,12 @@
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <random>
 #include <stdexcept>
 #include <string>
-#include <vector>
-
-#include <boost/math/special_functions/erf.hpp>
 
 #include <talus/planner/check/route_risk.hpp>
+#include <talus/terramech/numerics/normal_distribution.hpp>
 
 namespace talus::planner {
 namespace {
@@ -15,32 +14,50 @@ namespace {
 // Ground with a reserve beyond this many deviations fails in no world that is drawn.
 constexpr double kSafe = 8.0;
 
-// One stretch of the route between two vertices.
+// One stretch of the route, from a vertex to the next.
 struct Stretch {
-  double beta = kSafe;       // reliability index
-  double correlation = 1.0;  // of its soil with that of the stretch before
+  std::size_t vertex;  // that it leads to
+  double metres;
+  double weak;         // probability that its soil is too weak
+  double beta;         // reliability index: P(u < -beta) = weak
+  double shared;       // share of the variance that its class has in common
+  std::size_t soil;    // its class
+  double correlation;  // of the rest with that of the stretch before
 };
 
-// beta with P(u < -beta) = p for a standard Gaussian u.
-double reliabilityIndex(double p) {
-  if (!(p > 0)) return kSafe;
-  return std::clamp(std::sqrt(2.0) * boost::math::erfc_inv(2.0 * std::min(p, 1.0 - 1e-12)), -kSafe, kSafe);
+double reliabilityIndex(double weak) {
+  return weak > 0.0 ? std::clamp(-terramech::normalQuantile(weak), -kSafe, kSafe) : kSafe;
 }
 
-std::vector<Stretch> stretches(const Route& route, double correlation_length_m) {
+double weakOf(double hazard_per_m, const RouteRiskOptions& options) {
+  const double held = -std::expm1(-hazard_per_m * options.correlation_length_m);
+  const double weak = options.entrapment > 0.0 ? held / options.entrapment : 0.0;
+  return weak < 1e-15 ? 0.0 : std::min(weak, 1.0 - 1e-12);
+}
+
+std::vector<Stretch> stretches(const Route& route, const RouteRiskOptions& options) {
   std::vector<Stretch> made;
+  double middle_m = 0.0, at_m = 0.0;
   for (std::size_t i = 1; i < route.vertices.size(); ++i) {
     const RouteVertex& a = route.vertices[i - 1];
     const RouteVertex& b = route.vertices[i];
     const double metres = std::hypot(b.x_m - a.x_m, b.y_m - a.y_m);
-    if (!(metres > 0)) {
-      made.push_back({});
-      continue;
-    }
-    const double hazard =
-        std::log1p(-a.immobilisation_risk) - std::log1p(-std::min(b.immobilisation_risk, 1.0 - 1e-15));
-    const double p = -std::expm1(-hazard / metres * correlation_length_m);
-    made.push_back({.beta = reliabilityIndex(p), .correlation = std::exp(-metres / correlation_length_m)});
+    if (!(metres > 0)) continue;
+    const double weak = weakOf(a.hazard_per_m, options);
+    const double here_m = at_m + 0.5 * metres;
+    const auto soil = static_cast<std::size_t>(a.soil_class);
+    const bool follows = !made.empty() && made.back().soil == soil;
+    made.push_back({.vertex = i,
+                    .metres = metres,
+                    .weak = weak,
+                    .beta = reliabilityIndex(weak),
+                    .shared = a.shared_doubt,
+                    .soil = soil,
+                    .correlation = follows ? std::exp(-std::max(here_m - middle_m, options.cell_m) /
+                                                      options.correlation_length_m)
+                                           : 0.0});
+    middle_m = here_m;
+    at_m += metres;
   }
   return made;
 }
@@ -48,9 +65,105 @@ std::vector<Stretch> stretches(const Route& route, double correlation_length_m) 
 void validate(const RouteRiskOptions& options) {
   if (!(options.correlation_length_m > 0))
     throw std::invalid_argument("route risk: correlation_length_m must be > 0");
+  if (!(options.entrapment >= 0 && options.entrapment <= 1))
+    throw std::invalid_argument("route risk: entrapment must be in [0, 1]");
   if (!(options.tail > 0 && options.tail <= 1))
     throw std::invalid_argument("route risk: tail must be in (0, 1]");
+  if (!(options.cell_m >= 0)) throw std::invalid_argument("route risk: cell_m must be >= 0");
   if (options.worlds < 1) throw std::invalid_argument("route risk: worlds must be > 0");
+}
+
+// Draws u of every stretch of a route.
+class Worlds {
+ public:
+  Worlds(const std::vector<Stretch>& route, std::uint64_t seed)
+      : route_(route), random_(seed), u_(route.size()) {
+    for (const Stretch& s : route) common_.resize(std::max(common_.size(), s.soil + 1));
+  }
+
+  // Any world.
+  const std::vector<double>& any() { return around(0, gauss_(random_)); }
+
+  // A world in which the soil of a stretch is too weak.
+  const std::vector<double>& weakAt(std::size_t i) {
+    const double share = std::uniform_real_distribution<double>(1e-9, 1.0)(random_);
+    return around(i, terramech::normalQuantile(share * route_[i].weak));
+  }
+
+  double uniform() { return std::uniform_real_distribution<double>(0.0, 1.0)(random_); }
+
+ private:
+  // A world whose u at a stretch is given: its two parts first, the others from there both ways.
+  const std::vector<double>& around(std::size_t i, double u) {
+    const double shared = std::sqrt(route_[i].shared), own = std::sqrt(1.0 - route_[i].shared);
+    for (double& common : common_) common = gauss_(random_);
+    const double e = common_[route_[i].soil];
+    common_[route_[i].soil] = shared * u + own * e;
+    const double place = own * u - shared * e;
+    u_[i] = u;
+    double at = place;
+    for (std::size_t k = i + 1; k < route_.size(); ++k)
+      u_[k] = combined(k, at = next(at, route_[k].correlation));
+    at = place;
+    for (std::size_t k = i; k-- > 0;) u_[k] = combined(k, at = next(at, route_[k + 1].correlation));
+    return u_;
+  }
+
+  double next(double place, double correlation) {
+    return correlation * place + std::sqrt(1.0 - correlation * correlation) * gauss_(random_);
+  }
+
+  double combined(std::size_t k, double place) const {
+    return std::sqrt(route_[k].shared) * common_[route_[k].soil] + std::sqrt(1.0 - route_[k].shared) * place;
+  }
+
+  const std::vector<Stretch>& route_;
+  std::mt19937_64 random_;
+  std::normal_distribution<double> gauss_;
+  std::vector<double> common_;  // of each class
+  std::vector<double> u_;
+};
+
+// What is held after so many metres of too weak soil.
+double heldAfter(double metres, const RouteRiskOptions& options) {
+  if (options.entrapment >= 1.0) return metres > 0.0 ? 1.0 : 0.0;
+  return -std::expm1(metres / options.correlation_length_m * std::log1p(-options.entrapment));
+}
+
+// The mean over worlds at each stretch, and the variance of that at the last.
+struct Drawn {
+  std::vector<double> risk;
+  double variance = 0.0;
+};
+
+Drawn drawn(const std::vector<Stretch>& route, const RouteRiskOptions& options) {
+  Drawn out{.risk = std::vector<double>(route.size(), 0.0)};
+  std::vector<double> share;  // of the weak metres to be expected, up to each stretch
+  for (const Stretch& s : route) share.push_back((share.empty() ? 0.0 : share.back()) + s.weak * s.metres);
+  if (share.empty() || !(share.back() > 0.0)) return out;
+  Worlds worlds(route, options.seed);
+  const auto n = static_cast<double>(options.worlds);
+  double squares = 0.0;
+  std::vector<double> weak_m(route.size());
+  for (int world = 0; world < options.worlds; ++world) {
+    const double pick = (world + worlds.uniform()) / n * share.back();
+    const auto found = std::ranges::upper_bound(share, pick) - share.begin();
+    const auto at = std::min(static_cast<std::size_t>(found), route.size() - 1);
+    const std::vector<double>& u = worlds.weakAt(at);
+    double sum_m = 0.0;
+    for (std::size_t k = 0; k < route.size(); ++k)
+      weak_m[k] = sum_m += k == at || u[k] < -route[k].beta ? route[k].metres : 0.0;
+    const double worth = share.back() / sum_m;
+    double held = 0.0;
+    for (std::size_t k = 0; k < route.size(); ++k) {
+      if (k == 0 || weak_m[k] > weak_m[k - 1]) held = heldAfter(weak_m[k], options) * worth;
+      out.risk[k] += held / n;
+    }
+    squares += held * held / n;
+  }
+  out.variance = std::max(squares - out.risk.back() * out.risk.back(), 0.0) / n;
+  for (double& risk : out.risk) risk = std::min(risk, 1.0);
+  return out;
 }
 
 struct Least {
@@ -58,45 +171,64 @@ struct Least {
   std::size_t where = 0;
 };
 
-Least drivenOnce(const std::vector<Stretch>& route, std::mt19937_64& random,
-                 std::normal_distribution<double>& gauss) {
+Least leastReserve(const std::vector<Stretch>& route, const std::vector<double>& u) {
   Least least;
-  double u = gauss(random);
-  for (std::size_t i = 0; i < route.size(); ++i) {
-    const double rho = route[i].correlation;
-    if (i > 0) u = rho * u + std::sqrt(1.0 - rho * rho) * gauss(random);
-    if (route[i].beta + u < least.reserve) least = {route[i].beta + u, i};
-  }
+  for (std::size_t i = 0; i < route.size(); ++i)
+    if (route[i].beta + u[i] < least.reserve) least = {route[i].beta + u[i], i};
   return least;
 }
 
-}  // namespace
-
-RouteRisk routeRisk(const Route& route, const RouteRiskOptions& options) {
-  validate(options);
-  const std::vector<Stretch> way = stretches(route, options.correlation_length_m);
-  if (way.empty()) return {.immobilisation = 0.0, .standard_error = 0.0, .cvar = kSafe};
-  std::mt19937_64 random(options.seed);
-  std::normal_distribution<double> gauss;
+// Conditional value at risk, and the vertex before the stretch that most often has the least reserve.
+void drawTail(const std::vector<Stretch>& way, const Route& route, const RouteRiskOptions& options,
+              RouteRisk& risk) {
+  Worlds worlds(way, options.seed);
   std::vector<double> reserves;
   std::vector<int> worst_at(way.size());
   for (int world = 0; world < options.worlds; ++world) {
-    const Least least = drivenOnce(way, random, gauss);
+    const Least least = leastReserve(way, worlds.any());
     reserves.push_back(least.reserve);
     ++worst_at[least.where];
   }
   std::ranges::sort(reserves);
-  const auto stuck = std::ranges::lower_bound(reserves, 0.0) - reserves.begin();
-  const auto n = static_cast<double>(options.worlds);
-  const auto tail = std::max<std::ptrdiff_t>(1, std::lround(options.tail * n));
-  RouteRisk risk;
-  risk.immobilisation = static_cast<double>(stuck) / n;
-  risk.standard_error = std::sqrt(risk.immobilisation * (1.0 - risk.immobilisation) / n);
-  for (std::ptrdiff_t i = 0; i < tail; ++i)
-    risk.cvar += reserves[static_cast<std::size_t>(i)] / static_cast<double>(tail);
+  const auto tail = std::max<std::ptrdiff_t>(1, std::lround(options.tail * options.worlds));
+  risk.cvar = std::accumulate(reserves.begin(), reserves.begin() + tail, 0.0) / static_cast<double>(tail);
   const auto worst = std::ranges::max_element(worst_at) - worst_at.begin();
-  risk.worst_x_m = route.vertices[static_cast<std::size_t>(worst)].x_m;
-  risk.worst_y_m = route.vertices[static_cast<std::size_t>(worst)].y_m;
+  const RouteVertex& place = route.vertices[way[static_cast<std::size_t>(worst)].vertex - 1];
+  risk.worst_x_m = place.x_m;
+  risk.worst_y_m = place.y_m;
+}
+
+}  // namespace
+
+RouteRiskOptions riskOptions(const costmap::CostGrid& map) {
+  RouteRiskOptions options{.cell_m = map.grid().resolution_m};
+  const costmap::SoilDoubt& doubt = map.cost().doubt();
+  if (!(doubt.correlation_length_m > 0.0)) return options;
+  options.correlation_length_m = doubt.correlation_length_m;
+  options.entrapment = doubt.entrapment;
+  return options;
+}
+
+std::vector<double> riskAlong(const Route& route, const RouteRiskOptions& options) {
+  validate(options);
+  const std::vector<Stretch> way = stretches(route, options);
+  const Drawn risk = drawn(way, options);
+  std::vector<double> along(route.vertices.size(), 0.0);
+  for (std::size_t k = 0; k < way.size(); ++k) along[way[k].vertex] = risk.risk[k];
+  for (std::size_t i = 1; i < along.size(); ++i) along[i] = std::max(along[i], along[i - 1]);
+  return along;
+}
+
+RouteRisk routeRisk(const Route& route, const RouteRiskOptions& options) {
+  validate(options);
+  const std::vector<Stretch> way = stretches(route, options);
+  RouteRisk risk;
+  risk.cvar = kSafe;
+  if (way.empty()) return risk;
+  const Drawn all = drawn(way, options);
+  risk.immobilisation = all.risk.back();
+  risk.standard_error = std::sqrt(all.variance);
+  drawTail(way, route, options, risk);
   return risk;
 }
 

@@ -53,7 +53,7 @@ struct PlannerSettings {
 /// A chance constraint on the rover's immobilisation.
 struct RiskLimit {
   double immobilisation = 0.01;       ///< probability over the whole route, above 0 and below 1
-  double correlation_length_m = 5.0;  ///< over which the soil stays alike, as DrivePolicy's, > 0
+  double correlation_length_m = 5.0;  ///< of the soil, > 0; used on maps whose cost does not state its own
 };
 
 /// Where to drive, and how. A field that the configured planner does not honour is refused when it is set,

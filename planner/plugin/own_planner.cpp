@@ -1,3 +1,4 @@
+#include <cstdint>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -21,6 +22,18 @@ const PlannerSettings& validated(const PlannerSettings& settings) {
                                 ", must be > 0");
   return settings;
 }
+
+namespace {
+
+RouteRiskOptions soilOf(const RiskLimit& limit, const costmap::CostGrid& map, std::uint64_t seed) {
+  RouteRiskOptions options = riskOptions(map);
+  if (!(map.cost().doubt().correlation_length_m > 0.0))
+    options.correlation_length_m = limit.correlation_length_m;
+  options.seed = seed;
+  return options;
+}
+
+}  // namespace
 
 PlannerCapabilities OwnPlanner::capabilities() const {
   const bool drives = planner_ && planner_->drives();
@@ -82,12 +95,12 @@ Route OwnPlanner::plan(const PlanRequest& request) {
   const Problem problem = problemOf(request);
   const auto once = [&](const Problem& asked) {
     if (!request.risk_limit) return planner_->plan(asked);
-    return planWithinRisk(
-        asked, *planner_, request.risk_limit->immobilisation,
-        {.correlation_length_m = request.risk_limit->correlation_length_m, .seed = settings_.seed});
+    return planWithinRisk(asked, *planner_, request.risk_limit->immobilisation,
+                          soilOf(*request.risk_limit, *map_, settings_.seed));
   };
-  const Plan plan = request.chassis ? planOnChassis(problem, *request.chassis, once) : once(problem);
-  if (plan.status == RouteStatus::Found) requireAllowed(plan, *map_, problem.kinematics.turning_radius_m);
+  const Plan plan =
+      checkedPlan(request.chassis ? planOnChassis(problem, *request.chassis, once) : once(problem), *map_,
+                  problem.kinematics.turning_radius_m);
   return annotated(
       plan,
       {.map = *map_, .elevation_m = nullptr, .planner = planner_->name(), .kinematics = problem.kinematics});

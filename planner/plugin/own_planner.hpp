@@ -8,7 +8,7 @@
 
 namespace talus::planner {
 
-/// Talus' own planners behind the interface that embedders use. What leaves has passed requireAllowed().
+/// Talus' own planners behind the interface that embedders use. What leaves has passed checkedPlan().
 class OwnPlanner final : public GlobalPlanner {
  public:
   PlannerCapabilities capabilities() const override;

@@ -35,8 +35,7 @@ double riskOf(const costmap::CostGrid& map, const Plan& plan, const RouteRiskOpt
   const Route route = annotated(plan, {.map = map, .elevation_m = nullptr, .planner = {}});
   if (route.vertices.empty()) return 0.0;
   const RouteRisk drawn = routeRisk(route, soil);
-  return std::max(route.vertices.back().immobilisation_risk,
-                  drawn.immobilisation + 2.0 * drawn.standard_error);
+  return drawn.immobilisation + 2.0 * drawn.standard_error;
 }
 
 // Keeps the cheapest of the plans within the limit, and the least risk of all.

@@ -21,9 +21,8 @@ struct RouteDemand {
 RouteDemand demandOf(const costmap::CostGrid& map, const Plan& plan);
 
 /// Plans under a chance constraint: the cheapest route found whose probability of immobilisation is at most
-/// max_risk, in (0, 1): by the hazard along it, and by routeRisk() over spatially correlated soil, with two
-/// standard errors to spare. The hazard alone is far too low where much of a route is at risk: it counts soil
-/// as drawn once a correlation length. The constraint enters the cost as a price on risk, raised until it is
+/// max_risk, in (0, 1), by routeRisk() over spatially correlated soil whose class is uncertain as a whole, with
+/// two standard errors to spare. The constraint enters the cost as a price on risk, raised until it is
 /// met and then lowered as far as it still is (Lagrangian relaxation; a route that no price picks out is
 /// missed [everett_1963]). NoRoute with the least risk found when none keeps the limit. Cost and bound are of
 /// the map's own weights. Throws std::invalid_argument out of range.

@@ -25,8 +25,7 @@ Route routeInWindows(const PlanRequest& request, WindowedMap& map, const Planner
                   .seed = settings.seed,
                   .threads = settings.threads,
                   .watch = request.watch};
-  const Plan plan = planInWindows(problem, map);
-  if (plan.status == RouteStatus::Found) requireAllowed(plan, *problem.map, 0.0);
+  const Plan plan = checkedPlan(planInWindows(problem, map), *problem.map, 0.0);
   return annotated(plan, {.map = *problem.map,
                           .elevation_m = [&map](maps::Point p) { return map.elevation_m(p); },
                           .planner = name});

@@ -44,6 +44,10 @@ struct RouteVertex {
   double energy_J = 0.0;             ///< from the start to here
   double time_s = 0.0;               ///< from the start to here
   double immobilisation_risk = 0.0;  ///< probability of getting stuck between the start and here, 0 to 1
+  double hazard_per_m = 0.0;         ///< of getting stuck on the metres that follow, were each by itself
+  int soil_class = 0;                ///< of the ground there, in the model's classes
+  double shared_doubt =
+      0.0;  ///< share of the variance of its pull that all ground of the class has in common
   bool reverse = false;        ///< drives on backwards: heading_rad is where it looks, not where it goes
   double curvature_1_m = 0.0;  ///< of the motion that leaves the vertex, left > 0
   double turn_rad = 0.0;       ///< turned in place here before going on, left > 0

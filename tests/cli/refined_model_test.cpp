@@ -74,10 +74,11 @@ std::vector<std::string> simulatedTraverse(const std::vector<std::string>& groun
 
 TEST_F(RefinedModelCommands, TheFirstTraverseMendsTheNext) {
   folder_.write("base.yaml", std::string(kSoil) + "model: wong-reece\nsensors: {slip: 0.02}\n");
-  folder_.write("truth.yaml", "effects: [{name: slip_sinkage_ding, parameters: [0.4]}]\n");
+  folder_.write("truth.yaml", "effects: [{name: slip_sinkage_ding, parameters: [0.3]}]\n");
+  // Who does not know the effect may be held on the way (exit 1); its rows show it all the same.
   const auto errors = [&](const std::vector<std::string>& ground) {
     const Ran ran = talus(simulatedTraverse(ground));
-    EXPECT_EQ(ran.code, 0) << ran.err;
+    EXPECT_LE(ran.code, ground.front() == "--model" ? 0 : 1) << ran.err;
     return nlohmann::json::parse(ran.out, nullptr, false)["prediction"];
   };
   const auto before = errors({"--soil", "soil.yaml", "--telemetry", "t.csv"});

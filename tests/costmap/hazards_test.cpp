@@ -18,19 +18,37 @@ TEST(Inflate, KeepsHalfTheRoversWidthFromAKeepOutCell) {
   HazardLimits limits;
   limits.inflation_m = 0.2;
   inflate(hazards, limits);
-  // Closed form: centres less than 0.2 m from the cell's edge: one and two cells away, not three (0.25 m).
+  // Closed form: cells some place of which is less than 0.2 m from the cell: one and two cells away, not three (0.2 m).
   EXPECT_TRUE(has(hazards[{6, 5}], Hazard::Near));
   EXPECT_TRUE(has(hazards[{7, 5}], Hazard::Near));
   EXPECT_FALSE(has(hazards[{8, 5}], Hazard::Near));
-  EXPECT_FALSE(has(hazards[{7, 7}], Hazard::Near));
-  EXPECT_TRUE(has(hazards[{6, 6}], Hazard::Near));
+  EXPECT_TRUE(has(hazards[{7, 7}], Hazard::Near)) << "0.14 m";
+  EXPECT_FALSE(has(hazards[{8, 7}], Hazard::Near)) << "0.22 m";
 }
 
-TEST(Inflate, DoesNothingToCellsWiderThanTheRover) {
-  maps::Raster<Hazard> hazards(grid(3, 5.0), Hazard::None);
-  hazards[{1, 1}] = Hazard::Unknown;
+// Outside the map is as unseen as a hole in it.
+TEST(Inflate, KeepsHalfTheRoversWidthFromTheEdgeOfTheMap) {
+  maps::Raster<Hazard> hazards(grid(11, 0.1), Hazard::None);
+  HazardLimits limits;
+  limits.inflation_m = 0.2;
+  inflate(hazards, limits);
+  for (int row = 0; row < 11; ++row)
+    for (int column = 0; column < 11; ++column) {
+      const bool inner = std::min({column, row, 10 - column, 10 - row}) >= 2;  // Closed form: 0.2 m off
+      EXPECT_EQ((hazards[{column, row}]), inner ? Hazard::None : Hazard::Near) << column << ' ' << row;
+    }
+  hazards = maps::Raster<Hazard>(grid(11, 0.1), Hazard::None);
+  inflate(hazards, limits, Hazard::KeepOut);
+  EXPECT_EQ(std::ranges::count(hazards.values(), Hazard::None), 121) << "where the unseen may be driven";
+}
+
+// The middle of the rover may be anywhere in a cell, beside the edge too.
+TEST(Inflate, KeepsCellsWiderThanTheRoverClearToo) {
+  maps::Raster<Hazard> hazards(grid(7, 5.0), Hazard::None);
+  hazards[{3, 3}] = Hazard::Unknown;
   inflate(hazards, HazardLimits::of(testRover()));
-  EXPECT_EQ(std::count(hazards.values().begin(), hazards.values().end(), Hazard::None), 8);
+  // Closed form: neither the eight neighbours nor the 24 cells along the edge, but the ring between.
+  EXPECT_EQ(std::ranges::count(hazards.values(), Hazard::None), 16);
 }
 
 TEST(HazardLimits, ReliefOfALargeFootprintCountsInProportion) {

@@ -31,7 +31,7 @@ TEST(SurfaceTree, ColourTreeHasALeafACellAndStockReadsIt) {
   ASSERT_NE(colour, nullptr);
   const auto* cell = colour->search(map.keys().key({0, 0}, 1000.0));
   ASSERT_NE(cell, nullptr);
-  EXPECT_GT(cell->getColor().g, cell->getColor().r) << "safe is green";
+  EXPECT_GT(cell->getColor().r, cell->getColor().g) << "at the edge of the map, refused: red";
 }
 
 std::string held(const TraversabilityMap& map) {

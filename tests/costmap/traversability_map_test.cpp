@@ -22,12 +22,13 @@ Category categoryOf(const TraversabilityMap& map, maps::Cell cell) {
 
 TEST(TraversabilityMap, EachCellIsWhatTheDrawingSays) {
   const TraversabilityMap map = mapOf(kSite);
-  EXPECT_EQ(categoryOf(map, {0, 5}), Category::Safe);
+  EXPECT_EQ(categoryOf(map, {3, 1}), Category::Safe);
   EXPECT_EQ(categoryOf(map, {2, 3}), Category::Unknown);
+  EXPECT_TRUE(has(map.hazards({0, 5}), Hazard::Near)) << "beside the edge of the map";
   EXPECT_TRUE(has(map.hazards({5, 2}), Hazard::KeepOut));
   EXPECT_TRUE(has(map.hazards({0, 0}), Hazard::Obstacle)) << "class 3 has no soil";
   EXPECT_TRUE(has(map.hazards({1, 0}), Hazard::Obstacle)) << "class 0 has no soil";
-  EXPECT_GT(map.belief({0, 5}).pull_mean, map.belief({7, 5}).pull_mean) << "sand pulls better than dust";
+  EXPECT_GT(map.belief({3, 1}).pull_mean, map.belief({6, 4}).pull_mean) << "sand pulls better than dust";
 }
 
 TEST(TraversabilityMap, PublishesWhatItBelieves) {
@@ -36,8 +37,8 @@ TEST(TraversabilityMap, PublishesWhatItBelieves) {
   EXPECT_EQ(grid->version(), 1U);
   EXPECT_EQ(grid->at({2, 3}).curve(), CellCode::kUnknown);
   EXPECT_EQ(grid->at({5, 2}).curve(), CellCode::kBlocked);
-  EXPECT_TRUE(std::isfinite(grid->cost().costPerMetre(grid->at({0, 5}), {})));
-  EXPECT_LT(grid->cost().costPerMetre(grid->at({0, 5}), {}), grid->cost().costPerMetre(grid->at({7, 5}), {}));
+  EXPECT_TRUE(std::isfinite(grid->cost().costPerMetre(grid->at({3, 1}), {})));
+  EXPECT_LT(grid->cost().costPerMetre(grid->at({3, 1}), {}), grid->cost().costPerMetre(grid->at({6, 4}), {}));
 }
 
 TEST(TraversabilityMap, ClimbingCostsMoreThanDescendingOnTheSameCells) {

@@ -88,10 +88,11 @@ TEST(Reliability, OfCellsSaidToBeOfACategory) {
   tables[0].print("safe");
   tables[1].print("marginal");
   tables[2].print("dangerous");
-  // Property: no more is promised than holds, which is that ground is at least as safe as it is said to be. Cells of
-  // one world are alike, so that 60 worlds tell a share to about 0.05.
+  // Property: no more is promised than holds: ground is no worse than is said. That it is better is no broken
+  // promise, and happens by design: estimates are rounded towards danger, soil is judged under the worst standing of the
+  // wheels. Cells of one world are alike, so that 60 worlds tell a share to about 0.05.
   EXPECT_LT(tables[0].worstBoast(500.0), 0.05);
-  EXPECT_LT(tables[1].worstBoast(500.0), 0.1);
+  EXPECT_LT(tables[1].worstBoast(500.0), 0.05);
 }
 
 }  // namespace

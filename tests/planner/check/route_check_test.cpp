@@ -28,18 +28,21 @@ TEST(RouteCheck, WhatIsNotAllowedIsNotHandedOut) {
   const auto map = drawn({".#."});
   Plan plan;
   plan.points = {{0.5, 0.5}, {0.9, 0.5}};
-  requireAllowed(plan, *map, 0.0);
+  EXPECT_FALSE(refusal(plan, *map, 0.0));
   plan.drive = {.start = {{0.5, 0.5}, 0.0}, .legs = {{{1.0, 0.0}, 0.0}}};  // the drive goes on into the wall
-  EXPECT_THROW(requireAllowed(plan, *map, 0.0), std::logic_error);
+  EXPECT_TRUE(refusal(plan, *map, 0.0));
   plan.drive = {};
   plan.points.push_back({2.5, 0.5});
-  try {
-    requireAllowed(plan, *map, 0.0);
-    FAIL() << "handed out";
-  } catch (const std::logic_error& error) {
-    EXPECT_NE(std::string(error.what()).find("1.500000,0.500000: blocked"), std::string::npos)
-        << error.what();
-  }
+  EXPECT_EQ(refusal(plan, *map, 0.0), (Violation{{1.5, 0.5}, "blocked for any heading"}));
+}
+
+// A corner belongs to the cell north-east of it: a route may end there whatever lies in the others.
+TEST(RouteCheck, ARouteMayEndOnACornerOfCells) {
+  const auto map = drawn({"...", "...", "#.."});
+  EXPECT_TRUE(violations(*map, {{2.5, 2.5}, {1.0, 1.0}}).empty());
+  EXPECT_TRUE(violations(*map, {{1.0, 1.0}, {2.5, 2.5}}).empty());
+  EXPECT_FALSE(violations(*map, {{2.5, 2.5}, {1.0, 1.0}, {2.5, 1.5}}).empty()) << "it turns there";
+  EXPECT_FALSE(violations(*drawn({"..#", "...", "..."}), {{0.5, 0.5}, {2.0, 2.0}}).empty()) << "in a wall";
 }
 
 TEST(RouteCheck, LeavingTheMapIsOne) {

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <talus/costmap/cost_curve_table.hpp>
+#include <talus/costmap/evidence_field.hpp>
+#include <talus/costmap/learned_cells.hpp>
+#include <talus/costmap/wheel_swath.hpp>
+
+namespace talus::costmap {
+
+/// Which cost curve the ground of each cell has: that of its own ground where all ground that a wheel may touch
+/// is like it, else what WheelSwath makes of them. Keeps the ground of cells that were learned, rounded as
+/// GroundKind, so that a cell is judged anew only when ground within its reach changed. Not thread-safe.
+class GroundCurves {
+ public:
+  explicit GroundCurves(std::shared_ptr<const GroundSite> site);
+
+  const CostCurveTable& table() const noexcept { return table_; }
+
+  /// Number of the curve of a cell whose class has a soil.
+  std::uint8_t number(maps::Cell cell);
+
+  /// Takes over what is believed of the classes; false when nothing changed.
+  bool learnClasses(const EvidenceField& field);
+  /// Takes over what is believed of the cells of the ranges. The ranges in which numbers may have changed.
+  std::vector<maps::CellBox> learn(EvidenceField::Beliefs& beliefs, const std::vector<maps::CellBox>& ranges);
+
+  /// Cells that were learned, in boxes.
+  std::vector<maps::CellBox> learnedBoxes() const { return learned_.boxes(); }
+  /// Where more than one ground takes part in a number, some of which may be a class's prior.
+  std::vector<maps::CellBox> mixedRanges() const;
+
+  /// Gives all numbers anew, after it ran out of them; beliefs are rounded at this level of GroundKind.
+  void restart(int level) { table_.restart(level); }
+
+ private:
+  WheelSwath::Ground ground(maps::Cell cell) const;
+  bool alike(maps::Cell cell) const noexcept;
+  maps::CellBox within(const maps::CellBox& range) const noexcept;
+
+  std::shared_ptr<const GroundSite> site_;
+  CostCurveTable table_;
+  WheelSwath swath_;
+  std::vector<bool> borders_;
+  LearnedCells learned_;
+  bool any_learned_ = false;
+  std::vector<WheelSwath::Ground> around_;
+};
+
+}  // namespace talus::costmap

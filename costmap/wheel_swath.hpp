@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <talus/costmap/ground_model.hpp>
+#include <talus/maps/grid.hpp>
+#include <talus/terramech/contact/rover.hpp>
+
+namespace talus::costmap {
+
+/// Where the wheels of a rover may stand while its middle is in a cell: the ground of a cell is judged by what
+/// all wheels together can pull there, not by the soil of a point.
+///
+/// The wheels of a rigid rover slip alike, so that their pulls add up: the pull over load of the rover is the
+/// mean over its wheels, each on the weakest cell that its width touches. Of all places of the middle within the
+/// cell, its edges and corners and the pose error around them, and of all headings (16, 11.25 degrees apart,
+/// turns in place included), the least mean counts, or that of the cell's own ground if it is less. Doubt and
+/// sinkage are the greatest of any cell that a wheel may touch. Immutable.
+class WheelSwath {
+ public:
+  /// The rover on cells of this size; its middle may be off by as much as the pose error [m], >= 0.
+  WheelSwath(const terramech::Rover& rover, double resolution_m, double pose_error_m);
+
+  /// Cells that a wheel may touch lie at most so many columns and rows away.
+  int reach() const noexcept { return reach_; }
+
+  /// Ground of a cell; class_index < 0: nothing is known of it that a wheel could pull on.
+  struct Ground {
+    int class_index = -1;
+    GroundBelief belief;
+    friend bool operator==(const Ground& a, const Ground& b) noexcept {
+      return a.class_index == b.class_index && a.belief.pull.value == b.belief.pull.value &&
+             a.belief.pull.std == b.belief.pull.std && a.belief.sinkage.value == b.belief.sinkage.value;
+    }
+  };
+
+  /// What the swath makes of the ground around a cell.
+  struct Judged {
+    GroundBelief belief;
+    int weakest_class = 0;  ///< of the weakest ground that a wheel may touch
+  };
+
+  /// `around`: the ground of (2 reach + 1)^2 cells, row by row from the south-west, the cell in the middle; that
+  /// must have a class, others without one count as it.
+  Judged judged(const std::vector<Ground>& around) const;
+
+ private:
+  using Place = std::uint32_t;  // of a cell in `around`
+  void stand(const terramech::Rover& rover, const maps::Point& middle, double heading_rad);
+
+  double resolution_m_;
+  int reach_ = 0;
+  std::size_t wheels_;
+  std::size_t across_;            // places that the width of a wheel is looked at
+  std::vector<Place> standings_;  // wheels_ * across_ places each
+  std::vector<Place> touched_;    // by any wheel
+};
+
+}  // namespace talus::costmap
