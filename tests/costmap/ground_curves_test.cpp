@@ -176,7 +176,7 @@ TEST(GroundCurves, RunningOutOfCurvesErrsTowardsDanger) {
     for (int column = 0; column < kSide; ++column) {
       const maps::Cell cell{column, row};
       const CellCode code = map.code(cell);
-      blocked += code.curve() == CellCode::kBlocked;
+      blocked += code.curve() == CellCode::kBlocked && map.hazards(cell) == Hazard::None;
       for (int k = 0; k < 16; ++k) {
         const double along = code.dzDx() * heading(k).x + code.dzDy() * heading(k).y;
         const double exact = model->cost_J_per_m(model->state(map.classIndex(cell), *map.ground(cell),
