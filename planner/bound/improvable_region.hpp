@@ -11,9 +11,6 @@
 
 namespace talus::planner {
 
-/// Joules of the cheapest metre that any cell of the map offers to any heading.
-double cheapestMetre_J(const costmap::CostGrid& map);
-
 /// Where a route cheaper than the best one known can still pass, and samples of it.
 /// A place belongs to it when its lower bounds, from the start and on to the goal, sum to no more than the
 /// best cost (the informed set of Gammell et al. 2014 [gammell_2014], here under the drive cost). Half of the

@@ -1,51 +1,21 @@
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 
 #include <talus/costmap/cost_grid.hpp>
 #include <talus/planner/field/edge_units.hpp>
+#include <talus/planner/field/padded_grid.hpp>
 #include <talus/planner/route/kernels.hpp>
 #include <talus/planner/route/large_array.hpp>
 #include <talus/planner/route/stop_check.hpp>
+
 namespace talus::planner {
-
-/// Position of a cell in arrays that have a border of one cell all around, so that every cell has eight
-/// neighbours.
-struct PaddedGrid {
-  int width = 0;  ///< cells without the border
-  int height = 0;
-
-  std::size_t stride() const noexcept { return static_cast<std::size_t>(width) + 2; }
-  std::size_t size() const noexcept { return stride() * (static_cast<std::size_t>(height) + 2); }
-  std::size_t index(maps::Cell c) const noexcept {
-    return static_cast<std::size_t>(c.row + 1) * stride() + static_cast<std::size_t>(c.column + 1);
-  }
-  maps::Cell cell(std::size_t index) const noexcept {
-    return {static_cast<int>(index % stride()) - 1, static_cast<int>(index / stride()) - 1};
-  }
-  /// Distance in the array to the neighbour in a heading.
-  std::ptrdiff_t offset(int heading) const noexcept {
-    const maps::Cell step = kStep[static_cast<std::size_t>(heading)];
-    return static_cast<std::ptrdiff_t>(step.row) * static_cast<std::ptrdiff_t>(stride()) + step.column;
-  }
-};
-
-using maps::CellBox;
-
-/// The box with so many cells more on every side, as far as the grid goes.
-inline CellBox grown(CellBox box, int cells, const PaddedGrid& grid) noexcept {
-  return {
-      {std::max(box.first.column - cells, 0), std::max(box.first.row - cells, 0)},
-      {std::min(box.last.column + cells, grid.width - 1), std::min(box.last.row + cells, grid.height - 1)}};
-}
 
 /// Cost of every step of the 8-neighbourhood on one version of the map, in units of EdgeUnits; 16 bytes a
 /// cell. A step is half a step in the cell it leaves and half in the one it enters, both in the heading of
-/// the step: MotionCost of the segment between the centres. A diagonal needs both cells beside it,
-/// too.
+/// the step: MotionCost of the segment between the centres. A diagonal needs both cells beside it, too.
 class EdgeLayer {
  public:
   static constexpr std::uint16_t kBlocked = EdgeUnits::kBlocked;

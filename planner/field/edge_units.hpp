@@ -3,32 +3,12 @@
 #include <array>
 #include <cstdint>
 #include <cstdlib>
-#include <limits>
 #include <vector>
 
 #include <talus/costmap/drive_cost.hpp>
-#include <talus/maps/grid.hpp>
+#include <talus/planner/field/grid_heading.hpp>
 
 namespace talus::planner {
-
-/// The eight headings of a grid, anticlockwise from east.
-enum GridHeading : int { kEast, kNorthEast, kNorth, kNorthWest, kWest, kSouthWest, kSouth, kSouthEast };
-
-/// Columns and rows that a step along each heading goes.
-inline constexpr std::array<maps::Cell, 8> kStep{
-    {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}};
-
-/// The heading the other way.
-constexpr int opposite(int heading) noexcept {
-  return heading ^ 4;
-}
-
-/// The cheapest and the dearest metre on any ground, of all gradients along the heading that are allowed.
-struct CostRange {
-  double least_J_per_m = std::numeric_limits<double>::infinity();  ///< infinite where nothing is allowed
-  double most_J_per_m = 0.0;
-};
-CostRange costRange(const costmap::DriveCost& cost);
 
 /// The cost of half a step, from a cell's centre to its edge or corner, for all eight headings: whole numbers
 /// of a unit of energy, so that sums do not depend on their order. 16 bits: an edge is the sum of two halves.

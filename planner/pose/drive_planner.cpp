@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include <talus/planner/bound/cheapest_metre.hpp>
 #include <talus/planner/bound/improvable_region.hpp>
 #include <talus/planner/pose/drive_planner.hpp>
 #include <talus/planner/pose/pose_shortcut.hpp>

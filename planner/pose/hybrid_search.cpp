@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include <talus/planner/bound/cheapest_metre.hpp>
 #include <talus/planner/bound/improvable_region.hpp>
 #include <talus/planner/check/route_check.hpp>
 #include <talus/planner/pose/hybrid_search.hpp>

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include <talus/planner/field/cost_range.hpp>
 #include <talus/planner/field/edge_units.hpp>
 #include <talus/planner/refine/edge_crossings.hpp>
 #include <talus/planner/refine/edge_path.hpp>

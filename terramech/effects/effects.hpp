@@ -5,34 +5,13 @@
 #include <string_view>
 #include <vector>
 
+#include <talus/terramech/effects/channel_reading.hpp>
 #include <talus/terramech/effects/wheel_contact.hpp>
 #include <talus/terramech/effects/wheel_state.hpp>
 
 /// Effects that the Wong-Reece wheel lacks, as parts that compose: each changes the contact before it is
 /// solved or what is read afterwards, and each has bounds, formula, source and signature.
 namespace talus::terramech {
-
-/// What is measured of a wheel, as the sensors read it.
-enum class Channel { DrawbarPull, Sinkage, Torque, SideForce };
-inline constexpr int kChannels = 4;
-
-/// "drawbar_pull_over_load", "sinkage_over_radius", "torque_over_load_radius", "side_force_over_load".
-const char* name(Channel channel);
-
-/// What the sensors read; the load is what they claim, the denominator of every ratio.
-struct Reading {
-  double load_N = 0.0;
-  double radius_m = 0.0;
-  double sinkage_m = 0.0;
-  double dug_m = 0.0;  ///< of the model's sinkage, what the driven wheel threw behind itself; never measured
-  double torque_Nm = 0.0;
-  double drawbar_pull_N = 0.0;
-  double side_force_N = 0.0;
-
-  double denominator(Channel channel) const;      ///< W, r, r W or W
-  double scaled(Channel channel) const;           ///< DP/W, z/r, T/(rW), F/W [-]
-  void addScaled(Channel channel, double value);  ///< adds to one of them [-]
-};
 
 /// A number of an effect.
 struct EffectParameter {
@@ -90,18 +69,6 @@ struct Effect {
 
 /// Whether one of them depends on how often a track was driven (pass_index).
 bool knowsPasses(std::span<const Effect> effects);
-
-/// Natural cubic spline through (knots, values), constant outside; one knot: a constant, none: 0.
-class NaturalSpline {
- public:
-  NaturalSpline() = default;
-  NaturalSpline(std::vector<double> knots, std::vector<double> values);
-
-  double operator()(double x) const;
-
- private:
-  std::vector<double> knots_, values_, curvatures_;
-};
 
 namespace detail {
 std::vector<EffectForm> contactEffects();

@@ -3,6 +3,7 @@
 
 #include <talus/terramech/contact/shear_displacement.hpp>
 #include <talus/terramech/effects/refined_model.hpp>
+#include <talus/terramech/numerics/natural_spline.hpp>
 
 namespace talus::terramech {
 namespace {

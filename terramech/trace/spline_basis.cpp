@@ -4,6 +4,7 @@
 #include <Eigen/QR>
 
 #include <talus/terramech/effects/effects.hpp>
+#include <talus/terramech/numerics/natural_spline.hpp>
 #include <talus/terramech/trace/spline_basis.hpp>
 
 namespace talus::terramech {

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <talus/terramech/numerics/natural_spline.hpp>
 #include <talus/terramech/trace/spline_basis.hpp>
 #include <talus/terramech/trace/trace_search.hpp>
 

@@ -21,13 +21,6 @@ ImprovableRegion around(double known_J, double tolerance_m = 0.0) {
                            .known_cost_J = known_J});
 }
 
-// Closed form: the least metre of the curves that cells have: 10 J times the number of the curve plus one.
-TEST(ImprovableRegion, TheCheapestMetreIsOfTheCurvesInUse) {
-  EXPECT_NEAR(cheapestMetre_J(*drawn({"234", "#?4"})), 30.0, 1e-5);
-  EXPECT_NEAR(cheapestMetre_J(*drawn({"4.4"})), 10.0, 1e-5);
-  EXPECT_EQ(cheapestMetre_J(*drawn({"#?"})), 0.0);
-}
-
 // Closed form: at 10 J/m the places through which 25 m suffice are those of the ellipse with foci 20 m apart.
 TEST(ImprovableRegion, OnEvenGroundIsAnEllipse) {
   const auto region = around(250.0);

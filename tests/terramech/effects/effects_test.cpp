@@ -35,14 +35,5 @@ TEST(Effects, EveryFormActsAtItsTypicalSize) {
   }
 }
 
-TEST(Effects, SplineIsNaturalAndConstantOutside) {
-  const std::vector<double> x{0.0, 1.0, 2.0}, y{0.0, 1.0, 0.0};
-  // Closed form: natural cubic through (0,0), (1,1), (2,0) is 1.5 t - 0.5 t^3 on the first piece.
-  const NaturalSpline spline{x, y};
-  EXPECT_NEAR(spline(0.5), 1.5 * 0.5 - 0.5 * 0.125, 1e-12);
-  EXPECT_EQ(spline(-3.0), 0.0);
-  EXPECT_EQ(spline(9.0), 0.0);
-}
-
 }  // namespace
 }  // namespace talus::terramech

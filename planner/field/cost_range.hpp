@@ -1,0 +1,16 @@
+#pragma once
+
+#include <limits>
+
+#include <talus/costmap/drive_cost.hpp>
+
+namespace talus::planner {
+
+/// The cheapest and the dearest metre on any ground, of all gradients along the heading that are allowed.
+struct CostRange {
+  double least_J_per_m = std::numeric_limits<double>::infinity();  ///< infinite where nothing is allowed
+  double most_J_per_m = 0.0;
+};
+CostRange costRange(const costmap::DriveCost& cost);
+
+}  // namespace talus::planner

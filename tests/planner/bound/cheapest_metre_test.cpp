@@ -1,0 +1,18 @@
+#include <talus/planner/bound/cheapest_metre.hpp>
+
+#include "drawn_map.hpp"
+
+namespace talus::planner {
+namespace {
+
+using testing::drawn;
+
+// Closed form: the least metre of the curves that cells have: 10 J times the number of the curve plus one.
+TEST(CheapestMetre, IsOfTheCurvesInUse) {
+  EXPECT_NEAR(cheapestMetre_J(*drawn({"234", "#?4"})), 30.0, 1e-5);
+  EXPECT_NEAR(cheapestMetre_J(*drawn({"4.4"})), 10.0, 1e-5);
+  EXPECT_EQ(cheapestMetre_J(*drawn({"#?"})), 0.0);
+}
+
+}  // namespace
+}  // namespace talus::planner

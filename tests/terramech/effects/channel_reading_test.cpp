@@ -1,0 +1,49 @@
+#include <array>
+#include <set>
+#include <string>
+
+#include <talus/terramech/effects/channel_reading.hpp>
+
+namespace talus::terramech {
+namespace {
+
+constexpr std::array kAll{Channel::DrawbarPull, Channel::Sinkage, Channel::Torque, Channel::SideForce};
+
+// Closed form: DP/W, z/r, T/(r W), F/W.
+TEST(ChannelReading, RatiosAreOfLoadAndRadius) {
+  const Reading reading{.load_N = 50.0,
+                        .radius_m = 0.2,
+                        .sinkage_m = 0.03,
+                        .torque_Nm = 4.0,
+                        .drawbar_pull_N = 10.0,
+                        .side_force_N = -5.0};
+  EXPECT_DOUBLE_EQ(reading.scaled(Channel::DrawbarPull), 0.2);
+  EXPECT_DOUBLE_EQ(reading.scaled(Channel::Sinkage), 0.15);
+  EXPECT_DOUBLE_EQ(reading.scaled(Channel::Torque), 0.4);
+  EXPECT_DOUBLE_EQ(reading.scaled(Channel::SideForce), -0.1);
+}
+
+// Property: what is added to one ratio is found there and nowhere else.
+TEST(ChannelReading, AddsToOneChannel) {
+  for (const Channel channel : kAll) {
+    const Reading before{.load_N = 50.0,
+                         .radius_m = 0.2,
+                         .sinkage_m = 0.03,
+                         .torque_Nm = 4.0,
+                         .drawbar_pull_N = 10.0,
+                         .side_force_N = -5.0};
+    Reading after = before;
+    after.addScaled(channel, 0.07);
+    for (const Channel other : kAll)
+      EXPECT_NEAR(after.scaled(other) - before.scaled(other), other == channel ? 0.07 : 0.0, 1e-12);
+  }
+}
+
+TEST(ChannelReading, EachHasANameOfItsOwn) {
+  std::set<std::string> names;
+  for (const Channel channel : kAll) names.insert(name(channel));
+  EXPECT_EQ(names.size(), kAll.size());
+}
+
+}  // namespace
+}  // namespace talus::terramech
