@@ -6,6 +6,8 @@
 #include <optional>
 #include <sstream>
 
+#include "risk.hpp"
+
 namespace safety {
 namespace {
 
@@ -52,6 +54,18 @@ std::optional<Result> parsed(const std::string& text) {
   return r;
 }
 
+// The printed risk may be half of the drawn one, its error taken off; amount: by how many times it is less.
+std::optional<Violation> understatedRisk(const ProvingGround& ground, const Belief& belief,
+                                         const Route& route) {
+  constexpr double kFactor = 2.0, kErrors = 3.0;
+  constexpr int kWeakWorlds = 20;
+  const DrawnRisk drawn = drawnRisk(ground.site, belief, route);
+  const double least = (drawn.immobilisation - kErrors * drawn.standard_error) / kFactor;
+  if (drawn.weak_worlds < kWeakWorlds || route.immobilisation_risk >= least) return std::nullopt;
+  return Violation{"risk understated", route.vertices.front(), 0.0,
+                   drawn.immobilisation / std::max(route.immobilisation_risk, 1e-12)};
+}
+
 }  // namespace
 
 std::vector<Result> Campaign::results() const {
@@ -76,6 +90,8 @@ Result Campaign::judged(const ProvingGround& ground, const Belief& belief, std::
   result.length_m = route.length_m();
   result.risk = route.immobilisation_risk;
   result.violations = Judge(ground.site, belief).judge(route);
+  if (const auto understated = understatedRisk(ground, belief, route))
+    result.violations.push_back(*understated);
   if (result.violations.empty()) std::filesystem::remove(ground.folder / file);
   return result;
 }

@@ -109,9 +109,9 @@ double Judge::pull(const std::vector<Wheel>& wheels, double slip) {
   return sum / load;
 }
 
-double Judge::mostPull(const std::vector<Wheel>& wheels) {
+double Judge::mostPull(const std::vector<Wheel>& wheels, double most_slip) {
   double most = -1.0;
-  for (double slip = 0.0; slip <= PullCurve::kMostSlip + 1e-9; slip += kSlipStep)
+  for (double slip = 0.0; slip <= most_slip + 1e-9; slip += kSlipStep)
     most = std::max(most, pull(wheels, slip));
   return most;
 }

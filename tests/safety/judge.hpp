@@ -54,7 +54,7 @@ class Judge {
   /// Drawbar pull over load of all wheels at a slip.
   static double pull(const std::vector<Wheel>& wheels, double slip);
   /// The most of it at slips up to the greatest that counts as driving.
-  static double mostPull(const std::vector<Wheel>& wheels);
+  static double mostPull(const std::vector<Wheel>& wheels, double most_slip = PullCurve::kMostSlip);
 
  private:
   class Findings;

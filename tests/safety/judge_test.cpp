@@ -5,6 +5,8 @@
 #include <limits>
 #include <set>
 
+#include "risk.hpp"
+
 namespace safety {
 namespace {
 
@@ -179,6 +181,20 @@ TEST(SafetyBelief, AnswersAsOneGaussianOverOnePlace) {
   // Closed form: two Gaussians in one dimension.
   EXPECT_NEAR(here.mean, seen * prior / (prior + variance), 1e-9);
   EXPECT_NEAR(here.deviation, std::sqrt(prior * variance / (prior + variance)), 1e-9);
+}
+
+TEST(SafetyRisk, IsTheChanceOfOneDoubtfulClass) {
+  // A slope 0.05 less than the pull, under a class that is unsure by 0.05 as a whole and by 0.05 from place to place.
+  const Site site = plain(0.21);
+  const double reserve =
+      Judge::mostPull(*Judge(site, Belief(site, {})).wheels({{10, 10.1}, 0, 0, false}, 0.21), 1.0) - 0.21;
+  ASSERT_GT(reserve, 0.0);
+  const DrawnRisk risk = drawnRisk(site, Belief(site, {}), kEast, {.worlds = 20000, .entrapment = 1.0});
+  // Closed form: at least as likely as one place, at most as the ten metres' 11 stations together.
+  const double one = 0.5 * std::erfc(reserve / std::hypot(0.05, 0.05) / std::sqrt(2.0));
+  EXPECT_GT(risk.immobilisation, one);
+  EXPECT_LT(risk.immobilisation, 11.0 * one);
+  EXPECT_LT(drawnRisk(plain(0.0), Belief(site, {}), kEast).immobilisation, 1e-3 * risk.immobilisation);
 }
 
 }  // namespace
