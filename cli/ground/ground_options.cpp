@@ -1,5 +1,6 @@
 #include <chrono>
 #include <fstream>
+#include <tuple>
 #include <utility>
 
 #include <CLI/CLI.hpp>
@@ -116,7 +117,34 @@ std::vector<std::string> filesOf(const GroundOptions& options) {
   return files;
 }
 
+auto fieldsOf(const costmap::DrivePolicy& p) {
+  return std::tie(p.allow_marginal, p.allow_dangerous, p.allow_unknown, p.slope_margin_rad,
+                  p.sinkage_threshold, p.sinkage_critical, p.max_immobilisation, p.pose_error_m,
+                  p.time_weight_W, p.entrapment, p.unmonitored_entrapment, p.unmonitored, p.risk_weight_J,
+                  p.correlation_length_m);
+}
+
+// A built map has its own layers, soils, rover and policy: what would be ignored to the rover's harm is refused.
+void checkAgainstMap(const GroundOptions& options, const std::string& path, const Context& context) {
+  if (!options.layers.keep_out.empty())
+    throw InputError({path, "is a built map, on which --keep-out has no effect",
+                      "give --keep-out to talus costmap, or plan on the elevation map"});
+  if (fieldsOf(options.policy) != fieldsOf(costmap::DrivePolicy{}))
+    throw InputError({path, "is a built map, on which options of thresholds, weights and risk have no effect",
+                      "give them to talus costmap, or plan on the elevation map"});
+  const std::pair<const char*, bool> given[] = {{"--terrain", !options.layers.terrain.empty()},
+                                                {"--rocks", !options.layers.rocks.empty()},
+                                                {"--soils", !options.soils.empty()},
+                                                {"--soil", !options.soil.empty()},
+                                                {"--model", !options.model.empty()},
+                                                {"--rover", !options.rover.empty()},
+                                                {"--footprint", options.footprint_m != 0.0}};
+  for (const auto& [name, present] : given)
+    if (present) context.warn(std::string(name) + " has no effect: " + path + " has its own");
+}
+
 Ground fromMapFile(const GroundOptions& options, const std::string& path, const Context& context) {
+  checkAgainstMap(options, path, context);
   const auto begin = Clock::now();
   Ground ground{costmap::readMap(path, context.workers(), context.watch("read map")), filesOf(options)};
   ground.load_s = since_s(begin);

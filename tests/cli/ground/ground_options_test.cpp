@@ -62,6 +62,12 @@ TEST(GroundOptions, GroundIsOfTheSoilAndRoverNamed) {
     EXPECT_EQ(again.map.model().rover().name, "fido");
     EXPECT_EQ(again.map.countCategories().safe, ground.map.countCategories().safe);
   }
+  // Property: what a built map would ignore to the rover's harm is refused.
+  for (const char* ignored :
+       {"--keep-out rocks.geojson", "--no-marginal", "--unmonitored", "--risk-weight 1", "--pose-error 2"})
+    EXPECT_THAT([&] { readGround(parsed(built + " " + ignored), quiet()); },
+                ThrowsMessage<InputError>(HasSubstr("is a built map")))
+        << ignored;
 }
 
 // A classes file replaces the soil of the body where it defines class 0, and is added to a soil that is named.
