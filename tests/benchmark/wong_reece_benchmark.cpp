@@ -34,7 +34,7 @@ std::vector<WheelCase> tableCases(std::size_t count) {
   for (std::size_t k = 0; k < count; ++k) {
     const Range& s = kSoils[k % 4];
     cases.push_back({.cohesion_Pa = between(s.c_low, s.c_high),
-                     .friction_angle_rad = between(s.phi_low, s.phi_high) * kDegree,
+                     .friction_angle_rad = between(s.phi_low, s.phi_high) * talus::kDegree,
                      .sinkage_exponent = between(0.5, 1.2),
                      .sinkage_modulus = between(s.k_low, s.k_high),
                      .shear_modulus_m = between(0.01, 0.03),
