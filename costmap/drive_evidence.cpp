@@ -1,6 +1,11 @@
+#include <array>
+#include <cinttypes>
+#include <cstdio>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include <talus/costmap/checksum.hpp>
 #include <talus/costmap/drive_evidence.hpp>
 #include <talus/costmap/telemetry_processor.hpp>
 
@@ -17,7 +22,28 @@ void processRows(const TelemetryRows& rows, const TraversabilityMap& map, Teleme
   }
 }
 
+// Row by row, so that a drive has one id however it is divided.
+void add(const terramech::Telemetry& telemetry, Checksum& sum) {
+  for (std::size_t i = 0; i < telemetry.size(); ++i) {
+    for (const auto& column : telemetry.numbers) sum.add(&column.values[i], sizeof(double));
+    for (const auto& column : telemetry.words)
+      sum.add(column.values[i].c_str(), column.values[i].size() + 1);
+  }
+}
+
+std::string hexadecimal(const Checksum& sum) {
+  std::array<char, 17> digits{};
+  std::snprintf(digits.data(), digits.size(), "%016" PRIx64, sum.value());
+  return digits.data();
+}
+
 }  // namespace
+
+std::string driveId(const terramech::Telemetry& telemetry) {
+  Checksum sum;
+  add(telemetry, sum);
+  return hexadecimal(sum);
+}
 
 struct DriveIntake::State {
   TraversabilityMap& map;
@@ -25,36 +51,46 @@ struct DriveIntake::State {
   IntakeOptions options;
   TelemetryProcessor processor;
   DriveReport report{};
+  Checksum sum{};                   // of the parts so far
+  std::string id{};                 // by that
+  std::vector<JournalRow> rows{};   // of a part
 
-  void learn(const terramech::Telemetry& telemetry, const TelemetryRows& rows, std::size_t i,
+  void learn(const terramech::Telemetry& telemetry, const TelemetryRows& readings, std::size_t i,
              TelemetryProcessor::Result&& result);
   void put(const terramech::Telemetry& telemetry, const DriveVerdict& verdict);
 };
 
-void DriveIntake::State::learn(const terramech::Telemetry& telemetry, const TelemetryRows& rows,
+void DriveIntake::State::learn(const terramech::Telemetry& telemetry, const TelemetryRows& readings,
                                std::size_t i, TelemetryProcessor::Result&& result) {
-  bool accepted = result.observation.has_value();
+  if (result.observation) result.reason = fault(*result.observation);
+  bool accepted = result.observation.has_value() && result.reason.empty();
   if (accepted && !map.learn(*result.observation)) {
     accepted = false;
     result.reason = "no ground to learn about there";
   }
-  const JournalRow row{.source = telemetry.source,
+  JournalRow row{.source = telemetry.source,
                        .line = static_cast<std::int64_t>(telemetry.lines[i]),
                        .accepted = accepted,
                        .reason = result.reason,
-                       .reading = rows.reading(i),
+                       .reading = readings.reading(i),
                        .observation = result.observation.value_or(WheelObservation{})};
-  if (journal) journal->append(row);
   ++(accepted ? report.used : report.rejected);
   if (accepted && row.observation.pull_may_raise) ++report.raising;
   if (!accepted && report.first_reason.empty()) report.first_reason = row.reason;
+  if (journal) rows.push_back(std::move(row));
 }
 
 void DriveIntake::State::put(const terramech::Telemetry& telemetry, const DriveVerdict& verdict) {
-  const TelemetryRows rows(telemetry, map, options.pose_std_m);
-  processRows(rows, map, processor, verdict, [&](std::size_t i, TelemetryProcessor::Result&& result) {
-    learn(telemetry, rows, i, std::move(result));
+  const TelemetryRows readings(telemetry, map, options.pose_std_m);
+  const std::string before = id;
+  costmap::add(telemetry, sum);
+  id = hexadecimal(sum);
+  rows.clear();
+  processRows(readings, map, processor, verdict, [&](std::size_t i, TelemetryProcessor::Result&& result) {
+    learn(telemetry, readings, i, std::move(result));
   });
+  if (journal) journal->append(id, rows, before);
+  map.noteDrive(id, before);
 }
 
 DriveIntake::DriveIntake(TraversabilityMap& map, EvidenceJournal* journal, const IntakeOptions& options)
@@ -78,6 +114,11 @@ DriveReport DriveIntake::report() const {
 
 DriveReport addDrive(TraversabilityMap& map, const terramech::Telemetry& telemetry, EvidenceJournal* journal,
                      const IntakeOptions& options) {
+  if (map.drives().contains(driveId(telemetry))) {
+    DriveReport report;
+    report.repeated = telemetry.size();
+    return report;
+  }
   // The first pass: do torque and sinkage have a bias that all ground shares, and which sensors prove sound?
   TelemetryProcessor first_pass(map);
   processRows(TelemetryRows(telemetry, map, options.pose_std_m), map, first_pass, {},
@@ -90,11 +131,15 @@ DriveReport addDrive(TraversabilityMap& map, const terramech::Telemetry& telemet
 
 DriveReport replay(TraversabilityMap& map, const EvidenceJournal& journal) {
   DriveReport report;
-  journal.forEach([&](const JournalRow& row) {
-    const bool used = row.accepted && map.learn(row.observation);
-    ++(used ? report.used : report.rejected);
-    if (used && row.observation.pull_may_raise) ++report.raising;
-  });
+  for (const std::string& drive : journal.drives()) {
+    if (map.drives().contains(drive)) continue;
+    for (const JournalRow& row : journal.rows(drive)) {
+      const bool used = row.accepted && map.learn(row.observation);
+      ++(used ? report.used : report.rejected);
+      if (used && row.observation.pull_may_raise) ++report.raising;
+    }
+    map.noteDrive(drive);
+  }
   map.publishAll();
   return report;
 }

@@ -16,6 +16,7 @@ struct DriveReport {
   std::size_t used = 0;
   std::size_t raising = 0;            ///< of those, what may raise a belief: by sensors that proved sound
   std::size_t rejected = 0;           ///< by the sensors' watch, or without a place on the map
+  std::size_t repeated = 0;           ///< rows of a drive that the map holds already: counted once
   std::string first_reason;           ///< of the first row rejected; empty when none was
   std::vector<std::string> findings;  ///< what the sensors' watch saw, a line each
 };
@@ -25,6 +26,9 @@ struct IntakeOptions {
   double pose_std_m =
       0.5;  ///< how well places are known where there is no column pose_std_m, one standard deviation
 };
+
+/// The id of a drive: a checksum of its rows' values as 16 hexadecimal digits, whatever the file is called.
+std::string driveId(const terramech::Telemetry& telemetry);
 
 /// Puts telemetry into a map while it comes in, part by part: what the sensors' watch knows is kept from one
 /// part to the next. A part holds whole moments: all wheels that were read at one time. Where addDrive() sees
@@ -52,10 +56,11 @@ class DriveIntake {
 };
 
 /// Puts the rows of a telemetry file into a map, in their order, and publishes all of it anew, so
-/// that the map depends on the evidence alone and not on how it was divided. Columns x_m, y_m,
+/// that the map depends on the evidence alone and not on how it was divided. A drive that the map holds already changes
+/// nothing. Columns x_m, y_m,
 /// load_N and slip must be there; torque_Nm, sinkage_m, slope_rad, drawbar_pull_N, heading_rad, time_s,
-/// pass_index, z_m, pose_std_m help. The slope is the row's own; without it the map's along the heading. Every row
-/// goes into the journal, if there is one, before the map. Throws InputError when a column is missing.
+/// pass_index, z_m, pose_std_m help. The slope is the row's own; without it the map's along the heading. All rows
+/// go into the journal, if there is one, in one transaction. Throws InputError when a column is missing.
 ///
 /// A reading that the sensors' watch suspects counts all the same where it points to danger, though it raises
 /// nothing: much slip, a sinkage of half a radius, or pull far below the class's. What may raise is what
@@ -63,8 +68,8 @@ class DriveIntake {
 DriveReport addDrive(TraversabilityMap& map, const terramech::Telemetry& telemetry,
                      EvidenceJournal* journal = nullptr, const IntakeOptions& options = {});
 
-/// Puts every accepted row of a journal into a map and publishes: same map before, same journal, same map
-/// after, to the bit.
+/// Puts every drive of a journal that a map does not hold into it and publishes: same map before, same journal, same map
+/// after, to the bit. Throws InputError for a damaged journal, and leaves the map with the drives before the damage.
 DriveReport replay(TraversabilityMap& map, const EvidenceJournal& journal);
 
 }  // namespace talus::costmap

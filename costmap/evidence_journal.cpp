@@ -1,17 +1,21 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include <sqlite3.h>
 
+#include <talus/costmap/checksum.hpp>
 #include <talus/costmap/evidence_journal.hpp>
 #include <talus/talus.hpp>
 
 namespace talus::costmap {
 namespace {
 
-constexpr int kFormat = 3;                // 1 had no z_m, 2 no pose_std_m nor what may raise
+// 1 had no z_m, 2 no pose_std_m nor what may raise, 3 no drives
+constexpr int kFormat = 4;
 constexpr int kApplication = 0x54414c55;  // "TALU"
 
 constexpr const char* kSchema =
@@ -22,24 +26,26 @@ constexpr const char* kSchema =
     " torque_Nm REAL, sinkage_m REAL, gradient REAL, drawbar_pull_N REAL, pass_index INTEGER,"
     " pull REAL, pull_std REAL, sinkage REAL, sinkage_std REAL, z_m REAL,"
     " pose_std_m REAL NOT NULL DEFAULT 0, pull_may_raise INTEGER NOT NULL DEFAULT 0,"
-    " sinkage_may_raise INTEGER NOT NULL DEFAULT 0)";
+    " sinkage_may_raise INTEGER NOT NULL DEFAULT 0, drive INTEGER);"
+    "CREATE TABLE IF NOT EXISTS drive(number INTEGER PRIMARY KEY, id TEXT NOT NULL UNIQUE, checksum INTEGER)";
 constexpr const char* kInsert =
     "INSERT INTO evidence(source, line, accepted, reason, time_s, x_m, y_m, load_N, slip, torque_Nm, "
     "sinkage_m, gradient,"
     " drawbar_pull_N, pass_index, pull, pull_std, sinkage, sinkage_std, z_m, pose_std_m,"
-    " pull_may_raise, sinkage_may_raise) "
-    "VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)";
+    " pull_may_raise, sinkage_may_raise, drive) "
+    "VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)";
 constexpr const char* kSelect =
     "SELECT source, line, accepted, reason, time_s, x_m, y_m, load_N, slip, torque_Nm, sinkage_m, gradient,"
     " drawbar_pull_N, pass_index, pull, pull_std, sinkage, sinkage_std, z_m, pose_std_m,"
-    " pull_may_raise, sinkage_may_raise FROM evidence ORDER BY id";
+    " pull_may_raise, sinkage_may_raise FROM evidence WHERE drive = ? AND id > ? ORDER BY id";
 
 // Columns that older journals lack: what they hold may not raise.
-constexpr std::array<std::pair<const char*, const char*>, 4> kAdded{
+constexpr std::array<std::pair<const char*, const char*>, 5> kAdded{
     {{"z_m", "REAL"},
      {"pose_std_m", "REAL NOT NULL DEFAULT 0"},
      {"pull_may_raise", "INTEGER NOT NULL DEFAULT 0"},
-     {"sinkage_may_raise", "INTEGER NOT NULL DEFAULT 0"}}};
+     {"sinkage_may_raise", "INTEGER NOT NULL DEFAULT 0"},
+     {"drive", "INTEGER"}}};
 
 // NULL stands for NaN: SQLite has none.
 double number(sqlite3_stmt* row, int column) {
@@ -55,7 +61,8 @@ void bind(sqlite3_stmt* statement, int at, double value) {
 }
 
 std::string text(sqlite3_stmt* row, int column) {
-  return reinterpret_cast<const char*>(sqlite3_column_text(row, column));
+  const auto* bytes = reinterpret_cast<const char*>(sqlite3_column_text(row, column));
+  return bytes ? std::string(bytes, static_cast<std::size_t>(sqlite3_column_bytes(row, column))) : "";
 }
 
 JournalRow readRow(sqlite3_stmt* row) {
@@ -91,6 +98,34 @@ JournalRow readRow(sqlite3_stmt* row) {
 
 }  // namespace
 
+namespace {
+
+// What no wheel gives: ground pulls no hundred times the load, no wheel sinks a hundred radii.
+constexpr double kGreatestShare = 100.0;
+constexpr double kGreatestPlace_m = 1e9;
+
+std::string outside(const char* name, double value, double bound) {
+  if (std::abs(value) <= bound) return "";
+  return std::string(name) + " = " + std::to_string(value) + ", must be finite and within " +
+         std::to_string(static_cast<std::int64_t>(bound));
+}
+
+}  // namespace
+
+std::string fault(const WheelObservation& o) {
+  for (const std::string& reason :
+       {outside("x_m", o.place.x_m, kGreatestPlace_m), outside("y_m", o.place.y_m, kGreatestPlace_m),
+        outside("pull", o.pull.value, kGreatestShare), outside("pull_std", o.pull.std, kGreatestShare),
+        outside("sinkage", o.sinkage.value, kGreatestShare),
+        outside("pose_std_m", o.pose_std_m, kGreatestPlace_m)})
+    if (!reason.empty()) return reason;
+  // Infinite where no sinkage was measured.
+  if (!(o.pull.std >= 0.0) || !(o.sinkage.std >= 0.0) || !(o.pose_std_m >= 0.0))
+    return "a standard deviation is below 0 or missing";
+  if (std::isinf(o.time_s) || std::isinf(o.z_m)) return "time_s or z_m is infinite";
+  return "";
+}
+
 void EvidenceJournal::Close::operator()(sqlite3* database) const noexcept {
   sqlite3_close(database);
 }
@@ -113,26 +148,50 @@ EvidenceJournal::EvidenceJournal(const std::string& path) : path_(path) {
     // The mark comes before the table: a process killed in between leaves a journal, if an empty one.
     run(("PRAGMA application_id = " + std::to_string(kApplication)).c_str());
   }
-  run(kSchema);
   upgrade();
   insert_ = prepare(kInsert);
 }
 
 // Under a lock, so that two processes do not both add the column.
 void EvidenceJournal::upgrade() {
-  run("BEGIN IMMEDIATE");
+  Transaction transaction(*this);
   const std::int64_t format = single("PRAGMA user_version");
   if (format > kFormat)
     throw InputError({path_,
                       "an evidence journal of format " + std::to_string(format) + ", newer than " +
                           std::to_string(kFormat),
                       "use the program that wrote it"});
+  if (format == kFormat) return;
+  run(kSchema);
   for (const auto& [name, type] : kAdded)
     if (single(("SELECT count(*) FROM pragma_table_info('evidence') WHERE name = '" + std::string(name) + "'")
                    .c_str()) == 0)
       run(("ALTER TABLE evidence ADD COLUMN " + std::string(name) + ' ' + type).c_str());
+  adopt();
+  run("CREATE INDEX IF NOT EXISTS of_drive ON evidence(drive)");
   run(("PRAGMA user_version = " + std::to_string(kFormat)).c_str());
-  run("COMMIT");
+  transaction.commit();
+}
+
+// Rows from before there were drives: what one source gave is taken for one drive.
+void EvidenceJournal::adopt() {
+  run("INSERT INTO drive(id) SELECT 'source ' || source FROM evidence WHERE drive IS NULL GROUP BY source "
+      "ORDER BY min(id)");
+  run("UPDATE evidence SET drive = (SELECT number FROM drive WHERE drive.id = 'source ' || evidence.source) "
+      "WHERE drive IS NULL");
+}
+
+EvidenceJournal::Transaction::Transaction(EvidenceJournal& journal) : journal_(&journal) {
+  journal.run("BEGIN IMMEDIATE");
+}
+
+EvidenceJournal::Transaction::~Transaction() {
+  if (journal_) sqlite3_exec(journal_->database_.get(), "ROLLBACK", nullptr, nullptr, nullptr);
+}
+
+void EvidenceJournal::Transaction::commit() {
+  journal_->run("COMMIT");
+  journal_ = nullptr;
 }
 
 EvidenceJournal::~EvidenceJournal() = default;
@@ -153,8 +212,9 @@ void EvidenceJournal::fail() const {
        "check that it is a journal and that its folder can be written"});
 }
 
-void EvidenceJournal::append(const JournalRow& row) {
-  sqlite3_stmt* s = insert_.get();
+namespace {
+
+void bindRow(sqlite3_stmt* s, const JournalRow& row, std::int64_t drive) {
   sqlite3_bind_text(s, 1, row.source.c_str(), -1, SQLITE_TRANSIENT);
   sqlite3_bind_int64(s, 2, row.line);
   sqlite3_bind_int(s, 3, row.accepted ? 1 : 0);
@@ -169,17 +229,119 @@ void EvidenceJournal::append(const JournalRow& row) {
   for (const double value : {o.pull.value, o.pull.std, o.sinkage.value, o.sinkage.std, r.z_m, r.pose_std_m})
     bind(s, at++, value);
   sqlite3_bind_int(s, at++, o.pull_may_raise ? 1 : 0);
-  sqlite3_bind_int(s, at, o.sinkage_may_raise ? 1 : 0);
-  const int result = sqlite3_step(s);
-  sqlite3_reset(s);
+  sqlite3_bind_int(s, at++, o.sinkage_may_raise ? 1 : 0);
+  sqlite3_bind_int64(s, at, drive);
+}
+
+// Column by column with its kind; NULL is left out, so that a column added later, NULL in older rows, changes nothing.
+void addTo(Checksum& sum, sqlite3_stmt* row) {
+  for (int column = 0; column < sqlite3_column_count(row); ++column) {
+    const std::int32_t mark[2] = {column, sqlite3_column_type(row, column)};
+    if (mark[1] == SQLITE_NULL) continue;
+    sum.add(mark, sizeof mark);
+    const double real = sqlite3_column_double(row, column);
+    const std::int64_t integer = sqlite3_column_int64(row, column);
+    if (mark[1] == SQLITE_FLOAT)
+      sum.add(&real, sizeof real);
+    else if (mark[1] == SQLITE_INTEGER)
+      sum.add(&integer, sizeof integer);
+    else
+      sum.add(text(row, column).data(), static_cast<std::size_t>(sqlite3_column_bytes(row, column)));
+  }
+}
+
+}  // namespace
+
+struct EvidenceJournal::Drive {
+  std::int64_t number = 0;                // 0: none
+  std::optional<std::uint64_t> checksum;  // of its rows, each after those before it; nothing in older formats
+};
+
+EvidenceJournal::Drive EvidenceJournal::find(const std::string& id) const {
+  const auto entry = prepare("SELECT number, checksum FROM drive WHERE id = ?");
+  sqlite3_bind_text(entry.get(), 1, id.c_str(), -1, SQLITE_TRANSIENT);
+  const int result = sqlite3_step(entry.get());
+  if (result == SQLITE_DONE) return {};
+  if (result != SQLITE_ROW) fail();
+  Drive drive{.number = sqlite3_column_int64(entry.get(), 0), .checksum = {}};
+  if (sqlite3_column_type(entry.get(), 1) != SQLITE_NULL)
+    drive.checksum = static_cast<std::uint64_t>(sqlite3_column_int64(entry.get(), 1));
+  return drive;
+}
+
+void EvidenceJournal::checksum(Drive& drive, std::int64_t after) const {
+  const auto rows = prepare(kSelect);
+  sqlite3_bind_int64(rows.get(), 1, drive.number);
+  sqlite3_bind_int64(rows.get(), 2, after);
+  int result = SQLITE_ROW;
+  while ((result = sqlite3_step(rows.get())) == SQLITE_ROW) {
+    Checksum sum;
+    sum.add(&*drive.checksum, sizeof *drive.checksum);
+    addTo(sum, rows.get());
+    drive.checksum = sum.value();
+  }
   if (result != SQLITE_DONE) fail();
 }
 
-void EvidenceJournal::forEach(const std::function<void(const JournalRow&)>& visit) const {
-  const auto rows = prepare(kSelect);
+void EvidenceJournal::append(const std::string& drive, const std::vector<JournalRow>& rows,
+                             const std::string& continued) {
+  std::optional<Transaction> own;
+  if (sqlite3_get_autocommit(database_.get()) != 0) own.emplace(*this);
+  if (find(drive).number != 0) return;
+  Drive entry = find(continued);
+  if (entry.number == 0) {
+    run("INSERT INTO drive(id) VALUES('')");
+    entry = {.number = sqlite3_last_insert_rowid(database_.get()), .checksum = 0};
+  }
+  const std::int64_t before = single("SELECT ifnull(max(id), 0) FROM evidence");
+  for (const JournalRow& row : rows) {
+    bindRow(insert_.get(), row, entry.number);
+    const int result = sqlite3_step(insert_.get());
+    sqlite3_reset(insert_.get());
+    if (result != SQLITE_DONE) fail();
+  }
+  if (entry.checksum) checksum(entry, before);
+  const auto close = prepare("UPDATE drive SET id = ?, checksum = ? WHERE number = ?");
+  sqlite3_bind_text(close.get(), 1, drive.c_str(), -1, SQLITE_TRANSIENT);
+  if (entry.checksum) sqlite3_bind_int64(close.get(), 2, static_cast<std::int64_t>(*entry.checksum));
+  sqlite3_bind_int64(close.get(), 3, entry.number);
+  if (sqlite3_step(close.get()) != SQLITE_DONE) fail();
+  if (own) own->commit();
+}
+
+std::vector<std::string> EvidenceJournal::drives() const {
+  const auto rows = prepare("SELECT id FROM drive ORDER BY number");
+  std::vector<std::string> ids;
   int result = SQLITE_ROW;
-  while ((result = sqlite3_step(rows.get())) == SQLITE_ROW) visit(readRow(rows.get()));
+  while ((result = sqlite3_step(rows.get())) == SQLITE_ROW) ids.push_back(text(rows.get(), 0));
   if (result != SQLITE_DONE) fail();
+  return ids;
+}
+
+std::vector<JournalRow> EvidenceJournal::rows(const std::string& drive) const {
+  const auto refuse = [&](const std::string& reason) {
+    throw InputError({path_ + ", drive " + drive, reason, "restore the journal from a copy"});
+  };
+  const Drive entry = find(drive);
+  if (entry.number == 0) return {};
+  if (entry.checksum) {
+    Drive again{.number = entry.number, .checksum = 0};
+    checksum(again, 0);
+    if (again.checksum != entry.checksum)
+      refuse("its rows were changed since they were written: checksum mismatch");
+  }
+  const auto rows = prepare(kSelect);
+  sqlite3_bind_int64(rows.get(), 1, entry.number);
+  sqlite3_bind_int64(rows.get(), 2, 0);
+  std::vector<JournalRow> out;
+  int result = SQLITE_ROW;
+  while ((result = sqlite3_step(rows.get())) == SQLITE_ROW) {
+    out.push_back(readRow(rows.get()));
+    const std::string reason = out.back().accepted ? fault(out.back().observation) : "";
+    if (!reason.empty()) refuse("row of line " + std::to_string(out.back().line) + ": " + reason);
+  }
+  if (result != SQLITE_DONE) fail();
+  return out;
 }
 
 // The first number of a query's answer; nothing of the query stays open.

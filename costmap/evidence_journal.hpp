@@ -1,9 +1,9 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <talus/costmap/wheel_observation.hpp>
 
@@ -22,24 +22,46 @@ struct JournalRow {
   WheelObservation observation;  ///< what it said; of no meaning when refused
 };
 
-/// EVIDENCE.db: every telemetry row ever offered to a map, in order, in SQLite (write-ahead log). Each row is
-/// a transaction of its own, synced before append() returns: a killed process or a power cut loses at most
-/// the row being written. Several processes may append to one journal; rows keep the order of their numbers.
-/// One object a thread.
+/// Why no wheel can have given an observation, "pull = inf, must be ..."; empty where one can. |pull|, its standard
+/// deviation and sinkage over radius are within 100, places within 1e9 m.
+std::string fault(const WheelObservation& observation);
+
+/// EVIDENCE.db: every telemetry row ever offered to a map, drive by drive, in SQLite (write-ahead log). A drive is
+/// taken in once, whatever its file is called, and as a whole or not at all, synced before append() or
+/// Transaction::commit() returns. Several processes may share one journal; they queue. One object a thread.
 class EvidenceJournal {
  public:
+  /// Holds the journal from its making on: what is appended stays only after commit(). Throws InputError when another
+  /// process holds it for longer than 30 s.
+  class Transaction {
+   public:
+    explicit Transaction(EvidenceJournal& journal);
+    ~Transaction();
+    Transaction(const Transaction&) = delete;
+    Transaction& operator=(const Transaction&) = delete;
+    void commit();
+
+   private:
+    EvidenceJournal* journal_;  // null once committed
+  };
+
   /// Opens or creates. Throws InputError when the file is no journal or cannot be written.
   explicit EvidenceJournal(const std::string& path);
   ~EvidenceJournal();
   EvidenceJournal(const EvidenceJournal&) = delete;
   EvidenceJournal& operator=(const EvidenceJournal&) = delete;
 
-  /// Appends a row. Throws InputError when the disk is full or another process holds the file for longer than
-  /// 30 s.
-  void append(const JournalRow& row);
+  /// Appends the rows of a drive, in a transaction of its own where none is open; nothing where the journal holds the
+  /// drive already. `continued`: the id that the drive had without these rows, if it is in the journal. Throws
+  /// InputError when the disk is full or another process holds the file for longer than 30 s.
+  void append(const std::string& drive, const std::vector<JournalRow>& rows, const std::string& continued = {});
 
-  /// Visits every row in order. Numbers come back to the bit.
-  void forEach(const std::function<void(const JournalRow&)>& visit) const;
+  /// Ids of its drives, in the order in which they were appended.
+  std::vector<std::string> drives() const;
+
+  /// The rows of a drive in order, numbers to the bit. Throws InputError when a row was changed since it was
+  /// written, or holds a number that no wheel can give.
+  std::vector<JournalRow> rows(const std::string& drive) const;
 
   /// Rows that it holds.
   std::int64_t size() const;
@@ -54,6 +76,10 @@ class EvidenceJournal {
   Statement prepare(const char* sql) const;
   void run(const char* sql) const;
   void upgrade();
+  void adopt();
+  struct Drive;
+  Drive find(const std::string& id) const;
+  void checksum(Drive& drive, std::int64_t after) const;
   std::int64_t single(const char* sql) const;
   [[noreturn]] void fail() const;
 

@@ -10,6 +10,7 @@
 #include <fstream>
 #include <istream>
 #include <ostream>
+#include <sstream>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -18,6 +19,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <talus/costmap/checksum.hpp>
 #include <talus/costmap/map_file.hpp>
 #include <talus/costmap/map_text.hpp>
 
@@ -27,26 +29,8 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "map files require a little-endian machine");
 
 constexpr std::array<char, 8> kMagic{'T', 'A', 'L', 'U', 'S', 'M', 'A', 'P'};
-constexpr std::uint32_t kVersion = 3;
-
-// FNV-1a over 8-byte words, then over the bytes left: guards against damage, not malice.
-class Checksum {
- public:
-  void add(const void* data, std::size_t size) noexcept {
-    const auto* bytes = static_cast<const char*>(data);
-    for (; size >= 8; bytes += 8, size -= 8) {
-      std::uint64_t word = 0;
-      std::memcpy(&word, bytes, 8);
-      mix(word);
-    }
-    for (; size > 0; ++bytes, --size) mix(static_cast<unsigned char>(*bytes));
-  }
-  std::uint64_t value() const noexcept { return value_; }
-
- private:
-  void mix(std::uint64_t word) noexcept { value_ = (value_ ^ word) * 0x100000001b3ULL; }
-  std::uint64_t value_ = 0xcbf29ce484222325ULL;
-};
+constexpr std::uint32_t kVersion = 4;
+constexpr std::array<char, 4> kEnd{'E', 'N', 'D', ' '};
 
 class TrailerWriter {
  public:
@@ -59,21 +43,59 @@ class TrailerWriter {
     raw(&size, sizeof size);
     raw(data, size);
   }
-  void finish() {
-    const std::uint64_t sum = checksum_.value();
-    stream_.write("SUM ", 4);
-    stream_.write(reinterpret_cast<const char*>(&sum), sizeof sum);
-  }
 
  private:
   void raw(const void* data, std::size_t size) {
     stream_.write(static_cast<const char*>(data), static_cast<std::streamsize>(size));
-    checksum_.add(data, size);
   }
 
   std::ostream& stream_;
-  Checksum checksum_;
 };
+
+// The last bytes of a map.
+struct End {
+  std::array<char, 4> tag = kEnd;
+  std::uint32_t version = kVersion;
+  std::uint64_t checksum = 0;
+};
+static_assert(sizeof(End) == 16);
+
+std::uint64_t sizeOf(std::istream& stream) {
+  stream.clear();
+  const auto end = stream.seekg(0, std::ios::end).tellg();
+  return end < 0 ? 0 : static_cast<std::uint64_t>(end);
+}
+
+// Of the first bytes of a stream that can seek.
+std::uint64_t checksumOf(std::istream& stream, std::uint64_t size) {
+  std::vector<char> piece(std::size_t{1} << 20U);
+  Checksum checksum;
+  stream.seekg(0);
+  while (size > 0 && stream) {
+    const auto count = std::min<std::uint64_t>(size, piece.size());
+    stream.read(piece.data(), static_cast<std::streamsize>(count));
+    checksum.add(piece.data(), count);
+    size -= count;
+  }
+  return checksum.value();
+}
+
+// Before a byte is interpreted: nothing of a damaged map is read.
+void requireWhole(std::istream& stream, const std::string& name) {
+  const std::uint64_t size = sizeOf(stream);
+  End end{.tag = {}, .version = 0};
+  if (size > sizeof end) {
+    stream.seekg(static_cast<std::streamoff>(size - sizeof end));
+    stream.read(reinterpret_cast<char*>(&end), sizeof end);
+  }
+  const auto refuse = [&](const std::string& reason) {
+    throw InputError({name, reason, "write the map again with talus costmap"});
+  };
+  if (end.tag != kEnd || end.version != kVersion)
+    refuse("no traversability map, truncated, or of another version than " + std::to_string(kVersion));
+  if (checksumOf(stream, size - sizeof end) != end.checksum) refuse("damaged: checksum mismatch");
+  stream.seekg(0);
+}
 
 class TrailerReader {
  public:
@@ -113,13 +135,9 @@ class TrailerReader {
     return raster;
   }
 
+  /// Nothing may stand between the last section and the checksum.
   void finish() {
-    const std::uint64_t expected = checksum_.value();
-    std::array<char, 4> tag{};
-    std::uint64_t sum = 0;
-    raw(tag.data(), tag.size());
-    raw(&sum, sizeof sum);
-    if (std::memcmp(tag.data(), "SUM ", 4) != 0 || sum != expected) fail("damaged: checksum mismatch");
+    if (bytesLeft() != sizeof(End)) fail("damaged section");
   }
 
  private:
@@ -141,7 +159,6 @@ class TrailerReader {
   }
   void raw(void* data, std::size_t size) {
     if (!stream_.read(static_cast<char*>(data), static_cast<std::streamsize>(size))) fail("truncated");
-    checksum_.add(data, size);
   }
   [[noreturn]] void fail(const std::string& reason) const {
     throw InputError({name_, reason, "write the map again with talus costmap"});
@@ -149,7 +166,6 @@ class TrailerReader {
 
   std::istream& stream_;
   std::string name_;
-  Checksum checksum_;
 };
 
 maps::Raster<Hazard> declared(const TraversabilityMap& map) {
@@ -229,7 +245,7 @@ void requireSane(const maps::Grid& grid, const std::string& name) {
 
 }  // namespace
 
-void writeMap(const TraversabilityMap& map, std::ostream& stream) {
+void writeMap(const TraversabilityMap& map, std::iostream& stream) {
   map.writeTree(stream);
   const std::vector<Floor>& floors = map.floors().all();
   TrailerWriter trailer(stream);
@@ -243,7 +259,14 @@ void writeMap(const TraversabilityMap& map, std::ostream& stream) {
   trailer.section("FLOR", floors.data(), floors.size() * sizeof(Floor));
   const std::string evidence = evidenceOf(map);
   trailer.section("EVID", evidence.data(), evidence.size());
-  trailer.finish();
+  std::string drives;
+  for (const std::string& drive : map.drives()) drives += drive + '\n';
+  trailer.section("DRIV", drives.data(), drives.size());
+  // Read back: the octree's writer goes back to its header, so that bytes do not come in their order.
+  stream.flush();
+  const End end{.checksum = checksumOf(stream, sizeOf(stream))};
+  stream.seekp(0, std::ios::end);
+  stream.write(reinterpret_cast<const char*>(&end), sizeof end);
 }
 
 namespace {
@@ -285,7 +308,7 @@ void writeMap(const TraversabilityMap& map, const std::string& path) {
   const std::string beside = path + kBeside + std::to_string(::getpid());
   std::error_code failed;
   {
-    std::ofstream stream(beside, std::ios::binary);
+    std::fstream stream(beside, std::ios::binary | std::ios::in | std::ios::out | std::ios::trunc);
     writeMap(map, stream);
     stream.close();
     if (!stream || !synced(beside)) failed = std::make_error_code(std::errc::io_error);
@@ -297,6 +320,7 @@ void writeMap(const TraversabilityMap& map, const std::string& path) {
 }
 
 TraversabilityMap readMap(std::istream& stream, const MapReading& reading, const ProgressMonitor& watch) {
+  requireWhole(stream, reading.name);
   readLeaves(stream, reading.name,
              [](const TreeLeaf&) {});  // what follows says the same, and how it came to it
   TrailerReader trailer(stream, reading.name);
@@ -309,6 +333,7 @@ TraversabilityMap readMap(std::istream& stream, const MapReading& reading, const
   layers.declared = trailer.raster<Hazard>("HAZD", text.grid);
   std::vector<Floor> floors = trailer.floors("FLOR");
   const std::string evidence = trailer.bytes("EVID");
+  std::istringstream drives(trailer.bytes("DRIV"));
   trailer.finish();
   if (layers.elevation.elevation_m.empty())
     throw InputError(
@@ -321,6 +346,7 @@ TraversabilityMap readMap(std::istream& stream, const MapReading& reading, const
                           {.footprint_radius_m = text.footprint_radius_m, .threads = reading.threads}, watch);
     if (!restoreEvidence(evidence, map)) throw std::invalid_argument("its evidence is impossible");
     if (!evidence.empty()) map.publishAll();
+    for (std::string drive; std::getline(drives, drive);) map.noteDrive(drive);
     return map;
   } catch (const std::invalid_argument& error) {
     throw InputError(

@@ -9,9 +9,9 @@ namespace talus::costmap {
 
 /// MAP.ot: an OctoMap file of type TraversabilityTree (stock readers stop behind its nodes), then a trailer
 /// with all that planning needs besides: grid, coordinate system, rover, soils, policy, elevation, classes,
-/// declared hazards, and a checksum. The layout stands in costmap/README.md. Little-endian; same map, same
-/// bytes.
-void writeMap(const TraversabilityMap& map, std::ostream& stream);
+/// declared hazards, evidence, the drives that it came from, and a checksum over all of it. The layout stands in
+/// docs/map_file.md. Little-endian; same map, same bytes. The stream is empty and can be read, too.
+void writeMap(const TraversabilityMap& map, std::iostream& stream);
 
 /// Writes beside the path and renames, so that a reader sees the whole file or none. Throws InputError when
 /// it cannot.
@@ -23,8 +23,8 @@ struct MapReading {
   int threads = 1;   ///< >= 1
 };
 
-/// Reads a map and builds its cost grid. Throws InputError for a file that is truncated, damaged or no such
-/// map.
+/// Reads a map from a stream that can seek and builds its cost grid. Throws InputError for a file that is truncated,
+/// damaged in any bit, or no such map.
 TraversabilityMap readMap(std::istream& stream, const MapReading& reading, const ProgressMonitor& watch = {});
 
 /// Opens and reads. Throws InputError also when it cannot be opened.

@@ -5,6 +5,8 @@
 #include <iosfwd>
 #include <memory>
 #include <optional>
+#include <set>
+#include <string>
 
 #include <talus/costmap/cost_grid.hpp>
 #include <talus/costmap/evidence_field.hpp>
@@ -113,6 +115,14 @@ class TraversabilityMap {
   /// such block or class.
   bool restore(const SavedBlock& saved) { return field_.restore(saved); }
 
+  /// Ids of the drives that were put into it (driveId()), sorted.
+  const std::set<std::string>& drives() const noexcept { return drives_; }
+  /// Notes that a drive is in; `continued` is the id that it had when it was shorter, if any.
+  void noteDrive(const std::string& id, const std::string& continued = {}) {
+    drives_.erase(continued);
+    drives_.insert(id);
+  }
+
   /// Declares the ground around a place impassable, as a driver does who got stuck there: Hazard::Obstacle on
   /// every cell whose centre lies within the radius. Planners see it after publish().
   void refuse(const maps::Point& place, double radius_m);
@@ -152,6 +162,7 @@ class TraversabilityMap {
   EvidenceField field_;
   std::vector<maps::CellBox> learned_;  // since the last version
   std::vector<maps::CellBox> refused_;
+  std::set<std::string> drives_;
   struct Published;
   std::unique_ptr<Published> published_;  // the atomic in it cannot move
 };

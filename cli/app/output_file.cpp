@@ -1,5 +1,7 @@
 #include <atomic>
 #include <cerrno>
+#include <charconv>
+#include <csignal>
 #include <cstring>
 #include <fstream>
 #include <system_error>
@@ -28,6 +30,25 @@ void checkFolder(const fs::path& path) {
     refuse(path, fmt::format("cannot write into {}: {}", folder.string(), std::strerror(errno)), "");
 }
 
+bool isGone(std::string_view process) noexcept {
+  pid_t number = 0;
+  const char* end = process.data() + process.size();
+  return std::from_chars(process.data(), end, number).ec == std::errc{} && number > 0 &&
+         ::kill(number, 0) != 0 && errno == ESRCH;
+}
+
+/// What a killed process left beside a file.
+void clearLeftovers(const fs::path& path) {
+  const std::string stem = "." + path.stem().string() + ".";
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(path.has_parent_path() ? path.parent_path() : ".", ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with(stem) && entry.path().extension() == path.extension() &&
+        isGone(std::string_view(name).substr(stem.size())))
+      fs::remove(entry.path(), ignored);
+  }
+}
+
 /// A name in the same folder that no other run and no other file of this run uses.
 fs::path besideName(const fs::path& path) {
   static std::atomic<unsigned> count = 0;
@@ -47,6 +68,7 @@ OutputFile::OutputFile(const fs::path& path) : path_(path) {
     return;
   }
   checkFolder(path_);
+  clearLeftovers(path_);
   temporary_ = besideName(path_);
 }
 

@@ -1,5 +1,6 @@
 // talus update MAP.ot T.csv -o MAP2.ot: put a drive's telemetry into a map.
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -9,6 +10,8 @@
 
 #include <talus/cli/app/command.hpp>
 #include <talus/cli/app/commands.hpp>
+#include <talus/cli/app/file_lock.hpp>
+#include <talus/cli/app/output_file.hpp>
 #include <talus/costmap/drive_evidence.hpp>
 #include <talus/costmap/map_file.hpp>
 #include <talus/terramech/io/telemetry_reader.hpp>
@@ -83,42 +86,41 @@ Difference between(const Snapshot& before, const Snapshot& after) {
   return difference;
 }
 
-int run(const Options& options, Context& context) {
-  if (options.telemetry.empty() != options.replay)
-    throw InputError({options.replay ? options.telemetry : "talus update",
-                      options.replay ? "telemetry and --replay together" : "no telemetry",
-                      "give T.csv, or --replay with --journal"});
-  costmap::TraversabilityMap map =
-      costmap::readMap(options.map, context.workers(), context.watch("reading the map"));
-  const Snapshot before = snapshotOf(map);
-  std::unique_ptr<costmap::EvidenceJournal> journal;
-  if (!options.journal.empty()) journal = std::make_unique<costmap::EvidenceJournal>(options.journal);
-  costmap::DriveReport report;
-  std::size_t unreadable = 0;
-  if (options.replay) {
-    report = costmap::replay(map, *journal);
-  } else {
-    const auto telemetry = terramech::readTelemetry(
-        options.telemetry,
-        {.required = {"x_m", "y_m", "load_N", "slip"}, .wheel_radius_m = map.model().rover().wheel.radius_m},
-        context.watch("reading telemetry"));
-    unreadable = telemetry.rejected.size();
-    for (const auto& row : telemetry.rejected)
-      context.warn(fmt::format("{}:{}: {}", options.telemetry, row.line, row.reason));
-    report = costmap::addDrive(map, telemetry, journal.get(), options.intake);
-    if (report.used == 0)
-      throw InputError({options.telemetry, fmt::format("none of its {} rows is usable", report.rejected),
-                        "first reason: " + report.first_reason});
-  }
-  for (const std::string& finding : report.findings) context.warn(finding);
-  if (context.stop.stop_requested()) return Exit::kCancelled;
-  costmap::writeMap(map, options.output);
-  const Difference difference = between(before, snapshotOf(map));
-  const std::size_t rejected = report.rejected + unreadable;
+void checkCall(const Options& options) {
+  if (options.telemetry.empty() == options.replay) return;
+  throw InputError({options.replay ? options.telemetry : "talus update",
+                    options.replay ? "telemetry and --replay together" : "no telemetry",
+                    "give T.csv, or --replay with --journal"});
+}
+
+// The rows of the file that go into the map; `report` holds what the journal gave already.
+void addTelemetry(const Options& options, costmap::TraversabilityMap& map, costmap::EvidenceJournal* journal,
+                  const Context& context, costmap::DriveReport& report) {
+  const auto telemetry = terramech::readTelemetry(
+      options.telemetry,
+      {.required = {"x_m", "y_m", "load_N", "slip"}, .wheel_radius_m = map.model().rover().wheel.radius_m},
+      context.watch("reading telemetry"));
+  for (const auto& row : telemetry.rejected)
+    context.warn(fmt::format("{}:{}: {}", options.telemetry, row.line, row.reason));
+  const costmap::DriveReport drive = costmap::addDrive(map, telemetry, journal, options.intake);
+  if (drive.repeated > 0)
+    context.warn(options.telemetry + ": the map holds this drive already; it counts once");
+  else if (drive.used == 0)
+    throw InputError({options.telemetry, fmt::format("none of its {} rows is usable", drive.rejected),
+                      "first reason: " + drive.first_reason});
+  report.used += drive.used;
+  report.raising += drive.raising;
+  report.rejected += drive.rejected + telemetry.rejected.size();
+  report.repeated = drive.repeated;
+  report.findings = drive.findings;
+}
+
+void tell(const costmap::DriveReport& report, const Difference& difference, const Context& context) {
   if (context.json)
     printJson({{"rows_used", report.used},
-               {"rows_rejected", rejected},
+               {"rows_rejected", report.rejected},
                {"rows_raising", report.raising},
+               {"rows_counted_before", report.repeated},
                {"cells_changed", difference.cells},
                {"categories_changed", difference.categories},
                {"findings", report.findings}});
@@ -126,7 +128,34 @@ int run(const Options& options, Context& context) {
     print(
         fmt::format("rows        {} used, {} rejected; {} may raise the estimate\n"
                     "cells       {} changed, {} with a new category\n",
-                    report.used, rejected, report.raising, difference.cells, difference.categories));
+                    report.used, report.rejected, report.raising, difference.cells, difference.categories));
+}
+
+int run(const Options& options, Context& context) {
+  checkCall(options);
+  const FileLock lock({options.map, options.output}, context.stop);
+  OutputFile output(options.output);
+  std::optional<costmap::EvidenceJournal> journal;
+  std::optional<costmap::EvidenceJournal::Transaction> transaction;
+  if (!options.journal.empty()) transaction.emplace(journal.emplace(options.journal));
+  costmap::TraversabilityMap map =
+      costmap::readMap(options.map, context.workers(), context.watch("reading the map"));
+  const Snapshot before = snapshotOf(map);
+  // The map is the journal's drives and this one: those that it lacks, as after a call that was killed, come first.
+  costmap::DriveReport report;
+  if (journal) report = costmap::replay(map, *journal);
+  if (!options.replay) {
+    if (report.used + report.rejected > 0)
+      context.warn(fmt::format("{}: {} rows that the map lacks were put in from it", options.journal,
+                               report.used + report.rejected));
+    addTelemetry(options, map, journal ? &*journal : nullptr, context, report);
+  }
+  for (const std::string& finding : report.findings) context.warn(finding);
+  if (context.stop.stop_requested()) return Exit::kCancelled;
+  costmap::writeMap(map, output.temporary());
+  if (transaction) transaction->commit();
+  output.commit();
+  tell(report, between(before, snapshotOf(map)), context);
   return Exit::kDone;
 }
 

@@ -48,7 +48,7 @@ terramech::Telemetry drive() {
 }
 
 std::string bytesOf(const TraversabilityMap& map) {
-  std::ostringstream stream;
+  std::stringstream stream;
   writeMap(map, stream);
   return stream.str();
 }

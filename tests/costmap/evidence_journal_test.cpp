@@ -45,13 +45,13 @@ JournalRow row(std::int64_t line) {
 
 TEST_F(EvidenceJournalTest, GivesRowsBackToTheBit) {
   EvidenceJournal journal(path());
-  journal.append(row(7));
-  journal.forEach([](const JournalRow& back) {
-    EXPECT_EQ(back.line, 7);
-    EXPECT_EQ(back.reading.place.x_m, 1.0 / 3.0);
-    EXPECT_TRUE(std::isnan(back.reading.torque_Nm));
-    EXPECT_TRUE(std::isinf(back.observation.sinkage.std));
-  });
+  journal.append("a", {row(7)});
+  ASSERT_EQ(journal.rows("a").size(), 1U);
+  const JournalRow back = journal.rows("a")[0];
+  EXPECT_EQ(back.line, 7);
+  EXPECT_EQ(back.reading.place.x_m, 1.0 / 3.0);
+  EXPECT_TRUE(std::isnan(back.reading.torque_Nm));
+  EXPECT_TRUE(std::isinf(back.observation.sinkage.std));
   EXPECT_EQ(journal.size(), 1);
 }
 
@@ -64,25 +64,89 @@ void change(const std::string& path, const char* sql) {
 
 // Rows of a journal without heights are on top: theirs is not known.
 TEST_F(EvidenceJournalTest, TakesOverJournalsWithoutHeights) {
-  { EvidenceJournal(path()).append(row(7)); }
-  change(path(), "ALTER TABLE evidence DROP COLUMN z_m; PRAGMA user_version = 1");
+  { EvidenceJournal(path()).append("a", {row(7)}); }
+  change(path(), "ALTER TABLE evidence DROP COLUMN z_m; DROP INDEX of_drive; ALTER TABLE evidence DROP COLUMN drive;"
+                 "DROP TABLE drive; PRAGMA user_version = 1");
   EvidenceJournal journal(path());
   JournalRow high = row(8);
   high.reading.z_m = -2500.0 / 3.0;
-  journal.append(high);
-  std::vector<double> heights;
-  journal.forEach([&](const JournalRow& back) {
-    heights.push_back(back.reading.z_m);
-    EXPECT_TRUE(std::isnan(back.observation.z_m) || back.observation.z_m == back.reading.z_m);
-  });
-  ASSERT_EQ(heights.size(), 2U);
-  EXPECT_TRUE(std::isnan(heights[0]));
-  EXPECT_EQ(heights[1], -2500.0 / 3.0);
+  journal.append("b", {high});
+  // What has no drive belongs to its source's.
+  ASSERT_THAT(journal.drives(), testing::ElementsAre("source drive.csv", "b"));
+  const auto old = journal.rows("source drive.csv"), added = journal.rows("b");
+  ASSERT_EQ(old.size(), 1U);
+  EXPECT_TRUE(std::isnan(old[0].reading.z_m));
+  EXPECT_TRUE(std::isnan(old[0].observation.z_m));
+  ASSERT_EQ(added.size(), 1U);
+  EXPECT_EQ(added[0].observation.z_m, -2500.0 / 3.0);
+}
+
+TEST_F(EvidenceJournalTest, ADriveCountsOnce) {
+  EvidenceJournal journal(path());
+  journal.append("a", {row(1), row(2)});
+  journal.append("a", {row(1), row(2)});
+  EXPECT_EQ(journal.size(), 2);
+  EXPECT_THAT(journal.drives(), testing::ElementsAre("a"));
+}
+
+TEST_F(EvidenceJournalTest, ADriveThatGoesOnIsOneDrive) {
+  EvidenceJournal journal(path());
+  journal.append("a", {row(1)});
+  journal.append("other", {row(9)});
+  journal.append("ab", {row(2), row(3)}, "a");
+  EXPECT_THAT(journal.drives(), testing::ElementsAre("ab", "other"));
+  ASSERT_EQ(journal.rows("ab").size(), 3U);
+  EXPECT_EQ(journal.rows("ab")[2].line, 3);
+}
+
+TEST_F(EvidenceJournalTest, WhatIsNotCommittedIsNotThere) {
+  EvidenceJournal journal(path());
+  {
+    const EvidenceJournal::Transaction transaction(journal);
+    journal.append("a", {row(1)});
+    EXPECT_EQ(journal.size(), 1);
+  }
+  EXPECT_EQ(journal.size(), 0);
+  {
+    EvidenceJournal::Transaction transaction(journal);
+    journal.append("a", {row(1)});
+    transaction.commit();
+  }
+  EXPECT_EQ(EvidenceJournal(path()).size(), 1);
+}
+
+// Property: no change to a row by another hand is replayed, whichever column, whether or not the value is possible.
+TEST_F(EvidenceJournalTest, RefusesRowsThatWereChanged) {
+  for (const char* sql :
+       {"UPDATE evidence SET pull = 9e999", "UPDATE evidence SET pull = NULL", "UPDATE evidence SET pull = 0.11",
+        "UPDATE evidence SET sinkage_std = 0", "UPDATE evidence SET line = 8", "UPDATE evidence SET torque_Nm = 1",
+        "UPDATE evidence SET reason = 'x'", "UPDATE evidence SET accepted = 0", "DELETE FROM evidence",
+        "INSERT INTO evidence SELECT 99, source, line, accepted, reason, time_s, x_m, y_m, load_N, slip, torque_Nm,"
+        " sinkage_m, gradient, drawbar_pull_N, pass_index, pull, pull_std, sinkage, sinkage_std, z_m, pose_std_m,"
+        " pull_may_raise, sinkage_may_raise, drive FROM evidence"}) {
+    std::filesystem::remove(path());
+    { EvidenceJournal(path()).append("a", {row(7)}); }
+    change(path(), sql);
+    const EvidenceJournal journal(path());
+    EXPECT_THROW(static_cast<void>(journal.rows("a")), InputError) << sql;
+  }
+}
+
+// Rows of older formats have no checksum: their values are judged by themselves.
+TEST_F(EvidenceJournalTest, RefusesValuesThatNoWheelGives) {
+  for (const char* sql : {"pull = 9e999", "pull = NULL", "pull = 1e300", "sinkage = NULL", "pull_std = -1",
+                          "x_m = 9e999", "y_m = NULL", "pull_std = NULL", "pose_std_m = 9e999", "z_m = 9e999"}) {
+    std::filesystem::remove(path());
+    { EvidenceJournal(path()).append("a", {row(7)}); }
+    change(path(), ("UPDATE drive SET checksum = NULL; UPDATE evidence SET " + std::string(sql)).c_str());
+    const EvidenceJournal journal(path());
+    EXPECT_THROW(static_cast<void>(journal.rows("a")), InputError) << sql;
+  }
 }
 
 TEST_F(EvidenceJournalTest, RefusesAFormatOfTheFuture) {
-  { EvidenceJournal(path()).append(row(7)); }
-  change(path(), "PRAGMA user_version = 4");
+  { EvidenceJournal(path()).append("a", {row(7)}); }
+  change(path(), "PRAGMA user_version = 99");
   EXPECT_THROW(EvidenceJournal{path()}, InputError);
 }
 
@@ -96,7 +160,7 @@ TEST_F(EvidenceJournalTest, RefusesWhatIsNoJournal) {
 [[noreturn]] void writeForever(const std::string& path, int out) {
   EvidenceJournal journal(path);
   for (std::int64_t line = 1;; ++line) {
-    journal.append(row(line));
+    journal.append(std::to_string(line), {row(line)});
     if (::write(out, &line, sizeof line) < 0) ::_exit(1);
   }
 }
@@ -123,7 +187,8 @@ TEST_F(EvidenceJournalTest, AKilledWriterLosesAtMostTheRowBeingWritten) {
     const std::int64_t told = killedAfter(file, 500 + kill * 7919 % 12000);
     const EvidenceJournal journal(file);
     std::int64_t expected = 1;
-    journal.forEach([&](const JournalRow& back) { EXPECT_EQ(back.line, expected++); });
+    for (const std::string& drive : journal.drives())
+      for (const JournalRow& back : journal.rows(drive)) EXPECT_EQ(back.line, expected++);
     ASSERT_GE(journal.size(), told) << kill;
     ASSERT_LE(journal.size(), told + 1) << kill;
   }
@@ -136,7 +201,8 @@ TEST_F(EvidenceJournalTest, TwoWritersDoNotCorruptIt) {
     const pid_t child = ::fork();
     if (child == 0) {
       EvidenceJournal journal(path());
-      for (std::int64_t line = 0; line < 100; ++line) journal.append(row(line));
+      for (std::int64_t line = 0; line < 100; ++line)
+        journal.append(std::to_string(writer) + '/' + std::to_string(line), {row(line)});
       ::_exit(0);
     }
     children.push_back(child);

@@ -63,7 +63,7 @@ TraversabilityMap learned(const std::vector<std::string>& site, const std::vecto
 }
 
 std::string bytesOf(const TraversabilityMap& map) {
-  std::ostringstream stream;
+  std::stringstream stream;
   writeMap(map, stream);
   return stream.str();
 }
