@@ -20,6 +20,8 @@ constexpr double kModel =
 constexpr double kSinkageStd = 0.02;    // of one sinkage over radius
 constexpr double kReferenceStd = 0.05;  // of the sample that counts as one
 
+constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+
 double stdOf(std::size_t grade) noexcept {
   return kSurest * std::exp2(0.5 * static_cast<double>(grade));
 }
@@ -67,6 +69,11 @@ void addWeakest(std::span<const ReadingCount> counts, double std, double sign, V
 
 double pullOf(std::uint8_t step) noexcept {
   return kLowest + kStep * step;
+}
+// The lowest step stands for all that is less.
+double mostPullOf(std::uint8_t step) noexcept {
+  constexpr double kLeast = -10.0;
+  return step == 0 ? kLeast : pullOf(step);
 }
 double sinkageOf(std::uint8_t step) noexcept {
   return kStep * step;
@@ -119,7 +126,7 @@ void summarisePull(std::span<const ReadingCount> counts, const Estimate& prior, 
     }
   }
   if (all.weight > 0.0) keepWeakest(all.sum / all.weight, variance(all.weight), prior, block, least);
-  constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+  if (all.weight <= 0.0) block.weak_pull = block.weak_variance = kNone;
   block.pull = raising.weight > 0.0 ? static_cast<float>(raising.sum / raising.weight) : kNone;
   block.variance = raising.weight > 0.0 ? static_cast<float>(variance(raising.weight)) : kNone;
 }
@@ -138,8 +145,23 @@ ReadingCount sinkageReading(double sinkage_over_radius, bool may_raise) noexcept
           stepped(std::ceil(sinkage_over_radius / kStep - 1e-6)), 1};
 }
 
+std::vector<ReadingCount> boundReadings(const GroundBound& bound) {
+  std::vector<ReadingCount> readings;
+  const auto keep = [&](std::uint8_t which, ReadingCount reading) {
+    reading.kind = which;
+    readings.push_back(reading);
+  };
+  if (!std::isnan(bound.most_pull)) keep(kind::kMostPullHere, pullReading({bound.most_pull, kSurest}, false));
+  if (!std::isnan(bound.least_sinkage))
+    keep(kind::kLeastSinkageHere, sinkageReading(bound.least_sinkage, false));
+  return readings;
+}
+
 void summarise(std::span<const ReadingCount> counts, const Estimate& prior, BlockEvidence& block) {
   summarisePull(counts, prior, block);
+  const auto pulls = ofKind(counts, kind::kMostPullHere), depths = ofKind(counts, kind::kLeastSinkageHere);
+  block.most_pull = pulls.empty() ? kNone : static_cast<float>(mostPullOf(pulls.front().step));
+  block.least_sinkage = depths.empty() ? kNone : static_cast<float>(sinkageOf(depths.back().step));
   block.sinkage = std::numeric_limits<float>::quiet_NaN();
   block.sinkage_raises = false;
   for (const std::uint8_t which : {kind::kSinkage, kind::kSinkageLowers}) {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include <talus/costmap/ground_model.hpp>
 #include <talus/costmap/wheel_observation.hpp>
@@ -20,20 +21,26 @@ struct ReadingCount {
 };
 
 /// Kinds of pull are eight grades of certainty, of standard deviation 0.025 to 0.28, twice: of readings
-/// that may raise the belief and of those that may only lower it.
+/// that may raise the belief and of those that may only lower it. Bounds are of the block itself: the least of them
+/// holds, however many other readings there are.
 namespace reading_kind {
 inline constexpr std::uint8_t kGrades = 8;
 inline constexpr std::uint8_t kPull = 0;              ///< and the seven behind it
 inline constexpr std::uint8_t kPullLowers = kGrades;  ///< and the seven behind it
 inline constexpr std::uint8_t kSinkage = 2 * kGrades;
 inline constexpr std::uint8_t kSinkageLowers = 2 * kGrades + 1;
-inline constexpr std::uint8_t kCount = 2 * kGrades + 2;
+inline constexpr std::uint8_t kMostPullHere = 2 * kGrades + 2;
+inline constexpr std::uint8_t kLeastSinkageHere = 2 * kGrades + 3;
+inline constexpr std::uint8_t kCount = 2 * kGrades + 4;
 }  // namespace reading_kind
 
 /// The count that a drawbar pull over load goes into: steps of 0.01 from -1.28, rounded down.
 ReadingCount pullReading(const Estimate& pull, bool may_raise) noexcept;
 /// The same of sinkage over radius: steps of 0.01 from 0, rounded up.
 ReadingCount sinkageReading(double sinkage_over_radius, bool may_raise) noexcept;
+
+/// The counts that bounds of a block go into, likewise; of no pull or sinkage, nothing.
+std::vector<ReadingCount> boundReadings(const GroundBound& bound);
 
 /// What a block's counts come to.
 struct BlockEvidence {
@@ -48,13 +55,15 @@ struct BlockEvidence {
   bool lowers = false;              ///< whether some of its readings may only lower
   float pull = 0.0F;                ///< by readings that may raise: drawbar pull over load [-]; NaN: none
   float variance = 0.0F;            ///< of that
-  float weak_pull = 0.0F;           ///< of the part of all its readings that makes it weakest [-]
+  float weak_pull = 0.0F;           ///< of the part of all its readings that makes it weakest [-]; NaN: none
   float weak_variance = 0.0F;       ///< of that
   float sinkage = 0.0F;             ///< of its deepest part: sinkage over radius [-]; NaN: none was measured
+  float most_pull = 0.0F;           ///< least bound of its drawbar pull over load [-]; NaN: none
+  float least_sinkage = 0.0F;       ///< greatest bound of its sinkage over radius [-]; NaN: none
 
   double reach_m() const noexcept { return 0.1 * reach; }
 };
-static_assert(sizeof(BlockEvidence) == 32);
+static_assert(sizeof(BlockEvidence) == 40);
 
 /// Works out the numbers from pull to sinkage_raises; `prior`: of its class, place to place.
 ///

@@ -1,6 +1,7 @@
 #include <array>
 #include <cinttypes>
 #include <cstdio>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,23 +13,31 @@
 namespace talus::costmap {
 namespace {
 
-// Calls take(row, result) for every row in order.
+// Calls take(row, result) for every row, moment by moment.
 template <typename Take>
 void processRows(const TelemetryRows& rows, const TraversabilityMap& map, TelemetryProcessor& processor,
                  const DriveVerdict& verdict, Take&& take) {
-  for (std::size_t first = 0; first < rows.size();) {
-    const Moment moment = momentAt(rows, first, map.model().rover());
-    for (auto& result : processor.process(rows, moment, verdict)) take(first++, std::move(result));
+  for (std::vector<std::size_t>& of : rows.byMoment()) {
+    const Moment moment = momentOf(rows, std::move(of), map.model().rover());
+    auto results = processor.process(rows, moment, verdict);
+    for (std::size_t w = 0; w < results.size(); ++w) take(moment.rows[w], std::move(results[w]));
   }
 }
 
-// Row by row, so that a drive has one id however it is divided.
+// Row by row, rejected ones where they stood, so that a drive has one id however it is divided.
 void add(const terramech::Telemetry& telemetry, Checksum& sum) {
+  std::size_t rejected = 0;
+  const auto addRejected = [&](std::size_t before_line) {
+    for (; rejected < telemetry.rejected.size() && telemetry.rejected[rejected].line < before_line;
+         ++rejected)
+      for (const auto& column : telemetry.rejected_numbers) sum.add(&column.values[rejected], sizeof(double));
+  };
   for (std::size_t i = 0; i < telemetry.size(); ++i) {
+    addRejected(telemetry.lines[i]);
     for (const auto& column : telemetry.numbers) sum.add(&column.values[i], sizeof(double));
-    for (const auto& column : telemetry.words)
-      sum.add(column.values[i].c_str(), column.values[i].size() + 1);
+    for (const auto& column : telemetry.words) sum.add(column.values[i].c_str(), column.values[i].size() + 1);
   }
+  addRejected(std::numeric_limits<std::size_t>::max());
 }
 
 std::string hexadecimal(const Checksum& sum) {
@@ -51,29 +60,31 @@ struct DriveIntake::State {
   IntakeOptions options;
   TelemetryProcessor processor;
   DriveReport report{};
-  Checksum sum{};                   // of the parts so far
-  std::string id{};                 // by that
-  std::vector<JournalRow> rows{};   // of a part
+  Checksum sum{};                  // of the parts so far
+  std::string id{};                // by that
+  std::vector<JournalRow> rows{};  // of a part
 
   void learn(const terramech::Telemetry& telemetry, const TelemetryRows& readings, std::size_t i,
              TelemetryProcessor::Result&& result);
   void put(const terramech::Telemetry& telemetry, const DriveVerdict& verdict);
+  void hearRejected(const terramech::Telemetry& telemetry);
 };
 
 void DriveIntake::State::learn(const terramech::Telemetry& telemetry, const TelemetryRows& readings,
                                std::size_t i, TelemetryProcessor::Result&& result) {
-  if (result.observation) result.reason = fault(*result.observation);
-  bool accepted = result.observation.has_value() && result.reason.empty();
+  const std::string wrong = result.observation ? fault(*result.observation) : "";
+  if (!wrong.empty()) result.reason = wrong;
+  bool accepted = result.observation.has_value() && wrong.empty();
   if (accepted && !map.learn(*result.observation)) {
     accepted = false;
     result.reason = "no ground to learn about there";
   }
   JournalRow row{.source = telemetry.source,
-                       .line = static_cast<std::int64_t>(telemetry.lines[i]),
-                       .accepted = accepted,
-                       .reason = result.reason,
-                       .reading = readings.reading(i),
-                       .observation = result.observation.value_or(WheelObservation{})};
+                 .line = static_cast<std::int64_t>(telemetry.lines[i]),
+                 .accepted = accepted,
+                 .reason = result.reason,
+                 .reading = readings.reading(i),
+                 .observation = result.observation.value_or(WheelObservation{})};
   ++(accepted ? report.used : report.rejected);
   if (accepted && row.observation.pull_may_raise) ++report.raising;
   if (!accepted && report.first_reason.empty()) report.first_reason = row.reason;
@@ -89,8 +100,29 @@ void DriveIntake::State::put(const terramech::Telemetry& telemetry, const DriveV
   processRows(readings, map, processor, verdict, [&](std::size_t i, TelemetryProcessor::Result&& result) {
     learn(telemetry, readings, i, std::move(result));
   });
+  hearRejected(telemetry);
   if (journal) journal->append(id, rows, before);
   map.noteDrive(id, before);
+}
+
+// Rows that the file's reader left out: what each of their numbers says of danger by itself.
+void DriveIntake::State::hearRejected(const terramech::Telemetry& telemetry) {
+  terramech::Telemetry left{.source = telemetry.source, .numbers = telemetry.rejected_numbers};
+  if (telemetry.rejected.empty() || !left.find("x_m") || !left.find("y_m") || !left.find("load_N") ||
+      !left.find("slip"))
+    return;
+  const TelemetryRows readings(left, map, options.pose_std_m);
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    const auto heard = processor.rejected(readings, i);
+    if (!heard || !map.learn(*heard)) continue;
+    ++report.heard;
+    rows.push_back({.source = telemetry.source,
+                    .line = static_cast<std::int64_t>(telemetry.rejected[i].line),
+                    .accepted = true,
+                    .reason = telemetry.rejected[i].reason,
+                    .reading = readings.reading(i),
+                    .observation = *heard});
+  }
 }
 
 DriveIntake::DriveIntake(TraversabilityMap& map, EvidenceJournal* journal, const IntakeOptions& options)
@@ -109,6 +141,9 @@ DriveReport DriveIntake::report() const {
     report.findings.push_back(std::to_string(rows) +
                               " rows: load_N is an equal share of the weight on a slope; the load transfer "
                               "was computed from the wheel positions");
+  if (report.heard > 0)
+    report.findings.push_back(std::to_string(report.heard) +
+                              " rejected rows: they indicate danger, which counts where they were read");
   return report;
 }
 

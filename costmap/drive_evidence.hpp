@@ -17,6 +17,7 @@ struct DriveReport {
   std::size_t raising = 0;            ///< of those, what may raise a belief: by sensors that proved sound
   std::size_t rejected = 0;           ///< by the sensors' watch, or without a place on the map
   std::size_t repeated = 0;           ///< rows of a drive that the map holds already: counted once
+  std::size_t heard = 0;              ///< rows that the file's reader rejected, yet point to danger
   std::string first_reason;           ///< of the first row rejected; empty when none was
   std::vector<std::string> findings;  ///< what the sensors' watch saw, a line each
 };
@@ -62,9 +63,8 @@ class DriveIntake {
 /// pass_index, z_m, pose_std_m help. The slope is the row's own; without it the map's along the heading. All rows
 /// go into the journal, if there is one, in one transaction. Throws InputError when a column is missing.
 ///
-/// A reading that the sensors' watch suspects counts all the same where it points to danger, though it raises
-/// nothing: much slip, a sinkage of half a radius, or pull far below the class's. What may raise is what
-/// SensorProof allows; it takes heading_rad, slope_rad and slopes that vary.
+/// A reading that the sensors' watch suspects, and a row that the file's reader rejected, count all the same where they
+/// point to danger (DangerWatch), though of no other place. What may raise is what SensorProof allows; it takes heading_rad, slope_rad and slopes that vary.
 DriveReport addDrive(TraversabilityMap& map, const terramech::Telemetry& telemetry,
                      EvidenceJournal* journal = nullptr, const IntakeOptions& options = {});
 

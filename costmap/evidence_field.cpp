@@ -18,6 +18,19 @@ constexpr double kPlaceStd = 0.06;         // a place is known that is known so 
 constexpr double kSteepest =
     0.6;  // gradient of ground that joins places of one floor: more than rovers drive
 
+// Whether the place of a bound, anywhere in its block and as far off as it may be, lies in the block about `at`.
+bool mayBeIn(const PlaceBound& bound, const maps::Point& at, double side_m) noexcept {
+  const double gap_x_m = std::fmax(std::abs(at.x_m - bound.block.x_m) - side_m, 0.0);
+  const double gap_y_m = std::fmax(std::abs(at.y_m - bound.block.y_m) - side_m, 0.0);
+  const bool itself = at.x_m == bound.block.x_m && at.y_m == bound.block.y_m;
+  return itself || std::hypot(gap_x_m, gap_y_m) < bound.reach_m;
+}
+
+GroundBelief bounded(const GroundBelief& belief, const PlaceBound& bound) noexcept {
+  return weaker(belief, {.pull = {std::fmin(belief.pull.value, bound.most_pull), 0.0},
+                         .sinkage = {std::fmax(belief.sinkage.value, bound.least_sinkage), 0.0}});
+}
+
 std::uint32_t secondsOf(double time_s) noexcept {
   return time_s > 0.0 && time_s < 4294967295.0 ? static_cast<std::uint32_t>(time_s) : 0U;
 }
@@ -68,7 +81,7 @@ Variation EvidenceField::variationOf(int class_index) const noexcept {
 // length), and for no departure beyond what its class explains: what is more is other ground that no class
 // raster shows.
 std::optional<BlockLesson> EvidenceField::lessonOf(const BlockEvidence& block, int class_index) const {
-  if (!teachesClass(block.level)) return std::nullopt;
+  if (!teachesClass(block.level) || std::isnan(block.weak_pull)) return std::nullopt;
   const GroundClass& ground = groundOf(class_index);
   const GroundBelief prior = site_->model->prior(class_index);
   const bool raises = !std::isnan(block.pull);
@@ -100,7 +113,7 @@ std::optional<float> EvidenceField::squareStrength(const IndependentPlaces::Squa
   double least = std::numeric_limits<double>::infinity();
   const int number = groundOf(class_index).number;
   const auto take = [&](const BlockLevel& at, const BlockEvidence& e) {
-    if (at.terrain_class != number || !teachesClass(at.level)) return;
+    if (at.terrain_class != number || !teachesClass(at.level) || std::isnan(e.weak_pull)) return;
     driven = true;
     const double pull = static_cast<double>(e.pull) - prior, variance = static_cast<double>(e.variance);
     const bool is_known = variance <= kPlaceStd * kPlaceStd;
@@ -161,22 +174,21 @@ std::optional<maps::CellBox> EvidenceField::add(const WheelObservation& observat
   if (!cell || std::isnan(site_->elevation.elevation_m[*cell])) return std::nullopt;
   const auto floor = site_->floorAt(*cell, observation.z_m);
   const int class_index = floor ? 0 : site_->classIndex(*cell);
-  if (class_index < 0 || !std::isfinite(observation.pull.value) || !(observation.pull.std > 0.0))
-    return std::nullopt;
+  if (class_index < 0 || !(observation.estimates() || observation.here.any())) return std::nullopt;
   const bool sure = floor || observation.pose_std_m <= 0.0 || standsOnOneClass(observation, class_index);
   const double correlation_length_m = site_->model->parts().policy.correlation_length_m;
   SavedBlock heard{.block = floor ? levelOf(*cell, *floor) : topOf(*cell, class_index),
                    .updated_s = secondsOf(observation.time_s),
                    .reach = static_cast<std::uint8_t>(
                        std::clamp(std::ceil(10.0 * kPoseReach * observation.pose_std_m - 1e-9), 0.0, 255.0)),
-                   .heard = {}};
+                   .heard = boundReadings(observation.here)};
   // Of ground a pose error away, which may be what was read, only so much is this ground's.
   Estimate pull = observation.pull;
   const double alike = sparseKernel(observation.pose_std_m, correlation_length_m);
   const bool raises = sure && observation.pull_may_raise;
   if (raises)
     pull.std = std::hypot(pull.std, groundOf(class_index).pull_std * std::sqrt(1.0 - alike * alike));
-  heard.heard.push_back(pullReading(pull, raises));
+  if (observation.estimates()) heard.heard.push_back(pullReading(pull, raises));
   if (std::isfinite(observation.sinkage.std))
     heard.heard.push_back(sinkageReading(observation.sinkage.value, sure && observation.sinkage_may_raise));
   hear(heard.block, heard);
@@ -255,8 +267,12 @@ void EvidenceField::place(const BlockLevel& block, const BlockEvidence& e, Nearb
          .variance = static_cast<double>(e.variance)});
   }
   const bool may_be_here = alike || e.reach > 0;
+  if (!may_be_here) return;
+  if (!std::isnan(e.most_pull) || !std::isnan(e.least_sinkage))
+    nearby.bounds.push_back(
+        {middle, e.reach_m(), static_cast<double>(e.most_pull), static_cast<double>(e.least_sinkage)});
   const bool pulls_less = weak || (own_lowers && below < 0.0);
-  if (!may_be_here || !(pulls_less || deep)) return;
+  if (!(pulls_less || deep)) return;
   const double pull = static_cast<double>(e.weak_pull) - prior.pull.value;
   const double sinkage = static_cast<double>(e.sinkage) - prior.sinkage.value;
   nearby.weak.push_back({.place = middle,
@@ -271,7 +287,7 @@ void EvidenceField::place(const BlockLevel& block, const BlockEvidence& e, Nearb
 LocalGround EvidenceField::around(const BlockLevel& patch, int class_index) const {
   const int reach =
       store_->blocks.reach() + static_cast<int>(std::ceil(farthest_reach_m_ / store_->blocks.side_m()));
-  NearbyEvidence nearby{.class_index = class_index, .places = {}, .weak = {}};
+  NearbyEvidence nearby{.class_index = class_index, .places = {}, .weak = {}, .bounds = {}};
   store_->bricks.visitTop({patch.column - reach, patch.row - reach, patch.column + kPatchBlocks + reach - 1,
                            patch.row + kPatchBlocks + reach - 1},
                           [&](const BlockLevel& at, const BlockEvidence& e) { place(at, e, nearby); });
@@ -298,7 +314,8 @@ LocalGround EvidenceField::grounded(NearbyEvidence nearby, const maps::Point& mi
                              .sinkage = std::fmax(places[i].sinkage + mean.sinkage.value, 0.0)});
     places.resize(kMostNeighbours);
   }
-  return {GaussianProcess(std::move(places), variationOf(nearby.class_index)), std::move(nearby.weak)};
+  return {GaussianProcess(std::move(places), variationOf(nearby.class_index)), std::move(nearby.weak),
+          std::move(nearby.bounds)};
 }
 
 // Evidence of ground, on top or not, that one can drive to from a floor without climbing.
@@ -326,8 +343,8 @@ GroundBelief EvidenceField::floorBelief(maps::Cell cell, const Floor& floor) con
   return believed(levelWith(block, levelOf(cell, floor).level), 0, store_->blocks.middleOf(block)).ground;
 }
 
-// No better than the class away from evidence until enough places say so, and never better than any place that
-// is weak leaves it.
+// No better than the class away from evidence until enough places say so, never better than any place that is weak
+// leaves it, and within the bounds of the block itself.
 EvidenceField::Belief EvidenceField::believed(const LocalGround& ground, int class_index,
                                               const maps::Point& at) const {
   const GroundBelief away = classBelief(class_index), prior = site_->model->prior(class_index);
@@ -347,6 +364,8 @@ EvidenceField::Belief EvidenceField::believed(const LocalGround& ground, int cla
           out, {.pull = {prior.pull.value + left->pull.value, std::hypot(left->pull.std, open * c.mean_std)},
                 .sinkage = {prior.sinkage.value + left->sinkage.value, left->sinkage.std}});
     }
+  for (const PlaceBound& bound : ground.bounds)
+    if (mayBeIn(bound, at, store_->blocks.side_m())) out = bounded(out, bound);
   return {out, out.pull.value != away.pull.value || out.pull.std != away.pull.std ||
                    out.sinkage.value != away.sinkage.value};
 }

@@ -14,8 +14,8 @@
 namespace talus::costmap {
 namespace {
 
-// 1 had no z_m, 2 no pose_std_m nor what may raise, 3 no drives
-constexpr int kFormat = 4;
+// 1 had no z_m, 2 no pose_std_m nor what may raise, 3 no drives, 4 no bounds
+constexpr int kFormat = 5;
 constexpr int kApplication = 0x54414c55;  // "TALU"
 
 constexpr const char* kSchema =
@@ -26,26 +26,28 @@ constexpr const char* kSchema =
     " torque_Nm REAL, sinkage_m REAL, gradient REAL, drawbar_pull_N REAL, pass_index INTEGER,"
     " pull REAL, pull_std REAL, sinkage REAL, sinkage_std REAL, z_m REAL,"
     " pose_std_m REAL NOT NULL DEFAULT 0, pull_may_raise INTEGER NOT NULL DEFAULT 0,"
-    " sinkage_may_raise INTEGER NOT NULL DEFAULT 0, drive INTEGER);"
+    " sinkage_may_raise INTEGER NOT NULL DEFAULT 0, drive INTEGER, pull_here REAL, sinkage_here REAL);"
     "CREATE TABLE IF NOT EXISTS drive(number INTEGER PRIMARY KEY, id TEXT NOT NULL UNIQUE, checksum INTEGER)";
 constexpr const char* kInsert =
     "INSERT INTO evidence(source, line, accepted, reason, time_s, x_m, y_m, load_N, slip, torque_Nm, "
     "sinkage_m, gradient,"
     " drawbar_pull_N, pass_index, pull, pull_std, sinkage, sinkage_std, z_m, pose_std_m,"
-    " pull_may_raise, sinkage_may_raise, drive) "
-    "VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)";
+    " pull_may_raise, sinkage_may_raise, pull_here, sinkage_here, drive) "
+    "VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)";
 constexpr const char* kSelect =
     "SELECT source, line, accepted, reason, time_s, x_m, y_m, load_N, slip, torque_Nm, sinkage_m, gradient,"
     " drawbar_pull_N, pass_index, pull, pull_std, sinkage, sinkage_std, z_m, pose_std_m,"
-    " pull_may_raise, sinkage_may_raise FROM evidence WHERE drive = ? AND id > ? ORDER BY id";
+    " pull_may_raise, sinkage_may_raise, pull_here, sinkage_here FROM evidence WHERE drive = ? AND id > ? ORDER BY id";
 
 // Columns that older journals lack: what they hold may not raise.
-constexpr std::array<std::pair<const char*, const char*>, 5> kAdded{
+constexpr std::array<std::pair<const char*, const char*>, 7> kAdded{
     {{"z_m", "REAL"},
      {"pose_std_m", "REAL NOT NULL DEFAULT 0"},
      {"pull_may_raise", "INTEGER NOT NULL DEFAULT 0"},
      {"sinkage_may_raise", "INTEGER NOT NULL DEFAULT 0"},
-     {"drive", "INTEGER"}}};
+     {"drive", "INTEGER"},
+     {"pull_here", "REAL"},
+     {"sinkage_here", "REAL"}}};
 
 // NULL stands for NaN: SQLite has none.
 double number(sqlite3_stmt* row, int column) {
@@ -92,7 +94,8 @@ JournalRow readRow(sqlite3_stmt* row) {
                      .from_torque = std::numeric_limits<double>::quiet_NaN(),
                      .pose_std_m = out.reading.pose_std_m,
                      .pull_may_raise = sqlite3_column_int(row, 20) != 0,
-                     .sinkage_may_raise = sqlite3_column_int(row, 21) != 0};
+                     .sinkage_may_raise = sqlite3_column_int(row, 21) != 0,
+                     .here = {number(row, 22), number(row, 23)}};
   return out;
 }
 
@@ -113,14 +116,21 @@ std::string outside(const char* name, double value, double bound) {
 }  // namespace
 
 std::string fault(const WheelObservation& o) {
+  const bool bounds_alone = o.here.any() && std::isnan(o.pull.value) && std::isnan(o.pull.std) &&
+                            std::isnan(o.sinkage.value) && std::isnan(o.sinkage.std);
+  if (!bounds_alone)
+    for (const std::string& reason :
+         {outside("pull", o.pull.value, kGreatestShare), outside("pull_std", o.pull.std, kGreatestShare),
+          outside("sinkage", o.sinkage.value, kGreatestShare)})
+      if (!reason.empty()) return reason;
+  if (std::abs(o.here.most_pull) > kGreatestShare || std::abs(o.here.least_sinkage) > kGreatestShare)
+    return "a bound is not finite and within 100";
   for (const std::string& reason :
        {outside("x_m", o.place.x_m, kGreatestPlace_m), outside("y_m", o.place.y_m, kGreatestPlace_m),
-        outside("pull", o.pull.value, kGreatestShare), outside("pull_std", o.pull.std, kGreatestShare),
-        outside("sinkage", o.sinkage.value, kGreatestShare),
         outside("pose_std_m", o.pose_std_m, kGreatestPlace_m)})
     if (!reason.empty()) return reason;
   // Infinite where no sinkage was measured.
-  if (!(o.pull.std >= 0.0) || !(o.sinkage.std >= 0.0) || !(o.pose_std_m >= 0.0))
+  if (!(o.pose_std_m >= 0.0) || (!bounds_alone && (!(o.pull.std >= 0.0) || !(o.sinkage.std >= 0.0))))
     return "a standard deviation is below 0 or missing";
   if (std::isinf(o.time_s) || std::isinf(o.z_m)) return "time_s or z_m is infinite";
   return "";
@@ -230,6 +240,8 @@ void bindRow(sqlite3_stmt* s, const JournalRow& row, std::int64_t drive) {
     bind(s, at++, value);
   sqlite3_bind_int(s, at++, o.pull_may_raise ? 1 : 0);
   sqlite3_bind_int(s, at++, o.sinkage_may_raise ? 1 : 0);
+  bind(s, at++, o.here.most_pull);
+  bind(s, at++, o.here.least_sinkage);
   sqlite3_bind_int64(s, at, drive);
 }
 

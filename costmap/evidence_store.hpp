@@ -11,18 +11,28 @@
 /// What an EvidenceField is made of; not for its users.
 namespace talus::costmap {
 
+/// What bounds the ground of a block, whatever else is known of it. NaN: not bounded.
+struct PlaceBound {
+  maps::Point block;           ///< its middle
+  double reach_m = 0.0;        ///< how far off the place may be
+  double most_pull = 0.0;      ///< drawbar pull over load [-]
+  double least_sinkage = 0.0;  ///< sinkage over radius [-]
+};
+
 /// Evidence that can reach a piece of ground of one class.
 struct NearbyEvidence {
   int class_index = 0;
   std::vector<PlaceEvidence> places;  ///< departures from the class's posterior mean, of what may raise
   std::vector<WeakPlace> weak;        ///< departures from the class's prior
+  std::vector<PlaceBound> bounds;
 };
 
 /// The same, ready to be asked.
 struct LocalGround {
   GaussianProcess process;
   std::vector<WeakPlace> weak;
-  bool empty() const noexcept { return process.empty() && weak.empty(); }
+  std::vector<PlaceBound> bounds;
+  bool empty() const noexcept { return process.empty() && weak.empty() && bounds.empty(); }
 };
 
 /// Blocks, what they heard, and what that teaches of classes.

@@ -177,7 +177,9 @@ void judge(const TraversabilityMap& map, maps::Cell cell, const Direction& headi
     }
   const auto ground = map.publishedGround(cell);
   if (!ground) {
-    out.verdict += ": no cost curve is left for this ground";
+    out.verdict += map.code(cell).curve() == CellCode::kUnknown
+                       ? ": a wheel may touch ground without a soil class"
+                       : ": no cost curve is left for this ground";
     return;
   }
   // What is said is what planners read, at the gradient that they read it at.

@@ -38,8 +38,11 @@ GroundCurves::GroundCurves(std::shared_ptr<const GroundSite> site)
       learned_(site_->grid()) {}
 
 WheelSwath::Ground GroundCurves::ground(maps::Cell cell) const {
-  const int index = site_->grid().contains(cell) ? site_->classIndex(cell) : -1;
-  if (index < 0) return {};
+  if (!site_->grid().contains(cell)) return {};
+  const int index = site_->classIndex(cell);
+  if (index < 0 && site_->classes[cell] == GroundSite::kNoClass && site_->model->parts().policy.allow_unknown)
+    return {0, table_.belief(table_.prior(0))};
+  if (index < 0) return {.belief = {}, .unseen = true};
   const std::uint32_t word = any_learned_ ? learned_[cell] : 0U;
   if (word == 0) return {index, table_.belief(table_.prior(index))};
   return {index,
@@ -75,6 +78,7 @@ std::uint8_t GroundCurves::number(maps::Cell cell) {
       for (int column = -swath_.reach(); column <= swath_.reach(); ++column)
         around_.push_back(ground({cell.column + column, cell.row + row}));
     judged = swath_.judged(around_);
+    if (judged.unseen) return CellCode::kUnknown;
   }
   const bool own_alone =
       judged.weakest_class == own.class_index && WheelSwath::Ground{own.class_index, judged.belief} == own;

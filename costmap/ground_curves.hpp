@@ -21,7 +21,8 @@ class GroundCurves {
 
   const CostCurveTable& table() const noexcept { return table_; }
 
-  /// Number of the curve of a cell whose class has a soil.
+  /// Number of the curve of a cell whose class has a soil; CellCode::kUnknown where a wheel may touch ground without a
+  /// class, unless the policy allows that.
   std::uint8_t number(maps::Cell cell);
 
   /// Takes over what is believed of the classes; false when nothing changed.

@@ -13,6 +13,8 @@ namespace talus::costmap {
 
 /// The ground as it was before anybody drove on it: what a map and its evidence share and never change.
 struct GroundSite {
+  static constexpr std::uint8_t kNoClass = 255;  ///< class number where the raster leaves a cell out
+
   maps::ElevationMap elevation;
   maps::Raster<std::uint8_t> classes;  ///< class numbers; empty: all of the first class
   SurfaceKeys keys;

@@ -71,6 +71,7 @@ void SensorProof::take(const Row& row) {
   const WheelReading& r = row.reading;
   follow(run, wheel, r);
   wheel.last = r;
+  if (row.danger) return;
   if (wheel.last_counted && distance_m(wheel.last_counted->place, r.place) < kApart_m) return;
   wheel.last_counted = r;
   run.slope.add(row.map_gradient, row.measured_gradient);

@@ -32,6 +32,7 @@ class SensorProof {
     double map_gradient = 0.0;       ///< the same by the map
     double class_slip = 0.0;         ///< of ground of the class on the measured gradient
     double torque_pull = 0.0;        ///< drawbar pull over load by torque and sinkage
+    bool danger = false;             ///< it points to danger: it proves nothing but where the rover is
   };
 
   /// How far the mean of slip on level ground may be off by noise [-].

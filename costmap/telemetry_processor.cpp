@@ -10,7 +10,6 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kDangerSlip = 0.7;  // beyond any that a drive plans
-constexpr double kFarBelow = 2.0;    // standard deviations
 
 std::optional<int> classAt(const TraversabilityMap& map, const WheelReading& reading) {
   const auto cell = map.grid().cellAt(reading.place);
@@ -18,19 +17,21 @@ std::optional<int> classAt(const TraversabilityMap& map, const WheelReading& rea
   return index < 0 ? std::nullopt : std::optional(index);
 }
 
-// Whether a reading is evidence of danger, whatever else it is suspected of.
-bool pointsToDanger(const GroundModel& model, const ClassReading& read, const WheelObservation& seen) {
-  const double z = read.reading.sinkage_m / model.rover().wheel.radius_m;
-  const double class_std = model.parts().classes[static_cast<std::size_t>(read.class_index)].pull_std;
-  const double below = model.prior(read.class_index).pull.value - seen.pull.value;
-  return read.reading.slip >= kDangerSlip || z >= model.parts().policy.sinkage_threshold ||
-         std::abs(read.reading.torque_Nm) >= model.rover().max_torque_Nm ||
-         below > kFarBelow * std::hypot(seen.pull.std, class_std);
-}
-
 ClassReading withoutTorque(ClassReading read) {
   read.reading.torque_Nm = read.reading.sinkage_m = kNone;
   return read;
+}
+
+WheelObservation boundOf(const WheelReading& reading, const GroundBound& here) {
+  WheelObservation out{.time_s = reading.time_s,
+                       .place = reading.place,
+                       .z_m = reading.z_m,
+                       .pull = {kNone, kNone},
+                       .sinkage = {kNone, kNone},
+                       .from_torque = kNone};
+  out.pose_std_m = reading.pose_std_m;
+  out.here = here;
+  return out;
 }
 
 // Torque and sinkage that are not proven make nothing stronger than slip and slope do.
@@ -41,7 +42,7 @@ void weakerBySlope(WheelObservation& seen) {
 }  // namespace
 
 TelemetryProcessor::TelemetryProcessor(const TraversabilityMap& map)
-    : map_(map), watch_(map.model()), observer_(map.model()) {}
+    : map_(map), danger_(map.model()), watch_(map.model()), observer_(map.model()) {}
 
 std::vector<TelemetryProcessor::Result> TelemetryProcessor::process(const TelemetryRows& rows,
                                                                     const Moment& moment,
@@ -49,60 +50,81 @@ std::vector<TelemetryProcessor::Result> TelemetryProcessor::process(const Teleme
   transferred_ += moment.transferred ? moment.readings.size() : 0;
   std::vector<SensorWatch::Named> named;
   for (std::size_t w = 0; w < moment.readings.size(); ++w)
-    named.push_back({rows.series(moment.first + w), moment.readings[w]});
+    named.push_back({rows.series(moment.rows[w]), moment.readings[w]});
   const auto suspected = watch_.refuse(named);
   std::vector<Result> all;
+  std::vector<std::size_t> sound_at;
   Sound sound;
   for (std::size_t w = 0; w < moment.readings.size(); ++w) {
     Result& result = all.emplace_back(Result{moment.readings[w]});
     const auto index = classAt(map_, result.reading);
     if (!index) {
       result.reason = "outside the map or on ground without a soil";
-    } else if (suspected[w]) {
-      result.reason = *suspected[w];
-      result.observation = danger({*index, result.reading});
-    } else {
-      sound.read.push_back({*index, result.reading});
-      sound.row.push_back(moment.first + w);
+      continue;
     }
+    const ClassReading read{*index, result.reading};
+    const GroundBound here = bound(read, rows.leastGradient(moment.rows[w]), suspected[w].has_value());
+    if (here.any()) result.observation = boundOf(result.reading, here);
+    if (suspected[w]) {
+      result.reason = *suspected[w];
+      continue;
+    }
+    sound.read.push_back(read);
+    sound.row.push_back(moment.rows[w]);
+    sound.danger.push_back(here.any());
+    sound_at.push_back(w);
   }
-  auto seen = observed(sound.read, verdict);
+  auto seen = observed(sound, verdict);
   prove(rows, sound, seen);
   for (std::size_t i = 0; i < seen.size(); ++i)
     if (seen[i] && !torqueSound(rows, sound.row[i], verdict)) weakerBySlope(*seen[i]);
   if (mayRaise(rows, moment, sound, verdict)) allow(rows, sound, verdict, seen);
   for (std::size_t i = 0; i < seen.size(); ++i) {
-    Result& result = all[sound.row[i] - moment.first];
-    result.observation = seen[i];
-    if (!seen[i])
+    Result& result = all[sound_at[i]];
+    if (seen[i]) {
+      if (result.observation) seen[i]->here = result.observation->here;
+      result.observation = seen[i];
+    } else {
       result.reason = "insufficient measurements: needs slope, torque with sinkage, or drawbar pull";
+    }
   }
   return all;
 }
 
-// Of a wheel that is suspected, by itself.
-std::optional<WheelObservation> TelemetryProcessor::danger(const ClassReading& read) const {
-  auto seen = observer_.observe({read}).front();
-  if (seen) weakerBySlope(*seen);
-  return seen && pointsToDanger(map_.model(), read, *seen) ? seen : std::nullopt;
+std::optional<WheelObservation> TelemetryProcessor::rejected(const TelemetryRows& rows,
+                                                             std::size_t row) const {
+  const WheelReading reading = rows.reading(row);
+  const auto index = classAt(map_, reading);
+  if (!index) return std::nullopt;
+  const GroundBound here = danger_.hear(*index, reading, rows.leastGradient(row));
+  return here.any() ? std::optional(boundOf(reading, here)) : std::nullopt;
 }
 
-// Of sound wheels together; where torque and sinkage are off, without them, but for what points to danger.
-std::vector<std::optional<WheelObservation>> TelemetryProcessor::observed(
-    const std::vector<ClassReading>& sound, const DriveVerdict& verdict) {
-  auto whole = observer_.observe(sound);
-  for (const auto& seen : whole)
-    if (seen) watch_.compare(*seen);
-  for (const ClassReading& read : sound) watch_.compareSlip(read.reading.slip - asked(read));
+// Of a reading by itself; where it is suspected also by what it would say of the pull.
+GroundBound TelemetryProcessor::bound(const ClassReading& read, double least_gradient, bool suspected) const {
+  GroundBound here = danger_.hear(read.class_index, read.reading, least_gradient);
+  if (!suspected) return here;
+  auto seen = observer_.observe({read}).front();
+  if (!seen) return here;
+  weakerBySlope(*seen);
+  here.lower(danger_.hear(read.class_index, *seen).most_pull);
+  return here;
+}
+
+// Of sound wheels together; where torque and sinkage are off, without them. What points to danger is no measure of a
+// sensor.
+std::vector<std::optional<WheelObservation>> TelemetryProcessor::observed(const Sound& sound,
+                                                                          const DriveVerdict& verdict) {
+  auto whole = observer_.observe(sound.read);
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    if (sound.danger[i]) continue;
+    if (whole[i]) watch_.compare(*whole[i]);
+    watch_.compareSlip(sound.read[i].reading.slip - asked(sound.read[i]));
+  }
   if (!verdict.without_torque) return whole;
   std::vector<ClassReading> without;
-  for (const ClassReading& read : sound) without.push_back(withoutTorque(read));
-  auto seen = observer_.observe(without);
-  for (std::size_t i = 0; i < seen.size(); ++i)
-    if (whole[i] && pointsToDanger(map_.model(), sound[i], *whole[i]) &&
-        (!seen[i] || whole[i]->pull.value < seen[i]->pull.value || std::isfinite(whole[i]->sinkage.std)))
-      seen[i] = whole[i];
-  return seen;
+  for (const ClassReading& read : sound.read) without.push_back(withoutTorque(read));
+  return observer_.observe(without);
 }
 
 void TelemetryProcessor::prove(const TelemetryRows& rows, const Sound& sound,
@@ -116,7 +138,8 @@ void TelemetryProcessor::prove(const TelemetryRows& rows, const Sound& sound,
                  .measured_gradient = gradient,
                  .map_gradient = rows.mapGradient(row),
                  .class_slip = slipOfClasses(sound.read, gradient),
-                 .torque_pull = seen[i] ? seen[i]->from_torque : kNone});
+                 .torque_pull = seen[i] ? seen[i]->from_torque : kNone,
+                 .danger = sound.danger[i]});
   }
 }
 
@@ -127,12 +150,13 @@ bool TelemetryProcessor::torqueSound(const TelemetryRows& rows, std::size_t row,
 
 bool TelemetryProcessor::mayRaise(const TelemetryRows& rows, const Moment& moment, const Sound& sound,
                                   const DriveVerdict& verdict) const {
-  const std::string run = rows.run(moment.first);
+  const std::string run = rows.run(moment.rows.front());
   const std::size_t wheels = moment.readings.size();
   if (!verdict.proof || verdict.without_torque || proof_.displaced(run) || sound.read.size() != wheels ||
       verdict.proof->wheels(run) != wheels ||
       (wheels != 1 && wheels != static_cast<std::size_t>(map_.model().rover().wheel_count)))
     return false;
+  if (std::find(sound.danger.begin(), sound.danger.end(), true) != sound.danger.end()) return false;
   return std::all_of(sound.row.begin(), sound.row.end(), [&](std::size_t row) {
     return verdict.proof->pullSound(run, rows.wheel(row)) && !proof_.doubted(run, rows.wheel(row));
   });

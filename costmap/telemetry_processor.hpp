@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <talus/costmap/danger_watch.hpp>
 #include <talus/costmap/sensor_proof.hpp>
 #include <talus/costmap/sensor_watch.hpp>
 #include <talus/costmap/telemetry_rows.hpp>
@@ -19,6 +20,10 @@ struct DriveVerdict {
 
 /// Puts the moments of a drive through watch, observer and proof, one after the other. Keeps a reference to the map.
 ///
+/// A bound is kept, an estimate is earned. Each channel of each reading is first heard for danger by itself
+/// (DangerWatch): that bounds the place where it was read, whatever else is held against the reading, and proves no
+/// sensor. A reading that is suspected says nothing more.
+///
 /// A moment may raise a belief only where each of its wheels, all of the rover's or the only one of the
 /// file, is proven sound. It then raises by what is left when slip is taken relative to level ground, as if whatever
 /// it is low there were a bias, and slopes relative to the map's; a wheel that does not climb raises nothing. It raises
@@ -28,7 +33,7 @@ class TelemetryProcessor {
  public:
   explicit TelemetryProcessor(const TraversabilityMap& map);
 
-  /// Of one wheel: why it is not believed, or only as evidence of danger, and what it says if it is.
+  /// Of one wheel: why it is not believed, or only as a bound of its place, and what it says if it is.
   struct Result {
     WheelReading reading;
     std::string reason{};
@@ -38,21 +43,24 @@ class TelemetryProcessor {
   /// Results of the rows of a moment, in their order.
   std::vector<Result> process(const TelemetryRows& rows, const Moment& moment, const DriveVerdict& verdict);
 
+  /// What a row that is no reading bounds; nothing where it does not, or has no place.
+  std::optional<WheelObservation> rejected(const TelemetryRows& rows, std::size_t row) const;
+
   DriveVerdict verdict() const { return {watch_.biased(), &proof_}; }
   const SensorWatch& watch() const noexcept { return watch_; }
   /// Rows whose loads were computed.
   std::size_t transferred() const noexcept { return transferred_; }
 
  private:
-  // Wheels of a moment that nothing is held against, and their rows.
+  // Wheels of a moment that nothing is held against, their rows, and whether they point to danger.
   struct Sound {
     std::vector<ClassReading> read;
     std::vector<std::size_t> row;
+    std::vector<bool> danger;
   };
 
-  std::optional<WheelObservation> danger(const ClassReading& read) const;
-  std::vector<std::optional<WheelObservation>> observed(const std::vector<ClassReading>& sound,
-                                                        const DriveVerdict& verdict);
+  GroundBound bound(const ClassReading& read, double least_gradient, bool suspected) const;
+  std::vector<std::optional<WheelObservation>> observed(const Sound& sound, const DriveVerdict& verdict);
   void prove(const TelemetryRows& rows, const Sound& sound,
              const std::vector<std::optional<WheelObservation>>& seen);
   static bool torqueSound(const TelemetryRows& rows, std::size_t row, const DriveVerdict& verdict);
@@ -64,6 +72,7 @@ class TelemetryProcessor {
   double asked(const ClassReading& read) const;
 
   const TraversabilityMap& map_;
+  DangerWatch danger_;
   SensorWatch watch_;
   SensorProof proof_;
   WheelObserver observer_;

@@ -1,6 +1,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <tuple>
+#include <utility>
 
 #include <talus/costmap/telemetry_rows.hpp>
 #include <talus/terramech/contact/load_transfer.hpp>
@@ -10,6 +13,12 @@ namespace {
 
 constexpr double kSameLoad = 0.01;       // of the load: less is the same number
 constexpr double kLevelGradient = 0.03;  // less moves no load worth speaking of
+constexpr double kTurning_mps = 0.005;   // rim speed of a wheel that turns
+
+double slipOf(double speed_mps, double rim_speed_mps) noexcept {
+  return rim_speed_mps > kTurning_mps ? 1.0 - speed_mps / rim_speed_mps
+                                      : std::numeric_limits<double>::quiet_NaN();
+}
 
 }  // namespace
 
@@ -30,6 +39,8 @@ TelemetryRows::TelemetryRows(const terramech::Telemetry& telemetry, const Traver
       pull_(telemetry.find("drawbar_pull_N")),
       pass_(telemetry.find("pass_index")),
       pose_(telemetry.find("pose_std_m")),
+      speed_(telemetry.find("speed_mps")),
+      rim_speed_(telemetry.find("rim_speed_mps")),
       wheel_(telemetry.findWords("wheel")),
       run_(telemetry.findWords("run")) {}
 
@@ -38,9 +49,12 @@ double TelemetryRows::value(const std::vector<double>* column, std::size_t i) {
 }
 
 WheelReading TelemetryRows::reading(std::size_t i) const {
-  WheelReading r{.time_s = value(time_, i),
+  const auto finite = [](double x) {
+    return std::isfinite(x) ? x : std::numeric_limits<double>::quiet_NaN();
+  };
+  WheelReading r{.time_s = finite(value(time_, i)),
                  .place = {x_[i], y_[i]},
-                 .z_m = value(z_, i),
+                 .z_m = finite(value(z_, i)),
                  .load_N = load_[i],
                  .slip = slip_[i],
                  .torque_Nm = value(torque_, i),
@@ -48,7 +62,8 @@ WheelReading TelemetryRows::reading(std::size_t i) const {
                  .gradient = measuredGradient(i),
                  .drawbar_pull_N = value(pull_, i),
                  .pose_std_m = std::isfinite(value(pose_, i)) ? std::max(value(pose_, i), 0.0) : pose_std_m_,
-                 .pass = 1};
+                 .pass = 1,
+                 .speed_slip = slipOf(value(speed_, i), value(rim_speed_, i))};
   if (std::isfinite(value(pass_, i))) r.pass = static_cast<int>(value(pass_, i));
   if (std::isnan(r.gradient)) r.gradient = mapGradient(r, heading(i));
   return r;
@@ -67,33 +82,51 @@ double TelemetryRows::mapGradient(const WheelReading& r, double heading_rad) con
   return code.dzDx() * std::cos(heading_rad) + code.dzDy() * std::sin(heading_rad);
 }
 
-std::size_t TelemetryRows::endOfMoment(std::size_t first) const {
-  std::size_t end = first + 1;
-  if (!time_ || !wheel_ || !std::isfinite(value(time_, first))) return end;
-  const auto seen = [&](std::size_t i) {
-    for (std::size_t j = first; j < i; ++j)
-      if (wheel(j) == wheel(i)) return true;
-    return false;
-  };
-  while (end < size() && value(time_, end) == value(time_, first) && run(end) == run(first) && !seen(end))
-    ++end;
-  return end;
+double TelemetryRows::leastGradient(std::size_t i) const {
+  const WheelReading r = reading(i);
+  const double known = std::fmin(measuredGradient(i), mapGradient(r, heading(i)));
+  if (std::isfinite(known)) return known;
+  const auto cell = map_.grid().cellAt(r.place);
+  if (!cell || map_.floorAt(*cell, r.z_m)) return 0.0;
+  const CellCode code = map_.code(*cell);
+  return -std::hypot(code.dzDx(), code.dzDy());
 }
 
-Moment momentAt(const TelemetryRows& rows, std::size_t first, const terramech::Rover& rover) {
-  Moment moment{.first = first, .readings = {}};
+std::vector<std::vector<std::size_t>> TelemetryRows::byMoment() const {
+  std::vector<std::vector<std::size_t>> moments;
+  const auto alone = [&](std::size_t i) { return !time_ || !wheel_ || !std::isfinite(value(time_, i)); };
+  for (std::size_t first = 0; first < size();) {
+    std::size_t end = first + 1;
+    while (!alone(first) && end < size() && value(time_, end) == value(time_, first)) ++end;
+    // The second row of a wheel belongs to a moment of its own.
+    std::map<std::pair<std::string, std::string>, std::size_t> read;
+    std::map<std::tuple<std::string, std::size_t, std::string>, std::size_t> sorted;
+    for (std::size_t i = first; i < end; ++i) sorted[{run(i), read[{run(i), wheel(i)}]++, wheel(i)}] = i;
+    auto before = sorted.end();
+    for (auto row = sorted.begin(); row != sorted.end(); before = row++) {
+      const auto of = [](const auto& r) { return std::pair(std::get<0>(r->first), std::get<1>(r->first)); };
+      if (before == sorted.end() || of(before) != of(row)) moments.emplace_back();
+      moments.back().push_back(row->second);
+    }
+    first = end;
+  }
+  return moments;
+}
+
+Moment momentOf(const TelemetryRows& rows, std::vector<std::size_t> of, const terramech::Rover& rover) {
+  Moment moment{.rows = std::move(of), .readings = {}};
   maps::Point middle{0.0, 0.0};
-  const std::size_t end = rows.endOfMoment(first);
+  const auto count = static_cast<double>(moment.rows.size());
   bool same = true;
-  for (std::size_t i = first; i < end; ++i) {
+  for (const std::size_t i : moment.rows) {
     const WheelReading& r = moment.readings.emplace_back(rows.reading(i));
-    middle.x_m += r.place.x_m / static_cast<double>(end - first);
-    middle.y_m += r.place.y_m / static_cast<double>(end - first);
+    middle.x_m += r.place.x_m / count;
+    middle.y_m += r.place.y_m / count;
     const double even_N = terramech::wheelLoad_N(rover);
     same =
         same && std::abs(r.load_N - even_N) < kSameLoad * even_N && r.gradient == moment.readings[0].gradient;
   }
-  const double gradient = moment.readings[0].gradient, heading = rows.heading(first);
+  const double gradient = moment.readings[0].gradient, heading = rows.heading(moment.rows.front());
   const bool whole = moment.readings.size() == static_cast<std::size_t>(rover.wheel_count);
   if (!same || !whole || !(std::abs(gradient) > kLevelGradient) || std::isnan(heading)) return moment;
   std::vector<double> along_m;

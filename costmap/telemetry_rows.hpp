@@ -28,8 +28,13 @@ class TelemetryRows {
   /// Along the heading, as the rover measured it and as the map has it; NaN = not known.
   double measuredGradient(std::size_t i) const;
   double mapGradient(std::size_t i) const { return mapGradient(reading(i), heading(i)); }
-  /// One past the last row that was read at the same moment of the same run as this one, by another wheel.
-  std::size_t endOfMoment(std::size_t first) const;
+  /// The least that the slope along the heading may have been: of what was measured and what the map has, or the
+  /// map's steepest descent where the heading is not known.
+  double leastGradient(std::size_t i) const;
+
+  /// All rows by moment: those of different wheels that were read at one time of one run. Neither the order of the
+  /// moments' rows in the file nor that of runs that were read together shows, beyond the rows' numbers.
+  std::vector<std::vector<std::size_t>> byMoment() const;
 
  private:
   static double value(const std::vector<double>* column, std::size_t i);
@@ -39,18 +44,19 @@ class TelemetryRows {
   double pose_std_m_;
   const std::vector<double>&x_, &y_, &load_, &slip_;
   const std::vector<double>*time_, *torque_, *sinkage_, *z_, *slope_, *heading_, *pull_, *pass_, *pose_;
+  const std::vector<double>*speed_, *rim_speed_;
   const std::vector<std::string>*wheel_, *run_;
 };
 
 /// The readings of one moment, with the loads that the slope gives them where the file has all wheels carry
 /// the same: such a column is the weight's even share and not a measurement.
 struct Moment {
-  std::size_t first = 0;  ///< row
-  std::vector<WheelReading> readings;
-  bool transferred = false;  ///< whether the loads are computed
+  std::vector<std::size_t> rows;
+  std::vector<WheelReading> readings;  ///< of each of them
+  bool transferred = false;            ///< whether the loads are computed
 };
 
-/// The moment that begins with a row.
-Moment momentAt(const TelemetryRows& rows, std::size_t first, const terramech::Rover& rover);
+/// The moment of some rows, one a wheel.
+Moment momentOf(const TelemetryRows& rows, std::vector<std::size_t> of, const terramech::Rover& rover);
 
 }  // namespace talus::costmap

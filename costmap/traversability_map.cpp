@@ -12,7 +12,6 @@
 namespace talus::costmap {
 namespace {
 
-constexpr std::uint8_t kNoClass = 255;
 constexpr int kBandRows = 4 * CostTile::kSide;
 
 double footprintRadius(const TraversabilityMap::Options& options, const terramech::Rover& rover) {
@@ -119,8 +118,9 @@ void tell(const GroundBelief& strength, CellBelief& belief) {
 
 void tell(const BlockEvidence& own, double samples, CellBelief& belief) {
   belief.evidence = static_cast<float>(samples);
-  belief.evidence_pull = own.weak_pull;
-  belief.evidence_sinkage = std::isnan(own.sinkage) ? 0.0F : own.sinkage;
+  const float weakest = std::fmin(own.weak_pull, own.most_pull);
+  belief.evidence_pull = std::isnan(weakest) ? 0.0F : weakest;
+  belief.evidence_sinkage = std::fmax(0.0F, std::fmax(own.sinkage, own.least_sinkage));
   belief.updated_s = own.updated_s;
 }
 
@@ -164,7 +164,7 @@ Hazard TraversabilityMap::layerHazards(const MapLayers& layers, std::size_t i) c
   }
   if (!site_->classes.empty()) {
     const std::uint8_t number = site_->classes.values()[i];
-    if (number == kNoClass)
+    if (number == GroundSite::kNoClass)
       found |= Hazard::Unknown;
     else if (site_->model->classIndex(number) < 0)
       found |= Hazard::Obstacle;

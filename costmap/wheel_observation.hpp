@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -22,6 +23,16 @@ struct WheelReading {
   double drawbar_pull_N = 0.0;  ///< where a test stand measures it
   double pose_std_m = 0.0;      ///< how well the place is known
   int pass = 1;  ///< how many wheels rolled here, this one included: from the second on it is in a rut
+  double speed_slip = std::numeric_limits<double>::quiet_NaN();  ///< by the speeds of rim and rover
+};
+
+/// What the ground where a wheel was read is bound by, whatever else is said of it. NaN: not bound.
+struct GroundBound {
+  double most_pull = std::numeric_limits<double>::quiet_NaN();      ///< drawbar pull over load [-]
+  double least_sinkage = std::numeric_limits<double>::quiet_NaN();  ///< sinkage over radius [-]
+
+  bool any() const noexcept { return !std::isnan(most_pull) || !std::isnan(least_sinkage); }
+  void lower(double pull) noexcept { most_pull = std::fmin(most_pull, pull); }
 };
 
 /// A reading and the class of the ground under the wheel, as its position in GroundModel::Parts::classes.
@@ -41,7 +52,8 @@ struct ReadingNoise {
   double model_pull = 0.02;
 };
 
-/// What a reading says about the ground under the wheel, at the reference slip.
+/// What a reading says about the ground under the wheel, at the reference slip: an estimate, a bound of the place
+/// itself, or both.
 struct WheelObservation {
   double time_s = 0.0;
   maps::Point place;
@@ -57,6 +69,10 @@ struct WheelObservation {
   bool pull_may_raise =
       false;  ///< whether the sensors behind the pull are known to be sound; else it can only lower the belief
   bool sinkage_may_raise = false;  ///< the same of the sinkage
+  GroundBound here{};
+
+  /// Whether it estimates the pull.
+  bool estimates() const noexcept { return std::isfinite(pull.value) && pull.std > 0.0; }
 };
 
 /// Turns readings into observations of fresh ground at the reference slip, by two ways that are weighed by

@@ -89,6 +89,7 @@ WheelSwath::Judged WheelSwath::judged(const std::vector<Ground>& around) const {
   std::vector<double> pull(around.size(), own.belief.pull.value);
   for (const Place place : touched_) {
     const Ground& there = around[place];
+    out.unseen |= there.unseen;
     if (there.class_index < 0) continue;
     pull[place] = there.belief.pull.value;
     out.belief.pull.std = std::max(out.belief.pull.std, there.belief.pull.std);

@@ -26,10 +26,11 @@ class WheelSwath {
   /// Cells that a wheel may touch lie at most so many columns and rows away.
   int reach() const noexcept { return reach_; }
 
-  /// Ground of a cell; class_index < 0: nothing is known of it that a wheel could pull on.
+  /// Ground of a cell; class_index < 0: outside of the map.
   struct Ground {
     int class_index = -1;
     GroundBelief belief;
+    bool unseen = false;  ///< no class is known of it, and the policy does not allow that
     friend bool operator==(const Ground& a, const Ground& b) noexcept {
       return a.class_index == b.class_index && a.belief.pull.value == b.belief.pull.value &&
              a.belief.pull.std == b.belief.pull.std && a.belief.sinkage.value == b.belief.sinkage.value;
@@ -40,10 +41,11 @@ class WheelSwath {
   struct Judged {
     GroundBelief belief;
     int weakest_class = 0;  ///< of the weakest ground that a wheel may touch
+    bool unseen = false;    ///< whether a wheel may touch ground that is
   };
 
   /// `around`: the ground of (2 reach + 1)^2 cells, row by row from the south-west, the cell in the middle; that
-  /// must have a class, others without one count as it.
+  /// must have a class, and what lies outside of the map counts as it.
   Judged judged(const std::vector<Ground>& around) const;
 
  private:

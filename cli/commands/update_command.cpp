@@ -105,7 +105,7 @@ void addTelemetry(const Options& options, costmap::TraversabilityMap& map, costm
   const costmap::DriveReport drive = costmap::addDrive(map, telemetry, journal, options.intake);
   if (drive.repeated > 0)
     context.warn(options.telemetry + ": the map holds this drive already; it counts once");
-  else if (drive.used == 0)
+  else if (drive.used == 0 && drive.heard == 0)
     throw InputError({options.telemetry, fmt::format("none of its {} rows is usable", drive.rejected),
                       "first reason: " + drive.first_reason});
   report.used += drive.used;

@@ -48,6 +48,7 @@ struct Column {
   bool required = false;  // never empty
   const Rule* rule = nullptr;
   std::vector<double> numbers;
+  std::vector<double> rejected;    // of rows that were
   std::vector<std::string> words;  // of unknown columns, until it is clear whether they are numbers
 };
 
@@ -96,7 +97,11 @@ class Table {
     for (std::size_t k = 0; k < columns_.size() && fault.empty(); ++k)
       if (columns_[k].known) values_[k] = checkedNumber(columns_[k], row.fields[k], fault);
     if (fault.empty()) fault = sinkageFault();
-    if (!fault.empty()) return fault;
+    if (!fault.empty()) {
+      for (std::size_t k = 0; k < columns_.size(); ++k)
+        if (columns_[k].known) columns_[k].rejected.push_back(asRead(row, k));
+      return fault;
+    }
     for (std::size_t k = 0; k < columns_.size(); ++k) {
       if (columns_[k].known)
         columns_[k].numbers.push_back(values_[k]);
@@ -109,6 +114,7 @@ class Table {
   void moveInto(Telemetry& telemetry) {
     for (Column& column : columns_) {
       if (column.name.empty()) continue;
+      if (column.known) telemetry.rejected_numbers.push_back({column.name, std::move(column.rejected)});
       if (column.known || allNumbers(column))
         telemetry.numbers.push_back({column.name, std::move(column.numbers)});
       else
@@ -118,6 +124,11 @@ class Table {
 
  private:
   static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+
+  static double asRead(const CsvRow& row, std::size_t k) {
+    double value = kMissing;
+    return k < row.fields.size() && parseNumber(row.fields[k], value) ? value : kMissing;
+  }
 
   std::string sinkageFault() const {
     if (sinkage_ == kNone) return "";

@@ -123,7 +123,7 @@ TEST_F(EvidenceJournalTest, RefusesRowsThatWereChanged) {
         "UPDATE evidence SET reason = 'x'", "UPDATE evidence SET accepted = 0", "DELETE FROM evidence",
         "INSERT INTO evidence SELECT 99, source, line, accepted, reason, time_s, x_m, y_m, load_N, slip, torque_Nm,"
         " sinkage_m, gradient, drawbar_pull_N, pass_index, pull, pull_std, sinkage, sinkage_std, z_m, pose_std_m,"
-        " pull_may_raise, sinkage_may_raise, drive FROM evidence"}) {
+        " pull_may_raise, sinkage_may_raise, drive, pull_here, sinkage_here FROM evidence"}) {
     std::filesystem::remove(path());
     { EvidenceJournal(path()).append("a", {row(7)}); }
     change(path(), sql);
@@ -142,6 +142,22 @@ TEST_F(EvidenceJournalTest, RefusesValuesThatNoWheelGives) {
     const EvidenceJournal journal(path());
     EXPECT_THROW(static_cast<void>(journal.rows("a")), InputError) << sql;
   }
+}
+
+TEST_F(EvidenceJournalTest, BoundsComeBackToTheBit) {
+  JournalRow bounded = row(3);
+  bounded.observation.here = {-0.1 / 3.0, 2.0 / 3.0};
+  JournalRow alone = bounded;
+  alone.observation.pull = alone.observation.sinkage = {std::nan(""), std::nan("")};
+  EvidenceJournal journal(path());
+  journal.append("a", {row(2), bounded, alone});
+  const auto back = journal.rows("a");
+  ASSERT_EQ(back.size(), 3U);
+  EXPECT_FALSE(back[0].observation.here.any());
+  EXPECT_EQ(back[1].observation.here.most_pull, -0.1 / 3.0);
+  EXPECT_EQ(back[1].observation.here.least_sinkage, 2.0 / 3.0);
+  EXPECT_FALSE(back[2].observation.estimates());
+  EXPECT_EQ(back[2].observation.here.most_pull, -0.1 / 3.0);
 }
 
 TEST_F(EvidenceJournalTest, RefusesAFormatOfTheFuture) {

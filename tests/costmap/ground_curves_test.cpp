@@ -213,5 +213,29 @@ TEST(GroundCurves, CoarserStepsMakeRoom) {
   EXPECT_EQ(cheaper, 0);
 }
 
+// A long rover two cells from a cell that the class raster leaves out: its wheels may stand on it.
+TEST(GroundCurves, GroundWithoutAClassUnderAWheelIsUnknown) {
+  terramech::Rover rover = testRover();
+  rover.wheelbase_m = 3.0;
+  MapLayers layers = drawn(std::vector<std::string>(kSide, std::string(kSide, '2')));
+  layers.classes[{12, 12}] = 255;
+  const auto mapUnder = [&](bool allow_unknown) {
+    return TraversabilityMap(layers,
+                             std::make_shared<GroundModel>(
+                                 GroundModel::Parts{.rover = rover,
+                                                    .classes = {GroundClass{.number = 1, .soil = testDust()},
+                                                                GroundClass{.number = 2, .soil = testSand()}},
+                                                    .policy = {.allow_unknown = allow_unknown}}),
+                             {});
+  };
+  const TraversabilityMap closed = mapUnder(false), open = mapUnder(true);
+  ASSERT_EQ(closed.hazards({14, 12}), Hazard::None);
+  EXPECT_EQ(closed.code({14, 12}).curve(), CellCode::kUnknown);
+  EXPECT_NE(explain(closed, {14, 12}, std::nullopt).verdict.find("without a soil class"), std::string::npos);
+  EXPECT_LT(open.publishedGround({14, 12})->pull.value, open.publishedGround({18, 12})->pull.value - 0.02)
+      << "as ground of the first class";
+  EXPECT_LT(closed.code({18, 12}).curve(), CellCode::kUnknown);
+}
+
 }  // namespace
 }  // namespace talus::costmap

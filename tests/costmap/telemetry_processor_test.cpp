@@ -40,7 +40,8 @@ std::vector<TelemetryProcessor::Result> resultsOf(const terramech::Telemetry& t)
   const TelemetryRows rows(t, map, 0.5);
   std::vector<TelemetryProcessor::Result> out;
   for (std::size_t i = 0; i < rows.size(); ++i)
-    for (auto& result : processor.process(rows, momentAt(rows, i, map.model().rover()), processor.verdict()))
+    for (auto& result :
+         processor.process(rows, momentOf(rows, {i}, map.model().rover()), processor.verdict()))
       out.push_back(std::move(result));
   return out;
 }
@@ -58,7 +59,8 @@ TEST(TelemetryProcessor, SuspectedReadingsCountWhereTheyShowDanger) {
   const auto results = resultsOf(t);
   EXPECT_EQ(results[9].reason, "spike");
   ASSERT_TRUE(results[9].observation);
-  EXPECT_FALSE(results[9].observation->pull_may_raise);
+  EXPECT_FALSE(results[9].observation->estimates()) << "it bounds its place and says nothing of other ground";
+  EXPECT_LT(results[9].observation->here.most_pull, -0.3);
   EXPECT_EQ(results[10].reason, "spike");
   EXPECT_FALSE(results[10].observation &&
                results[10].observation->pull.value > testGround()->prior(0).pull.value)

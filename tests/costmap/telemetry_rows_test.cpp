@@ -1,4 +1,5 @@
 #include <cmath>
+#include <limits>
 
 #include <site_map.hpp>
 
@@ -54,10 +55,38 @@ TEST(TelemetryRows, AMomentIsAllWheelsOfOneTime) {
   const TraversabilityMap map = ramp();
   const terramech::Telemetry t = table();
   const TelemetryRows rows(t, map, 0.5);
-  EXPECT_EQ(rows.endOfMoment(0), 2U);
-  EXPECT_EQ(rows.endOfMoment(2), 4U);
-  EXPECT_EQ(rows.endOfMoment(4), 5U);
-  EXPECT_EQ(momentAt(rows, 2, map.model().rover()).readings.size(), 2U);
+  EXPECT_EQ(rows.byMoment(), (std::vector<std::vector<std::size_t>>{{0, 1}, {2, 3}, {4}}));
+  EXPECT_EQ(momentOf(rows, {2, 3}, map.model().rover()).readings.size(), 2U);
+}
+
+// Wheels and runs in any order within a time; the second row of a wheel is a moment of its own.
+TEST(TelemetryRows, TheOrderWithinATimeDoesNotShow) {
+  const TraversabilityMap map = ramp();
+  terramech::Telemetry t = table();
+  t.numbers[4].values.assign(5, 1.0);
+  t.words = {{"wheel", {"b", "a", "a", "b", "b"}}, {"run", {"r", "s", "r", "s", "r"}}};
+  EXPECT_EQ(TelemetryRows(t, map, 0.5).byMoment(),
+            (std::vector<std::vector<std::size_t>>{{2, 0}, {4}, {1, 3}}));
+}
+
+TEST(TelemetryRows, TheLeastSlopeIsTheSteepestDescentWithoutAHeading) {
+  const TraversabilityMap map = ramp();
+  terramech::Telemetry t = table();
+  EXPECT_NEAR(TelemetryRows(t, map, 0.5).leastGradient(0), 0.1, 1e-3) << "the map's, less than the rover's";
+  t.numbers[5].values.assign(5, std::numeric_limits<double>::infinity());
+  t.numbers[6].values.assign(5, NAN);
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_NEAR(TelemetryRows(t, map, 0.5).leastGradient(i), -0.1, 1e-3);
+}
+
+TEST(TelemetryRows, SpeedsOfRimAndRoverAreSlip) {
+  const TraversabilityMap map = ramp();
+  terramech::Telemetry t = table();
+  t.numbers.push_back({"speed_mps", {0.005, 0.1, 0.0, NAN, 0.1}});
+  t.numbers.push_back({"rim_speed_mps", {0.1, 0.1, 0.0, 0.1, NAN}});
+  const TelemetryRows rows(t, map, 0.5);
+  EXPECT_NEAR(rows.reading(0).speed_slip, 0.95, 1e-12);
+  EXPECT_NEAR(rows.reading(1).speed_slip, 0.0, 1e-12);
+  for (const std::size_t i : {2U, 3U, 4U}) EXPECT_TRUE(std::isnan(rows.reading(i).speed_slip));
 }
 
 TEST(TelemetryRows, NamesAColumnThatIsMissing) {

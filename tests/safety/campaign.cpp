@@ -76,6 +76,13 @@ std::vector<Result> Campaign::results() const {
   return all;
 }
 
+std::uint64_t Campaign::missing(std::uint64_t first, std::uint64_t count) const {
+  std::set<std::uint64_t> done;
+  for (const Result& result : results())
+    if (result.number >= first && result.number < first + count) done.insert(result.number);
+  return count - done.size();
+}
+
 Result Campaign::judged(const ProvingGround& ground, const Belief& belief, std::uint64_t number) {
   const Errand wanted = errand(ground, number % routesPerSite());
   Result result{.number = number,

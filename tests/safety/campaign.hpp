@@ -35,6 +35,9 @@ class Campaign {
   /// `report` and left out.
   void run(std::uint64_t first, std::uint64_t count, const std::function<void(const std::string&)>& report);
 
+  /// Errands of a run() that have no result: their site failed.
+  std::uint64_t missing(std::uint64_t first, std::uint64_t count) const;
+
   /// All results of the file.
   std::vector<Result> results() const;
 

@@ -66,7 +66,9 @@ TEST(SafetyCampaignFile, GoesOnWhereItWasStopped) {
   std::ofstream(file, std::ios::app) << "\n3;rocks;mer;0;RRT";
   Campaign again(placesIn(folder), file);
   ASSERT_EQ(again.results().size(), 3U);
+  EXPECT_EQ(again.missing(0, 5), 2U);
   again.run(0, 5, fail);
+  EXPECT_EQ(again.missing(0, 5), 0U);
   const auto results = again.results();
   ASSERT_EQ(results.size(), 5U);
   // Property: the same errands whether stopped or not.

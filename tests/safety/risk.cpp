@@ -34,7 +34,10 @@ std::vector<Stretch> stretches(const Site& site, const Belief& belief, const Rou
     const Plane plane = planeUnder(site.elevation_m, *cell, site.footprint_m());
     const double along = plane.east * std::cos(at.heading_rad) + plane.north * std::sin(at.heading_rad);
     const auto wheels = judge.wheels(at, along);
-    if (wheels) found.push_back({at, *number, Judge::mostPull(*wheels, kStrongestSlip) - along, apart_m});
+    // A stretch is no longer than what is left of the route.
+    const double metres = std::min(apart_m, route.length_m() - at.along_m);
+    if (wheels && metres > 0.0)
+      found.push_back({at, *number, Judge::mostPull(*wheels, kStrongestSlip) - along, metres});
   }
   return found;
 }

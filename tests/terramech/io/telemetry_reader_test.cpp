@@ -61,6 +61,19 @@ TEST(TelemetryReader, RejectsRowsByLineAndReason) {
   }
 }
 
+TEST(TelemetryReader, KeepsTheNumbersOfRejectedRows) {
+  const Telemetry t = read("load_N,slip,note,sinkage_m\n80,0.1,a,0\n80,inf,b,x\n80,0.2,c,0\nnan,0.9,d,-1\n80\n");
+  ASSERT_EQ(t.rejected.size(), 3U);
+  ASSERT_EQ(t.rejected_numbers.size(), 3U) << "known columns";
+  EXPECT_EQ(t.rejected_numbers[1].name, "slip");
+  EXPECT_EQ(t.rejected_numbers[1].values[0], std::numeric_limits<double>::infinity());
+  EXPECT_EQ(t.rejected_numbers[1].values[1], 0.9);
+  EXPECT_TRUE(std::isnan(t.rejected_numbers[1].values[2])) << "the row is cut short";
+  EXPECT_TRUE(std::isnan(t.rejected_numbers[0].values[1]));
+  EXPECT_TRUE(std::isnan(t.rejected_numbers[2].values[0])) << "a word";
+  EXPECT_EQ(t.rejected_numbers[2].values[1], -1.0);
+}
+
 TEST(TelemetryReader, TakesTheEdgesOfEachRange) {
   const Telemetry t = read("slip,sinkage_m\n1,0\n-1,0.1\n");
   EXPECT_EQ(t.size(), 2U);

@@ -1,0 +1,343 @@
+// Evidence of danger: each channel of each row refuses the place where it was read, whatever else was read.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <numbers>
+#include <random>
+
+#include <site_map.hpp>
+#include <unistd.h>
+
+#include <talus/costmap/danger_watch.hpp>
+#include <talus/costmap/drive_evidence.hpp>
+
+namespace talus::costmap {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+WheelReading level(double slip, double sinkage_over_radius, double torque_Nm = kNone) {
+  return {.place = {},
+          .load_N = terramech::wheelLoad_N(testRover()),
+          .slip = slip,
+          .torque_Nm = torque_Nm,
+          .sinkage_m = sinkage_over_radius * testRover().wheel.radius_m,
+          .drawbar_pull_N = kNone};
+}
+
+TEST(DangerWatch, OrdinaryReadingsBoundNothing) {
+  const auto model = testGround();
+  for (const double slip : {-1.0, -0.2, 0.3, 0.69, kNone, -kInfinite})
+    for (const double z : {0.0, 0.49, kNone})
+      EXPECT_FALSE(DangerWatch(*model).hear(0, level(slip, z), 0.0).any());
+}
+
+// Closed form: tan(slope - margin) is where ground of that slope is dangerous.
+TEST(DangerWatch, EachChannelSpeaksForItself) {
+  const auto model = testGround();
+  const DangerWatch watch(*model);
+  const double margin = model->parts().policy.slope_margin_rad;
+  const double level_limit = std::tan(-margin);
+  const double never = std::tan(-model->rover().max_pitch_rad - margin);
+  EXPECT_LT(watch.hear(0, level(0.85, kNone), 0.0).most_pull, level_limit);
+  EXPECT_LT(watch.hear(0, level(0.1, kNone, 99.0), 0.0).most_pull, level_limit);
+  EXPECT_LT(watch.hear(0, level(0.1, kNone, kInfinite), 0.0).most_pull, level_limit);
+  for (const WheelReading& held :
+       {level(0.93, kNone), level(kInfinite, kNone), level(1.2, 0.0), level(0.1, 0.8), level(kNone, 0.8),
+        level(0.1, 2.3), level(0.1, kInfinite)})
+    EXPECT_LT(watch.hear(0, held, 0.3).most_pull, never) << held.slip << ' ' << held.sinkage_m;
+  WheelReading spinning = level(kNone, kNone);
+  spinning.speed_slip = 0.95;
+  EXPECT_LT(watch.hear(0, spinning, 0.3).most_pull, never);
+  const GroundBound deep = watch.hear(0, level(0.1, 0.6), 0.0);
+  EXPECT_TRUE(std::isnan(deep.most_pull));
+  EXPECT_NEAR(deep.least_sinkage, 0.6, 1e-12);
+}
+
+// Property: more slip, more sinkage and less slope never bound less.
+TEST(DangerWatch, IsMonotone) {
+  const auto model = testGround();
+  const DangerWatch watch(*model);
+  const auto most = [](const GroundBound& b) { return std::isnan(b.most_pull) ? 9.0 : b.most_pull; };
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> share(0.0, 1.0);
+  for (int i = 0; i < 2000; ++i) {
+    const double slip = 1.2 * share(random), z = 1.2 * share(random), gradient = share(random) - 0.5;
+    const double before = most(watch.hear(i % 2, level(slip, z), gradient));
+    EXPECT_LE(most(watch.hear(i % 2, level(slip + 0.1 * share(random), z), gradient)), before + 1e-9);
+    EXPECT_LE(most(watch.hear(i % 2, level(slip, z + 0.1 * share(random)), gradient)), before + 1e-9);
+    EXPECT_LE(most(watch.hear(i % 2, level(slip, z), gradient - 0.1 * share(random))), before + 1e-9);
+  }
+}
+
+// A log of one wheel or several; columns that are NaN in every row are left out of the table.
+struct Row {
+  double time_s, x_m, slip;
+  double torque_Nm = kNone, sinkage_m = kNone, slope_rad = kNone, heading_rad = kNone;
+  double y_m = 220.5;
+  std::string wheel = "w0";
+};
+
+terramech::Telemetry tableOf(const std::vector<Row>& rows, const terramech::Rover& rover = testRover()) {
+  terramech::Telemetry out;
+  out.source = "drive.csv";
+  const std::vector<std::pair<const char*, double Row::*>> columns{{"time_s", &Row::time_s},
+                                                                   {"x_m", &Row::x_m},
+                                                                   {"y_m", &Row::y_m},
+                                                                   {"slip", &Row::slip},
+                                                                   {"torque_Nm", &Row::torque_Nm},
+                                                                   {"sinkage_m", &Row::sinkage_m},
+                                                                   {"slope_rad", &Row::slope_rad},
+                                                                   {"heading_rad", &Row::heading_rad}};
+  for (const auto& [name, field] : columns) {
+    std::vector<double> values;
+    for (const Row& row : rows) values.push_back(row.*field);
+    if (std::any_of(values.begin(), values.end(), [](double v) { return !std::isnan(v); }))
+      out.numbers.push_back({name, values});
+  }
+  out.numbers.push_back({"load_N", std::vector<double>(rows.size(), terramech::wheelLoad_N(rover))});
+  out.words = {{"wheel", {}}};
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    out.lines.push_back(i + 2);
+    out.words[0].values.push_back(rows[i].wheel);
+  }
+  return out;
+}
+
+constexpr int kSide = 40;
+
+// A rover of Sojourner's size too.
+std::vector<terramech::Rover> rovers() {
+  terramech::Rover six = testRover(), tiny = testRover();
+  six.wheel_count = 6;
+  six.mass_kg *= 1.5;
+  tiny.wheel_count = 6;
+  tiny.mass_kg = 11.0;
+  tiny.wheel = {.radius_m = 0.065, .width_m = 0.08};
+  tiny.wheelbase_m = 0.6;
+  tiny.track_m = 0.5;
+  tiny.clearance_m = 0.15;
+  tiny.max_torque_Nm = 3.0;
+  return {testRover(), six, tiny};
+}
+
+TraversabilityMap plain(const terramech::Rover& rover, const terramech::Soil& soil, double rise = 0.0) {
+  auto model = std::make_shared<GroundModel>(
+      GroundModel::Parts{.rover = rover, .classes = {GroundClass{.number = 1, .soil = soil}}, .policy = {}});
+  return TraversabilityMap(drawn(std::vector<std::string>(kSide, std::string(kSide, '1')), rise), model, {});
+}
+
+bool refused(const TraversabilityMap& map, const maps::Point& place) {
+  const auto grid = map.published();
+  for (int k = 0; k < 16; ++k) {
+    const double angle = k * std::numbers::pi / 8.0;
+    if (!std::isinf(grid->cost().costPerMetre(grid->at(*map.grid().cellAt(place)),
+                                              {std::cos(angle), std::sin(angle)})))
+      return false;
+  }
+  return true;
+}
+
+// Soil that holds a rover on nearly any slope.
+terramech::Soil bedrock() {
+  terramech::Soil soil = testSand();
+  soil.cohesion_Pa = 20000.0;
+  soil.frictional_modulus = 5e7;
+  return soil;
+}
+
+// 60 rows without a fault, then some at x = 125.5.
+std::vector<Row> afterGoodRows(const std::vector<Row>& last, bool with_slope) {
+  std::vector<Row> rows;
+  for (int i = 0; i < 60; ++i) {
+    rows.push_back({.time_s = 2.0 * i, .x_m = 105.5 + 0.25 * i, .slip = 0.05 + 0.002 * (i % 7)});
+    if (with_slope) rows.back().slope_rad = rows.back().heading_rad = 1e-3 * (i % 5);
+  }
+  for (Row row : last) {
+    row.time_s += 125.0;
+    row.x_m = 125.5;
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+TEST(Danger, OfOneChannelRefusesItsPlaceWhateverElseIsMissing) {
+  const std::vector<std::vector<Row>> logs{
+      {{0, 0, 0.95}, {1, 0, 0.95}},
+      {{0, 0, 0.93}, {1, 0, 1.0}},
+      {{.time_s = 0, .x_m = 0, .slip = 0.95, .heading_rad = kInfinite}},
+      {{.time_s = 0, .x_m = 0, .slip = 0.92, .torque_Nm = -kInfinite, .heading_rad = kNone}},
+      {{.time_s = -500, .x_m = 0, .slip = 0.95}},
+      {{kNone, 0, 0.95}}};
+  for (const terramech::Rover& rover : rovers())
+    for (const terramech::Soil& soil : {testSand(), bedrock()})
+      for (const bool with_slope : {false, true})
+        for (const auto& log : logs) {
+          TraversabilityMap map = plain(rover, soil, 0.05);
+          ASSERT_FALSE(refused(map, {125.5, 220.5}));
+          addDrive(map, tableOf(afterGoodRows(log, with_slope), rover));
+          EXPECT_TRUE(refused(map, {125.5, 220.5})) << rover.wheel_count << ' ' << log[0].slip;
+          EXPECT_FALSE(refused(map, {115.5, 220.5})) << "ground where nothing was wrong";
+        }
+}
+
+TEST(Danger, OfDeepWheelsAtLittleSlipRefuses) {
+  for (const terramech::Rover& rover : rovers())
+    for (const double z : {0.85, 0.9, 1.08, 1.9})
+      for (const double slip : {0.1, 0.2}) {
+        TraversabilityMap map = plain(rover, testSand());
+        std::vector<Row> rows = afterGoodRows({{0, 0, slip}, {1, 0, slip}}, true);
+        for (Row& row : rows) row.sinkage_m = 0.1 * rover.wheel.radius_m;
+        for (std::size_t i = 60; i < rows.size(); ++i) rows[i].sinkage_m = z * rover.wheel.radius_m;
+        addDrive(map, tableOf(rows, rover));
+        EXPECT_TRUE(refused(map, {125.5, 220.5})) << z << ' ' << slip;
+      }
+}
+
+// Standing, reversing and a thousand good rows at the place itself.
+TEST(Danger, NothingReadAfterwardsFreesThePlace) {
+  for (const double slip_after : {0.0, -0.1, 0.05}) {
+    TraversabilityMap map = plain(testRover(), testSand());
+    std::vector<Row> rows = afterGoodRows({{.time_s = 0, .x_m = 0, .slip = 0.95, .slope_rad = 0.0}}, true);
+    for (int i = 0; i < 1000; ++i)
+      rows.push_back({.time_s = 130.0 + i,
+                      .x_m = 125.5,
+                      .slip = slip_after + 1e-4 * (i % 11),
+                      .slope_rad = 0.0,
+                      .heading_rad = 0.0});
+    addDrive(map, tableOf(rows));
+    EXPECT_TRUE(refused(map, {125.5, 220.5})) << slip_after;
+  }
+}
+
+// What carries DP/W -0.05 lets a wheel spin on the level: a thousand such rows must not average to a mean that passes.
+TEST(Danger, NumbersDoNotAverageItAway) {
+  std::mt19937_64 random(2);
+  std::normal_distribution<double> noise(0.0, 0.01);
+  TraversabilityMap map = plain(testRover(), testSand());
+  std::vector<Row> rows;
+  for (int i = 0; i < 1000; ++i)
+    rows.push_back({.time_s = 1.0 * i,
+                    .x_m = 125.5,
+                    .slip = 0.95 + noise(random),
+                    .slope_rad = noise(random),
+                    .heading_rad = 0.0});
+  addDrive(map, tableOf(rows));
+  EXPECT_TRUE(refused(map, {125.5, 220.5}));
+}
+
+// Property: one wheel of six meets pits, its fellows none. All of its pits are refused, in any order of the rows of a
+// moment, and after a spike.
+TEST(Danger, EachPitOfOneWheelIsRefused) {
+  const terramech::Rover rover = rovers()[1];
+  std::mt19937_64 random(8);
+  for (int trial = 0; trial < 12; ++trial) {
+    std::vector<Row> rows;
+    std::vector<double> pits;
+    for (int i = 0; i < 160; ++i) {
+      std::vector<Row> moment;
+      for (int w = 0; w < 6; ++w)
+        moment.push_back({.time_s = 2.0 * i,
+                          .x_m = 104.5 + 0.2 * i,
+                          .slip = 0.1 + 0.003 * static_cast<double>(random() % 9),
+                          .torque_Nm = 2.0 + 0.01 * static_cast<double>(random() % 9),
+                          .sinkage_m = 0.01 + 1e-5 * static_cast<double>(random() % 9),
+                          .slope_rad = 0.0,
+                          .heading_rad = 0.0,
+                          .y_m = 218.5 + (w % 2 == 0 ? 0.0 : 4.0),
+                          .wheel = "w" + std::to_string(w)});
+      if (i % 40 >= 30 && i % 40 < 32) {
+        moment[0].slip = 0.94;
+        moment[0].sinkage_m = 0.9 * rover.wheel.radius_m;
+        pits.push_back(moment[0].x_m);
+      }
+      if (i == 10) moment[0].sinkage_m = 0.05;
+      if (trial > 0) std::shuffle(moment.begin(), moment.end(), random);
+      rows.insert(rows.end(), moment.begin(), moment.end());
+    }
+    TraversabilityMap map = plain(rover, testSand());
+    addDrive(map, tableOf(rows, rover));
+    for (const double x_m : pits) EXPECT_TRUE(refused(map, {x_m, 218.5})) << x_m << " in trial " << trial;
+  }
+}
+
+// Property: the order of rows within a moment does not show in any cell.
+TEST(Danger, TheOrderOfAMomentsRowsDoesNotShow) {
+  const terramech::Rover rover = rovers()[1];
+  std::mt19937_64 random(4);
+  std::vector<Row> sorted, shuffled;
+  for (int i = 0; i < 120; ++i) {
+    std::vector<Row> moment;
+    for (int w = 0; w < 6; ++w)
+      moment.push_back({.time_s = 2.0 * i,
+                        .x_m = 108.0 + 0.2 * i + 0.1 * w,
+                        .slip = 1e-3 * static_cast<double>(random() % 990),
+                        .torque_Nm = 0.01 * static_cast<double>(random() % 900),
+                        .sinkage_m = 1e-4 * static_cast<double>(random() % 900),
+                        .slope_rad = 0.1,
+                        .heading_rad = 0.0,
+                        .y_m = 218.5 + 1.1 * w,
+                        .wheel = "w" + std::to_string(w)});
+    sorted.insert(sorted.end(), moment.begin(), moment.end());
+    std::shuffle(moment.begin(), moment.end(), random);
+    shuffled.insert(shuffled.end(), moment.begin(), moment.end());
+  }
+  TraversabilityMap a = plain(rover, testSand()), b = plain(rover, testSand());
+  addDrive(a, tableOf(sorted, rover));
+  addDrive(b, tableOf(shuffled, rover));
+  for (int row = 0; row < kSide; ++row)
+    for (int column = 0; column < kSide; ++column) {
+      EXPECT_EQ(a.ground({column, row})->pull.value, b.ground({column, row})->pull.value);
+      EXPECT_EQ(a.code({column, row}), b.code({column, row}));
+    }
+}
+
+// A sensor that the others contradict: its place is refused, no other ground is believed to be weaker.
+TEST(Danger, OfASuspectedReadingSpreadsNothingAndTeachesNothing) {
+  const std::vector<Row> calm = afterGoodRows({}, true), spike = afterGoodRows({{0, 0, 0.95}}, true);
+  TraversabilityMap before = plain(testRover(), testSand()), after = plain(testRover(), testSand());
+  addDrive(before, tableOf(calm));
+  addDrive(after, tableOf(spike));
+  EXPECT_TRUE(refused(after, {125.5, 220.5}));
+  for (int row = 0; row < kSide; ++row)
+    for (int column = 0; column < kSide; ++column) {
+      if (std::abs(column - 25) <= 3 && std::abs(row - 20) <= 3) continue;
+      EXPECT_EQ(before.ground({column, row})->pull.value, after.ground({column, row})->pull.value)
+          << column << ' ' << row;
+    }
+}
+
+// Rows that no fit may use: each holds one number that is danger, and mostly one that is no number.
+TEST(Danger, OfARowThatTheReaderRejectsCountsAndIsReplayed) {
+  const std::string path = std::filesystem::temp_directory_path() / ("danger" + std::to_string(::getpid()));
+  const double radius_m = testRover().wheel.radius_m;
+  for (const auto& [slip, sinkage_m, heading_rad] :
+       std::vector<std::array<double, 3>>{{kInfinite, 0.01, 0.0},
+                                          {kNone, 0.95 * radius_m, 0.0},
+                                          {0.1, kInfinite, kNone},
+                                          {0.95, kNone, kInfinite},
+                                          {1.7, 0.01, 0.0}}) {
+    terramech::Telemetry telemetry = tableOf(afterGoodRows({}, true));
+    telemetry.rejected = {{99, "a number is not finite"}};
+    telemetry.rejected_numbers = {{"x_m", {125.5}},           {"y_m", {220.5}},
+                                  {"load_N", {-1.0}},         {"slip", {slip}},
+                                  {"sinkage_m", {sinkage_m}}, {"heading_rad", {heading_rad}}};
+    TraversabilityMap map = plain(testRover(), testSand()), again = plain(testRover(), testSand());
+    {
+      EvidenceJournal journal(path);
+      const DriveReport report = addDrive(map, telemetry, &journal);
+      EXPECT_EQ(report.heard, 1U) << slip;
+      EXPECT_EQ(report.used, 60U) << slip;
+      EXPECT_TRUE(refused(map, {125.5, 220.5})) << slip;
+      replay(again, journal);
+      EXPECT_TRUE(refused(again, {125.5, 220.5})) << slip;
+    }
+    for (const char* suffix : {"", "-wal", "-shm"}) std::filesystem::remove(path + suffix);
+  }
+}
+
+}  // namespace
+}  // namespace talus::costmap
