@@ -8,6 +8,7 @@ namespace talus::costmap {
 namespace {
 
 constexpr int kPullBits = 10, kStdBits = 6, kSinkageBits = 9;
+constexpr int kFew = 4;  // cells that a box may hold in vain for a new one
 constexpr int kPullZero = 1 << (kPullBits - 1), kStdZero = 4;
 
 // A kind as a word that is not 0; drawbar pull over load within +-10 and sinkage up to 51 radii.
@@ -26,6 +27,23 @@ GroundKind unpacked(std::uint32_t word, int class_index) {
           .pull = field(kStdBits + kSinkageBits, kPullBits) - kPullZero,
           .pull_std = field(kSinkageBits, kStdBits) - kStdZero,
           .sinkage = field(0, kSinkageBits)};
+}
+
+// Boxes in which most cells changed: a cell that lies beside the last box grows it, where that adds few others.
+void join(std::vector<maps::CellBox>& boxes, const maps::Cell& cell) {
+  const auto area = [](const maps::CellBox& b) {
+    return (b.last.column - b.first.column + 1) * (b.last.row - b.first.row + 1);
+  };
+  if (!boxes.empty()) {
+    maps::CellBox& last = boxes.back();
+    const maps::CellBox both{{std::min(last.first.column, cell.column), std::min(last.first.row, cell.row)},
+                             {std::max(last.last.column, cell.column), std::max(last.last.row, cell.row)}};
+    if (area(both) <= area(last) + (last.last.column - last.first.column + 1) + kFew) {
+      last = both;
+      return;
+    }
+  }
+  boxes.push_back({cell, cell});
 }
 
 }  // namespace
@@ -106,11 +124,7 @@ std::vector<maps::CellBox> GroundCurves::learn(EvidenceField::Beliefs& beliefs,
         const std::uint32_t word = belief.learned ? packed(GroundKind::of(index, index, belief.ground)) : 0U;
         if (!learned_.set(cell, word)) continue;
         any_learned_ = true;
-        // Runs along a row are one range.
-        if (!changed.empty() && changed.back().last == maps::Cell{column - 1, row})
-          changed.back().last = cell;
-        else
-          changed.push_back({cell, cell});
+        join(changed, cell);
       }
   for (maps::CellBox& range : changed) range = within(range);
   return changed;

@@ -18,32 +18,39 @@ double sparseKernel(const maps::Point& a, const maps::Point& b, double correlati
   return costmap::sparseKernel(std::sqrt(squared), correlation_length_m);
 }
 
-// L of A = L L^T in place, row-major lower triangle; A is positive definite by its noise.
+// U of A = U^T U in place, row-major upper triangle; A is positive definite by its noise. Here and below the inner
+// loops run along rows, without a sum that the next step waits for.
 void factorise(std::vector<double>& a, std::size_t n) {
-  for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t j = 0; j <= i; ++j) {
-      double sum = a[i * n + j];
-      for (std::size_t k = 0; k < j; ++k) sum -= a[i * n + k] * a[j * n + k];
-      a[i * n + j] = i == j ? std::sqrt(sum) : sum / a[j * n + j];
+  for (std::size_t j = 0; j < n; ++j) {
+    double* const row = a.data() + j * n;
+    const double root = std::sqrt(row[j]);
+    for (std::size_t k = j; k < n; ++k) row[k] /= root;
+    for (std::size_t i = j + 1; i < n; ++i) {
+      const double factor = row[i];
+      if (factor == 0.0) continue;
+      double* const below = a.data() + i * n;
+      for (std::size_t k = i; k < n; ++k) below[k] -= factor * row[k];
     }
-}
-
-// Zeros in front stay zeros.
-void solveLower(const std::vector<double>& l, std::vector<double>& x) {
-  const std::size_t n = x.size();
-  std::size_t first = 0;
-  while (first < n && x[first] == 0.0) ++first;
-  for (std::size_t i = first; i < n; ++i) {
-    for (std::size_t k = first; k < i; ++k) x[i] -= l[i * n + k] * x[k];
-    x[i] /= l[i * n + i];
   }
 }
 
-void solveUpper(const std::vector<double>& l, std::vector<double>& x) {
+// U^T x = b. Zeros in front stay zeros.
+void solveLower(const std::vector<double>& u, std::vector<double>& x) {
   const std::size_t n = x.size();
-  for (std::size_t i = n; i-- > 0;) {
-    for (std::size_t k = i + 1; k < n; ++k) x[i] -= l[k * n + i] * x[k];
-    x[i] /= l[i * n + i];
+  for (std::size_t k = 0; k < n; ++k) {
+    if (x[k] == 0.0) continue;
+    const double* const row = u.data() + k * n;
+    const double value = x[k] /= row[k];
+    for (std::size_t i = k + 1; i < n; ++i) x[i] -= row[i] * value;
+  }
+}
+
+// U x = b, by U's transpose.
+void solveUpper(const std::vector<double>& l, std::vector<double>& x) {
+  for (std::size_t k = x.size(); k-- > 0;) {
+    const double* const row = l.data() + k * x.size();
+    const double value = x[k] /= row[k];
+    for (std::size_t i = 0; i < k; ++i) x[i] -= row[i] * value;
   }
 }
 
@@ -67,12 +74,15 @@ GaussianProcess::GaussianProcess(std::vector<PlaceEvidence> evidence, const Vari
   }
   factor_.assign(n * n, 0.0);
   for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t j = 0; j <= i; ++j)
+    for (std::size_t j = i; j < n; ++j)
       factor_[i * n + j] =
           sparseKernel(evidence_[i].place, evidence_[j].place, variation_.correlation_length_m);
     factor_[i * n + i] += evidence_[i].variance / prior;
   }
   factorise(factor_, n);
+  transposed_.assign(n * n, 0.0);
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = i; j < n; ++j) transposed_[j * n + i] = factor_[i * n + j];
 }
 
 GroundBelief GaussianProcess::at(const maps::Point& place) const {
@@ -83,7 +93,7 @@ GroundBelief GaussianProcess::at(const maps::Point& place) const {
   solveLower(factor_, weight);
   double explained = 0.0;
   for (const double v : weight) explained += v * v;
-  solveUpper(factor_, weight);
+  solveUpper(transposed_, weight);
   double sum = 0.0, positive = 0.0;
   for (const double w : weight) {
     sum += w;

@@ -48,7 +48,8 @@ class GaussianProcess {
  private:
   std::vector<PlaceEvidence> evidence_;
   Variation variation_;
-  std::vector<double> factor_;  // lower Cholesky factor of K + noise, in units of the prior variance
+  std::vector<double> factor_;      // upper Cholesky factor of K + noise, in units of the prior variance
+  std::vector<double> transposed_;  // of it
 };
 
 /// A departure from a class's mean and its variance.

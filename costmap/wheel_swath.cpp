@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <set>
 
@@ -41,45 +42,48 @@ WheelSwath::WheelSwath(const terramech::Rover& rover, double resolution_m, doubl
   const double farthest_m = 0.5 * (std::hypot(rover.wheelbase_m, rover.track_m) + rover.wheel.width_m);
   reach_ = static_cast<int>(std::floor((half_cell_m + farthest_m) / resolution_m + 0.5));
   const int across = placesAcross(2.0 * half_cell_m, rover.track_m);
+  std::set<std::vector<Footprint>> standings;
   for (int k = 0; k < kHeadings; ++k)
     for (int i = 0; i < across; ++i)
       for (int j = 0; j < across; ++j)
-        stand(rover,
-              {half_cell_m * (2.0 * i / (across - 1) - 1.0), half_cell_m * (2.0 * j / (across - 1) - 1.0)},
-              k * std::numbers::pi / kHeadings);
-  // Each standing once.
-  using Standing = std::vector<Place>;
-  std::set<Standing> different;
-  const std::size_t one = wheels_ * across_;
-  for (std::size_t first = 0; first < standings_.size(); first += one)
-    different.emplace(standings_.begin() + static_cast<std::ptrdiff_t>(first),
-                      standings_.begin() + static_cast<std::ptrdiff_t>(first + one));
-  standings_.clear();
-  for (const Standing& standing : different)
-    standings_.insert(standings_.end(), standing.begin(), standing.end());
-  const std::set<Place> touched(standings_.begin(), standings_.end());
+        standings.insert(stand(
+            rover,
+            {half_cell_m * (2.0 * i / (across - 1) - 1.0), half_cell_m * (2.0 * j / (across - 1) - 1.0)},
+            k * std::numbers::pi / kHeadings));
+  std::map<Footprint, std::uint32_t> numbers;
+  std::set<Place> touched;
+  for (const std::vector<Footprint>& standing : standings)
+    for (const Footprint& wheel : standing) {
+      const auto [known, is_new] = numbers.try_emplace(wheel, static_cast<std::uint32_t>(numbers.size()));
+      standings_.push_back(known->second);
+      if (!is_new) continue;
+      touched.insert(wheel.begin(), wheel.end());
+      footprints_.insert(footprints_.end(), wheel.begin(), wheel.end());
+      footprints_.resize(numbers.size() * across_, wheel.back());
+    }
   touched_.assign(touched.begin(), touched.end());
 }
 
-void WheelSwath::stand(const terramech::Rover& rover, const maps::Point& middle, double heading_rad) {
+std::vector<WheelSwath::Footprint> WheelSwath::stand(const terramech::Rover& rover, const maps::Point& middle,
+                                                     double heading_rad) const {
   const double c = std::cos(heading_rad), s = std::sin(heading_rad);
   const int side = 2 * reach_ + 1;
-  std::vector<std::vector<Place>> wheels;
+  std::vector<Footprint> wheels;
   for (const Offset& wheel : wheelCentres(rover)) {
-    std::vector<Place> touched(across_);
+    std::set<Place> touched;
     for (std::size_t k = 0; k < across_; ++k) {
       const double across =
           wheel.y_m + (static_cast<double>(k) / static_cast<double>(across_ - 1) - 0.5) * rover.wheel.width_m;
       const double x = middle.x_m + c * wheel.x_m - s * across, y = middle.y_m + s * wheel.x_m + c * across;
       const int column = static_cast<int>(std::floor(x / resolution_m_ + 0.5)) + reach_;
       const int row = static_cast<int>(std::floor(y / resolution_m_ + 0.5)) + reach_;
-      touched[k] = static_cast<Place>(std::clamp(row, 0, side - 1) * side + std::clamp(column, 0, side - 1));
+      touched.insert(
+          static_cast<Place>(std::clamp(row, 0, side - 1) * side + std::clamp(column, 0, side - 1)));
     }
-    std::ranges::sort(touched);
-    wheels.push_back(touched);
+    wheels.emplace_back(touched.begin(), touched.end());
   }
   std::ranges::sort(wheels);
-  for (const auto& wheel : wheels) standings_.insert(standings_.end(), wheel.begin(), wheel.end());
+  return wheels;
 }
 
 WheelSwath::Judged WheelSwath::judged(const std::vector<Ground>& around) const {
@@ -99,14 +103,16 @@ WheelSwath::Judged WheelSwath::judged(const std::vector<Ground>& around) const {
     weakest = there.belief.pull.value;
     out.weakest_class = there.class_index;
   }
+  std::vector<double> least(footprints_.size() / across_);
+  for (std::size_t k = 0; k < least.size(); ++k) {
+    least[k] = pull[footprints_[k * across_]];
+    for (std::size_t i = 1; i < across_; ++i)
+      least[k] = std::min(least[k], pull[footprints_[k * across_ + i]]);
+  }
   const double share = 1.0 / static_cast<double>(wheels_);
-  for (std::size_t k = 0; k < standings_.size();) {
+  for (std::size_t k = 0; k < standings_.size(); k += wheels_) {
     double sum = 0.0;
-    for (std::size_t wheel = 0; wheel < wheels_; ++wheel) {
-      double least = pull[standings_[k]];
-      for (const std::size_t end = k + across_; k < end; ++k) least = std::min(least, pull[standings_[k]]);
-      sum += least;
-    }
+    for (std::size_t wheel = 0; wheel < wheels_; ++wheel) sum += least[standings_[k + wheel]];
     out.belief.pull.value = std::min(out.belief.pull.value, sum * share);
   }
   return out;

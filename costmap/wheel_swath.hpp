@@ -49,15 +49,18 @@ class WheelSwath {
   Judged judged(const std::vector<Ground>& around) const;
 
  private:
-  using Place = std::uint32_t;  // of a cell in `around`
-  void stand(const terramech::Rover& rover, const maps::Point& middle, double heading_rad);
+  using Place = std::uint32_t;           // of a cell in `around`
+  using Footprint = std::vector<Place>;  // of a wheel: each cell once, ascending
+  std::vector<Footprint> stand(const terramech::Rover& rover, const maps::Point& middle,
+                               double heading_rad) const;
 
   double resolution_m_;
   int reach_ = 0;
   std::size_t wheels_;
-  std::size_t across_;            // places that the width of a wheel is looked at
-  std::vector<Place> standings_;  // wheels_ * across_ places each
-  std::vector<Place> touched_;    // by any wheel
+  std::size_t across_;                    // places that the width of a wheel is looked at
+  std::vector<Place> footprints_;         // of a wheel somewhere, across_ places each, the last one repeated
+  std::vector<std::uint32_t> standings_;  // wheels_ footprints each, by number
+  std::vector<Place> touched_;            // by any wheel
 };
 
 }  // namespace talus::costmap
