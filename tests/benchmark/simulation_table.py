@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Rates of docs/simulation.md: three kinds of trap at three densities, and each sensor fault.
 
-simulation_table.py PROGRAM FOLDER [WORLDS] [FIRST_SEED]
+simulation_table.py PROGRAM FOLDER [WORLDS] [FIRST_SEED] [FAULT ...]
 
-Each cell of the table is a file in FOLDER that is kept: stopped, it goes on with the cells that are missing.
+Each ten worlds of a cell of the table are a file in FOLDER that is kept: stopped, or called with more worlds, it goes on with
+what is missing. FAULT restricts the table to its rows; "none" is those of the densities. Intervals are of 95 %: Wilson's for rates, of the mean over worlds for energy.
 """
 import collections
 import json
@@ -24,6 +25,17 @@ soils:
   - {{name: trap, cohesion_kPa: 0, friction_angle_deg: {friction_deg}, sinkage_exponent: 1, cohesive_modulus: 1400,
      frictional_modulus: {modulus}, shear_modulus_mm: 15}}
 """
+
+
+CHUNK = 10  # worlds a call
+
+
+def mean_interval(values):
+    if len(values) < 2:
+        return "-"
+    mean = sum(values) / len(values)
+    half = 1.96 * math.sqrt(sum((v - mean) ** 2 for v in values) / (len(values) - 1) / len(values))
+    return f"{mean:.3f} [{mean - half:.3f}, {mean + half:.3f}]"
 
 
 def wilson(hits, n):
@@ -47,12 +59,17 @@ class Cells:
         return subprocess.run([self.program, *words], cwd=self.folder, capture_output=True, text=True, check=True).stdout
 
     def worlds_of(self, trap, patches, belief, fault="none"):
-        name = f"{trap} {patches} {belief} {fault} {self.worlds} {self.seed}".replace(" ", "_")
+        firsts = range(self.seed, self.seed + self.worlds, CHUNK)
+        return [world for first in firsts for world in self.chunk(trap, patches, belief, fault, first)]
+
+    def chunk(self, trap, patches, belief, fault, first):
+        worlds = min(CHUNK, self.seed + self.worlds - first)
+        name = f"{trap} {patches} {belief} {fault} {first} {worlds}".replace(" ", "_")
         path = self.folder / (name + ".json")
         if not path.exists():
             (self.folder / "truth.yaml").write_text(truth(trap, patches))
             out = self.run("drive", "site.tif", "--soil", "sandy_loam", "--rover", "sojourner", "--truth", "truth.yaml",
-                           "--start", "8,8", "--goal", "72,72", "--worlds", str(self.worlds), "--seed", str(self.seed),
+                           "--start", "8,8", "--goal", "72,72", "--worlds", str(worlds), "--seed", str(first),
                            "--belief", belief, "--fault", fault, "--threads", "1", "--json", "--quiet")
             path.with_suffix(".part").write_text(out)
             path.with_suffix(".part").rename(path)
@@ -65,11 +82,10 @@ class Cells:
         safe = [(m, b) for m, b in zip(mine, best) if b["outcome"] == "reached"]
         count = collections.Counter(m["outcome"] for m, _ in safe)
         ratios = [m["energy_J"] / b["energy_J"] for m, b in safe if m["outcome"] == "reached"]
-        mean = sum(ratios) / max(len(ratios), 1)
         causes = collections.Counter(m["cause"].split(";")[0] + ";" + m["cause"].split(";")[1]
                                      for m, _ in safe if m["outcome"] == "immobilised")
         return (f"| {trap} | {patches} | {fault} | {len(safe)} | {wilson(count['immobilised'], len(safe))} | "
-                f"{wilson(count['gave_up'], len(safe))} | {mean:.3f} |"), causes
+                f"{wilson(count['gave_up'], len(safe))} | {mean_interval(ratios)} |"), causes
 
 
 def main():
@@ -81,6 +97,8 @@ def main():
     losses = collections.Counter()
     for trap, patches, fault in ([(t, d, "none") for t in TRAPS for d in DENSITIES] +
                                  [(t, 10, f) for t in TRAPS for f in FAULTS]):
+        if sys.argv[5:] and fault not in sys.argv[5:]:
+            continue
         line, causes = cells.row(trap, patches, fault)
         print(line, flush=True)
         for cause, n in causes.items():

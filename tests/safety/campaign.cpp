@@ -11,12 +11,12 @@
 namespace safety {
 namespace {
 
-// number;kind;rover;learned;planner;exit;length;risk;cause,x,y,heading,amount|...
+// number;kind;rover;learned;planner;exit;length;risk;drawn risk;cause,x,y,heading,amount|...
 std::string line(const Result& r) {
   std::ostringstream out;
   out.precision(9);
   out << r.number << ';' << r.kind << ';' << r.rover << ';' << r.learned << ';' << r.planner << ';' << r.exit
-      << ';' << r.length_m << ';' << r.risk << ';';
+      << ';' << r.length_m << ';' << r.risk << ';' << r.drawn_risk << ';';
   for (const Violation& v : r.violations)
     out << v.cause << ',' << v.place.x_m << ',' << v.place.y_m << ',' << v.heading_rad << ',' << v.amount
         << '|';
@@ -33,8 +33,8 @@ std::vector<std::string> cut(const std::string& text, char at) {
 // Nothing for a line that was cut off when the campaign was stopped.
 std::optional<Result> parsed(const std::string& text) {
   auto parts = cut(text, ';');
-  if (parts.size() == 8 && text.back() == ';') parts.emplace_back();
-  if (parts.size() != 9 || (!parts[8].empty() && parts[8].back() != '|')) return std::nullopt;
+  if (parts.size() == 9 && text.back() == ';') parts.emplace_back();
+  if (parts.size() != 10 || (!parts[9].empty() && parts[9].back() != '|')) return std::nullopt;
   Result r{.number = std::stoull(parts[0]),
            .kind = parts[1],
            .rover = parts[2],
@@ -43,8 +43,9 @@ std::optional<Result> parsed(const std::string& text) {
            .exit = std::stoi(parts[5]),
            .length_m = std::stod(parts[6]),
            .risk = std::stod(parts[7]),
+           .drawn_risk = std::stod(parts[8]),
            .violations = {}};
-  for (const std::string& violation : cut(parts[8], '|')) {
+  for (const std::string& violation : cut(parts[9], '|')) {
     const auto fields = cut(violation, ',');
     r.violations.push_back({fields.at(0),
                             {std::stod(fields.at(1)), std::stod(fields.at(2))},
@@ -54,12 +55,11 @@ std::optional<Result> parsed(const std::string& text) {
   return r;
 }
 
+constexpr int kWeakWorlds = 20;  // fewer tell nothing of a risk
+
 // The printed risk may be half of the drawn one, its error taken off; amount: by how many times it is less.
-std::optional<Violation> understatedRisk(const ProvingGround& ground, const Belief& belief,
-                                         const Route& route) {
+std::optional<Violation> understatedRisk(const DrawnRisk& drawn, const Route& route) {
   constexpr double kFactor = 2.0, kErrors = 3.0;
-  constexpr int kWeakWorlds = 20;
-  const DrawnRisk drawn = drawnRisk(ground.site, belief, route);
   const double least = (drawn.immobilisation - kErrors * drawn.standard_error) / kFactor;
   if (drawn.weak_worlds < kWeakWorlds || route.immobilisation_risk >= least) return std::nullopt;
   return Violation{"risk understated", route.vertices.front(), 0.0,
@@ -97,8 +97,9 @@ Result Campaign::judged(const ProvingGround& ground, const Belief& belief, std::
   result.length_m = route.length_m();
   result.risk = route.immobilisation_risk;
   result.violations = Judge(ground.site, belief).judge(route);
-  if (const auto understated = understatedRisk(ground, belief, route))
-    result.violations.push_back(*understated);
+  const DrawnRisk drawn = drawnRisk(ground.site, belief, route);
+  if (drawn.weak_worlds >= kWeakWorlds) result.drawn_risk = drawn.immobilisation;
+  if (const auto understated = understatedRisk(drawn, route)) result.violations.push_back(*understated);
   if (result.violations.empty()) std::filesystem::remove(ground.folder / file);
   return result;
 }
@@ -138,9 +139,11 @@ std::string table(const std::vector<Result>& results) {
   std::map<std::string, Cause> causes;
   std::size_t routes = 0, none = 0, refused = 0, failed = 0, bad = 0;
   double metres = 0.0;
+  std::vector<double> ratios;
   for (const Result& r : results) {
     ++(r.exit == 0 ? routes : r.exit == 1 ? none : r.exit == 2 ? refused : failed);
     metres += r.length_m;
+    if (r.drawn_risk > 0.0) ratios.push_back(r.risk / r.drawn_risk);
     bad += r.violations.empty() ? 0U : 1U;
     for (const Violation& v : r.violations) {
       Cause& cause = causes[v.cause];
@@ -157,6 +160,10 @@ std::string table(const std::vector<Result>& results) {
   out << results.size() << " errands: " << routes << " routes of " << metres / 1000.0 << " km, " << none
       << " without a route, " << refused << " with start or goal refused, " << failed << " failed\n"
       << bad << " routes with a violation\n";
+  std::sort(ratios.begin(), ratios.end());
+  if (!ratios.empty())
+    out << "risk, printed over drawn: " << ratios.front() << " to " << ratios.back() << ", median "
+        << ratios[ratios.size() / 2] << ", of " << ratios.size() << " routes\n";
   for (const auto& [cause, c] : causes) {
     out << "  " << cause << ": " << c.routes << " routes, worst " << c.worst << " in number " << c.number
         << ", by";

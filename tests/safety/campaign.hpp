@@ -19,7 +19,8 @@ struct Result {
   bool learned = false;
   int exit = 0;  ///< of the program: 0 a route, 1 none, 2 start or goal refused
   double length_m = 0.0;
-  double risk = 0.0;  ///< printed
+  double risk = 0.0;        ///< printed
+  double drawn_risk = 0.0;  ///< by the checker; 0: too few worlds were weak to tell
   std::vector<Violation> violations;
 };
 

@@ -16,8 +16,7 @@ int main(int count, char** words) {
   std::filesystem::create_directories(places.folder);
   safety::Campaign campaign(places, (places.folder / "results.csv").string());
   const std::uint64_t first = count > 5 ? std::stoull(words[5]) : 0, errands = std::stoull(words[4]);
-  campaign.run(first, errands,
-               [](const std::string& text) { std::cerr << text << '\n'; });
+  campaign.run(first, errands, [](const std::string& text) { std::cerr << text << '\n'; });
   const auto results = campaign.results();
   std::cout << table(results);
   if (const auto missing = campaign.missing(first, errands); missing > 0) {
