@@ -216,6 +216,29 @@ TEST(FaultyDrive, TorqueAndSinkageRaiseNothingByThemselves) {
     }
 }
 
+// Property: rows of danger that are put into a drive anywhere make no ground better than the drive without them.
+TEST(FaultyDrive, RowsOfDangerRaiseNothing) {
+  std::mt19937_64 random(12);
+  std::uniform_real_distribution<double> share(0.0, 1.0);
+  for (int trial = 0; trial < 3; ++trial) {
+    TraversabilityMap without = hills(), with = hills();
+    std::vector<Row> rows = soundDrive(without);
+    addDrive(without, tableOf(rows));
+    for (int i = 0; i < 8; ++i) {
+      const auto at = static_cast<std::ptrdiff_t>(random() % (rows.size() - 1));
+      Row danger = rows[static_cast<std::size_t>(at)];
+      danger.time_s += 1.0;
+      if (i % 2 == 0)
+        danger.slip = 0.75 + 0.25 * share(random);
+      else
+        danger.sinkage_m = (0.6 + 0.4 * share(random)) * testRover().wheel.radius_m;
+      rows.insert(rows.begin() + at + 1, danger);
+    }
+    addDrive(with, tableOf(rows));
+    EXPECT_EQ(raised(without, with), 0) << trial;
+  }
+}
+
 // Property: two rows of a trap in the middle of a sound drive: the ground there is weaker for it.
 TEST(FaultyDrive, ATrapThatLooksLikeASpikeCounts) {
   TraversabilityMap before = hills(), after = hills();
