@@ -2,6 +2,6 @@
 # each room.
 set(TALUS_INCLUDE_DIR ${PROJECT_BINARY_DIR}/include)
 file(MAKE_DIRECTORY ${TALUS_INCLUDE_DIR}/talus)
-foreach(entry terramech maps costmap planner cli talus.hpp)
+foreach(entry terramech maps costmap planner cli talus.hpp plausible.hpp)
   file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${entry} ${TALUS_INCLUDE_DIR}/talus/${entry} SYMBOLIC)
 endforeach()

@@ -2,11 +2,8 @@
 #include <array>
 #include <bit>
 #include <cerrno>
-#include <charconv>
 #include <cmath>
-#include <csignal>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <istream>
 #include <ostream>
@@ -16,12 +13,11 @@
 #include <utility>
 #include <vector>
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <talus/costmap/checksum.hpp>
 #include <talus/costmap/map_file.hpp>
 #include <talus/costmap/map_text.hpp>
+#include <talus/maps/memory_budget.hpp>
+#include <talus/maps/output_file.hpp>
 
 namespace talus::costmap {
 namespace {
@@ -269,54 +265,13 @@ void writeMap(const TraversabilityMap& map, std::iostream& stream) {
   stream.write(reinterpret_cast<const char*>(&end), sizeof end);
 }
 
-namespace {
-
-constexpr const char* kBeside = ".tmp";  // and the number of the process that writes
-
-bool isGone(const std::string& process) noexcept {
-  int number = 0;
-  const char* end = process.data() + process.size();
-  if (process.empty() || std::from_chars(process.data(), end, number).ptr != end || number <= 0) return false;
-  return ::kill(number, 0) != 0 && errno == ESRCH;
-}
-
-// What a killed process left beside the map.
-void clearLeftovers(const std::filesystem::path& path) {
-  const std::string stem = path.filename().string() + kBeside;
-  std::error_code ignored;
-  const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
-  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
-    const std::string name = entry.path().filename().string();
-    if (name.rfind(stem, 0) == 0 && isGone(name.substr(stem.size())))
-      std::filesystem::remove(entry.path(), ignored);
-  }
-}
-
-// Onto the disk, so that a power cut after the rename finds the whole file.
-bool synced(const std::string& path) noexcept {
-  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (file < 0) return false;
-  const bool done = ::fsync(file) == 0;
-  ::close(file);
-  return done;
-}
-
-}  // namespace
-
 void writeMap(const TraversabilityMap& map, const std::string& path) {
-  clearLeftovers(path);
-  const std::string beside = path + kBeside + std::to_string(::getpid());
-  std::error_code failed;
-  {
-    std::fstream stream(beside, std::ios::binary | std::ios::in | std::ios::out | std::ios::trunc);
-    writeMap(map, stream);
-    stream.close();
-    if (!stream || !synced(beside)) failed = std::make_error_code(std::errc::io_error);
-  }
-  if (!failed) std::filesystem::rename(beside, path, failed);
-  if (!failed) return;
-  std::filesystem::remove(beside, failed);
-  throw InputError({path, "cannot be written", "check that the folder exists and has room"});
+  maps::OutputFile file(path);
+  std::fstream stream(file.temporary(), std::ios::binary | std::ios::in | std::ios::out | std::ios::trunc);
+  writeMap(map, stream);
+  stream.close();
+  if (!stream) file.fail(std::strerror(errno));
+  file.commit();
 }
 
 TraversabilityMap readMap(std::istream& stream, const MapReading& reading, const ProgressMonitor& watch) {
@@ -326,6 +281,7 @@ TraversabilityMap readMap(std::istream& stream, const MapReading& reading, const
   TrailerReader trailer(stream, reading.name);
   MapText text = parsed(trailer.bytes("TEXT"), reading.name);
   requireSane(text.grid, reading.name);
+  maps::requireMemory(40.0 * static_cast<double>(text.grid.size()), reading.name);
   MapLayers layers;
   layers.elevation.source = text.source;
   layers.elevation.elevation_m = trailer.raster<float>("ELEV", text.grid);

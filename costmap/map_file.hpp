@@ -13,8 +13,7 @@ namespace talus::costmap {
 /// docs/map_file.md. Little-endian; same map, same bytes. The stream is empty and can be read, too.
 void writeMap(const TraversabilityMap& map, std::iostream& stream);
 
-/// Writes beside the path and renames, so that a reader sees the whole file or none. Throws InputError when
-/// it cannot.
+/// Writes through maps::OutputFile, so that a reader sees the whole file or none. Throws InputError when it cannot.
 void writeMap(const TraversabilityMap& map, const std::string& path);
 
 /// How a map is read back.

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <talus/costmap/octomap_surface.hpp>
+#include <talus/maps/memory_budget.hpp>
 #include <talus/talus.hpp>
 
 namespace talus::costmap {
@@ -206,6 +207,9 @@ OctomapGround octomapGround(std::istream& stream, const std::string& name, doubl
   if (grid.size() > kMostColumns)
     throw InputError(
         {name, std::to_string(grid.size()) + " columns, more than 4e8", "crop it or lower its resolution"});
+  double columns = 0.0;  // a leaf may be a cube of 65536 voxels
+  for (const Leaf& leaf : leaves) columns += static_cast<double>(leaf.side) * static_cast<double>(leaf.side);
+  maps::requireMemory(columns * sizeof(Run) + 8.0 * static_cast<double>(grid.size()), name);
   std::vector<Floor> ground = groundOf(runsOf(leaves, grid, box), grid.resolution_m);
   maps::Raster<float> surface = takeSurface(ground, grid, ceiling_m);
   if (maps::validFraction(surface) == 0.0)

@@ -6,6 +6,7 @@
 
 #include <talus/maps/elevation_reader.hpp>
 #include <talus/maps/elevation_values.hpp>
+#include <talus/maps/memory_budget.hpp>
 #include <talus/maps/numpy_raster.hpp>
 #include <talus/maps/raster_band.hpp>
 #include <talus/maps/raster_frame.hpp>
@@ -20,6 +21,8 @@ void check(const ReadOptions& options) {
   };
   require(!options.resolution_m || (std::isfinite(*options.resolution_m) && *options.resolution_m > 0),
           "--resolution", "must be a number of metres above 0");
+  require(!options.resolution_m || (*options.resolution_m >= 1e-3 && *options.resolution_m <= 1e6), "--resolution",
+          "must be 0.001 to 1000000 metres");
   require(std::isfinite(options.vertical_scale) && options.vertical_scale != 0, "--vertical-scale",
           "must be a number other than 0");
 }
@@ -69,6 +72,11 @@ void refuseSize(const Grid& grid, const ReadOptions& options, const std::string&
     throw InputError(
         {path, std::to_string(grid.width) + " x " + std::to_string(grid.height) + " cells have no slope",
          "give a map of at least 2 x 2 cells"});
+  constexpr double kFinest_m = 1e-3, kCoarsest_m = 1e6;
+  if (!(grid.resolution_m >= kFinest_m && grid.resolution_m <= kCoarsest_m))
+    throw InputError({path, "cells of " + std::to_string(grid.resolution_m) + " m; must be 0.001 m to 1000 km",
+                      "correct its CRS or --resolution"});
+  requireMemory(8.0 * static_cast<double>(grid.size()), path);
 }
 
 double radius(GDALDataset& file) {
@@ -92,7 +100,7 @@ CellBox wholeCells(CellBox box, int overview) {
 
 Selection select(const std::string& path, const ReadOptions& options, std::vector<std::string>& notes) {
   check(options);
-  Dataset file = isNumpyFile(path) ? openNumpyRaster(path, notes) : openRaster(path);
+  Dataset file = isNumpyFile(path) ? openNumpyRaster(path, notes) : openRaster(path, options.allow_vrt);
   const int band = chooseBand(*file,
                               {.path = path,
                                .band = options.band,

@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <iterator>
 #include <mutex>
 #include <new>
 #include <string_view>
@@ -10,15 +12,16 @@
 #include <unistd.h>
 
 #include <talus/maps/gdal_dataset.hpp>
+#include <talus/maps/referenced_files.hpp>
 #include <talus/talus.hpp>
 
 namespace talus::maps {
 namespace {
 
-void registerDriversOnce() {
-  static std::once_flag once;
-  std::call_once(once, [] { GDALAllRegister(); });
-}
+// Formats of elevation and of layers; none that reaches out or runs code.
+constexpr const char* kDrivers[] = {"GTiff", "COG",  "PDS4", "PDS",    "ISIS3", "ENVI", "AAIGrid", "netCDF",
+                                    "JP2OpenJPEG", "PNG", "JPEG", "USGSDEM", "SRTMHGT", "EHdr", "GSAG", "XYZ",
+                                    "VICAR", nullptr};
 
 // GDAL takes what is missing from the end of an ENVI file for zeros.
 void refuseShortEnvi(GDALDataset& dataset, const std::string& path) {
@@ -41,15 +44,34 @@ void refuseShortEnvi(GDALDataset& dataset, const std::string& path) {
 
 }  // namespace
 
+void registerDrivers() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    GDALAllRegister();
+    // What GDAL opens by itself, such as an overview that a file names, stays within the list, too.
+    GDALDriverManager& manager = *GetGDALDriverManager();
+    for (int i = manager.GetDriverCount() - 1; i >= 0; --i) {
+      GDALDriver* driver = manager.GetDriver(i);
+      const std::string_view name = GDALGetDriverShortName(driver);
+      const auto is = [&](const char* allowed) { return name == allowed; };
+      if (std::none_of(std::begin(kDrivers), std::end(kDrivers), [&](const char* d) { return d && is(d); }) &&
+          !is("MEM") && !is("VRT"))
+        manager.DeregisterDriver(driver);
+    }
+    CPLSetConfigOption("CPL_VSIL_CURL_ALLOWED_FILENAME", "none");
+  });
+}
+
 void CloseDataset::operator()(GDALDataset* dataset) const noexcept {
   if (dataset != nullptr) dataset->ReleaseRef();
 }
 
 void requireReadableFile(const std::string& path) {
-  if (path.starts_with("/vsi")) return;
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status)) throw InputError({path, "no such file", "check the path"});
+  if (!std::filesystem::is_regular_file(status) && !std::filesystem::is_directory(status))
+    throw InputError({path, "is a device, a FIFO or a socket", "give a file"});
   if (std::filesystem::is_directory(status))
     throw InputError({path, "is a directory, not a raster file", "name the file inside it"});
   if (::access(path.c_str(), R_OK) != 0)
@@ -80,23 +102,27 @@ void limitPixelCache(std::int64_t bytes) {
   GDALSetCacheMax64(bytes);
 }
 
-Dataset openRaster(const std::string& path) {
-  registerDriversOnce();
+Dataset openRaster(const std::string& path, bool allow_vrt) {
+  registerDrivers();
   requireReadableFile(path);
+  refuseForeignReferences(path, allow_vrt);
   const GdalErrors errors;
-  Dataset dataset(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR));
+  constexpr const char* kVirtual[] = {"VRT", nullptr};
+  constexpr unsigned kHow = GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR;
+  Dataset dataset(GDALDataset::Open(path.c_str(), kHow, kDrivers));
+  if (!dataset && allow_vrt) dataset.reset(GDALDataset::Open(path.c_str(), kHow, kVirtual));
   if (!dataset)
-    throw InputError({path, "GDAL opens no raster: " + errors.last(), "give a GeoTIFF or another raster"});
+    throw InputError({path, "GDAL opens no raster of the allowed formats: " + errors.last(), "give a GeoTIFF or another raster"});
   if (dataset->GetRasterCount() == 0 || dataset->GetRasterXSize() == 0 || dataset->GetRasterYSize() == 0)
     throw InputError({path, "holds no raster band", "name one of its subdatasets (gdalinfo lists them)"});
   refuseShortEnvi(*dataset, path);
   return dataset;
 }
 
-Dataset memoryRaster(int width, int height) {
-  registerDriversOnce();
+Dataset memoryRaster(int width, int height, int type) {
+  registerDrivers();
   GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("MEM");
-  Dataset dataset(driver->Create("", width, height, 1, GDT_Float32, nullptr));
+  Dataset dataset(driver->Create("", width, height, 1, static_cast<GDALDataType>(type), nullptr));
   if (!dataset) throw std::bad_alloc();
   return dataset;
 }

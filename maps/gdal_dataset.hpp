@@ -33,15 +33,19 @@ class GdalErrors {
 /// @throws InputError unless the path is a file that can be read and is not empty
 void requireReadableFile(const std::string& path);
 
-/// Opens a raster file for reading. @throws InputError: missing, a directory, unreadable, not a raster, no
-/// cells
-Dataset openRaster(const std::string& path);
+/// Makes the allowed drivers known to GDAL, once, and takes the others away.
+void registerDrivers();
+
+/// Opens a raster file for reading by a driver of the list in gdal_dataset.cpp; nothing from the network or an archive,
+/// no file that names others (referenced_files.hpp). @throws InputError: missing, a directory, unreadable, not a
+/// raster, no cells
+Dataset openRaster(const std::string& path, bool allow_vrt = false);
 
 /// Pixels that GDAL keeps in memory in the whole process, in bytes; left alone a twentieth of the machine's
 /// memory.
 void limitPixelCache(std::int64_t bytes);
 
-/// An empty raster in memory of one band of 32-bit floats. @throws std::bad_alloc
-Dataset memoryRaster(int width, int height);
+/// An empty raster in memory of one band of a GDALDataType, of 32-bit floats if none is given. @throws std::bad_alloc
+Dataset memoryRaster(int width, int height, int type = 6);
 
 }  // namespace talus::maps

@@ -6,6 +6,7 @@
 
 #include <talus/maps/gdal_dataset.hpp>
 #include <talus/maps/geojson.hpp>
+#include <talus/plausible.hpp>
 #include <talus/talus.hpp>
 
 namespace talus::maps {
@@ -85,6 +86,8 @@ Point PositionReader::operator()(const json& position) const {
     throw InputError({path_, "a position is not an array of numbers", "write [longitude, latitude]"});
   const double x = position[0];
   const double y = position[1];
+  if (!plausible(x) || !plausible(y))
+    throw InputError({path_, "position " + position.dump() + ": " + kPlausible, "correct the position"});
   if (georeference_ == nullptr) return {x, y};
   if (std::abs(x) > 360 || std::abs(y) > 90)
     throw InputError({path_, "position " + position.dump() + " is not a longitude and latitude",

@@ -1,48 +1,19 @@
 #include <cmath>
-#include <cstdio>
-#include <filesystem>
 #include <limits>
 #include <stdexcept>
 
 #include <cpl_string.h>
 #include <gdal_priv.h>
 #include <ogr_spatialref.h>
-#include <unistd.h>
 
 #include <talus/maps/gdal_dataset.hpp>
 #include <talus/maps/geotiff_writer.hpp>
+#include <talus/maps/output_file.hpp>
 #include <talus/maps/spatial_reference.hpp>
 #include <talus/talus.hpp>
 
 namespace talus::maps {
 namespace {
-
-[[noreturn]] void refuse(const std::string& path, const std::string& reason) {
-  throw InputError(
-      {path, "cannot be written: " + reason, "check the folder, its permissions and free space"});
-}
-
-// A file beside its place; it goes away unless it was moved there.
-class Beside {
- public:
-  explicit Beside(const std::string& path)
-      : path_(path), temporary_(path + ".part" + std::to_string(::getpid()) + ".tif") {}
-  Beside(const Beside&) = delete;
-  Beside& operator=(const Beside&) = delete;
-  ~Beside() { std::remove(temporary_.c_str()); }
-
-  const std::string& temporary() const { return temporary_; }
-
-  void moveToPlace() const {
-    std::error_code error;
-    std::filesystem::rename(temporary_, path_, error);
-    if (error) refuse(path_, error.message());
-  }
-
- private:
-  std::string path_;
-  std::string temporary_;
-};
 
 struct Form {
   GDALDataType type = GDT_Float32;
@@ -51,7 +22,7 @@ struct Form {
 };
 
 Dataset create(const std::string& path, const Grid& grid, const Form& form) {
-  GDALAllRegister();
+  registerDrivers();
   CPLStringList words;
   for (const char* word : {"TILED=YES", "COMPRESS=DEFLATE", "ZLEVEL=4", "BIGTIFF=IF_SAFER", form.predictor})
     words.AddString(word);
@@ -81,11 +52,11 @@ CPLErr writeBand(GDALRasterBand& band, const Raster<T>& values, GDALDataType typ
 }
 
 // Closing flushes: only then is it known whether all of it reached the disk.
-void finish(Dataset dataset, const Beside& file, const GdalErrors& errors, const std::string& path) {
+void finish(Dataset dataset, OutputFile& file, const GdalErrors& errors) {
   dataset->FlushCache();
   dataset.reset();
-  if (errors.any()) refuse(path, errors.last());
-  file.moveToPlace();
+  if (errors.any()) file.fail(errors.last());
+  file.commit();
 }
 
 void checkGrids(const std::vector<Layer>& layers) {
@@ -101,33 +72,33 @@ void writeGeoTiff(const GeoTiff& file, const std::vector<Layer>& layers) {
   checkGrids(layers);
   const Grid& grid = layers.front().values.grid();
   const GdalErrors errors;
-  const Beside beside(file.path);
-  Dataset dataset = create(beside.temporary(), grid, {.bands = static_cast<int>(layers.size())});
-  if (!dataset) refuse(file.path, errors.last());
+  OutputFile output(file.path);
+  Dataset dataset = create(output.temporary(), grid, {.bands = static_cast<int>(layers.size())});
+  if (!dataset) output.fail(errors.last());
   place(*dataset, grid, file.georeference);
   for (std::size_t i = 0; i < layers.size(); ++i) {
     GDALRasterBand& band = *dataset->GetRasterBand(static_cast<int>(i) + 1);
     band.SetDescription(layers[i].name.c_str());
     if (!layers[i].unit.empty()) band.SetUnitType(layers[i].unit.c_str());
     band.SetNoDataValue(std::numeric_limits<double>::quiet_NaN());
-    if (writeBand(band, layers[i].values, GDT_Float32) != CE_None) refuse(file.path, errors.last());
+    if (writeBand(band, layers[i].values, GDT_Float32) != CE_None) output.fail(errors.last());
   }
-  finish(std::move(dataset), beside, errors, file.path);
+  finish(std::move(dataset), output, errors);
 }
 
 void writeGeoTiff(const GeoTiff& file, const std::string& name, const Raster<std::uint8_t>& values,
                   std::optional<std::uint8_t> nodata) {
   if (values.empty()) throw std::invalid_argument("GeoTIFF: layer '" + name + "' is empty");
   const GdalErrors errors;
-  const Beside beside(file.path);
-  Dataset dataset = create(beside.temporary(), values.grid(), {.type = GDT_Byte, .predictor = "PREDICTOR=2"});
-  if (!dataset) refuse(file.path, errors.last());
+  OutputFile output(file.path);
+  Dataset dataset = create(output.temporary(), values.grid(), {.type = GDT_Byte, .predictor = "PREDICTOR=2"});
+  if (!dataset) output.fail(errors.last());
   place(*dataset, values.grid(), file.georeference);
   GDALRasterBand& band = *dataset->GetRasterBand(1);
   band.SetDescription(name.c_str());
   if (nodata) band.SetNoDataValue(*nodata);
-  if (writeBand(band, values, GDT_Byte) != CE_None) refuse(file.path, errors.last());
-  finish(std::move(dataset), beside, errors, file.path);
+  if (writeBand(band, values, GDT_Byte) != CE_None) output.fail(errors.last());
+  finish(std::move(dataset), output, errors);
 }
 
 }  // namespace talus::maps

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <regex>
 
+#include <talus/maps/memory_budget.hpp>
 #include <talus/maps/numpy_array.hpp>
 #include <talus/talus.hpp>
 
@@ -102,6 +103,8 @@ NumpyArray parseNumpy(const std::string& bytes, const std::string& where) {
     count *= n;
     if (count > most) throw InputError({where, "the file is cut short", "fetch it again"});
   }
+  if (count > most) throw InputError({where, "the file is cut short", "fetch it again"});
+  requireMemory(8.0 * static_cast<double>(count), where);
   NumpyArray array{header.shape, std::vector<double>(count)};
   const bool transposed = header.fortran_order && header.shape.size() == 2;
   for (std::size_t i = 0; i < count; ++i) {

@@ -10,6 +10,7 @@
 #include <gdal_priv.h>
 #include <ogr_spatialref.h>
 
+#include <talus/maps/memory_budget.hpp>
 #include <talus/maps/numpy_array.hpp>
 #include <talus/maps/numpy_raster.hpp>
 #include <talus/talus.hpp>
@@ -31,6 +32,8 @@ struct Limits {
 };
 
 std::string slurp(const std::string& path, const std::string& where) {
+  VSIStatBufL status{};
+  if (VSIStatL(path.c_str(), &status) == 0) requireMemory(2.0 * static_cast<double>(status.st_size), where);
   GByte* bytes = nullptr;
   vsi_l_offset size = 0;
   if (VSIIngestFile(nullptr, path.c_str(), &bytes, &size, static_cast<GIntBig>(kMostBytes)) == FALSE)

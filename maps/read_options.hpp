@@ -15,6 +15,7 @@ struct ReadOptions {
   std::optional<double> nodata{};        ///< value that means no data, over what the file says
   double vertical_scale = 1.0;           ///< metres per unit of the file, on top of the unit it states
   bool ignore_crs = false;               ///< the file's CRS is wrong: read as local metres
+  bool allow_vrt = false;                ///< take a virtual raster whose files lie in its own folder
   /// Cells to a side that are read as one, their mean, from the file's overviews if it has some.
   int overview = 1;
   std::uint64_t max_cells = 400'000'000;  ///< refuse larger maps (1.6 GB as float)

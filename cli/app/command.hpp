@@ -7,6 +7,8 @@
 
 #include <talus/cli/app/context.hpp>
 #include <talus/cli/app/help_format.hpp>
+#include <talus/cli/app/number_check.hpp>
+#include <talus/cli/app/output_file.hpp>
 
 namespace talus::cli {
 
@@ -37,6 +39,8 @@ CLI::App& addCommand(CLI::App& app, Context& context, const CommandText& text,
   bind(command, *options);
   command.callback([options, run, &command, &context] {
     for (const std::string& warning : oldNamesUsed(command)) context.warn(warning);
+    checkNumbers(command);
+    checkOutputs(command, context.force);
     context.exit_code = run(*options, context);
   });
   return command;

@@ -23,15 +23,13 @@ class Bar {
     if (percent == shown_) return;
     shown_ = percent;
     if (percent == 100) return erase();
-    fmt::print(stderr, "\r{} [{:<30}] {:3d} %", what_,
-               std::string(static_cast<std::size_t>(percent * 30 / 100), '#'), percent);
-    std::fflush(stderr);
+    printError(fmt::format("\r{} [{:<30}] {:3d} %", what_,
+                           std::string(static_cast<std::size_t>(percent * 30 / 100), '#'), percent));
   }
 
  private:
   static void erase() {
-    fmt::print(stderr, "\r\033[K");
-    std::fflush(stderr);
+    printError("\r\033[K");
   }
 
   std::string what_;
@@ -51,7 +49,7 @@ int Context::workers() const noexcept {
 }
 
 void Context::warn(std::string_view text) const {
-  if (!quiet) fmt::print(stderr, "talus: warning: {}\n", oneLine(text));
+  if (!quiet) printError(fmt::format("talus: warning: {}\n", oneLine(text)));
 }
 
 void printJson(const nlohmann::ordered_json& value) {
@@ -60,6 +58,11 @@ void printJson(const nlohmann::ordered_json& value) {
 
 void print(std::string_view text) {
   std::fwrite(text.data(), 1, text.size(), stdout);
+}
+
+void printError(std::string_view text) noexcept {
+  std::fwrite(text.data(), 1, text.size(), stderr);
+  std::fflush(stderr);
 }
 
 std::string oneLine(std::string_view text) {

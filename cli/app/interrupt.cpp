@@ -1,10 +1,22 @@
+#include <ctime>
+
 #include <pthread.h>
 #include <unistd.h>
 
 #include <talus/cli/app/context.hpp>
 #include <talus/cli/app/interrupt.hpp>
+#include <talus/maps/output_file.hpp>
 
 namespace talus::cli {
+namespace {
+
+double cpuTime_s() noexcept {
+  timespec used{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &used);
+  return static_cast<double>(used.tv_sec) + 1e-9 * static_cast<double>(used.tv_nsec);
+}
+
+}  // namespace
 
 Interrupt::Interrupt() {
   sigemptyset(&signals_);
@@ -23,10 +35,29 @@ Interrupt::~Interrupt() {
 }
 
 void Interrupt::listen() {
-  for (int signal = 0; sigwait(&signals_, &signal) == 0;) {
-    if (closing_) return;
-    if (!source_.request_stop()) _exit(Exit::kCancelled);
+  int signal = 0;
+  while (sigwait(&signals_, &signal) != 0) {
   }
+  if (closing_) return;
+  code_ = 128 + signal;
+  source_.request_stop();
+  watch();
+}
+
+void Interrupt::watch() {
+  constexpr double kCpu_s = 0.4;
+  constexpr int kPiece_ms = 20, kPieces = 150;
+  const double from_s = cpuTime_s();
+  for (int piece = 0; piece < kPieces || answered_; ++piece) {
+    const timespec wait{.tv_sec = 0, .tv_nsec = kPiece_ms * 1'000'000L};
+    const int signal = sigtimedwait(&signals_, nullptr, &wait);
+    if (closing_) return;
+    if (signal > 0) break;
+    if (!answered_ && cpuTime_s() - from_s > kCpu_s) break;
+  }
+  maps::removeUnfinishedFiles();
+  printError("talus: cancelled\n");
+  _exit(code_);
 }
 
 }  // namespace talus::cli

@@ -1,9 +1,14 @@
 #include <cmath>
+#include <cstdlib>
 #include <limits>
+#include <sstream>
+#include <string_view>
 
 #include <fmt/format.h>
 
 #include <talus/cli/app/number_check.hpp>
+#include <talus/plausible.hpp>
+#include <talus/talus.hpp>
 
 namespace talus::cli {
 namespace {
@@ -15,7 +20,31 @@ std::string bound(double low, double high) {
   return high == kNoEnd ? fmt::format("finite, >= {:g}", low) : fmt::format("{:g} to {:g}", low, high);
 }
 
+// Whether a word is a number in itself, such as "nan"; a whole number is not judged by its size: seeds are large.
+bool isImpossible(std::string_view word) {
+  if (word.ends_with('d')) word.remove_suffix(1);  // degrees of a place
+  const std::string text(word);
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  if (text.empty() || end != text.c_str() + text.size()) return false;
+  const bool whole = text.find_first_not_of("+-0123456789") == text.npos;
+  return !whole && !plausible(value);
+}
+
 }  // namespace
+
+void checkNumbers(const CLI::App& command) {
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->empty()) continue;
+    for (const std::string& result : option->results()) {
+      std::istringstream words(result);
+      for (std::string word; std::getline(words, word, ',');)
+        if (isImpossible(word))
+          throw InputError({fmt::format("{} {}", option->get_name(), result), kPlausible,
+                            "a file of that name is ./" + word});
+    }
+  }
+}
 
 CLI::Validator within(double low, double high) {
   const auto check = [low, high](const std::string& text) -> std::string {

@@ -4,6 +4,10 @@
 
 namespace talus::cli {
 
+/// Refuses, of a parsed call, every number that is not plausible(), whatever option it was given to: NaN passes a test of
+/// a range. Throws InputError that names the option.
+void checkNumbers(const CLI::App& command);
+
 /// Refuses a number outside [low, high], an infinite one and NaN; an infinite end does not bind.
 CLI::Validator within(double low, double high);
 

@@ -1,13 +1,7 @@
-#include <atomic>
-#include <cerrno>
-#include <charconv>
-#include <csignal>
-#include <cstring>
+#include <algorithm>
+#include <array>
 #include <fstream>
-#include <system_error>
-
-#include <fmt/format.h>
-#include <unistd.h>
+#include <string_view>
 
 #include <talus/cli/app/output_file.hpp>
 #include <talus/talus.hpp>
@@ -17,80 +11,69 @@ namespace {
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void refuse(const fs::path& path, const std::string& reason, const std::string& remedy) {
-  throw InputError({.where = path.string(), .reason = reason, .remedy = remedy});
+constexpr const char* kMark = "output";
+
+[[noreturn]] void refuse(const fs::path& path, const std::string& reason) {
+  throw InputError({path.string(), reason, "name another file, or pass --force"});
 }
 
-void checkFolder(const fs::path& path) {
-  const fs::path folder = path.parent_path().empty() ? fs::path(".") : path.parent_path();
-  std::error_code error;
-  if (!fs::is_directory(folder, error))
-    refuse(path, "folder " + folder.string() + " does not exist", "make it first");
-  if (::access(folder.c_str(), W_OK) != 0)
-    refuse(path, fmt::format("cannot write into {}: {}", folder.string(), std::strerror(errno)), "");
-}
-
-bool isGone(std::string_view process) noexcept {
-  pid_t number = 0;
-  const char* end = process.data() + process.size();
-  return std::from_chars(process.data(), end, number).ec == std::errc{} && number > 0 &&
-         ::kill(number, 0) != 0 && errno == ESRCH;
-}
-
-/// What a killed process left beside a file.
-void clearLeftovers(const fs::path& path) {
-  const std::string stem = "." + path.stem().string() + ".";
-  std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(path.has_parent_path() ? path.parent_path() : ".", ignored)) {
-    const std::string name = entry.path().filename().string();
-    if (name.starts_with(stem) && entry.path().extension() == path.extension() &&
-        isGone(std::string_view(name).substr(stem.size())))
-      fs::remove(entry.path(), ignored);
+bool isOutput(const CLI::Option& option) {
+  try {
+    return const_cast<CLI::Option&>(option).get_validator(kMark) != nullptr;
+  } catch (const CLI::OptionNotFound&) {
+    return false;
   }
 }
 
-/// A name in the same folder that no other run and no other file of this run uses.
-fs::path besideName(const fs::path& path) {
-  static std::atomic<unsigned> count = 0;
-  return path.parent_path() /
-         fmt::format(".{}.{}-{}{}", path.stem().string(), ::getpid(), count++, path.extension().string());
+// One file by two names, or a file that does not exist yet by two spellings.
+bool same(const fs::path& a, const fs::path& b) {
+  std::error_code error;
+  if (fs::equivalent(a, b, error)) return true;
+  return fs::weakly_canonical(a, error) == fs::weakly_canonical(b, error) && !error;
+}
+
+bool isJournal(const fs::path& path) {
+  std::array<char, 15> start{};
+  std::ifstream(path, std::ios::binary).read(start.data(), start.size());
+  return std::string_view(start.data(), start.size()) == "SQLite format 3";
+}
+
+bool leavesItsFolder(const fs::path& link) {
+  std::error_code error;
+  const fs::path folder = link.has_parent_path() ? link.parent_path() : fs::path(".");
+  return !fs::exists(link, error) || fs::canonical(link, error).parent_path() != fs::canonical(folder, error);
 }
 
 }  // namespace
 
-OutputFile::OutputFile(const fs::path& path) : path_(path) {
-  if (path.empty() || path.filename().empty()) refuse(path, "is not a file name", "name a file to write");
+CLI::Option* addOutput(CLI::App& command, const std::string& names, std::string& path, const std::string& text) {
+  return command.add_option(names, path, text)
+      ->check(CLI::Validator([](std::string&) { return std::string(); }, "", kMark));
+}
+
+void checkOutput(const fs::path& path, const std::vector<std::string>& inputs) {
   std::error_code error;
-  if (fs::is_symlink(path, error) && fs::exists(path, error)) path_ = fs::canonical(path, error);
-  if (fs::is_directory(path_, error)) refuse(path, "is a directory", "name a file to write");
-  if (fs::exists(path_, error) && !fs::is_regular_file(path_, error)) {
-    temporary_ = path_;
-    return;
+  const fs::file_status status = fs::status(path, error);
+  if (fs::is_directory(status)) return;  // told by OutputFile
+  if (fs::exists(status) && !fs::is_regular_file(status)) refuse(path, "is a device, a FIFO or a socket");
+  if (fs::is_symlink(path, error) && leavesItsFolder(path)) refuse(path, "is a link to another folder");
+  for (const std::string& input : inputs)
+    if (!input.empty() && same(path, input)) refuse(path, "is also an input or another output of this call");
+  if (fs::is_regular_file(status) && isJournal(path)) refuse(path, "is an SQLite file, as a journal is");
+}
+
+void checkOutputs(const CLI::App& command, bool force) {
+  const auto options = command.get_options();
+  for (const CLI::Option* output : options) {
+    if (output->empty() || !isOutput(*output)) continue;
+    const std::string path = output->results().front();
+    std::vector<std::string> others;
+    for (const CLI::Option* other : options)
+      if (other != output && !other->empty())
+        for (const std::string& word : other->results()) others.push_back(word);
+    if (!force) checkOutput(path, others);
+    const OutputFile can_be_written(path);
   }
-  checkFolder(path_);
-  clearLeftovers(path_);
-  temporary_ = besideName(path_);
-}
-
-OutputFile::~OutputFile() {
-  std::error_code ignored;
-  if (temporary_ != path_) fs::remove(temporary_, ignored);
-}
-
-void OutputFile::commit() {
-  if (temporary_ == path_) return;
-  std::error_code error;
-  fs::rename(temporary_, path_, error);
-  if (error) refuse(path_, "cannot be written: " + error.message(), "");
-}
-
-void writeFile(const fs::path& path, std::string_view content) {
-  OutputFile file(path);
-  std::ofstream stream(file.temporary(), std::ios::binary);
-  stream.write(content.data(), static_cast<std::streamsize>(content.size()));
-  stream.close();
-  if (!stream) refuse(path, fmt::format("cannot be written: {}", std::strerror(errno)), "");
-  file.commit();
 }
 
 }  // namespace talus::cli

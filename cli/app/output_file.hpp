@@ -2,33 +2,26 @@
 
 #include <filesystem>
 #include <string>
-#include <string_view>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include <talus/maps/output_file.hpp>
 
 namespace talus::cli {
 
-/// A file that appears whole or not at all: written beside its place, then renamed onto it.
-/// The folder is checked at once, so that a long run does not fail at its end.
-class OutputFile {
- public:
-  /// Throws InputError when the folder is missing, or the place is a folder or cannot be written.
-  explicit OutputFile(const std::filesystem::path& path);
-  ~OutputFile();
-  OutputFile(const OutputFile&) = delete;
-  OutputFile& operator=(const OutputFile&) = delete;
+using maps::OutputFile;
+using maps::writeFile;
 
-  /// Where to write; it has the extension of the final name. A device such as /dev/stdout is written
-  /// directly.
-  const std::filesystem::path& temporary() const noexcept { return temporary_; }
+/// Declares an option that names a file to write; checkOutputs() finds it.
+CLI::Option* addOutput(CLI::App& command, const std::string& names, std::string& path, const std::string& text);
 
-  /// Puts what was written in its place. Throws InputError when that fails.
-  void commit();
+/// Refuses a place that only --force may overwrite: one of the `inputs`, a journal, what is no regular file, a link out
+/// of its folder. Throws InputError.
+void checkOutput(const std::filesystem::path& path, const std::vector<std::string>& inputs);
 
- private:
-  std::filesystem::path path_;
-  std::filesystem::path temporary_;
-};
-
-/// Writes a whole file through OutputFile. Throws InputError when it cannot be written, also for a full disk.
-void writeFile(const std::filesystem::path& path, std::string_view content);
+/// checkOutput() of every output of a parsed call, against all of its other words; each is also tried, so that a bad
+/// place is told before the work.
+void checkOutputs(const CLI::App& command, bool force);
 
 }  // namespace talus::cli

@@ -59,7 +59,7 @@ void bind(CLI::App& command, AssessCommand& options) {
       ->check(CLI::Range(0.0, 0.5))
       ->capture_default_str();
   groupOptions(command, "Drawbar pull");
-  command.add_option("--html", options.html, "page to write, with the traversability diagram")
+  addOutput(command, "--html", options.html, "page to write, with the traversability diagram")
       ->type_name("R.html");
   groupOptions(command, "Output");
 }

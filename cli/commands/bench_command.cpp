@@ -107,6 +107,7 @@ void write(const std::filesystem::path& folder, const planner::BenchmarkPlan& pl
 std::vector<planner::BenchmarkRun> allRuns(const planner::BenchmarkPlan& plan, const Campaign& campaign,
                                            const Context& context) {
   const auto jobs = planner::jobsOf(plan);
+  context.answerStop();
   const ProgressMonitor watch =
       campaign.leads() ? context.watch("bench") : ProgressMonitor{.progress = {}, .stop = context.stop};
   const auto outcomes = campaign.run(

@@ -27,10 +27,10 @@ struct Options {
 
 void bind(CLI::App& command, Options& options) {
   addGroundOptions(command, options.ground);
-  command.add_option("-o,--output", options.output, "traversability map to write")->type_name("MAP.ot");
-  command.add_option("--geotiff", options.geotiff, "GeoTIFF of layers to write")->type_name("FILE.tif");
-  command.add_option("--png", options.png, "picture to write")->type_name("FILE.png");
-  command.add_option("--octovis", options.octovis, "ColorOcTree to write, for display in octovis")
+  addOutput(command, "-o,--output", options.output, "traversability map to write")->type_name("MAP.ot");
+  addOutput(command, "--geotiff", options.geotiff, "GeoTIFF of layers to write")->type_name("FILE.tif");
+  addOutput(command, "--png", options.png, "picture to write")->type_name("FILE.png");
+  addOutput(command, "--octovis", options.octovis, "ColorOcTree to write, for display in octovis")
       ->type_name("FILE.ot");
   groupOptions(command, "Output");
 }
@@ -42,7 +42,7 @@ void writeOctovis(const costmap::TraversabilityMap& map, const std::string& path
                                        [&](maps::Cell cell) { return map.belief(cell); });
   tree->write(stream);
   stream.close();
-  if (!stream) throw InputError({path, "cannot be written", "check the free disk space"});
+  if (!stream) file.fail("the stream failed");
   file.commit();
 }
 

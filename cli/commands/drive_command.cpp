@@ -10,6 +10,7 @@
 #include <talus/cli/app/campaign.hpp>
 #include <talus/cli/app/command.hpp>
 #include <talus/cli/app/commands.hpp>
+#include <talus/cli/app/output_file.hpp>
 #include <talus/cli/ground/ground_options.hpp>
 #include <talus/cli/ground/truth_file.hpp>
 #include <talus/cli/route/drive_page.hpp>
@@ -100,11 +101,10 @@ void bind(CLI::App& command, Options& options) {
           ->type_name("N");
   bindSensors(command, options);
   groupOptions(command, "Simulation");
-  command.add_option("--html", options.html, "page to write: the simulated traverse with a time slider")
+  addOutput(command, "--html", options.html, "page to write: the simulated traverse with a time slider")
       ->type_name("R.html")
       ->excludes(worlds);
-  command
-      .add_option("--telemetry", options.telemetry, "simulated wheel telemetry to write, for `talus update`")
+  addOutput(command, "--telemetry", options.telemetry, "simulated wheel telemetry to write, for `talus update`")
       ->type_name("T.csv")
       ->excludes(worlds);
   groupOptions(command, "Output");
@@ -118,6 +118,7 @@ struct Campaigning {
 };
 
 DrivenWorlds simulated(const Campaigning& on, const std::vector<Belief>& beliefs, std::size_t worlds) {
+  on.context.answerStop();
   const ProgressMonitor watch = on.context.watch("simulating");
   const ProgressMonitor inside{.progress = {}, .stop = watch.stop};
   const WorldCount count{
@@ -162,6 +163,7 @@ int runMany(const Campaigning& on, const Options& options) {
 int runOne(const planner::SimulationSite& site, const Options& options, const Context& context,
            const terramech::Rover& rover) {
   const Belief belief = *findBelief(options.belief);
+  context.answerStop();
   const WatchedDrive drive = watchedDrive(site, belief, context.watch("simulating"));
   if (context.stop.stop_requested()) return Exit::kCancelled;
   if (!options.html.empty()) saveDrivePage(options.html, site, belief, drive);

@@ -66,7 +66,7 @@ void bind(CLI::App& command, EstimateCommand& options) {
   command.add_flag("--recursive", options.recursive,
                    "process the rows one by one in constant memory; print the estimate after each row");
   groupOptions(command, "Method");
-  command.add_option("--html", options.html, "page to write, with the fit")->type_name("R.html");
+  addOutput(command, "--html", options.html, "page to write, with the fit")->type_name("R.html");
   groupOptions(command, "Output");
 }
 

@@ -115,8 +115,7 @@ void bind(CLI::App& command, Options& options) {
   command.add_option("--resolution", options.resolution_m, "cell size (default: 1)")
       ->type_name("METRES")
       ->check(CLI::Range(0.01, 1000.0));
-  command
-      .add_option("-o,--output", options.output,
+  addOutput(command, "-o,--output", options.output,
                   "elevation map to write; its layers are written to the same folder")
       ->type_name("FILE.tif")
       ->required();

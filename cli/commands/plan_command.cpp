@@ -2,6 +2,7 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <optional>
 
 #include <fmt/format.h>
@@ -45,12 +46,11 @@ struct Timing {
 };
 
 void addOutputs(CLI::App& command, PlanOptions& options) {
-  command.add_option("-o,--output", options.output, "route to write, as GeoJSON")->type_name("ROUTE.geojson");
-  command.add_option("--html", options.html, "page to write: map, route and profiles")
+  addOutput(command, "-o,--output", options.output, "route to write, as GeoJSON")->type_name("ROUTE.geojson");
+  addOutput(command, "--html", options.html, "page to write: map, route and profiles")
       ->type_name("PAGE.html");
-  command.add_option("--png", options.png, "picture to write")->type_name("FILE.png");
-  command
-      .add_option("--pareto", options.pareto,
+  addOutput(command, "--png", options.png, "picture to write")->type_name("FILE.png");
+  addOutput(command, "--pareto", options.pareto,
                   "plot of the Pareto set of energy, time and risk to write: .png, .svg or .html")
       ->type_name("FILE");
   groupOptions(command, "Output");
@@ -137,6 +137,7 @@ planner::Problem problemOf(const PlanOptions& options, const Ground& ground, con
   problem.kinematics = kinematicsOf(options.drive, ground.map);
   problem.whole_field = options.whole_field;
   problem.watch = context.watch("plan");
+  context.answerStop();
   return problem;
 }
 
@@ -167,12 +168,6 @@ std::string asText(const Route& route, const Timing& seconds) {
   return summaryText(route) +
          summaryLine("run time", fmt::format("load {:.3f} s, costmap {:.3f} s, plan {:.3f} s", seconds.load_s,
                                              seconds.costmap_s, seconds.plan_s));
-}
-
-// A bad place is told before the work, not after it.
-void checkOutputs(const PlanOptions& options) {
-  for (const std::string& path : {options.output, options.html, options.png})
-    if (!path.empty()) OutputFile(path).temporary();
 }
 
 void writeFiles(const PlanOptions& options, const Ground& ground, const Route& route,
@@ -258,7 +253,6 @@ int runPairs(const PlanOptions& options, Context& context) {
   const Campaign campaign;
   if (!campaign.leads()) context.quiet = true;
   const auto pairs = readPairs(options.pairs);
-  if (campaign.leads()) checkOutputs(options);
   const Ground ground = readGround(options.ground, context);
   if (context.stop.stop_requested()) return Exit::kCancelled;
   const auto lines = planPairs(pairs, problemOf(options, ground, context), options.planner, campaign);
@@ -337,11 +331,28 @@ int runInWindows(const PlanOptions& options, const Context& context) {
   return finish(options, {std::move(overview), problem, std::move(plan), plan_s}, input, context);
 }
 
+// A mission may come from elsewhere: of what exists, it replaces routes only.
+void checkMissionOutput(const PlanOptions& options, const PlanOptions& asked, bool force) {
+  if (force) return;
+  const GroundOptions& ground = options.ground;
+  std::vector<std::string> inputs{asked.ground.dem.path, ground.dem.path, ground.rover, ground.soil, ground.model,
+                                  ground.soils, ground.layers.terrain, ground.layers.rocks};
+  inputs.insert(inputs.end(), ground.layers.keep_out.begin(), ground.layers.keep_out.end());
+  checkOutput(options.output, inputs);
+  std::string start(200, '\0');
+  std::ifstream file(options.output, std::ios::binary);
+  if (file && (file.read(start.data(), 200), start.find("\"Feature") == start.npos))
+    throw InputError({options.output, "exists, is named by the mission alone and is no route",
+                      "name it with -o, or pass --force"});
+}
+
 int run(const PlanOptions& asked, Context& context) {
   PlanOptions options = asked;
-  if (isMission(options.ground.dem.path)) readMission(options);
+  if (isMission(options.ground.dem.path)) {
+    readMission(options);
+    if (asked.output.empty() && !options.output.empty()) checkMissionOutput(options, asked, context.force);
+  }
   requirePlaces(options);
-  if (options.pairs.empty()) checkOutputs(options);
   planner::NamedPlanner planner(options.planner);
   if (options.drive.any() && !planner.drives())
     throw InputError({"planner '" + planner.name() + "'", "supports neither headings nor a turning radius",

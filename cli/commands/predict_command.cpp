@@ -24,7 +24,7 @@ void bind(CLI::App& command, PredictOptions& options) {
       ->type_name("M.yaml");
   command.add_option("--rover", options.rover, "rover that supplies wheel dimensions missing from the file")
       ->type_name("NAME|FILE");
-  command.add_option("-o,--output", options.output, "rows to write, with predictions appended")
+  addOutput(command, "-o,--output", options.output, "rows to write, with predictions appended")
       ->required()
       ->type_name("OUT.csv");
 }

@@ -1,5 +1,8 @@
+#include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <new>
@@ -9,10 +12,12 @@
 
 #include <CLI/CLI.hpp>
 #include <cpl_error.h>
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <ompl/util/Console.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 #include <yaml-cpp/exceptions.h>
 
 #include <talus/cli/app/commands.hpp>
@@ -22,6 +27,7 @@
 #include <talus/cli/app/mpi_launch.hpp>
 #include <talus/cli/app/number_check.hpp>
 #include <talus/cli/commands/program.hpp>
+#include <talus/maps/memory_budget.hpp>
 #include <talus/talus.hpp>
 
 namespace talus::cli {
@@ -36,7 +42,7 @@ void silenceLibraries() {
 
 int fail(int code, std::string_view text) {
   std::fflush(stdout);
-  fmt::print(stderr, "talus: {}\n", oneLine(text));
+  printError(fmt::format("talus: {}\n", oneLine(text)));
   return code;
 }
 
@@ -45,6 +51,8 @@ int failure() {
   try {
     throw;
   } catch (const InputError& e) {
+    return fail(Exit::kInput, e.what());
+  } catch (const std::filesystem::filesystem_error& e) {
     return fail(Exit::kInput, e.what());
   } catch (const std::invalid_argument& e) {
     return fail(Exit::kInput, e.what());
@@ -61,6 +69,14 @@ int failure() {
   } catch (...) {
     return fail(Exit::kInternal, "internal failure of unknown type; please report it");
   }
+}
+
+/// A stream that the caller closed would be the first file that the call opens. A dead one is an error, no signal.
+void keepStandardStreams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (::fcntl(stream, F_GETFD) < 0 && ::open("/dev/null", stream == STDERR_FILENO ? O_WRONLY : O_RDONLY) < 0)
+      std::abort();
+  std::signal(SIGPIPE, SIG_IGN);
 }
 
 using Names = std::vector<std::string>;
@@ -120,6 +136,11 @@ void addGlobalOptions(CLI::App& app, Context& context) {
   app.set_help_flag("-h,--help", "print this help");
   app.add_flag("--json", context.json, "print results as JSON");
   app.add_flag("--quiet", context.quiet, "print no progress and no warnings");
+  app.add_flag("--force", context.force, "overwrite inputs, journals, devices and links to other folders, too");
+  app.add_option_function<std::uint64_t>("--max-memory", maps::setMemoryBudget,
+                                         "memory that the call may take, such as 4GB (default: half of what is free)")
+      ->transform(CLI::AsSizeValue(false))
+      ->type_name("SIZE");
   app.add_option("--seed", context.seed, "seed of the random numbers")
       ->check(notNegative())
       ->type_name("N")
@@ -155,10 +176,12 @@ int parseAndRun(CLI::App& app, const Context& context, std::vector<std::string> 
 }  // namespace
 
 int run(int argc, const char* const* argv) {
-  const Interrupt interrupt;
+  keepStandardStreams();
+  Interrupt interrupt;
   silenceLibraries();
   Context context;
   context.stop = interrupt.token();
+  context.answers_stop = &interrupt.answered();
   int code = Exit::kDone;
   try {
     requireMpiForRanks();
@@ -168,11 +191,11 @@ int run(int argc, const char* const* argv) {
     addCommands(app, context);
     code = parseAndRun(app, context, words(argc, argv));
   } catch (...) {
-    code = interrupt.requested() ? Exit::kCancelled : failure();
+    code = interrupt.requested() ? interrupt.code() : failure();
   }
-  if (code != Exit::kDone && interrupt.requested()) return fail(Exit::kCancelled, "cancelled");
+  if (code != Exit::kDone && interrupt.requested()) return fail(interrupt.code(), "cancelled");
   if (std::fflush(stdout) != 0 || !std::cout.flush())
-    return fail(Exit::kInternal, "cannot write to standard output");
+    return fail(Exit::kInput, "standard output: cannot be written; check where it leads");
   return code;
 }
 

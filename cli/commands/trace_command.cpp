@@ -31,8 +31,8 @@ void bind(CLI::App& command, TraceCommandOptions& options) {
       ->check(CLI::Range(1e-3, 0.5))
       ->capture_default_str();
   groupOptions(command, "Analysis");
-  command.add_option("--model-out", options.model_out, "refined model to write")->type_name("M.yaml");
-  command.add_option("--html", options.html, "page to write, with charts")->type_name("R.html");
+  addOutput(command, "--model-out", options.model_out, "refined model to write")->type_name("M.yaml");
+  addOutput(command, "--html", options.html, "page to write, with charts")->type_name("R.html");
   groupOptions(command, "Output");
 }
 

@@ -1,4 +1,7 @@
 // talus update MAP.ot T.csv -o MAP2.ot: put a drive's telemetry into a map.
+#include <cerrno>
+#include <cstring>
+#include <fstream>
 #include <memory>
 #include <optional>
 #include <string>
@@ -33,7 +36,7 @@ void bind(CLI::App& command, Options& options) {
       ->required()
       ->type_name("MAP.ot");
   command.add_option("TELEMETRY", options.telemetry, "wheel telemetry")->type_name("T.csv");
-  command.add_option("-o,--output", options.output, "map to write")->required()->type_name("MAP2.ot");
+  addOutput(command, "-o,--output", options.output, "map to write")->required()->type_name("MAP2.ot");
   auto* journal =
       command.add_option("--journal", options.journal, "SQLite journal of every row, accepted or rejected")
           ->type_name("EVIDENCE.db");
@@ -152,7 +155,10 @@ int run(const Options& options, Context& context) {
   }
   for (const std::string& finding : report.findings) context.warn(finding);
   if (context.stop.stop_requested()) return Exit::kCancelled;
-  costmap::writeMap(map, output.temporary());
+  std::fstream stream(output.temporary(), std::ios::binary | std::ios::in | std::ios::out | std::ios::trunc);
+  costmap::writeMap(map, stream);
+  stream.close();
+  if (!stream) output.fail(std::strerror(errno));
   if (transaction) transaction->commit();
   output.commit();
   tell(report, between(before, snapshotOf(map)), context);

@@ -40,11 +40,10 @@ void bind(CLI::App& command, Options& options) {
                   "and in the current folder)")
       ->type_name("MAP");
   command.add_option("--title", options.title, "title of the page")->type_name("TEXT");
-  command
-      .add_option("-o,--html", options.html,
+  addOutput(command, "-o,--html", options.html,
                   "page to write (default: FILE with the ending .html in the current folder)")
       ->type_name("PAGE.html");
-  command.add_option("--png", options.png, "picture to write")->type_name("FILE.png");
+  addOutput(command, "--png", options.png, "picture to write")->type_name("FILE.png");
   groupOptions(command, "Page");
 }
 
@@ -94,8 +93,6 @@ Scene routeScene(const Options& options, const Context& context) {
 int run(const Options& options, Context& context) {
   const fs::path named(options.html);
   const fs::path html = named.empty() ? fs::path(options.file.path).stem().concat(".html") : named;
-  OutputFile(html).temporary();  // a bad place is told before the work, not after it
-  if (!options.png.empty()) OutputFile(options.png).temporary();
   const Scene scene = looksLikeJson(options.file.path) ? routeScene(options, context)
                                                        : mapScene(options, options.file.path, context);
   if (context.stop.stop_requested()) return Exit::kCancelled;

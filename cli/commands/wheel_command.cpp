@@ -42,12 +42,12 @@ void bind(CLI::App& command, WheelOptions& options) {
                     ->type_name("RAD")
                     ->check(within(-0.5 * std::numbers::pi, 0.5 * std::numbers::pi));
   auto* html =
-      command.add_option("--html", options.html, "page to write, with stresses and curves over slip")
+      addOutput(command, "--html", options.html, "page to write, with stresses and curves over slip")
           ->type_name("FILE.html");
   groupOptions(command, "One wheel");
   auto* cases =
       command.add_option("--cases", options.cases, "solve each row of a CSV file")->type_name("IN.csv");
-  command.add_option("-o,--output", options.output, "results of --cases to write")
+  addOutput(command, "-o,--output", options.output, "results of --cases to write")
       ->type_name("OUT.csv")
       ->needs(cases);
   for (auto* single : {soil, rover, load, slip, angle, html}) cases->excludes(single);

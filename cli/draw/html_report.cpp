@@ -38,6 +38,9 @@ std::string escaped(const std::string& text) {
       case '>':
         html += "&gt;";
         break;
+      case '\'':
+        html += "&#39;";
+        break;
       case '"':
         html += "&quot;";
         break;

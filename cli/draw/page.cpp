@@ -137,17 +137,17 @@ ordered_json dataOf(const Scene& scene) {
   return data;
 }
 
-/// JSON that may stand inside a script element.
-std::string embedded(const ordered_json& data) {
-  std::string text = data.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
-  for (std::size_t at = text.find("</"); at != std::string::npos; at = text.find("</", at + 3))
-    text.insert(at + 1, "\\");
-  return text;
-}
-
 void replaceAll(std::string& text, const std::string& from, const std::string& to) {
   for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
     text.replace(at, from.size(), to);
+}
+
+/// JSON that may stand inside a script element: "<" occurs in strings only, and what begins with it, such as "</script"
+/// or "<!--<script", would change how the page is read.
+std::string embedded(const ordered_json& data) {
+  std::string text = data.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+  replaceAll(text, "<", "\\u003c");
+  return text;
 }
 
 }  // namespace

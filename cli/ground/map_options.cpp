@@ -8,6 +8,7 @@
 #include <talus/cli/ground/map_options.hpp>
 #include <talus/costmap/map_file.hpp>
 #include <talus/costmap/octomap_surface.hpp>
+#include <talus/maps/memory_budget.hpp>
 
 namespace talus::cli {
 
@@ -33,6 +34,7 @@ void addReadOptions(CLI::App& command, MapOptions& options) {
       ->type_name("FACTOR");
   command.add_flag("--ignore-crs", read.ignore_crs,
                    "ignore a wrong CRS and read as local metres (with --resolution)");
+  command.add_flag("--allow-vrt", read.allow_vrt, "read a virtual raster (VRT) whose files lie in its own folder");
   command
       .add_option("--below", options.below_m,
                   "of an OctoMap: use the ground at or below this elevation, as under a bridge")
@@ -69,6 +71,9 @@ MapWithFloors readMapWithFloors(const MapOptions& options, const Context& contex
   maps::ReadOptions read = options.read;
   if (!options.window.empty()) read.window = maps::parseWindow(options.window);
   maps::ElevationMap map = maps::readElevation(options.path, read);
+  // What is built on it: beliefs, hazards, curves, tiles and their working copies.
+  constexpr double kBytesPerCell = 40.0;
+  maps::requireMemory(kBytesPerCell * static_cast<double>(map.elevation_m.values().size()), options.path);
   for (const std::string& note : map.notes) context.warn(options.path + ": " + note);
   return {std::move(map), {}};
 }

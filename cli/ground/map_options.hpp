@@ -25,7 +25,7 @@ struct MapOptions {
 };
 
 /// Declares --band, --resolution, --window, --nodata, --vertical-scale, --ignore-crs, --max-cells,
-/// --below.
+/// --allow-vrt, --below.
 void addReadOptions(CLI::App& command, MapOptions& options);
 
 /// Declares the positional DEM (or what `name` calls it) and addReadOptions().

@@ -7,6 +7,7 @@
 
 #include <talus/cli/ground/path_reader.hpp>
 #include <talus/maps/geojson.hpp>
+#include <talus/plausible.hpp>
 #include <talus/talus.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
 
@@ -32,11 +33,11 @@ std::vector<Point> readCsv(const std::string& path) {
   for (terramech::CsvRow row; reader.next(row);) {
     Point p;
     const bool good = row.fault.empty() && terramech::parseNumber(row.fields[x], p.x_m) &&
-                      terramech::parseNumber(row.fields[y], p.y_m) && std::isfinite(p.x_m) &&
-                      std::isfinite(p.y_m);
+                      terramech::parseNumber(row.fields[y], p.y_m) && plausible(p.x_m) &&
+                      plausible(p.y_m);
     if (!good)
       throw InputError({fmt::format("{}:{}", path, row.line),
-                        row.fault.empty() ? "x_m, y_m are not two finite numbers" : row.fault,
+                        row.fault.empty() ? fmt::format("x_m, y_m: {}", kPlausible) : row.fault,
                         "fix the row"});
     points.push_back(p);
   }
@@ -73,6 +74,22 @@ std::vector<Point> readLine(const std::string& path, const maps::ElevationMap& m
   throw InputError({path, "contains no LineString", "a path is a GeoJSON LineString, or CSV with x_m, y_m"});
 }
 
+// What is judged piece by piece, cell by cell, ends near the map.
+void requireNear(const std::vector<Point>& points, const maps::Grid& grid, const std::string& path) {
+  const double around_m = std::hypot(grid.width, grid.height) * grid.resolution_m;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double east = points[i].x_m - grid.south_west.x_m, north = points[i].y_m - grid.south_west.y_m;
+    const bool near = east >= -around_m && north >= -around_m &&
+                      east <= grid.width * grid.resolution_m + around_m &&
+                      north <= grid.height * grid.resolution_m + around_m;
+    if (!near)
+      throw InputError({path,
+                        fmt::format("vertex {} at {:.6g},{:.6g} lies farther from the map than its diagonal, {:.6g} m",
+                                    i + 1, points[i].x_m, points[i].y_m, around_m),
+                        "check the coordinate system"});
+  }
+}
+
 }  // namespace
 
 std::vector<Point> readPath(const std::string& path, const maps::ElevationMap& map) {
@@ -82,6 +99,7 @@ std::vector<Point> readPath(const std::string& path, const maps::ElevationMap& m
   const bool table = extension == ".csv" || extension == ".txt";
   std::vector<Point> points = table ? readCsv(path) : readLine(path, map);
   if (points.empty()) throw InputError({path, "contains no point", "a path needs at least one"});
+  requireNear(points, map.grid(), path);
   return points;
 }
 

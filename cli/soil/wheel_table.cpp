@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <optional>
 #include <stdexcept>
@@ -10,6 +12,7 @@
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/soil/wheel_table.hpp>
 #include <talus/maps/parallel_for.hpp>
+#include <talus/plausible.hpp>
 #include <talus/terramech/contact/wong_reece_batch.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
 
@@ -88,6 +91,8 @@ Entry entryOf(CsvRow row, const std::vector<std::optional<std::size_t>>& at) {
     const std::string& field = entry.row.fields[*at[k]];
     if (!terramech::parseNumber(field, entry.wheel_case.*kInputs[k].field))
       entry.fault = fmt::format("{} = '{}', must be a number", kInputs[k].name, field);
+    else if (!plausible(entry.wheel_case.*kInputs[k].field))
+      entry.fault = fmt::format("{} = {}, {}", kInputs[k].name, field, kPlausible);
   }
   return entry;
 }
@@ -127,6 +132,7 @@ class Writer {
 
   void commit() {
     out_.close();
+    if (!out_) file_.fail(std::strerror(errno));
     file_.commit();
   }
 

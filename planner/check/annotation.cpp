@@ -21,13 +21,18 @@ constexpr double kTogether = 1e-2;
 // Shares of a segment at which it passes from cell to cell, both ends included, sorted.
 std::vector<double> passages(const maps::Grid& grid, const Segment& motion) {
   std::vector<double> shares{0.0, 1.0};
-  const auto add = [&](double from, double to) {
-    for (double line = std::ceil(std::min(from, to)); line <= std::max(from, to) && from != to; line += 1.0)
+  // Only lines of the map: what lies outside of it, however far, is one piece.
+  const auto add = [&](double from, double to, int lines) {
+    const double first = std::max(std::ceil(std::min(from, to)), 0.0);
+    const double last = std::min(std::max(from, to), static_cast<double>(lines));
+    for (double line = first; line <= last && from != to; line += 1.0)
       shares.push_back((line - from) / (to - from));
   };
   const Point corner = grid.south_west;
-  add((motion.from.x_m - corner.x_m) / grid.resolution_m, (motion.to.x_m - corner.x_m) / grid.resolution_m);
-  add((motion.from.y_m - corner.y_m) / grid.resolution_m, (motion.to.y_m - corner.y_m) / grid.resolution_m);
+  add((motion.from.x_m - corner.x_m) / grid.resolution_m, (motion.to.x_m - corner.x_m) / grid.resolution_m,
+      grid.width);
+  add((motion.from.y_m - corner.y_m) / grid.resolution_m, (motion.to.y_m - corner.y_m) / grid.resolution_m,
+      grid.height);
   std::sort(shares.begin(), shares.end());
   return shares;
 }

@@ -1,6 +1,13 @@
+#include <cerrno>
+#include <csignal>
+#include <cstring>
 #include <utility>
 
 #include <boost/dll/shared_library.hpp>
+#include <dlfcn.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <talus/planner/plugin/plugin_loader.hpp>
 #include <talus/planner/plugin/request_check.hpp>
@@ -8,11 +15,33 @@
 namespace talus::planner {
 namespace {
 
+// What a library does while it is loaded, which a truncated or foreign one does not survive, is tried by a child first:
+// its end is told by a signal. It may take 10 s of CPU time.
+void requireLoadable(const std::string& path) {
+  const pid_t child = ::fork();
+  if (child < 0) throw InputError({path, std::string("cannot be tried: ") + std::strerror(errno), "free some memory"});
+  if (child == 0) {
+    const rlimit no_core{0, 0}, cpu{10, 10};
+    ::setrlimit(RLIMIT_CORE, &no_core);
+    ::setrlimit(RLIMIT_CPU, &cpu);
+    for (const int signal : {SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT}) ::signal(signal, SIG_DFL);
+    ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+    ::_exit(0);
+  }
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  if (WIFSIGNALED(status))
+    throw InputError({path, std::string("ends the process that loads it (") + ::strsignal(WTERMSIG(status)) + ")",
+                      "it is truncated or of another machine: rebuild it"});
+}
+
 boost::dll::shared_library opened(const std::string& path) {
   boost::dll::fs::error_code error;
   if (!boost::dll::fs::is_regular_file(path, error))
     throw InputError({path, "no such file", "name a planner's shared library (.so)"});
   boost::dll::shared_library library;
+  requireLoadable(boost::dll::fs::absolute(path).string());
   // A path without a folder would be searched for in the system's library folders instead.
   library.load(boost::dll::fs::absolute(path), error);
   if (error || !library.is_loaded())

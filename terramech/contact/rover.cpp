@@ -30,6 +30,14 @@ void validate(const Rover& rover) {
   check.above("max_speed_mps", rover.max_speed_mps, 0.0);
   check.atLeast("turning_radius_m", rover.turning_radius_m, 0.0);
   check.atLeast("hotel_power_W", rover.hotel_power_W, 0.0);
+  // Beyond these it is no vehicle on wheels, and its footprint no number of cells.
+  check.within("mass_kg", rover.mass_kg, {1e-3, 1e6});
+  check.within("gravity_m_s2", rover.gravity_m_s2, {1e-4, 1e3});
+  check.within("wheels.count", rover.wheel_count, {2.0, 100.0});
+  check.within("wheels.radius_m", rover.wheel.radius_m, {1e-3, 10.0});
+  check.within("wheels.width_m", rover.wheel.width_m, {1e-3, 10.0});
+  check.within("wheelbase_m", rover.wheelbase_m, {1e-3, 100.0});
+  check.within("track_m", rover.track_m, {1e-3, 100.0});
 }
 
 }  // namespace talus::terramech

@@ -169,6 +169,8 @@ SoilPosterior samplePosterior(const std::vector<ClassFit>& classes, std::span<co
     if (probabilities[k] > kNegligible)
       draw(classes[k], static_cast<int>(k), samples, points, posterior.draws, weights);
   }
+  if (!std::ranges::any_of(weights, [](double w) { return std::isfinite(w); }))
+    throw std::domain_error("soil fit: no soil of the prior can give these readings; check their units");
   normalise(weights);
   std::ranges::fill(probabilities, 0.0);
   for (std::size_t k = 0; k < weights.size(); ++k) {

@@ -5,6 +5,7 @@
 #include <sstream>
 #include <utility>
 
+#include <talus/plausible.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
 #include <talus/terramech/io/telemetry_reader.hpp>
 
@@ -73,6 +74,8 @@ double checkedNumber(const Column& column, const std::string& field, std::string
     fault = column.name + " = '" + field + "', must be a number";
   } else if (!std::isfinite(value)) {
     fault = column.name + " = " + field + ", must be finite";
+  } else if (!plausible(value)) {
+    fault = column.name + " = " + field + ", " + kPlausible;
   } else if (column.rule && !column.rule->holds(value)) {
     fault = column.name + " = " + field + ", must be " + column.rule->bound;
   }

@@ -8,6 +8,7 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <talus/plausible.hpp>
 #include <talus/talus.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
 #include <talus/terramech/io/unit.hpp>
@@ -125,6 +126,7 @@ double toNumber(const State& state, const std::string& name, const YAML::Node& v
     fail(where, name + " = '" + value.Scalar() + "', must be a number", "write it without a unit");
   if (!std::isfinite(number))
     fail(where, name + " = " + value.Scalar() + ", must be finite", "state a number");
+  if (!plausible(number * factor)) fail(where, name + " = " + value.Scalar() + ", " + kPlausible, "check its unit");
   return number * factor;
 }
 

@@ -51,7 +51,7 @@ TEST(BadInput, Plan) {
            "point_less.json"},
           {plan("good.asc", {"--start", "5,5", "--goal", "9,9", "--soils", "list.yaml"}), 2, "list.yaml"},
           {plan("good.asc", {"--start", "5,5", "--goal", "9,9", "--footprint", "nan"}), 2, "--footprint"},
-          {plan("good.asc", {"--start", "5,5", "--goal", "9,9", "--risk-weight", "nan"}), 2, "risk_weight_J"},
+          {plan("good.asc", {"--start", "5,5", "--goal", "9,9", "--risk-weight", "nan"}), 2, "--risk-weight"},
           {plan("good.asc", {"--start", "5,5", "--goal", "9,9", "--slope-uncertainty-deg", "200"}), 2,
            "slope_margin_rad"},
           {{"plan", "missing.yaml"}, 2, "missing.yaml"},

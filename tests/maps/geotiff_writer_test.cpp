@@ -39,7 +39,7 @@ TEST(GeoTiffWriter, RefusesWhatCannotBeWritten) {
   EXPECT_THAT(refusal([&] {
                 writeGeoTiff({folder / "no/where.tif"}, {{"z", "m", dem.elevation_m}});
               }),
-              HasSubstr("cannot be written"));
+              HasSubstr("does not exist; make it first"));
   EXPECT_THROW(writeGeoTiff({folder / "a.tif"}, {}), std::invalid_argument);
   EXPECT_THROW(writeGeoTiff({folder / "a.tif"}, {{"z", "m", dem.elevation_m},
                                                  {"s", "", Raster<float>(Grid{.width = 2, .height = 2})}}),

@@ -34,6 +34,12 @@ TEST(NumpyArray, FortranOrderAndSingleNumbers) {
   EXPECT_TRUE(parseNumpy(one, "a").shape.empty());
 }
 
+TEST(NumpyArray, ANumberWithoutDataIsRefused) {
+  EXPECT_THROW(parseNumpy(file("{'descr': '<f8', 'fortran_order': False, 'shape': (), }\n", ""), "a"), InputError);
+  EXPECT_THROW(parseNumpy(file("{'descr': '<f8', 'fortran_order': False, 'shape': (3,), }\n", "1234567"), "a"),
+               InputError);
+}
+
 TEST(NumpyArray, BadBytesAreRefused) {
   const auto line = [](const std::string& bytes) {
     try {

@@ -1,6 +1,8 @@
+#include <atomic>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
+#include <ctime>
 #include <thread>
 
 #include <unistd.h>
@@ -40,6 +42,34 @@ TEST(InterruptDeathTest, TheFirstSignalIsARequest) {
 
 TEST(InterruptDeathTest, TheSecondEndsTheProcessWithThePromisedCode) {
   EXPECT_EXIT(interruptedTwice(), testing::ExitedWithCode(Exit::kCancelled), "");
+}
+
+// Work that does not look at its token is ended, after CPU time of its own and no wall-clock time.
+[[noreturn]] void deaf(int signal) {
+  const Interrupt interrupt;
+  kill(getpid(), signal);
+  std::atomic<unsigned> turn = 0;
+  for (;;) ++turn;
+}
+
+TEST(InterruptDeathTest, WorkThatIgnoresItIsEnded) {
+  EXPECT_EXIT(deaf(SIGINT), testing::ExitedWithCode(130), "cancelled");
+  EXPECT_EXIT(deaf(SIGTERM), testing::ExitedWithCode(143), "cancelled");
+}
+
+// Who says that it answers may take its time: here twice the CPU time after which others are ended.
+TEST(InterruptDeathTest, WorkThatAnswersIsNotEnded) {
+  EXPECT_EXIT(
+      {
+        Interrupt interrupt;
+        interrupt.answered() = true;
+        kill(getpid(), SIGTERM);
+        waitFor(interrupt);
+        for (const std::clock_t from = std::clock(); std::clock() - from < CLOCKS_PER_SEC;) {
+        }
+        std::exit(interrupt.code() == 143 ? 7 : 2);
+      },
+      testing::ExitedWithCode(7), "");
 }
 
 // Property: its destructor wakes the listener by a signal that is not taken for the user's.

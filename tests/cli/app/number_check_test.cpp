@@ -1,4 +1,5 @@
 #include <talus/cli/app/number_check.hpp>
+#include <talus/talus.hpp>
 
 namespace talus::cli {
 namespace {
@@ -9,6 +10,26 @@ TEST(NumberCheck, RefusesNaNInfinityAndWhatLiesOutside) {
   for (std::string bad : {"1.001", "nan", "-inf", "abc", ""}) EXPECT_NE(slip(bad), "");
   std::string two = "2";
   EXPECT_EQ(slip(two), "2, must be -1 to 1");
+}
+
+// Whatever the option, and also where a test of its range lets NaN pass.
+TEST(NumberCheck, NoOptionTakesAnImpossibleNumber) {
+  const auto said = [](const std::string& word) -> std::string {
+    CLI::App app;
+    std::string value;
+    app.add_option("--risk", value);
+    app.parse("--risk=" + word);
+    try {
+      checkNumbers(app);
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  for (const char* bad : {"nan", "-nan", "NaN", "inf", "-Infinity", "1e999", "1e-300", "1e300", "5,nan", "nand,3d"})
+    EXPECT_THAT(said(bad), testing::HasSubstr("--risk ")) << bad;
+  for (const char* good : {"0", "0.5", "-3", "18446744073709551615", "x.tif", "nano.tif", "./nan", "3d,4d", "1e-9"})
+    EXPECT_EQ(said(good), "") << good;
 }
 
 TEST(NumberCheck, EndsThatDoNotBind) {

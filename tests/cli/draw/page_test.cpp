@@ -66,7 +66,7 @@ TEST(Page, EscapesWhatTheUserNamed) {
   scene.facts.emplace_back("file", "</script>@TALUS_TITLE@");
   const std::string html = page(scene);
   EXPECT_THAT(html, Not(HasSubstr("alert(1)</script>")));
-  EXPECT_THAT(html, HasSubstr("<\\/script>@TALUS_TITLE@"));
+  EXPECT_THAT(html, HasSubstr("\\u003c/script>@TALUS_TITLE@"));
 }
 
 TEST(Page, DrawsMapProfilesAndSummary) {
@@ -80,6 +80,21 @@ TEST(Page, DrawsMapProfilesAndSummary) {
   EXPECT_TRUE(bodyHas(shown, "<th>energy</th><td>54 kJ (15 Wh)"));
   EXPECT_TRUE(bodyHas(shown, "leaflet-control-scale-line"));
   EXPECT_THAT(shown.console, Not(HasSubstr("CONSOLE"))) << "the page complains";
+}
+
+// Property: no name from a file is taken for code or for markup, in whichever place of the page it stands.
+TEST(Page, NamesFromFilesAreTextInEveryPlace) {
+  TALUS_REQUIRE(test::installed("chromium"), "chromium is not installed");
+  for (const std::string name :
+       {"<!--<script>", "</script><script>document.body.dataset.hit=1</script>", "<img src=x onerror='document.body.dataset.hit=1'>",
+        "\"'><svg onload=document.body.dataset.hit=1>", "@TALUS_DATA@", "\xE2\x80\xA8 ]]> & &lt;"}) {
+    Scene scene = exampleScene();
+    scene.title = scene.subtitle = name;
+    scene.facts.emplace_back(name, name);
+    const Shown shown = show(page(scene));
+    EXPECT_TRUE(ready(shown)) << name << shown.console;
+    EXPECT_FALSE(bodyHas(shown, "data-hit")) << name;
+  }
 }
 
 TEST(Page, PointingAtTheProfileMarksThePlaceOnTheMap) {

@@ -48,6 +48,18 @@ TEST(PluginLoader, AnotherInterfaceIsRefusedBeforeItIsTouched) {
                                               HasSubstr("this program has 3"), HasSubstr("rebuild"))));
 }
 
+// Loading one may end the process by a signal: a child finds out.
+TEST(PluginLoader, ATruncatedLibraryIsRefused) {
+  const auto cut = std::filesystem::temp_directory_path() / "talus_cut_plugin_test.so";
+  const auto whole = std::filesystem::file_size(TALUS_PLUGIN);
+  for (const auto size : {whole / 100, whole / 10, whole / 2, whole * 9 / 10}) {
+    std::filesystem::copy_file(TALUS_PLUGIN, cut, std::filesystem::copy_options::overwrite_existing);
+    std::filesystem::resize_file(cut, size);
+    EXPECT_THROW(loadPlugin(cut.string()), InputError) << size;
+  }
+  std::filesystem::remove(cut);
+}
+
 TEST(PluginLoader, WhatIsNoPluginIsRefusedByName) {
   EXPECT_THAT([] { loadPlugin("/nowhere/planner.so"); },
               ThrowsMessage<InputError>(AllOf(HasSubstr("/nowhere/planner.so"), HasSubstr("no such file"))));
