@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include <talus/costmap/category_table.hpp>
+#include <talus/costmap/cross_slope.hpp>
 
 namespace talus::costmap {
 namespace {
@@ -9,10 +10,11 @@ constexpr int kSteps = 2897;  // of the steepest gradient that CellCode holds, 2
 
 }  // namespace
 
-CategoryTable::CategoryTable(const GroundModel& model, const GroundBelief& belief) {
+CategoryTable::CategoryTable(const GroundModel& model, const GroundBelief& belief,
+                             const CrossSlope& crossing) {
   entries_.reserve(kSteps);
   for (int step = 0; step < kSteps; ++step) {
-    const Ranked ranked = model.category(belief, step * CellCode::kStep);
+    const Ranked ranked = model.category(belief, crossing.steepest(step * CellCode::kStep));
     // Of danger the nearest step, of all else the one below: no more is promised than is believed.
     const double steps = 16.0 * ranked.probability;
     const double told =

@@ -8,8 +8,8 @@
 
 namespace talus::costmap {
 
-/// The category of one kind of ground over the steepness of its plane: worst over headings, so climbing
-/// straight up. Tabulated in CellCode's own steps, so it is exact for coded gradients rounded to 1/1024.
+/// The category of one kind of ground over the steepness of its plane: that of the worst heading, which climbs
+/// straight up or crosses (CrossSlope::steepest). Tabulated in CellCode's own steps, so it is exact for coded gradients rounded to 1/1024.
 class CategoryTable {
  public:
   /// A row of the table.
@@ -18,7 +18,7 @@ class CategoryTable {
     std::uint8_t confidence;  ///< probability in steps of 1/16, rounded down unless it is of danger
   };
 
-  CategoryTable(const GroundModel& model, const GroundBelief& belief);
+  CategoryTable(const GroundModel& model, const GroundBelief& belief, const CrossSlope& crossing);
 
   /// The entry for the gradient of a cell.
   Entry at(CellCode cell) const noexcept;

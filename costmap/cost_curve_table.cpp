@@ -31,7 +31,7 @@ CostCurveTable::CostCurveTable(std::shared_ptr<const GroundModel> model) : model
   for (int i = 0; i < static_cast<int>(classes()); ++i) {
     beliefs_.push_back(model_->prior(i));
     grounds_.push_back(model_->ground(i, beliefs_.back()));
-    categories_.emplace_back(*model_, beliefs_.back());
+    categories_.emplace_back(*model_, beliefs_.back(), *grounds_.back().crossing);
   }
 }
 
@@ -47,7 +47,7 @@ std::uint8_t CostCurveTable::learned(int class_index, int other_class, const Gro
   const auto number = static_cast<std::uint8_t>(grounds_.size());
   grounds_.push_back(model_->ground(class_index, other_class, worst));
   beliefs_.push_back(worst);
-  categories_.emplace_back(*model_, worst);
+  categories_.emplace_back(*model_, worst, *grounds_.back().crossing);
   numbers_.emplace(kind, number);
   cost_.reset();
   return number;
@@ -109,8 +109,9 @@ const CostCurveTable::Worked& CostCurveTable::worked(int class_index, const Grou
                      bits(prior.sinkage.std)};
   if (const auto known = worked_.find(key); known != worked_.end()) return known->second;
   if (worked_.size() >= kRemembered) worked_.clear();
-  return worked_.emplace(key, Worked{model_->ground(class_index, prior), CategoryTable(*model_, prior)})
-      .first->second;
+  DriveGround ground = model_->ground(class_index, prior);
+  CategoryTable categories(*model_, prior, *ground.crossing);
+  return worked_.emplace(key, Worked{std::move(ground), std::move(categories)}).first->second;
 }
 
 // What a class's belief is less sure of than the scatter from place to place, all of its ground shares.

@@ -35,16 +35,10 @@ std::vector<DriveCurve> curvesOf(const std::vector<DriveGround>& grounds) {
   return curves;
 }
 
-DriveState refused(Refusal reason) noexcept {
-  DriveState state;
-  state.refusal = reason;
-  return state;
-}
-
 }  // namespace
 
 DriveCost::DriveCost(const Limits& limits, std::vector<DriveCurve> curves)
-    : limits_(limits), curves_(std::move(curves)), states_(curves_.size()) {
+    : limits_(limits), curves_(std::move(curves)), states_(curves_.size()), crossings_(curves_.size()) {
   if (curves_.size() > CellCode::kUnknown)
     throw std::invalid_argument("DriveCost: " + std::to_string(curves_.size()) +
                                 " drive curves, must be <= 254");
@@ -53,7 +47,10 @@ DriveCost::DriveCost(const Limits& limits, std::vector<DriveCurve> curves)
 DriveCost::DriveCost(const Limits& limits, const std::vector<DriveGround>& grounds, SoilDoubt doubt)
     : DriveCost(limits, curvesOf(grounds)) {
   doubt_ = std::move(doubt);
-  for (std::size_t i = 0; i < grounds.size(); ++i) states_[i] = grounds[i].states;
+  for (std::size_t i = 0; i < grounds.size(); ++i) {
+    states_[i] = grounds[i].states;
+    crossings_[i] = grounds[i].crossing;
+  }
 }
 
 float DriveCost::costPerMetre(CellCode cell, Direction heading) const noexcept {
@@ -63,20 +60,8 @@ float DriveCost::costPerMetre(CellCode cell, Direction heading) const noexcept {
   if (std::abs(d.along) > limits_.max_along || std::abs(d.across) > limits_.max_across) return blocked;
   const int bin = DriveCurve::bin(d.along);
   if (bin < 0 || bin >= DriveCurve::kBins) return blocked;
-  return curves_[cell.curve()].cost_J_per_m[static_cast<std::size_t>(bin)];
-}
-
-DriveState DriveCost::detail(CellCode cell, Direction heading) const noexcept {
-  if (cell.curve() == CellCode::kBlocked) return refused(Refusal::Blocked);
-  if (cell.curve() >= curves_.size()) return refused(Refusal::Unknown);
-  const Demand d = demand(cell, heading);
-  const int bin = std::clamp(DriveCurve::bin(d.along), 0, DriveCurve::kBins - 1);
-  const auto& table = states_[cell.curve()];
-  DriveState state = table ? (*table)[static_cast<std::size_t>(bin)] : DriveState{};
-  if (std::abs(d.across) > limits_.max_across) state.refusal = Refusal::Roll;
-  if (std::abs(d.along) > limits_.max_along || bin != DriveCurve::bin(d.along))
-    state.refusal = Refusal::Pitch;
-  return state;
+  const DriveCurve& curve = curves_[cell.curve()];
+  return curve.rows()[std::min(DriveCurve::row(d.across), curve.lastRow()) * DriveCurve::kBins + bin];
 }
 
 }  // namespace talus::costmap

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -58,22 +59,51 @@ class CellCode {
 };
 
 /// What one horizontal metre costs on one kind of ground, tabulated over the gradient along the heading
-/// (rise over run, climbing > 0) in kBins bins of width 1/256 centred on k/256, k = -256..255; infinite where
-/// the motion is not allowed.
+/// (rise over run, climbing > 0) in kBins bins of width 1/256 centred on k/256, k = -256..255, and over the size
+/// of the gradient across in rows of 1/64, each standing for what is gentler down to the row before; infinite
+/// where the motion is not allowed.
 struct DriveCurve {
   static constexpr int kBins = 512;
-  std::array<float, kBins> cost_J_per_m;  ///< energy + weighted time + weighted risk, in joules
+  static constexpr int kRowsPerUnit = 64;
+  static constexpr double kSame = 1e-9;  ///< of a row: rounding alone does not lead to the next
+  /// Row 0, nothing across: energy + weighted time + weighted risk, in joules.
+  std::array<float, kBins> cost_J_per_m;
+  /// All rows, row 0 first; the last stands for all beyond. None: crossing costs nothing more. In no bin may
+  /// costs fall from row to row: lower bounds rely on it.
+  std::shared_ptr<const std::vector<float>> crossing{};
 
   /// The bin of a gradient; outside 0..kBins-1 when the gradient leaves the table.
   static int bin(double gradient) noexcept;
   /// The gradient at the middle of a bin.
   static constexpr double gradient(int bin) noexcept { return (bin - 0.5 * kBins) / 256.0; }
+  /// The row of a gradient across.
+  static int row(double across) noexcept {
+    const double rows = (across < 0.0 ? -across : across) * kRowsPerUnit - kSame;
+    const int whole = static_cast<int>(rows);
+    return whole + static_cast<int>(rows > whole);
+  }
+
+  /// Costs of all rows, and the number of the last.
+  const float* rows() const noexcept { return crossing ? crossing->data() : cost_J_per_m.data(); }
+  int lastRow() const noexcept { return crossing ? static_cast<int>(crossing->size()) / kBins - 1 : 0; }
 };
+
+class CrossSlope;
 
 /// One kind of ground: what a metre costs for the hot loop, and the numbers behind it.
 struct DriveGround {
   DriveCurve curve;
   std::shared_ptr<const DriveTable> states;  ///< may be null where details are not needed (tests)
+  std::shared_ptr<const CrossSlope>
+      crossing{};  ///< what the curve's rows are made by; null where it has none
+};
+
+/// How a rover holds a slope on the soil of its class, by the row and bin of the cost; NaN where nothing holds or is
+/// known.
+struct SlopeHold {
+  double slip_angle_rad = std::numeric_limits<double>::quiet_NaN();  ///< to the way made good, left positive
+  double side_force_over_load = std::numeric_limits<double>::quiet_NaN();  ///< greatest |F|/N of a wheel
+  double stability_margin_rad = std::numeric_limits<double>::quiet_NaN();  ///< further tilt until it tips
 };
 
 /// How the doubts about the soil of two places hang together, and what a place does whose soil is too weak.
@@ -104,17 +134,22 @@ class DriveCost {
   /// Unknown, where the curve has no table.
   DriveState detail(CellCode cell, Direction heading) const noexcept;
 
+  /// How the rover holds the slope there.
+  SlopeHold hold(CellCode cell, Direction heading) const noexcept;
+
   const Limits& limits() const noexcept { return limits_; }
   /// What the risk of a whole route follows from, beside the hazard of each metre.
   const SoilDoubt& doubt() const noexcept { return doubt_; }
   const std::vector<DriveCurve>& curves() const noexcept { return curves_; }
   /// The numbers behind each curve; null where a curve was made without.
   const std::vector<std::shared_ptr<const DriveTable>>& states() const noexcept { return states_; }
+  const std::vector<std::shared_ptr<const CrossSlope>>& crossings() const noexcept { return crossings_; }
 
  private:
   Limits limits_;
   std::vector<DriveCurve> curves_;
   std::vector<std::shared_ptr<const DriveTable>> states_;
+  std::vector<std::shared_ptr<const CrossSlope>> crossings_;
   SoilDoubt doubt_;
 };
 

@@ -19,6 +19,8 @@ const char* toText(Refusal refusal) noexcept {
       return "slope across the heading above the roll limit";
     case Refusal::Pull:
       return "required drawbar pull above the available drawbar pull";
+    case Refusal::SideForce:
+      return "required side force above the available side force";
     case Refusal::Torque:
       return "required torque above the motor limit";
     case Refusal::Sinkage:

@@ -10,15 +10,16 @@ namespace talus::costmap {
 
 /// Why a motion over a cell is refused.
 enum class Refusal : std::uint8_t {
-  None,      ///< allowed
-  Unknown,   ///< the cell is unobserved
-  Blocked,   ///< a hazard that no heading avoids; the map knows which
-  Pitch,     ///< steeper along the heading than the rover may pitch
-  Roll,      ///< steeper across the heading than the rover may roll
-  Pull,      ///< required drawbar pull above the available drawbar pull
-  Torque,    ///< the motors cannot give the torque
-  Sinkage,   ///< the wheels sink to where the belly touches
-  Category,  ///< the category at this slope is refused by the policy
+  None,       ///< allowed
+  Unknown,    ///< the cell is unobserved
+  Blocked,    ///< a hazard that no heading avoids; the map knows which
+  Pitch,      ///< steeper along the heading than the rover may pitch
+  Roll,       ///< steeper across the heading than the rover may roll
+  Pull,       ///< required drawbar pull above the available drawbar pull
+  SideForce,  ///< required side force above the available side force, with the pull that is required
+  Torque,     ///< the motors cannot give the torque
+  Sinkage,    ///< the wheels sink to where the belly touches
+  Category,   ///< the category at this slope is refused by the policy
 };
 
 /// The reason of a refusal as text: "required drawbar pull above the available drawbar pull".

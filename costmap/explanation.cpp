@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
+#include <talus/costmap/cross_slope.hpp>
 #include <talus/costmap/explanation.hpp>
 
 namespace talus::costmap {
@@ -127,15 +129,49 @@ void addFloors(const TraversabilityMap& map, maps::Cell cell, Explanation& out) 
   }
 }
 
+terramech::Gradient seenBy(CellCode code, const Direction& heading) {
+  return {code.dzDx() * heading.x + code.dzDy() * heading.y,
+          code.dzDy() * heading.x - code.dzDx() * heading.y};
+}
+
+// What crosses and climbs as hard as a straight climb, where the ground has a soil.
+double climbAt(const DriveCost& cost, CellCode code, const Direction& heading) {
+  const terramech::Gradient gradient = seenBy(code, heading);
+  const bool known = code.curve() < cost.crossings().size() && cost.crossings()[code.curve()];
+  return known ? cost.crossings()[code.curve()]->climb(gradient) : gradient.along;
+}
+
+// Straight up the slope, or the heading across that clearly leaves less.
+Direction worst(const DriveCost& cost, CellCode code) {
+  const double length = std::hypot(code.dzDx(), code.dzDy());
+  if (!(length > 0.0)) return {};
+  const Direction up{code.dzDx() / length, code.dzDy() / length};
+  constexpr int kHeadings = 24;            // to either side, as CrossSlope::steepest()
+  constexpr double kClearly = 1.0 / 32.0;  // of gradient: two rows across
+  Direction found = up;
+  double most = climbAt(cost, code, up) + kClearly;
+  for (int k = 1; k < kHeadings; ++k) {
+    const double c = std::cos(k * std::numbers::pi / kHeadings),
+                 s = std::sin(k * std::numbers::pi / kHeadings);
+    const Direction tried{c * up.x - s * up.y, s * up.x + c * up.y};
+    if (const double climb = climbAt(cost, code, tried); climb > most) {
+      most = climb;
+      found = tried;
+    }
+  }
+  return found;
+}
+
 void addDrive(const TraversabilityMap& map, maps::Cell cell, const Direction& heading, Explanation& out) {
   const auto grid = map.published();
   const CellCode code = grid->at(cell);
-  const double along = code.dzDx() * heading.x + code.dzDy() * heading.y;
+  const auto [along, across] = seenBy(code, heading);
   const double margin = map.model().parts().policy.slope_margin_rad;
   const DriveState state = grid->cost().detail(code, heading);
   const std::string asks = "slope along the heading";
   const std::string drives = "mobility curve at the estimated DP/W";
   out.causes.push_back({"slope_along_rad", std::atan(along), kNotKnown, asks, ""});
+  out.causes.push_back({"slope_across_rad", std::atan(across), kNotKnown, "slope across the heading", ""});
   out.causes.push_back({"dangerous_below", std::tan(std::atan(along) - margin), kNotKnown, asks,
                         "DP/W below this is dangerous (thesis 3.5)"});
   out.causes.push_back({"safe_above", std::tan(std::atan(along) + margin), kNotKnown, asks,
@@ -144,6 +180,11 @@ void addDrive(const TraversabilityMap& map, maps::Cell cell, const Direction& he
   out.causes.push_back(
       {"drawbar_pull_margin", static_cast<double>(state.pull_margin), kNotKnown, drives, ""});
   out.causes.push_back({"slip", static_cast<double>(state.slip), kNotKnown, drives, ""});
+  const SlopeHold hold = grid->cost().hold(code, heading);
+  const std::string balance = "rover equilibrium on the soil of the class";
+  out.causes.push_back({"slip_angle_rad", hold.slip_angle_rad, kNotKnown, balance, ""});
+  out.causes.push_back({"side_force_over_load", hold.side_force_over_load, kNotKnown, balance, ""});
+  out.causes.push_back({"stability_margin_rad", hold.stability_margin_rad, kNotKnown, balance, ""});
   out.causes.push_back({"sinkage_m", static_cast<double>(state.sinkage_m), kNotKnown, drives,
                         limitRemark(static_cast<double>(state.sinkage_m), map.model().rover().clearance_m)});
   out.causes.push_back(
@@ -154,11 +195,6 @@ void addDrive(const TraversabilityMap& map, maps::Cell cell, const Direction& he
                         "estimated DP/W compared with required DP/W", ""});
   out.causes.push_back({"cost_J_per_m", static_cast<double>(grid->cost().costPerMetre(code, heading)),
                         kNotKnown, "weighted sum of energy, time and risk", toText(state.refusal)});
-}
-
-Direction steepest(CellCode code) {
-  const double length = std::hypot(code.dzDx(), code.dzDy());
-  return length > 0.0 ? Direction{code.dzDx() / length, code.dzDy() / length} : Direction{};
 }
 
 void judge(const TraversabilityMap& map, maps::Cell cell, const Direction& heading, Explanation& out) {
@@ -184,12 +220,15 @@ void judge(const TraversabilityMap& map, maps::Cell cell, const Direction& headi
   }
   // What is said is what planners read, at the gradient that they read it at.
   const CellCode code = map.code(cell);
-  const double along = code.dzDx() * heading.x + code.dzDy() * heading.y;
+  const double along = seenBy(code, heading).along, climb = climbAt(map.published()->cost(), code, heading);
   const DriveState state = map.published()->cost().detail(code, heading);
   out.category = state.category;
-  out.probability = map.model().category(*ground, DriveCurve::gradient(DriveCurve::bin(along))).probability;
+  out.probability = map.model().category(*ground, DriveCurve::gradient(DriveCurve::bin(climb))).probability;
   out.verdict = std::string(terramech::name(out.category)) + ": available DP/W " +
                 std::to_string(ground->pull.value) + ", required DP/W " + std::to_string(along);
+  if (climb > along + 1.0 / 256)
+    out.verdict +=
+        climb < 1.0 ? ", with the side force " + std::to_string(climb) : ", side force out of reach";
   if (state.refusal != Refusal::None) out.verdict += std::string("; refused: ") + toText(state.refusal);
 }
 
@@ -197,7 +236,7 @@ void judge(const TraversabilityMap& map, maps::Cell cell, const Direction& headi
 
 Explanation explain(const TraversabilityMap& map, maps::Cell cell, const std::optional<Direction>& heading) {
   Explanation out;
-  const Direction direction = heading.value_or(steepest(map.code(cell)));
+  const Direction direction = heading.value_or(worst(map.published()->cost(), map.code(cell)));
   judge(map, cell, direction, out);
   addShape(map, cell, out);
   addSoil(map, cell, out);

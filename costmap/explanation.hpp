@@ -26,7 +26,7 @@ struct Explanation {
   std::vector<Cause> causes;
 };
 
-/// Explains a cell inside the map, for one heading or, without one, for the worst: straight up its slope.
+/// Explains a cell inside the map, for one heading or, without one, for the worst: straight up its slope, or across.
 Explanation explain(const TraversabilityMap& map, maps::Cell cell,
                     const std::optional<Direction>& heading = std::nullopt);
 

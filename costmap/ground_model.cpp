@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include <talus/costmap/cross_slope.hpp>
 #include <talus/costmap/ground_model.hpp>
 #include <talus/terramech/mobility/rut.hpp>
 #include <talus/terramech/numerics/normal_distribution.hpp>
@@ -22,6 +23,8 @@ double probabilityBelow(const Estimate& value, double bound) {
   return terramech::normalProbability((bound - value.value) / value.std);
 }
 
+constexpr double kLeastThrust = 0.02;  // over load [-]
+
 double slopeAtSlip_rad(const terramech::MobilityCurve& curve, double slip) {
   double low = curve.minSlope_rad(), high = curve.maxSlope_rad();
   for (int halving = 0; halving < 30 && low < high; ++halving) {
@@ -29,6 +32,14 @@ double slopeAtSlip_rad(const terramech::MobilityCurve& curve, double slip) {
     (curve.at(middle).slip < slip ? low : high) = middle;
   }
   return 0.5 * (low + high);
+}
+
+terramech::SlopeEquilibrium slopeOf(const GroundClass& ground, const terramech::Rover& rover) {
+  if (ground.effects.empty()) return {ground.soil, rover};
+  terramech::RefinedModel model;
+  model.soil = ground.soil;
+  model.effects = ground.effects;
+  return {model, rover};
 }
 
 // In the rut of an equal wheel: as data have shown, or as rutted() supposes.
@@ -72,6 +83,13 @@ GroundModel::GroundModel(Parts parts) : parts_(std::move(parts)) {
                           ? mobilityOf(c, parts_.rover, {.axles = parts_.rover.wheel_count / 2})
                           : wheel_curves_.back());
     drives_.emplace_back(curves_.back());
+    crossings_.push_back(std::make_shared<const CrossSlope>(
+        slopeOf(c, parts_.rover),
+        CrossSlope::Level{.first = drives_.back().first(),
+                          .last = drives_.back().last(),
+                          .thrust = std::max({curves_.back().reference().torque_over_load_radius,
+                                              drives_.back().last(), kLeastThrust})},
+        limits()));
   }
 }
 
@@ -160,12 +178,20 @@ double GroundModel::weakProbability(int class_index, const Estimate& pull, doubl
   return gradient > most.value ? 1.0 : probabilityBelow(most, gradient);
 }
 
-Refusal GroundModel::refusal(const DriveState& state, double weak, double demand,
+// The locked wheels of ground that is weaker by d hold d less.
+double GroundModel::unbrakedProbability(int class_index, const Estimate& pull,
+                                        double gradient) const noexcept {
+  const auto i = static_cast<std::size_t>(class_index);
+  const double least = wheel_curves_[i].reference().drawbar_pull_over_load + drives_[i].first() - gradient;
+  return pull.value < least ? 1.0 : probabilityBelow(pull, least);
+}
+
+Refusal GroundModel::refusal(const DriveState& state, double weak, const Demand& demand,
                              int class_index) const noexcept {
   const DrivePolicy& policy = parts_.policy;
   const ExpectedDrive& drive = drives_[static_cast<std::size_t>(class_index)];
   if (static_cast<double>(std::abs(state.torque_Nm)) > parts_.rover.max_torque_Nm) return Refusal::Torque;
-  if (demand < drive.first() || demand > drive.last() || weak > policy.max_immobilisation)
+  if (demand.braked < drive.first() || demand.driven > drive.last() || weak > policy.max_immobilisation)
     return Refusal::Pull;
   if (static_cast<double>(state.sinkage_m) >= parts_.rover.clearance_m) return Refusal::Sinkage;
   const bool refused = (state.category == Category::Dangerous && !policy.allow_dangerous) ||
@@ -177,19 +203,25 @@ DriveState GroundModel::state(int class_index, const GroundBelief& belief, doubl
   const auto i = static_cast<std::size_t>(class_index);
   const DrivePolicy& policy = parts_.policy;
   const auto& reference = wheel_curves_[i].reference();
-  const Estimate demand{gradient - (belief.pull.value - reference.drawbar_pull_over_load), belief.pull.std};
+  const double weakness = reference.drawbar_pull_over_load - belief.pull.value;
+  const Estimate demand{gradient + weakness, belief.pull.std};
   const double least = std::min(gradient, 0.0), mean = std::max(demand.value, least);
-  const MobilityState s = curves_[i].at(std::atan(mean));
+  const MobilityState s = curves_[i].at(std::atan(mean)), braked = curves_[i].at(std::atan(least));
   const ExpectedCost expected = drives_[i].at(demand, least);
   const double surface = std::hypot(1.0, gradient);
   const double deeper =
       reference.sinkage_over_radius > 0.0 ? belief.sinkage.value / reference.sinkage_over_radius : 1.0;
-  const double weak = weakProbability(class_index, belief.pull, gradient);
+  const double weak = std::max(weakProbability(class_index, belief.pull, gradient),
+                               unbrakedProbability(class_index, belief.pull, gradient));
 
   DriveState state;
   state.slip = static_cast<float>(s.slip);
-  state.sinkage_m = static_cast<float>(std::max(s.sinkage_m, drives_[i].sinkage_m(mean)) * deeper);
-  state.torque_Nm = static_cast<float>(s.torque_Nm);
+  // Stronger ground on the same slope brakes harder: weaker ground is not let off what refuses that.
+  state.sinkage_m = static_cast<float>(
+      std::max({s.sinkage_m, drives_[i].sinkage_m(mean), braked.sinkage_m, drives_[i].sinkage_m(least)}) *
+      deeper);
+  state.torque_Nm =
+      static_cast<float>(std::abs(braked.torque_Nm) > std::abs(s.torque_Nm) ? braked.torque_Nm : s.torque_Nm);
   state.energy_J_per_m = static_cast<float>(expected.energy_J_per_m * surface);
   state.time_s_per_m = static_cast<float>(expected.time_s_per_m * surface);
   state.risk_per_m = static_cast<float>(-std::log1p(-policy.held() * std::min(weak, 1.0 - 1e-12)) /
@@ -197,7 +229,8 @@ DriveState GroundModel::state(int class_index, const GroundBelief& belief, doubl
   state.pull_margin = static_cast<float>(belief.pull.value - gradient);
   state.category = categoryAt(belief.pull.value, belief.sinkage.value, gradient);
   state.class_index = static_cast<std::uint8_t>(class_index);
-  state.refusal = refusal(state, weak, mean, class_index);
+  state.refusal =
+      refusal(state, weak, {.driven = mean, .braked = gradient - std::max(weakness, 0.0)}, class_index);
   return state;
 }
 
@@ -215,8 +248,14 @@ DriveGround GroundModel::ground(int class_index, int other_class, const GroundBe
     DriveState& s = (*states)[static_cast<std::size_t>(bin)];
     s = state(class_index, belief, DriveCurve::gradient(bin));
     if (other_class != class_index) s = worse(s, state(other_class, belief, DriveCurve::gradient(bin)));
-    ground.curve.cost_J_per_m[static_cast<std::size_t>(bin)] = static_cast<float>(cost_J_per_m(s));
   }
+  const auto i = static_cast<std::size_t>(class_index), j = static_cast<std::size_t>(other_class);
+  ground.crossing =
+      i == j ? crossings_[i]
+             : std::make_shared<const CrossSlope>(CrossSlope::harder(*crossings_[i], *crossings_[j]));
+  ground.curve =
+      priced(*states, ground.crossing.get(),
+             {.energy = 1.0, .time_W = parts_.policy.time_weight_W, .risk_J = parts_.policy.risk_weight_J});
   ground.states = std::move(states);
   return ground;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -61,7 +62,8 @@ struct Ranked {
 /// steeper by d: the shift of the curve is the extra resistance or missing thrust (ours; at the reference
 /// slip it is exact). Ground that pulls more drives as on a flatter slope, at most as on the level. Cost and
 /// risk never fall as a standard deviation grows, nor, from the level upwards, as the gradient grows
-/// (ExpectedDrive). Immutable.
+/// (ExpectedDrive). Downhill, ground that gives less by d brakes less by d, too, so that weaker ground is nowhere
+/// allowed where stronger ground is refused. What crossing a slope costs is CrossSlope's to say. Immutable.
 class GroundModel {
  public:
   /// Everything the model is made from.
@@ -96,14 +98,18 @@ class GroundModel {
   /// The same of ground that may be of either class: the worse of both in everything.
   DriveGround ground(int class_index, int other_class, const GroundBelief& belief) const;
 
-  /// State at one gradient along the heading (rise over run), as ground() tabulates it.
+  /// What crossing slopes is worth on ground of a class.
+  const std::shared_ptr<const CrossSlope>& crossing(int class_index) const {
+    return crossings_[static_cast<std::size_t>(class_index)];
+  }
+
+  /// State at one gradient along the heading (rise over run) with none across, as ground() tabulates it.
   DriveState state(int class_index, const GroundBelief& belief, double gradient) const;
 
   /// Cost of one horizontal metre [J]; infinite when refused.
   double cost_J_per_m(const DriveState& state) const noexcept;
 
-  /// Category of ground at a gradient, worst over headings when given the plane's own, and its probability
-  /// under the belief.
+  /// Category of ground at a gradient along the heading, and its probability under the belief.
   Ranked category(const GroundBelief& belief, double gradient) const;
 
   DriveCost::Limits limits() const;
@@ -120,13 +126,19 @@ class GroundModel {
   Edges edges(double gradient) const noexcept;
   double criticalSinkage() const noexcept;
   double weakProbability(int class_index, const Estimate& pull, double gradient) const noexcept;
-  Refusal refusal(const DriveState& state, double weak, double demand, int class_index) const noexcept;
+  double unbrakedProbability(int class_index, const Estimate& pull, double gradient) const noexcept;
+  // The pulls over load that the class must give: driven at most, braked at least.
+  struct Demand {
+    double driven, braked;
+  };
+  Refusal refusal(const DriveState& state, double weak, const Demand& demand, int class_index) const noexcept;
   terramech::Category categoryAt(double pull, double sinkage, double gradient) const;
 
   Parts parts_;
   double tan_margin_ = 0.0;
-  std::vector<terramech::MobilityCurve> curves_;        // of each class, all axles of the rover together
-  std::vector<ExpectedDrive> drives_;                   // the same over the demand
+  std::vector<terramech::MobilityCurve> curves_;  // of each class, all axles of the rover together
+  std::vector<ExpectedDrive> drives_;             // the same over the demand
+  std::vector<std::shared_ptr<const CrossSlope>> crossings_;
   std::vector<terramech::MobilityCurve> wheel_curves_;  // one wheel on fresh ground
   std::vector<terramech::MobilityCurve> rut_curves_;    // in the rut of an equal wheel
 };

@@ -1,5 +1,7 @@
 // talus explain DEM --at P [--heading RAD]: why a cell is what it is.
 #include <cmath>
+#include <filesystem>
+#include <numbers>
 #include <optional>
 #include <string>
 
@@ -9,6 +11,8 @@
 #include <talus/cli/app/command.hpp>
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/number_check.hpp>
+#include <talus/cli/app/output_file.hpp>
+#include <talus/cli/draw/slope_rose.hpp>
 #include <talus/cli/ground/ground_options.hpp>
 #include <talus/costmap/explanation.hpp>
 #include <talus/maps/place_reader.hpp>
@@ -20,6 +24,7 @@ struct Options {
   GroundOptions ground;
   std::string at;
   std::optional<double> heading_rad;
+  std::string png;
 };
 
 void bind(CLI::App& command, Options& options) {
@@ -35,6 +40,10 @@ void bind(CLI::App& command, Options& options) {
       ->type_name("RAD")
       ->check(finite());
   groupOptions(command, "Place");
+  command
+      .add_option("--png", options.png, "picture of cost, slip and slip angle over all headings (.png, .svg)")
+      ->type_name("FILE");
+  groupOptions(command, "Output");
 }
 
 nlohmann::ordered_json asJson(const costmap::Explanation& why, const maps::Point& point,
@@ -66,6 +75,25 @@ std::string asText(const costmap::Explanation& why, const std::string& place) {
   return text;
 }
 
+SlopeRose roseOf(const costmap::TraversabilityMap& map, const maps::Cell& cell, const std::string& title) {
+  constexpr int kHeadings = 72;
+  const auto grid = map.published();
+  const costmap::CellCode code = grid->at(cell);
+  SlopeRose rose{.title = title, .headings = {}, .uphill_rad = {}};
+  if (code.stepsX() != 0 || code.stepsY() != 0) rose.uphill_rad = std::atan2(code.dzDy(), code.dzDx());
+  for (int k = 0; k < kHeadings; ++k) {
+    const double heading = 2.0 * std::numbers::pi * k / kHeadings;
+    const costmap::Direction towards{std::cos(heading), std::sin(heading)};
+    const costmap::DriveState state = grid->cost().detail(code, towards);
+    rose.headings.push_back({.heading_rad = heading,
+                             .cost_J_per_m = static_cast<double>(grid->cost().costPerMetre(code, towards)),
+                             .slip = static_cast<double>(state.slip),
+                             .slip_angle_rad = grid->cost().hold(code, towards).slip_angle_rad,
+                             .refused = state.refusal != costmap::Refusal::None});
+  }
+  return rose;
+}
+
 int run(const Options& options, Context& context) {
   const Ground site = readGround(options.ground, context);
   if (context.stop.stop_requested()) return Exit::kCancelled;
@@ -74,6 +102,11 @@ int run(const Options& options, Context& context) {
   std::optional<costmap::Direction> heading;
   if (options.heading_rad) heading = {std::cos(*options.heading_rad), std::sin(*options.heading_rad)};
   const costmap::Explanation why = costmap::explain(site.map, cell, heading);
+  if (!options.png.empty())
+    writeFile(options.png,
+              draw(roseOf(site.map, cell, maps::describe(point, site.map.elevation()) + ": " + why.verdict),
+                   std::filesystem::path(options.png).extension() == ".svg" ? Canvas::Kind::Svg
+                                                                            : Canvas::Kind::Png));
   if (context.json)
     printJson(asJson(why, point, cell));
   else
@@ -89,7 +122,7 @@ void addExplain(CLI::App& app, Context& context) {
                        .group = Group::kMaps,
                        .description = "explain the category of a cell: quantities, sources, uncertainties",
                        .examples = "  talus explain gale.tif --at -4.7d,137.5d --heading 1.57\n"
-                                   "  talus explain map.ot --at 120,80\n"},
+                                   "  talus explain map.ot --at 120,80 --png rose.png\n"},
                       bind, run);
 }
 

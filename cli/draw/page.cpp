@@ -85,6 +85,7 @@ ordered_json routeOf(const planner::Route& route) {
                       {"slope", number(v.slope_along_rad / kDegree)},
                       {"across", number(v.slope_across_rad / kDegree)},
                       {"slip", number(v.slip)},
+                      {"angle", number(v.slip_angle_rad / kDegree)},
                       {"energy", number(v.energy_J / 1000.0)},
                       {"time", number(v.time_s)},
                       {"category", terramech::name(v.category)}});

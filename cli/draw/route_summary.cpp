@@ -110,7 +110,12 @@ std::string wheelText(const Route& route) {
 std::string slipText(const Route& route) {
   const Profile slip = profile(route, &RouteVertex::slip);
   if (!slip.known()) return "";
-  return fmt::format("min {:.2f}, max {:.2f}, mean {:.2f}", slip.lowest, slip.highest, slip.mean);
+  std::string text = fmt::format("min {:.2f}, max {:.2f}, mean {:.2f}", slip.lowest, slip.highest, slip.mean);
+  const Profile angle = profile(route, &RouteVertex::slip_angle_rad);
+  if (angle.known())
+    text += fmt::format("; slip angle max {:.1f} deg",
+                        std::max(std::abs(angle.highest), std::abs(angle.lowest)) / kDegree);
+  return text;
 }
 
 /// The planner and the optimality gap, where a useful bound is known.

@@ -1,6 +1,9 @@
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <utility>
 
@@ -34,6 +37,39 @@ float energyAlong(const costmap::CostGrid& grid, maps::Cell cell, double sign) {
   return grid.cost().detail(code, up).energy_J_per_m;
 }
 
+// The category of a cell in the heading that is best on its slope, which is that of its curve and steepness.
+class BestHeading {
+ public:
+  explicit BestHeading(const costmap::DriveCost& cost) : cost_(cost), known_(cost.curves().size()) {}
+
+  float category(CellCode cell) {
+    const double steepness = std::hypot(cell.dzDx(), cell.dzDy());
+    const auto step = static_cast<std::size_t>(std::ceil(steepness / kStep - 1e-9));
+    auto& curve = known_[cell.curve()];
+    if (curve.size() <= step) curve.resize(step + 1, kNaN);
+    if (std::isnan(curve[step])) curve[step] = best(static_cast<double>(step) * kStep, cell.curve());
+    return curve[step];
+  }
+
+ private:
+  static constexpr double kStep = 1.0 / 256.0;
+
+  float best(double steepness, std::uint8_t curve) const {
+    constexpr int kHeadings = 48;
+    const CellCode cell({.dz_dx = steepness, .dz_dy = 0.0, .curve = curve});
+    auto found = terramech::Category::Dangerous;
+    for (int k = 0; k <= kHeadings / 2; ++k) {
+      const double heading = 2.0 * std::numbers::pi * k / kHeadings;
+      const costmap::DriveState state = cost_.detail(cell, {std::cos(heading), std::sin(heading)});
+      if (state.refusal == costmap::Refusal::None) found = std::min(found, state.category);
+    }
+    return static_cast<float>(found);
+  }
+
+  const costmap::DriveCost& cost_;
+  std::vector<std::vector<float>> known_;  // by curve and step
+};
+
 }  // namespace
 
 std::vector<maps::Layer> siteLayers(const TraversabilityMap& map, int threads) {
@@ -62,6 +98,12 @@ std::vector<maps::Layer> siteLayers(const TraversabilityMap& map, int threads) {
                          [&](maps::Cell c) { return energyAlong(*published, c, 1.0); }));
   layers.push_back(layer(grid, "energy_per_metre_downhill", "J/m",
                          [&](maps::Cell c) { return energyAlong(*published, c, -1.0); }));
+  BestHeading best(published->cost());
+  layers.push_back(layer(grid, "category_best_heading", "", [&](maps::Cell c) {
+    const CellCode code = published->at(c);
+    return code.curve() < CellCode::kUnknown ? best.category(code)
+                                             : static_cast<float>(map.belief(c).category);
+  }));
   return layers;
 }
 

@@ -12,7 +12,7 @@ function reading(p) {
   const show = (value, digits, unit) => value === null ? "" : `${value.toFixed(digits)} ${unit}`;
   return [`${show(p.s, 1, "m")} from the start`, `at ${p.x.toFixed(1)}, ${p.y.toFixed(1)}`,
           show(p.elevation, 1, "m elevation"), show(p.slope, 1, "deg slope along"), show(p.across, 1, "deg slope across"),
-          p.slip === null ? "" : `slip ${p.slip.toFixed(2)}`, show(p.energy, 2, "kJ"), p.category]
+          p.slip === null ? "" : `slip ${p.slip.toFixed(2)}`, show(p.angle, 1, "deg slip angle"), show(p.energy, 2, "kJ"), p.category]
     .filter(text => text).join(" · ");
 }
 

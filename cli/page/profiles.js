@@ -3,6 +3,7 @@ const panels = [
   {field: "elevation", title: "elevation [m]", zero: false},
   {field: "slope", title: "slope along [deg]", zero: true},
   {field: "slip", title: "slip [-]", zero: true},
+  {field: "angle", title: "slip angle [deg]", zero: true},
   {field: "energy", title: "energy [kJ]", zero: true},
 ];
 const panelHeight = 92, panelStep = 118;
@@ -22,7 +23,7 @@ function panelMarks(panel, row) {
       {type: "line", clip: true, from: {data: "route"}, interactive: false,
        encode: {update: {x: {scale: "x", field: "d"}, y: {scale, field: panel.field}, stroke: {value: "#1b3fbf"},
                          strokeWidth: {value: 1.6},
-                         interpolate: {value: panel.field === "slope" || panel.field === "slip" ? "step-after" : "linear"},
+                         interpolate: {value: ["slope", "slip", "angle"].includes(panel.field) ? "step-after" : "linear"},
                          defined: {signal: `isValid(datum['${panel.field}'])`}}}},
     ],
   };

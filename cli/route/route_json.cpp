@@ -44,6 +44,9 @@ void addVertices(Json& properties, const Route& route) {
   add("slope_along_rad", &RouteVertex::slope_along_rad);
   add("slope_across_rad", &RouteVertex::slope_across_rad);
   add("slip", &RouteVertex::slip);
+  add("slip_angle_rad", &RouteVertex::slip_angle_rad);
+  add("side_force_over_load", &RouteVertex::side_force_over_load);
+  add("stability_margin_rad", &RouteVertex::stability_margin_rad);
   add("sinkage_m", &RouteVertex::sinkage_m);
   add("torque_Nm", &RouteVertex::torque_Nm);
   add("drawbar_pull_margin", &RouteVertex::drawbar_pull_margin);
@@ -79,6 +82,8 @@ Json summaryJson(const Route& route) {
   made["length_m"] = s.length_m;
   made["max_slip"] = s.max_slip;
   made["max_slope_rad"] = s.max_slope_rad;
+  made["max_slope_across_rad"] = s.max_slope_across_rad;
+  made["max_slip_angle_rad"] = s.max_slip_angle_rad;
   made["lower_bound"] = s.lower_bound;
   made["gap"] = s.gap;
   made["immobilisation_risk"] = route.vertices.empty() ? 0.0 : route.vertices.back().immobilisation_risk;

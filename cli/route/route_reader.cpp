@@ -3,6 +3,7 @@
 #include <cmath>
 #include <fstream>
 #include <sstream>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -43,6 +44,8 @@ class Fields {
     if (!value.is_array()) refuse(field, "is not an array");
     return value;
   }
+
+  bool has(const char* field) const { return object_.contains(field); }
 
   /// One value a vertex; null is NaN.
   void fill(const char* field, double RouteVertex::*member, std::vector<RouteVertex>& vertices) const {
@@ -100,6 +103,11 @@ void readVertices(const Fields& fields, std::vector<RouteVertex>& vertices) {
   fields.fill("slope_along_rad", &RouteVertex::slope_along_rad, vertices);
   fields.fill("slope_across_rad", &RouteVertex::slope_across_rad, vertices);
   fields.fill("slip", &RouteVertex::slip, vertices);
+  // Routes of version 0.1.0 have none of these.
+  for (const auto& [field, member] : {std::pair{"slip_angle_rad", &RouteVertex::slip_angle_rad},
+                                      {"side_force_over_load", &RouteVertex::side_force_over_load},
+                                      {"stability_margin_rad", &RouteVertex::stability_margin_rad}})
+    if (fields.has(field)) fields.fill(field, member, vertices);
   fields.fill("sinkage_m", &RouteVertex::sinkage_m, vertices);
   fields.fill("torque_Nm", &RouteVertex::torque_Nm, vertices);
   fields.fill("drawbar_pull_margin", &RouteVertex::drawbar_pull_margin, vertices);
@@ -127,6 +135,11 @@ planner::DriveShape shapeFrom(const Fields& drive) {
           .max_curvature_1_m = drive.number("max_curvature_1_m")};
 }
 
+// Routes of version 0.1.0 state it not.
+double numberOr(const Fields& summary, const char* field) {
+  return summary.has(field) ? summary.number(field) : std::nan("");
+}
+
 planner::RouteSummary summaryFrom(const Fields& summary) {
   return {.cost = summary.number("cost"),
           .energy_J = summary.number("energy_J"),
@@ -134,6 +147,8 @@ planner::RouteSummary summaryFrom(const Fields& summary) {
           .length_m = summary.number("length_m"),
           .max_slip = summary.number("max_slip"),
           .max_slope_rad = summary.number("max_slope_rad"),
+          .max_slope_across_rad = numberOr(summary, "max_slope_across_rad"),
+          .max_slip_angle_rad = numberOr(summary, "max_slip_angle_rad"),
           .lower_bound = summary.number("lower_bound"),
           .gap = summary.number("gap"),
           .planner = summary.text("planner")};

@@ -16,7 +16,8 @@ struct CostLowerBound {
 
 /// The straight lines below each drive curve: for all gradients up to a steepest one, level + tilt * gradient
 /// never exceeds the curve. The tilt is the curve's own at level ground, as far as the line stays positive
-/// for every heading.
+/// for every heading. Curves are those without anything across: in no bin does a cost fall from row to row
+/// (DriveCurve), so what is below row 0 is below all.
 class CostLowerBounds {
  public:
   explicit CostLowerBounds(const costmap::DriveCost& cost);

@@ -22,19 +22,19 @@ constexpr double kRounding = 1.0 - 1e-6;  // prices are stored as floats
 constexpr double kLeastShare = 0.1;       // of the least price without tilt: every step has a price
 constexpr double kDiagonal = std::numbers::sqrt2 / 2;
 
-double valueAt(const DriveCurve& curve, int bin) noexcept {
+double valueAt(const DriveCurve& curve, int bin, int row = 0) noexcept {
   const int at = bin + kMiddle;
-  return at >= 0 && at < DriveCurve::kBins
-             ? static_cast<double>(curve.cost_J_per_m[static_cast<std::size_t>(at)])
-             : kInfinity;
+  return at >= 0 && at < DriveCurve::kBins ? static_cast<double>(curve.rows()[row * DriveCurve::kBins + at])
+                                           : kInfinity;
 }
 
-// A lower bound of cost less tilt * gradient, over all gradients of a range.
-double leastIn(const DriveCurve& curve, double tilt, double from, double to) noexcept {
+// A lower bound of cost less tilt * gradient, over all gradients along of a range and across from one on.
+double leastIn(const DriveCurve& curve, double tilt, double from, double to, double across) noexcept {
   double least = kInfinity;
+  const int row = std::min(DriveCurve::row(across), curve.lastRow());
   for (int bin = static_cast<int>(std::floor(from / kBin)); bin <= static_cast<int>(std::ceil(to / kBin));
        ++bin)
-    least = std::min(least, valueAt(curve, bin) - tilt * bin * kBin - std::abs(tilt) * kBin / 2);
+    least = std::min(least, valueAt(curve, bin, row) - tilt * bin * kBin - std::abs(tilt) * kBin / 2);
   return least;
 }
 
@@ -107,12 +107,16 @@ std::optional<ByDirection> limitsOf(const DriveCurve& curve, double tilt, double
   const double slack = off_gradient + std::hypot(dz_dx, dz_dy) * bulge + 1e-9;
   const Directions& all = directions();
   const auto rise = [&](std::size_t i) { return dz_dx * all.x[i] + dz_dy * all.y[i]; };
+  const auto aside = [&](std::size_t i) { return dz_dy * all.x[i] - dz_dx * all.y[i]; };
   ByDirection least{}, limit{};
   double most = 0.0, from = rise(0);
   bool allowed = false;
   for (std::size_t i = 0; i < kDirections; ++i) {
     const double to = rise(i + 1);
-    least[i] = leastIn(curve, tilt, std::min(from, to) - slack, std::max(from, to) + slack);
+    const double left = aside(i), right = aside(i + 1);
+    const double across = left * right > 0.0 ? std::min(std::abs(left), std::abs(right)) - slack : 0.0;
+    least[i] =
+        leastIn(curve, tilt, std::min(from, to) - slack, std::max(from, to) + slack, std::max(across, 0.0));
     if (std::isfinite(least[i])) {
       most = std::max(most, least[i]);
       allowed = true;

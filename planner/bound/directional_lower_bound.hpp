@@ -16,7 +16,8 @@ namespace talus::planner {
 /// How (ours). The cost of a metre is H(s) + tilt * s, s the gradient along it; the second term is linear in
 /// the direction, so the gauge repeats it. Directions are taken in eighths of 45 degrees, gradients in
 /// squares of kSteps of CellCode's steps. Over the part between two directions and over a square, s stays in
-/// a range, and H is no less than its least over the curve's bins in that range. On a part p w_k + q w_(k+1)
+/// a range and the gradient across is at least some c; costs fall from no row to the next (DriveCurve), so H is no
+/// less than its least over the bins of that range in the row of c. On a part p w_k + q w_(k+1)
 /// is a sine of the angle, so it exceeds the larger of its ends by a factor of 1 / cos(half a part) at most;
 /// so it is enough that it stays below cos(half a part) times that least at both ends of every part. From one
 /// price for all headings each is raised by half of what its directions and its neighbours leave it, some

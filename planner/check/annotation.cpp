@@ -117,6 +117,8 @@ class Annotator {
     made.length_m = length_m_;
     made.max_slip = max_slip_;
     made.max_slope_rad = max_slope_rad_;
+    made.max_slope_across_rad = max_slope_across_rad_;
+    made.max_slip_angle_rad = max_slip_angle_rad_;
     return made;
   }
 
@@ -140,6 +142,10 @@ class Annotator {
       vertex.slope_along_rad = std::atan(code.dzDx() * heading.x + code.dzDy() * heading.y);
       vertex.slope_across_rad = std::atan(code.dzDy() * heading.x - code.dzDx() * heading.y);
       vertex.slip = static_cast<double>(state_.slip);
+      const costmap::SlopeHold hold = input_.map.cost().hold(code, heading);
+      vertex.slip_angle_rad = how_.reverse ? -hold.slip_angle_rad : hold.slip_angle_rad;
+      vertex.side_force_over_load = hold.side_force_over_load;
+      vertex.stability_margin_rad = hold.stability_margin_rad;
       vertex.sinkage_m = static_cast<double>(state_.sinkage_m);
       vertex.torque_Nm = static_cast<double>(state_.torque_Nm);
       vertex.drawbar_pull_margin = static_cast<double>(state_.pull_margin);
@@ -174,6 +180,8 @@ class Annotator {
     hazard_ += finite(state_.risk_per_m) * metres;
     max_slip_ = std::fmax(max_slip_, std::abs(vertex.slip));
     max_slope_rad_ = std::fmax(max_slope_rad_, std::abs(vertex.slope_along_rad));
+    max_slope_across_rad_ = std::fmax(max_slope_across_rad_, std::abs(vertex.slope_across_rad));
+    max_slip_angle_rad_ = std::fmax(max_slip_angle_rad_, std::abs(vertex.slip_angle_rad));
   }
 
   void spend(const TurnPrice& price, double times) {
@@ -192,7 +200,7 @@ class Annotator {
   Motion how_;
   costmap::DriveState state_;  // of the cell looked at last
   double energy_J_ = 0.0, time_s_ = 0.0, hazard_ = 0.0, length_m_ = 0.0, max_slip_ = 0.0,
-         max_slope_rad_ = 0.0;
+         max_slope_rad_ = 0.0, max_slope_across_rad_ = 0.0, max_slip_angle_rad_ = 0.0;
 };
 
 void driveAlong(const PosePath& drive, const costmap::CostGrid& map, Annotator& annotator) {

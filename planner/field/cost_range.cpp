@@ -8,10 +8,11 @@ namespace talus::planner {
 
 CostRange costRange(const costmap::DriveCost& cost) {
   CostRange range;
+  constexpr int kBins = costmap::DriveCurve::kBins;
   for (const auto& curve : cost.curves())
-    for (int bin = 0; bin < costmap::DriveCurve::kBins; ++bin) {
-      const auto value = static_cast<double>(curve.cost_J_per_m[static_cast<std::size_t>(bin)]);
-      const double gradient = (bin - costmap::DriveCurve::kBins / 2) / 256.0;
+    for (int i = 0; i < (curve.lastRow() + 1) * kBins; ++i) {
+      const auto value = static_cast<double>(curve.rows()[i]);
+      const double gradient = costmap::DriveCurve::gradient(i % kBins);
       if (!std::isfinite(value) || std::abs(gradient) > cost.limits().max_along + 1.0 / 512) continue;
       range.least_J_per_m = std::min(range.least_J_per_m, value);
       range.most_J_per_m = std::max(range.most_J_per_m, value);

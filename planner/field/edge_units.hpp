@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <vector>
@@ -45,13 +47,25 @@ class EdgeUnits {
  private:
   void halvesByVector(const costmap::CellCode* cells, std::size_t count, Halves* out) const noexcept;
 
-  // Half costs of one curve over the gradient along the heading in steps of CellCode, from -reach_ to reach_.
-  std::vector<std::uint16_t> straight_, diagonal_;
-  std::vector<std::uint32_t> pairs_;  // straight_, then diagonal_, each with its opposite in the upper half
-  int reach_ = 0;                     // most steps along a diagonal heading that the limit allows
-  int across_straight_ = 0;           // most steps across a straight heading
-  int across_diagonal_ = 0;           // the same for |dz/dx -+ dz/dy|
-  std::size_t curves_ = 0;
+  // Steps of CellCode, as the sums and differences of dz/dx and dz/dy along a diagonal, to bins and rows of a curve.
+  struct Scale {
+    double bins, rows;  // of a step
+    int along, across;  // most steps that the limits allow
+  };
+  int bin(const Scale& scale, int along) const noexcept {
+    const int size = static_cast<int>(std::abs(along) * scale.bins + 0.5);
+    return along < 0 ? -size : size;
+  }
+  int row(const Scale& scale, int across) const noexcept {
+    return static_cast<int>(std::ceil(std::abs(across) * scale.rows - costmap::DriveCurve::kSame));
+  }
+
+  // Of each curve, by row: halves of a straight step by bin from -reach_ to reach_, each with its opposite in the
+  // upper half, then those of a diagonal step.
+  std::vector<std::uint32_t> pairs_;
+  std::vector<std::int32_t> first_, last_row_;  // by curve
+  int reach_ = 0;
+  Scale straight_{}, diagonal_{};
   double unit_J_ = 1.0;
   std::uint32_t cheapest_edge_ = 1;
 };
@@ -59,21 +73,21 @@ class EdgeUnits {
 inline EdgeUnits::Halves EdgeUnits::halves(costmap::CellCode cell) const noexcept {
   Halves halves;
   halves.fill(kBlocked);
-  if (cell.curve() >= curves_) return halves;
+  if (cell.curve() >= first_.size()) return halves;
   const int x = cell.stepsX(), y = cell.stepsY();
-  const auto middle = static_cast<std::size_t>(cell.curve()) * static_cast<std::size_t>(2 * reach_ + 1) +
-                      static_cast<std::size_t>(reach_);
-  const std::uint16_t* straight = straight_.data() + middle;
-  const std::uint16_t* diagonal = diagonal_.data() + middle;
-  const auto fill = [&](const std::uint16_t* level, GridHeading heading, int along, int across, int limit) {
-    if (std::abs(across) > limit || std::abs(along) > reach_) return;
-    halves[heading] = level[along];
-    halves[static_cast<std::size_t>(opposite(heading))] = level[-along];
+  const int width = 2 * reach_ + 1, last = last_row_[cell.curve()];
+  const std::uint32_t* middle = pairs_.data() + first_[cell.curve()] + reach_;
+  const auto fill = [&](const Scale& scale, int shift, GridHeading heading, int along, int across) {
+    if (std::abs(across) > scale.across || std::abs(along) > scale.along) return;
+    const std::uint32_t pair =
+        middle[std::min(row(scale, across), last) * 2 * width + shift + bin(scale, along)];
+    halves[heading] = static_cast<std::uint16_t>(pair);
+    halves[static_cast<std::size_t>(opposite(heading))] = static_cast<std::uint16_t>(pair >> 16);
   };
-  fill(straight, kEast, x, y, across_straight_);
-  fill(straight, kNorth, y, x, across_straight_);
-  fill(diagonal, kNorthEast, x + y, y - x, across_diagonal_);
-  fill(diagonal, kNorthWest, y - x, x + y, across_diagonal_);
+  fill(straight_, 0, kEast, x, y);
+  fill(straight_, 0, kNorth, y, x);
+  fill(diagonal_, width, kNorthEast, x + y, y - x);
+  fill(diagonal_, width, kNorthWest, y - x, x + y);
   return halves;
 }
 

@@ -29,8 +29,13 @@ class Levels {
     std::vector<costmap::DriveCurve> all;
     for (std::size_t level = 0; level < levels_; ++level)
       for (costmap::DriveCurve curve : base.curves()) {
-        for (float& value : curve.cost_J_per_m)
-          value *= static_cast<float>(std::pow(kSurchargeStep, static_cast<double>(level)));
+        const auto factor = static_cast<float>(std::pow(kSurchargeStep, static_cast<double>(level)));
+        for (float& value : curve.cost_J_per_m) value *= factor;
+        if (curve.crossing && level > 0) {
+          auto dearer = std::make_shared<std::vector<float>>(*curve.crossing);
+          for (float& value : *dearer) value *= factor;
+          curve.crossing = std::move(dearer);
+        }
         all.push_back(curve);
       }
     return std::make_shared<costmap::DriveCost>(base.limits(), std::move(all));

@@ -17,6 +17,8 @@ using costmap::DriveCost;
 using costmap::DriveCurve;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr int kBinBits = 9;
+static_assert(DriveCurve::kBins == 1 << kBinBits);
 
 // Headings of motions and their lengths, from the first on.
 struct Motions {
@@ -40,14 +42,19 @@ __attribute__((target("avx2"))) void pricesByVector(const DriveCost& cost, CellC
   const __m256d no_sign = _mm256_castsi256_pd(_mm256_set1_epi64x(0x7fffffffffffffff));
   const __m256d half = _mm256_set1_pd(0.5), minus_half = _mm256_set1_pd(-0.5), one = _mm256_set1_pd(1.0);
   const __m256i evens = _mm256_setr_epi32(0, 2, 4, 6, 0, 2, 4, 6);
-  const float* curve = cost.curves()[cell.curve()].cost_J_per_m.data();
+  const DriveCurve& curve = cost.curves()[cell.curve()];
+  const float* prices = curve.rows();
+  const __m128i last_row = _mm_set1_epi32(curve.lastRow());
+  const __m256d rows_per_unit = _mm256_set1_pd(DriveCurve::kRowsPerUnit),
+                same = _mm256_set1_pd(DriveCurve::kSame);
   for (int i = 0; i < count; i += EdgeCrossings::kVector) {
     const __m256d x = _mm256_loadu_pd(motions.x + i), y = _mm256_loadu_pd(motions.y + i);
     const __m256d along = _mm256_add_pd(_mm256_mul_pd(steps_x, x), _mm256_mul_pd(steps_y, y));
-    const __m256d across = _mm256_sub_pd(_mm256_mul_pd(steps_y, x), _mm256_mul_pd(steps_x, y));
+    const __m256d across =
+        _mm256_and_pd(_mm256_sub_pd(_mm256_mul_pd(steps_y, x), _mm256_mul_pd(steps_x, y)), no_sign);
     const __m256d allowed =
         _mm256_and_pd(_mm256_cmp_pd(_mm256_and_pd(along, no_sign), most_along, _CMP_LE_OQ),
-                      _mm256_cmp_pd(_mm256_and_pd(across, no_sign), most_across, _CMP_LE_OQ));
+                      _mm256_cmp_pd(across, most_across, _CMP_LE_OQ));
     const __m256d bins = _mm256_mul_pd(along, _mm256_set1_pd(256.0));
     const __m256d whole = _mm256_cvtepi32_pd(_mm256_cvttpd_epi32(bins)), rest = _mm256_sub_pd(bins, whole);
     const __m256d up = _mm256_and_pd(_mm256_cmp_pd(rest, half, _CMP_GE_OQ), one),
@@ -59,7 +66,11 @@ __attribute__((target("avx2"))) void pricesByVector(const DriveCost& cost, CellC
     const __m128i lanes =
         _mm256_castsi256_si128(_mm256_permutevar8x32_epi32(_mm256_castpd_si256(allowed), evens));
     const __m128 known = _mm_castsi128_ps(_mm_and_si128(lanes, in_table));
-    const __m128 price = _mm_mask_i32gather_ps(_mm_set1_ps(kInfinity), curve, bin, known, 4);
+    const __m128i row = _mm_min_epi32(
+        _mm256_cvttpd_epi32(_mm256_ceil_pd(_mm256_sub_pd(_mm256_mul_pd(across, rows_per_unit), same))),
+        last_row);
+    const __m128i at = _mm_add_epi32(bin, _mm_slli_epi32(row, kBinBits));
+    const __m128 price = _mm_mask_i32gather_ps(_mm_set1_ps(kInfinity), prices, at, known, 4);
     _mm_storeu_ps(paid + i,
                   _mm_add_ps(_mm_set1_ps(here), _mm_mul_ps(price, _mm_loadu_ps(motions.length + i))));
   }
@@ -70,13 +81,17 @@ constexpr auto pricesByVector = pricesByScalar;
 
 // The steepest gradient up to which the curve and the limits allow every heading.
 double freeUpTo(const DriveCost& cost, const DriveCurve& curve) noexcept {
-  const double most = std::min(cost.limits().max_along, cost.limits().max_across);
-  int reach = 0;
-  const auto finite = [&](int bin) {
-    return curve.cost_J_per_m[static_cast<std::size_t>(bin + DriveCurve::kBins / 2)] < kInfinity;
-  };
-  while (reach < DriveCurve::kBins / 2 && finite(-reach) && (reach == 0 || finite(reach))) ++reach;
-  return std::min(most, (reach - 1) / 256.0);
+  double reach = std::min(
+      {cost.limits().max_along, cost.limits().max_across, DriveCurve::gradient(DriveCurve::kBins - 1)});
+  for (int row = 0; row <= curve.lastRow(); ++row)
+    for (int bin = 0; bin < DriveCurve::kBins; ++bin) {
+      if (curve.rows()[row * DriveCurve::kBins + bin] < kInfinity) continue;
+      // The gentlest gradient that is read there, or one a little gentler.
+      const double along = (std::abs(bin - DriveCurve::kBins / 2) - 1) / 256.0;
+      const double across = (row - 1.0) / DriveCurve::kRowsPerUnit;
+      reach = std::min(reach, row > 0 ? std::hypot(std::max(along, 0.0), across) : along);
+    }
+  return reach;
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -32,7 +33,9 @@ class HeadingCost {
     if (!(std::abs(along) <= max_along_ && std::abs(across) <= max_across_)) return kBlocked;
     const int bin = rounded(along * 256.0) + costmap::DriveCurve::kBins / 2;
     if (static_cast<unsigned>(bin) >= costmap::DriveCurve::kBins) return kBlocked;
-    return curves_[cell.curve()].cost_J_per_m[static_cast<std::size_t>(bin)];
+    const costmap::DriveCurve& curve = curves_[cell.curve()];
+    const int row = std::min(costmap::DriveCurve::row(across), curve.lastRow());
+    return curve.rows()[row * costmap::DriveCurve::kBins + bin];
   }
 
  private:

@@ -32,14 +32,17 @@ inline constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
 struct RouteVertex {
   double x_m = 0.0;
   double y_m = 0.0;
-  double elevation_m = kNotKnown;          ///< of the ground, NaN when not known
-  double heading_rad = 0.0;                ///< counter-clockwise from x (east), (-pi, pi]
-  double slope_along_rad = 0.0;            ///< climbing > 0
-  double slope_across_rad = 0.0;           ///< left side higher > 0
-  double slip = kNotKnown;                 ///< [-], driven > 0, braked < 0
-  double sinkage_m = kNotKnown;            ///< of one wheel, >= 0
-  double torque_Nm = kNotKnown;            ///< of one wheel
-  double drawbar_pull_margin = kNotKnown;  ///< available DP/W minus required DP/W, tan(slope) [-]
+  double elevation_m = kNotKnown;           ///< of the ground, NaN when not known
+  double heading_rad = 0.0;                 ///< counter-clockwise from x (east), (-pi, pi]
+  double slope_along_rad = 0.0;             ///< climbing > 0
+  double slope_across_rad = 0.0;            ///< left side higher > 0
+  double slip = kNotKnown;                  ///< [-], driven > 0, braked < 0
+  double slip_angle_rad = kNotKnown;        ///< from the wheels' planes to the way made good, left positive
+  double side_force_over_load = kNotKnown;  ///< of the wheel with the greatest, over its load [-]
+  double stability_margin_rad = kNotKnown;  ///< further tilt until the rover tips
+  double sinkage_m = kNotKnown;             ///< of one wheel, >= 0
+  double torque_Nm = kNotKnown;             ///< of one wheel
+  double drawbar_pull_margin = kNotKnown;   ///< available DP/W minus required DP/W, tan(slope) [-]
   terramech::Category category = terramech::Category::Unknown;
   double energy_J = 0.0;             ///< from the start to here
   double time_s = 0.0;               ///< from the start to here
@@ -47,8 +50,8 @@ struct RouteVertex {
   double hazard_per_m = 0.0;         ///< of getting stuck on the metres that follow, were each by itself
   int soil_class = 0;                ///< of the ground there, in the model's classes
   double shared_doubt =
-      0.0;  ///< share of the variance of its pull that all ground of the class has in common
-  bool reverse = false;        ///< drives on backwards: heading_rad is where it looks, not where it goes
+      0.0;               ///< share of the variance of its pull that all ground of the class has in common
+  bool reverse = false;  ///< drives on backwards: heading_rad is where it looks, not where it goes
   double curvature_1_m = 0.0;  ///< of the motion that leaves the vertex, left > 0
   double turn_rad = 0.0;       ///< turned in place here before going on, left > 0
 };
@@ -69,9 +72,11 @@ struct RouteSummary {
   double length_m = 0.0;       ///< along the map plane
   double max_slip = 0.0;       ///< largest magnitude along the route [-]
   double max_slope_rad = 0.0;  ///< steepest inclination along the heading, as a magnitude
-  double lower_bound = 0.0;    ///< no route between these places costs less, same unit as cost
-  double gap = 0.0;            ///< cost / lower_bound - 1 [-]: the route is at most so far from the best
-  std::string planner;         ///< name of the planner that found it
+  double max_slope_across_rad = 0.0;  ///< steepest inclination across the heading, as a magnitude
+  double max_slip_angle_rad = 0.0;    ///< largest magnitude along the route
+  double lower_bound = 0.0;           ///< no route between these places costs less, same unit as cost
+  double gap = 0.0;     ///< cost / lower_bound - 1 [-]: the route is at most so far from the best
+  std::string planner;  ///< name of the planner that found it
   std::optional<DriveShape> drive{};  ///< of routes that keep a turning radius
 };
 

@@ -24,6 +24,8 @@ void validate(const Rover& rover) {
   const double most_ahead = 0.499 * rover.wheelbase_m, most_left = 0.499 * rover.track_m;
   check.within("centre_of_mass_ahead_m", rover.centre_of_mass_ahead_m, {-most_ahead, most_ahead});
   check.within("centre_of_mass_left_m", rover.centre_of_mass_left_m, {-most_left, most_left});
+  check.above("max_pitch_rad", rover.max_pitch_rad, 0.0);
+  check.above("max_roll_rad", rover.max_roll_rad, 0.0);
   check.within("max_pitch_rad", rover.max_pitch_rad, {0.0, 1.5707963});
   check.within("max_roll_rad", rover.max_roll_rad, {0.0, 1.5707963});
   check.above("max_torque_Nm", rover.max_torque_Nm, 0.0);

@@ -27,12 +27,19 @@ using MapPointer = std::shared_ptr<const costmap::CostGrid>;
 
 std::shared_ptr<const costmap::DriveCost> driveCost() {
   std::vector<costmap::DriveCurve> curves(5);
-  for (std::size_t k = 0; k < curves.size(); ++k)
+  for (std::size_t k = 0; k < curves.size(); ++k) {
     for (int bin = 0; bin < costmap::DriveCurve::kBins; ++bin) {
       const double g = costmap::DriveCurve::gradient(bin);
       curves[k].cost_J_per_m[static_cast<std::size_t>(bin)] = static_cast<float>(
           (1.0 + static_cast<double>(k)) * (10.0 + 100.0 * std::fmax(g, 0.0) + 400.0 * g * g));
     }
+    // Crossing a slope costs 2 % more a row of 1/64.
+    auto rows = std::make_shared<std::vector<float>>();
+    for (int row = 0; row <= 20; ++row)
+      for (const float level : curves[k].cost_J_per_m)
+        rows->push_back(level * static_cast<float>(1.0 + 0.02 * row));
+    curves[k].crossing = std::move(rows);
+  }
   return std::make_shared<costmap::DriveCost>(costmap::DriveCost::Limits{.max_along = 0.3, .max_across = 0.3},
                                               curves);
 }

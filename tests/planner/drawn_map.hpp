@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <random>
 #include <string>
@@ -30,9 +31,24 @@ inline costmap::DriveCurve curve(const Ground& ground) {
 }
 
 /// Curve k costs k + 1 times curve 0.
+/// The curve where crossing a slope costs `dearer` of itself more a row, and is refused beyond some rows.
+inline costmap::DriveCurve crossed(costmap::DriveCurve curve, double dearer, int rows) {
+  auto all = std::make_shared<std::vector<float>>();
+  for (int row = 0; row <= rows + 1; ++row)
+    for (const float level : curve.cost_J_per_m)
+      all->push_back(row > rows ? std::numeric_limits<float>::infinity()
+                                : level * static_cast<float>(1.0 + dearer * row));
+  curve.crossing = std::move(all);
+  return curve;
+}
+
+/// Curve 0 is crossed for nothing, the others cost more the steeper they are crossed.
 inline std::shared_ptr<const costmap::DriveCost> driveCost(costmap::DriveCost::Limits limits = {}) {
   std::vector<costmap::DriveCurve> curves;
-  for (int k = 0; k < 5; ++k) curves.push_back(curve({.factor = 1.0 + k}));
+  for (int k = 0; k < 5; ++k) {
+    const costmap::DriveCurve level = curve({.factor = 1.0 + k});
+    curves.push_back(k == 0 ? level : crossed(level, 0.02 * k, 20 - 2 * k));
+  }
   return std::make_shared<costmap::DriveCost>(limits, curves);
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 #include <random>
+#include <utility>
 
 #include <Eigen/Cholesky>
 
@@ -12,6 +13,7 @@
 #include <talus/planner/plugin/named_planner.hpp>
 #include <talus/planner/plugin/risk_planner.hpp>
 #include <talus/planner/route/polyline.hpp>
+#include <talus/terramech/mobility/slope_equilibrium.hpp>
 
 #include "site_fixture.hpp"
 
@@ -24,6 +26,8 @@ constexpr double kCorrelation_m = 5.0;
 // three deviations above what is asked. Whoever is stuck is held for good.
 struct RiskyGround {
   std::shared_ptr<const costmap::CostGrid> map;
+  std::shared_ptr<const terramech::SlopeEquilibrium> rover;
+  double thrust = 0.0;     // gross thrust over load
   double most_pull = 0.0;  // mean of the pull over load at the strongest slip
   double pull_std = 0.0;   // of place and class together
   double shared = 0.0;     // share of its square that is the class's
@@ -40,6 +44,8 @@ RiskyGround riskyGround(double steepest) {
   const costmap::GroundModel model(parts);
   const auto curve = costmap::mobilityOf(parts.classes[0], parts.rover);
   RiskyGround ground;
+  ground.rover = std::make_shared<const terramech::SlopeEquilibrium>(parts.classes[0].soil, parts.rover);
+  ground.thrust = std::max(curve.reference().torque_over_load_radius, std::tan(curve.maxSlope_rad()));
   ground.pull_std = model.prior(0).pull.std;
   ground.shared = std::pow(parts.classes[0].mean_std / ground.pull_std, 2);
   ground.most_pull = model.prior(0).pull.value + std::max(0.0, curve.strongest().drawbar_pull_over_load -
@@ -62,11 +68,24 @@ RiskyGround riskyGround(double steepest) {
   return ground;
 }
 
+// The strength that the ground may lose until the rover holds the slope no more, by halving on the equilibrium
+// itself: what is lost adds to the climb, and the same share of the thrust is lost of the side force.
+double strengthToLose(const RiskyGround& ground, const terramech::Gradient& slope) {
+  double holds = -0.5, fails = 0.95 * ground.thrust;
+  for (int halving = 0; halving < 14; ++halving) {
+    const double lost = 0.5 * (holds + fails);
+    const terramech::Gradient weaker{slope.along + lost, slope.across / (1.0 - lost / ground.thrust)};
+    (ground.rover->at(weaker).holds() ? holds : fails) = lost;
+  }
+  return holds;
+}
+
 // Share of worlds in which the pull of some cell of the route falls short of the gradient. A cell has one
 // pull; the pulls of two cells have the class's departure in common, and what they depart from it is correlated
 // exponentially by the distance of their middles.
 double stuckShare(const RiskyGround& ground, const std::vector<maps::Point>& route, int worlds) {
   const maps::Grid& grid = ground.map->grid();
+  std::map<std::pair<int, int>, double> lost_across;
   std::map<std::size_t, double> least;  // reserve of each cell entered, in deviations
   const auto points = subdivided(route, 0.02);
   for (std::size_t i = 1; i < points.size(); ++i) {
@@ -76,7 +95,16 @@ double stuckShare(const RiskyGround& ground, const std::vector<maps::Point>& rou
     const maps::Cell cell = *grid.cellAt({a.x_m + dx / 2, a.y_m + dy / 2});
     const auto code = ground.map->at(cell);
     const double gradient = (code.dzDx() * dx + code.dzDy() * dy) / metres;
-    const double reserve = (ground.most_pull - gradient) / ground.pull_std;
+    const double across = std::abs(code.dzDy() * dx - code.dzDx() * dy) / metres;
+    const auto [crossing, unseen] = lost_across.try_emplace(
+        {static_cast<int>(std::lround(gradient * 256)), static_cast<int>(std::ceil(across * 64 - 1e-9))},
+        0.0);
+    // What crossing takes of the reserve; rows and bins as the cost is tabulated.
+    if (unseen)
+      crossing->second =
+          strengthToLose(ground, {crossing->first.first / 256.0, 0.0}) -
+          strengthToLose(ground, {crossing->first.first / 256.0, crossing->first.second / 64.0});
+    const double reserve = (ground.most_pull - gradient - std::max(crossing->second, 0.0)) / ground.pull_std;
     const auto [entry, fresh] = least.try_emplace(grid.index(cell), reserve);
     if (!fresh) entry->second = std::min(entry->second, reserve);
   }

@@ -19,7 +19,7 @@ std::map<std::string, maps::Raster<float>> layersOf(const costmap::Traversabilit
 TEST(SiteLayers, OfAPlane) {
   const std::vector<std::string> rows(14, "1111111?222222");
   auto layers = layersOf(costmap::mapOf(rows, 0.1));
-  EXPECT_EQ(layers.size(), 12U);
+  EXPECT_EQ(layers.size(), 13U);
   const maps::Cell sand{3, 7}, hole{7, 7}, dust{11, 7};
   EXPECT_NEAR(layers["slope"][sand], std::atan(0.1), 1e-4);
   EXPECT_NEAR(layers["elevation"][sand], 1000.3, 1e-3);
@@ -27,6 +27,9 @@ TEST(SiteLayers, OfAPlane) {
   EXPECT_GT(layers["energy_per_metre_uphill"][sand], layers["energy_per_metre_downhill"][sand]);
   EXPECT_EQ(layers["class"][sand], 1.0F);
   EXPECT_EQ(layers["class"][dust], 2.0F);
+  // Property: the best heading is no worse than the worst one, and better on ground that only falls safely.
+  EXPECT_LE(layers["category_best_heading"][sand], layers["category"][sand]);
+  EXPECT_LT(layers["category_best_heading"][dust], layers["category"][dust]);
   EXPECT_TRUE(std::isnan(layers["elevation"][hole]));
   EXPECT_TRUE(std::isnan(layers["energy_per_metre_uphill"][hole]));
 }

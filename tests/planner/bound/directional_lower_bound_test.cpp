@@ -17,7 +17,7 @@ std::shared_ptr<const costmap::DriveCost> jaggedCost() {
     costmap::DriveCurve made = testing::curve({.factor = 1.0 + k, .steepest = 0.1 + 0.1 * k});
     for (float& value : made.cost_J_per_m) value *= static_cast<float>(1.0 + 0.3 * k * unit());
     if (k > 3) made.cost_J_per_m[static_cast<std::size_t>(costmap::DriveCurve::kBins / 2 + 7 * k)] = INFINITY;
-    curves.push_back(made);
+    curves.push_back(k % 2 == 0 ? made : testing::crossed(made, 0.05 * k, 22 - k));
   }
   return std::make_shared<costmap::DriveCost>(costmap::DriveCost::Limits{.max_along = 0.5, .max_across = 0.4},
                                               curves);

@@ -75,7 +75,7 @@ TEST(RouteCheck, AgreesWithMotionCostAndFineSampling) {
   const auto coordinate = [&random] { return 20.0 * static_cast<double>(random()) / 4294967296.0; };
   int refused = 0;
   for (unsigned seed = 1; seed <= 400; ++seed) {
-    const auto map = randomMap({.seed = seed, .blocked = 0.03, .roughness = 0.25});
+    const auto map = randomMap({.seed = seed, .blocked = 0.03, .roughness = 0.22});
     const MotionCost cost(map);
     std::vector<maps::Point> route;
     for (int k = 0; k < 3; ++k) route.push_back({coordinate(), coordinate()});

@@ -21,7 +21,7 @@ std::shared_ptr<const EdgeLayer> edgesOf(const MapPointer& map, int threads = 1)
 // that the exact segment does not.
 TEST(EdgeLayer, AStepCostsWhatTheMotionBetweenTheCentresCosts) {
   int allowed = 0, blocked = 0;
-  for (unsigned seed = 1; seed <= 10; ++seed) {
+  for (unsigned seed = 1; seed <= 12; ++seed) {
     const auto map = randomMap({.width = 21, .height = 18, .seed = seed, .blocked = 0.2, .roughness = 0.35});
     const Kernels kernels = seed % 2 == 0 ? Kernels::Best : Kernels::Scalar;
     const auto edges = std::make_shared<EdgeLayer>(map, EdgeUnits(map->cost(), 1.0), 1, StopCheck{}, kernels);

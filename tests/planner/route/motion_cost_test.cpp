@@ -71,10 +71,11 @@ TEST(MotionCost, UnknownIsNotSafe) {
 // Property: the integral is what fine sampling tends to; with cells at least 1e-2 m long on the segment and
 // 1e5 samples over at most 30 m the sum is off by less than 40 crossings of 3e-4 m at 300 J/m.
 TEST(MotionCost, AgreesWithFineSampling) {
-  const auto map = randomMap({.blocked = 0.0, .roughness = 0.15});
+  const auto map = randomMap({.blocked = 0.0, .roughness = 0.13});
   const MotionCost cost(map);
   std::mt19937 random(7);
   const auto coordinate = [&random] { return 20.0 * static_cast<double>(random()) / 4294967296.0; };
+  int allowed = 0;
   for (int k = 0; k < 50; ++k) {
     const maps::Point a{coordinate(), coordinate()}, b{coordinate(), coordinate()};
     const double length = std::hypot(b.x_m - a.x_m, b.y_m - a.y_m);
@@ -86,8 +87,12 @@ TEST(MotionCost, AgreesWithFineSampling) {
       const auto cell = map->grid().cellAt({a.x_m + t * (b.x_m - a.x_m), a.y_m + t * (b.y_m - a.y_m)});
       sum += static_cast<double>(map->cost().costPerMetre(map->at(*cell), heading));
     }
+    ASSERT_EQ(std::isfinite(cost({a, b})), std::isfinite(sum)) << k;
+    if (std::isinf(sum)) continue;
+    ++allowed;
     EXPECT_NEAR(cost({a, b}), sum * length / samples, 4.0);
   }
+  EXPECT_GT(allowed, 20);
 }
 
 // Property: cutting a motion in two does not change its cost.
