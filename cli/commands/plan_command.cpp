@@ -274,7 +274,7 @@ int refuseOwn(const PlanOptions& options, const Planned& planned, const Route& r
                                      {.files = planned.ground.files, .seed = context.seed});
   writeFile(file, document.dump() + "\n");
   Route none;
-  none.status = RouteStatus::NoRoute;
+  none.status = RouteStatus::NoneFound;
   none.summary.planner = route.summary.planner;
   none.reason = fmt::format(
       "no route: the check refuses the one that '{}' found at {:.2f},{:.2f}: {}; please "
@@ -303,7 +303,9 @@ int finish(const PlanOptions& options, const Planned& planned, const planner::An
   } else {
     print(goalText(options, planned.plan) + asText(route, seconds));
   }
-  return Exit::kDone;
+  if (!route.interrupted) return Exit::kDone;
+  fmt::print(stderr, "talus: planning was cancelled: this is the best route so far, and its bound is weaker\n");
+  return Exit::kCancelled;
 }
 
 void refuseInWindows(const PlanOptions& options) {

@@ -43,13 +43,13 @@ Json planned(const PlacePair& pair, planner::Problem problem, planner::NamedPlan
   if (pair.goal_heading_rad) problem.goal_heading_rad = pair.goal_heading_rad;
   const planner::Plan plan =
       planner::checkedPlan(planner.plan(problem), *problem.map, problem.kinematics.turning_radius_m);
-  if (plan.status != planner::RouteStatus::Found)
-    return {{"status", planner::name(plan.status)}, {"planner", planner.name()}, {"reason", plan.reason}};
   const planner::Route route = annotated(plan, {.map = *problem.map,
                                                 .elevation_m = nullptr,
                                                 .planner = planner.name(),
                                                 .kinematics = problem.kinematics});
-  return summaryJson(route);
+  Json line = summaryJson(route);
+  if (plan.status != planner::RouteStatus::Found) line["reason"] = plan.reason;
+  return line;
 }
 
 std::string cell(const Json& line, const char* key) {

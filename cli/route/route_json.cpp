@@ -70,12 +70,28 @@ Json originJson(const RouteOrigin& origin) {
   return {{"files", files}, {"seed", origin.seed}, {"version", TALUS_VERSION}};
 }
 
+Json obstructionJson(const planner::Obstruction& why) {
+  const auto place = [](maps::Point p) { return Json{{"x_m", p.x_m}, {"y_m", p.y_m}}; };
+  Json made{{"cells_from_start", why.cells_from_start}, {"cells_to_goal", why.cells_to_goal},
+            {"last", place(why.last)},                  {"first", place(why.first)}};
+  made["lifting"] = why.lifting ? Json(planner::name(*why.lifting)) : Json(nullptr);
+  return made;
+}
+
 }  // namespace
 
 Json summaryJson(const Route& route) {
   const planner::RouteSummary& s = route.summary;
   Json made;
   made["status"] = std::string(planner::name(route.status));
+  if (route.vertices.empty()) {
+    for (const char* key : {"cost", "energy_J", "time_s", "length_m", "max_slip", "max_slope_rad", "lower_bound", "gap",
+                            "immobilisation_risk"})
+      made[key] = nullptr;
+    made["planner"] = s.planner;
+    if (route.obstruction) made["obstruction"] = obstructionJson(*route.obstruction);
+    return made;
+  }
   made["cost"] = s.cost;
   made["energy_J"] = s.energy_J;
   made["time_s"] = s.time_s;
@@ -86,8 +102,9 @@ Json summaryJson(const Route& route) {
   made["max_slip_angle_rad"] = s.max_slip_angle_rad;
   made["lower_bound"] = s.lower_bound;
   made["gap"] = s.gap;
-  made["immobilisation_risk"] = route.vertices.empty() ? 0.0 : route.vertices.back().immobilisation_risk;
+  made["immobilisation_risk"] = route.vertices.back().immobilisation_risk;
   made["planner"] = s.planner;
+  if (route.interrupted) made["interrupted"] = true;
   if (s.drive)
     made["drive"] = {{"cusps", s.drive->cusps},
                      {"turns_in_place", s.drive->turns_in_place},

@@ -16,7 +16,8 @@ struct RouteOrigin {
   std::uint64_t seed = 1;
 };
 
-/// The summary fields of a route, with its status.
+/// The summary fields of a route, with its status; null where there is no route, with why ("obstruction") where that is
+/// known.
 nlohmann::ordered_json summaryJson(const planner::Route& route);
 
 /// The route as a GeoJSON FeatureCollection: longitude, latitude and elevation where the map has a CRS, else

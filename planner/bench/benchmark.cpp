@@ -29,7 +29,7 @@ using Clock = std::chrono::steady_clock;
 // What a run sends home through a pipe: this, then its progress. Same program on both ends, so the layout
 // agrees.
 struct Answer {
-  RouteStatus status = RouteStatus::NoRoute;
+  RouteStatus status = RouteStatus::NoneFound;
   bool breached = false;
   double seconds = 0.0, cost_J = 0.0, lower_bound_J = 0.0, length_m = 0.0;
   int turns = 0;

@@ -37,7 +37,7 @@ struct BenchmarkRun {
   std::string planner;
   std::size_t case_index = 0;
   std::uint64_t seed = 1;
-  RouteStatus status = RouteStatus::NoRoute;
+  RouteStatus status = RouteStatus::NoneFound;
   bool crashed = false;    ///< the process did not live to answer
   bool breached = false;   ///< the independent check found a violation along the route
   double seconds = 0.0;    ///< wall clock of planning

@@ -26,6 +26,7 @@ int omplStatus(const BenchmarkRun& run) {
     case RouteStatus::Cancelled:
       return 8;
     case RouteStatus::NoRoute:
+    case RouteStatus::NoneFound:
     case RouteStatus::TimedOut:
       return 4;
   }

@@ -247,6 +247,8 @@ Route annotated(const Plan& plan, const AnnotationInput& input) {
   Route route;
   route.status = plan.status;
   route.reason = plan.reason;
+  route.obstruction = plan.obstruction;
+  route.interrupted = plan.interrupted;
   route.summary.planner = input.planner;
   if (plan.points.empty()) return route;
   Annotator annotator(input);

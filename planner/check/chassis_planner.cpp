@@ -76,7 +76,7 @@ Plan planOnChassis(const Problem& problem, const Chassis& chassis,
     Plan plan = planner(open);
     if (plan.status != RouteStatus::Found) {
       if (round > 0 && plan.status != RouteStatus::Cancelled && plan.status != RouteStatus::TimedOut)
-        return refused(RouteStatus::NoRoute, "no detour found where: " + reason + "; " + plan.reason);
+        return refused(RouteStatus::NoneFound, "no detour found where: " + reason + "; " + plan.reason);
       return plan;
     }
     const auto violations = along(chassis, plan);
@@ -92,7 +92,7 @@ Plan planOnChassis(const Problem& problem, const Chassis& chassis,
     if (start) closed.erase({start->row, start->column});
     open.map = without(*open.map, closed);
   }
-  return refused(RouteStatus::NoRoute, "no feasible route found around places where: " + reason);
+  return refused(RouteStatus::NoneFound, "no feasible route found around places where: " + reason);
 }
 
 }  // namespace talus::planner

@@ -37,7 +37,7 @@ std::vector<Violation> violations(const costmap::CostGrid& map, const PosePath& 
 /// Holds what a planner answered against violations(), along its drive where it has one: the first of them.
 std::optional<Violation> refusal(const Plan& plan, const costmap::CostGrid& map, double turning_radius_m);
 
-/// The plan where it found a route that refusal() has nothing against, or found none; else NoRoute, with where and
+/// The plan where it found a route that refusal() has nothing against, or found none; else NoneFound, with where and
 /// why the check refuses the planner's route.
 Plan checkedPlan(Plan plan, const costmap::CostGrid& map, double turning_radius_m);
 

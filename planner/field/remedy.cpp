@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include <talus/planner/field/grid_links.hpp>
 #include <talus/planner/field/remedy.hpp>
+#include <talus/planner/route/cells_within.hpp>
 
 namespace talus::planner {
 namespace {
@@ -47,28 +47,6 @@ std::string whyInvalid(const costmap::CostGrid& map, Point place) {
   return "lies on a dangerous cell: no heading is allowed there";
 }
 
-// Cells the rover can get to from the links of the start.
-std::vector<bool> reachable(const EdgeLayer& edges, const std::vector<GridLink>& links) {
-  const PaddedGrid& padded = edges.padded();
-  std::vector<bool> seen(padded.size(), false);
-  std::vector<std::size_t> open;
-  const auto visit = [&](std::size_t index) {
-    if (seen[index]) return;
-    seen[index] = true;
-    open.push_back(index);
-  };
-  for (const GridLink& link : links) visit(padded.index(link.cell));
-  while (!open.empty()) {
-    const std::size_t from = open.back();
-    open.pop_back();
-    for (int heading = 0; heading < 8; ++heading) {
-      const std::size_t to = from + static_cast<std::size_t>(padded.offset(heading));
-      if (edges.into(to)[opposite(heading)] != EdgeLayer::kBlocked) visit(to);
-    }
-  }
-  return seen;
-}
-
 }  // namespace
 
 std::string invalidPlace(const costmap::CostGrid& map, const std::string& which, Point place) {
@@ -79,20 +57,13 @@ std::string invalidPlace(const costmap::CostGrid& map, const std::string& which,
   return line + "; the nearest traversable cell is " + text(map.grid().centre(*cell));
 }
 
-std::string noWay(const EdgeLayer& edges, Point start, Point goal) {
-  const auto links = linksFrom(MotionCost(edges.mapPointer()), start);
-  const std::vector<bool> seen = reachable(edges, links);
-  std::size_t count = 0;
-  for (const bool one : seen) count += one ? 1U : 0U;
-  const maps::Grid& grid = edges.map().grid();
-  const auto cell = nearest(grid, goal, [&](Cell c) { return seen[edges.padded().index(c)]; });
-  std::string line = "no route from " + text(start) + " to " + text(goal) +
-                     ": reachable from the start: " + std::to_string(count) + " cells";
-  if (!cell) return line + "; choose another start";
-  char away[48];
-  std::snprintf(away, sizeof away, " (%.1f m from the goal)",
-                std::sqrt(squared_m2(grid.centre(*cell), goal)));
-  return line + "; the nearest of them to the goal is " + text(grid.centre(*cell)) + away;
+bool mayEnd(const MotionCost& cost, Point place, double tolerance_m) {
+  if (cost.allowed(place)) return true;
+  if (!(tolerance_m > 0.0)) return false;
+  const maps::Grid& grid = cost.map().grid();
+  for (const Cell cell : cellsWithin(grid, place, tolerance_m))
+    if (cost.allowed(grid.centre(cell))) return true;
+  return false;
 }
 
 }  // namespace talus::planner

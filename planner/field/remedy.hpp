@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include <talus/planner/field/edge_layer.hpp>
+#include <talus/planner/route/motion_cost.hpp>
 
 namespace talus::planner {
 
@@ -10,8 +10,7 @@ namespace talus::planner {
 /// `which` is "start" or "goal".
 std::string invalidPlace(const costmap::CostGrid& map, const std::string& which, maps::Point place);
 
-/// One line for two places that nothing connects: how much ground the start reaches, and the place there
-/// nearest to the goal.
-std::string noWay(const EdgeLayer& edges, maps::Point start, maps::Point goal);
+/// Whether some heading may be driven at the place, or within the tolerance, >= 0, of it.
+bool mayEnd(const MotionCost& cost, maps::Point place, double tolerance_m);
 
 }  // namespace talus::planner

@@ -8,6 +8,9 @@
 #include <talus/planner/field/map_change.hpp>
 #include <talus/planner/field/remedy.hpp>
 #include <talus/planner/grid/field_planner.hpp>
+#include <talus/planner/reach/cell_route.hpp>
+#include <talus/planner/reach/obstruction_search.hpp>
+#include <talus/planner/refine/close_vertices.hpp>
 #include <talus/planner/route/legs.hpp>
 #include <talus/planner/route/plan_end.hpp>
 
@@ -84,16 +87,47 @@ Plan FieldPlanner::planStage(const Problem& problem, const Stage& stage, const S
   if (!cost.allowed(stage.from))
     return failedPlan(RouteStatus::StartInvalid, invalidPlace(*problem.map, "start", stage.from));
   if (!prepareEdges(problem, stop)) return cancelledPlan(stop);
-  if (!prepareField(cost, stage))
+  if (!mayEnd(cost, stage.to, stage.tolerance_m))
     return failedPlan(RouteStatus::GoalInvalid, invalidPlace(*problem.map, "goal", stage.to));
-  auto rough = roughRoute(cost, {stage.from, stage.to}, stop);
+  Polyline rough;
+  if (prepareField(cost, stage)) rough = roughRoute(cost, {stage.from, stage.to}, stop);
   if (rough.empty()) {
-    if (stop()) return cancelledPlan(stop);
-    return failedPlan(RouteStatus::NoRoute, noWay(*edges_, stage.from, stage.to));
+    Plan beyond = beyondTheGrid(problem, stage, stop);
+    if (beyond.status != RouteStatus::Found) return beyond;
+    rough = std::move(beyond.points);
   }
+  return finished(problem, stage, std::move(rough), stop);
+}
+
+// What any heading can do where the eight of the grid cannot: a rough route, a proof that there is none, or neither.
+Plan FieldPlanner::beyondTheGrid(const Problem& problem, const Stage& stage, const StopCheck& stop) {
+  if (stop()) return cancelledPlan(stop);
+  const MotionCost cost(problem.map);
+  const Segment places{stage.from, stage.to};
+  HeadingSets headings(problem.map->cost());
+  Reach reach(*problem.map, headings, Reach::Sense::From, stage.from, 0.0, stop);
+  if (!reach.complete()) return cancelledPlan(stop);
+  if (!reach.reaches(stage.to, stage.tolerance_m)) {
+    const Obstruction why = obstructionBetween(*problem.map, reach, places, stage.tolerance_m, stop);
+    Plan none = failedPlan(RouteStatus::NoRoute, text(why, places));
+    none.obstruction = why;
+    return none;
+  }
+  Plan plan = failedPlan(RouteStatus::Found, {});
+  plan.points = cellRoute(cost, headings, places, stage.tolerance_m, stop);
+  if (!plan.points.empty()) return plan;
+  if (stop()) return cancelledPlan(stop);
+  return failedPlan(RouteStatus::NoneFound,
+                    "no route found, nor a proof that there is none: the ways left allow only single headings; increase the "
+                    "goal tolerance, or choose another goal");
+}
+
+Plan FieldPlanner::finished(const Problem& problem, const Stage& stage, Polyline rough, const StopCheck& stop) {
+  const MotionCost cost(problem.map);
   Plan plan{RouteStatus::Found,
             {},
-            cutWithin(refine_(cost, std::move(rough), problem.threads, stop), stage.to, stage.tolerance_m),
+            withoutCloseVertices(
+                cost, cutWithin(refine_(cost, std::move(rough), problem.threads, stop), stage.to, stage.tolerance_m)),
             0.0,
             0.0};
   plan.cost_J = cost.along(plan.points);

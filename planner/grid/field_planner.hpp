@@ -12,7 +12,8 @@
 namespace talus::planner {
 
 /// Plans by the whole cost-to-go field of the goal and any-angle refinement of the grid route under the exact
-/// cost.
+/// cost. Where the eight headings of the grid join start and goal nowhere, any heading is tried: NoRoute is a proof
+/// (Reach), NoneFound is not.
 ///
 /// What it worked out for a map and a goal is kept: another start to the same goal costs a walk down the
 /// field and the refinement only. Deterministic, for any number of threads, as long as no time limit cuts the
@@ -38,6 +39,8 @@ class FieldPlanner {
   static EdgeUnits unitsFor(const costmap::CostGrid& map);
   bool repairTo(const Problem& problem);
   bool prepareField(const MotionCost& cost, const Stage& stage);
+  static Plan beyondTheGrid(const Problem& problem, const Stage& stage, const StopCheck& stop);
+  Plan finished(const Problem& problem, const Stage& stage, Polyline rough, const StopCheck& stop);
   Polyline roughRoute(const MotionCost& cost, const Segment& places, const StopCheck& stop);
 
   Refiner refine_;

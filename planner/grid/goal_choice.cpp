@@ -55,12 +55,13 @@ Plan planToCheapest(const Problem& problem, const std::function<Plan(const Probl
   const auto begin = std::chrono::steady_clock::now();
   Plan best;
   double bound_J = std::numeric_limits<double>::infinity();
-  bool first = true;
+  bool first = true, proven = true;
   for (const Candidate& goal : nearestFirst(problem)) {
     if (goal.bound_J >= best.cost_J) break;
     const double spent_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     const double left_s = problem.time_limit_s - spent_s;
     if (!first && !(left_s > 0.0)) {
+      proven = false;
       bound_J = std::min(bound_J, goal.bound_J);
       break;
     }
@@ -68,11 +69,13 @@ Plan planToCheapest(const Problem& problem, const std::function<Plan(const Probl
     if (endsAll(one.status)) return one;
     one.goal = goal.goal;
     const bool found = one.status == RouteStatus::Found;
+    proven = proven && (one.status == RouteStatus::NoRoute || one.status == RouteStatus::GoalInvalid);
     if (one.status != RouteStatus::GoalInvalid)
       bound_J = std::min(bound_J, found ? one.lower_bound_J : goal.bound_J);
     if (first || (found && one.cost_J < best.cost_J)) best = std::move(one);
     first = false;
   }
+  if (best.status == RouteStatus::NoRoute && !proven) best.status = RouteStatus::NoneFound;
   if (best.status == RouteStatus::Found) best.lower_bound_J = std::min(bound_J, best.cost_J);
   return best;
 }

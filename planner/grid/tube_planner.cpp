@@ -4,11 +4,11 @@
 #include <stdexcept>
 #include <utility>
 
-#include <talus/planner/field/grid_links.hpp>
 #include <talus/planner/field/map_change.hpp>
 #include <talus/planner/field/pooled_grid.hpp>
 #include <talus/planner/field/remedy.hpp>
 #include <talus/planner/grid/tube_planner.hpp>
+#include <talus/planner/refine/close_vertices.hpp>
 #include <talus/planner/route/legs.hpp>
 #include <talus/planner/route/plan_end.hpp>
 
@@ -49,7 +49,7 @@ Plan TubePlanner::planLeg(const Problem& leg, const StopCheck& stop) {
   const MotionCost cost(leg.map);
   if (!cost.allowed(leg.start))
     return failedPlan(RouteStatus::StartInvalid, invalidPlace(*leg.map, "start", leg.start));
-  if (fieldGoals(cost, leg.goal, leg.goal_tolerance_m).empty())
+  if (!mayEnd(cost, leg.goal, leg.goal_tolerance_m))
     return failedPlan(RouteStatus::GoalInvalid, invalidPlace(*leg.map, "goal", leg.goal));
   if (!pool(leg, stop)) return cancelledPlan(stop);
   Polyline way;
@@ -67,13 +67,13 @@ Plan TubePlanner::planAlong(const Problem& problem, const Polyline& guide) {
   const MotionCost cost(problem.map);
   if (!cost.allowed(problem.start))
     return failedPlan(RouteStatus::StartInvalid, invalidPlace(*problem.map, "start", problem.start));
-  if (fieldGoals(cost, problem.goal, problem.goal_tolerance_m).empty())
+  if (!mayEnd(cost, problem.goal, problem.goal_tolerance_m))
     return failedPlan(RouteStatus::GoalInvalid, invalidPlace(*problem.map, "goal", problem.goal));
   Polyline way = tubeRoute(problem, guide, options_, stop);
   if (stop()) return cancelledPlan(stop);
   if (way.empty())
     return failedPlan(
-        RouteStatus::NoRoute,
+        RouteStatus::NoneFound,
         "no route found near the route over the overview; read a part with --window, or the whole map");
   return finished(problem, std::move(way), stop);
 }
@@ -82,7 +82,8 @@ Plan TubePlanner::finished(const Problem& leg, Polyline way, const StopCheck& st
   const MotionCost cost(leg.map);
   Plan plan{RouteStatus::Found,
             {},
-            cutWithin(refine_(cost, std::move(way), leg.threads, stop), leg.goal, leg.goal_tolerance_m),
+            withoutCloseVertices(
+                cost, cutWithin(refine_(cost, std::move(way), leg.threads, stop), leg.goal, leg.goal_tolerance_m)),
             0.0,
             0.0};
   plan.cost_J = cost.along(plan.points);

@@ -29,7 +29,7 @@ class TubePlanner {
   Polyline guideOver(const std::shared_ptr<const costmap::CostGrid>& coarse, const Problem& leg);
 
   /// The route near a guide that is known already, as from an overview of a map that memory does not hold as
-  /// a whole; NoRoute, which proves nothing, where the tube holds none.
+  /// a whole; NoneFound where the tube holds none.
   Plan planAlong(const Problem& problem, const Polyline& guide);
 
   /// Cells to a side of a pooled cell.

@@ -19,7 +19,7 @@ Plan planLeg(Problem& leg, WindowedMap& map, TubePlanner& tube) {
   for (const double margin_cells : {128.0, 512.0}) {
     leg.map = map.around(guide, margin_cells, leg.watch);
     plan = tube.planAlong(leg, guide);
-    if (plan.status != RouteStatus::NoRoute) break;
+    if (plan.status != RouteStatus::NoneFound) break;
   }
   return plan;
 }
@@ -28,12 +28,14 @@ Plan planLeg(Problem& leg, WindowedMap& map, TubePlanner& tube) {
 
 Plan planInWindows(Problem& problem, WindowedMap& map) {
   TubePlanner tube;
-  return planByLegs(problem, [&](const Problem& asked) {
+  Plan whole = planByLegs(problem, [&](const Problem& asked) {
     Problem leg = asked;
     Plan plan = planLeg(leg, map, tube);
     problem.map = leg.map;
     return plan;
   });
+  whole.interrupted = problem.watch.stopped();
+  return whole;
 }
 
 }  // namespace talus::planner

@@ -14,8 +14,11 @@ Plan NamedPlanner::planField(const Problem& problem) {
 }
 
 Plan NamedPlanner::plan(const Problem& problem) {
-  if (problem.other_goals.empty()) return planOne(problem);
-  return planToCheapest(problem, [this](const Problem& one_goal) { return planOne(one_goal); });
+  Plan plan = problem.other_goals.empty()
+                  ? planOne(problem)
+                  : planToCheapest(problem, [this](const Problem& one_goal) { return planOne(one_goal); });
+  plan.interrupted = problem.watch.stopped();
+  return plan;
 }
 
 Plan NamedPlanner::planOne(const Problem& problem) {

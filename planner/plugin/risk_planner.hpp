@@ -24,7 +24,7 @@ RouteDemand demandOf(const costmap::CostGrid& map, const Plan& plan);
 /// max_risk, in (0, 1), by routeRisk() over spatially correlated soil whose class is uncertain as a whole, with
 /// two standard errors to spare. The constraint enters the cost as a price on risk, raised until it is
 /// met and then lowered as far as it still is (Lagrangian relaxation; a route that no price picks out is
-/// missed [everett_1963]). NoRoute with the least risk found when none keeps the limit. Cost and bound are of
+/// missed [everett_1963]). NoneFound with the least risk found when none keeps the limit. Cost and bound are of
 /// the map's own weights. Throws std::invalid_argument out of range.
 Plan planWithinRisk(const Problem& problem, NamedPlanner& planner, double max_risk,
                     const RouteRiskOptions& soil = {});

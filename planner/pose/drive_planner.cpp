@@ -118,9 +118,9 @@ PosePlan DrivePlanner::drivenTo(PoseProblem asked, const Problem& problem, maps:
   const bool known = along.status == RouteStatus::Found;
   if (known) asked.most_expanded = kBeside;
   PosePlan leg = search_.plan(asked);
-  if (leg.status == RouteStatus::Cancelled) return leg;
+  if (leg.status == RouteStatus::Cancelled && !known) return leg;
   if (known && (leg.status != RouteStatus::Found || along.cost_J < leg.cost_J)) leg = std::move(along);
-  if (leg.status != RouteStatus::Found || !sampling_) return leg;
+  if (leg.status != RouteStatus::Found || !sampling_ || asked.watch.stopped()) return leg;
   sampling_->seed = problem.seed;
   if (sampling_->better) sampling_->better(leg.cost_J);
   return improvedBySampling(asked, leg, *sampling_);

@@ -73,11 +73,11 @@ class HybridAStar {
         if (stop_.cancelled()) return RouteStatus::Cancelled;
         return best_cost_ < kInfinity ? RouteStatus::Found : RouteStatus::TimedOut;
       }
-      if (expanded_ > std::min(options_.most_expanded, problem_.most_expanded))
+      if (expanded_ * motions_.work() > std::min(options_.most_expanded, problem_.most_expanded))
         return best_cost_ < kInfinity ? RouteStatus::Found : RouteStatus::TimedOut;
       expand(next.node);
     }
-    return best_cost_ < kInfinity ? RouteStatus::Found : RouteStatus::NoRoute;
+    return best_cost_ < kInfinity ? RouteStatus::Found : RouteStatus::NoneFound;
   }
 
   PosePath path() const {
@@ -247,7 +247,7 @@ std::string whyNot(RouteStatus status) {
     case RouteStatus::Cancelled:
       return "cancelled";
     case RouteStatus::TimedOut:
-      return "no feasible route found within the limit of poses; try a smaller map or more headings";
+      return "no feasible route found within the time limit; increase it";
     default:
       return "no feasible route found from start to goal with this turning radius; try another heading or a "
              "smaller radius";
@@ -300,7 +300,7 @@ PosePlan HybridSearch::plan(const PoseProblem& problem) {
   plan.status = made->run();
   plan.expanded = made->expanded();
   const HybridOptions finer = finerThan(options_);
-  if (plan.status == RouteStatus::NoRoute && plan.expanded > 1) {
+  if (plan.status == RouteStatus::NoneFound && plan.expanded > 1) {
     made.emplace(problem, finer, *field_, stop);
     const RouteStatus again = made->run();
     if (again == RouteStatus::Found || again == RouteStatus::Cancelled) plan.status = again;
@@ -308,6 +308,12 @@ PosePlan HybridSearch::plan(const PoseProblem& problem) {
   }
   const HybridAStar& search = *made;
   if (plan.status != RouteStatus::Found) {
+    if (plan.status == RouteStatus::TimedOut && !stop.timedOut()) {
+      plan.status = RouteStatus::NoneFound;
+      plan.reason = "none found within the allowed work of " + std::to_string(plan.expanded) +
+                    " poses; try a part of the map, a smaller radius, or more via points";
+      return plan;
+    }
     plan.reason = whyNot(plan.status);
     return plan;
   }

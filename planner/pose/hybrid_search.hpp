@@ -37,12 +37,12 @@ struct HybridOptions {
   /// soon, >= 1.
   double suboptimality_bound = 1.03;
   std::uint64_t improve = 500;              ///< poses tried after that
-  std::uint64_t most_expanded = 2'000'000;  ///< then it ends, TimedOut
+  std::uint64_t most_expanded = 150'000;  ///< poses, longer motions counting more: some 2 s; then it ends, NoneFound
 };
 
 /// What the search answers.
 struct PosePlan {
-  RouteStatus status = RouteStatus::NoRoute;
+  RouteStatus status = RouteStatus::NoneFound;
   std::string reason;  ///< why there is no drive; empty when Found
   PosePath path;
   double cost_J = 0.0;         ///< exact, by PoseCost

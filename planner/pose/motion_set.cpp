@@ -74,6 +74,13 @@ MotionSet::Motion MotionSet::made(const PosePath::Leg& leg, int heading, int tur
   return motion;
 }
 
+std::uint64_t MotionSet::work() const noexcept {
+  constexpr std::uint64_t kUsual = 80;  // stretches of a radius of five cells
+  std::uint64_t stretches = 0;
+  for (const Motion& motion : from(0)) stretches += motion.stretches.size();
+  return std::max<std::uint64_t>(1, stretches / kUsual);
+}
+
 double MotionSet::quickCost(const Motion& motion, maps::Point from) const noexcept {
   const maps::Grid& grid = map_.grid();
   const auto code = [&](double dx_m, double dy_m) {

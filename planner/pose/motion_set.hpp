@@ -45,6 +45,9 @@ class MotionSet {
   double heading_rad(int heading) const noexcept { return options_.offset_rad + heading * bin_rad_; }
   int headings() const noexcept { return options_.headings; }
 
+  /// What it takes to follow all motions from one heading: 1 for those of a small turning radius, more as they get longer.
+  std::uint64_t work() const noexcept;
+
   /// Joules of a motion from a place, by its stretches' middles: quick, not exact. Infinite where one is not
   /// allowed or the motion leaves the map.
   double quickCost(const Motion& motion, maps::Point from) const noexcept;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include <talus/planner/route/heading_cost.hpp>
+#include <talus/planner/route/heading_set.hpp>
 #include <talus/planner/route/motion_cost.hpp>
 
 namespace talus::planner {
@@ -179,7 +180,7 @@ bool MotionCost::allowed(maps::Point place) const noexcept {
     if (std::isfinite(map_->cost().costPerMetre(map_->at(*cell), {std::cos(angle), std::sin(angle)})))
       return true;
   }
-  return false;
+  return !allowedHeadings(map_->cost(), map_->at(*cell)).empty();
 }
 
 }  // namespace talus::planner

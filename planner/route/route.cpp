@@ -8,6 +8,8 @@ std::string_view name(RouteStatus status) noexcept {
       return "found";
     case RouteStatus::NoRoute:
       return "no_route";
+    case RouteStatus::NoneFound:
+      return "none_found";
     case RouteStatus::StartInvalid:
       return "start_invalid";
     case RouteStatus::GoalInvalid:

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include <talus/planner/route/obstruction.hpp>
 #include <talus/terramech/mobility/category.hpp>
 
 namespace talus::planner {
@@ -13,14 +14,15 @@ namespace talus::planner {
 /// How planning ended. Everything but a failure of the program itself is one of these.
 enum class RouteStatus {
   Found,         ///< a route that keeps every constraint along its whole length
-  NoRoute,       ///< start and goal stand, but nothing connects them
+  NoRoute,       ///< start and goal stand, and nothing connects them: proven for every heading
+  NoneFound,     ///< no route was found, which proves nothing
   StartInvalid,  ///< the start is outside the map or on a cell no heading may enter
   GoalInvalid,   ///< the same of the goal or of a via point
   TimedOut,      ///< the time limit passed before any route was found
   Cancelled,     ///< the caller requested a stop
 };
 
-/// The status as files and JSON spell it: "found", "no_route", "start_invalid", "goal_invalid", "timed_out",
+/// The status as files and JSON spell it: "found", "no_route", "none_found", "start_invalid", "goal_invalid", "timed_out",
 /// "cancelled".
 std::string_view name(RouteStatus status) noexcept;
 
@@ -82,8 +84,10 @@ struct RouteSummary {
 
 /// A route with everything that a report or a controller needs.
 struct Route {
-  RouteStatus status = RouteStatus::NoRoute;
+  RouteStatus status = RouteStatus::NoneFound;
   std::string reason;  ///< why there is no route and what to do about it, one line; empty when Found
+  bool interrupted = false;  ///< a stop was requested before the work was done: the best route so far
+  std::optional<Obstruction> obstruction{};  ///< of NoRoute, where two required places are cut off from each other
   std::vector<RouteVertex> vertices;
   RouteSummary summary;
 };

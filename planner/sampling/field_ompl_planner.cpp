@@ -39,6 +39,7 @@ ob::PlannerStatus statusOf(const Plan& plan) {
     case RouteStatus::GoalInvalid:
       return ob::PlannerStatus::INVALID_GOAL;
     case RouteStatus::NoRoute:
+    case RouteStatus::NoneFound:
       return ob::PlannerStatus::ABORT;
     default:
       return ob::PlannerStatus::TIMEOUT;

@@ -95,11 +95,11 @@ Plan priced(const ob::ProblemDefinition& definition, const MotionCost& cost) {
 
 Plan explained(Plan plan, const Problem& leg, const MeteredCost& cost, const SamplingSettings& settings) {
   const bool stopped = leg.watch.stopped();
-  if (plan.status == RouteStatus::Found && !stopped) return plan;
+  if (plan.status == RouteStatus::Found) return plan;
   plan.points.clear();
   plan.cost_J = std::numeric_limits<double>::infinity();
   const bool worked = spent(leg, settings, cost);
-  plan.status = stopped ? RouteStatus::Cancelled : worked ? RouteStatus::NoRoute : RouteStatus::TimedOut;
+  plan.status = stopped ? RouteStatus::Cancelled : worked ? RouteStatus::NoneFound : RouteStatus::TimedOut;
   plan.reason =
       settings.planner +
       (stopped  ? " was cancelled"

@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include <talus/planner/field/remedy.hpp>
 #include <talus/planner/route/legs.hpp>
@@ -38,17 +40,33 @@ Plan arrived(const Problem& leg) {
   return plan;
 }
 
-Plan planLeg(const Problem& leg, const SamplingSettings& settings, const InitialPathProvider& scout) {
+// What is left of a time limit.
+class Clock {
+ public:
+  explicit Clock(double limit_s) : limit_s_(limit_s) {}
+  double left_s() const {
+    return limit_s_ - std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+  }
+
+ private:
+  double limit_s_;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+Plan planLeg(Problem leg, const SamplingSettings& settings, const InitialPathProvider& scout) {
+  const Clock clock(leg.time_limit_s);
   if (Plan ends = checkEnds(leg); ends.status != RouteStatus::Found) return ends;
   const double apart_m = std::hypot(leg.goal.x_m - leg.start.x_m, leg.goal.y_m - leg.start.y_m);
   if (apart_m <= leg.goal_tolerance_m) return arrived(leg);
   Plan known = scout ? scout(leg) : Plan{};
-  if (known.status == RouteStatus::Cancelled) return known;
+  if (known.status == RouteStatus::Cancelled || known.status == RouteStatus::NoRoute) return known;
   if (settings.better && known.status == RouteStatus::Found) settings.better(known.cost_J);
+  const bool seeded = known.status == RouteStatus::Found;
+  leg.time_limit_s = clock.left_s();
+  if (seeded && (leg.watch.stopped() || !(leg.time_limit_s > 0.0))) return known;
+  if (!(leg.time_limit_s > 0.0)) return cancelledPlan(StopCheck(leg.watch));
   Plan found = runOmpl(leg, settings, known);
-  const bool known_better = known.status == RouteStatus::Found && known.cost_J <= found.cost_J;
-  if (known_better && found.status != RouteStatus::Cancelled) return known;
-  return found;
+  return seeded && known.cost_J <= found.cost_J ? known : found;
 }
 
 }  // namespace
@@ -56,9 +74,11 @@ Plan planLeg(const Problem& leg, const SamplingSettings& settings, const Initial
 Plan planBySampling(const Problem& problem, const SamplingSettings& settings,
                     const InitialPathProvider& scout) {
   const SamplingSettings checked = validated(settings);
+  const Clock clock(problem.time_limit_s);
+  auto legs = static_cast<double>(problem.via.size() + 1);
   return planByLegs(problem, [&](Problem leg) {
-    leg.time_limit_s = problem.time_limit_s / static_cast<double>(problem.via.size() + 1);
-    return planLeg(leg, checked, scout);
+    leg.time_limit_s = std::max(clock.left_s() / legs--, 1e-9);  // what earlier legs left over is shared
+    return planLeg(std::move(leg), checked, scout);
   });
 }
 

@@ -28,7 +28,7 @@ TEST(ChassisPlanner, GoesAroundWhatTheBellyWouldMeet) {
   const Problem problem{.map = map, .start = {3.5, 10.5}, .goal = {16.5, 10.5}};
   const auto plan = planOnChassis(problem, chassis, [&](const Problem& p) { return field.plan(p); });
   // The gap is two cells and the edge of the raster: too narrow for wheels half a metre from the middle.
-  EXPECT_EQ(plan.status, RouteStatus::NoRoute);
+  EXPECT_EQ(plan.status, RouteStatus::NoneFound);
   EXPECT_NE(plan.reason.find("no detour found where"), std::string::npos) << plan.reason;
   for (int r = 3; r < 7; ++r) ground[{10, r}] = 0.0F;
   const auto open = planOnChassis(problem, chassis, [&](const Problem& p) { return field.plan(p); });

@@ -4,6 +4,7 @@
 #include <talus/planner/check/route_check.hpp>
 #include <talus/planner/grid/field_planner.hpp>
 
+#include "contour_plane.hpp"
 #include "drawn_map.hpp"
 
 namespace talus::planner {
@@ -79,7 +80,7 @@ TEST(FieldPlanner, SaysWhyThereIsNoRoute) {
   const Plan walled = planner.plan(problem(map, {0.5, 0.5}, {4.5, 1.5}));
   EXPECT_EQ(walled.status, RouteStatus::NoRoute);
   EXPECT_THAT(walled.reason,
-              HasSubstr("reachable from the start: 6 cells; the nearest of them to the goal is 1.50,1.50"));
+              HasSubstr("6 cells are reachable from the start, 5 lead to the goal; closest at 1.50,0.50 and 3.50,1.50"));
   const Plan on_wall = planner.plan(problem(map, {2.5, 0.5}, {4.5, 1.5}));
   EXPECT_EQ(on_wall.status, RouteStatus::StartInvalid);
   EXPECT_THAT(on_wall.reason,
@@ -90,6 +91,20 @@ TEST(FieldPlanner, SaysWhyThereIsNoRoute) {
   const Plan outside = planner.plan(problem(map, {-3.0, 0.5}, {3.5, 0.5}));
   EXPECT_EQ(outside.status, RouteStatus::StartInvalid);
   EXPECT_THAT(outside.reason, HasSubstr("outside the map"));
+}
+
+// Brute force is the check: planes that only headings near their contour may cross, in directions the grid lacks.
+TEST(FieldPlanner, HeadingsThatTheGridLacksAreFound) {
+  for (int k = 0; k < 24; ++k) {
+    const double contour = 0.2 + k * 0.2618;
+    const auto map = testing::contourPlane(contour);
+    FieldPlanner planner;
+    const Plan plan = planner.plan(problem(map, {20.0 - 14.0 * std::cos(contour), 20.0 - 14.0 * std::sin(contour)},
+                                           {20.0 + 14.0 * std::cos(contour), 20.0 + 14.0 * std::sin(contour)}));
+    ASSERT_EQ(plan.status, RouteStatus::Found) << contour << plan.reason;
+    EXPECT_TRUE(violations(*map, plan.points).empty());
+    EXPECT_LE(length_m(plan.points), 1.02 * 28.0);
+  }
 }
 
 TEST(FieldPlanner, ToleranceLetsARouteEndBesideABlockedGoal) {

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <stop_token>
 
 #include <talus/planner/plugin/named_planner.hpp>
 #include <talus/planner/route/planner_names.hpp>
@@ -66,6 +67,18 @@ TEST(NamedPlanner, CallsBackWithBetterCostsWhileSampling) {
   ASSERT_FALSE(costs.empty());
   EXPECT_TRUE(std::ranges::is_sorted(costs, std::greater<>()));
   EXPECT_NEAR(costs.back(), plan.cost_J, 1e-9 * plan.cost_J);
+}
+
+TEST(NamedPlanner, MarksARouteOfWorkThatWasStopped) {
+  std::stop_source stop;
+  Problem problem = across(3);
+  problem.watch.stop = stop.get_token();
+  NamedPlanner planner("RRTstar");
+  EXPECT_FALSE(planner.plan(problem).interrupted);
+  planner.onBetter([&stop](double) { stop.request_stop(); });
+  const Plan plan = planner.plan(problem);
+  EXPECT_EQ(plan.status, RouteStatus::Found);
+  EXPECT_TRUE(plan.interrupted);
 }
 
 }  // namespace

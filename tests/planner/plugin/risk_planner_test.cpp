@@ -61,12 +61,12 @@ TEST(RiskPlanner, ALimitThatHoldsAnywayChangesNothing) {
   EXPECT_EQ(planWithinRisk(problem, planner, 0.9).points, planner.plan(problem).points);
 }
 
-TEST(RiskPlanner, ALimitThatNothingKeepsIsNoRoute) {
+TEST(RiskPlanner, ALimitThatNothingKeepsFindsNone) {
   Problem problem = acrossRisk();
   problem.map = withRisk(std::vector<std::string>(20, std::string(40, '1')));
   NamedPlanner planner;
   const Plan plan = planWithinRisk(problem, planner, 0.01);
-  EXPECT_EQ(plan.status, RouteStatus::NoRoute);
+  EXPECT_EQ(plan.status, RouteStatus::NoneFound);
   EXPECT_THAT(plan.reason, HasSubstr("the safest route found has 0.5"));
   EXPECT_THROW(planWithinRisk(problem, planner, 0.0), std::invalid_argument);
   EXPECT_THROW(planWithinRisk(problem, planner, 1.0), std::invalid_argument);

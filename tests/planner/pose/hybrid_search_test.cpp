@@ -71,7 +71,7 @@ TEST(HybridSearch, OnlyReversingLeavesADeadEnd) {
   ASSERT_EQ(backed.status, RouteStatus::Found) << backed.reason;
   EXPECT_NEAR(backed.cost_J, 30.0, 1e-6);
   dead_end.kinematics.may_reverse = false;
-  EXPECT_EQ(search.plan(dead_end).status, RouteStatus::NoRoute);
+  EXPECT_EQ(search.plan(dead_end).status, RouteStatus::NoneFound);
 }
 
 TEST(HybridSearch, ARoverThatTurnsInPlaceThreadsTheCorridor) {

@@ -13,6 +13,7 @@ namespace {
 TEST(Route, EveryStatusHasTheNameThatFilesPromise) {
   const std::pair<RouteStatus, const char*> promised[] = {{RouteStatus::Found, "found"},
                                                           {RouteStatus::NoRoute, "no_route"},
+                                                          {RouteStatus::NoneFound, "none_found"},
                                                           {RouteStatus::StartInvalid, "start_invalid"},
                                                           {RouteStatus::GoalInvalid, "goal_invalid"},
                                                           {RouteStatus::TimedOut, "timed_out"},
@@ -28,7 +29,7 @@ TEST(Route, WhatIsNotKnownIsNoNumber) {
        {vertex.elevation_m, vertex.slip, vertex.sinkage_m, vertex.torque_Nm, vertex.drawbar_pull_margin})
     EXPECT_TRUE(std::isnan(value));
   EXPECT_EQ(vertex.category, terramech::Category::Unknown);
-  EXPECT_EQ(Route{}.status, RouteStatus::NoRoute);
+  EXPECT_EQ(Route{}.status, RouteStatus::NoneFound);
 }
 
 }  // namespace

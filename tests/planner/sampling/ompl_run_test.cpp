@@ -46,7 +46,7 @@ TEST(OmplRun, WithoutARouteItsReasonSaysWhatEndedTheWork) {
   for (auto& row : rows) row[15] = '#';
   leg.map = drawn(rows);
   const Plan worked = runOmpl(leg, {.planner = "RRTstar", .work = 50'000}, {});
-  EXPECT_EQ(worked.status, RouteStatus::NoRoute);
+  EXPECT_EQ(worked.status, RouteStatus::NoneFound);
   EXPECT_THAT(worked.reason, HasSubstr("within its work limit; planner 'field' decides"));
   EXPECT_TRUE(worked.points.empty());
   EXPECT_TRUE(std::isinf(worked.cost_J));

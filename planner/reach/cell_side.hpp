@@ -1,0 +1,110 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <talus/maps/grid.hpp>
+#include <talus/planner/route/heading_set.hpp>
+
+namespace talus::planner {
+
+/// The sides of a cell: places on one go from 0 to 1, northwards or eastwards, so that both its cells count alike.
+struct Side {
+  enum : int { West, East, South, North };
+};
+
+/// The same side as its other cell names it.
+constexpr int otherSide(int side) noexcept {
+  return side ^ 1;
+}
+
+/// The cell beyond a side.
+constexpr maps::Cell beyond(maps::Cell cell, int side) noexcept {
+  constexpr std::array<int, 4> kColumns{-1, 1, 0, 0}, kRows{0, 0, -1, 1};
+  return {cell.column + kColumns[static_cast<std::size_t>(side)], cell.row + kRows[static_cast<std::size_t>(side)]};
+}
+
+/// The heading straight out of a side.
+constexpr double outwards_rad(int side) noexcept {
+  constexpr std::array<double, 4> kHeadings{3.141592653589793, 0.0, 4.71238898038469, 1.5707963267948966};
+  return kHeadings[static_cast<std::size_t>(side)];
+}
+
+/// A place in a cell, in sides of the cell from its south-west corner.
+struct InCell {
+  double x = 0.0;
+  double y = 0.0;
+};
+
+/// The place `at`, 0 to 1, on a side.
+constexpr InCell onSide(int side, double at) noexcept {
+  return side == Side::West ? InCell{0.0, at} : side == Side::East ? InCell{1.0, at} : side == Side::South ? InCell{at, 0.0} : InCell{at, 1.0};
+}
+
+/// From one place of a side to another; empty where from > to.
+struct SideRange {
+  double from = 2.0;
+  double to = -1.0;
+
+  bool empty() const noexcept { return from > to; }
+  bool holds(const SideRange& other) const noexcept { return other.empty() || (from <= other.from && other.to <= to); }
+  SideRange hull(const SideRange& other) const noexcept { return {std::min(from, other.from), std::max(to, other.to)}; }
+};
+
+/// Where a drive that turns within a set of headings gets from a place on free ground of one kind: everywhere, or into a
+/// cone of directions no wider than half a turn. The set must not be empty.
+class DriveCone {
+ public:
+  explicit DriveCone(const HeadingSet& headings) noexcept {
+    const auto [end, gap] = headings.widestGap();
+    everywhere_ = gap < 0.5 * HeadingSet::kTurn;
+    const double begin = end + gap;
+    left_of_begin_ = {-std::sin(begin), std::cos(begin)};
+    right_of_end_ = {std::sin(end), -std::cos(end)};
+  }
+
+  bool everywhere() const noexcept { return everywhere_; }
+
+  /// The part of a side that is reached from somewhere on the segment between two places of the cell. `slack`, in
+  /// sides, widens the cone.
+  SideRange reached(InCell a, InCell b, int side, double slack) const noexcept {
+    return clipped(side, slack, {least(left_of_begin_, a, b), least(right_of_end_, a, b)}, 1.0);
+  }
+
+  /// The part of a side from where a place of the cell is reached.
+  SideRange reaching(InCell place, int side, double slack) const noexcept {
+    return clipped(side, slack, {-dot(left_of_begin_, place), -dot(right_of_end_, place)}, -1.0);
+  }
+
+  /// Whether `to` is reached from somewhere on the segment from a to b.
+  bool joins(InCell a, InCell b, InCell to, double slack) const noexcept {
+    return everywhere_ || (dot(left_of_begin_, to) >= least(left_of_begin_, a, b) - slack &&
+                           dot(right_of_end_, to) >= least(right_of_end_, a, b) - slack);
+  }
+
+ private:
+  static double dot(InCell a, InCell b) noexcept { return a.x * b.x + a.y * b.y; }
+  static double least(InCell normal, InCell a, InCell b) noexcept { return std::min(dot(normal, a), dot(normal, b)); }
+
+  // Places p of a side with sign * normal . p >= least - slack for both normals.
+  SideRange clipped(int side, double slack, std::array<double, 2> least, double sign) const noexcept {
+    SideRange range{0.0, 1.0};
+    if (everywhere_) return range;
+    const std::array normals{left_of_begin_, right_of_end_};
+    for (std::size_t k = 0; k < 2; ++k) {
+      const double at_0 = sign * dot(normals[k], onSide(side, 0.0)) - least[k] + slack;
+      const double at_1 = sign * dot(normals[k], onSide(side, 1.0)) - least[k] + slack;
+      if (at_0 < 0.0 && at_1 < 0.0) return {};
+      const double crossing = at_0 / (at_0 - at_1);
+      if (at_0 < 0.0) range.from = std::max(range.from, crossing);
+      if (at_1 < 0.0) range.to = std::min(range.to, crossing);
+    }
+    return range.empty() ? SideRange{} : range;
+  }
+
+  bool everywhere_;
+  InCell left_of_begin_, right_of_end_;
+};
+
+}  // namespace talus::planner

@@ -1,0 +1,140 @@
+#include <cstdio>
+#include <limits>
+#include <optional>
+
+#include <talus/planner/reach/obstruction_search.hpp>
+
+namespace talus::planner {
+namespace {
+
+using costmap::CellCode;
+using costmap::DriveCost;
+using maps::Cell;
+using maps::Point;
+
+// The cost without one of its constraints.
+DriveCost without(Constraint constraint, const DriveCost& cost) {
+  constexpr double kNone = std::numeric_limits<double>::max();
+  DriveCost::Limits limits = cost.limits();
+  if (constraint == Constraint::Pitch) limits.max_along = kNone;
+  if (constraint == Constraint::Roll) limits.max_across = kNone;
+  std::vector<costmap::DriveCurve> curves = cost.curves();
+  if (constraint == Constraint::Soil)
+    for (costmap::DriveCurve& curve : curves) {
+      curve.cost_J_per_m.fill(1.0F);
+      curve.crossing.reset();
+    }
+  return DriveCost(limits, std::move(curves));
+}
+
+std::optional<std::uint8_t> freed(Constraint constraint) {
+  if (constraint == Constraint::Hazard) return CellCode::kBlocked;
+  if (constraint == Constraint::Unknown) return CellCode::kUnknown;
+  return std::nullopt;
+}
+
+bool opens(Constraint constraint, const costmap::CostGrid& map, const Segment& places, double tolerance_m, const StopCheck& stop) {
+  const DriveCost cost = without(constraint, map.cost());
+  HeadingSets headings(cost, freed(constraint));
+  Reach reach(map, headings, Reach::Sense::From, places.from, 0.0, stop);
+  return reach.complete() && reach.reaches(places.to, tolerance_m);
+}
+
+// The cells of two sets that the fewest king's moves part, by a flood from the first over the whole map.
+std::pair<Cell, Cell> closest(const maps::Grid& grid, const Reach& from, const Reach& to) {
+  constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+  std::vector<std::uint32_t> origin(grid.size(), kNone);
+  std::deque<Cell> open;
+  for (int row = 0; row < grid.height; ++row)
+    for (int column = 0; column < grid.width; ++column)
+      if (from.holds({column, row})) {
+        origin[grid.index({column, row})] = static_cast<std::uint32_t>(grid.index({column, row}));
+        open.push_back({column, row});
+      }
+  while (!open.empty()) {
+    const Cell cell = open.front();
+    open.pop_front();
+    const std::uint32_t begun = origin[grid.index(cell)];
+    const auto width = static_cast<std::uint32_t>(grid.width);
+    if (to.holds(cell)) return {{static_cast<int>(begun % width), static_cast<int>(begun / width)}, cell};
+    for (int row = cell.row - 1; row <= cell.row + 1; ++row)
+      for (int column = cell.column - 1; column <= cell.column + 1; ++column)
+        if (grid.contains({column, row}) && origin[grid.index({column, row})] == kNone) {
+          origin[grid.index({column, row})] = begun;
+          open.push_back({column, row});
+        }
+  }
+  return {};
+}
+
+std::string text(Point p) {
+  char buffer[80];
+  std::snprintf(buffer, sizeof buffer, "%.2f,%.2f", p.x_m, p.y_m);
+  return buffer;
+}
+
+const char* remedy(Constraint constraint) noexcept {
+  switch (constraint) {
+    case Constraint::Pitch:
+      return "the pitch limit closes every way: raise max_pitch_rad, or choose another goal";
+    case Constraint::Roll:
+      return "the roll limit closes every way: raise max_roll_rad, or choose another goal";
+    case Constraint::Soil:
+      return "soil closes every way: measure the ground there, or choose another goal";
+    case Constraint::Hazard:
+      return "hazards, keep-out areas and their clearance close every way: reduce them, or choose another goal";
+    case Constraint::Unknown:
+      return "unobserved ground closes every way: observe it, or choose another goal";
+  }
+  return "";
+}
+
+}  // namespace
+
+const char* name(Constraint constraint) noexcept {
+  switch (constraint) {
+    case Constraint::Pitch:
+      return "pitch";
+    case Constraint::Roll:
+      return "roll";
+    case Constraint::Soil:
+      return "soil";
+    case Constraint::Hazard:
+      return "hazard";
+    case Constraint::Unknown:
+      return "unknown";
+  }
+  return "";
+}
+
+Obstruction obstructionBetween(const costmap::CostGrid& map, const Reach& from_start, const Segment& places, double tolerance_m,
+                               const StopCheck& stop) {
+  Obstruction found;
+  HeadingSets headings(map.cost());
+  const Reach to_goal(map, headings, Reach::Sense::To, places.to, tolerance_m, stop);
+  const auto [last, first] = closest(map.grid(), from_start, to_goal);
+  found.cells_from_start = from_start.cells();
+  found.cells_to_goal = to_goal.cells();
+  found.last = map.grid().centre(last);
+  found.first = map.grid().centre(first);
+  if (map.grid().size() > kTriedCells) return found;
+  for (const Constraint constraint :
+       {Constraint::Unknown, Constraint::Hazard, Constraint::Soil, Constraint::Pitch, Constraint::Roll})
+    if (!found.lifting && opens(constraint, map, places, tolerance_m, stop)) found.lifting = constraint;
+  found.tried = !stop();
+  return found;
+}
+
+std::string text(const Obstruction& obstruction, const Segment& places) {
+  char apart[64];
+  std::snprintf(apart, sizeof apart, " (%.1f m apart)",
+                std::hypot(obstruction.last.x_m - obstruction.first.x_m, obstruction.last.y_m - obstruction.first.y_m));
+  std::string line = "no route from " + text(places.from) + " to " + text(places.to) +
+                     ", whatever the headings: " + std::to_string(obstruction.cells_from_start) +
+                     " cells are reachable from the start, " + std::to_string(obstruction.cells_to_goal) +
+                     " lead to the goal; closest at " + text(obstruction.last) + " and " + text(obstruction.first) + apart;
+  if (obstruction.lifting) return line + "; " + remedy(*obstruction.lifting);
+  return line + (obstruction.tried ? "; more than one constraint closes every way: choose another goal" : "; choose another goal");
+}
+
+}  // namespace talus::planner

@@ -1,0 +1,172 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include <talus/planner/route/heading_set.hpp>
+
+namespace talus::planner {
+namespace {
+
+using std::numbers::pi;
+
+double wrapped(double angle_rad) noexcept {
+  const double turned = std::fmod(angle_rad, HeadingSet::kTurn);
+  return turned < 0.0 ? turned + HeadingSet::kTurn : turned;
+}
+
+using costmap::DriveCurve;
+
+// Gradients along the heading at which the cost becomes finite or infinite in some row: between bins, and at the limit.
+std::vector<double> limitsAlong(const costmap::DriveCost& cost, const DriveCurve& curve) {
+  std::vector<double> limits{cost.limits().max_along, -cost.limits().max_along};
+  const auto finite = [&](int row, int bin) {
+    return std::isfinite(curve.rows()[static_cast<std::size_t>(row * DriveCurve::kBins + bin)]);
+  };
+  for (int bin = 1; bin < DriveCurve::kBins; ++bin) {
+    const double edge = DriveCurve::gradient(bin) - 0.5 / 256.0;
+    bool changes = false;
+    for (int row = 0; row <= curve.lastRow(); ++row)
+      changes = changes || finite(row, bin) != finite(row, bin - 1);
+    if (changes) limits.push_back(edge);
+  }
+  return limits;
+}
+
+// Gradients across it, as magnitudes, at which a row gives way to the next, and the limit.
+std::vector<double> limitsAcross(const costmap::DriveCost& cost, const DriveCurve& curve) {
+  std::vector<double> limits{cost.limits().max_across};
+  for (int row = 0; row < curve.lastRow(); ++row)
+    limits.push_back((row + DriveCurve::kSame) / DriveCurve::kRowsPerUnit);
+  return limits;
+}
+
+// Headings at which the gradient along or across takes one of these values.
+std::vector<double> turningPoints(const HeadingSets::Limits& limits, costmap::CellCode cell) {
+  const double steepest = std::hypot(cell.dzDx(), cell.dzDy()), up = std::atan2(cell.dzDy(), cell.dzDx());
+  std::vector<double> angles;
+  for (const double along : limits.along) {
+    if (!(std::abs(along) <= steepest)) continue;
+    const double off = std::acos(along / steepest);
+    angles.push_back(wrapped(up + off));
+    angles.push_back(wrapped(up - off));
+  }
+  for (const double across : limits.across) {
+    if (!(across <= steepest)) continue;
+    const double off = std::asin(across / steepest);
+    for (const double side : {off, -off}) {
+      angles.push_back(wrapped(up + side));
+      angles.push_back(wrapped(up + pi + side));
+    }
+  }
+  std::sort(angles.begin(), angles.end());
+  return angles;
+}
+
+constexpr double kRounding = 1e-7;  // rad
+
+}  // namespace
+
+HeadingSet::HeadingSet(std::vector<HeadingArc> arcs) {
+  std::sort(arcs.begin(), arcs.end(), [](const auto& a, const auto& b) { return a.from_rad < b.from_rad; });
+  for (const HeadingArc& arc : arcs) {
+    if (!arcs_.empty() && arc.from_rad <= arcs_.back().from_rad + arcs_.back().width_rad)
+      arcs_.back().width_rad = std::max(arcs_.back().width_rad, arc.from_rad + arc.width_rad - arcs_.back().from_rad);
+    else
+      arcs_.push_back(arc);
+  }
+  // The last may reach round to the first ones.
+  while (arcs_.size() > 1 && arcs_.back().from_rad + arcs_.back().width_rad >= arcs_.front().from_rad + kTurn) {
+    const double end = arcs_.front().from_rad + arcs_.front().width_rad + kTurn;
+    arcs_.back().width_rad = std::max(arcs_.back().width_rad, end - arcs_.back().from_rad);
+    arcs_.erase(arcs_.begin());
+  }
+  if (arcs_.size() == 1 && arcs_[0].width_rad >= kTurn) arcs_[0] = {0.0, kTurn};
+}
+
+HeadingSet::Gap HeadingSet::widestGap() const noexcept {
+  Gap widest{0.0, -1.0};
+  for (std::size_t k = 0; k < arcs_.size(); ++k) {
+    const double end = arcs_[k].from_rad + arcs_[k].width_rad;
+    const double next = k + 1 < arcs_.size() ? arcs_[k + 1].from_rad : arcs_[0].from_rad + kTurn;
+    if (next - end > widest.width_rad) widest = {wrapped(end), next - end};
+  }
+  return widest;
+}
+
+HeadingSet HeadingSet::shared(const HeadingSet& other) const {
+  std::vector<HeadingArc> both;
+  for (const HeadingArc& a : arcs_)
+    for (const HeadingArc& b : other.arcs_)
+      for (const double turns : {-kTurn, 0.0, kTurn}) {
+        const double from = std::max(a.from_rad, b.from_rad + turns);
+        const double to = std::min(a.from_rad + a.width_rad, b.from_rad + turns + b.width_rad);
+        if (from <= to) both.push_back({wrapped(from), to - from});
+      }
+  return HeadingSet(std::move(both));
+}
+
+double HeadingSet::nearest(double heading_rad, double inside_rad) const noexcept {
+  double best = heading_rad, best_off = 2.0 * kTurn;
+  for (const HeadingArc& arc : arcs_) {
+    const double inside = std::min(inside_rad, 0.5 * arc.width_rad);
+    const double ahead = wrapped(heading_rad - arc.from_rad);
+    // Between the ends, or the end that is nearer round the circle.
+    double at = std::clamp(ahead, inside, arc.width_rad - inside);
+    if (ahead > arc.width_rad && kTurn - ahead < ahead - arc.width_rad) at = inside;
+    const double off = std::abs(std::remainder(arc.from_rad + at - heading_rad, kTurn));
+    if (off < best_off) {
+      best_off = off;
+      best = wrapped(arc.from_rad + at);
+    }
+  }
+  return best;
+}
+
+HeadingSet HeadingSet::reversed() const {
+  std::vector<HeadingArc> opposite;
+  for (const HeadingArc& arc : arcs_) opposite.push_back({wrapped(arc.from_rad + pi), arc.width_rad});
+  return HeadingSet(std::move(opposite));
+}
+
+HeadingSets::Limits::Limits(const costmap::DriveCost& cost, const costmap::DriveCurve& curve)
+    : along(limitsAlong(cost, curve)), across(limitsAcross(cost, curve)) {}
+
+HeadingSet allowedHeadings(const costmap::DriveCost& cost, costmap::CellCode cell) {
+  if (cell.curve() >= cost.curves().size()) return {};
+  return allowedHeadings(cost, cell, {cost, cost.curves()[cell.curve()]});
+}
+
+HeadingSet allowedHeadings(const costmap::DriveCost& cost, costmap::CellCode cell, const HeadingSets::Limits& limits) {
+  const auto finite = [&](double heading) {
+    return std::isfinite(cost.costPerMetre(cell, {std::cos(heading), std::sin(heading)}));
+  };
+  const std::vector<double> turns = turningPoints(limits, cell);
+  if (turns.empty()) return finite(0.0) ? HeadingSet({{0.0, HeadingSet::kTurn}}) : HeadingSet();
+  std::vector<HeadingArc> arcs;
+  const auto add = [&](double from, double width) {
+    arcs.push_back({wrapped(from - kRounding), std::min(HeadingSet::kTurn, width + 2.0 * kRounding)});
+  };
+  for (std::size_t k = 0; k < turns.size(); ++k) {
+    const double next = k + 1 < turns.size() ? turns[k + 1] : turns[0] + HeadingSet::kTurn;
+    if (finite(0.5 * (turns[k] + next))) add(turns[k], next - turns[k]);
+    if (finite(turns[k])) add(turns[k], 0.0);
+  }
+  return HeadingSet(std::move(arcs));
+}
+
+const HeadingSet& HeadingSets::of(costmap::CellCode cell) {
+  const auto known = sets_.find(cell.bits());
+  if (known != sets_.end()) return known->second;
+  HeadingSet set;
+  if (cell.curve() == free_) {
+    set = HeadingSet({{0.0, HeadingSet::kTurn}});
+  } else if (cell.curve() < cost_.curves().size()) {
+    auto& limits = limits_[cell.curve()];
+    if (!limits) limits.emplace(cost_, cost_.curves()[cell.curve()]);
+    set = allowedHeadings(cost_, cell, *limits);
+  }
+  return sets_.emplace(cell.bits(), std::move(set)).first->second;
+}
+
+}  // namespace talus::planner

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <unordered_map>
+#include <vector>
+
+#include <talus/costmap/drive_cost.hpp>
+
+namespace talus::planner {
+
+/// Headings from one to another, both included, counter-clockwise.
+struct HeadingArc {
+  double from_rad = 0.0;   ///< counter-clockwise from x, [0, 2 pi)
+  double width_rad = 0.0;  ///< [0, 2 pi]
+};
+
+/// A set of headings: closed arcs in order of their beginnings that do not touch.
+class HeadingSet {
+ public:
+  HeadingSet() = default;
+  /// Arcs in any order that may touch, each in the ranges of HeadingArc.
+  explicit HeadingSet(std::vector<HeadingArc> arcs);
+
+  const std::vector<HeadingArc>& arcs() const noexcept { return arcs_; }
+  bool empty() const noexcept { return arcs_.empty(); }
+  bool all() const noexcept { return arcs_.size() == 1 && arcs_[0].width_rad >= kTurn; }
+
+  /// The arc that lies clockwise of the widest gap between arcs, to its end, and that gap's width: the headings of a
+  /// drive that turns within the set add up to every direction if the gap is narrower than half a turn, else to
+  /// those from `end + gap` counter-clockwise to `end`. The set must not be empty.
+  struct Gap {
+    double end_rad;
+    double width_rad;
+  };
+  Gap widestGap() const noexcept;
+
+  /// The headings of both sets.
+  HeadingSet shared(const HeadingSet& other) const;
+
+  /// The heading of the set, at least `inside_rad` from the ends of its arc or in the arc's middle, that is nearest to
+  /// one given. The set must not be empty.
+  double nearest(double heading_rad, double inside_rad) const noexcept;
+
+  /// The headings opposite to these.
+  HeadingSet reversed() const;
+
+  static constexpr double kTurn = 6.283185307179586;
+
+ private:
+  std::vector<HeadingArc> arcs_;
+};
+
+/// allowedHeadings() of cells, kept by code; cells of the curve number `free`, if any, allow every heading. Not thread-safe; the DriveCost must
+/// outlive it.
+class HeadingSets {
+ public:
+  explicit HeadingSets(const costmap::DriveCost& cost, std::optional<std::uint8_t> free = {}) : cost_(cost), free_(free), limits_(cost.curves().size()) {}
+  const HeadingSet& of(costmap::CellCode cell);
+
+  /// Gradients along, and sizes of gradients across, at which a curve's cost may become finite or infinite.
+  struct Limits {
+    Limits(const costmap::DriveCost& cost, const costmap::DriveCurve& curve);
+    std::vector<double> along, across;
+  };
+
+ private:
+  const costmap::DriveCost& cost_;
+  std::optional<std::uint8_t> free_;
+  std::unordered_map<std::uint32_t, HeadingSet> sets_;
+  std::vector<std::optional<Limits>> limits_;
+};
+
+/// Every heading for which the drive cost of a cell is finite. Between two neighbouring headings at which the gradient
+/// along or across passes from one entry of the cost's table to another, the cost is one number; so it is enough to ask
+/// once between each two, and at each. Arcs are widened by 1e-7 rad: no heading is missed by rounding.
+HeadingSet allowedHeadings(const costmap::DriveCost& cost, costmap::CellCode cell);
+HeadingSet allowedHeadings(const costmap::DriveCost& cost, costmap::CellCode cell, const HeadingSets::Limits& limits);
+
+}  // namespace talus::planner

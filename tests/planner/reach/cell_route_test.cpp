@@ -1,0 +1,72 @@
+#include <cmath>
+
+#include <talus/planner/check/route_check.hpp>
+#include <talus/planner/reach/cell_route.hpp>
+#include <talus/planner/reach/reach.hpp>
+
+#include "contour_plane.hpp"
+#include "drawn_map.hpp"
+
+namespace talus::planner {
+namespace {
+
+Polyline routed(const std::shared_ptr<const costmap::CostGrid>& map, const Segment& places, double tolerance_m = 0.0) {
+  const MotionCost cost(map);
+  HeadingSets headings(map->cost());
+  return cellRoute(cost, headings, places, tolerance_m);
+}
+
+TEST(CellRoute, FollowsAContourOfAnyDirection) {
+  for (int k = 0; k < 24; ++k) {
+    const double contour = 0.13 + k * 0.2618;
+    const maps::Point from{20.0 - 15.0 * std::cos(contour), 20.0 - 15.0 * std::sin(contour)};
+    const maps::Point to{20.0 + 15.0 * std::cos(contour), 20.0 + 15.0 * std::sin(contour)};
+    const auto map = testing::contourPlane(contour);
+    const Polyline way = routed(map, {from, to});
+    ASSERT_FALSE(way.empty()) << contour;
+    EXPECT_TRUE(violations(*map, way).empty()) << contour;
+  }
+}
+
+// Both ways along a contour with some room beside it add up to every direction: the plane is climbed in turns.
+TEST(CellRoute, ClimbsInTurns) {
+  const auto map = testing::contourPlane(0.4);
+  const Polyline way = routed(map, {{18.3, 18.2}, {20.4, 22.9}});
+  ASSERT_FALSE(way.empty());
+  EXPECT_TRUE(violations(*map, way).empty());
+}
+
+// Property: on random steep maps a way is allowed, and found nearly wherever the proof leaves one.
+TEST(CellRoute, IsAllowedAndMostlyFound) {
+  int found = 0, missed = 0;
+  for (unsigned seed = 1; seed <= 200; ++seed) {
+    const auto map = testing::randomMap({.width = 9, .height = 9, .seed = seed, .blocked = 0.2, .roughness = 0.38});
+    const Segment places{{1.3, 1.4}, {7.6, 7.8}};
+    const MotionCost cost(map);
+    if (!cost.allowed(places.from) || !cost.allowed(places.to)) continue;
+    HeadingSets headings(map->cost());
+    Reach reach(*map, headings, Reach::Sense::From, places.from);
+    const Polyline way = routed(map, places);
+    if (!way.empty()) {
+      ++found;
+      EXPECT_TRUE(std::isfinite(cost.along(way))) << seed;
+      EXPECT_TRUE(violations(*map, way).empty()) << seed;
+      EXPECT_TRUE(reach.reaches(places.to, 0.0)) << seed;
+    } else if (reach.reaches(places.to, 0.0)) {
+      ++missed;
+    }
+  }
+  EXPECT_GT(found, 20);
+  EXPECT_LE(missed, 2) << found;
+}
+
+TEST(CellRoute, EndsWithinTheTolerance) {
+  const auto map = testing::drawn({".....", "...##", "...##"});
+  const Polyline way = routed(map, {{0.5, 0.5}, {4.5, 0.5}}, 2.1);
+  ASSERT_FALSE(way.empty());
+  EXPECT_LE(std::hypot(way.back().x_m - 4.5, way.back().y_m - 0.5), 2.1);
+  EXPECT_TRUE(violations(*map, way).empty());
+}
+
+}  // namespace
+}  // namespace talus::planner

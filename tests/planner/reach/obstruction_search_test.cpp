@@ -1,0 +1,47 @@
+#include <talus/planner/reach/obstruction_search.hpp>
+
+#include "contour_plane.hpp"
+#include "drawn_map.hpp"
+
+namespace talus::planner {
+namespace {
+
+using testing::drawn;
+
+Obstruction between(const std::shared_ptr<const costmap::CostGrid>& map, const Segment& places) {
+  HeadingSets headings(map->cost());
+  const Reach reach(*map, headings, Reach::Sense::From, places.from);
+  return obstructionBetween(*map, reach, places, 0.0);
+}
+
+TEST(ObstructionSearch, NamesBothSetsAndTheConstraintBetween) {
+  const auto map = drawn({"..#..", "..#..", "..#.."});
+  const Segment places{{0.5, 0.5}, {3.5, 1.5}};
+  const Obstruction found = between(map, places);
+  EXPECT_EQ(found.cells_from_start, 6U);
+  EXPECT_EQ(found.cells_to_goal, 6U);
+  EXPECT_NEAR(found.first.x_m - found.last.x_m, 2.0, 1e-9);
+  ASSERT_TRUE(found.lifting);
+  EXPECT_EQ(*found.lifting, Constraint::Hazard);
+  EXPECT_THAT(text(found, places), ::testing::AllOf(::testing::HasSubstr("6 cells are reachable from the start, 6 lead"),
+                                                    ::testing::HasSubstr("keep-out")));
+}
+
+TEST(ObstructionSearch, EachConstraintIsFoundAlone) {
+  EXPECT_EQ(between(drawn({"..?..", "..?.."}), {{0.5, 0.5}, {3.5, 1.5}}).lifting, Constraint::Unknown);
+  // Two walls of different kinds: neither alone opens a way.
+  EXPECT_FALSE(between(drawn({".?#.", ".?#."}), {{0.5, 0.5}, {3.5, 1.5}}).lifting);
+  // A ramp as steep as the pitch limit forbids, of soil that holds to 0.3; one as the soil forbids.
+  const auto ramp = [](double steep, double pitch) {
+    maps::Raster<costmap::CellCode> cells({.width = 5, .height = 3, .resolution_m = 1.0, .south_west = {}},
+                                          costmap::CellCode({.dz_dx = steep, .dz_dy = 0.0, .curve = 0}));
+    return std::make_shared<costmap::CostGrid>(costmap::flattened(
+        cells, std::make_shared<costmap::DriveCost>(costmap::DriveCost::Limits{.max_along = pitch, .max_across = 0.05},
+                                                    std::vector{testing::curve({})})));
+  };
+  EXPECT_EQ(between(ramp(0.2, 0.1), {{0.5, 1.5}, {4.5, 1.5}}).lifting, Constraint::Pitch);
+  EXPECT_EQ(between(ramp(0.4, 0.5), {{0.5, 1.5}, {4.5, 1.5}}).lifting, Constraint::Soil);
+}
+
+}  // namespace
+}  // namespace talus::planner

@@ -1,0 +1,116 @@
+#include <cmath>
+#include <queue>
+
+#include <talus/planner/check/route_check.hpp>
+#include <talus/planner/reach/reach.hpp>
+#include <talus/planner/route/motion_cost.hpp>
+
+#include "contour_plane.hpp"
+#include "drawn_map.hpp"
+
+namespace talus::planner {
+namespace {
+
+using testing::drawn;
+using testing::randomMap;
+
+bool reaches(const costmap::CostGrid& map, maps::Point from, maps::Point to) {
+  HeadingSets headings(map.cost());
+  Reach reach(map, headings, Reach::Sense::From, from);
+  return reach.reaches(to, 0.0);
+}
+
+TEST(Reach, AWallIsAProof) {
+  const auto map = drawn({"..#..", "..#..", "..#.."});
+  EXPECT_FALSE(reaches(*map, {0.5, 0.5}, {4.5, 1.5}));
+  EXPECT_TRUE(reaches(*map, {0.5, 0.5}, {1.5, 2.5}));
+  // Two cells that meet at a corner between blocked ones are not joined.
+  EXPECT_FALSE(reaches(*drawn({"#.", ".#"}), {0.5, 0.5}, {1.5, 1.5}));
+}
+
+// A slope that may be descended only, not along its contour either: bin 0 holds climbs of up to 0.002.
+TEST(Reach, IsAlongTheDrive) {
+  costmap::DriveCurve down_only = testing::curve({});
+  for (int bin = costmap::DriveCurve::kBins / 2; bin < costmap::DriveCurve::kBins; ++bin)
+    down_only.cost_J_per_m[static_cast<std::size_t>(bin)] = std::numeric_limits<float>::infinity();
+  maps::Raster<costmap::CellCode> ramp({.width = 4, .height = 3, .resolution_m = 1.0, .south_west = {}},
+                                       costmap::CellCode({.dz_dx = 0.2, .dz_dy = 0.0, .curve = 0}));
+  const costmap::CostGrid map = costmap::flattened(
+      ramp, std::make_shared<costmap::DriveCost>(costmap::DriveCost::Limits{}, std::vector{down_only}));
+  EXPECT_FALSE(reaches(map, {1.5, 1.5}, {3.5, 1.5}));
+  EXPECT_TRUE(reaches(map, {3.5, 1.5}, {1.5, 1.5}));
+  HeadingSets headings(map.cost());
+  const Reach to(map, headings, Reach::Sense::To, {1.5, 1.5});
+  EXPECT_TRUE(to.holds({3, 1}));
+  EXPECT_FALSE(to.holds({0, 1}));
+}
+
+// Closed form: headings on both sides of the fall line that descend add up to everything below the start.
+TEST(Reach, DescendingAlongAContourReachesWhatLiesBelow) {
+  const double steep = 0.3;
+  // Down only, and no steeper than 0.1 along: both ways along the contour and a little below it.
+  costmap::DriveCurve curve = testing::curve({});
+  for (int bin = 0; bin < costmap::DriveCurve::kBins; ++bin) {
+    const double along = costmap::DriveCurve::gradient(bin);
+    if (along > -0.002 || along < -0.1) curve.cost_J_per_m[static_cast<std::size_t>(bin)] = std::numeric_limits<float>::infinity();
+  }
+  maps::Raster<costmap::CellCode> plane({.width = 12, .height = 12, .resolution_m = 1.0, .south_west = {}},
+                                        costmap::CellCode({.dz_dx = 0.0, .dz_dy = steep, .curve = 0}));
+  const costmap::CostGrid map = costmap::flattened(
+      plane, std::make_shared<costmap::DriveCost>(costmap::DriveCost::Limits{}, std::vector{curve}));
+  EXPECT_FALSE(reaches(map, {6.0, 5.5}, {6.0, 7.5}));
+  EXPECT_TRUE(reaches(map, {6.0, 5.5}, {6.0, 3.5}));
+  EXPECT_FALSE(reaches(map, {1.0, 5.5}, {11.0, 5.5}));
+  EXPECT_TRUE(reaches(map, {1.0, 5.5}, {11.0, 5.4}));
+}
+
+// Brute force: 24 headings from a fine lattice of points, every motion by MotionCost. What that reaches must be reached.
+TEST(Reach, NoRandomMapIsProvenWrongly) {
+  int proven = 0, wrong = 0, open = 0;
+  for (unsigned seed = 1; seed <= 90; ++seed) {
+    const auto map = randomMap({.width = 7, .height = 7, .seed = seed, .blocked = 0.25, .roughness = 0.5});
+    const MotionCost cost(map);
+    constexpr int kFine = 4;
+    const int side = 7 * kFine;
+    const auto place = [&](int k) {
+      return maps::Point{(k % side + 0.5) / kFine, (k / side + 0.5) / kFine};
+    };
+    const int from = side * (side / 2) + side / 2;
+    if (!cost.allowed(place(from))) continue;
+    std::vector<bool> seen(static_cast<std::size_t>(side * side), false);
+    std::queue<int> todo;
+    seen[static_cast<std::size_t>(from)] = true;
+    todo.push(from);
+    while (!todo.empty()) {
+      const int at = todo.front();
+      todo.pop();
+      for (int dy = -3; dy <= 3; ++dy)
+        for (int dx = -3; dx <= 3; ++dx) {
+          const int x = at % side + dx, y = at / side + dy;
+          if (x < 0 || y < 0 || x >= side || y >= side) continue;
+          const int next = y * side + x;
+          if (seen[static_cast<std::size_t>(next)] || !std::isfinite(cost({place(at), place(next)}))) continue;
+          seen[static_cast<std::size_t>(next)] = true;
+          todo.push(next);
+        }
+    }
+    HeadingSets headings(map->cost());
+    Reach reach(*map, headings, Reach::Sense::From, place(from));
+    for (int k = 0; k < side * side; ++k) {
+      HeadingSets backwards(map->cost());
+      const bool reached = reach.reaches(place(k), 0.0);
+      if (seen[static_cast<std::size_t>(k)]) {
+        ++open;
+        wrong += reached ? 0 : 1;
+      } else {
+        proven += reached ? 0 : 1;
+      }
+    }
+  }
+  EXPECT_EQ(wrong, 0);
+  EXPECT_GT(open, 2000);
+  EXPECT_GT(proven, 2000);
+}
+
+}  // namespace
+}  // namespace talus::planner

@@ -1,0 +1,61 @@
+#include <cmath>
+#include <random>
+
+#include <talus/planner/route/heading_set.hpp>
+
+#include "drawn_map.hpp"
+
+namespace talus::planner {
+namespace {
+
+constexpr double kPi = 3.141592653589793;
+
+bool holds(const HeadingSet& set, double heading) {
+  return !set.empty() && std::abs(std::remainder(set.nearest(heading, 0.0) - heading, HeadingSet::kTurn)) < 1e-12;
+}
+
+TEST(HeadingSet, ArcsThatTouchAreOne) {
+  const HeadingSet set({{6.0, 0.5}, {0.1, 0.4}, {2.0, 0.1}});  // the first reaches 0.2168 beyond 2 pi
+  ASSERT_EQ(set.arcs().size(), 2U);
+  EXPECT_TRUE(holds(set, 0.4));
+  EXPECT_FALSE(holds(set, 0.6));
+  EXPECT_NEAR(set.widestGap().end_rad, 2.1, 1e-12);
+  EXPECT_NEAR(set.widestGap().width_rad, 3.9, 1e-12);
+}
+
+// Independent derivation: each heading by itself, on the drive cost of random cells.
+TEST(HeadingSet, HoldsEveryHeadingThatTheCostAllows) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> gradient(-0.6, 0.6), angle(0.0, HeadingSet::kTurn);
+  const auto cost = testing::driveCost({.max_along = 0.28, .max_across = 0.17});
+  int held = 0, refused = 0;
+  for (int k = 0; k < 400; ++k) {
+    const costmap::CellCode cell({.dz_dx = gradient(random), .dz_dy = gradient(random), .curve = 2});
+    const HeadingSet set = allowedHeadings(*cost, cell);
+    for (int drawn = 0; drawn < 200; ++drawn) {
+      const double heading = angle(random);
+      const bool allowed = std::isfinite(cost->costPerMetre(cell, {std::cos(heading), std::sin(heading)}));
+      (allowed ? held : refused) += 1;
+      EXPECT_EQ(holds(set, heading), allowed) << cell.dzDx() << ' ' << cell.dzDy() << ' ' << heading;
+    }
+  }
+  EXPECT_GT(held, 4000);
+  EXPECT_GT(refused, 4000);
+}
+
+TEST(HeadingSet, SharedHeadingsAreThoseOfBoth) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> angle(0.0, HeadingSet::kTurn), width(0.0, 2.5);
+  for (int k = 0; k < 200; ++k) {
+    const HeadingSet a({{angle(random), width(random)}, {angle(random), width(random)}}), b({{angle(random), width(random)}});
+    const HeadingSet both = a.shared(b);
+    for (int drawn = 0; drawn < 50; ++drawn) {
+      const double heading = angle(random);
+      EXPECT_EQ(holds(both, heading), holds(a, heading) && holds(b, heading));
+      EXPECT_EQ(holds(a.reversed(), heading), holds(a, heading + kPi));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace talus::planner
