@@ -155,6 +155,9 @@ TEST_P(DangerKept, ThreeWeakAndSixtyStrongInEitherOrder) {
     ground.update(text);
     EXPECT_EQ(ground.said("new.ot", "20.5,20.5").category, "dangerous") << first;
     files[first] = fileContent(ground.folder / "new.ot");
+    // The drive's id and the checksum over all, which name the file that was read: tag, size, 16 digits and a line end.
+    files[first].erase(files[first].rfind("DRIV"), 4 + 8 + 17);
+    files[first].resize(files[first].size() - 8);
   }
   EXPECT_TRUE(files[0] == files[1]) << "the order of rows shows";
 }
