@@ -76,7 +76,7 @@ std::vector<Point> readLine(const std::string& path, const maps::ElevationMap& m
 
 // What is judged piece by piece, cell by cell, ends near the map.
 void requireNear(const std::vector<Point>& points, const maps::Grid& grid, const std::string& path) {
-  const double around_m = std::hypot(grid.width, grid.height) * grid.resolution_m;
+  const double around_m = 1e6 * grid.resolution_m;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double east = points[i].x_m - grid.south_west.x_m, north = points[i].y_m - grid.south_west.y_m;
     const bool near = east >= -around_m && north >= -around_m &&
@@ -84,7 +84,7 @@ void requireNear(const std::vector<Point>& points, const maps::Grid& grid, const
                       north <= grid.height * grid.resolution_m + around_m;
     if (!near)
       throw InputError({path,
-                        fmt::format("vertex {} at {:.6g},{:.6g} lies farther from the map than its diagonal, {:.6g} m",
+                        fmt::format("vertex {} at {:.6g},{:.6g} lies farther than {:.6g} m, a million cells, from the map",
                                     i + 1, points[i].x_m, points[i].y_m, around_m),
                         "check the coordinate system"});
   }
