@@ -27,7 +27,7 @@ void bind(CLI::App& command, TraceCommandOptions& options) {
       ->type_name("NAME|FILE");
   command
       .add_option("--significance", options.significance,
-                  "family-wise significance level over all hypothesis tests")
+                  "share of tables without an effect in which one may be found")
       ->check(CLI::Range(1e-3, 0.5))
       ->capture_default_str();
   groupOptions(command, "Analysis");
@@ -89,7 +89,8 @@ int run(const TraceCommandOptions& options, Context& context) {
   if (story.beyond_axle > 0)
     story.beyond_axle_rmse = terramech::rmseOf(story.result.refined, terramech::subset(all, sunk));
   story.applies = terramech::applicability(story.result, how);
-  if (!options.model_out.empty()) writeFile(options.model_out, terramech::modelText(story.result.refined));
+  if (!options.model_out.empty())
+    writeFile(options.model_out, terramech::modelText(terramech::forPrediction(story.result)));
   if (!options.html.empty()) writeFile(options.html, tracePage(story));
   if (context.json)
     printJson(traceJson(story));

@@ -25,8 +25,8 @@ std::vector<std::string> shown(const TraceResult& r) {
   for (const TracedEffect& e : r.effects) add(e.chosen.candidate.covariate());
   add("slip");
   add("load_N");
-  for (const CovariateTest& t : r.first_tests)
-    if (names.size() < 8) add(t.covariate);
+  for (const Promise& p : r.first_promises)
+    if (names.size() < 8) add(p.candidate.covariate());
   for (const std::string& name : r.trial.covariates)
     if (names.size() < 8) add(name);
   return names;
@@ -75,16 +75,14 @@ std::string rivals(const TracedEffect& effect) {
   for (const Explanation& rival : effect.alternatives)
     text += fmt::format("{}{} ({}; lower by {:.1f})", text.empty() ? "" : ", ",
                         rival.candidate.parts.front().name, rival.candidate.covariate(),
-                        effect.chosen.score - rival.score);
+                        effect.chosen.gain - rival.gain);
   return text.empty() ? "no close alternative" : text;
 }
 
 void effects(HtmlReport& page, const TraceStory& story) {
   page.heading("Effects missing from the base model");
   if (story.result.effects.empty()) {
-    page.paragraph(
-        "No effect found: the residuals of the base model are consistent with noise in every column and "
-        "channel.");
+    page.paragraph("No effect found: no candidate gains more than noise would.");
     return;
   }
   std::vector<std::vector<std::string>> found, forms;
@@ -92,7 +90,7 @@ void effects(HtmlReport& page, const TraceStory& story) {
     const Effect& part = e.chosen.candidate.parts.front();
     const EffectForm* form = findEffect(part.name);
     found.push_back({part.name, covariateOf(part) + (part.only_column.empty() ? "" : " = " + part.only_value),
-                     name(e.channel), sizes(e), fmt::format("{:.2g}", e.p_value),
+                     name(e.channel), sizes(e), pText(e.p_value),
                      fmt::format("{:.1f}", 0.5 * e.chosen.chi2_gain)});
     forms.push_back({part.name, form ? form->formula : "curve fitted to the residual", rivals(e),
                      separatingMeasurement(story.result.trial, e)});
@@ -122,25 +120,20 @@ void errors(HtmlReport& page, const TraceStory& story) {
   page.table({"held out", "channel", "base", "refined", "noise floor"}, rows);
 }
 
-const char* flippedTogether(const ExchangeableUnits& units) {
-  if (units.unit.empty()) return "rows";
-  return units.runs ? "the common part of each run and of the remainder of each row"
-                    : "the common part of rows close in time and of the remainder of each row";
-}
-
 void tests(HtmlReport& page, const TraceResult& r) {
-  page.heading("Hypothesis tests on the residuals of the base model");
-  page.paragraph(
-      fmt::format("The strongest of {} tests. The p-values are corrected for all tests together, by random "
-                  "sign flips of {}.",
-                  r.first_tests.size(), flippedTogether(r.units)));
+  page.heading("What each candidate would gain over the base model");
+  page.paragraph(fmt::format(
+      "The strongest of {} candidates, each to first order: log-likelihood gained on held-out rows. p: how "
+      "often a table drawn from the base model's noise gives any candidate that gain.",
+      r.first_promises.size()));
   std::vector<std::vector<std::string>> rows;
-  for (std::size_t k = 0; k < r.first_tests.size() && k < 15; ++k) {
-    const CovariateTest& t = r.first_tests[k];
-    rows.push_back({t.covariate, t.channel < 0 ? "all" : name(static_cast<Channel>(t.channel)),
-                    fmt::format("{:.2f}", t.z), fmt::format("{:.4f}", t.p_value)});
+  for (std::size_t k = 0; k < r.first_promises.size() && k < 15; ++k) {
+    const Promise& p = r.first_promises[k];
+    const Effect& front = p.candidate.parts.front();
+    rows.push_back({front.name, p.candidate.covariate(), name(front.channel), fmt::format("{:.1f}", p.gain),
+                    pText(p.p_value)});
   }
-  page.table({"column or effect", "channel", "z-score", "p"}, rows);
+  page.table({"candidate", "column", "channel", "gain", "p"}, rows);
 }
 
 }  // namespace
@@ -148,6 +141,8 @@ void tests(HtmlReport& page, const TraceResult& r) {
 std::string tracePage(const TraceStory& story) {
   const TraceResult& r = story.result;
   HtmlReport page("Residuals of " + story.source);
+  page.paragraph("Verdict: " + verdictText(r) + ".");
+  for (const MovedParameter& p : movedSoil(r)) page.paragraph(movedText(p) + ".");
   page.paragraph(fmt::format("{} rows used, {} rejected.", r.trial.rows(), story.rows_rejected));
   if (story.beyond_axle > 0) page.paragraph(beyondAxleText(story) + ".");
   if (!story.applies.applies) page.paragraph("The model does not apply here: " + story.applies.reason + ".");

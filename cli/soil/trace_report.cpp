@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -52,7 +53,7 @@ ordered_json rivalJson(const Explanation& e) {
   ordered_json out{{"name", part.name}, {"covariate", covariateOf(part)}};
   if (!part.only_column.empty()) out["only"] = {{part.only_column, part.only_value}};
   out["log_likelihood_gain"] = 0.5 * e.chi2_gain;
-  out["score"] = e.score;
+  out["gain"] = e.gain;
   return out;
 }
 
@@ -64,7 +65,7 @@ ordered_json evidenceJson(const TraceStory& story, const TracedEffect& effect) {
   ordered_json rivals = ordered_json::array();
   for (const Explanation& e : effect.alternatives) rivals.push_back(rivalJson(e));
   return {{"log_likelihood_gain", 0.5 * effect.chosen.chi2_gain},
-          {"score", effect.chosen.score},
+          {"gain", effect.chosen.gain},
           {"chi2_gain_by_channel", by_channel},
           {"alternatives", rivals},
           {"confounded_with", confounded(story.result.trial, effect.chosen.candidate.covariate())},
@@ -80,6 +81,7 @@ ordered_json effectJson(const TraceStory& story, const TracedEffect& effect) {
   if (!part.only_column.empty()) out["only"] = {{part.only_column, part.only_value}};
   out["parameters"] = parametersJson(effect.chosen.candidate);
   out["parameters_std"] = stdJson(effect);
+  out["at_bound"] = atBounds(part);
   out["p_value"] = effect.p_value;
   out["evidence"] = evidenceJson(story, effect);
   if (const EffectForm* form = findEffect(part.name)) {
@@ -96,8 +98,9 @@ ordered_json rejectedJson(const TraceResult& result) {
   ordered_json out = ordered_json::array();
   for (const Explanation& e : result.rejected) {
     ordered_json one = rivalJson(e);
-    one["reason"] =
-        result.effects.empty() ? "not significant against noise" : "explains less than the selected effect";
+    one["reason"] = e.spoils                     ? "makes the held-out error of a channel worse"
+                    : e.gain <= result.threshold ? "gains no more than noise would"
+                                                 : "explains less than the selected effect";
     out.push_back(one);
   }
   return out;
@@ -125,12 +128,15 @@ std::string effectLine(const TracedEffect& effect) {
                   part.only_column.empty() ? "" : ", only for the value " + part.only_value);
   if (const EffectForm* form = findEffect(part.name)) {
     line += fmt::format("\n    {}   [{}]", form->formula, form->source);
+    const std::vector<std::string> bounds = atBounds(part);
     std::size_t at = 0;
     for (std::size_t k = 0; k < form->parameters.size(); ++k) {
       const EffectParameter& p = form->parameters[k];
       if (!p.fitted) continue;
-      line += fmt::format("\n    {} = {:.4g} +- {:.2g} [{}]", p.name, part.parameters[k],
-                          at < effect.parameter_std.size() ? effect.parameter_std[at] : 0.0, p.unit);
+      const bool bound = std::find(bounds.begin(), bounds.end(), p.name) != bounds.end();
+      line += fmt::format("\n    {} = {:.4g} +- {:.2g} [{}]{}", p.name, part.parameters[k],
+                          at < effect.parameter_std.size() ? effect.parameter_std[at] : 0.0, p.unit,
+                          bound ? ", at its bound" : "");
       ++at;
     }
   } else {
@@ -140,17 +146,23 @@ std::string effectLine(const TracedEffect& effect) {
   }
   line += fmt::format(
       "\n"
-      "    p = {:.2g}, log-likelihood gain {:.1f}",
-      effect.p_value, 0.5 * effect.chosen.chi2_gain);
+      "    {}, log-likelihood gain {:.1f}",
+      "p " + pText(effect.p_value), 0.5 * effect.chosen.chi2_gain);
   for (const Explanation& e : effect.alternatives)
     line += fmt::format(
         "\n"
         "    alternative: {} ({}), log-likelihood lower by {:.1f}",
-        e.candidate.parts.front().name, e.candidate.covariate(), effect.chosen.score - e.score);
+        e.candidate.parts.front().name, e.candidate.covariate(), effect.chosen.gain - e.gain);
   return line + "\n";
 }
 
 }  // namespace
+
+std::string pText(double p) {
+  const double least = 1.0 / (TraceOptions{}.draws + 1.0);
+  if (p <= least * (1.0 + 1e-9)) return fmt::format("< {:.2g}", std::max(0.001, 1.01 * least));
+  return fmt::format("= {:.2g}", p);
+}
 
 const std::string& covariateOf(const Effect& effect) {
   return effect.only_column.empty() ? effect.covariate : effect.only_column;
@@ -219,6 +231,20 @@ ordered_json heldOutJson(const TraceStory& story) {
   return out;
 }
 
+ordered_json answerJson(const TraceResult& result) {
+  const Answer a = answerOf(result);
+  ordered_json moved = ordered_json::array();
+  for (const MovedParameter& p : movedSoil(result))
+    moved.push_back({{"name", p.name},
+                     {"value", p.value},
+                     {"prior", p.prior},
+                     {"prior_std", p.prior_std},
+                     {"standard_deviations", p.away()}});
+  return {{"channel", name(a.channel)},    {"rmse", a.rest},         {"noise_floor", a.floor},
+          {"varies_with", a.column},       {"gain", a.gain},         {"threshold", result.threshold},
+          {"rows_that_decide", a.measure}, {"soil_off_prior", moved}};
+}
+
 ordered_json beyondAxleJson(const TraceStory& story) {
   if (story.beyond_axle == 0) return {{"rows", 0}};
   return {{"rows", story.beyond_axle}, {"refined_rmse", errorsJson(story.beyond_axle_rmse)}};
@@ -231,14 +257,18 @@ ordered_json traceJson(const TraceStory& story) {
   ordered_json effects = ordered_json::array();
   for (const TracedEffect& e : r.effects) effects.push_back(effectJson(story, e));
   ordered_json tests = ordered_json::array();
-  for (std::size_t k = 0; k < r.first_tests.size() && k < 12; ++k) {
-    const CovariateTest& t = r.first_tests[k];
-    tests.push_back({{"what", t.covariate},
-                     {"channel", t.channel < 0 ? "all" : name(static_cast<Channel>(t.channel))},
-                     {"z", t.z},
-                     {"p_value", t.p_value}});
+  for (std::size_t k = 0; k < r.first_promises.size() && k < 12; ++k) {
+    const Promise& p = r.first_promises[k];
+    const Effect& front = p.candidate.parts.front();
+    tests.push_back({{"what", front.name},
+                     {"covariate", p.candidate.covariate()},
+                     {"channel", name(front.channel)},
+                     {"gain", p.gain},
+                     {"p_value", p.p_value}});
   }
-  return {{"base", {{"rmse", errorsJson(r.base_rmse)}}},
+  return {{"verdict", name(answerOf(r).verdict)},
+          {"answer", answerJson(r)},
+          {"base", {{"rmse", errorsJson(r.base_rmse)}}},
           {"effects", effects},
           {"rejected", rejectedJson(r)},
           {"refined", {{"rmse", errorsJson(r.refined_rmse)}}},
@@ -262,11 +292,34 @@ std::string beyondAxleText(const TraceStory& story) {
       story.beyond_axle, errors);
 }
 
+std::string verdictText(const TraceResult& result) {
+  const Answer a = answerOf(result);
+  const std::string rest =
+      fmt::format("rms of {} {:.4f}, of the sensors alone {:.4f}", name(a.channel), a.rest, a.floor);
+  if (a.verdict == Verdict::NothingMissing)
+    return "nothing missing: the residuals are consistent with noise; " + rest;
+  if (a.verdict == Verdict::Explained)
+    return fmt::format("explained by {} effect{}: {}", result.effects.size(),
+                       result.effects.size() == 1 ? "" : "s", rest);
+  const std::string where =
+      a.column.empty() ? "it follows no column" : fmt::format("it varies most with {}", a.column);
+  return fmt::format("unexplained: {}; {} (gain {:.1f} of {:.1f} that would be evidence); {} would decide",
+                     rest, where, a.gain, result.threshold, a.measure);
+}
+
+std::string movedText(const MovedParameter& p) {
+  return fmt::format(
+      "warning: {} of the soil is fitted {:.1f} standard deviations from its prior ({:.4g}, prior {:.4g} +- "
+      "{:.2g})",
+      p.name, p.away(), p.value, p.prior, p.prior_std);
+}
+
 std::string traceText(const TraceStory& story) {
   const TraceResult& r = story.result;
   std::string out =
+      verdictText(r) + "\n" +
       fmt::format("{}: {} rows used, {} rejected\n", story.source, r.trial.rows(), story.rows_rejected);
-  if (r.effects.empty()) out += "no effect found: the residuals are consistent with noise\n";
+  for (const MovedParameter& p : movedSoil(r)) out += movedText(p) + "\n";
   for (const TracedEffect& e : r.effects) out += effectLine(e);
   for (const HeldOut& held : story.held_out) {
     out += fmt::format(

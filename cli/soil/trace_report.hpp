@@ -7,6 +7,7 @@
 #include <talus/terramech/trace/held_out.hpp>
 #include <talus/terramech/trace/model_validity.hpp>
 #include <talus/terramech/trace/residual_trace.hpp>
+#include <talus/terramech/trace/verdict.hpp>
 
 namespace talus::cli {
 
@@ -28,11 +29,20 @@ std::vector<std::string> confounded(const terramech::Trial& trial, const std::st
 /// The column that explains an effect: of one on a single group of rows, the column of the group.
 const std::string& covariateOf(const terramech::Effect& effect);
 
+/// A p-value as text: below 0.001, and below what the drawn tables can tell, as a bound.
+std::string pText(double p);
+
 /// The measurement that would discriminate between an effect and its closest alternative.
 std::string separatingMeasurement(const terramech::Trial& trial, const terramech::TracedEffect& effect);
 
 /// One line about the rows left out because the wheel is sunk to its axle; there must be some.
 std::string beyondAxleText(const TraceStory& story);
+
+/// The answer in one line: what is left, in which channel, over which column, which rows would decide.
+std::string verdictText(const terramech::TraceResult& result);
+
+/// One line about a parameter of the soil far from its prior.
+std::string movedText(const terramech::MovedParameter& parameter);
 
 nlohmann::ordered_json traceJson(const TraceStory& story);
 std::string traceText(const TraceStory& story);

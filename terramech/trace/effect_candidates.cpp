@@ -1,9 +1,8 @@
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <numbers>
 #include <set>
 
-#include <talus/terramech/trace/covariate_tests.hpp>
 #include <talus/terramech/trace/effect_candidates.hpp>
 #include <talus/terramech/trace/spline_basis.hpp>
 
@@ -176,6 +175,11 @@ std::vector<std::string> driftColumns(const Collector& c, const std::vector<std:
 }
 
 void drift(Collector& to, const EffectForm& form) {
+  if (form.parameters.size() == 5 && to.varies("heading_rad"))  // once and twice a turn
+    for (double period : {1.0, 0.5})
+      for (double phase : {0.0, 1.57})
+        to.add(form, "heading_rad",
+               {{"start", 0.0}, {"span", 2.0 * std::numbers::pi}, {"period", period}, {"phase", phase}});
   for (const std::string& column : driftColumns(to, to.covariates())) {
     const Extent x = to.extent(column);
     const double span = x.high - x.low;
@@ -241,6 +245,9 @@ std::vector<Candidate> libraryCandidates(const Trial& trial, const Eigen::Vector
 
 namespace {
 
+constexpr Channel kChannelOrder[] = {Channel::DrawbarPull, Channel::Sinkage, Channel::Torque,
+                                     Channel::SideForce};
+
 Effect flatCurve(const char* name, const std::string& covariate, Channel channel,
                  const std::vector<double>& knots) {
   Effect curve;
@@ -252,21 +259,66 @@ Effect flatCurve(const char* name, const std::string& covariate, Channel channel
   return curve;
 }
 
+/// A curve in each channel alone, and through stiffness and strength.
+std::vector<Effect> curvesOf(const Trial& trial, const std::string& covariate,
+                             const std::vector<double>& knots) {
+  std::vector<Effect> all;
+  for (const Channel channel : kChannelOrder)
+    if (trial.has(channel) && !(covariate == "sinkage_m" && channel == Channel::Sinkage))
+      all.push_back(flatCurve("empirical", covariate, channel, knots));
+  if (covariate == "sinkage_m" || covariate == "slip_angle_rad") return all;
+  all.push_back(flatCurve("empirical_stiffness", covariate, Channel::Sinkage, knots));
+  all.push_back(flatCurve("empirical_strength", covariate, Channel::DrawbarPull, knots));
+  return all;
+}
+
 void addCurves(const Trial& trial, const std::string& covariate, const std::vector<double>& knots,
                std::vector<Candidate>& all) {
-  const auto count = static_cast<int>(knots.size());
-  Candidate channels{{}, "empirical", 0};
-  for (int c = 0; c < kChannels; ++c) {
-    const auto channel = static_cast<Channel>(c);
-    if (!trial.has(channel) || (covariate == "sinkage_m" && channel == Channel::Sinkage)) continue;
-    channels.parts.push_back(flatCurve("empirical", covariate, channel, knots));
-    channels.parameters += count;
+  for (Effect& curve : curvesOf(trial, covariate, knots))
+    all.push_back({{std::move(curve)}, "empirical", static_cast<int>(knots.size())});
+}
+
+/// Where a step may lie: up to nine gaps between values, at even shares of the rows, each the widest within a
+/// twentieth of them.
+std::vector<std::vector<double>> stepsOf(const Eigen::VectorXd& x) {
+  const std::vector<double> v = finite(x);
+  const int rows = static_cast<int>(v.size());
+  std::set<std::pair<double, double>> gaps;
+  for (int k = 1; k < 10 && rows > 20; ++k) {
+    const int middle = k * rows / 10, reach = std::max(1, rows / 20);
+    int widest = middle;
+    for (int i = std::max(1, middle - reach); i <= std::min(rows - 1, middle + reach); ++i) {
+      const auto width = [&](int j) {
+        return v[static_cast<std::size_t>(j)] - v[static_cast<std::size_t>(j - 1)];
+      };
+      if (width(i) > width(widest)) widest = i;
+    }
+    const double low = v[static_cast<std::size_t>(widest - 1)], high = v[static_cast<std::size_t>(widest)];
+    if (high > low) gaps.insert({low, high});
   }
-  if (!channels.parts.empty()) all.push_back(std::move(channels));
-  if (covariate == "sinkage_m" || covariate == "slip_angle_rad") return;
-  all.push_back({{flatCurve("empirical_stiffness", covariate, Channel::Sinkage, knots)}, "empirical", count});
-  all.push_back(
-      {{flatCurve("empirical_strength", covariate, Channel::DrawbarPull, knots)}, "empirical", count});
+  std::vector<std::vector<double>> knots;
+  for (const auto& [low, high] : gaps) knots.push_back({low, high});
+  return knots;
+}
+
+bool isOwnColumn(const std::string& name) {
+  const auto& known = stateColumns();
+  return std::find(known.begin(), known.end(), name) == known.end();
+}
+
+/// A constant for each group of a text column.
+void addGroups(const Trial& trial, const std::string& column, std::vector<Candidate>& all) {
+  std::set<std::string> labels;
+  for (const WheelState& s : trial.states) labels.emplace(s.label(column));
+  for (const Effect& shape : curvesOf(trial, "slip", {0.0})) {
+    Candidate levels{{}, "empirical", static_cast<int>(labels.size())};
+    for (const std::string& label : labels) {
+      levels.parts.push_back(shape);
+      levels.parts.back().only_column = column;
+      levels.parts.back().only_value = label;
+    }
+    all.push_back(std::move(levels));
+  }
 }
 
 }  // namespace
@@ -279,13 +331,17 @@ std::vector<Candidate> empiricalCandidates(const Trial& trial, const Eigen::Vect
     if (isTwin(trial, name)) continue;
     const Eigen::VectorXd x = covariateValues(trial, name, sinkage_m);
     std::size_t coarser = 1;
-    for (int most : {5, std::clamp(trial.rows() / 10, 5, 9)}) {
+    for (int most : {2, 4, 7}) {
       const auto knots = quantileKnots(x, most);
-      if (knots.size() <= coarser) continue;
+      if (knots.size() <= coarser || 4 * static_cast<int>(knots.size()) > trial.rows()) continue;
       coarser = knots.size();
       addCurves(trial, name, knots, all);
     }
+    if (name == "time_s" || name == "heading_rad" || isOwnColumn(name))
+      for (const auto& knots : stepsOf(x))
+        if (coarser > 2) addCurves(trial, name, knots, all);
   }
+  for (const std::string& column : trial.groupings) addGroups(trial, column, all);
   return all;
 }
 

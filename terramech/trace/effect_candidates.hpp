@@ -17,14 +17,20 @@ struct Candidate {
   int parameters = 0;         ///< fitted numbers
 
   bool empirical() const { return parts.front().empirical(); }
-  const std::string& covariate() const { return parts.front().covariate; }
+  /// The column that explains: of what acts on one group of rows, the column of the group.
+  const std::string& covariate() const {
+    const Effect& front = parts.front();
+    return front.only_column.empty() ? front.covariate : front.only_column;
+  }
 };
 
 /// Every effect of the library that the columns of a trial allow, at its typical size, with starts where it
 /// is nonlinear; sensor effects also for one group of a text column. `sinkage_m` is the model's.
 std::vector<Candidate> libraryCandidates(const Trial& trial, const Eigen::VectorXd& sinkage_m);
 
-/// For every covariate a flat curve in each measured channel, and for every group a constant.
+/// Flat curves of every covariate in each measured channel alone, through stiffness and through strength: a line,
+/// splines of 4 and 7 knots; of time, heading and columns of one's own steps; of text columns a constant for each
+/// group.
 std::vector<Candidate> empiricalCandidates(const Trial& trial, const Eigen::VectorXd& sinkage_m);
 
 }  // namespace talus::terramech

@@ -87,7 +87,8 @@ Whitening whiteningOf(const RefinedModel& model, const TraceResult& result) {
   SolvedContacts solved;
   Whitening all = whitening(result.trial, predictRows(model, result.trial, solved),
                             inputSlopes(model, result.trial, solved), model.noise);
-  all.share(result.units.unit, result.units.left);
+  all.unit = result.unit;
+  all.run = result.run;
   return all;
 }
 

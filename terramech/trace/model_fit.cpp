@@ -25,6 +25,10 @@ bool isLogStiffness(const FittedParameter& p) {
          std::string_view(soilParameters()[static_cast<std::size_t>(p.index)].name) == "log_stiffness";
 }
 
+double modulusOf(const Soil& soil) {
+  return soil.cohesive_modulus + soil.frictional_modulus;
+}
+
 /// A point of the search: the model, its whitened residuals and how far priors are left.
 class FitPoint {
  public:
@@ -36,7 +40,9 @@ class FitPoint {
         solved_(solved),
         model_(start),
         log_stiffness_(0.0),
-        residual_(residualOf(start, solved)) {}
+        residual_(residualOf(start, solved)) {
+    for (std::size_t k = 0; k < plan.free.size(); ++k) prior_.push_back(terramech::priorOf(start, plan, k));
+  }
 
   double chi2() const { return residual_.squaredNorm(); }
   double priorChi2() const { return priorResidual(model_, log_stiffness_).squaredNorm(); }
@@ -120,16 +126,8 @@ class FitPoint {
     return rangeOf(model_, plan_.free[static_cast<std::size_t>(k)]).scale;
   }
 
-  std::optional<Estimate> priorOf(Eigen::Index k) const {
-    const auto& p = plan_.free[static_cast<std::size_t>(k)];
-    // A knot without rows near it would be anything.
-    if (p.effect >= 0 && model_.effects[static_cast<std::size_t>(p.effect)].empirical())
-      return Estimate{0.0, 0.3};
-    if (p.effect >= 0 && p.index > 0) return {};
-    const auto& priors = p.effect >= 0 ? plan_.effect_prior : plan_.soil_prior;
-    const auto found = priors.find(p.effect >= 0 ? p.effect : p.index);
-    return found == priors.end() ? std::nullopt : std::optional(found->second);
-  }
+  // As where the search began: a step of log_stiffness counts from there.
+  std::optional<Estimate> priorOf(Eigen::Index k) const { return prior_[static_cast<std::size_t>(k)]; }
 
   bool leavesBound(Eigen::Index k, double step) const {
     const auto& p = plan_.free[static_cast<std::size_t>(k)];
@@ -163,9 +161,25 @@ class FitPoint {
   RefinedModel model_;
   double log_stiffness_;
   Eigen::VectorXd residual_;
+  std::vector<std::optional<Estimate>> prior_;
 };
 
 }  // namespace
+
+std::optional<Estimate> priorOf(const RefinedModel& model, const FitPlan& plan, std::size_t k) {
+  const FittedParameter& p = plan.free[k];
+  // A knot without rows near it would be anything.
+  if (p.effect >= 0 && model.effects[static_cast<std::size_t>(p.effect)].empirical())
+    return Estimate{0.0, 0.3};
+  if (p.effect >= 0 && p.index > 0) return {};
+  const auto& priors = p.effect >= 0 ? plan.effect_prior : plan.soil_prior;
+  const auto found = priors.find(p.effect >= 0 ? p.effect : p.index);
+  if (found == priors.end()) return {};
+  Estimate prior = found->second;
+  if (isLogStiffness(p) && plan.prior_modulus)
+    prior.value -= std::log(modulusOf(model.soil) / *plan.prior_modulus);
+  return prior;
+}
 
 FitPlan fitPlan(const RefinedModel& model, bool fit_soil) {
   FitPlan plan;

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,8 @@ struct FitPlan {
   /// By index into soilParameters(), in the parameter's unit (a step from the start for log_stiffness).
   std::map<int, Estimate> soil_prior;
   std::map<int, Estimate> effect_prior;  ///< by number of an effect, of its first parameter
+  /// k_c + k_phi that log_stiffness is counted from; without it, that of the model at the start.
+  std::optional<double> prior_modulus;
   int iterations = 12;
   /// whitened, kept for all iterations; null: taken anew in each.
   const Eigen::MatrixXd* derivative = nullptr;
@@ -35,6 +38,10 @@ struct Fit {
 /// Levenberg-Marquardt on whitened residuals inside the parameters' bounds. `solved` as predictRows().
 Fit fitModel(const RefinedModel& start, const Trial& trial, const Whitening& whitening, const FitPlan& plan,
              SolvedContacts& solved);
+
+/// What is known beforehand of free parameter `k` of a plan, in its own unit; of log_stiffness the step from
+/// where the model stands.
+std::optional<Estimate> priorOf(const RefinedModel& model, const FitPlan& plan, std::size_t k);
 
 /// Covariance of the free parameters [own units] about a model that was fitted.
 Eigen::MatrixXd parameterCovariance(const RefinedModel& fitted, const Trial& trial,

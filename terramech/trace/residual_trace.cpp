@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include <talus/terramech/mobility/rut.hpp>
 #include <talus/terramech/trace/closure_offset.hpp>
@@ -8,51 +9,6 @@
 
 namespace talus::terramech {
 namespace {
-
-/// Above this p-value known forms are taken to have left nothing.
-constexpr double kDoubt = 0.05;
-
-double smallest(const std::vector<CovariateTest>& tests) {
-  double p = 1.0;
-  for (const CovariateTest& t : tests) p = std::min(p, t.p_value);
-  return p;
-}
-
-/// The family-wise p-value of the questions that the chosen effect answers.
-double pValueOf(const std::vector<CovariateTest>& tests, const Candidate& chosen) {
-  double p = 1.0;
-  for (const CovariateTest& t : tests)
-    if (t.channel < 0 ? t.covariate == chosen.parts.front().name : t.covariate == chosen.covariate())
-      p = std::min(p, t.p_value);
-  return p;
-}
-
-bool hasCurve(const Candidate& candidate) {
-  return std::any_of(candidate.parts.begin(), candidate.parts.end(),
-                     [](const Effect& e) { return e.empirical(); });
-}
-
-/// A curve in slip or load, which are measured with errors of their own; or in a speed where both speeds are
-/// at hand, since together they tell the error of the slip.
-bool inNoisyInput(const Explanation& e, const Trial& trial) {
-  const std::string& covariate = e.candidate.covariate();
-  const auto& known = trial.covariates;
-  const auto has = [&](const char* name) {
-    return std::find(known.begin(), known.end(), name) != known.end();
-  };
-  const bool speed = covariate == "speed_mps" || covariate == "rim_speed_mps";
-  const bool tells_slip = speed && has("speed_mps") && has("rim_speed_mps");
-  return e.candidate.empirical() && (covariate == "slip" || covariate == "load_N" || tells_slip);
-}
-
-/// Whether a further effect carries a share of the residual worth a name: what the form of the first leaves
-/// over is often certain and tiny. A curve must carry more than a known form, and one in a noisy input more
-/// again, since its own errors, where they are not as normal as supposed, look like one. The shares come from
-/// worlds made for development.
-bool matters(const Explanation& e, const Trial& trial) {
-  const auto values = static_cast<double>(trial.measured.array().isFinite().count());
-  return e.chi2_gain > (inNoisyInput(e, trial) ? 0.5 : hasCurve(e.candidate) ? 0.1 : 0.06) * values;
-}
 
 Channel strongest(const Explanation& e) {
   const auto most = std::max_element(e.by_channel.begin(), e.by_channel.end());
@@ -72,46 +28,11 @@ TracedEffect traced(const std::vector<Explanation>& ranked, std::size_t best, do
   effect.p_value = p_value;
   for (const Explanation& e : ranked) {
     const auto like = [&e](const Explanation& other) { return same(e.candidate, other.candidate); };
-    if (e.score > ranked[best].score - 6.0 && effect.alternatives.size() < 6 && !like(effect.chosen) &&
+    if (e.gain > ranked[best].gain - kClose && effect.alternatives.size() < 6 && !like(effect.chosen) &&
         std::none_of(effect.alternatives.begin(), effect.alternatives.end(), like))
       effect.alternatives.push_back(e);
   }
   return effect;
-}
-
-/// How often something is tried again whose cost grows with rows and parameters: four times and more in small
-/// tables, once in large ones, so that 700 rows take no more than a few times what 200 do.
-int attempts(const TraceSearch& search) {
-  return static_cast<int>(std::clamp(16'000.0 / search.work(), 1.0, 6.0));
-}
-
-/// Looks at every effect again, the newest first, until none is better replaced.
-void reconsider(TraceSearch& search, std::vector<TracedEffect>& effects, std::size_t pinned) {
-  int replacements = 0;
-  const int most = std::min(4, attempts(search));
-  for (std::size_t looked = 0; looked + pinned < effects.size();) {
-    const std::size_t k = effects.size() - 1 - looked;
-    const auto ranked = search.rivals(k);
-    const auto best = search.choose(ranked);
-    ++looked;
-    if (!best) {  // the others, fitted again, leave nothing for it
-      search.drop(k);
-      effects.erase(effects.begin() + static_cast<long>(k));
-      looked = 0;
-      if (++replacements > most) return;
-      continue;
-    }
-    TracedEffect again = traced(ranked, *best, effects[k].p_value);
-    if (same(ranked[*best].candidate, effects[k].chosen.candidate)) {
-      effects[k] = again;
-      continue;
-    }
-    if (++replacements > most) return;
-    search.replace(k, ranked[*best].candidate);
-    effects.erase(effects.begin() + static_cast<long>(k));
-    effects.push_back(again);
-    looked = 0;
-  }
 }
 
 /// Puts in the offset of a force sensor that its group's own torque and sinkage betray; a soil fitted to all
@@ -136,122 +57,94 @@ bool correctOffset(TraceSearch& search, const Trial& trial, std::uint64_t seed,
   return true;
 }
 
-/// One order in which effects were taken in.
+/// Effects as they were taken in.
 struct Path {
   TraceSearch search;
-  std::vector<TracedEffect> effects;
-  std::vector<Explanation> rejected;
-  std::vector<CovariateTest> first_tests, last_tests{};
+  std::vector<TracedEffect> effects{};
+  std::vector<Explanation> rejected{};
+  std::vector<Promise> first{}, last{};
+  double threshold = 0.0;
   std::size_t pinned = 0;  ///< effects at the front that stay
-  int barren = 0;          ///< times that an effect came and another went
 };
 
-/// Takes in what explains the residuals best until nothing is left to explain.
-void grow(Path& path, const Trial& trial, const TraceOptions& options, const ProgressMonitor& watch) {
-  while (!watch.stopped()) {
-    const auto count = static_cast<int>(path.effects.size());
-    watch.report(count / (options.max_effects + 1.0));
-    auto screened = path.search.screen();
-    const auto tests = path.search.test(screened);
-    if (path.first_tests.empty()) path.first_tests = tests;
-    path.last_tests = tests;
-    if (smallest(tests) > options.significance || count >= options.max_effects) break;
-    // Only what answers a question that noise does not.
-    const auto answers = [&](const auto& e) { return pValueOf(tests, e.candidate) <= options.significance; };
-    std::stable_partition(screened.begin(), screened.end(), answers);
-    auto ranked = path.search.fitBest(screened);
-    const auto rest = std::stable_partition(ranked.begin(), ranked.end(), answers);
-    auto best = path.search.choose({ranked.begin(), rest});
-    if (!best && count > 0) best = path.search.choose(ranked);  // what is left mixes with what is in
-    const bool further = !path.effects.empty() || (best && inNoisyInput(ranked[*best], trial));
-    if (best && further && !matters(ranked[*best], trial)) best.reset();
-    path.rejected = ranked;
-    if (!best) break;
-    path.rejected.erase(path.rejected.begin() + static_cast<long>(*best));
-    path.search.accept(ranked[*best].candidate);
-    path.effects.push_back(traced(ranked, *best, pValueOf(tests, ranked[*best].candidate)));
-    reconsider(path.search, path.effects, path.pinned);
-    if (static_cast<int>(path.effects.size()) <= count && ++path.barren > 2) break;
-  }
+void take(Path& path, const std::vector<Explanation>& ranked, std::size_t best, double p_value) {
+  path.search.accept(ranked[best].candidate);
+  path.effects.push_back(traced(ranked, best, p_value));
+  TracedEffect& taken = path.effects.back();
+  if (taken.chosen.candidate.parts.size() < 2) return;
+  path.search.thin(path.effects.size() - 1);
+  taken.chosen.candidate.parts = path.search.parts(path.effects.size() - 1);
 }
 
-/// Whether a pair of known forms is the better account. Known forms are believed before a curve; in place of
-/// known forms it must say more, and one more of them must carry what a further effect must.
-bool isBetter(const Explanation& pair, const Explanation& present, std::size_t members, const Trial& trial) {
-  if (pair.score < 2.0 || pair.in_sample < 2.0 || pair.spoils) return false;
-  if (hasCurve(present.candidate)) return pair.score > present.score;
-  Explanation further = pair;
-  further.chi2_gain -= present.chi2_gain;
-  return pair.score > present.score + 2.0 && (members > 1 || matters(further, trial));
-}
-
-/// Effects, and twos of them, for which a pair of known forms might stand: those with a curve, or any where
-/// the last tests leave a doubt. Forms that came in together stay.
-std::vector<std::vector<std::size_t>> replaceable(const Path& path) {
-  const bool doubt = smallest(path.last_tests) <= kDoubt;
-  std::vector<std::size_t> open;
-  for (std::size_t k = path.pinned; k < path.effects.size(); ++k) {
-    const Candidate& c = path.effects[k].chosen.candidate;
-    if (c.empirical() || c.parts.size() == 1) open.push_back(k);
-  }
-  const auto curve = [&](std::size_t k) { return hasCurve(path.effects[k].chosen.candidate); };
-  std::vector<std::vector<std::size_t>> choices;
-  for (const std::size_t k : open)
-    if (doubt || curve(k)) choices.push_back({k});
-  for (std::size_t i = 0; open.size() == 2 && i < open.size(); ++i)
-    for (std::size_t j = 0; j < i; ++j)
-      if (doubt || curve(open[i]) || curve(open[j])) choices.push_back({open[j], open[i]});
-  return choices;
-}
-
-/// Tries two known forms in place of effects; true when something was replaced.
-bool reconsiderPairs(Path& path, const Trial& trial) {
-  int left = attempts(path.search);
-  for (const auto& members : replaceable(path)) {
-    if (left-- == 0) return false;
-    Explanation present;
-    const auto ranked = path.search.pairsInPlaceOf(members, present);
-    const auto better = std::find_if(ranked.begin(), ranked.end(), [&](const Explanation& e) {
-      return isBetter(e, present, members.size(), trial);
-    });
-    if (better == ranked.end()) continue;
-    path.search.replaceByPair(members, better->candidate);
-    const double p_value = path.effects[members.front()].p_value;
-    for (auto k = members.rbegin(); k != members.rend(); ++k)
-      path.effects.erase(path.effects.begin() + static_cast<long>(*k));
-    for (const Effect& part : better->candidate.parts) {
-      TracedEffect effect;
-      effect.chosen = *better;
-      effect.chosen.candidate = {{part}, findEffect(part.name)->family, 0};
-      effect.p_value = p_value;
-      path.effects.push_back(effect);
-    }
-    return true;
-  }
-  return false;
-}
-
-double least(const Trial& trial) {
-  return 0.1 * static_cast<double>(trial.measured.array().isFinite().count());
-}
-
-/// Takes out, last first, what beside the others carries nothing that matters; of forms that came together
-/// each for itself.
-void prune(Path& path, const Trial& trial) {
-  for (std::size_t k = path.pinned; k < path.effects.size(); ++k) {
-    Candidate& chosen = path.effects[k].chosen.candidate;
-    if (chosen.empirical() || chosen.parts.size() == 1) continue;
-    path.search.thin(k, least(trial));
-    chosen.parts = path.search.parts(k);
-  }
-  for (std::size_t k = path.effects.size(); k-- > path.pinned && path.effects.size() > 1;) {
+/// Looks at the earlier effects again once another is in: each gives way to what explains clearly more beside
+/// the others.
+void reconsider(Path& path) {
+  for (std::size_t k = path.pinned; k + 1 < path.effects.size(); ++k) {
     TraceSearch without = path.search;
-    const double before = without.chi2();
     without.leaveOut(k);
-    Explanation gain = path.effects[k].chosen;
-    gain.chi2_gain = without.chi2() - before;
-    if (matters(gain, trial)) continue;
-    path.search.drop(k);
+    const auto ranked = without.fitBest(without.screen(0).promises);
+    const auto best = choose(ranked, 0.0);
+    if (!best || same(ranked[*best].candidate, path.effects[k].chosen.candidate)) continue;
+    if (ranked[*best].gain < path.search.gainOf(k) + kClose) continue;
+    const double p_value = path.effects[k].p_value;
+    path.search.leaveOut(k);
+    path.effects.erase(path.effects.begin() + static_cast<long>(k));
+    take(path, ranked, *best, p_value);
+    return;
+  }
+}
+
+/// Takes in what explains the residuals best until nothing gains more than noise would.
+void grow(Path& path, const TraceOptions& options, const std::function<bool(double)>& go_on) {
+  while (go_on(0.0) && static_cast<int>(path.effects.size()) <= options.max_effects) {
+    const auto screening = path.search.screen(options.draws);
+    if (path.first.empty()) path.first = screening.promises;
+    path.last = screening.promises;
+    path.threshold = screening.threshold;
+    path.rejected = path.search.fitBest(screening.promises);
+    const auto best = choose(path.rejected, screening.threshold);
+    if (!best) return;
+    take(path, path.rejected, *best, screening.noise.pValue(path.rejected[*best].gain));
+    path.rejected.erase(path.rejected.begin() + static_cast<long>(*best));
+    reconsider(path);
+  }
+}
+
+/// Tries two in place of the one or two that were found: one may stand for both. Two for one must gain more than
+/// one more would under noise; two for two clearly more.
+void reconsiderPair(Path& path) {
+  const std::size_t found = path.effects.size() - path.pinned;
+  if (found < 1 || found > 2) return;
+  TraceSearch without = path.search;
+  Candidate present;
+  for (std::size_t k = path.effects.size(); k-- > path.pinned;) {
+    for (const Effect& part : path.search.parts(k)) present.parts.push_back(part);
+    without.leaveOut(k);
+  }
+  const auto ranked = without.pairs();
+  const auto best = choose(ranked, 0.0);
+  if (!best) return;
+  const double margin = found == 1 ? std::max(path.threshold, kClose) : kClose;
+  if (ranked[*best].gain < without.fitted(present).gain + margin) return;
+  const double p_value = path.effects.back().p_value;
+  for (std::size_t k = path.effects.size(); k-- > path.pinned;) {
+    path.search.leaveOut(k);
+    path.effects.pop_back();
+  }
+  for (const Effect& part : ranked[*best].candidate.parts) {
+    Explanation one = ranked[*best];
+    const EffectForm* form = findEffect(part.name);
+    one.candidate = {{part}, form ? form->family : "empirical", static_cast<int>(part.parameters.size())};
+    take(path, {one}, 0, p_value);
+  }
+}
+
+/// Takes out, last first, what beside the others gains no more than noise would.
+void check(Path& path) {
+  for (std::size_t k = path.effects.size(); k-- > path.pinned;) {
+    if (path.search.gainOf(k) > path.threshold) continue;
+    path.search.leaveOut(k);
+    path.search.settleAll();
     path.effects.erase(path.effects.begin() + static_cast<long>(k));
   }
 }
@@ -303,28 +196,36 @@ RefinedModel asDriven(RefinedModel model, const Trial& trial) {
 
 }  // namespace
 
+std::optional<std::size_t> choose(const std::vector<Explanation>& ranked, double threshold) {
+  for (std::size_t k = 0; k < ranked.size(); ++k)
+    if (ranked[k].gain > threshold && !ranked[k].spoils) return k;
+  return {};
+}
+
 TraceResult traceResiduals(const RefinedModel& base, const Trial& trial, const TraceOptions& options,
                            const ProgressMonitor& watch) {
-  Path best{TraceSearch{asDriven(base, trial), trial, options}, {}, {}, {}};
+  double done = 0.0;
+  const auto go_on = [&](double share) {
+    done = std::max(done, 0.95 * share);
+    watch.report(done);
+    return !watch.stopped();
+  };
+  Path path{TraceSearch{asDriven(base, trial), trial, options, go_on}};
   TraceResult result;
-  result.base = best.search.model();
+  result.given = base.soil;
+  result.base = path.search.model();
   if (options.fit_soil && trial.moment.empty())
-    best.pinned = correctOffset(best.search, trial, options.seed, best.effects) ? 1 : 0;
-  grow(best, trial, options, watch);
-  for (int round = 0;
-       round < (attempts(best.search) > 2 ? 2 : 1) && !watch.stopped() && reconsiderPairs(best, trial);
-       ++round) {
-    reconsider(best.search, best.effects, best.pinned);
-    best.barren = 0;
-    grow(best, trial, options, watch);
-  }
-  prune(best, trial);
-  best.search.refineCurves();
-  result.first_tests = best.first_tests;
-  result.effects = best.effects;
-  result.rejected = best.rejected;
-  result.last_tests = best.last_tests;
-  best.search.finish(result);
+    path.pinned = correctOffset(path.search, trial, options.seed, path.effects) ? 1 : 0;
+  grow(path, options, go_on);
+  if (go_on(0.0)) reconsiderPair(path);
+  if (go_on(0.0)) check(path);
+  if (go_on(0.0)) path.search.refineCurves();
+  result.effects = path.effects;
+  result.rejected = path.rejected;
+  result.first_promises = path.first;
+  result.last_promises = path.last;
+  result.threshold = path.threshold;
+  path.search.finish(result);
   result.effects = apart(result.effects);
   watch.report(1.0);
   return result;

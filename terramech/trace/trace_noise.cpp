@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <cmath>
 
 #include <talus/terramech/trace/input_calibration.hpp>
+#include <talus/terramech/trace/run_units.hpp>
 #include <talus/terramech/trace/trace_search.hpp>
 
 namespace talus::terramech {
@@ -28,13 +30,20 @@ void TraceSearch::settle(const Eigen::MatrixXd& noise_alone, const Eigen::Matrix
 
 void TraceSearch::shareWithin(Eigen::MatrixXd smooth, const Eigen::MatrixXd& level,
                               const InputSlopes& measured_slopes) {
-  units_ = exchangeableUnits(trial_, whitening_, residual_);
-  if (!units_.unit.empty()) {  // what rows share is no noise of theirs
-    const double rows = trial_.rows(), kept = rows - units_.count();
-    smooth -= unitMeans(smooth, whitening_.std, units_.unit);
+  std::vector<std::string> timeless;
+  for (const std::string& column : trial_.covariates)
+    if (column != "time_s") timeless.push_back(column);
+  const std::vector<int> unit = runUnits(trial_, whitening_, withoutSmooth(trial_, residual_, timeless));
+  if (!unit.empty()) {  // what rows share is no noise of theirs
+    const double rows = trial_.rows(), kept = rows - (*std::max_element(unit.begin(), unit.end()) + 1);
+    smooth -= unitMeans(smooth, whitening_.std, unit);
     if (kept > 4.0) settle(std::sqrt(rows / kept) * smooth, level, measured_slopes);
   }
-  whitening_.share(units_.unit, units_.left);
+  whitening_.unit = unit;
+  if (unit.empty()) return;
+  whitening_.run = roughRunError(whitening_);
+  SolvedContacts solved = solved_;
+  whitening_.run = runErrorOf(standing(model_, residual_, solved));
 }
 
 void TraceSearch::refresh() {
@@ -51,10 +60,7 @@ void TraceSearch::refresh() {
     if (!isSeen(fitNoise(trial_, left, level, slopes, model_.stated))) smooth = left;
   }
   settle(smooth, level, slopes);
-  if (trial_.moment.empty())
-    shareWithin(smooth, level, slopes);
-  else  // what rows of a moment share is their slip's error, which the whitening takes out
-    units_ = {.unit = trial_.moment, .runs = true, .left = {}};
+  shareWithin(smooth, level, slopes);
   white_ = whitening_.apply(residual_);
 }
 

@@ -1,21 +1,17 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
+#include <set>
 
-#include <Eigen/QR>
-
+#include <talus/terramech/numerics/natural_spline.hpp>
 #include <talus/terramech/trace/input_calibration.hpp>
+#include <talus/terramech/trace/run_units.hpp>
 #include <talus/terramech/trace/spline_basis.hpp>
 #include <talus/terramech/trace/trace_search.hpp>
 
 namespace talus::terramech {
 namespace {
-
-RefinedModel with(const RefinedModel& model, const Candidate& candidate) {
-  RefinedModel grown = model;
-  for (const Effect& part : candidate.parts) grown.effects.push_back(part);
-  return grown;
-}
 
 /// Whether a form of a candidate is in the model: several forms together are tried once.
 bool shares(const RefinedModel& model, const Candidate& candidate) {
@@ -25,27 +21,41 @@ bool shares(const RefinedModel& model, const Candidate& candidate) {
   });
 }
 
-Eigen::MatrixXd off(const Eigen::MatrixXd& columns, const Eigen::MatrixXd& orthonormal_nuisance) {
-  if (orthonormal_nuisance.cols() == 0) return columns;
-  return columns - orthonormal_nuisance * (orthonormal_nuisance.transpose() * columns);
+std::string keyOf(const Effect& e) {
+  return e.name + '|' + e.covariate + '|' + (e.empirical() ? name(e.channel) : "") + '|' + e.only_value;
+}
+
+/// A column, and whether by a known form or a curve.
+std::string kindOf(const Candidate& candidate) {
+  return candidate.covariate() + (candidate.empirical() ? " curve" : " form");
 }
 
 }  // namespace
 
-double TraceSearch::work() const {
-  return trial_.rows() * (static_cast<double>(planFor(model_).free.size()) + 3.0);
-}
-
-TraceSearch::TraceSearch(const RefinedModel& base, const Trial& trial, const TraceOptions& options)
-    : options_(options), model_(base), trial_(trial), given_effects_(base.effects.size()) {
+TraceSearch::TraceSearch(const RefinedModel& base, const Trial& trial, const TraceOptions& options,
+                         std::function<bool(double)> go_on)
+    : options_(options),
+      go_on_(std::move(go_on)),
+      model_(base),
+      prior_modulus_(base.soil.cohesive_modulus + base.soil.frictional_modulus),
+      trial_(trial),
+      folds_(foldsOf(trial)),
+      given_effects_(base.effects.size()) {
   refresh();
   if (!planFor(model_).free.empty()) fitSoil();
 }
 
 FitPlan TraceSearch::planFor(const RefinedModel& model) const {
   FitPlan plan = fitPlan(model, options_.fit_soil);
+  plan.prior_modulus = prior_modulus_;
   if (first_prior_) plan.effect_prior[0] = *first_prior_;
   return plan;
+}
+
+Fit TraceSearch::fit(const RefinedModel& model, int iterations, SolvedContacts& solved) const {
+  FitPlan plan = planFor(model);
+  plan.iterations = iterations;
+  return fitModel(model, trial_, whitening_, plan, solved);
 }
 
 void TraceSearch::fitSoil() {
@@ -58,202 +68,197 @@ void TraceSearch::fitSoil() {
   const bool part = count >= 20 && count < trial_.rows();
   if (part) {
     trial_ = subset(all, straight);
+    folds_ = foldsOf(trial_);
     solved_ = {};
     refresh();
   }
-  for (int round = 0; round < 3; ++round) {
-    FitPlan plan = planFor(model_);
-    plan.iterations = 30;
-    model_ = fitModel(model_, trial_, whitening_, plan, solved_).model;
+  for (int round = 0; round < 3 && go_on_(0.0); ++round) {
+    model_ = fit(model_, 30, solved_).model;
     refresh();
   }
   if (!part) return;
   trial_ = all;
+  folds_ = foldsOf(trial_);
   solved_ = {};
   refresh();
 }
 
-Eigen::VectorXd TraceSearch::sinkages(const Eigen::MatrixXd& level) const {
-  Eigen::VectorXd z(level.rows());
+Eigen::VectorXd TraceSearch::sinkages() const {
+  Eigen::VectorXd z(level_.rows());
   for (int row = 0; row < trial_.rows(); ++row)
-    z[row] = level(row, static_cast<int>(Channel::Sinkage)) * trial_.denominator(row, Channel::Sinkage);
+    z[row] = level_(row, static_cast<int>(Channel::Sinkage)) * trial_.denominator(row, Channel::Sinkage);
   return z;
 }
 
-double TraceSearch::penalty(const Candidate& candidate) const {
-  return 0.5 * candidate.parameters * std::log(static_cast<double>(trial_.rows()));
+NullModel TraceSearch::standing(const RefinedModel& model, const Eigen::MatrixXd& residual,
+                                SolvedContacts& solved) const {
+  NullModel null{whitening_.factor,
+                 whitening_.unit,
+                 folds_,
+                 whitening_.rowByRow(residual),
+                 linearised(model, trial_, whitening_, planFor(model), solved),
+                 whitening_.run};
+  if (!by_slip_) return null;
+  // The error that all slips share is one more number, known to be 0 give or take one.
+  LinearModel& known = null.known;
+  const Eigen::Index at = known.columns.cols();
+  known.columns.conservativeResize(null.residual.size(), at + 1);
+  known.columns.col(at) =
+      whitening_.rowByRow(trial_.measured.array().isFinite().select(*by_slip_, 0.0).matrix());
+  known.prior.mean.conservativeResize(at + 1);
+  known.prior.precision.conservativeResize(at + 1);
+  known.prior.mean[at] = 0.0;
+  known.prior.precision[at] = 1.0;
+  return null;
 }
 
-Eigen::VectorXd TraceSearch::change(const RefinedModel& moved) {
+TraceSearch::Screening TraceSearch::screen(int draws) {
+  const Eigen::VectorXd sinkage_m = sinkages();
+  std::vector<Candidate> all;
+  for (Candidate& c : libraryCandidates(trial_, sinkage_m))
+    if (c.parts.size() == 1 || !shares(model_, c)) all.push_back(std::move(c));
+  for (Candidate& c : empiricalCandidates(trial_, sinkage_m)) all.push_back(std::move(c));
   SolvedContacts solved = solved_;
-  return whitening_.apply(predictRows(moved, trial_, solved) - level_);
+  const NullModel null = standing(model_, residual_, solved);
+  const ModelOnRows here{model_, trial_, whitening_, level_, sinkage_m, solved_};
+  Screening screening;
+  screening.noise =
+      gainDistribution(null, {all.size(), [&](std::size_t k) { return contenderOf(all[k], here); }}, draws,
+                       options_.seed, go_on_);
+  screening.threshold = screening.noise.threshold(options_.significance);
+  for (std::size_t k = 0; k < all.size(); ++k)
+    screening.promises.push_back(
+        {all[k], screening.noise.gain[k], screening.noise.pValue(screening.noise.gain[k])});
+  std::stable_sort(screening.promises.begin(), screening.promises.end(),
+                   [](const Promise& a, const Promise& b) { return a.gain > b.gain; });
+  return screening;
 }
 
-TraceSearch::Screened TraceSearch::screenLibrary(const Candidate& candidate,
-                                                 const Eigen::MatrixXd& nuisance) {
-  const RefinedModel grown = with(model_, candidate);
-  const Eigen::VectorXd whole = change(grown);
-  std::vector<FittedParameter> free;
-  for (std::size_t part = model_.effects.size(); part < grown.effects.size(); ++part)
-    for (const FittedParameter& p : parametersOf(grown, static_cast<int>(part))) free.push_back(p);
-  Eigen::MatrixXd columns(whole.size(), std::max<Eigen::Index>(1, static_cast<Eigen::Index>(free.size())));
-  columns.col(0) = whole;
-  for (std::size_t k = 1; k < free.size(); ++k) {
-    RefinedModel moved = grown;
-    setValue(moved, free[k], value(grown, free[k]) + 0.05 * rangeOf(grown, free[k]).scale);
-    columns.col(static_cast<Eigen::Index>(k)) = (change(moved) - whole) / 0.05;
-  }
-  Screened screened{candidate, off(columns, nuisance), 0.0};
-  const Eigen::VectorXd weights = screened.direction.colPivHouseholderQr().solve(white_);
-  double gain = (screened.direction * weights).squaredNorm();
-  if (!std::isfinite(gain)) gain = 0.0;  // a form that moves nothing has no direction
-  if (free.empty()) gain = white_.squaredNorm() - (white_ - screened.direction.col(0)).squaredNorm();
-  const EffectForm* form = findEffect(candidate.parts.front().name);
-  if (!free.empty() && form->parameters.front().low >= 0.0 && weights[0] < 0.0) gain = 0.0;
-  screened.score = 0.5 * gain - penalty(candidate) + options_.library_bonus;
-  return screened;
-}
-
-TraceSearch::Screened TraceSearch::screenSoilCurve(const Candidate& candidate,
-                                                   const Eigen::MatrixXd& nuisance) {
-  // All knots act through one number of the soil, so that one derivative by it gives every column.
-  const Effect& curve = candidate.parts.front();
-  Candidate level = candidate;
-  level.parts.front().parameters.assign(curve.knots.size(), 0.02);
-  const Eigen::VectorXd whole = change(with(model_, level)) / 0.02;
-  const Eigen::MatrixXd basis =
-      splineBasis(covariateValues(trial_, curve.covariate, sinkages(level_)), curve.knots);
-  Eigen::MatrixXd columns(whole.size(), basis.cols());
-  for (Eigen::Index row = 0; row < basis.rows(); ++row)
-    for (int c = 0; c < kChannels; ++c)
-      columns.row(row * kChannels + c) = whole[row * kChannels + c] * basis.row(row);
-  Screened screened{candidate, off(columns, nuisance), 0.0};
-  const double gain = (orthonormal(screened.direction).transpose() * white_).squaredNorm();
-  screened.score = 0.5 * gain - penalty(candidate);
-  return screened;
-}
-
-TraceSearch::Screened TraceSearch::screenCurves(const Candidate& candidate, const Eigen::MatrixXd& nuisance) {
-  if (candidate.parts.front().name != "empirical") return screenSoilCurve(candidate, nuisance);
-  Screened screened{candidate, {}, 0.0};
-  screened.candidate.parts.clear();
-  screened.candidate.parameters = 0;
-  for (const Effect& curve : candidate.parts) {
-    const auto x = covariateValues(trial_, curve.covariate, sinkages(level_));
-    const Eigen::MatrixXd basis = splineBasis(x, curve.knots);
-    Eigen::MatrixXd columns(white_.size(), basis.cols());
-    for (Eigen::Index k = 0; k < basis.cols(); ++k) {
-      Eigen::MatrixXd change = Eigen::MatrixXd::Zero(trial_.rows(), kChannels);
-      change.col(static_cast<int>(curve.channel)) = basis.col(k);
-      columns.col(k) = whitening_.apply(change);
-    }
-    columns = off(columns, nuisance);
-    const double gain = (orthonormal(columns).transpose() * white_).squaredNorm();
-    const double cost =
-        0.5 * static_cast<double>(curve.knots.size()) * std::log(static_cast<double>(trial_.rows()));
-    if (0.5 * gain < cost) continue;
-    screened.candidate.parts.push_back(curve);
-    screened.candidate.parameters += static_cast<int>(curve.knots.size());
-    const Eigen::Index at = screened.direction.cols();
-    screened.direction.conservativeResize(white_.size(), at + columns.cols());
-    screened.direction.rightCols(columns.cols()) = columns;
-  }
-  if (screened.candidate.parts.empty()) return screened;
-  const double gain = (orthonormal(screened.direction).transpose() * white_).squaredNorm();
-  screened.score = 0.5 * gain - penalty(screened.candidate);
-  return screened;
-}
-
-std::vector<TraceSearch::Screened> TraceSearch::screen() {
-  const Eigen::MatrixXd known = orthonormal(derivativeOf(model_, solved_));
-  std::vector<Screened> all;
-  for (const Candidate& c : libraryCandidates(trial_, sinkages(level_)))
-    if (c.parts.size() == 1 || !shares(model_, c)) all.push_back(screenLibrary(c, known));
-  for (const Candidate& c : empiricalCandidates(trial_, sinkages(level_))) {
-    Screened s = screenCurves(c, known);
-    if (!s.candidate.parts.empty()) all.push_back(std::move(s));
-  }
-  std::stable_sort(all.begin(), all.end(),
-                   [](const Screened& a, const Screened& b) { return a.score > b.score; });
-  return all;
-}
-
-std::vector<CovariateTest> TraceSearch::test(const std::vector<Screened>& screened) {
-  TestPlan plan;
-  plan.units = units_;
-  plan.flips = options_.flips;
-  plan.seed = options_.seed;
-  plan.nuisance_whitened = derivativeOf(model_, solved_);
-  plan.nuisance_marginal = jacobian(model_, trial_, planFor(model_).free, solved_,
-                                    [&](const Eigen::MatrixXd& m) { return whitening_.marginal(m); });
-  if (by_slip_) plan.shared_error = trial_.measured.array().isFinite().select(*by_slip_, 0.0);
-  for (const Screened& s : screened)
-    if (!s.candidate.empirical()) plan.directions.push_back({s.candidate.parts.front().name, s.direction});
-  return testCovariates(trial_, whitening_, residual_, sinkages(level_), plan);
-}
-
-std::vector<Explanation> TraceSearch::fitBest(const std::vector<Screened>& screened) {
+std::vector<Explanation> TraceSearch::fitBest(const std::vector<Promise>& promises) {
   std::vector<Explanation> ranked;
   std::map<std::string, int> tried;
-  Held rows = held();
   int library = 0, empirical = 0;
-  for (const Screened& s : screened) {
-    int& count = s.candidate.empirical() ? empirical : library;
-    const Effect& front = s.candidate.parts.front();
-    if (count >= (s.candidate.empirical() ? 3 : options_.fits) || s.score < -2.0) continue;
-    if (++tried[front.name + front.covariate + front.only_value] > 2) continue;
+  for (const Promise& p : promises) {
+    int& count = p.candidate.empirical() ? empirical : library;
+    if (p.gain <= 0.0 || !go_on_(0.0)) break;
+    if (count >= (p.candidate.empirical() ? options_.fits / 2 : options_.fits)) continue;
+    if (++tried[keyOf(p.candidate.parts.front())] > 2) continue;
     ++count;
-    ranked.push_back(fitted(s.candidate, rows));
+    ranked.push_back(fitted(p.candidate));
   }
   std::stable_sort(ranked.begin(), ranked.end(),
-                   [](const Explanation& a, const Explanation& b) { return a.score > b.score; });
+                   [](const Explanation& a, const Explanation& b) { return a.gain > b.gain; });
   return ranked;
 }
 
-Explanation TraceSearch::fitted(const Candidate& candidate, Held& held) {
-  const RefinedModel grown = with(model_, candidate);
+double TraceSearch::scoreOf(const RefinedModel& fitted) const {
   SolvedContacts solved = solved_;
-  FitPlan plan = planFor(grown);
-  plan.iterations = candidate.empirical()        ? 5
-                    : candidate.parts.size() > 2 ? 30
-                    : candidate.parts.size() > 1 ? 15
-                                                 : 10;
-  const Fit fit = fitModel(grown, trial_, whitening_, plan, solved);
+  const Eigen::MatrixXd residual = trial_.measured - predictRows(fitted, trial_, solved);
+  return fittedScore(standing(fitted, residual, solved));
+}
+
+Explanation TraceSearch::fitted(const Candidate& candidate) {
+  const RefinedModel grown = withCandidate(model_, candidate);
+  SolvedContacts solved = solved_;
+  const Fit found = fit(grown,
+                        candidate.parts.size() > 2   ? 30
+                        : candidate.parts.size() > 1 ? 15
+                                                     : 10,
+                        solved);
   Explanation e;
   e.candidate = candidate;
   for (std::size_t k = 0; k < candidate.parts.size(); ++k)
-    e.candidate.parts[k] = fit.model.effects[model_.effects.size() + k];
-  e.chi2_gain = white_.squaredNorm() - fit.chi2 - fit.prior_chi2;
-  e.in_sample =
-      0.5 * e.chi2_gain - penalty(candidate) + (candidate.empirical() ? 0.0 : options_.library_bonus);
-  judgeHeldOut(held.folds, fit.model, solved, e);
-  // What comes on top of other effects must hold between the levels, too; a first dependence is told as it
-  // is.
-  const bool further = model_.effects.size() > given_effects_;
-  if (further && candidate.empirical() && !heldLevels(candidate, held).empty()) {
-    Explanation unseen = e;
-    judgeHeldOut(heldLevels(candidate, held), fit.model, solved, unseen);
-    e.score = std::min(e.score, unseen.score);
-    e.spoils |= unseen.spoils;
-  }
-  const Eigen::VectorXd before = whitening_.marginal(residual_),
-                        after = whitening_.marginal(trial_.measured - predictRows(fit.model, trial_, solved));
-  for (Eigen::Index i = 0; i < before.size(); ++i)
-    e.by_channel[static_cast<std::size_t>(i % kChannels)] += before[i] * before[i] - after[i] * after[i];
+    e.candidate.parts[k] = found.model.effects[model_.effects.size() + k];
+  e.chi2_gain = white_.squaredNorm() - found.chi2 - found.prior_chi2;
+  const Eigen::MatrixXd left = trial_.measured - predictRows(found.model, trial_, solved);
+  SolvedContacts before_solved = solved_;
+  const NullModel before = standing(model_, residual_, before_solved),
+                  after = standing(found.model, left, solved);
+  e.gain = fittedScore(after) - fittedScore(before);
+  e.spoils = spoils(before, after);
+  const Eigen::VectorXd was = whitening_.marginal(residual_), is = whitening_.marginal(left);
+  for (Eigen::Index i = 0; i < was.size(); ++i)
+    e.by_channel[static_cast<std::size_t>(i % kChannels)] += was[i] * was[i] - is[i] * is[i];
   return e;
 }
 
-void TraceSearch::accept(const Candidate& candidate) {
-  part_count_.push_back(candidate.parts.size());
-  model_ = with(model_, candidate);
+bool TraceSearch::spoils(const NullModel& before, const NullModel& after) const {
+  const Eigen::MatrixXd was = heldOutErrors(before), is = heldOutErrors(after);
+  std::map<int, Eigen::Vector4d> change;
+  for (int row = 0; row < trial_.rows(); ++row) {
+    const auto r = static_cast<std::size_t>(row);
+    const int unit = whitening_.unit.empty() ? row : whitening_.unit[r];
+    change.try_emplace(unit, Eigen::Vector4d::Zero()).first->second +=
+        (is.row(row).cwiseAbs2() - was.row(row).cwiseAbs2()).transpose();
+  }
+  const auto n = static_cast<double>(change.size());
+  Eigen::Vector4d sum = Eigen::Vector4d::Zero(), square = sum;
+  for (const auto& [unit, c] : change) {
+    sum += c;
+    square += c.cwiseAbs2();
+  }
+  const Eigen::Vector4d error = (square - sum.cwiseAbs2() / n).cwiseMax(0.0).cwiseSqrt();
+  return ((sum - 2.0 * error).array() > 0.0).any();
+}
+
+std::vector<Explanation> TraceSearch::pairs() {
+  constexpr int kFirsts = 8, kPairs = 5;
+  std::vector<std::pair<double, Candidate>> promised;
+  const Screening screening = screen(0);
+  std::set<std::string> columns;
+  for (const Promise& p : screening.promises) {
+    if (static_cast<int>(columns.size()) == kFirsts || p.gain <= 0.0 || !go_on_(0.0)) break;
+    if (p.candidate.parts.size() > 1 || !columns.insert(kindOf(p.candidate)).second) continue;
+    const Explanation first = fitted(p.candidate);
+    TraceSearch beside = *this;
+    SolvedContacts solved = solved_;
+    beside.setModel(fit(withCandidate(model_, first.candidate), 3, solved).model);
+    std::set<bool> seconds;  // the best curve and the best known form
+    for (const Promise& q : beside.screen(0).promises) {
+      if (seconds.size() == 2) break;
+      if (q.candidate.parts.size() > 1 || q.candidate.covariate() == p.candidate.covariate()) continue;
+      if (!seconds.insert(q.candidate.empirical()).second) continue;
+      Candidate both = first.candidate;
+      both.parts.push_back(q.candidate.parts.front());
+      both.parameters += q.candidate.parameters;
+      promised.emplace_back(first.gain + q.gain, std::move(both));
+    }
+  }
+  std::stable_sort(promised.begin(), promised.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<Explanation> ranked;
+  std::set<std::set<std::string>> tried;
+  for (const auto& [gain, pair] : promised)
+    if (static_cast<int>(ranked.size()) < kPairs &&
+        tried.insert({keyOf(pair.parts.front()), keyOf(pair.parts.back())}).second)
+      ranked.push_back(fitted(pair));
+  std::stable_sort(ranked.begin(), ranked.end(),
+                   [](const Explanation& a, const Explanation& b) { return a.gain > b.gain; });
+  return ranked;
+}
+
+void TraceSearch::settleAll() {
   for (int round = 0; round < 2; ++round) {
-    model_ = fitModel(model_, trial_, whitening_, planFor(model_), solved_).model;
+    model_ = fit(model_, 12, solved_).model;
     refresh();
   }
 }
 
+void TraceSearch::accept(const Candidate& candidate) {
+  part_count_.push_back(candidate.parts.size());
+  model_ = withCandidate(model_, candidate);
+  settleAll();
+}
+
 std::size_t TraceSearch::firstPart(std::size_t k) const {
   return std::accumulate(part_count_.begin(), part_count_.begin() + static_cast<long>(k), given_effects_);
+}
+
+void TraceSearch::setModel(const RefinedModel& model) {
+  model_ = model;
+  level_ = predictRows(model_, trial_, solved_);
+  residual_ = trial_.measured - level_;
+  white_ = whitening_.apply(residual_);
 }
 
 void TraceSearch::leaveOut(std::size_t k) {
@@ -262,94 +267,63 @@ void TraceSearch::leaveOut(std::size_t k) {
   model_.effects.erase(begin, begin + static_cast<long>(part_count_[k]));
   part_count_.erase(part_count_.begin() + static_cast<long>(k));
   SolvedContacts solved = solved_;
-  setModel(fitModel(model_, trial_, whitening_, planFor(model_), solved).model);
+  setModel(fit(model_, 12, solved).model);
 }
 
-std::vector<Explanation> TraceSearch::rivals(std::size_t k) {
-  const TraceSearch kept = *this;
-  leaveOut(k);
-  auto ranked = fitBest(screen());
-  *this = kept;
-  return ranked;
+double TraceSearch::gainOf(std::size_t k) {
+  TraceSearch without = *this;
+  without.leaveOut(k);
+  return scoreOf(model_) - without.scoreOf(without.model_);
 }
 
-void TraceSearch::drop(std::size_t k) {
-  leaveOut(k);
-  for (int round = 0; round < 2; ++round) {
-    model_ = fitModel(model_, trial_, whitening_, planFor(model_), solved_).model;
-    refresh();
+void TraceSearch::thin(std::size_t k) {
+  const std::size_t first = firstPart(k);
+  double score = scoreOf(model_);
+  for (std::size_t part = part_count_[k]; part-- > 0 && part_count_[k] > 1;) {
+    RefinedModel without = model_;
+    without.effects.erase(without.effects.begin() + static_cast<long>(first + part));
+    SolvedContacts solved = solved_;
+    without = fit(without, 12, solved).model;
+    const double now = scoreOf(without);
+    if (now < score) continue;
+    score = now;
+    --part_count_[k];
+    setModel(without);
   }
+  settleAll();
 }
 
-void TraceSearch::replace(std::size_t k, const Candidate& candidate) {
-  leaveOut(k);
-  accept(candidate);
+std::vector<Effect> TraceSearch::parts(std::size_t k) const {
+  const std::size_t first = firstPart(k);
+  const auto begin = model_.effects.begin() + static_cast<long>(first);
+  return {begin, begin + static_cast<long>(part_count_[k])};
 }
 
-Channel TraceSearch::strongest(std::size_t effect) {
-  RefinedModel without = model_;
-  without.effects.erase(without.effects.begin() + static_cast<long>(effect));
-  SolvedContacts solved = solved_;
-  const Eigen::VectorXd moved = whitening_.marginal(
-      trial_.measured.array().isFinite().select(predictRows(without, trial_, solved) - level_, 0.0));
-  std::array<double, kChannels> size{};
-  for (Eigen::Index i = 0; i < moved.size(); ++i)
-    size[static_cast<std::size_t>(i % kChannels)] += moved[i] * moved[i];
-  return static_cast<Channel>(std::max_element(size.begin(), size.end()) - size.begin());
-}
-
-void TraceSearch::finish(TraceResult& result) {
-  const FitPlan plan = planFor(model_);
-  const Fit fit = fitModel(model_, trial_, whitening_, plan, solved_);
-  const SensorNoise noise = model_.noise;
-  model_ = fit.model;
-  model_.noise = noise;
-  model_.fitted = plan.free;
-  const Eigen::MatrixXd covariance = parameterCovariance(model_, trial_, whitening_, plan, solved_);
-  model_.covariance.assign(covariance.data(), covariance.data() + covariance.size());
-  level_ = predictRows(model_, trial_, solved_);
-  std::size_t at = given_effects_;
-  for (std::size_t k = 0; k < result.effects.size(); ++k) {
-    auto& effect = result.effects[k];
-    if (part_count_[k] == 1) effect.channel = strongest(at);
-    for (Effect& part : effect.chosen.candidate.parts) part = model_.effects[at++];
-    effect.parameter_std.clear();
-    for (std::size_t j = 0; j < plan.free.size(); ++j) {
-      const int e = plan.free[j].effect;
-      if (e >= static_cast<int>(at - part_count_[k]) && e < static_cast<int>(at))
-        effect.parameter_std.push_back(
-            std::sqrt(std::max(0.0, covariance(static_cast<long>(j), static_cast<long>(j)))));
+void TraceSearch::refineCurves() {
+  bool refined = false;
+  for (std::size_t k = 0; k < model_.effects.size(); ++k) {
+    if (!model_.effects[k].empirical() || model_.effects[k].knots.size() < 3) continue;
+    const Eigen::VectorXd x = covariateValues(trial_, model_.effects[k].covariate, sinkages());
+    double score = scoreOf(model_);
+    for (const int most : {9, 13}) {
+      const Effect coarse = model_.effects[k];
+      const auto knots = quantileKnots(x, std::min(most, trial_.rows() / 10));
+      if (knots.size() <= coarse.knots.size()) continue;
+      RefinedModel finer = model_;
+      finer.effects[k].knots = knots;
+      finer.effects[k].parameters.clear();
+      const NaturalSpline curve{coarse.knots, coarse.parameters};
+      for (const double knot : knots) finer.effects[k].parameters.push_back(curve(knot));
+      SolvedContacts solved = solved_;
+      finer = fit(finer, 8, solved).model;
+      const double now = scoreOf(finer);
+      if (now <= score) continue;
+      score = now;
+      setModel(finer);
+      refined = true;
     }
   }
-  result.refined = model_;
-  result.first_prior = first_prior_;
-  Trial measured = trial_;
-  for (std::size_t row = 0; row < measured.states.size(); ++row) {
-    measured.states[row].slip = measured.slip[row];
-    measured.states[row].load_N = measured.load_N[row];
-  }
-  result.base_rmse = rmseOf(result.base, measured);
-  result.refined_rmse = rmseOf(result.refined, measured);
-  // What the sensors and the noisy inputs alone would leave, at the rows' own slip and load.
-  const InputSlopes slopes = inputSlopes(model_, measured, solved_);
-  for (std::size_t c = 0; c < kChannels; ++c) {
-    double sum = 0.0;
-    int count = 0;
-    for (int row = 0; row < trial_.rows(); ++row) {
-      const auto k = static_cast<int>(c);
-      if (!std::isfinite(trial_.measured(row, k))) continue;
-      const auto& n = model_.noise;
-      const double slip =
-          std::hypot(n.slip_absolute, n.slip_relative * trial_.slip[static_cast<std::size_t>(row)]);
-      sum += std::pow(n.absolute[c] / trial_.denominator(row, static_cast<Channel>(k)), 2) +
-             std::pow(n.relative[c] * level_(row, k), 2) + std::pow(slip * slopes.by_slip(row, k), 2) +
-             std::pow(n.load_relative * slopes.by_load(row, k), 2);
-      ++count;
-    }
-    result.noise_floor[c] = count ? std::sqrt(sum / count) : std::nan("");
-  }
-  result.units = units_;
-  result.trial = trial_;
+  if (refined) refresh();
 }
 
 }  // namespace talus::terramech

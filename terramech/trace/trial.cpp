@@ -240,6 +240,15 @@ Trial makeTrial(const Telemetry& t, const RefinedModel& model) {
   return trial;
 }
 
+Eigen::VectorXd covariateValues(const Trial& trial, const std::string& name,
+                                const Eigen::VectorXd& sinkage_m) {
+  if (name == "sinkage_m") return sinkage_m;
+  Eigen::VectorXd x(trial.rows());
+  for (int row = 0; row < trial.rows(); ++row)
+    x[row] = trial.states[static_cast<std::size_t>(row)].covariate(name);
+  return x;
+}
+
 std::vector<char> beyondAxle(const Trial& trial) {
   std::vector<char> sunk;
   for (int row = 0; row < trial.rows(); ++row)

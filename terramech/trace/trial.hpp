@@ -47,6 +47,10 @@ bool slipIsAlongTravel(const std::vector<WheelState>& states);
 /// every model here, so that they say nothing of it and would bend it elsewhere.
 std::vector<char> beyondAxle(const Trial& trial);
 
+/// Values of a covariate over the rows; "sinkage_m" is the model's, NaN where missing.
+Eigen::VectorXd covariateValues(const Trial& trial, const std::string& name,
+                                const Eigen::VectorXd& sinkage_m);
+
 /// The rows of a trial that `keep` marks.
 Trial subset(const Trial& trial, const std::vector<char>& keep);
 

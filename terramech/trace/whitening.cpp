@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 
 #include <talus/terramech/trace/whitening.hpp>
 
@@ -83,12 +85,11 @@ Whitening subset(const Whitening& whitening, const std::vector<char>& keep) {
   part.slip = subset(whitening.slip, keep);
   for (Eigen::Index row : rows)
     if (!whitening.unit.empty()) part.unit.push_back(whitening.unit[static_cast<std::size_t>(row)]);
-  part.shared_white = whitening.shared_white;
-  part.shared_marginal = whitening.shared_marginal;
+  part.run = whitening.run;
   return part;
 }
 
-Eigen::VectorXd Whitening::ownApply(const Eigen::MatrixXd& residual) const {
+Eigen::VectorXd Whitening::rowByRow(const Eigen::MatrixXd& residual) const {
   Eigen::VectorXd out(residual.rows() * kChannels);
   for (int row = 0; row < residual.rows(); ++row)
     out.segment<kChannels>(row * kChannels) =
@@ -97,7 +98,7 @@ Eigen::VectorXd Whitening::ownApply(const Eigen::MatrixXd& residual) const {
   return out;
 }
 
-Eigen::VectorXd Whitening::ownMarginal(const Eigen::MatrixXd& residual) const {
+Eigen::VectorXd Whitening::marginal(const Eigen::MatrixXd& residual) const {
   Eigen::VectorXd out(residual.rows() * kChannels);
   for (Eigen::Index row = 0; row < residual.rows(); ++row)
     for (int c = 0; c < kChannels; ++c) {
@@ -108,104 +109,36 @@ Eigen::VectorXd Whitening::ownMarginal(const Eigen::MatrixXd& residual) const {
   return out;
 }
 
-void Whitening::settle(Eigen::Ref<Eigen::VectorXd> scaled, const Eigen::Vector4d& shared) const {
-  if (unit.empty() || shared.isZero()) return;
-  const int units = *std::max_element(unit.begin(), unit.end()) + 1;
-  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(units, kChannels), count = sum;
+// (I + B B^T)^(-1/2) of each run, B = F R^(1/2) stacked over its rows: with B^T B = Q S Q^T it is
+// I - B Q diag((1 - (1 + s)^(-1/2)) / s) Q^T B^T.
+void Whitening::settleRuns(Eigen::VectorXd& rows) const {
+  if (unit.empty() || run.isZero()) return;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> eigen(run);
+  const Eigen::Matrix4d root =
+      eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  std::map<int, std::pair<Eigen::Matrix4d, Eigen::Vector4d>> sums;
+  for (std::size_t row = 0; row < unit.size(); ++row) {
+    const auto [at, fresh] = sums.try_emplace(unit[row], Eigen::Matrix4d::Zero(), Eigen::Vector4d::Zero());
+    const Eigen::Matrix4d b = factor[row] * root;
+    at->second.first += b.transpose() * b;
+    at->second.second += b.transpose() * rows.segment<kChannels>(static_cast<Eigen::Index>(row) * kChannels);
+  }
+  std::map<int, Eigen::Vector4d> taken;
+  for (const auto& [number, sum] : sums) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> own(sum.first);
+    const Eigen::Vector4d weight = own.eigenvalues().unaryExpr(
+        [](double s) { return s > 1e-12 ? (1.0 - 1.0 / std::sqrt(1.0 + s)) / s : 0.5; });
+    taken[number] =
+        root * own.eigenvectors() * weight.asDiagonal() * own.eigenvectors().transpose() * sum.second;
+  }
   for (std::size_t row = 0; row < unit.size(); ++row)
-    for (int c = 0; c < kChannels; ++c) {
-      if (factor[row](c, c) == 0.0) continue;
-      sum(unit[row], c) += scaled[static_cast<Eigen::Index>(row) * kChannels + c];
-      count(unit[row], c) += 1.0;
-    }
-  for (std::size_t row = 0; row < unit.size(); ++row)
-    for (int c = 0; c < kChannels; ++c) {
-      const double m = count(unit[row], c);
-      if (factor[row](c, c) == 0.0 || m < 1.0) continue;
-      const double kept = 1.0 / std::sqrt(1.0 + m * shared[c]);
-      scaled[static_cast<Eigen::Index>(row) * kChannels + c] -= (1.0 - kept) * sum(unit[row], c) / m;
-    }
+    rows.segment<kChannels>(static_cast<Eigen::Index>(row) * kChannels) -= factor[row] * taken[unit[row]];
 }
 
 Eigen::VectorXd Whitening::apply(const Eigen::MatrixXd& residual) const {
-  Eigen::VectorXd out = ownApply(residual);
-  settle(out, shared_white);
+  Eigen::VectorXd out = rowByRow(residual);
+  settleRuns(out);
   return out;
-}
-
-Eigen::VectorXd Whitening::marginal(const Eigen::MatrixXd& residual) const {
-  Eigen::VectorXd out = ownMarginal(residual);
-  settle(out, shared_marginal);
-  return out;
-}
-
-Eigen::MatrixXd Whitening::backFromApply(const Eigen::MatrixXd& columns) const {
-  Eigen::MatrixXd back = columns;
-  for (Eigen::Index k = 0; k < back.cols(); ++k) {
-    settle(back.col(k), shared_white);
-    slip.takeOut(back.col(k));
-  }
-  for (std::size_t row = 0; row < factor.size(); ++row) {
-    auto part = back.middleRows<kChannels>(static_cast<Eigen::Index>(row) * kChannels);
-    part = (factor[row].transpose() * part).eval();
-  }
-  return back;
-}
-
-Eigen::MatrixXd Whitening::backFromMarginal(const Eigen::MatrixXd& columns) const {
-  Eigen::MatrixXd back = columns;
-  for (Eigen::Index k = 0; k < back.cols(); ++k) settle(back.col(k), shared_marginal);
-  for (std::size_t row = 0; row < factor.size(); ++row)
-    for (int c = 0; c < kChannels; ++c)
-      back.row(static_cast<Eigen::Index>(row) * kChannels + c) *=
-          factor[row](c, c) != 0.0 ? 1.0 / std(static_cast<Eigen::Index>(row), c) : 0.0;
-  return back;
-}
-
-namespace {
-
-/// Variance that units share over that of a row, less than nought counting as nought.
-double sharedVariance(const std::vector<double>& value, const std::vector<int>& unit) {
-  const int units = value.empty() ? 0 : *std::max_element(unit.begin(), unit.end()) + 1;
-  Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(units), count = sum;
-  double total = 0.0;
-  for (std::size_t i = 0; i < value.size(); ++i) {
-    sum[unit[i]] += value[i];
-    count[unit[i]] += 1.0;
-    total += value[i];
-  }
-  const auto n = static_cast<double>(value.size()), used = static_cast<double>((count > 0.0).count());
-  if (used < 3.0 || n - used < 3.0) return 0.0;
-  double between = 0.0, within = 0.0;
-  for (Eigen::Index u = 0; u < units; ++u)
-    if (count[u] > 0.0) between += count[u] * squared(sum[u] / count[u] - total / n);
-  for (std::size_t i = 0; i < value.size(); ++i) within += squared(value[i] - sum[unit[i]] / count[unit[i]]);
-  within /= n - used;
-  const double size = (n - count.square().sum() / n) / (used - 1.0);
-  return within > 0.0 ? std::max(0.0, (between / (used - 1.0) - within) / (size * within)) : 0.0;
-}
-
-}  // namespace
-
-void Whitening::share(const std::vector<int>& of_row, const Eigen::MatrixXd& left) {
-  unit = slip.moment.empty() ? of_row : std::vector<int>{};
-  shared_white.setZero();
-  shared_marginal.setZero();
-  if (unit.empty()) return;
-  const Eigen::VectorXd white = ownApply(left), one = ownMarginal(left);
-  for (int c = 0; c < kChannels; ++c) {
-    std::vector<double> value, value_marginal;
-    std::vector<int> group;
-    for (std::size_t row = 0; row < unit.size(); ++row) {
-      if (factor[row](c, c) == 0.0) continue;
-      const Eigen::Index at = static_cast<Eigen::Index>(row) * kChannels + c;
-      value.push_back(white[at]);
-      value_marginal.push_back(one[at]);
-      group.push_back(unit[row]);
-    }
-    shared_white[c] = sharedVariance(value, group);
-    shared_marginal[c] = sharedVariance(value_marginal, group);
-  }
 }
 
 namespace {

@@ -29,34 +29,21 @@ Eigen::Matrix4d rowFactor(const Eigen::Matrix4d& covariance, const Eigen::Matrix
 Eigen::Vector4d finiteOrZero(const Eigen::MatrixXd& residual, int row);
 
 /// Makes residuals of unit variance and uncorrelated: rowFactor() of their covariance; what rows of one
-/// moment share of its slip's error taken out; then, where rows of a unit share an error, their mean is
-/// shrunk by what it scatters too much.
+/// moment share of its slip's error taken out; then what rows of a run share.
 struct Whitening {
   std::vector<Eigen::Matrix4d> factor;
   Eigen::MatrixXd std;    ///< marginal standard deviations of a row's own error, rows x kChannels
   MomentSlip slip{};      ///< error of the slip that rows of a moment share
-  std::vector<int> unit;  ///< of each row; empty: rows are on their own
-  Eigen::Vector4d shared_white = Eigen::Vector4d::Zero();     ///< variance that a unit shares over that of a
-                                                              ///< row, by channel of apply()
-  Eigen::Vector4d shared_marginal = Eigen::Vector4d::Zero();  ///< the same of marginal()
-
-  /// Finds the shared variances (one-way analysis of variance) from `left`, residuals without what else is
-  /// known to move them. An empty `unit` leaves rows on their own, and so do moments, whose shared error is
-  /// known.
-  void share(const std::vector<int>& of_row, const Eigen::MatrixXd& left);
+  std::vector<int> unit;  ///< run of each row; empty: rows are on their own
+  /// Covariance of the error that the rows of a run share, between the channels [-]
+  Eigen::Matrix4d run = Eigen::Matrix4d::Zero();
 
   Eigen::VectorXd apply(const Eigen::MatrixXd& residual) const;     ///< rows*kChannels; 0 where missing
-  Eigen::VectorXd marginal(const Eigen::MatrixXd& residual) const;  ///< each over its std
-
-  /// Columns that give, times a residual (row by row, 0 where missing), what the given ones give times
-  /// apply() or marginal() of it.
-  Eigen::MatrixXd backFromApply(const Eigen::MatrixXd& columns) const;
-  Eigen::MatrixXd backFromMarginal(const Eigen::MatrixXd& columns) const;
+  Eigen::VectorXd rowByRow(const Eigen::MatrixXd& residual) const;  ///< the same without the runs' error
+  Eigen::VectorXd marginal(const Eigen::MatrixXd& residual) const;  ///< each over its own std
 
  private:
-  Eigen::VectorXd ownApply(const Eigen::MatrixXd& residual) const;
-  Eigen::VectorXd ownMarginal(const Eigen::MatrixXd& residual) const;
-  void settle(Eigen::Ref<Eigen::VectorXd> scaled, const Eigen::Vector4d& shared) const;
+  void settleRuns(Eigen::VectorXd& rows) const;
 };
 /// The rows that `keep` marks.
 Whitening subset(const Whitening& whitening, const std::vector<char>& keep);

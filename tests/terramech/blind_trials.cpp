@@ -89,7 +89,7 @@ int main(int argc, char** argv) {
     alarms += marks.claimed > marks.located;
     std::printf("%6d n=%3zu noise=%.3f %4.1fs  ratio %.2f %.2f  p=%.4f |", seed, world.rows.size(),
                 world.noise, seconds, pull_ratio.back(), z_ratio.back(),
-                result.first_tests.empty() ? 1.0 : result.first_tests[0].p_value);
+                result.first_promises.empty() ? 1.0 : result.first_promises[0].p_value);
     for (const auto& h : world.hidden) std::printf(" %s(%.3g)", h.kind.c_str(), h.size);
     std::printf(" =>");
     for (const TracedEffect& e : result.effects) {

@@ -10,7 +10,7 @@ namespace {
 
 Applicability judged(const Telemetry& telemetry) {
   const RefinedModel base = unknownSoil().model;
-  TraceOptions options{.flips = 499, .fit_soil = true};
+  TraceOptions options{.fit_soil = true};
   return applicability(traceResiduals(base, makeTrial(telemetry, base), options), options);
 }
 

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <set>
 
 #include <talus/terramech/trace/trace_search.hpp>
 
@@ -34,13 +35,24 @@ Candidate torqueOffset() {
 
 TEST(TraceSearch, ScreeningPutsWhatTheRowsHideFirst) {
   TraceSearch search(sand(), offsetTrial(), {});
-  const auto screened = search.screen();
-  ASSERT_FALSE(screened.empty());
-  EXPECT_EQ(screened.front().candidate.family, "torque_sensor");
-  for (std::size_t k = 1; k < screened.size(); ++k) EXPECT_LE(screened[k].score, screened[k - 1].score);
+  const auto screening = search.screen(19);
+  ASSERT_FALSE(screening.promises.empty());
+  EXPECT_EQ(screening.promises.front().candidate.family, "torque_sensor");
+  EXPECT_GT(screening.promises.front().gain, screening.threshold);
+  EXPECT_EQ(screening.promises.front().p_value, 0.05);  // Closed form: 1 / (19 + 1)
+  for (std::size_t k = 1; k < screening.promises.size(); ++k)
+    EXPECT_LE(screening.promises[k].gain, screening.promises[k - 1].gain);
 }
 
-TEST(TraceSearch, WhatIsAcceptedIsFittedAndWhatIsDroppedIsGone) {
+TEST(TraceSearch, APromiseIsWhatTheFitKeeps) {
+  // Property: an offset is linear, so that what it gains to first order it gains when fitted, up to the noise of
+  // slip and load that its relative part moves.
+  TraceSearch search(sand(), offsetTrial(), {});
+  const Promise promise = search.screen(0).promises.front();
+  EXPECT_NEAR(search.fitted(promise.candidate).gain, promise.gain, 0.02 * promise.gain);
+}
+
+TEST(TraceSearch, WhatIsAcceptedIsFittedAndWhatIsLeftOutIsGone) {
   TraceSearch search(sand(), offsetTrial(), {});
   const double before = search.chi2();
   search.accept(torqueOffset());
@@ -49,7 +61,9 @@ TEST(TraceSearch, WhatIsAcceptedIsFittedAndWhatIsDroppedIsGone) {
   ASSERT_EQ(search.parts(0).size(), 1U);
   EXPECT_NEAR(search.parts(0)[0].parameters[0], 0.8, 0.05);
   EXPECT_LT(search.chi2(), before);
-  search.drop(0);
+  EXPECT_GT(search.gainOf(0), 100.0);
+  search.leaveOut(0);
+  search.settleAll();
   EXPECT_TRUE(search.model().effects.empty());
   EXPECT_NEAR(search.chi2(), before, 1e-6 * before);
 }
@@ -64,18 +78,42 @@ TEST(TraceSearch, LeavingOutKeepsTheNoiseAsItIs) {
   EXPECT_EQ(search.model().noise.absolute, noise.absolute);
 }
 
-TEST(TraceSearch, AFreeParameterIsOneMoreSolve) {
-  TraceSearch search(sand(), offsetTrial(), {});
-  EXPECT_EQ(search.work(), 120.0 * 3.0);  // Closed form: rows x (free parameters + 3)
-  search.accept(torqueOffset());
-  EXPECT_EQ(search.work(), 120.0 * 4.0);
-}
-
 TEST(TraceSearch, ATrustedPriorHoldsTheFirstParameter) {
   TraceSearch search(sand(), offsetTrial(), {});
   search.trust({.value = 0.3, .std = 1e-4});
   search.accept(torqueOffset());
   EXPECT_NEAR(search.parts(0)[0].parameters[0], 0.3, 0.01);
+}
+
+TEST(TraceSearch, PairsTellTwoFaultsApart) {
+  // Property: a torque off by 0.8 Nm and a pull by 0.05 W; no single candidate carries both.
+  MadeRows rows(wheelColumns());
+  std::mt19937_64 random(8);
+  for (int k = 0; k < 80; ++k) {
+    std::vector<double> row =
+        wheelRow(madeSand(), 40.0 + (k * 7) % 80, 0.05 + 0.05 * ((k * 11) % 16), 0.02, random);
+    row[2] += 0.8;
+    row[4] += 0.05 * row[0];
+    rows.add(row);
+  }
+  TraceSearch search(sand(), makeTrial(rows.telemetry(), sand()), {});
+  const auto ranked = search.pairs();
+  ASSERT_FALSE(ranked.empty());
+  std::set<Channel> channels;
+  for (const Effect& part : ranked.front().candidate.parts) channels.insert(part.channel);
+  EXPECT_EQ(channels, (std::set{Channel::Torque, Channel::DrawbarPull}));
+  for (const Promise& single : search.screen(0).promises)
+    EXPECT_GT(ranked.front().gain, single.gain + kClose);
+}
+
+TEST(TraceSearch, OfFormsTakenTogetherOnlyThoseThatPayStay) {
+  TraceSearch search(sand(), offsetTrial(), {});
+  Candidate both = torqueOffset();
+  both.parts.push_back({.name = "elastic_rebound", .covariate = "sinkage_m", .parameters = {0.1}});
+  search.accept(both);
+  search.thin(0);
+  ASSERT_EQ(search.parts(0).size(), 1U);
+  EXPECT_EQ(search.parts(0)[0].name, "torque_offset");
 }
 
 }  // namespace

@@ -43,7 +43,6 @@ inline RefinedModel baseOf(const blind::Ground& g) {
 inline TraceResult traced(const blind::World& world) {
   const RefinedModel base = baseOf(world.ground);
   TraceOptions options;
-  options.flips = 999;
   return traceResiduals(base, makeTrial(telemetryOf(world), base), options);
 }
 

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <random>
 
+#include <Eigen/LU>
 #include <gtest/gtest.h>
 
 #include <talus/terramech/trace/whitening.hpp>
@@ -39,44 +40,48 @@ TEST(Whitening, AMeanThatRowsShareWeighsWhatItIsWorth) {
   // Closed form: with variance q shared and 1 of its own, the mean of m rows has variance q + 1/m, so that a
   // constant of 1 is worth units / (q + 1/m) in chi-squared.
   Whitening w = plain();
-  w.share(units(), residual(2.0, 1));
-  const double q = w.shared_white[0];
-  EXPECT_NEAR(q, 4.0, 2.0);  // 40 units know a variance to 22 %
+  w.unit = units();
+  w.run(0, 0) = 4.0;
   const Eigen::MatrixXd one = Eigen::MatrixXd::Ones(kUnits * kRows, kChannels);
-  EXPECT_NEAR(w.apply(one).squaredNorm(), kUnits / (q + 1.0 / kRows), 1e-9);
-  EXPECT_NEAR(w.marginal(one).squaredNorm(), kUnits / (w.shared_marginal[0] + 1.0 / kRows), 1e-9);
+  EXPECT_NEAR(w.apply(one).squaredNorm(), kUnits / (4.0 + 1.0 / kRows), 1e-9);
 }
 
 TEST(Whitening, RowsThatShareNothingAreLeftAlone) {
   Whitening w = plain();
-  w.share({}, residual(0.0, 2));
   const Eigen::MatrixXd r = residual(0.0, 3);
   double sum = 0.0;
   for (double v : r.col(0)) sum += v * v;
   EXPECT_NEAR(w.apply(r).squaredNorm(), sum, 1e-9);
 }
 
-TEST(Whitening, ColumnsComeBackToWhatTheyGave) {
-  // Property: <columns, W r> = <W^T columns, r> for any residual.
-  Whitening w = plain();
-  for (std::size_t row = 0; row < w.factor.size(); ++row) {
-    w.factor[row] << 2, 0, 0, 0, -0.5, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0;
-    w.std(static_cast<Eigen::Index>(row), 0) = 0.5;
+TEST(Whitening, IsTheInverseRootOfTheWholeCovariance) {
+  // Independent derivation: r^T V^-1 r with the covariance of the rows written out.
+  Whitening w;
+  std::mt19937_64 random(4);
+  std::normal_distribution<double> normal;
+  const auto noise = [&] {
+    return Eigen::Matrix4d(Eigen::Matrix4d::NullaryExpr([&] { return normal(random); }));
+  };
+  constexpr int kCount = 9;
+  Eigen::MatrixXd v = Eigen::MatrixXd::Zero(4 * kCount, 4 * kCount);
+  const Eigen::Matrix4d root = noise();
+  w.run = root * root.transpose();
+  w.std = Eigen::MatrixXd::Ones(kCount, kChannels);
+  for (int row = 0; row < kCount; ++row) {
+    Eigen::Matrix4d f = noise().triangularView<Eigen::Lower>();
+    f.diagonal() = f.diagonal().cwiseAbs().array() + 0.5;
+    w.factor.push_back(f);
+    w.unit.push_back(row / 3);
+    v.block<4, 4>(4 * row, 4 * row) = (f.transpose() * f).inverse();
   }
-  Eigen::MatrixXd left = residual(1.5, 4);
-  left.col(1) = residual(1.0, 5).col(0);
-  w.share(units(), left);
-  ASSERT_GT(w.shared_white[1], 0.0);
-  const Eigen::MatrixXd columns = Eigen::MatrixXd::Random(left.rows() * kChannels, 2);
-  Eigen::VectorXd stacked(left.rows() * kChannels);
-  for (Eigen::Index row = 0; row < left.rows(); ++row)
-    for (int c = 0; c < kChannels; ++c)
-      stacked[row * kChannels + c] = std::isfinite(left(row, c)) ? left(row, c) : 0.0;
-  EXPECT_LT((columns.transpose() * w.apply(left) - w.backFromApply(columns).transpose() * stacked).norm(),
-            1e-9);
-  EXPECT_LT(
-      (columns.transpose() * w.marginal(left) - w.backFromMarginal(columns).transpose() * stacked).norm(),
-      1e-9);
+  for (int a = 0; a < kCount; ++a)
+    for (int b = 0; b < kCount; ++b)
+      if (a / 3 == b / 3) v.block<4, 4>(4 * a, 4 * b) += w.run;
+  Eigen::MatrixXd r(kCount, kChannels);
+  Eigen::VectorXd stacked(4 * kCount);
+  for (int row = 0; row < kCount; ++row)
+    for (int c = 0; c < kChannels; ++c) stacked[4 * row + c] = r(row, c) = normal(random);
+  EXPECT_NEAR(w.apply(r).squaredNorm(), stacked.dot(v.inverse() * stacked), 1e-8);
 }
 
 }  // namespace

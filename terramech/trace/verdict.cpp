@@ -1,0 +1,133 @@
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include <talus/terramech/trace/verdict.hpp>
+
+namespace talus::terramech {
+namespace {
+
+/// Variance that a channel has above its floor; 0 where the excess is within three standard errors.
+double excess(const ChannelErrors& rmse, const TraceResult& result, std::size_t channel) {
+  const double floor = result.noise_floor[channel] * result.noise_floor[channel];
+  const double variance = rmse[channel] * rmse[channel];
+  const auto count = static_cast<double>(
+      result.trial.measured.col(static_cast<Eigen::Index>(channel)).array().isFinite().count());
+  return variance > floor * (1.0 + 3.0 * std::sqrt(2.0 / std::max(count, 1.0))) ? variance - floor : 0.0;
+}
+
+std::size_t valuesOf(const Trial& trial, const std::string& column) {
+  std::set<double> values;
+  for (const WheelState& s : trial.states)
+    if (const double v = s.covariate(column); std::isfinite(v)) values.insert(v);
+  return values.size();
+}
+
+bool isFixedByRun(const Trial& trial, const std::string& column) {
+  std::set<std::pair<int, double>> pairs;
+  std::set<int> runs(trial.run.begin(), trial.run.end());
+  for (std::size_t row = 0; row < trial.states.size(); ++row)
+    if (const double v = trial.states[row].covariate(column); std::isfinite(v))
+      pairs.insert({trial.run[row], v});
+  return 2 * runs.size() <= trial.states.size() && pairs.size() <= runs.size();
+}
+
+std::string furtherRows(const TraceResult& result, const Answer& answer) {
+  if (answer.column.empty()) return "rows that record what else changed from run to run";
+  if (isFixedByRun(result.trial, answer.column))
+    return "further runs at other values of " + answer.column + ", now " +
+           std::to_string(valuesOf(result.trial, answer.column)) + ", the other columns the same";
+  const double times = answer.gain > 0.0 ? result.threshold / answer.gain : 0.0;
+  std::string rows = "rows over a wider range of " + answer.column + ", the other columns the same";
+  // A gain grows in proportion to the rows.
+  if (times > 1.0 && times < 20.0)
+    rows += ", or about " + std::to_string(static_cast<int>(std::ceil(times))) + " times as many";
+  return rows;
+}
+
+}  // namespace
+
+const char* name(Verdict verdict) {
+  constexpr const char* kNames[] = {"explained", "nothing_missing", "unexplained"};
+  return kNames[static_cast<std::size_t>(verdict)];
+}
+
+Answer answerOf(const TraceResult& result) {
+  Answer answer;
+  double before = 0.0, after = 0.0, most = 0.0;
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    if (!result.trial.has(static_cast<Channel>(c))) continue;
+    const double floor = result.noise_floor[c] * result.noise_floor[c];
+    const double left = excess(result.refined_rmse, result, c);
+    before += excess(result.base_rmse, result, c) / floor;
+    after += left / floor;
+    if (answer.floor > 0.0 && left / floor <= most) continue;
+    most = left / floor;
+    answer.channel = static_cast<Channel>(c);
+    answer.rest = result.refined_rmse[c];
+    answer.floor = result.noise_floor[c];
+  }
+  const bool open = after > 0.0 && (result.effects.empty() || after > 0.5 * before);
+  answer.verdict = open                     ? Verdict::Unexplained
+                   : result.effects.empty() ? Verdict::NothingMissing
+                                            : Verdict::Explained;
+  for (const Promise& p : result.last_promises) {
+    if (p.gain <= 0.0) break;
+    answer.column = p.candidate.covariate();
+    answer.gain = p.gain;
+    break;
+  }
+  answer.measure = furtherRows(result, answer);
+  return answer;
+}
+
+double MovedParameter::away() const {
+  return (value - prior) / prior_std;
+}
+
+std::vector<MovedParameter> movedSoil(const TraceResult& result) {
+  std::vector<MovedParameter> moved;
+  const RefinedModel& model = result.refined;
+  for (const auto& [field, std] : model.soil_prior_std) {
+    const auto found = std::find_if(soilParameters().begin(), soilParameters().end(),
+                                    [&](const SoilParameter& p) { return field == p.name; });
+    const auto mean = model.soil_prior_mean.find(field);
+    if (found == soilParameters().end() || mean == model.soil_prior_mean.end() || std <= 0.0) continue;
+    MovedParameter p{field, found->get(model.soil), mean->second, std};
+    if (field == "log_stiffness") {
+      const Soil &now = model.soil, &base = result.given;
+      p.value = std::log((now.cohesive_modulus + now.frictional_modulus) /
+                         (base.cohesive_modulus + base.frictional_modulus));
+    }
+    if (std::abs(p.away()) > 3.0) moved.push_back(p);
+  }
+  return moved;
+}
+
+std::vector<std::string> atBounds(const Effect& effect) {
+  std::vector<std::string> names;
+  const EffectForm* form = findEffect(effect.name);
+  for (std::size_t k = 0; form && k < form->parameters.size(); ++k) {
+    const EffectParameter& p = form->parameters[k];
+    const double close = 1e-9 * (1.0 + std::abs(p.high) + std::abs(p.low));
+    if (p.fitted && (effect.parameters[k] >= p.high - close || effect.parameters[k] <= p.low + close))
+      names.emplace_back(p.name);
+  }
+  return names;
+}
+
+RefinedModel forPrediction(const TraceResult& result) {
+  RefinedModel model = result.refined;
+  for (int c = 0; c < kChannels; ++c) {
+    const double shared = result.run(c, c);
+    if (!result.trial.has(static_cast<Channel>(c)) || shared <= 0.0) continue;
+    double unit = 0.0;
+    for (int row = 0; row < result.trial.rows(); ++row)
+      unit += std::pow(result.trial.denominator(row, static_cast<Channel>(c)), 2) / result.trial.rows();
+    double& absolute = model.noise.absolute[static_cast<std::size_t>(c)];
+    absolute = std::sqrt(absolute * absolute + shared * unit);
+  }
+  return model;
+}
+
+}  // namespace talus::terramech
