@@ -4,16 +4,18 @@
 #include <talus/cli/app/command.hpp>
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/output_file.hpp>
+#include <talus/cli/soil/left_out_report.hpp>
 #include <talus/cli/soil/trace_report.hpp>
 #include <talus/terramech/io/model_file.hpp>
 #include <talus/terramech/io/soil_library.hpp>
 #include <talus/terramech/io/telemetry_reader.hpp>
+#include <talus/terramech/trace/left_out.hpp>
 
 namespace talus::cli {
 namespace {
 
 struct TraceCommandOptions {
-  std::string telemetry, base, rover, model_out, html;
+  std::string telemetry, base, rover, model_out, html, hold_out;
   double significance = terramech::TraceOptions{}.significance;
 };
 
@@ -30,6 +32,12 @@ void bind(CLI::App& command, TraceCommandOptions& options) {
                   "share of tables without an effect in which one may be found")
       ->check(CLI::Range(1e-3, 0.5))
       ->capture_default_str();
+  command
+      .add_option(
+          "--hold-out", options.hold_out,
+          "trace without these rows, then predict them: each level of a column in turn, or its values "
+          "V,V or LOW..HIGH")
+      ->type_name("COLUMN[=VALUES]");
   groupOptions(command, "Analysis");
   addOutput(command, "--model-out", options.model_out, "refined model to write")->type_name("M.yaml");
   addOutput(command, "--html", options.html, "page to write, with charts")->type_name("R.html");
@@ -59,6 +67,22 @@ std::vector<char> without(std::vector<char> rows) {
   return rows;
 }
 
+/// The loop on rows that the search never saw.
+int holdOutRows(const TraceCommandOptions& options, const terramech::RefinedModel& base,
+                const terramech::Trial& trial, const terramech::TraceOptions& how, Context& context) {
+  std::vector<terramech::LeftOutErrors> all;
+  for (const terramech::LeftOut& left : terramech::leftOut(trial, options.hold_out, options.telemetry)) {
+    const ProgressMonitor watch = context.watch("tracing without " + left.what);
+    all.push_back(terramech::traceWithout(base, trial, left, how, watch));
+    if (watch.stopped()) return Exit::kCancelled;
+  }
+  if (context.json)
+    printJson({{"hold_out", leftOutJson(all)}});
+  else
+    print(leftOutText(all));
+  return Exit::kDone;
+}
+
 int run(const TraceCommandOptions& options, Context& context) {
   terramech::ModelFile base = baseOf(options);
   const terramech::Telemetry telemetry =
@@ -67,16 +91,17 @@ int run(const TraceCommandOptions& options, Context& context) {
   const terramech::Trial all = terramech::makeTrial(telemetry, base.model);
   const std::vector<char> sunk = terramech::beyondAxle(all);
   const terramech::Trial trial = terramech::subset(all, without(sunk));
-  if (trial.rows() < 8)
+  if (trial.rows() < 6)
     throw InputError(
         {options.telemetry,
-         fmt::format("{} usable rows with sinkage below the wheel radius; tracing needs at least 8",
+         fmt::format("{} usable rows with sinkage below the wheel radius; tracing needs at least 6",
                      trial.rows()),
          ""});
   base.model.slip_along_travel |= terramech::slipIsAlongTravel(trial.states);
   terramech::TraceOptions how{.significance = options.significance};
   how.fit_soil = !base.soil_given;
   how.seed = context.seed;
+  if (!options.hold_out.empty()) return holdOutRows(options, base.model, trial, how, context);
   const ProgressMonitor watch = context.watch("tracing");
   TraceStory story{options.telemetry,
                    telemetry.rejected.size(),
@@ -108,7 +133,8 @@ void addTrace(CLI::App& app, Context& context) {
        .group = Group::kSoil,
        .description = "find effects missing from a wheel model; write the refined model",
        .examples = "  talus trace drive.csv --base soil.yaml --model-out refined.yaml --html residuals.html\n"
-                   "  talus trace drive.csv --json\n"},
+                   "  talus trace drive.csv --json\n"
+                   "  talus trace runs.csv --hold-out slip=0.5..1\n"},
       bind, run);
 }
 

@@ -39,11 +39,16 @@ std::vector<int> levels(const std::vector<double>& value, double width) {
 Folds foldsOf(const Trial& trial) {
   const std::set<int> runs(trial.run.begin(), trial.run.end());
   if (runs.size() >= kFolds && 2 * runs.size() <= trial.run.size()) {
-    std::vector<int> fold;
-    for (int run : trial.run)
-      fold.push_back(static_cast<int>(std::distance(runs.begin(), runs.find(run))) % kFolds);
+    // Moments of a drive that follow one another err alike: stretches of it are held out.
     const bool moments = trial.run == trial.moment;
-    return {moments ? "whole moments of the drive, five folds" : "whole runs, five folds", fold, kFolds};
+    const auto of = [&](int run) {
+      const auto k = std::distance(runs.begin(), runs.find(run)),
+                 count = static_cast<std::ptrdiff_t>(runs.size());
+      return static_cast<int>((moments ? 2 * kFolds * k / count : k) % kFolds);
+    };
+    std::vector<int> fold;
+    for (int run : trial.run) fold.push_back(of(run));
+    return {moments ? "stretches of the drive, ten in five folds" : "whole runs, five folds", fold, kFolds};
   }
   std::vector<int> level = levels(trial.slip, 0.02);
   const auto count = static_cast<std::size_t>(*std::max_element(level.begin(), level.end())) + 1;

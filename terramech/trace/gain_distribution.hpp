@@ -33,7 +33,7 @@ struct GainDistribution {
 
 /// What the gains are counted from: a model as it stands on whitened rows.
 struct NullModel {
-  std::vector<Eigen::Matrix4d> factor;  ///< whitening of each row
+  std::vector<Eigen::Matrix4d> factor;  ///< what an error that rows share becomes in each: its whitening
   std::vector<int> unit;                ///< run of each row, from 0; empty: rows share nothing
   Folds folds;                          ///< held out together
   Eigen::VectorXd residual;             ///< whitened, rows*kChannels

@@ -10,7 +10,7 @@
 namespace talus::terramech {
 namespace {
 
-constexpr double kLeastShare = 0.1, kFarOff = 0.15, kLoudest = 0.25;
+constexpr double kLeastShare = 0.5, kFarOff = 0.15, kLoudest = 0.25;
 
 Estimate scatterOf(const Trial& trial, int channel) {
   double n = 0.0, sum = 0.0, square = 0.0;
@@ -46,6 +46,7 @@ std::string number(double value) {
 
 Applicability applicability(const TraceResult& result, const TraceOptions& options) {
   TraceResult physics = result;
+  physics.refined = withoutSensors(result.refined);
   std::erase_if(physics.refined.effects, [](const Effect& e) { return e.empirical(); });
   const HeldOut held = holdOut(physics, options, foldsOf(result.trial));
   int asked = 0, silent = 0;

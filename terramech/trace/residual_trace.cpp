@@ -95,14 +95,17 @@ void reconsider(Path& path) {
 }
 
 /// Takes in what explains the residuals best until nothing gains more than noise would.
-void grow(Path& path, const TraceOptions& options, const std::function<bool(double)>& go_on) {
-  while (go_on(0.0) && static_cast<int>(path.effects.size()) <= options.max_effects) {
+void grow(Path& path, const Trial& trial, const TraceOptions& options,
+          const std::function<bool(double)>& go_on) {
+  while (go_on(0.0) && static_cast<int>(path.effects.size()) < options.max_effects) {
     const auto screening = path.search.screen(options.draws);
     if (path.first.empty()) path.first = screening.promises;
     path.last = screening.promises;
     path.threshold = screening.threshold;
     path.rejected = path.search.fitBest(screening.promises);
-    const auto best = choose(path.rejected, screening.threshold);
+    const double least =
+        0.5 * options.least_share * static_cast<double>(trial.measured.array().isFinite().count());
+    const auto best = choose(path.rejected, std::max(screening.threshold, least));
     if (!best) return;
     take(path, path.rejected, *best, screening.noise.pValue(path.rejected[*best].gain));
     path.rejected.erase(path.rejected.begin() + static_cast<long>(*best));
@@ -202,8 +205,13 @@ std::optional<std::size_t> choose(const std::vector<Explanation>& ranked, double
   return {};
 }
 
-TraceResult traceResiduals(const RefinedModel& base, const Trial& trial, const TraceOptions& options,
+TraceResult traceResiduals(const RefinedModel& base, const Trial& trial, const TraceOptions& given,
                            const ProgressMonitor& watch) {
+  TraceOptions options = given;
+  if (!trial.moment.empty()) {  // its errors of slip and slope are no normal noise: see docs/effects.md
+    options.max_effects = 1;
+    options.least_share = 0.06;
+  }
   double done = 0.0;
   const auto go_on = [&](double share) {
     done = std::max(done, 0.95 * share);
@@ -216,8 +224,8 @@ TraceResult traceResiduals(const RefinedModel& base, const Trial& trial, const T
   result.base = path.search.model();
   if (options.fit_soil && trial.moment.empty())
     path.pinned = correctOffset(path.search, trial, options.seed, path.effects) ? 1 : 0;
-  grow(path, options, go_on);
-  if (go_on(0.0)) reconsiderPair(path);
+  grow(path, trial, options, go_on);
+  if (trial.moment.empty() && go_on(0.0)) reconsiderPair(path);
   if (go_on(0.0)) check(path);
   if (go_on(0.0)) path.search.refineCurves();
   result.effects = path.effects;

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 
 #include <talus/terramech/trace/run_likelihood.hpp>
 #include <talus/terramech/trace/run_units.hpp>
@@ -21,27 +20,62 @@ std::vector<int> runsOf(const Trial& trial) {
   return run;
 }
 
-/// Each run cut into stretches of some rows in the order of time.
-std::vector<int> stretches(const Trial& trial, const std::vector<int>& run, int length) {
-  std::vector<std::size_t> order(run.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  const auto time = [&](std::size_t row) { return trial.states[row].time_s; };
-  if (std::all_of(order.begin(), order.end(), [&](std::size_t row) { return std::isfinite(time(row)); }))
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return time(a) < time(b); });
-  std::map<int, int> seen;
-  std::map<std::pair<int, int>, int> number;
-  std::vector<int> unit(run.size());
-  for (std::size_t row : order) {
-    const int at = seen[run[row]]++ / length;
-    unit[row] = number.try_emplace({run[row], at}, static_cast<int>(number.size())).first->second;
+/// Rows of each run in the order of time; empty where time is not known.
+std::vector<std::vector<std::size_t>> inTime(const Trial& trial, const std::vector<int>& run) {
+  std::map<int, std::vector<std::size_t>> rows;
+  for (std::size_t row = 0; row < run.size(); ++row) {
+    if (!std::isfinite(trial.states[row].time_s)) return {};
+    rows[run[row]].push_back(row);
   }
+  std::vector<std::vector<std::size_t>> all;
+  for (auto& [number, own] : rows) {
+    std::stable_sort(own.begin(), own.end(), [&](std::size_t a, std::size_t b) {
+      return trial.states[a].time_s < trial.states[b].time_s;
+    });
+    all.push_back(std::move(own));
+  }
+  return all;
+}
+
+/// Whether what sets the contact follows time within the runs (neighbours correlate by more than 0.3, which would
+/// pass a tenth of a missing effect on): what the model lacks then lasts as noise might.
+bool isInOrder(const Trial& trial, const std::vector<std::vector<std::size_t>>& runs) {
+  for (const char* name : {"slip", "load_N", "slip_angle_rad", "slope_rad", "speed_mps", "pass_index"}) {
+    if (std::find(trial.covariates.begin(), trial.covariates.end(), name) == trial.covariates.end()) continue;
+    double product = 0.0, square = 0.0;
+    for (const auto& rows : runs) {
+      double mean = 0.0;
+      for (std::size_t row : rows)
+        mean += trial.states[row].covariate(name) / static_cast<double>(rows.size());
+      double last = 0.0;
+      for (std::size_t row : rows) {
+        const double x = trial.states[row].covariate(name) - mean;
+        product += x * last;
+        square += x * x;
+        last = x;
+      }
+    }
+    if (product > 0.3 * square) return true;  // NaN: a column that is not there
+  }
+  return false;
+}
+
+/// Each run cut into stretches of some rows.
+std::vector<int> stretches(const std::vector<std::vector<std::size_t>>& runs, std::size_t rows,
+                           std::size_t length) {
+  std::vector<int> unit(rows);
+  int number = -1;
+  for (const auto& own : runs)
+    for (std::size_t k = 0; k < own.size(); ++k) {
+      if (k % length == 0) ++number;
+      unit[own[k]] = number;
+    }
   return unit;
 }
 
 double logLikelihood(const Whitening& whitening, const std::vector<int>& unit, const Eigen::VectorXd& table) {
   const auto rows = whitening.factor.size();
-  RunLikelihood likelihood(whitening.factor, unit, {"", std::vector<int>(rows, 0), 1});
+  RunLikelihood likelihood(whitening.shared(), unit, {"", std::vector<int>(rows, 0), 1});
   likelihood.setTables(table);
   if (unit.empty()) return likelihood.logLikelihood(Eigen::Matrix4d::Zero(), 0);
   const LinearModel none{Eigen::MatrixXd::Zero(table.size(), 1),
@@ -57,14 +91,23 @@ Eigen::Matrix4d roughRunError(const Whitening& whitening) {
 }
 
 std::vector<int> runUnits(const Trial& trial, const Whitening& whitening, const Eigen::MatrixXd& left) {
-  if (!trial.moment.empty()) return {};
   const Eigen::VectorXd table = whitening.rowByRow(left);
-  const std::vector<int> run = runsOf(trial);
+  const bool drive = !trial.moment.empty();
+  // Rows of a drive belong to moments, which count as one where its runs are too few.
+  const bool one_run = drive && trial.run == trial.moment;
+  const std::vector<int> run = one_run ? std::vector<int>(trial.run.size(), 0) : runsOf(trial);
+  const std::size_t together =
+      drive ? std::max<std::size_t>(1, run.size() / (1 + static_cast<std::size_t>(*std::max_element(
+                                                             trial.moment.begin(), trial.moment.end()))))
+            : 1;
   std::vector<int> best = *std::max_element(run.begin(), run.end()) > 0 ? run : std::vector<int>{};
   double likely = logLikelihood(whitening, best, table);
-  for (int length : {16, 8, 4}) {
-    if (3 * length > trial.rows()) continue;
-    const std::vector<int> cut = stretches(trial, run, length);
+  const auto runs = inTime(trial, run);
+  // On a drive the ground sets slip in the order of time whatever it lacks, and its errors last: always stretches.
+  if (runs.empty() || (!drive && isInOrder(trial, runs))) return best;
+  for (const std::size_t length : std::initializer_list<std::size_t>{16, 8, 4}) {
+    if (3 * length * together > run.size()) continue;
+    const std::vector<int> cut = stretches(runs, run.size(), length * together);
     const double now = logLikelihood(whitening, cut, table);
     if (now < likely + kClearly) continue;
     best = cut;

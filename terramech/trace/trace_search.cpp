@@ -92,7 +92,7 @@ Eigen::VectorXd TraceSearch::sinkages() const {
 
 NullModel TraceSearch::standing(const RefinedModel& model, const Eigen::MatrixXd& residual,
                                 SolvedContacts& solved) const {
-  NullModel null{whitening_.factor,
+  NullModel null{whitening_.shared(),
                  whitening_.unit,
                  folds_,
                  whitening_.rowByRow(residual),
@@ -115,9 +115,14 @@ NullModel TraceSearch::standing(const RefinedModel& model, const Eigen::MatrixXd
 TraceSearch::Screening TraceSearch::screen(int draws) {
   const Eigen::VectorXd sinkage_m = sinkages();
   std::vector<Candidate> all;
+  // On a drive slip, load, heading and time go together: a curve of one stands for any, and only forms that say
+  // what every channel does can be told apart.
+  const bool drive = !trial_.moment.empty();
   for (Candidate& c : libraryCandidates(trial_, sinkage_m))
-    if (c.parts.size() == 1 || !shares(model_, c)) all.push_back(std::move(c));
-  for (Candidate& c : empiricalCandidates(trial_, sinkage_m)) all.push_back(std::move(c));
+    if ((c.parts.size() == 1 || !shares(model_, c)) && !(drive && c.family == "drift"))
+      all.push_back(std::move(c));
+  if (!drive)
+    for (Candidate& c : empiricalCandidates(trial_, sinkage_m)) all.push_back(std::move(c));
   SolvedContacts solved = solved_;
   const NullModel null = standing(model_, residual_, solved);
   const ModelOnRows here{model_, trial_, whitening_, level_, sinkage_m, solved_};
@@ -140,8 +145,13 @@ std::vector<Explanation> TraceSearch::fitBest(const std::vector<Promise>& promis
   int library = 0, empirical = 0;
   for (const Promise& p : promises) {
     int& count = p.candidate.empirical() ? empirical : library;
-    if (p.gain <= 0.0 || !go_on_(0.0)) break;
-    if (count >= (p.candidate.empirical() ? options_.fits / 2 : options_.fits)) continue;
+    if (!go_on_(0.0)) break;
+    // Forms that act together say little to first order.
+    if (!p.candidate.empirical() && p.candidate.parts.size() > 1) {
+      ranked.push_back(fitted(p.candidate));
+      continue;
+    }
+    if (p.gain <= 0.0 || count >= (p.candidate.empirical() ? options_.fits / 2 : options_.fits)) continue;
     if (++tried[keyOf(p.candidate.parts.front())] > 2) continue;
     ++count;
     ranked.push_back(fitted(p.candidate));

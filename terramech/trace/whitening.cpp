@@ -109,6 +109,20 @@ Eigen::VectorXd Whitening::marginal(const Eigen::MatrixXd& residual) const {
   return out;
 }
 
+std::vector<Eigen::Matrix4d> Whitening::shared() const {
+  std::vector<Eigen::Matrix4d> all = factor;
+  if (slip.moment.empty()) return all;
+  const auto rows = static_cast<Eigen::Index>(factor.size());
+  for (int c = 0; c < kChannels; ++c) {
+    Eigen::MatrixXd one = Eigen::MatrixXd::Zero(rows, kChannels);
+    one.col(c).setOnes();
+    const Eigen::VectorXd out = rowByRow(one);
+    for (Eigen::Index row = 0; row < rows; ++row)
+      all[static_cast<std::size_t>(row)].col(c) = out.segment<kChannels>(row * kChannels);
+  }
+  return all;
+}
+
 // (I + B B^T)^(-1/2) of each run, B = F R^(1/2) stacked over its rows: with B^T B = Q S Q^T it is
 // I - B Q diag((1 - (1 + s)^(-1/2)) / s) Q^T B^T.
 void Whitening::settleRuns(Eigen::VectorXd& rows) const {
@@ -116,10 +130,11 @@ void Whitening::settleRuns(Eigen::VectorXd& rows) const {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> eigen(run);
   const Eigen::Matrix4d root =
       eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  const std::vector<Eigen::Matrix4d> common = shared();
   std::map<int, std::pair<Eigen::Matrix4d, Eigen::Vector4d>> sums;
   for (std::size_t row = 0; row < unit.size(); ++row) {
     const auto [at, fresh] = sums.try_emplace(unit[row], Eigen::Matrix4d::Zero(), Eigen::Vector4d::Zero());
-    const Eigen::Matrix4d b = factor[row] * root;
+    const Eigen::Matrix4d b = common[row] * root;
     at->second.first += b.transpose() * b;
     at->second.second += b.transpose() * rows.segment<kChannels>(static_cast<Eigen::Index>(row) * kChannels);
   }
@@ -132,7 +147,7 @@ void Whitening::settleRuns(Eigen::VectorXd& rows) const {
         root * own.eigenvectors() * weight.asDiagonal() * own.eigenvectors().transpose() * sum.second;
   }
   for (std::size_t row = 0; row < unit.size(); ++row)
-    rows.segment<kChannels>(static_cast<Eigen::Index>(row) * kChannels) -= factor[row] * taken[unit[row]];
+    rows.segment<kChannels>(static_cast<Eigen::Index>(row) * kChannels) -= common[row] * taken[unit[row]];
 }
 
 Eigen::VectorXd Whitening::apply(const Eigen::MatrixXd& residual) const {

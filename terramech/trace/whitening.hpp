@@ -38,6 +38,10 @@ struct Whitening {
   /// Covariance of the error that the rows of a run share, between the channels [-]
   Eigen::Matrix4d run = Eigen::Matrix4d::Zero();
 
+  /// What an error that all rows share becomes in each row of rowByRow(): its factor, less what the moments' slip
+  /// takes out.
+  std::vector<Eigen::Matrix4d> shared() const;
+
   Eigen::VectorXd apply(const Eigen::MatrixXd& residual) const;     ///< rows*kChannels; 0 where missing
   Eigen::VectorXd rowByRow(const Eigen::MatrixXd& residual) const;  ///< the same without the runs' error
   Eigen::VectorXd marginal(const Eigen::MatrixXd& residual) const;  ///< each over its own std

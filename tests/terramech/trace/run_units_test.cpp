@@ -58,10 +58,30 @@ TEST(RunUnits, NoiseThatLastsIsCutIntoStretchesOfTime) {
   EXPECT_GT(countOf(in_runs.units()), 6);
 }
 
-TEST(RunUnits, RowsOfMomentsShareWhatIsKnown) {
-  Rows rows(200, 10, 7);
-  for (int row = 0; row < 200; ++row) rows.trial.moment.push_back(row / 4);
-  EXPECT_TRUE(rows.units().empty());
+TEST(RunUnits, WhatLastsWithTheSlipIsNoNoise) {
+  Rows rows(300, 6, 6);
+  rows.trial.covariates = {"slip"};
+  rows.last(0.8);
+  for (int row = 0; row < 300; ++row) rows.trial.states[static_cast<std::size_t>(row)].slip = row % 50 / 60.0;
+  EXPECT_EQ(countOf(rows.units()), 6);
+  for (WheelState& s : rows.trial.states) s.time_s = std::nan("");
+  EXPECT_EQ(countOf(rows.units()), 6);
+}
+
+TEST(RunUnits, OnADriveWholeMomentsStayTogether) {
+  Rows rows(400, 0, 7);
+  rows.last(0.95);
+  for (int row = 0; row < 400; ++row) {
+    rows.trial.moment.push_back(row / 4);
+    rows.trial.states[static_cast<std::size_t>(row)].time_s = row / 4;
+  }
+  rows.trial.run = rows.trial.moment;
+  const std::vector<int> unit = rows.units();
+  ASSERT_EQ(unit.size(), 400U);
+  for (std::size_t row = 1; row < 400; ++row)
+    if (row % 4 != 0) {
+      EXPECT_EQ(unit[row], unit[row - 1]);
+    }
 }
 
 TEST(RunUnits, MeansAreWeightedAndGapsAreNought) {

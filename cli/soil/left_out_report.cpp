@@ -1,0 +1,55 @@
+#include <cmath>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include <talus/cli/soil/left_out_report.hpp>
+
+namespace talus::cli {
+namespace {
+
+using namespace terramech;
+
+constexpr Channel kAll[] = {Channel::DrawbarPull, Channel::Sinkage, Channel::Torque, Channel::SideForce};
+
+nlohmann::ordered_json errorsJson(const ChannelErrors& errors) {
+  auto out = nlohmann::ordered_json::object();
+  for (Channel c : kAll)
+    if (const double e = errors[static_cast<std::size_t>(c)]; std::isfinite(e)) out[name(c)] = e;
+  return out;
+}
+
+}  // namespace
+
+std::string leftOutText(const std::vector<LeftOutErrors>& all) {
+  std::string out;
+  for (const LeftOutErrors& part : all) {
+    out += fmt::format("traced without {} ({} rows): {}\n  {:26s} {:>10s} {:>10s} {:>12s} {:>12s}\n",
+                       part.what, part.rows,
+                       part.effects.empty() ? "no effect" : fmt::format("{}", fmt::join(part.effects, ", ")),
+                       "rmse", "base", "refined", "noise floor", "regression");
+    for (Channel c : kAll) {
+      const auto k = static_cast<std::size_t>(c);
+      if (!std::isfinite(part.base[k])) continue;
+      out += fmt::format("  {:26s} {:10.4f} {:10.4f} {:12.4f} {:12.4f}\n", name(c), part.base[k],
+                         part.refined[k], part.floor[k], part.regression[k]);
+    }
+  }
+  return out;
+}
+
+nlohmann::ordered_json leftOutJson(const std::vector<LeftOutErrors>& all) {
+  auto out = nlohmann::ordered_json::array();
+  for (const LeftOutErrors& part : all)
+    out.push_back({{"left_out", part.what},
+                   {"rows", part.rows},
+                   {"effects", part.effects},
+                   {"base_rmse", errorsJson(part.base)},
+                   {"refined_rmse", errorsJson(part.refined)},
+                   {"noise_floor", errorsJson(part.floor)},
+                   {"regression_rmse", errorsJson(part.regression)}});
+  return out;
+}
+
+}  // namespace talus::cli
