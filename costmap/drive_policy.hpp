@@ -26,8 +26,8 @@ struct DrivePolicy {
              ///< that watches its slip: mostly it notices and backs out (ours, not from the literature) [-]
   double unmonitored_entrapment = 1.0;  ///< the same of a rover that does not [-]
   bool unmonitored = false;             ///< nobody watches the slip on this drive
-  double risk_weight_J = 1e8;         ///< joules that the loss of the rover is worth
-  double correlation_length_m = 5.0;  ///< over which the soil of one class stays alike
+  double risk_weight_J = 1e8;           ///< joules that the loss of the rover is worth
+  double correlation_length_m = 5.0;    ///< over which the soil of one class stays alike
 
   /// Share of the too weak places that hold the rover for good on this drive.
   double held() const noexcept { return unmonitored ? unmonitored_entrapment : entrapment; }

@@ -37,7 +37,8 @@ constexpr const char* kInsert =
 constexpr const char* kSelect =
     "SELECT source, line, accepted, reason, time_s, x_m, y_m, load_N, slip, torque_Nm, sinkage_m, gradient,"
     " drawbar_pull_N, pass_index, pull, pull_std, sinkage, sinkage_std, z_m, pose_std_m,"
-    " pull_may_raise, sinkage_may_raise, pull_here, sinkage_here FROM evidence WHERE drive = ? AND id > ? ORDER BY id";
+    " pull_may_raise, sinkage_may_raise, pull_here, sinkage_here FROM evidence WHERE drive = ? AND id > ? "
+    "ORDER BY id";
 
 // Columns that older journals lack: what they hold may not raise.
 constexpr std::array<std::pair<const char*, const char*>, 7> kAdded{

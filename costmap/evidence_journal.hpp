@@ -54,7 +54,8 @@ class EvidenceJournal {
   /// Appends the rows of a drive, in a transaction of its own where none is open; nothing where the journal holds the
   /// drive already. `continued`: the id that the drive had without these rows, if it is in the journal. Throws
   /// InputError when the disk is full or another process holds the file for longer than 30 s.
-  void append(const std::string& drive, const std::vector<JournalRow>& rows, const std::string& continued = {});
+  void append(const std::string& drive, const std::vector<JournalRow>& rows,
+              const std::string& continued = {});
 
   /// Ids of its drives, in the order in which they were appended.
   std::vector<std::string> drives() const;

@@ -21,8 +21,8 @@ void check(const ReadOptions& options) {
   };
   require(!options.resolution_m || (std::isfinite(*options.resolution_m) && *options.resolution_m > 0),
           "--resolution", "must be a number of metres above 0");
-  require(!options.resolution_m || (*options.resolution_m >= 1e-3 && *options.resolution_m <= 1e6), "--resolution",
-          "must be 0.001 to 1000000 metres");
+  require(!options.resolution_m || (*options.resolution_m >= 1e-3 && *options.resolution_m <= 1e6),
+          "--resolution", "must be 0.001 to 1000000 metres");
   require(std::isfinite(options.vertical_scale) && options.vertical_scale != 0, "--vertical-scale",
           "must be a number other than 0");
 }
@@ -74,7 +74,8 @@ void refuseSize(const Grid& grid, const ReadOptions& options, const std::string&
          "give a map of at least 2 x 2 cells"});
   constexpr double kFinest_m = 1e-3, kCoarsest_m = 1e6;
   if (!(grid.resolution_m >= kFinest_m && grid.resolution_m <= kCoarsest_m))
-    throw InputError({path, "cells of " + std::to_string(grid.resolution_m) + " m; must be 0.001 m to 1000 km",
+    throw InputError({path,
+                      "cells of " + std::to_string(grid.resolution_m) + " m; must be 0.001 m to 1000 km",
                       "correct its CRS or --resolution"});
   requireMemory(8.0 * static_cast<double>(grid.size()), path);
 }

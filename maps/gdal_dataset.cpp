@@ -19,9 +19,9 @@ namespace talus::maps {
 namespace {
 
 // Formats of elevation and of layers; none that reaches out or runs code.
-constexpr const char* kDrivers[] = {"GTiff", "COG",  "PDS4", "PDS",    "ISIS3", "ENVI", "AAIGrid", "netCDF",
-                                    "JP2OpenJPEG", "PNG", "JPEG", "USGSDEM", "SRTMHGT", "EHdr", "GSAG", "XYZ",
-                                    "VICAR", nullptr};
+constexpr const char* kDrivers[] = {"GTiff",   "COG",    "PDS4",        "PDS", "ISIS3", "ENVI",
+                                    "AAIGrid", "netCDF", "JP2OpenJPEG", "PNG", "JPEG",  "USGSDEM",
+                                    "SRTMHGT", "EHdr",   "GSAG",        "XYZ", "VICAR", nullptr};
 
 // GDAL takes what is missing from the end of an ENVI file for zeros.
 void refuseShortEnvi(GDALDataset& dataset, const std::string& path) {
@@ -112,7 +112,8 @@ Dataset openRaster(const std::string& path, bool allow_vrt) {
   Dataset dataset(GDALDataset::Open(path.c_str(), kHow, kDrivers));
   if (!dataset && allow_vrt) dataset.reset(GDALDataset::Open(path.c_str(), kHow, kVirtual));
   if (!dataset)
-    throw InputError({path, "GDAL opens no raster of the allowed formats: " + errors.last(), "give a GeoTIFF or another raster"});
+    throw InputError({path, "GDAL opens no raster of the allowed formats: " + errors.last(),
+                      "give a GeoTIFF or another raster"});
   if (dataset->GetRasterCount() == 0 || dataset->GetRasterXSize() == 0 || dataset->GetRasterYSize() == 0)
     throw InputError({path, "holds no raster band", "name one of its subdatasets (gdalinfo lists them)"});
   refuseShortEnvi(*dataset, path);

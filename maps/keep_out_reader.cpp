@@ -48,8 +48,8 @@ std::vector<Point> clipped(std::vector<Point> ring, const Grid& grid) {
   return cut(ring, &Point::y_m, grid.south_west.y_m + grid.height * grid.resolution_m + around, 1.0);
 }
 
-std::unique_ptr<OGRLinearRing> ring(const json& positions, const PositionReader& read,
-                                    const Grid& grid, const std::string& path) {
+std::unique_ptr<OGRLinearRing> ring(const json& positions, const PositionReader& read, const Grid& grid,
+                                    const std::string& path) {
   if (!positions.is_array() || positions.size() < 4)
     throw InputError(
         {path, "a ring of a polygon has fewer than four positions", "close it on its first position"});
@@ -117,7 +117,8 @@ void burn(const std::vector<OGRPolygon>& areas, Raster<std::uint8_t>& mask, cons
 
 Raster<std::uint8_t> readKeepOut(const std::string& path, const ElevationMap& map) {
   const json document = readGeoJson(path);
-  const std::vector<OGRPolygon> areas = polygons(document, PositionReader(document, map, path), map.grid(), path);
+  const std::vector<OGRPolygon> areas =
+      polygons(document, PositionReader(document, map, path), map.grid(), path);
   Raster<std::uint8_t> mask(map.grid());
   burn(areas, mask, path);
   if (std::find(mask.values().begin(), mask.values().end(), 1) == mask.values().end())

@@ -49,8 +49,10 @@ void requireMemory(double bytes, const std::string& where) {
   // What small files take is not worth the question.
   constexpr double kSmall = 1e6;
   if (bytes < kSmall || bytes + inUse() <= budget) return;
-  throw InputError({where, "needs " + gigabytes(bytes) + ", more than the memory budget of " + gigabytes(budget) + " leaves",
-                    "use a smaller file or part, or raise --max-memory"});
+  throw InputError(
+      {where,
+       "needs " + gigabytes(bytes) + ", more than the memory budget of " + gigabytes(budget) + " leaves",
+       "use a smaller file or part, or raise --max-memory"});
 }
 
 }  // namespace talus::maps

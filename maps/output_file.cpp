@@ -44,7 +44,8 @@ bool isGone(std::string_view process) noexcept {
 void clearLeftovers(const fs::path& path) {
   const std::string stem = "." + path.stem().string() + ".";
   std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(path.has_parent_path() ? path.parent_path() : ".", ignored)) {
+  for (const auto& entry :
+       fs::directory_iterator(path.has_parent_path() ? path.parent_path() : ".", ignored)) {
     const std::string name = entry.path().filename().string();
     if (name.starts_with(stem) && entry.path().extension() == path.extension() &&
         isGone(std::string_view(name).substr(stem.size())))
@@ -116,7 +117,8 @@ OutputFile::OutputFile(const fs::path& path) : path_(path) {
   std::error_code error;
   if (fs::is_symlink(path, error) && fs::exists(path, error)) path_ = fs::canonical(path, error);
   const fs::file_status status = fs::status(path_, error);
-  if (status.type() == fs::file_type::none) refuse(path, "cannot be written: " + error.message(), "name a file to write");
+  if (status.type() == fs::file_type::none)
+    refuse(path, "cannot be written: " + error.message(), "name a file to write");
   if (fs::is_directory(status)) refuse(path, "is a directory", "name a file to write");
   in_place_ = fs::exists(status) && !fs::is_regular_file(status);
   if (!in_place_) {

@@ -50,7 +50,8 @@ void eachElement(const std::string& text, const std::string& tag, Visit&& visit)
   for (std::size_t at = text.find("<" + tag); at != text.npos; at = text.find("<" + tag, at + 1)) {
     const std::size_t begin = text.find('>', at);
     const std::size_t end = text.find('<', begin);
-    if (begin != text.npos && end != text.npos) visit(std::string_view(text).substr(begin + 1, end - begin - 1));
+    if (begin != text.npos && end != text.npos)
+      visit(std::string_view(text).substr(begin + 1, end - begin - 1));
   }
 }
 
@@ -70,10 +71,12 @@ void refuseForeignReferences(const std::string& path, bool allow_vrt) {
   const std::string text = beginning(path);
   if (text.find("<vrtdataset") != text.npos) {
     if (!allow_vrt)
-      throw InputError({path, "is a virtual raster, which names other files", "pass --allow-vrt if you trust it"});
+      throw InputError(
+          {path, "is a virtual raster, which names other files", "pass --allow-vrt if you trust it"});
     for (const char* tag : {"sourcefilename", "sourcedataset", "sourceband", "overview", "maskfile"})
       eachElement(text, tag, [&](std::string_view name) { requirePlainName(path, name); });
-    if (text.find("pixelfunction") != text.npos || text.find("/vsi") != text.npos) refuse(path, "/vsi or code");
+    if (text.find("pixelfunction") != text.npos || text.find("/vsi") != text.npos)
+      refuse(path, "/vsi or code");
   } else if (text.find("<product_") != text.npos) {
     eachElement(text, "file_name", [&](std::string_view name) { requirePlainName(path, name); });
   } else if (text.find("isiscube") != text.npos || text.find("pds_version_id") != text.npos) {

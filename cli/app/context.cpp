@@ -28,9 +28,7 @@ class Bar {
   }
 
  private:
-  static void erase() {
-    printError("\r\033[K");
-  }
+  static void erase() { printError("\r\033[K"); }
 
   std::string what_;
   int shown_ = -1;

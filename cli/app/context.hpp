@@ -25,12 +25,12 @@ struct Exit {
 
 /// What every subcommand shares: the global options, and the way to the terminal.
 struct Context {
-  bool json = false;       ///< results as JSON on stdout
-  bool quiet = false;      ///< no progress, no warnings
-  bool force = false;      ///< overwrites what checkOutput() would keep
-  std::uint64_t seed = 1;  ///< of every random number
-  int threads = 0;         ///< at most so many; 0: one a core
-  std::stop_token stop;    ///< set by Ctrl-C
+  bool json = false;                          ///< results as JSON on stdout
+  bool quiet = false;                         ///< no progress, no warnings
+  bool force = false;                         ///< overwrites what checkOutput() would keep
+  std::uint64_t seed = 1;                     ///< of every random number
+  int threads = 0;                            ///< at most so many; 0: one a core
+  std::stop_token stop;                       ///< set by Ctrl-C
   std::atomic<bool>* answers_stop = nullptr;  ///< see answerStop()
   int exit_code = Exit::kDone;
 

@@ -46,7 +46,8 @@ FileLock::~FileLock() {
 bool FileLock::tryAll(const std::vector<std::filesystem::path>& paths) {
   std::set<Identity> seen;
   for (const auto& path : paths) {
-    struct stat named{}, opened{};
+    struct stat named {
+    }, opened{};
     if (::stat(path.c_str(), &named) != 0 || !S_ISREG(named.st_mode)) continue;
     if (!seen.insert(identityOf(named)).second) continue;
     const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);

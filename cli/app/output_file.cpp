@@ -46,7 +46,8 @@ bool leavesItsFolder(const fs::path& link) {
 
 }  // namespace
 
-CLI::Option* addOutput(CLI::App& command, const std::string& names, std::string& path, const std::string& text) {
+CLI::Option* addOutput(CLI::App& command, const std::string& names, std::string& path,
+                       const std::string& text) {
   return command.add_option(names, path, text)
       ->check(CLI::Validator([](std::string&) { return std::string(); }, "", kMark));
 }

@@ -14,7 +14,8 @@ using maps::OutputFile;
 using maps::writeFile;
 
 /// Declares an option that names a file to write; checkOutputs() finds it.
-CLI::Option* addOutput(CLI::App& command, const std::string& names, std::string& path, const std::string& text);
+CLI::Option* addOutput(CLI::App& command, const std::string& names, std::string& path,
+                       const std::string& text);
 
 /// Refuses a place that only --force may overwrite: one of the `inputs`, a journal, what is no regular file, a link out
 /// of its folder. Throws InputError.

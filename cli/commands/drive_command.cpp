@@ -58,8 +58,7 @@ void bindSensors(CLI::App& command, Options& options) {
       ->check(CLI::IsMember(std::vector<std::string>(faults.begin(), faults.end())))
       ->capture_default_str();
   command
-      .add_option("--pose-drift", options.sensors.pose_drift,
-                  "drift of the estimated pose per metre driven")
+      .add_option("--pose-drift", options.sensors.pose_drift, "drift of the estimated pose per metre driven")
       ->check(CLI::Range(0.0, 1.0))
       ->type_name("SHARE")
       ->capture_default_str();
@@ -104,7 +103,8 @@ void bind(CLI::App& command, Options& options) {
   addOutput(command, "--html", options.html, "page to write: the simulated traverse with a time slider")
       ->type_name("R.html")
       ->excludes(worlds);
-  addOutput(command, "--telemetry", options.telemetry, "simulated wheel telemetry to write, for `talus update`")
+  addOutput(command, "--telemetry", options.telemetry,
+            "simulated wheel telemetry to write, for `talus update`")
       ->type_name("T.csv")
       ->excludes(worlds);
   groupOptions(command, "Output");

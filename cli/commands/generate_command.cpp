@@ -116,7 +116,7 @@ void bind(CLI::App& command, Options& options) {
       ->type_name("METRES")
       ->check(CLI::Range(0.01, 1000.0));
   addOutput(command, "-o,--output", options.output,
-                  "elevation map to write; its layers are written to the same folder")
+            "elevation map to write; its layers are written to the same folder")
       ->type_name("FILE.tif")
       ->required();
 }

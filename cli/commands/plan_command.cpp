@@ -51,7 +51,7 @@ void addOutputs(CLI::App& command, PlanOptions& options) {
       ->type_name("PAGE.html");
   addOutput(command, "--png", options.png, "picture to write")->type_name("FILE.png");
   addOutput(command, "--pareto", options.pareto,
-                  "plot of the Pareto set of energy, time and risk to write: .png, .svg or .html")
+            "plot of the Pareto set of energy, time and risk to write: .png, .svg or .html")
       ->type_name("FILE");
   groupOptions(command, "Output");
 }
@@ -304,7 +304,8 @@ int finish(const PlanOptions& options, const Planned& planned, const planner::An
     print(goalText(options, planned.plan) + asText(route, seconds));
   }
   if (!route.interrupted) return Exit::kDone;
-  fmt::print(stderr, "talus: planning was cancelled: this is the best route so far, and its bound is weaker\n");
+  fmt::print(stderr,
+             "talus: planning was cancelled: this is the best route so far, and its bound is weaker\n");
   return Exit::kCancelled;
 }
 
@@ -337,8 +338,9 @@ int runInWindows(const PlanOptions& options, const Context& context) {
 void checkMissionOutput(const PlanOptions& options, const PlanOptions& asked, bool force) {
   if (force) return;
   const GroundOptions& ground = options.ground;
-  std::vector<std::string> inputs{asked.ground.dem.path, ground.dem.path, ground.rover, ground.soil, ground.model,
-                                  ground.soils, ground.layers.terrain, ground.layers.rocks};
+  std::vector<std::string> inputs{asked.ground.dem.path, ground.dem.path,    ground.rover,
+                                  ground.soil,           ground.model,       ground.soils,
+                                  ground.layers.terrain, ground.layers.rocks};
   inputs.insert(inputs.end(), ground.layers.keep_out.begin(), ground.layers.keep_out.end());
   checkOutput(options.output, inputs);
   std::string start(200, '\0');

@@ -74,7 +74,8 @@ int failure() {
 /// A stream that the caller closed would be the first file that the call opens. A dead one is an error, no signal.
 void keepStandardStreams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
-    if (::fcntl(stream, F_GETFD) < 0 && ::open("/dev/null", stream == STDERR_FILENO ? O_WRONLY : O_RDONLY) < 0)
+    if (::fcntl(stream, F_GETFD) < 0 &&
+        ::open("/dev/null", stream == STDERR_FILENO ? O_WRONLY : O_RDONLY) < 0)
       std::abort();
   std::signal(SIGPIPE, SIG_IGN);
 }
@@ -136,9 +137,11 @@ void addGlobalOptions(CLI::App& app, Context& context) {
   app.set_help_flag("-h,--help", "print this help");
   app.add_flag("--json", context.json, "print results as JSON");
   app.add_flag("--quiet", context.quiet, "print no progress and no warnings");
-  app.add_flag("--force", context.force, "overwrite inputs, journals, devices and links to other folders, too");
-  app.add_option_function<std::uint64_t>("--max-memory", maps::setMemoryBudget,
-                                         "memory that the call may take, such as 4GB (default: half of what is free)")
+  app.add_flag("--force", context.force,
+               "overwrite inputs, journals, devices and links to other folders, too");
+  app.add_option_function<std::uint64_t>(
+         "--max-memory", maps::setMemoryBudget,
+         "memory that the call may take, such as 4GB (default: half of what is free)")
       ->transform(CLI::AsSizeValue(false))
       ->type_name("SIZE");
   app.add_option("--seed", context.seed, "seed of the random numbers")

@@ -41,7 +41,7 @@ void bind(CLI::App& command, Options& options) {
       ->type_name("MAP");
   command.add_option("--title", options.title, "title of the page")->type_name("TEXT");
   addOutput(command, "-o,--html", options.html,
-                  "page to write (default: FILE with the ending .html in the current folder)")
+            "page to write (default: FILE with the ending .html in the current folder)")
       ->type_name("PAGE.html");
   addOutput(command, "--png", options.png, "picture to write")->type_name("FILE.png");
   groupOptions(command, "Page");

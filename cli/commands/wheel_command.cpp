@@ -41,9 +41,8 @@ void bind(CLI::App& command, WheelOptions& options) {
                                 "slip angle [rad] from the wheel plane to the travel, left positive")
                     ->type_name("RAD")
                     ->check(within(-0.5 * std::numbers::pi, 0.5 * std::numbers::pi));
-  auto* html =
-      addOutput(command, "--html", options.html, "page to write, with stresses and curves over slip")
-          ->type_name("FILE.html");
+  auto* html = addOutput(command, "--html", options.html, "page to write, with stresses and curves over slip")
+                   ->type_name("FILE.html");
   groupOptions(command, "One wheel");
   auto* cases =
       command.add_option("--cases", options.cases, "solve each row of a CSV file")->type_name("IN.csv");
@@ -147,15 +146,14 @@ std::string libraryText() {
 }  // namespace
 
 void addWheel(CLI::App& app, Context& context) {
-  addCommand<WheelOptions>(
-      app, context,
-      {.name = "wheel",
-       .group = Group::kSoil,
-       .description = "compute sinkage, torque, drawbar pull and side force of a wheel",
-       .examples = "  talus wheel --soil lunar_nominal --rover lunar_micro --slip 0.3\n"
-                   "  talus wheel --cases cases.csv -o forces.csv\n\n" +
-                   libraryText()},
-      bind, run);
+  addCommand<WheelOptions>(app, context,
+                           {.name = "wheel",
+                            .group = Group::kSoil,
+                            .description = "compute sinkage, torque, drawbar pull and side force of a wheel",
+                            .examples = "  talus wheel --soil lunar_nominal --rover lunar_micro --slip 0.3\n"
+                                        "  talus wheel --cases cases.csv -o forces.csv\n\n" +
+                                        libraryText()},
+                           bind, run);
 }
 
 }  // namespace talus::cli

@@ -34,7 +34,8 @@ void addReadOptions(CLI::App& command, MapOptions& options) {
       ->type_name("FACTOR");
   command.add_flag("--ignore-crs", read.ignore_crs,
                    "ignore a wrong CRS and read as local metres (with --resolution)");
-  command.add_flag("--allow-vrt", read.allow_vrt, "read a virtual raster (VRT) whose files lie in its own folder");
+  command.add_flag("--allow-vrt", read.allow_vrt,
+                   "read a virtual raster (VRT) whose files lie in its own folder");
   command
       .add_option("--below", options.below_m,
                   "of an OctoMap: use the ground at or below this elevation, as under a bridge")

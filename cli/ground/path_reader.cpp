@@ -33,8 +33,7 @@ std::vector<Point> readCsv(const std::string& path) {
   for (terramech::CsvRow row; reader.next(row);) {
     Point p;
     const bool good = row.fault.empty() && terramech::parseNumber(row.fields[x], p.x_m) &&
-                      terramech::parseNumber(row.fields[y], p.y_m) && plausible(p.x_m) &&
-                      plausible(p.y_m);
+                      terramech::parseNumber(row.fields[y], p.y_m) && plausible(p.x_m) && plausible(p.y_m);
     if (!good)
       throw InputError({fmt::format("{}:{}", path, row.line),
                         row.fault.empty() ? fmt::format("x_m, y_m: {}", kPlausible) : row.fault,
@@ -83,10 +82,11 @@ void requireNear(const std::vector<Point>& points, const maps::Grid& grid, const
                       east <= grid.width * grid.resolution_m + around_m &&
                       north <= grid.height * grid.resolution_m + around_m;
     if (!near)
-      throw InputError({path,
-                        fmt::format("vertex {} at {:.6g},{:.6g} lies farther than {:.6g} m, a million cells, from the map",
-                                    i + 1, points[i].x_m, points[i].y_m, around_m),
-                        "check the coordinate system"});
+      throw InputError(
+          {path,
+           fmt::format("vertex {} at {:.6g},{:.6g} lies farther than {:.6g} m, a million cells, from the map",
+                       i + 1, points[i].x_m, points[i].y_m, around_m),
+           "check the coordinate system"});
   }
 }
 

@@ -72,8 +72,10 @@ Json originJson(const RouteOrigin& origin) {
 
 Json obstructionJson(const planner::Obstruction& why) {
   const auto place = [](maps::Point p) { return Json{{"x_m", p.x_m}, {"y_m", p.y_m}}; };
-  Json made{{"cells_from_start", why.cells_from_start}, {"cells_to_goal", why.cells_to_goal},
-            {"last", place(why.last)},                  {"first", place(why.first)}};
+  Json made{{"cells_from_start", why.cells_from_start},
+            {"cells_to_goal", why.cells_to_goal},
+            {"last", place(why.last)},
+            {"first", place(why.first)}};
   made["lifting"] = why.lifting ? Json(planner::name(*why.lifting)) : Json(nullptr);
   return made;
 }
@@ -85,8 +87,8 @@ Json summaryJson(const Route& route) {
   Json made;
   made["status"] = std::string(planner::name(route.status));
   if (route.vertices.empty()) {
-    for (const char* key : {"cost", "energy_J", "time_s", "length_m", "max_slip", "max_slope_rad", "lower_bound", "gap",
-                            "immobilisation_risk"})
+    for (const char* key : {"cost", "energy_J", "time_s", "length_m", "max_slip", "max_slope_rad",
+                            "lower_bound", "gap", "immobilisation_risk"})
       made[key] = nullptr;
     made["planner"] = s.planner;
     if (route.obstruction) made["obstruction"] = obstructionJson(*route.obstruction);

@@ -91,7 +91,8 @@ Entry entryOf(CsvRow row, const std::vector<std::optional<std::size_t>>& at) {
     const std::string& field = entry.row.fields[*at[k]];
     if (!terramech::parseNumber(field, entry.wheel_case.*kInputs[k].field))
       entry.fault = fmt::format("{} = '{}', must be a number", kInputs[k].name, field);
-    else if (std::isfinite(entry.wheel_case.*kInputs[k].field) && !plausible(entry.wheel_case.*kInputs[k].field))
+    else if (std::isfinite(entry.wheel_case.*kInputs[k].field) &&
+             !plausible(entry.wheel_case.*kInputs[k].field))
       entry.fault = fmt::format("{} = {}, {}", kInputs[k].name, field, kPlausible);
   }
   return entry;

@@ -118,16 +118,18 @@ Plan FieldPlanner::beyondTheGrid(const Problem& problem, const Stage& stage, con
   if (!plan.points.empty()) return plan;
   if (stop()) return cancelledPlan(stop);
   return failedPlan(RouteStatus::NoneFound,
-                    "no route found, nor a proof that there is none: the ways left allow only single headings; increase the "
+                    "no route found, nor a proof that there is none: the ways left allow only single "
+                    "headings; increase the "
                     "goal tolerance, or choose another goal");
 }
 
-Plan FieldPlanner::finished(const Problem& problem, const Stage& stage, Polyline rough, const StopCheck& stop) {
+Plan FieldPlanner::finished(const Problem& problem, const Stage& stage, Polyline rough,
+                            const StopCheck& stop) {
   const MotionCost cost(problem.map);
   Plan plan{RouteStatus::Found,
             {},
-            withoutCloseVertices(
-                cost, cutWithin(refine_(cost, std::move(rough), problem.threads, stop), stage.to, stage.tolerance_m)),
+            withoutCloseVertices(cost, cutWithin(refine_(cost, std::move(rough), problem.threads, stop),
+                                                 stage.to, stage.tolerance_m)),
             0.0,
             0.0};
   plan.cost_J = cost.along(plan.points);

@@ -82,8 +82,8 @@ Plan TubePlanner::finished(const Problem& leg, Polyline way, const StopCheck& st
   const MotionCost cost(leg.map);
   Plan plan{RouteStatus::Found,
             {},
-            withoutCloseVertices(
-                cost, cutWithin(refine_(cost, std::move(way), leg.threads, stop), leg.goal, leg.goal_tolerance_m)),
+            withoutCloseVertices(cost, cutWithin(refine_(cost, std::move(way), leg.threads, stop), leg.goal,
+                                                 leg.goal_tolerance_m)),
             0.0,
             0.0};
   plan.cost_J = cost.along(plan.points);

@@ -19,7 +19,8 @@ namespace {
 // its end is told by a signal. It may take 10 s of CPU time.
 void requireLoadable(const std::string& path) {
   const pid_t child = ::fork();
-  if (child < 0) throw InputError({path, std::string("cannot be tried: ") + std::strerror(errno), "free some memory"});
+  if (child < 0)
+    throw InputError({path, std::string("cannot be tried: ") + std::strerror(errno), "free some memory"});
   if (child == 0) {
     const rlimit no_core{0, 0}, cpu{10, 10};
     ::setrlimit(RLIMIT_CORE, &no_core);
@@ -32,7 +33,8 @@ void requireLoadable(const std::string& path) {
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   if (WIFSIGNALED(status))
-    throw InputError({path, std::string("ends the process that loads it (") + ::strsignal(WTERMSIG(status)) + ")",
+    throw InputError({path,
+                      std::string("ends the process that loads it (") + ::strsignal(WTERMSIG(status)) + ")",
                       "it is truncated or of another machine: rebuild it"});
 }
 

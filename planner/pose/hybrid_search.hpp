@@ -36,8 +36,9 @@ struct HybridOptions {
   /// A drive that costs at most so many times the estimate of the most promising pose left ends the search
   /// soon, >= 1.
   double suboptimality_bound = 1.03;
-  std::uint64_t improve = 500;              ///< poses tried after that
-  std::uint64_t most_expanded = 150'000;  ///< poses, longer motions counting more: some 2 s; then it ends, NoneFound
+  std::uint64_t improve = 500;  ///< poses tried after that
+  std::uint64_t most_expanded =
+      150'000;  ///< poses, longer motions counting more: some 2 s; then it ends, NoneFound
 };
 
 /// What the search answers.

@@ -43,7 +43,9 @@ bool inside(InCell p) noexcept {
 
 // The share of a unit step that stays well inside a cell.
 double stepInside(InCell from, InCell step) noexcept {
-  const auto room = [](double at, double by) { return by > 0.0 ? (1.0 - at) / by : by < 0.0 ? -at / by : 1.0; };
+  const auto room = [](double at, double by) {
+    return by > 0.0 ? (1.0 - at) / by : by < 0.0 ? -at / by : 1.0;
+  };
   return 0.4 * std::min(room(from.x, step.x), room(from.y, step.y));
 }
 
@@ -184,8 +186,8 @@ class Search {
   // Backwards from the end of the way: where each side is crossed; then the drive through each cell.
   Polyline laid(int last, InCell end) {
     struct Crossing {
-      Cell cell;           // behind it
-      InCell place;        // in that cell
+      Cell cell;     // behind it
+      InCell place;  // in that cell
       double heading_rad;
       int side;
     };
@@ -215,8 +217,11 @@ class Search {
       return true;
     };
     for (auto crossing = crossings.rbegin(); crossing != crossings.rend(); ++crossing) {
-      const InCell h = unit(crossing->heading_rad), out = onSide(otherSide(crossing->side),
-          crossing->side == Side::West || crossing->side == Side::East ? crossing->place.y : crossing->place.x);
+      const InCell h = unit(crossing->heading_rad),
+                   out = onSide(otherSide(crossing->side),
+                                crossing->side == Side::West || crossing->side == Side::East
+                                    ? crossing->place.y
+                                    : crossing->place.x);
       const InCell before = out - std::min(0.2, stepInside(out, -1.0 * h)) * h;
       const InCell behind = crossing->place + std::min(0.2, stepInside(crossing->place, h)) * h;
       if (!drive(before)) return {};

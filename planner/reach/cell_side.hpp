@@ -22,7 +22,8 @@ constexpr int otherSide(int side) noexcept {
 /// The cell beyond a side.
 constexpr maps::Cell beyond(maps::Cell cell, int side) noexcept {
   constexpr std::array<int, 4> kColumns{-1, 1, 0, 0}, kRows{0, 0, -1, 1};
-  return {cell.column + kColumns[static_cast<std::size_t>(side)], cell.row + kRows[static_cast<std::size_t>(side)]};
+  return {cell.column + kColumns[static_cast<std::size_t>(side)],
+          cell.row + kRows[static_cast<std::size_t>(side)]};
 }
 
 /// The heading straight out of a side.
@@ -39,7 +40,10 @@ struct InCell {
 
 /// The place `at`, 0 to 1, on a side.
 constexpr InCell onSide(int side, double at) noexcept {
-  return side == Side::West ? InCell{0.0, at} : side == Side::East ? InCell{1.0, at} : side == Side::South ? InCell{at, 0.0} : InCell{at, 1.0};
+  return side == Side::West    ? InCell{0.0, at}
+         : side == Side::East  ? InCell{1.0, at}
+         : side == Side::South ? InCell{at, 0.0}
+                               : InCell{at, 1.0};
 }
 
 /// From one place of a side to another; empty where from > to.
@@ -48,8 +52,12 @@ struct SideRange {
   double to = -1.0;
 
   bool empty() const noexcept { return from > to; }
-  bool holds(const SideRange& other) const noexcept { return other.empty() || (from <= other.from && other.to <= to); }
-  SideRange hull(const SideRange& other) const noexcept { return {std::min(from, other.from), std::max(to, other.to)}; }
+  bool holds(const SideRange& other) const noexcept {
+    return other.empty() || (from <= other.from && other.to <= to);
+  }
+  SideRange hull(const SideRange& other) const noexcept {
+    return {std::min(from, other.from), std::max(to, other.to)};
+  }
 };
 
 /// Where a drive that turns within a set of headings gets from a place on free ground of one kind: everywhere, or into a
@@ -85,7 +93,9 @@ class DriveCone {
 
  private:
   static double dot(InCell a, InCell b) noexcept { return a.x * b.x + a.y * b.y; }
-  static double least(InCell normal, InCell a, InCell b) noexcept { return std::min(dot(normal, a), dot(normal, b)); }
+  static double least(InCell normal, InCell a, InCell b) noexcept {
+    return std::min(dot(normal, a), dot(normal, b));
+  }
 
   // Places p of a side with sign * normal . p >= least - slack for both normals.
   SideRange clipped(int side, double slack, std::array<double, 2> least, double sign) const noexcept {

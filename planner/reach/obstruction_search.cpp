@@ -33,7 +33,8 @@ std::optional<std::uint8_t> freed(Constraint constraint) {
   return std::nullopt;
 }
 
-bool opens(Constraint constraint, const costmap::CostGrid& map, const Segment& places, double tolerance_m, const StopCheck& stop) {
+bool opens(Constraint constraint, const costmap::CostGrid& map, const Segment& places, double tolerance_m,
+           const StopCheck& stop) {
   const DriveCost cost = without(constraint, map.cost());
   HeadingSets headings(cost, freed(constraint));
   Reach reach(map, headings, Reach::Sense::From, places.from, 0.0, stop);
@@ -82,7 +83,8 @@ const char* remedy(Constraint constraint) noexcept {
     case Constraint::Soil:
       return "soil closes every way: measure the ground there, or choose another goal";
     case Constraint::Hazard:
-      return "hazards, keep-out areas and their clearance close every way: reduce them, or choose another goal";
+      return "hazards, keep-out areas and their clearance close every way: reduce them, or choose another "
+             "goal";
     case Constraint::Unknown:
       return "unobserved ground closes every way: observe it, or choose another goal";
   }
@@ -91,24 +93,8 @@ const char* remedy(Constraint constraint) noexcept {
 
 }  // namespace
 
-const char* name(Constraint constraint) noexcept {
-  switch (constraint) {
-    case Constraint::Pitch:
-      return "pitch";
-    case Constraint::Roll:
-      return "roll";
-    case Constraint::Soil:
-      return "soil";
-    case Constraint::Hazard:
-      return "hazard";
-    case Constraint::Unknown:
-      return "unknown";
-  }
-  return "";
-}
-
-Obstruction obstructionBetween(const costmap::CostGrid& map, const Reach& from_start, const Segment& places, double tolerance_m,
-                               const StopCheck& stop) {
+Obstruction obstructionBetween(const costmap::CostGrid& map, const Reach& from_start, const Segment& places,
+                               double tolerance_m, const StopCheck& stop) {
   Obstruction found;
   HeadingSets headings(map.cost());
   const Reach to_goal(map, headings, Reach::Sense::To, places.to, tolerance_m, stop);
@@ -127,14 +113,17 @@ Obstruction obstructionBetween(const costmap::CostGrid& map, const Reach& from_s
 
 std::string text(const Obstruction& obstruction, const Segment& places) {
   char apart[64];
-  std::snprintf(apart, sizeof apart, " (%.1f m apart)",
-                std::hypot(obstruction.last.x_m - obstruction.first.x_m, obstruction.last.y_m - obstruction.first.y_m));
+  std::snprintf(
+      apart, sizeof apart, " (%.1f m apart)",
+      std::hypot(obstruction.last.x_m - obstruction.first.x_m, obstruction.last.y_m - obstruction.first.y_m));
   std::string line = "no route from " + text(places.from) + " to " + text(places.to) +
                      ", whatever the headings: " + std::to_string(obstruction.cells_from_start) +
                      " cells are reachable from the start, " + std::to_string(obstruction.cells_to_goal) +
-                     " lead to the goal; closest at " + text(obstruction.last) + " and " + text(obstruction.first) + apart;
+                     " lead to the goal; closest at " + text(obstruction.last) + " and " +
+                     text(obstruction.first) + apart;
   if (obstruction.lifting) return line + "; " + remedy(*obstruction.lifting);
-  return line + (obstruction.tried ? "; more than one constraint closes every way: choose another goal" : "; choose another goal");
+  return line + (obstruction.tried ? "; more than one constraint closes every way: choose another goal"
+                                   : "; choose another goal");
 }
 
 }  // namespace talus::planner

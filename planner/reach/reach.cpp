@@ -19,8 +19,8 @@ InCell inCell(const maps::Grid& grid, Cell cell, maps::Point p) noexcept {
 
 }  // namespace
 
-Reach::Reach(const costmap::CostGrid& map, HeadingSets& headings, Sense sense, maps::Point place, double tolerance_m,
-             const StopCheck& stop)
+Reach::Reach(const costmap::CostGrid& map, HeadingSets& headings, Sense sense, maps::Point place,
+             double tolerance_m, const StopCheck& stop)
     : map_(map), headings_(headings), sense_(sense), seen_(map.grid().size(), 0) {
   for (const Cell cell : cellsWithin(map.grid(), place, tolerance_m)) {
     const InCell at = inCell(map.grid(), cell, place);
@@ -45,7 +45,8 @@ const HeadingSet& Reach::headingsOf(Cell cell) {
   const HeadingSet& own = headings_.of(code);
   if (sense_ == Sense::From) return own;
   const auto known = reversed_.find(code.bits());
-  return known != reversed_.end() ? known->second : reversed_.emplace(code.bits(), own.reversed()).first->second;
+  return known != reversed_.end() ? known->second
+                                  : reversed_.emplace(code.bits(), own.reversed()).first->second;
 }
 
 void Reach::enqueue(std::size_t index) {
@@ -86,7 +87,8 @@ bool Reach::mayCross(Cell cell, const HeadingSet& own, int side) {
   if (own.all() && other.all()) return true;
   const HeadingSet both = own.shared(other);
   if (both.empty()) return false;
-  const double off = std::remainder(both.nearest(outwards_rad(side), 0.0) - outwards_rad(side), HeadingSet::kTurn);
+  const double off =
+      std::remainder(both.nearest(outwards_rad(side), 0.0) - outwards_rad(side), HeadingSet::kTurn);
   return std::abs(off) <= 0.25 * HeadingSet::kTurn + kEnds;
 }
 
@@ -94,7 +96,8 @@ void Reach::spread(Cell cell) {
   const HeadingSet& own = headingsOf(cell);
   const DriveCone cone(own);
   const auto found = cones_.find(map_.grid().index(cell));
-  const Entries* entries = found == cones_.end() ? nullptr : &found->second;  // stays where it is when others come
+  const Entries* entries =
+      found == cones_.end() ? nullptr : &found->second;  // stays where it is when others come
   for (int side = 0; side < 4; ++side) {
     if (!map_.grid().contains(beyond(cell, side)) || !mayCross(cell, own, side)) continue;
     const SideRange range = entries == nullptr ? SideRange{0.0, 1.0} : exits(*entries, cone, side);
@@ -124,7 +127,8 @@ bool Reach::reaches(maps::Point place, double tolerance_m) {
     if (entries.has_place && cone.joins(entries.place, entries.place, to, kEnds)) return true;
     for (int side = 0; side < 4; ++side) {
       const SideRange& entry = entries.sides[static_cast<std::size_t>(side)];
-      if (!entry.empty() && cone.joins(onSide(side, entry.from), onSide(side, entry.to), to, kEnds)) return true;
+      if (!entry.empty() && cone.joins(onSide(side, entry.from), onSide(side, entry.to), to, kEnds))
+        return true;
     }
   }
   return false;

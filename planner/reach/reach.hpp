@@ -27,11 +27,13 @@ class Reach {
   enum class Sense { From, To };
 
   /// From a place inside the map, or to it and all places within the tolerance.
-  Reach(const costmap::CostGrid& map, HeadingSets& headings, Sense sense, maps::Point place, double tolerance_m = 0.0,
-        const StopCheck& stop = {});
+  Reach(const costmap::CostGrid& map, HeadingSets& headings, Sense sense, maps::Point place,
+        double tolerance_m = 0.0, const StopCheck& stop = {});
 
   /// Whether a drive may enter the cell.
-  bool holds(maps::Cell cell) const noexcept { return map_.grid().contains(cell) && seen_[map_.grid().index(cell)] != 0; }
+  bool holds(maps::Cell cell) const noexcept {
+    return map_.grid().contains(cell) && seen_[map_.grid().index(cell)] != 0;
+  }
 
   /// Whether a drive may come within the tolerance of a place.
   bool reaches(maps::Point place, double tolerance_m);

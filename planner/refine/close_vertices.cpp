@@ -24,7 +24,8 @@ Polyline withoutCloseVertices(const MotionCost& cost, Polyline points) {
     double least_J = std::numeric_limits<double>::infinity();
     maps::Point best{};
     for (const maps::Point& p : meeting) {
-      Polyline stretch(points.begin() + static_cast<std::ptrdiff_t>(from), points.begin() + static_cast<std::ptrdiff_t>(i));
+      Polyline stretch(points.begin() + static_cast<std::ptrdiff_t>(from),
+                       points.begin() + static_cast<std::ptrdiff_t>(i));
       stretch.push_back(p);
       stretch.insert(stretch.end(), points.begin() + static_cast<std::ptrdiff_t>(i + 2),
                      points.begin() + static_cast<std::ptrdiff_t>(to));

@@ -17,7 +17,8 @@ std::vector<maps::Cell> cellsWithin(const maps::Grid& grid, maps::Point place, d
   std::vector<maps::Cell> cells;
   for (int row = first(y); row <= last(y, grid.height); ++row)
     for (int column = first(x); column <= last(x, grid.width); ++column) {
-      const double dx = std::max({column - x, x - column - 1.0, 0.0}), dy = std::max({row - y, y - row - 1.0, 0.0});
+      const double dx = std::max({column - x, x - column - 1.0, 0.0}),
+                   dy = std::max({row - y, y - row - 1.0, 0.0});
       if (dx * dx + dy * dy <= reach * reach) cells.push_back({column, row});
     }
   return cells;

@@ -71,12 +71,14 @@ HeadingSet::HeadingSet(std::vector<HeadingArc> arcs) {
   std::sort(arcs.begin(), arcs.end(), [](const auto& a, const auto& b) { return a.from_rad < b.from_rad; });
   for (const HeadingArc& arc : arcs) {
     if (!arcs_.empty() && arc.from_rad <= arcs_.back().from_rad + arcs_.back().width_rad)
-      arcs_.back().width_rad = std::max(arcs_.back().width_rad, arc.from_rad + arc.width_rad - arcs_.back().from_rad);
+      arcs_.back().width_rad =
+          std::max(arcs_.back().width_rad, arc.from_rad + arc.width_rad - arcs_.back().from_rad);
     else
       arcs_.push_back(arc);
   }
   // The last may reach round to the first ones.
-  while (arcs_.size() > 1 && arcs_.back().from_rad + arcs_.back().width_rad >= arcs_.front().from_rad + kTurn) {
+  while (arcs_.size() > 1 &&
+         arcs_.back().from_rad + arcs_.back().width_rad >= arcs_.front().from_rad + kTurn) {
     const double end = arcs_.front().from_rad + arcs_.front().width_rad + kTurn;
     arcs_.back().width_rad = std::max(arcs_.back().width_rad, end - arcs_.back().from_rad);
     arcs_.erase(arcs_.begin());
@@ -137,7 +139,8 @@ HeadingSet allowedHeadings(const costmap::DriveCost& cost, costmap::CellCode cel
   return allowedHeadings(cost, cell, {cost, cost.curves()[cell.curve()]});
 }
 
-HeadingSet allowedHeadings(const costmap::DriveCost& cost, costmap::CellCode cell, const HeadingSets::Limits& limits) {
+HeadingSet allowedHeadings(const costmap::DriveCost& cost, costmap::CellCode cell,
+                           const HeadingSets::Limits& limits) {
   const auto finite = [&](double heading) {
     return std::isfinite(cost.costPerMetre(cell, {std::cos(heading), std::sin(heading)}));
   };

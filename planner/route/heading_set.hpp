@@ -55,7 +55,8 @@ class HeadingSet {
 /// outlive it.
 class HeadingSets {
  public:
-  explicit HeadingSets(const costmap::DriveCost& cost, std::optional<std::uint8_t> free = {}) : cost_(cost), free_(free), limits_(cost.curves().size()) {}
+  explicit HeadingSets(const costmap::DriveCost& cost, std::optional<std::uint8_t> free = {})
+      : cost_(cost), free_(free), limits_(cost.curves().size()) {}
   const HeadingSet& of(costmap::CellCode cell);
 
   /// Gradients along, and sizes of gradients across, at which a curve's cost may become finite or infinite.
@@ -75,6 +76,7 @@ class HeadingSets {
 /// along or across passes from one entry of the cost's table to another, the cost is one number; so it is enough to ask
 /// once between each two, and at each. Arcs are widened by 1e-7 rad: no heading is missed by rounding.
 HeadingSet allowedHeadings(const costmap::DriveCost& cost, costmap::CellCode cell);
-HeadingSet allowedHeadings(const costmap::DriveCost& cost, costmap::CellCode cell, const HeadingSets::Limits& limits);
+HeadingSet allowedHeadings(const costmap::DriveCost& cost, costmap::CellCode cell,
+                           const HeadingSets::Limits& limits);
 
 }  // namespace talus::planner

@@ -44,9 +44,11 @@ struct Plan {
   double cost_J = std::numeric_limits<double>::infinity();  ///< exact, by MotionCost
   double lower_bound_J = 0.0;                               ///< no route costs less
   std::size_t goal = 0;  ///< which goal it ends at: 0 is Problem::goal, then the other goals in order
-  bool interrupted = false;  ///< a stop was requested before the work was done: the best route and bound so far
-  std::optional<Obstruction> obstruction{};  ///< of NoRoute, where two required places are cut off from each other
-  PosePath drive{};      ///< of planners of drives: `points` are its chords; no legs for the others
+  bool interrupted =
+      false;  ///< a stop was requested before the work was done: the best route and bound so far
+  std::optional<Obstruction>
+      obstruction{};  ///< of NoRoute, where two required places are cut off from each other
+  PosePath drive{};   ///< of planners of drives: `points` are its chords; no legs for the others
 };
 
 }  // namespace talus::planner

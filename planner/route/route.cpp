@@ -22,4 +22,20 @@ std::string_view name(RouteStatus status) noexcept {
   return "unknown";
 }
 
+const char* name(Constraint constraint) noexcept {
+  switch (constraint) {
+    case Constraint::Pitch:
+      return "pitch";
+    case Constraint::Roll:
+      return "roll";
+    case Constraint::Soil:
+      return "soil";
+    case Constraint::Hazard:
+      return "hazard";
+    case Constraint::Unknown:
+      return "unknown";
+  }
+  return "";
+}
+
 }  // namespace talus::planner

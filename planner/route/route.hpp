@@ -1,12 +1,13 @@
 #pragma once
 
+#include <cstddef>
 #include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include <talus/planner/route/obstruction.hpp>
+#include <talus/maps/grid.hpp>
 #include <talus/terramech/mobility/category.hpp>
 
 namespace talus::planner {
@@ -25,6 +26,29 @@ enum class RouteStatus {
 /// The status as files and JSON spell it: "found", "no_route", "none_found", "start_invalid", "goal_invalid", "timed_out",
 /// "cancelled".
 std::string_view name(RouteStatus status) noexcept;
+
+/// What a mission may do without, or change, to open a way.
+enum class Constraint {
+  Pitch,    ///< slope along the heading, the rover's limit
+  Roll,     ///< slope across the heading, the rover's limit
+  Soil,     ///< what the soil, the motors or the policy give at a slope
+  Hazard,   ///< hazards, keep-out areas and the clearance around them
+  Unknown,  ///< unobserved ground
+};
+
+/// A constraint as files and JSON spell it: "pitch", "roll", "soil", "hazard", "unknown".
+const char* name(Constraint constraint) noexcept;
+
+/// Why nothing connects two places.
+struct Obstruction {
+  std::size_t cells_from_start = 0;  ///< that some drive from the start may enter
+  std::size_t cells_to_goal = 0;     ///< from which some drive may get to the goal
+  maps::Point last{};   ///< where the two sets come closest: middle of a cell reached from the start
+  maps::Point first{};  ///< and of one that leads to the goal
+  bool tried = false;   ///< whether constraints were lifted one by one
+  std::optional<Constraint>
+      lifting{};  ///< the first of them without which a way is open; none if no single one is enough
+};
 
 /// A value that is not known: a layer that the map does not have.
 inline constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
@@ -85,9 +109,10 @@ struct RouteSummary {
 /// A route with everything that a report or a controller needs.
 struct Route {
   RouteStatus status = RouteStatus::NoneFound;
-  std::string reason;  ///< why there is no route and what to do about it, one line; empty when Found
+  std::string reason;        ///< why there is no route and what to do about it, one line; empty when Found
   bool interrupted = false;  ///< a stop was requested before the work was done: the best route so far
-  std::optional<Obstruction> obstruction{};  ///< of NoRoute, where two required places are cut off from each other
+  std::optional<Obstruction>
+      obstruction{};  ///< of NoRoute, where two required places are cut off from each other
   std::vector<RouteVertex> vertices;
   RouteSummary summary;
 };

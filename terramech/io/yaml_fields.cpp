@@ -126,7 +126,8 @@ double toNumber(const State& state, const std::string& name, const YAML::Node& v
     fail(where, name + " = '" + value.Scalar() + "', must be a number", "write it without a unit");
   if (!std::isfinite(number))
     fail(where, name + " = " + value.Scalar() + ", must be finite", "state a number");
-  if (!plausible(number * factor)) fail(where, name + " = " + value.Scalar() + ", " + kPlausible, "check its unit");
+  if (!plausible(number * factor))
+    fail(where, name + " = " + value.Scalar() + ", " + kPlausible, "check its unit");
   return number * factor;
 }
 

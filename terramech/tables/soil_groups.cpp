@@ -72,7 +72,8 @@ std::string groupsThatDisagree(const WheelRows& rows, const SoilPosterior& poste
   const auto& [name, group] = *std::ranges::max_element(
       worst_groups, {}, [](const auto& entry) { return entry.second.chiSquared(); });
   return fmt::format(
-      "one soil does not fit all values of {0}: mean residual {2:.1f} sigma at {0} = {1}; split the file by {0}",
+      "one soil does not fit all values of {0}: mean residual {2:.1f} sigma at {0} = {1}; split the file by "
+      "{0}",
       *worst, name, group.departure());
 }
 

@@ -18,9 +18,9 @@ struct TraceOptions {
   double significance = 0.05;  ///< share of tables without an effect in which one may be found
   int max_effects = 7;
   double least_share = 0.0;  ///< chi-squared a value that an effect must carry
-  int fits = 6;           ///< known forms that are fitted inside the full model, a round; of curves half
-  int draws = 199;        ///< tables drawn from the null: p-values from 0.005 on
-  bool fit_soil = false;  ///< the base soil is not given: it is fitted from the data
+  int fits = 6;              ///< known forms that are fitted inside the full model, a round; of curves half
+  int draws = 199;           ///< tables drawn from the null: p-values from 0.005 on
+  bool fit_soil = false;     ///< the base soil is not given: it is fitted from the data
   std::uint64_t seed = 1;
 };
 

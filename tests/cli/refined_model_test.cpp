@@ -18,7 +18,7 @@ std::string hills() {
   std::string text = "ncols 60\nnrows 60\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -9999\n";
   for (int row = 0; row < 60; ++row) {
     for (int column = 0; column < 60; ++column)
-      text += std::to_string(0.35 * std::sin(0.17 * column) + 0.3 * std::cos(0.14 * (59 - row))) + " ";
+      text += std::to_string(0.2 * std::sin(0.17 * column) + 0.17 * std::cos(0.14 * (59 - row))) + " ";
     text += "\n";
   }
   return text;

@@ -87,19 +87,25 @@ TEST(UpdateCommand, KilledAtAnyMomentTheRetryCountsTheDriveOnce) {
     ASSERT_EQ(site.content("retry.ot"), whole) << kill;
     EXPECT_EQ(site.replay("evidence.db", "again.ot")["rows_used"], 60);
     ASSERT_EQ(site.content("again.ot"), whole) << kill;
-    for (const char* name : {"evidence.db", "evidence.db-wal", "evidence.db-shm", "out.ot", "retry.ot", "again.ot"})
+    for (const char* name :
+         {"evidence.db", "evidence.db-wal", "evidence.db-shm", "out.ot", "retry.ot", "again.ot"})
       std::filesystem::remove(site.folder / name);
   }
 }
 
 TEST(UpdateCommand, AFailedOneLeavesTheJournalAsItWas) {
   const Site site;
-  EXPECT_EQ(runTalus({"update", "map.ot", "t.csv", "-o", "no/out.ot", "--journal", "e.db"}, site.folder.path()).code,
-            2);
+  EXPECT_EQ(
+      runTalus({"update", "map.ot", "t.csv", "-o", "no/out.ot", "--journal", "e.db"}, site.folder.path())
+          .code,
+      2);
   site.folder.write("off.csv", "time_s,x_m,y_m,slope_rad,load_N,slip\n1,900,900,0,10,0.3\n");
-  EXPECT_EQ(runTalus({"update", "map.ot", "off.csv", "-o", "out.ot", "--journal", "e.db"}, site.folder.path()).code,
-            2);
-  EXPECT_EQ(runTalus({"update", "map.ot", "t.csv", "-o", "out.ot", "--journal", "e.db"}, site.folder.path()).code, 0);
+  EXPECT_EQ(
+      runTalus({"update", "map.ot", "off.csv", "-o", "out.ot", "--journal", "e.db"}, site.folder.path()).code,
+      2);
+  EXPECT_EQ(
+      runTalus({"update", "map.ot", "t.csv", "-o", "out.ot", "--journal", "e.db"}, site.folder.path()).code,
+      0);
   EXPECT_EQ(site.replay("e.db", "again.ot")["rows_used"], 60);
   EXPECT_EQ(site.content("again.ot"), site.content("out.ot"));
 }
@@ -108,8 +114,10 @@ TEST(UpdateCommand, AFailedOneLeavesTheJournalAsItWas) {
 TEST(UpdateCommand, TheSameDriveTwiceCountsOnceAndIsTold) {
   const Site site;
   site.folder.write("copy.csv", site.content("t.csv"));
-  ASSERT_EQ(runTalus({"update", "map.ot", "t.csv", "-o", "a.ot", "--journal", "e.db"}, site.folder.path()).code, 0);
-  const Ran again = runTalus({"update", "a.ot", "copy.csv", "-o", "b.ot", "--journal", "e.db"}, site.folder.path());
+  ASSERT_EQ(
+      runTalus({"update", "map.ot", "t.csv", "-o", "a.ot", "--journal", "e.db"}, site.folder.path()).code, 0);
+  const Ran again =
+      runTalus({"update", "a.ot", "copy.csv", "-o", "b.ot", "--journal", "e.db"}, site.folder.path());
   EXPECT_EQ(again.code, 0);
   EXPECT_THAT(again.err, testing::HasSubstr("holds this drive already; it counts once"));
   EXPECT_EQ(site.content("a.ot"), site.content("b.ot"));

@@ -65,8 +65,9 @@ void change(const std::string& path, const char* sql) {
 // Rows of a journal without heights are on top: theirs is not known.
 TEST_F(EvidenceJournalTest, TakesOverJournalsWithoutHeights) {
   { EvidenceJournal(path()).append("a", {row(7)}); }
-  change(path(), "ALTER TABLE evidence DROP COLUMN z_m; DROP INDEX of_drive; ALTER TABLE evidence DROP COLUMN drive;"
-                 "DROP TABLE drive; PRAGMA user_version = 1");
+  change(path(),
+         "ALTER TABLE evidence DROP COLUMN z_m; DROP INDEX of_drive; ALTER TABLE evidence DROP COLUMN drive;"
+         "DROP TABLE drive; PRAGMA user_version = 1");
   EvidenceJournal journal(path());
   JournalRow high = row(8);
   high.reading.z_m = -2500.0 / 3.0;
@@ -118,11 +119,14 @@ TEST_F(EvidenceJournalTest, WhatIsNotCommittedIsNotThere) {
 // Property: no change to a row by another hand is replayed, whichever column, whether or not the value is possible.
 TEST_F(EvidenceJournalTest, RefusesRowsThatWereChanged) {
   for (const char* sql :
-       {"UPDATE evidence SET pull = 9e999", "UPDATE evidence SET pull = NULL", "UPDATE evidence SET pull = 0.11",
-        "UPDATE evidence SET sinkage_std = 0", "UPDATE evidence SET line = 8", "UPDATE evidence SET torque_Nm = 1",
+       {"UPDATE evidence SET pull = 9e999", "UPDATE evidence SET pull = NULL",
+        "UPDATE evidence SET pull = 0.11", "UPDATE evidence SET sinkage_std = 0",
+        "UPDATE evidence SET line = 8", "UPDATE evidence SET torque_Nm = 1",
         "UPDATE evidence SET reason = 'x'", "UPDATE evidence SET accepted = 0", "DELETE FROM evidence",
-        "INSERT INTO evidence SELECT 99, source, line, accepted, reason, time_s, x_m, y_m, load_N, slip, torque_Nm,"
-        " sinkage_m, gradient, drawbar_pull_N, pass_index, pull, pull_std, sinkage, sinkage_std, z_m, pose_std_m,"
+        "INSERT INTO evidence SELECT 99, source, line, accepted, reason, time_s, x_m, y_m, load_N, slip, "
+        "torque_Nm,"
+        " sinkage_m, gradient, drawbar_pull_N, pass_index, pull, pull_std, sinkage, sinkage_std, z_m, "
+        "pose_std_m,"
         " pull_may_raise, sinkage_may_raise, drive, pull_here, sinkage_here FROM evidence"}) {
     std::filesystem::remove(path());
     { EvidenceJournal(path()).append("a", {row(7)}); }
@@ -134,8 +138,9 @@ TEST_F(EvidenceJournalTest, RefusesRowsThatWereChanged) {
 
 // Rows of older formats have no checksum: their values are judged by themselves.
 TEST_F(EvidenceJournalTest, RefusesValuesThatNoWheelGives) {
-  for (const char* sql : {"pull = 9e999", "pull = NULL", "pull = 1e300", "sinkage = NULL", "pull_std = -1",
-                          "x_m = 9e999", "y_m = NULL", "pull_std = NULL", "pose_std_m = 9e999", "z_m = 9e999"}) {
+  for (const char* sql :
+       {"pull = 9e999", "pull = NULL", "pull = 1e300", "sinkage = NULL", "pull_std = -1", "x_m = 9e999",
+        "y_m = NULL", "pull_std = NULL", "pose_std_m = 9e999", "z_m = 9e999"}) {
     std::filesystem::remove(path());
     { EvidenceJournal(path()).append("a", {row(7)}); }
     change(path(), ("UPDATE drive SET checksum = NULL; UPDATE evidence SET " + std::string(sql)).c_str());

@@ -12,8 +12,12 @@ class Fuzz : public testing::TestWithParam<Target> {};
 
 // One to eight bytes changed, taken out, doubled, or replaced by what tends to hurt.
 std::string changed(std::string bytes, std::mt19937& random) {
-  static const std::string_view kWords[] = {"nan", "-1", "1e308", "0", "99999999999", "\xFF\xFF\xFF\xFF", "[[[[[[[[", "\"", "\n", ",", "{", "../", "inf"};
-  const auto at = [&](std::size_t size) { return std::uniform_int_distribution<std::size_t>(0, size)(random); };
+  static const std::string_view kWords[] = {"nan",      "-1", "1e308", "0", "99999999999", "\xFF\xFF\xFF\xFF",
+                                            "[[[[[[[[", "\"", "\n",    ",", "{",           "../",
+                                            "inf"};
+  const auto at = [&](std::size_t size) {
+    return std::uniform_int_distribution<std::size_t>(0, size)(random);
+  };
   for (std::size_t k = 0; k <= at(7); ++k) {
     const std::size_t place = at(bytes.size());
     switch (at(5)) {
@@ -40,7 +44,8 @@ std::string changed(std::string bytes, std::mt19937& random) {
 }
 
 TEST_P(Fuzz, SeedsAreAccepted) {
-  for (const std::string& seed : GetParam().seeds) EXPECT_TRUE(accepts(GetParam(), seed)) << seed.substr(0, 200);
+  for (const std::string& seed : GetParam().seeds)
+    EXPECT_TRUE(accepts(GetParam(), seed)) << seed.substr(0, 200);
 }
 
 // Property: no bytes end the reader by anything but an error of input.

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include <nlohmann/json.hpp>
+#include <site_map.hpp>
 #include <unistd.h>
 #include <yaml-cpp/exceptions.h>
 
@@ -27,8 +28,6 @@
 #include <talus/terramech/io/soil_library.hpp>
 #include <talus/terramech/io/telemetry_reader.hpp>
 
-#include <site_map.hpp>
-
 namespace talus::fuzz {
 namespace {
 
@@ -37,7 +36,8 @@ namespace fs = std::filesystem;
 // One file of this process, whatever its ending; in memory where the machine has such a folder.
 std::string fileOf(const std::string& bytes, const std::string& ending) {
   static const fs::path folder = [] {
-    std::string name = (fs::is_directory("/dev/shm") ? "/dev/shm" : fs::temp_directory_path().string()) + "/talus-fuzz-XXXXXX";
+    std::string name = (fs::is_directory("/dev/shm") ? "/dev/shm" : fs::temp_directory_path().string()) +
+                       "/talus-fuzz-XXXXXX";
     return fs::path(::mkdtemp(name.data()));
   }();
   const fs::path path = folder / ("input" + ending);
@@ -54,7 +54,8 @@ std::string numpy(const std::string& shape, std::size_t numbers) {
 
 maps::ElevationMap flat() {
   maps::ElevationMap map;
-  map.elevation_m = maps::Raster<float>({.width = 20, .height = 20, .resolution_m = 1.0, .south_west = {0, 0}}, 0.0F);
+  map.elevation_m =
+      maps::Raster<float>({.width = 20, .height = 20, .resolution_m = 1.0, .south_west = {0, 0}}, 0.0F);
   return map;
 }
 
@@ -67,7 +68,8 @@ void readYaml(const std::string& bytes) {
   std::size_t refused = 0;
   for (const auto& read : {std::function<void()>([&] { terramech::loadSoil(path); }),
                            std::function<void()>([&] { terramech::loadRover(path); }),
-                           std::function<void()>([&] { terramech::loadModel(path); })}) try {
+                           std::function<void()>([&] { terramech::loadModel(path); })})
+    try {
       read();
     } catch (const InputError&) {
       ++refused;
@@ -145,7 +147,9 @@ std::vector<Target> all() {
   for (int depth = 0; depth < 16; ++depth) octree += std::string("\0\0\0\0\x01", 5);
   octree += std::string("\0\0\x80\x3f\0", 5);
   return {
-      {"telemetry", {"load_N,slip,sinkage_m,run\n10,0.2,0.01,a\n20,0.3,,b\n", "slip,load_N\n0.1,5\n"}, readTelemetry},
+      {"telemetry",
+       {"load_N,slip,sinkage_m,run\n10,0.2,0.01,a\n20,0.3,,b\n", "slip,load_N\n0.1,5\n"},
+       readTelemetry},
       {"yaml",
        {"name: s\ncohesion_Pa: 500\nfriction_angle_deg: 30\nsinkage_exponent: 1\ncohesive_modulus: 1400\n"
         "frictional_modulus: 820000\nshear_modulus_m: 0.02\nc1: 0.3\nc2: 0\n",
@@ -159,7 +163,9 @@ std::vector<Target> all() {
         R"("coordinates":[[[1,1],[5,1],[5,5],[1,1]]]}}]})",
         R"({"type":"GeometryCollection","geometries":[{"type":"MultiPolygon","coordinates":[[[[1,1],[9,1],[9,9],[1,1]]]]}]})"},
        readGeoJson},
-      {"npy", {numpy("2, 3", 6), numpy("", 1)}, [](const std::string& bytes) { maps::parseNumpy(bytes, "npy"); }},
+      {"npy",
+       {numpy("2, 3", 6), numpy("", 1)},
+       [](const std::string& bytes) { maps::parseNumpy(bytes, "npy"); }},
       {"npz", {}, readNumpyArchive},
       {"map", {mapBytes()}, readMap},
       {"octree", {octree}, readOctree},

@@ -49,7 +49,8 @@ Rooms partsIncluded() {
       const std::string from = partOf(file.lexically_relative(TALUS_SOURCE_DIR).generic_string());
       arrows[from];
       for (std::sregex_iterator i(source.begin(), source.end(), include), end; i != end; ++i)
-        if (const std::string to = partOf((*i)[1]); to != from && to != "talus.hpp" && to != "plausible.hpp") arrows[from].insert(to);
+        if (const std::string to = partOf((*i)[1]); to != from && to != "talus.hpp" && to != "plausible.hpp")
+          arrows[from].insert(to);
     }
   return arrows;
 }

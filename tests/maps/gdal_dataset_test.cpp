@@ -17,7 +17,8 @@ TEST(GdalDataset, OnlyAFileWithBytesIsReadable) {
   EXPECT_THAT(line(folder / "inner"), HasSubstr("is a directory"));
   EXPECT_THAT(line(folder.write("empty", "")), HasSubstr("is empty"));
   EXPECT_EQ(line(folder.write("full", "x")), "accepted");
-  EXPECT_THAT(line("/vsimem/whatever"), testing::HasSubstr("no such file"));  // none of GDAL's own file systems
+  EXPECT_THAT(line("/vsimem/whatever"),
+              testing::HasSubstr("no such file"));  // none of GDAL's own file systems
   EXPECT_THAT(line("/dev/zero"), testing::HasSubstr("is a device"));
 }
 

@@ -17,11 +17,12 @@ TEST(KeepOutReader, EveryCellThatAnAreaTouches) {
 TEST(KeepOutReader, AreasThatReachFarAreCut) {
   const TemporaryFolder folder;
   const auto cells = [&](const std::string& ring) {
-    const std::string path = folder.write(
-        "k.geojson", R"({"type":"Polygon","crs":"local","coordinates":[[)" + ring + "]]}");
+    const std::string path =
+        folder.write("k.geojson", R"({"type":"Polygon","crs":"local","coordinates":[[)" + ring + "]]}");
     return drawing(readKeepOut(path, map(folder)));
   };
-  EXPECT_EQ(cells("[500015,-1e12],[1e12,-1e12],[1e12,1e12],[500015,1e12],[500015,-1e12]"), "0111\n0111\n0111\n");
+  EXPECT_EQ(cells("[500015,-1e12],[1e12,-1e12],[1e12,1e12],[500015,1e12],[500015,-1e12]"),
+            "0111\n0111\n0111\n");
   EXPECT_EQ(cells("[-1e14,-1e14],[1e14,-1e14],[1e14,1e14],[-1e14,1e14],[-1e14,-1e14]"), "1111\n1111\n1111\n");
   EXPECT_THROW(cells("[1e9,1e9],[2e9,1e9],[2e9,2e9],[1e9,1e9]"), InputError);
 }

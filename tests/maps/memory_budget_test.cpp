@@ -11,7 +11,8 @@ TEST(MemoryBudget, RefusesWhatExceedsItAndSaysHowMuch) {
     requireMemory(6.2e9, "big.ot");
     ADD_FAILURE();
   } catch (const InputError& e) {
-    EXPECT_THAT(e.what(), testing::StartsWith("big.ot: needs 6.2 GB, more than the memory budget of 2.15 GB"));
+    EXPECT_THAT(e.what(),
+                testing::StartsWith("big.ot: needs 6.2 GB, more than the memory budget of 2.15 GB"));
     EXPECT_THAT(e.what(), testing::HasSubstr("--max-memory"));
   }
   setMemoryBudget(0);

@@ -35,9 +35,11 @@ TEST(NumpyArray, FortranOrderAndSingleNumbers) {
 }
 
 TEST(NumpyArray, ANumberWithoutDataIsRefused) {
-  EXPECT_THROW(parseNumpy(file("{'descr': '<f8', 'fortran_order': False, 'shape': (), }\n", ""), "a"), InputError);
-  EXPECT_THROW(parseNumpy(file("{'descr': '<f8', 'fortran_order': False, 'shape': (3,), }\n", "1234567"), "a"),
+  EXPECT_THROW(parseNumpy(file("{'descr': '<f8', 'fortran_order': False, 'shape': (), }\n", ""), "a"),
                InputError);
+  EXPECT_THROW(
+      parseNumpy(file("{'descr': '<f8', 'fortran_order': False, 'shape': (3,), }\n", "1234567"), "a"),
+      InputError);
 }
 
 TEST(NumpyArray, BadBytesAreRefused) {

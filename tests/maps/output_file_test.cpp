@@ -1,9 +1,8 @@
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
 #include <vector>
-
-#include <filesystem>
 
 #include <sys/stat.h>
 #include <unistd.h>
@@ -88,7 +87,8 @@ TEST(OutputFile, LeavesADeviceAndAFifoWhatTheyAre) {
   writeFile("/dev/null", "gone");
   EXPECT_TRUE(fs::is_character_file("/dev/null"));
   ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
-  EXPECT_THAT(refusal(folder / "pipe"), HasSubstr("cannot be written"));  // nobody reads: told, not waited for
+  EXPECT_THAT(refusal(folder / "pipe"),
+              HasSubstr("cannot be written"));  // nobody reads: told, not waited for
   EXPECT_TRUE(fs::is_fifo(folder / "pipe"));
 }
 

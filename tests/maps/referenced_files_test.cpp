@@ -31,8 +31,8 @@ class ReferencedFiles : public testing::Test {
 };
 
 std::string virtualRaster(const std::string& source, const std::string& more = "") {
-  return "<VRTDataset rasterXSize=\"20\" rasterYSize=\"20\"><VRTRasterBand dataType=\"Byte\" band=\"1\">" + more +
-         "<SimpleSource><SourceFilename relativeToVRT=\"1\">" + source +
+  return "<VRTDataset rasterXSize=\"20\" rasterYSize=\"20\"><VRTRasterBand dataType=\"Byte\" band=\"1\">" +
+         more + "<SimpleSource><SourceFilename relativeToVRT=\"1\">" + source +
          "</SourceFilename></SimpleSource></VRTRasterBand></VRTDataset>";
 }
 
@@ -52,7 +52,8 @@ TEST_F(ReferencedFiles, NothingLeavesTheFolder) {
     EXPECT_NE(said("Object = IsisCube\n  ^Core = \"" + std::string(source) + "\"\n"), "") << source;
     EXPECT_NE(said("PDS_VERSION_ID = PDS3\n^IMAGE = (\"" + std::string(source) + "\", 3)\n"), "") << source;
   }
-  EXPECT_THAT(said(virtualRaster("a.tif", "<PixelFunctionType>x</PixelFunctionType>"), true), testing::HasSubstr("code"));
+  EXPECT_THAT(said(virtualRaster("a.tif", "<PixelFunctionType>x</PixelFunctionType>"), true),
+              testing::HasSubstr("code"));
   // A raw band names its file, too.
   EXPECT_NE(said("<VRTDataset><VRTRasterBand subClass=\"VRTRawRasterBand\"><SourceFilename>/etc/passwd"
                  "</SourceFilename></VRTRasterBand></VRTDataset>",

@@ -9,12 +9,13 @@ namespace talus::planner::testing {
 /// A plane of 40 x 40 cells of a metre, steeper than may be climbed or descended, whose contour runs on a heading; only
 /// headings near it are allowed.
 inline std::shared_ptr<const costmap::CostGrid> contourPlane(double contour_rad, double gradient = 0.42) {
-  maps::Raster<costmap::CellCode> cells(
-      {.width = 40, .height = 40, .resolution_m = 1.0, .south_west = {}},
-      costmap::CellCode({.dz_dx = -gradient * std::sin(contour_rad), .dz_dy = gradient * std::cos(contour_rad), .curve = 0}));
-  return std::make_shared<costmap::CostGrid>(
-      costmap::flattened(cells, std::make_shared<costmap::DriveCost>(costmap::DriveCost::Limits{.max_along = 0.05, .max_across = 0.6},
-                                                                     std::vector{curve({})})));
+  maps::Raster<costmap::CellCode> cells({.width = 40, .height = 40, .resolution_m = 1.0, .south_west = {}},
+                                        costmap::CellCode({.dz_dx = -gradient * std::sin(contour_rad),
+                                                           .dz_dy = gradient * std::cos(contour_rad),
+                                                           .curve = 0}));
+  return std::make_shared<costmap::CostGrid>(costmap::flattened(
+      cells, std::make_shared<costmap::DriveCost>(
+                 costmap::DriveCost::Limits{.max_along = 0.05, .max_across = 0.6}, std::vector{curve({})})));
 }
 
 }  // namespace talus::planner::testing

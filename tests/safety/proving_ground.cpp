@@ -181,7 +181,7 @@ void teach(const Places& places, ProvingGround& ground, Random& random) {
 }
 
 void choosePairs(const Places& places, ProvingGround& ground, Random& random) {
-  constexpr int kDraws = 6;
+  constexpr int kDraws = 16;
   for (std::size_t pair = 0; pair < kPairs; ++pair)
     for (int draw = 1; draw <= kDraws; ++draw) {
       const Place start = somewhere(ground, random), goal = somewhere(ground, random);

@@ -26,9 +26,11 @@ TEST(NumberCheck, NoOptionTakesAnImpossibleNumber) {
     }
     return "";
   };
-  for (const char* bad : {"nan", "-nan", "NaN", "inf", "-Infinity", "1e999", "1e-300", "1e300", "5,nan", "nand,3d"})
+  for (const char* bad :
+       {"nan", "-nan", "NaN", "inf", "-Infinity", "1e999", "1e-300", "1e300", "5,nan", "nand,3d"})
     EXPECT_THAT(said(bad), testing::HasSubstr("--risk ")) << bad;
-  for (const char* good : {"0", "0.5", "-3", "18446744073709551615", "x.tif", "nano.tif", "./nan", "3d,4d", "1e-9"})
+  for (const char* good :
+       {"0", "0.5", "-3", "18446744073709551615", "x.tif", "nano.tif", "./nan", "3d,4d", "1e-9"})
     EXPECT_EQ(said(good), "") << good;
 }
 

@@ -30,9 +30,11 @@ TEST(CheckOutput, KeepsInputsJournalsDevicesAndForeignLinks) {
   fs::create_symlink(other / "far", folder / "link");
   fs::create_symlink("in.csv", folder / "near");
   ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
-  EXPECT_THAT(refusal(folder / "in.csv", {folder.path().string() + "/./in.csv"}), testing::HasSubstr("also an input"));
-  EXPECT_THAT(refusal(folder / "new", {folder.path().string() + "/../" + folder.path().filename().string() + "/new"}),
+  EXPECT_THAT(refusal(folder / "in.csv", {folder.path().string() + "/./in.csv"}),
               testing::HasSubstr("also an input"));
+  EXPECT_THAT(
+      refusal(folder / "new", {folder.path().string() + "/../" + folder.path().filename().string() + "/new"}),
+      testing::HasSubstr("also an input"));
   EXPECT_THAT(refusal(folder / "near", {folder / "in.csv"}), testing::HasSubstr("also an input"));
   EXPECT_THAT(refusal(folder / "e.db"), testing::HasSubstr("SQLite"));
   EXPECT_THAT(refusal(folder / "link"), testing::HasSubstr("link to another folder"));
@@ -54,12 +56,13 @@ TEST(CheckOutput, HoldsForEveryCall) {
     words.insert(words.end(), more.begin(), more.end());
     return words;
   };
-  expectRefused(files, {{call({"costmap"}, {"-o", "./good.asc"}), 2, "also an input"},
-                        {call({"costmap"}, {"-o", "m.ot", "--png", "m.ot"}), 2, "another output"},
-                        {call({"costmap"}, {"-o", "/dev/null"}), 2, "device"},
-                        {{"wheel", "--cases", "words.csv", "-o", "words.csv"}, 2, "also an input"},
-                        {{"update", "m.ot", "words.csv", "-o", "j.db", "--journal", "j.db"}, 2, "also an input"},
-                        {{"plan", "mission.yaml"}, 2, "is no route"}});
+  expectRefused(files,
+                {{call({"costmap"}, {"-o", "./good.asc"}), 2, "also an input"},
+                 {call({"costmap"}, {"-o", "m.ot", "--png", "m.ot"}), 2, "another output"},
+                 {call({"costmap"}, {"-o", "/dev/null"}), 2, "device"},
+                 {{"wheel", "--cases", "words.csv", "-o", "words.csv"}, 2, "also an input"},
+                 {{"update", "m.ot", "words.csv", "-o", "j.db", "--journal", "j.db"}, 2, "also an input"},
+                 {{"plan", "mission.yaml"}, 2, "is no route"}});
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ json run(const Folder& folder, std::vector<std::string> words) {
 TEST(CostmapCommand, CategoriesCountEveryCellAndStay) {
   const Folder folder;
   folder.write("dem.asc", asciiGrid(50, 40, block));
-  const std::vector<std::string> ground{"dem.asc",    "--resolution", "1",   "--soil",
+  const std::vector<std::string> ground{"dem.asc",    "--resolution", "1",  "--soil",
                                         "sandy_loam", "--rover",      "mer"};
   const auto with = [&ground](const std::vector<std::string>& more) {
     auto words = ground;

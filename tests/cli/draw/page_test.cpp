@@ -86,8 +86,9 @@ TEST(Page, DrawsMapProfilesAndSummary) {
 TEST(Page, NamesFromFilesAreTextInEveryPlace) {
   TALUS_REQUIRE(test::installed("chromium"), "chromium is not installed");
   for (const std::string name :
-       {"<!--<script>", "</script><script>document.body.dataset.hit=1</script>", "<img src=x onerror='document.body.dataset.hit=1'>",
-        "\"'><svg onload=document.body.dataset.hit=1>", "@TALUS_DATA@", "\xE2\x80\xA8 ]]> & &lt;"}) {
+       {"<!--<script>", "</script><script>document.body.dataset.hit=1</script>",
+        "<img src=x onerror='document.body.dataset.hit=1'>", "\"'><svg onload=document.body.dataset.hit=1>",
+        "@TALUS_DATA@", "\xE2\x80\xA8 ]]> & &lt;"}) {
     Scene scene = exampleScene();
     scene.title = scene.subtitle = name;
     scene.facts.emplace_back(name, name);

@@ -47,6 +47,7 @@ TEST(RouteSummary, OfARouteWithoutLengthSaysSo) {
 
 TEST(RouteSummary, OfNoRouteIsItsReason) {
   planner::Route route;
+  route.status = planner::RouteStatus::NoRoute;
   route.reason = "a cliff";
   EXPECT_EQ(summaryText(route), "route                no_route: a cliff\n");
 }

@@ -79,8 +79,10 @@ TEST(FieldPlanner, SaysWhyThereIsNoRoute) {
   FieldPlanner planner;
   const Plan walled = planner.plan(problem(map, {0.5, 0.5}, {4.5, 1.5}));
   EXPECT_EQ(walled.status, RouteStatus::NoRoute);
-  EXPECT_THAT(walled.reason,
-              HasSubstr("6 cells are reachable from the start, 5 lead to the goal; closest at 1.50,0.50 and 3.50,1.50"));
+  EXPECT_THAT(
+      walled.reason,
+      HasSubstr(
+          "6 cells are reachable from the start, 5 lead to the goal; closest at 1.50,0.50 and 3.50,1.50"));
   const Plan on_wall = planner.plan(problem(map, {2.5, 0.5}, {4.5, 1.5}));
   EXPECT_EQ(on_wall.status, RouteStatus::StartInvalid);
   EXPECT_THAT(on_wall.reason,
@@ -99,8 +101,9 @@ TEST(FieldPlanner, HeadingsThatTheGridLacksAreFound) {
     const double contour = 0.2 + k * 0.2618;
     const auto map = testing::contourPlane(contour);
     FieldPlanner planner;
-    const Plan plan = planner.plan(problem(map, {20.0 - 14.0 * std::cos(contour), 20.0 - 14.0 * std::sin(contour)},
-                                           {20.0 + 14.0 * std::cos(contour), 20.0 + 14.0 * std::sin(contour)}));
+    const Plan plan =
+        planner.plan(problem(map, {20.0 - 14.0 * std::cos(contour), 20.0 - 14.0 * std::sin(contour)},
+                             {20.0 + 14.0 * std::cos(contour), 20.0 + 14.0 * std::sin(contour)}));
     ASSERT_EQ(plan.status, RouteStatus::Found) << contour << plan.reason;
     EXPECT_TRUE(violations(*map, plan.points).empty());
     EXPECT_LE(length_m(plan.points), 1.02 * 28.0);

@@ -47,7 +47,7 @@ TEST(WindowedPlan, WhereTheOverviewShowsNoWayItSaysWhatToDo) {
                       }});
   Problem problem = problemOn(walled, {150.0, 0.0}, {1400.0, 600.0});
   const Plan plan = planInWindows(problem, walled);
-  EXPECT_EQ(plan.status, RouteStatus::NoRoute);
+  EXPECT_EQ(plan.status, RouteStatus::NoneFound);
   EXPECT_THAT(plan.reason, HasSubstr("no route found on the overview; plan on a part with --window"));
   EXPECT_EQ(asked, 0);
 }

@@ -173,7 +173,8 @@ TEST(RouteCheckOfDrives, FindsWhatAnArcGrazes) {
   const PosePath arc{.start = {{1.0, 1.0}, M_PI / 2}, .legs = {{{3.0 * M_PI / 2, -1.0 / 3.0}, 0.0}}};
   EXPECT_TRUE(violations(*map, std::vector<maps::Point>{{1.0, 1.0}, {4.0, 4.0}}).empty());
   EXPECT_FALSE(violations(*map, arc, 3.0).empty());
-  EXPECT_NE(violations(*map, arc, 4.0).front().reason.find("below the minimum turning radius"), std::string::npos);
+  EXPECT_NE(violations(*map, arc, 4.0).front().reason.find("below the minimum turning radius"),
+            std::string::npos);
 }
 
 TEST(RouteCheckOfDrives, ATurnInPlaceNeedsEveryHeading) {

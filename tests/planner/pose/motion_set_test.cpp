@@ -42,7 +42,9 @@ TEST(MotionSet, MotionsEndWhereTheirLegsLead) {
 // Closed form: arcs of 200 times the radius are 200 times as long.
 TEST(MotionSet, WorkGrowsWithTheLengthOfItsMotions) {
   const auto map = drawn({".....", "....."});
-  const auto work = [&](double radius_m) { return MotionSet(*map, {.turning_radius_m = radius_m}, kOptions).work(); };
+  const auto work = [&](double radius_m) {
+    return MotionSet(*map, {.turning_radius_m = radius_m}, kOptions).work();
+  };
   EXPECT_EQ(work(4.0), 1U);
   EXPECT_NEAR(static_cast<double>(work(4000.0)) / static_cast<double>(work(400.0)), 10.0, 1.0);
 }

@@ -10,7 +10,8 @@
 namespace talus::planner {
 namespace {
 
-Polyline routed(const std::shared_ptr<const costmap::CostGrid>& map, const Segment& places, double tolerance_m = 0.0) {
+Polyline routed(const std::shared_ptr<const costmap::CostGrid>& map, const Segment& places,
+                double tolerance_m = 0.0) {
   const MotionCost cost(map);
   HeadingSets headings(map->cost());
   return cellRoute(cost, headings, places, tolerance_m);
@@ -40,7 +41,8 @@ TEST(CellRoute, ClimbsInTurns) {
 TEST(CellRoute, IsAllowedAndMostlyFound) {
   int found = 0, missed = 0;
   for (unsigned seed = 1; seed <= 200; ++seed) {
-    const auto map = testing::randomMap({.width = 9, .height = 9, .seed = seed, .blocked = 0.2, .roughness = 0.38});
+    const auto map =
+        testing::randomMap({.width = 9, .height = 9, .seed = seed, .blocked = 0.2, .roughness = 0.38});
     const Segment places{{1.3, 1.4}, {7.6, 7.8}};
     const MotionCost cost(map);
     if (!cost.allowed(places.from) || !cost.allowed(places.to)) continue;

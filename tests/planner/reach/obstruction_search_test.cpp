@@ -23,8 +23,9 @@ TEST(ObstructionSearch, NamesBothSetsAndTheConstraintBetween) {
   EXPECT_NEAR(found.first.x_m - found.last.x_m, 2.0, 1e-9);
   ASSERT_TRUE(found.lifting);
   EXPECT_EQ(*found.lifting, Constraint::Hazard);
-  EXPECT_THAT(text(found, places), ::testing::AllOf(::testing::HasSubstr("6 cells are reachable from the start, 6 lead"),
-                                                    ::testing::HasSubstr("keep-out")));
+  EXPECT_THAT(text(found, places),
+              ::testing::AllOf(::testing::HasSubstr("6 cells are reachable from the start, 6 lead"),
+                               ::testing::HasSubstr("keep-out")));
 }
 
 TEST(ObstructionSearch, EachConstraintIsFoundAlone) {
@@ -35,9 +36,10 @@ TEST(ObstructionSearch, EachConstraintIsFoundAlone) {
   const auto ramp = [](double steep, double pitch) {
     maps::Raster<costmap::CellCode> cells({.width = 5, .height = 3, .resolution_m = 1.0, .south_west = {}},
                                           costmap::CellCode({.dz_dx = steep, .dz_dy = 0.0, .curve = 0}));
-    return std::make_shared<costmap::CostGrid>(costmap::flattened(
-        cells, std::make_shared<costmap::DriveCost>(costmap::DriveCost::Limits{.max_along = pitch, .max_across = 0.05},
-                                                    std::vector{testing::curve({})})));
+    return std::make_shared<costmap::CostGrid>(
+        costmap::flattened(cells, std::make_shared<costmap::DriveCost>(
+                                      costmap::DriveCost::Limits{.max_along = pitch, .max_across = 0.05},
+                                      std::vector{testing::curve({})})));
   };
   EXPECT_EQ(between(ramp(0.2, 0.1), {{0.5, 1.5}, {4.5, 1.5}}).lifting, Constraint::Pitch);
   EXPECT_EQ(between(ramp(0.4, 0.5), {{0.5, 1.5}, {4.5, 1.5}}).lifting, Constraint::Soil);

@@ -52,7 +52,8 @@ TEST(Reach, DescendingAlongAContourReachesWhatLiesBelow) {
   costmap::DriveCurve curve = testing::curve({});
   for (int bin = 0; bin < costmap::DriveCurve::kBins; ++bin) {
     const double along = costmap::DriveCurve::gradient(bin);
-    if (along > -0.002 || along < -0.1) curve.cost_J_per_m[static_cast<std::size_t>(bin)] = std::numeric_limits<float>::infinity();
+    if (along > -0.002 || along < -0.1)
+      curve.cost_J_per_m[static_cast<std::size_t>(bin)] = std::numeric_limits<float>::infinity();
   }
   maps::Raster<costmap::CellCode> plane({.width = 12, .height = 12, .resolution_m = 1.0, .south_west = {}},
                                         costmap::CellCode({.dz_dx = 0.0, .dz_dy = steep, .curve = 0}));
@@ -72,9 +73,7 @@ TEST(Reach, NoRandomMapIsProvenWrongly) {
     const MotionCost cost(map);
     constexpr int kFine = 4;
     const int side = 7 * kFine;
-    const auto place = [&](int k) {
-      return maps::Point{(k % side + 0.5) / kFine, (k / side + 0.5) / kFine};
-    };
+    const auto place = [&](int k) { return maps::Point{(k % side + 0.5) / kFine, (k / side + 0.5) / kFine}; };
     const int from = side * (side / 2) + side / 2;
     if (!cost.allowed(place(from))) continue;
     std::vector<bool> seen(static_cast<std::size_t>(side * side), false);
@@ -89,7 +88,8 @@ TEST(Reach, NoRandomMapIsProvenWrongly) {
           const int x = at % side + dx, y = at / side + dy;
           if (x < 0 || y < 0 || x >= side || y >= side) continue;
           const int next = y * side + x;
-          if (seen[static_cast<std::size_t>(next)] || !std::isfinite(cost({place(at), place(next)}))) continue;
+          if (seen[static_cast<std::size_t>(next)] || !std::isfinite(cost({place(at), place(next)})))
+            continue;
           seen[static_cast<std::size_t>(next)] = true;
           todo.push(next);
         }

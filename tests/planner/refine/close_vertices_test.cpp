@@ -10,7 +10,8 @@ namespace {
 TEST(CloseVertices, OfAPairNearerThanAHundredthOfACellOneIsLeft) {
   const auto map = testing::drawn({".....", ".....", "....."});
   const MotionCost cost(map);
-  const Polyline kept = withoutCloseVertices(cost, {{0.5, 0.5}, {2.5, 1.5}, {2.5 + 1e-8, 1.5}, {2.505, 1.5}, {4.5, 0.5}});
+  const Polyline kept =
+      withoutCloseVertices(cost, {{0.5, 0.5}, {2.5, 1.5}, {2.5 + 1e-8, 1.5}, {2.505, 1.5}, {4.5, 0.5}});
   EXPECT_EQ(kept.size(), 3U);
   const Polyline ends = withoutCloseVertices(cost, {{0.5, 0.5}, {0.501, 0.5}, {4.499, 0.5}, {4.5, 0.5}});
   EXPECT_EQ(ends, (Polyline{{0.5, 0.5}, {4.5, 0.5}}));
@@ -19,7 +20,8 @@ TEST(CloseVertices, OfAPairNearerThanAHundredthOfACellOneIsLeft) {
 // The corner of a wall: a vertex on its edge may not move into it.
 TEST(CloseVertices, WhatStaysIsAllowed) {
   for (unsigned seed = 1; seed <= 40; ++seed) {
-    const auto map = testing::randomMap({.width = 6, .height = 6, .seed = seed, .blocked = 0.2, .roughness = 0.3});
+    const auto map =
+        testing::randomMap({.width = 6, .height = 6, .seed = seed, .blocked = 0.2, .roughness = 0.3});
     const MotionCost cost(map);
     Polyline way{{0.5, 0.5}, {2.5, 2.5}, {2.504, 2.503}, {4.5, 3.5}, {4.5, 3.505}, {5.5, 5.5}};
     if (!std::isfinite(cost.along(way))) continue;

@@ -11,7 +11,8 @@ namespace {
 constexpr double kPi = 3.141592653589793;
 
 bool holds(const HeadingSet& set, double heading) {
-  return !set.empty() && std::abs(std::remainder(set.nearest(heading, 0.0) - heading, HeadingSet::kTurn)) < 1e-12;
+  return !set.empty() &&
+         std::abs(std::remainder(set.nearest(heading, 0.0) - heading, HeadingSet::kTurn)) < 1e-12;
 }
 
 TEST(HeadingSet, ArcsThatTouchAreOne) {
@@ -47,7 +48,8 @@ TEST(HeadingSet, SharedHeadingsAreThoseOfBoth) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> angle(0.0, HeadingSet::kTurn), width(0.0, 2.5);
   for (int k = 0; k < 200; ++k) {
-    const HeadingSet a({{angle(random), width(random)}, {angle(random), width(random)}}), b({{angle(random), width(random)}});
+    const HeadingSet a({{angle(random), width(random)}, {angle(random), width(random)}}),
+        b({{angle(random), width(random)}});
     const HeadingSet both = a.shared(b);
     for (int drawn = 0; drawn < 50; ++drawn) {
       const double heading = angle(random);

@@ -105,10 +105,14 @@ TEST_P(EveryPlanner, NeverClimbsWhereClimbingIsForbidden) {
   Problem down{.map = map, .start = {38.5, 10.5}, .goal = {5.5, 10.5}};
   const SamplingSettings settings{.planner = GetParam(), .work = 1'000'000, .range_cells = 10};
   EXPECT_EQ(planBySampling(up, settings).status, RouteStatus::NoneFound);
-  // What the field has proven ends the search.
-  const auto proof = [](const Problem& leg) { return FieldPlanner().plan(leg); };
-  EXPECT_EQ(planBySampling(up, settings, proof).status, RouteStatus::NoRoute);
   EXPECT_EQ(planBySampling(down, settings).status, RouteStatus::Found);
+}
+
+TEST_P(EveryPlanner, EndsWhereTheFieldHasProvenThatThereIsNoRoute) {
+  const auto walled = drawn(std::vector<std::string>(20, std::string(20, '.') + "#" + std::string(20, '.')));
+  const Problem across{.map = walled, .start = {5.5, 10.5}, .goal = {38.5, 10.5}};
+  const auto proof = [](const Problem& leg) { return FieldPlanner().plan(leg); };
+  EXPECT_EQ(planBySampling(across, {.planner = GetParam()}, proof).status, RouteStatus::NoRoute);
 }
 
 TEST_P(EveryPlanner, StopsWhenAsked) {
@@ -128,7 +132,8 @@ TEST_P(EveryPlanner, StoppedItGivesTheBestRouteSoFar) {
   settings.better = [&stop](double) { stop.request_stop(); };  // called with the known route first
   const Plan plan = planBySampling(problem, settings, detour);
   EXPECT_EQ(plan.status, RouteStatus::Found);
-  EXPECT_LE(MotionCost(problem.map).along(plan.points), MotionCost(problem.map).along(detour(problem).points));
+  EXPECT_LE(MotionCost(problem.map).along(plan.points),
+            MotionCost(problem.map).along(detour(problem).points));
 }
 
 TEST_P(EveryPlanner, EndsOnBlockedGroundAreNamed) {

@@ -60,8 +60,8 @@ TEST(WongReeceKernel, SumsAreTheIntegralsOfTheStresses) {
     const Sums<double> expected = bruteForce(rim);
     const Sums<double> seen =
         sumsAt<false>(Constants<double>{rim.exponent, std::log(rim.modulus), rim.cohesion, rim.tan_friction,
-                                 rim.radius_over_k, 1.0 - rim.slip, rim.peak, 0.0},
-               rim.entry, kFine);
+                                        rim.radius_over_k, 1.0 - rim.slip, rim.peak, 0.0},
+                      rim.entry, kFine);
     // Tolerance: 1e-7 as stated of the rule, and the midpoint rule where sigma ~ s^n leaves zero.
     EXPECT_NEAR(seen.load, expected.load, 2e-7 * expected.load) << i;
     EXPECT_NEAR(seen.torque, expected.torque, 2e-7 * expected.load) << i;

@@ -62,7 +62,8 @@ TEST(TelemetryReader, RejectsRowsByLineAndReason) {
 }
 
 TEST(TelemetryReader, KeepsTheNumbersOfRejectedRows) {
-  const Telemetry t = read("load_N,slip,note,sinkage_m\n80,0.1,a,0\n80,inf,b,x\n80,0.2,c,0\nnan,0.9,d,-1\n80\n");
+  const Telemetry t =
+      read("load_N,slip,note,sinkage_m\n80,0.1,a,0\n80,inf,b,x\n80,0.2,c,0\nnan,0.9,d,-1\n80\n");
   ASSERT_EQ(t.rejected.size(), 3U);
   ASSERT_EQ(t.rejected_numbers.size(), 3U) << "known columns";
   EXPECT_EQ(t.rejected_numbers[1].name, "slip");

@@ -75,7 +75,8 @@ TEST(PlateEstimate, WhatTheTestsDoNotBearOutIsSaid) {
 
 TEST(PlateEstimate, APriorHoldsOfShearTestsAlone) {
   const test::TemporaryFile prior{
-      "{cohesion_Pa: {mean: 2000, std: 100}, friction_angle_rad: {mean: 0.5, std: 0.3}, sinkage_exponent: 1.0, "
+      "{cohesion_Pa: {mean: 2000, std: 100}, friction_angle_rad: {mean: 0.5, std: 0.3}, sinkage_exponent: "
+      "1.0, "
       "cohesive_modulus: 0, frictional_modulus: 1.0e6, shear_modulus_m: 0.02}\n",
       ".yaml"};
   EXPECT_NEAR(estimate(shearRows(), {.prior = prior.path()}).cohesion_Pa, 900.0,
