@@ -1,5 +1,6 @@
 #include <cmath>
 #include <queue>
+#include <random>
 
 #include <talus/planner/check/route_check.hpp>
 #include <talus/planner/reach/reach.hpp>
@@ -65,51 +66,81 @@ TEST(Reach, DescendingAlongAContourReachesWhatLiesBelow) {
   EXPECT_TRUE(reaches(map, {1.0, 5.5}, {11.0, 5.4}));
 }
 
-// Brute force: 24 headings from a fine lattice of points, every motion by MotionCost. What that reaches must be reached.
-TEST(Reach, NoRandomMapIsProvenWrongly) {
-  int proven = 0, wrong = 0, open = 0;
-  for (unsigned seed = 1; seed <= 90; ++seed) {
-    const auto map = randomMap({.width = 7, .height = 7, .seed = seed, .blocked = 0.25, .roughness = 0.5});
-    const MotionCost cost(map);
-    constexpr int kFine = 4;
-    const int side = 7 * kFine;
-    const auto place = [&](int k) { return maps::Point{(k % side + 0.5) / kFine, (k / side + 0.5) / kFine}; };
-    const int from = side * (side / 2) + side / 2;
-    if (!cost.allowed(place(from))) continue;
-    std::vector<bool> seen(static_cast<std::size_t>(side * side), false);
-    std::queue<int> todo;
-    seen[static_cast<std::size_t>(from)] = true;
-    todo.push(from);
-    while (!todo.empty()) {
-      const int at = todo.front();
-      todo.pop();
-      for (int dy = -3; dy <= 3; ++dy)
-        for (int dx = -3; dx <= 3; ++dx) {
-          const int x = at % side + dx, y = at / side + dy;
-          if (x < 0 || y < 0 || x >= side || y >= side) continue;
-          const int next = y * side + x;
-          if (seen[static_cast<std::size_t>(next)] || !std::isfinite(cost({place(at), place(next)})))
-            continue;
-          seen[static_cast<std::size_t>(next)] = true;
-          todo.push(next);
-        }
-    }
-    HeadingSets headings(map->cost());
-    Reach reach(*map, headings, Reach::Sense::From, place(from));
-    for (int k = 0; k < side * side; ++k) {
-      HeadingSets backwards(map->cost());
-      const bool reached = reach.reaches(place(k), 0.0);
-      if (seen[static_cast<std::size_t>(k)]) {
-        ++open;
-        wrong += reached ? 0 : 1;
-      } else {
-        proven += reached ? 0 : 1;
+// What brute force reaches from the middle of a map: every motion by MotionCost between the points of a lattice, four to a
+// cell's side, that lie no more than three apart.
+struct Tally {
+  int open = 0;    // reached by brute force
+  int wrong = 0;   // of those, proven out of reach
+  int proven = 0;  // not reached by either
+};
+
+void compare(const std::shared_ptr<const costmap::CostGrid>& map, Tally& tally) {
+  const MotionCost cost(map);
+  constexpr int kFine = 4;
+  const int side = map->grid().width * kFine;
+  const auto place = [&](int k) { return maps::Point{(k % side + 0.5) / kFine, (k / side + 0.5) / kFine}; };
+  const int from = side * (side / 2) + side / 2;
+  if (!cost.allowed(place(from))) return;
+  std::vector<bool> seen(static_cast<std::size_t>(side * side), false);
+  std::queue<int> todo;
+  seen[static_cast<std::size_t>(from)] = true;
+  todo.push(from);
+  while (!todo.empty()) {
+    const int at = todo.front();
+    todo.pop();
+    for (int dy = -3; dy <= 3; ++dy)
+      for (int dx = -3; dx <= 3; ++dx) {
+        const int x = at % side + dx, y = at / side + dy;
+        if (x < 0 || y < 0 || x >= side || y >= side) continue;
+        const int next = y * side + x;
+        if (seen[static_cast<std::size_t>(next)] || !std::isfinite(cost({place(at), place(next)}))) continue;
+        seen[static_cast<std::size_t>(next)] = true;
+        todo.push(next);
       }
-    }
   }
-  EXPECT_EQ(wrong, 0);
-  EXPECT_GT(open, 2000);
-  EXPECT_GT(proven, 2000);
+  HeadingSets headings(map->cost());
+  Reach reach(*map, headings, Reach::Sense::From, place(from));
+  for (int k = 0; k < side * side; ++k) {
+    const bool reached = reach.reaches(place(k), 0.0);
+    tally.open += seen[static_cast<std::size_t>(k)];
+    tally.wrong += seen[static_cast<std::size_t>(k)] && !reached;
+    tally.proven += !seen[static_cast<std::size_t>(k)] && !reached;
+  }
+}
+
+TEST(Reach, NoRandomMapIsProvenWrongly) {
+  Tally tally;
+  for (unsigned seed = 1; seed <= 90; ++seed)
+    compare(randomMap({.width = 7, .height = 7, .seed = seed, .blocked = 0.25, .roughness = 0.5}), tally);
+  EXPECT_EQ(tally.wrong, 0);
+  EXPECT_GT(tally.open, 2000);
+  EXPECT_GT(tally.proven, 2000);
+}
+
+// The same where every cell has a cone: driven down only, on ground that falls southwards on the whole. Here sides are
+// entered in several parts, from both sides of what is blocked.
+TEST(Reach, NoDescentIsProvenWrongly) {
+  costmap::DriveCurve down_only = testing::curve({});
+  for (int bin = costmap::DriveCurve::kBins / 2; bin < costmap::DriveCurve::kBins; ++bin)
+    down_only.cost_J_per_m[static_cast<std::size_t>(bin)] = std::numeric_limits<float>::infinity();
+  const auto cost =
+      std::make_shared<costmap::DriveCost>(costmap::DriveCost::Limits{}, std::vector{down_only});
+  Tally tally;
+  for (unsigned seed = 1; seed <= 120; ++seed) {
+    std::mt19937 random(seed);
+    const auto unit = [&random] { return static_cast<double>(random()) / 4294967296.0; };
+    maps::Raster<costmap::CellCode> cells({.width = 9, .height = 9, .resolution_m = 1.0, .south_west = {}});
+    for (auto& cell : cells.values()) {
+      const bool blocked = unit() < 0.12;
+      cell = costmap::CellCode({.dz_dx = 0.3 * (unit() - 0.5),
+                                .dz_dy = 0.05 + 0.15 * unit(),
+                                .curve = blocked ? costmap::CellCode::kBlocked : std::uint8_t{0}});
+    }
+    compare(std::make_shared<costmap::CostGrid>(costmap::flattened(cells, cost)), tally);
+  }
+  EXPECT_EQ(tally.wrong, 0);
+  EXPECT_GT(tally.open, 2000);
+  EXPECT_GT(tally.proven, 2000);
 }
 
 }  // namespace
