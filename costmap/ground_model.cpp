@@ -83,8 +83,9 @@ GroundModel::GroundModel(Parts parts) : parts_(std::move(parts)) {
                           ? mobilityOf(c, parts_.rover, {.axles = parts_.rover.wheel_count / 2})
                           : wheel_curves_.back());
     drives_.emplace_back(curves_.back());
+    slopes_.push_back(slopeOf(c, parts_.rover));
     crossings_.push_back(std::make_shared<const CrossSlope>(
-        slopeOf(c, parts_.rover),
+        slopes_.back(),
         CrossSlope::Level{.first = drives_.back().first(),
                           .last = drives_.back().last(),
                           .thrust = std::max({curves_.back().reference().torque_over_load_radius,
@@ -113,9 +114,18 @@ SteadyWheel GroundModel::steady(int class_index, const DrivenWheel& wheel) const
   const MobilityState state = driven.at(slope_rad);
   const double radius_m = parts_.rover.wheel.radius_m;
   const double load_N = terramech::wheelLoad_N(parts_.rover) * std::cos(slope_rad);
-  return {.gradient = std::tan(slope_rad),
-          .sinkage_over_radius = state.sinkage_m / radius_m,
-          .torque_over_load_radius = state.torque_Nm / (load_N * radius_m)};
+  SteadyWheel steady{.gradient = std::tan(slope_rad),
+                     .sinkage_over_radius = state.sinkage_m / radius_m,
+                     .torque_over_load_radius = state.torque_Nm / (load_N * radius_m)};
+  if (wheel.slip_angle_rad == 0.0) return steady;
+  const terramech::SlopeEquilibrium& slope = slopes_[static_cast<std::size_t>(class_index)];
+  const terramech::WheelOnSlope straight = slope.evenWheel(wheel.slip, 0.0),
+                                turned = slope.evenWheel(wheel.slip, wheel.slip_angle_rad);
+  steady.gradient += (turned.drawbar_pull_N - straight.drawbar_pull_N) / turned.load_N;
+  steady.torque_over_load_radius += (turned.torque_Nm - straight.torque_Nm) / (turned.load_N * radius_m);
+  if (straight.sinkage_m > 0.0) steady.sinkage_over_radius *= turned.sinkage_m / straight.sinkage_m;
+  steady.hold = std::abs(turned.side_force_N) / turned.load_N;
+  return steady;
 }
 
 SteadyWheel GroundModel::reference(int class_index, bool in_rut) const noexcept {

@@ -13,6 +13,7 @@
 #include <talus/terramech/effects/effects.hpp>
 #include <talus/terramech/mobility/category.hpp>
 #include <talus/terramech/mobility/mobility.hpp>
+#include <talus/terramech/mobility/slope_equilibrium.hpp>
 #include <talus/terramech/numerics/estimate.hpp>
 
 namespace talus::costmap {
@@ -38,10 +39,11 @@ struct GroundBelief {
   Estimate sinkage;  ///< sinkage over wheel radius [-]
 };
 
-/// A wheel at a slip, on fresh ground or in the rut of an equal one.
+/// A wheel at a slip, on fresh ground or in the rut of an equal one, that travels at an angle to its plane.
 struct DrivenWheel {
   double slip = 0.0;
   bool in_rut = false;
+  double slip_angle_rad = 0.0;  ///< more than 60 deg counts as that
 };
 
 /// Of a wheel that drives steadily.
@@ -49,6 +51,7 @@ struct SteadyWheel {
   double gradient = 0.0;  ///< of the slope it does so on, which is the drawbar pull over load it gives [-]
   double sinkage_over_radius = 0.0;
   double torque_over_load_radius = 0.0;
+  double hold = 0.0;  ///< force across it, against its sideways motion, over load [-]
 };
 
 /// A category and the probability that it is that one.
@@ -86,7 +89,7 @@ class GroundModel {
   GroundBelief prior(int class_index) const;
 
   /// What a wheel of a rover that drives steadily at this slip on ground of the class reads, as its soil
-  /// says; the ends of what it can drive beyond them.
+  /// says; the ends of what it can drive beyond them. A slip angle changes it as it changes a wheel on fresh ground.
   SteadyWheel steady(int class_index, const DrivenWheel& wheel) const noexcept;
   /// The same at the reference slip.
   SteadyWheel reference(int class_index, bool in_rut) const noexcept;
@@ -138,6 +141,7 @@ class GroundModel {
   double tan_margin_ = 0.0;
   std::vector<terramech::MobilityCurve> curves_;  // of each class, all axles of the rover together
   std::vector<ExpectedDrive> drives_;             // the same over the demand
+  std::vector<terramech::SlopeEquilibrium> slopes_;
   std::vector<std::shared_ptr<const CrossSlope>> crossings_;
   std::vector<terramech::MobilityCurve> wheel_curves_;  // one wheel on fresh ground
   std::vector<terramech::MobilityCurve> rut_curves_;    // in the rut of an equal wheel

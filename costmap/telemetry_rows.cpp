@@ -13,7 +13,8 @@ namespace {
 
 constexpr double kSameLoad = 0.01;       // of the load: less is the same number
 constexpr double kLevelGradient = 0.03;  // less moves no load worth speaking of
-constexpr double kTurning_mps = 0.005;   // rim speed of a wheel that turns
+constexpr double kQuarterTurn = 1.5707963267948966;
+constexpr double kTurning_mps = 0.005;  // rim speed of a wheel that turns
 
 double slipOf(double speed_mps, double rim_speed_mps) noexcept {
   return rim_speed_mps > kTurning_mps ? 1.0 - speed_mps / rim_speed_mps
@@ -41,6 +42,8 @@ TelemetryRows::TelemetryRows(const terramech::Telemetry& telemetry, const Traver
       pose_(telemetry.find("pose_std_m")),
       speed_(telemetry.find("speed_mps")),
       rim_speed_(telemetry.find("rim_speed_mps")),
+      roll_(telemetry.find("roll_rad")),
+      slip_angle_(telemetry.find("slip_angle_rad")),
       wheel_(telemetry.findWords("wheel")),
       run_(telemetry.findWords("run")) {}
 
@@ -60,12 +63,15 @@ WheelReading TelemetryRows::reading(std::size_t i) const {
                  .torque_Nm = value(torque_, i),
                  .sinkage_m = value(sinkage_, i),
                  .gradient = measuredGradient(i),
+                 .across = std::tan(finite(value(roll_, i))),
+                 .slip_angle_rad = finite(value(slip_angle_, i)),
                  .drawbar_pull_N = value(pull_, i),
                  .pose_std_m = std::isfinite(value(pose_, i)) ? std::max(value(pose_, i), 0.0) : pose_std_m_,
                  .pass = 1,
                  .speed_slip = slipOf(value(speed_, i), value(rim_speed_, i))};
   if (std::isfinite(value(pass_, i))) r.pass = static_cast<int>(value(pass_, i));
   if (std::isnan(r.gradient)) r.gradient = mapGradient(r, heading(i));
+  if (std::isnan(r.across)) r.across = mapGradient(r, heading(i) + kQuarterTurn);
   return r;
 }
 
@@ -74,12 +80,12 @@ double TelemetryRows::measuredGradient(std::size_t i) const {
 }
 
 // Of the top surface: that of a floor beneath it is not known.
-double TelemetryRows::mapGradient(const WheelReading& r, double heading_rad) const {
+double TelemetryRows::mapGradient(const WheelReading& r, double direction_rad) const {
   const auto cell = map_.grid().cellAt(r.place);
-  if (!cell || std::isnan(heading_rad) || map_.floorAt(*cell, r.z_m))
+  if (!cell || std::isnan(direction_rad) || map_.floorAt(*cell, r.z_m))
     return std::numeric_limits<double>::quiet_NaN();
   const CellCode code = map_.code(*cell);
-  return code.dzDx() * std::cos(heading_rad) + code.dzDy() * std::sin(heading_rad);
+  return code.dzDx() * std::cos(direction_rad) + code.dzDy() * std::sin(direction_rad);
 }
 
 double TelemetryRows::leastGradient(std::size_t i) const {

@@ -18,7 +18,7 @@ class TelemetryRows {
 
   std::size_t size() const noexcept { return x_.size(); }
 
-  /// The slope is the row's own; without it the map's along the heading.
+  /// The slope is the row's own, slope_rad along the heading and roll_rad across it; without it the map's.
   WheelReading reading(std::size_t i) const;
   double heading(std::size_t i) const { return value(heading_, i); }
   std::string wheel(std::size_t i) const { return wheel_ ? (*wheel_)[i] : std::string(); }
@@ -38,13 +38,13 @@ class TelemetryRows {
 
  private:
   static double value(const std::vector<double>* column, std::size_t i);
-  double mapGradient(const WheelReading& reading, double heading_rad) const;
+  double mapGradient(const WheelReading& reading, double direction_rad) const;
 
   const TraversabilityMap& map_;
   double pose_std_m_;
   const std::vector<double>&x_, &y_, &load_, &slip_;
   const std::vector<double>*time_, *torque_, *sinkage_, *z_, *slope_, *heading_, *pull_, *pass_, *pose_;
-  const std::vector<double>*speed_, *rim_speed_;
+  const std::vector<double>*speed_, *rim_speed_, *roll_, *slip_angle_;
   const std::vector<std::string>*wheel_, *run_;
 };
 

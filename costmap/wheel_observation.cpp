@@ -16,7 +16,9 @@ constexpr double kShiftPerSlipAndDeparture = 1.2;
 constexpr double kFlatFrom = 0.25;  // further from the reference slip than this both curves are flat
 constexpr double kFelt = 0.1;       // of the torque at the reference slip: less tells nothing about it
 constexpr double kStanding = 0.9;   // slip from which a rover may as well not move (ours)
-constexpr double kRutDoubt = 1.0;   // of what a rut adds: its stiffness is known to a factor (ours)
+constexpr double kHeld =
+    0.05;  // side force over load that tells the ground from a turn or a pose's drift (ours)
+constexpr double kRutDoubt = 1.0;  // of what a rut adds: its stiffness is known to a factor (ours)
 
 bool known(double value) noexcept {
   return std::isfinite(value);
@@ -47,6 +49,8 @@ struct WheelObserver::Wheel {
   SteadyWheel reference;   // at the reference slip, likewise
   double steepness = 0.0;  // of the expected gradient, for one standard deviation of slip
   double rut_gain = 0.0;   // how much more it pulls than on fresh ground
+  double asked = 0.0;      // pull over load that the slope asks in the wheel's plane
+  double held = 0.0;       // what it asks across the wheel, over load
   double from_torque = std::numeric_limits<double>::quiet_NaN();     // pull at its slip
   Estimate by_torque{0.0, std::numeric_limits<double>::infinity()};  // departure at the reference slip
 };
@@ -55,10 +59,14 @@ WheelObserver::Wheel WheelObserver::expected(const ClassReading& read) const {
   const WheelReading& r = read.reading;
   const double radius_m = model_.rover().wheel.radius_m;
   const bool rut = r.pass > 1;
+  const bool turned = known(r.slip_angle_rad) && known(r.across);
+  const double angle = turned ? r.slip_angle_rad : 0.0;
   const auto at = [&](double slip, bool in_rut) {
-    return model_.steady(read.class_index, {.slip = slip, .in_rut = in_rut});
+    return model_.steady(read.class_index, {.slip = slip, .in_rut = in_rut, .slip_angle_rad = angle});
   };
   Wheel w{.read = read, .expected = at(r.slip, rut), .reference = model_.reference(read.class_index, rut)};
+  w.asked = turned ? r.gradient * std::cos(angle) - r.across * std::sin(angle) : r.gradient;
+  w.held = turned ? std::abs(r.gradient * std::sin(angle) + r.across * std::cos(angle)) : 0.0;
   w.steepness = (at(r.slip + noise_.slip, rut).gradient - at(r.slip - noise_.slip, rut).gradient) / 2.0;
   w.rut_gain = rut ? w.expected.gradient - at(r.slip, false).gradient : 0.0;
   const double z = r.sinkage_m / radius_m, t = r.torque_Nm / (radius_m * r.load_N);
@@ -82,6 +90,16 @@ WheelObserver::Wheel WheelObserver::expected(const ClassReading& read) const {
   w.by_torque = {pullFromTorque(torque.value, depth) - class_pull,
                  std::hypot(torque.std, noise_.sinkage_share, noise_.model_pull)};
   return w;
+}
+
+// By how much less than the class the ground under a wheel pulls, as its side force says: < 0, or infinite where that
+// says nothing.
+double WheelObserver::weakerAcross(const Wheel& w) const noexcept {
+  if (!(w.held >= kHeld) || !(w.expected.hold > 0.0)) return std::numeric_limits<double>::infinity();
+  const double thrust = w.reference.torque_over_load_radius;
+  return std::min(0.0,
+                  (w.held + 2.0 * std::hypot(noise_.gradient, noise_.model_pull)) / w.expected.hold - 1.0) *
+         thrust;
 }
 
 // `departure`: by how much all wheels together pull less or more than they should at their slip; `own`: this
@@ -155,7 +173,7 @@ std::vector<std::optional<WheelObservation>> WheelObserver::observe(
     const std::vector<ClassReading>& together) const {
   const auto usable = [](const ClassReading& c) { return known(c.reading.slip) && c.reading.load_N > 0.0; };
   std::vector<Wheel> wheels;
-  double load = 0.0, departure = 0.0, felt_load = 0.0, felt = 0.0;
+  double load = 0.0, departure = 0.0, felt_load = 0.0, felt = 0.0, across = 0.0;
   bool standing = false;
   for (const ClassReading& read : together) {
     if (!usable(read)) continue;
@@ -163,7 +181,8 @@ std::vector<std::optional<WheelObservation>> WheelObserver::observe(
     const double load_N = read.reading.load_N;
     load += load_N;
     standing |= read.reading.slip >= kStanding;
-    departure += load_N * (read.reading.gradient - w.expected.gradient);
+    departure += load_N * (w.asked - w.expected.gradient);
+    across += load_N * weakerAcross(w);
     if (!known(w.from_torque)) continue;
     felt_load += load_N;
     felt += load_N * (w.from_torque - w.expected.gradient);
@@ -177,7 +196,7 @@ std::vector<std::optional<WheelObservation>> WheelObserver::observe(
     }
     const Wheel& w = wheels[next++];
     const double own = w.from_torque - w.expected.gradient - felt / felt_load;
-    out.push_back(observed(w, {departure / load, standing}, known(own) ? own : 0.0));
+    out.push_back(observed(w, {std::min(departure, across) / load, standing}, known(own) ? own : 0.0));
   }
   return out;
 }

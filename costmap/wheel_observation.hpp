@@ -19,7 +19,10 @@ struct WheelReading {
   double slip = 0.0;                                      ///< [-1, 1]
   double torque_Nm = 0.0;                                 ///< on the wheel
   double sinkage_m = 0.0;
-  double gradient = 0.0;        ///< of the ground along the heading, rise over run
+  double gradient = 0.0;  ///< of the ground along the heading, rise over run
+  /// The same to the left of it, and the angle from the wheel's plane to its way, left positive.
+  double across = std::numeric_limits<double>::quiet_NaN();
+  double slip_angle_rad = std::numeric_limits<double>::quiet_NaN();
   double drawbar_pull_N = 0.0;  ///< where a test stand measures it
   double pose_std_m = 0.0;      ///< how well the place is known
   int pass = 1;  ///< how many wheels rolled here, this one included: from the second on it is in a rut
@@ -86,6 +89,12 @@ struct WheelObservation {
 /// may as well have stood, and pulled less than the slope asks: the balance is then only an upper bound, and
 /// says nothing better than the class.
 ///
+/// A wheel that travels at a slip angle on a slope whose gradient across is known pulls in its own plane what the slope
+/// asks there, and holds what it asks across: g cos(beta) - c sin(beta) and |g sin(beta) + c cos(beta)|, which the
+/// class's wheel at that angle is held against. From a demand of 0.05 across on, ground that holds less than its class
+/// beyond two standard deviations counts as weaker by as much as CrossSlope has side force go with pull, if that is more
+/// than by the pull. Without either number the wheel counts as straight, which errs towards weaker ground.
+///
 /// Torque and sinkage: what a wheel pulls is a function of both (thesis Eq. 3.12). On the way to the
 /// reference slip both grow as they do on ground of the class: torque as shear is mobilised, sinkage as the
 /// wheel digs (ours; from slip 0.3 on within 0.11 of the forward model on dust, trap and drift taken for
@@ -104,6 +113,7 @@ class WheelObserver {
 
  private:
   struct Wheel;
+  double weakerAcross(const Wheel& wheel) const noexcept;
   // Of all wheels of a moment.
   struct Balance {
     double departure = 0.0;  // of the slope from what they should pull together; NaN without a slope

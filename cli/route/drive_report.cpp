@@ -14,8 +14,8 @@ using nlohmann::ordered_json;
 using planner::Belief;
 using planner::Outcome;
 
-constexpr std::array<Outcome, 4> kOutcomes{Outcome::Reached, Outcome::Immobilised, Outcome::Tipped,
-                                           Outcome::GaveUp};
+constexpr std::array<Outcome, 5> kOutcomes{Outcome::Reached, Outcome::Immobilised, Outcome::Tipped,
+                                           Outcome::GaveUp, Outcome::Slid};
 
 ordered_json asJson(const planner::Sampled& sampled) {
   return {{"rate", sampled.value}, {"interval_95", sampled.interval_95}};

@@ -46,7 +46,7 @@ std::string causeOfLoss(const LossScene& scene) {
   for (const TrueWorld::WheelState& wheel : scene.step.wheels)
     undeclared += scene.world.inPatch(wheel.place) ? 1 : 0;
   const std::string stop = scene.why_it_stopped.empty()
-                               ? "spun without an alarm"
+                               ? scene.step.slides ? "slid without an alarm" : "spun without an alarm"
                                : "held when it reversed after '" + scene.why_it_stopped + "'";
   return stop + "; " + std::to_string(undeclared) + " of " + std::to_string(scene.step.wheels.size()) +
          " wheels on undeclared ground; " + believedThere(scene) + "; " + readings(scene);

@@ -8,7 +8,7 @@ namespace talus::planner {
 namespace {
 
 // Standard deviations of the rover's sensors: those that WheelObserver expects.
-constexpr double kSlipNoise = 0.02, kTorqueNoise = 0.05, kSinkageNoise = 0.03;
+constexpr double kSlipNoise = 0.02, kAngleNoise_rad = 0.02, kTorqueNoise = 0.05, kSinkageNoise = 0.03;
 // Of one wheel's own slip about that of the rover.
 constexpr double kEncoderNoise = 0.005;
 // Faults, as SensorFault says.
@@ -34,7 +34,9 @@ terramech::Telemetry telemetryOf(const WheelLook& look) {
       {"y_m", [](const costmap::WheelReading& r, double) { return r.place.y_m; }},
       {"heading_rad", [](const costmap::WheelReading&, double heading_rad) { return heading_rad; }},
       {"slope_rad", [](const costmap::WheelReading& r, double) { return std::atan(r.gradient); }},
+      {"roll_rad", [](const costmap::WheelReading& r, double) { return std::atan(r.across); }},
       {"slip", [](const costmap::WheelReading& r, double) { return r.slip; }},
+      {"slip_angle_rad", [](const costmap::WheelReading& r, double) { return r.slip_angle_rad; }},
       {"load_N", [](const costmap::WheelReading& r, double) { return r.load_N; }},
       {"torque_Nm", [](const costmap::WheelReading& r, double) { return r.torque_Nm; }},
       {"sinkage_m", [](const costmap::WheelReading& r, double) { return r.sinkage_m; }},
@@ -77,7 +79,9 @@ bool SimulatedSensors::drops() {
 
 WheelLook SimulatedSensors::look(const TrueWorld::Step& step, const Moment& moment) {
   const double radius_m = rover_.wheel.radius_m, noise = options_.noise ? 1.0 : 0.0;
-  WheelLook look{.heading_rad = std::atan2(moment.heading.y, moment.heading.x), .wheels = {}};
+  WheelLook look{.heading_rad = std::atan2(moment.heading.y, moment.heading.x),
+                 .slip_angle_rad = step.slip_angle_rad + noise * kAngleNoise_rad * normal_(random_),
+                 .wheels = {}};
   const double slip = step.slip + noise * kSlipNoise * normal_(random_);
   for (const TrueWorld::WheelState& wheel : step.wheels) {
     const double own_slip = slip + noise * kEncoderNoise * normal_(random_);
@@ -90,6 +94,8 @@ WheelLook SimulatedSensors::look(const TrueWorld::Step& step, const Moment& mome
                            .torque_Nm = drops() ? kNone : torque * wheel.load_N * radius_m,
                            .sinkage_m = drops() ? kNone : sinkage * radius_m + moment.dug_m,
                            .gradient = moment.gradient,
+                           .across = moment.across,
+                           .slip_angle_rad = look.slip_angle_rad,
                            .drawbar_pull_N = kNone,
                            .pass = wheel.passes + 1});
     spoil(look.wheels.back(), look.wheels.size() - 1);

@@ -33,7 +33,8 @@ const std::vector<std::string_view>& sensorFaultNames();
 
 /// How well a simulated rover senses. Plain data.
 struct SensorOptions {
-  bool noise = true;         ///< of slip (0.02), torque (5 %), sinkage (3 %), and missing values
+  bool noise =
+      true;  ///< of slip (0.02), slip angle (0.02 rad), torque (5 %), sinkage (3 %), and missing values
   double dropout = 0.02;     ///< share of torque and sinkage values that are missing, with noise
   double pose_drift = 0.01;  ///< by which the believed pose leaves the true one, per metre driven [-]
   SensorFault fault = SensorFault::None;
@@ -43,6 +44,7 @@ struct SensorOptions {
 /// What the wheels of a rover read at one look.
 struct WheelLook {
   double heading_rad = 0.0;
+  double slip_angle_rad = 0.0;  ///< from the wheels' planes to the way made good, as visual odometry sees it
   std::vector<costmap::WheelReading> wheels;  ///< the foremost first, at the believed place; NaN = missing
 };
 
@@ -65,6 +67,7 @@ class SimulatedSensors {
     double time_s = 0.0;
     costmap::Direction heading;
     double gradient = 0.0;  ///< along the heading as the map has it
+    double across = 0.0;    ///< the same to the left of it
     double dug_m = 0.0;     ///< depth of the holes that the wheels dug on the spot
   };
   /// What the wheels read.

@@ -23,7 +23,7 @@ Sampled mean(const std::vector<double>& values);
 /// How the drives of some worlds ended.
 struct Rates {
   std::size_t worlds = 0;
-  std::array<Sampled, 4> outcome{};  ///< shares, in the order of Outcome
+  std::array<Sampled, 5> outcome{};  ///< shares, in the order of Outcome
   double energy_J = 0.0;             ///< mean where the goal was reached; NaN where it never was
 };
 

@@ -7,6 +7,7 @@
 #include <talus/planner/grid/field_planner.hpp>
 #include <talus/planner/route/motion_cost.hpp>
 #include <talus/planner/simulation/loss_report.hpp>
+#include <talus/planner/simulation/map_expectation.hpp>
 #include <talus/planner/simulation/traverse_simulation.hpp>
 
 namespace talus::planner {
@@ -45,10 +46,10 @@ class Drive {
   TraverseSimulation run() {
     arriveAt(here_, {});
     while (!options_.watch.stopped()) {
-      if (!plan()) return held_ ? ended(Outcome::Immobilised) : ended(Outcome::GaveUp, "no route is left");
+      if (!plan()) return held_ ? lost() : ended(Outcome::GaveUp, "no route is left");
       const FollowEnd end = follow();
       if (end == FollowEnd::Arrived) return ended(Outcome::Reached);
-      if (end == FollowEnd::Stuck) return ended(Outcome::Immobilised);
+      if (end == FollowEnd::Stuck) return lost();
       if (end == FollowEnd::Tipped) return ended(Outcome::Tipped);
       if (++result_.replans > options_.max_replans) return ended(Outcome::GaveUp, "too many replans");
     }
@@ -58,11 +59,13 @@ class Drive {
  private:
   enum class FollowEnd { Arrived, Stuck, Tipped, Replan };
 
+  TraverseSimulation lost() { return ended(last_step_.slides ? Outcome::Slid : Outcome::Immobilised); }
+
   TraverseSimulation ended(Outcome outcome, std::string cause = {}) {
     result_.outcome = outcome;
     if (!cause.empty())
       result_.cause = std::move(cause);
-    else if (outcome == Outcome::Immobilised)
+    else if (outcome == Outcome::Immobilised || outcome == Outcome::Slid)
       result_.cause = causeOfLoss({map_, world_, last_step_, seen_, believed(), why_it_stopped_});
     tell(std::string(name(outcome)));
     return std::move(result_);
@@ -76,7 +79,7 @@ class Drive {
   bool plan() {
     const MotionCost cost(map_.published());
     while (options_.senses && !cost.allowed(believed()))
-      if (!backOneStep(0.0)) return false;
+      if (!leaveOneStep(0.0)) return false;
     Problem problem;
     problem.map = map_.published();
     problem.start = believed();
@@ -114,16 +117,20 @@ class Drive {
 
   // One look at the wheels; then on by one step, unless something ends the leg.
   std::optional<FollowEnd> lookAndStep(const Direction& heading, double length_m) {
-    const TrueWorld::Step step = world_.drive(
-        {.place = here_, .heading = heading, .gradient = gradient(heading), .dug_m = dug_m_, .ruts = &ruts_});
+    const TrueWorld::Step step = world_.drive(motion(heading, dug_m_));
     result_.max_slip = std::max(result_.max_slip, step.slip);
     last_step_ = step;
-    seen_ = sensors_.look(step, {result_.time_s, heading, gradient(heading), dug_m_});
+    seen_ = sensors_.look(step, {.time_s = result_.time_s,
+                                 .heading = heading,
+                                 .gradient = gradient(heading),
+                                 .across = gradient({-heading.y, heading.x}),
+                                 .dug_m = dug_m_});
     if (step.stuck && !options_.senses) return FollowEnd::Stuck;
     const WheelAlarm::Heard heard =
         options_.senses ? alarm_.hear(seen_, expectations(step, heading)) : WheelAlarm::Heard{};
     const bool learned = learn(heard.reason.has_value());
     if (heard.reason) return retreat(step, heard);
+    if (step.slides) return FollowEnd::Stuck;
     if (step.stuck) return dig(step);
     if (learned && routeTurnedDear()) return retreat(step, {"soil weaker than estimated", {}});
     report(step, heading, length_m);
@@ -143,7 +150,7 @@ class Drive {
 
   void report(const TrueWorld::Step& step, const Direction& heading, double length_m) const {
     if (!options_.on_step) return;
-    const costmap::DriveState state = expected(believed(), heading);
+    const costmap::DriveState state = MapExpectation(map_, ground()).at(believed(), heading);
     const double slope = gradient(heading);
     options_.on_step(
         {.time_s = result_.time_s,
@@ -156,51 +163,29 @@ class Drive {
          .truth = step});
   }
 
-  double gradient(const Direction& heading) const {
+  // Of the ground under the rover's middle.
+  costmap::CellCode ground() const {
     const auto cell = map_.grid().cellAt(here_);
-    if (!cell) return 0.0;
-    const costmap::CellCode code = map_.code(*cell);
+    return cell ? map_.code(*cell) : costmap::CellCode();
+  }
+  double gradient(const Direction& heading) const {
+    const costmap::CellCode code = ground();
     return code.dzDx() * heading.x + code.dzDy() * heading.y;
   }
+  Motion motion(const Direction& heading, double dug_m) const {
+    return {.place = here_,
+            .heading = heading,
+            .gradient = gradient(heading),
+            .across = gradient({-heading.y, heading.x}),
+            .dug_m = dug_m,
+            .ruts = &ruts_};
+  }
 
-  // What the map says of ground on the slope that the rover stands on, which it measures itself, before this
-  // step's readings are in; its class says it where the cell is refused.
-  costmap::DriveState expected(const maps::Point& place, const Direction& heading) const {
-    const auto cell = map_.grid().cellAt(place);
-    if (!cell) return {};
-    const auto grid = map_.published();
-    const std::uint8_t curve = grid->at(*cell).curve();
-    return onCurve(*grid, curve >= costmap::CellCode::kUnknown ? classCurve(*cell) : curve, heading);
-  }
-  // The same, though no weaker than the class: ground that it just learned to be weak still gives the alarm.
-  costmap::DriveState expectedOfClass(const maps::Point& place, const Direction& heading) const {
-    const auto cell = map_.grid().cellAt(place);
-    if (!cell) return {};
-    costmap::DriveState state = expected(place, heading);
-    const costmap::DriveState of_class = onCurve(*map_.published(), classCurve(*cell), heading);
-    state.slip = std::min(state.slip, of_class.slip);
-    state.sinkage_m = std::min(state.sinkage_m, of_class.sinkage_m);
-    return state;
-  }
-  std::uint8_t classCurve(maps::Cell cell) const noexcept {
-    return static_cast<std::uint8_t>(std::max(map_.classIndex(cell), 0));
-  }
-  costmap::DriveState onCurve(const costmap::CostGrid& grid, std::uint8_t curve,
-                              const Direction& heading) const {
-    const double slope = gradient(heading);
-    return grid.cost().detail(
-        costmap::CellCode({.dz_dx = slope * heading.x, .dz_dy = slope * heading.y, .curve = curve}), heading);
-  }
-  double expectedSlip(const Direction& heading) const {
-    return static_cast<double>(expectedOfClass(believed(), heading).slip);
-  }
   std::vector<WheelExpectation> expectations(const TrueWorld::Step& step, const Direction& heading) const {
-    const double slip = expectedSlip(heading), radius_m = map_.model().rover().wheel.radius_m;
+    const MapExpectation map(map_, ground());
     std::vector<WheelExpectation> of_wheels;
     for (const TrueWorld::WheelState& wheel : step.wheels)
-      of_wheels.push_back(
-          {slip, static_cast<double>(expectedOfClass(sensors_.believed(wheel.place), heading).sinkage_m) /
-                     radius_m});
+      of_wheels.push_back(map.ofWheel(sensors_.believed(wheel.place), believed(), heading));
     return of_wheels;
   }
 
@@ -231,6 +216,7 @@ class Drive {
   void advance(const TrueWorld::Step& step, const Direction& heading, double length_m) {
     const bool there = length_m >= distance_m(believed(), route_[next_]) - 1e-9;
     dug_m_ = 0.0;
+    downhill_ = false;
     spend(step, length_m, gradient(heading));
     since_sensing_m_ += length_m;
     way_back_.push_back(here_);
@@ -245,8 +231,7 @@ class Drive {
     const maps::Point to = way_back_.back();
     const Direction heading = directionTo(here_, to);
     const double slope = gradient(heading);
-    const TrueWorld::Step step =
-        world_.drive({.place = here_, .heading = heading, .gradient = slope, .dug_m = dug_m, .ruts = &ruts_});
+    const TrueWorld::Step step = world_.drive(motion(heading, dug_m));
     if (step.stuck) {
       held_ = true;
       last_step_ = step;
@@ -256,6 +241,33 @@ class Drive {
     spend(step, distance_m(here_, to), slope);
     arriveAt(to, step);
     return true;
+  }
+
+  // One step straight down the slope, which takes no side force; false where nothing brakes it.
+  bool downOneStep() {
+    const costmap::CellCode code = ground();
+    const double steepest = std::hypot(code.dzDx(), code.dzDy());
+    if (!(steepest > 0.0)) return false;
+    const Direction heading{-code.dzDx() / steepest, -code.dzDy() / steepest};
+    const TrueWorld::Step step = world_.drive(motion(heading, 0.0));
+    if (step.stuck) {
+      last_step_ = step;
+      return false;
+    }
+    spend(step, options_.step_m, steepest);
+    way_back_.push_back(here_);
+    arriveAt({here_.x_m + options_.step_m * heading.x, here_.y_m + options_.step_m * heading.y}, step);
+    return true;
+  }
+
+  // Out of ground that it should not stand on: the way that it came, or on down the slope where that way slides.
+  bool leaveOneStep(double dug_m) {
+    if (!downhill_ && backOneStep(dug_m)) return true;
+    if (!downhill_ && !(held_ && last_step_.slides)) return false;
+    held_ = !downOneStep();
+    if (!downhill_ && !held_) tell("turned downhill");
+    downhill_ = !held_;
+    return downhill_;
   }
 
   // Whether all ground within the rover's outline is as strong as its class, give or take what a class
@@ -288,7 +300,7 @@ class Drive {
     double hole_m = std::exchange(dug_m_, 0.0) + kDugPerMetre * spun_m;
     const double from_m = result_.length_m;
     while ((result_.length_m - from_m < options_.keep_out_radius_m || !standsSound()) &&
-           backOneStep(std::exchange(hole_m, 0.0))) {
+           leaveOneStep(std::exchange(hole_m, 0.0))) {
     }
     ruts_.turnBack();
     if (held_) return FollowEnd::Stuck;
@@ -353,13 +365,14 @@ class Drive {
   WheelLook seen_;             // what the wheels read before it
   std::string why_it_stopped_;
   bool held_ = false;
+  bool downhill_ = false;  // it slid, and leaves by the fall line
   TraverseSimulation result_;
 };
 
 }  // namespace
 
 std::string_view name(Outcome outcome) noexcept {
-  constexpr std::string_view kNames[] = {"reached", "immobilised", "tipped", "gave_up"};
+  constexpr std::string_view kNames[] = {"reached", "immobilised", "tipped", "gave_up", "slid"};
   return kNames[static_cast<int>(outcome)];
 }
 

@@ -20,9 +20,10 @@ enum class Outcome {
   Immobilised,  ///< no slip gave the pull, neither on nor back, or nobody was watching the slip
   Tipped,       ///< the true ground was steeper than the rover may stand
   GaveUp,       ///< no route is left under what is believed
+  Slid,         ///< its wheels did not hold it across or down a slope, neither on nor back
 };
 
-/// "reached", "immobilised", "tipped", "gave_up".
+/// "reached", "immobilised", "tipped", "gave_up", "slid".
 std::string_view name(Outcome outcome) noexcept;
 
 /// One step of a drive: what the map said of it before, and what it was.

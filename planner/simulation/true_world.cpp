@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include <talus/planner/simulation/true_world.hpp>
@@ -23,32 +24,79 @@ double slopeOutOf(double dug_m, double radius_m) {
   return std::sqrt(std::max(dug_m, 0.0) / (2.0 * radius_m));
 }
 
-// The common slip at which the wheels pull what is asked: the least one, since on soft ground the pull falls
-// again as the wheel digs in.
-struct Balance {
-  double slip = kHighestSlip;
-  bool stuck = true;
-};
-
 struct LoadedTable {
   const WheelTable* table;
   double load;   // over that on the flat
   double share;  // of the rover's
 };
 
-Balance balanced(const std::vector<LoadedTable>& wheels, double demand) {
-  double before = 0.0;
-  for (std::size_t row = 0; row < WheelTable::kRows && WheelTable::slip(row) <= kHighestSlip; ++row) {
-    double pull = 0.0;
-    for (const LoadedTable& w : wheels) pull += w.share * w.table->row(row, w.load).pull;
-    if (pull >= demand) {
-      if (row == 0) return {-1.0, false};
-      const double t = (demand - before) / (pull - before);
-      return {WheelTable::slip(row - 1) + t * (WheelTable::slip(row) - WheelTable::slip(row - 1)), false};
-    }
-    before = pull;
+// What the slope asks of the wheels over the force normal to it; across as a size.
+struct Demand {
+  double along, across;
+};
+
+Demand demandOf(double along, double across) {
+  const double run = std::hypot(1.0, along);
+  return {along * std::sqrt(1.0 + along * along + across * across) / run, std::abs(across) / run};
+}
+
+// The common slip and slip angle at which the wheels pull and hold what is asked.
+struct Balance {
+  double slip = kHighestSlip;
+  double angle_rad = 0.0;
+  bool stuck = true, slides = false;
+};
+
+// What wheels turned uphill by an angle give along and across the way.
+Demand given(const std::vector<LoadedTable>& wheels, std::size_t row, std::size_t sheet) {
+  double pull = 0.0, hold = 0.0;
+  for (const LoadedTable& w : wheels) {
+    const WheelTable::Row forces = w.table->row(row, w.load, sheet);
+    pull += w.share * forces.pull;
+    hold += w.share * forces.hold;
   }
-  return {};
+  const double c = std::cos(WheelTable::angle_rad(sheet)), s = std::sin(WheelTable::angle_rad(sheet));
+  return {pull * c - hold * s, hold * c + pull * s};
+}
+
+// At one slip angle, the least slip that gives the demand along, since on soft ground the pull falls again as the
+// wheel digs in, and what it holds across there.
+struct Steady {
+  double slip, hold;
+  bool brakes;  // false where even locked wheels pull more than is asked: it slides down
+};
+
+std::optional<Steady> steady(const std::vector<LoadedTable>& wheels, double along, std::size_t sheet) {
+  Demand before{};
+  for (std::size_t row = 0; row < WheelTable::kRows && WheelTable::slip(row) <= kHighestSlip; ++row) {
+    const Demand now = given(wheels, row, sheet);
+    if (now.along >= along) {
+      if (row == 0) return Steady{-1.0, now.across, now.along <= along};
+      const double t = (along - before.along) / (now.along - before.along);
+      return Steady{WheelTable::slip(row - 1) + t * (WheelTable::slip(row) - WheelTable::slip(row - 1)),
+                    before.across + t * (now.across - before.across), true};
+    }
+    before = now;
+  }
+  return std::nullopt;
+}
+
+// The least slip angle at which the wheels hold it, between two sheets where both are steady.
+Balance balanced(const std::vector<LoadedTable>& wheels, const Demand& demand) {
+  std::optional<Steady> before;
+  for (std::size_t sheet = 0; sheet < WheelTable::kAngles; ++sheet) {
+    const auto now = steady(wheels, demand.along, sheet);
+    if (sheet == 0 && !now) return {};
+    if (now && !now->brakes) break;
+    if (now && now->hold >= demand.across) {
+      const double t = before ? (demand.across - before->hold) / (now->hold - before->hold) : 1.0;
+      const double from = sheet == 0 ? 0.0 : WheelTable::angle_rad(sheet - 1);
+      return {before ? before->slip + t * (now->slip - before->slip) : now->slip,
+              from + t * (WheelTable::angle_rad(sheet) - from), false, false};
+    }
+    before = now;
+  }
+  return {.stuck = true, .slides = true};
 }
 
 }  // namespace
@@ -82,20 +130,25 @@ std::size_t TrueWorld::soilAt(const maps::Point& place, double margin_m) const n
   return cell ? std::min<std::size_t>(class_index_[*cell], classes_ - 1) : 0;
 }
 
-// Axles evenly over the wheelbase.
+// Axles evenly over the wheelbase. Across the slope weight moves to the lower wheels by the moment of its part across it,
+// as along it; none carries less than a tenth of its share.
 std::vector<TrueWorld::WheelState> TrueWorld::standing(const Motion& motion) const {
   const int axles = std::max(rover_.wheel_count / 2, 2);
   std::vector<double> along_m;
   for (int wheel = 0; wheel < 2 * axles; ++wheel)
     along_m.push_back(rover_.wheelbase_m * (0.5 - static_cast<double>(wheel / 2) / (axles - 1)));
   const std::vector<double> loads_N = terramech::wheelLoads_N(rover_, motion.gradient, along_m);
+  const double run = std::hypot(1.0, motion.gradient),
+               leaning = std::copysign(demandOf(motion.gradient, motion.across).across, motion.across) * 2.0 *
+                         rover_.centre_of_mass_height_m / rover_.track_m,
+               moved = std::clamp(leaning, -0.9, 0.9), less = run / std::hypot(run, motion.across);
   std::vector<WheelState> wheels;
   for (std::size_t w = 0; w < along_m.size(); ++w) {
-    const double across_m = w % 2 == 0 ? 0.5 * rover_.track_m : -0.5 * rover_.track_m;
+    const double side = w % 2 == 0 ? 1.0 : -1.0, across_m = side * 0.5 * rover_.track_m;
     const maps::Point place{motion.place.x_m + along_m[w] * motion.heading.x - across_m * motion.heading.y,
                             motion.place.y_m + along_m[w] * motion.heading.y + across_m * motion.heading.x};
     wheels.push_back({.place = place,
-                      .load_N = loads_N[w],
+                      .load_N = loads_N[w] * less * (1.0 - side * moved),
                       .passes = motion.ruts ? motion.ruts->passes(place) : 0,
                       .forces = {}});
   }
@@ -114,17 +167,20 @@ TrueWorld::Step TrueWorld::drive(const Motion& motion) const {
                       .load = w.load_N / terramech::wheelLoad_N(rover_),
                       .share = w.load_N / load_N});
   }
-  const double demand = motion.gradient + slopeOutOf(motion.dug_m, rover_.wheel.radius_m);
+  Demand demand = demandOf(motion.gradient, motion.across);
+  demand.along += slopeOutOf(motion.dug_m, rover_.wheel.radius_m);
   const Balance balance = balanced(wheels, demand);
   step.stuck = balance.stuck;
+  step.slides = balance.slides;
   step.slip = balance.slip;
+  step.slip_angle_rad = -std::copysign(balance.angle_rad, motion.across);
   for (std::size_t w = 0; w < wheels.size(); ++w) {
-    step.wheels[w].forces = wheels[w].table->at(step.slip, wheels[w].load);
+    step.wheels[w].forces = wheels[w].table->at(step.slip, wheels[w].load, balance.angle_rad);
     step.torque_Nm += step.wheels[w].forces.torque * step.wheels[w].load_N * rover_.wheel.radius_m;
   }
-  // Power of all wheels over the speed: T omega / v with omega = v/(r (1 - i)); a braking wheel gives nothing
-  // back.
-  const double moving = 1.0 - std::max(step.slip, 0.0);
+  // Power of all wheels over the speed of the way: T omega / v with omega = v cos(beta)/(r (1 - i)); a braking wheel
+  // gives nothing back.
+  const double moving = (1.0 - std::max(step.slip, 0.0)) / std::cos(balance.angle_rad);
   step.speed_mps = rover_.max_speed_mps * moving;
   step.energy_J_per_m = std::max(step.torque_Nm, 0.0) / (rover_.wheel.radius_m * moving) +
                         rover_.hotel_power_W / step.speed_mps;

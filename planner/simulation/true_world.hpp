@@ -32,13 +32,15 @@ struct Motion {
   maps::Point place;           ///< of the rover's middle
   costmap::Direction heading;  ///< of the motion
   double gradient = 0.0;       ///< rise over run along the motion
+  double across = 0.0;         ///< rise over run to the left of it
   double dug_m = 0.0;          ///< depth of the holes that the wheels stand in and must climb out of
   const Ruts* ruts = nullptr;  ///< none: all ground is fresh
 };
 
 /// How a rover of alike wheels stands and drives on the true ground: each wheel on the soil under it, in the
-/// rut of the one ahead where there is one, under its share of the weight; all turn at one rate, so the slip
-/// is common, and together they pull what the slope asks.
+/// rut of the one ahead where there is one, under its share of the weight; all turn at one rate and are turned
+/// uphill alike, so slip and slip angle are common, and together they pull what the slope asks along the way and
+/// hold what it asks across (ishigami_2009). The balance of yaw is left to the steering.
 ///
 /// Quasi-static. Immutable, safe to share between threads.
 class TrueWorld {
@@ -56,9 +58,11 @@ class TrueWorld {
 
   /// One steady step of the rover.
   struct Step {
-    bool stuck = false;  ///< no slip gives the pull
+    bool stuck = false;   ///< no slip gives the pull, or it slides
+    bool slides = false;  ///< the wheels hold it across or down the slope at no slip angle up to 45 deg
     double slip = 0.0;
-    double energy_J_per_m = 0.0;  ///< of driving and hotel, along the surface
+    double slip_angle_rad = 0.0;  ///< from the wheels' planes to the way made good, left positive
+    double energy_J_per_m = 0.0;  ///< of driving and hotel, along the way made good on the surface
     double speed_mps = 0.0;
     double torque_Nm = 0.0;          ///< of all wheels together
     std::vector<WheelState> wheels;  ///< the foremost first

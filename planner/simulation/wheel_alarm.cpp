@@ -34,14 +34,18 @@ WheelAlarm::Heard WheelAlarm::hear(const WheelLook& look, const std::vector<Whee
   Heard heard;
   excess_.resize(std::max(excess_.size(), look.wheels.size()));
   std::size_t slipping = 0, reading_slip = 0;
+  double expected_angle_rad = 0.0;
   for (std::size_t w = 0; w < look.wheels.size(); ++w) {
     const costmap::WheelReading& reading = look.wheels[w];
     reading_slip += std::isnan(reading.slip) ? 0U : 1U;
     slipping += reading.slip > expected[w].slip + limits_.slip ? 1U : 0U;
+    expected_angle_rad = std::fmax(expected_angle_rad, expected[w].slip_angle_rad);
     heard.sank.push_back(excessSinkage(w, reading, expected[w]) > limits_.sinkage);
   }
   if (slipping > 0 && 2 * slipping >= reading_slip)
     heard.reason = "slips";
+  else if (std::abs(look.slip_angle_rad) > expected_angle_rad + limits_.slip_angle_rad)
+    heard.reason = "slides";
   else if (std::find(heard.sank.begin(), heard.sank.end(), true) != heard.sank.end())
     heard.reason = "sinks";
   return heard;

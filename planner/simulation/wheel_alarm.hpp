@@ -15,12 +15,14 @@ struct AlarmLimits {
   double slip = 0.2;  ///< slip beyond what the map says, at half of the wheels or more [-]
   double sinkage =
       0.08;  ///< sinkage of a wheel on fresh ground beyond what the map says, over its radius [-]
+  double slip_angle_rad = 0.15;  ///< slip angle of the way made good beyond what the map says, as sizes
 };
 
 /// What the map says of the ground under a wheel in this heading.
 struct WheelExpectation {
   double slip = 0.0;                 ///< [-]
   double sinkage_over_radius = 0.0;  ///< [-]
+  double slip_angle_rad = 0.0;       ///< size; NaN, not known, counts as 0
 };
 
 /// Compares what the wheels read, noise and faults and all, with what the map says. Half of the wheels must
@@ -33,7 +35,7 @@ class WheelAlarm {
 
   /// What a look says.
   struct Heard {
-    std::optional<std::string> reason;  ///< "slips" or "sinks"
+    std::optional<std::string> reason;  ///< "slips", "slides" or "sinks"
     std::vector<bool> sank;             ///< of each wheel
   };
   /// `expected`: of each wheel of the look.

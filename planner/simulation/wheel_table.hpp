@@ -1,6 +1,6 @@
 #pragma once
 
-#include <array>
+#include <cstddef>
 #include <vector>
 
 #include <talus/terramech/contact/rover.hpp>
@@ -10,7 +10,7 @@
 namespace talus::planner {
 
 /// What a wheel does on one soil, with the effects that act there, tabulated by the forward model over slip
-/// -1 .. 1 and over its load, 0.25 to 1.9 times that on the flat.
+/// -1 .. 1, over its load, 0.25 to 1.9 times that on the flat, and over its slip angle, 0 to 45 degrees.
 class WheelTable {
  public:
   /// Forces over the load.
@@ -18,17 +18,24 @@ class WheelTable {
     double pull = 0.0;     ///< drawbar pull over load [-]
     double torque = 0.0;   ///< torque over load and radius [-]
     double sinkage = 0.0;  ///< sinkage over radius [-]
+    double hold = 0.0;     ///< force across the wheel, against its sideways motion, over load [-]
   };
 
   static constexpr std::size_t kRows = 81;
   static constexpr std::size_t kLoads = 12;
+  static constexpr std::size_t kAngles = 9;
 
   /// Load of a layer, over that on the flat: 0.25 to 1.9.
   static constexpr double load(std::size_t layer) noexcept {
     return 0.25 + 0.15 * static_cast<double>(layer);
   }
 
-  /// A soil that cannot carry the wheel pulls nothing.
+  /// Slip angle of a sheet: 0 to 45 degrees.
+  static constexpr double angle_rad(std::size_t sheet) noexcept {
+    return 0.09817477042468103 * static_cast<double>(sheet);
+  }
+
+  /// A soil that cannot carry the wheel pulls and holds nothing.
   WheelTable(const terramech::Soil& soil, const terramech::Rover& rover,
              const std::vector<terramech::Effect>& effects = {});
 
@@ -36,13 +43,15 @@ class WheelTable {
   static constexpr double slip(std::size_t row) noexcept {
     return 2.0 * static_cast<double>(row) / (kRows - 1) - 1.0;
   }
-  /// Of a row, interpolated at a load, over that on the flat; beyond the table's ends their values.
-  Row row(std::size_t i, double load_over_flat) const noexcept;
-  /// Interpolated at a slip, clamped to [-1, 1], too.
-  Row at(double slip, double load_over_flat) const noexcept;
+  /// Of a row and sheet, interpolated at a load, over that on the flat; beyond the table's ends their values.
+  Row row(std::size_t i, double load_over_flat, std::size_t sheet = 0) const noexcept;
+  /// Interpolated at a slip, clamped to [-1, 1], and at the size of a slip angle, too.
+  Row at(double slip, double load_over_flat, double slip_angle_rad = 0.0) const noexcept;
 
  private:
-  std::array<std::array<Row, kRows>, kLoads> rows_;
+  Row onSheet(double slip, double load_over_flat, std::size_t sheet) const noexcept;
+
+  std::vector<Row> rows_;  // [sheet][load][slip]
 };
 
 }  // namespace talus::planner

@@ -43,6 +43,10 @@ class SlopeEquilibrium::Solver {
 
   SlopeState at(const Gradient& gradient) const noexcept;
   std::vector<WheelOnSlope> wheels(const Gradient& gradient, const SlopeState& state) const;
+  WheelOnSlope wheel(const WheelMotion& motion) const noexcept;
+  WheelOnSlope evenWheel(double slip, double slip_angle_rad) const noexcept {
+    return wheel({wheelLoad_N(rover_), slip, slip_angle_rad});
+  }
   const RoverStance& stance() const { return stance_; }
 
  private:
@@ -297,13 +301,21 @@ std::vector<WheelOnSlope> SlopeEquilibrium::Solver::wheels(const Gradient& gradi
   for (int k = 0; k < stance_.wheels(); ++k) {
     WheelMotion motion = motionOf(k, u);
     motion.load_N = shares[static_cast<std::size_t>(k)] * normal;
-    const WheelRatios f = forces_.at(motion);
-    const double r = rover_.wheel.radius_m;
-    all.push_back({motion.load_N, motion.slip, motion.slip_angle_rad, f.value[kSinkageRatio] * r,
-                   f.value[kTorqueRatio] * motion.load_N * r, f.value[kPullRatio] * motion.load_N,
-                   f.value[kSideRatio] * motion.load_N});
+    all.push_back(wheel(motion));
   }
   return all;
+}
+
+WheelOnSlope SlopeEquilibrium::Solver::wheel(const WheelMotion& motion) const noexcept {
+  const WheelRatios f = forces_.at(motion);
+  const double r = rover_.wheel.radius_m, load_N = motion.load_N;
+  return {load_N,
+          motion.slip,
+          motion.slip_angle_rad,
+          f.value[kSinkageRatio] * r,
+          f.value[kTorqueRatio] * load_N * r,
+          f.value[kPullRatio] * load_N,
+          f.value[kSideRatio] * load_N};
 }
 
 SlopeEquilibrium::SlopeEquilibrium(const Soil& soil, const Rover& rover, const SlopeOptions& options)
@@ -318,6 +330,10 @@ SlopeState SlopeEquilibrium::at(const Gradient& gradient) const noexcept {
 
 std::vector<WheelOnSlope> SlopeEquilibrium::wheels(const Gradient& gradient, const SlopeState& state) const {
   return solver_->wheels(gradient, state);
+}
+
+WheelOnSlope SlopeEquilibrium::evenWheel(double slip, double slip_angle_rad) const noexcept {
+  return solver_->evenWheel(slip, slip_angle_rad);
 }
 
 bool SlopeEquilibrium::symmetric() const noexcept {

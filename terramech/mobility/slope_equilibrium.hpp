@@ -98,6 +98,9 @@ class SlopeEquilibrium {
   /// Each wheel of a state that holds, front to rear, left before right.
   std::vector<WheelOnSlope> wheels(const Gradient& gradient, const SlopeState& state) const;
 
+  /// One wheel under its even share of the weight on the flat; slip within [-1, 1], slip angle within 60 deg.
+  WheelOnSlope evenWheel(double slip, double slip_angle_rad) const noexcept;
+
   /// Whether the rover is alike on its left and right.
   bool symmetric() const noexcept;
 

@@ -124,6 +124,73 @@ TEST(PullFromTorque, FlatWheelPullsItsTorque) {
   EXPECT_DOUBLE_EQ(pullFromTorque(0.4, 0.0), 0.4);  // Closed form: no sinkage, no resistance
 }
 
+// What a wheel reads that is turned uphill on the slope that it holds along and across.
+WheelReading crabbing(const terramech::Soil& soil, double slip, double slip_angle_rad) {
+  const terramech::Rover rover = testRover();
+  const double load_N = terramech::wheelLoad_N(rover);
+  const auto wheel = terramech::equilibrium(
+      soil, rover.wheel,
+      {.load_N = load_N, .slip = slip, .slip_angle_rad = slip_angle_rad, .gravity_m_s2 = rover.gravity_m_s2});
+  const double c = std::cos(slip_angle_rad), s = std::sin(slip_angle_rad);
+  return {.time_s = 1.0,
+          .place = {},
+          .load_N = load_N,
+          .slip = slip,
+          .torque_Nm = wheel.torque_Nm,
+          .sinkage_m = wheel.sinkage_m,
+          .gradient = (wheel.drawbar_pull_N * c + wheel.side_force_N * s) / load_N,
+          .across = (wheel.side_force_N * c - wheel.drawbar_pull_N * s) / load_N,
+          .slip_angle_rad = slip_angle_rad,
+          .drawbar_pull_N = kNone};
+}
+
+TEST(WheelObserver, AWheelThatCrabsTellsItsGroundAsAStraightOneDoes) {
+  const auto model = testGround();
+  const WheelObserver observer(*model);
+  const double sand = model->prior(0).pull.value;
+  for (const double slip : {0.15, 0.3, 0.5})
+    for (const double angle : {-0.5, -0.25, -0.1, 0.1, 0.25, 0.5}) {
+      const WheelReading on_sand = crabbing(testSand(), slip, angle);
+      EXPECT_EQ(on_sand.across > 0.0, angle < 0.0);
+      const auto same = observer.observe(0, on_sand);
+      ASSERT_TRUE(same);
+      // Property: reading and class agree, as for straight wheels; the table of forces is good to 0.015.
+      EXPECT_NEAR(same->pull.value, sand, 0.03) << slip << ' ' << angle;
+      // Property: weaker ground is seen to be weaker, whichever of its forces gives it away.
+      const auto weaker = observer.observe(0, crabbing(testDust(), slip, angle));
+      ASSERT_TRUE(weaker);
+      EXPECT_LT(weaker->pull.value, sand - 2.0 * weaker->pull.std) << slip << ' ' << angle;
+      // Property: what is not known of the angle or the slope across errs towards weaker ground.
+      for (const bool angle_known : {false, true}) {
+        WheelReading less = on_sand;
+        (angle_known ? less.across : less.slip_angle_rad) = kNone;
+        const auto seen = observer.observe(0, less);
+        ASSERT_TRUE(seen);
+        EXPECT_LE(seen->pull.value, same->pull.value + 0.01) << slip << ' ' << angle;
+      }
+    }
+}
+
+// Ground that pulls as its class does, yet holds less across.
+TEST(WheelObserver, GroundThatHoldsLittleAcrossIsWeaker) {
+  const auto model = testGround();
+  const WheelObserver observer(*model);
+  WheelReading sliding = crabbing(testSand(), 0.3, -0.4);
+  const double along = sliding.gradient, across = sliding.across, held = 0.4;
+  // The same pull in the wheel's plane, that part of the side force.
+  const double c = std::cos(0.4), s = std::sin(0.4), pull = along * c + across * s,
+               side = across * c - along * s;
+  sliding.gradient = pull * c - held * side * s;
+  sliding.across = held * side * c + pull * s;
+  sliding.torque_Nm = sliding.sinkage_m = kNone;
+  const auto seen = observer.observe(0, sliding);
+  ASSERT_TRUE(seen);
+  EXPECT_LT(seen->pull.value, model->prior(0).pull.value - 0.1);
+  sliding.gradient = along;
+  sliding.across = across;
+  EXPECT_NEAR(observer.observe(0, sliding)->pull.value, model->prior(0).pull.value, 0.03);
+}
+
 // Property: from slip 0.9 on a balance says nothing better than the class; what is weaker is kept.
 TEST(WheelObserver, ARoverThatMayHaveStoodGivesAnUpperBound) {
   const auto ground = testGround();

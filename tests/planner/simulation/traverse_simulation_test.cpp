@@ -32,14 +32,15 @@ costmap::TraversabilityMap planeMap(double rise) {
 struct Site {
   WorldSoils soils;
   double rise = 0.0;
+  maps::Point start{5.5, 20.5}, goal{54.5, 20.5};
 };
 
 TraverseSimulation over(const Site& site, bool senses, const SensorOptions& sensors = {.pose_drift = 0.0}) {
   const TrueWorld world(site.soils, testRover(), maps::Raster<std::uint8_t>(grid(), 0));
   costmap::TraversabilityMap map = planeMap(site.rise);
   SimulationOptions options;
-  options.start = {5.5, 20.5};
-  options.goal = {54.5, 20.5};
+  options.start = site.start;
+  options.goal = site.goal;
   options.senses = senses;
   options.sensors = sensors;
   return simulateTraverse(map, world, options);
@@ -79,6 +80,21 @@ TEST(TraverseSimulation, ADriftingPoseLosesNoRover) {
     EXPECT_NE(drive.outcome, Outcome::Tipped) << seed;
     EXPECT_GE(drive.alarms, 1) << seed;
   }
+}
+
+// A plane that rises to the right of the way, with ground on it that pulls but does not hold it across.
+TEST(TraverseSimulation, WhoWatchesItsWayDoesNotSlideOffASlope) {
+  terramech::Soil slippery = testSand();
+  slippery.cohesion_Pa = 100.0;
+  slippery.friction_angle_rad = 0.45;
+  const WorldSoils soils{.classes = {testSand()}, .patches = {{{30.0, 20.5}, 3.0, slippery}}};
+  const double rise = 0.25;
+  const Site site{soils, rise, {30.5, 2.5}, {30.5, 37.5}};
+  EXPECT_EQ(over(site, false).outcome, Outcome::Slid);
+  const TraverseSimulation drive = over(site, true);
+  EXPECT_NE(drive.outcome, Outcome::Slid);
+  EXPECT_NE(drive.outcome, Outcome::Immobilised);
+  EXPECT_GE(drive.alarms, 1);
 }
 
 TEST(TraverseSimulation, NoWayRoundIsGivenUpNotTriedToDeath) {

@@ -5,6 +5,7 @@
 #include <site_fixture.hpp>
 
 #include <talus/planner/simulation/true_world.hpp>
+#include <talus/terramech/mobility/slope_equilibrium.hpp>
 
 namespace talus::planner {
 namespace {
@@ -83,6 +84,59 @@ TEST(TrueWorld, TheSecondWheelInARutPullsMoreThanTheFirst) {
   EXPECT_EQ(step.wheels[0].passes, 0);
   EXPECT_EQ(step.wheels[2].passes, 1);
   EXPECT_GT(step.wheels[2].forces.pull, step.wheels[0].forces.pull);
+}
+
+// Independent: SlopeEquilibrium, with its own tables, solver and balance of yaw, on one soil.
+TEST(TrueWorld, HoldsASlopeAsTheEquilibriumOnAPlane) {
+  terramech::Rover crab = testRover();
+  crab.steering = terramech::Steering::AllWheel;
+  const TrueWorld world({.classes = {testSand()}, .patches = {}}, crab, oneClass());
+  const terramech::SlopeEquilibrium plane(testSand(), crab);
+  int held = 0;
+  for (double along = -0.2; along < 0.21; along += 0.1)
+    for (double across = -0.5; across < 0.51; across += 0.1) {
+      const auto step =
+          world.drive({.place = {10.0, 20.0}, .heading = {1.0, 0.0}, .gradient = along, .across = across});
+      const auto want = plane.at({along, across});
+      if (!want.holds() || step.slides) {
+        EXPECT_TRUE(step.slides || want.slip_angle_rad > 0.7 || want.slip > 0.75) << along << ' ' << across;
+        continue;
+      }
+      ++held;
+      EXPECT_NEAR(step.slip, want.slip, 0.03) << along << ' ' << across;
+      EXPECT_NEAR(step.slip_angle_rad, want.slip_angle_rad, 0.05) << along << ' ' << across;
+      EXPECT_NEAR(step.energy_J_per_m / want.energy_J_per_m, 1.0, 0.05)
+          << along << ' ' << across << ' ' << step.slip << ' ' << want.slip << ' ' << step.slip_angle_rad
+          << ' ' << want.slip_angle_rad << ' ' << want.slip_difference;
+    }
+  EXPECT_GT(held, 30);
+}
+
+TEST(TrueWorld, WhatRisesToTheRightIsTheMirrorImage) {
+  const TrueWorld world({.classes = {testSand()}, .patches = {}}, testRover(), oneClass());
+  for (const double across : {0.05, 0.15, 0.25}) {
+    const auto left =
+        world.drive({.place = {10.0, 20.0}, .heading = {1.0, 0.0}, .gradient = 0.05, .across = across});
+    const auto right =
+        world.drive({.place = {10.0, 20.0}, .heading = {1.0, 0.0}, .gradient = 0.05, .across = -across});
+    EXPECT_LT(left.slip_angle_rad, 0.0);  // the wheels point uphill of the way made good
+    EXPECT_NEAR(left.slip_angle_rad, -right.slip_angle_rad, 1e-12);
+    EXPECT_NEAR(left.energy_J_per_m, right.energy_J_per_m, 1e-9);
+    EXPECT_NEAR(left.wheels[0].load_N, right.wheels[1].load_N, 1e-9);
+    EXPECT_LT(left.wheels[0].load_N, left.wheels[1].load_N);
+  }
+}
+
+TEST(TrueWorld, SlidesWhereNothingHolds) {
+  terramech::Soil slippery = testSand();
+  slippery.cohesion_Pa = 100.0;
+  slippery.friction_angle_rad = 0.45;
+  const TrueWorld world({.classes = {slippery}, .patches = {}}, testRover(), oneClass());
+  const auto across =
+      world.drive({.place = {10.0, 20.0}, .heading = {1.0, 0.0}, .gradient = -0.1, .across = 0.6});
+  EXPECT_TRUE(across.slides && across.stuck);
+  const auto down = world.drive({.place = {10.0, 20.0}, .heading = {1.0, 0.0}, .gradient = -1.2});
+  EXPECT_TRUE(down.slides && down.stuck);  // steeper than locked wheels brake
 }
 
 TEST(TrueWorld, EachSoilOncePatchesEachTheirOwn) {

@@ -33,6 +33,18 @@ TEST(WheelAlarm, OneSlipSensorNeitherStopsTheRoverNorKeepsItFromStopping) {
   EXPECT_EQ(alarm.hear(all, kExpected).reason, "slips");
 }
 
+TEST(WheelAlarm, WhoSlidesMoreThanTheMapSaysStops) {
+  WheelAlarm alarm({}, kRadius_m);
+  WheelLook look = quiet();
+  look.slip_angle_rad = -0.2;
+  EXPECT_EQ(alarm.hear(look, kExpected).reason, "slides");
+  std::vector<WheelExpectation> slope = kExpected;
+  for (auto& wheel : slope) wheel.slip_angle_rad = 0.1;
+  EXPECT_FALSE(alarm.hear(look, slope).reason);
+  slope.assign(6, {.slip = 0.1, .sinkage_over_radius = 0.1, .slip_angle_rad = std::nan("")});
+  EXPECT_EQ(alarm.hear(look, slope).reason, "slides");  // nothing known: as on level ground
+}
+
 TEST(WheelAlarm, OneWheelThatSinksIsEnough) {
   WheelAlarm alarm({}, kRadius_m);
   WheelLook look = quiet();
