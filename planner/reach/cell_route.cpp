@@ -88,6 +88,14 @@ bool connect(const HeadingSet& set, InCell p, InCell q, std::vector<InCell>& way
   return false;
 }
 
+// Where a route passes from one cell into the next.
+struct Crossing {
+  Cell cell;     // behind it
+  InCell place;  // in that cell
+  double heading_rad;
+  int side;
+};
+
 class Search {
  public:
   Search(const MotionCost& cost, HeadingSets& headings, const Segment& places, double tolerance_m)
@@ -185,12 +193,6 @@ class Search {
 
   // Backwards from the end of the way: where each side is crossed; then the drive through each cell.
   Polyline laid(int last, InCell end) {
-    struct Crossing {
-      Cell cell;     // behind it
-      InCell place;  // in that cell
-      double heading_rad;
-      int side;
-    };
     std::vector<Crossing> crossings;
     InCell target = end;
     int k = last;
@@ -207,7 +209,15 @@ class Search {
       crossings.push_back({node.cell, onSide(node.side, at), node.heading_rad, node.side});
       target = onSide(otherSide(node.side), at);
     }
-    Cell cell = nodes_[static_cast<std::size_t>(k)].cell;
+    // Sides are crossed on short straight legs; the shorter, the less room they take of a narrow cone.
+    for (const double step : {0.2, 0.02, 0.002})
+      if (Polyline way = driven(nodes_[static_cast<std::size_t>(k)].cell, crossings, end, step); !way.empty())
+        return way;
+    return {};
+  }
+
+  // The start's cell, and the crossings with the last one first.
+  Polyline driven(Cell cell, const std::vector<Crossing>& crossings, InCell end, double step) {
     InCell here = inCell(cell, places_.from);
     Polyline way{places_.from};
     const auto drive = [&](InCell to) {
@@ -217,17 +227,13 @@ class Search {
       return true;
     };
     for (auto crossing = crossings.rbegin(); crossing != crossings.rend(); ++crossing) {
+      const bool meridian = crossing->side == Side::West || crossing->side == Side::East;
       const InCell h = unit(crossing->heading_rad),
-                   out = onSide(otherSide(crossing->side),
-                                crossing->side == Side::West || crossing->side == Side::East
-                                    ? crossing->place.y
-                                    : crossing->place.x);
-      const InCell before = out - std::min(0.2, stepInside(out, -1.0 * h)) * h;
-      const InCell behind = crossing->place + std::min(0.2, stepInside(crossing->place, h)) * h;
-      if (!drive(before)) return {};
+                   out = onSide(otherSide(crossing->side), meridian ? crossing->place.y : crossing->place.x);
+      if (!drive(out - std::min(step, stepInside(out, -1.0 * h)) * h)) return {};
       cell = crossing->cell;
-      here = behind;
-      way.push_back(onMap(cell, behind));
+      here = crossing->place + std::min(step, stepInside(crossing->place, h)) * h;
+      way.push_back(onMap(cell, here));
     }
     if (!drive(end)) return {};
     if (tolerance_m_ == 0.0) way.back() = places_.to;
