@@ -63,7 +63,7 @@ void Judge::ground(const Station& at, Findings& findings) const {
   const double larger = std::max(footprint_m / site_.rover.wheelbase_m, 1.0);
   findings.add("relief", at, plane.relief_m - (1.0 + 1e-3) * larger * site_.rover.clearance_m);
   findings.add("roughness", at, plane.roughness_m - (1.0 + 1e-3) * larger * site_.rover.clearance_m / 3.0);
-  if (!at.turning) equilibrium(at, along, findings);
+  if (!at.turning) equilibrium(at, {along, across}, findings);
 }
 
 // The rover's whole width, at its middle and at both axles.
@@ -78,25 +78,38 @@ void Judge::width(const Station& at, Findings& findings) const {
         findings.add("wheel on refused ground", at, 1.0);
 }
 
-std::optional<std::vector<Judge::Wheel>> Judge::wheels(const Station& at, double gradient) const {
+std::optional<std::vector<Judge::Wheel>> Judge::wheels(const Station& at, const Planar& gradient) const {
   const Rover& rover = site_.rover;
   const int axles = std::max(rover.wheels / 2, 2);
+  const Planar needed = demand(gradient);
+  const double height_m = rover.centre_of_mass_height_m;
   std::vector<Wheel> found;
-  double squares = 0.0;
-  for (int k = 0; k < axles; ++k) squares += 2.0 * std::pow(rover.wheelbase_m * (0.5 - k / (axles - 1.0)), 2);
+  double ahead2 = 0.0;
+  for (int k = 0; k < axles; ++k) ahead2 += 2.0 * std::pow(rover.wheelbase_m * (0.5 - k / (axles - 1.0)), 2);
+  const double left2 = 0.5 * axles * rover.track_m * rover.track_m;
   for (int k = 0; k < axles; ++k)
     for (const double side : {0.5, -0.5}) {
-      const double ahead_m = rover.wheelbase_m * (0.5 - k / (axles - 1.0)), even = 0.5 / axles;
-      Wheel w{.place = shifted(at, ahead_m, side * rover.track_m)};
+      const double ahead_m = rover.wheelbase_m * (0.5 - k / (axles - 1.0)), left_m = side * rover.track_m;
+      const double even = 0.5 / axles;
+      Wheel w{.place = shifted(at, ahead_m, left_m)};
       const auto number = site_.classAt(w.place);
       if (!number) return std::nullopt;
-      w.share = std::max(even - gradient * rover.centre_of_mass_height_m * ahead_m / squares, 0.1 * even);
+      // Weight moves downhill by the height of the centre of mass.
+      const double across = std::copysign(needed.across, gradient.across);
+      w.share = even - height_m * (needed.along * ahead_m / ahead2 + across * left_m / left2);
+      w.share = std::max(w.share, 0.1 * even);
       w.curve = &site_.kinds.at(*number)->fresh;
+      w.thrust = std::max(w.curve->torque(PullCurve::kReferenceSlip), 0.05);
       w.departure = belief_.at(*number, w.place);
       w.deeper = belief_.deeper(*number, w.place);
       found.push_back(w);
     }
   return found;
+}
+
+Judge::Planar Judge::demand(const Planar& g) {
+  const double run2 = 1.0 + g.along * g.along;
+  return {g.along * std::sqrt((run2 + g.across * g.across) / run2), std::abs(g.across) / std::sqrt(run2)};
 }
 
 double Judge::pull(const std::vector<Wheel>& wheels, double slip) {
@@ -116,26 +129,110 @@ double Judge::mostPull(const std::vector<Wheel>& wheels, double most_slip) {
   return most;
 }
 
-void Judge::equilibrium(const Station& at, double gradient, Findings& findings) const {
+namespace {
+
+// Forces of all wheels turned uphill by an angle: a wheel's pull P and side force F give P cos - F sin along the way and
+// P sin + F cos across it. Ground that is weaker by d resists the way by d more, and has the share d / thrust of F less.
+Judge::Planar forces(const std::vector<Judge::Wheel>& wheels, double slip, std::size_t angle, double weaker) {
+  const double c = std::cos(PullCurve::angle_rad(angle)), s = std::sin(PullCurve::angle_rad(angle));
+  Judge::Planar sum;
+  double load = 0.0;
+  for (const Judge::Wheel& w : wheels) {
+    const double relative = std::clamp(w.share * static_cast<double>(wheels.size()), 0.3, 1.6);
+    const double stronger = w.departure.mean - weaker;
+    const double pull = w.curve->pull(slip, relative, angle);
+    const double side = w.curve->side(slip, relative, angle) * std::max(1.0 + stronger / w.thrust, 0.0);
+    sum.along += w.share * (pull * c - side * s + stronger);
+    sum.across += w.share * (pull * s + side * c);
+    load += w.share;
+  }
+  return {sum.along / load, sum.across / load};
+}
+
+// The least slip at an angle that gives the demand along, and the force across there.
+struct AtAngle {
+  double slip = 0.0, across = 0.0;
+};
+std::optional<AtAngle> atAngle(const std::vector<Judge::Wheel>& wheels, std::size_t angle, double along,
+                               const std::pair<double, double>& most_slip_and_weaker) {
+  constexpr double kStep = 0.05;  // the curves are straight in between
+  const auto [most_slip, weaker] = most_slip_and_weaker;
+  Judge::Planar last = forces(wheels, -1.0, angle, weaker);
+  if (last.along >= along) return AtAngle{-1.0, last.across};
+  for (double slip = -1.0 + kStep; slip <= most_slip + 1e-9; slip += kStep) {
+    const Judge::Planar now = forces(wheels, slip, angle, weaker);
+    if (now.along >= along) {
+      const double t = (along - last.along) / (now.along - last.along);
+      return AtAngle{slip - (1.0 - t) * kStep, last.across + t * (now.across - last.across)};
+    }
+    last = now;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+Judge::Hold Judge::hold(const std::vector<Wheel>& wheels, const Planar& demand, double most_slip,
+                        double weaker) {
+  Hold found;
+  std::optional<AtAngle> before;
+  for (std::size_t angle = 0; angle < PullCurve::kAngles_deg.size(); ++angle) {
+    const auto now = atAngle(wheels, angle, demand.along, {most_slip, weaker});
+    if (now) found.most_across = std::max(found.most_across, now->across);
+    if (now && !found.holds && now->across >= demand.across) {
+      const double t = before ? (demand.across - before->across) / (now->across - before->across) : 1.0;
+      found.holds = true;
+      found.slip = before ? before->slip + t * (now->slip - before->slip) : now->slip;
+      found.angle = static_cast<double>(angle) - (1.0 - t);
+    }
+    before = now;
+  }
+  return found;
+}
+
+double Judge::reserve(const std::vector<Wheel>& wheels, const Planar& demand, double most_slip) {
+  double low = -1.0, high = 1.0;
+  while (high - low > 2e-4) {
+    const double middle = 0.5 * (low + high);
+    (hold(wheels, demand, most_slip, middle).most_across >= demand.across ? low : high) = middle;
+  }
+  return low;
+}
+
+void Judge::equilibrium(const Station& at, const Planar& gradient, Findings& findings) const {
   const auto stand = wheels(at, gradient);
   if (!stand) return;
+  const Planar needed = demand(gradient);
   double learned = 0.0;
   for (const Wheel& w : *stand) learned += w.departure.learned / static_cast<double>(stand->size());
-  const double allowed =
-      allowance_.gradient + allowance_.curve + allowance_.pull + allowance_.belief * learned;
-  findings.add("pull", at, gradient - mostPull(*stand) - allowed);
-  const double edge = std::tan(std::atan(gradient) - kMargin_rad);
+  const double read = allowance_.gradient + allowance_.belief * learned;
+  const double allowed = read + allowance_.curve + allowance_.pull;
+  findings.add("pull", at, needed.along - mostPull(*stand) - allowed);
+  const double edge = std::tan(std::atan(gradient.along) - kMargin_rad);
   findings.add("category", at, edge - pull(*stand, PullCurve::kReferenceSlip) - allowed);
-  double slip = -1.0;
-  while (slip < PullCurve::kMostSlip && pull(*stand, slip) < gradient) slip += kSlipStep;
-  if (slip <= -1.0) findings.add("braking", at, pull(*stand, -1.0) - gradient - allowed);
+  if (needed.along < 0.0) findings.add("braking", at, pull(*stand, -1.0) - needed.along - allowed);
+  const Planar least{needed.along - allowed, std::max(needed.across - read - allowance_.side, 0.0)};
+  const Hold held = hold(*stand, least, PullCurve::kMostSlip);
+  if (held.most_across >= 0.0) findings.add("side force", at, least.across - held.most_across);
+  if (held.holds) motors(at, *stand, held, findings);
+}
+
+// What a state that holds takes of each wheel.
+void Judge::motors(const Station& at, const std::vector<Wheel>& stand, const Hold& held,
+                   Findings& findings) const {
   const double load_N = site_.rover.wheelLoad_N(), radius_m = site_.rover.wheel_radius_m;
-  for (const Wheel& w : *stand) {
-    const double share = std::clamp(w.share * static_cast<double>(stand->size()), 0.3, 1.6);
-    const double torque_Nm = std::abs(w.curve->torque(slip, share)) * share * load_N * radius_m;
+  const auto above = static_cast<std::size_t>(std::ceil(held.angle)), below = above > 0 ? above - 1 : 0;
+  const double t = held.angle - static_cast<double>(below);
+  const auto between = [&](double low, double high) { return low + t * (high - low); };
+  for (const Wheel& w : stand) {
+    const double share = std::clamp(w.share * static_cast<double>(stand.size()), 0.3, 1.6);
+    const double torque =
+        between(w.curve->torque(held.slip, share, below), w.curve->torque(held.slip, share, above));
+    const double torque_Nm = std::abs(torque) * share * load_N * radius_m;
     findings.add("torque", at, torque_Nm - site_.rover.max_torque_Nm * (1.0 + allowance_.torque));
-    findings.add("sinkage", at,
-                 w.curve->sinkage(slip, share) * w.deeper * radius_m - site_.rover.clearance_m);
+    const double depth =
+        between(w.curve->sinkage(held.slip, share, below), w.curve->sinkage(held.slip, share, above));
+    findings.add("sinkage", at, depth * w.deeper * radius_m - site_.rover.clearance_m);
   }
 }
 

@@ -74,6 +74,23 @@ std::set<std::string> causes(const Site& site, const Route& route, const std::ve
   return found;
 }
 
+// Six wheels read at one moment: slip on a gradient.
+std::vector<JournalRow> moment(Place middle, double slip, double gradient, double time_s) {
+  std::vector<JournalRow> rows;
+  for (int w = 0; w < 6; ++w)
+    rows.push_back({.source = "made",
+                    .accepted = true,
+                    .time_s = time_s,
+                    .place = {middle.x_m + 0.6 * (w / 2 - 1), middle.y_m + (w % 2 ? 0.5 : -0.5)},
+                    .load_N = kMer.wheelLoad_N(),
+                    .slip = slip,
+                    .torque_Nm = std::nan(""),
+                    .sinkage_m = std::nan(""),
+                    .gradient = gradient,
+                    .pass = 1});
+  return rows;
+}
+
 using Causes = std::set<std::string>;
 
 TEST(SafetyJudge, SoundGroundIsNotCharged) {
@@ -84,12 +101,57 @@ TEST(SafetyJudge, SoundGroundIsNotCharged) {
 TEST(SafetyJudge, ASlopeBeyondThePullIsCharged) {
   EXPECT_TRUE(causes(plain(0.32), kEast).contains("pull"));
   EXPECT_TRUE(causes(plain(0.4), kEast).contains("category"));
-  EXPECT_EQ(causes(plain(0.32), line({10.1, 5}, {10.1, 15})), Causes{});  // across the slope
+}
+
+const Route kNorth = line({10.1, 5}, {10.1, 15});
+
+TEST(SafetyJudge, ASlopeBeyondTheSideForceIsCharged) {
+  EXPECT_EQ(causes(plain(0.2), kNorth), Causes{});
+  EXPECT_EQ(causes(plain(0.4), kNorth), Causes{"side force"});
+  // Property: neither side and neither way is easier.
+  EXPECT_EQ(causes(plain(-0.4), kNorth), Causes{"side force"});
+  EXPECT_EQ(causes(plain(0.4), line({10.1, 15}, {10.1, 5})), Causes{"side force"});
+  // Ground that was seen to be weaker holds less.
+  std::vector<JournalRow> rows;
+  for (int k = 0; k < 4; ++k)
+    for (const JournalRow& row : moment({10.0, 10.1}, 0.5, 0.0, k)) rows.push_back(row);
+  const double steep = 0.29;
+  EXPECT_EQ(causes(plain(steep), kNorth), Causes{});
+  EXPECT_TRUE(causes(plain(steep), kNorth, rows).contains("side force"));
+}
+
+// Closed form: the weight on a plane in three dimensions, part by part.
+TEST(SafetyJudge, TheDemandIsTheWeightOnThePlane) {
+  for (const double a : {-0.4, 0.0, 0.3})
+    for (const double c : {-0.5, 0.0, 0.2}) {
+      const double t = std::sqrt(1 + a * a), n = std::sqrt(1 + a * a + c * c);
+      // t = (1, 0, a)/|t|, n = (-a, -c, 1)/|n|, n x t: its z is c/(|n| |t|).
+      const double along = a / t, normal = 1 / n, across = std::abs(c) / (n * t);
+      const Judge::Planar needed = Judge::demand({a, c});
+      EXPECT_NEAR(needed.along, along / normal, 1e-12);
+      EXPECT_NEAR(needed.across, across / normal, 1e-12);
+    }
+}
+
+// Property: what holds gives the demand, and ground that is weaker by its reserve just does.
+TEST(SafetyJudge, TheReserveIsWhatTheGroundMayLose) {
+  const Site site = plain();
+  const Belief belief(site, {});
+  for (const Judge::Planar gradient : {Judge::Planar{0.15, 0.0}, Judge::Planar{0.1, 0.1},
+                                       Judge::Planar{-0.1, 0.2}, Judge::Planar{0.0, -0.2}}) {
+    const auto stand = *Judge(site, belief).wheels({{10, 10.1}, 0, 0, false}, gradient);
+    const Judge::Planar needed = Judge::demand(gradient);
+    const double reserve = Judge::reserve(stand, needed, 0.8);
+    EXPECT_GT(reserve, 0.0);
+    EXPECT_TRUE(Judge::hold(stand, needed, 0.8, reserve - 1e-3).holds);
+    EXPECT_FALSE(Judge::hold(stand, needed, 0.8, reserve + 1e-3).holds);
+    EXPECT_LE(reserve, Judge::mostPull(stand) - needed.along + 0.02);
+  }
 }
 
 TEST(SafetyJudge, TiltIsChargedInItsDirection) {
   EXPECT_TRUE(causes(plain(0.5), kEast).contains("pitch"));
-  EXPECT_EQ(causes(plain(0.5), line({10.1, 5}, {10.1, 15})), Causes{"roll"});
+  EXPECT_EQ(causes(plain(0.5), kNorth), (Causes{"roll", "side force"}));
 }
 
 TEST(SafetyJudge, HolesAndTheMapsEdgeAreCharged) {
@@ -125,23 +187,6 @@ TEST(SafetyJudge, AnEdgeUnderTheRoverIsCharged) {
   Site site = plain();
   for (int row = 0; row < 40; ++row) setCells(site.elevation_m, {20, row}, {39, row}, 0.8);
   EXPECT_TRUE(causes(site, kEast).contains("relief"));
-}
-
-// Six wheels read at one moment: slip on a gradient.
-std::vector<JournalRow> moment(Place middle, double slip, double gradient, double time_s) {
-  std::vector<JournalRow> rows;
-  for (int w = 0; w < 6; ++w)
-    rows.push_back({.source = "made",
-                    .accepted = true,
-                    .time_s = time_s,
-                    .place = {middle.x_m + 0.6 * (w / 2 - 1), middle.y_m + (w % 2 ? 0.5 : -0.5)},
-                    .load_N = kMer.wheelLoad_N(),
-                    .slip = slip,
-                    .torque_Nm = std::nan(""),
-                    .sinkage_m = std::nan(""),
-                    .gradient = gradient,
-                    .pass = 1});
-  return rows;
 }
 
 TEST(SafetyJudge, EvidenceOfWeakGroundIsCharged) {
@@ -187,7 +232,8 @@ TEST(SafetyRisk, IsTheChanceOfOneDoubtfulClass) {
   // A slope 0.05 less than the pull, under a class that is unsure by 0.05 as a whole and by 0.05 from place to place.
   const Site site = plain(0.21);
   const double reserve =
-      Judge::mostPull(*Judge(site, Belief(site, {})).wheels({{10, 10.1}, 0, 0, false}, 0.21), 1.0) - 0.21;
+      Judge::mostPull(*Judge(site, Belief(site, {})).wheels({{10, 10.1}, 0, 0, false}, {0.21, 0.0}), 1.0) -
+      0.21;
   ASSERT_GT(reserve, 0.0);
   const DrawnRisk risk = drawnRisk(site, Belief(site, {}), kEast, {.worlds = 20000, .entrapment = 1.0});
   // Closed form: at least as likely as one place, at most as the ten metres' 11 stations together.

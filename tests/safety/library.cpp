@@ -22,7 +22,8 @@ constexpr std::pair<const char*, double> kUnits[] = {{"", 1.0},
                                                      {"_deg", std::numbers::pi / 180.0},
                                                      {"_kg", 1.0},
                                                      {"_Nm", 1.0},
-                                                     {"_m_s2", 1.0}};
+                                                     {"_m_s2", 1.0},
+                                                     {"_kg_m3", 1.0}};
 
 struct Number {
   double mean = 0.0, deviation = 0.0;
@@ -56,7 +57,10 @@ SoilPrior priorOf(const YAML::Node& node) {
       {"frictional_modulus", &Soil::frictional_modulus},
       {"shear_modulus", &Soil::shear_modulus_m},
       {"c1", &Soil::c1},
-      {"c2", &Soil::c2}};
+      {"c2", &Soil::c2},
+      {"density", &Soil::density_kg_m3},
+      {"digging_exponent", &Soil::digging_exponent},
+      {"side_bulldozing", &Soil::side_bulldozing}};
   for (const auto& [stem, field] : kFields) {
     const Number n = number(node, stem);
     if (!n.stated) continue;

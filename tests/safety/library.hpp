@@ -28,7 +28,13 @@ struct Rover {
 /// A soil with the standard deviations that its file states; 0 where it states none.
 struct SoilPrior {
   Soil mean;
-  Soil deviation{.sinkage_exponent = 0.0, .shear_modulus_m = 0.0, .c1 = 0.0, .c2 = 0.0};
+  Soil deviation{.sinkage_exponent = 0.0,
+                 .shear_modulus_m = 0.0,
+                 .c1 = 0.0,
+                 .c2 = 0.0,
+                 .density_kg_m3 = 0.0,
+                 .digging_exponent = 0.0,
+                 .side_bulldozing = 0.0};
 };
 
 /// Folder with soils/ and rovers/ of the library.

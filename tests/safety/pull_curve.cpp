@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace safety {
 namespace {
@@ -17,7 +18,8 @@ LoadedWheel wheelOf(const Rover& rover, double load_share, double slip) {
   return {.radius_m = rover.wheel_radius_m,
           .width_m = rover.wheel_width_m,
           .load_N = load_share * rover.wheelLoad_N(),
-          .slip = slip};
+          .slip = slip,
+          .gravity_m_s2 = rover.gravity_m_s2};
 }
 
 double referencePull(const Soil& soil, const Rover& rover) {
@@ -26,35 +28,46 @@ double referencePull(const Soil& soil, const Rover& rover) {
 
 }  // namespace
 
-PullCurve::PullCurve(const Soil& soil, const Rover& rover) {
-  for (int row = 0; row < kRows; ++row)
-    for (const double share : {kLight, kHeavy}) {
-      const LoadedWheel wheel = wheelOf(rover, share, slipOf(row));
-      const WheelAnswer a = drive(soil, wheel);
-      (share == kLight ? light_ : heavy_)
-          .push_back({.pull = a.drawbar_pull_N / wheel.load_N,
-                      .sinkage = a.carried ? a.sinkage_m / wheel.radius_m : 1.0,
-                      .torque = a.torque_Nm / (wheel.load_N * wheel.radius_m)});
-    }
+double PullCurve::angle_rad(std::size_t node) {
+  return kAngles_deg[node] * std::numbers::pi / 180.0;
 }
 
-double PullCurve::read(double Row::*field, double slip, double load_share) const {
-  const double at = std::clamp((slip + 1.0) / 0.05, 0.0, kRows - 1.0);
+PullCurve::PullCurve(const Soil& soil, const Rover& rover) {
+  for (std::size_t angle = 0; angle < kAngles_deg.size(); ++angle)
+    for (int row = 0; row < kRows; ++row)
+      for (const double share : {kLight, kHeavy}) {
+        LoadedWheel wheel = wheelOf(rover, share, slipOf(row));
+        wheel.slip_angle_rad = angle_rad(angle);
+        const WheelAnswer a = drive(soil, wheel);
+        (share == kLight ? light_ : heavy_)[angle].push_back(
+            {.pull = a.drawbar_pull_N / wheel.load_N,
+             .sinkage = a.carried ? a.sinkage_m / wheel.radius_m : 1.0,
+             .torque = a.torque_Nm / (wheel.load_N * wheel.radius_m),
+             .side = a.side_force_N / wheel.load_N});
+      }
+}
+
+double PullCurve::read(double Row::*field, const Use& use) const {
+  const double at = std::clamp((use.slip + 1.0) / 0.05, 0.0, kRows - 1.0);
   const auto row = std::min<std::size_t>(static_cast<std::size_t>(at), kRows - 2);
   const double t = at - static_cast<double>(row);
-  const double light = light_[row].*field * (1.0 - t) + light_[row + 1].*field * t;
-  const double heavy = heavy_[row].*field * (1.0 - t) + heavy_[row + 1].*field * t;
-  return light + (heavy - light) * (load_share - kLight) / (kHeavy - kLight);
+  const std::vector<Row>&less = light_[use.angle], &more = heavy_[use.angle];
+  const double light = less[row].*field * (1.0 - t) + less[row + 1].*field * t;
+  const double heavy = more[row].*field * (1.0 - t) + more[row + 1].*field * t;
+  return light + (heavy - light) * (use.load_share - kLight) / (kHeavy - kLight);
 }
 
-double PullCurve::pull(double slip, double load_share) const {
-  return read(&Row::pull, slip, load_share);
+double PullCurve::pull(double slip, double load_share, std::size_t angle) const {
+  return read(&Row::pull, {slip, load_share, angle});
 }
-double PullCurve::sinkage(double slip, double load_share) const {
-  return read(&Row::sinkage, slip, load_share);
+double PullCurve::side(double slip, double load_share, std::size_t angle) const {
+  return read(&Row::side, {slip, load_share, angle});
 }
-double PullCurve::torque(double slip, double load_share) const {
-  return read(&Row::torque, slip, load_share);
+double PullCurve::sinkage(double slip, double load_share, std::size_t angle) const {
+  return read(&Row::sinkage, {slip, load_share, angle});
+}
+double PullCurve::torque(double slip, double load_share, std::size_t angle) const {
+  return read(&Row::torque, {slip, load_share, angle});
 }
 
 double classDeviation(const SoilPrior& prior, const Rover& rover) {

@@ -16,7 +16,7 @@ constexpr double kStrongestSlip = 1.0;
 struct Stretch {
   Station at;
   int class_number = 0;
-  double reserve = 0.0;  // what all wheels pull at most, by the mean belief, less what the slope takes
+  double reserve = 0.0;  // by how much the ground may be weaker than the mean belief until nothing holds
   double metres = 0.0;
 };
 
@@ -32,12 +32,14 @@ std::vector<Stretch> stretches(const Site& site, const Belief& belief, const Rou
     const auto number = site.classAt(at.place);
     if (!cell || !number) continue;
     const Plane plane = planeUnder(site.elevation_m, *cell, site.footprint_m());
-    const double along = plane.east * std::cos(at.heading_rad) + plane.north * std::sin(at.heading_rad);
-    const auto wheels = judge.wheels(at, along);
+    const double c = std::cos(at.heading_rad), s = std::sin(at.heading_rad);
+    const Judge::Planar gradient{plane.east * c + plane.north * s, plane.north * c - plane.east * s};
+    const auto wheels = judge.wheels(at, gradient);
     // A stretch is no longer than what is left of the route.
     const double metres = std::min(apart_m, route.length_m() - at.along_m);
     if (wheels && metres > 0.0)
-      found.push_back({at, *number, Judge::mostPull(*wheels, kStrongestSlip) - along, metres});
+      found.push_back(
+          {at, *number, Judge::reserve(*wheels, Judge::demand(gradient), kStrongestSlip), metres});
   }
   return found;
 }

@@ -21,7 +21,7 @@ struct RiskDraw {
 };
 
 /// Draws departures of the ground at stations a metre apart from the Gaussian that the belief leaves, class and
-/// place together, by its Cholesky factor. A world in which the wheels together pull less than the slope takes
+/// place together, by its Cholesky factor. A world in which the wheels together do not hold the slope, along and across it,
 /// over T metres holds the rover with 1 - (1 - entrapment)^(T / 5 m).
 DrawnRisk drawnRisk(const Site& site, const Belief& belief, const Route& route, const RiskDraw& draw = {});
 

@@ -12,6 +12,9 @@ struct Soil {
   double shear_modulus_m = 0.02;
   double c1 = 0.43;
   double c2 = 0.32;
+  double density_kg_m3 = 1600.0;
+  double digging_exponent = 0.4;
+  double side_bulldozing = 1.0;
 };
 
 /// A rigid wheel and how it is used.
@@ -19,7 +22,9 @@ struct LoadedWheel {
   double radius_m = 0.1;
   double width_m = 0.1;
   double load_N = 50.0;
-  double slip = 0.0;  ///< driven 1 - v/(r omega) in [0, 1]; braked r omega/v - 1 in [-1, 0)
+  double slip = 0.0;            ///< driven 1 - v/(r omega) in [0, 1]; braked r omega/v - 1 in [-1, 0)
+  double slip_angle_rad = 0.0;  ///< by which its plane is turned from the way, [0, pi/3]
+  double gravity_m_s2 = 9.80665;
 };
 
 /// What the soil does to it.
@@ -27,7 +32,8 @@ struct WheelAnswer {
   bool carried = false;  ///< false: it sinks to its axle, and the forces are those there
   double sinkage_m = 0.0;
   double torque_Nm = 0.0;
-  double drawbar_pull_N = 0.0;
+  double drawbar_pull_N = 0.0;  ///< along its plane
+  double side_force_N = 0.0;    ///< across it, against the way that it slides
 };
 
 /// Wong and Reece's rigid wheel as the thesis writes it (kang_2003, App. C, contact from the axle forward):
@@ -35,6 +41,9 @@ struct WheelAnswer {
 ///   tau = (c + sigma tan phi)(1 - e^(-j/K)), odd in j, j = r [t1 - t - (1 - i)(sin t1 - sin t)] driven,
 ///         j = r [t1 - t - (sin t1 - sin t)/(1 + i)] braked
 ///   W, DP, T = r b int (sigma cos t + tau sin t), r b int (tau cos t - sigma sin t), r^2 b int tau
+/// At a slip angle (docs/slopes.md) tau points along the path of the rim over the soil, (j, r q tan(beta) (t1 - t)) with
+/// q = v cos(beta)/(r omega); n grows by n_d (s_R - |i|), s_R = |(r omega - v cos beta, v sin beta)|/max(r omega, v); the
+/// side pushes sin(beta) times Hegedus' D1 (c h + D2 gamma h^2/2) over the chord below the surface.
 /// with t1 by false position of W and the integrals by adaptive Simpson: slow and plain.
 WheelAnswer drive(const Soil& soil, const LoadedWheel& wheel);
 

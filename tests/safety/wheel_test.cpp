@@ -54,6 +54,28 @@ TEST(SafetyWheel, TheCurveKeepsToTheModelBetweenItsRows) {
     }
 }
 
+// Property: no angle is the straight wheel, and the rim drags the soil against the way: pull, side force and torque
+// stay within what the shear strength carries.
+TEST(SafetyWheel, AnAngleBeginsAtTheStraightWheel) {
+  const Soil sand{.cohesion_Pa = 1040,
+                  .friction_angle_rad = 0.4887,
+                  .sinkage_exponent = 1.1,
+                  .frictional_modulus = 1.5e6};
+  for (const double slip : {-0.9, -0.3, 0.2, 0.7}) {
+    const WheelAnswer straight = drive(sand, {.load_N = 100, .slip = slip});
+    const WheelAnswer turned = drive(sand, {.load_N = 100, .slip = slip, .slip_angle_rad = 1e-5});
+    EXPECT_EQ(straight.side_force_N, 0.0);
+    EXPECT_NEAR(turned.drawbar_pull_N, straight.drawbar_pull_N, 0.05);
+    EXPECT_NEAR(turned.sinkage_m, straight.sinkage_m, 1e-5);
+    double last = 0.0;
+    for (const double angle : {0.1, 0.3, 0.6}) {
+      const WheelAnswer a = drive(sand, {.load_N = 100, .slip = slip, .slip_angle_rad = angle});
+      EXPECT_GT(a.side_force_N, last);
+      last = a.side_force_N;
+    }
+  }
+}
+
 TEST(SafetyWheel, GroundThatCarriesNoWheelSaysSo) {
   const Soil dust{.friction_angle_rad = 0.4, .frictional_modulus = 500};
   EXPECT_FALSE(drive(dust, {}).carried);
