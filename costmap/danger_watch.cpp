@@ -21,6 +21,11 @@ double slipOf(const WheelReading& reading) noexcept {
   return most > 1.0 ? 1.0 : most;
 }
 
+// Within what the journal takes; NaN stays.
+double kept(double most_pull) noexcept {
+  return std::isnan(most_pull) ? most_pull : std::clamp(most_pull, -kMost, kMost);
+}
+
 }  // namespace
 
 // DP/W that is dangerous at a gradient, whatever the rounding.
@@ -44,7 +49,7 @@ GroundBound DangerWatch::hear(int class_index, const WheelReading& reading, doub
   if (slip >= kLastSlip || torque_limit) bound.lower(dangerousBelow(least_gradient));
   if (z >= model_.parts().policy.sinkage_threshold) bound.least_sinkage = std::min(z, kMost);
   if (slip >= kStanding || z >= kSunk) bound.lower(neverDriven());
-  if (bound.most_pull < -kMost) bound.most_pull = -kMost;
+  bound.most_pull = kept(bound.most_pull);
   return bound;
 }
 
@@ -52,7 +57,7 @@ GroundBound DangerWatch::hear(int class_index, const WheelObservation& suspected
   GroundBound bound;
   const double class_std = model_.parts().classes[static_cast<std::size_t>(class_index)].pull_std;
   const double below = model_.prior(class_index).pull.value - suspected.pull.value;
-  if (below > kFarBelow * std::hypot(suspected.pull.std, class_std)) bound.lower(suspected.pull.value);
+  if (below > kFarBelow * std::hypot(suspected.pull.std, class_std)) bound.lower(kept(suspected.pull.value));
   return bound;
 }
 

@@ -73,8 +73,11 @@ struct DriveIntake::State {
 void DriveIntake::State::learn(const terramech::Telemetry& telemetry, const TelemetryRows& readings,
                                std::size_t i, TelemetryProcessor::Result&& result) {
   const std::string wrong = result.observation ? fault(*result.observation) : "";
-  if (!wrong.empty()) result.reason = wrong;
-  bool accepted = result.observation.has_value() && wrong.empty();
+  if (!wrong.empty()) {
+    result.reason = wrong;
+    result.observation = boundAlone(*result.observation);
+  }
+  bool accepted = result.observation.has_value() && fault(*result.observation).empty();
   if (accepted && !map.learn(*result.observation)) {
     accepted = false;
     result.reason = "no ground to learn about there";

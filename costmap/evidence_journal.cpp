@@ -50,10 +50,12 @@ constexpr std::array<std::pair<const char*, const char*>, 7> kAdded{
      {"pull_here", "REAL"},
      {"sinkage_here", "REAL"}}};
 
-// NULL stands for NaN: SQLite has none.
+// NULL stands for NaN: SQLite has none. What is no number, "0" for SQLite, is refused by fault().
 double number(sqlite3_stmt* row, int column) {
-  return sqlite3_column_type(row, column) == SQLITE_NULL ? std::numeric_limits<double>::quiet_NaN()
-                                                         : sqlite3_column_double(row, column);
+  const int type = sqlite3_column_type(row, column);
+  if (type == SQLITE_NULL) return std::numeric_limits<double>::quiet_NaN();
+  return type == SQLITE_FLOAT || type == SQLITE_INTEGER ? sqlite3_column_double(row, column)
+                                                        : std::numeric_limits<double>::infinity();
 }
 
 void bind(sqlite3_stmt* statement, int at, double value) {
@@ -124,7 +126,8 @@ std::string fault(const WheelObservation& o) {
          {outside("pull", o.pull.value, kGreatestShare), outside("pull_std", o.pull.std, kGreatestShare),
           outside("sinkage", o.sinkage.value, kGreatestShare)})
       if (!reason.empty()) return reason;
-  if (std::abs(o.here.most_pull) > kGreatestShare || std::abs(o.here.least_sinkage) > kGreatestShare)
+  if (std::abs(o.here.most_pull) > kGreatestShare || o.here.least_sinkage < 0.0 ||
+      o.here.least_sinkage > kGreatestShare)
     return "a bound is not finite and within 100";
   for (const std::string& reason :
        {outside("x_m", o.place.x_m, kGreatestPlace_m), outside("y_m", o.place.y_m, kGreatestPlace_m),

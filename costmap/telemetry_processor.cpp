@@ -23,15 +23,11 @@ ClassReading withoutTorque(ClassReading read) {
 }
 
 WheelObservation boundOf(const WheelReading& reading, const GroundBound& here) {
-  WheelObservation out{.time_s = reading.time_s,
-                       .place = reading.place,
-                       .z_m = reading.z_m,
-                       .pull = {kNone, kNone},
-                       .sinkage = {kNone, kNone},
-                       .from_torque = kNone};
+  WheelObservation out{
+      .time_s = reading.time_s, .place = reading.place, .z_m = reading.z_m, .pull = {}, .sinkage = {}};
   out.pose_std_m = reading.pose_std_m;
   out.here = here;
-  return out;
+  return boundAlone(out);
 }
 
 // Torque and sinkage that are not proven make nothing stronger than slip and slope do.
@@ -40,6 +36,14 @@ void weakerBySlope(WheelObservation& seen) {
 }
 
 }  // namespace
+
+WheelObservation boundAlone(const WheelObservation& observation) {
+  WheelObservation left = observation;
+  left.pull = left.sinkage = left.by_slope = {kNone, kNone};
+  left.from_torque = kNone;
+  left.bound = left.pull_may_raise = left.sinkage_may_raise = false;
+  return left;
+}
 
 TelemetryProcessor::TelemetryProcessor(const TraversabilityMap& map)
     : map_(map), danger_(map.model()), watch_(map.model()), observer_(map.model()) {}
@@ -96,7 +100,7 @@ std::optional<WheelObservation> TelemetryProcessor::rejected(const TelemetryRows
   const WheelReading reading = rows.reading(row);
   const auto index = classAt(map_, reading);
   if (!index) return std::nullopt;
-  const GroundBound here = danger_.hear(*index, reading, rows.leastGradient(row));
+  const GroundBound here = danger_.hear(*index, reading, rows.steepestDescent(row));
   return here.any() ? std::optional(boundOf(reading, here)) : std::nullopt;
 }
 

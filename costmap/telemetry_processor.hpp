@@ -18,6 +18,9 @@ struct DriveVerdict {
   const SensorProof* proof = nullptr;  ///< null: nothing may raise a belief
 };
 
+/// What is left of an observation when nothing but the bound of its place is believed.
+WheelObservation boundAlone(const WheelObservation& observation);
+
 /// Puts the moments of a drive through watch, observer and proof, one after the other. Keeps a reference to the map.
 ///
 /// A bound is kept, an estimate is earned. Each channel of each reading is first heard for danger by itself

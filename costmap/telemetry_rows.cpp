@@ -15,6 +15,8 @@ constexpr double kSameLoad = 0.01;       // of the load: less is the same number
 constexpr double kLevelGradient = 0.03;  // less moves no load worth speaking of
 constexpr double kQuarterTurn = 1.5707963267948966;
 constexpr double kTurning_mps = 0.005;  // rim speed of a wheel that turns
+constexpr double kVertical_rad = 1.57;
+constexpr double kWorstPose_m = 1000.0;  // a position that is known no better is not one
 
 double slipOf(double speed_mps, double rim_speed_mps) noexcept {
   return rim_speed_mps > kTurning_mps ? 1.0 - speed_mps / rim_speed_mps
@@ -66,7 +68,8 @@ WheelReading TelemetryRows::reading(std::size_t i) const {
                  .across = std::tan(finite(value(roll_, i))),
                  .slip_angle_rad = finite(value(slip_angle_, i)),
                  .drawbar_pull_N = value(pull_, i),
-                 .pose_std_m = std::isfinite(value(pose_, i)) ? std::max(value(pose_, i), 0.0) : pose_std_m_,
+                 .pose_std_m = std::isfinite(value(pose_, i)) ? std::clamp(value(pose_, i), 0.0, kWorstPose_m)
+                                                              : pose_std_m_,
                  .pass = 1,
                  .speed_slip = slipOf(value(speed_, i), value(rim_speed_, i))};
   if (std::isfinite(value(pass_, i))) r.pass = static_cast<int>(value(pass_, i));
@@ -90,12 +93,23 @@ double TelemetryRows::mapGradient(const WheelReading& r, double direction_rad) c
 
 double TelemetryRows::leastGradient(std::size_t i) const {
   const WheelReading r = reading(i);
-  const double known = std::fmin(measuredGradient(i), mapGradient(r, heading(i)));
-  if (std::isfinite(known)) return known;
+  const double known = std::fmin(measuredSlope(i), mapGradient(r, heading(i)));
+  return std::isfinite(known) ? known : steepestDescent(i);
+}
+
+double TelemetryRows::steepestDescent(std::size_t i) const {
+  const WheelReading r = reading(i);
+  const double measured = measuredSlope(i);
   const auto cell = map_.grid().cellAt(r.place);
-  if (!cell || map_.floorAt(*cell, r.z_m)) return 0.0;
+  if (!cell || map_.floorAt(*cell, r.z_m)) return std::fmin(measured, 0.0);
   const CellCode code = map_.code(*cell);
-  return -std::hypot(code.dzDx(), code.dzDy());
+  return std::fmin(measured, -std::hypot(code.dzDx(), code.dzDy()));
+}
+
+// NaN where it is none: beyond vertical the tangent says anything.
+double TelemetryRows::measuredSlope(std::size_t i) const {
+  const double slope_rad = value(slope_, i);
+  return std::abs(slope_rad) < kVertical_rad ? std::tan(slope_rad) : std::numeric_limits<double>::quiet_NaN();
 }
 
 std::vector<std::vector<std::size_t>> TelemetryRows::byMoment() const {

@@ -31,6 +31,8 @@ class TelemetryRows {
   /// The least that the slope along the heading may have been: of what was measured and what the map has, or the
   /// map's steepest descent where the heading is not known.
   double leastGradient(std::size_t i) const;
+  /// The same of a row whose other numbers are not to be trusted: the map's steepest descent, or less where measured.
+  double steepestDescent(std::size_t i) const;
 
   /// All rows by moment: those of different wheels that were read at one time of one run. Neither the order of the
   /// moments' rows in the file nor that of runs that were read together shows, beyond the rows' numbers.
@@ -39,6 +41,7 @@ class TelemetryRows {
  private:
   static double value(const std::vector<double>* column, std::size_t i);
   double mapGradient(const WheelReading& reading, double direction_rad) const;
+  double measuredSlope(std::size_t i) const;
 
   const TraversabilityMap& map_;
   double pose_std_m_;

@@ -34,7 +34,7 @@ struct Telemetry {
   std::vector<Words> words;           ///< in the file's order; `run` and `wheel` are always words
   std::vector<std::size_t> lines;     ///< line of each row in the file
   std::vector<RejectedRow> rejected;  ///< in the file's order
-  /// The known columns of rejected rows, as far as they hold numbers, infinite ones included; else NaN.
+  /// Known columns of rejected rows where they hold numbers, infinite or beyond double (the greatest); else NaN.
   std::vector<Numbers> rejected_numbers;
 
   /// Rows that can be used.

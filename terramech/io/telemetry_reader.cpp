@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <functional>
 #include <limits>
+#include <locale>
 #include <sstream>
 #include <utility>
 
@@ -61,6 +63,14 @@ Column columnNamed(const std::string& name, const TelemetryOptions& options) {
   for (const Rule& rule : kRules)
     if (name == rule.column) column.rule = &rule;
   return column;
+}
+
+/// The greatest double, or 0, for a decimal beyond the range of double: "1e999" still says that it is large.
+bool beyondDouble(const std::string& field, double& value) {
+  std::istringstream in(field);
+  in.imbue(std::locale::classic());
+  in >> value;
+  return in.fail() ? std::abs(value) == std::numeric_limits<double>::max() : in.peek() == EOF;
 }
 
 /// The number in a field of a known column; sets `fault` when the row must go.
@@ -130,7 +140,9 @@ class Table {
 
   static double asRead(const CsvRow& row, std::size_t k) {
     double value = kMissing;
-    return k < row.fields.size() && parseNumber(row.fields[k], value) ? value : kMissing;
+    return k < row.fields.size() && (parseNumber(row.fields[k], value) || beyondDouble(row.fields[k], value))
+               ? value
+               : kMissing;
   }
 
   std::string sinkageFault() const {

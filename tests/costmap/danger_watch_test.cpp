@@ -339,5 +339,62 @@ TEST(Danger, OfARowThatTheReaderRejectsCountsAndIsReplayed) {
   }
 }
 
+// Property: a channel that is danger refuses its place, whatever the row's other numbers are: missing, infinite, the
+// greatest double, or plausible and impossible. In rows that the reader rejects, and in those that it takes.
+TEST(Danger, OfAChannelIsHeardWhateverElseTheRowSays) {
+  constexpr double kMost = std::numeric_limits<double>::max();
+  const std::vector<double> any{0.0, kNone, kInfinite, -kInfinite, kMost, -kMost, 1e300, -1e300, 1e-320};
+  const std::vector<double> plausible{kNone, 0.0, 1e-14, -1e-14, 1e14, -1e14, 1.5707963, -1.5707963, 3.0};
+  std::mt19937_64 random(13);
+  const double radius_m = testRover().wheel.radius_m;
+  for (int trial = 0; trial < 60; ++trial) {
+    const bool rejected = trial % 2 == 0;
+    const auto draw = [&] {
+      const auto& from = rejected ? any : plausible;
+      return from[static_cast<std::size_t>(random() % from.size())];
+    };
+    const int channel = trial / 2 % 3;
+    const std::vector<terramech::Telemetry::Numbers> row{
+        {"x_m", {125.5}},
+        {"y_m", {220.5}},
+        {"slip",
+         {channel == 0   ? 0.95
+          : channel == 1 ? 0.1
+                         : (rejected ? kMost : 1.0)}},
+        {"sinkage_m", {channel == 1 ? 0.9 * radius_m : draw()}},
+        {"load_N", {rejected ? draw() : (trial % 4 == 1 ? 1e-14 : 1e14)}},
+        {"torque_Nm", {draw()}},
+        {"slope_rad", {draw()}},
+        {"heading_rad", {draw()}},
+        {"time_s", {draw()}},
+        {"z_m", {draw()}},
+        {"pass_index", {draw()}},
+        {"pose_std_m", {draw()}},
+        {"speed_mps", {draw()}},
+        {"rim_speed_mps", {draw()}},
+        {"drawbar_pull_N", {draw()}}};
+    terramech::Telemetry telemetry = tableOf(afterGoodRows({}, true));
+    if (rejected) {
+      telemetry.rejected = {{99, "not finite"}};
+      telemetry.rejected_numbers = row;
+    } else {
+      telemetry.lines.push_back(99);
+      telemetry.words[0].values.push_back("w0");
+      for (const auto& column : row) {
+        auto known = std::find_if(telemetry.numbers.begin(), telemetry.numbers.end(),
+                                  [&](const auto& c) { return c.name == column.name; });
+        if (known == telemetry.numbers.end())
+          known = telemetry.numbers.insert(known, {column.name, std::vector<double>(60, kNone)});
+        known->values.push_back(column.values[0]);
+      }
+    }
+    TraversabilityMap map = plain(testRover(), testSand(), 0.05);
+    const DriveReport report = addDrive(map, telemetry);
+    std::string told = report.first_reason + "; ";
+    for (const auto& column : row) told += column.name + " " + std::to_string(column.values[0]) + " ";
+    EXPECT_TRUE(refused(map, {125.5, 220.5})) << rejected << ' ' << told;
+  }
+}
+
 }  // namespace
 }  // namespace talus::costmap

@@ -140,7 +140,9 @@ TEST_F(EvidenceJournalTest, RefusesRowsThatWereChanged) {
 TEST_F(EvidenceJournalTest, RefusesValuesThatNoWheelGives) {
   for (const char* sql :
        {"pull = 9e999", "pull = NULL", "pull = 1e300", "sinkage = NULL", "pull_std = -1", "x_m = 9e999",
-        "y_m = NULL", "pull_std = NULL", "pose_std_m = 9e999", "z_m = 9e999"}) {
+        "y_m = NULL", "pull_std = NULL", "pose_std_m = 9e999", "z_m = 9e999", "pull_here = 9e999",
+        "pull_here = -9e999", "pull_here = 101", "pull_here = 'x'", "sinkage_here = 9e999",
+        "sinkage_here = -0.1", "sinkage_here = x'00'", "pull = 'x'"}) {
     std::filesystem::remove(path());
     { EvidenceJournal(path()).append("a", {row(7)}); }
     change(path(), ("UPDATE drive SET checksum = NULL; UPDATE evidence SET " + std::string(sql)).c_str());

@@ -51,6 +51,22 @@ TEST(TelemetryRows, PoseErrorIsTheRowsElseTheOneStated) {
   EXPECT_EQ(rows.reading(2).pose_std_m, 0.0);
 }
 
+// A slope beyond vertical is none; a row that is not to be trusted may have gone straight down.
+TEST(TelemetryRows, TheLeastGradientTrustsNoImpossibleSlope) {
+  const TraversabilityMap map = ramp();
+  terramech::Telemetry t = table();
+  for (auto& column : t.numbers)
+    if (column.name == "slope_rad") column.values = {0.2, 1e14, -1e14, -0.3, NAN};
+  const TelemetryRows rows(t, map, 0.5);
+  EXPECT_NEAR(rows.leastGradient(0), 0.1, 1e-3);
+  EXPECT_NEAR(rows.leastGradient(1), 0.1, 1e-3);
+  EXPECT_NEAR(rows.leastGradient(2), 0.1, 1e-3);
+  EXPECT_NEAR(rows.leastGradient(3), std::tan(-0.3), 1e-12);
+  EXPECT_NEAR(rows.leastGradient(4), -0.1, 1e-3);
+  for (const std::size_t i : {0U, 1U, 2U, 4U}) EXPECT_NEAR(rows.steepestDescent(i), -0.1, 1e-3);
+  EXPECT_NEAR(rows.steepestDescent(3), std::tan(-0.3), 1e-12);
+}
+
 TEST(TelemetryRows, AMomentIsAllWheelsOfOneTime) {
   const TraversabilityMap map = ramp();
   const terramech::Telemetry t = table();

@@ -75,6 +75,17 @@ TEST(TelemetryReader, KeepsTheNumbersOfRejectedRows) {
   EXPECT_EQ(t.rejected_numbers[2].values[1], -1.0);
 }
 
+TEST(TelemetryReader, NumbersBeyondDoubleStayLargeInRejectedRows) {
+  const auto t = read("load_N,slip,sinkage_m\n1,0.1,1e999\n1,-1e400,0\n1,1e300,0\n-1,1e-999,0x\n1,0.5,0\n");
+  constexpr double kMost = std::numeric_limits<double>::max();
+  ASSERT_EQ(t.rejected.size(), 4U);
+  EXPECT_EQ(t.rejected_numbers[2].values[0], kMost);
+  EXPECT_EQ(t.rejected_numbers[1].values[1], -kMost);
+  EXPECT_EQ(t.rejected_numbers[1].values[2], 1e300);
+  EXPECT_EQ(t.rejected_numbers[1].values[3], 0.0);
+  EXPECT_TRUE(std::isnan(t.rejected_numbers[2].values[3])) << "a word";
+}
+
 TEST(TelemetryReader, TakesTheEdgesOfEachRange) {
   const Telemetry t = read("slip,sinkage_m\n1,0\n-1,0.1\n");
   EXPECT_EQ(t.size(), 2U);
