@@ -75,11 +75,24 @@ class Drive {
     result_.events.push_back({result_.time_s, std::move(text), std::move(route)});
   }
 
-  // Where what was learned refuses the ground under the rover, it first goes back to ground that it knows.
+  // Where what was learned refuses the ground under the rover, or all ground around it, it goes back along its own
+  // track, by a length of the rover at a time, to where a route begins.
   bool plan() {
     const MotionCost cost(map_.published());
-    while (options_.senses && !cost.allowed(believed()))
-      if (!leaveOneStep(0.0)) return false;
+    for (;;) {
+      while (options_.senses && !cost.allowed(believed()))
+        if (!leaveOneStep(0.0)) return false;
+      if (const RouteStatus status = planFromHere();
+          status != RouteStatus::NoRoute && status != RouteStatus::NoneFound)
+        return status == RouteStatus::Found;
+      const double from_m = result_.length_m;
+      while (result_.length_m - from_m < options_.keep_out_radius_m)
+        if (!options_.senses || !leaveOneStep(0.0)) return false;
+      tell("reversed");
+    }
+  }
+
+  RouteStatus planFromHere() {
     Problem problem;
     problem.map = map_.published();
     problem.start = believed();
@@ -88,12 +101,12 @@ class Drive {
     problem.prove = false;
     problem.watch = {.progress = {}, .stop = options_.watch.stop};
     Plan plan = planner_.plan(problem);
-    if (plan.status != RouteStatus::Found) return false;
+    if (plan.status != RouteStatus::Found) return plan.status;
     route_ = std::move(plan.points);
     next_ = 1;
     planned_J_ = plan.cost_J;
     tell("planned", route_);
-    return true;
+    return plan.status;
   }
 
   // Where it takes itself to be.

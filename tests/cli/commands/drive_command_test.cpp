@@ -52,6 +52,28 @@ TEST(DriveCommand, GroundAsBelievedIsReachedUnderEveryBelief) {
   }
 }
 
+// What bottomless traps refuse may leave the rover on ground that nothing but its own track leads away from: it goes
+// back along that. Perfect knowledge finds a way in both worlds.
+TEST(DriveCommand, WhoIsHemmedInByItsFindingsGoesBackAlongItsTrack) {
+  const Folder folder;
+  folder.write("truth.yaml", R"(random: {spread: 0.1, patches: 10, patch_radius_m: 3, patch_soil: trap}
+soils:
+  - {name: trap, cohesion_kPa: 0, friction_angle_deg: 22, sinkage_exponent: 1, cohesive_modulus: 1400,
+     frictional_modulus: 20000, shear_modulus_mm: 15}
+)");
+  ASSERT_EQ(
+      runTalus({"generate", "rocks", "--size", "160", "--resolution", "0.5", "-o", "site.tif"}, folder.path())
+          .code,
+      0);
+  for (const char* seed : {"600008", "600009"}) {
+    const json online =
+        outcomeOf(folder, {"drive", "site.tif", "--soil", "sandy_loam", "--rover", "sojourner", "--truth",
+                           "truth.yaml", "--start", "8,8", "--goal", "72,72", "--seed", seed, "--belief",
+                           "online", "--json", "--quiet"});
+    EXPECT_EQ(online["outcome"], "reached") << seed << online["cause"];
+  }
+}
+
 TEST(DriveCommand, AnUndeclaredPatchHoldsTheBlindAndNotTheWatchful) {
   const Folder folder;
   const Ran blind = runTalus(drive(folder, kTrap, {"--belief", "prior", "--json"}), folder.path());
