@@ -34,18 +34,26 @@ int run(const PredictOptions& options, Context& context) {
   if (!file.soil_given)
     throw InputError({options.model, "defines no soil", "fit one first: talus trace --model-out"});
   if (!options.rover.empty()) file.model.takeRover(terramech::loadRover(options.rover));
-  const auto table = terramech::predictTable(options.table, file.model, context.watch("predicting"));
+  const auto table =
+      terramech::predictTable(options.table, file.model, file.trained, context.watch("predicting"));
   if (context.stop.stop_requested()) return Exit::kCancelled;
   constexpr std::size_t kShown = 20;
   for (std::size_t k = 0; k < table.refused.size() && k < kShown; ++k)
     context.warn(fmt::format("{}:{}: {}", options.table, table.refused[k].line, table.refused[k].reason));
   if (table.replaced) context.warn(options.table + ": contains prediction columns; they are replaced");
+  if (table.outside > 0)
+    context.warn(fmt::format(
+        "{}: {} rows lie outside the range that the model was fitted to (predicted_outside); their "
+        "standard deviations grow with the distance",
+        options.table, table.outside));
   writeFile(options.output, table.text);
   auto refused = nlohmann::ordered_json::array();
   for (const auto& row : table.refused) refused.push_back({{"line", row.line}, {"reason", row.reason}});
   if (context.json)
-    printJson(
-        {{"rows_predicted", table.predicted}, {"rows_refused", table.refused.size()}, {"refused", refused}});
+    printJson({{"rows_predicted", table.predicted},
+               {"rows_outside", table.outside},
+               {"rows_refused", table.refused.size()},
+               {"refused", refused}});
   else
     print(fmt::format("{}: {} rows predicted, {} refused\n", options.output, table.predicted,
                       table.refused.size()));

@@ -9,6 +9,7 @@
 #include <talus/terramech/io/model_file.hpp>
 #include <talus/terramech/io/soil_library.hpp>
 #include <talus/terramech/io/telemetry_reader.hpp>
+#include <talus/terramech/trace/end_levels.hpp>
 #include <talus/terramech/trace/left_out.hpp>
 
 namespace talus::cli {
@@ -115,7 +116,9 @@ int run(const TraceCommandOptions& options, Context& context) {
     story.beyond_axle_rmse = terramech::rmseOf(story.result.refined, terramech::subset(all, sunk));
   story.applies = terramech::applicability(story.result, how);
   if (!options.model_out.empty())
-    writeFile(options.model_out, terramech::modelText(terramech::forPrediction(story.result)));
+    writeFile(options.model_out, terramech::modelText(terramech::forPrediction(story.result),
+                                                      terramech::trainedRanges(trial, story.result.ends,
+                                                                               story.result.noise_floor)));
   if (!options.html.empty()) writeFile(options.html, tracePage(story));
   if (context.json)
     printJson(traceJson(story));

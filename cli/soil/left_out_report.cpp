@@ -20,6 +20,14 @@ nlohmann::ordered_json errorsJson(const ChannelErrors& errors) {
   return out;
 }
 
+/// Channels in which the refined model errs more than the base.
+nlohmann::ordered_json worse(const LeftOutErrors& part) {
+  auto out = nlohmann::ordered_json::array();
+  for (Channel c : kAll)
+    if (const auto k = static_cast<std::size_t>(c); part.refined[k] > part.base[k]) out.push_back(name(c));
+  return out;
+}
+
 }  // namespace
 
 std::string leftOutText(const std::vector<LeftOutErrors>& all) {
@@ -32,8 +40,9 @@ std::string leftOutText(const std::vector<LeftOutErrors>& all) {
     for (Channel c : kAll) {
       const auto k = static_cast<std::size_t>(c);
       if (!std::isfinite(part.base[k])) continue;
-      out += fmt::format("  {:26s} {:10.4f} {:10.4f} {:12.4f} {:12.4f}\n", name(c), part.base[k],
-                         part.refined[k], part.floor[k], part.regression[k]);
+      out += fmt::format("  {:26s} {:10.4f} {:10.4f} {:12.4f} {:12.4f}{}\n", name(c), part.base[k],
+                         part.refined[k], part.floor[k], part.regression[k],
+                         part.refined[k] > part.base[k] ? "  refined is worse than base" : "");
     }
   }
   return out;
@@ -47,6 +56,7 @@ nlohmann::ordered_json leftOutJson(const std::vector<LeftOutErrors>& all) {
                    {"effects", part.effects},
                    {"base_rmse", errorsJson(part.base)},
                    {"refined_rmse", errorsJson(part.refined)},
+                   {"worse_than_base", worse(part)},
                    {"noise_floor", errorsJson(part.floor)},
                    {"regression_rmse", errorsJson(part.regression)}});
   return out;

@@ -228,6 +228,30 @@ ordered_json heldOutJson(const TraceStory& story) {
   ordered_json others = ordered_json::array();
   for (std::size_t k = 1; k < story.held_out.size(); ++k) others.push_back(schemeJson(story.held_out[k]));
   out["others"] = others;
+  ordered_json ends = ordered_json::array();
+  for (const EndLevel& end : story.result.ends)
+    ends.push_back({{"column", end.column},
+                    {"end", end.high ? "high" : "low"},
+                    {"rows", end.rows},
+                    {"distance", end.distance},
+                    {"base_rmse", errorsJson(end.base_rmse)},
+                    {"refined_rmse", errorsJson(end.refined_rmse)},
+                    {"extrapolates", end.law}});
+  out["end_levels"] = ends;
+  return out;
+}
+
+/// Errors at the end levels, which the others foretell.
+std::string endLines(const TraceResult& r) {
+  if (r.ends.empty()) return "";
+  std::string out = "held out: end levels, predicted from the others (base -> refined)\n";
+  for (const EndLevel& end : r.ends) {
+    out += fmt::format("  {:26s} {:3d} rows:", (end.high ? "greatest " : "least ") + end.column, end.rows);
+    for (Channel c : kAll)
+      if (const auto k = static_cast<std::size_t>(c); std::isfinite(end.base_rmse[k]))
+        out += fmt::format(" {} {:.4f} -> {:.4f}", name(c), end.base_rmse[k], end.refined_rmse[k]);
+    out += "\n";
+  }
   return out;
 }
 
@@ -334,6 +358,7 @@ std::string traceText(const TraceStory& story) {
     }
     out += groupLines(story, held);
   }
+  out += endLines(r);
   if (story.beyond_axle > 0) out += beyondAxleText(story) + '\n';
   if (!story.applies.applies) out += "the model does not apply: " + story.applies.reason + "\n";
   return out;

@@ -57,9 +57,9 @@ struct Effect {
   std::string covariate{};
   Channel channel = Channel::DrawbarPull;
   std::vector<double> parameters{};  ///< as in the form; of an empirical curve the values at its knots [-]
-  std::vector<double> knots{};       ///< empirical only, ascending, in the covariate's unit
-  std::string only_column{};         ///< acts only where this grouping column ...
-  std::string only_value{};          ///< ... has this text; empty: everywhere
+  std::vector<double> knots{};  ///< ascending [covariate]; of a known form none or the 2 ends it acts between
+  std::string only_column{};    ///< acts only where this grouping column ...
+  std::string only_value{};     ///< ... has this text; empty: everywhere
 
   /// Whether it is a curve: "empirical" adds to one scaled channel; "empirical_stiffness" and
   /// "empirical_strength" multiply k, or c and tan phi, by the exponential of the curve, and so move every

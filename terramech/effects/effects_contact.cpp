@@ -238,7 +238,7 @@ std::vector<EffectForm> ground() {
        .formula = "sigma = k d^n + k_h max(0, d - H)",
        .source = "wong_2001",
        .signature = "sinkage stops growing below a depth, drawbar pull rises past it",
-       .parameters = {{"H", "m", 0.0, 0.3, 0.01}, {"k_h", "Pa/m", 1e4, 1e9, 1e7}},
+       .parameters = {{"H", "m", 1e-4, 0.3, 0.01}, {"k_h", "Pa/m", 1e4, 1e9, 1e7}},
        .act =
            [](Input in, WheelContact& c) {
              c.hard_depth_m = in.parameter[0];

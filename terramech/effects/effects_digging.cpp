@@ -29,10 +29,11 @@ std::vector<EffectForm> driven() {
        .family = "slip_sinkage",
        .covariate = "slip",
        .channel = Channel::Sinkage,
-       .formula = "z = z0 + a h i / (1 - i) where the wheel is driven",
+       .formula = "z = z0 + a h i / (1 - i) where the wheel is driven, a <= 1: no more than the gaps of the "
+                  "lugs hold",
        .source = "reece_1965",
        .signature = "sinkage of lugged wheels diverges towards slip 1",
-       .parameters = {{"a", "-", 0.0, 3.0, 1.0}},
+       .parameters = {{"a", "-", 0.0, 1.0, 0.5}},
        .act =
            [](Input in, WheelContact& c) {
              const double i = std::clamp(in.state.slip, 0.0, 0.98);

@@ -8,6 +8,24 @@
 namespace talus::terramech {
 namespace {
 
+/// A column as if it had been measured so; one that is only text or unknown stays.
+void setCovariate(WheelState& state, std::string_view name, double value) {
+  static constexpr std::pair<const char*, double WheelState::*> kOwn[] = {
+      {"slip", &WheelState::slip},
+      {"slip_angle_rad", &WheelState::slip_angle_rad},
+      {"load_N", &WheelState::load_N},
+      {"speed_mps", &WheelState::speed_mps},
+      {"rim_speed_mps", &WheelState::rim_speed_mps},
+      {"time_s", &WheelState::time_s},
+      {"pass_index", &WheelState::pass_index},
+      {"slope_rad", &WheelState::slope_rad}};
+  for (const auto& [own, member] : kOwn)
+    if (name == own) state.*member = value;
+  if (name == "grouser_height_m") state.wheel.grouser_height_m = value;
+  for (auto& [key, number] : state.extra)
+    if (key == name) number = value;
+}
+
 /// The effects of a model with their forms looked up.
 class Bound {
  public:
@@ -34,6 +52,18 @@ class Bound {
   /// The covariate of an effect; the sinkage is the model's own, never the measured one.
   static double covariateOf(const Effect& effect, const WheelState& state, double sinkage_m) {
     return effect.covariate == "sinkage_m" ? sinkage_m : state.covariate(effect.covariate);
+  }
+
+  /// The state that an effect sees: beyond the ends of its range as at the nearer one.
+  static WheelState atEdge(const BoundEffect& e, WheelState state) {
+    const auto& ends = e.effect->knots;
+    const std::string& column = e.effect->covariate;
+    setCovariate(state, column, std::clamp(state.covariate(column), ends.front(), ends.back()));
+    return state;
+  }
+
+  static bool beyond(const BoundEffect& e, double x) {
+    return e.effect->knots.size() == 2 && (x < e.effect->knots.front() || x > e.effect->knots.back());
   }
 
   static void bend(const BoundEffect& curve, double x, WheelContact& contact);
@@ -76,10 +106,17 @@ WheelContact Bound::contact(const WheelState& state) const {
     // The sinkage is not known yet: an effect that acts here never asks for it.
     const double x = covariateOf(*e.effect, state, 0.0);
     if (!std::isfinite(x)) continue;
-    if (!e.form)
+    if (!e.form) {
       bend(e, x, contact);
-    else if (e.form->act)
+    } else if (e.form->act && beyond(e, x)) {
+      const WheelState edge = atEdge(e, state);
+      const double rolled = contact.rolling;
+      contact.rolling = rolling(edge, model_.slip_along_travel);
+      e.form->act({e.effect->parameters.data(), edge, edge.covariate(e.effect->covariate)}, contact);
+      contact.rolling = rolled;
+    } else if (e.form->act) {
       e.form->act({e.effect->parameters.data(), state, x}, contact);
+    }
   }
   contact.slip = std::clamp(contact.slip, -1.0, 1.0);
   return contact;
@@ -104,7 +141,14 @@ Reading Bound::reading(const WheelState& state, const WheelContact& contact,
   for (const BoundEffect& e : effects_) {
     if (!e.form || !e.form->read || !applies(*e.effect, state)) continue;
     const double x = covariateOf(*e.effect, state, reading.sinkage_m);
-    if (std::isfinite(x)) e.form->read({e.effect->parameters.data(), state, x}, contact, reading);
+    if (!std::isfinite(x)) continue;
+    if (beyond(e, x)) {
+      const WheelState edge = atEdge(e, state);
+      e.form->read({e.effect->parameters.data(), edge, edge.covariate(e.effect->covariate)}, contact,
+                   reading);
+    } else {
+      e.form->read({e.effect->parameters.data(), state, x}, contact, reading);
+    }
   }
   const double sinkage = reading.sinkage_m;
   for (const BoundEffect& e : effects_) {

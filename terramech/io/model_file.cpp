@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <sstream>
@@ -128,6 +129,8 @@ Effect readEffect(const YamlFields& f) {
   if (effect.parameters.size() != wanted || wanted == 0)
     if (!form || wanted != effect.parameters.size())
       f.refuse("parameters", "needs " + std::to_string(wanted) + " numbers", "");
+  if (form && !effect.knots.empty() && (effect.knots.size() != 2 || !(effect.knots[0] <= effect.knots[1])))
+    f.refuse("knots", "of a known form are the two ends of its range, low <= high", "");
   return effect;
 }
 
@@ -147,6 +150,23 @@ void readFit(const YamlFields& root, RefinedModel& model) {
   model.covariance = root.numbers("covariance");
   if (model.covariance.size() != model.fitted.size() * model.fitted.size())
     root.refuse("covariance", "needs the square of the number of fitted parameters", "");
+}
+
+std::vector<TrainedRange> readTrained(const YamlFields& root) {
+  std::vector<TrainedRange> all;
+  for (const YamlFields& f : root.list("trained")) {
+    f.only({"column", "range", "below", "above"});
+    const std::vector<double> range = f.numbers("range"), below = f.numbers("below"),
+                              above = f.numbers("above");
+    if (range.size() != 2 || !(range[0] <= range[1])) f.refuse("range", "needs two numbers, low <= high", "");
+    if (below.size() != kChannels || above.size() != kChannels)
+      f.refuse("below", "below and above need one number >= 0 for each channel", "");
+    TrainedRange one{.column = f.word("column"), .low = range[0], .high = range[1]};
+    std::copy(below.begin(), below.end(), one.below.begin());
+    std::copy(above.begin(), above.end(), one.above.begin());
+    all.push_back(one);
+  }
+  return all;
 }
 
 BaseModel readBase(const YamlFields& root) {
@@ -183,7 +203,7 @@ ModelFile loadModel(const std::string& path) {
     return file;
   }
   root.only({"name", "soil", "model", "sensors", "wheel", "gravity_m_s2", "slip_along_travel", "effects",
-             "noise", "fitted", "covariance"});
+             "noise", "fitted", "covariance", "trained"});
   RefinedModel& model = file.model;
   model.base = readBase(root);
   if (root.has("wheel")) model.wheel = readWheel(root.fields("wheel"));
@@ -199,6 +219,7 @@ ModelFile loadModel(const std::string& path) {
   if (root.has("noise")) model.noise = readNoise(root.fields("noise"));
   model.effects = readEffects(root);
   if (root.has("fitted")) readFit(root, model);
+  file.trained = readTrained(root);
   return file;
 }
 
@@ -274,7 +295,7 @@ void writeNoise(Writer& w, const SensorNoise& n) {
 
 }  // namespace
 
-std::string modelText(const RefinedModel& model) {
+std::string modelText(const RefinedModel& model, const std::vector<TrainedRange>& trained) {
   Writer w;
   w << "model: " << (model.base == BaseModel::WongReece ? "wong-reece" : "linear-formula") << "\n";
   writeSoil(w, model.soil);
@@ -287,6 +308,16 @@ std::string modelText(const RefinedModel& model) {
   if (!model.effects.empty()) w << "effects:\n";
   for (const Effect& e : model.effects) writeEffect(w, e);
   writeNoise(w, model.noise);
+  if (!trained.empty()) w << "trained:\n";
+  for (const TrainedRange& t : trained) {
+    w << "  - column: " << quoted(t.column) << "\n    ";
+    w.list("range", {t.low, t.high});
+    w << "\n    ";
+    w.list("below", {t.below.begin(), t.below.end()});
+    w << "\n    ";
+    w.list("above", {t.above.begin(), t.above.end()});
+    w << "\n";
+  }
   if (model.covariance.empty()) return w.text();
   w << "fitted:\n";
   for (const FittedParameter& p : model.fitted)

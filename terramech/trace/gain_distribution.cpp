@@ -38,6 +38,15 @@ Eigen::VectorXd drawn(const std::vector<Eigen::Matrix4d>& factor, const std::vec
   return out;
 }
 
+/// What another soil does that its prior allows.
+Eigen::VectorXd drawnSoil(const NullModel& null, std::mt19937_64& random) {
+  std::normal_distribution<double> normal;
+  Eigen::VectorXd step(null.soil);
+  for (Eigen::Index k = 0; k < step.size(); ++k)
+    step[k] = null.known.prior.mean[k] + normal(random) / std::sqrt(null.known.prior.precision[k]);
+  return null.known.columns.leftCols(null.soil) * step;
+}
+
 /// Scores of contenders against the null, table by table.
 class Contest {
  public:
@@ -117,7 +126,8 @@ GainDistribution gainDistribution(const NullModel& null, const Contenders& conte
   Eigen::MatrixXd tables(null.residual.size(), 1 + draws);
   tables.col(0) = null.residual;
   std::mt19937_64 random(seed);
-  for (int k = 1; k <= draws; ++k) tables.col(k) = drawn(null.factor, null.unit, out.run, random);
+  for (int k = 1; k <= draws; ++k)
+    tables.col(k) = drawn(null.factor, null.unit, out.run, random) + drawnSoil(null, random);
   likelihood.setTables(tables);
   const RunSums of_known = likelihood.sums(null.known);
   Contest contest(likelihood, of_known, out.run);

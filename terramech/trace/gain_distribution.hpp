@@ -39,6 +39,7 @@ struct NullModel {
   Eigen::VectorXd residual;             ///< whitened, rows*kChannels
   LinearModel known;                    ///< what the model lets a fit move
   Eigen::Matrix4d run_start;            ///< of a run's error, where the search for its covariance starts
+  Eigen::Index soil = 0;                ///< steps of `known`, in front, that are the soil's
 };
 
 /// Contenders by number, each asked for once.
@@ -49,8 +50,8 @@ struct Contenders {
 
 /// A gain: how much the log-likelihood on held-out rows rises when a contender is added, with the share of the
 /// prior that the other parameters regain; the covariance of a run's error is profiled under either model.
-/// `draws` tables come from the null: the model as it stands, errors of unit variance and of the runs'
-/// covariance. `go_on` receives the share that is done; false leaves the rest at gain 0.
+/// `draws` tables come from the null: the model as it stands but for a soil drawn from its prior (a soil that rows
+/// without an effect moved far from its prior does not exist), errors of unit variance and of the runs' covariance. `go_on` receives the share that is done; false leaves the rest at gain 0.
 GainDistribution gainDistribution(const NullModel& null, const Contenders& contenders, int draws,
                                   std::uint64_t seed, const std::function<bool(double)>& go_on);
 

@@ -72,6 +72,7 @@ std::vector<std::string> columnsOfOneGroup(const RefinedModel& model) {
   return {columns.begin(), columns.end()};
 }
 
+/// Measured less predicted, at the slip and load as measured.
 Eigen::MatrixXd asMeasured(const RefinedModel& model, Trial trial) {
   for (std::size_t row = 0; row < trial.states.size(); ++row) {
     trial.states[row].slip = trial.slip[row];
@@ -94,25 +95,34 @@ Whitening whiteningOf(const RefinedModel& model, const TraceResult& result) {
 
 }  // namespace
 
+ChannelErrors rmseAsMeasured(const RefinedModel& model, Trial trial) {
+  Sums sums;
+  sums.add(asMeasured(model, std::move(trial)));
+  return sums.rmse();
+}
+
+RefinedModel refitted(const RefinedModel& model, const TraceResult& result, const TraceOptions& options,
+                      const std::vector<char>& train) {
+  const Trial seen = subset(result.trial, train);
+  const Whitening white = subset(whiteningOf(model, result), train);
+  SolvedContacts start;
+  FitPlan plan = fitPlan(model, options.fit_soil);
+  plan.iterations = 8;
+  if (result.first_prior && !model.effects.empty()) plan.effect_prior[0] = *result.first_prior;
+  plan.misfit = misfitOf(white.apply(seen.measured - predictRows(model, seen, start)), seen);
+  return fitModel(model, seen, white, plan, start).model;
+}
+
 HeldOut holdOut(const TraceResult& result, const TraceOptions& options, const Folds& folds) {
   const Trial& trial = result.trial;
-  const Whitening of_base = whiteningOf(result.base, result),
-                  of_refined = whiteningOf(result.refined, result);
   const auto columns = columnsOfOneGroup(result.refined);
   Tally base{columns}, refined{columns};
   for (int fold = 0; fold < folds.count; ++fold) {
     const std::vector<char> train = rowsOf(folds, fold, false);
-    const Trial seen = subset(trial, train), unseen = subset(trial, rowsOf(folds, fold, true));
-    if (unseen.rows() == 0 || seen.rows() == 0) continue;
-    const auto refit = [&](const RefinedModel& model, const Whitening& all) {
-      SolvedContacts start;
-      FitPlan plan = fitPlan(model, options.fit_soil);
-      plan.iterations = 8;
-      if (result.first_prior && !model.effects.empty()) plan.effect_prior[0] = *result.first_prior;
-      return fitModel(model, seen, subset(all, train), plan, start).model;
-    };
-    base.add(unseen, asMeasured(refit(result.base, of_base), unseen));
-    refined.add(unseen, asMeasured(refit(result.refined, of_refined), unseen));
+    const Trial unseen = subset(trial, rowsOf(folds, fold, true));
+    if (unseen.rows() == 0 || unseen.rows() == trial.rows()) continue;
+    base.add(unseen, asMeasured(refitted(result.base, result, options, train), unseen));
+    refined.add(unseen, asMeasured(refitted(result.refined, result, options, train), unseen));
   }
   return {folds.scheme, base.rmse(), refined.rmse(), Tally::groups(base, refined)};
 }

@@ -24,6 +24,13 @@ struct HeldOut {
   std::vector<GroupErrors> groups;  ///< of each text column of which an effect acts on one group alone
 };
 
+/// A model of a result fitted again to the rows that `train` marks.
+RefinedModel refitted(const RefinedModel& model, const TraceResult& result, const TraceOptions& options,
+                      const std::vector<char>& train);
+
+/// Errors at the slip and load as measured.
+ChannelErrors rmseAsMeasured(const RefinedModel& model, Trial trial);
+
 /// Errors under one way to hold rows out.
 HeldOut holdOut(const TraceResult& result, const TraceOptions& options, const Folds& folds);
 

@@ -41,7 +41,10 @@ class FitPoint {
         model_(start),
         log_stiffness_(0.0),
         residual_(residualOf(start, solved)) {
-    for (std::size_t k = 0; k < plan.free.size(); ++k) prior_.push_back(terramech::priorOf(start, plan, k));
+    for (std::size_t k = 0; k < plan.free.size(); ++k) {
+      prior_.push_back(terramech::priorOf(start, plan, k));
+      if (prior_.back()) prior_.back()->std /= std::sqrt(plan.misfit);
+    }
   }
 
   double chi2() const { return residual_.squaredNorm(); }
@@ -195,9 +198,22 @@ FitPlan fitPlan(const RefinedModel& model, bool fit_soil) {
       continue;
     plan.free.push_back({-1, static_cast<int>(k)});
   }
-  for (std::size_t k = 0; k < model.effects.size(); ++k)
-    for (const FittedParameter& p : parametersOf(model, static_cast<int>(k))) plan.free.push_back(p);
+  constexpr double kTypicalSizes = 50.0;
+  for (std::size_t k = 0; k < model.effects.size(); ++k) {
+    const int effect = static_cast<int>(k);
+    const std::vector<FittedParameter> own = parametersOf(model, effect);
+    plan.free.insert(plan.free.end(), own.begin(), own.end());
+    if (own.empty() || model.effects[k].empirical()) continue;
+    const EffectParameter& first = findEffect(model.effects[k].name)->parameters.front();
+    if (first.low <= 0.0 && first.high >= 0.0)
+      plan.effect_prior[effect] = {0.0, kTypicalSizes * std::abs(first.typical)};
+  }
   return plan;
+}
+
+double misfitOf(const Eigen::VectorXd& white, const Trial& trial) {
+  const auto readings = static_cast<double>(trial.measured.array().isFinite().count());
+  return std::max(1.0, white.squaredNorm() / std::max(readings, 1.0));
 }
 
 std::vector<FittedParameter> parametersOf(const RefinedModel& model, int effect) {

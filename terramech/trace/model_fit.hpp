@@ -22,6 +22,9 @@ struct FitPlan {
   std::map<int, Estimate> effect_prior;  ///< by number of an effect, of its first parameter
   /// k_c + k_phi that log_stiffness is counted from; without it, that of the model at the start.
   std::optional<double> prior_modulus;
+  /// Mean square of the whitened residuals where the model lacks something (Birge's ratio), else 1: as much less do
+  /// the rows count against the priors.
+  double misfit = 1.0;
   int iterations = 12;
   /// whitened, kept for all iterations; null: taken anew in each.
   const Eigen::MatrixXd* derivative = nullptr;
@@ -52,8 +55,12 @@ Eigen::MatrixXd jacobian(const RefinedModel& model, const Trial& trial,
                          const std::vector<FittedParameter>& free, SolvedContacts& solved,
                          const std::function<Eigen::VectorXd(const Eigen::MatrixXd&)>& scale);
 
+/// FitPlan::misfit of these whitened residuals of the rows of a trial.
+double misfitOf(const Eigen::VectorXd& white, const Trial& trial);
+
 /// Everything that a model lets a fit move: its effects, and the soil's parameters that are stated with a
-/// standard deviation, or all of them, under vague priors, when `fit_soil`.
+/// standard deviation, or all of them, under vague priors, when `fit_soil`. An effect's first number is believed to
+/// be 0 give or take fifty typical sizes: nothing where rows show the effect, no effect where none does.
 FitPlan fitPlan(const RefinedModel& model, bool fit_soil);
 
 /// All fitted numbers of effect number `effect`.

@@ -85,6 +85,19 @@ std::string faultOf(const CsvRow& row, const WheelState& s) {
   return "";
 }
 
+/// Widens a prediction outside the trained ranges; names the columns.
+std::string outsideOf(const std::vector<TrainedRange>& trained, const WheelState& state, Prediction& p) {
+  std::string columns;
+  for (const TrainedRange& range : trained) {
+    const double x = state.covariate(range.column);
+    if (range.outside(x) == 0.0) continue;
+    columns += (columns.empty() ? "" : ";") + range.column;
+    for (std::size_t c = 0; c < kChannels; ++c)
+      p.scaled_std[c] = std::hypot(p.scaled_std[c], range.stdAt(x, c));
+  }
+  return columns;
+}
+
 void append(std::string& text, double value) {
   char field[40];
   std::snprintf(field, sizeof field, ",%.9g", value);
@@ -94,7 +107,7 @@ void append(std::string& text, double value) {
 }  // namespace
 
 PredictionTable predictTable(const std::filesystem::path& path, const RefinedModel& model,
-                             const ProgressMonitor& watch) {
+                             const std::vector<TrainedRange>& trained, const ProgressMonitor& watch) {
   const Rows all = readRows(path, watch.stop);
   const auto states = statesOf(conditionsOf(all, path.string()), model);
   PredictionTable table;
@@ -107,6 +120,7 @@ PredictionTable predictTable(const std::filesystem::path& path, const RefinedMod
   }
   for (const char* answer : kAnswers)
     table.text += std::string(",predicted_") + answer + ",predicted_" + answer + "_std";
+  table.text += ",predicted_outside";
   table.text += '\n';
   for (std::size_t row = 0; row < all.rows.size() && !watch.stopped(); ++row) {
     watch.report(static_cast<double>(row) / static_cast<double>(all.rows.size()));
@@ -116,14 +130,17 @@ PredictionTable predictTable(const std::filesystem::path& path, const RefinedMod
     const std::string fault = faultOf(all.rows[row], states[row]);
     if (!fault.empty()) {
       table.refused.push_back({all.rows[row].line, fault});
-      line += std::string(2 * kAnswers.size(), ',');
+      line += std::string(2 * kAnswers.size() + 1, ',');
     } else {
-      const Prediction p = predictWithStd(model, states[row]);
+      Prediction p = predictWithStd(model, states[row]);
+      const std::string outside = outsideOf(trained, states[row], p);
       for (std::size_t c = 0; c < kChannels; ++c) {
         const auto channel = static_cast<Channel>(c);
         append(line, p.mean.scaled(channel) * p.mean.denominator(channel));
         append(line, p.scaled_std[c] * p.mean.denominator(channel));
       }
+      line += ',' + csvField(outside);
+      table.outside += !outside.empty();
       ++table.predicted;
     }
     table.text += line + '\n';

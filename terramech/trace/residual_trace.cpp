@@ -4,6 +4,7 @@
 
 #include <talus/terramech/mobility/rut.hpp>
 #include <talus/terramech/trace/closure_offset.hpp>
+#include <talus/terramech/trace/end_levels.hpp>
 #include <talus/terramech/trace/residual_trace.hpp>
 #include <talus/terramech/trace/trace_search.hpp>
 
@@ -234,6 +235,8 @@ TraceResult traceResiduals(const RefinedModel& base, const Trial& trial, const T
   result.last_promises = path.last;
   result.threshold = path.threshold;
   path.search.finish(result);
+  result.ends = endLevels(result, options, watch);
+  boundEffects(result.refined, result.trial, result.ends);
   result.effects = apart(result.effects);
   watch.report(1.0);
   return result;

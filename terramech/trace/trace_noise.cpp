@@ -62,6 +62,7 @@ void TraceSearch::refresh() {
   settle(smooth, level, slopes);
   shareWithin(smooth, level, slopes);
   white_ = whitening_.apply(residual_);
+  misfit_ = misfitOf(white_, trial_);
 }
 
 }  // namespace talus::terramech

@@ -57,6 +57,17 @@ struct TracedEffect {
   std::vector<Effect> correction;          ///< curves that carry what its form leaves in the same covariate
 };
 
+/// The outermost level of a column, told by a model that was fitted to the others.
+struct EndLevel {
+  std::string column;
+  bool high = false;      ///< the greatest values, else the least
+  double edge = 0.0;      ///< outermost value of the others
+  double distance = 0.0;  ///< of the held rows from it, root mean square
+  int rows = 0;
+  ChannelErrors base_rmse{}, refined_rmse{};
+  bool law = false;  ///< effects of this column foretold the level better by their law than held at `edge`
+};
+
 /// What tracing found.
 struct TraceResult {
   Soil given;            ///< of the base, before any fit
@@ -71,6 +82,7 @@ struct TraceResult {
   std::optional<Estimate> first_prior;  ///< of the first effect's first parameter, known beside the model
   std::vector<int> unit;  ///< of each row: those of one unit share an error; empty: rows are on their own
   Eigen::Matrix4d run = Eigen::Matrix4d::Zero();  ///< covariance of that error between the channels [-]
+  std::vector<EndLevel> ends;                     ///< of the model beyond its rows
 };
 
 /// Root mean square of measured less predicted, scaled.

@@ -49,6 +49,7 @@ FitPlan TraceSearch::planFor(const RefinedModel& model) const {
   FitPlan plan = fitPlan(model, options_.fit_soil);
   plan.prior_modulus = prior_modulus_;
   if (first_prior_) plan.effect_prior[0] = *first_prior_;
+  plan.misfit = misfit_;
   return plan;
 }
 
@@ -97,7 +98,8 @@ NullModel TraceSearch::standing(const RefinedModel& model, const Eigen::MatrixXd
                  folds_,
                  whitening_.rowByRow(residual),
                  linearised(model, trial_, whitening_, planFor(model), solved),
-                 whitening_.run};
+                 whitening_.run,
+                 static_cast<Eigen::Index>(planFor(model).soil_prior.size())};
   if (!by_slip_) return null;
   // The error that all slips share is one more number, known to be 0 give or take one.
   LinearModel& known = null.known;

@@ -107,6 +107,7 @@ class TraceSearch {
                                             ///< there is one level of slip or one speed
   Whitening whitening_;
   Eigen::VectorXd white_;
+  double misfit_ = 1.0;                  ///< as FitPlan's
   std::optional<Estimate> first_prior_;  ///< of a correction that is never taken out
   std::size_t given_effects_;            ///< of the base, in front; fitted, never taken out
   std::vector<std::size_t> part_count_;  ///< effects in the model of each accepted candidate

@@ -53,6 +53,20 @@ TEST(ModelFile, ReadsBackToTheSameBits) {
   std::filesystem::remove(path);
 }
 
+TEST(ModelFile, TrainedRangesAreReadBack) {
+  const TrainedRange slip{
+      .column = "slip", .low = -0.5, .high = 1.0 / 3.0, .below = {0.1, 0, 0, 0}, .above = {0, 0.2, 0, 0}};
+  const auto path = written("trained.yaml", modelText(refined(), {slip}));
+  const ModelFile back = loadModel(path);
+  ASSERT_EQ(back.trained.size(), 1U);
+  EXPECT_EQ(back.trained[0].high, slip.high);
+  EXPECT_EQ(back.trained[0].above, slip.above);
+  // Closed form: 0.5 below -0.5 at 0.1 a unit; nothing inside.
+  EXPECT_DOUBLE_EQ(back.trained[0].stdAt(-1.0, 0), 0.05);
+  EXPECT_EQ(back.trained[0].stdAt(0.0, 0), 0.0);
+  std::filesystem::remove(path);
+}
+
 TEST(ModelFile, RefusesWhatItCannotMean) {
   const std::pair<const char*, const char*> bad[] = {
       {"model: wong-rece\nsoil: sand\n", "no model 'wong-rece'"},
@@ -63,6 +77,10 @@ TEST(ModelFile, RefusesWhatItCannotMean) {
        "parameters: [1, 2]}\n",
        "needs 1 numbers"},
       {"soil: sand\nsensors: {slip: -1}\n", "standard deviation"},
+      {"soil: sand\ntrained:\n  - {column: slip, range: [1, 0], below: [0, 0, 0, 0], above: [0, 0, 0, 0]}\n",
+       "low <= high"},
+      {"soil: sand\neffects:\n  - {name: slip_sinkage_ding, parameters: [1], knots: [0.5, 0.1]}\n",
+       "low <= high"},
   };
   for (const auto& [text, reason] : bad) {
     const auto path = written("bad.yaml", text);

@@ -54,6 +54,21 @@ TEST(GainDistribution, WhatReturnsTheSoilToItsPriorIsCredited) {
   EXPECT_NEAR(d.gain[0], 32.0, 4.0);
 }
 
+TEST(GainDistribution, TablesWithoutAnEffectHaveASoilFromItsPrior) {
+  // Property: how far the rows moved the soil changes what they gain, not what a table without an effect would.
+  SyntheticTable table(10, 10, 0.0, 7);
+  table.null.unit.clear();
+  table.null.soil = 1;
+  const std::vector<double> constant(100, 1.0);
+  const auto threshold = [&](double prior) {
+    table.null.known.prior = {Eigen::VectorXd::Constant(1, prior), Eigen::VectorXd::Constant(1, 64.0 / 9.0)};
+    return table.contest({constant, table.byRow()}).threshold(0.05);
+  };
+  const double here = threshold(0.0);
+  EXPECT_NEAR(threshold(-30.0), here, 0.5 + 0.2 * here);
+  EXPECT_LT(here, 10.0);  // 32 and more were soils drawn where the rows moved them
+}
+
 TEST(GainDistribution, AFirstStepThatMayNotBeNegativeGainsNothingThere) {
   SyntheticTable table(10, 10, 0.0, 9);
   const auto cause = table.byRow();

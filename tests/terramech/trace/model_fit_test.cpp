@@ -53,6 +53,34 @@ TEST(ModelFit, APriorIsOneMoreReading) {
   EXPECT_NEAR(fit.prior_chi2, 16.0, 0.05);
 }
 
+TEST(ModelFit, RowsThatLackSomethingCountLessAgainstThePrior) {
+  const OffsetRows rows(3.0);
+  SolvedContacts solved;
+  FitPlan plan{.free = {{.effect = 0, .index = 0}},
+               .effect_prior = {{0, {1.0, 0.25}}},
+               .misfit = 4.0,
+               .iterations = 30};
+  // Closed form: the rows weigh 16 / 4 against 16 of the prior: (4 * 3 + 16 * 1) / 20.
+  EXPECT_NEAR(fitModel(rows.model, rows.trial, rows.white, plan, solved).model.effects[0].parameters[0], 1.4,
+              1e-3);
+  // Closed form: residuals of +-0.5 about 3 N at 1 N are below the noise, of 3 N alone a mean square of 9.25.
+  const Eigen::VectorXd white =
+      rows.white.apply(rows.trial.measured - predictRows(rows.model, rows.trial, solved));
+  EXPECT_NEAR(misfitOf(white, rows.trial), 9.25, 1e-2);
+  EXPECT_EQ(misfitOf(0.1 * white, rows.trial), 1.0);
+}
+
+TEST(ModelFit, AnEffectThatNoRowShowsIsNone) {
+  OffsetRows rows(0.0);
+  SolvedContacts solved;
+  rows.model.effects = {{.name = "slope_weight_component", .covariate = "slope_rad", .parameters = {0.7}}};
+  const FitPlan plan = fitPlan(rows.model, false);
+  ASSERT_EQ(plan.free.size(), 1U);
+  // Property: no row has a slope, so that the prior alone speaks: 0.
+  EXPECT_NEAR(fitModel(rows.model, rows.trial, rows.white, plan, solved).model.effects[0].parameters[0], 0.0,
+              1e-3);
+}
+
 TEST(ModelFit, AParameterStopsAtItsBound) {
   const OffsetRows rows(-800.0);
   SolvedContacts solved;

@@ -44,7 +44,7 @@ TEST(PredictionTable, ARowThatCannotBePredictedKeepsItsPlace) {
   EXPECT_EQ(table.refused[0].line, 2U);
   EXPECT_THAT(table.refused[1].reason, HasSubstr("load_N must be > 0"));
   EXPECT_EQ(std::count(table.text.begin(), table.text.end(), '\n'), 4);
-  EXPECT_THAT(table.text, HasSubstr("80,,0.1,0.1,,,,,,,,\n"));
+  EXPECT_THAT(table.text, HasSubstr("80,,0.1,0.1,,,,,,,,,\n"));
 }
 
 TEST(PredictionTable, OfAPlainSoilItIsTheEquilibrium) {
@@ -61,6 +61,26 @@ TEST(PredictionTable, OfAPlainSoilItIsTheEquilibrium) {
   EXPECT_NEAR(sinkage, f.sinkage_m, 1e-6 * f.sinkage_m);
   EXPECT_NEAR(torque, f.torque_Nm, 1e-6 * 8.0);
   EXPECT_GT(pull_std, 0.0);
+}
+
+TEST(PredictionTable, OutsideTheTrainedRangeARowIsFlaggedAndItsDeviationGrows) {
+  const test::TemporaryFile file{
+      "load_N,slip,wheel_radius_m,wheel_width_m\n80,0.3,0.1,0.1\n80,0.6,0.1,0.1\n"};
+  const auto stdOf = [&](double high, std::string& flag) {
+    const TrainedRange slip{.column = "slip", .low = 0.0, .high = high, .above = {0.5, 0.0, 0.0, 0.0}};
+    const PredictionTable table = predictTable(file.path(), refined(), {slip});
+    flag = table.text.substr(table.text.rfind(',') + 1);
+    const std::string row = table.text.substr(table.text.find("80,0.6"));
+    double pull_std = 0.0;
+    EXPECT_EQ(std::sscanf(row.c_str(), "80,0.6,0.1,0.1,%*f,%lf", &pull_std), 1);
+    EXPECT_EQ(table.outside, high < 0.6 ? 1U : 0U);
+    return pull_std / 80.0;
+  };
+  std::string inside, outside;
+  const double plain = stdOf(1.0, inside), widened = stdOf(0.4, outside);
+  EXPECT_EQ(inside, "\n");
+  EXPECT_EQ(outside, "slip\n");
+  EXPECT_NEAR(widened, std::hypot(plain, 0.5 * 0.2), 1e-9);  // Closed form: 0.2 beyond at 0.5 a unit
 }
 
 TEST(PredictionTable, OlderPredictionsAreReplacedAndOtherColumnsKept) {

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <talus/talus.hpp>
+#include <talus/terramech/io/model_file.hpp>
+#include <talus/terramech/trace/trace_result.hpp>
+
+/// How far a model holds beyond the rows that it comes from: the outermost level of a column is held out and told by
+/// the others.
+namespace talus::terramech {
+
+/// Both ends of slip, slip angle, load and of the columns of effects, where they have three levels: the outermost
+/// level where there are at most eight, else the outermost tenth of the rows. Parameters are fitted again without it.
+std::vector<EndLevel> endLevels(const TraceResult& result, const TraceOptions& options,
+                                const ProgressMonitor& watch = {});
+
+/// An extrapolation is earned: an effect whose law did not foretell the end level of its column acts beyond the
+/// trained rows as at their edge.
+void boundEffects(RefinedModel& model, const Trial& trial, const std::vector<EndLevel>& ends);
+
+/// What predictions need to know of the rows: the range of each column, and by how much the error grows beyond it,
+/// at the rate that the end levels showed above the floor (in proportion to the distance; ours).
+std::vector<TrainedRange> trainedRanges(const Trial& trial, const std::vector<EndLevel>& ends,
+                                        const ChannelErrors& floor);
+
+}  // namespace talus::terramech
