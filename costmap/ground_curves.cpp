@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <utility>
 
+#include <talus/costmap/cell_boxes.hpp>
 #include <talus/costmap/class_borders.hpp>
 #include <talus/costmap/ground_curves.hpp>
 
@@ -68,11 +69,20 @@ WheelSwath::Ground GroundCurves::ground(maps::Cell cell) const {
 }
 
 maps::CellBox GroundCurves::within(const maps::CellBox& range) const noexcept {
-  const maps::Grid& grid = site_->grid();
-  const int reach = swath_.reach();
-  return {{std::max(range.first.column - reach, 0), std::max(range.first.row - reach, 0)},
-          {std::min(range.last.column + reach, grid.width - 1),
-           std::min(range.last.row + reach, grid.height - 1)}};
+  return grown(range, swath_.reach(), site_->grid());
+}
+
+// A border is one up to a reach away from where classes changed; it is found from what lies as far again.
+maps::CellBox GroundCurves::takeClasses(const maps::CellBox& box) {
+  const maps::CellBox changed = within(box), seen = within(changed);
+  const std::vector<bool> borders = classBorders(cut(site_->classes, seen), swath_.reach());
+  const auto width = static_cast<std::size_t>(seen.width());
+  forEachCell(changed, [&](maps::Cell cell) {
+    borders_[site_->grid().index(cell)] =
+        borders[static_cast<std::size_t>(cell.row - seen.first.row) * width +
+                static_cast<std::size_t>(cell.column - seen.first.column)];
+  });
+  return changed;
 }
 
 bool GroundCurves::alike(maps::Cell cell) const noexcept {
@@ -119,9 +129,10 @@ std::vector<maps::CellBox> GroundCurves::learn(EvidenceField::Beliefs& beliefs,
       for (int column = range.first.column; column <= range.last.column; ++column) {
         const maps::Cell cell{column, row};
         const int index = site_->classIndex(cell);
-        if (index < 0) continue;
-        const EvidenceField::Belief& belief = beliefs.at(cell, index);
-        const std::uint32_t word = belief.learned ? packed(GroundKind::of(index, index, belief.ground)) : 0U;
+        std::uint32_t word = 0;
+        if (index >= 0)
+          if (const EvidenceField::Belief& belief = beliefs.at(cell, index); belief.learned)
+            word = packed(GroundKind::of(index, index, belief.ground));
         if (!learned_.set(cell, word)) continue;
         any_learned_ = true;
         join(changed, cell);

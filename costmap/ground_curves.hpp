@@ -30,6 +30,9 @@ class GroundCurves {
   /// Takes over what is believed of the cells of the ranges. The ranges in which numbers may have changed.
   std::vector<maps::CellBox> learn(EvidenceField::Beliefs& beliefs, const std::vector<maps::CellBox>& ranges);
 
+  /// Takes over the site's classes in a box, which have changed. The box in which numbers may have, too.
+  maps::CellBox takeClasses(const maps::CellBox& box);
+
   /// Cells that were learned, in boxes.
   std::vector<maps::CellBox> learnedBoxes() const { return learned_.boxes(); }
   /// Where more than one ground takes part in a number, some of which may be a class's prior.

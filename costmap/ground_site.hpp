@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include <talus/costmap/cell_belief.hpp>
 #include <talus/costmap/floors.hpp>
 #include <talus/costmap/ground_model.hpp>
 #include <talus/costmap/surface_cells.hpp>
@@ -11,7 +12,26 @@
 
 namespace talus::costmap {
 
-/// The ground as it was before anybody drove on it: what a map and its evidence share and never change.
+/// What a map is built from; layers on the elevation's grid, empty where nobody gave one.
+struct MapLayers {
+  maps::ElevationMap elevation;
+  maps::Raster<std::uint8_t> classes;   ///< terrain-class numbers, 255 = none there
+  maps::Raster<float> rock_abundance;   ///< share of the ground, NaN = none there
+  maps::Raster<std::uint8_t> keep_out;  ///< not 0: must not be entered
+  maps::Raster<Hazard> declared;        ///< hazards judged elsewhere, as when a map is read back
+  Floors floors;                        ///< ground beneath overhangs, where the source is a point cloud
+};
+
+/// A window of ground observed anew, as from the rover's own cameras: layers on one grid whose cells are cells of the
+/// map, empty where nobody gave one. What was not observed leaves the map as it is.
+struct SurfacePatch {
+  maps::Raster<float> elevation_m;      ///< in the map's frame; NaN = not observed yet
+  maps::Raster<float> rock_abundance;   ///< share of the ground, 0 to 1; NaN = not observed yet
+  maps::Raster<std::uint8_t> classes;   ///< terrain-class numbers; 255 = not observed yet
+  maps::Raster<std::uint8_t> keep_out;  ///< not 0: must not be entered; 0 lifts what was declared
+};
+
+/// The ground as it was before anybody drove on it: what a map and its evidence share. Only the map changes it.
 struct GroundSite {
   static constexpr std::uint8_t kNoClass = 255;  ///< class number where the raster leaves a cell out
 

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <vector>
 
+#include <talus/costmap/cell_boxes.hpp>
 #include <talus/costmap/hazards.hpp>
 
 namespace talus::costmap {
@@ -68,10 +69,10 @@ Hazard ShapeJudge::operator()(const GroundShape& shape) const noexcept {
 namespace {
 
 // Outside the map nothing is seen either.
-void keepOffEdge(maps::Raster<Hazard>& hazards, int cells) {
+void keepOffEdge(maps::Raster<Hazard>& hazards, const maps::CellBox& box, int cells) {
   const maps::Grid& grid = hazards.grid();
-  for (int row = 0; row < grid.height; ++row)
-    for (int column = 0; column < grid.width; ++column) {
+  for (int row = box.first.row; row <= box.last.row; ++row)
+    for (int column = box.first.column; column <= box.last.column; ++column) {
       const int off = std::min({column, row, grid.width - 1 - column, grid.height - 1 - row});
       if (off < cells) hazards[{column, row}] |= Hazard::Near;
     }
@@ -79,20 +80,33 @@ void keepOffEdge(maps::Raster<Hazard>& hazards, int cells) {
 
 }  // namespace
 
-void inflate(maps::Raster<Hazard>& hazards, const HazardLimits& limits, Hazard spreading) {
+int inflationReach(const HazardLimits& limits, double resolution_m) {
+  int reach = 0;
+  for (const maps::Cell offset : discOffsets(limits.inflation_m / resolution_m))
+    reach = std::max(reach, offset.column);
+  return reach;
+}
+
+void inflate(maps::Raster<Hazard>& hazards, const HazardLimits& limits, Hazard spreading,
+             const maps::CellBox& box) {
   const maps::Grid& grid = hazards.grid();
   const auto disc = discOffsets(limits.inflation_m / grid.resolution_m);
   if (touches(Hazard::Unknown, spreading))
-    keepOffEdge(hazards, static_cast<int>(std::ceil(limits.inflation_m / grid.resolution_m)));
-  for (int row = 0; row < grid.height; ++row)
-    for (int column = 0; column < grid.width; ++column) {
+    keepOffEdge(hazards, box, static_cast<int>(std::ceil(limits.inflation_m / grid.resolution_m)));
+  const maps::CellBox from = grown(box, inflationReach(limits, grid.resolution_m), grid);
+  for (int row = from.first.row; row <= from.last.row; ++row)
+    for (int column = from.first.column; column <= from.last.column; ++column) {
       const maps::Cell cell{column, row};
       if (!touches(hazards[cell], spreading) || !onEdge(hazards, cell, spreading)) continue;
       for (const maps::Cell offset : disc) {
         const maps::Cell near{column + offset.column, row + offset.row};
-        if (grid.contains(near)) hazards[near] |= Hazard::Near;
+        if (contains(box, near)) hazards[near] |= Hazard::Near;
       }
     }
+}
+
+void inflate(maps::Raster<Hazard>& hazards, const HazardLimits& limits, Hazard spreading) {
+  inflate(hazards, limits, spreading, allOf(hazards.grid()));
 }
 
 }  // namespace talus::costmap

@@ -56,5 +56,10 @@ inline constexpr Hazard kKeptClearOf = Hazard::KeepOut | Hazard::Obstacle | Haza
 /// Marks as Near the cells some place of which lies closer than inflation_m to a cell with one of these hazards; where
 /// Unknown is one of them, to the outside of the map, too.
 void inflate(maps::Raster<Hazard>& hazards, const HazardLimits& limits, Hazard spreading = kKeptClearOf);
+/// The same in a box inside the map alone: equal there to doing it everywhere.
+void inflate(maps::Raster<Hazard>& hazards, const HazardLimits& limits, Hazard spreading,
+             const maps::CellBox& box);
+/// Columns and rows, at most, from a cell that spreads to those marked for it.
+int inflationReach(const HazardLimits& limits, double resolution_m);
 
 }  // namespace talus::costmap

@@ -11,6 +11,7 @@
 #include <talus/costmap/cost_grid.hpp>
 #include <talus/costmap/evidence_field.hpp>
 #include <talus/costmap/ground_model.hpp>
+#include <talus/costmap/ground_site.hpp>
 #include <talus/costmap/hazards.hpp>
 #include <talus/costmap/surface_cells.hpp>
 #include <talus/costmap/surface_tree.hpp>
@@ -22,16 +23,7 @@
 namespace talus::costmap {
 
 class GroundCurves;
-
-/// What a map is built from; layers on the elevation's grid, empty where nobody gave one.
-struct MapLayers {
-  maps::ElevationMap elevation;
-  maps::Raster<std::uint8_t> classes;   ///< terrain-class numbers, 255 = none there
-  maps::Raster<float> rock_abundance;   ///< share of the ground, NaN = none there
-  maps::Raster<std::uint8_t> keep_out;  ///< not 0: must not be entered
-  maps::Raster<Hazard> declared;        ///< hazards judged elsewhere, as when a map is read back
-  Floors floors;                        ///< ground beneath overhangs, where the source is a point cloud
-};
+struct PublishedMap;
 
 /// How many cells fall in each category, hazards counted as dangerous where they refuse the cell, unknown
 /// where unseen.
@@ -40,9 +32,10 @@ struct CategoryCounts {
 };
 
 /// Everything that is believed of a site: its surface, the prior of each cell's ground, the evidence that the
-/// wheels brought, and the cost grid that planners read. Ten bytes a cell and some sixty a block that was driven.
+/// wheels brought, and the cost grid that planners read. Eleven bytes a cell and some sixty a block that was driven.
 ///
-/// One thread changes a map; published() may be called from any thread at any time and never waits.
+/// One thread changes a map: a second that calls learn(), refuse(), patch() or publish() meanwhile gets a
+/// std::logic_error. published() may be called from any thread at any time and never waits.
 class TraversabilityMap {
  public:
   struct Options {
@@ -127,6 +120,13 @@ class TraversabilityMap {
   /// every cell whose centre lies within the radius. Planners see it after publish().
   void refuse(const maps::Point& place, double radius_m);
 
+  /// Takes a window of ground in and publishes it, with all that was learned before, as one new version: heights,
+  /// rocks, classes and keep-out count from then on as if the map had been built with them. Measures only the cells
+  /// that a footprint, a clearance or the wheels' swath carries the change to; evidence stays where it is, with the
+  /// class that it was learned of. Throws std::invalid_argument, in one line with place and remedy, for a patch of
+  /// another resolution, off the map, without an observation or with an impossible value; the map stays as it was.
+  void patch(const SurfacePatch& patch);
+
   /// Publishes what was learned since the last time as a new version: rewrites the cells whose ground changed,
   /// or that of a cell within reach of their wheels, and shares the tiles that hold none. Readers never wait; a
   /// planner that runs keeps its version. Where the numbers of cost curves run out all cells are given theirs
@@ -143,28 +143,48 @@ class TraversabilityMap {
   const SurfaceKeys& keys() const noexcept { return site_->keys; }
 
  private:
-  TileTable measure(const MapLayers& layers, const Options& options, const ProgressMonitor& watch);
+  // Ground that somebody declared impassable.
+  struct Refusal {
+    maps::Point place;
+    double radius_m = 0.0;
+  };
+  // New codes of the cells of a box, on a grid of its own, with their gradients alone.
+  struct Measured {
+    maps::CellBox box;
+    maps::Raster<CellCode> codes;
+  };
+
+  TileTable measure(const MapLayers& layers, const ProgressMonitor& watch);
+  maps::CellBox measureAgain(const maps::CellBox& window);
+  void take(const SurfacePatch& patch, const maps::CellBox& window);
+  void takeHazards(const SurfacePatch& patch, const maps::CellBox& window);
+  Hazard layerHazards(maps::Cell cell) const;
+  Hazard rocksOn(float abundance) const;
+  Hazard spreading() const noexcept;
+  maps::CellBox mark(const Refusal& refusal, bool refused);
   CellBelief belief(maps::Cell cell, EvidenceField::Beliefs& beliefs) const;
-  Hazard layerHazards(const MapLayers& layers, std::size_t index) const;
   std::uint8_t categoryOf(const CostGrid& grid, maps::Cell cell) const noexcept;
   CellCode coded(maps::Cell cell, CellCode code);
   void publish(std::vector<maps::CellBox> learned);
   std::shared_ptr<const CostGrid> rewritten(const std::vector<maps::CellBox>& ranges);
   std::shared_ptr<const CostGrid> renumbered();
-  maps::CellBox everywhere() const noexcept { return {{0, 0}, {grid().width - 1, grid().height - 1}}; }
   std::vector<FloorLeaf> floorLeaves() const;
 
-  std::shared_ptr<const GroundSite> site_;
+  std::shared_ptr<GroundSite> site_;
   HazardLimits limits_;
   double footprint_radius_m_ = 0.0;
+  int threads_ = 1;
+  bool any_height_ = false;
+  maps::Raster<Hazard> given_;  // by layers other than elevation and classes; empty: none
   maps::Raster<Hazard> hazards_;
   std::unique_ptr<GroundCurves> curves_;
   EvidenceField field_;
   std::vector<maps::CellBox> learned_;  // since the last version
-  std::vector<maps::CellBox> refused_;
+  std::vector<maps::CellBox> changed_;  // otherwise, since the last version
+  std::vector<Refusal> refusals_;
+  std::optional<Measured> measured_;  // not published yet
   std::set<std::string> drives_;
-  struct Published;
-  std::unique_ptr<Published> published_;  // the atomic in it cannot move
+  std::unique_ptr<PublishedMap> published_;  // the atomic in it cannot move
 };
 
 }  // namespace talus::costmap

@@ -1,6 +1,7 @@
 // The field planner by its parts, on rolling ground with blocked cells. Ratios within one run are what to
 // compare.
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <ctime>
@@ -12,7 +13,9 @@
 
 #include <benchmark/benchmark.h>
 #include <pthread.h>
+#include <site_fixture.hpp>
 
+#include <talus/costmap/traversability_map.hpp>
 #include <talus/planner/field/grid_links.hpp>
 #include <talus/planner/field/grid_route.hpp>
 #include <talus/planner/grid/field_planner.hpp>
@@ -170,6 +173,53 @@ void replan(benchmark::State& state) {
   }
 }
 
+double cpu_ms(clockid_t clock) {
+  timespec now{};
+  clock_gettime(clock, &now);
+  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
+}
+
+// New heights in a window of 200 x 200 cells at a share of the way in percent: from the patch to the route, on a map
+// of two soils that nobody drove on. `patch_ms`: what the map takes of it.
+void heightsToRoute(benchmark::State& state) {
+  const int side = static_cast<int>(state.range(0));
+  const maps::Grid grid{.width = side, .height = side, .resolution_m = 1.0, .south_west = {}};
+  const auto height = [](double x, double y, double wave) {
+    return static_cast<float>(3.0 * std::sin(0.02 * x) * std::cos(0.015 * y) + wave * std::sin(0.5 * x));
+  };
+  costmap::MapLayers layers;
+  layers.elevation.elevation_m = maps::Raster<float>(grid);
+  for (int row = 0; row < side; ++row)
+    for (int column = 0; column < side; ++column)
+      layers.elevation.elevation_m[{column, row}] = height(column, row, 0.0);
+  costmap::TraversabilityMap map(std::move(layers), costmap::testGround(), {});
+  auto problem = across(map.published());
+  FieldPlanner planner;
+  const auto points = planner.plan(problem).points;
+  const maps::Point at = points[points.size() * static_cast<std::size_t>(state.range(1)) / 100];
+  const double column0 = std::clamp(std::floor(at.x_m) - 100.0, 0.0, side - 200.0),
+               row0 = std::clamp(std::floor(at.y_m) - 100.0, 0.0, side - 200.0);
+  std::array<costmap::SurfacePatch, 2> windows;
+  for (std::size_t k = 0; k < windows.size(); ++k) {
+    windows[k].elevation_m = maps::Raster<float>(
+        {.width = 200, .height = 200, .resolution_m = 1.0, .south_west = {column0, row0}});
+    for (int row = 0; row < 200; ++row)
+      for (int column = 0; column < 200; ++column)
+        windows[k].elevation_m[{column, row}] =
+            height(column0 + column, row0 + row, 0.1 * static_cast<double>(k));
+  }
+  std::size_t turn = 0;
+  double patching_ms = 0.0;
+  for (auto _ : state) {
+    const double before_ms = cpu_ms(CLOCK_THREAD_CPUTIME_ID);
+    map.patch(windows[++turn % 2]);
+    patching_ms += cpu_ms(CLOCK_THREAD_CPUTIME_ID) - before_ms;
+    problem.map = map.published();
+    benchmark::DoNotOptimize(planner.plan(problem).cost_J);
+  }
+  state.counters["patch_ms"] = patching_ms / static_cast<double>(state.iterations());
+}
+
 void refinement(benchmark::State& state) {
   const auto map = rollingGround(static_cast<int>(state.range(0)));
   const auto edges = std::make_shared<EdgeLayer>(map, EdgeUnits(map->cost(), 1.0));
@@ -228,12 +278,6 @@ void againstFinest(benchmark::State& state) {
   state.counters["worst_percent"] = gaps.back();
 }
 
-double cpu_ms(clockid_t clock) {
-  timespec now{};
-  clock_gettime(clock, &now);
-  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
-}
-
 // A plan with its proof, cancelled at forty moments: the longest that its thread still works, in its own
 // time.
 void cancelling(benchmark::State& state) {
@@ -288,6 +332,7 @@ BENCHMARK(anotherStart)->Arg(2000)->Unit(benchmark::kMillisecond);
 BENCHMARK(tube)->Args({2000, 1})->Args({8000, 1})->Args({8000, 2})->Unit(benchmark::kMillisecond);
 BENCHMARK(againstFinest)->Arg(1000)->Iterations(1)->Unit(benchmark::kMillisecond);
 BENCHMARK(cancelling)->Arg(1000)->Arg(2000)->Iterations(1)->Unit(benchmark::kMillisecond);
+BENCHMARK(heightsToRoute)->Args({2000, 2})->Args({2000, 50})->Unit(benchmark::kMillisecond);
 BENCHMARK(replan)->Args({2000, 2})->Args({2000, 50})->Unit(benchmark::kMillisecond);
 
 }  // namespace

@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include <site_fixture.hpp>
 
+#include <talus/costmap/cell_boxes.hpp>
 #include <talus/costmap/hazards.hpp>
 
 namespace talus::costmap {
@@ -65,6 +67,29 @@ TEST(ShapeJudge, NamesEachLimitThatIsPassed) {
   EXPECT_EQ(judge({.dz_dx = 0.25F, .dz_dy = 0.25F}), Hazard::Slope);
   EXPECT_EQ(judge({.roughness_m = 0.06F, .step_m = 0.11F}), Hazard::Step | Hazard::Roughness);
   EXPECT_EQ(judge({.dz_dx = NAN}), Hazard::Unknown);
+}
+
+// Property: in a box alone is as everywhere, there; nothing else is touched.
+TEST(Hazards, InflatedInABoxIsAsEverywhere) {
+  std::mt19937 random(5);
+  const maps::Grid grid{.width = 30, .height = 24, .resolution_m = 0.5, .south_west = {}};
+  for (int trial = 0; trial < 200; ++trial) {
+    maps::Raster<Hazard> before(grid, Hazard::None);
+    for (Hazard& h : before.values())
+      if (random() % 12 == 0) h = random() % 2 == 0 ? Hazard::KeepOut : Hazard::Unknown;
+    const HazardLimits limits{.inflation_m = 0.3 * static_cast<double>(random() % 6)};
+    const Hazard spreading = random() % 2 == 0 ? kKeptClearOf : Hazard::KeepOut | Hazard::Obstacle;
+    const maps::Cell first{static_cast<int>(random() % 30), static_cast<int>(random() % 24)};
+    const maps::CellBox box{first,
+                            {std::min(first.column + static_cast<int>(random() % 12), 29),
+                             std::min(first.row + static_cast<int>(random() % 12), 23)}};
+    maps::Raster<Hazard> everywhere = before, boxed = before;
+    inflate(everywhere, limits, spreading);
+    inflate(boxed, limits, spreading, box);
+    forEachCell(allOf(grid), [&](maps::Cell c) {
+      ASSERT_EQ(boxed[c], contains(box, c) ? everywhere[c] : before[c]) << trial;
+    });
+  }
 }
 
 }  // namespace

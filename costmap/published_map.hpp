@@ -1,0 +1,35 @@
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include <talus/costmap/cost_grid.hpp>
+
+namespace talus::costmap {
+
+/// What readers of a map see, and whether somebody changes it now.
+struct PublishedMap {
+  std::atomic<std::shared_ptr<const CostGrid>> grid;
+  std::atomic_flag changing;
+};
+
+/// While it lives no other thread changes the map: that is told so instead.
+class MapChange {
+ public:
+  /// Throws std::logic_error naming the call when another thread is changing the map.
+  MapChange(PublishedMap& published, const char* call) : published_(published) {
+    if (published_.changing.test_and_set(std::memory_order_acquire))
+      throw std::logic_error(std::string("TraversabilityMap: ") + call +
+                             "() while another thread changes the map; let one thread change it");
+  }
+  MapChange(const MapChange&) = delete;
+  MapChange& operator=(const MapChange&) = delete;
+  ~MapChange() { published_.changing.clear(std::memory_order_release); }
+
+ private:
+  PublishedMap& published_;
+};
+
+}  // namespace talus::costmap
