@@ -326,6 +326,9 @@ void EvidenceJournal::append(const std::string& drive, const std::vector<Journal
 }
 
 std::vector<std::string> EvidenceJournal::drives() const {
+  if (single("SELECT count(*) FROM evidence WHERE drive NOT IN (SELECT number FROM drive)") != 0)
+    throw InputError({path_, "holds rows of a drive that is not listed: the journal was changed",
+                      "restore the journal from a copy"});
   const auto rows = prepare("SELECT id FROM drive ORDER BY number");
   std::vector<std::string> ids;
   int result = SQLITE_ROW;

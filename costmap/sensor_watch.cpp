@@ -119,10 +119,11 @@ std::optional<std::string> SensorWatch::judge(const Named& named) {
   std::optional<std::string> reason;
   countGap(wheel, reading.time_s);
   countDropout(wheel, reading);
-  if (reading.time_s < wheel.time_s)
-    reason = "time decreases";
-  else
-    wheel.time_s = std::isnan(reading.time_s) ? wheel.time_s : reading.time_s;
+  if (reading.time_s < wheel.time_s) {
+    wheel = Wheel{};
+    ++clock_went_back_;
+  }
+  if (!std::isnan(reading.time_s)) wheel.time_s = reading.time_s;
   if (const auto still = stuck(wheel, reading); !reason) reason = still;
   if (!reason && isSpike(wheel, reading)) reason = kSpike;
   if (!reason && slipsBackwardsUphill(reading)) reason = "negative slip on a climb: the slip is biased";
@@ -164,6 +165,10 @@ std::vector<std::string> SensorWatch::findings() const {
   if (dropouts_ > 0)
     lines.push_back(std::to_string(dropouts_) +
                     " rows: torque or sinkage missing; their slip and slope count");
+  if (clock_went_back_ > 0)
+    lines.push_back(
+        std::to_string(clock_went_back_) +
+        " rows: time decreases; each begins a series of its own, and the drive raises no estimate");
   if (gaps_ > 0)
     lines.push_back(std::to_string(gaps_) + " gaps in time, the longest of " +
                     std::to_string(longest_gap_s_) + " s");

@@ -67,6 +67,9 @@ class SensorWatch {
   /// less than its scatter.
   std::optional<double> slipExcess() const;
 
+  /// Whether the time of some wheel's rows decreased.
+  bool clockWentBack() const noexcept { return clock_went_back_ > 0; }
+
   /// What was found, a line each.
   std::vector<std::string> findings() const;
 
@@ -96,7 +99,7 @@ class SensorWatch {
   SensorLimits limits_;
   std::map<std::string, Wheel> wheels_;
   std::map<std::string, std::size_t> refusals_;
-  std::size_t gaps_ = 0, dropouts_ = 0;
+  std::size_t gaps_ = 0, dropouts_ = 0, clock_went_back_ = 0;
   double longest_gap_s_ = 0.0;
   double difference_sum_ = 0.0;
   std::size_t differences_ = 0;

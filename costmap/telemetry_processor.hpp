@@ -49,7 +49,7 @@ class TelemetryProcessor {
   /// What a row that is no reading bounds; nothing where it does not, or has no place.
   std::optional<WheelObservation> rejected(const TelemetryRows& rows, std::size_t row) const;
 
-  DriveVerdict verdict() const { return {watch_.biased(), &proof_}; }
+  DriveVerdict verdict() const { return {watch_.biased(), watch_.clockWentBack() ? nullptr : &proof_}; }
   const SensorWatch& watch() const noexcept { return watch_; }
   /// Rows whose loads were computed.
   std::size_t transferred() const noexcept { return transferred_; }

@@ -19,8 +19,8 @@ constexpr double kVertical_rad = 1.57;
 constexpr double kWorstPose_m = 1000.0;  // a position that is known no better is not one
 
 double slipOf(double speed_mps, double rim_speed_mps) noexcept {
-  return rim_speed_mps > kTurning_mps ? 1.0 - speed_mps / rim_speed_mps
-                                      : std::numeric_limits<double>::quiet_NaN();
+  return std::abs(rim_speed_mps) > kTurning_mps ? 1.0 - speed_mps / rim_speed_mps
+                                                : std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace

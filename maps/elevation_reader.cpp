@@ -123,6 +123,9 @@ Selection select(const std::string& path, const ReadOptions& options, std::vecto
   return {std::move(from), code, box, grid};
 }
 
+// Heights are kept in single precision: there to 1/64 m.
+constexpr float kFarthest_m = 131072.0F;
+
 }  // namespace
 
 ElevationMap readElevation(const std::string& path, const ReadOptions& options) {
@@ -136,6 +139,13 @@ ElevationMap readElevation(const std::string& path, const ReadOptions& options) 
   const PixelBox pixels{box.first.column, first_row, box.width(), box.height()};
   std::vector<float> values = readPixels(*from.raster, from.band, pixels, path, options.overview);
   decodeHeights(values, code, map.notes);
+  const auto farthest =
+      std::find_if(values.begin(), values.end(), [](float z) { return std::abs(z) > kFarthest_m; });
+  if (farthest != values.end())
+    throw InputError({path,
+                      "holds an elevation of " + std::to_string(*farthest) +
+                          " m; beyond 131072 m steps of some centimetres are lost",
+                      "take a datum off, as the body's radius, or name the mark of no data by --nodata"});
   map.elevation_m = from.north_up ? northUp(grid, std::move(values)) : Raster<float>(grid, std::move(values));
   map.georeference = from.georeference;
   if (validFraction(map.elevation_m) == 0.0)

@@ -63,7 +63,7 @@ int failure() {
   } catch (const std::domain_error& e) {
     return fail(Exit::kNo, e.what());
   } catch (const std::bad_alloc&) {
-    return fail(Exit::kInternal, "out of memory; use a smaller map or window");
+    return fail(Exit::kInput, "out of memory; use a smaller map or window");
   } catch (const std::exception& e) {
     return fail(Exit::kInternal, fmt::format("internal failure: {}; please report it", e.what()));
   } catch (...) {
@@ -78,6 +78,7 @@ void keepStandardStreams() {
         ::open("/dev/null", stream == STDERR_FILENO ? O_WRONLY : O_RDONLY) < 0)
       std::abort();
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit is a failed write, as on a full disk
 }
 
 using Names = std::vector<std::string>;

@@ -1,9 +1,12 @@
 #include <chrono>
+#include <cmath>
 #include <fstream>
+#include <optional>
 #include <tuple>
 #include <utility>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 #include <talus/cli/app/context.hpp>
 #include <talus/cli/app/help_format.hpp>
@@ -31,6 +34,10 @@ struct Assumed {
   const char* soil;
   const char* rover;
 };
+// Slopes and steps are those of a plane over so many of the rover's diagonals at most.
+constexpr double kFootprints = 2.0;
+constexpr double kSameHeight_m = 0.01;
+
 constexpr Assumed kAssumed[] = {{"Moon", "lunar_nominal", "lunar_micro"},
                                 {"Mars", "mars_blocky", "mer"},
                                 {"", "testbed_topsoil", "fido"}};
@@ -143,10 +150,44 @@ void checkAgainstMap(const GroundOptions& options, const std::string& path, cons
     if (present) context.warn(std::string(name) + " has no effect: " + path + " has its own");
 }
 
+// An elevation map beside a built one says which site is meant: routes over one's slopes are none over the other's.
+void checkSameSite(const maps::ElevationMap& dem, const costmap::TraversabilityMap& map,
+                   const std::string& path) {
+  const maps::Grid &a = dem.grid(), &b = map.grid();
+  const auto refuse = [&](const std::string& reason) {
+    throw InputError({path, "was not built from " + dem.source + ": " + reason,
+                      "name the elevation map that it was built from, or none but the map"});
+  };
+  const double near = 1e-6 * b.resolution_m;
+  if (a.width != b.width || a.height != b.height || std::abs(a.resolution_m - b.resolution_m) > near ||
+      std::abs(a.south_west.x_m - b.south_west.x_m) > near ||
+      std::abs(a.south_west.y_m - b.south_west.y_m) > near)
+    refuse(fmt::format("{} x {} cells of {:.6g} m against {} x {} of {:.6g} m, or another place", a.width,
+                       a.height, a.resolution_m, b.width, b.height, b.resolution_m));
+  const auto &heights = dem.elevation_m.values(), &own = map.elevation().elevation_m.values();
+  for (std::size_t i = 0; i < heights.size(); ++i)
+    if (std::isnan(heights[i]) != std::isnan(own[i]) || std::abs(heights[i] - own[i]) > kSameHeight_m)
+      refuse(fmt::format("elevation {:.6g} m against {:.6g} m in cell {}", heights[i], own[i], i));
+}
+
+// The elevation map that is given beside a built one; none where it cannot be read as the call has it.
+std::optional<maps::ElevationMap> siteOf(const GroundOptions& options, const std::string& path,
+                                         const Context& context) {
+  if (options.dem.path.empty() || options.dem.path == path || isBeliefMap(options.dem.path))
+    return std::nullopt;
+  try {
+    return readMapWithFloors(options.dem, context).elevation;
+  } catch (const InputError& e) {
+    context.warn(path + " is not compared with the elevation map: " + e.what());
+    return std::nullopt;
+  }
+}
+
 Ground fromMapFile(const GroundOptions& options, const std::string& path, const Context& context) {
   checkAgainstMap(options, path, context);
   const auto begin = Clock::now();
   Ground ground{costmap::readMap(path, context.workers(), context.watch("read map")), filesOf(options)};
+  if (const auto dem = siteOf(options, path, context)) checkSameSite(*dem, ground.map, path);
   ground.load_s = since_s(begin);
   return ground;
 }
@@ -203,6 +244,14 @@ Ground readGround(const GroundOptions& options, const Context& context) {
   parts.rover = terramech::loadRover(options.rover.empty() ? assumed.rover : options.rover);
   parts.classes = groundClasses(options, assumed, parts.rover);
   parts.policy = options.policy;
+  const double own_m = std::hypot(parts.rover.wheelbase_m, parts.rover.track_m),
+               widest_m = std::max(kFootprints * own_m, 2.0 * dem.grid().resolution_m);
+  if (options.footprint_m > widest_m)
+    throw InputError(
+        {"--footprint " + fmt::format("{:.6g}", options.footprint_m),
+         fmt::format("planes over more than {:.3g} m hide the steps and slopes that rover '{}' meets",
+                     widest_m, parts.rover.name),
+         "leave it out, or make it smaller"});
   const std::size_t cells = dem.grid().size();
   costmap::MapLayers content{std::move(dem),
                              std::move(layers.classes),

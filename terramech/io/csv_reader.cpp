@@ -13,6 +13,11 @@
 #include <talus/terramech/io/csv_reader.hpp>
 
 namespace talus::terramech {
+namespace {
+
+constexpr std::size_t kMostColumns = 1000;
+
+}  // namespace
 
 /// libcsv hands out fields and record ends through callbacks; finished records wait in a queue.
 struct CsvReader::Parser {
@@ -64,6 +69,9 @@ void CsvReader::Parser::readHeader() {
   header = row.fields;
   if (header.size() == 1 && header[0].find(';') != std::string::npos)
     refuse("fields are separated by ';'", "separate them by commas");
+  if (header.size() > kMostColumns)
+    refuse("has " + std::to_string(header.size()) + " columns, at most 1000 can be read",
+           "keep those that are needed");
   for (std::size_t k = 0; k < header.size(); ++k)
     if (!header[k].empty() && std::find(header.begin(), header.begin() + static_cast<std::ptrdiff_t>(k),
                                         header[k]) != header.begin() + static_cast<std::ptrdiff_t>(k))

@@ -34,6 +34,9 @@ constexpr Rule kRules[] = {
     {"shear_modulus_m", [](double x) { return x > 0.0; }, "> 0"},
 };
 
+// Less is what rounding leaves of nothing, as an angle's tangent does; plausible() asks for as much.
+constexpr double kDust = 1e-15;
+
 std::string shown(double value) {
   std::ostringstream out;
   out << value;
@@ -84,6 +87,10 @@ double checkedNumber(const Column& column, const std::string& field, std::string
     fault = column.name + " = '" + field + "', must be a number";
   } else if (!std::isfinite(value)) {
     fault = column.name + " = " + field + ", must be finite";
+  } else if (std::abs(value) < kDust) {
+    value = 0.0;
+    if (column.rule && !column.rule->holds(value))
+      fault = column.name + " = " + field + ", must be " + column.rule->bound;
   } else if (!plausible(value)) {
     fault = column.name + " = " + field + ", " + kPlausible;
   } else if (column.rule && !column.rule->holds(value)) {

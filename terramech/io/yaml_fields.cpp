@@ -57,6 +57,8 @@ double factorOf(const std::string& key, const std::string& name) {
   return conversion(given, unit).value_or(0.0);
 }
 
+constexpr std::size_t kMostBytes = std::size_t{16} << 20U;
+
 std::string kindOf(const YAML::Node& node) {
   if (node.IsMap()) return "a mapping";
   if (node.IsSequence()) return "a list";
@@ -84,9 +86,13 @@ YamlFields YamlFields::file(const std::string& path) {
   if (std::filesystem::is_directory(path, error)) fail(path, "is a directory", "name a YAML file");
   std::ifstream in(path, std::ios::binary);
   if (!in) fail(path, "cannot be read", "check the path and its permissions");
-  std::stringstream content;
-  content << in.rdbuf();
-  return text(content.str(), path);
+  std::string content(kMostBytes + 1, '\0');
+  in.read(content.data(), static_cast<std::streamsize>(content.size()));
+  content.resize(static_cast<std::size_t>(in.gcount()));
+  if (content.size() > kMostBytes)
+    fail(path, "is larger than 16 MB, no description of a soil, rover, model or mission is",
+         "name a YAML file");
+  return text(content, path);
 }
 
 YamlFields YamlFields::text(const std::string& yaml, const std::string& origin) {

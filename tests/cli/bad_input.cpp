@@ -54,6 +54,7 @@ BadFiles::BadFiles() {
   folder_.write("nodata.asc", asciiGrid(20, 20, nothing));
   folder_.write("one.asc", asciiGrid(1, 1, hills));
   folder_.write("huge.asc", "ncols 90000000\nnrows 90000000\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2 3\n");
+  folder_.write("far.asc", asciiGrid(8, 8, [](int column, int) { return 6378137.0 + column; }));
   folder_.write("empty", "");
   folder_.write("garbage.tif", garbage());
   folder_.write("tiff_head.tif", std::string("II*\0\x08\0\0\0", 8));

@@ -20,6 +20,7 @@ TEST(BadInput, ElevationMaps) {
                     {{"info", "cut.asc", "--resolution", "1"}, 2, "cut.asc"},
                     {{"info", "nodata.asc", "--resolution", "1"}, 2, "nodata.asc"},
                     {{"info", "huge.asc", "--resolution", "1"}, 2, "huge.asc"},
+                    {{"info", "far.asc", "--resolution", "1"}, 2, "beyond 131072 m"},
                     {{"info", "good.asc", "--resolution", "0"}, 2, "resolution"},
                     {{"info", "good.asc", "--resolution", "nan"}, 2, "resolution"},
                     {{"info", "good.asc", "--resolution", "-1"}, 2, "resolution"},

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <sstream>
@@ -70,6 +71,24 @@ terramech::Telemetry partOf(terramech::Telemetry whole, std::ptrdiff_t first, st
     column.values = {column.values.begin() + first, column.values.begin() + end};
   whole.lines = {whole.lines.begin() + first, whole.lines.begin() + end};
   return whole;
+}
+
+// Property: the order of rows and a wrong clock lose no weak ground.
+TEST(AddDrive, ADriveTheOtherWayRoundOrWithAWrongClockIsLearnedAsWeak) {
+  TraversabilityMap forward = mapOf(wide());
+  addDrive(forward, drive());
+  terramech::Telemetry reversed = drive(), late = drive(), back = drive();
+  for (auto& column : reversed.numbers) std::reverse(column.values.begin(), column.values.end());
+  late.numbers.back().values[5] = 1e9;
+  for (std::size_t i = 50; i < 100; ++i) back.numbers.back().values[i] -= 1e6;
+  const double weak = forward.ground({30, 30})->pull.value;
+  for (const terramech::Telemetry& other : {reversed, late, back}) {
+    TraversabilityMap map = mapOf(wide());
+    const DriveReport report = addDrive(map, other);
+    EXPECT_EQ(report.used, 90U);
+    EXPECT_EQ(report.raising, 0U);
+    EXPECT_NEAR(map.ground({30, 30})->pull.value, weak, 0.005);
+  }
 }
 
 TEST(DriveIntake, PartsTeachWhatTheWholeDoes) {

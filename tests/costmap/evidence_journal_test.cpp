@@ -136,6 +136,14 @@ TEST_F(EvidenceJournalTest, RefusesRowsThatWereChanged) {
   }
 }
 
+// Property: rows whose drive was taken off the list are missed, not passed over.
+TEST_F(EvidenceJournalTest, RefusesRowsOfADriveThatIsNotListed) {
+  { EvidenceJournal(path()).append("a", {row(7)}); }
+  EXPECT_EQ(EvidenceJournal(path()).drives().size(), 1U);
+  change(path(), "DELETE FROM drive");
+  EXPECT_THROW(static_cast<void>(EvidenceJournal(path()).drives()), InputError);
+}
+
 // Rows of older formats have no checksum: their values are judged by themselves.
 TEST_F(EvidenceJournalTest, RefusesValuesThatNoWheelGives) {
   for (const char* sql :

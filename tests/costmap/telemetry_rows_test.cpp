@@ -103,6 +103,12 @@ TEST(TelemetryRows, SpeedsOfRimAndRoverAreSlip) {
   EXPECT_NEAR(rows.reading(0).speed_slip, 0.95, 1e-12);
   EXPECT_NEAR(rows.reading(1).speed_slip, 0.0, 1e-12);
   for (const std::size_t i : {2U, 3U, 4U}) EXPECT_TRUE(std::isnan(rows.reading(i).speed_slip));
+  // Property: the same backwards.
+  for (std::size_t k = t.numbers.size() - 2; k < t.numbers.size(); ++k)
+    for (double& v : t.numbers[k].values) v = -v;
+  const TelemetryRows back(t, map, 0.5);
+  EXPECT_NEAR(back.reading(0).speed_slip, 0.95, 1e-12);
+  EXPECT_NEAR(back.reading(1).speed_slip, 0.0, 1e-12);
 }
 
 TEST(TelemetryRows, NamesAColumnThatIsMissing) {

@@ -70,6 +70,31 @@ TEST(GroundOptions, GroundIsOfTheSoilAndRoverNamed) {
         << ignored;
 }
 
+TEST(GroundOptions, ABuiltMapIsThatOfTheElevationMapBesideIt) {
+  const Folder folder;
+  const std::string dem = folder.write("dem.asc", asciiGrid(20, 20, flat));
+  const std::string steep = folder.write("steep.asc", asciiGrid(20, 20, [](int c, int) { return 0.5 * c; }));
+  const std::string small = folder.write("small.asc", asciiGrid(10, 20, flat));
+  const std::string built = folder / "map.ot";
+  costmap::writeMap(readGround(parsed(dem + " --resolution 1 --soil sandy_loam --rover fido"), quiet()).map,
+                    built);
+  EXPECT_NO_THROW(readGround(parsed(dem + " --resolution 1 --map " + built), quiet()));
+  for (const std::string& other :
+       {steep + " --resolution 1", small + " --resolution 1", dem + " --resolution 2"})
+    EXPECT_THAT([&] { readGround(parsed(other + " --map " + built), quiet()); },
+                ThrowsMessage<InputError>(HasSubstr("was not built from")))
+        << other;
+}
+
+TEST(GroundOptions, AFootprintThatHidesCliffsIsRefused) {
+  const Folder folder;
+  const std::string dem =
+      folder.write("dem.asc", asciiGrid(20, 20, flat)) + " --resolution 1 --rover fido --footprint ";
+  EXPECT_NO_THROW(readGround(parsed(dem + "1.5"), quiet()));
+  EXPECT_THAT([&] { readGround(parsed(dem + "50"), quiet()); },
+              ThrowsMessage<InputError>(HasSubstr("hide the steps and slopes")));
+}
+
 // A classes file replaces the soil of the body where it defines class 0, and is added to a soil that is named.
 TEST(GroundOptions, ClassesOfTheFileAndTheSoilNamed) {
   const Folder folder;

@@ -79,6 +79,10 @@ TEST(CsvReader, RefusesWhatIsNoTable) {
   EXPECT_THAT(errorOf(empty.path()), HasSubstr("is empty"));
   EXPECT_THAT(errorOf(twice.path()), HasSubstr(":1: column a appears twice"));
   EXPECT_THAT(errorOf(semicolons.path()), HasSubstr("separated by ';'"));
+  std::string wide = "c0";
+  for (int k = 1; k <= 1000; ++k) wide += ",c" + std::to_string(k);
+  const test::TemporaryFile columns{wide + '\n'};
+  EXPECT_THAT(errorOf(columns.path()), HasSubstr("has 1001 columns, at most 1000"));
   const test::TemporaryFile binary{std::string("a\0b\n", 4)};
   EXPECT_THAT(errorOf(binary.path()), HasSubstr("is not text"));
 }

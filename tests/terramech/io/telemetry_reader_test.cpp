@@ -92,6 +92,15 @@ TEST(TelemetryReader, TakesTheEdgesOfEachRange) {
   EXPECT_EQ(t.rejected.size(), 0U);
 }
 
+TEST(TelemetryReader, TheDustOfRoundingIsZero) {
+  const Telemetry t = read("pitch_rad,load_N\n4.3e-18,10\n-1e-300,10\n0.1,1e-300\n");
+  ASSERT_EQ(t.size(), 2U);
+  EXPECT_EQ(t.at("pitch_rad")[0], 0.0);
+  EXPECT_EQ(t.at("pitch_rad")[1], 0.0);
+  ASSERT_EQ(t.rejected.size(), 1U);
+  EXPECT_EQ(t.rejected[0].reason, "load_N = 1e-300, must be > 0");
+}
+
 TEST(TelemetryReader, RejectsALastRowThatIsCutShort) {
   const Telemetry t = read("load_N,slip,torque_Nm\n80,0.2,1\n80,0.");
   EXPECT_EQ(t.size(), 1U);
