@@ -38,7 +38,8 @@ WheelAlarm::Heard WheelAlarm::hear(const WheelLook& look, const std::vector<Whee
   for (std::size_t w = 0; w < look.wheels.size(); ++w) {
     const costmap::WheelReading& reading = look.wheels[w];
     reading_slip += std::isnan(reading.slip) ? 0U : 1U;
-    slipping += reading.slip > expected[w].slip + limits_.slip ? 1U : 0U;
+    // Downhill less than the limit is traction, whatever was expected: who stops there must climb back.
+    slipping += reading.slip > std::max(expected[w].slip, 0.0) + limits_.slip ? 1U : 0U;
     expected_angle_rad = std::fmax(expected_angle_rad, expected[w].slip_angle_rad);
     heard.sank.push_back(excessSinkage(w, reading, expected[w]) > limits_.sinkage);
   }

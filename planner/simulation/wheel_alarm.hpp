@@ -12,7 +12,7 @@ namespace talus::planner {
 
 /// When a rover that watches its wheels stops.
 struct AlarmLimits {
-  double slip = 0.2;  ///< slip beyond what the map says, at half of the wheels or more [-]
+  double slip = 0.2;  ///< slip beyond what the map says and beyond 0, at half of the wheels or more [-]
   double sinkage =
       0.08;  ///< sinkage of a wheel on fresh ground beyond what the map says, over its radius [-]
   double slip_angle_rad = 0.15;  ///< slip angle of the way made good beyond what the map says, as sizes

@@ -45,6 +45,17 @@ TEST(WheelAlarm, WhoSlidesMoreThanTheMapSaysStops) {
   EXPECT_EQ(alarm.hear(look, slope).reason, "slides");  // nothing known: as on level ground
 }
 
+// A sensor that stuck on the level reads more than a descent should: who stops for that must climb back.
+TEST(WheelAlarm, LittleSlipOnADescentIsTraction) {
+  const std::vector<WheelExpectation> downhill(6, {.slip = -0.2, .sinkage_over_radius = 0.1});
+  WheelAlarm alarm({}, kRadius_m);
+  EXPECT_FALSE(alarm.hear(quiet(), downhill).reason);
+  WheelLook slipping = quiet();
+  for (auto& wheel : slipping.wheels) wheel.slip = 0.21;
+  EXPECT_EQ(alarm.hear(slipping, downhill).reason, "slips");
+  EXPECT_FALSE(alarm.hear(slipping, kExpected).reason);
+}
+
 TEST(WheelAlarm, OneWheelThatSinksIsEnough) {
   WheelAlarm alarm({}, kRadius_m);
   WheelLook look = quiet();
