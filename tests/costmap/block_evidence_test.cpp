@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -55,6 +57,20 @@ TEST(BlockEvidence, SinksAsDeepAsItsDeepestPart) {
   EXPECT_GT(block.sinkage, 0.65F);
   EXPECT_TRUE(block.sinkage_raises);
   EXPECT_FALSE(summed({sinkageReading(0.1, false)}).sinkage_raises);
+}
+
+// Property: of bounds the hardest holds, in whatever order they came and whatever else was read.
+TEST(BlockEvidence, TheHardestBoundHolds) {
+  std::vector<ReadingCount> counts{times(pullReading({0.3, 0.05}, true), 500)};
+  for (const GroundBound& bound : {GroundBound{-0.1, 0.6}, GroundBound{-0.3, 0.8}, GroundBound{0.05, 0.55}})
+    for (ReadingCount reading : boundReadings(bound)) counts.push_back(times(reading, 1));
+  std::ranges::sort(counts, {}, [](const ReadingCount& c) { return std::pair(c.kind, c.step); });
+  const BlockEvidence block = summed(counts);
+  EXPECT_LE(block.most_pull, -0.3F);
+  EXPECT_NEAR(block.most_pull, -0.3F, 0.011F);
+  EXPECT_GE(block.least_sinkage, 0.8F);
+  EXPECT_NEAR(block.least_sinkage, 0.8F, 0.011F);
+  EXPECT_TRUE(std::isnan(summed({times(pullReading({0.3, 0.05}, true), 500)}).most_pull));
 }
 
 TEST(BlockEvidence, SamplesWeighByCertainty) {

@@ -55,6 +55,40 @@ TEST(DangerWatch, EachChannelSpeaksForItself) {
   const GroundBound deep = watch.hear(0, level(0.1, 0.6), 0.0);
   EXPECT_TRUE(std::isnan(deep.most_pull));
   EXPECT_NEAR(deep.least_sinkage, 0.6, 1e-12);
+  // At the motor's limit either way round.
+  EXPECT_LT(watch.hear(0, level(0.1, kNone, -99.0), 0.0).most_pull, level_limit);
+}
+
+// Closed form: at its slip ground of the class would have climbed at(slip); what the slope was less than that the ground
+// is weaker, but for two standard deviations, 0.05. In a rut the class's rut is what it would have climbed.
+TEST(DangerWatch, FromSlip07OnTheSlopeBoundsThePull) {
+  const auto model = testGround();
+  const DangerWatch watch(*model);
+  for (const double slip : {0.7, 0.72, 0.79})
+    for (const int pass : {1, 3}) {
+      WheelReading reading = level(slip, kNone);
+      reading.pass = pass;
+      const double at = model->steady(0, {.slip = slip, .in_rut = pass > 1}).gradient;
+      EXPECT_NEAR(watch.hear(0, reading, 0.1).most_pull, model->prior(0).pull.value + 0.1 - at + 0.05, 1e-12);
+    }
+  EXPECT_NE(model->steady(0, {.slip = 0.72, .in_rut = true}).gradient,
+            model->steady(0, {.slip = 0.72, .in_rut = false}).gradient);
+}
+
+// Closed form: two standard deviations of the reading and of the class together.
+TEST(DangerWatch, ASuspectedPullBoundsTheGroundFarBelowItsClass) {
+  const auto model = testGround();
+  const double prior = model->prior(0).pull.value, class_std = model->parts().classes[0].pull_std;
+  const double far = 2.0 * std::hypot(0.05, class_std);
+  const auto bound = [&](double pull) {
+    WheelObservation suspected{.place = {}, .pull = {pull, 0.05}, .sinkage = {}};
+    return DangerWatch(*model).hear(0, suspected).most_pull;
+  };
+  EXPECT_TRUE(std::isnan(bound(prior + 1.0)));
+  EXPECT_TRUE(std::isnan(bound(prior - far + 1e-6)));
+  EXPECT_EQ(bound(prior - far - 1e-6), prior - far - 1e-6);
+  EXPECT_EQ(bound(-1e14), -10.0);
+  EXPECT_TRUE(std::isnan(bound(kNone)));
 }
 
 // Property: more slip, more sinkage and less slope never bound less.
@@ -336,6 +370,27 @@ TEST(Danger, OfARowThatTheReaderRejectsCountsAndIsReplayed) {
       EXPECT_TRUE(refused(again, {125.5, 220.5})) << slip;
     }
     for (const char* suffix : {"", "-wal", "-shm"}) std::filesystem::remove(path + suffix);
+  }
+}
+
+// A row that was rejected may have any heading wrong: what it says is taken as read straight downhill, and so the place is
+// refused downhill, too, where a reading uphill would leave it.
+TEST(Danger, OfARejectedRowTrustsNoHeading) {
+  for (const bool rejected : {false, true}) {
+    terramech::Telemetry telemetry = tableOf(afterGoodRows({}, true));
+    if (rejected) {
+      telemetry.rejected = {{99, "load_N = -1"}};
+      telemetry.rejected_numbers = {
+          {"x_m", {125.5}}, {"y_m", {220.5}}, {"load_N", {-1.0}}, {"slip", {0.85}}, {"heading_rad", {0.0}}};
+    } else {
+      telemetry = tableOf(afterGoodRows({{.time_s = 0, .x_m = 0, .slip = 0.85, .heading_rad = 0.0}}, false));
+    }
+    TraversabilityMap map = plain(testRover(), testSand(), 0.15);
+    addDrive(map, telemetry);
+    const auto grid = map.published();
+    const CellCode there = grid->at(*map.grid().cellAt({125.5, 220.5}));
+    EXPECT_TRUE(std::isinf(grid->cost().costPerMetre(there, {1.0, 0.0}))) << rejected;
+    EXPECT_EQ(std::isinf(grid->cost().costPerMetre(there, {-1.0, 0.0})), rejected);
   }
 }
 

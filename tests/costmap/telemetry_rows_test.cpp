@@ -51,6 +51,20 @@ TEST(TelemetryRows, PoseErrorIsTheRowsElseTheOneStated) {
   EXPECT_EQ(rows.reading(2).pose_std_m, 0.0);
 }
 
+TEST(TelemetryRows, SpeedsOfRimAndRoverAreASlip) {
+  const TraversabilityMap map = ramp();
+  terramech::Telemetry t = table();
+  t.numbers.push_back({"speed_mps", {0.01, 0.05, 0.0, -0.05, 0.02}});
+  t.numbers.push_back({"rim_speed_mps", {0.05, 0.05, 0.05, 0.05, 0.004}});
+  const TelemetryRows rows(t, map, 0.5);
+  // Closed form: 1 - v/(r omega)
+  EXPECT_NEAR(rows.reading(0).speed_slip, 0.8, 1e-12);
+  EXPECT_NEAR(rows.reading(1).speed_slip, 0.0, 1e-12);
+  EXPECT_NEAR(rows.reading(2).speed_slip, 1.0, 1e-12);
+  EXPECT_NEAR(rows.reading(3).speed_slip, 2.0, 1e-12);
+  EXPECT_TRUE(std::isnan(rows.reading(4).speed_slip)) << "a wheel that does not turn";
+}
+
 // A slope beyond vertical is none; a row that is not to be trusted may have gone straight down.
 TEST(TelemetryRows, TheLeastGradientTrustsNoImpossibleSlope) {
   const TraversabilityMap map = ramp();
