@@ -67,6 +67,18 @@ TEST(TelemetryProcessor, SuspectedReadingsCountWhereTheyShowDanger) {
       << "strength that looks like a fault is no evidence";
 }
 
+// Below the slip that is danger by itself: what the reading would say of the pull bounds its place all the same.
+TEST(TelemetryProcessor, ASuspectedPullBoundsItsPlace) {
+  terramech::Telemetry t = quiet(12);
+  column(t, "slip")[9] = 0.68;
+  column(t, "slope_rad")[9] = -0.25;
+  const auto results = resultsOf(t);
+  EXPECT_EQ(results[9].reason, "spike");
+  ASSERT_TRUE(results[9].observation);
+  EXPECT_FALSE(results[9].observation->estimates());
+  EXPECT_LT(results[9].observation->here.most_pull, testGround()->prior(0).pull.value - 0.2);
+}
+
 TEST(TelemetryProcessor, NothingMayRaiseBeforeItIsProven) {
   for (const auto& result : resultsOf(quiet(60))) {
     ASSERT_TRUE(result.observation);

@@ -23,7 +23,7 @@ terramech::Telemetry table() {
                  {"time_s", {1, 1, 2, 2, 3}},
                  {"heading_rad", {0, 0, 0, 0, M_PI}},
                  {"slope_rad", {0.2, 0.2, NAN, NAN, NAN}},
-                 {"pose_std_m", {NAN, 0.3, -1, 2, NAN}}};
+                 {"pose_std_m", {NAN, 0.3, -1, 2, 1e14}}};
   out.words = {{"wheel", {"a", "b", "a", "b", "a"}}, {"run", {"r", "r", "r", "r", "r"}}};
   out.lines = {2, 3, 4, 5, 6};
   return out;
@@ -49,6 +49,7 @@ TEST(TelemetryRows, PoseErrorIsTheRowsElseTheOneStated) {
   EXPECT_EQ(rows.reading(0).pose_std_m, 0.5);
   EXPECT_EQ(rows.reading(1).pose_std_m, 0.3);
   EXPECT_EQ(rows.reading(2).pose_std_m, 0.0);
+  EXPECT_EQ(rows.reading(4).pose_std_m, 1000.0) << "the journal takes no more";
 }
 
 TEST(TelemetryRows, SpeedsOfRimAndRoverAreASlip) {
