@@ -115,7 +115,7 @@ void boundEffects(RefinedModel& model, const Trial& trial, const std::vector<End
     const Values x = valuesOf(trial, column);
     auto [low, high] = rangeOver(x, std::vector<char>(x.size(), 1), 1);
     if (!(low < high)) continue;
-    constexpr double kFar = std::numeric_limits<double>::max();
+    constexpr double kFar = 1e12;  // beyond any column, within what a model file may hold
     for (const EndLevel& end : ends)
       if (end.column == column && end.law) (end.high ? high : low) = end.high ? kFar : -kFar;
     if (low > -kFar || high < kFar) holdAt(model, column, low, high);

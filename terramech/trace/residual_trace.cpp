@@ -36,8 +36,8 @@ TracedEffect traced(const std::vector<Explanation>& ranked, std::size_t best, do
   return effect;
 }
 
-/// Puts in the offset of a force sensor that its group's own torque and sinkage betray; a soil fitted to all
-/// rows would hide it. It stays: the search sees only what the soil left of it.
+/// Puts in the offset of a force sensor that its group's own torque and sinkage betray, unless it makes held-out rows
+/// worse; a soil fitted to all rows would hide it. It stays: the search sees only what the soil left of it.
 bool correctOffset(TraceSearch& search, const Trial& trial, std::uint64_t seed,
                    std::vector<TracedEffect>& effects) {
   const auto found = findClosureOffset(trial, seed);
@@ -47,12 +47,16 @@ bool correctOffset(TraceSearch& search, const Trial& trial, std::uint64_t seed,
   tilt.covariate = found->column;
   tilt.channel = Channel::DrawbarPull;
   tilt.parameters = {std::asin(std::clamp(found->offset, -0.3, 0.3))};
-  search.trust({tilt.parameters[0], found->std});
+  search.trust(Estimate{tilt.parameters[0], found->std});
   tilt.only_column = found->column;
   tilt.only_value = found->value;
   TracedEffect effect;
   effect.chosen.candidate = {{tilt}, "load_cell_tilt", 1};
   effect.p_value = found->p_value;
+  if (!choose({search.fitted(effect.chosen.candidate)}, 0.0)) {
+    search.trust(std::nullopt);
+    return false;
+  }
   search.accept(effect.chosen.candidate);
   effects.push_back(effect);
   return true;
@@ -77,16 +81,38 @@ void take(Path& path, const std::vector<Explanation>& ranked, std::size_t best, 
   taken.chosen.candidate.parts = path.search.parts(path.effects.size() - 1);
 }
 
-/// Looks at the earlier effects again once another is in: each gives way to what explains clearly more beside
-/// the others.
+long curves(const std::vector<Effect>& effects) {
+  return std::count_if(effects.begin(), effects.end(), [](const Effect& e) { return e.empirical(); });
+}
+
+/// What an account must gain more to take another's place: nothing where it names what the other leaves to curves.
+double margin(const std::vector<Effect>& present, const std::vector<Effect>& other) {
+  return curves(other) < curves(present) ? 0.0 : kClose;
+}
+
+/// Takes out, last first, what beside the others gains no more than noise would.
+void check(Path& path) {
+  for (std::size_t k = path.effects.size(); k-- > path.pinned;) {
+    if (path.search.gainOf(k) > path.threshold) continue;
+    path.search.leaveOut(k);
+    path.search.settleAll();
+    path.effects.erase(path.effects.begin() + static_cast<long>(k));
+  }
+}
+
+/// Looks at the earlier effects again once another is in: what they explained beside a gap may be the other's, and
+/// each gives way to what explains clearly more beside the others. One that is left over would bend the search for more.
 void reconsider(Path& path) {
+  if (path.effects.size() > path.pinned + 1) check(path);
   for (std::size_t k = path.pinned; k + 1 < path.effects.size(); ++k) {
     TraceSearch without = path.search;
     without.leaveOut(k);
     const auto ranked = without.fitBest(without.screen(0).promises);
     const auto best = choose(ranked, 0.0);
     if (!best || same(ranked[*best].candidate, path.effects[k].chosen.candidate)) continue;
-    if (ranked[*best].gain < path.search.gainOf(k) + kClose) continue;
+    if (ranked[*best].gain <
+        path.search.gainOf(k) + margin(path.search.parts(k), ranked[*best].candidate.parts))
+      continue;
     const double p_value = path.effects[k].p_value;
     path.search.leaveOut(k);
     path.effects.erase(path.effects.begin() + static_cast<long>(k));
@@ -128,8 +154,10 @@ void reconsiderPair(Path& path) {
   const auto ranked = without.pairs();
   const auto best = choose(ranked, 0.0);
   if (!best) return;
-  const double margin = found == 1 ? std::max(path.threshold, kClose) : kClose;
-  if (ranked[*best].gain < without.fitted(present).gain + margin) return;
+  const double more = margin(present.parts, ranked[*best].candidate.parts);
+  if (ranked[*best].gain <
+      without.fitted(present).gain + (found == 1 ? std::max(path.threshold, more) : more))
+    return;
   const double p_value = path.effects.back().p_value;
   for (std::size_t k = path.effects.size(); k-- > path.pinned;) {
     path.search.leaveOut(k);
@@ -140,16 +168,6 @@ void reconsiderPair(Path& path) {
     const EffectForm* form = findEffect(part.name);
     one.candidate = {{part}, form ? form->family : "empirical", static_cast<int>(part.parameters.size())};
     take(path, {one}, 0, p_value);
-  }
-}
-
-/// Takes out, last first, what beside the others gains no more than noise would.
-void check(Path& path) {
-  for (std::size_t k = path.effects.size(); k-- > path.pinned;) {
-    if (path.search.gainOf(k) > path.threshold) continue;
-    path.search.leaveOut(k);
-    path.search.settleAll();
-    path.effects.erase(path.effects.begin() + static_cast<long>(k));
   }
 }
 

@@ -20,10 +20,8 @@ Channel TraceSearch::strongest(std::size_t effect) {
 
 void TraceSearch::finish(TraceResult& result) {
   const FitPlan plan = planFor(model_);
-  const Fit fit = fitModel(model_, trial_, whitening_, plan, solved_);
-  const SensorNoise noise = model_.noise;
-  model_ = fit.model;
-  model_.noise = noise;
+  // Without an effect the refined model is the base.
+  if (!result.effects.empty()) model_ = fitModel(model_, trial_, whitening_, plan, solved_).model;
   model_.fitted = plan.free;
   const Eigen::MatrixXd covariance = parameterCovariance(model_, trial_, whitening_, plan, solved_);
   model_.covariance.assign(covariance.data(), covariance.data() + covariance.size());

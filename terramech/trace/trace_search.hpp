@@ -43,7 +43,7 @@ class TraceSearch {
   void accept(const Candidate& candidate);
 
   /// Keeps the first parameter of the effect accepted first near what was known of it before.
-  void trust(const Estimate& prior) { first_prior_ = prior; }
+  void trust(const std::optional<Estimate>& prior) { first_prior_ = prior; }
 
   /// Takes accepted candidate number k out and fits the others again, the noise as it is.
   void leaveOut(std::size_t k);

@@ -1,5 +1,5 @@
-// Blind trials of residual tracing: blind_trials FIRST_SEED COUNT [library|other|double|none] [wide]. Prints
-// a line a world and the rates that matter. Development seeds are 1 to 9999; 100000 and above are for
+// Blind trials of residual tracing: blind_trials FIRST_SEED COUNT [library|other|double|none] [wide|campaign] [scan].
+// Prints a line a world and the rates that matter; with scan, of the plain scan (plain_scan.hpp) by column alone. Development seeds are 1 to 9999; 100000 and above are for
 // judging, reported once.
 #include <algorithm>
 #include <cmath>
@@ -11,6 +11,7 @@
 #include <talus/terramech/trace/residual_trace.hpp>
 
 #include "blind_worlds.hpp"
+#include "plain_scan.hpp"
 
 using namespace talus;
 using namespace talus::terramech;
@@ -54,6 +55,25 @@ double rms(const std::vector<double>& v) {
   return std::sqrt(s / static_cast<double>(v.size()));
 }
 
+/// Hidden effects with their column among these, and whether a column is of none.
+struct Named {
+  int found = 0;
+  bool extra = false;
+};
+Named named(const blind::World& world, const std::vector<std::string>& columns) {
+  const auto is = [](const blind::Hidden& h, const std::string& column) {
+    return std::find(h.covariates.begin(), h.covariates.end(),
+                     column == "rim_speed_mps" ? "speed_mps" : column) != h.covariates.end();
+  };
+  Named n;
+  for (const blind::Hidden& h : world.hidden)
+    n.found += std::any_of(columns.begin(), columns.end(), [&](const auto& c) { return is(h, c); });
+  for (const std::string& c : columns)
+    n.extra |=
+        std::none_of(world.hidden.begin(), world.hidden.end(), [&](const auto& h) { return is(h, c); });
+  return n;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -68,9 +88,18 @@ int main(int argc, char** argv) {
     plan.effects = mode == "none" ? 0 : mode == "double" ? 2 : 1;
     plan.library = mode != "other";
     plan.wide = argc > 4 && std::string(argv[4]) == "wide";
+    plan.campaign = argc > 4 && std::string(argv[4]) == "campaign";
     const blind::World world = blind::makeWorld(plan);
     const double start = cpu();
     const RefinedModel base = baseOf(world);
+    if (argc > 5) {
+      const Named n = named(world, plainScan(base, makeTrial(telemetryOf(world, world.rows), base)));
+      hidden += static_cast<int>(world.hidden.size());
+      located += n.found;
+      all_found += n.found == static_cast<int>(world.hidden.size());
+      alarms += n.extra;
+      continue;
+    }
     const TraceResult result = traceResiduals(base, makeTrial(telemetryOf(world, world.rows), base));
     const double seconds = cpu() - start;
     slowest = std::max(slowest, seconds);
@@ -109,6 +138,7 @@ int main(int argc, char** argv) {
   std::printf(
       "located %d/%d, family %d/%d, all found %d/%d, sets with an extra %d/%d, slowest %.1f s of one core\n",
       located, hidden, family, hidden, all_found, count, alarms, count, slowest);
+  if (pull_ratio.empty()) return 0;
   std::printf("held-out rmse over floor: pull");
   show(pull_ratio);
   std::printf(", sinkage");

@@ -1,8 +1,8 @@
 #include "blind_worlds.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <random>
 
 namespace talus::blind {
 namespace {
@@ -132,21 +132,6 @@ Answer truth(const World& world, const Conditions& at) {
   return out;
 }
 
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : engine_(seed * 0x9E3779B97F4A7C15ULL + 77) {}
-  double uniform(double a, double b) {
-    return a + (b - a) * static_cast<double>(engine_() >> 11) * 0x1.0p-53;
-  }
-  double normal() {
-    return std::sqrt(-2.0 * std::log(uniform(1e-12, 1.0))) * std::cos(2.0 * kPi * uniform(0.0, 1.0));
-  }
-  int below(int n) { return static_cast<int>(uniform(0.0, n * (1.0 - 1e-12))); }
-
- private:
-  std::mt19937_64 engine_;
-};
-
 struct Kind {
   const char *kind, *family;
   std::vector<std::string> covariates, channels;
@@ -207,6 +192,7 @@ struct Design {
   double run_offset = 0.0;  ///< of DP/W and z/r, normal from run to run
   int idle_columns = 0;     ///< that mean nothing
   bool heavy_tails = false;
+  bool campaign = false;
   double absolute = 0.0;  ///< part of the noise that does not grow with the reading, of DP/W and T/(rW)
 };
 
@@ -233,6 +219,12 @@ Design wideDesign(Random& random) {
   return d;
 }
 
+Design campaignDesign(Random& random) {
+  const int runs = 12 + random.below(14), rows = 6 + random.below(15);
+  return {
+      .count = runs * rows, .both_speeds = true, .rows_a_run = rows, .run_offset = 0.003, .campaign = true};
+}
+
 Conditions conditions(Random& random, int row, const Design& design) {
   static constexpr double kLoads[] = {20.0, 40.0, 60.0, 90.0}, kSlips[] = {0.05, 0.15, 0.3, 0.45, 0.6, 0.8};
   Conditions c{};
@@ -249,9 +241,18 @@ Conditions conditions(Random& random, int row, const Design& design) {
   c.temperature = 15.0 + 8.0 * std::sin(2.0 * kPi * c.time / 5000.0) + 2.0 * random.normal();
   c.dust = random.uniform(0.0, 1.0);
   c.battery = 24.0 + random.uniform(0.0, 4.0);
-  c.radius = 0.1;
-  c.width = 0.1;
+  c.radius = design.campaign ? std::array{0.1, 0.125, 0.15}[static_cast<std::size_t>(random.below(3))] : 0.1;
+  c.width = design.campaign ? 0.1 + 0.025 * random.below(3) : 0.1;
   return c;
+}
+
+/// Conditions of a row in a run whose wheel, load, speed, pass and slope are set.
+Conditions within(Conditions run, const Conditions& row) {
+  for (const auto own : {&Conditions::slip, &Conditions::time, &Conditions::temperature, &Conditions::dust,
+                         &Conditions::battery})
+    run.*own = row.*own;
+  run.rim = run.speed / (1.0 - run.slip);
+  return run;
 }
 
 double shock(Random& random, const Design& design) {
@@ -344,7 +345,9 @@ World makeWorld(const WorldPlan& plan) {
       h = draw(plan.library ? libraryKinds() : otherKinds(), random);
     w.hidden.push_back(h);
   }
-  const Design design = plan.wide ? wideDesign(random) : plainDesign(random);
+  const Design design = plan.campaign ? campaignDesign(random)
+                        : plan.wide   ? wideDesign(random)
+                                      : plainDesign(random);
   for (Hidden& h : w.hidden)
     while (!shows(h, design)) h = draw(plan.library ? libraryKinds() : otherKinds(), random);
   if (design.tied_speed)  // nobody can tell these apart
@@ -352,13 +355,15 @@ World makeWorld(const WorldPlan& plan) {
       if (std::find(h.covariates.begin(), h.covariates.end(), "slip") != h.covariates.end())
         h.covariates.push_back("rim_speed_mps");
   RunOffset offset;
+  Conditions run{};
   for (int row = 0; row < design.count; ++row) {
     if (design.rows_a_run > 0) {
       if (row % design.rows_a_run == 0)
         offset = {design.run_offset * random.normal(), design.run_offset * random.normal()};
       w.run.push_back(row / design.rows_a_run);
     }
-    const Conditions c = conditions(random, row, design);
+    Conditions c = conditions(random, row, design);
+    if (design.campaign) c = within(row % design.rows_a_run == 0 ? run = c : run, c);
     w.rows.push_back(measure(w, design, c, truth(w, c), offset, random));
   }
   for (int row = 0; row < 80; ++row) {
@@ -375,7 +380,7 @@ World makeWorld(const WorldPlan& plan) {
     w.floor_pull.push_back((w.held.back()[4] - best.pull) / seen.load);
     w.floor_z.push_back((w.held.back()[3] - best.z) / c.radius);
   }
-  if (!plan.wide) {  // the rim's speed follows from speed and slip
+  if (!plan.wide && !plan.campaign) {  // the rim's speed follows from speed and slip
     const auto at = std::find(w.columns.begin(), w.columns.end(), "rim_speed_mps") - w.columns.begin();
     w.columns.erase(w.columns.begin() + at);
     for (auto* rows : {&w.rows, &w.held})

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <map>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -41,11 +43,29 @@ struct World {
   std::string yaml() const;  ///< the base soil, without effects
 };
 
+/// An independent random source, the same everywhere.
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : engine_(seed * 0x9E3779B97F4A7C15ULL + 77) {}
+  double uniform(double a, double b) {
+    return a + (b - a) * static_cast<double>(engine_() >> 11) * 0x1.0p-53;
+  }
+  double normal() {
+    return std::sqrt(-2.0 * std::log(uniform(1e-12, 1.0))) * std::cos(6.28318530717958 * uniform(0.0, 1.0));
+  }
+  int below(int n) { return static_cast<int>(uniform(0.0, n * (1.0 - 1e-12))); }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
 /// What to make.
 struct WorldPlan {
   std::uint64_t seed = 1;
   int effects = 1;      ///< 0, 1 or 2
   bool library = true;  ///< forms that the literature names, or others
+  /// 12 to 25 runs whose wheel, load, speed, pass and slope are fixed within the run; in place of wide
+  bool campaign = false;
   bool wide =
       false;  ///< designs and noise of many kinds: one slip level, a rim speed tied to slip, runs with
               ///< offsets of their own, columns that mean nothing, drifting or heavy-tailed noise

@@ -4,6 +4,7 @@
 #include <talus/terramech/trace/end_levels.hpp>
 
 #include "made_rows.hpp"
+#include "temporary_file.hpp"
 
 namespace talus::terramech {
 namespace {
@@ -95,6 +96,22 @@ TEST(EndLevels, DeviationsGrowByWhatTheEndShowedAboveTheFloor) {
   EXPECT_EQ(slip->below[0], 0.0);
   EXPECT_EQ(slip->low, 0.1);
   EXPECT_EQ(slip->high, 0.3);
+}
+
+TEST(EndLevels, AModelHeldAtOneEndIsReadBack) {
+  TraceResult result = resultOf(sand(),
+                                sand({{.name = "slip_sinkage_linear",
+                                       .covariate = "slip",
+                                       .channel = Channel::Sinkage,
+                                       .parameters = {1.0}}}),
+                                {0.1, 0.2, 0.3});
+  boundEffects(result.refined, result.trial, {{.column = "slip", .high = true, .law = true}});
+  ASSERT_EQ(result.refined.effects[0].knots.size(), 2U);
+  EXPECT_EQ(result.refined.effects[0].knots[0], 0.1);
+  const test::TemporaryFile file{modelText(result.refined)};
+  const WheelState beyond{.wheel = {.radius_m = 0.1, .width_m = 0.1}, .load_N = 80.0, .slip = 0.9};
+  EXPECT_EQ(predict(loadModel(file.path()).model, beyond).sinkage_m,
+            predict(result.refined, beyond).sinkage_m);
 }
 
 TEST(EndLevels, TwoLevelsHaveNoEnds) {

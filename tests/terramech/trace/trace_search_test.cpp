@@ -80,7 +80,7 @@ TEST(TraceSearch, LeavingOutKeepsTheNoiseAsItIs) {
 
 TEST(TraceSearch, ATrustedPriorHoldsTheFirstParameter) {
   TraceSearch search(sand(), offsetTrial(), {});
-  search.trust({.value = 0.3, .std = 1e-4});
+  search.trust(Estimate{.value = 0.3, .std = 1e-4});
   search.accept(torqueOffset());
   EXPECT_NEAR(search.parts(0)[0].parameters[0], 0.3, 0.01);
 }
