@@ -195,7 +195,8 @@ Explanation TraceSearch::fitted(const Candidate& candidate) {
 }
 
 bool TraceSearch::spoils(const NullModel& before, const NullModel& after) const {
-  const Eigen::MatrixXd was = heldOutErrors(before), is = heldOutErrors(after);
+  const Eigen::MatrixXd was = whitening_.byChannel(heldOutErrors(before)),
+                        is = whitening_.byChannel(heldOutErrors(after));
   std::map<int, Eigen::Vector4d> change;
   for (int row = 0; row < trial_.rows(); ++row) {
     const auto r = static_cast<std::size_t>(row);
