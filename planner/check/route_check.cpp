@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <stdexcept>
 #include <string>
+#include <utility>
 
 #include <talus/costmap/drive_state.hpp>
 #include <talus/planner/check/route_check.hpp>
@@ -24,6 +26,8 @@ constexpr double kApart_rad = 0.01;
 class Checker {
  public:
   explicit Checker(const CostGrid& map) : map_(map), side_m_(map.grid().resolution_m) {}
+  /// Hears of soil that is weaker than required with more than this probability, too.
+  Checker(const CostGrid& map, double quantile) : Checker(map) { quantile_ = quantile; }
 
   void segment(Point from, Point to) {
     const double length_m = std::hypot(to.x_m - from.x_m, to.y_m - from.y_m);
@@ -92,13 +96,21 @@ class Checker {
     }
   }
 
-  void report(std::optional<Cell> cell, Point where, std::string reason) {
+  void report(std::optional<Cell> cell, Point where, std::string reason, double probability = 1.0) {
     if (!found.empty() && cell == last_ && found.back().reason == reason) return;
     last_ = cell;
+    dangers.push_back({where, alongAt(where), probability, reason});
     found.push_back({where, std::move(reason)});
   }
 
+  // From here on, places lie so far along the route and beyond this one.
+  void goOn(Point from, double along_m) noexcept {
+    from_ = from;
+    along_m_ = along_m;
+  }
+
   std::vector<Violation> found;
+  std::vector<Danger> dangers;
 
  private:
   void look(double heading_rad) noexcept { heading_ = {std::cos(heading_rad), std::sin(heading_rad)}; }
@@ -176,32 +188,77 @@ class Checker {
 
   void enter(Cell cell, Point where) {
     const auto code = map_.at(cell);
-    if (std::isfinite(map_.cost().costPerMetre(code, heading_))) return;
+    if (std::isfinite(map_.cost().costPerMetre(code, heading_))) {
+      if (quantile_ < 1.0) doubt(cell, code, where);
+      return;
+    }
     const auto refusal = map_.cost().detail(code, heading_).refusal;
     const bool said = refusal != costmap::Refusal::None;
     report(cell, where, said ? costmap::toText(refusal) : "this heading is not allowed on this cell");
   }
 
+  void doubt(Cell cell, costmap::CellCode code, Point where) {
+    const costmap::SoilDoubt& soil = map_.cost().doubt();
+    const double length_m = soil.correlation_length_m > 0.0 ? soil.correlation_length_m : 1.0;
+    const double risk_per_m = static_cast<double>(map_.cost().detail(code, heading_).risk_per_m);
+    const double held = -std::expm1(-risk_per_m * length_m);
+    const double probability = soil.entrapment > 0.0 ? std::min(held / soil.entrapment, 1.0) : 0.0;
+    if (probability > quantile_)
+      report(cell, where, "the soil may give less drawbar pull than required", probability);
+  }
+
+  double alongAt(Point where) const noexcept {
+    return along_m_ + std::hypot(where.x_m - from_.x_m, where.y_m - from_.y_m);
+  }
+
   const CostGrid& map_;
   double side_m_;
+  double quantile_ = 1.0;
+  Point from_;
+  double along_m_ = 0.0;
   Direction heading_;
   std::optional<Cell> last_;
 };
 
 }  // namespace
 
-std::vector<Violation> violations(const CostGrid& map, const std::vector<Point>& route) {
-  Checker checker(map);
-  if (route.empty()) return {};
+namespace {
+
+void check(Checker& checker, const std::vector<Point>& route) {
+  if (route.empty()) return;
+  checker.goOn(route.front(), 0.0);
   checker.end(route.front());
   if (route.size() == 1) checker.place(route.front());
+  double along_m = 0.0;
   for (std::size_t i = 1; i < route.size(); ++i) {
+    checker.goOn(route[i - 1], along_m);
     checker.segment(route[i - 1], route[i]);
     if (i > 1) checker.touch(route[i - 1]);
     if (i + 1 < route.size()) checker.touch(route[i]);
+    along_m += std::hypot(route[i].x_m - route[i - 1].x_m, route[i].y_m - route[i - 1].y_m);
   }
+  checker.goOn(route.back(), along_m);
   checker.end(route.back());
+}
+
+}  // namespace
+
+std::vector<Violation> violations(const CostGrid& map, const std::vector<Point>& route) {
+  Checker checker(map);
+  check(checker, route);
   return checker.found;
+}
+
+std::vector<Danger> dangers(const CostGrid& map, const std::vector<Point>& route, double quantile) {
+  if (!(quantile > 0.0 && quantile < 1.0))
+    throw std::invalid_argument("dangers: quantile = " + std::to_string(quantile) +
+                                ", must be above 0 and below 1");
+  for (std::size_t i = 0; i < route.size(); ++i)
+    if (!std::isfinite(route[i].x_m) || !std::isfinite(route[i].y_m))
+      throw std::invalid_argument("dangers: point " + std::to_string(i) + " is not finite");
+  Checker checker(map, quantile);
+  check(checker, route);
+  return std::move(checker.dangers);
 }
 
 std::vector<Violation> violations(const CostGrid& map, const PosePath& drive, double turning_radius_m) {

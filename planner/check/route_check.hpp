@@ -34,6 +34,22 @@ std::vector<Violation> violations(const costmap::CostGrid& map, const std::vecto
 std::vector<Violation> violations(const costmap::CostGrid& map, const PosePath& drive,
                                   double turning_radius_m);
 
+/// A place on a route that is not safe enough, met in this order.
+struct Danger {
+  maps::Point place;
+  double along_m = 0.0;      ///< way along the polyline to the place
+  double probability = 1.0;  ///< that the rover cannot drive there: 1 for a constraint that the map knows
+  std::string reason;        ///< of Violation, or "the soil may give less drawbar pull than required"
+};
+
+/// A run-time monitor for anybody's path: violations(), and every cell whose soil gives less pull than the slope asks
+/// with more than this probability, 0 < quantile < 1; that is, where the quantile of the believed pull falls short.
+/// The probability is that of the cost, inverted: risk_per_m = -ln(1 - entrapment P) / correlation length
+/// (costmap/README.md), of the ground that any wheel may stand on. Cells whose table is not known (tests) are judged by
+/// violations() alone. Empty for a route that may be driven. Throws std::invalid_argument for a quantile out of range.
+std::vector<Danger> dangers(const costmap::CostGrid& map, const std::vector<maps::Point>& route,
+                            double quantile = 0.05);
+
 /// Holds what a planner answered against violations(), along its drive where it has one: the first of them.
 std::optional<Violation> refusal(const Plan& plan, const costmap::CostGrid& map, double turning_radius_m);
 

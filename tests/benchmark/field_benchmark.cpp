@@ -16,6 +16,7 @@
 #include <site_fixture.hpp>
 
 #include <talus/costmap/traversability_map.hpp>
+#include <talus/planner/check/route_check.hpp>
 #include <talus/planner/field/grid_links.hpp>
 #include <talus/planner/field/grid_route.hpp>
 #include <talus/planner/grid/field_planner.hpp>
@@ -220,6 +221,23 @@ void heightsToRoute(benchmark::State& state) {
   state.counters["patch_ms"] = patching_ms / static_cast<double>(state.iterations());
 }
 
+// A path of a thousand points, held against the map with a quantile of the belief.
+void monitor(benchmark::State& state) {
+  costmap::MapLayers layers;
+  layers.elevation.elevation_m =
+      maps::Raster<float>({.width = 1000, .height = 1000, .resolution_m = 1.0, .south_west = {}});
+  for (int row = 0; row < 1000; ++row)
+    for (int column = 0; column < 1000; ++column)
+      layers.elevation.elevation_m[{column, row}] =
+          static_cast<float>(3.0 * std::sin(0.02 * column) * std::cos(0.015 * row));
+  const auto map = costmap::TraversabilityMap(std::move(layers), costmap::testGround(), {}).published();
+  std::vector<maps::Point> path;
+  for (int k = 0; k < 1000; ++k) path.push_back({20.0 + 0.9 * k, 500.0 + 200.0 * std::sin(0.01 * k)});
+  std::size_t found = 0;
+  for (auto _ : state) found = dangers(*map, path).size();
+  state.counters["dangers"] = static_cast<double>(found);
+}
+
 void refinement(benchmark::State& state) {
   const auto map = rollingGround(static_cast<int>(state.range(0)));
   const auto edges = std::make_shared<EdgeLayer>(map, EdgeUnits(map->cost(), 1.0));
@@ -332,6 +350,7 @@ BENCHMARK(anotherStart)->Arg(2000)->Unit(benchmark::kMillisecond);
 BENCHMARK(tube)->Args({2000, 1})->Args({8000, 1})->Args({8000, 2})->Unit(benchmark::kMillisecond);
 BENCHMARK(againstFinest)->Arg(1000)->Iterations(1)->Unit(benchmark::kMillisecond);
 BENCHMARK(cancelling)->Arg(1000)->Arg(2000)->Iterations(1)->Unit(benchmark::kMillisecond);
+BENCHMARK(monitor)->Unit(benchmark::kMillisecond);
 BENCHMARK(heightsToRoute)->Args({2000, 2})->Args({2000, 50})->Unit(benchmark::kMillisecond);
 BENCHMARK(replan)->Args({2000, 2})->Args({2000, 50})->Unit(benchmark::kMillisecond);
 

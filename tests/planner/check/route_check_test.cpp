@@ -1,6 +1,9 @@
 #include <cmath>
 #include <random>
 
+#include <site_fixture.hpp>
+
+#include <talus/costmap/traversability_map.hpp>
 #include <talus/planner/check/route_check.hpp>
 #include <talus/planner/route/motion_cost.hpp>
 #include <talus/planner/route/problem.hpp>
@@ -100,6 +103,78 @@ TEST(RouteCheck, AgreesWithMotionCostAndFineSampling) {
   }
   EXPECT_GT(refused, 50);
   EXPECT_LT(refused, 350);
+}
+
+// A slope that becomes steeper eastwards, on soil that is not quite known.
+costmap::TraversabilityMap steepening() {
+  costmap::MapLayers layers;
+  const maps::Grid grid{.width = 120, .height = 20, .resolution_m = 0.5, .south_west = {}};
+  layers.elevation.elevation_m = maps::Raster<float>(grid);
+  for (int row = 0; row < grid.height; ++row)
+    for (int column = 0; column < grid.width; ++column) {
+      const double x = grid.centre({column, row}).x_m;
+      layers.elevation.elevation_m[{column, row}] = static_cast<float>(0.5 * 0.006 * x * x);
+    }
+  return {std::move(layers), costmap::testGround(), {.footprint_radius_m = 1.0}};
+}
+
+// Closed form: P(pull < gradient) of a normal belief is a straight line over the gradient in standard deviations,
+// 1/std steep, and crosses the quantile where the first danger is told.
+TEST(RouteMonitor, TellsWhereTheQuantileOfTheBeliefFallsShort) {
+  const costmap::TraversabilityMap map = steepening();
+  const auto grid = map.published();
+  const std::vector<maps::Point> up{{2.0, 5.25}, {58.0, 5.25}};
+  const auto found = dangers(*grid, up, 0.02);
+  ASSERT_GT(found.size(), 4U);
+  const auto deviations = [](double p) {  // the inverse of the normal distribution, by bisection
+    double low = -9.0, high = 9.0;
+    for (int k = 0; k < 60; ++k)
+      (0.5 * std::erfc(-0.5 * (low + high) / std::sqrt(2.0)) < p ? low : high) = 0.5 * (low + high);
+    return low;
+  };
+  const auto gradient = [&](const Danger& d) { return grid->at(*grid->grid().cellAt(d.place)).dzDx(); };
+  const Danger *first = &found.front(), *last = first;
+  for (const Danger& d : found)
+    if (d.probability < 1.0) last = &d;
+  EXPECT_GT(first->probability, 0.02);
+  EXPECT_LT(first->probability, 0.03);  // one cell of a few thousandths of gradient further
+  EXPECT_NEAR(first->along_m, first->place.x_m - 2.0, 1e-9);
+  const double std = map.publishedGround({60, 10})->pull.std;
+  const double steepness =
+      (deviations(last->probability) - deviations(first->probability)) / (gradient(*last) - gradient(*first));
+  EXPECT_NEAR(steepness * std, 1.0, 0.15);  // bins of gradient are 1/256 wide, and 0.05 apart at most here
+  for (std::size_t i = 1; i < found.size(); ++i) {
+    EXPECT_GE(found[i].along_m, found[i - 1].along_m);
+    EXPECT_GE(found[i].probability, found[i - 1].probability);
+  }
+}
+
+// Property: what violations() finds is a danger of probability 1, at any quantile; downhill nothing falls short.
+TEST(RouteMonitor, HoldsWhatTheCheckHolds) {
+  std::mt19937_64 random(9);
+  std::uniform_real_distribution<double> share(0.01, 0.99);
+  for (int trial = 0; trial < 50; ++trial) {
+    const auto map = randomMap({.seed = static_cast<unsigned>(trial + 1)});
+    const maps::Grid& grid = map->grid();
+    std::vector<maps::Point> route;
+    for (int k = 0; k < 6; ++k) route.push_back({grid.width * share(random), grid.height * share(random)});
+    const auto hard = violations(*map, route);
+    const auto found = dangers(*map, route, 0.5);
+    ASSERT_EQ(found.size(), hard.size());
+    for (std::size_t i = 0; i < hard.size(); ++i) {
+      EXPECT_EQ((Violation{found[i].place, found[i].reason}), hard[i]);
+      EXPECT_EQ(found[i].probability, 1.0);
+    }
+  }
+  EXPECT_TRUE(dangers(*steepening().published(), {{30.0, 5.25}, {2.0, 5.25}}).empty());
+}
+
+TEST(RouteMonitor, RefusesWhatIsNoQuantileAndNoPlace) {
+  const auto map = drawn({"..."});
+  for (const double quantile : {0.0, 1.0, -1.0, static_cast<double>(NAN)})
+    EXPECT_THROW(dangers(*map, {{0.5, 0.5}}, quantile), std::invalid_argument);
+  EXPECT_THROW(dangers(*map, {{0.5, NAN}}), std::invalid_argument);
+  EXPECT_TRUE(dangers(*map, {}).empty());
 }
 
 }  // namespace
