@@ -1,0 +1,390 @@
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <talus.h>
+
+#include <talus/planner/c/session.hpp>
+#include <talus/planner/plugin/make_planner.hpp>
+
+// The border to C: sizes and pointers are checked here, and what is thrown behind it becomes a code and a line.
+namespace {
+
+using talus::planner::Session;
+
+talus::planner::Sessions& sessions() {
+  static talus::planner::Sessions all;
+  return all;
+}
+
+void say(talus_error* error, const std::string& what) noexcept {
+  if (error == nullptr) return;
+  const std::size_t length = std::min(what.size(), sizeof error->text - 1);
+  for (std::size_t i = 0; i < length; ++i)
+    error->text[i] = static_cast<unsigned char>(what[i]) < 0x20 ? ' ' : what[i];
+  error->text[length] = '\0';
+}
+
+struct Busy : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// Runs what a call does. An invalid argument or input is the caller's.
+template <typename Work>
+talus_code guarded(talus_error* error, const Work& work) noexcept {
+  try {
+    say(error, "");
+    return work();
+  } catch (const Busy& busy) {
+    say(error, busy.what());
+    return TALUS_BUSY;
+  } catch (const std::invalid_argument& wrong) {
+    say(error, wrong.what());
+    return TALUS_BAD_INPUT;
+  } catch (const talus::InputError& wrong) {
+    say(error, wrong.what());
+    return TALUS_BAD_INPUT;
+  } catch (const std::exception& failure) {
+    say(error, failure.what());
+    return TALUS_FAILURE;
+  } catch (...) {
+    say(error, "an error that is not known");
+    return TALUS_FAILURE;
+  }
+}
+
+void require(bool holds, const std::string& what) {
+  if (!holds) throw std::invalid_argument(what);
+}
+
+void requirePointer(const void* pointer, const char* name) {
+  require(pointer != nullptr, std::string(name) + " is NULL; pass one");
+}
+
+// A structure of this version.
+template <typename T>
+const T& read(const T* given, const char* name) {
+  requirePointer(given, name);
+  require(given->size == sizeof(T), std::string(name) + ".size = " + std::to_string(given->size) +
+                                        ", must be " + std::to_string(sizeof(T)) +
+                                        ": set it to sizeof, or rebuild against this talus.h");
+  return *given;
+}
+
+std::shared_ptr<Session> open(talus_session number) {
+  auto session = sessions().find(number);
+  require(session != nullptr, "session " + std::to_string(number) + " is not open; call talus_create()");
+  return session;
+}
+
+// A session for one call alone.
+struct Held {
+  explicit Held(talus_session number) : session(open(number)), lock(session->work, std::try_to_lock) {
+    if (!lock.owns_lock())
+      throw Busy("another thread works on session " + std::to_string(number) +
+                 "; wait for it, or cancel its plan");
+  }
+  Session* operator->() const noexcept { return session.get(); }
+
+  std::shared_ptr<Session> session;
+  std::unique_lock<std::mutex> lock;
+};
+
+talus::maps::Grid gridOf(const talus_grid* given) {
+  const talus_grid& grid = read(given, "grid");
+  require(grid.width > 0 && grid.height > 0, "grid: width and height must be > 0");
+  require(std::isfinite(grid.resolution_m) && grid.resolution_m > 0.0, "grid: resolution_m must be > 0");
+  require(std::isfinite(grid.x_m) && std::isfinite(grid.y_m), "grid: x_m and y_m must be finite");
+  return {.width = grid.width,
+          .height = grid.height,
+          .resolution_m = grid.resolution_m,
+          .south_west = {grid.x_m, grid.y_m}};
+}
+
+template <typename T>
+talus::maps::Raster<T> rasterOf(const T* values, const talus::maps::Grid& grid) {
+  if (values == nullptr) return {};
+  return talus::maps::Raster<T>(grid, std::vector<T>(values, values + grid.size()));
+}
+
+const talus_layers& layersOf(const talus_layers* given, const talus::maps::Grid& grid) {
+  const talus_layers& layers = read(given, "layers");
+  require(layers.cells == grid.size(), "layers.cells = " + std::to_string(layers.cells) +
+                                           ", must be width * height = " + std::to_string(grid.size()));
+  return layers;
+}
+
+talus::terramech::Rover roverOf(const talus_rover* given) {
+  const talus_rover& r = read(given, "rover");
+  talus::terramech::Rover rover;
+  rover.name = "rover";
+  rover.mass_kg = r.mass_kg;
+  rover.gravity_m_s2 = r.gravity_m_s2;
+  rover.wheel_count = r.wheel_count;
+  rover.wheel.radius_m = r.wheel_radius_m;
+  rover.wheel.width_m = r.wheel_width_m;
+  rover.wheelbase_m = r.wheelbase_m;
+  rover.track_m = r.track_m;
+  rover.clearance_m = r.clearance_m;
+  rover.centre_of_mass_height_m = r.centre_of_mass_height_m;
+  rover.max_pitch_rad = r.max_pitch_rad;
+  rover.max_roll_rad = r.max_roll_rad;
+  rover.max_torque_Nm = r.max_torque_Nm;
+  rover.max_speed_mps = r.max_speed_mps;
+  rover.hotel_power_W = r.hotel_power_W;
+  return rover;
+}
+
+talus::costmap::GroundClass classOf(const talus_soil& given) {
+  const talus_soil& s = read(&given, "soil");
+  require(s.class_number >= 0 && s.class_number < 255,
+          "soil: class_number = " + std::to_string(s.class_number) + ", must be 0 to 254");
+  talus::costmap::GroundClass ground;
+  ground.number = s.class_number;
+  ground.soil.name = "soil of class " + std::to_string(s.class_number);
+  ground.soil.cohesion_Pa = s.cohesion_Pa;
+  ground.soil.friction_angle_rad = s.friction_angle_rad;
+  ground.soil.sinkage_exponent = s.sinkage_exponent;
+  ground.soil.cohesive_modulus = s.cohesive_modulus;
+  ground.soil.frictional_modulus = s.frictional_modulus;
+  ground.soil.shear_modulus_m = s.shear_modulus_m;
+  return ground;
+}
+
+talus::PlannerSettings settingsOf(const talus_options& options) {
+  require(options.threads >= 1, "options: threads = " + std::to_string(options.threads) + ", must be >= 1");
+  require(options.time_limit_s >= 0.0, "options: time_limit_s must be >= 0");
+  talus::PlannerSettings settings{.planner = options.planner == nullptr ? "" : options.planner,
+                                  .seed = options.seed,
+                                  .threads = options.threads};
+  if (options.time_limit_s > 0.0) settings.time_limit_s = options.time_limit_s;
+  return settings;
+}
+
+talus::terramech::Telemetry telemetryOf(const talus_wheel* rows, std::size_t count) {
+  talus::terramech::Telemetry t;
+  t.source = "talus_learn";
+  t.words = {{"wheel", {}}};
+  const std::pair<const char*, double talus_wheel::*> columns[] = {{"time_s", &talus_wheel::time_s},
+                                                                   {"x_m", &talus_wheel::x_m},
+                                                                   {"y_m", &talus_wheel::y_m},
+                                                                   {"load_N", &talus_wheel::load_N},
+                                                                   {"slip", &talus_wheel::slip},
+                                                                   {"torque_Nm", &talus_wheel::torque_Nm},
+                                                                   {"sinkage_m", &talus_wheel::sinkage_m},
+                                                                   {"slope_rad", &talus_wheel::slope_rad},
+                                                                   {"heading_rad", &talus_wheel::heading_rad},
+                                                                   {"pose_std_m", &talus_wheel::pose_std_m}};
+  for (const auto& [name, field] : columns) t.numbers.push_back({name, {}});
+  for (std::size_t i = 0; i < count; ++i) {
+    const talus_wheel& row = read(&rows[i], "row");
+    const std::string where = "row " + std::to_string(i) + ": ";
+    require(std::isfinite(row.x_m) && std::isfinite(row.y_m) && std::isfinite(row.time_s),
+            where + "time_s, x_m and y_m must be finite");
+    require(std::isfinite(row.load_N) && row.load_N > 0.0, where + "load_N must be > 0");
+    require(std::abs(row.slip) <= 1.0, where + "slip must be -1 to 1");
+    require(std::isnan(row.sinkage_m) || row.sinkage_m >= 0.0, where + "sinkage_m must be NaN or >= 0");
+    require(std::isnan(row.pose_std_m) || row.pose_std_m >= 0.0, where + "pose_std_m must be NaN or >= 0");
+    for (std::size_t k = 0; k < t.numbers.size(); ++k) {
+      require(!std::isinf(row.*(columns[k].second)), where + columns[k].first + " is infinite");
+      t.numbers[k].values.push_back(row.*(columns[k].second));
+    }
+    t.words[0].values.push_back(std::to_string(row.wheel));
+    t.lines.push_back(i + 1);
+  }
+  return t;
+}
+
+talus_code codeOf(talus::planner::RouteStatus status) noexcept {
+  using talus::planner::RouteStatus;
+  if (status == RouteStatus::Found) return TALUS_OK;
+  if (status == RouteStatus::Cancelled) return TALUS_CANCELLED;
+  return status == RouteStatus::StartInvalid || status == RouteStatus::GoalInvalid ? TALUS_BAD_INPUT
+                                                                                   : TALUS_NO_ROUTE;
+}
+
+}  // namespace
+
+void talus_default_rover(talus_rover* rover) {
+  if (rover == nullptr) return;
+  const talus::terramech::Rover usual;
+  *rover = talus_rover{};
+  rover->size = sizeof *rover;
+  rover->wheel_count = usual.wheel_count;
+  rover->gravity_m_s2 = usual.gravity_m_s2;
+  rover->max_pitch_rad = usual.max_pitch_rad;
+  rover->max_roll_rad = usual.max_roll_rad;
+  rover->max_speed_mps = usual.max_speed_mps;
+}
+
+void talus_default_soil(talus_soil* soil) {
+  if (soil == nullptr) return;
+  const talus::terramech::Soil usual;
+  *soil = talus_soil{};
+  soil->size = sizeof *soil;
+  soil->sinkage_exponent = usual.sinkage_exponent;
+  soil->shear_modulus_m = usual.shear_modulus_m;
+}
+
+void talus_default_options(talus_options* options) {
+  if (options == nullptr) return;
+  *options = talus_options{};
+  options->size = sizeof *options;
+  options->threads = 1;
+  options->seed = 1;
+}
+
+talus_code talus_create(const talus_rover* rover, const talus_soil* soils, size_t soil_count,
+                        const talus_grid* grid, const talus_layers* layers, const talus_options* options,
+                        talus_session* session, talus_error* error) {
+  return guarded(error, [&] {
+    requirePointer(session, "session");
+    requirePointer(soils, "soils");
+    require(soil_count > 0 && soil_count < 255,
+            "soil_count = " + std::to_string(soil_count) + ", must be 1 to 254");
+    const talus_options& how = read(options, "options");
+    const talus::PlannerSettings settings = settingsOf(how);
+    talus::costmap::GroundModel::Parts parts{.rover = roverOf(rover), .classes = {}, .policy = {}};
+    for (std::size_t i = 0; i < soil_count; ++i) parts.classes.push_back(classOf(soils[i]));
+    parts.policy.allow_unknown = how.allow_unknown != 0;
+    const talus::maps::Grid cells = gridOf(grid);
+    const talus_layers& given = layersOf(layers, cells);
+    requirePointer(given.elevation_m, "layers.elevation_m");
+    auto planner = talus::planner::makePlanner(settings.planner);
+    planner->configure(settings);
+    talus::costmap::MapLayers built;
+    built.elevation.elevation_m = rasterOf(given.elevation_m, cells);
+    built.classes = rasterOf(given.classes, cells);
+    built.rock_abundance = rasterOf(given.rock_abundance, cells);
+    built.keep_out = rasterOf(given.keep_out, cells);
+    auto made = std::make_shared<Session>(talus::costmap::TraversabilityMap(
+        std::move(built), std::make_shared<const talus::costmap::GroundModel>(std::move(parts)),
+        {.threads = how.threads}));
+    made->planner = std::move(planner);
+    made->planner->set_map(made->map.published());
+    *session = sessions().add(std::move(made));
+    return TALUS_OK;
+  });
+}
+
+talus_code talus_patch(talus_session session, const talus_grid* grid, const talus_layers* layers,
+                       talus_error* error) {
+  return guarded(error, [&] {
+    const Held held(session);
+    const talus::maps::Grid cells = gridOf(grid);
+    const talus_layers& given = layersOf(layers, cells);
+    held->map.patch({.elevation_m = rasterOf(given.elevation_m, cells),
+                     .rock_abundance = rasterOf(given.rock_abundance, cells),
+                     .classes = rasterOf(given.classes, cells),
+                     .keep_out = rasterOf(given.keep_out, cells)});
+    return TALUS_OK;
+  });
+}
+
+talus_code talus_learn(talus_session session, const talus_wheel* rows, size_t count, size_t* used,
+                       talus_error* error) {
+  return guarded(error, [&] {
+    const Held held(session);
+    requirePointer(rows, "rows");
+    require(count > 0, "count = 0, must be > 0");
+    const talus::terramech::Telemetry telemetry = telemetryOf(rows, count);
+    const std::size_t before = held->intake.report().used;
+    held->intake.add(telemetry);
+    held->map.publish();
+    if (used != nullptr) *used = held->intake.report().used - before;
+    return TALUS_OK;
+  });
+}
+
+talus_code talus_plan(talus_session session, const talus_request* request, talus_summary* summary,
+                      talus_error* error) {
+  return guarded(error, [&] {
+    const Held held(session);
+    const talus_request& asked = read(request, "request");
+    if (summary != nullptr) read(summary, "summary");
+    talus::PlanRequest wanted{.start = {asked.start_x_m, asked.start_y_m},
+                              .goal = {asked.goal_x_m, asked.goal_y_m},
+                              .tolerance_m = asked.tolerance_m};
+    wanted.watch.stop = held->begin();
+    held->planner->update(held->map.published());
+    held->route = {};
+    held->route = held->planner->plan(wanted);
+    const talus::planner::Route& route = held->route;
+    if (summary != nullptr) {
+      *summary = talus_summary{};
+      summary->size = sizeof *summary;
+      summary->vertices = route.vertices.size();
+      summary->cost_J = route.summary.cost;
+      summary->lower_bound_J = route.summary.lower_bound;
+      summary->energy_J = route.summary.energy_J;
+      summary->time_s = route.summary.time_s;
+      summary->length_m = route.summary.length_m;
+      summary->max_slip = route.summary.max_slip;
+      summary->max_slope_rad = route.summary.max_slope_rad;
+      if (!route.vertices.empty()) summary->immobilisation_risk = route.vertices.back().immobilisation_risk;
+    }
+    say(error, route.reason);
+    return codeOf(route.status);
+  });
+}
+
+talus_code talus_cancel(talus_session session, talus_error* error) {
+  return guarded(error, [&] {
+    open(session)->cancel();
+    return TALUS_OK;
+  });
+}
+
+talus_code talus_read_route(talus_session session, size_t first, talus_vertex* buffer, size_t capacity,
+                            size_t* written, talus_error* error) {
+  return guarded(error, [&] {
+    const Held held(session);
+    requirePointer(buffer, "buffer");
+    requirePointer(written, "written");
+    const auto& vertices = held->route.vertices;
+    *written = first < vertices.size() ? std::min(capacity, vertices.size() - first) : 0;
+    for (std::size_t i = 0; i < *written; ++i) {
+      const talus::planner::RouteVertex& v = vertices[first + i];
+      buffer[i] = {v.x_m,       v.y_m,       v.heading_rad, v.slope_along_rad, v.slip,
+                   v.sinkage_m, v.torque_Nm, v.energy_J,    v.time_s,          v.immobilisation_risk};
+    }
+    return TALUS_OK;
+  });
+}
+
+talus_code talus_read_cells(talus_session session, int column, int row, int width, int height,
+                            talus_cell* buffer, size_t capacity, talus_error* error) {
+  return guarded(error, [&] {
+    const Held held(session);
+    requirePointer(buffer, "buffer");
+    const talus::maps::Grid& grid = held->map.grid();
+    require(column >= 0 && row >= 0 && width > 0 && height > 0 && width <= grid.width - column &&
+                height <= grid.height - row,
+            "the box reaches off the map of " + std::to_string(grid.width) + " x " +
+                std::to_string(grid.height) + " cells; cut it to the map");
+    const std::size_t cells = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+    require(capacity >= cells,
+            "capacity = " + std::to_string(capacity) + ", must be >= " + std::to_string(cells));
+    for (int r = 0; r < height; ++r)
+      for (int c = 0; c < width; ++c) {
+        const talus::costmap::CellBelief b = held->map.belief({column + c, row + r});
+        *buffer++ = {b.pull_mean,   b.pull_std, b.sinkage_mean,
+                     b.sinkage_std, b.category, static_cast<uint8_t>(b.hazards)};
+      }
+    return TALUS_OK;
+  });
+}
+
+talus_code talus_destroy(talus_session session, talus_error* error) {
+  return guarded(error, [&] {
+    const auto gone = sessions().remove(session);
+    require(gone != nullptr, "session " + std::to_string(session) + " is not open; call talus_create()");
+    gone->end();
+    return TALUS_OK;
+  });
+}

@@ -1,0 +1,212 @@
+/* The C interface from C: what it refuses, buffers with sizes, two threads. Ends with 0, or with the line that failed. */
+#include <math.h>
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <talus.h>
+
+enum { SIDE = 60, CELLS = SIDE * SIDE, ROUNDS = 40 };
+
+static float heights[CELLS];
+static talus_error error;
+
+#define CHECK(holds)                                                               \
+  do {                                                                             \
+    if (!(holds)) {                                                                \
+      fprintf(stderr, "line %d: %s: '%s'\n", __LINE__, #holds, error.text);        \
+      exit(1);                                                                     \
+    }                                                                              \
+  } while (0)
+
+#define REFUSED(call, word)                            \
+  do {                                                 \
+    CHECK((call) == TALUS_BAD_INPUT);                  \
+    CHECK(strstr(error.text, word) != NULL);           \
+    CHECK(strchr(error.text, '\n') == NULL);           \
+  } while (0)
+
+static talus_rover rover;
+static talus_soil soil;
+static talus_options options;
+static talus_grid grid = {sizeof grid, SIDE, SIDE, 0.5, 0.0, 0.0};
+static talus_layers layers = {sizeof layers, CELLS, heights, NULL, NULL, NULL};
+
+static void describe(void) {
+  talus_default_rover(&rover);
+  rover.mass_kg = 90.0;
+  rover.gravity_m_s2 = 1.62;
+  rover.wheel_radius_m = rover.wheel_width_m = 0.2;
+  rover.wheelbase_m = 0.9;
+  rover.track_m = 0.8;
+  rover.clearance_m = 0.2;
+  rover.max_torque_Nm = 40.0;
+  talus_default_soil(&soil);
+  soil.cohesion_Pa = 170.0;
+  soil.friction_angle_rad = 0.61;
+  soil.cohesive_modulus = 1400.0;
+  soil.frictional_modulus = 820000.0;
+  talus_default_options(&options);
+}
+
+static talus_session made(void) {
+  talus_session session = 0;
+  CHECK(talus_create(&rover, &soil, 1, &grid, &layers, &options, &session, &error) == TALUS_OK);
+  CHECK(session != 0);
+  return session;
+}
+
+/* Every NULL, wrong size and wrong value is one line; `session` keeps what it held. */
+static void refusesWhatCannotBe(void) {
+  talus_session session = 77;
+  talus_rover heavy = rover;
+  talus_soil odd = soil;
+  talus_options threads = options;
+  talus_layers few = layers;
+  talus_grid flat = grid;
+  REFUSED(talus_create(NULL, &soil, 1, &grid, &layers, &options, &session, &error), "rover is NULL");
+  REFUSED(talus_create(&rover, NULL, 1, &grid, &layers, &options, &session, &error), "soils is NULL");
+  REFUSED(talus_create(&rover, &soil, 0, &grid, &layers, &options, &session, &error), "soil_count = 0");
+  REFUSED(talus_create(&rover, &soil, 1, NULL, &layers, &options, &session, &error), "grid is NULL");
+  REFUSED(talus_create(&rover, &soil, 1, &grid, NULL, &options, &session, &error), "layers is NULL");
+  REFUSED(talus_create(&rover, &soil, 1, &grid, &layers, NULL, &session, &error), "options is NULL");
+  REFUSED(talus_create(&rover, &soil, 1, &grid, &layers, &options, NULL, &error), "session is NULL");
+  CHECK(talus_create(NULL, &soil, 1, &grid, &layers, &options, &session, NULL) == TALUS_BAD_INPUT);
+  heavy.size -= 8;
+  REFUSED(talus_create(&heavy, &soil, 1, &grid, &layers, &options, &session, &error), "rover.size");
+  heavy = rover;
+  heavy.mass_kg = -1.0;
+  REFUSED(talus_create(&heavy, &soil, 1, &grid, &layers, &options, &session, &error), "mass_kg");
+  odd.friction_angle_rad = NAN;
+  REFUSED(talus_create(&rover, &odd, 1, &grid, &layers, &options, &session, &error), "friction_angle_rad");
+  threads.threads = 0;
+  REFUSED(talus_create(&rover, &soil, 1, &grid, &layers, &threads, &session, &error), "threads = 0");
+  threads = options;
+  threads.planner = "feild";
+  REFUSED(talus_create(&rover, &soil, 1, &grid, &layers, &threads, &session, &error), "field");
+  few.cells = CELLS - 1;
+  REFUSED(talus_create(&rover, &soil, 1, &grid, &few, &options, &session, &error), "layers.cells = 3599, must be");
+  few = layers;
+  few.elevation_m = NULL;
+  REFUSED(talus_create(&rover, &soil, 1, &grid, &few, &options, &session, &error), "elevation_m is NULL");
+  flat.width = 0;
+  REFUSED(talus_create(&rover, &soil, 1, &flat, &layers, &options, &session, &error), "width");
+  CHECK(session == 77);
+}
+
+static void patchesPlansAndReadsBack(void) {
+  const talus_session session = made();
+  talus_request request = {sizeof request, 5.0, 10.0, 25.0, 10.0, 0.0};
+  talus_summary summary;
+  static float wall[4 * 36];
+  static uint8_t out[4 * 36];
+  talus_grid window = {sizeof window, 4, 36, 0.5, 14.0, 0.0};
+  talus_layers seen = {sizeof seen, 4 * 36, wall, NULL, NULL, out};
+  talus_vertex vertices[3];
+  static talus_vertex all[1000];
+  talus_cell cells[4];
+  size_t count = 0, first = 0, i;
+  memset(out, 1, sizeof out);
+  summary.size = sizeof summary;
+  CHECK(talus_plan(session, &request, &summary, &error) == TALUS_OK);
+  CHECK(fabs(summary.length_m - 20.0) < 1e-6); /* Closed form: straight over level ground */
+  REFUSED(talus_read_cells(session, 59, 0, 2, 1, cells, 4, &error), "cut it to the map");
+  REFUSED(talus_read_cells(session, 0, 0, 2, 3, cells, 4, &error), "capacity = 4, must be >= 6");
+  CHECK(talus_read_cells(session, 28, 10, 2, 2, cells, 4, &error) == TALUS_OK);
+  CHECK(cells[0].hazards == 0 && cells[0].pull_mean > 0.1F && cells[0].category <= 1);
+  CHECK(talus_patch(session, &window, &seen, &error) == TALUS_OK);
+  CHECK(talus_read_cells(session, 28, 10, 2, 2, cells, 4, &error) == TALUS_OK);
+  CHECK((cells[0].hazards & 32) != 0 && cells[0].category == 2);
+  CHECK(talus_plan(session, &request, &summary, &error) == TALUS_OK);
+  CHECK(summary.length_m > 24.0); /* around the wall, which ends at y = 18 */
+  CHECK(summary.lower_bound_J <= summary.cost_J);
+  do { /* in threes, and at once: the same */
+    CHECK(talus_read_route(session, first, vertices, 3, &count, &error) == TALUS_OK);
+    memcpy(all + first, vertices, count * sizeof *vertices);
+    first += count;
+  } while (count == 3);
+  CHECK(first == summary.vertices);
+  CHECK(talus_read_route(session, 0, all + 500, 500, &count, &error) == TALUS_OK && count == first);
+  for (i = 0; i < count; ++i) CHECK(memcmp(&all[i], &all[500 + i], sizeof *all) == 0);
+  CHECK(talus_read_route(session, 1000000, vertices, 3, &count, &error) == TALUS_OK && count == 0);
+  window.x_m = 1000.0;
+  REFUSED(talus_patch(session, &window, &seen, &error), "off the map");
+  request.goal_x_m = 15.0; /* inside the wall */
+  CHECK(talus_plan(session, &request, NULL, &error) == TALUS_BAD_INPUT && strstr(error.text, "goal") != NULL);
+  request.goal_x_m = NAN;
+  CHECK(talus_plan(session, &request, NULL, &error) == TALUS_BAD_INPUT);
+  summary.size = 3;
+  request.goal_x_m = 25.0;
+  REFUSED(talus_plan(session, &request, &summary, &error), "summary.size = 3");
+  CHECK(talus_destroy(session, &error) == TALUS_OK);
+  REFUSED(talus_destroy(session, &error), "is not open");
+  REFUSED(talus_plan(session, &request, NULL, &error), "is not open");
+  REFUSED(talus_cancel(session, &error), "is not open");
+}
+
+static void learnsFromWheels(void) {
+  const talus_session session = made();
+  talus_wheel row = {sizeof row, 0, 0.0, 10.0, 10.0, 36.5, 0.5, NAN, 0.1, 0.0, 0.0, 0.1};
+  talus_cell before, after;
+  size_t used = 99, k;
+  CHECK(talus_read_cells(session, 20, 20, 1, 1, &before, 1, &error) == TALUS_OK);
+  for (k = 0; k < 5; ++k) {
+    row.time_s = (double)k;
+    CHECK(talus_learn(session, &row, 1, &used, &error) == TALUS_OK);
+  }
+  CHECK(used == 1);
+  CHECK(talus_read_cells(session, 20, 20, 1, 1, &after, 1, &error) == TALUS_OK);
+  CHECK(after.pull_mean < before.pull_mean && after.sinkage_mean > before.sinkage_mean);
+  row.load_N = 0.0;
+  REFUSED(talus_learn(session, &row, 1, &used, &error), "row 0: load_N must be > 0");
+  row.load_N = 36.5;
+  row.slip = NAN;
+  REFUSED(talus_learn(session, &row, 1, &used, &error), "slip must be -1 to 1");
+  REFUSED(talus_learn(session, NULL, 1, &used, &error), "rows is NULL");
+  CHECK(talus_destroy(session, &error) == TALUS_OK);
+}
+
+/* Two threads on one session: each call is done whole, or busy; a third session is nobody's business. */
+static talus_session shared;
+static atomic_int done, busy, wrong;
+
+static void *work(void *unused) {
+  const talus_request request = {sizeof request, 5.0, 10.0, 25.0, 10.0, 0.0};
+  talus_error mine;
+  int k;
+  (void)unused;
+  for (k = 0; k < ROUNDS; ++k) {
+    const talus_code code =
+        k % 2 == 0 ? talus_plan(shared, &request, NULL, &mine) : talus_patch(shared, &grid, &layers, &mine);
+    if (code == TALUS_OK)
+      atomic_fetch_add(&done, 1);
+    else if (code == TALUS_BUSY)
+      atomic_fetch_add(&busy, 1);
+    else if (code != TALUS_CANCELLED)
+      atomic_fetch_add(&wrong, 1);
+    if (k % 8 == 7) talus_cancel(shared, &mine);
+  }
+  return NULL;
+}
+
+static void servesTwoThreads(void) {
+  pthread_t threads[2];
+  int i;
+  shared = made();
+  for (i = 0; i < 2; ++i) CHECK(pthread_create(&threads[i], NULL, work, NULL) == 0);
+  for (i = 0; i < 2; ++i) CHECK(pthread_join(threads[i], NULL) == 0);
+  CHECK(atomic_load(&wrong) == 0);
+  CHECK(atomic_load(&done) > 0);
+  CHECK(talus_destroy(shared, &error) == TALUS_OK);
+}
+
+int main(void) {
+  describe();
+  refusesWhatCannotBe();
+  patchesPlansAndReadsBack();
+  learnsFromWheels();
+  servesTwoThreads();
+  return 0;
+}
