@@ -10,6 +10,7 @@
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/number_check.hpp>
 #include <talus/cli/app/output_file.hpp>
+#include <talus/cli/ground/plugin_option.hpp>
 #include <talus/cli/study/bench_report.hpp>
 #include <talus/cli/study/bench_suite.hpp>
 #include <talus/planner/bench/benchmark_log.hpp>
@@ -20,7 +21,7 @@ namespace {
 
 struct Options {
   SuiteOptions suite;
-  std::vector<std::string> planners;
+  std::vector<std::string> planners, plugins;
   int runs = 3;
   double time_limit_s = 2.0;
   std::string folder = "bench";
@@ -36,6 +37,8 @@ void bind(CLI::App& command, Options& options) {
   command
       .add_option("--planners", options.planners, "planners to compare, separated by commas (default: all)")
       ->delimiter(',');
+  command.add_option("--plugin", options.plugins, "planner plugin to compare, too; may be repeated")
+      ->type_name("FILE.so");
   command.add_option("--runs", options.runs, "runs per case and planner, each with its own seed")
       ->check(positive())
       ->capture_default_str();
@@ -139,6 +142,11 @@ int run(const Options& options, Context& context) {
   refuseTwice("suite", options.suite.names);
   for (const std::string& name : options.planners.empty() ? planner::plannerNames() : options.planners)
     plan.planners.push_back(planner::plannerName(name));
+  for (const std::string& file : options.plugins) {
+    const std::string name = pluginOf(file).name();
+    plan.planners.push_back(name);
+    plan.plugins[name] = file;
+  }
   refuseTwice("planner", plan.planners);
   plan.cases = suiteCases(options.suite, context);
   if (plan.cases.empty())

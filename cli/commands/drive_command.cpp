@@ -1,6 +1,8 @@
 // talus drive DEM --truth TRUTH.yaml: a simulated traverse over soils that the planner does not know.
 #include <algorithm>
 #include <array>
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +14,7 @@
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/ground/ground_options.hpp>
+#include <talus/cli/ground/plugin_option.hpp>
 #include <talus/cli/ground/truth_file.hpp>
 #include <talus/cli/route/drive_page.hpp>
 #include <talus/cli/route/drive_report.hpp>
@@ -32,7 +35,7 @@ constexpr std::array<Belief, 4> kBeliefs{Belief::Geometry, Belief::Prior, Belief
 
 struct Options {
   GroundOptions ground;
-  std::string truth, start, goal, html, telemetry;
+  std::string truth, start, goal, html, telemetry, plugin;
   std::string belief = "online";
   std::size_t worlds = 1;
   planner::SensorOptions sensors;
@@ -98,6 +101,7 @@ void bind(CLI::App& command, Options& options) {
                       "number of random worlds; --threads run at a time, or one per rank under mpirun")
           ->check(CLI::Range(1, 100000))
           ->type_name("N");
+  addPluginOption(command, options.plugin);
   bindSensors(command, options);
   groupOptions(command, "Simulation");
   addOutput(command, "--html", options.html, "page to write: the simulated traverse with a time slider")
@@ -201,13 +205,20 @@ int run(const Options& options, Context& context) {
   if (!campaign.leads()) context.quiet = true;
   const Ground ground = readGround(options.ground, context);
   if (context.stop.stop_requested()) return Exit::kCancelled;
+  std::optional<planner::PluginPlanner> plugin;
+  if (!options.plugin.empty()) {
+    plugin.emplace(pluginOf(options.plugin));
+    context.threads = 1;  // it plans in processes, which a program of several threads must not make
+  }
+  const auto byPlugin = [&plugin](const planner::Problem& problem) { return plugin->plan(problem); };
   const planner::SimulationSite site(
       ground.map, {.truth = truthFor(ground.map.model(), options.truth),
                    .start = maps::readPlace(options.start, ground.map.elevation(), "--start"),
                    .goal = maps::readPlace(options.goal, ground.map.elevation(), "--goal"),
                    .firm = terramech::loadSoil("bedrock"),
                    .seed = context.seed,
-                   .sensors = sensorsOf(options)});
+                   .sensors = sensorsOf(options),
+                   .planner = plugin ? byPlugin : std::function<planner::Plan(const planner::Problem&)>()});
   const Campaigning on{site, campaign, context};
   if (options.belief == "all") return runAll(on, options);
   if (options.worlds > 1) return runMany(on, options);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <optional>
 
 #include <fmt/format.h>
@@ -11,7 +12,6 @@
 #include <talus/cli/app/campaign.hpp>
 #include <talus/cli/app/command.hpp>
 #include <talus/cli/app/commands.hpp>
-#include <talus/cli/app/number_check.hpp>
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/draw/page.hpp>
 #include <talus/cli/draw/pareto_chart.hpp>
@@ -20,6 +20,8 @@
 #include <talus/cli/draw/scene.hpp>
 #include <talus/cli/ground/drive_options.hpp>
 #include <talus/cli/ground/mission.hpp>
+#include <talus/cli/ground/plan_options.hpp>
+#include <talus/cli/ground/plugin_option.hpp>
 #include <talus/cli/ground/windowed_ground.hpp>
 #include <talus/cli/route/plan_pairs.hpp>
 #include <talus/cli/route/route_json.hpp>
@@ -45,78 +47,6 @@ struct Timing {
   double load_s, costmap_s, plan_s;
 };
 
-void addOutputs(CLI::App& command, PlanOptions& options) {
-  addOutput(command, "-o,--output", options.output, "route to write, as GeoJSON")->type_name("ROUTE.geojson");
-  addOutput(command, "--html", options.html, "page to write: map, route and profiles")
-      ->type_name("PAGE.html");
-  addOutput(command, "--png", options.png, "picture to write")->type_name("FILE.png");
-  addOutput(command, "--pareto", options.pareto,
-            "plot of the Pareto set of energy, time and risk to write: .png, .svg or .html")
-      ->type_name("FILE");
-  groupOptions(command, "Output");
-}
-
-void bind(CLI::App& command, PlanOptions& options) {
-  addGroundOptions(command, options.ground);
-  command
-      .add_option("--start", options.start,
-                  "start: x,y in map metres; lat,lon with the suffix d on each; or a GeoJSON point file")
-      ->type_name("PLACE");
-  command
-      .add_option("--goal", options.goals,
-                  "goal, in the same formats; may be repeated: the goal of least cost is chosen")
-      ->type_name("PLACE");
-  command.add_option("--via", options.via, "via point; may be repeated")->type_name("PLACE");
-  command
-      .add_option("--pairs", options.pairs,
-                  "plan many routes over one map: CSV with start_x_m, start_y_m, goal_x_m, goal_y_m; one row "
-                  "of results each, to -o FILE.csv or stdout; distributed over all ranks under mpirun")
-      ->type_name("FILE.csv");
-  command
-      .add_option("--tolerance", options.tolerance_m,
-                  "goal tolerance: largest distance between the end of the route and the goal")
-      ->type_name("METRES")
-      ->check(notNegative());
-  groupOptions(command, "Places");
-  command.add_option("--planner", options.planner, "planner; `talus plugins` lists them")
-      ->type_name("NAME")
-      ->capture_default_str();
-  command.add_option("--time", options.time_limit_s, "time limit of planning")
-      ->type_name("S")
-      ->check(positive());
-  command
-      .add_option(
-          "--in-memory", options.in_memory,
-          "largest DEM that is read whole; a larger one is read in windows along a route over its overview")
-      ->type_name("CELLS")
-      ->capture_default_str();
-  command.add_flag(
-      "--whole-field", options.whole_field,
-      "read and search the whole map at full resolution instead of a corridor around a coarse route");
-  command
-      .add_option("--risk", options.max_risk, "upper limit of the immobilisation probability of the route")
-      ->type_name("ALPHA")
-      ->check(CLI::Range(0.0, 1.0));
-  groupOptions(command, "Planner");
-  addDriveOptions(command, options.drive);
-  addOutputs(command, options);
-}
-
-void requirePlaces(const PlanOptions& options) {
-  if (!options.pairs.empty()) {
-    if (!options.start.empty() || !options.goals.empty() || !options.via.empty() || !options.html.empty() ||
-        !options.png.empty() || !options.pareto.empty() || options.max_risk > 0.0 ||
-        !options.drive.chassis.empty())
-      throw InputError(
-          {"--pairs " + options.pairs,
-           "cannot be combined with --start, --goal, --via, --html, --png, --pareto, --risk or --chassis",
-           "remove them, or plan the routes one by one"});
-    return;
-  }
-  if (options.start.empty()) throw InputError({"talus plan", "no start", "pass --start x,y"});
-  if (options.goals.empty()) throw InputError({"talus plan", "no goal", "pass --goal x,y"});
-}
-
 planner::Problem problemOf(const PlanOptions& options, const Ground& ground, const Context& context) {
   const maps::ElevationMap& map = ground.map.elevation();
   planner::Problem problem;
@@ -141,6 +71,28 @@ planner::Problem problemOf(const PlanOptions& options, const Ground& ground, con
   return problem;
 }
 
+// A planner of the program's own, or one of --plugin.
+struct Chosen {
+  std::unique_ptr<planner::NamedPlanner> own;
+  std::optional<planner::PluginPlanner> plugin;
+
+  const std::string& name() const { return plugin ? plugin->name() : own->name(); }
+};
+
+Chosen choose(const PlanOptions& options) {
+  Chosen chosen{.own = {}, .plugin = {}};
+  if (!options.plugin.empty()) {
+    chosen.plugin.emplace(pluginOf(options.plugin, options.planner));
+    return chosen;
+  }
+  chosen.own = std::make_unique<planner::NamedPlanner>(options.planner);
+  if (options.drive.any() && !chosen.own->drives())
+    throw InputError({"planner '" + chosen.name() + "'", "supports neither headings nor a turning radius",
+                      "pass --planner hybrid, or remove --start-heading, --goal-heading, --turning-radius "
+                      "and --no-reverse"});
+  return chosen;
+}
+
 // How the soil is drawn along a route.
 planner::RouteRiskOptions soilOf(const planner::Problem& problem) {
   planner::RouteRiskOptions options = planner::riskOptions(*problem.map);
@@ -148,11 +100,12 @@ planner::RouteRiskOptions soilOf(const planner::Problem& problem) {
   return options;
 }
 
-planner::Plan planOnce(const planner::Problem& problem, planner::NamedPlanner& planner,
-                       const PlanOptions& options, const std::optional<planner::Chassis>& chassis) {
+planner::Plan planOnce(const planner::Problem& problem, Chosen& planner, const PlanOptions& options,
+                       const std::optional<planner::Chassis>& chassis) {
   const auto once = [&](const planner::Problem& p) {
-    return options.max_risk > 0.0 ? planner::planWithinRisk(p, planner, options.max_risk, soilOf(p))
-                                  : planner.plan(p);
+    if (planner.plugin) return planner.plugin->plan(p);
+    return options.max_risk > 0.0 ? planner::planWithinRisk(p, *planner.own, options.max_risk, soilOf(p))
+                                  : planner.own->plan(p);
   };
   return chassis ? planner::planOnChassis(problem, *chassis, once) : once(problem);
 }
@@ -238,7 +191,7 @@ double since_s(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-Planned planWhole(const PlanOptions& options, planner::NamedPlanner& planner, const Context& context) {
+Planned planWhole(const PlanOptions& options, Chosen& planner, const Context& context) {
   Planned planned{.ground = readGround(options.ground, context), .problem = {}, .plan = {}};
   planned.problem = problemOf(options, planned.ground, context);
   const auto chassis = chassisOf(options.drive.chassis, planned.ground.map);
@@ -310,13 +263,14 @@ int finish(const PlanOptions& options, const Planned& planned, const planner::An
 }
 
 void refuseInWindows(const PlanOptions& options) {
-  const bool other = options.planner != "field" || options.max_risk > 0.0 || !options.pareto.empty() ||
-                     !options.pairs.empty() || !options.drive.chassis.empty() || options.goals.size() > 1;
+  const bool other = options.planner != "field" || !options.plugin.empty() || options.max_risk > 0.0 ||
+                     !options.pareto.empty() || !options.pairs.empty() || !options.drive.chassis.empty() ||
+                     options.goals.size() > 1;
   if (!other) return;
-  throw InputError(
-      {options.ground.dem.path,
-       "is too large to be combined with --planner, --pairs, --risk, --pareto, --chassis or several goals",
-       "read a part with --window, or the whole with --whole-field"});
+  throw InputError({options.ground.dem.path,
+                    "is too large to be combined with --planner, --plugin, --pairs, --risk, --pareto, "
+                    "--chassis or several goals",
+                    "read a part with --window, or the whole with --whole-field"});
 }
 
 int runInWindows(const PlanOptions& options, const Context& context) {
@@ -357,11 +311,7 @@ int run(const PlanOptions& asked, Context& context) {
     if (asked.output.empty() && !options.output.empty()) checkMissionOutput(options, asked, context.force);
   }
   requirePlaces(options);
-  planner::NamedPlanner planner(options.planner);
-  if (options.drive.any() && !planner.drives())
-    throw InputError({"planner '" + planner.name() + "'", "supports neither headings nor a turning radius",
-                      "pass --planner hybrid, or remove --start-heading, --goal-heading, --turning-radius "
-                      "and --no-reverse"});
+  Chosen planner = choose(options);
   if (!options.whole_field && needsWindows(options.ground, options.in_memory))
     return runInWindows(options, context);
   if (!options.pairs.empty()) return runPairs(options, context);
@@ -375,7 +325,7 @@ int run(const PlanOptions& asked, Context& context) {
                            .kinematics = planned.problem.kinematics},
                           context);
   if (code == Exit::kDone && !options.pareto.empty())
-    saveParetoChart(options.pareto, planner::paretoSet(planned.problem, planner, kParetoSteps));
+    saveParetoChart(options.pareto, planner::paretoSet(planned.problem, *planner.own, kParetoSteps));
   return code;
 }
 
@@ -390,7 +340,7 @@ void addPlan(CLI::App& app, Context& context) {
        .examples =
            "  talus plan gale.tif --rover mer --start -4.59d,137.44d --goal -4.6d,137.5d -o route.geojson\n"
            "  talus plan mission.yaml --html route.html\n"},
-      bind, run);
+      bindPlan, run);
 }
 
 }  // namespace talus::cli

@@ -10,7 +10,9 @@
 #include <talus/cli/ground/drive_options.hpp>
 #include <talus/cli/ground/ground_options.hpp>
 #include <talus/cli/ground/path_reader.hpp>
+#include <talus/cli/ground/plugin_option.hpp>
 #include <talus/cli/route/route_json.hpp>
+#include <talus/maps/place_reader.hpp>
 #include <talus/planner/bound/lower_bound.hpp>
 #include <talus/planner/check/annotation.hpp>
 #include <talus/planner/check/route_check.hpp>
@@ -22,6 +24,7 @@ namespace {
 struct Options {
   GroundOptions ground;
   std::string path;
+  std::string plugin, start, goal;  ///< in place of a path: the route of a plugin
   std::string chassis;
 };
 
@@ -46,8 +49,12 @@ std::string asText(const planner::Route& route, const std::vector<planner::Viola
 void bind(CLI::App& command, Options& options) {
   addGroundOptions(command, options.ground);
   command.add_option("--path", options.path, "polyline: GeoJSON LineString, or CSV with x_m, y_m")
-      ->type_name("FILE")
-      ->required();
+      ->type_name("FILE");
+  addPluginOption(command, options.plugin);
+  command
+      .add_option("--start", options.start, "start of the plugin's route (format as in `talus plan --help`)")
+      ->type_name("PLACE");
+  command.add_option("--goal", options.goal, "goal of the plugin's route")->type_name("PLACE");
   addChassisOption(command, options.chassis);
   groupOptions(command, "Path");
 }
@@ -61,12 +68,39 @@ std::vector<planner::Violation> violationsOf(const std::vector<maps::Point>& poi
   return all;
 }
 
+void requirePath(const Options& options) {
+  const bool routed = !options.plugin.empty() || !options.start.empty() || !options.goal.empty();
+  if (routed &&
+      (!options.path.empty() || options.plugin.empty() || options.start.empty() || options.goal.empty()))
+    throw InputError({"talus score", "--plugin, --start and --goal belong together, in place of --path",
+                      "pass all three, or --path alone"});
+  if (!routed && options.path.empty()) throw InputError({"talus score", "no path", "pass --path FILE"});
+}
+
+// The polyline to score: read, or as a plugin plans it, whatever the check holds against that.
+std::vector<maps::Point> pointsOf(const Options& options, const Ground& ground, const Context& context) {
+  if (options.plugin.empty()) return readPath(options.path, ground.map.elevation());
+  planner::Problem problem;
+  problem.map = ground.map.published();
+  problem.start = maps::readPlace(options.start, ground.map.elevation(), "--start");
+  problem.goal = maps::readPlace(options.goal, ground.map.elevation(), "--goal");
+  problem.seed = context.seed;
+  problem.threads = context.workers();
+  problem.watch = context.watch("plan");
+  planner::Plan plan = pluginOf(options.plugin).unchecked(problem);
+  if (plan.status != planner::RouteStatus::Found && !context.stop.stop_requested())
+    throw InputError({options.plugin, "found no route: " + plan.reason, "choose other places"});
+  return std::move(plan.points);
+}
+
 int run(const Options& options, Context& context) {
+  requirePath(options);
   const Ground ground = readGround(options.ground, context);
   if (context.stop.stop_requested()) return Exit::kCancelled;
   const auto map = ground.map.published();
   planner::Plan plan;
-  plan.points = readPath(options.path, ground.map.elevation());
+  plan.points = pointsOf(options, ground, context);
+  if (context.stop.stop_requested()) return Exit::kCancelled;
   const auto violations = violationsOf(plan.points, options.chassis, ground.map);
   plan.status = violations.empty() ? planner::RouteStatus::Found : planner::RouteStatus::NoRoute;
   plan.cost_J = planner::MotionCost(map).along(plan.points);

@@ -28,6 +28,7 @@ struct PlanOptions {
   std::string pairs;  ///< CSV of many starts and goals; empty: one route
   double tolerance_m = 0.0;
   std::string planner = "field";
+  std::string plugin;  ///< shared library whose planner is asked; empty: the program's own
   DriveOptions drive;
   double max_risk = 0.0;               ///< chance constraint on immobilisation, 0: none
   std::size_t in_memory = 40'000'000;  ///< cells; larger maps are read in windows along an overview's route

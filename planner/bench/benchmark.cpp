@@ -1,24 +1,15 @@
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
-#include <stdexcept>
-
-#include <poll.h>
-#include <signal.h>
-#ifdef __linux__
-#include <sys/prctl.h>
-#endif
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <talus/planner/bench/benchmark.hpp>
 #include <talus/planner/bench/slip_world.hpp>
 #include <talus/planner/check/route_check.hpp>
+#include <talus/planner/plugin/child_process.hpp>
 #include <talus/planner/plugin/named_planner.hpp>
+#include <talus/planner/plugin/plugin_planner.hpp>
 #include <talus/planner/route/polyline.hpp>
 
 namespace talus::planner {
@@ -73,39 +64,13 @@ double clearance_cells(const costmap::CostGrid& map, const std::vector<maps::Poi
   return least;
 }
 
-void sendAll(int pipe, const void* data, std::size_t bytes) {
-  const char* from = static_cast<const char*>(data);
-  while (bytes > 0) {
-    const ssize_t sent = write(pipe, from, bytes);
-    if (sent < 0 && errno == EINTR) continue;
-    if (sent <= 0) return;
-    from += sent;
-    bytes -= static_cast<std::size_t>(sent);
-  }
-}
-
-// Nothing once a stop is requested.
-std::string receivedAll(int pipe, const ProgressMonitor& watch) {
-  constexpr int kLook_ms = 20;
-  std::string bytes;
-  char part[4096];
-  for (;;) {
-    pollfd ready{.fd = pipe, .events = POLLIN, .revents = 0};
-    while (poll(&ready, 1, kLook_ms) <= 0)
-      if (watch.stopped()) return {};
-    const ssize_t got = read(pipe, part, sizeof part);
-    if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) return bytes;
-    bytes.append(part, static_cast<std::size_t>(got));
-  }
-}
-
 std::string answered(const BenchmarkPlan& plan, const BenchmarkJob& job) {
   const BenchmarkCase& asked = plan.cases[job.case_index];
   std::vector<CostAtTime> progress;
   const auto begin = Clock::now();
   const auto elapsed = [begin] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
-  NamedPlanner named(job.planner);
+  const auto plugin = plan.plugins.find(job.planner);
+  NamedPlanner named(plugin == plan.plugins.end() ? job.planner : std::string());
   const auto note = [&](double cost_J) {
     // A planner starts from a route it was given; its own first ones may be worse.
     if (progress.empty() || cost_J < progress.back().cost_J) progress.push_back({elapsed(), cost_J});
@@ -118,7 +83,8 @@ std::string answered(const BenchmarkPlan& plan, const BenchmarkJob& job) {
   problem.time_limit_s = plan.time_limit_s;
   problem.seed = job.seed;
   problem.kinematics = asked.kinematics;
-  const Plan found = named.plan(problem);
+  const Plan found =
+      plugin == plan.plugins.end() ? named.plan(problem) : PluginPlanner(plugin->second).plan(problem);
   // What a planner spoke of on the way was not checked: no cost below that of the route it ends with stands.
   if (found.status != RouteStatus::Found) progress.clear();
   std::erase_if(progress, [&](const CostAtTime& at) { return at.cost_J < found.cost_J; });
@@ -145,34 +111,14 @@ std::string answered(const BenchmarkPlan& plan, const BenchmarkJob& job) {
 }  // namespace
 
 std::string runIsolated(const BenchmarkPlan& plan, const BenchmarkJob& job, const ProgressMonitor& watch) {
-  int ends[2];
-  if (pipe(ends) != 0) throw std::runtime_error(std::string("no pipe for a run: ") + std::strerror(errno));
-  const pid_t child = fork();
-  if (child < 0) throw std::runtime_error(std::string("no process for a run: ") + std::strerror(errno));
-  if (child == 0) {
-    close(ends[0]);
-#ifdef __linux__
-    prctl(PR_SET_PDEATHSIG, SIGKILL);  // no run outlives a program that was ended at once
-#endif
-    alarm(static_cast<unsigned>(std::min(1e6, 10.0 * plan.time_limit_s + 60.0)));  // a run-away ends here
-    try {
-      const std::string bytes = answered(plan, job);
-      sendAll(ends[1], bytes.data(), bytes.size());
-    } catch (...) {  // the border of the process: no answer is the answer
-      _exit(1);
-    }
-    _exit(0);
-  }
-  close(ends[1]);
-  std::string bytes = receivedAll(ends[0], watch);
-  close(ends[0]);
-  if (bytes.empty()) kill(child, SIGKILL);  // stopped, or dead already
-  rusage used{};
-  wait4(child, nullptr, 0, &used);
-  if (bytes.size() < sizeof(Answer)) return {};
-  const double megabytes = static_cast<double>(used.ru_maxrss) / 1024.0;
-  std::memcpy(bytes.data() + offsetof(Answer, megabytes), &megabytes, sizeof megabytes);
-  return bytes;
+  const double longest_s = std::min(1e6, 10.0 * plan.time_limit_s + 60.0);  // a run-away ends here
+  const ChildAnswer answer = inChild([&] { return answered(plan, job); }, {.seconds = longest_s}, watch);
+  if (answer.bytes.size() < sizeof(Answer)) return {};
+  Answer result;
+  std::memcpy(&result, answer.bytes.data(), sizeof result);
+  result.megabytes = answer.megabytes;
+  return std::string(reinterpret_cast<const char*>(&result), sizeof result) +
+         answer.bytes.substr(sizeof result);
 }
 
 BenchmarkRun benchmarkRun(const BenchmarkJob& job, const std::string& bytes) {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -59,9 +60,10 @@ struct BenchmarkRun {
 /// What a benchmark runs.
 struct BenchmarkPlan {
   std::vector<BenchmarkCase> cases;
-  std::vector<std::string> planners;  ///< names of plannerNames()
-  int seeds = 1;                      ///< runs a case and planner: seeds 1 to so many
-  double time_limit_s = 1.0;          ///< a run
+  std::vector<std::string> planners;             ///< names of plannerNames(), and of plugins
+  std::map<std::string, std::string> plugins{};  ///< shared libraries of those, by name
+  int seeds = 1;                                 ///< runs a case and planner: seeds 1 to so many
+  double time_limit_s = 1.0;                     ///< a run
 };
 
 /// One run to be made.

@@ -85,7 +85,8 @@ SimulationOptions SimulationSite::options(Belief belief, std::size_t i) const {
           .goal = parts_.goal,
           .goal_tolerance_m = map_.grid().resolution_m,
           .senses = belief == Belief::OnLine,
-          .sensors = sensors};
+          .sensors = sensors,
+          .planner = parts_.planner};
 }
 
 WorldResult SimulationSite::world(Belief belief, std::size_t i, const ProgressMonitor& watch) const {

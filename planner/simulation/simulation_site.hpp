@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string_view>
 #include <vector>
 
@@ -47,6 +48,7 @@ class SimulationSite {
     terramech::Soil firm;     ///< what Belief::Geometry takes all ground for
     std::uint64_t seed = 1;   ///< world i is drawn with seed + i
     SensorOptions sensors{};  ///< of a rover that goes by its sensors; their seed is that of the world
+    std::function<Plan(const Problem&)> planner{};  ///< asked for every route; none: the field's
   };
 
   /// The map is kept by reference.

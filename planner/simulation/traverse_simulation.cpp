@@ -100,7 +100,7 @@ class Drive {
     problem.goal_tolerance_m = options_.goal_tolerance_m;
     problem.prove = false;
     problem.watch = {.progress = {}, .stop = options_.watch.stop};
-    Plan plan = planner_.plan(problem);
+    Plan plan = options_.planner ? options_.planner(problem) : planner_.plan(problem);
     if (plan.status != RouteStatus::Found) return plan.status;
     route_ = std::move(plan.points);
     next_ = 1;

@@ -14,6 +14,9 @@
 
 namespace talus::planner {
 
+struct Plan;
+struct Problem;
+
 /// How a simulated drive ended.
 enum class Outcome {
   Reached,      ///< the goal
@@ -60,6 +63,7 @@ struct SimulationOptions {
   bool record = false;                                 ///< keep what the wheels read
   std::function<void(double time_s)> on_learned = {};  ///< called after the map changed
   ProgressMonitor watch = {};
+  std::function<Plan(const Problem&)> planner = {};  ///< asked for every route; none: the field's
 };
 
 /// A moment of a simulated drive.

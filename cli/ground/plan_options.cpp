@@ -1,0 +1,91 @@
+#include <CLI/CLI.hpp>
+
+#include <talus/cli/app/command.hpp>
+#include <talus/cli/app/number_check.hpp>
+#include <talus/cli/app/output_file.hpp>
+#include <talus/cli/ground/drive_options.hpp>
+#include <talus/cli/ground/plan_options.hpp>
+#include <talus/cli/ground/plugin_option.hpp>
+
+namespace talus::cli {
+namespace {
+
+void addOutputs(CLI::App& command, PlanOptions& options) {
+  addOutput(command, "-o,--output", options.output, "route to write, as GeoJSON")->type_name("ROUTE.geojson");
+  addOutput(command, "--html", options.html, "page to write: map, route and profiles")
+      ->type_name("PAGE.html");
+  addOutput(command, "--png", options.png, "picture to write")->type_name("FILE.png");
+  addOutput(command, "--pareto", options.pareto,
+            "plot of the Pareto set of energy, time and risk to write: .png, .svg or .html")
+      ->type_name("FILE");
+  groupOptions(command, "Output");
+}
+
+}  // namespace
+
+void bindPlan(CLI::App& command, PlanOptions& options) {
+  addGroundOptions(command, options.ground);
+  command
+      .add_option("--start", options.start,
+                  "start: x,y in map metres; lat,lon with the suffix d on each; or a GeoJSON point file")
+      ->type_name("PLACE");
+  command
+      .add_option("--goal", options.goals,
+                  "goal, in the same formats; may be repeated: the goal of least cost is chosen")
+      ->type_name("PLACE");
+  command.add_option("--via", options.via, "via point; may be repeated")->type_name("PLACE");
+  command
+      .add_option("--pairs", options.pairs,
+                  "plan many routes over one map: CSV with start_x_m, start_y_m, goal_x_m, goal_y_m; one row "
+                  "of results each, to -o FILE.csv or stdout; distributed over all ranks under mpirun")
+      ->type_name("FILE.csv");
+  command
+      .add_option("--tolerance", options.tolerance_m,
+                  "goal tolerance: largest distance between the end of the route and the goal")
+      ->type_name("METRES")
+      ->check(notNegative());
+  groupOptions(command, "Places");
+  command.add_option("--planner", options.planner, "planner; `talus plugins` lists them")
+      ->type_name("NAME")
+      ->capture_default_str();
+  addPluginOption(command, options.plugin);
+  command.add_option("--time", options.time_limit_s, "time limit of planning")
+      ->type_name("S")
+      ->check(positive());
+  command
+      .add_option(
+          "--in-memory", options.in_memory,
+          "largest DEM that is read whole; a larger one is read in windows along a route over its overview")
+      ->type_name("CELLS")
+      ->capture_default_str();
+  command.add_flag(
+      "--whole-field", options.whole_field,
+      "read and search the whole map at full resolution instead of a corridor around a coarse route");
+  command
+      .add_option("--risk", options.max_risk, "upper limit of the immobilisation probability of the route")
+      ->type_name("ALPHA")
+      ->check(CLI::Range(0.0, 1.0));
+  groupOptions(command, "Planner");
+  addDriveOptions(command, options.drive);
+  addOutputs(command, options);
+}
+
+void requirePlaces(const PlanOptions& options) {
+  if (!options.pairs.empty()) {
+    if (!options.start.empty() || !options.goals.empty() || !options.via.empty() || !options.html.empty() ||
+        !options.png.empty() || !options.pareto.empty() || options.max_risk > 0.0 ||
+        !options.drive.chassis.empty() || !options.plugin.empty())
+      throw InputError({"--pairs " + options.pairs,
+                        "cannot be combined with --start, --goal, --via, --html, --png, --pareto, --risk, "
+                        "--chassis or --plugin",
+                        "remove them, or plan the routes one by one"});
+    return;
+  }
+  if (!options.plugin.empty() && (options.max_risk > 0.0 || !options.pareto.empty()))
+    throw InputError({"--plugin " + options.plugin, "cannot be combined with --risk or --pareto",
+                      "remove them, or plan with a planner of the program"});
+  if (options.start.empty()) throw InputError({"talus plan", "no start", "pass --start x,y"});
+  if (options.goals.empty()) throw InputError({"talus plan", "no goal", "pass --goal x,y"});
+}
+
+}  // namespace talus::cli

@@ -1,0 +1,223 @@
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <exception>
+#include <utility>
+#include <vector>
+
+#include <talus/planner/bound/lower_bound.hpp>
+#include <talus/planner/check/route_check.hpp>
+#include <talus/planner/plugin/child_process.hpp>
+#include <talus/planner/plugin/plugin_loader.hpp>
+#include <talus/planner/plugin/plugin_planner.hpp>
+#include <talus/planner/route/motion_cost.hpp>
+#include <talus/planner/route/plan_end.hpp>
+
+namespace talus::planner {
+namespace {
+
+using maps::Point;
+
+constexpr double kSamePlace_m = 1e-6;
+constexpr std::size_t kLongestText = 1000;
+
+// First byte of an answer: what follows.
+constexpr char kText = 't', kRoute = 'r', kInput = 'i', kThrown = 'x';
+
+std::string oneLine(std::string text) {
+  if (text.size() > kLongestText) text.resize(kLongestText);
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < 0x20) c = ' ';
+  return text;
+}
+
+struct Head {
+  RouteStatus status = RouteStatus::NoneFound;
+  std::size_t vertices = 0;
+};
+
+std::string bytesOf(const Route& route) {
+  const bool found = route.status == RouteStatus::Found;
+  const Head head{route.status, found ? route.vertices.size() : 0};
+  std::string bytes(1 + sizeof head, kRoute);
+  std::memcpy(bytes.data() + 1, &head, sizeof head);
+  if (!found) return bytes + oneLine(route.reason);
+  if (head.vertices > PluginPlanner::kMostVertices) return bytes;
+  for (const RouteVertex& vertex : route.vertices) {
+    const double place[]{vertex.x_m, vertex.y_m};
+    bytes.append(reinterpret_cast<const char*>(place), sizeof place);
+  }
+  return bytes;
+}
+
+// What work with the plugin says, in the child; what it throws becomes words.
+std::string said(const std::function<std::string()>& work) {
+  try {
+    return work();
+  } catch (const InputError& error) {
+    return kInput + error.parts().where + '\n' + error.parts().reason + '\n' + error.parts().remedy;
+  } catch (const std::exception& error) {
+    return kThrown + oneLine(error.what());
+  } catch (...) {
+    return kThrown + std::string("something that is no std::exception");
+  }
+}
+
+[[noreturn]] void fail(const std::string& file, const std::string& what) {
+  throw InputError({file, what, "tell its author, or plan without --plugin"});
+}
+
+std::string answerOf(const std::string& file, const std::function<std::string()>& work,
+                     const ChildLimits& limits, const ProgressMonitor& watch) {
+  ChildAnswer answer = inChild([&] { return said(work); }, limits, watch);
+  switch (answer.end) {
+    case ChildAnswer::End::Stopped:
+      return {};
+    case ChildAnswer::End::TooLate:
+      fail(file, "did not end within its time limit and was ended");
+    case ChildAnswer::End::TooMuch:
+      fail(file, "answered with more than a route can hold");
+    case ChildAnswer::End::Died:
+      fail(file, std::string("ended its process") +
+                     (answer.signal != 0 ? std::string(" (") + strsignal(answer.signal) + ")" : ""));
+    case ChildAnswer::End::Answered:
+      break;
+  }
+  if (answer.bytes.empty()) fail(file, "gave no answer");
+  const std::string text = answer.bytes.substr(1);
+  if (answer.bytes[0] == kThrown) fail(file, "threw an error: " + text);
+  if (answer.bytes[0] == kInput) {
+    const std::size_t first = text.find('\n'), second = text.find('\n', first + 1);
+    throw InputError({oneLine(text.substr(0, first)), oneLine(text.substr(first + 1, second - first - 1)),
+                      oneLine(text.substr(second + 1))});
+  }
+  return std::move(answer.bytes);
+}
+
+PlanRequest requestOf(const Problem& problem, const ProgressMonitor& watch) {
+  PlanRequest request{.start = problem.start,
+                      .goal = problem.goal,
+                      .other_goals = problem.other_goals,
+                      .tolerance_m = problem.goal_tolerance_m,
+                      .via = problem.via,
+                      .start_heading_rad = problem.start_heading_rad,
+                      .goal_heading_rad = problem.goal_heading_rad,
+                      .watch = watch};
+  if (problem.kinematics.turning_radius_m > 0.0 || !problem.kinematics.may_reverse)
+    request.kinematics = problem.kinematics;
+  return request;
+}
+
+bool near(Point a, Point b, double reach_m) {
+  return std::hypot(a.x_m - b.x_m, a.y_m - b.y_m) <= reach_m + kSamePlace_m;
+}
+
+// Which goal a route ends at; -1: none.
+int goalOf(const Problem& problem, Point end) {
+  if (near(end, problem.goal, problem.goal_tolerance_m)) return 0;
+  for (std::size_t i = 0; i < problem.other_goals.size(); ++i)
+    if (near(end, problem.other_goals[i], problem.goal_tolerance_m)) return static_cast<int>(i) + 1;
+  return -1;
+}
+
+bool passes(const std::vector<Point>& points, const std::vector<Point>& via) {
+  std::size_t at = 0;
+  for (const Point& place : via) {
+    while (at < points.size() && !near(points[at], place, 0.0)) ++at;
+    if (at == points.size()) return false;
+  }
+  return true;
+}
+
+std::string text(Point p) {
+  return std::to_string(p.x_m) + ',' + std::to_string(p.y_m);
+}
+
+// Why the route of a plugin is not handed out; empty where nothing is held against it.
+std::string heldAgainst(const Problem& problem, const std::vector<Point>& points) {
+  if (!near(points.front(), problem.start, 0.0)) return "it begins at " + text(points.front());
+  if (goalOf(problem, points.back()) < 0) return "it ends at " + text(points.back());
+  if (!passes(points, problem.via)) return "it leaves out a via point";
+  const auto found = violations(*problem.map, points);
+  if (!found.empty()) return "at " + text(found.front().place) + " m: " + found.front().reason;
+  return {};
+}
+
+}  // namespace
+
+PluginPlanner::PluginPlanner(std::string file, std::string planner)
+    : file_(std::move(file)), planner_(std::move(planner)) {
+  const std::string bytes = answerOf(
+      file_,
+      [&] {
+        const auto loaded = loadPlugin(file_);
+        const PlannerCapabilities offers = loaded->capabilities();
+        if (!planner_.empty() && std::ranges::find(offers.planners, planner_) == offers.planners.end()) {
+          std::string all;
+          for (const std::string& known : offers.planners) all += (all.empty() ? "" : ", ") + known;
+          throw InputError({file_, "has no planner '" + planner_ + "'", "it offers " + all});
+        }
+        loaded->configure({.planner = planner_});
+        return kText + oneLine(loaded->capabilities().planner + " of " + offers.name);
+      },
+      {.seconds = 120.0, .bytes = 10 * kLongestText, .memory = kMostMemory}, {});
+  name_ = bytes.substr(1);
+}
+
+Plan PluginPlanner::unchecked(const Problem& problem) const {
+  const std::string bytes = answerOf(
+      file_,
+      [&] {
+        const auto loaded = loadPlugin(file_);
+        loaded->configure({.planner = planner_,
+                           .seed = problem.seed,
+                           .threads = problem.threads,
+                           .time_limit_s = problem.time_limit_s});
+        loaded->set_map(problem.map);
+        return bytesOf(loaded->plan(requestOf(problem, {})));
+      },
+      {.seconds = problem.time_limit_s + 1.0,
+       .bytes = 2 * kLongestText + 16 * kMostVertices,
+       .memory = kMostMemory},
+      problem.watch);
+  if (bytes.empty()) return failedPlan(RouteStatus::Cancelled, "cancelled before a route was found");
+  Head head;
+  if (bytes[0] != kRoute || bytes.size() < 1 + sizeof head) fail(file_, "gave no route");
+  std::memcpy(&head, bytes.data() + 1, sizeof head);
+  if (head.vertices > kMostVertices)
+    fail(file_, "returned a route of " + std::to_string(head.vertices) + " vertices, must be at most " +
+                    std::to_string(kMostVertices));
+  if (head.status != RouteStatus::Found)
+    return failedPlan(head.status == RouteStatus::NoRoute || head.status > RouteStatus::Cancelled
+                          ? RouteStatus::NoneFound  // its word is no proof of ours
+                          : head.status,
+                      name_ + ": " + bytes.substr(1 + sizeof head));
+  Plan plan;
+  plan.points.resize(head.vertices);
+  if (head.vertices == 0) fail(file_, "returned a route without a vertex");
+  if (bytes.size() != 1 + sizeof head + head.vertices * sizeof(Point)) fail(file_, "gave no whole route");
+  std::memcpy(plan.points.data(), bytes.data() + 1 + sizeof head, head.vertices * sizeof(Point));
+  for (std::size_t i = 0; i < plan.points.size(); ++i)
+    if (!std::isfinite(plan.points[i].x_m) || !std::isfinite(plan.points[i].y_m))
+      fail(file_, "returned a route whose vertex " + std::to_string(i) + " is " + text(plan.points[i]));
+  plan.status = RouteStatus::Found;
+  return plan;
+}
+
+Plan PluginPlanner::plan(const Problem& problem) const {
+  Plan plan = unchecked(problem);
+  if (plan.status != RouteStatus::Found) return plan;
+  if (const std::string against = heldAgainst(problem, plan.points); !against.empty())
+    return failedPlan(RouteStatus::NoneFound,
+                      "no route: the check refuses that of " + name_ + ": " + against);
+  plan.goal = static_cast<std::size_t>(goalOf(problem, plan.points.back()));
+  plan.cost_J = MotionCost(problem.map).along(plan.points);
+  const Segment ends{plan.points.front(), plan.points.back()};
+  const bool one_leg = problem.prove && problem.via.empty() && problem.other_goals.empty();
+  const double bound_J = one_leg ? LowerBound()(problem.map, ends, 0.0, StopCheck(problem.watch))
+                                 : straightBound_J(*problem.map, ends, 0.0);
+  plan.lower_bound_J = std::min(plan.cost_J, bound_J);
+  return plan;
+}
+
+}  // namespace talus::planner

@@ -1,0 +1,136 @@
+#include <algorithm>
+
+#include <nlohmann/json.hpp>
+
+#include "run_program.hpp"
+
+namespace talus::cli {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+using Words = std::vector<std::string>;
+
+// Level ground of 40 m x 20 m with a gap in what is known, a wall for a rover, from y = 8 to the north.
+class PluginRoutes : public testing::Test {
+ protected:
+  PluginRoutes() {
+    std::string text = "ncols 40\nnrows 20\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -9999\n";
+    for (int row = 19; row >= 0; --row) {
+      for (int column = 0; column < 40; ++column)
+        text += row >= 8 && column >= 19 && column < 22 ? "-9999 " : "0 ";
+      text += '\n';
+    }
+    folder_.write("wall.asc", text);
+    folder_.write("truth.yaml", "{}\n");
+  }
+
+  Ran run(const std::string& call, const Words& more) const {
+    Words words{call, "wall.asc", "--quiet",    "--ignore-crs", "--resolution",
+                "1",  "--soil",   "sandy_loam", "--rover",      "fido"};
+    words.insert(words.end(), more.begin(), more.end());
+    return runTalus(words, folder_.path());
+  }
+  Ran plan(const std::string& planner, const Words& more = {}) const {
+    Words words{"--plugin", TALUS_STRAIGHT_PLUGIN, "--planner", planner, "--start", "5,4", "--goal", "35,4",
+                "-o",       "r.geojson",           "--json"};
+    words.insert(words.end(), more.begin(), more.end());
+    return run("plan", words);
+  }
+
+  Folder folder_;
+};
+
+TEST_F(PluginRoutes, AreCheckedAndPricedByTheProgram) {
+  const Ran planned = plan("line");
+  ASSERT_EQ(planned.code, 0) << planned.err;
+  const json route = json::parse(planned.out);
+  EXPECT_EQ(route["planner"], "line of straight");
+  EXPECT_NEAR(route["length_m"], 30.0, 1e-9);  // Closed form: straight
+  const Ran scored = run("score", {"--path", "r.geojson", "--json"});
+  // The file has a vertex in each cell: the same sum in other pieces.
+  EXPECT_NEAR(double(json::parse(scored.out)["cost"]), double(route["cost"]), 1e-9 * double(route["cost"]));
+  EXPECT_GE(double(route["cost"]), double(route["lower_bound"]));
+  const Ran direct =
+      run("score", {"--plugin", TALUS_STRAIGHT_PLUGIN, "--start", "5,4", "--goal", "35,4", "--json"});
+  EXPECT_EQ(direct.code, 0) << direct.err;
+  EXPECT_EQ(json::parse(direct.out)["cost"], route["cost"]);
+}
+
+TEST_F(PluginRoutes, ThroughAWallAreRefusedAndScoredWithEachViolation) {
+  const Words places{"--start", "5,14", "--goal", "35,14"};
+  Words words{"--plugin", TALUS_STRAIGHT_PLUGIN, "-o", "r.geojson"};
+  words.insert(words.end(), places.begin(), places.end());
+  const Ran planned = run("plan", words);
+  EXPECT_EQ(planned.code, 1);
+  EXPECT_THAT(planned.err, HasSubstr("the check refuses that of line of straight: at 1"));
+  EXPECT_EQ(std::count(planned.err.begin(), planned.err.end(), '\n'), 1) << planned.err;
+  EXPECT_EQ(fileContent(folder_.path() / "r.geojson"), "");
+  const Ran scored =
+      run("score", {"--plugin", TALUS_STRAIGHT_PLUGIN, "--start", "5,14", "--goal", "35,14", "--json"});
+  EXPECT_EQ(scored.code, 1);
+  EXPECT_GE(json::parse(scored.out)["violations"].size(), 3U);
+}
+
+TEST_F(PluginRoutes, WhatAPluginDoesWrongIsOneLine) {
+  struct Wrong {
+    const char* planner;
+    int code;
+    const char* said;
+  };
+  for (const Wrong& wrong : {Wrong{"throws", 2, "threw an error: no idea at all"},
+                             {"odd", 2, "no std::exception"},
+                             {"undefined", 2, "vertex 1 is nan"},
+                             {"crashes", 2, "ended its process (Aborted)"},
+                             {"huge", 2, "libstraight_planner.so"},
+                             {"empty", 2, "without a vertex"},
+                             {"elsewhere", 1, "it ends at 36"},
+                             {"lines", 2, "has no planner 'lines'"}}) {
+    const Ran ran = plan(wrong.planner);
+    EXPECT_EQ(ran.code, wrong.code) << wrong.planner << ": " << ran.err;
+    EXPECT_THAT(ran.err, HasSubstr(wrong.said)) << wrong.planner;
+    EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
+    EXPECT_EQ(fileContent(folder_.path() / "r.geojson"), "") << wrong.planner;
+  }
+  const Ran endless = plan("endless", {"--time", "0.2"});
+  EXPECT_EQ(endless.code, 2) << endless.err;
+  EXPECT_THAT(endless.err, HasSubstr("did not end within its time limit"));
+}
+
+TEST_F(PluginRoutes, WhatIsNoPluginOrHonoursTooLittleIsOneLine) {
+  const auto with = [&](const std::string& file, const Words& more = {}) {
+    Words words{"--plugin", file, "--start", "5,4", "--goal", "35,4"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Ran ran = run("plan", words);
+    EXPECT_EQ(ran.code, 2) << ran.err;
+    EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
+    return ran.err;
+  };
+  EXPECT_THAT(with(TALUS_OTHER_PLUGIN), HasSubstr("built for planner interface 99, this program has 3"));
+  EXPECT_THAT(with("none.so"), HasSubstr("none.so: no such file"));
+  EXPECT_THAT(with("wall.asc"), HasSubstr("cannot be loaded"));
+  EXPECT_THAT(with(TALUS_STRAIGHT_PLUGIN, {"--via", "20,4"}), HasSubstr("via is not honoured"));
+  EXPECT_THAT(with(TALUS_STRAIGHT_PLUGIN, {"--start-heading", "0"}),
+              HasSubstr("start_heading_rad is not honoured"));
+  EXPECT_THAT(with(TALUS_STRAIGHT_PLUGIN, {"--risk", "0.1"}), HasSubstr("cannot be combined"));
+  EXPECT_EQ(run("score", {"--plugin", TALUS_STRAIGHT_PLUGIN}).code, 2);
+}
+
+TEST_F(PluginRoutes, AreComparedAndDriven) {
+  const Ran bench = runTalus(
+      {"bench", "wall.asc", "--quiet", "--ignore-crs", "--resolution", "1", "--soil", "sandy_loam", "--rover",
+       "fido", "--planners", "field", "--plugin", TALUS_STRAIGHT_PLUGIN, "--runs", "1", "--pairs", "2"},
+      folder_.path());
+  EXPECT_EQ(bench.code, 0) << bench.err;
+  EXPECT_THAT(bench.out, HasSubstr("line of straight"));
+  const Ran drive = run("drive", {"--plugin", TALUS_STRAIGHT_PLUGIN, "--truth", "truth.yaml", "--start",
+                                  "5,4", "--goal", "15,4", "--belief", "prior", "--json"});
+  EXPECT_EQ(drive.code, 0) << drive.err;
+  EXPECT_EQ(json::parse(drive.out)["outcome"], "reached");
+  const Ran walled = run("drive", {"--plugin", TALUS_STRAIGHT_PLUGIN, "--truth", "truth.yaml", "--start",
+                                   "5,14", "--goal", "35,14", "--belief", "prior", "--json"});
+  EXPECT_EQ(walled.code, 1) << walled.err;
+}
+
+}  // namespace
+}  // namespace talus::cli
