@@ -27,13 +27,18 @@ class Checker {
  public:
   explicit Checker(const CostGrid& map) : map_(map), side_m_(map.grid().resolution_m) {}
   /// Hears of soil that is weaker than required with more than this probability, too.
-  Checker(const CostGrid& map, double quantile) : Checker(map) { quantile_ = quantile; }
+  Checker(const CostGrid& map, double quantile) : Checker(map) {
+    const costmap::SoilDoubt& soil = map.cost().doubt();
+    doubt_length_m_ = soil.correlation_length_m > 0.0 ? soil.correlation_length_m : 1.0;
+    entrapment_ = soil.entrapment;
+    most_risk_per_m_ = -std::log1p(-entrapment_ * quantile) / doubt_length_m_;
+  }
 
   void segment(Point from, Point to) {
     const double length_m = std::hypot(to.x_m - from.x_m, to.y_m - from.y_m);
     if (!(length_m > kOn * side_m_)) return place(from);
     heading_ = {(to.x_m - from.x_m) / length_m, (to.y_m - from.y_m) / length_m};
-    const std::vector<double> cuts = crossings(from, to);
+    const std::vector<double>& cuts = crossings(from, to);
     for (std::size_t i = 1; i < cuts.size(); ++i) {
       if ((cuts[i] - cuts[i - 1]) * length_m > kOn * side_m_)
         stretch(along(from, to, (cuts[i] + cuts[i - 1]) / 2));
@@ -45,10 +50,12 @@ class Checker {
 
   // All cells that a point touches, in the present heading.
   void touch(Point p) {
+    std::optional<Cell> before;
     for (const double dx : {-2 * kOn, 2 * kOn})
       for (const double dy : {-2 * kOn, 2 * kOn}) {
         const auto cell = map_.grid().cellAt({p.x_m + dx * side_m_, p.y_m + dy * side_m_});
-        if (cell) enter(*cell, p);
+        if (cell && cell != before) enter(*cell, p);
+        before = cell;
       }
   }
 
@@ -127,8 +134,9 @@ class Checker {
   }
 
   // Shares of the segment at which it crosses a line between columns or rows, with both ends, sorted.
-  std::vector<double> crossings(Point from, Point to) const {
-    std::vector<double> cuts{0.0, 1.0};
+  const std::vector<double>& crossings(Point from, Point to) {
+    std::vector<double>& cuts = cuts_;
+    cuts.assign({0.0, 1.0});
     const auto add = [&cuts](double a, double b) {
       for (double line = std::ceil(std::min(a, b)); line <= std::max(a, b); line += 1.0)
         if (std::abs(b - a) > kOn) cuts.push_back(std::clamp((line - a) / (b - a), 0.0, 1.0));
@@ -178,10 +186,12 @@ class Checker {
   void stretch(Point middle) {
     const Point left{-heading_.y * 2 * kOn * side_m_, heading_.x * 2 * kOn * side_m_};
     bool inside = false;
+    std::optional<Cell> before;
     for (const double side : {-1.0, 1.0}) {
       const auto cell = map_.grid().cellAt({middle.x_m + side * left.x_m, middle.y_m + side * left.y_m});
       inside = inside || cell;
-      if (cell) enter(*cell, middle);
+      if (cell && cell != before) enter(*cell, middle);
+      before = cell;
     }
     if (!inside) report(std::nullopt, middle, "outside the map");
   }
@@ -189,7 +199,7 @@ class Checker {
   void enter(Cell cell, Point where) {
     const auto code = map_.at(cell);
     if (std::isfinite(map_.cost().costPerMetre(code, heading_))) {
-      if (quantile_ < 1.0) doubt(cell, code, where);
+      if (entrapment_ > 0.0) doubt(cell, code, where);
       return;
     }
     const auto refusal = map_.cost().detail(code, heading_).refusal;
@@ -198,13 +208,10 @@ class Checker {
   }
 
   void doubt(Cell cell, costmap::CellCode code, Point where) {
-    const costmap::SoilDoubt& soil = map_.cost().doubt();
-    const double length_m = soil.correlation_length_m > 0.0 ? soil.correlation_length_m : 1.0;
     const double risk_per_m = static_cast<double>(map_.cost().detail(code, heading_).risk_per_m);
-    const double held = -std::expm1(-risk_per_m * length_m);
-    const double probability = soil.entrapment > 0.0 ? std::min(held / soil.entrapment, 1.0) : 0.0;
-    if (probability > quantile_)
-      report(cell, where, "the soil may give less drawbar pull than required", probability);
+    if (!(risk_per_m > most_risk_per_m_)) return;
+    const double probability = std::min(-std::expm1(-risk_per_m * doubt_length_m_) / entrapment_, 1.0);
+    report(cell, where, "the soil may give less drawbar pull than required", probability);
   }
 
   double alongAt(Point where) const noexcept {
@@ -213,11 +220,12 @@ class Checker {
 
   const CostGrid& map_;
   double side_m_;
-  double quantile_ = 1.0;
+  double entrapment_ = 0.0, doubt_length_m_ = 1.0, most_risk_per_m_ = 0.0;  // 0: soil is not asked
   Point from_;
   double along_m_ = 0.0;
   Direction heading_;
   std::optional<Cell> last_;
+  std::vector<double> cuts_;  // of the segment in hand
 };
 
 }  // namespace
