@@ -36,7 +36,7 @@ struct Assumed {
 };
 // Slopes and steps are those of a plane over so many of the rover's diagonals at most.
 constexpr double kFootprints = 2.0;
-constexpr double kSameHeight_m = 0.01;
+constexpr float kSameHeight_m = 0.01F;
 
 constexpr Assumed kAssumed[] = {{"Moon", "lunar_nominal", "lunar_micro"},
                                 {"Mars", "mars_blocky", "mer"},

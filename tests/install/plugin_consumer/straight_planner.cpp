@@ -14,7 +14,8 @@ class Planner final : public talus::GlobalPlanner {
   talus::PlannerCapabilities capabilities() const override {
     return {.name = "straight",
             .version = "1",
-            .planners = {"line", "throws", "undefined", "crashes", "huge", "endless", "empty", "elsewhere", "odd"},
+            .planners = {"line", "throws", "undefined", "crashes", "huge", "endless", "empty", "elsewhere",
+                         "odd"},
             .planner = settings_.planner.empty() ? "line" : settings_.planner};
   }
   void configure(const talus::PlannerSettings& settings) override { settings_ = settings; }
