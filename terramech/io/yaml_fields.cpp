@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -86,9 +87,10 @@ YamlFields YamlFields::file(const std::string& path) {
   if (std::filesystem::is_directory(path, error)) fail(path, "is a directory", "name a YAML file");
   std::ifstream in(path, std::ios::binary);
   if (!in) fail(path, "cannot be read", "check the path and its permissions");
-  std::string content(kMostBytes + 1, '\0');
-  in.read(content.data(), static_cast<std::streamsize>(content.size()));
-  content.resize(static_cast<std::size_t>(in.gcount()));
+  std::string content;
+  std::array<char, 65536> part{};
+  while (content.size() <= kMostBytes && (in.read(part.data(), part.size()) || in.gcount() > 0))
+    content.append(part.data(), static_cast<std::size_t>(in.gcount()));
   if (content.size() > kMostBytes)
     fail(path, "is larger than 16 MB, no description of a soil, rover, model or mission is",
          "name a YAML file");

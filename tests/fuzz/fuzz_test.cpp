@@ -5,6 +5,14 @@
 
 #include "targets.hpp"
 
+#ifdef __SANITIZE_ADDRESS__
+// GDAL keeps its drivers until the process ends.
+extern "C" const char* __lsan_default_suppressions();
+extern "C" const char* __lsan_default_suppressions() {
+  return "leak:libgdal\n";
+}
+#endif
+
 namespace talus::fuzz {
 namespace {
 
