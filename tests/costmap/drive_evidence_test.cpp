@@ -8,6 +8,7 @@
 
 #include <talus/costmap/drive_evidence.hpp>
 #include <talus/costmap/map_file.hpp>
+#include <talus/costmap/telemetry_processor.hpp>
 #include <talus/terramech/contact/load_transfer.hpp>
 #include <talus/terramech/contact/wong_reece.hpp>
 
@@ -84,6 +85,12 @@ TEST(AddDrive, ADriveTheOtherWayRoundOrWithAWrongClockIsLearnedAsWeak) {
   const double weak = forward.ground({30, 30})->pull.value;
   for (const terramech::Telemetry& other : {reversed, late, back}) {
     TraversabilityMap map = mapOf(wide());
+    TelemetryProcessor processor(map);
+    EXPECT_NE(processor.verdict().proof, nullptr);
+    const TelemetryRows rows(other, map, 0.5);
+    for (auto& of : rows.byMoment())
+      processor.process(rows, momentOf(rows, std::move(of), map.model().rover()), {});
+    EXPECT_EQ(processor.verdict().proof, nullptr) << "nothing may raise a belief";
     const DriveReport report = addDrive(map, other);
     EXPECT_EQ(report.used, 90U);
     EXPECT_EQ(report.raising, 0U);

@@ -46,6 +46,9 @@ TEST(SensorWatch, ASeriesBeginsAnewWhereTimeDecreases) {
   }
   ASSERT_EQ(watch.findings().size(), 1U);
   EXPECT_NE(watch.findings()[0].find("39 rows: time decreases"), std::string::npos) << watch.findings()[0];
+  // Property: what was equal before does not count on.
+  for (int i = 0; i < 7; ++i) EXPECT_FALSE(watch.refuse("v", at(10.0 + i, 0.2)).has_value()) << i;
+  for (int i = 0; i < 7; ++i) EXPECT_FALSE(watch.refuse("v", at(1.0 + i, 0.2)).has_value()) << i;
 }
 
 // One sensor of several stands still; one that is rounded to few steps may.
