@@ -15,7 +15,7 @@ constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
 // The metrics of one cell, from a window around it just large enough.
 maps::TerrainMetrics measuredAround(const TraversabilityMap& map, maps::Cell cell, maps::Cell& inside) {
   const maps::Grid& grid = map.grid();
-  const int halo = static_cast<int>(std::ceil(map.footprintRadius_m() / grid.resolution_m)) + 2;
+  const int halo = maps::metricsReach(map.footprint(1), grid.resolution_m) + 1;
   const maps::Cell from{std::max(0, cell.column - halo), std::max(0, cell.row - halo)};
   const maps::Cell to{std::min(grid.width, cell.column + halo + 1),
                       std::min(grid.height, cell.row + halo + 1)};
@@ -27,7 +27,7 @@ maps::TerrainMetrics measuredAround(const TraversabilityMap& map, maps::Cell cel
     for (int column = from.column; column < to.column; ++column)
       window[{column - from.column, row - from.row}] = map.elevation().elevation_m[{column, row}];
   inside = {cell.column - from.column, cell.row - from.row};
-  return maps::terrainMetrics(window, {.radius_m = map.footprintRadius_m(), .threads = 1});
+  return maps::terrainMetrics(window, map.footprint(1));
 }
 
 std::string limitRemark(double value, double limit) {
@@ -79,9 +79,15 @@ void addShape(const TraversabilityMap& map, maps::Cell cell, Explanation& out) {
   out.causes.push_back({"aspect_rad", static_cast<double>(m.aspect_rad(inside)), kNotKnown, plane, ""});
   out.causes.push_back({"roughness_m", share * roughness, kNotKnown, plane + ", within one wheelbase",
                         limitRemark(share * roughness, map.hazardLimits().max_roughness_m)});
-  const double step = share * static_cast<double>(m.step_m[inside]);
-  out.causes.push_back({"step_m", step, kNotKnown, plane + ", within one wheelbase",
-                        limitRemark(step, map.hazardLimits().max_step_m)});
+  const double relief = share * static_cast<double>(m.relief_m[inside]);
+  out.causes.push_back({"relief_m", relief, kNotKnown, plane + ", within one wheelbase",
+                        limitRemark(relief, map.hazardLimits().max_step_m)});
+  const double step =
+      reliefShare(map.hazardLimits(), map.grid().resolution_m) * static_cast<double>(m.step_m[inside]);
+  out.causes.push_back(
+      {"step_m", step, kNotKnown,
+       "differences of heights in " + map.elevation().source + " beyond the slope on both sides",
+       limitRemark(step, map.hazardLimits().max_step_m)});
 }
 
 void addSoil(const TraversabilityMap& map, maps::Cell cell, Explanation& out) {

@@ -44,24 +44,26 @@ HazardLimits HazardLimits::of(const terramech::Rover& rover) {
           .rock_diameter_m = 2.0 * rover.clearance_m,
           .rock_area_m2 = width_m * length_m,
           .wheelbase_m = rover.wheelbase_m,
+          .wheel_diameter_m = 2.0 * rover.wheel.radius_m,
           .inflation_m = 0.5 * width_m};
 }
 
-double reliefShare(const HazardLimits& limits, double footprint_m) {
-  return std::min(1.0, limits.wheelbase_m / footprint_m);
+double reliefShare(const HazardLimits& limits, double span_m) {
+  return std::min(1.0, limits.wheelbase_m / span_m);
 }
 
-ShapeJudge::ShapeJudge(const HazardLimits& limits, double footprint_m)
+ShapeJudge::ShapeJudge(const HazardLimits& limits, const ShapeSpans& spans)
     : gradient_squared_(static_cast<float>(limits.max_gradient * limits.max_gradient)),
-      step_m_(static_cast<float>(limits.max_step_m / reliefShare(limits, footprint_m))),
-      roughness_m_(static_cast<float>(limits.max_roughness_m / reliefShare(limits, footprint_m))) {}
+      relief_m_(static_cast<float>(limits.max_step_m / reliefShare(limits, spans.footprint_m))),
+      step_m_(static_cast<float>(limits.max_step_m / reliefShare(limits, spans.cell_m))),
+      roughness_m_(static_cast<float>(limits.max_roughness_m / reliefShare(limits, spans.footprint_m))) {}
 
 Hazard ShapeJudge::operator()(const GroundShape& shape) const noexcept {
   const float squared = shape.dz_dx * shape.dz_dx + shape.dz_dy * shape.dz_dy;
   if (std::isnan(squared)) return Hazard::Unknown;
   Hazard found = Hazard::None;
   if (squared > gradient_squared_) found |= Hazard::Slope;
-  if (shape.step_m > step_m_) found |= Hazard::Step;
+  if (shape.step_m > step_m_ || shape.relief_m > relief_m_) found |= Hazard::Step;
   if (shape.roughness_m > roughness_m_) found |= Hazard::Roughness;
   return found;
 }

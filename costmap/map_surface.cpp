@@ -82,7 +82,7 @@ TileTable TraversabilityMap::measure(const MapLayers& layers, const ProgressMoni
     auto& tile = *tiles[static_cast<std::size_t>((c.row >> 6) * tile_columns + (c.column >> 6))];
     return tile.cells[static_cast<std::size_t>((c.row & 63) << 6 | (c.column & 63))];
   };
-  const SurfaceShape shapes({.radius_m = footprint_radius_m_, .threads = threads_});
+  const SurfaceShape shapes(footprint(threads_));
   shapes.measure(
       site_->elevation.elevation_m, allOf(grid()), limits_,
       [&](maps::Cell cell, const GroundShape& shape, Hazard found) {
@@ -136,7 +136,7 @@ void TraversabilityMap::takeHazards(const SurfacePatch& patch, const maps::CellB
 // A changed cell changes the shape of those whose footprint it lies in; these may begin or cease to be kept clear of,
 // or to lie at the edge of what is. Refused places were never kept clear of: they are left out meanwhile.
 maps::CellBox TraversabilityMap::measureAgain(const maps::CellBox& window) {
-  const SurfaceShape shapes({.radius_m = footprint_radius_m_, .threads = threads_});
+  const SurfaceShape shapes(footprint(threads_));
   const maps::CellBox shaped = grown(window, shapes.reach(grid()), grid());
   const maps::CellBox judged = grown(shaped, inflationReach(limits_, grid().resolution_m) + 1, grid());
   for (const Refusal& refusal : refusals_) mark(refusal, false);

@@ -15,10 +15,8 @@ double footprintWidth(const maps::TerrainMetrics& metrics, double resolution_m, 
 
 }  // namespace
 
-// A footprint that reaches no diagonal neighbour is that of 3x3 cells.
 int SurfaceShape::reach(const maps::Grid& grid) const {
-  const double cells = std::ceil(footprint_.radius_m / grid.resolution_m) + 2.0;
-  return static_cast<int>(std::min<double>(cells, std::max(grid.width, grid.height)));
+  return std::min(maps::metricsReach(footprint_, grid.resolution_m), std::max(grid.width, grid.height));
 }
 
 void SurfaceShape::measure(const maps::Raster<float>& elevation_m, const maps::CellBox& box,
@@ -30,12 +28,13 @@ void SurfaceShape::measure(const maps::Raster<float>& elevation_m, const maps::C
                              {box.last.column, std::min(first + kBandRows - 1, box.last.row)}};
     const maps::CellBox seen = grown(band, reach(grid), grid);
     const maps::TerrainMetrics m = maps::terrainMetrics(cut(elevation_m, seen), footprint_);
-    const ShapeJudge judge(limits, footprintWidth(m, grid.resolution_m, footprint_.radius_m));
+    const ShapeJudge judge(limits, {.footprint_m = footprintWidth(m, grid.resolution_m, footprint_.radius_m),
+                                    .cell_m = grid.resolution_m});
     forEachCell(band, [&](maps::Cell cell) {
       const std::size_t i =
           m.dz_dx.grid().index({cell.column - seen.first.column, cell.row - seen.first.row});
       const GroundShape shape{m.dz_dx.values()[i], m.dz_dy.values()[i], m.roughness_m.values()[i],
-                              m.step_m.values()[i]};
+                              m.relief_m.values()[i], m.step_m.values()[i]};
       visit(cell, shape, judge(shape));
     });
     watch.report(static_cast<double>(band.last.row - box.first.row + 1) / box.height());

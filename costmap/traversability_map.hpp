@@ -56,6 +56,10 @@ class TraversabilityMap {
   const GroundModel& model() const noexcept { return *site_->model; }
   const HazardLimits& hazardLimits() const noexcept { return limits_; }
   double footprintRadius_m() const noexcept { return footprint_radius_m_; }
+  /// How the shape of the ground is measured, on a number of threads >= 1.
+  maps::FootprintOptions footprint(int threads) const noexcept {
+    return {.radius_m = footprint_radius_m_, .step_span_m = limits_.wheel_diameter_m, .threads = threads};
+  }
 
   /// The newest published version, for planners to pin.
   std::shared_ptr<const CostGrid> published() const noexcept;

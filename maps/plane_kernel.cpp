@@ -61,7 +61,7 @@ using Lanes = float __attribute__((vector_size(kPlaneLanes * sizeof(float))));
   store(east * row.cells_per_metre, row.dz_dx + column, lanes);
   store(north * row.cells_per_metre, row.dz_dy + column, lanes);
   store(rms, row.roughness_m + column, lanes);
-  store(range, row.step_m + column, lanes);
+  store(range, row.relief_m + column, lanes);
 }
 
 [[gnu::always_inline]] inline void fitRow(const Footprint& footprint, const PlaneRow& row) {

@@ -13,7 +13,7 @@ struct PlaneRow {
   float* dz_dx = nullptr;
   float* dz_dy = nullptr;
   float* roughness_m = nullptr;
-  float* step_m = nullptr;
+  float* relief_m = nullptr;
 };
 
 inline constexpr int kPlaneLanes = 8;

@@ -74,8 +74,7 @@ class BestHeading {
 
 std::vector<maps::Layer> siteLayers(const TraversabilityMap& map, int threads) {
   const maps::Grid& grid = map.grid();
-  maps::TerrainMetrics metrics = maps::terrainMetrics(
-      map.elevation().elevation_m, {.radius_m = map.footprintRadius_m(), .threads = threads});
+  maps::TerrainMetrics metrics = maps::terrainMetrics(map.elevation().elevation_m, map.footprint(threads));
   const auto published = map.published();
   const auto known = [&](maps::Cell cell, float value) { return map.classIndex(cell) < 0 ? kNaN : value; };
   std::vector<maps::Layer> layers;

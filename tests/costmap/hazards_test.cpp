@@ -62,10 +62,14 @@ TEST(HazardLimits, ReliefOfALargeFootprintCountsInProportion) {
 TEST(ShapeJudge, NamesEachLimitThatIsPassed) {
   const HazardLimits limits{
       .max_gradient = 0.3, .max_step_m = 0.1, .max_roughness_m = 0.05, .wheelbase_m = 1.0};
-  const ShapeJudge judge(limits, 1.0);
-  EXPECT_EQ(judge({.dz_dx = 0.29F, .dz_dy = 0.0F, .roughness_m = 0.04F, .step_m = 0.09F}), Hazard::None);
+  const ShapeJudge judge(limits, {.footprint_m = 2.0, .cell_m = 0.5});
+  // Closed form: over 2 m, twice the wheelbase, relief and roughness count half; a step between cells counts whole.
+  EXPECT_EQ(judge({.dz_dx = 0.29F, .dz_dy = 0.0F, .roughness_m = 0.09F, .relief_m = 0.19F, .step_m = 0.09F}),
+            Hazard::None);
   EXPECT_EQ(judge({.dz_dx = 0.25F, .dz_dy = 0.25F}), Hazard::Slope);
-  EXPECT_EQ(judge({.roughness_m = 0.06F, .step_m = 0.11F}), Hazard::Step | Hazard::Roughness);
+  EXPECT_EQ(judge({.roughness_m = 0.11F, .relief_m = 0.21F}), Hazard::Step | Hazard::Roughness);
+  EXPECT_EQ(judge({.step_m = 0.11F}), Hazard::Step);
+  EXPECT_EQ(ShapeJudge(limits, {.footprint_m = 4.0, .cell_m = 2.0})({.step_m = 0.19F}), Hazard::None);
   EXPECT_EQ(judge({.dz_dx = NAN}), Hazard::Unknown);
 }
 

@@ -43,7 +43,7 @@ TEST(PartialPlane, IsTheLeastSquaresPlaneOfTheCellsThatAreThere) {
     EXPECT_NEAR(fit->dz_dx, plane.x(), 1e-5);
     EXPECT_NEAR(fit->dz_dy, plane.y(), 1e-5);
     EXPECT_NEAR(fit->roughness_m, std::sqrt(residual.squaredNorm() / static_cast<double>(b.size())), 1e-5);
-    EXPECT_NEAR(fit->step_m, residual.maxCoeff() - residual.minCoeff(), 1e-5);
+    EXPECT_NEAR(fit->relief_m, residual.maxCoeff() - residual.minCoeff(), 1e-5);
   }
   EXPECT_GT(fitted, 60);
 }

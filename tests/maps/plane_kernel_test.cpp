@@ -11,7 +11,7 @@ namespace talus::maps {
 namespace {
 
 struct Fitted {
-  std::vector<float> dz_dx, dz_dy, roughness_m, step_m;
+  std::vector<float> dz_dx, dz_dy, roughness_m, relief_m;
 };
 
 Fitted fitted(PlaneKernel kernel, const Footprint& disc, const std::vector<std::vector<float>>& rows,
@@ -26,7 +26,7 @@ Fitted fitted(PlaneKernel kernel, const Footprint& disc, const std::vector<std::
                 .dz_dx = out.dz_dx.data(),
                 .dz_dy = out.dz_dy.data(),
                 .roughness_m = out.roughness_m.data(),
-                .step_m = out.step_m.data()});
+                .relief_m = out.relief_m.data()});
   return out;
 }
 
@@ -49,7 +49,7 @@ TEST(PlaneKernel, APlaneIsItsOwnFit) {
     EXPECT_NEAR(out.dz_dx[i], 0.25, 1e-6);
     EXPECT_NEAR(out.dz_dy[i], -0.5, 1e-6);
     EXPECT_NEAR(out.roughness_m[i], 0.0, 1e-6);
-    EXPECT_NEAR(out.step_m[i], 0.0, 2e-6);
+    EXPECT_NEAR(out.relief_m[i], 0.0, 2e-6);
   }
 }
 
@@ -73,7 +73,7 @@ TEST(PlaneKernel, EveryKernelGivesTheSameBits) {
       EXPECT_TRUE(same(plain.dz_dx[i], fast.dz_dx[i])) << i;
       EXPECT_TRUE(same(plain.dz_dy[i], fast.dz_dy[i])) << i;
       EXPECT_TRUE(same(plain.roughness_m[i], fast.roughness_m[i])) << i;
-      EXPECT_TRUE(same(plain.step_m[i], fast.step_m[i])) << i;
+      EXPECT_TRUE(same(plain.relief_m[i], fast.relief_m[i])) << i;
     }
   }
 }
@@ -101,7 +101,7 @@ TEST(PlaneKernel, BothTwinsGiveTheSameBitsFarFromTheDatum) {
                        .dz_dx = out.data(),
                        .dz_dy = out.data() + width,
                        .roughness_m = out.data() + 2 * width,
-                       .step_m = out.data() + 3 * width});
+                       .relief_m = out.data() + 3 * width});
     std::vector<std::uint32_t> words;
     for (float v : out) words.push_back(std::bit_cast<std::uint32_t>(v));
     return words;

@@ -31,7 +31,7 @@ Raster<float> noise(const Grid& grid, double share_of_holes) {
 }
 
 struct Expected {
-  double dz_dx, dz_dy, roughness_m, step_m;
+  double dz_dx, dz_dy, roughness_m, relief_m;
 };
 
 // Measured by others: Eigen's QR on the cells of the disc, without a thought of speed.
@@ -70,7 +70,8 @@ TEST(TerrainMetrics, TiltedPlaneIsExactEverywhereAlsoAtTheEdges) {
         ASSERT_NEAR((m.dz_dx[{c, r}]), 0.25, 1e-6);
         ASSERT_NEAR((m.dz_dy[{c, r}]), -0.5, 1e-6);
         ASSERT_NEAR((m.roughness_m[{c, r}]), 0.0, 1e-6);
-        ASSERT_NEAR((m.step_m[{c, r}]), 0.0, 2e-6);
+        ASSERT_NEAR((m.relief_m[{c, r}]), 0.0, 2e-6);
+        ASSERT_EQ((m.step_m[{c, r}]), 0.0F);
         ASSERT_NEAR((m.slope_rad({c, r})), std::atan(std::hypot(0.25, 0.5)), 1e-6);
         ASSERT_NEAR((m.aspect_rad({c, r})), std::atan2(0.5, -0.25), 1e-6);
       }
@@ -90,7 +91,7 @@ TEST(TerrainMetrics, AgreesWithLeastSquaresOnRoughGroundWithHoles) {
         EXPECT_NEAR(m.dz_dx[c], e.dz_dx, 1e-6);
         EXPECT_NEAR(m.dz_dy[c], e.dz_dy, 1e-6);
         EXPECT_NEAR(m.roughness_m[c], e.roughness_m, 1e-5);
-        EXPECT_NEAR(m.step_m[c], e.step_m, 1e-5);
+        EXPECT_NEAR(m.relief_m[c], e.relief_m, 1e-5);
       }
     }
 }
@@ -105,14 +106,14 @@ TEST(TerrainMetrics, SmallFootprintFallsBackToThreeByThreeAndSaysSo) {
   EXPECT_EQ(small.dz_dx.values(), block.dz_dx.values());
 }
 
-TEST(TerrainMetrics, StepOfARockIsItsHeight) {
+TEST(TerrainMetrics, ReliefOfARockIsItsHeight) {
   // Closed form: over many cells the plane hardly sees one rock.
   Raster<float> z(Grid{.width = 41, .height = 41, .resolution_m = 0.1});
   z[{20, 20}] = 0.4F;
   const TerrainMetrics m = terrainMetrics(z, {.radius_m = 0.8});
-  EXPECT_NEAR((m.step_m[{20, 20}]), 0.4, 1e-6);
-  EXPECT_NEAR((m.step_m[{16, 20}]), 0.4, 0.02);
-  EXPECT_EQ((m.step_m[{5, 5}]), 0.0F);
+  EXPECT_NEAR((m.relief_m[{20, 20}]), 0.4, 1e-6);
+  EXPECT_NEAR((m.relief_m[{16, 20}]), 0.4, 0.02);
+  EXPECT_EQ((m.relief_m[{5, 5}]), 0.0F);
 }
 
 TEST(TerrainMetrics, NoDataStaysNoData) {
@@ -125,7 +126,9 @@ TEST(TerrainMetrics, NoDataStaysNoData) {
   EXPECT_TRUE(std::isnan(m.dz_dx[{2, 2}]));
   EXPECT_TRUE(std::isnan(m.roughness_m[{7, 9}]));
   EXPECT_TRUE(std::isnan(m.dz_dx[{0, 0}]));
+  EXPECT_TRUE(std::isnan(m.relief_m[{14, 5}]));
   EXPECT_TRUE(std::isnan(m.step_m[{14, 5}]));
+  EXPECT_EQ((m.step_m[{15, 5}]), 0.0F);
   EXPECT_EQ((m.dz_dx[{15, 5}]), 0.0F);
 }
 
@@ -134,7 +137,7 @@ TEST(TerrainMetrics, SameBitsWhateverTheThreads) {
   const auto bits = [&](int threads) {
     const TerrainMetrics m = terrainMetrics(z, {.radius_m = 2.0, .threads = threads});
     std::vector<std::uint32_t> out;
-    for (const Raster<float>* layer : {&m.dz_dx, &m.dz_dy, &m.roughness_m, &m.step_m})
+    for (const Raster<float>* layer : {&m.dz_dx, &m.dz_dy, &m.roughness_m, &m.relief_m, &m.step_m})
       for (float v : layer->values()) out.push_back(std::bit_cast<std::uint32_t>(v));
     return out;
   };
@@ -169,6 +172,7 @@ TEST(TerrainMetrics, RefusesNonsense) {
   const Raster<float> z(Grid{.width = 4, .height = 4});
   EXPECT_THROW(terrainMetrics(z, {.radius_m = -1}), std::invalid_argument);
   EXPECT_THROW(terrainMetrics(z, {.radius_m = std::nan("")}), std::invalid_argument);
+  EXPECT_THROW(terrainMetrics(z, {.step_span_m = -1}), std::invalid_argument);
   EXPECT_THROW(terrainMetrics(z, {.threads = 0}), std::invalid_argument);
 }
 

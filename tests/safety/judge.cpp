@@ -5,6 +5,8 @@
 #include <map>
 #include <numbers>
 
+#include "step.hpp"
+
 namespace safety {
 namespace {
 
@@ -62,6 +64,12 @@ void Judge::ground(const Station& at, Findings& findings) const {
   const double footprint_m = 2.0 * std::max(site_.footprint_m(), site_.elevation_m.cell_m);
   const double larger = std::max(footprint_m / site_.rover.wheelbase_m, 1.0);
   findings.add("relief", at, plane.relief_m - (1.0 + 1e-3) * larger * site_.rover.clearance_m);
+  // Steps between cells that lie further apart than the wheels do, too.
+  const double step_m =
+      stepUnder(site_.elevation_m, *cell,
+                {.radius_m = site_.footprint_m(), .wheel_m = 2.0 * site_.rover.wheel_radius_m});
+  const double apart = std::max(site_.elevation_m.cell_m / site_.rover.wheelbase_m, 1.0);
+  findings.add("step", at, step_m - (1.0 + 1e-3) * apart * site_.rover.clearance_m);
   findings.add("roughness", at, plane.roughness_m - (1.0 + 1e-3) * larger * site_.rover.clearance_m / 3.0);
   if (!at.turning) equilibrium(at, {along, across}, findings);
 }

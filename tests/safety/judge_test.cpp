@@ -189,6 +189,16 @@ TEST(SafetyJudge, AnEdgeUnderTheRoverIsCharged) {
   EXPECT_TRUE(causes(site, kEast).contains("relief"));
 }
 
+// Of a sheer edge of 0.32 m, above the clearance of 0.3 m, the plane under the rover leaves less than the limit.
+TEST(SafetyJudge, ASheerStepIsChargedThatThePlaneHides) {
+  Site site = plain();
+  site.rover.clearance_m = 0.3;
+  for (int row = 0; row < 40; ++row) setCells(site.elevation_m, {20, row}, {39, row}, 0.32);
+  EXPECT_TRUE(causes(site, kEast).contains("step"));
+  EXPECT_FALSE(causes(site, kEast).contains("relief"));
+  EXPECT_EQ(causes(plain(0.1), kEast), Causes{});
+}
+
 TEST(SafetyJudge, EvidenceOfWeakGroundIsCharged) {
   // Wheels that slipped 0.5 on the flat, where loam pulls 0.15: it was so much weaker there.
   std::vector<JournalRow> rows;
