@@ -181,6 +181,8 @@ void visitRover(V& v, R& rover) {
   v("rover.track_m", rover.track_m);
   v("rover.clearance_m", rover.clearance_m);
   v("rover.centre_of_mass_height_m", rover.centre_of_mass_height_m);
+  v.added("rover.centre_of_mass_ahead_m", rover.centre_of_mass_ahead_m);
+  v.added("rover.centre_of_mass_left_m", rover.centre_of_mass_left_m);
   v("rover.max_pitch_rad", rover.max_pitch_rad);
   v("rover.max_roll_rad", rover.max_roll_rad);
   v("rover.max_torque_Nm", rover.max_torque_Nm);

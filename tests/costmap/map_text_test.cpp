@@ -49,6 +49,20 @@ TEST(MapText, ComesBackToTheSameBits) {
   EXPECT_EQ(written(back), written(example()));
 }
 
+// Property: where the mass lies is kept; a rover read with it in the middle would tip later than the one that drives.
+TEST(MapText, KeepsWhereTheMassLies) {
+  MapText text = example();
+  text.ground.rover.centre_of_mass_ahead_m = 0.07;
+  text.ground.rover.centre_of_mass_left_m = -0.03;
+  const std::string lines = written(text);
+  const terramech::Rover back = parsed(lines, "m").ground.rover;
+  EXPECT_EQ(back.centre_of_mass_ahead_m, 0.07);
+  EXPECT_EQ(back.centre_of_mass_left_m, -0.03);
+  // A map without the two lines is of a rover whose mass lies in the middle.
+  const std::string older = replaced(lines, "rover.centre_of_mass_left_m -0.03\n", "");
+  EXPECT_EQ(parsed(older, "m").ground.rover.centre_of_mass_left_m, 0.0);
+}
+
 // Property: every field of the coordinate system is kept; a planetocentric latitude read as a geographic one
 // is up to 20 km off on Mars.
 TEST(MapText, KeepsTheWholeCoordinateSystem) {
