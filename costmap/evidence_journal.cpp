@@ -1,8 +1,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <limits>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include <sqlite3.h>
@@ -102,10 +105,6 @@ JournalRow readRow(sqlite3_stmt* row) {
   return out;
 }
 
-}  // namespace
-
-namespace {
-
 // What no wheel gives: ground pulls no hundred times the load, no wheel sinks a hundred radii.
 constexpr double kGreatestShare = 100.0;
 constexpr double kGreatestPlace_m = 1e9;
@@ -147,7 +146,28 @@ void EvidenceJournal::Close::operator()(sqlite3_stmt* statement) const noexcept 
   sqlite3_finalize(statement);
 }
 
+namespace {
+
+// SQLite takes a file of a few bytes for a new database: the drives of one that was cut would be lost in silence.
+void requireJournalOrNothing(const std::string& path) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  if (fs::exists(path, error) && !fs::is_regular_file(path, error))
+    throw InputError({path, "is a folder, a device, a FIFO or a socket", "give a file"});
+  const std::uintmax_t size = fs::file_size(path, error);
+  if (error || size == 0) return;
+  constexpr std::string_view kStart("SQLite format 3\0", 16);
+  std::array<char, kStart.size()> start{};
+  std::ifstream(path, std::ios::binary).read(start.data(), start.size());
+  if (std::string_view(start.data(), start.size()) != kStart)
+    throw InputError(
+        {path, "is no evidence journal, or was cut", "name the journal, or a file that does not exist"});
+}
+
+}  // namespace
+
 EvidenceJournal::EvidenceJournal(const std::string& path) : path_(path) {
+  requireJournalOrNothing(path);
   sqlite3* opened = nullptr;
   const int result = sqlite3_open(path.c_str(), &opened);
   database_.reset(opened);

@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <istream>
 #include <ostream>
@@ -311,6 +312,9 @@ TraversabilityMap readMap(std::istream& stream, const MapReading& reading, const
 }
 
 TraversabilityMap readMap(const std::string& path, int threads, const ProgressMonitor& watch) {
+  std::error_code error;
+  if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error))
+    throw InputError({path, "is a folder, a device, a FIFO or a socket", "give a file"});
   std::ifstream stream(path, std::ios::binary);
   if (!stream) throw InputError({path, "cannot be opened", "check the path"});
   return readMap(stream, {.name = path, .threads = threads}, watch);

@@ -2,10 +2,11 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <fstream>
 #include <limits>
+#include <numeric>
 #include <sstream>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -18,6 +19,7 @@ namespace {
 
 constexpr unsigned kDepth = 16;
 constexpr double kCentre = 32768.0;
+constexpr double kFinest_m = 1e-3, kCoarsest_m = 1e6;
 constexpr std::size_t kMostColumns = 400'000'000;
 
 struct Header {
@@ -123,36 +125,55 @@ Box boxOf(const std::vector<Leaf>& leaves) {
   return box;
 }
 
-// The occupied voxels of a column from `low` to `high`, both included.
+// Occupied voxels of a column from `low` to `high`, both included.
 struct Run {
-  std::uint32_t column, low, high;
+  std::uint16_t low, high;
 };
 
-// Runs by column, then upwards.
-std::vector<Run> runsOf(const std::vector<Leaf>& leaves, const maps::Grid& grid, const Box& box) {
+// Runs of all columns; those of column c are [first[c], first[c + 1]).
+struct Columns {
+  std::vector<std::uint32_t> first;
   std::vector<Run> runs;
+};
+
+template <typename Visit>
+void forEachColumn(const Leaf& leaf, const maps::Grid& grid, const Box& box, Visit visit) {
+  for (std::uint32_t y = leaf.y - box.y0; y < leaf.y - box.y0 + leaf.side; ++y)
+    for (std::uint32_t x = leaf.x - box.x0; x < leaf.x - box.x0 + leaf.side; ++x)
+      visit(grid.index({static_cast<int>(x), static_cast<int>(y)}));
+}
+
+// Counted, then filled: a cube of side s has s^2 runs, too many to sort as one list. Each column runs upwards.
+Columns columnsOf(const std::vector<Leaf>& leaves, const maps::Grid& grid, const Box& box) {
+  Columns columns{.first = std::vector<std::uint32_t>(grid.size() + 1, 0U), .runs = {}};
   for (const Leaf& leaf : leaves)
-    for (std::uint32_t y = leaf.y - box.y0; y < leaf.y - box.y0 + leaf.side; ++y)
-      for (std::uint32_t x = leaf.x - box.x0; x < leaf.x - box.x0 + leaf.side; ++x) {
-        const std::size_t column = grid.index({static_cast<int>(x), static_cast<int>(y)});
-        runs.push_back({static_cast<std::uint32_t>(column), leaf.z, leaf.z + leaf.side - 1});
-      }
-  std::sort(runs.begin(), runs.end(),
-            [](const Run& a, const Run& b) { return std::tie(a.column, a.low) < std::tie(b.column, b.low); });
-  return runs;
+    forEachColumn(leaf, grid, box, [&](std::size_t column) { ++columns.first[column + 1]; });
+  std::partial_sum(columns.first.begin(), columns.first.end(), columns.first.begin());
+  columns.runs.resize(columns.first.back());
+  for (const Leaf& leaf : leaves) {
+    const Run run{static_cast<std::uint16_t>(leaf.z), static_cast<std::uint16_t>(leaf.z + leaf.side - 1)};
+    forEachColumn(leaf, grid, box, [&](std::size_t column) { columns.runs[columns.first[column]++] = run; });
+  }
+  // Filling moved each first to the next column's.
+  std::copy_backward(columns.first.begin(), columns.first.end() - 1, columns.first.end());
+  columns.first.front() = 0;
+  for (std::size_t c = 0; c + 1 < columns.first.size(); ++c)
+    std::sort(columns.runs.begin() + columns.first[c], columns.runs.begin() + columns.first[c + 1],
+              [](const Run& a, const Run& b) { return a.low < b.low; });
+  return columns;
 }
 
 // Keys of the voxels of each column that have headroom, lowest first, in the order of columns.
-std::vector<Floor> groundOf(const std::vector<Run>& runs, double resolution_m) {
-  const auto headroom =
-      std::max(2U, static_cast<std::uint32_t>(std::ceil(Floors::kHeadroom_m / resolution_m)));
+std::vector<Floor> groundOf(const Columns& columns, double resolution_m) {
+  const double headroom = std::max(2.0, std::ceil(Floors::kHeadroom_m / resolution_m));
   std::vector<Floor> ground;
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    const bool last = i + 1 == runs.size() || runs[i + 1].column != runs[i].column;
-    if (!last && runs[i + 1].low <= runs[i].high + headroom) continue;
-    ground.push_back({.cell = runs[i].column,
-                      .height_m = static_cast<float>((runs[i].high + 0.5 - kCentre) * resolution_m)});
-  }
+  for (std::size_t c = 0; c + 1 < columns.first.size(); ++c)
+    for (std::uint32_t i = columns.first[c]; i < columns.first[c + 1]; ++i) {
+      const double high = columns.runs[i].high;
+      if (i + 1 < columns.first[c + 1] && columns.runs[i + 1].low <= high + headroom) continue;
+      ground.push_back({.cell = static_cast<std::uint32_t>(c),
+                        .height_m = static_cast<float>((high + 0.5 - kCentre) * resolution_m)});
+    }
   return ground;
 }
 
@@ -177,6 +198,8 @@ std::vector<Leaf> leavesOf(std::istream& stream, const Header& header, const std
 }  // namespace
 
 std::optional<std::string> octomapType(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return std::nullopt;  // a FIFO would wait
   std::ifstream stream(path, std::ios::binary);
   std::array<char, 18> start{};
   if (!stream.read(start.data(), start.size()) ||
@@ -196,6 +219,10 @@ OctomapGround octomapGround(std::istream& stream, const std::string& name, doubl
   if (header->type != "OcTree" && header->type != "ColorOcTree")
     throw InputError(
         {name, "OctoMap tree of type '" + header->type + "'", "give one of type OcTree or ColorOcTree"});
+  if (header->resolution_m < kFinest_m || header->resolution_m > kCoarsest_m)
+    throw InputError({name,
+                      "voxels of " + std::to_string(header->resolution_m) + " m; must be 0.001 m to 1000 km",
+                      "write the octree in metres"});
   const std::vector<Leaf> leaves = leavesOf(stream, *header, name);
   if (leaves.empty()) throw InputError({name, "holds no occupied voxel", "check the octree in octovis"});
   const Box box = boxOf(leaves);
@@ -207,10 +234,13 @@ OctomapGround octomapGround(std::istream& stream, const std::string& name, doubl
   if (grid.size() > kMostColumns)
     throw InputError(
         {name, std::to_string(grid.size()) + " columns, more than 4e8", "crop it or lower its resolution"});
-  double columns = 0.0;  // a leaf may be a cube of 65536 voxels
-  for (const Leaf& leaf : leaves) columns += static_cast<double>(leaf.side) * static_cast<double>(leaf.side);
-  maps::requireMemory(columns * sizeof(Run) + 8.0 * static_cast<double>(grid.size()), name);
-  std::vector<Floor> ground = groundOf(runsOf(leaves, grid, box), grid.resolution_m);
+  double runs = 0.0;  // a leaf may be a cube of 65536 voxels
+  for (const Leaf& leaf : leaves) runs += static_cast<double>(leaf.side) * static_cast<double>(leaf.side);
+  if (runs > static_cast<double>(kMostColumns))
+    throw InputError(
+        {name, "its cubes hold more than 4e8 columns of voxels", "crop it or lower its resolution"});
+  maps::requireMemory(runs * (sizeof(Run) + sizeof(Floor)) + 8.0 * static_cast<double>(grid.size()), name);
+  std::vector<Floor> ground = groundOf(columnsOf(leaves, grid, box), grid.resolution_m);
   maps::Raster<float> surface = takeSurface(ground, grid, ceiling_m);
   if (maps::validFraction(surface) == 0.0)
     throw InputError({name, "no ground at or below " + std::to_string(ceiling_m) + " m", "increase --below"});

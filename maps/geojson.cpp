@@ -1,8 +1,13 @@
 // RFC 7946, with one word of our own: "crs": "local" for map metres.
 #include <cmath>
 #include <fstream>
+#include <functional>
+#include <optional>
+#include <set>
+#include <vector>
 
 #include <nlohmann/json.hpp>
+#include <ogr_spatialref.h>
 
 #include <talus/maps/gdal_dataset.hpp>
 #include <talus/maps/geojson.hpp>
@@ -38,30 +43,83 @@ void collect(const json& object, std::vector<json>& out) {
     out.push_back(object);
 }
 
+const json* memberOf(const json& object, const char* name) {
+  if (!object.is_object()) return nullptr;
+  const auto found = object.find(name);
+  return found == object.end() || found->is_null() ? nullptr : &*found;
+}
+
 // The word stands at the top, as the routes have it, or among a feature's properties.
 bool saysLocal(const json& document) {
-  const auto is_local = [](const json& object) {
-    return object.is_object() && object.contains("crs") && object["crs"] == "local";
+  const auto is_local = [](const json* object) {
+    const json* crs = object == nullptr ? nullptr : memberOf(*object, "crs");
+    return crs != nullptr && *crs == "local";
   };
-  if (is_local(document)) return true;
-  if (document.contains("properties") && is_local(document["properties"])) return true;
-  const auto features = document.find("features");
-  return features != document.end() && features->is_array() && !features->empty() &&
-         features->front().is_object() && features->front().contains("properties") &&
-         is_local(features->front()["properties"]);
+  if (is_local(&document) || is_local(memberOf(document, "properties"))) return true;
+  const json* features = memberOf(document, "features");
+  return features != nullptr && features->is_array() && !features->empty() &&
+         is_local(memberOf(features->front(), "properties"));
 }
+
+// The name of a "crs" at the top, as GeoJSON had it before RFC 7946: {"type":"name","properties":{"name":NAME}}.
+std::optional<std::string> crsName(const json& document) {
+  const json* crs = memberOf(document, "crs");
+  if (crs == nullptr) return std::nullopt;
+  if (crs->is_string()) return crs->get<std::string>();
+  const json* properties = memberOf(*crs, "properties");
+  const json* name = properties == nullptr ? nullptr : memberOf(*properties, "name");
+  return name != nullptr && name->is_string() ? name->get<std::string>() : crs->dump();
+}
+
+// Its positions are longitude and latitude then; the name comes from a file: no file and no network is asked for it.
+bool isGeographic(const std::string& crs) {
+  const GdalErrors errors;
+  OGRSpatialReference system;
+  return system.SetFromUserInput(crs.c_str(), OGRSpatialReference::SET_FROM_USER_INPUT_LIMITATIONS) ==
+             OGRERR_NONE &&
+         system.IsGeographic() != 0;
+}
+
+void checkCrs(const json& document, bool map_has_crs, const std::string& path) {
+  if (saysLocal(document)) return;
+  const auto crs = crsName(document);
+  if (!crs) return;
+  const std::string named = "its crs is '" + crs->substr(0, 80) + "'";
+  if (!map_has_crs)
+    throw InputError({path, named + ", and the map has none", "write map metres and \"crs\": \"local\""});
+  if (!isGeographic(*crs))
+    throw InputError({path, named + ", positions are read as longitude and latitude only",
+                      "transform it, or write map metres and \"crs\": \"local\""});
+}
+
+// The last of two members of one name would silently win.
+class OnceEach {
+ public:
+  explicit OnceEach(const std::string& path) : path_(path) {}
+
+  bool operator()(int depth, json::parse_event_t event, const json& value) {
+    if (depth > kDeepest)
+      throw InputError({path_, "nests deeper than " + std::to_string(kDeepest) + " levels", "see RFC 7946"});
+    if (event == json::parse_event_t::object_start) names_.emplace_back();
+    if (event == json::parse_event_t::object_end) names_.pop_back();
+    if (event == json::parse_event_t::key && !names_.back().insert(value.get<std::string>()).second)
+      throw InputError({path_, "has \"" + value.get<std::string>().substr(0, 80) + "\" twice in one object",
+                        "remove one"});
+    return true;
+  }
+
+ private:
+  const std::string& path_;
+  std::vector<std::set<std::string>> names_;
+};
 
 }  // namespace
 
 json readGeoJson(const std::string& path) {
   requireReadableFile(path);
   std::ifstream file(path);
-  const auto shallow = [&](int depth, json::parse_event_t, const json&) {
-    if (depth > kDeepest)
-      throw InputError({path, "nests deeper than " + std::to_string(kDeepest) + " levels", "see RFC 7946"});
-    return true;
-  };
-  json document = json::parse(file, shallow, false);
+  OnceEach check(path);
+  json document = json::parse(file, std::ref(check), false);
   if (document.is_discarded())
     throw InputError({path, "is not JSON", "check it for a missing bracket or comma"});
   if (typeOf(document).empty())
@@ -77,7 +135,9 @@ std::vector<json> geometries(const json& document) {
 
 PositionReader::PositionReader(const json& document, const ElevationMap& map, std::string path)
     : georeference_(map.georeference && !saysLocal(document) ? &*map.georeference : nullptr),
-      path_(std::move(path)) {}
+      path_(std::move(path)) {
+  checkCrs(document, map.georeference.has_value(), path_);
+}
 
 Point PositionReader::operator()(const json& position) const {
   const bool numbers =

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstring>
 #include <regex>
+#include <sstream>
 
 #include <talus/maps/memory_budget.hpp>
 #include <talus/maps/numpy_array.hpp>
@@ -12,6 +13,8 @@
 
 namespace talus::maps {
 namespace {
+
+constexpr std::size_t kMostHeader = 10'000;  // as NumPy; a regular expression takes stack for each character
 
 struct Header {
   char kind = 'f';       // i, u or f
@@ -33,12 +36,18 @@ std::size_t littleEndian(const std::string& bytes, std::size_t at, std::size_t c
   return value;
 }
 
+// "2, 3", "2," or nothing.
 std::vector<std::size_t> parseShape(const std::string& text, const std::string& where) {
   std::vector<std::size_t> shape;
-  static const std::regex number("[0-9]+");
-  for (std::sregex_iterator it(text.begin(), text.end(), number), end; it != end; ++it) {
-    if (it->length() > 9) refuse(where, "array is too large");
-    shape.push_back(std::stoul(it->str()));
+  std::istringstream extents(text);
+  for (std::string extent; std::getline(extents, extent, ',');) {
+    const auto first = extent.find_first_not_of(' ');
+    if (first == extent.npos) continue;
+    extent = extent.substr(first, extent.find_last_not_of(' ') + 1 - first);
+    if (extent.find_first_not_of("0123456789") != extent.npos)
+      refuse(where, "the NumPy header has the extent '" + extent.substr(0, 20) + "'");
+    if (extent.size() > 9) refuse(where, "array is too large");
+    shape.push_back(std::stoul(extent));
   }
   return shape;
 }
@@ -49,6 +58,7 @@ Header parseHeader(const std::string& bytes, const std::string& where) {
   const std::size_t begin = 8 + length_bytes;
   const std::size_t length = littleEndian(bytes, 8, length_bytes);
   if (length > bytes.size() - begin) refuse(where, "the NumPy header is cut short");
+  if (length > kMostHeader) refuse(where, "the NumPy header is longer than 10000 characters");
   const std::string words = bytes.substr(begin, length);
   static const std::regex type("'descr': *'([<>|=])([iuf])([0-9])'");
   static const std::regex order("'fortran_order': *True");

@@ -45,15 +45,19 @@ void Interrupt::listen() {
 }
 
 void Interrupt::watch() {
-  constexpr double kCpu_s = 0.4;
-  constexpr int kPiece_ms = 20, kPieces = 150;
+  constexpr double kCpu_s = 0.4, kIdle_s = 1e-3;
+  constexpr int kPiece_ms = 20, kPieces = 150, kIdlePieces = 15;
   const double from_s = cpuTime_s();
-  for (int piece = 0; piece < kPieces || answered_; ++piece) {
+  double last_s = from_s;
+  for (int piece = 0, idle = 0; (piece < kPieces && idle < kIdlePieces) || answered_; ++piece) {
     const timespec wait{.tv_sec = 0, .tv_nsec = kPiece_ms * 1'000'000L};
     const int signal = sigtimedwait(&signals_, nullptr, &wait);
     if (closing_) return;
     if (signal > 0) break;
-    if (!answered_ && cpuTime_s() - from_s > kCpu_s) break;
+    const double now_s = cpuTime_s();
+    if (!answered_ && now_s - from_s > kCpu_s) break;
+    idle = now_s - last_s < kIdle_s ? idle + 1 : 0;
+    last_s = now_s;
   }
   maps::removeUnfinishedFiles();
   printError("talus: cancelled\n");

@@ -8,8 +8,8 @@
 namespace talus::cli {
 
 /// Turns the first SIGINT or SIGTERM into a stop request. Work that does not end by itself within 0.4 s of the process's
-/// CPU time or 3 s, and has not said that it answers, is ended; so is all work by a second signal. Files that are not
-/// finished are removed. To be made before any other thread, so that all of them leave the signals to its own.
+/// CPU time or 3 s, or takes none for 0.3 s (it waits, as for a FIFO), and has not said that it answers, is ended; so is
+/// all work by a second signal. Files that are not finished are removed. To be made before any other thread, so that all of them leave the signals to its own.
 class Interrupt {
  public:
   Interrupt();

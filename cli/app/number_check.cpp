@@ -31,17 +31,34 @@ bool isImpossible(std::string_view word) {
   return !whole && !plausible(value);
 }
 
+// Whether a word would be taken for another number than it shows: 0x10 for 16, 010 for 8.
+bool isNotDecimal(std::string_view word) {
+  if (word.starts_with('-') || word.starts_with('+')) word.remove_prefix(1);
+  if (word.size() < 2 || word[0] != '0') return false;
+  if (word[1] == 'x' || word[1] == 'X') {
+    const std::string text(word);
+    char* end = nullptr;
+    std::strtod(text.c_str(), &end);
+    return end == text.c_str() + text.size();
+  }
+  return word.find_first_not_of("0123456789") == word.npos;
+}
+
 }  // namespace
 
 void checkNumbers(const CLI::App& command) {
   for (const CLI::Option* option : command.get_options()) {
     if (option->empty()) continue;
     for (const std::string& result : option->results()) {
+      const auto refuse = [&](const std::string& word, const char* reason) {
+        throw InputError(
+            {fmt::format("{} {}", option->get_name(), result), reason, "a file of that name is ./" + word});
+      };
       std::istringstream words(result);
-      for (std::string word; std::getline(words, word, ',');)
-        if (isImpossible(word))
-          throw InputError({fmt::format("{} {}", option->get_name(), result), kPlausible,
-                            "a file of that name is ./" + word});
+      for (std::string word; std::getline(words, word, ',');) {
+        if (isImpossible(word)) refuse(word, kPlausible);
+        if (isNotDecimal(word)) refuse(word, "must be decimal, without leading zeros");
+      }
     }
   }
 }

@@ -10,6 +10,7 @@
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/ground/site_description.hpp>
 #include <talus/maps/geotiff_writer.hpp>
+#include <talus/maps/memory_budget.hpp>
 #include <talus/maps/site_generator.hpp>
 #include <talus/talus.hpp>
 
@@ -72,15 +73,17 @@ struct Paths {
   std::string map, classes, rocks, soils;
 };
 
-Paths write(const maps::Site& site, maps::SiteKind kind, const std::string& output) {
-  Paths paths{output, beside(output, "_classes.tif"), beside(output, "_rocks.tif"),
-              beside(output, "_soils.yaml")};
+Paths pathsOf(const std::string& output) {
+  return {output, beside(output, "_classes.tif"), beside(output, "_rocks.tif"),
+          beside(output, "_soils.yaml")};
+}
+
+void write(const maps::Site& site, maps::SiteKind kind, const Paths& paths) {
   const maps::Georeference* georeference = &*site.map.georeference;
   maps::writeGeoTiff({paths.map, georeference}, {{"elevation", "m", site.map.elevation_m}});
   maps::writeGeoTiff({paths.classes, georeference}, "terrain class", site.classes, std::nullopt);
   maps::writeGeoTiff({paths.rocks, georeference}, {{"rock abundance", "", site.rock_abundance}});
   writeFile(paths.soils, kind == maps::SiteKind::Craters ? kLunarSoils : kMartianSoils);
-  return paths;
 }
 
 bool isDescription(const std::string& site) {
@@ -123,10 +126,16 @@ void bind(CLI::App& command, Options& options) {
 
 int run(const Options& options, Context& context) {
   const maps::SiteOptions wanted = siteOptions(options, context);
+  const Paths paths = pathsOf(options.output);
+  if (!context.force)
+    for (const std::string& path : {paths.classes, paths.rocks, paths.soils})
+      checkOutput(path, {options.site, options.output});
   const OutputFile folder_can_be_written(options.output);
+  constexpr double kBytesPerCell = 32.0;  // measured
+  maps::requireMemory(kBytesPerCell * wanted.width * wanted.height, "--size");
   const maps::Site site = maps::generateSite(wanted, context.watch("site"));
   if (context.stop.stop_requested()) return Exit::kCancelled;
-  const Paths paths = write(site, wanted.kind, options.output);
+  write(site, wanted.kind, paths);
   if (context.json)
     printJson({{"map", paths.map},
                {"classes", paths.classes},

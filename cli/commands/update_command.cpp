@@ -1,6 +1,7 @@
 // talus update MAP.ot T.csv -o MAP2.ot: put a drive's telemetry into a map.
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <optional>
@@ -90,6 +91,10 @@ Difference between(const Snapshot& before, const Snapshot& after) {
 }
 
 void checkCall(const Options& options) {
+  std::error_code error;
+  if (options.replay && (std::filesystem::file_size(options.journal, error) == 0 || error))
+    throw InputError(
+        {options.journal, "holds nothing to replay", "name the journal that the drives went into"});
   if (options.telemetry.empty() == options.replay) return;
   throw InputError({options.replay ? options.telemetry : "talus update",
                     options.replay ? "telemetry and --replay together" : "no telemetry",

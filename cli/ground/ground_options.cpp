@@ -124,6 +124,11 @@ std::vector<std::string> filesOf(const GroundOptions& options) {
   return files;
 }
 
+// Whether no elevation map stands beside the built one.
+bool isBuiltAlone(const GroundOptions& options, const std::string& path) {
+  return options.dem.path.empty() || options.dem.path == path || isBeliefMap(options.dem.path);
+}
+
 auto fieldsOf(const costmap::DrivePolicy& p) {
   return std::tie(p.allow_marginal, p.allow_dangerous, p.allow_unknown, p.slope_margin_rad,
                   p.sinkage_threshold, p.sinkage_critical, p.max_immobilisation, p.pose_error_m,
@@ -131,7 +136,8 @@ auto fieldsOf(const costmap::DrivePolicy& p) {
                   p.correlation_length_m);
 }
 
-// A built map has its own layers, soils, rover and policy: what would be ignored to the rover's harm is refused.
+// A built map has its own grid, layers, soils, rover and policy: nothing that a call says of them is ignored. Beside an
+// elevation map they may say what that one is read with, and what the built one was built with.
 void checkAgainstMap(const GroundOptions& options, const std::string& path, const Context& context) {
   if (!options.layers.keep_out.empty())
     throw InputError({path, "is a built map, on which --keep-out has no effect",
@@ -139,15 +145,38 @@ void checkAgainstMap(const GroundOptions& options, const std::string& path, cons
   if (fieldsOf(options.policy) != fieldsOf(costmap::DrivePolicy{}))
     throw InputError({path, "is a built map, on which options of thresholds, weights and risk have no effect",
                       "give them to talus costmap, or plan on the elevation map"});
-  const std::pair<const char*, bool> given[] = {{"--terrain", !options.layers.terrain.empty()},
-                                                {"--rocks", !options.layers.rocks.empty()},
-                                                {"--soils", !options.soils.empty()},
-                                                {"--soil", !options.soil.empty()},
-                                                {"--model", !options.model.empty()},
-                                                {"--rover", !options.rover.empty()},
-                                                {"--footprint", options.footprint_m != 0.0}};
-  for (const auto& [name, present] : given)
-    if (present) context.warn(std::string(name) + " has no effect: " + path + " has its own");
+  const bool alone = isBuiltAlone(options, path);
+  if (alone) refuseReadOptions(options.dem);
+  const std::pair<std::string, bool> given[] = {
+      {"--below", alone && options.dem.below_m.has_value()},
+      {"--terrain", !options.layers.terrain.empty() || options.layers.terrain_band},
+      {"--rocks", !options.layers.rocks.empty() || options.layers.rocks_band},
+      {"--soils", !options.soils.empty()},
+      {"--soil", !options.soil.empty()},
+      {"--model", !options.model.empty()},
+      {"--footprint", options.footprint_m != 0.0}};
+  for (const auto& [name, present] : given) {
+    if (!present) continue;
+    if (alone)
+      throw InputError({path, "is a built map, on which " + name + " has no effect",
+                        "give " + name + " to talus costmap, or plan on the elevation map"});
+    context.warn(name + " has no effect: " + path + " has its own");
+  }
+}
+
+// What a map was built for, and what a call says: slopes, costs and shapes of one rover are no other's.
+void checkSameRover(const GroundOptions& options, const terramech::Rover& own, const std::string& path) {
+  if (options.rover.empty()) return;
+  const auto fields = [](const terramech::Rover& r) {
+    return std::tie(r.mass_kg, r.gravity_m_s2, r.wheel_count, r.wheel.radius_m, r.wheel.width_m,
+                    r.wheel.grouser_height_m, r.wheel.grouser_count, r.wheelbase_m, r.track_m, r.clearance_m,
+                    r.centre_of_mass_height_m, r.centre_of_mass_ahead_m, r.centre_of_mass_left_m,
+                    r.max_pitch_rad, r.max_roll_rad, r.max_torque_Nm, r.max_speed_mps, r.turning_radius_m,
+                    r.hotel_power_W, r.steering);
+  };
+  if (fields(terramech::loadRover(options.rover)) != fields(own))
+    throw InputError({path, "was built for rover '" + own.name + "', not for --rover " + options.rover,
+                      "build a map for that one with talus costmap"});
 }
 
 // An elevation map beside a built one says which site is meant: routes over one's slopes are none over the other's.
@@ -173,8 +202,7 @@ void checkSameSite(const maps::ElevationMap& dem, const costmap::TraversabilityM
 // The elevation map that is given beside a built one; none where it cannot be read as the call has it.
 std::optional<maps::ElevationMap> siteOf(const GroundOptions& options, const std::string& path,
                                          const Context& context) {
-  if (options.dem.path.empty() || options.dem.path == path || isBeliefMap(options.dem.path))
-    return std::nullopt;
+  if (isBuiltAlone(options, path)) return std::nullopt;
   try {
     return readMapWithFloors(options.dem, context).elevation;
   } catch (const InputError& e) {
@@ -187,6 +215,7 @@ Ground fromMapFile(const GroundOptions& options, const std::string& path, const 
   checkAgainstMap(options, path, context);
   const auto begin = Clock::now();
   Ground ground{costmap::readMap(path, context.workers(), context.watch("read map")), filesOf(options)};
+  checkSameRover(options, ground.map.model().rover(), path);
   if (const auto dem = siteOf(options, path, context)) checkSameSite(*dem, ground.map, path);
   ground.load_s = since_s(begin);
   return ground;

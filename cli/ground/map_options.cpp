@@ -1,10 +1,12 @@
 #include <limits>
+#include <string>
 #include <utility>
 
 #include <CLI/CLI.hpp>
 
 #include <talus/cli/app/context.hpp>
 #include <talus/cli/app/help_format.hpp>
+#include <talus/cli/app/number_check.hpp>
 #include <talus/cli/ground/map_options.hpp>
 #include <talus/costmap/map_file.hpp>
 #include <talus/costmap/octomap_surface.hpp>
@@ -42,19 +44,35 @@ void addReadOptions(CLI::App& command, MapOptions& options) {
       ->type_name("METRES");
   command.add_option("--max-cells", read.max_cells, "largest accepted map, in cells")
       ->type_name("N")
+      ->check(within(1.0, 1e15))
       ->capture_default_str();
   groupOptions(command, "Elevation map");
 }
 
+void refuseReadOptions(const MapOptions& options) {
+  const maps::ReadOptions& read = options.read;
+  const std::pair<const char*, bool> given[] = {
+      {"--band", read.band.has_value()},
+      {"--resolution", read.resolution_m.has_value()},
+      {"--window", !options.window.empty()},
+      {"--nodata", read.nodata.has_value()},
+      {"--vertical-scale", read.vertical_scale != maps::ReadOptions{}.vertical_scale},
+      {"--ignore-crs", read.ignore_crs},
+      {"--max-cells", read.max_cells != maps::ReadOptions{}.max_cells}};
+  for (const auto& [name, present] : given)
+    if (present)
+      throw InputError({options.path,
+                        std::string("has a grid of its own, on which ") + name + " has no effect",
+                        std::string("remove ") + name});
+}
+
 namespace {
 
-// An OctoMap brings its own grid; what says how to read a raster means nothing to it.
 MapWithFloors fromOctomap(const MapOptions& options, const std::string& type, const Context& context) {
-  const maps::ReadOptions& read = options.read;
-  if (read.band || read.resolution_m || read.nodata || read.ignore_crs || !options.window.empty())
-    context.warn(options.path +
-                 ": an OctoMap has its own grid; --band, --resolution, --window, --nodata and "
-                 "--ignore-crs are not used");
+  refuseReadOptions(options);
+  if (type == "TraversabilityTree" && options.below_m)
+    throw InputError({options.path, "--below selects a level of a point cloud, and this is a built map",
+                      "give --below to talus costmap"});
   if (type == "TraversabilityTree")
     return {costmap::readMap(options.path, context.workers(), context.watch("read map")).elevation(), {}};
   auto ground =

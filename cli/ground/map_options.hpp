@@ -31,6 +31,9 @@ void addReadOptions(CLI::App& command, MapOptions& options);
 /// Declares the positional DEM (or what `name` calls it) and addReadOptions().
 void addMapOptions(CLI::App& command, MapOptions& options, const std::string& name = "DEM");
 
+/// Refuses what says how to read a raster: an OctoMap and a built map bring their own grid. @throws InputError
+void refuseReadOptions(const MapOptions& options);
+
 /// Reads the map; what the reader decided goes to stderr as warnings. @throws InputError
 maps::ElevationMap readMap(const MapOptions& options, const Context& context);
 

@@ -88,6 +88,13 @@ void requireNear(const std::vector<Point>& points, const maps::Grid& grid, const
                        i + 1, points[i].x_m, points[i].y_m, around_m),
            "check the coordinate system"});
   }
+  constexpr double kMostCells = 4e6;  // from one far corner to the other
+  double length_m = 0.0;
+  for (std::size_t i = 1; i < points.size(); ++i)
+    length_m += std::hypot(points[i].x_m - points[i - 1].x_m, points[i].y_m - points[i - 1].y_m);
+  if (length_m > kMostCells * grid.resolution_m)
+    throw InputError(
+        {path, fmt::format("is {:.6g} m long, more than 4 million cells", length_m), "split it"});
 }
 
 }  // namespace

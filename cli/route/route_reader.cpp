@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <utility>
@@ -9,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include <talus/cli/route/route_reader.hpp>
+#include <talus/maps/gdal_dataset.hpp>
 #include <talus/talus.hpp>
 
 namespace talus::cli {
@@ -75,8 +77,8 @@ class Fields {
 };
 
 json parsed(const std::string& path) {
+  maps::requireReadableFile(path);
   std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw InputError({.where = path, .reason = "cannot be opened", .remedy = "check the path"});
   json document = json::parse(stream, nullptr, false);
   if (document.is_discarded())
     throw InputError({.where = path, .reason = "is not valid JSON", .remedy = kRemedy});
@@ -173,6 +175,8 @@ std::vector<RouteInput> inputsOf(const json& properties) {
 }  // namespace
 
 bool looksLikeJson(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return false;  // a FIFO would wait
   std::ifstream stream(path, std::ios::binary);
   char c = ' ';
   while (std::isspace(static_cast<unsigned char>(c)) != 0 && stream.get(c)) continue;

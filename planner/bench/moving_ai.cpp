@@ -23,8 +23,19 @@ std::shared_ptr<const costmap::DriveCost> flatCost() {
   throw InputError({path + ":" + std::to_string(line), reason, "see movingai.com/benchmarks/formats.html"});
 }
 
+// A stream that fails for what is no regular file: a FIFO would wait.
+std::ifstream opened(const std::string& path) {
+  std::error_code error;
+  std::ifstream file;
+  if (std::filesystem::is_regular_file(path, error))
+    file.open(path);
+  else
+    file.setstate(std::ios::failbit);
+  return file;
+}
+
 std::shared_ptr<const costmap::CostGrid> readMap(const std::string& path) {
-  std::ifstream file(path);
+  std::ifstream file = opened(path);
   if (!file) throw InputError({path, "cannot be read", "put the scenario's map beside it"});
   std::string word, type;
   maps::Grid grid;
@@ -45,7 +56,7 @@ std::shared_ptr<const costmap::CostGrid> readMap(const std::string& path) {
 }
 
 std::vector<Scenario> readScenarios(const std::string& path) {
-  std::ifstream file(path);
+  std::ifstream file = opened(path);
   std::string line;
   if (!file || !std::getline(file, line))
     throw InputError({path, "cannot be read", "name a MovingAI .scen file"});

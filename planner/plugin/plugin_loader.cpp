@@ -1,6 +1,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <functional>
 #include <utility>
 
 #include <boost/dll/shared_library.hpp>
@@ -15,9 +16,9 @@
 namespace talus::planner {
 namespace {
 
-// What a library does while it is loaded, which a truncated or foreign one does not survive, is tried by a child first:
-// its end is told by a signal. It may take 10 s of CPU time.
-void requireLoadable(const std::string& path) {
+// What a library does while it is loaded and makes its planner, which a truncated or foreign one does not survive, is
+// tried by a child first: its end is told by a signal. It may take 10 s of CPU time.
+void requireLoadable(const std::string& path, const std::function<void()>& load) {
   const pid_t child = ::fork();
   if (child < 0)
     throw InputError({path, std::string("cannot be tried: ") + std::strerror(errno), "free some memory"});
@@ -26,7 +27,10 @@ void requireLoadable(const std::string& path) {
     ::setrlimit(RLIMIT_CORE, &no_core);
     ::setrlimit(RLIMIT_CPU, &cpu);
     for (const int signal : {SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT}) ::signal(signal, SIG_DFL);
-    ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+    try {
+      load();
+    } catch (...) {  // told by the parent, which meets it too
+    }
     ::_exit(0);
   }
   int status = 0;
@@ -43,7 +47,6 @@ boost::dll::shared_library opened(const std::string& path) {
   if (!boost::dll::fs::is_regular_file(path, error))
     throw InputError({path, "no such file", "name a planner's shared library (.so)"});
   boost::dll::shared_library library;
-  requireLoadable(boost::dll::fs::absolute(path).string());
   // A path without a folder would be searched for in the system's library folders instead.
   library.load(boost::dll::fs::absolute(path), error);
   if (error || !library.is_loaded())
@@ -88,13 +91,18 @@ class Loaded final : public GlobalPlanner {
   std::unique_ptr<GlobalPlanner> planner_;
 };
 
-}  // namespace
-
-std::unique_ptr<GlobalPlanner> loadPlugin(const std::string& path) {
+std::unique_ptr<GlobalPlanner> loaded(const std::string& path) {
   auto library = std::make_shared<boost::dll::shared_library>(opened(path));
   requireInterface(*library, path);
   auto planner = library->get_alias<GlobalPlanner>("talus_planner").create();
   return std::make_unique<Loaded>(std::move(library), std::move(planner));
+}
+
+}  // namespace
+
+std::unique_ptr<GlobalPlanner> loadPlugin(const std::string& path) {
+  requireLoadable(path, [&] { loaded(path); });
+  return loaded(path);
 }
 
 }  // namespace talus::planner

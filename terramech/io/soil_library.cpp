@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <stdexcept>
 
@@ -130,6 +131,11 @@ SoilPrior readSoil(const YamlFields& fields) {
   take(&Soil::shear_modulus_m, &SoilDeviation::shear_modulus_m, fields.stated("shear_modulus_m"));
   take(&Soil::c1, &SoilDeviation::c1, fields.stated("c1", defaults.c1));
   take(&Soil::c2, &SoilDeviation::c2, fields.stated("c2", defaults.c2));
+  // theta_m / theta_1 = c1 + c2 slip lies in [0, 1], without slip as well as at all slip.
+  if (soil.mean.c1 < 0.0 || soil.mean.c1 > 1.0)
+    fields.refuse("c1", "c1 must be 0 to 1: the peak of the stress lies in the contact", "check it");
+  if (std::abs(soil.mean.c2) > 1.0)
+    fields.refuse("c2", "c2 must be -1 to 1: the peak of the stress lies in the contact", "check it");
   take(&Soil::density_kg_m3, &SoilDeviation::density_kg_m3,
        fields.stated("density_kg_m3", defaults.density_kg_m3));
   take(&Soil::digging_exponent, &SoilDeviation::digging_exponent,

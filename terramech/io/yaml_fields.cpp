@@ -85,6 +85,8 @@ YamlFields YamlFields::of(const YAML::Node& node, const std::string& origin, con
 YamlFields YamlFields::file(const std::string& path) {
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) fail(path, "is a directory", "name a YAML file");
+  if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error))
+    fail(path, "is a device, a FIFO or a socket", "give a file");
   std::ifstream in(path, std::ios::binary);
   if (!in) fail(path, "cannot be read", "check the path and its permissions");
   std::string content;

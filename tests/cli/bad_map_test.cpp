@@ -1,4 +1,6 @@
 // Maps that cannot be used, told in one line by every command that reads one.
+#include <sys/stat.h>
+
 #include "bad_input.hpp"
 
 namespace talus::cli {
@@ -30,6 +32,25 @@ TEST(BadInput, ElevationMaps) {
                     {{"info", "good.asc", "--resolution", "1", "--footprint", "-1"}, 2, "footprint"},
                     {{"info", "good.asc", "--resolution", "1", "more"}, 2, "unknown argument 'more'"},
                 });
+}
+
+// Nobody writes into it: whoever opened it would wait.
+TEST(BadInput, FifosAreRefused) {
+  const BadFiles files;
+  ASSERT_EQ(::mkfifo((files.folder() / "pipe").c_str(), 0600), 0);
+  const auto ground = [](std::vector<std::string> words) {
+    words.insert(words.begin() + 1, {"good.asc", "--ignore-crs", "--resolution", "1"});
+    return words;
+  };
+  expectRefused(files,
+                {{{"info", "pipe"}, 2, "FIFO"},
+                 {{"view", "pipe", "--html", "v.html"}, 2, "FIFO"},
+                 {{"wheel", "--soil", "pipe", "--rover", "fido", "--slip", "0.2"}, 2, "FIFO"},
+                 {{"wheel", "--soil", "/dev/zero", "--rover", "fido", "--slip", "0.2"}, 2, "is a device"},
+                 {ground({"plan", "--start", "5,5", "--goal", "9,9", "--map", "pipe"}), 2, "FIFO"},
+                 {ground({"plan", "--start", "5,5", "--goal", "9,9", "--keep-out", "pipe"}), 2, "FIFO"},
+                 {{"update", "pipe", "t.csv", "-o", "m.ot"}, 2, "FIFO"},
+                 {{"bench", "pipe"}, 2, "FIFO"}});
 }
 
 }  // namespace

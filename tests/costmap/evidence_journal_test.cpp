@@ -185,6 +185,13 @@ TEST_F(EvidenceJournalTest, RefusesWhatIsNoJournal) {
   std::ofstream(path("text.db")) << std::string(5000, 'x');
   EXPECT_THROW(EvidenceJournal{path("text.db")}, InputError);
   EXPECT_THROW(EvidenceJournal{"/nonexistent/evidence.db"}, InputError);
+  // SQLite would take the first for an empty database.
+  for (const std::size_t size : {1U, 15U, 100U, 5000U}) {
+    { EvidenceJournal(path("cut.db")).append("a", {row(1), row(2)}); }
+    std::filesystem::resize_file(path("cut.db"), size);
+    EXPECT_THROW(EvidenceJournal(path("cut.db")).rows("a"), InputError) << size;
+    std::filesystem::remove(path("cut.db"));
+  }
 }
 
 // Writes rows and says after each how many are in, until it is killed.

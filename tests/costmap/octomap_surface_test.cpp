@@ -102,6 +102,38 @@ TEST(OctomapSurface, RefusesEveryTruncationAndSurvivesDamage) {
   }
 }
 
+// A tree whose only leaf is a cube `depth` steps below the root, and whose voxels are of that size.
+std::string oneCube(int depth, const std::string& resolution) {
+  std::string bytes = "# Octomap OcTree file\nid OcTree\nsize 2\nres " + resolution + "\ndata\n";
+  for (int k = 0; k < depth; ++k) bytes += std::string("\0\0\0\0\x01", 5);
+  return bytes + std::string("\0\0\x80\x3f\0", 5);
+}
+
+// Closed form: a cube of side 2^(16 - depth) from the lowest key on; its top voxel is at side - 0.5 - 2^15.
+TEST(OctomapSurface, ACubeIsAFloorAsWideAsItself) {
+  std::istringstream stream(oneCube(6, "0.1"));
+  const OctomapGround ground = octomapGround(stream, "cube.ot");
+  EXPECT_EQ(ground.surface.grid().width, 1024);
+  EXPECT_TRUE(ground.floors.empty());
+  for (const maps::Cell cell : {maps::Cell{0, 0}, maps::Cell{511, 3}, maps::Cell{1023, 1023}})
+    EXPECT_FLOAT_EQ(ground.surface.elevation_m[cell], static_cast<float>((1023.5 - 32768.0) * 0.1));
+}
+
+// Property: few bytes that state much are refused before the memory or the time is taken.
+TEST(OctomapSurface, CubesAsLargeAsTheTreeAreRefused) {
+  for (const int depth : {0, 1}) {
+    std::istringstream stream(oneCube(depth, "0.1"));
+    EXPECT_THROW(octomapGround(stream, "cube.ot"), InputError) << depth;
+  }
+}
+
+TEST(OctomapSurface, VoxelsOfImpossibleSizeAreRefused) {
+  for (const char* resolution : {"1e-300", "1e-4", "1e7", "1e308", "nan", "inf", "-0.1", ""}) {
+    std::istringstream stream(oneCube(16, resolution));
+    EXPECT_THROW(octomapGround(stream, "cube.ot"), InputError) << resolution;
+  }
+}
+
 TEST(OctomapSurface, NamesAForeignTree) {
   std::istringstream stream("# Octomap OcTree file\nid OcTreeStamped\nsize 1\nres 0.1\ndata\n");
   EXPECT_THROW(octomapGround(stream, "x.ot"), InputError);

@@ -1,3 +1,5 @@
+#include <fstream>
+
 #include <nlohmann/json.hpp>
 
 #include <talus/maps/geojson.hpp>
@@ -61,6 +63,34 @@ TEST(GeoJson, LocalMetresWhereTheDocumentSaysSoOrTheMapHasNoCrs) {
   EXPECT_EQ(PositionReader(json{{"type", "Point"}}, yard, "")(json{700.0, 800.0}), (Point{700, 800}));
 }
 
+// GeoJSON of 2008 names a CRS: positions in degrees are read, others are refused, and where the map has none, all are.
+TEST(GeoJson, ACrsIsKeptOrRefused) {
+  const auto named = [](const std::string& name) {
+    return json{{"type", "Point"}, {"crs", {{"type", "name"}, {"properties", {{"name", name}}}}}};
+  };
+  const ElevationMap map = lunarMap();
+  ElevationMap yard = map;
+  yard.georeference.reset();
+  for (const char* name : {"urn:ogc:def:crs:OGC:1.3:CRS84", "EPSG:4326"}) {
+    EXPECT_NO_THROW(PositionReader(named(name), map, "p.geojson")) << name;
+    EXPECT_THAT(refusal([&] { PositionReader(named(name), yard, "p.geojson"); }),
+                HasSubstr("and the map has none"));
+  }
+  EXPECT_THAT(refusal([&] { PositionReader(named("urn:ogc:def:crs:EPSG::32633"), map, "p.geojson"); }),
+              HasSubstr("longitude and latitude only"));
+  const std::string file = testing::TempDir() + "crs.prj";
+  std::ofstream(file)
+      << R"(GEOGCS["x",DATUM["d",SPHEROID["s",1737400,0]],PRIMEM["p",0],UNIT["degree",0.0174533]])";
+  for (const std::string& name : {file, std::string("http://localhost/4326"), std::string()})
+    EXPECT_THROW(PositionReader(named(name), map, "p.geojson"), InputError) << name;
+  for (const char* strange : {"7", "[]", "{}", R"({"properties":{"name":3}})"}) {
+    const json document{{"type", "Point"}, {"crs", json::parse(strange)}};
+    EXPECT_THROW(PositionReader(document, map, "p.geojson"), InputError) << strange;
+    EXPECT_THROW(PositionReader(document, yard, "p.geojson"), InputError) << strange;
+  }
+  EXPECT_NO_THROW(PositionReader(json{{"type", "Point"}, {"crs", nullptr}}, yard, "p.geojson"));
+}
+
 TEST(GeoJson, APositionThatIsNoneIsRefused) {
   const ElevationMap map = lunarMap();
   const PositionReader read(json{{"type", "Point"}}, map, "p.geojson");
@@ -84,6 +114,14 @@ TEST(GeoJson, AFileThatIsNoGeoJsonIsRefused) {
   std::string deep = R"({"type":"Point","coordinates":)";
   deep += std::string(100000, '[') + std::string(100000, ']') + "}";
   EXPECT_THAT(line(deep), HasSubstr("nests deeper than 100 levels"));
+  // The last of two would silently win; one name in several objects is no doubt.
+  EXPECT_THAT(line(R"({"type":"Point","coordinates":[1,2],"coordinates":[3,4]})"),
+              HasSubstr("has \"coordinates\" twice in one object"));
+  EXPECT_THAT(
+      line(R"({"type":"FeatureCollection","features":[{"type":"Feature"},{"a":{},"type":"x","a":1}]})"),
+      HasSubstr("has \"a\" twice"));
+  EXPECT_EQ(line(R"({"type":"FeatureCollection","features":[{"type":"a"},{"type":"b","p":{"type":"c"}}]})"),
+            "accepted");
 }
 
 }  // namespace

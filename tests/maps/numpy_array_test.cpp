@@ -42,6 +42,28 @@ TEST(NumpyArray, ANumberWithoutDataIsRefused) {
       InputError);
 }
 
+TEST(NumpyArray, AnExtentIsAWholeNumber) {
+  for (const char* shape : {"(-1, 3)", "(1.5, 2)", "(3e0,)", "(0x3,)", "(two,)", "(4294967296,)"})
+    EXPECT_THROW(
+        parseNumpy(file("{'descr': '<f8', 'fortran_order': False, 'shape': " + std::string(shape) + ", }\n",
+                        std::string(24, '\0')),
+                   "a"),
+        InputError)
+        << shape;
+}
+
+// Matching takes stack for each character: a header of version 2 may have 4 GB of them.
+TEST(NumpyArray, ALongHeaderIsRefused) {
+  for (const char* filling : {"1,", " "}) {
+    std::string shape;
+    while (shape.size() < 1'000'000) shape += filling;
+    const std::string header = "{'descr': '<f8', 'fortran_order': False, 'shape': (" + shape + "), }\n";
+    std::string bytes("\x93NUMPY\x02\x00", 8);
+    for (std::size_t k = 0; k < 4; ++k) bytes += static_cast<char>(header.size() >> (8 * k) & 0xFFU);
+    EXPECT_THROW(parseNumpy(bytes + header + std::string(8, '\0'), "a"), InputError) << filling;
+  }
+}
+
 TEST(NumpyArray, BadBytesAreRefused) {
   const auto line = [](const std::string& bytes) {
     try {

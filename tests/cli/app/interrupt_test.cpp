@@ -57,6 +57,19 @@ TEST(InterruptDeathTest, WorkThatIgnoresItIsEnded) {
   EXPECT_EXIT(deaf(SIGTERM), testing::ExitedWithCode(143), "cancelled");
 }
 
+// What waits for another process, as for the writer of a FIFO, takes no CPU time: it is ended before it would wake.
+TEST(InterruptDeathTest, WorkThatWaitsIsEnded) {
+  EXPECT_EXIT(
+      {
+        const Interrupt interrupt;
+        kill(getpid(), SIGINT);
+        waitFor(interrupt);
+        std::this_thread::sleep_for(std::chrono::hours(1));
+        std::exit(3);
+      },
+      testing::ExitedWithCode(130), "cancelled");
+}
+
 // Who says that it answers may take its time: here twice the CPU time after which others are ended.
 TEST(InterruptDeathTest, WorkThatAnswersIsNotEnded) {
   EXPECT_EXIT(

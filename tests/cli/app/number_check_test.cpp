@@ -29,8 +29,10 @@ TEST(NumberCheck, NoOptionTakesAnImpossibleNumber) {
   for (const char* bad :
        {"nan", "-nan", "NaN", "inf", "-Infinity", "1e999", "1e-300", "1e300", "5,nan", "nand,3d"})
     EXPECT_THAT(said(bad), testing::HasSubstr("--risk ")) << bad;
-  for (const char* good :
-       {"0", "0.5", "-3", "18446744073709551615", "x.tif", "nano.tif", "./nan", "3d,4d", "1e-9"})
+  for (const char* other : {"0x10", "-0X1p3", "010", "5,0x10", "-007"})
+    EXPECT_THAT(said(other), testing::HasSubstr("must be decimal")) << other;
+  for (const char* good : {"0.10", "0xfile", "00.tif", "0", "0.5", "-3", "18446744073709551615", "x.tif",
+                           "nano.tif", "./nan", "3d,4d", "1e-9"})
     EXPECT_EQ(said(good), "") << good;
 }
 

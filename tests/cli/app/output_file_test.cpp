@@ -1,5 +1,7 @@
 #include <filesystem>
+#include <utility>
 
+#include <sys/resource.h>
 #include <sys/stat.h>
 
 #include <talus/cli/app/output_file.hpp>
@@ -63,6 +65,70 @@ TEST(CheckOutput, HoldsForEveryCall) {
                  {{"wheel", "--cases", "words.csv", "-o", "words.csv"}, 2, "also an input"},
                  {{"update", "m.ot", "words.csv", "-o", "j.db", "--journal", "j.db"}, 2, "also an input"},
                  {{"plan", "mission.yaml"}, 2, "is no route"}});
+}
+
+// A mission names its output in a file that may come from anywhere.
+TEST(CheckOutput, HoldsForTheOutputOfAMission) {
+  const BadFiles files;
+  const Folder other;
+  other.write("far", "x");
+  fs::create_symlink(other / "far", files.folder() / "link");
+  ASSERT_EQ(::mkfifo((files.folder() / "pipe").c_str(), 0600), 0);
+  std::vector<BadCall> calls;
+  for (const auto& [output, says] :
+       std::vector<std::pair<std::string, std::string>>{{"good.asc", "also an input"},
+                                                        {"./good.asc", "also an input"},
+                                                        {"link", "link to another"},
+                                                        {"pipe", "a FIFO"},
+                                                        {"/dev/null", "is a device"},
+                                                        {"folder", "is no route"},
+                                                        {"none/r.json", "none"}}) {
+    const std::string name = "m" + std::to_string(calls.size()) + ".yaml";
+    files.folder().write(name,
+                         "maps: {dem: good.asc, resolution_m: 1, ignore_crs: true}\nsoil: sandy_loam\n"
+                         "rover: sojourner\nstart: [5, 5]\ngoal: [9, 9]\noutput: " +
+                             output + "\n");
+    calls.push_back({{"plan", name}, 2, says});
+  }
+  files.folder().write("self.yaml",
+                       "maps: {dem: good.asc, resolution_m: 1, ignore_crs: true}\nsoil: sandy_loam\n"
+                       "rover: sojourner\nstart: [5, 5]\ngoal: [9, 9]\noutput: self.yaml\n");
+  calls.push_back({{"plan", "self.yaml"}, 2, "also an input"});
+  expectRefused(files, calls);
+}
+
+// Files beyond the limit fail as on a full disk.
+class SmallDisk {
+ public:
+  explicit SmallDisk(rlim_t bytes) {
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit small{.rlim_cur = bytes, .rlim_max = before_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &small);
+  }
+  ~SmallDisk() { ::setrlimit(RLIMIT_FSIZE, &before_); }
+  SmallDisk(const SmallDisk&) = delete;
+  SmallDisk& operator=(const SmallDisk&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+TEST(CheckOutput, AFullDiskIsToldAndKeepsTheOldFile) {
+  const BadFiles files;
+  std::string cases =
+      "cohesion_Pa,friction_angle_rad,sinkage_exponent,sinkage_modulus,shear_modulus_m,c1,c2,wheel_radius_m,"
+      "wheel_width_m,load_N,slip\n";
+  for (int row = 0; row < 2000; ++row) cases += "500,0.6,1,820000,0.02,0.3,0,0.15,0.15,50,0.3\n";
+  files.folder().write("cases.csv", cases);
+  files.folder().write("old.csv", "old");
+  files.folder().write("mission.yaml",
+                       "maps: {dem: good.asc, resolution_m: 1, ignore_crs: true}\nsoil: sandy_loam\n"
+                       "rover: sojourner\nstart: [5, 5]\ngoal: [9, 9]\noutput: route.geojson\n");
+  const SmallDisk disk(1024);
+  expectRefused(files, {{{"wheel", "--cases", "cases.csv", "-o", "new.csv"}, 2, "new.csv: cannot be written"},
+                        {{"wheel", "--cases", "cases.csv", "-o", "old.csv"}, 2, "old.csv: cannot be written"},
+                        {{"plan", "mission.yaml"}, 2, "route.geojson: cannot be written"}});
+  EXPECT_EQ(fileContent(files.folder() / "old.csv"), "old");
 }
 
 }  // namespace

@@ -56,6 +56,8 @@ TEST(GenerateCommand, BadInputIsOneLineAndCodeTwo) {
       {{"generate", folder.write("s.yaml", "site: {kind: dunes, widht: 9}"), "-o", out}, "widht"},
       {{"generate", folder.write("t.yaml", "site: {kind: dunes, width: 4}"), "-o", out}, "width = 4"},
       {{"generate", folder / "none.yaml", "-o", out}, "none.yaml"},
+      {{"generate", "craters", "--size", "20000", "-o", out, "--max-memory", "512MB"}, "--size: "},
+      {{"generate", folder.write("site_soils.yaml", "site: {kind: dunes}"), "-o", out}, "also an input"},
   };
   for (const Case& c : cases) {
     const Ran ran = runTalus(c.words);

@@ -154,6 +154,8 @@ TEST(BadInput, Updates) {
                            {{"update", "map.ot", "off.csv", "-o", "m.ot"}, 2, "off.csv"},
                            {{"update", "map.ot", "-o", "m.ot"}, 2, "telemetry"},
                            {{"update", "map.ot", "--replay", "-o", "m.ot"}, 2, "--journal"},
+                           {{"update", "map.ot", "--replay", "--journal", "no.db", "-o", "m.ot"}, 2, "no.db"},
+                           {{"update", "map.ot", "--replay", "--journal", "empty", "-o", "m.ot"}, 2, "empty"},
                            {{"update", "map.ot", "off.csv", "-o", "no/m.ot"}, 2, "no"},
                        });
 }

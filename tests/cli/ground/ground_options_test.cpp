@@ -62,12 +62,23 @@ TEST(GroundOptions, GroundIsOfTheSoilAndRoverNamed) {
     EXPECT_EQ(again.map.model().rover().name, "fido");
     EXPECT_EQ(again.map.countCategories().safe, ground.map.countCategories().safe);
   }
-  // Property: what a built map would ignore to the rover's harm is refused.
+  EXPECT_NO_THROW(readGround(parsed(built + " --rover fido"), quiet()));
+  // Property: nothing that a call says of a built map is ignored.
   for (const char* ignored :
-       {"--keep-out rocks.geojson", "--no-marginal", "--unmonitored", "--risk-weight 1", "--pose-error 2"})
+       {"--keep-out rocks.geojson", "--no-marginal", "--unmonitored", "--risk-weight 1", "--pose-error 2",
+        "--soil dry_sand", "--soils s.yaml", "--terrain c.tif", "--terrain-band 1", "--rocks r.tif",
+        "--model m.yaml", "--footprint 1", "--below 3"})
     EXPECT_THAT([&] { readGround(parsed(built + " " + ignored), quiet()); },
                 ThrowsMessage<InputError>(HasSubstr("is a built map")))
         << ignored;
+  for (const char* reading : {"--resolution 2", "--window 0,0,5,5", "--nodata 5", "--band 1", "--ignore-crs",
+                              "--vertical-scale 2", "--max-cells 10"})
+    EXPECT_THAT([&] { readGround(parsed(built + " " + reading), quiet()); },
+                ThrowsMessage<InputError>(HasSubstr("has a grid of its own")))
+        << reading;
+  for (const std::string& line : {built, dem + " --resolution 1 --map " + built})
+    EXPECT_THAT([&] { readGround(parsed(line + " --rover mer"), quiet()); },
+                ThrowsMessage<InputError>(HasSubstr("was built for rover 'fido'")));
 }
 
 TEST(GroundOptions, ABuiltMapIsThatOfTheElevationMapBesideIt) {

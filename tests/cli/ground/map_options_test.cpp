@@ -55,6 +55,8 @@ TEST(MapOptions, WhatDoesNotFitTheFileIsRefused) {
               ThrowsMessage<InputError>(HasSubstr("remove --below")));
   EXPECT_THAT([&] { readMap(parsed(dem + " --resolution 1 --max-cells 50"), quiet()); },
               ThrowsMessage<InputError>(HasSubstr("12 x 9 cells are too many")));
+  for (const char* count : {"-1", "0", "1e300"})
+    EXPECT_THROW(parsed(dem + " --max-cells " + count), CLI::ParseError) << count;
   EXPECT_THROW(parsed("--band 1"), CLI::RequiredError);
 }
 

@@ -36,6 +36,14 @@ TEST(PathReader, TakesTheFirstLineOfAnyGeoJson) {
               ElementsAre(Point{1, 2}, Point{3, 4}));
 }
 
+// It is judged cell by cell: each vertex near the map, and their sum without an end.
+TEST(PathReader, APathLongerThanFourMillionCellsIsRefused) {
+  std::string rows = "x_m,y_m\n";
+  for (int k = 0; k < 100; ++k) rows += k % 2 == 0 ? "0,0\n" : "400000,0\n";
+  EXPECT_THAT([&] { read("long.csv", rows); },
+              ThrowsMessage<InputError>(HasSubstr("more than 4 million cells")));
+}
+
 TEST(PathReader, WhatIsNoPathIsOneLine) {
   struct Case {
     const char* name;

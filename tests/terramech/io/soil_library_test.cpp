@@ -78,6 +78,8 @@ TEST(SoilLibrary, SoilMistakesAreToldWithTheirLine) {
         Case{"cohesion_kPa: 2 kPa\n", ":1: cohesion_Pa = '2 kPa', must be a number"},
         Case{kSoil + "cohesion_Pa: 5\n", "cohesion_Pa is given twice"},
         Case{kSoil + "c1: 0.4\nc1: 0.5\n", ":7: c1 appears twice"},
+        Case{kSoil + "c1: 1e10\n", ":6: c1 must be 0 to 1"},
+        Case{kSoil + "c1: 0.4\nc2: -3\n", ":7: c2 must be"},
         Case{"friction_angle_deg: 30\n", ":1: lacks cohesion_Pa"},
         Case{"cohesion_kPa: {mean: 2}\n", ":1: cohesion_Pa lacks its std"},
         Case{"cohesion_kPa: {mean: 2, sd: 3}\n", ":1: cohesion_Pa: unknown key 'sd'"},
