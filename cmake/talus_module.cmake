@@ -4,7 +4,7 @@ function(talus_warnings target)
     -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wnon-virtual-dtor -Wold-style-cast
     -Woverloaded-virtual -Wdouble-promotion -Wno-missing-field-initializers
     # GCC 12 sees overlaps that are not there in "text" + std::string (its bug 105651).
-    -Wno-restrict
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
     $<$<BOOL:${TALUS_WARNINGS_AS_ERRORS}>:-Werror>
     # Same bits from every kernel twin: no contraction into fused multiply-add, and never -ffast-math.
     -ffp-contract=off -fno-math-errno -fno-trapping-math)
@@ -38,7 +38,7 @@ function(talus_module name)
   if(NOT TALUS_WARNINGS_AS_ERRORS)
     target_precompile_headers(talus_${name} PRIVATE <algorithm> <array> <cmath> <functional> <map> <memory> <optional>
                               <span> <string> <vector> ${arg_PRECOMPILED})
-    target_compile_options(talus_${name} PRIVATE -Wno-array-bounds -Wno-stringop-overflow)
+    target_compile_options(talus_${name} PRIVATE -Wno-array-bounds $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow>)
   endif()
   install(TARGETS talus_${name} EXPORT talus-${name} FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
   set_property(GLOBAL APPEND PROPERTY TALUS_COMPONENTS ${name})

@@ -2,6 +2,7 @@
 // of changes is TALUS_FUZZ_CHANGES, 100 if not set; ./dev fuzz sets more, under sanitizers.
 #include <cstdlib>
 #include <random>
+#include <utility>
 
 #include "targets.hpp"
 
@@ -15,6 +16,14 @@ extern "C" const char* __lsan_default_suppressions() {
 
 namespace talus::fuzz {
 namespace {
+
+std::vector<Target> targets() {
+  limitMemory();
+  std::vector<Target> all;
+  for (const auto& room : {terramechTargets, mapsTargets, costmapTargets, plannerTargets, cliTargets})
+    for (Target& target : room()) all.push_back(std::move(target));
+  return all;
+}
 
 class Fuzz : public testing::TestWithParam<Target> {};
 
@@ -62,6 +71,7 @@ TEST_P(Fuzz, ChangedFilesAreReadOrRefused) {
   const int changes = more ? std::atoi(more) : 100;
   std::mt19937 random(7);
   std::vector<std::string> seeds = GetParam().seeds;
+  seeds.insert(seeds.end(), GetParam().refused_seeds.begin(), GetParam().refused_seeds.end());
   seeds.emplace_back();
   for (int k = 0; k < changes; ++k) {
     const std::string bytes = changed(seeds[static_cast<std::size_t>(k) % seeds.size()], random);

@@ -3,7 +3,7 @@
 
     tests/fuzz/mutate_calls.py TALUS [CALLS] [FIRST]
 
-A call may end with 0, 1 or 2, with one line of error for 2, and may take --max-memory and 60 s of CPU time. Call k is the same
+A call may end with 0, 1 or 2, with one line of error for 2, and may take --max-memory and 20 s of CPU time. Call k is the same
 in each run; FIRST goes on where a run ended. Faults are printed with their number, and left in a folder that is named last.
 """
 import os, random, resource, shutil, subprocess, sys, tempfile
@@ -30,6 +30,10 @@ FILES = {
                     "start: [5, 20]\ngoal: [25, 20]\n",
     "cases.csv": "cohesion_Pa,friction_angle_rad,sinkage_exponent,sinkage_modulus,shear_modulus_m,c1,c2,wheel_radius_m,"
                  "wheel_width_m,load_N,slip\n500,0.6,1,820000,0.02,0.3,0,0.15,0.15,50,0.3\n",
+    "truth.yaml": "patches:\n  - {x_m: 15, y_m: 20, radius_m: 2, soil: soil.yaml}\nrandom: {spread: 0.1, patches: 1, patch_radius_m: 2}\n",
+    "runs.csv": "time_s,slope_rad,load_N,slip,torque_Nm,sinkage_m,drawbar_pull_N,grain_mm\n" + "".join(
+        f"{i},0.02,{10 + i % 5},{0.05 + 0.02 * (i % 17)},{0.3 + 0.01 * (i % 13)},{0.008 + 0.0004 * (i % 11)},"
+        f"{1 + 0.1 * (i % 7)},{0.3 + 0.1 * (i % 3)}\n" for i in range(60)),
 }
 GROUND = "dem.asc --ignore-crs --resolution 1 --soil soil.yaml --rover rover.yaml"
 CASES = [
@@ -39,6 +43,9 @@ CASES = [
     "wheel --soil soil.yaml --rover rover.yaml --load 10 --slip 0.3 --html out.html", "wheel --cases cases.csv -o out.csv",
     "estimate t.csv --method wong-reece --noise 0.05", "estimate t.csv --method iagnemma", "assess t.csv --slope 0.1",
     "update map.ot --replay --journal j.db -o out.ot", "view map.ot --html out.html", "plugins plugin.so",
+    "trace runs.csv --rover rover.yaml --model-out out.yaml", "trace runs.csv --rover rover.yaml --base soil.yaml --hold-out slip=0.2..1",
+    "predict runs.csv --model soil.yaml --rover rover.yaml -o out.csv", "generate craters --size 32 --resolution 1 -o out.tif",
+    f"drive {GROUND} --truth truth.yaml --start 5,20 --goal 10,20 --worlds 1",
 ]
 NUMBERS = ["nan", "-inf", "1e308", "1e-300", "0", "-1", "1e9", "2147483648", "99999999999999999999", "0x10", "", "1e-9", "a" * 5000]
 WORDS = [b"nan", b"-1", b"1e308", b"1e9", b"0", b"[" * 40, b"{", b'"', b",", b"\n", b"\xff\xff\xff\xff", b": ", b"../", b"1e-9"]
@@ -56,7 +63,7 @@ def mutated(data, dice):
     return bytes(data)
 
 def limits():
-    resource.setrlimit(resource.RLIMIT_CPU, (60, 60))
+    resource.setrlimit(resource.RLIMIT_CPU, (20, 20))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
 def call(words, folder):

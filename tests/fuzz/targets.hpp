@@ -12,12 +12,25 @@ struct Target {
   std::string name;
   std::vector<std::string> seeds;  ///< that it accepts
   std::function<void(const std::string&)> read;
+  std::vector<std::string> refused_seeds{};  ///< that it refuses for what stands deep inside
 };
 
-/// Readers of telemetry, wheel tables, YAML, GeoJSON, .npy, .npz, MAP.ot, octrees, journals and MovingAI files.
-const std::vector<Target>& targets();
+/// Readers by room: telemetry and YAML; GeoJSON, .npy and .npz; MAP.ot, octrees and journals; MovingAI files and
+/// plugins; options, missions, truths, paths and routes.
+std::vector<Target> terramechTargets();
+std::vector<Target> mapsTargets();
+std::vector<Target> costmapTargets();
+std::vector<Target> plannerTargets();
+std::vector<Target> cliTargets();
 
 /// Whether the target accepts the bytes; false where it refuses them by an error of input.
 bool accepts(const Target& target, const std::string& bytes);
+
+/// A file with these bytes, of this process and the ending, over the one before.
+std::string fileOf(const std::string& bytes, const std::string& ending);
+
+/// What a target may take as memory, as --max-memory has it: few bytes of a file can state much, and what is within the
+/// budget is computed.
+void limitMemory();
 
 }  // namespace talus::fuzz
