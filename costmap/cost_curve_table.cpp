@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <talus/costmap/cost_curve_table.hpp>
+#include <talus/costmap/cross_slope.hpp>
 
 namespace talus::costmap {
 namespace {
@@ -68,6 +69,33 @@ std::uint8_t CostCurveTable::standIn(const GroundKind& kind) const {
   return number;
 }
 
+DriveGround CostCurveTable::dearer(const DriveGround& ground, double added_J_per_m) const {
+  auto states = std::make_shared<DriveTable>(*ground.states);
+  for (DriveState& state : *states)
+    state.energy_J_per_m = static_cast<float>(static_cast<double>(state.energy_J_per_m) + added_J_per_m);
+  const DrivePolicy& policy = model_->parts().policy;
+  DriveCurve curve = priced(*states, ground.crossing.get(),
+                            {.energy = 1.0, .time_W = policy.time_weight_W, .risk_J = policy.risk_weight_J});
+  return {.curve = std::move(curve), .states = std::move(states), .crossing = ground.crossing};
+}
+
+std::uint8_t CostCurveTable::dearer(std::uint8_t number, int step, double added_J_per_m) {
+  if (const auto known = dearer_.find({number, step}); known != dearer_.end()) return known->second.number;
+  if (grounds_.size() >= kNumbers) {
+    overflowed_ = true;
+    const auto greater = dearer_.lower_bound({number, step});
+    return greater != dearer_.end() && greater->first.first == number ? greater->second.number
+                                                                      : CellCode::kBlocked;
+  }
+  const auto next = static_cast<std::uint8_t>(grounds_.size());
+  grounds_.push_back(dearer(grounds_[number], added_J_per_m));
+  beliefs_.push_back(GroundBelief(beliefs_[number]));
+  categories_.push_back(CategoryTable(categories_[number]));
+  dearer_.emplace(std::pair(number, step), Dearer{next, added_J_per_m});
+  cost_.reset();
+  return next;
+}
+
 double CostCurveTable::used() const noexcept {
   const std::size_t all = kNumbers - classes();
   return all > 0 ? static_cast<double>(grounds_.size() - classes()) / static_cast<double>(all) : 1.0;
@@ -80,6 +108,7 @@ void CostCurveTable::restart(int level) {
   beliefs_.resize(classes());
   categories_.erase(categories_.begin() + static_cast<std::ptrdiff_t>(classes()), categories_.end());
   numbers_.clear();
+  dearer_.clear();
   cost_.reset();
 }
 
@@ -98,6 +127,12 @@ bool CostCurveTable::setPrior(int class_index, const GroundBelief& belief) {
   const Worked& now = worked(class_index, next);
   grounds_[i] = now.ground;
   categories_[i] = now.categories;
+  for (const auto& [from, its] : dearer_)
+    if (from.first == i) {
+      grounds_[its.number] = dearer(grounds_[i], its.added_J_per_m);
+      beliefs_[its.number] = next;
+      categories_[its.number] = now.categories;
+    }
   cost_.reset();
   return true;
 }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include <talus/costmap/category_table.hpp>
@@ -28,6 +29,10 @@ class CostCurveTable {
   std::uint8_t learned(int class_index, const GroundBelief& belief) {
     return learned(class_index, class_index, belief);
   }
+
+  /// Number of the ground of another number, any but those of dearer(), where a metre costs so much more energy.
+  /// `step` > 0 stands for the joules and grows with them; where numbers run out, a greater one of the ground stands in.
+  std::uint8_t dearer(std::uint8_t number, int step, double added_J_per_m);
 
   /// Whether some belief had to do with another's number since the last restart.
   bool overflowed() const noexcept { return overflowed_; }
@@ -58,6 +63,7 @@ class CostCurveTable {
   };
   const Worked& worked(int class_index, const GroundBelief& prior);
   std::uint8_t standIn(const GroundKind& kind) const;
+  DriveGround dearer(const DriveGround& ground, double added_J_per_m) const;
   SoilDoubt doubt() const;
   std::size_t classes() const noexcept { return model_->parts().classes.size(); }
 
@@ -67,7 +73,12 @@ class CostCurveTable {
   std::vector<DriveGround> grounds_;
   std::vector<CategoryTable> categories_;
   std::vector<GroundBelief> beliefs_;
+  struct Dearer {
+    std::uint8_t number;
+    double added_J_per_m;
+  };
   std::map<GroundKind, std::uint8_t> numbers_;
+  std::map<std::pair<std::uint8_t, int>, Dearer> dearer_;  // by number and step
   std::map<PriorKey, Worked> worked_;
   mutable std::shared_ptr<const DriveCost> cost_;
 };

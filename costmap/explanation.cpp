@@ -90,6 +90,31 @@ void addShape(const TraversabilityMap& map, maps::Cell cell, Explanation& out) {
        limitRemark(step, map.hazardLimits().max_step_m)});
 }
 
+void addLayers(const TraversabilityMap& map, maps::Cell cell, Explanation& out) {
+  for (const CostLayer& layer : map.costLayers()) {
+    const auto added = static_cast<double>(layer.added_J_per_m[cell]);
+    const bool open = map.model().parts().policy.allow_unknown;
+    out.causes.push_back({"layer_" + layer.name + "_J_per_m",
+                          std::isnan(added) && open ? static_cast<double>(layer.unseen_J_per_m) : added,
+                          kNotKnown, "layer '" + layer.name + "'",
+                          std::isinf(added)    ? "excluded for any soil"
+                          : !std::isnan(added) ? "part of energy and cost, rounded up by at most a fifth"
+                          : open               ? "no data: costs as the dearest cell of the layer"
+                                               : "no data: excluded as unknown"});
+  }
+}
+
+// What excludes a cell, and the layer where one does.
+std::string hazardText(const TraversabilityMap& map, maps::Cell cell, Hazard hazard) {
+  for (const CostLayer& layer : map.costLayers()) {
+    const float added = layer.added_J_per_m[cell];
+    if (hazard == Hazard::KeepOut && std::isinf(added)) return "refused by layer '" + layer.name + "'";
+    if (hazard == Hazard::Unknown && std::isnan(added) && !map.model().parts().policy.allow_unknown)
+      return "no data in layer '" + layer.name + "'";
+  }
+  return hazardText(hazard);
+}
+
 void addSoil(const TraversabilityMap& map, maps::Cell cell, Explanation& out) {
   const int index = map.classIndex(cell);
   out.causes.push_back({"terrain_class", static_cast<double>(map.classNumber(cell)), kNotKnown,
@@ -207,14 +232,14 @@ void judge(const TraversabilityMap& map, maps::Cell cell, const Direction& headi
   const Hazard hazards = map.hazards(cell);
   for (const Hazard one : kHazards)
     if (has(hazards, one))
-      out.causes.push_back({"hazard", 1.0, kNotKnown, hazardText(one), "excluded for any soil"});
+      out.causes.push_back({"hazard", 1.0, kNotKnown, hazardText(map, cell, one), "excluded for any soil"});
   const CellBelief belief = map.belief(cell);
   out.category = static_cast<terramech::Category>(belief.category);
   out.probability = belief.confidence / 16.0;
   out.verdict = std::string(terramech::name(out.category));
   for (const Hazard one : kHazards)
     if (has(hazards, one)) {
-      out.verdict += std::string(": ") + hazardText(one);
+      out.verdict += ": " + hazardText(map, cell, one);
       return;
     }
   const auto ground = map.publishedGround(cell);
@@ -245,6 +270,7 @@ Explanation explain(const TraversabilityMap& map, maps::Cell cell, const std::op
   const Direction direction = heading.value_or(worst(map.published()->cost(), map.code(cell)));
   judge(map, cell, direction, out);
   addShape(map, cell, out);
+  addLayers(map, cell, out);
   addSoil(map, cell, out);
   addDrive(map, cell, direction, out);
   addFloors(map, cell, out);

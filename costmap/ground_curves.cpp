@@ -52,6 +52,7 @@ void join(std::vector<maps::CellBox>& boxes, const maps::Cell& cell) {
 GroundCurves::GroundCurves(std::shared_ptr<const GroundSite> site)
     : site_(std::move(site)),
       table_(site_->model),
+      added_(site_->costs),
       swath_(site_->model->rover(), site_->grid().resolution_m, site_->model->parts().policy.pose_error_m),
       borders_(classBorders(site_->classes, swath_.reach())),
       learned_(site_->grid()) {}
@@ -96,7 +97,16 @@ bool GroundCurves::alike(maps::Cell cell) const noexcept {
   return true;
 }
 
+std::uint8_t GroundCurves::withLayers(std::uint8_t number, maps::Cell cell) {
+  const int step = number < CellCode::kUnknown ? added_.step(cell, table_.level()) : 0;
+  return step == 0 ? number : table_.dearer(number, step, added_.J_per_m(step));
+}
+
 std::uint8_t GroundCurves::number(maps::Cell cell) {
+  return withLayers(numberOfGround(cell), cell);
+}
+
+std::uint8_t GroundCurves::numberOfGround(maps::Cell cell) {
   const WheelSwath::Ground own = ground(cell);
   const bool learned = any_learned_ && learned_[cell] != 0;
   WheelSwath::Judged judged{own.belief, own.class_index};

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include <talus/costmap/added_cost.hpp>
 #include <talus/costmap/cost_curve_table.hpp>
 #include <talus/costmap/evidence_field.hpp>
 #include <talus/costmap/learned_cells.hpp>
@@ -24,6 +25,8 @@ class GroundCurves {
   /// Number of the curve of a cell whose class has a soil; CellCode::kUnknown where a wheel may touch ground without a
   /// class, unless the policy allows that.
   std::uint8_t number(maps::Cell cell);
+  /// The same of a cell that nobody has seen, where the policy takes it for level ground of the first class.
+  std::uint8_t numberOfUnseen(maps::Cell cell) { return withLayers(table_.prior(0), cell); }
 
   /// Takes over what is believed of the classes; false when nothing changed.
   bool learnClasses(const EvidenceField& field);
@@ -41,13 +44,19 @@ class GroundCurves {
   /// Gives all numbers anew, after it ran out of them; beliefs are rounded at this level of GroundKind.
   void restart(int level) { table_.restart(level); }
 
+  /// What layers add to a metre in the cell as its curve has it, rounded up [J].
+  double added_J_per_m(maps::Cell cell) const { return added_.J_per_m(added_.step(cell, table_.level())); }
+
  private:
   WheelSwath::Ground ground(maps::Cell cell) const;
+  std::uint8_t numberOfGround(maps::Cell cell);
+  std::uint8_t withLayers(std::uint8_t number, maps::Cell cell);
   bool alike(maps::Cell cell) const noexcept;
   maps::CellBox within(const maps::CellBox& range) const noexcept;
 
   std::shared_ptr<const GroundSite> site_;
   CostCurveTable table_;
+  AddedCost added_;
   WheelSwath swath_;
   std::vector<bool> borders_;
   LearnedCells learned_;

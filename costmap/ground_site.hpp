@@ -1,8 +1,11 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include <talus/costmap/cell_belief.hpp>
 #include <talus/costmap/floors.hpp>
@@ -12,6 +15,18 @@
 
 namespace talus::costmap {
 
+/// What somebody else knows of the ground, such as shadow, radio or hazards of one's own: joules that a metre costs more,
+/// counted as energy, 0 to kMost_J_per_m; infinite: must not be entered. NaN: not known, which refuses the cell as unknown ground
+/// or, where the policy allows that, costs unseen_J_per_m.
+struct CostLayer {
+  static constexpr float kMost_J_per_m = 1e6F;
+  static constexpr std::size_t kMostLayers = 64;
+
+  std::string name;
+  maps::Raster<float> added_J_per_m;
+  float unseen_J_per_m = 0.0F;  ///< at least the dearest known, so that doubt makes nothing cheaper
+};
+
 /// What a map is built from; layers on the elevation's grid, empty where nobody gave one.
 struct MapLayers {
   maps::ElevationMap elevation;
@@ -20,6 +35,7 @@ struct MapLayers {
   maps::Raster<std::uint8_t> keep_out;  ///< not 0: must not be entered
   maps::Raster<Hazard> declared;        ///< hazards judged elsewhere, as when a map is read back
   Floors floors;                        ///< ground beneath overhangs, where the source is a point cloud
+  std::vector<CostLayer> costs{};       ///< what comes on top of the rover's own cost; a name each
 };
 
 /// A window of ground observed anew, as from the rover's own cameras: layers on one grid whose cells are cells of the
@@ -39,7 +55,8 @@ struct GroundSite {
   maps::Raster<std::uint8_t> classes;  ///< class numbers; empty: all of the first class
   SurfaceKeys keys;
   std::shared_ptr<const GroundModel> model;
-  Floors floors{};  ///< beneath the elevation, which is the top surface
+  Floors floors{};                 ///< beneath the elevation, which is the top surface
+  std::vector<CostLayer> costs{};  ///< on the elevation's grid
 
   const maps::Grid& grid() const noexcept { return elevation.grid(); }
   /// Position of a cell's class in the model's classes, or -1 when it has no soil.

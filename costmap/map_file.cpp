@@ -132,6 +132,8 @@ class TrailerReader {
     return raster;
   }
 
+  bool more() { return bytesLeft() > sizeof(End); }
+
   /// Nothing may stand between the last section and the checksum.
   void finish() {
     if (bytesLeft() != sizeof(End)) fail("damaged section");
@@ -224,6 +226,26 @@ bool restoreEvidence(std::string_view bytes, TraversabilityMap& map) {
   return true;
 }
 
+// A layer a section: its name, a line end, what unseen cells cost, and the raster.
+std::string bytesOf(const CostLayer& layer) {
+  const auto& values = layer.added_J_per_m.values();
+  std::string bytes = layer.name + '\n';
+  bytes.append(reinterpret_cast<const char*>(&layer.unseen_J_per_m), sizeof(float));
+  bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float));
+  return bytes;
+}
+
+CostLayer costLayerOf(const std::string& bytes, const maps::Grid& grid) {
+  const std::size_t name = bytes.find('\n');
+  if (name == std::string::npos || bytes.size() - name - 1 != (grid.size() + 1) * sizeof(float))
+    throw std::invalid_argument("a cost layer of another size");
+  CostLayer layer{.name = bytes.substr(0, name), .added_J_per_m = maps::Raster<float>(grid)};
+  std::memcpy(&layer.unseen_J_per_m, bytes.data() + name + 1, sizeof(float));
+  std::memcpy(layer.added_J_per_m.values().data(), bytes.data() + name + 1 + sizeof(float),
+              grid.size() * sizeof(float));
+  return layer;
+}
+
 MapText textOf(const TraversabilityMap& map) {
   MapText text{.grid = map.grid(),
                .coordinate_system = {},
@@ -259,6 +281,10 @@ void writeMap(const TraversabilityMap& map, std::iostream& stream) {
   std::string drives;
   for (const std::string& drive : map.drives()) drives += drive + '\n';
   trailer.section("DRIV", drives.data(), drives.size());
+  for (const CostLayer& layer : map.costLayers()) {
+    const std::string bytes = bytesOf(layer);
+    trailer.section("COST", bytes.data(), bytes.size());
+  }
   // Read back: the octree's writer goes back to its header, so that bytes do not come in their order.
   stream.flush();
   const End end{.checksum = checksumOf(stream, sizeOf(stream))};
@@ -291,11 +317,14 @@ TraversabilityMap readMap(std::istream& stream, const MapReading& reading, const
   std::vector<Floor> floors = trailer.floors("FLOR");
   const std::string evidence = trailer.bytes("EVID");
   std::istringstream drives(trailer.bytes("DRIV"));
+  std::vector<std::string> costs;
+  while (trailer.more()) costs.push_back(trailer.bytes("COST"));
   trailer.finish();
   if (layers.elevation.elevation_m.empty())
     throw InputError(
         {reading.name, "damaged: it holds no elevation", "write the map again with talus costmap"});
   try {
+    for (const std::string& bytes : costs) layers.costs.push_back(costLayerOf(bytes, text.grid));
     layers.floors = Floors(std::move(floors), text.grid.size());
     if (text.coordinate_system) layers.elevation.georeference.emplace(*text.coordinate_system);
     auto model = std::make_shared<GroundModel>(std::move(text.ground));

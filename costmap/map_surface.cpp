@@ -66,6 +66,11 @@ Hazard TraversabilityMap::layerHazards(maps::Cell cell) const {
     else if (site_->model->classIndex(number) < 0)
       found |= Hazard::Obstacle;
   }
+  for (const CostLayer& layer : site_->costs) {
+    const float added = layer.added_J_per_m[cell];
+    if (std::isinf(added)) found |= Hazard::KeepOut;
+    if (std::isnan(added) && !site_->model->parts().policy.allow_unknown) found |= Hazard::Unknown;
+  }
   return found;
 }
 
@@ -166,7 +171,7 @@ CellCode TraversabilityMap::coded(maps::Cell cell, CellCode code) {
   if (found == Hazard::None) return code.withCurve(curves_->number(cell));
   if (found != Hazard::Unknown) return code.withCurve(CellCode::kBlocked);
   const bool open = model().parts().policy.allow_unknown;
-  return code.withCurve(open ? curves_->table().prior(0) : CellCode::kUnknown);
+  return code.withCurve(open ? curves_->numberOfUnseen(cell) : CellCode::kUnknown);
 }
 
 void TraversabilityMap::refuse(const maps::Point& place, double radius_m) {

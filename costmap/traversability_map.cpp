@@ -25,13 +25,35 @@ void requireGrid(const maps::Raster<T>& layer, const maps::Grid& grid, const cha
                                 " lies on another grid than the elevation");
 }
 
+void requireCosts(const std::vector<CostLayer>& costs, const maps::Grid& grid) {
+  if (costs.size() > CostLayer::kMostLayers)
+    throw std::invalid_argument("TraversabilityMap: " + std::to_string(costs.size()) +
+                                " cost layers, must be <= " + std::to_string(CostLayer::kMostLayers));
+  for (const CostLayer& layer : costs) {
+    const std::string who = "layer '" + layer.name + "'";
+    if (layer.added_J_per_m.empty() || layer.added_J_per_m.grid() != grid)
+      throw std::invalid_argument("TraversabilityMap: " + who + " lies on another grid than the elevation");
+    const auto possible = [](float v) {
+      return v >= 0.0F && (v <= CostLayer::kMost_J_per_m || std::isinf(v));
+    };
+    for (const float v : layer.added_J_per_m.values())
+      if (!std::isnan(v) && !possible(v))
+        throw std::invalid_argument("TraversabilityMap: " + who + ": " + std::to_string(v) +
+                                    " J/m, must be 0 to 1e6, infinite or NaN");
+    if (!(layer.unseen_J_per_m >= 0.0F && layer.unseen_J_per_m <= CostLayer::kMost_J_per_m))
+      throw std::invalid_argument("TraversabilityMap: " + who + ": unseen_J_per_m must be 0 to 1e6");
+  }
+}
+
 std::shared_ptr<GroundSite> siteOf(MapLayers& layers, std::shared_ptr<const GroundModel> model) {
+  requireCosts(layers.costs, layers.elevation.grid());
   const SurfaceKeys keys(layers.elevation.grid(), middleElevation(layers.elevation.elevation_m));
   return std::make_shared<GroundSite>(GroundSite{.elevation = std::move(layers.elevation),
                                                  .classes = std::move(layers.classes),
                                                  .keys = keys,
                                                  .model = std::move(model),
-                                                 .floors = std::move(layers.floors)});
+                                                 .floors = std::move(layers.floors),
+                                                 .costs = std::move(layers.costs)});
 }
 
 // Ranges of a drive overlap: neighbours in time are joined where that covers little more than both.

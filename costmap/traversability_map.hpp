@@ -68,6 +68,7 @@ class TraversabilityMap {
   CellCode code(maps::Cell cell) const noexcept { return published()->at(cell); }
   const maps::Raster<Hazard>& hazards() const noexcept { return hazards_; }
   const maps::Raster<std::uint8_t>& classes() const noexcept { return site_->classes; }
+  const std::vector<CostLayer>& costLayers() const noexcept { return site_->costs; }
   Hazard hazards(maps::Cell cell) const noexcept { return hazards_[cell]; }
   /// Position of the cell's class in model().parts().classes, or -1.
   int classIndex(maps::Cell cell) const noexcept;
@@ -130,6 +131,12 @@ class TraversabilityMap {
   /// class that it was learned of. Throws std::invalid_argument, in one line with place and remedy, for a patch of
   /// another resolution, off the map, without an observation or with an impossible value; the map stays as it was.
   void patch(const SurfacePatch& patch);
+
+  /// The map of the window that lies so many whole tiles of 64 cells further east (columns) and north (rows): what
+  /// lies in both keeps all that is known and believed of it, refused places included; tiles that come in are unseen; what
+  /// falls off is forgotten. Equal to a map built at once from what is left. Its version follows on this one's. Throws
+  /// std::invalid_argument where nothing of the map would be left.
+  TraversabilityMap moved(maps::Cell tiles, const ProgressMonitor& watch = {}) const;
 
   /// Publishes what was learned since the last time as a new version: rewrites the cells whose ground changed,
   /// or that of a cell within reach of their wheels, and shares the tiles that hold none. Readers never wait; a

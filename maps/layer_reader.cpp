@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -10,6 +11,7 @@
 
 #include <talus/maps/gdal_dataset.hpp>
 #include <talus/maps/layer_reader.hpp>
+#include <talus/maps/memory_budget.hpp>
 #include <talus/maps/place.hpp>
 #include <talus/maps/raster_band.hpp>
 #include <talus/maps/warp.hpp>
@@ -41,6 +43,45 @@ void adoptCoordinates(GDALDataset& file, const Grid& grid) {
       grid.south_west.x_m, grid.resolution_m, 0, grid.south_west.y_m + grid.height * grid.resolution_m, 0,
       -grid.resolution_m};
   file.SetGeoTransform(transform.data());
+}
+
+// GDAL takes a grid of text for whole numbers where its first ones are, and reads "inf" and "nan" as 0.
+Dataset withFractions(Dataset file, const std::string& path) {
+  if (std::string(file->GetDriver()->GetDescription()) != "AAIGrid") return file;
+  const char* const driver[] = {"AAIGrid", nullptr};
+  const char* const options[] = {"DATATYPE=Float64", nullptr};
+  Dataset again(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, driver, options));
+  if (!again) throw InputError({path, "cannot be opened again", "give a GeoTIFF"});
+  return again;
+}
+
+// A band in memory, as floats without a no-data value.
+Dataset inMemory(GDALDataset& file, int band, const std::string& path) {
+  const int width = file.GetRasterXSize(), height = file.GetRasterYSize();
+  requireMemory(8.0 * width * height, path);
+  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("MEM");
+  Dataset copy(driver->Create("", width, height, 1, GDT_Float32, nullptr));
+  if (!copy) throw InputError({path, "does not fit into memory", "cut it to the map with gdalwarp"});
+  std::array<double, 6> transform{};
+  if (file.GetGeoTransform(transform.data()) == CE_None) copy->SetGeoTransform(transform.data());
+  if (file.GetSpatialRef() != nullptr) copy->SetSpatialRef(file.GetSpatialRef());
+  std::vector<float> row(static_cast<std::size_t>(width));
+  std::vector<std::uint8_t> known(row.size());
+  GDALRasterBand& from = *file.GetRasterBand(band);
+  GDALRasterBand& mask = *from.GetMaskBand();
+  for (int y = 0; y < height; ++y) {
+    const bool read =
+        from.RasterIO(GF_Read, 0, y, width, 1, row.data(), width, 1, GDT_Float32, 0, 0, nullptr) == CE_None &&
+        mask.RasterIO(GF_Read, 0, y, width, 1, known.data(), width, 1, GDT_Byte, 0, 0, nullptr) == CE_None;
+    if (!read)
+      throw InputError({path, "row " + number(y) + " cannot be read", "the file is damaged or truncated"});
+    for (std::size_t x = 0; x < row.size(); ++x)
+      if (known[x] == 0) row[x] = std::numeric_limits<float>::quiet_NaN();
+    if (copy->GetRasterBand(1)->RasterIO(GF_Write, 0, y, width, 1, row.data(), width, 1, GDT_Float32, 0, 0,
+                                         nullptr) != CE_None)
+      throw InputError({path, "does not fit into memory", "cut it to the map with gdalwarp"});
+  }
+  return copy;
 }
 
 // A band on the map's grid, first row south.
@@ -87,6 +128,43 @@ Raster<std::uint8_t> readTerrainClasses(const LayerSource& source, const Elevati
     classes.values()[i] = static_cast<std::uint8_t>(v);
   }
   return classes;
+}
+
+AddedJoules readAddedJoules(const LayerSource& source, const ElevationMap& map) {
+  const GdalErrors quiet;
+  Dataset file = withFractions(openRaster(source.path), source.path);
+  if (source.band && (*source.band < 1 || *source.band > file->GetRasterCount()))
+    throw InputError({source.path, "has no band " + std::to_string(*source.band), "name one that it has"});
+  Dataset band = inMemory(*file, source.band.value_or(1), source.path);
+  AddedJoules added;
+  // The resampling leaves out what is not known: numbers that are greater than any other stand for it.
+  constexpr float kMost = 1e6F, kUnknown = 1e38F, kBetween = 2e38F, kRefused = 3e38F;
+  const auto marked = [&](float v) {
+    if (std::isnan(v)) return kUnknown;
+    if (v == std::numeric_limits<float>::infinity()) return kRefused;
+    if (!(v >= 0 && v <= kMost))
+      throw InputError({source.path, "value " + number(static_cast<double>(v)) + " J/m is not 0 to 1e6",
+                        "nothing may make ground cheaper; write inf where the ground is refused"});
+    added.dearest_J_per_m = std::max(added.dearest_J_per_m, v);
+    return v;
+  };
+  const int width = band->GetRasterXSize();
+  std::vector<float> row(static_cast<std::size_t>(width));
+  for (int y = 0; y < band->GetRasterYSize(); ++y)
+    for (const auto way : {GF_Read, GF_Write}) {
+      if (band->GetRasterBand(1)->RasterIO(way, 0, y, width, 1, row.data(), width, 1, GDT_Float32, 0, 0,
+                                           nullptr) != CE_None)
+        throw InputError({source.path, "cannot be held in memory", ""});
+      if (way == GF_Read) std::ranges::transform(row, row.begin(), marked);
+    }
+  added.J_per_m = aligned(std::move(band), 1, map, "max", source.path);
+  for (float& v : added.J_per_m.values()) {
+    if (v > kBetween)
+      v = std::numeric_limits<float>::infinity();
+    else if (v > kMost)
+      v = std::numeric_limits<float>::quiet_NaN();
+  }
+  return added;
 }
 
 Raster<float> readRockAbundance(const LayerSource& source, const ElevationMap& map) {

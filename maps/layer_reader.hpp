@@ -27,6 +27,16 @@ Raster<std::uint8_t> readTerrainClasses(const LayerSource& source, const Elevati
 /// @throws InputError, also when the file and the map do not overlap or a value lies outside 0 to 1
 Raster<float> readRockAbundance(const LayerSource& source, const ElevationMap& map);
 
+/// What a metre costs more [J/m] on the map's grid: the greatest value of any cell of the file that reaches into a cell.
+/// Infinite: refused, also where that holds of a part of the cell alone; NaN where a part of it has no data and nothing is refused.
+struct AddedJoules {
+  Raster<float> J_per_m;
+  float dearest_J_per_m = 0.0F;  ///< finite value of the whole file
+};
+
+/// @throws InputError, also when the file and the map do not overlap or a value is negative or above 1e6
+AddedJoules readAddedJoules(const LayerSource& source, const ElevationMap& map);
+
 /// 1 in every cell that a keep-out polygon of a vector file (GeoJSON: longitude, latitude; or map metres
 /// where the map has no CRS or the file says "crs": "local") touches, else 0.
 /// @throws InputError, also when the file holds no polygon or none meets the map

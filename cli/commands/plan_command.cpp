@@ -296,6 +296,7 @@ void checkMissionOutput(const PlanOptions& options, const PlanOptions& asked, bo
                                   ground.soil,           ground.model,       ground.soils,
                                   ground.layers.terrain, ground.layers.rocks};
   inputs.insert(inputs.end(), ground.layers.keep_out.begin(), ground.layers.keep_out.end());
+  for (const std::string& layer : ground.layers.costs) inputs.push_back(layerNamed(layer).second);
   checkOutput(options.output, inputs);
   std::string start(200, '\0');
   std::ifstream file(options.output, std::ios::binary);

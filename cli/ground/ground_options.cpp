@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <fstream>
@@ -121,6 +122,7 @@ std::vector<std::string> filesOf(const GroundOptions& options) {
                                   options.soils, options.soil, options.model, options.rover})
     if (std::ifstream(path).good()) files.push_back(path);
   files.insert(files.end(), options.layers.keep_out.begin(), options.layers.keep_out.end());
+  for (const std::string& given : options.layers.costs) files.push_back(layerNamed(given).second);
   return files;
 }
 
@@ -142,6 +144,9 @@ void checkAgainstMap(const GroundOptions& options, const std::string& path, cons
   if (!options.layers.keep_out.empty())
     throw InputError({path, "is a built map, on which --keep-out has no effect",
                       "give --keep-out to talus costmap, or plan on the elevation map"});
+  if (!options.layers.costs.empty())
+    throw InputError({path, "is a built map, on which --layer has no effect",
+                      "give --layer to talus costmap, or plan on the elevation map"});
   if (fieldsOf(options.policy) != fieldsOf(costmap::DrivePolicy{}))
     throw InputError({path, "is a built map, on which options of thresholds, weights and risk have no effect",
                       "give them to talus costmap, or plan on the elevation map"});
@@ -228,6 +233,19 @@ void warnOfAssumptions(const GroundOptions& options, const Assumed& assumed, con
     context.warn(std::string("no --rover: using default rover ") + assumed.rover + "");
 }
 
+void warnOfUnseen(const std::vector<costmap::CostLayer>& layers, const costmap::DrivePolicy& policy,
+                  const Context& context) {
+  for (const costmap::CostLayer& layer : layers) {
+    const auto& values = layer.added_J_per_m.values();
+    const auto unseen = std::ranges::count_if(values, [](float v) { return std::isnan(v); });
+    if (unseen == 0) continue;
+    context.warn(fmt::format(
+        "layer {} has no data in {} of {} cells: they {}", layer.name, unseen, values.size(),
+        policy.allow_unknown ? fmt::format("cost {:.6g} J/m more, as the dearest", layer.unseen_J_per_m)
+                             : "count as unknown and are excluded"));
+  }
+}
+
 }  // namespace
 
 void addGroundOptions(CLI::App& command, GroundOptions& options) {
@@ -287,7 +305,9 @@ Ground readGround(const GroundOptions& options, const Context& context) {
                              std::move(layers.rock_abundance),
                              std::move(layers.keep_out),
                              {},
-                             costmap::Floors(std::move(floors), cells)};
+                             costmap::Floors(std::move(floors), cells),
+                             std::move(layers.costs)};
+  warnOfUnseen(content.costs, options.policy, context);
   costmap::TraversabilityMap map(std::move(content), std::make_shared<costmap::GroundModel>(std::move(parts)),
                                  {.footprint_radius_m = options.footprint_m, .threads = context.workers()},
                                  context.watch("costmap"));

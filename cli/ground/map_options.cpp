@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cctype>
 #include <limits>
 #include <string>
 #include <utility>
@@ -11,6 +13,7 @@
 #include <talus/costmap/map_file.hpp>
 #include <talus/costmap/octomap_surface.hpp>
 #include <talus/maps/memory_budget.hpp>
+#include <talus/planner/plugin/layer_plugin.hpp>
 
 namespace talus::cli {
 
@@ -110,8 +113,35 @@ void addLayerOptions(CLI::App& command, LayerOptions& options) {
       ->type_name("N");
   command.add_option("--keep-out", options.keep_out, "GeoJSON polygons to keep out of; may be repeated")
       ->type_name("FILE");
+  command
+      .add_option(
+          "--layer", options.costs,
+          "joules a metre to add, as NAME=FILE of a raster or a layer plugin (.so): inf is refused, no data "
+          "counts as unknown; may be repeated")
+      ->type_name("NAME=FILE");
   groupOptions(command, "Layers");
 }
+
+std::pair<std::string, std::string> layerNamed(const std::string& given) {
+  const std::size_t end = given.find('=');
+  const std::string name = given.substr(0, end == std::string::npos ? 0 : end);
+  const auto word = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; };
+  if (name.empty() || end + 1 == given.size() || !std::ranges::all_of(name, word))
+    throw InputError({"--layer " + given, "is not NAME=FILE with a name of letters, digits, - and _",
+                      "write --layer shadow=shadow.tif"});
+  return {name, given.substr(end + 1)};
+}
+
+namespace {
+
+costmap::CostLayer costLayer(const std::string& given, const maps::ElevationMap& map) {
+  const auto [name, path] = layerNamed(given);
+  if (path.ends_with(".so")) return planner::layerFrom(path, name, map.grid());
+  maps::AddedJoules added = maps::readAddedJoules({path, {}}, map);
+  return {.name = name, .added_J_per_m = std::move(added.J_per_m), .unseen_J_per_m = added.dearest_J_per_m};
+}
+
+}  // namespace
 
 Layers readLayers(const LayerOptions& options, const maps::ElevationMap& map) {
   Layers layers;
@@ -123,6 +153,13 @@ Layers readLayers(const LayerOptions& options, const maps::ElevationMap& map) {
     const maps::Raster<std::uint8_t> mask = maps::readKeepOut(path, map);
     if (layers.keep_out.empty()) layers.keep_out = maps::Raster<std::uint8_t>(map.grid());
     for (std::size_t i = 0; i < mask.values().size(); ++i) layers.keep_out.values()[i] |= mask.values()[i];
+  }
+  for (const std::string& given : options.costs) {
+    layers.costs.push_back(costLayer(given, map));
+    for (std::size_t i = 0; i + 1 < layers.costs.size(); ++i)
+      if (layers.costs[i].name == layers.costs.back().name)
+        throw InputError(
+            {"--layer " + given, "a layer of that name is given already", "give each its own name"});
   }
   return layers;
 }

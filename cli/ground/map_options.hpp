@@ -2,9 +2,10 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include <talus/costmap/floors.hpp>
+#include <talus/costmap/ground_site.hpp>
 #include <talus/maps/elevation_reader.hpp>
 #include <talus/maps/layer_reader.hpp>
 
@@ -51,6 +52,7 @@ struct LayerOptions {
   std::string rocks;  ///< rock-abundance raster
   std::optional<int> rocks_band;
   std::vector<std::string> keep_out;  ///< GeoJSON polygons
+  std::vector<std::string> costs;     ///< NAME=FILE: joules a metre on top
 };
 
 /// The layers on the map's grid; a raster is empty where the user named no file.
@@ -58,10 +60,14 @@ struct Layers {
   maps::Raster<std::uint8_t> classes;   ///< maps::kNoClass where there is none
   maps::Raster<float> rock_abundance;   ///< NaN where there is none
   maps::Raster<std::uint8_t> keep_out;  ///< not 0: must not be entered
+  std::vector<costmap::CostLayer> costs;
 };
 
-/// Declares --terrain, --terrain-band, --rocks, --rocks-band and --keep-out.
+/// Declares --terrain, --terrain-band, --rocks, --rocks-band, --keep-out and --layer.
 void addLayerOptions(CLI::App& command, LayerOptions& options);
+
+/// The file of a layer given as NAME=FILE; the name is letters, digits, - and _. @throws InputError
+std::pair<std::string, std::string> layerNamed(const std::string& given);
 
 /// Reads and aligns them. @throws InputError
 Layers readLayers(const LayerOptions& options, const maps::ElevationMap& map);

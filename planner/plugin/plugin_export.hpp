@@ -1,10 +1,29 @@
 #pragma once
 
+#include <string>
 #include <type_traits>
+#include <vector>
 
 #include <boost/dll/alias.hpp>
 
 #include <talus/planner/plugin/global_planner.hpp>
+
+namespace talus {
+
+/// Grows with every change of CostSource that an older plugin or program would misread.
+inline constexpr int kLayerInterfaceVersion = 1;
+
+/// A layer of a map from any source, such as shadow, radio or hazards of one's own: costmap::CostLayer.
+class CostSource {
+ public:
+  virtual ~CostSource() = default;
+
+  /// Joules that a metre costs more in each cell of a grid, row by row from the south-west: 0 to 1e6; infinite: must not be
+  /// entered; NaN: not known. The same place gives the same value on every grid: a large map is asked for window by window.
+  virtual std::vector<float> over(const maps::Grid& grid) const = 0;
+};
+
+}  // namespace talus
 
 /// Exports a planner from a shared library: write it once, in one source file, at namespace scope.
 /// `Type` is a class derived from talus::GlobalPlanner alone, default constructible without throwing.
@@ -19,3 +38,15 @@
   }                                                                                       \
   BOOST_DLL_ALIAS(talus::plugin_export::prototype, talus_planner)                         \
   BOOST_DLL_ALIAS(talus::plugin_export::interface_version, talus_planner_interface)
+
+/// The same for a layer: `Type` is derived from talus::CostSource alone. Symbols: talus_layer, talus_layer_interface.
+#define TALUS_EXPORT_LAYER(Type)                                                          \
+  namespace talus::layer_export {                                                         \
+  static_assert(std::is_base_of_v<talus::CostSource, Type>, "not a CostSource");          \
+  static_assert(std::is_nothrow_default_constructible_v<Type>, "its constructor throws"); \
+  Type layer;                                                                             \
+  extern const int interface_version;                                                     \
+  const int interface_version = talus::kLayerInterfaceVersion;                            \
+  }                                                                                       \
+  BOOST_DLL_ALIAS(talus::layer_export::layer, talus_layer)                                \
+  BOOST_DLL_ALIAS(talus::layer_export::interface_version, talus_layer_interface)

@@ -10,6 +10,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <talus/planner/plugin/plugin_answer.hpp>
 #include <talus/planner/plugin/plugin_loader.hpp>
 #include <talus/planner/plugin/request_check.hpp>
 
@@ -42,10 +43,12 @@ void requireLoadable(const std::string& path, const std::function<void()>& load)
                       "it is truncated or of another machine: rebuild it"});
 }
 
-boost::dll::shared_library opened(const std::string& path) {
+}  // namespace
+
+boost::dll::shared_library openedLibrary(const std::string& path) {
   boost::dll::fs::error_code error;
   if (!boost::dll::fs::is_regular_file(path, error))
-    throw InputError({path, "no such file", "name a planner's shared library (.so)"});
+    throw InputError({path, "no such file", "name a plugin's shared library (.so)"});
   boost::dll::shared_library library;
   // A path without a folder would be searched for in the system's library folders instead.
   library.load(boost::dll::fs::absolute(path), error);
@@ -54,6 +57,8 @@ boost::dll::shared_library opened(const std::string& path) {
         {path, "cannot be loaded as a shared library: " + error.message(), "rebuild it for this machine"});
   return library;
 }
+
+namespace {
 
 void requireInterface(const boost::dll::shared_library& library, const std::string& path) {
   if (!library.has("talus_planner") || !library.has("talus_planner_interface"))
@@ -92,7 +97,7 @@ class Loaded final : public GlobalPlanner {
 };
 
 std::unique_ptr<GlobalPlanner> loaded(const std::string& path) {
-  auto library = std::make_shared<boost::dll::shared_library>(opened(path));
+  auto library = std::make_shared<boost::dll::shared_library>(openedLibrary(path));
   requireInterface(*library, path);
   auto planner = library->get_alias<GlobalPlanner>("talus_planner").create();
   return std::make_unique<Loaded>(std::move(library), std::move(planner));

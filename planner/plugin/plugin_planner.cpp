@@ -7,7 +7,7 @@
 
 #include <talus/planner/bound/lower_bound.hpp>
 #include <talus/planner/check/route_check.hpp>
-#include <talus/planner/plugin/child_process.hpp>
+#include <talus/planner/plugin/plugin_answer.hpp>
 #include <talus/planner/plugin/plugin_loader.hpp>
 #include <talus/planner/plugin/plugin_planner.hpp>
 #include <talus/planner/route/motion_cost.hpp>
@@ -19,17 +19,20 @@ namespace {
 using maps::Point;
 
 constexpr double kSamePlace_m = 1e-6;
-constexpr std::size_t kLongestText = 1000;
 
 // First byte of an answer: what follows.
 constexpr char kText = 't', kRoute = 'r', kInput = 'i', kThrown = 'x';
 
+}  // namespace
+
 std::string oneLine(std::string text) {
-  if (text.size() > kLongestText) text.resize(kLongestText);
+  if (text.size() > kLongestPluginText) text.resize(kLongestPluginText);
   for (char& c : text)
     if (static_cast<unsigned char>(c) < 0x20) c = ' ';
   return text;
 }
+
+namespace {
 
 struct Head {
   RouteStatus status = RouteStatus::NoneFound;
@@ -63,8 +66,10 @@ std::string said(const std::function<std::string()>& work) {
   }
 }
 
-[[noreturn]] void fail(const std::string& file, const std::string& what) {
-  throw InputError({file, what, "tell its author, or plan without --plugin"});
+}  // namespace
+
+void failPlugin(const std::string& file, const std::string& what) {
+  throw InputError({file, what, "tell its author, or do without it"});
 }
 
 std::string answerOf(const std::string& file, const std::function<std::string()>& work,
@@ -74,18 +79,18 @@ std::string answerOf(const std::string& file, const std::function<std::string()>
     case ChildAnswer::End::Stopped:
       return {};
     case ChildAnswer::End::TooLate:
-      fail(file, "did not end within its time limit and was ended");
+      failPlugin(file, "did not end within its time limit and was ended");
     case ChildAnswer::End::TooMuch:
-      fail(file, "answered with more than a route can hold");
+      failPlugin(file, "answered with more than was requested");
     case ChildAnswer::End::Died:
-      fail(file, std::string("ended its process") +
-                     (answer.signal != 0 ? std::string(" (") + strsignal(answer.signal) + ")" : ""));
+      failPlugin(file, std::string("ended its process") +
+                           (answer.signal != 0 ? std::string(" (") + strsignal(answer.signal) + ")" : ""));
     case ChildAnswer::End::Answered:
       break;
   }
-  if (answer.bytes.empty()) fail(file, "gave no answer");
+  if (answer.bytes.empty()) failPlugin(file, "gave no answer");
   const std::string text = answer.bytes.substr(1);
-  if (answer.bytes[0] == kThrown) fail(file, "threw an error: " + text);
+  if (answer.bytes[0] == kThrown) failPlugin(file, "threw an error: " + text);
   if (answer.bytes[0] == kInput) {
     const std::size_t first = text.find('\n'), second = text.find('\n', first + 1);
     throw InputError({oneLine(text.substr(0, first)), oneLine(text.substr(first + 1, second - first - 1)),
@@ -93,6 +98,8 @@ std::string answerOf(const std::string& file, const std::function<std::string()>
   }
   return std::move(answer.bytes);
 }
+
+namespace {
 
 PlanRequest requestOf(const Problem& problem, const ProgressMonitor& watch) {
   PlanRequest request{.start = problem.start,
@@ -160,7 +167,7 @@ PluginPlanner::PluginPlanner(std::string file, std::string planner)
         loaded->configure({.planner = planner_});
         return kText + oneLine(loaded->capabilities().planner + " of " + offers.name);
       },
-      {.seconds = 120.0, .bytes = 10 * kLongestText, .memory = kMostMemory}, {});
+      {.seconds = 120.0, .bytes = 10 * kLongestPluginText, .memory = kMostMemory}, {});
   name_ = bytes.substr(1);
 }
 
@@ -177,16 +184,16 @@ Plan PluginPlanner::unchecked(const Problem& problem) const {
         return bytesOf(loaded->plan(requestOf(problem, {})));
       },
       {.seconds = problem.time_limit_s + 1.0,
-       .bytes = 2 * kLongestText + 16 * kMostVertices,
+       .bytes = 2 * kLongestPluginText + 16 * kMostVertices,
        .memory = kMostMemory},
       problem.watch);
   if (bytes.empty()) return failedPlan(RouteStatus::Cancelled, "cancelled before a route was found");
   Head head;
-  if (bytes[0] != kRoute || bytes.size() < 1 + sizeof head) fail(file_, "gave no route");
+  if (bytes[0] != kRoute || bytes.size() < 1 + sizeof head) failPlugin(file_, "gave no route");
   std::memcpy(&head, bytes.data() + 1, sizeof head);
   if (head.vertices > kMostVertices)
-    fail(file_, "returned a route of " + std::to_string(head.vertices) + " vertices, must be at most " +
-                    std::to_string(kMostVertices));
+    failPlugin(file_, "returned a route of " + std::to_string(head.vertices) + " vertices, must be at most " +
+                          std::to_string(kMostVertices));
   if (head.status != RouteStatus::Found)
     return failedPlan(head.status == RouteStatus::NoRoute || head.status > RouteStatus::Cancelled
                           ? RouteStatus::NoneFound  // its word is no proof of ours
@@ -194,12 +201,13 @@ Plan PluginPlanner::unchecked(const Problem& problem) const {
                       name_ + ": " + bytes.substr(1 + sizeof head));
   Plan plan;
   plan.points.resize(head.vertices);
-  if (head.vertices == 0) fail(file_, "returned a route without a vertex");
-  if (bytes.size() != 1 + sizeof head + head.vertices * sizeof(Point)) fail(file_, "gave no whole route");
+  if (head.vertices == 0) failPlugin(file_, "returned a route without a vertex");
+  if (bytes.size() != 1 + sizeof head + head.vertices * sizeof(Point))
+    failPlugin(file_, "gave no whole route");
   std::memcpy(plan.points.data(), bytes.data() + 1 + sizeof head, head.vertices * sizeof(Point));
   for (std::size_t i = 0; i < plan.points.size(); ++i)
     if (!std::isfinite(plan.points[i].x_m) || !std::isfinite(plan.points[i].y_m))
-      fail(file_, "returned a route whose vertex " + std::to_string(i) + " is " + text(plan.points[i]));
+      failPlugin(file_, "returned a route whose vertex " + std::to_string(i) + " is " + text(plan.points[i]));
   plan.status = RouteStatus::Found;
   return plan;
 }

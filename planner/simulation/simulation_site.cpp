@@ -66,6 +66,7 @@ TrueWorld SimulationSite::trueWorld(std::size_t i) const {
 costmap::TraversabilityMap SimulationSite::believed(Belief belief, const TrueWorld& world) const {
   costmap::GroundModel::Parts parts = map_.model().parts();
   costmap::MapLayers layers{map_.elevation(), map_.classes(), {}, {}, declaredHazards(map_)};
+  layers.costs = map_.costLayers();
   if (belief == Belief::Geometry)
     for (costmap::GroundClass& ground : parts.classes) {
       ground.soil = parts_.firm;

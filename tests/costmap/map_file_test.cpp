@@ -37,6 +37,26 @@ TEST(MapFile, ComesBackWithTheSameCostGridAndBytes) {
             map.published()->cost().costPerMetre(cell, {0.6, 0.8}));
 }
 
+TEST(MapFile, KeepsCostLayers) {
+  MapLayers layers = drawn({"1122", "1122", "1111"});
+  CostLayer own{.name = "shadow", .added_J_per_m = maps::Raster<float>(layers.elevation.grid(), 3.0F)};
+  own.added_J_per_m[{3, 2}] = NAN;
+  own.added_J_per_m[{0, 0}] = INFINITY;
+  own.unseen_J_per_m = 9.0F;
+  layers.costs = {own, own};
+  layers.costs[1].name = "radio";
+  const TraversabilityMap map(std::move(layers), testGround(), {});
+  const TraversabilityMap back = fromBytes(bytesOf(map));
+  EXPECT_EQ(bytesOf(back), bytesOf(map));
+  ASSERT_EQ(back.costLayers().size(), 2U);
+  EXPECT_EQ(back.costLayers()[1].name, "radio");
+  EXPECT_EQ(back.costLayers()[1].unseen_J_per_m, 9.0F);
+  const CellCode cell = map.code({1, 1});
+  EXPECT_EQ(back.published()->cost().costPerMetre(back.code({1, 1}), {}),
+            map.published()->cost().costPerMetre(cell, {}));
+  EXPECT_EQ(back.hazards({0, 0}), map.hazards({0, 0}));
+}
+
 TEST(MapFile, KeepsTheCoordinateSystem) {
   MapLayers layers = drawn({"11", "11"});
   maps::CoordinateSystem moon{

@@ -47,6 +47,50 @@ TEST(LayerReader, WithoutACrsTheLayerHasTheMapsCoordinates) {
             "1234\n2345\n3456\n");
 }
 
+// The greatest of what lies in a cell, whatever is not known or refused beside it.
+TEST(LayerReader, FinerJoulesAreTakenByTheGreatest) {
+  const TemporaryFolder folder;
+  auto rows = drawn({"11223344", "15223349", "11223344", "11223344", "77777777", "77777777"});
+  rows[0][2] = -1;        // no data in a quarter of a cell
+  rows[2][4] = INFINITY;  // refused in a quarter of a cell
+  rows[2][0] = -1;        // both
+  rows[3][1] = INFINITY;
+  const std::string path = write({.rows = rows,
+                                  .transform = std::array<double, 6>{500000, 5, 0, 5000000, 0, -5},
+                                  .type = GDT_Float32,
+                                  .nodata = -1},
+                                 folder / "j.tif");
+  const AddedJoules added = readAddedJoules({.path = path}, map(folder));
+  const auto at = [&](int column, int row) { return added.J_per_m[{column, row}]; };
+  EXPECT_EQ(at(0, 2), 5.0F);
+  EXPECT_TRUE(std::isnan(at(1, 2)));
+  EXPECT_EQ(at(3, 2), 9.0F);
+  EXPECT_EQ(at(0, 1), INFINITY);
+  EXPECT_EQ(at(2, 1), INFINITY);
+  EXPECT_EQ(at(2, 0), 7.0F);
+  EXPECT_EQ(added.dearest_J_per_m, 9.0F);
+}
+
+TEST(LayerReader, JoulesOnTheSameCellsAreExact) {
+  const TemporaryFolder folder;
+  const std::string path =
+      write({.rows = drawn({"1122", "1.22", "3333"}), .type = GDT_Float64, .nodata = -1}, folder / "j.tif");
+  const AddedJoules added = readAddedJoules({.path = path}, map(folder));
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 4; ++column) {
+      const char drawn = std::string("33331.221122")[static_cast<std::size_t>(4 * row + column)];
+      const float value = added.J_per_m[{column, row}];
+      EXPECT_TRUE(drawn == '.' ? std::isnan(value) : value == static_cast<float>(drawn - '0'))
+          << column << ' ' << row;
+    }
+  const std::string less =
+      write({.rows = {{0.0, 1.0}, {-0.5, 2.0}}, .type = GDT_Float32}, folder / "less.tif");
+  EXPECT_THAT(refusal([&] { readAddedJoules({.path = less}, map(folder)); }),
+              HasSubstr("value -0.5 J/m is not 0 to 1e6"));
+  EXPECT_THAT(refusal([&] { readAddedJoules({.path = path, .band = 2}, map(folder)); }),
+              HasSubstr("has no band 2"));
+}
+
 TEST(LayerReader, RockAbundanceFindsItsBandAndIsAShare) {
   const TemporaryFolder folder;
   auto rows = drawn({"0000", "0000", "0000"});
