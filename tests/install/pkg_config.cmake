@@ -1,0 +1,22 @@
+cmake_policy(VERSION 3.25)
+# A program in C by pkg-config alone, from a prefix that was moved after it was installed.
+file(REMOVE_RECURSE ${MOVED})
+file(COPY ${PREFIX}/${LIBDIR} ${PREFIX}/include DESTINATION ${MOVED})
+set(ENV{PKG_CONFIG_PATH} ${MOVED}/${LIBDIR}/pkgconfig)
+foreach(what --cflags --libs)
+  execute_process(COMMAND pkg-config ${what} talus OUTPUT_VARIABLE words OUTPUT_STRIP_TRAILING_WHITESPACE
+                  COMMAND_ERROR_IS_FATAL ANY)
+  separate_arguments(words UNIX_COMMAND "${words}")
+  list(APPEND flags ${words})
+endforeach()
+if(NOT "${flags}" MATCHES "${MOVED}")
+  message(FATAL_ERROR "pkg-config names another prefix: ${flags}")
+endif()
+separate_arguments(more UNIX_COMMAND "${FLAGS}")
+execute_process(COMMAND ${CC} -std=c11 -Wall -Wextra -pedantic -Werror ${more} ${SOURCE} ${flags} -lm -o ${MOVED}/rover
+                COMMAND_ERROR_IS_FATAL ANY)
+set(ENV{LD_LIBRARY_PATH} ${MOVED}/${LIBDIR})
+execute_process(COMMAND ${MOVED}/rover OUTPUT_VARIABLE said COMMAND_ERROR_IS_FATAL ANY)
+if(NOT said MATCHES "step  0 at")
+  message(FATAL_ERROR "the example planned no step: ${said}")
+endif()
