@@ -1,0 +1,121 @@
+#include <cmath>
+
+#include <talus/planner/python/arrays.hpp>
+
+namespace py = pybind11;
+
+namespace talus::planner {
+namespace {
+
+py::array arrayOf(const py::object& given, const std::string& name) {
+  if (!py::isinstance<py::array>(given))
+    throw py::type_error(name + ": " + std::string(py::str(py::type::of(given).attr("__name__"))) +
+                         ", must be a numpy array");
+  return py::reinterpret_borrow<py::array>(given);
+}
+
+std::string shapeOf(const py::array& array) {
+  return std::string(py::str(array.attr("shape")));
+}
+
+[[noreturn]] void wrongType(const py::array& array, const std::string& name, const std::string& wanted) {
+  throw py::type_error(name + ": dtype " + std::string(py::str(array.dtype())) + ", must be " + wanted);
+}
+
+py::array onGrid(const py::object& given, const std::string& name, const maps::Grid& grid) {
+  py::array array = arrayOf(given, name);
+  if (array.ndim() != 2 || array.shape(0) != grid.height || array.shape(1) != grid.width)
+    throw py::value_error(name + ": shape " + shapeOf(array) + ", must be (" + std::to_string(grid.height) +
+                          ", " + std::to_string(grid.width) + ")");
+  return array;
+}
+
+template <typename From, typename To, typename Check>
+maps::Raster<To> copied(const py::array& array, const maps::Grid& grid, const Check& check) {
+  const auto values = py::array_t<From>(array).template unchecked<2>();
+  maps::Raster<To> out(grid);
+  for (int row = 0; row < grid.height; ++row)
+    for (int column = 0; column < grid.width; ++column) {
+      const auto value = static_cast<To>(values(row, column));
+      check(value, row, column);
+      out[{column, row}] = value;
+    }
+  return out;
+}
+
+template <typename T>
+bool holds(const py::array& array) {
+  return array.dtype().equal(py::dtype::of<T>());
+}
+
+py::array_t<double> rowsOf(const py::object& given, const std::string& name, int columns) {
+  const py::array array = arrayOf(given, name);
+  if (array.ndim() != 2 || array.shape(1) != columns)
+    throw py::value_error(name + ": shape " + shapeOf(array) + ", must be (n, " + std::to_string(columns) +
+                          ")");
+  if (!holds<double>(array) && !holds<float>(array)) wrongType(array, name, "float32 or float64");
+  return py::array_t<double>(array);
+}
+
+}  // namespace
+
+maps::Grid gridOf(const py::object& given, const std::string& name, const Placed& placed) {
+  const py::array array = arrayOf(given, name);
+  if (array.ndim() != 2 || array.size() == 0 || array.shape(0) > 65536 || array.shape(1) > 65536)
+    throw py::value_error(name + ": shape " + shapeOf(array) +
+                          ", must be (rows, columns) of 1 to 65536 each");
+  if (!(placed.resolution_m > 0.0) || !std::isfinite(placed.resolution_m))
+    throw py::value_error("resolution_m = " + std::to_string(placed.resolution_m) + ", must be > 0");
+  if (!std::isfinite(placed.south_west.x_m) || !std::isfinite(placed.south_west.y_m))
+    throw py::value_error("south_west must be finite");
+  return {.width = static_cast<int>(array.shape(1)),
+          .height = static_cast<int>(array.shape(0)),
+          .resolution_m = placed.resolution_m,
+          .south_west = placed.south_west};
+}
+
+maps::Raster<float> floatsOf(const py::object& given, const std::string& name, const maps::Grid& grid,
+                             bool finite) {
+  if (given.is_none()) return {};
+  const py::array array = onGrid(given, name, grid);
+  const auto check = [&](float value, int row, int column) {
+    if (finite && std::isinf(value))
+      throw py::value_error(name + "[" + std::to_string(row) + ", " + std::to_string(column) +
+                            "] is infinite, must be finite or NaN (not observed)");
+  };
+  if (holds<float>(array)) return copied<float, float>(array, grid, check);
+  if (holds<double>(array)) return copied<double, float>(array, grid, check);
+  wrongType(array, name, "float32 or float64");
+}
+
+maps::Raster<std::uint8_t> bytesOf(const py::object& given, const std::string& name, const maps::Grid& grid) {
+  if (given.is_none()) return {};
+  const py::array array = onGrid(given, name, grid);
+  const auto any = [](std::uint8_t, int, int) {};
+  if (holds<std::uint8_t>(array)) return copied<std::uint8_t, std::uint8_t>(array, grid, any);
+  if (holds<bool>(array)) return copied<bool, std::uint8_t>(array, grid, any);
+  wrongType(array, name, "uint8 or bool");
+}
+
+std::vector<maps::CloudPoint> cloudOf(const py::object& given, const std::string& name) {
+  const py::array_t<double> array = rowsOf(given, name, 3);
+  const auto values = array.unchecked<2>();
+  std::vector<maps::CloudPoint> points;
+  for (py::ssize_t i = 0; i < values.shape(0); ++i)
+    points.push_back({values(i, 0), values(i, 1), values(i, 2)});
+  return points;
+}
+
+std::vector<maps::Point> pointsOf(const py::object& given, const std::string& name) {
+  const py::array_t<double> array = rowsOf(given, name, 2);
+  const auto values = array.unchecked<2>();
+  std::vector<maps::Point> points;
+  for (py::ssize_t i = 0; i < values.shape(0); ++i) {
+    points.push_back({values(i, 0), values(i, 1)});
+    if (!std::isfinite(points.back().x_m) || !std::isfinite(points.back().y_m))
+      throw py::value_error(name + "[" + std::to_string(i) + "] is not finite");
+  }
+  return points;
+}
+
+}  // namespace talus::planner

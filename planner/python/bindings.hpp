@@ -1,0 +1,13 @@
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+/// What the Python package is made of; each adds its classes and functions to the module.
+namespace talus::planner {
+
+void bindRoute(pybind11::module_& module);
+void bindSoil(pybind11::module_& module);
+void bindMap(pybind11::module_& module);
+void bindSimulation(pybind11::module_& module);
+
+}  // namespace talus::planner

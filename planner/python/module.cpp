@@ -1,0 +1,11 @@
+#include <talus/planner/python/bindings.hpp>
+#include <talus/talus.hpp>
+
+PYBIND11_MODULE(_talus, module) {
+  module.doc() = "Safe routes for rovers over soft, sloping ground.";
+  pybind11::register_exception<talus::InputError>(module, "InputError", PyExc_ValueError);
+  talus::planner::bindSoil(module);
+  talus::planner::bindRoute(module);
+  talus::planner::bindMap(module);
+  talus::planner::bindSimulation(module);
+}

@@ -1,0 +1,225 @@
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include <pybind11/stl/filesystem.h>
+#include <unistd.h>
+
+#include <talus/costmap/ground_class.hpp>
+#include <talus/planner/plugin/make_planner.hpp>
+#include <talus/planner/python/arrays.hpp>
+#include <talus/planner/python/background.hpp>
+#include <talus/planner/python/python_map.hpp>
+#include <talus/terramech/io/soil_library.hpp>
+#include <talus/terramech/io/telemetry_reader.hpp>
+
+namespace py = pybind11;
+
+namespace talus::planner {
+namespace {
+
+// A session for one call alone; never waits, since the GIL is held.
+std::unique_lock<std::mutex> held(Session& session) {
+  std::unique_lock lock(session.work, std::try_to_lock);
+  if (!lock.owns_lock())
+    throw std::runtime_error("another thread works on this map; wait for it, or give each thread its own");
+  return lock;
+}
+
+costmap::GroundClass classOf(int number, const py::handle& soil, const terramech::Rover& rover) {
+  if (number < 0 || number > 254)
+    throw py::value_error("soils: class " + std::to_string(number) + ", must be 0 to 254");
+  if (py::isinstance<py::str>(soil))
+    return costmap::groundClass(number, terramech::loadSoilPrior(soil.cast<std::string>()), rover);
+  if (py::isinstance<terramech::Soil>(soil)) return {.number = number, .soil = soil.cast<terramech::Soil>()};
+  throw py::type_error("soils: a soil must be a name or a talus.Soil");
+}
+
+std::vector<costmap::GroundClass> classesOf(const py::object& soils, const terramech::Rover& rover) {
+  if (!py::isinstance<py::dict>(soils)) return {classOf(0, soils, rover)};
+  std::vector<costmap::GroundClass> classes;
+  for (const auto& [number, soil] : soils.cast<py::dict>()) {
+    if (!py::isinstance<py::int_>(number)) throw py::type_error("soils: the keys must be class numbers");
+    classes.push_back(classOf(number.cast<int>(), soil, rover));
+  }
+  return classes;
+}
+
+std::vector<costmap::CostLayer> costsOf(const py::dict& given, const maps::Grid& grid) {
+  std::vector<costmap::CostLayer> layers;
+  for (const auto& [name, values] : given) {
+    if (!py::isinstance<py::str>(name)) throw py::type_error("layers: the keys must be names");
+    costmap::CostLayer layer{.name = name.cast<std::string>()};
+    layer.added_J_per_m =
+        floatsOf(py::reinterpret_borrow<py::object>(values), "layers['" + layer.name + "']", grid, false);
+    for (const float v : layer.added_J_per_m.values())
+      if (std::isfinite(v)) layer.unseen_J_per_m = std::max(layer.unseen_J_per_m, v);
+    layers.push_back(std::move(layer));
+  }
+  return layers;
+}
+
+costmap::TraversabilityMap built(const PythonMap::Layers& layers, const PythonMap::Ground& ground) {
+  const maps::Grid grid = gridOf(layers.heights, "heights",
+                                 {.resolution_m = ground.resolution_m, .south_west = ground.south_west});
+  if (ground.threads < 1)
+    throw py::value_error("threads = " + std::to_string(ground.threads) + ", must be >= 1");
+  costmap::MapLayers made;
+  made.elevation = {.elevation_m = floatsOf(layers.heights, "heights", grid), .source = "heights"};
+  made.classes = bytesOf(layers.classes, "classes", grid);
+  if (made.classes.empty() && py::isinstance<py::dict>(ground.soils) &&
+      ground.soils.cast<py::dict>().size() > 1)
+    throw py::value_error("classes: needed where soils has more than one class");
+  made.rock_abundance = floatsOf(layers.rocks, "rocks", grid);
+  made.keep_out = bytesOf(layers.keep_out, "keep_out", grid);
+  made.costs = costsOf(layers.costs, grid);
+  costmap::GroundModel::Parts parts{
+      .rover = ground.rover, .classes = classesOf(ground.soils, ground.rover), .policy = ground.policy};
+  const py::gil_scoped_release released;
+  return {std::move(made),
+          std::make_shared<const costmap::GroundModel>(std::move(parts)),
+          {.threads = ground.threads}};
+}
+
+// Columns as a file has them, so that a row is judged in the same way wherever it comes from.
+class ColumnFile {
+ public:
+  explicit ColumnFile(const py::dict& columns) {
+    std::string pattern = (std::filesystem::temp_directory_path() / "talus-columns-XXXXXX").string();
+    const int descriptor = ::mkstemp(pattern.data());
+    if (descriptor < 0) throw std::runtime_error("no temporary file for the columns in " + pattern);
+    ::close(descriptor);
+    path_ = pattern;
+    try {
+      write(columns);
+    } catch (...) {  // the destructor of what was not made does not run
+      std::filesystem::remove(path_);
+      throw;
+    }
+  }
+  ColumnFile(const ColumnFile&) = delete;
+  ColumnFile& operator=(const ColumnFile&) = delete;
+  ~ColumnFile() {
+    std::error_code ignored;
+    std::filesystem::remove(path_, ignored);
+  }
+  const std::filesystem::path& path() const noexcept { return path_; }
+
+ private:
+  void write(const py::dict& columns) {
+    std::vector<py::array> arrays;
+    std::ofstream out(path_);
+    for (const auto& [name, values] : columns) {
+      const std::string column = py::str(name);
+      if (!py::isinstance<py::array>(values) || values.cast<py::array>().ndim() != 1)
+        throw py::type_error("column '" + column + "' must be a numpy array of one dimension");
+      const auto array = values.cast<py::array>();
+      const char kind = array.dtype().kind();
+      if (kind != 'f' && kind != 'i' && kind != 'u')
+        throw py::type_error("column '" + column + "': dtype " + std::string(py::str(array.dtype())) +
+                             ", must be a float or whole number");
+      out << (arrays.empty() ? "" : ",") << '"' << column << '"';
+      arrays.push_back(py::array_t<double>(array));
+      if (arrays.back().size() != arrays.front().size())
+        throw py::value_error("column '" + column + "' has " + std::to_string(arrays.back().size()) +
+                              " values, must be " + std::to_string(arrays.front().size()) + " as the first");
+    }
+    for (py::ssize_t row = 0; !arrays.empty() && row < arrays.front().size(); ++row) {
+      for (std::size_t k = 0; k < arrays.size(); ++k) {
+        char text[40] = "";
+        const double value = arrays[k].unchecked<double, 1>()(row);
+        if (!std::isnan(value)) std::snprintf(text, sizeof text, "%.17g", value);  // NaN: not measured
+        out << (k == 0 ? "\n" : ",") << text;
+      }
+    }
+    out << '\n';
+    out.close();
+    if (!out) throw std::runtime_error("the columns cannot be written to " + path_.string());
+  }
+
+  std::filesystem::path path_;
+};
+
+terramech::Telemetry telemetryOf(const py::object& given) {
+  if (!py::isinstance<py::dict>(given)) return terramech::readTelemetry(given.cast<std::filesystem::path>());
+  const ColumnFile file(given.cast<py::dict>());
+  try {
+    terramech::Telemetry telemetry = terramech::readTelemetry(file.path());
+    telemetry.source = "columns";
+    return telemetry;
+  } catch (const InputError& error) {
+    std::string where = error.parts().where;
+    if (const auto at = where.find(file.path().string()); at != std::string::npos)
+      where.replace(at, file.path().string().size(), "columns");
+    throw InputError({where, error.parts().reason, error.parts().remedy});
+  }
+}
+
+}  // namespace
+
+PythonMap::PythonMap(const Layers& layers, const Ground& ground) : PythonMap(built(layers, ground)) {}
+
+void PythonMap::patch(const Layers& layers, maps::Point south_west) {
+  const auto lock = held(*session_);
+  const py::object* first = nullptr;
+  for (const py::object* each : {&layers.heights, &layers.classes, &layers.rocks, &layers.keep_out})
+    if (!each->is_none() && first == nullptr) first = each;
+  if (first == nullptr) throw py::value_error("patch: give heights, classes, rocks or keep_out");
+  const maps::Grid grid =
+      gridOf(*first, "patch", {.resolution_m = map().grid().resolution_m, .south_west = south_west});
+  const costmap::SurfacePatch patch{.elevation_m = floatsOf(layers.heights, "heights", grid),
+                                    .rock_abundance = floatsOf(layers.rocks, "rocks", grid),
+                                    .classes = bytesOf(layers.classes, "classes", grid),
+                                    .keep_out = bytesOf(layers.keep_out, "keep_out", grid)};
+  const py::gil_scoped_release released;
+  session_->map.patch(patch);
+}
+
+std::size_t PythonMap::learn(const py::object& given) {
+  const auto lock = held(*session_);
+  const terramech::Telemetry telemetry = telemetryOf(given);
+  const py::gil_scoped_release released;
+  const std::size_t before = session_->intake.report().used;
+  session_->intake.add(telemetry);
+  session_->map.publish();
+  return session_->intake.report().used - before;
+}
+
+Route PythonMap::plan(const PlannerSettings& settings, const PlanRequest& request,
+                      const py::object& progress) {
+  const auto lock = held(*session_);
+  std::unique_ptr<GlobalPlanner>& planner = session_->planner;
+  const bool same = planner && settings.planner == settings_.planner && settings.seed == settings_.seed &&
+                    settings.threads == settings_.threads && settings.time_limit_s == settings_.time_limit_s;
+  if (!same) {
+    auto next = makePlanner(settings.planner);
+    next->configure(settings);
+    next->set_map(map().published());
+    planner = std::move(next);
+    settings_ = settings;
+  }
+  Route route;
+  inBackground(
+      [&](const ProgressMonitor& watch) {
+        PlanRequest asked = request;
+        asked.watch = watch;
+        planner->update(map().published());
+        route = planner->plan(asked);
+      },
+      progress);
+  return route;
+}
+
+PythonMap PythonMap::moved(maps::Cell tiles) const {
+  const auto lock = held(*session_);
+  const py::gil_scoped_release released;
+  return PythonMap(map().moved(tiles));
+}
+
+}  // namespace talus::planner

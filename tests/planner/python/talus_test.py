@@ -1,0 +1,383 @@
+"""The Python package: what it plans, that nothing is copied, what it refuses, threads and Ctrl-C."""
+
+import ast
+import gc
+import json
+import math
+import os
+import pathlib
+import re
+import signal
+import subprocess
+import tempfile
+import threading
+import unittest
+
+import numpy as np
+
+import talus
+
+
+def level(rows=60, columns=60, **more):
+    how = dict(resolution_m=0.5, rover="lunar_micro", soils="lunar_nominal")
+    how.update(more)
+    return talus.Map(np.zeros((rows, columns), np.float32), **how)
+
+
+def wheels(x_m, y_m, slip=0.5, sinkage_m=0.1, count=5):
+    n = np.ones(count)
+    return {
+        "time_s": np.arange(count, dtype=float),
+        "x_m": x_m * n,
+        "y_m": y_m * n,
+        "load_N": 36.5 * n,
+        "slip": slip * n,
+        "sinkage_m": sinkage_m * n,
+        "slope_rad": 0.0 * n,
+        "heading_rad": 0.0 * n,
+    }
+
+
+class Refusals(unittest.TestCase):
+    def refused(self, error, word, call):
+        with self.assertRaises(error) as caught:
+            call()
+        self.assertIn(word, str(caught.exception))
+        self.assertNotIn("\n", str(caught.exception))
+
+
+class MapTest(Refusals):
+    def test_a_route_over_level_ground_is_straight(self):
+        route = level().plan((5.0, 10.0), (25.0, 10.0))
+        self.assertEqual(route.status, "found")
+        self.assertAlmostEqual(route.length_m, 20.0, places=6)  # Closed form
+        self.assertLessEqual(route.lower_bound_J, route.cost_J)
+        self.assertEqual(route["x_m"][0], 5.0)
+        self.assertEqual(route["x_m"][-1], 25.0)
+        self.assertEqual(len(route), route["energy_J"].size)
+        self.assertTrue(np.all(np.diff(route["energy_J"]) > 0))
+        self.assertEqual(set(route.COLUMNS) - {"x_m"}, set(route.COLUMNS[1:]))
+
+    def test_nothing_is_copied(self):
+        ground = level(classes=np.ones((60, 60), np.uint8), soils={1: "lunar_nominal"}, layers={"own": np.full((60, 60), 5.0)})
+        heights = ground.heights
+        self.assertEqual(heights.__array_interface__["data"], ground.heights.__array_interface__["data"])
+        ground.patch(np.full((4, 4), 0.25, np.float32), south_west=(5.0, 5.0))
+        self.assertEqual(heights[10, 10], 0.25)  # the view shows the patch
+        beliefs = ground.beliefs()
+        first = beliefs["pull_mean"].__array_interface__["data"][0]
+        self.assertEqual(beliefs["pull_std"].__array_interface__["data"][0] - first, 4)
+        route = ground.plan((5.0, 20.0), (25.0, 20.0))
+        self.assertEqual(route["y_m"].__array_interface__["data"][0] - route["x_m"].__array_interface__["data"][0], 8)
+        for view in (heights, ground.classes, ground.layer("own"), beliefs["category"], route["x_m"]):
+            self.assertFalse(view.flags.writeable)
+            self.assertFalse(view.flags.owndata)
+            with self.assertRaises(ValueError):
+                view[...] = 0
+
+    def test_views_outlive_what_they_came_from(self):
+        ground = level()
+        heights, x_m, mean = ground.heights, ground.plan((5.0, 10.0), (25.0, 10.0))["x_m"], ground.beliefs()["pull_mean"]
+        kept = mean.copy()
+        del ground
+        gc.collect()
+        level()  # takes memory
+        self.assertEqual(float(heights.sum()), 0.0)
+        self.assertEqual(x_m[-1], 25.0)
+        np.testing.assert_array_equal(mean, kept)
+
+    def test_strides_and_doubles_are_read_as_they_are(self):
+        rng = np.random.default_rng(3)
+        heights = rng.uniform(0.0, 0.02, (40, 30))
+        wide = np.zeros((80, 60))
+        wide[::2, ::2] = heights
+        how = dict(resolution_m=0.5, rover="lunar_micro", soils="lunar_nominal")
+        plain = talus.Map(heights.astype(np.float32), **how)
+        for same in (wide[::2, ::2], np.asfortranarray(heights), heights[::-1, ::-1].copy()[::-1, ::-1]):
+            np.testing.assert_array_equal(talus.Map(same, **how).heights, plain.heights)
+        read_only = heights.astype(np.float32)
+        read_only.flags.writeable = False
+        np.testing.assert_array_equal(talus.Map(read_only, **how).heights, plain.heights)
+
+    def test_patched_ground_is_driven_around(self):
+        ground = level()
+        ground.patch(south_west=(14.0, 0.0), keep_out=np.ones((36, 4), bool))
+        self.assertEqual(ground.version, 2)
+        route = ground.plan((5.0, 10.0), (25.0, 10.0))
+        self.assertGreater(route.length_m, 24.0)  # around the wall, which ends at y = 18
+        self.assertEqual(ground.dangers(np.column_stack([route["x_m"], route["y_m"]])), [])
+        straight = ground.dangers(np.array([[5.0, 10.0], [25.0, 10.0]]))
+        self.assertTrue(any(14.0 <= x <= 16.0 for x, *_ in straight))
+
+    def test_layers_cost_joules_a_metre(self):
+        plain = level().plan((5.0, 10.0), (25.0, 10.0))
+        dearer = level(layers={"own": np.full((60, 60), 20.0)}).plan((5.0, 10.0), (25.0, 10.0))
+        self.assertAlmostEqual(dearer.cost_J - plain.cost_J, 400.0, delta=0.01)  # Closed form: 20 m
+        refused = np.zeros((60, 60))
+        refused[:, 28:32] = np.inf
+        self.assertFalse(level(layers={"own": refused}).plan((5.0, 10.0), (25.0, 10.0)).found)
+
+    def test_wheels_teach(self):
+        ground = level()
+        before = ground.beliefs()["pull_mean"][20, 20]
+        self.assertGreater(ground.learn(wheels(10.25, 10.25)), 0)
+        self.assertLess(ground.beliefs()["pull_mean"][20, 20], before)
+        with tempfile.TemporaryDirectory() as folder:
+            table = pathlib.Path(folder) / "drive.csv"
+            columns = wheels(20.25, 20.25)
+            rows = [",".join(columns)] + [",".join(repr(float(v)) for v in row) for row in zip(*columns.values())]
+            table.write_text("\n".join(rows) + "\n")
+            ground.learn(table)
+        self.assertLess(ground.beliefs()["pull_mean"][40, 40], before)
+
+    def test_a_moved_map_keeps_what_it_knows(self):
+        ground = level(rows=130, columns=200)
+        ground.learn(wheels(50.25, 30.25))
+        moved = ground.moved(1, 0)
+        self.assertEqual(moved.south_west, (32.0, 0.0))
+        np.testing.assert_array_equal(moved.beliefs()["evidence"][:, :136], ground.beliefs()["evidence"][:, 64:])
+        self.assertTrue(np.isnan(moved.heights[:, 136:]).all())
+
+    def test_a_point_cloud_becomes_a_patch(self):
+        points = np.array([[5.1, 5.1, 0.1], [5.2, 5.2, 0.3], [5.6, 5.1, 0.2], [99.0, 5.0, 7.0], [5.6, 5.6, np.nan]])
+        seen = talus.heights_from_points(points, (2, 2), resolution_m=0.5, south_west=(5.0, 5.0))
+        np.testing.assert_array_equal(seen, np.array([[0.3, 0.2], [np.nan, np.nan]], np.float32))
+        low = talus.heights_from_points(points, (2, 2), resolution_m=0.5, south_west=(5.0, 5.0), percentile=0.5, least_points=2)
+        np.testing.assert_array_equal(low, np.array([[0.1, np.nan], [np.nan, np.nan]], np.float32))
+        ground = level()
+        ground.patch(seen, south_west=(5.0, 5.0))
+        self.assertEqual(ground.heights[10, 10], np.float32(0.3))
+        how = dict(resolution_m=0.5, south_west=(5.0, 5.0))
+        for error, word, call in (
+            (ValueError, "points: shape (5, 2), must be (n, 3)", lambda: talus.heights_from_points(points[:, :2], (2, 2), **how)),
+            (TypeError, "points: dtype int64", lambda: talus.heights_from_points(np.zeros((3, 3), int), (2, 2), **how)),
+            (ValueError, "no cell of the grid", lambda: talus.heights_from_points(points[:0], (2, 2), **how)),
+            (ValueError, "shape must be", lambda: talus.heights_from_points(points, (0, 2), **how)),
+            (ValueError, "percentile", lambda: talus.heights_from_points(points, (2, 2), percentile=2.0, **how)),
+        ):
+            self.refused(error, word, call)
+
+    def test_what_cannot_be_is_one_line(self):
+        good = np.zeros((8, 8), np.float32)
+        how = dict(resolution_m=0.5, rover="lunar_micro", soils="lunar_nominal")
+        infinite = good.copy()
+        infinite[3, 2] = math.inf
+        for error, word, heights in (
+            (TypeError, "heights: list, must be a numpy array", [[0.0]]),
+            (TypeError, "heights: NoneType", None),
+            (TypeError, "dtype int64", np.zeros((8, 8), np.int64)),
+            (TypeError, "dtype complex128", np.zeros((8, 8), complex)),
+            (TypeError, "dtype object", np.full((8, 8), None)),
+            (TypeError, "dtype >f4", good.astype(">f4")),
+            (TypeError, "dtype float16", good.astype(np.float16)),
+            (ValueError, "heights: shape (8,)", np.zeros(8, np.float32)),
+            (ValueError, "heights: shape (8, 8, 1)", np.zeros((8, 8, 1), np.float32)),
+            (ValueError, "heights: shape (0, 8)", np.zeros((0, 8), np.float32)),
+            (ValueError, "heights[3, 2] is infinite", infinite),
+            (ValueError, "heights[0, 0] is infinite", np.full((8, 8), 1e300)),
+        ):
+            self.refused(error, word, lambda: talus.Map(heights, **how))
+        for error, word, more in (
+            (ValueError, "resolution_m = 0.0", dict(resolution_m=0.0)),
+            (ValueError, "resolution_m = nan", dict(resolution_m=math.nan)),
+            (ValueError, "south_west must be finite", dict(south_west=(math.inf, 0.0))),
+            (ValueError, "classes: shape (8, 7), must be (8, 8)", dict(classes=np.zeros((8, 7), np.uint8))),
+            (TypeError, "classes: dtype float32, must be uint8 or bool", dict(classes=good)),
+            (TypeError, "rocks: dtype uint8", dict(rocks=good.astype(np.uint8))),
+            (ValueError, "soils has more than one class", dict(soils={1: "lunar_nominal", 2: "loam"})),
+            (ValueError, "class 255, must be 0 to 254", dict(soils={255: "loam"})),
+            (TypeError, "must be a name or a talus.Soil", dict(soils=3)),
+            (talus.InputError, "lunar_nominal", dict(soils="lunar_nominl")),
+            (talus.InputError, "fido", dict(rover="fidoo")),
+            (TypeError, "rover must be", dict(rover=7)),
+            (ValueError, "threads = 0", dict(threads=0)),
+            (ValueError, "layer 'own'", dict(layers={"own": np.full((8, 8), -1.0)})),
+            (ValueError, "layers['own']: shape", dict(layers={"own": np.zeros((2, 2))})),
+        ):
+            self.refused(error, word, lambda: talus.Map(good, **{**how, **more}))
+
+    def test_bad_patches_and_columns_change_nothing(self):
+        ground = level()
+        before, version = ground.heights.copy(), ground.version
+        patch = np.zeros((4, 4), np.float32)
+        for error, word, call in (
+            (ValueError, "patch: give heights", lambda: ground.patch(south_west=(0.0, 0.0))),
+            (ValueError, "off the map", lambda: ground.patch(patch, south_west=(1000.0, 0.0))),
+            (ValueError, "", lambda: ground.patch(patch * np.nan, south_west=(0.0, 0.0))),
+            (ValueError, "", lambda: ground.patch(patch + 1e30, south_west=(0.0, 0.0))),
+            (ValueError, "", lambda: ground.patch(patch, south_west=(0.1, 0.0))),
+            (ValueError, "rocks: shape", lambda: ground.patch(patch, rocks=patch[:2], south_west=(0.0, 0.0))),
+            (TypeError, "column 'slip' must be", lambda: ground.learn({**wheels(5.0, 5.0), "slip": [0.1] * 5})),
+            (TypeError, "column 'slip': dtype <U1", lambda: ground.learn({**wheels(5.0, 5.0), "slip": np.array(["a"] * 5)})),
+            (ValueError, "has 2 values, must be 5", lambda: ground.learn({**wheels(5.0, 5.0), "slip": np.zeros(2)})),
+            (talus.InputError, "columns", lambda: ground.learn({**wheels(5.0, 5.0), "load_N": np.full(5, -1.0)})),
+            (talus.InputError, "columns", lambda: ground.learn({"x_m": np.zeros(2)})),
+            (talus.InputError, "missing.csv", lambda: ground.learn("missing.csv")),
+            (KeyError, "no layer", lambda: ground.layer("own")),
+            (ValueError, "shape (3,)", lambda: ground.dangers(np.zeros(3))),
+            (ValueError, "is not finite", lambda: ground.dangers(np.full((2, 2), math.nan))),
+            (ValueError, "leaves nothing", lambda: ground.moved(5, 0)),
+        ):
+            self.refused(error, word, call)
+        self.assertEqual(ground.version, version)
+        np.testing.assert_array_equal(ground.heights, before)
+
+    def test_bad_requests_are_one_line(self):
+        ground = level()
+        for error, word, call in (
+            (ValueError, "field", lambda: ground.plan((5.0, 5.0), (9.0, 9.0), planner="feild")),
+            (ValueError, "threads", lambda: ground.plan((5.0, 5.0), (9.0, 9.0), threads=0)),
+            (ValueError, "heading", lambda: ground.plan((5.0, 5.0), (9.0, 9.0), planner="field", start_heading_rad=0.0)),
+            (TypeError, "progress must be callable", lambda: ground.plan((5.0, 5.0), (9.0, 9.0), progress=3)),
+            (KeyError, "no column", lambda: ground.plan((5.0, 5.0), (9.0, 9.0))["slope"]),
+        ):
+            self.refused(error, word, call)
+        self.assertEqual(ground.plan((5.0, 5.0), (900.0, 9.0)).status, "goal_invalid")
+        self.assertTrue(ground.plan((5.0, 5.0), (9.0, 9.0)).found)
+
+
+class BackgroundTest(unittest.TestCase):
+    """A sampling planner without an end but its time limit of a day."""
+
+    def endless(self, ground, **more):
+        return ground.plan((5.0, 5.0), (190.0, 190.0), planner="RRTstar", time_limit_s=86400.0, **more)
+
+    def big(self):
+        rng = np.random.default_rng(1)
+        return talus.Map(rng.uniform(0.0, 0.01, (400, 400)), resolution_m=0.5, rover="lunar_micro", soils="lunar_nominal")
+
+    def test_ctrl_c_ends_a_plan(self):
+        ground = self.big()
+        handled = signal.signal(signal.SIGINT, signal.default_int_handler)
+        try:
+            seen = []
+
+            def progress(share):
+                seen.append(share)
+                os.kill(os.getpid(), signal.SIGINT)
+
+            with self.assertRaises(KeyboardInterrupt):
+                self.endless(ground, progress=progress)
+        finally:
+            signal.signal(signal.SIGINT, handled)
+        self.assertTrue(ground.plan((5.0, 5.0), (9.0, 9.0)).found)  # the map still plans
+
+    def test_what_progress_raises_ends_a_plan(self):
+        def progress(share):
+            self.assertTrue(0.0 <= share <= 1.0)
+            raise LookupError("enough")
+
+        with self.assertRaisesRegex(LookupError, "enough"):
+            self.endless(self.big(), progress=progress)
+
+    def test_other_threads_run_while_one_plans(self):
+        ground, other = self.big(), level()
+        began, stop, failures, lengths = threading.Event(), threading.Event(), [], []
+
+        def plan():
+            def progress(share):
+                began.set()
+                if stop.is_set():
+                    raise InterruptedError
+
+            try:
+                self.endless(ground, progress=progress)
+            except InterruptedError:
+                pass
+            except Exception as error:  # shown by the test
+                failures.append(error)
+
+        planning = threading.Thread(target=plan)
+        planning.start()
+        began.wait()
+        with self.assertRaisesRegex(RuntimeError, "another thread works on this map"):
+            ground.patch(np.zeros((4, 4), np.float32), south_west=(0.0, 0.0))
+        lengths.append(other.plan((5.0, 10.0), (25.0, 10.0)).length_m)
+        stop.set()
+        planning.join()
+        self.assertEqual(failures, [])
+        self.assertAlmostEqual(lengths[0], 20.0, places=6)
+
+
+class TypesTest(unittest.TestCase):
+    """The stubs name what there is: classes, members, and parameters in their order."""
+
+    def parameters(self, function):
+        named = [a.arg for a in function.args.args + function.args.kwonlyargs]
+        return [name for name in named if name != "self"]
+
+    def documented(self, function):
+        signature = function.__doc__.splitlines()[0].split(" -> ")[0]
+        return [name for name in re.findall(r"(?:\(|, )(\w+): ", signature) if name != "self"]
+
+    def test_stubs_name_what_there_is(self):
+        module = talus._talus
+        stub = ast.parse((pathlib.Path(talus.__file__).parent / "_talus.pyi").read_text())
+        classes = {node.name: node for node in stub.body if isinstance(node, ast.ClassDef)}
+        functions = {node.name: node for node in stub.body if isinstance(node, ast.FunctionDef)}
+        self.assertEqual({*classes, *functions}, {name for name in dir(module) if not name.startswith("_")})
+        for name, node in functions.items():
+            self.assertEqual(self.parameters(node), self.documented(getattr(module, name)), name)
+        for name, node in classes.items():
+            if name == "InputError":
+                continue
+            members = {m.name for m in node.body if isinstance(m, ast.FunctionDef)}
+            members |= {m.target.id for m in node.body if isinstance(m, ast.AnnAssign)}
+            there = {m for m in dir(getattr(module, name)) if not m.startswith("_")}
+            self.assertEqual({m for m in members if not m.startswith("_")}, there, name)
+            for method in node.body:
+                if isinstance(method, ast.FunctionDef) and not method.decorator_list and method.name != "__len__":
+                    real = getattr(getattr(module, name), method.name)
+                    self.assertEqual(self.parameters(method), self.documented(real), f"{name}.{method.name}")
+
+
+class SoilTest(Refusals):
+    def test_the_library(self):
+        self.assertIn("mer", talus.rovers())
+        self.assertIn("dry_sand", talus.soils())
+        rover = talus.Rover("mer")
+        rover.mass_kg = 200.0
+        self.assertEqual(rover.mass_kg, 200.0)
+        rover.mass_kg = -1.0
+        heights = np.zeros((8, 8), np.float32)
+        self.refused(ValueError, "mass_kg", lambda: talus.Map(heights, resolution_m=0.5, rover=rover, soils="loam"))
+
+    def test_an_estimate_is_that_of_the_program(self):
+        with tempfile.TemporaryDirectory() as folder:
+            table = pathlib.Path(folder) / "runs.csv"
+            lines = ["wheel_radius_m,wheel_width_m,load_N,slip,torque_Nm,sinkage_m,drawbar_pull_N"]
+            for load_N, slip, torque_Nm, sinkage_m, pull_N in (
+                (30, 0.1, 1.0, 0.010, 4.0),
+                (30, 0.3, 1.8, 0.013, 8.0),
+                (60, 0.2, 2.7, 0.018, 10.0),
+                (60, 0.5, 4.2, 0.024, 15.0),
+                (90, 0.4, 5.6, 0.029, 18.0),
+                (90, 0.7, 6.8, 0.035, 22.0),
+            ):
+                lines.append(f"0.13,0.16,{load_N},{slip},{torque_Nm},{sinkage_m},{pull_N}")
+            table.write_text("\n".join(lines) + "\n")
+            found = talus.estimate(table, method="sojourner")
+            call = [os.environ["TALUS_PROGRAM"], "estimate", str(table), "--method", "sojourner", "--json"]
+            said = json.loads(subprocess.run(call, capture_output=True, check=True).stdout)
+        for name in ("cohesion_Pa", "friction_angle_rad", "rows_used"):
+            self.assertAlmostEqual(getattr(found, name), said[name], places=9)
+        self.assertEqual(found.covariance.shape, (2, 2))
+
+    def test_what_cannot_be_estimated_is_one_line(self):
+        self.refused(talus.InputError, "missing.csv", lambda: talus.estimate("missing.csv", method="sojourner"))
+        self.refused(talus.InputError, "method", lambda: talus.estimate("missing.csv", method="guess"))
+
+    def test_a_simulated_drive(self):
+        ground = level(rows=30, columns=60)
+        drive = talus.simulate(ground, (4.0, 7.0), (24.0, 7.0), belief="prior")
+        self.assertEqual(drive.outcome, "reached")
+        self.assertAlmostEqual(drive.x_m[-1], 24.0, delta=1.0)
+        self.assertFalse(drive.x_m.flags.owndata)
+        self.assertEqual(drive.x_m.size, drive.slip.size)
+        again = talus.simulate(ground, (4.0, 7.0), (24.0, 7.0), belief="prior")
+        np.testing.assert_array_equal(drive.slip, again.slip)
+        self.refused(ValueError, "belief 'hope'", lambda: talus.simulate(ground, (4.0, 7.0), (24.0, 7.0), belief="hope"))
+
+
+if __name__ == "__main__":
+    unittest.main()
