@@ -27,23 +27,16 @@ constexpr double kSquare = 1.001;
 
 }  // namespace
 
-double straightBound_J(const costmap::CostGrid& map, const Segment& places, double tolerance_m) {
-  double cheapest = std::numeric_limits<double>::infinity();
-  for (const auto& curve : map.cost().curves())
-    for (const float value : curve.cost_J_per_m) cheapest = std::min(cheapest, static_cast<double>(value));
-  const double metres = std::hypot(places.to.x_m - places.from.x_m, places.to.y_m - places.from.y_m);
-  return std::isfinite(cheapest) ? cheapest * std::max(0.0, metres - tolerance_m) : 0.0;
-}
-
 double LowerBound::operator()(const std::shared_ptr<const costmap::CostGrid>& map, const Segment& places,
-                              double goal_tolerance_m, const StopCheck& stop) {
+                              double goal_tolerance_m, const StopCheck& stop, double known_J) {
   const maps::Grid& grid = map->grid();
+  const double straight_J = straightBoundOver_J(*map, places, goal_tolerance_m, known_J, stop);
+  if (straight_J >= (1.0 - kEven) * known_J) return straight_J;
   if (map != map_ || !edges_) {
     field_.reset();
     map_ = map;
     edges_ = admissibleEdges(map, stop);
   }
-  const double straight_J = straightBound_J(*map, places, goal_tolerance_m);
   if (!edges_) return straight_J;
   if (!field_ || !(goal_ == places.to) || tolerance_m_ != goal_tolerance_m) {
     std::vector<FieldGoal> goals;
@@ -59,7 +52,7 @@ double LowerBound::operator()(const std::shared_ptr<const costmap::CostGrid>& ma
     if (!field_->settle(corner, stop)) return straight_J;
     least_J = std::min(least_J, field_->cost_J(corner).value_or(least_J));
   }
-  return std::isfinite(least_J) ? std::max(least_J, straight_J) : straight_J;
+  return std::isfinite(least_J) ? std::min(known_J, std::max(least_J, straight_J)) : straight_J;
 }
 
 }  // namespace talus::planner

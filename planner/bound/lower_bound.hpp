@@ -1,25 +1,27 @@
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <optional>
 
+#include <talus/planner/bound/straight_bound.hpp>
 #include <talus/planner/field/cost_to_go.hpp>
 #include <talus/planner/route/motion_cost.hpp>
 
 namespace talus::planner {
 
-/// No motion of any shape from the one place to within the tolerance of the other costs less: the distance at
-/// the cheapest metre of any ground.
-double straightBound_J(const costmap::CostGrid& map, const Segment& places, double tolerance_m = 0.0);
-
 /// What no route to a goal costs less than, whatever its shape and headings: the field over admissibleEdges(),
-/// or straightBound_J() where that is higher. Kept for a map and a goal, so that another start is answered at
+/// or straightBoundOver_J() where that is higher. Kept for a map and a goal, so that another start is answered at
 /// once.
 class LowerBound {
  public:
-  /// Joules, >= 0; the straight bound alone when stopped.
+  /// Joules, >= 0 and no more than the cost of a known route; the straight bound alone when stopped, or where it shows
+  /// that the known route is the best within kEven.
   double operator()(const std::shared_ptr<const costmap::CostGrid>& map, const Segment& places,
-                    double goal_tolerance_m, const StopCheck& stop = {});
+                    double goal_tolerance_m, const StopCheck& stop = {},
+                    double known_J = std::numeric_limits<double>::infinity());
+
+  static constexpr double kEven = 1e-4;
 
  private:
   std::shared_ptr<const costmap::CostGrid> map_;

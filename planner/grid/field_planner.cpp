@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 #include <talus/planner/field/grid_links.hpp>
@@ -8,6 +9,7 @@
 #include <talus/planner/field/map_change.hpp>
 #include <talus/planner/field/remedy.hpp>
 #include <talus/planner/grid/field_planner.hpp>
+#include <talus/planner/grid/other_corridors.hpp>
 #include <talus/planner/reach/cell_route.hpp>
 #include <talus/planner/reach/obstruction_search.hpp>
 #include <talus/planner/refine/close_vertices.hpp>
@@ -69,12 +71,14 @@ bool FieldPlanner::prepareField(const MotionCost& cost, const Stage& stage) {
 }
 
 // Down the field; where it is that of an older version of the map, by what the change touches, or by the
-// field repaired where that is less work.
-Polyline FieldPlanner::roughRoute(const MotionCost& cost, const Segment& places, const StopCheck& stop) {
+// field repaired where that is less work, or other corridors are asked for.
+Polyline FieldPlanner::roughRoute(const Problem& problem, const Segment& places, const StopCheck& stop) {
+  const MotionCost cost(problem.map);
   if (field_map_ != edges_->mapPointer()) {
     const auto changed = changedCells(*field_map_, edges_->map());
     if (changed) {
-      if (auto route = gridRouteAfter(*changed, cost, *field_, places, stop)) return std::move(*route);
+      if (!problem.prove)
+        if (auto route = gridRouteAfter(*changed, cost, *field_, places, stop)) return std::move(*route);
       field_->repair(*changed);
     }
     field_map_ = edges_->mapPointer();
@@ -90,13 +94,16 @@ Plan FieldPlanner::planStage(const Problem& problem, const Stage& stage, const S
   if (!mayEnd(cost, stage.to, stage.tolerance_m))
     return failedPlan(RouteStatus::GoalInvalid, invalidPlace(*problem.map, "goal", stage.to));
   Polyline rough;
-  if (prepareField(cost, stage)) rough = roughRoute(cost, {stage.from, stage.to}, stop);
-  if (rough.empty()) {
+  if (prepareField(cost, stage)) rough = roughRoute(problem, {stage.from, stage.to}, stop);
+  const bool on_grid = !rough.empty();
+  if (!on_grid) {
     Plan beyond = beyondTheGrid(problem, stage, stop);
     if (beyond.status != RouteStatus::Found) return beyond;
     rough = std::move(beyond.points);
   }
-  return finished(problem, stage, std::move(rough), stop);
+  Plan plan = finished(problem, stage, std::move(rough), stop);
+  if (on_grid && problem.prove) tryOtherCorridors(problem, stage, stop, plan);
+  return plan;
 }
 
 // What any heading can do where the eight of the grid cannot: a rough route, a proof that there is none, or neither.
@@ -104,37 +111,69 @@ Plan FieldPlanner::beyondTheGrid(const Problem& problem, const Stage& stage, con
   if (stop()) return cancelledPlan(stop);
   const MotionCost cost(problem.map);
   const Segment places{stage.from, stage.to};
-  HeadingSets headings(problem.map->cost());
+  if (headings_map_ != problem.map) {
+    headings_ = std::make_unique<HeadingSets>(problem.map->cost());
+    headings_map_ = problem.map;
+  }
+  HeadingSets& headings = *headings_;
   Reach reach(*problem.map, headings, Reach::Sense::From, stage.from, 0.0, stop);
   if (!reach.complete()) return cancelledPlan(stop);
   if (!reach.reaches(stage.to, stage.tolerance_m)) {
-    const Obstruction why = obstructionBetween(*problem.map, reach, places, stage.tolerance_m, stop);
+    const Obstruction why =
+        obstructionBetween(*problem.map, headings, reach, places, stage.tolerance_m, stop);
     Plan none = failedPlan(RouteStatus::NoRoute, text(why, places));
     none.obstruction = why;
     return none;
   }
-  Plan plan = failedPlan(RouteStatus::Found, {});
-  plan.points = cellRoute(cost, headings, places, stage.tolerance_m, stop);
-  if (!plan.points.empty()) return plan;
+  const Reach to_goal(*problem.map, headings, Reach::Sense::To, stage.to, stage.tolerance_m, stop);
+  if (!to_goal.complete()) return cancelledPlan(stop);
+  const CellRouteLimits limits{.worth = [&to_goal](maps::Cell cell) { return to_goal.holds(cell); }};
+  CellRoute found = cellRoute(cost, headings, places, stage.tolerance_m, limits, stop);
+  Plan plan = failedPlan(found.points.empty() ? RouteStatus::NoneFound : RouteStatus::Found, {});
+  plan.points = std::move(found.points);
+  if (plan.status == RouteStatus::Found) return plan;
   if (stop()) return cancelledPlan(stop);
-  return failedPlan(RouteStatus::NoneFound,
-                    "no route found, nor a proof that there is none: the ways left allow only single "
-                    "headings; increase the "
-                    "goal tolerance, or choose another goal");
+  plan.reason =
+      found.all_ways
+          ? "no route found, nor a proof that there is none: the ways left allow only single headings; "
+            "increase the goal tolerance, or choose another goal"
+          : "no route found within the allowed work (" + std::to_string(found.ways) +
+                " ways into cells followed), nor a proof that there is none; add a via point, or "
+                "choose another goal";
+  return plan;
+}
+
+Polyline FieldPlanner::refined(const Problem& problem, const Stage& stage, Polyline rough,
+                               const StopCheck& stop) {
+  const MotionCost cost(problem.map);
+  return withoutCloseVertices(
+      cost, cutWithin(refine_(cost, std::move(rough), problem.threads, stop), stage.to, stage.tolerance_m));
+}
+
+void FieldPlanner::tryOtherCorridors(const Problem& problem, const Stage& stage, const StopCheck& stop,
+                                     Plan& plan) {
+  if (problem.map->grid().size() > kCorridorCells || stop()) return;
+  if (plan.lower_bound_J >= (1.0 - kProven) * plan.cost_J) return;
+  const MotionCost cost(problem.map);
+  for (Polyline& rough :
+       otherCorridors(cost, problem.map, *field_, {stage.from, stage.to}, plan.points, {}, stop)) {
+    Polyline points = refined(problem, stage, std::move(rough), stop);
+    const double cost_J = cost.along(points);
+    if (!(cost_J < plan.cost_J)) continue;
+    plan.points = std::move(points);
+    plan.cost_J = cost_J;
+  }
+  plan.lower_bound_J = std::min(plan.lower_bound_J, plan.cost_J);
 }
 
 Plan FieldPlanner::finished(const Problem& problem, const Stage& stage, Polyline rough,
                             const StopCheck& stop) {
   const MotionCost cost(problem.map);
-  Plan plan{RouteStatus::Found,
-            {},
-            withoutCloseVertices(cost, cutWithin(refine_(cost, std::move(rough), problem.threads, stop),
-                                                 stage.to, stage.tolerance_m)),
-            0.0,
-            0.0};
+  Plan plan = failedPlan(RouteStatus::Found, {});
+  plan.points = refined(problem, stage, std::move(rough), stop);
   plan.cost_J = cost.along(plan.points);
   const Segment ends{stage.from, stage.to};
-  const double bound_J = problem.prove ? bound_(problem.map, ends, stage.tolerance_m, stop)
+  const double bound_J = problem.prove ? bound_(problem.map, ends, stage.tolerance_m, stop, plan.cost_J)
                                        : straightBound_J(*problem.map, ends, stage.tolerance_m);
   plan.lower_bound_J = std::min(plan.cost_J, bound_J);
   return plan;

@@ -7,6 +7,7 @@
 #include <talus/planner/bound/lower_bound.hpp>
 #include <talus/planner/field/cost_to_go.hpp>
 #include <talus/planner/refine/any_angle.hpp>
+#include <talus/planner/route/heading_set.hpp>
 #include <talus/planner/route/problem.hpp>
 
 namespace talus::planner {
@@ -14,6 +15,9 @@ namespace talus::planner {
 /// Plans by the whole cost-to-go field of the goal and any-angle refinement of the grid route under the exact
 /// cost. Where the eight headings of the grid join start and goal nowhere, any heading is tried: NoRoute is a proof
 /// (Reach), NoneFound is not.
+///
+/// Where a bound is requested and leaves room (Problem::prove), other corridors are refined as well and the cheapest route
+/// is taken (otherCorridors), on maps of up to kCorridorCells.
 ///
 /// What it worked out for a map and a goal is kept: another start to the same goal costs a walk down the
 /// field and the refinement only. Deterministic, for any number of threads, as long as no time limit cuts the
@@ -39,9 +43,14 @@ class FieldPlanner {
   static EdgeUnits unitsFor(const costmap::CostGrid& map);
   bool repairTo(const Problem& problem);
   bool prepareField(const MotionCost& cost, const Stage& stage);
-  static Plan beyondTheGrid(const Problem& problem, const Stage& stage, const StopCheck& stop);
+  Plan beyondTheGrid(const Problem& problem, const Stage& stage, const StopCheck& stop);
   Plan finished(const Problem& problem, const Stage& stage, Polyline rough, const StopCheck& stop);
-  Polyline roughRoute(const MotionCost& cost, const Segment& places, const StopCheck& stop);
+  Polyline refined(const Problem& problem, const Stage& stage, Polyline rough, const StopCheck& stop);
+  void tryOtherCorridors(const Problem& problem, const Stage& stage, const StopCheck& stop, Plan& plan);
+  Polyline roughRoute(const Problem& problem, const Segment& places, const StopCheck& stop);
+
+  static constexpr std::size_t kCorridorCells = 4'000'000;  // larger maps are searched for one corridor
+  static constexpr double kProven = 1e-3;  // of the cost: a gap that no corridor is sought for
 
   Refiner refine_;
   LowerBound bound_;
@@ -49,6 +58,8 @@ class FieldPlanner {
   std::optional<CostToGo> field_;
   std::shared_ptr<const costmap::CostGrid> field_map_;  // the version that the field is right for
   std::vector<FieldGoal> field_goals_;
+  std::shared_ptr<const costmap::CostGrid> headings_map_;  // what headings_ are of
+  std::unique_ptr<HeadingSets> headings_;
   maps::Point field_goal_;
   double field_tolerance_m_ = 0.0;
 };

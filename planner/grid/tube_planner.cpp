@@ -87,8 +87,10 @@ Plan TubePlanner::finished(const Problem& leg, Polyline way, const StopCheck& st
             0.0,
             0.0};
   plan.cost_J = cost.along(plan.points);
+  const Segment ends{leg.start, leg.goal};
   plan.lower_bound_J =
-      std::min(plan.cost_J, straightBound_J(*leg.map, {leg.start, leg.goal}, leg.goal_tolerance_m));
+      std::min(plan.cost_J, leg.prove ? straightBoundOver_J(*leg.map, ends, leg.goal_tolerance_m, plan.cost_J, stop)
+                                      : straightBound_J(*leg.map, ends, leg.goal_tolerance_m));
   return plan;
 }
 

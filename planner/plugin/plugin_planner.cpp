@@ -222,7 +222,7 @@ Plan PluginPlanner::plan(const Problem& problem) const {
   plan.cost_J = MotionCost(problem.map).along(plan.points);
   const Segment ends{plan.points.front(), plan.points.back()};
   const bool one_leg = problem.prove && problem.via.empty() && problem.other_goals.empty();
-  const double bound_J = one_leg ? LowerBound()(problem.map, ends, 0.0, StopCheck(problem.watch))
+  const double bound_J = one_leg ? LowerBound()(problem.map, ends, 0.0, StopCheck(problem.watch), plan.cost_J)
                                  : straightBound_J(*problem.map, ends, 0.0);
   plan.lower_bound_J = std::min(plan.cost_J, bound_J);
   return plan;

@@ -98,23 +98,32 @@ struct Crossing {
 
 class Search {
  public:
-  Search(const MotionCost& cost, HeadingSets& headings, const Segment& places, double tolerance_m)
-      : cost_(cost), map_(cost.map()), headings_(headings), places_(places), tolerance_m_(tolerance_m) {}
+  Search(const MotionCost& cost, HeadingSets& headings, const Segment& places, double tolerance_m,
+         const CellRouteLimits& limits)
+      : cost_(cost),
+        map_(cost.map()),
+        headings_(headings),
+        places_(places),
+        tolerance_m_(tolerance_m),
+        limits_(limits),
+        passed_(map_.grid().size(), false) {}
 
-  Polyline route(const StopCheck& stop) {
+  CellRoute route(const StopCheck& stop) {
+    CellRoute found;
     for (const Cell cell : cellsWithin(map_.grid(), places_.from, 0.0)) open({.cell = cell}, 0.0);
-    std::size_t steps = 0;
     while (!queue_.empty()) {
-      if ((++steps & 0xfffU) == 0 && stop()) return {};
       const auto [spent, k] = queue_.top();
       queue_.pop();
       const Node node = nodes_[static_cast<std::size_t>(k)];
       if (closed(node)) continue;
+      if (found.ways == limits_.ways || ((found.ways & 0xfffU) == 0 && stop())) return found;
+      ++found.ways;
       if (const auto end = endIn(node))
-        if (Polyline way = laid(k, *end); !way.empty()) return way;
+        if (found.points = laid(k, *end); !found.points.empty()) return found;
       expand(k, -spent);
     }
-    return {};
+    found.all_ways = true;
+    return found;
   }
 
  private:
@@ -134,13 +143,19 @@ class Search {
     queue_.emplace(-spent, static_cast<int>(nodes_.size()) - 1);
   }
 
-  // Whether the way adds nothing to those that were here before; else it counts as having been.
+  // Whether the way adds nothing to those that were here before; else it counts as having been. Ground that is free to
+  // go everywhere is passed once.
   bool closed(const Node& node) {
-    auto& known = closed_[map_.grid().index(node.cell)];
-    const bool anywhere = DriveCone(headings_.of(map_.at(node.cell))).everywhere();
+    const std::size_t cell = map_.grid().index(node.cell);
+    if (passed_[cell]) return true;
+    if (DriveCone(headings_.of(map_.at(node.cell))).everywhere()) {
+      passed_[cell] = true;
+      return false;
+    }
+    auto& known = closed_[cell];
     int same = 0;
     for (const auto& [side, range] : known) {
-      if (anywhere || (side == node.side && range.holds(node.range))) return true;
+      if (side == node.side && range.holds(node.range)) return true;
       same += side == node.side ? 1 : 0;
     }
     if (same >= kWays) return true;
@@ -166,6 +181,12 @@ class Search {
     return goal;
   }
 
+  // The heading of both sets nearest to straight out of the side; straight back where they share none.
+  static double crossing(const HeadingSet& own, const HeadingSet& other, int side) {
+    const HeadingSet both = own.shared(other);
+    return both.empty() ? outwards_rad(otherSide(side)) : both.nearest(outwards_rad(side), kInside_rad);
+  }
+
   void expand(int k, double spent) {
     const Node node = nodes_[static_cast<std::size_t>(k)];
     const HeadingSet& own = headings_.of(map_.at(node.cell));
@@ -175,10 +196,11 @@ class Search {
     const InCell middle = 0.5 * (a + b);
     for (int side = 0; side < 4; ++side) {
       const Cell next = beyond(node.cell, side);
-      if (!map_.grid().contains(next)) continue;
-      const HeadingSet both = own.shared(headings_.of(map_.at(next)));
-      if (both.empty()) continue;
-      const double heading = both.nearest(outwards_rad(side), kInside_rad);
+      if (!map_.grid().contains(next) || passed_[map_.grid().index(next)]) continue;
+      if (limits_.worth && !limits_.worth(next)) continue;
+      const HeadingSet& other = headings_.of(map_.at(next));
+      if (other.empty()) continue;
+      const double heading = own.all() && other.all() ? outwards_rad(side) : crossing(own, other, side);
       if (!(std::cos(heading - outwards_rad(side)) > 1e-3)) continue;
       SideRange range = cone.reached(a, b, side, -1e-6);
       range = {std::max(range.from, kApart), std::min(range.to, 1.0 - kApart)};
@@ -245,6 +267,8 @@ class Search {
   HeadingSets& headings_;
   Segment places_;
   double tolerance_m_;
+  const CellRouteLimits& limits_;
+  std::vector<bool> passed_;
   std::vector<Node> nodes_;
   std::priority_queue<std::pair<double, int>> queue_;
   std::unordered_map<std::size_t, std::vector<std::pair<int, SideRange>>> closed_;
@@ -252,10 +276,10 @@ class Search {
 
 }  // namespace
 
-Polyline cellRoute(const MotionCost& cost, HeadingSets& headings, const Segment& places, double tolerance_m,
-                   const StopCheck& stop) {
-  if (std::isfinite(cost(places))) return {places.from, places.to};
-  return Search(cost, headings, places, tolerance_m).route(stop);
+CellRoute cellRoute(const MotionCost& cost, HeadingSets& headings, const Segment& places, double tolerance_m,
+                    const CellRouteLimits& limits, const StopCheck& stop) {
+  if (std::isfinite(cost(places))) return {.points = {places.from, places.to}};
+  return Search(cost, headings, places, tolerance_m, limits).route(stop);
 }
 
 }  // namespace talus::planner

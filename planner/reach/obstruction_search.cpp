@@ -93,10 +93,9 @@ const char* remedy(Constraint constraint) noexcept {
 
 }  // namespace
 
-Obstruction obstructionBetween(const costmap::CostGrid& map, const Reach& from_start, const Segment& places,
-                               double tolerance_m, const StopCheck& stop) {
+Obstruction obstructionBetween(const costmap::CostGrid& map, HeadingSets& headings, const Reach& from_start,
+                               const Segment& places, double tolerance_m, const StopCheck& stop) {
   Obstruction found;
-  HeadingSets headings(map.cost());
   const Reach to_goal(map, headings, Reach::Sense::To, places.to, tolerance_m, stop);
   const auto [last, first] = closest(map.grid(), from_start, to_goal);
   found.cells_from_start = from_start.cells();

@@ -10,8 +10,8 @@ namespace talus::planner {
 
 /// Where two places are cut off from each other: the sets reached from one and leading to the other, and, by building both
 /// anew without each constraint in turn, which of them does it. On maps above kTriedCells none is lifted.
-Obstruction obstructionBetween(const costmap::CostGrid& map, const Reach& from_start, const Segment& places,
-                               double tolerance_m, const StopCheck& stop = {});
+Obstruction obstructionBetween(const costmap::CostGrid& map, HeadingSets& headings, const Reach& from_start,
+                               const Segment& places, double tolerance_m, const StopCheck& stop = {});
 
 /// One line: how many cells, where they come closest, what to change.
 std::string text(const Obstruction& obstruction, const Segment& places);

@@ -33,11 +33,17 @@ std::vector<double> limitsAlong(const costmap::DriveCost& cost, const DriveCurve
   return limits;
 }
 
-// Gradients across it, as magnitudes, at which a row gives way to the next, and the limit.
+// Gradients across it, as magnitudes, beyond which fewer gradients along are allowed, and the limit.
 std::vector<double> limitsAcross(const costmap::DriveCost& cost, const DriveCurve& curve) {
   std::vector<double> limits{cost.limits().max_across};
-  for (int row = 0; row < curve.lastRow(); ++row)
+  const auto finite = [](float value) { return std::isfinite(value); };
+  for (int row = 0; row < curve.lastRow(); ++row) {
+    const float* here = curve.rows() + row * DriveCurve::kBins;
+    if (std::equal(here, here + DriveCurve::kBins, here + DriveCurve::kBins,
+                   [&](float a, float b) { return finite(a) == finite(b); }))
+      continue;
     limits.push_back((row + DriveCurve::kSame) / DriveCurve::kRowsPerUnit);
+  }
   return limits;
 }
 
@@ -150,17 +156,20 @@ HeadingSet allowedHeadings(const costmap::DriveCost& cost, costmap::CellCode cel
   const auto add = [&](double from, double width) {
     arcs.push_back({wrapped(from - kRounding), std::min(HeadingSet::kTurn, width + 2.0 * kRounding)});
   };
+  bool before = finite(0.5 * (turns.back() + turns[0] + HeadingSet::kTurn));
   for (std::size_t k = 0; k < turns.size(); ++k) {
     const double next = k + 1 < turns.size() ? turns[k + 1] : turns[0] + HeadingSet::kTurn;
-    if (finite(0.5 * (turns[k] + next))) add(turns[k], next - turns[k]);
-    if (finite(turns[k])) add(turns[k], 0.0);
+    const bool after = finite(0.5 * (turns[k] + next));
+    if (after) add(turns[k], next - turns[k]);
+    if (!before && !after && finite(turns[k])) add(turns[k], 0.0);
+    before = after;
   }
   return HeadingSet(std::move(arcs));
 }
 
-const HeadingSet& HeadingSets::of(costmap::CellCode cell) {
-  const auto known = sets_.find(cell.bits());
-  if (known != sets_.end()) return known->second;
+const HeadingSet& HeadingSets::known(costmap::CellCode cell) {
+  const auto found = sets_.find(cell.bits());
+  if (found != sets_.end()) return found->second;
   HeadingSet set;
   if (cell.curve() == free_) {
     set = HeadingSet({{0.0, HeadingSet::kTurn}});

@@ -56,8 +56,12 @@ class HeadingSet {
 class HeadingSets {
  public:
   explicit HeadingSets(const costmap::DriveCost& cost, std::optional<std::uint8_t> free = {})
-      : cost_(cost), free_(free), limits_(cost.curves().size()) {}
-  const HeadingSet& of(costmap::CellCode cell);
+      : cost_(cost), free_(free), limits_(cost.curves().size()), recent_(kRecent) {}
+  const HeadingSet& of(costmap::CellCode cell) {
+    Recent& recent = recent_[(cell.bits() * 2654435761U) >> 20];  // multiplicative hashing, kRecent values
+    if (recent.set == nullptr || recent.bits != cell.bits()) recent = {cell.bits(), &known(cell)};
+    return *recent.set;
+  }
 
   /// Gradients along, and sizes of gradients across, at which a curve's cost may become finite or infinite.
   struct Limits {
@@ -66,10 +70,20 @@ class HeadingSets {
   };
 
  private:
+  // A code and its set, which stays where it is in sets_: neighbouring cells are asked for again and again.
+  struct Recent {
+    std::uint32_t bits = 0;
+    const HeadingSet* set = nullptr;
+  };
+  static constexpr std::size_t kRecent = 4096;
+
+  const HeadingSet& known(costmap::CellCode cell);
+
   const costmap::DriveCost& cost_;
   std::optional<std::uint8_t> free_;
   std::unordered_map<std::uint32_t, HeadingSet> sets_;
   std::vector<std::optional<Limits>> limits_;
+  std::vector<Recent> recent_;
 };
 
 /// Every heading for which the drive cost of a cell is finite. Between two neighbouring headings at which the gradient

@@ -14,7 +14,7 @@ Polyline routed(const std::shared_ptr<const costmap::CostGrid>& map, const Segme
                 double tolerance_m = 0.0) {
   const MotionCost cost(map);
   HeadingSets headings(map->cost());
-  return cellRoute(cost, headings, places, tolerance_m);
+  return cellRoute(cost, headings, places, tolerance_m).points;
 }
 
 TEST(CellRoute, FollowsAContourOfAnyDirection) {
@@ -60,6 +60,44 @@ TEST(CellRoute, IsAllowedAndMostlyFound) {
   }
   EXPECT_GT(found, 20);
   EXPECT_LE(missed, 2) << found;
+}
+
+// The work limit is a count: it is kept, and one step more than the search takes changes nothing.
+TEST(CellRoute, KeepsItsWorkLimit) {
+  const auto map = testing::contourPlane(0.4);
+  const Segment places{{18.3, 18.2}, {20.4, 22.9}};
+  const MotionCost cost(map);
+  HeadingSets headings(map->cost());
+  const CellRoute whole = cellRoute(cost, headings, places, 0.0);
+  ASSERT_FALSE(whole.points.empty());
+  ASSERT_GT(whole.ways, 10U);
+  const CellRoute cut = cellRoute(cost, headings, places, 0.0, {.ways = whole.ways - 1});
+  EXPECT_TRUE(cut.points.empty());
+  EXPECT_FALSE(cut.all_ways);
+  EXPECT_EQ(cut.ways, whole.ways - 1);
+  EXPECT_EQ(cellRoute(cost, headings, places, 0.0, {.ways = whole.ways}).points, whole.points);
+}
+
+// Property: leaving out the cells from which the goal is out of reach changes no answer, and is never more work.
+TEST(CellRoute, LeavesOutWhatDoesNotLeadToTheGoal) {
+  std::size_t all = 0, some = 0;
+  for (unsigned seed = 1; seed <= 100; ++seed) {
+    const auto map =
+        testing::randomMap({.width = 12, .height = 12, .seed = seed, .blocked = 0.3, .roughness = 0.38});
+    const Segment places{{1.3, 1.4}, {10.6, 10.8}};
+    const MotionCost cost(map);
+    if (!cost.allowed(places.from) || !cost.allowed(places.to)) continue;
+    HeadingSets headings(map->cost());
+    const Reach to(*map, headings, Reach::Sense::To, places.to);
+    const CellRoute whole = cellRoute(cost, headings, places, 0.0);
+    const CellRoute part =
+        cellRoute(cost, headings, places, 0.0, {.worth = [&](maps::Cell cell) { return to.holds(cell); }});
+    EXPECT_EQ(whole.points, part.points) << seed;
+    EXPECT_LE(part.ways, whole.ways) << seed;
+    all += whole.ways;
+    some += part.ways;
+  }
+  EXPECT_LT(some, all);
 }
 
 TEST(CellRoute, EndsWithinTheTolerance) {

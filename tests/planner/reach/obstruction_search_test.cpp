@@ -11,7 +11,7 @@ using testing::drawn;
 Obstruction between(const std::shared_ptr<const costmap::CostGrid>& map, const Segment& places) {
   HeadingSets headings(map->cost());
   const Reach reach(*map, headings, Reach::Sense::From, places.from);
-  return obstructionBetween(*map, reach, places, 0.0);
+  return obstructionBetween(*map, headings, reach, places, 0.0);
 }
 
 TEST(ObstructionSearch, NamesBothSetsAndTheConstraintBetween) {

@@ -1,0 +1,111 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include <talus/planner/bound/straight_bound.hpp>
+
+namespace talus::planner {
+namespace {
+
+using costmap::CellCode;
+using costmap::DriveCurve;
+using maps::Cell;
+using maps::Point;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr int kRounds = 6;
+
+// The cheapest metre of a cell over all headings, by curve and by how many bins its steepest gradient reaches from the
+// middle. Rows of ground that is crossed cost no less than row 0 (DriveCurve).
+class CheapestMetres {
+ public:
+  explicit CheapestMetres(const costmap::DriveCost& cost) : least_(cost.curves().size()) {
+    for (std::size_t k = 0; k < least_.size(); ++k) {
+      const auto& row = cost.curves()[k].cost_J_per_m;
+      double least = kInfinity;
+      for (int reach = 0; reach <= kMiddle; ++reach) {
+        least =
+            std::min({least, static_cast<double>(row[static_cast<std::size_t>(kMiddle - reach)]),
+                      reach < kMiddle ? static_cast<double>(row[static_cast<std::size_t>(kMiddle + reach)])
+                                      : kInfinity});
+        least_[k][static_cast<std::size_t>(reach)] = std::max(least, 0.0);
+      }
+    }
+  }
+
+  // Infinite for a cell without a curve.
+  double operator()(CellCode cell) const noexcept {
+    if (cell.curve() >= least_.size()) return kInfinity;
+    const double steepest = std::hypot(cell.dzDx(), cell.dzDy()) * (1.0 + 1e-9);  // headings are rounded
+    const int reach = std::clamp(DriveCurve::bin(steepest) - kMiddle, 0, kMiddle);
+    return least_[cell.curve()][static_cast<std::size_t>(reach)];
+  }
+
+ private:
+  static constexpr int kMiddle = DriveCurve::kBins / 2;
+  std::vector<std::array<double, kMiddle + 1>> least_;
+};
+
+double distance(Point a, Point b) noexcept {
+  return std::hypot(b.x_m - a.x_m, b.y_m - a.y_m);
+}
+
+// The cheapest metre of the cells that a curve from one place to the other of a length touches; infinite if none. Zero
+// when stopped.
+double cheapestWithin(const costmap::CostGrid& map, const CheapestMetres& metres, const Segment& places,
+                      double length_m, const StopCheck& stop) {
+  const maps::Grid& grid = map.grid();
+  const double reach_m = length_m + std::numbers::sqrt2 * 1.001 * grid.resolution_m;  // of the cells' middles
+  const auto line = [&](double middle_m, double origin_m, double off_m, int count) {
+    const double at = (middle_m + off_m - origin_m) / grid.resolution_m;
+    return static_cast<int>(std::clamp(at, 0.0, count - 1.0));
+  };
+  const Point middle{0.5 * (places.from.x_m + places.to.x_m), 0.5 * (places.from.y_m + places.to.y_m)};
+  const double half_m = 0.5 * reach_m;
+  const Cell first{line(middle.x_m, grid.south_west.x_m, -half_m, grid.width),
+                   line(middle.y_m, grid.south_west.y_m, -half_m, grid.height)};
+  const Cell last{line(middle.x_m, grid.south_west.x_m, half_m, grid.width),
+                  line(middle.y_m, grid.south_west.y_m, half_m, grid.height)};
+  double least = kInfinity;
+  for (int row = first.row; row <= last.row; ++row) {
+    if ((row & 63) == 0 && stop()) return 0.0;
+    for (int column = first.column; column <= last.column; ++column) {
+      const double metre = metres(map.at({column, row}));
+      if (!(metre < least)) continue;
+      const Point centre = grid.centre({column, row});
+      if (distance(places.from, centre) + distance(centre, places.to) <= reach_m) least = metre;
+    }
+  }
+  return least;
+}
+
+double cheapestOfAny(const costmap::DriveCost& cost) noexcept {
+  double least = kInfinity;
+  for (const DriveCurve& curve : cost.curves())
+    for (const float value : curve.cost_J_per_m) least = std::min(least, static_cast<double>(value));
+  return std::isfinite(least) ? std::max(least, 0.0) : 0.0;
+}
+
+}  // namespace
+
+double straightBound_J(const costmap::CostGrid& map, const Segment& places, double tolerance_m) {
+  return cheapestOfAny(map.cost()) * std::max(0.0, distance(places.from, places.to) - tolerance_m);
+}
+
+double straightBoundOver_J(const costmap::CostGrid& map, const Segment& places, double tolerance_m,
+                           double known_J, const StopCheck& stop) {
+  const CheapestMetres metres(map.cost());
+  const double straight_m = std::max(0.0, distance(places.from, places.to) - tolerance_m);
+  double cheapest = cheapestOfAny(map.cost());
+  for (int round = 0; round < kRounds; ++round) {
+    const double length_m = cheapest > 0.0 ? known_J / cheapest : kInfinity;
+    const double least = cheapestWithin(map, metres, places, length_m + tolerance_m, stop);
+    if (std::isinf(least) || !(least > cheapest * 1.0001)) break;
+    cheapest = least;
+  }
+  return std::min(known_J, cheapest * straight_m);
+}
+
+}  // namespace talus::planner

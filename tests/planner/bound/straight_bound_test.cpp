@@ -1,0 +1,69 @@
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <talus/planner/bound/straight_bound.hpp>
+
+#include "drawn_map.hpp"
+
+namespace talus::planner {
+namespace {
+
+using testing::drawn;
+
+// Closed form: ten joules a metre on level ground, in every direction; a drawn ramp elsewhere has cheaper gradients.
+TEST(StraightBound, IsTheStraightLineOnEvenGround) {
+  const auto map = drawn(std::vector<std::string>(60, std::string(60, '.')));
+  for (int k = 0; k < 24; ++k) {
+    const double angle = 0.2618 * k + 0.1;
+    const Segment ends{{30.2, 29.7}, {30.2 + 25.0 * std::cos(angle), 29.7 + 25.0 * std::sin(angle)}};
+    const double cost_J = MotionCost(map)(ends);
+    EXPECT_NEAR(straightBoundOver_J(*map, ends, 0.0, cost_J), cost_J, 1e-6 * cost_J) << k;
+    EXPECT_NEAR(straightBoundOver_J(*map, ends, 5.0, cost_J), 0.8 * cost_J, 1e-6 * cost_J) << k;
+    EXPECT_LE(straightBound_J(*map, ends), straightBoundOver_J(*map, ends, 0.0)) << k;
+  }
+}
+
+// Closed form: 30 J/m, and ground of 10 J/m so far aside that the way there alone costs more than the straight line.
+TEST(StraightBound, LeavesOutCheapGroundOutOfReach) {
+  std::vector<std::string> rows(120, std::string(120, '2'));
+  for (int k = 0; k < 20; ++k)
+    rows[static_cast<std::size_t>(k)].replace(100, 20, std::string(20, '.'));  // north-east
+  const auto map = drawn(rows);
+  const Segment ends{{10.5, 10.5}, {30.5, 20.5}};
+  const double cost_J = MotionCost(map)(ends);
+  EXPECT_NEAR(straightBoundOver_J(*map, ends, 0.0, cost_J), cost_J, 1e-6 * cost_J);
+  EXPECT_NEAR(straightBoundOver_J(*map, ends, 0.0), cost_J / 3.0,
+              1e-6 * cost_J);  // nothing is known: it counts
+}
+
+// Property: whatever route is known, no motion of those drawn costs less than the bound, by way of any third place.
+TEST(StraightBound, IsBelowEveryMotionWhateverRouteIsKnown) {
+  std::size_t tried = 0;
+  for (unsigned seed = 1; seed <= 40; ++seed) {
+    const auto map = testing::randomMap(
+        {.width = 40, .height = 30, .seed = seed, .blocked = 0.0, .roughness = 0.01 * (seed % 8)});
+    const MotionCost cost(map);
+    std::mt19937 random(seed);
+    const auto place = [&random] {
+      return maps::Point{static_cast<double>(random() % 401) / 10, static_cast<double>(random() % 301) / 10};
+    };
+    const Segment ends{place(), place()};
+    std::vector<double> costs;
+    for (int k = 0; k < 100; ++k)
+      if (const double cost_J = cost.along({ends.from, place(), ends.to}); std::isfinite(cost_J))
+        costs.push_back(cost_J);
+    if (const double cost_J = cost(ends); std::isfinite(cost_J)) costs.push_back(cost_J);
+    if (costs.empty()) continue;
+    const double least_J = *std::min_element(costs.begin(), costs.end());
+    for (const double known_J : costs)
+      EXPECT_LE(straightBoundOver_J(*map, ends, 0.0, known_J), least_J * (1 + 1e-9)) << seed;
+    tried += costs.size();
+  }
+  EXPECT_GT(tried, 500U);
+}
+
+}  // namespace
+}  // namespace talus::planner
