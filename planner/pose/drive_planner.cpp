@@ -10,6 +10,7 @@
 #include <talus/planner/pose/pose_shortcut.hpp>
 #include <talus/planner/pose/turning_drive.hpp>
 #include <talus/planner/route/polyline.hpp>
+#include <talus/planner/route/time_left.hpp>
 
 namespace talus::planner {
 namespace {
@@ -64,16 +65,19 @@ PosePath fitted(const std::vector<Pose>& poses, const PoseCost& cost, const Shor
 }
 
 // The drive along a polyline that keeps a radius; without one, of straight legs and turns in place.
-PosePath along(const std::vector<maps::Point>& points, const PoseProblem& asked, const PoseCost& cost) {
+PosePath along(const std::vector<maps::Point>& points, const PoseProblem& asked, const PoseCost& cost,
+               const StopCheck& stop) {
   const double cell_m = asked.map->grid().resolution_m, radius_m = cost.kinematics().turning_radius_m;
   const auto apart = subdivided(points, std::max(kPose_cells * cell_m, kPose_radii * radius_m));
   if (radius_m <= 0.0) return turningDrive(apart, {asked.start_heading_rad, asked.goal_heading_rad}, cost);
-  return fitted(posesAlong(apart, asked), cost,
-                {.joint_m = kPose_cells * cell_m, .cheapest_J_per_m = cheapestMetre_J(*asked.map)});
+  return fitted(
+      posesAlong(apart, asked), cost,
+      {.joint_m = kPose_cells * cell_m, .cheapest_J_per_m = cheapestMetre_J(*asked.map), .stop = stop});
 }
 
 // A rover that turns in place may bend its way as well, and need not stop for it.
-PosePlan cheapestAlong(const std::vector<maps::Point>& points, const PoseProblem& asked) {
+PosePlan cheapestAlong(const std::vector<maps::Point>& points, const PoseProblem& asked,
+                       const StopCheck& stop) {
   const MotionCost motion(asked.map);
   std::vector<double> radii_m{asked.kinematics.turning_radius_m};
   if (radii_m.front() <= 0.0)
@@ -83,7 +87,8 @@ PosePlan cheapestAlong(const std::vector<maps::Point>& points, const PoseProblem
     Kinematics kinematics = asked.kinematics;
     kinematics.turning_radius_m = radius_m;
     const PoseCost cost(motion, kinematics);
-    PosePath path = along(points, asked, cost);
+    if (best.status == RouteStatus::Found && stop()) break;
+    PosePath path = along(points, asked, cost, stop);
     const double cost_J = cost(path);
     const bool cheaper = best.status != RouteStatus::Found || cost_J < best.cost_J;
     if (path.legs.empty() || !std::isfinite(cost_J) || !cheaper) continue;
@@ -101,45 +106,54 @@ PosePlan cheapestAlong(const std::vector<maps::Point>& points, const PoseProblem
 // which the search's eight headings do not see, is the better seed; and it threads what motions of the
 // search's one length step over.
 PosePlan DrivePlanner::alongRoute(const PoseProblem& asked, const Problem& problem) {
+  const StopCheck stop(asked.watch, asked.time_limit_s);
   Problem free = problem;
   free.start = asked.start;
   free.goal = asked.goal;
   free.via.clear();
   free.goal_tolerance_m = 0.0;
+  free.time_limit_s = asked.time_limit_s;
   free.prove = false;
   const Plan route = field_.plan(free);
   if (route.status != RouteStatus::Found || route.points.size() < 2) return {};
-  return cheapestAlong(route.points, asked);
+  return cheapestAlong(route.points, asked, stop);
 }
 
 PosePlan DrivePlanner::drivenTo(PoseProblem asked, const Problem& problem, maps::Point end) {
+  const TimeLeft time(asked.time_limit_s);
   asked.goal = end;
   PosePlan along = alongRoute(asked, problem);
   const bool known = along.status == RouteStatus::Found;
   if (known) asked.most_expanded = kBeside;
+  asked.time_limit_s = time.share_s();
   PosePlan leg = search_.plan(asked);
   if (leg.status == RouteStatus::Cancelled && !known) return leg;
   if (known && (leg.status != RouteStatus::Found || along.cost_J < leg.cost_J)) leg = std::move(along);
   if (leg.status != RouteStatus::Found || !sampling_ || asked.watch.stopped()) return leg;
+  asked.time_limit_s = time.share_s();
   sampling_->seed = problem.seed;
   if (sampling_->better) sampling_->better(leg.cost_J);
   return improvedBySampling(asked, leg, *sampling_);
 }
 
-PosePlan DrivePlanner::drivenWithin(const PoseProblem& asked, const Problem& problem) {
+PosePlan DrivePlanner::drivenWithin(PoseProblem asked, const Problem& problem) {
+  const TimeLeft time(asked.time_limit_s);
   Problem free = problem;
   free.start = asked.start;
   free.via.clear();
+  free.time_limit_s = asked.time_limit_s;
   free.prove = false;
   const Plan route = field_.plan(free);
   PosePlan best;
   best.status = route.status;
   best.reason = route.reason;
   if (route.status != RouteStatus::Found) return best;
+  asked.time_limit_s = time.share_s();
   best = drivenTo(asked, problem, route.points.back());
   if (best.status == RouteStatus::Cancelled || route.points.back() == problem.goal ||
       !MotionCost(problem.map).allowed(problem.goal))
     return best;
+  asked.time_limit_s = time.share_s();
   PosePlan exact = drivenTo(asked, problem, problem.goal);
   const bool better =
       exact.status == RouteStatus::Found && (best.status != RouteStatus::Found || exact.cost_J < best.cost_J);
@@ -148,6 +162,7 @@ PosePlan DrivePlanner::drivenWithin(const PoseProblem& asked, const Problem& pro
 
 Plan DrivePlanner::plan(const Problem& problem) {
   if (!problem.map) throw std::invalid_argument("DrivePlanner: no map");
+  const TimeLeft time(problem.time_limit_s);
   std::vector<maps::Point> stops = problem.via;
   stops.push_back(problem.goal);
   PoseProblem asked{.map = problem.map,
@@ -156,7 +171,7 @@ Plan DrivePlanner::plan(const Problem& problem) {
                     .start_heading_rad = problem.start_heading_rad,
                     .goal_heading_rad = {},
                     .kinematics = problem.kinematics,
-                    .time_limit_s = problem.time_limit_s / static_cast<double>(stops.size()),
+                    .time_limit_s = problem.time_limit_s,
                     .watch = problem.watch};
   Plan whole;
   whole.status = RouteStatus::Found;
@@ -164,13 +179,15 @@ Plan DrivePlanner::plan(const Problem& problem) {
   for (std::size_t i = 0; i < stops.size(); ++i) {
     const bool last = i + 1 == stops.size();
     const double tolerance_m = last ? problem.goal_tolerance_m : 0.0;
+    asked.time_limit_s = time.share_s(stops.size() - i);  // what earlier legs left over is shared
     if (last) asked.goal_heading_rad = problem.goal_heading_rad;
     PosePlan leg = tolerance_m > 0.0 ? drivenWithin(asked, problem) : drivenTo(asked, problem, stops[i]);
     if (leg.status != RouteStatus::Found) return ended(std::move(leg));
     append(whole.drive, leg.path);
-    const double bound_J =
-        problem.prove ? bound_(problem.map, {asked.start, stops[i]}, tolerance_m, StopCheck(problem.watch))
-                      : straightBound_J(*problem.map, {asked.start, stops[i]}, tolerance_m);
+    const double bound_J = problem.prove
+                               ? bound_(problem.map, {asked.start, stops[i]}, tolerance_m,
+                                        StopCheck(problem.watch, time.left_s()), leg.cost_J)
+                               : straightBound_J(*problem.map, {asked.start, stops[i]}, tolerance_m);
     whole.lower_bound_J += std::min(bound_J, leg.cost_J);
     asked.start = stops[i];
     asked.start_heading_rad = endOf(leg.path).heading_rad;

@@ -30,7 +30,7 @@ class DrivePlanner {
 
  private:
   PosePlan drivenTo(PoseProblem asked, const Problem& problem, maps::Point end);
-  PosePlan drivenWithin(const PoseProblem& asked, const Problem& problem);
+  PosePlan drivenWithin(PoseProblem asked, const Problem& problem);
   PosePlan alongRoute(const PoseProblem& asked, const Problem& problem);
 
   std::optional<PoseSamplingSettings> sampling_;

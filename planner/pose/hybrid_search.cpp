@@ -268,12 +268,12 @@ HybridSearch::HybridSearch(const HybridOptions& options) : options_(options) {
                                 ", must be >= 8");
 }
 
-bool HybridSearch::prepareField(const PoseProblem& problem) {
+bool HybridSearch::prepareField(const PoseProblem& problem, const StopCheck& stop) {
   const maps::Cell goal = *problem.map->grid().cellAt(problem.goal);
   const bool same_map = edges_ && edges_->mapPointer() == problem.map;
   if (!same_map)
     edges_ = std::make_shared<const EdgeLayer>(
-        problem.map, EdgeUnits(problem.map->cost(), problem.map->grid().resolution_m), 1, problem.watch);
+        problem.map, EdgeUnits(problem.map->cost(), problem.map->grid().resolution_m), 1, stop);
   if (!edges_->complete()) {
     edges_.reset();
     return false;
@@ -293,8 +293,11 @@ PosePlan HybridSearch::plan(const PoseProblem& problem) {
   if (!allowed.allowed(problem.goal))
     return refused(RouteStatus::GoalInvalid,
                    "the goal is outside the map or on a cell that may not be entered");
-  if (!prepareField(problem)) return refused(RouteStatus::Cancelled, "cancelled");
   const StopCheck stop(problem.watch, problem.time_limit_s);
+  if (!prepareField(problem, stop)) {
+    const RouteStatus why = stop.cancelled() ? RouteStatus::Cancelled : RouteStatus::TimedOut;
+    return refused(why, whyNot(why).c_str());
+  }
   std::optional<HybridAStar> made(std::in_place, problem, options_, *field_, stop);
   PosePlan plan;
   plan.status = made->run();
@@ -320,7 +323,8 @@ PosePlan HybridSearch::plan(const PoseProblem& problem) {
   plan.path = search.path();
   PosePath shorter = shortened(plan.path, search.cost(),
                                {.joint_m = kJoint_cells * problem.map->grid().resolution_m,
-                                .cheapest_J_per_m = search.cheapest_J_per_m()});
+                                .cheapest_J_per_m = search.cheapest_J_per_m(),
+                                .stop = stop});
   if (problem.kinematics.turning_radius_m <= 0.0) {
     std::vector<maps::Point> places;
     for (const Pose& pose : sampled(plan.path, kJoint_cells * problem.map->grid().resolution_m))

@@ -9,6 +9,7 @@
 #include <talus/planner/field/cost_to_go.hpp>
 #include <talus/planner/route/pose_path.hpp>
 #include <talus/planner/route/route.hpp>
+#include <talus/planner/route/stop_check.hpp>
 #include <talus/talus.hpp>
 
 namespace talus::planner {
@@ -68,7 +69,7 @@ class HybridSearch {
   PosePlan plan(const PoseProblem& problem);
 
  private:
-  bool prepareField(const PoseProblem& problem);
+  bool prepareField(const PoseProblem& problem, const StopCheck& stop);
 
   HybridOptions options_;
   std::shared_ptr<const EdgeLayer> edges_;

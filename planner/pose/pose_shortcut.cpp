@@ -78,13 +78,17 @@ struct Joint {
 // or by the direct curve from a joint further back.
 class Shortening {
  public:
-  Shortening(const Pose& start, const std::vector<Legs>& path, const PoseCost& cost, double cheapest_J_per_m)
-      : cost_(cost), cheapest_J_per_m_(cheapest_J_per_m), joints_(path.size() + 1) {
+  Shortening(const Pose& start, const std::vector<Legs>& path, const PoseCost& cost,
+             const ShortenOptions& options)
+      : cost_(cost), cheapest_J_per_m_(options.cheapest_J_per_m), joints_(path.size() + 1) {
     joints_[0].pose = start;
     joints_[0].price = 0.0;
+    bool stopped = false;
     for (std::size_t k = 1; k < joints_.size(); ++k) {
       joints_[k].pose = after(joints_[k - 1].pose, path[k - 1]);
       reach(k, k - 1, path[k - 1]);
+      stopped = stopped || ((k & 15) == 0 && options.stop());
+      if (stopped) continue;
       for (const std::size_t span : kSpans) {
         if (span > k) break;
         if (promising(k, k - span)) reach(k, k - span, direct(path, k - span, k));
@@ -157,11 +161,11 @@ PosePath shortened(const PosePath& path, const PoseCost& cost, const ShortenOpti
   double price = cost(best);
   for (const double spacing : kSpacings) {
     const auto stretches = divided(best, spacing * options.joint_m);
-    PosePath shorter = Shortening(best.start, stretches, cost, options.cheapest_J_per_m).result(best);
+    PosePath shorter = Shortening(best.start, stretches, cost, options).result(best);
     const double shorter_price = cost(shorter);
     const bool worthwhile = shorter_price < price * (1.0 - kWorthwhile);
     if (shorter_price < price) best = std::move(shorter), price = shorter_price;
-    if (!worthwhile && spacing < 1.0) break;
+    if ((!worthwhile && spacing < 1.0) || options.stop()) break;
   }
   return best;
 }

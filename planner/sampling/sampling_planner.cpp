@@ -1,13 +1,13 @@
-#include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
 
 #include <talus/planner/field/remedy.hpp>
+#include <talus/planner/refine/close_vertices.hpp>
 #include <talus/planner/route/legs.hpp>
 #include <talus/planner/route/plan_end.hpp>
 #include <talus/planner/route/planner_names.hpp>
+#include <talus/planner/route/time_left.hpp>
 #include <talus/planner/sampling/ompl_run.hpp>
 #include <talus/planner/sampling/sampling_planner.hpp>
 
@@ -40,21 +40,8 @@ Plan arrived(const Problem& leg) {
   return plan;
 }
 
-// What is left of a time limit.
-class Clock {
- public:
-  explicit Clock(double limit_s) : limit_s_(limit_s) {}
-  double left_s() const {
-    return limit_s_ - std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
-  }
-
- private:
-  double limit_s_;
-  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
-};
-
 Plan planLeg(Problem leg, const SamplingSettings& settings, const InitialPathProvider& scout) {
-  const Clock clock(leg.time_limit_s);
+  const TimeLeft clock(leg.time_limit_s);
   if (Plan ends = checkEnds(leg); ends.status != RouteStatus::Found) return ends;
   const double apart_m = std::hypot(leg.goal.x_m - leg.start.x_m, leg.goal.y_m - leg.start.y_m);
   if (apart_m <= leg.goal_tolerance_m) return arrived(leg);
@@ -66,6 +53,11 @@ Plan planLeg(Problem leg, const SamplingSettings& settings, const InitialPathPro
   if (seeded && (leg.watch.stopped() || !(leg.time_limit_s > 0.0))) return known;
   if (!(leg.time_limit_s > 0.0)) return cancelledPlan(StopCheck(leg.watch));
   Plan found = runOmpl(leg, settings, known);
+  if (found.status == RouteStatus::Found) {
+    const MotionCost cost(leg.map);
+    found.points = withoutCloseVertices(cost, std::move(found.points));
+    found.cost_J = cost.along(found.points);
+  }
   return seeded && known.cost_J <= found.cost_J ? known : found;
 }
 
@@ -74,10 +66,10 @@ Plan planLeg(Problem leg, const SamplingSettings& settings, const InitialPathPro
 Plan planBySampling(const Problem& problem, const SamplingSettings& settings,
                     const InitialPathProvider& scout) {
   const SamplingSettings checked = validated(settings);
-  const Clock clock(problem.time_limit_s);
-  auto legs = static_cast<double>(problem.via.size() + 1);
+  const TimeLeft clock(problem.time_limit_s);
+  std::size_t legs = problem.via.size() + 1;
   return planByLegs(problem, [&](Problem leg) {
-    leg.time_limit_s = std::max(clock.left_s() / legs--, 1e-9);  // what earlier legs left over is shared
+    leg.time_limit_s = clock.share_s(legs--);  // what earlier legs left over is shared
     return planLeg(std::move(leg), checked, scout);
   });
 }
