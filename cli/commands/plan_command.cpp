@@ -16,6 +16,7 @@
 #include <talus/cli/draw/page.hpp>
 #include <talus/cli/draw/pareto_chart.hpp>
 #include <talus/cli/draw/picture.hpp>
+#include <talus/cli/draw/reach_scene.hpp>
 #include <talus/cli/draw/route_summary.hpp>
 #include <talus/cli/draw/scene.hpp>
 #include <talus/cli/ground/drive_options.hpp>
@@ -236,6 +237,20 @@ int refuseOwn(const PlanOptions& options, const Planned& planned, const Route& r
   return refuse(none, context);
 }
 
+// Both sets of cells that a proof of no route rests on.
+void drawSevered(const PlanOptions& options, const Planned& planned) {
+  const planner::Problem& problem = planned.problem;
+  const maps::ElevationMap& map = planned.ground.map.elevation();
+  const bool pictured = !options.png.empty() || !options.html.empty();
+  const bool one_leg = problem.via.empty() && problem.other_goals.empty();
+  if (!pictured || !one_leg || !planned.plan.obstruction || !(map.grid() == problem.map->grid())) return;
+  const Scene scene = reachScene(
+      map, *problem.map, {{problem.start, problem.goal}, problem.goal_tolerance_m, planned.plan.reason},
+      {.title = "No route across " + std::filesystem::path(map.source).filename().string()});
+  if (!options.png.empty()) savePicture(options.png, scene);
+  if (!options.html.empty()) savePage(options.html, scene);
+}
+
 // What is done with a plan, whichever way it was made.
 int finish(const PlanOptions& options, const Planned& planned, const planner::AnnotationInput& input,
            const Context& context) {
@@ -244,6 +259,7 @@ int finish(const PlanOptions& options, const Planned& planned, const planner::An
     if (const auto refused =
             planner::refusal(planned.plan, *planned.problem.map, planned.problem.kinematics.turning_radius_m))
       return refuseOwn(options, planned, route, *refused, context);
+  if (planned.plan.status == RouteStatus::NoRoute) drawSevered(options, planned);
   if (planned.plan.status != RouteStatus::Found) return refuse(route, context);
   writeFiles(options, planned.ground, route, context);
   const Timing seconds{planned.ground.load_s, planned.ground.build_s, planned.plan_s};

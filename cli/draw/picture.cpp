@@ -83,6 +83,7 @@ class Picture {
   }
 
   void route() {
+    for (const auto& [letter, place] : scene_.marks) mark(spot(place.x_m, place.y_m), letter);
     if (!scene_.route || scene_.route->vertices.empty()) return;
     std::vector<Spot> spots;
     for (const planner::RouteVertex& v : scene_.route->vertices) spots.push_back(spot(v.x_m, v.y_m));

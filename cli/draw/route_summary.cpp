@@ -170,6 +170,9 @@ Facts summaryOf(const Route& route) {
   if (route.status != planner::RouteStatus::Found || route.vertices.empty())
     return {{"route", fmt::format("{}: {}", planner::name(route.status), route.reason)}};
   const planner::RouteSummary& s = route.summary;
+  if (!(s.length_m > 0.0) && s.drive && s.drive->turns_in_place > 0)
+    return {{"route", fmt::format("turn in place by {:.0f} deg, {}", s.drive->turned_rad / kDegree,
+                                  energyText(s.energy_J))}};
   if (!(s.length_m > 0.0)) return {{"route", "empty: the start is at the goal"}};
   const double risk = route.vertices.back().immobilisation_risk;
   Facts facts{{"route", statusText(route)},

@@ -1,0 +1,42 @@
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include <talus/cli/draw/picture.hpp>
+#include <talus/cli/draw/reach_scene.hpp>
+
+namespace talus::cli {
+namespace {
+
+// Flat ground, and a wall that no heading enters: the west is reached from the start, the east leads to the goal.
+TEST(ReachScene, ShowsBothSetsAndTheGapBetween) {
+  maps::ElevationMap map;
+  map.elevation_m =
+      maps::Raster<float>({.width = 30, .height = 20, .resolution_m = 1.0, .south_west = {}}, 5.0F);
+  maps::Raster<costmap::CellCode> cells(map.grid(), costmap::CellCode({.curve = 0}));
+  for (int row = 0; row < 20; ++row)
+    cells[{12, row}] = costmap::CellCode({.curve = costmap::CellCode::kBlocked});
+  costmap::DriveCurve curve;
+  curve.cost_J_per_m.fill(1.0F);
+  const costmap::CostGrid cost = costmap::flattened(
+      cells, std::make_shared<costmap::DriveCost>(costmap::DriveCost::Limits{}, std::vector{curve}));
+  const Scene scene =
+      reachScene(map, cost, {{{2.5, 3.5}, {27.5, 16.5}}, 0.0, "a wall"}, {.title = "severed"});
+  ASSERT_FALSE(scene.layers.empty());
+  const auto& reached = scene.layers.front().values;
+  for (int row = 0; row < 20; ++row)
+    for (int column = 0; column < 30; ++column) {
+      const float value = reached[{column, row}];
+      if (column == 12)
+        EXPECT_TRUE(std::isnan(value));
+      else
+        EXPECT_EQ(value, column < 12 ? 0.0F : 1.0F) << column << ' ' << row;
+    }
+  EXPECT_FALSE(drawPicture(scene).empty());
+  Scene unmarked = scene;
+  unmarked.marks.clear();
+  EXPECT_NE(drawPicture(scene), drawPicture(unmarked));
+}
+
+}  // namespace
+}  // namespace talus::cli
