@@ -13,11 +13,16 @@ namespace talus::costmap {
 /// place lowers nothing in another. Infinite adds nothing here: such a cell is refused by its hazard. Immutable.
 class AddedCost {
  public:
+  static constexpr int kCoarsest = 3;  ///< highest level
+
   explicit AddedCost(const std::vector<CostLayer>& layers);
 
-  /// Of a cell; 0: nothing is added. At a level of GroundKind only each 2^level-th step is used.
+  bool empty() const noexcept { return steps_.empty(); }
+
+  /// Of a cell; 0: nothing is added. At levels 1, 2 and 3 only each 2nd, 8th and 32nd step is used: a step
+  /// is needed once for each kind of ground, and a cell whose cost has no curve left is refused.
   int step(maps::Cell cell, int level = 0) const {
-    const int many = 1 << level;
+    const int many = level == 0 ? 1 : 1 << (2 * level - 1);
     return steps_.empty() ? 0 : (steps_[cell] + many - 1) / many * many;
   }
   /// Joules that a step adds to a metre; grows with the step.

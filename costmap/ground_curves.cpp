@@ -98,7 +98,7 @@ bool GroundCurves::alike(maps::Cell cell) const noexcept {
 }
 
 std::uint8_t GroundCurves::withLayers(std::uint8_t number, maps::Cell cell) {
-  const int step = number < CellCode::kUnknown ? added_.step(cell, table_.level()) : 0;
+  const int step = number < CellCode::kUnknown ? added_.step(cell, step_level_) : 0;
   return step == 0 ? number : table_.dearer(number, step, added_.J_per_m(step));
 }
 

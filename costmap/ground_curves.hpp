@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -41,11 +42,17 @@ class GroundCurves {
   /// Where more than one ground takes part in a number, some of which may be a class's prior.
   std::vector<maps::CellBox> mixedRanges() const;
 
-  /// Gives all numbers anew, after it ran out of them; beliefs are rounded at this level of GroundKind.
-  void restart(int level) { table_.restart(level); }
-
-  /// What layers add to a metre in the cell as its curve has it, rounded up [J].
-  double added_J_per_m(maps::Cell cell) const { return added_.J_per_m(added_.step(cell, table_.level())); }
+  /// Gives all numbers anew, after it ran out of them, in steps that are coarser the higher the level is.
+  /// Steps of layers grow coarse before beliefs do: those decide what may be driven.
+  void restart(int level) {
+    level_ = level;
+    step_level_ = added_.empty() ? 0 : std::min(level, AddedCost::kCoarsest);
+    table_.restart(level - step_level_);
+  }
+  int level() const noexcept { return level_; }
+  int coarsest() const noexcept {
+    return GroundKind::kCoarsest + (added_.empty() ? 0 : AddedCost::kCoarsest);
+  }
 
  private:
   WheelSwath::Ground ground(maps::Cell cell) const;
@@ -57,6 +64,7 @@ class GroundCurves {
   std::shared_ptr<const GroundSite> site_;
   CostCurveTable table_;
   AddedCost added_;
+  int level_ = 0, step_level_ = 0;
   WheelSwath swath_;
   std::vector<bool> borders_;
   LearnedCells learned_;

@@ -223,7 +223,7 @@ void TraversabilityMap::publish(std::vector<maps::CellBox> learned) {
   append(changed, curves_->learn(beliefs, learned));
   if (classes_moved) append(changed, curves_->mixedRanges());
   std::shared_ptr<const CostGrid> next = rewritten(changed);
-  const bool coarser_exists = curves_->table().level() < GroundKind::kCoarsest;
+  const bool coarser_exists = curves_->level() < curves_->coarsest();
   published_->grid = curves_->table().overflowed() && coarser_exists ? renumbered() : std::move(next);
   measured_.reset();
 }
@@ -235,7 +235,7 @@ std::shared_ptr<const CostGrid> TraversabilityMap::renumbered() {
     curves_->restart(level);
     auto next = rewritten({allOf(grid())});
     const bool room = !curves_->table().overflowed() && curves_->table().used() <= kFull;
-    if (room || level == GroundKind::kCoarsest) return next;
+    if (room || level == curves_->coarsest()) return next;
   }
 }
 

@@ -11,7 +11,6 @@
 #include <talus/costmap/cell_boxes.hpp>
 #include <talus/costmap/cost_weights.hpp>
 #include <talus/costmap/explanation.hpp>
-#include <talus/costmap/ground_kind.hpp>
 
 namespace talus::costmap {
 namespace {
@@ -88,7 +87,7 @@ TEST(AddedCost, ValuesAreRoundedUp) {
   for (float& v : many.added_J_per_m.values())
     v = uniform(random) < 0.2 ? 0.0F : static_cast<float>(std::pow(10.0, 8.0 * uniform(random) - 2.0));
   const AddedCost added({many});
-  for (int level = 0; level <= GroundKind::kCoarsest; ++level)
+  for (int level = 0; level <= AddedCost::kCoarsest; ++level)
     forEachCell(allOf(grid), [&](Cell c) {
       const auto value = static_cast<double>(many.added_J_per_m[c]);
       const double taken = added.J_per_m(added.step(c, level));
@@ -209,6 +208,33 @@ TEST(AddedCost, PatchesWeightsAndWheelsKeepIt) {
   const auto cheap = reweighted(*map.published(), {.energy = 1.0, .time_W = 0.0, .risk_J = 0.0});
   const Cell middle{15, 15};
   EXPECT_GE(cheap->cost().costPerMetre(cheap->at(middle), {}), own.added_J_per_m[middle]);
+}
+
+// Property: the same with four classes in patches, whose borders are kinds of ground of their own.
+TEST(AddedCost, ManyClassesUnderManyValuesStayOpen) {
+  std::mt19937 random(13);
+  MapLayers ground = hills(80);
+  const maps::Grid grid = ground.elevation.grid();
+  GroundModel::Parts parts = testGround()->parts();
+  for (int number = 3; number <= 4; ++number) {
+    parts.classes.push_back(parts.classes.front());
+    parts.classes.back().number = number;
+    parts.classes.back().soil.friction_angle_rad *= 1.0 - 0.02 * number;
+  }
+  const auto model = std::make_shared<const GroundModel>(std::move(parts));
+  CostLayer own = layer(grid, "own", 0.0F);
+  forEachCell(allOf(grid), [&](Cell c) {
+    ground.classes[c] = static_cast<std::uint8_t>(1 + (c.column / 10 + c.row / 10) % 4);
+    own.added_J_per_m[c] = static_cast<float>(100.0 * uniform(random));
+  });
+  const TraversabilityMap plain(ground, model, {});
+  ground.costs = {own};
+  const TraversabilityMap dearer(std::move(ground), model, {});
+  inEachHeading(grid, [&](Cell c, int k) {
+    const double cost = costAt(dearer, c, k), before = costAt(plain, c, k);
+    ASSERT_EQ(std::isfinite(cost), std::isfinite(before));
+    ASSERT_GE(cost, (before + static_cast<double>(own.added_J_per_m[c])) * (1.0 - 3e-7));
+  });
 }
 
 TEST(AddedCost, UnseenGroundCostsItToo) {
