@@ -11,6 +11,7 @@
 #include <talus/talus.hpp>
 #include <talus/terramech/estimate/pull_formula.hpp>
 #include <talus/terramech/tables/assessment.hpp>
+#include <talus/terramech/tables/table_applicability.hpp>
 
 namespace talus::cli {
 namespace {
@@ -187,7 +188,11 @@ int run(const AssessCommand& options, Context& context) {
   } else {
     print(textOf(options, table.rows));
   }
-  return Exit::kDone;
+  const Applicability applies =
+      tableApplicability(options.table, options.model, options.rover, context.watch("checking the model"));
+  if (applies.applies) return Exit::kDone;
+  context.warn(options.table + ": the model does not apply: " + applies.reason);
+  return Exit::kNo;
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <talus/cli/draw/html_report.hpp>
 #include <talus/talus.hpp>
 #include <talus/terramech/tables/estimate_soil.hpp>
+#include <talus/terramech/tables/table_applicability.hpp>
 
 namespace talus::cli {
 namespace {
@@ -89,6 +90,43 @@ Json runningJson(const SoilEstimate& e) {
   return rows;
 }
 
+Json soilsJson(const SoilEstimate& e) {
+  Json all = Json::array();
+  for (const TrialSoil& s : e.soils) {
+    Json one{{"soil", s.soil},
+             {"trials", s.trials},
+             {"sinkage_exponent", s.exponent.mean.value},
+             {"sinkage_exponent_std", s.exponent.mean.std},
+             {"sinkage_exponent_spread", s.exponent.spread},
+             {"depth_m", s.depth_m},
+             {"pressure_spread", s.pressure_spread}};
+    if (s.fit.cohesive_modulus) one["cohesive_modulus"] = *s.fit.cohesive_modulus;
+    if (s.fit.frictional_modulus) one["frictional_modulus"] = *s.fit.frictional_modulus;
+    for (const auto& plate : s.fit.plates)
+      one["plates"].push_back(
+          {{"plate_width_m", plate.plate_width_m}, {"sinkage_modulus", plate.sinkage_modulus}});
+    all.push_back(one);
+  }
+  return all;
+}
+
+/// The spread between trials, and each soil where there are several.
+std::string soilsText(const SoilEstimate& e) {
+  std::string text;
+  for (const TrialSoil& s : e.soils) {
+    if (s.trials < 2 && e.soils.size() < 2) continue;
+    text += fmt::format(
+        "{:15} {} trials: n {:.3f} +- {:.3f}, spread {:.3f}; pressure at {:.1f} mm spread {:.0f} %\n",
+        s.soil.empty() ? "trials" : s.soil, s.trials, s.exponent.mean.value, s.exponent.mean.std,
+        s.exponent.spread, 1e3 * s.depth_m, 100.0 * s.pressure_spread);
+    if (e.soils.size() < 2) continue;
+    for (const auto& plate : s.fit.plates)
+      text += fmt::format("  k at b {:5.1f} mm {:9.3g} N/m^(n+2)\n", 1e3 * plate.plate_width_m,
+                          plate.sinkage_modulus);
+  }
+  return text;
+}
+
 Json posteriorJson(const SoilEstimate& e) {
   const auto& p = *e.posterior;
   const auto range = [](const CredibleInterval& i) { return Json{i.low, i.high}; };
@@ -125,6 +163,7 @@ Json jsonOf(const std::string& method, const SoilEstimate& e) {
   for (const auto& plate : e.plates)
     json["plates"].push_back(
         {{"plate_width_m", plate.plate_width_m}, {"sinkage_modulus", plate.sinkage_modulus}});
+  if (!e.soils.empty()) json["soils"] = soilsJson(e);
   if (!e.effects.empty()) json["effects"] = e.effects;
   if (!e.running.empty()) json["running"] = runningJson(e);
   if (e.posterior) json.update(posteriorJson(e));
@@ -158,6 +197,7 @@ std::string textOf(const SoilEstimate& e) {
   if (std::isfinite(e.shear_modulus_m))
     text += fmt::format("shear modulus   {:9.2f} mm\n", 1e3 * e.shear_modulus_m);
   if (std::isfinite(e.sinkage_exponent)) text += fmt::format("exponent n      {:9.3f}\n", e.sinkage_exponent);
+  text += soilsText(e);
   for (const auto& plate : e.plates)
     text += fmt::format("k at b {:5.1f} mm {:9.3g} N/m^(n+2)\n", 1e3 * plate.plate_width_m,
                         plate.sinkage_modulus);
@@ -234,12 +274,21 @@ int run(const EstimateCommand& options, Context& context) {
   if (const std::string why = estimate.implausible(); !why.empty()) context.warn(why);
   for (const std::string& text : estimate.warnings) context.warn(text);
   if (!options.html.empty()) writePage(options, estimate);
+  const Applicability applies =
+      options.method == "bevameter" ? Applicability{}
+                                    : tableApplicability(options.table, options.model, options.rover,
+                                                         context.watch("checking the model"));
+  if (!applies.applies)
+    context.warn(options.table + ": the model does not apply: " + applies.reason);
   if (context.json) {
-    printJson(jsonOf(options.method, estimate));
+    Json json = jsonOf(options.method, estimate);
+    json["applies"] = applies.applies;
+    json["applies_reason"] = applies.reason;
+    printJson(json);
   } else {
     print(textOf(estimate));
   }
-  return Exit::kDone;
+  return applies.applies ? Exit::kDone : Exit::kNo;
 }
 
 }  // namespace

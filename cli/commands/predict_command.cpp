@@ -35,7 +35,7 @@ int run(const PredictOptions& options, Context& context) {
     throw InputError({options.model, "defines no soil", "fit one first: talus trace --model-out"});
   if (!options.rover.empty()) file.model.takeRover(terramech::loadRover(options.rover));
   const auto table =
-      terramech::predictTable(options.table, file.model, file.trained, context.watch("predicting"));
+      terramech::predictTable(options.table, file.model, file.scope, context.watch("predicting"));
   if (context.stop.stop_requested()) return Exit::kCancelled;
   constexpr std::size_t kShown = 20;
   for (std::size_t k = 0; k < table.refused.size() && k < kShown; ++k)

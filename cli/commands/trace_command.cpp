@@ -9,7 +9,7 @@
 #include <talus/terramech/io/model_file.hpp>
 #include <talus/terramech/io/soil_library.hpp>
 #include <talus/terramech/io/telemetry_reader.hpp>
-#include <talus/terramech/trace/end_levels.hpp>
+#include <talus/terramech/trace/held_out.hpp>
 #include <talus/terramech/trace/left_out.hpp>
 
 namespace talus::cli {
@@ -99,6 +99,8 @@ int run(const TraceCommandOptions& options, Context& context) {
                      trial.rows()),
          ""});
   base.model.slip_along_travel |= terramech::slipIsAlongTravel(trial.states);
+  // A drive has not the information for soil and effects at once.
+  if (base.soil_given && trial.moment.empty()) terramech::giveDefaultDeviations(base.model);
   terramech::TraceOptions how{.significance = options.significance};
   how.fit_soil = !base.soil_given;
   how.seed = context.seed;
@@ -110,15 +112,15 @@ int run(const TraceCommandOptions& options, Context& context) {
                    {},
                    {}};
   if (watch.stopped()) return Exit::kCancelled;
-  story.held_out = terramech::holdOut(story.result, how);
+  story.held_out = terramech::holdOutLevels(story.result, how);
+  story.held_out.insert(story.held_out.begin(), story.result.held_out);
   story.beyond_axle = all.rows() - trial.rows();
   if (story.beyond_axle > 0)
     story.beyond_axle_rmse = terramech::rmseOf(story.result.refined, terramech::subset(all, sunk));
   story.applies = terramech::applicability(story.result, how);
   if (!options.model_out.empty())
-    writeFile(options.model_out, terramech::modelText(terramech::forPrediction(story.result),
-                                                      terramech::trainedRanges(trial, story.result.ends,
-                                                                               story.result.noise_floor)));
+    writeFile(options.model_out,
+              terramech::modelText(terramech::forPrediction(story.result), story.result.scope));
   if (!options.html.empty()) writeFile(options.html, tracePage(story));
   if (context.json)
     printJson(traceJson(story));

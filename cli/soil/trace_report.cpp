@@ -98,9 +98,8 @@ ordered_json rejectedJson(const TraceResult& result) {
   ordered_json out = ordered_json::array();
   for (const Explanation& e : result.rejected) {
     ordered_json one = rivalJson(e);
-    one["reason"] = e.spoils                     ? "makes the held-out error of a channel worse"
-                    : e.gain <= result.threshold ? "gains no more than noise would"
-                                                 : "explains less than the selected effect";
+    one["reason"] =
+        e.gain <= result.threshold ? "gains no more than noise would" : "explains less than the selected effect";
     out.push_back(one);
   }
   return out;
@@ -266,7 +265,7 @@ ordered_json answerJson(const TraceResult& result) {
                      {"standard_deviations", p.away()}});
   return {{"channel", name(a.channel)},    {"rmse", a.rest},         {"noise_floor", a.floor},
           {"varies_with", a.column},       {"gain", a.gain},         {"threshold", result.threshold},
-          {"rows_that_decide", a.measure}, {"soil_off_prior", moved}};
+          {"rows_that_decide", a.measure}, {"soil_off_prior", moved}, {"soil_at_bound", soilAtBounds(result.refined)}};
 }
 
 ordered_json beyondAxleJson(const TraceStory& story) {
@@ -323,8 +322,9 @@ std::string verdictText(const TraceResult& result) {
   if (a.verdict == Verdict::NothingMissing)
     return "nothing missing: the residuals are consistent with noise; " + rest;
   if (a.verdict == Verdict::Explained)
-    return fmt::format("explained by {} effect{}: {}", result.effects.size(),
-                       result.effects.size() == 1 ? "" : "s", rest);
+    return fmt::format("explained by {} effect{}: {}{}", result.effects.size(),
+                       result.effects.size() == 1 ? "" : "s", rest,
+                       a.open && !a.column.empty() ? ", of which most varies with " + a.column : "");
   const std::string where =
       a.column.empty() ? "it follows no column" : fmt::format("it varies most with {}", a.column);
   return fmt::format("unexplained: {}; {} (gain {:.1f} of {:.1f} that would be evidence); {} would decide",
@@ -344,6 +344,8 @@ std::string traceText(const TraceStory& story) {
       verdictText(r) + "\n" +
       fmt::format("{}: {} rows used, {} rejected\n", story.source, r.trial.rows(), story.rows_rejected);
   for (const MovedParameter& p : movedSoil(r)) out += movedText(p) + "\n";
+  for (const std::string& name : soilAtBounds(r.refined))
+    out += "warning: " + name + " of the soil is at the bound of its range\n";
   for (const TracedEffect& e : r.effects) out += effectLine(e);
   for (const HeldOut& held : story.held_out) {
     out += fmt::format(

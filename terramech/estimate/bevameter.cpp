@@ -22,8 +22,9 @@ std::string widthsRefusal(const std::vector<PlateModulus>& plates) {
   return "plate sizes within 20 % of each other: k_c/b and k_phi are not identifiable separately";
 }
 
-// Line k = k_phi + k_c/b through the plates.
-void separate(PressureSinkage& fit) {
+}  // namespace
+
+void separateModuli(PressureSinkage& fit) {
   fit.refused = widthsRefusal(fit.plates);
   if (!fit.refused.empty()) return;
   double mean_x = 0.0;
@@ -41,6 +42,8 @@ void separate(PressureSinkage& fit) {
   fit.cohesive_modulus = xk / xx;
   fit.frictional_modulus = mean_k - xk / xx * mean_x;
 }
+
+namespace {
 
 MohrCoulombLine mobilisedLine(std::span<const ShearReading> readings, double modulus) {
   MohrCoulombLine line;
@@ -88,8 +91,11 @@ PressureSinkage PressureSinkageFit::estimate() const {
     fit.plates.push_back(
         {.plate_width_m = p.width_m, .sinkage_modulus = std::exp(p.y - fit.sinkage_exponent * p.x)});
   }
-  fit.residual_std = std::sqrt(std::max(0.0, yy - fit.sinkage_exponent * xy) / weight);
-  separate(fit);
+  const double left = std::max(0.0, yy - fit.sinkage_exponent * xy);
+  fit.residual_std = std::sqrt(left / weight);
+  const double free = static_cast<double>(count_) - static_cast<double>(plates_.size()) - 1.0;
+  fit.exponent_std = std::sqrt(left / std::max(free, 1.0) / xx);
+  separateModuli(fit);
   return fit;
 }
 

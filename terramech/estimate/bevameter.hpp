@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <talus/terramech/estimate/mohr_coulomb_line.hpp>
+#include <talus/terramech/numerics/estimate.hpp>
 
 /// The bevameter: plates pressed into the soil, and sheared over it (thesis App. B.1; wong_1980).
 namespace talus::terramech {
@@ -31,6 +32,7 @@ struct PressureSinkage {
   std::optional<double> cohesive_modulus;
   std::optional<double> frictional_modulus;  ///< k_phi [N/m^(n+2)]; empty likewise
   double residual_std = 0.0;                 ///< pressure-weighted scatter of ln(sigma) [-]
+  double exponent_std = 0.0;                 ///< of n, from that scatter, errors independent [-]
   std::string refused;                       ///< why k_c and k_phi are empty; empty otherwise
 };
 
@@ -58,6 +60,25 @@ class PressureSinkageFit {
   };
   std::vector<Plate> plates_;
   std::size_t count_ = 0;
+};
+
+/// k_c and k_phi of a fit by a line of k over 1/b through its plates, or why it refuses them.
+void separateModuli(PressureSinkage& fit);
+
+/// What a quantity is over trials: each is the common mean, an effect of its own and its error.
+struct RandomEffect {
+  Estimate mean;        ///< with its standard error
+  double spread = 0.0;  ///< standard deviation of the trials' effects
+};
+
+/// One soil by several trials.
+struct TrialSoil {
+  std::string soil;
+  std::size_t trials = 0;
+  PressureSinkage fit;         ///< n and k of the mean trial
+  RandomEffect exponent;       ///< n over the trials [-]
+  double depth_m = 0.0;        ///< at which pressures are compared: the pressure-weighted geometric mean
+  double pressure_spread = 0;  ///< of ln(sigma) there between trials with one plate [-]
 };
 
 /// One reading of a sheared plate.

@@ -3,6 +3,7 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <set>
 
 #include <talus/terramech/io/bevameter_table.hpp>
 #include <talus/terramech/io/telemetry_reader.hpp>
@@ -15,11 +16,24 @@ const std::vector<double>* either(const Telemetry& table, const char* name, cons
   return column != nullptr ? column : table.find(other);
 }
 
-// What tells one test from another: the words of a row.
-std::string testOf(const Telemetry& table, std::size_t row) {
-  std::string key;
-  for (const auto& column : table.words) key += column.values[row] + '\n';
-  return key;
+// What tells one test from another, row by row: words that rows have in common, and the number of the trial.
+std::vector<std::string> testsOf(const Telemetry& table) {
+  std::vector<std::string> keys(table.size());
+  for (const auto& column : table.words) {
+    const std::set<std::string> words(column.values.begin(), column.values.end());
+    for (std::size_t row = 0; row < keys.size() && 2 * words.size() <= keys.size(); ++row)
+      keys[row] += column.values[row] + '\n';
+  }
+  for (const char* name : {"trial", "test"})
+    if (const auto* column = table.find(name))
+      for (std::size_t row = 0; row < keys.size(); ++row) keys[row] += std::to_string((*column)[row]) + '\n';
+  return keys;
+}
+
+std::string soilOf(const Telemetry& table, std::size_t row) {
+  for (const auto& column : table.words)
+    if (column.name == "soil") return column.values[row];
+  return {};
 }
 
 // The diameter of the round plate whose area is F/p, to 0.1 mm: the median of the test. NaN where the area of
@@ -28,13 +42,14 @@ std::vector<double> widthsOfRoundPlates(const Telemetry& table, const std::vecto
                                         const std::vector<double>& pressure) {
   constexpr double kSpread = 0.01;
   constexpr double kRounding = 1e-4;
+  const std::vector<std::string> tests = testsOf(table);
   std::map<std::string, std::vector<double>> areas;
   for (std::size_t k = 0; k < table.size(); ++k) {
-    if (force[k] > 0.0 && pressure[k] > 0.0) areas[testOf(table, k)].push_back(force[k] / pressure[k]);
+    if (force[k] > 0.0 && pressure[k] > 0.0) areas[tests[k]].push_back(force[k] / pressure[k]);
   }
   std::vector<double> widths(table.size(), std::numeric_limits<double>::quiet_NaN());
   for (std::size_t k = 0; k < table.size(); ++k) {
-    auto& area = areas[testOf(table, k)];
+    auto& area = areas[tests[k]];
     if (area.empty()) continue;
     std::ranges::sort(area);
     const double low = area[area.size() / 20], high = area[area.size() - 1 - area.size() / 20];
@@ -75,11 +90,17 @@ BevameterTable readBevameterTable(const std::filesystem::path& path, double plat
                                 "pressure-sinkage test plate_width_m (or state --plate-width), pressure_Pa, "
                                 "sinkage_m"});
   }
+  const std::vector<std::string> tests = testsOf(table);
+  std::map<std::string, std::size_t> trials;
   for (std::size_t k = 0; k < table.size(); ++k) {
     const bool shear_row = sheared && (*normal)[k] >= 0.0 && std::isfinite((*shear)[k]) && (*moved)[k] > 0.0;
     const bool press_row = pressed && (*width)[k] > 0.0 && (*pressure)[k] > 0.0 && (*sinkage)[k] > 0.0;
     if (shear_row) result.shear.push_back({(*normal)[k], (*shear)[k], (*moved)[k]});
-    if (press_row) result.plates.push_back({(*width)[k], (*sinkage)[k], (*pressure)[k]});
+    if (press_row) {
+      const auto [at, fresh] = trials.try_emplace(tests[k], result.plates.size());
+      if (fresh) result.plates.push_back({soilOf(table, k), at->first, {}});
+      result.plates[at->second].readings.push_back({(*width)[k], (*sinkage)[k], (*pressure)[k]});
+    }
     if (shear_row || press_row) continue;
     const bool no_plate = result.width_from_force && (*pressure)[k] > 0.0 && std::isnan((*width)[k]);
     result.rejected.push_back(

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include <talus/talus.hpp>
-#include <talus/terramech/estimate/bevameter.hpp>
+#include <talus/terramech/estimate/plate_trials.hpp>
 #include <talus/terramech/estimate/telemetry.hpp>
 
 namespace talus::terramech {
@@ -14,10 +14,11 @@ namespace talus::terramech {
 /// The diameter plate_d_m of a round plate is taken as its smaller dimension b (thesis A.1); wong_2001 takes
 /// the radius, which halves k_c. Where the width is neither stated nor a column, it is the diameter of the
 /// round plate that F_N and the pressure tell, test by test; a test whose F_N over pressure changes was not
-/// made with a plate.
+/// made with a plate. Readings of one trial are those alike in `trial`, `test` and all text columns that rows have in common; their soil is the
+/// text of `soil`.
 struct BevameterTable {
   std::vector<ShearReading> shear;
-  std::vector<PlateReading> plates;
+  std::vector<PlateTrial> plates;
   std::vector<RejectedRow> rejected;
   bool width_from_force = false;  ///< the widths are not the file's own
 };

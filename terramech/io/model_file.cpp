@@ -152,21 +152,43 @@ void readFit(const YamlFields& root, RefinedModel& model) {
     root.refuse("covariance", "needs the square of the number of fitted parameters", "");
 }
 
+/// One number >= 0 for each channel.
+std::array<double, kChannels> readChannels(const YamlFields& f, const char* name) {
+  const std::vector<double> values = f.numbers(name);
+  if (values.size() != kChannels || std::any_of(values.begin(), values.end(), [](double v) { return !(v >= 0.0); }))
+    f.refuse(name, "needs one number >= 0 for each channel", "");
+  std::array<double, kChannels> all{};
+  std::copy(values.begin(), values.end(), all.begin());
+  return all;
+}
+
 std::vector<TrainedRange> readTrained(const YamlFields& root) {
   std::vector<TrainedRange> all;
   for (const YamlFields& f : root.list("trained")) {
-    f.only({"column", "range", "below", "above"});
-    const std::vector<double> range = f.numbers("range"), below = f.numbers("below"),
-                              above = f.numbers("above");
+    f.only({"column", "range", "below", "above", "reach_below", "reach_above"});
+    const std::vector<double> range = f.numbers("range");
     if (range.size() != 2 || !(range[0] <= range[1])) f.refuse("range", "needs two numbers, low <= high", "");
-    if (below.size() != kChannels || above.size() != kChannels)
-      f.refuse("below", "below and above need one number >= 0 for each channel", "");
     TrainedRange one{.column = f.word("column"), .low = range[0], .high = range[1]};
-    std::copy(below.begin(), below.end(), one.below.begin());
-    std::copy(above.begin(), above.end(), one.above.begin());
+    one.below = readChannels(f, "below");
+    one.above = readChannels(f, "above");
+    if (f.has("reach_below")) one.reach_below = readChannels(f, "reach_below");
+    if (f.has("reach_above")) one.reach_above = readChannels(f, "reach_above");
     all.push_back(one);
   }
   return all;
+}
+
+/// The model without its corrections, and the channels in which they count.
+void readUncorrected(const YamlFields& f, ModelFile& file) {
+  f.only({"soil", "effects", "kept"});
+  RefinedModel base = file.model;
+  base.fitted.clear();
+  base.covariance.clear();
+  readSoilInto(f, base);
+  base.effects = readEffects(f);
+  const auto kept = readChannels(f, "kept");
+  for (std::size_t c = 0; c < kChannels; ++c) file.scope.kept[c] = kept[c] > 0.0;
+  file.scope.base = std::move(base);
 }
 
 BaseModel readBase(const YamlFields& root) {
@@ -203,7 +225,7 @@ ModelFile loadModel(const std::string& path) {
     return file;
   }
   root.only({"name", "soil", "model", "sensors", "wheel", "gravity_m_s2", "slip_along_travel", "effects",
-             "noise", "fitted", "covariance", "trained"});
+             "noise", "fitted", "covariance", "trained", "base"});
   RefinedModel& model = file.model;
   model.base = readBase(root);
   if (root.has("wheel")) model.wheel = readWheel(root.fields("wheel"));
@@ -219,7 +241,8 @@ ModelFile loadModel(const std::string& path) {
   if (root.has("noise")) model.noise = readNoise(root.fields("noise"));
   model.effects = readEffects(root);
   if (root.has("fitted")) readFit(root, model);
-  file.trained = readTrained(root);
+  file.scope.trained = readTrained(root);
+  if (root.has("base")) readUncorrected(root.fields("base"), file);
   return file;
 }
 
@@ -256,32 +279,45 @@ class Writer {
   std::ostringstream out_;
 };
 
-void writeSoil(Writer& w, const Soil& s) {
-  w << "soil:\n  name: " << quoted(s.name) << "\n  cohesion_Pa: " << s.cohesion_Pa
-    << "\n  friction_angle_rad: " << s.friction_angle_rad << "\n  sinkage_exponent: " << s.sinkage_exponent
-    << "\n  cohesive_modulus: " << s.cohesive_modulus << "\n  frictional_modulus: " << s.frictional_modulus
-    << "\n  shear_modulus_m: " << s.shear_modulus_m << "\n  c1: " << s.c1 << "\n  c2: " << s.c2
-    << "\n  density_kg_m3: " << s.density_kg_m3 << "\n  digging_exponent: " << s.digging_exponent
-    << "\n  side_bulldozing: " << s.side_bulldozing << "\n";
+void writeSoil(Writer& w, const Soil& s, const std::string& indent = "") {
+  w << indent << "soil:\n" << indent << "  name: " << quoted(s.name) << "\n";
+  const std::pair<const char*, double> fields[] = {{"cohesion_Pa", s.cohesion_Pa},
+                                                   {"friction_angle_rad", s.friction_angle_rad},
+                                                   {"sinkage_exponent", s.sinkage_exponent},
+                                                   {"cohesive_modulus", s.cohesive_modulus},
+                                                   {"frictional_modulus", s.frictional_modulus},
+                                                   {"shear_modulus_m", s.shear_modulus_m},
+                                                   {"c1", s.c1},
+                                                   {"c2", s.c2},
+                                                   {"density_kg_m3", s.density_kg_m3},
+                                                   {"digging_exponent", s.digging_exponent},
+                                                   {"side_bulldozing", s.side_bulldozing}};
+  for (const auto& [field, value] : fields) w << indent << "  " << field << ": " << value << "\n";
 }
 
-void writeEffect(Writer& w, const Effect& e) {
+void writeEffect(Writer& w, const Effect& e, const std::string& indent) {
   const EffectForm* form = findEffect(e.name);
-  if (form) w << "  # " << form->formula << "\n";
-  w << "  - name: " << e.name << "\n    covariate: " << quoted(e.covariate)
-    << "\n    channel: " << name(e.channel) << "\n    ";
+  if (form) w << indent << "  # " << form->formula << "\n";
+  w << indent << "  - name: " << e.name << "\n" << indent << "    covariate: " << quoted(e.covariate) << "\n"
+    << indent << "    channel: " << name(e.channel) << "\n" << indent << "    ";
   w.list("parameters", e.parameters);
   if (form && !form->parameters.empty()) {
     w << "  #";
     for (const EffectParameter& p : form->parameters) w << ' ' << p.name << " [" << p.unit << ']';
   }
   if (!e.knots.empty()) {
-    w << "\n    ";
+    w << "\n" << indent << "    ";
     w.list("knots", e.knots);
   }
   if (!e.only_column.empty())
-    w << "\n    only: {column: " << quoted(e.only_column) << ", value: " << quoted(e.only_value) << "}";
+    w << "\n" << indent << "    only: {column: " << quoted(e.only_column) << ", value: " << quoted(e.only_value)
+      << "}";
   w << "\n";
+}
+
+void writeEffects(Writer& w, const std::vector<Effect>& effects, const std::string& indent = "") {
+  if (!effects.empty()) w << indent << "effects:\n";
+  for (const Effect& e : effects) writeEffect(w, e, indent);
 }
 
 void writeNoise(Writer& w, const SensorNoise& n) {
@@ -295,7 +331,7 @@ void writeNoise(Writer& w, const SensorNoise& n) {
 
 }  // namespace
 
-std::string modelText(const RefinedModel& model, const std::vector<TrainedRange>& trained) {
+std::string modelText(const RefinedModel& model, const ModelScope& scope) {
   Writer w;
   w << "model: " << (model.base == BaseModel::WongReece ? "wong-reece" : "linear-formula") << "\n";
   writeSoil(w, model.soil);
@@ -305,18 +341,28 @@ std::string modelText(const RefinedModel& model, const std::vector<TrainedRange>
       << ", grouser_count: " << model.wheel->grouser_count << "}\n";
   w << "gravity_m_s2: " << model.gravity_m_s2 << "\n";
   w << "slip_along_travel: " << (model.slip_along_travel ? "true" : "false") << "\n";
-  if (!model.effects.empty()) w << "effects:\n";
-  for (const Effect& e : model.effects) writeEffect(w, e);
+  writeEffects(w, model.effects);
   writeNoise(w, model.noise);
-  if (!trained.empty()) w << "trained:\n";
-  for (const TrainedRange& t : trained) {
+  if (!scope.trained.empty()) w << "trained:\n";
+  for (const TrainedRange& t : scope.trained) {
     w << "  - column: " << quoted(t.column) << "\n    ";
     w.list("range", {t.low, t.high});
     w << "\n    ";
     w.list("below", {t.below.begin(), t.below.end()});
     w << "\n    ";
     w.list("above", {t.above.begin(), t.above.end()});
+    w << "\n    ";
+    w.list("reach_below", {t.reach_below.begin(), t.reach_below.end()});
+    w << "\n    ";
+    w.list("reach_above", {t.reach_above.begin(), t.reach_above.end()});
     w << "\n";
+  }
+  if (scope.base) {
+    w << "base:\n";
+    writeSoil(w, scope.base->soil, "  ");
+    writeEffects(w, scope.base->effects, "  ");
+    w.list("  kept", {scope.kept.begin(), scope.kept.end()});
+    w << "  # channels in which held-out rows confirmed the corrections\n";
   }
   if (model.covariance.empty()) return w.text();
   w << "fitted:\n";

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include <talus/terramech/estimate/plate_trials.hpp>
 #include <talus/terramech/io/bevameter_table.hpp>
 #include <talus/terramech/io/soil_priors.hpp>
 #include <talus/terramech/tables/plate_estimate.hpp>
@@ -16,7 +17,8 @@ SoilEstimate plateEstimate(const EstimateOptions& options, const ProgressMonitor
   }
   SoilEstimate estimate;
   estimate.rejected = table.rejected;
-  estimate.rows_used = table.shear.size() + table.plates.size();
+  estimate.rows_used = table.shear.size();
+  for (const PlateTrial& trial : table.plates) estimate.rows_used += trial.readings.size();
   if (!table.shear.empty()) {
     const ShearFit fit = fitShear(table.shear);
     estimate.take(priors.empty() ? fit.strength : withPrior(fit.strength, priors));
@@ -34,9 +36,13 @@ SoilEstimate plateEstimate(const EstimateOptions& options, const ProgressMonitor
           "no plate_width_m: assuming round plates with diameters from F_N and the pressure; pass "
           "--plate-width for other plates");
     }
-    PressureSinkageFit fitter;
-    for (const PlateReading& r : table.plates) fitter.add(r);
-    const PressureSinkage fit = fitter.estimate();
+    estimate.soils = trialSoils(table.plates);
+    if (estimate.soils.size() > 1) {
+      estimate.warnings.push_back("plate tests of " + std::to_string(estimate.soils.size()) +
+                                  " soils (column soil): each is fitted for itself");
+      return estimate;
+    }
+    const PressureSinkage& fit = estimate.soils.front().fit;
     estimate.sinkage_exponent = fit.sinkage_exponent;
     estimate.plates = fit.plates;
     estimate.cohesive_modulus = fit.cohesive_modulus;

@@ -60,7 +60,8 @@ struct SoilEstimate {
   double sinkage_exponent;
   std::optional<double> cohesive_modulus;
   std::optional<double> frictional_modulus;
-  std::vector<PlateModulus> plates;  ///< of bevameter
+  std::vector<PlateModulus> plates;  ///< of bevameter, where the table holds one soil
+  std::vector<TrialSoil> soils;      ///< of bevameter: each soil of the table by its trials
   std::size_t rows_used = 0;
   std::vector<RejectedRow> rejected;
   std::vector<std::string> unseen;         ///< parameters that the data do not show, with the reason

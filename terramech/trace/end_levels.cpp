@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <set>
 
+#include <talus/terramech/numerics/normal_distribution.hpp>
 #include <talus/terramech/trace/end_levels.hpp>
 #include <talus/terramech/trace/folds.hpp>
 #include <talus/terramech/trace/held_out.hpp>
@@ -27,22 +29,33 @@ std::pair<double, double> rangeOver(const Values& x, const std::vector<char>& ro
   return {low, high};
 }
 
-/// Rows of the outermost level; empty where there is none to spare.
-std::vector<char> outermost(const Values& x, bool high) {
+/// How much of a column's end is held out.
+enum class Depth { Level, Half };
+
+/// Values of a column are of one level where they are nearer than the spacing of 25 even levels, of which a table of
+/// levels has fewer.
+constexpr double kLevelGap = 0.04;
+
+/// Rows of the outermost level, or of the levels that hold at most half of the rows; where there are no levels the
+/// outermost tenth or half. Empty where there is none to spare.
+std::vector<char> outermost(const Values& x, bool high, Depth depth) {
   Values sorted;
   for (double v : x)
     if (std::isfinite(v)) sorted.push_back(high ? -v : v);
   if (sorted.size() < 6) return {};
   std::sort(sorted.begin(), sorted.end());
-  const double gap = 0.04 * (sorted.back() - sorted.front());
-  double reach = sorted.front();
-  int levels = 0;
-  for (std::size_t k = 0; k < sorted.size(); ++k) {
-    if (k > 0 && sorted[k] - sorted[k - 1] <= gap) continue;
-    if (++levels == 2) reach = sorted[k - 1];
+  const double gap = kLevelGap * (sorted.back() - sorted.front());
+  std::vector<std::size_t> ends;  // of the levels
+  for (std::size_t k = 0; k < sorted.size(); ++k)
+    if (k + 1 == sorted.size() || sorted[k + 1] - sorted[k] > gap) ends.push_back(k);
+  if (ends.size() == 2) return {};
+  const bool half = depth == Depth::Half;
+  double reach = sorted[half ? (sorted.size() - 1) / 2 : sorted.size() / 10];
+  if (ends.size() > 1 && ends.size() <= 8) {
+    std::size_t last = 0;
+    while (half && 2 * (ends[last + 1] + 1) <= sorted.size()) ++last;
+    reach = sorted[ends[last]];
   }
-  if (levels == 2) return {};
-  if (levels > 8 || levels == 1) reach = sorted[sorted.size() / 10];
   std::vector<char> rows;
   for (double v : x) rows.push_back((high ? -v : v) <= reach);
   return 2 * std::count(rows.begin(), rows.end(), 1) > static_cast<long>(rows.size()) ? std::vector<char>{}
@@ -71,8 +84,9 @@ double logLikelihood(int rows, const ChannelErrors& rmse, const ChannelErrors& f
   return sum;
 }
 
+/// `law`: how effects of the column act beyond the others; without it, as predicts the level better.
 EndLevel endOf(const TraceResult& result, const TraceOptions& options, const std::string& column, bool high,
-               const std::vector<char>& held) {
+               const std::vector<char>& held, std::optional<bool> law_given) {
   const Values x = valuesOf(result.trial, column);
   const auto [low_seen, high_seen] = rangeOver(x, held, 0);
   EndLevel end{.column = column, .high = high, .edge = high ? high_seen : low_seen};
@@ -82,19 +96,25 @@ EndLevel endOf(const TraceResult& result, const TraceOptions& options, const std
   std::vector<char> seen;
   for (char row : held) seen.push_back(!row);
   const Trial unseen = subset(result.trial, held);
-  end.base_rmse = rmseAsMeasured(refitted(result.base, result, options, seen), unseen);
+  end.base_rmse = end.refined_rmse = rmseAsMeasured(refitted(result.base, result, options, seen), unseen);
+  if (!hasCorrections(result)) return end;
   RefinedModel refined = refitted(result.refined, result, options, seen);
   const ChannelErrors law = rmseAsMeasured(refined, unseen);
   holdAt(refined, column, low_seen, high_seen);
   const ChannelErrors held_at_edge = rmseAsMeasured(refined, unseen);
-  // By more than 1, twice what a number that means nothing gains by chance where it is fitted.
-  end.law = logLikelihood(end.rows, law, result.noise_floor) >
-            logLikelihood(end.rows, held_at_edge, result.noise_floor) + 1.0;
+  // By more than a number that means nothing gains by chance where it is fitted: half a chi-squared of one.
+  const double chance = 0.5 * std::pow(normalQuantile(1.0 - 0.5 * options.significance), 2);
+  end.law = law_given.value_or(logLikelihood(end.rows, law, result.noise_floor) >
+                               logLikelihood(end.rows, held_at_edge, result.noise_floor) + chance);
   end.refined_rmse = end.law ? law : held_at_edge;
   return end;
 }
 
 }  // namespace
+
+bool hasCorrections(const TraceResult& result) {
+  return result.refined.effects.size() > result.base.effects.size();
+}
 
 std::vector<EndLevel> endLevels(const TraceResult& result, const TraceOptions& options,
                                 const ProgressMonitor& watch) {
@@ -102,8 +122,13 @@ std::vector<EndLevel> endLevels(const TraceResult& result, const TraceOptions& o
   for (const std::string& column : columnsOf(result))
     for (const bool high : {false, true}) {
       if (watch.stopped()) return ends;
-      const std::vector<char> held = outermost(valuesOf(result.trial, column), high);
-      if (!held.empty()) ends.push_back(endOf(result, options, column, high, held));
+      const Values x = valuesOf(result.trial, column);
+      const std::vector<char> level = outermost(x, high, Depth::Level);
+      if (level.empty()) continue;
+      ends.push_back(endOf(result, options, column, high, level, {}));
+      const std::vector<char> half = outermost(x, high, Depth::Half);
+      if (!hasCorrections(result) || half.empty() || half == level) continue;
+      ends.push_back(endOf(result, options, column, high, half, ends.back().law));
     }
   return ends;
 }
@@ -115,10 +140,9 @@ void boundEffects(RefinedModel& model, const Trial& trial, const std::vector<End
     const Values x = valuesOf(trial, column);
     auto [low, high] = rangeOver(x, std::vector<char>(x.size(), 1), 1);
     if (!(low < high)) continue;
-    constexpr double kFar = 1e12;  // beyond any column, within what a model file may hold
     for (const EndLevel& end : ends)
-      if (end.column == column && end.law) (end.high ? high : low) = end.high ? kFar : -kFar;
-    if (low > -kFar || high < kFar) holdAt(model, column, low, high);
+      if (end.column == column && end.law) (end.high ? high : low) = end.high ? kUnlimited : -kUnlimited;
+    if (low > -kUnlimited || high < kUnlimited) holdAt(model, column, low, high);
   }
 }
 
@@ -131,9 +155,10 @@ std::vector<TrainedRange> trainedRanges(const Trial& trial, const std::vector<En
     TrainedRange range{.column = column, .low = low, .high = high};
     for (const EndLevel& end : ends)
       for (std::size_t c = 0; c < kChannels && end.column == column; ++c) {
-        const double excess = std::pow(end.refined_rmse[c], 2) - std::pow(floor[c], 2);
-        if (excess > 0.0 && end.distance > 0.0)
-          (end.high ? range.above : range.below)[c] = std::sqrt(excess) / end.distance;
+        const double rmse = std::fmin(end.refined_rmse[c], end.base_rmse[c]);
+        const double excess = rmse * rmse - floor[c] * floor[c];
+        double& rate = (end.high ? range.above : range.below)[c];
+        if (excess > 0.0 && end.distance > 0.0) rate = std::max(rate, std::sqrt(excess) / end.distance);
       }
     all.push_back(range);
   }

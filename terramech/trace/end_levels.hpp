@@ -11,8 +11,12 @@
 /// the others.
 namespace talus::terramech {
 
+/// Whether the refined model has effects that the base lacks.
+bool hasCorrections(const TraceResult& result);
+
 /// Both ends of slip, slip angle, load and of the columns of effects, where they have three levels: the outermost
-/// level where there are at most eight, else the outermost tenth of the rows. Parameters are fitted again without it.
+/// level where there are at most eight, else the outermost tenth of the rows; then, where there are effects, the levels that
+/// hold at most half of the rows, or the outermost half. Parameters are fitted again without them.
 std::vector<EndLevel> endLevels(const TraceResult& result, const TraceOptions& options,
                                 const ProgressMonitor& watch = {});
 

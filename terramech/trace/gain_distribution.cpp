@@ -157,22 +157,6 @@ Eigen::Matrix4d runErrorOf(const NullModel& null) {
   return likelihood.profile(likelihood.sums(null.known), null.run_start, 0, kFirstSteps);
 }
 
-Eigen::MatrixXd heldOutErrors(const NullModel& fitted) {
-  RunLikelihood likelihood(fitted.factor, fitted.unit, fitted.folds);
-  likelihood.setTables(fitted.residual);
-  const RunSums sums = likelihood.sums(fitted.known);
-  const auto steps = likelihood.foldSteps(sums, fitted.run_start, 0);
-  const auto rows = static_cast<Eigen::Index>(fitted.factor.size());
-  Eigen::MatrixXd errors(rows, kChannels);
-  for (Eigen::Index row = 0; row < rows; ++row) {
-    const auto fold = static_cast<std::size_t>(fitted.folds.of_row[static_cast<std::size_t>(row)]);
-    errors.row(row) = (fitted.residual.segment<kChannels>(row * kChannels) -
-                       fitted.known.columns.middleRows<kChannels>(row * kChannels) * steps[fold])
-                          .transpose();
-  }
-  return errors;
-}
-
 double fittedScore(const NullModel& fitted) {
   RunLikelihood likelihood(fitted.factor, fitted.unit, fitted.folds);
   likelihood.setTables(fitted.residual);

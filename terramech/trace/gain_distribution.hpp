@@ -58,9 +58,6 @@ GainDistribution gainDistribution(const NullModel& null, const Contenders& conte
 /// The most likely covariance of a run's error under a model.
 Eigen::Matrix4d runErrorOf(const NullModel& null);
 
-/// Errors of each row's whitened readings when its fold is told by the others, rows x kChannels.
-Eigen::MatrixXd heldOutErrors(const NullModel& fitted);
-
 /// Score of a model that was fitted, comparable to null_score: its own residual and derivatives, the run's error
 /// profiled from that of the null.
 double fittedScore(const NullModel& fitted);

@@ -4,6 +4,7 @@
 #include <set>
 
 #include <talus/terramech/trace/held_out.hpp>
+#include <talus/terramech/trace/model_scope.hpp>
 
 namespace talus::terramech {
 namespace {
@@ -124,15 +125,17 @@ HeldOut holdOut(const TraceResult& result, const TraceOptions& options, const Fo
     base.add(unseen, asMeasured(refitted(result.base, result, options, train), unseen));
     refined.add(unseen, asMeasured(refitted(result.refined, result, options, train), unseen));
   }
-  return {folds.scheme, base.rmse(), refined.rmse(), Tally::groups(base, refined)};
+  HeldOut held{folds.scheme, base.rmse(), refined.rmse(), Tally::groups(base, refined)};
+  keepConfirmed(held, result.scope);
+  return held;
 }
 
-std::vector<HeldOut> holdOut(const TraceResult& result, const TraceOptions& options) {
-  std::vector<HeldOut> all{holdOut(result, options, foldsOf(result.trial))};
+std::vector<HeldOut> holdOutLevels(const TraceResult& result, const TraceOptions& options) {
+  std::vector<HeldOut> all;
   std::set<std::string> columns;
   for (const TracedEffect& e : result.effects) columns.insert(e.chosen.candidate.covariate());
   for (const std::string& column : columns) {
-    if (column == "slip" && all.front().scheme.find("slip") != std::string::npos) continue;
+    if (column == "slip" && result.held_out.scheme.find("slip") != std::string::npos) continue;
     const Folds folds = levelFolds(result.trial, column);
     if (folds.count > 0) all.push_back(holdOut(result, options, folds));
   }

@@ -7,6 +7,7 @@
 
 #include <talus/talus.hpp>
 #include <talus/terramech/trace/left_out.hpp>
+#include <talus/terramech/trace/model_scope.hpp>
 
 namespace talus::terramech {
 namespace {
@@ -185,7 +186,7 @@ LeftOutErrors traceWithout(const RefinedModel& base, const Trial& trial, const L
     errors.effects.push_back(e.chosen.candidate.parts.front().name + " (" + e.chosen.candidate.covariate() +
                              ")");
   errors.base = rmseOf(result.base, unseen);
-  errors.refined = rmseOf(result.refined, unseen);
+  errors.refined = rmseOf(predictInScope(result, unseen), unseen);
   errors.floor = result.noise_floor;
   errors.regression = regressionErrors(seen, unseen);
   return errors;

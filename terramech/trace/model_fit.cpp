@@ -211,6 +211,16 @@ FitPlan fitPlan(const RefinedModel& model, bool fit_soil) {
   return plan;
 }
 
+void giveDefaultDeviations(RefinedModel& model) {
+  if (!model.soil_prior_std.empty() || model.base != BaseModel::WongReece) return;
+  for (const SoilParameter& p : soilParameters()) {
+    const auto vague = vagueSoil().find(p.name);
+    if (vague == vagueSoil().end()) continue;
+    model.soil_prior_mean[p.name] = p.get(model.soil);
+    model.soil_prior_std[p.name] = 0.5 * vague->second.std;
+  }
+}
+
 double misfitOf(const Eigen::VectorXd& white, const Trial& trial) {
   const auto readings = static_cast<double>(trial.measured.array().isFinite().count());
   return std::max(1.0, white.squaredNorm() / std::max(readings, 1.0));

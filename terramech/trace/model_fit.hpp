@@ -63,6 +63,10 @@ double misfitOf(const Eigen::VectorXd& white, const Trial& trial);
 /// be 0 give or take fifty typical sizes: nothing where rows show the effect, no effect where none does.
 FitPlan fitPlan(const RefinedModel& model, bool fit_soil);
 
+/// A soil whose file states no standard deviation is known to half of what is known of any soil (ours): cohesion to
+/// 1000 Pa, friction angle to 0.06 rad, n to 0.125, stiffness to a factor of e^1.5, K to 6 mm, c1 to 0.04, c2 to 0.06.
+void giveDefaultDeviations(RefinedModel& model);
+
 /// All fitted numbers of effect number `effect`.
 std::vector<FittedParameter> parametersOf(const RefinedModel& model, int effect);
 

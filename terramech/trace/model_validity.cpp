@@ -46,6 +46,7 @@ std::string number(double value) {
 
 Applicability applicability(const TraceResult& result, const TraceOptions& options) {
   TraceResult physics = result;
+  physics.scope = {};
   physics.refined = withoutSensors(result.refined);
   std::erase_if(physics.refined.effects, [](const Effect& e) { return e.empirical(); });
   const HeldOut held = holdOut(physics, options, foldsOf(result.trial));

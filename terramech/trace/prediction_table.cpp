@@ -85,10 +85,24 @@ std::string faultOf(const CsvRow& row, const WheelState& s) {
   return "";
 }
 
+/// Takes back the corrections that the scope does not hold for; the standard deviation holds what is taken back.
+void takeBack(const ModelScope& scope, const WheelState& state, Prediction& p) {
+  std::array<double, kChannels> taken{};
+  for (std::size_t c = 0; c < kChannels; ++c) taken[c] = 1.0 - scope.share(state, c);
+  if (std::all_of(taken.begin(), taken.end(), [](double t) { return t == 0.0; })) return;
+  const Reading base = predict(*scope.base, state);
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    const auto channel = static_cast<Channel>(c);
+    const double back = taken[c] * (base.scaled(channel) - p.mean.scaled(channel));
+    p.mean.addScaled(channel, back);
+    p.scaled_std[c] = std::hypot(p.scaled_std[c], back);
+  }
+}
+
 /// Widens a prediction outside the trained ranges; names the columns.
-std::string outsideOf(const std::vector<TrainedRange>& trained, const WheelState& state, Prediction& p) {
+std::string outsideOf(const ModelScope& scope, const WheelState& state, Prediction& p) {
   std::string columns;
-  for (const TrainedRange& range : trained) {
+  for (const TrainedRange& range : scope.trained) {
     const double x = state.covariate(range.column);
     if (range.outside(x) == 0.0) continue;
     columns += (columns.empty() ? "" : ";") + range.column;
@@ -107,7 +121,7 @@ void append(std::string& text, double value) {
 }  // namespace
 
 PredictionTable predictTable(const std::filesystem::path& path, const RefinedModel& model,
-                             const std::vector<TrainedRange>& trained, const ProgressMonitor& watch) {
+                             const ModelScope& scope, const ProgressMonitor& watch) {
   const Rows all = readRows(path, watch.stop);
   const auto states = statesOf(conditionsOf(all, path.string()), model);
   PredictionTable table;
@@ -133,7 +147,8 @@ PredictionTable predictTable(const std::filesystem::path& path, const RefinedMod
       line += std::string(2 * kAnswers.size() + 1, ',');
     } else {
       Prediction p = predictWithStd(model, states[row]);
-      const std::string outside = outsideOf(trained, states[row], p);
+      takeBack(scope, states[row], p);
+      const std::string outside = outsideOf(scope, states[row], p);
       for (std::size_t c = 0; c < kChannels; ++c) {
         const auto channel = static_cast<Channel>(c);
         append(line, p.mean.scaled(channel) * p.mean.denominator(channel));

@@ -1,10 +1,15 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <set>
+#include <string>
 
 #include <talus/terramech/mobility/rut.hpp>
 #include <talus/terramech/trace/closure_offset.hpp>
 #include <talus/terramech/trace/end_levels.hpp>
+#include <talus/terramech/trace/folds.hpp>
+#include <talus/terramech/trace/held_out.hpp>
+#include <talus/terramech/trace/model_scope.hpp>
 #include <talus/terramech/trace/residual_trace.hpp>
 #include <talus/terramech/trace/trace_search.hpp>
 
@@ -22,14 +27,14 @@ bool same(const Candidate& a, const Candidate& b) {
 }
 
 // Explanations by the same form from several starts count once.
-TracedEffect traced(const std::vector<Explanation>& ranked, std::size_t best, double p_value) {
+TracedEffect traced(const std::vector<Explanation>& ranked, double p_value, double close) {
   TracedEffect effect;
-  effect.chosen = ranked[best];
-  effect.channel = strongest(ranked[best]);
+  effect.chosen = ranked.front();
+  effect.channel = strongest(ranked.front());
   effect.p_value = p_value;
   for (const Explanation& e : ranked) {
     const auto like = [&e](const Explanation& other) { return same(e.candidate, other.candidate); };
-    if (e.gain > ranked[best].gain - kClose && effect.alternatives.size() < 6 && !like(effect.chosen) &&
+    if (e.gain > ranked.front().gain - close && effect.alternatives.size() < 6 && !like(effect.chosen) &&
         std::none_of(effect.alternatives.begin(), effect.alternatives.end(), like))
       effect.alternatives.push_back(e);
   }
@@ -53,7 +58,7 @@ bool correctOffset(TraceSearch& search, const Trial& trial, std::uint64_t seed,
   TracedEffect effect;
   effect.chosen.candidate = {{tilt}, "load_cell_tilt", 1};
   effect.p_value = found->p_value;
-  if (!choose({search.fitted(effect.chosen.candidate)}, 0.0)) {
+  if (!accepted({search.fitted(effect.chosen.candidate)}, 0.0)) {
     search.trust(std::nullopt);
     return false;
   }
@@ -65,6 +70,7 @@ bool correctOffset(TraceSearch& search, const Trial& trial, std::uint64_t seed,
 /// Effects as they were taken in.
 struct Path {
   TraceSearch search;
+  double close;  ///< closeGain()
   std::vector<TracedEffect> effects{};
   std::vector<Explanation> rejected{};
   std::vector<Promise> first{}, last{};
@@ -72,9 +78,10 @@ struct Path {
   std::size_t pinned = 0;  ///< effects at the front that stay
 };
 
-void take(Path& path, const std::vector<Explanation>& ranked, std::size_t best, double p_value) {
-  path.search.accept(ranked[best].candidate);
-  path.effects.push_back(traced(ranked, best, p_value));
+/// Takes the first of explanations in.
+void take(Path& path, const std::vector<Explanation>& ranked, double p_value) {
+  path.search.accept(ranked.front().candidate);
+  path.effects.push_back(traced(ranked, p_value, path.close));
   TracedEffect& taken = path.effects.back();
   if (taken.chosen.candidate.parts.size() < 2) return;
   path.search.thin(path.effects.size() - 1);
@@ -86,8 +93,8 @@ long curves(const std::vector<Effect>& effects) {
 }
 
 /// What an account must gain more to take another's place: nothing where it names what the other leaves to curves.
-double margin(const std::vector<Effect>& present, const std::vector<Effect>& other) {
-  return curves(other) < curves(present) ? 0.0 : kClose;
+double margin(const Path& path, const std::vector<Effect>& present, const std::vector<Effect>& other) {
+  return curves(other) < curves(present) ? 0.0 : path.close;
 }
 
 /// Takes out, last first, what beside the others gains no more than noise would.
@@ -108,23 +115,35 @@ void reconsider(Path& path) {
     TraceSearch without = path.search;
     without.leaveOut(k);
     const auto ranked = without.fitBest(without.screen(0).promises);
-    const auto best = choose(ranked, 0.0);
-    if (!best || same(ranked[*best].candidate, path.effects[k].chosen.candidate)) continue;
-    if (ranked[*best].gain <
-        path.search.gainOf(k) + margin(path.search.parts(k), ranked[*best].candidate.parts))
+    if (!accepted(ranked, 0.0)) continue;
+    const Explanation& best = ranked.front();
+    if (same(best.candidate, path.effects[k].chosen.candidate) ||
+        best.gain < path.search.gainOf(k) + margin(path, path.search.parts(k), best.candidate.parts))
       continue;
     const double p_value = path.effects[k].p_value;
     path.search.leaveOut(k);
     path.effects.erase(path.effects.begin() + static_cast<long>(k));
-    take(path, ranked, *best, p_value);
+    take(path, ranked, p_value);
     return;
   }
 }
 
-/// Takes in what explains the residuals best until nothing gains more than noise would.
+/// What was taken in, whatever the order.
+std::multiset<std::string> takenIn(const Path& path) {
+  std::multiset<std::string> all;
+  for (const TracedEffect& e : path.effects)
+    for (const Effect& part : e.chosen.candidate.parts)
+      all.insert(part.name + '|' + part.covariate + '|' + name(part.channel) + '|' + part.only_value);
+  return all;
+}
+
+/// Takes in what explains the residuals best until nothing gains more than noise would, or the same effects come back:
+/// one that is taken in and left out again would go round for ever.
 void grow(Path& path, const Trial& trial, const TraceOptions& options,
           const std::function<bool(double)>& go_on) {
-  while (go_on(0.0) && static_cast<int>(path.effects.size()) < options.max_effects) {
+  std::set<std::multiset<std::string>> seen;
+  while (go_on(0.0) && static_cast<int>(path.effects.size()) < options.max_effects &&
+         seen.insert(takenIn(path)).second) {
     const auto screening = path.search.screen(options.draws);
     if (path.first.empty()) path.first = screening.promises;
     path.last = screening.promises;
@@ -132,10 +151,9 @@ void grow(Path& path, const Trial& trial, const TraceOptions& options,
     path.rejected = path.search.fitBest(screening.promises);
     const double least =
         0.5 * options.least_share * static_cast<double>(trial.measured.array().isFinite().count());
-    const auto best = choose(path.rejected, std::max(screening.threshold, least));
-    if (!best) return;
-    take(path, path.rejected, *best, screening.noise.pValue(path.rejected[*best].gain));
-    path.rejected.erase(path.rejected.begin() + static_cast<long>(*best));
+    if (!accepted(path.rejected, std::max(screening.threshold, least))) return;
+    take(path, path.rejected, screening.noise.pValue(path.rejected.front().gain));
+    path.rejected.erase(path.rejected.begin());
     reconsider(path);
   }
 }
@@ -152,10 +170,10 @@ void reconsiderPair(Path& path) {
     without.leaveOut(k);
   }
   const auto ranked = without.pairs();
-  const auto best = choose(ranked, 0.0);
-  if (!best) return;
-  const double more = margin(present.parts, ranked[*best].candidate.parts);
-  if (ranked[*best].gain <
+  if (!accepted(ranked, 0.0)) return;
+  const Explanation& best = ranked.front();
+  const double more = margin(path, present.parts, best.candidate.parts);
+  if (best.gain <
       without.fitted(present).gain + (found == 1 ? std::max(path.threshold, more) : more))
     return;
   const double p_value = path.effects.back().p_value;
@@ -163,11 +181,11 @@ void reconsiderPair(Path& path) {
     path.search.leaveOut(k);
     path.effects.pop_back();
   }
-  for (const Effect& part : ranked[*best].candidate.parts) {
-    Explanation one = ranked[*best];
+  for (const Effect& part : best.candidate.parts) {
+    Explanation one = best;
     const EffectForm* form = findEffect(part.name);
     one.candidate = {{part}, form ? form->family : "empirical", static_cast<int>(part.parameters.size())};
-    take(path, {one}, 0, p_value);
+    take(path, {one}, p_value);
   }
 }
 
@@ -218,10 +236,8 @@ RefinedModel asDriven(RefinedModel model, const Trial& trial) {
 
 }  // namespace
 
-std::optional<std::size_t> choose(const std::vector<Explanation>& ranked, double threshold) {
-  for (std::size_t k = 0; k < ranked.size(); ++k)
-    if (ranked[k].gain > threshold && !ranked[k].spoils) return k;
-  return {};
+bool accepted(const std::vector<Explanation>& ranked, double threshold) {
+  return !ranked.empty() && ranked.front().gain > threshold;
 }
 
 TraceResult traceResiduals(const RefinedModel& base, const Trial& trial, const TraceOptions& given,
@@ -237,7 +253,7 @@ TraceResult traceResiduals(const RefinedModel& base, const Trial& trial, const T
     watch.report(done);
     return !watch.stopped();
   };
-  Path path{TraceSearch{asDriven(base, trial), trial, options, go_on}};
+  Path path{TraceSearch{asDriven(base, trial), trial, options, go_on}, closeGain(options)};
   TraceResult result;
   result.given = base.soil;
   result.base = path.search.model();
@@ -255,6 +271,10 @@ TraceResult traceResiduals(const RefinedModel& base, const Trial& trial, const T
   path.search.finish(result);
   result.ends = endLevels(result, options, watch);
   boundEffects(result.refined, result.trial, result.ends);
+  result.held_out = holdOut(result, options, foldsOf(result.trial));
+  result.scope = scopeOf(result);
+  keepConfirmed(result.held_out, result.scope);
+  keepConfirmed(result.ends, result.noise_floor);
   result.effects = apart(result.effects);
   watch.report(1.0);
   return result;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include <talus/talus.hpp>
@@ -9,10 +8,9 @@
 /// From measured rows and a model: what the model lacks, and the model with it.
 namespace talus::terramech {
 
-/// Number of the explanation to take of `ranked`, best first: the first that gains more than `threshold` and makes
-/// no channel's held-out error worse; a refused one does not end the search. Curves and known forms are ranked by
-/// the one gain, so that a name is given only where its form beats every curve.
-std::optional<std::size_t> choose(const std::vector<Explanation>& ranked, double threshold);
+/// Whether the first of explanations, best first, is taken: it gains more than `threshold`. Curves and known forms are
+/// ranked by the one gain, so that a name is given only where its form beats every curve.
+bool accepted(const std::vector<Explanation>& ranked, double threshold);
 
 /// Traces the residuals of `base` on the rows of `trial`. Deterministic for a seed. A stopped watch ends it
 /// early with what was found so far.

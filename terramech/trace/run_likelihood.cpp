@@ -175,15 +175,6 @@ HeldOutFit RunLikelihood::heldOut(const RunSums& sums, const Eigen::Matrix4d& ru
   return fit;
 }
 
-std::vector<Eigen::VectorXd> RunLikelihood::foldSteps(const RunSums& sums, const Eigen::Matrix4d& run,
-                                                      Eigen::Index table) const {
-  const std::vector<FoldSums> fold = underRun(sums, run, table, 1);
-  const FoldSums all = together(fold);
-  std::vector<Eigen::VectorXd> steps;
-  for (const FoldSums& f : fold) steps.push_back(stepsOf(all.gram - f.gram, all.cross - f.cross, sums.prior));
-  return steps;
-}
-
 Eigen::Matrix4d RunLikelihood::profile(const RunSums& sums, Eigen::Matrix4d run, Eigen::Index table,
                                        int steps) const {
   if (!hasUnits()) return run;

@@ -60,10 +60,6 @@ class RunLikelihood {
   HeldOutFit heldOut(const RunSums& sums, const Eigen::Matrix4d& run, Eigen::Index first,
                      Eigen::Index count) const;
 
-  /// Parameters by which each fold is told, those fitted to the others.
-  std::vector<Eigen::VectorXd> foldSteps(const RunSums& sums, const Eigen::Matrix4d& run,
-                                         Eigen::Index table) const;
-
   /// Covariance R of a unit's error that is most likely with these columns in the model: expectation
   /// maximisation of the restricted likelihood (laird_ware_1982) from `start`.
   Eigen::Matrix4d profile(const RunSums& sums, Eigen::Matrix4d start, Eigen::Index table, int steps) const;

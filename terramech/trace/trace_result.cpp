@@ -6,7 +6,11 @@ namespace talus::terramech {
 
 ChannelErrors rmseOf(const RefinedModel& model, const Trial& trial) {
   SolvedContacts solved;
-  const Eigen::MatrixXd residual = trial.measured - predictRows(model, trial, solved);
+  return rmseOf(predictRows(model, trial, solved), trial);
+}
+
+ChannelErrors rmseOf(const Eigen::MatrixXd& predicted, const Trial& trial) {
+  const Eigen::MatrixXd residual = trial.measured - predicted;
   ChannelErrors errors{};
   for (int c = 0; c < kChannels; ++c) {
     double sum = 0.0;

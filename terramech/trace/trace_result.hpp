@@ -1,12 +1,14 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include <talus/terramech/io/model_file.hpp>
 #include <talus/terramech/trace/effect_candidates.hpp>
 #include <talus/terramech/trace/model_fit.hpp>
 #include <talus/terramech/trace/trial.hpp>
@@ -30,7 +32,6 @@ struct Explanation {
   /// log-likelihood gained on held-out rows, with the share of the soil's prior that it regains.
   double gain = 0.0;
   double chi2_gain = 0.0;  ///< twice the log-likelihood gained on the rows that it was fitted to
-  bool spoils = false;     ///< makes some channel's held-out error larger by more than chance does
   std::array<double, kChannels> by_channel{};  ///< chi2 gained in each channel
 };
 
@@ -44,8 +45,10 @@ struct Promise {
 /// Root mean square of the scaled residual in each channel; NaN where nothing is measured.
 using ChannelErrors = std::array<double, kChannels>;
 
-/// Log-likelihood by which one account must fall behind to be ruled out: twenty times less likely.
-inline constexpr double kClose = 3.0;
+/// Log-likelihood by which one account must fall behind to be ruled out: as unlikely beside the other as `significance`.
+inline double closeGain(const TraceOptions& options) {
+  return -std::log(options.significance);
+}
 
 /// An effect that was found.
 struct TracedEffect {
@@ -53,11 +56,11 @@ struct TracedEffect {
   Channel channel = Channel::DrawbarPull;  ///< where it shows most
   std::vector<double> parameter_std;       ///< of the fitted model's parameters of chosen.candidate, in order
   double p_value = 1.0;                    ///< how often a table without it gives any candidate its gain
-  std::vector<Explanation> alternatives;   ///< others within kClose of its gain, best first
+  std::vector<Explanation> alternatives;   ///< others within closeGain() of its gain, best first
   std::vector<Effect> correction;          ///< curves that carry what its form leaves in the same covariate
 };
 
-/// The outermost level of a column, told by a model that was fitted to the others.
+/// The outermost rows of a column, predicted by a model that was fitted to the others.
 struct EndLevel {
   std::string column;
   bool high = false;      ///< the greatest values, else the least
@@ -66,6 +69,22 @@ struct EndLevel {
   int rows = 0;
   ChannelErrors base_rmse{}, refined_rmse{};
   bool law = false;  ///< effects of this column foretold the level better by their law than held at `edge`
+};
+
+/// Errors on rows of one group of a text column, the fit made from all groups.
+struct GroupErrors {
+  std::string column, value;
+  int rows = 0;
+  ChannelErrors base_rmse{}, refined_rmse{};
+};
+
+/// Errors on rows that the fit has not seen. The parameters are fitted again without each fold; which effects
+/// the model has was chosen on all rows.
+struct HeldOut {
+  std::string scheme;         ///< what was held out together
+  ChannelErrors base_rmse{};  ///< of the base model, its soil fitted again where it was fitted
+  ChannelErrors refined_rmse{};
+  std::vector<GroupErrors> groups;  ///< of each text column of which an effect acts on one group alone
 };
 
 /// What tracing found.
@@ -83,9 +102,12 @@ struct TraceResult {
   std::vector<int> unit;  ///< of each row: those of one unit share an error; empty: rows are on their own
   Eigen::Matrix4d run = Eigen::Matrix4d::Zero();  ///< covariance of that error between the channels [-]
   std::vector<EndLevel> ends;                     ///< of the model beyond its rows
+  HeldOut held_out;                               ///< under foldsOf()
+  ModelScope scope;                               ///< where held-out rows confirmed the effects
 };
 
 /// Root mean square of measured less predicted, scaled.
 ChannelErrors rmseOf(const RefinedModel& model, const Trial& trial);
+ChannelErrors rmseOf(const Eigen::MatrixXd& predicted, const Trial& trial);
 
 }  // namespace talus::terramech

@@ -187,31 +187,10 @@ Explanation TraceSearch::fitted(const Candidate& candidate) {
   const NullModel before = standing(model_, residual_, before_solved),
                   after = standing(found.model, left, solved);
   e.gain = fittedScore(after) - fittedScore(before);
-  e.spoils = spoils(before, after);
   const Eigen::VectorXd was = whitening_.marginal(residual_), is = whitening_.marginal(left);
   for (Eigen::Index i = 0; i < was.size(); ++i)
     e.by_channel[static_cast<std::size_t>(i % kChannels)] += was[i] * was[i] - is[i] * is[i];
   return e;
-}
-
-bool TraceSearch::spoils(const NullModel& before, const NullModel& after) const {
-  const Eigen::MatrixXd was = whitening_.byChannel(heldOutErrors(before)),
-                        is = whitening_.byChannel(heldOutErrors(after));
-  std::map<int, Eigen::Vector4d> change;
-  for (int row = 0; row < trial_.rows(); ++row) {
-    const auto r = static_cast<std::size_t>(row);
-    const int unit = whitening_.unit.empty() ? row : whitening_.unit[r];
-    change.try_emplace(unit, Eigen::Vector4d::Zero()).first->second +=
-        (is.row(row).cwiseAbs2() - was.row(row).cwiseAbs2()).transpose();
-  }
-  const auto n = static_cast<double>(change.size());
-  Eigen::Vector4d sum = Eigen::Vector4d::Zero(), square = sum;
-  for (const auto& [unit, c] : change) {
-    sum += c;
-    square += c.cwiseAbs2();
-  }
-  const Eigen::Vector4d error = (square - sum.cwiseAbs2() / n).cwiseMax(0.0).cwiseSqrt();
-  return ((sum - 2.0 * error).array() > 0.0).any();
 }
 
 std::vector<Explanation> TraceSearch::pairs() {

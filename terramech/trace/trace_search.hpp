@@ -92,8 +92,6 @@ class TraceSearch {
                      SolvedContacts& solved) const;
   /// The score of a fitted model under the noise as it is.
   double scoreOf(const RefinedModel& fitted) const;
-  /// Whether held-out errors of a channel grow by more than twice the standard error of their change.
-  bool spoils(const NullModel& before, const NullModel& after) const;
 
   TraceOptions options_;
   std::function<bool(double)> go_on_;

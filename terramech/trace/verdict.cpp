@@ -7,9 +7,9 @@
 namespace talus::terramech {
 namespace {
 
-/// Variance that a channel has above its floor; 0 where the excess is within three standard errors.
-double excess(const ChannelErrors& rmse, const TraceResult& result, std::size_t channel) {
-  const double floor = result.noise_floor[channel] * result.noise_floor[channel];
+/// Variance that a channel has above its floor and `known`; 0 where the excess is within three standard errors.
+double excess(const ChannelErrors& rmse, const TraceResult& result, std::size_t channel, double known = 0.0) {
+  const double floor = result.noise_floor[channel] * result.noise_floor[channel] + known;
   const double variance = rmse[channel] * rmse[channel];
   const auto count = static_cast<double>(
       result.trial.measured.col(static_cast<Eigen::Index>(channel)).array().isFinite().count());
@@ -68,6 +68,7 @@ Answer answerOf(const TraceResult& result) {
     answer.floor = result.noise_floor[c];
   }
   const bool open = after > 0.0 && (result.effects.empty() || after > 0.5 * before);
+  answer.open = after > 0.0;
   answer.verdict = open                     ? Verdict::Unexplained
                    : result.effects.empty() ? Verdict::NothingMissing
                                             : Verdict::Explained;
@@ -104,14 +105,32 @@ std::vector<MovedParameter> movedSoil(const TraceResult& result) {
   return moved;
 }
 
+namespace {
+
+bool isAtBound(double value, double low, double high) {
+  const double close = 1e-9 * (1.0 + std::abs(high) + std::abs(low));
+  return value >= high - close || value <= low + close;
+}
+
+}  // namespace
+
+std::vector<std::string> soilAtBounds(const RefinedModel& model) {
+  std::vector<std::string> names;
+  for (const FittedParameter& f : model.fitted) {
+    if (f.effect >= 0) continue;
+    const SoilParameter& p = soilParameters()[static_cast<std::size_t>(f.index)];
+    if (std::string_view(p.name) != "log_stiffness" && isAtBound(p.get(model.soil), p.low, p.high))
+      names.emplace_back(p.name);
+  }
+  return names;
+}
+
 std::vector<std::string> atBounds(const Effect& effect) {
   std::vector<std::string> names;
   const EffectForm* form = findEffect(effect.name);
   for (std::size_t k = 0; form && k < form->parameters.size(); ++k) {
     const EffectParameter& p = form->parameters[k];
-    const double close = 1e-9 * (1.0 + std::abs(p.high) + std::abs(p.low));
-    if (p.fitted && (effect.parameters[k] >= p.high - close || effect.parameters[k] <= p.low + close))
-      names.emplace_back(p.name);
+    if (p.fitted && isAtBound(effect.parameters[k], p.low, p.high)) names.emplace_back(p.name);
   }
   return names;
 }
@@ -119,8 +138,10 @@ std::vector<std::string> atBounds(const Effect& effect) {
 RefinedModel forPrediction(const TraceResult& result) {
   RefinedModel model = result.refined;
   for (int c = 0; c < kChannels; ++c) {
-    const double shared = result.run(c, c);
-    if (!result.trial.has(static_cast<Channel>(c)) || shared <= 0.0) continue;
+    if (!result.trial.has(static_cast<Channel>(c))) continue;
+    const double run = std::max(0.0, result.run(c, c));
+    const double shared =
+        run + excess(result.held_out.refined_rmse, result, static_cast<std::size_t>(c), run);
     double unit = 0.0;
     for (int row = 0; row < result.trial.rows(); ++row)
       unit += std::pow(result.trial.denominator(row, static_cast<Channel>(c)), 2) / result.trial.rows();

@@ -9,7 +9,7 @@ namespace talus::terramech {
 
 /// What tracing can say of a table.
 enum class Verdict {
-  Explained,       ///< effects were found that carry most of what was more than noise
+  Explained,       ///< effects were found that carry most, more than half, of what was more than noise
   NothingMissing,  ///< no effect, and what is left is no more than the sensors err
   Unexplained      ///< more is left than the sensors err, and no cause was accepted for most of it
 };
@@ -21,6 +21,7 @@ const char* name(Verdict verdict);
 struct Answer {
   Verdict verdict = Verdict::NothingMissing;
   Channel channel = Channel::DrawbarPull;  ///< whose rest exceeds its floor most
+  bool open = false;  ///< some rest exceeds its floor
   double rest = 0.0, floor = 0.0;          ///< rms there of the refined model, and of the sensors alone [-]
   std::string column;   ///< over which the rest varies most; empty: over none that is known
   double gain = 0.0;    ///< what that column promises, against TraceResult::threshold
@@ -42,10 +43,14 @@ struct MovedParameter {
 /// Those of the refined model's soil that stand more than three standard deviations from their prior.
 std::vector<MovedParameter> movedSoil(const TraceResult& result);
 
+/// Names of fitted numbers of the refined model's soil that stand at a bound of their range.
+std::vector<std::string> soilAtBounds(const RefinedModel& model);
+
 /// Names of fitted numbers of an effect that stand at a bound of their range.
 std::vector<std::string> atBounds(const Effect& effect);
 
-/// The refined model as predictions need it: what rows of a new run share is an error of theirs, too.
+/// The refined model as predictions need it: what rows of a new run share is an error of theirs, too, and so is what
+/// held-out rows show beyond that and the floor (by three standard errors): what nothing explains.
 RefinedModel forPrediction(const TraceResult& result);
 
 }  // namespace talus::terramech

@@ -109,18 +109,6 @@ Eigen::VectorXd Whitening::marginal(const Eigen::MatrixXd& residual) const {
   return out;
 }
 
-Eigen::MatrixXd Whitening::byChannel(const Eigen::MatrixXd& white) const {
-  Eigen::MatrixXd own(white.rows(), kChannels);
-  for (Eigen::Index row = 0; row < white.rows(); ++row) {
-    Eigen::Matrix4d f = factor[static_cast<std::size_t>(row)];
-    for (int c = 0; c < kChannels; ++c)
-      if (f(c, c) == 0.0) f(c, c) = 1.0;
-    const Eigen::Vector4d error = f.triangularView<Eigen::Lower>().solve(white.row(row).transpose());
-    own.row(row) = error.transpose().cwiseQuotient(std.row(row));
-  }
-  return own;
-}
-
 std::vector<Eigen::Matrix4d> Whitening::shared() const {
   std::vector<Eigen::Matrix4d> all = factor;
   if (slip.moment.empty()) return all;

@@ -45,8 +45,6 @@ struct Whitening {
   Eigen::VectorXd apply(const Eigen::MatrixXd& residual) const;     ///< rows*kChannels; 0 where missing
   Eigen::VectorXd rowByRow(const Eigen::MatrixXd& residual) const;  ///< the same without the runs' error
   Eigen::VectorXd marginal(const Eigen::MatrixXd& residual) const;  ///< each over its own std
-  /// Each channel's own error over its std from whitened rows (rows x kChannels), in which a channel holds the others'.
-  Eigen::MatrixXd byChannel(const Eigen::MatrixXd& white) const;
 
  private:
   void settleRuns(Eigen::VectorXd& rows) const;

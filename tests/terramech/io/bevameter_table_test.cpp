@@ -24,9 +24,10 @@ TEST(BevameterTable, ShearAndPlateRowsOfOneFile) {
   ASSERT_EQ(table.shear.size(), 2U);
   EXPECT_EQ(table.shear[0].normal_Pa, 1000.0);
   EXPECT_EQ(table.shear[1].displacement_m, 0.02);
-  ASSERT_EQ(table.plates.size(), 2U);
-  EXPECT_EQ(table.plates[0].plate_width_m, 0.1);
-  EXPECT_EQ(table.plates[1].pressure_Pa, 7000.0);
+  ASSERT_EQ(table.plates.size(), 1U);
+  ASSERT_EQ(table.plates[0].readings.size(), 2U);
+  EXPECT_EQ(table.plates[0].readings[0].plate_width_m, 0.1);
+  EXPECT_EQ(table.plates[0].readings[1].pressure_Pa, 7000.0);
   EXPECT_FALSE(table.width_from_force);
   EXPECT_TRUE(table.rejected.empty());
 }
@@ -34,7 +35,7 @@ TEST(BevameterTable, ShearAndPlateRowsOfOneFile) {
 TEST(BevameterTable, AStatedWidthHoldsForAllRows) {
   const BevameterTable table =
       read("plate_width_m,pressure_Pa,sinkage_m\n0.1,5000,0.02\n0.2,6000,0.02\n", 0.07);
-  for (const PlateReading& r : table.plates) EXPECT_EQ(r.plate_width_m, 0.07);
+  for (const PlateReading& r : table.plates.at(0).readings) EXPECT_EQ(r.plate_width_m, 0.07);
 }
 
 // Closed form: F / p is the area of the plate, pi d^2 / 4; test by test.
@@ -47,9 +48,20 @@ TEST(BevameterTable, ARoundPlateIsKnownByForceOverPressure) {
                  "," + std::to_string(0.001 * k) + "\n";
   const BevameterTable table = read(content);
   EXPECT_TRUE(table.width_from_force);
-  ASSERT_EQ(table.plates.size(), 10U);
-  EXPECT_NEAR(table.plates[0].plate_width_m, 0.05, 1e-12);
-  EXPECT_NEAR(table.plates[1].plate_width_m, 0.1, 1e-12);
+  ASSERT_EQ(table.plates.size(), 2U);
+  ASSERT_EQ(table.plates[0].readings.size(), 5U);
+  EXPECT_NEAR(table.plates[0].readings[0].plate_width_m, 0.05, 1e-12);
+  EXPECT_NEAR(table.plates[1].readings[0].plate_width_m, 0.1, 1e-12);
+}
+
+TEST(BevameterTable, TrialsAndSoilsAreKeptApart) {
+  const BevameterTable table = read(
+      "soil,trial,note,plate_width_m,pressure_Pa,sinkage_m\n"
+      "sand,1,a,0.1,5000,0.01\nsand,1,b,0.1,7000,0.02\nsand,2,c,0.1,5000,0.01\nclay,1,d,0.1,9000,0.02\n");
+  ASSERT_EQ(table.plates.size(), 3U);
+  EXPECT_EQ(table.plates[0].readings.size(), 2U);  // a note of its own for each row makes no trial
+  EXPECT_EQ(table.plates[1].soil, "sand");
+  EXPECT_EQ(table.plates[2].soil, "clay");
 }
 
 TEST(BevameterTable, ATestWhoseAreaChangesIsNoPlate) {
@@ -61,6 +73,7 @@ TEST(BevameterTable, UnloadedRowsAreLeftOutByLine) {
   const BevameterTable table =
       read("plate_width_m,pressure_Pa,sinkage_m\n0.1,0,0.02\n0.1,5000,0.02\n0.1,5000,0\n");
   ASSERT_EQ(table.plates.size(), 1U);
+  EXPECT_EQ(table.plates[0].readings.size(), 1U);
   ASSERT_EQ(table.rejected.size(), 2U);
   EXPECT_EQ(table.rejected[0].line, 2U);
   EXPECT_EQ(table.rejected[1].line, 4U);

@@ -56,14 +56,14 @@ TEST(ModelFile, ReadsBackToTheSameBits) {
 TEST(ModelFile, TrainedRangesAreReadBack) {
   const TrainedRange slip{
       .column = "slip", .low = -0.5, .high = 1.0 / 3.0, .below = {0.1, 0, 0, 0}, .above = {0, 0.2, 0, 0}};
-  const auto path = written("trained.yaml", modelText(refined(), {slip}));
+  const auto path = written("trained.yaml", modelText(refined(), {.trained = {slip}}));
   const ModelFile back = loadModel(path);
-  ASSERT_EQ(back.trained.size(), 1U);
-  EXPECT_EQ(back.trained[0].high, slip.high);
-  EXPECT_EQ(back.trained[0].above, slip.above);
+  ASSERT_EQ(back.scope.trained.size(), 1U);
+  EXPECT_EQ(back.scope.trained[0].high, slip.high);
+  EXPECT_EQ(back.scope.trained[0].above, slip.above);
   // Closed form: 0.5 below -0.5 at 0.1 a unit; nothing inside.
-  EXPECT_DOUBLE_EQ(back.trained[0].stdAt(-1.0, 0), 0.05);
-  EXPECT_EQ(back.trained[0].stdAt(0.0, 0), 0.0);
+  EXPECT_DOUBLE_EQ(back.scope.trained[0].stdAt(-1.0, 0), 0.05);
+  EXPECT_EQ(back.scope.trained[0].stdAt(0.0, 0), 0.0);
   std::filesystem::remove(path);
 }
 

@@ -86,7 +86,7 @@ TEST(EndLevels, AnEffectSeenAtOneLevelActsBeyondItAsThere) {
 TEST(EndLevels, DeviationsGrowByWhatTheEndShowedAboveTheFloor) {
   TraceResult result = resultOf(sand(), sand(), {0.1, 0.2, 0.3});
   EndLevel end{.column = "slip", .high = true, .distance = 0.2, .rows = 4};
-  end.refined_rmse = {0.05, 0.001, NAN, NAN};
+  end.base_rmse = end.refined_rmse = {0.05, 0.001, NAN, NAN};
   const auto ranges = trainedRanges(result.trial, {end}, {0.03, 0.002, NAN, NAN});
   const auto slip =
       std::find_if(ranges.begin(), ranges.end(), [](const auto& r) { return r.column == "slip"; });

@@ -127,5 +127,19 @@ TEST(ModelFit, BoundsAreThoseOfTheForm) {
   EXPECT_EQ(rangeOf(model, {.effect = -1, .index = 0}).low, soilParameters()[0].low);
 }
 
+TEST(ModelFit, ASoilWithoutDeviationsIsFreeAndOneWithThemAsStated) {
+  RefinedModel model;
+  model.soil.cohesion_Pa = 700.0;
+  giveDefaultDeviations(model);
+  // Closed form: half of the vague soil's; the mean is the soil's own.
+  EXPECT_EQ(model.soil_prior_std.at("cohesion_Pa"), 1000.0);
+  EXPECT_EQ(model.soil_prior_mean.at("cohesion_Pa"), 700.0);
+  EXPECT_EQ(fitPlan(model, false).free.size(), 7U);
+  RefinedModel stated;
+  stated.soil_prior_std = {{"cohesion_Pa", 20.0}};
+  giveDefaultDeviations(stated);
+  EXPECT_EQ(stated.soil_prior_std.size(), 1U);
+}
+
 }  // namespace
 }  // namespace talus::terramech

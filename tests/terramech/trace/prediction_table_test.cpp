@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <string>
 
+#include <talus/terramech/numerics/estimate.hpp>
 #include <talus/terramech/trace/prediction_table.hpp>
 
 #include "made_rows.hpp"
@@ -68,7 +69,7 @@ TEST(PredictionTable, OutsideTheTrainedRangeARowIsFlaggedAndItsDeviationGrows) {
       "load_N,slip,wheel_radius_m,wheel_width_m\n80,0.3,0.1,0.1\n80,0.6,0.1,0.1\n"};
   const auto stdOf = [&](double high, std::string& flag) {
     const TrainedRange slip{.column = "slip", .low = 0.0, .high = high, .above = {0.5, 0.0, 0.0, 0.0}};
-    const PredictionTable table = predictTable(file.path(), refined(), {slip});
+    const PredictionTable table = predictTable(file.path(), refined(), {.trained = {slip}});
     flag = table.text.substr(table.text.rfind(',') + 1);
     const std::string row = table.text.substr(table.text.find("80,0.6"));
     double pull_std = 0.0;
@@ -81,6 +82,26 @@ TEST(PredictionTable, OutsideTheTrainedRangeARowIsFlaggedAndItsDeviationGrows) {
   EXPECT_EQ(inside, "\n");
   EXPECT_EQ(outside, "slip\n");
   EXPECT_NEAR(widened, std::hypot(plain, 0.5 * 0.2), 1e-9);  // Closed form: 0.2 beyond at 0.5 a unit
+}
+
+TEST(PredictionTable, BeyondTheReachOfCorrectionsItIsTheBaseAndSaysHowFarTheyDiffer) {
+  const test::TemporaryFile file{"load_N,slip,wheel_radius_m,wheel_width_m\n80,0.6,0.1,0.1\n"};
+  RefinedModel model = refined();
+  model.effects = {{.name = "slip_sinkage_linear",
+                    .covariate = "slip",
+                    .channel = Channel::Sinkage,
+                    .parameters = {1.0}}};
+  const auto sinkageOf = [&](const RefinedModel& m, const ModelScope& scope) {
+    const std::string text = predictTable(file.path(), m, scope).text;
+    Estimate z;
+    EXPECT_EQ(std::sscanf(text.c_str() + text.find("80,0.6"), "80,0.6,0.1,0.1,%*f,%*f,%lf,%lf", &z.value, &z.std), 2);
+    return z;
+  };
+  ModelScope scope{.trained = {{.column = "slip", .low = 0.0, .high = 0.3}}, .base = refined()};
+  scope.trained[0].reach_above = {0.1, 0.1, 0.1, 0.1};
+  const Estimate base = sinkageOf(refined(), {}), own = sinkageOf(model, {}), far = sinkageOf(model, scope);
+  EXPECT_NEAR(far.value, base.value, 1e-9 * base.value);
+  EXPECT_NEAR(far.std, std::hypot(own.std, own.value - base.value), 1e-9);  // Closed form
 }
 
 TEST(PredictionTable, OlderPredictionsAreReplacedAndOtherColumnsKept) {

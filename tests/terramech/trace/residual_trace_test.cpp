@@ -3,20 +3,17 @@
 namespace talus::terramech {
 namespace {
 
-Explanation explanation(double gain, bool spoils = false) {
+Explanation explanation(double gain) {
   Explanation e;
   e.gain = gain;
-  e.spoils = spoils;
   return e;
 }
 
-TEST(ResidualTrace, TakesTheBestThatGainsMoreThanNoiseAndSpoilsNothing) {
-  // Closed form: the rule itself, at either side of the threshold; what is refused does not end the search.
-  EXPECT_EQ(choose({}, 5.0), std::nullopt);
-  EXPECT_EQ(choose({explanation(4.9), explanation(4.0)}, 5.0), std::nullopt);
-  EXPECT_EQ(choose({explanation(5.1), explanation(4.0)}, 5.0), 0U);
-  EXPECT_EQ(choose({explanation(50.0, true), explanation(7.0)}, 5.0), 1U);
-  EXPECT_EQ(choose({explanation(50.0, true), explanation(4.0)}, 5.0), std::nullopt);
+TEST(ResidualTrace, TakesTheBestThatGainsMoreThanNoise) {
+  // Closed form: the rule itself, at either side of the threshold.
+  EXPECT_FALSE(accepted({}, 5.0));
+  EXPECT_FALSE(accepted({explanation(4.9), explanation(4.0)}, 5.0));
+  EXPECT_TRUE(accepted({explanation(5.1), explanation(4.0)}, 5.0));
 }
 
 TEST(ResidualTrace, NamesAHiddenEffectAndReachesTheNoise) {

@@ -103,7 +103,7 @@ TEST(TraceSearch, PairsTellTwoFaultsApart) {
   for (const Effect& part : ranked.front().candidate.parts) channels.insert(part.channel);
   EXPECT_EQ(channels, (std::set{Channel::Torque, Channel::DrawbarPull}));
   for (const Promise& single : search.screen(0).promises)
-    EXPECT_GT(ranked.front().gain, single.gain + kClose);
+    EXPECT_GT(ranked.front().gain, single.gain + closeGain({}));
 }
 
 TEST(TraceSearch, OfFormsTakenTogetherOnlyThoseThatPayStay) {

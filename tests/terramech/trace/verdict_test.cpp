@@ -77,5 +77,16 @@ TEST(Verdict, PredictionsCarryWhatANewRunWouldShare) {
   EXPECT_NEAR(forPrediction(result).noise.absolute[0], 0.5, 1e-12);
 }
 
+TEST(Verdict, PredictionsCarryWhatNothingExplains) {
+  TraceResult result = resultOf(0.05, 0.05, 0.03, 0);
+  result.refined.noise.absolute[0] = 0.03 * 50.0;
+  result.held_out.refined_rmse[0] = 0.05;
+  EXPECT_EQ(answerOf(result).verdict, Verdict::Unexplained);
+  // Closed form: the floor of 0.03 and the 0.04 above it are 0.05 of the load of 50 N.
+  EXPECT_NEAR(forPrediction(result).noise.absolute[0], 2.5, 1e-12);
+  result.held_out.refined_rmse[0] = 0.035;  // 36 % more variance, within three standard errors
+  EXPECT_NEAR(forPrediction(result).noise.absolute[0], 1.5, 1e-12);
+}
+
 }  // namespace
 }  // namespace talus::terramech

@@ -54,22 +54,6 @@ TEST(Whitening, RowsThatShareNothingAreLeftAlone) {
   EXPECT_NEAR(w.apply(r).squaredNorm(), sum, 1e-9);
 }
 
-TEST(Whitening, AChannelsOwnErrorIsFoundInWhitenedRows) {
-  // Property: whitening and back is the identity; a channel that was not measured has no error.
-  Eigen::Matrix4d covariance = Eigen::Matrix4d::Identity();
-  covariance(0, 1) = covariance(1, 0) = 0.9;
-  Eigen::MatrixXd error(1, kChannels);
-  error << 0.5, -1.0, std::nan(""), 2.0;
-  Whitening w;
-  w.factor = {rowFactor(covariance, error, 0)};
-  w.std = Eigen::MatrixXd::Constant(1, kChannels, 0.5);
-  const Eigen::MatrixXd own = w.byChannel(w.rowByRow(error).transpose());
-  EXPECT_NEAR(own(0, 0), 1.0, 1e-12);
-  EXPECT_NEAR(own(0, 1), -2.0, 1e-12);
-  EXPECT_EQ(own(0, 2), 0.0);
-  EXPECT_NEAR(own(0, 3), 4.0, 1e-12);
-}
-
 TEST(Whitening, IsTheInverseRootOfTheWholeCovariance) {
   // Independent derivation: r^T V^-1 r with the covariance of the rows written out.
   Whitening w;
