@@ -1,3 +1,6 @@
+#include <cstdint>
+#include <utility>
+
 #include <talus/maps/elevation_reader.hpp>
 #include <talus/maps/layer_reader.hpp>
 #include <talus/maps/numpy_array.hpp>
@@ -14,6 +17,50 @@ std::string numpy(const std::string& shape, std::size_t numbers) {
          std::string(8 * numbers, '\0');
 }
 
+std::string little(std::uint32_t value, int bytes) {
+  std::string out;
+  for (int k = 0; k < bytes; ++k) out += static_cast<char>(value >> (8 * k) & 0xFFU);
+  return out;
+}
+
+// The check of ZIP: CRC-32 with the reversed polynomial.
+std::uint32_t crc32(const std::string& bytes) {
+  std::uint32_t crc = ~0U;
+  for (const char c : bytes) {
+    crc ^= static_cast<unsigned char>(c);
+    for (int bit = 0; bit < 8; ++bit) crc = crc >> 1U ^ (0xEDB88320U & (0U - (crc & 1U)));
+  }
+  return ~crc;
+}
+
+// An archive of stored files, as numpy.savez writes it: each with its header, then the list of them.
+std::string archive(const std::vector<std::pair<std::string, std::string>>& files) {
+  std::string out, list;
+  for (const auto& [name, bytes] : files) {
+    const auto size = static_cast<std::uint32_t>(bytes.size());
+    const std::string about = little(20, 2) + little(0, 2) + little(0, 2) + little(0, 4) +
+                              little(crc32(bytes), 4) + little(size, 4) + little(size, 4) +
+                              little(static_cast<std::uint32_t>(name.size()), 2) + little(0, 2);
+    list += "PK\x01\x02" + little(20, 2) + about + little(0, 10) +
+            little(static_cast<std::uint32_t>(out.size()), 4) + name;
+    out += "PK\x03\x04" + about + name + bytes;
+  }
+  const auto count = static_cast<std::uint32_t>(files.size());
+  return out + list + "PK\x05\x06" + little(0, 4) + little(count, 2) + little(count, 2) +
+         little(static_cast<std::uint32_t>(list.size()), 4) +
+         little(static_cast<std::uint32_t>(out.size()), 4) + little(0, 2);
+}
+
+std::string numpyArchive() {
+  const std::string zero = numpy("", 1),
+                    one = zero.substr(0, zero.size() - 8) + std::string("\0\0\0\0\0\0\xf0\x3f", 8);
+  return archive({{"elevation.npy", numpy("3, 3", 9)},
+                  {"xmin.npy", zero},
+                  {"xmax.npy", one},
+                  {"ymin.npy", zero},
+                  {"ymax.npy", one}});
+}
+
 maps::ElevationMap flat() {
   maps::ElevationMap map;
   map.elevation_m =
@@ -27,7 +74,7 @@ void readGeoJson(const std::string& bytes) {
 }
 
 void readNumpyArchive(const std::string& bytes) {
-  maps::readElevation(fileOf(bytes, ".npz"), {.resolution_m = 1.0, .max_cells = 10'000});
+  maps::readElevation(fileOf(bytes, ".npz"), {.resolution_m = 10'000.0, .max_cells = 10'000});
 }
 
 }  // namespace
@@ -42,7 +89,7 @@ std::vector<Target> mapsTargets() {
       {"npy",
        {numpy("2, 3", 6), numpy("", 1)},
        [](const std::string& bytes) { maps::parseNumpy(bytes, "npy"); }},
-      {"npz", {}, readNumpyArchive},
+      {"npz", {numpyArchive()}, readNumpyArchive},
   };
 }
 

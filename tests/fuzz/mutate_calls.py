@@ -4,7 +4,7 @@
     tests/fuzz/mutate_calls.py TALUS [CALLS] [FIRST]
 
 A call may end with 0, 1 or 2, with one line of error for 2, and may take --max-memory and 20 s of CPU time. Call k is the same
-in each run; FIRST goes on where a run ended. Faults are printed with their number, and left in a folder that is named last.
+in each run; FIRST goes on where a run ended. Faults are printed with their number and the folder that they are left in.
 """
 import os, random, resource, shutil, subprocess, sys, tempfile
 
@@ -105,5 +105,6 @@ for k in range(FIRST, FIRST + CALLS):
         print(f"{k}: exit {code}, {memory >> 20} MB: {' '.join(w[:60] for w in words)}\n    {said[-300:].strip()}\n    {folder}", flush=True)
     else:
         shutil.rmtree(folder)
-print(f"{CALLS} calls from {FIRST}, {faults} faults; {base}")
+print(f"{CALLS} calls from {FIRST}, {faults} faults")
+if not faults: shutil.rmtree(base)
 sys.exit(1 if faults else 0)
