@@ -99,12 +99,14 @@ double straightBoundOver_J(const costmap::CostGrid& map, const Segment& places, 
   const CheapestMetres metres(map.cost());
   const double straight_m = std::max(0.0, distance(places.from, places.to) - tolerance_m);
   double cheapest = cheapestOfAny(map.cost());
-  for (int round = 0; round < kRounds; ++round) {
-    const double length_m = cheapest > 0.0 ? known_J / cheapest : kInfinity;
-    const double least = cheapestWithin(map, metres, places, length_m + tolerance_m, stop);
+  for (int round = 0; round < kRounds && std::isfinite(known_J) && cheapest > 0.0; ++round) {
+    const double least = cheapestWithin(map, metres, places, known_J / cheapest + tolerance_m, stop);
     if (std::isinf(least) || !(least > cheapest * 1.0001)) break;
     cheapest = least;
   }
+  const double twice_m = 2.0 * distance(places.from, places.to);
+  if (const double least = cheapestWithin(map, metres, places, twice_m, stop); std::isfinite(least))
+    cheapest = std::max(cheapest, least);
   return std::min(known_J, cheapest * straight_m);
 }
 

@@ -16,9 +16,11 @@ double straightBound_J(const costmap::CostGrid& map, const Segment& places, doub
 /// if none is known: no dearer route is asked about, so the answer never exceeds it. Sharp where the ground between the
 /// places is even: there the straight line is proven to be the best.
 ///
-/// How (ours). A route of at most known_J is no longer than known_J over the cheapest metre; so it stays in the ellipse
-/// about both places of that sum of distances, wider by the tolerance. The cheapest metre of the cells there may be dearer,
-/// which makes the ellipse smaller: some rounds; as far as it came when stopped. Time: some nanoseconds a cell of the ellipse's box and round.
+/// How (ours). Let D be the distance and S >= 2 D. A route that leaves the ellipse of the places with distances
+/// that sum to S does so at least (S - D) / 2 from the one place and comes back as far from the other; so it
+/// drives D metres inside, as does one that stays, and each costs the cheapest metre there. A route of at most
+/// known_J stays within S = known_J over that metre, which may be less. A tolerance shortens all of this alike.
+/// Time: some nanoseconds a cell of the ellipse's box and round.
 double straightBoundOver_J(const costmap::CostGrid& map, const Segment& places, double tolerance_m,
                            double known_J = std::numeric_limits<double>::infinity(),
                            const StopCheck& stop = {});

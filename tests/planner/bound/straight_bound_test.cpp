@@ -35,8 +35,26 @@ TEST(StraightBound, LeavesOutCheapGroundOutOfReach) {
   const Segment ends{{10.5, 10.5}, {30.5, 20.5}};
   const double cost_J = MotionCost(map)(ends);
   EXPECT_NEAR(straightBoundOver_J(*map, ends, 0.0, cost_J), cost_J, 1e-6 * cost_J);
-  EXPECT_NEAR(straightBoundOver_J(*map, ends, 0.0), cost_J / 3.0,
-              1e-6 * cost_J);  // nothing is known: it counts
+  EXPECT_NEAR(straightBoundOver_J(*map, ends, 0.0), cost_J, 1e-6 * cost_J);
+}
+
+// Closed form: a track of 10 J/m that begins 3 m behind the start and ends 3 m behind the goal makes the way round, over
+// ground of 50 J/m at both ends, cheaper than the straight line of 1000 J.
+TEST(StraightBound, CountsATrackThatBeginsBehindTheStart) {
+  std::vector<std::string> rows(60, std::string(100, '4'));
+  const auto track = [&rows](int column, int y) {
+    rows[static_cast<std::size_t>(59 - y)][static_cast<std::size_t>(column)] = '.';
+  };
+  for (int y = 30; y <= 48; ++y) track(37, y), track(63, y);
+  for (int column = 37; column <= 63; ++column) track(column, 48);
+  const auto map = drawn(rows);
+  const Segment ends{{40.5, 30.5}, {60.5, 30.5}};
+  const MotionCost cost(map);
+  const double round_J =
+      cost.along({ends.from, {37.5, 30.5}, {37.5, 48.5}, {63.5, 48.5}, {63.5, 30.5}, ends.to});
+  ASSERT_LT(round_J, cost(ends));
+  EXPECT_LE(straightBoundOver_J(*map, ends, 0.0), round_J);
+  EXPECT_LE(straightBoundOver_J(*map, ends, 0.0, cost(ends)), round_J);
 }
 
 // Property: whatever route is known, no motion of those drawn costs less than the bound, by way of any third place.
