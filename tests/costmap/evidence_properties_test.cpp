@@ -250,6 +250,8 @@ TEST(Evidence, ProvenStrengthIsLearnedBesideReadingsThatProveNothing) {
   const double prior = mapOf(std::vector<std::string>(30, std::string(30, '1'))).model().prior(0).pull.value;
   EXPECT_GT(drivenAllOver(0.08, -0.05).ground({15, 15})->pull.value, prior + 0.05);
   EXPECT_LT(drivenAllOver(0.08, -0.6).ground({15, 15})->pull.value, prior);
+  // Read 0.3 weaker, to 0.2, which the class explains: 0.1 beyond its noise counts.
+  EXPECT_LT(drivenAllOver(0.08, -0.3).ground({15, 15})->pull.value, prior - 0.001);
 }
 
 TEST(Evidence, TheFirstSinkageCountsInFull) {
