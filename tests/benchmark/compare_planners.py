@@ -21,7 +21,7 @@ OTHERS = ("RRTstar", "InformedRRTstar", "BITstar", "ABITstar", "SST", "FMT")
 
 def run(*words):
     done = subprocess.run(words, capture_output=True, text=True)
-    if done.returncode > 1:
+    if done.returncode > 1 and not done.stdout.strip():
         raise SystemExit(done.stderr.strip())
     return json.loads(done.stdout) if done.stdout.strip() else {"status": "none"}
 
