@@ -194,7 +194,7 @@ double riskOf(const DriveState& state) noexcept {
 
 CrossSlope::CrossSlope(const terramech::SlopeEquilibrium& equilibrium, const Level& level,
                        const DriveCost::Limits& limits) {
-  for (std::int16_t bin = 0; bin < kBins; ++bin) climbs_.push_back({bin, bin, bin});
+  addLevelRow();
   // Beyond 45 degrees across nothing is said to hold.
   const int needed = DriveCurve::row(std::min(limits.max_across, 1.0 + kRowStep));
   const double low = -std::min(limits.max_along + kBelow, 1.0),
@@ -239,6 +239,17 @@ CrossSlope::CrossSlope(const terramech::SlopeEquilibrium& equilibrium, const Lev
     }
   }
   tabulateSteepest();
+}
+
+CrossSlope CrossSlope::alongOnly() {
+  CrossSlope none;
+  none.addLevelRow();
+  none.tabulateSteepest();
+  return none;
+}
+
+void CrossSlope::addLevelRow() {
+  for (std::int16_t bin = 0; bin < kBins; ++bin) climbs_.push_back({bin, bin, bin});
 }
 
 CrossSlope::Climbs CrossSlope::harder(const Climbs& a, const Climbs& b) noexcept {

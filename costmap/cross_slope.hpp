@@ -40,6 +40,10 @@ class CrossSlope {
   CrossSlope(const terramech::SlopeEquilibrium& equilibrium, const Level& level,
              const DriveCost::Limits& limits);
 
+  /// Of a planner that knows slopes along the heading only: crossing costs nothing more and never fails. For
+  /// comparison with such planners.
+  static CrossSlope alongOnly();
+
   /// Of ground that may be of either: the harder of both.
   static CrossSlope harder(const CrossSlope& a, const CrossSlope& b);
 
@@ -72,6 +76,7 @@ class CrossSlope {
     std::vector<SlopeHold> nodes;
   };
   CrossSlope() = default;
+  void addLevelRow();
   static Climbs harder(const Climbs& a, const Climbs& b) noexcept;
   void tabulateSteepest();
   const Climbs& at(int row, int bin) const noexcept {

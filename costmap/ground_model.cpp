@@ -84,13 +84,12 @@ GroundModel::GroundModel(Parts parts) : parts_(std::move(parts)) {
                           : wheel_curves_.back());
     drives_.emplace_back(curves_.back());
     slopes_.push_back(slopeOf(c, parts_.rover));
+    const CrossSlope::Level level{.first = drives_.back().first(),
+                                  .last = drives_.back().last(),
+                                  .thrust = std::max({curves_.back().reference().torque_over_load_radius,
+                                                      drives_.back().last(), kLeastThrust})};
     crossings_.push_back(std::make_shared<const CrossSlope>(
-        slopes_.back(),
-        CrossSlope::Level{.first = drives_.back().first(),
-                          .last = drives_.back().last(),
-                          .thrust = std::max({curves_.back().reference().torque_over_load_radius,
-                                              drives_.back().last(), kLeastThrust})},
-        limits()));
+        parts_.prices_crossing ? CrossSlope{slopes_.back(), level, limits()} : CrossSlope::alongOnly()));
   }
 }
 

@@ -74,6 +74,8 @@ class GroundModel {
     terramech::Rover rover;
     std::vector<GroundClass> classes;  ///< the first is the default, for cells without a class
     DrivePolicy policy;
+    bool prices_crossing =
+        true;  ///< false: CrossSlope::alongOnly(), for comparison; no rover is to drive by it
   };
 
   /// Throws std::invalid_argument when there is no class, two share a number, or a field leaves its range.

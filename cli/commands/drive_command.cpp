@@ -1,6 +1,5 @@
 // talus drive DEM --truth TRUTH.yaml: a simulated traverse over soils that the planner does not know.
 #include <algorithm>
-#include <array>
 #include <functional>
 #include <optional>
 #include <string>
@@ -28,10 +27,7 @@ namespace talus::cli {
 namespace {
 
 using planner::Belief;
-using planner::WorldResult;
-
-constexpr std::array<Belief, 4> kBeliefs{Belief::Geometry, Belief::Prior, Belief::OnLine,
-                                         Belief::PerfectKnowledge};
+using planner::kBeliefs;
 
 struct Options {
   GroundOptions ground;
@@ -52,7 +48,7 @@ const Belief* findBelief(const std::string& word) {
 // The check of --belief: a reason, or an empty text.
 std::string refusedBelief(const std::string& word) {
   if (word == "all" || findBelief(word) != nullptr) return "";
-  return word + ", must be one of geometry, prior, online, perfect-knowledge, all";
+  return word + ", must be one of geometry, along-only, prior, online, perfect-knowledge, all";
 }
 
 void bindSensors(CLI::App& command, Options& options) {
@@ -91,9 +87,10 @@ void bind(CLI::App& command, Options& options) {
   command
       .add_option(
           "--belief", options.belief,
-          "what the planner knows of the soil: geometry only, the prior, the prior updated online by "
-          "telemetry, or the true soil (perfect knowledge); `all` compares the four in the same worlds")
-      ->check(CLI::Validator(refusedBelief, "{geometry,prior,online,perfect-knowledge,all}"))
+          "what the planner knows of the soil: geometry only, the prior (along-only: and slopes along the "
+          "heading alone), the prior updated online by telemetry, or the true soil (perfect knowledge); "
+          "`all` compares the five in the same worlds")
+      ->check(CLI::Validator(refusedBelief, "{geometry,along-only,prior,online,perfect-knowledge,all}"))
       ->capture_default_str();
   auto* worlds =
       command
@@ -154,7 +151,7 @@ int show(const Results& results, const DrivenWorlds& driven, const Campaigning& 
 
 int runAll(const Campaigning& on, const Options& options) {
   const DrivenWorlds driven = simulated(on, {kBeliefs.begin(), kBeliefs.end()}, options.worlds);
-  std::array<std::vector<WorldResult>, 4> results;
+  BeliefResults results;
   std::copy(driven.results.begin(), driven.results.end(), results.begin());
   return show(results, driven, on);
 }

@@ -91,7 +91,7 @@ ordered_json asJson(const std::vector<planner::WorldResult>& results) {
   return out;
 }
 
-ordered_json asJson(const std::array<std::vector<planner::WorldResult>, 4>& beliefs) {
+ordered_json asJson(const BeliefResults& beliefs) {
   const auto& perfect = beliefs[static_cast<std::size_t>(Belief::PerfectKnowledge)];
   ordered_json out{{"worlds", perfect.size()}, {"worlds_with_a_safe_route", safeWorlds(perfect)}};
   const std::string energy_key = "energy_over_" + std::string(planner::name(Belief::PerfectKnowledge));
@@ -126,7 +126,7 @@ std::string asText(const std::vector<planner::WorldResult>& results) {
   return text;
 }
 
-std::string asText(const std::array<std::vector<planner::WorldResult>, 4>& beliefs) {
+std::string asText(const BeliefResults& beliefs) {
   const auto& perfect = beliefs[static_cast<std::size_t>(Belief::PerfectKnowledge)];
   std::string text =
       fmt::format("{} worlds; perfect knowledge reaches the goal in {} of them; energy is compared there.\n",

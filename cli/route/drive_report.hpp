@@ -26,12 +26,15 @@ planner::WorldResult worldResult(const nlohmann::ordered_json& json);
 /// Many under one belief: the rate of each outcome with its 95 % interval, mean energy, and each world.
 nlohmann::ordered_json asJson(const std::vector<planner::WorldResult>& results);
 
-/// All beliefs in the same worlds, compared with perfect knowledge. In the order of planner::Belief.
-nlohmann::ordered_json asJson(const std::array<std::vector<planner::WorldResult>, 4>& beliefs);
+/// Worlds under each belief, in the order of planner::kBeliefs.
+using BeliefResults = std::array<std::vector<planner::WorldResult>, planner::kBeliefs.size()>;
+
+/// All beliefs in the same worlds, compared with perfect knowledge.
+nlohmann::ordered_json asJson(const BeliefResults& beliefs);
 
 /// The same as text: lines or a table.
 std::string asText(const planner::WorldResult& result);
 std::string asText(const std::vector<planner::WorldResult>& results);
-std::string asText(const std::array<std::vector<planner::WorldResult>, 4>& beliefs);
+std::string asText(const BeliefResults& beliefs);
 
 }  // namespace talus::cli

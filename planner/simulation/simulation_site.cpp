@@ -50,7 +50,7 @@ void tellTruth(const TrueWorld& world, double footprint_m, costmap::MapLayers& l
 }  // namespace
 
 std::string_view name(Belief belief) noexcept {
-  constexpr std::string_view kNames[] = {"geometry", "prior", "online", "clairvoyant"};
+  constexpr std::string_view kNames[] = {"geometry", "along-only", "prior", "online", "clairvoyant"};
   return kNames[static_cast<int>(belief)];
 }
 
@@ -72,6 +72,7 @@ costmap::TraversabilityMap SimulationSite::believed(Belief belief, const TrueWor
       ground.soil = parts_.firm;
       ground.effects.clear();
     }
+  parts.prices_crossing = belief != Belief::AlongOnly;
   if (belief == Belief::PerfectKnowledge) tellTruth(world, map_.footprintRadius_m(), layers, parts);
   return {std::move(layers),
           std::make_shared<costmap::GroundModel>(std::move(parts)),

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -15,12 +16,17 @@ namespace talus::planner {
 /// What the planner knows of the soil.
 enum class Belief {
   Geometry,          ///< slopes and hazards only, all ground as firm as rock; telemetry is not used
+  AlongOnly,         ///< as Prior, but crossing a slope costs what level ground does; for comparison
   Prior,             ///< the soils of the map; telemetry is not used
   OnLine,            ///< the soils of the map, updated by the telemetry of the drive
   PerfectKnowledge,  ///< the true soils, with all patches
 };
 
-/// The names in calls and in JSON: "geometry", "prior", "online", "clairvoyant".
+/// All of them, in this order.
+inline constexpr std::array kBeliefs{Belief::Geometry, Belief::AlongOnly, Belief::Prior, Belief::OnLine,
+                                     Belief::PerfectKnowledge};
+
+/// The names in calls and in JSON: "geometry", "along-only", "prior", "online", "clairvoyant".
 std::string_view name(Belief belief) noexcept;
 
 /// What came of one world.

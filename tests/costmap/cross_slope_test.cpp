@@ -42,6 +42,22 @@ GroundModel modelOf(const terramech::Soil& soil) {
       {.rover = testRover(), .classes = {{.number = 0, .soil = soil}}, .policy = {.allow_dangerous = true}});
 }
 
+// Closed form: a planner that knows slopes along the heading only pays on every slope across what it pays on none.
+TEST(CrossSlope, AlongOnlyPricesAPlaneByItsGradientAlong) {
+  GroundModel::Parts parts = modelOf(testSand()).parts();
+  const GroundModel priced(parts);
+  parts.prices_crossing = false;
+  const GroundModel along_only(parts);
+  const DriveCost cost = costOf(along_only, certain(along_only)), full = costOf(priced, certain(priced));
+  for (const double along : {-0.1, 0.0, 0.1})
+    for (const double across : {0.05, 0.15, 0.25}) {
+      EXPECT_EQ(cost.costPerMetre(plane(along, across), {}), cost.costPerMetre(plane(along, 0.0), {}));
+      EXPECT_GT(full.costPerMetre(plane(along, across), {}), cost.costPerMetre(plane(along, across), {}));
+    }
+  const double beyond = along_only.limits().max_across + 0.02;
+  EXPECT_TRUE(std::isinf(cost.costPerMetre(plane(0.0, beyond), {})));
+}
+
 // Property: what the equilibrium of the rover refuses by more than a row across and a bin along is not allowed.
 TEST(CrossSlope, AllowsNothingThatTheEquilibriumRefuses) {
   std::mt19937 random(1);

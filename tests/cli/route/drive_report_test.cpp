@@ -61,7 +61,7 @@ TEST(DriveReport, RatesAreSharesOfTheWorlds) {
 
 // Closed form: where perfect knowledge reached the goal, 100 J against 150 J is 1.5 times as much.
 TEST(DriveReport, BeliefsAreComparedWhereARouteExists) {
-  std::array<std::vector<planner::WorldResult>, 4> beliefs;
+  BeliefResults beliefs;
   for (auto& each : beliefs) each = {world(Outcome::Reached, 150.0), world(Outcome::Immobilised, 1.0)};
   beliefs[static_cast<std::size_t>(Belief::PerfectKnowledge)] = {world(Outcome::Reached, 100.0),
                                                                  world(Outcome::GaveUp, 0.0)};

@@ -78,13 +78,26 @@ TEST(SimulationSite, GeometryTakesAllGroundForFirm) {
             site.believed(Belief::Prior, world).ground({5, 5})->pull.value + 0.2);
 }
 
+// A plane too steep to be held across: who knows slopes along the heading only follows a contour and slides.
+TEST(SimulationSite, AlongOnlyDrivesWhereTheRoverSlides) {
+  costmap::GroundModel::Parts parts = costmap::testGround()->parts();
+  parts.classes.front().soil.cohesion_Pa = 200.0;
+  parts.classes.front().soil.friction_angle_rad = 0.52;
+  const costmap::TraversabilityMap map(costmap::drawn(plain(), 0.3),
+                                       std::make_shared<costmap::GroundModel>(parts), {});
+  const SimulationSite site(map,
+                            {.truth = {}, .start = {120.5, 206.5}, .goal = {120.5, 222.5}, .firm = rock()});
+  EXPECT_EQ(site.world(Belief::AlongOnly, 0).drive.outcome, Outcome::Slid);
+  EXPECT_EQ(site.world(Belief::Prior, 0).drive.outcome, Outcome::GaveUp);
+}
+
 TEST(SimulationSite, KeepOutStaysUnderEveryBelief) {
   auto rows = plain();
   rows[10][20] = '#';
   const auto map = costmap::mapOf(rows);
   const SimulationSite site(map, across({}));
   const TrueWorld world = site.trueWorld(0);
-  for (const Belief belief : {Belief::Geometry, Belief::Prior, Belief::OnLine, Belief::PerfectKnowledge})
+  for (const Belief belief : kBeliefs)
     EXPECT_TRUE(has(site.believed(belief, world).hazards({20, 19}), costmap::Hazard::KeepOut))
         << name(belief);
 }
