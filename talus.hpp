@@ -58,6 +58,7 @@ inline std::size_t editDistance(std::string_view a, std::string_view b) {
 /// the word's length (two edits for short words).
 inline std::string nearestName(std::string_view word, const std::vector<std::string>& known) {
   std::string nearest;
+  if (word.size() > 100) return nearest;  // no name is so long
   std::size_t fewest = std::max<std::size_t>(2, word.size() / 3) + 1;
   for (const std::string& name : known)
     if (const std::size_t edits = editDistance(word, name); edits < fewest) {

@@ -333,6 +333,7 @@ DriveState CrossSlope::state(const DriveTable& states, int row, int bin) const n
   for (int k = climbs.brakes; k <= climbs.leaves; ++k) {
     const DriveState& climb = states[static_cast<std::size_t>(k)];
     out.risk_per_m = std::max(out.risk_per_m, climb.risk_per_m);
+    out.weak = std::max(out.weak, climb.weak);
     if (k < bin) continue;
     out.pull_margin = std::min(out.pull_margin, climb.pull_margin);
     out.category = std::max(out.category, climb.category);

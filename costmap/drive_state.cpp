@@ -39,6 +39,7 @@ DriveState worse(const DriveState& a, const DriveState& b) noexcept {
           .energy_J_per_m = std::max(a.energy_J_per_m, b.energy_J_per_m),
           .time_s_per_m = std::max(a.time_s_per_m, b.time_s_per_m),
           .risk_per_m = std::max(a.risk_per_m, b.risk_per_m),
+          .weak = std::max(a.weak, b.weak),
           .pull_margin = std::min(a.pull_margin, b.pull_margin),
           .category = std::max(a.category, b.category),
           .refusal = a.refusal != Refusal::None ? a.refusal : b.refusal,

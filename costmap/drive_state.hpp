@@ -34,6 +34,7 @@ struct DriveState {
   float energy_J_per_m = 0.0F;  ///< drive and hotel, expected over the belief
   float time_s_per_m = 0.0F;    ///< expected over the belief
   float risk_per_m = 0.0F;      ///< hazard rate of immobilisation: P over d metres = 1 - exp(-risk_per_m d)
+  float weak = 0.0F;            ///< probability that the ground gives less than is asked, 0 to 1
   float pull_margin = 0.0F;     ///< drawbar pull over load at the reference slip minus the slope's demand [-]
   terramech::Category category = terramech::Category::Unknown;  ///< at this gradient along the heading
   Refusal refusal = Refusal::None;

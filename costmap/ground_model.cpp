@@ -235,6 +235,7 @@ DriveState GroundModel::state(int class_index, const GroundBelief& belief, doubl
   state.time_s_per_m = static_cast<float>(expected.time_s_per_m * surface);
   state.risk_per_m = static_cast<float>(-std::log1p(-policy.held() * std::min(weak, 1.0 - 1e-12)) /
                                         policy.correlation_length_m);
+  state.weak = static_cast<float>(weak);
   state.pull_margin = static_cast<float>(belief.pull.value - gradient);
   state.category = categoryAt(belief.pull.value, belief.sinkage.value, gradient);
   state.class_index = static_cast<std::uint8_t>(class_index);

@@ -47,6 +47,12 @@ struct SurfacePatch {
   maps::Raster<std::uint8_t> keep_out;  ///< not 0: must not be entered; 0 lifts what was declared
 };
 
+/// Ground that somebody declared impassable: the cells whose centre lies within the radius.
+struct RefusedPlace {
+  maps::Point place;
+  double radius_m = 0.0;
+};
+
 /// The ground as it was before anybody drove on it: what a map and its evidence share. Only the map changes it.
 struct GroundSite {
   static constexpr std::uint8_t kNoClass = 255;  ///< class number where the raster leaves a cell out

@@ -251,7 +251,8 @@ MapText textOf(const TraversabilityMap& map) {
                .coordinate_system = {},
                .source = map.elevation().source,
                .footprint_radius_m = map.footprintRadius_m(),
-               .ground = map.model().parts()};
+               .ground = map.model().parts(),
+               .refused = map.refused()};
   if (map.elevation().georeference) text.coordinate_system = map.elevation().georeference->system();
   return text;
 }
@@ -331,7 +332,11 @@ TraversabilityMap readMap(std::istream& stream, const MapReading& reading, const
     TraversabilityMap map(std::move(layers), std::move(model),
                           {.footprint_radius_m = text.footprint_radius_m, .threads = reading.threads}, watch);
     if (!restoreEvidence(evidence, map)) throw std::invalid_argument("its evidence is impossible");
-    if (!evidence.empty()) map.publishAll();
+    for (const RefusedPlace& refused : text.refused) map.refuse(refused.place, refused.radius_m);
+    if (!evidence.empty())
+      map.publishAll();
+    else if (!text.refused.empty())
+      map.publish();
     for (std::string drive; std::getline(drives, drive);) map.noteDrive(drive);
     return map;
   } catch (const std::invalid_argument& error) {

@@ -91,7 +91,7 @@ TraversabilityMap TraversabilityMap::moved(maps::Cell tiles, const ProgressMonit
     next.field_.restore(saved);
   });
   next.drives_ = drives_;
-  for (const Refusal& refusal : refusals_) next.refuse(refusal.place, refusal.radius_m);
+  for (const RefusedPlace& refusal : refusals_) next.refuse(refusal.place, refusal.radius_m);
   next.publishAll();
   CostGrid::Content content = next.published()->content();
   content.version = published()->version() + 1;

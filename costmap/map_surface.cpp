@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <utility>
 
 #include <talus/costmap/cell_boxes.hpp>
@@ -144,7 +145,7 @@ maps::CellBox TraversabilityMap::measureAgain(const maps::CellBox& window) {
   const SurfaceShape shapes(footprint(threads_));
   const maps::CellBox shaped = grown(window, shapes.reach(grid()), grid());
   const maps::CellBox judged = grown(shaped, inflationReach(limits_, grid().resolution_m) + 1, grid());
-  for (const Refusal& refusal : refusals_) mark(refusal, false);
+  for (const RefusedPlace& refusal : refusals_) mark(refusal, false);
   forEachCell(judged, [&](maps::Cell cell) {
     hazards_[cell] = without(hazards_[cell], Hazard::Near) | layerHazards(cell);
   });
@@ -160,7 +161,7 @@ maps::CellBox TraversabilityMap::measureAgain(const maps::CellBox& window) {
       },
       {});
   inflate(hazards_, limits_, spreading(), judged);
-  for (const Refusal& refusal : refusals_) mark(refusal, true);
+  for (const RefusedPlace& refusal : refusals_) mark(refusal, true);
   return judged;
 }
 
@@ -175,13 +176,15 @@ CellCode TraversabilityMap::coded(maps::Cell cell, CellCode code) {
 }
 
 void TraversabilityMap::refuse(const maps::Point& place, double radius_m) {
+  if (!std::isfinite(place.x_m) || !std::isfinite(place.y_m) || !std::isfinite(radius_m) || radius_m <= 0.0)
+    throw std::invalid_argument("refuse: the place must be finite, the radius finite and > 0");
   const MapChange change(*published_, "refuse");
   refusals_.push_back({place, radius_m});
   changed_.push_back(mark(refusals_.back(), true));
 }
 
 // Marks the cells of a refusal, or gives them back to their layers. The box around them.
-maps::CellBox TraversabilityMap::mark(const Refusal& refusal, bool refused) {
+maps::CellBox TraversabilityMap::mark(const RefusedPlace& refusal, bool refused) {
   const double cell_m = grid().resolution_m;
   const auto clamped = [](double value, int cells) {
     return static_cast<int>(std::clamp(std::floor(value), 0.0, static_cast<double>(cells - 1)));

@@ -45,7 +45,7 @@ class Writer {
     (*this)(name, value);
   }
   template <typename T>
-  void count(const std::string& name, const std::vector<T>& list) {
+  void count(const std::string& name, const std::vector<T>& list, std::size_t = 0) {
     if (!list.empty()) (*this)(name, list.size());
   }
   /// A line only where it holds: files without it stay as they were.
@@ -98,10 +98,10 @@ class Reader {
 
   /// Makes the list as long as is written; none where nothing is.
   template <typename T>
-  void count(const std::string& name, std::vector<T>& list) {
+  void count(const std::string& name, std::vector<T>& list, std::size_t most = 1000) {
     std::size_t size = 0;
     if (values_.contains(name)) (*this)(name, size);
-    if (size > 1000) fail("'" + name + "' is " + std::to_string(size));
+    if (size > most) fail("'" + name + "' is " + std::to_string(size));
     list.resize(size);
   }
 
@@ -226,6 +226,8 @@ void visitClass(V& v, C& c, const std::string& at) {
   v(at + "soil.c1", soil.c1);
   v(at + "soil.c2", soil.c2);
   v(at + "soil.density_kg_m3", soil.density_kg_m3);
+  v.added(at + "soil.digging_exponent", soil.digging_exponent);
+  v.added(at + "soil.side_bulldozing", soil.side_bulldozing);
   v.count(at + "effects", c.effects);
   for (std::size_t k = 0; k < c.effects.size(); ++k)
     visitEffect(v, c.effects[k], at + "effect." + std::to_string(k) + '.');
@@ -249,6 +251,18 @@ void visitPolicy(V& v, P& policy) {
   v("policy.correlation_length_m", policy.correlation_length_m);
 }
 
+template <typename V, typename R>
+void visitRefused(V& v, R& refused) {
+  constexpr std::size_t kMost = 1'000'000;
+  v.count("refused", refused, kMost);
+  for (std::size_t k = 0; k < refused.size(); ++k) {
+    const std::string at = "refused." + std::to_string(k) + '.';
+    v(at + "x_m", refused[k].place.x_m);
+    v(at + "y_m", refused[k].place.y_m);
+    v(at + "radius_m", refused[k].radius_m);
+  }
+}
+
 std::string classPrefix(std::size_t i) {
   return "class." + std::to_string(i) + ".";
 }
@@ -267,6 +281,7 @@ std::string written(const MapText& text) {
   v("classes", text.ground.classes.size());
   for (std::size_t i = 0; i < text.ground.classes.size(); ++i)
     visitClass(v, text.ground.classes[i], classPrefix(i));
+  visitRefused(v, text.refused);
   return v.take();
 }
 
@@ -287,6 +302,7 @@ MapText parsed(const std::string& lines, const std::string& name) {
     throw InputError({name, "damaged: " + std::to_string(classes) + " classes", "write the map again"});
   text.ground.classes.resize(classes);
   for (std::size_t i = 0; i < classes; ++i) visitClass(v, text.ground.classes[i], classPrefix(i));
+  visitRefused(v, text.refused);
   v.done();
   return text;
 }

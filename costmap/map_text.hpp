@@ -3,8 +3,10 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <talus/costmap/ground_model.hpp>
+#include <talus/costmap/ground_site.hpp>
 #include <talus/maps/elevation_map.hpp>
 
 namespace talus::costmap {
@@ -17,6 +19,7 @@ struct MapText {
   std::string source;
   double footprint_radius_m = 0.0;
   GroundModel::Parts ground;
+  std::vector<RefusedPlace> refused{};
 };
 
 /// The lines of a map's text.

@@ -51,7 +51,8 @@ maps::Grid gridOf(const SurfacePatch& patch) {
   requireSame(grid, patch.rock_abundance, "rock_abundance");
   requireSame(grid, patch.classes, "classes");
   requireSame(grid, patch.keep_out, "keep_out");
-  if (!grid) refuse("no layer has a cell; give heights, rocks, classes or keep-out");
+  if (!grid || grid->width < 1 || grid->height < 1)
+    refuse("no layer has a cell; give heights, rocks, classes or keep-out");
   return *grid;
 }
 
@@ -83,15 +84,26 @@ void requireHeights(const maps::Raster<float>& elevation_m, const SurfaceKeys& k
   }
 }
 
-void requireShares(const maps::Raster<float>& rock_abundance) {
-  for (std::size_t i = 0; i < rock_abundance.values().size(); ++i) {
-    const float share = rock_abundance.values()[i];
-    if (std::isnan(share) || (share >= 0.0F && share <= 1.0F)) continue;
+struct Bounds {
+  double low, high;
+};
+
+// Values that are NaN or within a range; what lies beyond, where, and what it must be.
+std::optional<std::string> impossible(const char* layer, const maps::Raster<float>& raster,
+                                      const Bounds& range) {
+  for (std::size_t i = 0; i < raster.values().size(); ++i) {
+    const auto value = static_cast<double>(raster.values()[i]);
+    if (std::isnan(value) || (value >= range.low && value <= range.high)) continue;
     std::ostringstream what;
-    what << "rock_abundance = " << share << ' ' << text(rock_abundance.grid(), i)
-         << ", must be NaN or 0 to 1";
-    refuse(what.str());
+    what << layer << " = " << value << ' ' << text(raster.grid(), i) << ", must be NaN or " << range.low
+         << " to " << range.high;
+    return what.str();
   }
+  return std::nullopt;
+}
+
+std::optional<std::string> impossibleShare(const maps::Raster<float>& rock_abundance) {
+  return impossible("rock_abundance", rock_abundance, {0.0, 1.0});
 }
 
 bool saysNothing(const SurfacePatch& patch) {
@@ -123,8 +135,19 @@ maps::CellBox placeOf(const SurfacePatch& patch, const GroundSite& site, bool an
     refuse("classes, but the map has none; build it with a class raster");
   if (saysNothing(patch)) refuse("all of " + text(grid) + " is NaN or without a class; nothing was observed");
   requireHeights(patch.elevation_m, site.keys, any_height);
-  requireShares(patch.rock_abundance);
+  if (const auto what = impossibleShare(patch.rock_abundance)) refuse(*what);
   return box;
+}
+
+void requirePossible(const MapLayers& layers) {
+  const maps::Grid& grid = layers.elevation.grid();
+  if (!(grid.resolution_m >= 1e-3 && grid.resolution_m <= 1e6 && std::isfinite(grid.south_west.x_m) &&
+        std::isfinite(grid.south_west.y_m)))
+    throw std::invalid_argument("TraversabilityMap: " + text(grid) +
+                                ", must be finite, of 0.001 m to 1000 km");
+  auto what = impossible("elevation_m", layers.elevation.elevation_m, {-kHighest_m, kHighest_m});
+  if (!what) what = impossibleShare(layers.rock_abundance);
+  if (what) throw std::invalid_argument("TraversabilityMap: " + *what);
 }
 
 double middleElevation(const maps::Raster<float>& elevation_m) {

@@ -47,6 +47,7 @@ void requireCosts(const std::vector<CostLayer>& costs, const maps::Grid& grid) {
 
 std::shared_ptr<GroundSite> siteOf(MapLayers& layers, std::shared_ptr<const GroundModel> model) {
   requireCosts(layers.costs, layers.elevation.grid());
+  requirePossible(layers);
   const SurfaceKeys keys(layers.elevation.grid(), middleElevation(layers.elevation.elevation_m));
   return std::make_shared<GroundSite>(GroundSite{.elevation = std::move(layers.elevation),
                                                  .classes = std::move(layers.classes),

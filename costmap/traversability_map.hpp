@@ -122,8 +122,11 @@ class TraversabilityMap {
   }
 
   /// Declares the ground around a place impassable, as a driver does who got stuck there: Hazard::Obstacle on
-  /// every cell whose centre lies within the radius. Planners see it after publish().
+  /// every cell whose centre lies within the radius, > 0. Planners see it after publish(); a map file keeps it.
+  /// Throws std::invalid_argument for a place or radius that is no finite number.
   void refuse(const maps::Point& place, double radius_m);
+  /// All such places, in order.
+  const std::vector<RefusedPlace>& refused() const noexcept { return refusals_; }
 
   /// Takes a window of ground in and publishes it, with all that was learned before, as one new version: heights,
   /// rocks, classes and keep-out count from then on as if the map had been built with them. Measures only the cells
@@ -154,11 +157,6 @@ class TraversabilityMap {
   const SurfaceKeys& keys() const noexcept { return site_->keys; }
 
  private:
-  // Ground that somebody declared impassable.
-  struct Refusal {
-    maps::Point place;
-    double radius_m = 0.0;
-  };
   // New codes of the cells of a box, on a grid of its own, with their gradients alone.
   struct Measured {
     maps::CellBox box;
@@ -172,7 +170,7 @@ class TraversabilityMap {
   Hazard layerHazards(maps::Cell cell) const;
   Hazard rocksOn(float abundance) const;
   Hazard spreading() const noexcept;
-  maps::CellBox mark(const Refusal& refusal, bool refused);
+  maps::CellBox mark(const RefusedPlace& refusal, bool refused);
   CellBelief belief(maps::Cell cell, EvidenceField::Beliefs& beliefs) const;
   std::uint8_t categoryOf(const CostGrid& grid, maps::Cell cell) const noexcept;
   CellCode coded(maps::Cell cell, CellCode code);
@@ -192,7 +190,7 @@ class TraversabilityMap {
   EvidenceField field_;
   std::vector<maps::CellBox> learned_;  // since the last version
   std::vector<maps::CellBox> changed_;  // otherwise, since the last version
-  std::vector<Refusal> refusals_;
+  std::vector<RefusedPlace> refusals_;
   std::optional<Measured> measured_;  // not published yet
   std::set<std::string> drives_;
   std::unique_ptr<PublishedMap> published_;  // the atomic in it cannot move

@@ -64,7 +64,7 @@ void bindPlan(CLI::App& command, PlanOptions& options) {
   command
       .add_option("--risk", options.max_risk, "upper limit of the immobilisation probability of the route")
       ->type_name("ALPHA")
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(within(1e-12, 1.0 - 1e-12));
   groupOptions(command, "Planner");
   addDriveOptions(command, options.drive);
   addOutputs(command, options);

@@ -41,7 +41,7 @@ typedef struct talus_error {
 /* talus_default_rover() fills in what is common; give the rest. */
 typedef struct talus_rover {
   size_t size;
-  int wheel_count; /* even, >= 2 */
+  int wheel_count; /* even, 4 to 12 */
   double mass_kg;
   double gravity_m_s2;
   double wheel_radius_m, wheel_width_m;
@@ -87,12 +87,13 @@ typedef struct talus_options {
   double time_limit_s;   /* of a plan; 0: none */
 } talus_options;
 
-/* What one wheel read at one moment; NaN: not measured. Wheels read together have the same time_s. */
+/* What one wheel read at one moment; NaN: not measured. Wheels read together have the same time_s. A reading that is
+   missing or impossible is left out for what it says of strength; what its row says of danger is kept. */
 typedef struct talus_wheel {
   size_t size;
   int wheel; /* its number on the rover */
   double time_s, x_m, y_m;
-  double load_N, slip; /* must be there */
+  double load_N, slip;
   double torque_Nm, sinkage_m, slope_rad, heading_rad;
   double pose_std_m; /* how well the place is known */
 } talus_wheel;

@@ -27,15 +27,11 @@ class Checker {
  public:
   explicit Checker(const CostGrid& map) : map_(map), side_m_(map.grid().resolution_m) {}
   /// Hears of soil that is weaker than required with more than this probability, too.
-  Checker(const CostGrid& map, double quantile) : Checker(map) {
-    const costmap::SoilDoubt& soil = map.cost().doubt();
-    doubt_length_m_ = soil.correlation_length_m > 0.0 ? soil.correlation_length_m : 1.0;
-    entrapment_ = soil.entrapment;
-    most_risk_per_m_ = -std::log1p(-entrapment_ * quantile) / doubt_length_m_;
-  }
+  Checker(const CostGrid& map, double quantile) : Checker(map) { quantile_ = quantile; }
 
   void segment(Point from, Point to) {
     const double length_m = std::hypot(to.x_m - from.x_m, to.y_m - from.y_m);
+    if (!std::isfinite(length_m)) return report(std::nullopt, from, "outside the map");
     if (!(length_m > kOn * side_m_)) return place(from);
     heading_ = {(to.x_m - from.x_m) / length_m, (to.y_m - from.y_m) / length_m};
     const std::vector<double>& cuts = crossings(from, to);
@@ -137,13 +133,15 @@ class Checker {
   const std::vector<double>& crossings(Point from, Point to) {
     std::vector<double>& cuts = cuts_;
     cuts.assign({0.0, 1.0});
-    const auto add = [&cuts](double a, double b) {
-      for (double line = std::ceil(std::min(a, b)); line <= std::max(a, b); line += 1.0)
+    // Beyond the map's edge no line divides anything.
+    const auto add = [&cuts](double a, double b, int lines) {
+      const double last = std::min(std::max(a, b), static_cast<double>(lines));
+      for (double line = std::max(std::ceil(std::min(a, b)), 0.0); line <= last; line += 1.0)
         if (std::abs(b - a) > kOn) cuts.push_back(std::clamp((line - a) / (b - a), 0.0, 1.0));
     };
     const auto& corner = map_.grid().south_west;
-    add((from.x_m - corner.x_m) / side_m_, (to.x_m - corner.x_m) / side_m_);
-    add((from.y_m - corner.y_m) / side_m_, (to.y_m - corner.y_m) / side_m_);
+    add((from.x_m - corner.x_m) / side_m_, (to.x_m - corner.x_m) / side_m_, map_.grid().width);
+    add((from.y_m - corner.y_m) / side_m_, (to.y_m - corner.y_m) / side_m_, map_.grid().height);
     std::sort(cuts.begin(), cuts.end());
     return cuts;
   }
@@ -163,18 +161,18 @@ class Checker {
         if (turned >= std::min(0.0, turn)) cuts.push_back(turned / turn);
       }
     };
-    const auto lines = [&](double middle, double corner, auto headings) {
-      const double low = (middle - std::abs(r) - corner) / side_m_,
-                   high = (middle + std::abs(r) - corner) / side_m_;
+    const auto lines = [&](double middle, double corner, int count, auto headings) {
+      const double low = std::max((middle - std::abs(r) - corner) / side_m_, 0.0),
+                   high = std::min((middle + std::abs(r) - corner) / side_m_, static_cast<double>(count));
       for (double line = std::ceil(low); line <= high; line += 1.0)
         headings(std::clamp((corner + line * side_m_ - middle) / r, -1.0, 1.0));
     };
     const Point& corner = map_.grid().south_west;
-    lines(centre.x_m, corner.x_m, [&](double sine) {
+    lines(centre.x_m, corner.x_m, map_.grid().width, [&](double sine) {
       atHeading(std::asin(sine));
       atHeading(M_PI - std::asin(sine));
     });
-    lines(centre.y_m, corner.y_m, [&](double minus_cosine) {
+    lines(centre.y_m, corner.y_m, map_.grid().height, [&](double minus_cosine) {
       atHeading(std::acos(-minus_cosine));
       atHeading(-std::acos(-minus_cosine));
     });
@@ -199,7 +197,7 @@ class Checker {
   void enter(Cell cell, Point where) {
     const auto code = map_.at(cell);
     if (std::isfinite(map_.cost().costPerMetre(code, heading_))) {
-      if (entrapment_ > 0.0) doubt(cell, code, where);
+      if (quantile_ < 1.0) doubt(cell, code, where);
       return;
     }
     const auto refusal = map_.cost().detail(code, heading_).refusal;
@@ -208,10 +206,8 @@ class Checker {
   }
 
   void doubt(Cell cell, costmap::CellCode code, Point where) {
-    const double risk_per_m = static_cast<double>(map_.cost().detail(code, heading_).risk_per_m);
-    if (!(risk_per_m > most_risk_per_m_)) return;
-    const double probability = std::min(-std::expm1(-risk_per_m * doubt_length_m_) / entrapment_, 1.0);
-    report(cell, where, "the soil may give less drawbar pull than required", probability);
+    const double weak = static_cast<double>(map_.cost().detail(code, heading_).weak);
+    if (weak > quantile_) report(cell, where, "the soil may give less drawbar pull than required", weak);
   }
 
   double alongAt(Point where) const noexcept {
@@ -220,7 +216,7 @@ class Checker {
 
   const CostGrid& map_;
   double side_m_;
-  double entrapment_ = 0.0, doubt_length_m_ = 1.0, most_risk_per_m_ = 0.0;  // 0: soil is not asked
+  double quantile_ = 1.0;  // 1: soil is not asked
   Point from_;
   double along_m_ = 0.0;
   Direction heading_;
@@ -266,6 +262,7 @@ std::vector<Danger> dangers(const CostGrid& map, const std::vector<Point>& route
       throw std::invalid_argument("dangers: point " + std::to_string(i) + " is not finite");
   Checker checker(map, quantile);
   check(checker, route);
+  std::ranges::stable_sort(checker.dangers, {}, &Danger::along_m);
   return std::move(checker.dangers);
 }
 

@@ -44,8 +44,7 @@ struct Danger {
 
 /// A run-time monitor for anybody's path: violations(), and every cell whose soil gives less pull than the slope asks
 /// with more than this probability, 0 < quantile < 1; that is, where the quantile of the believed pull falls short.
-/// The probability is that of the cost, inverted: risk_per_m = -ln(1 - entrapment P) / correlation length
-/// (costmap/README.md), of the ground that any wheel may stand on. Cells whose table is not known (tests) are judged by
+/// The probability is that behind the cost (DriveState::weak), of the ground that any wheel may stand on. Cells whose table is not known (tests) are judged by
 /// violations() alone. Empty for a route that may be driven. Throws std::invalid_argument for a quantile out of range.
 std::vector<Danger> dangers(const costmap::CostGrid& map, const std::vector<maps::Point>& route,
                             double quantile = 0.05);

@@ -167,7 +167,7 @@ PluginPlanner::PluginPlanner(std::string file, std::string planner)
         loaded->configure({.planner = planner_});
         return kText + oneLine(loaded->capabilities().planner + " of " + offers.name);
       },
-      {.seconds = 120.0, .bytes = 10 * kLongestPluginText, .memory = kMostMemory}, {});
+      {.seconds = 10.0, .bytes = 10 * kLongestPluginText, .memory = kMostMemory}, {});
   name_ = bytes.substr(1);
 }
 

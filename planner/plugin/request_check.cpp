@@ -14,7 +14,16 @@ namespace {
   throw std::invalid_argument(text.str());
 }
 
+void requireFinite(const std::string& field, const maps::Point& place) {
+  if (!std::isfinite(place.x_m)) outOfRange(field + ".x_m", place.x_m, "finite");
+  if (!std::isfinite(place.y_m)) outOfRange(field + ".y_m", place.y_m, "finite");
+}
+
 void requireRanges(const PlanRequest& request) {
+  requireFinite("start", request.start);
+  requireFinite("goal", request.goal);
+  for (const maps::Point& goal : request.other_goals) requireFinite("other_goals", goal);
+  for (const maps::Point& via : request.via) requireFinite("via", via);
   const auto finite = [](const char* field, const std::optional<double>& heading_rad) {
     if (heading_rad && !std::isfinite(*heading_rad)) outOfRange(field, *heading_rad, "finite");
   };

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <talus/terramech/contact/rover.hpp>
 #include <talus/terramech/numerics/range.hpp>
 
@@ -40,6 +42,8 @@ void validate(const Rover& rover) {
   check.within("wheels.width_m", rover.wheel.width_m, {1e-3, 10.0});
   check.within("wheelbase_m", rover.wheelbase_m, {1e-3, 100.0});
   check.within("track_m", rover.track_m, {1e-3, 100.0});
+  // A belly higher than the rover is long and wide is a slip of units: steps and rocks would vanish under it.
+  check.within("clearance_m", rover.clearance_m, {1e-3, std::max(rover.wheelbase_m, rover.track_m)});
 }
 
 }  // namespace talus::terramech

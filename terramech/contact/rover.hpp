@@ -18,7 +18,7 @@ struct Rover {
   Wheel wheel;                    ///< one of its wheels
   double wheelbase_m = 0.0;       ///< first to last axle, > 0
   double track_m = 0.0;           ///< left to right wheel centres, > 0
-  double clearance_m = 0.0;       ///< ground to belly, > 0
+  double clearance_m = 0.0;       ///< ground to belly, > 0, at most the larger of wheelbase and track
   double centre_of_mass_height_m =
       0.0;  ///< above ground, >= 0; 0: unknown, no load moves on a slope, none tips
   double centre_of_mass_ahead_m = 0.0;  ///< of the middle of the wheelbase, within it

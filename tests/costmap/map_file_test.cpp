@@ -93,6 +93,43 @@ TEST(MapFile, KeepsTheEffectsOfItsGround) {
   EXPECT_NE(back.model().prior(0).pull.value, testGround()->prior(0).pull.value);
 }
 
+TEST(MapFile, KeepsWhatSoilAndRoverNeedAcrossASlope) {
+  GroundModel::Parts parts = testGround()->parts();
+  parts.classes[0].soil.digging_exponent = 0.1;
+  parts.classes[0].soil.side_bulldozing = 0.0;
+  parts.rover.centre_of_mass_ahead_m = 0.1;
+  parts.rover.centre_of_mass_left_m = -0.05;
+  const TraversabilityMap map(drawn({"11", "12"}), std::make_shared<GroundModel>(parts), {});
+  const TraversabilityMap back = fromBytes(bytesOf(map));
+  EXPECT_EQ(bytesOf(back), bytesOf(map));
+  const GroundModel::Parts& read = back.model().parts();
+  EXPECT_EQ(read.classes[0].soil.digging_exponent, 0.1);
+  EXPECT_EQ(read.classes[0].soil.side_bulldozing, 0.0);
+  EXPECT_EQ(read.rover.centre_of_mass_ahead_m, 0.1);
+  EXPECT_EQ(read.rover.centre_of_mass_left_m, -0.05);
+}
+
+// A place where a driver got stuck stays refused after a restart.
+TEST(MapFile, KeepsRefusedPlaces) {
+  TraversabilityMap map = mapOf(std::vector<std::string>(12, std::string(12, '1')));
+  map.refuse({106.0, 206.0}, 2.1);
+  map.refuse({101.0, 201.0}, 1.0);
+  map.publish();
+  const TraversabilityMap back = fromBytes(bytesOf(map));
+  EXPECT_EQ(bytesOf(back), bytesOf(map));
+  int refused = 0;
+  for (int row = 0; row < 12; ++row)
+    for (int column = 0; column < 12; ++column) {
+      EXPECT_EQ(back.code({column, row}), map.code({column, row}));
+      EXPECT_EQ(back.hazards({column, row}), map.hazards({column, row}));
+      refused += has(back.hazards({column, row}), Hazard::Obstacle) ? 1 : 0;
+    }
+  EXPECT_GT(refused, 10);
+  for (const double bad : {0.0, -1.0, static_cast<double>(NAN), static_cast<double>(INFINITY)})
+    EXPECT_THROW(map.refuse({106.0, 206.0}, bad), std::invalid_argument);
+  EXPECT_THROW(map.refuse({NAN, 206.0}, 1.0), std::invalid_argument);
+}
+
 TEST(MapFile, StockOctoMapReadsItAndStopsBehindTheNodes) {
   std::istringstream stream(bytesOf(site()));
   const std::unique_ptr<octomap::AbstractOcTree> tree(octomap::AbstractOcTree::read(stream));

@@ -112,6 +112,27 @@ TEST(SurfacePatch, IsRefusedInOneLineAndLeavesTheMapAsItWas) {
   }
 }
 
+// A map is refused what a patch of it is refused: no such height and no such share of rocks would count as none.
+TEST(SurfacePatch, MapsAreHeldToTheSame) {
+  for (const float bad : {1e30F, INFINITY, -INFINITY}) {
+    MapLayers layers = flat();
+    layers.elevation.elevation_m[{1, 2}] = bad;
+    EXPECT_THROW(TraversabilityMap(std::move(layers), testGround(), {}), std::invalid_argument) << bad;
+  }
+  for (const float bad : {-9999.0F, -INFINITY, 2.0F}) {
+    MapLayers layers = flat();
+    layers.rock_abundance = maps::Raster<float>(layers.elevation.grid(), 0.0F);
+    layers.rock_abundance[{1, 2}] = bad;
+    EXPECT_THROW(TraversabilityMap(std::move(layers), testGround(), {}), std::invalid_argument) << bad;
+  }
+  for (const double bad : {1e-9, 1e9, static_cast<double>(NAN)}) {
+    MapLayers layers;
+    const maps::Grid grid{.width = 4, .height = 4, .resolution_m = bad, .south_west = {}};
+    layers.elevation.elevation_m = maps::Raster<float>(grid, 0.0F);
+    EXPECT_THROW(TraversabilityMap(std::move(layers), testGround(), {}), std::invalid_argument) << bad;
+  }
+}
+
 TEST(SurfacePatch, ClassesNeedAMapWithClasses) {
   MapLayers layers = flat();
   layers.classes = {};

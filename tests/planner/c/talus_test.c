@@ -2,6 +2,7 @@
 #include <math.h>
 #include <pthread.h>
 #include <stdatomic.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -159,13 +160,38 @@ static void learnsFromWheels(void) {
   CHECK(used == 1);
   CHECK(talus_read_cells(session, 20, 20, 1, 1, &after, 1, &error) == TALUS_OK);
   CHECK(after.pull_mean < before.pull_mean && after.sinkage_mean > before.sinkage_mean);
-  row.load_N = 0.0;
-  REFUSED(talus_learn(session, &row, 1, &used, &error), "row 0: load_N must be > 0");
-  row.load_N = 36.5;
-  row.slip = NAN;
-  REFUSED(talus_learn(session, &row, 1, &used, &error), "slip must be -1 to 1");
   REFUSED(talus_learn(session, NULL, 1, &used, &error), "rows is NULL");
   CHECK(talus_destroy(session, &error) == TALUS_OK);
+}
+
+/* Three wheels spin; what the fourth's sensors say, or do not, takes nothing from that. */
+static void hearsDangerBesideADeadSensor(void) {
+  const struct {
+    size_t at;
+    double value;
+  } dead[] = {{offsetof(talus_wheel, slip), 0.97},         {offsetof(talus_wheel, slip), NAN},
+              {offsetof(talus_wheel, slip), 1.02},         {offsetof(talus_wheel, slip), INFINITY},
+              {offsetof(talus_wheel, load_N), NAN},        {offsetof(talus_wheel, load_N), 0.0},
+              {offsetof(talus_wheel, time_s), NAN},        {offsetof(talus_wheel, sinkage_m), -1.0},
+              {offsetof(talus_wheel, pose_std_m), -INFINITY}};
+  size_t c, used;
+  int moment, wheel;
+  for (c = 0; c < sizeof dead / sizeof dead[0]; ++c) {
+    const talus_session session = made();
+    talus_cell cell;
+    for (moment = 0; moment < 5; ++moment) {
+      talus_wheel rows[4];
+      for (wheel = 0; wheel < 4; ++wheel) {
+        const talus_wheel row = {sizeof row, wheel, moment, 10.0, 10.0, 36.5, 0.97, 3.0, 0.1, 0.0, 0.0, 0.1};
+        rows[wheel] = row;
+      }
+      memcpy((char *)&rows[3] + dead[c].at, &dead[c].value, sizeof dead[c].value);
+      CHECK(talus_learn(session, rows, 4, &used, &error) == TALUS_OK);
+    }
+    CHECK(talus_read_cells(session, 20, 20, 1, 1, &cell, 1, &error) == TALUS_OK);
+    CHECK(cell.category == 2);
+    CHECK(talus_destroy(session, &error) == TALUS_OK);
+  }
 }
 
 /* Two threads on one session: each call is done whole, or busy; a third session is nobody's business. */
@@ -207,6 +233,7 @@ int main(void) {
   refusesWhatCannotBe();
   patchesPlansAndReadsBack();
   learnsFromWheels();
+  hearsDangerBesideADeadSensor();
   servesTwoThreads();
   return 0;
 }

@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <cmath>
 #include <random>
 
+#include <gmock/gmock.h>
 #include <site_fixture.hpp>
 
 #include <talus/costmap/traversability_map.hpp>
@@ -106,7 +108,7 @@ TEST(RouteCheck, AgreesWithMotionCostAndFineSampling) {
 }
 
 // A slope that becomes steeper eastwards, on soil that is not quite known.
-costmap::TraversabilityMap steepening() {
+costmap::TraversabilityMap steepening(const costmap::DrivePolicy& policy = {}) {
   costmap::MapLayers layers;
   const maps::Grid grid{.width = 120, .height = 20, .resolution_m = 0.5, .south_west = {}};
   layers.elevation.elevation_m = maps::Raster<float>(grid);
@@ -115,7 +117,7 @@ costmap::TraversabilityMap steepening() {
       const double x = grid.centre({column, row}).x_m;
       layers.elevation.elevation_m[{column, row}] = static_cast<float>(0.5 * 0.006 * x * x);
     }
-  return {std::move(layers), costmap::testGround(), {.footprint_radius_m = 1.0}};
+  return {std::move(layers), costmap::testGround(policy), {.footprint_radius_m = 1.0}};
 }
 
 // Closed form: P(pull < gradient) of a normal belief is a straight line over the gradient in standard deviations,
@@ -160,13 +162,43 @@ TEST(RouteMonitor, HoldsWhatTheCheckHolds) {
     for (int k = 0; k < 6; ++k) route.push_back({grid.width * share(random), grid.height * share(random)});
     const auto hard = violations(*map, route);
     const auto found = dangers(*map, route, 0.5);
-    ASSERT_EQ(found.size(), hard.size());
-    for (std::size_t i = 0; i < hard.size(); ++i) {
-      EXPECT_EQ((Violation{found[i].place, found[i].reason}), hard[i]);
-      EXPECT_EQ(found[i].probability, 1.0);
+    std::vector<Violation> told;
+    for (const Danger& d : found) {
+      told.push_back({d.place, d.reason});
+      EXPECT_EQ(d.probability, 1.0);
     }
+    EXPECT_THAT(told, ::testing::UnorderedElementsAreArray(hard));
+    EXPECT_TRUE(std::ranges::is_sorted(found, {}, &Danger::along_m));
   }
   EXPECT_TRUE(dangers(*steepening().published(), {{30.0, 5.25}, {2.0, 5.25}}).empty());
+}
+
+// Property: how often weak ground holds a rover changes the cost, not what is told of the ground.
+TEST(RouteMonitor, HearsOfWeakSoilWhateverHoldsTheRover) {
+  const std::vector<maps::Point> up{{2.0, 5.25}, {58.0, 5.25}};
+  const auto usual = dangers(*steepening().published(), up, 0.02);
+  ASSERT_GT(usual.size(), 4U);
+  for (const double entrapment : {0.0, 1e-300, 1.0}) {
+    costmap::DrivePolicy policy;
+    policy.entrapment = entrapment;
+    const auto found = dangers(*steepening(policy).published(), up, 0.02);
+    ASSERT_EQ(found.size(), usual.size()) << entrapment;
+    for (std::size_t i = 0; i < usual.size(); ++i)
+      EXPECT_EQ(found[i].probability, usual[i].probability) << entrapment;
+  }
+}
+
+// A vertex that is nowhere costs no more than one beside the map.
+TEST(RouteCheck, FarVerticesLieOutsideTheMap) {
+  const auto map = drawn({"....", "....", "...."});
+  for (const double far : {1e3, 1e9, 1e14, 1e300}) {
+    for (const maps::Point out : {maps::Point{far, 1.5}, maps::Point{1.5, -far}, maps::Point{-far, far}}) {
+      const auto found = violations(*map, {{1.5, 1.5}, out, {2.5, 1.5}});
+      ASSERT_FALSE(found.empty()) << far;
+      for (const Violation& v : found) EXPECT_EQ(v.reason, "outside the map");
+      EXPECT_FALSE(dangers(*map, {{1.5, 1.5}, out}).empty());
+    }
+  }
 }
 
 TEST(RouteMonitor, RefusesWhatIsNoQuantileAndNoPlace) {

@@ -70,6 +70,13 @@ TEST(RequestCheck, ValuesOutOfRangeAreRefusedWithTheirBound) {
   EXPECT_THAT(refused(request),
               ThrowsMessage<std::invalid_argument>(HasSubstr("start_heading_rad = nan, must be finite")));
   request = {};
+  request.goal.x_m = INFINITY;
+  EXPECT_THAT(refused(request),
+              ThrowsMessage<std::invalid_argument>(HasSubstr("goal.x_m = inf, must be finite")));
+  request = {};
+  request.via = {{1.0, NAN}};
+  EXPECT_THROW(requireHonoured(request, {.via_points = true}), std::invalid_argument);
+  request = {};
   request.tolerance_m = -1.0;
   EXPECT_THAT(refused(request),
               ThrowsMessage<std::invalid_argument>(HasSubstr("tolerance_m = -1, must be >= 0")));

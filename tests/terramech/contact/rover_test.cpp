@@ -41,6 +41,9 @@ TEST(Rover, EveryLengthMassAndLimitIsChecked) {
     r.*field = -1.0;
     EXPECT_THROW(validate(r), std::invalid_argument);
   }
+  Rover in_millimetres = rover();
+  in_millimetres.clearance_m = 250.0;
+  EXPECT_THROW(validate(in_millimetres), std::invalid_argument);
   for (double Rover::*field : {&Rover::max_pitch_rad, &Rover::max_roll_rad})
     for (const double bad : {-0.1, 1.6, std::nan("")}) {
       Rover r = rover();
