@@ -98,15 +98,6 @@ double variance(double weight) noexcept {
   return kModel * kModel + 1.0 / weight;
 }
 
-// What readings that prove nothing show beyond their own noise, one standard deviation: of ground that departs from
-// its class by no more than the class does. What is weaker than that counts in full.
-double beyondNoise(double departure, double of_variance, double class_std) noexcept {
-  constexpr double kOrdinary = 2.0;  // standard deviations that a class explains
-  if (departure > 0.0 || departure < -kOrdinary * std::sqrt(class_std * class_std + of_variance))
-    return departure;
-  return std::min(departure + std::sqrt(of_variance), 0.0);
-}
-
 // The reading of all that leaves least, taken by itself.
 void keepWeakest(double pull, double of_variance, const Estimate& prior, BlockEvidence& block,
                  double& least) {
@@ -128,21 +119,13 @@ void summarisePull(std::span<const ReadingCount> counts, const Estimate& prior, 
       if (heard.empty()) continue;
       Part part;
       addWeakest(heard, std, 1.0, pullOf, part);
-      const double of_variance = variance(part.count / (std * std));
-      const double shown = first == kind::kPull
-                               ? part.value
-                               : prior.value + beyondNoise(part.value - prior.value, of_variance, prior.std);
-      keepWeakest(shown, of_variance, prior, block, least);
+      keepWeakest(part.value, variance(part.count / (std * std)), prior, block, least);
       all.add(part, std);
       if (first == kind::kPull) raising.add(part, std);
       block.lowers |= first == kind::kPullLowers;
     }
   }
-  if (all.weight > 0.0) {
-    const double of_variance = variance(all.weight);
-    keepWeakest(prior.value + beyondNoise(all.sum / all.weight - prior.value, of_variance, prior.std),
-                of_variance, prior, block, least);
-  }
+  if (all.weight > 0.0) keepWeakest(all.sum / all.weight, variance(all.weight), prior, block, least);
   if (all.weight <= 0.0) block.weak_pull = block.weak_variance = kNone;
   block.pull = raising.weight > 0.0 ? static_cast<float>(raising.sum / raising.weight) : kNone;
   block.variance = raising.weight > 0.0 ? static_cast<float>(variance(raising.weight)) : kNone;

@@ -15,7 +15,8 @@ constexpr double kOrdinary = 2.0;          // standard deviations that a class e
 constexpr double kPoseReach = 2.0;         // standard deviations of the pose
 constexpr double kFarthestReach_m = 25.5;  // as BlockEvidence keeps it
 constexpr double kPlaceStd = 0.06;         // a place is known that is known so well: by some readings
-constexpr double kSteepest = 0.6;          // gradient that joins places of one floor: more than rovers drive
+constexpr double kSteepest =
+    0.6;  // gradient of ground that joins places of one floor: more than rovers drive
 
 // Whether the place of a bound, anywhere in its block and as far off as it may be, lies in the block about `at`.
 bool mayBeIn(const PlaceBound& bound, const maps::Point& at, double side_m) noexcept {
@@ -28,11 +29,6 @@ bool mayBeIn(const PlaceBound& bound, const maps::Point& at, double side_m) noex
 GroundBelief bounded(const GroundBelief& belief, const PlaceBound& bound) noexcept {
   return weaker(belief, {.pull = {std::fmin(belief.pull.value, bound.most_pull), 0.0},
                          .sinkage = {std::fmax(belief.sinkage.value, bound.least_sinkage), 0.0}});
-}
-
-// As blocks keep a pull, so that none is none.
-double departureOf(float pull, double prior) noexcept {
-  return static_cast<double>(pull - static_cast<float>(prior));
 }
 
 std::uint32_t secondsOf(double time_s) noexcept {
@@ -91,8 +87,7 @@ std::optional<BlockLesson> EvidenceField::lessonOf(const BlockEvidence& block, i
   const bool raises = !std::isnan(block.pull);
   const double measured = static_cast<double>(raises ? block.variance : block.weak_variance);
   double pull = raises ? static_cast<double>(block.pull) - prior.pull.value : 0.0;
-  const double weak = departureOf(block.weak_pull, prior.pull.value);
-  if (block.lowers && (weak < 0.0 || !raises)) pull = std::min(pull, weak);
+  if (block.lowers) pull = std::min(pull, static_cast<double>(block.weak_pull) - prior.pull.value);
   const double variance = ground.pull_std * ground.pull_std;
   const double most = kOrdinary * std::sqrt(variance + ground.mean_std * ground.mean_std + measured);
   BlockLesson lesson{.weight = std::min(1.0, 1.5 * store_->blocks.side_m() /
@@ -124,8 +119,7 @@ std::optional<float> EvidenceField::squareStrength(const IndependentPlaces::Squa
     const bool is_known = variance <= kPlaceStd * kPlaceStd;
     raises |= is_known;
     if (is_known || pull < -std::sqrt(variance)) least = std::fmin(least, pull);
-    const double weak = departureOf(e.weak_pull, prior);
-    if (e.lowers && weak < 0.0) least = std::fmin(least, weak);
+    if (e.lowers) least = std::fmin(least, static_cast<double>(e.weak_pull) - prior);
   };
   for (int row = square.second * side; row < (square.second + 1) * side; ++row)
     for (int column = square.first * side; column < (square.first + 1) * side; ++column)
@@ -259,7 +253,7 @@ void EvidenceField::place(const BlockLevel& block, const BlockEvidence& e, Nearb
   const maps::Point middle = store_->blocks.middleOf(store_->blocks.blockAt(block.column, block.row));
   const bool alike = own == nearby.class_index;
   const double variance = static_cast<double>(e.weak_variance);
-  const double below = departureOf(e.weak_pull, site_->model->prior(own).pull.value);
+  const double below = static_cast<double>(e.weak_pull) - site_->model->prior(own).pull.value;
   const double deeper = static_cast<double>(e.sinkage) - site_->model->prior(own).sinkage.value;
   const bool weak = below < -kOrdinary * std::sqrt(ground.pull_std * ground.pull_std + variance);
   const bool own_lowers = alike && e.lowers;
@@ -366,13 +360,9 @@ EvidenceField::Belief EvidenceField::believed(const LocalGround& ground, int cla
   for (const WeakPlace& weak : ground.weak)
     if (const auto left = weakness(weak, variation, at)) {
       const double open = std::min(left->pull.std / c.pull_std, 1.0);
-      const GroundBelief alone{
-          .pull = {weak.pull < 0.0 ? prior.pull.value + left->pull.value : out.pull.value,
-                   std::hypot(left->pull.std, open * c.mean_std)},
-          .sinkage = {prior.sinkage.value + left->sinkage.value, left->sinkage.std}};
-      const bool explained = weak.pull >= -kOrdinary * std::hypot(c.pull_std, std::sqrt(weak.variance)) &&
-                             weak.sinkage <= kOrdinary * c.sinkage_std;
-      out = explained ? lowered(out, alone) : weaker(out, alone);
+      out = weaker(
+          out, {.pull = {prior.pull.value + left->pull.value, std::hypot(left->pull.std, open * c.mean_std)},
+                .sinkage = {prior.sinkage.value + left->sinkage.value, left->sinkage.std}});
     }
   for (const PlaceBound& bound : ground.bounds)
     if (mayBeIn(bound, at, store_->blocks.side_m())) out = bounded(out, bound);

@@ -41,8 +41,8 @@ struct Variation;
 /// ground only where no raster names classes. Same evidence in any order, same bits. Not thread-safe
 /// while changed.
 ///
-/// Evidence lowers a belief at once and for all: around each place that is weaker than its class explains no ground is
-/// believed to be better than that place leaves it; what may only lower bounds the mean beyond its noise. Evidence raises
+/// Evidence lowers a belief at once and for all: around each place that is weaker than its class explains, or
+/// that may only lower, no ground is believed to be better than that place by itself leaves it. Evidence raises
 /// it, or makes it surer, only where at least three independent places of the class may raise, and by no more
 /// than each of them reaches; until then no belief is better than that of the class away from any evidence.
 class EvidenceField {

@@ -154,13 +154,6 @@ GroundBelief weaker(const GroundBelief& a, const GroundBelief& b) noexcept {
   return {.pull = {pull, (pull - low) / kTail}, .sinkage = {sinkage, (deep - sinkage) / kTail}};
 }
 
-GroundBelief lowered(const GroundBelief& belief, const GroundBelief& left) noexcept {
-  const double less = std::fmax(belief.pull.value - left.pull.value, 0.0);
-  const double deeper = std::fmax(left.sinkage.value - belief.sinkage.value, 0.0);
-  return {.pull = {belief.pull.value - less, std::hypot(belief.pull.std, less)},
-          .sinkage = {belief.sinkage.value + deeper, std::hypot(belief.sinkage.std, deeper)}};
-}
-
 GroundBelief kernelInference(const std::vector<PlaceEvidence>& evidence, const Variation& variation,
                              const maps::Point& place) {
   const double prior = variation.pull_std * variation.pull_std;

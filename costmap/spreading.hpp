@@ -83,10 +83,6 @@ std::optional<GroundBelief> weakness(const WeakPlace& weak, const Variation& var
 /// standard deviations of the pull; the greater ones of the sinkage. In any order the same.
 GroundBelief weaker(const GroundBelief& a, const GroundBelief& b) noexcept;
 
-/// What readings leave that prove nothing and that the class explains: they lower the mean, and are no reason to doubt what
-/// others proved but for what they contradict it by.
-GroundBelief lowered(const GroundBelief& belief, const GroundBelief& left) noexcept;
-
 /// Bayesian generalised kernel inference (doherty_2019): a weighed mean of the evidence around a place,
 /// conjugate to the prior.
 ///   mean = sum k y w / (1 + sum k w),  variance = prior / (1 + sum k w)

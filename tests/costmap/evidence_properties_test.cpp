@@ -211,49 +211,6 @@ TEST(Evidence, DangerNeedsFewReadingsStrengthMany) {
   }
 }
 
-// Sand driven all over, by readings that may raise, of a departure from the class; beside each one that may only lower, of
-// another departure and sure to 0.2 alone.
-TraversabilityMap drivenAllOver(double proven, double unproven) {
-  TraversabilityMap map = mapOf(std::vector<std::string>(30, std::string(30, '1')));
-  const GroundBelief prior = map.model().prior(0);
-  for (int place = 0; place < 225; ++place) {
-    WheelObservation seen{.time_s = 1.0,
-                          .place = {101.0 + 2.0 * (place % 15), 201.0 + 2.0 * (place / 15)},
-                          .pull = {prior.pull.value + proven, 0.05},
-                          .sinkage = {prior.sinkage.value, 0.05},
-                          .pull_may_raise = true,
-                          .sinkage_may_raise = true};
-    for (int i = 0; i < 6; ++i) map.learn(seen);
-    seen.pull = {prior.pull.value + unproven, 0.2};
-    seen.pull_may_raise = seen.sinkage_may_raise = false;
-    map.learn(seen);
-  }
-  map.publishAll();
-  return map;
-}
-
-// Property: readings of the class's own soil leave it where it is, within the step of 0.01 that they are rounded by, and
-// surer; what proves nothing and shows nothing beyond its noise does not undo that.
-TEST(Evidence, ReadingsOfTheClassLeaveItWhereItIsAndSurer) {
-  const GroundBelief prior = mapOf(std::vector<std::string>(30, std::string(30, '1'))).model().prior(0);
-  for (const double unproven : {-0.1, 0.0, 0.1}) {
-    const TraversabilityMap map = drivenAllOver(0.0, unproven);
-    for (const maps::Cell cell : {maps::Cell{4, 4}, {15, 15}, {22, 9}}) {
-      EXPECT_NEAR(map.ground(cell)->pull.value, prior.pull.value, 0.0101) << unproven;
-      EXPECT_LT(map.ground(cell)->pull.std, 0.6 * prior.pull.std) << unproven;
-    }
-  }
-}
-
-// Property: strength that is proven all over is learned, unless what proves nothing shows weakness beyond its noise.
-TEST(Evidence, ProvenStrengthIsLearnedBesideReadingsThatProveNothing) {
-  const double prior = mapOf(std::vector<std::string>(30, std::string(30, '1'))).model().prior(0).pull.value;
-  EXPECT_GT(drivenAllOver(0.08, -0.05).ground({15, 15})->pull.value, prior + 0.05);
-  EXPECT_LT(drivenAllOver(0.08, -0.6).ground({15, 15})->pull.value, prior);
-  // Read 0.3 weaker, to 0.2, which the class explains: 0.1 beyond its noise counts.
-  EXPECT_LT(drivenAllOver(0.08, -0.3).ground({15, 15})->pull.value, prior - 0.001);
-}
-
 TEST(Evidence, TheFirstSinkageCountsInFull) {
   TraversabilityMap map = mapOf(std::vector<std::string>(30, std::string(30, '1')));
   WheelObservation seen{.time_s = 1.0,

@@ -58,7 +58,7 @@ TEST(InfoCommand, APointCloudIsAMapForEveryCommand) {
   EXPECT_EQ(plan.code, 0) << plan.err;
   EXPECT_EQ(runTalus({"view", "cloud.bt"}, folder.path()).code, 0);
   EXPECT_THAT(runTalus({"info", "cloud.bt", "--resolution", "1"}, folder.path()).err,
-              HasSubstr("has its own grid"));
+              HasSubstr("has a grid of its own"));
 }
 
 TEST(InfoCommand, BadInputIsOneLineAndCodeTwo) {
