@@ -6,6 +6,7 @@
 #include <mutex>
 #include <new>
 #include <string_view>
+#include <utility>
 
 #include <cpl_error.h>
 #include <gdal_priv.h>
@@ -13,6 +14,7 @@
 
 #include <talus/maps/gdal_dataset.hpp>
 #include <talus/maps/referenced_files.hpp>
+#include <talus/maps/text_grid.hpp>
 #include <talus/talus.hpp>
 
 namespace talus::maps {
@@ -40,6 +42,17 @@ void refuseShortEnvi(GDALDataset& dataset, const std::string& path) {
     throw InputError({path,
                       "is cut short: " + std::to_string(size) + " of " + std::to_string(needed) + " bytes",
                       "fetch it again"});
+}
+
+// GDAL takes a grid of text for whole numbers where its first ones are, and reads "inf" and "nan" as 0.
+Dataset withFractions(Dataset file, const std::string& path) {
+  if (std::string_view(file->GetDriver()->GetDescription()) != "AAIGrid") return file;
+  refuseWordsInGrid(path);
+  constexpr const char* kText[] = {"AAIGrid", nullptr};
+  constexpr const char* kOptions[] = {"DATATYPE=Float64", nullptr};
+  Dataset again(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, kText, kOptions));
+  if (!again) throw InputError({path, "cannot be opened again", "give a GeoTIFF"});
+  return again;
 }
 
 }  // namespace
@@ -117,7 +130,7 @@ Dataset openRaster(const std::string& path, bool allow_vrt) {
   if (dataset->GetRasterCount() == 0 || dataset->GetRasterXSize() == 0 || dataset->GetRasterYSize() == 0)
     throw InputError({path, "holds no raster band", "name one of its subdatasets (gdalinfo lists them)"});
   refuseShortEnvi(*dataset, path);
-  return dataset;
+  return withFractions(std::move(dataset), path);
 }
 
 Dataset memoryRaster(int width, int height, int type) {

@@ -45,16 +45,6 @@ void adoptCoordinates(GDALDataset& file, const Grid& grid) {
   file.SetGeoTransform(transform.data());
 }
 
-// GDAL takes a grid of text for whole numbers where its first ones are, and reads "inf" and "nan" as 0.
-Dataset withFractions(Dataset file, const std::string& path) {
-  if (std::string(file->GetDriver()->GetDescription()) != "AAIGrid") return file;
-  const char* const driver[] = {"AAIGrid", nullptr};
-  const char* const options[] = {"DATATYPE=Float64", nullptr};
-  Dataset again(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, driver, options));
-  if (!again) throw InputError({path, "cannot be opened again", "give a GeoTIFF"});
-  return again;
-}
-
 // A band in memory, as floats without a no-data value.
 Dataset inMemory(GDALDataset& file, int band, const std::string& path) {
   const int width = file.GetRasterXSize(), height = file.GetRasterYSize();
@@ -132,7 +122,7 @@ Raster<std::uint8_t> readTerrainClasses(const LayerSource& source, const Elevati
 
 AddedJoules readAddedJoules(const LayerSource& source, const ElevationMap& map) {
   const GdalErrors quiet;
-  Dataset file = withFractions(openRaster(source.path), source.path);
+  Dataset file = openRaster(source.path);
   if (source.band && (*source.band < 1 || *source.band > file->GetRasterCount()))
     throw InputError({source.path, "has no band " + std::to_string(*source.band), "name one that it has"});
   Dataset band = inMemory(*file, source.band.value_or(1), source.path);

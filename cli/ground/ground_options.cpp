@@ -246,6 +246,15 @@ void warnOfUnseen(const std::vector<costmap::CostLayer>& layers, const costmap::
   }
 }
 
+// A raster of rocks says nothing where it has no data: the ground there is judged without.
+void warnOfUnseenRocks(const maps::Raster<float>& rocks, const std::string& file, const Context& context) {
+  const auto unseen = std::ranges::count_if(rocks.values(), [](float v) { return std::isnan(v); });
+  if (unseen > 0)
+    context.warn(fmt::format(
+        "{}: no data in {} of {} cells: they count as free of rocks; exclude them with --keep-out", file,
+        unseen, rocks.values().size()));
+}
+
 }  // namespace
 
 void addGroundOptions(CLI::App& command, GroundOptions& options) {
@@ -285,6 +294,7 @@ Ground readGround(const GroundOptions& options, const Context& context) {
   const Assumed& assumed = assumedOn(dem);
   warnOfAssumptions(options, assumed, context);
   Layers layers = readLayers(options.layers, dem);
+  warnOfUnseenRocks(layers.rock_abundance, options.layers.rocks, context);
   const double load_s = since_s(begin);
   begin = Clock::now();
   costmap::GroundModel::Parts parts;
