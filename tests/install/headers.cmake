@@ -2,6 +2,13 @@ cmake_policy(VERSION 3.25)
 # The installed headers are the entry headers, what planner plugins include, and what these include: nothing inner is
 # installed, and no public header includes one.
 set(include ${PREFIX}/include)
+# A link would lead into the tree that it was built from.
+file(GLOB_RECURSE files LIST_DIRECTORIES true ${include}/*)
+foreach(file ${files})
+  if(IS_SYMLINK ${file})
+    message(SEND_ERROR "${file} is installed as a link")
+  endif()
+endforeach()
 set(open talus/terramech/terramech.hpp talus/maps/maps.hpp talus/costmap/costmap.hpp talus/planner/planner.hpp
          talus/planner/simulation/simulation.hpp talus/planner/plugin/plugin_export.hpp
          talus/planner/plugin/request_check.hpp)
