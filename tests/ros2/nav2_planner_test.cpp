@@ -1,0 +1,173 @@
+#include "nav2_planner.hpp"
+
+#include <atomic>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+
+#include <nav2_core/planner_exceptions.hpp>
+
+#include "small_site.hpp"
+
+#ifdef TALUS_VIAPOINTS
+#define Nav2 Nav2WithViaPoints  // the same tests, by another name
+#endif
+
+namespace talus_ros2 {
+namespace {
+
+using geometry_msgs::msg::PoseStamped;
+using rclcpp_lifecycle::LifecycleNode;
+
+PoseStamped pose(double x_m, double y_m, const std::string& frame = "map") {
+  PoseStamped at;
+  at.header.frame_id = frame;
+  at.pose.position.x = x_m;
+  at.pose.position.y = y_m;
+  return at;
+}
+
+/// The planner as Nav2's server has it: behind its interface.
+class Nav2 : public testing::Test {
+ protected:
+  void start(bool closed = false) {
+    talus::costmap::writeMap(smallSite(closed), file_);
+    node_->parameters["talus.map_file"] = file_;
+    node_->parameters["talus.elevation_topic"] = std::string("elevation_map");
+    planner_->configure(node_, "talus", nullptr, std::make_shared<nav2_costmap_2d::Costmap2DROS>());
+    planner_->activate();
+  }
+  void TearDown() override { std::filesystem::remove(file_); }
+
+  nav_msgs::msg::Path plan(
+      const PoseStamped& from, const PoseStamped& to, std::function<bool()> cancel = [] { return false; }) {
+#ifdef TALUS_VIAPOINTS
+    return planner_->createPlan(from, to, via_, std::move(cancel));
+#else
+    return planner_->createPlan(from, to, std::move(cancel));
+#endif
+  }
+
+  const std::string file_ = (std::filesystem::temp_directory_path() /
+                             ("talus-nav2-" + std::to_string(::getpid()) +
+                              testing::UnitTest::GetInstance()->current_test_info()->name()))
+                                .string();
+  std::shared_ptr<LifecycleNode> node_ = std::make_shared<LifecycleNode>();
+  std::unique_ptr<nav2_core::GlobalPlanner> planner_ = std::make_unique<Nav2Planner>();
+  std::vector<PoseStamped> via_;
+};
+
+TEST_F(Nav2, PlansAroundAWallWithHeadings) {
+  start();
+  const auto path = plan(pose(0.0, 8.0), pose(25.0, 8.0));
+  ASSERT_GT(path.poses.size(), 50U);
+  EXPECT_EQ(path.header.frame_id, "map");
+  EXPECT_EQ(path.header.stamp.sec, 7);
+  EXPECT_EQ(path.poses.front().pose.position.x, 0.0);
+  EXPECT_NEAR(path.poses.back().pose.position.x, 25.0, 0.5);
+  double north_m = 0.0;
+  for (std::size_t i = 1; i < path.poses.size(); ++i) {
+    const auto &a = path.poses[i - 1].pose, &b = path.poses[i].pose;
+    const double dx = b.position.x - a.position.x, dy = b.position.y - a.position.y;
+    EXPECT_LE(std::hypot(dx, dy), 0.5 + 1e-9);
+    const double heading = 2.0 * std::atan2(a.orientation.z, a.orientation.w);
+    EXPECT_NEAR(std::remainder(heading - std::atan2(dy, dx), 2.0 * M_PI), 0.0, 1e-6);
+    north_m = std::fmax(north_m, b.position.y);
+  }
+  EXPECT_GT(north_m, 18.0);  // where the wall is open
+}
+
+#ifdef TALUS_VIAPOINTS
+TEST_F(Nav2, PassesViaPointsInOrder) {
+  start();
+  via_ = {pose(3.0, 20.0), pose(20.0, 20.0)};
+  const auto path = plan(pose(0.0, 8.0), pose(25.0, 8.0));
+  std::size_t next = 0;
+  for (const auto& each : path.poses)
+    if (next < via_.size() && std::hypot(each.pose.position.x - via_[next].pose.position.x,
+                                         each.pose.position.y - via_[next].pose.position.y) < 1e-6)
+      ++next;
+  EXPECT_EQ(next, via_.size());
+}
+#endif
+
+template <typename Exception>
+void expect(const std::function<void()>& work, const std::string& word) {
+  try {
+    work();
+    ADD_FAILURE() << word;
+  } catch (const Exception& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr(word));
+    EXPECT_THAT(error.what(), testing::Not(testing::HasSubstr("\n")));
+  } catch (const std::exception& other) {
+    ADD_FAILURE() << "another exception: " << other.what();
+  }
+}
+
+TEST_F(Nav2, EachFailureHasItsTypedException) {
+  start(true);
+  expect<nav2_core::StartOutsideMapBounds>([&] { plan(pose(-50.0, 8.0), pose(25.0, 8.0)); }, "");
+  expect<nav2_core::GoalOutsideMapBounds>([&] { plan(pose(0.0, 8.0), pose(900.0, 8.0)); }, "");
+  expect<nav2_core::StartOccupied>([&] { plan(pose(10.7, 8.0), pose(25.0, 8.0)); }, "");
+  expect<nav2_core::GoalOccupied>([&] { plan(pose(0.0, 8.0), pose(10.7, 8.0)); }, "");
+  expect<nav2_core::NoValidPathCouldBeFound>([&] { plan(pose(0.0, 8.0), pose(25.0, 8.0)); }, "");
+  expect<nav2_core::PlannerTFError>([&] { plan(pose(0.0, 8.0, "odom"), pose(25.0, 8.0)); },
+                                    "start: frame 'odom'");
+  expect<nav2_core::PlannerCancelled>([&] { plan(pose(0.0, 8.0), pose(5.0, 8.0), [] { return true; }); },
+                                      "cancelled");
+  expect<nav2_core::PlannerException>([&] { plan(pose(NAN, 8.0), pose(5.0, 8.0)); }, "");
+  planner_->cleanup();
+  expect<nav2_core::PlannerException>([&] { plan(pose(0.0, 8.0), pose(5.0, 8.0)); }, "not configured");
+}
+
+TEST_F(Nav2, ACancelEndsAPlanThatHasNoEnd) {
+  node_->parameters["talus.planner"] = std::string("RRTstar");
+  node_->parameters["talus.time_limit_s"] = 86400.0;
+  start();
+  std::atomic<int> looks{0};
+  expect<nav2_core::PlannerCancelled>(
+      [&] { plan(pose(0.0, 8.0), pose(25.0, 8.0), [&] { return ++looks > 3; }); }, "cancelled");
+  EXPECT_EQ(looks, 4);
+}
+
+TEST_F(Nav2, BadParametersAreOneLine) {
+  const auto refused = [&](const std::string& name, std::any value, const std::string& word) {
+    node_->parameters["talus.map_file"] = file_;
+    node_->parameters[name] = std::move(value);
+    expect<nav2_core::PlannerException>(
+        [&] {
+          planner_->configure(node_, "talus", nullptr, std::make_shared<nav2_costmap_2d::Costmap2DROS>());
+        },
+        word);
+    node_->parameters.erase(name);
+  };
+  talus::costmap::writeMap(smallSite(), file_);
+  refused("talus.map_file", std::string(), "talus.map_file: give a map");
+  refused("talus.map_file", std::string("/nowhere/site.ot"), "/nowhere/site.ot");
+  refused("talus.planner", std::string("feild"), "field");
+  refused("talus.path_spacing_m", 0.0, "path_spacing_m must be > 0");
+}
+
+TEST_F(Nav2, HeightsThatArriveChangeTheNextPlan) {
+  start();
+  const auto before = plan(pose(15.0, 8.0), pose(25.0, 8.0));
+  EXPECT_LE(before.poses.size(), 22U);  // straight
+  grid_map_msgs::msg::GridMap message{grid_map::GridMap({"elevation"})};
+  message.map.setFrameId("map");
+  message.map.setGeometry({2.0, 12.0}, 0.5, {20.0, 9.0});
+  message.map.get("elevation").setConstant(1.0F);  // a wall from y = 3 to y = 15
+  auto& hear = std::any_cast<std::function<void(const grid_map_msgs::msg::GridMap&)>&>(
+      node_->subscribers.at("elevation_map"));
+  hear(message);
+  const auto after = plan(pose(15.0, 8.0), pose(25.0, 8.0));
+  EXPECT_TRUE(node_->log.empty());
+  EXPECT_GT(after.poses.size(), before.poses.size() + 10);
+  message.map.setFrameId("odom");
+  hear(message);
+  ASSERT_EQ(node_->log.size(), 1U);
+  EXPECT_THAT(node_->log.front(), testing::HasSubstr("frame 'odom', must be 'map'"));
+}
+
+}  // namespace
+}  // namespace talus_ros2
