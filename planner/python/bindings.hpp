@@ -7,6 +7,7 @@ namespace talus::planner {
 
 void bindRoute(pybind11::module_& module);
 void bindSoil(pybind11::module_& module);
+void bindTrace(pybind11::module_& module);
 void bindMap(pybind11::module_& module);
 void bindSimulation(pybind11::module_& module);
 

@@ -5,6 +5,7 @@ PYBIND11_MODULE(_talus, module) {
   module.doc() = "Safe routes for rovers over soft, sloping ground.";
   pybind11::register_exception<talus::InputError>(module, "InputError", PyExc_ValueError);
   talus::planner::bindSoil(module);
+  talus::planner::bindTrace(module);
   talus::planner::bindRoute(module);
   talus::planner::bindMap(module);
   talus::planner::bindSimulation(module);

@@ -8,9 +8,12 @@ from talus._talus import (
     Simulation as Simulation,
     Soil as Soil,
     SoilEstimate as SoilEstimate,
+    Trace as Trace,
+    TracedEffect as TracedEffect,
     estimate as estimate,
     heights_from_points as heights_from_points,
     rovers as rovers,
     simulate as simulate,
     soils as soils,
+    trace as trace,
 )

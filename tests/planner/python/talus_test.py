@@ -367,6 +367,83 @@ class SoilTest(Refusals):
         self.refused(talus.InputError, "missing.csv", lambda: talus.estimate("missing.csv", method="sojourner"))
         self.refused(talus.InputError, "method", lambda: talus.estimate("missing.csv", method="guess"))
 
+    def test_a_trace_is_that_of_the_program(self):
+        """Four wheels by the forward model, two percent off; wheel 2 pulls 6 N less than it should."""
+        program = os.environ["TALUS_PROGRAM"]
+        soil = talus.Soil("sandy_loam")
+        sinkage_modulus = soil.cohesive_modulus / 0.1 + soil.frictional_modulus
+        names = "cohesion_Pa friction_angle_rad sinkage_exponent sinkage_modulus shear_modulus_m c1 c2 wheel_radius_m wheel_width_m load_N slip"
+        strength = (soil.cohesion_Pa, soil.friction_angle_rad, soil.sinkage_exponent, sinkage_modulus, soil.shear_modulus_m)
+        cases = [(*strength, 0.43, 0.32, 0.1, 0.1, 60.0 + 8.0 * (i % 6), 0.1 + 0.05 * (i % 11)) for i in range(120)]
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            lines = [",".join(names.split())] + [",".join(map(repr, case)) for case in cases]
+            (folder / "cases.csv").write_text("\n".join(lines) + "\n")
+            subprocess.run([program, "wheel", "--cases", folder / "cases.csv", "-o", folder / "forces.csv", "--quiet"], check=True)
+            rows = [line.split(",") for line in (folder / "forces.csv").read_text().splitlines()]
+            at = {column: k for k, column in enumerate(rows[0])}
+            table = ["run,wheel,load_N,slip,torque_Nm,sinkage_m,drawbar_pull_N,wheel_radius_m,wheel_width_m"]
+            for i, row in enumerate(rows[1:]):
+                get = lambda column: float(row[at[column]])
+                off = [1.0 + 0.02 * math.sin(12.9 * i * i + phase) for phase in (1, 2, 3)]
+                pull_N = get("drawbar_pull_N") + get("load_N") * (off[2] - 1.0) - (6.0 if i % 4 == 2 else 0.0)
+                table.append(
+                    f"{i // 12},{i % 4},{get('load_N')},{get('slip')},{get('torque_Nm') * off[0]},"
+                    f"{get('sinkage_m') * off[1]},{pull_N},0.1,0.1"
+                )
+            path, base = folder / "runs.csv", folder / "base.yaml"
+            path.write_text("\n".join(table) + "\n")
+            base.write_text("{soil: sandy_loam, model: wong-reece}\n")
+            shares = []
+            found = talus.trace(path, base=str(base), progress=shares.append)
+            said = json.loads(
+                subprocess.run([program, "trace", path, "--base", base, "--json", "--quiet"], capture_output=True, check=True).stdout
+            )
+            (folder / "refined.yaml").write_text(found.model_text())
+            call = [program, "predict", path, "--model", folder / "refined.yaml", "-o", folder / "predicted.csv", "--quiet"]
+            subprocess.run(call, check=True)
+        self.assertEqual(found.verdict, said["verdict"])
+        self.assertEqual(found.rows_used, said["rows_used"])
+        self.assertEqual(len(found.effects), len(said["effects"]))
+        self.assertEqual(found.effects[0].covariate, "wheel")
+        for mine, other in zip(found.effects, said["effects"]):
+            self.assertEqual((mine.name, mine.channel, mine.p_value), (other["name"], other["channel"], other["p_value"]))
+        for mine, other in (
+            (found.base_rmse, said["base"]["rmse"]),
+            (found.refined_rmse, said["refined"]["rmse"]),
+            (found.held_out_refined_rmse, said["held_out"]["refined_rmse"]),
+            (found.noise_floor, said["held_out"]["noise_floor"]),
+        ):
+            self.assertEqual(mine, other)
+        self.assertTrue(all(0.0 <= share <= 1.0 for share in shares))
+
+    def test_ctrl_c_ends_a_trace(self):
+        with tempfile.TemporaryDirectory() as name:
+            path = pathlib.Path(name) / "runs.csv"
+            rng = np.random.default_rng(1)
+            lines = ["wheel_radius_m,wheel_width_m,load_N,slip,torque_Nm,sinkage_m,drawbar_pull_N"]
+            for _ in range(2000):
+                slip, load_N = rng.uniform(0.1, 0.8), rng.uniform(30.0, 90.0)
+                lines.append(
+                    f"0.13,0.16,{load_N},{slip},{load_N * 0.13 * (0.3 + 0.3 * slip)},{0.01 + 0.03 * slip},{load_N * (0.1 + 0.2 * slip)}"
+                )
+            path.write_text("\n".join(lines) + "\n")
+
+            def interrupt(share):
+                raise KeyboardInterrupt
+
+            with self.assertRaises(KeyboardInterrupt):
+                talus.trace(path, progress=interrupt)
+
+    def test_what_cannot_be_traced_is_one_line(self):
+        self.refused(talus.InputError, "missing.csv", lambda: talus.trace("missing.csv"))
+        self.refused(talus.InputError, "base.yaml", lambda: talus.trace("missing.csv", base="base.yaml"))
+        self.refused(ValueError, "significance = 2", lambda: talus.trace("missing.csv", significance=2.0))
+        with tempfile.TemporaryDirectory() as name:
+            path = pathlib.Path(name) / "runs.csv"
+            path.write_text("wheel_radius_m,wheel_width_m,load_N,slip,drawbar_pull_N\n0.1,0.1,30,0.2,3\n")
+            self.refused(talus.InputError, "at least 6", lambda: talus.trace(path))
+
     def test_a_simulated_drive(self):
         ground = level(rows=30, columns=60)
         drive = talus.simulate(ground, (4.0, 7.0), (24.0, 7.0), belief="prior")
