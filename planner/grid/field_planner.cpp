@@ -133,6 +133,15 @@ Plan FieldPlanner::beyondTheGrid(const Problem& problem, const Stage& stage, con
   plan.points = std::move(found.points);
   if (plan.status == RouteStatus::Found) return plan;
   if (stop()) return cancelledPlan(stop);
+  if (found.out_of_reach) {
+    plan.status = RouteStatus::NoRoute;
+    plan.obstruction = {.cells_from_start = found.cells,
+                        .cells_to_goal = to_goal.cells(),
+                        .last = found.last,
+                        .first = stage.to};
+    plan.reason = text(*plan.obstruction, places);
+    return plan;
+  }
   plan.reason =
       found.all_ways
           ? "no route found, nor a proof that there is none: the ways left allow only single headings; "

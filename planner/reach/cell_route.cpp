@@ -1,141 +1,125 @@
-#include <optional>
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <queue>
+#include <unordered_map>
+#include <unordered_set>
+#include <utility>
 
+#include <talus/planner/reach/cell_chain.hpp>
 #include <talus/planner/reach/cell_route.hpp>
-#include <talus/planner/reach/cell_side.hpp>
-#include <talus/planner/reach/reach.hpp>
+#include <talus/planner/reach/side_cover.hpp>
+#include <talus/planner/route/cells_within.hpp>
 
 namespace talus::planner {
 namespace {
 
 using maps::Cell;
-using maps::Point;
 
-constexpr double kInside_rad = 1e-3;  // headings are taken so far from the end of their arc, or in its middle
-constexpr double kApart = 1e-3;       // sides: crossings keep so far from corners
-constexpr int kWays = 4;              // parts of one side that are followed
-constexpr int kMostLegs = 512;        // of a zigzag within one cell
+constexpr double kLeastSpare_rad = 4e-3;  // less, and it takes too many turns to get everywhere in a cell
+constexpr int kRepeats = 64;              // of the search, each with one cell restricted further
 
-// A part of a side of a cell where a way comes in; of the first node the start itself.
+// In sides of a cell: what a search takes for reached. A route keeps within it; a proof goes beyond.
+struct Extent {
+  ChainMargins margins{};
+  double least = 1e-7;       // parts that are followed are longer
+  double ends = -1e-6;       // slack of cones at start and goal
+  double outwards = 1e-3;    // cosine of a crossing's heading to straight out, at least
+  double within_rad = 1e-3;  // so far inside its arc a crossing's heading is
+};
+constexpr Extent kOfRoutes{};
+// MotionCost takes what lies within 1e-6 of a side to lie on it: proofs take ends wider. Shorter parts are rounding.
+constexpr Extent kOfProofs{.margins = {.slack = 0.0, .apart = 0.0},
+                           .least = 1e-9,
+                           .ends = 1e-5,
+                           .outwards = 1e-6,
+                           .within_rad = 0.0};
+
+// How a cell may be driven: with all its headings, on one arc of them, or not at all.
+enum class Use { Whole, OneArc, Never };
+
+// A part of a side of a cell where a way comes in; of the first nodes the start itself.
 struct Node {
   Cell cell;
   int side = -1;
   SideRange range{};
-  double heading_rad = 0.0;  // of the crossing
   int parent = -1;
-};
-
-InCell operator+(InCell a, InCell b) noexcept {
-  return {a.x + b.x, a.y + b.y};
-}
-InCell operator-(InCell a, InCell b) noexcept {
-  return {a.x - b.x, a.y - b.y};
-}
-InCell operator*(double s, InCell a) noexcept {
-  return {s * a.x, s * a.y};
-}
-InCell unit(double heading_rad) noexcept {
-  return {std::cos(heading_rad), std::sin(heading_rad)};
-}
-bool inside(InCell p) noexcept {
-  return p.x >= 1e-4 && p.x <= 1.0 - 1e-4 && p.y >= 1e-4 && p.y <= 1.0 - 1e-4;
-}
-
-// The share of a unit step that stays well inside a cell.
-double stepInside(InCell from, InCell step) noexcept {
-  const auto room = [](double at, double by) {
-    return by > 0.0 ? (1.0 - at) / by : by < 0.0 ? -at / by : 1.0;
-  };
-  return 0.4 * std::min(room(from.x, step.x), room(from.y, step.y));
-}
-
-// From p to q within one cell by headings of a set; false where that takes more legs than allowed.
-bool connect(const HeadingSet& set, InCell p, InCell q, std::vector<InCell>& way) {
-  const InCell d = q - p;
-  const double heading = std::atan2(d.y, d.x), length = std::hypot(d.x, d.y);
-  if (length < 1e-9) return true;
-  const double before = set.nearest(heading, kInside_rad);
-  if (std::abs(std::remainder(before - heading, HeadingSet::kTurn)) * length < 1e-9) {
-    way.push_back(q);
-    return true;
-  }
-  // The arcs on both sides of the heading; a, b >= 0 metres along each add up to it.
-  double right = -HeadingSet::kTurn, left = HeadingSet::kTurn;
-  for (const HeadingArc& arc : set.arcs()) {
-    const double in = std::min(kInside_rad, 0.5 * arc.width_rad);
-    for (const double at : {arc.from_rad + in, arc.from_rad + arc.width_rad - in}) {
-      double off = std::fmod(at - heading, HeadingSet::kTurn);
-      if (off < 0.0) off += HeadingSet::kTurn;
-      left = std::min(left, off);
-      right = std::max(right, off - HeadingSet::kTurn);
-    }
-  }
-  const double between = std::sin(left - right);
-  if (!(left - right < 0.5 * HeadingSet::kTurn) || !(between > 0.0)) return false;
-  const InCell u = length * std::sin(left) / between * unit(heading + right);
-  const InCell v = length * std::sin(-right) / between * unit(heading + left);
-  for (int legs = 1; legs <= kMostLegs; legs *= 2) {
-    const double part = 1.0 / legs;
-    for (const InCell& first : {u, v}) {
-      if (!inside(p + part * first) || !inside(p + (1.0 - part) * d + part * first)) continue;
-      for (int k = 0; k < legs; ++k) {
-        way.push_back(p + k * part * d + part * first);
-        way.push_back(p + (k + 1) * part * d);
-      }
-      return true;
-    }
-  }
-  return false;
-}
-
-// Where a route passes from one cell into the next.
-struct Crossing {
-  Cell cell;     // behind it
-  InCell place;  // in that cell
-  double heading_rad;
-  int side;
+  int arc = -1;  // of the headings of the parent's cell that the way takes there; -1: all
 };
 
 class Search {
  public:
   Search(const MotionCost& cost, HeadingSets& headings, const Segment& places, double tolerance_m,
-         const CellRouteLimits& limits)
+         const CellRouteLimits& limits, const StopCheck& stop)
       : cost_(cost),
         map_(cost.map()),
         headings_(headings),
         places_(places),
         tolerance_m_(tolerance_m),
         limits_(limits),
-        passed_(map_.grid().size(), false) {}
+        stop_(stop) {}
 
-  CellRoute route(const StopCheck& stop) {
-    CellRoute found;
-    for (const Cell cell : cellsWithin(map_.grid(), places_.from, 0.0)) open({.cell = cell}, 0.0);
-    while (!queue_.empty()) {
-      const auto [spent, k] = queue_.top();
-      queue_.pop();
-      const Node node = nodes_[static_cast<std::size_t>(k)];
-      if (closed(node)) continue;
-      if (found.ways == limits_.ways || ((found.ways & 0xfffU) == 0 && stop())) return found;
-      ++found.ways;
-      if (const auto end = endIn(node))
-        if (found.points = laid(k, *end); !found.points.empty()) return found;
-      expand(k, -spent);
+  CellRoute route() {
+    for (int repeat = 0; repeat < kRepeats; ++repeat) {
+      const End end = follow(kOfRoutes);
+      if (end != End::Blocked) {
+        if (end == End::Exhausted) prove();
+        return std::move(found_);
+      }
     }
-    found.all_ways = true;
-    return found;
+    return std::move(found_);
   }
 
  private:
-  InCell inCell(Cell cell, Point p) const noexcept {
+  enum class End { Reached, Blocked, Exhausted, Limit };
+
+  void prove() {
+    const End end = follow(kOfProofs);
+    found_.all_ways = end != End::Limit;
+    found_.out_of_reach = end == End::Exhausted;
+    found_.cells = passed_cells_;
+    double least = std::numeric_limits<double>::infinity();
     const maps::Grid& grid = map_.grid();
-    return {(p.x_m - grid.south_west.x_m) / grid.resolution_m - cell.column,
-            (p.y_m - grid.south_west.y_m) / grid.resolution_m - cell.row};
+    for (std::size_t index = 0; index < passed_.size(); ++index) {
+      if (!passed_[index]) continue;
+      const auto width = static_cast<std::size_t>(grid.width);
+      const maps::Point at = grid.centre({static_cast<int>(index % width), static_cast<int>(index / width)});
+      const double off_m = std::hypot(at.x_m - places_.to.x_m, at.y_m - places_.to.y_m);
+      if (off_m >= least) continue;
+      least = off_m;
+      found_.last = at;
+    }
   }
-  Point onMap(Cell cell, InCell p) const noexcept {
-    const maps::Grid& grid = map_.grid();
-    return {grid.south_west.x_m + (cell.column + p.x) * grid.resolution_m,
-            grid.south_west.y_m + (cell.row + p.y) * grid.resolution_m};
+
+  // Whether the goal is reached; where a route is sought, along ways that can be driven. Blocked: one that could not be restricts
+  // a cell from now on.
+  End follow(const Extent& extent) {
+    extent_ = extent;
+    proof_ = &extent == &kOfProofs;
+    nodes_.clear();
+    queue_ = {};
+    cover_.clear();
+    corners_.clear();
+    passed_.assign(map_.grid().size(), false);
+    passed_cells_ = 0;
+    found_.all_ways = false;
+    for (const Cell cell : cellsWithin(map_.grid(), places_.from, 0.0)) open({.cell = cell}, 0.0);
+    while (!queue_.empty()) {
+      const auto [spent, popped] = queue_.top();
+      queue_.pop();
+      for (const int k : fresh(popped)) {
+        if (found_.ways == limits_.ways || ((found_.ways & 0xfffU) == 0 && stop_())) return End::Limit;
+        ++found_.ways;
+        if (endsIn(k)) {
+          if (proof_) return End::Reached;
+          const End end = lay(k);
+          if (end != End::Exhausted) return end;
+        }
+        expand(k, -spent);
+      }
+    }
+    found_.all_ways = true;
+    return End::Exhausted;
   }
 
   void open(const Node& node, double spent) {
@@ -143,123 +127,179 @@ class Search {
     queue_.emplace(-spent, static_cast<int>(nodes_.size()) - 1);
   }
 
-  // Whether the way adds nothing to those that were here before; else it counts as having been. Ground that is free to
-  // go everywhere is passed once.
-  bool closed(const Node& node) {
+  Use useOf(Cell cell) const {
+    const auto known = use_.find(map_.grid().index(cell));
+    return proof_ || known == use_.end() ? Use::Whole : known->second;
+  }
+  bool everywhere(Cell cell, const DriveCone& cone) const {
+    if (proof_) return cone.everywhere();
+    return cone.everywhere() && cone.spare_rad() > kLeastSpare_rad && useOf(cell) == Use::Whole;
+  }
+  bool byArcs(Cell cell, const DriveCone& cone) const { return cone.everywhere() && !everywhere(cell, cone); }
+
+  // The parts of a node that no way reached before, as nodes. Ground that is free to go everywhere is passed once.
+  std::vector<int> fresh(int popped) {
+    const Node node = nodes_[static_cast<std::size_t>(popped)];
     const std::size_t cell = map_.grid().index(node.cell);
-    if (passed_[cell]) return true;
-    if (DriveCone(headings_.of(map_.at(node.cell))).everywhere()) {
-      passed_[cell] = true;
-      return false;
+    const HeadingSet& own = headings_.of(map_.at(node.cell));
+    if (own.empty() || useOf(node.cell) == Use::Never) return {};
+    if (everywhere(node.cell, DriveCone(own))) {
+      if (passed_[cell]) return {};
+      pass(cell);
+      return {popped};
     }
-    auto& known = closed_[cell];
-    int same = 0;
-    for (const auto& [side, range] : known) {
-      if (side == node.side && range.holds(node.range)) return true;
-      same += side == node.side ? 1 : 0;
+    pass(cell);
+    if (node.side < 0 || onlyCorner(node.range)) return {popped};
+    std::vector<int> parts;
+    SideCover& cover = cover_[4 * cell + static_cast<std::size_t>(node.side)];
+    for (const SideRange& part : cover.added(node.range, extent_.least)) {
+      Node piece = node;
+      piece.range = part;
+      parts.push_back(static_cast<int>(nodes_.size()));
+      nodes_.push_back(piece);
     }
-    if (same >= kWays) return true;
-    known.emplace_back(node.side, node.range);
-    return false;
+    return parts;
+  }
+
+  void pass(std::size_t cell) {
+    if (!passed_[cell]) ++passed_cells_;
+    passed_[cell] = true;
   }
 
   std::pair<InCell, InCell> ends(const Node& node) const noexcept {
-    if (node.side < 0) return {inCell(node.cell, places_.from), inCell(node.cell, places_.from)};
+    const InCell start = inCell(map_.grid(), node.cell, places_.from);
+    if (node.side < 0) return {start, start};
     return {onSide(node.side, node.range.from), onSide(node.side, node.range.to)};
   }
 
-  // Where a way that came in here may end.
-  std::optional<InCell> endIn(const Node& node) const {
-    InCell goal = inCell(node.cell, places_.to);
-    if (tolerance_m_ > 0.0) goal = {std::clamp(goal.x, 0.05, 0.95), std::clamp(goal.y, 0.05, 0.95)};
-    const Point place = onMap(node.cell, goal);
-    const double off_m = std::hypot(place.x_m - places_.to.x_m, place.y_m - places_.to.y_m);
-    if (off_m > std::max(tolerance_m_, 1e-6 * map_.grid().resolution_m)) return std::nullopt;
-    if (goal.x < -1e-6 || goal.x > 1.0 + 1e-6 || goal.y < -1e-6 || goal.y > 1.0 + 1e-6) return std::nullopt;
-    const auto [a, b] = ends(node);
-    if (!DriveCone(headings_.of(map_.at(node.cell))).joins(a, b, goal, 1e-9)) return std::nullopt;
-    return goal;
-  }
-
-  // The heading of both sets nearest to straight out of the side; straight back where they share none.
-  static double crossing(const HeadingSet& own, const HeadingSet& other, int side) {
-    const HeadingSet both = own.shared(other);
-    return both.empty() ? outwards_rad(otherSide(side)) : both.nearest(outwards_rad(side), kInside_rad);
+  // Whether a way that came in here may end in this cell.
+  bool endsIn(int k) const {
+    const Node& node = nodes_[static_cast<std::size_t>(k)];
+    const InCell goal = inCell(map_.grid(), node.cell, places_.to);
+    const double reach = 0.5 + tolerance_m_ / map_.grid().resolution_m + 1e-5;
+    if (std::max(std::abs(goal.x - 0.5), std::abs(goal.y - 0.5)) > reach) return false;
+    const HeadingSet& own = headings_.of(map_.at(node.cell));
+    const DriveCone cone(own);
+    const auto reached = [&](const DriveCone& by) {
+      return nearestReached(map_.grid(), node.cell, by, ends(node), places_, tolerance_m_, extent_.ends)
+          .has_value();
+    };
+    if (!byArcs(node.cell, cone)) return reached(cone);
+    for (const HeadingArc& arc : own.arcs())
+      if (reached(DriveCone(HeadingSet({arc})))) return true;
+    return false;
   }
 
   void expand(int k, double spent) {
+    const Cell cell = nodes_[static_cast<std::size_t>(k)].cell;
+    const HeadingSet& own = headings_.of(map_.at(cell));
+    const DriveCone cone(own);
+    if (!byArcs(cell, cone)) return expandBy(k, spent, cone, -1);
+    for (std::size_t arc = 0; arc < own.arcs().size(); ++arc)
+      expandBy(k, spent, DriveCone(HeadingSet({own.arcs()[arc]})), static_cast<int>(arc));
+  }
+
+  void expandBy(int k, double spent, const DriveCone& cone, int arc) {
     const Node node = nodes_[static_cast<std::size_t>(k)];
     const HeadingSet& own = headings_.of(map_.at(node.cell));
-    if (own.empty()) return;
-    const DriveCone cone(own);
     const auto [a, b] = ends(node);
     const InCell middle = 0.5 * (a + b);
     for (int side = 0; side < 4; ++side) {
       const Cell next = beyond(node.cell, side);
-      if (!map_.grid().contains(next) || passed_[map_.grid().index(next)]) continue;
-      if (limits_.worth && !limits_.worth(next)) continue;
-      const HeadingSet& other = headings_.of(map_.at(next));
-      if (other.empty()) continue;
-      const double heading = own.all() && other.all() ? outwards_rad(side) : crossing(own, other, side);
-      if (!(std::cos(heading - outwards_rad(side)) > 1e-3)) continue;
-      SideRange range = cone.reached(a, b, side, -1e-6);
-      range = {std::max(range.from, kApart), std::min(range.to, 1.0 - kApart)};
+      if (!map_.grid().contains(next) || (limits_.worth && !limits_.worth(next))) continue;
+      const auto heading = crossing(own, headings_.of(map_.at(next)), side);
+      if (!heading) continue;
+      SideRange range = cone.reached(a, b, side, node.side < 0 ? extent_.ends : extent_.margins.slack);
+      range = {std::max(range.from, extent_.margins.apart), std::min(range.to, 1.0 - extent_.margins.apart)};
       if (range.empty()) continue;
-      const InCell out = onSide(side, 0.5 * (range.from + range.to)), leg = out - middle;
-      const InCell h = unit(heading);
+      if (onlyCorner(range)) {
+        overCorner(k, spent, cone, side, range.from > 0.5);
+        continue;
+      }
+      const InCell leg = onSide(side, 0.5 * (range.from + range.to)) - middle;
       const double metres = map_.grid().resolution_m * std::max(0.05, std::hypot(leg.x, leg.y));
-      const double price = map_.cost().costPerMetre(map_.at(node.cell), {h.x, h.y});
-      if (std::isfinite(price)) open({next, otherSide(side), range, heading, k}, spent + metres * price);
+      const double price =
+          map_.cost().costPerMetre(map_.at(node.cell), {std::cos(*heading), std::sin(*heading)});
+      open({next, otherSide(side), range, k, arc}, spent + metres * (std::isfinite(price) ? price : 1.0));
     }
   }
 
-  // Backwards from the end of the way: where each side is crossed; then the drive through each cell.
-  Polyline laid(int last, InCell end) {
-    std::vector<Crossing> crossings;
-    InCell target = end;
-    int k = last;
-    for (; nodes_[static_cast<std::size_t>(k)].parent >= 0; k = nodes_[static_cast<std::size_t>(k)].parent) {
+  static constexpr double kCorner = 1e-12;  // sides: rounding
+  static bool onlyCorner(const SideRange& range) noexcept {
+    return range.to <= kCorner || range.from >= 1.0 - kCorner;
+  }
+
+  // Of a side only the corner at its end is reached: a drive goes on from there if it gets there on a heading, the cone's
+  // first or last, that all cells around allow; then into each of them that such a heading leads into.
+  void overCorner(int k, double spent, const DriveCone& cone, int side, bool at_end) {
+    const Node node = nodes_[static_cast<std::size_t>(k)];
+    const bool meridian = side == Side::West || side == Side::East;
+    const int beside = meridian ? (at_end ? Side::North : Side::South) : (at_end ? Side::East : Side::West);
+    const Cell across = beyond(node.cell, side), next = beyond(node.cell, beside),
+               far = beyond(across, beside);
+    HeadingSet all = headings_.of(map_.at(node.cell));
+    for (const Cell other : {across, next, far})
+      if (map_.grid().contains(other)) all = all.shared(headings_.of(map_.at(other)));
+    if (all.empty() || !comesOver(node, cone, all, onSide(side, at_end ? 1.0 : 0.0), side, beside)) return;
+    if (!corners_.insert(4 * map_.grid().index(node.cell) + (side < 2 ? 0 : 2) + (at_end ? 1 : 0)).second)
+      return;
+    const SideRange along_side = at_end ? SideRange{1.0, 1.0} : SideRange{0.0, 0.0};
+    const SideRange along_beside = side % 2 == 1 ? SideRange{1.0, 1.0} : SideRange{0.0, 0.0};
+    open({across, otherSide(side), along_side, k}, spent);
+    open({next, otherSide(beside), along_beside, k}, spent);
+    if (map_.grid().contains(far))
+      open({far, otherSide(side), along_side.from > 0.5 ? SideRange{0.0, 0.0} : SideRange{1.0, 1.0}, k},
+           spent);
+  }
+
+  bool comesOver(const Node& node, const DriveCone& cone, const HeadingSet& all, InCell corner, int side,
+                 int beside) const {
+    const auto [a, b] = ends(node);
+    for (const double heading : cone.ends_rad()) {
+      if (std::abs(std::remainder(all.nearest(heading, 0.0) - heading, HeadingSet::kTurn)) > 1e-6) continue;
+      if (std::cos(heading - outwards_rad(side)) < -1e-6 || std::cos(heading - outwards_rad(beside)) < -1e-6)
+        continue;
+      const InCell before{corner.x - 1e-3 * std::cos(heading), corner.y - 1e-3 * std::sin(heading)};
+      if (cone.joins(a, b, before, 1e-9)) return true;
+    }
+    return false;
+  }
+
+  // The heading of both sets nearest to straight out of the side, if one leads out.
+  std::optional<double> crossing(const HeadingSet& own, const HeadingSet& other, int side) const {
+    const double out = outwards_rad(side);
+    if (own.all() && other.all()) return out;
+    const HeadingSet both = own.shared(other);
+    if (both.empty()) return std::nullopt;
+    const double heading = both.nearest(out, extent_.within_rad);
+    return std::cos(heading - out) > extent_.outwards ? std::optional(heading) : std::nullopt;
+  }
+
+  // The drive that ends in a node's cell. Where it cannot be laid, the cell that stopped it is restricted: Blocked; Exhausted where
+  // that is not possible.
+  End lay(int last) {
+    std::vector<ChainLink> chain;
+    int arc = -1;
+    for (int k = last; k >= 0; k = nodes_[static_cast<std::size_t>(k)].parent) {
       const Node& node = nodes_[static_cast<std::size_t>(k)];
-      const DriveCone cone(headings_.of(map_.at(node.cell)));
-      SideRange range = cone.reaching(target, node.side, 1e-9);
-      range = {std::max(range.from, node.range.from), std::min(range.to, node.range.to)};
-      if (range.empty()) return {};
-      const double wanted = node.side == Side::West || node.side == Side::East ? target.y : target.x;
-      const double inner = 0.25 * (range.to - range.from);
-      const double at = cone.everywhere() ? std::clamp(wanted, range.from + inner, range.to - inner)
-                                          : 0.5 * (range.from + range.to);
-      crossings.push_back({node.cell, onSide(node.side, at), node.heading_rad, node.side});
-      target = onSide(otherSide(node.side), at);
+      const HeadingSet& own = headings_.of(map_.at(node.cell));
+      chain.push_back({node.cell, node.side,
+                       arc < 0 ? own : HeadingSet({own.arcs()[static_cast<std::size_t>(arc)]}),
+                       arc < 0 && everywhere(node.cell, DriveCone(own))});
+      arc = node.arc;
     }
-    // Sides are crossed on short straight legs; the shorter, the less room they take of a narrow cone.
-    for (const double step : {0.2, 0.02, 0.002})
-      if (Polyline way = driven(nodes_[static_cast<std::size_t>(k)].cell, crossings, end, step); !way.empty())
-        return way;
-    return {};
-  }
-
-  // The start's cell, and the crossings with the last one first.
-  Polyline driven(Cell cell, const std::vector<Crossing>& crossings, InCell end, double step) {
-    InCell here = inCell(cell, places_.from);
-    Polyline way{places_.from};
-    const auto drive = [&](InCell to) {
-      std::vector<InCell> places;
-      if (!connect(headings_.of(map_.at(cell)), here, to, places)) return false;
-      for (const InCell& p : places) way.push_back(onMap(cell, p));
-      return true;
-    };
-    for (auto crossing = crossings.rbegin(); crossing != crossings.rend(); ++crossing) {
-      const bool meridian = crossing->side == Side::West || crossing->side == Side::East;
-      const InCell h = unit(crossing->heading_rad),
-                   out = onSide(otherSide(crossing->side), meridian ? crossing->place.y : crossing->place.x);
-      if (!drive(out - std::min(step, stepInside(out, -1.0 * h)) * h)) return {};
-      cell = crossing->cell;
-      here = crossing->place + std::min(step, stepInside(crossing->place, h)) * h;
-      way.push_back(onMap(cell, here));
+    std::ranges::reverse(chain);
+    LaidChain laid = laidChain(cost_, chain, places_, tolerance_m_, extent_.margins);
+    if (!laid.points.empty()) {
+      found_.points = std::move(laid.points);
+      return End::Reached;
     }
-    if (!drive(end)) return {};
-    if (tolerance_m_ == 0.0) way.back() = places_.to;
-    return std::isfinite(cost_.along(way)) ? way : Polyline{};
+    const Cell cell = chain[laid.failed].cell;
+    Use& use = use_[map_.grid().index(cell)];
+    if (use == Use::Never) return End::Exhausted;
+    const bool whole = use == Use::Whole && DriveCone(headings_.of(map_.at(cell))).everywhere();
+    use = whole ? Use::OneArc : Use::Never;
+    return End::Blocked;
   }
 
   const MotionCost& cost_;
@@ -268,10 +308,17 @@ class Search {
   Segment places_;
   double tolerance_m_;
   const CellRouteLimits& limits_;
+  const StopCheck& stop_;
+  Extent extent_{};
+  bool proof_ = false;
+  CellRoute found_{};
   std::vector<bool> passed_;
+  std::size_t passed_cells_ = 0;
   std::vector<Node> nodes_;
   std::priority_queue<std::pair<double, int>> queue_;
-  std::unordered_map<std::size_t, std::vector<std::pair<int, SideRange>>> closed_;
+  std::unordered_map<std::size_t, SideCover> cover_;
+  std::unordered_set<std::size_t> corners_;  // passed over, in which sense
+  std::unordered_map<std::size_t, Use> use_;
 };
 
 }  // namespace
@@ -279,7 +326,7 @@ class Search {
 CellRoute cellRoute(const MotionCost& cost, HeadingSets& headings, const Segment& places, double tolerance_m,
                     const CellRouteLimits& limits, const StopCheck& stop) {
   if (std::isfinite(cost(places))) return {.points = {places.from, places.to}};
-  return Search(cost, headings, places, tolerance_m, limits).route(stop);
+  return Search(cost, headings, places, tolerance_m, limits, stop).route();
 }
 
 }  // namespace talus::planner

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include <talus/maps/grid.hpp>
 #include <talus/planner/route/heading_set.hpp>
@@ -38,6 +40,26 @@ struct InCell {
   double y = 0.0;
 };
 
+constexpr InCell operator+(InCell a, InCell b) noexcept {
+  return {a.x + b.x, a.y + b.y};
+}
+constexpr InCell operator-(InCell a, InCell b) noexcept {
+  return {a.x - b.x, a.y - b.y};
+}
+constexpr InCell operator*(double s, InCell a) noexcept {
+  return {s * a.x, s * a.y};
+}
+
+/// A place of the map in sides of a cell, and back.
+inline InCell inCell(const maps::Grid& grid, maps::Cell cell, maps::Point p) noexcept {
+  return {(p.x_m - grid.south_west.x_m) / grid.resolution_m - cell.column,
+          (p.y_m - grid.south_west.y_m) / grid.resolution_m - cell.row};
+}
+inline maps::Point onMap(const maps::Grid& grid, maps::Cell cell, InCell p) noexcept {
+  return {grid.south_west.x_m + (cell.column + p.x) * grid.resolution_m,
+          grid.south_west.y_m + (cell.row + p.y) * grid.resolution_m};
+}
+
 /// The place `at`, 0 to 1, on a side.
 constexpr InCell onSide(int side, double at) noexcept {
   return side == Side::West    ? InCell{0.0, at}
@@ -64,15 +86,25 @@ struct SideRange {
 /// cone of directions no wider than half a turn. The set must not be empty.
 class DriveCone {
  public:
-  explicit DriveCone(const HeadingSet& headings) noexcept {
-    const auto [end, gap] = headings.widestGap();
-    everywhere_ = gap < 0.5 * HeadingSet::kTurn;
-    const double begin = end + gap;
+  /// `cut`, 0 to 0.5, is the share of the cone's width that is left out at both its ends.
+  explicit DriveCone(const HeadingSet& headings, double cut = 0.0) noexcept {
+    const auto [last, gap] = headings.widestGap();
+    spare_rad_ = 0.5 * HeadingSet::kTurn - gap;
+    everywhere_ = spare_rad_ > 0.0;
+    const double in = cut * (HeadingSet::kTurn - gap), begin = last + gap + in, end = last - in;
     left_of_begin_ = {-std::sin(begin), std::cos(begin)};
     right_of_end_ = {std::sin(end), -std::cos(end)};
+    ends_rad_ = {begin, end};
   }
 
+  /// Its first and its last heading, counter-clockwise; of no use where it leads everywhere.
+  const std::array<double, 2>& ends_rad() const noexcept { return ends_rad_; }
+
   bool everywhere() const noexcept { return everywhere_; }
+
+  /// By how much [rad] the widest gap between headings is narrower than half a turn: where it is little above 0, a drive
+  /// gets everywhere in many turns only.
+  double spare_rad() const noexcept { return spare_rad_; }
 
   /// The part of a side that is reached from somewhere on the segment between two places of the cell. `slack`, in
   /// sides, widens the cone.
@@ -83,6 +115,26 @@ class DriveCone {
   /// The part of a side from where a place of the cell is reached.
   SideRange reaching(InCell place, int side, double slack) const noexcept {
     return clipped(side, slack, {-dot(left_of_begin_, place), -dot(right_of_end_, place)}, -1.0);
+  }
+
+  /// The part of the cell that is reached from the segment between two places of it, `inside` sides away from its own
+  /// sides: corners in order, none where it is empty.
+  std::vector<InCell> reachedPart(InCell a, InCell b, double slack, double inside) const {
+    const double far = 1.0 - inside;
+    std::vector<InCell> part{{inside, inside}, {far, inside}, {far, far}, {inside, far}};
+    if (everywhere_) return part;
+    for (const InCell normal : {left_of_begin_, right_of_end_}) {
+      const double from = least(normal, a, b) - slack;
+      std::vector<InCell> kept;
+      for (std::size_t k = 0; k < part.size(); ++k) {
+        const InCell here = part[k], next = part[(k + 1) % part.size()];
+        const double in = dot(normal, here) - from, then = dot(normal, next) - from;
+        if (in >= 0.0) kept.push_back(here);
+        if ((in < 0.0) != (then < 0.0)) kept.push_back(here + (in / (in - then)) * (next - here));
+      }
+      part = std::move(kept);
+    }
+    return part;
   }
 
   /// Whether `to` is reached from somewhere on the segment from a to b.
@@ -114,6 +166,8 @@ class DriveCone {
   }
 
   bool everywhere_;
+  double spare_rad_;
+  std::array<double, 2> ends_rad_;
   InCell left_of_begin_, right_of_end_;
 };
 

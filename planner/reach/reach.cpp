@@ -12,11 +12,6 @@ constexpr double kRounding = 1e-9;
 
 enum : std::uint8_t { kSeen = 1, kOpen = 2 };
 
-InCell inCell(const maps::Grid& grid, Cell cell, maps::Point p) noexcept {
-  return {(p.x_m - grid.south_west.x_m) / grid.resolution_m - cell.column,
-          (p.y_m - grid.south_west.y_m) / grid.resolution_m - cell.row};
-}
-
 }  // namespace
 
 Reach::Reach(const costmap::CostGrid& map, HeadingSets& headings, Sense sense, maps::Point place,

@@ -1,4 +1,6 @@
 #include <cmath>
+#include <queue>
+#include <random>
 
 #include <talus/planner/check/route_check.hpp>
 #include <talus/planner/reach/cell_route.hpp>
@@ -6,6 +8,7 @@
 
 #include "contour_plane.hpp"
 #include "drawn_map.hpp"
+#include "steered_ground.hpp"
 
 namespace talus::planner {
 namespace {
@@ -60,6 +63,79 @@ TEST(CellRoute, IsAllowedAndMostlyFound) {
   }
   EXPECT_GT(found, 20);
   EXPECT_LE(missed, 2) << found;
+}
+
+// What brute force reaches on a map of nine by nine cells: every motion by MotionCost between the points of a lattice, four to a
+// cell's side, that lie no more than six apart.
+constexpr int kFine = 4, kSide = 9 * kFine;
+
+maps::Point latticePlace(int k) {
+  return {(k % kSide + 0.5) / kFine, (k / kSide + 0.5) / kFine};
+}
+
+std::vector<bool> reachedByForce(const MotionCost& cost, int from) {
+  std::vector<bool> seen(kSide * kSide, false);
+  std::queue<int> open({from});
+  seen[static_cast<std::size_t>(from)] = true;
+  for (; !open.empty(); open.pop())
+    for (int dy = -6; dy <= 6; ++dy)
+      for (int dx = -6; dx <= 6; ++dx) {
+        const int x = open.front() % kSide + dx, y = open.front() / kSide + dy;
+        if (x < 0 || y < 0 || x >= kSide || y >= kSide) continue;
+        const int next = y * kSide + x;
+        if (seen[static_cast<std::size_t>(next)]) continue;
+        if (!std::isfinite(cost({latticePlace(open.front()), latticePlace(next)}))) continue;
+        seen[static_cast<std::size_t>(next)] = true;
+        open.push(next);
+      }
+  return seen;
+}
+
+struct Answers {
+  int found = 0;
+  int out_of_reach = 0;  // proven, beyond what Reach proves
+  int neither = 0;
+  int wrong = 0;  // a route that breaks a rule, or a proof that brute force refutes
+};
+
+void ask(const std::shared_ptr<const costmap::CostGrid>& map, unsigned seed, int from, Answers& answers) {
+  const MotionCost cost(map);
+  if (!cost.allowed(latticePlace(from))) return;
+  const std::vector<bool> forced = reachedByForce(cost, from);
+  HeadingSets headings(map->cost());
+  Reach reach(*map, headings, Reach::Sense::From, latticePlace(from));
+  std::mt19937 random(seed);
+  for (int k = 0; k < 16; ++k) {
+    const int to = static_cast<int>(random() % static_cast<unsigned>(kSide * kSide));
+    if (!cost.allowed(latticePlace(to)) || !reach.reaches(latticePlace(to), 0.0)) continue;
+    const CellRoute way = cellRoute(cost, headings, {latticePlace(from), latticePlace(to)}, 0.0);
+    const bool found = !way.points.empty();
+    answers.found += found;
+    answers.out_of_reach += way.out_of_reach;
+    answers.neither += !found && !way.out_of_reach;
+    answers.wrong += found && !violations(*map, way.points).empty();
+    answers.wrong += way.out_of_reach && forced[static_cast<std::size_t>(to)];
+  }
+}
+
+// Property: where Reach leaves a way, one is found or its absence proven, and brute force agrees: with cones of nearly half a
+// turn that lead down between blocked cells, with one narrow arc on each side of the fall line, with both ways along a contour.
+TEST(CellRoute, ThreadsNarrowCones) {
+  Answers descents, arcs, contours;
+  for (unsigned seed = 1; seed <= 100; ++seed) {
+    ask(testing::randomDescent(seed), seed, kSide * (kSide - 3) + kSide / 2, descents);
+    ask(testing::randomBand(seed, -0.20, -0.19), seed, kSide * (kSide / 2) + kSide / 2, arcs);
+  }
+  for (unsigned seed = 1; seed <= 10; ++seed)
+    ask(testing::randomBand(seed, -0.31, 0.002), seed, kSide * (kSide / 2) + kSide / 2, contours);
+  for (const Answers& answers : {descents, arcs, contours}) {
+    EXPECT_EQ(answers.wrong, 0);
+    EXPECT_GT(answers.found, 100);
+  }
+  EXPECT_EQ(descents.neither, 0);
+  EXPECT_LE(arcs.neither, 1);  // a goal at the very edge of a narrow cone
+  EXPECT_EQ(contours.neither, 0);
+  EXPECT_GT(descents.out_of_reach, 5);
 }
 
 // The work limit is a count: it is kept, and one step more than the search takes changes nothing.

@@ -1,6 +1,5 @@
 #include <cmath>
 #include <queue>
-#include <random>
 
 #include <talus/planner/check/route_check.hpp>
 #include <talus/planner/reach/reach.hpp>
@@ -8,6 +7,7 @@
 
 #include "contour_plane.hpp"
 #include "drawn_map.hpp"
+#include "steered_ground.hpp"
 
 namespace talus::planner {
 namespace {
@@ -120,24 +120,8 @@ TEST(Reach, NoRandomMapIsProvenWrongly) {
 // The same where every cell has a cone: driven down only, on ground that falls southwards on the whole. Here sides are
 // entered in several parts, from both sides of what is blocked.
 TEST(Reach, NoDescentIsProvenWrongly) {
-  costmap::DriveCurve down_only = testing::curve({});
-  for (int bin = costmap::DriveCurve::kBins / 2; bin < costmap::DriveCurve::kBins; ++bin)
-    down_only.cost_J_per_m[static_cast<std::size_t>(bin)] = std::numeric_limits<float>::infinity();
-  const auto cost =
-      std::make_shared<costmap::DriveCost>(costmap::DriveCost::Limits{}, std::vector{down_only});
   Tally tally;
-  for (unsigned seed = 1; seed <= 120; ++seed) {
-    std::mt19937 random(seed);
-    const auto unit = [&random] { return static_cast<double>(random()) / 4294967296.0; };
-    maps::Raster<costmap::CellCode> cells({.width = 9, .height = 9, .resolution_m = 1.0, .south_west = {}});
-    for (auto& cell : cells.values()) {
-      const bool blocked = unit() < 0.12;
-      cell = costmap::CellCode({.dz_dx = 0.3 * (unit() - 0.5),
-                                .dz_dy = 0.05 + 0.15 * unit(),
-                                .curve = blocked ? costmap::CellCode::kBlocked : std::uint8_t{0}});
-    }
-    compare(std::make_shared<costmap::CostGrid>(costmap::flattened(cells, cost)), tally);
-  }
+  for (unsigned seed = 1; seed <= 120; ++seed) compare(testing::randomDescent(seed), tally);
   EXPECT_EQ(tally.wrong, 0);
   EXPECT_GT(tally.open, 2000);
   EXPECT_GT(tally.proven, 2000);

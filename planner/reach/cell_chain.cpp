@@ -1,0 +1,236 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include <talus/planner/reach/cell_chain.hpp>
+#include <talus/planner/reach/cell_drive.hpp>
+
+namespace talus::planner {
+namespace {
+
+using maps::Cell;
+using maps::Point;
+
+// Shares of a cone's width that are left out at both its ends: the first that leave a way are taken.
+constexpr std::array kCuts{0.3, 0.1, 0.03, 0.01, 1e-3, 0.0};
+constexpr double kTouch = 1e-6;  // sides: as MotionCost takes two places to be one
+
+using Ends = std::pair<InCell, InCell>;
+
+InCell nearestOnSegment(InCell a, InCell b, InCell to) noexcept {
+  const InCell d = b - a, e = to - a;
+  const double square = d.x * d.x + d.y * d.y;
+  return a + (square > 0.0 ? std::clamp((d.x * e.x + d.y * e.y) / square, 0.0, 1.0) : 0.0) * d;
+}
+
+class Layer {
+ public:
+  Layer(const MotionCost& cost, const std::vector<ChainLink>& chain, const Segment& places,
+        double tolerance_m, const ChainMargins& margins)
+      : cost_(cost),
+        grid_(cost.map().grid()),
+        chain_(chain),
+        places_(places),
+        tolerance_m_(tolerance_m),
+        margins_(margins) {}
+
+  LaidChain laid() {
+    std::size_t failed = 0;
+    for (const double cut : kCuts) {
+      cut_ = cut;
+      Polyline way;
+      if (funnel() && gates()) way = driven();
+      if (!way.empty()) return {std::move(way), 0};
+      failed = std::max(failed, failed_);
+    }
+    return {{}, failed};
+  }
+
+ private:
+  DriveCone cone(std::size_t k) const {
+    return DriveCone(chain_[k].headings, chain_[k].everywhere ? 0.0 : cut_);
+  }
+  int exit(std::size_t k) const noexcept { return otherSide(chain_[k + 1].side); }
+
+  Ends entry(std::size_t k) const {
+    if (k == 0)
+      return {inCell(grid_, chain_[0].cell, places_.from), inCell(grid_, chain_[0].cell, places_.from)};
+    return {onSide(chain_[k].side, ranges_[k].from), onSide(chain_[k].side, ranges_[k].to)};
+  }
+
+  // The parts of the sides reached, from the start on, and the place of the last cell where to end.
+  bool funnel() {
+    const std::size_t last = chain_.size() - 1;
+    ranges_.assign(chain_.size(), {});
+    for (std::size_t k = 0; k < last; ++k) {
+      const auto [a, b] = entry(k);
+      SideRange range{0.0, 1.0};
+      if (!chain_[k].everywhere) range = cone(k).reached(a, b, exit(k), margins_.slack);
+      ranges_[k + 1] = {std::max(range.from, margins_.apart), std::min(range.to, 1.0 - margins_.apart)};
+      if (ranges_[k + 1].empty()) return failedAt(k);
+    }
+    const auto end = nearestReached(grid_, chain_[last].cell, cone(last), entry(last), places_, tolerance_m_,
+                                    margins_.slack);
+    if (!end) return failedAt(last);
+    end_ = *end;
+    return true;
+  }
+
+  // Where each side is crossed, from the end on: in the middle of what leads to the next place; where a cell is free to be
+  // driven in every direction, as near to straight on as keeps off the ends.
+  bool gates() {
+    at_.assign(chain_.size(), 0.0);
+    InCell target = end_;
+    for (std::size_t k = chain_.size() - 1; k > 0; --k) {
+      const ChainLink& link = chain_[k];
+      SideRange range = ranges_[k];
+      if (!link.everywhere) {
+        const SideRange to = cone(k).reaching(target, link.side, 1e-9);
+        range = {std::max(range.from, to.from), std::min(range.to, to.to)};
+        if (range.empty()) return failedAt(k);
+      }
+      const double wanted = link.side == Side::West || link.side == Side::East ? target.y : target.x;
+      const double inner = 0.25 * (range.to - range.from);
+      at_[k] = link.everywhere ? std::clamp(wanted, range.from + inner, range.to - inner)
+                               : 0.5 * (range.from + range.to);
+      target = onSide(otherSide(link.side), at_[k]);
+    }
+    return true;
+  }
+
+  // Headings on which the side before a link may be crossed: near to those of the straight ways on both sides of it, near to
+  // straight across, and in the middle of each arc.
+  std::vector<double> crossings(std::size_t k) const {
+    const HeadingSet both = chain_[k - 1].headings.shared(chain_[k].headings);
+    std::vector<double> headings;
+    if (both.empty()) return headings;
+    const double across = outwards_rad(exit(k - 1));
+    const auto add = [&](double heading) {
+      if (std::cos(heading - across) > 1e-3 && std::ranges::find(headings, heading) == headings.end())
+        headings.push_back(heading);
+    };
+    const InCell before = placeIn(k - 1), here = placeOut(k - 1), from = placeIn(k),
+                 to = k + 1 < chain_.size() ? placeOut(k) : end_;
+    add(both.nearest(std::atan2(here.y - before.y, here.x - before.x), 1e-3));
+    add(both.nearest(std::atan2(to.y - from.y, to.x - from.x), 1e-3));
+    add(both.nearest(across, 1e-3));
+    for (const HeadingArc& arc : both.arcs()) add(arc.from_rad + 0.5 * arc.width_rad);
+    return headings;
+  }
+
+  InCell placeIn(std::size_t k) const {
+    return k == 0 ? inCell(grid_, chain_[0].cell, places_.from) : onSide(chain_[k].side, at_[k]);
+  }
+  InCell placeOut(std::size_t k) const { return onSide(exit(k), at_[k + 1]); }
+
+  // A gate at the end of the drive so far: on which heading, from which gate before, by which places.
+  struct Passed {
+    std::optional<double> heading_rad{};
+    std::size_t before = 0;
+    std::vector<InCell> way{};
+  };
+
+  Polyline driven() {
+    std::vector<std::vector<Passed>> passed{{Passed{}}};
+    for (std::size_t k = 0; k < chain_.size(); ++k) {
+      const bool last = k + 1 == chain_.size();
+      std::vector<std::optional<double>> wanted{std::nullopt};
+      if (!last) {
+        const std::vector<double> headings = crossings(k + 1);
+        wanted.assign(headings.begin(), headings.end());
+      }
+      std::vector<Passed> here;
+      for (const std::optional<double>& heading : wanted) {
+        const CellGate out{last ? end_ : placeOut(k), heading};
+        for (std::size_t i = 0; i < passed.back().size(); ++i) {
+          auto way = drivenThrough(chain_[k].headings, {placeIn(k), passed.back()[i].heading_rad}, out);
+          if (way.empty()) continue;
+          here.push_back({heading, i, std::move(way)});
+          break;
+        }
+      }
+      if (here.empty()) return failedAt(k), Polyline{};
+      passed.push_back(std::move(here));
+    }
+    return checked(passed);
+  }
+
+  Polyline checked(const std::vector<std::vector<Passed>>& passed) {
+    std::vector<std::size_t> links;
+    Polyline way;
+    for (std::size_t k = chain_.size(), i = 0; k > 0; --k) {
+      const Passed& gate = passed[k][i];
+      for (auto p = gate.way.rbegin(); p != gate.way.rend(); ++p) {
+        way.push_back(onMap(grid_, chain_[k - 1].cell, *p));
+        links.push_back(k - 1);
+      }
+      i = gate.before;
+    }
+    std::ranges::reverse(way);
+    std::ranges::reverse(links);
+    way.front() = places_.from;
+    if (tolerance_m_ == 0.0) way.back() = places_.to;
+    if (std::isfinite(cost_.along(way))) return way;
+    for (std::size_t k = 1; k < way.size(); ++k)
+      if (!std::isfinite(cost_({way[k - 1], way[k]}))) return failedAt(links[k - 1]), Polyline{};
+    return failedAt(0), Polyline{};
+  }
+
+  bool failedAt(std::size_t k) {
+    failed_ = k;
+    return false;
+  }
+
+  const MotionCost& cost_;
+  const maps::Grid& grid_;
+  const std::vector<ChainLink>& chain_;
+  Segment places_;
+  double tolerance_m_;
+  ChainMargins margins_;
+  double cut_ = 0.0;
+  std::size_t failed_ = 0;
+  std::vector<SideRange> ranges_;  // before each link
+  std::vector<double> at_;         // places on these sides
+  InCell end_;
+};
+
+}  // namespace
+
+std::optional<InCell> nearestReached(const maps::Grid& grid, Cell cell, const DriveCone& cone,
+                                     const Ends& from, const Segment& places, double tolerance_m,
+                                     double slack) {
+  const InCell goal = inCell(grid, cell, places.to);
+  if (!(tolerance_m > 0.0)) {
+    const bool within = std::max(std::abs(goal.x - 0.5), std::abs(goal.y - 0.5)) <= 0.5 + kTouch;
+    return within && cone.joins(from.first, from.second, goal, slack) ? std::optional(goal) : std::nullopt;
+  }
+  const double inside = slack < 0.0 ? 1e-3 : 0.0,
+               reach = tolerance_m / grid.resolution_m + (slack < 0.0 ? 0.0 : kTouch);
+  const std::vector<InCell> part = cone.reachedPart(from.first, from.second, slack, inside);
+  std::optional<InCell> nearest;
+  double least = std::numeric_limits<double>::infinity();
+  bool left = true, right = true;  // of all sides: the goal lies within
+  const auto look = [&](InCell p) {
+    const double off = std::hypot(p.x - goal.x, p.y - goal.y);
+    if (off >= least || off > reach) return;
+    least = off;
+    nearest = p;
+  };
+  for (std::size_t k = 0; k < part.size(); ++k) {
+    const InCell a = part[k], b = part[(k + 1) % part.size()];
+    look(nearestOnSegment(a, b, goal));
+    const double turn = (b.x - a.x) * (goal.y - a.y) - (b.y - a.y) * (goal.x - a.x);
+    left = left && turn >= 0.0;
+    right = right && turn <= 0.0;
+  }
+  return !part.empty() && left != right ? std::optional(goal) : nearest;
+}
+
+LaidChain laidChain(const MotionCost& cost, const std::vector<ChainLink>& chain, const Segment& places,
+                    double tolerance_m, const ChainMargins& margins) {
+  return Layer(cost, chain, places, tolerance_m, margins).laid();
+}
+
+}  // namespace talus::planner

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include <talus/planner/reach/cell_side.hpp>
+
+namespace talus::planner {
+
+/// The parts of one side of a cell that were reached, each part once.
+class SideCover {
+ public:
+  /// Those parts of a range longer than `least` [sides, >= 0] that were not covered so far; they are from now on. What is
+  /// shorter is not, so that growth in small steps is heard when it adds up.
+  std::vector<SideRange> added(const SideRange& range, double least) {
+    std::vector<SideRange> fresh;
+    double at = range.from;
+    for (const SideRange& part : parts_) {
+      if (part.to < at) continue;
+      if (part.from >= range.to) break;
+      if (part.from - at > least) fresh.push_back({at, part.from});
+      at = part.to;
+    }
+    if (range.to - at > least) fresh.push_back({at, range.to});
+    for (const SideRange& part : fresh) cover(part);
+    return fresh;
+  }
+
+ private:
+  void cover(SideRange range) {
+    const auto touches = [](const SideRange& part, const SideRange& other) {
+      return part.to >= other.from && part.from <= other.to;
+    };
+    const auto first =
+        std::ranges::find_if(parts_, [&](const SideRange& part) { return part.to >= range.from; });
+    auto end = first;
+    for (; end != parts_.end() && touches(*end, range); ++end) range = range.hull(*end);
+    parts_.insert(parts_.erase(first, end), range);
+  }
+
+  std::vector<SideRange> parts_;  // in order, apart
+};
+
+}  // namespace talus::planner

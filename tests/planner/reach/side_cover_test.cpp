@@ -1,0 +1,35 @@
+#include <gtest/gtest.h>
+
+#include <talus/planner/reach/side_cover.hpp>
+
+namespace talus::planner {
+namespace {
+
+// Closed form: what is left of a range behind two parts.
+TEST(SideCover, GivesEachPartOnce) {
+  SideCover cover;
+  EXPECT_EQ(cover.added({0.2, 0.4}, 0.0).size(), 1U);
+  EXPECT_EQ(cover.added({0.6, 0.7}, 0.0).size(), 1U);
+  const auto rest = cover.added({0.1, 0.65}, 0.0);
+  ASSERT_EQ(rest.size(), 2U);
+  EXPECT_DOUBLE_EQ(rest[0].from, 0.1);
+  EXPECT_DOUBLE_EQ(rest[0].to, 0.2);
+  EXPECT_DOUBLE_EQ(rest[1].from, 0.4);
+  EXPECT_DOUBLE_EQ(rest[1].to, 0.6);
+  EXPECT_TRUE(cover.added({0.1, 0.7}, 0.0).empty());
+  EXPECT_EQ(cover.added({0.0, 1.0}, 0.0).size(), 2U);
+  EXPECT_TRUE(cover.added({0.0, 1.0}, 0.0).empty());
+}
+
+// Growth in steps too small to be followed is followed once it adds up.
+TEST(SideCover, HearsSmallGrowthWhenItAddsUp) {
+  SideCover cover;
+  EXPECT_EQ(cover.added({0.2, 0.4}, 0.05).size(), 1U);
+  EXPECT_TRUE(cover.added({0.2, 0.43}, 0.05).empty());
+  const auto rest = cover.added({0.2, 0.46}, 0.05);
+  ASSERT_EQ(rest.size(), 1U);
+  EXPECT_DOUBLE_EQ(rest[0].from, 0.4);
+}
+
+}  // namespace
+}  // namespace talus::planner

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cmath>
+
+#include "drawn_map.hpp"
+
+namespace talus::planner::testing {
+
+/// The cost of the tests where only gradients along the heading within a band are allowed.
+inline std::shared_ptr<const costmap::DriveCost> onlyAlong(double least, double most) {
+  costmap::DriveCurve allowed = curve({});
+  for (int bin = 0; bin < costmap::DriveCurve::kBins; ++bin) {
+    const double along = costmap::DriveCurve::gradient(bin);
+    if (along < least || along > most)
+      allowed.cost_J_per_m[static_cast<std::size_t>(bin)] = std::numeric_limits<float>::infinity();
+  }
+  return std::make_shared<costmap::DriveCost>(costmap::DriveCost::Limits{}, std::vector{allowed});
+}
+
+/// Nine by nine cells of a metre that fall southwards on the whole and may be driven down only: every cell has a cone.
+inline std::shared_ptr<const costmap::CostGrid> randomDescent(unsigned seed) {
+  std::mt19937 random(seed);
+  const auto unit = [&random] { return static_cast<double>(random()) / 4294967296.0; };
+  maps::Raster<costmap::CellCode> cells({.width = 9, .height = 9, .resolution_m = 1.0, .south_west = {}});
+  for (auto& cell : cells.values()) {
+    const bool blocked = unit() < 0.12;
+    cell = costmap::CellCode({.dz_dx = 0.3 * (unit() - 0.5),
+                              .dz_dy = 0.05 + 0.15 * unit(),
+                              .curve = blocked ? costmap::CellCode::kBlocked : std::uint8_t{0}});
+  }
+  return std::make_shared<costmap::CostGrid>(costmap::flattened(cells, onlyAlong(-1.0, -1.0 / 512.0)));
+}
+
+/// Nine by nine cells of a metre, a rough plane of gradient 0.3, where the gradient along the heading must lie in a band: two
+/// narrow arcs of headings, on both sides of the fall line.
+inline std::shared_ptr<const costmap::CostGrid> randomBand(unsigned seed, double least, double most) {
+  std::mt19937 random(seed);
+  const auto unit = [&random] { return static_cast<double>(random()) / 4294967296.0; };
+  const double up = 6.283185307179586 * unit();
+  maps::Raster<costmap::CellCode> cells({.width = 9, .height = 9, .resolution_m = 1.0, .south_west = {}});
+  for (auto& cell : cells.values()) {
+    const bool blocked = unit() < 0.02;
+    const double steep = 0.3 + 0.03 * (unit() - 0.5), at = up + 0.06 * (unit() - 0.5);
+    cell = costmap::CellCode({.dz_dx = steep * std::cos(at),
+                              .dz_dy = steep * std::sin(at),
+                              .curve = blocked ? costmap::CellCode::kBlocked : std::uint8_t{0}});
+  }
+  return std::make_shared<costmap::CostGrid>(costmap::flattened(cells, onlyAlong(least, most)));
+}
+
+}  // namespace talus::planner::testing
