@@ -4,9 +4,15 @@
 #include <talus/costmap/rock_hazard.hpp>
 
 namespace talus::costmap {
+namespace {
+
+constexpr double kMostCounted = 0.5;
+
+}  // namespace
 
 double rockHazard(double abundance, const RockCrossing& crossing) {
   if (!(abundance > 0.0)) return 0.0;
+  if (abundance > kMostCounted) return 1.0;
   const double q = 1.79 + 0.152 / abundance;
   const double x = q * crossing.diameter_m;
   const double exponential_integral = -std::expint(-x);  // E1(x)

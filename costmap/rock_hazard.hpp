@@ -15,7 +15,8 @@ struct RockCrossing {
 ///   N(D) = integral over D' > D of (-dF/dD') 4/(pi D'^2)   rocks a square metre
 ///        = 4 k q/pi [e^(-q D)/D - q E1(q D)]
 ///   P = 1 - e^(-N A)                                       rocks thrown at random
-/// Rocks wider than 2.5 m are not counted apart. Relative accuracy 1e-6 in N.
+/// 1 where rocks cover more than half of the ground: the distribution, of counted fields, has ever fewer great rocks there
+/// than the ground has room for (ours). Rocks wider than 2.5 m are not counted apart. Relative accuracy 1e-6 in N.
 double rockHazard(double abundance, const RockCrossing& crossing);
 
 }  // namespace talus::costmap
