@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 
 #include <talus/maps/elevation_map.hpp>
@@ -17,15 +18,21 @@ struct LayerSource {
   std::optional<int> band{};  ///< from 1; unset: the first, or for rock abundance the band so named
 };
 
-/// Terrain classes (whole numbers 0 to 254) on the map's grid, nearest cell; kNoClass where the file has
-/// none.
+/// Terrain classes (whole numbers 0 to 254) on the map's grid: of all that reach into a cell the one that comes last in
+/// `weakest_last`, then those that it does not name (greatest number last, ground without a class the very last), so that no
+/// weak patch is lost between the middles of cells. kNoClass where the file has none.
 /// @throws InputError, also when the file and the map do not overlap or a value is no class number
-Raster<std::uint8_t> readTerrainClasses(const LayerSource& source, const ElevationMap& map);
+Raster<std::uint8_t> readTerrainClasses(const LayerSource& source, const ElevationMap& map,
+                                        std::span<const int> weakest_last = {});
 
-/// Share of the ground covered by rocks [-], 0 to 1, on the map's grid, bilinear; NaN where the file has
-/// none.
+/// Rocks on the map's grid, of all that the file knows of a cell the greatest share.
+struct RockAbundance {
+  Raster<float> share;          ///< of the ground covered by rocks [-], 0 to 1; NaN where nothing is known
+  Raster<std::uint8_t> unseen;  ///< not 0: the file has no data in a part of the cell
+};
+
 /// @throws InputError, also when the file and the map do not overlap or a value lies outside 0 to 1
-Raster<float> readRockAbundance(const LayerSource& source, const ElevationMap& map);
+RockAbundance readRockAbundance(const LayerSource& source, const ElevationMap& map);
 
 /// What a metre costs more [J/m] on the map's grid: the greatest value of any cell of the file that reaches into a cell.
 /// Infinite: refused, also where that holds of a part of the cell alone; NaN where a part of it has no data and nothing is refused.

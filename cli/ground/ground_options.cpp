@@ -239,20 +239,27 @@ void warnOfUnseen(const std::vector<costmap::CostLayer>& layers, const costmap::
     const auto& values = layer.added_J_per_m.values();
     const auto unseen = std::ranges::count_if(values, [](float v) { return std::isnan(v); });
     if (unseen == 0) continue;
-    context.warn(fmt::format(
-        "layer {} has no data in {} of {} cells: they {}", layer.name, unseen, values.size(),
-        policy.allow_unknown ? fmt::format("cost {:.6g} J/m more, as the dearest", layer.unseen_J_per_m)
-                             : "count as unknown and are excluded"));
+    context.warn(fmt::format("layer {} has no data in {} of {} cells: they {}", layer.name, unseen,
+                             values.size(),
+                             !policy.allow_unknown ? "count as unknown and are excluded"
+                             : layer.unseen_J_per_m > 0.0F
+                                 ? fmt::format("cost {:.6g} J/m more, as the dearest", layer.unseen_J_per_m)
+                                 : "cost nothing more"));
   }
 }
 
-// A raster of rocks says nothing where it has no data: the ground there is judged without.
-void warnOfUnseenRocks(const maps::Raster<float>& rocks, const std::string& file, const Context& context) {
-  const auto unseen = std::ranges::count_if(rocks.values(), [](float v) { return std::isnan(v); });
-  if (unseen > 0)
-    context.warn(fmt::format(
-        "{}: no data in {} of {} cells: they count as free of rocks; exclude them with --keep-out", file,
-        unseen, rocks.values().size()));
+// Class numbers from the strongest ground to the weakest, by the drawbar pull that all but one of forty places have.
+std::vector<int> weakestLast(const std::vector<costmap::GroundClass>& classes,
+                             const terramech::Rover& rover) {
+  std::vector<std::pair<double, int>> by_pull;
+  for (const costmap::GroundClass& c : classes) {
+    const double mean = costmap::mobilityOf(c, rover).reference().drawbar_pull_over_load;
+    by_pull.emplace_back(2.0 * std::hypot(c.pull_std, c.mean_std) - mean, c.number);
+  }
+  std::ranges::sort(by_pull);
+  std::vector<int> numbers;
+  for (const auto& [weakness, number] : by_pull) numbers.push_back(number);
+  return numbers;
 }
 
 }  // namespace
@@ -293,14 +300,13 @@ Ground readGround(const GroundOptions& options, const Context& context) {
   auto [dem, floors] = readMapWithFloors(options.dem, context);
   const Assumed& assumed = assumedOn(dem);
   warnOfAssumptions(options, assumed, context);
-  Layers layers = readLayers(options.layers, dem);
-  warnOfUnseenRocks(layers.rock_abundance, options.layers.rocks, context);
-  const double load_s = since_s(begin);
-  begin = Clock::now();
   costmap::GroundModel::Parts parts;
   parts.rover = terramech::loadRover(options.rover.empty() ? assumed.rover : options.rover);
   parts.classes = groundClasses(options, assumed, parts.rover);
   parts.policy = options.policy;
+  Layers layers = readLayers(options.layers, dem, weakestLast(parts.classes, parts.rover));
+  const double load_s = since_s(begin);
+  begin = Clock::now();
   const double own_m = std::hypot(parts.rover.wheelbase_m, parts.rover.track_m),
                widest_m = std::max(kFootprints * own_m, 2.0 * dem.grid().resolution_m);
   if (options.footprint_m > widest_m)

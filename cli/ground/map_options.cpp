@@ -141,14 +141,28 @@ costmap::CostLayer costLayer(const std::string& given, const maps::ElevationMap&
   return {.name = name, .added_J_per_m = std::move(added.J_per_m), .unseen_J_per_m = added.dearest_J_per_m};
 }
 
+// Whether rocks lie there is not known, which makes the ground unknown; where that is allowed it costs no more.
+costmap::CostLayer unseenRocks(const maps::Raster<std::uint8_t>& unseen) {
+  costmap::CostLayer layer{.name = "rocks", .added_J_per_m = maps::Raster<float>(unseen.grid())};
+  std::ranges::transform(unseen.values(), layer.added_J_per_m.values().begin(), [](std::uint8_t hidden) {
+    return hidden != 0 ? std::numeric_limits<float>::quiet_NaN() : 0.0F;
+  });
+  return layer;
+}
+
 }  // namespace
 
-Layers readLayers(const LayerOptions& options, const maps::ElevationMap& map) {
+Layers readLayers(const LayerOptions& options, const maps::ElevationMap& map,
+                  std::span<const int> weakest_last) {
   Layers layers;
   if (!options.terrain.empty())
-    layers.classes = maps::readTerrainClasses({options.terrain, options.terrain_band}, map);
-  if (!options.rocks.empty())
-    layers.rock_abundance = maps::readRockAbundance({options.rocks, options.rocks_band}, map);
+    layers.classes = maps::readTerrainClasses({options.terrain, options.terrain_band}, map, weakest_last);
+  if (!options.rocks.empty()) {
+    maps::RockAbundance rocks = maps::readRockAbundance({options.rocks, options.rocks_band}, map);
+    layers.rock_abundance = std::move(rocks.share);
+    if (std::ranges::count(rocks.unseen.values(), 0) != std::ssize(rocks.unseen.values()))
+      layers.costs.push_back(unseenRocks(rocks.unseen));
+  }
   for (const std::string& path : options.keep_out) {
     const maps::Raster<std::uint8_t> mask = maps::readKeepOut(path, map);
     if (layers.keep_out.empty()) layers.keep_out = maps::Raster<std::uint8_t>(map.grid());

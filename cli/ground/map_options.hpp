@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -69,7 +70,9 @@ void addLayerOptions(CLI::App& command, LayerOptions& options);
 /// The file of a layer given as NAME=FILE; the name is letters, digits, - and _. @throws InputError
 std::pair<std::string, std::string> layerNamed(const std::string& given);
 
-/// Reads and aligns them. @throws InputError
-Layers readLayers(const LayerOptions& options, const maps::ElevationMap& map);
+/// Reads and aligns them. Where classes meet in a cell the one latest in `weakest_last` counts. Rocks without data become a
+/// cost layer "rocks" that knows nothing there. @throws InputError
+Layers readLayers(const LayerOptions& options, const maps::ElevationMap& map,
+                  std::span<const int> weakest_last = {});
 
 }  // namespace talus::cli

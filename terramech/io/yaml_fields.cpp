@@ -158,7 +158,9 @@ Estimate toStated(const State& state, const std::string& name, const Found& foun
   const std::string where = state.where(found.value.Mark().line);
   if (!has_mean || !has_std)
     fail(where, name + " lacks its " + (has_mean ? "std" : "mean"), "write {mean: M, std: S}");
-  if (stated.std < 0.0) fail(where, name + ".std must be >= 0", "a standard deviation is not negative");
+  if (!(stated.std > 0.0))
+    fail(where, name + ".std must be > 0",
+         "no measurement is exact: give its standard deviation, or the mean alone for the default");
   return stated;
 }
 

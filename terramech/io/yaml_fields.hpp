@@ -39,7 +39,7 @@ class YamlFields {
 
   double number(const std::string& name) const;
   double number(const std::string& name, double fallback) const;
-  Estimate stated(const std::string& name) const;  ///< a number or {mean, std}
+  Estimate stated(const std::string& name) const;  ///< a number (std 0) or {mean, std} with std > 0
   Estimate stated(const std::string& name, double fallback) const;
   int integer(const std::string& name) const;
   int integer(const std::string& name, int fallback) const;

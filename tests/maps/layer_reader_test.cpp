@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <random>
+
 #include "layer_fixture.hpp"
 
 namespace talus::maps {
@@ -12,7 +15,7 @@ TEST(LayerReader, ClassesOnTheSameCells) {
   EXPECT_EQ(drawing(readTerrainClasses({.path = path}, map(folder))), "1122\n1.22\n3333\n");
 }
 
-TEST(LayerReader, FinerShiftedClassesAreTakenByTheNearest) {
+TEST(LayerReader, FinerShiftedClassesLieWhereTheyAre) {
   const TemporaryFolder folder;
   // Cells of 5 m that cover the eastern three columns.
   const std::string path = write({.rows = drawn({"112233", "112233", "112233", "112233", "445566", "445566"}),
@@ -20,6 +23,101 @@ TEST(LayerReader, FinerShiftedClassesAreTakenByTheNearest) {
                                   .type = GDT_Byte},
                                  folder / "c.tif");
   EXPECT_EQ(drawing(readTerrainClasses({.path = path}, map(folder))), ".123\n.123\n.456\n");
+}
+
+// Property: against brute force over every pixel that reaches into a cell, for random sizes, places and orders.
+TEST(LayerReader, ACellTakesTheWeakestClassThatReachesIntoIt) {
+  std::mt19937 random(7);
+  const auto among = [&random](int lowest, int highest) {
+    return std::uniform_int_distribution(lowest, highest)(random);
+  };
+  const TemporaryFolder folder;
+  const ElevationMap dem = map(folder);
+  for (int run = 0; run < 40; ++run) {
+    std::vector<int> weakest_last{0, 1, 2, 3, kNoClass};
+    std::ranges::shuffle(weakest_last, random);
+    const double side_m = among(2, 17), west_m = 500000 - among(1, 16), north_m = 5000000 + among(1, 16);
+    const int width = static_cast<int>(60 / side_m) + 2, height = static_cast<int>(50 / side_m) + 2;
+    std::vector rows(static_cast<std::size_t>(height), std::vector<double>(static_cast<std::size_t>(width)));
+    for (auto& row : rows)
+      for (double& v : row) v = among(0, 9) < 8 ? 0 : among(0, 4) * among(0, 1);
+    for (auto& row : rows) std::ranges::replace(row, 4.0, -1.0);  // no data
+    const std::string path =
+        write({.rows = rows,
+               .transform = std::array<double, 6>{west_m, side_m, 0, north_m, 0, -side_m},
+               .type = GDT_Float32,
+               .nodata = -1},
+              folder / "c.tif");
+    const Raster<std::uint8_t> read = readTerrainClasses({.path = path}, dem, weakest_last);
+    const auto place = [&](int number) {
+      return std::ranges::find(weakest_last, number < 0 ? kNoClass : number) - weakest_last.begin();
+    };
+    for (int row = 0; row < 3; ++row)
+      for (int column = 0; column < 4; ++column) {
+        int weakest = weakest_last.front();
+        for (int y = 0; y < height; ++y)
+          for (int x = 0; x < width; ++x) {
+            const double west = west_m + x * side_m, north = north_m - y * side_m;
+            const bool meets = west < 500010 + 10 * column && west + side_m > 500000 + 10 * column &&
+                               north > 4999970 + 10 * row && north - side_m < 4999980 + 10 * row;
+            const int value =
+                static_cast<int>(rows[static_cast<std::size_t>(y)][static_cast<std::size_t>(x)]);
+            if (meets && place(value) > place(weakest)) weakest = value;
+          }
+        EXPECT_EQ((read[{column, row}]), weakest < 0 ? kNoClass : weakest)
+            << run << ' ' << column << ' ' << row;
+      }
+  }
+}
+
+// Property: pixels of the cells' own size, or a part of it, stay in their cells wherever the map lies, however its numbers round.
+TEST(LayerReader, NoPixelReachesIntoTheNextCellByRounding) {
+  const TemporaryFolder folder;
+  std::mt19937 random(11);
+  for (const std::size_t parts : {std::size_t{1}, std::size_t{3}}) {
+    for (const double side_m : {0.1, 0.3, 1.0 / 3.0, 0.7, 29.97}) {
+      const double west_m = 400000 + 0.1 * static_cast<double>(random() % 1000000),
+                   north_m = 5000000 + 0.1 * static_cast<double>(random() % 1000000);
+      const auto of = [&](double size_m) {
+        return std::array<double, 6>{west_m, size_m, 0, north_m, 0, -size_m};
+      };
+      std::vector rows(7, std::vector<double>(9)),
+          finer(std::size_t{7} * parts, std::vector<double>(std::size_t{9} * parts));
+      for (std::size_t y = 0; y < finer.size(); ++y)
+        for (std::size_t x = 0; x < finer[y].size(); ++x)
+          finer[y][x] = static_cast<double>((x / parts * 5 + y / parts * 3) % 7);
+      const ElevationMap dem =
+          readElevation(write({.rows = rows, .transform = of(side_m)}, folder / "d.tif"));
+      const std::string path =
+          write({.rows = finer, .transform = of(side_m / static_cast<double>(parts))}, folder / "c.tif");
+      const Raster<std::uint8_t> read = readTerrainClasses({.path = path}, dem);
+      ASSERT_EQ(read.grid().width, 9);
+      for (int row = 0; row < 7; ++row)
+        for (int column = 0; column < 9; ++column)
+          EXPECT_EQ((read[{column, 6 - row}]), (column * 5 + row * 3) % 7) << side_m << ' ' << parts;
+    }
+  }
+}
+
+// Closed form: one pixel of a sixteenth of a cell.
+TEST(LayerReader, ACellTakesTheGreatestShareOfRocksAndKnowsWhatIsNotSeen) {
+  const TemporaryFolder folder;
+  std::vector rows(12, std::vector<double>(16, 0.1));
+  rows[5][6] = 0.9;
+  rows[1][13] = -1;  // not seen
+  rows[2][13] = 0.6;
+  const std::string path = write({.rows = rows,
+                                  .transform = std::array<double, 6>{500000, 2.5, 0, 5000000, 0, -2.5},
+                                  .type = GDT_Float32,
+                                  .nodata = -1},
+                                 folder / "r.tif");
+  const RockAbundance rocks = readRockAbundance({.path = path}, map(folder));
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 4; ++column) {
+      const bool great = column == 1 && row == 1, hidden = column == 3 && row == 2;
+      EXPECT_FLOAT_EQ((rocks.share[{column, row}]), great ? 0.9F : hidden ? 0.6F : 0.1F);
+      EXPECT_EQ((rocks.unseen[{column, row}]) != 0, hidden);
+    }
 }
 
 TEST(LayerReader, ClassesInAnotherCrsAreCarriedOver) {
@@ -34,7 +132,9 @@ TEST(LayerReader, ClassesInAnotherCrsAreCarriedOver) {
              .transform = std::array<double, 6>{middle_deg - 0.01, 0.01, 0, 45.16, 0, -0.01},
              .type = GDT_Byte},
             folder / "c.tif");
-  EXPECT_EQ(drawing(readTerrainClasses({.path = path}, dem)), "1122\n1122\n1122\n");
+  // The meridian leans: in the north a strip of class 2 reaches into the second column, and the weaker counts.
+  EXPECT_EQ(drawing(readTerrainClasses({.path = path}, dem)), "1222\n1122\n1122\n");
+  EXPECT_EQ(drawing(readTerrainClasses({.path = path}, dem, std::vector{2, 1})), "1122\n1122\n1112\n");
 }
 
 TEST(LayerReader, WithoutACrsTheLayerHasTheMapsCoordinates) {
@@ -97,7 +197,7 @@ TEST(LayerReader, RockAbundanceFindsItsBandAndIsAShare) {
   for (auto& row : rows)
     for (double& v : row) v = -999.75;  // band 2 is 1000 more
   const std::string path = write({.rows = rows, .names = {"dem", "dlre_ra"}}, folder / "stack.tif");
-  EXPECT_FLOAT_EQ((readRockAbundance({.path = path}, map(folder))[{2, 1}]), 0.25F);
+  EXPECT_FLOAT_EQ((readRockAbundance({.path = path}, map(folder)).share[{2, 1}]), 0.25F);
   const std::string percent = write({.rows = drawn({"0090", "0000", "0000"})}, folder / "percent.tif");
   EXPECT_THAT(refusal([&] { readRockAbundance({.path = percent}, map(folder)); }),
               HasSubstr("rock abundance 9 is not a fraction from 0 to 1; divide percents by 100"));

@@ -123,5 +123,36 @@ TEST(GroundOptions, ClassesOfTheFileAndTheSoilNamed) {
               ThrowsMessage<InputError>(HasSubstr("no_such")));
 }
 
+// Closed form: one pixel in 25 of each cell of column 2 is of the weak class, whatever its number; rocks are not seen in
+// one pixel of column 4 and dense in one of column 6.
+TEST(GroundOptions, WhatReachesIntoACellCounts) {
+  const Folder folder;
+  const auto raster = [&](const std::string& name, auto value) {
+    std::string text = asciiGrid(50, 50, value);
+    return folder.write(name, text.replace(text.find("cellsize 1"), 10, "cellsize 0.2"));
+  };
+  const auto inColumn = [](int x, int y, int column) { return x == 5 * column + 4 && y % 5 == 0; };
+  const std::string rocks = raster("r.asc", [&](int x, int y) {
+    return inColumn(x, y, 4) ? -9999.0 : inColumn(x, y, 6) ? 0.9 : 0.0;
+  });
+  const std::string dem = folder.write("dem.asc", asciiGrid(10, 10, flat));
+  for (const int weak : {1, 2}) {
+    const std::string classes =
+        raster("c.asc", [&](int x, int y) { return inColumn(x, y, 2) ? weak : 3 - weak; });
+    const std::string soils = folder.write("s.yaml", "classes: {" + std::to_string(weak) + ": dry_sand, " +
+                                                         std::to_string(3 - weak) + ": firm_soil}\n");
+    const std::string line =
+        dem + " --resolution 1 --terrain " + classes + " --soils " + soils + " --rocks " + rocks;
+    const Ground ground = readGround(parsed(line), quiet());
+    for (int row = 2; row < 8; ++row)
+      for (int column = 1; column < 9; ++column) {
+        const maps::Cell cell{column, row};
+        EXPECT_EQ(ground.map.classNumber(cell), column == 2 ? weak : 3 - weak) << column;
+        EXPECT_EQ(costmap::has(ground.map.hazards(cell), costmap::Hazard::Unknown), column == 4) << column;
+        EXPECT_EQ(costmap::has(ground.map.hazards(cell), costmap::Hazard::Rocks), column == 6) << column;
+      }
+  }
+}
+
 }  // namespace
 }  // namespace talus::cli

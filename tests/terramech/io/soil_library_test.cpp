@@ -83,7 +83,9 @@ TEST(SoilLibrary, SoilMistakesAreToldWithTheirLine) {
         Case{"friction_angle_deg: 30\n", ":1: lacks cohesion_Pa"},
         Case{"cohesion_kPa: {mean: 2}\n", ":1: cohesion_Pa lacks its std"},
         Case{"cohesion_kPa: {mean: 2, sd: 3}\n", ":1: cohesion_Pa: unknown key 'sd'"},
-        Case{"cohesion_kPa: {mean: 2, std: -3}\n", ":1: cohesion_Pa.std must be >= 0"},
+        Case{"cohesion_kPa: {mean: 2, std: -3}\n", ":1: cohesion_Pa.std must be > 0"},
+        // Taken for a value without a deviation it got the default: dearer than one with a deviation of 0.5.
+        Case{"cohesion_kPa: {mean: 2, std: 0}\n", ":1: cohesion_Pa.std must be > 0; no measurement is exact"},
         Case{"- 1\n- 2\n", "the file is a list"}, Case{"just words\n", "the file is 'just words'"},
         Case{"a: [1\n", "not YAML"}, Case{"", "is empty"}}) {
     EXPECT_THAT(errorOf(c.yaml), HasSubstr(c.error)) << c.yaml;
