@@ -25,6 +25,21 @@ double probabilityBelow(const Estimate& value, double bound) {
 
 constexpr double kLeastThrust = 0.02;  // over load [-]
 
+// A class at the reference slip: what its shear gives over load, against what resists.
+struct Thrust {
+  double pull, thrust;
+
+  explicit Thrust(const terramech::MobilityReference& at)
+      : pull(at.drawbar_pull_over_load),
+        thrust(std::max({at.torque_over_load_radius, at.drawbar_pull_over_load, kLeastThrust})) {}
+
+  double resistance() const noexcept { return thrust - pull; }
+  // What ground of this pull gives of the class's thrust, at most all of it.
+  double share(double own_pull) const noexcept {
+    return std::clamp((own_pull + resistance()) / thrust, 1e-3, 1.0);
+  }
+};
+
 double slopeAtSlip_rad(const terramech::MobilityCurve& curve, double slip) {
   double low = curve.minSlope_rad(), high = curve.maxSlope_rad();
   for (int halving = 0; halving < 30 && low < high; ++halving) {
@@ -176,22 +191,37 @@ Ranked GroundModel::category(const GroundBelief& belief, double gradient) const 
   return {mean, probability};
 }
 
-// At most, the ground pulls what it pulls at its strongest slip. Where even the mean falls short it is taken
-// for certain: doubt is no hope.
-double GroundModel::weakProbability(int class_index, const Estimate& pull, double gradient) const noexcept {
-  const auto i = static_cast<std::size_t>(class_index);
-  const double reference = wheel_curves_[i].reference().drawbar_pull_over_load;
-  const double strongest = curves_[i].strongest().drawbar_pull_over_load;
-  const double reserve = std::max({strongest, drives_[i].last(), reference}) - reference;
-  const Estimate most{pull.value + reserve, pull.std};
-  return gradient > most.value ? 1.0 : probabilityBelow(most, gradient);
+// Up to the reference slip by the shift of the curve; beyond it the ground has its share of the class's thrust left.
+Estimate GroundModel::demand(int class_index, const Estimate& pull, double gradient) const noexcept {
+  const Thrust own(wheel_curves_[static_cast<std::size_t>(class_index)].reference());
+  const double beyond = std::max(gradient - pull.value, 0.0), share = own.share(pull.value);
+  return {gradient + own.pull - pull.value + beyond * (1.0 / share - 1.0),
+          pull.std * (1.0 + beyond / (share * own.thrust)) / share};
 }
 
-// The locked wheels of ground that is weaker by d hold d less.
+// At most, the ground pulls what it pulls at its strongest slip, its share of what the class has there. Where even the mean
+// falls short it is taken for certain: doubt is no hope.
+double GroundModel::weakProbability(int class_index, const Estimate& pull, double gradient) const noexcept {
+  const auto i = static_cast<std::size_t>(class_index);
+  const Thrust own(wheel_curves_[i].reference());
+  const double strongest = curves_[i].strongest().drawbar_pull_over_load;
+  const double reserve = std::max({strongest, drives_[i].last(), own.pull}) - own.pull;
+  // The pull at the reference slip from which on the gradient is within reach; of ground stronger than its class by the shift.
+  const double least = gradient > own.pull + reserve
+                           ? gradient - reserve
+                           : (gradient * own.thrust - reserve * own.resistance()) / (own.thrust + reserve);
+  return pull.value < least ? 1.0 : probabilityBelow(pull, least);
+}
+
+// The locked wheels of ground that is weaker by d hold d less, or their share of what the class's hold, if that is less.
 double GroundModel::unbrakedProbability(int class_index, const Estimate& pull,
                                         double gradient) const noexcept {
   const auto i = static_cast<std::size_t>(class_index);
-  const double least = wheel_curves_[i].reference().drawbar_pull_over_load + drives_[i].first() - gradient;
+  const Thrust own(wheel_curves_[i].reference());
+  const double first = drives_[i].first(), locked = -first - own.resistance();
+  double least = own.pull + first - gradient;
+  if (locked > own.thrust && gradient > first)
+    least = std::max(least, own.thrust * (-gradient - own.resistance()) / locked - own.resistance());
   return pull.value < least ? 1.0 : probabilityBelow(pull, least);
 }
 
@@ -213,7 +243,7 @@ DriveState GroundModel::state(int class_index, const GroundBelief& belief, doubl
   const DrivePolicy& policy = parts_.policy;
   const auto& reference = wheel_curves_[i].reference();
   const double weakness = reference.drawbar_pull_over_load - belief.pull.value;
-  const Estimate demand{gradient + weakness, belief.pull.std};
+  const Estimate demand = this->demand(class_index, belief.pull, gradient);
   const double least = std::min(gradient, 0.0), mean = std::max(demand.value, least);
   const MobilityState s = curves_[i].at(std::atan(mean)), braked = curves_[i].at(std::atan(least));
   const ExpectedCost expected = drives_[i].at(demand, least);

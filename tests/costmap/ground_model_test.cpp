@@ -1,8 +1,10 @@
 #include <cmath>
 #include <numbers>
+#include <random>
 
 #include <site_fixture.hpp>
 
+#include <talus/costmap/ground_class.hpp>
 #include <talus/costmap/ground_model.hpp>
 #include <talus/terramech/contact/wong_reece.hpp>
 
@@ -36,6 +38,80 @@ TEST(GroundModel, GroundWeakerByDDrivesLikeASlopeSteeperByD) {
   weaker.pull.value -= 0.04;
   // Property: the definition of the shift.
   EXPECT_NEAR(model->state(0, weaker, 0.03).slip, model->state(0, certain(*model), 0.07).slip, 1e-6);
+}
+
+// Closed form: half of the thrust at the reference slip is half of what more slip gives, too; the resistance stays.
+TEST(GroundModel, BeyondTheReferenceSlipWeakGroundHasItsShareOfTheThrust) {
+  const auto model = testGround();
+  const terramech::MobilityCurve curve(testSand(), testRover());
+  const auto& at = curve.reference();
+  GroundBelief half = certain(*model);
+  half.pull.value -= 0.5 * at.torque_over_load_radius;
+  for (const double beyond : {0.004, 0.01, 0.02})
+    EXPECT_NEAR(model->state(0, half, half.pull.value + beyond).slip,
+                curve.at(std::atan(at.drawbar_pull_over_load + 2.0 * beyond)).slip, 1e-5);
+}
+
+// Property: ground that is refused on no slope that its soil refuses would hold rovers. Soils drawn about the class, each
+// believed to have its true pull at the reference slip: how far the steepest slope that is not refused lies above the soil's own.
+TEST(GroundModel, DrawnSoilsClimbNoLessThanTheirPullPromises) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  GroundModel::Parts parts = testGround()->parts();
+  // Of the soil library, without the deviations of pressure and sinkage.
+  terramech::SoilPrior crusty, loam;
+  crusty.mean = {.name = "mars_crusty",
+                 .cohesion_Pa = 1100,
+                 .friction_angle_rad = 0.602,
+                 .sinkage_exponent = 0.85,
+                 .frictional_modulus = 1750e3,
+                 .shear_modulus_m = 0.020,
+                 .c1 = 0.43,
+                 .c2 = 0.32};
+  crusty.deviation = {.cohesion_Pa = 800, .friction_angle_rad = 0.082, .shear_modulus_m = 0.0058};
+  loam.mean = {.name = "sandy_loam",
+               .cohesion_Pa = 7445,
+               .friction_angle_rad = 0.44,
+               .sinkage_exponent = 0.7,
+               .cohesive_modulus = 5270,
+               .frictional_modulus = 1515e3,
+               .shear_modulus_m = 0.020,
+               .c1 = 0.43,
+               .c2 = 0.32};
+  loam.deviation = {.cohesion_Pa = 3663, .friction_angle_rad = 0.143, .shear_modulus_m = 0.0058};
+  for (const terramech::SoilPrior& prior : {crusty, loam}) {
+    const std::string& name = prior.mean.name;
+    parts.classes = {groundClass(0, prior, parts.rover)};
+    parts.policy.allow_dangerous = true;
+    const GroundModel model(parts);
+    int weak = 0, promised = 0, shift_promised = 0;
+    double sum = 0.0;
+    while (weak < 60) {
+      terramech::Soil soil = prior.mean;
+      soil.cohesion_Pa = std::max(0.0, soil.cohesion_Pa + prior.deviation.cohesion_Pa * normal(random));
+      soil.friction_angle_rad =
+          std::max(0.15, soil.friction_angle_rad + prior.deviation.friction_angle_rad * normal(random));
+      soil.shear_modulus_m =
+          std::max(0.004, soil.shear_modulus_m + prior.deviation.shear_modulus_m * normal(random));
+      const terramech::MobilityCurve own(soil, parts.rover);
+      GroundBelief belief = model.prior(0);
+      const double shift = belief.pull.value - own.reference().drawbar_pull_over_load;
+      if (shift < 0.03) continue;
+      ++weak;
+      const double steepest = ExpectedDrive(own).last();
+      belief.pull = {own.reference().drawbar_pull_over_load, 0.0};
+      belief.sinkage = {own.reference().sinkage_over_radius, 0.0};
+      double allowed = -0.3;
+      while (model.state(0, belief, allowed + 0.002).refusal == Refusal::None) allowed += 0.002;
+      sum += allowed - steepest;
+      promised += allowed > steepest + 0.03 ? 1 : 0;
+      shift_promised +=
+          ExpectedDrive(mobilityOf(parts.classes[0], parts.rover)).last() - shift > steepest + 0.03;
+    }
+    EXPECT_LE(promised, 6) << name;
+    EXPECT_LT(std::abs(sum / weak), 0.02) << name;
+    EXPECT_GE(shift_promised, 4 * promised + 8) << name;  // why the curve is not shifted
+  }
 }
 
 TEST(GroundModel, WheelsBehindDriveInTheRutsThatAModelKnows) {

@@ -27,7 +27,8 @@ constexpr double kCorrelation_m = 5.0;
 struct RiskyGround {
   std::shared_ptr<const costmap::CostGrid> map;
   std::shared_ptr<const terramech::SlopeEquilibrium> rover;
-  double thrust = 0.0;     // gross thrust over load
+  double thrust = 0.0;  // gross thrust over load
+  terramech::MobilityReference reference;
   double most_pull = 0.0;  // mean of the pull over load at the strongest slip
   double pull_std = 0.0;   // of place and class together
   double shared = 0.0;     // share of its square that is the class's
@@ -46,6 +47,7 @@ RiskyGround riskyGround(double steepest) {
   RiskyGround ground;
   ground.rover = std::make_shared<const terramech::SlopeEquilibrium>(parts.classes[0].soil, parts.rover);
   ground.thrust = std::max(curve.reference().torque_over_load_radius, std::tan(curve.maxSlope_rad()));
+  ground.reference = curve.reference();
   ground.pull_std = model.prior(0).pull.std;
   ground.shared = std::pow(parts.classes[0].mean_std / ground.pull_std, 2);
   ground.most_pull = model.prior(0).pull.value + std::max(0.0, curve.strongest().drawbar_pull_over_load -
@@ -80,6 +82,27 @@ double strengthToLose(const RiskyGround& ground, const terramech::Gradient& slop
   return holds;
 }
 
+// What a place gives at its strongest slip whose pull at the reference slip departs by so many deviations: its share of the
+// class's thrust against the same resistance; stronger places have no more reserve than the class.
+double pullAtMost(const RiskyGround& ground, double deviations) {
+  const double pull = ground.reference.drawbar_pull_over_load + deviations * ground.pull_std,
+               thrust = ground.reference.torque_over_load_radius,
+               resistance = thrust - ground.reference.drawbar_pull_over_load;
+  const double share = (pull + resistance) / thrust;
+  return share < 1.0 ? share * (ground.most_pull + resistance) - resistance
+                     : ground.most_pull + deviations * ground.pull_std;
+}
+
+// By how many deviations a place may be weaker than the class until a climb is out of its reach.
+double deviationsToLose(const RiskyGround& ground, double climb) {
+  double holds = 8.0, fails = -8.0;
+  for (int halving = 0; halving < 40; ++halving) {
+    const double middle = 0.5 * (holds + fails);
+    (pullAtMost(ground, middle) >= climb ? holds : fails) = middle;
+  }
+  return -holds;
+}
+
 // Share of worlds in which the pull of some cell of the route falls short of the gradient. A cell has one
 // pull; the pulls of two cells have the class's departure in common, and what they depart from it is correlated
 // exponentially by the distance of their middles.
@@ -104,7 +127,7 @@ double stuckShare(const RiskyGround& ground, const std::vector<maps::Point>& rou
       crossing->second =
           strengthToLose(ground, {crossing->first.first / 256.0, 0.0}) -
           strengthToLose(ground, {crossing->first.first / 256.0, crossing->first.second / 64.0});
-    const double reserve = (ground.most_pull - gradient - std::max(crossing->second, 0.0)) / ground.pull_std;
+    const double reserve = deviationsToLose(ground, gradient + std::max(crossing->second, 0.0));
     const auto [entry, fresh] = least.try_emplace(grid.index(cell), reserve);
     if (!fresh) entry->second = std::min(entry->second, reserve);
   }
