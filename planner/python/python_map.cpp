@@ -213,6 +213,9 @@ Route PythonMap::plan(const PlannerSettings& settings, const PlanRequest& reques
         route = planner->plan(asked);
       },
       progress);
+  for (RouteVertex& vertex : route.vertices)  // planners know no heights
+    if (const auto height_m = maps::elevationAt(map().elevation().elevation_m, {vertex.x_m, vertex.y_m}))
+      vertex.elevation_m = *height_m;
   return route;
 }
 

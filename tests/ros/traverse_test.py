@@ -53,7 +53,7 @@ PARAMETERS = {
 
 def height_m(x, y):
     """Level ground with a wall of 1 m across the way, open in the north."""
-    return 1.0 if 19.0 <= x < 20.5 and y < 22.0 else 0.0
+    return 1.25 if 19.0 <= x < 20.5 and y < 22.0 else 0.25
 
 
 def cloud_of(rows, names, frame, stamp):
@@ -200,7 +200,7 @@ class NodeTest(unittest.TestCase):
                 break
         self.rover.x, self.rover.y = self.place(pose)
         self.rover.heading = 2.0 * math.atan2(pose.pose.orientation.z, pose.pose.orientation.w)
-        self.assertEqual(height_m(self.rover.x, self.rover.y), 0.0, "drives into the wall")
+        self.assertEqual(height_m(self.rover.x, self.rover.y), 0.25, "drives into the wall")
         time.sleep(0.1)  # the transform of the new place is on its way
         self.rover.see()
         self.rover.roll()
@@ -221,6 +221,7 @@ class Traverse(NodeTest):
         # Closed form: nothing is known against the straight line of 30 m; 0.5 m apart that is 61 poses or a few more.
         self.assertEqual(first.header.frame_id, "map")
         self.assertLess(max(abs(p.pose.position.y - 10.0) for p in first.poses), 1.0)
+        self.assertEqual({p.pose.position.z for p in first.poses}, {0.25})
         for a, b in zip(first.poses, first.poses[1:]):
             self.assertLessEqual(math.dist(self.place(a), self.place(b)), 0.5 + 1e-6)
             ahead = math.atan2(b.pose.position.y - a.pose.position.y, b.pose.position.x - a.pose.position.x)

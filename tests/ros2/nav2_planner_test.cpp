@@ -153,6 +153,7 @@ TEST_F(Nav2, HeightsThatArriveChangeTheNextPlan) {
   start();
   const auto before = plan(pose(15.0, 8.0), pose(25.0, 8.0));
   EXPECT_LE(before.poses.size(), 22U);  // straight
+  EXPECT_EQ(before.poses.back().pose.position.z, 0.0);
   grid_map_msgs::msg::GridMap message{grid_map::GridMap({"elevation"})};
   message.map.setFrameId("map");
   message.map.setGeometry({2.0, 12.0}, 0.5, {20.0, 9.0});
@@ -163,6 +164,10 @@ TEST_F(Nav2, HeightsThatArriveChangeTheNextPlan) {
   const auto after = plan(pose(15.0, 8.0), pose(25.0, 8.0));
   EXPECT_TRUE(node_->log.empty());
   EXPECT_GT(after.poses.size(), before.poses.size() + 10);
+  message.map.setGeometry({6.0, 6.0}, 0.5, {24.0, 8.0});
+  message.map.get("elevation").setConstant(0.05F);
+  hear(message);
+  EXPECT_FLOAT_EQ(static_cast<float>(plan(pose(15.0, 8.0), pose(25.0, 8.0)).poses.back().pose.position.z), 0.05F);
   message.map.setFrameId("odom");
   hear(message);
   ASSERT_EQ(node_->log.size(), 1U);

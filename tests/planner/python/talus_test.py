@@ -236,6 +236,17 @@ class MapTest(Refusals):
         self.assertTrue(ground.plan((5.0, 5.0), (9.0, 9.0)).found)
 
 
+    def test_a_route_has_the_heights_of_its_ground(self):
+        y, x = np.mgrid[0:40, 0:80]
+        heights = np.asarray(0.02 * x + 0.01 * y, np.float32)
+        ground = talus.Map(heights, resolution_m=0.5, rover="lunar_micro", soils="lunar_nominal")
+        route = ground.plan((5.0, 10.0), (35.0, 12.0))
+        self.assertTrue(route.found, route.reason)
+        # Closed form: the plane through the middles of the cells.
+        plane = 0.02 * (route["x_m"] / 0.5 - 0.5) + 0.01 * (route["y_m"] / 0.5 - 0.5)
+        np.testing.assert_allclose(route["elevation_m"], plane, atol=1e-6)
+
+
 class BackgroundTest(unittest.TestCase):
     """A sampling planner without an end but its time limit of a day."""
 
