@@ -40,7 +40,9 @@ class Sessions {
   std::uint64_t add(std::shared_ptr<Session> session);
   /// Null for a number that never was or is no longer.
   std::shared_ptr<Session> find(std::uint64_t number) const;
-  /// The same, and forgets it.
+  /// Puts another session in the place of one; false, and nothing is done, where there is none.
+  bool replace(std::uint64_t number, std::shared_ptr<Session> session);
+  /// As find(), and forgets it.
   std::shared_ptr<Session> remove(std::uint64_t number);
 
  private:

@@ -1,99 +1,18 @@
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <limits>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <talus.h>
 
-#include <talus/planner/c/session.hpp>
+#include <talus/planner/c/border.hpp>
 #include <talus/planner/plugin/make_planner.hpp>
 
-// The border to C: sizes and pointers are checked here, and what is thrown behind it becomes a code and a line.
 namespace {
 
-using talus::planner::Session;
-
-talus::planner::Sessions& sessions() {
-  static talus::planner::Sessions all;
-  return all;
-}
-
-void say(talus_error* error, const std::string& what) noexcept {
-  if (error == nullptr) return;
-  const std::size_t length = std::min(what.size(), sizeof error->text - 1);
-  for (std::size_t i = 0; i < length; ++i)
-    error->text[i] = static_cast<unsigned char>(what[i]) < 0x20 ? ' ' : what[i];
-  error->text[length] = '\0';
-}
-
-struct Busy : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
-
-// Runs what a call does. An invalid argument or input is the caller's.
-template <typename Work>
-talus_code guarded(talus_error* error, const Work& work) noexcept {
-  try {
-    say(error, "");
-    return work();
-  } catch (const Busy& busy) {
-    say(error, busy.what());
-    return TALUS_BUSY;
-  } catch (const std::invalid_argument& wrong) {
-    say(error, wrong.what());
-    return TALUS_BAD_INPUT;
-  } catch (const talus::InputError& wrong) {
-    say(error, wrong.what());
-    return TALUS_BAD_INPUT;
-  } catch (const std::exception& failure) {
-    say(error, failure.what());
-    return TALUS_FAILURE;
-  } catch (...) {
-    say(error, "an error that is not known");
-    return TALUS_FAILURE;
-  }
-}
-
-void require(bool holds, const std::string& what) {
-  if (!holds) throw std::invalid_argument(what);
-}
-
-void requirePointer(const void* pointer, const char* name) {
-  require(pointer != nullptr, std::string(name) + " is NULL; pass one");
-}
-
-// A structure of this version.
-template <typename T>
-const T& read(const T* given, const char* name) {
-  requirePointer(given, name);
-  require(given->size == sizeof(T), std::string(name) + ".size = " + std::to_string(given->size) +
-                                        ", must be " + std::to_string(sizeof(T)) +
-                                        ": set it to sizeof, or rebuild against this talus.h");
-  return *given;
-}
-
-std::shared_ptr<Session> open(talus_session number) {
-  auto session = sessions().find(number);
-  require(session != nullptr, "session " + std::to_string(number) + " is not open; call talus_create()");
-  return session;
-}
-
-// A session for one call alone.
-struct Held {
-  explicit Held(talus_session number) : session(open(number)), lock(session->work, std::try_to_lock) {
-    if (!lock.owns_lock())
-      throw Busy("another thread works on session " + std::to_string(number) +
-                 "; wait for it, or cancel its plan");
-  }
-  Session* operator->() const noexcept { return session.get(); }
-
-  std::shared_ptr<Session> session;
-  std::unique_lock<std::mutex> lock;
-};
+using namespace talus::border;
 
 talus::maps::Grid gridOf(const talus_grid* given) {
   const talus_grid& grid = read(given, "grid");
@@ -193,6 +112,17 @@ talus::terramech::Telemetry telemetryOf(const talus_wheel* rows, std::size_t cou
   return t;
 }
 
+// A layer counts where it is not known as dear as the dearest that is.
+talus::costmap::CostLayer costOf(const talus_cost_layer& given, const talus::maps::Grid& grid) {
+  const talus_cost_layer& layer = read(&given, "cost layer");
+  requirePointer(layer.name, "cost layer: name");
+  requirePointer(layer.added_J_per_m, "cost layer: added_J_per_m");
+  talus::costmap::CostLayer cost{.name = layer.name, .added_J_per_m = rasterOf(layer.added_J_per_m, grid)};
+  for (const float added : cost.added_J_per_m.values())
+    if (std::isfinite(added)) cost.unseen_J_per_m = std::max(cost.unseen_J_per_m, added);
+  return cost;
+}
+
 talus_code codeOf(talus::planner::RouteStatus status) noexcept {
   using talus::planner::RouteStatus;
   if (status == RouteStatus::Found) return TALUS_OK;
@@ -235,6 +165,13 @@ void talus_default_options(talus_options* options) {
 talus_code talus_create(const talus_rover* rover, const talus_soil* soils, size_t soil_count,
                         const talus_grid* grid, const talus_layers* layers, const talus_options* options,
                         talus_session* session, talus_error* error) {
+  return talus_create_with_costs(rover, soils, soil_count, grid, layers, nullptr, 0, options, session, error);
+}
+
+talus_code talus_create_with_costs(const talus_rover* rover, const talus_soil* soils, size_t soil_count,
+                                   const talus_grid* grid, const talus_layers* layers,
+                                   const talus_cost_layer* costs, size_t cost_count,
+                                   const talus_options* options, talus_session* session, talus_error* error) {
   return guarded(error, [&] {
     requirePointer(session, "session");
     requirePointer(soils, "soils");
@@ -255,6 +192,11 @@ talus_code talus_create(const talus_rover* rover, const talus_soil* soils, size_
     built.classes = rasterOf(given.classes, cells);
     built.rock_abundance = rasterOf(given.rock_abundance, cells);
     built.keep_out = rasterOf(given.keep_out, cells);
+    if (cost_count > 0) requirePointer(costs, "costs");
+    require(cost_count <= talus::costmap::CostLayer::kMostLayers,
+            "cost_count = " + std::to_string(cost_count) +
+                ", must be <= " + std::to_string(talus::costmap::CostLayer::kMostLayers));
+    for (std::size_t i = 0; i < cost_count; ++i) built.costs.push_back(costOf(costs[i], cells));
     auto made = std::make_shared<Session>(talus::costmap::TraversabilityMap(
         std::move(built), std::make_shared<const talus::costmap::GroundModel>(std::move(parts)),
         {.threads = how.threads}));
@@ -275,6 +217,29 @@ talus_code talus_patch(talus_session session, const talus_grid* grid, const talu
                      .rock_abundance = rasterOf(given.rock_abundance, cells),
                      .classes = rasterOf(given.classes, cells),
                      .keep_out = rasterOf(given.keep_out, cells)});
+    return TALUS_OK;
+  });
+}
+
+talus_code talus_move(talus_session session, int east_tiles, int north_tiles, talus_error* error) {
+  return guarded(error, [&] {
+    const Held held(session);
+    auto moved = std::make_shared<Session>(held->map.moved({east_tiles, north_tiles}));
+    held->planner->set_map(moved->map.published());
+    moved->planner = std::move(held->planner);
+    require(sessions().replace(session, std::move(moved)),
+            "session " + std::to_string(session) + " was destroyed meanwhile");
+    return TALUS_OK;
+  });
+}
+
+talus_code talus_read_grid(talus_session session, talus_grid* grid, talus_error* error) {
+  return guarded(error, [&] {
+    const Held held(session);
+    read(grid, "grid");
+    const talus::maps::Grid& cells = held->map.grid();
+    *grid = {sizeof *grid,       cells.width,          cells.height,
+             cells.resolution_m, cells.south_west.x_m, cells.south_west.y_m};
     return TALUS_OK;
   });
 }

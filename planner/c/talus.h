@@ -78,6 +78,15 @@ typedef struct talus_layers {
   const uint8_t* keep_out;     /* not 0: must not be entered */
 } talus_layers;
 
+/* What else is known of the ground, such as shadow or radio: joules that a metre costs more in each cell of the map's grid, 0
+   to 1e6. Infinite: must not be entered. NaN: not known, refused as unobserved ground is, or, with allow_unknown, as dear as
+   the dearest of the layer. At most 64 layers; a name each. */
+typedef struct talus_cost_layer {
+  size_t size;
+  const char* name;
+  const float* added_J_per_m; /* width * height values, row by row from the south-west */
+} talus_cost_layer;
+
 typedef struct talus_options {
   size_t size;
   const char* planner;   /* "field", "hybrid", ...; NULL: the default */
@@ -133,6 +142,19 @@ TALUS_API void talus_default_options(talus_options* options);
 TALUS_API talus_code talus_create(const talus_rover* rover, const talus_soil* soils, size_t soil_count, const talus_grid* grid,
                         const talus_layers* layers, const talus_options* options, talus_session* session,
                         talus_error* error);
+
+/* The same with `cost_count` cost layers; `costs` may be NULL where that is 0. */
+TALUS_API talus_code talus_create_with_costs(const talus_rover* rover, const talus_soil* soils, size_t soil_count,
+                            const talus_grid* grid, const talus_layers* layers, const talus_cost_layer* costs,
+                            size_t cost_count, const talus_options* options, talus_session* session, talus_error* error);
+
+/* Moves the map with the rover, by whole tiles of 64 cells east and north (negative: west, south): what lies in both windows
+   keeps what is known and estimated of it, what comes in is unseen, what falls off is forgotten. No route is left to be read,
+   and the wheels' sensors prove themselves from the start before they raise an estimate. */
+TALUS_API talus_code talus_move(talus_session session, int east_tiles, int north_tiles, talus_error* error);
+
+/* Where the cells of the map lie now; set grid->size first. */
+TALUS_API talus_code talus_read_grid(talus_session session, talus_grid* grid, talus_error* error);
 
 /* New ground in a window on the map's cells; what is NaN, or class 255, stays as it is. */
 TALUS_API talus_code talus_patch(talus_session session, const talus_grid* grid, const talus_layers* layers, talus_error* error);

@@ -167,7 +167,8 @@ TEST_F(Nav2, HeightsThatArriveChangeTheNextPlan) {
   message.map.setGeometry({6.0, 6.0}, 0.5, {24.0, 8.0});
   message.map.get("elevation").setConstant(0.05F);
   hear(message);
-  EXPECT_FLOAT_EQ(static_cast<float>(plan(pose(15.0, 8.0), pose(25.0, 8.0)).poses.back().pose.position.z), 0.05F);
+  EXPECT_FLOAT_EQ(static_cast<float>(plan(pose(15.0, 8.0), pose(25.0, 8.0)).poses.back().pose.position.z),
+                  0.05F);
   message.map.setFrameId("odom");
   hear(message);
   ASSERT_EQ(node_->log.size(), 1U);

@@ -164,6 +164,81 @@ static void learnsFromWheels(void) {
   CHECK(talus_destroy(session, &error) == TALUS_OK);
 }
 
+/* A layer refuses a wall and makes the rest dearer; what a layer cannot be is one line. */
+static void countsCostLayers(void) {
+  static float radio[CELLS];
+  talus_cost_layer cost = {sizeof cost, "radio", radio};
+  const talus_request request = {sizeof request, 5.0, 10.0, 25.0, 10.0, 0.0};
+  talus_session session = 77;
+  talus_summary plain, dear;
+  const talus_session bare = made();
+  int k;
+  plain.size = dear.size = sizeof plain;
+  CHECK(talus_plan(bare, &request, &plain, &error) == TALUS_OK);
+  CHECK(talus_destroy(bare, &error) == TALUS_OK);
+  for (k = 0; k < CELLS; ++k) radio[k] = 20.0F;
+  CHECK(talus_create_with_costs(&rover, &soil, 1, &grid, &layers, &cost, 1, &options, &session, &error) == TALUS_OK);
+  CHECK(talus_plan(session, &request, &dear, &error) == TALUS_OK);
+  CHECK(fabs(dear.energy_J - plain.energy_J - 20.0 * 20.0) < 1e-3); /* Closed form: 20 m of 20 J/m */
+  CHECK(talus_destroy(session, &error) == TALUS_OK);
+  for (k = 0; k < 36; ++k) radio[k * SIDE + 30] = INFINITY;
+  CHECK(talus_create_with_costs(&rover, &soil, 1, &grid, &layers, &cost, 1, &options, &session, &error) == TALUS_OK);
+  CHECK(talus_plan(session, &request, &dear, &error) == TALUS_OK);
+  CHECK(dear.length_m > 24.0); /* around the wall, which ends at y = 18 */
+  CHECK(talus_destroy(session, &error) == TALUS_OK);
+  session = 77;
+  REFUSED(talus_create_with_costs(&rover, &soil, 1, &grid, &layers, NULL, 1, &options, &session, &error), "costs is NULL");
+  REFUSED(talus_create_with_costs(&rover, &soil, 1, &grid, &layers, &cost, 65, &options, &session, &error), "cost_count = 65");
+  radio[7] = -1.0F;
+  REFUSED(talus_create_with_costs(&rover, &soil, 1, &grid, &layers, &cost, 1, &options, &session, &error), "radio");
+  cost.name = NULL;
+  REFUSED(talus_create_with_costs(&rover, &soil, 1, &grid, &layers, &cost, 1, &options, &session, &error), "name is NULL");
+  cost.size = 1;
+  REFUSED(talus_create_with_costs(&rover, &soil, 1, &grid, &layers, &cost, 1, &options, &session, &error), "size = 1");
+  CHECK(session == 77);
+}
+
+/* A map of 192 x 64 cells moves one tile east: what lies in both windows stays to the bit, the rest is unseen. */
+static void movesWithTheRover(void) {
+  enum { WIDE = 192, HIGH = 64 };
+  static float ground[WIDE * HIGH];
+  static talus_cell before[WIDE * HIGH], after[WIDE * HIGH];
+  const talus_grid wide = {sizeof wide, WIDE, HIGH, 0.5, 0.0, 0.0};
+  const talus_layers level = {sizeof level, WIDE * HIGH, ground, NULL, NULL, NULL};
+  const talus_request request = {sizeof request, 40.0, 10.0, 60.0, 10.0, 0.0};
+  talus_wheel row = {sizeof row, 0, 0.0, 60.0, 16.0, 36.5, 0.5, NAN, 0.1, 0.0, 0.0, 0.1};
+  talus_session session = 0;
+  talus_grid now = {sizeof now, 0, 0, 0.0, 0.0, 0.0};
+  talus_vertex vertex;
+  size_t count = 9;
+  int r, c, k;
+  CHECK(talus_create(&rover, &soil, 1, &wide, &level, &options, &session, &error) == TALUS_OK);
+  for (k = 0; k < 5; ++k) {
+    row.time_s = k;
+    CHECK(talus_learn(session, &row, 1, NULL, &error) == TALUS_OK);
+  }
+  CHECK(talus_plan(session, &request, NULL, &error) == TALUS_OK);
+  CHECK(talus_read_cells(session, 0, 0, WIDE, HIGH, before, WIDE * HIGH, &error) == TALUS_OK);
+  REFUSED(talus_move(session, 3, 0, &error), "leaves nothing");
+  CHECK(talus_read_grid(session, &now, &error) == TALUS_OK && now.x_m == 0.0);
+  CHECK(talus_move(session, 1, 0, &error) == TALUS_OK);
+  CHECK(talus_read_grid(session, &now, &error) == TALUS_OK);
+  CHECK(now.x_m == 32.0 && now.y_m == 0.0 && now.width == WIDE && now.height == HIGH && now.resolution_m == 0.5);
+  CHECK(talus_read_route(session, 0, &vertex, 1, &count, &error) == TALUS_OK && count == 0);
+  CHECK(talus_read_cells(session, 0, 0, WIDE, HIGH, after, WIDE * HIGH, &error) == TALUS_OK);
+  for (r = 8; r < HIGH - 8; ++r) /* clear of the borders, where a footprint meets unseen ground */
+    for (c = 8; c < WIDE - 64 - 8; ++c) CHECK(memcmp(&after[r * WIDE + c], &before[r * WIDE + c + 64], sizeof *after) == 0);
+  CHECK(after[32 * WIDE + 56].pull_mean < after[32 * WIDE + 90].pull_mean); /* where the wheel was: x = 60 m */
+  CHECK((after[32 * WIDE + WIDE - 1].hazards & 1) != 0);
+  CHECK(talus_plan(session, &request, NULL, &error) == TALUS_OK);
+  CHECK(talus_learn(session, &row, 1, NULL, &error) == TALUS_OK);
+  now.size = 3;
+  REFUSED(talus_read_grid(session, &now, &error), "grid.size = 3");
+  REFUSED(talus_read_grid(session, NULL, &error), "grid is NULL");
+  CHECK(talus_destroy(session, &error) == TALUS_OK);
+  REFUSED(talus_move(session, 1, 0, &error), "is not open");
+}
+
 /* Three wheels spin; what the fourth's sensors say, or do not, takes nothing from that. */
 static void hearsDangerBesideADeadSensor(void) {
   const struct {
@@ -204,8 +279,9 @@ static void *work(void *unused) {
   int k;
   (void)unused;
   for (k = 0; k < ROUNDS; ++k) {
-    const talus_code code =
-        k % 2 == 0 ? talus_plan(shared, &request, NULL, &mine) : talus_patch(shared, &grid, &layers, &mine);
+    const talus_code code = k % 2 == 0   ? talus_plan(shared, &request, NULL, &mine)
+                            : k % 4 == 1 ? talus_patch(shared, &grid, &layers, &mine)
+                                         : talus_move(shared, 0, 0, &mine);
     if (code == TALUS_OK)
       atomic_fetch_add(&done, 1);
     else if (code == TALUS_BUSY)
@@ -233,6 +309,8 @@ int main(void) {
   refusesWhatCannotBe();
   patchesPlansAndReadsBack();
   learnsFromWheels();
+  countsCostLayers();
+  movesWithTheRover();
   hearsDangerBesideADeadSensor();
   servesTwoThreads();
   return 0;

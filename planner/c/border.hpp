@@ -1,0 +1,104 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <exception>
+#include <memory>
+#include <mutex>
+#include <stdexcept>
+#include <string>
+
+#include <talus.h>
+
+#include <talus/planner/c/session.hpp>
+#include <talus/talus.hpp>
+
+/// The border to C: sizes and pointers are checked here, and what is thrown behind it becomes a code and a line.
+namespace talus::border {
+
+using planner::Session;
+
+inline planner::Sessions& sessions() {
+  static planner::Sessions all;
+  return all;
+}
+
+inline void say(talus_error* error, const std::string& what) noexcept {
+  if (error == nullptr) return;
+  const std::size_t length = std::min(what.size(), sizeof error->text - 1);
+  for (std::size_t i = 0; i < length; ++i)
+    error->text[i] = static_cast<unsigned char>(what[i]) < 0x20 ? ' ' : what[i];
+  error->text[length] = '\0';
+}
+
+struct Busy : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Runs what a call does. An invalid argument or input is the caller's.
+template <typename Work>
+talus_code guarded(talus_error* error, const Work& work) noexcept {
+  try {
+    say(error, "");
+    return work();
+  } catch (const Busy& busy) {
+    say(error, busy.what());
+    return TALUS_BUSY;
+  } catch (const std::invalid_argument& wrong) {
+    say(error, wrong.what());
+    return TALUS_BAD_INPUT;
+  } catch (const InputError& wrong) {
+    say(error, wrong.what());
+    return TALUS_BAD_INPUT;
+  } catch (const std::exception& failure) {
+    say(error, failure.what());
+    return TALUS_FAILURE;
+  } catch (...) {
+    say(error, "an error that is not known");
+    return TALUS_FAILURE;
+  }
+}
+
+inline void require(bool holds, const std::string& what) {
+  if (!holds) throw std::invalid_argument(what);
+}
+
+inline void requirePointer(const void* pointer, const char* name) {
+  require(pointer != nullptr, std::string(name) + " is NULL; pass one");
+}
+
+/// A structure of this version.
+template <typename T>
+const T& read(const T* given, const char* name) {
+  requirePointer(given, name);
+  require(given->size == sizeof(T), std::string(name) + ".size = " + std::to_string(given->size) +
+                                        ", must be " + std::to_string(sizeof(T)) +
+                                        ": set it to sizeof, or rebuild against this talus.h");
+  return *given;
+}
+
+inline std::shared_ptr<Session> open(talus_session number) {
+  auto session = sessions().find(number);
+  require(session != nullptr, "session " + std::to_string(number) + " is not open; call talus_create()");
+  return session;
+}
+
+/// A session for one call alone; the one that the number has once it is held, since talus_move() replaces it.
+struct Held {
+  explicit Held(talus_session number) {
+    do {
+      lock = {};
+      session = open(number);
+      lock = std::unique_lock(session->work, std::try_to_lock);
+      if (!lock.owns_lock())
+        throw Busy("another thread works on session " + std::to_string(number) +
+                   "; wait for it, or cancel its plan");
+    } while (sessions().find(number) != session);
+  }
+  Session* operator->() const noexcept { return session.get(); }
+
+  std::shared_ptr<Session> session;
+  std::unique_lock<std::mutex> lock;
+};
+
+}  // namespace talus::border
