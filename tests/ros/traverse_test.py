@@ -29,13 +29,13 @@ os.environ["ROS_IP"] = "127.0.0.1"
 os.environ.pop("ROS_HOSTNAME", None)
 os.environ["ROS_LOG_DIR"] = tempfile.mkdtemp(prefix="talus-ros-log-")
 
-import rospy  # noqa: E402  (reads the environment)
-from actionlib_msgs.msg import GoalStatus  # noqa: E402
-from geometry_msgs.msg import PoseStamped, TransformStamped  # noqa: E402
-from nav_msgs.msg import OccupancyGrid, Path  # noqa: E402
-from sensor_msgs.msg import Image, PointCloud2, PointField  # noqa: E402
-from std_msgs.msg import Empty  # noqa: E402
-from tf2_msgs.msg import TFMessage  # noqa: E402
+import rospy  # reads the environment
+from actionlib_msgs.msg import GoalStatus
+from geometry_msgs.msg import PoseStamped, TransformStamped
+from nav_msgs.msg import OccupancyGrid, Path
+from sensor_msgs.msg import Image, PointCloud2, PointField
+from std_msgs.msg import Empty
+from tf2_msgs.msg import TFMessage
 
 WIDTH, HEIGHT, CELL_M, SIGHT_M = 80, 60, 0.5, 12.0
 PARAMETERS = {
@@ -323,8 +323,7 @@ class BadInput(NodeTest):
 
     def test_messages_that_cannot_be_used(self):
         self.start()
-        now = rospy.Time.now
-        names, point = ("x", "y", "z"), [(1.0, 0.0, 0.0)]
+        now, names, point = rospy.Time.now, ("x", "y", "z"), [(1.0, 0.0, 0.0)]
         short = cloud_of(point * 3, names, "base_link", now())
         short.data = short.data[:20]
         for message, words in (
@@ -346,8 +345,7 @@ class BadInput(NodeTest):
         self.assertEqual(self.heard.known(), 0)
         self.rover.image.publish(Image(height=2, width=2, encoding="mono8", step=2, data=b"1234"))
         self.warned("heights:")
-        bare = cloud_of(point, names, "base_link", now())
-        self.rover.wheels.publish(bare)
+        self.rover.wheels.publish(cloud_of(point, names, "base_link", now()))
         self.warned("wheels:", "no field 'load_N'")
         self.see()  # it goes on
 
@@ -363,8 +361,7 @@ class BadInput(NodeTest):
             with self.subTest(words=words):
                 after = len(self.heard.states)
                 call()
-                text = self.heard.state(GoalStatus.REJECTED, words, after).text
-                self.assertNotIn("\n", text)
+                self.assertNotIn("\n", self.heard.state(GoalStatus.REJECTED, words, after).text)
         self.rover.ask(15.0, 10.0)
         self.heard.state(GoalStatus.ACTIVE, "found")
 
