@@ -156,11 +156,24 @@ class Node {
   }
 
   Motion motionOf(const std_msgs::Header& header) const {
-    const double age_s = (ros::Time::now() - header.stamp).toSec();
+    if (header.stamp.isZero()) throw std::runtime_error("has no stamp; set the time that it is of");
+    requireFresh(header.stamp);
+    return motionAt(header.frame_id, header.stamp);
+  }
+  void requireFresh(const ros::Time& stamp) const {
+    const double age_s = (ros::Time::now() - stamp).toSec();
     if (age_s > settings_.max_age_s)
       throw std::runtime_error("its stamp is " + std::to_string(age_s) + " s old, more than ~max_age_s = " +
                                std::to_string(settings_.max_age_s) + "; check the clocks");
-    return motionAt(header.frame_id, header.stamp);
+  }
+  // Where the rover stands; not where it stood when it was last located. A place that never changes has no stamp.
+  Place rover() const {
+    const Motion motion = motionAt(settings_.base_frame, ros::Time(0));
+    const ros::Time stamp =
+        transforms_.lookupTransform(settings_.map_frame, settings_.base_frame, ros::Time(0)).header.stamp;
+    if (!stamp.isZero()) requireFresh(stamp);
+    const CloudPoint at = motion({});
+    return {at.x_m, at.y_m};
   }
   // tf2 takes frames without a leading slash.
   Motion motionAt(const std::string& frame, const ros::Time& stamp) const {
@@ -231,10 +244,11 @@ class Node {
     last_text_ = text;
     status_.publish(status);
   }
-  // An ended goal leaves an empty path, which a controller that follows it stops on.
-  void end(std::uint8_t code, const std::string& text) {
+  // An ended goal leaves an empty path, which a controller that follows it stops on. `planned`: that of which a plan is, not
+  // one that came meanwhile.
+  void end(std::uint8_t code, const std::string& text, bool planned = false) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (!active_) return;
+    if (!active_ || (planned && fresh_)) return;
     active_ = fresh_ = false;
     navigator_.setGoal(std::nullopt);
     publish({});
@@ -286,8 +300,7 @@ class Node {
   bool step(const Place& goal, bool wanted) {
     Place start;
     try {
-      const CloudPoint at = motionAt(settings_.base_frame, ros::Time(0))({});
-      start = {at.x_m, at.y_m};
+      start = rover();
     } catch (const std::exception& error) {
       report(GoalStatus::PENDING, std::string("waiting for the rover's place: ") + error.what());
       return false;
@@ -321,13 +334,7 @@ class Node {
                   outcome.length_m, outcome.energy_J, outcome.risk);
     report(GoalStatus::ACTIVE, text);
   }
-  void finish(std::uint8_t code, const std::string& text) {
-    {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      if (fresh_) return;  // of the goal before
-    }
-    end(code, text);
-  }
+  void finish(std::uint8_t code, const std::string& text) { end(code, text, true); }
 
   NodeSettings settings_;
   Navigator navigator_;
