@@ -1,6 +1,7 @@
 // talus plan DEM --start P --goal P: a route.
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -68,7 +69,7 @@ planner::Problem problemOf(const PlanOptions& options, const Ground& ground, con
   problem.kinematics = kinematicsOf(options.drive, ground.map);
   problem.whole_field = options.whole_field;
   problem.watch = context.watch("plan");
-  context.answerStop();
+  if (options.plugin.empty()) context.answerStop();  // a plugin's route is whole or none
   return problem;
 }
 
@@ -321,6 +322,12 @@ void checkMissionOutput(const PlanOptions& options, const PlanOptions& asked, bo
                       "name it with -o, or pass --force"});
 }
 
+// A stopped call has handed out what it has: what it still does, to free the memory of a large map, may be ended.
+void letEnd(const Context& context) {
+  std::fflush(stdout);
+  if (context.answers_stop) *context.answers_stop = false;
+}
+
 int run(const PlanOptions& asked, Context& context) {
   PlanOptions options = asked;
   if (isMission(options.ground.dem.path)) {
@@ -341,6 +348,7 @@ int run(const PlanOptions& asked, Context& context) {
                            .planner = planner.name(),
                            .kinematics = planned.problem.kinematics},
                           context);
+  if (code != Exit::kDone && context.stop.stop_requested()) letEnd(context);
   if (code == Exit::kDone && !options.pareto.empty())
     saveParetoChart(options.pareto, planner::paretoSet(planned.problem, *planner.own, kParetoSteps));
   return code;

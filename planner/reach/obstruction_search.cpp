@@ -41,23 +41,28 @@ bool opens(Constraint constraint, const costmap::CostGrid& map, const Segment& p
   return reach.complete() && reach.reaches(places.to, tolerance_m);
 }
 
-// The cells of two sets that the fewest king's moves part, by a flood from the first over the whole map.
-std::pair<Cell, Cell> closest(const maps::Grid& grid, const Reach& from, const Reach& to) {
+// The cells of two sets that the fewest king's moves part, by a flood from the first over the whole map; none where a
+// set is empty, or when stopped.
+std::optional<std::pair<Cell, Cell>> closest(const maps::Grid& grid, const Reach& from, const Reach& to,
+                                             const StopCheck& stop) {
   constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
   std::vector<std::uint32_t> origin(grid.size(), kNone);
   std::deque<Cell> open;
-  for (int row = 0; row < grid.height; ++row)
+  for (int row = 0; row < grid.height; ++row) {
+    if ((row & 63) == 0 && stop()) return std::nullopt;
     for (int column = 0; column < grid.width; ++column)
       if (from.holds({column, row})) {
         origin[grid.index({column, row})] = static_cast<std::uint32_t>(grid.index({column, row}));
         open.push_back({column, row});
       }
-  while (!open.empty()) {
+  }
+  for (std::size_t steps = 1; !open.empty(); ++steps) {
+    if ((steps & 0xffffU) == 0 && stop()) return std::nullopt;
     const Cell cell = open.front();
     open.pop_front();
     const std::uint32_t begun = origin[grid.index(cell)];
     const auto width = static_cast<std::uint32_t>(grid.width);
-    if (to.holds(cell)) return {{static_cast<int>(begun % width), static_cast<int>(begun / width)}, cell};
+    if (to.holds(cell)) return {{{static_cast<int>(begun % width), static_cast<int>(begun / width)}, cell}};
     for (int row = cell.row - 1; row <= cell.row + 1; ++row)
       for (int column = cell.column - 1; column <= cell.column + 1; ++column)
         if (grid.contains({column, row}) && origin[grid.index({column, row})] == kNone) {
@@ -65,7 +70,7 @@ std::pair<Cell, Cell> closest(const maps::Grid& grid, const Reach& from, const R
           open.push_back({column, row});
         }
   }
-  return {};
+  return std::nullopt;
 }
 
 std::string text(Point p) {
@@ -95,17 +100,21 @@ const char* remedy(Constraint constraint) noexcept {
 
 Obstruction obstructionBetween(const costmap::CostGrid& map, HeadingSets& headings, const Reach& from_start,
                                const Segment& places, double tolerance_m, const StopCheck& stop) {
-  Obstruction found;
-  const Reach to_goal(map, headings, Reach::Sense::To, places.to, tolerance_m, stop);
-  const auto [last, first] = closest(map.grid(), from_start, to_goal);
+  Obstruction found{.last = places.from, .first = places.to};
   found.cells_from_start = from_start.cells();
+  const Reach to_goal(map, headings, Reach::Sense::To, places.to, tolerance_m, stop);
   found.cells_to_goal = to_goal.cells();
-  found.last = map.grid().centre(last);
-  found.first = map.grid().centre(first);
+  const auto gap = closest(map.grid(), from_start, to_goal, stop);
+  if (gap) {
+    found.last = map.grid().centre(gap->first);
+    found.first = map.grid().centre(gap->second);
+  }
+  if (stop()) return found;
   if (map.grid().size() > kTriedCells) return found;
   for (const Constraint constraint :
        {Constraint::Unknown, Constraint::Hazard, Constraint::Soil, Constraint::Pitch, Constraint::Roll})
-    if (!found.lifting && opens(constraint, map, places, tolerance_m, stop)) found.lifting = constraint;
+    if (!found.lifting && !stop() && opens(constraint, map, places, tolerance_m, stop))
+      found.lifting = constraint;
   found.tried = !stop();
   return found;
 }

@@ -9,7 +9,8 @@
 namespace talus::planner {
 
 /// Where two places are cut off from each other: the sets reached from one and leading to the other, and, by building both
-/// anew without each constraint in turn, which of them does it. On maps above kTriedCells none is lifted.
+/// anew without each constraint in turn, which of them does it. On maps above kTriedCells none is lifted. Stopped, or where a
+/// set is empty, it has the places themselves in place of the cells that come closest.
 Obstruction obstructionBetween(const costmap::CostGrid& map, HeadingSets& headings, const Reach& from_start,
                                const Segment& places, double tolerance_m, const StopCheck& stop = {});
 

@@ -1,3 +1,5 @@
+#include <stop_token>
+
 #include <talus/planner/reach/obstruction_search.hpp>
 
 #include "contour_plane.hpp"
@@ -43,6 +45,22 @@ TEST(ObstructionSearch, EachConstraintIsFoundAlone) {
   };
   EXPECT_EQ(between(ramp(0.2, 0.1), {{0.5, 1.5}, {4.5, 1.5}}).lifting, Constraint::Pitch);
   EXPECT_EQ(between(ramp(0.4, 0.5), {{0.5, 1.5}, {4.5, 1.5}}).lifting, Constraint::Soil);
+}
+
+// A stop ends the flood between the sets and the search for a constraint; the places stand for what was not found.
+TEST(ObstructionSearch, AStopEndsIt) {
+  const auto map = drawn({"..#..", "..#..", "..#.."});
+  const Segment places{{0.5, 0.5}, {3.5, 1.5}};
+  HeadingSets headings(map->cost());
+  const Reach reach(*map, headings, Reach::Sense::From, places.from);
+  std::stop_source source;
+  source.request_stop();
+  const Obstruction found = obstructionBetween(*map, headings, reach, places, 0.0,
+                                               ProgressMonitor{.progress = {}, .stop = source.get_token()});
+  EXPECT_FALSE(found.tried);
+  EXPECT_FALSE(found.lifting);
+  EXPECT_EQ(found.last, places.from);
+  EXPECT_EQ(found.first, places.to);
 }
 
 }  // namespace
