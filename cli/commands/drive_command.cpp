@@ -34,6 +34,7 @@ struct Options {
   std::string truth, start, goal, html, telemetry, plugin;
   std::string belief = "online";
   std::size_t worlds = 1;
+  double time_limit_s = 0.0;  ///< of a plugin for each plan; 0: none
   planner::SensorOptions sensors;
   std::string fault = "none", noise = "on";
 };
@@ -99,6 +100,7 @@ void bind(CLI::App& command, Options& options) {
           ->check(CLI::Range(1, 100000))
           ->type_name("N");
   addPluginOption(command, options.plugin);
+  addPluginTime(command, options.time_limit_s);
   bindSensors(command, options);
   groupOptions(command, "Simulation");
   addOutput(command, "--html", options.html, "page to write: the simulated traverse with a time slider")
@@ -207,7 +209,11 @@ int run(const Options& options, Context& context) {
     plugin.emplace(pluginOf(options.plugin));
     context.threads = 1;  // it plans in processes, which a program of several threads must not make
   }
-  const auto byPlugin = [&plugin](const planner::Problem& problem) { return plugin->plan(problem); };
+  const auto byPlugin = [&](planner::Problem problem) {
+    if (options.time_limit_s > 0.0)
+      problem.time_limit_s = std::min(problem.time_limit_s, options.time_limit_s);
+    return plugin->plan(problem);
+  };
   const planner::SimulationSite site(
       ground.map, {.truth = truthFor(ground.map.model(), options.truth),
                    .start = maps::readPlace(options.start, ground.map.elevation(), "--start"),

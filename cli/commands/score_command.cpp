@@ -25,6 +25,7 @@ struct Options {
   GroundOptions ground;
   std::string path;
   std::string plugin, start, goal;  ///< in place of a path: the route of a plugin
+  double time_limit_s = 0.0;        ///< of the plugin; 0: none
   std::string chassis;
 };
 
@@ -55,6 +56,7 @@ void bind(CLI::App& command, Options& options) {
       .add_option("--start", options.start, "start of the plugin's route (format as in `talus plan --help`)")
       ->type_name("PLACE");
   command.add_option("--goal", options.goal, "goal of the plugin's route")->type_name("PLACE");
+  addPluginTime(command, options.time_limit_s);
   addChassisOption(command, options.chassis);
   groupOptions(command, "Path");
 }
@@ -87,6 +89,7 @@ std::vector<maps::Point> pointsOf(const Options& options, const Ground& ground, 
   problem.seed = context.seed;
   problem.threads = context.workers();
   problem.watch = context.watch("plan");
+  if (options.time_limit_s > 0.0) problem.time_limit_s = options.time_limit_s;
   planner::Plan plan = pluginOf(options.plugin).unchecked(problem);
   if (plan.status != planner::RouteStatus::Found && !context.stop.stop_requested())
     throw InputError({options.plugin, "found no route: " + plan.reason, "choose other places"});

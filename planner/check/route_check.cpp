@@ -228,13 +228,14 @@ class Checker {
 
 namespace {
 
-void check(Checker& checker, const std::vector<Point>& route) {
+void check(Checker& checker, const std::vector<Point>& route, const ProgressMonitor& watch = {}) {
   if (route.empty()) return;
   checker.goOn(route.front(), 0.0);
   checker.end(route.front());
   if (route.size() == 1) checker.place(route.front());
   double along_m = 0.0;
   for (std::size_t i = 1; i < route.size(); ++i) {
+    if (watch.stopped()) return;
     checker.goOn(route[i - 1], along_m);
     checker.segment(route[i - 1], route[i]);
     if (i > 1) checker.touch(route[i - 1]);
@@ -247,9 +248,10 @@ void check(Checker& checker, const std::vector<Point>& route) {
 
 }  // namespace
 
-std::vector<Violation> violations(const CostGrid& map, const std::vector<Point>& route) {
+std::vector<Violation> violations(const CostGrid& map, const std::vector<Point>& route,
+                                  const ProgressMonitor& watch) {
   Checker checker(map);
-  check(checker, route);
+  check(checker, route, watch);
   return checker.found;
 }
 

@@ -6,6 +6,7 @@
 
 #include <talus/costmap/cost_grid.hpp>
 #include <talus/maps/grid.hpp>
+#include <talus/talus.hpp>
 
 namespace talus::planner {
 
@@ -25,8 +26,9 @@ struct Violation {
 /// A route ends in the cell that Grid::cellAt gives it and need not be allowed in others that its ends touch:
 /// it does not turn there. One violation a cell; empty for a route that may be driven. It shares no code with the planners, nor with
 /// MotionCost: the crossings of cell edges are sorted and the middle of each stretch is looked up. Exact, not
-/// sampled.
-std::vector<Violation> violations(const costmap::CostGrid& map, const std::vector<maps::Point>& route);
+/// sampled. Stopped, those met so far.
+std::vector<Violation> violations(const costmap::CostGrid& map, const std::vector<maps::Point>& route,
+                                  const ProgressMonitor& watch = {});
 
 /// The same of a drive, along its arcs themselves: where each crosses the lines between cells is found in
 /// closed form, and every cell is checked for headings no more than 0.01 rad apart, those passed in a turn in

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstring>
 #include <exception>
+#include <new>
 #include <utility>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include <talus/planner/plugin/plugin_planner.hpp>
 #include <talus/planner/route/motion_cost.hpp>
 #include <talus/planner/route/plan_end.hpp>
+#include <talus/planner/route/polyline.hpp>
 
 namespace talus::planner {
 namespace {
@@ -21,7 +23,7 @@ using maps::Point;
 constexpr double kSamePlace_m = 1e-6;
 
 // First byte of an answer: what follows.
-constexpr char kText = 't', kRoute = 'r', kInput = 'i', kThrown = 'x';
+constexpr char kText = 't', kRoute = 'r', kInput = 'i', kThrown = 'x', kMemory = 'm';
 
 }  // namespace
 
@@ -59,6 +61,8 @@ std::string said(const std::function<std::string()>& work) {
     return work();
   } catch (const InputError& error) {
     return kInput + error.parts().where + '\n' + error.parts().reason + '\n' + error.parts().remedy;
+  } catch (const std::bad_alloc&) {
+    return std::string(1, kMemory);
   } catch (const std::exception& error) {
     return kThrown + oneLine(error.what());
   } catch (...) {
@@ -90,6 +94,10 @@ std::string answerOf(const std::string& file, const std::function<std::string()>
   }
   if (answer.bytes.empty()) failPlugin(file, "gave no answer");
   const std::string text = answer.bytes.substr(1);
+  if (answer.bytes[0] == kMemory)
+    failPlugin(file, limits.memory == 0
+                         ? "takes more memory than there is"
+                         : "takes more than " + std::to_string(limits.memory >> 20) + " MB of memory");
   if (answer.bytes[0] == kThrown) failPlugin(file, "threw an error: " + text);
   if (answer.bytes[0] == kInput) {
     const std::size_t first = text.find('\n'), second = text.find('\n', first + 1);
@@ -140,12 +148,51 @@ std::string text(Point p) {
   return std::to_string(p.x_m) + ',' + std::to_string(p.y_m);
 }
 
+// Headings as the places themselves give them, whatever the plugin states, against those that were requested and the turning
+// radius; of a rover that turns in place, against neither. Chords stand for arcs: each may be off by half of what it turns,
+// for chords of up to 0.4 of the radius; a longer one counts as straight beyond that.
+std::string motionAgainst(const Problem& problem, const std::vector<Point>& points) {
+  const double radius_m = problem.kinematics.turning_radius_m;
+  if (!(radius_m > 0.0) || points.size() < 2) return {};
+  struct Chord {
+    double heading_rad, length_m;
+    double bend_rad(double r_m) const { return std::asin(std::min(0.2, 0.5 * length_m / r_m)); }
+  };
+  std::vector<Chord> chords;
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const double dx = points[i].x_m - points[i - 1].x_m, dy = points[i].y_m - points[i - 1].y_m;
+    if (std::hypot(dx, dy) > kSamePlace_m) chords.push_back({std::atan2(dy, dx), std::hypot(dx, dy)});
+  }
+  if (chords.empty()) return {};
+  constexpr double kRounding_rad = 0.02;
+  const bool reverse = problem.kinematics.may_reverse;
+  const auto off = [reverse](double a, double b) {
+    const double apart = std::abs(std::remainder(a - b, 2.0 * M_PI));
+    return reverse ? std::min(apart, M_PI - apart) : apart;
+  };
+  const auto wrong = [&](const Chord& chord, const std::optional<double>& wanted) {
+    return wanted && off(chord.heading_rad, *wanted) > chord.bend_rad(radius_m) + kRounding_rad;
+  };
+  if (wrong(chords.front(), problem.start_heading_rad)) return "it does not leave on the start heading";
+  if (wrong(chords.back(), problem.goal_heading_rad)) return "it does not arrive on the goal heading";
+  for (std::size_t i = 1; i < chords.size(); ++i)
+    if (off(chords[i].heading_rad, chords[i - 1].heading_rad) >
+        chords[i].bend_rad(radius_m) + chords[i - 1].bend_rad(radius_m) + kRounding_rad)
+      return "it bends at turn " + std::to_string(i) + " by more than the turning radius allows";
+  return {};
+}
+
 // Why the route of a plugin is not handed out; empty where nothing is held against it.
 std::string heldAgainst(const Problem& problem, const std::vector<Point>& points) {
   if (!near(points.front(), problem.start, 0.0)) return "it begins at " + text(points.front());
   if (goalOf(problem, points.back()) < 0) return "it ends at " + text(points.back());
   if (!passes(points, problem.via)) return "it leaves out a via point";
-  const auto found = violations(*problem.map, points);
+  const double cells = length_m(points) / problem.map->grid().resolution_m;
+  if (!(cells <= PluginPlanner::kMostCells))
+    return "it is " + std::to_string(std::llround(cells)) + " cells long, must be at most " +
+           std::to_string(PluginPlanner::kMostCells);
+  if (const std::string motion = motionAgainst(problem, points); !motion.empty()) return motion;
+  const auto found = violations(*problem.map, points, problem.watch);
   if (!found.empty()) return "at " + text(found.front().place) + " m: " + found.front().reason;
   return {};
 }
@@ -215,7 +262,10 @@ Plan PluginPlanner::unchecked(const Problem& problem) const {
 Plan PluginPlanner::plan(const Problem& problem) const {
   Plan plan = unchecked(problem);
   if (plan.status != RouteStatus::Found) return plan;
-  if (const std::string against = heldAgainst(problem, plan.points); !against.empty())
+  const std::string against = heldAgainst(problem, plan.points);
+  if (problem.watch.stopped())
+    return failedPlan(RouteStatus::Cancelled, "cancelled before the route was checked");
+  if (!against.empty())
     return failedPlan(RouteStatus::NoneFound,
                       "no route: the check refuses that of " + name_ + ": " + against);
   plan.goal = static_cast<std::size_t>(goalOf(problem, plan.points.back()));

@@ -10,8 +10,9 @@ namespace talus::planner {
 /// its route is held against violations() and priced by MotionCost before anybody sees it. Not thread-safe.
 class PluginPlanner {
  public:
-  /// Vertices of a route, and memory that it may take beyond the program's own.
-  static constexpr std::size_t kMostVertices = 1'000'000;
+  /// Vertices of a route, its length in cells, and memory that it may take beyond the program's own.
+  static constexpr std::size_t kMostVertices = 100'000;
+  static constexpr int kMostCells = 1'000'000;
   static constexpr std::uint64_t kMostMemory = std::uint64_t{4} << 30;
 
   /// Loads it once, in a child, to ask what it is. `planner`: one of those that it offers; empty: its default. Throws
@@ -23,7 +24,8 @@ class PluginPlanner {
 
   /// A route that keeps every constraint of the map between the places asked for; NoneFound with place and reason where
   /// the check refuses it, or the plugin's own answer. `kinematics` is asked for where it has a turning radius or
-  /// forbids reversing; the check judges the polyline. A time limit is enforced: a second beyond it the plugin is
+  /// forbids reversing; the check judges the polyline, whose places alone give its headings, with the chords of arcs held against
+  /// the turning radius and the headings requested. A stop ends the check. A time limit is enforced: a second beyond it the plugin is
   /// ended. Throws InputError when it throws, crashes, takes too much memory, or returns no route that can be read.
   Plan plan(const Problem& problem) const;
 

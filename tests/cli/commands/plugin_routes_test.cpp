@@ -82,9 +82,10 @@ TEST_F(PluginRoutes, WhatAPluginDoesWrongIsOneLine) {
                              {"odd", 2, "no std::exception"},
                              {"undefined", 2, "vertex 1 is nan"},
                              {"crashes", 2, "ended its process (Aborted)"},
-                             {"huge", 2, "libstraight_planner.so"},
+                             {"huge", 2, "takes more than 4096 MB of memory"},
                              {"empty", 2, "without a vertex"},
                              {"elsewhere", 1, "it ends at 36"},
+                             {"winding", 1, "cells long, must be at most 1000000"},
                              {"lines", 2, "has no planner 'lines'"}}) {
     const Ran ran = plan(wrong.planner);
     EXPECT_EQ(ran.code, wrong.code) << wrong.planner << ": " << ran.err;
@@ -95,6 +96,21 @@ TEST_F(PluginRoutes, WhatAPluginDoesWrongIsOneLine) {
   const Ran endless = plan("endless", {"--time", "0.2"});
   EXPECT_EQ(endless.code, 2) << endless.err;
   EXPECT_THAT(endless.err, HasSubstr("did not end within its time limit"));
+  EXPECT_EQ(run("score", {"--path", "r.csv", "--time", "1"}).code, 2);  // of a plugin alone
+}
+
+// It states that it keeps headings and a turning radius; the places of its route say otherwise.
+TEST_F(PluginRoutes, HeadingsAreThoseOfThePlaces) {
+  const auto lied = [this](const Words& motion) {
+    Words words{"--turning-radius", "2"};
+    words.insert(words.end(), motion.begin(), motion.end());
+    const Ran ran = plan("liar", words);
+    EXPECT_EQ(ran.code, 1) << ran.err;
+    return ran.err;
+  };
+  EXPECT_THAT(lied({"--start-heading", "1"}), HasSubstr("does not leave on the start heading"));
+  EXPECT_THAT(lied({"--goal-heading", "1"}), HasSubstr("does not arrive on the goal heading"));
+  EXPECT_EQ(plan("liar", {"--turning-radius", "2", "--start-heading", "0", "--goal-heading", "0"}).code, 0);
 }
 
 TEST_F(PluginRoutes, WhatIsNoPluginOrHonoursTooLittleIsOneLine) {

@@ -144,7 +144,7 @@ TEST_F(CostLayers, WhatAPluginDoesWrongIsOneLine) {
   for (const auto& [how, reason] :
        std::vector<std::pair<std::string, std::string>>{{"throws", "threw an error: no sun today"},
                                                         {"crashes", "ended its process (Aborted)"},
-                                                        {"huge", "threw an error"},
+                                                        {"huge", "takes more than 4096 MB of memory"},
                                                         {"short", "answered for 959 cells, must be 960"},
                                                         {"negative", "J/m, must be 0 to 1e6"},
                                                         {"beyond", "J/m, must be 0 to 1e6"}}) {

@@ -15,8 +15,10 @@ class Planner final : public talus::GlobalPlanner {
     return {.name = "straight",
             .version = "1",
             .planners = {"line", "throws", "undefined", "crashes", "huge", "endless", "empty", "elsewhere",
-                         "odd"},
-            .planner = settings_.planner.empty() ? "line" : settings_.planner};
+                         "odd", "winding", "liar"},
+            .planner = settings_.planner.empty() ? "line" : settings_.planner,
+            .headings = settings_.planner == "liar",
+            .turning_radius = settings_.planner == "liar"};
   }
   void configure(const talus::PlannerSettings& settings) override { settings_ = settings; }
   void set_map(std::shared_ptr<const talus::costmap::CostGrid> map) override { map_ = std::move(map); }
@@ -34,6 +36,12 @@ class Planner final : public talus::GlobalPlanner {
     if (how == "huge") route.vertices.resize(100'000'000);
     if (how == "empty") route.vertices.clear();
     if (how == "elsewhere") route.vertices[1].x_m += 1.0;
+    for (int turn = 0; how == "winding" && turn < 60'000; ++turn) {  // to and fro, where it may
+      const auto last = route.vertices.back();
+      route.vertices.push_back(route.vertices[route.vertices.size() - 2]);
+      route.vertices.push_back(last);
+      if (route.vertices.size() > 90'000) break;
+    }
     for (volatile bool on = how == "endless"; on;) {
     }
     return route;
