@@ -37,7 +37,7 @@ void addDriveOptions(CLI::App& command, DriveOptions& drive) {
           "--turning-radius", [&drive](double value) { drive.turning_radius_m = value; },
           "minimum turning radius of hybrid; 0: turns in place (default: the rover's)")
       ->type_name("METRES")
-      ->check(notNegative());
+      ->check(within(0.0, planner::kLargestTurn_m));
   addChassisOption(command, drive.chassis);
   command.add_flag("--no-reverse", drive.no_reverse, "hybrid: do not drive in reverse");
   groupOptions(command, "Motion");

@@ -54,6 +54,9 @@ constexpr double WheelForces::*kResultFields[] = {&WheelForces::sinkage_m, &Whee
                                                   &WheelForces::torque_Nm, &WheelForces::drawbar_pull_N,
                                                   &WheelForces::side_force_N};
 
+// The load of a thousand tonnes: more is a slip of units, and the search for a wheel that carries it takes long to fail.
+constexpr double kHeaviest_N = 1e7;
+
 bool isResult(const std::string& name) {
   return std::find(std::begin(kResults), std::end(kResults), name) != std::end(kResults);
 }
@@ -94,6 +97,8 @@ Entry entryOf(CsvRow row, const std::vector<std::optional<std::size_t>>& at) {
     else if (std::isfinite(entry.wheel_case.*kInputs[k].field) &&
              !plausible(entry.wheel_case.*kInputs[k].field))
       entry.fault = fmt::format("{} = {}, {}", kInputs[k].name, field, kPlausible);
+    else if (kInputs[k].field == &WheelCase::load_N && entry.wheel_case.load_N > kHeaviest_N)
+      entry.fault = fmt::format("load_N = {}, must be at most {:g}", field, kHeaviest_N);
   }
   return entry;
 }

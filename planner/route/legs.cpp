@@ -1,7 +1,22 @@
+#include <string>
+
 #include <talus/planner/route/legs.hpp>
 #include <talus/planner/route/polyline.hpp>
 
 namespace talus::planner {
+namespace {
+
+// The reason of a leg's failure calls its ends by what they are of the whole: a via point is no start and no goal.
+std::string ofTheWhole(std::string reason, std::size_t leg, std::size_t legs) {
+  const auto rename = [&reason](const std::string& end, std::size_t via) {
+    if (reason.starts_with(end + ' ')) reason.replace(0, end.size(), "via point " + std::to_string(via));
+  };
+  if (leg > 0) rename("start", leg);
+  if (leg + 1 < legs) rename("goal", leg + 1);
+  return reason;
+}
+
+}  // namespace
 
 Plan planByLegs(const Problem& problem, const std::function<Plan(const Problem& leg)>& plan_leg) {
   std::vector<maps::Point> stops = problem.via;
@@ -14,7 +29,10 @@ Plan planByLegs(const Problem& problem, const std::function<Plan(const Problem& 
     leg.goal = stops[i];
     leg.goal_tolerance_m = i + 1 == stops.size() ? problem.goal_tolerance_m : 0.0;
     Plan part = plan_leg(leg);
-    if (part.status != RouteStatus::Found) return part;
+    if (part.status != RouteStatus::Found) {
+      part.reason = ofTheWhole(std::move(part.reason), i, stops.size());
+      return part;
+    }
     append(whole.points, part.points);
     whole.cost_J += part.cost_J;
     whole.lower_bound_J += part.lower_bound_J;

@@ -42,6 +42,7 @@ void validate(const Rover& rover) {
   check.within("wheels.width_m", rover.wheel.width_m, {1e-3, 10.0});
   check.within("wheelbase_m", rover.wheelbase_m, {1e-3, 100.0});
   check.within("track_m", rover.track_m, {1e-3, 100.0});
+  check.within("turning_radius_m", rover.turning_radius_m, {0.0, 1000.0});
   // A belly higher than the rover is long and wide is a slip of units: steps and rocks would vanish under it.
   check.within("clearance_m", rover.clearance_m, {1e-3, std::max(rover.wheelbase_m, rover.track_m)});
 }

@@ -24,7 +24,7 @@ struct Rule {
 };
 
 constexpr Rule kRules[] = {
-    {"load_N", [](double x) { return x > 0.0; }, "> 0"},
+    {"load_N", [](double x) { return x > 0.0 && x <= 1e7; }, "> 0 and at most 1e7"},
     {"sinkage_m", [](double x) { return x >= 0.0; }, ">= 0"},
     {"slip", [](double x) { return x >= -1.0 && x <= 1.0; }, "in [-1, 1]"},
     {"wheel_radius_m", [](double x) { return x > 0.0; }, "> 0"},

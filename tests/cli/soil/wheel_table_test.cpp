@@ -90,7 +90,7 @@ TEST(WheelTable, ReportsBadRowsByLineAndKeepsThem) {
     return row.replace(row.find(from), from.size(), to);
   };
   const std::string input = kHeader + kGood + with(",80,", ",-80,") + with("0.56", "steep") +
-                            with(",0.3,", ",1.5,") + with(",80,", ",1e9,") + "1,2,3\n" + with("800", "nan") +
+                            with(",0.3,", ",1.5,") + with(",80,", ",9e6,") + "1,2,3\n" + with("800", "nan") +
                             kGood;
   const WheelTable table = solveWheelTable(folder.write("in.csv", input), folder / "out.csv", 2, {});
   EXPECT_EQ(table.solved, 2U);
@@ -122,6 +122,18 @@ TEST(WheelTable, RefusesWhatItCannotUseAndLeavesNothingBehind) {
   EXPECT_THAT(errorOf(folder, kHeader), HasSubstr("no rows after the header"));
   EXPECT_THAT(errorOf(folder, kHeader + "1,2\n"), HasSubstr("in.csv:2: no row can be solved"));
   EXPECT_THAT(folder.names(), ElementsAre("in.csv"));
+}
+
+// A load of more than a thousand tonnes is refused as what it is, before anything searches for a wheel that carries it.
+TEST(WheelTable, LoadsThatNoWheelCarriesAreRefused) {
+  const Folder folder;
+  std::string row = kGood;
+  row.replace(row.find(",80,"), 4, ",1e12,");
+  const WheelTable table =
+      solveWheelTable(folder.write("in.csv", kHeader + kGood + row), folder / "out.csv", 2, {});
+  EXPECT_EQ(table.solved, 1U);
+  ASSERT_THAT(table.refused, SizeIs(1));
+  EXPECT_THAT(table.refused[0].reason, HasSubstr("load_N = 1e12, must be at most 1e+07"));
 }
 
 }  // namespace

@@ -57,5 +57,26 @@ TEST(Legs, TheFirstThatIsNotFoundIsTheAnswer) {
   EXPECT_EQ(calls, 2);
 }
 
+// Where a leg fails for one of its ends, a via point is called by its number: the user knows no other start or goal.
+TEST(Legs, AViaPointIsNamedAsOne) {
+  const auto reason = [](int failing, const char* why) {
+    int calls = 0;
+    return planByLegs(threeLegs(),
+                      [&](const Problem& leg) {
+                        Plan part{RouteStatus::Found, {}, {leg.start, leg.goal}, 1.0, 1.0};
+                        if (++calls != failing) return part;
+                        part.status = RouteStatus::GoalInvalid;
+                        part.reason = why;
+                        return part;
+                      })
+        .reason;
+  };
+  EXPECT_EQ(reason(1, "start 0,0 lies outside the map"), "start 0,0 lies outside the map");
+  EXPECT_EQ(reason(1, "goal 1,0 lies outside the map"), "via point 1 1,0 lies outside the map");
+  EXPECT_EQ(reason(2, "start 1,0 lies outside the map"), "via point 1 1,0 lies outside the map");
+  EXPECT_EQ(reason(2, "goal 1,1 lies outside the map"), "via point 2 1,1 lies outside the map");
+  EXPECT_EQ(reason(3, "goal 2,2 lies outside the map"), "goal 2,2 lies outside the map");
+}
+
 }  // namespace
 }  // namespace talus::planner

@@ -42,7 +42,8 @@ TEST(TelemetryReader, RejectsRowsByLineAndReason) {
     const char* reason;
   };
   const std::string good = "80,0.02,0.3,0.1\n";
-  for (const Case& c : {Case{"0,0.02,0.3,0.1", "load_N = 0, must be > 0"},
+  for (const Case& c : {Case{"0,0.02,0.3,0.1", "load_N = 0, must be > 0 and at most 1e7"},
+                        {"1e12,0.02,0.3,0.1", "load_N = 1e12, must be > 0 and at most 1e7"},
                         {"nan,0.02,0.3,0.1", "load_N = nan, must be finite"},
                         {"80,0.02,inf,0.1", "slip = inf, must be finite"},
                         {"80,-0.001,0.3,0.1", "sinkage_m = -0.001, must be >= 0"},
@@ -98,7 +99,7 @@ TEST(TelemetryReader, TheDustOfRoundingIsZero) {
   EXPECT_EQ(t.at("pitch_rad")[0], 0.0);
   EXPECT_EQ(t.at("pitch_rad")[1], 0.0);
   ASSERT_EQ(t.rejected.size(), 1U);
-  EXPECT_EQ(t.rejected[0].reason, "load_N = 1e-300, must be > 0");
+  EXPECT_EQ(t.rejected[0].reason, "load_N = 1e-300, must be > 0 and at most 1e7");
 }
 
 TEST(TelemetryReader, RejectsALastRowThatIsCutShort) {
