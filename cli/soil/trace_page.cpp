@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <talus/cli/draw/html_report.hpp>
+#include <talus/cli/soil/searched_report.hpp>
 #include <talus/cli/soil/trace_report.hpp>
 
 namespace talus::cli {
@@ -144,6 +145,7 @@ std::string tracePage(const TraceStory& story) {
   page.paragraph("Verdict: " + verdictText(r) + ".");
   for (const MovedParameter& p : movedSoil(r)) page.paragraph(movedText(p) + ".");
   page.paragraph(fmt::format("{} rows used, {} rejected.", r.trial.rows(), story.rows_rejected));
+  if (const std::string searched = searchedText(r); !searched.empty()) page.paragraph(searched);
   if (story.beyond_axle > 0) page.paragraph(beyondAxleText(story) + ".");
   if (!story.applies.applies) page.paragraph("The model does not apply here: " + story.applies.reason + ".");
   effects(page, story);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <talus/cli/soil/searched_report.hpp>
 #include <talus/cli/soil/trace_report.hpp>
 
 namespace talus::cli {
@@ -98,8 +99,8 @@ ordered_json rejectedJson(const TraceResult& result) {
   ordered_json out = ordered_json::array();
   for (const Explanation& e : result.rejected) {
     ordered_json one = rivalJson(e);
-    one["reason"] =
-        e.gain <= result.threshold ? "gains no more than noise would" : "explains less than the selected effect";
+    one["reason"] = e.gain <= result.threshold ? "gains no more than noise would"
+                                               : "explains less than the selected effect";
     out.push_back(one);
   }
   return out;
@@ -263,9 +264,15 @@ ordered_json answerJson(const TraceResult& result) {
                      {"prior", p.prior},
                      {"prior_std", p.prior_std},
                      {"standard_deviations", p.away()}});
-  return {{"channel", name(a.channel)},    {"rmse", a.rest},         {"noise_floor", a.floor},
-          {"varies_with", a.column},       {"gain", a.gain},         {"threshold", result.threshold},
-          {"rows_that_decide", a.measure}, {"soil_off_prior", moved}, {"soil_at_bound", soilAtBounds(result.refined)}};
+  return {{"channel", name(a.channel)},
+          {"rmse", a.rest},
+          {"noise_floor", a.floor},
+          {"varies_with", a.column},
+          {"gain", a.gain},
+          {"threshold", result.threshold},
+          {"rows_that_decide", a.measure},
+          {"soil_off_prior", moved},
+          {"soil_at_bound", soilAtBounds(result.refined)}};
 }
 
 ordered_json beyondAxleJson(const TraceStory& story) {
@@ -299,8 +306,9 @@ ordered_json traceJson(const TraceStory& story) {
           {"tests", tests},
           {"applies", story.applies.applies},
           {"applies_reason", story.applies.reason},
-          {"rows_used", r.trial.rows()},
+          {"rows_used", r.trial.rows() + r.unsearched.rows},
           {"rows_rejected", story.rows_rejected},
+          {"searched", searchedJson(r)},
           {"beyond_axle", beyondAxleJson(story)}};
 }
 
@@ -340,9 +348,10 @@ std::string movedText(const MovedParameter& p) {
 
 std::string traceText(const TraceStory& story) {
   const TraceResult& r = story.result;
-  std::string out =
-      verdictText(r) + "\n" +
-      fmt::format("{}: {} rows used, {} rejected\n", story.source, r.trial.rows(), story.rows_rejected);
+  std::string out = verdictText(r) + "\n" +
+                    fmt::format("{}: {} rows used, {} rejected\n", story.source,
+                                r.trial.rows() + r.unsearched.rows, story.rows_rejected) +
+                    searchedText(r);
   for (const MovedParameter& p : movedSoil(r)) out += movedText(p) + "\n";
   for (const std::string& name : soilAtBounds(r.refined))
     out += "warning: " + name + " of the soil is at the bound of its range\n";

@@ -301,11 +301,6 @@ std::vector<std::vector<double>> stepsOf(const Eigen::VectorXd& x) {
   return knots;
 }
 
-bool isOwnColumn(const std::string& name) {
-  const auto& known = stateColumns();
-  return std::find(known.begin(), known.end(), name) == known.end();
-}
-
 /// A constant for each group of a text column.
 void addGroups(const Trial& trial, const std::string& column, std::vector<Candidate>& all) {
   std::set<std::string> labels;
@@ -322,6 +317,29 @@ void addGroups(const Trial& trial, const std::string& column, std::vector<Candid
 }
 
 }  // namespace
+
+bool isOwnColumn(const std::string& column) {
+  const auto& known = stateColumns();
+  return std::find(known.begin(), known.end(), column) == known.end();
+}
+
+double furtherQuestions(const Trial& trial) {
+  const auto kept = std::count_if(trial.covariates.begin(), trial.covariates.end(), isOwnColumn) +
+                    static_cast<long>(trial.groupings.size());
+  return std::log1p(static_cast<double>(trial.dropped.size()) / std::max(1.0, static_cast<double>(kept)));
+}
+
+std::vector<Candidate> coarseCandidates(const Trial& trial, const std::string& column) {
+  std::vector<Candidate> all;
+  if (std::find(trial.groupings.begin(), trial.groupings.end(), column) != trial.groupings.end()) {
+    addGroups(trial, column, all);
+  } else {
+    const auto knots = quantileKnots(covariateValues(trial, column, {}), 4);
+    if (knots.size() > 1) addCurves(trial, column, knots, all);
+  }
+  std::erase_if(all, [](const Candidate& c) { return c.parts.front().name != "empirical"; });
+  return all;
+}
 
 std::vector<Candidate> empiricalCandidates(const Trial& trial, const Eigen::VectorXd& sinkage_m) {
   std::vector<Candidate> all;

@@ -33,4 +33,14 @@ std::vector<Candidate> libraryCandidates(const Trial& trial, const Eigen::Vector
 /// group.
 std::vector<Candidate> empiricalCandidates(const Trial& trial, const Eigen::VectorXd& sinkage_m);
 
+/// Whether a numeric column is none that every table may have (stateColumns()).
+bool isOwnColumn(const std::string& column);
+
+/// GainDistribution::further_questions of a search in the columns that a screening kept: ln((kept + dropped) / kept).
+double furtherQuestions(const Trial& trial);
+
+/// The coarsest question to a column of one's own: in each measured channel alone a spline of 4 knots, or of a text
+/// column a constant for each group.
+std::vector<Candidate> coarseCandidates(const Trial& trial, const std::string& column);
+
 }  // namespace talus::terramech

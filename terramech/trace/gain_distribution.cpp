@@ -108,11 +108,12 @@ double greatestGain(const Contest& contest, const std::vector<RunSums>& sums,
 double GainDistribution::threshold(double level) const {
   if (greatest.empty()) return 0.0;
   const auto above = static_cast<std::size_t>(level * static_cast<double>(greatest.size() + 1));
-  return greatest[greatest.size() - std::clamp<std::size_t>(above, 1, greatest.size())];
+  return greatest[greatest.size() - std::clamp<std::size_t>(above, 1, greatest.size())] + further_questions;
 }
 
 double GainDistribution::pValue(double reached) const {
-  const auto below = std::lower_bound(greatest.begin(), greatest.end(), reached) - greatest.begin();
+  const auto below =
+      std::lower_bound(greatest.begin(), greatest.end(), reached - further_questions) - greatest.begin();
   const auto beyond = static_cast<double>(greatest.size()) - static_cast<double>(below);
   return (beyond + 1.0) / (static_cast<double>(greatest.size()) + 1.0);
 }

@@ -24,6 +24,10 @@ struct GainDistribution {
   std::vector<double> greatest;  ///< of each drawn table, ascending
   double null_score = 0.0;       ///< of the table under the null: log-likelihood held out and prior
   Eigen::Matrix4d run = Eigen::Matrix4d::Zero();  ///< covariance of a run's error under the null
+  /// Logarithm of how many times more questions were put to the table than to the drawn ones. A log-likelihood ratio of
+  /// noise exceeds x with probability of order e^-x (Wilks), so that N times the questions reach the gain x + ln N as
+  /// often as one time reaches x (Bonferroni).
+  double further_questions = 0.0;
 
   /// Gain that drawn tables exceed with probability `level`.
   double threshold(double level) const;

@@ -152,7 +152,7 @@ std::vector<Posterior> slipsAtOneSpeed(const Trial& trial, const SensorNoise& no
 
 }  // namespace
 
-void calibrateInputs(Trial& trial, const SensorNoise& noise) {
+void calibrateInputs(Trial& trial, const SensorNoise& noise, const std::optional<NominalLoad>& set) {
   const auto n = trial.states.size();
   std::vector<double> slip_std(n), log_load(n), load_std(n, noise.load_relative);
   for (std::size_t i = 0; i < n; ++i) {
@@ -165,13 +165,19 @@ void calibrateInputs(Trial& trial, const SensorNoise& noise) {
                      : !slipIsSeen(trial, noise)
                          ? shrink(trial.slip, slip_std)
                          : deconvolve(trial.slip, [&](double slip) { return slipStd(noise, slip); });
-  const auto loads = deconvolve(log_load, [&](double) { return noise.load_relative; });
+  const auto loads =
+      set ? std::vector<Posterior>{} : deconvolve(log_load, [&](double) { return noise.load_relative; });
   for (std::size_t i = 0; i < n; ++i) {
     // A grid cannot place a value better than its step: precise inputs are left as measured.
     const auto row = static_cast<Eigen::Index>(i);
     const double trust = squared(slip_std[i]), trust_load = squared(load_std[i]);
     setSlip(trial.states[i], std::clamp(slips[i].mean, -1.0, 1.0));
     trial.slip_variance[row] = std::clamp(slips[i].variance, (one_speed ? 0.02 : 0.3) * trust, trust);
+    if (set) {
+      trial.states[i].load_N = set->load_N(static_cast<int>(i), trial.load_N[i]);
+      trial.load_variance[row] = (1.0 - set->error_share + 1.0 / set->rows[row]) * trust_load;
+      continue;
+    }
     trial.states[i].load_N =
         std::abs(loads[i].mean - log_load[i]) > 2.5 * load_std[i] ? trial.load_N[i] : std::exp(loads[i].mean);
     trial.load_variance[row] = std::clamp(loads[i].variance, 0.3 * trust_load, trust_load);

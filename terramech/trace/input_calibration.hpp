@@ -1,7 +1,10 @@
 #pragma once
 
+#include <optional>
+
 #include <Eigen/Core>
 
+#include <talus/terramech/trace/nominal_load.hpp>
 #include <talus/terramech/trace/trial.hpp>
 
 namespace talus::terramech {
@@ -29,7 +32,7 @@ void setSlip(WheelState& state, double slip);
 /// Replaces slip and load of the states by their posterior means given what was measured, and sets their
 /// variances: the distribution of true values is found from all rows (nonparametric maximum likelihood,
 /// kiefer_wolfowitz_1956), so that the attenuation by noisy inputs is taken out. Call it with the measured
-/// slip and load in the states.
-void calibrateInputs(Trial& trial, const SensorNoise& noise);
+/// slip and load in the states. Set loads, where they are known, take the place of that of loads.
+void calibrateInputs(Trial& trial, const SensorNoise& noise, const std::optional<NominalLoad>& set = {});
 
 }  // namespace talus::terramech

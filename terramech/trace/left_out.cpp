@@ -188,7 +188,9 @@ LeftOutErrors traceWithout(const RefinedModel& base, const Trial& trial, const L
   errors.base = rmseOf(result.base, unseen);
   errors.refined = rmseOf(predictInScope(result, unseen), unseen);
   errors.floor = result.noise_floor;
-  errors.regression = regressionErrors(seen, unseen);
+  Trial same = seen;  // columns as were searched
+  same.covariates = result.trial.covariates;
+  errors.regression = regressionErrors(same, unseen);
   return errors;
 }
 

@@ -6,6 +6,7 @@
 
 #include <talus/terramech/mobility/rut.hpp>
 #include <talus/terramech/trace/closure_offset.hpp>
+#include <talus/terramech/trace/column_screening.hpp>
 #include <talus/terramech/trace/end_levels.hpp>
 #include <talus/terramech/trace/folds.hpp>
 #include <talus/terramech/trace/held_out.hpp>
@@ -92,9 +93,11 @@ long curves(const std::vector<Effect>& effects) {
   return std::count_if(effects.begin(), effects.end(), [](const Effect& e) { return e.empirical(); });
 }
 
-/// What an account must gain more to take another's place: nothing where it names what the other leaves to curves.
+/// What an account must gain more to take another's place: nothing where it names what the other leaves to curves; where
+/// it leaves to them what the other names, more than noise gives to some curve.
 double margin(const Path& path, const std::vector<Effect>& present, const std::vector<Effect>& other) {
-  return curves(other) < curves(present) ? 0.0 : path.close;
+  const long more = curves(other) - curves(present);
+  return more < 0 ? 0.0 : more > 0 ? std::max(path.close, path.threshold) : path.close;
 }
 
 /// Takes out, last first, what beside the others gains no more than noise would.
@@ -114,7 +117,8 @@ void reconsider(Path& path) {
   for (std::size_t k = path.pinned; k + 1 < path.effects.size(); ++k) {
     TraceSearch without = path.search;
     without.leaveOut(k);
-    const auto ranked = without.fitBest(without.screen(0).promises);
+    auto ranked = without.fitBest(without.screen(0).promises);
+    preferSimple(ranked, path.threshold);
     if (!accepted(ranked, 0.0)) continue;
     const Explanation& best = ranked.front();
     if (same(best.candidate, path.effects[k].chosen.candidate) ||
@@ -149,6 +153,7 @@ void grow(Path& path, const Trial& trial, const TraceOptions& options,
     path.last = screening.promises;
     path.threshold = screening.threshold;
     path.rejected = path.search.fitBest(screening.promises);
+    preferSimple(path.rejected, screening.threshold);
     const double least =
         0.5 * options.least_share * static_cast<double>(trial.measured.array().isFinite().count());
     if (!accepted(path.rejected, std::max(screening.threshold, least))) return;
@@ -159,7 +164,7 @@ void grow(Path& path, const Trial& trial, const TraceOptions& options,
 }
 
 /// Tries two in place of the one or two that were found: one may stand for both. Two for one must gain more than
-/// one more would under noise; two for two clearly more.
+/// one more would under noise; two for two clearly more; curves for what has a name as much again.
 void reconsiderPair(Path& path) {
   const std::size_t found = path.effects.size() - path.pinned;
   if (found < 1 || found > 2) return;
@@ -172,9 +177,10 @@ void reconsiderPair(Path& path) {
   const auto ranked = without.pairs();
   if (!accepted(ranked, 0.0)) return;
   const Explanation& best = ranked.front();
-  const double more = margin(path, present.parts, best.candidate.parts);
-  if (best.gain <
-      without.fitted(present).gain + (found == 1 ? std::max(path.threshold, more) : more))
+  const double other = margin(path, present.parts, best.candidate.parts);
+  const double further = found == 1 ? path.threshold : 0.0;
+  const bool more_curves = curves(best.candidate.parts) > curves(present.parts);
+  if (best.gain < without.fitted(present).gain + (more_curves ? further + other : std::max(further, other)))
     return;
   const double p_value = path.effects.back().p_value;
   for (std::size_t k = path.effects.size(); k-- > path.pinned;) {
@@ -236,29 +242,63 @@ RefinedModel asDriven(RefinedModel model, const Trial& trial) {
 
 }  // namespace
 
+namespace {
+
+/// How much a kind of account can take up that is not its own: a drift in time or weather holds a constant, a curve
+/// holds any of both.
+int freedom(const Candidate& candidate) {
+  return candidate.empirical() ? 2 : candidate.family == "drift" ? 1 : 0;
+}
+
+}  // namespace
+
+void preferSimple(std::vector<Explanation>& ranked, double threshold) {
+  auto first = ranked.begin();
+  for (auto e = ranked.begin(); e != ranked.end(); ++e)
+    if (e->gain > threshold && e->gain > ranked.front().gain - threshold &&
+        freedom(e->candidate) < freedom(first->candidate))
+      first = e;
+  if (first != ranked.end()) std::rotate(ranked.begin(), first, first + 1);
+}
+
 bool accepted(const std::vector<Explanation>& ranked, double threshold) {
   return !ranked.empty() && ranked.front().gain > threshold;
 }
 
-TraceResult traceResiduals(const RefinedModel& base, const Trial& trial, const TraceOptions& given,
-                           const ProgressMonitor& watch) {
+namespace {
+
+/// A share of work whose rounds are not known beforehand: each takes half of what is left.
+class Rounds {
+ public:
+  double at(double share) {
+    if (share > 0.0 && share < last_) left_ *= 0.5;
+    last_ = share > 0.0 ? share : last_;
+    return 1.0 - left_ * (1.0 - 0.5 * last_);
+  }
+
+ private:
+  double left_ = 1.0, last_ = 0.0;
+};
+
+TraceResult searched(const RefinedModel& base, const Trial& trial, const TraceOptions& given,
+                     const ProgressMonitor& watch) {
   TraceOptions options = given;
   if (!trial.moment.empty()) {  // its errors of slip and slope are no normal noise: see docs/effects.md
     options.max_effects = 1;
     options.least_share = 0.06;
   }
-  double done = 0.0;
+  Rounds rounds;
   const auto go_on = [&](double share) {
-    done = std::max(done, 0.95 * share);
-    watch.report(done);
+    watch.report(0.95 * rounds.at(share));
     return !watch.stopped();
   };
-  Path path{TraceSearch{asDriven(base, trial), trial, options, go_on}, closeGain(options)};
+  const Trial screened = screenColumns(asDriven(base, trial), trial, options, go_on);
+  Path path{TraceSearch{asDriven(base, trial), screened, options, go_on}, closeGain(options)};
   TraceResult result;
   result.given = base.soil;
   result.base = path.search.model();
   if (options.fit_soil && trial.moment.empty())
-    path.pinned = correctOffset(path.search, trial, options.seed, path.effects) ? 1 : 0;
+    path.pinned = correctOffset(path.search, screened, options.seed, path.effects) ? 1 : 0;
   grow(path, trial, options, go_on);
   if (trial.moment.empty() && go_on(0.0)) reconsiderPair(path);
   if (go_on(0.0)) check(path);
@@ -276,6 +316,22 @@ TraceResult traceResiduals(const RefinedModel& base, const Trial& trial, const T
   keepConfirmed(result.held_out, result.scope);
   keepConfirmed(result.ends, result.noise_floor);
   result.effects = apart(result.effects);
+  return result;
+}
+
+}  // namespace
+
+TraceResult traceResiduals(const RefinedModel& base, const Trial& trial, const TraceOptions& options,
+                           const ProgressMonitor& watch) {
+  watch.report(0.0);
+  std::vector<char> sample = rowSample(trial, options.most_rows, options.seed);
+  const bool all = std::find(sample.begin(), sample.end(), 0) == sample.end();
+  TraceResult result = searched(base, all ? trial : subset(trial, sample), options, watch);
+  if (!all) {
+    for (char& row : sample) row = !row;
+    const Trial rest = subset(trial, sample);
+    result.unsearched = {rest.rows(), rmseOf(result.base, rest), rmseOf(predictInScope(result, rest), rest)};
+  }
   watch.report(1.0);
   return result;
 }

@@ -72,8 +72,16 @@ std::vector<Scale> scales(const Trial& trial, const Eigen::MatrixXd& residual, c
 
 }  // namespace
 
+std::vector<std::string> noiseColumns(const Trial& trial) {
+  std::vector<std::string> names;
+  for (const std::string& name : trial.covariates)
+    if (std::find(trial.chance.begin(), trial.chance.end(), name) == trial.chance.end())
+      names.push_back(name);
+  return names;
+}
+
 std::vector<std::string> allButSlip(const Trial& trial) {
-  const auto& names = trial.covariates;
+  const std::vector<std::string> names = noiseColumns(trial);
   const bool tells_slip = std::find(names.begin(), names.end(), "rim_speed_mps") != names.end();
   std::vector<std::string> others;
   for (const std::string& name : names)

@@ -23,7 +23,11 @@ SensorNoise fitNoise(const Trial& trial, const Eigen::MatrixXd& residual, const 
 Eigen::MatrixXd withoutSmooth(const Trial& trial, const Eigen::MatrixXd& residual,
                               const std::vector<std::string>& columns);
 
-/// The covariates of a trial that do not determine its slip.
+/// The covariates of a trial that the noise may be smoothed over: those chosen for their link to the residuals though
+/// it seems to be by chance would take a part of the noise with them.
+std::vector<std::string> noiseColumns(const Trial& trial);
+
+/// Those that do not determine its slip.
 std::vector<std::string> allButSlip(const Trial& trial);
 
 }  // namespace talus::terramech

@@ -14,11 +14,20 @@ void TraceSearch::backToMeasured() {
   }
 }
 
+StatedSensors TraceSearch::knownSensors() const {
+  StatedSensors sensors = model_.stated;
+  if (!set_load_ || sensors.load_N) return sensors;
+  std::vector<double> load = trial_.load_N;
+  std::nth_element(load.begin(), load.begin() + static_cast<long>(load.size() / 2), load.end());
+  sensors.load_N = set_load_->errorStd() * load[load.size() / 2];
+  return sensors;
+}
+
 void TraceSearch::settle(const Eigen::MatrixXd& noise_alone, const Eigen::MatrixXd& level,
                          const InputSlopes& measured_slopes) {
   backToMeasured();
-  model_.noise = fitNoise(trial_, noise_alone, level, measured_slopes, model_.stated);
-  calibrateInputs(trial_, model_.noise);
+  model_.noise = fitNoise(trial_, noise_alone, level, measured_slopes, knownSensors());
+  calibrateInputs(trial_, model_.noise, set_load_);
   level_ = predictRows(model_, trial_, solved_);
   residual_ = trial_.measured - level_;
   const InputSlopes slopes = inputSlopes(model_, trial_, solved_);
@@ -31,7 +40,7 @@ void TraceSearch::settle(const Eigen::MatrixXd& noise_alone, const Eigen::Matrix
 void TraceSearch::shareWithin(Eigen::MatrixXd smooth, const Eigen::MatrixXd& level,
                               const InputSlopes& measured_slopes) {
   std::vector<std::string> timeless;
-  for (const std::string& column : trial_.covariates)
+  for (const std::string& column : noiseColumns(trial_))
     if (column != "time_s") timeless.push_back(column);
   const std::vector<int> unit = runUnits(trial_, whitening_, withoutSmooth(trial_, residual_, timeless));
   if (!unit.empty()) {  // what rows share is no noise of theirs
@@ -46,6 +55,18 @@ void TraceSearch::shareWithin(Eigen::MatrixXd smooth, const Eigen::MatrixXd& lev
   whitening_.run = runErrorOf(standing(model_, residual_, solved));
 }
 
+/// A smooth of measured loads would follow the errors about the set ones, and the noise would miss them: it is had from
+/// the set loads.
+void TraceSearch::findSetLoads(const Eigen::MatrixXd& measured, const InputSlopes& slopes) {
+  std::vector<std::string> others = noiseColumns(trial_);
+  std::erase(others, "load_N");
+  set_load_ = nominalLoad(trial_, withoutSmooth(trial_, measured, others), slopes);
+  for (int row = 0; set_load_ && row < trial_.rows(); ++row) {
+    const auto r = static_cast<std::size_t>(row);
+    trial_.states[r].load_N = set_load_->load_N(row, trial_.load_N[r]);
+  }
+}
+
 void TraceSearch::refresh() {
   backToMeasured();
   const Eigen::MatrixXd level = predictRows(model_, trial_, solved_);
@@ -54,7 +75,8 @@ void TraceSearch::refresh() {
   // Whatever its error, a slip that varies much is seen; only where that is in doubt must the error be known.
   const SensorNoise unlimited{.slip_relative = 1.0};
   const auto isSeen = [&](const SensorNoise& n) { return slipIsSeen(trial_, n) && speedIsSeen(trial_, n); };
-  Eigen::MatrixXd smooth = withoutSmooth(trial_, measured, trial_.covariates);
+  findSetLoads(measured, slopes);
+  Eigen::MatrixXd smooth = withoutSmooth(trial_, measured, noiseColumns(trial_));
   if (!isSeen(unlimited)) {
     const Eigen::MatrixXd left = withoutSmooth(trial_, measured, allButSlip(trial_));
     if (!isSeen(fitNoise(trial_, left, level, slopes, model_.stated))) smooth = left;

@@ -114,6 +114,22 @@ NullModel TraceSearch::standing(const RefinedModel& model, const Eigen::MatrixXd
   return null;
 }
 
+GainDistribution TraceSearch::distributionOf(const std::vector<Candidate>& candidates, int draws) {
+  const Eigen::VectorXd sinkage_m = sinkages();
+  SolvedContacts solved = solved_;
+  const NullModel null = standing(model_, residual_, solved);
+  const ModelOnRows here{model_, trial_, whitening_, level_, sinkage_m, solved_};
+  GainDistribution found = gainDistribution(
+      null, {candidates.size(), [&](std::size_t k) { return contenderOf(candidates[k], here); }}, draws,
+      options_.seed, go_on_);
+  found.further_questions = furtherQuestions(trial_);
+  return found;
+}
+
+std::vector<double> TraceSearch::gainsOf(const std::vector<Candidate>& candidates) {
+  return distributionOf(candidates, 0).gain;
+}
+
 TraceSearch::Screening TraceSearch::screen(int draws) {
   const Eigen::VectorXd sinkage_m = sinkages();
   std::vector<Candidate> all;
@@ -125,13 +141,8 @@ TraceSearch::Screening TraceSearch::screen(int draws) {
       all.push_back(std::move(c));
   if (!drive)
     for (Candidate& c : empiricalCandidates(trial_, sinkage_m)) all.push_back(std::move(c));
-  SolvedContacts solved = solved_;
-  const NullModel null = standing(model_, residual_, solved);
-  const ModelOnRows here{model_, trial_, whitening_, level_, sinkage_m, solved_};
   Screening screening;
-  screening.noise =
-      gainDistribution(null, {all.size(), [&](std::size_t k) { return contenderOf(all[k], here); }}, draws,
-                       options_.seed, go_on_);
+  screening.noise = distributionOf(all, draws);
   screening.threshold = screening.noise.threshold(options_.significance);
   for (std::size_t k = 0; k < all.size(); ++k)
     screening.promises.push_back(

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <talus/terramech/trace/candidate_columns.hpp>
+#include <talus/terramech/trace/nominal_load.hpp>
 #include <talus/terramech/trace/trace_result.hpp>
 
 namespace talus::terramech {
@@ -29,6 +30,9 @@ class TraceSearch {
     GainDistribution noise;
   };
   Screening screen(int draws);
+
+  /// Gains of candidates to first order, in their order.
+  std::vector<double> gainsOf(const std::vector<Candidate>& candidates);
 
   /// The most promising candidates fitted inside the full model, by the same gain, best first.
   std::vector<Explanation> fitBest(const std::vector<Promise>& promises);
@@ -72,7 +76,10 @@ class TraceSearch {
 
  private:
   void refresh();
+  GainDistribution distributionOf(const std::vector<Candidate>& candidates, int draws);
   void backToMeasured();
+  void findSetLoads(const Eigen::MatrixXd& measured, const InputSlopes& slopes);
+  StatedSensors knownSensors() const;  ///< the load cell's error where the set loads show it
   /// Fits the noise to residuals that hold nothing else, at the measured inputs, and all that follows from
   /// it.
   void settle(const Eigen::MatrixXd& noise_alone, const Eigen::MatrixXd& level,
@@ -103,6 +110,7 @@ class TraceSearch {
   Eigen::MatrixXd level_, residual_;
   std::optional<Eigen::MatrixXd> by_slip_;  ///< change by one std of the error that all slips share, where
                                             ///< there is one level of slip or one speed
+  std::optional<NominalLoad> set_load_;
   Whitening whitening_;
   Eigen::VectorXd white_;
   double misfit_ = 1.0;                  ///< as FitPlan's

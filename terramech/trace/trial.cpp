@@ -275,6 +275,8 @@ Trial subset(const Trial& trial, const std::vector<char>& keep) {
   Trial part;
   part.covariates = trial.covariates;
   part.groupings = trial.groupings;
+  part.dropped = trial.dropped;
+  part.chance = trial.chance;
   const auto count = static_cast<int>(std::count(keep.begin(), keep.end(), 1));
   part.measured.resize(count, kChannels);
   part.slip_variance.resize(count);

@@ -25,6 +25,8 @@ struct Trial {
   std::vector<int> moment;
   std::vector<std::string> covariates;  ///< numeric columns that vary, answers left out
   std::vector<std::string> groupings;   ///< text columns of few words, runs left out
+  std::vector<std::string> dropped;     ///< columns that a screening left out of both: column_screening.hpp
+  std::vector<std::string> chance;      ///< covariates that it kept, but by chance as it seems
 
   int rows() const { return static_cast<int>(states.size()); }
   bool has(Channel channel) const;  ///< whether any row measures it

@@ -16,6 +16,30 @@ TEST(ResidualTrace, TakesTheBestThatGainsMoreThanNoise) {
   EXPECT_TRUE(accepted({explanation(5.1), explanation(4.0)}, 5.0));
 }
 
+TEST(ResidualTrace, ACurveMustSayMoreThanNoiseBeyondAKnownForm) {
+  // Closed form: the rule itself, at a threshold of 6.
+  const auto named = [](double gain, const char* name, const char* family) {
+    Explanation e = explanation(gain);
+    e.candidate = {{{.name = name}}, family, 1};
+    return e;
+  };
+  const Explanation curve = named(20.0, "empirical", "empirical"),
+                    near = named(15.0, "sinkage_datum", "sinkage_datum"),
+                    wave = named(18.0, "temperature_drift_sinkage_zero_diurnal", "drift"),
+                    far = named(13.0, "torque_offset", "torque_sensor");
+  const auto first = [](std::vector<Explanation> ranked) {
+    preferSimple(ranked, 6.0);
+    return ranked.front().gain;
+  };
+  EXPECT_EQ(first({curve, wave, near, far}), 15.0);
+  EXPECT_EQ(first({curve, wave, far}), 18.0);
+  EXPECT_EQ(first({curve, far}), 20.0);
+  // A form that noise would reach is none.
+  EXPECT_EQ(first({named(8.0, "empirical", "empirical"), named(5.9, "sinkage_datum", "sinkage_datum")}), 8.0);
+  std::vector<Explanation> none;
+  preferSimple(none, 6.0);
+}
+
 TEST(ResidualTrace, NamesAHiddenEffectAndReachesTheNoise) {
   // Property: worlds of an independent generator; which effect each hides is decided by its seed.
   for (const std::uint64_t seed : {5U, 17U, 40U}) {

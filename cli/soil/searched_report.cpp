@@ -1,0 +1,57 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include <talus/cli/soil/searched_report.hpp>
+
+namespace talus::cli {
+namespace {
+
+using nlohmann::ordered_json;
+using namespace terramech;
+
+constexpr Channel kAll[] = {Channel::DrawbarPull, Channel::Sinkage, Channel::Torque, Channel::SideForce};
+
+ordered_json errorsJson(const ChannelErrors& errors) {
+  ordered_json out = ordered_json::object();
+  for (Channel c : kAll)
+    if (std::isfinite(errors[static_cast<std::size_t>(c)]))
+      out[name(c)] = errors[static_cast<std::size_t>(c)];
+  return out;
+}
+
+}  // namespace
+
+ordered_json searchedJson(const TraceResult& r) {
+  return {{"rows", r.trial.rows()},
+          {"rows_not_searched", r.unsearched.rows},
+          {"base_rmse_there", errorsJson(r.unsearched.base_rmse)},
+          {"refined_rmse_there", errorsJson(r.unsearched.refined_rmse)},
+          {"columns_dropped", r.trial.dropped}};
+}
+
+std::string searchedText(const TraceResult& result) {
+  std::string text;
+  if (const UnsearchedRows& rest = result.unsearched; rest.rows > 0) {
+    text += fmt::format("searched a sample of {} of {} rows; rmse on the {} others (base -> refined):",
+                        result.trial.rows(), result.trial.rows() + rest.rows, rest.rows);
+    for (Channel c : kAll)
+      if (const auto k = static_cast<std::size_t>(c); std::isfinite(rest.base_rmse[k]))
+        text += fmt::format(" {} {:.4f} -> {:.4f}", name(c), rest.base_rmse[k], rest.refined_rmse[k]);
+    text += "\n";
+  }
+  if (const auto& dropped = result.trial.dropped; !dropped.empty()) {
+    constexpr std::size_t kShown = 5;
+    text += fmt::format(
+        "{} further columns not searched, those least related to the residuals: {}{}\n", dropped.size(),
+        fmt::join(dropped.begin(), dropped.begin() + static_cast<long>(std::min(kShown, dropped.size())),
+                  ", "),
+        dropped.size() > kShown ? ", ... (--json lists them)" : "");
+  }
+  return text;
+}
+
+}  // namespace talus::cli
