@@ -59,6 +59,23 @@ TEST(ResidualTrace, FindsNothingWhereNothingIs) {
         << seed;
 }
 
+TEST(ResidualTrace, WhatMovesTheReadingsFartherOffExplainsNothing) {
+  // Property: no effect in 18 runs at loads of their own; a curve over the speeds of runs gained 24 while the error of
+  // DP/W rose fourfold.
+  const TraceResult result =
+      traced(blind::makeWorld({.seed = 191001, .effects = 0, .library = true, .campaign = true}));
+  EXPECT_TRUE(result.effects.empty());
+}
+
+TEST(ResidualTrace, ACampaignAtSetLoadsHasNoEffectOfLoad) {
+  // Property: a rate effect among runs at loads of their own, read with 5 % error: it alone, and no effect of that error.
+  const blind::World world =
+      blind::makeWorld({.seed = 190801, .effects = 1, .library = true, .campaign = true});
+  const TraceResult result = traced(world);
+  ASSERT_EQ(result.effects.size(), 1U);
+  EXPECT_EQ(blind::judge(world, claims(result)).family, 1) << world.hidden[0].kind;
+}
+
 TEST(ResidualTrace, CallsAFormThatNoLibraryHoldsEmpirical) {
   const blind::World world = blind::makeWorld({.seed = 2, .effects = 1, .library = false});
   const blind::Marks marks = blind::judge(world, claims(traced(world)));
