@@ -19,6 +19,7 @@ constexpr double kModel =
     0.02;  // of thesis Eq. 3.12 as a model of DP/W, the same for all readings of a place
 constexpr double kSinkageStd = 0.02;    // of one sinkage over radius
 constexpr double kReferenceStd = 0.05;  // of the sample that counts as one
+constexpr double kLeastShared = 0.02, kSharedStep = 1.5;
 
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
@@ -108,14 +109,52 @@ void keepWeakest(double pull, double of_variance, const Estimate& prior, BlockEv
   block.weak_variance = static_cast<float>(of_variance);
 }
 
+// Readings of one certainty that may raise, from the weakest on whatever error they share; `merged` holds them where
+// they are of several kinds.
+std::span<const ReadingCount> raisingOf(std::span<const ReadingCount> counts, std::size_t grade,
+                                        std::vector<ReadingCount>& merged) {
+  merged.clear();
+  std::span<const ReadingCount> only;
+  for (std::size_t shared = 0; shared < kind::kSharedGrades; ++shared) {
+    const auto heard =
+        ofKind(counts, static_cast<std::uint8_t>(kind::kPull + shared * kind::kGrades + grade));
+    if (heard.empty()) continue;
+    if (only.empty()) {
+      only = heard;
+      continue;
+    }
+    if (merged.empty()) merged.assign(only.begin(), only.end());
+    merged.insert(merged.end(), heard.begin(), heard.end());
+  }
+  if (merged.empty()) return only;
+  std::sort(merged.begin(), merged.end(), [](const ReadingCount& a, const ReadingCount& b) {
+    return a.step != b.step ? a.step < b.step : a.kind < b.kind;
+  });
+  return merged;
+}
+
+// Of readings that may raise, each weighed by its certainty.
+double sharedOf(std::span<const ReadingCount> counts) noexcept {
+  double weight = 0.0, sum = 0.0;
+  for (const ReadingCount& c : counts) {
+    if (c.kind >= kind::kPullLowers) break;
+    const double std = stdOf(c.kind % kind::kGrades), w = c.count / (std * std);
+    weight += w;
+    sum += w * sharedStd(c.kind / kind::kGrades);
+  }
+  return weight > 0.0 ? sum / weight : 0.0;
+}
+
 void summarisePull(std::span<const ReadingCount> counts, const Estimate& prior, BlockEvidence& block) {
   Weighed raising, all;
   double least = std::numeric_limits<double>::infinity();
+  std::vector<ReadingCount> merged;
   block.lowers = false;
   for (std::size_t grade = 0; grade < kind::kGrades; ++grade) {
     const double std = stdOf(grade);
     for (const std::uint8_t first : {kind::kPull, kind::kPullLowers}) {
-      const auto heard = ofKind(counts, static_cast<std::uint8_t>(first + grade));
+      const auto heard = first == kind::kPull ? raisingOf(counts, grade, merged)
+                                              : ofKind(counts, static_cast<std::uint8_t>(first + grade));
       if (heard.empty()) continue;
       Part part;
       addWeakest(heard, std, 1.0, pullOf, part);
@@ -129,14 +168,23 @@ void summarisePull(std::span<const ReadingCount> counts, const Estimate& prior, 
   if (all.weight <= 0.0) block.weak_pull = block.weak_variance = kNone;
   block.pull = raising.weight > 0.0 ? static_cast<float>(raising.sum / raising.weight) : kNone;
   block.variance = raising.weight > 0.0 ? static_cast<float>(variance(raising.weight)) : kNone;
+  block.shared = static_cast<float>(sharedOf(counts));
 }
 
 }  // namespace
 
-ReadingCount pullReading(const Estimate& pull, bool may_raise) noexcept {
+double sharedStd(std::size_t grade) noexcept {
+  return grade == 0 ? 0.0 : kLeastShared * std::pow(kSharedStep, static_cast<double>(grade) - 1.0);
+}
+
+ReadingCount pullReading(const Estimate& pull, bool may_raise, double shared_std) noexcept {
   const double grade = std::ceil(2.0 * std::log2(pull.std / kSurest) - 1e-9);
   const double clamped = grade > 0.0 ? std::min(grade, kind::kGrades - 1.0) : 0.0;
-  const auto kind = static_cast<std::uint8_t>((may_raise ? kind::kPull : kind::kPullLowers) + clamped);
+  std::size_t shared = 0;
+  while (shared < kind::kSharedGrades && !(shared_std <= sharedStd(shared) + 1e-9)) ++shared;
+  const bool raises = may_raise && shared < kind::kSharedGrades;
+  const auto kind = static_cast<std::uint8_t>(
+      (raises ? kind::kPull + static_cast<double>(shared * kind::kGrades) : kind::kPullLowers) + clamped);
   return {kind, stepped(std::floor((pull.value - kLowest) / kStep + 1e-6)), 1};
 }
 

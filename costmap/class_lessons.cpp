@@ -4,6 +4,7 @@
 #include <limits>
 
 #include <talus/costmap/class_lessons.hpp>
+#include <talus/costmap/spreading.hpp>
 
 namespace talus::costmap {
 namespace {
@@ -48,7 +49,10 @@ double IndependentPlaces::agreed(std::size_t places) const noexcept {
 void ClassLessons::sum(const BlockLesson& lesson, std::int64_t sign) {
   weight_ += sign * fixed(lesson.weight);
   pull_ += sign * fixed(lesson.weight * lesson.pull);
-  if (lesson.raises) raising_weight_ += sign * fixed(lesson.weight);
+  if (lesson.raises) {
+    raising_weight_ += sign * fixed(lesson.weight);
+    shared_ += sign * fixed(lesson.weight * lesson.shared);
+  }
   if (!lesson.sinkage) return;
   sinkage_weight_ += sign * fixed(lesson.weight);
   sinkage_ += sign * fixed(lesson.weight * *lesson.sinkage);
@@ -69,10 +73,16 @@ void ClassLessons::refresh() {
       (static_cast<double>(places_.driven()) - 1.0) / (static_cast<double>(kPlaces) - 1.0), 0.0, 1.0);
   posterior_.places = static_cast<double>(weight_) / kUnit;
   posterior_.pull = {std::min(heard * mean(weight_, pull_), mostRise()), ground_.mean_std};
+  posterior_.own_std = ground_.mean_std;
+  posterior_.shared = 0.0;
   posterior_.sinkage.value = heard * mean(sinkage_weight_, sinkage_);
   if (mayRaise()) {
     const double raising = static_cast<double>(raising_weight_) / kUnit;
-    posterior_.pull.std = std::sqrt(prior * variance / (prior * raising + variance));
+    const double share = prior * raising / (prior * raising + variance);
+    posterior_.own_std = std::sqrt(prior * (1.0 - share));
+    if (raising > 0.0) posterior_.shared = share * static_cast<double>(shared_) / kUnit / raising;
+    posterior_.pull.std = std::sqrt(
+        withSharedError({.prior = prior, .variance = prior * (1.0 - share), .shared = posterior_.shared}));
   } else {
     posterior_.sinkage.value = std::max(posterior_.sinkage.value, 0.0);
   }

@@ -14,9 +14,11 @@ namespace talus::costmap {
 
 /// The soil posterior of a terrain class: how its mean pull departs from the prior's after all evidence.
 struct ClassPosterior {
-  Estimate pull;        ///< departure of drawbar pull over load [-]
-  Estimate sinkage;     ///< departure of sinkage over radius [-]
-  double places = 0.0;  ///< independent places that speak for it [-]
+  Estimate pull;         ///< departure of drawbar pull over load [-]
+  double own_std = 0.0;  ///< of that, if the readings shared no error [-]
+  double shared = 0.0;   ///< what one standard deviation of the shared error moves the pull by [-]
+  Estimate sinkage;      ///< departure of sinkage over radius [-]
+  double places = 0.0;   ///< independent places that speak for it [-]
 };
 
 /// Squares of ground about a correlation length wide, of which those are counted that lie as far apart.
@@ -48,6 +50,7 @@ struct BlockLesson {
   double pull = 0.0;              ///< departure from the prior [-]
   std::optional<double> sinkage;  ///< likewise; nothing where none was measured
   bool raises = false;            ///< whether it may raise, and make surer
+  double shared = 0.0;  ///< standard deviation by the error that it shares with all other lessons [-]
 };
 
 /// What all blocks together tell of a class. Exact sums: a lesson can be taken out again, and the order in which
@@ -64,7 +67,9 @@ class ClassLessons {
 
   /// Conjugate normal update of the class mean (prior mean_std, places that scatter by pull_std about it). One
   /// place moves it by nothing, two by half, three as told: what one place says it says of itself. It rises, and
-  /// is surer, only where kPlaces places say so, and no higher than each of them.
+  /// is surer, only where kPlaces places say so, and no higher than each of them. The error that all lessons share
+  /// is one factor b of the regression, y_i = m + c_i b, b standard normal: of their mean, with the variance v of
+  /// what they do not share, the posterior variance is p (v + c^2) / (p + v + c^2), p of the prior, c the mean of c_i.
   const ClassPosterior& posterior() const noexcept { return posterior_; }
   /// Whether enough places may raise that the belief in ground of the class may rise at all.
   bool mayRaise() const noexcept { return std::isfinite(places_.agreed(kPlaces)); }
@@ -77,7 +82,7 @@ class ClassLessons {
   void sum(const BlockLesson& lesson, std::int64_t sign);
 
   GroundClass ground_;
-  std::int64_t weight_ = 0, raising_weight_ = 0, sinkage_weight_ = 0, pull_ = 0, sinkage_ = 0;
+  std::int64_t weight_ = 0, raising_weight_ = 0, sinkage_weight_ = 0, pull_ = 0, sinkage_ = 0, shared_ = 0;
   IndependentPlaces places_;
   ClassPosterior posterior_;
 };

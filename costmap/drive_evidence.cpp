@@ -1,5 +1,6 @@
 #include <array>
 #include <cinttypes>
+#include <cmath>
 #include <cstdio>
 #include <limits>
 #include <string>
@@ -9,6 +10,7 @@
 #include <talus/costmap/checksum.hpp>
 #include <talus/costmap/drive_evidence.hpp>
 #include <talus/costmap/telemetry_processor.hpp>
+#include <talus/terramech/contact/load_transfer.hpp>
 
 namespace talus::costmap {
 namespace {
@@ -38,6 +40,23 @@ void add(const terramech::Telemetry& telemetry, Checksum& sum) {
     for (const auto& column : telemetry.words) sum.add(column.values[i].c_str(), column.values[i].size() + 1);
   }
   addRejected(std::numeric_limits<std::size_t>::max());
+}
+
+DrivenBy wheelOf(const terramech::Rover& rover) {
+  return {rover.wheel.radius_m, rover.wheel.width_m, terramech::wheelLoad_N(rover)};
+}
+
+// Of a journal's row: one that does not say so is another's.
+bool isOf(const terramech::Rover& rover, const DrivenBy& wheel) {
+  const DrivenBy own = wheelOf(rover);
+  const bool known = std::isfinite(wheel.radius_m + wheel.width_m + wheel.weight_N);
+  return known && sameOrUnknown(wheel.radius_m, own.radius_m) && sameOrUnknown(wheel.width_m, own.width_m) &&
+         sameOrUnknown(wheel.weight_N, own.weight_N);
+}
+
+std::string othersFinding(std::size_t rows) {
+  return std::to_string(rows) +
+         " rows: of another wheel or load than the map's rover has; they only lower estimates";
 }
 
 std::string hexadecimal(const Checksum& sum) {
@@ -87,7 +106,8 @@ void DriveIntake::State::learn(const terramech::Telemetry& telemetry, const Tele
                  .accepted = accepted,
                  .reason = result.reason,
                  .reading = readings.reading(i),
-                 .observation = result.observation.value_or(WheelObservation{})};
+                 .observation = result.observation.value_or(WheelObservation{}),
+                 .wheel = wheelOf(map.model().rover())};
   ++(accepted ? report.used : report.rejected);
   if (accepted && row.observation.pull_may_raise) ++report.raising;
   if (!accepted && report.first_reason.empty()) report.first_reason = row.reason;
@@ -124,7 +144,8 @@ void DriveIntake::State::hearRejected(const terramech::Telemetry& telemetry) {
                     .accepted = true,
                     .reason = telemetry.rejected[i].reason,
                     .reading = readings.reading(i),
-                    .observation = *heard});
+                    .observation = *heard,
+                    .wheel = wheelOf(map.model().rover())});
   }
 }
 
@@ -144,6 +165,8 @@ DriveReport DriveIntake::report() const {
     report.findings.push_back(std::to_string(rows) +
                               " rows: load_N is an equal share of the weight on a slope; the load transfer "
                               "was computed from the wheel positions");
+  report.others = state_->processor.others();
+  if (report.others > 0) report.findings.push_back(othersFinding(report.others));
   if (report.heard > 0)
     report.findings.push_back(std::to_string(report.heard) +
                               " rejected rows: they indicate danger, which counts where they were read");
@@ -171,13 +194,18 @@ DriveReport replay(TraversabilityMap& map, const EvidenceJournal& journal) {
   DriveReport report;
   for (const std::string& drive : journal.drives()) {
     if (map.drives().contains(drive)) continue;
-    for (const JournalRow& row : journal.rows(drive)) {
+    for (JournalRow& row : journal.rows(drive)) {
+      if (!isOf(map.model().rover(), row.wheel)) {
+        row.observation.pull_may_raise = row.observation.sinkage_may_raise = false;
+        ++report.others;
+      }
       const bool used = row.accepted && map.learn(row.observation);
       ++(used ? report.used : report.rejected);
       if (used && row.observation.pull_may_raise) ++report.raising;
     }
     map.noteDrive(drive);
   }
+  if (report.others > 0) report.findings.push_back(othersFinding(report.others));
   map.publishAll();
   return report;
 }

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <memory>
 #include <optional>
 
@@ -9,6 +11,19 @@ namespace talus::costmap {
 namespace {
 
 constexpr std::size_t kMostRemembered = 512;  // patches
+
+// Whether the place of a bound, anywhere in its block and as far off as it may be, lies in the block about `at`.
+bool mayBeIn(const PlaceBound& bound, const maps::Point& at, double side_m) noexcept {
+  const double gap_x_m = std::fmax(std::abs(at.x_m - bound.block.x_m) - side_m, 0.0);
+  const double gap_y_m = std::fmax(std::abs(at.y_m - bound.block.y_m) - side_m, 0.0);
+  const bool itself = at.x_m == bound.block.x_m && at.y_m == bound.block.y_m;
+  return itself || std::hypot(gap_x_m, gap_y_m) < bound.reach_m;
+}
+
+GroundBelief bounded(const GroundBelief& belief, const PlaceBound& bound) noexcept {
+  return weaker(belief, {.pull = {std::fmin(belief.pull.value, bound.most_pull), 0.0},
+                         .sinkage = {std::fmax(belief.sinkage.value, bound.least_sinkage), 0.0}});
+}
 
 }  // namespace
 
@@ -52,6 +67,75 @@ const EvidenceField::Belief& EvidenceField::Beliefs::at(maps::Cell cell, int cla
         patch.ground, class_index,
         field_.store_->blocks.middleOf(field_.store_->blocks.blockAt(block.column, block.row)));
   return *known;
+}
+
+// Of a weak place as departures from a mean, with the doubt of the class as far as the place leaves it open.
+GroundBelief EvidenceField::left(const GroundBelief& weak, const GroundBelief& mean, int class_index,
+                                 double mean_std) const noexcept {
+  const double open = std::min(weak.pull.std / groundOf(class_index).pull_std, 1.0);
+  return {.pull = {mean.pull.value + weak.pull.value, std::hypot(weak.pull.std, open * mean_std)},
+          .sinkage = {mean.sinkage.value + weak.sinkage.value, weak.sinkage.std}};
+}
+
+// No better than the class away from evidence until enough places say so, never better than any place that is weak
+// leaves it, and within the bounds of the block itself.
+EvidenceField::Belief EvidenceField::believed(const LocalGround& ground, int class_index,
+                                              const maps::Point& at) const {
+  const GroundBelief away = classBelief(class_index), prior = site_->model->prior(class_index);
+  const ClassLessons& lessons = store_->lessons[static_cast<std::size_t>(class_index)];
+  GroundBelief out = ground.process.empty() ? away : combined(class_index, ground.process.learned(at));
+  out.pull.std = std::min(out.pull.std, away.pull.std);
+  if (lessons.mayRaise())
+    out.pull.value =
+        std::min(out.pull.value, std::max(away.pull.value, prior.pull.value + lessons.mostRise()));
+  else
+    out = weaker(out, away);
+  const Variation variation = variationOf(class_index);
+  const double mean_std = groundOf(class_index).mean_std;
+  for (const WeakPlace& place : ground.weak)
+    if (const auto weak = weakness(place, variation, at)) {
+      GroundBelief bound = left(*weak, prior, class_index, mean_std);
+      if (!(place.pull < 0.0)) bound.pull = out.pull;  // it only sinks deeper
+      out = weaker(out, bound);
+    }
+  // Ground that is ordinary for its class says no more than that it is no stronger: it leaves all ground as sure as it was.
+  for (const WeakPlace& place : ground.lower)
+    if (const auto weak = lowered(place, variation, at)) {
+      GroundBelief bound = left(*weak, prior, class_index, posterior(class_index).pull.std);
+      bound.pull.std = std::min(bound.pull.std, out.pull.std);
+      bound.sinkage.std = std::min(bound.sinkage.std, out.sinkage.std);
+      out = weaker(out, bound);
+    }
+  for (const PlaceBound& bound : ground.bounds)
+    if (mayBeIn(bound, at, store_->blocks.side_m())) out = bounded(out, bound);
+  return {out, out.pull.value != away.pull.value || out.pull.std != away.pull.std ||
+                   out.sinkage.value != away.sinkage.value};
+}
+
+GroundBelief EvidenceField::classBelief(int class_index) const {
+  const GroundClass& ground = groundOf(class_index);
+  const GroundBelief prior = site_->model->prior(class_index);
+  const ClassPosterior& known = posterior(class_index);
+  return {.pull = {prior.pull.value + known.pull.value, std::hypot(ground.pull_std, known.pull.std)},
+          .sinkage = {std::max(prior.sinkage.value + known.sinkage.value, 0.0), ground.sinkage_std}};
+}
+
+// Doubt about the class as a whole counts as far as the place itself is not known, and the error that all readings
+// share as far as their estimate rests on them, be it by the place's own or by its class's.
+GroundBelief EvidenceField::combined(int class_index, const LearnedPlace& learned) const {
+  const GroundClass& ground = groundOf(class_index);
+  const GroundBelief prior = site_->model->prior(class_index);
+  const ClassPosterior& known = posterior(class_index);
+  const GroundBelief& departure = learned.departure;
+  const double open = std::min(departure.pull.std / ground.pull_std, 1.0);
+  const double own_std = std::hypot(departure.pull.std, open * known.own_std);
+  const double variance =
+      withSharedError({.prior = ground.pull_std * ground.pull_std + ground.mean_std * ground.mean_std,
+                       .variance = own_std * own_std,
+                       .shared = learned.shared + (1.0 - learned.weight) * known.shared});
+  return {.pull = {prior.pull.value + known.pull.value + departure.pull.value, std::sqrt(variance)},
+          .sinkage = {std::max(prior.sinkage.value + known.sinkage.value + departure.sinkage.value, 0.0),
+                      departure.sinkage.std}};
 }
 
 }  // namespace talus::costmap

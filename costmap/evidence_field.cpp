@@ -18,19 +18,6 @@ constexpr double kPlaceStd = 0.06;         // a place is known that is known so 
 constexpr double kSteepest =
     0.6;  // gradient of ground that joins places of one floor: more than rovers drive
 
-// Whether the place of a bound, anywhere in its block and as far off as it may be, lies in the block about `at`.
-bool mayBeIn(const PlaceBound& bound, const maps::Point& at, double side_m) noexcept {
-  const double gap_x_m = std::fmax(std::abs(at.x_m - bound.block.x_m) - side_m, 0.0);
-  const double gap_y_m = std::fmax(std::abs(at.y_m - bound.block.y_m) - side_m, 0.0);
-  const bool itself = at.x_m == bound.block.x_m && at.y_m == bound.block.y_m;
-  return itself || std::hypot(gap_x_m, gap_y_m) < bound.reach_m;
-}
-
-GroundBelief bounded(const GroundBelief& belief, const PlaceBound& bound) noexcept {
-  return weaker(belief, {.pull = {std::fmin(belief.pull.value, bound.most_pull), 0.0},
-                         .sinkage = {std::fmax(belief.sinkage.value, bound.least_sinkage), 0.0}});
-}
-
 std::uint32_t secondsOf(double time_s) noexcept {
   return time_s > 0.0 && time_s < 4294967295.0 ? static_cast<std::uint32_t>(time_s) : 0U;
 }
@@ -95,7 +82,8 @@ std::optional<BlockLesson> EvidenceField::lessonOf(const BlockEvidence& block, i
                                variance / (variance + measured),
                      .pull = std::clamp(pull, -most, most),
                      .sinkage = std::nullopt,
-                     .raises = raises};
+                     .raises = raises,
+                     .shared = raises ? static_cast<double>(block.shared) : 0.0};
   if (std::isnan(block.sinkage)) return lesson;
   const double most_sinkage = kOrdinary * ground.sinkage_std;
   const double sinkage = static_cast<double>(block.sinkage) - prior.sinkage.value;
@@ -188,7 +176,7 @@ std::optional<maps::CellBox> EvidenceField::add(const WheelObservation& observat
   const bool raises = sure && observation.pull_may_raise;
   if (raises)
     pull.std = std::hypot(pull.std, groundOf(class_index).pull_std * std::sqrt(1.0 - alike * alike));
-  if (observation.estimates()) heard.heard.push_back(pullReading(pull, raises));
+  if (observation.estimates()) heard.heard.push_back(pullReading(pull, raises, observation.shared_std));
   if (std::isfinite(observation.sinkage.std))
     heard.heard.push_back(sinkageReading(observation.sinkage.value, sure && observation.sinkage_may_raise));
   hear(heard.block, heard);
@@ -264,30 +252,33 @@ void EvidenceField::place(const BlockLevel& block, const BlockEvidence& e, Nearb
         {.place = middle,
          .pull = static_cast<double>(e.pull) - mean.pull.value,
          .sinkage = e.sinkage_raises || std::isnan(sinkage) ? sinkage : std::fmax(sinkage, 0.0),
-         .variance = static_cast<double>(e.variance)});
+         .variance = static_cast<double>(e.variance),
+         .shared = static_cast<double>(e.shared)});
   }
   const bool may_be_here = alike || e.reach > 0;
   if (!may_be_here) return;
   if (!std::isnan(e.most_pull) || !std::isnan(e.least_sinkage))
     nearby.bounds.push_back(
         {middle, e.reach_m(), static_cast<double>(e.most_pull), static_cast<double>(e.least_sinkage)});
-  const bool pulls_less = weak || (own_lowers && below < 0.0);
-  if (!(pulls_less || deep)) return;
   const double pull = static_cast<double>(e.weak_pull) - prior.pull.value;
   const double sinkage = static_cast<double>(e.sinkage) - prior.sinkage.value;
-  nearby.weak.push_back({.place = middle,
-                         .pull = pulls_less ? std::fmin(pull, 0.0) : 0.0,
-                         .variance = variance,
-                         .sinkage = std::isnan(sinkage) ? 0.0 : std::fmax(sinkage, 0.0),
-                         .reach_m = e.reach_m() + (alike ? 0.0 : 0.5 * store_->blocks.side_m()),
-                         .beyond_reach = alike});
+  const WeakPlace place{.place = middle,
+                        .pull = weak ? std::fmin(pull, 0.0) : 0.0,
+                        .variance = variance,
+                        .sinkage = std::isnan(sinkage) ? 0.0 : std::fmax(sinkage, 0.0),
+                        .reach_m = e.reach_m() + (alike ? 0.0 : 0.5 * store_->blocks.side_m()),
+                        .beyond_reach = alike};
+  if (weak || deep) nearby.weak.push_back(place);
+  if (!own_lowers || !(below < 0.0)) return;
+  nearby.lower.push_back(place);
+  nearby.lower.back().pull = below;
 }
 
 // Evidence on top that can reach a patch of blocks.
 LocalGround EvidenceField::around(const BlockLevel& patch, int class_index) const {
   const int reach =
       store_->blocks.reach() + static_cast<int>(std::ceil(farthest_reach_m_ / store_->blocks.side_m()));
-  NearbyEvidence nearby{.class_index = class_index, .places = {}, .weak = {}, .bounds = {}};
+  NearbyEvidence nearby{.class_index = class_index};
   store_->bricks.visitTop({patch.column - reach, patch.row - reach, patch.column + kPatchBlocks + reach - 1,
                            patch.row + kPatchBlocks + reach - 1},
                           [&](const BlockLevel& at, const BlockEvidence& e) { place(at, e, nearby); });
@@ -308,14 +299,14 @@ LocalGround EvidenceField::grounded(NearbyEvidence nearby, const maps::Point& mi
                      [&](const PlaceEvidence& a, const PlaceEvidence& b) { return far(a) < far(b); });
     const ClassPosterior& mean = posterior(nearby.class_index);
     for (std::size_t i = kMostNeighbours; i < places.size(); ++i)
-      nearby.weak.push_back({.place = places[i].place,
-                             .pull = std::fmin(places[i].pull + mean.pull.value, 0.0),
-                             .variance = places[i].variance,
-                             .sinkage = std::fmax(places[i].sinkage + mean.sinkage.value, 0.0)});
+      nearby.lower.push_back({.place = places[i].place,
+                              .pull = std::fmin(places[i].pull + mean.pull.value, 0.0),
+                              .variance = places[i].variance,
+                              .sinkage = std::fmax(places[i].sinkage + mean.sinkage.value, 0.0)});
     places.resize(kMostNeighbours);
   }
   return {GaussianProcess(std::move(places), variationOf(nearby.class_index)), std::move(nearby.weak),
-          std::move(nearby.bounds)};
+          std::move(nearby.lower), std::move(nearby.bounds)};
 }
 
 // Evidence of ground, on top or not, that one can drive to from a floor without climbing.
@@ -341,50 +332,6 @@ LocalGround EvidenceField::levelWith(maps::Cell block, std::uint16_t level) cons
 GroundBelief EvidenceField::floorBelief(maps::Cell cell, const Floor& floor) const {
   const maps::Cell block = store_->blocks.blockOf(cell);
   return believed(levelWith(block, levelOf(cell, floor).level), 0, store_->blocks.middleOf(block)).ground;
-}
-
-// No better than the class away from evidence until enough places say so, never better than any place that is weak
-// leaves it, and within the bounds of the block itself.
-EvidenceField::Belief EvidenceField::believed(const LocalGround& ground, int class_index,
-                                              const maps::Point& at) const {
-  const GroundBelief away = classBelief(class_index), prior = site_->model->prior(class_index);
-  const GroundClass& c = groundOf(class_index);
-  const ClassLessons& lessons = store_->lessons[static_cast<std::size_t>(class_index)];
-  GroundBelief out = ground.process.empty() ? away : combined(class_index, ground.process.at(at));
-  if (lessons.mayRaise())
-    out.pull.value =
-        std::min(out.pull.value, std::max(away.pull.value, prior.pull.value + lessons.mostRise()));
-  else
-    out = weaker(out, away);
-  const Variation variation = variationOf(class_index);
-  for (const WeakPlace& weak : ground.weak)
-    if (const auto left = weakness(weak, variation, at)) {
-      const double open = std::min(left->pull.std / c.pull_std, 1.0);
-      out = weaker(
-          out, {.pull = {prior.pull.value + left->pull.value, std::hypot(left->pull.std, open * c.mean_std)},
-                .sinkage = {prior.sinkage.value + left->sinkage.value, left->sinkage.std}});
-    }
-  for (const PlaceBound& bound : ground.bounds)
-    if (mayBeIn(bound, at, store_->blocks.side_m())) out = bounded(out, bound);
-  return {out, out.pull.value != away.pull.value || out.pull.std != away.pull.std ||
-                   out.sinkage.value != away.sinkage.value};
-}
-
-GroundBelief EvidenceField::classBelief(int class_index) const {
-  const GroundClass& ground = groundOf(class_index);
-  return combined(class_index, {.pull = {0.0, ground.pull_std}, .sinkage = {0.0, ground.sinkage_std}});
-}
-
-// Doubt about the class as a whole counts as far as the place itself is not known.
-GroundBelief EvidenceField::combined(int class_index, const GroundBelief& departure) const {
-  const GroundClass& ground = groundOf(class_index);
-  const GroundBelief prior = site_->model->prior(class_index);
-  const ClassPosterior& known = posterior(class_index);
-  const double open = std::min(departure.pull.std / ground.pull_std, 1.0);
-  return {.pull = {prior.pull.value + known.pull.value + departure.pull.value,
-                   std::hypot(departure.pull.std, open * known.pull.std)},
-          .sinkage = {std::max(prior.sinkage.value + known.sinkage.value + departure.sinkage.value, 0.0),
-                      departure.sinkage.std}};
 }
 
 }  // namespace talus::costmap

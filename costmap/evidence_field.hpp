@@ -29,6 +29,7 @@ struct BlockLesson;
 struct ClassPosterior;
 struct EvidenceStore;
 struct LocalGround;
+struct LearnedPlace;
 struct NearbyEvidence;
 struct Variation;
 
@@ -135,7 +136,9 @@ class EvidenceField {
   LocalGround grounded(NearbyEvidence nearby, const maps::Point& middle) const;
   Variation variationOf(int class_index) const noexcept;
   Belief believed(const LocalGround& ground, int class_index, const maps::Point& at) const;
-  GroundBelief combined(int class_index, const GroundBelief& departure) const;
+  GroundBelief left(const GroundBelief& weak, const GroundBelief& mean, int class_index,
+                    double mean_std) const noexcept;
+  GroundBelief combined(int class_index, const LearnedPlace& learned) const;
 
   std::shared_ptr<const GroundSite> site_;
   std::unique_ptr<EvidenceStore> store_;

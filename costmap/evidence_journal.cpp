@@ -17,8 +17,8 @@
 namespace talus::costmap {
 namespace {
 
-// 1 had no z_m, 2 no pose_std_m nor what may raise, 3 no drives, 4 no bounds
-constexpr int kFormat = 5;
+// 1 had no z_m, 2 no pose_std_m nor what may raise, 3 no drives, 4 no bounds, 5 no shared errors nor wheels
+constexpr int kFormat = 6;
 constexpr int kApplication = 0x54414c55;  // "TALU"
 
 constexpr const char* kSchema =
@@ -29,29 +29,35 @@ constexpr const char* kSchema =
     " torque_Nm REAL, sinkage_m REAL, gradient REAL, drawbar_pull_N REAL, pass_index INTEGER,"
     " pull REAL, pull_std REAL, sinkage REAL, sinkage_std REAL, z_m REAL,"
     " pose_std_m REAL NOT NULL DEFAULT 0, pull_may_raise INTEGER NOT NULL DEFAULT 0,"
-    " sinkage_may_raise INTEGER NOT NULL DEFAULT 0, drive INTEGER, pull_here REAL, sinkage_here REAL);"
+    " sinkage_may_raise INTEGER NOT NULL DEFAULT 0, drive INTEGER, pull_here REAL, sinkage_here REAL,"
+    " pull_shared_std REAL, wheel_radius_m REAL, wheel_width_m REAL, wheel_weight_N REAL);"
     "CREATE TABLE IF NOT EXISTS drive(number INTEGER PRIMARY KEY, id TEXT NOT NULL UNIQUE, checksum INTEGER)";
 constexpr const char* kInsert =
     "INSERT INTO evidence(source, line, accepted, reason, time_s, x_m, y_m, load_N, slip, torque_Nm, "
     "sinkage_m, gradient,"
     " drawbar_pull_N, pass_index, pull, pull_std, sinkage, sinkage_std, z_m, pose_std_m,"
-    " pull_may_raise, sinkage_may_raise, pull_here, sinkage_here, drive) "
-    "VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)";
+    " pull_may_raise, sinkage_may_raise, pull_here, sinkage_here, pull_shared_std, wheel_radius_m, "
+    "wheel_width_m, wheel_weight_N, drive) "
+    "VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)";
 constexpr const char* kSelect =
     "SELECT source, line, accepted, reason, time_s, x_m, y_m, load_N, slip, torque_Nm, sinkage_m, gradient,"
     " drawbar_pull_N, pass_index, pull, pull_std, sinkage, sinkage_std, z_m, pose_std_m,"
-    " pull_may_raise, sinkage_may_raise, pull_here, sinkage_here FROM evidence WHERE drive = ? AND id > ? "
-    "ORDER BY id";
+    " pull_may_raise, sinkage_may_raise, pull_here, sinkage_here, pull_shared_std, wheel_radius_m, "
+    "wheel_width_m, wheel_weight_N FROM evidence WHERE drive = ? AND id > ? ORDER BY id";
 
 // Columns that older journals lack: what they hold may not raise.
-constexpr std::array<std::pair<const char*, const char*>, 7> kAdded{
+constexpr std::array<std::pair<const char*, const char*>, 11> kAdded{
     {{"z_m", "REAL"},
      {"pose_std_m", "REAL NOT NULL DEFAULT 0"},
      {"pull_may_raise", "INTEGER NOT NULL DEFAULT 0"},
      {"sinkage_may_raise", "INTEGER NOT NULL DEFAULT 0"},
      {"drive", "INTEGER"},
      {"pull_here", "REAL"},
-     {"sinkage_here", "REAL"}}};
+     {"sinkage_here", "REAL"},
+     {"pull_shared_std", "REAL"},
+     {"wheel_radius_m", "REAL"},
+     {"wheel_width_m", "REAL"},
+     {"wheel_weight_N", "REAL"}}};
 
 // NULL stands for NaN: SQLite has none. What is no number, "0" for SQLite, is refused by fault().
 double number(sqlite3_stmt* row, int column) {
@@ -98,46 +104,16 @@ JournalRow readRow(sqlite3_stmt* row) {
                      .sinkage = {number(row, 16), number(row, 17)},
                      .demand = out.reading.gradient,
                      .from_torque = std::numeric_limits<double>::quiet_NaN(),
+                     .shared_std = number(row, 24),
                      .pose_std_m = out.reading.pose_std_m,
                      .pull_may_raise = sqlite3_column_int(row, 20) != 0,
                      .sinkage_may_raise = sqlite3_column_int(row, 21) != 0,
                      .here = {number(row, 22), number(row, 23)}};
+  out.wheel = {number(row, 25), number(row, 26), number(row, 27)};
   return out;
 }
 
-// What no wheel gives: ground pulls no hundred times the load, no wheel sinks a hundred radii.
-constexpr double kGreatestShare = 100.0;
-constexpr double kGreatestPlace_m = 1e9;
-
-std::string outside(const char* name, double value, double bound) {
-  if (std::abs(value) <= bound) return "";
-  return std::string(name) + " = " + std::to_string(value) + ", must be finite and within " +
-         std::to_string(static_cast<std::int64_t>(bound));
-}
-
 }  // namespace
-
-std::string fault(const WheelObservation& o) {
-  const bool bounds_alone = o.here.any() && std::isnan(o.pull.value) && std::isnan(o.pull.std) &&
-                            std::isnan(o.sinkage.value) && std::isnan(o.sinkage.std);
-  if (!bounds_alone)
-    for (const std::string& reason :
-         {outside("pull", o.pull.value, kGreatestShare), outside("pull_std", o.pull.std, kGreatestShare),
-          outside("sinkage", o.sinkage.value, kGreatestShare)})
-      if (!reason.empty()) return reason;
-  if (std::abs(o.here.most_pull) > kGreatestShare || o.here.least_sinkage < 0.0 ||
-      o.here.least_sinkage > kGreatestShare)
-    return "a bound is not finite and within 100";
-  for (const std::string& reason :
-       {outside("x_m", o.place.x_m, kGreatestPlace_m), outside("y_m", o.place.y_m, kGreatestPlace_m),
-        outside("pose_std_m", o.pose_std_m, kGreatestPlace_m)})
-    if (!reason.empty()) return reason;
-  // Infinite where no sinkage was measured.
-  if (!(o.pose_std_m >= 0.0) || (!bounds_alone && (!(o.pull.std >= 0.0) || !(o.sinkage.std >= 0.0))))
-    return "a standard deviation is below 0 or missing";
-  if (std::isinf(o.time_s) || std::isinf(o.z_m)) return "time_s or z_m is infinite";
-  return "";
-}
 
 void EvidenceJournal::Close::operator()(sqlite3* database) const noexcept {
   sqlite3_close(database);
@@ -266,6 +242,8 @@ void bindRow(sqlite3_stmt* s, const JournalRow& row, std::int64_t drive) {
   sqlite3_bind_int(s, at++, o.sinkage_may_raise ? 1 : 0);
   bind(s, at++, o.here.most_pull);
   bind(s, at++, o.here.least_sinkage);
+  for (const double value : {o.shared_std, row.wheel.radius_m, row.wheel.width_m, row.wheel.weight_N})
+    bind(s, at++, value);
   sqlite3_bind_int64(s, at, drive);
 }
 

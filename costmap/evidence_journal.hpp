@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -12,6 +13,14 @@ struct sqlite3_stmt;
 
 namespace talus::costmap {
 
+/// The wheel that a row was read by, as its rover's file has it. NaN: not known.
+struct DrivenBy {
+  double radius_m = std::numeric_limits<double>::quiet_NaN();
+  double width_m = std::numeric_limits<double>::quiet_NaN();
+  double weight_N =
+      std::numeric_limits<double>::quiet_NaN();  ///< of the rover on each of its wheels, on the level
+};
+
 /// One telemetry row as the journal keeps it.
 struct JournalRow {
   std::string source;            ///< file or vehicle it came from
@@ -20,6 +29,7 @@ struct JournalRow {
   std::string reason;            ///< why not; empty when accepted
   WheelReading reading;          ///< as read
   WheelObservation observation;  ///< what it said; of no meaning when refused
+  DrivenBy wheel{};              ///< by which it was read
 };
 
 /// Why no wheel can have given an observation, "pull = inf, must be ..."; empty where one can. |pull|, its standard

@@ -22,17 +22,18 @@ struct PlaceBound {
 /// Evidence that can reach a piece of ground of one class.
 struct NearbyEvidence {
   int class_index = 0;
-  std::vector<PlaceEvidence> places;  ///< departures from the class's posterior mean, of what may raise
-  std::vector<WeakPlace> weak;        ///< departures from the class's prior
-  std::vector<PlaceBound> bounds;
+  std::vector<PlaceEvidence> places{};  ///< departures from the class's posterior mean, of what may raise
+  std::vector<WeakPlace> weak{};        ///< departures from the class's prior
+  std::vector<WeakPlace> lower{};       ///< likewise, of ordinary ground that may only lower
+  std::vector<PlaceBound> bounds{};
 };
 
 /// The same, ready to be asked.
 struct LocalGround {
   GaussianProcess process;
-  std::vector<WeakPlace> weak;
+  std::vector<WeakPlace> weak, lower;
   std::vector<PlaceBound> bounds;
-  bool empty() const noexcept { return process.empty() && weak.empty() && bounds.empty(); }
+  bool empty() const noexcept { return process.empty() && weak.empty() && lower.empty() && bounds.empty(); }
 };
 
 /// Blocks, what they heard, and what that teaches of classes.

@@ -37,6 +37,10 @@ class SensorProof {
 
   /// How far the mean of slip on level ground may be off by noise [-].
   static constexpr double kLevelSlip = 0.01;
+  /// By how much the slip of all wheels may be off together in spite of all proofs: by a constant and by a share of itself,
+  /// one standard deviation each [-].
+  static constexpr double kSlipBias = 0.03;
+  static constexpr double kSlipScale = 0.2;
 
   void take(const Row& row);
 

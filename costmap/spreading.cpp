@@ -85,7 +85,13 @@ GaussianProcess::GaussianProcess(std::vector<PlaceEvidence> evidence, const Vari
     for (std::size_t j = i; j < n; ++j) transposed_[j * n + i] = factor_[i * n + j];
 }
 
-GroundBelief GaussianProcess::at(const maps::Point& place) const {
+double withSharedError(const SharedError& error) noexcept {
+  const double told = std::fmax(error.prior - error.variance, 0.0), c2 = error.shared * error.shared;
+  return told > 0.0 && c2 > 0.0 ? (error.variance * told + error.prior * c2) / (told + c2)
+                                : std::fmin(error.variance, error.prior);
+}
+
+LearnedPlace GaussianProcess::learned(const maps::Point& place) const {
   std::vector<double> weight;
   weight.reserve(evidence_.size());
   for (const PlaceEvidence& e : evidence_)
@@ -100,17 +106,19 @@ GroundBelief GaussianProcess::at(const maps::Point& place) const {
     positive += std::fmax(w, 0.0);
   }
   const double scale = positive > 0.0 ? std::clamp(sum, 0.0, 1.0) / positive : 0.0;
-  GroundBelief belief;
+  LearnedPlace out{.departure = {}, .any = explained > 0.0, .weight = std::clamp(sum, 0.0, 1.0)};
+  GroundBelief& belief = out.departure;
   for (std::size_t i = 0; i < evidence_.size(); ++i) {
     const PlaceEvidence& e = evidence_[i];
     const double w = std::fmax(weight[i], 0.0);
+    out.shared += scale * w * e.shared;
     belief.pull.value += (e.pull > 0.0 ? scale * w : w) * e.pull;
     if (!std::isnan(e.sinkage)) belief.sinkage.value += (e.sinkage < 0.0 ? scale * w : w) * e.sinkage;
   }
   const double left = std::sqrt(std::fmax(1.0 - explained, 0.0));
   belief.pull.std = left * variation_.pull_std;
   belief.sinkage.std = left * variation_.sinkage_std;
-  return belief;
+  return out;
 }
 
 namespace {
@@ -128,20 +136,33 @@ double believedAlone(const Departure& reading, double class_std) noexcept {
   return reading.departure * a2 / (a2 + reading.variance / (class_std * class_std));
 }
 
-std::optional<GroundBelief> weakness(const WeakPlace& weak, const Variation& variation,
-                                     const maps::Point& place) {
+namespace {
+
+// By a process of amplitude a at the place, squared, in units of the class's.
+std::optional<GroundBelief> leftBy(const WeakPlace& weak, double a2, const Variation& variation,
+                                   const maps::Point& place) {
   const double off_m = std::hypot(place.x_m - weak.place.x_m, place.y_m - weak.place.y_m) - weak.reach_m;
   if (off_m > 0.0 && !weak.beyond_reach) return std::nullopt;
-  const double k = sparseKernel(std::fmax(off_m, 0.0), variation.correlation_length_m);
+  const double k = costmap::sparseKernel(std::fmax(off_m, 0.0), variation.correlation_length_m);
   if (k <= 0.0) return std::nullopt;
-  const Departure reading{weak.pull, weak.variance};
-  const double a2 = amplitude2(reading, variation.pull_std);
   const double a = std::sqrt(a2), here = 1.0 + (a - 1.0) * k;
   const double share = a2 / (a2 + weak.variance / (variation.pull_std * variation.pull_std));
   return GroundBelief{
       .pull = {here / a * k * share * weak.pull,
                here * variation.pull_std * std::sqrt(std::fmax(1.0 - k * k * share, 0.0))},
       .sinkage = {k * weak.sinkage, variation.sinkage_std * std::sqrt(std::fmax(1.0 - k * k, 0.0))}};
+}
+
+}  // namespace
+
+std::optional<GroundBelief> weakness(const WeakPlace& weak, const Variation& variation,
+                                     const maps::Point& place) {
+  return leftBy(weak, amplitude2({weak.pull, weak.variance}, variation.pull_std), variation, place);
+}
+
+std::optional<GroundBelief> lowered(const WeakPlace& place, const Variation& variation,
+                                    const maps::Point& at) {
+  return leftBy(place, 1.0, variation, at);
 }
 
 GroundBelief weaker(const GroundBelief& a, const GroundBelief& b) noexcept {

@@ -16,7 +16,21 @@ struct PlaceEvidence {
   double pull = 0.0;      ///< drawbar pull over load less the class's [-]
   double sinkage = 0.0;   ///< sinkage over radius less the class's [-]; NaN where none was measured
   double variance = 0.0;  ///< of the pull as measured there, > 0 [-]
+  double shared = 0.0;    ///< its standard deviation by the error that all evidence shares, >= 0 [-]
 };
+
+/// An estimate whose evidence shares one error b, standard normal, beside what each reading has of its own.
+struct SharedError {
+  double prior = 0.0;     ///< a^2: variance before any evidence, > 0 [-]
+  double variance = 0.0;  ///< e^2: after it, if it shared no error, 0 to a^2 [-]
+  double shared = 0.0;    ///< c: by how much one standard deviation of b moves the estimate, >= 0 [-]
+};
+
+/// Posterior variance of such an estimate: of the conjugate update by one reading of variance e^2/g + (c/g)^2,
+/// g = 1 - e^2/a^2 (ours). Exact where all evidence says the same thing; between e^2 and a^2, however much evidence
+/// there is; it never falls as e or c grows.
+///   (e^2 g + c^2) / (g + c^2/a^2)
+double withSharedError(const SharedError& error) noexcept;
 
 /// How ground of one class varies over distance.
 struct Variation {
@@ -30,6 +44,14 @@ struct Variation {
 ///   k(d) = (2 + cos(2 pi d/l))/3 (1 - d/l) + sin(2 pi d/l)/(2 pi)
 double sparseKernel(double distance_m, double correlation_length_m) noexcept;
 
+/// What evidence says of a place.
+struct LearnedPlace {
+  GroundBelief departure;  ///< from the class mean, as if the evidence shared no error
+  bool any = false;        ///< whether any evidence reaches the place
+  double weight = 0.0;     ///< sum of the weights of all evidence, 0 to 1: the rest is the class mean's
+  double shared = 0.0;  ///< by how much one standard deviation of the shared error moves the pull, >= 0 [-]
+};
+
 /// Gaussian-process regression of the departure (rasmussen_williams_2006, Eqs. 2.25, 2.26): factorised once
 /// for a set of evidence, then asked at any number of places. Two things differ, so that weaker evidence never
 /// makes any place look stronger (ours): ground that is stronger than its class by more than two standard
@@ -42,8 +64,11 @@ class GaussianProcess {
 
   bool empty() const noexcept { return evidence_.empty(); }
 
-  /// Departure from the class mean at a place.
-  GroundBelief at(const maps::Point& place) const;
+  /// Departure from the class mean at a place, as if the evidence shared no error.
+  GroundBelief at(const maps::Point& place) const { return learned(place).departure; }
+
+  /// The same with what the shared error does.
+  LearnedPlace learned(const maps::Point& place) const;
 
  private:
   std::vector<PlaceEvidence> evidence_;
@@ -78,6 +103,10 @@ struct WeakPlace {
 /// 1 + (a - 1) k(d) there, a as in believedAlone; nothing where it says nothing.
 std::optional<GroundBelief> weakness(const WeakPlace& weak, const Variation& variation,
                                      const maps::Point& place);
+
+/// The same of ordinary ground that may only be believed to be less: by the process of the class, without other ground.
+std::optional<GroundBelief> lowered(const WeakPlace& place, const Variation& variation,
+                                    const maps::Point& at);
 
 /// Two beliefs of the same ground, both of which must hold: the lesser mean and the lesser mean less six
 /// standard deviations of the pull; the greater ones of the sinkage. In any order the same.

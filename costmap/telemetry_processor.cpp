@@ -82,7 +82,13 @@ std::vector<TelemetryProcessor::Result> TelemetryProcessor::process(const Teleme
   prove(rows, sound, seen);
   for (std::size_t i = 0; i < seen.size(); ++i)
     if (seen[i] && !torqueSound(rows, sound.row[i], verdict)) weakerBySlope(*seen[i]);
-  if (mayRaise(rows, moment, sound, verdict)) allow(rows, sound, verdict, seen);
+  const bool of_rover =
+      carriesRover(moment.readings, map_.model().rover()) &&
+      std::all_of(moment.rows.begin(), moment.rows.end(), [&](std::size_t row) { return rows.ofRover(row); });
+  if (!of_rover)
+    others_ += moment.readings.size();
+  else if (mayRaise(rows, moment, sound, verdict))
+    allow(rows, sound, verdict, seen);
   for (std::size_t i = 0; i < seen.size(); ++i) {
     Result& result = all[sound_at[i]];
     if (seen[i]) {
@@ -166,7 +172,15 @@ bool TelemetryProcessor::mayRaise(const TelemetryRows& rows, const Moment& momen
   });
 }
 
-// What is left of more strength than the class's if sensors are off by what passes as sound; the rest is doubt.
+// What the readings of all wheels say where each slips otherwise.
+std::vector<std::optional<WheelObservation>> TelemetryProcessor::withSlip(
+    std::vector<ClassReading> together, const std::function<double(double)>& slip) const {
+  for (ClassReading& read : together) read.reading.slip = std::clamp(slip(read.reading.slip), -1.0, 1.0);
+  return observer_.observe(together);
+}
+
+// What is left of more strength than the class's if sensors are off by what passes as sound; the rest is doubt, and
+// what one error of the slip of all wheels makes of it is shared by all readings.
 void TelemetryProcessor::allow(const TelemetryRows& rows, const Sound& sound, const DriveVerdict& verdict,
                                std::vector<std::optional<WheelObservation>>& seen) const {
   std::vector<ClassReading> off;
@@ -178,6 +192,9 @@ void TelemetryProcessor::allow(const TelemetryRows& rows, const Sound& sound, co
     read.reading.gradient -= std::max(verdict.proof->gradientExcess(rows.run(sound.row[i])), 0.0);
   }
   const auto least = observer_.observe(off);
+  const auto biased = withSlip(sound.read, [](double slip) { return slip + SensorProof::kSlipBias; });
+  const auto scaled =
+      withSlip(sound.read, [](double slip) { return slip * (1.0 + SensorProof::kSlipScale); });
   for (std::size_t i = 0; i < seen.size(); ++i) {
     const bool near_limit = off[i].reading.slip >= kDangerSlip;
     if (!seen[i] || !least[i] || near_limit || seen[i]->bound ||
@@ -185,11 +202,16 @@ void TelemetryProcessor::allow(const TelemetryRows& rows, const Sound& sound, co
       continue;
     WheelObservation& one = *seen[i];
     const bool torque_sound = torqueSound(rows, sound.row[i], verdict);
-    WheelObservation left = *least[i];
-    if (!torque_sound) weakerBySlope(left);
+    const auto pullOf = [&](const std::optional<WheelObservation>& other) {
+      if (!other) return kNone;
+      return torque_sound ? other->pull.value : std::fmin(other->pull.value, other->by_slope.value);
+    };
+    const double left = pullOf(least[i]);
     const double prior = map_.model().prior(sound.read[i].class_index).pull.value;
-    const double most = off[i].reading.gradient > 0.0 ? std::max(prior, left.pull.value) : prior;
+    const double most = off[i].reading.gradient > 0.0 ? std::max(prior, left) : prior;
     const double kept = std::min(one.pull.value, most);
+    one.shared_std = std::hypot(std::hypot(one.shared_std, std::fmax(kept - left, 0.0)),
+                                one.pull.value - pullOf(biased[i]), one.pull.value - pullOf(scaled[i]));
     one.pull = {kept, std::hypot(one.pull.std, one.pull.value - kept)};
     one.pull_may_raise = true;
     one.sinkage_may_raise = torque_sound;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -30,7 +31,7 @@ WheelObservation boundAlone(const WheelObservation& observation);
 /// A moment may raise a belief only where each of its wheels, all of the rover's or the only one of the
 /// file, is proven sound. It then raises by what is left when slip is taken relative to level ground, as if whatever
 /// it is low there were a bias, and slopes relative to the map's; a wheel that does not climb raises nothing. It raises
-/// nothing by a wheel that then slips 0.7, nor by a drawbar pull that nothing else confirms, nor where torque and
+/// nothing by a wheel of another radius, width or load than the rover's, nor by one that then slips 0.7, nor by a drawbar pull that nothing else confirms, nor where torque and
 /// sinkage are off.
 class TelemetryProcessor {
  public:
@@ -53,6 +54,8 @@ class TelemetryProcessor {
   const SensorWatch& watch() const noexcept { return watch_; }
   /// Rows whose loads were computed.
   std::size_t transferred() const noexcept { return transferred_; }
+  /// Rows of another wheel than the rover's, or under another weight.
+  std::size_t others() const noexcept { return others_; }
 
  private:
   // Wheels of a moment that nothing is held against, their rows, and whether they point to danger.
@@ -71,6 +74,8 @@ class TelemetryProcessor {
                 const DriveVerdict& verdict) const;
   void allow(const TelemetryRows& rows, const Sound& sound, const DriveVerdict& verdict,
              std::vector<std::optional<WheelObservation>>& seen) const;
+  std::vector<std::optional<WheelObservation>> withSlip(std::vector<ClassReading> together,
+                                                        const std::function<double(double)>& slip) const;
   double slipOfClasses(const std::vector<ClassReading>& together, double gradient) const;
   double asked(const ClassReading& read) const;
 
@@ -79,7 +84,7 @@ class TelemetryProcessor {
   SensorWatch watch_;
   SensorProof proof_;
   WheelObserver observer_;
-  std::size_t transferred_ = 0;
+  std::size_t transferred_ = 0, others_ = 0;
 };
 
 }  // namespace talus::costmap

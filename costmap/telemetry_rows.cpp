@@ -12,6 +12,8 @@ namespace talus::costmap {
 namespace {
 
 constexpr double kSameLoad = 0.01;       // of the load: less is the same number
+constexpr double kSameWheel = 0.01;      // of its radius or width
+constexpr double kSameWeight = 0.25;     // of the weight on wheels: a slope of 25 degrees takes a tenth of it
 constexpr double kLevelGradient = 0.03;  // less moves no load worth speaking of
 constexpr double kQuarterTurn = 1.5707963267948966;
 constexpr double kTurning_mps = 0.005;  // rim speed of a wheel that turns
@@ -46,6 +48,8 @@ TelemetryRows::TelemetryRows(const terramech::Telemetry& telemetry, const Traver
       rim_speed_(telemetry.find("rim_speed_mps")),
       roll_(telemetry.find("roll_rad")),
       slip_angle_(telemetry.find("slip_angle_rad")),
+      radius_(telemetry.find("wheel_radius_m")),
+      width_(telemetry.find("wheel_width_m")),
       wheel_(telemetry.findWords("wheel")),
       run_(telemetry.findWords("run")) {}
 
@@ -76,6 +80,11 @@ WheelReading TelemetryRows::reading(std::size_t i) const {
   if (std::isnan(r.gradient)) r.gradient = mapGradient(r, heading(i));
   if (std::isnan(r.across)) r.across = mapGradient(r, heading(i) + kQuarterTurn);
   return r;
+}
+
+bool TelemetryRows::ofRover(std::size_t i) const {
+  const terramech::Wheel& wheel = map_.model().rover().wheel;
+  return sameOrUnknown(value(radius_, i), wheel.radius_m) && sameOrUnknown(value(width_, i), wheel.width_m);
 }
 
 double TelemetryRows::measuredGradient(std::size_t i) const {
@@ -131,6 +140,17 @@ std::vector<std::vector<std::size_t>> TelemetryRows::byMoment() const {
     first = end;
   }
   return moments;
+}
+
+bool sameOrUnknown(double value, double of_rover) noexcept {
+  return !(std::abs(value - of_rover) > kSameWheel * of_rover);
+}
+
+bool carriesRover(const std::vector<WheelReading>& readings, const terramech::Rover& rover) noexcept {
+  double sum_N = 0.0;
+  for (const WheelReading& r : readings) sum_N += r.load_N;
+  const double even_N = terramech::wheelLoad_N(rover) * static_cast<double>(readings.size());
+  return std::abs(sum_N - even_N) <= kSameWeight * even_N;
 }
 
 Moment momentOf(const TelemetryRows& rows, std::vector<std::size_t> of, const terramech::Rover& rover) {

@@ -25,6 +25,8 @@ class TelemetryRows {
   std::string run(std::size_t i) const { return run_ ? (*run_)[i] : std::string(); }
   /// Wheel and run together name a series in time.
   std::string series(std::size_t i) const { return run(i) + '/' + wheel(i); }
+  /// Whether the row's wheel is that of the map's rover, as far as its columns wheel_radius_m and wheel_width_m say.
+  bool ofRover(std::size_t i) const;
   /// Along the heading, as the rover measured it and as the map has it; NaN = not known.
   double measuredGradient(std::size_t i) const;
   double mapGradient(std::size_t i) const { return mapGradient(reading(i), heading(i)); }
@@ -47,7 +49,7 @@ class TelemetryRows {
   double pose_std_m_;
   const std::vector<double>&x_, &y_, &load_, &slip_;
   const std::vector<double>*time_, *torque_, *sinkage_, *z_, *slope_, *heading_, *pull_, *pass_, *pose_;
-  const std::vector<double>*speed_, *rim_speed_, *roll_, *slip_angle_;
+  const std::vector<double>*speed_, *rim_speed_, *roll_, *slip_angle_, *radius_, *width_;
   const std::vector<std::string>*wheel_, *run_;
 };
 
@@ -58,6 +60,12 @@ struct Moment {
   std::vector<WheelReading> readings;  ///< of each of them
   bool transferred = false;            ///< whether the loads are computed
 };
+
+/// Whether a number of a wheel is that of another, or not known.
+bool sameOrUnknown(double value, double of_rover) noexcept;
+
+/// Whether the wheels of a moment carry what the rover has them carry, on average, within a quarter.
+bool carriesRover(const std::vector<WheelReading>& readings, const terramech::Rover& rover) noexcept;
 
 /// The moment of some rows, one a wheel.
 Moment momentOf(const TelemetryRows& rows, std::vector<std::size_t> of, const terramech::Rover& rover);

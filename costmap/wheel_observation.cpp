@@ -24,6 +24,13 @@ bool known(double value) noexcept {
   return std::isfinite(value);
 }
 
+// Standard deviation of a departure at a slip, taken for that at the reference slip: of a model, thus the same for all
+// readings at that slip.
+double extrapolation(double slip, double departure) noexcept {
+  return std::min(std::abs(slip - kReferenceSlip), kFlatFrom) *
+         (kShiftPerSlip + kShiftPerSlipAndDeparture * std::abs(departure));
+}
+
 // Two estimates of one number.
 Estimate combined(const Estimate& a, const Estimate& b) noexcept {
   const double wa = 1.0 / (a.std * a.std), wb = 1.0 / (b.std * b.std);
@@ -106,10 +113,8 @@ double WheelObserver::weakerAcross(const Wheel& w) const noexcept {
 // wheel against its fellows by torque and sinkage, believed to half of itself.
 Estimate WheelObserver::bySlope(const Wheel& w, double departure, double own) const {
   const double mean = departure + own;
-  const double extrapolation = std::min(std::abs(w.read.reading.slip - kReferenceSlip), kFlatFrom) *
-                               (kShiftPerSlip + kShiftPerSlipAndDeparture * std::abs(mean));
   return {mean, std::hypot(std::hypot(noise_.gradient, noise_.model_pull, 0.5 * own),
-                           std::hypot(w.steepness, extrapolation))};
+                           std::hypot(w.steepness, extrapolation(w.read.reading.slip, mean)))};
 }
 
 // Of a rover that all but stands: what is weaker of the balance and torque with sinkage, if that is known.
@@ -156,6 +161,7 @@ std::optional<WheelObservation> WheelObserver::observed(const Wheel& w, const Ba
     out.by_slope = {prior.pull.value + slope.value, std::hypot(slope.std, rut)};
   }
   out.pull = {prior.pull.value + seen.value, std::hypot(seen.std, rut)};
+  out.shared_std = extrapolation(reading.slip, seen.value);
   out.sinkage = {prior.sinkage.value, std::numeric_limits<double>::infinity()};
   const double z = reading.sinkage_m / model_.rover().wheel.radius_m;
   if (reading.pass <= 1 && z >= 0.0 && z < 1.0 && w.expected.sinkage_over_radius > 0.0) {

@@ -65,6 +65,9 @@ struct WheelObservation {
   Estimate sinkage;          ///< sinkage over radius [-]; std is infinite where nothing was measured
   double demand = 0.0;       ///< drawbar pull over load that the slope asked for [-]
   double from_torque = 0.0;  ///< drawbar pull over load by torque and sinkage [-]; NaN without them
+  /// Of the pull: standard deviation by the error that readings share, however many there are, as of the slip by which
+  /// all of them are read; >= 0 [-]. NaN: not known, so that the pull may only lower.
+  double shared_std = 0.0;
   Estimate by_slope{std::numeric_limits<double>::quiet_NaN(),
                     0.0};   ///< pull by slip and slope alone; NaN without
   double pose_std_m = 0.0;  ///< how well the place is known, one standard deviation

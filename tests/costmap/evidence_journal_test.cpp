@@ -127,7 +127,8 @@ TEST_F(EvidenceJournalTest, RefusesRowsThatWereChanged) {
         "torque_Nm,"
         " sinkage_m, gradient, drawbar_pull_N, pass_index, pull, pull_std, sinkage, sinkage_std, z_m, "
         "pose_std_m,"
-        " pull_may_raise, sinkage_may_raise, drive, pull_here, sinkage_here FROM evidence"}) {
+        " pull_may_raise, sinkage_may_raise, drive, pull_here, sinkage_here, pull_shared_std, wheel_radius_m,"
+        " wheel_width_m, wheel_weight_N FROM evidence"}) {
     std::filesystem::remove(path());
     { EvidenceJournal(path()).append("a", {row(7)}); }
     change(path(), sql);

@@ -1,0 +1,127 @@
+#pragma once
+
+#include <cmath>
+#include <iterator>
+#include <memory>
+#include <numbers>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <site_fixture.hpp>
+
+#include <talus/costmap/traversability_map.hpp>
+#include <talus/terramech/estimate/telemetry.hpp>
+
+namespace talus::costmap {
+
+constexpr int kRoverSide = 72;
+
+inline std::shared_ptr<const GroundModel> groundOf(const terramech::Soil& first, int wheels) {
+  terramech::Rover rover = testRover();
+  rover.wheel_count = wheels;
+  rover.mass_kg *= wheels / 4.0;
+  return std::make_shared<GroundModel>(GroundModel::Parts{
+      .rover = rover,
+      .classes = {GroundClass{.number = 1, .soil = first}, GroundClass{.number = 2, .soil = testSand()}},
+      .policy = {}});
+}
+
+/// Waves as high: of 1.5 m slopes up to 17 degrees, some of them too steep for weak sand.
+inline MapLayers hills(double height_m = 1.5) {
+  MapLayers layers;
+  const maps::Grid grid{.width = kRoverSide, .height = kRoverSide, .resolution_m = 1.0, .south_west = {}};
+  layers.elevation.elevation_m = maps::Raster<float>(grid);
+  layers.classes = maps::Raster<std::uint8_t>(grid, 1);
+  for (int row = 0; row < kRoverSide; ++row)
+    for (int column = 0; column < kRoverSide; ++column)
+      layers.elevation.elevation_m[{column, row}] =
+          static_cast<float>(height_m * std::sin(0.19 * column) + 0.8 * std::sin(0.11 * row));
+  return layers;
+}
+
+/// A map of the hills that takes them for a soil.
+inline TraversabilityMap mapOf(const terramech::Soil& soil, int wheels, double height_m = 1.5) {
+  return TraversabilityMap(hills(height_m), groundOf(soil, wheels), {});
+}
+
+/// Rows: time_s x_m y_m heading_rad slope_rad slip load_N torque_Nm sinkage_m pass.
+struct Drive {
+  std::vector<std::vector<double>> rows;
+  std::vector<std::string> run, wheel;
+};
+enum Column { kTime, kX, kY, kHeading, kSlope, kSlip, kLoad, kTorque, kSinkage, kPass };
+
+/// `felt`: whether torque and sinkage are columns of the file.
+inline terramech::Telemetry tableOf(const Drive& drive, bool felt = true) {
+  terramech::Telemetry out;
+  out.source = "rover.csv";
+  const char* const names[] = {"time_s", "x_m",    "y_m",       "heading_rad", "slope_rad",
+                               "slip",   "load_N", "torque_Nm", "sinkage_m",   "pass_index"};
+  for (std::size_t c = 0; c < std::size(names); ++c) {
+    if (!felt && (c == kTorque || c == kSinkage)) continue;
+    out.numbers.push_back({names[c], {}});
+    for (const auto& row : drive.rows) out.numbers.back().values.push_back(row[c]);
+  }
+  out.words = {{"run", drive.run}, {"wheel", drive.wheel}};
+  for (std::size_t i = 0; i < drive.rows.size(); ++i) out.lines.push_back(i + 2);
+  return out;
+}
+
+/// Along lines of the map, to and fro, on one soil: all wheels slip alike, so that together they pull what the slope
+// takes, as far as the soil can.
+inline Drive driveOver(const TraversabilityMap& map, const terramech::Soil& soil, unsigned seed,
+                       const std::vector<double>& lines_m = {8.5, 33.5, 58.5}) {
+  const terramech::Rover& rover = map.model().rover();
+  const auto truth = groundOf(soil, rover.wheel_count);
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> noise;
+  const int axles = rover.wheel_count / 2;
+  const auto pullAt = [&](double slip) {
+    return (truth->steady(0, {slip, false}).gradient +
+            (axles - 1) * truth->steady(0, {slip, true}).gradient) /
+           axles;
+  };
+  Drive out;
+  int line = 0;
+  for (const double y_m : lines_m) {
+    const double way = line++ % 2 == 0 ? 1.0 : -1.0;
+    for (int i = 0; i < 180; ++i) {
+      const double x_m = 36.0 + way * (0.35 * i - 31.0);
+      const double gradient = way * map.code(*map.grid().cellAt({x_m, y_m})).dzDx();
+      double low = -0.5, high = 0.95;
+      while (high - low > 1e-4) (pullAt(0.5 * (low + high)) < gradient ? low : high) = 0.5 * (low + high);
+      const double slip = low + 0.015 * noise(random);
+      for (int w = 0; w < rover.wheel_count; ++w) {
+        const int axle = w / 2;
+        const SteadyWheel s = truth->steady(0, {low, axle > 0});
+        const double load_N = terramech::wheelLoad_N(rover), radius_m = rover.wheel.radius_m;
+        out.rows.push_back({2.0 * i, x_m + way * (0.4 - 0.8 * axle / (axles - 1)),
+                            y_m + (w % 2 == 0 ? 0.3 : -0.3), way > 0.0 ? 0.0 : std::numbers::pi,
+                            std::atan(gradient) + 0.005 * noise(random), slip + 0.005 * noise(random), load_N,
+                            s.torque_over_load_radius * load_N * radius_m * (1.0 + 0.03 * noise(random)),
+                            s.sinkage_over_radius * radius_m * (1.0 + 0.03 * noise(random)), axle + 1.0});
+        out.run.push_back("line" + std::to_string(line));
+        out.wheel.push_back("w" + std::to_string(w));
+      }
+    }
+  }
+  return out;
+}
+
+/// Sand that does not hold the steeper slopes, and some that holds less.
+inline terramech::Soil weakSand() {
+  terramech::Soil soil = testSand();
+  soil.cohesion_Pa = 300.0;
+  soil.friction_angle_rad = 0.52;
+  soil.frictional_modulus = 500000.0;
+  return soil;
+}
+
+inline terramech::Soil weakerSand() {
+  terramech::Soil soil = weakSand();
+  soil.friction_angle_rad = 0.45;
+  return soil;
+}
+
+}  // namespace talus::costmap
