@@ -250,13 +250,20 @@ int freedom(const Candidate& candidate) {
   return candidate.empirical() ? 2 : candidate.family == "drift" ? 1 : 0;
 }
 
+/// Of a lesser kind, or a form of the same family with fewer numbers: one that grows with speed holds a constant, too.
+bool isSimpler(const Candidate& a, const Candidate& b) {
+  if (freedom(a) != freedom(b)) return freedom(a) < freedom(b);
+  return !a.empirical() && a.family == b.family && a.parts.size() == b.parts.size() &&
+         a.parameters < b.parameters;
+}
+
 }  // namespace
 
 void preferSimple(std::vector<Explanation>& ranked, double threshold) {
   auto first = ranked.begin();
   for (auto e = ranked.begin(); e != ranked.end(); ++e)
     if (e->gain > threshold && e->gain > ranked.front().gain - threshold &&
-        freedom(e->candidate) < freedom(first->candidate))
+        isSimpler(e->candidate, first->candidate))
       first = e;
   if (first != ranked.end()) std::rotate(ranked.begin(), first, first + 1);
 }

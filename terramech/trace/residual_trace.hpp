@@ -11,7 +11,7 @@ namespace talus::terramech {
 /// Whether the first of explanations, best first, is taken: it gains more than `threshold`.
 bool accepted(const std::vector<Explanation>& ranked, double threshold);
 
-/// Brings to the front of explanations, best first, the best of the simplest kind (known forms, then drifts, then curves)
+/// Brings to the front of explanations, best first, the best of the simplest kind (known forms, of a family the one of fewest numbers, then drifts, then curves)
 /// that itself gains more than `threshold` and falls behind the best by less: on top of it noise gives some curve as much,
 /// so that a curve is no better account until it gains more than that. What it holds beyond the form is then found by itself.
 void preferSimple(std::vector<Explanation>& ranked, double threshold);

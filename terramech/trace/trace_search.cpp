@@ -30,12 +30,6 @@ std::string kindOf(const Candidate& candidate) {
   return candidate.covariate() + (candidate.empirical() ? " curve" : " form");
 }
 
-/// Of the soil's steps from where a model stands.
-double soilPriorChi2(const NullModel& model) {
-  const StepPrior& prior = model.known.prior;
-  return prior.mean.head(model.soil).cwiseAbs2().dot(prior.precision.head(model.soil));
-}
-
 }  // namespace
 
 TraceSearch::TraceSearch(const RefinedModel& base, const Trial& trial, const TraceOptions& options,
@@ -207,11 +201,10 @@ Explanation TraceSearch::fitted(const Candidate& candidate) {
   const Eigen::VectorXd was = whitening_.marginal(residual_), is = whitening_.marginal(left);
   for (Eigen::Index i = 0; i < was.size(); ++i)
     e.by_channel[static_cast<std::size_t>(i % kChannels)] += was[i] * was[i] - is[i] * is[i];
-  // What explains leaves the readings themselves less to explain, but for what it lets the soil regain of its prior. One
-  // that moves them farther off, by more than all that it gains, moved what rows of a run share.
-  const double regained = std::max(0.0, soilPriorChi2(before) - soilPriorChi2(after));
-  const double won = was.squaredNorm() - is.squaredNorm();
-  if (won < -(2.0 * std::max(0.0, e.gain) + regained)) e.gain = std::min(0.0, e.gain);
+  // What explains leaves the readings themselves less to explain. Beside a soil that is known, one that moves them
+  // farther off, by more than all that it gains, moved what rows of a run share; a soil that is fitted moves with it.
+  if (before.soil == 0 && is.squaredNorm() - was.squaredNorm() > 2.0 * std::max(0.0, e.gain))
+    e.gain = std::min(0.0, e.gain);
   return e;
 }
 

@@ -34,6 +34,9 @@ TEST(ResidualTrace, ACurveMustSayMoreThanNoiseBeyondAKnownForm) {
   EXPECT_EQ(first({curve, wave, near, far}), 15.0);
   EXPECT_EQ(first({curve, wave, far}), 18.0);
   EXPECT_EQ(first({curve, far}), 20.0);
+  Explanation more = named(16.0, "torque_offset_viscous", "torque_sensor");
+  more.candidate.parameters = 2;
+  EXPECT_EQ(first({more, far}), 13.0);
   // A form that noise would reach is none.
   EXPECT_EQ(first({named(8.0, "empirical", "empirical"), named(5.9, "sinkage_datum", "sinkage_datum")}), 8.0);
   std::vector<Explanation> none;
