@@ -19,7 +19,7 @@ plan() {
   echo
 }
 
-plan jacksboro "$jacksboro" --rover fido --soil clay --start 2300,300 --goal 14300,11000
+plan jacksboro "$jacksboro" --rover fido --soil testbed_topsoil --start 2300,300 --goal 14300,11000
 "$talus" --quiet generate craters --size 800 --resolution 1 --seed 7 -o moon.tif >/dev/null
 plan moon moon.tif --terrain moon_classes.tif --soils moon_soils.yaml --rocks moon_rocks.tif --rover lunar_micro \
   --start 40,40 --goal 760,740
