@@ -3,21 +3,23 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <memory>
 #include <numeric>
 #include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include <gdal_alg.h>
 #include <gdal_priv.h>
 #include <ogr_spatialref.h>
 
 #include <talus/maps/gdal_dataset.hpp>
 #include <talus/maps/layer_reader.hpp>
 #include <talus/maps/memory_budget.hpp>
+#include <talus/maps/pixel_cover.hpp>
 #include <talus/maps/place.hpp>
 #include <talus/maps/raster_band.hpp>
-#include <talus/maps/warp.hpp>
 #include <talus/talus.hpp>
 
 namespace talus::maps {
@@ -37,8 +39,7 @@ using Affine =
     std::array<double, 6>;  // GDAL's: x = c[0] + column c[1] + row c[2], y = c[3] + column c[4] + row c[5]
 
 // Where the pixels of a file lie in the map's own coordinates, from its south-west corner. A file of the map's very size
-// without even a pixel size lies cell upon cell. Pixels that meet the cells' edges to a hundredth do so exactly, so that
-// rounding lets none reach into the next cell.
+// without even a pixel size lies cell upon cell.
 std::optional<Affine> inMapCoordinates(GDALDataset& file, const Grid& grid) {
   Affine c{};
   const bool stated = file.GetGeoTransform(c.data()) == CE_None;
@@ -49,20 +50,6 @@ std::optional<Affine> inMapCoordinates(GDALDataset& file, const Grid& grid) {
   if (!stated) return std::nullopt;
   c[0] -= grid.south_west.x_m;
   c[3] -= grid.south_west.y_m;
-  if (c[2] != 0.0 || c[4] != 0.0) return c;
-  const auto snap = [&](double& first, double& side, int pixels, double edge) {
-    const double ratio = grid.resolution_m / side;
-    const double near = std::abs(ratio) >= 1.0 ? grid.resolution_m / std::round(ratio)
-                                               : grid.resolution_m * std::round(1.0 / ratio);
-    const double from_edge = (edge - first) / near, most = 0.01;
-    if (std::abs(side - near) * pixels > most * std::abs(side) ||
-        std::abs(from_edge - std::round(from_edge)) > most)
-      return;
-    first = edge - std::round(from_edge) * near;
-    side = near;
-  };
-  snap(c[0], c[1], file.GetRasterXSize(), 0.0);
-  snap(c[3], c[5], file.GetRasterYSize(), grid.height * grid.resolution_m);
   return c;
 }
 
@@ -114,20 +101,77 @@ Dataset inMemory(GDALDataset& file, int band, const ElevationMap& map, const std
   return copy;
 }
 
-// The greatest value of all pixels that reach into each cell of the map, first row south; NaN where none is known.
+// Corners of pixels in metres from the map's south-west corner.
+class PixelCorners {
+ public:
+  PixelCorners(GDALDataset& band, const ElevationMap& map, const std::string& path)
+      : corner_(map.grid().south_west) {
+    if (band.GetGeoTransform(affine_.data()) != CE_None)
+      throw InputError({path, "states no place of its pixels", "give it one with gdal_edit.py -a_ullr"});
+    if (band.GetSpatialRef() == nullptr) return;
+    const std::string target = "DST_SRS=" + map.georeference->system().wkt;
+    const char* const options[] = {target.c_str(), nullptr};
+    exact_.reset(
+        GDALCreateGenImgProjTransformer2(GDALDataset::ToHandle(&band), nullptr, const_cast<char**>(options)));
+    if (!exact_)
+      throw InputError({path, "cannot be resampled into the map's CRS", "project it with gdalwarp"});
+    near_.reset(
+        GDALCreateApproxTransformer(GDALGenImgProjTransform, exact_.get(), 1e-3 * map.grid().resolution_m));
+  }
+
+  /// Along the upper edge of a line of pixels; not finite where the projection does not reach.
+  void line(int y, std::vector<Point>& corners) {
+    if (!near_) {
+      const Affine& c = affine_;
+      for (std::size_t x = 0; x < corners.size(); ++x) {
+        const auto column = static_cast<double>(x);
+        corners[x] = {c[0] + column * c[1] + y * c[2], c[3] + column * c[4] + y * c[5]};
+      }
+      return;
+    }
+    const std::size_t count = corners.size();
+    xs_.resize(count);
+    std::iota(xs_.begin(), xs_.end(), 0.0);
+    ys_.assign(count, y);
+    zs_.assign(count, 0.0);
+    reached_.assign(count, 0);
+    GDALApproxTransform(near_.get(), FALSE, static_cast<int>(count), xs_.data(), ys_.data(), zs_.data(),
+                        reached_.data());
+    for (std::size_t x = 0; x < count; ++x)
+      corners[x] = reached_[x] != 0 ? Point{xs_[x] - corner_.x_m, ys_[x] - corner_.y_m}
+                                    : Point{std::numeric_limits<double>::quiet_NaN(), 0.0};
+  }
+
+ private:
+  struct Destroy {
+    void operator()(void* transformer) const { GDALDestroyTransformer(transformer); }
+  };
+  Point corner_;
+  Affine affine_{};
+  std::unique_ptr<void, Destroy> exact_, near_;  // the second asks the first
+  std::vector<double> xs_, ys_, zs_;
+  std::vector<int> reached_;
+};
+
+// The greatest value of all pixels that reach into each cell of the map, first row south; NaN where none is known. GDAL's own
+// resampling by the greatest misses pixels that lie askew.
 Raster<float> greatest(GDALDataset& band, const ElevationMap& map, const std::string& path) {
-  const bool elsewhere = band.GetSpatialRef() != nullptr;
-  Grid cells = map.grid();
-  if (!elsewhere) cells.south_west = {0.0, 0.0};
-  const Dataset warped = warp(band,
-                              {.band = 1,
-                               .wkt = elsewhere ? map.georeference->system().wkt : "",
-                               .resolution = 0.0,
-                               .grid = cells,
-                               .method = "max",
-                               .nodata = std::nullopt},
-                              path);
-  return northUp(map.grid(), readPixels(*warped, 1, {0, 0, cells.width, cells.height}, path));
+  PixelCorners corners(band, map, path);
+  const int width = band.GetRasterXSize();
+  std::vector<float> row(static_cast<std::size_t>(width));
+  std::vector<Point> above(row.size() + 1), below(row.size() + 1);
+  PixelCover cover(map.grid());
+  corners.line(0, below);
+  for (int y = 0; y < band.GetRasterYSize(); ++y) {
+    std::swap(above, below);
+    corners.line(y + 1, below);
+    if (band.GetRasterBand(1)->RasterIO(GF_Read, 0, y, width, 1, row.data(), width, 1, GDT_Float32, 0, 0,
+                                        nullptr) != CE_None)
+      throw InputError({path, "cannot be held in memory", ""});
+    for (std::size_t x = 0; x < row.size(); ++x)
+      cover.add({above[x], above[x + 1], below[x + 1], below[x]}, row[x]);
+  }
+  return std::move(cover.values());
 }
 
 void requireOverlap(bool overlaps, const ElevationMap& map, const std::string& path) {
