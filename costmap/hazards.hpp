@@ -59,7 +59,7 @@ class ShapeJudge {
 };
 
 /// Hazards that the rover's whole width must keep clear of.
-inline constexpr Hazard kKeptClearOf = Hazard::KeepOut | Hazard::Obstacle | Hazard::Unknown;
+inline constexpr Hazard kKeptClearOf = Hazard::KeepOut | Hazard::Obstacle | Hazard::Rocks | Hazard::Unknown;
 
 /// Marks as Near the cells some place of which lies closer than inflation_m to a cell with one of these hazards; where
 /// Unknown is one of them, to the outside of the map, too.

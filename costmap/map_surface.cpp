@@ -54,7 +54,8 @@ Hazard TraversabilityMap::rocksOn(float abundance) const {
 }
 
 Hazard TraversabilityMap::spreading() const noexcept {
-  return site_->model->parts().policy.allow_unknown ? Hazard::KeepOut | Hazard::Obstacle : kKeptClearOf;
+  return site_->model->parts().policy.allow_unknown ? Hazard::KeepOut | Hazard::Obstacle | Hazard::Rocks
+                                                    : kKeptClearOf;
 }
 
 Hazard TraversabilityMap::layerHazards(maps::Cell cell) const {

@@ -28,6 +28,16 @@ TEST(Inflate, KeepsHalfTheRoversWidthFromAKeepOutCell) {
   EXPECT_FALSE(has(hazards[{8, 7}], Hazard::Near)) << "0.22 m";
 }
 
+// A free lane narrower than the rover between rocks is none.
+TEST(Inflate, KeepsHalfTheRoversWidthFromRocks) {
+  maps::Raster<Hazard> hazards(grid(11, 0.1), Hazard::None);
+  for (int row = 0; row < 11; ++row) hazards[{2, row}] = hazards[{7, row}] = Hazard::Rocks;
+  HazardLimits limits;
+  limits.inflation_m = 0.2;
+  inflate(hazards, limits);
+  for (int column = 2; column <= 7; ++column) EXPECT_NE((hazards[{column, 5}]), Hazard::None) << column;
+}
+
 // Outside the map is as unseen as a hole in it.
 TEST(Inflate, KeepsHalfTheRoversWidthFromTheEdgeOfTheMap) {
   maps::Raster<Hazard> hazards(grid(11, 0.1), Hazard::None);
