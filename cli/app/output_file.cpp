@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <fstream>
+#include <sstream>
 #include <string_view>
 
 #include <talus/cli/app/output_file.hpp>
@@ -38,6 +40,48 @@ bool isJournal(const fs::path& path) {
   return std::string_view(start.data(), start.size()) == "SQLite format 3";
 }
 
+// Formats that a file's name may claim; the names in a row mean the same.
+using Names = std::vector<std::string_view>;
+const std::array<Names, 12> kFormats{{{".tif", ".tiff"},
+                                      {".asc"},
+                                      {".png"},
+                                      {".jpg", ".jpeg"},
+                                      {".svg"},
+                                      {".html", ".htm"},
+                                      {".geojson", ".json"},
+                                      {".csv"},
+                                      {".yaml", ".yml"},
+                                      {".ot"},
+                                      {".bt"},
+                                      {".npz"}}};
+
+const Names* formatOf(const std::string& name) {
+  std::string extension = fs::path(name).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  for (const Names& names : kFormats)
+    if (std::find(names.begin(), names.end(), extension) != names.end()) return &names;
+  return nullptr;
+}
+
+// A GeoTIFF named .asc is believed by its name later. The option's type name (FILE.tif, or several with |) says
+// what is written.
+void checkFormat(const fs::path& path, const std::string& type_name) {
+  const Names* named = formatOf(path.string());
+  const Names* written = nullptr;
+  std::istringstream choices(type_name);
+  for (std::string choice; std::getline(choices, choice, '|');) {
+    written = formatOf(choice);
+    if (written == named) return;
+  }
+  if (written && named)
+    throw InputError(
+        {path.string(),
+         "is named " + path.extension().string() + ", but a " + std::string(written->front()) +
+             " file is written",
+         "name it " + path.stem().string() + std::string(written->front()) + ", or pass --force"});
+}
+
 bool leavesItsFolder(const fs::path& link) {
   std::error_code error;
   const fs::path folder = link.has_parent_path() ? link.parent_path() : fs::path(".");
@@ -72,7 +116,10 @@ void checkOutputs(const CLI::App& command, bool force) {
     for (const CLI::Option* other : options)
       if (other != output && !other->empty())
         for (const std::string& word : other->results()) others.push_back(word);
-    if (!force) checkOutput(path, others);
+    if (!force) {
+      checkOutput(path, others);
+      checkFormat(path, output->get_type_name());
+    }
     const OutputFile can_be_written(path);
   }
 }

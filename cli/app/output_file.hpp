@@ -21,8 +21,8 @@ CLI::Option* addOutput(CLI::App& command, const std::string& names, std::string&
 /// of its folder. Throws InputError.
 void checkOutput(const std::filesystem::path& path, const std::vector<std::string>& inputs);
 
-/// checkOutput() of every output of a parsed call, against all of its other words; each is also tried, so that a bad
-/// place is told before the work.
+/// checkOutput() of every output of a parsed call, against all of its other words, and whether its name claims another
+/// format than the option's type name (FILE.tif) does; each is also tried, so that a bad place is told before the work.
 void checkOutputs(const CLI::App& command, bool force);
 
 }  // namespace talus::cli

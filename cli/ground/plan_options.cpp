@@ -11,7 +11,8 @@ namespace talus::cli {
 namespace {
 
 void addOutputs(CLI::App& command, PlanOptions& options) {
-  addOutput(command, "-o,--output", options.output, "route to write, as GeoJSON")->type_name("ROUTE.geojson");
+  addOutput(command, "-o,--output", options.output, "route to write, as GeoJSON; CSV with --pairs")
+      ->type_name("ROUTE.geojson|FILE.csv");
   addOutput(command, "--html", options.html, "page to write: map, route and profiles")
       ->type_name("PAGE.html");
   addOutput(command, "--png", options.png, "picture to write")->type_name("FILE.png");
