@@ -38,7 +38,13 @@ bool sameSize(const Wheel& a, const Wheel& b) {
   return a.radius_m == b.radius_m && a.width_m == b.width_m;
 }
 
-std::optional<std::string> unusable(const WheelSample& s, const WheelRowOptions& options) {
+std::optional<std::string> unusable(const WheelSample& s, double slip_angle_rad,
+                                    const WheelRowOptions& options) {
+  if (std::abs(slip_angle_rad) > kStraightUpTo_rad)
+    return fmt::format(
+        "slip_angle_rad = {:g}: only straight wheels are evaluated here; pass a --model, or wong-reece with "
+        "side_force_N",
+        slip_angle_rad);
   if (!(s.sinkage_m > 0.0)) return "sinkage_m = 0: no contact area to infer stresses from";
   if (options.needs_slip && !(s.slip > 0.0))
     return fmt::format("slip = {:g}, must be > 0 (driven wheel)", s.slip);
@@ -69,12 +75,13 @@ WheelRows readWheelRows(const std::filesystem::path& path, const WheelRowOptions
                  .rejected = table.rejected};
   for (const auto& column : table.words) rows.words.push_back({.name = column.name, .values = {}});
   const auto* slip = table.find("slip");
+  const auto* slip_angle = table.find("slip_angle_rad");
   for (std::size_t k = 0; k < table.size(); ++k) {
     const WheelSample sample{.load_N = table.at("load_N")[k],
                              .torque_Nm = table.at("torque_Nm")[k],
                              .sinkage_m = table.at("sinkage_m")[k],
                              .slip = slip == nullptr || std::isnan((*slip)[k]) ? 0.0 : (*slip)[k]};
-    if (const auto reason = unusable(sample, options)) {
+    if (const auto reason = unusable(sample, slip_angle == nullptr ? 0.0 : (*slip_angle)[k], options)) {
       rows.rejected.push_back({.line = table.lines[k], .reason = *reason});
       continue;
     }

@@ -5,6 +5,7 @@
 #include <talus/terramech/io/model_file.hpp>
 #include <talus/terramech/io/soil_library.hpp>
 #include <talus/terramech/io/telemetry_reader.hpp>
+#include <talus/terramech/io/wheel_rows.hpp>
 #include <talus/terramech/tables/model_estimate.hpp>
 #include <talus/terramech/trace/model_soil.hpp>
 
@@ -14,7 +15,7 @@ namespace {
 constexpr double kMisfit = 3.0;  // above it the model does not describe the rows
 
 RefinedModel modelOf(const EstimateOptions& options) {
-  RefinedModel model = loadModel(options.model).model;
+  RefinedModel model = (options.model.empty() ? unknownSoil() : loadModel(options.model)).model;
   if (model.base != BaseModel::WongReece)
     throw InputError({.where = options.model,
                       .reason = "its base is linear-formula, which has no soil",
@@ -31,7 +32,7 @@ void refuseWhatDoesNotGo(const EstimateOptions& options) {
     refuse("--model", "its effects act on the contact stresses, which this method does not solve",
            "use --method wong-reece, or remove the option");
   if (options.recursive)
-    refuse("--recursive", "cannot be combined with --model, which fits all rows at once",
+    refuse("--recursive", "cannot be combined with --model or with side forces, which are fitted all at once",
            "remove one of the two");
 }
 
@@ -48,6 +49,16 @@ ModelSoilOptions howOf(const EstimateOptions& options) {
 }
 
 }  // namespace
+
+bool measuresSideForce(const std::string& table) {
+  const Telemetry rows = readTelemetry(table);
+  const auto* angle = rows.find("slip_angle_rad");
+  const auto* force = rows.find("side_force_N");
+  if (angle == nullptr || force == nullptr) return false;
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    if (std::abs((*angle)[k]) > kStraightUpTo_rad && std::isfinite((*force)[k])) return true;
+  return false;
+}
 
 SoilEstimate modelEstimate(const EstimateOptions& options, const ProgressMonitor& watch) {
   refuseWhatDoesNotGo(options);
@@ -78,10 +89,9 @@ SoilEstimate modelEstimate(const EstimateOptions& options, const ProgressMonitor
   estimate.unseen = found.unseen;
   for (const Effect& effect : model.effects) estimate.effects.push_back(effect.name);
   if (found.misfit > kMisfit)
-    estimate.warnings.push_back(
-        fmt::format("with the effects of {} no soil explains the readings (misfit {:.1f}, 1 expected); trace "
-                    "these rows again, or increase --noise",
-                    options.model, found.misfit));
+    estimate.warnings.push_back(fmt::format(
+        "{}no soil explains the readings (misfit {:.1f}, 1 expected); trace these rows, or increase --noise",
+        options.model.empty() ? "" : "with the effects of " + options.model + " ", found.misfit));
   if (trial.rows() < all.rows())
     estimate.warnings.push_back(
         fmt::format("{} rows with sinkage at or above the axle were excluded", all.rows() - trial.rows()));

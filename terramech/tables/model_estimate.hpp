@@ -4,8 +4,12 @@
 
 namespace talus::terramech {
 
-/// The soil by --method wong-reece with the effects of --model acting, from all channels that the table has.
-/// Throws as estimateSoil().
+/// Whether some row of a wheel at a slip angle (beyond kStraightUpTo_rad) has its side force: what such rows say of the soil
+/// takes the whole model. Throws as readTelemetry().
+bool measuresSideForce(const std::string& table);
+
+/// The soil by --method wong-reece from all channels that the table has, the effects of --model acting; without one none
+/// act. Throws as estimateSoil().
 SoilEstimate modelEstimate(const EstimateOptions& options, const ProgressMonitor& watch);
 
 }  // namespace talus::terramech

@@ -4,6 +4,7 @@
 #include <talus/terramech/io/model_file.hpp>
 #include <talus/terramech/trace/model_fit.hpp>
 #include <talus/terramech/trace/model_soil.hpp>
+#include <talus/terramech/trace/verdict.hpp>
 
 namespace talus::terramech {
 namespace {
@@ -124,6 +125,9 @@ ModelSoil soilUnder(const RefinedModel& model, const Trial& trial, const ModelSo
   ModelSoil found{.soil = best.model.soil,
                   .strength_covariance = strengthCovariance(plan, covariance, best.model.soil),
                   .misfit = best.chi2 / search.freedom()};
+  best.model.fitted = plan.free;
+  for (const std::string& name : soilAtBounds(best.model))
+    found.unseen.push_back(name + ": ended at the limit of its range");
   for (std::size_t k = 0; k < plan.free.size(); ++k) {
     const auto at = static_cast<Eigen::Index>(k);
     const double prior = plan.soil_prior.at(plan.free[k].index).std;

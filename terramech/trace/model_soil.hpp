@@ -24,7 +24,7 @@ struct ModelSoil {
   Soil soil;
   Eigen::Matrix2d strength_covariance = Eigen::Matrix2d::Zero();  ///< of (c [Pa], tan phi), priors included
   double misfit = 0.0;  ///< mean square of the whitened residuals; about 1 where model and noise hold
-  std::vector<std::string> unseen;  ///< parameters not identifiable from the rows: as wide as the prior
+  std::vector<std::string> unseen;  ///< parameters as wide as the prior, or at the limit of their range
 };
 
 /// The most likely soil under rows of a wheel, by all channels that they measure, the effects of `model`

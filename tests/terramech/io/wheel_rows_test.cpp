@@ -46,6 +46,14 @@ TEST(WheelRows, ABrakedWheelCountsOnlyWhereNoSlipIsNeeded) {
             0.0);
 }
 
+TEST(WheelRows, AWheelAtASlipAngleIsNoStraightOne) {
+  const WheelRows rows =
+      read("slip_angle_rad," + kHead +
+           "0.09,80,2,0.01,0.3,0.1,0.2,a\n-0.11,80,2,0.01,0.3,0.1,0.2,a\n,80,2,0.01,0.3,0.1,0.2,a\n");
+  EXPECT_THAT(rows.lines, ElementsAre(2, 4));
+  EXPECT_THAT(rows.firstRejected()->reason, HasSubstr("slip_angle_rad = -0.11: only straight wheels"));
+}
+
 TEST(WheelRows, TheRoversWheelGoesBeforeTheFiles) {
   const std::string rover = libraryRovers().front();
   const WheelRows rows = read(kHead + "80,2,0.01,0.3,0.9,0.9,a\n", {.rover = rover});

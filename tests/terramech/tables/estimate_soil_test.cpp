@@ -1,3 +1,6 @@
+#include <cmath>
+
+#include <talus/terramech/effects/refined_model.hpp>
 #include <talus/terramech/tables/estimate_soil.hpp>
 
 #include "wheel_table.hpp"
@@ -15,6 +18,38 @@ TEST(EstimateSoil, ExactRowsGiveTheSoilThatMadeThem) {
   EXPECT_EQ(found.rows_used, 12U);
   EXPECT_NEAR(found.cohesion_Pa, kMadeSoil.cohesion_Pa, 150.0);
   EXPECT_NEAR(found.friction_angle_rad, kMadeSoil.friction_angle_rad, 0.02);
+}
+
+// Rows of the made soil at slip angles to either side, with or without what the wheel holds.
+std::string angledRows(bool side_force) {
+  RefinedModel model;
+  model.soil = kMadeSoil;
+  std::string text = kWheelHead + ",slip_angle_rad" + (side_force ? ",side_force_N" : "") + "\n";
+  for (int k = 0; k < 24; ++k) {
+    const WheelState s{.wheel = kMadeWheel,
+                       .load_N = 100.0 + 10.0 * (k % 5),
+                       .slip = 0.05 + 0.02 * k,
+                       .slip_angle_rad = 0.2 * (k % 4 - 1)};
+    const Reading r = predict(model, s);
+    text += wheelLine({s.load_N, r.torque_Nm, r.sinkage_m, s.slip}, kMadeWheel) + "," +
+            std::to_string(s.slip_angle_rad);
+    text += (side_force ? "," + std::to_string(r.side_force_N) : "") + "\n";
+  }
+  return text;
+}
+
+TEST(EstimateSoil, SideForcesAreHeldAgainstTheWholeModel) {
+  const test::TemporaryFile with{angledRows(true)}, without{angledRows(false)};
+  const SoilEstimate found = estimateSoil({.table = with.path(), .method = "wong-reece", .noise = 0.01}, {});
+  EXPECT_EQ(found.rows_used, 24U);
+  EXPECT_NEAR(found.cohesion_Pa, kMadeSoil.cohesion_Pa, 3.0 * std::sqrt(found.covariance(0, 0)));
+  EXPECT_NEAR(found.tan_friction, std::tan(0.45), 3.0 * std::sqrt(found.covariance(1, 1)));
+  EXPECT_LT(std::sqrt(found.covariance(1, 1)), 0.05);
+  // Without their side force, or by a line, only the six straight rows say something.
+  EXPECT_EQ(estimateSoil({.table = without.path(), .method = "wong-reece", .noise = 0.01}, {}).rows_used, 6U);
+  EXPECT_EQ(estimateSoil({.table = with.path(), .method = "linear-offset"}, {}).rejected.size(), 18U);
+  EXPECT_THAT([&] { estimateSoil({.table = with.path(), .method = "wong-reece", .recursive = true}, {}); },
+              ThrowsMessage<InputError>(HasSubstr("side forces, which are fitted all at once")));
 }
 
 TEST(EstimateSoil, NamesThatAreNotOnOfferAreRefused) {

@@ -74,6 +74,17 @@ TEST(ModelSoil, AStatedShearModulusStays) {
   EXPECT_EQ(found.soil.shear_modulus_m, 0.02);
 }
 
+TEST(ModelSoil, AParameterAtTheLimitOfItsRangeIsMarked) {
+  RefinedModel truth = digging();
+  truth.effects.clear();
+  EXPECT_THAT(soilUnder(truth, drive(truth), {.noise = 0.02}).unseen,
+              testing::Not(testing::Contains(testing::HasSubstr("limit of its range"))));
+  truth.soil.sinkage_exponent = 4.5;
+  truth.soil.frictional_modulus = 2e11;
+  const ModelSoil found = soilUnder(elsewhere(truth), drive(truth), {.noise = 0.02});
+  EXPECT_THAT(found.unseen, testing::Contains("sinkage_exponent: ended at the limit of its range"));
+}
+
 TEST(ModelSoil, WhatThePriorFixesStays) {
   RefinedModel prior = digging();
   prior.soil.cohesion_Pa = 500.0;
