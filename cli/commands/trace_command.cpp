@@ -33,14 +33,17 @@ void bind(CLI::App& command, TraceCommandOptions& options) {
                   "share of tables without an effect in which one may be found")
       ->check(CLI::Range(1e-3, 0.5))
       ->capture_default_str();
-  command
-      .add_option(
-          "--hold-out", options.hold_out,
-          "trace without these rows, then predict them: each level of a column in turn, or its values "
-          "V,V or LOW..HIGH")
-      ->type_name("COLUMN[=VALUES]");
+  auto* hold_out =
+      command
+          .add_option(
+              "--hold-out", options.hold_out,
+              "trace without these rows, then predict them: each level of a column in turn, or its values "
+              "V,V or LOW..HIGH")
+          ->type_name("COLUMN[=VALUES]");
   groupOptions(command, "Analysis");
-  addOutput(command, "--model-out", options.model_out, "refined model to write")->type_name("M.yaml");
+  addOutput(command, "--model-out", options.model_out, "refined model to write")
+      ->excludes(hold_out)
+      ->type_name("M.yaml");
   addOutput(command, "--html", options.html, "page to write, with charts")->type_name("R.html");
   groupOptions(command, "Output");
 }
@@ -77,6 +80,7 @@ int holdOutRows(const TraceCommandOptions& options, const terramech::RefinedMode
     all.push_back(terramech::traceWithout(base, trial, left, how, watch));
     if (watch.stopped()) return Exit::kCancelled;
   }
+  if (!options.html.empty()) writeFile(options.html, leftOutPage(all, options.hold_out, options.telemetry));
   if (context.json)
     printJson({{"hold_out", leftOutJson(all)}});
   else

@@ -185,8 +185,12 @@ LeftOutErrors traceWithout(const RefinedModel& base, const Trial& trial, const L
   for (const TracedEffect& e : result.effects)
     errors.effects.push_back(e.chosen.candidate.parts.front().name + " (" + e.chosen.candidate.covariate() +
                              ")");
-  errors.base = rmseOf(result.base, unseen);
-  errors.refined = rmseOf(predictInScope(result, unseen), unseen);
+  SolvedContacts solved;
+  errors.trial = unseen;
+  errors.base_told = predictRows(result.base, unseen, solved);
+  errors.told = predictInScope(result, unseen);
+  errors.base = rmseOf(errors.base_told, unseen);
+  errors.refined = rmseOf(errors.told, unseen);
   errors.floor = result.noise_floor;
   Trial same = seen;  // columns as were searched
   same.covariates = result.trial.covariates;

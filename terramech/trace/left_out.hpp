@@ -20,7 +20,7 @@ struct LeftOut {
 /// InputError, with `source`, where the column is unknown or no row, or every row, is left out.
 std::vector<LeftOut> leftOut(const Trial& trial, const std::string& request, const std::string& source);
 
-/// Errors on rows left out.
+/// Errors on rows left out, and what was foretold of them.
 struct LeftOutErrors {
   std::string what;
   int rows = 0;
@@ -28,6 +28,8 @@ struct LeftOutErrors {
   ChannelErrors base{}, refined{}, floor{};
   ChannelErrors regression{};  ///< of a plain regression: columns and their squares, ridge by generalised
                                ///< cross-validation (golub_1979); 0 knowledge of wheels, for scale
+  Trial trial;                 ///< the rows left out
+  Eigen::MatrixXd base_told, told;  ///< of them, by the base and the refined model: rows x kChannels [-]
 };
 
 LeftOutErrors traceWithout(const RefinedModel& base, const Trial& trial, const LeftOut& left,

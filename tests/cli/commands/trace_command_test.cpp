@@ -1,4 +1,5 @@
 #include <cmath>
+#include <fstream>
 #include <set>
 
 #include <nlohmann/json.hpp>
@@ -42,6 +43,30 @@ TEST(TraceCommand, AnEffectOfOneGroupIsSaidOfTheColumnThatTellsTheGroup) {
   EXPECT_EQ(effects[0]["covariate"], "wheel");
   EXPECT_EQ(effects[0]["only"]["wheel"], "2.000000");
   EXPECT_EQ(effects[0]["channel"], "drawbar_pull_over_load");
+}
+
+// `--html` was passed over in silence where rows are held out.
+TEST(TraceCommand, HoldingOutRowsWritesItsPageAndNoModel) {
+  const Folder folder;
+  folder.write("t.csv", oneWheelShort());
+  folder.write("base.yaml", "{soil: sandy_loam, model: wong-reece}\n");
+  const std::vector<std::string> call{"trace",      "t.csv",       "--base", "base.yaml",
+                                      "--hold-out", "slip=0.5..1", "--quiet"};
+  auto with = [&](const std::string& option, const std::string& file) {
+    std::vector<std::string> words = call;
+    words.insert(words.end(), {option, file});
+    return runTalus(words, folder.path());
+  };
+  ASSERT_EQ(with("--html", "r.html").code, 0);
+  std::ifstream file(folder / "r.html");
+  const std::string page{std::istreambuf_iterator<char>(file), {}};
+  for (const char* part :
+       {"Held out of t.csv: slip=0.5..1", "drawbar_pull_over_load over slip", "noise floor", "(wheel)"})
+    EXPECT_THAT(page, testing::HasSubstr(part));
+  const Ran refused = with("--model-out", "m.yaml");
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_THAT(refused.err,
+              testing::AllOf(testing::HasSubstr("--model-out"), testing::HasSubstr("--hold-out")));
 }
 
 TEST(TraceCommand, AnAlternativeIsAnotherFormOrColumnAndNamedOnce) {

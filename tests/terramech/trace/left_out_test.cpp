@@ -63,6 +63,10 @@ TEST(LeftOut, RowsThatTheSearchNeverSawAreForetold) {
   EXPECT_TRUE(errors.effects.empty());
   EXPECT_EQ(errors.base[1], errors.refined[1]);
   EXPECT_LT(errors.refined[1], 2.0 * errors.floor[1]);
+  // Property: the errors are those of what was foretold of these rows.
+  for (const auto& [told, rmse] :
+       {std::pair{errors.base_told, errors.base}, std::pair{errors.told, errors.refined}})
+    EXPECT_NEAR((errors.trial.measured - told).col(1).norm() / std::sqrt(12.0), rmse[1], 1e-12);
   // Property: a regression on columns knows nothing of wheels and is no better.
   EXPECT_GT(errors.regression[1], 0.5 * errors.refined[1]);
 }
