@@ -15,6 +15,17 @@ std::int64_t fixed(double value) {
   return static_cast<std::int64_t>(std::llround(value * kUnit));
 }
 
+constexpr double kPullStep = 0.005, kSinkageStep = 0.02;
+constexpr double kSame = 1e-6;  // of a step: what has been rounded stays
+
+double below(double value, double step) noexcept {
+  return std::floor(value / step + kSame) * step;
+}
+
+double above(double value, double step) noexcept {
+  return std::ceil(value / step - kSame) * step;
+}
+
 }  // namespace
 
 void IndependentPlaces::set(const Square& square, std::optional<float> departure) {
@@ -60,6 +71,29 @@ void ClassLessons::sum(const BlockLesson& lesson, std::int64_t sign) {
 
 double ClassLessons::mostRise() const noexcept {
   return std::max(places_.agreed(kPlaces), 0.0);
+}
+
+ClassState ClassLessons::state() const noexcept {
+  return {.pull = posterior_.pull.value,
+          .pull_std = posterior_.pull.std,
+          .own_std = posterior_.own_std,
+          .shared = posterior_.shared,
+          .sinkage = posterior_.sinkage.value,
+          .may_raise = mayRaise(),
+          .most_rise = mostRise()};
+}
+
+ClassState ClassLessons::stateInSteps() const noexcept {
+  ClassState s = state();
+  s.pull = below(s.pull, kPullStep);
+  s.pull_std = std::min(above(s.pull_std, kPullStep), ground_.mean_std);
+  s.own_std = std::min(above(s.own_std, kPullStep), ground_.mean_std);
+  s.shared = above(s.shared, kPullStep);
+  s.sinkage = above(s.sinkage, kSinkageStep);
+  s.most_rise = below(s.most_rise, kPullStep);
+  s.pull_step = kPullStep;
+  s.sinkage_step = kSinkageStep;
+  return s;
 }
 
 void ClassLessons::refresh() {

@@ -21,6 +21,19 @@ struct ClassPosterior {
   double places = 0.0;   ///< independent places that speak for it [-]
 };
 
+/// What learned ground has of its class.
+struct ClassState {
+  double pull = 0.0, pull_std = 0.0;   ///< as ClassPosterior::pull [-]
+  double own_std = 0.0, shared = 0.0;  ///< as there [-]
+  double sinkage = 0.0;                ///< departure of sinkage over radius [-]
+  bool may_raise = false;  ///< whether enough places may raise that the belief in its ground may rise at all
+  double most_rise = 0.0;  ///< the most by which it may, >= 0 [-]
+  double pull_step = 0.0;  ///< how far `pull` may lie below what it was rounded from [-]
+  double sinkage_step = 0.0;  ///< how far `sinkage` may lie above [-]
+
+  friend bool operator==(const ClassState&, const ClassState&) = default;
+};
+
 /// Squares of ground about a correlation length wide, of which those are counted that lie as far apart.
 class IndependentPlaces {
  public:
@@ -71,6 +84,11 @@ class ClassLessons {
   /// is one factor b of the regression, y_i = m + c_i b, b standard normal: of their mean, with the variance v of
   /// what they do not share, the posterior variance is p (v + c^2) / (p + v + c^2), p of the prior, c the mean of c_i.
   const ClassPosterior& posterior() const noexcept { return posterior_; }
+  /// What learned ground has of the class, as it is.
+  ClassState state() const noexcept;
+  /// The same in steps of 0.005 (sinkage: 0.02), each number rounded towards danger and no deviation beyond the prior's:
+  /// it stays what it is while the class moves within a step, and depends on nothing but the class.
+  ClassState stateInSteps() const noexcept;
   /// Whether enough places may raise that the belief in ground of the class may rise at all.
   bool mayRaise() const noexcept { return std::isfinite(places_.agreed(kPlaces)); }
   /// The most by which it may: what as many places agree on; >= 0.

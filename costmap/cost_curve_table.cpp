@@ -13,15 +13,6 @@ namespace talus::costmap {
 namespace {
 
 constexpr std::size_t kNumbers = CellCode::kUnknown;
-constexpr double kSame = 1e-6;  // of a step: what has been rounded stays
-
-double below(double value, double step) {
-  return std::floor(value / step + kSame) * step;
-}
-
-double above(double value, double step) {
-  return std::ceil(value / step - kSame) * step;
-}
 
 }  // namespace
 
@@ -112,15 +103,8 @@ void CostCurveTable::restart(int level) {
   cost_.reset();
 }
 
-bool CostCurveTable::setPrior(int class_index, const GroundBelief& belief) {
+bool CostCurveTable::setPrior(int class_index, const GroundBelief& next) {
   const auto i = static_cast<std::size_t>(class_index);
-  const GroundBelief exact = model_->prior(class_index);
-  const bool untouched = belief.pull.value == exact.pull.value && belief.pull.std == exact.pull.std;
-  const GroundBelief next =
-      untouched
-          ? exact
-          : GroundBelief{.pull = {below(belief.pull.value, 0.005), above(belief.pull.std, 0.005)},
-                         .sinkage = {above(belief.sinkage.value, 0.02), above(belief.sinkage.std, 0.02)}};
   const auto same = [](const Estimate& a, const Estimate& b) { return a.value == b.value && a.std == b.std; };
   if (same(next.pull, beliefs_[i].pull) && same(next.sinkage, beliefs_[i].sinkage)) return false;
   beliefs_[i] = next;

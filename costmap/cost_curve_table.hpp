@@ -42,9 +42,9 @@ class CostCurveTable {
   void restart(int level);
   int level() const noexcept { return level_; }
 
-  /// Replaces the belief of a class prior, after its soil was learned. False when it rounds to what it was
-  /// (towards danger: 0.005 in pull and its standard deviation, 0.02 in sinkage).
-  bool setPrior(int class_index, const GroundBelief& belief);
+  /// Replaces the belief of a class prior, after its soil was learned. False when it is what it was: in steps
+  /// (EvidenceField::Classes::InSteps) that is most often so.
+  bool setPrior(int class_index, const GroundBelief& next);
 
   /// The belief that a number's curve was made from.
   const GroundBelief& belief(std::uint8_t number) const { return beliefs_[number]; }

@@ -33,10 +33,19 @@ struct EvidenceField::Beliefs::Patch {
   std::array<std::optional<Belief>, kPatchBlocks * kPatchBlocks> known;
 };
 
+EvidenceField::Beliefs::Beliefs(const EvidenceField& field, Classes classes)
+    : field_(field), states_(field.states(classes)) {}
+
+EvidenceField::Beliefs::~Beliefs() = default;
+
 const EvidenceField::Belief& EvidenceField::Beliefs::away(int class_index) {
   auto known = away_.find(class_index);
   if (known == away_.end())
-    known = away_.emplace(class_index, Belief{field_.classBelief(class_index), false}).first;
+    known = away_
+                .emplace(class_index, Belief{field_.awayFromEvidence(
+                                                 class_index, states_[static_cast<std::size_t>(class_index)]),
+                                             false})
+                .first;
   return known->second;
 }
 
@@ -49,9 +58,12 @@ EvidenceField::Beliefs::Patch& EvidenceField::Beliefs::patchAt(const BlockLevel&
   if (last_ && key == last_key_) return *last_;
   if (patches_.size() >= kMostRemembered) patches_.clear();
   auto patch = patches_.find(key);
-  if (patch == patches_.end())
+  if (patch == patches_.end()) {
+    const ClassState& state = states_[static_cast<std::size_t>(class_index)];
     patch =
-        patches_.emplace(key, std::make_shared<Patch>(Patch{field_.around(first, class_index), {}})).first;
+        patches_.emplace(key, std::make_shared<Patch>(Patch{field_.around(first, class_index, state), {}}))
+            .first;
+  }
   last_key_ = key;
   return *(last_ = patch->second.get());
 }
@@ -64,7 +76,7 @@ const EvidenceField::Belief& EvidenceField::Beliefs::at(maps::Cell cell, int cla
       block.row % kPatchBlocks * kPatchBlocks + block.column % kPatchBlocks)];
   if (!known)
     known = field_.believed(
-        patch.ground, class_index,
+        patch.ground, class_index, states_[static_cast<std::size_t>(class_index)],
         field_.store_->blocks.middleOf(field_.store_->blocks.blockAt(block.column, block.row)));
   return *known;
 }
@@ -78,18 +90,20 @@ GroundBelief EvidenceField::left(const GroundBelief& weak, const GroundBelief& m
 }
 
 // No better than the class away from evidence until enough places say so, never better than any place that is weak
-// leaves it, and within the bounds of the block itself.
+// leaves it, and within the bounds of the block itself. What no evidence reaches is left as its class to the bit.
 EvidenceField::Belief EvidenceField::believed(const LocalGround& ground, int class_index,
-                                              const maps::Point& at) const {
-  const GroundBelief away = classBelief(class_index), prior = site_->model->prior(class_index);
-  const ClassLessons& lessons = store_->lessons[static_cast<std::size_t>(class_index)];
-  GroundBelief out = ground.process.empty() ? away : combined(class_index, ground.process.learned(at));
-  out.pull.std = std::min(out.pull.std, away.pull.std);
-  if (lessons.mayRaise())
-    out.pull.value =
-        std::min(out.pull.value, std::max(away.pull.value, prior.pull.value + lessons.mostRise()));
-  else
-    out = weaker(out, away);
+                                              const ClassState& state, const maps::Point& at) const {
+  const GroundBelief away = awayFromEvidence(class_index, state), prior = site_->model->prior(class_index);
+  GroundBelief out = away;
+  if (const auto learned = ground.process.learned(at); learned.any) {
+    out = combined(class_index, state, learned);
+    out.pull.std = std::min(out.pull.std, away.pull.std);
+    if (state.may_raise)
+      out.pull.value =
+          std::min(out.pull.value, std::max(away.pull.value, prior.pull.value + state.most_rise));
+    else
+      out = weaker(out, away);
+  }
   const Variation variation = variationOf(class_index);
   const double mean_std = groundOf(class_index).mean_std;
   for (const WeakPlace& place : ground.weak)
@@ -101,7 +115,7 @@ EvidenceField::Belief EvidenceField::believed(const LocalGround& ground, int cla
   // Ground that is ordinary for its class says no more than that it is no stronger: it leaves all ground as sure as it was.
   for (const WeakPlace& place : ground.lower)
     if (const auto weak = lowered(place, variation, at)) {
-      GroundBelief bound = left(*weak, prior, class_index, posterior(class_index).pull.std);
+      GroundBelief bound = left(*weak, prior, class_index, state.pull_std);
       bound.pull.std = std::min(bound.pull.std, out.pull.std);
       bound.sinkage.std = std::min(bound.sinkage.std, out.sinkage.std);
       out = weaker(out, bound);
@@ -112,30 +126,47 @@ EvidenceField::Belief EvidenceField::believed(const LocalGround& ground, int cla
                    out.sinkage.value != away.sinkage.value};
 }
 
-GroundBelief EvidenceField::classBelief(int class_index) const {
+std::vector<ClassState> EvidenceField::states(Classes classes) const {
+  std::vector<ClassState> all;
+  for (int i = 0; i < static_cast<int>(store_->lessons.size()); ++i) all.push_back(stateOf(i, classes));
+  return all;
+}
+
+ClassState EvidenceField::stateOf(int class_index, Classes classes) const {
+  const ClassLessons& lessons = store_->lessons[static_cast<std::size_t>(class_index)];
+  return classes == Classes::InSteps ? lessons.stateInSteps() : lessons.state();
+}
+
+GroundBelief EvidenceField::classBelief(int class_index, Classes classes) const {
+  return awayFromEvidence(class_index, stateOf(class_index, classes));
+}
+
+GroundBelief EvidenceField::awayFromEvidence(int class_index, const ClassState& state) const {
   const GroundClass& ground = groundOf(class_index);
   const GroundBelief prior = site_->model->prior(class_index);
-  const ClassPosterior& known = posterior(class_index);
-  return {.pull = {prior.pull.value + known.pull.value, std::hypot(ground.pull_std, known.pull.std)},
-          .sinkage = {std::max(prior.sinkage.value + known.sinkage.value, 0.0), ground.sinkage_std}};
+  return {.pull = {prior.pull.value + state.pull, std::hypot(ground.pull_std, state.pull_std)},
+          .sinkage = {std::max(prior.sinkage.value + state.sinkage, 0.0), ground.sinkage_std}};
 }
 
 // Doubt about the class as a whole counts as far as the place itself is not known, and the error that all readings
-// share as far as their estimate rests on them, be it by the place's own or by its class's.
-GroundBelief EvidenceField::combined(int class_index, const LearnedPlace& learned) const {
+// share as far as their estimate rests on them, be it by the place's own or by its class's. A class mean that was
+// rounded down may leave an estimate higher where the weights of its evidence exceed 1: by no more than is taken off.
+GroundBelief EvidenceField::combined(int class_index, const ClassState& state,
+                                     const LearnedPlace& learned) const {
   const GroundClass& ground = groundOf(class_index);
   const GroundBelief prior = site_->model->prior(class_index);
-  const ClassPosterior& known = posterior(class_index);
   const GroundBelief& departure = learned.departure;
   const double open = std::min(departure.pull.std / ground.pull_std, 1.0);
-  const double own_std = std::hypot(departure.pull.std, open * known.own_std);
+  const double own_std = std::hypot(departure.pull.std, open * state.own_std);
   const double variance =
       withSharedError({.prior = ground.pull_std * ground.pull_std + ground.mean_std * ground.mean_std,
                        .variance = own_std * own_std,
-                       .shared = learned.shared + (1.0 - learned.weight) * known.shared});
-  return {.pull = {prior.pull.value + known.pull.value + departure.pull.value, std::sqrt(variance)},
-          .sinkage = {std::max(prior.sinkage.value + known.sinkage.value + departure.sinkage.value, 0.0),
-                      departure.sinkage.std}};
+                       .shared = learned.shared + (1.0 - learned.weight) * state.shared});
+  const double beyond = std::max(learned.positive - 1.0, 0.0);
+  const double pull = departure.pull.value - beyond * state.pull_step;
+  const double sinkage = departure.sinkage.value + beyond * state.sinkage_step;
+  return {.pull = {prior.pull.value + state.pull + pull, std::sqrt(variance)},
+          .sinkage = {std::max(prior.sinkage.value + state.sinkage + sinkage, 0.0), departure.sinkage.std}};
 }
 
 }  // namespace talus::costmap

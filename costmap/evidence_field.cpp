@@ -116,8 +116,8 @@ std::optional<float> EvidenceField::squareStrength(const IndependentPlaces::Squa
   return raises ? static_cast<float>(least) : -std::numeric_limits<float>::infinity();
 }
 
-// Takes readings into a block, and what it then says into the lessons of its class.
-void EvidenceField::hear(const BlockLevel& where, const SavedBlock& heard) {
+// Takes readings into a block, and what it then says into the lessons of its class. The cells whose belief that may change.
+maps::CellBox EvidenceField::hear(const BlockLevel& where, const SavedBlock& heard) {
   const int class_index = site_->model->classIndex(where.terrain_class);
   ClassLessons& lessons = store_->lessons[static_cast<std::size_t>(class_index)];
   if (const BlockEvidence* known = store_->bricks.find(where))
@@ -129,13 +129,15 @@ void EvidenceField::hear(const BlockLevel& where, const SavedBlock& heard) {
   farthest_reach_m_ = std::max(farthest_reach_m_, block.reach_m());
   summarise(store_->bricks.counts(where),
             {site_->model->prior(class_index).pull.value, groundOf(class_index).pull_std}, block);
+  const maps::CellBox reached = patchesReachedFrom(where, block.reach_m());
   const auto lesson = lessonOf(block, class_index);
-  if (!lesson) return;
+  if (!lesson) return reached;
   lessons.add(*lesson);
   const IndependentPlaces::Square square{where.column / store_->blocks.reach(),
                                          where.row / store_->blocks.reach()};
   lessons.places().set(square, squareStrength(square, class_index));
   lessons.refresh();
+  return reached;
 }
 
 // Whether all ground that the wheel may have stood on is of the class.
@@ -179,13 +181,7 @@ std::optional<maps::CellBox> EvidenceField::add(const WheelObservation& observat
   if (observation.estimates()) heard.heard.push_back(pullReading(pull, raises, observation.shared_std));
   if (std::isfinite(observation.sinkage.std))
     heard.heard.push_back(sinkageReading(observation.sinkage.value, sure && observation.sinkage_may_raise));
-  hear(heard.block, heard);
-  const int side = store_->blocks.side();
-  const int reach =
-      static_cast<int>(std::ceil((correlation_length_m + 0.1 * heard.reach) / grid.resolution_m)) + side;
-  return maps::CellBox{
-      {std::max(cell->column - reach, 0), std::max(cell->row - reach, 0)},
-      {std::min(cell->column + reach, grid.width - 1), std::min(cell->row + reach, grid.height - 1)}};
+  return hear(heard.block, heard);
 }
 
 void EvidenceField::visit(const std::function<void(const SavedBlock&)>& visit) const {
@@ -194,12 +190,11 @@ void EvidenceField::visit(const std::function<void(const SavedBlock&)>& visit) c
   });
 }
 
-bool EvidenceField::restore(const SavedBlock& saved) {
+std::optional<maps::CellBox> EvidenceField::restore(const SavedBlock& saved) {
   if (saved.block.column < 0 || saved.block.row < 0 || saved.block.column >= store_->blocks.columns() ||
       saved.block.row >= store_->blocks.rows() || site_->model->classIndex(saved.block.terrain_class) < 0)
-    return false;
-  hear(saved.block, saved);
-  return true;
+    return std::nullopt;
+  return hear(saved.block, saved);
 }
 
 const BlockEvidence* EvidenceField::evidence(maps::Cell cell) const noexcept {
@@ -236,7 +231,8 @@ std::vector<EvidenceField::FloorEvidence> EvidenceField::floorEvidence() const {
 // for itself. Ground of other classes says something only as far as it may have been this.
 void EvidenceField::place(const BlockLevel& block, const BlockEvidence& e, NearbyEvidence& nearby) const {
   const int own = site_->model->classIndex(block.terrain_class);
-  const GroundBelief mean = classBelief(nearby.class_index), prior = site_->model->prior(nearby.class_index);
+  const GroundBelief mean = awayFromEvidence(nearby.class_index, nearby.state),
+                     prior = site_->model->prior(nearby.class_index);
   const GroundClass& ground = groundOf(own);
   const maps::Point middle = store_->blocks.middleOf(store_->blocks.blockAt(block.column, block.row));
   const bool alike = own == nearby.class_index;
@@ -274,14 +270,23 @@ void EvidenceField::place(const BlockLevel& block, const BlockEvidence& e, Nearb
   nearby.lower.back().pull = below;
 }
 
-// Evidence on top that can reach a patch of blocks.
-LocalGround EvidenceField::around(const BlockLevel& patch, int class_index) const {
+// Evidence on top that can reach a patch of blocks. The process has that alone which lies within a correlation length,
+// however far off places elsewhere may be: these matter by what they bound.
+LocalGround EvidenceField::around(const BlockLevel& patch, int class_index, const ClassState& state) const {
   const int reach =
       store_->blocks.reach() + static_cast<int>(std::ceil(farthest_reach_m_ / store_->blocks.side_m()));
-  NearbyEvidence nearby{.class_index = class_index};
+  NearbyEvidence nearby{.class_index = class_index, .state = state};
+  const auto isNear = [&](int blocks) {
+    return blocks >= -store_->blocks.reach() && blocks < kPatchBlocks + store_->blocks.reach();
+  };
   store_->bricks.visitTop({patch.column - reach, patch.row - reach, patch.column + kPatchBlocks + reach - 1,
                            patch.row + kPatchBlocks + reach - 1},
-                          [&](const BlockLevel& at, const BlockEvidence& e) { place(at, e, nearby); });
+                          [&](const BlockLevel& at, const BlockEvidence& e) {
+                            const std::size_t known = nearby.places.size();
+                            place(at, e, nearby);
+                            if (!isNear(at.column - patch.column) || !isNear(at.row - patch.row))
+                              nearby.places.resize(known);
+                          });
   const maps::Point low = store_->blocks.middleOf(store_->blocks.blockAt(patch.column, patch.row));
   const double half_m = 0.5 * (kPatchBlocks - 1) * store_->blocks.side_m();
   return grounded(std::move(nearby), {low.x_m + half_m, low.y_m + half_m});
@@ -297,12 +302,11 @@ LocalGround EvidenceField::grounded(NearbyEvidence nearby, const maps::Point& mi
     };
     std::stable_sort(places.begin(), places.end(),
                      [&](const PlaceEvidence& a, const PlaceEvidence& b) { return far(a) < far(b); });
-    const ClassPosterior& mean = posterior(nearby.class_index);
     for (std::size_t i = kMostNeighbours; i < places.size(); ++i)
       nearby.lower.push_back({.place = places[i].place,
-                              .pull = std::fmin(places[i].pull + mean.pull.value, 0.0),
+                              .pull = std::fmin(places[i].pull + nearby.state.pull, 0.0),
                               .variance = places[i].variance,
-                              .sinkage = std::fmax(places[i].sinkage + mean.sinkage.value, 0.0)});
+                              .sinkage = std::fmax(places[i].sinkage + nearby.state.sinkage, 0.0)});
     places.resize(kMostNeighbours);
   }
   return {GaussianProcess(std::move(places), variationOf(nearby.class_index)), std::move(nearby.weak),
@@ -314,7 +318,7 @@ LocalGround EvidenceField::levelWith(maps::Cell block, std::uint16_t level) cons
   const int side = store_->blocks.side();
   const int reach = store_->blocks.reach() * side;
   const double resolution_m = site_->grid().resolution_m;
-  NearbyEvidence nearby;
+  NearbyEvidence nearby{.class_index = 0, .state = stateOf(0)};
   for (int row = block.row - reach; row <= block.row + reach; row += side)
     for (int column = block.column - reach; column <= block.column + reach; column += side) {
       const BlockLevel there = topOf({column, row}, 0);
@@ -331,7 +335,8 @@ LocalGround EvidenceField::levelWith(maps::Cell block, std::uint16_t level) cons
 
 GroundBelief EvidenceField::floorBelief(maps::Cell cell, const Floor& floor) const {
   const maps::Cell block = store_->blocks.blockOf(cell);
-  return believed(levelWith(block, levelOf(cell, floor).level), 0, store_->blocks.middleOf(block)).ground;
+  return believed(levelWith(block, levelOf(cell, floor).level), 0, stateOf(0), store_->blocks.middleOf(block))
+      .ground;
 }
 
 }  // namespace talus::costmap

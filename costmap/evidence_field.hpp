@@ -27,6 +27,7 @@ struct SavedBlock {
 
 struct BlockLesson;
 struct ClassPosterior;
+struct ClassState;
 struct EvidenceStore;
 struct LocalGround;
 struct LearnedPlace;
@@ -53,9 +54,9 @@ class EvidenceField {
   EvidenceField(EvidenceField&&) noexcept;
   EvidenceField& operator=(EvidenceField&&) noexcept;
 
-  /// Takes an observation in and returns the cells whose belief it may change (besides those of the class as
-  /// a whole); nothing when the place is outside the map, has no elevation or class, or lies in a block that
-  /// was first driven on ground of another class.
+  /// Takes an observation in and returns the cells whose belief it may change while the classes keep their states: those of
+  /// all patches of blocks that it can reach; nothing when the place is outside the map, has no elevation or class, or
+  /// lies in a block that was first driven on ground of another class.
   std::optional<maps::CellBox> add(const WheelObservation& observation);
 
   static constexpr int kPatchBlocks = 8;
@@ -66,11 +67,19 @@ class EvidenceField {
     bool learned = false;  ///< evidence nearby moved it away from its class
   };
 
+  /// What beliefs have of the classes: all that is known of them, or that in steps rounded towards danger
+  /// (ClassLessons::stateInSteps()), from which a map is published.
+  enum class Classes : std::uint8_t { AsKnown, InSteps };
+
   /// Asked cell by cell: evidence is gathered once a patch of 8x8 blocks and class, a belief is worked out
-  /// once a block and class. Valid until the field changes.
+  /// once a block and class. Depends on the states of the classes and the evidence that can reach its patch alone.
+  /// Valid until the field changes.
   class Beliefs {
    public:
-    explicit Beliefs(const EvidenceField& field) : field_(field) {}
+    explicit Beliefs(const EvidenceField& field, Classes classes = Classes::AsKnown);
+    ~Beliefs();
+    Beliefs(const Beliefs&) = delete;
+    Beliefs& operator=(const Beliefs&) = delete;
     const Belief& at(maps::Cell cell, int class_index);
 
    private:
@@ -81,6 +90,7 @@ class EvidenceField {
     const Belief& away(int class_index);
 
     const EvidenceField& field_;
+    std::vector<ClassState> states_;
     std::map<Key, std::shared_ptr<Patch>> patches_;
     Key last_key_{0, 0, -1};
     Patch* last_ = nullptr;
@@ -107,15 +117,19 @@ class EvidenceField {
 
   const ClassPosterior& posterior(int class_index) const;
   /// Belief of ground of a class away from any evidence.
-  GroundBelief classBelief(int class_index) const;
+  GroundBelief classBelief(int class_index, Classes classes = Classes::AsKnown) const;
+  /// States of all classes.
+  std::vector<ClassState> states(Classes classes) const;
+  /// Boxes of cells, apart from each other, outside of which all ground is believed to be what its class is.
+  std::vector<maps::CellBox> reached() const;
 
   /// Side of a block.
   int blockCells() const noexcept;
 
-  /// All evidence in a fixed order, as a file keeps it, and putting it back into a field of the same site: false
-  /// where that has no such block or class.
+  /// All evidence in a fixed order, as a file keeps it, and putting it back into a field of the same site: the cells
+  /// whose belief that may change, as add(); nothing where the site has no such block or class.
   void visit(const std::function<void(const SavedBlock&)>& visit) const;
-  bool restore(const SavedBlock& saved);
+  std::optional<maps::CellBox> restore(const SavedBlock& saved);
 
  private:
   const GroundClass& groundOf(int class_index) const noexcept {
@@ -127,18 +141,23 @@ class EvidenceField {
   BlockLevel topOf(maps::Cell cell, int class_index) const noexcept;
   BlockLevel levelOf(maps::Cell cell, const Floor& floor) const;
   bool standsOnOneClass(const WheelObservation& observation, int class_index) const;
-  void hear(const BlockLevel& where, const SavedBlock& heard);
+  maps::CellBox hear(const BlockLevel& where, const SavedBlock& heard);
+  maps::CellBox patchesReachedFrom(const BlockLevel& block, double reach_m);
+  maps::CellBox cellsOf(const maps::CellBox& blocks) const noexcept;
   std::optional<BlockLesson> lessonOf(const BlockEvidence& block, int class_index) const;
   std::optional<float> squareStrength(const std::pair<int, int>& square, int class_index) const;
-  LocalGround around(const BlockLevel& patch, int class_index) const;
+  LocalGround around(const BlockLevel& patch, int class_index, const ClassState& state) const;
   LocalGround levelWith(maps::Cell block, std::uint16_t level) const;
   void place(const BlockLevel& block, const BlockEvidence& evidence, NearbyEvidence& nearby) const;
   LocalGround grounded(NearbyEvidence nearby, const maps::Point& middle) const;
   Variation variationOf(int class_index) const noexcept;
-  Belief believed(const LocalGround& ground, int class_index, const maps::Point& at) const;
+  Belief believed(const LocalGround& ground, int class_index, const ClassState& state,
+                  const maps::Point& at) const;
+  ClassState stateOf(int class_index, Classes classes = Classes::AsKnown) const;
+  GroundBelief awayFromEvidence(int class_index, const ClassState& state) const;
   GroundBelief left(const GroundBelief& weak, const GroundBelief& mean, int class_index,
                     double mean_std) const noexcept;
-  GroundBelief combined(int class_index, const LearnedPlace& learned) const;
+  GroundBelief combined(int class_index, const ClassState& state, const LearnedPlace& learned) const;
 
   std::shared_ptr<const GroundSite> site_;
   std::unique_ptr<EvidenceStore> store_;

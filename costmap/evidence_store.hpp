@@ -1,6 +1,8 @@
 #pragma once
 
 #include <memory>
+#include <set>
+#include <utility>
 #include <vector>
 
 #include <talus/costmap/block_grid.hpp>
@@ -22,6 +24,7 @@ struct PlaceBound {
 /// Evidence that can reach a piece of ground of one class.
 struct NearbyEvidence {
   int class_index = 0;
+  ClassState state{};                   ///< of that class
   std::vector<PlaceEvidence> places{};  ///< departures from the class's posterior mean, of what may raise
   std::vector<WeakPlace> weak{};        ///< departures from the class's prior
   std::vector<WeakPlace> lower{};       ///< likewise, of ordinary ground that may only lower
@@ -45,7 +48,8 @@ struct EvidenceStore {
 
   BlockGrid blocks;
   EvidenceBricks bricks;
-  std::vector<ClassLessons> lessons;  // a class each
+  std::vector<ClassLessons> lessons;        // a class each
+  std::set<std::pair<int, int>> reached{};  // patches of blocks, by row and column, where evidence may count
 };
 
 }  // namespace talus::costmap

@@ -124,10 +124,13 @@ std::uint8_t GroundCurves::numberOfGround(maps::Cell cell) {
   return table_.learned(own.class_index, judged.weakest_class, judged.belief);
 }
 
-bool GroundCurves::learnClasses(const EvidenceField& field) {
-  bool changed = false;
+GroundCurves::ClassChange GroundCurves::learnClasses(const EvidenceField& field) {
+  ClassChange changed;
   for (int i = 0; i < static_cast<int>(site_->model->parts().classes.size()); ++i)
-    changed |= table_.setPrior(i, field.classBelief(i));
+    changed.priors |= table_.setPrior(i, field.classBelief(i, EvidenceField::Classes::InSteps));
+  std::vector<ClassState> states = field.states(EvidenceField::Classes::InSteps);
+  changed.learned = states != states_;
+  states_ = std::move(states);
   return changed;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <talus/costmap/added_cost.hpp>
+#include <talus/costmap/class_lessons.hpp>
 #include <talus/costmap/cost_curve_table.hpp>
 #include <talus/costmap/evidence_field.hpp>
 #include <talus/costmap/learned_cells.hpp>
@@ -29,16 +30,20 @@ class GroundCurves {
   /// The same of a cell that nobody has seen, where the policy takes it for level ground of the first class.
   std::uint8_t numberOfUnseen(maps::Cell cell) { return withLayers(table_.prior(0), cell); }
 
-  /// Takes over what is believed of the classes; false when nothing changed.
-  bool learnClasses(const EvidenceField& field);
-  /// Takes over what is believed of the cells of the ranges. The ranges in which numbers may have changed.
+  /// What taking over the classes' beliefs changes.
+  struct ClassChange {
+    bool priors = false;   ///< of ground that nobody drove on
+    bool learned = false;  ///< what learned ground has of its class
+  };
+  /// Takes over what is believed of the classes.
+  ClassChange learnClasses(const EvidenceField& field);
+  /// Takes over what is believed of the cells of the ranges, with classes in steps. The ranges in which numbers may have
+  /// changed.
   std::vector<maps::CellBox> learn(EvidenceField::Beliefs& beliefs, const std::vector<maps::CellBox>& ranges);
 
   /// Takes over the site's classes in a box, which have changed. The box in which numbers may have, too.
   maps::CellBox takeClasses(const maps::CellBox& box);
 
-  /// Cells that were learned, in boxes.
-  std::vector<maps::CellBox> learnedBoxes() const { return learned_.boxes(); }
   /// Where more than one ground takes part in a number, some of which may be a class's prior.
   std::vector<maps::CellBox> mixedRanges() const;
 
@@ -68,6 +73,7 @@ class GroundCurves {
   WheelSwath swath_;
   std::vector<bool> borders_;
   LearnedCells learned_;
+  std::vector<ClassState> states_;  // that learned_ rests on
   bool any_learned_ = false;
   std::vector<WheelSwath::Ground> around_;
 };

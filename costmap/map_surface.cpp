@@ -172,8 +172,9 @@ CellCode TraversabilityMap::coded(maps::Cell cell, CellCode code) {
   const Hazard found = hazards_[cell];
   if (found == Hazard::None) return code.withCurve(curves_->number(cell));
   if (found != Hazard::Unknown) return code.withCurve(CellCode::kBlocked);
-  const bool open = model().parts().policy.allow_unknown;
-  return code.withCurve(open ? curves_->numberOfUnseen(cell) : CellCode::kUnknown);
+  if (!model().parts().policy.allow_unknown) return code.withCurve(CellCode::kUnknown);
+  // Shape that cannot be measured is no reason to forget what is known of the soil.
+  return code.withCurve(classIndex(cell) >= 0 ? curves_->number(cell) : curves_->numberOfUnseen(cell));
 }
 
 void TraversabilityMap::refuse(const maps::Point& place, double radius_m) {

@@ -96,6 +96,8 @@ LearnedPlace GaussianProcess::learned(const maps::Point& place) const {
   weight.reserve(evidence_.size());
   for (const PlaceEvidence& e : evidence_)
     weight.push_back(sparseKernel(place, e.place, variation_.correlation_length_m));
+  if (std::ranges::all_of(weight, [](double k) { return k == 0.0; }))
+    return {.departure = {.pull = {0.0, variation_.pull_std}, .sinkage = {0.0, variation_.sinkage_std}}};
   solveLower(factor_, weight);
   double explained = 0.0;
   for (const double v : weight) explained += v * v;
@@ -106,7 +108,7 @@ LearnedPlace GaussianProcess::learned(const maps::Point& place) const {
     positive += std::fmax(w, 0.0);
   }
   const double scale = positive > 0.0 ? std::clamp(sum, 0.0, 1.0) / positive : 0.0;
-  LearnedPlace out{.departure = {}, .any = explained > 0.0, .weight = std::clamp(sum, 0.0, 1.0)};
+  LearnedPlace out{.departure = {}, .any = true, .weight = std::clamp(sum, 0.0, 1.0), .positive = positive};
   GroundBelief& belief = out.departure;
   for (std::size_t i = 0; i < evidence_.size(); ++i) {
     const PlaceEvidence& e = evidence_[i];

@@ -49,6 +49,9 @@ struct LearnedPlace {
   GroundBelief departure;  ///< from the class mean, as if the evidence shared no error
   bool any = false;        ///< whether any evidence reaches the place
   double weight = 0.0;     ///< sum of the weights of all evidence, 0 to 1: the rest is the class mean's
+  double positive =
+      0.0;  ///< sum of those above 0: where the class mean falls by d, the estimate rises by no more than
+            ///< (positive - 1) d
   double shared = 0.0;  ///< by how much one standard deviation of the shared error moves the pull, >= 0 [-]
 };
 

@@ -13,6 +13,8 @@
 namespace talus::costmap {
 namespace {
 
+constexpr double kFull = 0.75;  // share of the curves' numbers from which on there is no room for more
+
 double footprintRadius(const TraversabilityMap::Options& options, const terramech::Rover& rover) {
   return options.footprint_radius_m > 0.0 ? options.footprint_radius_m
                                           : 0.5 * std::hypot(rover.wheelbase_m, rover.track_m);
@@ -198,6 +200,12 @@ bool TraversabilityMap::learn(const WheelObservation& observation) {
   return range.has_value();
 }
 
+bool TraversabilityMap::restore(const SavedBlock& saved) {
+  const auto range = field_.restore(saved);
+  if (range) learned_ = joined(std::move(learned_), *range);
+  return range.has_value();
+}
+
 void TraversabilityMap::publish() {
   const MapChange change(*published_, "publish");
   publish(std::exchange(learned_, {}));
@@ -208,30 +216,36 @@ void TraversabilityMap::publishAll() {
   curves_->restart(0);
   learned_.clear();
   changed_ = {allOf(grid())};
-  publish({allOf(grid())});
+  publish({allOf(grid())}, true);
 }
 
-void TraversabilityMap::publish(std::vector<maps::CellBox> learned) {
+void TraversabilityMap::publish(std::vector<maps::CellBox> learned, bool whole) {
   std::vector<maps::CellBox> changed = std::exchange(changed_, {});
   const bool any = !learned.empty() || !changed.empty();
   const auto append = [](std::vector<maps::CellBox>& to, const std::vector<maps::CellBox>& more) {
     to.insert(to.end(), more.begin(), more.end());
   };
-  const bool classes_moved = curves_->learnClasses(field_);
-  if (!any && !classes_moved) return;
-  if (classes_moved) append(learned, curves_->learnedBoxes());
-  EvidenceField::Beliefs beliefs(field_);
+  const GroundCurves::ClassChange moved = curves_->learnClasses(field_);
+  if (moved.learned && !whole) append(learned, field_.reached());
+  if (!any && !moved.priors && learned.empty()) return;
+  EvidenceField::Beliefs beliefs(field_, EvidenceField::Classes::InSteps);
   append(changed, curves_->learn(beliefs, learned));
-  if (classes_moved) append(changed, curves_->mixedRanges());
-  std::shared_ptr<const CostGrid> next = rewritten(changed);
-  const bool coarser_exists = curves_->level() < curves_->coarsest();
-  published_->grid = curves_->table().overflowed() && coarser_exists ? renumbered() : std::move(next);
+  if (moved.priors) append(changed, curves_->mixedRanges());
+  published_->grid = costed(changed);
   measured_.reset();
+}
+
+// No cheaper than all of it at once. At the finest level each curve is that of its kind, whatever came before; at a coarser
+// one that leaves room, all at once would take that level or a finer one. What is left cannot be compared: all of it anew.
+std::shared_ptr<const CostGrid> TraversabilityMap::costed(const std::vector<maps::CellBox>& changed) {
+  std::shared_ptr<const CostGrid> next = rewritten(changed);
+  const bool extreme = curves_->level() == 0 || curves_->level() == curves_->coarsest();
+  const bool room = extreme || curves_->table().used() <= kFull;
+  return curves_->table().overflowed() || !room ? renumbered() : next;
 }
 
 // In the finest steps that leave room for what is yet to be learned.
 std::shared_ptr<const CostGrid> TraversabilityMap::renumbered() {
-  constexpr double kFull = 0.75;
   for (int level = 0;; ++level) {
     curves_->restart(level);
     auto next = rewritten({allOf(grid())});

@@ -109,9 +109,9 @@ class TraversabilityMap {
   /// Takes an observation in; planners see it after publish(). False when the place has no ground to learn
   /// about.
   bool learn(const WheelObservation& observation);
-  /// Puts saved evidence of a block back, as read from a file; publishAll() afterwards. False when the map has no
-  /// such block or class.
-  bool restore(const SavedBlock& saved) { return field_.restore(saved); }
+  /// Puts saved evidence of a block back, as read from a file; planners see it after publish(). False when the map has
+  /// no such block or class.
+  bool restore(const SavedBlock& saved);
 
   /// Ids of the drives that were put into it (driveId()), sorted.
   const std::set<std::string>& drives() const noexcept { return drives_; }
@@ -145,8 +145,13 @@ class TraversabilityMap {
   /// or that of a cell within reach of their wheels, and shares the tiles that hold none. Readers never wait; a
   /// planner that runs keeps its version. Where the numbers of cost curves run out all cells are given theirs
   /// anew, in steps as coarse as it takes (GroundKind).
+  ///
+  /// The costs are those of publishAll() to the bit, whatever was learned, patched, refused and published before: a cell
+  /// depends on its shape, the classes in steps (ClassLessons::stateInSteps()) and the evidence that can reach its patch of
+  /// blocks, and is looked at again whenever one of these changed. Where curves ran out steps may be up to 8 times as
+  /// coarse as publishAll() would have them; then no cost is lower.
   void publish();
-  /// The same over all cells, as after restore().
+  /// The same over all cells.
   void publishAll();
 
   /// The whole map as an octree of beliefs: every cell at its elevation, and the floors beneath it that
@@ -174,7 +179,8 @@ class TraversabilityMap {
   CellBelief belief(maps::Cell cell, EvidenceField::Beliefs& beliefs) const;
   std::uint8_t categoryOf(const CostGrid& grid, maps::Cell cell) const noexcept;
   CellCode coded(maps::Cell cell, CellCode code);
-  void publish(std::vector<maps::CellBox> learned);
+  void publish(std::vector<maps::CellBox> learned, bool whole = false);
+  std::shared_ptr<const CostGrid> costed(const std::vector<maps::CellBox>& changed);
   std::shared_ptr<const CostGrid> rewritten(const std::vector<maps::CellBox>& ranges);
   std::shared_ptr<const CostGrid> renumbered();
   std::vector<FloorLeaf> floorLeaves() const;

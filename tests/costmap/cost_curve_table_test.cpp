@@ -48,15 +48,6 @@ TEST(CostCurveTable, NoBeliefIsMadeCheaper) {
   EXPECT_TRUE(table.overflowed());
 }
 
-TEST(CostCurveTable, PriorsAreRoundedTowardsDanger) {
-  CostCurveTable table(testGround());
-  table.setPrior(0, {.pull = {0.2049, 0.0601}, .sinkage = {0.2001, 0.1}});
-  // Closed form: down to 0.2, up to 0.065 and 0.22.
-  EXPECT_NEAR(table.belief(0).pull.value, 0.2, 1e-12);
-  EXPECT_NEAR(table.belief(0).pull.std, 0.065, 1e-12);
-  EXPECT_NEAR(table.belief(0).sinkage.value, 0.22, 1e-12);
-}
-
 // Property: a prior that moves to and fro comes to the same each time.
 TEST(CostCurveTable, APriorThatComesBackIsTheSame) {
   CostCurveTable book(testGround());

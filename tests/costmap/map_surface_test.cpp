@@ -167,8 +167,6 @@ void patchedIsAtOnce(const Case& how) {
       refused.push_back({grid.centre({30, 30}), 0.9});
       map.refuse(refused.back().first, refused.back().second);
     }
-    // One drive after another leaves learned cells as they were while their class moves less than its rounding.
-    if (how.most_drives <= 4) map.publishAll();
     const SurfacePatch patch = window(random, grid);
     const auto before = map.published()->version();
     map.patch(patch);
