@@ -91,7 +91,7 @@ std::vector<MovedParameter> movedSoil(const TraceResult& result) {
   const RefinedModel& model = result.refined;
   for (const auto& [field, std] : model.soil_prior_std) {
     const auto found = std::find_if(soilParameters().begin(), soilParameters().end(),
-                                    [&](const SoilParameter& p) { return field == p.name; });
+                                    [&name = field](const SoilParameter& p) { return name == p.name; });
     const auto mean = model.soil_prior_mean.find(field);
     if (found == soilParameters().end() || mean == model.soil_prior_mean.end() || std <= 0.0) continue;
     MovedParameter p{field, found->get(model.soil), mean->second, std};

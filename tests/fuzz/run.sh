@@ -3,9 +3,9 @@
 #
 #   tests/fuzz/run.sh BUILD TALUS [MINUTES] [TARGET...]
 #
-# BUILD is a build of the preset `fuzz`. BUILD/fuzzing keeps what was found interesting (corpus/TARGET), what failed
-# (faults/TARGET-*; give one to BUILD/tests/fuzz/fuzz_ROOM with TALUS_FUZZ_TARGET set), the number of the next call
-# (calls) and a line a run (runs.txt). Ends with 1 where anything failed.
+# BUILD is a build of the preset `fuzz`, TALUS the program or call_server. BUILD/fuzzing keeps what was found interesting
+# (corpus/TARGET), what failed (faults/TARGET-*; give one to BUILD/tests/fuzz/fuzz_ROOM with TALUS_FUZZ_TARGET set), the
+# number of the next call (calls), what calls said (calls.txt) and a line a run (runs.txt). Ends with 1 where anything failed.
 set -euo pipefail
 build=$1 talus=$2 minutes=${3:-10}
 shift $(($# < 3 ? $# : 3))
@@ -40,10 +40,10 @@ done
 
 if is_wanted calls; then
   next=$(cat "$state/calls" 2>/dev/null || echo 0)
-  stretch=50
+  stretch=500
   begin=$SECONDS
   while [ $((SECONDS - begin)) -lt $((minutes * 60)) ]; do
-    "$here/mutate_calls.py" "$talus" $stretch "$next" || failed=1
+    "$here/mutate_calls.py" "$talus" $stretch "$next" | tee -a "$state/calls.txt" || failed=1
     next=$((next + stretch))
     echo "$next" >"$state/calls"
   done
