@@ -24,6 +24,7 @@ CategoryTable::CategoryTable(const GroundModel& model, const GroundBelief& belie
 }
 
 CategoryTable::Entry CategoryTable::at(CellCode cell) const noexcept {
+  if (entries_.empty()) return {static_cast<std::uint8_t>(terramech::Category::Dangerous), 16};
   const auto x = static_cast<float>(cell.stepsX()), y = static_cast<float>(cell.stepsY());
   return entries_[static_cast<std::size_t>(std::sqrt(x * x + y * y) + 0.5F)];
 }

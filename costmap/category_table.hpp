@@ -18,6 +18,8 @@ class CategoryTable {
     std::uint8_t confidence;  ///< probability in steps of 1/16, rounded down unless it is of danger
   };
 
+  /// Dangerous at every gradient.
+  CategoryTable() = default;
   CategoryTable(const GroundModel& model, const GroundBelief& belief, const CrossSlope& crossing);
 
   /// The entry for the gradient of a cell.

@@ -14,35 +14,80 @@ namespace {
 
 constexpr std::size_t kNumbers = CellCode::kUnknown;
 
+// Ground that no heading may enter: of a class whose number nobody asked for.
+const DriveGround& refused() {
+  static const DriveGround ground = [] {
+    auto states = std::make_shared<DriveTable>();
+    for (DriveState& state : *states) state.refusal = Refusal::Unknown;
+    DriveCurve curve;
+    curve.cost_J_per_m.fill(std::numeric_limits<float>::infinity());
+    return DriveGround{.curve = std::move(curve), .states = std::move(states)};
+  }();
+  return ground;
+}
+
 }  // namespace
 
 CostCurveTable::CostCurveTable(std::shared_ptr<const GroundModel> model) : model_(std::move(model)) {
   if (classes() > kNumbers)
     throw std::invalid_argument("cost curves: " + std::to_string(classes()) +
                                 " classes of ground, must be <= " + std::to_string(kNumbers));
-  for (int i = 0; i < static_cast<int>(classes()); ++i) {
-    beliefs_.push_back(model_->prior(i));
-    grounds_.push_back(model_->ground(i, beliefs_.back()));
-    categories_.emplace_back(*model_, beliefs_.back(), *grounds_.back().crossing);
+  for (int i = 0; i < static_cast<int>(classes()); ++i) priors_.push_back(model_->prior(i));
+  beliefs_ = priors_;
+  grounds_.assign(classes(), refused());
+  categories_.resize(classes());
+  slots_.assign(classes(), Slot::Free);
+  price(0);
+}
+
+void CostCurveTable::price(std::size_t class_index) {
+  slots_[class_index] = Slot::Own;
+  const Worked& now = worked(static_cast<int>(class_index), priors_[class_index]);
+  grounds_[class_index] = now.ground;
+  beliefs_[class_index] = priors_[class_index];
+  categories_[class_index] = now.categories;
+  cost_.reset();
+}
+
+std::uint8_t CostCurveTable::prior(int class_index) {
+  const auto i = static_cast<std::size_t>(class_index);
+  if (slots_[i] == Slot::Free) price(i);
+  if (slots_[i] == Slot::Own) return static_cast<std::uint8_t>(class_index);
+  slots_[i] = Slot::Wanted;
+  overflowed_ = true;
+  return standIn(GroundKind::of(class_index, class_index, priors_[i], level_));
+}
+
+// Grows by one, or lends the last number that no class has.
+std::optional<std::uint8_t> CostCurveTable::freeNumber() {
+  if (grounds_.size() < kNumbers) {
+    grounds_.emplace_back();
+    beliefs_.emplace_back();
+    categories_.emplace_back();
+    return static_cast<std::uint8_t>(grounds_.size() - 1);
   }
+  const auto free = std::find(slots_.rbegin(), slots_.rend(), Slot::Free);
+  if (free == slots_.rend()) return std::nullopt;
+  *free = Slot::Lent;
+  return static_cast<std::uint8_t>(slots_.rend() - free - 1);
 }
 
 std::uint8_t CostCurveTable::learned(int class_index, int other_class, const GroundBelief& belief) {
   const GroundKind kind = GroundKind::of(class_index, other_class, belief, level_);
   if (const auto known = numbers_.find(kind); known != numbers_.end()) return known->second;
-  if (grounds_.size() >= kNumbers) {
+  const auto number = freeNumber();
+  if (!number) {
     overflowed_ = true;
     return standIn(kind);
   }
   // All of the kind, so that a curve does not depend on who asked for it first.
   const GroundBelief worst = kind.belief(model_->parts().classes[static_cast<std::size_t>(class_index)]);
-  const auto number = static_cast<std::uint8_t>(grounds_.size());
-  grounds_.push_back(model_->ground(class_index, other_class, worst));
-  beliefs_.push_back(worst);
-  categories_.emplace_back(*model_, worst, *grounds_.back().crossing);
-  numbers_.emplace(kind, number);
+  grounds_[*number] = model_->ground(class_index, other_class, worst);
+  beliefs_[*number] = worst;
+  categories_[*number] = CategoryTable(*model_, worst, *grounds_[*number].crossing);
+  numbers_.emplace(kind, *number);
   cost_.reset();
-  return number;
+  return *number;
 }
 
 // The strongest of the known beliefs on the same classes that are no better in anything.
@@ -72,24 +117,26 @@ DriveGround CostCurveTable::dearer(const DriveGround& ground, double added_J_per
 
 std::uint8_t CostCurveTable::dearer(std::uint8_t number, int step, double added_J_per_m) {
   if (const auto known = dearer_.find({number, step}); known != dearer_.end()) return known->second.number;
-  if (grounds_.size() >= kNumbers) {
+  const auto next = freeNumber();
+  if (!next) {
     overflowed_ = true;
     const auto greater = dearer_.lower_bound({number, step});
     return greater != dearer_.end() && greater->first.first == number ? greater->second.number
                                                                       : CellCode::kBlocked;
   }
-  const auto next = static_cast<std::uint8_t>(grounds_.size());
-  grounds_.push_back(dearer(grounds_[number], added_J_per_m));
-  beliefs_.push_back(GroundBelief(beliefs_[number]));
-  categories_.push_back(CategoryTable(categories_[number]));
-  dearer_.emplace(std::pair(number, step), Dearer{next, added_J_per_m});
+  grounds_[*next] = dearer(grounds_[number], added_J_per_m);
+  beliefs_[*next] = beliefs_[number];
+  categories_[*next] = categories_[number];
+  dearer_.emplace(std::pair(number, step), Dearer{*next, added_J_per_m});
   cost_.reset();
-  return next;
+  return *next;
 }
 
 double CostCurveTable::used() const noexcept {
-  const std::size_t all = kNumbers - classes();
-  return all > 0 ? static_cast<double>(grounds_.size() - classes()) / static_cast<double>(all) : 1.0;
+  const auto own = static_cast<std::size_t>(std::ranges::count(slots_, Slot::Own)),
+             idle = static_cast<std::size_t>(std::ranges::count(slots_, Slot::Free));
+  const std::size_t all = kNumbers - own;
+  return all > 0 ? static_cast<double>(grounds_.size() - own - idle) / static_cast<double>(all) : 1.0;
 }
 
 void CostCurveTable::restart(int level) {
@@ -97,27 +144,32 @@ void CostCurveTable::restart(int level) {
   overflowed_ = false;
   grounds_.resize(classes());
   beliefs_.resize(classes());
-  categories_.erase(categories_.begin() + static_cast<std::ptrdiff_t>(classes()), categories_.end());
+  categories_.resize(classes());
   numbers_.clear();
   dearer_.clear();
   cost_.reset();
+  for (std::size_t i = 0; i < classes(); ++i) {
+    if (slots_[i] == Slot::Wanted) price(i);
+    if (slots_[i] != Slot::Lent) continue;
+    slots_[i] = Slot::Free;
+    grounds_[i] = refused();
+    categories_[i] = {};
+  }
 }
 
 bool CostCurveTable::setPrior(int class_index, const GroundBelief& next) {
   const auto i = static_cast<std::size_t>(class_index);
   const auto same = [](const Estimate& a, const Estimate& b) { return a.value == b.value && a.std == b.std; };
-  if (same(next.pull, beliefs_[i].pull) && same(next.sinkage, beliefs_[i].sinkage)) return false;
-  beliefs_[i] = next;
-  const Worked& now = worked(class_index, next);
-  grounds_[i] = now.ground;
-  categories_[i] = now.categories;
+  if (same(next.pull, priors_[i].pull) && same(next.sinkage, priors_[i].sinkage)) return false;
+  priors_[i] = next;
+  if (slots_[i] != Slot::Own) return true;  // its cells are judged by it where they lie beside others
+  price(i);
   for (const auto& [from, its] : dearer_)
     if (from.first == i) {
       grounds_[its.number] = dearer(grounds_[i], its.added_J_per_m);
       beliefs_[its.number] = next;
-      categories_[its.number] = now.categories;
+      categories_[its.number] = categories_[i];
     }
-  cost_.reset();
   return true;
 }
 
@@ -139,7 +191,7 @@ SoilDoubt CostCurveTable::doubt() const {
   SoilDoubt doubt{.correlation_length_m = parts.policy.correlation_length_m,
                   .entrapment = parts.policy.held()};
   for (std::size_t i = 0; i < classes(); ++i) {
-    const double all = beliefs_[i].pull.std, apart = parts.classes[i].pull_std;
+    const double all = priors_[i].pull.std, apart = parts.classes[i].pull_std;
     doubt.shared.push_back(all > apart ? 1.0 - apart * apart / (all * all) : 0.0);
   }
   return doubt;

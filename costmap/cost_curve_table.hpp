@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -13,16 +14,20 @@
 
 namespace talus::costmap {
 
-/// Gives curve numbers to beliefs. The priors of the classes are numbers 0 .. classes-1; a learned belief is
+/// Gives curve numbers to beliefs. The priors of the classes are numbers 0 .. classes-1, refused in every heading until
+/// their number is asked for: only classes that occur are priced, and the first, the default. A learned belief is
 /// rounded towards danger (GroundKind) and gets its number when it first occurs. When the 254 numbers are used
-/// up, a known number whose ground is no better in anything stands in, and where there is none the ground is
+/// up, those of classes that nobody asked for are lent; then a known number whose ground is no better in anything stands in, and where there is none the ground is
 /// blocked: running out makes ground dearer, never cheaper. Not thread-safe.
 class CostCurveTable {
  public:
   explicit CostCurveTable(std::shared_ptr<const GroundModel> model);
 
-  /// Number of ground of a class that nobody drove on.
-  std::uint8_t prior(int class_index) const noexcept { return static_cast<std::uint8_t>(class_index); }
+  /// Number of ground of a class that nobody drove on, and what is believed of it.
+  std::uint8_t prior(int class_index);
+  const GroundBelief& priorBelief(int class_index) const {
+    return priors_[static_cast<std::size_t>(class_index)];
+  }
   /// Number of ground under a learned belief. `other_class`: its curve is nowhere below that of the same belief
   /// on that class either.
   std::uint8_t learned(int class_index, int other_class, const GroundBelief& belief);
@@ -65,6 +70,8 @@ class CostCurveTable {
   std::uint8_t standIn(const GroundKind& kind) const;
   DriveGround dearer(const DriveGround& ground, double added_J_per_m) const;
   SoilDoubt doubt() const;
+  void price(std::size_t class_index);
+  std::optional<std::uint8_t> freeNumber();
   std::size_t classes() const noexcept { return model_->parts().classes.size(); }
 
   std::shared_ptr<const GroundModel> model_;
@@ -73,6 +80,10 @@ class CostCurveTable {
   std::vector<DriveGround> grounds_;
   std::vector<CategoryTable> categories_;
   std::vector<GroundBelief> beliefs_;
+  std::vector<GroundBelief> priors_;  // of the classes
+  // What the numbers of the classes stand for: nothing yet, the class, another belief, or one that the class is to have back.
+  enum class Slot : std::uint8_t { Free, Own, Lent, Wanted };
+  std::vector<Slot> slots_;
   struct Dearer {
     std::uint8_t number;
     double added_J_per_m;

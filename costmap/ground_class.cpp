@@ -24,7 +24,7 @@ constexpr std::array<std::pair<double Soil::*, double SoilDeviation::*>, 6> kFie
 constexpr double kStep = 0.5;
 
 double pullOf(const Soil& soil, const terramech::Rover& rover) {
-  return terramech::MobilityCurve(soil, rover).reference().drawbar_pull_over_load;
+  return terramech::mobilityReference(soil, rover).drawbar_pull_over_load;
 }
 
 }  // namespace
@@ -49,7 +49,7 @@ GroundClass groundClass(int number, const terramech::SoilPrior& prior, const ter
 
 GroundClass groundClass(int number, const terramech::RefinedModel& model, const terramech::Rover& rover) {
   const auto pull = [&](const terramech::RefinedModel& m) {
-    return terramech::MobilityCurve(m, rover).reference().drawbar_pull_over_load;
+    return terramech::mobilityReference(m, rover).drawbar_pull_over_load;
   };
   GroundClass ground;
   ground.number = number;

@@ -61,10 +61,10 @@ WheelSwath::Ground GroundCurves::ground(maps::Cell cell) const {
   if (!site_->grid().contains(cell)) return {};
   const int index = site_->classIndex(cell);
   if (index < 0 && site_->classes[cell] == GroundSite::kNoClass && site_->model->parts().policy.allow_unknown)
-    return {0, table_.belief(table_.prior(0))};
+    return {0, table_.priorBelief(0)};
   if (index < 0) return {.belief = {}, .unseen = true};
   const std::uint32_t word = any_learned_ ? learned_[cell] : 0U;
-  if (word == 0) return {index, table_.belief(table_.prior(index))};
+  if (word == 0) return {index, table_.priorBelief(index)};
   return {index,
           unpacked(word, index).belief(site_->model->parts().classes[static_cast<std::size_t>(index)])};
 }

@@ -2,12 +2,15 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <mutex>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
 #include <talus/costmap/cross_slope.hpp>
 #include <talus/costmap/ground_model.hpp>
 #include <talus/terramech/mobility/rut.hpp>
+#include <talus/terramech/mobility/slope_equilibrium.hpp>
 #include <talus/terramech/numerics/normal_distribution.hpp>
 #include <talus/terramech/numerics/range.hpp>
 
@@ -49,20 +52,34 @@ double slopeAtSlip_rad(const terramech::MobilityCurve& curve, double slip) {
   return 0.5 * (low + high);
 }
 
-terramech::SlopeEquilibrium slopeOf(const GroundClass& ground, const terramech::Rover& rover) {
-  if (ground.effects.empty()) return {ground.soil, rover};
+terramech::RefinedModel modelOf(const GroundClass& ground) {
   terramech::RefinedModel model;
   model.soil = ground.soil;
   model.effects = ground.effects;
-  return {model, rover};
+  return model;
+}
+
+terramech::SlopeEquilibrium slopeOf(const GroundClass& ground, const terramech::Rover& rover) {
+  if (ground.effects.empty()) return {ground.soil, rover};
+  return {modelOf(ground), rover};
 }
 
 // In the rut of an equal wheel: as data have shown, or as rutted() supposes.
-terramech::MobilityCurve inRut(const GroundClass& ground, const terramech::Rover& rover) {
-  if (terramech::knowsPasses(ground.effects)) return mobilityOf(ground, rover, {.first_pass = 2});
+GroundClass rutOf(const GroundClass& ground) {
   GroundClass rut = ground;
-  rut.soil = terramech::rutted(ground.soil);
-  return mobilityOf(rut, rover);
+  if (!terramech::knowsPasses(ground.effects)) rut.soil = terramech::rutted(ground.soil);
+  return rut;
+}
+
+terramech::MobilityOptions passOf(const GroundClass& rut) {
+  return terramech::knowsPasses(rut.effects) ? terramech::MobilityOptions{.first_pass = 2}
+                                             : terramech::MobilityOptions{};
+}
+
+// All axles together, where they differ.
+std::optional<terramech::MobilityOptions> axlesOf(const GroundClass& ground, const terramech::Rover& rover) {
+  if (!terramech::knowsPasses(ground.effects)) return std::nullopt;
+  return terramech::MobilityOptions{.axles = rover.wheel_count / 2};
 }
 
 }  // namespace
@@ -70,11 +87,28 @@ terramech::MobilityCurve inRut(const GroundClass& ground, const terramech::Rover
 terramech::MobilityCurve mobilityOf(const GroundClass& ground, const terramech::Rover& rover,
                                     const terramech::MobilityOptions& options) {
   if (ground.effects.empty()) return {ground.soil, rover, options};
-  terramech::RefinedModel model;
-  model.soil = ground.soil;
-  model.effects = ground.effects;
-  return {model, rover, options};
+  return {modelOf(ground), rover, options};
 }
+
+terramech::MobilityReference referenceOf(const GroundClass& ground, const terramech::Rover& rover,
+                                         const terramech::MobilityOptions& options) {
+  if (ground.effects.empty()) return terramech::mobilityReference(ground.soil, rover, options);
+  return terramech::mobilityReference(modelOf(ground), rover, options);
+}
+
+struct GroundModel::ClassGround {
+  terramech::MobilityCurve wheel;   // one on fresh ground
+  terramech::MobilityCurve in_rut;  // of an equal wheel
+  terramech::MobilityCurve all;     // axles of the rover together
+  ExpectedDrive drive;              // the same over the demand
+  terramech::SlopeEquilibrium slope;
+  std::shared_ptr<const CrossSlope> crossing;
+};
+
+struct GroundModel::Lazy {
+  std::once_flag once;
+  std::optional<ClassGround> ground;
+};
 
 GroundModel::GroundModel(Parts parts) : parts_(std::move(parts)) {
   if (parts_.classes.empty())
@@ -92,20 +126,45 @@ GroundModel::GroundModel(Parts parts) : parts_(std::move(parts)) {
   for (const GroundClass& c : parts_.classes) {
     if (&parts_.classes[static_cast<std::size_t>(classIndex(c.number))] != &c)
       throw std::invalid_argument("ground model: class " + std::to_string(c.number) + " is declared twice");
-    wheel_curves_.push_back(mobilityOf(c, parts_.rover));
-    rut_curves_.push_back(inRut(c, parts_.rover));
-    curves_.push_back(terramech::knowsPasses(c.effects)
-                          ? mobilityOf(c, parts_.rover, {.axles = parts_.rover.wheel_count / 2})
-                          : wheel_curves_.back());
-    drives_.emplace_back(curves_.back());
-    slopes_.push_back(slopeOf(c, parts_.rover));
-    const CrossSlope::Level level{.first = drives_.back().first(),
-                                  .last = drives_.back().last(),
-                                  .thrust = std::max({curves_.back().reference().torque_over_load_radius,
-                                                      drives_.back().last(), kLeastThrust})};
-    crossings_.push_back(std::make_shared<const CrossSlope>(
-        parts_.prices_crossing ? CrossSlope{slopes_.back(), level, limits()} : CrossSlope::alongOnly()));
+    // Whatever of a class may leave its range leaves it here: what is worked out later has the same ground.
+    const GroundClass rut = rutOf(c);
+    references_.push_back({.fresh = costmap::referenceOf(c, parts_.rover),
+                           .in_rut = costmap::referenceOf(rut, parts_.rover, passOf(rut))});
+    if (const auto axles = axlesOf(c, parts_.rover)) costmap::referenceOf(c, parts_.rover, *axles);
+    grounds_.push_back(std::make_shared<Lazy>());
   }
+}
+
+GroundModel::ClassGround GroundModel::workedOut(const GroundClass& ground) const {
+  const GroundClass rut = rutOf(ground);
+  terramech::MobilityCurve wheel = mobilityOf(ground, parts_.rover);
+  const auto axles = axlesOf(ground, parts_.rover);
+  terramech::MobilityCurve all = axles ? mobilityOf(ground, parts_.rover, *axles) : wheel;
+  const ExpectedDrive drive(all);
+  terramech::SlopeEquilibrium slope = slopeOf(ground, parts_.rover);
+  const CrossSlope::Level level{
+      .first = drive.first(),
+      .last = drive.last(),
+      .thrust = std::max({all.reference().torque_over_load_radius, drive.last(), kLeastThrust})};
+  auto crossing = std::make_shared<const CrossSlope>(
+      parts_.prices_crossing ? CrossSlope{slope, level, limits()} : CrossSlope::alongOnly());
+  return {.wheel = std::move(wheel),
+          .in_rut = mobilityOf(rut, parts_.rover, passOf(rut)),
+          .all = std::move(all),
+          .drive = drive,
+          .slope = std::move(slope),
+          .crossing = std::move(crossing)};
+}
+
+const GroundModel::ClassGround& GroundModel::groundOf(int class_index) const {
+  const auto i = static_cast<std::size_t>(class_index);
+  Lazy& lazy = *grounds_[i];
+  std::call_once(lazy.once, [&] { lazy.ground.emplace(workedOut(parts_.classes[i])); });
+  return *lazy.ground;
+}
+
+const std::shared_ptr<const CrossSlope>& GroundModel::crossing(int class_index) const {
+  return groundOf(class_index).crossing;
 }
 
 int GroundModel::classIndex(int number) const noexcept {
@@ -117,13 +176,14 @@ int GroundModel::classIndex(int number) const noexcept {
 GroundBelief GroundModel::prior(int class_index) const {
   const auto i = static_cast<std::size_t>(class_index);
   const GroundClass& c = parts_.classes[i];
-  const auto& reference = wheel_curves_[i].reference();
+  const auto& reference = references_[i].fresh;
   return {.pull = {reference.drawbar_pull_over_load, std::hypot(c.pull_std, c.mean_std)},
           .sinkage = {reference.sinkage_over_radius, c.sinkage_std}};
 }
 
-SteadyWheel GroundModel::steady(int class_index, const DrivenWheel& wheel) const noexcept {
-  const terramech::MobilityCurve& driven = curve(class_index, wheel.in_rut);
+SteadyWheel GroundModel::steady(int class_index, const DrivenWheel& wheel) const {
+  const ClassGround& ground = groundOf(class_index);
+  const terramech::MobilityCurve& driven = wheel.in_rut ? ground.in_rut : ground.wheel;
   const double slope_rad = slopeAtSlip_rad(driven, wheel.slip);
   const MobilityState state = driven.at(slope_rad);
   const double radius_m = parts_.rover.wheel.radius_m;
@@ -132,9 +192,8 @@ SteadyWheel GroundModel::steady(int class_index, const DrivenWheel& wheel) const
                      .sinkage_over_radius = state.sinkage_m / radius_m,
                      .torque_over_load_radius = state.torque_Nm / (load_N * radius_m)};
   if (wheel.slip_angle_rad == 0.0) return steady;
-  const terramech::SlopeEquilibrium& slope = slopes_[static_cast<std::size_t>(class_index)];
-  const terramech::WheelOnSlope straight = slope.evenWheel(wheel.slip, 0.0),
-                                turned = slope.evenWheel(wheel.slip, wheel.slip_angle_rad);
+  const terramech::WheelOnSlope straight = ground.slope.evenWheel(wheel.slip, 0.0),
+                                turned = ground.slope.evenWheel(wheel.slip, wheel.slip_angle_rad);
   steady.gradient += (turned.drawbar_pull_N - straight.drawbar_pull_N) / turned.load_N;
   steady.torque_over_load_radius += (turned.torque_Nm - straight.torque_Nm) / (turned.load_N * radius_m);
   if (straight.sinkage_m > 0.0) steady.sinkage_over_radius *= turned.sinkage_m / straight.sinkage_m;
@@ -143,7 +202,8 @@ SteadyWheel GroundModel::steady(int class_index, const DrivenWheel& wheel) const
 }
 
 SteadyWheel GroundModel::reference(int class_index, bool in_rut) const noexcept {
-  const terramech::MobilityReference& at = curve(class_index, in_rut).reference();
+  const Reference& known = referenceOf(class_index);
+  const terramech::MobilityReference& at = in_rut ? known.in_rut : known.fresh;
   return {at.drawbar_pull_over_load, at.sinkage_over_radius, at.torque_over_load_radius};
 }
 
@@ -193,7 +253,7 @@ Ranked GroundModel::category(const GroundBelief& belief, double gradient) const 
 
 // Up to the reference slip by the shift of the curve; beyond it the ground has its share of the class's thrust left.
 Estimate GroundModel::demand(int class_index, const Estimate& pull, double gradient) const noexcept {
-  const Thrust own(wheel_curves_[static_cast<std::size_t>(class_index)].reference());
+  const Thrust own(referenceOf(class_index).fresh);
   const double beyond = std::max(gradient - pull.value, 0.0), share = own.share(pull.value);
   return {gradient + own.pull - pull.value + beyond * (1.0 / share - 1.0),
           pull.std * (1.0 + beyond / (share * own.thrust)) / share};
@@ -201,11 +261,11 @@ Estimate GroundModel::demand(int class_index, const Estimate& pull, double gradi
 
 // At most, the ground pulls what it pulls at its strongest slip, its share of what the class has there. Where even the mean
 // falls short it is taken for certain: doubt is no hope.
-double GroundModel::weakProbability(int class_index, const Estimate& pull, double gradient) const noexcept {
-  const auto i = static_cast<std::size_t>(class_index);
-  const Thrust own(wheel_curves_[i].reference());
-  const double strongest = curves_[i].strongest().drawbar_pull_over_load;
-  const double reserve = std::max({strongest, drives_[i].last(), own.pull}) - own.pull;
+double GroundModel::weakProbability(const ClassGround& ground, const Estimate& pull,
+                                    double gradient) noexcept {
+  const Thrust own(ground.wheel.reference());
+  const double strongest = ground.all.strongest().drawbar_pull_over_load;
+  const double reserve = std::max({strongest, ground.drive.last(), own.pull}) - own.pull;
   // The pull at the reference slip from which on the gradient is within reach; of ground stronger than its class by the shift.
   const double least = gradient > own.pull + reserve
                            ? gradient - reserve
@@ -214,11 +274,10 @@ double GroundModel::weakProbability(int class_index, const Estimate& pull, doubl
 }
 
 // The locked wheels of ground that is weaker by d hold d less, or their share of what the class's hold, if that is less.
-double GroundModel::unbrakedProbability(int class_index, const Estimate& pull,
-                                        double gradient) const noexcept {
-  const auto i = static_cast<std::size_t>(class_index);
-  const Thrust own(wheel_curves_[i].reference());
-  const double first = drives_[i].first(), locked = -first - own.resistance();
+double GroundModel::unbrakedProbability(const ClassGround& ground, const Estimate& pull,
+                                        double gradient) noexcept {
+  const Thrust own(ground.wheel.reference());
+  const double first = ground.drive.first(), locked = -first - own.resistance();
   double least = own.pull + first - gradient;
   if (locked > own.thrust && gradient > first)
     least = std::max(least, own.thrust * (-gradient - own.resistance()) / locked - own.resistance());
@@ -226,11 +285,11 @@ double GroundModel::unbrakedProbability(int class_index, const Estimate& pull,
 }
 
 Refusal GroundModel::refusal(const DriveState& state, double weak, const Demand& demand,
-                             int class_index) const noexcept {
+                             const ClassGround& ground) const noexcept {
   const DrivePolicy& policy = parts_.policy;
-  const ExpectedDrive& drive = drives_[static_cast<std::size_t>(class_index)];
   if (static_cast<double>(std::abs(state.torque_Nm)) > parts_.rover.max_torque_Nm) return Refusal::Torque;
-  if (demand.braked < drive.first() || demand.driven > drive.last() || weak > policy.max_immobilisation)
+  if (demand.braked < ground.drive.first() || demand.driven > ground.drive.last() ||
+      weak > policy.max_immobilisation)
     return Refusal::Pull;
   if (static_cast<double>(state.sinkage_m) >= parts_.rover.clearance_m) return Refusal::Sinkage;
   const bool refused = (state.category == Category::Dangerous && !policy.allow_dangerous) ||
@@ -239,25 +298,25 @@ Refusal GroundModel::refusal(const DriveState& state, double weak, const Demand&
 }
 
 DriveState GroundModel::state(int class_index, const GroundBelief& belief, double gradient) const {
-  const auto i = static_cast<std::size_t>(class_index);
+  const ClassGround& ground = groundOf(class_index);
   const DrivePolicy& policy = parts_.policy;
-  const auto& reference = wheel_curves_[i].reference();
+  const auto& reference = ground.wheel.reference();
   const double weakness = reference.drawbar_pull_over_load - belief.pull.value;
   const Estimate demand = this->demand(class_index, belief.pull, gradient);
   const double least = std::min(gradient, 0.0), mean = std::max(demand.value, least);
-  const MobilityState s = curves_[i].at(std::atan(mean)), braked = curves_[i].at(std::atan(least));
-  const ExpectedCost expected = drives_[i].at(demand, least);
+  const MobilityState s = ground.all.at(std::atan(mean)), braked = ground.all.at(std::atan(least));
+  const ExpectedCost expected = ground.drive.at(demand, least);
   const double surface = std::hypot(1.0, gradient);
   const double deeper =
       reference.sinkage_over_radius > 0.0 ? belief.sinkage.value / reference.sinkage_over_radius : 1.0;
-  const double weak = std::max(weakProbability(class_index, belief.pull, gradient),
-                               unbrakedProbability(class_index, belief.pull, gradient));
+  const double weak = std::max(weakProbability(ground, belief.pull, gradient),
+                               unbrakedProbability(ground, belief.pull, gradient));
 
   DriveState state;
   state.slip = static_cast<float>(s.slip);
   // Stronger ground on the same slope brakes harder: weaker ground is not let off what refuses that.
   state.sinkage_m = static_cast<float>(
-      std::max({s.sinkage_m, drives_[i].sinkage_m(mean), braked.sinkage_m, drives_[i].sinkage_m(least)}) *
+      std::max({s.sinkage_m, ground.drive.sinkage_m(mean), braked.sinkage_m, ground.drive.sinkage_m(least)}) *
       deeper);
   state.torque_Nm =
       static_cast<float>(std::abs(braked.torque_Nm) > std::abs(s.torque_Nm) ? braked.torque_Nm : s.torque_Nm);
@@ -270,7 +329,7 @@ DriveState GroundModel::state(int class_index, const GroundBelief& belief, doubl
   state.category = categoryAt(belief.pull.value, belief.sinkage.value, gradient);
   state.class_index = static_cast<std::uint8_t>(class_index);
   state.refusal =
-      refusal(state, weak, {.driven = mean, .braked = gradient - std::max(weakness, 0.0)}, class_index);
+      refusal(state, weak, {.driven = mean, .braked = gradient - std::max(weakness, 0.0)}, ground);
   return state;
 }
 
@@ -289,10 +348,9 @@ DriveGround GroundModel::ground(int class_index, int other_class, const GroundBe
     s = state(class_index, belief, DriveCurve::gradient(bin));
     if (other_class != class_index) s = worse(s, state(other_class, belief, DriveCurve::gradient(bin)));
   }
-  const auto i = static_cast<std::size_t>(class_index), j = static_cast<std::size_t>(other_class);
-  ground.crossing =
-      i == j ? crossings_[i]
-             : std::make_shared<const CrossSlope>(CrossSlope::harder(*crossings_[i], *crossings_[j]));
+  ground.crossing = class_index == other_class ? crossing(class_index)
+                                               : std::make_shared<const CrossSlope>(CrossSlope::harder(
+                                                     *crossing(class_index), *crossing(other_class)));
   ground.curve =
       priced(*states, ground.crossing.get(),
              {.energy = 1.0, .time_W = parts_.policy.time_weight_W, .risk_J = parts_.policy.risk_weight_J});

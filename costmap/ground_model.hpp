@@ -13,7 +13,6 @@
 #include <talus/terramech/effects/effects.hpp>
 #include <talus/terramech/mobility/category.hpp>
 #include <talus/terramech/mobility/mobility.hpp>
-#include <talus/terramech/mobility/slope_equilibrium.hpp>
 #include <talus/terramech/numerics/estimate.hpp>
 
 namespace talus::costmap {
@@ -32,6 +31,10 @@ struct GroundClass {
 /// What a slope asks of a rover on ground of a class. Throws std::invalid_argument as MobilityCurve does.
 terramech::MobilityCurve mobilityOf(const GroundClass& ground, const terramech::Rover& rover,
                                     const terramech::MobilityOptions& options = {});
+
+/// mobilityOf().reference() alone, a hundred times as fast.
+terramech::MobilityReference referenceOf(const GroundClass& ground, const terramech::Rover& rover,
+                                         const terramech::MobilityOptions& options = {});
 
 /// What is believed of the strength of a piece of ground, both at the reference slip 0.5.
 struct GroundBelief {
@@ -71,7 +74,9 @@ struct Ranked {
 /// a flatter slope, at most as on the level, and has no more reserve than its class. Cost and
 /// risk never fall as a standard deviation grows, nor, from the level upwards, as the gradient grows
 /// (ExpectedDrive). Downhill, ground that gives less by d brakes less by d, or its share, too, so that weaker ground is nowhere
-/// allowed where stronger ground is refused. What crossing a slope costs is CrossSlope's to say. Immutable.
+/// allowed where stronger ground is refused. What crossing a slope costs is CrossSlope's to say. What takes long of a class, its
+/// curves and what crossing slopes costs, is worked out when it is first asked for, once: a class raster may declare hundreds of
+/// classes and a window hold three. Immutable to its callers; safe to share between threads, and so are copies.
 class GroundModel {
  public:
   /// Everything the model is made from.
@@ -97,7 +102,7 @@ class GroundModel {
 
   /// What a wheel of a rover that drives steadily at this slip on ground of the class reads, as its soil
   /// says; the ends of what it can drive beyond them. A slip angle changes it as it changes a wheel on fresh ground.
-  SteadyWheel steady(int class_index, const DrivenWheel& wheel) const noexcept;
+  SteadyWheel steady(int class_index, const DrivenWheel& wheel) const;
   /// The same at the reference slip.
   SteadyWheel reference(int class_index, bool in_rut) const noexcept;
 
@@ -109,9 +114,7 @@ class GroundModel {
   DriveGround ground(int class_index, int other_class, const GroundBelief& belief) const;
 
   /// What crossing slopes is worth on ground of a class.
-  const std::shared_ptr<const CrossSlope>& crossing(int class_index) const {
-    return crossings_[static_cast<std::size_t>(class_index)];
-  }
+  const std::shared_ptr<const CrossSlope>& crossing(int class_index) const;
 
   /// State at one gradient along the heading (rise over run) with none across, as ground() tabulates it.
   DriveState state(int class_index, const GroundBelief& belief, double gradient) const;
@@ -125,9 +128,17 @@ class GroundModel {
   DriveCost::Limits limits() const;
 
  private:
-  const terramech::MobilityCurve& curve(int class_index, bool in_rut) const noexcept {
-    return (in_rut ? rut_curves_ : wheel_curves_)[static_cast<std::size_t>(class_index)];
+  // What is known of a class at once, and what is worked out when it is first asked for.
+  struct Reference {
+    terramech::MobilityReference fresh, in_rut;  // of one wheel
+  };
+  struct ClassGround;
+  struct Lazy;
+  const Reference& referenceOf(int class_index) const noexcept {
+    return references_[static_cast<std::size_t>(class_index)];
   }
+  const ClassGround& groundOf(int class_index) const;
+  ClassGround workedOut(const GroundClass& ground) const;
 
   // Drawbar pull over load at which a slope is no longer dangerous, and from which it is safe.
   struct Edges {
@@ -136,23 +147,21 @@ class GroundModel {
   Edges edges(double gradient) const noexcept;
   double criticalSinkage() const noexcept;
   Estimate demand(int class_index, const Estimate& pull, double gradient) const noexcept;
-  double weakProbability(int class_index, const Estimate& pull, double gradient) const noexcept;
-  double unbrakedProbability(int class_index, const Estimate& pull, double gradient) const noexcept;
+  static double weakProbability(const ClassGround& ground, const Estimate& pull, double gradient) noexcept;
+  static double unbrakedProbability(const ClassGround& ground, const Estimate& pull,
+                                    double gradient) noexcept;
   // The pulls over load that the class must give: driven at most, braked at least.
   struct Demand {
     double driven, braked;
   };
-  Refusal refusal(const DriveState& state, double weak, const Demand& demand, int class_index) const noexcept;
+  Refusal refusal(const DriveState& state, double weak, const Demand& demand,
+                  const ClassGround& ground) const noexcept;
   terramech::Category categoryAt(double pull, double sinkage, double gradient) const;
 
   Parts parts_;
   double tan_margin_ = 0.0;
-  std::vector<terramech::MobilityCurve> curves_;  // of each class, all axles of the rover together
-  std::vector<ExpectedDrive> drives_;             // the same over the demand
-  std::vector<terramech::SlopeEquilibrium> slopes_;
-  std::vector<std::shared_ptr<const CrossSlope>> crossings_;
-  std::vector<terramech::MobilityCurve> wheel_curves_;  // one wheel on fresh ground
-  std::vector<terramech::MobilityCurve> rut_curves_;    // in the rut of an equal wheel
+  std::vector<Reference> references_;
+  std::vector<std::shared_ptr<Lazy>> grounds_;
 };
 
 }  // namespace talus::costmap

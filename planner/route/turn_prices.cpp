@@ -87,8 +87,11 @@ Kinematics kinematicsOn(const costmap::GroundModel& model, const costmap::DriveC
       classes, {}, [](const costmap::GroundClass& c) { return c.soil.friction_angle_rad; });
   Kinematics kinematics = kinematicsOf(model.rover(), groundOf(model, softest->soil, onTheFlat(cost, 0)));
   for (std::size_t k = 0; k < cost.curves().size(); ++k) {
-    const terramech::Soil& soil = k < classes.size() ? classes[k].soil : softest->soil;
-    kinematics.turns_by_curve.push_back(turnPrices(model.rover(), groundOf(model, soil, onTheFlat(cost, k))));
+    const costmap::DriveState flat = onTheFlat(cost, k);
+    const bool own =
+        k < classes.size() && flat.class_index == k;  // a class's number may be lent to another belief
+    kinematics.turns_by_curve.push_back(
+        turnPrices(model.rover(), groundOf(model, own ? classes[k].soil : softest->soil, flat)));
   }
   return kinematics;
 }

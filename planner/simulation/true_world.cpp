@@ -115,9 +115,17 @@ TrueWorld::TrueWorld(const WorldSoils& soils, const terramech::Rover& rover,
     patch_soil_.push_back(static_cast<std::size_t>(alike - soils_.begin()));
     if (alike == soils_.end()) soils_.push_back(patch.soil);
   }
-  for (const auto& soil : soils_)
-    tables_.push_back(
-        {WheelTable(soil, rover_, effects_), WheelTable(terramech::rutted(soil), rover_, effects_)});
+  // A class raster may declare hundreds of classes, each a tenth of a second, and hold three.
+  std::vector<bool> occurs(soils_.size(), false);
+  for (const std::uint8_t index : class_index_.values())
+    occurs[std::min<std::size_t>(index, classes_ - 1)] = true;
+  occurs[0] = true;  // beyond the map
+  for (const std::size_t soil : patch_soil_) occurs[soil] = true;
+  tables_.resize(soils_.size());
+  for (std::size_t i = 0; i < soils_.size(); ++i)
+    if (occurs[i])
+      tables_[i].emplace(WheelTable(soils_[i], rover_, effects_),
+                         WheelTable(terramech::rutted(soils_[i]), rover_, effects_));
 }
 
 std::size_t TrueWorld::soilAt(const maps::Point& place, double margin_m) const noexcept {
@@ -162,7 +170,7 @@ TrueWorld::Step TrueWorld::drive(const Motion& motion) const {
   for (const WheelState& w : step.wheels) load_N += w.load_N;
   std::vector<LoadedTable> wheels;
   for (const WheelState& w : step.wheels) {
-    const Tables& ground = tables_[soilAt(w.place)];
+    const Tables& ground = *tables_[soilAt(w.place)];
     wheels.push_back({.table = w.passes > 0 ? &ground.rut : &ground.fresh,
                       .load = w.load_N / terramech::wheelLoad_N(rover_),
                       .share = w.load_N / load_N});

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -92,7 +93,7 @@ class TrueWorld {
   std::size_t classes_;
   std::vector<terramech::Soil> soils_;
   std::vector<terramech::Effect> effects_;
-  std::vector<Tables> tables_;  // of each soil
+  std::vector<std::optional<Tables>> tables_;  // of each soil that some cell or patch has
   std::vector<SoilPatch> patches_;
   std::vector<std::size_t> patch_soil_;  // of each patch
 };

@@ -129,54 +129,91 @@ WheelForces meanOfAxles(const RefinedModel& model, const Rover& rover, const Sta
 }  // namespace
 
 /// How a curve asks for forces.
-struct MobilityCurve::Solver {
+struct MobilitySolver {
   CarriedForces carried;
   AxleForces on_axle;
 };
 
-MobilityCurve::MobilityCurve(const Soil& soil, const Rover& rover, const MobilityOptions& options)
-    : rover_(rover), options_(options) {
+namespace {
+
+/// Of a wheel on a soil; both are to outlive it.
+MobilitySolver solverOf(const Soil& soil, const Rover& rover) {
   validate(soil);
-  tabulate({carriedBy(soil, rover.wheel), [&](const Station& at) {
-              return forcesAtEntry(soil, rover.wheel, {.load_N = at.load_N, .slip = at.slip},
-                                   0.5 * std::numbers::pi)
-                  .forces;
-            }});
+  return {carriedBy(soil, rover.wheel), [&](const Station& at) {
+            return forcesAtEntry(soil, rover.wheel, {.load_N = at.load_N, .slip = at.slip},
+                                 0.5 * std::numbers::pi)
+                .forces;
+          }};
 }
 
-MobilityCurve::MobilityCurve(const RefinedModel& model, const Rover& rover, const MobilityOptions& options)
-    : rover_(rover), options_(options) {
+/// The ground of a model, without effects of sensors.
+RefinedModel groundOf(const RefinedModel& model) {
   validate(model.soil);
   if (model.base == BaseModel::LinearFormula)
     throw std::invalid_argument(
         "model 'linear-formula' computes drawbar pull from a measured torque and cannot predict slip on a "
         "slope; trace the data with model: wong-reece");
-  const RefinedModel ground = withoutSensors(model);
-  const AxleForces forces = [&](const Station& at) { return meanOfAxles(ground, rover, at, options); };
-  const CarriedForces carried = [&](const Station& at) -> std::optional<WheelForces> {
-    const WheelForces f = forces(at);
-    if (!(f.sinkage_m < (1.0 - 1e-9) * rover.wheel.radius_m)) return std::nullopt;
-    return f;
-  };
-  tabulate({carried, forces});
+  return withoutSensors(model);
 }
 
-void MobilityCurve::tabulate(const Solver& solver) {
-  validate(rover_);
+/// Of the axles of a rover on the ground of a model; all are to outlive it.
+MobilitySolver solverOf(const RefinedModel& ground, const Rover& rover, const MobilityOptions& options) {
+  const AxleForces forces = [&](const Station& at) { return meanOfAxles(ground, rover, at, options); };
+  return {[&rover, forces](const Station& at) -> std::optional<WheelForces> {
+            const WheelForces f = forces(at);
+            if (!(f.sinkage_m < (1.0 - 1e-9) * rover.wheel.radius_m)) return std::nullopt;
+            return f;
+          },
+          forces};
+}
+
+void require(const Rover& rover, const MobilityOptions& options) {
+  validate(rover);
   const RangeCheck check{"mobility options"};
-  check.within("reference_slip", options_.reference_slip, {1e-6, 1.0 - 1e-6});
-  check.within("max_slip", options_.max_slip, {1e-6, 1.0});
-  check.atLeast("first_pass", options_.first_pass, 1.0);
-  check.atLeast("axles", options_.axles, 1.0);
-  const auto flatAt = [&](double slip) {
-    const Station flat{wheelLoad_N(rover_), slip, 0.0};
-    const auto carried = solver.carried(flat);
-    const WheelForces f = carried ? *carried : solver.on_axle(flat);
-    const double radius_m = rover_.wheel.radius_m;
-    return MobilityReference{slip, f.drawbar_pull_N / flat.load_N, std::min(f.sinkage_m / radius_m, 1.0),
-                             f.torque_Nm / (flat.load_N * radius_m)};
-  };
-  reference_ = strongest_ = flatAt(options_.reference_slip);
+  check.within("reference_slip", options.reference_slip, {1e-6, 1.0 - 1e-6});
+  check.within("max_slip", options.max_slip, {1e-6, 1.0});
+  check.atLeast("first_pass", options.first_pass, 1.0);
+  check.atLeast("axles", options.axles, 1.0);
+}
+
+MobilityReference flatAt(const MobilitySolver& solver, const Rover& rover, double slip) {
+  const Station flat{wheelLoad_N(rover), slip, 0.0};
+  const auto carried = solver.carried(flat);
+  const WheelForces f = carried ? *carried : solver.on_axle(flat);
+  const double radius_m = rover.wheel.radius_m;
+  return {slip, f.drawbar_pull_N / flat.load_N, std::min(f.sinkage_m / radius_m, 1.0),
+          f.torque_Nm / (flat.load_N * radius_m)};
+}
+
+}  // namespace
+
+MobilityReference mobilityReference(const Soil& soil, const Rover& rover, const MobilityOptions& options) {
+  const MobilitySolver solver = solverOf(soil, rover);
+  require(rover, options);
+  return flatAt(solver, rover, options.reference_slip);
+}
+
+MobilityReference mobilityReference(const RefinedModel& model, const Rover& rover,
+                                    const MobilityOptions& options) {
+  const RefinedModel ground = groundOf(model);
+  require(rover, options);
+  return flatAt(solverOf(ground, rover, options), rover, options.reference_slip);
+}
+
+MobilityCurve::MobilityCurve(const Soil& soil, const Rover& rover, const MobilityOptions& options)
+    : rover_(rover), options_(options) {
+  tabulate(solverOf(soil, rover));
+}
+
+MobilityCurve::MobilityCurve(const RefinedModel& model, const Rover& rover, const MobilityOptions& options)
+    : rover_(rover), options_(options) {
+  const RefinedModel ground = groundOf(model);
+  tabulate(solverOf(ground, rover, options));
+}
+
+void MobilityCurve::tabulate(const MobilitySolver& solver) {
+  require(rover_, options_);
+  reference_ = strongest_ = flatAt(solver, rover_, options_.reference_slip);
   const std::vector<Drive> drives = steadyDrives(solver.carried, rover_);
   if (drives.size() < 2) return;
   std::vector<double> slope, slip, sinkage, torque;
@@ -189,7 +226,7 @@ void MobilityCurve::tabulate(const Solver& solver) {
   min_slope_rad_ = slope.front();
   max_slope_rad_ = slope.back();
   locked_pull_ = std::tan(min_slope_rad_);
-  strongest_ = flatAt(drives.back().slip);
+  strongest_ = flatAt(solver, rover_, drives.back().slip);
   slip_ = {slope, slip};
   sinkage_m_ = {slope, sinkage};
   torque_Nm_ = {slope, torque};

@@ -38,6 +38,8 @@ struct MobilityReference {
   double torque_over_load_radius = 0.0;  ///< T/(rW) [-]
 };
 
+struct MobilitySolver;  ///< inner: where a curve has the forces of a wheel from
+
 /// Slope along the heading to slip, sinkage, torque, energy and speed, for one soil and one rover in its own
 /// gravity. On a slope alpha each of the equal wheels carries W cos(alpha) and must pull W sin(alpha), so
 /// DP/N = tan(alpha). Load transfer between axles is left out. Tabulated over slip, where the curve is
@@ -73,8 +75,7 @@ class MobilityCurve {
   const MobilityReference& strongest() const noexcept { return strongest_; }
 
  private:
-  struct Solver;
-  void tabulate(const Solver& solver);
+  void tabulate(const MobilitySolver& solver);
 
   Rover rover_;
   MobilityOptions options_;
@@ -83,6 +84,12 @@ class MobilityCurve {
   double locked_pull_ = 0.0;  // DP/N of the strongest braking
   MobilityReference reference_, strongest_;
 };
+
+/// MobilityCurve::reference() without the curve, which takes a hundred times as long. Throws as MobilityCurve does.
+MobilityReference mobilityReference(const Soil& soil, const Rover& rover,
+                                    const MobilityOptions& options = {});
+MobilityReference mobilityReference(const RefinedModel& model, const Rover& rover,
+                                    const MobilityOptions& options = {});
 
 /// The state on one slope by root finding instead of the table, 200 times slower: what the table is tested
 /// against. `slope_rad` within [minSlope_rad(), maxSlope_rad()]; throws std::domain_error outside.

@@ -1,3 +1,4 @@
+#include <limits>
 #include <random>
 
 #include <site_fixture.hpp>
@@ -46,6 +47,50 @@ TEST(CostCurveTable, NoBeliefIsMadeCheaper) {
           << i << " at gradient " << DriveCurve::gradient(static_cast<int>(bin));
   }
   EXPECT_TRUE(table.overflowed());
+}
+
+// Property: a class that nobody asked for is refused; asked for, it has the ground of the belief that it came to meanwhile.
+TEST(CostCurveTable, AClassIsPricedWhenItIsAskedFor) {
+  const auto model = testGround();
+  CostCurveTable table(model);
+  const CellCode level({.curve = 1});
+  EXPECT_EQ(table.cost()->costPerMetre(level, {}), std::numeric_limits<float>::infinity());
+  EXPECT_NE(table.cost()->detail(level, {}).refusal, Refusal::None);
+  EXPECT_EQ(table.categories(1).at(level).category,
+            static_cast<std::uint8_t>(terramech::Category::Dangerous));
+  EXPECT_LT(table.cost()->costPerMetre(CellCode({.curve = 0}), {}), 1e6F) << "the first is the default";
+  const GroundBelief weaker{.pull = {model->prior(1).pull.value - 0.05, 0.06}, .sinkage = {0.4, 0.1}};
+  ASSERT_TRUE(table.setPrior(1, weaker));
+  const auto before = table.cost();
+  ASSERT_EQ(table.prior(1), 1);
+  EXPECT_NE(table.cost(), before);
+  EXPECT_EQ(table.cost()->curves()[1].cost_J_per_m,
+            model->ground(1, table.priorBelief(1)).curve.cost_J_per_m);
+  EXPECT_LE(table.priorBelief(1).pull.value, weaker.pull.value);
+}
+
+// Property: numbers of classes that nobody asked for are lent to beliefs when all others are used up, and the class has its own
+// again after a restart; until then nothing is cheaper than it should be.
+TEST(CostCurveTable, LendsTheNumbersOfClassesThatNobodyAskedFor) {
+  GroundModel::Parts parts = testGround()->parts();
+  while (parts.classes.size() < 254)
+    parts.classes.push_back({.number = static_cast<int>(parts.classes.size()) + 1, .soil = testDust()});
+  const auto model = std::make_shared<const GroundModel>(std::move(parts));
+  CostCurveTable table(model);
+  const auto belief = [](int k) { return GroundBelief{.pull = {0.005 * k, 0.06}, .sinkage = {0.2, 0.1}}; };
+  for (int k = 1; k <= 20; ++k) {
+    const std::uint8_t number = table.learned(0, belief(k));
+    EXPECT_EQ(table.cost()->curves()[number].cost_J_per_m,
+              model->ground(0, table.belief(number)).curve.cost_J_per_m);
+  }
+  EXPECT_FALSE(table.overflowed());
+  EXPECT_EQ(table.prior(1), 1) << "lent from the last on";
+  EXPECT_EQ(table.prior(253), CellCode::kBlocked) << "no belief of its class is known to be no better";
+  EXPECT_TRUE(table.overflowed());
+  table.restart(0);
+  EXPECT_EQ(table.prior(253), 253);
+  EXPECT_FALSE(table.overflowed());
+  EXPECT_EQ(table.cost()->curves()[253].cost_J_per_m, table.cost()->curves()[1].cost_J_per_m);
 }
 
 // Property: a prior that moves to and fro comes to the same each time.

@@ -57,6 +57,42 @@ bool equal(const DriveState& a, const DriveState& b) {
          a.risk_per_m == b.risk_per_m && a.refusal == b.refusal && a.category == b.category;
 }
 
+// Sand as class 1, dust as class 2, and classes that no cell has up to so many in all.
+std::shared_ptr<const GroundModel> declaring(int classes) {
+  GroundModel::Parts parts = testGround()->parts();
+  for (int number = 3; number <= classes; ++number)
+    parts.classes.push_back({.number = number, .soil = testSand()});
+  return std::make_shared<GroundModel>(std::move(parts));
+}
+
+// Property: however many classes are declared, a map costs what it costs with those that its cells have, before and after it
+// is learned: classes that no cell has take no numbers away.
+TEST(GroundCurves, ClassesThatNoCellHasChangeNothing) {
+  const std::vector<std::string> rows{"1122112211", "1111222211", "1212121211", "1111111111", "2222111122"};
+  TraversabilityMap few(drawn(rows, 0.1), declaring(2), {}), many(drawn(rows, 0.1), declaring(250), {});
+  const auto same = [&] {
+    const auto a = few.published(), b = many.published();
+    int different = 0;
+    for (int row = 0; row < a->grid().height; ++row)
+      for (int column = 0; column < a->grid().width; ++column)
+        for (const Direction heading : {Direction{1.0, 0.0}, Direction{-1.0, 0.0}, Direction{0.0, 1.0}})
+          different += a->cost().costPerMetre(a->at({column, row}), heading) !=
+                       b->cost().costPerMetre(b->at({column, row}), heading);
+    return different == 0;
+  };
+  EXPECT_TRUE(same());
+  for (int k = 0; k < 40; ++k) {
+    WheelObservation observation;
+    observation.place = {100.5 + 0.25 * k, 202.5};
+    observation.pull = {0.02 + 0.004 * k, 0.03};
+    observation.sinkage = {0.2, 0.05};
+    EXPECT_EQ(few.learn(observation), many.learn(observation));
+  }
+  few.publish();
+  many.publish();
+  EXPECT_TRUE(same());
+}
+
 // Property: what is published after each of many drives is what is published at once. The numbers of the curves
 // may differ, what they say may not. The classes as a whole are known: where they move by less than a step of
 // their prior, ground that was learned elsewhere keeps its number.

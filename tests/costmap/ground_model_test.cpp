@@ -1,6 +1,8 @@
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <thread>
 
 #include <site_fixture.hpp>
 
@@ -202,6 +204,35 @@ TEST(GroundModel, NamesWhatIsWrong) {
   EXPECT_THROW(GroundModel{parts}, std::invalid_argument);
   parts.classes = {GroundClass{.number = 1, .soil = testSand()},
                    GroundClass{.number = 1, .soil = testDust()}};
+  EXPECT_THROW(GroundModel{parts}, std::invalid_argument);
+}
+
+// Property: threads that ask together for what is worked out when it is first asked for get one answer, that of one thread alone.
+TEST(GroundModel, ThreadsThatAskTogetherGetOneAnswer) {
+  const auto together = testGround(), alone = testGround();
+  const GroundModel copy = *together;
+  std::array<DriveState, 4> states;
+  {
+    std::array<std::jthread, 4> threads;
+    for (std::size_t k = 0; k < threads.size(); ++k)
+      threads[k] = std::jthread([&, k] {
+        const GroundModel& model = k % 2 == 0 ? *together : copy;
+        states[k] = model.state(1, model.prior(1), 0.1);
+      });
+  }
+  const DriveState expected = alone->state(1, alone->prior(1), 0.1);
+  for (const DriveState& state : states) {
+    EXPECT_EQ(state.energy_J_per_m, expected.energy_J_per_m);
+    EXPECT_EQ(state.weak, expected.weak);
+  }
+  EXPECT_EQ(together->crossing(1), copy.crossing(1)) << "copies share what was worked out";
+}
+
+// Property: what is worked out later was held against its range at once.
+TEST(GroundModel, RefusesASoilOutOfRangeThatNoCellHas) {
+  GroundModel::Parts parts = testGround()->parts();
+  parts.classes.push_back({.number = 9, .soil = testSand()});
+  parts.classes.back().soil.friction_angle_rad = -1.0;
   EXPECT_THROW(GroundModel{parts}, std::invalid_argument);
 }
 

@@ -142,6 +142,29 @@ TEST(SurfacePatch, ClassesNeedAMapWithClasses) {
   EXPECT_NE(refusal(map, patch).find("build it with a class raster"), std::string::npos);
 }
 
+// Property: a class that a later patch brings costs what it costs on a map that began with it.
+TEST(SurfacePatch, BringsAClassThatTheMapDidNotHave) {
+  MapLayers with = flat();
+  const SurfacePatch patch = [] {
+    SurfacePatch dust;
+    dust.classes = maps::Raster<std::uint8_t>(gridAt({14.0, 24.0}), 2);
+    return dust;
+  }();
+  const maps::Cell inside{9, 9};
+  for (int row = 8; row < 12; ++row)
+    for (int column = 8; column < 12; ++column) with.classes[{column, row}] = 2;
+  const TraversabilityMap begun(std::move(with), testGround(), {});
+  TraversabilityMap patched = flatMap();
+  const auto cost = [&](const TraversabilityMap& map) {
+    return map.published()->cost().costPerMetre(map.published()->at(inside), {});
+  };
+  const float sand = cost(patched);
+  patched.patch(patch);
+  EXPECT_EQ(cost(patched), cost(begun));
+  EXPECT_NE(cost(patched), sand);
+  EXPECT_EQ(patched.category(inside), begun.category(inside));
+}
+
 // Property: only tiles that the change reaches are new; the others are shared with the version before.
 TEST(SurfacePatch, SharesTheTilesThatItDoesNotReach) {
   MapLayers layers;

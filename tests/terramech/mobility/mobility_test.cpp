@@ -133,6 +133,30 @@ TEST(Mobility, ReferenceIsTheWheelAtHalfSlipUnderItsOwnLoad) {
   EXPECT_GE(curve.strongest().drawbar_pull_over_load, curve.reference().drawbar_pull_over_load);
 }
 
+// Property: to the bit, on soils that carry the wheel and on one that does not, with effects and without.
+TEST(Mobility, TheReferenceAloneIsThatOfTheCurve) {
+  Soil bottomless = loam();
+  bottomless.frictional_modulus = 1e3;
+  const auto same = [](const MobilityReference& a, const MobilityReference& b) {
+    return a.slip == b.slip && a.drawbar_pull_over_load == b.drawbar_pull_over_load &&
+           a.sinkage_over_radius == b.sinkage_over_radius &&
+           a.torque_over_load_radius == b.torque_over_load_radius;
+  };
+  for (const Soil& soil : {loam(), bottomless})
+    for (const double slip : {0.3, 0.5}) {
+      const MobilityOptions options{.reference_slip = slip};
+      RefinedModel model;
+      model.soil = soil;
+      EXPECT_TRUE(
+          same(mobilityReference(soil, rover(), options), MobilityCurve(soil, rover(), options).reference()));
+      EXPECT_TRUE(same(mobilityReference(model, rover(), options),
+                       MobilityCurve(model, rover(), options).reference()));
+    }
+  Rover bad = rover();
+  bad.mass_kg = -1.0;
+  EXPECT_THROW(mobilityReference(loam(), bad), std::invalid_argument);
+}
+
 TEST(Mobility, OnABottomlessSoilNothingIsFeasible) {
   Soil bog = loam();
   bog.frictional_modulus = 100.0;
