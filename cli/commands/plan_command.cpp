@@ -301,7 +301,8 @@ int runInWindows(const PlanOptions& options, const Context& context) {
   const double plan_s = since_s(begin);
   const planner::AnnotationInput input{.map = *problem.map,
                                        .elevation_m = [&](maps::Point p) { return map.elevation_m(p); },
-                                       .planner = options.planner};
+                                       .planner = options.planner,
+                                       .watch = problem.watch};
   return finish(options, {std::move(overview), problem, std::move(plan), plan_s}, input, context);
 }
 
@@ -346,7 +347,8 @@ int run(const PlanOptions& asked, Context& context) {
                           {.map = *planned.problem.map,
                            .elevation_m = maps::elevationOf(heights),
                            .planner = planner.name(),
-                           .kinematics = planned.problem.kinematics},
+                           .kinematics = planned.problem.kinematics,
+                           .watch = planned.problem.watch},
                           context);
   if (code != Exit::kDone && context.stop.stop_requested()) letEnd(context);
   if (code == Exit::kDone && !options.pareto.empty())

@@ -227,12 +227,16 @@ void driveAlong(const PosePath& drive, const costmap::CostGrid& map, Annotator& 
 namespace {
 
 // Vertices hold the additive hazard until here: right where nothing is known of how doubts hang together.
-void tellRisk(Route& route, const costmap::CostGrid& map) {
+void tellRisk(Route& route, const costmap::CostGrid& map, const ProgressMonitor& watch) {
   constexpr int kWorlds = 400;  // a few per cent of the risk
   if (!(map.cost().doubt().correlation_length_m > 0.0)) return;
   RouteRiskOptions options = riskOptions(map);
   options.worlds = kWorlds;
-  const std::vector<double> risk = riskAlong(route, options);
+  std::vector<double> risk = riskAlong(route, options, watch);
+  if (risk.empty()) {
+    risk = riskBoundAlong(route, options);
+    route.interrupted = true;
+  }
   for (std::size_t i = 0; i < risk.size(); ++i) route.vertices[i].immobilisation_risk = risk[i];
 }
 
@@ -263,7 +267,7 @@ Route annotated(const Plan& plan, const AnnotationInput& input) {
   route.summary.lower_bound = plan.lower_bound_J;
   route.summary.gap = gapOf(plan.cost_J, plan.lower_bound_J);
   route.vertices = std::move(annotator.vertices);
-  tellRisk(route, input.map);
+  tellRisk(route, input.map, input.watch);
   return route;
 }
 

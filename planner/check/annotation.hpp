@@ -18,12 +18,14 @@ struct AnnotationInput {
   std::function<std::optional<double>(maps::Point)> elevation_m = nullptr;  ///< none: vertices have none
   std::string planner = {};                                                 ///< its name, for the summary
   Kinematics kinematics = {};                                               ///< prices of turning, for drives
+  ProgressMonitor watch = {};  ///< when stopped, the risk of a long route is not drawn
 };
 
 /// The plan as a route for reports and controllers: a vertex at each turn and wherever the route enters
 /// another cell, so that slope, slip and soil of a vertex hold exactly until the next one. Energy and
 /// time are integrals of DriveCost::detail along the plan; the risk is riskAlong() of it, or 1 - exp(-sum of
-/// hazard rate times length) on maps whose cost does not state how uncertain soil is correlated (SoilDoubt). A
+/// hazard rate times length) on maps whose cost does not state how uncertain soil is correlated (SoilDoubt). Of a long
+/// route that a stop left undrawn it is riskBoundAlong(), and the route is `interrupted`. A
 /// polyline that may not be driven is annotated, too: its cost is infinite, energy and time
 /// count what the map provides. A drive has a vertex more wherever an arc is cut into chords, and two where
 /// the rover turns in place; turning counts. Status and reason are the plan's.

@@ -136,7 +136,10 @@ struct Drawn {
   double variance = 0.0;
 };
 
-Drawn drawn(const std::vector<Stretch>& route, const RouteRiskOptions& options) {
+// No stretch when stopped.
+Drawn drawn(const std::vector<Stretch>& route, const RouteRiskOptions& options,
+            const ProgressMonitor& watch = {}) {
+  constexpr std::size_t kBrief = 4'000'000;  // stretches of worlds
   Drawn out{.risk = std::vector<double>(route.size(), 0.0)};
   std::vector<double> share;  // of the weak metres to be expected, up to each stretch
   for (const Stretch& s : route) share.push_back((share.empty() ? 0.0 : share.back()) + s.weak * s.metres);
@@ -146,6 +149,7 @@ Drawn drawn(const std::vector<Stretch>& route, const RouteRiskOptions& options) 
   double squares = 0.0;
   std::vector<double> weak_m(route.size());
   for (int world = 0; world < options.worlds; ++world) {
+    if (static_cast<std::size_t>(world) * route.size() > kBrief && watch.stopped()) return {};
     const double pick = (world + worlds.uniform()) / n * share.back();
     const auto found = std::ranges::upper_bound(share, pick) - share.begin();
     const auto at = std::min(static_cast<std::size_t>(found), route.size() - 1);
@@ -164,6 +168,15 @@ Drawn drawn(const std::vector<Stretch>& route, const RouteRiskOptions& options) 
   out.variance = std::max(squares - out.risk.back() * out.risk.back(), 0.0) / n;
   for (double& risk : out.risk) risk = std::min(risk, 1.0);
   return out;
+}
+
+// From stretches to the vertices that they lead to; never falling.
+std::vector<double> alongVertices(const Route& route, const std::vector<Stretch>& way,
+                                  const std::vector<double>& risk) {
+  std::vector<double> along(route.vertices.size(), 0.0);
+  for (std::size_t k = 0; k < way.size(); ++k) along[way[k].vertex] = risk[k];
+  for (std::size_t i = 1; i < along.size(); ++i) along[i] = std::max(along[i], along[i - 1]);
+  return along;
 }
 
 struct Least {
@@ -209,14 +222,23 @@ RouteRiskOptions riskOptions(const costmap::CostGrid& map) {
   return options;
 }
 
-std::vector<double> riskAlong(const Route& route, const RouteRiskOptions& options) {
+std::vector<double> riskAlong(const Route& route, const RouteRiskOptions& options,
+                              const ProgressMonitor& watch) {
   validate(options);
   const std::vector<Stretch> way = stretches(route, options);
-  const Drawn risk = drawn(way, options);
-  std::vector<double> along(route.vertices.size(), 0.0);
-  for (std::size_t k = 0; k < way.size(); ++k) along[way[k].vertex] = risk.risk[k];
-  for (std::size_t i = 1; i < along.size(); ++i) along[i] = std::max(along[i], along[i - 1]);
-  return along;
+  const Drawn risk = drawn(way, options, watch);
+  if (risk.risk.size() < way.size()) return {};
+  return alongVertices(route, way, risk.risk);
+}
+
+// 1 - prod(1 - h) <= sum(h), and the mean of a sum is the sum of the means whatever hangs together.
+std::vector<double> riskBoundAlong(const Route& route, const RouteRiskOptions& options) {
+  validate(options);
+  const std::vector<Stretch> way = stretches(route, options);
+  std::vector<double> bound;
+  double sum = 0.0;
+  for (const Stretch& s : way) bound.push_back(std::min(sum += s.weak * heldAfter(s.metres, options), 1.0));
+  return alongVertices(route, way, bound);
 }
 
 RouteRisk routeRisk(const Route& route, const RouteRiskOptions& options) {

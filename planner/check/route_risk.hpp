@@ -5,6 +5,7 @@
 
 #include <talus/costmap/cost_grid.hpp>
 #include <talus/planner/route/route.hpp>
+#include <talus/talus.hpp>
 
 namespace talus::planner {
 
@@ -43,10 +44,16 @@ struct RouteRisk {
 /// rover with 1 - (1 - entrapment)^(T / correlation_length). Worlds are drawn under the condition that a stretch
 /// fails, each stretch as often as it contributes, and divided by the metres that fail together with it: unbiased,
 /// and as exact for 1e-9 as for 0.1 (importance sampling of a union of events, adler_blanchet_liu_2012).
-/// Deterministic. Throws std::invalid_argument out of range.
-std::vector<double> riskAlong(const Route& route, const RouteRiskOptions& options);
+/// Deterministic. Throws std::invalid_argument out of range. Empty when `watch` was stopped before all worlds of a long
+/// route were drawn; four million stretches of worlds, a quarter of a second, are always drawn.
+std::vector<double> riskAlong(const Route& route, const RouteRiskOptions& options,
+                              const ProgressMonitor& watch = {});
 
-/// The same of the whole route, and the tail of its reserve: conditional value at risk after Rockafellar & Uryasev
+/// What riskAlong() is never above, however the soil is correlated: the stretches' own risks, added up, at most 1. It takes no
+/// draws. Throws as that does.
+std::vector<double> riskBoundAlong(const Route& route, const RouteRiskOptions& options);
+
+/// The risk of the whole route as riskAlong() has it, and the tail of its reserve: conditional value at risk after Rockafellar & Uryasev
 /// 2000 [rockafellar_uryasev_2000].
 RouteRisk routeRisk(const Route& route, const RouteRiskOptions& options = {});
 

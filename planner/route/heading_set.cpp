@@ -178,7 +178,7 @@ const HeadingSet& HeadingSets::known(costmap::CellCode cell) {
     if (!limits) limits.emplace(cost_, cost_.curves()[cell.curve()]);
     set = allowedHeadings(cost_, cell, *limits);
   }
-  return sets_.emplace(cell.bits(), std::move(set)).first->second;
+  return sets_.try_emplace(cell.bits(), set, &arena_).first->second;
 }
 
 }  // namespace talus::planner

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <random>
 #include <stdexcept>
+#include <stop_token>
 #include <vector>
 
 #include <boost/math/special_functions/erf.hpp>
@@ -121,6 +122,42 @@ TEST(RouteRisk, AClassThatIsUnsureAsAWholeFailsAsOne) {
   for (RouteVertex& vertex : route.vertices)
     vertex.hazard_per_m = vertex.hazard_per_m > 0.0 ? -std::log1p(-0.01 * 0.01) / 5.0 : 0.0;
   EXPECT_NEAR(routeRisk(route, {.entrapment = 0.01}).immobilisation, 0.01 * (1.0 - std::pow(0.99, 40)), 1e-9);
+}
+
+// Property: what is handed out instead of a risk that a stop left undrawn is never below it, whatever hangs together.
+TEST(RouteRisk, TheBoundIsNeverBelowTheRisk) {
+  std::mt19937_64 random(5);
+  const auto drawn = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  for (int trial = 0; trial < 40; ++trial) {
+    const RouteRiskOptions options{
+        .correlation_length_m = 5.0, .entrapment = trial % 2 == 0 ? 1.0 : 0.01, .worlds = 20000};
+    std::vector<double> failing(trial % 4 == 0 ? 1 : 50, 0.0);
+    for (double& f : failing) f = options.entrapment * std::pow(10.0, drawn(-5.0, -0.5));
+    Route route = straight(failing, drawn(0.2, 8.0), options.correlation_length_m);
+    for (RouteVertex& vertex : route.vertices) vertex.shared_doubt = trial % 3 * 0.4;
+    const std::vector<double> along = riskAlong(route, options), bound = riskBoundAlong(route, options);
+    // Tolerance: four sigma of the worlds that are drawn to fail up to there.
+    for (std::size_t i = 1; i < along.size(); ++i) {
+      const double failing_worlds = options.worlds * bound[i] / bound.back();
+      EXPECT_GE(bound[i] * (1.0 + 4.0 / std::sqrt(std::max(failing_worlds, 1.0))), along[i])
+          << trial << ' ' << i;
+    }
+  }
+  // Closed form: one stretch of an unmonitored rover holds it wherever its soil is too weak.
+  EXPECT_NEAR(riskBoundAlong(straight({0.2}, 1.0, 5.0), {}).back(), 0.2, 1e-12);
+}
+
+// Property: a stop leaves a long route undrawn at once, and changes nothing of a short one.
+TEST(RouteRisk, AStopEndsTheDrawingOfALongRoute) {
+  std::stop_source stop;
+  stop.request_stop();
+  const ProgressMonitor stopped{.progress = {}, .stop = stop.get_token()};
+  const RouteRiskOptions options{.worlds = 400};
+  EXPECT_TRUE(riskAlong(straight(std::vector<double>(20000, 1e-4), 1.0, 5.0), options, stopped).empty());
+  const Route brief = straight(std::vector<double>(500, 1e-4), 1.0, 5.0);
+  EXPECT_EQ(riskAlong(brief, options, stopped), riskAlong(brief, options));
 }
 
 TEST(RouteRisk, GrowsAlongTheRoute) {
