@@ -124,8 +124,8 @@ TrueWorld::TrueWorld(const WorldSoils& soils, const terramech::Rover& rover,
   tables_.resize(soils_.size());
   for (std::size_t i = 0; i < soils_.size(); ++i)
     if (occurs[i])
-      tables_[i].emplace(WheelTable(soils_[i], rover_, effects_),
-                         WheelTable(terramech::rutted(soils_[i]), rover_, effects_));
+      tables_[i] = Tables{.fresh = WheelTable(soils_[i], rover_, effects_),
+                          .rut = WheelTable(terramech::rutted(soils_[i]), rover_, effects_)};
 }
 
 std::size_t TrueWorld::soilAt(const maps::Point& place, double margin_m) const noexcept {

@@ -19,7 +19,7 @@ std::string numpy(const std::string& shape, std::size_t numbers) {
 
 std::string little(std::uint32_t value, int bytes) {
   std::string out;
-  for (int k = 0; k < bytes; ++k) out += static_cast<char>(value >> (8 * k) & 0xFFU);
+  for (int k = 0; k < bytes; ++k, value >>= 8U) out += static_cast<char>(value & 0xFFU);
   return out;
 }
 
