@@ -27,7 +27,7 @@ struct ClassState {
   double own_std = 0.0, shared = 0.0;  ///< as there [-]
   double sinkage = 0.0;                ///< departure of sinkage over radius [-]
   bool may_raise = false;  ///< whether enough places may raise that the belief in its ground may rise at all
-  double most_rise = 0.0;  ///< the most by which it may, >= 0 [-]
+  double most_rise = 0.0;  ///< the most by which it may [-]
   double pull_step = 0.0;  ///< how far `pull` may lie below what it was rounded from [-]
   double sinkage_step = 0.0;  ///< how far `sinkage` may lie above [-]
 
@@ -87,8 +87,9 @@ class ClassLessons {
   /// What learned ground has of the class, as it is.
   ClassState state() const noexcept;
   /// The same in steps of 0.005 (sinkage: 0.02), each number rounded towards danger and no deviation beyond the prior's:
-  /// it stays what it is while the class moves within a step, and depends on nothing but the class.
-  ClassState stateInSteps() const noexcept;
+  /// it stays what it is while the class moves within a step, and depends on nothing but the class. The greatest rise
+  /// ends on a step of cost curves, which says no less than any rise up to the next; `prior_pull`: of the class [-].
+  ClassState stateInSteps(double prior_pull) const noexcept;
   /// Whether enough places may raise that the belief in ground of the class may rise at all.
   bool mayRaise() const noexcept { return std::isfinite(places_.agreed(kPlaces)); }
   /// The most by which it may: what as many places agree on; >= 0.

@@ -6,7 +6,6 @@
 namespace talus::costmap {
 namespace {
 
-constexpr double kPullStep = 0.02;
 constexpr double kPullStdUnit = 0.02;
 constexpr double kSinkageStep = 0.1;
 constexpr double kSame = 1e-6;  // of a step: what has been rounded stays

@@ -12,7 +12,8 @@ namespace talus::costmap {
 /// steps, because the probability of immobilisation of ground with a reserve of z deviations depends on it most: a
 /// step of a whole octave would halve z.
 struct GroundKind {
-  static constexpr int kCoarsest = 3;  ///< highest level
+  static constexpr int kCoarsest = 3;        ///< highest level
+  static constexpr double kPullStep = 0.02;  ///< at level 0 [-]
 
   int class_index = 0;
   int other_class = 0;  ///< ground is as bad as the worse of its own class and this one; its own: none
