@@ -11,6 +11,7 @@
 #include <talus/costmap/drive_evidence.hpp>
 #include <talus/costmap/map_file.hpp>
 #include <talus/costmap/octomap_surface.hpp>
+#include <talus/maps/memory_budget.hpp>
 #include <talus/talus.hpp>
 
 #include "targets.hpp"
@@ -43,7 +44,16 @@ void readMap(const std::string& bytes) {
   costmap::readMap(stream, {.name = "map.ot", .threads = 1});
 }
 
+// A hundred bytes may state columns for all of the budget: in a sixteenth of it, an input takes a sixteenth of the time.
+struct SmallBudget {
+  SmallBudget() { maps::setMemoryBudget(std::uint64_t{1} << 26U); }
+  ~SmallBudget() { limitMemory(); }
+  SmallBudget(const SmallBudget&) = delete;
+  SmallBudget& operator=(const SmallBudget&) = delete;
+};
+
 void readOctree(const std::string& bytes) {
+  const SmallBudget budget;
   std::istringstream stream(bytes);
   costmap::octomapGround(stream, "octree", 1e9);
 }
