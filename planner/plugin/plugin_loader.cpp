@@ -2,10 +2,12 @@
 #include <csignal>
 #include <cstring>
 #include <functional>
+#include <string>
 #include <utility>
 
 #include <boost/dll/shared_library.hpp>
 #include <dlfcn.h>
+#include <fcntl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -18,8 +20,10 @@ namespace talus::planner {
 namespace {
 
 // What a library does while it is loaded and makes its planner, which a truncated or foreign one does not survive, is
-// tried by a child first: its end is told by a signal. It may take 10 s of CPU time.
+// tried by a child first: it ends by a signal, or by the dynamic linker's own exit where its tables are damaged, and has not come
+// to its last line then. It may take 10 s of CPU time; what it and the linker print is lost.
 void requireLoadable(const std::string& path, const std::function<void()>& load) {
+  constexpr int kCameThrough = 86;
   const pid_t child = ::fork();
   if (child < 0)
     throw InputError({path, std::string("cannot be tried: ") + std::strerror(errno), "free some memory"});
@@ -28,19 +32,21 @@ void requireLoadable(const std::string& path, const std::function<void()>& load)
     ::setrlimit(RLIMIT_CORE, &no_core);
     ::setrlimit(RLIMIT_CPU, &cpu);
     for (const int signal : {SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT}) ::signal(signal, SIG_DFL);
+    if (const int nowhere = ::open("/dev/null", O_WRONLY); nowhere >= 0) ::dup2(nowhere, STDERR_FILENO);
     try {
       load();
     } catch (...) {  // told by the parent, which meets it too
     }
-    ::_exit(0);
+    ::_exit(kCameThrough);
   }
   int status = 0;
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
-  if (WIFSIGNALED(status))
-    throw InputError({path,
-                      std::string("ends the process that loads it (") + ::strsignal(WTERMSIG(status)) + ")",
-                      "it is truncated or of another machine: rebuild it"});
+  if (WIFEXITED(status) && WEXITSTATUS(status) == kCameThrough) return;
+  const std::string how = WIFSIGNALED(status) ? std::string(::strsignal(WTERMSIG(status)))
+                                              : "exit code " + std::to_string(WEXITSTATUS(status));
+  throw InputError({path, "ends the process that loads it (" + how + ")",
+                    "it is truncated, damaged or of another machine: rebuild it"});
 }
 
 }  // namespace

@@ -44,9 +44,10 @@ void readMap(const std::string& bytes) {
   costmap::readMap(stream, {.name = "map.ot", .threads = 1});
 }
 
-// A hundred bytes may state columns for all of the budget: in a sixteenth of it, an input takes a sixteenth of the time.
+// A hundred bytes may state columns for all of the budget, which takes seconds: octrees that need more than the megabyte that is
+// always allowed are refused here.
 struct SmallBudget {
-  SmallBudget() { maps::setMemoryBudget(std::uint64_t{1} << 26U); }
+  SmallBudget() { maps::setMemoryBudget(1); }
   ~SmallBudget() { limitMemory(); }
   SmallBudget(const SmallBudget&) = delete;
   SmallBudget& operator=(const SmallBudget&) = delete;

@@ -1,5 +1,9 @@
+#include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <string>
 
 #include <talus/planner/plugin/plugin_loader.hpp>
 
@@ -49,6 +53,27 @@ TEST(PluginLoader, AnotherInterfaceIsRefusedBeforeItIsTouched) {
 }
 
 // Loading one may end the process by a signal: a child finds out.
+// The dynamic linker ends a process by an exit of its own, not by a signal, where the table of relative addresses holds another kind.
+TEST(PluginLoader, ALibraryThatTheLinkerGivesUpIsRefused) {
+  std::ifstream file(TALUS_OTHER_PLUGIN, std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  const auto word = [&](std::size_t at) {
+    std::uint64_t value = 0;
+    std::memcpy(&value, bytes.data() + at, sizeof value);
+    return value;
+  };
+  // Entries of 24 bytes, the kind in the middle: R_X86_64_RELATIVE is 8.
+  std::size_t at = 0;
+  while (at + 56 < bytes.size() && !(word(at) == 8 && word(at + 24) == 8 && word(at + 48) == 8)) at += 8;
+  if (at + 56 >= bytes.size()) GTEST_SKIP() << "no such table on this machine";
+  bytes[at] = 6;
+  const std::string path = ::testing::TempDir() + "talus_damaged_plugin.so";
+  std::ofstream(path, std::ios::binary) << bytes;
+  EXPECT_THAT([&] { loadPlugin(path); },
+              ThrowsMessage<InputError>(HasSubstr("ends the process that loads it (exit code 127)")));
+  std::filesystem::remove(path);
+}
+
 TEST(PluginLoader, ATruncatedLibraryIsRefused) {
   const auto cut = std::filesystem::temp_directory_path() / "talus_cut_plugin_test.so";
   const auto whole = std::filesystem::file_size(TALUS_PLUGIN);
