@@ -40,9 +40,11 @@ void limitMemory(std::uint64_t memory) {
   setrlimit(RLIMIT_AS, &limit);
 }
 
-[[noreturn]] void work(const std::function<std::string()>& work, const ChildLimits& limits, int pipe) {
+[[noreturn]] void work(const std::function<std::string()>& work, const ChildLimits& limits, int pipe,
+                       [[maybe_unused]] pid_t parent) {
 #ifdef __linux__
   prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) _exit(1);  // it ended before the request
 #endif
   dup2(STDERR_FILENO, STDOUT_FILENO);  // standard output is the program's own
   const rlimit no_core{0, 0};
@@ -58,10 +60,9 @@ void limitMemory(std::uint64_t memory) {
   _exit(0);
 }
 
-ChildAnswer::End received(int pipe, const ChildLimits& limits, const ProgressMonitor& watch,
-                          std::string& bytes) {
+ChildAnswer::End received(int pipe, const ChildLimits& limits, Clock::time_point begin,
+                          const ProgressMonitor& watch, std::string& bytes) {
   constexpr int kLook_ms = 20;
-  const auto begin = Clock::now();
   char part[65536];
   for (;;) {
     pollfd ready{.fd = pipe, .events = POLLIN, .revents = 0};
@@ -78,13 +79,28 @@ ChildAnswer::End received(int pipe, const ChildLimits& limits, const ProgressMon
   }
 }
 
+// Waits for the end of a child whose pipe is closed, which need not be its end.
+ChildAnswer::End awaited(pid_t child, const ChildLimits& limits, Clock::time_point begin,
+                         const ProgressMonitor& watch) {
+  siginfo_t ended{};
+  while (waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+         ended.si_pid == 0) {
+    if (watch.stopped()) return ChildAnswer::End::Stopped;
+    if (std::chrono::duration<double>(Clock::now() - begin).count() > limits.seconds)
+      return ChildAnswer::End::TooLate;
+    poll(nullptr, 0, 1);
+  }
+  return ChildAnswer::End::Answered;
+}
+
 }  // namespace
 
 ChildAnswer inChild(const std::function<std::string()>& job, const ChildLimits& limits,
                     const ProgressMonitor& watch) {
   int ends[2];
   if (pipe(ends) != 0) throw std::runtime_error(std::string("no pipe to a process: ") + std::strerror(errno));
-  const pid_t child = fork();
+  const auto begin = Clock::now();
+  const pid_t parent = getpid(), child = fork();
   if (child < 0) {
     close(ends[0]);
     close(ends[1]);
@@ -92,12 +108,13 @@ ChildAnswer inChild(const std::function<std::string()>& job, const ChildLimits& 
   }
   if (child == 0) {
     close(ends[0]);
-    work(job, limits, ends[1]);
+    work(job, limits, ends[1], parent);
   }
   close(ends[1]);
   ChildAnswer answer;
-  answer.end = received(ends[0], limits, watch, answer.bytes);
+  answer.end = received(ends[0], limits, begin, watch, answer.bytes);
   close(ends[0]);
+  if (answer.end == ChildAnswer::End::Answered) answer.end = awaited(child, limits, begin, watch);
   if (answer.end != ChildAnswer::End::Answered) kill(child, SIGKILL);
   rusage used{};
   int status = 0;
@@ -107,6 +124,7 @@ ChildAnswer inChild(const std::function<std::string()>& job, const ChildLimits& 
   if (answer.end == ChildAnswer::End::Answered && !(WIFEXITED(status) && WEXITSTATUS(status) == 0)) {
     answer.end = ChildAnswer::End::Died;
     answer.signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+    answer.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 0;
   }
   if (answer.end != ChildAnswer::End::Answered) answer.bytes.clear();
   return answer;

@@ -24,6 +24,7 @@ struct ChildAnswer {
   End end = End::Died;
   std::string bytes;       ///< what the work returned; empty unless Answered
   int signal = 0;          ///< that a dead process was ended by, 0 where it was none
+  int exit_code = 0;       ///< of a process that was ended by no signal
   double megabytes = 0.0;  ///< peak memory
 };
 

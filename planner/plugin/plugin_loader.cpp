@@ -1,50 +1,66 @@
-#include <cerrno>
-#include <csignal>
 #include <cstring>
 #include <functional>
+#include <new>
+#include <sstream>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
 #include <boost/dll/shared_library.hpp>
-#include <dlfcn.h>
 #include <fcntl.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
+#include <talus/planner/plugin/child_process.hpp>
 #include <talus/planner/plugin/plugin_answer.hpp>
 #include <talus/planner/plugin/plugin_loader.hpp>
+#include <talus/planner/plugin/plugin_planner.hpp>
 #include <talus/planner/plugin/request_check.hpp>
 
 namespace talus::planner {
 namespace {
 
-// What a library does while it is loaded and makes its planner, which a truncated or foreign one does not survive, is
-// tried by a child first: it ends by a signal, or by the dynamic linker's own exit where its tables are damaged, and has not come
-// to its last line then. It may take 10 s of CPU time; what it and the linker print is lost.
-void requireLoadable(const std::string& path, const std::function<void()>& load) {
-  constexpr int kCameThrough = 86;
-  const pid_t child = ::fork();
-  if (child < 0)
-    throw InputError({path, std::string("cannot be tried: ") + std::strerror(errno), "free some memory"});
-  if (child == 0) {
-    const rlimit no_core{0, 0}, cpu{10, 10};
-    ::setrlimit(RLIMIT_CORE, &no_core);
-    ::setrlimit(RLIMIT_CPU, &cpu);
-    for (const int signal : {SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT}) ::signal(signal, SIG_DFL);
-    if (const int nowhere = ::open("/dev/null", O_WRONLY); nowhere >= 0) ::dup2(nowhere, STDERR_FILENO);
-    try {
-      load();
-    } catch (...) {  // told by the parent, which meets it too
-    }
-    ::_exit(kCameThrough);
+constexpr char kCameThrough = 'k', kMemory = 'm';
+
+// What a library does while it is loaded, makes its planner and is unloaded, which a truncated or foreign one does not
+// survive and another never ends, is tried by a child first: it ends by a signal, or by the dynamic linker's own exit where
+// its tables are damaged, and has not come to its last line then. What it and the linker print is lost.
+std::string tried(const std::function<void()>& load) {
+  if (const int nowhere = ::open("/dev/null", O_WRONLY); nowhere >= 0) {
+    ::dup2(nowhere, STDOUT_FILENO);
+    ::dup2(nowhere, STDERR_FILENO);
   }
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  try {
+    load();
+  } catch (const std::bad_alloc&) {  // the parent, without a limit, would not meet it
+    return {kMemory};
+  } catch (...) {  // told by the parent, which meets it too
   }
-  if (WIFEXITED(status) && WEXITSTATUS(status) == kCameThrough) return;
-  const std::string how = WIFSIGNALED(status) ? std::string(::strsignal(WTERMSIG(status)))
-                                              : "exit code " + std::to_string(WEXITSTATUS(status));
+  return {kCameThrough};
+}
+
+ChildAnswer trial(const std::string& path, const std::function<void()>& load, double trial_s) {
+  try {
+    return inChild([&] { return tried(load); },
+                   {.seconds = trial_s, .bytes = 1, .memory = PluginPlanner::kMostMemory});
+  } catch (const std::runtime_error& e) {
+    throw InputError({path, std::string("cannot be tried: ") + e.what(), "free some memory"});
+  }
+}
+
+void requireLoadable(const std::string& path, const std::function<void()>& load, double trial_s) {
+  const ChildAnswer answer = trial(path, load, trial_s);
+  if (answer.end == ChildAnswer::End::TooLate) {
+    std::ostringstream reason;
+    reason << "does not end being loaded and unloaded within " << trial_s << " s";
+    throw InputError(
+        {path, reason.str(), "mend what its constructors and destructors wait for, or do without it"});
+  }
+  if (answer.bytes == std::string{kMemory})
+    throw InputError(
+        {path, "needs more memory to be loaded than a plugin may have", "tell its author, or do without it"});
+  if (answer.bytes == std::string{kCameThrough}) return;
+  const std::string how = answer.signal != 0 ? std::string(::strsignal(answer.signal))
+                                             : "exit code " + std::to_string(answer.exit_code);
   throw InputError({path, "ends the process that loads it (" + how + ")",
                     "it is truncated, damaged or of another machine: rebuild it"});
 }
@@ -111,8 +127,9 @@ std::unique_ptr<GlobalPlanner> loaded(const std::string& path) {
 
 }  // namespace
 
-std::unique_ptr<GlobalPlanner> loadPlugin(const std::string& path) {
-  requireLoadable(path, [&] { loaded(path); });
+std::unique_ptr<GlobalPlanner> loadPlugin(const std::string& path, double trial_s) {
+  requireLoadable(
+      path, [&] { loaded(path); }, trial_s);
   return loaded(path);
 }
 

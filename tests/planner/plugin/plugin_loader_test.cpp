@@ -1,9 +1,15 @@
+#include <csignal>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
+
+#include <poll.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <talus/planner/plugin/plugin_loader.hpp>
 
@@ -72,6 +78,41 @@ TEST(PluginLoader, ALibraryThatTheLinkerGivesUpIsRefused) {
   EXPECT_THAT([&] { loadPlugin(path); },
               ThrowsMessage<InputError>(HasSubstr("ends the process that loads it (exit code 127)")));
   std::filesystem::remove(path);
+}
+
+// `talus plugins F.so` hung for ever.
+TEST(PluginLoader, ALibraryThatNeverEndsBeingLoadedOrUnloadedIsRefused) {
+  for (const std::string path : {TALUS_ENDLESS_PLUGIN, TALUS_UNENDING_PLUGIN})
+    EXPECT_THAT(
+        [&] { loadPlugin(path, 0.2); },
+        ThrowsMessage<InputError>(AllOf(HasSubstr(path), HasSubstr("within 0.2 s"), HasSubstr("mend"))));
+  EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1) << "a child is left";
+}
+
+// `plan --plugin F.so` ended the process that tried it, and left the child of the trial.
+TEST(PluginLoader, ATrialDoesNotOutliveTheProgram) {
+  for (const int signal : {SIGTERM, SIGINT, SIGKILL}) {
+    int ends[2];
+    ASSERT_EQ(::pipe(ends), 0);
+    const pid_t program = ::fork();
+    if (program == 0) {
+      ::setenv("TALUS_ENDLESS_PLUGIN", std::to_string(ends[1]).c_str(), 1);
+      try {
+        loadPlugin(TALUS_ENDLESS_PLUGIN, 60.0);
+      } catch (...) {
+      }
+      ::_exit(0);
+    }
+    ::close(ends[1]);
+    char byte = 0;
+    ASSERT_EQ(::read(ends[0], &byte, 1), 1);  // the constructor waits
+    ::kill(program, signal);
+    ASSERT_EQ(::waitpid(program, nullptr, 0), program);
+    pollfd closed{.fd = ends[0], .events = POLLIN, .revents = 0};
+    EXPECT_EQ(::poll(&closed, 1, 10000), 1) << "the trial lives on after signal " << signal;
+    EXPECT_TRUE(closed.revents & POLLHUP);
+    ::close(ends[0]);
+  }
 }
 
 TEST(PluginLoader, ATruncatedLibraryIsRefused) {
