@@ -54,6 +54,11 @@ bool isOf(const terramech::Rover& rover, const DrivenBy& wheel) {
          sameOrUnknown(wheel.weight_N, own.weight_N);
 }
 
+std::string unobservedFinding(std::size_t places) {
+  return std::to_string(places) +
+         " places refused: wheels indicate danger where the map has no elevation or class";
+}
+
 std::string othersFinding(std::size_t rows) {
   return std::to_string(rows) +
          " rows: of another wheel or load than the map's rover has; they only lower estimates";
@@ -99,7 +104,7 @@ void DriveIntake::State::learn(const terramech::Telemetry& telemetry, const Tele
   bool accepted = result.observation.has_value() && fault(*result.observation).empty();
   if (accepted && !map.learn(*result.observation)) {
     accepted = false;
-    result.reason = "no ground to learn about there";
+    if (result.reason.empty()) result.reason = "no ground to learn about there";
   }
   JournalRow row{.source = telemetry.source,
                  .line = static_cast<std::int64_t>(telemetry.lines[i]),
@@ -116,6 +121,7 @@ void DriveIntake::State::learn(const terramech::Telemetry& telemetry, const Tele
 
 void DriveIntake::State::put(const terramech::Telemetry& telemetry, const DriveVerdict& verdict) {
   const TelemetryRows readings(telemetry, map, options.pose_std_m);
+  const std::size_t refused = map.refused().size();
   const std::string before = id;
   costmap::add(telemetry, sum);
   id = hexadecimal(sum);
@@ -124,6 +130,7 @@ void DriveIntake::State::put(const terramech::Telemetry& telemetry, const DriveV
     learn(telemetry, readings, i, std::move(result));
   });
   hearRejected(telemetry);
+  report.unobserved += map.refused().size() - refused;
   if (journal) journal->append(id, rows, before);
   map.noteDrive(id, before);
 }
@@ -170,6 +177,7 @@ DriveReport DriveIntake::report() const {
   if (report.heard > 0)
     report.findings.push_back(std::to_string(report.heard) +
                               " rejected rows: they indicate danger, which counts where they were read");
+  if (report.unobserved > 0) report.findings.push_back(unobservedFinding(report.unobserved));
   return report;
 }
 
@@ -192,6 +200,7 @@ DriveReport addDrive(TraversabilityMap& map, const terramech::Telemetry& telemet
 
 DriveReport replay(TraversabilityMap& map, const EvidenceJournal& journal) {
   DriveReport report;
+  const std::size_t refused = map.refused().size();
   for (const std::string& drive : journal.drives()) {
     if (map.drives().contains(drive)) continue;
     for (JournalRow& row : journal.rows(drive)) {
@@ -205,6 +214,8 @@ DriveReport replay(TraversabilityMap& map, const EvidenceJournal& journal) {
     }
     map.noteDrive(drive);
   }
+  report.unobserved = map.refused().size() - refused;
+  if (report.unobserved > 0) report.findings.push_back(unobservedFinding(report.unobserved));
   if (report.others > 0) report.findings.push_back(othersFinding(report.others));
   map.publishAll();
   return report;

@@ -12,7 +12,6 @@ namespace {
 
 constexpr std::size_t kMostNeighbours = 64;
 constexpr double kOrdinary = 2.0;          // standard deviations that a class explains
-constexpr double kPoseReach = 2.0;         // standard deviations of the pose
 constexpr double kFarthestReach_m = 25.5;  // as BlockEvidence keeps it
 constexpr double kPlaceStd = 0.06;         // a place is known that is known so well: by some readings
 constexpr double kSteepest =

@@ -123,6 +123,8 @@ class EvidenceField {
   /// Boxes of cells, apart from each other, outside of which all ground is believed to be what its class is.
   std::vector<maps::CellBox> reached() const;
 
+  static constexpr double kPoseReach = 2.0;  ///< standard deviations of the pose that a bound reaches
+
   /// Side of a block.
   int blockCells() const noexcept;
 

@@ -64,6 +64,7 @@ std::vector<TelemetryProcessor::Result> TelemetryProcessor::process(const Teleme
     const auto index = classAt(map_, result.reading);
     if (!index) {
       result.reason = "outside the map or on ground without a soil";
+      result.observation = ofUnobserved(result.reading, rows.leastGradient(moment.rows[w]));
       continue;
     }
     const ClassReading read{*index, result.reading};
@@ -105,8 +106,15 @@ std::optional<WheelObservation> TelemetryProcessor::rejected(const TelemetryRows
                                                              std::size_t row) const {
   const WheelReading reading = rows.reading(row);
   const auto index = classAt(map_, reading);
-  if (!index) return std::nullopt;
+  if (!index) return ofUnobserved(reading, rows.steepestDescent(row));
   const GroundBound here = danger_.hear(*index, reading, rows.steepestDescent(row));
+  return here.any() ? std::optional(boundOf(reading, here)) : std::nullopt;
+}
+
+// Ground of no class is refused, however it compares with one: the first stands for it.
+std::optional<WheelObservation> TelemetryProcessor::ofUnobserved(const WheelReading& reading,
+                                                                 double least_gradient) const {
+  const GroundBound here = danger_.hear(0, reading, least_gradient);
   return here.any() ? std::optional(boundOf(reading, here)) : std::nullopt;
 }
 

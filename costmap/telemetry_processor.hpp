@@ -65,6 +65,7 @@ class TelemetryProcessor {
     std::vector<bool> danger;
   };
 
+  std::optional<WheelObservation> ofUnobserved(const WheelReading& reading, double least_gradient) const;
   GroundBound bound(const ClassReading& read, double least_gradient, bool suspected) const;
   std::vector<std::optional<WheelObservation>> observed(const Sound& sound, const DriveVerdict& verdict);
   void prove(const TelemetryRows& rows, const Sound& sound,

@@ -197,7 +197,30 @@ bool TraversabilityMap::learn(const WheelObservation& observation) {
   const MapChange change(*published_, "learn");
   const auto range = field_.add(observation);
   if (range) learned_ = joined(std::move(learned_), *range);
-  return range.has_value();
+  return range.has_value() || (observation.here.any() && refuseUnobserved(observation));
+}
+
+// In blocks, so that a wheel that spins on the spot is one place.
+bool TraversabilityMap::refuseUnobserved(const WheelObservation& observation) {
+  const double side_m = field_.blockCells() * grid().resolution_m;
+  const maps::Point origin = grid().south_west;
+  const auto middle = [&](double at, double from) {
+    return from + (std::floor((at - from) / side_m) + 0.5) * side_m;
+  };
+  const RefusedPlace refusal{
+      {middle(observation.place.x_m, origin.x_m), middle(observation.place.y_m, origin.y_m)},
+      side_m + EvidenceField::kPoseReach * std::max(observation.pose_std_m, 0.0)};
+  const double x = std::clamp(refusal.place.x_m, origin.x_m, origin.x_m + grid().width * grid().resolution_m),
+               y = std::clamp(refusal.place.y_m, origin.y_m,
+                              origin.y_m + grid().height * grid().resolution_m);
+  if (!(std::hypot(refusal.place.x_m - x, refusal.place.y_m - y) <= refusal.radius_m)) return false;
+  const bool known = std::ranges::any_of(refusals_, [&](const RefusedPlace& other) {
+    return other.place == refusal.place && other.radius_m >= refusal.radius_m;
+  });
+  if (known) return true;
+  refusals_.push_back(refusal);
+  changed_.push_back(mark(refusal, true));
+  return true;
 }
 
 bool TraversabilityMap::restore(const SavedBlock& saved) {

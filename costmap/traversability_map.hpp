@@ -106,8 +106,10 @@ class TraversabilityMap {
   /// What the wheels told so far.
   const EvidenceField& evidence() const noexcept { return field_; }
 
-  /// Takes an observation in; planners see it after publish(). False when the place has no ground to learn
-  /// about.
+  /// Takes an observation in; planners see it after publish(). What points to danger where the map has no elevation or no
+  /// class, or beyond its edge by less than the error of the pose, refuses that place as refuse() does, whatever is
+  /// patched in later: a block and two standard deviations of the pose around. False when the place has no
+  /// ground to learn about.
   bool learn(const WheelObservation& observation);
   /// Puts saved evidence of a block back, as read from a file; planners see it after publish(). False when the map has
   /// no such block or class.
@@ -176,6 +178,8 @@ class TraversabilityMap {
   Hazard rocksOn(float abundance) const;
   Hazard spreading() const noexcept;
   maps::CellBox mark(const RefusedPlace& refusal, bool refused);
+  /// Of danger where the map has no ground. False where it lies off the map.
+  bool refuseUnobserved(const WheelObservation& observation);
   CellBelief belief(maps::Cell cell, EvidenceField::Beliefs& beliefs) const;
   std::uint8_t categoryOf(const CostGrid& grid, maps::Cell cell) const noexcept;
   CellCode coded(maps::Cell cell, CellCode code);

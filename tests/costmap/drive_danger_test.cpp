@@ -129,6 +129,35 @@ TEST(Danger, OfOneChannelRefusesItsPlaceWhateverElseIsMissing) {
         }
 }
 
+// Property: where the map has no elevation or no class, danger refuses the place and what lies within the error of the pose, unknown
+// ground allowed or not, and keeps it refused when the ground is patched in.
+TEST(Danger, OfUnobservedGroundIsKeptUntilItIsSeenAndAfter) {
+  for (const bool allow_unknown : {false, true})
+    for (const char hole : {'?', '9'})
+      for (const bool by_sinkage : {false, true}) {
+        std::vector<std::string> rows(kSide, std::string(kSide, '1'));
+        rows[kSide - 1 - 20][25] = hole;
+        TraversabilityMap map = mapOf(rows, 0.0, {.allow_unknown = allow_unknown});
+        const Row spun =
+            by_sinkage
+                ? Row{.time_s = 0, .x_m = 0, .slip = 0.1, .sinkage_m = 0.9 * testRover().wheel.radius_m}
+                : Row{.time_s = 0, .x_m = 0, .slip = 0.95};
+        const DriveReport report =
+            addDrive(map, tableOf(afterGoodRows({spun, spun}, true)), nullptr, {.pose_std_m = 0.5});
+        EXPECT_THAT(report.findings, testing::Contains(testing::HasSubstr("1 places refused")));
+        SurfacePatch patch;
+        patch.elevation_m = maps::Raster<float>(
+            {.width = 3, .height = 3, .resolution_m = 1.0, .south_west = {124.0, 219.0}}, 1000.0F);
+        patch.classes = maps::Raster<std::uint8_t>(patch.elevation_m.grid(), 1);
+        for (const bool patched : {false, true}) {
+          if (patched) map.patch(patch);
+          for (const double x : {124.5, 125.5, 126.5})
+            EXPECT_TRUE(refused(map, {x, 220.5})) << hole << patched << x;
+          EXPECT_FALSE(refused(map, {115.5, 220.5}));
+        }
+      }
+}
+
 TEST(Danger, OfDeepWheelsAtLittleSlipRefuses) {
   for (const terramech::Rover& rover : rovers())
     for (const double z : {0.85, 0.9, 1.08, 1.9})
