@@ -5,6 +5,9 @@
 #include <sstream>
 #include <string_view>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <talus/cli/app/output_file.hpp>
 #include <talus/talus.hpp>
 
@@ -68,18 +71,19 @@ const Names* formatOf(const std::string& name) {
 // what is written.
 void checkFormat(const fs::path& path, const std::string& type_name) {
   const Names* named = formatOf(path.string());
-  const Names* written = nullptr;
+  if (named == nullptr) return;
+  std::vector<std::string> endings;
   std::istringstream choices(type_name);
   for (std::string choice; std::getline(choices, choice, '|');) {
-    written = formatOf(choice);
+    const Names* written = formatOf(choice);
     if (written == named) return;
+    if (written != nullptr) endings.emplace_back(written->front());
   }
-  if (written && named)
-    throw InputError(
-        {path.string(),
-         "is named " + path.extension().string() + ", but a " + std::string(written->front()) +
-             " file is written",
-         "name it " + path.stem().string() + std::string(written->front()) + ", or pass --force"});
+  if (endings.empty()) return;
+  throw InputError({path.string(),
+                    fmt::format("is named {}, but a {} file is written", path.extension().string(),
+                                fmt::join(endings, " or ")),
+                    "name it " + path.stem().string() + endings.front() + ", or pass --force"});
 }
 
 bool leavesItsFolder(const fs::path& link) {
@@ -89,6 +93,11 @@ bool leavesItsFolder(const fs::path& link) {
 }
 
 }  // namespace
+
+bool isNamed(const fs::path& path, const std::string& ending) {
+  const Names* named = formatOf(path.string());
+  return named != nullptr && named == formatOf("x" + ending);
+}
 
 CLI::Option* addOutput(CLI::App& command, const std::string& names, std::string& path,
                        const std::string& text) {

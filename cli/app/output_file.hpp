@@ -13,6 +13,9 @@ namespace talus::cli {
 using maps::OutputFile;
 using maps::writeFile;
 
+/// Whether the ending of a file's name stands for the same format as `ending` (".html": .htm and .HTML too).
+bool isNamed(const std::filesystem::path& path, const std::string& ending);
+
 /// Declares an option that names a file to write; checkOutputs() finds it.
 CLI::Option* addOutput(CLI::App& command, const std::string& names, std::string& path,
                        const std::string& text);

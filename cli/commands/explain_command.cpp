@@ -1,6 +1,5 @@
 // talus explain DEM --at P [--heading RAD]: why a cell is what it is.
 #include <cmath>
-#include <filesystem>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -40,9 +39,8 @@ void bind(CLI::App& command, Options& options) {
       ->type_name("RAD")
       ->check(finite());
   groupOptions(command, "Place");
-  command
-      .add_option("--png", options.png, "picture of cost, slip and slip angle over all headings (.png, .svg)")
-      ->type_name("FILE");
+  addOutput(command, "--png", options.png, "picture of cost, slip and slip angle over all headings")
+      ->type_name("FILE.png|FILE.svg");
   groupOptions(command, "Output");
 }
 
@@ -105,8 +103,7 @@ int run(const Options& options, Context& context) {
   if (!options.png.empty())
     writeFile(options.png,
               draw(roseOf(site.map, cell, maps::describe(point, site.map.elevation()) + ": " + why.verdict),
-                   std::filesystem::path(options.png).extension() == ".svg" ? Canvas::Kind::Svg
-                                                                            : Canvas::Kind::Png));
+                   isNamed(options.png, ".svg") ? Canvas::Kind::Svg : Canvas::Kind::Png));
   if (context.json)
     printJson(asJson(why, point, cell));
   else

@@ -32,7 +32,7 @@ std::vector<Plot> charts(const std::vector<planner::ParetoRoute>& front) {
 }  // namespace
 
 void saveParetoChart(const std::string& path, const std::vector<planner::ParetoRoute>& front) {
-  if (!path.ends_with(".html")) return save(path, charts(front));
+  if (!isNamed(path, ".html")) return save(path, charts(front));
   HtmlReport page("Energy, time and risk");
   std::vector<std::vector<std::string>> rows;
   rows.reserve(front.size());

@@ -220,7 +220,7 @@ std::string draw(const std::vector<Plot>& plots, Canvas::Kind kind, const PlotLa
 }
 
 void save(const std::filesystem::path& path, const std::vector<Plot>& plots, const PlotLayout& layout) {
-  writeFile(path, draw(plots, path.extension() == ".svg" ? Canvas::Kind::Svg : Canvas::Kind::Png, layout));
+  writeFile(path, draw(plots, isNamed(path, ".svg") ? Canvas::Kind::Svg : Canvas::Kind::Png, layout));
 }
 
 }  // namespace talus::cli

@@ -16,9 +16,8 @@ void addOutputs(CLI::App& command, PlanOptions& options) {
   addOutput(command, "--html", options.html, "page to write: map, route and profiles")
       ->type_name("PAGE.html");
   addOutput(command, "--png", options.png, "picture to write")->type_name("FILE.png");
-  addOutput(command, "--pareto", options.pareto,
-            "plot of the Pareto set of energy, time and risk to write: .png, .svg or .html")
-      ->type_name("FILE");
+  addOutput(command, "--pareto", options.pareto, "plot of the Pareto set of energy, time and risk to write")
+      ->type_name("FILE.png|FILE.svg|FILE.html");
   groupOptions(command, "Output");
 }
 

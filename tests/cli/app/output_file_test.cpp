@@ -71,17 +71,27 @@ TEST(CheckOutput, HoldsForEveryCall) {
 TEST(CheckOutput, RefusesANameOfAnotherFormat) {
   const BadFiles files;
   expectRefused(
-      files, {{{"generate", "craters", "--size", "20", "-o", "s.asc"},
-               2,
-               "is named .asc, but a .tif file is written"},
-              {{"generate", "craters", "--size", "20", "-o", "s.PNG"}, 2, "name it s.tif"},
-              {{"costmap", "good.asc", "-o", "m.bt"}, 2, "a .ot file"},
-              {{"costmap", "good.asc", "--geotiff", "m.ot"}, 2, "a .tif file"},
-              {{"plan", "good.asc", "--start", "5,5", "--goal", "9,9", "--png", "r.jpg"}, 2, "a .png file"},
-              {{"plan", "good.asc", "--start", "5,5", "--goal", "9,9", "-o", "r.html"}, 2, "r.html"}});
+      files,
+      {{{"generate", "craters", "--size", "20", "-o", "s.asc"},
+        2,
+        "is named .asc, but a .tif file is written"},
+       {{"generate", "craters", "--size", "20", "-o", "s.PNG"}, 2, "name it s.tif"},
+       {{"costmap", "good.asc", "-o", "m.bt"}, 2, "a .ot file"},
+       {{"costmap", "good.asc", "--geotiff", "m.ot"}, 2, "a .tif file"},
+       {{"plan", "good.asc", "--start", "5,5", "--goal", "9,9", "--png", "r.jpg"}, 2, "a .png file"},
+       {{"plan", "good.asc", "--start", "5,5", "--goal", "9,9", "-o", "r.html"}, 2, "r.html"},
+       {{"plan", "good.asc", "--start", "5,5", "--goal", "9,9", "-o", "x.tif"}, 2, "name it x.geojson"},
+       {{"plan", "good.asc", "--start", "5,5", "--goal", "9,9", "--pareto", "p.tif"},
+        2,
+        "a .png or .svg or .html file is written; name it p.png"},
+       {{"explain", "good.asc", "--at", "5,5", "--png", "e.tif"}, 2, "a .png or .svg file"},
+       {{"explain", "good.asc", "--at", "5,5", "--png", "good.asc"}, 2, "also an input"}});
   for (const char* name : {"s.tif", "s.TIFF", "s", "s.raster"})
-    EXPECT_EQ(runTalus({"generate", "craters", "--size", "20", "-o", name}, files.folder().path()).code, 0) << name;
-  EXPECT_EQ(runTalus({"generate", "craters", "--size", "20", "-o", "s.asc", "--force"}, files.folder().path()).code, 0);
+    EXPECT_EQ(runTalus({"generate", "craters", "--size", "20", "-o", name}, files.folder().path()).code, 0)
+        << name;
+  EXPECT_EQ(
+      runTalus({"generate", "craters", "--size", "20", "-o", "s.asc", "--force"}, files.folder().path()).code,
+      0);
 }
 
 // A mission names its output in a file that may come from anywhere.
