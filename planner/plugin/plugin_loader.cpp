@@ -53,7 +53,7 @@ void requireLoadable(const std::string& path, const std::function<void()>& load,
     std::ostringstream reason;
     reason << "does not end being loaded and unloaded within " << trial_s << " s";
     throw InputError(
-        {path, reason.str(), "mend what its constructors and destructors wait for, or do without it"});
+        {path, reason.str(), "fix what its constructors and destructors wait for, or do without it"});
   }
   if (answer.bytes == std::string{kMemory})
     throw InputError(

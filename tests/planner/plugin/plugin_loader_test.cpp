@@ -85,7 +85,7 @@ TEST(PluginLoader, ALibraryThatNeverEndsBeingLoadedOrUnloadedIsRefused) {
   for (const std::string path : {TALUS_ENDLESS_PLUGIN, TALUS_UNENDING_PLUGIN})
     EXPECT_THAT(
         [&] { loadPlugin(path, 0.2); },
-        ThrowsMessage<InputError>(AllOf(HasSubstr(path), HasSubstr("within 0.2 s"), HasSubstr("mend"))));
+        ThrowsMessage<InputError>(AllOf(HasSubstr(path), HasSubstr("within 0.2 s"), HasSubstr("fix"))));
   EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1) << "a child is left";
 }
 
