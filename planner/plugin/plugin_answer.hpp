@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <string>
 
@@ -12,6 +13,9 @@
 namespace talus::planner {
 
 inline constexpr std::size_t kLongestPluginText = 1000;
+
+/// Memory that a child that runs a plugin may take beyond the program's own, bytes.
+inline constexpr std::uint64_t kMostPluginMemory = std::uint64_t{4} << 30;
 
 /// What planner and layer plugins share: how they are loaded (plugin_loader.cpp) and asked (plugin_planner.cpp).
 

@@ -13,7 +13,6 @@
 #include <talus/planner/plugin/child_process.hpp>
 #include <talus/planner/plugin/plugin_answer.hpp>
 #include <talus/planner/plugin/plugin_loader.hpp>
-#include <talus/planner/plugin/plugin_planner.hpp>
 #include <talus/planner/plugin/request_check.hpp>
 
 namespace talus::planner {
@@ -41,7 +40,7 @@ std::string tried(const std::function<void()>& load) {
 ChildAnswer trial(const std::string& path, const std::function<void()>& load, double trial_s) {
   try {
     return inChild([&] { return tried(load); },
-                   {.seconds = trial_s, .bytes = 1, .memory = PluginPlanner::kMostMemory});
+                   {.seconds = trial_s, .bytes = 1, .memory = kMostPluginMemory});
   } catch (const std::runtime_error& e) {
     throw InputError({path, std::string("cannot be tried: ") + e.what(), "free some memory"});
   }

@@ -214,7 +214,7 @@ PluginPlanner::PluginPlanner(std::string file, std::string planner)
         loaded->configure({.planner = planner_});
         return kText + oneLine(loaded->capabilities().planner + " of " + offers.name);
       },
-      {.seconds = 10.0, .bytes = 10 * kLongestPluginText, .memory = kMostMemory}, {});
+      {.seconds = 10.0, .bytes = 10 * kLongestPluginText, .memory = kMostPluginMemory}, {});
   name_ = bytes.substr(1);
 }
 
@@ -232,7 +232,7 @@ Plan PluginPlanner::unchecked(const Problem& problem) const {
       },
       {.seconds = problem.time_limit_s + 1.0,
        .bytes = 2 * kLongestPluginText + 16 * kMostVertices,
-       .memory = kMostMemory},
+       .memory = kMostPluginMemory},
       problem.watch);
   if (bytes.empty()) return failedPlan(RouteStatus::Cancelled, "cancelled before a route was found");
   Head head;

@@ -10,10 +10,9 @@ namespace talus::planner {
 /// its route is held against violations() and priced by MotionCost before anybody sees it. Not thread-safe.
 class PluginPlanner {
  public:
-  /// Vertices of a route, its length in cells, and memory that it may take beyond the program's own.
+  /// Vertices of a route, and its length in cells.
   static constexpr std::size_t kMostVertices = 100'000;
   static constexpr int kMostCells = 1'000'000;
-  static constexpr std::uint64_t kMostMemory = std::uint64_t{4} << 30;
 
   /// Loads it once, in a child, to ask what it is. `planner`: one of those that it offers; empty: its default. Throws
   /// InputError naming the file, as loadPlugin() does, and where it throws, crashes or has no such planner.
