@@ -12,7 +12,7 @@ struct PlaneFit {
   double dz_dx = 0.0;        ///< [-]
   double dz_dy = 0.0;        ///< [-]
   double roughness_m = 0.0;  ///< root mean square residual
-  double relief_m = 0.0;       ///< range of the residuals
+  double relief_m = 0.0;     ///< range of the residuals
 };
 
 /// The plane over those cells of the footprint that lie on the raster and hold data. Nothing when the middle

@@ -46,7 +46,8 @@ struct Scene {
   std::vector<ValueLayer> layers;
   std::vector<Fact> facts;
   std::optional<planner::Route> route;
-  std::vector<std::pair<const char*, maps::Point>> marks{};  ///< places under a letter, where there is no route
+  std::vector<std::pair<const char*, maps::Point>>
+      marks{};                      ///< places under a letter, where there is no route
   std::optional<DriveStory> story;  ///< a simulated drive, to be run through
 
   const maps::Grid& grid() const noexcept { return elevation_m.grid(); }

@@ -88,9 +88,9 @@ Plan TubePlanner::finished(const Problem& leg, Polyline way, const StopCheck& st
             0.0};
   plan.cost_J = cost.along(plan.points);
   const Segment ends{leg.start, leg.goal};
-  plan.lower_bound_J =
-      std::min(plan.cost_J, leg.prove ? straightBoundOver_J(*leg.map, ends, leg.goal_tolerance_m, plan.cost_J, stop)
-                                      : straightBound_J(*leg.map, ends, leg.goal_tolerance_m));
+  plan.lower_bound_J = std::min(
+      plan.cost_J, leg.prove ? straightBoundOver_J(*leg.map, ends, leg.goal_tolerance_m, plan.cost_J, stop)
+                             : straightBound_J(*leg.map, ends, leg.goal_tolerance_m));
   return plan;
 }
 

@@ -57,9 +57,9 @@ TrialSoil soilOf(const std::string& name, const std::vector<FittedTrial>& trials
   double freedom = 0.0;
   for (const auto& [width_m, values] : pressures) {
     const RandomEffect pressure = randomEffect(values);
-    soil.fit.plates.push_back({.plate_width_m = width_m,
-                               .sinkage_modulus = std::exp(pressure.mean.value -
-                                                           soil.fit.sinkage_exponent * log_depth)});
+    soil.fit.plates.push_back(
+        {.plate_width_m = width_m,
+         .sinkage_modulus = std::exp(pressure.mean.value - soil.fit.sinkage_exponent * log_depth)});
     const double free = static_cast<double>(values.size()) - 1.0;
     soil.pressure_spread += free * pressure.spread * pressure.spread;
     freedom += free;

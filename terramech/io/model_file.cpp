@@ -155,7 +155,8 @@ void readFit(const YamlFields& root, RefinedModel& model) {
 /// One number >= 0 for each channel.
 std::array<double, kChannels> readChannels(const YamlFields& f, const char* name) {
   const std::vector<double> values = f.numbers(name);
-  if (values.size() != kChannels || std::any_of(values.begin(), values.end(), [](double v) { return !(v >= 0.0); }))
+  if (values.size() != kChannels ||
+      std::any_of(values.begin(), values.end(), [](double v) { return !(v >= 0.0); }))
     f.refuse(name, "needs one number >= 0 for each channel", "");
   std::array<double, kChannels> all{};
   std::copy(values.begin(), values.end(), all.begin());
@@ -298,8 +299,10 @@ void writeSoil(Writer& w, const Soil& s, const std::string& indent = "") {
 void writeEffect(Writer& w, const Effect& e, const std::string& indent) {
   const EffectForm* form = findEffect(e.name);
   if (form) w << indent << "  # " << form->formula << "\n";
-  w << indent << "  - name: " << e.name << "\n" << indent << "    covariate: " << quoted(e.covariate) << "\n"
-    << indent << "    channel: " << name(e.channel) << "\n" << indent << "    ";
+  w << indent << "  - name: " << e.name << "\n"
+    << indent << "    covariate: " << quoted(e.covariate) << "\n"
+    << indent << "    channel: " << name(e.channel) << "\n"
+    << indent << "    ";
   w.list("parameters", e.parameters);
   if (form && !form->parameters.empty()) {
     w << "  #";
@@ -310,7 +313,8 @@ void writeEffect(Writer& w, const Effect& e, const std::string& indent) {
     w.list("knots", e.knots);
   }
   if (!e.only_column.empty())
-    w << "\n" << indent << "    only: {column: " << quoted(e.only_column) << ", value: " << quoted(e.only_value)
+    w << "\n"
+      << indent << "    only: {column: " << quoted(e.only_column) << ", value: " << quoted(e.only_value)
       << "}";
   w << "\n";
 }

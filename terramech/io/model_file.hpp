@@ -43,7 +43,8 @@ struct TrainedRange {
 /// Where the corrections of a refined model are applied.
 struct ModelScope {
   std::vector<TrainedRange> trained;  ///< of the rows that it was fitted to; empty: not known
-  std::optional<RefinedModel> base;   ///< soil and effects without corrections; empty: there are none to take back
+  std::optional<RefinedModel>
+      base;  ///< soil and effects without corrections; empty: there are none to take back
   std::array<bool, kChannels> kept{true, true, true, true};  ///< channels that held-out rows confirmed
 
   /// Share of a channel's corrections, [0, 1], that a row gets; 1 - share stays the base's.

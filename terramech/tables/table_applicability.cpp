@@ -29,9 +29,11 @@ Applicability tableApplicability(const std::string& table, const std::string& ba
   ModelFile file = base.empty() ? unknownSoil() : loadModel(base);
   if (!rover.empty()) file.model.takeRover(loadRover(rover));
   const Telemetry telemetry = readTelemetry(table, {});
-  const bool wheel = file.model.wheel || (telemetry.find("wheel_radius_m") && telemetry.find("wheel_width_m"));
+  const bool wheel =
+      file.model.wheel || (telemetry.find("wheel_radius_m") && telemetry.find("wheel_width_m"));
   if (!wheel || !telemetry.find("load_N") || !telemetry.find("slip")) return {};
-  if (!telemetry.find("sinkage_m") && !telemetry.find("torque_Nm") && !telemetry.find("drawbar_pull_N")) return {};
+  if (!telemetry.find("sinkage_m") && !telemetry.find("torque_Nm") && !telemetry.find("drawbar_pull_N"))
+    return {};
   const Trial trial = evenRows(makeTrial(telemetry, file.model));
   if (trial.rows() < kFewest) return {};
   file.model.slip_along_travel |= slipIsAlongTravel(trial.states);

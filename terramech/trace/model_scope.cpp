@@ -24,7 +24,8 @@ void keep(ChannelErrors& refined, const ChannelErrors& base, const ModelScope& s
 
 /// Sets how far the corrections reach at one end, of which `ends` are of one column and side, the nearest first. Somewhere
 /// between the last that confirms them and the first that does not they stop to hold: none is applied from the middle on.
-void setReach(std::array<double, kChannels>& reach, const std::vector<EndLevel>& ends, const ChannelErrors& floor) {
+void setReach(std::array<double, kChannels>& reach, const std::vector<EndLevel>& ends,
+              const ChannelErrors& floor) {
   for (std::size_t c = 0; c < kChannels; ++c) {
     double confirmed = 0.0;
     for (const EndLevel& end : ends) {

@@ -21,7 +21,7 @@ const char* name(Verdict verdict);
 struct Answer {
   Verdict verdict = Verdict::NothingMissing;
   Channel channel = Channel::DrawbarPull;  ///< whose rest exceeds its floor most
-  bool open = false;  ///< some rest exceeds its floor
+  bool open = false;                       ///< some rest exceeds its floor
   double rest = 0.0, floor = 0.0;          ///< rms there of the refined model, and of the sensors alone [-]
   std::string column;   ///< over which the rest varies most; empty: over none that is known
   double gain = 0.0;    ///< what that column promises, against TraceResult::threshold

@@ -11,7 +11,8 @@ namespace talus::terramech {
 namespace {
 
 /// sigma = k z^n from z_low to z_high, without noise.
-PlateTrial trial(const std::string& soil, double k, double n, double z_low, double z_high, double width_m = 0.04) {
+PlateTrial trial(const std::string& soil, double k, double n, double z_low, double z_high,
+                 double width_m = 0.04) {
   PlateTrial t{.soil = soil, .name = {}, .readings = {}};
   for (int i = 0; i <= 50; ++i) {
     const double z = z_low + (z_high - z_low) * i / 50.0;

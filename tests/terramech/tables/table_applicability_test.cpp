@@ -15,13 +15,19 @@ namespace {
 /// A table of 60 rows: readings of a wheel on sand, or, shuffled, of a wheel that no soil explains.
 std::string tableOf(bool shuffled) {
   RefinedModel sand;
-  sand.soil = {.cohesion_Pa = 800.0, .friction_angle_rad = 0.55, .sinkage_exponent = 1.0, .cohesive_modulus = 0.0,
-               .frictional_modulus = 1e6, .shear_modulus_m = 0.015};
+  sand.soil = {.cohesion_Pa = 800.0,
+               .friction_angle_rad = 0.55,
+               .sinkage_exponent = 1.0,
+               .cohesive_modulus = 0.0,
+               .frictional_modulus = 1e6,
+               .shear_modulus_m = 0.015};
   std::mt19937_64 random(4);
   std::normal_distribution<double> normal;
   std::string text = "load_N,slip,torque_Nm,sinkage_m,drawbar_pull_N,wheel_radius_m,wheel_width_m\n";
   for (int k = 0; k < 60; ++k) {
-    const WheelState s{.wheel = {.radius_m = 0.1, .width_m = 0.1}, .load_N = 50.0 + 5.0 * (k % 8), .slip = 0.05 + 0.01 * (k % 50)};
+    const WheelState s{.wheel = {.radius_m = 0.1, .width_m = 0.1},
+                       .load_N = 50.0 + 5.0 * (k % 8),
+                       .slip = 0.05 + 0.01 * (k % 50)};
     const Reading r = predict(sand, s);
     const double noise = 1.0 + 0.02 * normal(random);
     const double torque = shuffled ? std::abs(4.0 + 3.0 * normal(random)) : r.torque_Nm * noise;

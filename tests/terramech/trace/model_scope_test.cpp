@@ -14,20 +14,24 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 EndLevel greatestSlip(double distance, const ChannelErrors& base, const ChannelErrors& refined) {
-  return {.column = "slip", .high = true, .distance = distance, .rows = 100, .base_rmse = base, .refined_rmse = refined};
+  return {.column = "slip",
+          .high = true,
+          .distance = distance,
+          .rows = 100,
+          .base_rmse = base,
+          .refined_rmse = refined};
 }
 
 /// Rows at slips from 0 to 0.3; a refined model with slip-sinkage beside a base without.
 TraceResult resultOf() {
   MadeRows rows(wheelColumns());
   std::mt19937_64 random(5);
-  for (int k = 0; k < 40; ++k) rows.add(wheelRow(madeSand(), 60.0 + 10.0 * (k % 3), 0.1 * (k % 4), 0.0, random));
+  for (int k = 0; k < 40; ++k)
+    rows.add(wheelRow(madeSand(), 60.0 + 10.0 * (k % 3), 0.1 * (k % 4), 0.0, random));
   TraceResult result;
   result.base.soil = result.refined.soil = madeSand();
-  result.refined.effects = {{.name = "slip_sinkage_linear",
-                             .covariate = "slip",
-                             .channel = Channel::Sinkage,
-                             .parameters = {1.0}}};
+  result.refined.effects = {
+      {.name = "slip_sinkage_linear", .covariate = "slip", .channel = Channel::Sinkage, .parameters = {1.0}}};
   result.trial = makeTrial(rows.telemetry(), result.base);
   result.noise_floor = {0.01, 0.01, 0.01, kNan};
   result.held_out.base_rmse = {0.05, 0.05, 0.05, kNan};
@@ -94,7 +98,8 @@ TEST(ModelScope, PredictionsReturnToTheBaseAndTheFileSaysSo) {
   Trial far = result.trial;
   for (WheelState& s : far.states) s.slip = 0.9;
   SolvedContacts solved, other;
-  const Eigen::MatrixXd base = predictRows(result.base, far, solved), refined = predictRows(result.refined, far, other);
+  const Eigen::MatrixXd base = predictRows(result.base, far, solved),
+                        refined = predictRows(result.refined, far, other);
   const Eigen::MatrixXd mixed = predictInScope(result, far);
   // Property: at 0.9 drawbar pull is the base's, sinkage the refined model's; torque is the base's everywhere.
   EXPECT_NEAR(mixed(0, 0), base(0, 0), 1e-12);

@@ -87,14 +87,14 @@ TEST(PredictionTable, OutsideTheTrainedRangeARowIsFlaggedAndItsDeviationGrows) {
 TEST(PredictionTable, BeyondTheReachOfCorrectionsItIsTheBaseAndSaysHowFarTheyDiffer) {
   const test::TemporaryFile file{"load_N,slip,wheel_radius_m,wheel_width_m\n80,0.6,0.1,0.1\n"};
   RefinedModel model = refined();
-  model.effects = {{.name = "slip_sinkage_linear",
-                    .covariate = "slip",
-                    .channel = Channel::Sinkage,
-                    .parameters = {1.0}}};
+  model.effects = {
+      {.name = "slip_sinkage_linear", .covariate = "slip", .channel = Channel::Sinkage, .parameters = {1.0}}};
   const auto sinkageOf = [&](const RefinedModel& m, const ModelScope& scope) {
     const std::string text = predictTable(file.path(), m, scope).text;
     Estimate z;
-    EXPECT_EQ(std::sscanf(text.c_str() + text.find("80,0.6"), "80,0.6,0.1,0.1,%*f,%*f,%lf,%lf", &z.value, &z.std), 2);
+    EXPECT_EQ(
+        std::sscanf(text.c_str() + text.find("80,0.6"), "80,0.6,0.1,0.1,%*f,%*f,%lf,%lf", &z.value, &z.std),
+        2);
     return z;
   };
   ModelScope scope{.trained = {{.column = "slip", .low = 0.0, .high = 0.3}}, .base = refined()};
