@@ -51,6 +51,7 @@ TEST(WheelRows, AWheelAtASlipAngleIsNoStraightOne) {
       read("slip_angle_rad," + kHead +
            "0.09,80,2,0.01,0.3,0.1,0.2,a\n-0.11,80,2,0.01,0.3,0.1,0.2,a\n,80,2,0.01,0.3,0.1,0.2,a\n");
   EXPECT_THAT(rows.lines, ElementsAre(2, 4));
+  ASSERT_NE(rows.firstRejected(), nullptr);
   EXPECT_THAT(rows.firstRejected()->reason, HasSubstr("slip_angle_rad = -0.11: only straight wheels"));
 }
 
