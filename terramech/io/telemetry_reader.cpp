@@ -27,6 +27,8 @@ constexpr Rule kRules[] = {
     {"load_N", [](double x) { return x > 0.0 && x <= 1e7; }, "> 0 and at most 1e7"},
     {"sinkage_m", [](double x) { return x >= 0.0; }, ">= 0"},
     {"slip", [](double x) { return x >= -1.0 && x <= 1.0; }, "in [-1, 1]"},
+    // A right angle, and what reads one: tables of wheels pulled across their travel have up to 1.577.
+    {"slip_angle_rad", [](double x) { return std::abs(x) <= 1.6; }, "in [-1.6, 1.6]"},
     {"wheel_radius_m", [](double x) { return x > 0.0; }, "> 0"},
     {"wheel_width_m", [](double x) { return x > 0.0; }, "> 0"},
     {"grouser_height_m", [](double x) { return x >= 0.0; }, ">= 0"},

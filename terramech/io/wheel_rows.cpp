@@ -51,7 +51,49 @@ std::optional<std::string> unusable(const WheelSample& s, double slip_angle_rad,
   return std::nullopt;
 }
 
+// What a row with a side force lacks; 0 says that the wheel ran straight.
+std::string angleFault(const Telemetry& table, std::size_t row) {
+  const auto* force = table.find("side_force_N");
+  const auto* angle = table.find("slip_angle_rad");
+  if (force == nullptr || !std::isfinite((*force)[row]) || (*force)[row] == 0.0) return {};
+  if (angle != nullptr && std::isfinite((*angle)[row])) return {};
+  return fmt::format(
+      "side_force_N = {:g} without slip_angle_rad, which tells how the wheel stood; fill it in, 0 for a "
+      "straight "
+      "wheel",
+      (*force)[row]);
+}
+
+// Moves each row with a fault, of as many as there are rows, to the rejected ones.
+void leaveOut(Telemetry& t, const std::vector<std::string>& faults) {
+  for (std::size_t row = 0; row < faults.size(); ++row) {
+    if (faults[row].empty()) continue;
+    t.rejected.push_back({.line = t.lines[row], .reason = faults[row]});
+    for (Telemetry::Numbers& column : t.rejected_numbers) column.values.push_back(t.at(column.name)[row]);
+  }
+  const auto keep = [&](auto& values) {
+    std::size_t to = 0;
+    for (std::size_t row = 0; row < faults.size(); ++row)
+      if (faults[row].empty()) values[to++] = values[row];
+    values.resize(to);
+  };
+  for (Telemetry::Numbers& column : t.numbers) keep(column.values);
+  for (Telemetry::Words& column : t.words) keep(column.values);
+  keep(t.lines);
+}
+
 }  // namespace
+
+void leaveOutWithoutSlipAngle(Telemetry& telemetry) {
+  std::vector<std::string> faults;
+  for (std::size_t row = 0; row < telemetry.size(); ++row) faults.push_back(angleFault(telemetry, row));
+  leaveOut(telemetry, faults);
+  if (telemetry.size() > 0) return;
+  const RejectedRow& first = telemetry.rejected.front();
+  throw InputError({.where = fmt::format("{}:{}", telemetry.source, first.line),
+                    .reason = "no usable row: " + first.reason,
+                    .remedy = ""});
+}
 
 std::vector<WheelReading> WheelRows::readings() const {
   std::vector<WheelReading> readings;
@@ -64,7 +106,8 @@ WheelRows readWheelRows(const std::filesystem::path& path, const WheelRowOptions
   TelemetryOptions reading{.required = {"load_N", "torque_Nm", "sinkage_m"}};
   if (options.needs_slip) reading.required.emplace_back("slip");
   if (!options.rover.empty()) reading.wheel_radius_m = loadRover(options.rover).wheel.radius_m;
-  const Telemetry table = readTelemetry(path, reading, watch);
+  Telemetry table = readTelemetry(path, reading, watch);
+  leaveOutWithoutSlipAngle(table);
   const std::vector<Wheel> wheels = wheelsOf(table, options);
   WheelRows rows{.source = table.source,
                  .wheel = wheels.front(),

@@ -36,8 +36,12 @@ struct WheelRowOptions {
 /// than 3 % from those at angle 0.
 inline constexpr double kStraightUpTo_rad = 0.1;
 
+/// Leaves out rows with a side force, but without the slip angle that it was measured at, by name in `rejected`: they are those of
+/// no straight wheel. Throws InputError when no row is left.
+void leaveOutWithoutSlipAngle(Telemetry& telemetry);
+
 /// Reads load_N, torque_Nm, sinkage_m and, where needed, slip. Leaves out rows without contact (sinkage 0), of a wheel at a
-/// slip angle (what reads these rows knows straight wheels), or of one that is not driven where slip is needed. Throws InputError when a column is missing, a row
+/// slip angle (what reads these rows knows straight wheels), with a side force and no slip angle, or of one that is not driven where slip is needed. Throws InputError when a column is missing, a row
 /// has no wheel, or no row is left.
 WheelRows readWheelRows(const std::filesystem::path& path, const WheelRowOptions& options,
                         const ProgressMonitor& watch);

@@ -1,4 +1,7 @@
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <stdexcept>
 
 #include <fmt/format.h>
 
@@ -7,12 +10,11 @@
 #include <talus/terramech/io/telemetry_reader.hpp>
 #include <talus/terramech/io/wheel_rows.hpp>
 #include <talus/terramech/tables/model_estimate.hpp>
+#include <talus/terramech/tables/no_soil.hpp>
 #include <talus/terramech/trace/model_soil.hpp>
 
 namespace talus::terramech {
 namespace {
-
-constexpr double kMisfit = 3.0;  // above it the model does not describe the rows
 
 RefinedModel modelOf(const EstimateOptions& options) {
   RefinedModel model = (options.model.empty() ? unknownSoil() : loadModel(options.model)).model;
@@ -48,6 +50,47 @@ ModelSoilOptions howOf(const EstimateOptions& options) {
   return how;
 }
 
+SoilAnswer answerOf(const RefinedModel& model, const Trial& trial, const ModelSoil& found) {
+  RefinedModel fitted = model;
+  fitted.soil = found.soil;
+  SolvedContacts solved;
+  return {
+      .measured = trial.measured, .predicted = predictRows(fitted, trial, solved), .misfit = found.misfit};
+}
+
+// The channel without which a soil explains the rows best, where it does.
+std::string remedyFor(const RefinedModel& model, const Trial& trial, const ModelSoilOptions& how) {
+  double least = kMisfit;
+  std::string remedy = "no single column is at fault; trace these rows, or increase --noise";
+  for (int k = 0; k < kChannels; ++k) {
+    const auto channel = static_cast<Channel>(k);
+    if (!trial.has(channel)) continue;
+    Trial without = trial;
+    without.measured.col(k).setConstant(std::numeric_limits<double>::quiet_NaN());
+    const double misfit = soilUnder(model, without, how).misfit;
+    if (misfit >= least) continue;
+    least = misfit;
+    const bool by_slope = channel == Channel::DrawbarPull && !trial.moment.empty();
+    const char* name = by_slope ? "slope_rad" : columnOf(channel);
+    remedy = fmt::format("check unit, sign and sensor of column {}, without which the misfit is {:.1f}", name,
+                         misfit);
+  }
+  return remedy;
+}
+
+// Throws where no soil comes near the rows, warns where none describes them well.
+void judgeFit(const EstimateOptions& options, const RefinedModel& model, const Trial& trial,
+              const ModelSoil& found, SoilEstimate& estimate) {
+  if (!(found.misfit > kMisfit)) return;
+  const std::string effects = options.model.empty() ? "" : "with the effects of " + options.model + " ";
+  if (const std::string why = noSoilExplains(estimate, answerOf(model, trial, found)); !why.empty())
+    throw std::domain_error(
+        fmt::format("{}: {}{}; {}", options.table, effects, why, remedyFor(model, trial, howOf(options))));
+  estimate.warnings.push_back(fmt::format(
+      "{}no soil explains the readings (misfit {:.1f}, 1 expected); trace these rows, or increase --noise",
+      effects, found.misfit));
+}
+
 }  // namespace
 
 bool measuresSideForce(const std::string& table) {
@@ -65,7 +108,8 @@ SoilEstimate modelEstimate(const EstimateOptions& options, const ProgressMonitor
   RefinedModel model = modelOf(options);
   TelemetryOptions reading{.required = {"load_N", "slip"}};
   if (model.wheel) reading.wheel_radius_m = model.wheel->radius_m;
-  const Telemetry telemetry = readTelemetry(options.table, reading, watch);
+  Telemetry telemetry = readTelemetry(options.table, reading, watch);
+  leaveOutWithoutSlipAngle(telemetry);
   const Trial all = makeTrial(telemetry, model);
   std::vector<char> above = beyondAxle(all);
   for (char& row : above) row = !row;
@@ -77,6 +121,7 @@ SoilEstimate modelEstimate(const EstimateOptions& options, const ProgressMonitor
   const ModelSoil found = soilUnder(model, trial, howOf(options));
   SoilEstimate estimate;
   estimate.rejected = telemetry.rejected;
+  std::ranges::stable_sort(estimate.rejected, {}, &RejectedRow::line);
   estimate.rows_used = static_cast<std::size_t>(trial.rows());
   estimate.cohesion_Pa = found.soil.cohesion_Pa;
   estimate.friction_angle_rad = found.soil.friction_angle_rad;
@@ -88,10 +133,7 @@ SoilEstimate modelEstimate(const EstimateOptions& options, const ProgressMonitor
   estimate.frictional_modulus = found.soil.frictional_modulus;
   estimate.unseen = found.unseen;
   for (const Effect& effect : model.effects) estimate.effects.push_back(effect.name);
-  if (found.misfit > kMisfit)
-    estimate.warnings.push_back(fmt::format(
-        "{}no soil explains the readings (misfit {:.1f}, 1 expected); trace these rows, or increase --noise",
-        options.model.empty() ? "" : "with the effects of " + options.model + " ", found.misfit));
+  judgeFit(options, model, trial, found, estimate);
   if (trial.rows() < all.rows())
     estimate.warnings.push_back(
         fmt::format("{} rows with sinkage at or above the axle were excluded", all.rows() - trial.rows()));

@@ -9,7 +9,7 @@ namespace talus::terramech {
 bool measuresSideForce(const std::string& table);
 
 /// The soil by --method wong-reece from all channels that the table has, the effects of --model acting; without one none
-/// act. Throws as estimateSoil().
+/// act. Throws as estimateSoil(); std::domain_error where no soil comes near the rows (noSoilExplains()).
 SoilEstimate modelEstimate(const EstimateOptions& options, const ProgressMonitor& watch);
 
 }  // namespace talus::terramech

@@ -1,10 +1,13 @@
 #include <algorithm>
+#include <stdexcept>
 
 #include <fmt/format.h>
 
+#include <talus/terramech/effects/refined_model.hpp>
 #include <talus/terramech/estimate/soil_filter.hpp>
 #include <talus/terramech/io/soil_priors.hpp>
 #include <talus/terramech/io/wheel_rows.hpp>
+#include <talus/terramech/tables/no_soil.hpp>
 #include <talus/terramech/tables/posterior_estimate.hpp>
 #include <talus/terramech/tables/soil_groups.hpp>
 
@@ -51,18 +54,46 @@ SoilPosterior filtered(const WheelRows& rows, const SoilMixture& prior, const So
   return last;
 }
 
+// Sinkage and torque of the rows, and under the mean soil of the posterior.
+SoilAnswer answerOf(const WheelRows& rows, const SoilPosterior& posterior) {
+  RefinedModel model;
+  const ContactSoil& m = posterior.mean;
+  model.soil = {.cohesion_Pa = m.cohesion_Pa,
+                .friction_angle_rad = m.friction_angle_rad,
+                .sinkage_exponent = m.sinkage_exponent,
+                .cohesive_modulus = 0.0,
+                .frictional_modulus = m.sinkage_modulus,
+                .shear_modulus_m = m.shear_modulus_m,
+                .c1 = m.c1,
+                .c2 = m.c2};
+  const auto count = static_cast<Eigen::Index>(rows.samples.size());
+  SoilAnswer answer{.measured = Eigen::MatrixXd::Constant(count, kChannels, RunningSoil::kNan),
+                    .predicted = Eigen::MatrixXd::Constant(count, kChannels, RunningSoil::kNan),
+                    .misfit = posterior.misfit};
+  for (Eigen::Index row = 0; row < count; ++row) {
+    const WheelSample& s = rows.samples[static_cast<std::size_t>(row)];
+    const Wheel& wheel = rows.wheels[static_cast<std::size_t>(row)];
+    const Reading read{
+        .load_N = s.load_N, .radius_m = wheel.radius_m, .sinkage_m = s.sinkage_m, .torque_Nm = s.torque_Nm};
+    const Reading foretold = predict(model, {.wheel = wheel, .load_N = s.load_N, .slip = s.slip});
+    for (const Channel channel : {Channel::Sinkage, Channel::Torque}) {
+      answer.measured(row, static_cast<int>(channel)) = read.scaled(channel);
+      answer.predicted(row, static_cast<int>(channel)) = foretold.scaled(channel);
+    }
+  }
+  return answer;
+}
+
 // What the posterior takes for granted and these rows may not bear out.
-void sayWhatIsDoubtful(const WheelRows& rows, const SoilPosterior& posterior, const ReadingErrors& noise,
+void sayWhatIsDoubtful(const WheelRows& rows, const SoilPosterior& posterior, const std::string& groups,
                        std::vector<std::string>& warnings) {
-  constexpr double kMisfit = 3.0;
   if (posterior.misfit > kMisfit) {
     warnings.push_back(
         fmt::format("no soil of the prior explains the readings (misfit {:.1f}, 1 expected); widen --prior "
                     "or increase --noise",
                     posterior.misfit));
   }
-  if (const std::string text = groupsThatDisagree(rows, posterior, noise); !text.empty())
-    warnings.push_back(text);
+  if (!groups.empty()) warnings.push_back(groups);
   const auto [narrow, wide] = std::ranges::minmax_element(rows.wheels, {}, &Wheel::width_m);
   if (narrow->width_m < wide->width_m) {
     warnings.push_back(
@@ -88,7 +119,13 @@ SoilEstimate posteriorEstimate(const EstimateOptions& options, const ProgressMon
                                          : fitSoil(rows.readings(), prior, fit);
   if (watch.stopped()) return estimate;
   take(*estimate.posterior, estimate);
-  sayWhatIsDoubtful(rows, *estimate.posterior, fit.noise, estimate.warnings);
+  // Several soils in one table are told by their column, and each may be one.
+  const std::string groups = groupsThatDisagree(rows, *estimate.posterior, fit.noise);
+  if (const std::string why = noSoilExplains(estimate, answerOf(rows, *estimate.posterior));
+      groups.empty() && !why.empty())
+    throw std::domain_error(fmt::format("{}: {}; check unit, sign and sensor of the column, or widen --prior",
+                                        options.table, why));
+  sayWhatIsDoubtful(rows, *estimate.posterior, groups, estimate.warnings);
   for (const SoilClass& soil : prior) estimate.class_names.push_back(soil.name);
   return estimate;
 }

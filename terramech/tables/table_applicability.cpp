@@ -3,6 +3,7 @@
 #include <talus/terramech/io/model_file.hpp>
 #include <talus/terramech/io/soil_library.hpp>
 #include <talus/terramech/io/telemetry_reader.hpp>
+#include <talus/terramech/io/wheel_rows.hpp>
 #include <talus/terramech/tables/table_applicability.hpp>
 
 namespace talus::terramech {
@@ -28,7 +29,8 @@ Applicability tableApplicability(const std::string& table, const std::string& ba
                                  const ProgressMonitor& watch) {
   ModelFile file = base.empty() ? unknownSoil() : loadModel(base);
   if (!rover.empty()) file.model.takeRover(loadRover(rover));
-  const Telemetry telemetry = readTelemetry(table, {});
+  Telemetry telemetry = readTelemetry(table, {});
+  leaveOutWithoutSlipAngle(telemetry);
   const bool wheel =
       file.model.wheel || (telemetry.find("wheel_radius_m") && telemetry.find("wheel_width_m"));
   if (!wheel || !telemetry.find("load_N") || !telemetry.find("slip")) return {};

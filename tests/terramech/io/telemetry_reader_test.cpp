@@ -62,6 +62,15 @@ TEST(TelemetryReader, RejectsRowsByLineAndReason) {
   }
 }
 
+// Measured by others: a wheel pulled across its travel reads up to 1.576 rad.
+TEST(TelemetryReader, ASlipAngleIsAtMostARightOne) {
+  const Telemetry t = read("load_N,slip_angle_rad\n80,1.576\n80,-1.576\n80,1.61\n80,-3.14159\n");
+  EXPECT_EQ(t.size(), 2U);
+  ASSERT_EQ(t.rejected.size(), 2U);
+  EXPECT_EQ(t.rejected[0].line, 4U);
+  EXPECT_EQ(t.rejected[0].reason, "slip_angle_rad = 1.61, must be in [-1.6, 1.6]");
+}
+
 TEST(TelemetryReader, KeepsTheNumbersOfRejectedRows) {
   const Telemetry t =
       read("load_N,slip,note,sinkage_m\n80,0.1,a,0\n80,inf,b,x\n80,0.2,c,0\nnan,0.9,d,-1\n80\n");

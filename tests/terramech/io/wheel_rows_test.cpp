@@ -55,6 +55,19 @@ TEST(WheelRows, AWheelAtASlipAngleIsNoStraightOne) {
   EXPECT_THAT(rows.firstRejected()->reason, HasSubstr("slip_angle_rad = -0.11: only straight wheels"));
 }
 
+TEST(WheelRows, ASideForceWithoutItsSlipAngleIsOfNoStraightWheel) {
+  const std::string row = "80,2,0.01,0.3,0.1,0.2,a\n";
+  const WheelRows rows =
+      read("side_force_N,slip_angle_rad," + kHead + "12,," + row + "0,," + row + ",," + row + "12,0," + row);
+  EXPECT_THAT(rows.lines, ElementsAre(3, 4, 5));
+  ASSERT_NE(rows.firstRejected(), nullptr);
+  EXPECT_EQ(rows.firstRejected()->line, 2U);
+  EXPECT_THAT(rows.firstRejected()->reason, HasSubstr("side_force_N = 12 without slip_angle_rad"));
+  EXPECT_THAT(rows.words.front().values, ElementsAre("a", "a", "a"));
+  EXPECT_THAT([&] { read("side_force_N," + kHead + "12," + row); },
+              ThrowsMessage<InputError>(HasSubstr(":2: no usable row: side_force_N = 12 without")));
+}
+
 TEST(WheelRows, TheRoversWheelGoesBeforeTheFiles) {
   const std::string rover = libraryRovers().front();
   const WheelRows rows = read(kHead + "80,2,0.01,0.3,0.9,0.9,a\n", {.rover = rover});

@@ -21,7 +21,7 @@ TEST(EstimateSoil, ExactRowsGiveTheSoilThatMadeThem) {
 }
 
 // Rows of the made soil at slip angles to either side, with or without what the wheel holds.
-std::string angledRows(bool side_force) {
+std::string angledRows(bool side_force, double times = 1.0) {
   RefinedModel model;
   model.soil = kMadeSoil;
   std::string text = kWheelHead + ",slip_angle_rad" + (side_force ? ",side_force_N" : "") + "\n";
@@ -33,7 +33,7 @@ std::string angledRows(bool side_force) {
     const Reading r = predict(model, s);
     text += wheelLine({s.load_N, r.torque_Nm, r.sinkage_m, s.slip}, kMadeWheel) + "," +
             std::to_string(s.slip_angle_rad);
-    text += (side_force ? "," + std::to_string(r.side_force_N) : "") + "\n";
+    text += (side_force ? "," + std::to_string(times * r.side_force_N) : "") + "\n";
   }
   return text;
 }
@@ -50,6 +50,18 @@ TEST(EstimateSoil, SideForcesAreHeldAgainstTheWholeModel) {
   EXPECT_EQ(estimateSoil({.table = with.path(), .method = "linear-offset"}, {}).rejected.size(), 18U);
   EXPECT_THAT([&] { estimateSoil({.table = with.path(), .method = "wong-reece", .recursive = true}, {}); },
               ThrowsMessage<InputError>(HasSubstr("side forces, which are fitted all at once")));
+}
+
+// Property: side forces of another unit are those of no soil, whatever the bounds of the search make of them; the column is named.
+TEST(EstimateSoil, SideForcesThatNoSoilGivesEndInNone) {
+  for (const double times : {100.0, 1000.0}) {
+    const test::TemporaryFile table{angledRows(true, times)};
+    EXPECT_THAT([&] { estimateSoil({.table = table.path(), .method = "wong-reece"}, {}); },
+                ThrowsMessage<std::domain_error>(testing::AllOf(
+                    HasSubstr(table.path() + ": no soil explains the rows"),
+                    HasSubstr("check unit, sign and sensor of column side_force_N, without which"))))
+        << times;
+  }
 }
 
 TEST(EstimateSoil, NamesThatAreNotOnOfferAreRefused) {

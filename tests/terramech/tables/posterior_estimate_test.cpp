@@ -42,6 +42,14 @@ TEST(PosteriorEstimate, RowByRowThereIsAnAnswerAfterEach) {
   EXPECT_LT(found.running.back().covariance(1, 1), found.running.front().covariance(1, 1));
 }
 
+// Rows of one load whose torque changes by so much [N m] from each to the next.
+std::string torqueRows(double first_Nm, double step_Nm) {
+  std::string text = kWheelHead + "\n";
+  for (int k = 0; k < 12; ++k)
+    text += wheelLine({100.0, first_Nm + step_Nm * k, 0.01, 0.1 + 0.05 * k}, kMadeWheel) + "\n";
+  return text;
+}
+
 TEST(PosteriorEstimate, DoubtsAreSaid) {
   std::string widths = kWheelHead + "\n";
   for (int k = 0; k < 12; ++k) {
@@ -53,13 +61,18 @@ TEST(PosteriorEstimate, DoubtsAreSaid) {
   const test::TemporaryFile two{widths};
   EXPECT_THAT(posteriorEstimate({.table = two.path()}, {}).warnings,
               Contains(HasSubstr("0.1 to 0.15 m wide")));
-  // A torque three times that of any soil under the load.
-  std::string absurd = kWheelHead + "\n";
-  for (int k = 0; k < 12; ++k)
-    absurd += wheelLine({100.0, 45.0 + k, 0.01, 0.1 + 0.05 * k}, kMadeWheel) + "\n";
-  const test::TemporaryFile none{absurd};
-  EXPECT_THAT(posteriorEstimate({.table = none.path()}, {}).warnings,
+  // A torque that falls by half over the slips, which that of no soil does, but of the size of one.
+  const test::TemporaryFile falling{torqueRows(15.0, -0.6)};
+  EXPECT_THAT(posteriorEstimate({.table = falling.path(), .noise = 0.02}, {}).warnings,
               Contains(HasSubstr("no soil of the prior")));
+}
+
+// Property: a torque three times that of any soil under the load is no reading of one, and no estimate comes of it.
+TEST(PosteriorEstimate, ATorqueBeyondAnySoilEndsInNone) {
+  const test::TemporaryFile none{torqueRows(45.0, 1.0)};
+  EXPECT_THAT([&] { posteriorEstimate({.table = none.path()}, {}); },
+              testing::ThrowsMessage<std::domain_error>(testing::AllOf(
+                  HasSubstr(none.path() + ": no soil explains the rows"), HasSubstr("torque_Nm"))));
 }
 
 }  // namespace

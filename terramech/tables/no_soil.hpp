@@ -1,0 +1,39 @@
+#pragma once
+
+#include <string>
+
+#include <Eigen/Core>
+
+#include <talus/terramech/effects/channel_reading.hpp>
+#include <talus/terramech/tables/soil_estimate.hpp>
+
+namespace talus::terramech {
+
+/// Mean square of the whitened residuals above which the model does not describe the rows [-].
+inline constexpr double kMisfit = 3.0;
+
+/// Readings of rows, and what the soil found foretells of them.
+struct SoilAnswer {
+  Eigen::MatrixXd measured;   ///< rows x kChannels [-] as Reading::scaled(); NaN: not measured
+  Eigen::MatrixXd predicted;  ///< the same
+  double misfit = 1.0;        ///< mean square of the whitened residuals [-]
+};
+
+/// The column of telemetry that a channel is read from, such as "side_force_N".
+const char* columnOf(Channel channel);
+
+/// A column of the table and what the soil leaves of it.
+struct UnexplainedColumn {
+  std::string column;  ///< empty: none
+  double left = 0.0;   ///< root mean square of the residuals over that of the readings [-]
+};
+
+/// The channel of which the soil leaves most, of those of which it leaves more than half and more than 0.1 of the load or the radius.
+/// The bounds are ours, not from the literature: they do not depend on the stated noise, and soils of measured sand leave less.
+UnexplainedColumn unexplained(const SoilAnswer& answer);
+
+/// Why no soil comes near the rows; empty where one does: their misfit is at most kMisfit, or no column is unexplained and the
+/// strength found is that of a soil (SoilEstimate::implausible()).
+std::string noSoilExplains(const SoilEstimate& estimate, const SoilAnswer& answer);
+
+}  // namespace talus::terramech
