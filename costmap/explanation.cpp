@@ -235,7 +235,7 @@ void judge(const TraversabilityMap& map, maps::Cell cell, const Direction& headi
       out.causes.push_back({"hazard", 1.0, kNotKnown, hazardText(map, cell, one), "excluded for any soil"});
   const CellBelief belief = map.belief(cell);
   out.category = static_cast<terramech::Category>(belief.category);
-  out.probability = belief.confidence / 16.0;
+  out.probability = out.category == terramech::Category::Unknown ? kNotKnown : belief.confidence / 16.0;
   out.verdict = std::string(terramech::name(out.category));
   for (const Hazard one : kHazards)
     if (has(hazards, one)) {

@@ -21,7 +21,7 @@ struct Cause {
 /// Why a cell is what it is.
 struct Explanation {
   terramech::Category category = terramech::Category::Unknown;
-  double probability = 0.0;  ///< of that category
+  double probability = 0.0;  ///< of that category; NaN where it is Unknown, which has none
   std::string verdict;       ///< one line
   std::vector<Cause> causes;
 };

@@ -43,7 +43,7 @@ bool isJournal(const fs::path& path) {
   return std::string_view(start.data(), start.size()) == "SQLite format 3";
 }
 
-// Formats that a file's name may claim; the names in a row mean the same.
+// Formats that are written, by the endings that a file's name may have; those in a row mean the same.
 using Names = std::vector<std::string_view>;
 const std::array<Names, 12> kFormats{{{".tif", ".tiff"},
                                       {".asc"},
@@ -58,32 +58,22 @@ const std::array<Names, 12> kFormats{{{".tif", ".tiff"},
                                       {".bt"},
                                       {".npz"}}};
 
+// Endings of formats that no call writes.
+const Names kForeign{".db",  ".sqlite", ".sqlite3", ".gpkg", ".shp", ".kml",  ".kmz", ".gpx", ".xml",
+                     ".vrt", ".img",    ".lbl",     ".nc",   ".h5",  ".hdf5", ".mat", ".npy", ".parquet",
+                     ".las", ".laz",    ".ply",     ".pcd",  ".obj", ".stl",  ".bag", ".pdf", ".ps",
+                     ".eps", ".gif",    ".bmp",     ".webp", ".pgm", ".ppm",  ".pnm", ".jp2", ".zip",
+                     ".gz",  ".tgz",    ".bz2",     ".xz",   ".zst", ".7z",   ".tar", ".xls", ".xlsx",
+                     ".ods", ".doc",    ".docx",    ".odt",  ".tex", ".md",   ".c",   ".h",   ".cpp",
+                     ".hpp", ".py",     ".js",      ".so",   ".a",   ".o",    ".exe", ".deb"};
+
 const Names* formatOf(const std::string& name) {
   std::string extension = fs::path(name).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return std::tolower(c); });
   for (const Names& names : kFormats)
     if (std::find(names.begin(), names.end(), extension) != names.end()) return &names;
-  return nullptr;
-}
-
-// A GeoTIFF named .asc is believed by its name later. The option's type name (FILE.tif, or several with |) says
-// what is written.
-void checkFormat(const fs::path& path, const std::string& type_name) {
-  const Names* named = formatOf(path.string());
-  if (named == nullptr) return;
-  std::vector<std::string> endings;
-  std::istringstream choices(type_name);
-  for (std::string choice; std::getline(choices, choice, '|');) {
-    const Names* written = formatOf(choice);
-    if (written == named) return;
-    if (written != nullptr) endings.emplace_back(written->front());
-  }
-  if (endings.empty()) return;
-  throw InputError({path.string(),
-                    fmt::format("is named {}, but a {} file is written", path.extension().string(),
-                                fmt::join(endings, " or ")),
-                    "name it " + path.stem().string() + endings.front() + ", or pass --force"});
+  return std::find(kForeign.begin(), kForeign.end(), extension) != kForeign.end() ? &kForeign : nullptr;
 }
 
 bool leavesItsFolder(const fs::path& link) {
@@ -114,6 +104,24 @@ void checkOutput(const fs::path& path, const std::vector<std::string>& inputs) {
   for (const std::string& input : inputs)
     if (!input.empty() && same(path, input)) refuse(path, "is also an input or another output of this call");
   if (fs::is_regular_file(status) && isJournal(path)) refuse(path, "is an SQLite file, as a journal is");
+}
+
+// A GeoTIFF named .asc is believed by its name later.
+void checkFormat(const fs::path& path, const std::string& written) {
+  const Names* named = formatOf(path.string());
+  if (named == nullptr) return;
+  std::vector<std::string> endings;
+  std::istringstream choices(written);
+  for (std::string choice; std::getline(choices, choice, '|');) {
+    const Names* format = formatOf(choice);
+    if (format == named) return;
+    if (format != nullptr) endings.emplace_back(format->front());
+  }
+  if (endings.empty()) return;
+  throw InputError({path.string(),
+                    fmt::format("is named {}, but a {} file is written", path.extension().string(),
+                                fmt::join(endings, " or ")),
+                    "name it " + path.stem().string() + endings.front() + ", or pass --force"});
 }
 
 void checkOutputs(const CLI::App& command, bool force) {

@@ -24,6 +24,10 @@ CLI::Option* addOutput(CLI::App& command, const std::string& names, std::string&
 /// of its folder. Throws InputError.
 void checkOutput(const std::filesystem::path& path, const std::vector<std::string>& inputs);
 
+/// Refuses a name whose ending is that of another known format than is written; `written` is a file name, or several with |
+/// ("ROUTE.geojson|FILE.csv"). A name without an ending, or with one that denotes no known format, is accepted. Throws InputError.
+void checkFormat(const std::filesystem::path& path, const std::string& written);
+
 /// checkOutput() of every output of a parsed call, against all of its other words, and whether its name claims another
 /// format than the option's type name (FILE.tif) does; each is also tried, so that a bad place is told before the work.
 void checkOutputs(const CLI::App& command, bool force);

@@ -64,7 +64,9 @@ nlohmann::ordered_json asJson(const costmap::Explanation& why, const maps::Point
 }
 
 std::string asText(const costmap::Explanation& why, const std::string& place) {
-  std::string text = fmt::format("{}\n{} (probability {:.2f})\n", place, why.verdict, why.probability);
+  const std::string sure =
+      std::isnan(why.probability) ? "" : fmt::format(" (probability {:.2f})", why.probability);
+  std::string text = fmt::format("{}\n{}{}\n", place, why.verdict, sure);
   for (const costmap::Cause& cause : why.causes) {
     const std::string std = std::isnan(cause.std) ? "" : fmt::format(" +- {:.3g}", cause.std);
     text += fmt::format("  {:<28} {:>12.5g}{:<12} {}{}{}\n", cause.name, cause.value, std, cause.source,

@@ -335,6 +335,7 @@ int run(const PlanOptions& asked, Context& context) {
     readMission(options);
     if (asked.output.empty() && !options.output.empty()) checkMissionOutput(options, asked, context.force);
   }
+  if (!context.force) checkFormat(options.output, options.pairs.empty() ? "ROUTE.geojson" : "FILE.csv");
   requirePlaces(options);
   Chosen planner = choose(options);
   if (!options.whole_field && needsWindows(options.ground, options.in_memory))

@@ -38,7 +38,7 @@ void bind(CLI::App& command, TraceCommandOptions& options) {
           .add_option(
               "--hold-out", options.hold_out,
               "trace without these rows, then predict them: each level of a column in turn, or its values "
-              "V,V or LOW..HIGH")
+              "V,V or LOW..HIGH; a value that holds a comma in double quotes")
           ->type_name("COLUMN[=VALUES]");
   groupOptions(command, "Analysis");
   addOutput(command, "--model-out", options.model_out, "refined model to write")

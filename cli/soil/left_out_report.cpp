@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include <talus/cli/soil/left_out_report.hpp>
+#include <talus/cli/soil/trace_report.hpp>
 
 namespace talus::cli {
 namespace {
@@ -12,13 +13,6 @@ namespace {
 using namespace terramech;
 
 constexpr Channel kAll[] = {Channel::DrawbarPull, Channel::Sinkage, Channel::Torque, Channel::SideForce};
-
-nlohmann::ordered_json errorsJson(const ChannelErrors& errors) {
-  auto out = nlohmann::ordered_json::object();
-  for (Channel c : kAll)
-    if (const double e = errors[static_cast<std::size_t>(c)]; std::isfinite(e)) out[name(c)] = e;
-  return out;
-}
 
 /// Channels in which the refined model errs more than the base.
 nlohmann::ordered_json worse(const LeftOutErrors& part) {

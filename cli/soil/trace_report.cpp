@@ -15,14 +15,6 @@ using namespace terramech;
 
 constexpr Channel kAll[] = {Channel::DrawbarPull, Channel::Sinkage, Channel::Torque, Channel::SideForce};
 
-ordered_json errorsJson(const ChannelErrors& errors) {
-  ordered_json out = ordered_json::object();
-  for (Channel c : kAll)
-    if (std::isfinite(errors[static_cast<std::size_t>(c)]))
-      out[name(c)] = errors[static_cast<std::size_t>(c)];
-  return out;
-}
-
 /// Parameters of an effect by name; curves as knots and values a channel.
 ordered_json parametersJson(const Candidate& candidate) {
   ordered_json out = ordered_json::object();
@@ -281,6 +273,13 @@ ordered_json beyondAxleJson(const TraceStory& story) {
 }
 
 }  // namespace
+
+ordered_json errorsJson(const ChannelErrors& errors) {
+  ordered_json out = ordered_json::object();
+  for (Channel c : kAll)
+    if (const double e = errors[static_cast<std::size_t>(c)]; std::isfinite(e)) out[name(c)] = e;
+  return out;
+}
 
 ordered_json traceJson(const TraceStory& story) {
   const TraceResult& r = story.result;

@@ -44,6 +44,9 @@ std::string verdictText(const terramech::TraceResult& result);
 /// One line about a parameter of the soil far from its prior.
 std::string movedText(const terramech::MovedParameter& parameter);
 
+/// The errors of the channels that have any, by name.
+nlohmann::ordered_json errorsJson(const terramech::ChannelErrors& errors);
+
 nlohmann::ordered_json traceJson(const TraceStory& story);
 std::string traceText(const TraceStory& story);
 std::string tracePage(const TraceStory& story);

@@ -29,8 +29,11 @@ std::string oneLine(std::string text);
 /// Throws the InputError of a plugin that does what it must not.
 [[noreturn]] void failPlugin(const std::string& file, const std::string& what);
 
-/// What work with a plugin returns, done in a child process; its first byte says what it is, neither 'i' nor 'x'. Empty
-/// where a stop was requested. Throws InputError naming the file when the work throws, crashes, passes a limit or answers
+/// Leads what this process prints, and the dynamic linker for it, nowhere.
+void silenceStreams();
+
+/// What work with a plugin returns, done in a child process; its first byte says what it is, neither 'i' nor 'x'. What the plugin prints
+/// is lost. Empty where a stop was requested. Throws InputError naming the file when the work throws, crashes, passes a limit or answers
 /// nothing.
 std::string answerOf(const std::string& file, const std::function<std::string()>& work,
                      const ChildLimits& limits, const ProgressMonitor& watch);

@@ -24,10 +24,7 @@ constexpr char kCameThrough = 'k', kMemory = 'm';
 // survive and another never ends, is tried by a child first: it ends by a signal, or by the dynamic linker's own exit where
 // its tables are damaged, and has not come to its last line then. What it and the linker print is lost.
 std::string tried(const std::function<void()>& load) {
-  if (const int nowhere = ::open("/dev/null", O_WRONLY); nowhere >= 0) {
-    ::dup2(nowhere, STDOUT_FILENO);
-    ::dup2(nowhere, STDERR_FILENO);
-  }
+  silenceStreams();
   try {
     load();
   } catch (const std::bad_alloc&) {  // the parent, without a limit, would not meet it
@@ -65,6 +62,13 @@ void requireLoadable(const std::string& path, const std::function<void()>& load,
 }
 
 }  // namespace
+
+void silenceStreams() {
+  const int nowhere = ::open("/dev/null", O_WRONLY);
+  if (nowhere < 0) return;
+  ::dup2(nowhere, STDOUT_FILENO);
+  ::dup2(nowhere, STDERR_FILENO);
+}
 
 boost::dll::shared_library openedLibrary(const std::string& path) {
   boost::dll::fs::error_code error;

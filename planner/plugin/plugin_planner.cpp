@@ -57,6 +57,7 @@ std::string bytesOf(const Route& route) {
 
 // What work with the plugin says, in the child; what it throws becomes words.
 std::string said(const std::function<std::string()>& work) {
+  silenceStreams();
   try {
     return work();
   } catch (const InputError& error) {

@@ -35,8 +35,43 @@ std::vector<char> rowsWhere(const Trial& trial, const Rule& rule) {
   return rows;
 }
 
+/// Values with commas between; one in double quotes may hold commas, and two quotes for one of its own, as a CSV field.
+std::vector<std::string> wordsOf(const std::string& values) {
+  std::vector<std::string> words;
+  for (std::size_t at = 0; at <= values.size();) {
+    std::string word;
+    if (at < values.size() && values[at] == '"') {
+      std::size_t end = at + 1;
+      for (; end < values.size() && (values[end] != '"' || values[end + 1] == '"'); ++end) {
+        word += values[end];
+        if (values[end] == '"') ++end;
+      }
+      if (end >= values.size() || (end + 1 < values.size() && values[end + 1] != ','))
+        throw InputError({"--hold-out " + values, "a quoted value does not end with a quote and a comma",
+                          "write \"V\", and two quotes for one inside"});
+      at = end + 2;
+    } else {
+      const std::size_t end = std::min(values.find(',', at), values.size());
+      word = values.substr(at, end - at);
+      at = end + 1;
+    }
+    words.push_back(std::move(word));
+  }
+  return words;
+}
+
+LeftOut ofWords(const Trial& trial, const std::string& column, const std::string& values,
+                const std::vector<std::string>& words) {
+  return {column + " = " + values, rowsWhere(trial, [&](const WheelState& s) {
+            return std::any_of(words.begin(), words.end(), [&](const std::string& word) {
+              double v = 0.0;
+              return s.label(column) == word || (isNumber(word, v) && close(s.covariate(column), v));
+            });
+          })};
+}
+
 LeftOut ofValues(const Trial& trial, const std::string& column, const std::string& values) {
-  if (const auto dots = values.find(".."); dots != std::string::npos) {
+  if (const auto dots = values.find(".."); dots != std::string::npos && values.front() != '"') {
     double low = -1e300, high = 1e300;
     if (dots > 0) isNumber(values.substr(0, dots), low);
     if (dots + 2 < values.size()) isNumber(values.substr(dots + 2), high);
@@ -45,15 +80,7 @@ LeftOut ofValues(const Trial& trial, const std::string& column, const std::strin
               return v >= low && v <= high;
             })};
   }
-  std::vector<std::string> words;
-  std::istringstream in(values);
-  for (std::string word; std::getline(in, word, ',');) words.push_back(word);
-  return {column + " = " + values, rowsWhere(trial, [&](const WheelState& s) {
-            return std::any_of(words.begin(), words.end(), [&](const std::string& word) {
-              double v = 0.0;
-              return s.label(column) == word || (isNumber(word, v) && close(s.covariate(column), v));
-            });
-          })};
+  return ofWords(trial, column, values, wordsOf(values));
 }
 
 std::vector<LeftOut> eachLevel(const Trial& trial, const std::string& column) {
@@ -64,7 +91,7 @@ std::vector<LeftOut> eachLevel(const Trial& trial, const std::string& column) {
     if (std::isfinite(s.covariate(column))) values.push_back(s.covariate(column));
   }
   std::vector<LeftOut> all;
-  for (const std::string& word : words) all.push_back(ofValues(trial, column, word));
+  for (const std::string& word : words) all.push_back(ofWords(trial, column, word, {word}));
   if (!all.empty() || values.empty()) return all;
   std::sort(values.begin(), values.end());
   // Levels are apart by more than a hundredth of the range.

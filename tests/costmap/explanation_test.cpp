@@ -49,7 +49,9 @@ TEST(Explain, SaysWhichHazardRefuses) {
 TEST(Explain, UnseenIsUnknown) {
   std::vector<std::string> site = kPlain;
   site[5][6] = '?';
-  EXPECT_EQ(explain(mapOf(site), {6, 6}).category, Category::Unknown);
+  const Explanation unseen = explain(mapOf(site), {6, 6});
+  EXPECT_EQ(unseen.category, Category::Unknown);
+  EXPECT_TRUE(std::isnan(unseen.probability)) << "Unknown has none";
 }
 
 }  // namespace

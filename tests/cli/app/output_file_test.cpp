@@ -84,6 +84,12 @@ TEST(CheckOutput, RefusesANameOfAnotherFormat) {
        {{"plan", "good.asc", "--start", "5,5", "--goal", "9,9", "--pareto", "p.tif"},
         2,
         "a .png or .svg or .html file is written; name it p.png"},
+       {{"plan", "good.asc", "--start", "5,5", "--goal", "9,9", "-o", "q.csv"}, 2, "name it q.geojson"},
+       {{"plan", "good.asc", "--pairs", "words.csv", "-o", "x.geojson"}, 2, "name it x.csv"},
+       {{"plan", "good.asc", "--start", "5,5", "--goal", "9,9", "-o", "r.pdf"}, 2, "is named .pdf"},
+       {{"plan", "good.asc", "--start", "5,5", "--goal", "9,9", "-o", "r.ZIP"}, 2, "is named .ZIP"},
+       {{"costmap", "good.asc", "-o", "m.db"}, 2, "name it m.ot"},
+       {{"generate", "craters", "--size", "20", "-o", "s.vrt"}, 2, "name it s.tif"},
        {{"explain", "good.asc", "--at", "5,5", "--png", "e.tif"}, 2, "a .png or .svg file"},
        {{"explain", "good.asc", "--at", "5,5", "--png", "good.asc"}, 2, "also an input"}});
   for (const char* name : {"s.tif", "s.TIFF", "s", "s.raster"})

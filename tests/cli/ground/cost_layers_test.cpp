@@ -139,10 +139,12 @@ TEST_F(CostLayers, WhatAPluginDoesWrongIsOneLine) {
     const Ran ran = run("score", {"--path", "straight.csv", "--layer", "own=" + library});
     EXPECT_EQ(ran.code, 2) << reason;
     EXPECT_THAT(ran.err, HasSubstr(reason));
+    EXPECT_EQ(ran.out, "") << "what a layer prints, and the dynamic linker for it, is lost";
     EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
   };
   for (const auto& [how, reason] :
        std::vector<std::pair<std::string, std::string>>{{"throws", "threw an error: no sun today"},
+                                                        {"prints", "threw an error: after that"},
                                                         {"crashes", "ended its process (Aborted)"},
                                                         {"huge", "takes more than 4096 MB of memory"},
                                                         {"short", "answered for 959 cells, must be 960"},

@@ -1,5 +1,6 @@
 // A layer of somebody else: shadow west of x = 10 costs 20 J/m, nobody may go beyond x = 38; and, by the word in SHADOW,
 // every way in which a layer can go wrong.
+#include <cstdio>
 #include <cstdlib>
 #include <limits>
 #include <stdexcept>
@@ -15,6 +16,12 @@ class Layer final : public talus::CostSource {
   std::vector<float> over(const talus::maps::Grid& grid) const override {
     const char* word = std::getenv("SHADOW");
     const std::string how = word == nullptr ? "" : word;
+    if (how == "prints") {
+      std::puts("from the layer");
+      std::fputs("and more\n", stderr);
+      std::fflush(nullptr);
+      throw std::runtime_error("after that");
+    }
     if (how == "throws") throw std::runtime_error("no sun\ntoday");
     if (how == "crashes") std::abort();
     if (how == "huge") return std::vector<float>(std::size_t{1} << 40U);

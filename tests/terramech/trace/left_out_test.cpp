@@ -41,6 +41,24 @@ TEST(LeftOut, ValuesAndRanges) {
   EXPECT_EQ(rowsIn(leftOut(trial(), "wheel=a", "t.csv").front()), 24);
 }
 
+// Property: a level with a comma or a quote is one value, in the loop over all levels and in quotes as a CSV field.
+TEST(LeftOut, AQuotedValueHoldsItsCommas) {
+  MadeRows rows(wheelColumns());
+  std::mt19937_64 random(3);
+  const std::vector<std::string> wheels{"smooth, wide", "smooth", "5\" rim, old"};
+  for (int k = 0; k < 48; ++k)
+    rows.add(wheelRow(madeSand(), 50.0 + 10.0 * (k % 3), 0.1 + 0.1 * (k % 4), 0.02, random),
+             wheels[static_cast<std::size_t>(k) % 3]);
+  RefinedModel model;
+  const Trial trial = makeTrial(rows.telemetry("wheel"), model);
+  for (const LeftOut& part : leftOut(trial, "wheel", "t.csv")) EXPECT_EQ(rowsIn(part), 16) << part.what;
+  EXPECT_EQ(rowsIn(leftOut(trial, "wheel=\"smooth, wide\"", "t.csv").front()), 16);
+  EXPECT_EQ(rowsIn(leftOut(trial, "wheel=smooth,\"5\"\" rim, old\"", "t.csv").front()), 32);
+  for (const char* open : {"wheel=\"smooth, wide", "wheel=\"smooth\"wide"})
+    EXPECT_THAT([&] { leftOut(trial, open, "t.csv"); },
+                testing::ThrowsMessage<InputError>(HasSubstr("does not end with a quote")));
+}
+
 TEST(LeftOut, WhatLeavesNothingIsRefused) {
   for (const auto& [request, reason] :
        {std::pair{"slop", "has no column slop"}, std::pair{"slip=0.9", "has no row with"},
