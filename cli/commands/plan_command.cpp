@@ -144,7 +144,7 @@ void writeFiles(const PlanOptions& options, const Ground& ground, const Route& r
 nlohmann::ordered_json riskJson(const Route& route, const PlanOptions& options,
                                 const planner::Problem& problem) {
   const planner::RouteRiskOptions drawn = soilOf(problem);
-  const planner::RouteRisk risk = planner::routeRisk(route, drawn);
+  const planner::RouteRisk risk = planner::routeRisk(route, drawn, problem.watch);
   return {{"limit", options.max_risk},
           {"immobilisation", route.vertices.back().immobilisation_risk},
           {"correlated_soil",

@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <map>
 #include <numeric>
 #include <random>
 #include <stdexcept>
@@ -21,7 +23,7 @@ struct Stretch {
   double weak;         // probability that its soil is too weak
   double beta;         // reliability index: P(u < -beta) = weak
   double shared;       // share of the variance that its class has in common
-  std::size_t soil;    // its class
+  std::size_t soil;    // its class, counted as the route meets them: what else is declared draws nothing
   double correlation;  // of the rest with that of the stretch before
 };
 
@@ -37,6 +39,7 @@ double weakOf(double hazard_per_m, const RouteRiskOptions& options) {
 
 std::vector<Stretch> stretches(const Route& route, const RouteRiskOptions& options) {
   std::vector<Stretch> made;
+  std::map<int, std::size_t> met;
   double middle_m = 0.0, at_m = 0.0;
   for (std::size_t i = 1; i < route.vertices.size(); ++i) {
     const RouteVertex& a = route.vertices[i - 1];
@@ -45,7 +48,7 @@ std::vector<Stretch> stretches(const Route& route, const RouteRiskOptions& optio
     if (!(metres > 0)) continue;
     const double weak = weakOf(a.hazard_per_m, options);
     const double here_m = at_m + 0.5 * metres;
-    const auto soil = static_cast<std::size_t>(a.soil_class);
+    const std::size_t soil = met.try_emplace(a.soil_class, met.size()).first->second;
     const bool follows = !made.empty() && made.back().soil == soil;
     made.push_back({.vertex = i,
                     .metres = metres,
@@ -136,10 +139,15 @@ struct Drawn {
   double variance = 0.0;
 };
 
+// Whether a stop holds after so many worlds: the first four million stretches of them are always drawn.
+bool endsAfter(int worlds, const std::vector<Stretch>& route, const ProgressMonitor& watch) {
+  constexpr std::size_t kBrief = 4'000'000;
+  return static_cast<std::size_t>(worlds) * route.size() > kBrief && watch.stopped();
+}
+
 // No stretch when stopped.
 Drawn drawn(const std::vector<Stretch>& route, const RouteRiskOptions& options,
-            const ProgressMonitor& watch = {}) {
-  constexpr std::size_t kBrief = 4'000'000;  // stretches of worlds
+            const ProgressMonitor& watch) {
   Drawn out{.risk = std::vector<double>(route.size(), 0.0)};
   std::vector<double> share;  // of the weak metres to be expected, up to each stretch
   for (const Stretch& s : route) share.push_back((share.empty() ? 0.0 : share.back()) + s.weak * s.metres);
@@ -149,7 +157,7 @@ Drawn drawn(const std::vector<Stretch>& route, const RouteRiskOptions& options,
   double squares = 0.0;
   std::vector<double> weak_m(route.size());
   for (int world = 0; world < options.worlds; ++world) {
-    if (static_cast<std::size_t>(world) * route.size() > kBrief && watch.stopped()) return {};
+    if (endsAfter(world, route, watch)) return {};
     const double pick = (world + worlds.uniform()) / n * share.back();
     const auto found = std::ranges::upper_bound(share, pick) - share.begin();
     const auto at = std::min(static_cast<std::size_t>(found), route.size() - 1);
@@ -191,13 +199,14 @@ Least leastReserve(const std::vector<Stretch>& route, const std::vector<double>&
   return least;
 }
 
-// Conditional value at risk, and the vertex before the stretch that most often has the least reserve.
-void drawTail(const std::vector<Stretch>& way, const Route& route, const RouteRiskOptions& options,
-              RouteRisk& risk) {
+// Conditional value at risk, and the vertex before the stretch that most often has the least reserve. False when stopped.
+bool drawTail(const std::vector<Stretch>& way, const Route& route, const RouteRiskOptions& options,
+              const ProgressMonitor& watch, RouteRisk& risk) {
   Worlds worlds(way, options.seed);
   std::vector<double> reserves;
   std::vector<int> worst_at(way.size());
   for (int world = 0; world < options.worlds; ++world) {
+    if (endsAfter(world, way, watch)) return false;
     const Least least = leastReserve(way, worlds.any());
     reserves.push_back(least.reserve);
     ++worst_at[least.where];
@@ -209,6 +218,7 @@ void drawTail(const std::vector<Stretch>& way, const Route& route, const RouteRi
   const RouteVertex& place = route.vertices[way[static_cast<std::size_t>(worst)].vertex - 1];
   risk.worst_x_m = place.x_m;
   risk.worst_y_m = place.y_m;
+  return true;
 }
 
 }  // namespace
@@ -241,17 +251,19 @@ std::vector<double> riskBoundAlong(const Route& route, const RouteRiskOptions& o
   return alongVertices(route, way, bound);
 }
 
-RouteRisk routeRisk(const Route& route, const RouteRiskOptions& options) {
+RouteRisk routeRisk(const Route& route, const RouteRiskOptions& options, const ProgressMonitor& watch) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  constexpr RouteRisk kStopped{kNan, kNan, kNan, kNan, kNan};
   validate(options);
   const std::vector<Stretch> way = stretches(route, options);
   RouteRisk risk;
   risk.cvar = kSafe;
   if (way.empty()) return risk;
-  const Drawn all = drawn(way, options);
+  const Drawn all = drawn(way, options, watch);
+  if (all.risk.empty()) return kStopped;
   risk.immobilisation = all.risk.back();
   risk.standard_error = std::sqrt(all.variance);
-  drawTail(way, route, options, risk);
-  return risk;
+  return drawTail(way, route, options, watch, risk) ? risk : kStopped;
 }
 
 }  // namespace talus::planner

@@ -54,7 +54,8 @@ std::vector<double> riskAlong(const Route& route, const RouteRiskOptions& option
 std::vector<double> riskBoundAlong(const Route& route, const RouteRiskOptions& options);
 
 /// The risk of the whole route as riskAlong() has it, and the tail of its reserve: conditional value at risk after Rockafellar & Uryasev
-/// 2000 [rockafellar_uryasev_2000].
-RouteRisk routeRisk(const Route& route, const RouteRiskOptions& options = {});
+/// 2000 [rockafellar_uryasev_2000]. Where `watch` was stopped before all worlds were drawn, which riskAlong() tells of, all is NaN.
+RouteRisk routeRisk(const Route& route, const RouteRiskOptions& options = {},
+                    const ProgressMonitor& watch = {});
 
 }  // namespace talus::planner

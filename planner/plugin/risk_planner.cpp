@@ -31,10 +31,13 @@ std::string inWords(double probability) {
   return text.str();
 }
 
-double riskOf(const costmap::CostGrid& map, const Plan& plan, const RouteRiskOptions& soil) {
+// 1 where `watch` was stopped before it was known.
+double riskOf(const costmap::CostGrid& map, const Plan& plan, const RouteRiskOptions& soil,
+              const ProgressMonitor& watch) {
   const Route route = annotated(plan, {.map = map, .elevation_m = nullptr, .planner = {}});
   if (route.vertices.empty()) return 0.0;
-  const RouteRisk drawn = routeRisk(route, soil);
+  const RouteRisk drawn = routeRisk(route, soil, watch);
+  if (std::isnan(drawn.immobilisation)) return 1.0;
   return drawn.immobilisation + 2.0 * drawn.standard_error;
 }
 
@@ -56,7 +59,7 @@ class RiskBoundedSearch {
       failure_ = std::move(plan);
       return std::nullopt;
     }
-    const double risk = riskOf(*problem_.map, plan, soil_);
+    const double risk = riskOf(*problem_.map, plan, soil_, problem_.watch);
     least_risk_ = std::min(least_risk_, risk);
     if (risk > max_risk_) return false;
     if (!best_ || plan.cost_J < best_->cost_J) best_ = std::move(plan);

@@ -26,6 +26,13 @@ Soil varied(Soil soil, double spread, std::mt19937_64& random) {
   return soil;
 }
 
+// The draws of a class are its own: they depend on the world and its number, not on what else is declared.
+std::mt19937_64 drawsOf(std::uint64_t seed, int number) {
+  const auto low = [](std::uint64_t word) { return static_cast<std::uint32_t>(word); };
+  std::seed_seq words{low(seed), low(seed >> 32), static_cast<std::uint32_t>(number)};
+  return std::mt19937_64(words);
+}
+
 maps::Point anywhere(const maps::Grid& grid, std::mt19937_64& random) {
   std::uniform_real_distribution<double> share(0.0, 1.0);
   const double x = share(random), y = share(random);
@@ -37,15 +44,16 @@ maps::Point anywhere(const maps::Grid& grid, std::mt19937_64& random) {
 
 WorldSoils drawWorld(const Truth& truth, const std::vector<costmap::GroundClass>& classes,
                      const maps::Grid& grid, const WorldDraw& draw) {
-  std::mt19937_64 random(draw.seed);
   WorldSoils world;
   for (const costmap::GroundClass& ground : classes) {
     const auto stated = truth.classes.find(ground.number);
+    std::mt19937_64 own = drawsOf(draw.seed, ground.number);
     world.classes.push_back(
-        varied(stated == truth.classes.end() ? ground.soil : stated->second, truth.spread, random));
+        varied(stated == truth.classes.end() ? ground.soil : stated->second, truth.spread, own));
   }
   world.patches = truth.patches;
   world.effects = truth.effects;
+  std::mt19937_64 random(draw.seed);
   const Soil patch_soil = truth.random_patches > 0 ? varied(truth.patch_soil, truth.spread, random) : Soil{};
   std::uniform_real_distribution<double> size(0.5, 1.5);
   for (int i = 0; i < truth.random_patches; ++i) {

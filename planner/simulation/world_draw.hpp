@@ -28,7 +28,8 @@ struct WorldDraw {
   maps::Point goal;
 };
 
-/// Soils of one world over a grid, in the order of the classes. Same draw, same world.
+/// Soils of one world over a grid, in the order of the classes. Same draw, same world; what a class and the random patches are
+/// like does not depend on which other classes there are.
 WorldSoils drawWorld(const Truth& truth, const std::vector<costmap::GroundClass>& classes,
                      const maps::Grid& grid, const WorldDraw& draw);
 

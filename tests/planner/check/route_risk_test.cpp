@@ -160,6 +160,33 @@ TEST(RouteRisk, AStopEndsTheDrawingOfALongRoute) {
   EXPECT_EQ(riskAlong(brief, options, stopped), riskAlong(brief, options));
 }
 
+// Property: the risk ends with a stop, too, in either of its parts.
+TEST(RouteRisk, AStopEndsTheRiskOfALongRoute) {
+  std::stop_source stop;
+  stop.request_stop();
+  const ProgressMonitor stopped{.progress = {}, .stop = stop.get_token()};
+  const Route route = straight(std::vector<double>(20000, 1e-4), 1.0, 5.0),
+              safe = straight(std::vector<double>(20000, 0.0), 1.0, 5.0);
+  EXPECT_TRUE(std::isnan(routeRisk(route, {.worlds = 1'000'000}, stopped).immobilisation));
+  EXPECT_TRUE(std::isnan(routeRisk(safe, {.worlds = 1'000'000}, stopped).cvar)) << "no hazard, only the tail";
+  const Route brief = straight(std::vector<double>(100, 1e-4), 1.0, 5.0);
+  EXPECT_EQ(routeRisk(brief, {}, stopped).immobilisation, routeRisk(brief).immobilisation);
+}
+
+// Property: classes that the route does not meet have no part in its risk.
+TEST(RouteRisk, DoesNotDependOnClassesElsewhere) {
+  const auto over = [](int first, int second) {
+    Route route = straight(std::vector<double>(40, 0.01), 2.0, 5.0);
+    for (std::size_t i = 0; i < route.vertices.size(); ++i) {
+      route.vertices[i].soil_class = i / 8 % 2 == 0 ? first : second;
+      route.vertices[i].shared_doubt = 0.4;
+    }
+    return route;
+  };
+  EXPECT_EQ(riskAlong(over(0, 1), {}), riskAlong(over(7, 3), {}));
+  EXPECT_EQ(routeRisk(over(0, 1)).cvar, routeRisk(over(7, 3)).cvar);
+}
+
 TEST(RouteRisk, GrowsAlongTheRoute) {
   const std::vector<double> along = riskAlong(straight(std::vector<double>(20, 0.02), 2.0, 5.0), {});
   EXPECT_EQ(along.front(), 0.0);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include <site_map.hpp>
@@ -78,6 +79,28 @@ TEST(DrawWorld, IsOfItsSeedAlone) {
     EXPECT_TRUE(std::ranges::any_of(world->patches, [](const SoilPatch& p) {
       return p.centre == maps::Point{110.5, 205.5} && p.radius_m == 1.5;
     }));
+}
+
+// Property: a class and the random patches are drawn the same, whatever else is declared and in whatever order.
+TEST(DrawWorld, AClassIsDrawnByItsNumber) {
+  const auto map = costmap::mapOf(plain());
+  std::vector<costmap::GroundClass> classes = map.model().parts().classes;
+  ASSERT_EQ(classes.size(), 2U);
+  const WorldSoils world = drawWorld(random(5), classes, map.grid(), {.seed = 3});
+  std::ranges::reverse(classes);
+  classes.insert(classes.begin(), costmap::GroundClass{.number = 99, .soil = testDust()});
+  const WorldSoils more = drawWorld(random(5), classes, map.grid(), {.seed = 3});
+  for (const std::size_t k : {0U, 1U}) {
+    EXPECT_EQ(more.classes[2 - k].cohesion_Pa, world.classes[k].cohesion_Pa);
+    EXPECT_EQ(more.classes[2 - k].friction_angle_rad, world.classes[k].friction_angle_rad);
+  }
+  ASSERT_EQ(more.patches.size(), world.patches.size());
+  for (std::size_t i = 0; i < world.patches.size(); ++i) {
+    EXPECT_EQ(more.patches[i].centre, world.patches[i].centre);
+    EXPECT_EQ(more.patches[i].soil.cohesion_Pa, world.patches[i].soil.cohesion_Pa);
+  }
+  EXPECT_NE(world.classes[0].cohesion_Pa / testSand().cohesion_Pa,
+            world.classes[1].cohesion_Pa / testDust().cohesion_Pa);
 }
 
 }  // namespace
