@@ -17,8 +17,9 @@
 namespace talus::costmap {
 namespace {
 
-// 1 had no z_m, 2 no pose_std_m nor what may raise, 3 no drives, 4 no bounds, 5 no shared errors nor wheels
-constexpr int kFormat = 6;
+// 1 had no z_m, 2 no pose_std_m nor what may raise, 3 no drives, 4 no bounds, 5 no shared errors nor wheels, 6 no share of
+// the thrust: a pull that was read at little slip counted as if it had been read at the reference slip
+constexpr int kFormat = 7;
 constexpr int kApplication = 0x54414c55;  // "TALU"
 
 constexpr const char* kSchema =
@@ -30,23 +31,23 @@ constexpr const char* kSchema =
     " pull REAL, pull_std REAL, sinkage REAL, sinkage_std REAL, z_m REAL,"
     " pose_std_m REAL NOT NULL DEFAULT 0, pull_may_raise INTEGER NOT NULL DEFAULT 0,"
     " sinkage_may_raise INTEGER NOT NULL DEFAULT 0, drive INTEGER, pull_here REAL, sinkage_here REAL,"
-    " pull_shared_std REAL, wheel_radius_m REAL, wheel_width_m REAL, wheel_weight_N REAL);"
+    " pull_shared_std REAL, wheel_radius_m REAL, wheel_width_m REAL, wheel_weight_N REAL, thrust_share REAL);"
     "CREATE TABLE IF NOT EXISTS drive(number INTEGER PRIMARY KEY, id TEXT NOT NULL UNIQUE, checksum INTEGER)";
 constexpr const char* kInsert =
     "INSERT INTO evidence(source, line, accepted, reason, time_s, x_m, y_m, load_N, slip, torque_Nm, "
     "sinkage_m, gradient,"
     " drawbar_pull_N, pass_index, pull, pull_std, sinkage, sinkage_std, z_m, pose_std_m,"
     " pull_may_raise, sinkage_may_raise, pull_here, sinkage_here, pull_shared_std, wheel_radius_m, "
-    "wheel_width_m, wheel_weight_N, drive) "
-    "VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)";
+    "wheel_width_m, wheel_weight_N, thrust_share, drive) "
+    "VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)";
 constexpr const char* kSelect =
     "SELECT source, line, accepted, reason, time_s, x_m, y_m, load_N, slip, torque_Nm, sinkage_m, gradient,"
     " drawbar_pull_N, pass_index, pull, pull_std, sinkage, sinkage_std, z_m, pose_std_m,"
     " pull_may_raise, sinkage_may_raise, pull_here, sinkage_here, pull_shared_std, wheel_radius_m, "
-    "wheel_width_m, wheel_weight_N FROM evidence WHERE drive = ? AND id > ? ORDER BY id";
+    "wheel_width_m, wheel_weight_N, thrust_share FROM evidence WHERE drive = ? AND id > ? ORDER BY id";
 
 // Columns that older journals lack: what they hold may not raise.
-constexpr std::array<std::pair<const char*, const char*>, 11> kAdded{
+constexpr std::array<std::pair<const char*, const char*>, 12> kAdded{
     {{"z_m", "REAL"},
      {"pose_std_m", "REAL NOT NULL DEFAULT 0"},
      {"pull_may_raise", "INTEGER NOT NULL DEFAULT 0"},
@@ -57,7 +58,8 @@ constexpr std::array<std::pair<const char*, const char*>, 11> kAdded{
      {"pull_shared_std", "REAL"},
      {"wheel_radius_m", "REAL"},
      {"wheel_width_m", "REAL"},
-     {"wheel_weight_N", "REAL"}}};
+     {"wheel_weight_N", "REAL"},
+     {"thrust_share", "REAL"}}};
 
 // NULL stands for NaN: SQLite has none. What is no number, "0" for SQLite, is refused by fault().
 double number(sqlite3_stmt* row, int column) {
@@ -105,10 +107,12 @@ JournalRow readRow(sqlite3_stmt* row) {
                      .demand = out.reading.gradient,
                      .from_torque = std::numeric_limits<double>::quiet_NaN(),
                      .shared_std = number(row, 24),
+                     .share = number(row, 28),
                      .pose_std_m = out.reading.pose_std_m,
                      .pull_may_raise = sqlite3_column_int(row, 20) != 0,
                      .sinkage_may_raise = sqlite3_column_int(row, 21) != 0,
                      .here = {number(row, 22), number(row, 23)}};
+  if (std::isnan(out.observation.share)) out.observation.shared_std = out.observation.share;
   out.wheel = {number(row, 25), number(row, 26), number(row, 27)};
   return out;
 }
@@ -242,7 +246,8 @@ void bindRow(sqlite3_stmt* s, const JournalRow& row, std::int64_t drive) {
   sqlite3_bind_int(s, at++, o.sinkage_may_raise ? 1 : 0);
   bind(s, at++, o.here.most_pull);
   bind(s, at++, o.here.least_sinkage);
-  for (const double value : {o.shared_std, row.wheel.radius_m, row.wheel.width_m, row.wheel.weight_N})
+  for (const double value :
+       {o.shared_std, row.wheel.radius_m, row.wheel.width_m, row.wheel.weight_N, o.share})
     bind(s, at++, value);
   sqlite3_bind_int64(s, at, drive);
 }

@@ -52,6 +52,16 @@ double slopeAtSlip_rad(const terramech::MobilityCurve& curve, double slip) {
   return 0.5 * (low + high);
 }
 
+SteadyWheel steadyAt(const terramech::Rover& rover, const terramech::MobilityCurve& driven,
+                     double slope_rad) {
+  const MobilityState state = driven.at(slope_rad);
+  const double radius_m = rover.wheel.radius_m;
+  const double load_N = terramech::wheelLoad_N(rover) * std::cos(slope_rad);
+  return {.gradient = std::tan(slope_rad),
+          .sinkage_over_radius = state.sinkage_m / radius_m,
+          .torque_over_load_radius = state.torque_Nm / (load_N * radius_m)};
+}
+
 terramech::RefinedModel modelOf(const GroundClass& ground) {
   terramech::RefinedModel model;
   model.soil = ground.soil;
@@ -184,13 +194,8 @@ GroundBelief GroundModel::prior(int class_index) const {
 SteadyWheel GroundModel::steady(int class_index, const DrivenWheel& wheel) const {
   const ClassGround& ground = groundOf(class_index);
   const terramech::MobilityCurve& driven = wheel.in_rut ? ground.in_rut : ground.wheel;
-  const double slope_rad = slopeAtSlip_rad(driven, wheel.slip);
-  const MobilityState state = driven.at(slope_rad);
+  SteadyWheel steady = steadyAt(parts_.rover, driven, slopeAtSlip_rad(driven, wheel.slip));
   const double radius_m = parts_.rover.wheel.radius_m;
-  const double load_N = terramech::wheelLoad_N(parts_.rover) * std::cos(slope_rad);
-  SteadyWheel steady{.gradient = std::tan(slope_rad),
-                     .sinkage_over_radius = state.sinkage_m / radius_m,
-                     .torque_over_load_radius = state.torque_Nm / (load_N * radius_m)};
   if (wheel.slip_angle_rad == 0.0) return steady;
   const terramech::WheelOnSlope straight = ground.slope.evenWheel(wheel.slip, 0.0),
                                 turned = ground.slope.evenWheel(wheel.slip, wheel.slip_angle_rad);
@@ -199,6 +204,13 @@ SteadyWheel GroundModel::steady(int class_index, const DrivenWheel& wheel) const
   if (straight.sinkage_m > 0.0) steady.sinkage_over_radius *= turned.sinkage_m / straight.sinkage_m;
   steady.hold = std::abs(turned.side_force_N) / turned.load_N;
   return steady;
+}
+
+SteadyWheel GroundModel::onSlope(int class_index, double gradient, bool in_rut) const {
+  const ClassGround& ground = groundOf(class_index);
+  const terramech::MobilityCurve& driven = in_rut ? ground.in_rut : ground.wheel;
+  const double least = driven.minSlope_rad(), most = std::max(driven.maxSlope_rad(), least);
+  return steadyAt(parts_.rover, driven, std::clamp(std::atan(gradient), least, most));
 }
 
 SteadyWheel GroundModel::reference(int class_index, bool in_rut) const noexcept {

@@ -103,6 +103,9 @@ class GroundModel {
   /// What a wheel of a rover that drives steadily at this slip on ground of the class reads, as its soil
   /// says; the ends of what it can drive beyond them. A slip angle changes it as it changes a wheel on fresh ground.
   SteadyWheel steady(int class_index, const DrivenWheel& wheel) const;
+  /// The same of a wheel that drives straight on a slope of this gradient (rise over run), or on the nearest that its
+  /// soil holds.
+  SteadyWheel onSlope(int class_index, double gradient, bool in_rut) const;
   /// The same at the reference slip.
   SteadyWheel reference(int class_index, bool in_rut) const noexcept;
 

@@ -26,7 +26,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "map files require a little-endian machine");
 
 constexpr std::array<char, 8> kMagic{'T', 'A', 'L', 'U', 'S', 'M', 'A', 'P'};
-constexpr std::uint32_t kVersion = 5;
+constexpr std::uint32_t kVersion = 6;
 constexpr std::array<char, 4> kEnd{'E', 'N', 'D', ' '};
 
 class TrailerWriter {

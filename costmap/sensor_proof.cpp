@@ -11,6 +11,7 @@ constexpr double kApart_m = 0.5;             // rows nearer to each other say th
 constexpr double kGradientVariation = 0.03;  // of the slopes that prove a sensor, one standard deviation
 constexpr double kLevel = 0.08;              // gradient of ground that counts as level
 constexpr std::size_t kLevelRows = 6;        // of it, before the bias of slip is known
+constexpr double kFelt = 0.6;                // share of the thrust that is most of it
 constexpr double kSlipPerGradient = 0.1;     // of the firmest soil
 constexpr double kPerGradient = 0.5;         // of the slope measured, and of the pull by torque
 constexpr double kSlopeBias = 0.03;          // of the rover's slope against the map's
@@ -77,6 +78,7 @@ void SensorProof::take(const Row& row) {
   run.slope.add(row.map_gradient, row.measured_gradient);
   wheel.slip.add(row.measured_gradient, r.slip);
   wheel.torque.add(row.measured_gradient, row.torque_pull);
+  wheel.felt_rows += row.share >= kFelt ? 1 : 0;
   takeLevel(wheel, row);
 }
 
@@ -124,6 +126,12 @@ bool SensorProof::doubted(const std::string& run, const std::string& wheel) cons
   const Wheel* w = r ? find(*r, wheel) : nullptr;
   if (!w || isOff(r->off)) return true;
   return contradicts(r->slope, kPerGradient) || contradicts(w->slip, kSlipPerGradient);
+}
+
+bool SensorProof::felt(const std::string& run, const std::string& wheel) const {
+  const Run* r = find(run);
+  const Wheel* w = r ? find(*r, wheel) : nullptr;
+  return w && w->felt_rows >= kLevelRows;
 }
 
 double SensorProof::lowSlip(const std::string& run, const std::string& wheel) const {

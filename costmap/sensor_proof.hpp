@@ -32,6 +32,7 @@ class SensorProof {
     double map_gradient = 0.0;       ///< the same by the map
     double class_slip = 0.0;         ///< of ground of the class on the measured gradient
     double torque_pull = 0.0;        ///< drawbar pull over load by torque and sinkage
+    double share = 0.0;              ///< of its class's thrust at the reference slip, at its slip
     bool danger = false;             ///< it points to danger: it proves nothing but where the rover is
   };
 
@@ -52,6 +53,9 @@ class SensorProof {
   bool doubted(const std::string& run, const std::string& wheel) const;
   /// Whether the pose, after the rows so far, is off by a jump.
   bool displaced(const std::string& run) const;
+  /// Whether it drove at slips at which most of the thrust of its class is felt, so that what it read at little slip was
+  /// not all that it read.
+  bool felt(const std::string& run, const std::string& wheel) const;
   /// By how much the wheel slips less on level ground than the class does, on average of all rows or of the last;
   /// >= 0.
   double lowSlip(const std::string& run, const std::string& wheel) const;
@@ -64,7 +68,7 @@ class SensorProof {
   struct Wheel {
     std::optional<WheelReading> last, last_counted;
     ResponseSeries slip, torque;
-    std::size_t level_rows = 0;
+    std::size_t level_rows = 0, felt_rows = 0;
     double level_sum = 0.0;         // of slip on level ground beyond the class's
     std::deque<double> level_last;  // of that
   };

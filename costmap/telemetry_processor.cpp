@@ -10,6 +10,8 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kDangerSlip = 0.7;  // beyond any that a drive plans
+constexpr double kLittleSlip =
+    0.5;  // of the class's deviation: what a reading at little slip leaves open (ours)
 
 std::optional<int> classAt(const TraversabilityMap& map, const WheelReading& reading) {
   const auto cell = map.grid().cellAt(reading.place);
@@ -157,6 +159,7 @@ void TelemetryProcessor::prove(const TelemetryRows& rows, const Sound& sound,
                  .map_gradient = rows.mapGradient(row),
                  .class_slip = slipOfClasses(sound.read, gradient),
                  .torque_pull = seen[i] ? seen[i]->from_torque : kNone,
+                 .share = seen[i] ? seen[i]->share : 0.0,
                  .danger = sound.danger[i]});
   }
 }
@@ -214,14 +217,18 @@ void TelemetryProcessor::allow(const TelemetryRows& rows, const Sound& sound, co
       if (!other) return kNone;
       return torque_sound ? other->pull.value : std::fmin(other->pull.value, other->by_slope.value);
     };
-    const double left = pullOf(least[i]);
     const double prior = map_.model().prior(sound.read[i].class_index).pull.value;
+    double left = pullOf(least[i]);
+    if (left > prior) left = prior + (left - prior) * std::clamp(least[i]->share, 1.0 / 3.0, 1.0);
     const double most = off[i].reading.gradient > 0.0 ? std::max(prior, left) : prior;
     const double kept = std::min(one.pull.value, most);
+    // At little slip nothing is raised by a drive that never felt most of the thrust.
+    if (std::isnan(one.shared_std) && verdict.proof->felt(rows.run(sound.row[i]), rows.wheel(sound.row[i])))
+      one.shared_std = kLittleSlip * map_.model().prior(sound.read[i].class_index).pull.std;
     one.shared_std = std::hypot(std::hypot(one.shared_std, std::fmax(kept - left, 0.0)),
                                 one.pull.value - pullOf(biased[i]), one.pull.value - pullOf(scaled[i]));
     one.pull = {kept, std::hypot(one.pull.std, one.pull.value - kept)};
-    one.pull_may_raise = true;
+    one.pull_may_raise = std::isfinite(one.shared_std);
     one.sinkage_may_raise = torque_sound;
   }
 }

@@ -68,6 +68,7 @@ struct WheelObservation {
   /// Of the pull: standard deviation by the error that readings share, however many there are, as of the slip by which
   /// all of them are read; >= 0 [-]. NaN: not known, so that the pull may only lower.
   double shared_std = 0.0;
+  double share = 1.0;  ///< of its class's thrust at the reference slip, at the slip that was read [-]
   Estimate by_slope{std::numeric_limits<double>::quiet_NaN(),
                     0.0};   ///< pull by slip and slope alone; NaN without
   double pose_std_m = 0.0;  ///< how well the place is known, one standard deviation
@@ -86,9 +87,18 @@ struct WheelObservation {
 ///
 /// Slope: a steady rover's wheels together pull what the slope asks, DP/N = tan(slope). Each wheel's own
 /// curve, of its class and of fresh ground or a rut, says at which gradient it would drive at its slip; by
-/// how much the slope departs from what the wheels should pull together is the departure of the ground under
-/// all of them, the shift of GroundModel. How they share it, torque and sinkage say: a wheel that pulls less
-/// than its fellows, as on the edge of a soft patch, stands on weaker ground. From slip 0.9 of any wheel on the rover
+/// how much the slope departs from what the wheels should pull together is the departure d of the ground under
+/// all of them at their slip s. Ground of the share f of its class's thrust H departs by (1 - f) H(s) (GroundModel), so
+/// that at the reference slip it departs by
+///   k d,  k = H(0.5)/H(s) in [1, 3]
+/// (ours; of soils drawn about mars_crusty and phi 37 deg by their strength within 0.02 of d k, by their shear modulus up
+/// to a third less). As much of d as an error of the reading explains is not grown: of d, k applies to
+/// d - d e^2/(d^2 + e^2), e its standard deviation, which itself grows by k. What soils of a class differ in otherwise adds
+/// 0.4 of its standard deviation times k - 1. At less than a third of the thrust k is 1, the class's deviation counts for
+/// the part of the thrust that is not felt, and nothing is raised unless the drive felt most of the thrust elsewhere
+/// (SensorProof). From the reference slip on what is weaker is not taken back to
+/// it, what is stronger is. How the wheels share the departure, torque and sinkage say: a wheel that pulls less than its
+/// fellows, as on the edge of a soft patch, stands on weaker ground. From slip 0.9 of any wheel on the rover
 /// may as well have stood, and pulled less than the slope asks: the balance is then only an upper bound, and
 /// says nothing better than the class.
 ///
@@ -102,7 +112,7 @@ struct WheelObservation {
 /// reference slip both grow as they do on ground of the class: torque as shear is mobilised, sinkage as the
 /// wheel digs (ours; from slip 0.3 on within 0.11 of the forward model on dust, trap and drift taken for
 /// sand, whose pull is 0.2 to 0.36 less). Where little is mobilised yet, the class's own torque stands in,
-/// and the sinkage alone speaks: who sinks deeper has more to climb out of.
+/// with twice the class's deviation, and the sinkage alone speaks: who sinks deeper has more to climb out of.
 class WheelObserver {
  public:
   explicit WheelObserver(const GroundModel& model, const ReadingNoise& noise = {});
@@ -120,12 +130,16 @@ class WheelObserver {
   // Of all wheels of a moment.
   struct Balance {
     double departure = 0.0;  // of the slope from what they should pull together; NaN without a slope
+    // By how much less than the class they pull at the reference slip by what they hold across; infinite: not known.
+    double across = std::numeric_limits<double>::infinity();
+    double share = 1.0;  // of the classes' thrust at the reference slip that they have at the wheels' slips
     bool standing = false;
   };
 
   Wheel expected(const ClassReading& read) const;
-  Estimate bySlope(const Wheel& wheel, double departure, double own) const;
-  Estimate upperBound(const Wheel& wheel, double departure) const;
+  double miss(const Wheel& wheel, const Balance& all, double carried) const;
+  Estimate bySlope(const Wheel& wheel, const Balance& all, double own) const;
+  Estimate upperBound(const Wheel& wheel, const Balance& all) const;
   std::optional<WheelObservation> observed(const Wheel& wheel, const Balance& balance, double own) const;
 
   const GroundModel& model_;

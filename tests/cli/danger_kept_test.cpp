@@ -114,7 +114,7 @@ INSTANTIATE_TEST_SUITE_P(Of, DangerKept,
 std::string pulls(const Ground& ground, double x_m, double y_m, double pull, int times, int& time_s) {
   std::string text;
   for (int i = 0; i < times; ++i, ++time_s)
-    text += fmt::format("{},{},{},0,{},{},{}\n", time_s, x_m, y_m, ground.load_N(), 0.5 + 1e-3 * (time_s % 7),
+    text += fmt::format("{},{},{},0,{},{},{}\n", time_s, x_m, y_m, ground.load_N(), 0.5 + 1e-3 * (i % 7),
                         pull * ground.load_N());
   return text;
 }

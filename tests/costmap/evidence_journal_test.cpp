@@ -128,7 +128,7 @@ TEST_F(EvidenceJournalTest, RefusesRowsThatWereChanged) {
         " sinkage_m, gradient, drawbar_pull_N, pass_index, pull, pull_std, sinkage, sinkage_std, z_m, "
         "pose_std_m,"
         " pull_may_raise, sinkage_may_raise, drive, pull_here, sinkage_here, pull_shared_std, wheel_radius_m,"
-        " wheel_width_m, wheel_weight_N FROM evidence"}) {
+        " wheel_width_m, wheel_weight_N, thrust_share FROM evidence"}) {
     std::filesystem::remove(path());
     { EvidenceJournal(path()).append("a", {row(7)}); }
     change(path(), sql);
@@ -151,7 +151,7 @@ TEST_F(EvidenceJournalTest, RefusesValuesThatNoWheelGives) {
        {"pull = 9e999", "pull = NULL", "pull = 1e300", "sinkage = NULL", "pull_std = -1", "x_m = 9e999",
         "y_m = NULL", "pull_std = NULL", "pose_std_m = 9e999", "z_m = 9e999", "pull_here = 9e999",
         "pull_here = -9e999", "pull_here = 101", "pull_here = 'x'", "sinkage_here = 9e999",
-        "sinkage_here = -0.1", "sinkage_here = x'00'", "pull = 'x'"}) {
+        "sinkage_here = -0.1", "sinkage_here = x'00'", "pull = 'x'", "thrust_share = 9e999"}) {
     std::filesystem::remove(path());
     { EvidenceJournal(path()).append("a", {row(7)}); }
     change(path(), ("UPDATE drive SET checksum = NULL; UPDATE evidence SET " + std::string(sql)).c_str());
@@ -174,6 +174,20 @@ TEST_F(EvidenceJournalTest, BoundsComeBackToTheBit) {
   EXPECT_EQ(back[1].observation.here.least_sinkage, 2.0 / 3.0);
   EXPECT_FALSE(back[2].observation.estimates());
   EXPECT_EQ(back[2].observation.here.most_pull, -0.1 / 3.0);
+}
+
+// Property: rows that do not state at which share of the thrust they were read come back as such that may only lower.
+TEST_F(EvidenceJournalTest, WithoutAShareOfTheThrustNothingRaises) {
+  JournalRow raises = row(2);
+  raises.observation.shared_std = 0.03;
+  raises.observation.share = 1.0 / 3.0;
+  raises.observation.pull_may_raise = true;
+  { EvidenceJournal(path()).append("a", {raises}); }
+  const WheelObservation back = EvidenceJournal(path()).rows("a")[0].observation;
+  EXPECT_EQ(back.share, 1.0 / 3.0);
+  EXPECT_EQ(back.shared_std, 0.03);
+  change(path(), "UPDATE drive SET checksum = NULL; UPDATE evidence SET thrust_share = NULL");
+  EXPECT_TRUE(std::isnan(EvidenceJournal(path()).rows("a")[0].observation.shared_std));
 }
 
 TEST_F(EvidenceJournalTest, RefusesAFormatOfTheFuture) {

@@ -173,7 +173,7 @@ TEST(MapFile, NamesTheVersionThatItReads) {
     fromBytes(bytes);
     ADD_FAILURE();
   } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("of another version than 5; write the map again"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("of another version than 6; write the map again"));
   }
 }
 

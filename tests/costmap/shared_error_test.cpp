@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <string>
 
 #include <rover_drive.hpp>
 #include <site_map.hpp>
@@ -55,15 +56,87 @@ TEST(SharedError, OfTheSlipOfAllWheelsLowersNoRisk) {
     }
 }
 
-// Property: a drive whose slip is right makes ground surer, the more the nearer; most where the rover climbed.
+double pullStd(const TraversabilityMap& map, maps::Cell cell) {
+  return map.ground(cell)->pull.std;
+}
+
+// Standard deviation by what all readings at one slip of ground that is as its class share, by the mobility curve: g' is its
+// slope, k = H(0.5)/H(s) the growth of a departure on its way to slip 0.5, in [1, 3].
+//   (g')^2 (0.03^2 + (0.2 s)^2 + 0.01^2) + (0.4 (k - 1) p)^2 + (0.06 (0.5 - s))^2, 0.5 - s at most 0.25
+// of an error of all slips, of a share of them and of what level ground shows; of soils of a class of deviation p that differ
+// otherwise than in strength; of the curve's form. Kept in steps of 1.5 from 0.02 on, rounded up.
+double sharedAt(const GroundModel& model, double slip, bool in_rut) {
+  const auto at = [&](double there) { return model.steady(0, {.slip = there, .in_rut = in_rut}); };
+  const double steepness = (at(slip + 0.01).gradient - at(slip - 0.01).gradient) / 0.02;
+  const double thrust = at(slip).torque_over_load_radius;
+  const double k =
+      thrust > 0.0 ? std::clamp(model.reference(0, in_rut).torque_over_load_radius / thrust, 1.0, 3.0) : 3.0;
+  const double by_slip = steepness * std::hypot(0.03, 0.2 * slip, 0.01);
+  const double by_soil =
+      std::hypot(0.4 * (k - 1.0) * model.prior(0).pull.std, 0.06 * std::min(std::abs(0.5 - slip), 0.25));
+  double kept = 0.02;
+  while (kept < std::hypot(by_slip, by_soil)) kept *= 1.5;
+  return kept;
+}
+
+// Closed form: numbers take the deviation m of the class as a whole to m c / sqrt(m^2 + c^2), c the mean of the error that
+// the readings of a drive share, and leave its ground that from place to place. A drive over gentle hills, at slips about
+// 0.1, sees half of a departure and less, and is known by that to within 2 %.
+TEST(SharedError, LeavesOfADriveAtLittleSlipWhatItsSlipsTell) {
+  const TraversabilityMap before = sand();
+  TraversabilityMap after = sand();
+  const Drive drive = driveOver(after, testSand(), 1, {8.5, 23.5, 38.5});
+  addDrive(after, tableOf(drive, false));
+  double shared = 0.0, slip = 0.0;
+  const auto rows = static_cast<double>(drive.rows.size());
+  for (const auto& row : drive.rows) {
+    shared += sharedAt(after.model(), row[kSlip], row[kPass] > 1.0) / rows;
+    slip += row[kSlip] / rows;
+  }
+  ASSERT_LT(slip, 0.15);
+  const GroundClass& ground = after.model().parts().classes[0];
+  const double of_class = ground.mean_std * shared / std::hypot(ground.mean_std, shared);
+  EXPECT_NEAR(pullStd(after, kFar) / std::hypot(ground.pull_std, of_class), 1.0, 0.02);
+  EXPECT_LT(pullStd(after, kFar), 0.94 * pullStd(before, kFar));
+  EXPECT_LE(pullStd(after, kBeside), pullStd(after, kFar));
+  EXPECT_LT(pullStd(after, kDriven), pullStd(after, kBeside));
+  EXPECT_LT(pullStd(after, kClimbed), 0.7 * pullStd(before, kClimbed));
+}
+
+// Of each run some moments on level ground, and those at slips about the reference slip.
+Drive nearReferenceSlip(const Drive& whole, std::size_t wheels) {
+  constexpr int kLevelMoments = 24;
+  Drive out;
+  std::string run;
+  int level = 0;
+  for (std::size_t i = 0; i < whole.rows.size(); i += wheels) {
+    if (whole.run[i] != run) level = 0;
+    run = whole.run[i];
+    const bool flat = std::abs(whole.rows[i][kSlope]) < 0.06 && level < kLevelMoments;
+    level += flat ? 1 : 0;
+    if (!flat && (whole.rows[i][kSlip] < 0.35 || whole.rows[i][kSlip] > 0.65)) continue;
+    for (std::size_t w = i; w < i + wheels; ++w) {
+      out.rows.push_back(whole.rows[w]);
+      out.run.push_back(whole.run[w]);
+      out.wheel.push_back(whole.wheel[w]);
+    }
+  }
+  return out;
+}
+
+// Property: a drive whose slip is right and whose wheels work near the reference slip makes ground surer, the more the
+// nearer; most where the rover climbed. The margins are those of readings that need not be taken to another slip.
 TEST(SharedError, LeavesWhatASoundDriveTells) {
-  const TraversabilityMap before = sand(), after = driven(testSand(), 1.0, 0.0);
-  const auto std = [](const TraversabilityMap& map, maps::Cell cell) { return map.ground(cell)->pull.std; };
-  EXPECT_LT(std(after, kClimbed), 0.7 * std(before, kClimbed));
-  EXPECT_LT(std(after, kDriven), 0.8 * std(before, kDriven));
-  EXPECT_LT(std(after, kDriven), std(after, kBeside));
-  EXPECT_LE(std(after, kBeside), std(after, kFar));
-  EXPECT_LT(std(after, kFar), 0.92 * std(before, kFar));
+  constexpr double kSteep_m = 1.5;
+  const TraversabilityMap before = mapOf(testSand(), 4, kSteep_m);
+  TraversabilityMap after = mapOf(testSand(), 4, kSteep_m);
+  const Drive whole = driveOver(after, testSand(), 1, {8.5, 8.5, 23.5, 23.5, 38.5, 38.5});
+  addDrive(after, tableOf(nearReferenceSlip(whole, 4), false));
+  EXPECT_LT(pullStd(after, kClimbed), 0.7 * pullStd(before, kClimbed));
+  EXPECT_LT(pullStd(after, kDriven), 0.8 * pullStd(before, kDriven));
+  EXPECT_LT(pullStd(after, kDriven), pullStd(after, kBeside));
+  EXPECT_LE(pullStd(after, kBeside), pullStd(after, kFar));
+  EXPECT_LT(pullStd(after, kFar), 0.92 * pullStd(before, kFar));
 }
 
 // Closed form: however many drives, the class is known no better than p c^2 / (p + c^2), p its prior and c the shared

@@ -94,7 +94,7 @@ TEST(TraverseSimulation, WhoWatchesItsWayDoesNotSlideOffASlope) {
   const TraverseSimulation drive = over(site, true);
   EXPECT_NE(drive.outcome, Outcome::Slid);
   EXPECT_NE(drive.outcome, Outcome::Immobilised);
-  EXPECT_GE(drive.alarms, 1);
+  EXPECT_GE(drive.replans, 1);  // by an alarm, or since the soil shows itself weaker on the way
 }
 
 TEST(TraverseSimulation, NoWayRoundIsGivenUpNotTriedToDeath) {
@@ -114,7 +114,7 @@ TEST(TraverseSimulation, BacksOutUntilItStandsOnSoundGround) {
       0.0};
   const TraverseSimulation drive = over(site, true);
   EXPECT_EQ(drive.outcome, Outcome::Reached);
-  ASSERT_GE(drive.alarms, 1);
+  ASSERT_GE(drive.replans, 1);  // the weak ground shows before the trap does
   const auto out = std::find_if(drive.events.begin(), drive.events.end(),
                                 [](const DriveEvent& e) { return e.text == "reversed"; });
   ASSERT_NE(out, drive.events.end());
