@@ -12,6 +12,46 @@ using maps::Cell;
 
 constexpr std::uint32_t kUnreached = CostToGo::kUnreached;
 
+// The least that ways outside the box cost between cells of its rim, over all others from one. Side by side in memory: each cell
+// that gains is held against each.
+class Excursions {
+ public:
+  Excursions(std::size_t cells, std::uint32_t cheapest) : cheapest_(cheapest) {
+    for (auto* values : {&column_, &row_}) values->reserve(cells);
+    for (auto* values : {&before_, &now_}) values->reserve(cells);
+  }
+
+  void add(Cell cell, std::uint32_t before) {
+    column_.push_back(cell.column);
+    row_.push_back(cell.row);
+    before_.push_back(before);
+    now_.push_back(kUnreached);
+  }
+
+  // A cell of the rim has got cheaper.
+  void set(std::size_t k, std::uint32_t units) { now_[k] = units; }
+
+  // Calls reach(k, units) for the cells that an excursion makes cheaper which ends at `to`, `here` units from the goal. Where `exact`
+  // its cost before is known, and the old field drops no faster than a way costs.
+  template <typename Reach>
+  void to(std::size_t to, std::uint32_t here, bool exact, Reach reach) const {
+    const int column = column_[to], row = row_[to];
+    const std::uint32_t level = exact ? before_[to] : kUnreached;
+    for (std::size_t k = 0; k < now_.size(); ++k) {
+      const auto steps =
+          static_cast<std::uint32_t>(std::max(std::abs(column_[k] - column), std::abs(row_[k] - row)));
+      const std::uint32_t drop = before_[k] - std::min(before_[k], level);
+      const std::uint32_t units = here + std::max(steps * cheapest_, drop);
+      if (units < now_[k] && before_[k] != kUnreached) reach(k, units);
+    }
+  }
+
+ private:
+  std::uint32_t cheapest_;
+  std::vector<int> column_, row_;
+  std::vector<std::uint32_t> before_, now_;
+};
+
 }  // namespace
 
 PatchBound::PatchBound(const CostToGo& before, CellBox changed)
@@ -49,28 +89,26 @@ std::vector<PatchBound::RimCell> PatchBound::rim() const {
   return cells;
 }
 
-// The least that a way outside the box costs between two cells of its rim.
-std::uint32_t PatchBound::excursion(const RimCell& from, const RimCell& to) const noexcept {
-  const auto steps = static_cast<std::uint32_t>(
-      std::max(std::abs(from.cell.column - to.cell.column), std::abs(from.cell.row - to.cell.row)));
-  const std::uint32_t straight = steps * before_.edges().units().cheapestEdge();
-  const bool drop_known = to.exact && from.before > to.before;
-  return drop_known ? std::max(straight, from.before - to.before) : straight;
-}
-
 void PatchBound::settleInwards(const std::vector<RimCell>& rim) {
   const EdgeLayer& edges = before_.edges();
   const PaddedGrid& padded = edges.padded();
   BucketQueue queue(static_cast<unsigned>(std::bit_width(edges.units().cheapestEdge()) - 1),
                     EdgeLayer::kBlocked);
-  std::vector<const RimCell*> on_rim(inside_.size(), nullptr);
+  constexpr std::uint32_t kInner = kUnreached;
+  std::vector<std::uint32_t> on_rim(inside_.size(), kInner);     // which of its cells
+  std::vector<std::uint32_t> taken(inside_.size(), kUnreached);  // at which cost; it waits once for each
+  Excursions excursions(rim.size(), edges.units().cheapestEdge());
   const auto reach = [&](Cell c, std::uint32_t units) {
-    std::uint32_t& present = inside_[local(c)];
-    if (units >= present) return;
-    present = units;
-    queue.push(units, static_cast<std::uint32_t>(local(c)));
+    const std::size_t at = local(c);
+    if (units >= inside_[at]) return;
+    inside_[at] = units;
+    if (on_rim[at] != kInner) excursions.set(on_rim[at], units);
+    queue.push(units, static_cast<std::uint32_t>(at));
   };
-  for (const RimCell& cell : rim) on_rim[local(cell.cell)] = &cell;
+  for (std::size_t k = 0; k < rim.size(); ++k) {
+    on_rim[local(rim[k].cell)] = static_cast<std::uint32_t>(k);
+    excursions.add(rim[k].cell, rim[k].before);
+  }
   const auto contains = [&](Cell c) {
     return c.column >= box_.first.column && c.column <= box_.last.column && c.row >= box_.first.row &&
            c.row <= box_.last.row;
@@ -82,7 +120,8 @@ void PatchBound::settleInwards(const std::vector<RimCell>& rim) {
       [&](std::uint32_t at) {
         const std::uint32_t here = inside_[at];
         if (queue.bucketOf(here) > queue.current()) return queue.push(here, at);
-        if (queue.bucketOf(here) < queue.current()) return;
+        if (queue.bucketOf(here) < queue.current() || taken[at] == here) return;
+        taken[at] = here;
         const Cell cell{box_.first.column + static_cast<int>(at % columns_),
                         box_.first.row + static_cast<int>(at / columns_)};
         const std::uint16_t* into = edges.into(padded.index(cell));
@@ -90,9 +129,9 @@ void PatchBound::settleInwards(const std::vector<RimCell>& rim) {
           const Cell from{cell.column + kStep[k].column, cell.row + kStep[k].row};
           if (into[k] != EdgeLayer::kBlocked && contains(from)) reach(from, here + into[k]);
         }
-        if (const RimCell* own = on_rim[at]; own && here < own->before)
-          for (const RimCell& other : rim)
-            if (&other != own && other.before != kUnreached) reach(other.cell, here + excursion(other, *own));
+        if (const std::uint32_t own = on_rim[at]; own != kInner && here < rim[own].before)
+          excursions.to(own, here, rim[own].exact,
+                        [&](std::size_t k, std::uint32_t units) { reach(rim[k].cell, units); });
       },
       [](std::uint64_t) { return true; });
 }

@@ -39,7 +39,6 @@ class PatchBound {
   }
   void settleInwards(const std::vector<RimCell>& rim);
   std::vector<RimCell> rim() const;
-  std::uint32_t excursion(const RimCell& from, const RimCell& to) const noexcept;
 
   const CostToGo& before_;
   CellBox box_;
