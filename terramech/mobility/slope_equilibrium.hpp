@@ -11,7 +11,7 @@
 /// its wheels hold it.
 namespace talus::terramech {
 
-class RefinedModel;
+struct RefinedModel;
 
 /// The plane as the way over it sees it: rise over horizontal run [-].
 struct Gradient {
