@@ -1,9 +1,15 @@
+#include <algorithm>
 #include <array>
 #include <cinttypes>
 #include <cmath>
 #include <cstdio>
+#include <functional>
+#include <iterator>
 #include <limits>
+#include <set>
+#include <stdexcept>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -40,6 +46,27 @@ void add(const terramech::Telemetry& telemetry, Checksum& sum) {
     for (const auto& column : telemetry.words) sum.add(column.values[i].c_str(), column.values[i].size() + 1);
   }
   addRejected(std::numeric_limits<std::size_t>::max());
+}
+
+// Rows behind those that are known, column by column; what either lacks is empty.
+void append(terramech::Telemetry& all, const terramech::Telemetry& part) {
+  const std::size_t before = all.size(), after = before + part.size();
+  const auto join = [&](auto& to, const auto& from, const auto& none) {
+    for (const auto& column : from) {
+      auto known = std::ranges::find(to, column.name, [](const auto& c) { return c.name; });
+      if (known == to.end()) {
+        to.push_back({column.name, {}});
+        known = std::prev(to.end());
+      }
+      known->values.resize(before, none);
+      known->values.insert(known->values.end(), column.values.begin(), column.values.end());
+    }
+    for (auto& column : to) column.values.resize(after, none);
+  };
+  join(all.numbers, part.numbers, std::numeric_limits<double>::quiet_NaN());
+  join(all.words, part.words, std::string());
+  all.source = part.source;
+  all.lines.insert(all.lines.end(), part.lines.begin(), part.lines.end());
 }
 
 DrivenBy wheelOf(const terramech::Rover& rover) {
@@ -82,30 +109,51 @@ struct DriveIntake::State {
   TraversabilityMap& map;
   EvidenceJournal* journal;
   IntakeOptions options;
-  TelemetryProcessor processor;
+  std::unique_ptr<TelemetryProcessor> processor;
   DriveReport report{};
   Checksum sum{};                  // of the parts so far
   std::string id{};                // by that
   std::vector<JournalRow> rows{};  // of a part
+  // Of all parts, where they may be settled: what was read, what the map counted of it, which of it bounds a place, and what
+  // rejected rows said.
+  using Place = std::tuple<double, double, double>;
+  terramech::Telemetry all{};
+  std::vector<SavedBlock> counted{};
+  std::set<Place> bounded{};
+  std::vector<JournalRow> of_rejected{};
 
+  static Place placeOf(const WheelObservation& observation);
+  void keep(const WheelObservation& observation);
+  void settle();
+  using Take = std::function<bool(const WheelObservation&)>;
   void learn(const terramech::Telemetry& telemetry, const TelemetryRows& readings, std::size_t i,
-             TelemetryProcessor::Result&& result);
+             TelemetryProcessor::Result&& result, const Take& take);
   void put(const terramech::Telemetry& telemetry, const DriveVerdict& verdict);
   void hearRejected(const terramech::Telemetry& telemetry);
 };
 
+DriveIntake::State::Place DriveIntake::State::placeOf(const WheelObservation& observation) {
+  return {observation.time_s, observation.place.x_m, observation.place.y_m};
+}
+
+void DriveIntake::State::keep(const WheelObservation& observation) {
+  if (auto heard = map.evidence().heardOf(observation)) counted.push_back(std::move(*heard));
+  if (observation.here.any()) bounded.insert(placeOf(observation));
+}
+
 void DriveIntake::State::learn(const terramech::Telemetry& telemetry, const TelemetryRows& readings,
-                               std::size_t i, TelemetryProcessor::Result&& result) {
+                               std::size_t i, TelemetryProcessor::Result&& result, const Take& take) {
   const std::string wrong = result.observation ? fault(*result.observation) : "";
   if (!wrong.empty()) {
     result.reason = wrong;
     result.observation = boundAlone(*result.observation);
   }
   bool accepted = result.observation.has_value() && fault(*result.observation).empty();
-  if (accepted && !map.learn(*result.observation)) {
+  if (accepted && !take(*result.observation)) {
     accepted = false;
     if (result.reason.empty()) result.reason = "no ground to learn about there";
   }
+  if (accepted && options.settles) keep(*result.observation);
   JournalRow row{.source = telemetry.source,
                  .line = static_cast<std::int64_t>(telemetry.lines[i]),
                  .accepted = accepted,
@@ -126,13 +174,43 @@ void DriveIntake::State::put(const terramech::Telemetry& telemetry, const DriveV
   costmap::add(telemetry, sum);
   id = hexadecimal(sum);
   rows.clear();
-  processRows(readings, map, processor, verdict, [&](std::size_t i, TelemetryProcessor::Result&& result) {
-    learn(telemetry, readings, i, std::move(result));
+  processRows(readings, map, *processor, verdict, [&](std::size_t i, TelemetryProcessor::Result&& result) {
+    learn(telemetry, readings, i, std::move(result),
+          [&](const WheelObservation& observation) { return map.learn(observation); });
   });
+  if (options.settles) append(all, telemetry);
+  const std::size_t read = rows.size();
   hearRejected(telemetry);
+  if (options.settles)
+    of_rejected.insert(of_rejected.end(), rows.begin() + static_cast<std::ptrdiff_t>(read), rows.end());
   report.unobserved += map.refused().size() - refused;
   if (journal) journal->append(id, rows, before);
   map.noteDrive(id, before);
+}
+
+// What a drive's first rows taught is forgotten only as far as all rows say it otherwise: bounds stay as they were heard.
+void DriveIntake::State::settle() {
+  if (!options.settles)
+    throw std::logic_error("DriveIntake: IntakeOptions::settles = false, must be true to settle");
+  const TelemetryRows readings(all, map, options.pose_std_m);
+  TelemetryProcessor first_pass(map);
+  processRows(readings, map, first_pass, {}, [](std::size_t, TelemetryProcessor::Result&&) {});
+  for (const SavedBlock& block : std::exchange(counted, {})) map.forget(block);
+  const auto takeAgain = [&](const WheelObservation& observation) {
+    WheelObservation estimate = observation;
+    estimate.here = {};
+    return map.learn(estimate) || bounded.contains(placeOf(observation));
+  };
+  processor = std::make_unique<TelemetryProcessor>(map);
+  report.used = report.raising = report.rejected = 0;
+  report.first_reason.clear();
+  rows.clear();
+  processRows(readings, map, *processor, first_pass.verdict(),
+              [&](std::size_t i, TelemetryProcessor::Result&& result) {
+                learn(all, readings, i, std::move(result), takeAgain);
+              });
+  rows.insert(rows.end(), of_rejected.begin(), of_rejected.end());
+  if (journal) journal->replace(id, rows);
 }
 
 // Rows that the file's reader left out: what each of their numbers says of danger by itself.
@@ -143,7 +221,7 @@ void DriveIntake::State::hearRejected(const terramech::Telemetry& telemetry) {
     return;
   const TelemetryRows readings(left, map, options.pose_std_m);
   for (std::size_t i = 0; i < readings.size(); ++i) {
-    const auto heard = processor.rejected(readings, i);
+    const auto heard = processor->rejected(readings, i);
     if (!heard || !map.learn(*heard)) continue;
     ++report.heard;
     rows.push_back({.source = telemetry.source,
@@ -157,22 +235,27 @@ void DriveIntake::State::hearRejected(const terramech::Telemetry& telemetry) {
 }
 
 DriveIntake::DriveIntake(TraversabilityMap& map, EvidenceJournal* journal, const IntakeOptions& options)
-    : state_(std::make_unique<State>(State{map, journal, options, TelemetryProcessor(map)})) {}
+    : state_(
+          std::make_unique<State>(State{map, journal, options, std::make_unique<TelemetryProcessor>(map)})) {}
 
 DriveIntake::~DriveIntake() = default;
 
 void DriveIntake::add(const terramech::Telemetry& telemetry) {
-  state_->put(telemetry, state_->processor.verdict());
+  state_->put(telemetry, state_->processor->verdict());
+}
+
+void DriveIntake::settle() {
+  state_->settle();
 }
 
 DriveReport DriveIntake::report() const {
   DriveReport report = state_->report;
-  report.findings = state_->processor.watch().findings();
-  if (const std::size_t rows = state_->processor.transferred(); rows > 0)
+  report.findings = state_->processor->watch().findings();
+  if (const std::size_t rows = state_->processor->transferred(); rows > 0)
     report.findings.push_back(std::to_string(rows) +
                               " rows: load_N is an equal share of the weight on a slope; the load transfer "
                               "was computed from the wheel positions");
-  report.others = state_->processor.others();
+  report.others = state_->processor->others();
   if (report.others > 0) report.findings.push_back(othersFinding(report.others));
   if (report.heard > 0)
     report.findings.push_back(std::to_string(report.heard) +

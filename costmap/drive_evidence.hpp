@@ -29,6 +29,8 @@ struct DriveReport {
 struct IntakeOptions {
   double pose_std_m =
       0.5;  ///< how well places are known where there is no column pose_std_m, one standard deviation
+  /// Whether a DriveIntake keeps its rows, of some 400 bytes each, so that it can settle().
+  bool settles = false;
 };
 
 /// The id of a drive: a checksum of its rows' values as 16 hexadecimal digits, whatever the file is called.
@@ -36,8 +38,9 @@ std::string driveId(const terramech::Telemetry& telemetry);
 
 /// Puts telemetry into a map while it comes in, part by part: what the sensors' watch knows is kept from one
 /// part to the next. A part holds whole moments: all wheels that were read at one time. Where addDrive() sees
-/// a whole drive first, here a bias of torque or sinkage counts from the part after it shows. Planners see
-/// what was learned after map.publish(). Not thread-safe.
+/// a whole drive first, here what proves a sensor counts from the row after it shows, and a bias of torque or sinkage from the
+/// part after: rows before that only lower, and estimates may lie on either side of addDrive()'s. settle() makes them the same.
+/// Planners see what was learned after map.publish(). Not thread-safe.
 class DriveIntake {
  public:
   /// Both are kept by reference; `journal` may be null.
@@ -49,6 +52,10 @@ class DriveIntake {
 
   /// Columns and errors as addDrive().
   void add(const terramech::Telemetry& telemetry);
+  /// Judges all rows so far again by what all of them say of the sensors, and puts what they teach then in the place of what
+  /// each part taught, in the map and the journal: to the bit what addDrive() learns of the same rows. It takes as long as
+  /// addDrive(). Throws std::logic_error unless IntakeOptions::settles.
+  void settle();
   /// Of all parts so far.
   DriveReport report() const;
 

@@ -78,24 +78,42 @@ std::vector<ReadingCount> EvidenceBricks::counts(const BlockLevel& block) const 
   return out;
 }
 
+std::uint64_t EvidenceBricks::orderOf(const Heard& heard) noexcept {
+  return static_cast<std::uint64_t>(heard.block) << 16 | static_cast<unsigned>(heard.reading.kind) << 8 |
+         heard.reading.step;
+}
+
+// Where a count stands, or would.
+std::vector<EvidenceBricks::Heard>::iterator EvidenceBricks::placeOf(std::vector<Heard>& heard,
+                                                                     const Heard& one) {
+  return std::lower_bound(heard.begin(), heard.end(), orderOf(one),
+                          [](const Heard& h, std::uint64_t key) { return orderOf(h) < key; });
+}
+
+void EvidenceBricks::uncount(const BlockLevel& block, const ReadingCount& reading) {
+  auto& heard = bricks_[brickOf(block.column, block.row)].heard;
+  const Heard taken{keyOf(block), reading};
+  const auto found = placeOf(heard, taken);
+  if (found == heard.end() || orderOf(*found) != orderOf(taken)) return;
+  std::uint16_t& count = found->reading.count;
+  if (count == std::numeric_limits<std::uint16_t>::max()) return;
+  count = static_cast<std::uint16_t>(count - std::min(count, reading.count));
+  if (count == 0) heard.erase(found);
+}
+
 void EvidenceBricks::count(const BlockLevel& block, const ReadingCount& reading) {
   auto& heard = bricks_[brickOf(block.column, block.row)].heard;
-  const auto order = [](const Heard& h) {
-    return static_cast<std::uint64_t>(h.block) << 16 | static_cast<unsigned>(h.reading.kind) << 8 |
-           h.reading.step;
-  };
   const Heard added{keyOf(block), reading};
-  auto found = std::lower_bound(heard.begin(), heard.end(), order(added),
-                                [&](const Heard& h, std::uint64_t key) { return order(h) < key; });
-  if (found != heard.end() && order(*found) == order(added)) {
+  const auto found = placeOf(heard, added);
+  if (found != heard.end() && orderOf(*found) == orderOf(added)) {
     const unsigned sum = found->reading.count + static_cast<unsigned>(reading.count);
     found->reading.count =
         static_cast<std::uint16_t>(std::min<unsigned>(sum, std::numeric_limits<std::uint16_t>::max()));
     return;
   }
-  const auto place = found - heard.begin();
+  const auto at = found - heard.begin();
   makeRoom(heard);
-  heard.insert(heard.begin() + place, added);
+  heard.insert(heard.begin() + at, added);
 }
 
 void EvidenceBricks::visitLevels(int column, int row, const Visit& visit) const {

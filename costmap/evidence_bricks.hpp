@@ -32,6 +32,8 @@ class EvidenceBricks {
   std::vector<ReadingCount> counts(const BlockLevel& block) const;
   /// Adds so many readings of a kind and value to a block that at() made.
   void count(const BlockLevel& block, const ReadingCount& reading);
+  /// Takes them off a block that at() made; nothing where there are none. A count that stopped at 65535 stays.
+  void uncount(const BlockLevel& block, const ReadingCount& reading);
 
   using Visit = std::function<void(const BlockLevel&, const BlockEvidence&)>;
 
@@ -60,6 +62,8 @@ class EvidenceBricks {
     return column >= 0 && row >= 0 && column < columns_ && row < rows_;
   }
   std::size_t brickOf(int column, int row) const noexcept;
+  static std::uint64_t orderOf(const Heard& heard) noexcept;
+  static std::vector<Heard>::iterator placeOf(std::vector<Heard>& heard, const Heard& one);
 
   int columns_, rows_;
   int brick_columns_;

@@ -116,12 +116,13 @@ std::optional<float> EvidenceField::squareStrength(const IndependentPlaces::Squa
 }
 
 // Takes readings into a block, and what it then says into the lessons of its class. The cells whose belief that may change.
-maps::CellBox EvidenceField::hear(const BlockLevel& where, const SavedBlock& heard) {
+maps::CellBox EvidenceField::hear(const BlockLevel& where, const SavedBlock& heard, Count how) {
   const int class_index = site_->model->classIndex(where.terrain_class);
   ClassLessons& lessons = store_->lessons[static_cast<std::size_t>(class_index)];
   if (const BlockEvidence* known = store_->bricks.find(where))
     if (const auto before = lessonOf(*known, class_index)) lessons.remove(*before);
-  for (const ReadingCount& reading : heard.heard) store_->bricks.count(where, reading);
+  for (const ReadingCount& reading : heard.heard)
+    how == Count::Add ? store_->bricks.count(where, reading) : store_->bricks.uncount(where, reading);
   BlockEvidence& block = store_->bricks.at(where);
   block.updated_s = std::max(block.updated_s, heard.updated_s);
   block.reach = std::max(block.reach, heard.reach);
@@ -130,8 +131,8 @@ maps::CellBox EvidenceField::hear(const BlockLevel& where, const SavedBlock& hea
             {site_->model->prior(class_index).pull.value, groundOf(class_index).pull_std}, block);
   const maps::CellBox reached = patchesReachedFrom(where, block.reach_m());
   const auto lesson = lessonOf(block, class_index);
-  if (!lesson) return reached;
-  lessons.add(*lesson);
+  if (!lesson && how == Count::Add) return reached;
+  if (lesson) lessons.add(*lesson);
   const IndependentPlaces::Square square{where.column / store_->blocks.reach(),
                                          where.row / store_->blocks.reach()};
   lessons.places().set(square, squareStrength(square, class_index));
@@ -158,6 +159,20 @@ bool EvidenceField::standsOnOneClass(const WheelObservation& observation, int cl
 }
 
 std::optional<maps::CellBox> EvidenceField::add(const WheelObservation& observation) {
+  const auto heard = heardOf(observation);
+  return heard ? std::optional(hear(heard->block, *heard)) : std::nullopt;
+}
+
+std::optional<maps::CellBox> EvidenceField::forget(const SavedBlock& heard) {
+  if (!store_->bricks.find(heard.block)) return std::nullopt;
+  SavedBlock estimates = heard;
+  std::erase_if(estimates.heard, [](const ReadingCount& c) {
+    return c.kind == reading_kind::kMostPullHere || c.kind == reading_kind::kLeastSinkageHere;
+  });
+  return hear(estimates.block, estimates, Count::TakeOff);
+}
+
+std::optional<SavedBlock> EvidenceField::heardOf(const WheelObservation& observation) const {
   const maps::Grid& grid = site_->grid();
   const auto cell = grid.cellAt(observation.place);
   if (!cell || std::isnan(site_->elevation.elevation_m[*cell])) return std::nullopt;
@@ -180,7 +195,7 @@ std::optional<maps::CellBox> EvidenceField::add(const WheelObservation& observat
   if (observation.estimates()) heard.heard.push_back(pullReading(pull, raises, observation.shared_std));
   if (std::isfinite(observation.sinkage.std))
     heard.heard.push_back(sinkageReading(observation.sinkage.value, sure && observation.sinkage_may_raise));
-  return hear(heard.block, heard);
+  return heard;
 }
 
 void EvidenceField::visit(const std::function<void(const SavedBlock&)>& visit) const {

@@ -58,6 +58,11 @@ class EvidenceField {
   /// all patches of blocks that it can reach; nothing when the place is outside the map, has no elevation or class, or
   /// lies in a block that was first driven on ground of another class.
   std::optional<maps::CellBox> add(const WheelObservation& observation);
+  /// The counts that an observation goes into, and where, while the ground is as it is; nothing where add() has none.
+  std::optional<SavedBlock> heardOf(const WheelObservation& observation) const;
+  /// Takes the pulls and sinkages of counts that were added off again; bounds of the place stay. Nothing where the block has
+  /// no evidence.
+  std::optional<maps::CellBox> forget(const SavedBlock& heard);
 
   static constexpr int kPatchBlocks = 8;
 
@@ -143,7 +148,8 @@ class EvidenceField {
   BlockLevel topOf(maps::Cell cell, int class_index) const noexcept;
   BlockLevel levelOf(maps::Cell cell, const Floor& floor) const;
   bool standsOnOneClass(const WheelObservation& observation, int class_index) const;
-  maps::CellBox hear(const BlockLevel& where, const SavedBlock& heard);
+  enum class Count { Add, TakeOff };
+  maps::CellBox hear(const BlockLevel& where, const SavedBlock& heard, Count how = Count::Add);
   maps::CellBox patchesReachedFrom(const BlockLevel& block, double reach_m);
   maps::CellBox cellsOf(const maps::CellBox& blocks) const noexcept;
   std::optional<BlockLesson> lessonOf(const BlockEvidence& block, int class_index) const;

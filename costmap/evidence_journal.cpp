@@ -312,6 +312,24 @@ void EvidenceJournal::append(const std::string& drive, const std::vector<Journal
     run("INSERT INTO drive(id) VALUES('')");
     entry = {.number = sqlite3_last_insert_rowid(database_.get()), .checksum = 0};
   }
+  write(entry, drive, rows);
+  if (own) own->commit();
+}
+
+void EvidenceJournal::replace(const std::string& drive, const std::vector<JournalRow>& rows) {
+  std::optional<Transaction> own;
+  if (sqlite3_get_autocommit(database_.get()) != 0) own.emplace(*this);
+  const Drive entry = find(drive);
+  if (entry.number == 0) return;
+  const auto taken = prepare("DELETE FROM evidence WHERE drive = ?");
+  sqlite3_bind_int64(taken.get(), 1, entry.number);
+  if (sqlite3_step(taken.get()) != SQLITE_DONE) fail();
+  write({.number = entry.number, .checksum = 0}, drive, rows);
+  if (own) own->commit();
+}
+
+// Rows behind those that the drive has, and its id with them.
+void EvidenceJournal::write(Drive entry, const std::string& id, const std::vector<JournalRow>& rows) {
   const std::int64_t before = single("SELECT ifnull(max(id), 0) FROM evidence");
   for (const JournalRow& row : rows) {
     bindRow(insert_.get(), row, entry.number);
@@ -321,11 +339,10 @@ void EvidenceJournal::append(const std::string& drive, const std::vector<Journal
   }
   if (entry.checksum) checksum(entry, before);
   const auto close = prepare("UPDATE drive SET id = ?, checksum = ? WHERE number = ?");
-  sqlite3_bind_text(close.get(), 1, drive.c_str(), -1, SQLITE_TRANSIENT);
+  sqlite3_bind_text(close.get(), 1, id.c_str(), -1, SQLITE_TRANSIENT);
   if (entry.checksum) sqlite3_bind_int64(close.get(), 2, static_cast<std::int64_t>(*entry.checksum));
   sqlite3_bind_int64(close.get(), 3, entry.number);
   if (sqlite3_step(close.get()) != SQLITE_DONE) fail();
-  if (own) own->commit();
 }
 
 std::vector<std::string> EvidenceJournal::drives() const {

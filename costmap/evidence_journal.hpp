@@ -67,6 +67,9 @@ class EvidenceJournal {
   void append(const std::string& drive, const std::vector<JournalRow>& rows,
               const std::string& continued = {});
 
+  /// Puts rows in the place of those of a drive that the journal holds, in a transaction of its own where none is open.
+  void replace(const std::string& drive, const std::vector<JournalRow>& rows);
+
   /// Ids of its drives, in the order in which they were appended.
   std::vector<std::string> drives() const;
 
@@ -90,6 +93,7 @@ class EvidenceJournal {
   void adopt();
   struct Drive;
   Drive find(const std::string& id) const;
+  void write(Drive entry, const std::string& id, const std::vector<JournalRow>& rows);
   void checksum(Drive& drive, std::int64_t after) const;
   std::int64_t single(const char* sql) const;
   [[noreturn]] void fail() const;

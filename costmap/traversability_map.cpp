@@ -200,6 +200,11 @@ bool TraversabilityMap::learn(const WheelObservation& observation) {
   return range.has_value() || (observation.here.any() && refuseUnobserved(observation));
 }
 
+void TraversabilityMap::forget(const SavedBlock& heard) {
+  const MapChange change(*published_, "forget");
+  if (const auto range = field_.forget(heard)) learned_ = joined(std::move(learned_), *range);
+}
+
 // In blocks, so that a wheel that spins on the spot is one place.
 bool TraversabilityMap::refuseUnobserved(const WheelObservation& observation) {
   const double side_m = field_.blockCells() * grid().resolution_m;

@@ -111,6 +111,9 @@ class TraversabilityMap {
   /// patched in later: a block and two standard deviations of the pose around. False when the place has no
   /// ground to learn about.
   bool learn(const WheelObservation& observation);
+  /// Takes the pulls and sinkages of what was learned off again, as evidence().heardOf() gave them then, where something else
+  /// is to count in their place; bounds of the place stay. Planners see it after publish().
+  void forget(const SavedBlock& heard);
   /// Puts saved evidence of a block back, as read from a file; planners see it after publish(). False when the map has
   /// no such block or class.
   bool restore(const SavedBlock& saved);

@@ -13,7 +13,8 @@ namespace talus::planner {
 
 /// What a session of the C interface holds. `work` is held while a call changes or reads it.
 struct Session {
-  explicit Session(costmap::TraversabilityMap built) : map(std::move(built)), intake(map) {}
+  explicit Session(costmap::TraversabilityMap built)
+      : map(std::move(built)), intake(map, nullptr, {.settles = true}) {}
 
   costmap::TraversabilityMap map;
   costmap::DriveIntake intake;

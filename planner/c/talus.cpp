@@ -259,6 +259,15 @@ talus_code talus_learn(talus_session session, const talus_wheel* rows, size_t co
   });
 }
 
+talus_code talus_settle(talus_session session, talus_error* error) {
+  return guarded(error, [&] {
+    const Held held(session);
+    held->intake.settle();
+    held->map.publish();
+    return TALUS_OK;
+  });
+}
+
 talus_code talus_plan(talus_session session, const talus_request* request, talus_summary* summary,
                       talus_error* error) {
   return guarded(error, [&] {

@@ -159,8 +159,13 @@ TALUS_API talus_code talus_read_grid(talus_session session, talus_grid* grid, ta
 /* New ground in a window on the map's cells; what is NaN, or class 255, stays as it is. */
 TALUS_API talus_code talus_patch(talus_session session, const talus_grid* grid, const talus_layers* layers, talus_error* error);
 
-/* Wheel telemetry, whole moments in order of time. `used` (may be NULL): rows that taught something. */
+/* Wheel telemetry, whole moments in order of time. `used` (may be NULL): rows that taught something. A session keeps its rows, of
+   some 400 bytes each, until it is moved or destroyed. */
 TALUS_API talus_code talus_learn(talus_session session, const talus_wheel* rows, size_t count, size_t* used, talus_error* error);
+
+/* Judges all rows since the session began or was moved again, by what all of them say of the sensors: the map is then that of
+   one file of these rows (`talus update`). It takes as long as they took to learn. Once a stop, or before a plan that matters. */
+TALUS_API talus_code talus_settle(talus_session session, talus_error* error);
 
 /* A route over all that is known now; it stays to be read until the next plan. `summary` may be NULL. */
 TALUS_API talus_code talus_plan(talus_session session, const talus_request* request, talus_summary* summary, talus_error* error);

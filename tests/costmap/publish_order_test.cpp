@@ -6,6 +6,7 @@
 #include <optional>
 #include <random>
 #include <utility>
+#include <vector>
 
 #include <site_map.hpp>
 
@@ -27,6 +28,7 @@ struct Case {
   double pull_spread = 0.15;  // of the readings
   bool costs = false;         // a layer of joules
   bool runs_out = false;      // of curves
+  bool forgets = false;       // some of what was learned
   DrivePolicy policy{};
 };
 
@@ -39,6 +41,7 @@ class Sequence {
   void run();
   int compared() const { return compared_; }
   int drivable() const { return drivable_; }
+  int forgotten() const { return forgotten_; }
 
  private:
   double uniform(double low, double high) {
@@ -60,7 +63,8 @@ class Sequence {
   Case how_;
   std::mt19937 random_;
   std::optional<TraversabilityMap> map_;
-  int compared_ = 0, drivable_ = 0;
+  std::vector<SavedBlock> counted_;
+  int compared_ = 0, drivable_ = 0, forgotten_ = 0;
 };
 
 MapLayers Sequence::layers() {
@@ -105,9 +109,17 @@ WheelObservation Sequence::reading(const maps::Point& place) {
 }
 
 void Sequence::drive() {
+  if (how_.forgets && whole(0, 2) == 0)
+    for (const SavedBlock& heard : std::exchange(counted_, {})) {
+      map_->forget(heard);
+      ++forgotten_;
+    }
   maps::Point at = anywhere();
   for (int k = whole(1, how_.most_readings); k > 0; --k) {
-    map_->learn(reading(at));
+    const WheelObservation seen = reading(at);
+    if (const auto heard = map_->evidence().heardOf(seen); heard && how_.forgets && whole(0, 1) == 0)
+      counted_.push_back(*heard);
+    map_->learn(seen);
     at = {at.x_m + uniform(-0.5, 1.5), at.y_m + uniform(-0.5, 1.0)};
   }
 }
@@ -175,7 +187,10 @@ void Sequence::run() {
   for (int round = 0; round < how_.rounds && !testing::Test::HasFatalFailure(); ++round) {
     const int what = whole(0, 9);
     if (what == 0) map_->refuse(anywhere(), uniform(0.3, 1.5));
-    if (what == 1) map_.emplace(map_->moved({whole(-1, 1), 0}));
+    if (what == 1) {
+      map_.emplace(map_->moved({whole(-1, 1), 0}));
+      counted_.clear();
+    }
     if (what < 9) drive();
     if (what == 2 || what == 9)
       patch();
@@ -194,6 +209,18 @@ void runAll(Case how, unsigned seeds) {
     drivable += sequence.drivable();
   }
   EXPECT_GT(drivable, 10000);
+}
+
+// Property: also where some of what was learned is forgotten again.
+TEST(PublishOrder, EqualsAllAtOnceWhereReadingsAreForgotten) {
+  int forgotten = 0;
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    Sequence sequence({.seed = seed, .levels = seed == 4, .forgets = true});
+    sequence.run();
+    if (testing::Test::HasFatalFailure()) return;
+    forgotten += sequence.forgotten();
+  }
+  EXPECT_GT(forgotten, 20);
 }
 
 // Property: whatever was learned, patched, refused and moved, in pieces of any size, the costs are bit for bit those of the

@@ -161,7 +161,11 @@ static void learnsFromWheels(void) {
   CHECK(talus_read_cells(session, 20, 20, 1, 1, &after, 1, &error) == TALUS_OK);
   CHECK(after.pull_mean < before.pull_mean && after.sinkage_mean > before.sinkage_mean);
   REFUSED(talus_learn(session, NULL, 1, &used, &error), "rows is NULL");
+  CHECK(talus_settle(session, &error) == TALUS_OK); /* of one wheel that never climbed nothing is proven: no change */
+  CHECK(talus_read_cells(session, 20, 20, 1, 1, &before, 1, &error) == TALUS_OK);
+  CHECK(memcmp(&before, &after, sizeof after) == 0);
   CHECK(talus_destroy(session, &error) == TALUS_OK);
+  REFUSED(talus_settle(session, &error), "is not open");
 }
 
 /* A layer refuses a wall and makes the rest dearer; what a layer cannot be is one line. */
