@@ -83,7 +83,7 @@ bool isOf(const terramech::Rover& rover, const DrivenBy& wheel) {
 
 std::string unobservedFinding(std::size_t places) {
   return std::to_string(places) +
-         " places refused: wheels indicate danger where the map has no elevation or class";
+         " places refused: wheels indicate danger where the map has no terrain class";
 }
 
 std::string othersFinding(std::size_t rows) {

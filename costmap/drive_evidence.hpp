@@ -19,7 +19,7 @@ struct DriveReport {
   std::size_t repeated = 0;  ///< rows of a drive that the map holds already: counted once
   std::size_t heard = 0;     ///< rows that the file's reader rejected, yet point to danger
   std::size_t unobserved =
-      0;  ///< places refused, since wheels point to danger where the map has no elevation or class
+      0;  ///< places refused, since wheels point to danger where the map has no terrain class
   std::size_t others = 0;    ///< rows of another wheel or load than the map's rover's: they raise nothing
   std::string first_reason;  ///< of the first row rejected; empty when none was
   std::vector<std::string> findings;  ///< what the sensors' watch saw, a line each

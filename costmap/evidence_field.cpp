@@ -175,7 +175,7 @@ std::optional<maps::CellBox> EvidenceField::forget(const SavedBlock& heard) {
 std::optional<SavedBlock> EvidenceField::heardOf(const WheelObservation& observation) const {
   const maps::Grid& grid = site_->grid();
   const auto cell = grid.cellAt(observation.place);
-  if (!cell || std::isnan(site_->elevation.elevation_m[*cell])) return std::nullopt;
+  if (!cell) return std::nullopt;
   const auto floor = site_->floorAt(*cell, observation.z_m);
   const int class_index = floor ? 0 : site_->classIndex(*cell);
   if (class_index < 0 || !(observation.estimates() || observation.here.any())) return std::nullopt;

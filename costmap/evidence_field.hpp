@@ -55,7 +55,7 @@ class EvidenceField {
   EvidenceField& operator=(EvidenceField&&) noexcept;
 
   /// Takes an observation in and returns the cells whose belief it may change while the classes keep their states: those of
-  /// all patches of blocks that it can reach; nothing when the place is outside the map, has no elevation or class, or
+  /// all patches of blocks that it can reach; nothing when the place is outside the map, has no class, or
   /// lies in a block that was first driven on ground of another class.
   std::optional<maps::CellBox> add(const WheelObservation& observation);
   /// The counts that an observation goes into, and where, while the ground is as it is; nothing where add() has none.

@@ -106,7 +106,8 @@ class TraversabilityMap {
   /// What the wheels told so far.
   const EvidenceField& evidence() const noexcept { return field_; }
 
-  /// Takes an observation in; planners see it after publish(). What points to danger where the map has no elevation or no
+  /// Takes an observation in; planners see it after publish(). Ground whose class is known learns before its height is
+  /// seen: patched in later it is what a map that began with it believes. What points to danger where the map has no
   /// class, or beyond its edge by less than the error of the pose, refuses that place as refuse() does, whatever is
   /// patched in later: a block and two standard deviations of the pose around. False when the place has no
   /// ground to learn about.

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <random>
 #include <string>
 #include <thread>
 
@@ -194,6 +195,64 @@ TEST(SurfacePatch, BeginsAMapThatNobodyHasSeen) {
   EXPECT_DOUBLE_EQ(map.keys().baseElevation_m(), -4500.0);
   patch.elevation_m = maps::Raster<float>(grid, 4500.0F);
   EXPECT_NE(refusal(map, patch).find("within 1638.35 m of -4500 m"), std::string::npos);
+}
+
+// Of ground of its class, weaker and stronger, of which some holds a wheel.
+WheelObservation anywhere(std::mt19937_64& random) {
+  const auto between = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  WheelObservation seen{.time_s = 1.0,
+                        .place = {between(10.0, 30.0), between(20.0, 35.0)},
+                        .pull = {between(-0.1, 0.4), 0.05},
+                        .sinkage = {between(0.0, 0.3), 0.05}};
+  seen.shared_std = 0.03;
+  seen.pull_may_raise = seen.sinkage_may_raise = random() % 2 == 0;
+  seen.pose_std_m = random() % 2 == 0 ? 0.0 : 0.4;
+  if (random() % 8 == 0) seen.here.most_pull = between(-0.2, 0.1);
+  if (random() % 8 == 0) seen.here.least_sinkage = between(0.5, 1.0);
+  return seen;
+}
+
+// Property: what wheels read on ground of a known class before its heights are seen counts once they are, beside that
+// ground and on it, as on a map that began with the heights; likewise where the map began with none.
+TEST(SurfacePatch, OfGroundThatWasDrivenBeforeItWasSeenLosesNoEvidence) {
+  for (unsigned seed = 0; seed < 12; ++seed) {
+    std::mt19937_64 random(seed);
+    MapLayers whole = flat();
+    for (int row = 0; row < kMap.height; ++row)
+      for (int column = 0; column < kMap.width; ++column)
+        whole.elevation.elevation_m[{column, row}] = 3.0F + 0.05F * static_cast<float>((column * row) % 3);
+    MapLayers unseen = whole;
+    SurfacePatch rest;
+    rest.elevation_m = whole.elevation.elevation_m;
+    for (int row = 0; row < kMap.height; ++row)
+      for (int column = seed % 3 == 0 ? 0 : 15; column < kMap.width; ++column)
+        unseen.elevation.elevation_m[{column, row}] = NAN;
+    TraversabilityMap begun(std::move(whole), testGround({.allow_unknown = seed % 2 == 0}), {});
+    TraversabilityMap patched(std::move(unseen), testGround({.allow_unknown = seed % 2 == 0}), {});
+    for (int i = 0; i < 60; ++i) {
+      const WheelObservation seen = anywhere(random);
+      EXPECT_TRUE(begun.learn(seen));
+      EXPECT_TRUE(patched.learn(seen));
+      if (i % 20 == 0) patched.publish();
+    }
+    begun.publish();
+    patched.publish();
+    patched.patch(rest);
+    for (int row = 0; row < kMap.height; ++row)
+      for (int column = 0; column < kMap.width; ++column) {
+        const maps::Cell cell{column, row};
+        ASSERT_EQ(patched.ground(cell)->pull.value, begun.ground(cell)->pull.value) << seed;
+        ASSERT_EQ(patched.ground(cell)->sinkage.value, begun.ground(cell)->sinkage.value) << seed;
+        ASSERT_EQ(patched.category(cell), begun.category(cell)) << seed;
+        const auto a = patched.published(), b = begun.published();
+        for (const Direction heading : {Direction{1.0, 0.0}, {0.6, -0.8}, {0.0, 1.0}})
+          ASSERT_EQ(a->cost().costPerMetre(a->at(cell), heading),
+                    b->cost().costPerMetre(b->at(cell), heading))
+              << seed << ' ' << column << ' ' << row;
+      }
+  }
 }
 
 // Two threads: each patch lands whole or is refused because the other thread changes the map; after all of them
