@@ -182,14 +182,15 @@ int run(const AssessCommand& options, Context& context) {
                  " describes a sensor error; assess gives the true drawbar pull and leaves this effect out "
                  "(talus predict includes it)");
   }
+  const Applicability applies =
+      tableApplicability(options.table, options.model, options.rover, context.watch("checking the model"));
+  if (context.stop.stop_requested()) return Exit::kCancelled;
   if (!options.html.empty()) writePage(options, table.rows);
   if (context.json) {
     printJson(jsonOf(table.rows, options.reference_slip));
   } else {
     print(textOf(options, table.rows));
   }
-  const Applicability applies =
-      tableApplicability(options.table, options.model, options.rover, context.watch("checking the model"));
   if (applies.applies) return Exit::kDone;
   context.warn(options.table + ": the model does not apply: " + applies.reason);
   return Exit::kNo;

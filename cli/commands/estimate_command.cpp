@@ -273,11 +273,12 @@ int run(const EstimateCommand& options, Context& context) {
   for (const std::string& text : estimate.unseen) context.warn("ill-conditioned: " + text);
   if (const std::string why = estimate.implausible(); !why.empty()) context.warn(why);
   for (const std::string& text : estimate.warnings) context.warn(text);
-  if (!options.html.empty()) writePage(options, estimate);
   const Applicability applies = options.method == "bevameter"
                                     ? Applicability{}
                                     : tableApplicability(options.table, options.model, options.rover,
                                                          context.watch("checking the model"));
+  if (context.stop.stop_requested()) return Exit::kCancelled;
+  if (!options.html.empty()) writePage(options, estimate);
   if (!applies.applies) context.warn(options.table + ": the model does not apply: " + applies.reason);
   if (context.json) {
     Json json = jsonOf(options.method, estimate);

@@ -134,7 +134,8 @@ void writeFiles(const PlanOptions& options, const Ground& ground, const Route& r
   }
   if (options.html.empty() && options.png.empty()) return;
   const std::string name = std::filesystem::path(ground.map.elevation().source).filename().string();
-  Scene scene = sceneOf(ground.map, {.title = "Route across " + name});
+  const std::string cut = route.interrupted ? " (interrupted: best route so far)" : "";
+  Scene scene = sceneOf(ground.map, {.title = "Route across " + name + cut});
   addRoute(scene, route);
   if (!options.png.empty()) savePicture(options.png, scene);
   if (!options.html.empty()) savePage(options.html, scene);
@@ -255,7 +256,7 @@ void drawSevered(const PlanOptions& options, const Planned& planned) {
 // What is done with a plan, whichever way it was made.
 int finish(const PlanOptions& options, const Planned& planned, const planner::AnnotationInput& input,
            const Context& context) {
-  const Route route = annotated(planned.plan, input);
+  Route route = annotated(planned.plan, input);
   if (planned.plan.status == RouteStatus::Found)
     if (const auto refused =
             planner::refusal(planned.plan, *planned.problem.map, planned.problem.kinematics.turning_radius_m))
@@ -265,9 +266,14 @@ int finish(const PlanOptions& options, const Planned& planned, const planner::An
   writeFiles(options, planned.ground, route, context);
   const Timing seconds{planned.ground.load_s, planned.ground.build_s, planned.plan_s};
   if (context.json) {
+    nlohmann::ordered_json risk;
+    if (options.max_risk > 0.0) {
+      risk = riskJson(route, options, planned.problem);
+      route.interrupted |= context.stop.stop_requested();  // the numbers may be missing
+    }
     auto json = summaryJson(route);
     if (options.goals.size() > 1) json["goal"] = options.goals[planned.plan.goal];
-    if (options.max_risk > 0.0) json["risk"] = riskJson(route, options, planned.problem);
+    if (!risk.is_null()) json["risk"] = std::move(risk);
     json["seconds"] = {{"load", seconds.load_s}, {"costmap", seconds.costmap_s}, {"plan", seconds.plan_s}};
     printJson(json);
   } else {
@@ -299,11 +305,31 @@ int runInWindows(const PlanOptions& options, const Context& context) {
   const auto begin = std::chrono::steady_clock::now();
   planner::Plan plan = planner::planInWindows(problem, map);
   const double plan_s = since_s(begin);
+  if (context.stop.stop_requested() && plan.points.empty()) return Exit::kCancelled;
   const planner::AnnotationInput input{.map = *problem.map,
                                        .elevation_m = [&](maps::Point p) { return map.elevation_m(p); },
                                        .planner = options.planner,
                                        .watch = problem.watch};
   return finish(options, {std::move(overview), problem, std::move(plan), plan_s}, input, context);
+}
+
+// A stopped call has handed out what it has: what it still does, to free the memory of a large map, may be ended.
+void letEnd(const Context& context) {
+  std::fflush(stdout);
+  if (context.answers_stop) *context.answers_stop = false;
+}
+
+// Drawn of all prices or not at all.
+int drawPareto(const PlanOptions& options, const Planned& planned, Chosen& planner, const Context& context) {
+  const auto front = planner::paretoSet(planned.problem, *planner.own, kParetoSteps);
+  if (context.stop.stop_requested()) {
+    fmt::print(stderr, "talus: {} is not written: the Pareto set was cancelled; the route is whole\n",
+               oneLine(options.pareto));
+    letEnd(context);
+    return Exit::kCancelled;
+  }
+  saveParetoChart(options.pareto, front);
+  return Exit::kDone;
 }
 
 // A mission may come from elsewhere: of what exists, it replaces routes only.
@@ -321,12 +347,6 @@ void checkMissionOutput(const PlanOptions& options, const PlanOptions& asked, bo
   if (file && (file.read(start.data(), 200), start.find("\"Feature") == start.npos))
     throw InputError({options.output, "exists, is named by the mission alone and is no route",
                       "name it with -o, or pass --force"});
-}
-
-// A stopped call has handed out what it has: what it still does, to free the memory of a large map, may be ended.
-void letEnd(const Context& context) {
-  std::fflush(stdout);
-  if (context.answers_stop) *context.answers_stop = false;
 }
 
 int run(const PlanOptions& asked, Context& context) {
@@ -352,8 +372,7 @@ int run(const PlanOptions& asked, Context& context) {
                            .watch = planned.problem.watch},
                           context);
   if (code != Exit::kDone && context.stop.stop_requested()) letEnd(context);
-  if (code == Exit::kDone && !options.pareto.empty())
-    saveParetoChart(options.pareto, planner::paretoSet(planned.problem, *planner.own, kParetoSteps));
+  if (code == Exit::kDone && !options.pareto.empty()) return drawPareto(options, planned, planner, context);
   return code;
 }
 

@@ -81,6 +81,9 @@ Plan planOnChassis(const Problem& problem, const Chassis& chassis,
     }
     const auto violations = along(chassis, plan);
     if (violations.empty()) return plan;
+    if (problem.watch.stopped())
+      return refused(RouteStatus::Cancelled,
+                     "planning was cancelled before a route for the chassis was found");
     Cells closed;
     for (const Violation& violation : violations) {
       reason = violation.reason;

@@ -66,14 +66,22 @@ class RiskBoundedSearch {
     return true;
   }
 
+  // A search that a stop cut short has tried too few prices to say that none does.
   Plan result(double lower_bound_J) const {
+    const bool stopped = problem_.watch.stopped();
     if (best_) {
       Plan plan = *best_;
       plan.lower_bound_J = std::min(lower_bound_J, plan.cost_J);
+      plan.interrupted |= stopped;
       return plan;
     }
     if (failure_) return *failure_;
     Plan none;
+    if (stopped) {
+      none.status = RouteStatus::Cancelled;
+      none.reason = "planning was cancelled before a route within the risk limit was found";
+      return none;
+    }
     none.reason = "no route keeps the risk of immobilisation within " + inWords(max_risk_) +
                   ": the safest route found has " + inWords(least_risk_) +
                   "; increase the limit or choose another goal";
@@ -144,11 +152,15 @@ std::vector<ParetoRoute> paretoSet(const Problem& problem, NamedPlanner& planner
   };
   std::vector<ParetoRoute> front;
   for (int t = 0; t < steps; ++t)
-    for (int r = 0; r < steps && !problem.watch.stopped(); ++r) {
+    for (int r = 0; r < steps; ++r) {
       const costmap::CostWeights weights{
           .energy = 1.0, .time_W = price(t, 1.0, 1e4), .risk_J = price(r, 1e2, 1e10)};
       Plan plan = planUnder(problem, planner, weights);
-      if (plan.status != RouteStatus::Found) return front;
+      if (problem.watch.stopped()) return {};
+      if (plan.status != RouteStatus::Found && plan.status != RouteStatus::TimedOut &&
+          plan.status != RouteStatus::NoneFound)
+        return {};
+      if (plan.status != RouteStatus::Found) continue;  // the time limit of this one, or nothing sampled
       const RouteDemand demand = demandOf(*problem.map, plan);
       keep(front, {.plan = std::move(plan), .demand = demand, .weights = weights});
       problem.watch.report((t * steps + r + 1.0) / (steps * steps));

@@ -24,8 +24,8 @@ RouteDemand demandOf(const costmap::CostGrid& map, const Plan& plan);
 /// max_risk, in (0, 1), by routeRisk() over spatially correlated soil whose class is uncertain as a whole, with
 /// two standard errors to spare. The constraint enters the cost as a price on risk, raised until it is
 /// met and then lowered as far as it still is (Lagrangian relaxation; a route that no price picks out is
-/// missed [everett_1963]). NoneFound with the least risk found when none keeps the limit. Cost and bound are of
-/// the map's own weights. Throws std::invalid_argument out of range.
+/// missed [everett_1963]). NoneFound with the least risk found when none keeps the limit; where the problem's watch was
+/// stopped before, `interrupted` or Cancelled. Cost and bound are of the map's own weights. Throws std::invalid_argument out of range.
 Plan planWithinRisk(const Problem& problem, NamedPlanner& planner, double max_risk,
                     const RouteRiskOptions& soil = {});
 
@@ -38,7 +38,7 @@ struct ParetoRoute {
 
 /// Routes of which none is better than another in energy, time and risk together, by rising energy: those
 /// that some prices of time and risk pick out, among `steps` by `steps` prices. Empty when there is no
-/// route.
+/// route, and when the problem's watch was stopped: a part of the prices makes another set.
 std::vector<ParetoRoute> paretoSet(const Problem& problem, NamedPlanner& planner, int steps);
 
 }  // namespace talus::planner

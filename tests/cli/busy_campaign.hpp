@@ -8,4 +8,7 @@ namespace talus::cli {
 /// processes of their own, are at work that takes long: each has used half a second of processor time. The exit code.
 int interruptedWhenBusy(const std::string& line, int runs);
 
+/// The same, interrupted as soon as the file is there.
+int interruptedWhenWritten(const std::string& line, const std::string& file);
+
 }  // namespace talus::cli

@@ -1,3 +1,5 @@
+#include <stop_token>
+
 #include <talus/planner/check/chassis_planner.hpp>
 #include <talus/planner/grid/field_planner.hpp>
 
@@ -35,6 +37,27 @@ TEST(ChassisPlanner, GoesAroundWhatTheBellyWouldMeet) {
   ASSERT_EQ(open.status, RouteStatus::Found) << open.reason;
   EXPECT_TRUE(chassis.violations(open.points).empty());
   EXPECT_GT(open.cost_J, 140.0);
+}
+
+// Property: what was not sought for lack of time is not said to be missing.
+TEST(ChassisPlanner, AStopIsNoAnswer) {
+  const auto map = testing::drawn(std::vector<std::string>(20, std::string(20, '.')));
+  maps::Raster<float> ground(map->grid());
+  for (int r = 3; r < 20; ++r) ground[{10, r}] = 3.0F;
+  const Chassis chassis(ground, rover(4), Suspension::Rigid);
+  FieldPlanner field;
+  std::stop_source source;
+  Problem problem{.map = map, .start = {3.5, 10.5}, .goal = {16.5, 10.5}};
+  problem.watch.stop = source.get_token();
+  int rounds = 0;
+  const auto plan = planOnChassis(problem, chassis, [&](const Problem& p) {
+    Plan found = field.plan(p);
+    ++rounds;
+    source.request_stop();
+    return found;
+  });
+  EXPECT_EQ(plan.status, RouteStatus::Cancelled) << plan.reason;
+  EXPECT_EQ(rounds, 1);
 }
 
 }  // namespace

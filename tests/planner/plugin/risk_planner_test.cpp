@@ -1,4 +1,6 @@
+#include <memory>
 #include <stdexcept>
+#include <stop_token>
 
 #include <talus/planner/plugin/risk_planner.hpp>
 #include <talus/planner/route/motion_cost.hpp>
@@ -87,6 +89,48 @@ TEST(RiskPlanner, NoRouteOfTheParetoSetBeatsAnother) {
                    a.demand.risk < b.demand.risk);
   for (std::size_t i = 1; i < front.size(); ++i)
     EXPECT_GE(front[i].demand.energy_J, front[i - 1].demand.energy_J);
+}
+
+// Stops at the n-th report of progress.
+Problem stoppedAt(int n, const Problem& problem, std::stop_source& source) {
+  Problem stopped = problem;
+  stopped.watch = {.progress =
+                       [n, &source, calls = std::make_shared<int>(0)](double) {
+                         if (++*calls == n) source.request_stop();
+                       },
+                   .stop = source.get_token()};
+  return stopped;
+}
+
+// Property: a part of the prices makes another set, which nothing would tell from the whole one.
+TEST(RiskPlanner, AParetoSetIsWholeOrNone) {
+  const Problem problem = acrossRisk();
+  NamedPlanner planner;
+  const std::size_t whole = paretoSet(problem, planner, 3).size();
+  ASSERT_GE(whole, 2u);
+  for (const int n : {1, 2, 3, 5, 8, 13, 1000}) {
+    std::stop_source source;
+    const auto front = paretoSet(stoppedAt(n, problem, source), planner, 3);
+    EXPECT_EQ(front.size(), n < 1000 ? 0u : whole) << n;
+    EXPECT_EQ(source.stop_requested(), n < 1000);
+  }
+}
+
+// Property: of the prices that were not tried nothing is claimed.
+TEST(RiskPlanner, AStoppedSearchSaysThatItWasStopped) {
+  const Problem problem = acrossRisk();
+  int stops = 0;
+  for (int n = 1; n < 40; ++n) {
+    NamedPlanner planner;
+    std::stop_source source;
+    const Plan plan = planWithinRisk(stoppedAt(n, problem, source), planner, 0.05);
+    if (!source.stop_requested()) break;
+    ++stops;
+    EXPECT_TRUE(plan.status == RouteStatus::Cancelled ||
+                (plan.status == RouteStatus::Found && plan.interrupted))
+        << n << ": " << plan.reason;
+  }
+  EXPECT_GE(stops, 5);
 }
 
 TEST(RiskPlanner, AMapWithoutNumbersToWeighSaysSo) {
