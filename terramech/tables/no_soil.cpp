@@ -8,10 +8,10 @@
 namespace talus::terramech {
 namespace {
 
-constexpr double kLeft = 0.5;    // of the root mean square of a channel's readings
-constexpr double kCoarse = 0.1;  // of the load or the radius
+constexpr double kLeft = 0.5;  // of the root mean square of a channel's readings
 
-// What the soil leaves of one channel, relative to its readings; 0 where that is little of load or radius.
+// What the soil leaves of one channel, relative to its readings; 0 where that is little of load or radius. Infinite where it
+// foretells what reads nothing.
 double leftOf(const SoilAnswer& answer, int channel) {
   double readings = 0.0, residuals = 0.0;
   int rows = 0;
@@ -41,17 +41,25 @@ UnexplainedColumn unexplained(const SoilAnswer& answer) {
   return worst;
 }
 
+bool leavesUnexplained(const SoilAnswer& answer, Channel channel) {
+  return leftOf(answer, static_cast<int>(channel)) > kLeft;
+}
+
 std::string noSoilExplains(const SoilEstimate& estimate, const SoilAnswer& answer) {
-  if (!(answer.misfit > kMisfit)) return {};
+  const bool poor = answer.misfit > kMisfit;
   std::string why;
-  if (const UnexplainedColumn worst = unexplained(answer); !worst.column.empty())
-    why = fmt::format("the nearest leaves {:.0f} % of {}", 100.0 * worst.left, worst.column);
+  if (const UnexplainedColumn worst = unexplained(answer); poor && !worst.column.empty())
+    why = std::isfinite(worst.left)
+              ? fmt::format("the nearest leaves {:.0f} % of {}", 100.0 * worst.left, worst.column)
+              : fmt::format("the nearest has a {} that reads 0", worst.column);
   else if (!estimate.implausible().empty())
     why = fmt::format("the nearest has a cohesion of {:.3g} kPa and a friction angle of {:.0f} deg",
                       1e-3 * estimate.cohesion_Pa, estimate.friction_angle_rad / kDegree);
   else
     return {};
-  return fmt::format("no soil explains the rows (misfit {:.1f}, 1 expected): {}", answer.misfit, why);
+  return (poor ? fmt::format("no soil explains the rows (misfit {:.1f}, 1 expected): ", answer.misfit)
+               : std::string("no soil is like that of the rows: ")) +
+         why;
 }
 
 }  // namespace talus::terramech

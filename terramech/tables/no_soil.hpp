@@ -12,6 +12,9 @@ namespace talus::terramech {
 /// Mean square of the whitened residuals above which the model does not describe the rows [-].
 inline constexpr double kMisfit = 3.0;
 
+/// Root mean square of residuals, of the load or the radius, that a model of a rigid wheel may leave [-].
+inline constexpr double kCoarse = 0.1;
+
 /// Readings of rows, and what the soil found foretells of them.
 struct SoilAnswer {
   Eigen::MatrixXd measured;   ///< rows x kChannels [-] as Reading::scaled(); NaN: not measured
@@ -32,8 +35,11 @@ struct UnexplainedColumn {
 /// The bounds are ours, not from the literature: they do not depend on the stated noise, and soils of measured sand leave less.
 UnexplainedColumn unexplained(const SoilAnswer& answer);
 
-/// Why no soil comes near the rows; empty where one does: their misfit is at most kMisfit, or no column is unexplained and the
-/// strength found is that of a soil (SoilEstimate::implausible()).
+/// Whether the soil leaves more than half of that channel and more than 0.1 of the load or the radius.
+bool leavesUnexplained(const SoilAnswer& answer, Channel channel);
+
+/// Why no soil comes near the rows; empty where one does: the strength found is that of a soil (SoilEstimate::implausible()), and
+/// their misfit is at most kMisfit or no column is unexplained.
 std::string noSoilExplains(const SoilEstimate& estimate, const SoilAnswer& answer);
 
 }  // namespace talus::terramech

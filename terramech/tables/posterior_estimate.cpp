@@ -123,8 +123,9 @@ SoilEstimate posteriorEstimate(const EstimateOptions& options, const ProgressMon
   const std::string groups = groupsThatDisagree(rows, *estimate.posterior, fit.noise);
   if (const std::string why = noSoilExplains(estimate, answerOf(rows, *estimate.posterior));
       groups.empty() && !why.empty())
-    throw std::domain_error(fmt::format("{}: {}; check unit, sign and sensor of the column, or widen --prior",
-                                        options.table, why));
+    throw std::domain_error(
+        fmt::format("{}: {}; check unit, sign and sensor of torque_Nm and sinkage_m, or widen --prior",
+                    options.table, why));
   sayWhatIsDoubtful(rows, *estimate.posterior, groups, estimate.warnings);
   for (const SoilClass& soil : prior) estimate.class_names.push_back(soil.name);
   return estimate;

@@ -64,6 +64,44 @@ TEST(EstimateSoil, SideForcesThatNoSoilGivesEndInNone) {
   }
 }
 
+// Rows of the made soil at one slip angle, with pull and a side force of so much of the load.
+std::string heldRows(double slip_angle_rad, double side_over_load) {
+  RefinedModel model;
+  model.soil = kMadeSoil;
+  std::string text = kWheelHead + ",drawbar_pull_N,slip_angle_rad,side_force_N\n";
+  for (int k = 0; k < 20; ++k) {
+    const WheelState s{.wheel = kMadeWheel,
+                       .load_N = 90.0 + 10.0 * (k % 5),
+                       .slip = 0.1 + 0.025 * k,
+                       .slip_angle_rad = slip_angle_rad};
+    const Reading r = predict(model, s);
+    text += wheelLine({s.load_N, r.torque_Nm, r.sinkage_m, s.slip}, kMadeWheel) + "," +
+            std::to_string(r.drawbar_pull_N) + "," + std::to_string(slip_angle_rad) + "," +
+            std::to_string(side_over_load * s.load_N) + "\n";
+  }
+  return text;
+}
+
+// Property: a wheel that runs straight holds nothing across, and one at an angle something; what reads otherwise is named, and no
+// soil is bent to it, be the misfit small.
+TEST(EstimateSoil, AColumnThatContradictsTheOthersEndsInNone) {
+  for (const auto& [angle, side] : {std::pair{0.0, 0.5}, {0.3, 0.0}, {0.3, 0.5}, {0.3, -1.5}}) {
+    const test::TemporaryFile table{heldRows(angle, side)};
+    EXPECT_THAT([&] { estimateSoil({.table = table.path(), .method = "wong-reece"}, {}); },
+                ThrowsMessage<std::domain_error>(testing::AllOf(
+                    HasSubstr(table.path() + ": no soil "),
+                    HasSubstr("check unit, sign and sensor of column side_force_N, without which"))))
+        << angle << ' ' << side;
+  }
+}
+
+// Property: a sensor's offset across is no side force of the soil.
+TEST(EstimateSoil, ALittleSideForceOfStraightWheelsChangesNothing) {
+  const test::TemporaryFile none{heldRows(0.0, 0.0)}, little{heldRows(0.0, 0.05)};
+  EXPECT_EQ(estimateSoil({.table = none.path(), .method = "wong-reece"}, {}).cohesion_Pa,
+            estimateSoil({.table = little.path(), .method = "wong-reece"}, {}).cohesion_Pa);
+}
+
 TEST(EstimateSoil, NamesThatAreNotOnOfferAreRefused) {
   const WheelTable table;
   EXPECT_THAT([&] { estimateSoil({.table = table.path(), .method = "wong-rece"}, {}); },

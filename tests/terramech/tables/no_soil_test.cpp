@@ -38,6 +38,14 @@ TEST(NoSoil, TheColumnOfWhichMoreThanHalfIsLeftIsNamed) {
   EXPECT_EQ(unexplained(answer(0.09, 0.0, 10.0)).column, "") << "little of the load";
 }
 
+TEST(NoSoil, WhatReadsNothingAndIsForetoldIsUnexplained) {
+  EXPECT_TRUE(leavesUnexplained(answer(0.0, 0.3, 10.0), Channel::SideForce));
+  EXPECT_FALSE(leavesUnexplained(answer(0.0, 0.09, 10.0), Channel::SideForce));
+  EXPECT_FALSE(leavesUnexplained(answer(0.0, 0.3, 10.0), Channel::DrawbarPull));
+  EXPECT_FALSE(leavesUnexplained(answer(0.0, 0.3, 10.0), Channel::Torque)) << "not measured";
+  EXPECT_THAT(noSoilExplains(sand(), answer(0.0, 0.3, 10.0)), HasSubstr("has a side_force_N that reads 0"));
+}
+
 TEST(NoSoil, SaysWhyOnlyWhereTheMisfitIsLarge) {
   EXPECT_THAT(noSoilExplains(sand(), answer(1.0, 0.4, 10.0)), HasSubstr("leaves 60 % of side_force_N"));
   EXPECT_EQ(noSoilExplains(sand(), answer(1.0, 0.4, 2.9)), "") << "within the stated noise";
@@ -49,7 +57,8 @@ TEST(NoSoil, AStrengthBeyondAnySoilIsNone) {
   steel.friction_angle_rad = 1.2;
   steel.tan_friction = 2.57;
   EXPECT_THAT(noSoilExplains(steel, answer(1.0, 0.9, 10.0)), HasSubstr("a friction angle of 69 deg"));
-  EXPECT_EQ(noSoilExplains(steel, answer(1.0, 0.9, 1.0)), "");
+  EXPECT_THAT(noSoilExplains(steel, answer(1.0, 0.9, 1.0)), HasSubstr("a friction angle of 69 deg"))
+      << "however near it comes";
 }
 
 }  // namespace
