@@ -112,6 +112,10 @@ std::string hazardText(const TraversabilityMap& map, maps::Cell cell, Hazard haz
     if (hazard == Hazard::Unknown && std::isnan(added) && !map.model().parts().policy.allow_unknown)
       return "no data in layer '" + layer.name + "'";
   }
+  const bool opened = map.hazards(cell) == Hazard::Unknown && map.model().parts().policy.allow_unknown;
+  if (opened)
+    return std::string("elevation or terrain class unknown; allowed on request as level ground of ") +
+           (map.classIndex(cell) >= 0 ? "its class" : "the first class");
   return hazardText(hazard);
 }
 
@@ -230,9 +234,11 @@ void addDrive(const TraversabilityMap& map, maps::Cell cell, const Direction& he
 
 void judge(const TraversabilityMap& map, maps::Cell cell, const Direction& heading, Explanation& out) {
   const Hazard hazards = map.hazards(cell);
+  const bool opened = hazards == Hazard::Unknown && map.model().parts().policy.allow_unknown;
   for (const Hazard one : kHazards)
     if (has(hazards, one))
-      out.causes.push_back({"hazard", 1.0, kNotKnown, hazardText(map, cell, one), "excluded for any soil"});
+      out.causes.push_back({"hazard", 1.0, kNotKnown, hazardText(map, cell, one),
+                            opened ? "not excluded" : "excluded for any soil"});
   const CellBelief belief = map.belief(cell);
   out.category = static_cast<terramech::Category>(belief.category);
   out.probability = out.category == terramech::Category::Unknown ? kNotKnown : belief.confidence / 16.0;

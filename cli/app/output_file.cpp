@@ -118,10 +118,13 @@ void checkFormat(const fs::path& path, const std::string& written) {
     if (format != nullptr) endings.emplace_back(format->front());
   }
   if (endings.empty()) return;
+  // Of OUT.geojson.gz, too, it is OUT that is kept.
+  fs::path stem = path.stem();
+  while (formatOf(stem.string()) != nullptr) stem = stem.stem();
   throw InputError({path.string(),
                     fmt::format("is named {}, but a {} file is written", path.extension().string(),
                                 fmt::join(endings, " or ")),
-                    "name it " + path.stem().string() + endings.front() + ", or pass --force"});
+                    "name it " + stem.string() + endings.front() + ", or pass --force"});
 }
 
 void checkOutputs(const CLI::App& command, bool force) {

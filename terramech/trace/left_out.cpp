@@ -70,11 +70,20 @@ LeftOut ofWords(const Trial& trial, const std::string& column, const std::string
           })};
 }
 
+bool isText(const Trial& trial, const std::string& column) {
+  return std::any_of(trial.states.begin(), trial.states.end(),
+                     [&](const WheelState& s) { return !s.label(column).empty(); });
+}
+
+// A value of a text column may hold two dots; it has no ranges.
 LeftOut ofValues(const Trial& trial, const std::string& column, const std::string& values) {
-  if (const auto dots = values.find(".."); dots != std::string::npos && values.front() != '"') {
+  const auto dots = isText(trial, column) ? std::string::npos : values.find("..");
+  if (dots != std::string::npos && values.front() != '"') {
     double low = -1e300, high = 1e300;
-    if (dots > 0) isNumber(values.substr(0, dots), low);
-    if (dots + 2 < values.size()) isNumber(values.substr(dots + 2), high);
+    const std::string from = values.substr(0, dots), to = values.substr(dots + 2);
+    if ((!from.empty() && !isNumber(from, low)) || (!to.empty() && !isNumber(to, high)))
+      throw InputError({"--hold-out " + column + "=" + values, "the ends of the range are no numbers",
+                        "write LOW..HIGH, LOW.. or ..HIGH"});
     return {column + " = " + values, rowsWhere(trial, [&](const WheelState& s) {
               const double v = s.covariate(column);
               return v >= low && v <= high;

@@ -54,5 +54,16 @@ TEST(Explain, UnseenIsUnknown) {
   EXPECT_TRUE(std::isnan(unseen.probability)) << "Unknown has none";
 }
 
+// Property: where the policy opens it, it is said why it is no longer refused, and as what it is driven.
+TEST(Explain, UnseenGroundThatThePolicyOpensIsSaidToBe) {
+  std::vector<std::string> site = kPlain;
+  site[5][6] = '?';
+  const Explanation open = explain(mapOf(site, 0.0, {.allow_unknown = true}), {6, 6});
+  EXPECT_NE(open.category, Category::Unknown);
+  EXPECT_NE(open.verdict.find("unknown; allowed on request as level ground of"), std::string::npos)
+      << open.verdict;
+  EXPECT_EQ(cause(open, "hazard").remark, "not excluded");
+}
+
 }  // namespace
 }  // namespace talus::costmap

@@ -59,10 +59,23 @@ TEST(LeftOut, AQuotedValueHoldsItsCommas) {
                 testing::ThrowsMessage<InputError>(HasSubstr("does not end with a quote")));
 }
 
+// Property: two dots are a range of numbers, and part of a word.
+TEST(LeftOut, AWordMayHoldTwoDots) {
+  MadeRows rows(wheelColumns());
+  std::mt19937_64 random(3);
+  for (int k = 0; k < 48; ++k)
+    rows.add(wheelRow(madeSand(), 50.0 + 10.0 * (k % 3), 0.1 + 0.1 * (k % 4), 0.02, random),
+             k % 3 ? "1..2" : "3");
+  RefinedModel model;
+  const Trial trial = makeTrial(rows.telemetry("wheel"), model);
+  EXPECT_EQ(rowsIn(leftOut(trial, "wheel=1..2", "t.csv").front()), 32);
+}
+
 TEST(LeftOut, WhatLeavesNothingIsRefused) {
   for (const auto& [request, reason] :
        {std::pair{"slop", "has no column slop"}, std::pair{"slip=0.9", "has no row with"},
-        std::pair{"slip=0..1", "has only rows with"}})
+        std::pair{"slip=0..1", "has only rows with"}, std::pair{"slip=low..0.3", "are no numbers"},
+        std::pair{"slip=0.1..0.3x", "are no numbers"}})
     try {
       leftOut(trial(), request, "t.csv");
       ADD_FAILURE() << request;
