@@ -192,6 +192,7 @@ void DriveIntake::State::put(const terramech::Telemetry& telemetry, const DriveV
 void DriveIntake::State::settle() {
   if (!options.settles)
     throw std::logic_error("DriveIntake: IntakeOptions::settles = false, must be true to settle");
+  if (all.size() == 0) return;
   const TelemetryRows readings(all, map, options.pose_std_m);
   TelemetryProcessor first_pass(map);
   processRows(readings, map, first_pass, {}, [](std::size_t, TelemetryProcessor::Result&&) {});

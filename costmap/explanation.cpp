@@ -132,10 +132,14 @@ void addSoil(const TraversabilityMap& map, maps::Cell cell, Explanation& out) {
                              map.model().rover().name + "', slip 0.5";
   out.causes.push_back({"prior_drawbar_pull_over_load", prior.pull.value, prior.pull.std, source, ""});
   const CellBelief belief = map.belief(cell);
-  const std::string wheels = belief.evidence > 0.0F ? "prior and wheel telemetry" : source;
+  const bool of_prior = belief.evidence <= 0.0F && belief.pull_mean == static_cast<float>(prior.pull.value) &&
+                        belief.sinkage_mean == static_cast<float>(prior.sinkage.value);
+  const std::string wheels = of_prior ? source : "prior and wheel telemetry";
   out.causes.push_back({"evidence_samples", static_cast<double>(belief.evidence), kNotKnown,
                         "wheel telemetry nearby",
-                        belief.evidence > 0.0F ? "" : "no telemetry here; prior only"});
+                        belief.evidence > 0.0F ? ""
+                        : of_prior             ? "no telemetry here; prior only"
+                                   : "none counted here: a bound of this place, or telemetry of its class"});
   out.causes.push_back({"drawbar_pull_over_load", static_cast<double>(belief.pull_mean),
                         static_cast<double>(belief.pull_std), wheels, ""});
   out.causes.push_back({"sinkage_over_radius", static_cast<double>(belief.sinkage_mean),
@@ -244,7 +248,7 @@ void judge(const TraversabilityMap& map, maps::Cell cell, const Direction& headi
   out.probability = out.category == terramech::Category::Unknown ? kNotKnown : belief.confidence / 16.0;
   out.verdict = std::string(terramech::name(out.category));
   for (const Hazard one : kHazards)
-    if (has(hazards, one)) {
+    if (has(hazards, one) && !opened) {
       out.verdict += ": " + hazardText(map, cell, one);
       return;
     }
@@ -267,6 +271,7 @@ void judge(const TraversabilityMap& map, maps::Cell cell, const Direction& headi
     out.verdict +=
         climb < 1.0 ? ", with the side force " + std::to_string(climb) : ", side force out of reach";
   if (state.refusal != Refusal::None) out.verdict += std::string("; refused: ") + toText(state.refusal);
+  if (opened) out.verdict += "; " + hazardText(map, cell, Hazard::Unknown);
 }
 
 }  // namespace

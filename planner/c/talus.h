@@ -164,7 +164,8 @@ TALUS_API talus_code talus_patch(talus_session session, const talus_grid* grid, 
 TALUS_API talus_code talus_learn(talus_session session, const talus_wheel* rows, size_t count, size_t* used, talus_error* error);
 
 /* Judges all rows since the session began or was moved again, by what all of them say of the sensors: the map is then that of
-   one file of these rows (`talus update`). It takes as long as they took to learn. Once a stop, or before a plan that matters. */
+   one file of these rows (`talus update`) where all of them are sound: of a number beyond its range this leaves the number out, a file
+   the row. It takes as long as they took to learn, and does nothing without rows. Once a stop, or before a plan that matters. */
 TALUS_API talus_code talus_settle(talus_session session, talus_error* error);
 
 /* A route over all that is known now; it stays to be read until the next plan. `summary` may be NULL. */

@@ -4,6 +4,7 @@
 #include <site_map.hpp>
 
 #include <talus/costmap/explanation.hpp>
+#include <talus/costmap/telemetry_processor.hpp>
 
 namespace talus::costmap {
 namespace {
@@ -63,6 +64,22 @@ TEST(Explain, UnseenGroundThatThePolicyOpensIsSaidToBe) {
   EXPECT_NE(open.verdict.find("unknown; allowed on request as level ground of"), std::string::npos)
       << open.verdict;
   EXPECT_EQ(cause(open, "hazard").remark, "not excluded");
+}
+
+// Property: what wheels met on ground that nobody has seen refuses it and is said, opened or not.
+TEST(Explain, UnseenGroundThatHeldAWheelIsSaidToBeRefused) {
+  std::vector<std::string> site = kPlain;
+  site[5][6] = '?';
+  TraversabilityMap map = mapOf(site, 0.0, {.allow_unknown = true});
+  WheelObservation spun{.time_s = 1.0, .place = map.grid().centre({6, 6}), .pull = {}, .sinkage = {}};
+  spun.here.most_pull = -0.4;
+  ASSERT_TRUE(map.learn(boundAlone(spun)));
+  map.publish();
+  const Explanation held = explain(map, {6, 6});
+  EXPECT_EQ(held.category, Category::Dangerous);
+  EXPECT_NE(held.verdict.find("refused"), std::string::npos) << held.verdict;
+  EXPECT_NE(held.verdict.find("allowed on request"), std::string::npos) << held.verdict;
+  EXPECT_EQ(cause(held, "evidence_samples").remark.find("prior only"), std::string::npos);
 }
 
 }  // namespace
