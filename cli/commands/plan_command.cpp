@@ -102,14 +102,21 @@ planner::RouteRiskOptions soilOf(const planner::Problem& problem) {
   return options;
 }
 
-planner::Plan planOnce(const planner::Problem& problem, Chosen& planner, const PlanOptions& options,
-                       const std::optional<planner::Chassis>& chassis) {
-  const auto once = [&](const planner::Problem& p) {
+using Planning = std::function<planner::Plan(const planner::Problem&)>;
+
+// `once`, repeated until the chassis that is asked for may stand all along the route.
+Planning forChassis(const PlanOptions& options, const Ground& ground, const Planning& once) {
+  const auto chassis = chassisOf(options.drive.chassis, ground.map);
+  if (!chassis) return once;
+  return [=](const planner::Problem& p) { return planner::planOnChassis(p, *chassis, once); };
+}
+
+Planning planningOf(Chosen& planner, const PlanOptions& options) {
+  return [&](const planner::Problem& p) {
     if (planner.plugin) return planner.plugin->plan(p);
     return options.max_risk > 0.0 ? planner::planWithinRisk(p, *planner.own, options.max_risk, soilOf(p))
                                   : planner.own->plan(p);
   };
-  return chassis ? planner::planOnChassis(problem, *chassis, once) : once(problem);
 }
 
 // Which of several goals the route ends at.
@@ -197,9 +204,9 @@ double since_s(std::chrono::steady_clock::time_point begin) {
 Planned planWhole(const PlanOptions& options, Chosen& planner, const Context& context) {
   Planned planned{.ground = readGround(options.ground, context), .problem = {}, .plan = {}};
   planned.problem = problemOf(options, planned.ground, context);
-  const auto chassis = chassisOf(options.drive.chassis, planned.ground.map);
+  const Planning plan = forChassis(options, planned.ground, planningOf(planner, options));
   const auto begin = std::chrono::steady_clock::now();
-  planned.plan = planOnce(planned.problem, planner, options, chassis);
+  planned.plan = plan(planned.problem);
   planned.plan_s = since_s(begin);
   return planned;
 }
@@ -253,7 +260,6 @@ void drawSevered(const PlanOptions& options, const Planned& planned) {
   if (!options.html.empty()) savePage(options.html, scene);
 }
 
-// What is done with a plan, whichever way it was made.
 int finish(const PlanOptions& options, const Planned& planned, const planner::AnnotationInput& input,
            const Context& context) {
   Route route = annotated(planned.plan, input);
@@ -313,15 +319,16 @@ int runInWindows(const PlanOptions& options, const Context& context) {
   return finish(options, {std::move(overview), problem, std::move(plan), plan_s}, input, context);
 }
 
-// A stopped call has handed out what it has: what it still does, to free the memory of a large map, may be ended.
+// A stopped call has handed out what it has: what it still does may be ended.
 void letEnd(const Context& context) {
   std::fflush(stdout);
   if (context.answers_stop) *context.answers_stop = false;
 }
 
-// Drawn of all prices or not at all.
 int drawPareto(const PlanOptions& options, const Planned& planned, Chosen& planner, const Context& context) {
-  const auto front = planner::paretoSet(planned.problem, *planner.own, kParetoSteps);
+  const auto once = [&](const planner::Problem& p) { return planner.own->plan(p); };
+  const auto front =
+      planner::paretoSet(planned.problem, forChassis(options, planned.ground, once), kParetoSteps);
   if (context.stop.stop_requested()) {
     fmt::print(stderr, "talus: {} is not written: the Pareto set was cancelled; the route is whole\n",
                oneLine(options.pareto));

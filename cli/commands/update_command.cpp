@@ -90,26 +90,36 @@ Difference between(const Snapshot& before, const Snapshot& after) {
   return difference;
 }
 
+[[noreturn]] void refuseReplay(const Options& options) {
+  throw InputError(
+      {options.journal, "holds nothing to replay", "name the journal that the drives went into"});
+}
+
 void checkCall(const Options& options) {
   std::error_code error;
   if (options.replay && (std::filesystem::file_size(options.journal, error) == 0 || error))
-    throw InputError(
-        {options.journal, "holds nothing to replay", "name the journal that the drives went into"});
+    refuseReplay(options);
   if (options.telemetry.empty() == options.replay) return;
   throw InputError({options.replay ? options.telemetry : "talus update",
                     options.replay ? "telemetry and --replay together" : "no telemetry",
                     "give T.csv, or --replay with --journal"});
 }
 
-// The rows of the file that go into the map; `report` holds what the journal gave already.
-void addTelemetry(const Options& options, costmap::TraversabilityMap& map, costmap::EvidenceJournal* journal,
-                  const Context& context, costmap::DriveReport& report) {
-  const auto telemetry = terramech::readTelemetry(
+terramech::Telemetry readDrive(const Options& options, const costmap::TraversabilityMap& map,
+                               const Context& context) {
+  auto telemetry = terramech::readTelemetry(
       options.telemetry,
       {.required = {"x_m", "y_m", "load_N", "slip"}, .wheel_radius_m = map.model().rover().wheel.radius_m},
       context.watch("reading telemetry"));
   for (const auto& row : telemetry.rejected)
     context.warn(fmt::format("{}:{}: {}", options.telemetry, row.line, row.reason));
+  return telemetry;
+}
+
+// The rows of the file that go into the map; `report` holds what the journal gave already.
+void addTelemetry(const Options& options, costmap::TraversabilityMap& map,
+                  const terramech::Telemetry& telemetry, costmap::EvidenceJournal* journal,
+                  const Context& context, costmap::DriveReport& report) {
   const costmap::DriveReport drive = costmap::addDrive(map, telemetry, journal, options.intake);
   if (drive.repeated > 0)
     context.warn(options.telemetry + ": the map holds this drive already; it counts once");
@@ -143,20 +153,26 @@ int run(const Options& options, Context& context) {
   checkCall(options);
   const FileLock lock({options.map, options.output}, context.stop);
   OutputFile output(options.output);
+  costmap::TraversabilityMap map =
+      costmap::readMap(options.map, context.workers(), context.watch("reading the map"));
+  std::optional<terramech::Telemetry> telemetry;
+  if (!options.replay) telemetry = readDrive(options, map, context);
+  if (context.stop.stop_requested()) return Exit::kCancelled;
+  // Opened, and by that made, when the other files of the call have been read.
   std::optional<costmap::EvidenceJournal> journal;
   std::optional<costmap::EvidenceJournal::Transaction> transaction;
   if (!options.journal.empty()) transaction.emplace(journal.emplace(options.journal));
-  costmap::TraversabilityMap map =
-      costmap::readMap(options.map, context.workers(), context.watch("reading the map"));
+  if (options.replay && journal->drives().empty()) refuseReplay(options);
+
   const Snapshot before = snapshotOf(map);
   // The map is the journal's drives and this one: those that it lacks, as after a call that was killed, come first.
   costmap::DriveReport report;
   if (journal) report = costmap::replay(map, *journal);
-  if (!options.replay) {
+  if (telemetry) {
     if (report.used + report.rejected > 0)
       context.warn(fmt::format("{}: {} rows that the map lacks were put in from it", options.journal,
                                report.used + report.rejected));
-    addTelemetry(options, map, journal ? &*journal : nullptr, context, report);
+    addTelemetry(options, map, *telemetry, journal ? &*journal : nullptr, context, report);
   }
   for (const std::string& finding : report.findings) context.warn(finding);
   if (context.stop.stop_requested()) return Exit::kCancelled;

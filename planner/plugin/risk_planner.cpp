@@ -16,10 +16,11 @@ constexpr double kLeastPrice_J = 1e3;
 constexpr double kHighestPrice_J = 1e13;
 constexpr int kHalvings = 8;
 
-Plan planUnder(const Problem& problem, NamedPlanner& planner, const costmap::CostWeights& weights) {
+Plan planUnder(const Problem& problem, const std::function<Plan(const Problem&)>& planner,
+               const costmap::CostWeights& weights) {
   Problem weighed = problem;
   weighed.map = costmap::reweighted(*problem.map, weights);
-  Plan plan = planner.plan(weighed);
+  Plan plan = planner(weighed);
   if (plan.status == RouteStatus::Found) plan.cost_J = MotionCost(problem.map).along(plan.points);
   return plan;
 }
@@ -50,8 +51,8 @@ class RiskBoundedSearch {
 
   // Whether the price brings the risk within the limit; nothing when planning did not find a route.
   std::optional<bool> tried(double price_J) {
-    Plan plan = planUnder(problem_, planner_, {.energy = 1.0, .time_W = 1.0, .risk_J = price_J});
-    return taken(std::move(plan));
+    const auto plan = [this](const Problem& problem) { return planner_.plan(problem); };
+    return taken(planUnder(problem_, plan, {.energy = 1.0, .time_W = 1.0, .risk_J = price_J}));
   }
 
   std::optional<bool> taken(Plan plan) {
@@ -144,7 +145,8 @@ Plan planWithinRisk(const Problem& problem, NamedPlanner& planner, double max_ri
   return search.result(own.lower_bound_J);
 }
 
-std::vector<ParetoRoute> paretoSet(const Problem& problem, NamedPlanner& planner, int steps) {
+std::vector<ParetoRoute> paretoSet(const Problem& problem, const std::function<Plan(const Problem&)>& planner,
+                                   int steps) {
   if (steps < 2)
     throw std::invalid_argument("paretoSet: steps = " + std::to_string(steps) + ", must be >= 2");
   const auto price = [steps](int i, double low, double high) {

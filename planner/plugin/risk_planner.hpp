@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include <talus/costmap/cost_weights.hpp>
@@ -37,8 +38,9 @@ struct ParetoRoute {
 };
 
 /// Routes of which none is better than another in energy, time and risk together, by rising energy: those
-/// that some prices of time and risk pick out, among `steps` by `steps` prices. Empty when there is no
+/// that some prices of time and risk pick out for `planner`, among `steps` by `steps` prices. Empty when there is no
 /// route, and when the problem's watch was stopped: a part of the prices makes another set.
-std::vector<ParetoRoute> paretoSet(const Problem& problem, NamedPlanner& planner, int steps);
+std::vector<ParetoRoute> paretoSet(const Problem& problem, const std::function<Plan(const Problem&)>& planner,
+                                   int steps);
 
 }  // namespace talus::planner

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <talus/costmap/evidence_journal.hpp>
 #include <talus/terramech/contact/rover.hpp>
 #include <talus/terramech/contact/wong_reece.hpp>
 #include <talus/terramech/io/soil_library.hpp>
@@ -146,18 +147,24 @@ TEST(BadInput, Updates) {
   const Site site;
   const BadFiles files;
   std::filesystem::copy(site.folder / "map.ot", files.folder() / "map.ot");
+  const std::string unfed = files.folder() / "unfed.db";
+  costmap::EvidenceJournal{unfed};
   files.folder().write("off.csv", "x_m,y_m,load_N,slip,slope_rad\n900,900,10,0.2,0\n");
-  expectRefused(files, {
-                           {{"update", "map.ot", "missing.csv", "-o", "m.ot"}, 2, "missing.csv"},
-                           {{"update", "map.ot", "empty.csv", "-o", "m.ot"}, 2, "empty.csv"},
-                           {{"update", "map.ot", "wrong_columns.csv", "-o", "m.ot"}, 2, "wrong_columns.csv"},
-                           {{"update", "map.ot", "off.csv", "-o", "m.ot"}, 2, "off.csv"},
-                           {{"update", "map.ot", "-o", "m.ot"}, 2, "telemetry"},
-                           {{"update", "map.ot", "--replay", "-o", "m.ot"}, 2, "--journal"},
-                           {{"update", "map.ot", "--replay", "--journal", "no.db", "-o", "m.ot"}, 2, "no.db"},
-                           {{"update", "map.ot", "--replay", "--journal", "empty", "-o", "m.ot"}, 2, "empty"},
-                           {{"update", "map.ot", "off.csv", "-o", "no/m.ot"}, 2, "no"},
-                       });
+  expectRefused(files,
+                {
+                    {{"update", "map.ot", "missing.csv", "-o", "m.ot"}, 2, "missing.csv"},
+                    {{"update", "map.ot", "empty.csv", "-o", "m.ot"}, 2, "empty.csv"},
+                    {{"update", "map.ot", "wrong_columns.csv", "-o", "m.ot"}, 2, "wrong_columns.csv"},
+                    {{"update", "map.ot", "off.csv", "-o", "m.ot"}, 2, "off.csv"},
+                    {{"update", "map.ot", "-o", "m.ot"}, 2, "telemetry"},
+                    {{"update", "map.ot", "--replay", "-o", "m.ot"}, 2, "--journal"},
+                    {{"update", "map.ot", "--replay", "--journal", "no.db", "-o", "m.ot"}, 2, "no.db"},
+                    {{"update", "map.ot", "--replay", "--journal", "empty", "-o", "m.ot"}, 2, "empty"},
+                    {{"update", "map.ot", "--replay", "--journal", unfed, "-o", "m.ot"}, 2, "unfed"},
+                    {{"update", "map.ot", "empty.csv", "--journal", "new.db", "-o", "m.ot"}, 2, "empty"},
+                    {{"update", "flat.asc", "off.csv", "--journal", "new.db", "-o", "m.ot"}, 2, "flat"},
+                    {{"update", "map.ot", "off.csv", "-o", "no/m.ot"}, 2, "no"},
+                });
 }
 
 }  // namespace

@@ -74,6 +74,10 @@ TEST(RiskPlanner, ALimitThatNothingKeepsFindsNone) {
   EXPECT_THROW(planWithinRisk(problem, planner, 1.0), std::invalid_argument);
 }
 
+std::function<Plan(const Problem&)> planning(NamedPlanner& planner) {
+  return [&planner](const Problem& problem) { return planner.plan(problem); };
+}
+
 TEST(RiskPlanner, NoRouteOfTheParetoSetBeatsAnother) {
   std::vector<std::string> rows(20, std::string(40, '0'));
   for (std::size_t r = 4; r < 12; ++r) rows[r].replace(5, 30, 30, '2');
@@ -81,7 +85,7 @@ TEST(RiskPlanner, NoRouteOfTheParetoSetBeatsAnother) {
   Problem problem = acrossRisk();
   problem.map = withRisk(rows);
   NamedPlanner planner;
-  const auto front = paretoSet(problem, planner, 9);
+  const auto front = paretoSet(problem, planning(planner), 9);
   ASSERT_GE(front.size(), 3u);  // Property: each of the three grounds is best at something
   for (const ParetoRoute& a : front)
     for (const ParetoRoute& b : front)
@@ -106,11 +110,11 @@ Problem stoppedAt(int n, const Problem& problem, std::stop_source& source) {
 TEST(RiskPlanner, AParetoSetIsWholeOrNone) {
   const Problem problem = acrossRisk();
   NamedPlanner planner;
-  const std::size_t whole = paretoSet(problem, planner, 3).size();
+  const std::size_t whole = paretoSet(problem, planning(planner), 3).size();
   ASSERT_GE(whole, 2u);
   for (const int n : {1, 2, 3, 5, 8, 13, 1000}) {
     std::stop_source source;
-    const auto front = paretoSet(stoppedAt(n, problem, source), planner, 3);
+    const auto front = paretoSet(stoppedAt(n, problem, source), planning(planner), 3);
     EXPECT_EQ(front.size(), n < 1000 ? 0u : whole) << n;
     EXPECT_EQ(source.stop_requested(), n < 1000);
   }
@@ -137,7 +141,7 @@ TEST(RiskPlanner, AMapWithoutNumbersToWeighSaysSo) {
   Problem problem = acrossRisk();
   problem.map = testing::drawn({"...", "..."});
   NamedPlanner planner;
-  EXPECT_THROW(paretoSet(problem, planner, 2), std::domain_error);
+  EXPECT_THROW(paretoSet(problem, planning(planner), 2), std::domain_error);
 }
 
 }  // namespace
