@@ -93,7 +93,8 @@ GroundBelief EvidenceField::left(const GroundBelief& weak, const GroundBelief& m
 // leaves it, and within the bounds of the block itself. What no evidence reaches is left as its class to the bit.
 EvidenceField::Belief EvidenceField::believed(const LocalGround& ground, int class_index,
                                               const ClassState& state, const maps::Point& at) const {
-  const GroundBelief away = awayFromEvidence(class_index, state), prior = site_->model->prior(class_index);
+  const GroundBelief away = awayFromEvidence(class_index, state);
+  const GroundBelief& prior = site_->model->prior(class_index);
   GroundBelief out = away;
   if (const auto learned = ground.process.learned(at); learned.any) {
     out = combined(class_index, state, learned);

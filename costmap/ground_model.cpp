@@ -138,8 +138,12 @@ GroundModel::GroundModel(Parts parts) : parts_(std::move(parts)) {
       throw std::invalid_argument("ground model: class " + std::to_string(c.number) + " is declared twice");
     // Whatever of a class may leave its range leaves it here: what is worked out later has the same ground.
     const GroundClass rut = rutOf(c);
-    references_.push_back({.fresh = costmap::referenceOf(c, parts_.rover),
-                           .in_rut = costmap::referenceOf(rut, parts_.rover, passOf(rut))});
+    const terramech::MobilityReference fresh = costmap::referenceOf(c, parts_.rover);
+    references_.push_back(
+        {.fresh = fresh,
+         .in_rut = costmap::referenceOf(rut, parts_.rover, passOf(rut)),
+         .prior = {.pull = {fresh.drawbar_pull_over_load, std::hypot(c.pull_std, c.mean_std)},
+                   .sinkage = {fresh.sinkage_over_radius, c.sinkage_std}}});
     if (const auto axles = axlesOf(c, parts_.rover)) costmap::referenceOf(c, parts_.rover, *axles);
     grounds_.push_back(std::make_shared<Lazy>());
   }
@@ -181,14 +185,6 @@ int GroundModel::classIndex(int number) const noexcept {
   for (std::size_t i = 0; i < parts_.classes.size(); ++i)
     if (parts_.classes[i].number == number) return static_cast<int>(i);
   return -1;
-}
-
-GroundBelief GroundModel::prior(int class_index) const {
-  const auto i = static_cast<std::size_t>(class_index);
-  const GroundClass& c = parts_.classes[i];
-  const auto& reference = references_[i].fresh;
-  return {.pull = {reference.drawbar_pull_over_load, std::hypot(c.pull_std, c.mean_std)},
-          .sinkage = {reference.sinkage_over_radius, c.sinkage_std}};
 }
 
 SteadyWheel GroundModel::steady(int class_index, const DrivenWheel& wheel) const {

@@ -98,7 +98,7 @@ class GroundModel {
   int classIndex(int number) const noexcept;
 
   /// Belief before any evidence.
-  GroundBelief prior(int class_index) const;
+  const GroundBelief& prior(int class_index) const noexcept { return referenceOf(class_index).prior; }
 
   /// What a wheel of a rover that drives steadily at this slip on ground of the class reads, as its soil
   /// says; the ends of what it can drive beyond them. A slip angle changes it as it changes a wheel on fresh ground.
@@ -134,6 +134,7 @@ class GroundModel {
   // What is known of a class at once, and what is worked out when it is first asked for.
   struct Reference {
     terramech::MobilityReference fresh, in_rut;  // of one wheel
+    GroundBelief prior;
   };
   struct ClassGround;
   struct Lazy;

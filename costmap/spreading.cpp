@@ -1,7 +1,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <utility>
+
+#include <boost/container/small_vector.hpp>
 
 #include <talus/costmap/spreading.hpp>
 
@@ -18,13 +21,13 @@ double sparseKernel(const maps::Point& a, const maps::Point& b, double correlati
   return costmap::sparseKernel(std::sqrt(squared), correlation_length_m);
 }
 
-// U of A = U^T U in place, row-major upper triangle; A is positive definite by its noise. Here and below the inner
-// loops run along rows, without a sum that the next step waits for.
+// U of A = U^T U in place, row-major upper triangle, with one over its diagonal; A is positive definite by its noise.
+// Here and below the inner loops run along rows, without a sum that the next step waits for.
 void factorise(std::vector<double>& a, std::size_t n) {
   for (std::size_t j = 0; j < n; ++j) {
     double* const row = a.data() + j * n;
-    const double root = std::sqrt(row[j]);
-    for (std::size_t k = j; k < n; ++k) row[k] /= root;
+    row[j] = 1.0 / std::sqrt(row[j]);
+    for (std::size_t k = j + 1; k < n; ++k) row[k] *= row[j];
     for (std::size_t i = j + 1; i < n; ++i) {
       const double factor = row[i];
       if (factor == 0.0) continue;
@@ -35,21 +38,21 @@ void factorise(std::vector<double>& a, std::size_t n) {
 }
 
 // U^T x = b. Zeros in front stay zeros.
-void solveLower(const std::vector<double>& u, std::vector<double>& x) {
+void solveLower(const std::vector<double>& u, std::span<double> x) {
   const std::size_t n = x.size();
   for (std::size_t k = 0; k < n; ++k) {
     if (x[k] == 0.0) continue;
     const double* const row = u.data() + k * n;
-    const double value = x[k] /= row[k];
+    const double value = x[k] *= row[k];
     for (std::size_t i = k + 1; i < n; ++i) x[i] -= row[i] * value;
   }
 }
 
 // U x = b, by U's transpose.
-void solveUpper(const std::vector<double>& l, std::vector<double>& x) {
+void solveUpper(const std::vector<double>& l, std::span<double> x) {
   for (std::size_t k = x.size(); k-- > 0;) {
     const double* const row = l.data() + k * x.size();
-    const double value = x[k] /= row[k];
+    const double value = x[k] *= row[k];
     for (std::size_t i = 0; i < k; ++i) x[i] -= row[i] * value;
   }
 }
@@ -92,27 +95,26 @@ double withSharedError(const SharedError& error) noexcept {
 }
 
 LearnedPlace GaussianProcess::learned(const maps::Point& place) const {
-  std::vector<double> weight;
-  weight.reserve(evidence_.size());
+  boost::container::small_vector<double, 64> weight;
   for (const PlaceEvidence& e : evidence_)
     weight.push_back(sparseKernel(place, e.place, variation_.correlation_length_m));
   if (std::ranges::all_of(weight, [](double k) { return k == 0.0; }))
     return {.departure = {.pull = {0.0, variation_.pull_std}, .sinkage = {0.0, variation_.sinkage_std}}};
-  solveLower(factor_, weight);
+  solveLower(factor_, {weight.data(), weight.size()});
   double explained = 0.0;
   for (const double v : weight) explained += v * v;
-  solveUpper(transposed_, weight);
+  solveUpper(transposed_, {weight.data(), weight.size()});
   double sum = 0.0, positive = 0.0;
   for (const double w : weight) {
     sum += w;
-    positive += std::fmax(w, 0.0);
+    positive += std::max(0.0, w);
   }
   const double scale = positive > 0.0 ? std::clamp(sum, 0.0, 1.0) / positive : 0.0;
   LearnedPlace out{.departure = {}, .any = true, .weight = std::clamp(sum, 0.0, 1.0), .positive = positive};
   GroundBelief& belief = out.departure;
   for (std::size_t i = 0; i < evidence_.size(); ++i) {
     const PlaceEvidence& e = evidence_[i];
-    const double w = std::fmax(weight[i], 0.0);
+    const double w = std::max(0.0, weight[i]);
     out.shared += scale * w * e.shared;
     belief.pull.value += (e.pull > 0.0 ? scale * w : w) * e.pull;
     if (!std::isnan(e.sinkage)) belief.sinkage.value += (e.sinkage < 0.0 ? scale * w : w) * e.sinkage;
