@@ -66,10 +66,10 @@ void registerDrivers() {
     for (int i = manager.GetDriverCount() - 1; i >= 0; --i) {
       GDALDriver* driver = manager.GetDriver(i);
       const std::string_view name = GDALGetDriverShortName(driver);
-      const auto is = [&](const char* allowed) { return name == allowed; };
-      if (std::none_of(std::begin(kDrivers), std::end(kDrivers), [&](const char* d) { return d && is(d); }) &&
-          !is("MEM") && !is("VRT"))
-        manager.DeregisterDriver(driver);
+      const auto is = [&](const char* allowed) { return allowed && name == allowed; };
+      if (std::any_of(std::begin(kDrivers), std::end(kDrivers), is) || is("MEM") || is("VRT")) continue;
+      manager.DeregisterDriver(driver);
+      GDALDestroyDriver(driver);
     }
     CPLSetConfigOption("CPL_VSIL_CURL_ALLOWED_FILENAME", "none");
   });
