@@ -132,6 +132,7 @@ typedef struct talus_cell {
   float sinkage_mean, sinkage_std; /* over wheel radius */
   uint8_t category;                /* 0 safe, 1 marginal, 2 dangerous, 3 unknown */
   uint8_t hazards;                 /* bits: 1 unknown, 2 slope, 4 step, 8 roughness, 16 rocks, 32 keep-out, 64 obstacle, 128 near */
+  uint8_t reserved[2];             /* 0 */
 } talus_cell;
 
 TALUS_API void talus_default_rover(talus_rover* rover);
