@@ -184,8 +184,8 @@ TEST(PlanCommand, PlansInWindowsOfAMapBeyondMemory) {
   ASSERT_EQ(windows.code, 0) << windows.err;
   const double whole_J = json::parse(whole.out)["cost"], windows_J = json::parse(windows.out)["cost"];
   EXPECT_NEAR(windows_J, whole_J, 0.05 * whole_J);
-  for (const auto& height :
-       json::parse(fileContent(folder / "windows.geojson"))["features"][0]["properties"]["elevation_m"])
+  const json route = json::parse(fileContent(folder / "windows.geojson"));
+  for (const auto& height : route["features"][0]["properties"]["elevation_m"])
     ASSERT_TRUE(height.is_number());
   const Ran score = runTalus(
       {"score", "dem.tif", "--soil", "sandy_loam", "--rover", "fido", "--json", "--path", "windows.geojson"},

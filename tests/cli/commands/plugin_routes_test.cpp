@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "beyond_memory.hpp"
 #include "run_program.hpp"
 
 namespace talus::cli {
@@ -82,7 +83,7 @@ TEST_F(PluginRoutes, WhatAPluginDoesWrongIsOneLine) {
                              {"odd", 2, "no std::exception"},
                              {"undefined", 2, "vertex 1 is nan"},
                              {"crashes", 2, "ended its process (Aborted)"},
-                             {"huge", 2, "takes more than 4096 MB of memory"},
+                             {"huge", 2, kBeyondMemory},
                              {"empty", 2, "without a vertex"},
                              {"elsewhere", 1, "it ends at 36"},
                              {"winding", 1, "cells long, must be at most 1000000"},

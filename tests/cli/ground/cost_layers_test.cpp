@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bad_input.hpp"
+#include "beyond_memory.hpp"
 
 namespace talus::cli {
 namespace {
@@ -146,7 +147,7 @@ TEST_F(CostLayers, WhatAPluginDoesWrongIsOneLine) {
        std::vector<std::pair<std::string, std::string>>{{"throws", "threw an error: no sun today"},
                                                         {"prints", "threw an error: after that"},
                                                         {"crashes", "ended its process (Aborted)"},
-                                                        {"huge", "takes more than 4096 MB of memory"},
+                                                        {"huge", kBeyondMemory},
                                                         {"short", "answered for 959 cells, must be 960"},
                                                         {"negative", "J/m, must be 0 to 1e6"},
                                                         {"beyond", "J/m, must be 0 to 1e6"}}) {

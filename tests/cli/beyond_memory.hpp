@@ -1,0 +1,12 @@
+#pragma once
+
+namespace talus::cli {
+
+/// What is told of a plugin that takes too much memory. A sanitizer's allocator ends the process instead.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+inline constexpr const char* kBeyondMemory = "ended its process";
+#else
+inline constexpr const char* kBeyondMemory = "takes more than 4096 MB of memory";
+#endif
+
+}  // namespace talus::cli
