@@ -42,6 +42,7 @@ struct CsvReader::Parser {
   std::deque<CsvRow> ready;
   CsvRow current;
   std::size_t line = 1;       // of the record that is being read
+  std::size_t swallowed = 0;  // line of a record whose quotes hold other rows; 0: none
   bool after_return = false;  // the last record ended with CR: a LF that follows belongs to it
   bool done = false;
 };
@@ -107,13 +108,16 @@ void CsvReader::Parser::feed() {
   };
   if (csv_parse(&csv, buffer.data() + skip, count - skip, field, end_of_record, this) != count - skip)
     refuse(csv_strerror(csv_error(&csv)), "");
-  if (file) return;
+  if (swallowed == 0 && file) return;
   done = true;
   constexpr int kFieldBegun = 2;  // libcsv's state inside a field
   const bool open_quote = csv.pstate == kFieldBegun && csv.quoted;
-  const std::size_t before = ready.size();
+  if (open_quote && swallowed == 0) swallowed = line;
+  if (swallowed > 0)
+    throw InputError({.where = path.string() + ":" + std::to_string(swallowed),
+                      .reason = "a quote of this line holds the rows behind it",
+                      .remedy = "close or remove it"});
   csv_fini(&csv, field, end_of_record, this);
-  if (open_quote && ready.size() > before) ready.back().fault = "an opening quote has no closing quote";
 }
 
 void CsvReader::Parser::endRecord(int terminator) {
@@ -123,6 +127,10 @@ void CsvReader::Parser::endRecord(int terminator) {
   }
   after_return = terminator == '\r';
   current.line = line;
+  const auto holds_rows = [](const std::string& f) {
+    return f.find(',') != std::string::npos && f.find_first_of("\r\n") != std::string::npos;
+  };
+  if (swallowed == 0 && std::ranges::any_of(current.fields, holds_rows)) swallowed = line;
   for (const auto& f : current.fields) line += static_cast<std::size_t>(std::count(f.begin(), f.end(), '\n'));
   ++line;
   if (!current.fields.empty()) ready.push_back(std::move(current));

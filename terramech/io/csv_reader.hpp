@@ -30,8 +30,9 @@ class CsvReader {
   /// Column names in order; unnamed columns are empty.
   const std::vector<std::string>& header() const noexcept;
 
-  /// The next record, or false at the end. A record that is cut short, too long, repeats the header or whose
-  /// quote is never closed is handed out with its fault.
+  /// The next record, or false at the end. A record that is cut short, too long or repeats the header is handed out with its
+  /// fault. Throws InputError where a stray quote holds other rows: it is never closed, or what it holds has line breaks and
+  /// commas.
   bool next(CsvRow& row);
 
   /// Share of the file read so far, 0 to 1.
