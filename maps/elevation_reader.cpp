@@ -23,8 +23,8 @@ void check(const ReadOptions& options) {
           "--resolution", "must be a number of metres above 0");
   require(!options.resolution_m || (*options.resolution_m >= 1e-3 && *options.resolution_m <= 1e6),
           "--resolution", "must be 0.001 to 1000000 metres");
-  require(std::isfinite(options.vertical_scale) && options.vertical_scale != 0, "--vertical-scale",
-          "must be a number other than 0");
+  require(std::abs(options.vertical_scale) >= 1e-6 && std::abs(options.vertical_scale) <= 1e6,
+          "--vertical-scale", "must be 1e-6 to 1e6, or that below 0");
 }
 
 // A corner of the window in map metres.

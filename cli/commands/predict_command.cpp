@@ -37,6 +37,10 @@ int run(const PredictOptions& options, Context& context) {
   const auto table =
       terramech::predictTable(options.table, file.model, file.scope, context.watch("predicting"));
   if (context.stop.stop_requested()) return Exit::kCancelled;
+  if (table.predicted == 0)
+    throw InputError(
+        {options.table, "none of its rows can be predicted",
+         table.refused.empty() ? "it has no rows" : "first reason: " + table.refused.front().reason});
   constexpr std::size_t kShown = 20;
   for (std::size_t k = 0; k < table.refused.size() && k < kShown; ++k)
     context.warn(fmt::format("{}:{}: {}", options.table, table.refused[k].line, table.refused[k].reason));

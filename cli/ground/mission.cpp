@@ -19,6 +19,7 @@ std::string resolved(const std::string& path, const std::filesystem::path& folde
 }
 
 void take(std::string& option, const YamlFields& fields, const std::string& name) {
+  if (fields.has(name) && fields.word(name).empty()) fields.refuse(name, name + " is empty", "leave it out");
   if (option.empty()) option = fields.word(name, "");
 }
 
@@ -114,7 +115,11 @@ void readMission(PlanOptions& options) {
     if (!*heading && fields.has(key)) *heading = fields.number(key);
   if (!fields.flag("reverse", true)) options.drive.no_reverse = true;
   if (options.tolerance_m == 0.0) options.tolerance_m = fields.number("tolerance_m", 0.0);
-  if (options.time_limit_s == 0.0) options.time_limit_s = fields.number("time_s", 0.0);
+  if (options.time_limit_s == 0.0 && fields.has("time_s")) {
+    options.time_limit_s = fields.number("time_s");
+    if (!(options.time_limit_s > 0.0))
+      fields.refuse("time_s", "time_s must be > 0", "leave it out for no limit");
+  }
   take(options.output, fields, "output");
 }
 

@@ -57,6 +57,7 @@ void bindPlan(CLI::App& command, PlanOptions& options) {
           "--in-memory", options.in_memory,
           "largest DEM that is read whole; a larger one is read in windows along a route over its overview")
       ->type_name("CELLS")
+      ->check(notNegative())
       ->capture_default_str();
   command.add_flag(
       "--whole-field", options.whole_field,

@@ -43,6 +43,9 @@ void validate(const Rover& rover) {
   check.within("wheelbase_m", rover.wheelbase_m, {1e-3, 100.0});
   check.within("track_m", rover.track_m, {1e-3, 100.0});
   check.within("turning_radius_m", rover.turning_radius_m, {0.0, 1000.0});
+  check.within("max_torque_Nm", rover.max_torque_Nm, {0.0, 1e6});
+  check.within("max_speed_mps", rover.max_speed_mps, {0.0, 100.0});
+  check.within("hotel_power_W", rover.hotel_power_W, {0.0, 1e6});
   // A belly higher than the rover is long and wide is a slip of units: steps and rocks would vanish under it.
   check.within("clearance_m", rover.clearance_m, {1e-3, std::max(rover.wheelbase_m, rover.track_m)});
 }

@@ -20,6 +20,11 @@ void validate(const Soil& soil) {
   check.above("density_kg_m3", soil.density_kg_m3, 0.0);
   check.atLeast("digging_exponent", soil.digging_exponent, 0.0);
   check.atLeast("side_bulldozing", soil.side_bulldozing, 0.0);
+  // Beyond these no ground is known, by a factor of a hundred or more.
+  check.within("cohesion_Pa", soil.cohesion_Pa, {0.0, 1e9});
+  check.within("sinkage_exponent", soil.sinkage_exponent, {1e-3, 100.0});
+  check.within("shear_modulus_m", soil.shear_modulus_m, {1e-9, 1e3});
+  check.within("density_kg_m3", soil.density_kg_m3, {0.1, 1e6});
 }
 
 }  // namespace talus::terramech

@@ -23,17 +23,28 @@ struct Rule {
   const char* bound;
 };
 
+bool isPlace(double x) {
+  return std::abs(x) <= 1e9;
+}
+
 constexpr Rule kRules[] = {
     {"load_N", [](double x) { return x > 0.0 && x <= 1e7; }, "> 0 and at most 1e7"},
     {"sinkage_m", [](double x) { return x >= 0.0; }, ">= 0"},
     {"slip", [](double x) { return x >= -1.0 && x <= 1.0; }, "in [-1, 1]"},
     // A right angle, and what reads one: tables of wheels pulled across their travel have up to 1.577.
     {"slip_angle_rad", [](double x) { return std::abs(x) <= 1.6; }, "in [-1.6, 1.6]"},
-    {"wheel_radius_m", [](double x) { return x > 0.0; }, "> 0"},
-    {"wheel_width_m", [](double x) { return x > 0.0; }, "> 0"},
-    {"grouser_height_m", [](double x) { return x >= 0.0; }, ">= 0"},
-    {"grouser_count", [](double x) { return x >= 0.0; }, ">= 0"},
-    {"shear_modulus_m", [](double x) { return x > 0.0; }, "> 0"},
+    {"slope_rad", [](double x) { return std::abs(x) <= 1.5; }, "in [-1.5, 1.5]"},
+    {"roll_rad", [](double x) { return std::abs(x) <= 1.5; }, "in [-1.5, 1.5]"},
+    {"pass_index", [](double x) { return x >= 1.0 && x <= 1e6 && x == std::floor(x); },
+     "1, 2, ... up to 1e6"},
+    {"x_m", isPlace, "within 1e9 of 0"},
+    {"y_m", isPlace, "within 1e9 of 0"},
+    {"z_m", isPlace, "within 1e9 of 0"},
+    {"wheel_radius_m", [](double x) { return x >= 1e-3 && x <= 10.0; }, "in [0.001, 10]"},
+    {"wheel_width_m", [](double x) { return x >= 1e-3 && x <= 10.0; }, "in [0.001, 10]"},
+    {"grouser_height_m", [](double x) { return x >= 0.0 && x <= 1.0; }, "in [0, 1]"},
+    {"grouser_count", [](double x) { return x >= 0.0 && x <= 1000.0; }, "in [0, 1000]"},
+    {"shear_modulus_m", [](double x) { return x >= 1e-9 && x <= 1e3; }, "in [1e-9, 1000]"},
 };
 
 // Less is what rounding leaves of nothing, as an angle's tangent does; plausible() asks for as much.

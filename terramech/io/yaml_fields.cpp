@@ -101,7 +101,10 @@ YamlFields YamlFields::file(const std::string& path) {
 
 YamlFields YamlFields::text(const std::string& yaml, const std::string& origin) {
   try {
-    const YAML::Node root = YAML::Load(yaml);
+    const std::vector<YAML::Node> documents = YAML::LoadAll(yaml);
+    if (documents.size() > 1)
+      fail(origin, "holds " + std::to_string(documents.size()) + " YAML documents", "keep one of them");
+    const YAML::Node root = documents.empty() ? YAML::Node() : documents.front();
     if (root.IsNull()) fail(origin, "is empty", "write `name: value` lines");
     return of(root, origin, "");
   } catch (const YAML::Exception& e) {

@@ -90,6 +90,12 @@ TEST(Mission, MistakesNameTheFileAndTheField) {
   EXPECT_THAT(refused("maps: {terrain: a.tif}\n"), ThrowsMessage<InputError>(HasSubstr("defines no map")));
   EXPECT_THAT(refused("maps: {dem: a.tif}\nthresholds: {allow_marginal: maybe}\n"),
               ThrowsMessage<InputError>(HasSubstr("bad.yaml:2")));
+  EXPECT_THAT(refused("maps: {dem: a.tif}\ntime_s: -1\n"),
+              ThrowsMessage<InputError>(HasSubstr("bad.yaml:2")));
+  EXPECT_THAT(refused("maps: {dem: a.tif}\noutput: \"\"\n"),
+              ThrowsMessage<InputError>(HasSubstr("output is empty")));
+  EXPECT_THAT(refused("maps: {dem: a.tif}\n---\nmaps: {dem: b.tif}\n"),
+              ThrowsMessage<InputError>(HasSubstr("2 YAML documents")));
   EXPECT_THAT(refused("rover: mer\n"), ThrowsMessage<InputError>(HasSubstr("maps")));
 }
 

@@ -27,6 +27,20 @@ TEST(Soil, RefusalNamesSoilFieldValueAndBound) {
                   Property(&std::exception::what, HasSubstr("soil 'sand': cohesion_Pa = -1, must be >= 0"))));
 }
 
+// Property: magnitudes that no ground has are refused, be they in range of a formula or not.
+TEST(Soil, ImpossibleMagnitudesAreRefused) {
+  for (const auto& [field, value] : {std::pair{&Soil::cohesion_Pa, 1e15},
+                                     {&Soil::shear_modulus_m, 1e-15},
+                                     {&Soil::shear_modulus_m, 1e15},
+                                     {&Soil::sinkage_exponent, 1e-15},
+                                     {&Soil::density_kg_m3, 1e-15},
+                                     {&Soil::density_kg_m3, 1e15}}) {
+    Soil soil = sand();
+    soil.*field = value;
+    EXPECT_THROW(validate(soil), std::invalid_argument) << value;
+  }
+}
+
 TEST(Soil, NotANumberIsRefusedInEveryField) {
   for (double Soil::*field :
        {&Soil::cohesion_Pa, &Soil::friction_angle_rad, &Soil::sinkage_exponent, &Soil::cohesive_modulus,

@@ -36,6 +36,20 @@ TEST(TelemetryReader, KeepsEveryColumnInWhateverOrder) {
   EXPECT_THAT(t.lines, ElementsAre(2, 3));
 }
 
+// Property: what no rover on no ground reads is no reading.
+TEST(TelemetryReader, RejectsWhatIsImpossible) {
+  for (const char* column :
+       {"slope_rad=1.5708", "slope_rad=-10", "roll_rad=2", "pass_index=-1", "pass_index=0.5",
+        "pass_index=1e15", "x_m=1e15", "y_m=-1e10", "z_m=1e12", "wheel_width_m=1e15", "wheel_width_m=1e-12",
+        "grouser_height_m=3", "grouser_count=1e9", "shear_modulus_m=1e15"}) {
+    const std::string text = column;
+    const std::size_t at = text.find('=');
+    const Telemetry t = read("load_N," + text.substr(0, at) + "\n80," + text.substr(at + 1) + "\n80,\n");
+    ASSERT_EQ(t.rejected.size(), 1U) << text;
+    EXPECT_EQ(t.rejected[0].line, 2U);
+  }
+}
+
 TEST(TelemetryReader, RejectsRowsByLineAndReason) {
   struct Case {
     const char* row;
@@ -50,7 +64,8 @@ TEST(TelemetryReader, RejectsRowsByLineAndReason) {
                         {"80,0.2,0.3,0.1", "sinkage_m = 0.2, must be < the wheel's diameter, 0.2"},
                         {"80,0.02,1.01,0.1", "slip = 1.01, must be in [-1, 1]"},
                         {"80,0.02,-1.01,0.1", "slip = -1.01, must be in [-1, 1]"},
-                        {"80,0.02,0.3,-0.1", "wheel_radius_m = -0.1, must be > 0"},
+                        {"80,0.02,0.3,-0.1", "wheel_radius_m = -0.1, must be in [0.001, 10]"},
+                        {"80,0.02,0.3,1e14", "wheel_radius_m = 1e14, must be in [0.001, 10]"},
                         {"heavy,0.02,0.3,0.1", "load_N = 'heavy', must be a number"},
                         {"80,0.02", "has 2 fields, the header 4"},
                         {"load_N,sinkage_m,slip,wheel_radius_m", "repeats the header"}}) {
