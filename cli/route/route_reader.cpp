@@ -28,11 +28,13 @@ class Fields {
     if (!object.is_object()) refuse("properties", "is missing");
   }
 
-  double number(const char* field) const {
-    const json& value = at(field);
-    if (value.is_null()) return std::nan("");
-    if (!value.is_number()) refuse(field, "is not a number");
-    return value.get<double>();
+  /// null is NaN.
+  double number(const char* field) const { return numberOf(field, at(field)); }
+
+  int count(const char* field) const {
+    const double value = number(field);
+    if (!(value >= 0.0 && value <= 1e9)) refuse(field, "is no count");
+    return static_cast<int>(value);
   }
 
   std::string text(const char* field) const {
@@ -54,11 +56,7 @@ class Fields {
     const json& values = array(field);
     if (values.size() != vertices.size())
       refuse(field, fmt::format("has {} values for {} vertices", values.size(), vertices.size()));
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      if (!values[i].is_number() && !values[i].is_null())
-        refuse(field, "contains values that are not numbers");
-      vertices[i].*member = values[i].is_null() ? std::nan("") : values[i].get<double>();
-    }
+    for (std::size_t i = 0; i < values.size(); ++i) vertices[i].*member = numberOf(field, values[i]);
   }
 
   [[noreturn]] void refuse(const char* field, const std::string& what) const {
@@ -66,6 +64,14 @@ class Fields {
   }
 
  private:
+  double numberOf(const char* field, const json& value) const {
+    constexpr double kMost = 1e30;  // costs by the greatest weights are less
+    if (value.is_null()) return std::nan("");
+    if (!value.is_number()) refuse(field, "holds what is no number");
+    if (!(std::abs(value.get<double>()) <= kMost)) refuse(field, "holds a number beyond 1e30");
+    return value.get<double>();
+  }
+
   const json& at(const char* field) const {
     const auto found = object_.find(field);
     if (found == object_.end()) refuse(field, "is missing");
@@ -131,8 +137,8 @@ void readDrive(const Fields& fields, std::vector<RouteVertex>& vertices) {
 }
 
 planner::DriveShape shapeFrom(const Fields& drive) {
-  return {.cusps = static_cast<int>(drive.number("cusps")),
-          .turns_in_place = static_cast<int>(drive.number("turns_in_place")),
+  return {.cusps = drive.count("cusps"),
+          .turns_in_place = drive.count("turns_in_place"),
           .turned_rad = drive.number("turned_rad"),
           .max_curvature_1_m = drive.number("max_curvature_1_m")};
 }

@@ -56,6 +56,9 @@ TEST(RouteReader, RefusalNamesFileAndField) {
   properties["slip"].erase(0);
   EXPECT_THAT(refusal(document), HasSubstr("r.geojson: 'slip' has 60 values for 61 vertices; pass a route"));
   document = written();
+  document["features"][0]["properties"]["torque_Nm"][7] = 1e300;
+  EXPECT_THAT(refusal(document), HasSubstr("'torque_Nm' holds a number beyond 1e30"));
+  document = written();
   document["features"][0]["properties"]["category"][5] = "soggy";
   EXPECT_THAT(refusal(document), HasSubstr("'category' contains an unknown word"));
   document = written();
@@ -63,7 +66,7 @@ TEST(RouteReader, RefusalNamesFileAndField) {
   EXPECT_THAT(refusal(document), HasSubstr("contain values that are not numbers"));
   document = written();
   document["features"][0]["properties"]["summary"]["cost"] = "much";
-  EXPECT_THAT(refusal(document), HasSubstr("'cost' is not a number"));
+  EXPECT_THAT(refusal(document), HasSubstr("'cost' holds what is no number"));
 }
 
 TEST(RouteReader, StandsAnyCutOfAFile) {
