@@ -43,6 +43,29 @@ bool isJournal(const fs::path& path) {
   return std::string_view(start.data(), start.size()) == "SQLite format 3";
 }
 
+// What SQLite keeps beside a database: what is committed, but not yet in the database itself, is there alone.
+constexpr std::array<std::string_view, 3> kBesideJournal{"-wal", "-shm", "-journal"};
+
+// The file that a name leads to, also where the last of its links leads to none.
+fs::path followed(fs::path path) {
+  constexpr int kMostLinks = 40;
+  std::error_code error;
+  for (int link = 0; link < kMostLinks && fs::is_symlink(path, error); ++link)
+    path = path.parent_path() / fs::read_symlink(path, error);
+  return path;
+}
+
+// The journal of whose files a name is one; empty where there is none.
+fs::path journalBehind(const fs::path& path) {
+  const std::string name = followed(path).string();
+  for (const std::string_view end : kBesideJournal)
+    if (name.ends_with(end)) {
+      const fs::path journal = name.substr(0, name.size() - end.size());
+      if (std::error_code error; fs::is_regular_file(journal, error) && isJournal(journal)) return journal;
+    }
+  return {};
+}
+
 // Formats that are written, by the endings that a file's name may have; those in a row mean the same.
 using Names = std::vector<std::string_view>;
 const std::array<Names, 12> kFormats{{{".tif", ".tiff"},
@@ -104,6 +127,19 @@ void checkOutput(const fs::path& path, const std::vector<std::string>& inputs) {
   for (const std::string& input : inputs)
     if (!input.empty() && same(path, input)) refuse(path, "is also an input or another output of this call");
   if (fs::is_regular_file(status) && isJournal(path)) refuse(path, "is an SQLite file, as a journal is");
+  if (const fs::path journal = journalBehind(path); !journal.empty())
+    refuse(path, "is a part of the journal " + journal.string());
+}
+
+void checkBesideJournal(const fs::path& path, const fs::path& journal) {
+  if (path.empty() || journal.empty()) return;
+  const auto refuseIf = [&](const fs::path& taken, const std::string& reason) {
+    if (same(followed(path), taken)) throw InputError({path.string(), reason, "name another file"});
+  };
+  const fs::path file = followed(journal);
+  refuseIf(file, "is the journal of this call");
+  for (const std::string_view end : kBesideJournal)
+    refuseIf(file.string() + std::string(end), "is a part of the journal " + journal.string());
 }
 
 // A GeoTIFF named .asc is believed by its name later.

@@ -20,9 +20,13 @@ bool isNamed(const std::filesystem::path& path, const std::string& ending);
 CLI::Option* addOutput(CLI::App& command, const std::string& names, std::string& path,
                        const std::string& text);
 
-/// Refuses a place that only --force may overwrite: one of the `inputs`, a journal, what is no regular file, a link out
-/// of its folder. Throws InputError.
+/// Refuses a place that only --force may overwrite: one of the `inputs`, a journal or what SQLite keeps beside one, what is
+/// no regular file, a link out of its folder. Throws InputError.
 void checkOutput(const std::filesystem::path& path, const std::vector<std::string>& inputs);
+
+/// Refuses a file of a call that is its journal or one of SQLite's files beside that (-wal, -shm, -journal), by whatever
+/// spelling; --force does not allow it, since the call would destroy what it reads or writes. Throws InputError.
+void checkBesideJournal(const std::filesystem::path& path, const std::filesystem::path& journal);
 
 /// Refuses a name whose ending is that of another known format than is written; `written` is a file name, or several with |
 /// ("ROUTE.geojson|FILE.csv"). A name without an ending, or with one that denotes no known format, is accepted. Throws InputError.

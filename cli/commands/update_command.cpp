@@ -96,6 +96,8 @@ Difference between(const Snapshot& before, const Snapshot& after) {
 }
 
 void checkCall(const Options& options) {
+  for (const std::string& file : {options.output, options.map, options.telemetry})
+    checkBesideJournal(file, options.journal);
   std::error_code error;
   if (options.replay && (std::filesystem::file_size(options.journal, error) == 0 || error))
     refuseReplay(options);

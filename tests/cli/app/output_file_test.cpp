@@ -46,6 +46,40 @@ TEST(CheckOutput, KeepsInputsJournalsDevicesAndForeignLinks) {
   EXPECT_EQ(refusal(folder / "in.csv", {folder / "e.db"}), "");
 }
 
+// `update -o e.db-wal --journal e.db` ended by 0, and SQLite had overwritten its output.
+TEST(CheckOutput, KeepsWhatSqliteHasBesideAJournal) {
+  const Folder folder;
+  folder.write("e.db", "SQLite format 3 and more");
+  folder.write("text", "x");
+  fs::create_symlink("e.db-wal", folder / "link");
+  for (const char* name : {"e.db-wal", "e.db-shm", "e.db-journal", "./e.db-wal", "link"})
+    EXPECT_NE(refusal(folder / name), "") << name;
+  EXPECT_THAT(refusal(folder / "e.db-wal"), testing::HasSubstr("is a part of the journal"));
+  for (const char* name : {"text-wal", "none-wal", "e.db-wall", "e.db.ot"})
+    EXPECT_EQ(refusal(folder / name), "") << name;
+}
+
+// Of a journal that does not exist yet, too; whatever way either is spelled.
+TEST(CheckOutput, IsNoPartOfTheJournalOfItsCall) {
+  const Folder folder;
+  fs::create_directory(folder / "f");
+  fs::create_symlink("j.db", folder / "link.db");
+  fs::create_symlink(".", folder / "here");
+  const auto refused = [&](const std::string& output, const std::string& journal) {
+    try {
+      checkBesideJournal(folder / output, folder / journal);
+    } catch (const InputError&) {
+      return true;
+    }
+    return false;
+  };
+  for (const char* output : {"j.db", "j.db-wal", "f/../j.db-shm", "here/j.db-journal", "link.db"})
+    for (const char* journal : {"j.db", "./j.db", "f/../j.db", "here/j.db", "link.db"})
+      EXPECT_TRUE(refused(output, journal)) << output << ' ' << journal;
+  EXPECT_FALSE(refused("link.db-wal", "link.db")) << "SQLite's files lie beside what the link leads to";
+  EXPECT_FALSE(refused("j2.db-wal", "j.db"));
+}
+
 TEST(CheckOutput, HoldsForEveryCall) {
   const BadFiles files;
   const std::string map = "good.asc";
@@ -58,13 +92,21 @@ TEST(CheckOutput, HoldsForEveryCall) {
     words.insert(words.end(), more.begin(), more.end());
     return words;
   };
-  expectRefused(files,
-                {{call({"costmap"}, {"-o", "./good.asc"}), 2, "also an input"},
-                 {call({"costmap"}, {"-o", "m.ot", "--png", "m.ot"}), 2, "another output"},
-                 {call({"costmap"}, {"-o", "/dev/null"}), 2, "device"},
-                 {{"wheel", "--cases", "words.csv", "-o", "words.csv"}, 2, "also an input"},
-                 {{"update", "m.ot", "words.csv", "-o", "j.db", "--journal", "j.db"}, 2, "also an input"},
-                 {{"plan", "mission.yaml"}, 2, "is no route"}});
+  expectRefused(
+      files,
+      {{call({"costmap"}, {"-o", "./good.asc"}), 2, "also an input"},
+       {call({"costmap"}, {"-o", "m.ot", "--png", "m.ot"}), 2, "another output"},
+       {call({"costmap"}, {"-o", "/dev/null"}), 2, "device"},
+       {{"wheel", "--cases", "words.csv", "-o", "words.csv"}, 2, "also an input"},
+       {{"update", "m.ot", "words.csv", "-o", "j.db", "--journal", "j.db"}, 2, "also an input"},
+       {{"update", "m.ot", "words.csv", "-o", "j.db-wal", "--journal", "j.db"}, 2, "part of the journal"},
+       {{"update", "m.ot", "words.csv", "-o", "j.db-wal", "--journal", "j.db", "--force"},
+        2,
+        "part of the journal"},
+       {{"update", "words.csv-wal", "m.csv", "-o", "m.ot", "--journal", "words.csv"},
+        2,
+        "part of the journal"},
+       {{"plan", "mission.yaml"}, 2, "is no route"}});
 }
 
 // `generate -o site.asc` wrote a GeoTIFF of that name.
