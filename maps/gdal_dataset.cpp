@@ -44,6 +44,13 @@ void refuseShortEnvi(GDALDataset& dataset, const std::string& path) {
                       "fetch it again"});
 }
 
+// Metadata inside of a GeoTIFF may name them, too; GDAL opens them when it is asked for overviews.
+void refuseForeignOverviews(GDALDataset& dataset, const std::string& path) {
+  const char* name = dataset.GetMetadataItem("OVERVIEW_FILE", "OVERVIEWS");
+  if (name != nullptr && std::string_view(name).find_first_of("/\\") != std::string_view::npos)
+    throw InputError({path, "has its overviews in another folder", "make them again with gdaladdo"});
+}
+
 // GDAL takes a grid of text for whole numbers where its first ones are, and reads "inf" and "nan" as 0.
 Dataset withFractions(Dataset file, const std::string& path) {
   if (std::string_view(file->GetDriver()->GetDescription()) != "AAIGrid") return file;
@@ -129,6 +136,7 @@ Dataset openRaster(const std::string& path, bool allow_vrt) {
                       "give a GeoTIFF or another raster"});
   if (dataset->GetRasterCount() == 0 || dataset->GetRasterXSize() == 0 || dataset->GetRasterYSize() == 0)
     throw InputError({path, "holds no raster band", "name one of its subdatasets (gdalinfo lists them)"});
+  refuseForeignOverviews(*dataset, path);
   refuseShortEnvi(*dataset, path);
   return withFractions(std::move(dataset), path);
 }

@@ -1,35 +1,36 @@
 #include <algorithm>
 #include <cctype>
-#include <fstream>
+#include <filesystem>
+#include <iterator>
+#include <map>
+#include <set>
 #include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
 
+#include <talus/maps/label_names.hpp>
 #include <talus/maps/referenced_files.hpp>
 #include <talus/talus.hpp>
 
 namespace talus::maps {
 namespace {
 
-constexpr std::size_t kMostText = std::size_t{16} << 20U;  // a label or a virtual raster is shorter
+namespace fs = std::filesystem;
+
+constexpr std::size_t kDeepest = 8;
 
 std::string lower(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
   return text;
 }
 
-// In lower case; as much as a label may be.
-std::string beginning(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::string text(4096, '\0');
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(file.gcount()));
-  const std::string start = lower(text);
-  const bool label = start.find("<vrtdataset") != start.npos || start.find("<product_") != start.npos ||
-                     start.find("isiscube") != start.npos || start.find("pds_version_id") != start.npos;
-  if (!label || !file) return start;
-  std::string rest(kMostText, '\0');
-  file.read(rest.data(), static_cast<std::streamsize>(rest.size()));
-  rest.resize(static_cast<std::size_t>(file.gcount()));
-  return start + lower(rest);
+bool beginsWith(const std::string& text, const std::string& start) {
+  return text.compare(0, start.size(), start) == 0;
+}
+
+bool endsWith(const std::string& text, std::string_view end) {
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
 [[noreturn]] void refuse(const std::string& path, const std::string& name) {
@@ -37,51 +38,142 @@ std::string beginning(const std::string& path) {
                     "put the files into one folder and name them without a path"});
 }
 
-// A name of a file beside the label, and nothing that GDAL would take for more.
-void requirePlainName(const std::string& path, std::string_view name) {
-  while (!name.empty() && std::isspace(static_cast<unsigned char>(name.front())) != 0) name.remove_prefix(1);
-  const bool plain = name.find_first_of("/\\:&") == name.npos && name.find("..") == name.npos;
-  if (!plain) refuse(path, std::string(name));
+// Endings of what GDAL's drivers open beside a raster, world files (.tfw, .wld) among them.
+bool isAuxiliary(const std::string& name) {
+  const std::string ending = lower(fs::path(name).extension().string());
+  constexpr const char* kEndings[] = {".xml", ".aux", ".ovr", ".msk", ".prj", ".hdr",  ".wld", ".clr",
+                                      ".stx", ".rep", ".sch", ".imd", ".rpb", ".pvl",  ".rpc", ".txt",
+                                      ".lbl", ".img", ".tab", ".rrd", ".eph", ".pass", ".met"};
+  const auto is = [&](const char* other) { return ending == other; };
+  return std::any_of(std::begin(kEndings), std::end(kEndings), is) ||
+         (ending.size() >= 2 && ending.size() <= 5 && (ending.back() == 'w' || endsWith(ending, "wx")));
 }
 
-// Contents of every element of that name.
-template <typename Visit>
-void eachElement(const std::string& text, const std::string& tag, Visit&& visit) {
-  for (std::size_t at = text.find("<" + tag); at != text.npos; at = text.find("<" + tag, at + 1)) {
-    const std::size_t begin = text.find('>', at);
-    const std::size_t end = text.find('<', begin);
-    if (begin != text.npos && end != text.npos)
-      visit(std::string_view(text).substr(begin + 1, end - begin - 1));
+// One raster, what it names, and what lies beside each.
+class References {
+ public:
+  References(const std::string& path, bool allow_vrt) : allow_vrt_(allow_vrt) {
+    std::error_code error;
+    const fs::path folder = fs::path(path).parent_path();
+    addFolder(folder);
+    addFolder(fs::weakly_canonical(path, error).parent_path());
   }
-}
 
-// Values of "^Core = name", "^Table = (name, 5)" and the like: quoted or bare words, no numbers.
-void checkPointers(const std::string& path, const std::string& text) {
-  for (std::size_t at = text.find('^'); at != text.npos; at = text.find('^', at + 1)) {
-    const std::size_t equals = text.find_first_of("=\n", at);
-    if (equals == text.npos || text[equals] != '=' || equals - at > 80) continue;
-    const std::size_t end = text.find('\n', equals);
-    requirePlainName(path, std::string_view(text).substr(equals + 1, end - equals - 1));
+  void check(const std::string& path) {
+    std::error_code error;
+    const fs::path file = fs::weakly_canonical(path, error);
+    if (!seen_.insert(file).second) return;
+    if (open_.size() >= kDeepest)
+      throw InputError({path, "is named through more than eight other files", "name the rasters directly"});
+    open_.push_back(file);
+    checkLabel(path);
+    checkBeside(path);
+    open_.pop_back();
   }
-}
+
+ private:
+  struct Folder {
+    fs::path path;  // links resolved
+    fs::path as_given;
+    std::multimap<std::string, std::string> files;  // name in lower case -> name
+  };
+
+  bool isOpen(const fs::path& path) const {
+    std::error_code error;
+    return std::find(open_.begin(), open_.end(), fs::weakly_canonical(path, error)) != open_.end();
+  }
+
+  void addFolder(const fs::path& given) {
+    std::error_code error;
+    const fs::path path = fs::canonical(given.empty() ? fs::path(".") : given, error);
+    const auto same = [&](const Folder& other) { return other.path == path; };
+    if (error || std::any_of(folders_.begin(), folders_.end(), same)) return;
+    Folder folder{path, given, {}};
+    for (fs::directory_iterator at(path, error), end; !error && at != end; at.increment(error)) {
+      const std::string name = at->path().filename().string();
+      folder.files.emplace(lower(name), name);
+    }
+    folders_.push_back(std::move(folder));
+  }
+
+  // A name of a file beside the label, and nothing that GDAL would take for more.
+  void follow(const std::string& path, std::string name, bool virtual_raster = false) {
+    name.erase(0, std::min(name.size(), name.find_first_not_of(" \t\r\n")));
+    if (name.find_first_of("/\\:&") != name.npos || name.find("..") != name.npos) refuse(path, name);
+    name.erase(name.find_last_not_of(" \t\r\n") + 1);
+    for (const Folder& folder : folders_) {
+      const auto [begin, end] = folder.files.equal_range(lower(name));
+      for (auto file = begin; file != end; ++file) {
+        requireInside(path, folder, file->second);
+        if (virtual_raster && isOpen(folder.path / file->second))
+          throw InputError({path, "names itself by '" + name + "'", "name another raster"});
+        check((folder.as_given / file->second).string());
+      }
+    }
+  }
+
+  void requireInside(const std::string& path, const Folder& folder, const std::string& name) const {
+    std::error_code error;
+    const fs::path file = folder.path / name;
+    const fs::file_status status = fs::status(file, error);
+    if (!fs::exists(status) || fs::is_directory(status)) return;
+    const std::string shown = (folder.as_given / name).string();
+    if (!fs::is_regular_file(status))
+      throw InputError({shown, "is a device, a FIFO or a socket beside or named by '" + path + "'",
+                        "remove it or give a file"});
+    const fs::path target = fs::canonical(file, error).parent_path();
+    const auto is = [&](const Folder& other) { return other.path == target; };
+    if (error || std::none_of(folders_.begin(), folders_.end(), is))
+      throw InputError(
+          {shown, "is a link that leads out of the folder of '" + path + "'", "copy the file to its place"});
+  }
+
+  void checkLabel(const std::string& path) {
+    const LabelNames label = labelNames(path);
+    if (label.virtual_raster && !allow_vrt_)
+      throw InputError(
+          {path, "is a virtual raster, which names other files", "pass --allow-vrt if you trust it"});
+    if (label.code) refuse(path, "/vsi or code");
+    for (const std::string& name : label.names) follow(path, name, label.virtual_raster);
+  }
+
+  // What GDAL opens because of its name.
+  void checkBeside(const std::string& path) {
+    const fs::path itself = fs::path(path).filename();
+    const std::string stem = lower(itself.stem().string());
+    for (const Folder& folder : folders_) {
+      std::vector<std::string> beside;
+      for (auto at = folder.files.lower_bound(stem); at != folder.files.end() && beginsWith(at->first, stem);
+           ++at) {
+        const char next = at->first[std::min(stem.size(), at->first.size() - 1)];
+        if ((next == '.' || next == '_') && at->second != itself && isAuxiliary(at->second))
+          beside.push_back(at->second);
+      }
+      for (const std::string& name : beside) checkAuxiliary(path, folder, name);
+    }
+  }
+
+  void checkAuxiliary(const std::string& path, const Folder& folder, const std::string& name) {
+    requireInside(path, folder, name);
+    const std::string file = (folder.as_given / name).string();
+    std::error_code error;
+    if (!fs::is_regular_file(file, error)) return;
+    const std::string low = lower(name);
+    if (endsWith(low, ".aux.xml"))
+      for (const std::string& named : auxiliaryNames(file)) follow(file, named);
+    if (endsWith(low, ".ovr") || endsWith(low, ".msk") || endsWith(low, ".aux")) check(file);
+  }
+
+  bool allow_vrt_;
+  std::vector<Folder> folders_;
+  std::set<fs::path> seen_;
+  std::vector<fs::path> open_;
+};
 
 }  // namespace
 
 void refuseForeignReferences(const std::string& path, bool allow_vrt) {
-  const std::string text = beginning(path);
-  if (text.find("<vrtdataset") != text.npos) {
-    if (!allow_vrt)
-      throw InputError(
-          {path, "is a virtual raster, which names other files", "pass --allow-vrt if you trust it"});
-    for (const char* tag : {"sourcefilename", "sourcedataset", "sourceband", "overview", "maskfile"})
-      eachElement(text, tag, [&](std::string_view name) { requirePlainName(path, name); });
-    if (text.find("pixelfunction") != text.npos || text.find("/vsi") != text.npos)
-      refuse(path, "/vsi or code");
-  } else if (text.find("<product_") != text.npos) {
-    eachElement(text, "file_name", [&](std::string_view name) { requirePlainName(path, name); });
-  } else if (text.find("isiscube") != text.npos || text.find("pds_version_id") != text.npos) {
-    checkPointers(path, text);
-  }
+  References(path, allow_vrt).check(path);
 }
 
 }  // namespace talus::maps
