@@ -10,12 +10,12 @@
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/number_check.hpp>
 #include <talus/cli/app/output_file.hpp>
+#include <talus/cli/ground/drive_options.hpp>
 #include <talus/cli/ground/plugin_option.hpp>
 #include <talus/cli/study/bench_report.hpp>
 #include <talus/cli/study/bench_suite.hpp>
 #include <talus/planner/bench/benchmark_log.hpp>
 #include <talus/planner/route/planner_names.hpp>
-#include <talus/planner/route/turn_prices.hpp>
 
 namespace talus::cli {
 namespace {
@@ -55,7 +55,7 @@ void bind(CLI::App& command, Options& options) {
                   "minimum turning radius of planners with kinematics; 0: the rover turns in place (default: "
                   "the rover's)")
       ->type_name("METRES")
-      ->check(within(0.0, planner::kLargestTurn_m));
+      ->check(turningRadius());
   command.add_option("--side", options.suite.side_cells, "side of a generated site, in cells")
       ->check(CLI::Range(32, 10000))
       ->capture_default_str();

@@ -6,6 +6,7 @@
 #include <talus/cli/ground/drive_options.hpp>
 #include <talus/planner/route/turn_prices.hpp>
 #include <talus/talus.hpp>
+#include <talus/terramech/contact/turning_radius.hpp>
 
 namespace talus::cli {
 namespace {
@@ -37,10 +38,19 @@ void addDriveOptions(CLI::App& command, DriveOptions& drive) {
           "--turning-radius", [&drive](double value) { drive.turning_radius_m = value; },
           "minimum turning radius of hybrid; 0: turns in place (default: the rover's)")
       ->type_name("METRES")
-      ->check(within(0.0, planner::kLargestTurn_m));
+      ->check(turningRadius());
   addChassisOption(command, drive.chassis);
   command.add_flag("--no-reverse", drive.no_reverse, "hybrid: do not drive in reverse");
   groupOptions(command, "Motion");
+}
+
+CLI::Validator turningRadius() {
+  const auto check = [](const std::string& text) -> std::string {
+    double radius_m = 0.0;
+    const bool allowed = CLI::detail::lexical_cast(text, radius_m) && terramech::isTurningRadius(radius_m);
+    return allowed ? "" : text + ", must be 0 or 0.001 to 1000";
+  };
+  return CLI::Validator(check, "");
 }
 
 void addChassisOption(CLI::App& command, std::string& chassis) {

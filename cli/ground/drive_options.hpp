@@ -10,6 +10,7 @@
 
 namespace CLI {
 class App;
+class Validator;
 }
 
 namespace talus::cli {
@@ -20,6 +21,9 @@ void addDriveOptions(CLI::App& command, DriveOptions& drive);
 
 /// Declares --chassis.
 void addChassisOption(CLI::App& command, std::string& chassis);
+
+/// Refuses a turning radius that no rover may have (terramech::isTurningRadius()).
+CLI::Validator turningRadius();
 
 /// What the rover keeps on the map, unless the call overrides it.
 planner::Kinematics kinematicsOf(const DriveOptions& drive, const costmap::TraversabilityMap& map);

@@ -4,7 +4,7 @@
 #include <string>
 
 #include <talus/planner/plugin/request_check.hpp>
-#include <talus/planner/route/turn_prices.hpp>
+#include <talus/terramech/contact/turning_radius.hpp>
 
 namespace talus::planner {
 namespace {
@@ -31,9 +31,8 @@ void requireRanges(const PlanRequest& request) {
   finite("start_heading_rad", request.start_heading_rad);
   finite("goal_heading_rad", request.goal_heading_rad);
   if (!(request.tolerance_m >= 0)) outOfRange("tolerance_m", request.tolerance_m, ">= 0");
-  if (request.kinematics &&
-      !(request.kinematics->turning_radius_m >= 0 && request.kinematics->turning_radius_m <= kLargestTurn_m))
-    outOfRange("kinematics.turning_radius_m", request.kinematics->turning_radius_m, "0 to 1000");
+  if (request.kinematics && !terramech::isTurningRadius(request.kinematics->turning_radius_m))
+    outOfRange("kinematics.turning_radius_m", request.kinematics->turning_radius_m, "0 or 0.001 to 1000");
   if (!request.risk_limit) return;
   const RiskLimit& risk = *request.risk_limit;
   if (!(risk.immobilisation > 0 && risk.immobilisation < 1))

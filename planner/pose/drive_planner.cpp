@@ -12,6 +12,8 @@
 #include <talus/planner/route/polyline.hpp>
 #include <talus/planner/route/time_left.hpp>
 #include <talus/planner/route/turn_prices.hpp>
+#include <talus/terramech/contact/turning_radius.hpp>
+#include <talus/terramech/numerics/range.hpp>
 
 namespace talus::planner {
 namespace {
@@ -163,10 +165,9 @@ PosePlan DrivePlanner::drivenWithin(PoseProblem asked, const Problem& problem) {
 
 Plan DrivePlanner::plan(const Problem& problem) {
   if (!problem.map) throw std::invalid_argument("DrivePlanner: no map");
-  if (!(problem.kinematics.turning_radius_m <= kLargestTurn_m))
-    throw std::invalid_argument(
-        "DrivePlanner: turning_radius_m = " + std::to_string(problem.kinematics.turning_radius_m) +
-        ", must be at most 1000");
+  terramech::RangeCheck("DrivePlanner")
+      .zeroOrWithin("turning_radius_m", problem.kinematics.turning_radius_m,
+                    {terramech::kSmallestTurn_m, terramech::kLargestTurn_m});
   const TimeLeft time(problem.time_limit_s);
   std::vector<maps::Point> stops = problem.via;
   stops.push_back(problem.goal);

@@ -7,6 +7,8 @@
 
 #include <talus/planner/route/dubins.hpp>
 #include <talus/planner/route/kinematics.hpp>
+#include <talus/terramech/contact/turning_radius.hpp>
+#include <talus/terramech/numerics/range.hpp>
 
 namespace talus::planner {
 namespace {
@@ -65,9 +67,8 @@ struct ShortestCurves::Spaces {
 
 ShortestCurves::ShortestCurves(const Kinematics& kinematics)
     : radius_m_(kinematics.turning_radius_m), may_reverse_(kinematics.may_reverse) {
-  if (!(radius_m_ > 0.0))
-    throw std::invalid_argument("kinematics: turning_radius_m = " + std::to_string(radius_m_) +
-                                ", must be > 0 for a shortest curve");
+  terramech::RangeCheck("kinematics")
+      .within("turning_radius_m", radius_m_, {terramech::kSmallestTurn_m, terramech::kLargestTurn_m});
   spaces_ = std::make_unique<const Spaces>(radius_m_);
 }
 ShortestCurves::~ShortestCurves() = default;

@@ -25,7 +25,7 @@ struct TurnPrices {
 
 /// What bends a route. The defaults are a rover that may do anything for free.
 struct Kinematics {
-  double turning_radius_m = 0.0;             ///< smallest radius of an arc, >= 0; 0: turns in place
+  double turning_radius_m = 0.0;             ///< smallest radius of an arc, 0.001 to 1000; 0: turns in place
   bool may_reverse = true;                   ///< Reeds-Shepp when true, Dubins when false
   TurnPrices turns{};                        ///< a radian, on ground that `turns_by_curve` leaves out
   std::vector<TurnPrices> turns_by_curve{};  ///< by the number of the drive curve
@@ -42,7 +42,7 @@ struct Kinematics {
 /// (reeds_shepp_1990, by OMPL; dubins.hpp). Immutable, safe to share between threads.
 class ShortestCurves {
  public:
-  /// Throws std::invalid_argument for a radius that is not > 0.
+  /// Throws std::invalid_argument for a radius outside of 0.001 to 1000 m.
   explicit ShortestCurves(const Kinematics& kinematics);
   ~ShortestCurves();
   ShortestCurves(ShortestCurves&&) noexcept;

@@ -6,9 +6,6 @@
 
 namespace talus::planner {
 
-/// Greatest turning radius [m] that planners take: memory and time of their tables grow with it, and no rover turns wider.
-inline constexpr double kLargestTurn_m = 1000.0;
-
 /// What turning takes beside the path's own length.
 struct TurningGround {
   double lateral_resistance =

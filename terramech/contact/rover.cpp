@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include <talus/terramech/contact/rover.hpp>
+#include <talus/terramech/contact/turning_radius.hpp>
 #include <talus/terramech/numerics/range.hpp>
 
 namespace talus::terramech {
@@ -32,7 +33,6 @@ void validate(const Rover& rover) {
   check.within("max_roll_rad", rover.max_roll_rad, {0.0, 1.5707963});
   check.above("max_torque_Nm", rover.max_torque_Nm, 0.0);
   check.above("max_speed_mps", rover.max_speed_mps, 0.0);
-  check.atLeast("turning_radius_m", rover.turning_radius_m, 0.0);
   check.atLeast("hotel_power_W", rover.hotel_power_W, 0.0);
   // Beyond these it is no vehicle on wheels, and its footprint no number of cells.
   check.within("mass_kg", rover.mass_kg, {1e-3, 1e6});
@@ -42,7 +42,7 @@ void validate(const Rover& rover) {
   check.within("wheels.width_m", rover.wheel.width_m, {1e-3, 10.0});
   check.within("wheelbase_m", rover.wheelbase_m, {1e-3, 100.0});
   check.within("track_m", rover.track_m, {1e-3, 100.0});
-  check.within("turning_radius_m", rover.turning_radius_m, {0.0, 1000.0});
+  check.zeroOrWithin("turning_radius_m", rover.turning_radius_m, {kSmallestTurn_m, kLargestTurn_m});
   check.within("max_torque_Nm", rover.max_torque_Nm, {0.0, 1e6});
   check.within("max_speed_mps", rover.max_speed_mps, {0.0, 100.0});
   check.within("hotel_power_W", rover.hotel_power_W, {0.0, 1e6});

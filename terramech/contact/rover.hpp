@@ -27,7 +27,7 @@ struct Rover {
   double max_roll_rad = 0.35;           ///< tilt across the heading, (0, pi/2)
   double max_torque_Nm = 0.0;           ///< per wheel, > 0
   double max_speed_mps = 0.05;          ///< rim speed on the flat, > 0
-  double turning_radius_m = 0.0;        ///< 0: turns in place
+  double turning_radius_m = 0.0;        ///< 0: turns in place; else 0.001 to 1000
   double hotel_power_W = 0.0;           ///< drawn whether it drives or not, >= 0
   Steering steering = Steering::Skid;
 };

@@ -35,6 +35,12 @@ void RangeCheck::within(const char* field, double value, Interval interval) cons
     refuse(field, value, "in [" + text(interval.low) + ", " + text(interval.high) + "]");
 }
 
+void RangeCheck::zeroOrWithin(const char* field, double value, Interval interval) const {
+  finite(field, value);
+  if (value != 0.0 && (value < interval.low || value > interval.high))
+    refuse(field, value, "0 or in [" + text(interval.low) + ", " + text(interval.high) + "]");
+}
+
 void RangeCheck::refuse(const char* field, double value, const std::string& bound) const {
   throw std::invalid_argument(owner_ + ": " + field + " = " + text(value) + ", must be " + bound);
 }

@@ -20,6 +20,7 @@ class RangeCheck {
   void atLeast(const char* field, double value, double bound) const;
   void above(const char* field, double value, double bound) const;
   void within(const char* field, double value, Interval interval) const;
+  void zeroOrWithin(const char* field, double value, Interval interval) const;
 
  private:
   [[noreturn]] void refuse(const char* field, double value, const std::string& bound) const;

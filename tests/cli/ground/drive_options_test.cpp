@@ -23,7 +23,10 @@ TEST(DriveOptions, HeadingsInRadiansOrDegrees) {
   EXPECT_FALSE(parsed("").any());
   EXPECT_THROW(parsed("--start-heading 1 --start-heading-deg 2"), CLI::ExcludesError);
   EXPECT_THROW(parsed("--start-heading nan"), CLI::ValidationError);
-  EXPECT_THROW(parsed("--turning-radius -1"), CLI::ValidationError);
+  for (const char* radius : {"-1", "1e-9", "1e-15", "0.0009", "1001"})
+    EXPECT_THROW(parsed("--turning-radius " + std::string(radius)), CLI::ValidationError) << radius;
+  EXPECT_EQ(parsed("--turning-radius 0").turning_radius_m, 0.0);
+  EXPECT_EQ(parsed("--turning-radius 0.001").turning_radius_m, 0.001);
   EXPECT_THROW(parsed("--chassis tank"), CLI::ValidationError);
 }
 

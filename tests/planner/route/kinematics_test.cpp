@@ -38,5 +38,20 @@ TEST(Kinematics, ShortestCurvesArriveAndKeepTheRadius) {
   }
 }
 
+// Below a millimetre OMPL's Reeds-Shepp curves no longer close, and its assertion ended the process.
+TEST(Kinematics, ARadiusHasALeast) {
+  const Pose from{{0.0, 0.0}, 0.3}, to{{80.0, 17.0}, -2.0};
+  for (const double bad : {0.0, 1e-15, 1e-9, 1e-4, 2000.0, std::nan("")})
+    EXPECT_THROW(shortestArcs(from, to, {.turning_radius_m = bad}), std::invalid_argument) << bad;
+  // Property: the least arrives across the longest map.
+  const Pose far{{130000.0, 900.0}, 2.0};
+  for (const bool reverse : {false, true}) {
+    const Pose reached =
+        end(from, shortestArcs(from, far, {.turning_radius_m = 1e-3, .may_reverse = reverse}));
+    EXPECT_NEAR(reached.place.x_m, far.place.x_m, 1e-2);
+    EXPECT_NEAR(reached.place.y_m, far.place.y_m, 1e-2);
+  }
+}
+
 }  // namespace
 }  // namespace talus::planner

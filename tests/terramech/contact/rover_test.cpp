@@ -41,6 +41,11 @@ TEST(Rover, EveryLengthMassAndLimitIsChecked) {
     r.*field = -1.0;
     EXPECT_THROW(validate(r), std::invalid_argument);
   }
+  for (const double bad : {1e-15, 1e-9, 1e-4, 1001.0}) {
+    Rover r = rover();
+    r.turning_radius_m = bad;
+    EXPECT_THAT([&] { validate(r); }, ThrowsMessage<std::invalid_argument>(HasSubstr("must be 0 or")));
+  }
   Rover in_millimetres = rover();
   in_millimetres.clearance_m = 250.0;
   EXPECT_THROW(validate(in_millimetres), std::invalid_argument);
