@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -63,11 +64,15 @@ Grid part(const Grid& grid, const CellBox& box) {
                          grid.south_west.y_m + box.first.row * grid.resolution_m}};
 }
 
+void refuseTooMany(const Grid& grid, const ReadOptions& options, const std::string& path) {
+  if (grid.size() <= options.max_cells) return;
+  throw InputError({path,
+                    std::to_string(grid.width) + " x " + std::to_string(grid.height) + " cells are too many",
+                    "read a part with --window or coarser with --resolution, or raise --max-cells"});
+}
+
 void refuseSize(const Grid& grid, const ReadOptions& options, const std::string& path) {
-  if (grid.size() > options.max_cells)
-    throw InputError(
-        {path, std::to_string(grid.width) + " x " + std::to_string(grid.height) + " cells are too many",
-         "read a part with --window or coarser with --resolution"});
+  refuseTooMany(grid, options, path);
   if (grid.width < 2 || grid.height < 2)
     throw InputError(
         {path, std::to_string(grid.width) + " x " + std::to_string(grid.height) + " cells have no slope",
@@ -93,10 +98,8 @@ struct Selection {
   Grid grid;  // of the result
 };
 
-// A box of whole overview cells; what is left over in the north and east is left out.
-CellBox wholeCells(CellBox box, int overview) {
-  const auto last = [overview](int first, int size) { return first + size / overview * overview - 1; };
-  return {box.first, {last(box.first.column, box.width()), last(box.first.row, box.height())}};
+int overviewCells(int cells, int overview) {
+  return cells / overview + (cells % overview > 0 ? 1 : 0);
 }
 
 Selection select(const std::string& path, const ReadOptions& options, std::vector<std::string>& notes) {
@@ -114,13 +117,37 @@ Selection select(const std::string& path, const ReadOptions& options, std::vecto
   code.offset_m *= options.vertical_scale;
   FramedRaster from = frame(std::move(file), band, options, path, notes);
   const CellBox whole{{0, 0}, {from.grid.width - 1, from.grid.height - 1}};
-  const CellBox box =
-      wholeCells(options.window ? cellsOf(*options.window, from, path) : whole, options.overview);
+  const CellBox box = options.window ? cellsOf(*options.window, from, path) : whole;
   Grid grid = part(from.grid, box);
-  grid.width /= options.overview;
-  grid.height /= options.overview;
+  grid.width = overviewCells(grid.width, options.overview);
+  grid.height = overviewCells(grid.height, options.overview);
   grid.resolution_m *= options.overview;
   return {std::move(from), code, box, grid};
+}
+
+// Rows as in the file. The overview cells in the north and east that the box fills in part only are the means of that
+// part: the overview covers the box.
+std::vector<float> pixelsOf(const Selection& chosen, int overview, const std::string& path) {
+  const auto& [from, code, box, grid] = chosen;
+  std::vector<float> values(grid.size());
+  const auto parts = [overview](int cells) {
+    const int whole = cells / overview * overview;
+    return std::array<std::pair<int, int>, 2>{{{0, whole}, {whole, cells - whole}}};
+  };
+  for (const auto& [row, rows] : parts(box.height()))
+    for (const auto& [column, columns] : parts(box.width())) {
+      if (rows == 0 || columns == 0) continue;
+      const int south = box.first.row + row;
+      const int first_row = from.north_up ? from.grid.height - south - rows : south;
+      const std::vector<float> part = readPixels(
+          *from.raster, from.band, {box.first.column + column, first_row, columns, rows}, path, overview);
+      const int width = overviewCells(columns, overview), height = overviewCells(rows, overview);
+      const int to_row = from.north_up ? grid.height - row / overview - height : row / overview;
+      for (int r = 0; r < height; ++r)
+        std::copy_n(part.begin() + std::ptrdiff_t{r} * width, width,
+                    values.begin() + std::ptrdiff_t{to_row + r} * grid.width + column / overview);
+    }
+  return values;
 }
 
 // Heights are kept in single precision: there to 1/64 m.
@@ -135,9 +162,7 @@ ElevationMap readElevation(const std::string& path, const ReadOptions& options) 
   const Selection chosen = select(path, options, map.notes);
   const auto& [from, code, box, grid] = chosen;
   refuseSize(grid, options, path);
-  const int first_row = from.north_up ? from.grid.height - 1 - box.last.row : box.first.row;
-  const PixelBox pixels{box.first.column, first_row, box.width(), box.height()};
-  std::vector<float> values = readPixels(*from.raster, from.band, pixels, path, options.overview);
+  std::vector<float> values = pixelsOf(chosen, options.overview, path);
   decodeHeights(values, code, map.notes);
   const auto farthest =
       std::find_if(values.begin(), values.end(), [](float z) { return std::abs(z) > kFarthest_m; });
@@ -157,7 +182,9 @@ ElevationMap readElevation(const std::string& path, const ReadOptions& options) 
 Grid elevationGrid(const std::string& path, const ReadOptions& options) {
   const GdalErrors quiet;
   std::vector<std::string> notes;
-  return select(path, options, notes).grid;
+  const Grid grid = select(path, options, notes).grid;
+  refuseTooMany(grid, options, path);
+  return grid;
 }
 
 }  // namespace talus::maps

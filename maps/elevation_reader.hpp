@@ -13,7 +13,8 @@ namespace talus::maps {
 /// @throws InputError naming file, reason and remedy
 ElevationMap readElevation(const std::string& path, const ReadOptions& options = {});
 
-/// Where the cells lie that readElevation() would read, without reading them. @throws InputError
+/// Where the cells lie that readElevation() would read, without reading them. @throws InputError, also for more cells than
+/// `max_cells`
 Grid elevationGrid(const std::string& path, const ReadOptions& options = {});
 
 }  // namespace talus::maps

@@ -35,6 +35,11 @@ bool isPicture(GDALRasterBand& band) {
   return colour == GCI_RedBand || colour == GCI_PaletteIndex;
 }
 
+// Overview cells along a side of so many pixels.
+int shared(int pixels, int overview) {
+  return std::max(1, pixels / overview);
+}
+
 // NaN where GDAL's mask of the band, if it has one of its own, says that the pixel does not count.
 void applyMask(GDALRasterBand& band, const PixelBox& box, std::vector<float>& values,
                const std::string& where, int overview) {
@@ -42,7 +47,7 @@ void applyMask(GDALRasterBand& band, const PixelBox& box, std::vector<float>& va
   std::vector<unsigned char> mask(values.size());
   const GdalErrors errors;
   if (band.GetMaskBand()->RasterIO(GF_Read, box.column, box.row, box.width, box.height, mask.data(),
-                                   box.width / overview, box.height / overview, GDT_Byte, 0, 0,
+                                   shared(box.width, overview), shared(box.height, overview), GDT_Byte, 0, 0,
                                    nullptr) != CE_None)
     throw InputError({where, "its mask cannot be read: " + errors.last(), "fetch it again"});
   for (std::size_t i = 0; i < values.size(); ++i)
@@ -75,7 +80,7 @@ std::vector<float> readPixels(GDALDataset& raster, int band, const PixelBox& box
   GDALRasterBand& source = *raster.GetRasterBand(band);
   if (GDALDataTypeIsComplex(source.GetRasterDataType()) != FALSE)
     throw InputError({where, "holds complex numbers", "choose a band of real numbers with --band"});
-  const int width = box.width / overview, height = box.height / overview;
+  const int width = shared(box.width, overview), height = shared(box.height, overview);
   std::vector<float> values(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   GDALRasterIOExtraArg how;
   INIT_RASTERIO_EXTRA_ARG(how);

@@ -34,7 +34,7 @@ struct PixelBox {
 
 /// Reads pixels of a band as they stand into rows of floats, first row first; masked pixels and infinities
 /// are NaN. With `overview` above 1 the mean of each overview x overview pixels, of which width and height
-/// are multiples: from the file's overviews where it has some.
+/// are multiples, or less than one: from the file's overviews where it has some.
 /// @throws InputError with GDAL's words
 std::vector<float> readPixels(GDALDataset& raster, int band, const PixelBox& box, const std::string& where,
                               int overview = 1);

@@ -1,13 +1,27 @@
+#include <algorithm>
+#include <utility>
+
 #include <talus/planner/grid/tube_planner.hpp>
 #include <talus/planner/grid/windowed_plan.hpp>
 #include <talus/planner/route/legs.hpp>
+#include <talus/planner/route/polyline.hpp>
 
 namespace talus::planner {
 namespace {
 
+// Cells of the overview may reach beyond the map.
+Polyline onto(const maps::Grid& grid, Polyline guide) {
+  const double half_m = 0.5 * grid.resolution_m;
+  const maps::Point low{grid.south_west.x_m + half_m, grid.south_west.y_m + half_m};
+  for (maps::Point& p : guide)
+    p = {std::clamp(p.x_m, low.x_m, low.x_m + (grid.width - 1) * grid.resolution_m),
+         std::clamp(p.y_m, low.y_m, low.y_m + (grid.height - 1) * grid.resolution_m)};
+  return guide;
+}
+
 // One leg: along the overview's route, in windows; in wider ones where those hold no way.
 Plan planLeg(Problem& leg, WindowedMap& map, TubePlanner& tube) {
-  const auto guide = tube.guideOver(map.overview(), leg);
+  const auto guide = onto(map.grid(), tube.guideOver(map.overview(), leg));
   if (guide.empty()) {
     Plan none;
     none.reason =

@@ -26,17 +26,56 @@ TEST(ElevationReader, RowsBecomeSouthFirstAndNodataNaN) {
   EXPECT_THAT(map.georeference->system().name, HasSubstr("UTM zone 10N"));
 }
 
-// Closed form: the mean of two by two pixels; what is left over in the north and east is left out.
+// Closed form: the mean of two by two pixels; of those that there are in the north and east.
 TEST(ElevationReader, AnOverviewHoldsMeans) {
   const TemporaryFolder folder;
   const std::string path = write({.rows = kHill, .nodata = -1}, folder / "hill.tif");
   const ElevationMap map = readElevation(path, {.overview = 2});
-  EXPECT_EQ(map.grid(), (Grid{.width = 2, .height = 2, .resolution_m = 20, .south_west = {500000, 4999950}}));
+  EXPECT_EQ(map.grid(), (Grid{.width = 2, .height = 3, .resolution_m = 20, .south_west = {500000, 4999950}}));
   EXPECT_EQ((map.elevation_m[{0, 0}]), (5 + 6 + 4 + 5) / 4.0F);
   EXPECT_EQ((map.elevation_m[{1, 0}]), (7 + 8 + 6 + 7) / 4.0F);
   EXPECT_EQ((map.elevation_m[{0, 1}]), (3 + 4 + 2 + 3) / 4.0F);
   EXPECT_EQ((map.elevation_m[{1, 1}]), (5 + 4 + 5) / 3.0F);  // one pixel without data
   EXPECT_EQ(elevationGrid(path, {.overview = 2}), map.grid());
+}
+
+// Property: every cell of an overview is the mean of the cells under it, and none of the map is left out, whichever way
+// the rows of the file run.
+TEST(ElevationReader, AnOverviewCoversTheWholeMap) {
+  const TemporaryFolder folder;
+  for (const double down : {-10.0, 10.0}) {
+    RasterFile file{.rows = {}, .transform = std::array<double, 6>{500000, 10, 0, 5000000, 0, down}};
+    for (int row = 0; row < 11; ++row) {
+      file.rows.emplace_back();
+      for (int column = 0; column < 7; ++column) file.rows.back().push_back(row * row + 3 * column);
+    }
+    const std::string path = write(file, folder / "plain.tif");
+    const ElevationMap whole = readElevation(path);
+    for (const int side : {2, 3, 4, 5}) {
+      const ElevationMap overview = readElevation(path, {.overview = side});
+      ASSERT_EQ(overview.grid().width, (7 + side - 1) / side);
+      ASSERT_EQ(overview.grid().height, (11 + side - 1) / side);
+      for (int row = 0; row < overview.grid().height; ++row)
+        for (int column = 0; column < overview.grid().width; ++column) {
+          double sum = 0.0;
+          int count = 0;
+          for (int y = row * side; y < std::min(11, (row + 1) * side); ++y)
+            for (int x = column * side; x < std::min(7, (column + 1) * side); ++x, ++count)
+              sum += static_cast<double>(whole.elevation_m[{x, y}]);
+          EXPECT_NEAR(static_cast<double>(overview.elevation_m[{column, row}]), sum / count, 1e-4)
+              << side << down;
+        }
+    }
+  }
+}
+
+// What windows are planned on is held to the same limit as what is read whole: 6.4e9 cells were planned on for minutes.
+TEST(ElevationReader, TheGridOfAMapIsHeldToMaxCells) {
+  const TemporaryFolder folder;
+  const std::string path = write({.rows = kHill}, folder / "hill.tif");
+  EXPECT_THAT(refusal([&] { elevationGrid(path, {.resolution_m = 1e-3}); }), HasSubstr("are too many"));
+  EXPECT_THAT(refusal([&] { elevationGrid(path, {.max_cells = 19}); }), HasSubstr("raise --max-cells"));
+  EXPECT_EQ(elevationGrid(path, {.max_cells = 20}).size(), 20U);
 }
 
 TEST(ElevationReader, EveryFormatGivesTheSameMap) {

@@ -40,7 +40,8 @@ TEST(WindowedGround, WindowsAreTheWholeGroundBitByBit) {
   context.quiet = true;
   const Ground overview = readOverview(of, context), whole = readGround(of, context);
   EXPECT_GE(overview.map.grid().resolution_m, 2.0);
-  EXPECT_GE(overview.map.grid().width * overview.map.grid().resolution_m, 199.0);
+  EXPECT_GE(overview.map.grid().width * overview.map.grid().resolution_m, 200.0);
+  EXPECT_GE(overview.map.grid().height * overview.map.grid().resolution_m, 150.0);
   planner::WindowedMap windows = windowsOn(of, overview, context);
   EXPECT_EQ(windows.grid().width, 200);
   const auto near = windows.around({{30.0, 30.0}, {80.0, 60.0}}, 8.0);
