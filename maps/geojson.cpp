@@ -1,5 +1,6 @@
 // RFC 7946, with one word of our own: "crs": "local" for map metres.
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <optional>
@@ -11,6 +12,7 @@
 
 #include <talus/maps/gdal_dataset.hpp>
 #include <talus/maps/geojson.hpp>
+#include <talus/maps/memory_budget.hpp>
 #include <talus/plausible.hpp>
 #include <talus/talus.hpp>
 
@@ -27,7 +29,10 @@ std::string typeOf(const json& object) {
   return type != object.end() && type->is_string() ? type->get<std::string>() : "";
 }
 
-void collect(const json& object, std::vector<json>& out) {
+// A tree of nlohmann::json takes up to 28 bytes for each byte of text ("{},{}"), the names in open objects some more.
+constexpr double kMemoryPerByte = 32.0;
+
+void collect(const json& object, std::vector<std::reference_wrapper<const json>>& out) {
   const std::string type = typeOf(object);
   const auto list = [&](const char* key) {
     if (const auto found = object.find(key); found != object.end() && found->is_array())
@@ -40,7 +45,7 @@ void collect(const json& object, std::vector<json>& out) {
   else if (type == "Feature" && object.contains("geometry"))
     collect(object["geometry"], out);
   else if (!type.empty() && object.contains("coordinates"))
-    out.push_back(object);
+    out.emplace_back(object);
 }
 
 const json* memberOf(const json& object, const char* name) {
@@ -117,6 +122,7 @@ class OnceEach {
 
 json readGeoJson(const std::string& path) {
   requireReadableFile(path);
+  requireMemory(kMemoryPerByte * static_cast<double>(std::filesystem::file_size(path)), path);
   std::ifstream file(path);
   OnceEach check(path);
   json document = json::parse(file, std::ref(check), false);
@@ -127,8 +133,8 @@ json readGeoJson(const std::string& path) {
   return document;
 }
 
-std::vector<json> geometries(const json& document) {
-  std::vector<json> out;
+std::vector<std::reference_wrapper<const json>> geometries(const json& document) {
+  std::vector<std::reference_wrapper<const json>> out;
   collect(document, out);
   return out;
 }

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <functional>
 #include <string>
+#include <vector>
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -8,11 +10,13 @@
 
 namespace talus::maps {
 
-/// Reads a GeoJSON file. @throws InputError: missing, unreadable, no JSON, not GeoJSON
+/// Reads a GeoJSON file. @throws InputError: missing, unreadable, no JSON, not GeoJSON, beyond the memory budget (32
+/// bytes for each of the file)
 nlohmann::json readGeoJson(const std::string& path);
 
-/// The geometries of a FeatureCollection, Feature, GeometryCollection or geometry, in order.
-std::vector<nlohmann::json> geometries(const nlohmann::json& document);
+/// The geometries of a FeatureCollection, Feature, GeometryCollection or geometry, in order; they refer to the
+/// document.
+std::vector<std::reference_wrapper<const nlohmann::json>> geometries(const nlohmann::json& document);
 
 /// How positions of a GeoJSON document become map metres: longitude and latitude in degrees through the map's
 /// georeference, or map metres as they stand when the map has none or the document says "crs": "local".

@@ -58,7 +58,8 @@ double factorOf(const std::string& key, const std::string& name) {
   return conversion(given, unit).value_or(0.0);
 }
 
-constexpr std::size_t kMostBytes = std::size_t{16} << 20U;
+// A tree of yaml-cpp takes up to 360 bytes for each byte of text ("{a},{a}"): 94 MB.
+constexpr std::size_t kMostBytes = std::size_t{256} << 10U;
 
 std::string kindOf(const YAML::Node& node) {
   if (node.IsMap()) return "a mapping";
@@ -94,7 +95,7 @@ YamlFields YamlFields::file(const std::string& path) {
   while (content.size() <= kMostBytes && (in.read(part.data(), part.size()) || in.gcount() > 0))
     content.append(part.data(), static_cast<std::size_t>(in.gcount()));
   if (content.size() > kMostBytes)
-    fail(path, "is larger than 16 MB, no description of a soil, rover, model or mission is",
+    fail(path, "is larger than 256 kB, no description of a soil, rover, model or mission is",
          "name a YAML file");
   return text(content, path);
 }

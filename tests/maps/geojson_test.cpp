@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include <talus/maps/geojson.hpp>
+#include <talus/maps/memory_budget.hpp>
 #include <talus/talus.hpp>
 
 #include "raster_fixture.hpp"
@@ -28,11 +29,11 @@ TEST(GeoJson, GeometriesOfEveryNestingInOrder) {
     {"type":"Feature","geometry":null},
     {"type":"Feature","geometry":{"type":"GeometryCollection","geometries":[
       {"type":"Point","coordinates":[3,4]},{"type":"LineString","coordinates":[[5,6],[7,8]]}]}}]})");
-  const std::vector<json> found = geometries(document);
+  const auto found = geometries(document);
   ASSERT_EQ(found.size(), 3U);
-  EXPECT_EQ(found[0]["coordinates"], json({1, 2}));
-  EXPECT_EQ(found[1]["coordinates"], json({3, 4}));
-  EXPECT_EQ(found[2]["type"], "LineString");
+  EXPECT_EQ(found[0].get()["coordinates"], json({1, 2}));
+  EXPECT_EQ(found[1].get()["coordinates"], json({3, 4}));
+  EXPECT_EQ(found[2].get()["type"], "LineString");
 }
 
 // Property: what has coordinates and no type, or a type that is no word, is no geometry.
@@ -122,6 +123,17 @@ TEST(GeoJson, AFileThatIsNoGeoJsonIsRefused) {
       HasSubstr("has \"a\" twice"));
   EXPECT_EQ(line(R"({"type":"FeatureCollection","features":[{"type":"a"},{"type":"b","p":{"type":"c"}}]})"),
             "accepted");
+}
+
+// A tree in memory takes many times the bytes of its text.
+TEST(GeoJson, TheBudgetIsAskedBeforeTheFileIsParsed) {
+  const TemporaryFolder folder;
+  std::string text = R"({"type":"Polygon","coordinates":[[])";
+  while (text.size() < 5'000'000) text += ",[]";
+  const std::string path = folder.write("big.json", text + "]}");
+  setMemoryBudget(150'000'000);
+  EXPECT_THAT(refusal([&] { readGeoJson(path); }), HasSubstr("needs 0.16 GB, more than the memory budget"));
+  setMemoryBudget(0);
 }
 
 }  // namespace

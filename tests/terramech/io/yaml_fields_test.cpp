@@ -1,3 +1,6 @@
+#include <cstdio>
+#include <fstream>
+
 #include <talus/talus.hpp>
 #include <talus/terramech/io/yaml_fields.hpp>
 
@@ -66,6 +69,14 @@ TEST(YamlFields, ErrorsHaveFileAndLine) {
 TEST(YamlFields, NearestNameCountsEdits) {
   EXPECT_EQ(nearestName("cohesion", {"cohesive", "friction"}), "cohesive");
   EXPECT_EQ(nearestName("completely_else", {"a", "b"}), "");
+}
+
+// Its tree takes up to 360 bytes for each byte of text.
+TEST(YamlFields, AFileOfMoreThan256KilobytesIsRefused) {
+  const std::string path = testing::TempDir() + "talus_large.yaml";
+  std::ofstream(path) << "a: 1\n#" << std::string(262'144, ' ') << "\n";
+  EXPECT_THAT([&] { YamlFields::file(path); }, ThrowsMessage<InputError>(HasSubstr("larger than 256 kB")));
+  std::remove(path.c_str());
 }
 
 }  // namespace
