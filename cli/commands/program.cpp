@@ -33,6 +33,18 @@
 namespace talus::cli {
 namespace {
 
+// Less is not meaningful: the program with its libraries takes some of it (docs/security.md).
+constexpr double kLeastMemory_B = 1e8;
+
+// The parser of sizes takes a bare unit for one of it.
+CLI::Validator startsWithNumber() {
+  const auto check = [](std::string& text) -> std::string {
+    const bool number = !text.empty() && text.front() >= '0' && text.front() <= '9';
+    return number ? "" : text + ", must be a number with or without a unit, such as 4GB";
+  };
+  return CLI::Validator(check, "");
+}
+
 /// The libraries' own chatter would break "one line on stderr"; their errors reach us as return values.
 void silenceLibraries() {
   CPLSetErrorHandler(CPLQuietErrorHandler);
@@ -144,6 +156,8 @@ void addGlobalOptions(CLI::App& app, Context& context) {
          "--max-memory", maps::setMemoryBudget,
          "memory that the call may take, such as 4GB (default: half of what is free)")
       ->transform(CLI::AsSizeValue(false))
+      ->transform(startsWithNumber())
+      ->check(within(kLeastMemory_B, 1.8e19))
       ->type_name("SIZE");
   app.add_option("--seed", context.seed, "seed of the random numbers")
       ->check(notNegative())
