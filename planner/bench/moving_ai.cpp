@@ -77,10 +77,20 @@ std::vector<Scenario> readScenarios(const std::string& path) {
 }
 
 std::string mapBeside(const std::string& scenario_path, const std::string& map) {
-  const auto folder = std::filesystem::path(scenario_path).parent_path();
-  const auto beside = folder / map;
-  return std::filesystem::exists(beside) ? beside.string()
-                                         : (folder / std::filesystem::path(map).filename()).string();
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::path folder = fs::path(scenario_path).parent_path();
+  const fs::path own = fs::weakly_canonical(folder.empty() ? fs::path(".") : folder, error);
+  const auto leads_out = [&](const fs::path& file) {
+    const fs::path from = fs::weakly_canonical(file, error).lexically_relative(own);
+    return error || from.empty() || *from.begin() == "..";
+  };
+  const fs::path named = folder / map, beside = folder / fs::path(map).filename();
+  const fs::path& found = fs::exists(named, error) && !leads_out(named) ? named : beside;
+  if ((fs::exists(found, error) && leads_out(found)) || (!fs::exists(found, error) && leads_out(named)))
+    throw InputError({scenario_path, "names the map '" + map.substr(0, 80) + "' outside of its folder",
+                      "put the scenario's map beside it"});
+  return found.string();
 }
 
 }  // namespace

@@ -62,5 +62,22 @@ TEST_F(MovingAi, RefusesWhatItCannotRead) {
   EXPECT_THAT([&] { readMovingAi(path("short.scen"), 1); }, ThrowsMessage<InputError>(HasSubstr("shorter")));
 }
 
+TEST_F(MovingAi, TheMapLiesInTheScenariosFolder) {
+  const auto scenario = [&](const std::string& map) {
+    write("a.scen", "version 1\n0\t" + map + "\t5\t4\t0\t3\t4\t0\t7\n");
+    return [this] { readMovingAi(path("a.scen"), 1); };
+  };
+  for (const char* map : {"../../../../../../../etc/passwd", "/etc/passwd"})
+    EXPECT_THAT(scenario(map), ThrowsMessage<InputError>(HasSubstr("outside of its folder"))) << map;
+  std::filesystem::create_symlink("/etc/passwd", folder_ / "link.map");
+  EXPECT_THAT(scenario("link.map"), ThrowsMessage<InputError>(HasSubstr("outside of its folder")));
+  EXPECT_THAT(scenario("none.map"), ThrowsMessage<InputError>(HasSubstr("cannot be read")));
+  // The collection names maps by folders that a user may not have.
+  EXPECT_NO_THROW(scenario("maps/dao/room.map")());
+  std::filesystem::create_directory(folder_ / "below");
+  std::filesystem::rename(folder_ / "room.map", folder_ / "below" / "room.map");
+  EXPECT_NO_THROW(scenario("below/room.map")());
+}
+
 }  // namespace
 }  // namespace talus::planner
