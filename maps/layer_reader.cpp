@@ -63,6 +63,8 @@ bool sameSystem(const OGRSpatialReference& crs, const std::string& wkt) {
 // known. It has its CRS only where that is not the map's; else it lies in the map's coordinates from the south-west corner.
 Dataset inMemory(GDALDataset& file, int band, const ElevationMap& map, const std::string& path) {
   const int width = file.GetRasterXSize(), height = file.GetRasterYSize();
+  if (GDALDataTypeIsComplex(file.GetRasterBand(band)->GetRasterDataType()) != FALSE)
+    throw InputError({path, "holds complex numbers", "choose a band of real numbers"});
   requireMemory(8.0 * (width + 2.0) * (height + 2.0), path);
   GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("MEM");
   Dataset copy(driver->Create("", width + 2, height + 2, 1, GDT_Float32, nullptr));

@@ -80,6 +80,7 @@ Place parsePlace(std::string_view text) {
 
 Window parseWindow(std::string_view text) {
   const auto numbers = parseList(text, 4);
+  if (numbers[0].degrees != numbers[2].degrees) refuse(text, "one corner is in metres, the other in degrees");
   return {toPlace(numbers[0], numbers[1], text), toPlace(numbers[2], numbers[3], text)};
 }
 

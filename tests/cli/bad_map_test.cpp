@@ -30,6 +30,11 @@ TEST(BadInput, ElevationMaps) {
                     {{"info", "good.asc", "--resolution", "1", "--window", "1,2,3"}, 2, "1,2,3"},
                     {{"info", "good.asc", "--resolution", "1", "--window", "900,900,950,950"}, 2, "good.asc"},
                     {{"info", "good.asc", "--resolution", "1", "--footprint", "-1"}, 2, "footprint"},
+                    {{"info", "good.asc", "--resolution", "1", "--window", "5,5,65d,65d"}, 2, "degrees"},
+                    {{"info", "good.asc", "--resolution", "1", "--max-memory", "GB"}, 2, "must be a number"},
+                    {{"info", "good.asc", "--resolution", "1", "--max-memory", "0"}, 2, "--max-memory"},
+                    {{"info", "good.asc", "--resolution", "1", "--max-memory", "1"}, 2, "--max-memory"},
+                    {{"info", "good.asc", "--resolution", "1", "--max-memory", "90MB"}, 2, "--max-memory"},
                     {{"info", "good.asc", "--resolution", "1", "more"}, 2, "unknown argument 'more'"},
                 });
 }

@@ -15,6 +15,18 @@ TEST(LayerReader, ClassesOnTheSameCells) {
   EXPECT_EQ(drawing(readTerrainClasses({.path = path}, map(folder))), "1122\n1.22\n3333\n");
 }
 
+// GDAL would drop the imaginary part of each.
+TEST(LayerReader, ComplexNumbersAreRefused) {
+  const TemporaryFolder folder;
+  const ElevationMap dem = readElevation(write({.rows = drawn({"1111", "1111", "1111"})}, folder / "d.tif"));
+  for (const GDALDataType type : {GDT_CInt16, GDT_CInt32, GDT_CFloat32, GDT_CFloat64}) {
+    const std::string path = write({.rows = drawn({"1111", "1111", "1111"}), .type = type}, folder / "c.tif");
+    EXPECT_THAT(refusal([&] { readTerrainClasses({.path = path}, dem, {}); }), HasSubstr("complex"));
+    EXPECT_THAT(refusal([&] { readAddedJoules({.path = path}, dem); }), HasSubstr("complex"));
+    EXPECT_THAT(refusal([&] { readRockAbundance({.path = path}, dem); }), HasSubstr("complex"));
+  }
+}
+
 TEST(LayerReader, FinerShiftedClassesLieWhereTheyAre) {
   const TemporaryFolder folder;
   // Cells of 5 m that cover the eastern three columns.

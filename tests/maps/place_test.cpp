@@ -67,6 +67,8 @@ TEST(Place, DegreesThroughTheMapsGeoreference) {
 TEST(Place, WindowHasFourNumbers) {
   const Window window = parseWindow("1,2,3,4");
   EXPECT_EQ(std::get<Point>(window.second), (Point{3, 4}));
+  for (const char* mixed : {"5,5,65d,65d", "5d,5d,65,65"})
+    EXPECT_THAT(refusal([&] { parseWindow(mixed); }), HasSubstr("one corner is in metres")) << mixed;
   EXPECT_THAT(refusal([] { parseWindow("1,2,3"); }), HasSubstr("has not 4 numbers"));
 }
 
