@@ -67,6 +67,12 @@ Dataset withFractions(Dataset file, const std::string& path) {
 void registerDrivers() {
   static std::once_flag once;
   std::call_once(once, [] {
+    // What the environment may say of these is out of force: a log over any file, options from a file, and a cache that
+    // decides the order in which blocks are written. GDAL reads them when its drivers are registered, or later.
+    CPLSetConfigOption("CPL_LOG", "");
+    CPLSetConfigOption("CPL_DEBUG", "OFF");
+    CPLSetConfigOption("GDAL_CONFIG_FILE", "");
+    CPLSetConfigOption("GDAL_CACHEMAX", "5%");
     GDALAllRegister();
     // What GDAL opens by itself, such as an overview that a file names, stays within the list, too.
     GDALDriverManager& manager = *GetGDALDriverManager();

@@ -67,5 +67,15 @@ TEST(GdalDataset, AMemoryRasterIsOneBandOfZeros) {
   EXPECT_THAT(values, testing::Each(0.0F));
 }
 
+// A log would overwrite the file that it names; a cache of none changes the order of blocks in a GeoTIFF.
+TEST(GdalDataset, TheEnvironmentDoesNotChangeWhatGdalWrites) {
+  registerDrivers();
+  for (const char* name : {"CPL_LOG", "CPL_DEBUG", "GDAL_CONFIG_FILE", "GDAL_CACHEMAX"}) {
+    ::setenv(name, "victim.txt", 1);
+    EXPECT_STRNE(CPLGetConfigOption(name, "unset"), "victim.txt") << name;
+    ::unsetenv(name);
+  }
+}
+
 }  // namespace
 }  // namespace talus::maps
