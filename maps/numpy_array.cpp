@@ -54,6 +54,9 @@ std::vector<std::size_t> parseShape(const std::string& text, const std::string& 
 
 Header parseHeader(const std::string& bytes, const std::string& where) {
   if (bytes.size() < 12 || bytes.compare(0, 6, "\x93NUMPY") != 0) refuse(where, "not a NumPy array");
+  if (bytes[6] < 1 || bytes[6] > 3)
+    refuse(where, "the NumPy header is of version " + std::to_string(static_cast<unsigned char>(bytes[6])) +
+                      ", must be 1 to 3");
   const std::size_t length_bytes = bytes[6] == 1 ? 2 : 4;
   const std::size_t begin = 8 + length_bytes;
   const std::size_t length = littleEndian(bytes, 8, length_bytes);
@@ -61,7 +64,7 @@ Header parseHeader(const std::string& bytes, const std::string& where) {
   if (length > kMostHeader) refuse(where, "the NumPy header is longer than 10000 characters");
   const std::string words = bytes.substr(begin, length);
   static const std::regex type("'descr': *'([<>|=])([iuf])([0-9])'");
-  static const std::regex order("'fortran_order': *True");
+  static const std::regex order("'fortran_order': *(True|False)");
   static const std::regex extent("'shape': *\\(([^)]*)\\)");
   std::smatch match;
   Header header;
@@ -70,7 +73,8 @@ Header parseHeader(const std::string& bytes, const std::string& where) {
   header.size = std::stoul(match[3].str());
   const bool big = match[1] == ">";
   header.swapped = header.size > 1 && big != (std::endian::native == std::endian::big);
-  header.fortran_order = std::regex_search(words, order);
+  if (!std::regex_search(words, match, order)) refuse(where, "the NumPy header has no fortran_order");
+  header.fortran_order = match[1] == "True";
   if (!std::regex_search(words, match, extent)) refuse(where, "the NumPy header has no shape");
   header.shape = parseShape(match[1], where);
   header.data_offset = begin + length;
@@ -114,6 +118,8 @@ NumpyArray parseNumpy(const std::string& bytes, const std::string& where) {
     if (count > most) throw InputError({where, "the file is cut short", "fetch it again"});
   }
   if (count > most) throw InputError({where, "the file is cut short", "fetch it again"});
+  if (bytes.size() - header.data_offset != count * header.size)
+    refuse(where, "has more bytes than its shape states");
   requireMemory(8.0 * static_cast<double>(count), where);
   NumpyArray array{header.shape, std::vector<double>(count)};
   const bool transposed = header.fortran_order && header.shape.size() == 2;

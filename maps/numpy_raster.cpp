@@ -13,6 +13,7 @@
 #include <talus/maps/memory_budget.hpp>
 #include <talus/maps/numpy_array.hpp>
 #include <talus/maps/numpy_raster.hpp>
+#include <talus/maps/zip_directory.hpp>
 #include <talus/talus.hpp>
 
 namespace talus::maps {
@@ -46,12 +47,20 @@ std::string slurp(const std::string& path, const std::string& where) {
 Arrays readArchive(const std::string& path) {
   const std::string archive = "/vsizip/{" + path + "}";
   const CPLStringList names(VSIReadDir(archive.c_str()));
+  const std::map<std::string, ZipEntry> directory = zipDirectory(path);
   Arrays arrays;
   for (int i = 0; i < names.size(); ++i) {
     const std::string name = names[i];
     if (!name.ends_with(".npy")) continue;
-    arrays[name.substr(0, name.size() - 4)] =
-        parseNumpy(slurp(archive + "/" + name, path), path + ", " + name);
+    const auto entry = directory.find(name);
+    if (entry == directory.end())
+      throw InputError({path + ", " + name, "is not in the directory", "fetch it again"});
+    if (entry->second.encrypted)
+      throw InputError({path + ", " + name, "is encrypted", "save it with numpy.savez"});
+    const std::string content = slurp(archive + "/" + name, path);
+    if (crc32(content) != entry->second.crc)
+      throw InputError({path + ", " + name, "is damaged: its checksum is another", "fetch it again"});
+    arrays[name.substr(0, name.size() - 4)] = parseNumpy(content, path + ", " + name);
   }
   if (arrays.empty())
     throw InputError({path, "is not a NumPy archive (no .npy inside)", "save it with numpy.savez"});

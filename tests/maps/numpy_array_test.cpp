@@ -88,5 +88,20 @@ TEST(NumpyArray, BadBytesAreRefused) {
       HasSubstr("cut short"));
 }
 
+TEST(NumpyArray, VersionOrderAndLengthAreThoseOfTheFormat) {
+  const std::string good = file("{'descr': '|u1', 'fortran_order': False, 'shape': (3,), }\n", "abc");
+  EXPECT_NO_THROW(parseNumpy(good, "a"));
+  for (const char version : {'\0', '\4', '\xff'}) {
+    std::string bytes = good;
+    bytes[6] = version;
+    EXPECT_THROW(parseNumpy(bytes, "a"), InputError);
+  }
+  EXPECT_THROW(parseNumpy(good + "d", "a"), InputError);
+  for (const char* order : {"", "'fortran_order': 1, ", "'fortran_order': true, "})
+    EXPECT_THROW(
+        parseNumpy(file("{'descr': '|u1', " + std::string(order) + "'shape': (3,), }\n", "abc"), "a"),
+        InputError);
+}
+
 }  // namespace
 }  // namespace talus::maps

@@ -1,6 +1,9 @@
+#include <fstream>
+
 #include <talus/maps/elevation_reader.hpp>
 #include <talus/maps/numpy_raster.hpp>
 #include <talus/maps/raster_band.hpp>
+#include <talus/maps/zip_directory.hpp>
 #include <talus/talus.hpp>
 
 #include "raster_fixture.hpp"
@@ -92,6 +95,41 @@ TEST(NumpyRaster, WhatIsNoElevationGridIsRefused) {
               HasSubstr("several arrays of two axes ('a', 'b')"));
   EXPECT_EQ(line(npz(folder / "named.npz", {{"a", grid}, {"elevation", grid}})), "accepted");
   EXPECT_THAT(line(npz(folder / "flat.npz", {{"a", npy("2,", {1, 2})}})), HasSubstr("no array of two axes"));
+}
+
+std::string number(std::size_t value, int bytes) {
+  std::string out;
+  for (int i = 0; i < bytes; ++i) out += static_cast<char>(value >> (8 * i));
+  return out;
+}
+
+// A zip archive of one file that is not compressed, as numpy.savez writes.
+std::string stored(const std::string& name, const std::string& content) {
+  const std::string sizes = number(crc32(content), 4) + number(content.size(), 4) +
+                            number(content.size(), 4) + number(name.size(), 2) + number(0, 2);
+  const std::string start = number(20, 2) + std::string(8, '\0');  // version, flags, method, time, date
+  const std::string file = "PK\3\4" + start + sizes + name + content;
+  const std::string directory = "PK\1\2" + number(20, 2) + start + sizes + std::string(14, '\0') + name;
+  return file + directory + "PK\5\6" + number(0, 4) + number(1, 2) + number(1, 2) +
+         number(directory.size(), 4) + number(file.size(), 4) + number(0, 2);
+}
+
+TEST(NumpyRaster, AChangedByteOfAnArchiveIsRefused) {
+  const TemporaryFolder folder;
+  std::vector<std::string> notes;
+  const std::string whole = stored("elevation.npy", npy("2, 3", {1, 2, 3, 4, 5, 6}));
+  const std::size_t directory = whole.rfind("PK\1\2");
+  const auto changed = [&](std::size_t at, int with) {
+    std::string bytes = whole;
+    bytes[at] = static_cast<char>(bytes[at] ^ with);
+    const std::string path = folder.write("z.npz", bytes);
+    return refusal([&] { openNumpyRaster(path, notes); });
+  };
+  EXPECT_EQ(changed(0, 0), "accepted");
+  EXPECT_NE(changed(directory - 3, 1), "accepted");
+  EXPECT_NE(changed(directory + 16, 1), "accepted");
+  EXPECT_THAT(changed(directory + 8, 1), HasSubstr("is encrypted"));
+  EXPECT_THAT(changed(directory, 1), HasSubstr("directory of files is damaged"));
 }
 
 }  // namespace
