@@ -1,40 +1,15 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include <talus/costmap/wheel_observation.hpp>
-
-struct sqlite3;
-struct sqlite3_stmt;
+#include <talus/costmap/journal_row.hpp>
 
 namespace talus::costmap {
 
-/// The wheel that a row was read by, as its rover's file has it. NaN: not known.
-struct DrivenBy {
-  double radius_m = std::numeric_limits<double>::quiet_NaN();
-  double width_m = std::numeric_limits<double>::quiet_NaN();
-  double weight_N =
-      std::numeric_limits<double>::quiet_NaN();  ///< of the rover on each of its wheels, on the level
-};
-
-/// One telemetry row as the journal keeps it.
-struct JournalRow {
-  std::string source;            ///< file or vehicle it came from
-  std::int64_t line = 0;         ///< in the file
-  bool accepted = false;         ///< whether the map learned from it
-  std::string reason;            ///< why not; empty when accepted
-  WheelReading reading;          ///< as read
-  WheelObservation observation;  ///< what it said; of no meaning when refused
-  DrivenBy wheel{};              ///< by which it was read
-};
-
-/// Why no wheel can have given an observation, "pull = inf, must be ..."; empty where one can. |pull|, its standard
-/// deviation and sinkage over radius are within 100, places within 1e9 m.
-std::string fault(const WheelObservation& observation);
+class JournalDatabase;
 
 /// EVIDENCE.db: every telemetry row ever offered to a map, drive by drive, in SQLite (write-ahead log). A drive is
 /// taken in once, whatever its file is called, and as a whole or not at all, synced before append() or
@@ -55,52 +30,40 @@ class EvidenceJournal {
     EvidenceJournal* journal_;  // null once committed
   };
 
-  /// Opens or creates. Throws InputError when the file is no journal or cannot be written.
+  /// Opens or creates a file of that very name: no URI, no database in memory. Journals of older formats become of the
+  /// present one. Throws InputError when the file is no journal, has tables, columns, triggers or views that a journal has
+  /// not, or cannot be written.
   explicit EvidenceJournal(const std::string& path);
   ~EvidenceJournal();
   EvidenceJournal(const EvidenceJournal&) = delete;
   EvidenceJournal& operator=(const EvidenceJournal&) = delete;
 
-  /// Appends the rows of a drive, in a transaction of its own where none is open; nothing where the journal holds the
+  /// Appends the rows of a drive, its id by driveId(), in a transaction of its own where none is open; nothing where the journal holds the
   /// drive already. `continued`: the id that the drive had without these rows, if it is in the journal. Throws
-  /// InputError when the disk is full or another process holds the file for longer than 30 s.
+  /// InputError when the disk is full or another process holds the file for longer than 30 s, std::invalid_argument when
+  /// the id is not of 16 hexadecimal digits.
   void append(const std::string& drive, const std::vector<JournalRow>& rows,
               const std::string& continued = {});
 
   /// Puts rows in the place of those of a drive that the journal holds, in a transaction of its own where none is open.
   void replace(const std::string& drive, const std::vector<JournalRow>& rows);
 
-  /// Ids of its drives, in the order in which they were appended.
+  /// Ids of its drives, in the order in which they were appended. Throws InputError when a drive or a drive's entry is
+  /// missing, or an id is none.
   std::vector<std::string> drives() const;
 
-  /// The rows of a drive in order, numbers to the bit. Throws InputError when a row was changed since it was
-  /// written, or holds a number that no wheel can give.
+  /// Throws InputError unless the journal has the drive, its rows and its id as they were written. Returns its number.
+  std::int64_t check(const std::string& drive) const;
+
+  /// The rows of a drive in order, numbers to the bit. Throws InputError where check() does, or when a row holds a number
+  /// that no wheel can give.
   std::vector<JournalRow> rows(const std::string& drive) const;
 
   /// Rows that it holds.
   std::int64_t size() const;
 
  private:
-  struct Close {
-    void operator()(sqlite3* database) const noexcept;
-    void operator()(sqlite3_stmt* statement) const noexcept;
-  };
-  using Statement = std::unique_ptr<sqlite3_stmt, Close>;
-
-  Statement prepare(const char* sql) const;
-  void run(const char* sql) const;
-  void upgrade();
-  void adopt();
-  struct Drive;
-  Drive find(const std::string& id) const;
-  void write(Drive entry, const std::string& id, const std::vector<JournalRow>& rows);
-  void checksum(Drive& drive, std::int64_t after) const;
-  std::int64_t single(const char* sql) const;
-  [[noreturn]] void fail() const;
-
-  std::string path_;
-  std::unique_ptr<sqlite3, Close> database_;
-  Statement insert_;
+  std::unique_ptr<JournalDatabase> database_;
 };
 
 }  // namespace talus::costmap

@@ -29,6 +29,15 @@ class EvidenceJournalTest : public ::testing::Test {
   std::filesystem::path folder_;
 };
 
+// As driveId() gives them.
+std::string idOf(std::int64_t number) {
+  std::string digits = std::to_string(number);
+  return digits.insert(0, 16 - digits.size(), '0');
+}
+
+const std::string kIdA = "000000000000000a", kIdB = "000000000000000b", kIdAb = "00000000000000ab",
+                  kIdOther = "0123456789abcdef";
+
 JournalRow row(std::int64_t line) {
   return {.source = "drive.csv",
           .line = line,
@@ -45,9 +54,9 @@ JournalRow row(std::int64_t line) {
 
 TEST_F(EvidenceJournalTest, GivesRowsBackToTheBit) {
   EvidenceJournal journal(path());
-  journal.append("a", {row(7)});
-  ASSERT_EQ(journal.rows("a").size(), 1U);
-  const JournalRow back = journal.rows("a")[0];
+  journal.append(kIdA, {row(7)});
+  ASSERT_EQ(journal.rows(kIdA).size(), 1U);
+  const JournalRow back = journal.rows(kIdA)[0];
   EXPECT_EQ(back.line, 7);
   EXPECT_EQ(back.reading.place.x_m, 1.0 / 3.0);
   EXPECT_TRUE(std::isnan(back.reading.torque_Nm));
@@ -62,19 +71,23 @@ void change(const std::string& path, const char* sql) {
   sqlite3_close(database);
 }
 
+// What makes a journal of one drive one of format 7 that was upgraded from 3.
+const std::string kWithoutChecksum =
+    "PRAGMA user_version = 7; UPDATE drive SET id = 'source drive.csv', checksum = NULL; ";
+
 // Rows of a journal without heights are on top: theirs is not known.
 TEST_F(EvidenceJournalTest, TakesOverJournalsWithoutHeights) {
-  { EvidenceJournal(path()).append("a", {row(7)}); }
+  { EvidenceJournal(path()).append(kIdA, {row(7)}); }
   change(path(),
          "ALTER TABLE evidence DROP COLUMN z_m; DROP INDEX of_drive; ALTER TABLE evidence DROP COLUMN drive;"
          "DROP TABLE drive; PRAGMA user_version = 1");
   EvidenceJournal journal(path());
   JournalRow high = row(8);
   high.reading.z_m = -2500.0 / 3.0;
-  journal.append("b", {high});
+  journal.append(kIdB, {high});
   // What has no drive belongs to its source's.
-  ASSERT_THAT(journal.drives(), testing::ElementsAre("source drive.csv", "b"));
-  const auto old = journal.rows("source drive.csv"), added = journal.rows("b");
+  ASSERT_THAT(journal.drives(), testing::ElementsAre("source drive.csv", kIdB));
+  const auto old = journal.rows("source drive.csv"), added = journal.rows(kIdB);
   ASSERT_EQ(old.size(), 1U);
   EXPECT_TRUE(std::isnan(old[0].reading.z_m));
   EXPECT_TRUE(std::isnan(old[0].observation.z_m));
@@ -84,33 +97,33 @@ TEST_F(EvidenceJournalTest, TakesOverJournalsWithoutHeights) {
 
 TEST_F(EvidenceJournalTest, ADriveCountsOnce) {
   EvidenceJournal journal(path());
-  journal.append("a", {row(1), row(2)});
-  journal.append("a", {row(1), row(2)});
+  journal.append(kIdA, {row(1), row(2)});
+  journal.append(kIdA, {row(1), row(2)});
   EXPECT_EQ(journal.size(), 2);
-  EXPECT_THAT(journal.drives(), testing::ElementsAre("a"));
+  EXPECT_THAT(journal.drives(), testing::ElementsAre(kIdA));
 }
 
 TEST_F(EvidenceJournalTest, ADriveThatGoesOnIsOneDrive) {
   EvidenceJournal journal(path());
-  journal.append("a", {row(1)});
-  journal.append("other", {row(9)});
-  journal.append("ab", {row(2), row(3)}, "a");
-  EXPECT_THAT(journal.drives(), testing::ElementsAre("ab", "other"));
-  ASSERT_EQ(journal.rows("ab").size(), 3U);
-  EXPECT_EQ(journal.rows("ab")[2].line, 3);
+  journal.append(kIdA, {row(1)});
+  journal.append(kIdOther, {row(9)});
+  journal.append(kIdAb, {row(2), row(3)}, kIdA);
+  EXPECT_THAT(journal.drives(), testing::ElementsAre(kIdAb, kIdOther));
+  ASSERT_EQ(journal.rows(kIdAb).size(), 3U);
+  EXPECT_EQ(journal.rows(kIdAb)[2].line, 3);
 }
 
 TEST_F(EvidenceJournalTest, WhatIsNotCommittedIsNotThere) {
   EvidenceJournal journal(path());
   {
     const EvidenceJournal::Transaction transaction(journal);
-    journal.append("a", {row(1)});
+    journal.append(kIdA, {row(1)});
     EXPECT_EQ(journal.size(), 1);
   }
   EXPECT_EQ(journal.size(), 0);
   {
     EvidenceJournal::Transaction transaction(journal);
-    journal.append("a", {row(1)});
+    journal.append(kIdA, {row(1)});
     transaction.commit();
   }
   EXPECT_EQ(EvidenceJournal(path()).size(), 1);
@@ -130,16 +143,95 @@ TEST_F(EvidenceJournalTest, RefusesRowsThatWereChanged) {
         " pull_may_raise, sinkage_may_raise, drive, pull_here, sinkage_here, pull_shared_std, wheel_radius_m,"
         " wheel_width_m, wheel_weight_N, thrust_share FROM evidence"}) {
     std::filesystem::remove(path());
-    { EvidenceJournal(path()).append("a", {row(7)}); }
+    { EvidenceJournal(path()).append(kIdA, {row(7)}); }
     change(path(), sql);
     const EvidenceJournal journal(path());
-    EXPECT_THROW(static_cast<void>(journal.rows("a")), InputError) << sql;
+    EXPECT_THROW(static_cast<void>(journal.rows(kIdA)), InputError) << sql;
   }
+}
+
+// Property: a drive's entry is its rows' and nobody else's. The ids were not checked: replay ended by 0 with no row used.
+TEST_F(EvidenceJournalTest, RefusesDrivesThatWereChanged) {
+  for (const char* sql :
+       {"UPDATE drive SET id = zeroblob(1000000) WHERE number = 1",
+        "UPDATE drive SET id = CAST(id AS BLOB) WHERE number = 1",
+        "UPDATE drive SET id = 'fedcba9876543210' WHERE number = 1",
+        "UPDATE drive SET id = 'source x' WHERE number = 1", "UPDATE drive SET id = '' WHERE number = 1",
+        "UPDATE drive SET checksum = NULL WHERE number = 1",
+        "UPDATE drive SET checksum = 'x' WHERE number = 1", "UPDATE drive SET checksum = 0 WHERE number = 1",
+        "UPDATE drive SET number = 3 WHERE number = 1",
+        "UPDATE drive SET checksum = NULL; PRAGMA user_version = 7", "PRAGMA user_version = 7",
+        "UPDATE drive SET number = 9 WHERE number = 1; UPDATE drive SET number = 1 WHERE number = 2;"
+        "UPDATE drive SET number = 2 WHERE number = 9",
+        "UPDATE evidence SET drive = NULL WHERE drive = 1", "UPDATE evidence SET drive = 2 WHERE drive = 1",
+        "DELETE FROM evidence WHERE drive = 1; DELETE FROM drive WHERE number = 1",
+        "UPDATE evidence SET id = -id", "INSERT INTO drive VALUES(3, '0123', 1)"}) {
+    std::filesystem::remove(path());
+    {
+      EvidenceJournal journal(path());
+      journal.append(kIdA, {row(7), row(8)});
+      journal.append(kIdB, {row(9), row(10)});
+    }
+    change(path(), sql);
+    const auto readAll = [&] {
+      const EvidenceJournal journal(path());
+      for (const std::string& drive : journal.drives()) static_cast<void>(journal.rows(drive));
+    };
+    EXPECT_THROW(readAll(), InputError) << sql;
+  }
+}
+
+// A trigger that deletes, and a view in the place of a table, lost rows in silence.
+TEST_F(EvidenceJournalTest, RefusesWhatItDidNotMake) {
+  for (const char* format : {"", "; PRAGMA user_version = 7", "; PRAGMA user_version = 3"})
+    for (const char* sql :
+         {"CREATE TRIGGER t AFTER INSERT ON evidence BEGIN DELETE FROM evidence; END",
+          "CREATE TRIGGER t BEFORE INSERT ON drive BEGIN SELECT raise(IGNORE); END",
+          "ALTER TABLE evidence RENAME TO e; CREATE VIEW evidence AS SELECT * FROM e WHERE id % 2",
+          "ALTER TABLE drive RENAME TO d; CREATE VIEW drive AS WITH RECURSIVE r(n) AS "
+          "(SELECT 1 UNION ALL SELECT n + 1 FROM r) SELECT d.* FROM r, d",
+          "ALTER TABLE evidence ADD COLUMN more TEXT", "ALTER TABLE drive ADD COLUMN more TEXT",
+          "ALTER TABLE evidence ADD COLUMN more AS (slip * 2)", "CREATE TABLE more(a)",
+          "CREATE UNIQUE INDEX more ON evidence(load_N)", "DROP TABLE evidence",
+          "DROP TABLE evidence; DROP TABLE drive"}) {
+      std::filesystem::remove(path());
+      { EvidenceJournal(path()).append(kIdA, {row(7)}); }
+      change(path(), (sql + std::string(format)).c_str());
+      EXPECT_THROW(EvidenceJournal{path()}, InputError) << sql << format;
+    }
+}
+
+// What the program wrote before drives were sealed: the same tables, the checksum of the rows alone.
+TEST_F(EvidenceJournalTest, TakesOverJournalsOfFormat7) {
+  {
+    EvidenceJournal journal(path());
+    journal.append(kIdA, {row(7)});
+    journal.append(kIdB, {row(8), row(9)});
+  }
+  // Pinned: what format 7 stored for these rows, by a computation of its own that gave the checksum of a journal of then.
+  change(path(),
+         "PRAGMA user_version = 7; UPDATE drive SET checksum = -7429760973718788829 WHERE number = 1; UPDATE "
+         "drive SET "
+         "checksum = -5691790308916202592 "
+         "WHERE number = 2");
+  for (int opening = 0; opening < 2; ++opening) {
+    EvidenceJournal journal(path());
+    EXPECT_THAT(journal.drives(), testing::ElementsAre(kIdA, kIdB));
+    EXPECT_EQ(journal.rows(kIdA).size(), 1U);
+    EXPECT_EQ(journal.rows(kIdB).size(), 2U);
+  }
+}
+
+// SQLite takes these for databases that are in no file: rows in them are gone with the process.
+TEST_F(EvidenceJournalTest, RefusesNamesThatAreNoFiles) {
+  for (const char* name : {"", ":memory:", "file:zz.db?mode=memory", "file:zz.db", "folder/"})
+    EXPECT_THROW(EvidenceJournal{name}, InputError) << name;
+  EXPECT_THROW(EvidenceJournal(path()).append("a", {row(1)}), std::invalid_argument);
 }
 
 // Property: rows whose drive was taken off the list are missed, not passed over.
 TEST_F(EvidenceJournalTest, RefusesRowsOfADriveThatIsNotListed) {
-  { EvidenceJournal(path()).append("a", {row(7)}); }
+  { EvidenceJournal(path()).append(kIdA, {row(7)}); }
   EXPECT_EQ(EvidenceJournal(path()).drives().size(), 1U);
   change(path(), "DELETE FROM drive");
   EXPECT_THROW(static_cast<void>(EvidenceJournal(path()).drives()), InputError);
@@ -153,10 +245,10 @@ TEST_F(EvidenceJournalTest, RefusesValuesThatNoWheelGives) {
         "pull_here = -9e999", "pull_here = 101", "pull_here = 'x'", "sinkage_here = 9e999",
         "sinkage_here = -0.1", "sinkage_here = x'00'", "pull = 'x'", "thrust_share = 9e999"}) {
     std::filesystem::remove(path());
-    { EvidenceJournal(path()).append("a", {row(7)}); }
-    change(path(), ("UPDATE drive SET checksum = NULL; UPDATE evidence SET " + std::string(sql)).c_str());
+    { EvidenceJournal(path()).append(kIdA, {row(7)}); }
+    change(path(), (kWithoutChecksum + ("UPDATE evidence SET " + std::string(sql))).c_str());
     const EvidenceJournal journal(path());
-    EXPECT_THROW(static_cast<void>(journal.rows("a")), InputError) << sql;
+    EXPECT_THROW(static_cast<void>(journal.rows("source drive.csv")), InputError) << sql;
   }
 }
 
@@ -166,8 +258,8 @@ TEST_F(EvidenceJournalTest, BoundsComeBackToTheBit) {
   JournalRow alone = bounded;
   alone.observation.pull = alone.observation.sinkage = {std::nan(""), std::nan("")};
   EvidenceJournal journal(path());
-  journal.append("a", {row(2), bounded, alone});
-  const auto back = journal.rows("a");
+  journal.append(kIdA, {row(2), bounded, alone});
+  const auto back = journal.rows(kIdA);
   ASSERT_EQ(back.size(), 3U);
   EXPECT_FALSE(back[0].observation.here.any());
   EXPECT_EQ(back[1].observation.here.most_pull, -0.1 / 3.0);
@@ -182,16 +274,16 @@ TEST_F(EvidenceJournalTest, WithoutAShareOfTheThrustNothingRaises) {
   raises.observation.shared_std = 0.03;
   raises.observation.share = 1.0 / 3.0;
   raises.observation.pull_may_raise = true;
-  { EvidenceJournal(path()).append("a", {raises}); }
-  const WheelObservation back = EvidenceJournal(path()).rows("a")[0].observation;
+  { EvidenceJournal(path()).append(kIdA, {raises}); }
+  const WheelObservation back = EvidenceJournal(path()).rows(kIdA)[0].observation;
   EXPECT_EQ(back.share, 1.0 / 3.0);
   EXPECT_EQ(back.shared_std, 0.03);
-  change(path(), "UPDATE drive SET checksum = NULL; UPDATE evidence SET thrust_share = NULL");
-  EXPECT_TRUE(std::isnan(EvidenceJournal(path()).rows("a")[0].observation.shared_std));
+  change(path(), (kWithoutChecksum + "UPDATE evidence SET thrust_share = NULL").c_str());
+  EXPECT_TRUE(std::isnan(EvidenceJournal(path()).rows("source drive.csv")[0].observation.shared_std));
 }
 
 TEST_F(EvidenceJournalTest, RefusesAFormatOfTheFuture) {
-  { EvidenceJournal(path()).append("a", {row(7)}); }
+  { EvidenceJournal(path()).append(kIdA, {row(7)}); }
   change(path(), "PRAGMA user_version = 99");
   EXPECT_THROW(EvidenceJournal{path()}, InputError);
 }
@@ -202,9 +294,9 @@ TEST_F(EvidenceJournalTest, RefusesWhatIsNoJournal) {
   EXPECT_THROW(EvidenceJournal{"/nonexistent/evidence.db"}, InputError);
   // SQLite would take the first for an empty database.
   for (const std::size_t size : {1U, 15U, 100U, 5000U}) {
-    { EvidenceJournal(path("cut.db")).append("a", {row(1), row(2)}); }
+    { EvidenceJournal(path("cut.db")).append(kIdA, {row(1), row(2)}); }
     std::filesystem::resize_file(path("cut.db"), size);
-    EXPECT_THROW(EvidenceJournal(path("cut.db")).rows("a"), InputError) << size;
+    EXPECT_THROW(EvidenceJournal(path("cut.db")).rows(kIdA), InputError) << size;
     std::filesystem::remove(path("cut.db"));
   }
 }
@@ -213,7 +305,7 @@ TEST_F(EvidenceJournalTest, RefusesWhatIsNoJournal) {
 [[noreturn]] void writeForever(const std::string& path, int out) {
   EvidenceJournal journal(path);
   for (std::int64_t line = 1;; ++line) {
-    journal.append(std::to_string(line), {row(line)});
+    journal.append(idOf(line), {row(line)});
     if (::write(out, &line, sizeof line) < 0) ::_exit(1);
   }
 }
@@ -254,8 +346,7 @@ TEST_F(EvidenceJournalTest, TwoWritersDoNotCorruptIt) {
     const pid_t child = ::fork();
     if (child == 0) {
       EvidenceJournal journal(path());
-      for (std::int64_t line = 0; line < 100; ++line)
-        journal.append(std::to_string(writer) + '/' + std::to_string(line), {row(line)});
+      for (std::int64_t line = 0; line < 100; ++line) journal.append(idOf(1000 * writer + line), {row(line)});
       ::_exit(0);
     }
     children.push_back(child);

@@ -89,7 +89,7 @@ TEST(OtherJournal, RaisesNothing) {
     addDrive(light, drive(), &journal);
     auto rows = journal.rows(journal.drives()[0]);
     for (JournalRow& row : rows) row.wheel = {};
-    unnamed.append("a", rows);
+    unnamed.append(journal.drives()[0], rows);
     TraversabilityMap heavy = sand(heavy_kg);
     EXPECT_EQ(findings(replay(again, journal)), 0U);
     EXPECT_GT(better(sand(), again), 100);

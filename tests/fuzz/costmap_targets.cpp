@@ -68,7 +68,7 @@ std::string journalBytes() {
     row.observation.place = {1.0, 1.0};
     row.observation.pull = {0.1, 0.05};
     row.observation.sinkage = {0.1, 0.02};
-    journal.append("a", {row, row});
+    journal.append("000000000000000a", {row, row});
   }
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};
