@@ -86,6 +86,11 @@ std::string unobservedFinding(std::size_t places) {
          " places refused: wheels indicate danger where the map has no terrain class";
 }
 
+std::string lackingFinding(std::size_t drives) {
+  return "the journal lacks " + std::to_string(drives) + (drives == 1 ? " drive" : " drives") +
+         " that the map holds: it cannot rebuild this map";
+}
+
 std::string othersFinding(std::size_t rows) {
   return std::to_string(rows) +
          " rows: of another wheel or load than the map's rover has; they only lower estimates";
@@ -285,8 +290,13 @@ DriveReport addDrive(TraversabilityMap& map, const terramech::Telemetry& telemet
 DriveReport replay(TraversabilityMap& map, const EvidenceJournal& journal) {
   DriveReport report;
   const std::size_t refused = map.refused().size();
+  std::size_t lacking = map.drives().size();
   for (const std::string& drive : journal.drives()) {
-    if (map.drives().contains(drive)) continue;
+    if (map.drives().contains(drive)) {
+      journal.check(drive);
+      --lacking;
+      continue;
+    }
     for (JournalRow& row : journal.rows(drive)) {
       if (!isOf(map.model().rover(), row.wheel)) {
         row.observation.pull_may_raise = row.observation.sinkage_may_raise = false;
@@ -299,6 +309,7 @@ DriveReport replay(TraversabilityMap& map, const EvidenceJournal& journal) {
     map.noteDrive(drive);
   }
   report.unobserved = map.refused().size() - refused;
+  if (lacking > 0) report.findings.push_back(lackingFinding(lacking));
   if (report.unobserved > 0) report.findings.push_back(unobservedFinding(report.unobserved));
   if (report.others > 0) report.findings.push_back(othersFinding(report.others));
   map.publishAll();

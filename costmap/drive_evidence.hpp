@@ -79,7 +79,8 @@ DriveReport addDrive(TraversabilityMap& map, const terramech::Telemetry& telemet
                      EvidenceJournal* journal = nullptr, const IntakeOptions& options = {});
 
 /// Puts every drive of a journal that a map does not hold into it and publishes: same map before, same journal, same map
-/// after, to the bit. Throws InputError for a damaged journal, and leaves the map with the drives before the damage.
+/// after, to the bit. Drives that the map holds are checked in the journal, and one finding counts those that the journal
+/// lacks. Throws InputError for a damaged journal, and leaves the map with the drives before the damage.
 DriveReport replay(TraversabilityMap& map, const EvidenceJournal& journal);
 
 }  // namespace talus::costmap

@@ -40,7 +40,10 @@ void bind(CLI::App& command, Options& options) {
   addOutput(command, "-o,--output", options.output, "map to write")->required()->type_name("MAP2.ot");
   auto* journal =
       command.add_option("--journal", options.journal, "SQLite journal of every row, accepted or rejected")
-          ->type_name("EVIDENCE.db");
+          ->type_name("EVIDENCE.db")
+          ->check([](const std::string& name) {
+            return name.empty() ? std::string("the name is empty; name a file") : std::string();
+          });
   command
       .add_option("--pose-error", options.intake.pose_std_m,
                   "standard deviation of x_m and y_m if there is no column pose_std_m [m]")
@@ -95,9 +98,16 @@ Difference between(const Snapshot& before, const Snapshot& after) {
       {options.journal, "holds nothing to replay", "name the journal that the drives went into"});
 }
 
-void checkCall(const Options& options) {
+// One that does not exist yet is an output as others are.
+void checkJournal(const Options& options, bool force) {
+  std::error_code error;
+  const auto size = std::filesystem::file_size(options.journal, error);
+  if (!force && !options.journal.empty() && (error || size == 0)) checkOutput(options.journal, {});
   for (const std::string& file : {options.output, options.map, options.telemetry})
     checkBesideJournal(file, options.journal);
+}
+
+void checkCall(const Options& options) {
   std::error_code error;
   if (options.replay && (std::filesystem::file_size(options.journal, error) == 0 || error))
     refuseReplay(options);
@@ -132,7 +142,7 @@ void addTelemetry(const Options& options, costmap::TraversabilityMap& map,
   report.raising += drive.raising;
   report.rejected += drive.rejected + telemetry.rejected.size();
   report.repeated = drive.repeated;
-  report.findings = drive.findings;
+  report.findings.insert(report.findings.end(), drive.findings.begin(), drive.findings.end());
 }
 
 void tell(const costmap::DriveReport& report, const Difference& difference, const Context& context) {
@@ -153,6 +163,7 @@ void tell(const costmap::DriveReport& report, const Difference& difference, cons
 
 int run(const Options& options, Context& context) {
   checkCall(options);
+  checkJournal(options, context.force);
   const FileLock lock({options.map, options.output}, context.stop);
   OutputFile output(options.output);
   costmap::TraversabilityMap map =

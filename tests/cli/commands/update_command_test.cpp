@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <sqlite3.h>
 
 #include <talus/costmap/evidence_journal.hpp>
 #include <talus/terramech/contact/rover.hpp>
@@ -67,6 +68,13 @@ std::string driveOver(const terramech::Soil& soil, double off_Nm = 0.0) {
   return text;
 }
 
+void changeDatabase(const std::string& path, const char* sql) {
+  sqlite3* database = nullptr;
+  ASSERT_EQ(sqlite3_open(path.c_str(), &database), SQLITE_OK);
+  EXPECT_EQ(sqlite3_exec(database, sql, nullptr, nullptr, nullptr), SQLITE_OK) << sqlite3_errmsg(database);
+  sqlite3_close(database);
+}
+
 terramech::Soil weak() {
   terramech::Soil soil = terramech::loadSoil("sandy_loam");
   soil.friction_angle_rad *= 0.8;
@@ -102,6 +110,42 @@ TEST(UpdateCommand, TwoUpdatesMakeOneMap) {
   EXPECT_EQ(fileContent(site.folder / "a.ot"), fileContent(site.folder / "b.ot"));
   EXPECT_EQ(fileContent(site.folder / "a.ot"), fileContent(site.folder / "c.ot"));
   EXPECT_NE(fileContent(site.folder / "a.ot"), fileContent(site.folder / "map.ot"));
+}
+
+// A map that holds drives which the journal lacks cannot be rebuilt from it; nothing told so.
+TEST(UpdateCommand, TellsHowManyDrivesTheJournalLacks) {
+  const Site site;
+  site.folder.write("t.csv", driveOver(weak()));
+  site.folder.write("u.csv", driveOver(weak(), 0.1));
+  site.run({"update", "map.ot", "t.csv", "-o", "a.ot", "--journal", "e.db", "--json"});
+  EXPECT_EQ(site.warnings.find("lacks"), std::string::npos);
+  site.run({"update", "a.ot", "u.csv", "-o", "b.ot", "--journal", "other.db", "--json"});
+  EXPECT_NE(site.warnings.find("the journal lacks 1 drive that the map holds"), std::string::npos)
+      << site.warnings;
+  site.run({"update", "a.ot", "u.csv", "-o", "b.ot", "--journal", "e.db", "--json"});
+  EXPECT_EQ(site.warnings.find("lacks"), std::string::npos);
+}
+
+// Property: a journal that was changed is not written on, even where the map holds the drives that it has.
+TEST(UpdateCommand, RefusesAJournalOfWhichRowsAreGone) {
+  const Site site;
+  site.folder.write("t.csv", driveOver(weak()));
+  site.folder.write("u.csv", driveOver(weak(), 0.1));
+  for (const char* sql : {"DELETE FROM evidence WHERE id = 5", "DELETE FROM evidence",
+                          "UPDATE evidence SET slip = 0.1 WHERE id = 2",
+                          "UPDATE evidence SET id = -1 WHERE id = 5; UPDATE evidence SET id = 5 WHERE id = 6;"
+                          "UPDATE evidence SET id = 6 WHERE id = -1"}) {
+    std::filesystem::remove(site.folder / "e.db");
+    site.run({"update", "map.ot", "t.csv", "-o", "a.ot", "--journal", "e.db", "--json"});
+    changeDatabase(site.folder / "e.db", sql);
+    const std::string before = fileContent(site.folder / "e.db");
+    const Ran ran =
+        runTalus({"update", "a.ot", "u.csv", "-o", "b.ot", "--journal", "e.db"}, site.folder.path());
+    EXPECT_EQ(ran.code, 2) << sql;
+    EXPECT_NE(ran.err.find("checksum mismatch"), std::string::npos) << ran.err;
+    EXPECT_EQ(fileContent(site.folder / "e.db"), before) << sql;
+    EXPECT_FALSE(std::filesystem::exists(site.folder / "b.ot"));
+  }
 }
 
 TEST(UpdateCommand, RowsThatCannotBeUsedAreCountedAndTold) {
@@ -150,6 +194,9 @@ TEST(BadInput, Updates) {
   const std::string unfed = files.folder() / "unfed.db";
   costmap::EvidenceJournal{unfed};
   files.folder().write("off.csv", "x_m,y_m,load_N,slip,slope_rad\n900,900,10,0.2,0\n");
+  files.folder().write("t.csv", driveOver(weak()));
+  const Folder other;
+  std::filesystem::create_symlink(other / "none.db", files.folder() / "far.db");
   expectRefused(files,
                 {
                     {{"update", "map.ot", "missing.csv", "-o", "m.ot"}, 2, "missing.csv"},
@@ -164,6 +211,13 @@ TEST(BadInput, Updates) {
                     {{"update", "map.ot", "empty.csv", "--journal", "new.db", "-o", "m.ot"}, 2, "empty"},
                     {{"update", "flat.asc", "off.csv", "--journal", "new.db", "-o", "m.ot"}, 2, "flat"},
                     {{"update", "map.ot", "off.csv", "-o", "no/m.ot"}, 2, "no"},
+                    {{"update", "map.ot", "t.csv", "-o", "m.ot", "--journal", ""}, 2, "the name is empty"},
+                    {{"update", "map.ot", "t.csv", "-o", "m.ot", "--journal", ":memory:"}, 2, "name a file"},
+                    {{"update", "map.ot", "t.csv", "-o", "m.ot", "--journal", "file:z.db?mode=memory"},
+                     2,
+                     "name a file"},
+                    {{"update", "map.ot", "t.csv", "-o", "m.ot", "--journal", "z.db/"}, 2, "folder"},
+                    {{"update", "map.ot", "t.csv", "-o", "m.ot", "--journal", "far.db"}, 2, "is a link to"},
                 });
 }
 
