@@ -1,8 +1,5 @@
 #include <algorithm>
-#include <array>
-#include <cinttypes>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 #include <iterator>
 #include <limits>
@@ -13,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include <talus/costmap/checksum.hpp>
 #include <talus/costmap/drive_evidence.hpp>
+#include <talus/costmap/drive_id.hpp>
 #include <talus/costmap/telemetry_processor.hpp>
 #include <talus/terramech/contact/load_transfer.hpp>
 
@@ -30,22 +27,6 @@ void processRows(const TelemetryRows& rows, const TraversabilityMap& map, Teleme
     auto results = processor.process(rows, moment, verdict);
     for (std::size_t w = 0; w < results.size(); ++w) take(moment.rows[w], std::move(results[w]));
   }
-}
-
-// Row by row, rejected ones where they stood, so that a drive has one id however it is divided.
-void add(const terramech::Telemetry& telemetry, Checksum& sum) {
-  std::size_t rejected = 0;
-  const auto addRejected = [&](std::size_t before_line) {
-    for (; rejected < telemetry.rejected.size() && telemetry.rejected[rejected].line < before_line;
-         ++rejected)
-      for (const auto& column : telemetry.rejected_numbers) sum.add(&column.values[rejected], sizeof(double));
-  };
-  for (std::size_t i = 0; i < telemetry.size(); ++i) {
-    addRejected(telemetry.lines[i]);
-    for (const auto& column : telemetry.numbers) sum.add(&column.values[i], sizeof(double));
-    for (const auto& column : telemetry.words) sum.add(column.values[i].c_str(), column.values[i].size() + 1);
-  }
-  addRejected(std::numeric_limits<std::size_t>::max());
 }
 
 // Rows behind those that are known, column by column; what either lacks is empty.
@@ -96,18 +77,12 @@ std::string othersFinding(std::size_t rows) {
          " rows: of another wheel or load than the map's rover has; they only lower estimates";
 }
 
-std::string hexadecimal(const Checksum& sum) {
-  std::array<char, 17> digits{};
-  std::snprintf(digits.data(), digits.size(), "%016" PRIx64, sum.value());
-  return digits.data();
-}
-
 }  // namespace
 
 std::string driveId(const terramech::Telemetry& telemetry) {
-  Checksum sum;
-  add(telemetry, sum);
-  return hexadecimal(sum);
+  DriveId id;
+  id.add(telemetry);
+  return id.text();
 }
 
 struct DriveIntake::State {
@@ -116,7 +91,7 @@ struct DriveIntake::State {
   IntakeOptions options;
   std::unique_ptr<TelemetryProcessor> processor;
   DriveReport report{};
-  Checksum sum{};                  // of the parts so far
+  DriveId sum{};                   // of the parts so far
   std::string id{};                // by that
   std::vector<JournalRow> rows{};  // of a part
   // Of all parts, where they may be settled: what was read, what the map counted of it, which of it bounds a place, and what
@@ -176,8 +151,8 @@ void DriveIntake::State::put(const terramech::Telemetry& telemetry, const DriveV
   const TelemetryRows readings(telemetry, map, options.pose_std_m);
   const std::size_t refused = map.refused().size();
   const std::string before = id;
-  costmap::add(telemetry, sum);
-  id = hexadecimal(sum);
+  sum.add(telemetry);
+  id = sum.text();
   rows.clear();
   processRows(readings, map, *processor, verdict, [&](std::size_t i, TelemetryProcessor::Result&& result) {
     learn(telemetry, readings, i, std::move(result),
@@ -272,7 +247,7 @@ DriveReport DriveIntake::report() const {
 
 DriveReport addDrive(TraversabilityMap& map, const terramech::Telemetry& telemetry, EvidenceJournal* journal,
                      const IntakeOptions& options) {
-  if (map.drives().contains(driveId(telemetry))) {
+  if (map.drives().contains(driveId(telemetry)) || map.drives().contains(formerDriveId(telemetry))) {
     DriveReport report;
     report.repeated = telemetry.size();
     return report;

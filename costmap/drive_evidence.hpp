@@ -33,7 +33,8 @@ struct IntakeOptions {
   bool settles = false;
 };
 
-/// The id of a drive: a checksum of its rows' values as 16 hexadecimal digits, whatever the file is called.
+/// The id of a drive: a checksum of what maps learn from in its rows as 16 hexadecimal digits, whatever the file is called,
+/// in whatever order its columns are and whatever others there are.
 std::string driveId(const terramech::Telemetry& telemetry);
 
 /// Puts telemetry into a map while it comes in, part by part: what the sensors' watch knows is kept from one

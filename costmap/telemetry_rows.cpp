@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -25,7 +26,22 @@ double slipOf(double speed_mps, double rim_speed_mps) noexcept {
                                                 : std::numeric_limits<double>::quiet_NaN();
 }
 
+constexpr std::array<std::string_view, 19> kNumbers{
+    "drawbar_pull_N", "heading_rad", "load_N",    "pass_index", "pose_std_m",
+    "rim_speed_mps",  "roll_rad",    "sinkage_m", "slip",       "slip_angle_rad",
+    "slope_rad",      "speed_mps",   "time_s",    "torque_Nm",  "wheel_radius_m",
+    "wheel_width_m",  "x_m",         "y_m",       "z_m"};
+constexpr std::array<std::string_view, 2> kWords{"run", "wheel"};
+
 }  // namespace
+
+std::span<const std::string_view> usedNumberColumns() noexcept {
+  return kNumbers;
+}
+
+std::span<const std::string_view> usedWordColumns() noexcept {
+  return kWords;
+}
 
 TelemetryRows::TelemetryRows(const terramech::Telemetry& telemetry, const TraversabilityMap& map,
                              double pose_std_m)

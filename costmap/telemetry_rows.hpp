@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <talus/costmap/traversability_map.hpp>
@@ -9,6 +11,10 @@
 #include <talus/terramech/estimate/telemetry.hpp>
 
 namespace talus::costmap {
+
+/// The columns that TelemetryRows reads, sorted by name.
+std::span<const std::string_view> usedNumberColumns() noexcept;
+std::span<const std::string_view> usedWordColumns() noexcept;
 
 /// The columns of a telemetry file as readings on a map. Keeps references to both.
 class TelemetryRows {

@@ -1,0 +1,96 @@
+#include <array>
+#include <cinttypes>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <vector>
+
+#include <talus/costmap/drive_id.hpp>
+#include <talus/costmap/telemetry_rows.hpp>
+
+namespace talus::costmap {
+namespace {
+
+std::string hexadecimal(const Checksum& sum) {
+  std::array<char, 17> digits{};
+  std::snprintf(digits.data(), digits.size(), "%016" PRIx64, sum.value());
+  return digits.data();
+}
+
+// Calls take(row) for every row, take_rejected(row) for those that the reader left out, where they stood: so a drive has
+// one id however it is divided.
+template <typename Take, typename TakeRejected>
+void eachRow(const terramech::Telemetry& telemetry, Take&& take, TakeRejected&& take_rejected) {
+  std::size_t rejected = 0;
+  const auto addRejected = [&](std::size_t before_line) {
+    for (; rejected < telemetry.rejected.size() && telemetry.rejected[rejected].line < before_line;
+         ++rejected)
+      take_rejected(rejected);
+  };
+  for (std::size_t i = 0; i < telemetry.size(); ++i) {
+    addRejected(telemetry.lines[i]);
+    take(i);
+  }
+  addRejected(std::numeric_limits<std::size_t>::max());
+}
+
+using Column = const std::vector<double>*;
+
+std::vector<Column> usedOf(const std::vector<terramech::Telemetry::Numbers>& columns) {
+  std::vector<Column> used;
+  for (const std::string_view name : usedNumberColumns()) {
+    used.push_back(nullptr);
+    for (const auto& column : columns)
+      if (column.name == name) used.back() = &column.values;
+  }
+  return used;
+}
+
+// A column that is not there is one of missing numbers.
+void addNumbers(Checksum& sum, const std::vector<Column>& columns, std::size_t row) {
+  for (const Column column : columns) {
+    double value = column ? (*column)[row] : std::numeric_limits<double>::quiet_NaN();
+    if (std::isnan(value)) value = std::numeric_limits<double>::quiet_NaN();
+    sum.add(&value, sizeof value);
+  }
+}
+
+void addWord(Checksum& sum, const std::string& word) {
+  sum.add(word.c_str(), word.size() + 1);
+}
+
+}  // namespace
+
+void DriveId::add(const terramech::Telemetry& telemetry) {
+  const std::vector<Column> numbers = usedOf(telemetry.numbers),
+                            rejected = usedOf(telemetry.rejected_numbers);
+  std::vector<const std::vector<std::string>*> words;
+  for (const std::string_view name : usedWordColumns()) words.push_back(telemetry.findWords(name));
+  eachRow(
+      telemetry,
+      [&](std::size_t i) {
+        addNumbers(sum_, numbers, i);
+        for (const auto* column : words) addWord(sum_, column ? (*column)[i] : std::string());
+      },
+      [&](std::size_t i) { addNumbers(sum_, rejected, i); });
+}
+
+std::string DriveId::text() const {
+  return hexadecimal(sum_);
+}
+
+std::string formerDriveId(const terramech::Telemetry& telemetry) {
+  Checksum sum;
+  eachRow(
+      telemetry,
+      [&](std::size_t i) {
+        for (const auto& column : telemetry.numbers) sum.add(&column.values[i], sizeof(double));
+        for (const auto& column : telemetry.words) addWord(sum, column.values[i]);
+      },
+      [&](std::size_t i) {
+        for (const auto& column : telemetry.rejected_numbers) sum.add(&column.values[i], sizeof(double));
+      });
+  return hexadecimal(sum);
+}
+
+}  // namespace talus::costmap

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+
+#include <talus/costmap/checksum.hpp>
+#include <talus/terramech/estimate/telemetry.hpp>
+
+namespace talus::costmap {
+
+/// The id of a drive of which rows come part by part: a checksum of what is used of each row, column by column in the order
+/// of their names, as 16 hexadecimal digits. The order of a file's columns and columns that no map learns from do not show.
+class DriveId {
+ public:
+  void add(const terramech::Telemetry& telemetry);
+  std::string text() const;
+
+ private:
+  Checksum sum_{};
+};
+
+/// The id that a drive had in maps and journals of Talus up to 0.1, over all columns in the order of their file: what
+/// holds it already is recognised by it.
+std::string formerDriveId(const terramech::Telemetry& telemetry);
+
+}  // namespace talus::costmap
