@@ -84,7 +84,8 @@ TEST(RequestCheck, ValuesOutOfRangeAreRefusedWithTheirBound) {
   request.kinematics = Kinematics{.turning_radius_m = -2.0};
   EXPECT_THAT(refused(request), ThrowsMessage<std::invalid_argument>(HasSubstr("turning_radius_m = -2")));
   request.kinematics = Kinematics{.turning_radius_m = 1e-9};
-  EXPECT_THAT(refused(request), ThrowsMessage<std::invalid_argument>(HasSubstr("must be 0 or 0.001 to 1000")));
+  EXPECT_THAT(refused(request),
+              ThrowsMessage<std::invalid_argument>(HasSubstr("must be 0 or 0.001 to 1000")));
   request = {};
   request.risk_limit = RiskLimit{.immobilisation = 1.0};
   EXPECT_THAT(refused(request), ThrowsMessage<std::invalid_argument>(HasSubstr("above 0 and below 1")));
