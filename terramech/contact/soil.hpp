@@ -7,15 +7,15 @@ namespace talus::terramech {
 /// A homogeneous soil under Bekker pressure-sinkage and Janosi-Hanamoto shear. Plain data, SI.
 struct Soil {
   std::string name;                 ///< for reports
-  double cohesion_Pa = 0.0;         ///< c >= 0
+  double cohesion_Pa = 0.0;         ///< c in [0, 1e9]
   double friction_angle_rad = 0.0;  ///< phi in [0, pi/2)
-  double sinkage_exponent = 1.0;    ///< n > 0 [-]
+  double sinkage_exponent = 1.0;    ///< n in [1e-3, 100] [-]
   double cohesive_modulus = 0.0;    ///< k_c [N/m^(n+1)]; may be negative as long as k_c/b + k_phi > 0
   double frictional_modulus = 0.0;  ///< k_phi [N/m^(n+2)]
-  double shear_modulus_m = 0.02;    ///< shear deformation modulus K > 0
+  double shear_modulus_m = 0.02;    ///< shear deformation modulus K in [1e-9, 1000]
   double c1 = 0.43;                 ///< theta_m / theta_1 at no slip [-] (Wong and Reece; wong_reece_1967a)
   double c2 = 0.32;                 ///< its growth with slip [-]
-  double density_kg_m3 = 1600.0;    ///< bulk density > 0, of soil that is moved
+  double density_kg_m3 = 1600.0;    ///< bulk density in [0.1, 1e6], of soil that is moved
   /// n_d >= 0 [-] of a wheel that slides sideways: n = n0 + n_d (s_R - |i|), s_R = resultantSlip(). The form
   /// and size of ding_2010's growth with slip (n1 0.2 to 0.6, number unverified), taken over the resultant:
   /// ours.

@@ -7,8 +7,8 @@ void validate(const Wheel& wheel) {
   const RangeCheck check{"wheel"};
   check.above("radius_m", wheel.radius_m, 0.0);
   check.above("width_m", wheel.width_m, 0.0);
-  check.within("radius_m", wheel.radius_m, {1e-3, 10.0});
-  check.within("width_m", wheel.width_m, {1e-3, 10.0});
+  check.within("radius_m", wheel.radius_m, {1e-4, 10.0});
+  check.within("width_m", wheel.width_m, {1e-4, 10.0});
   check.within("grouser_height_m", wheel.grouser_height_m, {0.0, 1.0});
   check.within("grouser_count", wheel.grouser_count, {0.0, 1000.0});
 }

@@ -67,6 +67,25 @@ std::string kindOf(const YAML::Node& node) {
   return node.IsNull() ? "empty" : "'" + node.Scalar() + "'";
 }
 
+/// Whether a marker parts what it holds: no content, quoted or not, has one at the beginning of a line.
+bool holdsMoreDocuments(const std::string& yaml) {
+  std::istringstream lines(yaml);
+  bool content = false, ended = false;
+  for (std::string line; std::getline(lines, line);) {
+    const auto isMarker = [&](std::string_view marker) {
+      return line.starts_with(marker) &&
+             (line.size() == 3 || std::string_view(" \t\r").find(line[3]) != std::string_view::npos);
+    };
+    const bool begins = isMarker("---"), ends = isMarker("...");
+    const std::size_t first = line.find_first_not_of(" \t\r", begins || ends ? 3 : 0);
+    const bool says = first != std::string::npos && line[first] != '#' && line[first] != '%';
+    if (content && (begins || (ended && says))) return true;
+    content |= says;
+    ended |= content && ends;
+  }
+  return false;
+}
+
 }  // namespace
 
 YamlFields YamlFields::of(const YAML::Node& node, const std::string& origin, const std::string& what) {
@@ -102,10 +121,8 @@ YamlFields YamlFields::file(const std::string& path) {
 
 YamlFields YamlFields::text(const std::string& yaml, const std::string& origin) {
   try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(yaml);
-    if (documents.size() > 1)
-      fail(origin, "holds " + std::to_string(documents.size()) + " YAML documents", "keep one of them");
-    const YAML::Node root = documents.empty() ? YAML::Node() : documents.front();
+    if (holdsMoreDocuments(yaml)) fail(origin, "holds more than one YAML document", "keep one of them");
+    const YAML::Node root = YAML::Load(yaml);
     if (root.IsNull()) fail(origin, "is empty", "write `name: value` lines");
     return of(root, origin, "");
   } catch (const YAML::Exception& e) {

@@ -95,7 +95,7 @@ TEST(Mission, MistakesNameTheFileAndTheField) {
   EXPECT_THAT(refused("maps: {dem: a.tif}\noutput: \"\"\n"),
               ThrowsMessage<InputError>(HasSubstr("output is empty")));
   EXPECT_THAT(refused("maps: {dem: a.tif}\n---\nmaps: {dem: b.tif}\n"),
-              ThrowsMessage<InputError>(HasSubstr("2 YAML documents")));
+              ThrowsMessage<InputError>(HasSubstr("more than one YAML document")));
   EXPECT_THAT(refused("rover: mer\n"), ThrowsMessage<InputError>(HasSubstr("maps")));
 }
 

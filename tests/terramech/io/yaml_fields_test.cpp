@@ -66,6 +66,16 @@ TEST(YamlFields, ErrorsHaveFileAndLine) {
   EXPECT_THAT([] { YamlFields::file("/tmp"); }, ThrowsMessage<InputError>(HasSubstr("is a directory")));
 }
 
+// Property: one document is read with its markers, of several none is passed over.
+TEST(YamlFields, HoldsOneDocument) {
+  for (const char* one : {"---\na: 1\n", "# soil\n%YAML 1.2\n--- # begins\na: 1\n...\n# end\n",
+                          "--- {a: 1}\n...\n", "a: 1 # ---\nb: '\n  ---'\n", "a: 1\nc---: 2\n"})
+    EXPECT_NO_THROW(of(one)) << one;
+  for (const char* more :
+       {"a: 1\n---\nb: 1\n", "a: 1\n---\n", "--- {a: 1}\n---\r\n", "a: 1\n...\nb: 1\n", "a: 1\n--- {b: 1}\n"})
+    EXPECT_THROW(of(more), InputError) << more;
+}
+
 TEST(YamlFields, NearestNameCountsEdits) {
   EXPECT_EQ(nearestName("cohesion", {"cohesive", "friction"}), "cohesive");
   EXPECT_EQ(nearestName("completely_else", {"a", "b"}), "");
