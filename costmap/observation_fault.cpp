@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <string>
 
-#include <talus/costmap/journal_row.hpp>
+#include <talus/costmap/evidence_journal.hpp>
 
 namespace talus::costmap {
 namespace {
