@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include <talus/costmap/evidence_journal.hpp>
 #include <talus/costmap/journal_database.hpp>
+#include <talus/costmap/wheel_observation.hpp>
 
 /// Rows of a journal's tables `evidence` and `drive`.
 namespace talus::costmap {

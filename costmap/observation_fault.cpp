@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <string>
 
-#include <talus/costmap/evidence_journal.hpp>
+#include <talus/costmap/wheel_observation.hpp>
 
 namespace talus::costmap {
 namespace {
