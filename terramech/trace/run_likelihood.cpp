@@ -18,14 +18,19 @@ struct RunLikelihood::FoldSums {
 
 namespace {
 
-/// Sum of F^T X over the rows of each unit.
-std::vector<Eigen::MatrixXd> unitSums(const std::vector<Eigen::Matrix4d>& factor,
-                                      const std::vector<int>& unit, std::size_t units,
-                                      const Eigen::MatrixXd& columns) {
-  std::vector<Eigen::MatrixXd> sum(units, Eigen::MatrixXd::Zero(kChannels, columns.cols()));
+/// What belongs to one unit, or to one row, in a matrix of kChannels rows each.
+template <typename Matrix>
+auto rowsOf(Matrix&& all, std::size_t which) {
+  return all.template middleRows<kChannels>(static_cast<Eigen::Index>(which) * kChannels);
+}
+
+/// Sum of F^T X over the rows of each unit, one below the other.
+Eigen::MatrixXd unitSums(const std::vector<Eigen::Matrix4d>& factor, const std::vector<int>& unit,
+                         std::size_t units, const Eigen::MatrixXd& columns) {
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(units) * kChannels, columns.cols());
   for (std::size_t row = 0; row < unit.size(); ++row)
-    sum[static_cast<std::size_t>(unit[row])].noalias() +=
-        factor[row].transpose() * columns.middleRows<kChannels>(static_cast<Eigen::Index>(row) * kChannels);
+    rowsOf(sum, static_cast<std::size_t>(unit[row])).noalias() +=
+        factor[row].transpose() * rowsOf(columns, row);
   return sum;
 }
 
@@ -52,14 +57,19 @@ StepPrior joined(const StepPrior& a, const StepPrior& b) {
   return both;
 }
 
-Eigen::MatrixXd stepsOf(const Eigen::MatrixXd& gram, const Eigen::MatrixXd& cross, const StepPrior& prior) {
-  Eigen::MatrixXd a = gram;
-  a.diagonal() += prior.precision;
-  a.diagonal().array() += 1e-9;
-  Eigen::MatrixXd b = cross;
-  b.colwise() += prior.precision.cwiseProduct(prior.mean);
-  return a.ldlt().solve(b);
-}
+/// The normal equations of the steps, the prior among them.
+struct Normal {
+  Normal(Eigen::MatrixXd gram, Eigen::MatrixXd cross, const StepPrior& prior) : right(std::move(cross)) {
+    gram.diagonal() += prior.precision;
+    gram.diagonal().array() += 1e-9;
+    right.colwise() += prior.precision.cwiseProduct(prior.mean);
+    solver.compute(gram);
+  }
+  Eigen::MatrixXd steps() const { return solver.solve(right); }
+
+  Eigen::LDLT<Eigen::MatrixXd> solver;
+  Eigen::MatrixXd right;
+};
 
 }  // namespace
 
@@ -114,11 +124,9 @@ RunSums RunLikelihood::sums(const RunSums& of_known, const LinearModel& known,
     s.gram[f] = std::move(gram);
     s.cross[f] = std::move(cross);
   }
-  for (std::size_t u = 0; u < information_.size(); ++u) {
-    Eigen::MatrixXd both(kChannels, p + q);
-    both << of_known.unit_column[u], s.unit_column[u];
-    s.unit_column[u] = std::move(both);
-  }
+  Eigen::MatrixXd columns(s.unit_column.rows(), p + q);
+  columns << of_known.unit_column, s.unit_column;
+  s.unit_column = std::move(columns);
   s.prior = joined(known.prior, added.prior);
   return s;
 }
@@ -149,9 +157,10 @@ std::vector<RunLikelihood::FoldSums> RunLikelihood::underRun(const RunSums& sums
   for (std::size_t u = 0; u < information_.size(); ++u) {
     FoldSums& own = fold[static_cast<std::size_t>(fold_of_unit_[u])];
     const Eigen::Matrix4d k = shrink(u, run);
-    const Eigen::MatrixXd kx = k * sums.unit_column[u];
-    const auto y = unit_table_[u].middleCols(first, count);
-    own.gram.noalias() -= sums.unit_column[u].transpose() * kx;
+    const auto x = rowsOf(sums.unit_column, u);
+    const Eigen::MatrixXd kx = k * x;
+    const auto y = rowsOf(unit_table_, u).middleCols(first, count);
+    own.gram.noalias() -= x.transpose() * kx;
     own.cross.noalias() -= kx.transpose() * y;
     own.square -= y.cwiseProduct(k * y).colwise().sum().transpose();
     own.log_determinant += std::log((Eigen::Matrix4d::Identity() + information_[u] * run).determinant());
@@ -163,9 +172,9 @@ HeldOutFit RunLikelihood::heldOut(const RunSums& sums, const Eigen::Matrix4d& ru
                                   Eigen::Index count) const {
   const std::vector<FoldSums> fold = underRun(sums, run, first, count);
   const FoldSums all = together(fold);
-  HeldOutFit fit{Eigen::VectorXd::Zero(count), {}, stepsOf(all.gram, all.cross, sums.prior)};
+  HeldOutFit fit{Eigen::VectorXd::Zero(count), {}, Normal(all.gram, all.cross, sums.prior).steps()};
   for (const FoldSums& f : fold) {
-    const Eigen::MatrixXd steps = stepsOf(all.gram - f.gram, all.cross - f.cross, sums.prior);
+    const Eigen::MatrixXd steps = Normal(all.gram - f.gram, all.cross - f.cross, sums.prior).steps();
     const Eigen::VectorXd chi2 =
         f.square + (steps.cwiseProduct(f.gram * steps - 2.0 * f.cross)).colwise().sum().transpose();
     fit.log_likelihood.array() -= 0.5 * (chi2.array() + f.log_determinant);
@@ -179,29 +188,29 @@ Eigen::Matrix4d RunLikelihood::profile(const RunSums& sums, Eigen::Matrix4d run,
                                        int steps) const {
   if (!hasUnits()) return run;
   const auto units = information_.size();
+  Eigen::MatrixXd of_rows = sums.gram.front();
+  Eigen::VectorXd of_table = sums.cross.front().col(table);
+  for (std::size_t f = 1; f < sums.gram.size(); ++f) {
+    of_rows += sums.gram[f];
+    of_table += sums.cross[f].col(table);
+  }
+  const Eigen::VectorXd y = unit_table_.col(table);
+  Eigen::MatrixXd kx(sums.unit_column.rows(), sums.unit_column.cols());
+  std::vector<Eigen::Matrix4d> k(units);
   for (int step = 0; step < steps; ++step) {
-    Eigen::MatrixXd gram = sums.gram.front();
-    Eigen::MatrixXd cross = sums.cross.front().col(table);
-    for (std::size_t f = 1; f < sums.gram.size(); ++f) {
-      gram += sums.gram[f];
-      cross += sums.cross[f].col(table);
-    }
-    std::vector<Eigen::Matrix4d> k;
     for (std::size_t u = 0; u < units; ++u) {
-      k.push_back(shrink(u, run));
-      const Eigen::MatrixXd kx = k[u] * sums.unit_column[u];
-      gram.noalias() -= sums.unit_column[u].transpose() * kx;
-      cross.noalias() -= kx.transpose() * unit_table_[u].col(table);
+      k[u] = shrink(u, run);
+      rowsOf(kx, u).noalias() = k[u] * rowsOf(sums.unit_column, u);
     }
-    const Eigen::VectorXd at = stepsOf(gram, cross, sums.prior);
-    gram.diagonal() += sums.prior.precision;
-    gram.diagonal().array() += 1e-9;
-    const Eigen::LDLT<Eigen::MatrixXd> solver(gram);
+    const Normal normal(of_rows - sums.unit_column.transpose() * kx, of_table - kx.transpose() * y,
+                        sums.prior);
+    const Eigen::VectorXd at = normal.steps(), shared = kx * at;
+    const Eigen::MatrixXd spread = normal.solver.solve(kx.transpose());
     Eigen::Matrix4d next = Eigen::Matrix4d::Zero();
     for (std::size_t u = 0; u < units; ++u) {
-      const Eigen::MatrixXd kx = k[u] * sums.unit_column[u];
-      const Eigen::Vector4d error = k[u] * unit_table_[u].col(table) - kx * at;
-      next += error * error.transpose() + k[u] + kx * solver.solve(kx.transpose());
+      const Eigen::Vector4d error = k[u] * rowsOf(y, u) - rowsOf(shared, u);
+      const auto first = static_cast<Eigen::Index>(u) * kChannels;
+      next += error * error.transpose() + k[u] + rowsOf(kx, u) * spread.middleCols<kChannels>(first);
     }
     run = next / static_cast<double>(units);
   }
@@ -211,7 +220,7 @@ Eigen::Matrix4d RunLikelihood::profile(const RunSums& sums, Eigen::Matrix4d run,
 double RunLikelihood::logLikelihood(const Eigen::Matrix4d& run, Eigen::Index table) const {
   double chi2 = square_.col(table).sum();
   for (std::size_t u = 0; u < information_.size(); ++u) {
-    const Eigen::Vector4d y = unit_table_[u].col(table);
+    const Eigen::Vector4d y = rowsOf(unit_table_, u).col(table);
     chi2 += std::log((Eigen::Matrix4d::Identity() + information_[u] * run).determinant()) -
             y.dot(shrink(u, run) * y);
   }

@@ -24,9 +24,9 @@ struct LinearModel {
 
 /// Sums over rows that the likelihood needs of columns X and of tables Y (whitened residuals, one a column).
 struct RunSums {
-  std::vector<Eigen::MatrixXd> gram;         ///< X^T X, a fold
-  std::vector<Eigen::MatrixXd> cross;        ///< X^T Y, a fold
-  std::vector<Eigen::MatrixXd> unit_column;  ///< sum of F^T X, a unit: channels x parameters
+  std::vector<Eigen::MatrixXd> gram;   ///< X^T X, a fold
+  std::vector<Eigen::MatrixXd> cross;  ///< X^T Y, a fold
+  Eigen::MatrixXd unit_column;         ///< sum of F^T X, a unit: channels x parameters, one below the other
   StepPrior prior;
 };
 
@@ -83,7 +83,7 @@ class RunLikelihood {
   std::vector<Eigen::Matrix4d> information_;  ///< sum of F^T F, a unit
   std::vector<Eigen::MatrixXd> tables_;       ///< rows of each fold
   Eigen::MatrixXd square_;                    ///< folds x tables
-  std::vector<Eigen::MatrixXd> unit_table_;   ///< sum of F^T Y, a unit
+  Eigen::MatrixXd unit_table_;  ///< sum of F^T Y, a unit: channels x tables, one below the other
 };
 
 }  // namespace talus::terramech
