@@ -94,7 +94,8 @@ std::string HelpFormat::make_help(const CLI::App* app, std::string name, CLI::Ap
   std::string text = wrapped(app->get_description(), kHelpWidth) + "\n" + make_usage(app, std::move(name)) +
                      make_positionals(app);
   std::vector<std::string> headings = app->get_groups();
-  std::ranges::stable_partition(headings, [](const std::string& heading) { return heading != "Options"; });
+  std::stable_partition(headings.begin(), headings.end(),
+                        [](const std::string& heading) { return heading != "Options"; });
   for (const std::string& heading : headings) {
     const auto options = app->get_options(
         [&heading](const CLI::Option* o) { return o->get_group() == heading && o->nonpositional(); });

@@ -36,6 +36,17 @@ namespace {
 // Less is not meaningful: the program with its libraries takes some of it (docs/security.md).
 constexpr double kLeastMemory_B = 1e8;
 
+// Every whole number up to here is a number of JSON as well, where a route's file states the seed.
+constexpr double kGreatestSeed = 9007199254740992.0;
+
+CLI::Validator enoughMemory() {
+  const auto check = [](const std::string& bytes) -> std::string {
+    return std::strtod(bytes.c_str(), nullptr) >= kLeastMemory_B ? ""
+                                                                 : bytes + " bytes, must be 100 MB or more";
+  };
+  return CLI::Validator(check, "");
+}
+
 // The parser of sizes takes a bare unit for one of it.
 CLI::Validator startsWithNumber() {
   const auto check = [](std::string& text) -> std::string {
@@ -157,10 +168,10 @@ void addGlobalOptions(CLI::App& app, Context& context) {
          "memory that the call may take, such as 4GB (default: half of what is free)")
       ->transform(CLI::AsSizeValue(false))
       ->transform(startsWithNumber())
-      ->check(within(kLeastMemory_B, 1.8e19))
+      ->check(enoughMemory())
       ->type_name("SIZE");
   app.add_option("--seed", context.seed, "seed of the random numbers")
-      ->check(notNegative())
+      ->check(within(0.0, kGreatestSeed))
       ->type_name("N")
       ->capture_default_str();
   app.add_option("--threads", context.threads, "maximum number of threads (default: one per core)")
