@@ -9,6 +9,7 @@
 #include <talus/terramech/io/model_file.hpp>
 #include <talus/terramech/io/soil_library.hpp>
 #include <talus/terramech/io/telemetry_reader.hpp>
+#include <talus/terramech/io/wheel_rows.hpp>
 #include <talus/terramech/trace/held_out.hpp>
 #include <talus/terramech/trace/left_out.hpp>
 
@@ -90,8 +91,9 @@ int holdOutRows(const TraceCommandOptions& options, const terramech::RefinedMode
 
 int run(const TraceCommandOptions& options, Context& context) {
   terramech::ModelFile base = baseOf(options);
-  const terramech::Telemetry telemetry =
+  terramech::Telemetry telemetry =
       terramech::readTelemetry(options.telemetry, {.required = {"load_N", "slip"}});
+  terramech::leaveOutWithoutSlipAngle(telemetry);
   warnOfRejected(telemetry, context);
   const terramech::Trial all = terramech::makeTrial(telemetry, base.model);
   const std::vector<char> sunk = terramech::beyondAxle(all);

@@ -2,6 +2,7 @@
 #include <fstream>
 #include <set>
 
+#include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
 #include <talus/terramech/contact/wong_reece.hpp>
@@ -43,6 +44,19 @@ TEST(TraceCommand, AnEffectOfOneGroupIsSaidOfTheColumnThatTellsTheGroup) {
   EXPECT_EQ(effects[0]["covariate"], "wheel");
   EXPECT_EQ(effects[0]["only"]["wheel"], "2.000000");
   EXPECT_EQ(effects[0]["channel"], "drawbar_pull_over_load");
+}
+
+// They were traced as rows of straight wheels that the ground pushes aside.
+TEST(TraceCommand, SideForcesWithoutTheAngleThatTheyBelongToAreRefused) {
+  const Folder folder;
+  std::string text = "load_N,slip,sinkage_m,drawbar_pull_N,side_force_N,wheel_radius_m,wheel_width_m\n";
+  for (int row = 0; row < 12; ++row)
+    text += "80," + std::to_string(0.1 + 0.05 * row) + ",0.01,5," + std::to_string(10 + row) + ",0.1,0.1\n";
+  folder.write("t.csv", text);
+  const Ran ran = runTalus({"trace", "t.csv"}, folder.path());
+  EXPECT_EQ(ran.code, 2);
+  EXPECT_THAT(ran.err,
+              testing::HasSubstr("t.csv:2: no usable row: side_force_N = 10 without slip_angle_rad"));
 }
 
 // `--html` was passed over in silence where rows are held out.
