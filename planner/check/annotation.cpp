@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <optional>
 
 #include <talus/costmap/drive_state.hpp>
@@ -37,22 +38,25 @@ std::vector<double> passages(const maps::Grid& grid, const Segment& motion) {
   return shares;
 }
 
-// How a straight piece belongs to a drive.
+// How a straight piece belongs to a drive. `heading`: of the pose on it, since the ends of the least of chords tell none.
 struct Motion {
   bool reverse = false;
   double curvature_1_m = 0.0;
+  std::optional<Direction> heading{};
 };
 
 class Annotator {
  public:
-  explicit Annotator(const AnnotationInput& input) : input_(input), grid_(input.map.grid()) {}
+  explicit Annotator(const AnnotationInput& input)
+      : input_(input), grid_(input.map.grid()), cost_({std::shared_ptr<const void>(), &input.map}) {}
 
   void drive(const Segment& motion, const Motion& how = {}) {
     how_ = how;
     const double length_m = std::hypot(motion.to.x_m - motion.from.x_m, motion.to.y_m - motion.from.y_m);
     if (!(length_m > 0.0)) return;
-    const Direction heading{(motion.to.x_m - motion.from.x_m) / length_m,
-                            (motion.to.y_m - motion.from.y_m) / length_m};
+    const Direction along{(motion.to.x_m - motion.from.x_m) / length_m,
+                          (motion.to.y_m - motion.from.y_m) / length_m};
+    const Direction heading = length_m < kTogether * grid_.resolution_m ? how.heading.value_or(along) : along;
     const auto shares = passages(grid_, motion);
     double emitted = -1.0;
     for (std::size_t i = 1; i < shares.size(); ++i) {
@@ -65,8 +69,11 @@ class Annotator {
       const RouteVertex vertex = looked(at((shares[i] + shares[i - 1]) / 2), at(shares[i - 1]), heading);
       const bool first = emitted < 0.0;
       if (first) leaveOutNear(vertex);
-      if (first || ((shares[i - 1] - emitted) * length_m >= kTogether * grid_.resolution_m &&
-                    metres >= kTogether * grid_.resolution_m)) {
+      if (first && tellsOf(motion)) {
+        moveTo(vertices.back(), vertex);
+        emitted = 0.0;
+      } else if (first || ((shares[i - 1] - emitted) * length_m >= kTogether * grid_.resolution_m &&
+                           metres >= kTogether * grid_.resolution_m)) {
         vertices.push_back(vertex);
         emitted = std::max(shares[i - 1], 0.0);
         if (first) turns_ = vertices.size();
@@ -101,6 +108,11 @@ class Annotator {
   void cusp() { spend(input_.kinematics.cusp, 1.0); }
 
   void arrive(Point end) {
+    if (how_.heading && vertices.size() > 1 && isLeast(vertices.back(), end) &&
+        maySkip(vertices[vertices.size() - 2], vertices.back(), end)) {
+      vertices.pop_back();
+      turns_ = std::min(turns_, vertices.size());
+    }
     RouteVertex last = vertices.empty() ? looked(end, end, {1.0, 0.0}) : vertices.back();
     last.x_m = end.x_m;
     last.y_m = end.y_m;
@@ -159,6 +171,35 @@ class Annotator {
     return vertex;
   }
 
+  bool isLeast(const RouteVertex& from, Point to) const {
+    return from.turn_rad == 0.0 &&
+           std::hypot(to.x_m - from.x_m, to.y_m - from.y_m) < kTogether * grid_.resolution_m;
+  }
+
+  // Whether the rover may drive from one vertex straight past another, which it reaches and leaves the same way.
+  bool maySkip(const RouteVertex& from, const RouteVertex& passed, Point to) const {
+    return from.turn_rad == 0.0 && from.reverse == passed.reverse &&
+           std::isfinite(cost_({{from.x_m, from.y_m}, to}));
+  }
+
+  // Whether the last vertex, a chord of a drive too short to tell a heading, may stand for the motion that follows.
+  bool tellsOf(const Segment& motion) const {
+    return how_.heading && turns_ > 0 && turns_ == vertices.size() && isLeast(vertices.back(), motion.from) &&
+           vertices.back().reverse == how_.reverse &&
+           std::isfinite(cost_({{vertices.back().x_m, vertices.back().y_m}, motion.to}));
+  }
+
+  // What holds behind it now; where it is and what was spent until there stays.
+  static void moveTo(RouteVertex& vertex, RouteVertex next) {
+    next.x_m = vertex.x_m;
+    next.y_m = vertex.y_m;
+    next.elevation_m = vertex.elevation_m;
+    next.energy_J = vertex.energy_J;
+    next.time_s = vertex.time_s;
+    next.immobilisation_risk = vertex.immobilisation_risk;
+    vertex = next;
+  }
+
   // Turns stay; where the route only enters another cell next to one, the turn is enough.
   void leaveOutNear(const RouteVertex& vertex) {
     const auto near = [&](const RouteVertex& other) {
@@ -196,6 +237,7 @@ class Annotator {
 
   const AnnotationInput& input_;
   const maps::Grid& grid_;
+  MotionCost cost_;
   std::size_t turns_ = 0;  // vertices up to the last at which the route turns, or begins
   Motion how_;
   costmap::DriveState state_;  // of the cell looked at last
@@ -213,8 +255,11 @@ void driveAlong(const PosePath& drive, const costmap::CostGrid& map, Annotator& 
     if (leg.turn_rad != 0.0) annotator.stand(pose, leg.turn_rad);
     const auto poses = chords({.start = pose, .legs = {leg}}, map);
     for (std::size_t i = 1; i < poses.size() && leg.turn_rad == 0.0; ++i) {
+      const double middle_rad = 0.5 * (poses[i - 1].heading_rad + poses[i].heading_rad);
       annotator.drive({poses[i - 1].place, poses[i].place},
-                      {.reverse = now < 0, .curvature_1_m = leg.arc.curvature_1_m});
+                      {.reverse = now < 0,
+                       .curvature_1_m = leg.arc.curvature_1_m,
+                       .heading = Direction{now * std::cos(middle_rad), now * std::sin(middle_rad)}});
       if (leg.arc.curvature_1_m != 0.0)
         annotator.turn(poses[i].heading_rad - poses[i - 1].heading_rad, poses[i - 1].place);
     }

@@ -27,8 +27,9 @@ struct AnnotationInput {
 /// hazard rate times length) on maps whose cost does not state how uncertain soil is correlated (SoilDoubt). Of a long
 /// route that a stop left undrawn it is riskBoundAlong(), and the route is `interrupted`. A
 /// polyline that may not be driven is annotated, too: its cost is infinite, energy and time
-/// count what the map provides. A drive has a vertex more wherever an arc is cut into chords, and two where
-/// the rover turns in place; turning counts. Status and reason are the plan's.
+/// count what the map provides. A drive has a vertex more wherever an arc is cut into chords, but none for a chord of
+/// less than a hundredth of a cell where the way past it may be driven, and two where the rover turns in place; turning
+/// counts. Status and reason are the plan's.
 Route annotated(const Plan& plan, const AnnotationInput& input);
 
 /// cost / lower bound - 1; 0 where both are 0, infinite for a bound of 0.

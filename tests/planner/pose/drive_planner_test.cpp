@@ -75,6 +75,38 @@ TEST(DrivePlanner, NeverHandsOutADriveThatMayNotBeDriven) {
   EXPECT_GT(found, 40);
 }
 
+// Curves end in arcs of 1e-8 m, whose ends tell no heading: they were vertices, and their slip was the route's greatest.
+TEST(DrivePlanner, NoTwoVerticesOfARouteLieTogetherExceptWhereItTurnsInPlaceOrBack) {
+  int found = 0, together = 0;
+  for (unsigned seed = 1; seed <= 12; ++seed)
+    for (const double radius_m : {0.0, 1.5, 3.0}) {
+      const auto map =
+          randomMap({.width = 40, .height = 40, .seed = seed, .blocked = 0.06, .roughness = 0.2});
+      const Plan plan = DrivePlanner().plan(across(map, radius_m));
+      if (plan.status != RouteStatus::Found) continue;
+      ++found;
+      const auto chord = chords(plan.drive, *map);
+      for (std::size_t i = 1; i < chord.size(); ++i)
+        together += std::hypot(chord[i].place.x_m - chord[i - 1].place.x_m,
+                               chord[i].place.y_m - chord[i - 1].place.y_m) < 0.01
+                        ? 1
+                        : 0;
+      const Route route = annotated(plan, {.map = *map});
+      for (std::size_t i = 1; i < route.vertices.size(); ++i) {
+        const RouteVertex &a = route.vertices[i - 1], &b = route.vertices[i];
+        if (a.turn_rad != 0.0 || b.turn_rad != 0.0 || a.reverse != b.reverse) continue;
+        EXPECT_GE(std::hypot(b.x_m - a.x_m, b.y_m - a.y_m), 0.01)
+            << "seed " << seed << " radius " << radius_m << " vertex " << i << " of "
+            << route.vertices.size();
+      }
+      Polyline way;
+      for (const RouteVertex& v : route.vertices) way.push_back({v.x_m, v.y_m});
+      EXPECT_TRUE(violations(*map, way).empty()) << "seed " << seed << " radius " << radius_m;
+    }
+  EXPECT_GT(found, 20);
+  EXPECT_GT(together, 10);
+}
+
 TEST(DrivePlanner, PassesViaPointsWithoutAJumpInHeading) {
   const auto map = randomMap({.width = 40, .height = 40, .seed = 4, .blocked = 0.0, .roughness = 0.1});
   Problem problem = across(map, 2.0);
