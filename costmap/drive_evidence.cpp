@@ -108,8 +108,9 @@ struct DriveIntake::State {
   using Take = std::function<bool(const WheelObservation&)>;
   void learn(const terramech::Telemetry& telemetry, const TelemetryRows& readings, std::size_t i,
              TelemetryProcessor::Result&& result, const Take& take);
-  void put(const terramech::Telemetry& telemetry, const DriveVerdict& verdict);
-  void hearRejected(const terramech::Telemetry& telemetry);
+  void put(const terramech::Telemetry& telemetry, const DriveVerdict& verdict,
+           const DriveBeginning& known = {});
+  void hearRejected(const terramech::Telemetry& telemetry, std::size_t from);
 };
 
 DriveIntake::State::Place DriveIntake::State::placeOf(const WheelObservation& observation) {
@@ -147,7 +148,9 @@ void DriveIntake::State::learn(const terramech::Telemetry& telemetry, const Tele
   if (journal) rows.push_back(std::move(row));
 }
 
-void DriveIntake::State::put(const terramech::Telemetry& telemetry, const DriveVerdict& verdict) {
+// Rows that the map holds already tell the sensors' watch alone.
+void DriveIntake::State::put(const terramech::Telemetry& telemetry, const DriveVerdict& verdict,
+                             const DriveBeginning& known) {
   const TelemetryRows readings(telemetry, map, options.pose_std_m);
   const std::size_t refused = map.refused().size();
   const std::string before = id;
@@ -155,12 +158,14 @@ void DriveIntake::State::put(const terramech::Telemetry& telemetry, const DriveV
   id = sum.text();
   rows.clear();
   processRows(readings, map, *processor, verdict, [&](std::size_t i, TelemetryProcessor::Result&& result) {
+    if (i < known.rows) return;
     learn(telemetry, readings, i, std::move(result),
           [&](const WheelObservation& observation) { return map.learn(observation); });
   });
+  report.repeated = known.rows;
   if (options.settles) append(all, telemetry);
   const std::size_t read = rows.size();
-  hearRejected(telemetry);
+  hearRejected(telemetry, known.rejected);
   if (options.settles)
     of_rejected.insert(of_rejected.end(), rows.begin() + static_cast<std::ptrdiff_t>(read), rows.end());
   report.unobserved += map.refused().size() - refused;
@@ -195,13 +200,13 @@ void DriveIntake::State::settle() {
 }
 
 // Rows that the file's reader left out: what each of their numbers says of danger by itself.
-void DriveIntake::State::hearRejected(const terramech::Telemetry& telemetry) {
+void DriveIntake::State::hearRejected(const terramech::Telemetry& telemetry, std::size_t from) {
   terramech::Telemetry left{.source = telemetry.source, .numbers = telemetry.rejected_numbers};
   if (telemetry.rejected.empty() || !left.find("x_m") || !left.find("y_m") || !left.find("load_N") ||
       !left.find("slip"))
     return;
   const TelemetryRows readings(left, map, options.pose_std_m);
-  for (std::size_t i = 0; i < readings.size(); ++i) {
+  for (std::size_t i = from; i < readings.size(); ++i) {
     const auto heard = processor->rejected(readings, i);
     if (!heard || !map.learn(*heard)) continue;
     ++report.heard;
@@ -247,7 +252,9 @@ DriveReport DriveIntake::report() const {
 
 DriveReport addDrive(TraversabilityMap& map, const terramech::Telemetry& telemetry, EvidenceJournal* journal,
                      const IntakeOptions& options) {
-  if (map.drives().contains(driveId(telemetry)) || map.drives().contains(formerDriveId(telemetry))) {
+  const DriveBeginning known = knownBeginning(telemetry, map.drives());
+  const bool whole = known.rows == telemetry.size() && known.rejected == telemetry.rejected.size();
+  if (whole || map.drives().contains(formerDriveId(telemetry))) {
     DriveReport report;
     report.repeated = telemetry.size();
     return report;
@@ -257,7 +264,7 @@ DriveReport addDrive(TraversabilityMap& map, const terramech::Telemetry& telemet
   processRows(TelemetryRows(telemetry, map, options.pose_std_m), map, first_pass, {},
               [](std::size_t, TelemetryProcessor::Result&&) {});
   DriveIntake intake(map, journal, options);
-  intake.state_->put(telemetry, first_pass.verdict());
+  intake.state_->put(telemetry, first_pass.verdict(), known);
   map.publishAll();
   return intake.report();
 }

@@ -16,7 +16,7 @@ struct DriveReport {
   std::size_t used = 0;
   std::size_t raising = 0;   ///< of those, what may raise a belief: by sensors that proved sound
   std::size_t rejected = 0;  ///< by the sensors' watch, or without a place on the map
-  std::size_t repeated = 0;  ///< rows of a drive that the map holds already: counted once
+  std::size_t repeated = 0;  ///< rows that the map holds already, all or the first of a drive: counted once
   std::size_t heard = 0;     ///< rows that the file's reader rejected, yet point to danger
   std::size_t unobserved =
       0;  ///< places refused, since wheels point to danger where the map has no terrain class
@@ -69,8 +69,8 @@ class DriveIntake {
 
 /// Puts the rows of a telemetry file into a map, in their order, and publishes all of it anew, so
 /// that the map depends on the evidence alone and not on how it was divided. A drive that the map holds already changes
-/// nothing. Columns x_m, y_m,
-/// load_N and slip must be there; torque_Nm, sinkage_m, slope_rad, drawbar_pull_N, heading_rad, time_s,
+/// nothing; of a file that grew since, the rows behind those that the map holds are put in. Columns x_m, y_m, load_N and
+/// slip must be there; torque_Nm, sinkage_m, slope_rad, drawbar_pull_N, heading_rad, time_s,
 /// pass_index, z_m, pose_std_m help. The slope is the row's own; without it the map's along the heading. All rows
 /// go into the journal, if there is one, in one transaction. Throws InputError when a column is missing.
 ///

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cinttypes>
 #include <cmath>
@@ -59,20 +60,32 @@ void addWord(Checksum& sum, const std::string& word) {
   sum.add(word.c_str(), word.size() + 1);
 }
 
-}  // namespace
-
-void DriveId::add(const terramech::Telemetry& telemetry) {
+// Calls added(whether it was rejected) after every row.
+template <typename Added>
+void addRows(Checksum& sum, const terramech::Telemetry& telemetry, Added&& added) {
   const std::vector<Column> numbers = usedOf(telemetry.numbers),
-                            rejected = usedOf(telemetry.rejected_numbers);
+                            left_out = usedOf(telemetry.rejected_numbers);
   std::vector<const std::vector<std::string>*> words;
   for (const std::string_view name : usedWordColumns()) words.push_back(telemetry.findWords(name));
   eachRow(
       telemetry,
       [&](std::size_t i) {
-        addNumbers(sum_, numbers, i);
-        for (const auto* column : words) addWord(sum_, column ? (*column)[i] : std::string());
+        addNumbers(sum, numbers, i);
+        for (const auto* column : words) addWord(sum, column ? (*column)[i] : std::string());
+        added(false);
       },
-      [&](std::size_t i) { addNumbers(sum_, rejected, i); });
+      [&](std::size_t i) {
+        // A footer or a header in the middle holds no number: nobody learns from it.
+        const auto holds = [i](Column column) { return column && !std::isnan((*column)[i]); };
+        if (std::ranges::any_of(left_out, holds)) addNumbers(sum, left_out, i);
+        added(true);
+      });
+}
+
+}  // namespace
+
+void DriveId::add(const terramech::Telemetry& telemetry) {
+  addRows(sum_, telemetry, [](bool) {});
 }
 
 std::string DriveId::text() const {
@@ -91,6 +104,17 @@ std::string formerDriveId(const terramech::Telemetry& telemetry) {
         for (const auto& column : telemetry.rejected_numbers) sum.add(&column.values[i], sizeof(double));
       });
   return hexadecimal(sum);
+}
+
+DriveBeginning knownBeginning(const terramech::Telemetry& telemetry, const std::set<std::string>& drives) {
+  DriveBeginning here, known;
+  Checksum sum;
+  if (drives.empty()) return known;
+  addRows(sum, telemetry, [&](bool rejected) {
+    ++(rejected ? here.rejected : here.rows);
+    if (drives.contains(hexadecimal(sum))) known = here;
+  });
+  return known;
 }
 
 }  // namespace talus::costmap

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <set>
 #include <string>
 
 #include <talus/costmap/checksum.hpp>
@@ -21,5 +23,13 @@ class DriveId {
 /// The id that a drive had in maps and journals of Talus up to 0.1, over all columns in the order of their file: what
 /// holds it already is recognised by it.
 std::string formerDriveId(const terramech::Telemetry& telemetry);
+
+/// Rows of a drive from its beginning on: those that its file's reader left in, and those that it left out.
+struct DriveBeginning {
+  std::size_t rows = 0, rejected = 0;
+};
+
+/// The longest beginning, all rows at most, whose id is among `drives`: what is known of a file that grew since.
+DriveBeginning knownBeginning(const terramech::Telemetry& telemetry, const std::set<std::string>& drives);
 
 }  // namespace talus::costmap

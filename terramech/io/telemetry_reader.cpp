@@ -5,6 +5,8 @@
 #include <limits>
 #include <locale>
 #include <sstream>
+#include <string>
+#include <unordered_map>
 #include <utility>
 
 #include <talus/plausible.hpp>
@@ -194,6 +196,36 @@ class Table {
   double radius_m_;
 };
 
+/// Tells rows that are earlier ones again: of a log that was copied together from parts.
+class RepeatedRows {
+ public:
+  explicit RepeatedRows(const std::vector<std::string>& header) {
+    for (std::size_t k = 0; k < header.size(); ++k) {
+      if (header[k] == "time_s") time_ = k;
+      if (header[k] == "wheel") wheel_ = k;
+    }
+  }
+
+  bool operator()(const CsvRow& row) {
+    const auto field = [&](std::size_t k) { return k < row.fields.size() ? row.fields[k] : std::string(); };
+    const std::string time = field(time_);
+    if (time.empty()) return false;
+    if (moments_ == 0 || time != last_time_) ++moments_;
+    last_time_ = time;
+    std::string all;
+    for (const std::string& text : row.fields) (all += text) += '\0';
+    const auto [earlier, fresh] = moment_.try_emplace(std::hash<std::string>()(all), moments_);
+    return !fresh && (earlier->second != moments_ || !field(wheel_).empty());
+  }
+
+ private:
+  static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+  std::size_t time_ = kNone, wheel_ = kNone;
+  std::string last_time_;
+  std::size_t moments_ = 0;
+  std::unordered_map<std::size_t, std::size_t> moment_;  // in which a row was, by a hash of it
+};
+
 void checkColumns(const std::vector<std::string>& header, const std::vector<std::string>& required,
                   const std::string& where) {
   std::string missing;
@@ -226,9 +258,12 @@ Telemetry readTelemetry(const std::filesystem::path& path, const TelemetryOption
   telemetry.source = path.string();
   checkColumns(reader.header(), options.required, telemetry.source);
   Table table{reader.header(), options};
+  RepeatedRows repeats(reader.header());
   CsvRow row;
   for (std::size_t count = 0; reader.next(row); ++count) {
-    if (std::string fault = table.add(row); fault.empty())
+    if (options.once && repeats(row))
+      ++telemetry.repeated;
+    else if (std::string fault = table.add(row); fault.empty())
       telemetry.lines.push_back(row.line);
     else
       telemetry.rejected.push_back({row.line, std::move(fault)});

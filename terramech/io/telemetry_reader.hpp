@@ -14,6 +14,9 @@ struct TelemetryOptions {
   /// Columns of numbers that must be there, and filled in every row that is used.
   std::vector<std::string> required;
   double wheel_radius_m = 0.0;  ///< for the sinkage check where the file has no wheel_radius_m; 0: not known
+  /// Whether a row that equals an earlier one in every field, time_s among them, is left out and counted in
+  /// Telemetry::repeated; of the same moment only where column `wheel` names both.
+  bool once = false;
 };
 
 /// Reads a telemetry CSV: header row, columns in any order, `.` decimals, UTF-8 with or without a byte order

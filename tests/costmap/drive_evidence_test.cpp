@@ -111,6 +111,40 @@ TEST(DriveIntake, PartsTeachWhatTheWholeDoes) {
   EXPECT_EQ(bytesOf(parts), bytesOf(whole));
 }
 
+// A log that was sent while it grew counted its first rows again each time.
+TEST(AddDrive, AFileThatGrewAddsItsNewRowsAlone) {
+  const auto folder = std::filesystem::path(::testing::TempDir()) / ("grown" + std::to_string(::getpid()));
+  std::filesystem::create_directories(folder);
+  TraversabilityMap whole = mapOf(wide()), grown = mapOf(wide()), rebuilt = mapOf(wide());
+  const DriveReport expected = addDrive(whole, drive());
+  {
+    EvidenceJournal journal((folder / "evidence.db").string());
+    std::size_t used = 0, rejected = 0;
+    for (const std::ptrdiff_t rows : {1, 40, 41, 99, 100}) {
+      const DriveReport report = addDrive(grown, partOf(drive(), 0, rows), &journal);
+      used += report.used;
+      rejected += report.rejected;
+      EXPECT_EQ(report.repeated + report.used + report.rejected, static_cast<std::size_t>(rows));
+    }
+    // Property: where no sensor is biased, what the whole teaches.
+    EXPECT_EQ(used, expected.used);
+    EXPECT_EQ(rejected, expected.rejected);
+    EXPECT_EQ(journal.size(), 100);
+    replay(rebuilt, journal);
+  }
+  EXPECT_EQ(bytesOf(rebuilt), bytesOf(grown));
+  for (int row = 0; row < grown.grid().height; ++row)
+    for (int column = 0; column < grown.grid().width; ++column) {
+      const auto one = whole.ground({column, row}), other = grown.ground({column, row});
+      ASSERT_EQ(one->pull.value, other->pull.value) << column << ' ' << row;
+      ASSERT_EQ(one->pull.std, other->pull.std) << column << ' ' << row;
+    }
+  EXPECT_EQ(addDrive(grown, drive()).repeated, 100U);
+  // A file that begins otherwise is another drive.
+  EXPECT_EQ(addDrive(grown, partOf(drive(), 1, 100)).repeated, 0U);
+  std::filesystem::remove_all(folder);
+}
+
 // Four wheels up a slope at one slip, each with the torque of its own load; `told`: the load column is right,
 // else it holds the even share.
 terramech::Telemetry climb(bool told) {

@@ -45,6 +45,10 @@ TEST(DriveId, IsOfWhatIsUsedInAnyOrder) {
   for (auto& column : empty.numbers)
     if (column.name == "z_m") column.values = {NAN, -NAN};
   EXPECT_EQ(driveId(less), driveId(empty));
+  terramech::Telemetry footer = table();
+  footer.rejected.push_back({5, "load_N = 'end', must be a number"});
+  for (auto& column : footer.rejected_numbers) column.values.push_back(NAN);
+  EXPECT_EQ(driveId(footer), id);
   EXPECT_NE(driveId(less), id);
 }
 
