@@ -59,7 +59,7 @@ void bindSensors(CLI::App& command, Options& options) {
       ->capture_default_str();
   command
       .add_option("--pose-drift", options.sensors.pose_drift, "drift of the estimated pose per metre driven")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(CLI::Range(0.0, planner::kMostPoseDrift))
       ->type_name("SHARE")
       ->capture_default_str();
   command.add_option("--noise", options.noise, "noise and dropouts of slip, torque and sinkage")

@@ -98,6 +98,13 @@ Difference between(const Snapshot& before, const Snapshot& after) {
       {options.journal, "holds nothing to replay", "name the journal that the drives went into"});
 }
 
+// A journal of which this map can use no row is another map's.
+void tellForeign(const Options& options, const costmap::DriveReport& report, const Context& context) {
+  const std::string reason = fmt::format("none of its {} rows tells of this map", report.rejected);
+  if (options.replay) throw InputError({options.journal, reason, "name the journal of this map"});
+  context.warn(options.journal + ": " + reason + "; it may be another map's");
+}
+
 // One that does not exist yet is an output as others are.
 void checkJournal(const Options& options, bool force) {
   std::error_code error;
@@ -119,12 +126,16 @@ void checkCall(const Options& options) {
 
 terramech::Telemetry readDrive(const Options& options, const costmap::TraversabilityMap& map,
                                const Context& context) {
-  auto telemetry = terramech::readTelemetry(
-      options.telemetry,
-      {.required = {"x_m", "y_m", "load_N", "slip"}, .wheel_radius_m = map.model().rover().wheel.radius_m},
-      context.watch("reading telemetry"));
+  auto telemetry = terramech::readTelemetry(options.telemetry,
+                                            {.required = {"x_m", "y_m", "load_N", "slip"},
+                                             .wheel_radius_m = map.model().rover().wheel.radius_m,
+                                             .once = true},
+                                            context.watch("reading telemetry"));
   for (const auto& row : telemetry.rejected)
     context.warn(fmt::format("{}:{}: {}", options.telemetry, row.line, row.reason));
+  if (telemetry.repeated > 0)
+    context.warn(fmt::format("{}: {} rows are earlier ones again, in every field; they count once",
+                             options.telemetry, telemetry.repeated));
   return telemetry;
 }
 
@@ -133,15 +144,18 @@ void addTelemetry(const Options& options, costmap::TraversabilityMap& map,
                   const terramech::Telemetry& telemetry, costmap::EvidenceJournal* journal,
                   const Context& context, costmap::DriveReport& report) {
   const costmap::DriveReport drive = costmap::addDrive(map, telemetry, journal, options.intake);
-  if (drive.repeated > 0)
+  if (drive.repeated == telemetry.size())
     context.warn(options.telemetry + ": the map holds this drive already; it counts once");
+  else if (drive.repeated > 0)
+    context.warn(fmt::format("{}: the map holds its first {} rows already; they count once",
+                             options.telemetry, drive.repeated));
   else if (drive.used == 0 && drive.heard == 0)
     throw InputError({options.telemetry, fmt::format("none of its {} rows is usable", drive.rejected),
                       "first reason: " + drive.first_reason});
   report.used += drive.used;
   report.raising += drive.raising;
   report.rejected += drive.rejected + telemetry.rejected.size();
-  report.repeated = drive.repeated;
+  report.repeated = drive.repeated + telemetry.repeated;
   report.findings.insert(report.findings.end(), drive.findings.begin(), drive.findings.end());
 }
 
@@ -181,6 +195,7 @@ int run(const Options& options, Context& context) {
   // The map is the journal's drives and this one: those that it lacks, as after a call that was killed, come first.
   costmap::DriveReport report;
   if (journal) report = costmap::replay(map, *journal);
+  if (report.used == 0 && report.rejected > 0) tellForeign(options, report, context);
   if (telemetry) {
     if (report.used + report.rejected > 0)
       context.warn(fmt::format("{}: {} rows that the map lacks were put in from it", options.journal,

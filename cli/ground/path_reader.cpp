@@ -60,9 +60,7 @@ std::vector<Point> ownMetres(const json& document) {
   return points;
 }
 
-std::vector<Point> readLine(const std::string& path, const maps::ElevationMap& map) {
-  const json document = maps::readGeoJson(path);
-  if (auto points = ownMetres(document); !points.empty()) return points;
+std::vector<Point> lineOf(const json& document, const maps::ElevationMap& map, const std::string& path) {
   const maps::PositionReader read(document, map, path);
   for (const json& geometry : maps::geometries(document)) {
     if (geometry.value("type", "") != "LineString" || !geometry["coordinates"].is_array()) continue;
@@ -71,6 +69,37 @@ std::vector<Point> readLine(const std::string& path, const maps::ElevationMap& m
     return points;
   }
   throw InputError({path, "contains no LineString", "a path is a GeoJSON LineString, or CSV with x_m, y_m"});
+}
+
+// What a line that was not edited may lie off its own metres: programs write degrees with few digits.
+constexpr double kRounding_cells = 0.1;
+
+// A line was edited where its coordinates are no longer its metres: which of them is meant is not known.
+void requireSame(const std::vector<Point>& line, const std::vector<Point>& own, const maps::Grid& grid,
+                 const std::string& path) {
+  const auto refuse = [&](const std::string& reason) {
+    throw InputError({path, reason, "remove the properties x_m and y_m to have its coordinates judged"});
+  };
+  const bool stands = own.size() == 1 && line.size() == 2;  // a line needs two positions
+  if (line.size() != own.size() && !stands)
+    refuse(fmt::format("has {} coordinates, but {} values of x_m: it was edited", line.size(), own.size()));
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const Point& at = own[std::min(i, own.size() - 1)];
+    const double off_m = std::hypot(line[i].x_m - at.x_m, line[i].y_m - at.y_m);
+    if (!(off_m <= kRounding_cells * grid.resolution_m))
+      refuse(
+          fmt::format("vertex {}: its coordinates lie {:.3g} m from its x_m, y_m: it was edited, or is of a "
+                      "map with another CRS",
+                      i + 1, off_m));
+  }
+}
+
+std::vector<Point> readLine(const std::string& path, const maps::ElevationMap& map) {
+  const json document = maps::readGeoJson(path);
+  std::vector<Point> line = lineOf(document, map, path), own = ownMetres(document);
+  if (own.empty()) return line;
+  requireSame(line, own, map.grid(), path);
+  return own;
 }
 
 // What is judged piece by piece, cell by cell, ends near the map.

@@ -127,6 +127,28 @@ void readVertices(const Fields& fields, std::vector<RouteVertex>& vertices) {
   for (std::size_t i = 0; i < vertices.size(); ++i) vertices[i].category = categoryOf(fields, categories[i]);
 }
 
+// An edited line would be drawn where it was before. Coordinates in degrees are compared where the map is known (readPath()).
+void requireLine(const Fields& fields, const json& document, const std::vector<RouteVertex>& vertices) {
+  const auto place = json::json_pointer("/features/0/geometry/coordinates");
+  const json line = document.contains(place) ? document.at(place) : json();
+  const bool stands = vertices.size() == 1 && line.size() == 2;  // a line needs two positions
+  if (!line.is_array() || (line.size() != vertices.size() && !stands))
+    fields.refuse("coordinates", fmt::format("are not the {} of x_m and y_m", vertices.size()));
+  if (document.value("crs", json()) != "local") return;
+  double length_m = 0.0;
+  for (std::size_t i = 1; i < vertices.size(); ++i)
+    length_m += std::hypot(vertices[i].x_m - vertices[i - 1].x_m, vertices[i].y_m - vertices[i - 1].y_m);
+  const double rounding_m = 0.1 * length_m / static_cast<double>(vertices.size());
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    const json& at = line[i];
+    const bool numbers = at.is_array() && at.size() >= 2 && at[0].is_number() && at[1].is_number();
+    if (!numbers || !(std::hypot(at[0].get<double>() - vertices[i].x_m,
+                                 at[1].get<double>() - vertices[i].y_m) <= rounding_m))
+      fields.refuse("coordinates",
+                    fmt::format("are not x_m and y_m at vertex {}: the line was edited", i + 1));
+  }
+}
+
 // What only a drive has.
 void readDrive(const Fields& fields, std::vector<RouteVertex>& vertices) {
   fields.fill("curvature_1_m", &RouteVertex::curvature_1_m, vertices);
@@ -197,6 +219,7 @@ RouteFile readRoute(const std::string& path) {
   RouteFile file;
   file.route.status = planner::RouteStatus::Found;
   readVertices(fields, file.route.vertices);
+  requireLine(fields, document, file.route.vertices);
   const json summary = member(properties, "summary");
   file.route.summary = summaryFrom(Fields(path, summary));
   if (const json drive = member(summary, "drive"); drive.is_object()) {

@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 #include <talus/planner/simulation/simulated_sensors.hpp>
@@ -56,6 +58,9 @@ terramech::Telemetry telemetryOf(const WheelLook& look) {
 
 SimulatedSensors::SimulatedSensors(const SensorOptions& options, const terramech::Rover& rover)
     : options_(options), rover_(rover), random_(options.seed) {
+  if (!(options.pose_drift >= 0.0 && options.pose_drift <= kMostPoseDrift))
+    throw std::invalid_argument("SensorOptions: pose_drift = " + std::to_string(options.pose_drift) +
+                                ", must be 0 to " + std::to_string(kMostPoseDrift));
   const double way = std::uniform_real_distribution<double>(0.0, 6.283185307179586)(random_);
   drift_per_m_ = {options.pose_drift * std::cos(way), options.pose_drift * std::sin(way)};
   displaced_from_m_ = std::uniform_real_distribution<double>(5.0, 20.0)(random_);

@@ -31,12 +31,17 @@ enum class SensorFault {
 /// "pose_displaced"; in the order of SensorFault.
 const std::vector<std::string_view>& sensorFaultNames();
 
+/// Greatest drift of the estimated pose per metre driven [-]: with one of 1 a rover that drives to its goal never takes itself to
+/// be there.
+inline constexpr double kMostPoseDrift = 0.5;
+
 /// How well a simulated rover senses. Plain data.
 struct SensorOptions {
   bool noise =
       true;  ///< of slip (0.02), slip angle (0.02 rad), torque (5 %), sinkage (3 %), and missing values
-  double dropout = 0.02;     ///< share of torque and sinkage values that are missing, with noise
-  double pose_drift = 0.01;  ///< by which the believed pose leaves the true one, per metre driven [-]
+  double dropout = 0.02;  ///< share of torque and sinkage values that are missing, with noise
+  double pose_drift =
+      0.01;  ///< by which the believed pose leaves the true one, per metre driven, in [0, kMostPoseDrift] [-]
   SensorFault fault = SensorFault::None;
   std::uint64_t seed = 1;
 };

@@ -127,6 +127,23 @@ TEST(UpdateCommand, TellsHowManyDrivesTheJournalLacks) {
 }
 
 // Property: a journal that was changed is not written on, even where the map holds the drives that it has.
+// The new map listed drives of which it knew nothing, so that the drives themselves were not learned later.
+TEST(UpdateCommand, RefusesToReplayAnotherPlacesJournal) {
+  const Site site;
+  site.folder.write("d.csv", driveOver(terramech::loadSoil("dry_sand")));
+  site.run({"update", "map.ot", "d.csv", "-o", "b.ot", "--journal", "e.db", "--json"});
+  std::string far = asciiGrid(20, 20, [](int, int) { return 0.0; });
+  site.folder.write("far.asc", far.replace(far.find("xllcorner 0"), 11, "xllcorner 5000"));
+  std::vector<std::string> words{"costmap", "far.asc"};
+  words.insert(words.end(), kGround.begin() + 1, kGround.end());
+  words.insert(words.end(), {"-o", "far.ot"});
+  ASSERT_EQ(runTalus(words, site.folder.path()).code, 0);
+  const Ran ran =
+      runTalus({"update", "far.ot", "--replay", "--journal", "e.db", "-o", "c.ot"}, site.folder.path());
+  EXPECT_EQ(ran.code, 2);
+  EXPECT_THAT(ran.err, testing::HasSubstr("e.db: none of its 80 rows tells of this map"));
+}
+
 TEST(UpdateCommand, RefusesAJournalOfWhichRowsAreGone) {
   const Site site;
   site.folder.write("t.csv", driveOver(weak()));
@@ -146,6 +163,29 @@ TEST(UpdateCommand, RefusesAJournalOfWhichRowsAreGone) {
     EXPECT_EQ(fileContent(site.folder / "e.db"), before) << sql;
     EXPECT_FALSE(std::filesystem::exists(site.folder / "b.ot"));
   }
+}
+
+TEST(UpdateCommand, RowsOfALogThatGrewOrHoldsRowsTwiceCountOnce) {
+  const Site site;
+  const std::string all = driveOver(terramech::loadSoil("dry_sand")), rows = all.substr(all.find('\n') + 1);
+  std::size_t half = 0;
+  for (int line = 0; line < 41; ++line) half = all.find('\n', half) + 1;
+  site.folder.write("half.csv", all.substr(0, half));
+  site.folder.write("all.csv", all);
+  site.folder.write("twice.csv", all + rows);
+  const json whole = site.run({"update", "map.ot", "all.csv", "-o", "whole.ot", "--json"});
+  site.run({"update", "map.ot", "half.csv", "-o", "half.ot", "--json"});
+  const json further = site.run({"update", "half.ot", "all.csv", "-o", "grown.ot", "--json"});
+  EXPECT_EQ(further["rows_counted_before"], 40);
+  EXPECT_EQ(further["rows_used"].get<int>() + further["rows_rejected"].get<int>() + 40,
+            whole["rows_used"].get<int>() + whole["rows_rejected"].get<int>());
+  EXPECT_THAT(site.warnings,
+              testing::HasSubstr("all.csv: the map holds its first 40 rows already; they count once"));
+  const json doubled = site.run({"update", "map.ot", "twice.csv", "-o", "twice.ot", "--json"});
+  EXPECT_EQ(doubled["rows_used"], whole["rows_used"]);
+  EXPECT_EQ(doubled["rows_counted_before"], 80);
+  EXPECT_THAT(site.warnings, testing::HasSubstr("twice.csv: 80 rows are earlier ones again"));
+  EXPECT_EQ(fileContent(site.folder / "twice.ot"), fileContent(site.folder / "whole.ot"));
 }
 
 TEST(UpdateCommand, RowsThatCannotBeUsedAreCountedAndTold) {

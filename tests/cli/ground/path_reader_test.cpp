@@ -25,9 +25,26 @@ TEST(PathReader, TakesTablesWithTheTwoColumnsInAnyOrder) {
 // Property: a route of ours gives back its map metres to the last bit, whatever its coordinates are rounded to.
 TEST(PathReader, TakesTheMetresOfOurOwnRoutes) {
   EXPECT_THAT(read("r.geojson", R"({"type":"FeatureCollection","crs":"local","features":[{"type":"Feature",
-      "geometry":{"type":"LineString","coordinates":[[1,2],[3,4]]},
+      "geometry":{"type":"LineString","coordinates":[[0.11,7.02],[0.3,8]]},
       "properties":{"x_m":[0.1,0.30000000000000004],"y_m":[7,8]}}]})"),
               ElementsAre(Point{0.1, 7}, Point{0.30000000000000004, 8}));
+}
+
+// A route whose line was moved or cut in another program was judged where it had been before, and allowed.
+TEST(PathReader, ALineThatIsNoLongerItsOwnMetresIsRefused) {
+  const auto with = [](const std::string& coordinates) {
+    return R"({"type":"FeatureCollection","crs":"local","features":[{"type":"Feature","geometry":{"type":"LineString",
+        "coordinates":)" +
+           coordinates + R"(},"properties":{"x_m":[1,3],"y_m":[7,8]}}]})";
+  };
+  EXPECT_THAT(read("r.geojson", with("[[1,7],[3,8]]")), ElementsAre(Point{1, 7}, Point{3, 8}));
+  for (const auto& [coordinates, says] :
+       {std::pair{"[[1,7],[3,9]]", "vertex 2: its coordinates lie 1 m from"},
+        {"[[7,1],[8,3]]", "vertex 1: its coordinates lie"},
+        {"[[1,7]]", "has 1 coordinates, but 2 values of x_m"},
+        {"[[1,7],[2,7.5],[3,8]]", "has 3 coordinates, but 2"}})
+    EXPECT_THAT([&] { read("r.geojson", with(coordinates)); }, ThrowsMessage<InputError>(HasSubstr(says)))
+        << coordinates;
 }
 
 TEST(PathReader, TakesTheFirstLineOfAnyGeoJson) {

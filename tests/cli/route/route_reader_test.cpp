@@ -56,6 +56,13 @@ TEST(RouteReader, RefusalNamesFileAndField) {
   properties["slip"].erase(0);
   EXPECT_THAT(refusal(document), HasSubstr("r.geojson: 'slip' has 60 values for 61 vertices; pass a route"));
   document = written();
+  document["features"][0]["geometry"]["coordinates"].erase(0);
+  EXPECT_THAT(refusal(document), HasSubstr("'coordinates' are not the 61 of x_m and y_m"));
+  document = written();
+  auto& east = document["features"][0]["geometry"]["coordinates"][5][0];
+  east = east.get<double>() + 2.0;
+  EXPECT_THAT(refusal(document), HasSubstr("'coordinates' are not x_m and y_m at vertex 6"));
+  document = written();
   document["features"][0]["properties"]["torque_Nm"][7] = 1e300;
   EXPECT_THAT(refusal(document), HasSubstr("'torque_Nm' holds a number beyond 1e30"));
   document = written();

@@ -109,5 +109,11 @@ TEST(TelemetryOf, HasARowForEachWheelThatReadSlip) {
   EXPECT_EQ(rows.findWords("wheel")->size(), 3U);
 }
 
+// With a drift of 1 a rover that drives to its goal never takes itself to be there: the simulation did not end.
+TEST(SimulatedSensors, ADriftThatNoOdometryHasIsRefused) {
+  for (const double drift : {-0.1, 0.6, 1.0, std::nan("")})
+    EXPECT_THROW(SimulatedSensors({.pose_drift = drift}, testRover()), std::invalid_argument) << drift;
+}
+
 }  // namespace
 }  // namespace talus::planner
