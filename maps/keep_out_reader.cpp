@@ -1,20 +1,14 @@
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <memory>
+#include <cstddef>
+#include <string>
 #include <utility>
 #include <vector>
 
-#include <cpl_string.h>
-#include <gdal_alg.h>
-#include <gdal_priv.h>
 #include <nlohmann/json.hpp>
-#include <ogr_geometry.h>
 
-#include <talus/maps/gdal_dataset.hpp>
 #include <talus/maps/geojson.hpp>
 #include <talus/maps/layer_reader.hpp>
 #include <talus/maps/place.hpp>
+#include <talus/maps/polygon_cover.hpp>
 #include <talus/talus.hpp>
 
 namespace talus::maps {
@@ -22,108 +16,117 @@ namespace {
 
 using nlohmann::json;
 
-// What lies beyond a line across x or y moves onto its crossing (Sutherland and Hodgman 1974). An edge along the line is
-// outside of the map: the box is wider.
-std::vector<Point> cut(const std::vector<Point>& ring, double Point::*axis, double limit, double sign) {
-  std::vector<Point> out;
-  for (std::size_t i = 0; i < ring.size(); ++i) {
-    const Point &a = ring[i], &b = ring[(i + 1) % ring.size()];
-    const double from = sign * (a.*axis - limit), to = sign * (b.*axis - limit);
-    if (from <= 0.0) out.push_back(a);
-    if ((from < 0.0) == (to < 0.0) || from == 0.0 || to == 0.0) continue;
-    const double share = from / (from - to);
-    Point crossing{a.x_m + share * (b.x_m - a.x_m), a.y_m + share * (b.y_m - a.y_m)};
-    crossing.*axis = limit;
-    out.push_back(crossing);
+/// Draws a document's features one by one and refuses each that would close no ground wherever the map lay.
+class KeepOutReader {
+ public:
+  KeepOutReader(const std::string& path, const json& document, const ElevationMap& map)
+      : path_(path), read_(document, map, path), keep_out_{.mask = Raster<std::uint8_t>(map.grid())} {}
+
+  KeepOut drawn(const json& document, const std::string& map_source) && {
+    if (typeOf(document) == "FeatureCollection") {
+      const json& features = listOf(document, "features");
+      for (std::size_t i = 0; i < features.size(); ++i) drawFeature(features[i], i + 1);
+    } else {
+      drawFeature(document, 1);
+    }
+    if (polygons_ == 0) throw InputError({path_, "holds no Polygon", "write the keep-out areas as polygons"});
+    if (static_cast<int>(beside_.size()) == polygons_)
+      throw InputError({path_, "no polygon overlaps map '" + map_source + "'",
+                        "the map " + extent(keep_out_.mask.grid())});
+    noteBeside();
+    return std::move(keep_out_);
   }
-  return out;
-}
 
-// The drawing of a ring loops over its rows: no vertex may lie far from the map.
-std::vector<Point> clipped(std::vector<Point> ring, const Grid& grid) {
-  const double around = 2.0 * grid.resolution_m;
-  ring = cut(ring, &Point::x_m, grid.south_west.x_m - around, -1.0);
-  ring = cut(ring, &Point::y_m, grid.south_west.y_m - around, -1.0);
-  ring = cut(ring, &Point::x_m, grid.south_west.x_m + grid.width * grid.resolution_m + around, 1.0);
-  return cut(ring, &Point::y_m, grid.south_west.y_m + grid.height * grid.resolution_m + around, 1.0);
-}
-
-std::unique_ptr<OGRLinearRing> ring(const json& positions, const PositionReader& read, const Grid& grid,
-                                    const std::string& path) {
-  if (!positions.is_array() || positions.size() < 4)
-    throw InputError(
-        {path, "a ring of a polygon has fewer than four positions", "close it on its first position"});
-  std::vector<Point> points;
-  for (const json& position : positions) points.push_back(read(position));
-  auto out = std::make_unique<OGRLinearRing>();
-  for (const Point& p : clipped(std::move(points), grid)) out->addPoint(p.x_m, p.y_m);
-  out->closeRings();
-  return out;
-}
-
-OGRPolygon polygon(const json& rings, const PositionReader& read, const Grid& grid, const std::string& path) {
-  if (!rings.is_array() || rings.empty()) throw InputError({path, "a polygon has no ring", "see RFC 7946"});
-  OGRPolygon out;
-  for (const json& positions : rings) {
-    auto whole = ring(positions, read, grid, path);
-    const bool outer = &positions == &rings.front();
-    if (whole->getNumPoints() >= 4)
-      out.addRingDirectly(whole.release());
-    else if (outer)
-      break;  // no part of it is near the map
+ private:
+  [[noreturn]] void refuse(const std::string& reason, const std::string& remedy) const {
+    throw InputError({path_, owner_ + reason, remedy});
   }
-  return out;
-}
 
-std::vector<OGRPolygon> polygons(const json& document, const PositionReader& read, const Grid& grid,
-                                 const std::string& path) {
-  std::vector<OGRPolygon> out;
-  for (const json& geometry : geometries(document)) {
-    const json& coordinates = geometry["coordinates"];
-    if (geometry["type"] == "Polygon") {
-      out.push_back(polygon(coordinates, read, grid, path));
-    } else if (geometry["type"] == "MultiPolygon" && coordinates.is_array()) {
-      for (const json& rings : coordinates) out.push_back(polygon(rings, read, grid, path));
+  static std::string typeOf(const json& object) {
+    if (!object.is_object()) return "";
+    const auto type = object.find("type");
+    return type != object.end() && type->is_string() ? type->get<std::string>() : "";
+  }
+
+  const json& listOf(const json& object, const char* name) const {
+    const auto found = object.find(name);
+    if (found == object.end() || !found->is_array())
+      refuse(std::string("has no list \"") + name + "\"", "see RFC 7946");
+    return *found;
+  }
+
+  void drawFeature(const json& feature, std::size_t number) {
+    feature_ = "feature " + std::to_string(number);
+    const bool is_feature = typeOf(feature) == "Feature";
+    if (is_feature) {
+      if (const auto properties = feature.find("properties");
+          properties != feature.end() && properties->is_object())
+        if (const auto name = properties->find("name"); name != properties->end() && name->is_string())
+          feature_ += " '" + name->get<std::string>().substr(0, 40) + "'";
+    }
+    owner_ = feature_ + ": ";
+    if (!is_feature) return drawGeometry(feature);
+    if (!feature.contains("geometry")) refuse("has no geometry", "write its polygon, or remove it");
+    drawGeometry(feature["geometry"]);
+  }
+
+  void drawGeometry(const json& geometry) {
+    const std::string type = typeOf(geometry);
+    if (type == "GeometryCollection") {
+      for (const json& part : listOf(geometry, "geometries")) drawGeometry(part);
+    } else if (type == "Polygon") {
+      draw(listOf(geometry, "coordinates"));
+    } else if (type == "MultiPolygon") {
+      for (const json& rings : listOf(geometry, "coordinates")) draw(rings);
+    } else {
+      refuse(type.empty() ? "has no geometry" : type.substr(0, 40) + " is no Polygon and keeps nothing out",
+             "write it as a Polygon, or remove it");
     }
   }
-  if (out.empty()) throw InputError({path, "holds no Polygon", "write the keep-out areas as polygons"});
-  return out;
-}
 
-// Burns into rows that run south to north, like the map's.
-void burn(const std::vector<OGRPolygon>& areas, Raster<std::uint8_t>& mask, const std::string& path) {
-  const Grid& grid = mask.grid();
-  const GdalErrors errors;
-  const Dataset raster = memoryRaster(grid.width, grid.height, GDT_Byte);
-  std::array<double, 6> transform{grid.south_west.x_m, grid.resolution_m, 0, grid.south_west.y_m, 0,
-                                  grid.resolution_m};
-  std::vector<OGRGeometryH> handles;
-  for (const OGRPolygon& area : areas)
-    if (area.getExteriorRing() != nullptr) handles.push_back(const_cast<OGRPolygon*>(&area));
-  const std::vector<double> ones(handles.size(), 1.0);
-  CPLStringList words;
-  words.AddString("ALL_TOUCHED=TRUE");
-  int band = 1;
-  const bool done =
-      raster && raster->SetGeoTransform(transform.data()) == CE_None &&
-      GDALRasterizeGeometries(raster.get(), 1, &band, static_cast<int>(handles.size()), handles.data(),
-                              nullptr, nullptr, ones.data(), words.List(), nullptr, nullptr) == CE_None &&
-      raster->GetRasterBand(1)->RasterIO(GF_Read, 0, 0, grid.width, grid.height, mask.values().data(),
-                                         grid.width, grid.height, GDT_Byte, 0, 0, nullptr) == CE_None;
-  if (!done) throw InputError({path, "cannot be drawn onto the map: " + errors.last(), ""});
-}
+  Ring ring(const json& positions) const {
+    if (!positions.is_array() || positions.size() < 4)
+      refuse("a ring of a polygon has fewer than four positions", "close it on its first position");
+    Ring out;
+    for (const json& position : positions) out.push_back(read_(position));
+    return out;
+  }
+
+  void draw(const json& rings) {
+    if (!rings.is_array() || rings.empty()) refuse("a polygon has no ring", "see RFC 7946");
+    Polygon polygon{.outer = ring(rings.front())};
+    if (!enclosesGround(polygon))
+      refuse("a polygon encloses no ground",
+             "its positions lie in one line or it runs back on itself: correct it");
+    for (std::size_t i = 1; i < rings.size(); ++i) polygon.holes.push_back(ring(rings[i]));
+    if (!enclosesGround(polygon))
+      refuse("the holes of a polygon cover all of it", "remove the hole that is as large as its ring");
+    ++polygons_;
+    if (!cover(polygon, keep_out_.mask)) beside_.push_back(feature_);
+  }
+
+  void noteBeside() {
+    constexpr std::size_t kNamed = 8;
+    if (beside_.empty()) return;
+    std::string note = std::to_string(beside_.size()) + " of " + std::to_string(polygons_) +
+                       (beside_.size() == 1 ? " polygons lies" : " polygons lie") + " beside the map: ";
+    for (std::size_t i = 0; i < beside_.size() && i < kNamed; ++i) note += (i == 0 ? "" : ", ") + beside_[i];
+    keep_out_.notes.push_back(note + (beside_.size() > kNamed ? " and others" : ""));
+  }
+
+  const std::string& path_;
+  PositionReader read_;
+  KeepOut keep_out_;
+  std::string feature_, owner_;
+  std::vector<std::string> beside_;
+  int polygons_ = 0;
+};
 
 }  // namespace
 
-Raster<std::uint8_t> readKeepOut(const std::string& path, const ElevationMap& map) {
+KeepOut readKeepOut(const std::string& path, const ElevationMap& map) {
   const json document = readGeoJson(path);
-  const std::vector<OGRPolygon> areas =
-      polygons(document, PositionReader(document, map, path), map.grid(), path);
-  Raster<std::uint8_t> mask(map.grid());
-  burn(areas, mask, path);
-  if (std::find(mask.values().begin(), mask.values().end(), 1) == mask.values().end())
-    throw InputError({path, "no polygon overlaps map '" + map.source + "'", "the map " + extent(map.grid())});
-  return mask;
+  return KeepOutReader(path, document, map).drawn(document, map.source);
 }
 
 }  // namespace talus::maps

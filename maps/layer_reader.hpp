@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include <talus/maps/elevation_map.hpp>
 
@@ -44,9 +45,16 @@ struct AddedJoules {
 /// @throws InputError, also when the file and the map do not overlap or a value is negative or above 1e6
 AddedJoules readAddedJoules(const LayerSource& source, const ElevationMap& map);
 
-/// 1 in every cell that a keep-out polygon of a vector file (GeoJSON: longitude, latitude; or map metres
-/// where the map has no CRS or the file says "crs": "local") touches, else 0.
-/// @throws InputError, also when the file holds no polygon or none meets the map
-Raster<std::uint8_t> readKeepOut(const std::string& path, const ElevationMap& map);
+/// Keep-out areas on the map's grid.
+struct KeepOut {
+  Raster<std::uint8_t> mask;       ///< 1 in every cell that a polygon touches, else 0
+  std::vector<std::string> notes;  ///< which features lie beside the map, one sentence
+};
+
+/// Keep-out polygons of a vector file (GeoJSON: longitude, latitude; or map metres where the map has no CRS or the file
+/// says "crs": "local"). Each is drawn by itself, so that none opens what another closes: what its outer ring winds
+/// round, less its holes.
+/// @throws InputError, also when a feature is no polygon or encloses no ground, or none meets the map
+KeepOut readKeepOut(const std::string& path, const ElevationMap& map);
 
 }  // namespace talus::maps

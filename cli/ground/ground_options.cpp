@@ -305,6 +305,7 @@ Ground readGround(const GroundOptions& options, const Context& context) {
   parts.classes = groundClasses(options, assumed, parts.rover);
   parts.policy = options.policy;
   Layers layers = readLayers(options.layers, dem, weakestLast(parts.classes, parts.rover));
+  for (const std::string& note : layers.notes) context.warn(note);
   const double load_s = since_s(begin);
   begin = Clock::now();
   const double own_m = std::hypot(parts.rover.wheelbase_m, parts.rover.track_m),

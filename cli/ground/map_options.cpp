@@ -164,7 +164,8 @@ Layers readLayers(const LayerOptions& options, const maps::ElevationMap& map,
       layers.costs.push_back(unseenRocks(rocks.unseen));
   }
   for (const std::string& path : options.keep_out) {
-    const maps::Raster<std::uint8_t> mask = maps::readKeepOut(path, map);
+    const auto [mask, notes] = maps::readKeepOut(path, map);
+    for (const std::string& note : notes) layers.notes.push_back(path + ": " + note);
     if (layers.keep_out.empty()) layers.keep_out = maps::Raster<std::uint8_t>(map.grid());
     for (std::size_t i = 0; i < mask.values().size(); ++i) layers.keep_out.values()[i] |= mask.values()[i];
   }

@@ -62,6 +62,7 @@ struct Layers {
   maps::Raster<float> rock_abundance;   ///< NaN where there is none
   maps::Raster<std::uint8_t> keep_out;  ///< not 0: must not be entered
   std::vector<costmap::CostLayer> costs;
+  std::vector<std::string> notes;  ///< warnings, each with its file
 };
 
 /// Declares --terrain, --terrain-band, --rocks, --rocks-band, --keep-out and --layer.

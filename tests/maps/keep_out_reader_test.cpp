@@ -10,7 +10,7 @@ TEST(KeepOutReader, EveryCellThatAnAreaTouches) {
   const std::string path = folder.write("k.geojson", R"({"type":"FeatureCollection","crs":"local","features":[
     {"type":"Feature","properties":{},"geometry":{"type":"Polygon","coordinates":
       [[[500011,4999971],[500019,4999971],[500021,4999995],[500011,4999971]]]}}]})");
-  EXPECT_EQ(drawing(readKeepOut(path, map(folder))), "0110\n0110\n0100\n");
+  EXPECT_EQ(drawing(readKeepOut(path, map(folder)).mask), "0110\n0110\n0100\n");
 }
 
 // Drawing loops over the rows of a ring: one that reaches far is cut first, and covers the same cells.
@@ -19,7 +19,7 @@ TEST(KeepOutReader, AreasThatReachFarAreCut) {
   const auto cells = [&](const std::string& ring) {
     const std::string path =
         folder.write("k.geojson", R"({"type":"Polygon","crs":"local","coordinates":[[)" + ring + "]]}");
-    return drawing(readKeepOut(path, map(folder)));
+    return drawing(readKeepOut(path, map(folder)).mask);
   };
   EXPECT_EQ(cells("[500015,-1e12],[1e12,-1e12],[1e12,1e12],[500015,1e12],[500015,-1e12]"),
             "0111\n0111\n0111\n");
@@ -44,7 +44,7 @@ TEST(KeepOutReader, DegreesOnTheMapsOwnBody) {
                            corner(8142401, -276501) + "]";
   const std::string path =
       folder.write("k.geojson", R"({"type":"MultiPolygon","coordinates":[[)" + ring + "]]}");
-  EXPECT_EQ(drawing(readKeepOut(path, mars)), "1000\n1000\n1000\n");
+  EXPECT_EQ(drawing(readKeepOut(path, mars).mask), "1000\n1000\n1000\n");
 }
 
 TEST(KeepOutReader, BadFilesAreRefused) {
@@ -56,7 +56,8 @@ TEST(KeepOutReader, BadFilesAreRefused) {
   EXPECT_THAT(line(""), HasSubstr("is empty"));
   EXPECT_THAT(line("{"), HasSubstr("is not JSON"));
   EXPECT_THAT(line("[1]"), HasSubstr("is not GeoJSON"));
-  EXPECT_THAT(line(R"({"type":"Point","coordinates":[0,0]})"), HasSubstr("holds no Polygon"));
+  EXPECT_THAT(line(R"({"type":"Point","coordinates":[0,0]})"), HasSubstr("Point is no Polygon"));
+  EXPECT_THAT(line(R"({"type":"FeatureCollection","features":[]})"), HasSubstr("holds no Polygon"));
   EXPECT_THAT(line(R"({"type":"Polygon","coordinates":[[[0,0],[1,1]]]})"),
               HasSubstr("fewer than four positions"));
   EXPECT_THAT(line(R"({"type":"Polygon","coordinates":[[["a",0],[1,1],[1,0],[0,0]]]})"),
@@ -66,6 +67,62 @@ TEST(KeepOutReader, BadFilesAreRefused) {
   EXPECT_THAT(line(R"({"type":"Polygon","coordinates":[[[0,0],[1,1],[1,0],[0,0]]]})"),
               HasSubstr("no polygon overlaps map"));
   EXPECT_THAT(refusal([&] { readKeepOut(folder / "none.geojson", dem); }), HasSubstr("no such file"));
+}
+
+constexpr const char* kSquare =
+    R"({"type":"Feature","properties":{"name":"rock"},"geometry":{"type":"Polygon","coordinates":
+       [[[500012,4999982],[500018,4999982],[500018,4999988],[500012,4999988],[500012,4999982]]]}})";
+
+std::string collection(const std::string& geometry) {
+  return R"({"type":"FeatureCollection","crs":"local","features":[)" + std::string(kSquare) +
+         R"(,{"type":"Feature","properties":{},"geometry":)" + geometry + "}]}";
+}
+
+// Property: a feature beside a sound one closes ground, or is refused by its number. Of a box wound twice the even-odd rule
+// left its boundary alone, and every other fault passed in silence.
+TEST(KeepOutReader, EveryFeatureClosesGroundOrIsRefused) {
+  const TemporaryFolder folder;
+  const ElevationMap dem = map(folder);
+  const std::string ring =
+      "[500001,4999971],[500039,4999971],[500039,4999999],[500001,4999999],[500001,4999971]";
+  const auto file = [&](const std::string& geometry) {
+    return folder.write("k.geojson", collection(geometry));
+  };
+  const auto polygon = [](const std::string& rings) {
+    return R"({"type":"Polygon","coordinates":[)" + rings + "]}";
+  };
+  EXPECT_EQ(drawing(readKeepOut(file(polygon("[" + ring + "," + ring + "]")), dem).mask),
+            "1111\n1111\n1111\n");
+  const auto told = [&](const std::string& geometry) {
+    return refusal([&] { readKeepOut(file(geometry), dem); });
+  };
+  EXPECT_THAT(told(polygon("[" + ring + "],[" + ring + "]")),
+              HasSubstr("feature 2: the holes of a polygon cover all of it"));
+  EXPECT_THAT(told(R"({"type":"LineString","coordinates":[)" + ring + "]}"),
+              HasSubstr("feature 2: LineString is no Polygon"));
+  EXPECT_THAT(told(R"({"type":"Point","coordinates":[500001,4999971]})"), HasSubstr("feature 2: Point"));
+  EXPECT_THAT(told(R"({"type":"GeometryCollection","geometries":[)" + polygon("[" + ring + "]") +
+                   R"(,{"type":"Point","coordinates":[500001,4999971]}]})"),
+              HasSubstr("feature 2: Point"));
+  EXPECT_THAT(told("null"), HasSubstr("feature 2: has no geometry"));
+  EXPECT_THAT(told(polygon("[[500001,4999971],[500020,4999990],[500010,4999980],[500001,4999971]]")),
+              HasSubstr("feature 2: a polygon encloses no ground"));
+}
+
+// Property: a team has one file for many maps, so that what lies beside this one is told and not refused.
+TEST(KeepOutReader, AFeatureBesideTheMapIsTold) {
+  const TemporaryFolder folder;
+  const KeepOut areas =
+      readKeepOut(folder.write("k.geojson",
+                               collection(R"({"type":"Polygon","coordinates":[[[0,0],[9,0],[9,9],[0,0]]]})")),
+                  map(folder));
+  EXPECT_EQ(drawing(areas.mask), "0000\n0100\n0000\n");
+  EXPECT_THAT(areas.notes, testing::ElementsAre("1 of 2 polygons lies beside the map: feature 2"));
+  EXPECT_TRUE(
+      readKeepOut(folder.write("one.geojson", R"({"type":"FeatureCollection","crs":"local","features":[)" +
+                                                  std::string(kSquare) + "]}"),
+                  map(folder))
+          .notes.empty());
 }
 
 }  // namespace
