@@ -11,6 +11,9 @@
 namespace talus::terramech {
 namespace {
 
+constexpr int kGreatestClass = 254;        // a class raster has 255 where there is no class
+constexpr std::size_t kMostClasses = 254;  // numbers of cost curves
+
 bool isFile(const std::filesystem::path& path) {
   std::error_code error;
   return std::filesystem::exists(path, error);
@@ -47,7 +50,12 @@ YamlFields unwrapped(const YamlFields& root, const std::string& wrapper) {
 
 std::vector<SoilPrior> listedSoils(const YamlFields& root) {
   std::vector<SoilPrior> soils;
-  for (const YamlFields& item : root.list("soils")) soils.push_back(readSoil(unwrapped(item, "soil")));
+  for (const YamlFields& item : root.list("soils")) {
+    soils.push_back(readSoil(unwrapped(item, "soil")));
+    const std::string& name = soils.back().mean.name;
+    if (std::ranges::count(soils, name, [](const SoilPrior& s) { return s.mean.name; }) > 1)
+      root.refuse("soils", "holds soil '" + shortened(name) + "' twice", "give each its own name");
+  }
   return soils;
 }
 
@@ -82,14 +90,29 @@ SoilPrior soilOfClass(const YamlFields& classes, const std::string& key, const s
   }
 }
 
+// One spelling for each number: two lines of a class would part which soil counts.
 int classNumber(const YamlFields& classes, const std::string& key) {
-  try {
-    std::size_t used = 0;
-    const int number = std::stoi(key, &used);
-    if (used == key.size()) return number;
-  } catch (const std::exception&) {
-  }
-  classes.refuse(key, "'" + key + "' is not a class number", "write lines `1: soil name`");
+  const bool digits = !key.empty() && std::ranges::all_of(key, [](char c) { return c >= '0' && c <= '9'; });
+  if (!digits || (key.size() > 1 && key.front() == '0'))
+    classes.refuse(key, "'" + shortened(key) + "' is not a class number",
+                   "write lines `1: soil name`, a number without sign or leading zeros");
+  if (key.size() > 3 || std::stoi(key) > kGreatestClass)
+    classes.refuse(key, "class " + shortened(key) + " is beyond " + std::to_string(kGreatestClass),
+                   "number the classes from 0 to " + std::to_string(kGreatestClass));
+  return std::stoi(key);
+}
+
+// Before any soil is read, which may take milliseconds each.
+std::vector<std::pair<int, std::string>> numberedClasses(const YamlFields& classes, bool wrapped) {
+  std::vector<std::pair<int, std::string>> numbered;
+  for (const std::string& key : classes.names())
+    if (wrapped || key != "soils") numbered.emplace_back(classNumber(classes, key), key);
+  if (numbered.size() > kMostClasses)
+    classes.refuse("",
+                   "names " + std::to_string(numbered.size()) + " terrain classes, more than " +
+                       std::to_string(kMostClasses),
+                   "join classes of one soil");
+  return numbered;
 }
 
 Steering steeringOf(const YamlFields& fields) {
@@ -112,9 +135,24 @@ void readWheels(const YamlFields& fields, Rover& rover) {
 }  // namespace
 
 SoilPrior readSoil(const YamlFields& fields) {
-  fields.only({"name", "cohesion_Pa", "friction_angle_rad", "sinkage_exponent", "cohesive_modulus",
-               "frictional_modulus", "shear_modulus_m", "c1", "c2", "density_kg_m3", "digging_exponent",
-               "side_bulldozing"});
+  const std::vector<std::string> known{"name",
+                                       "cohesion_Pa",
+                                       "friction_angle_rad",
+                                       "sinkage_exponent",
+                                       "cohesive_modulus",
+                                       "frictional_modulus",
+                                       "shear_modulus_m",
+                                       "c1",
+                                       "c2",
+                                       "density_kg_m3",
+                                       "digging_exponent",
+                                       "side_bulldozing"};
+  // What another file holds is none of the message's, but for a misspelt field.
+  const auto foreign = [&](const std::string& key) { return nearestName(key, known).empty(); };
+  if (std::ranges::none_of(known, [&](const std::string& name) { return fields.has(name); }) &&
+      std::ranges::all_of(fields.names(), foreign))
+    fields.refuse("", "has no field of a soil", "name a file of soils (terramech/README.md)");
+  fields.only(known);
   SoilPrior soil;
   const Soil defaults;
   const auto take = [&](double Soil::*value, double SoilDeviation::*deviation, const Estimate& stated) {
@@ -210,7 +248,6 @@ std::vector<SoilPrior> loadSoils(const std::string& path) {
 
 TerrainClasses loadTerrainClasses(const std::string& path, const std::vector<std::string>& other_keys) {
   const YamlFields root = YamlFields::file(path);
-  const auto listed = listedSoils(root);
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
   const std::string wrapper = root.has("terrain_classes") ? "terrain_classes" : "classes";
   const bool wrapped = root.has(wrapper);
@@ -220,10 +257,10 @@ TerrainClasses loadTerrainClasses(const std::string& path, const std::vector<std
     root.only(known);
   }
   const YamlFields classes = unwrapped(root, wrapper);
+  const auto numbered = numberedClasses(classes, wrapped);
+  const auto listed = listedSoils(root);
   TerrainClasses table;
-  for (const std::string& key : classes.names())
-    if (wrapped || key != "soils")
-      table[classNumber(classes, key)] = soilOfClass(classes, key, listed, folder);
+  for (const auto& [number, key] : numbered) table[number] = soilOfClass(classes, key, listed, folder);
   if (table.empty()) root.refuse("", "names no terrain class", "write lines `1: soil name`");
   return table;
 }

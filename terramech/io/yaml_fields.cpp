@@ -17,6 +17,11 @@
 
 namespace talus::terramech {
 
+std::string shortened(const std::string& word) {
+  constexpr std::size_t kMost = 40;
+  return word.size() <= kMost ? word : word.substr(0, kMost) + "...";
+}
+
 struct YamlFields::State {
   YAML::Node node;
   std::string origin;
@@ -64,7 +69,7 @@ constexpr std::size_t kMostBytes = std::size_t{256} << 10U;
 std::string kindOf(const YAML::Node& node) {
   if (node.IsMap()) return "a mapping";
   if (node.IsSequence()) return "a list";
-  return node.IsNull() ? "empty" : "'" + node.Scalar() + "'";
+  return node.IsNull() ? "empty" : "'" + shortened(node.Scalar()) + "'";
 }
 
 /// Whether a marker parts what it holds: no content, quoted or not, has one at the beginning of a line.
@@ -92,12 +97,17 @@ YamlFields YamlFields::of(const YAML::Node& node, const std::string& origin, con
   auto state = std::make_shared<State>(State{node, origin, what});
   const std::string where = state->where(node.Mark().line);
   if (!node.IsMap())
-    fail(where, (what.empty() ? "the file" : what) + " is " + kindOf(node), "write `name: value` lines");
+    fail(where,
+         what.empty()
+             ? std::string("the file is ") + (node.IsSequence() ? "a list" : "a text") + ", no mapping"
+             : what + " is " + kindOf(node),
+         "write `name: value` lines");
   std::set<std::string> seen;
   for (const auto& entry : node) {
     if (!entry.first.IsScalar()) fail(where, "a name is " + kindOf(entry.first), "write `name: value` lines");
     if (!seen.insert(entry.first.Scalar()).second)
-      fail(state->where(entry.first.Mark().line), entry.first.Scalar() + " appears twice", "remove one");
+      fail(state->where(entry.first.Mark().line), shortened(entry.first.Scalar()) + " appears twice",
+           "remove one");
   }
   return YamlFields{state};
 }
@@ -154,7 +164,7 @@ double toNumber(const State& state, const std::string& name, const YAML::Node& v
   if (text == ".nan" || text == ".NaN" || text == ".NAN") text = "nan";
   if (text.ends_with(".inf") || text.ends_with(".Inf") || text.ends_with(".INF")) text = "inf";
   if (!parseNumber(text, number))
-    fail(where, name + " = '" + value.Scalar() + "', must be a number", "write it without a unit");
+    fail(where, name + " = '" + shortened(value.Scalar()) + "', must be a number", "write it without a unit");
   if (!std::isfinite(number))
     fail(where, name + " = " + value.Scalar() + ", must be finite", "state a number");
   if (!plausible(number * factor))
@@ -170,8 +180,10 @@ Estimate toStated(const State& state, const std::string& name, const Found& foun
   for (const auto& entry : found.value) {
     const std::string key = entry.first.Scalar();
     if (key != "mean" && key != "std")
-      fail(state.where(entry.first.Mark().line), name + ": unknown key '" + key + "'",
+      fail(state.where(entry.first.Mark().line), name + ": unknown key '" + shortened(key) + "'",
            "write {mean: M, std: S}");
+    if (key == "mean" ? has_mean : has_std)
+      fail(state.where(entry.first.Mark().line), name + ": " + key + " appears twice", "remove one");
     (key == "mean" ? stated.value : stated.std) =
         toNumber(state, name + "." + key, entry.second, found.factor);
     (key == "mean" ? has_mean : has_std) = true;
@@ -296,12 +308,17 @@ std::vector<std::string> YamlFields::names() const {
 }
 
 void YamlFields::only(const std::vector<std::string>& known) const {
+  std::set<std::string> stated;
   for (const auto& entry : state_->node) {
     const std::string key = entry.first.Scalar();
     const auto states = [&](const std::string& name) { return factorOf(key, name) != 0.0; };
-    if (std::any_of(known.begin(), known.end(), states)) continue;
+    if (const auto found = std::find_if(known.begin(), known.end(), states); found != known.end()) {
+      if (!stated.insert(*found).second)
+        fail(state_->where(entry.first.Mark().line), *found + " is given twice", "keep one unit");
+      continue;
+    }
     const std::string nearest = nearestName(key, known);
-    fail(state_->where(entry.first.Mark().line), "unknown key '" + key + "'",
+    fail(state_->where(entry.first.Mark().line), "unknown key '" + shortened(key) + "'",
          nearest.empty() ? "remove it" : "did you mean " + nearest + "?");
   }
 }

@@ -15,6 +15,9 @@ class Node;
 /// Reads configuration files strictly: every field by name and unit, every mistake with file and line.
 namespace talus::terramech {
 
+/// A word of a file as a message shows it: its first forty bytes.
+std::string shortened(const std::string& word);
+
 /// One mapping of a YAML file. A field is read by its name with SI unit suffix (`cohesion_Pa`); the file
 /// may state it in another unit of the same kind (`cohesion_kPa`), which is converted. only() refuses names
 /// that are not known and names the nearest that is. Every error is an InputError with file and line.

@@ -86,7 +86,7 @@ TEST(SoilLibrary, SoilMistakesAreToldWithTheirLine) {
         Case{"cohesion_kPa: {mean: 2, std: -3}\n", ":1: cohesion_Pa.std must be > 0"},
         // Taken for a value without a deviation it got the default: dearer than one with a deviation of 0.5.
         Case{"cohesion_kPa: {mean: 2, std: 0}\n", ":1: cohesion_Pa.std must be > 0; no measurement is exact"},
-        Case{"- 1\n- 2\n", "the file is a list"}, Case{"just words\n", "the file is 'just words'"},
+        Case{"- 1\n- 2\n", "the file is a list"}, Case{"just words\n", "the file is a text, no mapping"},
         Case{"a: [1\n", "not YAML"}, Case{"", "is empty"}}) {
     EXPECT_THAT(errorOf(c.yaml), HasSubstr(c.error)) << c.yaml;
   }
@@ -191,6 +191,42 @@ TEST(TerrainClasses, TakesLibraryNamesInlineSoilsAndItsOwnList) {
   EXPECT_EQ(loadTerrainClasses(bare.path()).at(3).mean.name, "clay");
 }
 
+// Property: numbers and count are checked before any soil is read; the first of these names none.
+TEST(TerrainClasses, AreCountedBeforeTheirSoilsAreRead) {
+  std::string all = "classes:\n  0: no_such_soil\n";
+  for (int i = 1; i <= 254; ++i) all += "  " + std::to_string(i) + ": sand\n";
+  const auto load = [](const std::string& text) {
+    const test::TemporaryFile file{text, ".yaml"};
+    loadTerrainClasses(file.path());
+  };
+  EXPECT_THAT([&] { load(all); },
+              testing::ThrowsMessage<InputError>(HasSubstr("255 terrain classes, more than 254")));
+  EXPECT_THAT([&] { load(all + "  255: sand\n"); },
+              testing::ThrowsMessage<InputError>(HasSubstr(":257: class 255 is beyond 254")));
+}
+
+// Property: a message tells of a file that is none of soils that it is none, and nothing that stands in it.
+TEST(TerrainClasses, AForeignFileIsNotShown) {
+  for (const char* foreign : {"root:x:0:0:secret:/root:/bin/sh\nsync:x:4:secret\n", "secret\n", "- secret\n",
+                              "secret: word\n", "secret: {word: secret}\n", "a: [secret\n"}) {
+    const test::TemporaryFile other{foreign, ".yaml"};
+    const test::TemporaryFile file{"1: " + other.path() + "\n", ".yaml"};
+    EXPECT_THAT([&] { loadTerrainClasses(file.path()); },
+                testing::ThrowsMessage<InputError>(
+                    testing::AllOf(HasSubstr(other.path()), testing::Not(HasSubstr("secret")))))
+        << foreign;
+  }
+}
+
+TEST(SoilLibrary, ASoilOfAListHasItsNameAlone) {
+  const std::string soil =
+      "  - {name: mud, cohesion_Pa: 1, friction_angle_deg: 10, sinkage_exponent: 1, "
+      "frictional_modulus_kN: 500, shear_modulus_mm: 30}\n";
+  const test::TemporaryFile file{"soils:\n" + soil + soil + "classes: {1: mud}\n", ".yaml"};
+  EXPECT_THAT([&] { loadTerrainClasses(file.path()); },
+              testing::ThrowsMessage<InputError>(HasSubstr(":1: holds soil 'mud' twice")));
+}
+
 TEST(TerrainClasses, MistakesAreToldWithTheirLine) {
   const auto error = [](const std::string& yaml) -> std::string {
     const test::TemporaryFile file{yaml, ".yaml"};
@@ -204,6 +240,13 @@ TEST(TerrainClasses, MistakesAreToldWithTheirLine) {
   EXPECT_THAT(error("1: sand\n2: loan\n"), HasSubstr(":2: class 2: no soil 'loan'; did you mean loam?"));
   EXPECT_THAT(error("1: sand\ntwo: loam\n"), HasSubstr(":2: 'two' is not a class number"));
   EXPECT_THAT(error("classes: {}\n"), HasSubstr("names no terrain class"));
+  // One spelling for each number: of 1 and 01 the later soil, bedrock, counted in silence.
+  for (const char* key : {"01", "+1", "-1", "1.0", "0x1", "1e0", "\" 1\"", "00"})
+    EXPECT_THAT(error("classes:\n  1: mars_drift\n  " + std::string(key) + ": bedrock\n"), HasSubstr(":3: '"))
+        << key;
+  EXPECT_THAT(error("1: mars_drift\n\"1\": bedrock\n"), HasSubstr(":2: 1 appears twice"));
+  EXPECT_THAT(error("classes: {0: sand, 254: loam, 255: clay}\n"), HasSubstr(":1: class 255 is beyond 254"));
+  EXPECT_THAT(error("classes: {99999999999999999999: clay}\n"), HasSubstr("is beyond 254"));
   EXPECT_THAT(error("classes: {1: sand}\nclases: {2: sand}\n"), HasSubstr(":2: unknown key 'clases'"));
 }
 

@@ -89,5 +89,23 @@ TEST(YamlFields, AFileOfMoreThan256KilobytesIsRefused) {
   std::remove(path.c_str());
 }
 
+// Property: of a field that is given twice, by whatever spelling, none counts.
+TEST(YamlFields, AFieldIsGivenOnce) {
+  const auto read = [](const std::string& yaml) {
+    return [yaml] {
+      const YamlFields f = of(yaml);
+      f.only({"a_m", "b"});
+      f.stated("a_m");
+    };
+  };
+  EXPECT_THAT(read("a_m: 1\na_m: 2\n"), ThrowsMessage<InputError>(HasSubstr("f.yaml:2: a_m appears twice")));
+  EXPECT_THAT(read("a_m: 1\n'a_m': 2\n"),
+              ThrowsMessage<InputError>(HasSubstr("f.yaml:2: a_m appears twice")));
+  EXPECT_THAT(read("a_m: 1\nb: 1\na_cm: 2\n"),
+              ThrowsMessage<InputError>(HasSubstr("f.yaml:3: a_m is given twice")));
+  EXPECT_THAT(read("a_m: {mean: 1, std: 1, mean: 2}\n"),
+              ThrowsMessage<InputError>(HasSubstr("f.yaml:1: a_m: mean appears twice")));
+}
+
 }  // namespace
 }  // namespace talus::terramech
