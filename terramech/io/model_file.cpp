@@ -4,9 +4,11 @@
 #include <sstream>
 
 #include <talus/talus.hpp>
+#include <talus/terramech/io/covariance_fault.hpp>
 #include <talus/terramech/io/model_file.hpp>
 #include <talus/terramech/io/soil_library.hpp>
 #include <talus/terramech/io/yaml_fields.hpp>
+#include <talus/terramech/numerics/range.hpp>
 
 namespace talus::terramech {
 namespace {
@@ -68,7 +70,8 @@ Wheel readWheel(const YamlFields& f) {
 std::optional<double> positive(const YamlFields& f, const char* name) {
   if (!f.has(name)) return {};
   const double value = f.number(name);
-  if (!(value >= 0.0) || !std::isfinite(value)) f.refuse(name, "must be a standard deviation >= 0", "");
+  if (!(value >= 0.0) || !std::isfinite(value))
+    f.refuse(name, std::string(name) + " is negative, must be a standard deviation >= 0", "correct it");
   return value;
 }
 
@@ -86,13 +89,14 @@ SensorNoise readNoise(const YamlFields& f) {
     known.emplace_back(kRelative[c]);
   }
   f.only(known);
+  const auto deviation = [&](const char* name) { return positive(f, name).value_or(0.0); };
   for (std::size_t c = 0; c < kChannels; ++c) {
-    noise.absolute[c] = f.number(kColumn[c], 0.0);
-    noise.relative[c] = f.number(kRelative[c], 0.0);
+    noise.absolute[c] = deviation(kColumn[c]);
+    noise.relative[c] = deviation(kRelative[c]);
   }
-  noise.slip_absolute = f.number("slip", 0.0);
-  noise.slip_relative = f.number("slip_relative", 0.0);
-  noise.load_relative = f.number("load_relative", 0.0);
+  noise.slip_absolute = deviation("slip");
+  noise.slip_relative = deviation("slip_relative");
+  noise.load_relative = deviation("load_relative");
   return noise;
 }
 
@@ -129,6 +133,13 @@ Effect readEffect(const YamlFields& f) {
   if (effect.parameters.size() != wanted || wanted == 0)
     if (!form || wanted != effect.parameters.size())
       f.refuse("parameters", "needs " + std::to_string(wanted) + " numbers", "");
+  try {
+    for (std::size_t k = 0; form && k < form->parameters.size(); ++k)
+      RangeCheck{effect.name}.within(form->parameters[k].name, effect.parameters[k],
+                                     {form->parameters[k].low, form->parameters[k].high});
+  } catch (const std::invalid_argument& e) {
+    f.refuse(e);
+  }
   if (form && !effect.knots.empty() && (effect.knots.size() != 2 || !(effect.knots[0] <= effect.knots[1])))
     f.refuse("knots", "of a known form are the two ends of its range, low <= high", "");
   return effect;
@@ -146,10 +157,16 @@ void readFit(const YamlFields& root, RefinedModel& model) {
                   p.index <
                       static_cast<int>(model.effects[static_cast<std::size_t>(p.effect)].parameters.size());
     if (!known) f.refuse("index", "names no parameter", "");
+    const auto same = [&](const FittedParameter& q) { return q.effect == p.effect && q.index == p.index; };
+    if (std::ranges::count_if(model.fitted, same) > 1)
+      f.refuse("index", "names a parameter of `fitted` a second time",
+               "remove it, and its row of the covariance");
   }
   model.covariance = root.numbers("covariance");
   if (model.covariance.size() != model.fitted.size() * model.fitted.size())
     root.refuse("covariance", "needs the square of the number of fitted parameters", "");
+  if (const std::string fault = faultOfCovariance(model.covariance, model.fitted.size()); !fault.empty())
+    root.refuse("covariance", "covariance " + fault, "write the model by talus trace --model-out");
 }
 
 /// One number >= 0 for each channel.
@@ -174,6 +191,9 @@ std::vector<TrainedRange> readTrained(const YamlFields& root) {
     one.above = readChannels(f, "above");
     if (f.has("reach_below")) one.reach_below = readChannels(f, "reach_below");
     if (f.has("reach_above")) one.reach_above = readChannels(f, "reach_above");
+    const auto same = [&](const TrainedRange& other) { return other.column == one.column; };
+    if (std::ranges::any_of(all, same))
+      f.refuse("column", "column '" + shortened(one.column) + "' is trained a second time", "keep one range");
     all.push_back(one);
   }
   return all;

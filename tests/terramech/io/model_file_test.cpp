@@ -94,5 +94,51 @@ TEST(ModelFile, RefusesWhatItCannotMean) {
   }
 }
 
+std::string faultOf(const std::string& yaml) {
+  const auto path = written("faulty.yaml", yaml);
+  try {
+    loadModel(path);
+  } catch (const InputError& e) {
+    std::filesystem::remove(path);
+    return e.what();
+  }
+  std::filesystem::remove(path);
+  return "no error";
+}
+
+// Property: what is no covariance would be read as certainty (a std of 0), and is refused by its line.
+TEST(ModelFile, RefusesWhatIsNoCovariance) {
+  const auto fault = [](const std::string& covariance) {
+    return faultOf("soil: sand\nfitted: [{effect: -1, index: 0}, {effect: -1, index: 1}]\ncovariance: [" +
+                   covariance + "]\n");
+  };
+  EXPECT_EQ(fault("1e4, 0.5, 0.5, 1e-3"), "no error");
+  EXPECT_EQ(fault("0, 0, 0, 1e-3"), "no error");
+  EXPECT_THAT(fault("-1e4, 0, 0, 1e-3"), HasSubstr(":3: covariance has the negative variance -10000"));
+  EXPECT_THAT(fault("1e4, 0, 0, -1e-3"), HasSubstr("negative variance"));
+  EXPECT_THAT(fault("1e4, 0.5, 0.4, 1e-3"), HasSubstr("is not symmetric in row 1"));
+  EXPECT_THAT(fault("1e4, 4, 4, 1e-3"), HasSubstr("correlation beyond 1"));
+  EXPECT_THAT(fault("0, 4, 4, 1e-3"), HasSubstr("correlation beyond 1"));
+  // Each pair may be so correlated, the three together not.
+  EXPECT_THAT(
+      faultOf("soil: sand\nfitted: [{effect: -1, index: 0}, {effect: -1, index: 1}, {effect: -1, index: 2}]\n"
+              "covariance: [1, 0.9, 0.9, 0.9, 1, -0.9, 0.9, -0.9, 1]\n"),
+      HasSubstr("not positive semidefinite"));
+}
+
+TEST(ModelFile, RefusesWhatIsGivenTwiceOrBeyondItsBounds) {
+  EXPECT_THAT(faultOf("soil: sand\nnoise: {slip: -0.1}\n"), HasSubstr(":2: slip is negative"));
+  EXPECT_THAT(faultOf("soil: sand\nnoise: {torque_relative: -0.1}\n"),
+              HasSubstr("torque_relative is negative"));
+  EXPECT_THAT(faultOf("soil: sand\nfitted:\n  - {effect: -1, index: 0}\n  - {effect: -1, index: 0}\n"
+                      "covariance: [1, 0, 0, 1]\n"),
+              HasSubstr(":4: names a parameter of `fitted` a second time"));
+  const std::string range = "  - {column: slip, range: [0, 1], below: [0, 0, 0, 0], above: [0, 0, 0, 0]}\n";
+  EXPECT_THAT(faultOf("soil: sand\ntrained:\n" + range + range),
+              HasSubstr(":4: column 'slip' is trained a second time"));
+  EXPECT_THAT(faultOf("soil: sand\neffects:\n  - {name: slip_sinkage_ding, parameters: [-5]}\n"),
+              HasSubstr(":3: slip_sinkage_ding: "));
+}
+
 }  // namespace
 }  // namespace talus::terramech
