@@ -147,10 +147,19 @@ Dataset openRaster(const std::string& path, bool allow_vrt) {
   return withFractions(std::move(dataset), path);
 }
 
+GDALDriver& driverNamed(const char* name) {
+  registerDrivers();
+  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName(name);
+  if (driver == nullptr)
+    throw InputError({std::string("GDAL's driver ") + name, "is missing, and Talus needs it",
+                      "unset GDAL_SKIP, or install a GDAL with it"});
+  return *driver;
+}
+
 Dataset memoryRaster(int width, int height, int type) {
   registerDrivers();
-  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("MEM");
-  Dataset dataset(driver->Create("", width, height, 1, static_cast<GDALDataType>(type), nullptr));
+  GDALDriver& driver = driverNamed("MEM");
+  Dataset dataset(driver.Create("", width, height, 1, static_cast<GDALDataType>(type), nullptr));
   if (!dataset) throw std::bad_alloc();
   return dataset;
 }

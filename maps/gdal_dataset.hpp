@@ -6,6 +6,7 @@
 #include <string>
 
 class GDALDataset;
+class GDALDriver;
 
 namespace talus::maps {
 
@@ -44,6 +45,9 @@ Dataset openRaster(const std::string& path, bool allow_vrt = false);
 /// Pixels that GDAL keeps in memory in the whole process, in bytes; left alone a twentieth of the machine's
 /// memory.
 void limitPixelCache(std::int64_t bytes);
+
+/// The driver of a format by GDAL's name. @throws InputError where GDAL has none, as by GDAL_SKIP in the environment
+GDALDriver& driverNamed(const char* name);
 
 /// An empty raster in memory of one band of a GDALDataType, of 32-bit floats if none is given. @throws std::bad_alloc
 Dataset memoryRaster(int width, int height, int type = 6);

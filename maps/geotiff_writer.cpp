@@ -22,12 +22,11 @@ struct Form {
 };
 
 Dataset create(const std::string& path, const Grid& grid, const Form& form) {
-  registerDrivers();
   CPLStringList words;
   for (const char* word : {"TILED=YES", "COMPRESS=DEFLATE", "ZLEVEL=4", "BIGTIFF=IF_SAFER", form.predictor})
     words.AddString(word);
-  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
-  return Dataset(driver->Create(path.c_str(), grid.width, grid.height, form.bands, form.type, words.List()));
+  return Dataset(driverNamed("GTiff").Create(path.c_str(), grid.width, grid.height, form.bands, form.type,
+                                             words.List()));
 }
 
 void place(GDALDataset& file, const Grid& grid, const Georeference* georeference) {

@@ -66,8 +66,7 @@ Dataset inMemory(GDALDataset& file, int band, const ElevationMap& map, const std
   if (GDALDataTypeIsComplex(file.GetRasterBand(band)->GetRasterDataType()) != FALSE)
     throw InputError({path, "holds complex numbers", "choose a band of real numbers"});
   requireMemory(8.0 * (width + 2.0) * (height + 2.0), path);
-  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("MEM");
-  Dataset copy(driver->Create("", width + 2, height + 2, 1, GDT_Float32, nullptr));
+  Dataset copy(driverNamed("MEM").Create("", width + 2, height + 2, 1, GDT_Float32, nullptr));
   if (!copy) throw InputError({path, "does not fit into memory", "cut it to the map with gdalwarp"});
   const OGRSpatialReference* crs = file.GetSpatialRef();
   const bool elsewhere = hasCrs(crs) && map.georeference && !sameSystem(*crs, map.georeference->system().wkt);

@@ -77,5 +77,11 @@ TEST(GdalDataset, TheEnvironmentDoesNotChangeWhatGdalWrites) {
   }
 }
 
+// Writing without GTiff (GDAL_SKIP=GTiff in the environment) ended by a signal.
+TEST(GdalDataset, ADriverThatIsMissingIsTold) {
+  EXPECT_EQ(std::string(GDALGetDriverShortName(&driverNamed("MEM"))), "MEM");
+  EXPECT_THAT(refusal([] { driverNamed("NoSuchDriver"); }), HasSubstr("driver NoSuchDriver: is missing"));
+}
+
 }  // namespace
 }  // namespace talus::maps
