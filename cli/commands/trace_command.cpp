@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -124,9 +126,15 @@ int run(const TraceCommandOptions& options, Context& context) {
   if (story.beyond_axle > 0)
     story.beyond_axle_rmse = terramech::rmseOf(story.result.refined, terramech::subset(all, sunk));
   story.applies = terramech::applicability(story.result, how);
-  if (!options.model_out.empty())
-    writeFile(options.model_out,
-              terramech::modelText(terramech::forPrediction(story.result), story.result.scope));
+  if (!options.model_out.empty()) {
+    const terramech::RefinedModel model = terramech::forPrediction(story.result);
+    writeFile(options.model_out, terramech::modelText(model, story.result.scope));
+    if (model.soil.c1 + std::abs(model.soil.c2) > 1.0 || model.soil.c1 < std::abs(model.soil.c2))
+      context.warn(
+          options.model_out +
+          ": its stress peak c1 + c2 slip leaves the contact at slip -1 or 1: predict and assess read "
+          "it, plan and costmap refuse it");
+  }
   if (!options.html.empty()) writeFile(options.html, tracePage(story));
   if (context.json)
     printJson(traceJson(story));

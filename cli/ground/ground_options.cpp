@@ -88,9 +88,22 @@ void addPolicy(CLI::App& command, costmap::DrivePolicy& policy) {
   groupOptions(command, "Cost and thresholds");
 }
 
+// Maps hold soils at slips from -1 (held back downhill) to 1, where theta_m = (c1 + c2 slip) theta_1 has to lie in the contact.
+void requirePeakInContact(const terramech::Soil& soil, const std::string& file) {
+  for (const double slip : {-1.0, 1.0})
+    if (const double peak = soil.c1 + soil.c2 * slip; !(peak >= 0.0 && peak <= 1.0))
+      throw InputError(
+          {file,
+           fmt::format("soil '{}': c1 = {:.6g} and c2 = {:.6g} put the stress peak at {:.6g} of the "
+                       "contact at slip {:g}, must be 0 to 1",
+                       soil.name, soil.c1, soil.c2, peak, slip),
+           "lower the magnitude of c2, or leave both out"});
+}
+
 costmap::GroundClass modelledGround(const std::string& path, const terramech::Rover& rover) {
   const terramech::ModelFile file = terramech::loadModel(path);
   if (!file.soil_given) throw InputError({path, "defines no soil", "fit one first: talus trace --model-out"});
+  requirePeakInContact(file.model.soil, path);
   try {
     return costmap::groundClass(0, file.model, rover);
   } catch (const std::invalid_argument& e) {
@@ -105,11 +118,15 @@ std::vector<costmap::GroundClass> groundClasses(const GroundOptions& options, co
   const bool classes_only = !options.soils.empty() && options.soil.empty() && options.model.empty();
   if (!options.model.empty())
     classes.push_back(modelledGround(options.model, rover));
-  else if (!classes_only)
-    classes.push_back(costmap::groundClass(
-        0, terramech::loadSoilPrior(options.soil.empty() ? assumed.soil : options.soil), rover));
+  else if (!classes_only) {
+    const std::string soil = options.soil.empty() ? assumed.soil : options.soil;
+    const terramech::SoilPrior prior = terramech::loadSoilPrior(soil);
+    requirePeakInContact(prior.mean, soil);
+    classes.push_back(costmap::groundClass(0, prior, rover));
+  }
   if (options.soils.empty()) return classes;
   for (const auto& [number, prior] : terramech::loadTerrainClasses(options.soils)) {
+    requirePeakInContact(prior.mean, fmt::format("{}, class {}", options.soils, number));
     if (number == 0 && !classes.empty()) classes.erase(classes.begin());
     classes.push_back(costmap::groundClass(number, prior, rover));
   }

@@ -123,6 +123,27 @@ TEST(GroundOptions, ClassesOfTheFileAndTheSoilNamed) {
               ThrowsMessage<InputError>(HasSubstr("no_such")));
 }
 
+// Closed form: theta_m / theta_1 = c1 + c2 slip is 1.08 at slip 1, and -0.32 at slip -1. Either ended the build of the map by
+// exit 1, without the file.
+TEST(GroundOptions, AStressPeakBeyondTheContactIsAFaultOfTheFile) {
+  const Folder folder;
+  const std::string dem = folder.write("dem.asc", asciiGrid(20, 20, flat)) + " --resolution 1 --rover fido";
+  const auto soil = [](const std::string& peak) {
+    return "{name: odd, cohesion_Pa: 500, friction_angle_deg: 30, sinkage_exponent: 1, frictional_modulus: "
+           "1e6, "
+           "shear_modulus_mm: 15, " +
+           peak + "}\n";
+  };
+  const std::string bare = folder.write("bare.yaml", soil("c1: 0, c2: 0.32")),
+                    model =
+                        folder.write("model.yaml", "model: wong-reece\nsoil: " + soil("c1: 0.58, c2: 0.5")),
+                    classes = folder.write("classes.yaml", "1: " + soil("c1: 0.58, c2: -0.6"));
+  for (const std::string& given : {" --soil " + bare, " --model " + model, " --soils " + classes})
+    EXPECT_THAT([&] { readGround(parsed(dem + given), quiet()); },
+                ThrowsMessage<InputError>(testing::AllOf(HasSubstr(folder / ""), HasSubstr("stress peak"))))
+        << given;
+}
+
 // Closed form: one pixel in 25 of each cell of column 2 is of the weak class, whatever its number; rocks are not seen in
 // one pixel of column 4 and dense in one of column 6.
 TEST(GroundOptions, WhatReachesIntoACellCounts) {
