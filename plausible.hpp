@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <string_view>
 
 namespace talus {
 
@@ -12,6 +13,14 @@ inline constexpr const char* kPlausible = "must be 0 or between 1e-15 and 1e15 i
 /// range of its own field.
 inline bool plausible(double value) noexcept {
   return value == 0.0 || (std::abs(value) >= 1e-15 && std::abs(value) <= 1e15);
+}
+
+/// Whether a whole number is written as a decimal one: 010 is 8 to many a reader, and 0x10 is 16.
+inline bool isDecimal(std::string_view word) noexcept {
+  if (word.starts_with('-') || word.starts_with('+')) word.remove_prefix(1);
+  if (word.size() < 2 || word[0] != '0') return true;
+  const bool hexadecimal = word[1] == 'x' || word[1] == 'X';
+  return !hexadecimal && word.find_first_not_of("0123456789") != word.npos;
 }
 
 }  // namespace talus

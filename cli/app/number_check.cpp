@@ -15,9 +15,15 @@ namespace {
 
 constexpr double kNoEnd = std::numeric_limits<double>::infinity();
 
+// An end in few digits, in all where few are another number: a bound of 1 - 1e-12 is not 1.
+std::string end(double value) {
+  std::string few = fmt::format("{:g}", value);
+  return std::strtod(few.c_str(), nullptr) == value ? few : fmt::format("{}", value);
+}
+
 std::string bound(double low, double high) {
   if (low == -kNoEnd) return "a finite number";
-  return high == kNoEnd ? fmt::format("finite, >= {:g}", low) : fmt::format("{:g} to {:g}", low, high);
+  return high == kNoEnd ? "finite, >= " + end(low) : end(low) + " to " + end(high);
 }
 
 // Whether a word is a number in itself, such as "nan"; a whole number is not judged by its size: seeds are large.
@@ -31,22 +37,40 @@ bool isImpossible(std::string_view word) {
   return !whole && !plausible(value);
 }
 
-// Whether a word would be taken for another number than it shows: 0x10 for 16, 010 for 8.
+// Whether a word would be taken for another number than it shows: 0x10 for 16, 010 for 8. A name such as 0xfile is none.
 bool isNotDecimal(std::string_view word) {
-  if (word.starts_with('-') || word.starts_with('+')) word.remove_prefix(1);
-  if (word.size() < 2 || word[0] != '0') return false;
-  if (word[1] == 'x' || word[1] == 'X') {
-    const std::string text(word);
-    char* end = nullptr;
-    std::strtod(text.c_str(), &end);
-    return end == text.c_str() + text.size();
-  }
-  return word.find_first_not_of("0123456789") == word.npos;
+  const std::string text(word);
+  char* end = nullptr;
+  std::strtod(text.c_str(), &end);
+  return !isDecimal(word) && end == text.c_str() + text.size();
+}
+
+// The parser knows no name of a hidden option.
+std::string nameOf(const CLI::Option& option) {
+  return option.get_lnames().empty() ? option.get_name(true) : "--" + option.get_lnames().front();
+}
+
+void refuseEmptyValue(CLI::Option& option) {
+  const std::string name = nameOf(option);
+  const char* remedy = option.get_positional() ? "give a value" : "leave the option out or give a value";
+  const auto check = [name, remedy](std::string& value) -> std::string {
+    if (value.find_first_not_of(" \t\r\n\v\f") == value.npos)
+      throw InputError({name, "its value is empty", remedy});
+    return "";
+  };
+  option.transform(CLI::Validator(check, ""));  // before all other checks
 }
 
 }  // namespace
 
+void refuseEmptyValues(CLI::App& program) {
+  for (CLI::Option* option : program.get_options())
+    if (option->get_items_expected_max() > 0) refuseEmptyValue(*option);
+  for (CLI::App* command : program.get_subcommands({})) refuseEmptyValues(*command);
+}
+
 void checkNumbers(const CLI::App& command) {
+  if (command.get_parent() != nullptr) checkNumbers(*command.get_parent());
   for (const CLI::Option* option : command.get_options()) {
     if (option->empty()) continue;
     for (const std::string& result : option->results()) {

@@ -7,6 +7,7 @@
 #include <memory>
 #include <new>
 #include <optional>
+#include <regex>
 #include <string>
 #include <vector>
 
@@ -47,11 +48,13 @@ CLI::Validator enoughMemory() {
   return CLI::Validator(check, "");
 }
 
-// The parser of sizes takes a bare unit for one of it.
-CLI::Validator startsWithNumber() {
+// The parser of sizes takes a bare unit for one of it, 0x1GB for 1 GB, 010GB for 8 GB, and 1e for 1 EB.
+CLI::Validator decimalSize() {
   const auto check = [](std::string& text) -> std::string {
-    const bool number = !text.empty() && text.front() >= '0' && text.front() <= '9';
-    return number ? "" : text + ", must be a number with or without a unit, such as 4GB";
+    static const std::regex size(R"((0|[1-9]\d*) *(B|[KMGTP](I|I?B)?|E(I|I?B))?)", std::regex::icase);
+    return std::regex_match(text, size)
+               ? ""
+               : text + ", must be a whole decimal number with or without a unit, such as 4GB";
   };
   return CLI::Validator(check, "");
 }
@@ -167,7 +170,7 @@ void addGlobalOptions(CLI::App& app, Context& context) {
          "--max-memory", maps::setMemoryBudget,
          "memory that the call may take, such as 4GB (default: half of what is free)")
       ->transform(CLI::AsSizeValue(false))
-      ->transform(startsWithNumber())
+      ->transform(decimalSize())
       ->check(enoughMemory())
       ->type_name("SIZE");
   app.add_option("--seed", context.seed, "seed of the random numbers")
@@ -181,11 +184,19 @@ void addGlobalOptions(CLI::App& app, Context& context) {
   app.require_subcommand(1);
 }
 
+/// CLI11 takes the word behind "--map=" for its value.
+void refuseNoValue(std::string_view word) {
+  if (word.starts_with("--") && word.find('=') == word.size() - 1)
+    throw InputError({std::string(word.substr(0, word.size() - 1)), "its value is empty",
+                      "leave the option out or give a value"});
+}
+
 /// Words as CLI11 takes them, last first; a leading "-.5" would be read as an option.
 std::vector<std::string> words(int argc, const char* const* argv) {
   std::vector<std::string> reversed;
   for (int i = argc - 1; i > 0; --i) {
     std::string word = argv[i];
+    refuseNoValue(word);
     if (word.starts_with("-.")) word.insert(1, "0");
     reversed.push_back(std::move(word));
   }
@@ -218,6 +229,7 @@ int run(int argc, const char* const* argv) {
     app.formatter(std::make_shared<HelpFormat>());
     addGlobalOptions(app, context);
     addCommands(app, context);
+    refuseEmptyValues(app);
     code = parseAndRun(app, context, words(argc, argv));
   } catch (...) {
     code = interrupt.requested() ? interrupt.code() : failure();

@@ -40,10 +40,7 @@ void bind(CLI::App& command, Options& options) {
   addOutput(command, "-o,--output", options.output, "map to write")->required()->type_name("MAP2.ot");
   auto* journal =
       command.add_option("--journal", options.journal, "SQLite journal of every row, accepted or rejected")
-          ->type_name("EVIDENCE.db")
-          ->check([](const std::string& name) {
-            return name.empty() ? std::string("the name is empty; name a file") : std::string();
-          });
+          ->type_name("EVIDENCE.db");
   command
       .add_option("--pose-error", options.intake.pose_std_m,
                   "standard deviation of x_m and y_m if there is no column pose_std_m [m]")

@@ -1,3 +1,5 @@
+#include <talus/cli/app/commands.hpp>
+#include <talus/cli/app/context.hpp>
 #include <talus/cli/app/number_check.hpp>
 #include <talus/talus.hpp>
 
@@ -10,6 +12,8 @@ TEST(NumberCheck, RefusesNaNInfinityAndWhatLiesOutside) {
   for (std::string bad : {"1.001", "nan", "-inf", "abc", ""}) EXPECT_NE(slip(bad), "");
   std::string two = "2";
   EXPECT_EQ(slip(two), "2, must be -1 to 1");
+  std::string one = "1";
+  EXPECT_EQ(within(1e-12, 1.0 - 1e-12)(one), "1, must be 1e-12 to 0.999999999999");
 }
 
 // Whatever the option, and also where a test of its range lets NaN pass.
@@ -34,6 +38,49 @@ TEST(NumberCheck, NoOptionTakesAnImpossibleNumber) {
   for (const char* good : {"0.10", "0xfile", "00.tif", "0", "0.5", "-3", "18446744073709551615", "x.tif",
                            "nano.tif", "./nan", "3d,4d", "1e-9"})
     EXPECT_EQ(said(good), "") << good;
+}
+
+// Property: `--risk-weight ""` was 0 to the parser, and `--map ""` as if no map had been named.
+TEST(NumberCheck, NoOptionOfAnySubcommandTakesAnEmptyValue) {
+  using Words = std::vector<std::string>;
+  Context context;
+  const auto declare = [&context](CLI::App& app) {
+    app.add_option("--seed", context.seed);
+    addCommands(app, context);
+    refuseEmptyValues(app);
+  };
+  const auto said = [&](const std::string& command, const Words& words) -> std::string {
+    CLI::App app("talus");
+    app.fallthrough();
+    declare(app);
+    std::vector<std::string> reversed(words.rbegin(), words.rend());
+    reversed.push_back(command);
+    try {
+      app.parse(reversed);
+    } catch (const InputError& e) {
+      return e.what();
+    } catch (const CLI::ParseError& e) {
+      return std::string("no InputError: ") + e.what();
+    }
+    return "";
+  };
+  CLI::App app("talus");
+  declare(app);
+  std::size_t asked = 0;
+  for (const CLI::App* command : app.get_subcommands({}))
+    for (const CLI::Option* option : command->get_options()) {
+      if (option->get_items_expected_max() == 0) continue;
+      ++asked;
+      const bool named = !option->get_lnames().empty();
+      const std::string name = named ? "--" + option->get_lnames().front() : option->get_name(true);
+      for (const char* empty : {"", "\t "})
+        EXPECT_THAT(said(command->get_name(), named ? Words{name, empty} : Words{empty}),
+                    testing::HasSubstr(": its value is empty; "))
+            << command->get_name() << " " << name;
+    }
+  EXPECT_GT(asked, 200U);
+  EXPECT_EQ(said("info", {"--seed", "", "x.tif"}),
+            "--seed: its value is empty; leave the option out or give a value");
 }
 
 TEST(NumberCheck, EndsThatDoNotBind) {

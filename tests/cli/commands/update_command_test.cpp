@@ -251,7 +251,7 @@ TEST(BadInput, Updates) {
                     {{"update", "map.ot", "empty.csv", "--journal", "new.db", "-o", "m.ot"}, 2, "empty"},
                     {{"update", "flat.asc", "off.csv", "--journal", "new.db", "-o", "m.ot"}, 2, "flat"},
                     {{"update", "map.ot", "off.csv", "-o", "no/m.ot"}, 2, "no"},
-                    {{"update", "map.ot", "t.csv", "-o", "m.ot", "--journal", ""}, 2, "the name is empty"},
+                    {{"update", "map.ot", "t.csv", "-o", "m.ot", "--journal", ""}, 2, "its value is empty"},
                     {{"update", "map.ot", "t.csv", "-o", "m.ot", "--journal", ":memory:"}, 2, "name a file"},
                     {{"update", "map.ot", "t.csv", "-o", "m.ot", "--journal", "file:z.db?mode=memory"},
                      2,
