@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <talus/maps/place.hpp>
+#include <talus/plausible.hpp>
 #include <talus/talus.hpp>
 
 namespace talus::maps {
@@ -37,6 +38,7 @@ Coordinate parseCoordinate(std::string_view word, std::string_view whole) {
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), out.value);
   if (error != std::errc{} || end != word.data() + word.size() || !std::isfinite(out.value))
     refuse(whole, "'" + std::string(word) + "' is not a number");
+  if (!isDecimal(word)) refuse(whole, "'" + std::string(word) + "' is not decimal, without leading zeros");
   return out;
 }
 

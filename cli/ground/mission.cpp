@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <talus/cli/app/number_check.hpp>
 #include <talus/cli/ground/mission.hpp>
 #include <talus/terramech/io/yaml_fields.hpp>
 
@@ -19,8 +20,17 @@ std::string resolved(const std::string& path, const std::filesystem::path& folde
 }
 
 void take(std::string& option, const YamlFields& fields, const std::string& name) {
-  if (fields.has(name) && fields.word(name).empty()) fields.refuse(name, name + " is empty", "leave it out");
-  if (option.empty()) option = fields.word(name, "");
+  const std::string said = fields.word(name, "");
+  if (option.empty()) option = said;
+}
+
+// A number that its option takes, too.
+double ranged(const YamlFields& fields, const std::string& name, const CLI::Validator& range) {
+  const double value = fields.number(name);
+  std::string text = fmt::format("{}", value);
+  if (const std::string fault = range(text); !fault.empty())
+    fields.refuse(name, name + " = " + fault, "correct the value");
+  return value;
 }
 
 // "x,y" from a text or from a list of two numbers.
@@ -112,14 +122,12 @@ void readMission(PlanOptions& options) {
   if (options.via.empty()) options.via = places(fields, "via");
   for (const auto& [heading, key] : {std::pair{&options.drive.start_heading_rad, "start_heading_rad"},
                                      std::pair{&options.drive.goal_heading_rad, "goal_heading_rad"}})
-    if (!*heading && fields.has(key)) *heading = fields.number(key);
+    if (!*heading && fields.has(key)) *heading = ranged(fields, key, finite());
   if (!fields.flag("reverse", true)) options.drive.no_reverse = true;
-  if (options.tolerance_m == 0.0) options.tolerance_m = fields.number("tolerance_m", 0.0);
-  if (options.time_limit_s == 0.0 && fields.has("time_s")) {
-    options.time_limit_s = fields.number("time_s");
-    if (!(options.time_limit_s > 0.0))
-      fields.refuse("time_s", "time_s must be > 0", "leave it out for no limit");
-  }
+  if (options.tolerance_m == 0.0 && fields.has("tolerance_m"))
+    options.tolerance_m = ranged(fields, "tolerance_m", notNegative());
+  if (options.time_limit_s == 0.0 && fields.has("time_s"))
+    options.time_limit_s = ranged(fields, "time_s", positive());
   take(options.output, fields, "output");
 }
 

@@ -72,6 +72,38 @@ std::string kindOf(const YAML::Node& node) {
   return node.IsNull() ? "empty" : "'" + shortened(node.Scalar()) + "'";
 }
 
+/// Length of the UTF-8 letter that a text begins with; 0 where it begins with none, or with NUL.
+std::size_t letterBytes(std::string_view text) {
+  const auto byte = [text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const unsigned char first = byte(0);
+  if (first < 0x80) return first == 0 ? 0 : 1;
+  const std::size_t bytes = first < 0xC2 ? 0 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : first < 0xF5 ? 4 : 0;
+  if (bytes == 0 || text.size() < bytes) return 0;
+  for (std::size_t i = 1; i < bytes; ++i)
+    if ((byte(i) & 0xC0U) != 0x80) return 0;
+  const bool overlong = (first == 0xE0 && byte(1) < 0xA0) || (first == 0xF0 && byte(1) < 0x90);
+  const bool no_letter = (first == 0xED && byte(1) > 0x9F) || (first == 0xF4 && byte(1) > 0x8F);
+  return overlong || no_letter ? 0 : bytes;
+}
+
+bool isText(std::string_view text) {
+  while (!text.empty()) {
+    const std::size_t bytes = letterBytes(text);
+    if (bytes == 0) return false;
+    text.remove_prefix(bytes);
+  }
+  return true;
+}
+
+/// A word of the file; one that is empty or no text has no meaning anywhere.
+std::string wordOf(const YAML::Node& node, const std::string& where, const std::string& name) {
+  const std::string& word = node.Scalar();
+  if (!isText(word)) fail(where, name + " holds bytes that are no UTF-8 text", "save it as UTF-8");
+  if (word.find_first_not_of(" \t\r\n") == std::string::npos)
+    fail(where, name + " is empty", "leave it out or give a value");
+  return word;
+}
+
 /// Whether a marker parts what it holds: no content, quoted or not, has one at the beginning of a line.
 bool holdsMoreDocuments(const std::string& yaml) {
   std::istringstream lines(yaml);
@@ -105,6 +137,7 @@ YamlFields YamlFields::of(const YAML::Node& node, const std::string& origin, con
   std::set<std::string> seen;
   for (const auto& entry : node) {
     if (!entry.first.IsScalar()) fail(where, "a name is " + kindOf(entry.first), "write `name: value` lines");
+    wordOf(entry.first, state->where(entry.first.Mark().line), "a name");
     if (!seen.insert(entry.first.Scalar()).second)
       fail(state->where(entry.first.Mark().line), shortened(entry.first.Scalar()) + " appears twice",
            "remove one");
@@ -130,6 +163,11 @@ YamlFields YamlFields::file(const std::string& path) {
 }
 
 YamlFields YamlFields::text(const std::string& yaml, const std::string& origin) {
+  if (const std::size_t nul = yaml.find('\0'); nul != std::string::npos)
+    fail(origin + ":" +
+             std::to_string(1 +
+                            std::count(yaml.begin(), yaml.begin() + static_cast<std::ptrdiff_t>(nul), '\n')),
+         "holds a NUL byte", "save it as UTF-8");
   try {
     if (holdsMoreDocuments(yaml)) fail(origin, "holds more than one YAML document", "keep one of them");
     const YAML::Node root = YAML::Load(yaml);
@@ -167,6 +205,9 @@ double toNumber(const State& state, const std::string& name, const YAML::Node& v
     fail(where, name + " = '" + shortened(value.Scalar()) + "', must be a number", "write it without a unit");
   if (!std::isfinite(number))
     fail(where, name + " = " + value.Scalar() + ", must be finite", "state a number");
+  if (!isDecimal(text))
+    fail(where, name + " = " + value.Scalar() + ", must be decimal, without leading zeros",
+         "to YAML 1.1 it is octal");
   if (!plausible(number * factor))
     fail(where, name + " = " + value.Scalar() + ", " + kPlausible, "check its unit");
   return number * factor;
@@ -247,7 +288,7 @@ std::string YamlFields::word(const std::string& name) const {
   const auto found = findValue(*state_, name);
   if (!found) refuse("", "lacks " + name, "add it");
   if (!found->value.IsScalar()) refuse(name, name + " is " + kindOf(found->value), "write one word");
-  return found->value.Scalar();
+  return wordOf(found->value, where(name), name);
 }
 
 std::string YamlFields::word(const std::string& name, const std::string& fallback) const {
@@ -266,7 +307,7 @@ std::vector<double> YamlFields::numbers(const std::string& name) const {
 std::vector<std::string> YamlFields::texts(const std::string& name) const {
   const auto found = findValue(*state_, name);
   if (!found) return {};
-  if (found->value.IsScalar()) return {found->value.Scalar()};
+  if (found->value.IsScalar()) return {wordOf(found->value, where(name), name)};
   const auto asText = [&](const YAML::Node& item) {
     std::string text = item.IsScalar() ? item.Scalar() : "";
     for (std::size_t i = 0; item.IsSequence() && i < item.size(); ++i)

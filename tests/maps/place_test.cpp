@@ -32,8 +32,8 @@ TEST(Place, MetresOrDegrees) {
 }
 
 TEST(Place, BadTextIsQuoted) {
-  for (const char* text :
-       {"", "1", "1,2,3", "a,b", "1,", "nan,1", "1d,2", "91d,0d", "0d,361d", "1,2x", "inf,0", "1;2"}) {
+  for (const char* text : {"", "1", "1,2,3", "a,b", "1,", "nan,1", "1d,2", "91d,0d", "0d,361d", "1,2x",
+                           "inf,0", "1;2", "010,1", "1d,-007d"}) {
     const std::string line = refusal([&] { parsePlace(text); });
     EXPECT_THAT(line, testing::AllOf(testing::StartsWith("'"), HasSubstr(text)));
     EXPECT_THAT(line, HasSubstr("write x,y in map metres"));

@@ -94,6 +94,16 @@ TEST(Mission, MistakesNameTheFileAndTheField) {
               ThrowsMessage<InputError>(HasSubstr("bad.yaml:2")));
   EXPECT_THAT(refused("maps: {dem: a.tif}\noutput: \"\"\n"),
               ThrowsMessage<InputError>(HasSubstr("output is empty")));
+  for (const char* number : {"tolerance_m: -1", "tolerance_m: -1e14", "tolerance_m: ''",
+                             "tolerance_m:", "time_s: 0", "tolerance_m: 010", "rover:", "goal: ''",
+                             "goal:", "start: ' '", "planner: ''", "reverse:", "thresholds:"})
+    EXPECT_THAT(refused(std::string("maps: {dem: a.tif}\n") + number + "\n"),
+                ThrowsMessage<InputError>(HasSubstr("bad.yaml:")))
+        << number;
+  EXPECT_THAT(refused("maps: {dem: a.tif}\ntolerance_m: -1\n"),
+              ThrowsMessage<InputError>(HasSubstr("tolerance_m = -1, must be finite, >= 0")));
+  EXPECT_THAT(refused("maps: {dem: a.tif, keep_out: ''}\n"),
+              ThrowsMessage<InputError>(HasSubstr("keep_out is empty")));
   EXPECT_THAT(refused("maps: {dem: a.tif}\n---\nmaps: {dem: b.tif}\n"),
               ThrowsMessage<InputError>(HasSubstr("more than one YAML document")));
   EXPECT_THAT(refused("rover: mer\n"), ThrowsMessage<InputError>(HasSubstr("maps")));

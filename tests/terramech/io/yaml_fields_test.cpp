@@ -66,6 +66,40 @@ TEST(YamlFields, ErrorsHaveFileAndLine) {
   EXPECT_THAT([] { YamlFields::file("/tmp"); }, ThrowsMessage<InputError>(HasSubstr("is a directory")));
 }
 
+// Property: 017 is 15 to YAML 1.1 and 17 to YAML 1.2; it stands for neither here.
+TEST(YamlFields, NumbersAreDecimal) {
+  for (const char* octal : {"017", "-017", "+00", "0x10", "0o17"})
+    EXPECT_THAT([&] { of(std::string("mass_kg: ") + octal).number("mass_kg"); },
+                ThrowsMessage<InputError>(HasSubstr("f.yaml:1: mass_kg = ")))
+        << octal;
+  EXPECT_THAT([] { of("mass_kg: 017").number("mass_kg"); },
+              ThrowsMessage<InputError>(HasSubstr("mass_kg = 017, must be decimal, without leading zeros")));
+  for (const auto& [text, value] : {std::pair{"0", 0.0}, {"-0.5", -0.5}, {"0e0", 0.0}, {"10", 10.0}})
+    EXPECT_EQ(of(std::string("a: ") + text).number("a"), value) << text;
+}
+
+// Property: a word is text of one letter or more; NUL and bytes that are no UTF-8 would break what is written of it.
+TEST(YamlFields, WordsAreText) {
+  for (const char* empty : {"a: ''", "a: ' '", "a: \"\\t\""})
+    EXPECT_THAT([&] { of(empty).word("a"); },
+                ThrowsMessage<InputError>("f.yaml:1: a is empty; leave it out or give a value"))
+        << empty;
+  EXPECT_THAT([] { of("a: ''").texts("a"); }, ThrowsMessage<InputError>(HasSubstr("a is empty")));
+  EXPECT_THAT([] { of("a: ~").word("a"); }, ThrowsMessage<InputError>(HasSubstr("a is empty")));
+  EXPECT_THAT([] { of("a: \"m\\0r\"").word("a"); }, ThrowsMessage<InputError>(HasSubstr("no UTF-8 text")));
+  EXPECT_THROW(of("\"m\\0r\": 1"), InputError);
+  EXPECT_THAT([] { of(std::string("b: 1\na: m\0r", 11)); },
+              ThrowsMessage<InputError>(HasSubstr("f.yaml:2: holds a NUL")));
+  // Closed form: RFC 3629, section 4: the first and last letters of each length, and what lies outside of them.
+  for (const char* letter :
+       {"\xC2\x80", "\xE0\xA0\x80", "\xED\x9F\xBF", "\xF0\x90\x80\x80", "\xF4\x8F\xBF\xBF"})
+    EXPECT_EQ(of(std::string("a: x") + letter).word("a"), std::string("x") + letter);
+  for (const char* none : {"\xFF", "\x80", "\xC3", "\xC0\xAF", "\xE0\x9F\xBF", "\xED\xA0\x80",
+                           "\xF0\x8F\xBF\xBF", "\xF4\x90\x80\x80"})
+    EXPECT_THAT([&] { of(std::string("a: x") + none + "x").word("a"); },
+                ThrowsMessage<InputError>(HasSubstr("a holds bytes that are no UTF-8 text")));
+}
+
 // Property: one document is read with its markers, of several none is passed over.
 TEST(YamlFields, HoldsOneDocument) {
   for (const char* one : {"---\na: 1\n", "# soil\n%YAML 1.2\n--- # begins\na: 1\n...\n# end\n",
