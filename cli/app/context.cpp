@@ -50,8 +50,12 @@ void Context::warn(std::string_view text) const {
   if (!quiet) printError(fmt::format("talus: warning: {}\n", oneLine(text)));
 }
 
+std::string jsonText(const nlohmann::ordered_json& value, int indent) {
+  return value.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
 void printJson(const nlohmann::ordered_json& value) {
-  print(value.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+  print(jsonText(value, 2) + "\n");
 }
 
 void print(std::string_view text) {

@@ -50,6 +50,10 @@ struct Context {
   void warn(std::string_view text) const;
 };
 
+/// JSON as text, indented by so many blanks or on one line; a NaN or an infinity becomes null, and each byte that is no
+/// UTF-8, as file names may hold, U+FFFD.
+std::string jsonText(const nlohmann::ordered_json& value, int indent = -1);
+
 /// Prints a result as indented JSON on stdout; a NaN or an infinity becomes null.
 void printJson(const nlohmann::ordered_json& value);
 

@@ -137,7 +137,7 @@ void writeFiles(const PlanOptions& options, const Ground& ground, const Route& r
   if (!options.output.empty()) {
     const auto document =
         routeGeoJson(route, ground.map.elevation(), {.files = ground.files, .seed = context.seed});
-    writeFile(options.output, document.dump() + "\n");
+    writeFile(options.output, jsonText(document) + "\n");
   }
   if (options.html.empty() && options.png.empty()) return;
   const std::string name = std::filesystem::path(ground.map.elevation().source).filename().string();
@@ -235,7 +235,7 @@ int refuseOwn(const PlanOptions& options, const Planned& planned, const Route& r
   const std::string file = options.output.empty() ? "refused.geojson" : options.output + ".refused.geojson";
   const auto document = routeGeoJson(route, planned.ground.map.elevation(),
                                      {.files = planned.ground.files, .seed = context.seed});
-  writeFile(file, document.dump() + "\n");
+  writeFile(file, jsonText(document) + "\n");
   Route none;
   none.status = RouteStatus::NoneFound;
   none.summary.planner = route.summary.planner;

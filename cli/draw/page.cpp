@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <talus/cli/app/context.hpp>
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/draw/canvas.hpp>
 #include <talus/cli/draw/html_report.hpp>
@@ -146,7 +147,7 @@ void replaceAll(std::string& text, const std::string& from, const std::string& t
 /// JSON that may stand inside a script element: "<" occurs in strings only, and what begins with it, such as "</script"
 /// or "<!--<script", would change how the page is read.
 std::string embedded(const ordered_json& data) {
-  std::string text = data.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+  std::string text = jsonText(data);
   replaceAll(text, "<", "\\u003c");
   return text;
 }

@@ -1,6 +1,7 @@
 #include <nlohmann/json.hpp>
 
 #include <talus/cli/app/campaign.hpp>
+#include <talus/cli/app/context.hpp>
 #include <talus/cli/route/drive_report.hpp>
 #include <talus/cli/route/drive_worlds.hpp>
 
@@ -10,7 +11,7 @@ DrivenWorlds drivenWorlds(const WorldCount& count, const World& world, const Cam
                           const ProgressMonitor& watch) {
   const auto outcomes = campaign.run(
       count.beliefs * count.worlds,
-      [&](std::size_t job) { return asJson(world(job / count.worlds, job % count.worlds)).dump(); }, watch,
+      [&](std::size_t job) { return jsonText(asJson(world(job / count.worlds, job % count.worlds))); }, watch,
       count.workers);
   DrivenWorlds out{.results = std::vector<std::vector<planner::WorldResult>>(count.beliefs), .failures = {}};
   for (std::size_t i = 0; i < count.worlds && !outcomes.empty(); ++i) {

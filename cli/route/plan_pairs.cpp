@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include <talus/cli/app/campaign.hpp>
+#include <talus/cli/app/context.hpp>
 #include <talus/cli/route/plan_pairs.hpp>
 #include <talus/cli/route/route_json.hpp>
 #include <talus/planner/check/annotation.hpp>
@@ -21,6 +22,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::array kColumns{"start_x_m", "start_y_m",         "goal_x_m",
                               "goal_y_m",  "start_heading_rad", "goal_heading_rad"};
 constexpr std::size_t kNeeded = 4;
+constexpr double kGreatestPlace_m = 1e9;  // as in telemetry; far beyond any map, and any heading
 
 // Position of each column in the file; nothing for a heading that is not there.
 std::array<std::optional<std::size_t>, kColumns.size()> columnsOf(const std::string& path,
@@ -55,7 +57,7 @@ Json planned(const PlacePair& pair, planner::Problem problem, planner::NamedPlan
 std::string cell(const Json& line, const char* key) {
   const auto value = line.find(key);
   if (value == line.end() || value->is_null()) return {};
-  return value->is_string() ? terramech::csvField(value->get<std::string>()) : value->dump();
+  return value->is_string() ? terramech::csvField(value->get<std::string>()) : jsonText(*value);
 }
 
 }  // namespace
@@ -76,6 +78,10 @@ std::vector<PlacePair> readPairs(const std::string& path) {
       if (!terramech::parseNumber(field, value) || !std::isfinite(value))
         throw InputError(
             {where, fmt::format("{} = '{}' is not a finite number", kColumns[k], field), "fix the line"});
+      if (std::abs(value) > kGreatestPlace_m)
+        throw InputError(
+            {where, fmt::format("{} = {:g}, must be within {:g} of 0", kColumns[k], value, kGreatestPlace_m),
+             "give metres and radians"});
       values[k] = value;
     }
     pairs.push_back({{*values[0], *values[1]}, {*values[2], *values[3]}, values[4], values[5]});
@@ -90,7 +96,7 @@ std::vector<Json> planPairs(const std::vector<PlacePair>& pairs, const planner::
   planner::Problem quiet = problem;
   quiet.watch.progress = {};
   const auto outcomes = campaign.run(
-      pairs.size(), [&](std::size_t i) { return planned(pairs[i], quiet, named).dump(); }, problem.watch);
+      pairs.size(), [&](std::size_t i) { return jsonText(planned(pairs[i], quiet, named)); }, problem.watch);
   std::vector<Json> lines;
   for (std::size_t i = 0; i < outcomes.size(); ++i) {
     Json line{{"pair", i + 1}};

@@ -39,6 +39,12 @@ TEST(Context, PrintedJsonParses) {
   EXPECT_EQ(printed.back(), '\n');
 }
 
+// Closed form: the byte that begins no letter becomes U+FFFD, in routes and pages as on stdout.
+TEST(Context, JsonTextHoldsNoByteThatIsNoText) {
+  EXPECT_EQ(jsonText({{"file", "d\xff.tif"}}), "{\"file\":\"d\xEF\xBF\xBD.tif\"}");
+  EXPECT_EQ(jsonText({{"file", "\xc3\xa9"}}, 1), "{\n \"file\": \"\xc3\xa9\"\n}");
+}
+
 TEST(Context, WorkersAreAsManyAsAllowedAndAtLeastOne) {
   Context context;
   EXPECT_GE(context.workers(), 1);

@@ -96,6 +96,7 @@ TEST(PlanPairs, MistakesAreOneLine) {
            {plan(header + "1,1,9\n"), ".csv:2"},
            {plan(header + "1,1,9,x\n"), "goal_y_m = 'x'"},
            {plan(header + "1,1,9,inf\n"), "goal_y_m = 'inf'"},
+           {plan(header + "1,1,9,1e300\n"), "goal_y_m = 1e+300, must be within 1e+09 of 0"},
            {plan(header + "1,1,9,9\n", {"--start", "5,5"}), "cannot be combined with"},
            {plan(header + "1,1,9,9\n", {"--planner", "PRM"}), "refused"}}) {
     expectRefused(files, {{words, 2, says}});
