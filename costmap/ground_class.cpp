@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <sstream>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -40,8 +42,14 @@ GroundClass groundClass(int number, const terramech::SoilPrior& prior, const ter
     Soil more = prior.mean, less = prior.mean;
     more.*value += kStep * std;
     less.*value = std::max(less.*value - kStep * std, 1e-3 * prior.mean.*value);
-    const double slope = (pullOf(more, rover) - pullOf(less, rover)) / (more.*value - less.*value);
-    variance += slope * std * slope * std;
+    try {
+      const double slope = (pullOf(more, rover) - pullOf(less, rover)) / (more.*value - less.*value);
+      variance += slope * std * slope * std;
+    } catch (const std::invalid_argument& e) {
+      std::ostringstream text;
+      text << e.what() << "; it is the mean " << prior.mean.*value << " with half of its std " << std;
+      throw std::invalid_argument(text.str());
+    }
   }
   if (variance > 0.0) ground.mean_std = std::sqrt(variance);
   return ground;

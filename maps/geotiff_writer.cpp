@@ -50,11 +50,20 @@ CPLErr writeBand(GDALRasterBand& band, const Raster<T>& values, GDALDataType typ
                        static_cast<GSpacing>(sizeof(T)), line, nullptr);
 }
 
+// Without its database PROJ knows no CRS to write, whatever the folder.
+[[noreturn]] void fail(const OutputFile& file, const std::string& path, const GdalErrors& errors) {
+  const std::string reason = errors.last();
+  if (reason.starts_with("PROJ"))
+    throw InputError({path, "cannot be written: " + reason,
+                      "PROJ lacks its data: correct or unset PROJ_LIB and PROJ_DATA"});
+  file.fail(reason);
+}
+
 // Closing flushes: only then is it known whether all of it reached the disk.
-void finish(Dataset dataset, OutputFile& file, const GdalErrors& errors) {
+void finish(Dataset dataset, OutputFile& file, const std::string& path, const GdalErrors& errors) {
   dataset->FlushCache();
   dataset.reset();
-  if (errors.any()) file.fail(errors.last());
+  if (errors.any()) fail(file, path, errors);
   file.commit();
 }
 
@@ -82,7 +91,7 @@ void writeGeoTiff(const GeoTiff& file, const std::vector<Layer>& layers) {
     band.SetNoDataValue(std::numeric_limits<double>::quiet_NaN());
     if (writeBand(band, layers[i].values, GDT_Float32) != CE_None) output.fail(errors.last());
   }
-  finish(std::move(dataset), output, errors);
+  finish(std::move(dataset), output, file.path, errors);
 }
 
 void writeGeoTiff(const GeoTiff& file, const std::string& name, const Raster<std::uint8_t>& values,
@@ -97,7 +106,7 @@ void writeGeoTiff(const GeoTiff& file, const std::string& name, const Raster<std
   band.SetDescription(name.c_str());
   if (nodata) band.SetNoDataValue(*nodata);
   if (writeBand(band, values, GDT_Byte) != CE_None) output.fail(errors.last());
-  finish(std::move(dataset), output, errors);
+  finish(std::move(dataset), output, file.path, errors);
 }
 
 }  // namespace talus::maps

@@ -30,7 +30,8 @@ void checkFolder(const fs::path& path) {
   if (!fs::is_directory(folder, error))
     refuse(path, "folder " + folder.string() + " does not exist", "make it first");
   if (::access(folder.c_str(), W_OK) != 0)
-    refuse(path, "cannot write into " + folder.string() + ": " + std::strerror(errno), "");
+    refuse(path, "cannot write into " + folder.string() + ": " + std::strerror(errno),
+           "check its permissions, or name another folder");
 }
 
 bool isGone(std::string_view process) noexcept {

@@ -114,6 +114,19 @@ void refuseWholeBodies(const Pixels& p, const ReadOptions& options, const std::s
                     "read a part with --window LATd,LONd,LATd,LONd or project it with gdalwarp"});
 }
 
+// Half a pixel beyond a pole is the edge of a raster whose pixels lie on it.
+void refuseBeyondBody(const Pixels& p, const std::string& path) {
+  const double pixel = std::max(std::hypot(p.c[1], p.c[4]), std::hypot(p.c[2], p.c[5]));
+  for (const double column : {0.0, static_cast<double>(p.width)})
+    for (const double row : {0.0, static_cast<double>(p.height)})
+      if (const Point corner = p.at(column, row);
+          std::abs(corner.x_m) > 360.0 + pixel || std::abs(corner.y_m) > 90.0 + pixel)
+        throw InputError({path,
+                          "has a corner at longitude " + number(corner.x_m) + ", latitude " +
+                              number(corner.y_m) + ", must be within 360 and 90 degrees",
+                          "repair it with gdal_edit.py -a_ullr or -a_srs"});
+}
+
 struct Resampling {
   OGRSpatialReference target;
   double resolution_m = 0.0;
@@ -140,6 +153,7 @@ FramedRaster resampled(Dataset file, int band, const Resampling& to, const ReadO
 FramedRaster geographic(Dataset file, int band, const OGRSpatialReference& crs, const ReadOptions& options,
                         const std::string& path, std::vector<std::string>& notes) {
   const Pixels p(*file);
+  refuseBeyondBody(p, path);
   refuseWholeBodies(p, options, path);
   const GeoPoint centre = geographicCentre(p, options);
   const double finest_m = geographicResolution(p, crs.GetSemiMajor(), centre.latitude_rad);

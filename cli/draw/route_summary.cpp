@@ -173,7 +173,7 @@ Facts summaryOf(const Route& route) {
   if (!(s.length_m > 0.0) && s.drive && s.drive->turns_in_place > 0)
     return {{"route", fmt::format("turn in place by {:.0f} deg, {}", s.drive->turned_rad / kDegree,
                                   energyText(s.energy_J))}};
-  if (!(s.length_m > 0.0)) return {{"route", "empty: the start is at the goal"}};
+  if (!(s.length_m > 0.0)) return {{"route", "empty: the start is at the goal, or within its tolerance"}};
   const double risk = route.vertices.back().immobilisation_risk;
   Facts facts{{"route", statusText(route)},
               {"length", lengthText(s.length_m) + straightText(route)},

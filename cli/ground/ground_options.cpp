@@ -3,6 +3,8 @@
 #include <cmath>
 #include <fstream>
 #include <optional>
+#include <stdexcept>
+#include <string_view>
 #include <tuple>
 #include <utility>
 
@@ -131,6 +133,20 @@ std::vector<costmap::GroundClass> groundClasses(const GroundOptions& options, co
     classes.push_back(costmap::groundClass(number, prior, rover));
   }
   return classes;
+}
+
+// `make()`; a number that a rover or a soil may have, but not to drive on slopes, is told with the file that states it.
+template <typename Make>
+auto blamingFiles(const GroundOptions& options, Make make) {
+  try {
+    return make();
+  } catch (const std::invalid_argument& error) {
+    const std::string_view text = error.what();
+    const bool one_soil = text.starts_with("soil ") && options.soils.empty();
+    const std::string file = text.starts_with("rover ") ? options.rover : one_soil ? options.soil : "";
+    if (!std::ifstream(file).good()) throw;
+    throw InputError({file, error.what(), "correct the value"});
+  }
 }
 
 std::vector<std::string> filesOf(const GroundOptions& options) {
@@ -319,7 +335,7 @@ Ground readGround(const GroundOptions& options, const Context& context) {
   warnOfAssumptions(options, assumed, context);
   costmap::GroundModel::Parts parts;
   parts.rover = terramech::loadRover(options.rover.empty() ? assumed.rover : options.rover);
-  parts.classes = groundClasses(options, assumed, parts.rover);
+  parts.classes = blamingFiles(options, [&] { return groundClasses(options, assumed, parts.rover); });
   parts.policy = options.policy;
   Layers layers = readLayers(options.layers, dem, weakestLast(parts.classes, parts.rover));
   for (const std::string& note : layers.notes) context.warn(note);
@@ -342,9 +358,11 @@ Ground readGround(const GroundOptions& options, const Context& context) {
                              costmap::Floors(std::move(floors), cells),
                              std::move(layers.costs)};
   warnOfUnseen(content.costs, options.policy, context);
-  costmap::TraversabilityMap map(std::move(content), std::make_shared<costmap::GroundModel>(std::move(parts)),
-                                 {.footprint_radius_m = options.footprint_m, .threads = context.workers()},
-                                 context.watch("costmap"));
+  costmap::TraversabilityMap map = blamingFiles(options, [&] {
+    return costmap::TraversabilityMap(
+        std::move(content), std::make_shared<costmap::GroundModel>(std::move(parts)),
+        {.footprint_radius_m = options.footprint_m, .threads = context.workers()}, context.watch("costmap"));
+  });
   return {std::move(map), filesOf(options), load_s, since_s(begin)};
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <boost/dll/shared_library.hpp>
+#include <dlfcn.h>
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -70,16 +71,29 @@ void silenceStreams() {
   ::dup2(nowhere, STDERR_FILENO);
 }
 
+namespace {
+
+// Boost's own word for whatever hinders the dynamic linker is "Bad file descriptor".
+std::string linkerReason(const std::string& path) {
+  const char* said = ::dlerror();
+  std::string reason = said != nullptr ? said : "it is none";
+  if (reason.starts_with(path + ": ")) reason.erase(0, path.size() + 2);
+  return reason;
+}
+
+}  // namespace
+
 boost::dll::shared_library openedLibrary(const std::string& path) {
   boost::dll::fs::error_code error;
   if (!boost::dll::fs::is_regular_file(path, error))
     throw InputError({path, "no such file", "name a plugin's shared library (.so)"});
   boost::dll::shared_library library;
   // A path without a folder would be searched for in the system's library folders instead.
-  library.load(boost::dll::fs::absolute(path), error);
+  const boost::dll::fs::path absolute = boost::dll::fs::absolute(path);
+  library.load(absolute, error);
   if (error || !library.is_loaded())
-    throw InputError(
-        {path, "cannot be loaded as a shared library: " + error.message(), "rebuild it for this machine"});
+    throw InputError({path, "cannot be loaded as a shared library: " + linkerReason(absolute.string()),
+                      "name a plugin (.so) that is built for this machine"});
   return library;
 }
 

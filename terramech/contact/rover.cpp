@@ -35,7 +35,7 @@ void validate(const Rover& rover) {
   check.above("max_speed_mps", rover.max_speed_mps, 0.0);
   check.atLeast("hotel_power_W", rover.hotel_power_W, 0.0);
   // Beyond these it is no vehicle on wheels, and its footprint no number of cells.
-  check.within("mass_kg", rover.mass_kg, {1e-3, 1e6});
+  check.within("mass_kg", rover.mass_kg, {0.1, 1e6});
   check.within("gravity_m_s2", rover.gravity_m_s2, {1e-4, 1e3});
   check.within("wheels.count", rover.wheel_count, {2.0, 100.0});
   check.within("wheels.radius_m", rover.wheel.radius_m, {1e-3, 10.0});
@@ -44,7 +44,7 @@ void validate(const Rover& rover) {
   check.within("track_m", rover.track_m, {1e-3, 100.0});
   check.zeroOrWithin("turning_radius_m", rover.turning_radius_m, {kSmallestTurn_m, kLargestTurn_m});
   check.within("max_torque_Nm", rover.max_torque_Nm, {0.0, 1e6});
-  check.within("max_speed_mps", rover.max_speed_mps, {0.0, 100.0});
+  check.within("max_speed_mps", rover.max_speed_mps, {1e-4, 100.0});
   check.within("hotel_power_W", rover.hotel_power_W, {0.0, 1e6});
   // A belly higher than the rover is long and wide is a slip of units: steps and rocks would vanish under it.
   check.within("clearance_m", rover.clearance_m, {1e-3, std::max(rover.wheelbase_m, rover.track_m)});

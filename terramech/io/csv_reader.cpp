@@ -96,9 +96,9 @@ void CsvReader::Parser::feed() {
   const auto count = static_cast<std::size_t>(file.gcount());
   if (read == 0 && std::memchr(buffer.data(), 0, count))
     refuse("is not text", "save it as UTF-8 text with commas");
-  const bool byte_order_mark =
-      read == 0 && std::string_view(buffer.data(), count).starts_with("\xEF\xBB\xBF");
-  const std::size_t skip = byte_order_mark ? 3 : 0;
+  std::size_t skip = 0;  // byte order marks: one that is left would belong to the first column's name
+  while (read == 0 && std::string_view(buffer.data() + skip, count - skip).starts_with("\xEF\xBB\xBF"))
+    skip += 3;
   read += count;
   const auto field = [](void* text, std::size_t length, void* parser) {
     static_cast<Parser*>(parser)->current.fields.emplace_back(static_cast<const char*>(text), length);

@@ -16,8 +16,8 @@ struct CsvRow {
   std::string fault;  ///< why the record cannot be used, empty when it can: "has 3 fields, the header 7"
 };
 
-/// Streams a CSV file with a header row, through libcsv, 64 KiB at a time. Skips blank lines and a UTF-8 byte
-/// order mark, takes LF, CRLF and CR. Not copyable; use from one thread.
+/// Streams a CSV file with a header row, through libcsv, 64 KiB at a time. Skips blank lines and UTF-8 byte
+/// order marks, takes LF, CRLF and CR. Not copyable; use from one thread.
 class CsvReader {
  public:
   /// Throws InputError when the file cannot be read, is not text, has no header, or a name stands twice in

@@ -71,7 +71,7 @@ std::optional<double> positive(const YamlFields& f, const char* name) {
   if (!f.has(name)) return {};
   const double value = f.number(name);
   if (!(value >= 0.0) || !std::isfinite(value))
-    f.refuse(name, std::string(name) + " is negative, must be a standard deviation >= 0", "correct it");
+    f.refuse(name, std::string(name) + " must be a standard deviation >= 0", "correct the value");
   return value;
 }
 
@@ -124,15 +124,20 @@ Effect readEffect(const YamlFields& f) {
     std::vector<std::string> names;
     for (const EffectForm& known : effectLibrary()) names.emplace_back(known.name);
     const std::string nearest = nearestName(effect.name, names);
+    std::string all;
+    for (const std::string& known : names) all += (all.empty() ? "" : ", ") + known;
     f.refuse("name", "no effect '" + effect.name + "'",
-             nearest.empty() ? "" : "did you mean " + nearest + "?");
+             nearest.empty() ? "name one of " + all : "did you mean " + nearest + "?");
   }
   effect.covariate = form ? f.word("covariate", form->covariate) : f.word("covariate");
   effect.channel = form && !f.has("channel") ? form->channel : readChannel(f);
   const std::size_t wanted = form ? form->parameters.size() : effect.knots.size();
   if (effect.parameters.size() != wanted || wanted == 0)
     if (!form || wanted != effect.parameters.size())
-      f.refuse("parameters", "needs " + std::to_string(wanted) + " numbers", "");
+      f.refuse("parameters",
+               "effect '" + effect.name + "' has " + std::to_string(effect.parameters.size()) +
+                   " parameters, must have " + std::to_string(wanted),
+               "write parameters: [..], one number each");
   try {
     for (std::size_t k = 0; form && k < form->parameters.size(); ++k)
       RangeCheck{effect.name}.within(form->parameters[k].name, effect.parameters[k],
@@ -141,7 +146,8 @@ Effect readEffect(const YamlFields& f) {
     f.refuse(e);
   }
   if (form && !effect.knots.empty() && (effect.knots.size() != 2 || !(effect.knots[0] <= effect.knots[1])))
-    f.refuse("knots", "of a known form are the two ends of its range, low <= high", "");
+    f.refuse("knots", "knots of effect '" + effect.name + "' must be the two ends of its range, low <= high",
+             "write knots: [low, high]");
   return effect;
 }
 
@@ -156,7 +162,11 @@ void readFit(const YamlFields& root, RefinedModel& model) {
             : p.effect < static_cast<int>(model.effects.size()) && p.index >= 0 &&
                   p.index <
                       static_cast<int>(model.effects[static_cast<std::size_t>(p.effect)].parameters.size());
-    if (!known) f.refuse("index", "names no parameter", "");
+    if (!known)
+      f.refuse("index",
+               "effect " + std::to_string(p.effect) + ", index " + std::to_string(p.index) +
+                   " names no fitted parameter of this model",
+               "fit it once more: talus trace --model-out");
     const auto same = [&](const FittedParameter& q) { return q.effect == p.effect && q.index == p.index; };
     if (std::ranges::count_if(model.fitted, same) > 1)
       f.refuse("index", "names a parameter of `fitted` a second time",
@@ -164,7 +174,11 @@ void readFit(const YamlFields& root, RefinedModel& model) {
   }
   model.covariance = root.numbers("covariance");
   if (model.covariance.size() != model.fitted.size() * model.fitted.size())
-    root.refuse("covariance", "needs the square of the number of fitted parameters", "");
+    root.refuse("covariance",
+                "covariance has " + std::to_string(model.covariance.size()) + " numbers, must have " +
+                    std::to_string(model.fitted.size() * model.fitted.size()) +
+                    ", the square of the number of fitted parameters",
+                "fit it once more: talus trace --model-out");
   if (const std::string fault = faultOfCovariance(model.covariance, model.fitted.size()); !fault.empty())
     root.refuse("covariance", "covariance " + fault, "write the model by talus trace --model-out");
 }
@@ -174,7 +188,8 @@ std::array<double, kChannels> readChannels(const YamlFields& f, const char* name
   const std::vector<double> values = f.numbers(name);
   if (values.size() != kChannels ||
       std::any_of(values.begin(), values.end(), [](double v) { return !(v >= 0.0); }))
-    f.refuse(name, "needs one number >= 0 for each channel", "");
+    f.refuse(name, std::string(name) + " must be one number >= 0 for each channel",
+             "write a list of " + std::to_string(kChannels));
   std::array<double, kChannels> all{};
   std::copy(values.begin(), values.end(), all.begin());
   return all;
@@ -185,7 +200,8 @@ std::vector<TrainedRange> readTrained(const YamlFields& root) {
   for (const YamlFields& f : root.list("trained")) {
     f.only({"column", "range", "below", "above", "reach_below", "reach_above"});
     const std::vector<double> range = f.numbers("range");
-    if (range.size() != 2 || !(range[0] <= range[1])) f.refuse("range", "needs two numbers, low <= high", "");
+    if (range.size() != 2 || !(range[0] <= range[1]))
+      f.refuse("range", "range must be two numbers, low <= high", "write range: [low, high]");
     TrainedRange one{.column = f.word("column"), .low = range[0], .high = range[1]};
     one.below = readChannels(f, "below");
     one.above = readChannels(f, "above");

@@ -20,6 +20,14 @@ TEST(GroundClass, StatedDeviationsBecomeDoubtAboutThePull) {
   EXPECT_NEAR(groundClass(1, prior, testRover()).mean_std, pull(stronger) - pull(weaker), 1e-12);
 }
 
+// The value that no soil has is none that the file states.
+TEST(GroundClass, ADeviationThatLeavesTheRangeOfSoilsIsNamed) {
+  const terramech::SoilPrior prior{.mean = testSand(), .deviation = {.cohesion_Pa = 1e12}};
+  EXPECT_THAT(
+      [&] { groundClass(1, prior, testRover()); },
+      testing::ThrowsMessage<std::invalid_argument>(testing::HasSubstr(" with half of its std 1e+12")));
+}
+
 TEST(GroundClass, WithoutStatedDeviationsKeepsTheDefault) {
   EXPECT_EQ(groundClass(1, {.mean = testSand(), .deviation = {}}, testRover()).mean_std,
             GroundClass{}.mean_std);

@@ -57,6 +57,24 @@ TEST(RasterFrame, DegreesBecomeTrueMetresOnEachBody) {
   }
 }
 
+// A raster that lies on no body was read as if its longitude were one of the others.
+TEST(RasterFrame, DegreesBeyondTheBodyAreRefused) {
+  const TemporaryFolder folder;
+  const auto read = [&folder](double east_deg, double north_deg) {
+    const RasterFile file{.rows = std::vector<std::vector<double>>(4, std::vector<double>(4, 1.0)),
+                          .crs = "EPSG:4326",
+                          .transform = std::array<double, 6>{east_deg, 0.001, 0, north_deg, 0, -0.001}};
+    readElevation(write(file, folder / "degrees.tif"));
+  };
+  EXPECT_NO_THROW(read(359.0, 10.0));
+  EXPECT_NO_THROW(read(-180.0005, 10.0));
+  for (const auto& [east_deg, north_deg] :
+       {std::pair{500.0, 10.0}, {-361.0, 10.0}, {0.0, 200.0}, {0.0, 90.03}, {0.0, -90.5}})
+    EXPECT_THAT([&] { read(east_deg, north_deg); },
+                testing::ThrowsMessage<InputError>(HasSubstr("must be within 360 and 90 degrees")))
+        << east_deg << ", " << north_deg;
+}
+
 TEST(RasterFrame, ObliqueAndOblongPixelsAreResampled) {
   const TemporaryFolder folder;
   std::vector<std::vector<double>> rows(40, std::vector<double>(40));

@@ -42,7 +42,8 @@ TEST(RouteSummary, OfARouteWithoutLengthSaysSo) {
   planner::Route route = exampleRoute();
   route.vertices.resize(1);
   route.summary.length_m = route.summary.time_s = 0.0;
-  EXPECT_EQ(summaryText(route), "route                empty: the start is at the goal\n");
+  EXPECT_EQ(summaryText(route),
+            "route                empty: the start is at the goal, or within its tolerance\n");
 }
 
 TEST(RouteSummary, OfNoRouteIsItsReason) {

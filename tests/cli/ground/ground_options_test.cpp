@@ -106,6 +106,24 @@ TEST(GroundOptions, AFootprintThatHidesCliffsIsRefused) {
               ThrowsMessage<InputError>(HasSubstr("hide the steps and slopes")));
 }
 
+// Which file is wrong is told where the number alone is no mistake.
+TEST(GroundOptions, NumbersThatDriveOnNoSlopeAreToldWithTheirFile) {
+  const Folder folder;
+  const std::string dem = folder.write("dem.asc", asciiGrid(20, 20, flat)) + " --resolution 1";
+  const std::string rover = folder.write(
+      "two.yaml",
+      "name: two\nmass_kg: 100\nwheels: {count: 2, radius_m: 0.1, width_m: 0.1}\nwheelbase_m: 1\n"
+      "track_m: 1\nclearance_m: 0.2\nmax_torque_Nm: 20\n");
+  EXPECT_THAT([&] { readGround(parsed(dem + " --soil sandy_loam --rover " + rover), quiet()); },
+              ThrowsMessage<InputError>(HasSubstr("two.yaml: rover 'two': wheels.count = 2, must be even")));
+  const std::string soil = folder.write(
+      "soil.yaml",
+      "name: doubt\ncohesion_Pa: {mean: 500, std: 1e12}\nfriction_angle_deg: 30\nsinkage_exponent: 1\n"
+      "frictional_modulus: 1e6\nshear_modulus_m: 0.02\n");
+  EXPECT_THAT([&] { readGround(parsed(dem + " --rover fido --soil " + soil), quiet()); },
+              ThrowsMessage<InputError>(HasSubstr("soil.yaml: soil 'doubt': cohesion_Pa = 5e+11")));
+}
+
 // A classes file replaces the soil of the body where it defines class 0, and is added to a soil that is named.
 TEST(GroundOptions, ClassesOfTheFileAndTheSoilNamed) {
   const Folder folder;

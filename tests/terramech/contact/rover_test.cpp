@@ -46,6 +46,14 @@ TEST(Rover, EveryLengthMassAndLimitIsChecked) {
     r.turning_radius_m = bad;
     EXPECT_THAT([&] { validate(r); }, ThrowsMessage<std::invalid_argument>(HasSubstr("must be 0 or")));
   }
+  for (const auto& [field, bad] : {std::pair{&Rover::mass_kg, 1e-3},
+                                   {&Rover::mass_kg, 1e7},
+                                   {&Rover::max_speed_mps, 1e-12},
+                                   {&Rover::max_speed_mps, 101.0}}) {
+    Rover r = rover();
+    r.*field = bad;
+    EXPECT_THROW(validate(r), std::invalid_argument) << bad;
+  }
   Rover in_millimetres = rover();
   in_millimetres.clearance_m = 250.0;
   EXPECT_THROW(validate(in_millimetres), std::invalid_argument);

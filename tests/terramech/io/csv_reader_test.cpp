@@ -37,6 +37,12 @@ TEST(CsvReader, TakesEveryLineEndingQuotesAndTheByteOrderMark) {
   }
 }
 
+// A second mark, of a tool that adds one to a file that has one, was part of the first column's name, which then was missing.
+TEST(CsvReader, AnyNumberOfByteOrderMarksIsSkipped) {
+  const test::TemporaryFile file{"\xEF\xBB\xBF\xEF\xBB\xBFslip,load_N\n0.1,20\n"};
+  EXPECT_THAT(CsvReader{file.path()}.header(), ElementsAre("slip", "load_N"));
+}
+
 TEST(CsvReader, CountsLinesInsideQuotes) {
   const auto rows = rowsOf("a,b\n\"1\n2\",3\n4,5\n");
   ASSERT_EQ(rows.size(), 2U);

@@ -75,8 +75,11 @@ TEST(ModelFile, RefusesWhatItCannotMean) {
        "did you mean slip_sinkage_ding?"},
       {"soil: sand\neffects:\n  - {name: slip_sinkage_ding, covariate: slip, channel: sinkage_over_radius, "
        "parameters: [1, 2]}\n",
-       "needs 1 numbers"},
-      {"soil: sand\nsensors: {slip: -1}\n", "standard deviation"},
+       "effect 'slip_sinkage_ding' has 2 parameters, must have 1; write parameters"},
+      {"soil: sand\neffects:\n  - {name: zz, parameters: [1]}\n", "no effect 'zz'; name one of "},
+      {"soil: sand\nfitted:\n  - {effect: 3, index: 9}\ncovariance: [1]\n",
+       "effect 3, index 9 names no fitted parameter of this model; fit it once more"},
+      {"soil: sand\nsensors: {slip: -1}\n", "slip must be a standard deviation >= 0; correct the value"},
       {"soil: sand\ntrained:\n  - {column: slip, range: [1, 0], below: [0, 0, 0, 0], above: [0, 0, 0, 0]}\n",
        "low <= high"},
       {"soil: sand\neffects:\n  - {name: slip_sinkage_ding, parameters: [1], knots: [0.5, 0.1]}\n",
