@@ -12,7 +12,7 @@ enum class Steering { Skid, Ackermann, AllWheel };
 /// A rover as route planning models it, with equal wheels. Plain data, SI.
 struct Rover {
   std::string name;               ///< for reports
-  double mass_kg = 0.0;           ///< > 0
+  double mass_kg = 0.0;           ///< in [0.1, 1e6]
   double gravity_m_s2 = 9.80665;  ///< > 0, of the body it drives on
   int wheel_count = 4;            ///< >= 2
   Wheel wheel;                    ///< one of its wheels
@@ -26,7 +26,7 @@ struct Rover {
   double max_pitch_rad = 0.35;          ///< tilt along the heading, (0, pi/2)
   double max_roll_rad = 0.35;           ///< tilt across the heading, (0, pi/2)
   double max_torque_Nm = 0.0;           ///< per wheel, > 0
-  double max_speed_mps = 0.05;          ///< rim speed on the flat, > 0
+  double max_speed_mps = 0.05;          ///< rim speed on the flat, in [1e-4, 100]
   double turning_radius_m = 0.0;        ///< 0: turns in place; else 0.001 to 1000
   double hotel_power_W = 0.0;           ///< drawn whether it drives or not, >= 0
   Steering steering = Steering::Skid;
