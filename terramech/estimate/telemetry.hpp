@@ -34,7 +34,7 @@ struct Telemetry {
   std::vector<Words> words;           ///< in the file's order; `run` and `wheel` are always words
   std::vector<std::size_t> lines;     ///< line of each row in the file
   std::vector<RejectedRow> rejected;  ///< in the file's order
-  std::size_t repeated = 0;           ///< rows left out since they are earlier ones again (TelemetryOptions::once)
+  std::size_t repeated = 0;  ///< rows left out since they are earlier ones again (TelemetryOptions::once)
   /// Known columns of rejected rows where they hold numbers, infinite or beyond double (the greatest); else NaN.
   std::vector<Numbers> rejected_numbers;
 
