@@ -4,8 +4,8 @@
 #include <sstream>
 
 #include <talus/talus.hpp>
-#include <talus/terramech/io/covariance_fault.hpp>
 #include <talus/terramech/io/model_file.hpp>
+#include <talus/terramech/io/model_fit_fields.hpp>
 #include <talus/terramech/io/soil_library.hpp>
 #include <talus/terramech/io/yaml_fields.hpp>
 #include <talus/terramech/numerics/range.hpp>
@@ -149,38 +149,6 @@ Effect readEffect(const YamlFields& f) {
     f.refuse("knots", "knots of effect '" + effect.name + "' must be the two ends of its range, low <= high",
              "write knots: [low, high]");
   return effect;
-}
-
-void readFit(const YamlFields& root, RefinedModel& model) {
-  for (const YamlFields& f : root.list("fitted")) {
-    f.only({"effect", "index"});
-    model.fitted.push_back({f.integer("effect"), f.integer("index")});
-    const auto& p = model.fitted.back();
-    const bool known =
-        p.effect < 0
-            ? p.index >= 0 && p.index < static_cast<int>(soilParameters().size())
-            : p.effect < static_cast<int>(model.effects.size()) && p.index >= 0 &&
-                  p.index <
-                      static_cast<int>(model.effects[static_cast<std::size_t>(p.effect)].parameters.size());
-    if (!known)
-      f.refuse("index",
-               "effect " + std::to_string(p.effect) + ", index " + std::to_string(p.index) +
-                   " names no fitted parameter of this model",
-               "fit it once more: talus trace --model-out");
-    const auto same = [&](const FittedParameter& q) { return q.effect == p.effect && q.index == p.index; };
-    if (std::ranges::count_if(model.fitted, same) > 1)
-      f.refuse("index", "names a parameter of `fitted` a second time",
-               "remove it, and its row of the covariance");
-  }
-  model.covariance = root.numbers("covariance");
-  if (model.covariance.size() != model.fitted.size() * model.fitted.size())
-    root.refuse("covariance",
-                "covariance has " + std::to_string(model.covariance.size()) + " numbers, must have " +
-                    std::to_string(model.fitted.size() * model.fitted.size()) +
-                    ", the square of the number of fitted parameters",
-                "fit it once more: talus trace --model-out");
-  if (const std::string fault = faultOfCovariance(model.covariance, model.fitted.size()); !fault.empty())
-    root.refuse("covariance", "covariance " + fault, "write the model by talus trace --model-out");
 }
 
 /// One number >= 0 for each channel.

@@ -130,9 +130,10 @@ TEST(ModelFile, RefusesWhatIsNoCovariance) {
 }
 
 TEST(ModelFile, RefusesWhatIsGivenTwiceOrBeyondItsBounds) {
-  EXPECT_THAT(faultOf("soil: sand\nnoise: {slip: -0.1}\n"), HasSubstr(":2: slip is negative"));
+  EXPECT_THAT(faultOf("soil: sand\nnoise: {slip: -0.1}\n"),
+              HasSubstr(":2: slip must be a standard deviation >= 0"));
   EXPECT_THAT(faultOf("soil: sand\nnoise: {torque_relative: -0.1}\n"),
-              HasSubstr("torque_relative is negative"));
+              HasSubstr("torque_relative must be a standard deviation >= 0"));
   EXPECT_THAT(faultOf("soil: sand\nfitted:\n  - {effect: -1, index: 0}\n  - {effect: -1, index: 0}\n"
                       "covariance: [1, 0, 0, 1]\n"),
               HasSubstr(":4: names a parameter of `fitted` a second time"));
