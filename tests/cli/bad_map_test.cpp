@@ -38,6 +38,7 @@ TEST(BadInput, ElevationMaps) {
           {{"info", "good.asc", "--resolution", "1", "--max-memory", "0"}, 2, "--max-memory"},
           {{"info", "good.asc", "--resolution", "1", "--max-memory", "1"}, 2, "--max-memory"},
           {{"info", "good.asc", "--resolution", "1", "--max-memory", "90MB"}, 2, "must be 100 MB or more"},
+          {{"info", "good.asc", "--resolution", ""}, 2, "--resolution: its value is empty"},
           {{"info", "good.asc", "--resolution", "1", "--seed", "18446744073709551616"}, 2, "must be 0 to"},
           {{"info", "good.asc", "--resolution", "1", "more"}, 2, "unknown argument 'more'"},
       });
