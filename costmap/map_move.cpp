@@ -95,7 +95,7 @@ TraversabilityMap TraversabilityMap::moved(maps::Cell tiles, const ProgressMonit
   next.publishAll();
   CostGrid::Content content = next.published()->content();
   content.version = published()->version() + 1;
-  next.published_->grid = std::make_shared<CostGrid>(std::move(content));
+  next.published_->grid.store(std::make_shared<CostGrid>(std::move(content)));
   return next;
 }
 

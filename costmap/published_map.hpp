@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <memory>
+#include <mutex>
 #include <stdexcept>
 #include <string>
 
@@ -9,9 +10,27 @@
 
 namespace talus::costmap {
 
+/// The grid that readers see, handed over whole. A mutex, since the std::atomic<std::shared_ptr> of GCC 12 gives its lock
+/// back without order: on a processor that reorders, a reader could pair one grid with another's count.
+class PublishedGrid {
+ public:
+  std::shared_ptr<const CostGrid> load() const {
+    const std::lock_guard lock(mutex_);
+    return grid_;
+  }
+  void store(std::shared_ptr<const CostGrid> next) {
+    const std::lock_guard lock(mutex_);
+    grid_.swap(next);  // what was there goes after the lock
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::shared_ptr<const CostGrid> grid_;
+};
+
 /// What readers of a map see, and whether somebody changes it now.
 struct PublishedMap {
-  std::atomic<std::shared_ptr<const CostGrid>> grid;
+  PublishedGrid grid;
   std::atomic_flag changing;
 };
 

@@ -112,9 +112,9 @@ TraversabilityMap::TraversabilityMap(MapLayers layers, std::shared_ptr<const Gro
   requireGrid(layers.declared, grid(), "declared");
   any_height_ = !site_->floors.empty() || std::ranges::any_of(site_->elevation.elevation_m.values(),
                                                               [](float e) { return !std::isnan(e); });
-  published_->grid = std::make_shared<CostGrid>(CostGrid::Content{
-      .grid = grid(), .tiles = measure(layers, watch), .cost = curves_->table().cost(), .version = 1});
-  if (curves_->table().overflowed()) published_->grid = renumbered();
+  published_->grid.store(std::make_shared<CostGrid>(CostGrid::Content{
+      .grid = grid(), .tiles = measure(layers, watch), .cost = curves_->table().cost(), .version = 1}));
+  if (curves_->table().overflowed()) published_->grid.store(renumbered());
 }
 
 std::shared_ptr<const CostGrid> TraversabilityMap::published() const noexcept {
@@ -259,7 +259,7 @@ void TraversabilityMap::publish(std::vector<maps::CellBox> learned, bool whole) 
   EvidenceField::Beliefs beliefs(field_, EvidenceField::Classes::InSteps);
   append(changed, curves_->learn(beliefs, learned));
   if (moved.priors) append(changed, curves_->mixedRanges());
-  published_->grid = costed(changed);
+  published_->grid.store(costed(changed));
   measured_.reset();
 }
 

@@ -207,7 +207,7 @@ class TraversabilityMap {
   std::vector<RefusedPlace> refusals_;
   std::optional<Measured> measured_;  // not published yet
   std::set<std::string> drives_;
-  std::unique_ptr<PublishedMap> published_;  // the atomic in it cannot move
+  std::unique_ptr<PublishedMap> published_;  // the lock in it cannot move
 };
 
 }  // namespace talus::costmap
