@@ -1,9 +1,14 @@
 #include <algorithm>
+#include <cmath>
 #include <unordered_map>
 
 #include <talus/terramech/effects/effects.hpp>
 
 namespace talus::terramech {
+
+double Effect::sense(double slip_angle_rad) const {
+  return channel == Channel::SideForce ? std::sin(slip_angle_rad) : 1.0;
+}
 
 bool knowsPasses(std::span<const Effect> effects) {
   return std::any_of(effects.begin(), effects.end(),

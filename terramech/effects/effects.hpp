@@ -51,7 +51,8 @@ const std::vector<EffectForm>& effectLibrary();
 const EffectForm* findEffect(std::string_view name);
 
 /// A form at work in a model, or, with form name "empirical", a curve of a measured residual: a natural cubic
-/// spline through (knots, parameters) added to one scaled channel, constant beyond its ends.
+/// spline through (knots, parameters) added to one scaled channel, constant beyond its ends; to F/W times sin beta, since
+/// a wheel and its mirror image are pushed to opposite sides and one that rolls straight to none.
 struct Effect {
   std::string name{};
   std::string covariate{};
@@ -65,6 +66,9 @@ struct Effect {
   /// "empirical_strength" multiply k, or c and tan phi, by the exponential of the curve, and so move every
   /// channel.
   bool empirical() const { return name.starts_with("empirical"); }
+
+  /// What a curve in one channel is multiplied by at this slip angle: sin beta in F/W, otherwise 1.
+  double sense(double slip_angle_rad) const;
 };
 
 /// Whether one of them depends on how often a track was driven (pass_index).

@@ -154,7 +154,8 @@ Reading Bound::reading(const WheelState& state, const WheelContact& contact,
   for (const BoundEffect& e : effects_) {
     if (e.effect->name != "empirical" || !applies(*e.effect, state)) continue;
     const double x = covariateOf(*e.effect, state, sinkage);
-    if (std::isfinite(x)) reading.addScaled(e.effect->channel, e.curve(x));
+    if (std::isfinite(x))
+      reading.addScaled(e.effect->channel, e.curve(x) * e.effect->sense(contact.slip_angle_rad));
   }
   return reading;
 }

@@ -58,7 +58,9 @@ Eigen::MatrixXd curveColumns(const Effect& curve, const ModelOnRows& at) {
   // All knots of a curve through the soil act through one number, so that one derivative gives every column.
   Eigen::MatrixXd by_value = Eigen::MatrixXd::Zero(at.trial.rows(), kChannels);
   if (curve.name == "empirical") {
-    by_value.col(static_cast<int>(curve.channel)).setOnes();
+    for (int row = 0; row < at.trial.rows(); ++row)
+      by_value(row, static_cast<int>(curve.channel)) =
+          curve.sense(at.trial.states[static_cast<std::size_t>(row)].slip_angle_rad);
   } else {
     constexpr double kStep = 0.02;
     Effect level = curve;

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <set>
 
 #include <talus/terramech/numerics/normal_distribution.hpp>
@@ -70,12 +69,6 @@ std::set<std::string> columnsOf(const TraceResult& result) {
   return there;
 }
 
-/// Known forms of a column held at the ends of a range.
-void holdAt(RefinedModel& model, const std::string& column, double low, double high) {
-  for (Effect& e : model.effects)
-    if (!e.empirical() && e.covariate == column) e.knots = {low, high};
-}
-
 /// Log-likelihood of errors of the size of the floor, up to what all models share.
 double logLikelihood(int rows, const ChannelErrors& rmse, const ChannelErrors& floor) {
   double sum = 0.0;
@@ -84,29 +77,50 @@ double logLikelihood(int rows, const ChannelErrors& rmse, const ChannelErrors& f
   return sum;
 }
 
-/// `law`: how effects of the column act beyond the others; without it, as predicts the level better.
+bool isFormOf(const Effect& effect, const std::string& column) {
+  return !effect.empirical() && effect.covariate == column;
+}
+
+/// `level`: the outermost level, where `held` goes deeper; an effect whose law did not foretell that one has none.
 EndLevel endOf(const TraceResult& result, const TraceOptions& options, const std::string& column, bool high,
-               const std::vector<char>& held, std::optional<bool> law_given) {
+               const std::vector<char>& held, const EndLevel* level) {
   const Values x = valuesOf(result.trial, column);
   const auto [low_seen, high_seen] = rangeOver(x, held, 0);
   EndLevel end{.column = column, .high = high, .edge = high ? high_seen : low_seen};
-  for (std::size_t row = 0; row < x.size(); ++row)
-    if (held[row]) ++end.rows, end.distance += std::pow(x[row] - end.edge, 2);
-  end.distance = std::sqrt(end.distance / end.rows);
+  double farthest = 0.0;
   std::vector<char> seen;
-  for (char row : held) seen.push_back(!row);
+  for (std::size_t row = 0; row < x.size(); ++row) {
+    seen.push_back(!held[row]);
+    if (!held[row]) continue;
+    const double beyond = std::abs(x[row] - end.edge);
+    ++end.rows;
+    end.distance += beyond * beyond;
+    farthest = std::max(farthest, beyond);
+  }
+  end.distance = std::sqrt(end.distance / end.rows);
   const Trial unseen = subset(result.trial, held);
   end.base_rmse = end.refined_rmse = rmseAsMeasured(refitted(result.base, result, options, seen), unseen);
   if (!hasCorrections(result)) return end;
-  RefinedModel refined = refitted(result.refined, result, options, seen);
-  const ChannelErrors law = rmseAsMeasured(refined, unseen);
-  holdAt(refined, column, low_seen, high_seen);
-  const ChannelErrors held_at_edge = rmseAsMeasured(refined, unseen);
+  const RefinedModel by_law = refitted(result.refined, result, options, seen);
+  const auto likelihood = [&](const RefinedModel& model) {
+    return logLikelihood(end.rows, rmseAsMeasured(model, unseen), result.noise_floor);
+  };
   // By more than a number that means nothing gains by chance where it is fitted: half a chi-squared of one.
   const double chance = 0.5 * std::pow(normalQuantile(1.0 - 0.5 * options.significance), 2);
-  end.law = law_given.value_or(logLikelihood(end.rows, law, result.noise_floor) >
-                               logLikelihood(end.rows, held_at_edge, result.noise_floor) + chance);
-  end.refined_rmse = end.law ? law : held_at_edge;
+  const double reached = likelihood(by_law) - chance;
+  RefinedModel earned = by_law;
+  end.reach.assign(by_law.effects.size(), 0.0);
+  for (std::size_t k = 0; k < end.reach.size(); ++k) {
+    if (!isFormOf(by_law.effects[k], column)) continue;
+    RefinedModel at_edge = by_law;
+    at_edge.effects[k].knots = {low_seen, high_seen};
+    const bool allowed = !level || level->reach[k] > 0.0, better = reached > likelihood(at_edge);
+    if (allowed && better) end.reach[k] = farthest;
+    const bool law = level ? allowed : better;
+    end.law = end.law || law;
+    if (!law) earned.effects[k].knots = at_edge.effects[k].knots;
+  }
+  end.refined_rmse = rmseAsMeasured(earned, unseen);
   return end;
 }
 
@@ -125,24 +139,29 @@ std::vector<EndLevel> endLevels(const TraceResult& result, const TraceOptions& o
       const Values x = valuesOf(result.trial, column);
       const std::vector<char> level = outermost(x, high, Depth::Level);
       if (level.empty()) continue;
-      ends.push_back(endOf(result, options, column, high, level, {}));
+      ends.push_back(endOf(result, options, column, high, level, nullptr));
       const std::vector<char> half = outermost(x, high, Depth::Half);
       if (!hasCorrections(result) || half.empty() || half == level) continue;
-      ends.push_back(endOf(result, options, column, high, half, ends.back().law));
+      const EndLevel outer = ends.back();
+      ends.push_back(endOf(result, options, column, high, half, &outer));
     }
   return ends;
 }
 
 void boundEffects(RefinedModel& model, const Trial& trial, const std::vector<EndLevel>& ends) {
-  std::set<std::string> columns;
-  for (const Effect& e : model.effects) columns.insert(e.covariate);
-  for (const std::string& column : columns) {
-    const Values x = valuesOf(trial, column);
-    auto [low, high] = rangeOver(x, std::vector<char>(x.size(), 1), 1);
+  for (std::size_t k = 0; k < model.effects.size(); ++k) {
+    Effect& effect = model.effects[k];
+    if (effect.empirical()) continue;
+    const Values x = valuesOf(trial, effect.covariate);
+    const auto [low, high] = rangeOver(x, std::vector<char>(x.size(), 1), 1);
     if (!(low < high)) continue;
-    for (const EndLevel& end : ends)
-      if (end.column == column && end.law) (end.high ? high : low) = end.high ? kUnlimited : -kUnlimited;
-    if (low > -kUnlimited || high < kUnlimited) holdAt(model, column, low, high);
+    double below = 0.0, above = 0.0;
+    for (const EndLevel& end : ends) {
+      if (end.column != effect.covariate || k >= end.reach.size()) continue;
+      double& reach = end.high ? above : below;
+      reach = std::max(reach, end.reach[k]);
+    }
+    effect.knots = {low - below, high + above};
   }
 }
 

@@ -20,8 +20,8 @@ bool hasCorrections(const TraceResult& result);
 std::vector<EndLevel> endLevels(const TraceResult& result, const TraceOptions& options,
                                 const ProgressMonitor& watch = {});
 
-/// An extrapolation is earned: an effect whose law did not foretell the end level of its column acts beyond the
-/// trained rows as at their edge.
+/// An extrapolation is earned: beyond the trained rows an effect follows its law as far as that foretold held-out ends of
+/// its column, and acts from there on as it does there; at their edge where it foretold none.
 void boundEffects(RefinedModel& model, const Trial& trial, const std::vector<EndLevel>& ends);
 
 /// What predictions need to know of the rows: the range of each column, and by how much the error grows beyond it,

@@ -73,7 +73,10 @@ struct EndLevel {
   double distance = 0.0;  ///< of the held rows from it, root mean square
   int rows = 0;
   ChannelErrors base_rmse{}, refined_rmse{};
-  bool law = false;  ///< effects of this column foretold the level better by their law than held at `edge`
+  bool law = false;  ///< an effect of this column foretold the level better by its law than held at `edge`
+  /// Of each effect of the refined model how far from `edge` it did: the farthest of these rows. 0 where it did not, or
+  /// is of another column.
+  std::vector<double> reach{};
 };
 
 /// Errors on rows of one group of a text column, the fit made from all groups.

@@ -34,6 +34,34 @@ TEST(RefinedModel, SlipInTheWheelPlaneGrowsWithTheSlipAngle) {
   EXPECT_NEAR(slipInWheelPlane(-0.5, std::acos(0.5)), 0.0, 1e-12);
 }
 
+TEST(RefinedModel, AMirroredWheelReadsMirrored) {
+  // Property: no force of the ground and no curve knows left from right, so that the side force is odd in the slip angle
+  // and the rest even.
+  std::vector<Effect> effects;
+  for (const EffectForm& form : effectLibrary())
+    if (!form.of_sensor) effects.push_back(typical(form));
+  for (const Channel channel : {Channel::DrawbarPull, Channel::Sinkage, Channel::Torque, Channel::SideForce})
+    effects.push_back({.name = "empirical",
+                       .covariate = "sinkage_m",
+                       .channel = channel,
+                       .parameters = {0.1, 0.3},
+                       .knots = {0.0, 0.05}});
+  for (const Effect& effect : effects) {
+    RefinedModel model = base();
+    model.effects = {effect};
+    WheelState left = state(), right = state();
+    left.slip_angle_rad = 0.4;
+    right.slip_angle_rad = -0.4;
+    const Reading to_left = predict(model, left), to_right = predict(model, right);
+    EXPECT_NE(to_left.side_force_N, 0.0);
+    EXPECT_NEAR(to_left.side_force_N, -to_right.side_force_N, 1e-9) << effect.name;
+    EXPECT_NEAR(to_left.drawbar_pull_N, to_right.drawbar_pull_N, 1e-9) << effect.name;
+    EXPECT_NEAR(to_left.sinkage_m, to_right.sinkage_m, 1e-12) << effect.name;
+    EXPECT_NEAR(to_left.torque_Nm, to_right.torque_Nm, 1e-9) << effect.name;
+    EXPECT_EQ(predict(model, straightOn(0.5)).side_force_N, 0.0) << effect.name;
+  }
+}
+
 TEST(RefinedModel, StdHoldsTheSensorsAndTheSlip) {
   RefinedModel model = base();
   model.noise.absolute[0] = 0.02 * 80.0;

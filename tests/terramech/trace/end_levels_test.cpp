@@ -44,11 +44,14 @@ const EndLevel& endOf(const std::vector<EndLevel>& ends, const std::string& colu
                        [&](const EndLevel& e) { return e.column == column && e.high == high; });
 }
 
-TEST(EndLevels, ALawThatForetellsTheLevelIsKept) {
-  const RefinedModel truth = sand({{.name = "slip_sinkage_linear",
-                                    .covariate = "slip",
-                                    .channel = Channel::Sinkage,
-                                    .parameters = {1.0}}});
+TEST(EndLevels, ALawHoldsAsFarAsItForetold) {
+  const auto with = [](double a) {
+    return sand({{.name = "slip_sinkage_linear",
+                  .covariate = "slip",
+                  .channel = Channel::Sinkage,
+                  .parameters = {a}}});
+  };
+  const RefinedModel truth = with(1.0);
   TraceResult result = resultOf(sand(), truth, {0.1, 0.2, 0.3, 0.4, 0.5});
   const auto ends = endLevels(result, {});
   const EndLevel& high = endOf(ends, "slip", true);
@@ -58,8 +61,26 @@ TEST(EndLevels, ALawThatForetellsTheLevelIsKept) {
   EXPECT_NEAR(high.distance, 0.1, 1e-12);
   EXPECT_LT(high.refined_rmse[1], 0.1 * high.base_rmse[1]);  // rows without noise
   boundEffects(result.refined, result.trial, ends);
-  const WheelState beyond{.wheel = {.radius_m = 0.1, .width_m = 0.1}, .load_N = 80.0, .slip = 0.9};
+  // The deeper end, 0.4 and 0.5, was foretold from 0.3: so far beyond 0.5 goes the law, and no farther.
+  WheelState beyond{.wheel = {.radius_m = 0.1, .width_m = 0.1}, .load_N = 80.0, .slip = 0.69};
   EXPECT_EQ(predict(result.refined, beyond).sinkage_m, predict(truth, beyond).sinkage_m);
+  beyond.slip = 0.9;
+  // Closed form: 1 + a i at i = 0.7 is that of a = 0.7/0.9 at 0.9.
+  EXPECT_NEAR(predict(result.refined, beyond).sinkage_m, predict(with(0.7 / 0.9), beyond).sinkage_m, 1e-9);
+}
+
+TEST(EndLevels, EachEffectOfAColumnEarnsItsOwnReach) {
+  const RefinedModel truth =
+      sand({{.name = "skid_sinkage", .covariate = "slip", .channel = Channel::Sinkage, .parameters = {0.3}},
+            {.name = "slip_sinkage_linear",
+             .covariate = "slip",
+             .channel = Channel::Sinkage,
+             .parameters = {1.0}}});
+  TraceResult result = resultOf(sand(), truth, {-0.8, -0.6, -0.4, -0.2, 0.1, 0.2});
+  boundEffects(result.refined, result.trial, endLevels(result, {}));
+  // How braked wheels sink foretells levels far off, how driven ones do 0.2 from 0.1 alone.
+  EXPECT_LT(result.refined.effects[0].knots[0], -0.9);
+  EXPECT_NEAR(result.refined.effects[1].knots[1], 0.3, 1e-12);
 }
 
 TEST(EndLevels, AnEffectSeenAtOneLevelActsBeyondItAsThere) {
@@ -105,9 +126,10 @@ TEST(EndLevels, AModelHeldAtOneEndIsReadBack) {
                                        .channel = Channel::Sinkage,
                                        .parameters = {1.0}}}),
                                 {0.1, 0.2, 0.3});
-  boundEffects(result.refined, result.trial, {{.column = "slip", .high = true, .law = true}});
+  boundEffects(result.refined, result.trial, {{.column = "slip", .high = true, .law = true, .reach = {0.2}}});
   ASSERT_EQ(result.refined.effects[0].knots.size(), 2U);
   EXPECT_EQ(result.refined.effects[0].knots[0], 0.1);
+  EXPECT_EQ(result.refined.effects[0].knots[1], 0.3 + 0.2);
   const test::TemporaryFile file{modelText(result.refined)};
   const WheelState beyond{.wheel = {.radius_m = 0.1, .width_m = 0.1}, .load_N = 80.0, .slip = 0.9};
   EXPECT_EQ(predict(loadModel(file.path()).model, beyond).sinkage_m,
