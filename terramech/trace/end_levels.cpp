@@ -77,10 +77,6 @@ double logLikelihood(int rows, const ChannelErrors& rmse, const ChannelErrors& f
   return sum;
 }
 
-bool isFormOf(const Effect& effect, const std::string& column) {
-  return !effect.empirical() && effect.covariate == column;
-}
-
 /// `level`: the outermost level, where `held` goes deeper; an effect whose law did not foretell that one has none.
 EndLevel endOf(const TraceResult& result, const TraceOptions& options, const std::string& column, bool high,
                const std::vector<char>& held, const EndLevel* level) {
@@ -111,7 +107,7 @@ EndLevel endOf(const TraceResult& result, const TraceOptions& options, const std
   RefinedModel earned = by_law;
   end.reach.assign(by_law.effects.size(), 0.0);
   for (std::size_t k = 0; k < end.reach.size(); ++k) {
-    if (!isFormOf(by_law.effects[k], column)) continue;
+    if (by_law.effects[k].empirical() || by_law.effects[k].covariate != column) continue;
     RefinedModel at_edge = by_law;
     at_edge.effects[k].knots = {low_seen, high_seen};
     const bool allowed = !level || level->reach[k] > 0.0, better = reached > likelihood(at_edge);

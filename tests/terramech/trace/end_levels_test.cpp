@@ -39,18 +39,18 @@ RefinedModel sand(std::vector<Effect> effects = {}) {
   return model;
 }
 
+/// A law of slip-sinkage.
+Effect digging(const char* name, double a) {
+  return {.name = name, .covariate = "slip", .channel = Channel::Sinkage, .parameters = {a}};
+}
+
 const EndLevel& endOf(const std::vector<EndLevel>& ends, const std::string& column, bool high) {
   return *std::find_if(ends.begin(), ends.end(),
                        [&](const EndLevel& e) { return e.column == column && e.high == high; });
 }
 
 TEST(EndLevels, ALawHoldsAsFarAsItForetold) {
-  const auto with = [](double a) {
-    return sand({{.name = "slip_sinkage_linear",
-                  .covariate = "slip",
-                  .channel = Channel::Sinkage,
-                  .parameters = {a}}});
-  };
+  const auto with = [](double a) { return sand({digging("slip_sinkage_linear", a)}); };
   const RefinedModel truth = with(1.0);
   TraceResult result = resultOf(sand(), truth, {0.1, 0.2, 0.3, 0.4, 0.5});
   const auto ends = endLevels(result, {});
@@ -70,12 +70,7 @@ TEST(EndLevels, ALawHoldsAsFarAsItForetold) {
 }
 
 TEST(EndLevels, EachEffectOfAColumnEarnsItsOwnReach) {
-  const RefinedModel truth =
-      sand({{.name = "skid_sinkage", .covariate = "slip", .channel = Channel::Sinkage, .parameters = {0.3}},
-            {.name = "slip_sinkage_linear",
-             .covariate = "slip",
-             .channel = Channel::Sinkage,
-             .parameters = {1.0}}});
+  const RefinedModel truth = sand({digging("skid_sinkage", 0.3), digging("slip_sinkage_linear", 1.0)});
   TraceResult result = resultOf(sand(), truth, {-0.8, -0.6, -0.4, -0.2, 0.1, 0.2});
   boundEffects(result.refined, result.trial, endLevels(result, {}));
   // How braked wheels sink foretells levels far off, how driven ones do 0.2 from 0.1 alone.
@@ -84,12 +79,7 @@ TEST(EndLevels, EachEffectOfAColumnEarnsItsOwnReach) {
 }
 
 TEST(EndLevels, AnEffectSeenAtOneLevelActsBeyondItAsThere) {
-  const auto with = [](double a) {
-    return sand({{.name = "slip_sinkage_reece",
-                  .covariate = "slip",
-                  .channel = Channel::Sinkage,
-                  .parameters = {a}}});
-  };
+  const auto with = [](double a) { return sand({digging("slip_sinkage_reece", a)}); };
   TraceResult result = resultOf(sand(), with(0.5), {-0.4, -0.2, 0.0, 0.2});
   const auto ends = endLevels(result, {});
   const EndLevel& high = endOf(ends, "slip", true);
@@ -120,12 +110,7 @@ TEST(EndLevels, DeviationsGrowByWhatTheEndShowedAboveTheFloor) {
 }
 
 TEST(EndLevels, AModelHeldAtOneEndIsReadBack) {
-  TraceResult result = resultOf(sand(),
-                                sand({{.name = "slip_sinkage_linear",
-                                       .covariate = "slip",
-                                       .channel = Channel::Sinkage,
-                                       .parameters = {1.0}}}),
-                                {0.1, 0.2, 0.3});
+  TraceResult result = resultOf(sand(), sand({digging("slip_sinkage_linear", 1.0)}), {0.1, 0.2, 0.3});
   boundEffects(result.refined, result.trial, {{.column = "slip", .high = true, .law = true, .reach = {0.2}}});
   ASSERT_EQ(result.refined.effects[0].knots.size(), 2U);
   EXPECT_EQ(result.refined.effects[0].knots[0], 0.1);
