@@ -149,6 +149,7 @@ RimForces rimForces(const Law& law, const Wheel& wheel, const Displacement& disp
 struct RimEquilibrium {
   double entry_angle_rad = 0.0;
   RimForces forces;
+  double growth = 0.0;  ///< d log W / d log theta_1 as the search saw it last [-]
 };
 
 /// What to solve for.
@@ -176,6 +177,9 @@ class EntrySearch {
   /// Takes the load [N] found there; while it searches on, entry_rad() has moved.
   Status take(double load_N);
 
+  /// d log W / d log theta_1 between the last two trials, or as it was given.
+  double growth() const { return growth_; }
+
  private:
   void learnGrowth(double log_ratio);
   double next(double log_ratio) const;
@@ -201,7 +205,7 @@ std::optional<RimEquilibrium> findEquilibrium(const Law& law, const Wheel& wheel
     const double entry = search.entry_rad();
     const RimForces forces = rimForces<Rule>(law, wheel, displacement_at(entry));
     const Status status = search.take(forces.load_N);
-    if (status == Status::Found) return RimEquilibrium{entry, forces};
+    if (status == Status::Found) return RimEquilibrium{entry, forces, search.growth()};
     if (status == Status::Sunk) return std::nullopt;
   }
 }

@@ -284,11 +284,15 @@ Slope loadSlope(const RefinedModel& model,
 
 }  // namespace
 
+double SensorNoise::slipStd(double slip) const {
+  return std::hypot(slip_absolute, std::min(slip_relative * std::abs(slip), std::max(1.0 + slip, 0.0)));
+}
+
 Prediction predictWithStd(const RefinedModel& model, const WheelState& state) {
   Prediction out{.mean = predict(model, state)};
   std::array<double, kChannels> variance{};
   const auto& noise = model.noise;
-  const double slip_var = squared(noise.slip_absolute) + squared(noise.slip_relative * state.slip);
+  const double slip_var = squared(noise.slipStd(state.slip));
   const Slope by_slip = slipSlope(model, state), by_load = loadSlope(model, state);
   std::vector<Slope> by_parameter;
   if (!model.covariance.empty())

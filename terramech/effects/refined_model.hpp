@@ -21,6 +21,10 @@ struct SensorNoise {
   double slip_absolute = 0.0;                ///< [-]
   double slip_relative = 0.0;                ///< of the slip
   double load_relative = 0.0;                ///< of the load
+
+  /// Standard deviation of a measured slip in [-1, 1] [-]. The relative part ends at the locked wheel, i = -1: r omega = 0
+  /// is read without error.
+  double slipStd(double slip) const;
 };
 
 /// Standard deviations as a base file states them, in the unit of the column; empty where it states none.

@@ -31,7 +31,9 @@ class EffectLaw {
   }
 
   Tangent shear_Pa(double normal_Pa, const Tangent& displacement_m) const {
-    const double path = std::hypot(displacement_m.along, displacement_m.across);
+    // Metres: nothing that std::hypot guards against.
+    const double path = std::sqrt(displacement_m.along * displacement_m.along +
+                                  displacement_m.across * displacement_m.across);
     return alongDisplacement(strength_Pa(normal_Pa, path), displacement_m, path);
   }
 
@@ -74,12 +76,12 @@ RimForces forcesBy(const WheelContact& c, double entry, double pressure_scale) {
 }
 
 template <class Rule>
-std::optional<RimEquilibrium> carryBy(const WheelContact& c, double guess) {
+std::optional<RimEquilibrium> carryBy(const WheelContact& c, double guess, double growth) {
   const EffectLaw law{c};
   const RimLoad wanted{.load_N = c.load_N,
                        .slip = c.slip,
                        .first_guess = guess > 0.0 ? guess : 0.3,
-                       .growth = 2.0 * c.sinkage_exponent + 1.0,
+                       .growth = growth > 0.0 ? growth : 2.0 * c.sinkage_exponent + 1.0,
                        .tolerance = 1e-9};
   if (c.slip_angle_rad == 0.0)
     return findEquilibrium<Rule>(law, wheelOf(c), wanted, [&](double entry) { return straight(c, entry); });
@@ -92,8 +94,8 @@ RimForces forcesAt(const WheelContact& c, double entry, double pressure_scale) {
                       : forcesBy<QuickRimRule>(c, entry, pressure_scale);
 }
 
-std::optional<RimEquilibrium> carry(const WheelContact& c, double guess) {
-  return c.slip < 0.0 ? carryBy<BrakedRimRule>(c, guess) : carryBy<QuickRimRule>(c, guess);
+std::optional<RimEquilibrium> carry(const WheelContact& c, double guess, double growth) {
+  return c.slip < 0.0 ? carryBy<BrakedRimRule>(c, guess, growth) : carryBy<QuickRimRule>(c, guess, growth);
 }
 
 double sinkageOf(double radius_m, double entry) {
@@ -167,11 +169,15 @@ double bulldozing_N(const WheelContact& c, double entry) {
          faceResistance_N(push, {.radius_m = c.radius_m, .entry_angle_rad = entry});
 }
 
-ContactForces solveRim(const WheelContact& c, double entry_guess_rad) {
-  const auto carried = carry(c, entry_guess_rad);
+ContactForces solveRim(const WheelContact& c, double entry_guess_rad, double growth) {
+  const auto carried = carry(c, entry_guess_rad, growth);
   const double static_entry = carried ? carried->entry_angle_rad : kDeepest;
   const double z0 = sinkageOf(c.radius_m, static_entry);
-  if (carried && !digs(c)) return forcesOf(carried->forces, z0, static_entry, static_entry);
+  if (carried && !digs(c)) {
+    ContactForces forces = forcesOf(carried->forces, z0, static_entry, static_entry);
+    forces.growth = carried->growth;
+    return forces;
+  }
   const double dug = (c.sinkage_gain - 1.0) * z0 + c.dug_m;
   const double deeper = c.ploughed_m > 0.0 ? std::hypot(dug, c.ploughed_m) : dug;
   const double z = std::clamp(z0 + deeper + c.extra_sinkage_m, 1e-6 * c.radius_m, 1.95 * c.radius_m);
@@ -179,6 +185,7 @@ ContactForces solveRim(const WheelContact& c, double entry_guess_rad) {
   WheelContact filled = c;
   filled.rebound = std::min(1.0, c.rebound + c.rear_fill * std::max(0.0, dug) / z);
   ContactForces forces = forcesOf(imposed(filled, entry), z, entry, static_entry);
+  forces.growth = carried ? carried->growth : 0.0;
   forces.dug_m = std::clamp(deeper > 0.0 ? dug * dug / deeper : 0.0, 0.0, z);
   return forces;
 }
@@ -202,8 +209,8 @@ WheelContact contactOf(const Soil& soil, const Wheel& wheel) {
   return c;
 }
 
-ContactForces solveContact(const WheelContact& contact, double entry_guess_rad) {
-  ContactForces forces = solveRim(dugSideways(contact), entry_guess_rad);
+ContactForces solveContact(const WheelContact& contact, double entry_guess_rad, double growth) {
+  ContactForces forces = solveRim(dugSideways(contact), entry_guess_rad, growth);
   if (contact.slip_angle_rad != 0.0) forces.side_force_N += bulldozing_N(contact, forces.entry_angle_rad);
   return forces;
 }
@@ -214,7 +221,7 @@ void solveContacts(std::vector<WheelContact> contacts, SolvedContacts& solved) {
   std::vector<std::size_t> plain;
   std::vector<WheelCase> cases;
   const auto slowly = [&](std::size_t k) {
-    solved.forces[k] = solveContact(contacts[k], solved.forces[k].static_entry_rad);
+    solved.forces[k] = solveContact(contacts[k], solved.forces[k].static_entry_rad, solved.forces[k].growth);
   };
   for (std::size_t k = 0; k < contacts.size(); ++k) {
     if (!new_rows && contacts[k] == solved.contacts[k]) continue;

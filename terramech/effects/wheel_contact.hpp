@@ -56,6 +56,7 @@ struct ContactForces {
   double dug_m = 0.0;  ///< of the sinkage, what the driven wheel threw behind itself
   double entry_angle_rad = 0.0;
   double static_entry_rad = 0.0;  ///< before an imposed sinkage: what starts the next search best
+  double growth = 0.0;  ///< d log W / d log theta_1 there [-], 0: not known; the next search goes on by it
   double torque_Nm = 0.0;
   double drawbar_pull_N = 0.0;
   double side_force_N = 0.0;  ///< signed against the sideways motion: negative for slip_angle > 0
@@ -64,14 +65,15 @@ struct ContactForces {
 /// The contact of a smooth rigid wheel without effects.
 WheelContact contactOf(const Soil& soil, const Wheel& wheel);
 
-/// Forces on the wheel at the sinkage that carries its load; `entry_guess_rad` starts the search, 0: none.
+/// Forces on the wheel at the sinkage that carries its load; `entry_guess_rad` and `growth`, ContactForces of a contact like
+/// it, start the search, 0: none.
 /// A wheel at a slip angle digs and pushes soil aside as in wong_reece.hpp. A load that the soil cannot carry
 /// above the axle gives the wheel sunk to its axle, the stress scaled to carry it: fits pass through such
 /// points, and none of them is a fit. Contact ends at the axle's height whatever the sinkage. Never throws.
 /// Thread-safe. Integrals: rimForces();
 ///   tau = (c + sigma tan phi)(1 - e^{-j/K}) along the resultant displacement j = hypot(j_x, j_y),
 /// which is the friction circle of an isotropic soil (ishigami_2007).
-ContactForces solveContact(const WheelContact& contact, double entry_guess_rad = 0.0);
+ContactForces solveContact(const WheelContact& contact, double entry_guess_rad = 0.0, double growth = 0.0);
 
 /// Contacts in their order and what the soil does to each: the memory of who solves nearly the same ones
 /// again and again.

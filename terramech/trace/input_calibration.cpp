@@ -16,17 +16,12 @@ double squared(double x) {
 
 bool slipIsSeen(const Trial& trial, const SensorNoise& noise) {
   const Eigen::Map<const Eigen::ArrayXd> slip(trial.slip.data(), trial.rows());
-  const Eigen::ArrayXd error = (squared(noise.slip_absolute) + squared(noise.slip_relative) * slip.square())
-                                   .sqrt()
-                                   .min(0.1 * slip.abs());
+  const Eigen::ArrayXd error =
+      slip.unaryExpr([&](double i) { return noise.slipStd(i); }).min(0.1 * slip.abs());
   return (slip - slip.mean()).square().mean() > 4.0 * error.square().mean();
 }
 
 namespace {
-
-double slipStd(const SensorNoise& noise, double slip) {
-  return std::hypot(noise.slip_absolute, noise.slip_relative * slip);
-}
 
 bool isTied(const WheelState& s) {
   const double ground = s.rim_speed_mps * (1.0 - s.slip);
@@ -60,18 +55,18 @@ bool speedIsSeen(const Trial& trial, const SensorNoise& noise) {
   const auto tied = std::count_if(trial.states.begin(), trial.states.end(), isTied);
   if (tied < trial.rows() || trial.rows() < 3) return true;
   const Speeds v =
-      speedsOf(trial, [&](double slip) { return std::min(slipStd(noise, slip), 0.1 * std::abs(slip)); });
+      speedsOf(trial, [&](double slip) { return std::min(noise.slipStd(slip), 0.1 * std::abs(slip)); });
   return ((v.value - v.mean).square() / v.variance).mean() > 4.0;
 }
 
 Eigen::VectorXd sharedSlipStd(const Trial& trial, const SensorNoise& noise) {
   if (!slipIsSeen(trial, noise)) {
     double sum = 0.0;
-    for (double slip : trial.slip) sum += squared(slipStd(noise, slip));
+    for (double slip : trial.slip) sum += squared(noise.slipStd(slip));
     return Eigen::VectorXd::Constant(trial.rows(), std::sqrt(sum) / trial.rows());
   }
   if (speedIsSeen(trial, noise)) return {};
-  const Speeds v = speedsOf(trial, [&](double slip) { return slipStd(noise, slip); });
+  const Speeds v = speedsOf(trial, [&](double slip) { return noise.slipStd(slip); });
   Eigen::VectorXd shared(trial.rows());
   for (int row = 0; row < trial.rows(); ++row)
     shared[row] = std::sqrt(v.mean_variance) / trial.states[static_cast<std::size_t>(row)].rim_speed_mps;
@@ -137,7 +132,7 @@ std::vector<Posterior> shrink(const std::vector<double>& measured, const std::ve
 
 /// Slips at one speed over ground: the share of the speeds' scatter that is not error is kept.
 std::vector<Posterior> slipsAtOneSpeed(const Trial& trial, const SensorNoise& noise) {
-  const Speeds v = speedsOf(trial, [&](double slip) { return slipStd(noise, slip); });
+  const Speeds v = speedsOf(trial, [&](double slip) { return noise.slipStd(slip); });
   const Eigen::ArrayXd weight = v.variance.inverse();
   const double excess = (weight * (v.value - v.mean).square()).sum() - static_cast<double>(trial.rows() - 1);
   const double scatter = std::max(0.0, excess / (weight.sum() - weight.square().sum() / weight.sum()));
@@ -156,7 +151,7 @@ void calibrateInputs(Trial& trial, const SensorNoise& noise, const std::optional
   const auto n = trial.states.size();
   std::vector<double> slip_std(n), log_load(n), load_std(n, noise.load_relative);
   for (std::size_t i = 0; i < n; ++i) {
-    slip_std[i] = slipStd(noise, trial.slip[i]);
+    slip_std[i] = noise.slipStd(trial.slip[i]);
     log_load[i] = std::log(trial.load_N[i]);
   }
   const bool one_speed = slipIsSeen(trial, noise) && !speedIsSeen(trial, noise);
@@ -164,7 +159,7 @@ void calibrateInputs(Trial& trial, const SensorNoise& noise, const std::optional
   const auto slips = one_speed ? slipsAtOneSpeed(trial, noise)
                      : !slipIsSeen(trial, noise)
                          ? shrink(trial.slip, slip_std)
-                         : deconvolve(trial.slip, [&](double slip) { return slipStd(noise, slip); });
+                         : deconvolve(trial.slip, [&](double slip) { return noise.slipStd(slip); });
   const auto loads =
       set ? std::vector<Posterior>{} : deconvolve(log_load, [&](double) { return noise.load_relative; });
   for (std::size_t i = 0; i < n; ++i) {

@@ -49,8 +49,7 @@ class SoilModelFit {
     model.noise = noiseOf(model, noise_);
     for (Eigen::Index row = 0; row < trial_.rows(); ++row) {
       const double slip = slips_[static_cast<std::size_t>(row)];
-      trial_.slip_variance[row] =
-          std::pow(model.noise.slip_absolute, 2) + std::pow(model.noise.slip_relative * slip, 2);
+      trial_.slip_variance[row] = std::pow(model.noise.slipStd(slip), 2);
       trial_.load_variance[row] = std::pow(model.noise.load_relative, 2);
     }
     Fit fit{.model = model};

@@ -135,7 +135,7 @@ double logLikelihood(const Trial& trial, const Eigen::MatrixXd& residual, const 
   double sum = 0.0;
   for (int row = 0; row < trial.rows(); ++row) {
     const double slip = trial.states[static_cast<std::size_t>(row)].slip;
-    const double variance = squared(noise.slip_absolute) + squared(noise.slip_relative * slip);
+    const double variance = squared(noise.slipStd(slip));
     const double own = trial.moment.empty() ? variance : 0.0;
     const Eigen::Matrix4d factor = rowFactor(
         rowCovariance(trial, row, level, slopes, noise, own, squared(noise.load_relative)), residual, row);

@@ -57,8 +57,7 @@ void TraceSearch::finish(TraceResult& result) {
       const auto k = static_cast<int>(c);
       if (!std::isfinite(trial_.measured(row, k))) continue;
       const auto& n = model_.noise;
-      const double slip =
-          std::hypot(n.slip_absolute, n.slip_relative * trial_.slip[static_cast<std::size_t>(row)]);
+      const double slip = n.slipStd(trial_.slip[static_cast<std::size_t>(row)]);
       sum += std::pow(n.absolute[c] / trial_.denominator(row, static_cast<Channel>(k)), 2) +
              std::pow(n.relative[c] * level_(row, k), 2) + std::pow(slip * slopes.by_slip(row, k), 2) +
              std::pow(n.load_relative * slopes.by_load(row, k), 2);

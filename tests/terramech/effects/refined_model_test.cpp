@@ -62,6 +62,24 @@ TEST(RefinedModel, AMirroredWheelReadsMirrored) {
   }
 }
 
+TEST(RefinedModel, ALockedWheelsSlipIsReadWithoutError) {
+  // Closed form: |i| e, no more than what is left to i = -1, where r omega = 0.
+  const SensorNoise noise{.slip_absolute = 0.03, .slip_relative = 0.04};
+  EXPECT_DOUBLE_EQ(noise.slipStd(-1.0), 0.03);
+  EXPECT_DOUBLE_EQ(noise.slipStd(-0.99), std::hypot(0.03, 0.01));
+  EXPECT_DOUBLE_EQ(noise.slipStd(-0.5), std::hypot(0.03, 0.02));
+  EXPECT_DOUBLE_EQ(noise.slipStd(0.0), 0.03);
+  EXPECT_DOUBLE_EQ(noise.slipStd(1.0), 0.05);
+  // Locked and dragged along its axle, a little slip would turn the wheel forwards and dig it in: no error of it is read.
+  RefinedModel model = base();
+  WheelState locked = state();
+  locked.slip = -1.0;
+  locked.slip_angle_rad = 1.5707;
+  const double sure = predictWithStd(model, locked).scaled_std[0];
+  model.noise.slip_relative = 0.06;
+  EXPECT_EQ(predictWithStd(model, locked).scaled_std[0], sure);
+}
+
 TEST(RefinedModel, StdHoldsTheSensorsAndTheSlip) {
   RefinedModel model = base();
   model.noise.absolute[0] = 0.02 * 80.0;
