@@ -95,9 +95,9 @@ EndLevel endOf(const TraceResult& result, const TraceOptions& options, const std
   }
   end.distance = std::sqrt(end.distance / end.rows);
   const Trial unseen = subset(result.trial, held);
-  end.base_rmse = end.refined_rmse = rmseAsMeasured(refitted(result.base, result, options, seen), unseen);
+  end.base_rmse = end.refined_rmse = rmseAsMeasured(refittedBase(result, options, seen), unseen);
   if (!hasCorrections(result)) return end;
-  const RefinedModel by_law = refitted(result.refined, result, options, seen);
+  const RefinedModel by_law = refittedModel(result, options, seen);
   const auto likelihood = [&](const RefinedModel& model) {
     return logLikelihood(end.rows, rmseAsMeasured(model, unseen), result.noise_floor);
   };

@@ -74,44 +74,56 @@ std::vector<std::string> columnsOfOneGroup(const RefinedModel& model) {
 }
 
 /// Measured less predicted, at the slip and load as measured.
-Eigen::MatrixXd asMeasured(const RefinedModel& model, Trial trial) {
-  for (std::size_t row = 0; row < trial.states.size(); ++row) {
-    trial.states[row].slip = trial.slip[row];
-    trial.states[row].load_N = trial.load_N[row];
-  }
+Eigen::MatrixXd leftAsMeasured(const RefinedModel& model, const Trial& trial) {
   SolvedContacts solved;
-  return trial.measured - predictRows(model, trial, solved);
+  return trial.measured - predictRows(model, asMeasured(trial), solved);
 }
 
 /// Each model is fitted under the errors that it would have: what the noise of slip and load does depends on
 /// it.
-Whitening whiteningOf(const RefinedModel& model, const TraceResult& result) {
+Whitening whiteningOf(const RefinedModel& model, const SharedError& shared, const TraceResult& result) {
   SolvedContacts solved;
   Whitening all = whitening(result.trial, predictRows(model, result.trial, solved),
                             inputSlopes(model, result.trial, solved), model.noise);
-  all.unit = result.unit;
-  all.run = result.run;
+  all.unit = shared.unit;
+  all.run = shared.run;
   return all;
 }
 
 }  // namespace
 
-ChannelErrors rmseAsMeasured(const RefinedModel& model, Trial trial) {
+ChannelErrors rmseAsMeasured(const RefinedModel& model, const Trial& trial) {
   Sums sums;
-  sums.add(asMeasured(model, std::move(trial)));
+  sums.add(leftAsMeasured(model, trial));
   return sums.rmse();
 }
 
-RefinedModel refitted(const RefinedModel& model, const TraceResult& result, const TraceOptions& options,
-                      const std::vector<char>& train) {
+namespace {
+
+RefinedModel refitted(const RefinedModel& model, const SharedError& shared, const TraceResult& result,
+                      const TraceOptions& options, const std::vector<char>& train) {
   const Trial seen = subset(result.trial, train);
-  const Whitening white = subset(whiteningOf(model, result), train);
+  const Whitening white = subset(whiteningOf(model, shared, result), train);
   SolvedContacts start;
   FitPlan plan = fitPlan(model, options.fit_soil);
   plan.iterations = 8;
   if (result.first_prior && !model.effects.empty()) plan.effect_prior[0] = *result.first_prior;
   plan.misfit = misfitOf(white.apply(seen.measured - predictRows(model, seen, start)), seen);
   return fitModel(model, seen, white, plan, start).model;
+}
+
+}  // namespace
+
+RefinedModel refittedBase(const TraceResult& result, const TraceOptions& options, std::vector<char> train) {
+  const std::vector<char> of_soil = rowsOfSoil(subset(result.trial, train));
+  for (std::size_t row = 0, seen = 0; row < train.size(); ++row)
+    if (train[row] && !of_soil[seen++]) train[row] = 0;
+  return refitted(result.base, result.base_shared, result, options, train);
+}
+
+RefinedModel refittedModel(const TraceResult& result, const TraceOptions& options,
+                           const std::vector<char>& train) {
+  return refitted(result.refined, result.shared, result, options, train);
 }
 
 HeldOut holdOut(const TraceResult& result, const TraceOptions& options, const Folds& folds) {
@@ -122,8 +134,8 @@ HeldOut holdOut(const TraceResult& result, const TraceOptions& options, const Fo
     const std::vector<char> train = rowsOf(folds, fold, false);
     const Trial unseen = subset(trial, rowsOf(folds, fold, true));
     if (unseen.rows() == 0 || unseen.rows() == trial.rows()) continue;
-    base.add(unseen, asMeasured(refitted(result.base, result, options, train), unseen));
-    refined.add(unseen, asMeasured(refitted(result.refined, result, options, train), unseen));
+    base.add(unseen, leftAsMeasured(refittedBase(result, options, train), unseen));
+    refined.add(unseen, leftAsMeasured(refittedModel(result, options, train), unseen));
   }
   HeldOut held{folds.scheme, base.rmse(), refined.rmse(), Tally::groups(base, refined)};
   keepConfirmed(held, result.scope);

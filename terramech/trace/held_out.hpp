@@ -8,12 +8,16 @@
 
 namespace talus::terramech {
 
-/// A model of a result fitted again to the rows that `train` marks.
-RefinedModel refitted(const RefinedModel& model, const TraceResult& result, const TraceOptions& options,
-                      const std::vector<char>& train);
+/// The base of a result fitted again to the rows that `train` marks, as it was fitted to all of them: by rowsOfSoil() and
+/// what rows share beside the base.
+RefinedModel refittedBase(const TraceResult& result, const TraceOptions& options, std::vector<char> train);
+
+/// Its refined model fitted again to those rows.
+RefinedModel refittedModel(const TraceResult& result, const TraceOptions& options,
+                           const std::vector<char>& train);
 
 /// Errors at the slip and load as measured.
-ChannelErrors rmseAsMeasured(const RefinedModel& model, Trial trial);
+ChannelErrors rmseAsMeasured(const RefinedModel& model, const Trial& trial);
 
 /// Errors under one way to hold rows out, the refined model's within result.scope.
 HeldOut holdOut(const TraceResult& result, const TraceOptions& options, const Folds& folds);

@@ -110,6 +110,27 @@ void check(Path& path) {
   }
 }
 
+/// Finishes the result. While effects make the rows held out of some channel worse, the last of them that was found there
+/// goes out.
+void finishConfirmed(Path& path, TraceResult& result, const TraceOptions& options,
+                     const std::function<bool(double)>& go_on) {
+  const auto speaksAgainst = [&](const TracedEffect& e) {
+    const auto c = static_cast<std::size_t>(e.channel);
+    return result.held_out.refined_rmse[c] > result.held_out.base_rmse[c];
+  };
+  while (true) {
+    result.effects = path.effects;
+    path.search.finish(result);
+    result.held_out = holdOut(result, options, foldsOf(result.trial));
+    std::size_t last = result.effects.size();
+    while (last > path.pinned && !speaksAgainst(result.effects[last - 1])) --last;
+    if (last == path.pinned || !go_on(0.0)) return;
+    path.search.leaveOut(last - 1);
+    path.search.settleAll();
+    path.effects.erase(path.effects.begin() + static_cast<long>(last - 1));
+  }
+}
+
 /// Looks at the earlier effects again once another is in: what they explained beside a gap may be the other's, and
 /// each gives way to what explains clearly more beside the others. One that is left over would bend the search for more.
 void reconsider(Path& path) {
@@ -304,24 +325,24 @@ TraceResult searched(const RefinedModel& base, const Trial& trial, const TraceOp
   TraceResult result;
   result.given = base.soil;
   result.base = path.search.model();
+  result.base_shared = path.search.sharedError();
   if (options.fit_soil && trial.moment.empty())
     path.pinned = correctOffset(path.search, screened, options.seed, path.effects) ? 1 : 0;
   grow(path, trial, options, go_on);
   if (trial.moment.empty() && go_on(0.0)) reconsiderPair(path);
   if (go_on(0.0)) check(path);
   if (go_on(0.0)) path.search.refineCurves();
-  result.effects = path.effects;
   result.rejected = path.rejected;
   result.first_promises = path.first;
   result.last_promises = path.last;
   result.threshold = path.threshold;
-  path.search.finish(result);
+  finishConfirmed(path, result, options, go_on);
   result.ends = endLevels(result, options, watch);
   boundEffects(result.refined, result.trial, result.ends);
-  result.held_out = holdOut(result, options, foldsOf(result.trial));
   result.scope = scopeOf(result);
   keepConfirmed(result.held_out, result.scope);
   keepConfirmed(result.ends, result.noise_floor);
+  result.refined_rmse = rmseOf(predictInScope(result, asMeasured(result.trial)), result.trial);
   result.effects = apart(result.effects);
   return result;
 }

@@ -41,11 +41,7 @@ void TraceSearch::finish(TraceResult& result) {
   }
   result.refined = model_;
   result.first_prior = first_prior_;
-  Trial measured = trial_;
-  for (std::size_t row = 0; row < measured.states.size(); ++row) {
-    measured.states[row].slip = measured.slip[row];
-    measured.states[row].load_N = measured.load_N[row];
-  }
+  const Trial measured = asMeasured(trial_);
   result.base_rmse = rmseOf(result.base, measured);
   result.refined_rmse = rmseOf(result.refined, measured);
   // What the sensors and the noisy inputs alone would leave, at the rows' own slip and load.
@@ -65,8 +61,7 @@ void TraceSearch::finish(TraceResult& result) {
     }
     result.noise_floor[c] = count ? std::sqrt(sum / count) : std::nan("");
   }
-  result.unit = whitening_.unit;
-  result.run = whitening_.run;
+  result.shared = sharedError();
   result.trial = trial_;
 }
 

@@ -101,6 +101,12 @@ struct UnsearchedRows {
   ChannelErrors base_rmse{}, refined_rmse{};
 };
 
+/// An error that the rows of one unit (a run, a stretch of time) share.
+struct SharedError {
+  std::vector<int> unit;                          ///< of each row; empty: rows are on their own
+  Eigen::Matrix4d run = Eigen::Matrix4d::Zero();  ///< its covariance between the channels [-]
+};
+
 /// What tracing found.
 struct TraceResult {
   Soil given;            ///< of the base, before any fit
@@ -114,11 +120,11 @@ struct TraceResult {
   double threshold = 0.0;                              ///< gain that noise reaches in a share `significance`
   ChannelErrors base_rmse{}, refined_rmse{}, noise_floor{};
   std::optional<Estimate> first_prior;  ///< of the first effect's first parameter, known beside the model
-  std::vector<int> unit;  ///< of each row: those of one unit share an error; empty: rows are on their own
-  Eigen::Matrix4d run = Eigen::Matrix4d::Zero();  ///< covariance of that error between the channels [-]
-  std::vector<EndLevel> ends;                     ///< of the model beyond its rows
-  HeldOut held_out;                               ///< under foldsOf()
-  ModelScope scope;                               ///< where held-out rows confirmed the effects
+  SharedError base_shared,
+      shared;  ///< what the rows of a run have in common beside the base, and the refined model
+  std::vector<EndLevel> ends;  ///< of the model beyond its rows
+  HeldOut held_out;            ///< under foldsOf()
+  ModelScope scope;            ///< where held-out rows confirmed the effects
 };
 
 /// Root mean square of measured less predicted, scaled.

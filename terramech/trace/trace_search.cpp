@@ -60,15 +60,11 @@ Fit TraceSearch::fit(const RefinedModel& model, int iterations, SolvedContacts& 
 }
 
 void TraceSearch::fitSoil() {
-  // A soil is learned where the wheel rolls straight, if there are rows enough: at an angle the base has no
-  // say.
   const Trial all = trial_;
-  std::vector<char> straight;
-  for (const WheelState& s : trial_.states) straight.push_back(std::abs(s.slip_angle_rad) < 0.1);
-  const auto count = std::count(straight.begin(), straight.end(), 1);
-  const bool part = count >= 20 && count < trial_.rows();
+  const std::vector<char> rows = rowsOfSoil(all);
+  const bool part = std::find(rows.begin(), rows.end(), 0) != rows.end();
   if (part) {
-    trial_ = subset(all, straight);
+    trial_ = subset(all, rows);
     folds_ = foldsOf(trial_);
     solved_ = {};
     refresh();

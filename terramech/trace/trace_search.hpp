@@ -65,6 +65,9 @@ class TraceSearch {
   /// The effects of accepted candidate number k as they are now in the model.
   std::vector<Effect> parts(std::size_t k) const;
 
+  /// What the rows of a run have in common beside the model.
+  SharedError sharedError() const { return {whitening_.unit, whitening_.run}; }
+
   /// Squared length of the whitened residuals.
   double chi2() const { return white_.squaredNorm(); }
 

@@ -271,6 +271,21 @@ void dropBrokenMoments(const Trial& trial, const std::vector<char>& keep, Trial&
 
 }  // namespace
 
+std::vector<char> rowsOfSoil(const Trial& trial) {
+  std::vector<char> straight;
+  for (const WheelState& s : trial.states) straight.push_back(std::abs(s.slip_angle_rad) < 0.1);
+  if (std::count(straight.begin(), straight.end(), 1) < 20) straight.assign(straight.size(), 1);
+  return straight;
+}
+
+Trial asMeasured(Trial trial) {
+  for (std::size_t row = 0; row < trial.states.size(); ++row) {
+    trial.states[row].slip = trial.slip[row];
+    trial.states[row].load_N = trial.load_N[row];
+  }
+  return trial;
+}
+
 Trial subset(const Trial& trial, const std::vector<char>& keep) {
   Trial part;
   part.covariates = trial.covariates;

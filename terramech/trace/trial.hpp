@@ -56,6 +56,13 @@ Eigen::VectorXd covariateValues(const Trial& trial, const std::string& name,
 /// The rows of a trial that `keep` marks.
 Trial subset(const Trial& trial, const std::vector<char>& keep);
 
+/// Rows of which a soil is learned: those of wheels that roll straight where there are 20 of them, else all. At an angle
+/// the base has no say.
+std::vector<char> rowsOfSoil(const Trial& trial);
+
+/// The rows at slip and load as they were measured, whatever calibration made of them.
+Trial asMeasured(Trial trial);
+
 /// Model readings of all rows over the measured load, rows x kChannels [-]; with moments, DP/W of a moment's
 /// first row is the sum of its wheels' pulls over the sum of their loads. `solved` (may be empty at first)
 /// carries what was solved from call to call.

@@ -48,15 +48,15 @@ TEST(TraceNoise, WhatRunsShareIsNoNoiseOfTheirRows) {
   TraceSearch search(sand(), noisyTrial(sand(), 0.02, 0.1), {});
   TraceResult together;
   search.finish(together);
-  ASSERT_EQ(together.unit.size(), 160U);
+  ASSERT_EQ(together.shared.unit.size(), 160U);
   // Property: ten offsets of 0.1 know their own variance to 45 %.
-  EXPECT_NEAR(std::sqrt(together.run(0, 0)), 0.1, 0.05);
+  EXPECT_NEAR(std::sqrt(together.shared.run(0, 0)), 0.1, 0.05);
   // Property: the offsets' 0.1 of the load is not taken for the sensor's 2 % of a pull of some 0.3 W.
   const SensorNoise& noise = search.model().noise;
   EXPECT_LT(std::hypot(noise.absolute[0] / 80.0, 0.3 * noise.relative[0]), 0.03);
   TraceResult alone;
   TraceSearch(sand(), noisyTrial(sand(), 0.02), {}).finish(alone);
-  EXPECT_LT(std::sqrt(alone.run(0, 0)), 0.01);
+  EXPECT_LT(std::sqrt(alone.shared.run(0, 0)), 0.01);
 }
 
 }  // namespace

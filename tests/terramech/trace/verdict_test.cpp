@@ -73,7 +73,7 @@ TEST(Verdict, PredictionsCarryWhatANewRunWouldShare) {
   // Closed form: hypot(0.3 N, 0.008 * 50 N) = 0.5 N.
   TraceResult result = resultOf(0.01, 0.01, 0.01, 0);
   result.refined.noise.absolute[0] = 0.3;
-  result.run(0, 0) = 0.008 * 0.008;
+  result.shared.run(0, 0) = 0.008 * 0.008;
   EXPECT_NEAR(forPrediction(result).noise.absolute[0], 0.5, 1e-12);
 }
 
