@@ -14,6 +14,7 @@
 #include <talus/maps/parallel_for.hpp>
 #include <talus/plausible.hpp>
 #include <talus/terramech/contact/wong_reece_batch.hpp>
+#include <talus/terramech/io/column_units.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
 
 namespace talus::cli {
@@ -63,6 +64,9 @@ bool isResult(const std::string& name) {
 
 /// Where in a row each input stands.
 std::vector<std::optional<std::size_t>> positions(const CsvReader& reader, const std::string& path) {
+  std::vector<std::string> known;
+  for (const InputColumn& input : kInputs) known.emplace_back(input.name);
+  terramech::checkColumnUnits(reader.header(), known, path);
   std::vector<std::optional<std::size_t>> at;
   std::string missing;
   for (const InputColumn& input : kInputs) {

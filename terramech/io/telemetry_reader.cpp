@@ -10,6 +10,7 @@
 #include <utility>
 
 #include <talus/plausible.hpp>
+#include <talus/terramech/io/column_units.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
 #include <talus/terramech/io/telemetry_reader.hpp>
 
@@ -256,6 +257,7 @@ Telemetry readTelemetry(const std::filesystem::path& path, const TelemetryOption
   CsvReader reader{path};
   Telemetry telemetry;
   telemetry.source = path.string();
+  checkColumnUnits(reader.header(), knownTelemetryColumns(), telemetry.source);
   checkColumns(reader.header(), options.required, telemetry.source);
   Table table{reader.header(), options};
   RepeatedRows repeats(reader.header());

@@ -25,7 +25,8 @@ struct TelemetryOptions {
 /// load is not above 0, the sinkage is outside [0, 2r), the slip outside [-1, 1], a wheel dimension out of
 /// range, or the row is cut short. In unknown columns NaN counts as missing. Read in pieces: memory holds the
 /// columns, never the file. Throws InputError when the file cannot be read, has no header or one with a name
-/// twice, lacks a required column, or no row can be used.
+/// twice or with a known column in another unit than it is read in (column_units.hpp), lacks a required column,
+/// or no row can be used.
 Telemetry readTelemetry(const std::filesystem::path& path, const TelemetryOptions& options = {},
                         const ProgressMonitor& watch = {});
 

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include <talus/talus.hpp>
+#include <talus/terramech/io/column_units.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
 #include <talus/terramech/trace/prediction_table.hpp>
 #include <talus/terramech/trace/trial.hpp>
@@ -33,6 +34,7 @@ struct Rows {
 
 Rows readRows(const std::filesystem::path& path, const std::stop_token& stop) {
   CsvReader reader(path);
+  checkColumnUnits(reader.header(), knownTelemetryColumns(), path.string());
   Rows all{reader.header(), {}};
   for (CsvRow row; !stop.stop_requested() && reader.next(row);) {
     row.fields.resize(all.header.size());

@@ -1,6 +1,11 @@
 // Tables of measurements, models and maps of beliefs that cannot be used, told in one line by every command
 // that reads them.
+#include <filesystem>
+
+#include <gmock/gmock.h>
+
 #include "bad_input.hpp"
+#include "run_program.hpp"
 
 namespace talus::cli {
 namespace {
@@ -21,6 +26,32 @@ TEST(BadInput, Telemetry) {
     calls.push_back({{"trace", file}, 2, file});
   }
   expectRefused(BadFiles(), calls);
+}
+
+// Property: every table of wheels is held to the units of its columns; nothing is written of one that is not.
+TEST(BadInput, AKnownColumnInAnotherUnit) {
+  const Folder folder;
+  const std::string rows = "\n80,0.2,2,12,0.1,0.1\n90,0.3,3,15,0.1,0.1\n";
+  folder.write("t.csv", "load_N,slip,torque_Nm,sinkage_mm,wheel_radius_m,wheel_width_m" + rows);
+  folder.write("c.csv", "cohesion_Pa,friction_angle_deg\n800,30\n");
+  for (const std::vector<std::string>& call : {std::vector<std::string>{"trace", "t.csv", "--html", "out"},
+                                               {"estimate", "t.csv", "--method", "wong-reece"},
+                                               {"estimate", "t.csv", "--method", "bevameter"},
+                                               {"assess", "t.csv", "--html", "out"},
+                                               {"assess", "t.csv", "--model", "sandy_loam"},
+                                               {"predict", "t.csv", "--model", "sandy_loam", "-o", "out"}}) {
+    const Ran ran = runTalus(call, folder.path());
+    EXPECT_EQ(ran.code, 2) << call[0];
+    EXPECT_THAT(ran.err,
+                testing::HasSubstr("t.csv:1: column sinkage_mm is in another unit than it is read in; write "
+                                   "column sinkage_m, in m (sinkage_mm times 0.001)"))
+        << call[0];
+    EXPECT_EQ(ran.out, "");
+  }
+  const Ran ran = runTalus({"wheel", "--cases", "c.csv", "-o", "out"}, folder.path());
+  EXPECT_EQ(ran.code, 2);
+  EXPECT_THAT(ran.err, testing::HasSubstr("c.csv:1: column friction_angle_deg"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "out"));
 }
 
 TEST(BadInput, MapsOfBeliefs) {

@@ -1,0 +1,179 @@
+#include <algorithm>
+#include <filesystem>
+
+#include <talus/terramech/estimate/telemetry.hpp>
+#include <talus/terramech/io/column_units.hpp>
+#include <talus/terramech/io/csv_reader.hpp>
+#include <talus/terramech/io/telemetry_reader.hpp>
+
+#include "requirement.hpp"
+#include "temporary_file.hpp"
+
+namespace talus::terramech {
+namespace {
+
+using testing::HasSubstr;
+
+std::string errorOf(const std::vector<std::string>& header) {
+  try {
+    checkColumnUnits(header, knownTelemetryColumns(), "t.csv");
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+// Property: what a file measured is never dropped for its unit.
+TEST(ColumnUnits, AKnownColumnInAnotherUnitIsRefused) {
+  for (const auto& [name, write] : std::initializer_list<std::pair<const char*, const char*>>{
+           {"sinkage_mm", "sinkage_m, in m (sinkage_mm times 0.001)"},
+           {"sinkage_cm", "sinkage_m, in m (sinkage_cm times 0.01)"},
+           {"sinkage_um", "sinkage_m, in m"},
+           {"sinkage_inch", "sinkage_m, in m"},
+           {"sinkage_percent", "sinkage_m, in m"},
+           {"torque_mNm", "torque_Nm, in Nm (torque_mNm times 0.001)"},
+           {"torque_kNm", "torque_Nm, in Nm (torque_kNm times 1000)"},
+           {"torque_Ncm", "torque_Nm, in Nm (torque_Ncm times 0.01)"},
+           {"drawbar_pull_kN", "drawbar_pull_N, in N (drawbar_pull_kN times 1000)"},
+           {"side_force_mN", "side_force_N, in N"},
+           {"load_kN", "load_N, in N"},
+           {"load_kg", "load_N, in N"},
+           {"load_lbf", "load_N, in N"},
+           {"slip_angle_deg", "slip_angle_rad, in rad (slip_angle_deg times 0.01745329252)"},
+           {"slip_percent", "slip, a number without a unit"},
+           {"slip_pct", "slip, a number"},
+           {"slip_deg", "slip, a number"},
+           {"slope_percent", "slope_rad, in rad"},
+           {"slope_mrad", "slope_rad, in rad"},
+           {"roll_deg", "roll_rad, in rad"},
+           {"pitch_degrees", "pitch_rad, in rad"},
+           {"heading_deg", "heading_rad, in rad"},
+           {"time_ms", "time_s, in s (time_ms times 0.001)"},
+           {"time_min", "time_s, in s (time_min times 60)"},
+           {"speed_kmh", "speed_mps, in mps"},
+           {"speed_m_s", "speed_mps, in mps"},
+           {"rim_speed_cmps", "rim_speed_mps, in mps (rim_speed_cmps times 0.01)"},
+           {"rim_speed_rpm", "rim_speed_mps, in mps"},
+           {"x_km", "x_m, in m"},
+           {"z_mm", "z_m, in m"},
+           {"wheel_radius_mm", "wheel_radius_m, in m"},
+           {"wheel_width_cm", "wheel_width_m, in m"},
+           {"grouser_height_mm", "grouser_height_m, in m"},
+           {"shear_modulus_mm", "shear_modulus_m, in m"},
+           {"shear_modulus_kPa", "shear_modulus_m, in m"}}) {
+    const std::string error = errorOf({"run", name});
+    EXPECT_THAT(error, HasSubstr(std::string("t.csv:1: column ") + name)) << name;
+    EXPECT_THAT(error, HasSubstr(std::string("write column ") + write)) << name;
+    EXPECT_EQ(error.find('\n'), std::string::npos) << name;
+  }
+}
+
+TEST(ColumnUnits, BesideTheKnownColumnAnotherIsOnesOwn) {
+  for (const char* name : {"sinkage_mm", "sinkage", "Sinkage_m"})
+    EXPECT_EQ(errorOf({"sinkage_m", name}), "") << name;
+}
+
+TEST(ColumnUnits, AKnownNameWithoutItsUnitIsRefused) {
+  for (const std::string& column : knownTelemetryColumns()) {
+    const std::size_t end = column.rfind('_');
+    if (column == "slip" || column == "pass_index" || column == "grouser_count") continue;
+    if (column == "time_s" || end == 1) continue;  // a date, an axis
+    EXPECT_THAT(errorOf({column.substr(0, end)}),
+                HasSubstr("names no unit; write column " + column + ", in "));
+  }
+}
+
+TEST(ColumnUnits, AKnownNameInOtherLettersIsRefused) {
+  for (const char* name : {"Load_N", "load_n", "LOAD_N", "load [N]", "Load (N)", "load-N"})
+    EXPECT_THAT(errorOf({name}), HasSubstr("is not spelled as it is read; write column load_N, in N"))
+        << name;
+  EXPECT_THAT(errorOf({"Slip"}), HasSubstr("write column slip, a number"));
+  EXPECT_THAT(errorOf({"slip (%)"}), HasSubstr("write column slip, a number"));
+  EXPECT_THAT(errorOf({"Slip angle [\xC2\xB0]"}), HasSubstr("write column slip_angle_rad"));
+  EXPECT_THAT(errorOf({"Sinkage (mm)"}), HasSubstr("write column sinkage_m"));
+  EXPECT_THAT(errorOf({"speed [m/s]"}), HasSubstr("write column speed_mps"));
+}
+
+// Property: every known name passes, and so do names of one's own that only resemble one.
+TEST(ColumnUnits, OwnColumnsPass) {
+  EXPECT_EQ(errorOf(knownTelemetryColumns()), "");
+  for (const char* name : {"",
+                           "run",
+                           "wheel",
+                           "sinkage_note",
+                           "load_cell_id",
+                           "temperature_C",
+                           "slip_class",
+                           "torque_limit",
+                           "torque_limit_Nm",
+                           "load_case",
+                           "load_std_N",
+                           "slip_long",
+                           "slip_yaw",
+                           "slip_fl",
+                           "slip_t",
+                           "slip_min",
+                           "speed_min",
+                           "speed_max",
+                           "speed_limit_mps",
+                           "sinkage_raw_mm",
+                           "sink_fl_m",
+                           "time_of_day",
+                           "time_of_day_h",
+                           "x_mps",
+                           "y_N",
+                           "z_rad",
+                           "z_raw_m",
+                           "heading_source",
+                           "slope_class",
+                           "roll_number",
+                           "pitch_note",
+                           "wheel_id",
+                           "wheel_m",
+                           "run_s",
+                           "wheel_diameter_m",
+                           "wheel_radius_class",
+                           "grain_mm",
+                           "moisture_percent",
+                           "payload_kg",
+                           "soil",
+                           "soil_temperature_C",
+                           "current_A",
+                           "predicted_sinkage_mm",
+                           "drawbar_raw",
+                           "time",
+                           "x",
+                           "F_N",
+                           "p_Pa",
+                           "mm",
+                           "kN",
+                           "sinkage_true",
+                           "dp_true",
+                           "density_kg_m3",
+                           "pass",
+                           "grouser",
+                           "side",
+                           "rim"})
+    EXPECT_EQ(errorOf({name}), "");
+  EXPECT_EQ(errorOf({"slip", "slip_mps"}), "") << "beside the slip, a slip speed is another quantity";
+}
+
+TEST(ColumnUnits, TheReaderOfTelemetryRefuses) {
+  const test::TemporaryFile file{"load_N,slip,sinkage_mm\n80,0.1,12\n"};
+  EXPECT_THROW(readTelemetry(file.path(), {.required = {"load_N", "slip"}}), InputError);
+}
+
+TEST(ColumnUnits, MeasuredFilesPass) {
+  const char* folder = std::getenv("TALUS_MEASURED_DATA");
+  TALUS_REQUIRE(folder != nullptr, "TALUS_MEASURED_DATA is not set");
+  int files = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+    if (entry.path().extension() != ".csv") continue;
+    ++files;
+    EXPECT_EQ(errorOf(CsvReader(entry.path()).header()), "") << entry.path();
+  }
+  EXPECT_GE(files, 8);
+}
+
+}  // namespace
+}  // namespace talus::terramech
