@@ -6,6 +6,7 @@
 
 #include <talus/cli/draw/html_report.hpp>
 #include <talus/cli/soil/searched_report.hpp>
+#include <talus/cli/soil/trace_answer.hpp>
 #include <talus/cli/soil/trace_report.hpp>
 
 namespace talus::cli {

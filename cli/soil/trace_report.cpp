@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include <talus/cli/soil/searched_report.hpp>
+#include <talus/cli/soil/trace_answer.hpp>
 #include <talus/cli/soil/trace_report.hpp>
 
 namespace talus::cli {
@@ -65,7 +66,7 @@ ordered_json evidenceJson(const TraceStory& story, const TracedEffect& effect) {
           {"to_tell_apart", separatingMeasurement(story.result.trial, effect)}};
 }
 
-ordered_json effectJson(const TraceStory& story, const TracedEffect& effect) {
+ordered_json effectJson(const TraceStory& story, const TracedEffect& effect, const EffectRole& role) {
   const Effect& part = effect.chosen.candidate.parts.front();
   ordered_json out{{"name", part.name},
                    {"family", effect.chosen.candidate.family},
@@ -75,6 +76,8 @@ ordered_json effectJson(const TraceStory& story, const TracedEffect& effect) {
   out["parameters"] = parametersJson(effect.chosen.candidate);
   out["parameters_std"] = stdJson(effect);
   out["at_bound"] = atBounds(part);
+  out["adds"] = role.adds;
+  out["takes_back"] = role.takes_back;
   out["p_value"] = effect.p_value;
   out["evidence"] = evidenceJson(story, effect);
   if (const EffectForm* form = findEffect(part.name)) {
@@ -91,8 +94,7 @@ ordered_json rejectedJson(const TraceResult& result) {
   ordered_json out = ordered_json::array();
   for (const Explanation& e : result.rejected) {
     ordered_json one = rivalJson(e);
-    one["reason"] = e.gain <= result.threshold ? "gains no more than noise would"
-                                               : "explains less than the selected effect";
+    one["reason"] = refusal(result, e);
     out.push_back(one);
   }
   return out;
@@ -113,11 +115,12 @@ double correlation(const Eigen::VectorXd& x, const Eigen::VectorXd& y) {
   return xx > 0.0 && yy > 0.0 ? xy / std::sqrt(xx * yy) : 0.0;
 }
 
-std::string effectLine(const TracedEffect& effect) {
+std::string effectLine(const TracedEffect& effect, const EffectRole& role) {
   const Effect& part = effect.chosen.candidate.parts.front();
   std::string line =
       fmt::format("  {} in {} (covariate {}{})", part.name, name(effect.channel), covariateOf(part),
                   part.only_column.empty() ? "" : ", only for the value " + part.only_value);
+  if (!role.adds) line += ": " + roleText(role);
   if (const EffectForm* form = findEffect(part.name)) {
     line += fmt::format("\n    {}   [{}]", form->formula, form->source);
     const std::vector<std::string> bounds = atBounds(part);
@@ -262,6 +265,7 @@ ordered_json answerJson(const TraceResult& result) {
           {"varies_with", a.column},
           {"gain", a.gain},
           {"threshold", result.threshold},
+          {"refused", refusal(result)},
           {"rows_that_decide", a.measure},
           {"soil_off_prior", moved},
           {"soil_at_bound", soilAtBounds(result.refined)}};
@@ -284,7 +288,8 @@ ordered_json errorsJson(const ChannelErrors& errors) {
 ordered_json traceJson(const TraceStory& story) {
   const TraceResult& r = story.result;
   ordered_json effects = ordered_json::array();
-  for (const TracedEffect& e : r.effects) effects.push_back(effectJson(story, e));
+  const std::vector<EffectRole> roles = rolesOf(r);
+  for (std::size_t k = 0; k < roles.size(); ++k) effects.push_back(effectJson(story, r.effects[k], roles[k]));
   ordered_json tests = ordered_json::array();
   for (std::size_t k = 0; k < r.first_promises.size() && k < 12; ++k) {
     const Promise& p = r.first_promises[k];
@@ -322,22 +327,6 @@ std::string beyondAxleText(const TraceStory& story) {
       story.beyond_axle, errors);
 }
 
-std::string verdictText(const TraceResult& result) {
-  const Answer a = answerOf(result);
-  const std::string rest =
-      fmt::format("rms of {} {:.4f}, of the sensors alone {:.4f}", name(a.channel), a.rest, a.floor);
-  if (a.verdict == Verdict::NothingMissing)
-    return "nothing missing: the residuals are consistent with noise; " + rest;
-  if (a.verdict == Verdict::Explained)
-    return fmt::format("explained by {} effect{}: {}{}", result.effects.size(),
-                       result.effects.size() == 1 ? "" : "s", rest,
-                       a.open && !a.column.empty() ? ", of which most varies with " + a.column : "");
-  const std::string where =
-      a.column.empty() ? "it follows no column" : fmt::format("it varies most with {}", a.column);
-  return fmt::format("unexplained: {}; {} (gain {:.1f} of {:.1f} that would be evidence); {} would decide",
-                     rest, where, a.gain, result.threshold, a.measure);
-}
-
 std::string movedText(const MovedParameter& p) {
   return fmt::format(
       "warning: {} of the soil is fitted {:.1f} standard deviations from its prior ({:.4g}, prior {:.4g} +- "
@@ -354,7 +343,8 @@ std::string traceText(const TraceStory& story) {
   for (const MovedParameter& p : movedSoil(r)) out += movedText(p) + "\n";
   for (const std::string& name : soilAtBounds(r.refined))
     out += "warning: " + name + " of the soil is at the bound of its range\n";
-  for (const TracedEffect& e : r.effects) out += effectLine(e);
+  const std::vector<EffectRole> roles = rolesOf(r);
+  for (std::size_t k = 0; k < roles.size(); ++k) out += effectLine(r.effects[k], roles[k]);
   for (const HeldOut& held : story.held_out) {
     out += fmt::format(
         "held out: {}\n"

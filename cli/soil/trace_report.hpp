@@ -38,9 +38,6 @@ std::string separatingMeasurement(const terramech::Trial& trial, const terramech
 /// One line about the rows left out because the wheel is sunk to its axle; there must be some.
 std::string beyondAxleText(const TraceStory& story);
 
-/// The answer in one line: what is left, in which channel, over which column, which rows would decide.
-std::string verdictText(const terramech::TraceResult& result);
-
 /// One line about a parameter of the soil far from its prior.
 std::string movedText(const terramech::MovedParameter& parameter);
 

@@ -78,7 +78,7 @@ Answer answerOf(const TraceResult& result) {
     answer.gain = p.gain;
     break;
   }
-  answer.measure = furtherRows(result, answer);
+  if (answer.open) answer.measure = furtherRows(result, answer);
   return answer;
 }
 

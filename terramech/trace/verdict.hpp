@@ -25,7 +25,7 @@ struct Answer {
   double rest = 0.0, floor = 0.0;          ///< rms there of the refined model, and of the sensors alone [-]
   std::string column;   ///< over which the rest varies most; empty: over none that is known
   double gain = 0.0;    ///< what that column promises, against TraceResult::threshold
-  std::string measure;  ///< rows that would decide
+  std::string measure;  ///< rows that would decide; empty where nothing exceeds its floor
 };
 
 /// A channel's rest exceeds its floor where its variance does by more than three standard errors of the variance of as

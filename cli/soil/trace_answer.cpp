@@ -1,0 +1,116 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <talus/cli/soil/trace_answer.hpp>
+
+namespace talus::cli {
+namespace {
+
+using namespace terramech;
+
+bool same(const Candidate& a, const Candidate& b) {
+  const Effect &x = a.parts.front(), &y = b.parts.front();
+  return x.name == y.name && a.covariate() == b.covariate() && x.only_value == y.only_value;
+}
+
+/// Whether two models predict the same of the trial's rows.
+bool agree(const Eigen::MatrixXd& a, const RefinedModel& model, const Trial& trial) {
+  SolvedContacts solved;
+  const Eigen::MatrixXd difference = a - predictRows(model, trial, solved);
+  return difference.array().isNaN().select(0.0, difference).cwiseAbs().maxCoeff() <= 1e-5;
+}
+
+struct Term {
+  const char* name;
+  double Soil::*field;
+};
+
+/// Terms of the base model that a form of the library may stand in place of.
+constexpr Term kTerms[] = {{"digging_exponent", &Soil::digging_exponent},
+                           {"side_bulldozing", &Soil::side_bulldozing}};
+
+EffectRole roleOf(const RefinedModel& refined, std::size_t effect, const Trial& trial) {
+  SolvedContacts solved;
+  const Eigen::MatrixXd with = predictRows(refined, trial, solved);
+  RefinedModel without = refined;
+  without.effects.erase(without.effects.begin() + static_cast<long>(effect));
+  if (agree(with, without, trial)) return {.adds = false};
+  for (const Term& term : kTerms) {
+    RefinedModel less = without;
+    less.soil.*term.field = 0.0;
+    if (agree(with, less, trial)) return {.adds = false, .takes_back = {term.name}};
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string refusal(const TraceResult& result, const Explanation& rejected) {
+  if (rejected.gain <= result.threshold) return "gains no more than noise would";
+  if (!result.effects.empty()) return "explains less than the selected effect";
+  if (!result.trial.moment.empty())
+    return "gains more than noise would, but carries less than an effect of a drive must";
+  return "gains more than noise would, but not beside the others";
+}
+
+std::string refusal(const TraceResult& result) {
+  if (result.last_promises.empty() || result.last_promises.front().gain <= 0.0) return "";
+  const Promise& promise = result.last_promises.front();
+  if (promise.gain <= result.threshold)
+    return fmt::format("gain {:.1f}, below the {:.1f} that would be evidence", promise.gain,
+                       result.threshold);
+  const std::string first = fmt::format("gain {:.1f} to first order", promise.gain);
+  const auto is_it = [&](const auto& e) { return same(e.candidate, promise.candidate); };
+  const auto fitted = std::find_if(result.rejected.begin(), result.rejected.end(), is_it);
+  if (fitted == result.rejected.end()) {
+    const bool found = std::any_of(result.effects.begin(), result.effects.end(),
+                                   [&](const TracedEffect& e) { return is_it(e.chosen); });
+    return first + (found ? ", of which an effect was accepted; no further one was searched"
+                          : "; accepted first, and left out as it gained too little beside the others");
+  }
+  if (fitted->gain <= result.threshold)
+    return fmt::format("{}, {:.1f} when fitted, below the {:.1f} that would be evidence", first, fitted->gain,
+                       result.threshold);
+  return fmt::format("{}, {:.1f} when fitted: {}", first, fitted->gain, refusal(result, *fitted));
+}
+
+std::string verdictText(const TraceResult& result) {
+  const Answer a = answerOf(result);
+  const std::string rest =
+      fmt::format("rms of {} {:.4f}, of the sensors alone {:.4f}", name(a.channel), a.rest, a.floor);
+  if (a.verdict == Verdict::NothingMissing)
+    return "nothing missing: the residuals are consistent with noise; " + rest;
+  if (a.verdict == Verdict::Explained)
+    return fmt::format("explained by {} effect{}: {}{}", result.effects.size(),
+                       result.effects.size() == 1 ? "" : "s", rest,
+                       a.open && !a.column.empty() ? ", of which most varies with " + a.column : "");
+  const std::string where = a.column.empty()
+                                ? "it follows no column"
+                                : fmt::format("it varies most with {} ({})", a.column, refusal(result));
+  return fmt::format("unexplained: {}; {}; {} would decide", rest, where, a.measure);
+}
+
+std::vector<EffectRole> rolesOf(const TraceResult& result) {
+  std::vector<EffectRole> roles;
+  std::size_t at = result.base.effects.size();
+  for (const TracedEffect& effect : result.effects) {
+    const auto parts = effect.chosen.candidate.parts.size();
+    const bool one = parts == 1 && at < result.refined.effects.size() &&
+                     result.refined.effects[at].name == effect.chosen.candidate.parts.front().name;
+    roles.push_back(one ? roleOf(result.refined, at, result.trial) : EffectRole{});
+    at += parts;
+  }
+  return roles;
+}
+
+std::string roleText(const EffectRole& role) {
+  if (role.adds) return "";
+  if (role.takes_back.empty()) return "adds nothing, the refined model predicts the same without it";
+  return fmt::format("takes back the base's {} and adds nothing in its place",
+                     fmt::join(role.takes_back, ", "));
+}
+
+}  // namespace talus::cli

@@ -1,0 +1,86 @@
+#include <cmath>
+
+#include <talus/cli/soil/trace_answer.hpp>
+#include <talus/terramech/io/soil_library.hpp>
+
+namespace talus::cli {
+namespace {
+
+using terramech::TraceResult;
+
+/// Ten rows whose errors exceed the floor, one candidate promising `promised`, gaining `fitted` when fitted; 6 is evidence.
+TraceResult resultOf(double promised, double fitted) {
+  TraceResult result;
+  result.trial.states.resize(10, {.load_N = 50.0});
+  result.trial.load_N.assign(10, 50.0);
+  result.trial.run.assign(10, 0);
+  result.trial.measured = Eigen::MatrixXd::Constant(10, terramech::kChannels, std::nan(""));
+  result.trial.measured.col(0).setZero();
+  result.base_rmse[0] = result.refined_rmse[0] = 0.1;
+  result.noise_floor[0] = 0.01;
+  result.threshold = 6.0;
+  const terramech::Candidate curve{{{.name = "empirical", .covariate = "slip"}}, "empirical", 2};
+  result.last_promises = {{curve, promised, 0.4}};
+  result.rejected = {{.candidate = curve, .gain = fitted}};
+  return result;
+}
+
+// It read "gain 7.7 of 6.0 that would be evidence".
+TEST(TraceAnswer, SaysWhichNumberFellShort) {
+  EXPECT_EQ(refusal(resultOf(2.5, 2.0)), "gain 2.5, below the 6.0 that would be evidence");
+  EXPECT_EQ(refusal(resultOf(7.7, 5.1)),
+            "gain 7.7 to first order, 5.1 when fitted, below the 6.0 that would be evidence");
+  EXPECT_THAT(verdictText(resultOf(7.7, 5.1)), testing::HasSubstr("varies most with slip (gain 7.7 to"));
+}
+
+TEST(TraceAnswer, NamesTheOtherCheckThatRefused) {
+  TraceResult result = resultOf(7.7, 7.1);
+  EXPECT_THAT(refusal(result), testing::EndsWith("7.1 when fitted: gains more than noise would, but not "
+                                                 "beside the others"));
+  result.trial.moment.assign(10, 0);
+  EXPECT_THAT(refusal(result), testing::HasSubstr("carries less than an effect of a drive must"));
+  result.rejected.clear();
+  EXPECT_THAT(refusal(result), testing::HasSubstr("accepted first, and left out"));
+}
+
+TEST(TraceAnswer, NothingMissingAsksForNoRows) {
+  TraceResult result = resultOf(2.5, 2.0);
+  EXPECT_FALSE(answerOf(result).measure.empty());
+  result.base_rmse[0] = result.refined_rmse[0] = 0.01;
+  EXPECT_EQ(answerOf(result).measure, "");
+}
+
+// Property: side bulldozing of size 0 stands in place of the base's, whose term is gone then; a rear fill of size 0 of
+// a wheel that does not dig is nothing, and one of the base's own size would be felt.
+TEST(TraceAnswer, AnEffectOfSizeZeroTakesBackTheTermOfTheBase) {
+  TraceResult result = resultOf(2.5, 2.0);
+  for (int row = 0; row < 10; ++row) {
+    auto& state = result.trial.states[static_cast<std::size_t>(row)];
+    state = {.wheel = {.radius_m = 0.1, .width_m = 0.1},
+             .load_N = 50.0,
+             .slip = 0.3,
+             .slip_angle_rad = 0.05 * row};
+    result.trial.slip.push_back(state.slip);
+  }
+  result.base.soil = terramech::loadSoil("sandy_loam");
+  result.refined = result.base;
+  const auto take = [&](const char* name, const char* column, std::vector<double> parameters) {
+    const terramech::Effect effect{.name = name, .covariate = column, .parameters = std::move(parameters)};
+    result.refined.effects.push_back(effect);
+    result.effects.emplace_back().chosen.candidate = {{effect}, "", 1};
+  };
+  take("side_bulldozing", "slip_angle_rad", {0.0});
+  take("rear_fill", "slip", {0.0});
+  take("skid_sinkage", "slip", {0.3});
+  take("slip_sinkage_linear", "slip", {0.5});
+  const std::vector<EffectRole> roles = rolesOf(result);
+  ASSERT_EQ(roles.size(), 4U);
+  EXPECT_EQ(roleText(roles[0]), "takes back the base's side_bulldozing and adds nothing in its place");
+  EXPECT_FALSE(roles[1].adds);
+  EXPECT_TRUE(roles[1].takes_back.empty());
+  EXPECT_TRUE(roles[3].adds);
+  EXPECT_EQ(roleText(roles[3]), "");
+}
+
+}  // namespace
+}  // namespace talus::cli
