@@ -54,20 +54,61 @@ Plot residualPlot(const TraceResult& r, const std::string& covariate, Channel ch
           .series = {base, refined}};
 }
 
+/// What is left of the readings without one effect, and what that effect adds, row by row over its column (over the rows in
+/// order where it acts on a constant or a text).
+Plot effectPlot(const TraceResult& r, const TracedEffect& effect, std::size_t at,
+                const Eigen::MatrixXd& level, const Eigen::VectorXd& sinkage) {
+  RefinedModel without = r.refined;
+  without.effects.erase(without.effects.begin() + static_cast<long>(at));
+  SolvedContacts solved;
+  const Eigen::MatrixXd rest = predictRows(without, r.trial, solved);
+  const std::string column = effect.chosen.candidate.covariate();
+  const Eigen::VectorXd x = covariateValues(r.trial, column, sinkage);
+  const bool by_row = !x.array().isFinite().any();
+  Series left{.name = "residual without it", .x = {}, .y = {}, .mark = Series::Mark::Points};
+  Series added{.name = "what it adds", .x = {}, .y = {}, .mark = Series::Mark::Points};
+  const auto c = static_cast<Eigen::Index>(effect.channel);
+  for (Eigen::Index row = 0; row < level.rows(); ++row) {
+    const double at_x = by_row ? static_cast<double>(row + 1) : x[row];
+    if (!std::isfinite(at_x) || !std::isfinite(r.trial.measured(row, c))) continue;
+    left.x.push_back(at_x);
+    left.y.push_back(r.trial.measured(row, c) - rest(row, c));
+    added.x.push_back(at_x);
+    added.y.push_back(level(row, c) - rest(row, c));
+  }
+  return {.title = effect.chosen.candidate.parts.front().name + ": " + name(effect.channel),
+          .x = {.label = by_row ? "row, as read" : column},
+          .y = {.label = std::string(name(effect.channel)) + " [-]"},
+          .series = {left, added}};
+}
+
+void curves(HtmlReport& page, const TraceResult& r, const Eigen::MatrixXd& level,
+            const Eigen::VectorXd& sinkage) {
+  std::vector<Plot> plots;
+  std::size_t at = r.base.effects.size();
+  for (const TracedEffect& effect : r.effects) {
+    if (at < r.refined.effects.size()) plots.push_back(effectPlot(r, effect, at, level, sinkage));
+    at += effect.chosen.candidate.parts.size();
+  }
+  if (!plots.empty()) page.charts(plots, {.columns = 3, .panel_width = 420, .panel_height = 280});
+}
+
 // The fitted parameters, each with its standard deviation.
 std::string sizes(const TracedEffect& effect) {
   const Effect& part = effect.chosen.candidate.parts.front();
   const EffectForm* form = findEffect(part.name);
   std::string text;
+  const std::vector<std::string> bounds = atBounds(part);
   std::size_t at = 0;
   for (std::size_t k = 0; form && k < form->parameters.size(); ++k) {
     const EffectParameter& parameter = form->parameters[k];
     if (!parameter.fitted) continue;
     const double std = at < effect.parameter_std.size() ? effect.parameter_std[at] : 0.0;
     ++at;
-    text += fmt::format("{}{} = {:.3g} ± {:.2g}", text.empty() ? "" : "; ", parameter.name,
+    text += fmt::format("{}{} = {:.4g} ± {:.2g}", text.empty() ? "" : "; ", parameter.name,
                         part.parameters[k], std);
     if (parameter.unit != std::string("-")) text += fmt::format(" {}", parameter.unit);
+    if (std::find(bounds.begin(), bounds.end(), parameter.name) != bounds.end()) text += ", at its bound";
   }
   return text;
 }
@@ -88,14 +129,19 @@ void effects(HtmlReport& page, const TraceStory& story) {
     return;
   }
   std::vector<std::vector<std::string>> found, forms;
-  for (const TracedEffect& e : story.result.effects) {
+  const std::vector<EffectRole> roles = rolesOf(story.result);
+  for (std::size_t k = 0; k < roles.size(); ++k) {
+    const TracedEffect& e = story.result.effects[k];
     const Effect& part = e.chosen.candidate.parts.front();
     const EffectForm* form = findEffect(part.name);
     found.push_back({part.name, covariateOf(part) + (part.only_column.empty() ? "" : " = " + part.only_value),
                      name(e.channel), sizes(e), pText(e.p_value),
                      fmt::format("{:.1f}", 0.5 * e.chosen.chi2_gain)});
-    forms.push_back({part.name, form ? form->formula : "curve fitted to the residual", rivals(e),
-                     separatingMeasurement(story.result.trial, e)});
+    const std::string role = roleText(roles[k]);
+    forms.push_back({part.name,
+                     std::string(form ? form->formula : "curve fitted to the residual") +
+                         (role.empty() ? "" : "; it " + role),
+                     rivals(e), separatingMeasurement(story.result.trial, e)});
   }
   page.table({"effect", "covariate", "channel", "parameters (standard deviation)", "p (all tests)",
               "log-likelihood gain"},
@@ -149,14 +195,15 @@ std::string tracePage(const TraceStory& story) {
   if (const std::string searched = searchedText(r); !searched.empty()) page.paragraph(searched);
   if (story.beyond_axle > 0) page.paragraph(beyondAxleText(story) + ".");
   if (!story.applies.applies) page.paragraph("The model does not apply here: " + story.applies.reason + ".");
-  effects(page, story);
-  errors(page, story);
   terramech::SolvedContacts solved;
   const Eigen::MatrixXd before = r.trial.measured - predictRows(r.base, r.trial, solved);
   const Eigen::MatrixXd level = predictRows(r.refined, r.trial, solved), after = r.trial.measured - level;
   Eigen::VectorXd sinkage(level.rows());
   for (int row = 0; row < r.trial.rows(); ++row)
     sinkage[row] = level(row, 1) * r.trial.denominator(row, Channel::Sinkage);
+  curves(page, r, level, sinkage);
+  errors(page, story);
+  effects(page, story);
   page.heading("Residuals over each covariate, base and refined model");
   std::vector<Plot> plots;
   for (const std::string& covariate : shown(r))

@@ -1,5 +1,6 @@
 #include <cmath>
 #include <fstream>
+#include <regex>
 #include <set>
 
 #include <gmock/gmock.h>
@@ -44,6 +45,31 @@ TEST(TraceCommand, AnEffectOfOneGroupIsSaidOfTheColumnThatTellsTheGroup) {
   EXPECT_EQ(effects[0]["covariate"], "wheel");
   EXPECT_EQ(effects[0]["only"]["wheel"], "2.000000");
   EXPECT_EQ(effects[0]["channel"], "drawbar_pull_over_load");
+}
+
+// Verdict, each effect over its data, errors, then the rest; numbers as in the text.
+TEST(TraceCommand, ThePageShowsEachEffectWithItsDataAndTheNumbersOfTheText) {
+  const Folder folder;
+  folder.write("t.csv", oneWheelShort());
+  folder.write("base.yaml", "{soil: sandy_loam, model: wong-reece}\n");
+  const Ran ran = runTalus({"trace", "t.csv", "--base", "base.yaml", "--html", "r.html"}, folder.path());
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  std::ifstream file(folder / "r.html");
+  const std::string page{std::istreambuf_iterator<char>(file), {}};
+  std::size_t last = 0;
+  for (const char* part :
+       {"Verdict: explained by 1 effect", "load_cell_tilt: drawbar_pull_over_load",
+        "Error of the base and the refined model", "Effects missing from the base model"}) {
+    const std::size_t at = page.find(part);
+    ASSERT_NE(at, std::string::npos) << part;
+    EXPECT_GT(at, last) << part;
+    last = at;
+  }
+  const std::regex size(R"(\n    (\w+ = \S+) \+- (\S+) \[)");
+  int sizes = 0;
+  for (std::sregex_iterator found(ran.out.begin(), ran.out.end(), size), end; found != end; ++found, ++sizes)
+    EXPECT_THAT(page, testing::HasSubstr((*found)[1].str() + " ± " + (*found)[2].str()));
+  EXPECT_GT(sizes, 0) << ran.out;
 }
 
 // They were traced as rows of straight wheels that the ground pushes aside.
