@@ -114,20 +114,15 @@ void check(Path& path) {
 /// goes out.
 void finishConfirmed(Path& path, TraceResult& result, const TraceOptions& options,
                      const std::function<bool(double)>& go_on) {
-  const auto speaksAgainst = [&](const TracedEffect& e) {
-    const auto c = static_cast<std::size_t>(e.channel);
-    return result.held_out.refined_rmse[c] > result.held_out.base_rmse[c];
-  };
   while (true) {
     result.effects = path.effects;
     path.search.finish(result);
     result.held_out = holdOut(result, options, foldsOf(result.trial));
-    std::size_t last = result.effects.size();
-    while (last > path.pinned && !speaksAgainst(result.effects[last - 1])) --last;
-    if (last == path.pinned || !go_on(0.0)) return;
-    path.search.leaveOut(last - 1);
+    const auto last = lastRefuted(result);
+    if (!last || *last < path.pinned || !go_on(0.0)) return;
+    path.search.leaveOut(*last);
     path.search.settleAll();
-    path.effects.erase(path.effects.begin() + static_cast<long>(last - 1));
+    path.effects.erase(path.effects.begin() + static_cast<long>(*last));
   }
 }
 
