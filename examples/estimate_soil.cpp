@@ -9,11 +9,12 @@
 
 namespace {
 
-namespace tm = talus::terramech;
+namespace terramech = talus::terramech;
 
 // What the wheel would feel at a slip: here from the Wong-Reece equilibrium, on a rover from its sensors.
-tm::WheelSample felt(const tm::Soil& soil, const tm::Wheel& wheel, tm::WheelOperation operation) {
-  const tm::WheelForces forces = tm::equilibrium(soil, wheel, operation);
+terramech::WheelSample felt(const terramech::Soil& soil, const terramech::Wheel& wheel,
+                            terramech::WheelOperation operation) {
+  const terramech::WheelForces forces = terramech::equilibrium(soil, wheel, operation);
   return {.load_N = operation.load_N,
           .torque_Nm = forces.torque_Nm,
           .sinkage_m = forces.sinkage_m,
@@ -23,21 +24,21 @@ tm::WheelSample felt(const tm::Soil& soil, const tm::Wheel& wheel, tm::WheelOper
 }  // namespace
 
 int main() {
-  const tm::Soil soil{.name = "dry sand",
-                      .cohesion_Pa = 800.0,
-                      .friction_angle_rad = 30.0 * talus::kDegree,
-                      .sinkage_exponent = 1.1,
-                      .cohesive_modulus = 1000.0,
-                      .frictional_modulus = 1500000.0,
-                      .shear_modulus_m = 0.025};
-  const tm::Wheel wheel{.radius_m = 0.15, .width_m = 0.15};
+  const terramech::Soil soil{.name = "dry sand",
+                             .cohesion_Pa = 800.0,
+                             .friction_angle_rad = 30.0 * talus::kDegree,
+                             .sinkage_exponent = 1.1,
+                             .cohesive_modulus = 1000.0,
+                             .frictional_modulus = 1500000.0,
+                             .shear_modulus_m = 0.025};
+  const terramech::Wheel wheel{.radius_m = 0.15, .width_m = 0.15};
 
-  tm::LinearOffsetFit fit;
+  terramech::LinearOffsetFit fit;
   for (int k = 0; k < 40; ++k) {
-    const tm::WheelOperation operation{.load_N = 60.0 + 3.0 * k, .slip = 0.2 + 0.015 * k};
-    fit.add(tm::linearOffset(wheel, felt(soil, wheel, operation), soil.shear_modulus_m));
+    const terramech::WheelOperation operation{.load_N = 60.0 + 3.0 * k, .slip = 0.2 + 0.015 * k};
+    fit.add(terramech::linearOffset(wheel, felt(soil, wheel, operation), soil.shear_modulus_m));
     if (k % 10 != 9) continue;
-    const tm::ShearStrength strength = fit.estimate();
+    const terramech::ShearStrength strength = fit.estimate();
     std::printf("%2d samples: cohesion %5.0f Pa, friction angle %4.1f deg\n", k + 1, strength.cohesion_Pa,
                 std::atan(strength.tan_friction) / talus::kDegree);
   }

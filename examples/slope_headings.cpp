@@ -12,24 +12,25 @@
 
 namespace {
 
-namespace tm = talus::terramech;
+namespace terramech = talus::terramech;
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 // Headings from straight uphill, over across with the slope rising to the left, to straight downhill.
-void print(const tm::SlopeEquilibrium& equilibrium, double tilt_rad) {
+void print(const terramech::SlopeEquilibrium& equilibrium, double tilt_rad) {
   std::printf("heading  slip    slip angle  body turn  energy   reserve: pull  side   holds\n");
   for (int heading = 0; heading <= 180; heading += 15) {
     const double gradient = std::tan(tilt_rad), way = heading / kDegrees;
-    const tm::SlopeState s =
+    const terramech::SlopeState s =
         equilibrium.at({.along = gradient * std::cos(way), .across = gradient * std::sin(way)});
     std::printf("%4d deg ", heading);
     if (s.holds())
       std::printf("%6.3f  %6.1f deg  %5.1f deg  %6.0f J/m       %6.3f  %6.3f  %s\n", s.slip,
                   s.slip_angle_rad * kDegrees, s.body_turn_rad * kDegrees, s.energy_J_per_m, s.pull_reserve,
-                  s.side_reserve, tm::name(s.failure));
+                  s.side_reserve, terramech::name(s.failure));
     else
-      std::printf("     -           -          -          -            -       -  %s\n", tm::name(s.failure));
+      std::printf("     -           -          -          -            -       -  %s\n",
+                  terramech::name(s.failure));
   }
 }
 
@@ -41,10 +42,11 @@ int main(int count, char** arguments) {
     return 2;
   }
   try {
-    const tm::Rover rover = tm::loadRover(arguments[2]);
-    for (const std::string& assumed : tm::slopeAssumptions(rover))
+    const terramech::Rover rover = terramech::loadRover(arguments[2]);
+    for (const std::string& assumed : terramech::slopeAssumptions(rover))
       std::fprintf(stderr, "%s\n", assumed.c_str());
-    print(tm::SlopeEquilibrium{tm::loadSoil(arguments[1]), rover}, std::atof(arguments[3]) / kDegrees);
+    print(terramech::SlopeEquilibrium{terramech::loadSoil(arguments[1]), rover},
+          std::atof(arguments[3]) / kDegrees);
   } catch (const std::exception& e) {
     std::fprintf(stderr, "%s\n", e.what());
     return 2;
