@@ -2,7 +2,7 @@
 # each room, and a copy of talus.hpp: a link to a file would be installed as a link, into this tree.
 set(TALUS_INCLUDE_DIR ${PROJECT_BINARY_DIR}/include)
 file(MAKE_DIRECTORY ${TALUS_INCLUDE_DIR}/talus)
-foreach(entry terramech maps costmap planner cli plausible.hpp)
+foreach(entry common terramech maps costmap planner cli)
   file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${entry} ${TALUS_INCLUDE_DIR}/talus/${entry} SYMBOLIC)
 endforeach()
 if(IS_SYMLINK ${TALUS_INCLUDE_DIR}/talus/talus.hpp)  # of a build folder from before

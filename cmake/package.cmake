@@ -5,7 +5,7 @@ set(config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/talus)
 get_property(talus_components GLOBAL PROPERTY TALUS_COMPONENTS)
 configure_package_config_file(cmake/talus-config.cmake.in talus-config.cmake INSTALL_DESTINATION ${config_dir})
 write_basic_package_version_file(talus-config-version.cmake COMPATIBILITY SameMinorVersion)
-foreach(component common ${talus_components})
+foreach(component ${talus_components})
   install(EXPORT talus-${component} NAMESPACE talus:: FILE talus-${component}.cmake DESTINATION ${config_dir})
 endforeach()
 install(FILES ${PROJECT_BINARY_DIR}/talus-config.cmake ${PROJECT_BINARY_DIR}/talus-config-version.cmake

@@ -18,12 +18,30 @@ function(talus_warnings target)
   endif()
 endfunction()
 
-# talus_module(NAME PUBLIC ... SOURCES ... [DEPENDS ...] [PRIVATE_DEPENDS ...] [PRECOMPILED ...])
+# talus_unity(TARGET): where TALUS_UNITY is on, the sources of a folder are compiled together, at most twelve at a time.
+# Names in anonymous namespaces are unique in their folder. Sources with options of their own stay alone.
+function(talus_unity target)
+  if(NOT TALUS_UNITY)
+    return()
+  endif()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+  get_target_property(sources ${target} SOURCES)
+  foreach(source ${sources})
+    cmake_path(GET source PARENT_PATH folder)
+    string(MAKE_C_IDENTIFIER "unit_${folder}" folder)
+    math(EXPR ${folder} "${${folder}} + 0")
+    math(EXPR part "${${folder}} / 12")
+    math(EXPR ${folder} "${${folder}} + 1")
+    set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${folder}_${part})
+  endforeach()
+endfunction()
+
+# talus_module(NAME PUBLIC ... SOURCES ... [DEPENDS ...] [PRIVATE_DEPENDS ...])
 # One library target talus::NAME of a room, and the component NAME of the installed package. Its public headers, which are
 # its entry header and what that includes, are a verified file set installed under include/talus; all other headers are
 # inner and are not installed. Paths are relative to the calling room.
 function(talus_module name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "PUBLIC;SOURCES;DEPENDS;PRIVATE_DEPENDS;PRECOMPILED")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "PUBLIC;SOURCES;DEPENDS;PRIVATE_DEPENDS")
   add_library(talus_${name} ${arg_SOURCES})
   add_library(talus::${name} ALIAS talus_${name})
   set_target_properties(talus_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON
@@ -31,15 +49,9 @@ function(talus_module name)
   cmake_path(RELATIVE_PATH CMAKE_CURRENT_SOURCE_DIR BASE_DIRECTORY ${PROJECT_SOURCE_DIR} OUTPUT_VARIABLE room)
   list(TRANSFORM arg_PUBLIC PREPEND ${TALUS_INCLUDE_DIR}/talus/${room}/)
   target_sources(talus_${name} PUBLIC FILE_SET HEADERS BASE_DIRS ${TALUS_INCLUDE_DIR} FILES ${arg_PUBLIC})
-  target_link_libraries(talus_${name} PUBLIC talus::common ${arg_DEPENDS} PRIVATE ${arg_PRIVATE_DEPENDS})
+  target_link_libraries(talus_${name} PUBLIC ${arg_DEPENDS} PRIVATE ${arg_PRIVATE_DEPENDS})
   talus_warnings(talus_${name})
-  # Half of the time to compile is the reading of headers. Not where warnings are errors: GCC 12 takes precompiled system
-  # headers for our own code and warns of overflows in std::string that are not there.
-  if(NOT TALUS_WARNINGS_AS_ERRORS)
-    target_precompile_headers(talus_${name} PRIVATE <algorithm> <array> <cmath> <functional> <map> <memory> <optional>
-                              <span> <string> <vector> ${arg_PRECOMPILED})
-    target_compile_options(talus_${name} PRIVATE -Wno-array-bounds $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow>)
-  endif()
+  talus_unity(talus_${name})
   install(TARGETS talus_${name} EXPORT talus-${name} FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
   set_property(GLOBAL APPEND PROPERTY TALUS_COMPONENTS ${name})
 endfunction()

@@ -6,7 +6,6 @@
 #include <talus/terramech/contact/rover.hpp>
 #include <talus/terramech/contact/wong_reece.hpp>
 #include <talus/terramech/estimate/drawbar_pull.hpp>
-#include <talus/terramech/estimate/linear_offset.hpp>
 #include <talus/terramech/estimate/pull_forecast.hpp>
 #include <talus/terramech/estimate/soil_filter.hpp>
 #include <talus/terramech/estimate/soil_posterior.hpp>
@@ -14,3 +13,4 @@
 #include <talus/terramech/mobility/category_probability.hpp>
 #include <talus/terramech/mobility/mobility.hpp>
 #include <talus/terramech/mobility/slope_equilibrium.hpp>
+#include <talus/terramech/strength/linear_offset.hpp>

@@ -5,7 +5,7 @@
 
 #include <talus/cli/app/campaign.hpp>
 #include <talus/cli/app/mpi_launch.hpp>
-#include <talus/maps/parallel_for.hpp>
+#include <talus/common/parallel_for.hpp>
 
 #ifdef TALUS_MPI
 #include <boost/mpi/communicator.hpp>
@@ -34,7 +34,7 @@ std::vector<JobOutcome> runHere(std::size_t count, const std::function<std::stri
   std::vector<JobOutcome> outcomes(count);
   std::atomic<std::size_t> done{0};
   const auto caller = std::this_thread::get_id();
-  maps::parallelFor(count, static_cast<int>(workers), [&](std::size_t i) {
+  parallelFor(count, static_cast<int>(workers), [&](std::size_t i) {
     outcomes[i] = outcomeOf(job, i, watch);
     ++done;
     if (std::this_thread::get_id() == caller)

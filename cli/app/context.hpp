@@ -9,7 +9,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include <talus/talus.hpp>
+#include <talus/common/progress_monitor.hpp>
 
 /// The program: thin, one file a subcommand.
 namespace talus::cli {

@@ -13,7 +13,7 @@
 #include <unistd.h>
 
 #include <talus/cli/app/file_lock.hpp>
-#include <talus/talus.hpp>
+#include <talus/common/input_error.hpp>
 
 namespace talus::cli {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <talus/cli/app/context.hpp>
 #include <talus/cli/app/interrupt.hpp>
-#include <talus/maps/output_file.hpp>
+#include <talus/common/output_file.hpp>
 
 namespace talus::cli {
 namespace {
@@ -59,7 +59,7 @@ void Interrupt::watch() {
     idle = now_s - last_s < kIdle_s ? idle + 1 : 0;
     last_s = now_s;
   }
-  maps::removeUnfinishedFiles();
+  removeUnfinishedFiles();
   printError("talus: cancelled\n");
   _exit(code_);
 }

@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include <talus/cli/app/number_check.hpp>
-#include <talus/plausible.hpp>
-#include <talus/talus.hpp>
+#include <talus/common/input_error.hpp>
+#include <talus/common/plausible.hpp>
 
 namespace talus::cli {
 namespace {

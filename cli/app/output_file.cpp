@@ -9,7 +9,7 @@
 #include <fmt/ranges.h>
 
 #include <talus/cli/app/output_file.hpp>
-#include <talus/talus.hpp>
+#include <talus/common/input_error.hpp>
 
 namespace talus::cli {
 namespace {

@@ -6,12 +6,9 @@
 
 #include <CLI/CLI.hpp>
 
-#include <talus/maps/output_file.hpp>
+#include <talus/common/output_file.hpp>
 
 namespace talus::cli {
-
-using maps::OutputFile;
-using maps::writeFile;
 
 /// Whether the ending of a file's name stands for the same format as `ending` (".html": .htm and .HTML too).
 bool isNamed(const std::filesystem::path& path, const std::string& ending);

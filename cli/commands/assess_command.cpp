@@ -8,10 +8,10 @@
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/draw/html_report.hpp>
-#include <talus/talus.hpp>
+#include <talus/common/constants.hpp>
+#include <talus/terramech/calibration/tables/assessment.hpp>
+#include <talus/terramech/calibration/tables/table_applicability.hpp>
 #include <talus/terramech/estimate/pull_formula.hpp>
-#include <talus/terramech/tables/assessment.hpp>
-#include <talus/terramech/tables/table_applicability.hpp>
 
 namespace talus::cli {
 namespace {

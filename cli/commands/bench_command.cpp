@@ -14,13 +14,15 @@
 #include <talus/cli/ground/plugin_option.hpp>
 #include <talus/cli/study/bench_report.hpp>
 #include <talus/cli/study/bench_suite.hpp>
+#include <talus/common/input_error.hpp>
+#include <talus/common/progress_monitor.hpp>
 #include <talus/planner/bench/benchmark_log.hpp>
 #include <talus/planner/route/planner_names.hpp>
 
 namespace talus::cli {
 namespace {
 
-struct Options {
+struct BenchOptions {
   SuiteOptions suite;
   std::vector<std::string> planners, plugins;
   int runs = 3;
@@ -28,7 +30,7 @@ struct Options {
   std::string folder = "bench";
 };
 
-void bind(CLI::App& command, Options& options) {
+void bind(CLI::App& command, BenchOptions& options) {
   command
       .add_option("suite", options.suite.names,
                   "one or more of: generated (crater field, dunes, rocks), slip (uncertain slip; routes are "
@@ -92,7 +94,7 @@ void refuseTwice(const std::string& what, std::vector<std::string> names) {
   if (twice != names.end()) throw InputError({what + " " + *twice, "is named twice", "name it once"});
 }
 
-std::string asText(const planner::BenchmarkPlan& plan, const std::vector<planner::BenchmarkRun>& runs) {
+std::string benchText(const planner::BenchmarkPlan& plan, const std::vector<planner::BenchmarkRun>& runs) {
   const std::size_t asked = planner::jobsOf(plan).size();
   return (runs.size() < asked ? fmt::format("cancelled: {} of {} runs\n", runs.size(), asked) : "") +
          asText(compared(plan, runs)) + asText(drivesOf(plan, runs));
@@ -103,7 +105,7 @@ void write(const std::filesystem::path& folder, const planner::BenchmarkPlan& pl
   for (std::size_t c = 0; c < plan.cases.size(); ++c)
     if (std::ranges::any_of(runs, [c](const auto& run) { return run.case_index == c; }))
       writeFile(folder / (fileName(plan.cases[c].name) + ".log"), planner::benchmarkLog(plan, runs, c));
-  writeFile(folder / "table.txt", asText(plan, runs));
+  writeFile(folder / "table.txt", benchText(plan, runs));
   writeFile(folder / "index.html", asPage(plan, runs));
 }
 
@@ -124,7 +126,7 @@ std::vector<planner::BenchmarkRun> allRuns(const planner::BenchmarkPlan& plan, c
 }
 
 // What had ended is kept, and said on stderr: a program that reads stdout gets the whole or nothing.
-int cancelled(const Options& options, const planner::BenchmarkPlan& plan,
+int cancelled(const BenchOptions& options, const planner::BenchmarkPlan& plan,
               const std::vector<planner::BenchmarkRun>& runs, bool made, const Context& context) {
   if (!runs.empty()) {
     write(options.folder, plan, runs);
@@ -136,7 +138,7 @@ int cancelled(const Options& options, const planner::BenchmarkPlan& plan,
   return Exit::kCancelled;
 }
 
-int run(const Options& options, Context& context) {
+int run(const BenchOptions& options, Context& context) {
   const Campaign campaign;
   if (!campaign.leads()) context.quiet = true;
   planner::BenchmarkPlan plan;
@@ -164,22 +166,23 @@ int run(const Options& options, Context& context) {
   if (context.json)
     printJson(asJson(lines, drivesOf(plan, runs)));
   else
-    print(asText(plan, runs));
+    print(benchText(plan, runs));
   return Exit::kDone;
 }
 
 }  // namespace
 
 void addBench(CLI::App& app, Context& context) {
-  addCommand<Options>(app, context,
-                      {.name = "bench",
-                       .group = Group::kRoutes,
-                       .description = "compare planners on the same cases; write logs, a table and a page",
-                       .examples = "  talus bench --planners field,RRTstar --time 5\n"
-                                   "  talus bench gale.tif --pairs 10 -o gale_bench\n"
-                                   "  talus bench room.scen --planners field\n"
-                                   "  talus bench generated slip grids maps/*.tif --pairs 4\n"},
-                      bind, run);
+  addCommand<BenchOptions>(
+      app, context,
+      {.name = "bench",
+       .group = Group::kRoutes,
+       .description = "compare planners on the same cases; write logs, a table and a page",
+       .examples = "  talus bench --planners field,RRTstar --time 5\n"
+                   "  talus bench gale.tif --pairs 10 -o gale_bench\n"
+                   "  talus bench room.scen --planners field\n"
+                   "  talus bench generated slip grids maps/*.tif --pairs 4\n"},
+      bind, run);
 }
 
 }  // namespace talus::cli

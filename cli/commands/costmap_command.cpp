@@ -11,13 +11,13 @@
 #include <talus/cli/draw/picture.hpp>
 #include <talus/cli/ground/ground_options.hpp>
 #include <talus/cli/ground/site_layers.hpp>
-#include <talus/costmap/map_file.hpp>
-#include <talus/costmap/surface_tree.hpp>
+#include <talus/costmap/map/map_file.hpp>
+#include <talus/costmap/surface/surface_tree.hpp>
 
 namespace talus::cli {
 namespace {
 
-struct Options {
+struct CostmapOptions {
   GroundOptions ground;
   std::string output;
   std::string geotiff;
@@ -25,7 +25,7 @@ struct Options {
   std::string octovis;
 };
 
-void bind(CLI::App& command, Options& options) {
+void bind(CLI::App& command, CostmapOptions& options) {
   addGroundOptions(command, options.ground);
   addOutput(command, "-o,--output", options.output, "traversability map to write")->type_name("MAP.ot");
   addOutput(command, "--geotiff", options.geotiff, "GeoTIFF of layers to write")->type_name("FILE.tif");
@@ -46,7 +46,8 @@ void writeOctovis(const costmap::TraversabilityMap& map, const std::string& path
   file.commit();
 }
 
-void writeFiles(const Options& options, const costmap::TraversabilityMap& map, const Context& context) {
+void writeFiles(const CostmapOptions& options, const costmap::TraversabilityMap& map,
+                const Context& context) {
   if (!options.output.empty()) costmap::writeMap(map, options.output);
   if (!options.geotiff.empty()) {
     const auto& georeference = map.elevation().georeference;
@@ -57,7 +58,7 @@ void writeFiles(const Options& options, const costmap::TraversabilityMap& map, c
   if (!options.octovis.empty()) writeOctovis(map, options.octovis);
 }
 
-std::string asText(const Ground& site, const costmap::CategoryCounts& counts) {
+std::string costmapText(const Ground& site, const costmap::CategoryCounts& counts) {
   const auto share = [&](std::size_t n) {
     return 100.0 * static_cast<double>(n) / static_cast<double>(site.map.grid().size());
   };
@@ -71,7 +72,7 @@ std::string asText(const Ground& site, const costmap::CategoryCounts& counts) {
          fmt::format("run time    load {:.3f} s, costmap {:.3f} s\n", site.load_s, site.build_s);
 }
 
-nlohmann::ordered_json asJson(const Ground& site, const costmap::CategoryCounts& counts) {
+nlohmann::ordered_json costmapJson(const Ground& site, const costmap::CategoryCounts& counts) {
   return {{"cells", site.map.grid().size()},
           {"categories",
            {{"safe", counts.safe},
@@ -84,22 +85,22 @@ nlohmann::ordered_json asJson(const Ground& site, const costmap::CategoryCounts&
           {"rover", site.map.model().rover().name}};
 }
 
-int run(const Options& options, Context& context) {
+int run(const CostmapOptions& options, Context& context) {
   const Ground site = readGround(options.ground, context);
   if (context.stop.stop_requested()) return Exit::kCancelled;
   const costmap::CategoryCounts counts = site.map.countCategories();
   writeFiles(options, site.map, context);
   if (context.json)
-    printJson(asJson(site, counts));
+    printJson(costmapJson(site, counts));
   else
-    print(asText(site, counts));
+    print(costmapText(site, counts));
   return Exit::kDone;
 }
 
 }  // namespace
 
 void addCostmap(CLI::App& app, Context& context) {
-  addCommand<Options>(
+  addCommand<CostmapOptions>(
       app, context,
       {.name = "costmap",
        .group = Group::kMaps,

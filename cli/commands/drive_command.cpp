@@ -19,8 +19,10 @@
 #include <talus/cli/route/drive_report.hpp>
 #include <talus/cli/route/drive_telemetry.hpp>
 #include <talus/cli/route/drive_worlds.hpp>
-#include <talus/maps/place_reader.hpp>
-#include <talus/planner/simulation/simulation_site.hpp>
+#include <talus/common/input_error.hpp>
+#include <talus/common/progress_monitor.hpp>
+#include <talus/maps/raster/place_reader.hpp>
+#include <talus/planner/simulation/drive/simulation_site.hpp>
 #include <talus/terramech/io/soil_library.hpp>
 
 namespace talus::cli {
@@ -29,7 +31,7 @@ namespace {
 using planner::Belief;
 using planner::kBeliefs;
 
-struct Options {
+struct DriveCommandOptions {
   GroundOptions ground;
   std::string truth, start, goal, html, telemetry, plugin;
   std::string belief = "online";
@@ -52,7 +54,7 @@ std::string refusedBelief(const std::string& word) {
   return word + ", must be one of geometry, along-only, prior, online, perfect-knowledge, all";
 }
 
-void bindSensors(CLI::App& command, Options& options) {
+void bindSensors(CLI::App& command, DriveCommandOptions& options) {
   const auto& faults = planner::sensorFaultNames();
   command.add_option("--fault", options.fault, "sensor fault during the whole traverse")
       ->check(CLI::IsMember(std::vector<std::string>(faults.begin(), faults.end())))
@@ -67,7 +69,7 @@ void bindSensors(CLI::App& command, Options& options) {
       ->capture_default_str();
 }
 
-planner::SensorOptions sensorsOf(const Options& options) {
+planner::SensorOptions sensorsOf(const DriveCommandOptions& options) {
   planner::SensorOptions sensors = options.sensors;
   const auto& faults = planner::sensorFaultNames();
   const auto named = std::find(faults.begin(), faults.end(), options.fault);
@@ -76,7 +78,7 @@ planner::SensorOptions sensorsOf(const Options& options) {
   return sensors;
 }
 
-void bind(CLI::App& command, Options& options) {
+void bind(CLI::App& command, DriveCommandOptions& options) {
   addGroundOptions(command, options.ground);
   command.add_option("--truth", options.truth, "true soils, soft patches and random variation; format below")
       ->required()
@@ -151,19 +153,19 @@ int show(const Results& results, const DrivenWorlds& driven, const Campaigning& 
   return Exit::kDone;
 }
 
-int runAll(const Campaigning& on, const Options& options) {
+int runAll(const Campaigning& on, const DriveCommandOptions& options) {
   const DrivenWorlds driven = simulated(on, {kBeliefs.begin(), kBeliefs.end()}, options.worlds);
   BeliefResults results;
   std::copy(driven.results.begin(), driven.results.end(), results.begin());
   return show(results, driven, on);
 }
 
-int runMany(const Campaigning& on, const Options& options) {
+int runMany(const Campaigning& on, const DriveCommandOptions& options) {
   const DrivenWorlds driven = simulated(on, {*findBelief(options.belief)}, options.worlds);
   return show(driven.results[0], driven, on);
 }
 
-int runOne(const planner::SimulationSite& site, const Options& options, const Context& context,
+int runOne(const planner::SimulationSite& site, const DriveCommandOptions& options, const Context& context,
            const terramech::Rover& rover) {
   const Belief belief = *findBelief(options.belief);
   context.answerStop();
@@ -179,9 +181,9 @@ int runOne(const planner::SimulationSite& site, const Options& options, const Co
                           {"energy_error", drive.prediction.energy_error}};
     printJson(json);
   } else {
-    print(asText(drive.result) + fmt::format("{:<24} slip error {:.3f} rms, total energy error {:+.1f} %\n",
-                                             "predicted", drive.prediction.slip_rmse,
-                                             100.0 * drive.prediction.energy_error));
+    print(asText(drive.result) +
+          fmt::format("{:<24} slip error {:.3f} rms, total energy error {:+.1f} %\n", "predicted",
+                      drive.prediction.slip_rmse, 100.0 * drive.prediction.energy_error));
   }
   return drive.result.drive.outcome == planner::Outcome::Reached ? Exit::kDone : Exit::kNo;
 }
@@ -199,7 +201,7 @@ planner::Truth truthFor(const costmap::GroundModel& model, const std::string& pa
   return truth;
 }
 
-int run(const Options& options, Context& context) {
+int run(const DriveCommandOptions& options, Context& context) {
   const Campaign campaign;
   if (!campaign.leads()) context.quiet = true;
   const Ground ground = readGround(options.ground, context);
@@ -231,7 +233,7 @@ int run(const Options& options, Context& context) {
 }  // namespace
 
 void addDrive(CLI::App& app, Context& context) {
-  addCommand<Options>(
+  addCommand<DriveCommandOptions>(
       app, context,
       {.name = "drive",
        .group = Group::kRoutes,

@@ -13,20 +13,20 @@
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/draw/slope_rose.hpp>
 #include <talus/cli/ground/ground_options.hpp>
-#include <talus/costmap/explanation.hpp>
-#include <talus/maps/place_reader.hpp>
+#include <talus/costmap/map/explanation.hpp>
+#include <talus/maps/raster/place_reader.hpp>
 
 namespace talus::cli {
 namespace {
 
-struct Options {
+struct ExplainOptions {
   GroundOptions ground;
   std::string at;
   std::optional<double> heading_rad;
   std::string png;
 };
 
-void bind(CLI::App& command, Options& options) {
+void bind(CLI::App& command, ExplainOptions& options) {
   addGroundOptions(command, options.ground);
   command
       .add_option("--at", options.at,
@@ -44,7 +44,7 @@ void bind(CLI::App& command, Options& options) {
   groupOptions(command, "Output");
 }
 
-nlohmann::ordered_json asJson(const costmap::Explanation& why, const maps::Point& point,
+nlohmann::ordered_json explainJson(const costmap::Explanation& why, const maps::Point& point,
                               const maps::Cell& cell) {
   nlohmann::ordered_json causes = nlohmann::ordered_json::array();
   for (const costmap::Cause& cause : why.causes)
@@ -63,7 +63,7 @@ nlohmann::ordered_json asJson(const costmap::Explanation& why, const maps::Point
           {"causes", causes}};
 }
 
-std::string asText(const costmap::Explanation& why, const std::string& place) {
+std::string explainText(const costmap::Explanation& why, const std::string& place) {
   const std::string sure =
       std::isnan(why.probability) ? "" : fmt::format(" (probability {:.2f})", why.probability);
   std::string text = fmt::format("{}\n{}{}\n", place, why.verdict, sure);
@@ -94,7 +94,7 @@ SlopeRose roseOf(const costmap::TraversabilityMap& map, const maps::Cell& cell, 
   return rose;
 }
 
-int run(const Options& options, Context& context) {
+int run(const ExplainOptions& options, Context& context) {
   const Ground site = readGround(options.ground, context);
   if (context.stop.stop_requested()) return Exit::kCancelled;
   const maps::Point point = maps::readPlace(options.at, site.map.elevation(), "--at");
@@ -107,22 +107,23 @@ int run(const Options& options, Context& context) {
               draw(roseOf(site.map, cell, maps::describe(point, site.map.elevation()) + ": " + why.verdict),
                    isNamed(options.png, ".svg") ? Canvas::Kind::Svg : Canvas::Kind::Png));
   if (context.json)
-    printJson(asJson(why, point, cell));
+    printJson(explainJson(why, point, cell));
   else
-    print(asText(why, maps::describe(point, site.map.elevation())));
+    print(explainText(why, maps::describe(point, site.map.elevation())));
   return Exit::kDone;
 }
 
 }  // namespace
 
 void addExplain(CLI::App& app, Context& context) {
-  addCommand<Options>(app, context,
-                      {.name = "explain",
-                       .group = Group::kMaps,
-                       .description = "explain the category of a cell: quantities, sources, uncertainties",
-                       .examples = "  talus explain gale.tif --at -4.7d,137.5d --heading 1.57\n"
-                                   "  talus explain map.ot --at 120,80 --png rose.png\n"},
-                      bind, run);
+  addCommand<ExplainOptions>(
+      app, context,
+      {.name = "explain",
+       .group = Group::kMaps,
+       .description = "explain the category of a cell: quantities, sources, uncertainties",
+       .examples = "  talus explain gale.tif --at -4.7d,137.5d --heading 1.57\n"
+                   "  talus explain map.ot --at 120,80 --png rose.png\n"},
+      bind, run);
 }
 
 }  // namespace talus::cli

@@ -9,15 +9,15 @@
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/ground/site_description.hpp>
-#include <talus/maps/geotiff_writer.hpp>
-#include <talus/maps/memory_budget.hpp>
-#include <talus/maps/site_generator.hpp>
-#include <talus/talus.hpp>
+#include <talus/common/input_error.hpp>
+#include <talus/common/memory_budget.hpp>
+#include <talus/maps/raster/geotiff_writer.hpp>
+#include <talus/maps/sites/site_generator.hpp>
 
 namespace talus::cli {
 namespace {
 
-struct Options {
+struct GenerateOptions {
   std::string site;                 ///< a kind, or the path of a description
   std::optional<std::string> size;  ///< as typed
   std::optional<double> resolution_m;
@@ -91,7 +91,7 @@ bool isDescription(const std::string& site) {
 }
 
 // A description is complete; words of the call that are there override it.
-maps::SiteOptions siteOptions(const Options& options, const Context& context) {
+maps::SiteOptions siteOptions(const GenerateOptions& options, const Context& context) {
   maps::SiteOptions out;
   if (isDescription(options.site)) {
     out = loadSite(options.site);
@@ -109,7 +109,7 @@ maps::SiteOptions siteOptions(const Options& options, const Context& context) {
   return out;
 }
 
-void bind(CLI::App& command, Options& options) {
+void bind(CLI::App& command, GenerateOptions& options) {
   command
       .add_option("KIND", options.site,
                   "craters (Moon), dunes or rocks (Mars), or a YAML description (see maps/sites)")
@@ -124,7 +124,7 @@ void bind(CLI::App& command, Options& options) {
       ->required();
 }
 
-int run(const Options& options, Context& context) {
+int run(const GenerateOptions& options, Context& context) {
   const maps::SiteOptions wanted = siteOptions(options, context);
   const Paths paths = pathsOf(options.output);
   if (!context.force)
@@ -132,7 +132,7 @@ int run(const Options& options, Context& context) {
       checkOutput(path, {options.site, options.output});
   const OutputFile folder_can_be_written(options.output);
   constexpr double kBytesPerCell = 32.0;  // measured
-  maps::requireMemory(kBytesPerCell * wanted.width * wanted.height, "--size");
+  requireMemory(kBytesPerCell * wanted.width * wanted.height, "--size");
   const maps::Site site = maps::generateSite(wanted, context.watch("site"));
   if (context.stop.stop_requested()) return Exit::kCancelled;
   write(site, wanted.kind, paths);
@@ -153,7 +153,7 @@ int run(const Options& options, Context& context) {
 }  // namespace
 
 void addGenerate(CLI::App& app, Context& context) {
-  addCommand<Options>(
+  addCommand<GenerateOptions>(
       app, context,
       {.name = "generate",
        .group = Group::kMaps,

@@ -9,13 +9,13 @@
 #include <talus/cli/app/command.hpp>
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/ground/map_options.hpp>
-#include <talus/maps/terrain_metrics.hpp>
-#include <talus/talus.hpp>
+#include <talus/common/constants.hpp>
+#include <talus/maps/terrain/terrain_metrics.hpp>
 
 namespace talus::cli {
 namespace {
 
-struct Options {
+struct InfoOptions {
   MapOptions map;
   double footprint_m = 0.0;
 };
@@ -63,7 +63,7 @@ Range heightRange(const maps::Raster<float>& elevation_m) {
   return range;
 }
 
-nlohmann::ordered_json asJson(const maps::ElevationMap& map, const maps::TerrainMetrics& metrics) {
+nlohmann::ordered_json infoJson(const maps::ElevationMap& map, const maps::TerrainMetrics& metrics) {
   const maps::Grid& grid = map.grid();
   const Quantiles slope = quantiles(slopes_deg(metrics));
   const Range height = heightRange(map.elevation_m);
@@ -91,7 +91,7 @@ std::string latitudes(const maps::ElevationMap& map) {
   return fmt::format("centre      {}\n", maps::describe(middle, map));
 }
 
-std::string asText(const maps::ElevationMap& map, const nlohmann::ordered_json& facts) {
+std::string infoText(const maps::ElevationMap& map, const nlohmann::ordered_json& facts) {
   const maps::Grid& grid = map.grid();
   const auto number = [&](const char* object, const char* key) { return facts[object][key].get<double>(); };
   return fmt::format("map         {}\n", map.source) +
@@ -109,7 +109,7 @@ std::string asText(const maps::ElevationMap& map, const nlohmann::ordered_json& 
              number("slope_deg", "p50"), number("slope_deg", "p90"), number("slope_deg", "p99"));
 }
 
-void bind(CLI::App& command, Options& options) {
+void bind(CLI::App& command, InfoOptions& options) {
   addMapOptions(command, options.map);
   command
       .add_option("--footprint", options.footprint_m,
@@ -117,24 +117,24 @@ void bind(CLI::App& command, Options& options) {
       ->type_name("METRES");
 }
 
-int run(const Options& options, Context& context) {
+int run(const InfoOptions& options, Context& context) {
   const maps::ElevationMap map = readMap(options.map, context);
   const maps::TerrainMetrics metrics =
       maps::terrainMetrics(map.elevation_m, {.radius_m = options.footprint_m, .threads = context.workers()},
                            context.watch("slopes"));
   if (context.stop.stop_requested()) return Exit::kCancelled;
-  const nlohmann::ordered_json facts = asJson(map, metrics);
+  const nlohmann::ordered_json facts = infoJson(map, metrics);
   if (context.json)
     printJson(facts);
   else
-    print(asText(map, facts));
+    print(infoText(map, facts));
   return Exit::kDone;
 }
 
 }  // namespace
 
 void addInfo(CLI::App& app, Context& context) {
-  addCommand<Options>(
+  addCommand<InfoOptions>(
       app, context,
       {.name = "info",
        .group = Group::kMaps,

@@ -27,7 +27,8 @@
 #include <talus/cli/ground/windowed_ground.hpp>
 #include <talus/cli/route/plan_pairs.hpp>
 #include <talus/cli/route/route_json.hpp>
-#include <talus/maps/place_reader.hpp>
+#include <talus/common/input_error.hpp>
+#include <talus/maps/raster/place_reader.hpp>
 #include <talus/planner/check/annotation.hpp>
 #include <talus/planner/check/chassis_planner.hpp>
 #include <talus/planner/check/route_check.hpp>
@@ -126,7 +127,7 @@ std::string goalText(const PlanOptions& options, const planner::Plan& plan) {
                                          options.goals[plan.goal], plan.goal + 1, options.goals.size()));
 }
 
-std::string asText(const Route& route, const Timing& seconds) {
+std::string planText(const Route& route, const Timing& seconds) {
   return summaryText(route) +
          summaryLine("run time", fmt::format("load {:.3f} s, costmap {:.3f} s, plan {:.3f} s", seconds.load_s,
                                              seconds.costmap_s, seconds.plan_s));
@@ -283,7 +284,7 @@ int finish(const PlanOptions& options, const Planned& planned, const planner::An
     json["seconds"] = {{"load", seconds.load_s}, {"costmap", seconds.costmap_s}, {"plan", seconds.plan_s}};
     printJson(json);
   } else {
-    print(goalText(options, planned.plan) + asText(route, seconds));
+    print(goalText(options, planned.plan) + planText(route, seconds));
   }
   if (!route.interrupted) return Exit::kDone;
   fmt::print(stderr,

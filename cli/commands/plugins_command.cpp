@@ -10,7 +10,7 @@
 namespace talus::cli {
 namespace {
 
-struct Options {
+struct PluginsOptions {
   std::string file;
 };
 
@@ -30,7 +30,7 @@ std::vector<std::string> features(const PlannerCapabilities& offers) {
   return words;
 }
 
-int run(const Options& options, Context& context) {
+int run(const PluginsOptions& options, Context& context) {
   PlannerCapabilities offers{
       .name = "talus (built-in)", .version = TALUS_VERSION, .planners = planner::plannerNames()};
   if (!options.file.empty()) offers = planner::loadPlugin(options.file)->capabilities();
@@ -51,20 +51,20 @@ int run(const Options& options, Context& context) {
   return Exit::kDone;
 }
 
-void bind(CLI::App& app, Options& options) {
+void bind(CLI::App& app, PluginsOptions& options) {
   app.add_option("file", options.file, "shared library of a planner plugin (default: the built-in planners)");
 }
 
 }  // namespace
 
 void addPlugins(CLI::App& app, Context& context) {
-  addCommand<Options>(app, context,
-                      {.name = "plugins",
-                       .group = Group::kRoutes,
-                       .description = "list the planners and features of a plugin or of the program",
-                       .examples = "  talus plugins\n"
-                                   "  talus plugins /usr/lib/talus/libtalus_planner.so\n"},
-                      bind, run);
+  addCommand<PluginsOptions>(app, context,
+                             {.name = "plugins",
+                              .group = Group::kRoutes,
+                              .description = "list the planners and features of a plugin or of the program",
+                              .examples = "  talus plugins\n"
+                                          "  talus plugins /usr/lib/talus/libtalus_planner.so\n"},
+                             bind, run);
 }
 
 }  // namespace talus::cli

@@ -4,9 +4,10 @@
 #include <talus/cli/app/command.hpp>
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/output_file.hpp>
+#include <talus/common/input_error.hpp>
+#include <talus/terramech/calibration/table/prediction_table.hpp>
 #include <talus/terramech/io/model_file.hpp>
 #include <talus/terramech/io/soil_library.hpp>
-#include <talus/terramech/trace/prediction_table.hpp>
 
 namespace talus::cli {
 namespace {

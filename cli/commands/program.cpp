@@ -28,8 +28,9 @@
 #include <talus/cli/app/mpi_launch.hpp>
 #include <talus/cli/app/number_check.hpp>
 #include <talus/cli/commands/program.hpp>
-#include <talus/maps/memory_budget.hpp>
-#include <talus/talus.hpp>
+#include <talus/common/input_error.hpp>
+#include <talus/common/memory_budget.hpp>
+#include <talus/common/nearest_name.hpp>
 
 namespace talus::cli {
 namespace {
@@ -167,7 +168,7 @@ void addGlobalOptions(CLI::App& app, Context& context) {
   app.add_flag("--force", context.force,
                "overwrite inputs, journals, devices and links to other folders, too");
   app.add_option_function<std::uint64_t>(
-         "--max-memory", maps::setMemoryBudget,
+         "--max-memory", setMemoryBudget,
          "memory that the call may take, such as 4GB (default: half of what is free)")
       ->transform(CLI::AsSizeValue(false))
       ->transform(decimalSize())

@@ -9,6 +9,8 @@
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/study/goal_study.hpp>
 #include <talus/cli/study/thesis_figures.hpp>
+#include <talus/common/input_error.hpp>
+#include <talus/common/progress_monitor.hpp>
 
 namespace talus::cli {
 namespace {

@@ -12,7 +12,8 @@
 #include <talus/cli/ground/path_reader.hpp>
 #include <talus/cli/ground/plugin_option.hpp>
 #include <talus/cli/route/route_json.hpp>
-#include <talus/maps/place_reader.hpp>
+#include <talus/common/input_error.hpp>
+#include <talus/maps/raster/place_reader.hpp>
 #include <talus/planner/bound/lower_bound.hpp>
 #include <talus/planner/check/annotation.hpp>
 #include <talus/planner/check/route_check.hpp>
@@ -21,7 +22,7 @@
 namespace talus::cli {
 namespace {
 
-struct Options {
+struct ScoreOptions {
   GroundOptions ground;
   std::string path;
   std::string plugin, start, goal;  ///< in place of a path: the route of a plugin
@@ -29,14 +30,14 @@ struct Options {
   std::string chassis;
 };
 
-nlohmann::ordered_json asJson(const std::vector<planner::Violation>& violations) {
+nlohmann::ordered_json scoreJson(const std::vector<planner::Violation>& violations) {
   auto list = nlohmann::ordered_json::array();
   for (const auto& v : violations)
     list.push_back({{"x_m", v.place.x_m}, {"y_m", v.place.y_m}, {"reason", v.reason}});
   return list;
 }
 
-std::string asText(const planner::Route& route, const std::vector<planner::Violation>& violations) {
+std::string scoreText(const planner::Route& route, const std::vector<planner::Violation>& violations) {
   const planner::RouteSummary& s = route.summary;
   std::string text = fmt::format("cost        {:.6g} J (lower bound {:.6g} J)\n", s.cost, s.lower_bound) +
                      fmt::format("energy      {:.6g} J\ntime        {:.6g} s\nlength      {:.6g} m\n",
@@ -47,7 +48,7 @@ std::string asText(const planner::Route& route, const std::vector<planner::Viola
   return text;
 }
 
-void bind(CLI::App& command, Options& options) {
+void bind(CLI::App& command, ScoreOptions& options) {
   addGroundOptions(command, options.ground);
   command.add_option("--path", options.path, "polyline: GeoJSON LineString, or CSV with x_m, y_m")
       ->type_name("FILE");
@@ -70,7 +71,7 @@ std::vector<planner::Violation> violationsOf(const std::vector<maps::Point>& poi
   return all;
 }
 
-void requirePath(const Options& options) {
+void requirePath(const ScoreOptions& options) {
   const bool routed = !options.plugin.empty() || !options.start.empty() || !options.goal.empty();
   if (routed &&
       (!options.path.empty() || options.plugin.empty() || options.start.empty() || options.goal.empty()))
@@ -80,7 +81,7 @@ void requirePath(const Options& options) {
 }
 
 // The polyline to score: read, or as a plugin plans it, whatever the check holds against that.
-std::vector<maps::Point> pointsOf(const Options& options, const Ground& ground, const Context& context) {
+std::vector<maps::Point> pointsOf(const ScoreOptions& options, const Ground& ground, const Context& context) {
   if (options.plugin.empty()) return readPath(options.path, ground.map.elevation());
   planner::Problem problem;
   problem.map = ground.map.published();
@@ -96,7 +97,7 @@ std::vector<maps::Point> pointsOf(const Options& options, const Ground& ground, 
   return std::move(plan.points);
 }
 
-int run(const Options& options, Context& context) {
+int run(const ScoreOptions& options, Context& context) {
   requirePath(options);
   const Ground ground = readGround(options.ground, context);
   if (context.stop.stop_requested()) return Exit::kCancelled;
@@ -117,11 +118,11 @@ int run(const Options& options, Context& context) {
   if (context.json) {
     auto json = summaryJson(route);
     if (!violations.empty()) json["status"] = "infeasible";
-    json["violations"] = asJson(violations);
+    json["violations"] = scoreJson(violations);
     json["seconds"] = {{"load", ground.load_s}, {"costmap", ground.build_s}};
     printJson(json);
   } else {
-    print(asText(route, violations));
+    print(scoreText(route, violations));
   }
   return violations.empty() ? Exit::kDone : Exit::kNo;
 }
@@ -129,7 +130,7 @@ int run(const Options& options, Context& context) {
 }  // namespace
 
 void addScore(CLI::App& app, Context& context) {
-  addCommand<Options>(
+  addCommand<ScoreOptions>(
       app, context,
       {.name = "score",
        .group = Group::kRoutes,

@@ -8,12 +8,14 @@
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/soil/left_out_report.hpp>
 #include <talus/cli/soil/trace_report.hpp>
+#include <talus/common/input_error.hpp>
+#include <talus/common/progress_monitor.hpp>
+#include <talus/terramech/calibration/held_out/held_out.hpp>
+#include <talus/terramech/calibration/trace/left_out.hpp>
 #include <talus/terramech/io/model_file.hpp>
 #include <talus/terramech/io/soil_library.hpp>
 #include <talus/terramech/io/telemetry_reader.hpp>
 #include <talus/terramech/io/wheel_rows.hpp>
-#include <talus/terramech/trace/held_out.hpp>
-#include <talus/terramech/trace/left_out.hpp>
 
 namespace talus::cli {
 namespace {

@@ -16,14 +16,15 @@
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/file_lock.hpp>
 #include <talus/cli/app/output_file.hpp>
-#include <talus/costmap/drive_evidence.hpp>
-#include <talus/costmap/map_file.hpp>
+#include <talus/common/input_error.hpp>
+#include <talus/costmap/map/map_file.hpp>
+#include <talus/costmap/telemetry/drive_evidence.hpp>
 #include <talus/terramech/io/telemetry_reader.hpp>
 
 namespace talus::cli {
 namespace {
 
-struct Options {
+struct UpdateOptions {
   std::string map;
   std::string telemetry;
   std::string output;
@@ -32,7 +33,7 @@ struct Options {
   costmap::IntakeOptions intake;
 };
 
-void bind(CLI::App& command, Options& options) {
+void bind(CLI::App& command, UpdateOptions& options) {
   command.add_option("MAP", options.map, "traversability map from `talus costmap`")
       ->required()
       ->type_name("MAP.ot");
@@ -90,20 +91,20 @@ Difference between(const Snapshot& before, const Snapshot& after) {
   return difference;
 }
 
-[[noreturn]] void refuseReplay(const Options& options) {
+[[noreturn]] void refuseReplay(const UpdateOptions& options) {
   throw InputError(
       {options.journal, "holds nothing to replay", "name the journal that the drives went into"});
 }
 
 // A journal of which this map can use no row is another map's.
-void tellForeign(const Options& options, const costmap::DriveReport& report, const Context& context) {
+void tellForeign(const UpdateOptions& options, const costmap::DriveReport& report, const Context& context) {
   const std::string reason = fmt::format("none of its {} rows tells of this map", report.rejected);
   if (options.replay) throw InputError({options.journal, reason, "name the journal of this map"});
   context.warn(options.journal + ": " + reason + "; it may be another map's");
 }
 
 // One that does not exist yet is an output as others are.
-void checkJournal(const Options& options, bool force) {
+void checkJournal(const UpdateOptions& options, bool force) {
   std::error_code error;
   const auto size = std::filesystem::file_size(options.journal, error);
   if (!force && !options.journal.empty() && (error || size == 0)) checkOutput(options.journal, {});
@@ -111,7 +112,7 @@ void checkJournal(const Options& options, bool force) {
     checkBesideJournal(file, options.journal);
 }
 
-void checkCall(const Options& options) {
+void checkCall(const UpdateOptions& options) {
   std::error_code error;
   if (options.replay && (std::filesystem::file_size(options.journal, error) == 0 || error))
     refuseReplay(options);
@@ -121,7 +122,7 @@ void checkCall(const Options& options) {
                     "give T.csv, or --replay with --journal"});
 }
 
-terramech::Telemetry readDrive(const Options& options, const costmap::TraversabilityMap& map,
+terramech::Telemetry readDrive(const UpdateOptions& options, const costmap::TraversabilityMap& map,
                                const Context& context) {
   auto telemetry = terramech::readTelemetry(options.telemetry,
                                             {.required = {"x_m", "y_m", "load_N", "slip"},
@@ -137,7 +138,7 @@ terramech::Telemetry readDrive(const Options& options, const costmap::Traversabi
 }
 
 // The rows of the file that go into the map; `report` holds what the journal gave already.
-void addTelemetry(const Options& options, costmap::TraversabilityMap& map,
+void addTelemetry(const UpdateOptions& options, costmap::TraversabilityMap& map,
                   const terramech::Telemetry& telemetry, costmap::EvidenceJournal* journal,
                   const Context& context, costmap::DriveReport& report) {
   const costmap::DriveReport drive = costmap::addDrive(map, telemetry, journal, options.intake);
@@ -172,7 +173,7 @@ void tell(const costmap::DriveReport& report, const Difference& difference, cons
                     report.used, report.rejected, report.raising, difference.cells, difference.categories));
 }
 
-int run(const Options& options, Context& context) {
+int run(const UpdateOptions& options, Context& context) {
   checkCall(options);
   checkJournal(options, context.force);
   const FileLock lock({options.map, options.output}, context.stop);
@@ -214,13 +215,14 @@ int run(const Options& options, Context& context) {
 }  // namespace
 
 void addUpdate(CLI::App& app, Context& context) {
-  addCommand<Options>(app, context,
-                      {.name = "update",
-                       .group = Group::kMaps,
-                       .description = "update a traversability map with the telemetry of a drive",
-                       .examples = "  talus update map.ot drive.csv -o map2.ot --journal evidence.db\n"
-                                   "  talus update map.ot --replay --journal evidence.db -o rebuilt.ot\n"},
-                      bind, run);
+  addCommand<UpdateOptions>(
+      app, context,
+      {.name = "update",
+       .group = Group::kMaps,
+       .description = "update a traversability map with the telemetry of a drive",
+       .examples = "  talus update map.ot drive.csv -o map2.ot --journal evidence.db\n"
+                   "  talus update map.ot --replay --journal evidence.db -o rebuilt.ot\n"},
+      bind, run);
 }
 
 }  // namespace talus::cli

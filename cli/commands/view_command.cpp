@@ -14,16 +14,17 @@
 #include <talus/cli/draw/scene.hpp>
 #include <talus/cli/ground/map_options.hpp>
 #include <talus/cli/route/route_reader.hpp>
-#include <talus/costmap/map_file.hpp>
-#include <talus/costmap/octomap_surface.hpp>
-#include <talus/costmap/traversability_map.hpp>
+#include <talus/common/input_error.hpp>
+#include <talus/costmap/map/map_file.hpp>
+#include <talus/costmap/map/traversability_map.hpp>
+#include <talus/costmap/surface/octomap_surface.hpp>
 
 namespace talus::cli {
 namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct ViewOptions {
   MapOptions file;
   std::string map;
   std::string title;
@@ -31,7 +32,7 @@ struct Options {
   std::string png;
 };
 
-void bind(CLI::App& command, Options& options) {
+void bind(CLI::App& command, ViewOptions& options) {
   addMapOptions(command, options.file, "FILE");
   command.get_option("FILE")->description("route from `talus plan`, traversability map, or elevation map");
   command
@@ -47,7 +48,7 @@ void bind(CLI::App& command, Options& options) {
   groupOptions(command, "Page");
 }
 
-Scene mapScene(const Options& options, const std::string& path, const Context& context) {
+Scene mapScene(const ViewOptions& options, const std::string& path, const Context& context) {
   const SceneOptions scene{.title =
                                options.title.empty() ? fs::path(path).filename().string() : options.title};
   if (costmap::octomapType(path) == "TraversabilityTree")
@@ -74,10 +75,10 @@ std::optional<std::string> findMap(const RouteFile& file, const std::string& rou
   return std::nullopt;
 }
 
-Scene routeScene(const Options& options, const Context& context) {
+Scene routeScene(const ViewOptions& options, const Context& context) {
   const RouteFile file = readRoute(options.file.path);
   const std::string name = fs::path(options.file.path).filename().string();
-  Options titled = options;
+  ViewOptions titled = options;
   if (titled.title.empty()) titled.title = name;
   const std::optional<std::string> map =
       options.map.empty() ? findMap(file, options.file.path, context) : std::optional(options.map);
@@ -90,7 +91,7 @@ Scene routeScene(const Options& options, const Context& context) {
   return scene;
 }
 
-int run(const Options& options, Context& context) {
+int run(const ViewOptions& options, Context& context) {
   const fs::path named(options.html);
   const fs::path html = named.empty() ? fs::path(options.file.path).stem().concat(".html") : named;
   const Scene scene = looksLikeJson(options.file.path) ? routeScene(options, context)
@@ -108,13 +109,13 @@ int run(const Options& options, Context& context) {
 }  // namespace
 
 void addView(CLI::App& app, Context& context) {
-  addCommand<Options>(app, context,
-                      {.name = "view",
-                       .group = Group::kRoutes,
-                       .description = "write a self-contained HTML page: map layers, route and profiles",
-                       .examples = "  talus view route.geojson\n"
-                                   "  talus view gale.ot -o gale.html --png gale.png\n"},
-                      bind, run);
+  addCommand<ViewOptions>(app, context,
+                          {.name = "view",
+                           .group = Group::kRoutes,
+                           .description = "write a self-contained HTML page: map layers, route and profiles",
+                           .examples = "  talus view route.geojson\n"
+                                       "  talus view gale.ot -o gale.html --png gale.png\n"},
+                          bind, run);
 }
 
 }  // namespace talus::cli

@@ -10,7 +10,8 @@
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/soil/wheel_report.hpp>
 #include <talus/cli/soil/wheel_table.hpp>
-#include <talus/talus.hpp>
+#include <talus/common/constants.hpp>
+#include <talus/common/input_error.hpp>
 #include <talus/terramech/contact/wong_reece.hpp>
 #include <talus/terramech/io/soil_library.hpp>
 

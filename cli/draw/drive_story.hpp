@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <vector>
 
-#include <talus/maps/grid.hpp>
-#include <talus/planner/simulation/traverse_simulation.hpp>
-#include <talus/planner/simulation/true_world.hpp>
+#include <talus/maps/grid/grid.hpp>
+#include <talus/planner/simulation/drive/traverse_simulation.hpp>
+#include <talus/planner/simulation/worlds/true_world.hpp>
 
 namespace talus::cli {
 

@@ -12,7 +12,7 @@
 #include <talus/cli/draw/page.hpp>
 #include <talus/cli/draw/page_template.hpp>
 #include <talus/cli/draw/route_summary.hpp>
-#include <talus/talus.hpp>
+#include <talus/common/constants.hpp>
 
 namespace talus::cli {
 namespace {

@@ -13,7 +13,7 @@
 namespace talus::cli {
 namespace {
 
-constexpr Colour kInk = rgb(0x333333);
+constexpr Colour kPlotInk = rgb(0x333333);
 constexpr Colour kFaint = rgb(0xE4E4E4);
 
 void check(const Series& s) {
@@ -67,7 +67,7 @@ class Panel {
     canvas_.clip(frame_);
     for (std::size_t i = 0; i < plot_.series.size(); ++i) series(plot_.series[i], colour(i));
     canvas_.unclip();
-    outline(canvas_, frame_, {.colour = kInk});
+    outline(canvas_, frame_, {.colour = kPlotInk});
     legend();
   }
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <talus/cli/draw/scene.hpp>
-#include <talus/costmap/cost_grid.hpp>
+#include <talus/costmap/cost/cost_grid.hpp>
 #include <talus/planner/route/motion_cost.hpp>
 
 namespace talus::cli {

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include <talus/cli/draw/route_summary.hpp>
-#include <talus/talus.hpp>
+#include <talus/common/constants.hpp>
 
 namespace talus::cli {
 namespace {

@@ -6,8 +6,8 @@
 #include <talus/cli/draw/block_mean.hpp>
 #include <talus/cli/draw/route_summary.hpp>
 #include <talus/cli/draw/scene.hpp>
-#include <talus/costmap/traversability_map.hpp>
-#include <talus/talus.hpp>
+#include <talus/common/constants.hpp>
+#include <talus/costmap/map/traversability_map.hpp>
 
 namespace talus::cli {
 namespace {

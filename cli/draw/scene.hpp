@@ -10,7 +10,7 @@
 #include <talus/cli/draw/colour.hpp>
 #include <talus/cli/draw/drive_story.hpp>
 #include <talus/cli/draw/ticks.hpp>
-#include <talus/maps/elevation_map.hpp>
+#include <talus/maps/terrain/elevation_map.hpp>
 #include <talus/planner/route/route.hpp>
 
 namespace talus::costmap {

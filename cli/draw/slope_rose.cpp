@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include <talus/cli/draw/slope_rose.hpp>
-#include <talus/talus.hpp>
+#include <talus/common/constants.hpp>
 
 namespace talus::cli {
 namespace {

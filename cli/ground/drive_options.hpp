@@ -4,7 +4,7 @@
 #include <string>
 
 #include <talus/cli/ground/mission.hpp>
-#include <talus/costmap/traversability_map.hpp>
+#include <talus/costmap/map/traversability_map.hpp>
 #include <talus/planner/check/chassis.hpp>
 #include <talus/planner/route/kinematics.hpp>
 

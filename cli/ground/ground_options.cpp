@@ -15,10 +15,11 @@
 #include <talus/cli/app/help_format.hpp>
 #include <talus/cli/app/number_check.hpp>
 #include <talus/cli/ground/ground_options.hpp>
-#include <talus/costmap/ground_class.hpp>
-#include <talus/costmap/map_file.hpp>
-#include <talus/costmap/octomap_surface.hpp>
-#include <talus/talus.hpp>
+#include <talus/common/constants.hpp>
+#include <talus/common/input_error.hpp>
+#include <talus/costmap/ground/ground_class.hpp>
+#include <talus/costmap/map/map_file.hpp>
+#include <talus/costmap/surface/octomap_surface.hpp>
 #include <talus/terramech/io/model_file.hpp>
 #include <talus/terramech/io/soil_library.hpp>
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include <talus/cli/ground/map_options.hpp>
-#include <talus/costmap/traversability_map.hpp>
+#include <talus/costmap/map/traversability_map.hpp>
 
 namespace CLI {
 class App;

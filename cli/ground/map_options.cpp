@@ -10,9 +10,10 @@
 #include <talus/cli/app/help_format.hpp>
 #include <talus/cli/app/number_check.hpp>
 #include <talus/cli/ground/map_options.hpp>
-#include <talus/costmap/map_file.hpp>
-#include <talus/costmap/octomap_surface.hpp>
-#include <talus/maps/memory_budget.hpp>
+#include <talus/common/input_error.hpp>
+#include <talus/common/memory_budget.hpp>
+#include <talus/costmap/map/map_file.hpp>
+#include <talus/costmap/surface/octomap_surface.hpp>
 #include <talus/planner/plugin/layer_plugin.hpp>
 
 namespace talus::cli {
@@ -95,7 +96,7 @@ MapWithFloors readMapWithFloors(const MapOptions& options, const Context& contex
   maps::ElevationMap map = maps::readElevation(options.path, read);
   // What is built on it: beliefs, hazards, curves, tiles and their working copies.
   constexpr double kBytesPerCell = 40.0;
-  maps::requireMemory(kBytesPerCell * static_cast<double>(map.elevation_m.values().size()), options.path);
+  requireMemory(kBytesPerCell * static_cast<double>(map.elevation_m.values().size()), options.path);
   for (const std::string& note : map.notes) context.warn(options.path + ": " + note);
   return {std::move(map), {}};
 }

@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include <talus/costmap/ground_site.hpp>
-#include <talus/maps/elevation_reader.hpp>
-#include <talus/maps/layer_reader.hpp>
+#include <talus/costmap/site/ground_site.hpp>
+#include <talus/maps/raster/elevation_reader.hpp>
+#include <talus/maps/raster/layer_reader.hpp>
 
 namespace CLI {
 class App;

@@ -6,6 +6,7 @@
 
 #include <talus/cli/app/number_check.hpp>
 #include <talus/cli/ground/mission.hpp>
+#include <talus/common/input_error.hpp>
 #include <talus/terramech/io/yaml_fields.hpp>
 
 namespace talus::cli {

@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include <talus/cli/ground/path_reader.hpp>
-#include <talus/maps/geojson.hpp>
-#include <talus/plausible.hpp>
-#include <talus/talus.hpp>
+#include <talus/common/input_error.hpp>
+#include <talus/common/plausible.hpp>
+#include <talus/maps/raster/geojson.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
 
 namespace talus::cli {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include <talus/maps/elevation_map.hpp>
+#include <talus/maps/terrain/elevation_map.hpp>
 
 namespace talus::cli {
 

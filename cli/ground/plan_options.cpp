@@ -6,6 +6,7 @@
 #include <talus/cli/ground/drive_options.hpp>
 #include <talus/cli/ground/plan_options.hpp>
 #include <talus/cli/ground/plugin_option.hpp>
+#include <talus/common/input_error.hpp>
 
 namespace talus::cli {
 namespace {

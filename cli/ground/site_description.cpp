@@ -2,7 +2,8 @@
 #include <utility>
 
 #include <talus/cli/ground/site_description.hpp>
-#include <talus/talus.hpp>
+#include <talus/common/input_error.hpp>
+#include <talus/common/nearest_name.hpp>
 #include <talus/terramech/io/yaml_fields.hpp>
 
 namespace talus::cli {

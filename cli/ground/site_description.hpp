@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include <talus/maps/site_generator.hpp>
+#include <talus/maps/sites/site_generator.hpp>
 
 namespace talus::cli {
 

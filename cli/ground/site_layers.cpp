@@ -8,7 +8,7 @@
 #include <utility>
 
 #include <talus/cli/ground/site_layers.hpp>
-#include <talus/maps/terrain_metrics.hpp>
+#include <talus/maps/terrain/terrain_metrics.hpp>
 
 namespace talus::cli {
 namespace {
@@ -16,7 +16,7 @@ namespace {
 using costmap::CellCode;
 using costmap::TraversabilityMap;
 
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+constexpr float kNoValue = std::numeric_limits<float>::quiet_NaN();
 
 maps::Layer layer(const maps::Grid& grid, std::string name, std::string unit,
                   const std::function<float(maps::Cell)>& value) {
@@ -33,7 +33,7 @@ float energyAlong(const costmap::CostGrid& grid, maps::Cell cell, double sign) {
   const costmap::Direction up =
       steepness > 0.0 ? costmap::Direction{sign * code.dzDx() / steepness, sign * code.dzDy() / steepness}
                       : costmap::Direction{};
-  if (!std::isfinite(grid.cost().costPerMetre(code, up))) return kNaN;
+  if (!std::isfinite(grid.cost().costPerMetre(code, up))) return kNoValue;
   return grid.cost().detail(code, up).energy_J_per_m;
 }
 
@@ -46,7 +46,7 @@ class BestHeading {
     const double steepness = std::hypot(cell.dzDx(), cell.dzDy());
     const auto step = static_cast<std::size_t>(std::ceil(steepness / kStep - 1e-9));
     auto& curve = known_[cell.curve()];
-    if (curve.size() <= step) curve.resize(step + 1, kNaN);
+    if (curve.size() <= step) curve.resize(step + 1, kNoValue);
     if (std::isnan(curve[step])) curve[step] = best(static_cast<double>(step) * kStep, cell.curve());
     return curve[step];
   }
@@ -76,7 +76,9 @@ std::vector<maps::Layer> siteLayers(const TraversabilityMap& map, int threads) {
   const maps::Grid& grid = map.grid();
   maps::TerrainMetrics metrics = maps::terrainMetrics(map.elevation().elevation_m, map.footprint(threads));
   const auto published = map.published();
-  const auto known = [&](maps::Cell cell, float value) { return map.classIndex(cell) < 0 ? kNaN : value; };
+  const auto known = [&](maps::Cell cell, float value) {
+    return map.classIndex(cell) < 0 ? kNoValue : value;
+  };
   std::vector<maps::Layer> layers;
   layers.push_back({"elevation", "m", map.elevation().elevation_m});
   layers.push_back(layer(grid, "slope", "rad", [&](maps::Cell c) { return metrics.slope_rad(c); }));

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include <talus/costmap/traversability_map.hpp>
-#include <talus/maps/geotiff_writer.hpp>
+#include <talus/costmap/map/traversability_map.hpp>
+#include <talus/maps/raster/geotiff_writer.hpp>
 
 namespace talus::cli {
 

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include <talus/cli/ground/truth_file.hpp>
-#include <talus/talus.hpp>
+#include <talus/common/input_error.hpp>
 #include <talus/terramech/io/model_file.hpp>
 #include <talus/terramech/io/soil_library.hpp>
 #include <talus/terramech/io/yaml_fields.hpp>

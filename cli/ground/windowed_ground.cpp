@@ -3,8 +3,9 @@
 
 #include <talus/cli/app/context.hpp>
 #include <talus/cli/ground/windowed_ground.hpp>
-#include <talus/costmap/octomap_surface.hpp>
-#include <talus/maps/gdal_dataset.hpp>
+#include <talus/common/input_error.hpp>
+#include <talus/costmap/surface/octomap_surface.hpp>
+#include <talus/maps/raster/gdal_dataset.hpp>
 
 namespace talus::cli {
 namespace {

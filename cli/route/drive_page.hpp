@@ -3,8 +3,9 @@
 #include <filesystem>
 
 #include <talus/cli/draw/drive_story.hpp>
-#include <talus/planner/simulation/drive_log.hpp>
-#include <talus/planner/simulation/simulation_site.hpp>
+#include <talus/common/progress_monitor.hpp>
+#include <talus/planner/simulation/drive/drive_log.hpp>
+#include <talus/planner/simulation/drive/simulation_site.hpp>
 
 namespace talus::cli {
 

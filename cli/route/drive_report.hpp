@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <talus/planner/simulation/simulation_rates.hpp>
+#include <talus/planner/simulation/drive/simulation_rates.hpp>
 
 namespace talus::cli {
 

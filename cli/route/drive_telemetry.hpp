@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <vector>
 
-#include <talus/planner/simulation/traverse_simulation.hpp>
+#include <talus/planner/simulation/drive/traverse_simulation.hpp>
 #include <talus/terramech/contact/rover.hpp>
 
 namespace talus::cli {

@@ -5,7 +5,8 @@
 #include <string>
 #include <vector>
 
-#include <talus/planner/simulation/simulation_site.hpp>
+#include <talus/common/progress_monitor.hpp>
+#include <talus/planner/simulation/drive/simulation_site.hpp>
 
 namespace talus::cli {
 

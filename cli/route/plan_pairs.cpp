@@ -8,10 +8,10 @@
 #include <talus/cli/app/context.hpp>
 #include <talus/cli/route/plan_pairs.hpp>
 #include <talus/cli/route/route_json.hpp>
+#include <talus/common/input_error.hpp>
 #include <talus/planner/check/annotation.hpp>
 #include <talus/planner/check/route_check.hpp>
 #include <talus/planner/plugin/named_planner.hpp>
-#include <talus/talus.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
 
 namespace talus::cli {

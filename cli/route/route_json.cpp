@@ -5,7 +5,7 @@
 
 #include <talus/cli/app/sha256.hpp>
 #include <talus/cli/route/route_json.hpp>
-#include <talus/talus.hpp>
+#include <talus/common/constants.hpp>
 
 namespace talus::cli {
 namespace {

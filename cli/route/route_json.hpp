@@ -5,7 +5,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include <talus/maps/elevation_map.hpp>
+#include <talus/maps/terrain/elevation_map.hpp>
 #include <talus/planner/route/route.hpp>
 
 namespace talus::cli {

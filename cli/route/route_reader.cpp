@@ -10,8 +10,9 @@
 #include <nlohmann/json.hpp>
 
 #include <talus/cli/route/route_reader.hpp>
-#include <talus/maps/gdal_dataset.hpp>
-#include <talus/talus.hpp>
+#include <talus/common/input_error.hpp>
+#include <talus/maps/raster/file_text.hpp>
+#include <talus/maps/raster/gdal_dataset.hpp>
 
 namespace talus::cli {
 namespace {

@@ -12,8 +12,6 @@ namespace {
 
 using namespace terramech;
 
-constexpr Channel kAll[] = {Channel::DrawbarPull, Channel::Sinkage, Channel::Torque, Channel::SideForce};
-
 bool measures(const std::vector<LeftOutErrors>& all, Channel channel) {
   return std::any_of(all.begin(), all.end(), [&](const LeftOutErrors& part) {
     return std::isfinite(part.base[static_cast<std::size_t>(channel)]);
@@ -33,7 +31,7 @@ double pooled(const std::vector<LeftOutErrors>& all, ChannelErrors LeftOutErrors
 }
 
 void verdict(HtmlReport& page, const std::vector<LeftOutErrors>& all) {
-  for (Channel c : kAll) {
+  for (Channel c : kAllChannels) {
     if (!measures(all, c)) continue;
     const double before = pooled(all, &LeftOutErrors::base, c),
                  after = pooled(all, &LeftOutErrors::refined, c);
@@ -48,7 +46,7 @@ void table(HtmlReport& page, const std::vector<LeftOutErrors>& all) {
   for (const LeftOutErrors& part : all) {
     found.push_back({part.what, fmt::format("{}", part.rows),
                      part.effects.empty() ? "none" : fmt::format("{}", fmt::join(part.effects, ", "))});
-    for (Channel c : kAll) {
+    for (Channel c : kAllChannels) {
       const auto k = static_cast<std::size_t>(c);
       if (!std::isfinite(part.base[k])) continue;
       rows.push_back({part.what, name(c), fmt::format("{:.4f}", part.base[k]),
@@ -112,7 +110,7 @@ std::string leftOutPage(const std::vector<LeftOutErrors>& all, const std::string
   HtmlReport page("Held out of " + source + ": " + request);
   verdict(page, all);
   std::vector<Plot> plots;
-  for (Channel c : kAll) {
+  for (Channel c : kAllChannels) {
     if (!measures(all, c)) continue;
     plots.push_back(overColumn(all, request.substr(0, request.find('=')), c));
     plots.push_back(againstMeasured(all, c));

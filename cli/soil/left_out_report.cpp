@@ -12,12 +12,10 @@ namespace {
 
 using namespace terramech;
 
-constexpr Channel kAll[] = {Channel::DrawbarPull, Channel::Sinkage, Channel::Torque, Channel::SideForce};
-
 /// Channels in which the refined model errs more than the base.
 nlohmann::ordered_json worse(const LeftOutErrors& part) {
   auto out = nlohmann::ordered_json::array();
-  for (Channel c : kAll)
+  for (Channel c : kAllChannels)
     if (const auto k = static_cast<std::size_t>(c); part.refined[k] > part.base[k]) out.push_back(name(c));
   return out;
 }
@@ -31,7 +29,7 @@ std::string leftOutText(const std::vector<LeftOutErrors>& all) {
                        part.what, part.rows,
                        part.effects.empty() ? "no effect" : fmt::format("{}", fmt::join(part.effects, ", ")),
                        "rmse", "base", "refined", "noise floor", "regression");
-    for (Channel c : kAll) {
+    for (Channel c : kAllChannels) {
       const auto k = static_cast<std::size_t>(c);
       if (!std::isfinite(part.base[k])) continue;
       out += fmt::format("  {:26s} {:10.4f} {:10.4f} {:12.4f} {:12.4f}{}\n", name(c), part.base[k],

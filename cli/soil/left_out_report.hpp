@@ -5,7 +5,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include <talus/terramech/trace/left_out.hpp>
+#include <talus/terramech/calibration/trace/left_out.hpp>
 
 namespace talus::cli {
 

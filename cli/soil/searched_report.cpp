@@ -6,23 +6,13 @@
 #include <nlohmann/json.hpp>
 
 #include <talus/cli/soil/searched_report.hpp>
+#include <talus/cli/soil/trace_report.hpp>
 
 namespace talus::cli {
 namespace {
 
 using nlohmann::ordered_json;
 using namespace terramech;
-
-constexpr Channel kAll[] = {Channel::DrawbarPull, Channel::Sinkage, Channel::Torque, Channel::SideForce};
-
-ordered_json errorsJson(const ChannelErrors& errors) {
-  ordered_json out = ordered_json::object();
-  for (Channel c : kAll)
-    if (std::isfinite(errors[static_cast<std::size_t>(c)]))
-      out[name(c)] = errors[static_cast<std::size_t>(c)];
-  return out;
-}
-
 }  // namespace
 
 ordered_json searchedJson(const TraceResult& r) {
@@ -38,7 +28,7 @@ std::string searchedText(const TraceResult& result) {
   if (const UnsearchedRows& rest = result.unsearched; rest.rows > 0) {
     text += fmt::format("searched a sample of {} of {} rows; rmse on the {} others (base -> refined):",
                         result.trial.rows(), result.trial.rows() + rest.rows, rest.rows);
-    for (Channel c : kAll)
+    for (Channel c : kAllChannels)
       if (const auto k = static_cast<std::size_t>(c); std::isfinite(rest.base_rmse[k]))
         text += fmt::format(" {} {:.4f} -> {:.4f}", name(c), rest.base_rmse[k], rest.refined_rmse[k]);
     text += "\n";

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include <talus/terramech/trace/trace_result.hpp>
+#include <talus/terramech/calibration/search/trace_result.hpp>
 
 namespace talus::cli {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include <talus/terramech/trace/verdict.hpp>
+#include <talus/terramech/calibration/verdict/verdict.hpp>
 
 namespace talus::cli {
 

@@ -14,8 +14,6 @@ namespace {
 
 using namespace terramech;
 
-constexpr Channel kAll[] = {Channel::DrawbarPull, Channel::Sinkage, Channel::Torque, Channel::SideForce};
-
 /// Covariates worth a chart: those of effects, then those that the tests found strongest.
 std::vector<std::string> shown(const TraceResult& r) {
   std::vector<std::string> names;
@@ -160,9 +158,9 @@ void errors(HtmlReport& page, const TraceStory& story) {
   };
   std::vector<std::vector<std::string>> rows;
   for (const HeldOut& held : story.held_out)
-    for (Channel c : kAll)
+    for (Channel c : kAllChannels)
       if (r.trial.has(c)) rows.push_back(row(held.scheme.c_str(), c, held.base_rmse, held.refined_rmse));
-  for (Channel c : kAll)
+  for (Channel c : kAllChannels)
     if (r.trial.has(c)) rows.push_back(row("none (rows of the fit)", c, r.base_rmse, r.refined_rmse));
   page.paragraph("Root mean square errors. The noise floor is the error from sensor noise alone.");
   page.table({"held out", "channel", "base", "refined", "noise floor"}, rows);
@@ -207,7 +205,7 @@ std::string tracePage(const TraceStory& story) {
   page.heading("Residuals over each covariate, base and refined model");
   std::vector<Plot> plots;
   for (const std::string& covariate : shown(r))
-    for (Channel c : kAll)
+    for (Channel c : kAllChannels)
       if (r.trial.has(c)) plots.push_back(residualPlot(r, covariate, c, before, after, sinkage));
   page.charts(plots, {.columns = 3, .panel_width = 420, .panel_height = 300});
   tests(page, r);

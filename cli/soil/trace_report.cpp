@@ -14,8 +14,6 @@ namespace {
 using nlohmann::ordered_json;
 using namespace terramech;
 
-constexpr Channel kAll[] = {Channel::DrawbarPull, Channel::Sinkage, Channel::Torque, Channel::SideForce};
-
 /// Parameters of an effect by name; curves as knots and values a channel.
 ordered_json parametersJson(const Candidate& candidate) {
   ordered_json out = ordered_json::object();
@@ -53,7 +51,7 @@ ordered_json rivalJson(const Explanation& e) {
 
 ordered_json evidenceJson(const TraceStory& story, const TracedEffect& effect) {
   ordered_json by_channel = ordered_json::object();
-  for (Channel c : kAll)
+  for (Channel c : kAllChannels)
     if (story.result.trial.has(c))
       by_channel[name(c)] = effect.chosen.by_channel[static_cast<std::size_t>(c)];
   ordered_json rivals = ordered_json::array();
@@ -210,7 +208,7 @@ std::string groupLines(const TraceStory& story, const HeldOut& held) {
   std::string out;
   for (const GroupErrors& g : held.groups) {
     out += fmt::format("  {} = {}, {} rows\n", g.column, g.value, g.rows);
-    for (Channel c : kAll)
+    for (Channel c : kAllChannels)
       if (const auto k = static_cast<std::size_t>(c); story.result.trial.has(c))
         out += fmt::format("  {:26s} {:10.4f} {:10.4f}\n", name(c), g.base_rmse[k], g.refined_rmse[k]);
   }
@@ -242,7 +240,7 @@ std::string endLines(const TraceResult& r) {
   std::string out = "held out: end levels, predicted from the others (base -> refined)\n";
   for (const EndLevel& end : r.ends) {
     out += fmt::format("  {:26s} {:3d} rows:", (end.high ? "greatest " : "least ") + end.column, end.rows);
-    for (Channel c : kAll)
+    for (Channel c : kAllChannels)
       if (const auto k = static_cast<std::size_t>(c); std::isfinite(end.base_rmse[k]))
         out += fmt::format(" {} {:.4f} -> {:.4f}", name(c), end.base_rmse[k], end.refined_rmse[k]);
     out += "\n";
@@ -280,7 +278,7 @@ ordered_json beyondAxleJson(const TraceStory& story) {
 
 ordered_json errorsJson(const ChannelErrors& errors) {
   ordered_json out = ordered_json::object();
-  for (Channel c : kAll)
+  for (Channel c : kAllChannels)
     if (const double e = errors[static_cast<std::size_t>(c)]; std::isfinite(e)) out[name(c)] = e;
   return out;
 }
@@ -318,7 +316,7 @@ ordered_json traceJson(const TraceStory& story) {
 
 std::string beyondAxleText(const TraceStory& story) {
   std::string errors;
-  for (Channel c : kAll)
+  for (Channel c : kAllChannels)
     if (const double e = story.beyond_axle_rmse[static_cast<std::size_t>(c)]; std::isfinite(e))
       errors += fmt::format("{}{} {:.3f}", errors.empty() ? "" : ", ", name(c), e);
   return fmt::format(
@@ -350,7 +348,7 @@ std::string traceText(const TraceStory& story) {
         "held out: {}\n"
         "  {:26s} {:>10s} {:>10s} {:>12s}\n",
         held.scheme, "rmse", "base", "refined", "noise floor");
-    for (Channel c : kAll) {
+    for (Channel c : kAllChannels) {
       const auto k = static_cast<std::size_t>(c);
       if (!r.trial.has(c)) continue;
       out += fmt::format("  {:26s} {:10.4f} {:10.4f} {:12.4f}\n", name(c), held.base_rmse[k],

@@ -4,10 +4,10 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include <talus/terramech/trace/held_out.hpp>
-#include <talus/terramech/trace/model_validity.hpp>
-#include <talus/terramech/trace/residual_trace.hpp>
-#include <talus/terramech/trace/verdict.hpp>
+#include <talus/terramech/calibration/held_out/held_out.hpp>
+#include <talus/terramech/calibration/trace/model_validity.hpp>
+#include <talus/terramech/calibration/trace/residual_trace.hpp>
+#include <talus/terramech/calibration/verdict/verdict.hpp>
 
 namespace talus::cli {
 

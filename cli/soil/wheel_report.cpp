@@ -4,7 +4,7 @@
 
 #include <talus/cli/draw/html_report.hpp>
 #include <talus/cli/soil/wheel_report.hpp>
-#include <talus/talus.hpp>
+#include <talus/common/constants.hpp>
 #include <talus/terramech/contact/wong_reece.hpp>
 
 namespace talus::cli {

@@ -11,8 +11,9 @@
 
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/soil/wheel_table.hpp>
-#include <talus/maps/parallel_for.hpp>
-#include <talus/plausible.hpp>
+#include <talus/common/input_error.hpp>
+#include <talus/common/parallel_for.hpp>
+#include <talus/common/plausible.hpp>
 #include <talus/terramech/contact/wong_reece_batch.hpp>
 #include <talus/terramech/io/column_units.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
@@ -170,7 +171,7 @@ std::vector<WheelForces> solved(const std::vector<Entry>& entries, int threads) 
   std::vector<WheelForces> forces(cases.size());
   // Blocks of a multiple of four: a case's lane, and so nothing else, depends on them.
   constexpr std::size_t kBlock = 256;
-  maps::parallelFor((cases.size() + kBlock - 1) / kBlock, threads, [&](std::size_t k) {
+  parallelFor((cases.size() + kBlock - 1) / kBlock, threads, [&](std::size_t k) {
     const std::size_t first = k * kBlock, count = std::min(kBlock, cases.size() - first);
     const auto part = [&](auto& all) { return std::span(all).subspan(first, count); };
     terramech::equilibria(part(cases), part(forces));

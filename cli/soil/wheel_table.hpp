@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <vector>
 
-#include <talus/talus.hpp>
+#include <talus/common/progress_monitor.hpp>
 #include <talus/terramech/estimate/telemetry.hpp>
 
 namespace talus::cli {

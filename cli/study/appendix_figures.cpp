@@ -5,11 +5,11 @@
 #include <fmt/format.h>
 
 #include <talus/cli/study/figure_parts.hpp>
-#include <talus/talus.hpp>
+#include <talus/common/constants.hpp>
 #include <talus/terramech/contact/shear_stress.hpp>
 #include <talus/terramech/contact/wong_reece.hpp>
-#include <talus/terramech/estimate/linear_offset.hpp>
-#include <talus/terramech/estimate/shear_modulus.hpp>
+#include <talus/terramech/strength/linear_offset.hpp>
+#include <talus/terramech/strength/shear_modulus.hpp>
 
 namespace talus::cli {
 namespace {
@@ -115,7 +115,7 @@ ThesisFigure trialModulus(std::uint64_t seed) {
         .series = shown}}};
 }
 
-double median(std::vector<double> v) {
+double medianRatio(std::vector<double> v) {
   std::sort(v.begin(), v.end());
   return v[v.size() / 2];
 }
@@ -158,8 +158,8 @@ ThesisFigure modulusErrors(std::uint64_t seed) {
     found += fmt::format(
         "; at {:.0f} % noise D.1 {:.2f}, D.8 as printed {:.2f}, D.8 with the ratio solved {:.2f}, joint "
         "(ours) {:.2f}",
-        100.0 * noise, median(d1), median(printed), median(solved), median(joint));
-    if (noise == 0.0) verdict = minimumVerdict(inside, median(d1));
+        100.0 * noise, medianRatio(d1), medianRatio(printed), medianRatio(solved), medianRatio(joint));
+    if (noise == 0.0) verdict = minimumVerdict(inside, medianRatio(d1));
   }
   return {"D.2",
           "Error over the trial modulus",

@@ -7,7 +7,7 @@
 
 #include <talus/cli/draw/html_report.hpp>
 #include <talus/cli/study/bench_report.hpp>
-#include <talus/planner/simulation/simulation_rates.hpp>
+#include <talus/planner/simulation/drive/simulation_rates.hpp>
 
 namespace talus::cli {
 namespace {

@@ -7,8 +7,9 @@
 
 #include <talus/cli/app/context.hpp>
 #include <talus/cli/study/bench_suite.hpp>
-#include <talus/costmap/ground_class.hpp>
-#include <talus/maps/site_generator.hpp>
+#include <talus/common/input_error.hpp>
+#include <talus/costmap/ground/ground_class.hpp>
+#include <talus/maps/sites/site_generator.hpp>
 #include <talus/planner/bench/grid_suite.hpp>
 #include <talus/planner/bench/moving_ai.hpp>
 #include <talus/planner/bench/slip_world.hpp>

@@ -4,10 +4,10 @@
 #include <fmt/format.h>
 
 #include <talus/cli/study/figure_parts.hpp>
-#include <talus/talus.hpp>
-#include <talus/terramech/estimate/linear_offset.hpp>
+#include <talus/common/constants.hpp>
 #include <talus/terramech/estimate/soil_filter.hpp>
 #include <talus/terramech/estimate/thesis_runs.hpp>
+#include <talus/terramech/strength/linear_offset.hpp>
 
 namespace talus::cli {
 namespace {

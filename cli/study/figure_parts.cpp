@@ -2,7 +2,7 @@
 
 #include <talus/cli/study/figure_parts.hpp>
 #include <talus/terramech/contact/wong_reece.hpp>
-#include <talus/terramech/estimate/linear_offset.hpp>
+#include <talus/terramech/strength/linear_offset.hpp>
 
 namespace talus::cli {
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include <talus/cli/study/thesis_figures.hpp>
-#include <talus/terramech/estimate/mohr_coulomb_line.hpp>
 #include <talus/terramech/estimate/thesis_runs.hpp>
+#include <talus/terramech/strength/mohr_coulomb_line.hpp>
 
 /// What the figures of the thesis are drawn with.
 namespace talus::cli {

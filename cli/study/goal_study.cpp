@@ -5,15 +5,15 @@
 #include <fmt/format.h>
 
 #include <talus/cli/study/goal_study.hpp>
-#include <talus/talus.hpp>
+#include <talus/common/constants.hpp>
 #include <talus/terramech/estimate/drawbar_pull.hpp>
-#include <talus/terramech/estimate/iagnemma.hpp>
-#include <talus/terramech/estimate/linear_offset.hpp>
 #include <talus/terramech/estimate/pull_forecast.hpp>
-#include <talus/terramech/estimate/shear_modulus_grid.hpp>
 #include <talus/terramech/estimate/soil_filter.hpp>
 #include <talus/terramech/estimate/thesis_runs.hpp>
 #include <talus/terramech/io/telemetry_reader.hpp>
+#include <talus/terramech/strength/iagnemma.hpp>
+#include <talus/terramech/strength/linear_offset.hpp>
+#include <talus/terramech/strength/shear_modulus_grid.hpp>
 
 namespace talus::cli {
 namespace {

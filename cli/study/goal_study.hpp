@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include <talus/talus.hpp>
+#include <talus/common/progress_monitor.hpp>
 
 namespace talus::cli {
 

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include <talus/cli/study/thesis_figures.hpp>
-#include <talus/talus.hpp>
+#include <talus/common/constants.hpp>
 #include <talus/terramech/contact/wong_reece.hpp>
 #include <talus/terramech/estimate/drawbar_pull.hpp>
 #include <talus/terramech/estimate/thesis_runs.hpp>

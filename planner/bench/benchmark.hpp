@@ -8,7 +8,8 @@
 #include <string>
 #include <vector>
 
-#include <talus/costmap/cost_grid.hpp>
+#include <talus/common/progress_monitor.hpp>
+#include <talus/costmap/cost/cost_grid.hpp>
 #include <talus/planner/route/problem.hpp>
 
 namespace talus::planner {

@@ -2,13 +2,13 @@
 #include <cmath>
 #include <cstdlib>
 #include <functional>
-#include <limits>
 #include <queue>
 #include <random>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
+#include <talus/common/constants.hpp>
 #include <talus/planner/bench/grid_suite.hpp>
 #include <talus/planner/bench/moving_ai.hpp>
 
@@ -17,8 +17,6 @@ namespace {
 
 using maps::Cell;
 using Walls = maps::Raster<std::uint8_t>;  // 1: blocked
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // A place on the lattice of half cells: cell centres are odd, corners even.
 struct Place {

@@ -2,6 +2,7 @@
 #include <fstream>
 #include <sstream>
 
+#include <talus/common/input_error.hpp>
 #include <talus/planner/bench/moving_ai.hpp>
 
 namespace talus::planner {

@@ -6,10 +6,10 @@
 #include <stdexcept>
 #include <string>
 
-#include <talus/maps/value_noise.hpp>
+#include <talus/common/constants.hpp>
+#include <talus/maps/sites/value_noise.hpp>
 #include <talus/planner/bench/slip_world.hpp>
 #include <talus/planner/route/polyline.hpp>
-#include <talus/talus.hpp>
 
 namespace talus::planner {
 namespace {
@@ -22,9 +22,9 @@ constexpr double kSpeed_mps = 0.1;
 constexpr int kTerrains = 10;
 constexpr std::array kShares{0.4, 0.4, 0.1, 0.1};  // of the map, of the terrains that it has
 
-using Random = std::mt19937_64;
+using Generator = std::mt19937_64;
 
-double uniform(Random& random, double low, double high) {
+double uniform(Generator& random, double low, double high) {
   return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
 }
 
@@ -41,7 +41,7 @@ void validate(const SlipWorldOptions& o) {
 }
 
 // Steeper curves are the less sure ones, as in the set "ES" of the paper.
-std::vector<SlipTerrain> drawnTerrains(Random& random) {
+std::vector<SlipTerrain> drawnTerrains(Generator& random) {
   std::vector<SlipTerrain> terrains;
   for (int k = 0; k < kTerrains; ++k) {
     const double gain = uniform(random, 0.0, 8e-3), offset = uniform(random, 0.0, 0.1);
@@ -86,7 +86,7 @@ struct Ground {
   maps::Raster<std::uint8_t> truth, seen;
 };
 
-Ground drawnGround(const maps::Grid& grid, const SlipWorldOptions& options, Random& random) {
+Ground drawnGround(const maps::Grid& grid, const SlipWorldOptions& options, Generator& random) {
   Ground ground{.terrains = {}, .truth = maps::Raster<std::uint8_t>(grid), .seen = {}};
   std::array<std::uint8_t, kTerrains> all{};
   for (std::uint8_t k = 0; k < kTerrains; ++k) all[k] = k;
@@ -202,7 +202,7 @@ double SlipTerrain::slip(double gradient) const noexcept {
 
 SlipWorld slipWorld(const SlipWorldOptions& options) {
   validate(options);
-  Random random(options.seed);
+  Generator random(options.seed);
   const maps::Grid grid{
       .width = options.side, .height = options.side, .resolution_m = 1.0, .south_west = {0.0, 0.0}};
   SlipWorld world;

@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include <talus/costmap/cost_grid.hpp>
-#include <talus/maps/grid.hpp>
+#include <talus/costmap/cost/cost_grid.hpp>
+#include <talus/maps/grid/grid.hpp>
 
 namespace talus::planner {
 

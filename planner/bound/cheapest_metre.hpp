@@ -1,6 +1,6 @@
 #pragma once
 
-#include <talus/costmap/cost_grid.hpp>
+#include <talus/costmap/cost/cost_grid.hpp>
 
 namespace talus::planner {
 

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include <talus/common/constants.hpp>
 #include <talus/planner/bound/cost_lower_bound.hpp>
 
 namespace talus::planner {
@@ -9,7 +9,6 @@ namespace {
 
 using costmap::DriveCurve;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kMiddle = DriveCurve::kBins / 2;
 constexpr double kBinWidth = 1.0 / 256.0;
 // The line stays above this share of its level whatever the heading, so that every step has a price.

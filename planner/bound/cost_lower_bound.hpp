@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include <talus/costmap/drive_cost.hpp>
+#include <talus/costmap/cost/drive_cost.hpp>
 
 namespace talus::planner {
 

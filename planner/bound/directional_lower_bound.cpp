@@ -4,6 +4,7 @@
 #include <numbers>
 #include <optional>
 
+#include <talus/common/constants.hpp>
 #include <talus/planner/bound/directional_lower_bound.hpp>
 
 namespace talus::planner {
@@ -12,18 +13,17 @@ namespace {
 using costmap::CellCode;
 using costmap::DriveCurve;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kBin = 1.0 / 256.0;  // gradients of one bin of a curve
-constexpr int kMiddle = DriveCurve::kBins / 2;
+constexpr int kMiddleBin = DriveCurve::kBins / 2;
 constexpr double kOctagon = 0.92387;  // cos(pi/8), rounded down by more than floats are off
-constexpr int kRounds =
+constexpr int kRaises =
     4;  // of raising prices: more of them favour single headings, whose neighbours then are cheap
 constexpr double kRounding = 1.0 - 1e-6;  // prices are stored as floats
-constexpr double kLeastShare = 0.1;       // of the least price without tilt: every step has a price
+constexpr double kLeastPriceShare = 0.1;  // of the least price without tilt: every step has a price
 constexpr double kDiagonal = std::numbers::sqrt2 / 2;
 
-double valueAt(const DriveCurve& curve, int bin, int row = 0) noexcept {
-  const int at = bin + kMiddle;
+double priceAt(const DriveCurve& curve, int bin, int row = 0) noexcept {
+  const int at = bin + kMiddleBin;
   return at >= 0 && at < DriveCurve::kBins ? static_cast<double>(curve.rows()[row * DriveCurve::kBins + at])
                                            : kInfinity;
 }
@@ -34,7 +34,7 @@ double leastIn(const DriveCurve& curve, double tilt, double from, double to, dou
   const int row = std::min(DriveCurve::row(across), curve.lastRow());
   for (int bin = static_cast<int>(std::floor(from / kBin)); bin <= static_cast<int>(std::ceil(to / kBin));
        ++bin)
-    least = std::min(least, valueAt(curve, bin, row) - tilt * bin * kBin - std::abs(tilt) * kBin / 2);
+    least = std::min(least, priceAt(curve, bin, row) - tilt * bin * kBin - std::abs(tilt) * kBin / 2);
   return least;
 }
 
@@ -93,7 +93,7 @@ double roomAt(std::size_t k, const ByDirection& limit, const std::array<double, 
 std::array<double, 8> raised(const ByDirection& limit) noexcept {
   std::array<double, 8> prices{};
   prices.fill(std::max(0.0, kOctagon * *std::ranges::min_element(limit)));
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kRaises; ++round) {
     const std::array<double, 8> before = prices;
     for (std::size_t k = 0; k < 8; ++k) prices[k] += 0.5 * roomAt(k, limit, before);
   }
@@ -152,7 +152,7 @@ DirectionalLowerBounds::Square DirectionalLowerBounds::squareWith(std::size_t cu
 DirectionalLowerBounds::Square DirectionalLowerBounds::squareOf(std::size_t curve, double dz_dx,
                                                                 double dz_dy) const {
   const DriveCurve& of = cost_.curves()[curve];
-  const double chord = (valueAt(of, 4) - valueAt(of, -4)) / (8 * kBin);
+  const double chord = (priceAt(of, 4) - priceAt(of, -4)) / (8 * kBin);
   const double tilt = std::isfinite(chord) ? chord : 0.0;
   Square best = squareWith(curve, dz_dx, dz_dy, 0.0);
   if (std::isinf(best.own[0])) return best;
@@ -163,7 +163,7 @@ DirectionalLowerBounds::Square DirectionalLowerBounds::squareOf(std::size_t curv
   };
   for (const double part : {0.5, 1.0}) {
     const Square tried = squareWith(curve, dz_dx, dz_dy, part * tilt);
-    const double least = kLeastShare * static_cast<double>(*std::ranges::min_element(tried.own));
+    const double least = kLeastPriceShare * static_cast<double>(*std::ranges::min_element(tried.own));
     const double slack = std::abs(part * tilt) * kSteps * CellCode::kStep;
     bool priced = least > 0.0;
     for (std::size_t k = 0; k < 8; ++k)

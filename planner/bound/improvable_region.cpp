@@ -13,10 +13,6 @@ namespace {
 constexpr double kTubeCells = 4.0;  // standard deviation of samples beside the known route
 constexpr int kTries = 100;
 
-double distance(maps::Point a, maps::Point b) {
-  return std::hypot(b.x_m - a.x_m, b.y_m - a.y_m);
-}
-
 double uniform01(ImprovableRegion::Engine& engine) {
   return std::generate_canonical<double, 53>(engine);
 }
@@ -24,7 +20,7 @@ double uniform01(ImprovableRegion::Engine& engine) {
 std::vector<double> cumulativeLength(const std::vector<maps::Point>& route) {
   std::vector<double> metres;
   for (std::size_t i = 0; i < route.size(); ++i)
-    metres.push_back(i == 0 ? 0.0 : metres.back() + distance(route[i - 1], route[i]));
+    metres.push_back(i == 0 ? 0.0 : metres.back() + distance_m(route[i - 1], route[i]));
   return metres;
 }
 
@@ -48,11 +44,11 @@ double ImprovableRegion::fromStart(maps::Point place) const {
 }
 
 double ImprovableRegion::toGoal(maps::Point place) const {
-  return std::max(0.0, distance(place, parts_.goal) - parts_.goal_tolerance_m) * cheapest_J_per_m_;
+  return std::max(0.0, distance_m(place, parts_.goal) - parts_.goal_tolerance_m) * cheapest_J_per_m_;
 }
 
 double ImprovableRegion::between(const Segment& ends) const {
-  return distance(ends.from, ends.to) * cheapest_J_per_m_;
+  return distance_m(ends.from, ends.to) * cheapest_J_per_m_;
 }
 
 bool ImprovableRegion::improves(maps::Point place, double max_cost_J) const {

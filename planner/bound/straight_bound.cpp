@@ -4,6 +4,7 @@
 #include <numbers>
 #include <vector>
 
+#include <talus/common/constants.hpp>
 #include <talus/planner/bound/straight_bound.hpp>
 
 namespace talus::planner {
@@ -14,7 +15,6 @@ using costmap::DriveCurve;
 using maps::Cell;
 using maps::Point;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kRounds = 6;
 
 // The cheapest metre of a cell over all headings, by curve and by how many bins its steepest gradient reaches from the
@@ -48,10 +48,6 @@ class CheapestMetres {
   std::vector<std::array<double, kMiddle + 1>> least_;
 };
 
-double distance(Point a, Point b) noexcept {
-  return std::hypot(b.x_m - a.x_m, b.y_m - a.y_m);
-}
-
 // The cheapest metre of the cells that a curve from one place to the other of a length touches; infinite if none. Zero
 // when stopped.
 double cheapestWithin(const costmap::CostGrid& map, const CheapestMetres& metres, const Segment& places,
@@ -75,7 +71,7 @@ double cheapestWithin(const costmap::CostGrid& map, const CheapestMetres& metres
       const double metre = metres(map.at({column, row}));
       if (!(metre < least)) continue;
       const Point centre = grid.centre({column, row});
-      if (distance(places.from, centre) + distance(centre, places.to) <= reach_m) least = metre;
+      if (distance_m(places.from, centre) + distance_m(centre, places.to) <= reach_m) least = metre;
     }
   }
   return least;
@@ -91,20 +87,20 @@ double cheapestOfAny(const costmap::DriveCost& cost) noexcept {
 }  // namespace
 
 double straightBound_J(const costmap::CostGrid& map, const Segment& places, double tolerance_m) {
-  return cheapestOfAny(map.cost()) * std::max(0.0, distance(places.from, places.to) - tolerance_m);
+  return cheapestOfAny(map.cost()) * std::max(0.0, distance_m(places.from, places.to) - tolerance_m);
 }
 
 double straightBoundOver_J(const costmap::CostGrid& map, const Segment& places, double tolerance_m,
                            double known_J, const StopCheck& stop) {
   const CheapestMetres metres(map.cost());
-  const double straight_m = std::max(0.0, distance(places.from, places.to) - tolerance_m);
+  const double straight_m = std::max(0.0, distance_m(places.from, places.to) - tolerance_m);
   double cheapest = cheapestOfAny(map.cost());
   for (int round = 0; round < kRounds && std::isfinite(known_J) && cheapest > 0.0; ++round) {
     const double least = cheapestWithin(map, metres, places, known_J / cheapest + tolerance_m, stop);
     if (std::isinf(least) || !(least > cheapest * 1.0001)) break;
     cheapest = least;
   }
-  const double twice_m = 2.0 * distance(places.from, places.to);
+  const double twice_m = 2.0 * distance_m(places.from, places.to);
   if (const double least = cheapestWithin(map, metres, places, twice_m, stop); std::isfinite(least))
     cheapest = std::max(cheapest, least);
   return std::min(known_J, cheapest * straight_m);

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include <talus/costmap/cost_grid.hpp>
+#include <talus/costmap/cost/cost_grid.hpp>
 #include <talus/planner/route/motion_cost.hpp>
 #include <talus/planner/route/stop_check.hpp>
 

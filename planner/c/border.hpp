@@ -10,8 +10,8 @@
 
 #include <talus.h>
 
+#include <talus/common/input_error.hpp>
 #include <talus/planner/c/session.hpp>
-#include <talus/talus.hpp>
 
 /// The border to C: sizes and pointers are checked here, and what is thrown behind it becomes a code and a line.
 namespace talus::border {

@@ -6,7 +6,7 @@
 #include <stop_token>
 #include <unordered_map>
 
-#include <talus/costmap/drive_evidence.hpp>
+#include <talus/costmap/telemetry/drive_evidence.hpp>
 #include <talus/planner/plugin/global_planner.hpp>
 
 namespace talus::planner {

@@ -4,8 +4,8 @@
 #include <memory>
 #include <optional>
 
-#include <talus/costmap/drive_state.hpp>
-#include <talus/maps/elevation_map.hpp>
+#include <talus/costmap/cost/drive_state.hpp>
+#include <talus/maps/terrain/elevation_map.hpp>
 #include <talus/planner/check/annotation.hpp>
 #include <talus/planner/check/route_risk.hpp>
 #include <talus/planner/route/motion_cost.hpp>

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include <talus/maps/elevation_map.hpp>
+#include <talus/maps/terrain/elevation_map.hpp>
 #include <talus/planner/check/chassis.hpp>
 #include <talus/planner/route/pose_path.hpp>
 

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include <talus/maps/grid.hpp>
+#include <talus/maps/grid/grid.hpp>
 #include <talus/planner/check/route_check.hpp>
 #include <talus/planner/route/kinematics.hpp>
 #include <talus/terramech/contact/rover.hpp>

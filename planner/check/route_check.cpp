@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include <talus/costmap/drive_state.hpp>
+#include <talus/costmap/cost/drive_state.hpp>
 #include <talus/planner/check/route_check.hpp>
 #include <talus/planner/route/pose_path.hpp>
 #include <talus/planner/route/problem.hpp>

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include <talus/costmap/cost_grid.hpp>
-#include <talus/maps/grid.hpp>
-#include <talus/talus.hpp>
+#include <talus/common/progress_monitor.hpp>
+#include <talus/costmap/cost/cost_grid.hpp>
+#include <talus/maps/grid/grid.hpp>
 
 namespace talus::planner {
 

@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <vector>
 
-#include <talus/costmap/cost_grid.hpp>
+#include <talus/common/progress_monitor.hpp>
+#include <talus/costmap/cost/cost_grid.hpp>
 #include <talus/planner/route/route.hpp>
-#include <talus/talus.hpp>
 
 namespace talus::planner {
 

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include <talus/costmap/drive_cost.hpp>
+#include <talus/costmap/cost/drive_cost.hpp>
 
 namespace talus::planner {
 

@@ -7,7 +7,7 @@
 #include <immintrin.h>
 #endif
 
-#include <talus/maps/parallel_for.hpp>
+#include <talus/common/parallel_for.hpp>
 #include <talus/planner/field/edge_layer.hpp>
 
 namespace talus::planner {
@@ -117,7 +117,7 @@ EdgeLayer::EdgeLayer(std::shared_ptr<const costmap::CostGrid> map, const EdgeUni
   blockBorder();
   constexpr int kBlock = 64;
   const auto blocks = static_cast<std::size_t>((padded_.height + kBlock - 1) / kBlock);
-  maps::parallelFor(blocks, threads, [&](std::size_t k) {
+  parallelFor(blocks, threads, [&](std::size_t k) {
     const int row = kBlock * static_cast<int>(k);
     if (!stop()) buildRows({{0, row}, {padded_.width - 1, std::min(row + kBlock, padded_.height) - 1}});
   });

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <memory>
 
-#include <talus/costmap/cost_grid.hpp>
+#include <talus/costmap/cost/cost_grid.hpp>
 #include <talus/planner/field/edge_units.hpp>
 #include <talus/planner/field/padded_grid.hpp>
 #include <talus/planner/route/kernels.hpp>

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <vector>
 
-#include <talus/costmap/drive_cost.hpp>
+#include <talus/costmap/cost/drive_cost.hpp>
 #include <talus/planner/field/grid_heading.hpp>
 
 namespace talus::planner {

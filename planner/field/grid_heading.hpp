@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include <talus/maps/grid.hpp>
+#include <talus/maps/grid/grid.hpp>
 
 namespace talus::planner {
 

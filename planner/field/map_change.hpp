@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include <talus/costmap/cost_grid.hpp>
+#include <talus/costmap/cost/cost_grid.hpp>
 #include <talus/planner/field/edge_layer.hpp>
 
 namespace talus::planner {

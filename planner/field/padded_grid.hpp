@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include <talus/maps/grid.hpp>
+#include <talus/maps/grid/grid.hpp>
 #include <talus/planner/field/grid_heading.hpp>
 
 namespace talus::planner {

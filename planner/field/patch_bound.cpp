@@ -10,8 +10,6 @@ namespace {
 
 using maps::Cell;
 
-constexpr std::uint32_t kUnreached = CostToGo::kUnreached;
-
 // The least that ways outside the box cost between cells of its rim, over all others from one. Side by side in memory: each cell
 // that gains is held against each.
 class Excursions {
@@ -25,7 +23,7 @@ class Excursions {
     column_.push_back(cell.column);
     row_.push_back(cell.row);
     before_.push_back(before);
-    now_.push_back(kUnreached);
+    now_.push_back(CostToGo::kUnreached);
   }
 
   // A cell of the rim has got cheaper.
@@ -36,13 +34,13 @@ class Excursions {
   template <typename Reach>
   void to(std::size_t to, std::uint32_t here, bool exact, Reach reach) const {
     const int column = column_[to], row = row_[to];
-    const std::uint32_t level = exact ? before_[to] : kUnreached;
+    const std::uint32_t level = exact ? before_[to] : CostToGo::kUnreached;
     for (std::size_t k = 0; k < now_.size(); ++k) {
       const auto steps =
           static_cast<std::uint32_t>(std::max(std::abs(column_[k] - column), std::abs(row_[k] - row)));
       const std::uint32_t drop = before_[k] - std::min(before_[k], level);
       const std::uint32_t units = here + std::max(steps * cheapest_, drop);
-      if (units < now_[k] && before_[k] != kUnreached) reach(k, units);
+      if (units < now_[k] && before_[k] != CostToGo::kUnreached) reach(k, units);
     }
   }
 
@@ -60,13 +58,13 @@ PatchBound::PatchBound(const CostToGo& before, CellBox changed)
       columns_(static_cast<std::size_t>(box_.last.column - box_.first.column + 1)),
       first_index_(before.edges().padded().index(box_.first)),
       last_index_(before.edges().padded().index(box_.last)),
-      inside_(columns_ * static_cast<std::size_t>(box_.last.row - box_.first.row + 1), kUnreached) {
+      inside_(columns_ * static_cast<std::size_t>(box_.last.row - box_.first.row + 1), CostToGo::kUnreached) {
   const auto cells = rim();
   settleInwards(cells);
   for (const RimCell& cell : cells) {
     const std::uint32_t now = inside_[local(cell.cell)];
     if (now >= cell.before) continue;
-    holds_ = holds_ && cell.before != kUnreached;
+    holds_ = holds_ && cell.before != CostToGo::kUnreached;
     gain_ = std::max(gain_, cell.before - now);
     least_ = std::min(least_, now);
   }
@@ -94,9 +92,10 @@ void PatchBound::settleInwards(const std::vector<RimCell>& rim) {
   const PaddedGrid& padded = edges.padded();
   BucketQueue queue(static_cast<unsigned>(std::bit_width(edges.units().cheapestEdge()) - 1),
                     EdgeLayer::kBlocked);
-  constexpr std::uint32_t kInner = kUnreached;
-  std::vector<std::uint32_t> on_rim(inside_.size(), kInner);     // which of its cells
-  std::vector<std::uint32_t> taken(inside_.size(), kUnreached);  // at which cost; it waits once for each
+  constexpr std::uint32_t kInner = CostToGo::kUnreached;
+  std::vector<std::uint32_t> on_rim(inside_.size(), kInner);  // which of its cells
+  std::vector<std::uint32_t> taken(inside_.size(),
+                                   CostToGo::kUnreached);  // at which cost; it waits once for each
   Excursions excursions(rim.size(), edges.units().cheapestEdge());
   const auto reach = [&](Cell c, std::uint32_t units) {
     const std::size_t at = local(c);
@@ -144,7 +143,7 @@ std::uint32_t PatchBound::operator()(std::size_t index) const noexcept {
       return inside_[static_cast<std::uint32_t>(index - first_index_) / stride * columns_ + column];
   }
   const std::uint32_t before = before_.atLeast(index);
-  if (gain_ == 0 || before == kUnreached) return before;
+  if (gain_ == 0 || before == CostToGo::kUnreached) return before;
   return std::max(std::min(before, least_), before - std::min(before, gain_));
 }
 

@@ -15,8 +15,6 @@
 namespace talus::planner {
 namespace {
 
-constexpr std::uint32_t kUnreached = CostToGo::kUnreached;
-
 // Units. Links are priced in joules: rounding may make ways change places that are this much apart.
 constexpr std::uint32_t kSlack = 1;
 
@@ -31,7 +29,7 @@ class SparseCosts {
   void set(std::size_t cell, std::uint32_t units) noexcept { below_.get()[cell] = ~units; }
 
  private:
-  std::unique_ptr<std::uint32_t[], decltype(&std::free)> below_;  // how far below kUnreached
+  std::unique_ptr<std::uint32_t[], decltype(&std::free)> below_;  // how far below CostToGo::kUnreached
 };
 
 // A* from the links to the goals.
@@ -68,11 +66,11 @@ class ForwardSearch {
   std::vector<bool> taken_;  // with the present cost
   BucketQueue queue_;
   std::uint64_t looked_at_ = 0;
-  std::uint32_t found_ = kUnreached;  // cost of the best way so far
+  std::uint32_t found_ = CostToGo::kUnreached;  // cost of the best way so far
 };
 
 void ForwardSearch::begin(const std::vector<GridLink>& links) {
-  std::uint64_t nearest = kUnreached;
+  std::uint64_t nearest = CostToGo::kUnreached;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> starts;
   for (const GridLink& link : links) {
     const auto cell = static_cast<std::uint32_t>(edges_.padded().index(link.cell));
@@ -87,7 +85,7 @@ void ForwardSearch::begin(const std::vector<GridLink>& links) {
 void ForwardSearch::reach(std::uint32_t cell, std::uint32_t units) {
   if (units >= cost_[cell]) return;
   const std::uint32_t rest = bound_(cell);
-  if (rest == kUnreached) return;
+  if (rest == CostToGo::kUnreached) return;
   cost_.set(cell, units);
   taken_[cell] = false;
   queue_.push(std::uint64_t{units} + rest, cell);
@@ -129,7 +127,7 @@ std::unordered_map<std::uint32_t, std::uint32_t> ForwardSearch::bestWays() const
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
   const std::uint64_t most = std::uint64_t{found_} + kSlack;
   const auto reach = [&](std::uint32_t cell, std::uint32_t units) {
-    if (cost_[cell] == kUnreached || std::uint64_t{cost_[cell]} + units > most) return;
+    if (cost_[cell] == CostToGo::kUnreached || std::uint64_t{cost_[cell]} + units > most) return;
     const auto [known, is_new] = distance.try_emplace(cell, units);
     if (!is_new && known->second <= units) return;
     known->second = units;
@@ -162,12 +160,12 @@ PatchedField::Outcome PatchedField::settle(const std::vector<GridLink>& links, s
 
 std::uint32_t PatchedField::distance(std::size_t index) const {
   const auto known = distance_.find(static_cast<std::uint32_t>(index));
-  return known == distance_.end() ? kUnreached : known->second;
+  return known == distance_.end() ? CostToGo::kUnreached : known->second;
 }
 
 std::optional<double> PatchedField::cost_J(maps::Cell cell) const {
   const std::uint32_t found = distance(before_.edges().padded().index(cell));
-  if (found == kUnreached) return std::nullopt;
+  if (found == CostToGo::kUnreached) return std::nullopt;
   return found * before_.edges().units().unit_J();
 }
 

@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-#include <talus/maps/parallel_for.hpp>
+#include <talus/common/parallel_for.hpp>
 #include <talus/planner/field/pooled_grid.hpp>
 #include <talus/planner/route/heading_cost.hpp>
 
@@ -118,7 +118,7 @@ std::shared_ptr<const costmap::CostGrid> pooled(const costmap::CostGrid& map, in
                           fine.resolution_m * factor, fine.south_west};
   const Pooling pooling(map, factor);
   maps::Raster<CellCode> cells(coarse);
-  maps::parallelFor(static_cast<std::size_t>(coarse.height), threads, [&](std::size_t k) {
+  parallelFor(static_cast<std::size_t>(coarse.height), threads, [&](std::size_t k) {
     const int row = static_cast<int>(k);
     for (int column = 0; column < coarse.width && !stop(); ++column)
       cells[{column, row}] = pooling.code({column, row});

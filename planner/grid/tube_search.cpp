@@ -3,7 +3,7 @@
 #include <optional>
 #include <utility>
 
-#include <talus/maps/parallel_for.hpp>
+#include <talus/common/parallel_for.hpp>
 #include <talus/planner/field/edge_units.hpp>
 #include <talus/planner/field/grid_links.hpp>
 #include <talus/planner/field/grid_route.hpp>
@@ -188,7 +188,7 @@ Polyline Tube::search(const TubeSection& section) const {
 // and has none.
 bool Tube::searchAll(std::vector<TubeSection>& sections) const {
   for (;;) {
-    maps::parallelFor(sections.size(), problem_.threads, [&](std::size_t k) {
+    parallelFor(sections.size(), problem_.threads, [&](std::size_t k) {
       if (sections[k].way.empty()) sections[k].way = search(sections[k]);
     });
     const auto lost = std::find_if(sections.begin(), sections.end(),

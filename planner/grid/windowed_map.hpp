@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include <talus/costmap/cost_grid.hpp>
-#include <talus/costmap/traversability_map.hpp>
-#include <talus/maps/grid.hpp>
-#include <talus/talus.hpp>
+#include <talus/common/progress_monitor.hpp>
+#include <talus/costmap/cost/cost_grid.hpp>
+#include <talus/costmap/map/traversability_map.hpp>
+#include <talus/maps/grid/grid.hpp>
 
 namespace talus::planner {
 

@@ -6,7 +6,7 @@
 #include <limits>
 #include <string>
 
-#include <talus/talus.hpp>
+#include <talus/common/progress_monitor.hpp>
 
 namespace talus::planner {
 

@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
-#include <talus/costmap/cost_grid.hpp>
-#include <talus/maps/grid.hpp>
+#include <talus/common/progress_monitor.hpp>
+#include <talus/costmap/cost/cost_grid.hpp>
+#include <talus/maps/grid/grid.hpp>
 #include <talus/planner/check/chassis.hpp>
 #include <talus/planner/route/kinematics.hpp>
 #include <talus/planner/route/route.hpp>
-#include <talus/talus.hpp>
 
 /// The one way to ask for a route: of Talus' own planners (plugin/make_planner.hpp) and of those in a shared
 /// library, which exports one object named `talus_planner` (plugin/plugin_export.hpp) for

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include <talus/common/input_error.hpp>
 #include <talus/planner/plugin/layer_plugin.hpp>
 #include <talus/planner/plugin/plugin_answer.hpp>
 #include <talus/planner/plugin/plugin_export.hpp>

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include <talus/costmap/ground_site.hpp>
+#include <talus/costmap/site/ground_site.hpp>
 
 namespace talus::planner {
 

@@ -7,8 +7,8 @@
 
 #include <boost/dll/shared_library.hpp>
 
+#include <talus/common/progress_monitor.hpp>
 #include <talus/planner/plugin/child_process.hpp>
-#include <talus/talus.hpp>
 
 namespace talus::planner {
 

@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include <talus/common/input_error.hpp>
+#include <talus/common/progress_monitor.hpp>
 #include <talus/planner/bound/lower_bound.hpp>
 #include <talus/planner/check/route_check.hpp>
 #include <talus/planner/plugin/plugin_answer.hpp>
@@ -23,7 +25,7 @@ using maps::Point;
 constexpr double kSamePlace_m = 1e-6;
 
 // First byte of an answer: what follows.
-constexpr char kText = 't', kRoute = 'r', kInput = 'i', kThrown = 'x', kMemory = 'm';
+constexpr char kText = 't', kRoute = 'r', kInput = 'i', kThrown = 'x', kNoMemory = 'm';
 
 }  // namespace
 
@@ -63,7 +65,7 @@ std::string said(const std::function<std::string()>& work) {
   } catch (const InputError& error) {
     return kInput + error.parts().where + '\n' + error.parts().reason + '\n' + error.parts().remedy;
   } catch (const std::bad_alloc&) {
-    return std::string(1, kMemory);
+    return std::string(1, kNoMemory);
   } catch (const std::exception& error) {
     return kThrown + oneLine(error.what());
   } catch (...) {
@@ -95,7 +97,7 @@ std::string answerOf(const std::string& file, const std::function<std::string()>
   }
   if (answer.bytes.empty()) failPlugin(file, "gave no answer");
   const std::string text = answer.bytes.substr(1);
-  if (answer.bytes[0] == kMemory)
+  if (answer.bytes[0] == kNoMemory)
     failPlugin(file, limits.memory == 0
                          ? "takes more memory than there is"
                          : "takes more than " + std::to_string(limits.memory >> 20) + " MB of memory");

@@ -4,6 +4,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include <talus/common/progress_monitor.hpp>
 #include <talus/planner/check/annotation.hpp>
 #include <talus/planner/plugin/risk_planner.hpp>
 #include <talus/planner/route/motion_cost.hpp>

@@ -3,7 +3,7 @@
 #include <functional>
 #include <vector>
 
-#include <talus/costmap/cost_weights.hpp>
+#include <talus/costmap/cost/cost_weights.hpp>
 #include <talus/planner/check/route_risk.hpp>
 #include <talus/planner/plugin/named_planner.hpp>
 #include <talus/planner/route/problem.hpp>

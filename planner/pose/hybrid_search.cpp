@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include <talus/common/constants.hpp>
 #include <talus/planner/bound/cheapest_metre.hpp>
 #include <talus/planner/bound/improvable_region.hpp>
 #include <talus/planner/check/route_check.hpp>
@@ -18,7 +19,6 @@
 namespace talus::planner {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kJoint_cells = 4.0;  // between the joints that shortening looks at
 constexpr double kBetter = 0.998;     // of the cost: worth to look on from there
 constexpr float kClosed = -std::numeric_limits<float>::infinity();

@@ -6,11 +6,11 @@
 #include <optional>
 #include <string>
 
+#include <talus/common/progress_monitor.hpp>
 #include <talus/planner/field/cost_to_go.hpp>
 #include <talus/planner/route/pose_path.hpp>
 #include <talus/planner/route/route.hpp>
 #include <talus/planner/route/stop_check.hpp>
-#include <talus/talus.hpp>
 
 namespace talus::planner {
 

@@ -2,12 +2,12 @@
 #include <cmath>
 #include <limits>
 
+#include <talus/common/constants.hpp>
 #include <talus/planner/pose/motion_set.hpp>
 
 namespace talus::planner {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kStretch_cells = 0.5;  // longest stretch priced by one cell
 
 }  // namespace

@@ -1,15 +1,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <utility>
 
+#include <talus/common/constants.hpp>
 #include <talus/planner/pose/pose_shortcut.hpp>
 
 namespace talus::planner {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::array<std::size_t, 8> kSpans{2, 3, 4, 6, 8, 12, 16, 24};
 constexpr std::array kSpacings{1.0, 0.35, 0.35};  // of the joints, a round: first far, then fine
 constexpr double kWorthwhile = 2e-3;  // share of the price below which another fine round is not tried

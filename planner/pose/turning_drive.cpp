@@ -1,15 +1,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
+#include <talus/common/constants.hpp>
 #include <talus/planner/pose/turning_drive.hpp>
 
 namespace talus::planner {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr std::array<std::size_t, 12> kSpans{1, 2, 3, 4, 6, 8, 12, 16, 20, 24, 32, 48};
+constexpr std::array<std::size_t, 12> kTurnSpans{1, 2, 3, 4, 6, 8, 12, 16, 20, 24, 32, 48};
 constexpr double kNoTurn_rad = 1e-9;
 
 // A straight leg into a point: from the point `span` before, and which way the rover faces on it.
@@ -26,7 +25,7 @@ class Turning {
   Turning(const std::vector<maps::Point>& points, const EndHeadings& ends, const PoseCost& cost)
       : points_(points), ends_(ends), cost_(cost), arrivals_(points.size()) {
     for (std::size_t to = 1; to < points.size(); ++to)
-      for (const std::size_t span : kSpans)
+      for (const std::size_t span : kTurnSpans)
         if (span <= to) arrive(to, to - span);
   }
 

@@ -6,8 +6,8 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
-#include <talus/maps/grid.hpp>
-#include <talus/maps/point_heights.hpp>
+#include <talus/maps/grid/grid.hpp>
+#include <talus/maps/grid/point_heights.hpp>
 
 /// Between NumPy's arrays and rasters. What comes in is copied once, from any strides; what goes out is a view that keeps
 /// its owner alive and cannot be written through.

@@ -4,7 +4,7 @@
 
 #include <pybind11/pybind11.h>
 
-#include <talus/talus.hpp>
+#include <talus/common/progress_monitor.hpp>
 
 namespace talus::planner {
 

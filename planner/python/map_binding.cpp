@@ -6,7 +6,7 @@
 
 #include <pybind11/stl.h>
 
-#include <talus/maps/point_heights.hpp>
+#include <talus/maps/grid/point_heights.hpp>
 #include <talus/planner/check/route_check.hpp>
 #include <talus/planner/python/arrays.hpp>
 #include <talus/planner/python/bindings.hpp>

@@ -1,5 +1,5 @@
+#include <talus/common/input_error.hpp>
 #include <talus/planner/python/bindings.hpp>
-#include <talus/talus.hpp>
 
 PYBIND11_MODULE(_talus, module) {
   module.doc() = "Safe routes for rovers over soft, sloping ground.";

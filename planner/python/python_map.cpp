@@ -11,7 +11,9 @@
 #include <pybind11/stl/filesystem.h>
 #include <unistd.h>
 
-#include <talus/costmap/ground_class.hpp>
+#include <talus/common/input_error.hpp>
+#include <talus/common/progress_monitor.hpp>
+#include <talus/costmap/ground/ground_class.hpp>
 #include <talus/planner/plugin/make_planner.hpp>
 #include <talus/planner/python/arrays.hpp>
 #include <talus/planner/python/background.hpp>

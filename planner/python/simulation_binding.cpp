@@ -3,11 +3,12 @@
 
 #include <pybind11/stl.h>
 
+#include <talus/common/progress_monitor.hpp>
 #include <talus/planner/python/arrays.hpp>
 #include <talus/planner/python/background.hpp>
 #include <talus/planner/python/bindings.hpp>
 #include <talus/planner/python/python_map.hpp>
-#include <talus/planner/simulation/simulation_site.hpp>
+#include <talus/planner/simulation/drive/simulation_site.hpp>
 #include <talus/terramech/io/soil_library.hpp>
 
 namespace py = pybind11;

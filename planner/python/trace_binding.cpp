@@ -8,14 +8,16 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <talus/common/input_error.hpp>
+#include <talus/common/progress_monitor.hpp>
 #include <talus/planner/python/background.hpp>
 #include <talus/planner/python/bindings.hpp>
+#include <talus/terramech/calibration/trace/model_validity.hpp>
+#include <talus/terramech/calibration/trace/residual_trace.hpp>
+#include <talus/terramech/calibration/verdict/verdict.hpp>
 #include <talus/terramech/io/model_file.hpp>
 #include <talus/terramech/io/soil_library.hpp>
 #include <talus/terramech/io/telemetry_reader.hpp>
-#include <talus/terramech/trace/model_validity.hpp>
-#include <talus/terramech/trace/residual_trace.hpp>
-#include <talus/terramech/trace/verdict.hpp>
 
 namespace py = pybind11;
 

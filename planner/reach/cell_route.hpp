@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <functional>
 
-#include <talus/maps/grid.hpp>
+#include <talus/maps/grid/grid.hpp>
 #include <talus/planner/route/heading_set.hpp>
 #include <talus/planner/route/motion_cost.hpp>
 #include <talus/planner/route/polyline.hpp>

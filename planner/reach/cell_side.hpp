@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include <talus/maps/grid.hpp>
+#include <talus/maps/grid/grid.hpp>
 #include <talus/planner/route/heading_set.hpp>
 
 namespace talus::planner {

@@ -6,7 +6,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include <talus/costmap/cost_grid.hpp>
+#include <talus/costmap/cost/cost_grid.hpp>
 #include <talus/planner/reach/cell_side.hpp>
 #include <talus/planner/route/cells_within.hpp>
 #include <talus/planner/route/stop_check.hpp>

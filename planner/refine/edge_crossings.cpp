@@ -16,7 +16,7 @@ using costmap::CellCode;
 using costmap::DriveCost;
 using costmap::DriveCurve;
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kNoCost = std::numeric_limits<float>::infinity();
 constexpr int kBinBits = 9;
 static_assert(DriveCurve::kBins == 1 << kBinBits);
 
@@ -70,7 +70,7 @@ __attribute__((target("avx2"))) void pricesByVector(const DriveCost& cost, CellC
         _mm256_cvttpd_epi32(_mm256_ceil_pd(_mm256_sub_pd(_mm256_mul_pd(across, rows_per_unit), same))),
         last_row);
     const __m128i at = _mm_add_epi32(bin, _mm_slli_epi32(row, kBinBits));
-    const __m128 price = _mm_mask_i32gather_ps(_mm_set1_ps(kInfinity), prices, at, known, 4);
+    const __m128 price = _mm_mask_i32gather_ps(_mm_set1_ps(kNoCost), prices, at, known, 4);
     _mm_storeu_ps(paid + i,
                   _mm_add_ps(_mm_set1_ps(here), _mm_mul_ps(price, _mm_loadu_ps(motions.length + i))));
   }
@@ -85,7 +85,7 @@ double freeUpTo(const DriveCost& cost, const DriveCurve& curve) noexcept {
       {cost.limits().max_along, cost.limits().max_across, DriveCurve::gradient(DriveCurve::kBins - 1)});
   for (int row = 0; row <= curve.lastRow(); ++row)
     for (int bin = 0; bin < DriveCurve::kBins; ++bin) {
-      if (curve.rows()[row * DriveCurve::kBins + bin] < kInfinity) continue;
+      if (curve.rows()[row * DriveCurve::kBins + bin] < kNoCost) continue;
       // The gentlest gradient that is read there, or one a little gentler.
       const double along = (std::abs(bin - DriveCurve::kBins / 2) - 1) / 256.0;
       const double across = (row - 1.0) / DriveCurve::kRowsPerUnit;
@@ -143,7 +143,7 @@ void EdgeCrossings::prices(int side, int k, CellCode cell, float here, float* pa
 
 bool EdgeCrossings::allowed(int side, int k, int i, CellCode cell) const noexcept {
   const std::size_t at = first(side, k) + static_cast<std::size_t>(i);
-  return HeadingCost(cost_, x_[at], y_[at])(cell) < kInfinity;
+  return HeadingCost(cost_, x_[at], y_[at])(cell) < kNoCost;
 }
 
 bool EdgeCrossings::free(CellCode cell) const noexcept {

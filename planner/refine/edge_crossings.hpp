@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <talus/costmap/drive_cost.hpp>
+#include <talus/costmap/cost/drive_cost.hpp>
 #include <talus/planner/route/kernels.hpp>
 
 namespace talus::planner {

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
+#include <talus/common/constants.hpp>
 #include <talus/planner/refine/edge_path.hpp>
 #include <talus/planner/route/heading_cost.hpp>
 
@@ -13,7 +13,6 @@ constexpr int kReach = 1;       // places to each side of a turn
 constexpr double kFiner = 0.7;  // of the distance of places, from round to round
 constexpr int kPlaces = 2 * kReach + 1;
 constexpr double kClear = 1.0 / 64;  // cells: turns keep this far from corners
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 constexpr double kEnd = 2.0;  // cells: a step so wide that the ends of a way have no place but theirs
 

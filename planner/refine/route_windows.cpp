@@ -1,6 +1,6 @@
 #include <utility>
 
-#include <talus/maps/parallel_for.hpp>
+#include <talus/common/parallel_for.hpp>
 #include <talus/planner/refine/route_windows.hpp>
 
 namespace talus::planner {
@@ -26,7 +26,7 @@ void workOn(Polyline& window, const Job& job) {
 }
 
 void workOnAll(std::vector<Polyline>& windows, const Job& job) {
-  maps::parallelFor(windows.size(), job.threads, [&](std::size_t k) { workOn(windows[k], job); });
+  parallelFor(windows.size(), job.threads, [&](std::size_t k) { workOn(windows[k], job); });
 }
 
 // A window's head and tail of at most that length, and what is left between them.

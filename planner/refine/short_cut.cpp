@@ -7,16 +7,10 @@ namespace talus::planner {
 namespace {
 
 constexpr std::size_t kBeginnings = 8;  // of motions of one length, within that length
-constexpr double kMarks = 8.0;          // pieces: how far apart marks lie at least
-
-double costOf(const MotionCost& cost, const Polyline& piece) noexcept {
-  double sum = 0.0;
-  for (std::size_t i = 1; i < piece.size(); ++i) sum += cost({piece[i - 1], piece[i]});
-  return sum;
-}
+constexpr double kMarkPieces = 8.0;     // pieces: how far apart marks lie at least
 
 // What is best from the beginning of a piece to the end of the route.
-struct Choice {
+struct ShortCutChoice {
   double cost_J = 0.0;
   std::size_t next = 0;   // piece to go on with
   bool straight = false;  // there, else along the route
@@ -31,7 +25,7 @@ struct Pieces {
 
 Pieces piecesOf(const Polyline& route, double piece_m) {
   Pieces pieces;
-  for (const Polyline& stretch : cutAtMarks(route, kMarks * piece_m)) {
+  for (const Polyline& stretch : cutAtMarks(route, kMarkPieces * piece_m)) {
     auto cut = cutFromEnd(stretch, piece_m, piece_m);
     for (std::size_t k = 0; k < cut.size(); ++k) {
       pieces.to_mark.push_back(cut.size() - k);
@@ -42,10 +36,10 @@ Pieces piecesOf(const Polyline& route, double piece_m) {
 }
 
 // Chooses at the beginning of piece i; choices behind it are made already.
-Choice chooseAt(const MotionCost& cost, const std::vector<Polyline>& pieces, std::size_t to_mark,
-                const std::vector<Choice>& choices, std::size_t i) {
+ShortCutChoice chooseAt(const MotionCost& cost, const std::vector<Polyline>& pieces, std::size_t to_mark,
+                        const std::vector<ShortCutChoice>& choices, std::size_t i) {
   const std::size_t to_end = pieces.size() - i;
-  Choice best{costOf(cost, pieces[i]) + choices[i + 1].cost_J, i + 1, false};
+  ShortCutChoice best{cost.ofLegs(pieces[i]) + choices[i + 1].cost_J, i + 1, false};
   const auto consider = [&](std::size_t count) {
     if (count > to_end || !(choices[i + count].cost_J < best.cost_J)) return;
     const double through =
@@ -66,7 +60,7 @@ Choice chooseAt(const MotionCost& cost, const std::vector<Polyline>& pieces, std
 
 Polyline shortCut(const MotionCost& cost, const Polyline& route, double piece_m, const StopCheck& stop) {
   const auto [pieces, to_mark] = piecesOf(route, piece_m);
-  std::vector<Choice> choices(pieces.size() + 1);
+  std::vector<ShortCutChoice> choices(pieces.size() + 1);
   for (std::size_t i = pieces.size(); i-- > 0;) {
     if (stop()) return route;
     choices[i] = chooseAt(cost, pieces, to_mark[i], choices, i);

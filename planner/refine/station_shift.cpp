@@ -1,25 +1,13 @@
 #include <cmath>
-#include <limits>
 #include <vector>
 
+#include <talus/common/constants.hpp>
 #include <talus/planner/refine/station_shift.hpp>
 
 namespace talus::planner {
 namespace {
 
 using maps::Point;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-double distance_m(Point a, Point b) noexcept {
-  return std::hypot(b.x_m - a.x_m, b.y_m - a.y_m);
-}
-
-double costOf(const MotionCost& cost, const Polyline& piece) noexcept {
-  double sum = 0.0;
-  for (std::size_t i = 1; i < piece.size(); ++i) sum += cost({piece[i - 1], piece[i]});
-  return sum;
-}
 
 // Places to choose from at one station; the first is the station itself.
 struct Station {
@@ -82,7 +70,7 @@ Polyline shifted(const MotionCost& cost, const Polyline& route, double piece_m, 
     const Point here = pieces[i].front(), after = pieces[i].back(),
                 before = i > 0 ? pieces[i - 1].front() : here;
     stations[i] = stationAt(cost, {before, after}, here, apart_m, i > 0 ? options.candidates : 0);
-    choose(cost, stations[i], stations[i + 1], costOf(cost, pieces[i]), options.swing);
+    choose(cost, stations[i], stations[i + 1], cost.ofLegs(pieces[i]), options.swing);
   }
   Polyline made;
   for (std::size_t i = 0, a = 0; i < n; ++i) {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include <talus/maps/grid.hpp>
+#include <talus/maps/grid/grid.hpp>
 
 namespace talus::planner {
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <limits>
 
-#include <talus/costmap/drive_cost.hpp>
+#include <talus/costmap/cost/drive_cost.hpp>
 
 namespace talus::planner {
 

@@ -7,7 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include <talus/costmap/drive_cost.hpp>
+#include <talus/costmap/cost/drive_cost.hpp>
 
 namespace talus::planner {
 

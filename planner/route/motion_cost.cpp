@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
+#include <talus/common/constants.hpp>
 #include <talus/planner/route/heading_cost.hpp>
 #include <talus/planner/route/heading_set.hpp>
 #include <talus/planner/route/motion_cost.hpp>
@@ -10,7 +10,6 @@
 namespace talus::planner {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kTouch =
     1e-6;  // cells: nearer than this to an edge is on it; coordinates of 1e7 m leave 1e-8
 
@@ -169,6 +168,12 @@ double MotionCost::along(const std::vector<maps::Point>& points) const noexcept 
     if (i + 1 < points.size() && !turnAllowed(motion, motion.to)) return kInfinity;
     sum += (*this)(motion);
   }
+  return sum;
+}
+
+double MotionCost::ofLegs(const std::vector<maps::Point>& points) const noexcept {
+  double sum = 0.0;
+  for (std::size_t i = 1; i < points.size(); ++i) sum += (*this)({points[i - 1], points[i]});
   return sum;
 }
 

@@ -3,8 +3,8 @@
 #include <memory>
 #include <vector>
 
-#include <talus/costmap/cost_grid.hpp>
-#include <talus/maps/grid.hpp>
+#include <talus/costmap/cost/cost_grid.hpp>
+#include <talus/maps/grid/grid.hpp>
 
 namespace talus::planner {
 
@@ -31,6 +31,9 @@ class MotionCost {
 
   /// Cost of a polyline in joules; infinite when any part is not allowed. Zero for fewer than two points.
   double along(const std::vector<maps::Point>& points) const noexcept;
+
+  /// Sum of the costs of a polyline's legs in joules, without the check of its turns.
+  double ofLegs(const std::vector<maps::Point>& points) const noexcept;
 
   /// Whether a polyline may turn at an end of this motion as it begins or ends there: on an edge or a corner
   /// its heading must be allowed in every cell touched. The check of along() at each turn.

@@ -3,8 +3,8 @@
 #include <cctype>
 #include <stdexcept>
 
+#include <talus/common/nearest_name.hpp>
 #include <talus/planner/route/planner_names.hpp>
-#include <talus/talus.hpp>
 
 namespace talus::planner {
 namespace {

@@ -6,14 +6,6 @@
 #include <talus/planner/route/polyline.hpp>
 
 namespace talus::planner {
-namespace {
-
-double distance_m(maps::Point a, maps::Point b) noexcept {
-  return std::hypot(b.x_m - a.x_m, b.y_m - a.y_m);
-}
-
-}  // namespace
-
 Polyline subdivided(const Polyline& points, double longest_m) {
   Polyline result;
   if (!points.empty()) result.push_back(points.front());

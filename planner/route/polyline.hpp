@@ -3,7 +3,7 @@
 #include <utility>
 #include <vector>
 
-#include <talus/maps/grid.hpp>
+#include <talus/maps/grid/grid.hpp>
 
 namespace talus::planner {
 

@@ -1,14 +1,13 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
+#include <talus/common/constants.hpp>
 #include <talus/planner/route/pose_path.hpp>
 
 namespace talus::planner {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kChord_cells = 0.5;
 constexpr double kBend_rad = 0.1;  // a chord leaves its arc by 0.1^2/8 of the radius at most
 

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include <talus/costmap/cost_grid.hpp>
-#include <talus/maps/grid.hpp>
+#include <talus/common/progress_monitor.hpp>
+#include <talus/costmap/cost/cost_grid.hpp>
+#include <talus/maps/grid/grid.hpp>
 #include <talus/planner/route/pose_path.hpp>
 #include <talus/planner/route/route.hpp>
-#include <talus/talus.hpp>
 
 namespace talus::planner {
 

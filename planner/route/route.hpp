@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include <talus/maps/grid.hpp>
+#include <talus/maps/grid/grid.hpp>
 #include <talus/terramech/mobility/category.hpp>
 
 namespace talus::planner {

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <cmath>
 
-#include <talus/talus.hpp>
+#include <talus/common/progress_monitor.hpp>
 
 namespace talus::planner {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <talus/costmap/ground_model.hpp>
+#include <talus/costmap/ground/ground_model.hpp>
 #include <talus/planner/route/kinematics.hpp>
 #include <talus/terramech/contact/soil.hpp>
 

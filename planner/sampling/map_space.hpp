@@ -3,7 +3,7 @@
 #include <ompl/base/State.h>
 #include <ompl/base/spaces/RealVectorStateSpace.h>
 
-#include <talus/maps/grid.hpp>
+#include <talus/maps/grid/grid.hpp>
 
 namespace talus::planner {
 

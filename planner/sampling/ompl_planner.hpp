@@ -6,7 +6,7 @@
 
 #include <ompl/base/Planner.h>
 
-#include <talus/maps/grid.hpp>
+#include <talus/maps/grid/grid.hpp>
 
 namespace talus::planner {
 

@@ -4,7 +4,7 @@
 
 #include <ompl/geometric/planners/rrt/RRTstar.h>
 
-#include <talus/maps/grid.hpp>
+#include <talus/maps/grid/grid.hpp>
 
 namespace talus::planner {
 

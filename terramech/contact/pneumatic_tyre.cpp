@@ -13,7 +13,7 @@
 namespace talus::terramech {
 namespace {
 
-constexpr auto kRule = gaussLegendre<24>();
+constexpr auto kTyreRule = gaussLegendre<24>();
 
 void check(const Tyre& tyre, const TyreOperation& operation) {
   validate(tyre.wheel);
@@ -36,7 +36,8 @@ double pressureOf(const Tyre& tyre) {
 template <class Function>
 double integral(double a, double b, const Function& f) {
   double sum = 0.0;
-  for (std::size_t k = 0; k < kRule.node.size(); ++k) sum += kRule.weight[k] * f(a + (b - a) * kRule.node[k]);
+  for (std::size_t k = 0; k < kTyreRule.node.size(); ++k)
+    sum += kTyreRule.weight[k] * f(a + (b - a) * kTyreRule.node[k]);
   return sum * (b - a);
 }
 

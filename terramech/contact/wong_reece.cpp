@@ -5,6 +5,7 @@
 
 #include <talus/terramech/contact/rim_contact.hpp>
 #include <talus/terramech/contact/side_bulldozing.hpp>
+#include <talus/terramech/contact/contact_geometry.hpp>
 #include <talus/terramech/contact/wong_reece.hpp>
 #include <talus/terramech/numerics/range.hpp>
 
@@ -33,11 +34,6 @@ void check(const WheelOperation& operation) {
   range.within("rebound", operation.rebound, {0.0, 0.999});
   range.within("slip_angle_rad", operation.slip_angle_rad, {-0.5 * std::numbers::pi, 0.5 * std::numbers::pi});
   range.above("gravity_m_s2", operation.gravity_m_s2, 0.0);
-}
-
-double sinkage_m(const Wheel& wheel, double entry) {
-  const double half = std::sin(0.5 * entry);
-  return 2.0 * wheel.radius_m * half * half;  // r (1 - cos theta_1) without cancellation
 }
 
 WheelForces wheelForces(const Wheel& wheel, const RimEquilibrium& rim) {

@@ -5,6 +5,8 @@ namespace talus::terramech {
 /// What is measured of a wheel, as the sensors read it.
 enum class Channel { DrawbarPull, Sinkage, Torque, SideForce };
 inline constexpr int kChannels = 4;
+inline constexpr Channel kAllChannels[] = {Channel::DrawbarPull, Channel::Sinkage, Channel::Torque,
+                                           Channel::SideForce};
 
 /// "drawbar_pull_over_load", "sinkage_over_radius", "torque_over_load_radius", "side_force_over_load".
 const char* name(Channel channel);

@@ -4,6 +4,7 @@
 #include <talus/terramech/contact/shear_displacement.hpp>
 #include <talus/terramech/effects/refined_model.hpp>
 #include <talus/terramech/numerics/natural_spline.hpp>
+#include <talus/terramech/numerics/squared.hpp>
 
 namespace talus::terramech {
 namespace {
@@ -158,10 +159,6 @@ Reading Bound::reading(const WheelState& state, const WheelContact& contact,
       reading.addScaled(e.effect->channel, e.curve(x) * e.effect->sense(contact.slip_angle_rad));
   }
   return reading;
-}
-
-double squared(double x) {
-  return x * x;
 }
 
 }  // namespace

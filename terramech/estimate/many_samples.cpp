@@ -5,6 +5,7 @@
 
 #include <Eigen/Cholesky>
 
+#include <talus/common/progress_monitor.hpp>
 #include <talus/terramech/estimate/many_samples.hpp>
 #include <talus/terramech/numerics/normal_distribution.hpp>
 

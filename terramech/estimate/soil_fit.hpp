@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-#include <talus/talus.hpp>
+#include <talus/common/progress_monitor.hpp>
 #include <talus/terramech/estimate/reading_errors.hpp>
 #include <talus/terramech/estimate/soil_mixture.hpp>
 #include <talus/terramech/estimate/wheel_reading.hpp>

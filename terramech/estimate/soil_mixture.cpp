@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <talus/talus.hpp>
+#include <talus/common/constants.hpp>
 #include <talus/terramech/estimate/soil_mixture.hpp>
 #include <talus/terramech/numerics/range.hpp>
 

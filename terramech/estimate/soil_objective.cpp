@@ -1,11 +1,11 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include <talus/common/constants.hpp>
 #include <talus/terramech/estimate/soil_objective.hpp>
 #include <talus/terramech/numerics/normal_distribution.hpp>
 
@@ -199,7 +199,6 @@ SoilMode findModeAfresh(const SoilObjective& objective, std::span<const WheelRea
 }
 
 TruncatedGaussian proposal(const SoilClass& soil, const SoilQuadratic& likelihood) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   SoilBox box{SoilVector::Constant(-kInfinity), SoilVector::Constant(kInfinity)};
   SoilMatrix information = likelihood.information;
   SoilVector gradient = likelihood.gradient;

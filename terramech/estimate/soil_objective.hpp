@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include <talus/common/progress_monitor.hpp>
 #include <talus/terramech/estimate/soil_fit.hpp>
 #include <talus/terramech/estimate/state_population.hpp>
 #include <talus/terramech/estimate/truncated_gaussian.hpp>

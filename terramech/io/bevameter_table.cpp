@@ -5,6 +5,7 @@
 #include <numbers>
 #include <set>
 
+#include <talus/common/input_error.hpp>
 #include <talus/terramech/io/bevameter_table.hpp>
 #include <talus/terramech/io/telemetry_reader.hpp>
 

@@ -3,9 +3,9 @@
 #include <filesystem>
 #include <vector>
 
-#include <talus/talus.hpp>
-#include <talus/terramech/estimate/plate_trials.hpp>
+#include <talus/common/progress_monitor.hpp>
 #include <talus/terramech/estimate/telemetry.hpp>
+#include <talus/terramech/strength/plate_trials.hpp>
 
 namespace talus::terramech {
 

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include <talus/talus.hpp>
+#include <talus/common/input_error.hpp>
 #include <talus/terramech/io/column_units.hpp>
 #include <talus/terramech/io/unit.hpp>
 
@@ -15,19 +15,19 @@ namespace {
 enum class Kind { Length, Force, Torque, Pressure, Angle, Time, Speed, Rate, Share };
 
 /// A unit as a suffix states it.
-struct Unit {
+struct SuffixUnit {
   std::string_view name;
   Kind kind;
 };
 
 // With an SI prefix each is a unit, too. A load in kilograms is a force to whoever writes it.
-constexpr Unit kBase[] = {{"m", Kind::Length},  {"N", Kind::Force},     {"g", Kind::Force},
-                          {"Nm", Kind::Torque}, {"N_m", Kind::Torque},  {"s", Kind::Time},
-                          {"rad", Kind::Angle}, {"Pa", Kind::Pressure}, {"mps", Kind::Speed},
-                          {"m_s", Kind::Speed}, {"radps", Kind::Rate},  {"rad_s", Kind::Rate}};
+constexpr SuffixUnit kBase[] = {{"m", Kind::Length},  {"N", Kind::Force},     {"g", Kind::Force},
+                                {"Nm", Kind::Torque}, {"N_m", Kind::Torque},  {"s", Kind::Time},
+                                {"rad", Kind::Angle}, {"Pa", Kind::Pressure}, {"mps", Kind::Speed},
+                                {"m_s", Kind::Speed}, {"radps", Kind::Rate},  {"rad_s", Kind::Rate}};
 constexpr std::string_view kPrefixes[] = {"", "n", "u", "m", "c", "d", "h", "k", "M", "G"};
 
-constexpr Unit kOther[] = {
+constexpr SuffixUnit kOther[] = {
     {"metre", Kind::Length},      {"meter", Kind::Length},      {"millimetre", Kind::Length},
     {"millimeter", Kind::Length}, {"centimetre", Kind::Length}, {"centimeter", Kind::Length},
     {"kilometre", Kind::Length},  {"kilometer", Kind::Length},  {"inch", Kind::Length},
@@ -57,9 +57,9 @@ std::string lower(std::string_view text) {
 /// The kind of a unit, in whatever letters; none where the text names no unit.
 std::optional<Kind> kindOf(std::string_view text) {
   const std::string small = lower(text);
-  for (const Unit& unit : kOther)
+  for (const SuffixUnit& unit : kOther)
     if (small == unit.name || small == std::string(unit.name) + "s") return unit.kind;
-  for (const Unit& unit : kBase)
+  for (const SuffixUnit& unit : kBase)
     for (const std::string_view prefix : kPrefixes)
       if (small == lower(std::string(prefix) + std::string(unit.name))) return unit.kind;
   return std::nullopt;

@@ -9,7 +9,7 @@
 
 #include <csv.h>
 
-#include <talus/talus.hpp>
+#include <talus/common/input_error.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
 
 namespace talus::terramech {

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <sstream>
 
-#include <talus/talus.hpp>
+#include <talus/common/nearest_name.hpp>
 #include <talus/terramech/io/model_file.hpp>
 #include <talus/terramech/io/model_fit_fields.hpp>
 #include <talus/terramech/io/soil_library.hpp>

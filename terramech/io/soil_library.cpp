@@ -3,7 +3,8 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include <talus/talus.hpp>
+#include <talus/common/input_error.hpp>
+#include <talus/common/nearest_name.hpp>
 #include <talus/terramech/io/library_text.hpp>
 #include <talus/terramech/io/soil_library.hpp>
 #include <talus/terramech/io/yaml_fields.hpp>

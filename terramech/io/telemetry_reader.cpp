@@ -9,7 +9,8 @@
 #include <unordered_map>
 #include <utility>
 
-#include <talus/plausible.hpp>
+#include <talus/common/input_error.hpp>
+#include <talus/common/plausible.hpp>
 #include <talus/terramech/io/column_units.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
 #include <talus/terramech/io/telemetry_reader.hpp>

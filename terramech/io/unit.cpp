@@ -1,5 +1,5 @@
 
-#include <talus/talus.hpp>
+#include <talus/common/constants.hpp>
 #include <talus/terramech/io/unit.hpp>
 
 namespace talus::terramech {

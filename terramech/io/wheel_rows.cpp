@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <talus/common/input_error.hpp>
 #include <talus/terramech/io/soil_library.hpp>
 #include <talus/terramech/io/telemetry_reader.hpp>
 #include <talus/terramech/io/wheel_rows.hpp>

@@ -9,8 +9,9 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include <talus/plausible.hpp>
-#include <talus/talus.hpp>
+#include <talus/common/input_error.hpp>
+#include <talus/common/nearest_name.hpp>
+#include <talus/common/plausible.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
 #include <talus/terramech/io/unit.hpp>
 #include <talus/terramech/io/yaml_fields.hpp>

@@ -1,16 +1,14 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
+#include <talus/common/constants.hpp>
 #include <talus/terramech/mobility/category_probability.hpp>
 #include <talus/terramech/numerics/gauss_legendre.hpp>
 #include <talus/terramech/numerics/range.hpp>
 
 namespace talus::terramech {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double below(double x) {
   return 0.5 * std::erfc(-x / std::numbers::sqrt2);

@@ -11,17 +11,26 @@
 #include <talus/terramech/numerics/range.hpp>
 
 namespace talus::terramech {
-namespace {
-
 /// A wheel somewhere.
-struct Station {
+struct WheelStation {
   double load_N;
   double slip;
   double slope_rad;
 };
 
 /// Forces there; none where the soil cannot carry the wheel.
-using CarriedForces = std::function<std::optional<WheelForces>(const Station&)>;
+using CarriedForces = std::function<std::optional<WheelForces>(const WheelStation&)>;
+
+/// Forces of a wheel on its axle, for the record.
+using AxleForces = std::function<WheelForces(const WheelStation&)>;
+
+/// How a curve asks for forces.
+struct MobilitySolver {
+  CarriedForces carried;
+  AxleForces on_axle;
+};
+
+namespace {
 
 /// One steady drive: the slope that a slip holds on.
 struct Drive {
@@ -82,11 +91,8 @@ std::vector<Drive> steadyDrives(const CarriedForces& carried, const Rover& rover
   return up;
 }
 
-/// Forces of a wheel on its axle, for the record.
-using AxleForces = std::function<WheelForces(const Station&)>;
-
 CarriedForces carriedBy(const Soil& soil, const Wheel& wheel) {
-  return [&soil, wheel](const Station& at) -> std::optional<WheelForces> {
+  return [&soil, wheel](const WheelStation& at) -> std::optional<WheelForces> {
     try {
       return equilibrium(soil, wheel, {.load_N = at.load_N, .slip = at.slip});
     } catch (const std::domain_error&) {
@@ -96,7 +102,7 @@ CarriedForces carriedBy(const Soil& soil, const Wheel& wheel) {
 }
 
 /// What a model says of a wheel of a rover at full speed.
-WheelForces predicted(const RefinedModel& model, const Rover& rover, const Station& at, int pass) {
+WheelForces predicted(const RefinedModel& model, const Rover& rover, const WheelStation& at, int pass) {
   WheelState state;
   state.wheel = rover.wheel;
   state.load_N = at.load_N;
@@ -114,7 +120,7 @@ WheelForces predicted(const RefinedModel& model, const Rover& rover, const Stati
 }
 
 /// The mean wheel of axles that follow one another, sunk as the first.
-WheelForces meanOfAxles(const RefinedModel& model, const Rover& rover, const Station& at,
+WheelForces meanOfAxles(const RefinedModel& model, const Rover& rover, const WheelStation& at,
                         const MobilityOptions& options) {
   WheelForces mean = predicted(model, rover, at, options.first_pass);
   if (!knowsPasses(model.effects)) return mean;
@@ -126,20 +132,10 @@ WheelForces meanOfAxles(const RefinedModel& model, const Rover& rover, const Sta
   return mean;
 }
 
-}  // namespace
-
-/// How a curve asks for forces.
-struct MobilitySolver {
-  CarriedForces carried;
-  AxleForces on_axle;
-};
-
-namespace {
-
 /// Of a wheel on a soil; both are to outlive it.
 MobilitySolver solverOf(const Soil& soil, const Rover& rover) {
   validate(soil);
-  return {carriedBy(soil, rover.wheel), [&](const Station& at) {
+  return {carriedBy(soil, rover.wheel), [&](const WheelStation& at) {
             return forcesAtEntry(soil, rover.wheel, {.load_N = at.load_N, .slip = at.slip},
                                  0.5 * std::numbers::pi)
                 .forces;
@@ -158,8 +154,8 @@ RefinedModel groundOf(const RefinedModel& model) {
 
 /// Of the axles of a rover on the ground of a model; all are to outlive it.
 MobilitySolver solverOf(const RefinedModel& ground, const Rover& rover, const MobilityOptions& options) {
-  const AxleForces forces = [&](const Station& at) { return meanOfAxles(ground, rover, at, options); };
-  return {[&rover, forces](const Station& at) -> std::optional<WheelForces> {
+  const AxleForces forces = [&](const WheelStation& at) { return meanOfAxles(ground, rover, at, options); };
+  return {[&rover, forces](const WheelStation& at) -> std::optional<WheelForces> {
             const WheelForces f = forces(at);
             if (!(f.sinkage_m < (1.0 - 1e-9) * rover.wheel.radius_m)) return std::nullopt;
             return f;
@@ -177,7 +173,7 @@ void require(const Rover& rover, const MobilityOptions& options) {
 }
 
 MobilityReference flatAt(const MobilitySolver& solver, const Rover& rover, double slip) {
-  const Station flat{wheelLoad_N(rover), slip, 0.0};
+  const WheelStation flat{wheelLoad_N(rover), slip, 0.0};
   const auto carried = solver.carried(flat);
   const WheelForces f = carried ? *carried : solver.on_axle(flat);
   const double radius_m = rover.wheel.radius_m;

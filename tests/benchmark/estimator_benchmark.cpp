@@ -2,10 +2,10 @@
 // is timed is one sample in and the estimate out.
 #include <benchmark/benchmark.h>
 
-#include <talus/terramech/estimate/iagnemma.hpp>
-#include <talus/terramech/estimate/shear_modulus_grid.hpp>
 #include <talus/terramech/estimate/soil_filter.hpp>
 #include <talus/terramech/estimate/thesis_runs.hpp>
+#include <talus/terramech/strength/iagnemma.hpp>
+#include <talus/terramech/strength/shear_modulus_grid.hpp>
 
 namespace talus::terramech {
 namespace {

@@ -9,9 +9,9 @@
 
 #include <benchmark/benchmark.h>
 
-#include <talus/costmap/ground_class.hpp>
-#include <talus/costmap/traversability_map.hpp>
-#include <talus/maps/site_generator.hpp>
+#include <talus/costmap/ground/ground_class.hpp>
+#include <talus/costmap/map/traversability_map.hpp>
+#include <talus/maps/sites/site_generator.hpp>
 #include <talus/planner/pose/hybrid_search.hpp>
 #include <talus/terramech/io/soil_library.hpp>
 

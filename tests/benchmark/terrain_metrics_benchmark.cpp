@@ -11,11 +11,11 @@
 #include <gdal_priv.h>
 #include <gdal_utils.h>
 
-#include <talus/maps/elevation_reader.hpp>
-#include <talus/maps/geotiff_writer.hpp>
-#include <talus/maps/plane_kernel.hpp>
-#include <talus/maps/site_generator.hpp>
-#include <talus/maps/terrain_metrics.hpp>
+#include <talus/maps/raster/elevation_reader.hpp>
+#include <talus/maps/raster/geotiff_writer.hpp>
+#include <talus/maps/sites/site_generator.hpp>
+#include <talus/maps/terrain/plane_kernel.hpp>
+#include <talus/maps/terrain/terrain_metrics.hpp>
 
 namespace {
 

@@ -11,8 +11,8 @@
 #include <talus/cli/ground/path_reader.hpp>
 #include <talus/cli/ground/truth_file.hpp>
 #include <talus/cli/route/route_reader.hpp>
-#include <talus/maps/place.hpp>
-#include <talus/talus.hpp>
+#include <talus/common/input_error.hpp>
+#include <talus/maps/terrain/place.hpp>
 
 #include "targets.hpp"
 

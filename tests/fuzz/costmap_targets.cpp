@@ -7,12 +7,11 @@
 
 #include <site_map.hpp>
 
-#include <talus/costmap/checksum.hpp>
-#include <talus/costmap/drive_evidence.hpp>
-#include <talus/costmap/map_file.hpp>
-#include <talus/costmap/octomap_surface.hpp>
-#include <talus/maps/memory_budget.hpp>
-#include <talus/talus.hpp>
+#include <talus/common/checksum.hpp>
+#include <talus/common/memory_budget.hpp>
+#include <talus/costmap/map/map_file.hpp>
+#include <talus/costmap/surface/octomap_surface.hpp>
+#include <talus/costmap/telemetry/drive_evidence.hpp>
 
 #include "targets.hpp"
 
@@ -35,7 +34,7 @@ std::string mapBytes() {
 void readMap(const std::string& bytes) {
   std::string whole = bytes;
   if (whole.size() > 16) {
-    costmap::Checksum sum;
+    Checksum sum;
     sum.add(whole.data(), whole.size() - 16);
     const std::uint64_t value = sum.value();
     std::memcpy(whole.data() + whole.size() - 8, &value, 8);
@@ -47,7 +46,7 @@ void readMap(const std::string& bytes) {
 // A hundred bytes may state columns for all of the budget, which takes seconds: octrees that need more than the megabyte that is
 // always allowed are refused here.
 struct SmallBudget {
-  SmallBudget() { maps::setMemoryBudget(1); }
+  SmallBudget() { setMemoryBudget(1); }
   ~SmallBudget() { limitMemory(); }
   SmallBudget(const SmallBudget&) = delete;
   SmallBudget& operator=(const SmallBudget&) = delete;

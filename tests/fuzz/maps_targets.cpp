@@ -1,10 +1,9 @@
 #include <cstdint>
 #include <utility>
 
-#include <talus/maps/elevation_reader.hpp>
-#include <talus/maps/layer_reader.hpp>
-#include <talus/maps/numpy_array.hpp>
-#include <talus/talus.hpp>
+#include <talus/maps/raster/elevation_reader.hpp>
+#include <talus/maps/raster/layer_reader.hpp>
+#include <talus/maps/raster/numpy_array.hpp>
 
 #include "targets.hpp"
 

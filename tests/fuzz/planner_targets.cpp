@@ -3,7 +3,6 @@
 
 #include <talus/planner/bench/moving_ai.hpp>
 #include <talus/planner/plugin/plugin_loader.hpp>
-#include <talus/talus.hpp>
 
 #include "targets.hpp"
 

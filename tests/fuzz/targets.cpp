@@ -8,8 +8,8 @@
 #include <unistd.h>
 #include <yaml-cpp/exceptions.h>
 
-#include <talus/maps/memory_budget.hpp>
-#include <talus/talus.hpp>
+#include <talus/common/input_error.hpp>
+#include <talus/common/memory_budget.hpp>
 
 namespace talus::fuzz {
 
@@ -46,7 +46,7 @@ std::string fileOf(const std::string& bytes, const std::string& ending) {
 }
 
 void limitMemory() {
-  maps::setMemoryBudget(std::uint64_t{1} << 30U);
+  setMemoryBudget(std::uint64_t{1} << 30U);
 }
 
 bool accepts(const Target& target, const std::string& bytes) {

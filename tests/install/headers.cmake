@@ -9,7 +9,7 @@ foreach(file ${files})
     message(SEND_ERROR "${file} is installed as a link")
   endif()
 endforeach()
-set(open talus/terramech/terramech.hpp talus/maps/maps.hpp talus/costmap/costmap.hpp talus/planner/planner.hpp
+set(open talus/talus.hpp talus/terramech/terramech.hpp talus/maps/maps.hpp talus/costmap/costmap.hpp talus/planner/planner.hpp
          talus/planner/simulation/simulation.hpp talus/planner/plugin/plugin_export.hpp
          talus/planner/plugin/request_check.hpp)
 if(OFFLINE)
@@ -40,6 +40,6 @@ foreach(header ${installed})
 endforeach()
 list(LENGTH installed count)
 message(STATUS "${count} public headers")
-if(count GREATER 104)
-  message(SEND_ERROR "more than 104 public headers; keep what is inner out of them")
+if(count GREATER 107)
+  message(SEND_ERROR "more than 107 public headers; keep what is inner out of them")
 endif()

@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include <talus/maps/elevation_reader.hpp>
-#include <talus/maps/layer_reader.hpp>
+#include <talus/maps/raster/elevation_reader.hpp>
+#include <talus/maps/raster/layer_reader.hpp>
 
 #include "raster_fixture.hpp"
 

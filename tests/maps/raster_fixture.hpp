@@ -14,7 +14,7 @@
 #include <gdal_priv.h>
 #include <ogr_spatialref.h>
 
-#include <talus/talus.hpp>
+#include <talus/common/input_error.hpp>
 
 namespace talus::maps {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include <talus/costmap/cost_grid.hpp>
+#include <talus/costmap/cost/cost_grid.hpp>
 
 namespace talus::planner::testing {
 

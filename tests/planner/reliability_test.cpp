@@ -6,7 +6,7 @@
 
 #include <site_fixture.hpp>
 
-#include <talus/planner/simulation/simulation_site.hpp>
+#include <talus/planner/simulation/drive/simulation_site.hpp>
 
 namespace talus::planner {
 namespace {

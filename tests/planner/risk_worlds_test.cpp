@@ -7,7 +7,7 @@
 
 #include <Eigen/Cholesky>
 
-#include <talus/costmap/ground_model.hpp>
+#include <talus/costmap/ground/ground_model.hpp>
 #include <talus/planner/check/annotation.hpp>
 #include <talus/planner/check/route_risk.hpp>
 #include <talus/planner/plugin/named_planner.hpp>

@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include <talus/costmap/ground_model.hpp>
+#include <talus/costmap/ground/ground_model.hpp>
 
 namespace talus::costmap {
 

@@ -8,7 +8,7 @@
 #include <ctime>
 #include <string>
 
-#include <talus/terramech/trace/residual_trace.hpp>
+#include <talus/terramech/calibration/trace/residual_trace.hpp>
 
 #include "blind_worlds.hpp"
 #include "plain_scan.hpp"

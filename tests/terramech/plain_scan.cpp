@@ -6,9 +6,9 @@
 
 #include <Eigen/Cholesky>
 
-#include <talus/terramech/trace/folds.hpp>
-#include <talus/terramech/trace/residual_trace.hpp>
-#include <talus/terramech/trace/spline_basis.hpp>
+#include <talus/terramech/calibration/noise/folds.hpp>
+#include <talus/terramech/calibration/noise/spline_basis.hpp>
+#include <talus/terramech/calibration/trace/residual_trace.hpp>
 
 namespace talus::terramech {
 namespace {

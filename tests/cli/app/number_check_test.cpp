@@ -1,7 +1,7 @@
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/context.hpp>
 #include <talus/cli/app/number_check.hpp>
-#include <talus/talus.hpp>
+#include <talus/common/input_error.hpp>
 
 namespace talus::cli {
 namespace {

@@ -5,7 +5,7 @@
 #include <sys/stat.h>
 
 #include <talus/cli/app/output_file.hpp>
-#include <talus/talus.hpp>
+#include <talus/common/input_error.hpp>
 
 #include "bad_input.hpp"
 #include "run_program.hpp"

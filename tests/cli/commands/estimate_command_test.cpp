@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <talus/talus.hpp>
+#include <talus/common/constants.hpp>
 
 #include "run_program.hpp"
 

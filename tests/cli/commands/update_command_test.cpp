@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <sqlite3.h>
 
-#include <talus/costmap/evidence_journal.hpp>
+#include <talus/costmap/journal/evidence_journal.hpp>
 #include <talus/terramech/contact/rover.hpp>
 #include <talus/terramech/contact/wong_reece.hpp>
 #include <talus/terramech/io/soil_library.hpp>

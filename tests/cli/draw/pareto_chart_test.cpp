@@ -1,7 +1,7 @@
 #include <nlohmann/json.hpp>
 
 #include <talus/cli/draw/pareto_chart.hpp>
-#include <talus/talus.hpp>
+#include <talus/common/input_error.hpp>
 
 #include "run_program.hpp"
 

@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include <talus/cli/draw/scene.hpp>
-#include <talus/talus.hpp>
+#include <talus/common/constants.hpp>
 
 #include "example_scene.hpp"
 

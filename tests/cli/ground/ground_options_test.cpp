@@ -2,8 +2,9 @@
 
 #include <talus/cli/app/context.hpp>
 #include <talus/cli/ground/ground_options.hpp>
-#include <talus/costmap/map_file.hpp>
-#include <talus/talus.hpp>
+#include <talus/common/constants.hpp>
+#include <talus/common/input_error.hpp>
+#include <talus/costmap/map/map_file.hpp>
 
 #include "bad_input.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <talus/cli/app/context.hpp>
 #include <talus/cli/ground/map_options.hpp>
-#include <talus/talus.hpp>
+#include <talus/common/input_error.hpp>
 
 #include "bad_input.hpp"
 

@@ -1,5 +1,6 @@
 #include <talus/cli/ground/mission.hpp>
-#include <talus/talus.hpp>
+#include <talus/common/constants.hpp>
+#include <talus/common/input_error.hpp>
 
 #include "run_program.hpp"
 

@@ -1,5 +1,5 @@
 #include <talus/cli/ground/path_reader.hpp>
-#include <talus/talus.hpp>
+#include <talus/common/input_error.hpp>
 
 #include "example_scene.hpp"
 #include "run_program.hpp"

@@ -1,5 +1,5 @@
 #include <talus/cli/ground/site_description.hpp>
-#include <talus/talus.hpp>
+#include <talus/common/input_error.hpp>
 
 #include "run_program.hpp"
 

@@ -1,5 +1,5 @@
 #include <talus/cli/ground/truth_file.hpp>
-#include <talus/talus.hpp>
+#include <talus/common/input_error.hpp>
 #include <talus/terramech/io/soil_library.hpp>
 
 #include "run_program.hpp"

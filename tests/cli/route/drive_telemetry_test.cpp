@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include <talus/cli/route/drive_telemetry.hpp>
-#include <talus/talus.hpp>
+#include <talus/common/input_error.hpp>
 #include <talus/terramech/io/telemetry_reader.hpp>
 
 #include "run_program.hpp"

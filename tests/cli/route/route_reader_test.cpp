@@ -4,7 +4,7 @@
 
 #include <talus/cli/route/route_json.hpp>
 #include <talus/cli/route/route_reader.hpp>
-#include <talus/talus.hpp>
+#include <talus/common/input_error.hpp>
 
 #include "example_scene.hpp"
 #include "run_program.hpp"

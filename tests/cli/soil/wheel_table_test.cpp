@@ -2,6 +2,7 @@
 #include <fstream>
 
 #include <talus/cli/soil/wheel_table.hpp>
+#include <talus/common/input_error.hpp>
 #include <talus/terramech/contact/wong_reece.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
 

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <talus/cli/study/bench_report.hpp>
-#include <talus/costmap/cost_grid.hpp>
+#include <talus/costmap/cost/cost_grid.hpp>
 
 namespace talus::cli {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <talus/cli/app/context.hpp>
 #include <talus/cli/study/bench_suite.hpp>
+#include <talus/common/input_error.hpp>
 #include <talus/planner/grid/field_planner.hpp>
-#include <talus/talus.hpp>
 
 #include "bad_input.hpp"
 

@@ -3,6 +3,7 @@
 #include <fstream>
 #include <numbers>
 
+#include <talus/common/input_error.hpp>
 #include <talus/planner/bench/moving_ai.hpp>
 #include <talus/planner/grid/field_planner.hpp>
 

@@ -1,11 +1,11 @@
 #include <cmath>
 #include <string>
 
+#include <talus/common/constants.hpp>
 #include <talus/planner/bench/slip_world.hpp>
 #include <talus/planner/check/route_check.hpp>
 #include <talus/planner/grid/field_planner.hpp>
 #include <talus/planner/route/motion_cost.hpp>
-#include <talus/talus.hpp>
 
 namespace talus::planner {
 namespace {

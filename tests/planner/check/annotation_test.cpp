@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include <talus/costmap/drive_state.hpp>
+#include <talus/costmap/cost/drive_state.hpp>
 #include <talus/planner/check/annotation.hpp>
 #include <talus/planner/route/motion_cost.hpp>
 

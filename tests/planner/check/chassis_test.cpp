@@ -4,10 +4,10 @@
 
 #include <Eigen/Dense>
 
-#include <talus/maps/elevation_map.hpp>
+#include <talus/common/constants.hpp>
+#include <talus/maps/terrain/elevation_map.hpp>
 #include <talus/planner/check/chassis.hpp>
 #include <talus/planner/route/pose_path.hpp>
-#include <talus/talus.hpp>
 
 #include "drawn_map.hpp"
 

@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <site_fixture.hpp>
 
-#include <talus/costmap/traversability_map.hpp>
+#include <talus/costmap/map/traversability_map.hpp>
 #include <talus/planner/check/route_check.hpp>
 #include <talus/planner/route/motion_cost.hpp>
 #include <talus/planner/route/problem.hpp>

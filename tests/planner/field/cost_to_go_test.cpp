@@ -2,6 +2,7 @@
 #include <queue>
 #include <stop_token>
 
+#include <talus/common/progress_monitor.hpp>
 #include <talus/planner/field/cost_to_go.hpp>
 #include <talus/planner/route/motion_cost.hpp>
 

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <stop_token>
 
+#include <talus/common/progress_monitor.hpp>
 #include <talus/planner/field/edge_layer.hpp>
 #include <talus/planner/route/motion_cost.hpp>
 

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <stop_token>
 
+#include <talus/common/progress_monitor.hpp>
 #include <talus/planner/field/grid_links.hpp>
 #include <talus/planner/field/grid_route.hpp>
 

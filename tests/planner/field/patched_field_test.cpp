@@ -1,3 +1,4 @@
+#include <talus/common/progress_monitor.hpp>
 #include <talus/planner/field/patched_field.hpp>
 
 #include "changed_map.hpp"

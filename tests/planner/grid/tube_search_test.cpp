@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include <talus/common/progress_monitor.hpp>
 #include <talus/planner/check/route_check.hpp>
 #include <talus/planner/field/grid_links.hpp>
 #include <talus/planner/field/grid_route.hpp>

@@ -11,6 +11,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <talus/common/input_error.hpp>
 #include <talus/planner/plugin/plugin_loader.hpp>
 
 #include "drawn_map.hpp"

@@ -1,5 +1,6 @@
 #include <stop_token>
 
+#include <talus/common/progress_monitor.hpp>
 #include <talus/planner/reach/obstruction_search.hpp>
 
 #include "contour_plane.hpp"

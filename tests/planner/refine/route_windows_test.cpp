@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <talus/common/progress_monitor.hpp>
 #include <talus/planner/refine/route_windows.hpp>
 
 namespace talus::planner {

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <stop_token>
 
+#include <talus/common/progress_monitor.hpp>
 #include <talus/planner/refine/short_cut.hpp>
 
 #include "drawn_map.hpp"

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <talus/common/progress_monitor.hpp>
 #include <talus/planner/route/plan_end.hpp>
 
 namespace talus::planner {

@@ -1,7 +1,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include <talus/talus.hpp>
+#include <talus/common/constants.hpp>
 #include <talus/terramech/estimate/soil_mixture.hpp>
 
 namespace talus::terramech {

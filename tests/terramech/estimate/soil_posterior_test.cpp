@@ -4,7 +4,7 @@
 
 #include <Eigen/LU>
 
-#include <talus/talus.hpp>
+#include <talus/common/constants.hpp>
 #include <talus/terramech/estimate/soil_posterior.hpp>
 #include <talus/terramech/estimate/thesis_runs.hpp>
 #include <talus/terramech/numerics/normal_distribution.hpp>

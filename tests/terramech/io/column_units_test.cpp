@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include <talus/common/input_error.hpp>
 #include <talus/terramech/estimate/telemetry.hpp>
 #include <talus/terramech/io/column_units.hpp>
 #include <talus/terramech/io/csv_reader.hpp>

@@ -3,7 +3,7 @@
 
 #include <unistd.h>
 
-#include <talus/talus.hpp>
+#include <talus/common/input_error.hpp>
 #include <talus/terramech/io/model_file.hpp>
 
 namespace talus::terramech {

@@ -1,7 +1,8 @@
 #include <cmath>
 #include <fstream>
 
-#include <talus/talus.hpp>
+#include <talus/common/constants.hpp>
+#include <talus/common/input_error.hpp>
 #include <talus/terramech/io/soil_library.hpp>
 #include <talus/terramech/mobility/mobility.hpp>
 

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include <talus/talus.hpp>
+#include <talus/common/input_error.hpp>
 #include <talus/terramech/io/soil_library.hpp>
 #include <talus/terramech/io/soil_priors.hpp>
 

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include <talus/common/input_error.hpp>
 #include <talus/terramech/io/telemetry_reader.hpp>
 
 #include "requirement.hpp"

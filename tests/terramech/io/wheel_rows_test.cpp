@@ -1,5 +1,6 @@
 #include <string>
 
+#include <talus/common/input_error.hpp>
 #include <talus/terramech/io/soil_library.hpp>
 #include <talus/terramech/io/wheel_rows.hpp>
 

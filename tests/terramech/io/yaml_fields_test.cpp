@@ -1,7 +1,8 @@
 #include <cstdio>
 #include <fstream>
 
-#include <talus/talus.hpp>
+#include <talus/common/input_error.hpp>
+#include <talus/common/nearest_name.hpp>
 #include <talus/terramech/io/yaml_fields.hpp>
 
 namespace talus::terramech {

@@ -2,7 +2,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include <talus/talus.hpp>
+#include <talus/common/constants.hpp>
 #include <talus/terramech/mobility/category.hpp>
 
 namespace talus::terramech {

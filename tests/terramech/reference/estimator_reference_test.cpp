@@ -1,9 +1,9 @@
 #include <cmath>
 
-#include <talus/terramech/estimate/iagnemma.hpp>
-#include <talus/terramech/estimate/linear_offset.hpp>
-#include <talus/terramech/estimate/shear_modulus.hpp>
-#include <talus/terramech/estimate/sojourner.hpp>
+#include <talus/terramech/strength/iagnemma.hpp>
+#include <talus/terramech/strength/linear_offset.hpp>
+#include <talus/terramech/strength/shear_modulus.hpp>
+#include <talus/terramech/strength/sojourner.hpp>
 
 #include "estimator_cases.hpp"
 

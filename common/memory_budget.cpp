@@ -1,0 +1,58 @@
+#include <array>
+#include <atomic>
+#include <cstdio>
+#include <fstream>
+#include <limits>
+
+#include <unistd.h>
+
+#include <talus/common/input_error.hpp>
+#include <talus/common/memory_budget.hpp>
+
+namespace talus {
+namespace {
+
+std::atomic<std::uint64_t> budget_bytes = 0;
+
+// Of /proc/meminfo; where there is none nothing is refused.
+double halfOfTheFree() {
+  std::ifstream file("/proc/meminfo");
+  std::string name;
+  for (double kilobytes = 0.0; file >> name >> kilobytes; file.ignore(100, '\n'))
+    if (name == "MemAvailable:") return 512.0 * kilobytes;
+  return std::numeric_limits<double>::infinity();
+}
+
+double inUse() {
+  std::ifstream file("/proc/self/statm");
+  double pages = 0.0, resident = 0.0;
+  file >> pages >> resident;
+  return resident * static_cast<double>(::sysconf(_SC_PAGESIZE));
+}
+
+std::string gigabytes(double bytes) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.3g GB", bytes * 1e-9);
+  return text.data();
+}
+
+}  // namespace
+
+void setMemoryBudget(std::uint64_t bytes) noexcept {
+  budget_bytes = bytes;
+}
+
+void requireMemory(double bytes, const std::string& where) {
+  static const double half = halfOfTheFree();
+  const std::uint64_t set = budget_bytes;
+  const double budget = set > 0 ? static_cast<double>(set) : half;
+  // What small files take is not worth the question.
+  constexpr double kSmall = 1e6;
+  if (bytes < kSmall || bytes + inUse() <= budget) return;
+  throw InputError(
+      {where,
+       "needs " + gigabytes(bytes) + ", more than the memory budget of " + gigabytes(budget) + " leaves",
+       "use a smaller file or part, or raise --max-memory"});
+}
+
+}  // namespace talus

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <exception>
+#include <thread>
+#include <vector>
+
+namespace talus {
+
+/// Calls each(k) for k = 0 .. count - 1, on `threads` threads, this one among them. Calls for different k
+/// must not depend on each other. The first exception ends the loop, once calls that have begun are done, and
+/// is thrown here.
+template <typename Each>
+void parallelFor(std::size_t count, int threads, Each each) {
+  std::atomic<std::size_t> next{0};
+  std::atomic_flag failed;
+  std::exception_ptr failure;
+  const auto work = [&]() noexcept {
+    for (std::size_t k = next++; k < count; k = next++) try {
+        each(k);
+      } catch (...) {
+        next = count;
+        if (!failed.test_and_set()) failure = std::current_exception();
+      }
+  };
+  {
+    std::vector<std::jthread> helpers;
+    for (int k = 1; k < threads && static_cast<std::size_t>(k) < count; ++k) helpers.emplace_back(work);
+    work();
+  }
+  if (failure) std::rethrow_exception(failure);
+}
+
+}  // namespace talus

@@ -1,0 +1,22 @@
+#include <stdexcept>
+
+#include <talus/costmap/cost/cost_weights.hpp>
+
+namespace talus::costmap {
+std::shared_ptr<const CostGrid> reweighted(const CostGrid& map, const CostWeights& weights) {
+  if (!(weights.energy >= 0 && weights.time_W >= 0 && weights.risk_J >= 0))
+    throw std::invalid_argument("cost weights: energy, time_W and risk_J must be >= 0");
+  std::vector<DriveGround> grounds;
+  for (std::size_t i = 0; i < map.cost().states().size(); ++i) {
+    const auto& states = map.cost().states()[i];
+    if (!states)
+      throw std::domain_error("cost weights: the map's cost holds no energy, time and risk to weigh");
+    const auto& crossing = map.cost().crossings()[i];
+    grounds.push_back({priced(*states, crossing.get(), weights), states, crossing});
+  }
+  CostGrid::Content content = map.content();
+  content.cost = std::make_shared<const DriveCost>(map.cost().limits(), grounds, map.cost().doubt());
+  return std::make_shared<const CostGrid>(std::move(content));
+}
+
+}  // namespace talus::costmap

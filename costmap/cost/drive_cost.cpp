@@ -1,0 +1,67 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+#include <talus/costmap/cost/drive_cost.hpp>
+
+namespace talus::costmap {
+
+std::uint32_t CellCode::quantised(double gradient) noexcept {
+  const double steps = std::clamp(std::round(gradient / kStep), -2048.0, 2047.0);
+  return static_cast<std::uint32_t>(static_cast<int>(std::isnan(steps) ? 0.0 : steps)) & 0xfffu;
+}
+
+int DriveCurve::bin(double gradient) noexcept {
+  return static_cast<int>(std::lround(gradient * 256.0)) + kBins / 2;
+}
+
+namespace {
+
+struct Demand {
+  double along;
+  double across;
+};
+
+Demand demand(CellCode cell, Direction heading) noexcept {
+  return {cell.dzDx() * heading.x + cell.dzDy() * heading.y,
+          cell.dzDy() * heading.x - cell.dzDx() * heading.y};
+}
+
+std::vector<DriveCurve> curvesOf(const std::vector<DriveGround>& grounds) {
+  std::vector<DriveCurve> curves;
+  for (const DriveGround& ground : grounds) curves.push_back(ground.curve);
+  return curves;
+}
+
+}  // namespace
+
+DriveCost::DriveCost(const Limits& limits, std::vector<DriveCurve> curves)
+    : limits_(limits), curves_(std::move(curves)), states_(curves_.size()), crossings_(curves_.size()) {
+  if (curves_.size() > CellCode::kUnknown)
+    throw std::invalid_argument("DriveCost: " + std::to_string(curves_.size()) +
+                                " drive curves, must be <= 254");
+}
+
+DriveCost::DriveCost(const Limits& limits, const std::vector<DriveGround>& grounds, SoilDoubt doubt)
+    : DriveCost(limits, curvesOf(grounds)) {
+  doubt_ = std::move(doubt);
+  for (std::size_t i = 0; i < grounds.size(); ++i) {
+    states_[i] = grounds[i].states;
+    crossings_[i] = grounds[i].crossing;
+  }
+}
+
+float DriveCost::costPerMetre(CellCode cell, Direction heading) const noexcept {
+  constexpr float blocked = std::numeric_limits<float>::infinity();
+  if (cell.curve() >= curves_.size()) return blocked;
+  const Demand d = demand(cell, heading);
+  if (std::abs(d.along) > limits_.max_along || std::abs(d.across) > limits_.max_across) return blocked;
+  const int bin = DriveCurve::bin(d.along);
+  if (bin < 0 || bin >= DriveCurve::kBins) return blocked;
+  const DriveCurve& curve = curves_[cell.curve()];
+  return curve.rows()[std::min(DriveCurve::row(d.across), curve.lastRow()) * DriveCurve::kBins + bin];
+}
+
+}  // namespace talus::costmap

@@ -1,0 +1,235 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include <talus/costmap/evidence/block_evidence.hpp>
+#include <talus/costmap/evidence/spreading.hpp>
+#include <talus/terramech/numerics/normal_distribution.hpp>
+
+namespace talus::costmap {
+namespace {
+
+namespace kind = reading_kind;
+
+constexpr double kStep = 0.01;
+constexpr double kLowest = -1.28;
+constexpr double kSurest = 0.025;  // standard deviation of the first grade
+constexpr double kModel =
+    0.02;  // of thesis Eq. 3.12 as a model of DP/W, the same for all readings of a place
+constexpr double kSinkageStd = 0.02;    // of one sinkage over radius
+constexpr double kReferenceStd = 0.05;  // of the sample that counts as one
+constexpr double kLeastShared = 0.02, kSharedStep = 1.5;
+
+constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+
+double stdOf(std::size_t grade) noexcept {
+  return kSurest * std::exp2(0.5 * static_cast<double>(grade));
+}
+
+std::uint8_t stepped(double steps) noexcept {
+  return static_cast<std::uint8_t>(std::clamp(steps, 0.0, 255.0));
+}
+
+// Mean of the lower tail of a standard normal that holds the share p, turned positive: tabulated at p = 2^-i,
+// linear in log p between, which is never more.
+double tailMean(double p) {
+  static const std::array<double, 33> table = [] {
+    std::array<double, 33> t{};
+    for (std::size_t i = 1; i < t.size(); ++i) {
+      const double share = std::ldexp(1.0, -static_cast<int>(i));
+      t[i] = terramech::normalDensity(terramech::normalQuantile(share)) / share;
+    }
+    return t;
+  }();
+  const double at = std::min(-std::log2(p), 31.0);
+  const auto i = static_cast<std::size_t>(at);
+  return table[i] + (at - static_cast<double>(i)) * (table[i + 1] - table[i]);
+}
+
+// Readings of one certainty.
+struct Part {
+  double count = 0.0;
+  double value = 0.0;  // of the weakest part
+};
+
+// `counts` from the weakest on; value(step) is weaker for those before.
+template <typename Value>
+void addWeakest(std::span<const ReadingCount> counts, double std, double sign, Value value, Part& part) {
+  double all = 0.0, lowest = 0.0, sum = 0.0;
+  for (const ReadingCount& c : counts) all += c.count;
+  part = {all, std::numeric_limits<double>::infinity()};
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    const ReadingCount& c = counts[sign > 0.0 ? i : counts.size() - 1 - i];
+    lowest += c.count;
+    sum += c.count * sign * value(c.step);
+    part.value = std::min(part.value, sum / lowest + std * tailMean(lowest / all));
+  }
+  part.value *= sign;
+}
+
+double pullOf(std::uint8_t step) noexcept {
+  return kLowest + kStep * step;
+}
+// The lowest step stands for all that is less.
+double mostPullOf(std::uint8_t step) noexcept {
+  constexpr double kLeast = -10.0;
+  return step == 0 ? kLeast : pullOf(step);
+}
+double sinkageOf(std::uint8_t step) noexcept {
+  return kStep * step;
+}
+
+std::span<const ReadingCount> ofKind(std::span<const ReadingCount> counts, std::uint8_t which) noexcept {
+  const auto low = std::find_if(counts.begin(), counts.end(), [&](const auto& c) { return c.kind == which; });
+  const auto high = std::find_if(low, counts.end(), [&](const auto& c) { return c.kind != which; });
+  return {low, high};
+}
+
+// Estimates of one number, each weighed by its certainty.
+struct Weighed {
+  double weight = 0.0, sum = 0.0;
+  void add(const Part& part, double std) noexcept {
+    weight += part.count / (std * std);
+    sum += part.count / (std * std) * part.value;
+  }
+};
+
+double variance(double weight) noexcept {
+  return kModel * kModel + 1.0 / weight;
+}
+
+// The reading of all that leaves least, taken by itself.
+void keepWeakest(double pull, double of_variance, const Estimate& prior, BlockEvidence& block,
+                 double& least) {
+  const double left = believedAlone({.departure = pull - prior.value, .variance = of_variance}, prior.std);
+  if (left >= least) return;
+  least = left;
+  block.weak_pull = static_cast<float>(pull);
+  block.weak_variance = static_cast<float>(of_variance);
+}
+
+// Readings of one certainty that may raise, from the weakest on whatever error they share; `merged` holds them where
+// they are of several kinds.
+std::span<const ReadingCount> raisingOf(std::span<const ReadingCount> counts, std::size_t grade,
+                                        std::vector<ReadingCount>& merged) {
+  merged.clear();
+  std::span<const ReadingCount> only;
+  for (std::size_t shared = 0; shared < kind::kSharedGrades; ++shared) {
+    const auto heard =
+        ofKind(counts, static_cast<std::uint8_t>(kind::kPull + shared * kind::kGrades + grade));
+    if (heard.empty()) continue;
+    if (only.empty()) {
+      only = heard;
+      continue;
+    }
+    if (merged.empty()) merged.assign(only.begin(), only.end());
+    merged.insert(merged.end(), heard.begin(), heard.end());
+  }
+  if (merged.empty()) return only;
+  std::sort(merged.begin(), merged.end(), [](const ReadingCount& a, const ReadingCount& b) {
+    return a.step != b.step ? a.step < b.step : a.kind < b.kind;
+  });
+  return merged;
+}
+
+// Of readings that may raise, each weighed by its certainty.
+double sharedOf(std::span<const ReadingCount> counts) noexcept {
+  double weight = 0.0, sum = 0.0;
+  for (const ReadingCount& c : counts) {
+    if (c.kind >= kind::kPullLowers) break;
+    const double std = stdOf(c.kind % kind::kGrades), w = c.count / (std * std);
+    weight += w;
+    sum += w * sharedStd(c.kind / kind::kGrades);
+  }
+  return weight > 0.0 ? sum / weight : 0.0;
+}
+
+void summarisePull(std::span<const ReadingCount> counts, const Estimate& prior, BlockEvidence& block) {
+  Weighed raising, all;
+  double least = std::numeric_limits<double>::infinity();
+  std::vector<ReadingCount> merged;
+  block.lowers = false;
+  for (std::size_t grade = 0; grade < kind::kGrades; ++grade) {
+    const double std = stdOf(grade);
+    for (const std::uint8_t first : {kind::kPull, kind::kPullLowers}) {
+      const auto heard = first == kind::kPull ? raisingOf(counts, grade, merged)
+                                              : ofKind(counts, static_cast<std::uint8_t>(first + grade));
+      if (heard.empty()) continue;
+      Part part;
+      addWeakest(heard, std, 1.0, pullOf, part);
+      keepWeakest(part.value, variance(part.count / (std * std)), prior, block, least);
+      all.add(part, std);
+      if (first == kind::kPull) raising.add(part, std);
+      block.lowers |= first == kind::kPullLowers;
+    }
+  }
+  if (all.weight > 0.0) keepWeakest(all.sum / all.weight, variance(all.weight), prior, block, least);
+  if (all.weight <= 0.0) block.weak_pull = block.weak_variance = kNone;
+  block.pull = raising.weight > 0.0 ? static_cast<float>(raising.sum / raising.weight) : kNone;
+  block.variance = raising.weight > 0.0 ? static_cast<float>(variance(raising.weight)) : kNone;
+  block.shared = static_cast<float>(sharedOf(counts));
+}
+
+}  // namespace
+
+double sharedStd(std::size_t grade) noexcept {
+  return grade == 0 ? 0.0 : kLeastShared * std::pow(kSharedStep, static_cast<double>(grade) - 1.0);
+}
+
+ReadingCount pullReading(const Estimate& pull, bool may_raise, double shared_std) noexcept {
+  const double grade = std::ceil(2.0 * std::log2(pull.std / kSurest) - 1e-9);
+  const double clamped = grade > 0.0 ? std::min(grade, kind::kGrades - 1.0) : 0.0;
+  std::size_t shared = 0;
+  while (shared < kind::kSharedGrades && !(shared_std <= sharedStd(shared) + 1e-9)) ++shared;
+  const bool raises = may_raise && shared < kind::kSharedGrades;
+  const auto kind = static_cast<std::uint8_t>(
+      (raises ? kind::kPull + static_cast<double>(shared * kind::kGrades) : kind::kPullLowers) + clamped);
+  return {kind, stepped(std::floor((pull.value - kLowest) / kStep + 1e-6)), 1};
+}
+
+ReadingCount sinkageReading(double sinkage_over_radius, bool may_raise) noexcept {
+  return {may_raise ? kind::kSinkage : kind::kSinkageLowers,
+          stepped(std::ceil(sinkage_over_radius / kStep - 1e-6)), 1};
+}
+
+std::vector<ReadingCount> boundReadings(const GroundBound& bound) {
+  std::vector<ReadingCount> readings;
+  const auto keep = [&](std::uint8_t which, ReadingCount reading) {
+    reading.kind = which;
+    readings.push_back(reading);
+  };
+  if (!std::isnan(bound.most_pull)) keep(kind::kMostPullHere, pullReading({bound.most_pull, kSurest}, false));
+  if (!std::isnan(bound.least_sinkage))
+    keep(kind::kLeastSinkageHere, sinkageReading(bound.least_sinkage, false));
+  return readings;
+}
+
+void summarise(std::span<const ReadingCount> counts, const Estimate& prior, BlockEvidence& block) {
+  summarisePull(counts, prior, block);
+  const auto pulls = ofKind(counts, kind::kMostPullHere), depths = ofKind(counts, kind::kLeastSinkageHere);
+  block.most_pull = pulls.empty() ? kNone : static_cast<float>(mostPullOf(pulls.front().step));
+  block.least_sinkage = depths.empty() ? kNone : static_cast<float>(sinkageOf(depths.back().step));
+  block.sinkage = std::numeric_limits<float>::quiet_NaN();
+  block.sinkage_raises = false;
+  for (const std::uint8_t which : {kind::kSinkage, kind::kSinkageLowers}) {
+    const auto heard = ofKind(counts, which);
+    if (heard.empty()) continue;
+    Part part;
+    addWeakest(heard, kSinkageStd, -1.0, sinkageOf, part);
+    block.sinkage = std::fmax(block.sinkage, static_cast<float>(part.value));
+    block.sinkage_raises |= which == kind::kSinkage;
+  }
+}
+
+double samples(std::span<const ReadingCount> counts) noexcept {
+  double sum = 0.0;
+  for (const ReadingCount& c : counts) {
+    if (c.kind >= kind::kSinkage) continue;
+    const double std = stdOf(c.kind % kind::kGrades);
+    sum += c.count * kReferenceStd * kReferenceStd / (std * std);
+  }
+  return sum;
+}
+
+}  // namespace talus::costmap

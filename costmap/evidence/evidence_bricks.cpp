@@ -1,0 +1,147 @@
+#include <algorithm>
+#include <limits>
+
+#include <talus/costmap/evidence/evidence_bricks.hpp>
+
+namespace talus::costmap {
+namespace {
+
+constexpr int kShift = 3;  // 8x8 blocks a brick
+constexpr int kMask = (1 << kShift) - 1;
+
+// Order within a brick: place, level, class.
+std::uint32_t keyOf(const BlockLevel& block) noexcept {
+  const auto place = static_cast<std::uint32_t>((block.row & kMask) << kShift | (block.column & kMask));
+  return place << 24 | static_cast<std::uint32_t>(block.level) << 8 | block.terrain_class;
+}
+std::uint32_t keyOf(const BlockEvidence& e) noexcept {
+  return static_cast<std::uint32_t>(e.place_in_brick) << 24 | static_cast<std::uint32_t>(e.level) << 8 |
+         e.terrain_class;
+}
+
+bool before(const BlockEvidence& e, std::uint32_t key) noexcept {
+  return keyOf(e) < key;
+}
+
+// Doubling would leave half of the memory of a large map unused.
+template <typename T>
+void makeRoom(std::vector<T>& list) {
+  if (list.size() == list.capacity()) list.reserve(list.size() + 4 + list.size() / 8);
+}
+
+int bricksAcross(int blocks) noexcept {
+  return (blocks + kMask) >> kShift;
+}
+
+}  // namespace
+
+EvidenceBricks::EvidenceBricks(int block_columns, int block_rows)
+    : columns_(block_columns),
+      rows_(block_rows),
+      brick_columns_(bricksAcross(block_columns)),
+      bricks_(static_cast<std::size_t>(brick_columns_) * static_cast<std::size_t>(bricksAcross(block_rows))) {
+}
+
+std::size_t EvidenceBricks::brickOf(int column, int row) const noexcept {
+  return static_cast<std::size_t>(row >> kShift) * static_cast<std::size_t>(brick_columns_) +
+         static_cast<std::size_t>(column >> kShift);
+}
+
+const BlockEvidence* EvidenceBricks::find(const BlockLevel& block) const noexcept {
+  if (!contains(block.column, block.row)) return nullptr;
+  const auto& blocks = bricks_[brickOf(block.column, block.row)].blocks;
+  const std::uint32_t key = keyOf(block);
+  const auto found = std::lower_bound(blocks.begin(), blocks.end(), key, before);
+  return found != blocks.end() && keyOf(*found) == key ? &*found : nullptr;
+}
+
+BlockEvidence& EvidenceBricks::at(const BlockLevel& block) {
+  auto& blocks = bricks_[brickOf(block.column, block.row)].blocks;
+  const std::uint32_t key = keyOf(block);
+  auto found = std::lower_bound(blocks.begin(), blocks.end(), key, before);
+  if (found != blocks.end() && keyOf(*found) == key) return *found;
+  const auto place = found - blocks.begin();
+  makeRoom(blocks);
+  return *blocks.insert(blocks.begin() + place, {.level = block.level,
+                                                 .terrain_class = block.terrain_class,
+                                                 .place_in_brick = static_cast<std::uint8_t>(key >> 24)});
+}
+
+std::vector<ReadingCount> EvidenceBricks::counts(const BlockLevel& block) const {
+  std::vector<ReadingCount> out;
+  if (!contains(block.column, block.row)) return out;
+  const auto& heard = bricks_[brickOf(block.column, block.row)].heard;
+  const std::uint32_t key = keyOf(block);
+  const auto first = std::lower_bound(heard.begin(), heard.end(), key,
+                                      [](const Heard& h, std::uint32_t k) { return h.block < k; });
+  for (auto at = first; at != heard.end() && at->block == key; ++at) out.push_back(at->reading);
+  return out;
+}
+
+std::uint64_t EvidenceBricks::orderOf(const Heard& heard) noexcept {
+  return static_cast<std::uint64_t>(heard.block) << 16 | static_cast<unsigned>(heard.reading.kind) << 8 |
+         heard.reading.step;
+}
+
+// Where a count stands, or would.
+std::vector<EvidenceBricks::Heard>::iterator EvidenceBricks::placeOf(std::vector<Heard>& heard,
+                                                                     const Heard& one) {
+  return std::lower_bound(heard.begin(), heard.end(), orderOf(one),
+                          [](const Heard& h, std::uint64_t key) { return orderOf(h) < key; });
+}
+
+void EvidenceBricks::uncount(const BlockLevel& block, const ReadingCount& reading) {
+  auto& heard = bricks_[brickOf(block.column, block.row)].heard;
+  const Heard taken{keyOf(block), reading};
+  const auto found = placeOf(heard, taken);
+  if (found == heard.end() || orderOf(*found) != orderOf(taken)) return;
+  std::uint16_t& count = found->reading.count;
+  if (count == std::numeric_limits<std::uint16_t>::max()) return;
+  count = static_cast<std::uint16_t>(count - std::min(count, reading.count));
+  if (count == 0) heard.erase(found);
+}
+
+void EvidenceBricks::count(const BlockLevel& block, const ReadingCount& reading) {
+  auto& heard = bricks_[brickOf(block.column, block.row)].heard;
+  const Heard added{keyOf(block), reading};
+  const auto found = placeOf(heard, added);
+  if (found != heard.end() && orderOf(*found) == orderOf(added)) {
+    const unsigned sum = found->reading.count + static_cast<unsigned>(reading.count);
+    found->reading.count =
+        static_cast<std::uint16_t>(std::min<unsigned>(sum, std::numeric_limits<std::uint16_t>::max()));
+    return;
+  }
+  const auto at = found - heard.begin();
+  makeRoom(heard);
+  heard.insert(heard.begin() + at, added);
+}
+
+void EvidenceBricks::visitLevels(int column, int row, const Visit& visit) const {
+  if (!contains(column, row)) return;
+  const auto& blocks = bricks_[brickOf(column, row)].blocks;
+  const std::uint32_t first = keyOf(BlockLevel{column, row, 0, 0});
+  for (auto at = std::lower_bound(blocks.begin(), blocks.end(), first, before);
+       at != blocks.end() && at->place_in_brick == first >> 24; ++at)
+    visit({column, row, at->level, at->terrain_class}, *at);
+}
+
+void EvidenceBricks::visitTop(const Box& box, const Visit& visit) const {
+  const int west = std::max(box.west, 0), east = std::min(box.east, columns_ - 1);
+  const int south = std::max(box.south, 0), north = std::min(box.north, rows_ - 1);
+  for (int y = south >> kShift; y <= north >> kShift; ++y)
+    for (int x = west >> kShift; x <= east >> kShift; ++x)
+      for (const BlockEvidence& e : bricks_[brickOf(x << kShift, y << kShift)].blocks) {
+        const int column = (x << kShift) + (e.place_in_brick & kMask);
+        const int row = (y << kShift) + (e.place_in_brick >> kShift);
+        if (e.level == BlockEvidence::kTop && column >= west && column <= east && row >= south &&
+            row <= north)
+          visit({column, row, e.level, e.terrain_class}, e);
+      }
+}
+
+void EvidenceBricks::visitAll(const Visit& visit) const {
+  for (int row = 0; row < rows_; ++row)
+    for (int column = 0; column < columns_; ++column) visitLevels(column, row, visit);
+}
+
+}  // namespace talus::costmap

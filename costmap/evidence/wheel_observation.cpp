@@ -1,0 +1,272 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <talus/costmap/evidence/wheel_observation.hpp>
+
+namespace talus::costmap {
+namespace {
+
+constexpr double kReferenceSlip = 0.5;
+// How far a departure at one slip misses that at the reference slip, per unit of slip: some, and beyond the reference
+// slip more the further the ground departs from its class (ours).
+constexpr double kMissPerSlip = 0.06;
+constexpr double kMissPerSlipAndDeparture = 1.2;
+constexpr double kFlatFrom = 0.25;  // further from the reference slip than this both curves are flat
+// By how much soils of a class miss it otherwise than in strength, in its standard deviations, per H(0.5)/H - 1 (ours; of
+// soils drawn from the deviations of mars_crusty, clay, sandy_loam, dry_sand at slip 0.1 to 0.3: 0.2 to 0.6).
+constexpr double kMissPerGrowth = 0.4;
+constexpr double kMostGrowth =
+    3.0;                       // of a departure on its way to the reference slip: beyond it nothing is raised
+constexpr double kFelt = 0.1;  // of the torque at the reference slip: less tells nothing about it
+// Of the class's deviation, for its torque where it stands in for one that is not felt: it is no reading, and the belief
+// holds the class already (ours).
+constexpr double kStandIn = 2.0;
+constexpr double kStanding = 0.9;  // slip from which a rover may as well not move (ours)
+constexpr double kHeld =
+    0.05;  // side force over load that tells the ground from a turn or a pose's drift (ours)
+constexpr double kRutDoubt = 1.0;  // of what a rut adds: its stiffness is known to a factor (ours)
+
+bool known(double value) noexcept {
+  return std::isfinite(value);
+}
+
+// Whether a reading at a slip of that share of the thrust at the reference slip tells anything about ground there.
+bool tells(double share) noexcept {
+  return kMostGrowth * share >= 1.0;
+}
+
+// By how much a departure grows on the way to the reference slip from one of which the class has that share of its thrust.
+// Beyond the reference slip less would do for what is weaker; it is kept.
+double growth(double departure, double share) noexcept {
+  return tells(share) ? std::max(1.0 / share, departure < 0.0 ? 1.0 : 0.0) : 1.0;
+}
+
+// What is left of a number that is read with an error when as much as the error explains is taken off.
+double beyondError(double value, double error) noexcept {
+  const double square = value * value;
+  return square > 0.0 ? value * square / (square + error * error) : 0.0;
+}
+
+// Two estimates of one number.
+Estimate combined(const Estimate& a, const Estimate& b) noexcept {
+  const double wa = 1.0 / (a.std * a.std), wb = 1.0 / (b.std * b.std);
+  return {(wa * a.value + wb * b.value) / (wa + wb), 1.0 / std::sqrt(wa + wb)};
+}
+
+}  // namespace
+
+double pullFromTorque(double torque_over_load_radius, double sinkage_over_radius) noexcept {
+  const double entry = std::acos(1.0 - sinkage_over_radius);
+  const double quarter = 0.25 * entry;
+  const double sinc = quarter > 1e-9 ? std::sin(quarter) / quarter : 1.0;
+  return sinc * sinc / std::cos(0.5 * entry) * torque_over_load_radius - std::tan(0.5 * entry);
+}
+
+WheelObserver::WheelObserver(const GroundModel& model, const ReadingNoise& noise)
+    : model_(model), noise_(noise) {}
+
+// A reading with what the model expects of it.
+struct WheelObserver::Wheel {
+  const ClassReading& read;
+  SteadyWheel expected;    // at its slip, fresh or in a rut
+  SteadyWheel reference;   // at the reference slip, likewise
+  double steepness = 0.0;  // of the expected gradient, for one standard deviation of slip
+  double rut_gain = 0.0;   // how much more it pulls than on fresh ground
+  double share = 1.0;  // of the class's thrust at the reference slip that it has at its own, straight ahead
+  double asked = 0.0;  // pull over load that the slope asks in the wheel's plane
+  double held = 0.0;   // what it asks across the wheel, over load
+  double from_torque = std::numeric_limits<double>::quiet_NaN();     // pull at its slip
+  Estimate by_torque{0.0, std::numeric_limits<double>::infinity()};  // departure at the reference slip
+  double torque_std =
+      0.0;  // of that by the torque there, of which the class's stands in for what is not felt
+};
+
+WheelObserver::Wheel WheelObserver::expected(const ClassReading& read) const {
+  const WheelReading& r = read.reading;
+  const double radius_m = model_.rover().wheel.radius_m;
+  const bool rut = r.pass > 1;
+  const bool turned = known(r.slip_angle_rad) && known(r.across);
+  const double angle = turned ? r.slip_angle_rad : 0.0;
+  const auto at = [&](double slip, bool in_rut) {
+    return model_.steady(read.class_index, {.slip = slip, .in_rut = in_rut, .slip_angle_rad = angle});
+  };
+  Wheel w{.read = read, .expected = at(r.slip, rut), .reference = model_.reference(read.class_index, rut)};
+  w.asked = turned ? r.gradient * std::cos(angle) - r.across * std::sin(angle) : r.gradient;
+  w.held = turned ? std::abs(r.gradient * std::sin(angle) + r.across * std::cos(angle)) : 0.0;
+  const SteadyWheel more = at(r.slip + noise_.slip, rut), less = at(r.slip - noise_.slip, rut);
+  w.steepness = (more.gradient - less.gradient) / 2.0;
+  w.rut_gain = rut ? w.expected.gradient - at(r.slip, false).gradient : 0.0;
+  const SteadyWheel straight =
+      turned ? model_.steady(read.class_index, {.slip = r.slip, .in_rut = rut}) : w.expected;
+  // By the slip as far as its error does not explain that it is not the class's on that slope: else readings would weigh the
+  // more for their error.
+  if (const double thrust = w.reference.torque_over_load_radius; thrust > 0.0) {
+    w.share = straight.torque_over_load_radius / thrust;
+    if (known(w.asked)) {
+      const double of_class = model_.onSlope(read.class_index, w.asked, rut).torque_over_load_radius / thrust;
+      const double error = 0.5 * (more.torque_over_load_radius - less.torque_over_load_radius) / thrust;
+      w.share = of_class + beyondError(w.share - of_class, error);
+    }
+  }
+  const double z = r.sinkage_m / radius_m, t = r.torque_Nm / (radius_m * r.load_N);
+  if (!known(t) || !(z >= 0.0 && z < 1.0)) return w;
+  w.from_torque = pullFromTorque(t, z);
+  if (!(w.expected.sinkage_over_radius > 0.0)) return w;
+  const SteadyWheel& like = w.reference;
+  const double class_pull = pullFromTorque(like.torque_over_load_radius, like.sinkage_over_radius);
+  const double depth = std::min(z * like.sinkage_over_radius / w.expected.sinkage_over_radius, 0.99);
+  // The torque at the reference slip: as read, as far as it is mobilised, else the class's, which says the
+  // less the more the depth departs from the class.
+  const GroundClass& ground = model_.parts().classes[static_cast<std::size_t>(read.class_index)];
+  const double deeper = pullFromTorque(like.torque_over_load_radius, depth) - class_pull;
+  Estimate torque{like.torque_over_load_radius,
+                  kStandIn * std::hypot(ground.pull_std, ground.mean_std, deeper)};
+  if (w.expected.torque_over_load_radius > kFelt * like.torque_over_load_radius) {
+    const double mobilised = like.torque_over_load_radius / w.expected.torque_over_load_radius;
+    torque = combined(torque,
+                      {t * mobilised, noise_.torque_share * t * mobilised +
+                                          noise_.mobilised * std::abs(mobilised - 1.0) + noise_.model_pull});
+  }
+  w.torque_std = torque.std;
+  w.by_torque = {pullFromTorque(torque.value, depth) - class_pull,
+                 std::hypot(torque.std, noise_.sinkage_share, noise_.model_pull)};
+  return w;
+}
+
+// By how much less than the class the ground under a wheel pulls, as its side force says: < 0, or infinite where that
+// says nothing.
+double WheelObserver::weakerAcross(const Wheel& w) const noexcept {
+  if (!(w.held >= kHeld) || !(w.expected.hold > 0.0)) return std::numeric_limits<double>::infinity();
+  const double thrust = w.reference.torque_over_load_radius;
+  return std::min(0.0,
+                  (w.held + 2.0 * std::hypot(noise_.gradient, noise_.model_pull)) / w.expected.hold - 1.0) *
+         thrust;
+}
+
+// Standard deviation of a departure that was taken to the reference slip, of the model and thus the same for all readings
+// at that slip. Where little of the thrust is felt the departure stays as it is read, and misses the rest of the ground's own.
+double WheelObserver::miss(const Wheel& w, const Balance& all, double carried) const {
+  const double by_slip = std::min(std::abs(w.read.reading.slip - kReferenceSlip), kFlatFrom);
+  const double class_std = model_.prior(w.read.class_index).pull.std;
+  if (!(all.share < 1.0)) return by_slip * (kMissPerSlip + kMissPerSlipAndDeparture * std::abs(carried));
+  const double unfelt =
+      tells(all.share) ? kMissPerGrowth * (1.0 / all.share - 1.0) : 1.0 - std::clamp(all.share, 0.0, 1.0);
+  return std::hypot(by_slip * kMissPerSlip, unfelt * class_std);
+}
+
+// `own`: this wheel against its fellows by torque and sinkage, believed to half of itself.
+Estimate WheelObserver::bySlope(const Wheel& w, const Balance& all, double own) const {
+  const double there = all.departure + own;
+  const double error = std::hypot(noise_.gradient, noise_.model_pull, std::hypot(0.5 * own, w.steepness));
+  const double grown = there + (growth(there, all.share) - 1.0) * beyondError(there, error);
+  const double mean = std::min(grown, all.across + own);
+  return {mean, std::hypot(growth(-1.0, all.share) * error, miss(w, all, mean))};
+}
+
+// Of a rover that all but stands: what is weaker of the balance and torque with sinkage, if that is known.
+Estimate WheelObserver::upperBound(const Wheel& w, const Balance& all) const {
+  Estimate most = w.by_torque;
+  if (known(all.departure)) {
+    const Estimate slope = bySlope(w, all, 0.0);
+    if (!known(most.std) || slope.value < most.value) most = slope;
+  }
+  most.value = std::min(most.value, 0.0);
+  return most;
+}
+
+std::optional<WheelObservation> WheelObserver::observed(const Wheel& w, const Balance& balance,
+                                                        double own) const {
+  const bool by_balance = known(balance.departure);
+  const WheelReading& reading = w.read.reading;
+  WheelObservation out{.time_s = reading.time_s,
+                       .place = reading.place,
+                       .z_m = reading.z_m,
+                       .pull = {},
+                       .sinkage = {},
+                       .demand = w.expected.gradient + balance.departure,
+                       .from_torque = w.from_torque,
+                       .pose_std_m = reading.pose_std_m,
+                       .bound = balance.standing && !known(reading.drawbar_pull_N)};
+  const GroundBelief prior = model_.prior(w.read.class_index);
+  Estimate seen = w.by_torque;
+  double by_class =
+      known(seen.std) ? w.torque_std : 0.0;  // what the class stands in for, in all readings likewise
+  if (by_balance) {
+    const Estimate slope = bySlope(w, balance, own);
+    seen = known(seen.std) ? combined(slope, seen) : slope;
+    by_class *= seen.std * seen.std / (w.by_torque.std * w.by_torque.std);
+  }
+  Balance alone = balance;
+  if (known(reading.drawbar_pull_N)) {
+    alone = {.departure = reading.drawbar_pull_N / reading.load_N - w.expected.gradient, .share = w.share};
+    seen = bySlope(w, alone, 0.0);
+    by_class = 0.0;
+  }
+  if (out.bound) seen = upperBound(w, balance);
+  if (!known(seen.std)) return std::nullopt;
+  // What says that ground is stronger than its class is the slope: neither torque and sinkage, nor one wheel
+  // against its fellows, goes beyond that.
+  if (!known(reading.drawbar_pull_N)) {
+    const double less = std::min(own, std::max(-balance.departure, 0.0));
+    seen.value = std::min(seen.value, by_balance ? std::max(bySlope(w, balance, less).value, 0.0) : 0.0);
+  }
+  const double rut = kRutDoubt * w.rut_gain;
+  if (by_balance) {
+    const Estimate slope = bySlope(w, balance, 0.0);
+    out.by_slope = {prior.pull.value + slope.value, std::hypot(slope.std, rut)};
+  }
+  out.pull = {prior.pull.value + seen.value, std::hypot(seen.std, rut)};
+  out.shared_std = tells(alone.share) ? std::hypot(miss(w, alone, seen.value), by_class)
+                                      : std::numeric_limits<double>::quiet_NaN();
+  out.share = alone.share;
+  out.sinkage = {prior.sinkage.value, std::numeric_limits<double>::infinity()};
+  const double z = reading.sinkage_m / model_.rover().wheel.radius_m;
+  if (reading.pass <= 1 && z >= 0.0 && z < 1.0 && w.expected.sinkage_over_radius > 0.0) {
+    const double deeper = prior.sinkage.value / w.expected.sinkage_over_radius;
+    out.sinkage = {deeper * z, deeper * noise_.sinkage_share};
+  }
+  return out;
+}
+
+std::optional<WheelObservation> WheelObserver::observe(int class_index, const WheelReading& reading) const {
+  return observe({{class_index, reading}}).front();
+}
+
+std::vector<std::optional<WheelObservation>> WheelObserver::observe(
+    const std::vector<ClassReading>& together) const {
+  const auto usable = [](const ClassReading& c) { return known(c.reading.slip) && c.reading.load_N > 0.0; };
+  std::vector<Wheel> wheels;
+  double load = 0.0, felt_load = 0.0, felt = 0.0;
+  Balance all{.departure = 0.0, .across = 0.0, .share = 0.0};
+  for (const ClassReading& read : together) {
+    if (!usable(read)) continue;
+    const Wheel& w = wheels.emplace_back(expected(read));
+    const double load_N = read.reading.load_N;
+    load += load_N;
+    all.standing |= read.reading.slip >= kStanding;
+    all.departure += load_N * (w.asked - w.expected.gradient);
+    all.across += load_N * weakerAcross(w);
+    all.share += load_N * w.share;
+    if (!known(w.from_torque)) continue;
+    felt_load += load_N;
+    felt += load_N * (w.from_torque - w.expected.gradient);
+  }
+  all.departure /= load;
+  all.across /= load;
+  all.share /= load;
+  std::vector<std::optional<WheelObservation>> out;
+  std::size_t next = 0;
+  for (const ClassReading& read : together) {
+    if (!usable(read)) {
+      out.emplace_back();
+      continue;
+    }
+    const Wheel& w = wheels[next++];
+    const double own = w.from_torque - w.expected.gradient - felt / felt_load;
+    out.push_back(observed(w, all, known(own) ? own : 0.0));
+  }
+  return out;
+}
+
+}  // namespace talus::costmap

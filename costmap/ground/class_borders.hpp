@@ -1,0 +1,14 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <talus/maps/grid/grid.hpp>
+
+namespace talus::costmap {
+
+/// For each cell by its index in the grid: whether a cell of another class lies at most `reach` columns and rows
+/// away. Empty where the raster is.
+std::vector<bool> classBorders(const maps::Raster<std::uint8_t>& classes, int reach);
+
+}  // namespace talus::costmap

@@ -1,0 +1,205 @@
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include <talus/costmap/cost/cross_slope.hpp>
+#include <talus/costmap/ground/cost_curve_table.hpp>
+
+namespace talus::costmap {
+namespace {
+
+constexpr std::size_t kNumbers = CellCode::kUnknown;
+
+// Ground that no heading may enter: of a class whose number nobody asked for.
+const DriveGround& refused() {
+  static const DriveGround ground = [] {
+    auto states = std::make_shared<DriveTable>();
+    for (DriveState& state : *states) state.refusal = Refusal::Unknown;
+    DriveCurve curve;
+    curve.cost_J_per_m.fill(std::numeric_limits<float>::infinity());
+    return DriveGround{.curve = std::move(curve), .states = std::move(states)};
+  }();
+  return ground;
+}
+
+}  // namespace
+
+CostCurveTable::CostCurveTable(std::shared_ptr<const GroundModel> model) : model_(std::move(model)) {
+  if (classes() > kNumbers)
+    throw std::invalid_argument("cost curves: " + std::to_string(classes()) +
+                                " classes of ground, must be <= " + std::to_string(kNumbers));
+  for (int i = 0; i < static_cast<int>(classes()); ++i) priors_.push_back(model_->prior(i));
+  beliefs_ = priors_;
+  grounds_.assign(classes(), refused());
+  categories_.resize(classes());
+  slots_.assign(classes(), Slot::Free);
+  price(0);
+}
+
+void CostCurveTable::price(std::size_t class_index) {
+  slots_[class_index] = Slot::Own;
+  const Worked& now = worked(static_cast<int>(class_index), priors_[class_index]);
+  grounds_[class_index] = now.ground;
+  beliefs_[class_index] = priors_[class_index];
+  categories_[class_index] = now.categories;
+  cost_.reset();
+}
+
+std::uint8_t CostCurveTable::prior(int class_index) {
+  const auto i = static_cast<std::size_t>(class_index);
+  if (slots_[i] == Slot::Free) price(i);
+  if (slots_[i] == Slot::Own) return static_cast<std::uint8_t>(class_index);
+  slots_[i] = Slot::Wanted;
+  overflowed_ = true;
+  return standIn(GroundKind::of(class_index, class_index, priors_[i], level_));
+}
+
+// Grows by one, or lends the last number that no class has.
+std::optional<std::uint8_t> CostCurveTable::freeNumber() {
+  if (grounds_.size() < kNumbers) {
+    grounds_.emplace_back();
+    beliefs_.emplace_back();
+    categories_.emplace_back();
+    return static_cast<std::uint8_t>(grounds_.size() - 1);
+  }
+  const auto free = std::find(slots_.rbegin(), slots_.rend(), Slot::Free);
+  if (free == slots_.rend()) return std::nullopt;
+  *free = Slot::Lent;
+  return static_cast<std::uint8_t>(slots_.rend() - free - 1);
+}
+
+std::uint8_t CostCurveTable::learned(int class_index, int other_class, const GroundBelief& belief) {
+  const GroundKind kind = GroundKind::of(class_index, other_class, belief, level_);
+  if (const auto known = numbers_.find(kind); known != numbers_.end()) return known->second;
+  const auto number = freeNumber();
+  if (!number) {
+    overflowed_ = true;
+    return standIn(kind);
+  }
+  // All of the kind, so that a curve does not depend on who asked for it first.
+  const GroundBelief worst = kind.belief(model_->parts().classes[static_cast<std::size_t>(class_index)]);
+  grounds_[*number] = model_->ground(class_index, other_class, worst);
+  beliefs_[*number] = worst;
+  categories_[*number] = CategoryTable(*model_, worst, *grounds_[*number].crossing);
+  numbers_.emplace(kind, *number);
+  cost_.reset();
+  return *number;
+}
+
+// The strongest of the known beliefs on the same classes that are no better in anything.
+std::uint8_t CostCurveTable::standIn(const GroundKind& kind) const {
+  const GroundKind* best = nullptr;
+  std::uint8_t number = CellCode::kBlocked;
+  for (const auto& [known, its] : numbers_) {
+    const bool same = known.class_index == kind.class_index && known.other_class == kind.other_class;
+    const bool no_better =
+        known.pull <= kind.pull && known.pull_std >= kind.pull_std && known.sinkage >= kind.sinkage;
+    if (!same || !no_better || (best && known.pull <= best->pull)) continue;
+    best = &known;
+    number = its;
+  }
+  return number;
+}
+
+DriveGround CostCurveTable::dearer(const DriveGround& ground, double added_J_per_m) const {
+  auto states = std::make_shared<DriveTable>(*ground.states);
+  for (DriveState& state : *states)
+    state.energy_J_per_m = static_cast<float>(static_cast<double>(state.energy_J_per_m) + added_J_per_m);
+  const DrivePolicy& policy = model_->parts().policy;
+  DriveCurve curve = priced(*states, ground.crossing.get(),
+                            {.energy = 1.0, .time_W = policy.time_weight_W, .risk_J = policy.risk_weight_J});
+  return {.curve = std::move(curve), .states = std::move(states), .crossing = ground.crossing};
+}
+
+std::uint8_t CostCurveTable::dearer(std::uint8_t number, int step, double added_J_per_m) {
+  if (const auto known = dearer_.find({number, step}); known != dearer_.end()) return known->second.number;
+  const auto next = freeNumber();
+  if (!next) {
+    overflowed_ = true;
+    const auto greater = dearer_.lower_bound({number, step});
+    return greater != dearer_.end() && greater->first.first == number ? greater->second.number
+                                                                      : CellCode::kBlocked;
+  }
+  grounds_[*next] = dearer(grounds_[number], added_J_per_m);
+  beliefs_[*next] = beliefs_[number];
+  categories_[*next] = categories_[number];
+  dearer_.emplace(std::pair(number, step), Dearer{*next, added_J_per_m});
+  cost_.reset();
+  return *next;
+}
+
+double CostCurveTable::used() const noexcept {
+  const auto own = static_cast<std::size_t>(std::ranges::count(slots_, Slot::Own)),
+             idle = static_cast<std::size_t>(std::ranges::count(slots_, Slot::Free));
+  const std::size_t all = kNumbers - own;
+  return all > 0 ? static_cast<double>(grounds_.size() - own - idle) / static_cast<double>(all) : 1.0;
+}
+
+void CostCurveTable::restart(int level) {
+  level_ = level;
+  overflowed_ = false;
+  grounds_.resize(classes());
+  beliefs_.resize(classes());
+  categories_.resize(classes());
+  numbers_.clear();
+  dearer_.clear();
+  cost_.reset();
+  for (std::size_t i = 0; i < classes(); ++i) {
+    if (slots_[i] == Slot::Wanted) price(i);
+    if (slots_[i] != Slot::Lent) continue;
+    slots_[i] = Slot::Free;
+    grounds_[i] = refused();
+    categories_[i] = {};
+  }
+}
+
+bool CostCurveTable::setPrior(int class_index, const GroundBelief& next) {
+  const auto i = static_cast<std::size_t>(class_index);
+  const auto same = [](const Estimate& a, const Estimate& b) { return a.value == b.value && a.std == b.std; };
+  if (same(next.pull, priors_[i].pull) && same(next.sinkage, priors_[i].sinkage)) return false;
+  priors_[i] = next;
+  if (slots_[i] != Slot::Own) return true;  // its cells are judged by it where they lie beside others
+  price(i);
+  for (const auto& [from, its] : dearer_)
+    if (from.first == i) {
+      grounds_[its.number] = dearer(grounds_[i], its.added_J_per_m);
+      beliefs_[its.number] = next;
+      categories_[its.number] = categories_[i];
+    }
+  return true;
+}
+
+const CostCurveTable::Worked& CostCurveTable::worked(int class_index, const GroundBelief& prior) {
+  constexpr std::size_t kRemembered = 64;
+  const auto bits = [](double value) { return std::bit_cast<std::int64_t>(value); };
+  const PriorKey key{class_index, bits(prior.pull.value), bits(prior.pull.std), bits(prior.sinkage.value),
+                     bits(prior.sinkage.std)};
+  if (const auto known = worked_.find(key); known != worked_.end()) return known->second;
+  if (worked_.size() >= kRemembered) worked_.clear();
+  DriveGround ground = model_->ground(class_index, prior);
+  CategoryTable categories(*model_, prior, *ground.crossing);
+  return worked_.emplace(key, Worked{std::move(ground), std::move(categories)}).first->second;
+}
+
+// What a class's belief is less sure of than the scatter from place to place, all of its ground shares.
+SoilDoubt CostCurveTable::doubt() const {
+  const GroundModel::Parts& parts = model_->parts();
+  SoilDoubt doubt{.correlation_length_m = parts.policy.correlation_length_m,
+                  .entrapment = parts.policy.held()};
+  for (std::size_t i = 0; i < classes(); ++i) {
+    const double all = priors_[i].pull.std, apart = parts.classes[i].pull_std;
+    doubt.shared.push_back(all > apart ? 1.0 - apart * apart / (all * all) : 0.0);
+  }
+  return doubt;
+}
+
+std::shared_ptr<const DriveCost> CostCurveTable::cost() const {
+  if (!cost_) cost_ = std::make_shared<DriveCost>(model_->limits(), grounds_, doubt());
+  return cost_;
+}
+
+}  // namespace talus::costmap

@@ -1,0 +1,121 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <set>
+
+#include <talus/costmap/ground/wheel_swath.hpp>
+
+namespace talus::costmap {
+namespace {
+
+constexpr int kHeadings = 16;  // over half a turn: a rover stands alike forwards and backwards
+
+// Places of the middle along a side of the cell: no further apart than a quarter of the track.
+int placesAcross(double side_m, double track_m) {
+  return std::clamp(static_cast<int>(std::ceil(4.0 * side_m / track_m)), 1, 8) + 1;
+}
+
+struct Offset {
+  double x_m, y_m;
+};
+
+// Wheel centres in the body frame: as many axles as pairs, evenly along the wheelbase.
+std::vector<Offset> wheelCentres(const terramech::Rover& rover) {
+  std::vector<Offset> centres;
+  const int axles = std::max(1, rover.wheel_count / 2);
+  for (int axle = 0; axle < axles; ++axle) {
+    const double along = axles > 1 ? static_cast<double>(axle) / (axles - 1) - 0.5 : 0.0;
+    for (const double side : {-0.5, 0.5})
+      centres.push_back({along * rover.wheelbase_m, side * rover.track_m});
+  }
+  return centres;
+}
+
+}  // namespace
+
+WheelSwath::WheelSwath(const terramech::Rover& rover, double resolution_m, double pose_error_m)
+    : resolution_m_(resolution_m),
+      wheels_(wheelCentres(rover).size()),
+      across_(2 + static_cast<std::size_t>(std::ceil(rover.wheel.width_m / resolution_m))) {
+  const double half_cell_m = 0.5 * resolution_m * (1.0 - 1e-9) + pose_error_m;
+  const double farthest_m = 0.5 * (std::hypot(rover.wheelbase_m, rover.track_m) + rover.wheel.width_m);
+  reach_ = static_cast<int>(std::floor((half_cell_m + farthest_m) / resolution_m + 0.5));
+  const int across = placesAcross(2.0 * half_cell_m, rover.track_m);
+  std::set<std::vector<Footprint>> standings;
+  for (int k = 0; k < kHeadings; ++k)
+    for (int i = 0; i < across; ++i)
+      for (int j = 0; j < across; ++j)
+        standings.insert(stand(
+            rover,
+            {half_cell_m * (2.0 * i / (across - 1) - 1.0), half_cell_m * (2.0 * j / (across - 1) - 1.0)},
+            k * std::numbers::pi / kHeadings));
+  std::map<Footprint, std::uint32_t> numbers;
+  std::set<Place> touched;
+  for (const std::vector<Footprint>& standing : standings)
+    for (const Footprint& wheel : standing) {
+      const auto [known, is_new] = numbers.try_emplace(wheel, static_cast<std::uint32_t>(numbers.size()));
+      standings_.push_back(known->second);
+      if (!is_new) continue;
+      touched.insert(wheel.begin(), wheel.end());
+      footprints_.insert(footprints_.end(), wheel.begin(), wheel.end());
+      footprints_.resize(numbers.size() * across_, wheel.back());
+    }
+  touched_.assign(touched.begin(), touched.end());
+}
+
+std::vector<WheelSwath::Footprint> WheelSwath::stand(const terramech::Rover& rover, const maps::Point& middle,
+                                                     double heading_rad) const {
+  const double c = std::cos(heading_rad), s = std::sin(heading_rad);
+  const int side = 2 * reach_ + 1;
+  std::vector<Footprint> wheels;
+  for (const Offset& wheel : wheelCentres(rover)) {
+    std::set<Place> touched;
+    for (std::size_t k = 0; k < across_; ++k) {
+      const double across =
+          wheel.y_m + (static_cast<double>(k) / static_cast<double>(across_ - 1) - 0.5) * rover.wheel.width_m;
+      const double x = middle.x_m + c * wheel.x_m - s * across, y = middle.y_m + s * wheel.x_m + c * across;
+      const int column = static_cast<int>(std::floor(x / resolution_m_ + 0.5)) + reach_;
+      const int row = static_cast<int>(std::floor(y / resolution_m_ + 0.5)) + reach_;
+      touched.insert(
+          static_cast<Place>(std::clamp(row, 0, side - 1) * side + std::clamp(column, 0, side - 1)));
+    }
+    wheels.emplace_back(touched.begin(), touched.end());
+  }
+  std::ranges::sort(wheels);
+  return wheels;
+}
+
+WheelSwath::Judged WheelSwath::judged(const std::vector<Ground>& around) const {
+  const Ground& own = around[around.size() / 2];
+  Judged out{.belief = own.belief, .weakest_class = own.class_index};
+  double weakest = own.belief.pull.value;
+  std::vector<double> pull(around.size(), own.belief.pull.value);
+  for (const Place place : touched_) {
+    const Ground& there = around[place];
+    out.unseen |= there.unseen;
+    if (there.class_index < 0) continue;
+    pull[place] = there.belief.pull.value;
+    out.belief.pull.std = std::max(out.belief.pull.std, there.belief.pull.std);
+    out.belief.sinkage.value = std::max(out.belief.sinkage.value, there.belief.sinkage.value);
+    out.belief.sinkage.std = std::max(out.belief.sinkage.std, there.belief.sinkage.std);
+    if (there.belief.pull.value >= weakest) continue;
+    weakest = there.belief.pull.value;
+    out.weakest_class = there.class_index;
+  }
+  std::vector<double> least(footprints_.size() / across_);
+  for (std::size_t k = 0; k < least.size(); ++k) {
+    least[k] = pull[footprints_[k * across_]];
+    for (std::size_t i = 1; i < across_; ++i)
+      least[k] = std::min(least[k], pull[footprints_[k * across_ + i]]);
+  }
+  const double share = 1.0 / static_cast<double>(wheels_);
+  for (std::size_t k = 0; k < standings_.size(); k += wheels_) {
+    double sum = 0.0;
+    for (std::size_t wheel = 0; wheel < wheels_; ++wheel) sum += least[standings_[k + wheel]];
+    out.belief.pull.value = std::min(out.belief.pull.value, sum * share);
+  }
+  return out;
+}
+
+}  // namespace talus::costmap

@@ -1,0 +1,291 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include <talus/costmap/cost/cross_slope.hpp>
+#include <talus/costmap/map/explanation.hpp>
+
+namespace talus::costmap {
+namespace {
+
+constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
+
+// The metrics of one cell, from a window around it just large enough.
+maps::TerrainMetrics measuredAround(const TraversabilityMap& map, maps::Cell cell, maps::Cell& inside) {
+  const maps::Grid& grid = map.grid();
+  const int halo = maps::metricsReach(map.footprint(1), grid.resolution_m) + 1;
+  const maps::Cell from{std::max(0, cell.column - halo), std::max(0, cell.row - halo)};
+  const maps::Cell to{std::min(grid.width, cell.column + halo + 1),
+                      std::min(grid.height, cell.row + halo + 1)};
+  maps::Raster<float> window(maps::Grid{.width = to.column - from.column,
+                                        .height = to.row - from.row,
+                                        .resolution_m = grid.resolution_m,
+                                        .south_west = {}});
+  for (int row = from.row; row < to.row; ++row)
+    for (int column = from.column; column < to.column; ++column)
+      window[{column - from.column, row - from.row}] = map.elevation().elevation_m[{column, row}];
+  inside = {cell.column - from.column, cell.row - from.row};
+  return maps::terrainMetrics(window, map.footprint(1));
+}
+
+std::string limitRemark(double value, double limit) {
+  if (std::isnan(value)) return "not known";
+  return value > limit ? "above the limit " + std::to_string(limit)
+                       : "within the limit " + std::to_string(limit);
+}
+
+const char* hazardText(Hazard hazard) {
+  switch (hazard) {
+    case Hazard::Unknown:
+      return "elevation or terrain class unknown";
+    case Hazard::Slope:
+      return "too steep for the rover at any heading";
+    case Hazard::Step:
+      return "step above the ground clearance";
+    case Hazard::Roughness:
+      return "roughness above the ground clearance";
+    case Hazard::Rocks:
+      return "probability of a rock above the ground clearance too high";
+    case Hazard::KeepOut:
+      return "inside a keep-out polygon";
+    case Hazard::Obstacle:
+      return "terrain class without a soil, treated as an obstacle";
+    case Hazard::Near:
+      return "an excluded cell lies within the rover's width";
+    case Hazard::None:
+      break;
+  }
+  return "";
+}
+
+constexpr std::array<Hazard, 8> kHazards{Hazard::Unknown, Hazard::KeepOut, Hazard::Obstacle,  Hazard::Slope,
+                                         Hazard::Step,    Hazard::Rocks,   Hazard::Roughness, Hazard::Near};
+
+void addShape(const TraversabilityMap& map, maps::Cell cell, Explanation& out) {
+  maps::Cell inside;
+  const maps::TerrainMetrics m = measuredAround(map, cell, inside);
+  const double roughness = static_cast<double>(m.roughness_m[inside]);
+  const double footprint_m = m.fell_back ? 2.0 * map.grid().resolution_m : 2.0 * map.footprintRadius_m();
+  const double share = reliefShare(map.hazardLimits(), footprint_m);
+  const std::string plane =
+      "plane through " + std::to_string(m.footprint_cells) + " cells of " + map.elevation().source;
+  out.causes.push_back({"elevation_m", static_cast<double>(map.elevation().elevation_m[cell]), kNotKnown,
+                        map.elevation().source, ""});
+  const double slope = static_cast<double>(m.slope_rad(inside));
+  out.causes.push_back({"slope_rad", slope, m.gradient_std_per_roughness * roughness, plane,
+                        limitRemark(slope, std::atan(map.hazardLimits().max_gradient))});
+  out.causes.push_back({"aspect_rad", static_cast<double>(m.aspect_rad(inside)), kNotKnown, plane, ""});
+  out.causes.push_back({"roughness_m", share * roughness, kNotKnown, plane + ", within one wheelbase",
+                        limitRemark(share * roughness, map.hazardLimits().max_roughness_m)});
+  const double relief = share * static_cast<double>(m.relief_m[inside]);
+  out.causes.push_back({"relief_m", relief, kNotKnown, plane + ", within one wheelbase",
+                        limitRemark(relief, map.hazardLimits().max_step_m)});
+  const double step =
+      reliefShare(map.hazardLimits(), map.grid().resolution_m) * static_cast<double>(m.step_m[inside]);
+  out.causes.push_back(
+      {"step_m", step, kNotKnown,
+       "differences of heights in " + map.elevation().source + " beyond the slope on both sides",
+       limitRemark(step, map.hazardLimits().max_step_m)});
+}
+
+void addLayers(const TraversabilityMap& map, maps::Cell cell, Explanation& out) {
+  for (const CostLayer& layer : map.costLayers()) {
+    const auto added = static_cast<double>(layer.added_J_per_m[cell]);
+    const bool open = map.model().parts().policy.allow_unknown;
+    out.causes.push_back({"layer_" + layer.name + "_J_per_m",
+                          std::isnan(added) && open ? static_cast<double>(layer.unseen_J_per_m) : added,
+                          kNotKnown, "layer '" + layer.name + "'",
+                          std::isinf(added)    ? "excluded for any soil"
+                          : !std::isnan(added) ? "part of energy and cost, rounded up by at most a fifth"
+                          : open               ? "no data: costs as the dearest cell of the layer"
+                                               : "no data: excluded as unknown"});
+  }
+}
+
+// What excludes a cell, and the layer where one does.
+std::string hazardText(const TraversabilityMap& map, maps::Cell cell, Hazard hazard) {
+  for (const CostLayer& layer : map.costLayers()) {
+    const float added = layer.added_J_per_m[cell];
+    if (hazard == Hazard::KeepOut && std::isinf(added)) return "refused by layer '" + layer.name + "'";
+    if (hazard == Hazard::Unknown && std::isnan(added) && !map.model().parts().policy.allow_unknown)
+      return "no data in layer '" + layer.name + "'";
+  }
+  const bool opened = map.hazards(cell) == Hazard::Unknown && map.model().parts().policy.allow_unknown;
+  if (opened)
+    return std::string("elevation or terrain class unknown; allowed on request as level ground of ") +
+           (map.classIndex(cell) >= 0 ? "its class" : "the first class");
+  return hazardText(hazard);
+}
+
+void addSoil(const TraversabilityMap& map, maps::Cell cell, Explanation& out) {
+  const int index = map.classIndex(cell);
+  out.causes.push_back({"terrain_class", static_cast<double>(map.classNumber(cell)), kNotKnown,
+                        "class raster", index < 0 ? "no soil defined for this class" : ""});
+  if (index < 0) return;
+  const GroundClass& ground = map.model().parts().classes[static_cast<std::size_t>(index)];
+  const GroundBelief prior = map.model().prior(index);
+  std::string effects;
+  for (const terramech::Effect& e : ground.effects) effects += " + " + e.name;
+  const std::string source = "soil '" + ground.soil.name + "'" + effects + " under rover '" +
+                             map.model().rover().name + "', slip 0.5";
+  out.causes.push_back({"prior_drawbar_pull_over_load", prior.pull.value, prior.pull.std, source, ""});
+  const CellBelief belief = map.belief(cell);
+  const bool of_prior = belief.evidence <= 0.0F && belief.pull_mean == static_cast<float>(prior.pull.value) &&
+                        belief.sinkage_mean == static_cast<float>(prior.sinkage.value);
+  const std::string wheels = of_prior ? source : "prior and wheel telemetry";
+  out.causes.push_back({"evidence_samples", static_cast<double>(belief.evidence), kNotKnown,
+                        "wheel telemetry nearby",
+                        belief.evidence > 0.0F ? ""
+                        : of_prior             ? "no telemetry here; prior only"
+                                   : "none counted here: a bound of this place, or telemetry of its class"});
+  out.causes.push_back({"drawbar_pull_over_load", static_cast<double>(belief.pull_mean),
+                        static_cast<double>(belief.pull_std), wheels, ""});
+  out.causes.push_back({"sinkage_over_radius", static_cast<double>(belief.sinkage_mean),
+                        static_cast<double>(belief.sinkage_std), wheels, ""});
+  const auto published = map.publishedGround(cell);
+  if (!published) return;
+  const std::string swath = "weakest standing of the wheels about the cell, rounded towards danger";
+  out.causes.push_back({"swath_drawbar_pull_over_load", published->pull.value, published->pull.std, swath,
+                        "cost is made from it"});
+  out.causes.push_back(
+      {"swath_sinkage_over_radius", published->sinkage.value, published->sinkage.std, swath, ""});
+}
+
+// The other levels of a cell: what is believed there does not mix with its top.
+void addFloors(const TraversabilityMap& map, maps::Cell cell, Explanation& out) {
+  for (const Floor& floor : map.floors().of(map.grid().index(cell))) {
+    const CellBelief belief = map.belief(cell, floor);
+    const std::string there = "other level of this cell, below or above its surface";
+    out.causes.push_back(
+        {"floor_elevation_m", static_cast<double>(floor.height_m), kNotKnown, map.elevation().source, there});
+    out.causes.push_back({"floor_evidence_samples", static_cast<double>(belief.evidence), kNotKnown,
+                          "wheel telemetry on that level", ""});
+    out.causes.push_back({"floor_drawbar_pull_over_load", static_cast<double>(belief.pull_mean),
+                          static_cast<double>(belief.pull_std),
+                          "first soil class and telemetry on that level", ""});
+  }
+}
+
+terramech::Gradient seenBy(CellCode code, const Direction& heading) {
+  return {code.dzDx() * heading.x + code.dzDy() * heading.y,
+          code.dzDy() * heading.x - code.dzDx() * heading.y};
+}
+
+// What crosses and climbs as hard as a straight climb, where the ground has a soil.
+double climbAt(const DriveCost& cost, CellCode code, const Direction& heading) {
+  const terramech::Gradient gradient = seenBy(code, heading);
+  const bool known = code.curve() < cost.crossings().size() && cost.crossings()[code.curve()];
+  return known ? cost.crossings()[code.curve()]->climb(gradient) : gradient.along;
+}
+
+// Straight up the slope, or the heading across that clearly leaves less.
+Direction worst(const DriveCost& cost, CellCode code) {
+  const double length = std::hypot(code.dzDx(), code.dzDy());
+  if (!(length > 0.0)) return {};
+  const Direction up{code.dzDx() / length, code.dzDy() / length};
+  constexpr int kHeadings = 24;            // to either side, as CrossSlope::steepest()
+  constexpr double kClearly = 1.0 / 32.0;  // of gradient: two rows across
+  Direction found = up;
+  double most = climbAt(cost, code, up) + kClearly;
+  for (int k = 1; k < kHeadings; ++k) {
+    const double c = std::cos(k * std::numbers::pi / kHeadings),
+                 s = std::sin(k * std::numbers::pi / kHeadings);
+    const Direction tried{c * up.x - s * up.y, s * up.x + c * up.y};
+    if (const double climb = climbAt(cost, code, tried); climb > most) {
+      most = climb;
+      found = tried;
+    }
+  }
+  return found;
+}
+
+void addDrive(const TraversabilityMap& map, maps::Cell cell, const Direction& heading, Explanation& out) {
+  const auto grid = map.published();
+  const CellCode code = grid->at(cell);
+  const auto [along, across] = seenBy(code, heading);
+  const double margin = map.model().parts().policy.slope_margin_rad;
+  const DriveState state = grid->cost().detail(code, heading);
+  const std::string asks = "slope along the heading";
+  const std::string drives = "mobility curve at the estimated DP/W";
+  out.causes.push_back({"slope_along_rad", std::atan(along), kNotKnown, asks, ""});
+  out.causes.push_back({"slope_across_rad", std::atan(across), kNotKnown, "slope across the heading", ""});
+  out.causes.push_back({"dangerous_below", std::tan(std::atan(along) - margin), kNotKnown, asks,
+                        "DP/W below this is dangerous (thesis 3.5)"});
+  out.causes.push_back({"safe_above", std::tan(std::atan(along) + margin), kNotKnown, asks,
+                        "DP/W above this is safe (thesis 3.5)"});
+  if (code.curve() >= CellCode::kUnknown) return;
+  out.causes.push_back(
+      {"drawbar_pull_margin", static_cast<double>(state.pull_margin), kNotKnown, drives, ""});
+  out.causes.push_back({"slip", static_cast<double>(state.slip), kNotKnown, drives, ""});
+  const SlopeHold hold = grid->cost().hold(code, heading);
+  const std::string balance = "rover equilibrium on the soil of the class";
+  out.causes.push_back({"slip_angle_rad", hold.slip_angle_rad, kNotKnown, balance, ""});
+  out.causes.push_back({"side_force_over_load", hold.side_force_over_load, kNotKnown, balance, ""});
+  out.causes.push_back({"stability_margin_rad", hold.stability_margin_rad, kNotKnown, balance, ""});
+  out.causes.push_back({"sinkage_m", static_cast<double>(state.sinkage_m), kNotKnown, drives,
+                        limitRemark(static_cast<double>(state.sinkage_m), map.model().rover().clearance_m)});
+  out.causes.push_back(
+      {"torque_Nm", static_cast<double>(state.torque_Nm), kNotKnown, drives,
+       limitRemark(static_cast<double>(state.torque_Nm), map.model().rover().max_torque_Nm)});
+  out.causes.push_back({"energy_J_per_m", static_cast<double>(state.energy_J_per_m), kNotKnown, drives, ""});
+  out.causes.push_back({"immobilisation_per_m", static_cast<double>(state.risk_per_m), kNotKnown,
+                        "estimated DP/W compared with required DP/W", ""});
+  out.causes.push_back({"cost_J_per_m", static_cast<double>(grid->cost().costPerMetre(code, heading)),
+                        kNotKnown, "weighted sum of energy, time and risk", toText(state.refusal)});
+}
+
+void judge(const TraversabilityMap& map, maps::Cell cell, const Direction& heading, Explanation& out) {
+  const Hazard hazards = map.hazards(cell);
+  const bool opened = hazards == Hazard::Unknown && map.model().parts().policy.allow_unknown;
+  for (const Hazard one : kHazards)
+    if (has(hazards, one))
+      out.causes.push_back({"hazard", 1.0, kNotKnown, hazardText(map, cell, one),
+                            opened ? "not excluded" : "excluded for any soil"});
+  const CellBelief belief = map.belief(cell);
+  out.category = static_cast<terramech::Category>(belief.category);
+  out.probability = out.category == terramech::Category::Unknown ? kNotKnown : belief.confidence / 16.0;
+  out.verdict = std::string(terramech::name(out.category));
+  for (const Hazard one : kHazards)
+    if (has(hazards, one) && !opened) {
+      out.verdict += ": " + hazardText(map, cell, one);
+      return;
+    }
+  const auto ground = map.publishedGround(cell);
+  if (!ground) {
+    out.verdict += map.code(cell).curve() == CellCode::kUnknown
+                       ? ": a wheel may touch ground without a soil class"
+                       : ": no cost curve is left for this ground";
+    return;
+  }
+  // What is said is what planners read, at the gradient that they read it at.
+  const CellCode code = map.code(cell);
+  const double along = seenBy(code, heading).along, climb = climbAt(map.published()->cost(), code, heading);
+  const DriveState state = map.published()->cost().detail(code, heading);
+  out.category = state.category;
+  out.probability = map.model().category(*ground, DriveCurve::gradient(DriveCurve::bin(climb))).probability;
+  out.verdict = std::string(terramech::name(out.category)) + ": available DP/W " +
+                std::to_string(ground->pull.value) + ", required DP/W " + std::to_string(along);
+  if (climb > along + 1.0 / 256)
+    out.verdict +=
+        climb < 1.0 ? ", with the side force " + std::to_string(climb) : ", side force out of reach";
+  if (state.refusal != Refusal::None) out.verdict += std::string("; refused: ") + toText(state.refusal);
+  if (opened) out.verdict += "; " + hazardText(map, cell, Hazard::Unknown);
+}
+
+}  // namespace
+
+Explanation explain(const TraversabilityMap& map, maps::Cell cell, const std::optional<Direction>& heading) {
+  Explanation out;
+  const Direction direction = heading.value_or(worst(map.published()->cost(), map.code(cell)));
+  judge(map, cell, direction, out);
+  addShape(map, cell, out);
+  addLayers(map, cell, out);
+  addSoil(map, cell, out);
+  addDrive(map, cell, direction, out);
+  addFloors(map, cell, out);
+  return out;
+}
+
+}  // namespace talus::costmap

@@ -1,0 +1,171 @@
+#include <algorithm>
+#include <utility>
+
+#include <talus/costmap/ground/class_borders.hpp>
+#include <talus/costmap/map/ground_curves.hpp>
+#include <talus/costmap/surface/cell_boxes.hpp>
+
+namespace talus::costmap {
+namespace {
+
+constexpr int kPullBits = 10, kStdBits = 6, kSinkageBits = 9;
+constexpr int kFew = 4;  // cells that a box may hold in vain for a new one
+constexpr int kPullZero = 1 << (kPullBits - 1), kStdZero = 4;
+
+// A kind as a word that is not 0; drawbar pull over load within +-10 and sinkage up to 51 radii.
+std::uint32_t packed(const GroundKind& kind) {
+  const auto field = [](int value, int bits) {
+    return static_cast<std::uint32_t>(std::clamp(value, 0, (1 << bits) - 1));
+  };
+  return 1U << 31 | field(kind.pull + kPullZero, kPullBits) << (kStdBits + kSinkageBits) |
+         field(kind.pull_std + kStdZero, kStdBits) << kSinkageBits | field(kind.sinkage, kSinkageBits);
+}
+
+GroundKind unpacked(std::uint32_t word, int class_index) {
+  const auto field = [&](int low, int bits) { return static_cast<int>(word >> low & ((1U << bits) - 1U)); };
+  return {.class_index = class_index,
+          .other_class = class_index,
+          .pull = field(kStdBits + kSinkageBits, kPullBits) - kPullZero,
+          .pull_std = field(kSinkageBits, kStdBits) - kStdZero,
+          .sinkage = field(0, kSinkageBits)};
+}
+
+// Boxes in which most cells changed: a cell that lies beside the last box grows it, where that adds few others.
+void join(std::vector<maps::CellBox>& boxes, const maps::Cell& cell) {
+  const auto area = [](const maps::CellBox& b) {
+    return (b.last.column - b.first.column + 1) * (b.last.row - b.first.row + 1);
+  };
+  if (!boxes.empty()) {
+    maps::CellBox& last = boxes.back();
+    const maps::CellBox both{{std::min(last.first.column, cell.column), std::min(last.first.row, cell.row)},
+                             {std::max(last.last.column, cell.column), std::max(last.last.row, cell.row)}};
+    if (area(both) <= area(last) + (last.last.column - last.first.column + 1) + kFew) {
+      last = both;
+      return;
+    }
+  }
+  boxes.push_back({cell, cell});
+}
+
+}  // namespace
+
+GroundCurves::GroundCurves(std::shared_ptr<const GroundSite> site)
+    : site_(std::move(site)),
+      table_(site_->model),
+      added_(site_->costs),
+      swath_(site_->model->rover(), site_->grid().resolution_m, site_->model->parts().policy.pose_error_m),
+      borders_(classBorders(site_->classes, swath_.reach())),
+      learned_(site_->grid()) {}
+
+WheelSwath::Ground GroundCurves::ground(maps::Cell cell) const {
+  if (!site_->grid().contains(cell)) return {};
+  const int index = site_->classIndex(cell);
+  if (index < 0 && site_->classes[cell] == GroundSite::kNoClass && site_->model->parts().policy.allow_unknown)
+    return {0, table_.priorBelief(0)};
+  if (index < 0) return {.belief = {}, .unseen = true};
+  const std::uint32_t word = any_learned_ ? learned_[cell] : 0U;
+  if (word == 0) return {index, table_.priorBelief(index)};
+  return {index,
+          unpacked(word, index).belief(site_->model->parts().classes[static_cast<std::size_t>(index)])};
+}
+
+maps::CellBox GroundCurves::within(const maps::CellBox& range) const noexcept {
+  return grown(range, swath_.reach(), site_->grid());
+}
+
+// A border is one up to a reach away from where classes changed; it is found from what lies as far again.
+maps::CellBox GroundCurves::takeClasses(const maps::CellBox& box) {
+  const maps::CellBox changed = within(box), seen = within(changed);
+  const std::vector<bool> borders = classBorders(cut(site_->classes, seen), swath_.reach());
+  const auto width = static_cast<std::size_t>(seen.width());
+  forEachCell(changed, [&](maps::Cell cell) {
+    borders_[site_->grid().index(cell)] =
+        borders[static_cast<std::size_t>(cell.row - seen.first.row) * width +
+                static_cast<std::size_t>(cell.column - seen.first.column)];
+  });
+  return changed;
+}
+
+bool GroundCurves::alike(maps::Cell cell) const noexcept {
+  if (!borders_.empty() && borders_[site_->grid().index(cell)]) return false;
+  if (!any_learned_) return true;
+  const std::uint32_t own = learned_[cell];
+  const maps::CellBox near = within({cell, cell});
+  for (int row = near.first.row; row <= near.last.row; ++row)
+    for (int column = near.first.column; column <= near.last.column; ++column)
+      if (learned_[{column, row}] != own) return false;
+  return true;
+}
+
+std::uint8_t GroundCurves::withLayers(std::uint8_t number, maps::Cell cell) {
+  const int step = number < CellCode::kUnknown ? added_.step(cell, step_level_) : 0;
+  return step == 0 ? number : table_.dearer(number, step, added_.J_per_m(step));
+}
+
+std::uint8_t GroundCurves::number(maps::Cell cell) {
+  return withLayers(numberOfGround(cell), cell);
+}
+
+std::uint8_t GroundCurves::numberOfGround(maps::Cell cell) {
+  const WheelSwath::Ground own = ground(cell);
+  const bool learned = any_learned_ && learned_[cell] != 0;
+  WheelSwath::Judged judged{own.belief, own.class_index};
+  if (!alike(cell)) {
+    around_.clear();
+    for (int row = -swath_.reach(); row <= swath_.reach(); ++row)
+      for (int column = -swath_.reach(); column <= swath_.reach(); ++column)
+        around_.push_back(ground({cell.column + column, cell.row + row}));
+    judged = swath_.judged(around_);
+    if (judged.unseen) return CellCode::kUnknown;
+  }
+  const bool own_alone =
+      judged.weakest_class == own.class_index && WheelSwath::Ground{own.class_index, judged.belief} == own;
+  if (own_alone && !learned) return table_.prior(own.class_index);
+  return table_.learned(own.class_index, judged.weakest_class, judged.belief);
+}
+
+GroundCurves::ClassChange GroundCurves::learnClasses(const EvidenceField& field) {
+  ClassChange changed;
+  for (int i = 0; i < static_cast<int>(site_->model->parts().classes.size()); ++i)
+    changed.priors |= table_.setPrior(i, field.classBelief(i, EvidenceField::Classes::InSteps));
+  std::vector<ClassState> states = field.states(EvidenceField::Classes::InSteps);
+  changed.learned = states != states_;
+  states_ = std::move(states);
+  return changed;
+}
+
+std::vector<maps::CellBox> GroundCurves::learn(EvidenceField::Beliefs& beliefs,
+                                               const std::vector<maps::CellBox>& ranges) {
+  std::vector<maps::CellBox> changed;
+  for (const maps::CellBox& range : ranges)
+    for (int row = range.first.row; row <= range.last.row; ++row)
+      for (int column = range.first.column; column <= range.last.column; ++column) {
+        const maps::Cell cell{column, row};
+        const int index = site_->classIndex(cell);
+        std::uint32_t word = 0;
+        if (index >= 0)
+          if (const EvidenceField::Belief& belief = beliefs.at(cell, index); belief.learned)
+            word = packed(GroundKind::of(index, index, belief.ground));
+        if (!learned_.set(cell, word)) continue;
+        any_learned_ = true;
+        join(changed, cell);
+      }
+  for (maps::CellBox& range : changed) range = within(range);
+  return changed;
+}
+
+std::vector<maps::CellBox> GroundCurves::mixedRanges() const {
+  std::vector<maps::CellBox> mixed;
+  for (const maps::CellBox& box : learned_.boxes()) mixed.push_back(within(box));
+  const maps::Grid& grid = site_->grid();
+  for (int row = 0; row < grid.height && !borders_.empty(); ++row)
+    for (int column = 0; column < grid.width; ++column) {
+      if (!borders_[grid.index({column, row})]) continue;
+      const int first = column;
+      while (column + 1 < grid.width && borders_[grid.index({column + 1, row})]) ++column;
+      mixed.push_back({{first, row}, {column, row}});
+    }
+  return mixed;
+}
+
+}  // namespace talus::costmap

@@ -1,0 +1,358 @@
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <istream>
+#include <ostream>
+#include <sstream>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <talus/common/checksum.hpp>
+#include <talus/common/input_error.hpp>
+#include <talus/common/memory_budget.hpp>
+#include <talus/common/output_file.hpp>
+#include <talus/costmap/map/map_file.hpp>
+#include <talus/costmap/map/map_text.hpp>
+
+namespace talus::costmap {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "map files require a little-endian machine");
+
+constexpr std::array<char, 8> kMagic{'T', 'A', 'L', 'U', 'S', 'M', 'A', 'P'};
+constexpr std::uint32_t kVersion = 6;
+constexpr std::array<char, 4> kEnd{'E', 'N', 'D', ' '};
+
+class TrailerWriter {
+ public:
+  explicit TrailerWriter(std::ostream& stream) : stream_(stream) {
+    raw(kMagic.data(), kMagic.size());
+    raw(&kVersion, sizeof kVersion);
+  }
+  void section(const char (&tag)[5], const void* data, std::uint64_t size) {
+    raw(tag, 4);
+    raw(&size, sizeof size);
+    raw(data, size);
+  }
+
+ private:
+  void raw(const void* data, std::size_t size) {
+    stream_.write(static_cast<const char*>(data), static_cast<std::streamsize>(size));
+  }
+
+  std::ostream& stream_;
+};
+
+// The last bytes of a map.
+struct End {
+  std::array<char, 4> tag = kEnd;
+  std::uint32_t version = kVersion;
+  std::uint64_t checksum = 0;
+};
+static_assert(sizeof(End) == 16);
+
+std::uint64_t sizeOf(std::istream& stream) {
+  stream.clear();
+  const auto end = stream.seekg(0, std::ios::end).tellg();
+  return end < 0 ? 0 : static_cast<std::uint64_t>(end);
+}
+
+// Of the first bytes of a stream that can seek.
+std::uint64_t checksumOf(std::istream& stream, std::uint64_t size) {
+  std::vector<char> piece(std::size_t{1} << 20U);
+  Checksum checksum;
+  stream.seekg(0);
+  while (size > 0 && stream) {
+    const auto count = std::min<std::uint64_t>(size, piece.size());
+    stream.read(piece.data(), static_cast<std::streamsize>(count));
+    checksum.add(piece.data(), count);
+    size -= count;
+  }
+  return checksum.value();
+}
+
+// Before a byte is interpreted: nothing of a damaged map is read.
+void requireWhole(std::istream& stream, const std::string& name) {
+  const std::uint64_t size = sizeOf(stream);
+  End end{.tag = {}, .version = 0};
+  if (size > sizeof end) {
+    stream.seekg(static_cast<std::streamoff>(size - sizeof end));
+    stream.read(reinterpret_cast<char*>(&end), sizeof end);
+  }
+  const auto refuse = [&](const std::string& reason) {
+    throw InputError({name, reason, "write the map again with talus costmap"});
+  };
+  if (end.tag != kEnd || end.version != kVersion)
+    refuse("no traversability map, truncated, or of another version than " + std::to_string(kVersion));
+  if (checksumOf(stream, size - sizeof end) != end.checksum) refuse("damaged: checksum mismatch");
+  stream.seekg(0);
+}
+
+class TrailerReader {
+ public:
+  TrailerReader(std::istream& stream, std::string name) : stream_(stream), name_(std::move(name)) {
+    std::array<char, 8> magic{};
+    raw(magic.data(), magic.size());
+    if (magic != kMagic) fail("an octree without the trailer of a map");
+    std::uint32_t version = 0;
+    raw(&version, sizeof version);
+    if (version != kVersion)
+      fail("version " + std::to_string(version) + " of the format; this program reads " +
+           std::to_string(kVersion));
+  }
+
+  std::vector<Floor> floors(const char (&tag)[5]) {
+    const std::uint64_t size = open(tag);
+    if (size % sizeof(Floor) != 0) fail("damaged section");
+    std::vector<Floor> floors(size / sizeof(Floor));
+    raw(floors.data(), size);
+    return floors;
+  }
+
+  std::string bytes(const char (&tag)[5]) {
+    std::string bytes(open(tag), '\0');
+    raw(bytes.data(), bytes.size());
+    return bytes;
+  }
+
+  // A raster over the grid, or none when the section is empty.
+  template <typename T>
+  maps::Raster<T> raster(const char (&tag)[5], const maps::Grid& grid) {
+    const std::uint64_t size = open(tag);
+    if (size == 0) return {};
+    if (size != grid.size() * sizeof(T)) fail("damaged section");
+    maps::Raster<T> raster(grid);
+    raw(raster.values().data(), size);
+    return raster;
+  }
+
+  bool more() { return bytesLeft() > sizeof(End); }
+
+  /// Nothing may stand between the last section and the checksum.
+  void finish() {
+    if (bytesLeft() != sizeof(End)) fail("damaged section");
+  }
+
+ private:
+  std::uint64_t open(const char (&tag)[5]) {
+    std::array<char, 4> found{};
+    std::uint64_t size = 0;
+    raw(found.data(), found.size());
+    if (std::memcmp(found.data(), tag, 4) != 0) fail("damaged section");
+    raw(&size, sizeof size);
+    if (size > bytesLeft()) fail("truncated");
+    return size;
+  }
+  // Asked before memory is taken for a section, so that a damaged size cannot exhaust it.
+  std::uint64_t bytesLeft() {
+    const auto here = stream_.tellg();
+    const auto end = stream_.seekg(0, std::ios::end).tellg();
+    stream_.seekg(here);
+    return static_cast<std::uint64_t>(end - here);
+  }
+  void raw(void* data, std::size_t size) {
+    if (!stream_.read(static_cast<char*>(data), static_cast<std::streamsize>(size))) fail("truncated");
+  }
+  [[noreturn]] void fail(const std::string& reason) const {
+    throw InputError({name_, reason, "write the map again with talus costmap"});
+  }
+
+  std::istream& stream_;
+  std::string name_;
+};
+
+maps::Raster<Hazard> declared(const TraversabilityMap& map) {
+  maps::Raster<Hazard> hazards(map.grid());
+  constexpr auto kept = static_cast<std::uint8_t>(Hazard::Rocks | Hazard::KeepOut);
+  for (std::size_t i = 0; i < hazards.values().size(); ++i)
+    hazards.values()[i] = static_cast<Hazard>(static_cast<std::uint8_t>(map.hazards().values()[i]) & kept);
+  return hazards;
+}
+
+// A block as it stands in the file, before its readings.
+struct BlockHeader {
+  std::int32_t column = 0, row = 0;
+  std::uint32_t updated_s = 0;
+  std::uint16_t level = 0;
+  std::uint8_t terrain_class = 0, reach = 0;
+  std::uint32_t readings = 0;
+};
+static_assert(sizeof(BlockHeader) == 20 && sizeof(ReadingCount) == 4);
+
+std::string evidenceOf(const TraversabilityMap& map) {
+  std::string bytes;
+  const auto put = [&](const void* data, std::size_t size) {
+    bytes.append(static_cast<const char*>(data), size);
+  };
+  map.evidence().visit([&](const SavedBlock& saved) {
+    const BlockHeader header{.column = saved.block.column,
+                             .row = saved.block.row,
+                             .updated_s = saved.updated_s,
+                             .level = saved.block.level,
+                             .terrain_class = saved.block.terrain_class,
+                             .reach = saved.reach,
+                             .readings = static_cast<std::uint32_t>(saved.heard.size())};
+    put(&header, sizeof header);
+    put(saved.heard.data(), saved.heard.size() * sizeof(ReadingCount));
+  });
+  return bytes;
+}
+
+// False for bytes that no writer wrote.
+bool restoreEvidence(std::string_view bytes, TraversabilityMap& map) {
+  while (!bytes.empty()) {
+    BlockHeader header;
+    if (bytes.size() < sizeof header) return false;
+    std::memcpy(&header, bytes.data(), sizeof header);
+    bytes.remove_prefix(sizeof header);
+    if (bytes.size() / sizeof(ReadingCount) < header.readings) return false;
+    SavedBlock saved{.block = {header.column, header.row, header.level, header.terrain_class},
+                     .updated_s = header.updated_s,
+                     .reach = header.reach,
+                     .heard = std::vector<ReadingCount>(header.readings)};
+    std::memcpy(saved.heard.data(), bytes.data(), header.readings * sizeof(ReadingCount));
+    bytes.remove_prefix(header.readings * sizeof(ReadingCount));
+    const bool kinds = std::all_of(saved.heard.begin(), saved.heard.end(), [](const ReadingCount& r) {
+      return r.kind < reading_kind::kCount && r.count > 0;
+    });
+    if (!kinds || saved.heard.empty() || !map.restore(saved)) return false;
+  }
+  return true;
+}
+
+// A layer a section: its name, a line end, what unseen cells cost, and the raster.
+std::string bytesOf(const CostLayer& layer) {
+  const auto& values = layer.added_J_per_m.values();
+  std::string bytes = layer.name + '\n';
+  bytes.append(reinterpret_cast<const char*>(&layer.unseen_J_per_m), sizeof(float));
+  bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float));
+  return bytes;
+}
+
+CostLayer costLayerOf(const std::string& bytes, const maps::Grid& grid) {
+  const std::size_t name = bytes.find('\n');
+  if (name == std::string::npos || bytes.size() - name - 1 != (grid.size() + 1) * sizeof(float))
+    throw std::invalid_argument("a cost layer of another size");
+  CostLayer layer{.name = bytes.substr(0, name), .added_J_per_m = maps::Raster<float>(grid)};
+  std::memcpy(&layer.unseen_J_per_m, bytes.data() + name + 1, sizeof(float));
+  std::memcpy(layer.added_J_per_m.values().data(), bytes.data() + name + 1 + sizeof(float),
+              grid.size() * sizeof(float));
+  return layer;
+}
+
+MapText textOf(const TraversabilityMap& map) {
+  MapText text{.grid = map.grid(),
+               .coordinate_system = {},
+               .source = map.elevation().source,
+               .footprint_radius_m = map.footprintRadius_m(),
+               .ground = map.model().parts(),
+               .refused = map.refused()};
+  if (map.elevation().georeference) text.coordinate_system = map.elevation().georeference->system();
+  return text;
+}
+
+void requireSane(const maps::Grid& grid, const std::string& name) {
+  if (grid.width < 1 || grid.height < 1 || grid.width > 65536 || grid.height > 65536 ||
+      !(grid.resolution_m > 0.0))
+    throw InputError({name, "damaged: invalid grid", "write the map again with talus costmap"});
+}
+
+}  // namespace
+
+void writeMap(const TraversabilityMap& map, std::iostream& stream) {
+  map.writeTree(stream);
+  const std::vector<Floor>& floors = map.floors().all();
+  TrailerWriter trailer(stream);
+  const std::string text = written(textOf(map));
+  trailer.section("TEXT", text.data(), text.size());
+  const auto& elevation = map.elevation().elevation_m.values();
+  trailer.section("ELEV", elevation.data(), elevation.size() * sizeof(float));
+  trailer.section("CLAS", map.classes().values().data(), map.classes().values().size());
+  const maps::Raster<Hazard> hazards = declared(map);
+  trailer.section("HAZD", hazards.values().data(), hazards.values().size());
+  trailer.section("FLOR", floors.data(), floors.size() * sizeof(Floor));
+  const std::string evidence = evidenceOf(map);
+  trailer.section("EVID", evidence.data(), evidence.size());
+  std::string drives;
+  for (const std::string& drive : map.drives()) drives += drive + '\n';
+  trailer.section("DRIV", drives.data(), drives.size());
+  for (const CostLayer& layer : map.costLayers()) {
+    const std::string bytes = bytesOf(layer);
+    trailer.section("COST", bytes.data(), bytes.size());
+  }
+  // Read back: the octree's writer goes back to its header, so that bytes do not come in their order.
+  stream.flush();
+  const End end{.checksum = checksumOf(stream, sizeOf(stream))};
+  stream.seekp(0, std::ios::end);
+  stream.write(reinterpret_cast<const char*>(&end), sizeof end);
+}
+
+void writeMap(const TraversabilityMap& map, const std::string& path) {
+  OutputFile file(path);
+  std::fstream stream(file.temporary(), std::ios::binary | std::ios::in | std::ios::out | std::ios::trunc);
+  writeMap(map, stream);
+  stream.close();
+  if (!stream) file.fail(std::strerror(errno));
+  file.commit();
+}
+
+TraversabilityMap readMap(std::istream& stream, const MapReading& reading, const ProgressMonitor& watch) {
+  requireWhole(stream, reading.name);
+  readLeaves(stream, reading.name,
+             [](const TreeLeaf&) {});  // what follows says the same, and how it came to it
+  TrailerReader trailer(stream, reading.name);
+  MapText text = parsed(trailer.bytes("TEXT"), reading.name);
+  requireSane(text.grid, reading.name);
+  requireMemory(40.0 * static_cast<double>(text.grid.size()), reading.name);
+  MapLayers layers;
+  layers.elevation.source = text.source;
+  layers.elevation.elevation_m = trailer.raster<float>("ELEV", text.grid);
+  layers.classes = trailer.raster<std::uint8_t>("CLAS", text.grid);
+  layers.declared = trailer.raster<Hazard>("HAZD", text.grid);
+  std::vector<Floor> floors = trailer.floors("FLOR");
+  const std::string evidence = trailer.bytes("EVID");
+  std::istringstream drives(trailer.bytes("DRIV"));
+  std::vector<std::string> costs;
+  while (trailer.more()) costs.push_back(trailer.bytes("COST"));
+  trailer.finish();
+  if (layers.elevation.elevation_m.empty())
+    throw InputError(
+        {reading.name, "damaged: it holds no elevation", "write the map again with talus costmap"});
+  try {
+    for (const std::string& bytes : costs) layers.costs.push_back(costLayerOf(bytes, text.grid));
+    layers.floors = Floors(std::move(floors), text.grid.size());
+    if (text.coordinate_system) layers.elevation.georeference.emplace(*text.coordinate_system);
+    auto model = std::make_shared<GroundModel>(std::move(text.ground));
+    TraversabilityMap map(std::move(layers), std::move(model),
+                          {.footprint_radius_m = text.footprint_radius_m, .threads = reading.threads}, watch);
+    if (!restoreEvidence(evidence, map)) throw std::invalid_argument("its evidence is impossible");
+    for (const RefusedPlace& refused : text.refused) map.refuse(refused.place, refused.radius_m);
+    if (!evidence.empty())
+      map.publishAll();
+    else if (!text.refused.empty())
+      map.publish();
+    for (std::string drive; std::getline(drives, drive);) map.noteDrive(drive);
+    return map;
+  } catch (const std::invalid_argument& error) {
+    throw InputError(
+        {reading.name, std::string("damaged: ") + error.what(), "write the map again with talus costmap"});
+  }
+}
+
+TraversabilityMap readMap(const std::string& path, int threads, const ProgressMonitor& watch) {
+  std::error_code error;
+  if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error))
+    throw InputError({path, "is a folder, a device, a FIFO or a socket", "give a file"});
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) throw InputError({path, "cannot be opened", "check the path"});
+  return readMap(stream, {.name = path, .threads = threads}, watch);
+}
+
+}  // namespace talus::costmap

@@ -1,0 +1,114 @@
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <talus/costmap/surface/cell_boxes.hpp>
+#include <talus/costmap/surface/hazards.hpp>
+
+namespace talus::costmap {
+namespace {
+
+bool touches(Hazard a, Hazard set) noexcept {
+  return (static_cast<std::uint8_t>(a) & static_cast<std::uint8_t>(set)) != 0;
+}
+
+// Offsets of the cells some place of which lies closer than the radius to a cell at the origin.
+std::vector<maps::Cell> discOffsets(double radius_cells) {
+  std::vector<maps::Cell> disc;
+  const int reach = static_cast<int>(std::ceil(radius_cells + 0.5));
+  for (int row = -reach; row <= reach; ++row)
+    for (int column = -reach; column <= reach; ++column) {
+      const double dx = std::max(std::abs(column) - 1.0, 0.0);
+      const double dy = std::max(std::abs(row) - 1.0, 0.0);
+      if ((row != 0 || column != 0) && std::hypot(dx, dy) < radius_cells) disc.push_back({column, row});
+    }
+  return disc;
+}
+
+bool onEdge(const maps::Raster<Hazard>& hazards, maps::Cell cell, Hazard spreading) {
+  for (const maps::Cell step : {maps::Cell{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
+    const maps::Cell next{cell.column + step.column, cell.row + step.row};
+    if (hazards.grid().contains(next) && !touches(hazards[next], spreading)) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+HazardLimits HazardLimits::of(const terramech::Rover& rover) {
+  const double width_m = rover.track_m + rover.wheel.width_m;
+  const double length_m = rover.wheelbase_m + 2.0 * rover.wheel.radius_m;
+  return {.max_gradient = std::hypot(std::tan(rover.max_pitch_rad), std::tan(rover.max_roll_rad)),
+          .max_step_m = rover.clearance_m,
+          .max_roughness_m = rover.clearance_m / 3.0,
+          .rock_diameter_m = 2.0 * rover.clearance_m,
+          .rock_area_m2 = width_m * length_m,
+          .wheelbase_m = rover.wheelbase_m,
+          .wheel_diameter_m = 2.0 * rover.wheel.radius_m,
+          .inflation_m = 0.5 * width_m};
+}
+
+double reliefShare(const HazardLimits& limits, double span_m) {
+  return std::min(1.0, limits.wheelbase_m / span_m);
+}
+
+ShapeJudge::ShapeJudge(const HazardLimits& limits, const ShapeSpans& spans)
+    : gradient_squared_(static_cast<float>(limits.max_gradient * limits.max_gradient)),
+      relief_m_(static_cast<float>(limits.max_step_m / reliefShare(limits, spans.footprint_m))),
+      step_m_(static_cast<float>(limits.max_step_m / reliefShare(limits, spans.cell_m))),
+      roughness_m_(static_cast<float>(limits.max_roughness_m / reliefShare(limits, spans.footprint_m))) {}
+
+Hazard ShapeJudge::operator()(const GroundShape& shape) const noexcept {
+  const float squared = shape.dz_dx * shape.dz_dx + shape.dz_dy * shape.dz_dy;
+  if (std::isnan(squared)) return Hazard::Unknown;
+  Hazard found = Hazard::None;
+  if (squared > gradient_squared_) found |= Hazard::Slope;
+  if (shape.step_m > step_m_ || shape.relief_m > relief_m_) found |= Hazard::Step;
+  if (shape.roughness_m > roughness_m_) found |= Hazard::Roughness;
+  return found;
+}
+
+namespace {
+
+// Outside the map nothing is seen either.
+void keepOffEdge(maps::Raster<Hazard>& hazards, const maps::CellBox& box, int cells) {
+  const maps::Grid& grid = hazards.grid();
+  for (int row = box.first.row; row <= box.last.row; ++row)
+    for (int column = box.first.column; column <= box.last.column; ++column) {
+      const int off = std::min({column, row, grid.width - 1 - column, grid.height - 1 - row});
+      if (off < cells) hazards[{column, row}] |= Hazard::Near;
+    }
+}
+
+}  // namespace
+
+int inflationReach(const HazardLimits& limits, double resolution_m) {
+  int reach = 0;
+  for (const maps::Cell offset : discOffsets(limits.inflation_m / resolution_m))
+    reach = std::max(reach, offset.column);
+  return reach;
+}
+
+void inflate(maps::Raster<Hazard>& hazards, const HazardLimits& limits, Hazard spreading,
+             const maps::CellBox& box) {
+  const maps::Grid& grid = hazards.grid();
+  const auto disc = discOffsets(limits.inflation_m / grid.resolution_m);
+  if (touches(Hazard::Unknown, spreading))
+    keepOffEdge(hazards, box, static_cast<int>(std::ceil(limits.inflation_m / grid.resolution_m)));
+  const maps::CellBox from = grown(box, inflationReach(limits, grid.resolution_m), grid);
+  for (int row = from.first.row; row <= from.last.row; ++row)
+    for (int column = from.first.column; column <= from.last.column; ++column) {
+      const maps::Cell cell{column, row};
+      if (!touches(hazards[cell], spreading) || !onEdge(hazards, cell, spreading)) continue;
+      for (const maps::Cell offset : disc) {
+        const maps::Cell near{column + offset.column, row + offset.row};
+        if (contains(box, near)) hazards[near] |= Hazard::Near;
+      }
+    }
+}
+
+void inflate(maps::Raster<Hazard>& hazards, const HazardLimits& limits, Hazard spreading) {
+  inflate(hazards, limits, spreading, allOf(hazards.grid()));
+}
+
+}  // namespace talus::costmap

@@ -1,0 +1,223 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <type_traits>
+#include <utility>
+
+#include <talus/costmap/surface/octree_keys.hpp>
+#include <talus/costmap/surface/surface_tree.hpp>
+
+namespace talus::costmap {
+namespace {
+
+struct Cube {
+  unsigned x = 0, y = 0, z = 0;
+  unsigned level = kOctreeDepth;  // side is 2^level cells
+};
+
+Cube childOf(const Cube& cube, unsigned child) noexcept {
+  const unsigned half = 1U << (cube.level - 1);
+  return {cube.x + (child & 1U ? half : 0), cube.y + (child & 2U ? half : 0),
+          cube.z + (child & 4U ? half : 0), cube.level - 1};
+}
+
+// The place of a voxel in depth-first order.
+std::uint64_t orderOf(unsigned x, unsigned y, unsigned z) noexcept {
+  std::uint64_t order = 0;
+  for (unsigned bit = 0; bit < kOctreeDepth; ++bit)
+    order |= std::uint64_t{(x >> bit & 1U) | (y >> bit & 1U) << 1 | (z >> bit & 1U) << 2} << (3 * bit);
+  return order;
+}
+
+// Which cubes hold ground.
+class Cubes {
+ public:
+  explicit Cubes(const Surface& surface) : pyramid_(surface.elevation_m, surface.keys) {
+    const octomap::OcTreeKey first = surface.keys.key({0, 0}, surface.keys.baseElevation_m());
+    first_x_ = first[0];
+    first_y_ = first[1];
+    for (const FloorLeaf& leaf : surface.floors)
+      floors_.emplace(orderOf(leaf.key[0], leaf.key[1], leaf.key[2]), &leaf.belief);
+  }
+
+  bool anything() const { return occupied(Cube{}); }
+  bool occupied(const Cube& cube) const { return holdsFloor(cube) || holdsSurface(cube); }
+
+  std::uint8_t childrenOf(const Cube& cube) const {
+    unsigned bits = 0;
+    for (unsigned i = 0; i < 8; ++i) bits |= (occupied(childOf(cube, i)) ? 1U : 0U) << i;
+    return static_cast<std::uint8_t>(bits);
+  }
+
+  maps::Cell cellOf(const Cube& voxel) const {
+    return {static_cast<int>(voxel.x - first_x_), static_cast<int>(voxel.y - first_y_)};
+  }
+  // Of a voxel; null where it is of the surface.
+  const CellBelief* floor(const Cube& voxel) const {
+    const auto found = floors_.find(orderOf(voxel.x, voxel.y, voxel.z));
+    return found == floors_.end() ? nullptr : found->second;
+  }
+
+ private:
+  bool holdsFloor(const Cube& cube) const {
+    if (floors_.empty()) return false;
+    const std::uint64_t from = orderOf(cube.x, cube.y, cube.z);
+    const auto found = floors_.lower_bound(from);
+    return found != floors_.end() && found->first - from < std::uint64_t{1} << (3 * cube.level);
+  }
+
+  // The pyramid may only say maybe where the surface jumps across the cube.
+  bool holdsSurface(const Cube& cube) const {
+    const auto range = pyramid_.range(cube.level, cube.x, cube.y);
+    const unsigned side = 1U << cube.level;
+    if (range.empty() || !range.meets(cube.z, side)) return false;
+    if (range.low >= cube.z || range.high < cube.z + side) return true;
+    for (unsigned i = 0; i < 8; ++i)
+      if (holdsSurface(childOf(cube, i))) return true;
+    return false;
+  }
+
+  SurfacePyramid pyramid_;
+  unsigned first_x_ = 0, first_y_ = 0;
+  std::map<std::uint64_t, const CellBelief*> floors_;
+};
+
+// Fills a tree cube by cube, depth first; prunes each cube as soon as it is done.
+template <typename Tree, typename Node, typename SetLeaf>
+class Filler {
+ public:
+  Filler(Tree& tree, const Cubes& cubes, SetLeaf set_leaf)
+      : tree_(tree), cubes_(cubes), set_leaf_(set_leaf) {}
+
+  void fill(Node* node, const Cube& cube) {
+    if (cube.level == 0) return set_leaf_(*node, cube);
+    const unsigned children = cubes_.childrenOf(cube);
+    for (unsigned i = 0; i < 8; ++i)
+      if (children >> i & 1U) fill(childNode(node, i), childOf(cube, i));
+    // ColorOcTree prunes by occupancy alone and would mix colours.
+    if constexpr (std::is_same_v<Tree, TraversabilityTree>) tree_.pruneNode(node);
+  }
+
+ private:
+  Node* childNode(Node* node, unsigned i) {
+    return tree_.nodeChildExists(node, i) ? tree_.getNodeChild(node, i) : tree_.createNodeChild(node, i);
+  }
+
+  Tree& tree_;
+  const Cubes& cubes_;
+  SetLeaf set_leaf_;
+};
+
+// Writes nodes in the order of the file. A cube is written once it is known that its parts differ; until then
+// it holds how many equal leaves it has seen.
+class Streamer {
+ public:
+  using Leaf = std::function<CellBelief(const Cube&)>;
+  Streamer(const Cubes& cubes, Leaf leaf, TreeWriter& writer)
+      : cubes_(cubes), leaf_(std::move(leaf)), writer_(writer) {}
+
+  void write() {
+    if (const auto all_alike = walk(Cube{}, nullptr)) writer_.node(*all_alike, 0);
+  }
+
+ private:
+  struct Open {
+    Open* parent;
+    std::uint8_t children;
+    bool written = false;
+    CellBelief held{};
+    unsigned count = 0;
+  };
+
+  // The one belief of a cube whose parts are alike; nothing where it wrote itself.
+  std::optional<CellBelief> walk(const Cube& cube, Open* parent) {
+    if (cube.level == 0) return leaf_(cube);
+    Open open{.parent = parent, .children = cubes_.childrenOf(cube)};
+    for (unsigned i = 0; i < 8; ++i) {
+      if (!(open.children >> i & 1U)) continue;
+      const auto leaf = walk(childOf(cube, i), &open);
+      if (!leaf) continue;
+      if (ofFloor(*leaf) || (open.count > 0 && !(open.held == *leaf))) differ(open);
+      if (open.written)
+        writer_.node(*leaf, 0);
+      else
+        open.held = *leaf, ++open.count;
+    }
+    if (open.written) return std::nullopt;
+    return open.held;
+  }
+
+  void differ(Open& open) {
+    if (open.written) return;
+    if (open.parent) differ(*open.parent);
+    writer_.node(CellBelief{}, open.children);
+    for (unsigned i = 0; i < open.count; ++i) writer_.node(open.held, 0);
+    open.written = true;
+  }
+
+  const Cubes& cubes_;
+  Leaf leaf_;
+  TreeWriter& writer_;
+};
+
+octomap::ColorOcTreeNode::Color colorOf(const CellBelief& belief) {
+  if (has(belief.hazards, Hazard::Unknown)) return {128, 128, 128};
+  if (belief.hazards != Hazard::None) return {200, 40, 40};
+  constexpr std::array<std::array<std::uint8_t, 3>, 4> kColors{
+      {{60, 170, 70}, {240, 170, 30}, {200, 40, 40}, {128, 128, 128}}};
+  const auto& c = kColors[belief.category];
+  return {c[0], c[1], c[2]};
+}
+
+}  // namespace
+
+TraversabilityTree surfaceTree(const Surface& surface, const std::function<CellBelief(maps::Cell)>& belief) {
+  TraversabilityTree tree(surface.keys.grid().resolution_m);
+  const Cubes cubes(surface);
+  const auto set = [&](TraversabilityNode& node, const Cube& voxel) {
+    const CellBelief* floor = cubes.floor(voxel);
+    node.belief() = floor ? *floor : belief(cubes.cellOf(voxel));
+  };
+  Filler<TraversabilityTree, TraversabilityNode, decltype(set)> filler(tree, cubes, set);
+  if (cubes.anything()) filler.fill(tree.makeRoot(), Cube{});
+  return tree;
+}
+
+void writeSurfaceTree(const Surface& surface, const std::function<CellBelief(maps::Cell)>& belief,
+                      std::ostream& stream) {
+  TreeWriter writer(stream, surface.keys.grid().resolution_m);
+  const Cubes cubes(surface);
+  const auto leaf = [&](const Cube& voxel) {
+    const CellBelief* floor = cubes.floor(voxel);
+    return floor ? *floor : belief(cubes.cellOf(voxel));
+  };
+  if (cubes.anything()) Streamer(cubes, leaf, writer).write();
+  writer.finish();
+}
+
+std::unique_ptr<octomap::ColorOcTree> colorTree(const Surface& surface,
+                                                const std::function<CellBelief(maps::Cell)>& belief) {
+  auto owned = std::make_unique<octomap::ColorOcTree>(surface.keys.grid().resolution_m);
+  octomap::ColorOcTree& tree = *owned;
+  const Cubes cubes({surface.elevation_m, surface.keys});
+  const auto set = [&](octomap::ColorOcTreeNode& node, const Cube& voxel) {
+    node.setLogOdds(tree.getClampingThresMaxLog());
+    node.setColor(colorOf(belief(cubes.cellOf(voxel))));
+  };
+  if (!cubes.anything()) return owned;
+  Filler<octomap::ColorOcTree, octomap::ColorOcTreeNode, decltype(set)> filler(tree, cubes, set);
+  // OctoMap makes a root only for a voxel: any voxel of the surface will do.
+  const auto& heights = surface.elevation_m.values();
+  const auto first =
+      std::find_if(heights.begin(), heights.end(), [](float height) { return !std::isnan(height); });
+  const auto index = static_cast<int>(first - heights.begin());
+  const maps::Cell cell{index % surface.keys.grid().width, index / surface.keys.grid().width};
+  tree.setNodeValue(surface.keys.key(cell, static_cast<double>(*first)), tree.getClampingThresMaxLog());
+  filler.fill(tree.getRoot(), Cube{});
+  tree.updateInnerOccupancy();
+  return owned;
+}
+
+}  // namespace talus::costmap

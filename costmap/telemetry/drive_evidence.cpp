@@ -1,0 +1,301 @@
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <iterator>
+#include <limits>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include <talus/costmap/telemetry/drive_evidence.hpp>
+#include <talus/costmap/telemetry/drive_id.hpp>
+#include <talus/costmap/telemetry/telemetry_processor.hpp>
+#include <talus/terramech/contact/load_transfer.hpp>
+
+namespace talus::costmap {
+namespace {
+
+// Calls take(row, result) for every row, moment by moment.
+template <typename Take>
+void processRows(const TelemetryRows& rows, const TraversabilityMap& map, TelemetryProcessor& processor,
+                 const DriveVerdict& verdict, Take&& take) {
+  for (std::vector<std::size_t>& of : rows.byMoment()) {
+    const Moment moment = momentOf(rows, std::move(of), map.model().rover());
+    auto results = processor.process(rows, moment, verdict);
+    for (std::size_t w = 0; w < results.size(); ++w) take(moment.rows[w], std::move(results[w]));
+  }
+}
+
+// Rows behind those that are known, column by column; what either lacks is empty.
+void append(terramech::Telemetry& all, const terramech::Telemetry& part) {
+  const std::size_t before = all.size(), after = before + part.size();
+  const auto join = [&](auto& to, const auto& from, const auto& none) {
+    for (const auto& column : from) {
+      auto known = std::ranges::find(to, column.name, [](const auto& c) { return c.name; });
+      if (known == to.end()) {
+        to.push_back({column.name, {}});
+        known = std::prev(to.end());
+      }
+      known->values.resize(before, none);
+      known->values.insert(known->values.end(), column.values.begin(), column.values.end());
+    }
+    for (auto& column : to) column.values.resize(after, none);
+  };
+  join(all.numbers, part.numbers, std::numeric_limits<double>::quiet_NaN());
+  join(all.words, part.words, std::string());
+  all.source = part.source;
+  all.lines.insert(all.lines.end(), part.lines.begin(), part.lines.end());
+}
+
+DrivenBy wheelOf(const terramech::Rover& rover) {
+  return {rover.wheel.radius_m, rover.wheel.width_m, terramech::wheelLoad_N(rover)};
+}
+
+// Of a journal's row: one that does not say so is another's.
+bool isOf(const terramech::Rover& rover, const DrivenBy& wheel) {
+  const DrivenBy own = wheelOf(rover);
+  const bool known = std::isfinite(wheel.radius_m + wheel.width_m + wheel.weight_N);
+  return known && sameOrUnknown(wheel.radius_m, own.radius_m) && sameOrUnknown(wheel.width_m, own.width_m) &&
+         sameOrUnknown(wheel.weight_N, own.weight_N);
+}
+
+std::string unobservedFinding(std::size_t places) {
+  return std::to_string(places) +
+         " places refused: wheels indicate danger where the map has no terrain class";
+}
+
+std::string lackingFinding(std::size_t drives) {
+  return "the journal lacks " + std::to_string(drives) + (drives == 1 ? " drive" : " drives") +
+         " that the map holds: it cannot rebuild this map";
+}
+
+std::string othersFinding(std::size_t rows) {
+  return std::to_string(rows) +
+         " rows: of another wheel or load than the map's rover has; they only lower estimates";
+}
+
+}  // namespace
+
+std::string driveId(const terramech::Telemetry& telemetry) {
+  DriveId id;
+  id.add(telemetry);
+  return id.text();
+}
+
+struct DriveIntake::State {
+  TraversabilityMap& map;
+  EvidenceJournal* journal;
+  IntakeOptions options;
+  std::unique_ptr<TelemetryProcessor> processor;
+  DriveReport report{};
+  DriveId sum{};                   // of the parts so far
+  std::string id{};                // by that
+  std::vector<JournalRow> rows{};  // of a part
+  // Of all parts, where they may be settled: what was read, what the map counted of it, which of it bounds a place, and what
+  // rejected rows said.
+  using Place = std::tuple<double, double, double>;
+  terramech::Telemetry all{};
+  std::vector<SavedBlock> counted{};
+  std::set<Place> bounded{};
+  std::vector<JournalRow> of_rejected{};
+
+  static Place placeOf(const WheelObservation& observation);
+  void keep(const WheelObservation& observation);
+  void settle();
+  using Take = std::function<bool(const WheelObservation&)>;
+  void learn(const terramech::Telemetry& telemetry, const TelemetryRows& readings, std::size_t i,
+             TelemetryProcessor::Result&& result, const Take& take);
+  void put(const terramech::Telemetry& telemetry, const DriveVerdict& verdict,
+           const DriveBeginning& known = {});
+  void hearRejected(const terramech::Telemetry& telemetry, std::size_t from);
+};
+
+DriveIntake::State::Place DriveIntake::State::placeOf(const WheelObservation& observation) {
+  return {observation.time_s, observation.place.x_m, observation.place.y_m};
+}
+
+void DriveIntake::State::keep(const WheelObservation& observation) {
+  if (auto heard = map.evidence().heardOf(observation)) counted.push_back(std::move(*heard));
+  if (observation.here.any()) bounded.insert(placeOf(observation));
+}
+
+void DriveIntake::State::learn(const terramech::Telemetry& telemetry, const TelemetryRows& readings,
+                               std::size_t i, TelemetryProcessor::Result&& result, const Take& take) {
+  const std::string wrong = result.observation ? fault(*result.observation) : "";
+  if (!wrong.empty()) {
+    result.reason = wrong;
+    result.observation = boundAlone(*result.observation);
+  }
+  bool accepted = result.observation.has_value() && fault(*result.observation).empty();
+  if (accepted && !take(*result.observation)) {
+    accepted = false;
+    if (result.reason.empty()) result.reason = "no ground to learn about there";
+  }
+  if (accepted && options.settles) keep(*result.observation);
+  JournalRow row{.source = telemetry.source,
+                 .line = static_cast<std::int64_t>(telemetry.lines[i]),
+                 .accepted = accepted,
+                 .reason = result.reason,
+                 .reading = readings.reading(i),
+                 .observation = result.observation.value_or(WheelObservation{}),
+                 .wheel = wheelOf(map.model().rover())};
+  ++(accepted ? report.used : report.rejected);
+  if (accepted && row.observation.pull_may_raise) ++report.raising;
+  if (!accepted && report.first_reason.empty()) report.first_reason = row.reason;
+  if (journal) rows.push_back(std::move(row));
+}
+
+// Rows that the map holds already tell the sensors' watch alone.
+void DriveIntake::State::put(const terramech::Telemetry& telemetry, const DriveVerdict& verdict,
+                             const DriveBeginning& known) {
+  const TelemetryRows readings(telemetry, map, options.pose_std_m);
+  const std::size_t refused = map.refused().size();
+  const std::string before = id;
+  sum.add(telemetry);
+  id = sum.text();
+  rows.clear();
+  processRows(readings, map, *processor, verdict, [&](std::size_t i, TelemetryProcessor::Result&& result) {
+    if (i < known.rows) return;
+    learn(telemetry, readings, i, std::move(result),
+          [&](const WheelObservation& observation) { return map.learn(observation); });
+  });
+  report.repeated = known.rows;
+  if (options.settles) append(all, telemetry);
+  const std::size_t read = rows.size();
+  hearRejected(telemetry, known.rejected);
+  if (options.settles)
+    of_rejected.insert(of_rejected.end(), rows.begin() + static_cast<std::ptrdiff_t>(read), rows.end());
+  report.unobserved += map.refused().size() - refused;
+  if (journal) journal->append(id, rows, before);
+  map.noteDrive(id, before);
+}
+
+// What a drive's first rows taught is forgotten only as far as all rows say it otherwise: bounds stay as they were heard.
+void DriveIntake::State::settle() {
+  if (!options.settles)
+    throw std::logic_error("DriveIntake: IntakeOptions::settles = false, must be true to settle");
+  if (all.size() == 0) return;
+  const TelemetryRows readings(all, map, options.pose_std_m);
+  TelemetryProcessor first_pass(map);
+  processRows(readings, map, first_pass, {}, [](std::size_t, TelemetryProcessor::Result&&) {});
+  for (const SavedBlock& block : std::exchange(counted, {})) map.forget(block);
+  const auto takeAgain = [&](const WheelObservation& observation) {
+    WheelObservation estimate = observation;
+    estimate.here = {};
+    return map.learn(estimate) || bounded.contains(placeOf(observation));
+  };
+  processor = std::make_unique<TelemetryProcessor>(map);
+  report.used = report.raising = report.rejected = 0;
+  report.first_reason.clear();
+  rows.clear();
+  processRows(readings, map, *processor, first_pass.verdict(),
+              [&](std::size_t i, TelemetryProcessor::Result&& result) {
+                learn(all, readings, i, std::move(result), takeAgain);
+              });
+  rows.insert(rows.end(), of_rejected.begin(), of_rejected.end());
+  if (journal) journal->replace(id, rows);
+}
+
+// Rows that the file's reader left out: what each of their numbers says of danger by itself.
+void DriveIntake::State::hearRejected(const terramech::Telemetry& telemetry, std::size_t from) {
+  terramech::Telemetry left{.source = telemetry.source, .numbers = telemetry.rejected_numbers};
+  if (telemetry.rejected.empty() || !left.find("x_m") || !left.find("y_m") || !left.find("load_N") ||
+      !left.find("slip"))
+    return;
+  const TelemetryRows readings(left, map, options.pose_std_m);
+  for (std::size_t i = from; i < readings.size(); ++i) {
+    const auto heard = processor->rejected(readings, i);
+    if (!heard || !map.learn(*heard)) continue;
+    ++report.heard;
+    rows.push_back({.source = telemetry.source,
+                    .line = static_cast<std::int64_t>(telemetry.rejected[i].line),
+                    .accepted = true,
+                    .reason = telemetry.rejected[i].reason,
+                    .reading = readings.reading(i),
+                    .observation = *heard,
+                    .wheel = wheelOf(map.model().rover())});
+  }
+}
+
+DriveIntake::DriveIntake(TraversabilityMap& map, EvidenceJournal* journal, const IntakeOptions& options)
+    : state_(
+          std::make_unique<State>(State{map, journal, options, std::make_unique<TelemetryProcessor>(map)})) {}
+
+DriveIntake::~DriveIntake() = default;
+
+void DriveIntake::add(const terramech::Telemetry& telemetry) {
+  state_->put(telemetry, state_->processor->verdict());
+}
+
+void DriveIntake::settle() {
+  state_->settle();
+}
+
+DriveReport DriveIntake::report() const {
+  DriveReport report = state_->report;
+  report.findings = state_->processor->watch().findings();
+  if (const std::size_t rows = state_->processor->transferred(); rows > 0)
+    report.findings.push_back(std::to_string(rows) +
+                              " rows: load_N is an equal share of the weight on a slope; the load transfer "
+                              "was computed from the wheel positions");
+  report.others = state_->processor->others();
+  if (report.others > 0) report.findings.push_back(othersFinding(report.others));
+  if (report.heard > 0)
+    report.findings.push_back(std::to_string(report.heard) +
+                              " rejected rows: they indicate danger, which counts where they were read");
+  if (report.unobserved > 0) report.findings.push_back(unobservedFinding(report.unobserved));
+  return report;
+}
+
+DriveReport addDrive(TraversabilityMap& map, const terramech::Telemetry& telemetry, EvidenceJournal* journal,
+                     const IntakeOptions& options) {
+  const DriveBeginning known = knownBeginning(telemetry, map.drives());
+  const bool whole = known.rows == telemetry.size() && known.rejected == telemetry.rejected.size();
+  if (whole || map.drives().contains(formerDriveId(telemetry))) {
+    DriveReport report;
+    report.repeated = telemetry.size();
+    return report;
+  }
+  // The first pass: do torque and sinkage have a bias that all ground shares, and which sensors prove sound?
+  TelemetryProcessor first_pass(map);
+  processRows(TelemetryRows(telemetry, map, options.pose_std_m), map, first_pass, {},
+              [](std::size_t, TelemetryProcessor::Result&&) {});
+  DriveIntake intake(map, journal, options);
+  intake.state_->put(telemetry, first_pass.verdict(), known);
+  map.publishAll();
+  return intake.report();
+}
+
+DriveReport replay(TraversabilityMap& map, const EvidenceJournal& journal) {
+  DriveReport report;
+  const std::size_t refused = map.refused().size();
+  std::size_t lacking = map.drives().size();
+  for (const std::string& drive : journal.drives()) {
+    if (map.drives().contains(drive)) {
+      journal.check(drive);
+      --lacking;
+      continue;
+    }
+    for (JournalRow& row : journal.rows(drive)) {
+      if (!isOf(map.model().rover(), row.wheel)) {
+        row.observation.pull_may_raise = row.observation.sinkage_may_raise = false;
+        ++report.others;
+      }
+      const bool used = row.accepted && map.learn(row.observation);
+      ++(used ? report.used : report.rejected);
+      if (used && row.observation.pull_may_raise) ++report.raising;
+    }
+    map.noteDrive(drive);
+  }
+  report.unobserved = map.refused().size() - refused;
+  if (lacking > 0) report.findings.push_back(lackingFinding(lacking));
+  if (report.unobserved > 0) report.findings.push_back(unobservedFinding(report.unobserved));
+  if (report.others > 0) report.findings.push_back(othersFinding(report.others));
+  map.publishAll();
+  return report;
+}
+
+}  // namespace talus::costmap

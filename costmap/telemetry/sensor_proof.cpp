@@ -1,0 +1,142 @@
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <talus/costmap/telemetry/sensor_proof.hpp>
+
+namespace talus::costmap {
+namespace {
+
+constexpr double kApart_m = 0.5;             // rows nearer to each other say the same
+constexpr double kGradientVariation = 0.03;  // of the slopes that prove a sensor, one standard deviation
+constexpr double kLevel = 0.08;              // gradient of ground that counts as level
+constexpr std::size_t kLevelRows = 6;        // of it, before the bias of slip is known
+constexpr double kFelt = 0.6;                // share of the thrust that is most of it
+constexpr double kSlipPerGradient = 0.1;     // of the firmest soil
+constexpr double kPerGradient = 0.5;         // of the slope measured, and of the pull by torque
+constexpr double kSlopeBias = 0.03;          // of the rover's slope against the map's
+constexpr double kTorqueBias = 0.08;         // of one wheel's share of the pull
+constexpr double kJump_m = 1.5;              // that three deviations of a good pose explain
+constexpr double kFirstStep_m = 3.0;         // that tells how fast the rover is
+constexpr double kFaster = 3.0;              // than the fastest row before
+
+bool isOff(const maps::Point& off) noexcept {
+  return std::hypot(off.x_m, off.y_m) > kJump_m;
+}
+
+bool follows(const ResponseSeries& series, double least) {
+  return series.whole().follows({.least = least, .variation = kGradientVariation});
+}
+
+// The last rows are few, and slip rises little where a rover goes down: half of what is taken for a proof.
+bool contradicts(const ResponseSeries& series, double least) {
+  const Response last = series.recent(kGradientVariation);
+  return last.size() >= Response::kEnough &&
+         last.causeVariance() >= kGradientVariation * kGradientVariation &&
+         !last.follows({.least = 0.5 * least, .variation = kGradientVariation, .certain = 2.0});
+}
+
+}  // namespace
+
+void SensorProof::follow(Run& run, const Wheel& wheel, const WheelReading& reading) {
+  if (!wheel.last) return;
+  const double moved_m = distance_m(wheel.last->place, reading.place);
+  const double passed_s = reading.time_s - wheel.last->time_s;
+  const bool timed = passed_s > 0.0;
+  const double known_m = timed ? kFaster * run.fastest_mps * passed_s : 0.0;
+  const bool first = run.fastest_mps <= 0.0 && timed;
+  if (moved_m > known_m + std::max(first ? kFirstStep_m : kJump_m, 3.0 * reading.pose_std_m)) {
+    run.off.x_m += reading.place.x_m - wheel.last->place.x_m;
+    run.off.y_m += reading.place.y_m - wheel.last->place.y_m;
+  } else if (timed) {
+    run.fastest_mps = std::max(run.fastest_mps, moved_m / passed_s);
+  }
+}
+
+void SensorProof::takeLevel(Wheel& wheel, const Row& row) {
+  if (!(std::abs(row.measured_gradient) <= kLevel) || !std::isfinite(row.class_slip)) return;
+  const double excess = row.reading.slip - row.class_slip;
+  ++wheel.level_rows;
+  wheel.level_sum += excess;
+  wheel.level_last.push_back(excess);
+  if (wheel.level_last.size() > kLevelRows) wheel.level_last.pop_front();
+}
+
+void SensorProof::take(const Row& row) {
+  Run& run = runs_[row.run];
+  Wheel& wheel = run.wheels[row.wheel];
+  const WheelReading& r = row.reading;
+  follow(run, wheel, r);
+  wheel.last = r;
+  if (row.danger) return;
+  if (wheel.last_counted && distance_m(wheel.last_counted->place, r.place) < kApart_m) return;
+  wheel.last_counted = r;
+  run.slope.add(row.map_gradient, row.measured_gradient);
+  wheel.slip.add(row.measured_gradient, r.slip);
+  wheel.torque.add(row.measured_gradient, row.torque_pull);
+  wheel.felt_rows += row.share >= kFelt ? 1 : 0;
+  takeLevel(wheel, row);
+}
+
+const SensorProof::Run* SensorProof::find(const std::string& run) const {
+  const auto at = runs_.find(run);
+  return at == runs_.end() ? nullptr : &at->second;
+}
+
+const SensorProof::Wheel* SensorProof::find(const Run& run, const std::string& wheel) {
+  const auto at = run.wheels.find(wheel);
+  return at == run.wheels.end() ? nullptr : &at->second;
+}
+
+bool SensorProof::displaced(const std::string& run) const {
+  const Run* r = find(run);
+  return r && isOff(r->off);
+}
+
+double SensorProof::gradientExcess(const std::string& run) const {
+  const Run* r = find(run);
+  return r && r->slope.whole().size() > 0 ? r->slope.whole().meanDifference() : 0.0;
+}
+
+std::size_t SensorProof::wheels(const std::string& run) const {
+  const Run* r = find(run);
+  return r ? r->wheels.size() : 0;
+}
+
+bool SensorProof::pullSound(const std::string& run, const std::string& wheel) const {
+  const Run* r = find(run);
+  const Wheel* w = r ? find(*r, wheel) : nullptr;
+  if (!w || isOff(r->off)) return false;
+  return follows(r->slope, kPerGradient) && std::abs(r->slope.whole().meanDifference()) <= kSlopeBias &&
+         follows(w->slip, kSlipPerGradient) && w->level_rows >= kLevelRows;
+}
+
+bool SensorProof::torqueSound(const std::string& run, const std::string& wheel) const {
+  if (!pullSound(run, wheel)) return false;
+  const ResponseSeries& torque = find(*find(run), wheel)->torque;
+  return follows(torque, kPerGradient) && std::abs(torque.whole().meanDifference()) <= kTorqueBias;
+}
+
+bool SensorProof::doubted(const std::string& run, const std::string& wheel) const {
+  const Run* r = find(run);
+  const Wheel* w = r ? find(*r, wheel) : nullptr;
+  if (!w || isOff(r->off)) return true;
+  return contradicts(r->slope, kPerGradient) || contradicts(w->slip, kSlipPerGradient);
+}
+
+bool SensorProof::felt(const std::string& run, const std::string& wheel) const {
+  const Run* r = find(run);
+  const Wheel* w = r ? find(*r, wheel) : nullptr;
+  return w && w->felt_rows >= kLevelRows;
+}
+
+double SensorProof::lowSlip(const std::string& run, const std::string& wheel) const {
+  const Run* r = find(run);
+  const Wheel* w = r ? find(*r, wheel) : nullptr;
+  if (!w || w->level_rows < kLevelRows) return 0.0;
+  const double last = std::accumulate(w->level_last.begin(), w->level_last.end(), 0.0);
+  return std::max(
+      {-w->level_sum / static_cast<double>(w->level_rows), -last / static_cast<double>(kLevelRows), 0.0});
+}
+
+}  // namespace talus::costmap

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <map>
+#include <optional>
+#include <string>
+
+#include <talus/costmap/evidence/wheel_observation.hpp>
+#include <talus/costmap/telemetry/response.hpp>
+
+namespace talus::costmap {
+
+/// Whether the sensors of a drive have shown, against each other, that they are sound, so that what they say may
+/// raise a belief. Each proof needs something that a sensor which is stuck, biased, displaced or silent does not
+/// give; without it there is none (all limits ours):
+///
+/// slip        rises with the slope that is climbed; on level ground it may be low, by a bias or by firm ground, and
+///             counts as if it were by a bias
+/// slope       as the rover measured it follows the map's where the rover says it is, and is not off it
+/// torque,     taken together as pull, follow the slope and are not off it
+/// sinkage
+/// pose        moves from row to row by no more than it did before; after a jump nothing is proven until it is
+///             back, since either side of the jump may be the wrong one
+class SensorProof {
+ public:
+  /// What one wheel read, and what is known about its place. NaN = not known.
+  struct Row {
+    std::string run, wheel;
+    WheelReading reading;
+    double measured_gradient = 0.0;  ///< along the heading, by the rover
+    double map_gradient = 0.0;       ///< the same by the map
+    double class_slip = 0.0;         ///< of ground of the class on the measured gradient
+    double torque_pull = 0.0;        ///< drawbar pull over load by torque and sinkage
+    double share = 0.0;              ///< of its class's thrust at the reference slip, at its slip
+    bool danger = false;             ///< it points to danger: it proves nothing but where the rover is
+  };
+
+  /// How far the mean of slip on level ground may be off by noise [-].
+  static constexpr double kLevelSlip = 0.01;
+  /// By how much the slip of all wheels may be off together in spite of all proofs: by a constant and by a share of itself,
+  /// one standard deviation each [-].
+  static constexpr double kSlipBias = 0.03;
+  static constexpr double kSlipScale = 0.2;
+
+  void take(const Row& row);
+
+  /// Whether the pull that the wheel read may raise a belief: by all rows so far.
+  bool pullSound(const std::string& run, const std::string& wheel) const;
+  /// Whether torque and sinkage are proven too.
+  bool torqueSound(const std::string& run, const std::string& wheel) const;
+  /// Whether the last rows contradict what the rows before proved.
+  bool doubted(const std::string& run, const std::string& wheel) const;
+  /// Whether the pose, after the rows so far, is off by a jump.
+  bool displaced(const std::string& run) const;
+  /// Whether it drove at slips at which most of the thrust of its class is felt, so that what it read at little slip was
+  /// not all that it read.
+  bool felt(const std::string& run, const std::string& wheel) const;
+  /// By how much the wheel slips less on level ground than the class does, on average of all rows or of the last;
+  /// >= 0.
+  double lowSlip(const std::string& run, const std::string& wheel) const;
+  /// By how much the rover measures slopes that are steeper than the map's, on average.
+  double gradientExcess(const std::string& run) const;
+  /// Wheels that read anything.
+  std::size_t wheels(const std::string& run) const;
+
+ private:
+  struct Wheel {
+    std::optional<WheelReading> last, last_counted;
+    ResponseSeries slip, torque;
+    std::size_t level_rows = 0, felt_rows = 0;
+    double level_sum = 0.0;         // of slip on level ground beyond the class's
+    std::deque<double> level_last;  // of that
+  };
+  struct Run {
+    ResponseSeries slope;
+    double fastest_mps = 0.0;
+    maps::Point off{0.0, 0.0};  // sum of the jumps
+    std::map<std::string, Wheel> wheels;
+  };
+
+  static void follow(Run& run, const Wheel& wheel, const WheelReading& reading);
+  static void takeLevel(Wheel& wheel, const Row& row);
+  const Run* find(const std::string& run) const;
+  static const Wheel* find(const Run& run, const std::string& wheel);
+
+  std::map<std::string, Run> runs_;
+};
+
+}  // namespace talus::costmap

@@ -1,0 +1,189 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include <talus/costmap/telemetry/sensor_watch.hpp>
+
+namespace talus::costmap {
+namespace {
+
+constexpr std::size_t kWindow = 5;
+constexpr const char* kSpike = "spike";
+
+constexpr std::array<std::pair<const char*, double WheelReading::*>, 3> kSensors{
+    {{"slip", &WheelReading::slip},
+     {"torque", &WheelReading::torque_Nm},
+     {"sinkage", &WheelReading::sinkage_m}}};
+
+double medianOf(const std::deque<WheelReading>& last, double WheelReading::*field) {
+  std::vector<double> values;
+  for (const WheelReading& r : last)
+    if (std::isfinite(r.*field)) values.push_back(r.*field);
+  if (values.size() < kWindow) return std::nan("");
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+bool departs(double value, double median, double limit) {
+  return std::abs(value - median) > limit;
+}
+
+bool sameNumber(double a, double b) {
+  return a == b || (std::isnan(a) && std::isnan(b));
+}
+
+// A reading in which nothing is measured exactly, yet nothing moved.
+bool sameReading(const WheelReading& a, const WheelReading& b) {
+  return sameNumber(a.slip, b.slip) && sameNumber(a.torque_Nm, b.torque_Nm) &&
+         sameNumber(a.sinkage_m, b.sinkage_m);
+}
+
+}  // namespace
+
+bool SensorWatch::isSpike(const Wheel& wheel, const WheelReading& reading) const {
+  const double radius_m = model_.rover().wheel.radius_m;
+  return departs(reading.slip, medianOf(wheel.last, &WheelReading::slip), limits_.slip_spike) ||
+         departs(reading.torque_Nm, medianOf(wheel.last, &WheelReading::torque_Nm),
+                 limits_.torque_spike * radius_m * reading.load_N) ||
+         departs(reading.sinkage_m, medianOf(wheel.last, &WheelReading::sinkage_m),
+                 limits_.sinkage_spike * radius_m);
+}
+
+bool SensorWatch::slipsBackwardsUphill(const WheelReading& reading) const noexcept {
+  return reading.slip < limits_.backward_slip && reading.gradient > limits_.climb &&
+         !(reading.torque_Nm <= 0.0);
+}
+
+// The reading as a whole, or one sensor that used to change from row to row. Counted before the reading is
+// taken in.
+std::optional<std::string> SensorWatch::stuck(Wheel& wheel, const WheelReading& reading) const {
+  if (wheel.last.empty()) return std::nullopt;
+  const WheelReading& before = wheel.last.back();
+  wheel.equal = sameReading(before, reading) ? wheel.equal + 1 : 0;
+  std::optional<std::string> reason;
+  for (std::size_t i = 0; i < kSensors.size(); ++i) {
+    const auto& [name, field] = kSensors[i];
+    Channel& channel = wheel.channels[i];
+    if (!std::isfinite(reading.*field) || !std::isfinite(before.*field)) continue;
+    channel.equal = reading.*field == before.*field ? channel.equal + 1 : 0;
+    const bool lively =
+        channel.rows >= limits_.stuck_rows &&
+        static_cast<double>(channel.changes) > limits_.lively * static_cast<double>(channel.rows);
+    if (channel.equal == 0) ++channel.changes;
+    if (channel.equal == 0 || !lively) ++channel.rows;
+    if (lively && channel.equal + 1 >= limits_.stuck_rows) reason = std::string(name) + " is stuck";
+  }
+  return wheel.equal + 1 >= limits_.stuck_rows ? "readings are stuck" : reason;
+}
+
+void SensorWatch::countGap(Wheel& wheel, double time_s) {
+  constexpr std::size_t kKnown = 10;  // intervals that tell the usual one
+  const double passed_s = time_s - wheel.time_s;
+  if (wheel.time_s < -1e299 || !(passed_s > 0.0)) return;
+  if (wheel.intervals >= kKnown && passed_s > limits_.gap * wheel.interval_s) {
+    ++gaps_;
+    longest_gap_s_ = std::max(longest_gap_s_, passed_s);
+    return;
+  }
+  ++wheel.intervals;
+  wheel.interval_s += (passed_s - wheel.interval_s) / static_cast<double>(wheel.intervals);
+}
+
+void SensorWatch::countDropout(Wheel& wheel, const WheelReading& reading) {
+  const bool torque = std::isfinite(reading.torque_Nm), sinkage = std::isfinite(reading.sinkage_m);
+  if ((wheel.has_torque && !torque) || (wheel.has_sinkage && !sinkage)) ++dropouts_;
+  wheel.has_torque |= torque;
+  wheel.has_sinkage |= sinkage;
+}
+
+std::vector<std::optional<std::string>> SensorWatch::refuse(const std::vector<Named>& moment) {
+  std::vector<std::optional<std::string>> reasons;
+  for (const Named& named : moment) reasons.push_back(judge(named));
+  // Wheels that are refused for another reason have no say.
+  const auto spikes = std::count(reasons.begin(), reasons.end(), kSpike);
+  const bool all_jump = spikes > 1 && std::all_of(reasons.begin(), reasons.end(),
+                                                  [](const auto& reason) { return reason.has_value(); });
+  for (auto& reason : reasons)
+    if (all_jump && reason == kSpike)
+      reason.reset();
+    else if (reason)
+      ++refusals_[*reason];
+  return reasons;
+}
+
+std::optional<std::string> SensorWatch::judge(const Named& named) {
+  const WheelReading& reading = named.reading;
+  Wheel& wheel = wheels_[named.wheel];
+  std::optional<std::string> reason;
+  countGap(wheel, reading.time_s);
+  countDropout(wheel, reading);
+  if (reading.time_s < wheel.time_s) {
+    wheel = Wheel{};
+    ++clock_went_back_;
+  }
+  if (!std::isnan(reading.time_s)) wheel.time_s = reading.time_s;
+  if (const auto still = stuck(wheel, reading); !reason) reason = still;
+  if (!reason && isSpike(wheel, reading)) reason = kSpike;
+  if (!reason && slipsBackwardsUphill(reading)) reason = "negative slip on a climb: the slip is biased";
+  wheel.last.push_back(reading);
+  if (wheel.last.size() > kWindow) wheel.last.pop_front();
+  return reason;
+}
+
+void SensorWatch::compare(const WheelObservation& observation) {
+  if (!std::isfinite(observation.from_torque) || !std::isfinite(observation.demand)) return;
+  difference_sum_ += observation.from_torque - observation.demand;
+  ++differences_;
+}
+
+void SensorWatch::compareSlip(double excess) {
+  if (!std::isfinite(excess)) return;
+  excess_sum_ += excess;
+  excess_squares_ += excess * excess;
+  ++excesses_;
+}
+
+std::optional<double> SensorWatch::bias() const {
+  if (differences_ < limits_.bias_rows) return std::nullopt;
+  return difference_sum_ / static_cast<double>(differences_);
+}
+
+std::optional<double> SensorWatch::slipExcess() const {
+  if (excesses_ < limits_.bias_rows) return std::nullopt;
+  const double mean = excess_sum_ / static_cast<double>(excesses_);
+  const double scatter =
+      std::sqrt(std::max(excess_squares_ / static_cast<double>(excesses_) - mean * mean, 0.0));
+  if (std::abs(mean) < std::max(limits_.slip_excess, scatter)) return std::nullopt;
+  return mean;
+}
+
+std::vector<std::string> SensorWatch::findings() const {
+  std::vector<std::string> lines;
+  for (const auto& [reason, count] : refusals_) lines.push_back(std::to_string(count) + " rows: " + reason);
+  if (dropouts_ > 0)
+    lines.push_back(std::to_string(dropouts_) +
+                    " rows: torque or sinkage missing; their slip and slope count");
+  if (clock_went_back_ > 0)
+    lines.push_back(
+        std::to_string(clock_went_back_) +
+        " rows: time decreases; each begins a series of its own, and the drive raises no estimate");
+  if (gaps_ > 0)
+    lines.push_back(std::to_string(gaps_) + " gaps in time, the longest of " +
+                    std::to_string(longest_gap_s_) + " s");
+  if (const auto excess = slipExcess())
+    lines.push_back("wheels slip " + std::to_string(std::abs(*excess)) + (*excess > 0.0 ? " more" : " less") +
+                    " than the soil model predicts on these slopes, in all cells: the soil is " +
+                    (*excess > 0.0 ? "weaker" : "firmer") +
+                    " than estimated, or the slip is biased; one rover cannot distinguish the two");
+  if (biased())
+    lines.push_back(
+        "torque and sinkage imply " + std::to_string(*bias()) +
+        " DP/W more than the slope requires: a torque offset of " +
+        std::to_string(*bias() * model_.rover().wheel.radius_m * terramech::wheelLoad_N(model_.rover())) +
+        " Nm, or a wrong sinkage datum; both channels are excluded");
+  return lines;
+}
+
+}  // namespace talus::costmap

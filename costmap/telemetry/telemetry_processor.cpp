@@ -1,0 +1,265 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <talus/costmap/telemetry/telemetry_processor.hpp>
+
+namespace talus::costmap {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kLittleSlip =
+    0.5;  // of the class's deviation: what a reading at little slip leaves open (ours)
+
+std::optional<int> classAt(const TraversabilityMap& map, const WheelReading& reading) {
+  const auto cell = map.grid().cellAt(reading.place);
+  const int index = cell ? map.classIndex(*cell, reading.z_m) : -1;
+  return index < 0 ? std::nullopt : std::optional(index);
+}
+
+ClassReading withoutTorque(ClassReading read) {
+  read.reading.torque_Nm = read.reading.sinkage_m = kNone;
+  return read;
+}
+
+WheelObservation boundOf(const WheelReading& reading, const GroundBound& here) {
+  WheelObservation out{
+      .time_s = reading.time_s, .place = reading.place, .z_m = reading.z_m, .pull = {}, .sinkage = {}};
+  out.pose_std_m = reading.pose_std_m;
+  out.here = here;
+  return boundAlone(out);
+}
+
+// Torque and sinkage that are not proven make nothing stronger than slip and slope do.
+void weakerBySlope(WheelObservation& seen) {
+  if (std::isfinite(seen.from_torque) && seen.by_slope.value < seen.pull.value) seen.pull = seen.by_slope;
+}
+
+}  // namespace
+
+WheelObservation boundAlone(const WheelObservation& observation) {
+  WheelObservation left = observation;
+  left.pull = left.sinkage = left.by_slope = {kNone, kNone};
+  left.from_torque = kNone;
+  left.bound = left.pull_may_raise = left.sinkage_may_raise = false;
+  return left;
+}
+
+TelemetryProcessor::TelemetryProcessor(const TraversabilityMap& map)
+    : map_(map), danger_(map.model()), watch_(map.model()), observer_(map.model()) {}
+
+std::vector<TelemetryProcessor::Result> TelemetryProcessor::process(const TelemetryRows& rows,
+                                                                    const Moment& moment,
+                                                                    const DriveVerdict& verdict) {
+  transferred_ += moment.transferred ? moment.readings.size() : 0;
+  std::vector<SensorWatch::Named> named;
+  for (std::size_t w = 0; w < moment.readings.size(); ++w)
+    named.push_back({rows.series(moment.rows[w]), moment.readings[w]});
+  const auto suspected = watch_.refuse(named);
+  std::vector<Result> all;
+  std::vector<std::size_t> sound_at;
+  Sound sound;
+  for (std::size_t w = 0; w < moment.readings.size(); ++w) {
+    Result& result = all.emplace_back(Result{moment.readings[w]});
+    const auto index = classAt(map_, result.reading);
+    if (!index) {
+      result.reason = "outside the map or on ground without a soil";
+      result.observation = ofUnobserved(result.reading, rows.leastGradient(moment.rows[w]));
+      continue;
+    }
+    const ClassReading read{*index, result.reading};
+    const GroundBound here = bound(read, rows.leastGradient(moment.rows[w]), suspected[w].has_value());
+    if (here.any()) result.observation = boundOf(result.reading, here);
+    if (suspected[w]) {
+      result.reason = *suspected[w];
+      continue;
+    }
+    sound.read.push_back(read);
+    sound.row.push_back(moment.rows[w]);
+    sound.danger.push_back(here.any());
+    sound_at.push_back(w);
+  }
+  auto seen = observed(sound, verdict);
+  prove(rows, sound, seen);
+  for (std::size_t i = 0; i < seen.size(); ++i)
+    if (seen[i] && !torqueSound(rows, sound.row[i], verdict)) weakerBySlope(*seen[i]);
+  const bool of_rover =
+      carriesRover(moment.readings, map_.model().rover()) &&
+      std::all_of(moment.rows.begin(), moment.rows.end(), [&](std::size_t row) { return rows.ofRover(row); });
+  if (!of_rover)
+    others_ += moment.readings.size();
+  else if (mayRaise(rows, moment, sound, verdict))
+    allow(rows, sound, verdict, seen);
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    Result& result = all[sound_at[i]];
+    if (seen[i]) {
+      if (result.observation) seen[i]->here = result.observation->here;
+      result.observation = seen[i];
+    } else {
+      result.reason = "insufficient measurements: needs slope, torque with sinkage, or drawbar pull";
+    }
+  }
+  return all;
+}
+
+std::optional<WheelObservation> TelemetryProcessor::rejected(const TelemetryRows& rows,
+                                                             std::size_t row) const {
+  const WheelReading reading = rows.reading(row);
+  const auto index = classAt(map_, reading);
+  if (!index) return ofUnobserved(reading, rows.steepestDescent(row));
+  const GroundBound here = danger_.hear(*index, reading, rows.steepestDescent(row));
+  return here.any() ? std::optional(boundOf(reading, here)) : std::nullopt;
+}
+
+// Ground of no class is refused, however it compares with one: the first stands for it.
+std::optional<WheelObservation> TelemetryProcessor::ofUnobserved(const WheelReading& reading,
+                                                                 double least_gradient) const {
+  const GroundBound here = danger_.hear(0, reading, least_gradient);
+  return here.any() ? std::optional(boundOf(reading, here)) : std::nullopt;
+}
+
+// Of a reading by itself; where it is suspected also by what it would say of the pull.
+GroundBound TelemetryProcessor::bound(const ClassReading& read, double least_gradient, bool suspected) const {
+  GroundBound here = danger_.hear(read.class_index, read.reading, least_gradient);
+  if (!suspected) return here;
+  auto seen = observer_.observe({read}).front();
+  if (!seen) return here;
+  weakerBySlope(*seen);
+  here.lower(danger_.hear(read.class_index, *seen).most_pull);
+  return here;
+}
+
+// Of sound wheels together; where torque and sinkage are off, without them. What points to danger is no measure of a
+// sensor.
+std::vector<std::optional<WheelObservation>> TelemetryProcessor::observed(const Sound& sound,
+                                                                          const DriveVerdict& verdict) {
+  auto whole = observer_.observe(sound.read);
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    if (sound.danger[i]) continue;
+    if (whole[i]) watch_.compare(*whole[i]);
+    watch_.compareSlip(sound.read[i].reading.slip - asked(sound.read[i]));
+  }
+  if (!verdict.without_torque) return whole;
+  std::vector<ClassReading> without;
+  for (const ClassReading& read : sound.read) without.push_back(withoutTorque(read));
+  return observer_.observe(without);
+}
+
+void TelemetryProcessor::prove(const TelemetryRows& rows, const Sound& sound,
+                               const std::vector<std::optional<WheelObservation>>& seen) {
+  for (std::size_t i = 0; i < sound.read.size(); ++i) {
+    const std::size_t row = sound.row[i];
+    const double gradient = rows.measuredGradient(row);
+    proof_.take({.run = rows.run(row),
+                 .wheel = rows.wheel(row),
+                 .reading = sound.read[i].reading,
+                 .measured_gradient = gradient,
+                 .map_gradient = rows.mapGradient(row),
+                 .class_slip = slipOfClasses(sound.read, gradient),
+                 .torque_pull = seen[i] ? seen[i]->from_torque : kNone,
+                 .share = seen[i] ? seen[i]->share : 0.0,
+                 .danger = sound.danger[i]});
+  }
+}
+
+bool TelemetryProcessor::torqueSound(const TelemetryRows& rows, std::size_t row,
+                                     const DriveVerdict& verdict) {
+  return verdict.proof && verdict.proof->torqueSound(rows.run(row), rows.wheel(row));
+}
+
+bool TelemetryProcessor::mayRaise(const TelemetryRows& rows, const Moment& moment, const Sound& sound,
+                                  const DriveVerdict& verdict) const {
+  const std::string run = rows.run(moment.rows.front());
+  const std::size_t wheels = moment.readings.size();
+  if (!verdict.proof || verdict.without_torque || proof_.displaced(run) || sound.read.size() != wheels ||
+      verdict.proof->wheels(run) != wheels ||
+      (wheels != 1 && wheels != static_cast<std::size_t>(map_.model().rover().wheel_count)))
+    return false;
+  if (std::find(sound.danger.begin(), sound.danger.end(), true) != sound.danger.end()) return false;
+  return std::all_of(sound.row.begin(), sound.row.end(), [&](std::size_t row) {
+    return verdict.proof->pullSound(run, rows.wheel(row)) && !proof_.doubted(run, rows.wheel(row));
+  });
+}
+
+// What the readings of all wheels say where each slips otherwise.
+std::vector<std::optional<WheelObservation>> TelemetryProcessor::withSlip(
+    std::vector<ClassReading> together, const std::function<double(double)>& slip) const {
+  for (ClassReading& read : together) read.reading.slip = std::clamp(slip(read.reading.slip), -1.0, 1.0);
+  return observer_.observe(together);
+}
+
+// What is left of more strength than the class's if sensors are off by what passes as sound; the rest is doubt, and
+// what one error of the slip of all wheels makes of it is shared by all readings.
+void TelemetryProcessor::allow(const TelemetryRows& rows, const Sound& sound, const DriveVerdict& verdict,
+                               std::vector<std::optional<WheelObservation>>& seen) const {
+  std::vector<ClassReading> off;
+  for (std::size_t i = 0; i < sound.read.size(); ++i) {
+    ClassReading& read = off.emplace_back(sound.read[i]);
+    const double low = std::max(verdict.proof->lowSlip(rows.run(sound.row[i]), rows.wheel(sound.row[i])),
+                                proof_.lowSlip(rows.run(sound.row[i]), rows.wheel(sound.row[i])));
+    read.reading.slip = std::min(read.reading.slip + low + SensorProof::kLevelSlip, 1.0);
+    read.reading.gradient -= std::max(verdict.proof->gradientExcess(rows.run(sound.row[i])), 0.0);
+  }
+  const auto least = observer_.observe(off);
+  const auto biased = withSlip(sound.read, [](double slip) { return slip + SensorProof::kSlipBias; });
+  const auto scaled =
+      withSlip(sound.read, [](double slip) { return slip * (1.0 + SensorProof::kSlipScale); });
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    const bool near_limit = off[i].reading.slip >= kDangerSlip;
+    if (!seen[i] || !least[i] || near_limit || seen[i]->bound ||
+        std::isfinite(sound.read[i].reading.drawbar_pull_N))
+      continue;
+    WheelObservation& one = *seen[i];
+    const bool torque_sound = torqueSound(rows, sound.row[i], verdict);
+    const auto pullOf = [&](const std::optional<WheelObservation>& other) {
+      if (!other) return kNone;
+      return torque_sound ? other->pull.value : std::fmin(other->pull.value, other->by_slope.value);
+    };
+    const double prior = map_.model().prior(sound.read[i].class_index).pull.value;
+    double left = pullOf(least[i]);
+    if (left > prior) left = prior + (left - prior) * std::clamp(least[i]->share, 1.0 / 3.0, 1.0);
+    const double most = off[i].reading.gradient > 0.0 ? std::max(prior, left) : prior;
+    const double kept = std::min(one.pull.value, most);
+    // At little slip nothing is raised by a drive that never felt most of the thrust.
+    if (std::isnan(one.shared_std) && verdict.proof->felt(rows.run(sound.row[i]), rows.wheel(sound.row[i])))
+      one.shared_std = kLittleSlip * map_.model().prior(sound.read[i].class_index).pull.std;
+    one.shared_std = std::hypot(std::hypot(one.shared_std, std::fmax(kept - left, 0.0)),
+                                one.pull.value - pullOf(biased[i]), one.pull.value - pullOf(scaled[i]));
+    one.pull = {kept, std::hypot(one.pull.std, one.pull.value - kept)};
+    one.pull_may_raise = std::isfinite(one.shared_std);
+    one.sinkage_may_raise = torque_sound;
+  }
+}
+
+// Slip, the same of all wheels, at which fresh or rutted ground of their classes gives the pull of a gradient;
+// NaN where none does.
+double TelemetryProcessor::slipOfClasses(const std::vector<ClassReading>& together, double gradient) const {
+  const auto pull = [&](double slip) {
+    double load_N = 0.0, sum = 0.0;
+    for (const ClassReading& read : together) {
+      load_N += read.reading.load_N;
+      sum += read.reading.load_N *
+             map_.model().steady(read.class_index, {.slip = slip, .in_rut = read.reading.pass > 1}).gradient;
+    }
+    return sum / load_N;
+  };
+  double low = -0.5, high = 0.8;
+  if (!(pull(low) <= gradient && pull(high) >= gradient)) return kNone;
+  while (high - low > 1e-4) {
+    const double middle = 0.5 * (low + high);
+    (pull(middle) < gradient ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+// Slip of fresh ground of the class on the reading's slope; NaN where none is known or none holds it.
+double TelemetryProcessor::asked(const ClassReading& read) const {
+  const GroundModel& model = map_.model();
+  if (std::isnan(read.reading.gradient) || read.reading.pass > 1) return kNone;
+  const DriveState state =
+      model.state(read.class_index, model.prior(read.class_index), read.reading.gradient);
+  return state.refusal == Refusal::Pull ? kNone : static_cast<double>(state.slip);
+}
+
+}  // namespace talus::costmap

@@ -1,0 +1,198 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <tuple>
+#include <utility>
+
+#include <talus/costmap/telemetry/telemetry_rows.hpp>
+#include <talus/terramech/contact/load_transfer.hpp>
+
+namespace talus::costmap {
+namespace {
+
+constexpr double kSameLoad = 0.01;       // of the load: less is the same number
+constexpr double kSameWheel = 0.01;      // of its radius or width
+constexpr double kSameWeight = 0.25;     // of the weight on wheels: a slope of 25 degrees takes a tenth of it
+constexpr double kLevelGradient = 0.03;  // less moves no load worth speaking of
+constexpr double kQuarterTurn = 1.5707963267948966;
+constexpr double kTurning_mps = 0.005;  // rim speed of a wheel that turns
+constexpr double kVertical_rad = 1.57;
+constexpr double kWorstPose_m = 1000.0;  // a position that is known no better is not one
+
+double slipOf(double speed_mps, double rim_speed_mps) noexcept {
+  return std::abs(rim_speed_mps) > kTurning_mps ? 1.0 - speed_mps / rim_speed_mps
+                                                : std::numeric_limits<double>::quiet_NaN();
+}
+
+constexpr std::array<std::string_view, 19> kNumbers{
+    "drawbar_pull_N", "heading_rad", "load_N",    "pass_index", "pose_std_m",
+    "rim_speed_mps",  "roll_rad",    "sinkage_m", "slip",       "slip_angle_rad",
+    "slope_rad",      "speed_mps",   "time_s",    "torque_Nm",  "wheel_radius_m",
+    "wheel_width_m",  "x_m",         "y_m",       "z_m"};
+constexpr std::array<std::string_view, 2> kWords{"run", "wheel"};
+
+}  // namespace
+
+std::span<const std::string_view> usedNumberColumns() noexcept {
+  return kNumbers;
+}
+
+std::span<const std::string_view> usedWordColumns() noexcept {
+  return kWords;
+}
+
+TelemetryRows::TelemetryRows(const terramech::Telemetry& telemetry, const TraversabilityMap& map,
+                             double pose_std_m)
+    : map_(map),
+      pose_std_m_(pose_std_m),
+      x_(telemetry.at("x_m")),
+      y_(telemetry.at("y_m")),
+      load_(telemetry.at("load_N")),
+      slip_(telemetry.at("slip")),
+      time_(telemetry.find("time_s")),
+      torque_(telemetry.find("torque_Nm")),
+      sinkage_(telemetry.find("sinkage_m")),
+      z_(telemetry.find("z_m")),
+      slope_(telemetry.find("slope_rad")),
+      heading_(telemetry.find("heading_rad")),
+      pull_(telemetry.find("drawbar_pull_N")),
+      pass_(telemetry.find("pass_index")),
+      pose_(telemetry.find("pose_std_m")),
+      speed_(telemetry.find("speed_mps")),
+      rim_speed_(telemetry.find("rim_speed_mps")),
+      roll_(telemetry.find("roll_rad")),
+      slip_angle_(telemetry.find("slip_angle_rad")),
+      radius_(telemetry.find("wheel_radius_m")),
+      width_(telemetry.find("wheel_width_m")),
+      wheel_(telemetry.findWords("wheel")),
+      run_(telemetry.findWords("run")) {}
+
+double TelemetryRows::value(const std::vector<double>* column, std::size_t i) {
+  return column ? (*column)[i] : std::numeric_limits<double>::quiet_NaN();
+}
+
+WheelReading TelemetryRows::reading(std::size_t i) const {
+  const auto finite = [](double x) {
+    return std::isfinite(x) ? x : std::numeric_limits<double>::quiet_NaN();
+  };
+  WheelReading r{.time_s = finite(value(time_, i)),
+                 .place = {x_[i], y_[i]},
+                 .z_m = finite(value(z_, i)),
+                 .load_N = load_[i],
+                 .slip = slip_[i],
+                 .torque_Nm = value(torque_, i),
+                 .sinkage_m = value(sinkage_, i),
+                 .gradient = measuredGradient(i),
+                 .across = std::tan(finite(value(roll_, i))),
+                 .slip_angle_rad = finite(value(slip_angle_, i)),
+                 .drawbar_pull_N = value(pull_, i),
+                 .pose_std_m = std::isfinite(value(pose_, i)) ? std::clamp(value(pose_, i), 0.0, kWorstPose_m)
+                                                              : pose_std_m_,
+                 .pass = 1,
+                 .speed_slip = slipOf(value(speed_, i), value(rim_speed_, i))};
+  if (std::isfinite(value(pass_, i))) r.pass = static_cast<int>(value(pass_, i));
+  if (std::isnan(r.gradient)) r.gradient = mapGradient(r, heading(i));
+  if (std::isnan(r.across)) r.across = mapGradient(r, heading(i) + kQuarterTurn);
+  return r;
+}
+
+bool TelemetryRows::ofRover(std::size_t i) const {
+  const terramech::Wheel& wheel = map_.model().rover().wheel;
+  return sameOrUnknown(value(radius_, i), wheel.radius_m) && sameOrUnknown(value(width_, i), wheel.width_m);
+}
+
+double TelemetryRows::measuredGradient(std::size_t i) const {
+  return std::tan(value(slope_, i));
+}
+
+// Of the top surface: that of a floor beneath it is not known.
+double TelemetryRows::mapGradient(const WheelReading& r, double direction_rad) const {
+  const auto cell = map_.grid().cellAt(r.place);
+  if (!cell || std::isnan(direction_rad) || map_.floorAt(*cell, r.z_m))
+    return std::numeric_limits<double>::quiet_NaN();
+  const CellCode code = map_.code(*cell);
+  return code.dzDx() * std::cos(direction_rad) + code.dzDy() * std::sin(direction_rad);
+}
+
+double TelemetryRows::leastGradient(std::size_t i) const {
+  const WheelReading r = reading(i);
+  const double known = std::fmin(measuredSlope(i), mapGradient(r, heading(i)));
+  return std::isfinite(known) ? known : steepestDescent(i);
+}
+
+double TelemetryRows::steepestDescent(std::size_t i) const {
+  const WheelReading r = reading(i);
+  const double measured = measuredSlope(i);
+  const auto cell = map_.grid().cellAt(r.place);
+  if (!cell || map_.floorAt(*cell, r.z_m)) return std::fmin(measured, 0.0);
+  const CellCode code = map_.code(*cell);
+  return std::fmin(measured, -std::hypot(code.dzDx(), code.dzDy()));
+}
+
+// NaN where it is none: beyond vertical the tangent says anything.
+double TelemetryRows::measuredSlope(std::size_t i) const {
+  const double slope_rad = value(slope_, i);
+  return std::abs(slope_rad) < kVertical_rad ? std::tan(slope_rad) : std::numeric_limits<double>::quiet_NaN();
+}
+
+std::vector<std::vector<std::size_t>> TelemetryRows::byMoment() const {
+  std::vector<std::vector<std::size_t>> moments;
+  const auto alone = [&](std::size_t i) { return !time_ || !wheel_ || !std::isfinite(value(time_, i)); };
+  for (std::size_t first = 0; first < size();) {
+    std::size_t end = first + 1;
+    while (!alone(first) && end < size() && value(time_, end) == value(time_, first)) ++end;
+    // The second row of a wheel belongs to a moment of its own.
+    std::map<std::pair<std::string, std::string>, std::size_t> read;
+    std::map<std::tuple<std::string, std::size_t, std::string>, std::size_t> sorted;
+    for (std::size_t i = first; i < end; ++i) sorted[{run(i), read[{run(i), wheel(i)}]++, wheel(i)}] = i;
+    auto before = sorted.end();
+    for (auto row = sorted.begin(); row != sorted.end(); before = row++) {
+      const auto of = [](const auto& r) { return std::pair(std::get<0>(r->first), std::get<1>(r->first)); };
+      if (before == sorted.end() || of(before) != of(row)) moments.emplace_back();
+      moments.back().push_back(row->second);
+    }
+    first = end;
+  }
+  return moments;
+}
+
+bool sameOrUnknown(double value, double of_rover) noexcept {
+  return !(std::abs(value - of_rover) > kSameWheel * of_rover);
+}
+
+bool carriesRover(const std::vector<WheelReading>& readings, const terramech::Rover& rover) noexcept {
+  double sum_N = 0.0;
+  for (const WheelReading& r : readings) sum_N += r.load_N;
+  const double even_N = terramech::wheelLoad_N(rover) * static_cast<double>(readings.size());
+  return std::abs(sum_N - even_N) <= kSameWeight * even_N;
+}
+
+Moment momentOf(const TelemetryRows& rows, std::vector<std::size_t> of, const terramech::Rover& rover) {
+  Moment moment{.rows = std::move(of), .readings = {}};
+  maps::Point middle{0.0, 0.0};
+  const auto count = static_cast<double>(moment.rows.size());
+  bool same = true;
+  for (const std::size_t i : moment.rows) {
+    const WheelReading& r = moment.readings.emplace_back(rows.reading(i));
+    middle.x_m += r.place.x_m / count;
+    middle.y_m += r.place.y_m / count;
+    const double even_N = terramech::wheelLoad_N(rover);
+    same =
+        same && std::abs(r.load_N - even_N) < kSameLoad * even_N && r.gradient == moment.readings[0].gradient;
+  }
+  const double gradient = moment.readings[0].gradient, heading = rows.heading(moment.rows.front());
+  const bool whole = moment.readings.size() == static_cast<std::size_t>(rover.wheel_count);
+  if (!same || !whole || !(std::abs(gradient) > kLevelGradient) || std::isnan(heading)) return moment;
+  std::vector<double> along_m;
+  for (const WheelReading& r : moment.readings)
+    along_m.push_back((r.place.x_m - middle.x_m) * std::cos(heading) +
+                      (r.place.y_m - middle.y_m) * std::sin(heading));
+  const std::vector<double> loads_N = terramech::wheelLoads_N(rover, gradient, along_m);
+  for (std::size_t w = 0; w < loads_N.size(); ++w) moment.readings[w].load_N = loads_N[w];
+  moment.transferred = true;
+  return moment;
+}
+
+}  // namespace talus::costmap

@@ -1,0 +1,168 @@
+#include <cmath>
+
+#include <GeographicLib/AlbersEqualArea.hpp>
+#include <GeographicLib/AzimuthalEquidistant.hpp>
+#include <GeographicLib/LambertConformalConic.hpp>
+#include <GeographicLib/PolarStereographic.hpp>
+#include <GeographicLib/TransverseMercator.hpp>
+
+#include <talus/common/constants.hpp>
+#include <talus/maps/geodesy/transform.hpp>
+
+namespace talus::maps {
+namespace {
+
+// Projections of GeographicLib whose calls read Forward(lon0, lat, lon, x, y): degrees, y from an origin of
+// their own, which is moved to the latitude of origin.
+template <typename Engine>
+class FromEngine final : public Transform {
+ public:
+  FromEngine(Engine engine, double latitude_of_origin_rad) : engine_(std::move(engine)) {
+    origin_y_m_ = forward({latitude_of_origin_rad, 0.0}).y_m;
+  }
+
+  Point forward(GeoPoint p) const override {
+    Point out;
+    engine_.Forward(0.0, p.latitude_rad / kDegree, p.longitude_rad / kDegree, out.x_m, out.y_m);
+    out.y_m -= origin_y_m_;
+    return out;
+  }
+
+  GeoPoint reverse(Point p) const override {
+    double latitude = 0;
+    double longitude = 0;
+    engine_.Reverse(0.0, p.x_m, p.y_m + origin_y_m_, latitude, longitude);
+    return {latitude * kDegree, longitude * kDegree};
+  }
+
+ private:
+  Engine engine_;
+  double origin_y_m_ = 0.0;
+};
+
+class PolarStereographic final : public Transform {
+ public:
+  PolarStereographic(const Ellipsoid& e, const Projection& p)
+      : engine_(e.equatorial_radius_m, e.flattening, p.scale), north_(p.standard_parallel_1_rad > 0) {
+    engine_.SetScale(std::abs(p.standard_parallel_1_rad) / kDegree, p.scale);
+  }
+
+  Point forward(GeoPoint p) const override {
+    Point out;
+    engine_.Forward(north_, p.latitude_rad / kDegree, p.longitude_rad / kDegree, out.x_m, out.y_m);
+    return out;
+  }
+
+  GeoPoint reverse(Point p) const override {
+    double latitude = 0;
+    double longitude = 0;
+    engine_.Reverse(north_, p.x_m, p.y_m, latitude, longitude);
+    return {latitude * kDegree, longitude * kDegree};
+  }
+
+ private:
+  GeographicLib::PolarStereographic engine_;
+  bool north_;
+};
+
+class AzimuthalEquidistant final : public Transform {
+ public:
+  AzimuthalEquidistant(const Ellipsoid& e, const Projection& p)
+      : engine_(GeographicLib::Geodesic(e.equatorial_radius_m, e.flattening)),
+        origin_deg_(p.latitude_of_origin_rad / kDegree) {}
+
+  Point forward(GeoPoint p) const override {
+    Point out;
+    engine_.Forward(origin_deg_, 0.0, p.latitude_rad / kDegree, p.longitude_rad / kDegree, out.x_m, out.y_m);
+    return out;
+  }
+
+  GeoPoint reverse(Point p) const override {
+    double latitude = 0;
+    double longitude = 0;
+    engine_.Reverse(origin_deg_, 0.0, p.x_m, p.y_m, latitude, longitude);
+    return {latitude * kDegree, longitude * kDegree};
+  }
+
+ private:
+  GeographicLib::AzimuthalEquidistant engine_;
+  double origin_deg_;
+};
+
+template <typename Engine>
+std::unique_ptr<const Transform> fromEngine(Engine engine, double latitude_of_origin_rad) {
+  return std::make_unique<FromEngine<Engine>>(std::move(engine), latitude_of_origin_rad);
+}
+
+// Radius of the standard parallel over that of the equator, times the scale there: the scale on the equator
+// of the cylindrical projections.
+double equatorScale(const Ellipsoid& e, const Projection& p) {
+  const double sine = std::sin(p.standard_parallel_1_rad);
+  const double e2 = e.flattening * (2 - e.flattening);
+  return p.scale * std::cos(p.standard_parallel_1_rad) / std::sqrt(1 - e2 * sine * sine);
+}
+
+// North and south exchanged: GeographicLib 2.1 errs in Albers' projection of parallels in the south.
+class Mirrored final : public Transform {
+ public:
+  explicit Mirrored(std::unique_ptr<const Transform> inner) : inner_(std::move(inner)) {}
+
+  Point forward(GeoPoint p) const override {
+    const Point out = inner_->forward({-p.latitude_rad, p.longitude_rad});
+    return {out.x_m, -out.y_m};
+  }
+
+  GeoPoint reverse(Point p) const override {
+    const GeoPoint out = inner_->reverse({p.x_m, -p.y_m});
+    return {-out.latitude_rad, out.longitude_rad};
+  }
+
+ private:
+  std::unique_ptr<const Transform> inner_;
+};
+
+std::unique_ptr<const Transform> albers(const Ellipsoid& e, const Projection& p) {
+  const bool south = p.standard_parallel_1_rad + p.standard_parallel_2_rad < 0;
+  const double sign = south ? -1.0 : 1.0;
+  auto northern =
+      fromEngine(GeographicLib::AlbersEqualArea(e.equatorial_radius_m, e.flattening,
+                                                sign * p.standard_parallel_1_rad / kDegree,
+                                                sign * p.standard_parallel_2_rad / kDegree, p.scale),
+                 sign * p.latitude_of_origin_rad);
+  return south ? std::make_unique<Mirrored>(std::move(northern)) : std::move(northern);
+}
+
+}  // namespace
+
+std::unique_ptr<const Transform> makeTransform(const Ellipsoid& e, const Projection& p) {
+  using enum ProjectionMethod;
+  const double a = e.equatorial_radius_m;
+  const double f = e.flattening;
+  const double parallel_1 = p.standard_parallel_1_rad / kDegree;
+  const double parallel_2 = p.standard_parallel_2_rad / kDegree;
+  switch (p.method) {
+    case TransverseMercator:
+      return fromEngine(GeographicLib::TransverseMercator(a, f, p.scale), p.latitude_of_origin_rad);
+    case Mercator:
+      // Lambert's conic on the equator.
+      return fromEngine(GeographicLib::LambertConformalConic(a, f, 0.0, equatorScale(e, p)),
+                        p.latitude_of_origin_rad);
+    case LambertConformalConic:
+      return fromEngine(GeographicLib::LambertConformalConic(a, f, parallel_1, parallel_2, p.scale),
+                        p.latitude_of_origin_rad);
+    case AlbersEqualArea:
+      return albers(e, p);
+    case CylindricalEqualArea:
+      // Albers' conic on the equator.
+      return fromEngine(GeographicLib::AlbersEqualArea(a, f, 0.0, equatorScale(e, p)),
+                        p.latitude_of_origin_rad);
+    case PolarStereographic:
+      return std::make_unique<talus::maps::PolarStereographic>(e, p);
+    case AzimuthalEquidistant:
+      return std::make_unique<talus::maps::AzimuthalEquidistant>(e, p);
+    default:
+      return makePlainTransform(e, p);
+  }
+}
+
+}  // namespace talus::maps

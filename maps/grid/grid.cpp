@@ -1,0 +1,1 @@
+#include <talus/maps/grid/grid.hpp>

@@ -1,0 +1,190 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include <gdal_priv.h>
+
+#include <talus/common/input_error.hpp>
+#include <talus/common/memory_budget.hpp>
+#include <talus/maps/raster/elevation_reader.hpp>
+#include <talus/maps/raster/elevation_values.hpp>
+#include <talus/maps/raster/numpy_raster.hpp>
+#include <talus/maps/raster/raster_band.hpp>
+#include <talus/maps/raster/raster_frame.hpp>
+
+namespace talus::maps {
+namespace {
+
+void check(const ReadOptions& options) {
+  const auto require = [](bool holds, const char* option, const char* bound) {
+    if (!holds) throw InputError({option, bound, ""});
+  };
+  require(!options.resolution_m || (std::isfinite(*options.resolution_m) && *options.resolution_m > 0),
+          "--resolution", "must be a number of metres above 0");
+  require(!options.resolution_m || (*options.resolution_m >= 1e-3 && *options.resolution_m <= 1e6),
+          "--resolution", "must be 0.001 to 1000000 metres");
+  require(std::abs(options.vertical_scale) >= 1e-6 && std::abs(options.vertical_scale) <= 1e6,
+          "--vertical-scale", "must be 1e-6 to 1e6, or that below 0");
+}
+
+// A corner of the window in map metres.
+Point corner(const Place& place, const std::optional<Georeference>& georeference, const std::string& path) {
+  if (const auto* point = std::get_if<Point>(&place)) return *point;
+  if (georeference) return georeference->forward(std::get<GeoPoint>(place));
+  throw InputError({path, "has no CRS for a window in degrees", "give --window in map metres"});
+}
+
+// The grid's cells that the window touches.
+CellBox cellsOf(const Window& window, const FramedRaster& from, const std::string& path) {
+  const Grid& grid = from.grid;
+  const Point a = corner(window.first, from.georeference, path);
+  const Point b = corner(window.second, from.georeference, path);
+  const auto column = [&](double x_m, double up) {
+    return std::clamp((x_m - grid.south_west.x_m) / grid.resolution_m + up, 0.0, grid.width + 0.0);
+  };
+  const auto row = [&](double y_m, double up) {
+    return std::clamp((y_m - grid.south_west.y_m) / grid.resolution_m + up, 0.0, grid.height + 0.0);
+  };
+  // A corner on a cell's edge, to rounding, does not reach the next cell.
+  constexpr double kRounding = 1e-6;
+  const CellBox box{{static_cast<int>(std::floor(column(std::min(a.x_m, b.x_m), kRounding))),
+                     static_cast<int>(std::floor(row(std::min(a.y_m, b.y_m), kRounding)))},
+                    {static_cast<int>(std::ceil(column(std::max(a.x_m, b.x_m), -kRounding))) - 1,
+                     static_cast<int>(std::ceil(row(std::max(a.y_m, b.y_m), -kRounding))) - 1}};
+  if (box.width() > 0 && box.height() > 0) return box;
+  throw InputError({path, "the window lies outside the map", "it " + extent(grid)});
+}
+
+Grid part(const Grid& grid, const CellBox& box) {
+  return {.width = box.width(),
+          .height = box.height(),
+          .resolution_m = grid.resolution_m,
+          .south_west = {grid.south_west.x_m + box.first.column * grid.resolution_m,
+                         grid.south_west.y_m + box.first.row * grid.resolution_m}};
+}
+
+void refuseTooMany(const Grid& grid, const ReadOptions& options, const std::string& path) {
+  if (grid.size() <= options.max_cells) return;
+  throw InputError({path,
+                    std::to_string(grid.width) + " x " + std::to_string(grid.height) + " cells are too many",
+                    "read a part with --window or coarser with --resolution, or raise --max-cells"});
+}
+
+void refuseSize(const Grid& grid, const ReadOptions& options, const std::string& path) {
+  refuseTooMany(grid, options, path);
+  if (grid.width < 2 || grid.height < 2)
+    throw InputError(
+        {path, std::to_string(grid.width) + " x " + std::to_string(grid.height) + " cells have no slope",
+         "give a map of at least 2 x 2 cells"});
+  constexpr double kFinest_m = 1e-3, kCoarsest_m = 1e6;
+  if (!(grid.resolution_m >= kFinest_m && grid.resolution_m <= kCoarsest_m))
+    throw InputError({path,
+                      "cells of " + std::to_string(grid.resolution_m) + " m; must be 0.001 m to 1000 km",
+                      "correct its CRS or --resolution"});
+  requireMemory(8.0 * static_cast<double>(grid.size()), path);
+}
+
+double radius(GDALDataset& file) {
+  const OGRSpatialReference* crs = file.GetSpatialRef();
+  return crs == nullptr ? 0.0 : crs->GetSemiMajor();
+}
+
+// What is read of a file: where its pixels lie, which of them, and how they say heights.
+struct Selection {
+  FramedRaster from;
+  HeightCode code;
+  CellBox box;
+  Grid grid;  // of the result
+};
+
+int overviewCells(int cells, int overview) {
+  return cells / overview + (cells % overview > 0 ? 1 : 0);
+}
+
+Selection select(const std::string& path, const ReadOptions& options, std::vector<std::string>& notes) {
+  check(options);
+  Dataset file = isNumpyFile(path) ? openNumpyRaster(path, notes) : openRaster(path, options.allow_vrt);
+  const int band = chooseBand(*file,
+                              {.path = path,
+                               .band = options.band,
+                               .words = {"elev", "dem", "dtm", "height", "topo", "altitude"},
+                               .others = {"slope", "aspect", "shade", "error", "count"}},
+                              notes);
+  HeightCode code = heightCode(*file->GetRasterBand(band), radius(*file), notes);
+  if (options.nodata) code.nodata = options.nodata;
+  code.scale *= options.vertical_scale;
+  code.offset_m *= options.vertical_scale;
+  FramedRaster from = frame(std::move(file), band, options, path, notes);
+  const CellBox whole{{0, 0}, {from.grid.width - 1, from.grid.height - 1}};
+  const CellBox box = options.window ? cellsOf(*options.window, from, path) : whole;
+  Grid grid = part(from.grid, box);
+  grid.width = overviewCells(grid.width, options.overview);
+  grid.height = overviewCells(grid.height, options.overview);
+  grid.resolution_m *= options.overview;
+  return {std::move(from), code, box, grid};
+}
+
+// Rows as in the file. The overview cells in the north and east that the box fills in part only are the means of that
+// part: the overview covers the box.
+std::vector<float> pixelsOf(const Selection& chosen, int overview, const std::string& path) {
+  const auto& [from, code, box, grid] = chosen;
+  std::vector<float> values(grid.size());
+  const auto parts = [overview](int cells) {
+    const int whole = cells / overview * overview;
+    return std::array<std::pair<int, int>, 2>{{{0, whole}, {whole, cells - whole}}};
+  };
+  for (const auto& [row, rows] : parts(box.height()))
+    for (const auto& [column, columns] : parts(box.width())) {
+      if (rows == 0 || columns == 0) continue;
+      const int south = box.first.row + row;
+      const int first_row = from.north_up ? from.grid.height - south - rows : south;
+      const std::vector<float> part = readPixels(
+          *from.raster, from.band, {box.first.column + column, first_row, columns, rows}, path, overview);
+      const int width = overviewCells(columns, overview), height = overviewCells(rows, overview);
+      const int to_row = from.north_up ? grid.height - row / overview - height : row / overview;
+      for (int r = 0; r < height; ++r)
+        std::copy_n(part.begin() + std::ptrdiff_t{r} * width, width,
+                    values.begin() + std::ptrdiff_t{to_row + r} * grid.width + column / overview);
+    }
+  return values;
+}
+
+// Heights are kept in single precision: there to 1/64 m.
+constexpr float kFarthest_m = 131072.0F;
+
+}  // namespace
+
+ElevationMap readElevation(const std::string& path, const ReadOptions& options) {
+  const GdalErrors quiet;  // GDAL judges a CRS only when asked for it
+  ElevationMap map;
+  map.source = path;
+  const Selection chosen = select(path, options, map.notes);
+  const auto& [from, code, box, grid] = chosen;
+  refuseSize(grid, options, path);
+  std::vector<float> values = pixelsOf(chosen, options.overview, path);
+  decodeHeights(values, code, map.notes);
+  const auto farthest =
+      std::find_if(values.begin(), values.end(), [](float z) { return std::abs(z) > kFarthest_m; });
+  if (farthest != values.end())
+    throw InputError({path,
+                      "holds an elevation of " + std::to_string(*farthest) +
+                          " m; beyond 131072 m steps of some centimetres are lost",
+                      "take a datum off, as the body's radius, or name the mark of no data by --nodata"});
+  map.elevation_m = from.north_up ? northUp(grid, std::move(values)) : Raster<float>(grid, std::move(values));
+  map.georeference = from.georeference;
+  if (validFraction(map.elevation_m) == 0.0)
+    throw InputError({path, "holds no data in any cell" + std::string(options.window ? " of the window" : ""),
+                      "check --band, --nodata and --window"});
+  return map;
+}
+
+Grid elevationGrid(const std::string& path, const ReadOptions& options) {
+  const GdalErrors quiet;
+  std::vector<std::string> notes;
+  const Grid grid = select(path, options, notes).grid;
+  refuseTooMany(grid, options, path);
+  return grid;
+}
+
+}  // namespace talus::maps

@@ -1,0 +1,171 @@
+// RFC 7946, with one word of our own: "crs": "local" for map metres.
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+#include <ogr_spatialref.h>
+
+#include <talus/common/constants.hpp>
+#include <talus/common/input_error.hpp>
+#include <talus/common/memory_budget.hpp>
+#include <talus/common/plausible.hpp>
+#include <talus/maps/raster/file_text.hpp>
+#include <talus/maps/raster/gdal_dataset.hpp>
+#include <talus/maps/raster/geojson.hpp>
+
+namespace talus::maps {
+namespace {
+
+using nlohmann::json;
+
+constexpr int kDeepestNesting =
+    100;  // ten serve all geometries; what walks through a value takes stack for each
+
+std::string typeOf(const json& object) {
+  if (!object.is_object()) return "";
+  const auto type = object.find("type");
+  return type != object.end() && type->is_string() ? type->get<std::string>() : "";
+}
+
+// A tree of nlohmann::json takes up to 28 bytes for each byte of text ("{},{}"), the names in open objects some more.
+constexpr double kMemoryPerByte = 32.0;
+
+void collect(const json& object, std::vector<std::reference_wrapper<const json>>& out) {
+  const std::string type = typeOf(object);
+  const auto list = [&](const char* key) {
+    if (const auto found = object.find(key); found != object.end() && found->is_array())
+      for (const json& item : *found) collect(item, out);
+  };
+  if (type == "FeatureCollection")
+    list("features");
+  else if (type == "GeometryCollection")
+    list("geometries");
+  else if (type == "Feature" && object.contains("geometry"))
+    collect(object["geometry"], out);
+  else if (!type.empty() && object.contains("coordinates"))
+    out.emplace_back(object);
+}
+
+const json* memberOf(const json& object, const char* name) {
+  if (!object.is_object()) return nullptr;
+  const auto found = object.find(name);
+  return found == object.end() || found->is_null() ? nullptr : &*found;
+}
+
+// The word stands at the top, as the routes have it, or among a feature's properties.
+bool saysLocal(const json& document) {
+  const auto is_local = [](const json* object) {
+    const json* crs = object == nullptr ? nullptr : memberOf(*object, "crs");
+    return crs != nullptr && *crs == "local";
+  };
+  if (is_local(&document) || is_local(memberOf(document, "properties"))) return true;
+  const json* features = memberOf(document, "features");
+  return features != nullptr && features->is_array() && !features->empty() &&
+         is_local(memberOf(features->front(), "properties"));
+}
+
+// The name of a "crs" at the top, as GeoJSON had it before RFC 7946: {"type":"name","properties":{"name":NAME}}.
+std::optional<std::string> crsName(const json& document) {
+  const json* crs = memberOf(document, "crs");
+  if (crs == nullptr) return std::nullopt;
+  if (crs->is_string()) return crs->get<std::string>();
+  const json* properties = memberOf(*crs, "properties");
+  const json* name = properties == nullptr ? nullptr : memberOf(*properties, "name");
+  return name != nullptr && name->is_string() ? name->get<std::string>() : crs->dump();
+}
+
+// Its positions are longitude and latitude then; the name comes from a file: no file and no network is asked for it.
+bool isGeographic(const std::string& crs) {
+  const GdalErrors errors;
+  OGRSpatialReference system;
+  return system.SetFromUserInput(crs.c_str(), OGRSpatialReference::SET_FROM_USER_INPUT_LIMITATIONS) ==
+             OGRERR_NONE &&
+         system.IsGeographic() != 0;
+}
+
+void checkCrs(const json& document, bool map_has_crs, const std::string& path) {
+  if (saysLocal(document)) return;
+  const auto crs = crsName(document);
+  if (!crs) return;
+  const std::string named = "its crs is '" + crs->substr(0, 80) + "'";
+  if (!map_has_crs)
+    throw InputError({path, named + ", and the map has none", "write map metres and \"crs\": \"local\""});
+  if (!isGeographic(*crs))
+    throw InputError({path, named + ", positions are read as longitude and latitude only",
+                      "transform it, or write map metres and \"crs\": \"local\""});
+}
+
+// The last of two members of one name would silently win.
+class OnceEach {
+ public:
+  explicit OnceEach(const std::string& path) : path_(path) {}
+
+  bool operator()(int depth, json::parse_event_t event, const json& value) {
+    if (depth > kDeepestNesting)
+      throw InputError(
+          {path_, "nests deeper than " + std::to_string(kDeepestNesting) + " levels", "see RFC 7946"});
+    if (event == json::parse_event_t::object_start) names_.emplace_back();
+    if (event == json::parse_event_t::object_end) names_.pop_back();
+    if (event == json::parse_event_t::key && !names_.back().insert(value.get<std::string>()).second)
+      throw InputError({path_, "has \"" + value.get<std::string>().substr(0, 80) + "\" twice in one object",
+                        "remove one"});
+    return true;
+  }
+
+ private:
+  const std::string& path_;
+  std::vector<std::set<std::string>> names_;
+};
+
+}  // namespace
+
+json readGeoJson(const std::string& path) {
+  requireReadableFile(path);
+  requireMemory(kMemoryPerByte * static_cast<double>(std::filesystem::file_size(path)), path);
+  std::ifstream file(path);
+  OnceEach check(path);
+  json document = json::parse(file, std::ref(check), false);
+  if (document.is_discarded())
+    throw InputError({path, "is not JSON", "check it for a missing bracket or comma"});
+  if (typeOf(document).empty())
+    throw InputError({path, "is not GeoJSON: it has no \"type\"", "see RFC 7946"});
+  return document;
+}
+
+std::vector<std::reference_wrapper<const json>> geometries(const json& document) {
+  std::vector<std::reference_wrapper<const json>> out;
+  collect(document, out);
+  return out;
+}
+
+PositionReader::PositionReader(const json& document, const ElevationMap& map, std::string path)
+    : georeference_(map.georeference && !saysLocal(document) ? &*map.georeference : nullptr),
+      path_(std::move(path)) {
+  checkCrs(document, map.georeference.has_value(), path_);
+}
+
+Point PositionReader::operator()(const json& position) const {
+  const bool numbers =
+      position.is_array() && position.size() >= 2 && position[0].is_number() && position[1].is_number();
+  if (!numbers)
+    throw InputError({path_, "a position is not an array of numbers", "write [longitude, latitude]"});
+  const double x = position[0];
+  const double y = position[1];
+  if (!plausible(x) || !plausible(y))
+    throw InputError({path_, "position " + position.dump() + ": " + kPlausible, "correct the position"});
+  if (georeference_ == nullptr) return {x, y};
+  if (std::abs(x) > 360 || std::abs(y) > 90)
+    throw InputError({path_, "position " + position.dump() + " is not a longitude and latitude",
+                      "write degrees, or \"crs\": \"local\" beside \"type\" for map metres"});
+  const Point point = georeference_->forward({y * kDegree, x * kDegree});
+  if (std::isnan(point.x_m))
+    throw InputError({path_, "position " + position.dump() + " is outside the range of the map's CRS", ""});
+  return point;
+}
+
+}  // namespace talus::maps

@@ -1,0 +1,112 @@
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include <cpl_string.h>
+#include <gdal_priv.h>
+#include <ogr_spatialref.h>
+
+#include <talus/common/input_error.hpp>
+#include <talus/common/output_file.hpp>
+#include <talus/maps/raster/gdal_dataset.hpp>
+#include <talus/maps/raster/geotiff_writer.hpp>
+#include <talus/maps/raster/spatial_reference.hpp>
+
+namespace talus::maps {
+namespace {
+
+struct Form {
+  GDALDataType type = GDT_Float32;
+  const char* predictor = "PREDICTOR=3";
+  int bands = 1;
+};
+
+Dataset create(const std::string& path, const Grid& grid, const Form& form) {
+  CPLStringList words;
+  for (const char* word : {"TILED=YES", "COMPRESS=DEFLATE", "ZLEVEL=4", "BIGTIFF=IF_SAFER", form.predictor})
+    words.AddString(word);
+  return Dataset(driverNamed("GTiff").Create(path.c_str(), grid.width, grid.height, form.bands, form.type,
+                                             words.List()));
+}
+
+void place(GDALDataset& file, const Grid& grid, const Georeference* georeference) {
+  double transform[6] = {
+      grid.south_west.x_m, grid.resolution_m, 0, grid.south_west.y_m + grid.height * grid.resolution_m, 0,
+      -grid.resolution_m};
+  file.SetGeoTransform(transform);
+  if (georeference == nullptr) return;
+  const OGRSpatialReference reference = spatialReference(georeference->system());
+  file.SetSpatialRef(&reference);
+}
+
+// A raster's rows go south to north, a file's north to south: written from the last row with a negative
+// stride.
+template <typename T>
+CPLErr writeBand(GDALRasterBand& band, const Raster<T>& values, GDALDataType type) {
+  const Grid& grid = values.grid();
+  auto* last_row = const_cast<T*>(values.row(grid.height - 1));  // GDAL's writing call takes no const
+  const auto line = -static_cast<GSpacing>(grid.width) * static_cast<GSpacing>(sizeof(T));
+  return band.RasterIO(GF_Write, 0, 0, grid.width, grid.height, last_row, grid.width, grid.height, type,
+                       static_cast<GSpacing>(sizeof(T)), line, nullptr);
+}
+
+// Without its database PROJ knows no CRS to write, whatever the folder.
+[[noreturn]] void fail(const OutputFile& file, const std::string& path, const GdalErrors& errors) {
+  const std::string reason = errors.last();
+  if (reason.starts_with("PROJ"))
+    throw InputError({path, "cannot be written: " + reason,
+                      "PROJ lacks its data: correct or unset PROJ_LIB and PROJ_DATA"});
+  file.fail(reason);
+}
+
+// Closing flushes: only then is it known whether all of it reached the disk.
+void finish(Dataset dataset, OutputFile& file, const std::string& path, const GdalErrors& errors) {
+  dataset->FlushCache();
+  dataset.reset();
+  if (errors.any()) fail(file, path, errors);
+  file.commit();
+}
+
+void checkGrids(const std::vector<Layer>& layers) {
+  if (layers.empty()) throw std::invalid_argument("GeoTIFF: no layer");
+  for (const Layer& layer : layers)
+    if (layer.values.grid() != layers.front().values.grid() || layer.values.empty())
+      throw std::invalid_argument("GeoTIFF: layer '" + layer.name + "' lies on another grid or is empty");
+}
+
+}  // namespace
+
+void writeGeoTiff(const GeoTiff& file, const std::vector<Layer>& layers) {
+  checkGrids(layers);
+  const Grid& grid = layers.front().values.grid();
+  const GdalErrors errors;
+  OutputFile output(file.path);
+  Dataset dataset = create(output.temporary(), grid, {.bands = static_cast<int>(layers.size())});
+  if (!dataset) output.fail(errors.last());
+  place(*dataset, grid, file.georeference);
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    GDALRasterBand& band = *dataset->GetRasterBand(static_cast<int>(i) + 1);
+    band.SetDescription(layers[i].name.c_str());
+    if (!layers[i].unit.empty()) band.SetUnitType(layers[i].unit.c_str());
+    band.SetNoDataValue(std::numeric_limits<double>::quiet_NaN());
+    if (writeBand(band, layers[i].values, GDT_Float32) != CE_None) output.fail(errors.last());
+  }
+  finish(std::move(dataset), output, file.path, errors);
+}
+
+void writeGeoTiff(const GeoTiff& file, const std::string& name, const Raster<std::uint8_t>& values,
+                  std::optional<std::uint8_t> nodata) {
+  if (values.empty()) throw std::invalid_argument("GeoTIFF: layer '" + name + "' is empty");
+  const GdalErrors errors;
+  OutputFile output(file.path);
+  Dataset dataset = create(output.temporary(), values.grid(), {.type = GDT_Byte, .predictor = "PREDICTOR=2"});
+  if (!dataset) output.fail(errors.last());
+  place(*dataset, values.grid(), file.georeference);
+  GDALRasterBand& band = *dataset->GetRasterBand(1);
+  band.SetDescription(name.c_str());
+  if (nodata) band.SetNoDataValue(*nodata);
+  if (writeBand(band, values, GDT_Byte) != CE_None) output.fail(errors.last());
+  finish(std::move(dataset), output, file.path, errors);
+}
+
+}  // namespace talus::maps

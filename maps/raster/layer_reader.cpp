@@ -1,0 +1,302 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <memory>
+#include <numeric>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <gdal_alg.h>
+#include <gdal_priv.h>
+#include <ogr_spatialref.h>
+
+#include <talus/common/input_error.hpp>
+#include <talus/common/memory_budget.hpp>
+#include <talus/maps/grid/pixel_cover.hpp>
+#include <talus/maps/raster/file_text.hpp>
+#include <talus/maps/raster/gdal_dataset.hpp>
+#include <talus/maps/raster/layer_reader.hpp>
+#include <talus/maps/raster/raster_band.hpp>
+#include <talus/maps/terrain/place.hpp>
+
+namespace talus::maps {
+namespace {
+
+bool hasCrs(const OGRSpatialReference* crs) {
+  return crs != nullptr && (crs->IsProjected() || crs->IsGeographic());
+}
+
+using Affine =
+    std::array<double, 6>;  // GDAL's: x = c[0] + column c[1] + row c[2], y = c[3] + column c[4] + row c[5]
+
+// Where the pixels of a file lie in the map's own coordinates, from its south-west corner. A file of the map's very size
+// without even a pixel size lies cell upon cell.
+std::optional<Affine> inMapCoordinates(GDALDataset& file, const Grid& grid) {
+  Affine c{};
+  const bool stated = file.GetGeoTransform(c.data()) == CE_None;
+  const bool same_size = file.GetRasterXSize() == grid.width && file.GetRasterYSize() == grid.height;
+  const bool same_cells = stated && std::abs(c[1] - grid.resolution_m) < 1e-6 * grid.resolution_m;
+  if (!same_cells && same_size && !hasCrs(file.GetSpatialRef()))
+    return Affine{0, grid.resolution_m, 0, grid.height * grid.resolution_m, 0, -grid.resolution_m};
+  if (!stated) return std::nullopt;
+  c[0] -= grid.south_west.x_m;
+  c[3] -= grid.south_west.y_m;
+  return c;
+}
+
+bool sameSystem(const OGRSpatialReference& crs, const std::string& wkt) {
+  OGRSpatialReference other;
+  const char* const relaxed[] = {"IGNORE_DATA_AXIS_TO_SRS_AXIS_MAPPING=YES", nullptr};
+  return other.SetFromUserInput(wkt.c_str()) == OGRERR_NONE && crs.IsSame(&other, relaxed) != FALSE;
+}
+
+// A band in memory, as floats without a no-data value, and with a rim of unknown pixels: what lies beyond a file is not
+// known. It has its CRS only where that is not the map's; else it lies in the map's coordinates from the south-west corner.
+Dataset inMemory(GDALDataset& file, int band, const ElevationMap& map, const std::string& path) {
+  const int width = file.GetRasterXSize(), height = file.GetRasterYSize();
+  if (GDALDataTypeIsComplex(file.GetRasterBand(band)->GetRasterDataType()) != FALSE)
+    throw InputError({path, "holds complex numbers", "choose a band of real numbers"});
+  requireMemory(8.0 * (width + 2.0) * (height + 2.0), path);
+  Dataset copy(driverNamed("MEM").Create("", width + 2, height + 2, 1, GDT_Float32, nullptr));
+  if (!copy) throw InputError({path, "does not fit into memory", "cut it to the map with gdalwarp"});
+  const OGRSpatialReference* crs = file.GetSpatialRef();
+  const bool elsewhere = hasCrs(crs) && map.georeference && !sameSystem(*crs, map.georeference->system().wkt);
+  Affine own{};
+  std::optional<Affine> placed =
+      elsewhere && file.GetGeoTransform(own.data()) == CE_None ? own : inMapCoordinates(file, map.grid());
+  if (placed) {
+    Affine& c = *placed;
+    c[0] -= c[1] + c[2];
+    c[3] -= c[4] + c[5];
+    copy->SetGeoTransform(c.data());
+  }
+  if (elsewhere) copy->SetSpatialRef(crs);
+  std::vector<float> row(static_cast<std::size_t>(width) + 2, std::numeric_limits<float>::quiet_NaN());
+  std::vector<std::uint8_t> known(static_cast<std::size_t>(width));
+  GDALRasterBand& from = *file.GetRasterBand(band);
+  GDALRasterBand& mask = *from.GetMaskBand();
+  for (int y = -1; y <= height; ++y) {
+    const bool rim = y < 0 || y == height;
+    if (rim)
+      std::ranges::fill(row, std::numeric_limits<float>::quiet_NaN());
+    else if (from.RasterIO(GF_Read, 0, y, width, 1, row.data() + 1, width, 1, GDT_Float32, 0, 0, nullptr) !=
+                 CE_None ||
+             mask.RasterIO(GF_Read, 0, y, width, 1, known.data(), width, 1, GDT_Byte, 0, 0, nullptr) !=
+                 CE_None)
+      throw InputError({path, "row " + number(y) + " cannot be read", "the file is damaged or truncated"});
+    for (std::size_t x = 0; !rim && x < known.size(); ++x)
+      if (known[x] == 0) row[x + 1] = std::numeric_limits<float>::quiet_NaN();
+    if (copy->GetRasterBand(1)->RasterIO(GF_Write, 0, y + 1, width + 2, 1, row.data(), width + 2, 1,
+                                         GDT_Float32, 0, 0, nullptr) != CE_None)
+      throw InputError({path, "does not fit into memory", "cut it to the map with gdalwarp"});
+  }
+  return copy;
+}
+
+// Corners of pixels in metres from the map's south-west corner.
+class PixelCorners {
+ public:
+  PixelCorners(GDALDataset& band, const ElevationMap& map, const std::string& path)
+      : corner_(map.grid().south_west) {
+    if (band.GetGeoTransform(affine_.data()) != CE_None)
+      throw InputError({path, "states no place of its pixels", "give it one with gdal_edit.py -a_ullr"});
+    if (band.GetSpatialRef() == nullptr) return;
+    const std::string target = "DST_SRS=" + map.georeference->system().wkt;
+    const char* const options[] = {target.c_str(), nullptr};
+    exact_.reset(
+        GDALCreateGenImgProjTransformer2(GDALDataset::ToHandle(&band), nullptr, const_cast<char**>(options)));
+    if (!exact_)
+      throw InputError({path, "cannot be resampled into the map's CRS", "project it with gdalwarp"});
+    near_.reset(
+        GDALCreateApproxTransformer(GDALGenImgProjTransform, exact_.get(), 1e-3 * map.grid().resolution_m));
+  }
+
+  /// Along the upper edge of a line of pixels; not finite where the projection does not reach.
+  void line(int y, std::vector<Point>& corners) {
+    if (!near_) {
+      const Affine& c = affine_;
+      for (std::size_t x = 0; x < corners.size(); ++x) {
+        const auto column = static_cast<double>(x);
+        corners[x] = {c[0] + column * c[1] + y * c[2], c[3] + column * c[4] + y * c[5]};
+      }
+      return;
+    }
+    const std::size_t count = corners.size();
+    xs_.resize(count);
+    std::iota(xs_.begin(), xs_.end(), 0.0);
+    ys_.assign(count, y);
+    zs_.assign(count, 0.0);
+    reached_.assign(count, 0);
+    GDALApproxTransform(near_.get(), FALSE, static_cast<int>(count), xs_.data(), ys_.data(), zs_.data(),
+                        reached_.data());
+    for (std::size_t x = 0; x < count; ++x)
+      corners[x] = reached_[x] != 0 ? Point{xs_[x] - corner_.x_m, ys_[x] - corner_.y_m}
+                                    : Point{std::numeric_limits<double>::quiet_NaN(), 0.0};
+  }
+
+ private:
+  struct Destroy {
+    void operator()(void* transformer) const { GDALDestroyTransformer(transformer); }
+  };
+  Point corner_;
+  Affine affine_{};
+  std::unique_ptr<void, Destroy> exact_, near_;  // the second asks the first
+  std::vector<double> xs_, ys_, zs_;
+  std::vector<int> reached_;
+};
+
+// The greatest value of all pixels that reach into each cell of the map, first row south; NaN where none is known. GDAL's own
+// resampling by the greatest misses pixels that lie askew.
+Raster<float> greatest(GDALDataset& band, const ElevationMap& map, const std::string& path) {
+  PixelCorners corners(band, map, path);
+  const int width = band.GetRasterXSize();
+  std::vector<float> row(static_cast<std::size_t>(width));
+  std::vector<Point> above(row.size() + 1), below(row.size() + 1);
+  PixelCover cover(map.grid());
+  corners.line(0, below);
+  for (int y = 0; y < band.GetRasterYSize(); ++y) {
+    std::swap(above, below);
+    corners.line(y + 1, below);
+    if (band.GetRasterBand(1)->RasterIO(GF_Read, 0, y, width, 1, row.data(), width, 1, GDT_Float32, 0, 0,
+                                        nullptr) != CE_None)
+      throw InputError({path, "cannot be held in memory", ""});
+    for (std::size_t x = 0; x < row.size(); ++x)
+      cover.add({above[x], above[x + 1], below[x + 1], below[x]}, row[x]);
+  }
+  return std::move(cover.values());
+}
+
+void requireOverlap(bool overlaps, const ElevationMap& map, const std::string& path) {
+  if (!overlaps)
+    throw InputError({path, "does not overlap map '" + map.source + "'", "the map " + extent(map.grid())});
+}
+
+// Each pixel of a band in memory, changed in place.
+template <class Change>
+void changePixels(GDALDataset& band, const std::string& path, Change change) {
+  const int width = band.GetRasterXSize();
+  std::vector<float> row(static_cast<std::size_t>(width));
+  for (int y = 0; y < band.GetRasterYSize(); ++y)
+    for (const auto way : {GF_Read, GF_Write}) {
+      if (band.GetRasterBand(1)->RasterIO(way, 0, y, width, 1, row.data(), width, 1, GDT_Float32, 0, 0,
+                                          nullptr) != CE_None)
+        throw InputError({path, "cannot be held in memory", ""});
+      if (way == GF_Read) std::ranges::transform(row, row.begin(), change);
+    }
+}
+
+// Class numbers as ranks, the weakest greatest: what GDAL resamples by the greatest value. A class that nobody ranked is
+// weaker than all that are.
+class ClassRanks {
+ public:
+  explicit ClassRanks(std::span<const int> weakest_last) {
+    std::iota(number_of_.begin(), number_of_.end(), std::uint8_t{0});
+    std::ranges::stable_sort(number_of_, {}, [&](std::uint8_t number) {
+      return std::ranges::find(weakest_last, static_cast<int>(number)) - weakest_last.begin();
+    });
+    for (std::size_t rank = 0; rank < number_of_.size(); ++rank) rank_of_[number_of_[rank]] = rank;
+  }
+  float rank(std::uint8_t number) const { return static_cast<float>(rank_of_[number]); }
+  std::uint8_t number(float rank) const { return number_of_[static_cast<std::size_t>(rank)]; }
+
+ private:
+  std::array<std::uint8_t, 256> number_of_{};
+  std::array<std::size_t, 256> rank_of_{};
+};
+
+}  // namespace
+
+Raster<std::uint8_t> readTerrainClasses(const LayerSource& source, const ElevationMap& map,
+                                        std::span<const int> weakest_last) {
+  const GdalErrors quiet;
+  Dataset file = openRaster(source.path);
+  std::vector<std::string> notes;
+  const int band =
+      chooseBand(*file, {.path = source.path, .band = source.band, .words = {"class"}, .others = {}}, notes);
+  const ClassRanks ranks(weakest_last);
+  const auto ranked = [&](float v) {
+    if (std::isnan(v)) return ranks.rank(kNoClass);
+    if (!(v >= 0 && v <= kNoClass) || v != std::floor(v))
+      throw InputError({source.path + ", band " + std::to_string(band),
+                        "value " + number(static_cast<double>(v)) + " is not a class number (0 to 254)",
+                        "name the band of classes"});
+    return ranks.rank(static_cast<std::uint8_t>(v));
+  };
+  Dataset ranks_of_file = inMemory(*file, band, map, source.path);
+  changePixels(*ranks_of_file, source.path, ranked);
+  const Raster<float> weakest = greatest(*ranks_of_file, map, source.path);
+  Raster<std::uint8_t> classes(map.grid(), kNoClass);
+  bool any = false;
+  for (std::size_t i = 0; i < weakest.values().size(); ++i)
+    if (const float rank = weakest.values()[i]; !std::isnan(rank)) {
+      classes.values()[i] = ranks.number(rank);
+      any = any || classes.values()[i] != kNoClass;
+    }
+  requireOverlap(any, map, source.path);
+  return classes;
+}
+
+AddedJoules readAddedJoules(const LayerSource& source, const ElevationMap& map) {
+  const GdalErrors quiet;
+  Dataset file = openRaster(source.path);
+  if (source.band && (*source.band < 1 || *source.band > file->GetRasterCount()))
+    throw InputError({source.path, "has no band " + std::to_string(*source.band), "name one that it has"});
+  Dataset band = inMemory(*file, source.band.value_or(1), map, source.path);
+  AddedJoules added;
+  // The resampling leaves out what is not known: numbers that are greater than any other stand for it.
+  constexpr float kMost = 1e6F, kUnknown = 1e38F, kBetween = 2e38F, kRefused = 3e38F;
+  const auto marked = [&](float v) {
+    if (std::isnan(v)) return kUnknown;
+    if (v == std::numeric_limits<float>::infinity()) return kRefused;
+    if (!(v >= 0 && v <= kMost))
+      throw InputError({source.path, "value " + number(static_cast<double>(v)) + " J/m is not 0 to 1e6",
+                        "nothing may make ground cheaper; write inf where the ground is refused"});
+    added.dearest_J_per_m = std::max(added.dearest_J_per_m, v);
+    return v;
+  };
+  changePixels(*band, source.path, marked);
+  added.J_per_m = greatest(*band, map, source.path);
+  requireOverlap(
+      std::ranges::any_of(added.J_per_m.values(), [](float v) { return v <= kMost || v > kBetween; }), map,
+      source.path);
+  for (float& v : added.J_per_m.values()) {
+    if (v > kBetween)
+      v = std::numeric_limits<float>::infinity();
+    else if (v > kMost)
+      v = std::numeric_limits<float>::quiet_NaN();
+  }
+  return added;
+}
+
+RockAbundance readRockAbundance(const LayerSource& source, const ElevationMap& map) {
+  const GdalErrors quiet;
+  Dataset file = openRaster(source.path);
+  std::vector<std::string> notes;
+  const int number_of_band = chooseBand(*file,
+                                        {.path = source.path,
+                                         .band = source.band,
+                                         .words = {"rock", "abundance", "_ra"},
+                                         .others = {"slope", "dem"}},
+                                        notes);
+  Dataset band = inMemory(*file, number_of_band, map, source.path);
+  changePixels(*band, source.path, [&](float v) {
+    if (v < 0 || v > 1)
+      throw InputError({source.path + ", band " + std::to_string(number_of_band),
+                        "rock abundance " + number(static_cast<double>(v)) + " is not a fraction from 0 to 1",
+                        v > 1 && v <= 100 ? "divide percents by 100" : "name the band of rock abundance"});
+    return v;
+  });
+  RockAbundance rocks{.share = greatest(*band, map, source.path), .unseen = Raster<std::uint8_t>(map.grid())};
+  requireOverlap(std::ranges::any_of(rocks.share.values(), [](float v) { return !std::isnan(v); }), map,
+                 source.path);
+  changePixels(*band, source.path, [](float v) { return std::isnan(v) ? 1.0F : 0.0F; });
+  const Raster<float> unseen = greatest(*band, map, source.path);
+  std::ranges::transform(unseen.values(), rocks.unseen.values().begin(), [](float v) { return v != 0.0F; });
+  return rocks;
+}
+
+}  // namespace talus::maps

@@ -1,0 +1,104 @@
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <limits>
+
+#include <gdal_priv.h>
+
+#include <talus/common/input_error.hpp>
+#include <talus/maps/raster/gdal_dataset.hpp>
+#include <talus/maps/raster/raster_band.hpp>
+
+namespace talus::maps {
+namespace {
+
+std::string lowered(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+bool holdsOneOf(const std::string& text, const std::vector<std::string_view>& words) {
+  return std::any_of(words.begin(), words.end(),
+                     [&](std::string_view word) { return text.find(word) != text.npos; });
+}
+
+std::string description(GDALDataset& file, int band) {
+  const std::string words = file.GetRasterBand(band)->GetDescription();
+  return "band " + std::to_string(band) + (words.empty() ? "" : " '" + words + "'");
+}
+
+bool isPicture(GDALRasterBand& band) {
+  const GDALColorInterp colour = band.GetColorInterpretation();
+  return colour == GCI_RedBand || colour == GCI_PaletteIndex;
+}
+
+// Overview cells along a side of so many pixels.
+int shared(int pixels, int overview) {
+  return std::max(1, pixels / overview);
+}
+
+// NaN where GDAL's mask of the band, if it has one of its own, says that the pixel does not count.
+void applyMask(GDALRasterBand& band, const PixelBox& box, std::vector<float>& values,
+               const std::string& where, int overview) {
+  if ((band.GetMaskFlags() & (GMF_PER_DATASET | GMF_ALPHA)) == 0) return;
+  std::vector<unsigned char> mask(values.size());
+  const GdalErrors errors;
+  if (band.GetMaskBand()->RasterIO(GF_Read, box.column, box.row, box.width, box.height, mask.data(),
+                                   shared(box.width, overview), shared(box.height, overview), GDT_Byte, 0, 0,
+                                   nullptr) != CE_None)
+    throw InputError({where, "its mask cannot be read: " + errors.last(), "fetch it again"});
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (mask[i] == 0) values[i] = kNoValue;
+}
+
+}  // namespace
+
+int chooseBand(GDALDataset& file, const BandWish& wish, std::vector<std::string>& notes) {
+  const int count = file.GetRasterCount();
+  if (wish.band) {
+    if (*wish.band >= 1 && *wish.band <= count) return *wish.band;
+    throw InputError({wish.path + ", band " + std::to_string(*wish.band), "no such band",
+                      "it has " + std::to_string(count) + (count == 1 ? " band" : " bands, from 1")});
+  }
+  int chosen = 1;
+  for (int band = count; band >= 1; --band) {
+    const std::string name = lowered(file.GetRasterBand(band)->GetDescription());
+    if (holdsOneOf(name, wish.words) && !holdsOneOf(name, wish.others)) chosen = band;
+  }
+  if (isPicture(*file.GetRasterBand(chosen)))
+    throw InputError({wish.path, "is a colour image without elevations or classes",
+                      "select a band with --band if it is intended"});
+  if (count > 1) notes.push_back("took " + description(file, chosen) + " of " + std::to_string(count));
+  return chosen;
+}
+
+std::vector<float> readPixels(GDALDataset& raster, int band, const PixelBox& box, const std::string& where,
+                              int overview) {
+  GDALRasterBand& source = *raster.GetRasterBand(band);
+  if (GDALDataTypeIsComplex(source.GetRasterDataType()) != FALSE)
+    throw InputError({where, "holds complex numbers", "choose a band of real numbers with --band"});
+  const int width = shared(box.width, overview), height = shared(box.height, overview);
+  std::vector<float> values(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  GDALRasterIOExtraArg how;
+  INIT_RASTERIO_EXTRA_ARG(how);
+  if (overview > 1) how.eResampleAlg = GRIORA_Average;
+  const GdalErrors errors;
+  const CPLErr done = source.RasterIO(GF_Read, box.column, box.row, box.width, box.height, values.data(),
+                                      width, height, GDT_Float32, 0, 0, &how);
+  if (done != CE_None)
+    throw InputError({where, "cannot be read to its end: " + errors.last(),
+                      "the file is damaged or cut short: fetch it again"});
+  applyMask(source, box, values, where, overview);
+  for (float& v : values)
+    if (!std::isfinite(v)) v = kNoValue;
+  return values;
+}
+
+Raster<float> northUp(const Grid& grid, std::vector<float> values) {
+  const auto row = [&](int r) { return values.begin() + std::ptrdiff_t{r} * grid.width; };
+  for (int r = 0; r < grid.height / 2; ++r) std::swap_ranges(row(r), row(r + 1), row(grid.height - 1 - r));
+  return {grid, std::move(values)};
+}
+
+}  // namespace talus::maps

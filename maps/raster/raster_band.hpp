@@ -1,0 +1,49 @@
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <talus/maps/grid/grid.hpp>
+
+class GDALDataset;
+
+namespace talus::maps {
+
+/// What a raster of floats holds where a cell has no value.
+inline constexpr float kNoValue = std::numeric_limits<float>::quiet_NaN();
+
+/// Which band of a file to take when the user names none.
+struct BandWish {
+  std::string path{};                      ///< opens error lines
+  std::optional<int> band{};               ///< from 1, as the user selected
+  std::vector<std::string_view> words{};   ///< parts of a description that mark the band, in lower case
+  std::vector<std::string_view> others{};  ///< parts that rule it out
+};
+
+/// The selected band, else the first whose description fits, else the first; a choice among several is said
+/// in `notes`. @throws InputError on a band that does not exist, or a picture (colours) when none was asked
+/// for
+int chooseBand(GDALDataset& file, const BandWish& wish, std::vector<std::string>& notes);
+
+/// Pixels of a raster, from its upper left corner.
+struct PixelBox {
+  int column = 0;
+  int row = 0;
+  int width = 0;
+  int height = 0;
+};
+
+/// Reads pixels of a band as they stand into rows of floats, first row first; masked pixels and infinities
+/// are NaN. With `overview` above 1 the mean of each overview x overview pixels, of which width and height
+/// are multiples, or less than one: from the file's overviews where it has some.
+/// @throws InputError with GDAL's words
+std::vector<float> readPixels(GDALDataset& raster, int band, const PixelBox& box, const std::string& where,
+                              int overview = 1);
+
+/// Values of a file that begins in the north, as a raster that begins in the south.
+Raster<float> northUp(const Grid& grid, std::vector<float> values);
+
+}  // namespace talus::maps

@@ -1,0 +1,220 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <utility>
+
+#include <gdal_priv.h>
+#include <ogr_spatialref.h>
+
+#include <talus/common/constants.hpp>
+#include <talus/common/input_error.hpp>
+#include <talus/maps/raster/file_text.hpp>
+#include <talus/maps/raster/raster_frame.hpp>
+#include <talus/maps/raster/spatial_reference.hpp>
+#include <talus/maps/raster/warp.hpp>
+
+namespace talus::maps {
+namespace {
+
+constexpr double kMostStretch = 0.05;  // map metre against ground metre, beyond which a map is resampled
+constexpr double kWidestSpan_rad =
+    20 * kDegree;  // of a geographic raster: one local projection serves no more
+
+// GDAL's six numbers: x = c[0] + column c[1] + row c[2], y = c[3] + column c[4] + row c[5].
+struct Pixels {
+  std::array<double, 6> c{0, 1, 0, 0, 0, -1};
+  bool stated = false;
+  int width = 0;
+  int height = 0;
+
+  explicit Pixels(GDALDataset& file) : width(file.GetRasterXSize()), height(file.GetRasterYSize()) {
+    stated = file.GetGeoTransform(c.data()) == CE_None;
+    if (!stated) c = {0, 1, 0, static_cast<double>(height), 0, -1};
+  }
+
+  bool areFinite() const {
+    return std::all_of(c.begin(), c.end(), [](double v) { return std::isfinite(v); }) &&
+           c[1] * c[5] != c[2] * c[4];
+  }
+  bool areUpright() const { return c[2] == 0 && c[4] == 0 && c[1] > 0; }
+  double side() const { return std::abs(c[1]); }
+  // Cells that a raster drifts off a square grid from edge to edge stay below a twentieth.
+  bool areSquare() const {
+    return areUpright() && std::abs(side() - std::abs(c[5])) * std::max(width, height) <= 0.05 * side();
+  }
+  Point at(double column, double row) const {
+    return {c[0] + column * c[1] + row * c[2], c[3] + column * c[4] + row * c[5]};
+  }
+  // Side of a square of a pixel's area.
+  double meanSide() const { return std::sqrt(std::abs(c[1] * c[5] - c[2] * c[4])); }
+};
+
+bool near(double a, double b) {
+  return std::abs(a - b) <= 1e-6 * std::abs(b);
+}
+
+// The frame of square, upright pixels, each `metres` per unit of the file.
+FramedRaster upright(Dataset raster, int band, double metres) {
+  const Pixels p(*raster);
+  const double south = std::min(p.c[3], p.c[3] + p.height * p.c[5]);
+  return {.raster = std::move(raster),
+          .band = band,
+          .grid = {.width = p.width,
+                   .height = p.height,
+                   .resolution_m = p.side() * metres,
+                   .south_west = {p.c[0] * metres, south * metres}},
+          .north_up = p.c[5] < 0,
+          .georeference = std::nullopt};
+}
+
+FramedRaster local(Dataset file, int band, double resolution_m, const std::string& path,
+                   std::vector<std::string>& notes) {
+  const Pixels p(*file);
+  if (!p.areSquare())
+    throw InputError({path, "has no usable CRS and its pixels are not square and upright",
+                      "resample it with gdalwarp -tr, or give it a CRS with gdal_edit.py -a_srs"});
+  FramedRaster out = upright(std::move(file), band, 1.0);
+  if (!p.stated || !near(p.side(), resolution_m)) out.grid.south_west = {0.0, 0.0};
+  out.grid.resolution_m = resolution_m;
+  notes.push_back("no CRS: cells of " + number(resolution_m) + " m taken, x and y in local metres from " +
+                  number(out.grid.south_west.x_m) + "," + number(out.grid.south_west.y_m));
+  return out;
+}
+
+// Middle of what will be read.
+GeoPoint geographicCentre(const Pixels& p, const ReadOptions& options) {
+  if (options.window) {
+    const auto* a = std::get_if<GeoPoint>(&options.window->first);
+    const auto* b = std::get_if<GeoPoint>(&options.window->second);
+    if (a != nullptr && b != nullptr)
+      return {(a->latitude_rad + b->latitude_rad) / 2, (a->longitude_rad + b->longitude_rad) / 2};
+  }
+  const Point middle = p.at(p.width / 2.0, p.height / 2.0);
+  return {middle.y_m * kDegree, middle.x_m * kDegree};
+}
+
+// Metres of ground per degree of latitude and longitude, enough to choose a cell size.
+double geographicResolution(const Pixels& p, double radius_m, double latitude_rad) {
+  const double metres = p.meanSide() * kDegree * radius_m * std::sqrt(std::max(0.02, std::cos(latitude_rad)));
+  const double step = std::pow(10.0, std::floor(std::log10(metres)) - 3);  // four digits are enough
+  return std::round(metres / step) * step;
+}
+
+void refuseWholeBodies(const Pixels& p, const ReadOptions& options, const std::string& path) {
+  const double span =
+      std::max(p.width * std::hypot(p.c[1], p.c[4]), p.height * std::hypot(p.c[2], p.c[5])) * kDegree;
+  if (span <= kWidestSpan_rad || options.window) return;
+  throw InputError({path, "spans " + number(span / kDegree) + " degrees, too large for one map in metres",
+                    "read a part with --window LATd,LONd,LATd,LONd or project it with gdalwarp"});
+}
+
+// Half a pixel beyond a pole is the edge of a raster whose pixels lie on it.
+void refuseBeyondBody(const Pixels& p, const std::string& path) {
+  const double pixel = std::max(std::hypot(p.c[1], p.c[4]), std::hypot(p.c[2], p.c[5]));
+  for (const double column : {0.0, static_cast<double>(p.width)})
+    for (const double row : {0.0, static_cast<double>(p.height)})
+      if (const Point corner = p.at(column, row);
+          std::abs(corner.x_m) > 360.0 + pixel || std::abs(corner.y_m) > 90.0 + pixel)
+        throw InputError({path,
+                          "has a corner at longitude " + number(corner.x_m) + ", latitude " +
+                              number(corner.y_m) + ", must be within 360 and 90 degrees",
+                          "repair it with gdal_edit.py -a_ullr or -a_srs"});
+}
+
+struct Resampling {
+  OGRSpatialReference target;
+  double resolution_m = 0.0;
+  double finest_m = 0.0;  ///< about the side of the source's pixels
+};
+
+FramedRaster resampled(Dataset file, int band, const Resampling& to, const ReadOptions& options,
+                       const std::string& path) {
+  const CoordinateSystem system = coordinateSystem(to.target, path);
+  const bool coarser = to.resolution_m > 1.5 * to.finest_m;
+  Dataset raster = warp(*file,
+                        {.band = band,
+                         .wkt = system.wkt,
+                         .resolution = to.resolution_m,
+                         .grid = std::nullopt,
+                         .method = coarser ? "average" : "cubic",
+                         .nodata = options.nodata},
+                        path);
+  FramedRaster out = upright(std::move(raster), 1, 1.0);
+  out.georeference.emplace(system);
+  return out;
+}
+
+FramedRaster geographic(Dataset file, int band, const OGRSpatialReference& crs, const ReadOptions& options,
+                        const std::string& path, std::vector<std::string>& notes) {
+  const Pixels p(*file);
+  refuseBeyondBody(p, path);
+  refuseWholeBodies(p, options, path);
+  const GeoPoint centre = geographicCentre(p, options);
+  const double finest_m = geographicResolution(p, crs.GetSemiMajor(), centre.latitude_rad);
+  const double resolution_m = options.resolution_m.value_or(finest_m);
+  notes.push_back("degrees resampled to cells of " + number(resolution_m) +
+                  " m in a local projection around " + number(centre.latitude_rad / kDegree) + "d," +
+                  number(centre.longitude_rad / kDegree) + "d");
+  return resampled(std::move(file), band, {localProjection(crs, centre), resolution_m, finest_m}, options,
+                   path);
+}
+
+FramedRaster projected(Dataset file, int band, const OGRSpatialReference& crs, const ReadOptions& options,
+                       const std::string& path, std::vector<std::string>& notes) {
+  const Pixels p(*file);
+  const double metres = crs.GetLinearUnits();
+  Georeference georeference(coordinateSystem(crs, path));
+  const Point middle = p.at(p.width / 2.0, p.height / 2.0);
+  const Point ground = georeference.groundScale({middle.x_m * metres, middle.y_m * metres});
+  if (!std::isfinite(ground.x_m) || !std::isfinite(ground.y_m))
+    throw InputError({path, "lies outside the range of its CRS '" + georeference.system().name + "'",
+                      "correct the CRS or read with --ignore-crs --resolution METRES"});
+  const double finest_m = p.meanSide() * metres * std::sqrt(ground.x_m * ground.y_m);
+  const double stretch = std::max(std::abs(ground.x_m - 1), std::abs(ground.y_m - 1));
+  if (stretch > kMostStretch) {
+    const GeoPoint centre = georeference.reverse({middle.x_m * metres, middle.y_m * metres});
+    const double resolution_m = options.resolution_m.value_or(finest_m);
+    notes.push_back("one metre of its CRS is " + number(ground.x_m) + " m of ground eastward, " +
+                    number(ground.y_m) +
+                    " m northward: resampled to true metres in a local projection, cells of " +
+                    number(resolution_m) + " m");
+    return resampled(std::move(file), band, {localProjection(crs, centre), resolution_m, finest_m}, options,
+                     path);
+  }
+  const double pixel_m = p.meanSide() * metres;
+  const double resolution_m = options.resolution_m.value_or(pixel_m);
+  if (!p.areSquare() || !near(resolution_m, pixel_m)) {
+    notes.push_back("pixels resampled to square cells of " + number(resolution_m) + " m");
+    return resampled(std::move(file), band, {crs, resolution_m, pixel_m}, options, path);
+  }
+  FramedRaster out = upright(std::move(file), band, metres);
+  out.georeference.emplace(std::move(georeference));
+  return out;
+}
+
+}  // namespace
+
+FramedRaster frame(Dataset file, int band, const ReadOptions& options, const std::string& path,
+                   std::vector<std::string>& notes) {
+  if (!Pixels(*file).areFinite())
+    throw InputError(
+        {path, "its pixel size or origin is not a number or zero", "repair it with gdal_edit.py -a_ullr"});
+  const OGRSpatialReference* stated = file->GetSpatialRef();
+  const bool usable =
+      stated != nullptr && (stated->IsProjected() || stated->IsGeographic()) && !options.ignore_crs;
+  if (!usable) {
+    if (options.resolution_m) return local(std::move(file), band, *options.resolution_m, path, notes);
+    throw InputError({path, options.ignore_crs ? "its CRS is ignored, so its cell size is unknown" : "no CRS",
+                      "pass --resolution METRES to read it as local metres"});
+  }
+  if (!Pixels(*file).stated)
+    throw InputError({path, "has a CRS but no pixel size", "pass --ignore-crs --resolution METRES"});
+  OGRSpatialReference crs(*stated);
+  crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  return crs.IsProjected() ? projected(std::move(file), band, crs, options, path, notes)
+                           : geographic(std::move(file), band, crs, options, path, notes);
+}
+
+}  // namespace talus::maps

@@ -1,0 +1,48 @@
+#include <algorithm>
+#include <cmath>
+
+#include <talus/planner/simulation/drive/map_expectation.hpp>
+
+namespace talus::planner {
+
+costmap::DriveState MapExpectation::at(const maps::Point& place, const costmap::Direction& heading) const {
+  const auto cell = map_.grid().cellAt(place);
+  if (!cell) return {};
+  const auto grid = map_.published();
+  const std::uint8_t curve = grid->at(*cell).curve();
+  return grid->cost().detail(onSlope(curve >= costmap::CellCode::kUnknown ? classCurve(*cell) : curve),
+                             heading);
+}
+
+costmap::DriveState MapExpectation::ofClass(const maps::Point& place,
+                                            const costmap::Direction& heading) const {
+  const auto cell = map_.grid().cellAt(place);
+  if (!cell) return {};
+  costmap::DriveState state = at(place, heading);
+  const costmap::DriveState of_class = map_.published()->cost().detail(onSlope(classCurve(*cell)), heading);
+  state.slip = std::min(state.slip, of_class.slip);
+  state.sinkage_m = std::min(state.sinkage_m, of_class.sinkage_m);
+  return state;
+}
+
+WheelExpectation MapExpectation::ofWheel(const maps::Point& place, const maps::Point& middle,
+                                         const costmap::Direction& heading) const {
+  const auto cell = map_.grid().cellAt(place);
+  const double radius_m = map_.model().rover().wheel.radius_m;
+  return {
+      .slip = static_cast<double>(ofClass(middle, heading).slip),
+      .sinkage_over_radius = static_cast<double>(ofClass(place, heading).sinkage_m) / radius_m,
+      .slip_angle_rad =
+          cell ? std::abs(map_.published()->cost().hold(onSlope(classCurve(*cell)), heading).slip_angle_rad)
+               : 0.0};
+}
+
+costmap::CellCode MapExpectation::onSlope(std::uint8_t curve) const {
+  return costmap::CellCode({.dz_dx = slope_.dzDx(), .dz_dy = slope_.dzDy(), .curve = curve});
+}
+
+std::uint8_t MapExpectation::classCurve(maps::Cell cell) const noexcept {
+  return static_cast<std::uint8_t>(std::max(map_.classIndex(cell), 0));
+}
+
+}  // namespace talus::planner

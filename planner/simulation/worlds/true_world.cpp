@@ -1,0 +1,198 @@
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include <talus/planner/simulation/worlds/true_world.hpp>
+#include <talus/terramech/contact/load_transfer.hpp>
+#include <talus/terramech/mobility/rut.hpp>
+
+namespace talus::planner {
+namespace {
+
+constexpr double kHighestSlip = 0.98;
+
+bool sameSoil(const terramech::Soil& a, const terramech::Soil& b) {
+  return a.cohesion_Pa == b.cohesion_Pa && a.friction_angle_rad == b.friction_angle_rad &&
+         a.sinkage_exponent == b.sinkage_exponent && a.cohesive_modulus == b.cohesive_modulus &&
+         a.frictional_modulus == b.frictional_modulus && a.shear_modulus_m == b.shear_modulus_m &&
+         a.c1 == b.c1 && a.c2 == b.c2;
+}
+
+// A wheel in a hole of its own shape, d deep, rises by d over sqrt(2 r d): the mean slope out of it (ours).
+double slopeOutOf(double dug_m, double radius_m) {
+  return std::sqrt(std::max(dug_m, 0.0) / (2.0 * radius_m));
+}
+
+struct LoadedTable {
+  const WheelTable* table;
+  double load;   // over that on the flat
+  double share;  // of the rover's
+};
+
+// What the slope asks of the wheels over the force normal to it; across as a size.
+struct Demand {
+  double along, across;
+};
+
+Demand demandOf(double along, double across) {
+  const double run = std::hypot(1.0, along);
+  return {along * std::sqrt(1.0 + along * along + across * across) / run, std::abs(across) / run};
+}
+
+// The common slip and slip angle at which the wheels pull and hold what is asked.
+struct Balance {
+  double slip = kHighestSlip;
+  double angle_rad = 0.0;
+  bool stuck = true, slides = false;
+};
+
+// What wheels turned uphill by an angle give along and across the way.
+Demand given(const std::vector<LoadedTable>& wheels, std::size_t row, std::size_t sheet) {
+  double pull = 0.0, hold = 0.0;
+  for (const LoadedTable& w : wheels) {
+    const WheelTable::Row forces = w.table->row(row, w.load, sheet);
+    pull += w.share * forces.pull;
+    hold += w.share * forces.hold;
+  }
+  const double c = std::cos(WheelTable::angle_rad(sheet)), s = std::sin(WheelTable::angle_rad(sheet));
+  return {pull * c - hold * s, hold * c + pull * s};
+}
+
+// At one slip angle, the least slip that gives the demand along, since on soft ground the pull falls again as the
+// wheel digs in, and what it holds across there.
+struct Steady {
+  double slip, hold;
+  bool brakes;  // false where even locked wheels pull more than is asked: it slides down
+};
+
+std::optional<Steady> steady(const std::vector<LoadedTable>& wheels, double along, std::size_t sheet) {
+  Demand before{};
+  for (std::size_t row = 0; row < WheelTable::kRows && WheelTable::slip(row) <= kHighestSlip; ++row) {
+    const Demand now = given(wheels, row, sheet);
+    if (now.along >= along) {
+      if (row == 0) return Steady{-1.0, now.across, now.along <= along};
+      const double t = (along - before.along) / (now.along - before.along);
+      return Steady{WheelTable::slip(row - 1) + t * (WheelTable::slip(row) - WheelTable::slip(row - 1)),
+                    before.across + t * (now.across - before.across), true};
+    }
+    before = now;
+  }
+  return std::nullopt;
+}
+
+// The least slip angle at which the wheels hold it, between two sheets where both are steady.
+Balance balanced(const std::vector<LoadedTable>& wheels, const Demand& demand) {
+  std::optional<Steady> before;
+  for (std::size_t sheet = 0; sheet < WheelTable::kAngles; ++sheet) {
+    const auto now = steady(wheels, demand.along, sheet);
+    if (sheet == 0 && !now) return {};
+    if (now && !now->brakes) break;
+    if (now && now->hold >= demand.across) {
+      const double t = before ? (demand.across - before->hold) / (now->hold - before->hold) : 1.0;
+      const double from = sheet == 0 ? 0.0 : WheelTable::angle_rad(sheet - 1);
+      return {before ? before->slip + t * (now->slip - before->slip) : now->slip,
+              from + t * (WheelTable::angle_rad(sheet) - from), false, false};
+    }
+    before = now;
+  }
+  return {.stuck = true, .slides = true};
+}
+
+}  // namespace
+
+TrueWorld::TrueWorld(const WorldSoils& soils, const terramech::Rover& rover,
+                     maps::Raster<std::uint8_t> class_index)
+    : rover_(rover),
+      class_index_(std::move(class_index)),
+      classes_(soils.classes.size()),
+      soils_(soils.classes),
+      effects_(soils.effects),
+      patches_(soils.patches) {
+  for (const SoilPatch& patch : patches_) {
+    const auto alike = std::find_if(soils_.begin() + static_cast<std::ptrdiff_t>(classes_), soils_.end(),
+                                    [&](const auto& soil) { return sameSoil(soil, patch.soil); });
+    patch_soil_.push_back(static_cast<std::size_t>(alike - soils_.begin()));
+    if (alike == soils_.end()) soils_.push_back(patch.soil);
+  }
+  // A class raster may declare hundreds of classes, each a tenth of a second, and hold three.
+  std::vector<bool> occurs(soils_.size(), false);
+  for (const std::uint8_t index : class_index_.values())
+    occurs[std::min<std::size_t>(index, classes_ - 1)] = true;
+  occurs[0] = true;  // beyond the map
+  for (const std::size_t soil : patch_soil_) occurs[soil] = true;
+  tables_.resize(soils_.size());
+  for (std::size_t i = 0; i < soils_.size(); ++i)
+    if (occurs[i])
+      tables_[i] = Tables{.fresh = WheelTable(soils_[i], rover_, effects_),
+                          .rut = WheelTable(terramech::rutted(soils_[i]), rover_, effects_)};
+}
+
+std::size_t TrueWorld::soilAt(const maps::Point& place, double margin_m) const noexcept {
+  for (std::size_t i = patches_.size(); i-- > 0;) {
+    const SoilPatch& patch = patches_[i];
+    if (std::hypot(place.x_m - patch.centre.x_m, place.y_m - patch.centre.y_m) < patch.radius_m + margin_m)
+      return patch_soil_[i];
+  }
+  const auto cell = class_index_.grid().cellAt(place);
+  return cell ? std::min<std::size_t>(class_index_[*cell], classes_ - 1) : 0;
+}
+
+// Axles evenly over the wheelbase. Across the slope weight moves to the lower wheels by the moment of its part across it,
+// as along it; none carries less than a tenth of its share.
+std::vector<TrueWorld::WheelState> TrueWorld::standing(const Motion& motion) const {
+  const int axles = std::max(rover_.wheel_count / 2, 2);
+  std::vector<double> along_m;
+  for (int wheel = 0; wheel < 2 * axles; ++wheel)
+    along_m.push_back(rover_.wheelbase_m * (0.5 - static_cast<double>(wheel / 2) / (axles - 1)));
+  const std::vector<double> loads_N = terramech::wheelLoads_N(rover_, motion.gradient, along_m);
+  const double run = std::hypot(1.0, motion.gradient),
+               leaning = std::copysign(demandOf(motion.gradient, motion.across).across, motion.across) * 2.0 *
+                         rover_.centre_of_mass_height_m / rover_.track_m,
+               moved = std::clamp(leaning, -0.9, 0.9), less = run / std::hypot(run, motion.across);
+  std::vector<WheelState> wheels;
+  for (std::size_t w = 0; w < along_m.size(); ++w) {
+    const double side = w % 2 == 0 ? 1.0 : -1.0, across_m = side * 0.5 * rover_.track_m;
+    const maps::Point place{motion.place.x_m + along_m[w] * motion.heading.x - across_m * motion.heading.y,
+                            motion.place.y_m + along_m[w] * motion.heading.y + across_m * motion.heading.x};
+    wheels.push_back({.place = place,
+                      .load_N = loads_N[w] * less * (1.0 - side * moved),
+                      .passes = motion.ruts ? motion.ruts->passes(place) : 0,
+                      .forces = {}});
+  }
+  return wheels;
+}
+
+TrueWorld::Step TrueWorld::drive(const Motion& motion) const {
+  Step step;
+  step.wheels = standing(motion);
+  double load_N = 0.0;
+  for (const WheelState& w : step.wheels) load_N += w.load_N;
+  std::vector<LoadedTable> wheels;
+  for (const WheelState& w : step.wheels) {
+    const Tables& ground = *tables_[soilAt(w.place)];
+    wheels.push_back({.table = w.passes > 0 ? &ground.rut : &ground.fresh,
+                      .load = w.load_N / terramech::wheelLoad_N(rover_),
+                      .share = w.load_N / load_N});
+  }
+  Demand demand = demandOf(motion.gradient, motion.across);
+  demand.along += slopeOutOf(motion.dug_m, rover_.wheel.radius_m);
+  const Balance balance = balanced(wheels, demand);
+  step.stuck = balance.stuck;
+  step.slides = balance.slides;
+  step.slip = balance.slip;
+  step.slip_angle_rad = -std::copysign(balance.angle_rad, motion.across);
+  for (std::size_t w = 0; w < wheels.size(); ++w) {
+    step.wheels[w].forces = wheels[w].table->at(step.slip, wheels[w].load, balance.angle_rad);
+    step.torque_Nm += step.wheels[w].forces.torque * step.wheels[w].load_N * rover_.wheel.radius_m;
+  }
+  // Power of all wheels over the speed of the way: T omega / v with omega = v cos(beta)/(r (1 - i)); a braking wheel
+  // gives nothing back.
+  const double moving = (1.0 - std::max(step.slip, 0.0)) / std::cos(balance.angle_rad);
+  step.speed_mps = rover_.max_speed_mps * moving;
+  step.energy_J_per_m = std::max(step.torque_Nm, 0.0) / (rover_.wheel.radius_m * moving) +
+                        rover_.hotel_power_W / step.speed_mps;
+  return step;
+}
+
+}  // namespace talus::planner

@@ -1,0 +1,70 @@
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include <talus/planner/simulation/worlds/world_draw.hpp>
+
+namespace talus::planner {
+namespace {
+
+using terramech::Soil;
+
+constexpr double kClear_m = 2.0;  // between start or goal and a random patch
+
+// A soil stays in range however far the draw lies out.
+double scaled(double value, double factor) {
+  return value * std::max(factor, 0.2);
+}
+
+Soil varied(Soil soil, double spread, std::mt19937_64& random) {
+  std::normal_distribution<double> factor(1.0, spread);
+  soil.cohesion_Pa = scaled(soil.cohesion_Pa, factor(random));
+  soil.friction_angle_rad = std::atan(scaled(std::tan(soil.friction_angle_rad), factor(random)));
+  const double stiffness = std::max(factor(random), 0.2);
+  soil.cohesive_modulus *= stiffness;
+  soil.frictional_modulus *= stiffness;
+  return soil;
+}
+
+// The draws of a class are its own: they depend on the world and its number, not on what else is declared.
+std::mt19937_64 drawsOf(std::uint64_t seed, int number) {
+  const auto low = [](std::uint64_t word) { return static_cast<std::uint32_t>(word); };
+  std::seed_seq words{low(seed), low(seed >> 32), static_cast<std::uint32_t>(number)};
+  return std::mt19937_64(words);
+}
+
+maps::Point anywhere(const maps::Grid& grid, std::mt19937_64& random) {
+  std::uniform_real_distribution<double> share(0.0, 1.0);
+  const double x = share(random), y = share(random);
+  return {grid.south_west.x_m + x * grid.width * grid.resolution_m,
+          grid.south_west.y_m + y * grid.height * grid.resolution_m};
+}
+
+}  // namespace
+
+WorldSoils drawWorld(const Truth& truth, const std::vector<costmap::GroundClass>& classes,
+                     const maps::Grid& grid, const WorldDraw& draw) {
+  WorldSoils world;
+  for (const costmap::GroundClass& ground : classes) {
+    const auto stated = truth.classes.find(ground.number);
+    std::mt19937_64 own = drawsOf(draw.seed, ground.number);
+    world.classes.push_back(
+        varied(stated == truth.classes.end() ? ground.soil : stated->second, truth.spread, own));
+  }
+  world.patches = truth.patches;
+  world.effects = truth.effects;
+  std::mt19937_64 random(draw.seed);
+  const Soil patch_soil = truth.random_patches > 0 ? varied(truth.patch_soil, truth.spread, random) : Soil{};
+  std::uniform_real_distribution<double> size(0.5, 1.5);
+  for (int i = 0; i < truth.random_patches; ++i) {
+    const maps::Point centre = anywhere(grid, random);
+    const double radius_m = truth.patch_radius_m * size(random);
+    const auto near = [&](const maps::Point& p) {
+      return std::hypot(centre.x_m - p.x_m, centre.y_m - p.y_m) < radius_m + kClear_m;
+    };
+    if (!near(draw.start) && !near(draw.goal)) world.patches.push_back({centre, radius_m, patch_soil});
+  }
+  return world;
+}
+
+}  // namespace talus::planner

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <talus/terramech/calibration/fit/effect_candidates.hpp>
+#include <talus/terramech/calibration/fit/model_fit.hpp>
+#include <talus/terramech/calibration/noise/gain_distribution.hpp>
+#include <talus/terramech/calibration/noise/whitening.hpp>
+
+namespace talus::terramech {
+
+/// A model on rows, with what it solved there.
+struct ModelOnRows {
+  const RefinedModel& model;
+  const Trial& trial;
+  const Whitening& whitening;
+  const Eigen::MatrixXd& level;  ///< its readings, rows x kChannels
+  const Eigen::VectorXd& sinkage_m;
+  const SolvedContacts& solved;
+};
+
+/// What a candidate does to first order, whitened row by row: the change at its typical size and the derivatives
+/// by its other parameters, or the values of a curve at its knots.
+Contender contenderOf(const Candidate& candidate, const ModelOnRows& at);
+
+/// What a plan lets a fit move, to first order about a model that was fitted, in steps of rangeOf().scale.
+LinearModel linearised(const RefinedModel& fitted, const Trial& trial, const Whitening& whitening,
+                       const FitPlan& plan, SolvedContacts& solved);
+
+/// A model with a candidate's parts behind its effects.
+RefinedModel withCandidate(const RefinedModel& model, const Candidate& candidate);
+
+}  // namespace talus::terramech

@@ -1,0 +1,366 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include <talus/terramech/calibration/fit/effect_candidates.hpp>
+#include <talus/terramech/calibration/noise/spline_basis.hpp>
+
+namespace talus::terramech {
+namespace {
+
+/// Extent of a covariate over the rows.
+struct Extent {
+  double low, high, middle;  // middle: median
+};
+
+std::vector<double> finite(const Eigen::VectorXd& x) {
+  std::vector<double> v;
+  for (double value : x)
+    if (std::isfinite(value)) v.push_back(value);
+  std::sort(v.begin(), v.end());
+  return v;
+}
+
+Extent extentOf(const Eigen::VectorXd& x) {
+  const auto v = finite(x);
+  return v.empty() ? Extent{0.0, 1.0, 0.5} : Extent{v.front(), v.back(), v[v.size() / 2]};
+}
+
+/// The rim's speed where it is the ground's in other units, at one level of slip: nothing can tell them
+/// apart, and the rate forms are of the ground's.
+bool isTwin(const Trial& trial, const std::string& column) {
+  if (column != "rim_speed_mps") return false;
+  double n = 0.0, mean = 0.0, square = 0.0;
+  for (const WheelState& s : trial.states) {
+    const double ratio = s.speed_mps / s.rim_speed_mps;
+    if (!std::isfinite(ratio)) continue;
+    n += 1.0;
+    mean += ratio;
+    square += ratio * ratio;
+  }
+  if (2.0 * n < trial.rows()) return false;
+  mean /= n;
+  return square / n - mean * mean < 1e-3 * mean * mean;
+}
+
+class Collector {
+ public:
+  Collector(const Trial& trial, const Eigen::VectorXd& sinkage_m) : trial_(trial), sinkage_m_(sinkage_m) {}
+
+  bool varies(const std::string& column) const {
+    return !isTwin(trial_, column) &&
+           std::find(trial_.covariates.begin(), trial_.covariates.end(), column) != trial_.covariates.end();
+  }
+
+  const std::vector<std::string>& covariates() const { return trial_.covariates; }
+
+  Extent extent(const std::string& column) const {
+    return extentOf(covariateValues(trial_, column, sinkage_m_));
+  }
+
+  /// Adds a form on a column, with some parameters set: pairs of parameter name and value.
+  void add(const EffectForm& form, const std::string& column,
+           std::initializer_list<std::pair<const char*, double>> starts = {}) {
+    if (!trial_.has(form.channel) && !form.act) return;
+    Effect effect;
+    effect.name = form.name;
+    effect.covariate = column;
+    effect.channel = form.channel;
+    Candidate candidate{{}, form.family, 0};
+    for (const EffectParameter& p : form.parameters) {
+      double value = p.typical;
+      for (const auto& [name, start] : starts)
+        if (std::string_view(name) == p.name) value = start;
+      effect.parameters.push_back(p.fitted ? std::clamp(value, p.low, p.high) : value);
+      candidate.parameters += p.fitted;
+    }
+    candidate.parts = {effect};
+    all_.push_back(std::move(candidate));
+  }
+
+  /// Several forms as one explanation, at their typical sizes.
+  void addTogether(const std::vector<const char*>& names) {
+    const std::size_t first = all_.size();
+    for (const char* name : names) {
+      const EffectForm& form = *findEffect(name);
+      add(form, form.covariate);
+    }
+    if (all_.size() < first + 2) return;
+    Candidate whole = all_[first];
+    for (std::size_t k = first + 1; k < all_.size(); ++k) {
+      whole.parts.push_back(all_[k].parts.front());
+      whole.parameters += all_[k].parameters;
+    }
+    all_.resize(first);
+    all_.push_back(std::move(whole));
+  }
+
+  /// The last one again, for each group of each text column alone.
+  void repeatByGroup() {
+    const Candidate whole = all_.back();
+    for (const std::string& column : trial_.groupings) {
+      std::set<std::string> labels;
+      for (const WheelState& s : trial_.states) labels.emplace(s.label(column));
+      for (const std::string& label : labels) {
+        if (label.empty()) continue;
+        Candidate one = whole;
+        one.parts[0].only_column = column;
+        one.parts[0].only_value = label;
+        all_.push_back(std::move(one));
+      }
+    }
+  }
+
+  std::vector<Candidate> take() { return std::move(all_); }
+
+ private:
+  const Trial& trial_;
+  const Eigen::VectorXd& sinkage_m_;
+  std::vector<Candidate> all_;
+};
+
+using Rule = void (*)(Collector&, const EffectForm&);
+
+void always(Collector& to, const EffectForm& form) {
+  to.add(form, form.covariate);
+}
+
+void whereItVaries(Collector& to, const EffectForm& form) {
+  if (to.varies(form.covariate)) to.add(form, form.covariate);
+}
+
+void rate(Collector& to, const EffectForm& form) {
+  for (const char* column : {"speed_mps", "rim_speed_mps"})
+    if (to.varies(column)) to.add(form, column, {{"v0", std::max(1e-4, to.extent(column).middle)}});
+}
+
+void passes(Collector& to, const EffectForm& form) {
+  if (!to.varies("pass_index")) return;
+  const double first = to.extent("pass_index").low;
+  if (form.parameters.size() == 2) return to.add(form, "pass_index", {{"first", first}});
+  for (double scale : {0.6, 2.0}) to.add(form, "pass_index", {{"p0", scale}, {"first", first}});
+}
+
+void hardLayer(Collector& to, const EffectForm& form) {
+  const Extent z = to.extent("sinkage_m");
+  for (double share : {0.15, 0.35, 0.55, 0.75})
+    for (double modulus : {5e6, 3e7})
+      to.add(form, "sinkage_m", {{"H", z.low + share * (z.high - z.low)}, {"k_h", modulus}});
+}
+
+void pile(Collector& to, const EffectForm& form) {
+  for (double start : {0.1, 0.35, 0.55}) to.add(form, "slip", {{"i0", start}});
+}
+
+void sensor(Collector& to, const EffectForm& form) {
+  to.add(form, form.covariate);
+  to.repeatByGroup();
+}
+
+void lugs(Collector& to, const EffectForm& form) {
+  if (to.extent("grouser_height_m").high > 0.0) to.add(form, form.covariate);
+}
+
+/// Columns along which a soil or a sensor may drift: time, and what the weather does.
+std::vector<std::string> driftColumns(const Collector& c, const std::vector<std::string>& covariates) {
+  std::vector<std::string> columns;
+  for (const std::string& name : covariates) {
+    bool drifts = name == "time_s";
+    for (const char* word : {"temp", "moist", "humid", "water", "hour", "suction"})
+      drifts |= name.find(word) != std::string::npos;
+    if (drifts && c.varies(name)) columns.push_back(name);
+  }
+  return columns;
+}
+
+void drift(Collector& to, const EffectForm& form) {
+  if (form.parameters.size() == 5 && to.varies("heading_rad"))  // once and twice a turn
+    for (double period : {1.0, 0.5})
+      for (double phase : {0.0, 1.57})
+        to.add(form, "heading_rad",
+               {{"start", 0.0}, {"span", 2.0 * std::numbers::pi}, {"period", period}, {"phase", phase}});
+  for (const std::string& column : driftColumns(to, to.covariates())) {
+    const Extent x = to.extent(column);
+    const double span = x.high - x.low;
+    if (form.parameters.size() < 5) {
+      to.add(form, column, {{"start", x.low}, {"span", span}});
+      continue;
+    }
+    if (column != "time_s") continue;  // a wave needs a clock
+    for (double period : {0.6, 1.0, 2.0})
+      for (double phase : {0.0, 1.57})
+        to.add(form, column, {{"start", x.low}, {"span", span}, {"period", period}, {"phase", phase}});
+  }
+}
+
+/// Nothing by itself: these go with forms that dig or slide.
+void onlyTogether(Collector&, const EffectForm&) {}
+
+/// Only rows of a braked wheel can tell.
+void skid(Collector& to, const EffectForm& form) {
+  if (to.extent("slip").low < -0.02) to.add(form, form.covariate);
+}
+
+Rule ruleOf(const EffectForm& form) {
+  const std::string family = form.family, name = form.name;
+  if (name == "rear_fill" || name == "bulldozing_ahead") return onlyTogether;
+  if (family == "rate") return rate;
+  if (family == "multipass") return passes;
+  if (family == "hardpan") return hardLayer;
+  if (family == "rear_pile") return pile;
+  if (family == "drift") return drift;
+  if (family == "grouser" || name == "slip_sinkage_reece") return lugs;
+  if (name == "torque_offset" || name == "load_cell_tilt" || name == "sinkage_datum" || name == "slip_bias")
+    return sensor;
+  if (name == "skid_sinkage") return skid;
+  if (family == "diameter" || family == "lateral_slip" || family == "load_transfer" ||
+      name == "torque_offset_viscous")
+    return whereItVaries;
+  return always;
+}
+
+/// What happens at once to a wheel that is dragged or slides sideways; one without the others explains
+/// little.
+void together(Collector& to) {
+  const bool braked = to.extent("slip").low < -0.02, sideways = to.varies("slip_angle_rad");
+  if (!braked && !sideways) return;
+  std::vector<const char*> names;
+  if (sideways) names = {"side_ploughing", "side_bulldozing_rough"};
+  if (braked) names.push_back("skid_sinkage");
+  names.push_back("slip_sinkage_linear");
+  if (to.extent("grouser_height_m").high > 0.0) names.push_back("slip_sinkage_reece");
+  for (const char* name : {"rear_fill", "bulldozing_ahead", "elastic_rebound"}) names.push_back(name);
+  to.addTogether(names);
+}
+
+}  // namespace
+
+std::vector<Candidate> libraryCandidates(const Trial& trial, const Eigen::VectorXd& sinkage_m) {
+  Collector collector{trial, sinkage_m};
+  for (const EffectForm& form : effectLibrary()) ruleOf(form)(collector, form);
+  together(collector);
+  return collector.take();
+}
+
+namespace {
+
+constexpr Channel kChannelOrder[] = {Channel::DrawbarPull, Channel::Sinkage, Channel::Torque,
+                                     Channel::SideForce};
+
+Effect flatCurve(const char* name, const std::string& covariate, Channel channel,
+                 const std::vector<double>& knots) {
+  Effect curve;
+  curve.name = name;
+  curve.covariate = covariate;
+  curve.channel = channel;
+  curve.knots = knots;
+  curve.parameters.assign(knots.size(), 0.0);
+  return curve;
+}
+
+/// A curve in each channel alone, and through stiffness and strength.
+std::vector<Effect> curvesOf(const Trial& trial, const std::string& covariate,
+                             const std::vector<double>& knots) {
+  std::vector<Effect> all;
+  for (const Channel channel : kChannelOrder)
+    if (trial.has(channel) && !(covariate == "sinkage_m" && channel == Channel::Sinkage))
+      all.push_back(flatCurve("empirical", covariate, channel, knots));
+  if (covariate == "sinkage_m" || covariate == "slip_angle_rad") return all;
+  all.push_back(flatCurve("empirical_stiffness", covariate, Channel::Sinkage, knots));
+  all.push_back(flatCurve("empirical_strength", covariate, Channel::DrawbarPull, knots));
+  return all;
+}
+
+void addCurves(const Trial& trial, const std::string& covariate, const std::vector<double>& knots,
+               std::vector<Candidate>& all) {
+  for (Effect& curve : curvesOf(trial, covariate, knots))
+    all.push_back({{std::move(curve)}, "empirical", static_cast<int>(knots.size())});
+}
+
+/// Where a step may lie: up to nine gaps between values, at even shares of the rows, each the widest within a
+/// twentieth of them.
+std::vector<std::vector<double>> stepsOf(const Eigen::VectorXd& x) {
+  const std::vector<double> v = finite(x);
+  const int rows = static_cast<int>(v.size());
+  std::set<std::pair<double, double>> gaps;
+  for (int k = 1; k < 10 && rows > 20; ++k) {
+    const int middle = k * rows / 10, reach = std::max(1, rows / 20);
+    int widest = middle;
+    for (int i = std::max(1, middle - reach); i <= std::min(rows - 1, middle + reach); ++i) {
+      const auto width = [&](int j) {
+        return v[static_cast<std::size_t>(j)] - v[static_cast<std::size_t>(j - 1)];
+      };
+      if (width(i) > width(widest)) widest = i;
+    }
+    const double low = v[static_cast<std::size_t>(widest - 1)], high = v[static_cast<std::size_t>(widest)];
+    if (high > low) gaps.insert({low, high});
+  }
+  std::vector<std::vector<double>> knots;
+  for (const auto& [low, high] : gaps) knots.push_back({low, high});
+  return knots;
+}
+
+/// A constant for each group of a text column.
+void addGroups(const Trial& trial, const std::string& column, std::vector<Candidate>& all) {
+  std::set<std::string> labels;
+  for (const WheelState& s : trial.states) labels.emplace(s.label(column));
+  for (const Effect& shape : curvesOf(trial, "slip", {0.0})) {
+    Candidate levels{{}, "empirical", static_cast<int>(labels.size())};
+    for (const std::string& label : labels) {
+      levels.parts.push_back(shape);
+      levels.parts.back().only_column = column;
+      levels.parts.back().only_value = label;
+    }
+    all.push_back(std::move(levels));
+  }
+}
+
+}  // namespace
+
+bool isOwnColumn(const std::string& column) {
+  const auto& known = stateColumns();
+  return std::find(known.begin(), known.end(), column) == known.end();
+}
+
+double furtherQuestions(const Trial& trial) {
+  const auto kept = std::count_if(trial.covariates.begin(), trial.covariates.end(), isOwnColumn) +
+                    static_cast<long>(trial.groupings.size());
+  return std::log1p(static_cast<double>(trial.dropped.size()) / std::max(1.0, static_cast<double>(kept)));
+}
+
+std::vector<Candidate> coarseCandidates(const Trial& trial, const std::string& column) {
+  std::vector<Candidate> all;
+  if (std::find(trial.groupings.begin(), trial.groupings.end(), column) != trial.groupings.end()) {
+    addGroups(trial, column, all);
+  } else {
+    const auto knots = quantileKnots(covariateValues(trial, column, {}), 4);
+    if (knots.size() > 1) addCurves(trial, column, knots, all);
+  }
+  std::erase_if(all, [](const Candidate& c) { return c.parts.front().name != "empirical"; });
+  return all;
+}
+
+std::vector<Candidate> empiricalCandidates(const Trial& trial, const Eigen::VectorXd& sinkage_m) {
+  std::vector<Candidate> all;
+  std::vector<std::string> names = trial.covariates;
+  names.push_back("sinkage_m");
+  for (const std::string& name : names) {
+    if (isTwin(trial, name)) continue;
+    const Eigen::VectorXd x = covariateValues(trial, name, sinkage_m);
+    std::size_t coarser = 1;
+    for (int most : {2, 4, 7}) {
+      const auto knots = quantileKnots(x, most);
+      if (knots.size() <= coarser || 4 * static_cast<int>(knots.size()) > trial.rows()) continue;
+      coarser = knots.size();
+      addCurves(trial, name, knots, all);
+    }
+    if (name == "time_s" || name == "heading_rad" || isOwnColumn(name))
+      for (const auto& knots : stepsOf(x))
+        if (coarser > 2) addCurves(trial, name, knots, all);
+  }
+  for (const std::string& column : trial.groupings) addGroups(trial, column, all);
+  return all;
+}
+
+}  // namespace talus::terramech

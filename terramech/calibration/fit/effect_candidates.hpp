@@ -1,0 +1,46 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <talus/terramech/calibration/table/trial.hpp>
+
+namespace talus::terramech {
+
+/// One explanation that may be added to a model: an effect of the library, or curves of one covariate in some
+/// channels.
+struct Candidate {
+  std::vector<Effect> parts;  ///< one, or one curve a channel
+  std::string family;         ///< "empirical" for curves
+  int parameters = 0;         ///< fitted numbers
+
+  bool empirical() const { return parts.front().empirical(); }
+  /// The column that explains: of what acts on one group of rows, the column of the group.
+  const std::string& covariate() const {
+    const Effect& front = parts.front();
+    return front.only_column.empty() ? front.covariate : front.only_column;
+  }
+};
+
+/// Every effect of the library that the columns of a trial allow, at its typical size, with starts where it
+/// is nonlinear; sensor effects also for one group of a text column. `sinkage_m` is the model's.
+std::vector<Candidate> libraryCandidates(const Trial& trial, const Eigen::VectorXd& sinkage_m);
+
+/// Flat curves of every covariate in each measured channel alone, through stiffness and through strength: a line,
+/// splines of 4 and 7 knots; of time, heading and columns of one's own steps; of text columns a constant for each
+/// group.
+std::vector<Candidate> empiricalCandidates(const Trial& trial, const Eigen::VectorXd& sinkage_m);
+
+/// Whether a numeric column is none that every table may have (stateColumns()).
+bool isOwnColumn(const std::string& column);
+
+/// GainDistribution::further_questions of a search in the columns that a screening kept: ln((kept + dropped) / kept).
+double furtherQuestions(const Trial& trial);
+
+/// The coarsest question to a column of one's own: in each measured channel alone a spline of 4 knots, or of a text
+/// column a constant for each group.
+std::vector<Candidate> coarseCandidates(const Trial& trial, const std::string& column);
+
+}  // namespace talus::terramech

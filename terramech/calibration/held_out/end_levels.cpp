@@ -1,0 +1,183 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include <talus/terramech/calibration/held_out/end_levels.hpp>
+#include <talus/terramech/calibration/held_out/refit.hpp>
+#include <talus/terramech/calibration/noise/folds.hpp>
+#include <talus/terramech/numerics/normal_distribution.hpp>
+
+namespace talus::terramech {
+namespace {
+
+using Values = std::vector<double>;
+
+Values valuesOf(const Trial& trial, const std::string& column) {
+  Values x;
+  for (const WheelState& s : trial.states) x.push_back(s.covariate(column));
+  return x;
+}
+
+/// Least and greatest finite value of the rows that `rows` marks with `wanted`.
+std::pair<double, double> rangeOver(const Values& x, const std::vector<char>& rows, char wanted) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (std::size_t row = 0; row < x.size(); ++row)
+    if (rows[row] == wanted && std::isfinite(x[row]))
+      low = std::min(low, x[row]), high = std::max(high, x[row]);
+  return {low, high};
+}
+
+/// How much of a column's end is held out.
+enum class Depth { Level, Half };
+
+/// Values of a column are of one level where they are nearer than the spacing of 25 even levels, of which a table of
+/// levels has fewer.
+constexpr double kLevelGap = 0.04;
+
+/// Rows of the outermost level, or of the levels that hold at most half of the rows; where there are no levels the
+/// outermost tenth or half. Empty where there is none to spare.
+std::vector<char> outermost(const Values& x, bool high, Depth depth) {
+  Values sorted;
+  for (double v : x)
+    if (std::isfinite(v)) sorted.push_back(high ? -v : v);
+  if (sorted.size() < 6) return {};
+  std::sort(sorted.begin(), sorted.end());
+  const double gap = kLevelGap * (sorted.back() - sorted.front());
+  std::vector<std::size_t> ends;  // of the levels
+  for (std::size_t k = 0; k < sorted.size(); ++k)
+    if (k + 1 == sorted.size() || sorted[k + 1] - sorted[k] > gap) ends.push_back(k);
+  if (ends.size() == 2) return {};
+  const bool half = depth == Depth::Half;
+  double reach = sorted[half ? (sorted.size() - 1) / 2 : sorted.size() / 10];
+  if (ends.size() > 1 && ends.size() <= 8) {
+    std::size_t last = 0;
+    while (half && 2 * (ends[last + 1] + 1) <= sorted.size()) ++last;
+    reach = sorted[ends[last]];
+  }
+  std::vector<char> rows;
+  for (double v : x) rows.push_back((high ? -v : v) <= reach);
+  return 2 * std::count(rows.begin(), rows.end(), 1) > static_cast<long>(rows.size()) ? std::vector<char>{}
+                                                                                      : rows;
+}
+
+std::set<std::string> columnsOf(const TraceResult& result) {
+  std::set<std::string> wanted{"slip", "slip_angle_rad", "load_N"}, there;
+  for (const Effect& e : result.refined.effects) wanted.insert(e.covariate);
+  for (const std::string& column : result.trial.covariates)
+    if (wanted.contains(column)) there.insert(column);
+  return there;
+}
+
+/// Log-likelihood of errors of the size of the floor, up to what all models share.
+double logLikelihood(int rows, const ChannelErrors& rmse, const ChannelErrors& floor) {
+  double sum = 0.0;
+  for (std::size_t c = 0; c < kChannels; ++c)
+    if (std::isfinite(rmse[c]) && floor[c] > 0.0) sum -= 0.5 * rows * std::pow(rmse[c] / floor[c], 2);
+  return sum;
+}
+
+/// `level`: the outermost level, where `held` goes deeper; an effect whose law did not foretell that one has none.
+EndLevel endOf(const TraceResult& result, const TraceOptions& options, const std::string& column, bool high,
+               const std::vector<char>& held, const EndLevel* level) {
+  const Values x = valuesOf(result.trial, column);
+  const auto [low_seen, high_seen] = rangeOver(x, held, 0);
+  EndLevel end{.column = column, .high = high, .edge = high ? high_seen : low_seen};
+  double farthest = 0.0;
+  std::vector<char> seen;
+  for (std::size_t row = 0; row < x.size(); ++row) {
+    seen.push_back(!held[row]);
+    if (!held[row]) continue;
+    const double beyond = std::abs(x[row] - end.edge);
+    ++end.rows;
+    end.distance += beyond * beyond;
+    farthest = std::max(farthest, beyond);
+  }
+  end.distance = std::sqrt(end.distance / end.rows);
+  const Trial unseen = subset(result.trial, held);
+  end.base_rmse = end.refined_rmse = rmseAsMeasured(refittedBase(result, options, seen), unseen);
+  if (!hasCorrections(result)) return end;
+  const RefinedModel by_law = refittedModel(result, options, seen);
+  const auto likelihood = [&](const RefinedModel& model) {
+    return logLikelihood(end.rows, rmseAsMeasured(model, unseen), result.noise_floor);
+  };
+  // By more than a number that means nothing gains by chance where it is fitted: half a chi-squared of one.
+  const double chance = 0.5 * std::pow(normalQuantile(1.0 - 0.5 * options.significance), 2);
+  const double reached = likelihood(by_law) - chance;
+  RefinedModel earned = by_law;
+  end.reach.assign(by_law.effects.size(), 0.0);
+  for (std::size_t k = 0; k < end.reach.size(); ++k) {
+    if (by_law.effects[k].empirical() || by_law.effects[k].covariate != column) continue;
+    RefinedModel at_edge = by_law;
+    at_edge.effects[k].knots = {low_seen, high_seen};
+    const bool allowed = !level || level->reach[k] > 0.0, better = reached > likelihood(at_edge);
+    if (allowed && better) end.reach[k] = farthest;
+    const bool law = level ? allowed : better;
+    end.law = end.law || law;
+    if (!law) earned.effects[k].knots = at_edge.effects[k].knots;
+  }
+  end.refined_rmse = rmseAsMeasured(earned, unseen);
+  return end;
+}
+
+}  // namespace
+
+bool hasCorrections(const TraceResult& result) {
+  return result.refined.effects.size() > result.base.effects.size();
+}
+
+std::vector<EndLevel> endLevels(const TraceResult& result, const TraceOptions& options,
+                                const ProgressMonitor& watch) {
+  std::vector<EndLevel> ends;
+  for (const std::string& column : columnsOf(result))
+    for (const bool high : {false, true}) {
+      if (watch.stopped()) return ends;
+      const Values x = valuesOf(result.trial, column);
+      const std::vector<char> level = outermost(x, high, Depth::Level);
+      if (level.empty()) continue;
+      ends.push_back(endOf(result, options, column, high, level, nullptr));
+      const std::vector<char> half = outermost(x, high, Depth::Half);
+      if (!hasCorrections(result) || half.empty() || half == level) continue;
+      const EndLevel outer = ends.back();
+      ends.push_back(endOf(result, options, column, high, half, &outer));
+    }
+  return ends;
+}
+
+void boundEffects(RefinedModel& model, const Trial& trial, const std::vector<EndLevel>& ends) {
+  for (std::size_t k = 0; k < model.effects.size(); ++k) {
+    Effect& effect = model.effects[k];
+    if (effect.empirical()) continue;
+    const Values x = valuesOf(trial, effect.covariate);
+    const auto [low, high] = rangeOver(x, std::vector<char>(x.size(), 1), 1);
+    if (!(low < high)) continue;
+    double below = 0.0, above = 0.0;
+    for (const EndLevel& end : ends) {
+      if (end.column != effect.covariate || k >= end.reach.size()) continue;
+      double& reach = end.high ? above : below;
+      reach = std::max(reach, end.reach[k]);
+    }
+    effect.knots = {low - below, high + above};
+  }
+}
+
+std::vector<TrainedRange> trainedRanges(const Trial& trial, const std::vector<EndLevel>& ends,
+                                        const ChannelErrors& floor) {
+  std::vector<TrainedRange> all;
+  for (const std::string& column : trial.covariates) {
+    const Values x = valuesOf(trial, column);
+    const auto [low, high] = rangeOver(x, std::vector<char>(x.size(), 1), 1);
+    TrainedRange range{.column = column, .low = low, .high = high};
+    for (const EndLevel& end : ends)
+      for (std::size_t c = 0; c < kChannels && end.column == column; ++c) {
+        const double rmse = std::fmin(end.refined_rmse[c], end.base_rmse[c]);
+        const double excess = rmse * rmse - floor[c] * floor[c];
+        double& rate = (end.high ? range.above : range.below)[c];
+        if (excess > 0.0 && end.distance > 0.0) rate = std::max(rate, std::sqrt(excess) / end.distance);
+      }
+    all.push_back(range);
+  }
+  return all;
+}
+
+}  // namespace talus::terramech

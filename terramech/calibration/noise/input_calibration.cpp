@@ -1,0 +1,177 @@
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <vector>
+
+#include <talus/terramech/calibration/noise/input_calibration.hpp>
+#include <talus/terramech/numerics/squared.hpp>
+
+namespace talus::terramech {
+namespace {}  // namespace
+
+bool slipIsSeen(const Trial& trial, const SensorNoise& noise) {
+  const Eigen::Map<const Eigen::ArrayXd> slip(trial.slip.data(), trial.rows());
+  const Eigen::ArrayXd error =
+      slip.unaryExpr([&](double i) { return noise.slipStd(i); }).min(0.1 * slip.abs());
+  return (slip - slip.mean()).square().mean() > 4.0 * error.square().mean();
+}
+
+namespace {
+
+bool isTied(const WheelState& s) {
+  const double ground = s.rim_speed_mps * (1.0 - s.slip);
+  return std::abs(s.speed_mps - ground) <= 1e-3 * std::abs(s.rim_speed_mps);
+}
+
+/// Speeds over ground with the errors that they have from their slips.
+struct Speeds {
+  Eigen::ArrayXd value, variance;
+  double mean = 0.0, mean_variance = 0.0;
+};
+
+Speeds speedsOf(const Trial& trial, const std::function<double(double)>& slip_std) {
+  const auto n = static_cast<Eigen::Index>(trial.states.size());
+  Speeds v{Eigen::ArrayXd(n), Eigen::ArrayXd(n)};
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto row = static_cast<std::size_t>(i);
+    const double rim = trial.states[row].rim_speed_mps;
+    v.value[i] = rim * (1.0 - trial.slip[row]);
+    v.variance[i] = squared(rim * slip_std(trial.slip[row])) + squared(1e-6 * rim);
+  }
+  const Eigen::ArrayXd weight = v.variance.inverse();
+  v.mean_variance = 1.0 / weight.sum();
+  v.mean = (weight * v.value).sum() * v.mean_variance;
+  return v;
+}
+
+}  // namespace
+
+bool speedIsSeen(const Trial& trial, const SensorNoise& noise) {
+  const auto tied = std::count_if(trial.states.begin(), trial.states.end(), isTied);
+  if (tied < trial.rows() || trial.rows() < 3) return true;
+  const Speeds v =
+      speedsOf(trial, [&](double slip) { return std::min(noise.slipStd(slip), 0.1 * std::abs(slip)); });
+  return ((v.value - v.mean).square() / v.variance).mean() > 4.0;
+}
+
+Eigen::VectorXd sharedSlipStd(const Trial& trial, const SensorNoise& noise) {
+  if (!slipIsSeen(trial, noise)) {
+    double sum = 0.0;
+    for (double slip : trial.slip) sum += squared(noise.slipStd(slip));
+    return Eigen::VectorXd::Constant(trial.rows(), std::sqrt(sum) / trial.rows());
+  }
+  if (speedIsSeen(trial, noise)) return {};
+  const Speeds v = speedsOf(trial, [&](double slip) { return noise.slipStd(slip); });
+  Eigen::VectorXd shared(trial.rows());
+  for (int row = 0; row < trial.rows(); ++row)
+    shared[row] = std::sqrt(v.mean_variance) / trial.states[static_cast<std::size_t>(row)].rim_speed_mps;
+  return shared;
+}
+
+void setSlip(WheelState& state, double slip) {
+  if (isTied(state)) state.speed_mps = state.rim_speed_mps * (1.0 - slip);
+  state.slip = slip;
+}
+
+namespace {
+
+struct Posterior {
+  double mean, variance;
+};
+
+/// Posterior of each true value under the distribution of true values that makes the measured ones most
+/// likely: a mixture of atoms whose places and weights are found by expectation maximisation. `std_at` is the
+/// noise at a true value. Values that are known better than the atoms lie apart stay as measured.
+std::vector<Posterior> deconvolve(const std::vector<double>& measured,
+                                  const std::function<double(double)>& std_at) {
+  constexpr int kRounds = 200;
+  const auto n = static_cast<Eigen::Index>(measured.size());
+  const auto atoms = std::min<Eigen::Index>(50, std::max<Eigen::Index>(2, n / 2));
+  const Eigen::Map<const Eigen::ArrayXd> x(measured.data(), n);
+  const double spacing = (x.maxCoeff() - x.minCoeff()) / static_cast<double>(atoms) + 1e-12;
+  Eigen::ArrayXd place = Eigen::ArrayXd::LinSpaced(atoms, x.minCoeff(), x.maxCoeff());
+  Eigen::ArrayXd weight = Eigen::ArrayXd::Constant(atoms, 1.0 / static_cast<double>(atoms)), std(atoms);
+  Eigen::ArrayXXd share(n, atoms);
+  for (int round = 0; round < kRounds; ++round) {
+    for (Eigen::Index a = 0; a < atoms; ++a) std[a] = std::max(std_at(place[a]), 0.5 * spacing);
+    for (Eigen::Index a = 0; a < atoms; ++a)
+      share.col(a) = weight[a] / std[a] * (-0.5 * ((x - place[a]) / std[a]).square()).exp();
+    const Eigen::ArrayXd total = share.rowwise().sum() + 1e-300;
+    share.colwise() /= total;
+    for (Eigen::Index a = 0; a < atoms; ++a) {
+      const double mass = share.col(a).sum();
+      weight[a] = mass / static_cast<double>(n);
+      if (mass > 1e-6) place[a] = (share.col(a) * x).sum() / mass;
+    }
+  }
+  std::vector<Posterior> out;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double mean = (share.row(i).transpose() * place).sum();
+    const double spread = (share.row(i).transpose() * (place - mean).square()).sum();
+    const double own = std_at(x[i]);
+    out.push_back(own < 0.5 * spacing ? Posterior{x[i], own * own} : Posterior{mean, spread});
+  }
+  return out;
+}
+
+/// Normal values with normal errors: the share of the scatter that is not error is kept.
+std::vector<Posterior> shrink(const std::vector<double>& measured, const std::vector<double>& std) {
+  const auto n = static_cast<Eigen::Index>(measured.size());
+  const Eigen::Map<const Eigen::ArrayXd> x(measured.data(), n), error(std.data(), n);
+  const double mean = x.mean(), scatter = (x - mean).square().mean();
+  const double kept = std::clamp(1.0 - error.square().mean() / (scatter + 1e-300), 0.0, 1.0);
+  std::vector<Posterior> out;
+  for (Eigen::Index i = 0; i < n; ++i) out.push_back({mean + kept * (x[i] - mean), kept * squared(error[i])});
+  return out;
+}
+
+/// Slips at one speed over ground: the share of the speeds' scatter that is not error is kept.
+std::vector<Posterior> slipsAtOneSpeed(const Trial& trial, const SensorNoise& noise) {
+  const Speeds v = speedsOf(trial, [&](double slip) { return noise.slipStd(slip); });
+  const Eigen::ArrayXd weight = v.variance.inverse();
+  const double excess = (weight * (v.value - v.mean).square()).sum() - static_cast<double>(trial.rows() - 1);
+  const double scatter = std::max(0.0, excess / (weight.sum() - weight.square().sum() / weight.sum()));
+  std::vector<Posterior> out;
+  for (Eigen::Index i = 0; i < v.value.size(); ++i) {
+    const double rim = trial.states[static_cast<std::size_t>(i)].rim_speed_mps;
+    const double kept = scatter / (scatter + v.variance[i]);
+    out.push_back({1.0 - (v.mean + kept * (v.value[i] - v.mean)) / rim, kept * v.variance[i] / (rim * rim)});
+  }
+  return out;
+}
+
+}  // namespace
+
+void calibrateInputs(Trial& trial, const SensorNoise& noise, const std::optional<NominalLoad>& set) {
+  const auto n = trial.states.size();
+  std::vector<double> slip_std(n), log_load(n), load_std(n, noise.load_relative);
+  for (std::size_t i = 0; i < n; ++i) {
+    slip_std[i] = noise.slipStd(trial.slip[i]);
+    log_load[i] = std::log(trial.load_N[i]);
+  }
+  const bool one_speed = slipIsSeen(trial, noise) && !speedIsSeen(trial, noise);
+  // The mixture takes long to see that one level is one; nothing is lost where the scatter is mostly error.
+  const auto slips = one_speed ? slipsAtOneSpeed(trial, noise)
+                     : !slipIsSeen(trial, noise)
+                         ? shrink(trial.slip, slip_std)
+                         : deconvolve(trial.slip, [&](double slip) { return noise.slipStd(slip); });
+  const auto loads =
+      set ? std::vector<Posterior>{} : deconvolve(log_load, [&](double) { return noise.load_relative; });
+  for (std::size_t i = 0; i < n; ++i) {
+    // A grid cannot place a value better than its step: precise inputs are left as measured.
+    const auto row = static_cast<Eigen::Index>(i);
+    const double trust = squared(slip_std[i]), trust_load = squared(load_std[i]);
+    setSlip(trial.states[i], std::clamp(slips[i].mean, -1.0, 1.0));
+    trial.slip_variance[row] = std::clamp(slips[i].variance, (one_speed ? 0.02 : 0.3) * trust, trust);
+    if (set) {
+      trial.states[i].load_N = set->load_N(static_cast<int>(i), trial.load_N[i]);
+      trial.load_variance[row] = (1.0 - set->error_share + 1.0 / set->rows[row]) * trust_load;
+      continue;
+    }
+    trial.states[i].load_N =
+        std::abs(loads[i].mean - log_load[i]) > 2.5 * load_std[i] ? trial.load_N[i] : std::exp(loads[i].mean);
+    trial.load_variance[row] = std::clamp(loads[i].variance, 0.3 * trust_load, trust_load);
+  }
+}
+
+}  // namespace talus::terramech

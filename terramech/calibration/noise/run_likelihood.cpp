@@ -1,0 +1,230 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+#include <talus/terramech/calibration/noise/run_likelihood.hpp>
+
+namespace talus::terramech {
+
+/// Sums of one fold under a run's covariance.
+struct RunLikelihood::FoldSums {
+  Eigen::MatrixXd gram, cross;
+  Eigen::VectorXd square;
+  double log_determinant = 0.0;
+};
+
+namespace {
+
+/// What belongs to one unit, or to one row, in a matrix of kChannels rows each.
+template <typename Matrix>
+auto rowsOf(Matrix&& all, std::size_t which) {
+  return all.template middleRows<kChannels>(static_cast<Eigen::Index>(which) * kChannels);
+}
+
+/// Sum of F^T X over the rows of each unit, one below the other.
+Eigen::MatrixXd unitSums(const std::vector<Eigen::Matrix4d>& factor, const std::vector<int>& unit,
+                         std::size_t units, const Eigen::MatrixXd& columns) {
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(units) * kChannels, columns.cols());
+  for (std::size_t row = 0; row < unit.size(); ++row)
+    rowsOf(sum, static_cast<std::size_t>(unit[row])).noalias() +=
+        factor[row].transpose() * rowsOf(columns, row);
+  return sum;
+}
+
+/// The rows of each fold of a matrix, together.
+std::vector<Eigen::MatrixXd> byFold(const Eigen::MatrixXd& columns, const std::vector<int>& fold, int folds) {
+  std::vector<Eigen::MatrixXd> part;
+  for (int f = 0; f < folds; ++f) {
+    const auto rows = std::count(fold.begin(), fold.end(), f);
+    Eigen::MatrixXd& own = part.emplace_back(rows * kChannels, columns.cols());
+    Eigen::Index to = 0;
+    for (std::size_t row = 0; row < fold.size(); ++row)
+      if (fold[row] == f)
+        own.middleRows<kChannels>(kChannels * to++) =
+            columns.middleRows<kChannels>(static_cast<Eigen::Index>(row) * kChannels);
+  }
+  return part;
+}
+
+StepPrior joined(const StepPrior& a, const StepPrior& b) {
+  StepPrior both{Eigen::VectorXd(a.mean.size() + b.mean.size()), {}};
+  both.precision.resize(both.mean.size());
+  both.mean << a.mean, b.mean;
+  both.precision << a.precision, b.precision;
+  return both;
+}
+
+/// The normal equations of the steps, the prior among them.
+struct Normal {
+  Normal(Eigen::MatrixXd gram, Eigen::MatrixXd cross, const StepPrior& prior) : right(std::move(cross)) {
+    gram.diagonal() += prior.precision;
+    gram.diagonal().array() += 1e-9;
+    right.colwise() += prior.precision.cwiseProduct(prior.mean);
+    solver.compute(gram);
+  }
+  Eigen::MatrixXd steps() const { return solver.solve(right); }
+
+  Eigen::LDLT<Eigen::MatrixXd> solver;
+  Eigen::MatrixXd right;
+};
+
+}  // namespace
+
+RunLikelihood::RunLikelihood(const std::vector<Eigen::Matrix4d>& factor, const std::vector<int>& unit,
+                             const Folds& folds)
+    : factor_(factor), fold_(folds.of_row), folds_(folds.count) {
+  std::map<std::pair<int, int>, int> number;
+  for (std::size_t row = 0; row < unit.size(); ++row) {
+    const auto [at, fresh] = number.try_emplace({unit[row], fold_[row]}, static_cast<int>(number.size()));
+    unit_.push_back(at->second);
+    if (!fresh) continue;
+    fold_of_unit_.push_back(fold_[row]);
+    information_.emplace_back(Eigen::Matrix4d::Zero());
+  }
+  for (std::size_t row = 0; row < unit_.size(); ++row)
+    information_[static_cast<std::size_t>(unit_[row])] += factor_[row].transpose() * factor_[row];
+}
+
+void RunLikelihood::setTables(const Eigen::MatrixXd& tables) {
+  tables_ = byFold(tables, fold_, folds_);
+  square_ = Eigen::MatrixXd::Zero(folds_, tables.cols());
+  for (std::size_t row = 0; row < fold_.size(); ++row)
+    square_.row(fold_[row]) +=
+        tables.middleRows<kChannels>(static_cast<Eigen::Index>(row) * kChannels).colwise().squaredNorm();
+  unit_table_ = unitSums(factor_, unit_, information_.size(), tables);
+}
+
+RunSums RunLikelihood::sums(const LinearModel& model) const {
+  RunSums s;
+  s.prior = model.prior;
+  const auto x = byFold(model.columns, fold_, folds_);
+  for (std::size_t f = 0; f < x.size(); ++f) {
+    s.gram.emplace_back(x[f].transpose() * x[f]);
+    s.cross.emplace_back(x[f].transpose() * tables_[f]);
+  }
+  s.unit_column = unitSums(factor_, unit_, information_.size(), model.columns);
+  return s;
+}
+
+RunSums RunLikelihood::sums(const RunSums& of_known, const LinearModel& known,
+                            const LinearModel& added) const {
+  RunSums s = sums(added);
+  const Eigen::Index p = known.columns.cols(), q = added.columns.cols();
+  const auto a = byFold(known.columns, fold_, folds_), b = byFold(added.columns, fold_, folds_);
+  for (std::size_t f = 0; f < a.size(); ++f) {
+    Eigen::MatrixXd gram(p + q, p + q), cross(p + q, square_.cols());
+    gram.topLeftCorner(p, p) = of_known.gram[f];
+    gram.topRightCorner(p, q) = a[f].transpose() * b[f];
+    gram.bottomLeftCorner(q, p) = gram.topRightCorner(p, q).transpose();
+    gram.bottomRightCorner(q, q) = s.gram[f];
+    cross << of_known.cross[f], s.cross[f];
+    s.gram[f] = std::move(gram);
+    s.cross[f] = std::move(cross);
+  }
+  Eigen::MatrixXd columns(s.unit_column.rows(), p + q);
+  columns << of_known.unit_column, s.unit_column;
+  s.unit_column = std::move(columns);
+  s.prior = joined(known.prior, added.prior);
+  return s;
+}
+
+/// K = (R^-1 + C)^-1 = R (1 + C R)^-1: covariance of a unit's error given its rows (Woodbury).
+Eigen::Matrix4d RunLikelihood::shrink(std::size_t unit, const Eigen::Matrix4d& run) const {
+  const Eigen::Matrix4d k = run * (Eigen::Matrix4d::Identity() + information_[unit] * run).inverse();
+  return 0.5 * (k + k.transpose());
+}
+
+RunLikelihood::FoldSums RunLikelihood::together(const std::vector<FoldSums>& fold) {
+  FoldSums all{Eigen::MatrixXd::Zero(fold.front().gram.rows(), fold.front().gram.cols()),
+               Eigen::MatrixXd::Zero(fold.front().cross.rows(), fold.front().cross.cols()),
+               {}};
+  for (const FoldSums& f : fold) {
+    all.gram += f.gram;
+    all.cross += f.cross;
+  }
+  return all;
+}
+
+std::vector<RunLikelihood::FoldSums> RunLikelihood::underRun(const RunSums& sums, const Eigen::Matrix4d& run,
+                                                             Eigen::Index first, Eigen::Index count) const {
+  std::vector<FoldSums> fold;
+  for (std::size_t f = 0; f < sums.gram.size(); ++f)
+    fold.push_back({sums.gram[f], sums.cross[f].middleCols(first, count),
+                    square_.row(static_cast<Eigen::Index>(f)).segment(first, count).transpose()});
+  for (std::size_t u = 0; u < information_.size(); ++u) {
+    FoldSums& own = fold[static_cast<std::size_t>(fold_of_unit_[u])];
+    const Eigen::Matrix4d k = shrink(u, run);
+    const auto x = rowsOf(sums.unit_column, u);
+    const Eigen::MatrixXd kx = k * x;
+    const auto y = rowsOf(unit_table_, u).middleCols(first, count);
+    own.gram.noalias() -= x.transpose() * kx;
+    own.cross.noalias() -= kx.transpose() * y;
+    own.square -= y.cwiseProduct(k * y).colwise().sum().transpose();
+    own.log_determinant += std::log((Eigen::Matrix4d::Identity() + information_[u] * run).determinant());
+  }
+  return fold;
+}
+
+HeldOutFit RunLikelihood::heldOut(const RunSums& sums, const Eigen::Matrix4d& run, Eigen::Index first,
+                                  Eigen::Index count) const {
+  const std::vector<FoldSums> fold = underRun(sums, run, first, count);
+  const FoldSums all = together(fold);
+  HeldOutFit fit{Eigen::VectorXd::Zero(count), {}, Normal(all.gram, all.cross, sums.prior).steps()};
+  for (const FoldSums& f : fold) {
+    const Eigen::MatrixXd steps = Normal(all.gram - f.gram, all.cross - f.cross, sums.prior).steps();
+    const Eigen::VectorXd chi2 =
+        f.square + (steps.cwiseProduct(f.gram * steps - 2.0 * f.cross)).colwise().sum().transpose();
+    fit.log_likelihood.array() -= 0.5 * (chi2.array() + f.log_determinant);
+  }
+  const Eigen::MatrixXd off = fit.steps.colwise() - sums.prior.mean;
+  fit.prior_chi2 = off.cwiseAbs2().transpose() * sums.prior.precision;
+  return fit;
+}
+
+Eigen::Matrix4d RunLikelihood::profile(const RunSums& sums, Eigen::Matrix4d run, Eigen::Index table,
+                                       int steps) const {
+  if (!hasUnits()) return run;
+  const auto units = information_.size();
+  Eigen::MatrixXd of_rows = sums.gram.front();
+  Eigen::VectorXd of_table = sums.cross.front().col(table);
+  for (std::size_t f = 1; f < sums.gram.size(); ++f) {
+    of_rows += sums.gram[f];
+    of_table += sums.cross[f].col(table);
+  }
+  const Eigen::VectorXd y = unit_table_.col(table);
+  Eigen::MatrixXd kx(sums.unit_column.rows(), sums.unit_column.cols());
+  std::vector<Eigen::Matrix4d> k(units);
+  for (int step = 0; step < steps; ++step) {
+    for (std::size_t u = 0; u < units; ++u) {
+      k[u] = shrink(u, run);
+      rowsOf(kx, u).noalias() = k[u] * rowsOf(sums.unit_column, u);
+    }
+    const Normal normal(of_rows - sums.unit_column.transpose() * kx, of_table - kx.transpose() * y,
+                        sums.prior);
+    const Eigen::VectorXd at = normal.steps(), shared = kx * at;
+    const Eigen::MatrixXd spread = normal.solver.solve(kx.transpose());
+    Eigen::Matrix4d next = Eigen::Matrix4d::Zero();
+    for (std::size_t u = 0; u < units; ++u) {
+      const Eigen::Vector4d error = k[u] * rowsOf(y, u) - rowsOf(shared, u);
+      const auto first = static_cast<Eigen::Index>(u) * kChannels;
+      next += error * error.transpose() + k[u] + rowsOf(kx, u) * spread.middleCols<kChannels>(first);
+    }
+    run = next / static_cast<double>(units);
+  }
+  return run;
+}
+
+double RunLikelihood::logLikelihood(const Eigen::Matrix4d& run, Eigen::Index table) const {
+  double chi2 = square_.col(table).sum();
+  for (std::size_t u = 0; u < information_.size(); ++u) {
+    const Eigen::Vector4d y = rowsOf(unit_table_, u).col(table);
+    chi2 += std::log((Eigen::Matrix4d::Identity() + information_[u] * run).determinant()) -
+            y.dot(shrink(u, run) * y);
+  }
+  return -0.5 * chi2;
+}
+
+}  // namespace talus::terramech

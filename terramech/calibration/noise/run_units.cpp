@@ -1,0 +1,138 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <talus/terramech/calibration/noise/run_likelihood.hpp>
+#include <talus/terramech/calibration/noise/run_units.hpp>
+
+namespace talus::terramech {
+namespace {
+
+/// Twenty times more likely: log 20.
+constexpr double kClearly = 3.0;
+
+/// Runs from 0 on; empty where rows have none, one for all when there is one.
+std::vector<int> runsOf(const Trial& trial) {
+  std::map<int, int> number;
+  std::vector<int> run;
+  for (int r : trial.run) run.push_back(number.try_emplace(r, static_cast<int>(number.size())).first->second);
+  if (2 * number.size() > trial.run.size()) run.assign(run.size(), 0);
+  return run;
+}
+
+/// Rows of each run in the order of time; empty where time is not known.
+std::vector<std::vector<std::size_t>> inTime(const Trial& trial, const std::vector<int>& run) {
+  std::map<int, std::vector<std::size_t>> rows;
+  for (std::size_t row = 0; row < run.size(); ++row) {
+    if (!std::isfinite(trial.states[row].time_s)) return {};
+    rows[run[row]].push_back(row);
+  }
+  std::vector<std::vector<std::size_t>> all;
+  for (auto& [number, own] : rows) {
+    std::stable_sort(own.begin(), own.end(), [&](std::size_t a, std::size_t b) {
+      return trial.states[a].time_s < trial.states[b].time_s;
+    });
+    all.push_back(std::move(own));
+  }
+  return all;
+}
+
+/// Whether what sets the contact follows time within the runs (neighbours correlate by more than 0.3, which would
+/// pass a tenth of a missing effect on): what the model lacks then lasts as noise might.
+bool isInOrder(const Trial& trial, const std::vector<std::vector<std::size_t>>& runs) {
+  for (const char* name : {"slip", "load_N", "slip_angle_rad", "slope_rad", "speed_mps", "pass_index"}) {
+    if (std::find(trial.covariates.begin(), trial.covariates.end(), name) == trial.covariates.end()) continue;
+    double product = 0.0, square = 0.0;
+    for (const auto& rows : runs) {
+      double mean = 0.0;
+      for (std::size_t row : rows)
+        mean += trial.states[row].covariate(name) / static_cast<double>(rows.size());
+      double last = 0.0;
+      for (std::size_t row : rows) {
+        const double x = trial.states[row].covariate(name) - mean;
+        product += x * last;
+        square += x * x;
+        last = x;
+      }
+    }
+    if (product > 0.3 * square) return true;  // NaN: a column that is not there
+  }
+  return false;
+}
+
+/// Each run cut into stretches of some rows.
+std::vector<int> stretches(const std::vector<std::vector<std::size_t>>& runs, std::size_t rows,
+                           std::size_t length) {
+  std::vector<int> unit(rows);
+  int number = -1;
+  for (const auto& own : runs)
+    for (std::size_t k = 0; k < own.size(); ++k) {
+      if (k % length == 0) ++number;
+      unit[own[k]] = number;
+    }
+  return unit;
+}
+
+double logLikelihood(const Whitening& whitening, const std::vector<int>& unit, const Eigen::VectorXd& table) {
+  const auto rows = whitening.factor.size();
+  RunLikelihood likelihood(whitening.shared(), unit, {"", std::vector<int>(rows, 0), 1});
+  likelihood.setTables(table);
+  if (unit.empty()) return likelihood.logLikelihood(Eigen::Matrix4d::Zero(), 0);
+  const LinearModel none{Eigen::MatrixXd::Zero(table.size(), 1),
+                         {Eigen::VectorXd::Zero(1), Eigen::VectorXd::Ones(1)}};
+  const Eigen::Matrix4d run = likelihood.profile(likelihood.sums(none), roughRunError(whitening), 0, 30);
+  return likelihood.logLikelihood(run, 0);
+}
+
+}  // namespace
+
+Eigen::Matrix4d roughRunError(const Whitening& whitening) {
+  return whitening.std.cwiseAbs2().colwise().mean().transpose().asDiagonal();
+}
+
+std::vector<int> runUnits(const Trial& trial, const Whitening& whitening, const Eigen::MatrixXd& left) {
+  const Eigen::VectorXd table = whitening.rowByRow(left);
+  const bool drive = !trial.moment.empty();
+  // Rows of a drive belong to moments, which count as one where its runs are too few.
+  const bool one_run = drive && trial.run == trial.moment;
+  const std::vector<int> run = one_run ? std::vector<int>(trial.run.size(), 0) : runsOf(trial);
+  const std::size_t together =
+      drive ? std::max<std::size_t>(1, run.size() / (1 + static_cast<std::size_t>(*std::max_element(
+                                                             trial.moment.begin(), trial.moment.end()))))
+            : 1;
+  std::vector<int> best = *std::max_element(run.begin(), run.end()) > 0 ? run : std::vector<int>{};
+  double likely = logLikelihood(whitening, best, table);
+  const auto runs = inTime(trial, run);
+  // On a drive the ground sets slip in the order of time whatever it lacks, and its errors last: always stretches.
+  if (runs.empty() || (!drive && isInOrder(trial, runs))) return best;
+  for (const std::size_t length : std::initializer_list<std::size_t>{16, 8, 4}) {
+    if (3 * length * together > run.size()) continue;
+    const std::vector<int> cut = stretches(runs, run.size(), length * together);
+    const double now = logLikelihood(whitening, cut, table);
+    if (now < likely + kClearly) continue;
+    best = cut;
+    likely = now;
+  }
+  return best;
+}
+
+Eigen::MatrixXd unitMeans(const Eigen::MatrixXd& residual, const Eigen::MatrixXd& std,
+                          const std::vector<int>& unit) {
+  const int units = *std::max_element(unit.begin(), unit.end()) + 1;
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(units, residual.cols()), weight = sum, mean = residual;
+  for (Eigen::Index row = 0; row < residual.rows(); ++row)
+    for (Eigen::Index c = 0; c < residual.cols(); ++c) {
+      if (!std::isfinite(residual(row, c))) continue;
+      const double w = 1.0 / (std(row, c) * std(row, c));
+      sum(unit[static_cast<std::size_t>(row)], c) += w * residual(row, c);
+      weight(unit[static_cast<std::size_t>(row)], c) += w;
+    }
+  for (Eigen::Index row = 0; row < residual.rows(); ++row)
+    for (Eigen::Index c = 0; c < residual.cols(); ++c) {
+      const int u = unit[static_cast<std::size_t>(row)];
+      mean(row, c) = std::isfinite(residual(row, c)) && weight(u, c) > 0.0 ? sum(u, c) / weight(u, c) : 0.0;
+    }
+  return mean;
+}
+
+}  // namespace talus::terramech

@@ -1,0 +1,162 @@
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
+
+#include <talus/terramech/calibration/noise/nelder_mead.hpp>
+#include <talus/terramech/calibration/noise/sensor_noise.hpp>
+#include <talus/terramech/calibration/noise/spline_basis.hpp>
+#include <talus/terramech/numerics/median.hpp>
+#include <talus/terramech/numerics/squared.hpp>
+
+namespace talus::terramech {
+namespace {
+
+/// A positive number in a search on logarithms, with a log-normal prior.
+struct Scale {
+  double* target;
+  double median, spread;  // spread: std of the logarithm
+};
+
+std::optional<double> statedOf(const StatedSensors& stated, Channel channel) {
+  switch (channel) {
+    case Channel::DrawbarPull:
+      return stated.drawbar_pull_N;
+    case Channel::Sinkage:
+      return stated.sinkage_m;
+    case Channel::Torque:
+      return stated.torque_Nm;
+    case Channel::SideForce:
+      return stated.side_force_N;
+  }
+  return {};
+}
+
+std::vector<Scale> scales(const Trial& trial, const Eigen::MatrixXd& residual, const Eigen::MatrixXd& level,
+                          const StatedSensors& stated, SensorNoise& noise) {
+  std::vector<Scale> all;
+  for (int c = 0; c < kChannels; ++c) {
+    if (!trial.has(static_cast<Channel>(c))) continue;
+    std::vector<double> sizes, left;
+    for (int row = 0; row < trial.rows(); ++row) {
+      const double unit = trial.denominator(row, static_cast<Channel>(c));
+      sizes.push_back(std::abs(level(row, c)) * unit);
+      if (std::isfinite(residual(row, c))) left.push_back(std::abs(residual(row, c)) * unit);
+    }
+    const auto k = static_cast<std::size_t>(c);
+    const auto given = statedOf(stated, static_cast<Channel>(c));
+    all.push_back({&noise.absolute[k],
+                   given.value_or(std::max(0.01 * medianOf(sizes), 0.1 * medianOf(left)) + 1e-9),
+                   given ? 0.25 : 1.0});
+    all.push_back({&noise.relative[k], given ? 0.01 : 0.03, 1.0});
+  }
+  if (stated.slip)
+    all.push_back({&noise.slip_absolute, std::max(*stated.slip, 1e-5), 0.25});
+  else
+    all.push_back({&noise.slip_relative, 0.02, 0.7});
+  const double load = medianOf(trial.load_N);
+  all.push_back({&noise.load_relative, stated.load_N ? std::max(*stated.load_N / load, 1e-5) : 0.02,
+                 stated.load_N ? 0.25 : 0.7});
+  return all;
+}
+
+}  // namespace
+
+std::vector<std::string> noiseColumns(const Trial& trial) {
+  std::vector<std::string> names;
+  for (const std::string& name : trial.covariates)
+    if (std::find(trial.chance.begin(), trial.chance.end(), name) == trial.chance.end())
+      names.push_back(name);
+  return names;
+}
+
+std::vector<std::string> allButSlip(const Trial& trial) {
+  const std::vector<std::string> names = noiseColumns(trial);
+  const bool tells_slip = std::find(names.begin(), names.end(), "rim_speed_mps") != names.end();
+  std::vector<std::string> others;
+  for (const std::string& name : names)
+    if (name != "slip" && !(name == "speed_mps" && tells_slip)) others.push_back(name);
+  return others;
+}
+
+Eigen::MatrixXd withoutSmooth(const Trial& trial, const Eigen::MatrixXd& residual,
+                              const std::vector<std::string>& names) {
+  Eigen::MatrixXd left = residual;
+  for (int c = 0; c < kChannels; ++c) {
+    std::vector<int> rows;
+    for (int row = 0; row < trial.rows(); ++row)
+      if (std::isfinite(residual(row, c))) rows.push_back(row);
+    const auto n = static_cast<Eigen::Index>(rows.size());
+    if (n < 8) continue;
+    std::vector<Eigen::MatrixXd> parts{Eigen::MatrixXd::Ones(n, 1)};
+    Eigen::Index columns = 1;
+    const auto room = n / 4;
+    for (const std::string& name : names) {
+      Eigen::VectorXd x(n);
+      for (Eigen::Index i = 0; i < n; ++i)
+        x[i] = trial.states[static_cast<std::size_t>(rows[static_cast<std::size_t>(i)])].covariate(name);
+      const auto knots = quantileKnots(x, n >= 120 ? 6 : 4);
+      if (knots.size() < 2 || columns + static_cast<Eigen::Index>(knots.size()) > room) continue;
+      parts.push_back(splineBasis(x, knots));
+      columns += static_cast<Eigen::Index>(knots.size()) - 1;
+    }
+    Eigen::MatrixXd all(n, 0);
+    for (const auto& part : parts) {
+      const Eigen::Index at = all.cols();
+      all.conservativeResize(n, at + part.cols());
+      all.rightCols(part.cols()) = part;
+    }
+    const Eigen::MatrixXd q = orthonormal(all);
+    Eigen::VectorXd r(n);
+    for (Eigen::Index i = 0; i < n; ++i) r[i] = residual(rows[static_cast<std::size_t>(i)], c);
+    r -= q * (q.transpose() * r);
+    r *= std::sqrt(static_cast<double>(n) / static_cast<double>(n - q.cols()));
+    for (Eigen::Index i = 0; i < n; ++i) left(rows[static_cast<std::size_t>(i)], c) = r[i];
+  }
+  return left;
+}
+
+namespace {
+
+double logLikelihood(const Trial& trial, const Eigen::MatrixXd& residual, const Eigen::MatrixXd& level,
+                     const InputSlopes& slopes, const SensorNoise& noise) {
+  MomentSlip shared{trial.moment, Eigen::MatrixXd::Zero(trial.rows(), kChannels)};
+  Eigen::VectorXd white(trial.rows() * kChannels);
+  double sum = 0.0;
+  for (int row = 0; row < trial.rows(); ++row) {
+    const double slip = trial.states[static_cast<std::size_t>(row)].slip;
+    const double variance = squared(noise.slipStd(slip));
+    const double own = trial.moment.empty() ? variance : 0.0;
+    const Eigen::Matrix4d factor = rowFactor(
+        rowCovariance(trial, row, level, slopes, noise, own, squared(noise.load_relative)), residual, row);
+    white.segment<kChannels>(row * kChannels) = factor * finiteOrZero(residual, row);
+    shared.moved.row(row) = std::sqrt(variance) * factor * slopes.by_slip.row(row).transpose();
+    for (int c = 0; c < kChannels; ++c)
+      if (factor(c, c) > 0.0) sum += std::log(factor(c, c));
+  }
+  return sum - 0.5 * white.squaredNorm() + shared.logLikelihood(white);
+}
+
+}  // namespace
+
+SensorNoise fitNoise(const Trial& trial, const Eigen::MatrixXd& residual, const Eigen::MatrixXd& level,
+                     const InputSlopes& slopes, const StatedSensors& stated) {
+  SensorNoise noise;
+  const std::vector<Scale> all = scales(trial, residual, level, stated, noise);
+  const auto set = [&](const std::vector<double>& log_ratio) {
+    for (std::size_t k = 0; k < all.size(); ++k) *all[k].target = all[k].median * std::exp(log_ratio[k]);
+  };
+  const auto cost = [&](const std::vector<double>& log_ratio) {
+    set(log_ratio);
+    double sum = 0.0;
+    for (std::size_t k = 0; k < all.size(); ++k) sum += 0.5 * squared(log_ratio[k] / all[k].spread);
+    return sum - logLikelihood(trial, residual, level, slopes, noise);
+  };
+  set(nelderMead(cost, std::vector<double>(all.size(), 0.0),
+                 {.step = 0.7, .evaluations = 900, .tolerance = 1e-3}));
+  return noise;
+}
+
+}  // namespace talus::terramech

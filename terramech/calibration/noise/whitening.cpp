@@ -1,0 +1,189 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
+#include <talus/terramech/calibration/noise/whitening.hpp>
+#include <talus/terramech/numerics/median.hpp>
+#include <talus/terramech/numerics/squared.hpp>
+
+namespace talus::terramech {
+Eigen::Matrix4d rowCovariance(const Trial& trial, int row, const Eigen::MatrixXd& level,
+                              const InputSlopes& slopes, const SensorNoise& noise, double slip_variance,
+                              double load_variance) {
+  Eigen::Matrix4d s = slip_variance * slopes.by_slip.row(row).transpose() * slopes.by_slip.row(row) +
+                      load_variance * slopes.by_load.row(row).transpose() * slopes.by_load.row(row);
+  for (int c = 0; c < kChannels; ++c) {
+    const auto k = static_cast<std::size_t>(c);
+    s(c, c) += squared(noise.absolute[k] / trial.denominator(row, static_cast<Channel>(c))) +
+               squared(noise.relative[k] * level(row, c)) + 1e-12;
+  }
+  return s;
+}
+
+Eigen::Matrix4d rowFactor(const Eigen::Matrix4d& covariance, const Eigen::MatrixXd& measured, int row) {
+  std::array<Eigen::Index, kChannels> index{};
+  std::size_t n = 0;
+  for (int c = 0; c < kChannels; ++c)
+    if (std::isfinite(measured(row, c))) index[n++] = c;
+  using Part = Eigen::Matrix<double, -1, -1, 0, kChannels, kChannels>;
+  const auto size = static_cast<Eigen::Index>(n);
+  Part part(size, size);
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < n; ++j)
+      part(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = covariance(index[i], index[j]);
+  const Part inverse = Eigen::LLT<Part>(part).matrixL().solve(Part::Identity(size, size));
+  Eigen::Matrix4d full = Eigen::Matrix4d::Zero();
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j <= i; ++j)
+      full(index[i], index[j]) = inverse(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+  return full;
+}
+
+Eigen::Vector4d finiteOrZero(const Eigen::MatrixXd& residual, int row) {
+  return residual.row(row).transpose().unaryExpr([](double v) { return std::isfinite(v) ? v : 0.0; });
+}
+
+InputSlopes inputSlopes(const RefinedModel& model, const Trial& trial, SolvedContacts& solved) {
+  constexpr double kStep = 0.004;
+  const auto moved = [&](double slip, double load) {
+    Trial copy = trial;
+    for (WheelState& s : copy.states) {
+      s.slip = std::clamp(s.slip + slip, -1.0, 1.0);
+      s.load_N *= 1.0 + load;
+    }
+    return predictRows(model, copy, solved);
+  };
+  return {(moved(kStep, 0.0) - moved(-kStep, 0.0)) / (2.0 * kStep),
+          (moved(0.0, kStep) - moved(0.0, -kStep)) / (2.0 * kStep)};
+}
+
+Whitening subset(const Whitening& whitening, const std::vector<char>& keep) {
+  Whitening part;
+  std::vector<Eigen::Index> rows;
+  for (std::size_t row = 0; row < keep.size(); ++row) {
+    if (!keep[row]) continue;
+    part.factor.push_back(whitening.factor[row]);
+    rows.push_back(static_cast<Eigen::Index>(row));
+  }
+  part.std = whitening.std(rows, Eigen::all);
+  part.slip = subset(whitening.slip, keep);
+  for (Eigen::Index row : rows)
+    if (!whitening.unit.empty()) part.unit.push_back(whitening.unit[static_cast<std::size_t>(row)]);
+  part.run = whitening.run;
+  return part;
+}
+
+Eigen::VectorXd Whitening::rowByRow(const Eigen::MatrixXd& residual) const {
+  Eigen::VectorXd out(residual.rows() * kChannels);
+  for (int row = 0; row < residual.rows(); ++row)
+    out.segment<kChannels>(row * kChannels) =
+        factor[static_cast<std::size_t>(row)] * finiteOrZero(residual, row);
+  slip.takeOut(out);
+  return out;
+}
+
+Eigen::VectorXd Whitening::marginal(const Eigen::MatrixXd& residual) const {
+  Eigen::VectorXd out(residual.rows() * kChannels);
+  for (Eigen::Index row = 0; row < residual.rows(); ++row)
+    for (int c = 0; c < kChannels; ++c) {
+      const bool there =
+          factor[static_cast<std::size_t>(row)](c, c) != 0.0 && std::isfinite(residual(row, c));
+      out[row * kChannels + c] = there ? residual(row, c) / std(row, c) : 0.0;
+    }
+  return out;
+}
+
+std::vector<Eigen::Matrix4d> Whitening::shared() const {
+  std::vector<Eigen::Matrix4d> all = factor;
+  if (slip.moment.empty()) return all;
+  const auto rows = static_cast<Eigen::Index>(factor.size());
+  for (int c = 0; c < kChannels; ++c) {
+    Eigen::MatrixXd one = Eigen::MatrixXd::Zero(rows, kChannels);
+    one.col(c).setOnes();
+    const Eigen::VectorXd out = rowByRow(one);
+    for (Eigen::Index row = 0; row < rows; ++row)
+      all[static_cast<std::size_t>(row)].col(c) = out.segment<kChannels>(row * kChannels);
+  }
+  return all;
+}
+
+// (I + B B^T)^(-1/2) of each run, B = F R^(1/2) stacked over its rows: with B^T B = Q S Q^T it is
+// I - B Q diag((1 - (1 + s)^(-1/2)) / s) Q^T B^T.
+void Whitening::settleRuns(Eigen::VectorXd& rows) const {
+  if (unit.empty() || run.isZero()) return;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> eigen(run);
+  const Eigen::Matrix4d root =
+      eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  const std::vector<Eigen::Matrix4d> common = shared();
+  std::map<int, std::pair<Eigen::Matrix4d, Eigen::Vector4d>> sums;
+  for (std::size_t row = 0; row < unit.size(); ++row) {
+    const auto [at, fresh] = sums.try_emplace(unit[row], Eigen::Matrix4d::Zero(), Eigen::Vector4d::Zero());
+    const Eigen::Matrix4d b = common[row] * root;
+    at->second.first += b.transpose() * b;
+    at->second.second += b.transpose() * rows.segment<kChannels>(static_cast<Eigen::Index>(row) * kChannels);
+  }
+  std::map<int, Eigen::Vector4d> taken;
+  for (const auto& [number, sum] : sums) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> own(sum.first);
+    const Eigen::Vector4d weight = own.eigenvalues().unaryExpr(
+        [](double s) { return s > 1e-12 ? (1.0 - 1.0 / std::sqrt(1.0 + s)) / s : 0.5; });
+    taken[number] =
+        root * own.eigenvectors() * weight.asDiagonal() * own.eigenvectors().transpose() * sum.second;
+  }
+  for (std::size_t row = 0; row < unit.size(); ++row)
+    rows.segment<kChannels>(static_cast<Eigen::Index>(row) * kChannels) -= common[row] * taken[unit[row]];
+}
+
+Eigen::VectorXd Whitening::apply(const Eigen::MatrixXd& residual) const {
+  Eigen::VectorXd out = rowByRow(residual);
+  settleRuns(out);
+  return out;
+}
+
+namespace {
+
+/// No reading is trusted four times better than the median one: where a relative error meets a reading near
+/// zero the quadrature and the noise of slip and load, known to first order, would speak louder than the
+/// sensor.
+Eigen::Vector4d leastVariance(const Trial& trial, const Eigen::MatrixXd& level, const SensorNoise& noise) {
+  Eigen::Vector4d least;
+  for (int c = 0; c < kChannels; ++c) {
+    const auto k = static_cast<std::size_t>(c);
+    std::vector<double> variance;
+    for (int row = 0; row < trial.rows(); ++row)
+      variance.push_back(squared(noise.absolute[k] / trial.denominator(row, static_cast<Channel>(c))) +
+                         squared(noise.relative[k] * level(row, c)));
+    least[c] = medianOf(variance) / 16.0;
+  }
+  return least;
+}
+
+}  // namespace
+
+Whitening whitening(const Trial& trial, const Eigen::MatrixXd& level, const InputSlopes& slopes,
+                    const SensorNoise& noise) {
+  Whitening w;
+  w.std.resize(trial.rows(), kChannels);
+  const Eigen::Vector4d least = leastVariance(trial, level, noise);
+  const bool alone = trial.moment.empty();
+  if (!alone) w.slip = {trial.moment, Eigen::MatrixXd::Zero(trial.rows(), kChannels)};
+  for (int row = 0; row < trial.rows(); ++row) {
+    const double slip_variance = trial.slip_variance[row];
+    Eigen::Matrix4d s = rowCovariance(trial, row, level, slopes, noise, alone ? slip_variance : 0.0,
+                                      trial.load_variance[row]);
+    s.diagonal() = s.diagonal().cwiseMax(least);
+    w.factor.push_back(rowFactor(s, trial.measured, row));
+    w.std.row(row) = s.diagonal().transpose();
+    if (alone) continue;
+    w.std.row(row) += slip_variance * slopes.by_slip.row(row).cwiseAbs2();
+    w.slip.moved.row(row) = std::sqrt(slip_variance) * w.factor.back() * slopes.by_slip.row(row).transpose();
+  }
+  w.std = w.std.cwiseSqrt();
+  return w;
+}
+
+}  // namespace talus::terramech

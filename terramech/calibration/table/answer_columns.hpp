@@ -1,0 +1,19 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include <talus/terramech/effects/channel_reading.hpp>
+
+namespace talus::terramech {
+
+/// Columns that hold what a model predicts, in the order of Channel.
+inline constexpr std::array<const char*, kChannels> kAnswers{"drawbar_pull_N", "sinkage_m", "torque_Nm",
+                                                             "side_force_N"};
+
+inline bool isAnswer(std::string_view column) {
+  return std::find(kAnswers.begin(), kAnswers.end(), column) != kAnswers.end();
+}
+
+}  // namespace talus::terramech

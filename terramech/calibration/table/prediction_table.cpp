@@ -1,0 +1,162 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include <talus/terramech/calibration/table/answer_columns.hpp>
+#include <talus/terramech/calibration/table/prediction_table.hpp>
+#include <talus/terramech/calibration/table/trial.hpp>
+#include <talus/terramech/io/column_units.hpp>
+#include <talus/terramech/io/csv_reader.hpp>
+
+namespace talus::terramech {
+namespace {
+
+bool isPrediction(const std::string& name) {
+  return name.starts_with("predicted_");
+}
+
+bool alwaysWords(const std::string& name) {
+  return name == "run" || name == "wheel";
+}
+
+struct Rows {
+  std::vector<std::string> header;
+  std::vector<CsvRow> rows;
+};
+
+Rows readRows(const std::filesystem::path& path, const std::stop_token& stop) {
+  CsvReader reader(path);
+  checkColumnUnits(reader.header(), knownTelemetryColumns(), path.string());
+  Rows all{reader.header(), {}};
+  for (CsvRow row; !stop.stop_requested() && reader.next(row);) {
+    row.fields.resize(all.header.size());
+    all.rows.push_back(row);
+  }
+  return all;
+}
+
+/// A column as numbers; false when a field holds words.
+bool numbersOf(const Rows& all, std::size_t column, std::vector<double>& values) {
+  bool any = false;
+  for (const CsvRow& row : all.rows) {
+    double value = WheelState::kUnknown;
+    if (!row.fields[column].empty() && !parseNumber(row.fields[column], value)) return false;
+    any |= !row.fields[column].empty();
+    values.push_back(std::isfinite(value) ? value : WheelState::kUnknown);
+  }
+  return any;
+}
+
+/// The conditions alone: a telemetry without the answers.
+Telemetry conditionsOf(const Rows& all, const std::string& source) {
+  Telemetry t;
+  t.source = source;
+  for (std::size_t k = 0; k < all.header.size(); ++k) {
+    const std::string& name = all.header[k];
+    if (name.empty() || isAnswer(name) || isPrediction(name)) continue;
+    std::vector<double> numbers;
+    const auto& known = knownTelemetryColumns();
+    const bool must = std::find(known.begin(), known.end(), name) != known.end();
+    if (!alwaysWords(name) && (numbersOf(all, k, numbers) || must)) {
+      numbers.resize(all.rows.size(), WheelState::kUnknown);
+      t.numbers.push_back({name, numbers});
+    } else {
+      t.words.push_back({name, {}});
+      for (const CsvRow& row : all.rows) t.words.back().values.push_back(row.fields[k]);
+    }
+  }
+  for (const CsvRow& row : all.rows) t.lines.push_back(row.line);
+  return t;
+}
+
+std::string faultOf(const CsvRow& row, const WheelState& s) {
+  if (!row.fault.empty()) return row.fault;
+  if (!std::isfinite(s.load_N)) return "load_N is missing";
+  if (!(s.load_N > 0.0)) return "load_N must be > 0";
+  if (!std::isfinite(s.slip)) return "slip is missing";
+  if (std::abs(s.slip) > 1.0) return "slip must be in [-1, 1]";
+  if (!(s.wheel.radius_m > 0.0 && s.wheel.width_m > 0.0)) return "the wheel's radius and width must be > 0";
+  return "";
+}
+
+/// Takes back the corrections that the scope does not hold for; the standard deviation holds what is taken back.
+void takeBack(const ModelScope& scope, const WheelState& state, Prediction& p) {
+  std::array<double, kChannels> taken{};
+  for (std::size_t c = 0; c < kChannels; ++c) taken[c] = 1.0 - scope.share(state, c);
+  if (std::all_of(taken.begin(), taken.end(), [](double t) { return t == 0.0; })) return;
+  const Reading base = predict(*scope.base, state);
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    const auto channel = static_cast<Channel>(c);
+    const double back = taken[c] * (base.scaled(channel) - p.mean.scaled(channel));
+    p.mean.addScaled(channel, back);
+    p.scaled_std[c] = std::hypot(p.scaled_std[c], back);
+  }
+}
+
+/// Widens a prediction outside the trained ranges; names the columns.
+std::string outsideOf(const ModelScope& scope, const WheelState& state, Prediction& p) {
+  std::string columns;
+  for (const TrainedRange& range : scope.trained) {
+    const double x = state.covariate(range.column);
+    if (range.outside(x) == 0.0) continue;
+    columns += (columns.empty() ? "" : ";") + range.column;
+    for (std::size_t c = 0; c < kChannels; ++c)
+      p.scaled_std[c] = std::hypot(p.scaled_std[c], range.stdAt(x, c));
+  }
+  return columns;
+}
+
+void append(std::string& text, double value) {
+  char field[40];
+  std::snprintf(field, sizeof field, ",%.9g", value);
+  text += field;
+}
+
+}  // namespace
+
+PredictionTable predictTable(const std::filesystem::path& path, const RefinedModel& model,
+                             const ModelScope& scope, const ProgressMonitor& watch) {
+  const Rows all = readRows(path, watch.stop);
+  const auto states = statesOf(conditionsOf(all, path.string()), model);
+  PredictionTable table;
+  for (std::size_t k = 0; k < all.header.size(); ++k) {
+    if (isPrediction(all.header[k])) {
+      table.replaced = true;
+      continue;
+    }
+    table.text += (table.text.empty() ? "" : ",") + csvField(all.header[k]);
+  }
+  for (const char* answer : kAnswers)
+    table.text += std::string(",predicted_") + answer + ",predicted_" + answer + "_std";
+  table.text += ",predicted_outside";
+  table.text += '\n';
+  for (std::size_t row = 0; row < all.rows.size() && !watch.stopped(); ++row) {
+    watch.report(static_cast<double>(row) / static_cast<double>(all.rows.size()));
+    std::string line;
+    for (std::size_t k = 0; k < all.header.size(); ++k)
+      if (!isPrediction(all.header[k])) line += (k ? "," : "") + csvField(all.rows[row].fields[k]);
+    const std::string fault = faultOf(all.rows[row], states[row]);
+    if (!fault.empty()) {
+      table.refused.push_back({all.rows[row].line, fault});
+      line += std::string(2 * kAnswers.size() + 1, ',');
+    } else {
+      Prediction p = predictWithStd(model, states[row]);
+      takeBack(scope, states[row], p);
+      const std::string outside = outsideOf(scope, states[row], p);
+      for (std::size_t c = 0; c < kChannels; ++c) {
+        const auto channel = static_cast<Channel>(c);
+        append(line, p.mean.scaled(channel) * p.mean.denominator(channel));
+        append(line, p.scaled_std[c] * p.mean.denominator(channel));
+      }
+      line += ',' + csvField(outside);
+      table.outside += !outside.empty();
+      ++table.predicted;
+    }
+    table.text += line + '\n';
+  }
+  watch.report(1.0);
+  return table;
+}
+
+}  // namespace talus::terramech

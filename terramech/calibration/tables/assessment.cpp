@@ -1,0 +1,121 @@
+#include <cmath>
+
+#include <talus/common/input_error.hpp>
+#include <talus/terramech/calibration/table/trial.hpp>
+#include <talus/terramech/calibration/tables/assessment.hpp>
+#include <talus/terramech/estimate/model_pull.hpp>
+#include <talus/terramech/estimate/pull_forecasts.hpp>
+#include <talus/terramech/estimate/pull_formula.hpp>
+#include <talus/terramech/io/model_file.hpp>
+#include <talus/terramech/io/soil_library.hpp>
+#include <talus/terramech/io/telemetry_reader.hpp>
+#include <talus/terramech/io/wheel_rows.hpp>
+
+namespace talus::terramech {
+namespace {
+
+void judge(Assessment& a, const CategoryThresholds& limits) {
+  const WheelCondition mean{.drawbar_pull_over_load = a.pull.value,
+                            .sinkage_over_radius = a.sinkage_over_radius.value};
+  a.category = categorise(mean, limits);
+  a.probability = categoryProbability({.mean = mean,
+                                       .drawbar_pull_over_load_std = a.pull.std,
+                                       .sinkage_over_radius_std = a.sinkage_over_radius.std},
+                                      limits);
+}
+
+// The pull at other slips: of the soils that all rows together allow, at each row's load.
+void extrapolate(const AssessOptions& options, const WheelRows& rows, const ProgressMonitor& watch,
+                 std::vector<Assessment>& result) {
+  SoilFitOptions fit{.noise = ReadingErrors::relative(std::max(options.noise, 1e-3)), .watch = watch};
+  PullForecasts forecasts(fitSoil(rows.readings(), thesisSoilsOrOther(), fit), options.reference_slip);
+  for (std::size_t k = 0; k < result.size() && !watch.stopped(); ++k) {
+    result[k].forecast = forecasts.at(rows.wheels[k], rows.samples[k].load_N);
+    watch.report(static_cast<double>(k) / static_cast<double>(result.size()));
+  }
+  watch.report(1.0);
+}
+
+AssessedTable assessReadings(const AssessOptions& options, const CategoryThresholds& limits,
+                             const ProgressMonitor& watch) {
+  const ReadingErrors errors = ReadingErrors::relative(options.noise);
+  const WheelRows rows =
+      readWheelRows(options.table, {.rover = options.rover, .needs_slip = options.extrapolate}, watch);
+  AssessedTable table{.rows = {}, .rejected = rows.rejected, .left_out = {}};
+  for (std::size_t k = 0; k < rows.samples.size() && !watch.stopped(); ++k) {
+    const WheelSample& s = rows.samples[k];
+    const Wheel& wheel = rows.wheels[k];
+    const double sinkage = s.sinkage_m / wheel.radius_m;
+    Assessment a{.line = rows.lines[k],
+                 .slip = s.slip,
+                 .pull = pullOverLoadBy(options.formula, wheel, s, errors),
+                 .sinkage_over_radius = {sinkage, errors.sinkage.std(sinkage)},
+                 .torque_over_load_radius = torqueOverLoadRadius(wheel, s)};
+    judge(a, limits);
+    table.rows.push_back(a);
+  }
+  if (options.extrapolate) extrapolate(options, rows, watch, table.rows);
+  return table;
+}
+
+RefinedModel modelOf(const AssessOptions& options, std::vector<std::string>& left_out) {
+  ModelFile file = loadModel(options.model);
+  if (!file.soil_given)
+    throw InputError({options.model, "defines no soil", "fit one first: talus trace --model-out"});
+  if (!options.rover.empty()) file.model.takeRover(loadRover(options.rover));
+  for (const Effect& effect : file.model.effects) {
+    if (isSensorFault(effect)) left_out.push_back(effect.name);
+  }
+  return groundTruthOf(file.model);
+}
+
+// What was read of the sinkage goes before what the model foretells.
+Estimate sinkageOf(const std::vector<double>* read, std::size_t row, const WheelState& state,
+                   const ModelPull& pull, double noise) {
+  if (read == nullptr || !std::isfinite((*read)[row])) return pull.sinkage_over_radius;
+  const double sinkage = (*read)[row] / state.wheel.radius_m;
+  return {sinkage, noise * sinkage};
+}
+
+AssessedTable assessByModel(const AssessOptions& options, const CategoryThresholds& limits,
+                            const ProgressMonitor& watch) {
+  AssessedTable table;
+  const RefinedModel model = modelOf(options, table.left_out);
+  TelemetryOptions reading{.required = {"load_N", "slip"}};
+  if (model.wheel) reading.wheel_radius_m = model.wheel->radius_m;
+  const Telemetry telemetry = readTelemetry(options.table, reading, watch);
+  const std::vector<WheelState> states = statesOf(telemetry, model);
+  const auto* sinkage = telemetry.find("sinkage_m");
+  const auto* torque = telemetry.find("torque_Nm");
+  table.rejected = telemetry.rejected;
+  for (std::size_t k = 0; k < states.size() && !watch.stopped(); ++k) {
+    const ModelPull pull = pullOf(model, states[k]);
+    const bool torque_read = torque != nullptr && std::isfinite((*torque)[k]);
+    Assessment a{.line = telemetry.lines[k],
+                 .slip = states[k].slip,
+                 .pull = pull.pull_over_load,
+                 .sinkage_over_radius = sinkageOf(sinkage, k, states[k], pull, options.noise),
+                 .torque_over_load_radius = torque_read
+                                                ? (*torque)[k] / (states[k].wheel.radius_m * states[k].load_N)
+                                                : pull.torque_over_load_radius};
+    judge(a, limits);
+    if (options.extrapolate) a.forecast = forecastPull(model, states[k], options.reference_slip);
+    table.rows.push_back(a);
+    watch.report(static_cast<double>(k) / static_cast<double>(states.size()));
+  }
+  watch.report(1.0);
+  return table;
+}
+
+}  // namespace
+
+AssessedTable assessTable(const AssessOptions& options, const ProgressMonitor& watch) {
+  CategoryThresholds limits = thresholds({.slope_rad = options.slope_rad, .margin_rad = options.margin_rad});
+  limits.z_threshold = options.z_threshold;
+  limits.z_critical = options.z_critical;
+  validate(limits);
+  return options.model.empty() ? assessReadings(options, limits, watch)
+                               : assessByModel(options, limits, watch);
+}
+
+}  // namespace talus::terramech

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <talus/common/progress_monitor.hpp>
+#include <talus/terramech/estimate/pull_forecast.hpp>
+#include <talus/terramech/estimate/telemetry.hpp>
+#include <talus/terramech/mobility/category.hpp>
+#include <talus/terramech/mobility/category_probability.hpp>
+
+namespace talus::terramech {
+
+/// How rows of a table are judged.
+struct AssessOptions {
+  std::string table;                     ///< path of the CSV
+  std::string formula = "single-force";  ///< one of pullFormulas(), where there is no model
+  std::string model;  ///< file of a base or refined model; empty: the pull follows from T, z and i as read
+  std::string rover;  ///< library name or file: whose wheel, where the table has no wheel size; may be empty
+  double slope_rad = 0.17453292519943295;  ///< 10 deg (thesis Fig. 3.12)
+  double margin_rad = 0.0;                 ///< of the slope, either way
+  double z_threshold = 0.5;                ///< z/r above which the category drops one level
+  double z_critical = 0.75;                ///< z/r above which it is dangerous
+  double noise = 0.05;                     ///< relative standard deviation of each reading [-]
+  double reference_slip = 0.5;             ///< that `extrapolate` gives the pull at
+  bool extrapolate = false;                ///< also forecast the pull at the reference slip, and the greatest
+};
+
+/// What a row comes to.
+struct Assessment {
+  std::size_t line = 0;
+  double slip = 0.0;
+  Estimate pull;  ///< DP/W
+  Estimate sinkage_over_radius;
+  double torque_over_load_radius = 0.0;
+  Category category = Category::Unknown;
+  CategoryProbability probability{};
+  std::optional<PullForecast> forecast;
+};
+
+/// The rows of a table, judged.
+struct AssessedTable {
+  std::vector<Assessment> rows;
+  std::vector<RejectedRow> rejected;
+  std::vector<std::string> left_out;  ///< effects of the model that are faults of a sensor
+};
+
+/// Reads the table and judges each row, by its readings or by the model. Throws InputError for what is wrong
+/// with the input.
+AssessedTable assessTable(const AssessOptions& options, const ProgressMonitor& watch);
+
+}  // namespace talus::terramech

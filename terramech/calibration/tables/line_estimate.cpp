@@ -1,0 +1,212 @@
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include <talus/common/input_error.hpp>
+#include <talus/terramech/calibration/tables/line_estimate.hpp>
+#include <talus/terramech/io/soil_priors.hpp>
+#include <talus/terramech/io/telemetry_reader.hpp>
+#include <talus/terramech/io/wheel_rows.hpp>
+#include <talus/terramech/strength/iagnemma.hpp>
+#include <talus/terramech/strength/shear_modulus_grid.hpp>
+#include <talus/terramech/strength/sojourner.hpp>
+
+namespace talus::terramech {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+StressPair spinPair(const Wheel& wheel, const WheelSample& sample, double /*shear_modulus_m*/) {
+  return sojournerPair(wheel, sample);
+}
+
+PairOf pairOf(const std::string& method) {
+  return method == "sojourner" ? spinPair : method == "iagnemma" ? iagnemmaPair : linearOffsetPair;
+}
+
+ModulusCriterion criterionOf(const std::string& how) {
+  return how == "error-minimisation"         ? ModulusCriterion::ErrorMinimisation
+         : how == "effective-torque"         ? ModulusCriterion::TorqueRatio
+         : how == "effective-torque-printed" ? ModulusCriterion::EffectiveTorque
+                                             : ModulusCriterion::Joint;
+}
+
+ModulusEstimate findModulus(ModulusCriterion criterion, const WheelRows& rows, const ProgressMonitor& watch) {
+  switch (criterion) {
+    case ModulusCriterion::ErrorMinimisation:
+      return modulusByErrorMinimisation(rows.wheel, rows.samples, {}, watch);
+    case ModulusCriterion::TorqueRatio:
+      return modulusByTorqueRatio(rows.wheel, rows.samples);
+    case ModulusCriterion::EffectiveTorque:
+      return modulusByEffectiveTorque(rows.wheel, rows.samples);
+    case ModulusCriterion::Joint:
+      break;
+  }
+  return modulusJointly(rows.wheel, rows.samples, {}, watch);
+}
+
+// The file's own column, where it has one value in all rows.
+std::optional<double> columnModulus(const EstimateOptions& options) {
+  const Telemetry table = readTelemetry(options.table);
+  const auto* column = table.find("shear_modulus_m");
+  if (column == nullptr || column->empty() || !(column->front() > 0.0)) return std::nullopt;
+  for (const double k : *column) {
+    if (k != column->front()) return std::nullopt;
+  }
+  return column->front();
+}
+
+// K where it need not be found: as stated, else the file's, else the prior's. NaN where no K is needed.
+std::optional<double> knownModulus(const EstimateOptions& options, const std::vector<SoilPrior>& priors) {
+  if (options.method == "sojourner") return kNan;
+  if (const auto stated = statedModulus(options)) return stated;
+  if (!options.shear_modulus.empty()) return std::nullopt;
+  if (const auto column = columnModulus(options)) return column;
+  if (!priors.empty()) return meanModulus(priors);
+  return std::nullopt;
+}
+
+void sayModulusUnseen(const ModulusEstimate& k, SoilEstimate& estimate) {
+  if (!k.at_bound) return;
+  estimate.unseen.emplace_back(
+      "shear_modulus_m: no minimum between 2 and 100 mm; vary the slip, or pass --shear-modulus");
+}
+
+ShearStrength believed(const ShearStrength& fit, const std::vector<StrengthPrior>& priors) {
+  return priors.empty() ? fit : withPrior(fit, priors);
+}
+
+// The line of a method at a known K, in constant memory; that of linear-offset with M1 where asked.
+class LineFit {
+ public:
+  explicit LineFit(const EstimateOptions& options)
+      : pair_(pairOf(options.method)), whole_equation_(options.whole_equation) {}
+
+  void add(const Wheel& wheel, const WheelSample& sample, double shear_modulus_m) {
+    if (whole_equation_) {
+      whole_.add(linearOffset(wheel, sample, shear_modulus_m));
+    } else {
+      line_.add(pair_(wheel, sample, shear_modulus_m));
+    }
+  }
+  ShearStrength estimate() const { return whole_equation_ ? whole_.estimate() : line_.estimate(); }
+
+ private:
+  PairOf pair_;
+  bool whole_equation_;
+  MohrCoulombLine line_;
+  LinearOffsetFit whole_;
+};
+
+// What the line is fitted to.
+std::vector<StressPair> pointsOf(const EstimateOptions& options, const WheelRows& rows, double modulus) {
+  std::vector<StressPair> points;
+  for (std::size_t k = 0; k < rows.samples.size(); ++k)
+    points.push_back(pairOf(options.method)(rows.wheels[k], rows.samples[k], modulus));
+  return points;
+}
+
+// All rows at once.
+void fitTogether(const EstimateOptions& options, const WheelRows& rows, const std::vector<SoilPrior>& priors,
+                 const ProgressMonitor& watch, SoilEstimate& estimate) {
+  const auto known = knownModulus(options, priors);
+  const auto modulus = known ? ModulusEstimate{.shear_modulus_m = *known}
+                             : findModulus(criterionOf(options.shear_modulus), rows, watch);
+  if (watch.stopped()) return;
+  sayModulusUnseen(modulus, estimate);
+  LineFit line(options);
+  for (std::size_t k = 0; k < rows.samples.size(); ++k)
+    line.add(rows.wheels[k], rows.samples[k], modulus.shear_modulus_m);
+  estimate.points = pointsOf(options, rows, modulus.shear_modulus_m);
+  estimate.take(believed(line.estimate(), strengthPriors(priors)));
+  estimate.shear_modulus_m = modulus.shear_modulus_m;
+}
+
+// Row by row in constant memory: a line where K is known, else a line for each K of a ladder.
+class Recursion {
+ public:
+  Recursion(const EstimateOptions& options, const Wheel& wheel, const std::vector<SoilPrior>& priors)
+      : known_(knownModulus(options, priors)),
+        priors_(strengthPriors(priors)),
+        line_(options),
+        ladder_(wheel, {.criterion = criterionOf(options.shear_modulus), .pair = pairOf(options.method)}) {
+    if (options.whole_equation && !known_) {
+      throw InputError({.where = "--keep-m1",
+                        .reason = "--recursive requires a known K",
+                        .remedy = "pass --shear-modulus in metres"});
+    }
+  }
+
+  // False: the sample has no equation.
+  bool add(const Wheel& wheel, const WheelSample& sample) {
+    if (!known_) return ladder_.add(sample);
+    line_.add(wheel, sample, *known_);
+    return true;
+  }
+  ShearStrength strength() const { return believed(known_ ? line_.estimate() : ladder_.strength(), priors_); }
+  ModulusEstimate modulus() const {
+    return known_ ? ModulusEstimate{.shear_modulus_m = *known_} : ladder_.modulus();
+  }
+
+ private:
+  std::optional<double> known_;
+  std::vector<StrengthPrior> priors_;
+  LineFit line_;
+  ShearModulusGrid ladder_;
+};
+
+RunningSoil runningOf(const Recursion& recursion) {
+  try {
+    const ShearStrength fit = recursion.strength();
+    return {.cohesion_Pa = fit.cohesion_Pa,
+            .friction_angle_rad = fit.frictionAngle_rad(),
+            .shear_modulus_m = recursion.modulus().shear_modulus_m,
+            .covariance = fit.covariance};
+  } catch (const std::domain_error&) {  // too few rows yet
+    return {};
+  }
+}
+
+void fitRecursively(const EstimateOptions& options, const WheelRows& rows,
+                    const std::vector<SoilPrior>& priors, const ProgressMonitor& watch,
+                    SoilEstimate& estimate) {
+  Recursion recursion(options, rows.wheel, priors);
+  for (std::size_t k = 0; k < rows.samples.size(); ++k) {
+    if (watch.stopped()) return;
+    watch.report(static_cast<double>(k) / static_cast<double>(rows.samples.size()));
+    if (!recursion.add(rows.wheels[k], rows.samples[k])) {
+      estimate.rejected.push_back({.line = rows.lines[k], .reason = "torque_Nm must be > 0 to find K"});
+      --estimate.rows_used;
+      continue;
+    }
+    estimate.running.push_back(runningOf(recursion));
+    estimate.running.back().line = rows.lines[k];
+  }
+  watch.report(1.0);
+  const ModulusEstimate modulus = recursion.modulus();
+  sayModulusUnseen(modulus, estimate);
+  estimate.take(recursion.strength());
+  estimate.shear_modulus_m = modulus.shear_modulus_m;
+  estimate.points = pointsOf(options, rows, modulus.shear_modulus_m);
+}
+
+}  // namespace
+
+SoilEstimate lineEstimate(const EstimateOptions& options, const ProgressMonitor& watch) {
+  const bool spin = options.method == "sojourner";
+  const WheelRows rows = readWheelRows(options.table, {.rover = options.rover, .needs_slip = !spin}, watch);
+  const std::vector<SoilPrior> priors = soilPriors(options.prior);
+  if (!rows.one_wheel && !knownModulus(options, priors)) {
+    throw InputError(
+        {.where = rows.source,
+         .reason = "contains wheels of several sizes; K is found by comparing rows of one size",
+         .remedy = "pass K with --shear-modulus, use --method wong-reece, or split the file by size"});
+  }
+  SoilEstimate estimate;
+  estimate.rejected = rows.rejected;
+  estimate.rows_used = rows.samples.size();
+  (options.recursive ? fitRecursively : fitTogether)(options, rows, priors, watch, estimate);
+  return estimate;
+}
+
+}  // namespace talus::terramech

@@ -1,0 +1,174 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include <talus/common/input_error.hpp>
+#include <talus/terramech/calibration/tables/model_estimate.hpp>
+#include <talus/terramech/calibration/tables/no_soil.hpp>
+#include <talus/terramech/calibration/verdict/model_soil.hpp>
+#include <talus/terramech/io/model_file.hpp>
+#include <talus/terramech/io/soil_library.hpp>
+#include <talus/terramech/io/telemetry_reader.hpp>
+#include <talus/terramech/io/wheel_rows.hpp>
+
+namespace talus::terramech {
+namespace {
+
+RefinedModel modelOf(const EstimateOptions& options) {
+  RefinedModel model = (options.model.empty() ? unknownSoil() : loadModel(options.model)).model;
+  if (model.base != BaseModel::WongReece)
+    throw InputError({.where = options.model,
+                      .reason = "its base is linear-formula, which has no soil",
+                      .remedy = "use a model with the base wong-reece"});
+  if (!options.rover.empty()) model.takeRover(loadRover(options.rover));
+  return model;
+}
+
+void refuseWhatDoesNotGo(const EstimateOptions& options) {
+  const auto refuse = [](const char* where, const char* reason, const char* remedy) {
+    throw InputError({.where = where, .reason = reason, .remedy = remedy});
+  };
+  if (options.method != "wong-reece")
+    refuse("--model", "its effects act on the contact stresses, which this method does not solve",
+           "use --method wong-reece, or remove the option");
+  if (options.recursive)
+    refuse("--recursive", "cannot be combined with --model or with side forces, which are fitted all at once",
+           "remove one of the two");
+}
+
+ModelSoilOptions howOf(const EstimateOptions& options) {
+  ModelSoilOptions how{.noise = options.noise};
+  how.shear_modulus_m = options.shear_modulus.empty() ? std::nullopt : statedModulus(options);
+  if (options.prior.empty()) return how;
+  how.prior = loadModel(options.prior).model;
+  if (how.prior->soil_prior_std.empty())
+    throw InputError({.where = "--prior " + options.prior,
+                      .reason = "gives no standard deviation, so no parameter is free",
+                      .remedy = "write {mean: ..., std: ...} for each unknown parameter"});
+  return how;
+}
+
+SoilAnswer answerOf(const RefinedModel& model, const Trial& trial, const ModelSoil& found) {
+  RefinedModel fitted = model;
+  fitted.soil = found.soil;
+  SolvedContacts solved;
+  return {
+      .measured = trial.measured, .predicted = predictRows(fitted, trial, solved), .misfit = found.misfit};
+}
+
+SoilEstimate soilOf(const ModelSoil& found) {
+  SoilEstimate estimate;
+  estimate.cohesion_Pa = found.soil.cohesion_Pa;
+  estimate.friction_angle_rad = found.soil.friction_angle_rad;
+  estimate.tan_friction = std::tan(found.soil.friction_angle_rad);
+  estimate.shear_modulus_m = found.soil.shear_modulus_m;
+  estimate.covariance = found.strength_covariance;
+  estimate.sinkage_exponent = found.soil.sinkage_exponent;
+  estimate.cohesive_modulus = found.soil.cohesive_modulus;
+  estimate.frictional_modulus = found.soil.frictional_modulus;
+  estimate.unseen = found.unseen;
+  return estimate;
+}
+
+// The channel without which a soil explains the rows best, where one does.
+struct OddColumn {
+  std::string column;         // empty: none
+  double misfit = kMisfit;    // of the others
+  bool contradicted = false;  // the soil of two or more others leaves it unexplained
+};
+
+OddColumn oddColumn(const RefinedModel& model, const Trial& trial, const ModelSoilOptions& how) {
+  OddColumn odd;
+  int channels = 0;
+  for (int k = 0; k < kChannels; ++k) channels += trial.has(static_cast<Channel>(k)) ? 1 : 0;
+  for (int k = 0; k < kChannels; ++k) {
+    const auto channel = static_cast<Channel>(k);
+    if (!trial.has(channel) || channels < 2) continue;
+    Trial without = trial;
+    without.measured.col(k).setConstant(std::numeric_limits<double>::quiet_NaN());
+    const ModelSoil rest = soilUnder(model, without, how);
+    if (!(rest.misfit < odd.misfit) || !soilOf(rest).implausible().empty()) continue;
+    const bool by_slope = channel == Channel::DrawbarPull && !trial.moment.empty();
+    odd = {.column = by_slope ? "slope_rad" : columnOf(channel),
+           .misfit = rest.misfit,
+           .contradicted = channels > 2 && leavesUnexplained(answerOf(model, trial, rest), channel)};
+  }
+  return odd;
+}
+
+std::string remedyFor(const OddColumn& odd) {
+  if (odd.column.empty()) return "no single column is at fault; trace these rows, or increase --noise";
+  return fmt::format("check unit, sign and sensor of column {}, without which the misfit is {:.1f}",
+                     odd.column, odd.misfit);
+}
+
+// Throws where no soil comes near the rows, warns where none describes them well. A misfit alone may be the model's: then no
+// column by itself is at fault, or the others foretell it roughly.
+void judgeFit(const EstimateOptions& options, const RefinedModel& model, const Trial& trial,
+              const ModelSoil& found, SoilEstimate& estimate) {
+  const bool poor = found.misfit > kMisfit;
+  if (!poor && estimate.implausible().empty()) return;
+  const std::string effects = options.model.empty() ? "" : "with the effects of " + options.model + " ";
+  const OddColumn odd = oddColumn(model, trial, howOf(options));
+  std::string why = noSoilExplains(estimate, answerOf(model, trial, found));
+  if (why.empty() && odd.contradicted)
+    why =
+        fmt::format("no soil explains the rows (misfit {:.1f}, 1 expected): {} contradicts the other columns",
+                    found.misfit, odd.column);
+  if (!why.empty())
+    throw std::domain_error(fmt::format("{}: {}{}; {}", options.table, effects, why, remedyFor(odd)));
+  estimate.warnings.push_back(fmt::format(
+      "{}no soil explains the readings (misfit {:.1f}, 1 expected); trace these rows, or increase --noise",
+      effects, found.misfit));
+}
+
+}  // namespace
+
+bool measuresSideForce(const std::string& table) {
+  const Telemetry rows = readTelemetry(table);
+  const auto* angle = rows.find("slip_angle_rad");
+  const auto* force = rows.find("side_force_N");
+  const auto* load = rows.find("load_N");
+  if (angle == nullptr || force == nullptr || load == nullptr) return false;
+  double squares = 0.0, count = 0.0;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    if (!std::isfinite((*angle)[k]) || !std::isfinite((*force)[k])) continue;
+    if (std::abs((*angle)[k]) > kStraightUpTo_rad) return true;
+    squares += std::pow((*force)[k] / (*load)[k], 2);
+    ++count;
+  }
+  return squares > kCoarse * kCoarse * count;
+}
+
+SoilEstimate modelEstimate(const EstimateOptions& options, const ProgressMonitor& watch) {
+  refuseWhatDoesNotGo(options);
+  RefinedModel model = modelOf(options);
+  TelemetryOptions reading{.required = {"load_N", "slip"}};
+  if (model.wheel) reading.wheel_radius_m = model.wheel->radius_m;
+  Telemetry telemetry = readTelemetry(options.table, reading, watch);
+  leaveOutWithoutSlipAngle(telemetry);
+  const Trial all = makeTrial(telemetry, model);
+  std::vector<char> above = beyondAxle(all);
+  for (char& row : above) row = !row;
+  const Trial trial = subset(all, above);
+  if (trial.rows() == 0)
+    throw InputError(
+        {.where = options.table, .reason = "in every row the sinkage reaches the axle", .remedy = ""});
+  model.slip_along_travel |= slipIsAlongTravel(trial.states);
+  const ModelSoil found = soilUnder(model, trial, howOf(options));
+  SoilEstimate estimate = soilOf(found);
+  estimate.rejected = telemetry.rejected;
+  std::ranges::stable_sort(estimate.rejected, {}, &RejectedRow::line);
+  estimate.rows_used = static_cast<std::size_t>(trial.rows());
+  for (const Effect& effect : model.effects) estimate.effects.push_back(effect.name);
+  judgeFit(options, model, trial, found, estimate);
+  if (trial.rows() < all.rows())
+    estimate.warnings.push_back(
+        fmt::format("{} rows with sinkage at or above the axle were excluded", all.rows() - trial.rows()));
+  return estimate;
+}
+
+}  // namespace talus::terramech

@@ -1,0 +1,362 @@
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <set>
+#include <string>
+
+#include <talus/terramech/calibration/held_out/end_levels.hpp>
+#include <talus/terramech/calibration/held_out/held_out.hpp>
+#include <talus/terramech/calibration/held_out/model_scope.hpp>
+#include <talus/terramech/calibration/noise/folds.hpp>
+#include <talus/terramech/calibration/search/column_screening.hpp>
+#include <talus/terramech/calibration/search/trace_search.hpp>
+#include <talus/terramech/calibration/table/closure_offset.hpp>
+#include <talus/terramech/calibration/trace/residual_trace.hpp>
+#include <talus/terramech/mobility/rut.hpp>
+
+namespace talus::terramech {
+namespace {
+
+Channel strongest(const Explanation& e) {
+  const auto most = std::max_element(e.by_channel.begin(), e.by_channel.end());
+  return static_cast<Channel>(most - e.by_channel.begin());
+}
+
+bool same(const Candidate& a, const Candidate& b) {
+  return a.parts.size() == b.parts.size() && a.parts.front().name == b.parts.front().name &&
+         a.covariate() == b.covariate() && a.parts.front().only_value == b.parts.front().only_value;
+}
+
+// Explanations by the same form from several starts count once.
+TracedEffect traced(const std::vector<Explanation>& ranked, double p_value, double close) {
+  TracedEffect effect;
+  effect.chosen = ranked.front();
+  effect.channel = strongest(ranked.front());
+  effect.p_value = p_value;
+  for (const Explanation& e : ranked) {
+    const auto like = [&e](const Explanation& other) { return same(e.candidate, other.candidate); };
+    if (e.gain > ranked.front().gain - close && effect.alternatives.size() < 6 && !like(effect.chosen) &&
+        std::none_of(effect.alternatives.begin(), effect.alternatives.end(), like))
+      effect.alternatives.push_back(e);
+  }
+  return effect;
+}
+
+/// Puts in the offset of a force sensor that its group's own torque and sinkage betray, unless it makes held-out rows
+/// worse; a soil fitted to all rows would hide it. It stays: the search sees only what the soil left of it.
+bool correctOffset(TraceSearch& search, const Trial& trial, std::uint64_t seed,
+                   std::vector<TracedEffect>& effects) {
+  const auto found = findClosureOffset(trial, seed);
+  if (!found) return false;
+  Effect tilt;
+  tilt.name = "load_cell_tilt";
+  tilt.covariate = found->column;
+  tilt.channel = Channel::DrawbarPull;
+  tilt.parameters = {std::asin(std::clamp(found->offset, -0.3, 0.3))};
+  search.trust(Estimate{tilt.parameters[0], found->std});
+  tilt.only_column = found->column;
+  tilt.only_value = found->value;
+  TracedEffect effect;
+  effect.chosen.candidate = {{tilt}, "load_cell_tilt", 1};
+  effect.p_value = found->p_value;
+  if (!accepted({search.fitted(effect.chosen.candidate)}, 0.0)) {
+    search.trust(std::nullopt);
+    return false;
+  }
+  search.accept(effect.chosen.candidate);
+  effects.push_back(effect);
+  return true;
+}
+
+/// Effects as they were taken in.
+struct Path {
+  TraceSearch search;
+  double close;  ///< closeGain()
+  std::vector<TracedEffect> effects{};
+  std::vector<Explanation> rejected{};
+  std::vector<Promise> first{}, last{};
+  double threshold = 0.0;
+  std::size_t pinned = 0;  ///< effects at the front that stay
+};
+
+/// Takes the first of explanations in.
+void take(Path& path, const std::vector<Explanation>& ranked, double p_value) {
+  path.search.accept(ranked.front().candidate);
+  path.effects.push_back(traced(ranked, p_value, path.close));
+  TracedEffect& taken = path.effects.back();
+  if (taken.chosen.candidate.parts.size() < 2) return;
+  path.search.thin(path.effects.size() - 1);
+  taken.chosen.candidate.parts = path.search.parts(path.effects.size() - 1);
+}
+
+long curves(const std::vector<Effect>& effects) {
+  return std::count_if(effects.begin(), effects.end(), [](const Effect& e) { return e.empirical(); });
+}
+
+/// What an account must gain more to take another's place: nothing where it names what the other leaves to curves; where
+/// it leaves to them what the other names, more than noise gives to some curve.
+double margin(const Path& path, const std::vector<Effect>& present, const std::vector<Effect>& other) {
+  const long more = curves(other) - curves(present);
+  return more < 0 ? 0.0 : more > 0 ? std::max(path.close, path.threshold) : path.close;
+}
+
+/// Takes out, last first, what beside the others gains no more than noise would.
+void check(Path& path) {
+  for (std::size_t k = path.effects.size(); k-- > path.pinned;) {
+    if (path.search.gainOf(k) > path.threshold) continue;
+    path.search.leaveOut(k);
+    path.search.settleAll();
+    path.effects.erase(path.effects.begin() + static_cast<long>(k));
+  }
+}
+
+/// Finishes the result. While effects make the rows held out of some channel worse, the last of them that was found there
+/// goes out.
+void finishConfirmed(Path& path, TraceResult& result, const TraceOptions& options,
+                     const std::function<bool(double)>& go_on) {
+  while (true) {
+    result.effects = path.effects;
+    path.search.finish(result);
+    result.held_out = holdOut(result, options, foldsOf(result.trial));
+    const auto last = lastRefuted(result);
+    if (!last || *last < path.pinned || !go_on(0.0)) return;
+    path.search.leaveOut(*last);
+    path.search.settleAll();
+    path.effects.erase(path.effects.begin() + static_cast<long>(*last));
+  }
+}
+
+/// Looks at the earlier effects again once another is in: what they explained beside a gap may be the other's, and
+/// each gives way to what explains clearly more beside the others. One that is left over would bend the search for more.
+void reconsider(Path& path) {
+  if (path.effects.size() > path.pinned + 1) check(path);
+  for (std::size_t k = path.pinned; k + 1 < path.effects.size(); ++k) {
+    TraceSearch without = path.search;
+    without.leaveOut(k);
+    auto ranked = without.fitBest(without.screen(0).promises);
+    preferSimple(ranked, path.threshold);
+    if (!accepted(ranked, 0.0)) continue;
+    const Explanation& best = ranked.front();
+    if (same(best.candidate, path.effects[k].chosen.candidate) ||
+        best.gain < path.search.gainOf(k) + margin(path, path.search.parts(k), best.candidate.parts))
+      continue;
+    const double p_value = path.effects[k].p_value;
+    path.search.leaveOut(k);
+    path.effects.erase(path.effects.begin() + static_cast<long>(k));
+    take(path, ranked, p_value);
+    return;
+  }
+}
+
+/// What was taken in, whatever the order.
+std::multiset<std::string> takenIn(const Path& path) {
+  std::multiset<std::string> all;
+  for (const TracedEffect& e : path.effects)
+    for (const Effect& part : e.chosen.candidate.parts)
+      all.insert(part.name + '|' + part.covariate + '|' + name(part.channel) + '|' + part.only_value);
+  return all;
+}
+
+/// Takes in what explains the residuals best until nothing gains more than noise would, or the same effects come back:
+/// one that is taken in and left out again would go round for ever.
+void grow(Path& path, const Trial& trial, const TraceOptions& options,
+          const std::function<bool(double)>& go_on) {
+  std::set<std::multiset<std::string>> seen;
+  while (go_on(0.0) && static_cast<int>(path.effects.size()) < options.max_effects &&
+         seen.insert(takenIn(path)).second) {
+    const auto screening = path.search.screen(options.draws);
+    if (path.first.empty()) path.first = screening.promises;
+    path.last = screening.promises;
+    path.threshold = screening.threshold;
+    path.rejected = path.search.fitBest(screening.promises);
+    preferSimple(path.rejected, screening.threshold);
+    const double least =
+        0.5 * options.least_share * static_cast<double>(trial.measured.array().isFinite().count());
+    if (!accepted(path.rejected, std::max(screening.threshold, least))) return;
+    take(path, path.rejected, screening.noise.pValue(path.rejected.front().gain));
+    path.rejected.erase(path.rejected.begin());
+    reconsider(path);
+  }
+}
+
+/// Tries two in place of the one or two that were found: one may stand for both. Two for one must gain more than
+/// one more would under noise; two for two clearly more; curves for what has a name as much again.
+void reconsiderPair(Path& path) {
+  const std::size_t found = path.effects.size() - path.pinned;
+  if (found < 1 || found > 2) return;
+  TraceSearch without = path.search;
+  Candidate present;
+  for (std::size_t k = path.effects.size(); k-- > path.pinned;) {
+    for (const Effect& part : path.search.parts(k)) present.parts.push_back(part);
+    without.leaveOut(k);
+  }
+  const auto ranked = without.pairs();
+  if (!accepted(ranked, 0.0)) return;
+  const Explanation& best = ranked.front();
+  const double other = margin(path, present.parts, best.candidate.parts);
+  const double further = found == 1 ? path.threshold : 0.0;
+  const bool more_curves = curves(best.candidate.parts) > curves(present.parts);
+  if (best.gain < without.fitted(present).gain + (more_curves ? further + other : std::max(further, other)))
+    return;
+  const double p_value = path.effects.back().p_value;
+  for (std::size_t k = path.effects.size(); k-- > path.pinned;) {
+    path.search.leaveOut(k);
+    path.effects.pop_back();
+  }
+  for (const Effect& part : best.candidate.parts) {
+    Explanation one = best;
+    const EffectForm* form = findEffect(part.name);
+    one.candidate = {{part}, form ? form->family : "empirical", static_cast<int>(part.parameters.size())};
+    take(path, {one}, p_value);
+  }
+}
+
+/// Forms that were found together, each told for itself.
+std::vector<TracedEffect> apart(const std::vector<TracedEffect>& effects) {
+  std::vector<TracedEffect> all;
+  for (const TracedEffect& e : effects) {
+    if (e.chosen.candidate.empirical() || e.chosen.candidate.parts.size() == 1) {
+      all.push_back(e);
+      continue;
+    }
+    std::size_t at = 0;
+    for (const Effect& part : e.chosen.candidate.parts) {
+      TracedEffect one = e;
+      const EffectForm& form = *findEffect(part.name);
+      one.chosen.candidate = {{part}, form.family, 0};
+      one.channel = form.channel;
+      one.parameter_std.clear();
+      for (const EffectParameter& p : form.parameters) {
+        if (!p.fitted || at >= e.parameter_std.size()) continue;
+        ++one.chosen.candidate.parameters;
+        one.parameter_std.push_back(e.parameter_std[at++]);
+      }
+      all.push_back(std::move(one));
+    }
+  }
+  return all;
+}
+
+/// What is known of a rover's own drive beforehand. Its pull is known as its slope is: unless stated, to 0.3
+/// degrees (an inclinometer's; ours). Wheels that follow another drive in its rut (rut.hpp); how stiff that
+/// is is fitted.
+RefinedModel asDriven(RefinedModel model, const Trial& trial) {
+  constexpr double kSlopeError_rad = 0.005;
+  if (trial.moment.empty()) return model;
+  double load_N = 0.0;
+  for (const double w : trial.load_N) load_N += w / trial.rows();
+  if (!model.stated.drawbar_pull_N) model.stated.drawbar_pull_N = kSlopeError_rad * load_N;
+  const auto& columns = trial.covariates;
+  const bool told = std::find(columns.begin(), columns.end(), "pass_index") != columns.end();
+  if (!told || knowsPasses(model.effects)) return model;
+  model.effects.push_back({.name = "multipass_reload",
+                           .covariate = "pass_index",
+                           .channel = Channel::Sinkage,
+                           .parameters = {kReloadStiffness - 1.0, 1.0}});
+  return model;
+}
+
+}  // namespace
+
+namespace {
+
+/// How much a kind of account can take up that is not its own: a drift in time or weather holds a constant, a curve
+/// holds any of both.
+int freedom(const Candidate& candidate) {
+  return candidate.empirical() ? 2 : candidate.family == "drift" ? 1 : 0;
+}
+
+/// Of a lesser kind, or a form of the same family with fewer numbers: one that grows with speed holds a constant, too.
+bool isSimpler(const Candidate& a, const Candidate& b) {
+  if (freedom(a) != freedom(b)) return freedom(a) < freedom(b);
+  return !a.empirical() && a.family == b.family && a.parts.size() == b.parts.size() &&
+         a.parameters < b.parameters;
+}
+
+}  // namespace
+
+void preferSimple(std::vector<Explanation>& ranked, double threshold) {
+  auto first = ranked.begin();
+  for (auto e = ranked.begin(); e != ranked.end(); ++e)
+    if (e->gain > threshold && e->gain > ranked.front().gain - threshold &&
+        isSimpler(e->candidate, first->candidate))
+      first = e;
+  if (first != ranked.end()) std::rotate(ranked.begin(), first, first + 1);
+}
+
+bool accepted(const std::vector<Explanation>& ranked, double threshold) {
+  return !ranked.empty() && ranked.front().gain > threshold;
+}
+
+namespace {
+
+/// A share of work whose rounds are not known beforehand: each takes half of what is left.
+class Rounds {
+ public:
+  double at(double share) {
+    if (share > 0.0 && share < last_) left_ *= 0.5;
+    last_ = share > 0.0 ? share : last_;
+    return 1.0 - left_ * (1.0 - 0.5 * last_);
+  }
+
+ private:
+  double left_ = 1.0, last_ = 0.0;
+};
+
+TraceResult searched(const RefinedModel& base, const Trial& trial, const TraceOptions& given,
+                     const ProgressMonitor& watch) {
+  TraceOptions options = given;
+  if (!trial.moment.empty()) {  // its errors of slip and slope are no normal noise: see docs/effects.md
+    options.max_effects = 1;
+    options.least_share = 0.06;
+  }
+  Rounds rounds;
+  const auto go_on = [&](double share) {
+    watch.report(0.95 * rounds.at(share));
+    return !watch.stopped();
+  };
+  const Trial screened = screenColumns(asDriven(base, trial), trial, options, go_on);
+  Path path{TraceSearch{asDriven(base, trial), screened, options, go_on}, closeGain(options)};
+  TraceResult result;
+  result.given = base.soil;
+  result.base = path.search.model();
+  result.base_shared = path.search.sharedError();
+  if (options.fit_soil && trial.moment.empty())
+    path.pinned = correctOffset(path.search, screened, options.seed, path.effects) ? 1 : 0;
+  grow(path, trial, options, go_on);
+  if (trial.moment.empty() && go_on(0.0)) reconsiderPair(path);
+  if (go_on(0.0)) check(path);
+  if (go_on(0.0)) path.search.refineCurves();
+  result.rejected = path.rejected;
+  result.first_promises = path.first;
+  result.last_promises = path.last;
+  result.threshold = path.threshold;
+  finishConfirmed(path, result, options, go_on);
+  result.ends = endLevels(result, options, watch);
+  boundEffects(result.refined, result.trial, result.ends);
+  result.scope = scopeOf(result);
+  keepConfirmed(result.held_out, result.scope);
+  keepConfirmed(result.ends, result.noise_floor);
+  result.refined_rmse = rmseOf(predictInScope(result, asMeasured(result.trial)), result.trial);
+  result.effects = apart(result.effects);
+  return result;
+}
+
+}  // namespace
+
+TraceResult traceResiduals(const RefinedModel& base, const Trial& trial, const TraceOptions& options,
+                           const ProgressMonitor& watch) {
+  watch.report(0.0);
+  std::vector<char> sample = rowSample(trial, options.most_rows, options.seed);
+  const bool all = std::find(sample.begin(), sample.end(), 0) == sample.end();
+  TraceResult result = searched(base, all ? trial : subset(trial, sample), options, watch);
+  if (!all) {
+    for (char& row : sample) row = !row;
+    const Trial rest = subset(trial, sample);
+    result.unsearched = {rest.rows(), rmseOf(result.base, rest), rmseOf(predictInScope(result, rest), rest)};
+  }
+  watch.report(1.0);
+  return result;
+}
+
+}  // namespace talus::terramech

@@ -1,0 +1,154 @@
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include <talus/terramech/calibration/verdict/verdict.hpp>
+
+namespace talus::terramech {
+namespace {
+
+/// Variance that a channel has above its floor and `known`; 0 where the excess is within three standard errors.
+double excess(const ChannelErrors& rmse, const TraceResult& result, std::size_t channel, double known = 0.0) {
+  const double floor = result.noise_floor[channel] * result.noise_floor[channel] + known;
+  const double variance = rmse[channel] * rmse[channel];
+  const auto count = static_cast<double>(
+      result.trial.measured.col(static_cast<Eigen::Index>(channel)).array().isFinite().count());
+  return variance > floor * (1.0 + 3.0 * std::sqrt(2.0 / std::max(count, 1.0))) ? variance - floor : 0.0;
+}
+
+std::size_t valuesOf(const Trial& trial, const std::string& column) {
+  std::set<double> values;
+  for (const WheelState& s : trial.states)
+    if (const double v = s.covariate(column); std::isfinite(v)) values.insert(v);
+  return values.size();
+}
+
+bool isFixedByRun(const Trial& trial, const std::string& column) {
+  std::set<std::pair<int, double>> pairs;
+  std::set<int> runs(trial.run.begin(), trial.run.end());
+  for (std::size_t row = 0; row < trial.states.size(); ++row)
+    if (const double v = trial.states[row].covariate(column); std::isfinite(v))
+      pairs.insert({trial.run[row], v});
+  return 2 * runs.size() <= trial.states.size() && pairs.size() <= runs.size();
+}
+
+std::string furtherRows(const TraceResult& result, const Answer& answer) {
+  if (answer.column.empty()) return "rows that record what else changed from run to run";
+  if (isFixedByRun(result.trial, answer.column))
+    return "further runs at other values of " + answer.column + ", now " +
+           std::to_string(valuesOf(result.trial, answer.column)) + ", the other columns the same";
+  const double times = answer.gain > 0.0 ? result.threshold / answer.gain : 0.0;
+  std::string rows = "rows over a wider range of " + answer.column + ", the other columns the same";
+  // A gain grows in proportion to the rows.
+  if (times > 1.0 && times < 20.0)
+    rows += ", or about " + std::to_string(static_cast<int>(std::ceil(times))) + " times as many";
+  return rows;
+}
+
+}  // namespace
+
+const char* name(Verdict verdict) {
+  constexpr const char* kNames[] = {"explained", "nothing_missing", "unexplained"};
+  return kNames[static_cast<std::size_t>(verdict)];
+}
+
+Answer answerOf(const TraceResult& result) {
+  Answer answer;
+  double before = 0.0, after = 0.0, most = 0.0;
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    if (!result.trial.has(static_cast<Channel>(c))) continue;
+    const double floor = result.noise_floor[c] * result.noise_floor[c];
+    const double left = excess(result.refined_rmse, result, c);
+    before += excess(result.base_rmse, result, c) / floor;
+    after += left / floor;
+    if (answer.floor > 0.0 && left / floor <= most) continue;
+    most = left / floor;
+    answer.channel = static_cast<Channel>(c);
+    answer.rest = result.refined_rmse[c];
+    answer.floor = result.noise_floor[c];
+  }
+  const bool open = after > 0.0 && (result.effects.empty() || after > 0.5 * before);
+  answer.open = after > 0.0;
+  answer.verdict = open                     ? Verdict::Unexplained
+                   : result.effects.empty() ? Verdict::NothingMissing
+                                            : Verdict::Explained;
+  for (const Promise& p : result.last_promises) {
+    if (p.gain <= 0.0) break;
+    answer.column = p.candidate.covariate();
+    answer.gain = p.gain;
+    break;
+  }
+  if (answer.open) answer.measure = furtherRows(result, answer);
+  return answer;
+}
+
+double MovedParameter::away() const {
+  return (value - prior) / prior_std;
+}
+
+std::vector<MovedParameter> movedSoil(const TraceResult& result) {
+  std::vector<MovedParameter> moved;
+  const RefinedModel& model = result.refined;
+  for (const auto& [field, std] : model.soil_prior_std) {
+    const auto found = std::find_if(soilParameters().begin(), soilParameters().end(),
+                                    [&name = field](const SoilParameter& p) { return name == p.name; });
+    const auto mean = model.soil_prior_mean.find(field);
+    if (found == soilParameters().end() || mean == model.soil_prior_mean.end() || std <= 0.0) continue;
+    MovedParameter p{field, found->get(model.soil), mean->second, std};
+    if (field == "log_stiffness") {
+      const Soil &now = model.soil, &base = result.given;
+      p.value = std::log((now.cohesive_modulus + now.frictional_modulus) /
+                         (base.cohesive_modulus + base.frictional_modulus));
+    }
+    if (std::abs(p.away()) > 3.0) moved.push_back(p);
+  }
+  return moved;
+}
+
+namespace {
+
+bool isAtBound(double value, double low, double high) {
+  const double close = 1e-9 * (1.0 + std::abs(high) + std::abs(low));
+  return value >= high - close || value <= low + close;
+}
+
+}  // namespace
+
+std::vector<std::string> soilAtBounds(const RefinedModel& model) {
+  std::vector<std::string> names;
+  for (const FittedParameter& f : model.fitted) {
+    if (f.effect >= 0) continue;
+    const SoilParameter& p = soilParameters()[static_cast<std::size_t>(f.index)];
+    if (std::string_view(p.name) != "log_stiffness" && isAtBound(p.get(model.soil), p.low, p.high))
+      names.emplace_back(p.name);
+  }
+  return names;
+}
+
+std::vector<std::string> atBounds(const Effect& effect) {
+  std::vector<std::string> names;
+  const EffectForm* form = findEffect(effect.name);
+  for (std::size_t k = 0; form && k < form->parameters.size(); ++k) {
+    const EffectParameter& p = form->parameters[k];
+    if (p.fitted && isAtBound(effect.parameters[k], p.low, p.high)) names.emplace_back(p.name);
+  }
+  return names;
+}
+
+RefinedModel forPrediction(const TraceResult& result) {
+  RefinedModel model = result.refined;
+  for (int c = 0; c < kChannels; ++c) {
+    if (!result.trial.has(static_cast<Channel>(c))) continue;
+    const double run = std::max(0.0, result.shared.run(c, c));
+    const double shared =
+        run + excess(result.held_out.refined_rmse, result, static_cast<std::size_t>(c), run);
+    double unit = 0.0;
+    for (int row = 0; row < result.trial.rows(); ++row)
+      unit += std::pow(result.trial.denominator(row, static_cast<Channel>(c)), 2) / result.trial.rows();
+    double& absolute = model.noise.absolute[static_cast<std::size_t>(c)];
+    absolute = std::sqrt(absolute * absolute + shared * unit);
+  }
+  return model;
+}
+
+}  // namespace talus::terramech

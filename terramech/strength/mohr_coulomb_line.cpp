@@ -1,0 +1,85 @@
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include <talus/terramech/strength/mohr_coulomb_line.hpp>
+
+namespace talus::terramech {
+namespace {
+
+// Half the width of what soils span (thesis Table 2.3, dry to cohesive): a standard deviation above it says
+// nothing.
+constexpr double kWidestCohesion_Pa = 5000.0;
+constexpr double kWidestTanFriction = 0.25;
+
+// K_1 = [1, x] with both columns of unit length has singular values sqrt(1 +- q), q = mean(x) / rms(x).
+double scaledCondition(double mean, double variance) {
+  const double spread = variance / (mean * mean + variance);  // 1 - q^2
+  const double q = std::sqrt(std::max(0.0, 1.0 - spread));
+  return std::sqrt((1.0 + q) * (1.0 + q) / spread);
+}
+
+}  // namespace
+
+double ShearStrength::frictionAngle_rad() const {
+  return std::atan(tan_friction);
+}
+
+void MohrCoulombLine::add(StressPair pair, double weight) {
+  ++count_;
+  weight_ += weight;
+  const double dx = pair.normal_Pa - mean_normal_;
+  const double dy = pair.shear_Pa - mean_shear_;
+  mean_normal_ += dx * weight / weight_;
+  mean_shear_ += dy * weight / weight_;
+  normal_normal_ += weight * dx * (pair.normal_Pa - mean_normal_);
+  normal_shear_ += weight * dx * (pair.shear_Pa - mean_shear_);
+  shear_shear_ += weight * dy * (pair.shear_Pa - mean_shear_);
+}
+
+double MohrCoulombLine::relativeResidual() const {
+  if (count_ < 3 || !(normal_normal_ > 0.0)) return 0.0;
+  const double squares = shear_shear_ - normal_shear_ * normal_shear_ / normal_normal_;
+  return std::sqrt(std::max(0.0, squares) / static_cast<double>(count_));
+}
+
+ShearStrength MohrCoulombLine::estimate() const {
+  if (count_ < 2)
+    throw std::domain_error("cohesion and friction: at least two samples are required, got " +
+                            std::to_string(count_));
+  if (!(normal_normal_ > 0.0)) {
+    throw std::domain_error(
+        "cohesion and friction: all samples have the same normal stress; vary load or slip");
+  }
+  ShearStrength fit;
+  fit.samples = count_;
+  fit.tan_friction = normal_shear_ / normal_normal_;
+  fit.cohesion_Pa = mean_shear_ - fit.tan_friction * mean_normal_;
+  const double squares = std::max(0.0, shear_shear_ - fit.tan_friction * normal_shear_);
+  const double variance =
+      count_ > 2 ? squares / (static_cast<double>(count_) - 2.0) : std::numeric_limits<double>::quiet_NaN();
+  fit.residual_std_Pa = std::sqrt(variance * static_cast<double>(count_) / weight_);
+  const double slope_variance = variance / normal_normal_;
+  fit.covariance << variance / weight_ + slope_variance * mean_normal_ * mean_normal_,
+      -slope_variance * mean_normal_, -slope_variance * mean_normal_, slope_variance;
+  fit.condition = scaledCondition(mean_normal_, normal_normal_ / weight_);
+  fit.unseen = unseenStrength(fit);
+  return fit;
+}
+
+std::vector<std::string> unseenStrength(const ShearStrength& fit) {
+  std::vector<std::string> unseen;
+  const bool alike = fit.condition > kWorstCondition;
+  if (alike || std::sqrt(fit.covariance(1, 1)) > kWidestTanFriction) {
+    unseen.emplace_back(
+        alike ? "friction_angle_rad: the normal stresses of the samples are almost equal; vary load or slip"
+              : "friction_angle_rad: the samples scatter too much for their range of normal stress");
+  }
+  if (alike || std::sqrt(fit.covariance(0, 0)) > kWidestCohesion_Pa) {
+    unseen.emplace_back(alike ? "cohesion_Pa: not identifiable at a single normal stress"
+                              : "cohesion_Pa: the extrapolation to zero normal stress is too long");
+  }
+  return unseen;
+}
+
+}  // namespace talus::terramech

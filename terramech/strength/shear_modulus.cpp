@@ -1,0 +1,159 @@
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <talus/terramech/contact/contact_geometry.hpp>
+#include <talus/terramech/contact/linear_stress.hpp>
+#include <talus/terramech/numerics/scalar_minimum.hpp>
+#include <talus/terramech/strength/linear_offset.hpp>
+#include <talus/terramech/strength/shear_modulus.hpp>
+
+namespace talus::terramech {
+namespace {
+
+void require(std::size_t samples, std::size_t least) {
+  if (samples >= least) return;
+  throw std::domain_error("shear modulus: at least " + std::to_string(least) + " samples are required, got " +
+                          std::to_string(samples));
+}
+
+bool atBound(double modulus, ModulusRange range) {
+  return modulus < 1.001 * range.low_m || modulus > 0.999 * range.high_m;
+}
+
+// (M3, M4) and the weight that turns a residual in M4 into one in relative torque: residual = w (M4 - c - M3
+// t)/M4.
+struct WeightedPair {
+  StressPair pair;
+  double weight;
+};
+
+WeightedPair torqueWeighted(const Wheel& wheel, const WheelSample& sample, double modulus) {
+  const StressPair pair = linearOffset(wheel, sample, modulus).pair();
+  return {.pair = pair, .weight = 1.0 / (pair.shear_Pa * pair.shear_Pa)};
+}
+
+double relativeTorqueError(const Wheel& wheel, std::span<const WheelSample> samples, double modulus) {
+  MohrCoulombLine line;
+  for (const WheelSample& s : samples) {
+    const auto [pair, weight] = torqueWeighted(wheel, s, modulus);
+    line.add(pair, weight);
+  }
+  return line.relativeResidual();
+}
+
+// globalMinimum() of an error that takes long where samples are many.
+template <class Error>
+Minimum leastError(const Error& error, ModulusRange range, const ProgressMonitor& watch) {
+  constexpr double kUsual = 85.0;  // evaluations
+  double count = 0.0;
+  const auto watched = [&](double k) {
+    if (watch.stopped()) return 0.0;
+    watch.report(std::min(1.0, ++count / kUsual));
+    return error(k);
+  };
+  const Minimum least = globalMinimum(watched, range.low_m, range.high_m);
+  watch.report(1.0);
+  return least;
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+ModulusEstimate medianModulus(const std::vector<double>& values) {
+  if (values.empty()) {
+    throw std::domain_error(
+        "shear modulus by effective torque: no sample has less slip and less torque per load than the sample "
+        "of highest slip; vary the slip");
+  }
+  const double middle = median(values);
+  std::vector<double> spread;
+  for (const double v : values) spread.push_back(std::abs(v - middle));
+  return {.shear_modulus_m = middle, .error = median(std::move(spread))};
+}
+
+const WheelSample& highestSlip(std::span<const WheelSample> samples) {
+  require(samples.size(), 2);
+  return *std::ranges::max_element(samples, {}, &WheelSample::slip);
+}
+
+double torquePerLoad(const WheelSample& s) {
+  return s.torque_Nm / s.load_N;
+}
+
+// A(K)/A_max(K) falls from 1 at K = 0 to j/j_max: bisection in log K.
+std::optional<double> solveRatio(double ratio, double j, double j_max, ModulusRange range) {
+  const auto excess = [&](double k) { return std::expm1(-j / k) / std::expm1(-j_max / k) - ratio; };
+  double low = range.low_m;
+  double high = range.high_m;
+  if (!(excess(low) > 0.0) || !(excess(high) < 0.0)) return std::nullopt;
+  while (high > low * (1.0 + 1e-12)) {
+    const double middle = std::sqrt(low * high);
+    (excess(middle) > 0.0 ? low : high) = middle;
+  }
+  return low;
+}
+
+}  // namespace
+
+double modulusError_Pa(const Wheel& wheel, std::span<const WheelSample> samples, double shear_modulus_m) {
+  std::vector<StressPair> points;
+  MohrCoulombLine line;
+  for (const WheelSample& s : samples) {
+    points.push_back(linearOffset(wheel, s, shear_modulus_m).pair());
+    line.add(points.back());
+  }
+  const ShearStrength fit = line.estimate();
+  double sum = 0.0;
+  for (const auto& [x, y] : points) sum += std::abs(y - fit.cohesion_Pa - fit.tan_friction * x);
+  return sum / std::hypot(1.0, fit.tan_friction);
+}
+
+ModulusEstimate modulusByErrorMinimisation(const Wheel& wheel, std::span<const WheelSample> samples,
+                                           ModulusRange range, const ProgressMonitor& watch) {
+  require(samples.size(), 3);
+  const Minimum best = leastError([&](double k) { return modulusError_Pa(wheel, samples, k); }, range, watch);
+  return {.shear_modulus_m = best.at, .error = best.value, .at_bound = atBound(best.at, range)};
+}
+
+ModulusEstimate modulusByEffectiveTorque(const Wheel& wheel, std::span<const WheelSample> samples) {
+  const WheelSample& fastest = highestSlip(samples);
+  std::vector<double> values;
+  for (const WheelSample& s : samples) {
+    const double ratio = torquePerLoad(s) / torquePerLoad(fastest);
+    const double j = peakShearDisplacement_m(wheel, s);
+    if (s.slip < fastest.slip && ratio > 0.0 && ratio < 1.0 && j > 0.0)
+      values.push_back(-j / std::log1p(-ratio));
+  }
+  return medianModulus(values);
+}
+
+ModulusEstimate modulusByTorqueRatio(const Wheel& wheel, std::span<const WheelSample> samples,
+                                     ModulusRange range) {
+  const WheelSample& fastest = highestSlip(samples);
+  const double j_max = peakShearDisplacement_m(wheel, fastest);
+  std::vector<double> values;
+  for (const WheelSample& s : samples) {
+    const double j = peakShearDisplacement_m(wheel, s);
+    if (!(s.slip < fastest.slip) || !(j > 0.0)) continue;
+    if (const auto k = solveRatio(torquePerLoad(s) / torquePerLoad(fastest), j, j_max, range))
+      values.push_back(*k);
+  }
+  return medianModulus(values);
+}
+
+ModulusEstimate modulusJointly(const Wheel& wheel, std::span<const WheelSample> samples, ModulusRange range,
+                               const ProgressMonitor& watch) {
+  require(samples.size(), 4);
+  const Minimum best =
+      leastError([&](double k) { return relativeTorqueError(wheel, samples, k); }, range, watch);
+  return {.shear_modulus_m = best.at, .error = best.value, .at_bound = atBound(best.at, range)};
+}
+
+}  // namespace talus::terramech

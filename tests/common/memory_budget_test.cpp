@@ -1,0 +1,27 @@
+#include <talus/common/input_error.hpp>
+#include <talus/common/memory_budget.hpp>
+
+namespace talus {
+namespace {
+
+TEST(MemoryBudget, RefusesWhatExceedsItAndSaysHowMuch) {
+  setMemoryBudget(std::uint64_t{2} << 30U);
+  EXPECT_NO_THROW(requireMemory(1e8, "a.npy"));
+  try {
+    requireMemory(6.2e9, "big.ot");
+    ADD_FAILURE();
+  } catch (const InputError& e) {
+    EXPECT_THAT(e.what(),
+                testing::StartsWith("big.ot: needs 6.2 GB, more than the memory budget of 2.15 GB"));
+    EXPECT_THAT(e.what(), testing::HasSubstr("--max-memory"));
+  }
+  setMemoryBudget(0);
+}
+
+TEST(MemoryBudget, UnsetItIsHalfOfWhatIsFree) {
+  EXPECT_NO_THROW(requireMemory(1e3, "small"));
+  EXPECT_THROW(requireMemory(1e15, "no machine has this"), InputError);
+}
+
+}  // namespace
+}  // namespace talus

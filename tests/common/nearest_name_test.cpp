@@ -1,0 +1,31 @@
+#include <talus/common/nearest_name.hpp>
+
+namespace talus {
+namespace {
+
+const std::vector<std::string> kKnown{"plan", "plugins", "explain", "estimate"};
+
+TEST(EditDistance, CountsInsertedDeletedReplacedAndSwappedLetters) {
+  // Closed form: one edit of each kind.
+  EXPECT_EQ(editDistance("plan", "plan"), 0U);
+  EXPECT_EQ(editDistance("plan", "plain"), 1U);
+  EXPECT_EQ(editDistance("plan", "pan"), 1U);
+  EXPECT_EQ(editDistance("plan", "plam"), 1U);
+  EXPECT_EQ(editDistance("plan", "paln"), 1U);
+  EXPECT_EQ(editDistance("", "plan"), 4U);
+}
+
+TEST(NearestName, FindsTheWordWithFewestEdits) {
+  EXPECT_EQ(nearestName("plam", kKnown), "plan");
+  EXPECT_EQ(nearestName("lpan", kKnown), "plan");
+  EXPECT_EQ(nearestName("explan", kKnown), "explain");
+}
+
+TEST(NearestName, SaysNothingWhenNothingIsNear) {
+  EXPECT_EQ(nearestName("calibrate", kKnown), "");
+  EXPECT_EQ(nearestName("", kKnown), "");
+  EXPECT_EQ(nearestName("plan", {}), "");
+}
+
+}  // namespace
+}  // namespace talus

@@ -1,0 +1,35 @@
+#include <atomic>
+#include <stdexcept>
+#include <vector>
+
+#include <talus/common/parallel_for.hpp>
+
+namespace talus {
+namespace {
+
+TEST(ParallelFor, CallsEachOnceWhateverTheThreads) {
+  for (std::size_t count : {0U, 1U, 5U, 1000U})
+    for (int threads : {1, 2, 7}) {
+      std::vector<std::atomic<int>> calls(count);
+      parallelFor(count, threads, [&](std::size_t k) { ++calls[k]; });
+      for (const auto& n : calls) ASSERT_EQ(n, 1);
+    }
+}
+
+TEST(ParallelFor, ThrowsHereWhatACallThrows) {
+  // Property: on whichever thread it happens, and nothing new is begun after it.
+  for (int threads : {1, 2, 7}) {
+    std::atomic<int> calls{0};
+    const auto loop = [&] {
+      parallelFor(100000, threads, [&](std::size_t k) {
+        ++calls;
+        if (k >= 10) throw std::runtime_error("call");
+      });
+    };
+    EXPECT_THROW(loop(), std::runtime_error);
+    EXPECT_LE(calls, 10 + threads);
+  }
+}
+
+}  // namespace
+}  // namespace talus

@@ -1,0 +1,73 @@
+#include <memory>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include <talus/costmap/cost/cost_grid.hpp>
+
+namespace talus::costmap {
+namespace {
+
+CostGrid plain(int side) {
+  const maps::Grid grid{.width = side, .height = side, .resolution_m = 1.0, .south_west = {}};
+  return flattened(maps::Raster<CellCode>(grid, CellCode({.curve = 0})),
+                   std::make_shared<DriveCost>(DriveCost::Limits{}, std::vector<DriveCurve>(1)));
+}
+
+TEST(CostGrid, ARevisionChangesItsRangeAndNothingElse) {
+  const CostGrid before = plain(200);
+  const maps::CellBox range{{60, 60}, {70, 66}};
+  const CostGrid after =
+      revised(before, {.ranges = {range},
+                       .code = [](maps::Cell, CellCode code) { return code.withCurve(CellCode::kBlocked); },
+                       .cost = [&] { return before.content().cost; }});
+  EXPECT_EQ(after.version(), before.version() + 1);
+  for (int row = 0; row < 200; ++row)
+    for (int column = 0; column < 200; ++column) {
+      const bool inside = column >= 60 && column <= 70 && row >= 60 && row <= 66;
+      ASSERT_EQ(after.at({column, row}).curve(), inside ? CellCode::kBlocked : 0) << column << ' ' << row;
+      ASSERT_EQ(before.at({column, row}).curve(), 0);
+    }
+}
+
+TEST(CostGrid, ARevisionSharesTheTilesItDoesNotTouch) {
+  const CostGrid before = plain(200);
+  const CostGrid after = revised(before, {.ranges = {{{0, 0}, {5, 5}}},
+                                          .code = [](maps::Cell, CellCode code) { return code; },
+                                          .cost = [&] { return before.content().cost; }});
+  int shared = 0;
+  for (std::size_t i = 0; i < before.content().tiles.size(); ++i)
+    shared += before.content().tiles[i] == after.content().tiles[i] ? 1 : 0;
+  EXPECT_EQ(shared, 15);  // Closed form: 4x4 tiles, one touched
+}
+
+// Property: whatever tiles of copies are set, each table holds what a plain list of its own would.
+TEST(TileTable, CopiesShareAndDoNotInterfere) {
+  const auto tileOf = [](std::uint8_t curve) {
+    auto tile = std::make_shared<CostTile>();
+    tile->cells.fill(CellCode({.curve = curve}));
+    return TileTable::Shared(std::move(tile));
+  };
+  std::vector<std::vector<TileTable::Shared>> plain{std::vector<TileTable::Shared>(150, tileOf(0))};
+  std::vector<TileTable> tables{TileTable(plain[0])};
+  std::mt19937 random(5);
+  for (int i = 0; i < 60; ++i) {
+    const std::size_t from = random() % tables.size(), at = random() % 150;
+    TileTable next = tables[from];
+    std::vector<TileTable::Shared> same = plain[from];
+    same[at] = tileOf(static_cast<std::uint8_t>(i + 1));
+    next.set(at, same[at]);
+    tables.push_back(std::move(next));
+    plain.push_back(std::move(same));
+  }
+  for (std::size_t t = 0; t < tables.size(); ++t) {
+    ASSERT_EQ(tables[t].size(), 150U);
+    for (std::size_t i = 0; i < 150; ++i) {
+      ASSERT_EQ(tables[t][i], plain[t][i]);
+      ASSERT_EQ(&tables[t].tile(i), plain[t][i].get());
+    }
+  }
+}
+
+}  // namespace
+}  // namespace talus::costmap

@@ -1,0 +1,56 @@
+#include <cmath>
+#include <memory>
+
+#include <site_fixture.hpp>
+
+#include <talus/costmap/cost/cost_weights.hpp>
+
+namespace talus::costmap {
+namespace {
+
+CostGrid oneGround() {
+  const auto model = testGround();
+  const maps::Grid grid{.width = 4, .height = 4, .resolution_m = 1.0, .south_west = {}};
+  return flattened(maps::Raster<CellCode>(grid, CellCode({.curve = 0})),
+                   std::make_shared<DriveCost>(model->limits(),
+                                               std::vector<DriveGround>{model->ground(0, model->prior(0))}));
+}
+
+TEST(CostWeights, CostIsTheWeighedSumOfEnergyTimeAndRisk) {
+  const CostGrid map = oneGround();
+  const auto other = reweighted(map, {.energy = 2.0, .time_W = 3.0, .risk_J = 5e6});
+  for (const double gradient : {-0.1, 0.0, 0.05}) {
+    const CellCode cell({gradient, 0.0, 0});
+    const DriveState state = map.cost().detail(cell, {1.0, 0.0});
+    ASSERT_EQ(state.refusal, Refusal::None);
+    const double expected = 2.0 * static_cast<double>(state.energy_J_per_m) +
+                            3.0 * static_cast<double>(state.time_s_per_m) +
+                            5e6 * static_cast<double>(state.risk_per_m);
+    // Closed form. Tolerance: the table stores floats.
+    EXPECT_NEAR(other->cost().costPerMetre(cell, {1.0, 0.0}), expected, 1e-6 * expected);
+  }
+}
+
+TEST(CostWeights, WhatIsRefusedStaysRefusedAndTilesAreShared) {
+  const CostGrid map = oneGround();
+  const auto other = reweighted(map, {.energy = 0.0, .time_W = 0.0, .risk_J = 0.0});
+  for (double gradient = -0.9; gradient < 0.9; gradient += 0.01) {
+    const CellCode cell({gradient, 0.0, 0});
+    EXPECT_EQ(std::isinf(other->cost().costPerMetre(cell, {1.0, 0.0})),
+              std::isinf(map.cost().costPerMetre(cell, {1.0, 0.0})));
+  }
+  EXPECT_EQ(other->content().tiles[0], map.content().tiles[0]);
+}
+
+TEST(CostWeights, RefusesNegativeWeightsAndMapsWithoutNumbers) {
+  EXPECT_THROW(reweighted(oneGround(), {.energy = -1.0}), std::invalid_argument);
+  EXPECT_THROW(reweighted(oneGround(), {.risk_J = std::nan("")}), std::invalid_argument);
+  const maps::Grid grid{.width = 4, .height = 4, .resolution_m = 1.0, .south_west = {}};
+  const CostGrid bare =
+      flattened(maps::Raster<CellCode>(grid),
+                std::make_shared<DriveCost>(DriveCost::Limits{}, std::vector<DriveCurve>(1)));
+  EXPECT_THROW(reweighted(bare, {}), std::domain_error);
+}
+
+}  // namespace
+}  // namespace talus::costmap

@@ -1,0 +1,103 @@
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include <site_fixture.hpp>
+
+#include <talus/costmap/cost/drive_cost.hpp>
+#include <talus/costmap/ground/ground_model.hpp>
+
+namespace talus::costmap {
+namespace {
+
+// A curve whose cost names its own bin, so that what was looked up can be read off.
+DriveCurve numbered() {
+  DriveCurve curve{};
+  for (int bin = 0; bin < DriveCurve::kBins; ++bin)
+    curve.cost_J_per_m[static_cast<std::size_t>(bin)] = static_cast<float>(bin);
+  return curve;
+}
+
+Direction towards(double heading_rad) {
+  return {std::cos(heading_rad), std::sin(heading_rad)};
+}
+
+TEST(CellCode, KeepsGradientsToHalfAStepAndClampsTheRest) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> gradient(-1.999, 1.999);
+  for (int i = 0; i < 1000; ++i) {
+    const double x = gradient(random), y = gradient(random);
+    const auto curve = static_cast<std::uint8_t>(random());
+    const CellCode code({x, y, curve});
+    EXPECT_NEAR(code.dzDx(), x, 0.5 * CellCode::kStep);
+    EXPECT_NEAR(code.dzDy(), y, 0.5 * CellCode::kStep);
+    EXPECT_EQ(code.curve(), curve);
+    EXPECT_EQ(code.withCurve(7).stepsX(), code.stepsX());
+    EXPECT_EQ(code.withCurve(7).curve(), 7);
+  }
+  EXPECT_EQ(CellCode({50.0, -50.0, 0}).dzDx(), 2.0 - CellCode::kStep);
+  EXPECT_EQ(CellCode({50.0, -50.0, 0}).dzDy(), -2.0);
+}
+
+TEST(DriveCost, LooksUpTheGradientAlongTheHeading) {
+  const DriveCost cost({.max_along = 0.9, .max_across = 0.9}, std::vector<DriveCurve>{numbered()});
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> gradient(-0.6, 0.6), angle(-3.2, 3.2);
+  for (int i = 0; i < 2000; ++i) {
+    const CellCode cell({gradient(random), gradient(random), 0});
+    const double heading = angle(random);
+    const double along = cell.dzDx() * std::cos(heading) + cell.dzDy() * std::sin(heading);
+    const double across = -cell.dzDx() * std::sin(heading) + cell.dzDy() * std::cos(heading);
+    const float seen = cost.costPerMetre(cell, towards(heading));
+    if (std::abs(along) > 0.9 || std::abs(across) > 0.9)
+      EXPECT_TRUE(std::isinf(seen));
+    else  // Closed form: bins of 1/256 centred on k/256.
+      EXPECT_EQ(seen, std::round(along * 256.0) + 256.0);
+  }
+}
+
+TEST(DriveCost, UnknownAndBlockedGroundIsRefusedInEveryHeading) {
+  const DriveCost cost({}, std::vector<DriveCurve>{numbered()});
+  for (double heading = -3.0; heading < 3.2; heading += 0.4)
+    for (const std::uint8_t curve : {std::uint8_t{1}, CellCode::kUnknown, CellCode::kBlocked}) {
+      EXPECT_TRUE(std::isinf(cost.costPerMetre(CellCode({0.0, 0.0, curve}), towards(heading))));
+      EXPECT_EQ(cost.detail(CellCode({0.0, 0.0, curve}), towards(heading)).refusal,
+                curve == CellCode::kBlocked ? Refusal::Blocked : Refusal::Unknown);
+    }
+}
+
+// Property: finite cost exactly where the numbers behind it say allowed.
+TEST(DriveCost, TheDetailAllowsWhatTheCostAllows) {
+  const auto model = testGround();
+  const DriveCost cost(model->limits(), std::vector<DriveGround>{model->ground(0, model->prior(0))});
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> gradient(-0.7, 0.7), angle(-3.2, 3.2);
+  int allowed = 0;
+  for (int i = 0; i < 5000; ++i) {
+    const CellCode cell({gradient(random), gradient(random), 0});
+    const Direction heading = towards(angle(random));
+    const bool finite = std::isfinite(cost.costPerMetre(cell, heading));
+    ASSERT_EQ(finite, cost.detail(cell, heading).refusal == Refusal::None);
+    allowed += finite ? 1 : 0;
+  }
+  EXPECT_GT(allowed, 100);
+  EXPECT_LT(allowed, 4900);
+}
+
+TEST(DriveCost, NamesTheLimitThatRefuses) {
+  const auto model = testGround();
+  const DriveCost cost({.max_along = 0.3, .max_across = 0.2},
+                       std::vector<DriveGround>{model->ground(0, model->prior(0))});
+  EXPECT_EQ(cost.detail(CellCode({0.4, 0.0, 0}), {1.0, 0.0}).refusal, Refusal::Pitch);
+  EXPECT_EQ(cost.detail(CellCode({-0.4, 0.0, 0}), {1.0, 0.0}).refusal, Refusal::Pitch);
+  EXPECT_EQ(cost.detail(CellCode({0.0, 0.25, 0}), {1.0, 0.0}).refusal, Refusal::Roll);
+  EXPECT_EQ(cost.detail(CellCode({0.0, -0.25, 0}), {1.0, 0.0}).refusal, Refusal::Roll);
+}
+
+TEST(DriveCost, RefusesMoreCurvesThanCellsCanName) {
+  EXPECT_NO_THROW(DriveCost({}, std::vector<DriveCurve>(254)));
+  EXPECT_THROW(DriveCost({}, std::vector<DriveCurve>(255)), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace talus::costmap

@@ -1,0 +1,18 @@
+#include <set>
+#include <string>
+
+#include <talus/costmap/cost/drive_state.hpp>
+
+namespace talus::costmap {
+namespace {
+
+TEST(DriveState, EveryRefusalHasWordsOfItsOwn) {
+  std::set<std::string> texts;
+  for (int i = 0; i <= static_cast<int>(Refusal::Category); ++i)
+    texts.insert(toText(static_cast<Refusal>(i)));
+  EXPECT_EQ(texts.size(), static_cast<std::size_t>(Refusal::Category) + 1);
+  EXPECT_FALSE(texts.contains(""));
+}
+
+}  // namespace
+}  // namespace talus::costmap

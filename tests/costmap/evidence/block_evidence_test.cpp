@@ -1,0 +1,83 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <talus/costmap/evidence/block_evidence.hpp>
+
+namespace talus::costmap {
+namespace {
+
+const Estimate kPrior{0.2, 0.05};
+
+BlockEvidence summed(const std::vector<ReadingCount>& counts) {
+  BlockEvidence block;
+  summarise(counts, kPrior, block);
+  return block;
+}
+
+ReadingCount times(ReadingCount reading, std::uint16_t count) {
+  reading.count = count;
+  return reading;
+}
+
+TEST(ReadingCount, RoundsTowardsDanger) {
+  // Closed form: steps of 0.01 from -1.28, down for pull, up for sinkage
+  EXPECT_EQ(pullReading({0.109, 0.05}, true).step, 138);
+  EXPECT_EQ(pullReading({-5.0, 0.05}, true).step, 0);
+  EXPECT_EQ(sinkageReading(0.301, true).step, 31);
+  EXPECT_NE(pullReading({0.1, 0.05}, true).kind, pullReading({0.1, 0.05}, false).kind);
+}
+
+TEST(BlockEvidence, NumbersDoNotAverageTheModelsErrorAway) {
+  const BlockEvidence block = summed({times(pullReading({0.2, 0.05}, true), 60000)});
+  EXPECT_NEAR(block.pull, 0.2F, 0.011F);
+  EXPECT_NEAR(std::sqrt(block.variance), 0.02F, 1e-3F);
+}
+
+TEST(BlockEvidence, IsAsWeakAsItsWeakestPart) {
+  const BlockEvidence block =
+      summed({times(pullReading({-0.25, 0.05}, true), 3), times(pullReading({0.3, 0.05}, true), 60)});
+  EXPECT_LT(block.weak_pull, -0.05F);
+  const BlockEvidence even = summed({times(pullReading({0.3, 0.05}, true), 63)});
+  EXPECT_NEAR(even.weak_pull, 0.3F, 0.011F);
+}
+
+TEST(BlockEvidence, WhatMayOnlyLowerGivesNoPull) {
+  const BlockEvidence block = summed({times(pullReading({0.3, 0.05}, false), 20)});
+  EXPECT_TRUE(std::isnan(block.pull));
+  EXPECT_TRUE(block.lowers);
+}
+
+TEST(BlockEvidence, SinksAsDeepAsItsDeepestPart) {
+  EXPECT_TRUE(std::isnan(summed({pullReading({0.3, 0.05}, true)}).sinkage));
+  const BlockEvidence block = summed({times(sinkageReading(0.1, true), 40), sinkageReading(0.77, true)});
+  EXPECT_GT(block.sinkage, 0.65F);
+  EXPECT_TRUE(block.sinkage_raises);
+  EXPECT_FALSE(summed({sinkageReading(0.1, false)}).sinkage_raises);
+}
+
+// Property: of bounds the hardest holds, in whatever order they came and whatever else was read.
+TEST(BlockEvidence, TheHardestBoundHolds) {
+  std::vector<ReadingCount> counts{times(pullReading({0.3, 0.05}, true), 500)};
+  for (const GroundBound& bound : {GroundBound{-0.1, 0.6}, GroundBound{-0.3, 0.8}, GroundBound{0.05, 0.55}})
+    for (ReadingCount reading : boundReadings(bound)) counts.push_back(times(reading, 1));
+  std::ranges::sort(counts, {}, [](const ReadingCount& c) { return std::pair(c.kind, c.step); });
+  const BlockEvidence block = summed(counts);
+  EXPECT_LE(block.most_pull, -0.3F);
+  EXPECT_NEAR(block.most_pull, -0.3F, 0.011F);
+  EXPECT_GE(block.least_sinkage, 0.8F);
+  EXPECT_NEAR(block.least_sinkage, 0.8F, 0.011F);
+  EXPECT_TRUE(std::isnan(summed({times(pullReading({0.3, 0.05}, true), 500)}).most_pull));
+}
+
+TEST(BlockEvidence, SamplesWeighByCertainty) {
+  // Closed form: standard deviation 0.05 counts one, 0.1 a quarter
+  EXPECT_NEAR(samples(std::vector{pullReading({0.2, 0.05}, true), pullReading({0.2, 0.1}, true)}), 1.25,
+              1e-9);
+}
+
+}  // namespace
+}  // namespace talus::costmap

@@ -1,0 +1,51 @@
+#include <site_map.hpp>
+
+#include <talus/costmap/evidence/block_grid.hpp>
+
+namespace talus::costmap {
+namespace {
+
+std::shared_ptr<const GroundSite> siteOf(const std::vector<std::string>& rows, double correlation_length_m) {
+  MapLayers layers = drawn(rows);
+  const SurfaceKeys keys(layers.elevation.grid(), 1000.0);
+  return std::make_shared<GroundSite>(
+      GroundSite{.elevation = std::move(layers.elevation),
+                 .classes = std::move(layers.classes),
+                 .keys = keys,
+                 .model = testGround({.correlation_length_m = correlation_length_m})});
+}
+
+// Property: every cell lies in the block whose column and row it has, blocks are side by side, and their side is
+// the largest power of two of cells within a quarter of the correlation length.
+TEST(BlockGrid, PartsTheMap) {
+  for (const double length_m : {2.0, 8.0, 20.0, 40.0}) {
+    const auto site = siteOf(std::vector<std::string>(21, std::string(37, '1')), length_m);
+    const BlockGrid blocks(site);
+    EXPECT_LE(blocks.side_m(), std::max(length_m / 4.0, 1.0));
+    EXPECT_GT(2.0 * blocks.side_m(), length_m / 4.0);
+    EXPECT_GE(blocks.reach() * blocks.side_m(), length_m);
+    for (int row = 0; row < 21; ++row)
+      for (int column = 0; column < 37; ++column) {
+        const maps::Cell block = blocks.blockOf({column, row});
+        EXPECT_TRUE(column >= block.column && column < block.column + blocks.side());
+        EXPECT_TRUE(row >= block.row && row < block.row + blocks.side());
+        const maps::Cell again = blocks.blockAt(blocks.columnOf({column, row}), blocks.rowOf({column, row}));
+        EXPECT_TRUE(again.column == block.column && again.row == block.row);
+      }
+    EXPECT_EQ(blocks.columns(), blocks.columnOf({36, 0}) + 1);
+    EXPECT_EQ(blocks.rows(), blocks.rowOf({0, 20}) + 1);
+  }
+}
+
+TEST(BlockGrid, TopIsTheFirstKnownCellOfABlock) {
+  std::vector<std::string> rows(16, std::string(16, '?'));
+  const auto hole = siteOf(rows, 16.0);
+  EXPECT_FALSE(BlockGrid(hole).topKey(BlockGrid(hole).blockOf({5, 5})));
+  rows[8][6] = '1';
+  const auto one = siteOf(rows, 16.0);
+  const BlockGrid blocks(one);
+  EXPECT_EQ(blocks.topKey(blocks.blockOf({6, 7})), blocks.keyOf(1000.0F));
+}
+
+}  // namespace
+}  // namespace talus::costmap

@@ -1,0 +1,92 @@
+#include <cmath>
+
+#include <site_fixture.hpp>
+
+#include <talus/costmap/evidence/class_lessons.hpp>
+
+namespace talus::costmap {
+namespace {
+
+GroundClass sand() {
+  return {.number = 1, .soil = testSand(), .pull_std = 0.05, .mean_std = 0.05};
+}
+
+TEST(IndependentPlaces, CountsSquaresThatDoNotTouch) {
+  IndependentPlaces places;
+  for (int column = 0; column < 4; ++column) places.set({column, 0}, 0.1F);
+  EXPECT_EQ(places.driven(), 2U) << "of four in a row every other one";
+  EXPECT_TRUE(std::isinf(places.agreed(3)));
+  places.set({4, 0}, 0.05F);
+  // Closed form: squares 0, 2 and 4 hold 0.1, 0.1 and 0.05
+  EXPECT_NEAR(places.agreed(3), 0.05, 1e-7);
+  places.set({4, 0}, std::nullopt);
+  EXPECT_EQ(places.driven(), 2U);
+}
+
+ClassLessons taught(const std::vector<double>& pulls, bool raises) {
+  ClassLessons lessons(sand());
+  int column = 0;
+  for (const double pull : pulls) {
+    lessons.add({.weight = 1.0, .pull = pull, .sinkage = std::nullopt, .raises = raises});
+    lessons.places().set({2 * column++, 0}, raises ? static_cast<float>(pull) : -INFINITY);
+  }
+  lessons.refresh();
+  return lessons;
+}
+
+TEST(ClassLessons, OnePlaceTeachesNothingTwoHalfThreeAll) {
+  EXPECT_EQ(taught({-0.2}, true).posterior().pull.value, 0.0);
+  const double two = taught({-0.2, -0.2}, true).posterior().pull.value;
+  const double three = taught({-0.2, -0.2, -0.2}, true).posterior().pull.value;
+  // Closed form: prior n y / (n prior + variance), equal variances, times 1/2 of two places
+  EXPECT_NEAR(two, 0.5 * -0.2 * 2.0 / 3.0, 1e-5);
+  EXPECT_NEAR(three, -0.2 * 3.0 / 4.0, 1e-5);
+}
+
+TEST(ClassLessons, RisesOnlyAsFarAsThreePlacesReach) {
+  EXPECT_LE(taught({0.2, 0.2}, true).posterior().pull.value, 0.0);
+  EXPECT_NEAR(taught({0.2, 0.2, 0.01}, true).posterior().pull.value, 0.01, 1e-6);
+  EXPECT_LE(taught({0.2, 0.2, 0.2, 0.2}, false).posterior().pull.value, 0.0) << "none may raise";
+  EXPECT_EQ(taught({0.2, 0.2, 0.2, 0.2}, false).posterior().pull.std, 0.05);
+}
+
+// Property: each number is rounded towards danger by less than a step, none beyond the prior, and what is untaught stays.
+TEST(ClassLessons, StepsErrTowardsDanger) {
+  constexpr double kPrior = 0.213;
+  EXPECT_EQ(ClassLessons(sand()).stateInSteps(kPrior).pull, 0.0);
+  EXPECT_EQ(ClassLessons(sand()).stateInSteps(kPrior).pull_std, 0.05);
+  for (int i = 0; i < 200; ++i) {
+    const double y = -0.2 + 0.0021 * i;
+    const ClassLessons lessons = taught({y, y + 0.013, y - 0.007, y}, i % 3 > 0);
+    const ClassState exact = lessons.state(), steps = lessons.stateInSteps(kPrior);
+    EXPECT_LE(steps.pull, exact.pull + 1e-8);
+    EXPECT_GT(steps.pull, exact.pull - steps.pull_step);
+    EXPECT_GE(steps.pull_std, exact.pull_std - 1e-8);
+    EXPECT_LE(steps.pull_std, 0.05);
+    EXPECT_GE(steps.own_std, exact.own_std - 1e-8);
+    EXPECT_GE(steps.shared, exact.shared - 1e-8);
+    EXPECT_GE(steps.sinkage, exact.sinkage - 1e-7);
+    EXPECT_LT(steps.sinkage, exact.sinkage + steps.sinkage_step);
+    EXPECT_LE(steps.most_rise, exact.most_rise + 3e-8);
+    EXPECT_GT(steps.most_rise, exact.most_rise - 0.02);
+    EXPECT_EQ(steps.may_raise, exact.may_raise);
+    EXPECT_EQ(exact.pull_step, 0.0);
+  }
+}
+
+// Property: a lesson taken out again leaves no trace.
+TEST(ClassLessons, ForgetsToTheBit) {
+  ClassLessons lessons = taught({-0.1, -0.05, -0.07}, true);
+  const ClassPosterior before = lessons.posterior();
+  const BlockLesson lesson{.weight = 0.37, .pull = -0.123, .sinkage = 0.2, .raises = true};
+  lessons.add(lesson);
+  lessons.refresh();
+  EXPECT_NE(lessons.posterior().pull.value, before.pull.value);
+  lessons.remove(lesson);
+  lessons.refresh();
+  EXPECT_EQ(lessons.posterior().pull.value, before.pull.value);
+  EXPECT_EQ(lessons.posterior().pull.std, before.pull.std);
+}
+
+}  // namespace
+}  // namespace talus::costmap

@@ -1,0 +1,146 @@
+#include <cmath>
+#include <sstream>
+
+#include <site_map.hpp>
+
+#include <talus/costmap/evidence/class_lessons.hpp>
+#include <talus/costmap/evidence/evidence_field.hpp>
+#include <talus/costmap/map/map_file.hpp>
+
+namespace talus::costmap {
+namespace {
+
+std::vector<std::string> wide() {
+  return std::vector<std::string>(60, std::string(60, '1'));
+}
+
+WheelObservation soft(double x, double y) {
+  return {.time_s = 12.0,
+          .place = {100.0 + x, 200.0 + y},
+          .pull = {0.05, 0.05},
+          .sinkage = {0.6, 0.05},
+          .pull_may_raise = true,
+          .sinkage_may_raise = true};
+}
+
+// Ground whose pull is so much less than its class's.
+WheelObservation weaker(double x, double y, double by) {
+  return {.time_s = 12.0,
+          .place = {100.0 + x, 200.0 + y},
+          .pull = {testGround()->prior(0).pull.value - by, 0.05},
+          .sinkage = {0.2, 0.05},
+          .pull_may_raise = true,
+          .sinkage_may_raise = true};
+}
+
+TEST(TraversabilityMap, LearnsWhereItDroveAndDoubtsFarAway) {
+  TraversabilityMap map = mapOf(wide());
+  const GroundBelief before = *map.ground({30, 30});
+  for (int i = 0; i < 20; ++i) EXPECT_TRUE(map.learn(soft(30.5, 30.5)));
+  map.publish();
+  const GroundBelief here = *map.ground({30, 30}), near = *map.ground({32, 30}), far = *map.ground({50, 50});
+  EXPECT_LT(here.pull.value, before.pull.value - 0.05);
+  EXPECT_LT(here.pull.std, before.pull.std);
+  EXPECT_LT(here.pull.value, near.pull.value);
+  EXPECT_LT(near.pull.value, far.pull.value);
+  EXPECT_EQ(far.pull.value, before.pull.value) << "what one place says it says of itself";
+  EXPECT_EQ(far.pull.std, before.pull.std);
+}
+
+TEST(TraversabilityMap, PublishesWhatItLearnedAndKeepsOldVersions) {
+  TraversabilityMap map = mapOf(wide());
+  const auto old = map.published();
+  for (int i = 0; i < 20; ++i) map.learn(soft(30.5, 30.5));
+  EXPECT_EQ(map.published(), old) << "nothing shows before publish()";
+  map.publish();
+  const auto fresh = map.published();
+  EXPECT_GT(fresh->version(), old->version());
+  const auto cost = [](const CostGrid& grid, maps::Cell c) {
+    return grid.cost().costPerMetre(grid.at(c), {});
+  };
+  EXPECT_GT(cost(*fresh, {30, 30}), cost(*old, {30, 30}));
+  EXPECT_EQ(old->at({30, 30}).curve(), 0);
+}
+
+TEST(TraversabilityMap, EvidenceDoesNotCrossIntoAnotherClass) {
+  std::vector<std::string> site = wide();
+  for (auto& row : site) row.replace(31, 29, 29, '2');
+  TraversabilityMap map = mapOf(site);
+  const GroundBelief dust = *map.ground({32, 30});
+  for (int i = 0; i < 20; ++i) map.learn(soft(30.5, 30.5));
+  map.publish();
+  EXPECT_EQ(map.ground({32, 30})->pull.value, dust.pull.value);
+}
+
+TEST(TraversabilityMap, EvidenceSurvivesAFileToTheBit) {
+  TraversabilityMap map = mapOf(wide(), 0.05);
+  for (int i = 0; i < 40; ++i) map.learn(soft(20.5 + 0.3 * i, 30.5));
+  map.publish();
+  std::stringstream stream, again;
+  writeMap(map, stream);
+  const TraversabilityMap back = readMap(stream, {.name = "map.ot", .threads = 1});
+  writeMap(back, again);
+  EXPECT_EQ(stream.str(), again.str());
+  for (int column = 0; column < 60; ++column)
+    EXPECT_EQ(back.belief({column, 30}), map.belief({column, 30})) << column;
+}
+
+TEST(TraversabilityMap, OutsideTheMapNothingIsLearned) {
+  TraversabilityMap map = mapOf(wide());
+  EXPECT_FALSE(map.learn(soft(-5.0, 3.0)));
+  EXPECT_FALSE(map.learn(soft(std::nan(""), 3.0)));
+}
+
+TEST(EvidenceField, ManyPlacesMoveTheClassOnePlaceHardly) {
+  TraversabilityMap one = mapOf(wide()), many = mapOf(wide());
+  for (int i = 0; i < 200; ++i) {
+    one.learn(weaker(30.5, 30.5, 0.06));
+    many.learn(weaker(5.5 + 0.25 * i, 30.5, 0.06));
+  }
+  EXPECT_LT(one.evidence().posterior(0).places, 1.0);
+  EXPECT_GT(many.evidence().posterior(0).places,
+            8.0);  // Closed form: 50 m over integral scales of 3.3 m, less noise
+  EXPECT_LT(many.evidence().posterior(0).pull.value, one.evidence().posterior(0).pull.value);
+}
+
+TEST(EvidenceField, OtherGroundThatNoRasterShowsIsNotTheClass) {
+  TraversabilityMap map = mapOf(wide()), ordinary = mapOf(wide());
+  for (int i = 0; i < 20; ++i) {
+    map.learn(weaker(30.5, 30.5, 0.4));
+    ordinary.learn(weaker(30.5, 30.5, 0.06));
+  }
+  map.publish();
+  // Property: seven standard deviations off move the class less than one does, yet are believed where they
+  // lie.
+  EXPECT_GT(map.evidence().posterior(0).pull.value, -0.05);
+  const double prior = map.model().prior(0).pull.value;
+  EXPECT_LT(map.ground({30, 30})->pull.value, prior - 0.3);
+  EXPECT_NEAR(map.ground({45, 45})->pull.value, prior, 0.05);
+}
+
+TEST(EvidenceField, ABlockIsAsWeakAsItsWeakestPart) {
+  TraversabilityMap map = mapOf(wide());
+  for (int i = 0; i < 50; ++i) map.learn(weaker(30.5, 30.5, 0.0));
+  for (int i = 0; i < 3; ++i) map.learn(weaker(30.5, 30.5, 0.4));
+  map.publish();
+  EXPECT_LT(map.ground({30, 30})->pull.value, map.model().prior(0).pull.value - 0.2);
+}
+
+TEST(TraversabilityMap, RefusedGroundStaysRefused) {
+  TraversabilityMap map = mapOf(wide());
+  map.refuse({130.5, 230.5}, 2.0);
+  map.publish();
+  for (int row = 25; row <= 35; ++row)
+    for (int column = 25; column <= 35; ++column) {
+      const bool inside = std::hypot(column - 30, row - 30) <= 2.0;
+      EXPECT_EQ(has(map.hazards({column, row}), Hazard::Obstacle), inside) << column << ' ' << row;
+      EXPECT_EQ(map.code({column, row}).curve() == CellCode::kBlocked, inside) << column << ' ' << row;
+    }
+  for (int i = 0; i < 20; ++i) map.learn(weaker(30.5, 30.5, -0.1));
+  map.publish();
+  EXPECT_EQ(map.code({30, 30}).curve(), CellCode::kBlocked);
+  EXPECT_NO_THROW(map.refuse({-500.0, 1e9}, 3.0));
+}
+
+}  // namespace
+}  // namespace talus::costmap

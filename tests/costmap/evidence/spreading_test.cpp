@@ -1,0 +1,42 @@
+#include <cmath>
+
+#include <talus/costmap/evidence/spreading.hpp>
+
+namespace talus::costmap {
+namespace {
+
+constexpr Variation kVariation{.pull_std = 0.05, .sinkage_std = 0.1, .correlation_length_m = 4.0};
+
+TEST(SparseKernel, FallsFromOneToZero) {
+  EXPECT_DOUBLE_EQ(sparseKernel(0.0, 4.0), 1.0);
+  EXPECT_EQ(sparseKernel(4.0, 4.0), 0.0);
+  EXPECT_NEAR(sparseKernel(2.0, 4.0), 1.0 / 6.0, 1e-12);  // Closed form: (2 - 1)/3 * 1/2
+}
+
+TEST(GaussianProcess, OnePlaceIsTheConjugateUpdate) {
+  const GaussianProcess process({{.place = {0, 0}, .pull = 0.1, .sinkage = 0.0, .variance = 0.0025}},
+                                kVariation);
+  // Closed form: prior and measurement of equal variance meet half way.
+  EXPECT_NEAR(process.at({0, 0}).pull.value, 0.05, 1e-12);
+  EXPECT_NEAR(process.at({0, 0}).pull.std, 0.05 * std::sqrt(0.5), 1e-12);
+  EXPECT_EQ(process.at({5, 0}).pull.value, 0.0);
+  EXPECT_EQ(process.at({5, 0}).pull.std, 0.05);
+}
+
+TEST(GaussianProcess, RepeatingAPlaceDoesNotMakeItsNeighboursCertain) {
+  std::vector<PlaceEvidence> many(20, {.place = {0, 0}, .pull = 0.1, .sinkage = 0.0, .variance = 0.0025});
+  const double k = sparseKernel(2.0, 4.0);
+  // Property: what a perfectly known place can tell about one 2 m away is k^2 of its variance, no more.
+  EXPECT_GE(GaussianProcess(many, kVariation).at({2, 0}).pull.std, 0.05 * std::sqrt(1.0 - k * k));
+  // Kernel inference counts the repetitions instead: what the model gets wrong, and why the map does not use
+  // it.
+  EXPECT_LT(kernelInference(many, kVariation, {2, 0}).pull.std, 0.05 * std::sqrt(1.0 - k * k));
+}
+
+TEST(KernelInference, OnePlaceIsTheConjugateUpdate) {
+  const std::vector<PlaceEvidence> one{{.place = {0, 0}, .pull = 0.1, .sinkage = 0.0, .variance = 0.0025}};
+  EXPECT_NEAR(kernelInference(one, kVariation, {0, 0}).pull.value, 0.05, 1e-12);
+}
+
+}  // namespace
+}  // namespace talus::costmap

@@ -1,0 +1,219 @@
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include <site_fixture.hpp>
+
+#include <talus/costmap/evidence/wheel_observation.hpp>
+#include <talus/terramech/contact/wong_reece.hpp>
+#include <talus/terramech/mobility/rut.hpp>
+
+namespace talus::costmap {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+// What a wheel of the test rover reads on a soil at a slip, noise-free, on the slope on which it drives
+// steadily.
+WheelReading reading(const terramech::Soil& soil, double slip) {
+  const terramech::Rover rover = testRover();
+  const double load_N = terramech::wheelLoad_N(rover);
+  const auto wheel = terramech::equilibrium(soil, rover.wheel, {.load_N = load_N, .slip = slip});
+  return {.time_s = 1.0,
+          .place = {},
+          .load_N = load_N,
+          .slip = slip,
+          .torque_Nm = wheel.torque_Nm,
+          .sinkage_m = wheel.sinkage_m,
+          .gradient = wheel.drawbar_pull_N / load_N,
+          .drawbar_pull_N = kNone};
+}
+
+TEST(WheelObserver, GroundThatIsItsClassShowsNoDeparture) {
+  const auto model = testGround();
+  for (const double slip : {0.1, 0.3, 0.5}) {
+    const auto seen = WheelObserver(*model).observe(0, reading(testSand(), slip));
+    ASSERT_TRUE(seen.has_value());
+    // Property: reading and class agree; Eq. 3.12 is good to 0.03, and the slope outweighs it.
+    EXPECT_NEAR(seen->pull.value, model->prior(0).pull.value, 0.02) << slip;
+    EXPECT_NEAR(seen->sinkage.value, model->prior(0).sinkage.value, 0.02) << slip;
+  }
+}
+
+TEST(WheelObserver, SeesThatSandIsDust) {
+  const auto model = testGround();
+  for (const double slip : {0.3, 0.5}) {
+    const auto seen = WheelObserver(*model).observe(0, reading(testDust(), slip));
+    ASSERT_TRUE(seen.has_value());
+    EXPECT_NEAR(seen->pull.value, model->prior(1).pull.value, 2.0 * seen->pull.std) << slip;
+    EXPECT_LT(seen->pull.value, model->prior(0).pull.value - 2.0 * seen->pull.std) << slip;
+  }
+}
+
+TEST(WheelObserver, SlipAndSlopeAloneTellEnough) {
+  const auto model = testGround();
+  WheelReading blind = reading(testDust(), 0.5);
+  blind.torque_Nm = blind.sinkage_m = kNone;
+  const auto seen = WheelObserver(*model).observe(0, blind);
+  ASSERT_TRUE(seen.has_value());
+  EXPECT_NEAR(seen->pull.value, model->prior(1).pull.value, 0.02);
+  EXPECT_TRUE(std::isinf(seen->sinkage.std));
+}
+
+TEST(WheelObserver, NothingToGoByNothingSaid) {
+  const auto model = testGround();
+  WheelReading blind = reading(testSand(), 0.2);
+  blind.torque_Nm = blind.sinkage_m = blind.gradient = kNone;
+  EXPECT_FALSE(WheelObserver(*model).observe(0, blind).has_value());
+  blind = reading(testSand(), 0.2);
+  blind.slip = kNone;
+  EXPECT_FALSE(WheelObserver(*model).observe(0, blind).has_value());
+}
+
+// Two wheels on one soil and two on another at one slip, the slope that they hold together.
+std::vector<ClassReading> halfAndHalf(const terramech::Soil& front, const terramech::Soil& rear,
+                                      double slip) {
+  std::vector<ClassReading> all{{0, reading(front, slip)},
+                                {0, reading(front, slip)},
+                                {0, reading(rear, slip)},
+                                {0, reading(rear, slip)}};
+  const double gradient = 0.5 * (all[0].reading.gradient + all[2].reading.gradient);
+  for (ClassReading& r : all) r.reading.gradient = gradient;
+  return all;
+}
+
+TEST(WheelObserver, TheWheelsInDustAreToldFromThoseOnSand) {
+  const auto model = testGround();
+  for (const double slip : {0.2, 0.4, 0.7}) {
+    const auto seen = WheelObserver(*model).observe(halfAndHalf(testDust(), testSand(), slip));
+    const double sand = model->prior(0).pull.value, dust = model->prior(1).pull.value;
+    EXPECT_LT(seen[0]->pull.value, sand - 0.45 * (sand - dust)) << slip;
+    EXPECT_NEAR(seen[3]->pull.value, sand, 2.0 * seen[3]->pull.std) << slip;
+    EXPECT_GT(seen[3]->pull.value, seen[0]->pull.value + 0.1) << slip;
+  }
+}
+
+TEST(WheelObserver, LittleSlipYetDeepIsASign) {
+  const auto model = testGround();
+  const auto seen = WheelObserver(*model).observe(halfAndHalf(testDust(), testSand(), 0.05));
+  // Property: weaker by more than the class varies from place to place
+  EXPECT_LT(seen[0]->pull.value, model->prior(0).pull.value - 0.05);
+}
+
+TEST(WheelObserver, ARutIsNotTakenForFirmGround) {
+  const auto model = testGround();
+  std::vector<ClassReading> all = halfAndHalf(testSand(), terramech::rutted(testSand()), 0.3);
+  all[2].reading.pass = all[3].reading.pass = 2;
+  const auto told = WheelObserver(*model).observe(all);
+  for (const auto& seen : told) EXPECT_NEAR(seen->pull.value, model->prior(0).pull.value, 0.03);
+  EXPECT_GT(told[2]->pull.std, told[0]->pull.std) << "a rut says less about fresh ground";
+  EXPECT_TRUE(std::isinf(told[2]->sinkage.std)) << "and nothing about its depth";
+  all[2].reading.pass = all[3].reading.pass = 1;
+  EXPECT_GT(WheelObserver(*model).observe(all)[2]->pull.value, model->prior(0).pull.value + 0.05);
+}
+
+TEST(WheelObserver, StuckWheelsSayThatTheGroundIsWeak) {
+  const auto model = testGround();
+  WheelReading spun = reading(testDust(), 0.98);
+  spun.gradient = kNone;
+  const auto seen = WheelObserver(*model).observe(0, spun);
+  EXPECT_NEAR(seen->pull.value, model->prior(1).pull.value, 0.1);
+}
+
+TEST(PullFromTorque, FlatWheelPullsItsTorque) {
+  EXPECT_DOUBLE_EQ(pullFromTorque(0.4, 0.0), 0.4);  // Closed form: no sinkage, no resistance
+}
+
+// What a wheel reads that is turned uphill on the slope that it holds along and across.
+WheelReading crabbing(const terramech::Soil& soil, double slip, double slip_angle_rad) {
+  const terramech::Rover rover = testRover();
+  const double load_N = terramech::wheelLoad_N(rover);
+  const auto wheel = terramech::equilibrium(
+      soil, rover.wheel,
+      {.load_N = load_N, .slip = slip, .slip_angle_rad = slip_angle_rad, .gravity_m_s2 = rover.gravity_m_s2});
+  const double c = std::cos(slip_angle_rad), s = std::sin(slip_angle_rad);
+  return {.time_s = 1.0,
+          .place = {},
+          .load_N = load_N,
+          .slip = slip,
+          .torque_Nm = wheel.torque_Nm,
+          .sinkage_m = wheel.sinkage_m,
+          .gradient = (wheel.drawbar_pull_N * c + wheel.side_force_N * s) / load_N,
+          .across = (wheel.side_force_N * c - wheel.drawbar_pull_N * s) / load_N,
+          .slip_angle_rad = slip_angle_rad,
+          .drawbar_pull_N = kNone};
+}
+
+TEST(WheelObserver, AWheelThatCrabsTellsItsGroundAsAStraightOneDoes) {
+  const auto model = testGround();
+  const WheelObserver observer(*model);
+  const double sand = model->prior(0).pull.value;
+  for (const double slip : {0.15, 0.3, 0.5})
+    for (const double angle : {-0.5, -0.25, -0.1, 0.1, 0.25, 0.5}) {
+      const WheelReading on_sand = crabbing(testSand(), slip, angle);
+      EXPECT_EQ(on_sand.across > 0.0, angle < 0.0);
+      const auto same = observer.observe(0, on_sand);
+      ASSERT_TRUE(same);
+      // Property: reading and class agree, as for straight wheels; the table of forces is good to 0.015.
+      EXPECT_NEAR(same->pull.value, sand, 0.03) << slip << ' ' << angle;
+      // Property: weaker ground is seen to be weaker, whichever of its forces gives it away.
+      const auto weaker = observer.observe(0, crabbing(testDust(), slip, angle));
+      ASSERT_TRUE(weaker);
+      EXPECT_LT(weaker->pull.value, sand - 2.0 * weaker->pull.std) << slip << ' ' << angle;
+      // Property: what is not known of the angle or the slope across errs towards weaker ground.
+      for (const bool angle_known : {false, true}) {
+        WheelReading less = on_sand;
+        (angle_known ? less.across : less.slip_angle_rad) = kNone;
+        const auto seen = observer.observe(0, less);
+        ASSERT_TRUE(seen);
+        EXPECT_LE(seen->pull.value, same->pull.value + 0.01) << slip << ' ' << angle;
+      }
+    }
+}
+
+// Ground that pulls as its class does, yet holds less across.
+TEST(WheelObserver, GroundThatHoldsLittleAcrossIsWeaker) {
+  const auto model = testGround();
+  const WheelObserver observer(*model);
+  WheelReading sliding = crabbing(testSand(), 0.3, -0.4);
+  const double along = sliding.gradient, across = sliding.across, held = 0.4;
+  // The same pull in the wheel's plane, that part of the side force.
+  const double c = std::cos(0.4), s = std::sin(0.4), pull = along * c + across * s,
+               side = across * c - along * s;
+  sliding.gradient = pull * c - held * side * s;
+  sliding.across = held * side * c + pull * s;
+  sliding.torque_Nm = sliding.sinkage_m = kNone;
+  const auto seen = observer.observe(0, sliding);
+  ASSERT_TRUE(seen);
+  EXPECT_LT(seen->pull.value, model->prior(0).pull.value - 0.1);
+  sliding.gradient = along;
+  sliding.across = across;
+  EXPECT_NEAR(observer.observe(0, sliding)->pull.value, model->prior(0).pull.value, 0.03);
+}
+
+// Property: from slip 0.9 on a balance says nothing better than the class; what is weaker is kept.
+TEST(WheelObserver, ARoverThatMayHaveStoodGivesAnUpperBound) {
+  const auto ground = testGround();
+  const WheelObserver observer(*ground);
+  const double prior = ground->prior(0).pull.value;
+  for (const double slip : {0.9, 0.98})
+    for (const double gradient : {-0.1, 0.0, 0.2, 0.4, 0.6}) {
+      WheelReading reading{.load_N = 55.0,
+                           .slip = slip,
+                           .torque_Nm = std::nan(""),
+                           .sinkage_m = std::nan(""),
+                           .gradient = gradient,
+                           .drawbar_pull_N = std::nan("")};
+      const auto seen = observer.observe(0, reading);
+      ASSERT_TRUE(seen);
+      EXPECT_TRUE(seen->bound);
+      EXPECT_LE(seen->pull.value, prior);
+      const double departure = gradient - ground->steady(0, {slip, false}).gradient;
+      EXPECT_NEAR(seen->pull.value, prior + std::min(departure, 0.0), 1e-9);
+      reading.slip = 0.85;
+      EXPECT_FALSE(observer.observe(0, reading)->bound);
+    }
+}
+
+}  // namespace
+}  // namespace talus::costmap

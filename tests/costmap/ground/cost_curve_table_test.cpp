@@ -1,0 +1,112 @@
+#include <limits>
+#include <random>
+
+#include <site_fixture.hpp>
+
+#include <talus/costmap/ground/cost_curve_table.hpp>
+
+namespace talus::costmap {
+namespace {
+
+// Property: what a belief costs does not depend on which like it was asked for first.
+TEST(CostCurveTable, OrderDoesNotMatter) {
+  const GroundBelief sure{.pull = {0.101, 0.031}, .sinkage = {0.6, 0.01}};
+  const GroundBelief unsure{.pull = {0.107, 0.033}, .sinkage = {0.6, 0.3}};
+  CostCurveTable one(testGround()), other(testGround());
+  const std::uint8_t a = one.learned(0, sure);
+  const std::uint8_t b = other.learned(0, unsure);
+  EXPECT_EQ(one.learned(0, unsure), a) << "alike after rounding";
+  EXPECT_EQ(other.learned(0, sure), b);
+  int different = 0;
+  for (int step = -300; step <= 300; ++step) {
+    const CellCode cell({.dz_dx = step / 1024.0});
+    const auto x = one.categories(a).at(cell), y = other.categories(b).at(cell);
+    different += x.category != y.category || x.confidence != y.confidence;
+  }
+  EXPECT_EQ(different, 0);
+}
+
+// Property: a number's ground costs no less than the belief that it was given for, at any gradient, also when the
+// numbers have run out.
+TEST(CostCurveTable, NoBeliefIsMadeCheaper) {
+  std::mt19937_64 random(9);
+  const auto drawn = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  const auto model = testGround();
+  CostCurveTable table(model);
+  for (int i = 0; i < 600; ++i) {
+    const int index = static_cast<int>(random() % 2);
+    const GroundBelief belief{.pull = {drawn(-0.3, 0.6), drawn(0.005, 0.2)},
+                              .sinkage = {drawn(0.0, 1.5), 0.1}};
+    const std::uint8_t number = table.learned(index, belief);
+    if (i % 10 != 0 || number == CellCode::kBlocked) continue;
+    const DriveCurve exact = model->ground(index, belief).curve;
+    for (std::size_t bin = 0; bin < DriveCurve::kBins; ++bin)
+      ASSERT_GE(table.cost()->curves()[number].cost_J_per_m[bin], (1.0F - 1e-6F) * exact.cost_J_per_m[bin])
+          << i << " at gradient " << DriveCurve::gradient(static_cast<int>(bin));
+  }
+  EXPECT_TRUE(table.overflowed());
+}
+
+// Property: a class that nobody asked for is refused; asked for, it has the ground of the belief that it came to meanwhile.
+TEST(CostCurveTable, AClassIsPricedWhenItIsAskedFor) {
+  const auto model = testGround();
+  CostCurveTable table(model);
+  const CellCode level({.curve = 1});
+  EXPECT_EQ(table.cost()->costPerMetre(level, {}), std::numeric_limits<float>::infinity());
+  EXPECT_NE(table.cost()->detail(level, {}).refusal, Refusal::None);
+  EXPECT_EQ(table.categories(1).at(level).category,
+            static_cast<std::uint8_t>(terramech::Category::Dangerous));
+  EXPECT_LT(table.cost()->costPerMetre(CellCode({.curve = 0}), {}), 1e6F) << "the first is the default";
+  const GroundBelief weaker{.pull = {model->prior(1).pull.value - 0.05, 0.06}, .sinkage = {0.4, 0.1}};
+  ASSERT_TRUE(table.setPrior(1, weaker));
+  const auto before = table.cost();
+  ASSERT_EQ(table.prior(1), 1);
+  EXPECT_NE(table.cost(), before);
+  EXPECT_EQ(table.cost()->curves()[1].cost_J_per_m,
+            model->ground(1, table.priorBelief(1)).curve.cost_J_per_m);
+  EXPECT_LE(table.priorBelief(1).pull.value, weaker.pull.value);
+}
+
+// Property: numbers of classes that nobody asked for are lent to beliefs when all others are used up, and the class has its own
+// again after a restart; until then nothing is cheaper than it should be.
+TEST(CostCurveTable, LendsTheNumbersOfClassesThatNobodyAskedFor) {
+  GroundModel::Parts parts = testGround()->parts();
+  while (parts.classes.size() < 254)
+    parts.classes.push_back({.number = static_cast<int>(parts.classes.size()) + 1, .soil = testDust()});
+  const auto model = std::make_shared<const GroundModel>(std::move(parts));
+  CostCurveTable table(model);
+  const auto belief = [](int k) { return GroundBelief{.pull = {0.005 * k, 0.06}, .sinkage = {0.2, 0.1}}; };
+  for (int k = 1; k <= 20; ++k) {
+    const std::uint8_t number = table.learned(0, belief(k));
+    EXPECT_EQ(table.cost()->curves()[number].cost_J_per_m,
+              model->ground(0, table.belief(number)).curve.cost_J_per_m);
+  }
+  EXPECT_FALSE(table.overflowed());
+  EXPECT_EQ(table.prior(1), 1) << "lent from the last on";
+  EXPECT_EQ(table.prior(253), CellCode::kBlocked) << "no belief of its class is known to be no better";
+  EXPECT_TRUE(table.overflowed());
+  table.restart(0);
+  EXPECT_EQ(table.prior(253), 253);
+  EXPECT_FALSE(table.overflowed());
+  EXPECT_EQ(table.cost()->curves()[253].cost_J_per_m, table.cost()->curves()[1].cost_J_per_m);
+}
+
+// Property: a prior that moves to and fro comes to the same each time.
+TEST(CostCurveTable, APriorThatComesBackIsTheSame) {
+  CostCurveTable book(testGround());
+  const GroundBelief low{.pull = {0.2, 0.06}, .sinkage = {0.2, 0.1}};
+  const GroundBelief high{.pull = {0.21, 0.06}, .sinkage = {0.2, 0.1}};
+  ASSERT_TRUE(book.setPrior(0, low));
+  const auto first = book.cost()->curves()[0].cost_J_per_m;
+  ASSERT_TRUE(book.setPrior(0, high));
+  const auto between = book.cost()->curves()[0].cost_J_per_m;
+  ASSERT_TRUE(book.setPrior(0, low));
+  EXPECT_FALSE(book.setPrior(0, low));
+  EXPECT_EQ(book.cost()->curves()[0].cost_J_per_m, first);
+  EXPECT_NE(between, first);
+}
+
+}  // namespace
+}  // namespace talus::costmap

@@ -1,0 +1,67 @@
+#include <cmath>
+
+#include <site_fixture.hpp>
+
+#include <talus/costmap/ground/ground_class.hpp>
+
+namespace talus::costmap {
+namespace {
+
+double pull(const terramech::Soil& soil) {
+  return terramech::MobilityCurve(soil, testRover()).reference().drawbar_pull_over_load;
+}
+
+TEST(GroundClass, StatedDeviationsBecomeDoubtAboutThePull) {
+  const terramech::SoilPrior prior{.mean = testSand(), .deviation = {.friction_angle_rad = 0.05}};
+  terramech::Soil weaker = testSand(), stronger = testSand();
+  weaker.friction_angle_rad -= 0.025;
+  stronger.friction_angle_rad += 0.025;
+  // Closed form: central difference of the one uncertain parameter.
+  EXPECT_NEAR(groundClass(1, prior, testRover()).mean_std, pull(stronger) - pull(weaker), 1e-12);
+}
+
+// The value that no soil has is none that the file states.
+TEST(GroundClass, ADeviationThatLeavesTheRangeOfSoilsIsNamed) {
+  const terramech::SoilPrior prior{.mean = testSand(), .deviation = {.cohesion_Pa = 1e12}};
+  EXPECT_THAT(
+      [&] { groundClass(1, prior, testRover()); },
+      testing::ThrowsMessage<std::invalid_argument>(testing::HasSubstr(" with half of its std 1e+12")));
+}
+
+TEST(GroundClass, WithoutStatedDeviationsKeepsTheDefault) {
+  EXPECT_EQ(groundClass(1, {.mean = testSand(), .deviation = {}}, testRover()).mean_std,
+            GroundClass{}.mean_std);
+}
+
+terramech::RefinedModel digging() {
+  terramech::RefinedModel model;
+  model.soil = testSand();
+  model.effects = {{.name = "slip_sinkage_ding", .covariate = "slip", .parameters = {0.5}},
+                   {.name = "load_cell_tilt", .covariate = "constant", .parameters = {0.1}}};
+  model.fitted = {{.effect = 0, .index = 0}};
+  model.covariance = {0.0016};
+  return model;
+}
+
+TEST(GroundClass, OfARefinedModelKeepsWhatTheGroundDoes) {
+  const GroundClass ground = groundClass(3, digging(), testRover());
+  ASSERT_EQ(ground.effects.size(), 1U);
+  EXPECT_EQ(ground.effects[0].name, "slip_sinkage_ding");
+  // Property: deeper in slipping than the sand alone, weaker at the reference slip.
+  EXPECT_LT(mobilityOf(ground, testRover()).reference().drawbar_pull_over_load, pull(testSand()));
+}
+
+TEST(GroundClass, DoubtOfARefinedModelIsItsCovariance) {
+  terramech::RefinedModel more = digging(), less = digging();
+  more.effects[0].parameters[0] += 0.004;
+  less.effects[0].parameters[0] -= 0.004;
+  const auto at = [](const terramech::RefinedModel& m) {
+    return terramech::MobilityCurve(m, testRover()).reference().drawbar_pull_over_load;
+  };
+  // Closed form: |dDP/dn1| std, std 0.04; a central difference against a one-sided one, hence 2 %.
+  const double expected = std::abs(at(more) - at(less)) / 0.008 * 0.04;
+  EXPECT_NEAR(groundClass(3, digging(), testRover()).mean_std, expected, 0.02 * expected);
+}
+
+}  // namespace
+}  // namespace talus::costmap

@@ -1,0 +1,273 @@
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <thread>
+
+#include <site_fixture.hpp>
+
+#include <talus/costmap/ground/ground_class.hpp>
+#include <talus/costmap/ground/ground_model.hpp>
+#include <talus/terramech/contact/wong_reece.hpp>
+
+namespace talus::costmap {
+namespace {
+
+using terramech::Category;
+
+GroundBelief certain(const GroundModel& model) {
+  GroundBelief belief = model.prior(0);
+  belief.pull.std = 0.0;
+  return belief;
+}
+
+TEST(GroundModel, CertainPriorIsTheSoilsOwnMobilityCurve) {
+  const auto model = testGround();
+  const terramech::MobilityCurve curve(testSand(), testRover());
+  for (const double gradient : {-0.2, -0.05, 0.0, 0.05, 0.1}) {
+    const auto expected = curve.at(std::atan(gradient));
+    const DriveState state = model->state(0, certain(*model), gradient);
+    // Closed form: no shift, no doubt; the horizontal metre is longer on the slope. Tolerance: float storage.
+    EXPECT_NEAR(state.slip, expected.slip, 1e-6);
+    EXPECT_NEAR(state.energy_J_per_m, expected.energy_J_per_m * std::hypot(1.0, gradient), 1e-3);
+    EXPECT_NEAR(state.torque_Nm, expected.torque_Nm, 1e-5);
+  }
+}
+
+TEST(GroundModel, GroundWeakerByDDrivesLikeASlopeSteeperByD) {
+  const auto model = testGround();
+  GroundBelief weaker = certain(*model);
+  weaker.pull.value -= 0.04;
+  // Property: the definition of the shift.
+  EXPECT_NEAR(model->state(0, weaker, 0.03).slip, model->state(0, certain(*model), 0.07).slip, 1e-6);
+}
+
+// Closed form: half of the thrust at the reference slip is half of what more slip gives, too; the resistance stays.
+TEST(GroundModel, BeyondTheReferenceSlipWeakGroundHasItsShareOfTheThrust) {
+  const auto model = testGround();
+  const terramech::MobilityCurve curve(testSand(), testRover());
+  const auto& at = curve.reference();
+  GroundBelief half = certain(*model);
+  half.pull.value -= 0.5 * at.torque_over_load_radius;
+  for (const double beyond : {0.004, 0.01, 0.02})
+    EXPECT_NEAR(model->state(0, half, half.pull.value + beyond).slip,
+                curve.at(std::atan(at.drawbar_pull_over_load + 2.0 * beyond)).slip, 1e-5);
+}
+
+// Property: ground that is refused on no slope that its soil refuses would hold rovers. Soils drawn about the class, each
+// believed to have its true pull at the reference slip: how far the steepest slope that is not refused lies above the soil's own.
+TEST(GroundModel, DrawnSoilsClimbNoLessThanTheirPullPromises) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  GroundModel::Parts parts = testGround()->parts();
+  // Of the soil library, without the deviations of pressure and sinkage.
+  terramech::SoilPrior crusty, loam;
+  crusty.mean = {.name = "mars_crusty",
+                 .cohesion_Pa = 1100,
+                 .friction_angle_rad = 0.602,
+                 .sinkage_exponent = 0.85,
+                 .frictional_modulus = 1750e3,
+                 .shear_modulus_m = 0.020,
+                 .c1 = 0.43,
+                 .c2 = 0.32};
+  crusty.deviation = {.cohesion_Pa = 800, .friction_angle_rad = 0.082, .shear_modulus_m = 0.0058};
+  loam.mean = {.name = "sandy_loam",
+               .cohesion_Pa = 7445,
+               .friction_angle_rad = 0.44,
+               .sinkage_exponent = 0.7,
+               .cohesive_modulus = 5270,
+               .frictional_modulus = 1515e3,
+               .shear_modulus_m = 0.020,
+               .c1 = 0.43,
+               .c2 = 0.32};
+  loam.deviation = {.cohesion_Pa = 3663, .friction_angle_rad = 0.143, .shear_modulus_m = 0.0058};
+  for (const terramech::SoilPrior& prior : {crusty, loam}) {
+    const std::string& name = prior.mean.name;
+    parts.classes = {groundClass(0, prior, parts.rover)};
+    parts.policy.allow_dangerous = true;
+    const GroundModel model(parts);
+    int weak = 0, promised = 0, shift_promised = 0;
+    double sum = 0.0;
+    while (weak < 60) {
+      terramech::Soil soil = prior.mean;
+      soil.cohesion_Pa = std::max(0.0, soil.cohesion_Pa + prior.deviation.cohesion_Pa * normal(random));
+      soil.friction_angle_rad =
+          std::max(0.15, soil.friction_angle_rad + prior.deviation.friction_angle_rad * normal(random));
+      soil.shear_modulus_m =
+          std::max(0.004, soil.shear_modulus_m + prior.deviation.shear_modulus_m * normal(random));
+      const terramech::MobilityCurve own(soil, parts.rover);
+      GroundBelief belief = model.prior(0);
+      const double shift = belief.pull.value - own.reference().drawbar_pull_over_load;
+      if (shift < 0.03) continue;
+      ++weak;
+      const double steepest = ExpectedDrive(own).last();
+      belief.pull = {own.reference().drawbar_pull_over_load, 0.0};
+      belief.sinkage = {own.reference().sinkage_over_radius, 0.0};
+      double allowed = -0.3;
+      while (model.state(0, belief, allowed + 0.002).refusal == Refusal::None) allowed += 0.002;
+      sum += allowed - steepest;
+      promised += allowed > steepest + 0.03 ? 1 : 0;
+      shift_promised +=
+          ExpectedDrive(mobilityOf(parts.classes[0], parts.rover)).last() - shift > steepest + 0.03;
+    }
+    EXPECT_LE(promised, 6) << name;
+    EXPECT_LT(std::abs(sum / weak), 0.02) << name;
+    EXPECT_GE(shift_promised, 4 * promised + 8) << name;  // why the curve is not shifted
+  }
+}
+
+TEST(GroundModel, WheelsBehindDriveInTheRutsThatAModelKnows) {
+  GroundModel::Parts parts = testGround()->parts();
+  const GroundModel plain(parts);
+  parts.classes[0].effects = {
+      {.name = "multipass_reload", .covariate = "pass_index", .parameters = {3.0, 1.0}}};
+  const GroundModel model(parts);
+  const auto& ground = parts.classes[0];
+  const auto rover = terramech::MobilityCurve({.soil = ground.soil, .effects = ground.effects}, parts.rover,
+                                              {.axles = parts.rover.wheel_count / 2});
+  for (const double gradient : {0.0, 0.08}) {
+    // Closed form: the rover as a whole by the curve of its axles.
+    EXPECT_NEAR(model.state(0, certain(model), gradient).slip, rover.at(std::atan(gradient)).slip, 1e-5);
+    // Property: ruts help.
+    EXPECT_LT(model.state(0, certain(model), gradient).slip, plain.state(0, certain(plain), gradient).slip);
+  }
+  // What is believed of ground is still said of a wheel on fresh ground: two rules of one integral, 1e-6
+  // apart.
+  EXPECT_NEAR(model.prior(0).pull.value, plain.prior(0).pull.value, 1e-5);
+  EXPECT_NEAR(model.steady(0, {.slip = 0.3}).gradient, plain.steady(0, {.slip = 0.3}).gradient, 1e-4);
+  EXPECT_GT(model.steady(0, {.slip = 0.3, .in_rut = true}).gradient, model.steady(0, {.slip = 0.3}).gradient);
+}
+
+TEST(GroundModel, ClimbingCostsMoreThanDescending) {
+  const auto model = testGround();
+  const GroundBelief belief = certain(*model);
+  EXPECT_GT(model->cost_J_per_m(model->state(0, belief, 0.1)),
+            model->cost_J_per_m(model->state(0, belief, -0.1)));
+}
+
+TEST(GroundModel, CategoryFollowsThePullThatTheSlopeAsksFor) {
+  const auto model = testGround();
+  const double margin = model->parts().policy.slope_margin_rad;
+  const auto at = [&](double pull) {
+    return model->category({.pull = {pull, 0.0}, .sinkage = {0.1, 0.0}}, std::tan(0.2)).category;
+  };
+  // Closed form: thesis 3.5, edges at tan(slope -+ margin).
+  EXPECT_EQ(at(std::tan(0.2 + margin) + 1e-9), Category::Safe);
+  EXPECT_EQ(at(std::tan(0.2 + margin) - 1e-9), Category::Marginal);
+  EXPECT_EQ(at(std::tan(0.2 - margin) - 1e-9), Category::Dangerous);
+}
+
+TEST(GroundModel, CategoryProbabilityIsTheNormalTail) {
+  const auto model = testGround();
+  const double edge = std::tan(model->parts().policy.slope_margin_rad);
+  const Ranked ranked = model->category({.pull = {edge + 0.05, 0.05}, .sinkage = {0.1, 0.0}}, 0.0);
+  EXPECT_EQ(ranked.category, Category::Safe);
+  // Closed form: P(pull > edge) one standard deviation above it.
+  EXPECT_NEAR(ranked.probability, 0.5 * std::erfc(-1.0 / std::numbers::sqrt2), 1e-12);
+}
+
+TEST(GroundModel, RefusesWithTheReason) {
+  const auto model = testGround();
+  GroundBelief belief = certain(*model);
+  EXPECT_EQ(model->state(0, belief, 0.0).refusal, Refusal::None);
+  EXPECT_EQ(model->state(0, belief, belief.pull.value + 0.3).refusal, Refusal::Pull);
+  belief.sinkage.value *= 1e3;
+  EXPECT_EQ(model->state(0, belief, 0.0).refusal, Refusal::Sinkage);
+}
+
+TEST(GroundModel, DoubtCosts) {
+  const auto model = testGround();
+  GroundBelief doubtful = certain(*model);
+  doubtful.pull.std = 0.1;
+  EXPECT_GT(model->state(0, doubtful, 0.05).risk_per_m, model->state(0, certain(*model), 0.05).risk_per_m);
+  EXPECT_GT(model->cost_J_per_m(model->state(0, doubtful, 0.05)),
+            model->cost_J_per_m(model->state(0, certain(*model), 0.05)));
+}
+
+TEST(GroundModel, DriveCostGivesFiniteCostExactlyWhereNothingRefuses) {
+  const auto model = testGround();
+  const DriveCost cost(model->limits(),
+                       {model->ground(0, model->prior(0)), model->ground(1, model->prior(1))});
+  for (const double slope : {0.0, 0.1, 0.2, 0.3, 0.5})
+    for (int step = 0; step < 32; ++step) {
+      const double angle = step * std::numbers::pi / 16.0;
+      const CellCode cell({.dz_dx = slope, .dz_dy = 0.0, .curve = static_cast<std::uint8_t>(step % 2)});
+      const Direction heading{std::cos(angle), std::sin(angle)};
+      const DriveState state = cost.detail(cell, heading);
+      EXPECT_EQ(std::isfinite(cost.costPerMetre(cell, heading)), state.refusal == Refusal::None)
+          << slope << " " << angle;
+    }
+}
+
+TEST(GroundModel, NamesWhatIsWrong) {
+  GroundModel::Parts parts{.rover = testRover(), .classes = {}, .policy = {}};
+  EXPECT_THROW(GroundModel{parts}, std::invalid_argument);
+  parts.classes = {GroundClass{.number = 1, .soil = testSand()},
+                   GroundClass{.number = 1, .soil = testDust()}};
+  EXPECT_THROW(GroundModel{parts}, std::invalid_argument);
+}
+
+// Property: threads that ask together for what is worked out when it is first asked for get one answer, that of one thread alone.
+TEST(GroundModel, ThreadsThatAskTogetherGetOneAnswer) {
+  const auto together = testGround(), alone = testGround();
+  const GroundModel copy = *together;
+  std::array<DriveState, 4> states;
+  {
+    std::array<std::jthread, 4> threads;
+    for (std::size_t k = 0; k < threads.size(); ++k)
+      threads[k] = std::jthread([&, k] {
+        const GroundModel& model = k % 2 == 0 ? *together : copy;
+        states[k] = model.state(1, model.prior(1), 0.1);
+      });
+  }
+  const DriveState expected = alone->state(1, alone->prior(1), 0.1);
+  for (const DriveState& state : states) {
+    EXPECT_EQ(state.energy_J_per_m, expected.energy_J_per_m);
+    EXPECT_EQ(state.weak, expected.weak);
+  }
+  EXPECT_EQ(together->crossing(1), copy.crossing(1)) << "copies share what was worked out";
+}
+
+// Property: what is worked out later was held against its range at once.
+TEST(GroundModel, RefusesASoilOutOfRangeThatNoCellHas) {
+  GroundModel::Parts parts = testGround()->parts();
+  parts.classes.push_back({.number = 9, .soil = testSand()});
+  parts.classes.back().soil.friction_angle_rad = -1.0;
+  EXPECT_THROW(GroundModel{parts}, std::invalid_argument);
+}
+
+TEST(GroundModel, SteadyWheelsAreThoseOfTheForwardModel) {
+  const auto model = testGround();
+  const terramech::Rover rover = testRover();
+  for (const double slip : {0.1, 0.3, 0.5}) {
+    const SteadyWheel steady = model->steady(0, {.slip = slip});
+    const double load_N = terramech::wheelLoad_N(rover) / std::hypot(1.0, steady.gradient);
+    const auto wheel = terramech::equilibrium(testSand(), rover.wheel, {.load_N = load_N, .slip = slip});
+    // Closed form: the wheel under its load on that slope; the curve's table is good to 1e-3 in slip
+    EXPECT_NEAR(steady.gradient, wheel.drawbar_pull_N / load_N, 5e-3) << slip;
+    EXPECT_NEAR(steady.sinkage_over_radius, wheel.sinkage_m / rover.wheel.radius_m, 2e-3) << slip;
+    EXPECT_NEAR(steady.torque_over_load_radius, wheel.torque_Nm / (load_N * rover.wheel.radius_m), 5e-3)
+        << slip;
+    EXPECT_LT(model->steady(0, {.slip = slip, .in_rut = true}).sinkage_over_radius,
+              0.6 * steady.sinkage_over_radius);
+  }
+  EXPECT_DOUBLE_EQ(model->reference(0, false).gradient, model->prior(0).pull.value);
+}
+
+TEST(GroundModel, CategoryEdgesAreTheTangentsOfSlopeAndMargin) {
+  const auto model = testGround();
+  const double margin = model->parts().policy.slope_margin_rad;
+  for (const double slope : {-0.3, 0.0, 0.1, 0.4}) {
+    // Closed form: thesis 3.5, safe above tan(slope + margin), dangerous below tan(slope - margin)
+    const auto of = [&](double pull) {
+      return model->category({.pull = {pull, 0.0}, .sinkage = {0.1, 0.0}}, std::tan(slope)).category;
+    };
+    EXPECT_EQ(of(std::tan(slope + margin) + 1e-9), terramech::Category::Safe);
+    EXPECT_EQ(of(std::tan(slope + margin) - 1e-9), terramech::Category::Marginal);
+    EXPECT_EQ(of(std::tan(slope - margin) + 1e-9), terramech::Category::Marginal);
+    EXPECT_EQ(of(std::tan(slope - margin) - 1e-9), terramech::Category::Dangerous);
+  }
+}
+
+}  // namespace
+}  // namespace talus::costmap

@@ -1,0 +1,115 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include <site_fixture.hpp>
+
+#include <talus/costmap/ground/wheel_swath.hpp>
+
+namespace talus::costmap {
+namespace {
+
+using Around = std::vector<WheelSwath::Ground>;
+
+WheelSwath::Ground strong() {
+  return {0, {.pull = {0.3, 0.05}, .sinkage = {0.1, 0.1}}};
+}
+
+WheelSwath::Ground trap() {
+  return {1, {.pull = {-0.25, 0.02}, .sinkage = {0.8, 0.1}}};
+}
+
+Around all(const WheelSwath& swath, const WheelSwath::Ground& ground) {
+  const auto side = static_cast<std::size_t>(2 * swath.reach() + 1);
+  return Around(side * side, ground);
+}
+
+WheelSwath::Ground& at(Around& around, const WheelSwath& swath, maps::Cell offset) {
+  const int side = 2 * swath.reach() + 1;
+  return around[static_cast<std::size_t>((offset.row + swath.reach()) * side + offset.column +
+                                         swath.reach())];
+}
+
+TEST(WheelSwath, OneGroundStaysWhatItIs) {
+  const WheelSwath swath(testRover(), 1.0, 0.0);
+  const WheelSwath::Judged judged = swath.judged(all(swath, strong()));
+  EXPECT_DOUBLE_EQ(judged.belief.pull.value, 0.3);
+  EXPECT_EQ(judged.weakest_class, 0);
+}
+
+TEST(WheelSwath, WheelsInATrapBesidePullByTheMean) {
+  const WheelSwath swath(testRover(), 1.0, 0.0);
+  Around around = all(swath, strong());
+  for (int row = -swath.reach(); row <= swath.reach(); ++row) at(around, swath, {1, row}) = trap();
+  const WheelSwath::Judged judged = swath.judged(around);
+  // Closed form: the middle on the edge, one wheel stands beyond it, and where the edge runs along a diagonal of
+  // the rover the two wheels on that touch it with their width: three of four. The fourth never does.
+  EXPECT_NEAR(judged.belief.pull.value, 0.25 * 0.3 - 0.75 * 0.25, 1e-12);
+  EXPECT_EQ(judged.weakest_class, 1);
+  EXPECT_DOUBLE_EQ(judged.belief.sinkage.value, 0.8) << "the deepest wheel";
+  EXPECT_DOUBLE_EQ(judged.belief.pull.std, 0.05) << "the greatest doubt";
+}
+
+TEST(WheelSwath, CornersCount) {
+  const WheelSwath swath(testRover(), 1.0, 0.0);
+  Around around = all(swath, strong());
+  at(around, swath, {1, 1}) = trap();
+  // Closed form: a quarter of the wheels, the middle at the corner of the cells.
+  EXPECT_LE(swath.judged(around).belief.pull.value, 0.75 * 0.3 - 0.25 * 0.25 + 1e-12);
+}
+
+TEST(WheelSwath, PoseErrorReachesFarther) {
+  const WheelSwath exact(testRover(), 0.25, 0.0), unsure(testRover(), 0.25, 0.6);
+  EXPECT_GE(unsure.reach(), exact.reach() + 2);
+  Around around = all(unsure, strong());
+  for (int row = -unsure.reach(); row <= unsure.reach(); ++row) at(around, unsure, {4, row}) = trap();
+  EXPECT_LT(unsure.judged(around).belief.pull.value, 0.3);
+}
+
+// Property: wherever the middle stands in the cell, whatever the heading, the wheels pull together no less than
+// is said, up to the steps of places and headings; nor is it ever better than the cell's own ground.
+TEST(WheelSwath, IsTheLeastOfAllStandings) {
+  std::mt19937_64 random(5);
+  const auto drawn = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  const terramech::Rover rover = testRover();
+  const double cell_m = 0.5;
+  const WheelSwath swath(rover, cell_m, 0.0);
+  double missed = 0.0;
+  int standings = 0;
+  for (int trial = 0; trial < 40; ++trial) {
+    Around around = all(swath, strong());
+    for (auto& ground : around)
+      if (drawn(0.0, 1.0) < 0.3) ground = trap();
+    const double said = swath.judged(around).belief.pull.value;
+    EXPECT_LE(said, around[around.size() / 2].belief.pull.value);
+    for (int k = 0; k < 500; ++k, ++standings) {
+      const double x = drawn(-0.5, 0.5) * cell_m, y = drawn(-0.5, 0.5) * cell_m;
+      const double heading = drawn(0.0, 2.0 * std::numbers::pi);
+      double sum = 0.0;
+      for (const double along : {-0.5, 0.5})
+        for (const double side : {-0.5, 0.5}) {
+          double least = INFINITY;
+          for (double across = -0.5; across <= 0.5; across += 0.1) {
+            const double a = along * rover.wheelbase_m,
+                         b = side * rover.track_m + across * rover.wheel.width_m;
+            const double wx = x + a * std::cos(heading) - b * std::sin(heading);
+            const double wy = y + a * std::sin(heading) + b * std::cos(heading);
+            const maps::Cell offset{static_cast<int>(std::floor(wx / cell_m + 0.5)),
+                                    static_cast<int>(std::floor(wy / cell_m + 0.5))};
+            ASSERT_LE(std::max(std::abs(offset.column), std::abs(offset.row)), swath.reach());
+            least = std::min(least, at(around, swath, offset).belief.pull.value);
+          }
+          sum += 0.25 * least;
+        }
+      missed += sum < said - 1e-9;
+    }
+  }
+  // One wheel may clip a corner of a cell between two of the places and headings that are looked at.
+  EXPECT_LT(missed / standings, 0.01);
+}
+
+}  // namespace
+}  // namespace talus::costmap

@@ -1,0 +1,86 @@
+#include <algorithm>
+#include <cmath>
+
+#include <site_map.hpp>
+
+#include <talus/costmap/map/explanation.hpp>
+#include <talus/costmap/telemetry/telemetry_processor.hpp>
+
+namespace talus::costmap {
+namespace {
+
+using terramech::Category;
+
+const Cause& cause(const Explanation& explanation, const std::string& name) {
+  const auto found = std::find_if(explanation.causes.begin(), explanation.causes.end(),
+                                  [&](const Cause& c) { return c.name == name; });
+  if (found == explanation.causes.end()) throw std::out_of_range(name);
+  return *found;
+}
+
+const std::vector<std::string> kPlain(12, "111111111111");
+
+TEST(Explain, GivesTheNumbersBehindASafeCell) {
+  const Explanation e = explain(mapOf(kPlain, 0.05), {6, 6});
+  EXPECT_EQ(e.category, Category::Safe);
+  // Closed form: the drawn plane. Tolerance: heights of 1000 m are floats, 6e-5 m apart.
+  EXPECT_NEAR(cause(e, "slope_rad").value, std::atan(0.05), 1e-4);
+  EXPECT_NEAR(cause(e, "slope_along_rad").value, std::atan(0.05), 1e-3);  // the code's step is 1/1024
+  EXPECT_EQ(cause(e, "evidence_samples").value, 0.0);
+  EXPECT_GT(cause(e, "drawbar_pull_over_load").std, 0.0);
+}
+
+TEST(Explain, HeadingDecides) {
+  const TraversabilityMap map = mapOf(kPlain, 0.2);
+  const Explanation up = explain(map, {6, 6}, Direction{1, 0});
+  const Explanation down = explain(map, {6, 6}, Direction{-1, 0});
+  EXPECT_LT(cause(down, "energy_J_per_m").value, cause(up, "energy_J_per_m").value);
+  EXPECT_NE(up.category, Category::Safe);
+  EXPECT_EQ(down.category, Category::Safe);
+}
+
+TEST(Explain, SaysWhichHazardRefuses) {
+  std::vector<std::string> site = kPlain;
+  site[5][6] = '#';
+  const Explanation e = explain(mapOf(site), {6, 6});
+  EXPECT_EQ(e.category, Category::Dangerous);
+  EXPECT_NE(e.verdict.find("keep-out"), std::string::npos);
+}
+
+TEST(Explain, UnseenIsUnknown) {
+  std::vector<std::string> site = kPlain;
+  site[5][6] = '?';
+  const Explanation unseen = explain(mapOf(site), {6, 6});
+  EXPECT_EQ(unseen.category, Category::Unknown);
+  EXPECT_TRUE(std::isnan(unseen.probability)) << "Unknown has none";
+}
+
+// Property: where the policy opens it, it is said why it is no longer refused, and as what it is driven.
+TEST(Explain, UnseenGroundThatThePolicyOpensIsSaidToBe) {
+  std::vector<std::string> site = kPlain;
+  site[5][6] = '?';
+  const Explanation open = explain(mapOf(site, 0.0, {.allow_unknown = true}), {6, 6});
+  EXPECT_NE(open.category, Category::Unknown);
+  EXPECT_NE(open.verdict.find("unknown; allowed on request as level ground of"), std::string::npos)
+      << open.verdict;
+  EXPECT_EQ(cause(open, "hazard").remark, "not excluded");
+}
+
+// Property: what wheels met on ground that nobody has seen refuses it and is said, opened or not.
+TEST(Explain, UnseenGroundThatHeldAWheelIsSaidToBeRefused) {
+  std::vector<std::string> site = kPlain;
+  site[5][6] = '?';
+  TraversabilityMap map = mapOf(site, 0.0, {.allow_unknown = true});
+  WheelObservation spun{.time_s = 1.0, .place = map.grid().centre({6, 6}), .pull = {}, .sinkage = {}};
+  spun.here.most_pull = -0.4;
+  ASSERT_TRUE(map.learn(boundAlone(spun)));
+  map.publish();
+  const Explanation held = explain(map, {6, 6});
+  EXPECT_EQ(held.category, Category::Dangerous);
+  EXPECT_NE(held.verdict.find("refused"), std::string::npos) << held.verdict;
+  EXPECT_NE(held.verdict.find("allowed on request"), std::string::npos) << held.verdict;
+  EXPECT_EQ(cause(held, "evidence_samples").remark.find("prior only"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace talus::costmap

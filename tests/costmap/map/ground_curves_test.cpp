@@ -1,0 +1,277 @@
+#include <cmath>
+#include <random>
+
+#include <site_map.hpp>
+
+#include <talus/costmap/map/explanation.hpp>
+#include <talus/costmap/map/traversability_map.hpp>
+
+namespace talus::costmap {
+namespace {
+
+using terramech::Category;
+
+constexpr int kSide = 24;
+
+double uniform(std::mt19937_64& random, double low, double high) {
+  return std::uniform_real_distribution<double>(low, high)(random);
+}
+
+// Patches of sand and dust, obstacles, unseen cells and keep-out polygons on rolling ground.
+MapLayers anySite(std::mt19937_64& random) {
+  std::vector<std::string> rows(kSide, std::string(kSide, '1'));
+  for (int patch = 0; patch < 4; ++patch) {
+    const char what = "2223?#"[random() % 6];
+    const std::size_t size = what == '2' ? 6 : 2;
+    const std::size_t row = random() % (kSide - size), column = random() % (kSide - size);
+    for (std::size_t r = row; r < row + size; ++r) rows[r].replace(column, size, size, what);
+  }
+  MapLayers layers = drawn(rows);
+  const double height = uniform(random, 0.0, 1.5), phase = uniform(random, 0.0, 6.0);
+  for (int row = 0; row < kSide; ++row)
+    for (int column = 0; column < kSide; ++column)
+      layers.elevation.elevation_m[{column, row}] +=
+          static_cast<float>(height * std::sin(0.4 * column + phase) * std::cos(0.3 * row));
+  return layers;
+}
+
+// A short drive over ground that is weaker or stronger than thought, here and there.
+void learnSomething(TraversabilityMap& map, std::mt19937_64& random, int readings) {
+  maps::Point at{100.0 + uniform(random, 2.0, kSide - 2.0), 200.0 + uniform(random, 2.0, kSide - 2.0)};
+  for (int i = 0; i < readings; ++i) {
+    at = {at.x_m + uniform(random, -1.0, 1.0), at.y_m + uniform(random, -1.0, 1.0)};
+    map.learn({.time_s = 1.0 * i,
+               .place = at,
+               .pull = {uniform(random, -0.3, 0.4), 0.03},
+               .sinkage = {uniform(random, 0.05, 0.9), 0.05}});
+  }
+}
+
+Direction heading(int step) {
+  const double angle = step * 2.0 * M_PI / 16.0;
+  return {std::cos(angle), std::sin(angle)};
+}
+
+bool equal(const DriveState& a, const DriveState& b) {
+  return a.energy_J_per_m == b.energy_J_per_m && a.time_s_per_m == b.time_s_per_m &&
+         a.risk_per_m == b.risk_per_m && a.refusal == b.refusal && a.category == b.category;
+}
+
+// Sand as class 1, dust as class 2, and classes that no cell has up to so many in all.
+std::shared_ptr<const GroundModel> declaring(int classes) {
+  GroundModel::Parts parts = testGround()->parts();
+  for (int number = 3; number <= classes; ++number)
+    parts.classes.push_back({.number = number, .soil = testSand()});
+  return std::make_shared<GroundModel>(std::move(parts));
+}
+
+// Property: however many classes are declared, a map costs what it costs with those that its cells have, before and after it
+// is learned: classes that no cell has take no numbers away.
+TEST(GroundCurves, ClassesThatNoCellHasChangeNothing) {
+  const std::vector<std::string> rows{"1122112211", "1111222211", "1212121211", "1111111111", "2222111122"};
+  TraversabilityMap few(drawn(rows, 0.1), declaring(2), {}), many(drawn(rows, 0.1), declaring(250), {});
+  const auto same = [&] {
+    const auto a = few.published(), b = many.published();
+    int different = 0;
+    for (int row = 0; row < a->grid().height; ++row)
+      for (int column = 0; column < a->grid().width; ++column)
+        for (const Direction heading : {Direction{1.0, 0.0}, Direction{-1.0, 0.0}, Direction{0.0, 1.0}})
+          different += a->cost().costPerMetre(a->at({column, row}), heading) !=
+                       b->cost().costPerMetre(b->at({column, row}), heading);
+    return different == 0;
+  };
+  EXPECT_TRUE(same());
+  for (int k = 0; k < 40; ++k) {
+    WheelObservation observation;
+    observation.place = {100.5 + 0.25 * k, 202.5};
+    observation.pull = {0.02 + 0.004 * k, 0.03};
+    observation.sinkage = {0.2, 0.05};
+    EXPECT_EQ(few.learn(observation), many.learn(observation));
+  }
+  few.publish();
+  many.publish();
+  EXPECT_TRUE(same());
+}
+
+// Property: what is published after each of many drives is what is published at once. The numbers of the curves
+// may differ, what they say may not. The classes as a whole are known: where they move by less than a step of
+// their prior, ground that was learned elsewhere keeps its number.
+TEST(GroundCurves, ChangesArePublishedAsTheWholeIs) {
+  std::mt19937_64 random(21);
+  GroundModel::Parts parts = testGround()->parts();
+  for (GroundClass& ground : parts.classes) ground.mean_std = 1e-9;
+  const auto model = std::make_shared<const GroundModel>(parts);
+  for (int trial = 0; trial < 6; ++trial) {
+    TraversabilityMap map(anySite(random), model, {});
+    for (int drive = 0; drive < 3; ++drive) {
+      learnSomething(map, random, 5);
+      if (drive == 1) map.refuse({110.5, 210.5}, 1.5);
+      map.publish();
+    }
+    const auto step_by_step = map.published();
+    map.publishAll();
+    const auto at_once = map.published();
+    int different = 0;
+    for (int row = 0; row < kSide; ++row)
+      for (int column = 0; column < kSide; ++column)
+        for (int k = 0; k < 16; ++k) {
+          const maps::Cell cell{column, row};
+          different += !equal(step_by_step->cost().detail(step_by_step->at(cell), heading(k)),
+                              at_once->cost().detail(at_once->at(cell), heading(k)));
+        }
+    EXPECT_EQ(different, 0) << trial;
+  }
+}
+
+// Property: what explain calls dangerous in a heading, or unknown, may not be driven in that heading; what it
+// allows costs something finite; the numbers behind the cost and the cost agree.
+TEST(GroundCurves, WhatIsCalledDangerousIsRefused) {
+  std::mt19937_64 random(22);
+  int dangerous = 0, allowed = 0;
+  for (int trial = 0; trial < 4; ++trial) {
+    TraversabilityMap map(anySite(random), testGround(), {});
+    learnSomething(map, random, 12);
+    map.publish();
+    const auto grid = map.published();
+    for (int row = 0; row < kSide; row += 2)
+      for (int column = 0; column < kSide; ++column) {
+        const maps::Cell cell{column, row};
+        for (int k = 0; k < 16; k += 5) {
+          const Explanation told = explain(map, cell, heading(k));
+          const bool finite = std::isfinite(grid->cost().costPerMetre(grid->at(cell), heading(k)));
+          EXPECT_EQ(finite, grid->cost().detail(grid->at(cell), heading(k)).refusal == Refusal::None);
+          if (told.category == Category::Dangerous || told.category == Category::Unknown) {
+            EXPECT_FALSE(finite) << column << ' ' << row << ' ' << told.verdict;
+            ++dangerous;
+          }
+          allowed += finite;
+        }
+      }
+  }
+  EXPECT_GT(dangerous, 100);
+  EXPECT_GT(allowed, 100);
+}
+
+// Property: a hazard more, whatever kind, lowers no cost.
+TEST(GroundCurves, AHazardLowersNoCost) {
+  std::mt19937_64 random(23);
+  for (int trial = 0; trial < 10; ++trial) {
+    const MapLayers without = anySite(random);
+    MapLayers with = without;
+    const maps::Cell place{static_cast<int>(random() % kSide), static_cast<int>(random() % kSide)};
+    with.declared = maps::Raster<Hazard>(with.elevation.grid(), Hazard::None);
+    if (trial % 2 == 0)
+      with.keep_out[place] = 1;
+    else
+      with.declared[place] = Hazard::Rocks;
+    const TraversabilityMap before(without, testGround(), {}), after(with, testGround(), {});
+    for (int row = 0; row < kSide; ++row)
+      for (int column = 0; column < kSide; ++column)
+        for (int k = 0; k < 16; ++k) {
+          const maps::Cell cell{column, row};
+          EXPECT_GE(after.published()->cost().costPerMetre(after.code(cell), heading(k)),
+                    before.published()->cost().costPerMetre(before.code(cell), heading(k)))
+              << trial << ' ' << column << ' ' << row;
+        }
+  }
+}
+
+// A line beside a trap: half the wheels stand in it.
+TEST(GroundCurves, GroundBesideATrapIsJudgedByItsWheels) {
+  std::vector<std::string> rows(kSide, std::string(kSide, '1'));
+  for (std::string& row : rows) row.replace(12, 6, 6, '2');
+  const TraversabilityMap map = mapOf(rows);
+  const GroundBelief sand = *map.publishedGround({5, 12}), dust = *map.publishedGround({15, 12});
+  const GroundBelief beside = *map.publishedGround({11, 12});
+  // Closed form: at least two wheels of four on the weaker, at most three; rounded down to 0.02.
+  EXPECT_LE(beside.pull.value, 0.5 * (sand.pull.value + dust.pull.value));
+  EXPECT_GT(beside.pull.value, 0.25 * sand.pull.value + 0.75 * dust.pull.value - 0.0201);
+  EXPECT_EQ(map.publishedGround({9, 12})->pull.value, sand.pull.value) << "out of reach";
+  EXPECT_GT(map.published()->cost().detail(map.code({11, 12}), {0, 1}).risk_per_m,
+            map.published()->cost().detail(map.code({5, 12}), {0, 1}).risk_per_m);
+}
+
+// Property: ground of more kinds than there are curves is refused or costs more than it need, never less.
+TEST(GroundCurves, RunningOutOfCurvesErrsTowardsDanger) {
+  std::mt19937_64 random(24);
+  std::vector<GroundClass> classes;
+  for (int number = 1; number <= 252; ++number) {
+    GroundClass ground{.number = number, .soil = testSand()};
+    ground.soil.friction_angle_rad = 0.45 + 0.001 * number;
+    classes.push_back(ground);
+  }
+  const auto model = std::make_shared<GroundModel>(
+      GroundModel::Parts{.rover = testRover(), .classes = classes, .policy = {}});
+  MapLayers layers = drawn(std::vector<std::string>(kSide, std::string(kSide, '1')));
+  for (std::uint8_t& number : layers.classes.values()) number = static_cast<std::uint8_t>(1 + random() % 252);
+  TraversabilityMap map(std::move(layers), model, {});
+  learnSomething(map, random, 30);
+  map.publish();
+  int blocked = 0, cheaper = 0;
+  for (int row = 0; row < kSide; ++row)
+    for (int column = 0; column < kSide; ++column) {
+      const maps::Cell cell{column, row};
+      const CellCode code = map.code(cell);
+      blocked += code.curve() == CellCode::kBlocked && map.hazards(cell) == Hazard::None;
+      for (int k = 0; k < 16; ++k) {
+        const double along = code.dzDx() * heading(k).x + code.dzDy() * heading(k).y;
+        const double exact = model->cost_J_per_m(model->state(map.classIndex(cell), *map.ground(cell),
+                                                              DriveCurve::gradient(DriveCurve::bin(along))));
+        cheaper += static_cast<double>(map.published()->cost().costPerMetre(code, heading(k))) <
+                   (1.0 - 1e-6) * exact;
+      }
+    }
+  EXPECT_EQ(cheaper, 0);
+  EXPECT_GT(blocked, 0) << "there were curves enough";
+}
+
+// The finest steps that do are taken, and a map that fits them again gets them back.
+TEST(GroundCurves, CoarserStepsMakeRoom) {
+  std::mt19937_64 random(25);
+  TraversabilityMap map(drawn(std::vector<std::string>(80, std::string(80, '1'))), testGround(), {});
+  for (int row = 0; row < 80; row += 2)
+    for (int column = 0; column < 80; column += 2)
+      map.learn({.time_s = 1.0,
+                 .place = map.grid().centre({column, row}),
+                 .pull = {uniform(random, -0.5, 0.6), 0.03},
+                 .sinkage = {uniform(random, 0.05, 2.0), 0.05}});
+  map.publish();
+  int blocked = 0, cheaper = 0;  // but for the edge of the map, which is blocked
+  for (int row = 1; row < 79; ++row)
+    for (int column = 1; column < 79; ++column) {
+      const CellCode code = map.code({column, row});
+      blocked += code.curve() >= CellCode::kUnknown;
+      const double exact = map.model().cost_J_per_m(map.model().state(0, *map.ground({column, row}), 0.0));
+      cheaper +=
+          static_cast<double>(map.published()->cost().costPerMetre(code, {1, 0})) < (1.0 - 1e-6) * exact;
+    }
+  EXPECT_EQ(blocked, 0);
+  EXPECT_EQ(cheaper, 0);
+}
+
+// A long rover two cells from a cell that the class raster leaves out: its wheels may stand on it.
+TEST(GroundCurves, GroundWithoutAClassUnderAWheelIsUnknown) {
+  terramech::Rover rover = testRover();
+  rover.wheelbase_m = 3.0;
+  MapLayers layers = drawn(std::vector<std::string>(kSide, std::string(kSide, '2')));
+  layers.classes[{12, 12}] = 255;
+  const auto mapUnder = [&](bool allow_unknown) {
+    return TraversabilityMap(layers,
+                             std::make_shared<GroundModel>(
+                                 GroundModel::Parts{.rover = rover,
+                                                    .classes = {GroundClass{.number = 1, .soil = testDust()},
+                                                                GroundClass{.number = 2, .soil = testSand()}},
+                                                    .policy = {.allow_unknown = allow_unknown}}),
+                             {});
+  };
+  const TraversabilityMap closed = mapUnder(false), open = mapUnder(true);
+  ASSERT_EQ(closed.hazards({14, 12}), Hazard::None);
+  EXPECT_EQ(closed.code({14, 12}).curve(), CellCode::kUnknown);
+  EXPECT_NE(explain(closed, {14, 12}, std::nullopt).verdict.find("without a soil class"), std::string::npos);
+  EXPECT_LT(open.publishedGround({14, 12})->pull.value, open.publishedGround({18, 12})->pull.value - 0.02)
+      << "as ground of the first class";
+  EXPECT_LT(closed.code({18, 12}).curve(), CellCode::kUnknown);
+}
+
+}  // namespace
+}  // namespace talus::costmap

@@ -1,0 +1,187 @@
+#include <cstring>
+#include <sstream>
+
+#include <octomap/AbstractOcTree.h>
+#include <site_map.hpp>
+
+#include <talus/common/input_error.hpp>
+#include <talus/costmap/map/map_file.hpp>
+
+namespace talus::costmap {
+namespace {
+
+TraversabilityMap site() {
+  return mapOf({"1122", "1?22", "11#2", "1111"}, 0.05);
+}
+
+std::string bytesOf(const TraversabilityMap& map) {
+  std::stringstream stream;
+  writeMap(map, stream);
+  return stream.str();
+}
+
+TraversabilityMap fromBytes(const std::string& bytes) {
+  std::istringstream stream(bytes);
+  return readMap(stream, {.name = "map.ot", .threads = 1});
+}
+
+TEST(MapFile, ComesBackWithTheSameCostGridAndBytes) {
+  const TraversabilityMap map = site();
+  const std::string bytes = bytesOf(map);
+  const TraversabilityMap back = fromBytes(bytes);
+  EXPECT_EQ(bytesOf(back), bytes);
+  ASSERT_EQ(back.grid(), map.grid());
+  for (int row = 0; row < 4; ++row)
+    for (int column = 0; column < 4; ++column) EXPECT_EQ(back.code({column, row}), map.code({column, row}));
+  const CellCode cell = map.code({0, 0});
+  EXPECT_EQ(back.published()->cost().costPerMetre(cell, {0.6, 0.8}),
+            map.published()->cost().costPerMetre(cell, {0.6, 0.8}));
+}
+
+TEST(MapFile, KeepsCostLayers) {
+  MapLayers layers = drawn({"1122", "1122", "1111"});
+  CostLayer own{.name = "shadow", .added_J_per_m = maps::Raster<float>(layers.elevation.grid(), 3.0F)};
+  own.added_J_per_m[{3, 2}] = NAN;
+  own.added_J_per_m[{0, 0}] = INFINITY;
+  own.unseen_J_per_m = 9.0F;
+  layers.costs = {own, own};
+  layers.costs[1].name = "radio";
+  const TraversabilityMap map(std::move(layers), testGround(), {});
+  const TraversabilityMap back = fromBytes(bytesOf(map));
+  EXPECT_EQ(bytesOf(back), bytesOf(map));
+  ASSERT_EQ(back.costLayers().size(), 2U);
+  EXPECT_EQ(back.costLayers()[1].name, "radio");
+  EXPECT_EQ(back.costLayers()[1].unseen_J_per_m, 9.0F);
+  const CellCode cell = map.code({1, 1});
+  EXPECT_EQ(back.published()->cost().costPerMetre(back.code({1, 1}), {}),
+            map.published()->cost().costPerMetre(cell, {}));
+  EXPECT_EQ(back.hazards({0, 0}), map.hazards({0, 0}));
+}
+
+TEST(MapFile, KeepsTheCoordinateSystem) {
+  MapLayers layers = drawn({"11", "11"});
+  maps::CoordinateSystem moon{
+      .name = "Moon pole", .ellipsoid = maps::kMoon, .projection = {}, .wkt = "A\nB\\n"};
+  moon.projection = {.method = maps::ProjectionMethod::PolarStereographic,
+                     .latitude_of_origin_rad = 1.5707963267948966};
+  layers.elevation.georeference.emplace(moon);
+  const TraversabilityMap back = fromBytes(bytesOf(TraversabilityMap(std::move(layers), testGround(), {})));
+  ASSERT_TRUE(back.elevation().georeference.has_value());
+  EXPECT_EQ(back.elevation().georeference->system().wkt, moon.wkt);
+  EXPECT_EQ(back.elevation().georeference->system().ellipsoid, moon.ellipsoid);
+}
+
+TEST(MapFile, KeepsTheEffectsOfItsGround) {
+  GroundModel::Parts parts = testGround()->parts();
+  terramech::Effect curve{.name = "empirical",
+                          .covariate = "slip",
+                          .channel = terramech::Channel::Sinkage,
+                          .parameters = {0.0, 0.01, 0.02},
+                          .knots = {0.0, 0.4, 0.9}};
+  curve.only_column = "session";
+  curve.only_value = "a b\nc";
+  parts.classes[0].effects = {{.name = "slip_sinkage_ding", .covariate = "slip", .parameters = {0.4}}, curve};
+  const TraversabilityMap map(drawn({"11", "12"}), std::make_shared<GroundModel>(parts), {});
+  const TraversabilityMap back = fromBytes(bytesOf(map));
+  EXPECT_EQ(bytesOf(back), bytesOf(map));
+  ASSERT_EQ(back.model().parts().classes[0].effects.size(), 2U);
+  const terramech::Effect& read = back.model().parts().classes[0].effects[1];
+  EXPECT_EQ(read.knots, curve.knots);
+  EXPECT_EQ(read.parameters, curve.parameters);
+  EXPECT_EQ(read.channel, curve.channel);
+  EXPECT_EQ(read.only_value, curve.only_value);
+  // Property: ground that digs is not the ground of its soil alone.
+  EXPECT_NE(back.model().prior(0).pull.value, testGround()->prior(0).pull.value);
+}
+
+TEST(MapFile, KeepsWhatSoilAndRoverNeedAcrossASlope) {
+  GroundModel::Parts parts = testGround()->parts();
+  parts.classes[0].soil.digging_exponent = 0.1;
+  parts.classes[0].soil.side_bulldozing = 0.0;
+  parts.rover.centre_of_mass_ahead_m = 0.1;
+  parts.rover.centre_of_mass_left_m = -0.05;
+  const TraversabilityMap map(drawn({"11", "12"}), std::make_shared<GroundModel>(parts), {});
+  const TraversabilityMap back = fromBytes(bytesOf(map));
+  EXPECT_EQ(bytesOf(back), bytesOf(map));
+  const GroundModel::Parts& read = back.model().parts();
+  EXPECT_EQ(read.classes[0].soil.digging_exponent, 0.1);
+  EXPECT_EQ(read.classes[0].soil.side_bulldozing, 0.0);
+  EXPECT_EQ(read.rover.centre_of_mass_ahead_m, 0.1);
+  EXPECT_EQ(read.rover.centre_of_mass_left_m, -0.05);
+}
+
+// A place where a driver got stuck stays refused after a restart.
+TEST(MapFile, KeepsRefusedPlaces) {
+  TraversabilityMap map = mapOf(std::vector<std::string>(12, std::string(12, '1')));
+  map.refuse({106.0, 206.0}, 2.1);
+  map.refuse({101.0, 201.0}, 1.0);
+  map.publish();
+  const TraversabilityMap back = fromBytes(bytesOf(map));
+  EXPECT_EQ(bytesOf(back), bytesOf(map));
+  int refused = 0;
+  for (int row = 0; row < 12; ++row)
+    for (int column = 0; column < 12; ++column) {
+      EXPECT_EQ(back.code({column, row}), map.code({column, row}));
+      EXPECT_EQ(back.hazards({column, row}), map.hazards({column, row}));
+      refused += has(back.hazards({column, row}), Hazard::Obstacle) ? 1 : 0;
+    }
+  EXPECT_GT(refused, 10);
+  for (const double bad : {0.0, -1.0, static_cast<double>(NAN), static_cast<double>(INFINITY)})
+    EXPECT_THROW(map.refuse({106.0, 206.0}, bad), std::invalid_argument);
+  EXPECT_THROW(map.refuse({NAN, 206.0}, 1.0), std::invalid_argument);
+}
+
+TEST(MapFile, StockOctoMapReadsItAndStopsBehindTheNodes) {
+  std::istringstream stream(bytesOf(site()));
+  const std::unique_ptr<octomap::AbstractOcTree> tree(octomap::AbstractOcTree::read(stream));
+  ASSERT_NE(tree, nullptr);
+  EXPECT_EQ(tree->getTreeType(), "TraversabilityTree");
+}
+
+TEST(MapFile, RefusesEveryTruncation) {
+  const std::string bytes = bytesOf(site());
+  for (std::size_t length = 0; length < bytes.size(); length += 7)
+    EXPECT_THROW(fromBytes(bytes.substr(0, length)), InputError) << length;
+}
+
+TEST(MapFile, RefusesEveryFlippedBit) {
+  const std::string bytes = bytesOf(site());
+  for (std::size_t bit = 0; bit < 8 * bytes.size(); bit += 5) {
+    std::string damaged = bytes;
+    damaged[bit / 8] = static_cast<char>(damaged[bit / 8] ^ (1 << bit % 8));
+    EXPECT_THROW(fromBytes(damaged), InputError) << bit;
+  }
+}
+
+TEST(MapFile, RefusesWhatStandsBehindItsEnd) {
+  EXPECT_THROW(fromBytes(bytesOf(site()) + "x"), InputError);
+  EXPECT_THROW(fromBytes(bytesOf(site()) + bytesOf(site())), InputError);
+}
+
+TEST(MapFile, KeepsTheDrivesThatWentIn) {
+  TraversabilityMap map = site();
+  map.noteDrive("b");
+  map.noteDrive("first part");
+  map.noteDrive("a", "first part");
+  EXPECT_THAT(fromBytes(bytesOf(map)).drives(), testing::ElementsAre("a", "b"));
+}
+
+// A map of the version before: one line that says so and what to do.
+TEST(MapFile, NamesTheVersionThatItReads) {
+  std::string bytes = bytesOf(site());
+  bytes[bytes.size() - 12] = 3;
+  try {
+    fromBytes(bytes);
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("of another version than 6; write the map again"));
+  }
+}
+
+TEST(MapFile, SaysWhatIsMissing) {
+  EXPECT_THROW(readMap("/nonexistent/map.ot"), InputError);
+  EXPECT_THROW(writeMap(site(), "/nonexistent/map.ot"), InputError);
+}
+
+}  // namespace
+}  // namespace talus::costmap

@@ -1,0 +1,142 @@
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <thread>
+
+#include <site_map.hpp>
+
+#include <talus/costmap/map/traversability_map.hpp>
+
+namespace talus::costmap {
+namespace {
+
+using terramech::Category;
+
+const std::vector<std::string> kSite{
+    "11111222", "11111222", "11?11222", "11111#22", "11111122", "30111122",
+};
+
+Category categoryOf(const TraversabilityMap& map, maps::Cell cell) {
+  return static_cast<Category>(map.belief(cell).category);
+}
+
+TEST(TraversabilityMap, EachCellIsWhatTheDrawingSays) {
+  const TraversabilityMap map = mapOf(kSite);
+  EXPECT_EQ(categoryOf(map, {3, 1}), Category::Safe);
+  EXPECT_EQ(categoryOf(map, {2, 3}), Category::Unknown);
+  EXPECT_TRUE(has(map.hazards({0, 5}), Hazard::Near)) << "beside the edge of the map";
+  EXPECT_TRUE(has(map.hazards({5, 2}), Hazard::KeepOut));
+  EXPECT_TRUE(has(map.hazards({0, 0}), Hazard::Obstacle)) << "class 3 has no soil";
+  EXPECT_TRUE(has(map.hazards({1, 0}), Hazard::Obstacle)) << "class 0 has no soil";
+  EXPECT_GT(map.belief({3, 1}).pull_mean, map.belief({6, 4}).pull_mean) << "sand pulls better than dust";
+}
+
+TEST(TraversabilityMap, PublishesWhatItBelieves) {
+  const TraversabilityMap map = mapOf(kSite);
+  const auto grid = map.published();
+  EXPECT_EQ(grid->version(), 1U);
+  EXPECT_EQ(grid->at({2, 3}).curve(), CellCode::kUnknown);
+  EXPECT_EQ(grid->at({5, 2}).curve(), CellCode::kBlocked);
+  EXPECT_TRUE(std::isfinite(grid->cost().costPerMetre(grid->at({3, 1}), {})));
+  EXPECT_LT(grid->cost().costPerMetre(grid->at({3, 1}), {}), grid->cost().costPerMetre(grid->at({6, 4}), {}));
+}
+
+TEST(TraversabilityMap, ClimbingCostsMoreThanDescendingOnTheSameCells) {
+  const TraversabilityMap map = mapOf({8, "11111111"}, 0.08);
+  const auto grid = map.published();
+  const CellCode cell = grid->at({4, 4});
+  EXPECT_NEAR(cell.dzDx(), 0.08, 1.0 / 1024.0);  // Closed form: the plane, to the code's step
+  EXPECT_GT(grid->cost().costPerMetre(cell, {1, 0}), grid->cost().costPerMetre(cell, {-1, 0}));
+}
+
+TEST(TraversabilityMap, RefusesLayersOfAnotherGrid) {
+  MapLayers layers = drawn(kSite);
+  layers.classes =
+      maps::Raster<std::uint8_t>(maps::Grid{.width = 2, .height = 2, .resolution_m = 1.0, .south_west = {}});
+  EXPECT_THROW(TraversabilityMap(std::move(layers), testGround(), {}), std::invalid_argument);
+}
+
+TEST(TraversabilityMap, UnknownOpensOnlyWhenAsked) {
+  const TraversabilityMap map = mapOf(kSite, 0.0, {.allow_unknown = true});
+  const auto grid = map.published();
+  EXPECT_TRUE(std::isfinite(grid->cost().costPerMetre(grid->at({2, 3}), {})));
+}
+
+TEST(TraversabilityMap, BandsAndThreadsDoNotShow) {
+  // Property: 600 rows are three bands; the metrics equal those of the whole raster, whatever the threads.
+  const maps::Grid grid{.width = 40, .height = 600, .resolution_m = 0.5, .south_west = {}};
+  MapLayers layers;
+  layers.elevation.elevation_m = maps::Raster<float>(grid);
+  for (int row = 0; row < grid.height; ++row)
+    for (int column = 0; column < grid.width; ++column)
+      layers.elevation.elevation_m[{column, row}] =
+          static_cast<float>(0.3 * std::sin(0.1 * row) * std::cos(0.2 * column));
+  const auto whole = maps::terrainMetrics(layers.elevation.elevation_m, {.radius_m = 0.5, .threads = 1});
+  const TraversabilityMap one(layers, testGround(), {.footprint_radius_m = 0.5, .threads = 1});
+  const TraversabilityMap two(layers, testGround(), {.footprint_radius_m = 0.5, .threads = 2});
+  for (int row = 0; row < grid.height; ++row)
+    for (int column = 0; column < grid.width; ++column) {
+      const maps::Cell cell{column, row};
+      ASSERT_EQ(one.code(cell), two.code(cell));
+      const CellCode expected({.dz_dx = static_cast<double>(whole.dz_dx[cell]),
+                               .dz_dy = static_cast<double>(whole.dz_dy[cell]),
+                               .curve = one.code(cell).curve()});
+      ASSERT_EQ(one.code(cell), expected) << column << ' ' << row;
+    }
+}
+
+TEST(TraversabilityMap, TreeHoldsEveryCellAtItsHeight) {
+  const TraversabilityMap map = mapOf(kSite, 0.3);
+  const TraversabilityTree tree = map.tree();
+  for (int row = 0; row < map.grid().height; ++row)
+    for (int column = 0; column < map.grid().width; ++column) {
+      const maps::Cell cell{column, row};
+      const double elevation = static_cast<double>(map.elevation().elevation_m[cell]);
+      if (std::isnan(elevation)) continue;
+      const CellBelief* found = tree.find(map.keys().key(cell, elevation));
+      ASSERT_NE(found, nullptr);
+      EXPECT_EQ(*found, map.belief(cell)) << column << ' ' << row;
+    }
+}
+
+// Readers on other threads, while versions come: each is whole (what was refused together is refused
+// together), none is older than the one before, and one that is held does not change.
+TEST(TraversabilityMap, ReadersSeeWholeVersionsInOrder) {
+  TraversabilityMap map = mapOf(std::vector<std::string>(20, std::string(300, '1')));
+  const auto refused = [](const CostGrid& grid, int column) {
+    return grid.at({column, 10}).curve() == CellCode::kBlocked;
+  };
+  std::atomic<bool> done{false};
+  std::atomic<int> torn{0}, backwards{0}, changed{0};
+  const auto read = [&] {
+    std::uint64_t newest = 0;
+    while (!done) {
+      const auto grid = map.published();
+      if (grid->version() < newest) ++backwards;
+      newest = grid->version();
+      std::array<bool, 100> before{};
+      for (int i = 0; i < 100; ++i) {
+        before[static_cast<std::size_t>(i)] = refused(*grid, i);
+        if (before[static_cast<std::size_t>(i)] != refused(*grid, 299 - i)) ++torn;
+      }
+      for (int i = 0; i < 100; ++i)
+        if (refused(*grid, i) != before[static_cast<std::size_t>(i)]) ++changed;
+    }
+  };
+  {
+    std::jthread first(read), second(read);
+    for (int i = 0; i < 100; ++i) {
+      map.refuse(map.grid().centre({i, 10}), 0.1);
+      map.refuse(map.grid().centre({299 - i, 10}), 0.1);
+      map.publish();
+    }
+    done = true;
+  }
+  EXPECT_EQ(map.published()->version(), 101U);
+  EXPECT_EQ(torn, 0);
+  EXPECT_EQ(backwards, 0);
+  EXPECT_EQ(changed, 0);
+}
+
+}  // namespace
+}  // namespace talus::costmap

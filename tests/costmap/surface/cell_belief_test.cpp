@@ -1,0 +1,36 @@
+#include <talus/costmap/surface/cell_belief.hpp>
+
+namespace talus::costmap {
+namespace {
+
+constexpr Hazard kAll[] = {Hazard::Unknown, Hazard::Slope,   Hazard::Step,     Hazard::Roughness,
+                           Hazard::Rocks,   Hazard::KeepOut, Hazard::Obstacle, Hazard::Near};
+
+// Property: hazards are a set; each of the 256 subsets holds its members and nothing else.
+TEST(CellBelief, HazardsAreASet) {
+  for (unsigned subset = 0; subset < 256; ++subset) {
+    Hazard set = Hazard::None;
+    for (unsigned k = 0; k < 8; ++k)
+      if (subset >> k & 1U) set |= kAll[k];
+    for (unsigned k = 0; k < 8; ++k) ASSERT_EQ(has(set, kAll[k]), (subset >> k & 1U) != 0) << subset;
+    EXPECT_FALSE(has(set, Hazard::None));
+    EXPECT_EQ(set | set, set);
+  }
+}
+
+TEST(CellBelief, AFloorIsUnknownGroundThatWheelsSpokeFor) {
+  EXPECT_TRUE(ofFloor({.evidence = 0.1F, .hazards = Hazard::Unknown | Hazard::Near}));
+  EXPECT_FALSE(ofFloor({.evidence = 0.1F, .hazards = Hazard::Near}));
+  EXPECT_FALSE(ofFloor({.evidence = 0.0F, .hazards = Hazard::Unknown}));
+}
+
+TEST(CellBelief, NothingIsBelievedOfACellBeforeAnyData) {
+  const CellBelief none;
+  EXPECT_EQ(none.category, 3);  // unknown
+  EXPECT_EQ(none.confidence, 0);
+  EXPECT_EQ(none.evidence, 0.0F);
+  EXPECT_FALSE(ofFloor(none));
+}
+
+}  // namespace
+}  // namespace talus::costmap

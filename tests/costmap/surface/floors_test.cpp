@@ -1,0 +1,30 @@
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include <talus/costmap/surface/floors.hpp>
+
+namespace talus::costmap {
+namespace {
+
+TEST(Floors, AWheelStandsOnTheNearest) {
+  const Floors floors({{5, 3.0F}, {2, 1.0F}, {5, -2.0F}}, 9);
+  ASSERT_EQ(floors.of(5).size(), 2U);
+  EXPECT_EQ(floors.of(5)[0].height_m, -2.0F);
+  EXPECT_TRUE(floors.of(4).empty());
+  // Closed form: the top at 8 m; half way between 8 and 3 is 5.5, between 3 and -2 it is 0.5.
+  EXPECT_FALSE(floors.under(5, 5.6, 8.0).has_value());
+  EXPECT_EQ(floors.under(5, 5.4, 8.0)->height_m, 3.0F);
+  EXPECT_EQ(floors.under(5, 0.6, 8.0)->height_m, 3.0F);
+  EXPECT_EQ(floors.under(5, 0.4, 8.0)->height_m, -2.0F);
+  EXPECT_FALSE(floors.under(4, -20.0, 8.0).has_value());
+  EXPECT_FALSE(floors.under(5, std::nan(""), 8.0).has_value()) << "an unknown height is on top";
+}
+
+TEST(Floors, RefuseWhatLiesOutside) {
+  EXPECT_THROW(Floors({{9, 1.0F}}, 9), std::invalid_argument);
+  EXPECT_THROW(Floors({{1, std::numeric_limits<float>::infinity()}}, 9), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace talus::costmap

@@ -1,0 +1,110 @@
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include <site_fixture.hpp>
+
+#include <talus/costmap/surface/cell_boxes.hpp>
+#include <talus/costmap/surface/hazards.hpp>
+
+namespace talus::costmap {
+namespace {
+
+maps::Grid grid(int side, double resolution_m) {
+  return {.width = side, .height = side, .resolution_m = resolution_m, .south_west = {}};
+}
+
+TEST(Inflate, KeepsHalfTheRoversWidthFromAKeepOutCell) {
+  maps::Raster<Hazard> hazards(grid(11, 0.1), Hazard::None);
+  hazards[{5, 5}] = Hazard::KeepOut;
+  HazardLimits limits;
+  limits.inflation_m = 0.2;
+  inflate(hazards, limits);
+  // Closed form: cells some place of which is less than 0.2 m from the cell: one and two cells away, not three (0.2 m).
+  EXPECT_TRUE(has(hazards[{6, 5}], Hazard::Near));
+  EXPECT_TRUE(has(hazards[{7, 5}], Hazard::Near));
+  EXPECT_FALSE(has(hazards[{8, 5}], Hazard::Near));
+  EXPECT_TRUE(has(hazards[{7, 7}], Hazard::Near)) << "0.14 m";
+  EXPECT_FALSE(has(hazards[{8, 7}], Hazard::Near)) << "0.22 m";
+}
+
+// A free lane narrower than the rover between rocks is none.
+TEST(Inflate, KeepsHalfTheRoversWidthFromRocks) {
+  maps::Raster<Hazard> hazards(grid(11, 0.1), Hazard::None);
+  for (int row = 0; row < 11; ++row) hazards[{2, row}] = hazards[{7, row}] = Hazard::Rocks;
+  HazardLimits limits;
+  limits.inflation_m = 0.2;
+  inflate(hazards, limits);
+  for (int column = 2; column <= 7; ++column) EXPECT_NE((hazards[{column, 5}]), Hazard::None) << column;
+}
+
+// Outside the map is as unseen as a hole in it.
+TEST(Inflate, KeepsHalfTheRoversWidthFromTheEdgeOfTheMap) {
+  maps::Raster<Hazard> hazards(grid(11, 0.1), Hazard::None);
+  HazardLimits limits;
+  limits.inflation_m = 0.2;
+  inflate(hazards, limits);
+  for (int row = 0; row < 11; ++row)
+    for (int column = 0; column < 11; ++column) {
+      const bool inner = std::min({column, row, 10 - column, 10 - row}) >= 2;  // Closed form: 0.2 m off
+      EXPECT_EQ((hazards[{column, row}]), inner ? Hazard::None : Hazard::Near) << column << ' ' << row;
+    }
+  hazards = maps::Raster<Hazard>(grid(11, 0.1), Hazard::None);
+  inflate(hazards, limits, Hazard::KeepOut);
+  EXPECT_EQ(std::ranges::count(hazards.values(), Hazard::None), 121) << "where the unseen may be driven";
+}
+
+// The middle of the rover may be anywhere in a cell, beside the edge too.
+TEST(Inflate, KeepsCellsWiderThanTheRoverClearToo) {
+  maps::Raster<Hazard> hazards(grid(7, 5.0), Hazard::None);
+  hazards[{3, 3}] = Hazard::Unknown;
+  inflate(hazards, HazardLimits::of(testRover()));
+  // Closed form: neither the eight neighbours nor the 24 cells along the edge, but the ring between.
+  EXPECT_EQ(std::ranges::count(hazards.values(), Hazard::None), 16);
+}
+
+TEST(HazardLimits, ReliefOfALargeFootprintCountsInProportion) {
+  const HazardLimits limits = HazardLimits::of(testRover());
+  EXPECT_DOUBLE_EQ(reliefShare(limits, 0.5), 1.0);
+  EXPECT_DOUBLE_EQ(reliefShare(limits, 8.0), 0.1);  // Closed form: wheelbase 0.8 m over 8 m
+}
+
+TEST(ShapeJudge, NamesEachLimitThatIsPassed) {
+  const HazardLimits limits{
+      .max_gradient = 0.3, .max_step_m = 0.1, .max_roughness_m = 0.05, .wheelbase_m = 1.0};
+  const ShapeJudge judge(limits, {.footprint_m = 2.0, .cell_m = 0.5});
+  // Closed form: over 2 m, twice the wheelbase, relief and roughness count half; a step between cells counts whole.
+  EXPECT_EQ(judge({.dz_dx = 0.29F, .dz_dy = 0.0F, .roughness_m = 0.09F, .relief_m = 0.19F, .step_m = 0.09F}),
+            Hazard::None);
+  EXPECT_EQ(judge({.dz_dx = 0.25F, .dz_dy = 0.25F}), Hazard::Slope);
+  EXPECT_EQ(judge({.roughness_m = 0.11F, .relief_m = 0.21F}), Hazard::Step | Hazard::Roughness);
+  EXPECT_EQ(judge({.step_m = 0.11F}), Hazard::Step);
+  EXPECT_EQ(ShapeJudge(limits, {.footprint_m = 4.0, .cell_m = 2.0})({.step_m = 0.19F}), Hazard::None);
+  EXPECT_EQ(judge({.dz_dx = NAN}), Hazard::Unknown);
+}
+
+// Property: in a box alone is as everywhere, there; nothing else is touched.
+TEST(Hazards, InflatedInABoxIsAsEverywhere) {
+  std::mt19937 random(5);
+  const maps::Grid grid{.width = 30, .height = 24, .resolution_m = 0.5, .south_west = {}};
+  for (int trial = 0; trial < 200; ++trial) {
+    maps::Raster<Hazard> before(grid, Hazard::None);
+    for (Hazard& h : before.values())
+      if (random() % 12 == 0) h = random() % 2 == 0 ? Hazard::KeepOut : Hazard::Unknown;
+    const HazardLimits limits{.inflation_m = 0.3 * static_cast<double>(random() % 6)};
+    const Hazard spreading = random() % 2 == 0 ? kKeptClearOf : Hazard::KeepOut | Hazard::Obstacle;
+    const maps::Cell first{static_cast<int>(random() % 30), static_cast<int>(random() % 24)};
+    const maps::CellBox box{first,
+                            {std::min(first.column + static_cast<int>(random() % 12), 29),
+                             std::min(first.row + static_cast<int>(random() % 12), 23)}};
+    maps::Raster<Hazard> everywhere = before, boxed = before;
+    inflate(everywhere, limits, spreading);
+    inflate(boxed, limits, spreading, box);
+    forEachCell(allOf(grid), [&](maps::Cell c) {
+      ASSERT_EQ(boxed[c], contains(box, c) ? everywhere[c] : before[c]) << trial;
+    });
+  }
+}
+
+}  // namespace
+}  // namespace talus::costmap

@@ -1,0 +1,144 @@
+#include <cmath>
+#include <functional>
+#include <sstream>
+
+#include <octomap/ColorOcTree.h>
+#include <octomap/OcTree.h>
+
+#include <talus/common/input_error.hpp>
+#include <talus/costmap/surface/octomap_surface.hpp>
+
+namespace talus::costmap {
+namespace {
+
+// A slope of voxels with a slab above part of it and free space between.
+template <typename Tree>
+void fill(Tree& tree) {
+  const auto voxel = [](int column, int row, double z) {
+    return octomap::point3d(static_cast<float>(0.1 * column + 0.05), static_cast<float>(0.1 * row + 0.05),
+                            static_cast<float>(z));
+  };
+  for (int x = 0; x < 20; ++x)
+    for (int y = 0; y < 10; ++y) {
+      tree.updateNode(voxel(x, y, 0.1 * (x / 4) + 0.05), true);
+      tree.updateNode(voxel(x, y, 2.05), false);
+      if (x < 5) tree.updateNode(voxel(x, y, 1.05), true);
+    }
+  tree.updateInnerOccupancy();
+}
+
+void expectSlopeUnderSlab(const OctomapGround& ground) {
+  const maps::ElevationMap& map = ground.surface;
+  ASSERT_EQ(map.grid().width, 20);
+  ASSERT_EQ(map.grid().height, 10);
+  // Closed form: the drawing above; voxel middles, float heights.
+  EXPECT_NEAR(map.elevation_m[(maps::Cell{2, 3})], 1.05, 1e-6);
+  EXPECT_NEAR(map.elevation_m[(maps::Cell{12, 3})], 0.35, 1e-6);
+  EXPECT_NEAR(map.grid().centre({12, 3}).x_m, 1.25, 1e-9);
+  // Closed form: five columns of ten cells lie under the slab, the first four at one step, the fifth at the
+  // next.
+  ASSERT_EQ(ground.floors.size(), 50U);
+  const Floors floors(ground.floors, map.grid().size());
+  ASSERT_EQ(floors.of(map.grid().index({2, 3})).size(), 1U);
+  EXPECT_NEAR(floors.of(map.grid().index({2, 3}))[0].height_m, 0.05, 1e-6);
+  EXPECT_NEAR(floors.of(map.grid().index({4, 3}))[0].height_m, 0.15, 1e-6);
+}
+
+TEST(OctomapSurface, ReadsFullAndBinaryAndColour) {
+  octomap::OcTree tree(0.1);
+  fill(tree);
+  std::stringstream full, binary, coloured;
+  tree.write(full);
+  tree.writeBinaryConst(binary);
+  octomap::ColorOcTree colour(0.1);
+  fill(colour);
+  colour.write(coloured);
+  expectSlopeUnderSlab(octomapGround(full, "a.ot"));
+  expectSlopeUnderSlab(octomapGround(binary, "a.bt"));
+  expectSlopeUnderSlab(octomapGround(coloured, "c.ot"));
+}
+
+TEST(OctomapSurface, TakesTheGroundBelowACeiling) {
+  octomap::OcTree tree(0.1);
+  fill(tree);
+  std::stringstream stream;
+  tree.writeBinaryConst(stream);
+  const OctomapGround ground = octomapGround(stream, "a.bt", 0.8);
+  EXPECT_NEAR(ground.surface.elevation_m[(maps::Cell{2, 3})], 0.05, 1e-6);
+  EXPECT_NEAR(ground.surface.elevation_m[(maps::Cell{12, 3})], 0.35, 1e-6);
+  ASSERT_EQ(ground.floors.size(), 50U) << "the slab is the other floor now";
+  EXPECT_NEAR(ground.floors[0].height_m, 1.05, 1e-6);
+  stream.seekg(0);
+  EXPECT_THROW(octomapGround(stream, "a.bt", -1.0), InputError);
+}
+
+// A rock of two voxels' height above the ground leaves no room to drive under, and a hole in a scan is none.
+TEST(OctomapSurface, AFloorNeedsHeadroom) {
+  for (const double slab_m : {0.35, 0.55, 0.65}) {
+    octomap::OcTree tree(0.1);
+    tree.updateNode(octomap::point3d(0.05F, 0.05F, 0.05F), true);
+    tree.updateNode(octomap::point3d(0.05F, 0.05F, static_cast<float>(slab_m)), true);
+    std::stringstream stream;
+    tree.write(stream);
+    // Closed form: free voxels between them are 2, 4 and 5 of the 5 that half a metre takes.
+    EXPECT_EQ(octomapGround(stream, "a.ot").floors.size(), slab_m > 0.6 ? 1U : 0U) << slab_m;
+  }
+}
+
+TEST(OctomapSurface, RefusesEveryTruncationAndSurvivesDamage) {
+  octomap::OcTree tree(0.1);
+  fill(tree);
+  for (const bool binary : {false, true}) {
+    std::ostringstream out;
+    if (binary)
+      tree.writeBinaryConst(out);
+    else
+      tree.write(out);
+    const std::string bytes = out.str();
+    for (std::size_t length = 0; length < bytes.size(); length += 3) {
+      std::istringstream in(bytes.substr(0, length));
+      EXPECT_THROW(octomapGround(in, "cut.ot"), InputError) << length;
+    }
+  }
+}
+
+// A tree whose only leaf is a cube `depth` steps below the root, and whose voxels are of that size.
+std::string oneCube(int depth, const std::string& resolution) {
+  std::string bytes = "# Octomap OcTree file\nid OcTree\nsize 2\nres " + resolution + "\ndata\n";
+  for (int k = 0; k < depth; ++k) bytes += std::string("\0\0\0\0\x01", 5);
+  return bytes + std::string("\0\0\x80\x3f\0", 5);
+}
+
+// Closed form: a cube of side 2^(16 - depth) from the lowest key on; its top voxel is at side - 0.5 - 2^15.
+TEST(OctomapSurface, ACubeIsAFloorAsWideAsItself) {
+  std::istringstream stream(oneCube(6, "0.1"));
+  const OctomapGround ground = octomapGround(stream, "cube.ot");
+  EXPECT_EQ(ground.surface.grid().width, 1024);
+  EXPECT_TRUE(ground.floors.empty());
+  for (const maps::Cell cell : {maps::Cell{0, 0}, maps::Cell{511, 3}, maps::Cell{1023, 1023}})
+    EXPECT_FLOAT_EQ(ground.surface.elevation_m[cell], static_cast<float>((1023.5 - 32768.0) * 0.1));
+}
+
+// Property: few bytes that state much are refused before the memory or the time is taken.
+TEST(OctomapSurface, CubesAsLargeAsTheTreeAreRefused) {
+  for (const int depth : {0, 1}) {
+    std::istringstream stream(oneCube(depth, "0.1"));
+    EXPECT_THROW(octomapGround(stream, "cube.ot"), InputError) << depth;
+  }
+}
+
+TEST(OctomapSurface, VoxelsOfImpossibleSizeAreRefused) {
+  for (const char* resolution : {"1e-300", "1e-4", "1e7", "1e308", "nan", "inf", "-0.1", ""}) {
+    std::istringstream stream(oneCube(16, resolution));
+    EXPECT_THROW(octomapGround(stream, "cube.ot"), InputError) << resolution;
+  }
+}
+
+TEST(OctomapSurface, NamesAForeignTree) {
+  std::istringstream stream("# Octomap OcTree file\nid OcTreeStamped\nsize 1\nres 0.1\ndata\n");
+  EXPECT_THROW(octomapGround(stream, "x.ot"), InputError);
+  EXPECT_FALSE(octomapType("/dev/null").has_value());
+}
+
+}  // namespace
+}  // namespace talus::costmap

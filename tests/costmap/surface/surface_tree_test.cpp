@@ -1,0 +1,101 @@
+#include <cmath>
+#include <random>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <octomap/ColorOcTree.h>
+#include <site_map.hpp>
+
+#include <talus/costmap/surface/surface_tree.hpp>
+
+namespace talus::costmap {
+namespace {
+
+// A step of five cells, so that the surface leaves cubes out between.
+MapLayers cliff() {
+  MapLayers layers = drawn({"1111", "11?1", "1111", "1111"});
+  for (int row = 0; row < 4; ++row) layers.elevation.elevation_m[{3, row}] += 5.0F;
+  return layers;
+}
+
+TEST(SurfaceTree, ColourTreeHasALeafACellAndStockReadsIt) {
+  const TraversabilityMap map(cliff(), testGround(), {});
+  const auto tree =
+      colorTree({map.elevation().elevation_m, map.keys()}, [&](maps::Cell c) { return map.belief(c); });
+  EXPECT_EQ(tree->getNumLeafNodes(), 15U);  // Closed form: 16 cells, one without elevation
+  std::stringstream stream;
+  tree->write(stream);
+  const std::unique_ptr<octomap::AbstractOcTree> back(octomap::AbstractOcTree::read(stream));
+  const auto* colour = dynamic_cast<octomap::ColorOcTree*>(back.get());
+  ASSERT_NE(colour, nullptr);
+  const auto* cell = colour->search(map.keys().key({0, 0}, 1000.0));
+  ASSERT_NE(cell, nullptr);
+  EXPECT_GT(cell->getColor().r, cell->getColor().g) << "at the edge of the map, refused: red";
+}
+
+std::string held(const TraversabilityMap& map) {
+  std::ostringstream stream;
+  writeTree(map.tree(), stream);
+  return stream.str();
+}
+
+std::string streamed(const TraversabilityMap& map) {
+  std::ostringstream stream;
+  map.writeTree(stream);
+  return stream.str();
+}
+
+// Property: writing node by node gives the bytes of a tree that was built, on even ground and rough, with
+// evidence and without, where all is alike and where nothing is.
+TEST(SurfaceTree, StreamedBytesAreThoseOfTheTree) {
+  EXPECT_EQ(streamed(TraversabilityMap(drawn({"??", "??"}), testGround(), {})),
+            held(TraversabilityMap(drawn({"??", "??"}), testGround(), {})));
+  EXPECT_EQ(streamed(mapOf({"1"})), held(mapOf({"1"})));
+  EXPECT_EQ(streamed(TraversabilityMap(cliff(), testGround(), {})),
+            held(TraversabilityMap(cliff(), testGround(), {})));
+  std::mt19937 random(3);
+  for (const double rise : {0.0, 0.3}) {
+    std::vector<std::string> rows(50, std::string(70, '1'));
+    for (auto& line : rows)
+      for (char& c : line) c = "11111111112?#"[random() % 13];
+    TraversabilityMap map = mapOf(rows, rise);
+    EXPECT_EQ(streamed(map), held(map));
+    for (int i = 0; i < 200; ++i)
+      map.learn(
+          {.time_s = 1.0,
+           .place = {100.0 + static_cast<double>(random() % 70), 200.0 + static_cast<double>(random() % 50)},
+           .pull = {0.2, 0.05},
+           .sinkage = {0.2, 0.05}});
+    map.publish();
+    EXPECT_EQ(streamed(map), held(map));
+  }
+}
+
+// Property: leaf by leaf the stream says of each cell what the tree says.
+TEST(SurfaceTree, LeavesOfTheStreamAreThoseOfTheTree) {
+  TraversabilityMap map = mapOf(std::vector<std::string>(20, std::string(33, '1')), 0.2);
+  map.learn({.time_s = 1.0, .place = {110.0, 210.0}, .pull = {0.1, 0.05}, .sinkage = {0.2, 0.05}});
+  map.publish();
+  const TraversabilityTree tree = map.tree();
+  std::istringstream stream(streamed(map));
+  std::size_t leaves = 0;
+  readLeaves(stream, "map.ot", [&](const TreeLeaf& leaf) {
+    ++leaves;
+    ASSERT_NE(tree.find(leaf.low), nullptr);
+    EXPECT_EQ(*tree.find(leaf.low), leaf.belief);
+  });
+  EXPECT_EQ(leaves, tree.getNumLeafNodes());
+}
+
+TEST(SurfaceTree, NoElevationNoTree) {
+  MapLayers layers = drawn({"??", "??"});
+  const TraversabilityMap map(std::move(layers), testGround(), {});
+  EXPECT_EQ(map.tree().size(), 0U);
+  EXPECT_EQ(colorTree({map.elevation().elevation_m, map.keys()}, [&](maps::Cell c) { return map.belief(c); })
+                ->size(),
+            0U);
+}
+
+}  // namespace
+}  // namespace talus::costmap

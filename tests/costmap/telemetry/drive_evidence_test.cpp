@@ -1,0 +1,198 @@
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <sstream>
+
+#include <site_map.hpp>
+#include <unistd.h>
+
+#include <talus/costmap/map/map_file.hpp>
+#include <talus/costmap/telemetry/drive_evidence.hpp>
+#include <talus/costmap/telemetry/telemetry_processor.hpp>
+#include <talus/terramech/contact/load_transfer.hpp>
+#include <talus/terramech/contact/wong_reece.hpp>
+
+namespace talus::costmap {
+namespace {
+
+std::vector<std::string> wide() {
+  return std::vector<std::string>(60, std::string(60, '1'));
+}
+
+// Columns of numbers, from rows of them.
+terramech::Telemetry tableOf(const std::string& source, const std::vector<std::string>& names,
+                             const std::vector<std::vector<double>>& rows) {
+  terramech::Telemetry out;
+  out.source = source;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    std::vector<double> column;
+    for (const auto& row : rows) column.push_back(row[k]);
+    out.numbers.push_back({names[k], column});
+  }
+  for (std::size_t line = 2; line < rows.size() + 2; ++line) out.lines.push_back(line);
+  return out;
+}
+
+// A drive east along the middle over ground that is dust, though the map takes it for sand; every tenth row
+// off the map.
+terramech::Telemetry drive() {
+  const terramech::Rover rover = testRover();
+  const double load_N = terramech::wheelLoad_N(rover);
+  std::vector<std::vector<double>> rows;
+  for (int i = 0; i < 100; ++i) {
+    const double slip = 0.4 + 0.002 * i;
+    const auto wheel = terramech::equilibrium(testDust(), rover.wheel, {.load_N = load_N, .slip = slip});
+    rows.push_back({i % 10 == 9 ? -50.0 : 110.0 + 0.4 * i, 230.5, load_N, slip, wheel.torque_Nm,
+                    wheel.sinkage_m, std::atan(wheel.drawbar_pull_N / load_N), 1.0 * i});
+  }
+  return tableOf("drive.csv",
+                 {"x_m", "y_m", "load_N", "slip", "torque_Nm", "sinkage_m", "slope_rad", "time_s"}, rows);
+}
+
+std::string bytesOf(const TraversabilityMap& map) {
+  std::stringstream stream;
+  writeMap(map, stream);
+  return stream.str();
+}
+
+TEST(AddDrive, DustDrivenAsSandIsLearnedAsWeak) {
+  TraversabilityMap map = mapOf(wide());
+  const GroundBelief before = *map.ground({30, 30});
+  const DriveReport report = addDrive(map, drive());
+  EXPECT_EQ(report.used, 90U);
+  EXPECT_EQ(report.rejected, 10U);
+  const GroundBelief after = *map.ground({30, 30});
+  EXPECT_LT(after.pull.value, before.pull.value - 0.1);
+  EXPECT_NE(map.belief({30, 30}).category, static_cast<std::uint8_t>(terramech::Category::Safe));
+}
+
+// Rows first .. end - 1.
+terramech::Telemetry partOf(terramech::Telemetry whole, std::ptrdiff_t first, std::ptrdiff_t end) {
+  for (auto& column : whole.numbers)
+    column.values = {column.values.begin() + first, column.values.begin() + end};
+  whole.lines = {whole.lines.begin() + first, whole.lines.begin() + end};
+  return whole;
+}
+
+// Property: the order of rows and a wrong clock lose no weak ground.
+TEST(AddDrive, ADriveTheOtherWayRoundOrWithAWrongClockIsLearnedAsWeak) {
+  TraversabilityMap forward = mapOf(wide());
+  addDrive(forward, drive());
+  terramech::Telemetry reversed = drive(), late = drive(), back = drive();
+  for (auto& column : reversed.numbers) std::reverse(column.values.begin(), column.values.end());
+  late.numbers.back().values[5] = 1e9;
+  for (std::size_t i = 50; i < 100; ++i) back.numbers.back().values[i] -= 1e6;
+  const double weak = forward.ground({30, 30})->pull.value;
+  for (const terramech::Telemetry& other : {reversed, late, back}) {
+    TraversabilityMap map = mapOf(wide());
+    TelemetryProcessor processor(map);
+    EXPECT_NE(processor.verdict().proof, nullptr);
+    const TelemetryRows rows(other, map, 0.5);
+    for (auto& of : rows.byMoment())
+      processor.process(rows, momentOf(rows, std::move(of), map.model().rover()), {});
+    EXPECT_EQ(processor.verdict().proof, nullptr) << "nothing may raise a belief";
+    const DriveReport report = addDrive(map, other);
+    EXPECT_EQ(report.used, 90U);
+    EXPECT_EQ(report.raising, 0U);
+    EXPECT_NEAR(map.ground({30, 30})->pull.value, weak, 0.005);
+  }
+}
+
+TEST(DriveIntake, PartsTeachWhatTheWholeDoes) {
+  TraversabilityMap whole = mapOf(wide()), parts = mapOf(wide());
+  const DriveReport expected = addDrive(whole, drive());
+  DriveIntake intake(parts);
+  for (std::ptrdiff_t first = 0; first < 100; first += 5) intake.add(partOf(drive(), first, first + 5));
+  parts.publishAll();
+  // Property: the same rows in the same order, however divided, where no sensor is biased.
+  EXPECT_EQ(intake.report().used, expected.used);
+  EXPECT_EQ(intake.report().rejected, expected.rejected);
+  EXPECT_EQ(intake.report().findings, expected.findings);
+  EXPECT_EQ(bytesOf(parts), bytesOf(whole));
+}
+
+// A log that was sent while it grew counted its first rows again each time.
+TEST(AddDrive, AFileThatGrewAddsItsNewRowsAlone) {
+  const auto folder = std::filesystem::path(::testing::TempDir()) / ("grown" + std::to_string(::getpid()));
+  std::filesystem::create_directories(folder);
+  TraversabilityMap whole = mapOf(wide()), grown = mapOf(wide()), rebuilt = mapOf(wide());
+  const DriveReport expected = addDrive(whole, drive());
+  {
+    EvidenceJournal journal((folder / "evidence.db").string());
+    std::size_t used = 0, rejected = 0;
+    for (const std::ptrdiff_t rows : {1, 40, 41, 99, 100}) {
+      const DriveReport report = addDrive(grown, partOf(drive(), 0, rows), &journal);
+      used += report.used;
+      rejected += report.rejected;
+      EXPECT_EQ(report.repeated + report.used + report.rejected, static_cast<std::size_t>(rows));
+    }
+    // Property: where no sensor is biased, what the whole teaches.
+    EXPECT_EQ(used, expected.used);
+    EXPECT_EQ(rejected, expected.rejected);
+    EXPECT_EQ(journal.size(), 100);
+    replay(rebuilt, journal);
+  }
+  EXPECT_EQ(bytesOf(rebuilt), bytesOf(grown));
+  for (int row = 0; row < grown.grid().height; ++row)
+    for (int column = 0; column < grown.grid().width; ++column) {
+      const auto one = whole.ground({column, row}), other = grown.ground({column, row});
+      ASSERT_EQ(one->pull.value, other->pull.value) << column << ' ' << row;
+      ASSERT_EQ(one->pull.std, other->pull.std) << column << ' ' << row;
+    }
+  EXPECT_EQ(addDrive(grown, drive()).repeated, 100U);
+  // A file that begins otherwise is another drive.
+  EXPECT_EQ(addDrive(grown, partOf(drive(), 1, 100)).repeated, 0U);
+  std::filesystem::remove_all(folder);
+}
+
+// Four wheels up a slope at one slip, each with the torque of its own load; `told`: the load column is right,
+// else it holds the even share.
+terramech::Telemetry climb(bool told) {
+  const terramech::Rover rover = testRover();
+  const double gradient = 0.15;
+  const std::vector<double> along{0.4, 0.4, -0.4, -0.4};
+  const auto loads_N = terramech::wheelLoads_N(rover, gradient, along);
+  std::vector<std::vector<double>> rows;
+  std::vector<std::string> wheel;
+  for (int moment = 0; moment < 30; ++moment)
+    for (std::size_t w = 0; w < 4; ++w) {
+      const auto forces =
+          terramech::equilibrium(testSand(), rover.wheel, {.load_N = loads_N[w], .slip = 0.3});
+      rows.push_back({120.0 + 0.3 * moment + along[w], 230.5 + (w % 2 == 0 ? 0.3 : -0.3),
+                      told ? loads_N[w] : terramech::wheelLoad_N(rover), 0.3 + 1e-4 * moment,
+                      forces.torque_Nm, forces.sinkage_m, std::atan(gradient), 0.0, 1.0 * moment});
+      wheel.push_back("w" + std::to_string(w));
+    }
+  terramech::Telemetry out = tableOf(
+      "climb.csv",
+      {"x_m", "y_m", "load_N", "slip", "torque_Nm", "sinkage_m", "slope_rad", "heading_rad", "time_s"}, rows);
+  out.words = {{"wheel", wheel}};
+  return out;
+}
+
+TEST(AddDrive, LoadTransferIsWorkedOutWhereTheFileLeavesItOut) {
+  TraversabilityMap right = mapOf(wide()), even = mapOf(wide());
+  EXPECT_TRUE(addDrive(right, climb(true)).findings.empty());
+  const DriveReport report = addDrive(even, climb(false));
+  ASSERT_EQ(report.findings.size(), 1U);
+  EXPECT_NE(report.findings[0].find("load transfer"), std::string::npos);
+  // Closed form: corrected, both files say the same
+  EXPECT_NEAR(even.ground({24, 30})->pull.value, right.ground({24, 30})->pull.value, 1e-6);
+}
+
+TEST(Replay, RebuildsTheMapFromTheJournalToTheBit) {
+  const auto folder = std::filesystem::path(::testing::TempDir()) / ("replay" + std::to_string(::getpid()));
+  std::filesystem::create_directories(folder);
+  TraversabilityMap map = mapOf(wide()), rebuilt = mapOf(wide());
+  {
+    EvidenceJournal journal((folder / "evidence.db").string());
+    addDrive(map, drive(), &journal);
+    EXPECT_EQ(journal.size(), 100);
+    replay(rebuilt, journal);
+  }
+  EXPECT_EQ(bytesOf(rebuilt), bytesOf(map));
+  std::filesystem::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace talus::costmap

@@ -1,0 +1,81 @@
+#include <cmath>
+#include <functional>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include <talus/costmap/telemetry/sensor_proof.hpp>
+
+namespace talus::costmap {
+namespace {
+
+using Row = SensorProof::Row;
+
+// Sixty metres over waves of slopes, with the noise of good sensors; `change` spoils a row.
+SensorProof proofOf(const std::function<void(Row&, int)>& change = {}) {
+  std::mt19937_64 random(2);
+  std::normal_distribution<double> noise;
+  SensorProof proof;
+  for (int i = 0; i < 120; ++i) {
+    const double gradient = 0.2 * std::sin(0.15 * i);
+    Row row{.run = "a",
+            .wheel = "w",
+            .reading = {.time_s = 5.0 * i,
+                        .place = {0.6 * i, 7.0},
+                        .slip = 0.1 + 0.6 * gradient + 0.01 * noise(random)},
+            .measured_gradient = gradient + 0.005 * noise(random),
+            .map_gradient = gradient,
+            .class_slip = 0.1 + 0.6 * gradient,
+            .torque_pull = gradient + 0.02 * noise(random)};
+    if (change) change(row, i);
+    proof.take(row);
+  }
+  return proof;
+}
+
+TEST(SensorProof, SoundSensorsAreProven) {
+  const SensorProof proof = proofOf();
+  EXPECT_TRUE(proof.pullSound("a", "w"));
+  EXPECT_TRUE(proof.torqueSound("a", "w"));
+  EXPECT_FALSE(proof.doubted("a", "w"));
+  EXPECT_FALSE(proof.displaced("a"));
+  EXPECT_EQ(proof.wheels("a"), 1U);
+  EXPECT_LT(proof.lowSlip("a", "w"), 0.01);
+  EXPECT_NEAR(proof.gradientExcess("a"), 0.0, 0.005);
+  EXPECT_FALSE(proof.pullSound("b", "w"));
+  EXPECT_FALSE(proof.pullSound("a", "v"));
+}
+
+TEST(SensorProof, NothingIsProvenByWhatIsStuckSilentOrOff) {
+  const double kSilent = std::nan("");
+  EXPECT_FALSE(proofOf([](Row& r, int) { r.reading.slip = 0.05; }).pullSound("a", "w"));
+  EXPECT_FALSE(proofOf([&](Row& r, int) { r.measured_gradient = kSilent; }).pullSound("a", "w"));
+  EXPECT_FALSE(proofOf([](Row& r, int) { r.measured_gradient = 0.2; }).pullSound("a", "w"));
+  EXPECT_FALSE(proofOf([](Row& r, int) { r.measured_gradient += 0.05; }).pullSound("a", "w"));
+  EXPECT_FALSE(proofOf([&](Row& r, int) { r.map_gradient = kSilent; }).pullSound("a", "w"));
+  EXPECT_FALSE(proofOf([](Row& r, int) { r.reading.place = {1.0, 1.0}; }).pullSound("a", "w")) << "it stood";
+  EXPECT_FALSE(proofOf([](Row& r, int) { r.torque_pull = 0.3; }).torqueSound("a", "w"));
+  EXPECT_FALSE(proofOf([](Row& r, int) { r.torque_pull += 0.1; }).torqueSound("a", "w"));
+}
+
+TEST(SensorProof, ABiasOfSlipShowsOnLevelGround) {
+  EXPECT_NEAR(proofOf([](Row& r, int) { r.reading.slip -= 0.08; }).lowSlip("a", "w"), 0.08, 0.01);
+  EXPECT_NEAR(proofOf([](Row& r, int i) { r.reading.slip -= i > 60 ? 0.08 : 0.0; }).lowSlip("a", "w"), 0.08,
+              0.015)
+      << "of late";
+  EXPECT_LT(proofOf([](Row& r, int) { r.reading.slip += 0.08; }).lowSlip("a", "w"), 1e-9);
+}
+
+TEST(SensorProof, DoubtsWhatSticksOnTheWay) {
+  EXPECT_TRUE(
+      proofOf([](Row& r, int i) { r.reading.slip = i > 80 ? 0.1 : r.reading.slip; }).doubted("a", "w"));
+}
+
+TEST(SensorProof, AJumpCountsUntilThePoseIsBack) {
+  EXPECT_TRUE(proofOf([](Row& r, int i) { r.reading.place.y_m += i > 60 ? 8.0 : 0.0; }).displaced("a"));
+  EXPECT_FALSE(
+      proofOf([](Row& r, int i) { r.reading.place.y_m += i > 60 && i < 90 ? 8.0 : 0.0; }).displaced("a"));
+}
+
+}  // namespace
+}  // namespace talus::costmap

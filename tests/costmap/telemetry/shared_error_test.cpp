@@ -1,0 +1,195 @@
+// An error that all readings of a rover share, as of the slip of all wheels or of the speed over ground, is not averaged
+// away: by numbers, by places nor by drives.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <string>
+
+#include <rover_drive.hpp>
+#include <site_map.hpp>
+
+#include <talus/costmap/evidence/class_lessons.hpp>
+#include <talus/costmap/telemetry/drive_evidence.hpp>
+
+namespace talus::costmap {
+namespace {
+
+constexpr double kHeight_m = 1.0;
+constexpr double kGradient = 0.15;
+constexpr maps::Cell kDriven{30, 23}, kClimbed{16, 23}, kBeside{30, 26}, kFar{30, 60};
+
+TraversabilityMap sand() {
+  return mapOf(testSand(), 4, kHeight_m);
+}
+
+// Sand of a strength that pulls less than the class by 0.12 and by 0.23.
+terramech::Soil weakerBy(double cohesion_Pa, double friction_rad) {
+  terramech::Soil soil = testSand();
+  soil.cohesion_Pa -= cohesion_Pa;
+  soil.friction_angle_rad -= friction_rad;
+  return soil;
+}
+
+// The slip of all wheels is read so much too small; the file has no torque.
+TraversabilityMap driven(const terramech::Soil& truth, double scale, double shift) {
+  TraversabilityMap map = sand();
+  Drive drive = driveOver(map, truth, 1, {8.5, 23.5, 38.5});
+  for (auto& row : drive.rows) row[kSlip] = std::max(scale * row[kSlip] + shift, -1.0);
+  addDrive(map, tableOf(drive, false));
+  return map;
+}
+
+float risk(const TraversabilityMap& map, maps::Cell cell) {
+  return map.model().state(0, *map.ground(cell), kGradient).risk_per_m;
+}
+
+// Property: by a slip that is read too small, weak ground is no safer than before the drive: where it was driven, beside
+// that, nor elsewhere.
+TEST(SharedError, OfTheSlipOfAllWheelsLowersNoRisk) {
+  const TraversabilityMap before = sand();
+  for (const terramech::Soil& truth : {weakerBy(400.0, 0.1), weakerBy(700.0, 0.2)})
+    for (const auto& [scale, shift] : {std::pair(1.0, -0.1), {1.0, -0.2}, {1.0, -0.25}, {0.5, 0.0}}) {
+      const TraversabilityMap after = driven(truth, scale, shift);
+      for (const maps::Cell cell : {kDriven, kBeside, kFar})
+        EXPECT_GE(risk(after, cell), risk(before, cell)) << scale << ' ' << shift << ' ' << cell.row;
+    }
+}
+
+double pullStd(const TraversabilityMap& map, maps::Cell cell) {
+  return map.ground(cell)->pull.std;
+}
+
+// Standard deviation by what all readings at one slip of ground that is as its class share, by the mobility curve: g' is its
+// slope, k = H(0.5)/H(s) the growth of a departure on its way to slip 0.5, in [1, 3].
+//   (g')^2 (0.03^2 + (0.2 s)^2 + 0.01^2) + (0.4 (k - 1) p)^2 + (0.06 (0.5 - s))^2, 0.5 - s at most 0.25
+// of an error of all slips, of a share of them and of what level ground shows; of soils of a class of deviation p that differ
+// otherwise than in strength; of the curve's form. Kept in steps of 1.5 from 0.02 on, rounded up.
+double sharedAt(const GroundModel& model, double slip, bool in_rut) {
+  const auto at = [&](double there) { return model.steady(0, {.slip = there, .in_rut = in_rut}); };
+  const double steepness = (at(slip + 0.01).gradient - at(slip - 0.01).gradient) / 0.02;
+  const double thrust = at(slip).torque_over_load_radius;
+  const double k =
+      thrust > 0.0 ? std::clamp(model.reference(0, in_rut).torque_over_load_radius / thrust, 1.0, 3.0) : 3.0;
+  const double by_slip = steepness * std::hypot(0.03, 0.2 * slip, 0.01);
+  const double by_soil =
+      std::hypot(0.4 * (k - 1.0) * model.prior(0).pull.std, 0.06 * std::min(std::abs(0.5 - slip), 0.25));
+  double kept = 0.02;
+  while (kept < std::hypot(by_slip, by_soil)) kept *= 1.5;
+  return kept;
+}
+
+// Closed form: numbers take the deviation m of the class as a whole to m c / sqrt(m^2 + c^2), c the mean of the error that
+// the readings of a drive share, and leave its ground that from place to place. A drive over gentle hills, at slips about
+// 0.1, sees half of a departure and less, and is known by that to within 2 %.
+TEST(SharedError, LeavesOfADriveAtLittleSlipWhatItsSlipsTell) {
+  const TraversabilityMap before = sand();
+  TraversabilityMap after = sand();
+  const Drive drive = driveOver(after, testSand(), 1, {8.5, 23.5, 38.5});
+  addDrive(after, tableOf(drive, false));
+  double shared = 0.0, slip = 0.0;
+  const auto rows = static_cast<double>(drive.rows.size());
+  for (const auto& row : drive.rows) {
+    shared += sharedAt(after.model(), row[kSlip], row[kPass] > 1.0) / rows;
+    slip += row[kSlip] / rows;
+  }
+  ASSERT_LT(slip, 0.15);
+  const GroundClass& ground = after.model().parts().classes[0];
+  const double of_class = ground.mean_std * shared / std::hypot(ground.mean_std, shared);
+  EXPECT_NEAR(pullStd(after, kFar) / std::hypot(ground.pull_std, of_class), 1.0, 0.02);
+  EXPECT_LT(pullStd(after, kFar), 0.94 * pullStd(before, kFar));
+  EXPECT_LE(pullStd(after, kBeside), pullStd(after, kFar));
+  EXPECT_LT(pullStd(after, kDriven), pullStd(after, kBeside));
+  EXPECT_LT(pullStd(after, kClimbed), 0.7 * pullStd(before, kClimbed));
+}
+
+// Of each run some moments on level ground, and those at slips about the reference slip.
+Drive nearReferenceSlip(const Drive& whole, std::size_t wheels) {
+  constexpr int kLevelMoments = 24;
+  Drive out;
+  std::string run;
+  int level = 0;
+  for (std::size_t i = 0; i < whole.rows.size(); i += wheels) {
+    if (whole.run[i] != run) level = 0;
+    run = whole.run[i];
+    const bool flat = std::abs(whole.rows[i][kSlope]) < 0.06 && level < kLevelMoments;
+    level += flat ? 1 : 0;
+    if (!flat && (whole.rows[i][kSlip] < 0.35 || whole.rows[i][kSlip] > 0.65)) continue;
+    for (std::size_t w = i; w < i + wheels; ++w) {
+      out.rows.push_back(whole.rows[w]);
+      out.run.push_back(whole.run[w]);
+      out.wheel.push_back(whole.wheel[w]);
+    }
+  }
+  return out;
+}
+
+// Property: a drive whose slip is right and whose wheels work near the reference slip makes ground surer, the more the
+// nearer; most where the rover climbed. The margins are those of readings that need not be taken to another slip.
+TEST(SharedError, LeavesWhatASoundDriveTells) {
+  constexpr double kSteep_m = 1.5;
+  const TraversabilityMap before = mapOf(testSand(), 4, kSteep_m);
+  TraversabilityMap after = mapOf(testSand(), 4, kSteep_m);
+  const Drive whole = driveOver(after, testSand(), 1, {8.5, 8.5, 23.5, 23.5, 38.5, 38.5});
+  addDrive(after, tableOf(nearReferenceSlip(whole, 4), false));
+  EXPECT_LT(pullStd(after, kClimbed), 0.7 * pullStd(before, kClimbed));
+  EXPECT_LT(pullStd(after, kDriven), 0.8 * pullStd(before, kDriven));
+  EXPECT_LT(pullStd(after, kDriven), pullStd(after, kBeside));
+  EXPECT_LE(pullStd(after, kBeside), pullStd(after, kFar));
+  EXPECT_LT(pullStd(after, kFar), 0.92 * pullStd(before, kFar));
+}
+
+// Closed form: however many drives, the class is known no better than p c^2 / (p + c^2), p its prior and c the shared
+// error; without one it is.
+TEST(SharedError, IsNotAveragedAwayByDrives) {
+  for (const double shared : {0.0, 0.045}) {
+    TraversabilityMap map = mapOf(std::vector<std::string>(60, std::string(60, '1')));
+    const GroundClass& ground = map.model().parts().classes[0];
+    for (int row = 0; row < 60; row += 2)
+      for (int column = 0; column < 60; column += 2)
+        for (int i = 0; i < 20; ++i)
+          map.learn({.time_s = 1.0,
+                     .place = map.grid().centre({column, row}),
+                     .pull = {map.model().prior(0).pull.value, 0.05},
+                     .sinkage = {0.0, std::numeric_limits<double>::infinity()},
+                     .shared_std = shared,
+                     .pull_may_raise = true});
+    map.publishAll();
+    const double p = ground.mean_std * ground.mean_std, c = shared * shared;
+    const double least = std::sqrt(p * c / (p + c)), known = map.evidence().posterior(0).pull.std;
+    EXPECT_GE(known, least);
+    EXPECT_LT(known, least + 0.01);
+    EXPECT_GE(map.ground({30, 30})->pull.std, least);
+    EXPECT_LT(map.ground({30, 30})->pull.std, std::max(1.3 * least, 0.02)) << "with the model's own error";
+  }
+}
+
+// Property: ground with evidence of its own that is no weaker than its class is as sure as ground of the class that
+// nobody drove on, or surer; also where some of the evidence may only lower.
+TEST(SharedError, LeavesDrivenGroundNoLessSureThanItsClass) {
+  for (unsigned seed = 1; seed <= 12; ++seed) {
+    std::mt19937_64 random(seed);
+    TraversabilityMap map = mapOf(std::vector<std::string>(60, std::string(60, '1')));
+    const double prior = map.model().prior(0).pull.value;
+    std::normal_distribution<double> noise(0.0, 0.03);
+    const double share = 0.1 * static_cast<double>(seed % 5);
+    for (int lane = 0; lane < 5; ++lane)
+      for (int i = 0; i < 300; ++i)
+        map.learn({.time_s = 1.0 + i,
+                   .place = {102.0 + 0.18 * i, 210.0 + 8.0 * lane},
+                   .pull = {prior + noise(random), 0.05},
+                   .sinkage = {0.0, std::numeric_limits<double>::infinity()},
+                   .shared_std = 0.01 * static_cast<double>(random() % 8),
+                   .pull_may_raise = std::uniform_real_distribution<double>()(random) >= share});
+    map.publishAll();
+    const GroundBelief away = map.evidence().classBelief(0);
+    ASSERT_LT(away.pull.std, 0.07);
+    for (int row = 0; row < 60; ++row)
+      for (int column = 0; column < 60; ++column)
+        EXPECT_LE(map.ground({column, row})->pull.std, away.pull.std + 1e-12)
+            << seed << ' ' << column << ' ' << row;
+  }
+}
+
+}  // namespace
+}  // namespace talus::costmap

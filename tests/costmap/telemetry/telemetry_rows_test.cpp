@@ -1,0 +1,138 @@
+#include <cmath>
+#include <limits>
+
+#include <site_map.hpp>
+
+#include <talus/common/input_error.hpp>
+#include <talus/costmap/telemetry/telemetry_rows.hpp>
+
+namespace talus::costmap {
+namespace {
+
+TraversabilityMap ramp() {
+  return mapOf(std::vector<std::string>(20, std::string(20, '1')), 0.1);
+}
+
+// Three moments of two wheels; the last of one only.
+terramech::Telemetry table() {
+  terramech::Telemetry out;
+  out.source = "t.csv";
+  out.numbers = {{"x_m", {105, 105, 106, 106, 107}},
+                 {"y_m", {210, 211, 210, 211, 210}},
+                 {"load_N", {50, 50, 50, 50, 50}},
+                 {"slip", {0.1, 0.2, 0.3, 0.4, 0.5}},
+                 {"time_s", {1, 1, 2, 2, 3}},
+                 {"heading_rad", {0, 0, 0, 0, M_PI}},
+                 {"slope_rad", {0.2, 0.2, NAN, NAN, NAN}},
+                 {"pose_std_m", {NAN, 0.3, -1, 2, 1e14}}};
+  out.words = {{"wheel", {"a", "b", "a", "b", "a"}}, {"run", {"r", "r", "r", "r", "r"}}};
+  out.lines = {2, 3, 4, 5, 6};
+  return out;
+}
+
+TEST(TelemetryRows, TakesTheRowsOwnSlopeElseTheMapsAlongTheHeading) {
+  const TraversabilityMap map = ramp();
+  const terramech::Telemetry t = table();
+  const TelemetryRows rows(t, map, 0.5);
+  ASSERT_EQ(rows.size(), 5U);
+  // Closed form: tan(0.2); a plane that rises by 0.1 eastwards, stored in steps of 1/1024
+  EXPECT_NEAR(rows.reading(0).gradient, std::tan(0.2), 1e-12);
+  EXPECT_NEAR(rows.reading(2).gradient, 0.1, 1e-3);
+  EXPECT_NEAR(rows.reading(4).gradient, -0.1, 1e-3);
+  EXPECT_TRUE(std::isnan(rows.measuredGradient(2)));
+  EXPECT_NEAR(rows.mapGradient(0), 0.1, 1e-3);
+}
+
+TEST(TelemetryRows, PoseErrorIsTheRowsElseTheOneStated) {
+  const TraversabilityMap map = ramp();
+  const terramech::Telemetry t = table();
+  const TelemetryRows rows(t, map, 0.5);
+  EXPECT_EQ(rows.reading(0).pose_std_m, 0.5);
+  EXPECT_EQ(rows.reading(1).pose_std_m, 0.3);
+  EXPECT_EQ(rows.reading(2).pose_std_m, 0.0);
+  EXPECT_EQ(rows.reading(4).pose_std_m, 1000.0) << "the journal takes no more";
+}
+
+TEST(TelemetryRows, SpeedsOfRimAndRoverAreASlip) {
+  const TraversabilityMap map = ramp();
+  terramech::Telemetry t = table();
+  t.numbers.push_back({"speed_mps", {0.01, 0.05, 0.0, -0.05, 0.02}});
+  t.numbers.push_back({"rim_speed_mps", {0.05, 0.05, 0.05, 0.05, 0.004}});
+  const TelemetryRows rows(t, map, 0.5);
+  // Closed form: 1 - v/(r omega)
+  EXPECT_NEAR(rows.reading(0).speed_slip, 0.8, 1e-12);
+  EXPECT_NEAR(rows.reading(1).speed_slip, 0.0, 1e-12);
+  EXPECT_NEAR(rows.reading(2).speed_slip, 1.0, 1e-12);
+  EXPECT_NEAR(rows.reading(3).speed_slip, 2.0, 1e-12);
+  EXPECT_TRUE(std::isnan(rows.reading(4).speed_slip)) << "a wheel that does not turn";
+}
+
+// A slope beyond vertical is none; a row that is not to be trusted may have gone straight down.
+TEST(TelemetryRows, TheLeastGradientTrustsNoImpossibleSlope) {
+  const TraversabilityMap map = ramp();
+  terramech::Telemetry t = table();
+  for (auto& column : t.numbers)
+    if (column.name == "slope_rad") column.values = {0.2, 1e14, -1e14, -0.3, NAN};
+  const TelemetryRows rows(t, map, 0.5);
+  EXPECT_NEAR(rows.leastGradient(0), 0.1, 1e-3);
+  EXPECT_NEAR(rows.leastGradient(1), 0.1, 1e-3);
+  EXPECT_NEAR(rows.leastGradient(2), 0.1, 1e-3);
+  EXPECT_NEAR(rows.leastGradient(3), std::tan(-0.3), 1e-12);
+  EXPECT_NEAR(rows.leastGradient(4), -0.1, 1e-3);
+  for (const std::size_t i : {0U, 1U, 2U, 4U}) EXPECT_NEAR(rows.steepestDescent(i), -0.1, 1e-3);
+  EXPECT_NEAR(rows.steepestDescent(3), std::tan(-0.3), 1e-12);
+}
+
+TEST(TelemetryRows, AMomentIsAllWheelsOfOneTime) {
+  const TraversabilityMap map = ramp();
+  const terramech::Telemetry t = table();
+  const TelemetryRows rows(t, map, 0.5);
+  EXPECT_EQ(rows.byMoment(), (std::vector<std::vector<std::size_t>>{{0, 1}, {2, 3}, {4}}));
+  EXPECT_EQ(momentOf(rows, {2, 3}, map.model().rover()).readings.size(), 2U);
+}
+
+// Wheels and runs in any order within a time; the second row of a wheel is a moment of its own.
+TEST(TelemetryRows, TheOrderWithinATimeDoesNotShow) {
+  const TraversabilityMap map = ramp();
+  terramech::Telemetry t = table();
+  t.numbers[4].values.assign(5, 1.0);
+  t.words = {{"wheel", {"b", "a", "a", "b", "b"}}, {"run", {"r", "s", "r", "s", "r"}}};
+  EXPECT_EQ(TelemetryRows(t, map, 0.5).byMoment(),
+            (std::vector<std::vector<std::size_t>>{{2, 0}, {4}, {1, 3}}));
+}
+
+TEST(TelemetryRows, TheLeastSlopeIsTheSteepestDescentWithoutAHeading) {
+  const TraversabilityMap map = ramp();
+  terramech::Telemetry t = table();
+  EXPECT_NEAR(TelemetryRows(t, map, 0.5).leastGradient(0), 0.1, 1e-3) << "the map's, less than the rover's";
+  t.numbers[5].values.assign(5, std::numeric_limits<double>::infinity());
+  t.numbers[6].values.assign(5, NAN);
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_NEAR(TelemetryRows(t, map, 0.5).leastGradient(i), -0.1, 1e-3);
+}
+
+TEST(TelemetryRows, SpeedsOfRimAndRoverAreSlip) {
+  const TraversabilityMap map = ramp();
+  terramech::Telemetry t = table();
+  t.numbers.push_back({"speed_mps", {0.005, 0.1, 0.0, NAN, 0.1}});
+  t.numbers.push_back({"rim_speed_mps", {0.1, 0.1, 0.0, 0.1, NAN}});
+  const TelemetryRows rows(t, map, 0.5);
+  EXPECT_NEAR(rows.reading(0).speed_slip, 0.95, 1e-12);
+  EXPECT_NEAR(rows.reading(1).speed_slip, 0.0, 1e-12);
+  for (const std::size_t i : {2U, 3U, 4U}) EXPECT_TRUE(std::isnan(rows.reading(i).speed_slip));
+  // Property: the same backwards.
+  for (std::size_t k = t.numbers.size() - 2; k < t.numbers.size(); ++k)
+    for (double& v : t.numbers[k].values) v = -v;
+  const TelemetryRows back(t, map, 0.5);
+  EXPECT_NEAR(back.reading(0).speed_slip, 0.95, 1e-12);
+  EXPECT_NEAR(back.reading(1).speed_slip, 0.0, 1e-12);
+}
+
+TEST(TelemetryRows, NamesAColumnThatIsMissing) {
+  const TraversabilityMap map = ramp();
+  terramech::Telemetry t = table();
+  t.numbers.erase(t.numbers.begin() + 3);
+  EXPECT_THROW(TelemetryRows(t, map, 0.5), InputError);
+}
+
+}  // namespace
+}  // namespace talus::costmap

@@ -1,0 +1,136 @@
+#include <fstream>
+
+#include <talus/common/constants.hpp>
+#include <talus/maps/raster/elevation_reader.hpp>
+#include <talus/maps/raster/numpy_raster.hpp>
+#include <talus/maps/raster/raster_band.hpp>
+#include <talus/maps/raster/zip_directory.hpp>
+
+#include "raster_fixture.hpp"
+#include "requirement.hpp"
+
+namespace talus::maps {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+
+TEST(NumpyRaster, ReadsTheMapOfJacksboroThatMatplotlibShips) {
+  const std::string path = "/usr/share/matplotlib/mpl-data/sample_data/jacksboro_fault_dem.npz";
+  TALUS_REQUIRE(std::filesystem::exists(path), "python-matplotlib-data is not installed");
+  const ElevationMap map = readElevation(path);
+  EXPECT_THAT(map.notes, Contains(HasSubstr("ymin and ymax are in the wrong order")));
+  // Printed in: the file. 403 x 344 cells of 3 arc seconds about 36.59 N, 84.25 W, heights 238 to 1076 m.
+  const Point middle = map.georeference->forward({36.5895833 * kDegree, -84.2458333 * kDegree});
+  EXPECT_NEAR(middle.x_m, 0, 1);
+  EXPECT_NEAR(middle.y_m, 0, 1);
+  EXPECT_NEAR(map.grid().width * map.grid().resolution_m, 30100, 150);
+  EXPECT_NEAR(map.grid().height * map.grid().resolution_m, 31850, 150);
+  // Row 20 of column 30 holds 507 m, which is found in the north only when the limits are swapped back.
+  const Point inside = map.georeference->forward({36.7158333 * kDegree, -84.3883333 * kDegree});
+  EXPECT_NEAR(elevationAt(map.elevation_m, inside).value(), 507,
+              8);  // between cells: neighbours differ by that
+}
+
+// A .npy of 64-bit floats.
+std::string npy(const std::string& shape, const std::vector<double>& values) {
+  std::string header = "{'descr': '<f8', 'fortran_order': False, 'shape': (" + shape + "), }\n";
+  std::string out("\x93NUMPY\x01\x00", 8);
+  out += static_cast<char>(header.size());
+  out += '\0';
+  out += header;
+  return out.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double));
+}
+
+// GDAL writes archives under the ending .zip alone.
+std::string npz(const std::string& path, const std::vector<std::pair<std::string, std::string>>& files) {
+  const std::string archive = "/vsizip/" + path + ".zip";
+  VSILFILE* zip = VSIFOpenL(archive.c_str(), "wb");
+  for (const auto& [name, bytes] : files) {
+    VSILFILE* file = VSIFOpenL((archive + "/" + name + ".npy").c_str(), "wb");
+    EXPECT_EQ(VSIFWriteL(bytes.data(), 1, bytes.size(), file), bytes.size());
+    VSIFCloseL(file);
+  }
+  VSIFCloseL(zip);
+  std::filesystem::rename(path + ".zip", path);
+  return path;
+}
+
+TEST(NumpyRaster, AnArrayIsARasterOfItsRows) {
+  const TemporaryFolder folder;
+  std::vector<std::string> notes;
+  const Dataset raster = openNumpyRaster(folder.write("z.npy", npy("2, 3", {1, 2, 3, 4, 5, 6})), notes);
+  ASSERT_EQ(raster->GetRasterXSize(), 3);
+  ASSERT_EQ(raster->GetRasterYSize(), 2);
+  EXPECT_THAT(readPixels(*raster, 1, {.width = 3, .height = 2}, "z"), testing::ElementsAre(1, 2, 3, 4, 5, 6));
+  std::array<double, 6> transform{};
+  EXPECT_NE(raster->GetGeoTransform(transform.data()), CE_None);
+}
+
+TEST(NumpyRaster, LimitsAreTheOuterEdges) {
+  const TemporaryFolder folder;
+  const std::string path = npz(folder / "z.npz", {{"elevation", npy("2, 4", std::vector<double>(8, 5.0))},
+                                                  {"xmin", npy("", {1000})},
+                                                  {"xmax", npy("", {1400})},
+                                                  {"ymin", npy("", {-200})},
+                                                  {"ymax", npy("", {0})}});
+  std::vector<std::string> notes;
+  const Dataset raster = openNumpyRaster(path, notes);
+  std::array<double, 6> transform{};
+  ASSERT_EQ(raster->GetGeoTransform(transform.data()), CE_None);
+  // Closed form: 400 m over four columns, 200 m over two rows, from the north-west corner.
+  EXPECT_THAT(transform, testing::ElementsAre(1000, 100, 0, 0, 0, -100));
+  EXPECT_EQ(raster->GetSpatialRef(), nullptr);  // 1000 and more are no degrees
+  EXPECT_TRUE(notes.empty());
+}
+
+TEST(NumpyRaster, WhatIsNoElevationGridIsRefused) {
+  const TemporaryFolder folder;
+  std::vector<std::string> notes;
+  const auto line = [&](const std::string& path) { return refusal([&] { openNumpyRaster(path, notes); }); };
+  EXPECT_THAT(line(folder.write("row.npy", npy("3,", {1, 2, 3}))), HasSubstr("has not two axes"));
+  EXPECT_THAT(line(folder.write("none.npy", npy("0, 3", {}))), HasSubstr("has not two axes"));
+  const std::string grid = npy("1, 2", {1, 2});
+  EXPECT_THAT(line(npz(folder / "two.npz", {{"a", grid}, {"b", grid}})),
+              HasSubstr("several arrays of two axes ('a', 'b')"));
+  EXPECT_EQ(line(npz(folder / "named.npz", {{"a", grid}, {"elevation", grid}})), "accepted");
+  EXPECT_THAT(line(npz(folder / "flat.npz", {{"a", npy("2,", {1, 2})}})), HasSubstr("no array of two axes"));
+}
+
+std::string number(std::size_t value, int bytes) {
+  std::string out;
+  for (int i = 0; i < bytes; ++i) out += static_cast<char>(value >> (8 * i));
+  return out;
+}
+
+// A zip archive of one file that is not compressed, as numpy.savez writes.
+std::string stored(const std::string& name, const std::string& content) {
+  const std::string sizes = number(crc32(content), 4) + number(content.size(), 4) +
+                            number(content.size(), 4) + number(name.size(), 2) + number(0, 2);
+  const std::string start = number(20, 2) + std::string(8, '\0');  // version, flags, method, time, date
+  const std::string file = "PK\3\4" + start + sizes + name + content;
+  const std::string directory = "PK\1\2" + number(20, 2) + start + sizes + std::string(14, '\0') + name;
+  return file + directory + "PK\5\6" + number(0, 4) + number(1, 2) + number(1, 2) +
+         number(directory.size(), 4) + number(file.size(), 4) + number(0, 2);
+}
+
+TEST(NumpyRaster, AChangedByteOfAnArchiveIsRefused) {
+  const TemporaryFolder folder;
+  std::vector<std::string> notes;
+  const std::string whole = stored("elevation.npy", npy("2, 3", {1, 2, 3, 4, 5, 6}));
+  const std::size_t directory = whole.rfind("PK\1\2");
+  const auto changed = [&](std::size_t at, int with) {
+    std::string bytes = whole;
+    bytes[at] = static_cast<char>(bytes[at] ^ with);
+    const std::string path = folder.write("z.npz", bytes);
+    return refusal([&] { openNumpyRaster(path, notes); });
+  };
+  EXPECT_EQ(changed(0, 0), "accepted");
+  EXPECT_NE(changed(directory - 3, 1), "accepted");
+  EXPECT_NE(changed(directory + 16, 1), "accepted");
+  EXPECT_THAT(changed(directory + 8, 1), HasSubstr("is encrypted"));
+  EXPECT_THAT(changed(directory, 1), HasSubstr("directory of files is damaged"));
+}
+
+}  // namespace
+}  // namespace talus::maps

@@ -1,0 +1,125 @@
+#include <cmath>
+
+#include <talus/common/constants.hpp>
+#include <talus/common/input_error.hpp>
+#include <talus/maps/raster/elevation_reader.hpp>
+#include <talus/maps/raster/raster_frame.hpp>
+
+#include "raster_fixture.hpp"
+
+namespace talus::maps {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+
+TEST(RasterFrame, WithoutACrsTheResolutionMustBeGiven) {
+  const TemporaryFolder folder;
+  const std::string path =
+      write({.rows = kHill, .crs = "", .transform = std::array<double, 6>{-20, 0.5, 0, 30, 0, -0.5}},
+            folder / "yard.tif");
+  const ElevationMap map = readElevation(path, {.resolution_m = 0.5});
+  EXPECT_FALSE(map.georeference);
+  EXPECT_EQ(map.grid(), (Grid{.width = 4, .height = 5, .resolution_m = 0.5, .south_west = {-20, 27.5}}));
+  // A pixel size that is not the one stated: the file's coordinates mean nothing.
+  EXPECT_EQ(readElevation(path, {.resolution_m = 0.1}).grid().south_west, (Point{0, 0}));
+  const std::string bogus = write({.rows = kHill, .crs = "EPSG:4326"}, folder / "bogus.tif");
+  EXPECT_EQ(readElevation(bogus, {.resolution_m = 2.0, .ignore_crs = true}).grid().resolution_m, 2.0);
+}
+
+// A cone of 20 degrees on a map of degrees keeps its slope once it is in metres.
+TEST(RasterFrame, DegreesBecomeTrueMetresOnEachBody) {
+  const TemporaryFolder folder;
+  for (const auto& [crs, radius_m, latitude_deg] :
+       {std::tuple{"EPSG:4326", 6371000.0, 62.0}, std::tuple{"IAU_2015:49900", 3396190.0, -4.6},
+        std::tuple{"IAU_2015:30100", 1737400.0, -86.0}}) {
+    const double step_deg = 30.0 / (radius_m * kDegree);
+    const double east_deg = 40;
+    RasterFile file{
+        .rows = {},
+        .crs = crs,
+        .transform = std::array<double, 6>{east_deg, 2 * step_deg, 0, latitude_deg, 0, -step_deg}};
+    const double south = latitude_deg - 60 * step_deg;
+    const double east_m =
+        2 * step_deg * kDegree * radius_m * std::cos((latitude_deg - 30 * step_deg) * kDegree);
+    for (int r = 0; r < 60; ++r) {
+      file.rows.emplace_back();
+      for (int c = 0; c < 60; ++c) file.rows.back().push_back(0.3 * (59.5 - r) * 30 + 0.2 * c * east_m);
+    }
+    const ElevationMap map = readElevation(write(file, folder / "degrees.tif"));
+    const Georeference& g = *map.georeference;
+    const Point a = g.forward({(south + 20 * step_deg) * kDegree, (east_deg + 40 * step_deg) * kDegree});
+    const Point b = g.forward({(south + 40 * step_deg) * kDegree, (east_deg + 80 * step_deg) * kDegree});
+    // Closed form: heights at two places of known latitude and longitude.
+    EXPECT_NEAR(elevationAt(map.elevation_m, a).value(), 0.3 * 20 * 30 + 0.2 * 19.5 * east_m, 0.5) << crs;
+    EXPECT_NEAR(elevationAt(map.elevation_m, b).value(), 0.3 * 40 * 30 + 0.2 * 39.5 * east_m, 0.5) << crs;
+    const double ground_m = std::hypot(20 * 30.0, 20 * east_m);
+    EXPECT_NEAR(std::hypot(b.x_m - a.x_m, b.y_m - a.y_m) / ground_m, 1.0, 5e-3) << crs;
+  }
+}
+
+// A raster that lies on no body was read as if its longitude were one of the others.
+TEST(RasterFrame, DegreesBeyondTheBodyAreRefused) {
+  const TemporaryFolder folder;
+  const auto read = [&folder](double east_deg, double north_deg) {
+    const RasterFile file{.rows = std::vector<std::vector<double>>(4, std::vector<double>(4, 1.0)),
+                          .crs = "EPSG:4326",
+                          .transform = std::array<double, 6>{east_deg, 0.001, 0, north_deg, 0, -0.001}};
+    readElevation(write(file, folder / "degrees.tif"));
+  };
+  EXPECT_NO_THROW(read(359.0, 10.0));
+  EXPECT_NO_THROW(read(-180.0005, 10.0));
+  for (const auto& [east_deg, north_deg] :
+       {std::pair{500.0, 10.0}, {-361.0, 10.0}, {0.0, 200.0}, {0.0, 90.03}, {0.0, -90.5}})
+    EXPECT_THAT([&] { read(east_deg, north_deg); },
+                testing::ThrowsMessage<InputError>(HasSubstr("must be within 360 and 90 degrees")))
+        << east_deg << ", " << north_deg;
+}
+
+TEST(RasterFrame, ObliqueAndOblongPixelsAreResampled) {
+  const TemporaryFolder folder;
+  std::vector<std::vector<double>> rows(40, std::vector<double>(40));
+  const std::array<double, 6> turned{500000, 8, 6, 5000000, 6, -8};
+  for (int r = 0; r < 40; ++r)
+    for (int c = 0; c < 40; ++c)
+      rows[static_cast<std::size_t>(r)][static_cast<std::size_t>(c)] = 0.1 * ((c + 0.5) * 8 + (r + 0.5) * 6);
+  const ElevationMap map = readElevation(write({.rows = rows, .transform = turned}, folder / "turned.tif"));
+  EXPECT_NEAR(map.grid().resolution_m, 10, 1e-9);
+  EXPECT_THAT(map.notes, Contains(HasSubstr("resampled to square cells of 10 m")));
+  // Closed form: height is a tenth of the way east.
+  EXPECT_NEAR(elevationAt(map.elevation_m, {500280, 5000000}).value(), 28.0, 0.01);
+  EXPECT_NEAR(elevationAt(map.elevation_m, {500300, 4999990}).value(), 30.0, 0.01);
+}
+
+TEST(RasterFrame, StretchedProjectionsAreMadeTrue) {
+  const TemporaryFolder folder;
+  // At 60 degrees north this projection shows a metre of ground as two from west to east.
+  const std::string path =
+      write({.rows = std::vector<std::vector<double>>(20, std::vector<double>(40, 7.0)),
+             .crs = "IAU_2015:49910",
+             .transform = std::array<double, 6>{0, 20, 0, 60 * kDegree * 3396190, 0, -20}},
+            folder / "north.tif");
+  const ElevationMap map = readElevation(path);
+  EXPECT_THAT(map.notes, Contains(HasSubstr("resampled to true metres")));
+  EXPECT_NEAR(map.grid().width * map.grid().resolution_m, 400, 30);
+  EXPECT_NEAR(map.grid().height * map.grid().resolution_m, 400, 30);
+}
+
+// Closed form: US survey feet of 1200/3937 m; the first row lies in the south when y grows downwards.
+TEST(RasterFrame, FeetAndRowsFromTheSouth) {
+  const TemporaryFolder folder;
+  const std::string path =
+      write({.rows = kHill, .crs = "EPSG:2227", .transform = std::array<double, 6>{6e6, 10, 0, 2e6, 0, 10}},
+            folder / "feet.tif");
+  std::vector<std::string> notes;
+  const FramedRaster framed = frame(openRaster(path), 1, {}, path, notes);
+  const double foot_m = 1200.0 / 3937.0;
+  EXPECT_FALSE(framed.north_up);
+  EXPECT_NEAR(framed.grid.resolution_m, 10 * foot_m, 1e-9);
+  EXPECT_NEAR(framed.grid.south_west.x_m, 6e6 * foot_m, 1e-3);
+  EXPECT_NEAR(framed.grid.south_west.y_m, 2e6 * foot_m, 1e-3);
+  EXPECT_TRUE(notes.empty());
+}
+
+}  // namespace
+}  // namespace talus::maps

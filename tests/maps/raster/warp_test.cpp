@@ -1,0 +1,98 @@
+#include <cmath>
+
+#include <talus/maps/raster/raster_band.hpp>
+#include <talus/maps/raster/warp.hpp>
+
+#include "raster_fixture.hpp"
+
+namespace talus::maps {
+namespace {
+
+using testing::HasSubstr;
+
+std::vector<float> pixels(GDALDataset& raster) {
+  return readPixels(raster, 1, {.width = raster.GetRasterXSize(), .height = raster.GetRasterYSize()}, "test");
+}
+
+// The plane 100 + 2 column + 3 row, rows from the north, pixels of 10 m.
+std::string plane(const TemporaryFolder& folder) {
+  std::vector<std::vector<double>> rows(20, std::vector<double>(30));
+  for (std::size_t r = 0; r < 20; ++r)
+    for (std::size_t c = 0; c < 30; ++c)
+      rows[r][c] = 100.0 + 2.0 * static_cast<double>(c) + 3.0 * static_cast<double>(r);
+  return write({.rows = rows}, folder / "plane.tif");
+}
+
+TEST(Warp, TheSameCellsHoldTheSameValues) {
+  const TemporaryFolder folder;
+  const Dataset source = openRaster(write({.rows = kHill, .nodata = -1}, folder / "hill.tif"));
+  const Grid grid{.width = 4, .height = 5, .resolution_m = 10, .south_west = {500000, 4999950}};
+  const std::vector<float> values = pixels(*warp(*source, {.grid = grid, .method = "near"}, "test"));
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double expected = kHill[i / 4][i % 4];
+    if (expected < 0)
+      EXPECT_TRUE(std::isnan(values[i]));
+    else
+      EXPECT_EQ(values[i], static_cast<float>(expected));
+  }
+}
+
+TEST(Warp, APlaneStaysAPlaneBetweenItsCells) {
+  const TemporaryFolder folder;
+  const Dataset source = openRaster(plane(folder));
+  const Grid grid{.width = 8, .height = 6, .resolution_m = 5, .south_west = {500101, 4999903}};
+  for (const char* method : {"bilinear", "cubic"}) {
+    const std::vector<float> values = pixels(*warp(*source, {.grid = grid, .method = method}, "test"));
+    for (int row = 0; row < 6; ++row)
+      for (int column = 0; column < 8; ++column) {
+        const Point p = grid.centre({column, 5 - row});
+        // Closed form: linear interpolation between pixel middles reproduces a plane.
+        const double expected = 100 + 2 * ((p.x_m - 500000) / 10 - 0.5) + 3 * ((5000000 - p.y_m) / 10 - 0.5);
+        EXPECT_NEAR(values[static_cast<std::size_t>(row * 8 + column)], expected, 1e-3) << method;
+      }
+  }
+}
+
+TEST(Warp, CoarserByTheAverageIsTheMeanOfThePixels) {
+  const TemporaryFolder folder;
+  const Dataset source = openRaster(plane(folder));
+  const Dataset coarse = warp(*source, {.resolution = 20, .method = "average"}, "test");
+  ASSERT_EQ(coarse->GetRasterXSize(), 15);
+  // Closed form: the mean over two by two pixels of the plane.
+  EXPECT_NEAR(pixels(*coarse).front(), 100 + 2 * 0.5 + 3 * 0.5, 1e-3);
+}
+
+// Property: a value that is declared no data, by the caller over the file, never enters a mean.
+TEST(Warp, NoDataIsNotMixedIn) {
+  const TemporaryFolder folder;
+  const Dataset source = openRaster(write({.rows = drawn({"9911", "9911"})}, folder / "marks.tif"));
+  const Dataset coarse = warp(*source, {.resolution = 20, .method = "average", .nodata = 9.0}, "test");
+  const std::vector<float> values = pixels(*coarse);
+  ASSERT_EQ(values.size(), 2U);
+  EXPECT_TRUE(std::isnan(values[0]));
+  EXPECT_EQ(values[1], 1.0F);
+}
+
+TEST(Warp, ReadsAfterTheSourceIsClosed) {
+  const TemporaryFolder folder;
+  Dataset source = openRaster(plane(folder));
+  const Dataset same = warp(*source, {.method = "near"}, "test");
+  source.reset();
+  EXPECT_EQ(pixels(*same).front(), 100.0F);
+}
+
+TEST(Warp, TakesTheBandThatIsAskedFor) {
+  const TemporaryFolder folder;
+  const Dataset source = openRaster(write({.rows = kHill, .names = {"a", "b"}}, folder / "two.tif"));
+  EXPECT_EQ(pixels(*warp(*source, {.band = 2, .method = "near"}, "test")).front(), 1001.0F);
+}
+
+TEST(Warp, WhatCannotBeResampledIsRefused) {
+  const TemporaryFolder folder;
+  const Dataset source = openRaster(plane(folder));
+  EXPECT_THAT(refusal([&] { warp(*source, {.wkt = "no CRS at all"}, "a.tif"); }),
+              HasSubstr("a.tif: cannot be resampled"));
+}
+
+}  // namespace
+}  // namespace talus::maps

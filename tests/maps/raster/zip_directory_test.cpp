@@ -1,0 +1,23 @@
+#include <talus/common/input_error.hpp>
+#include <talus/maps/raster/zip_directory.hpp>
+
+#include "raster_fixture.hpp"
+
+namespace talus::maps {
+namespace {
+
+// Printed in: every catalogue of CRCs, the check value of CRC-32/ISO-HDLC.
+TEST(ZipDirectory, TheChecksumIsThatOfZip) {
+  EXPECT_EQ(crc32("123456789"), 0xCBF43926U);
+  EXPECT_EQ(crc32(""), 0U);
+}
+
+TEST(ZipDirectory, WhatHasNoneIsRefused) {
+  const TemporaryFolder folder;
+  for (const std::string& bytes :
+       {std::string("x"), std::string(100, 'x'), "PK\5\6" + std::string(18, '\xff')})
+    EXPECT_THROW(zipDirectory(folder.write("a.npz", bytes)), InputError);
+}
+
+}  // namespace
+}  // namespace talus::maps

@@ -1,0 +1,77 @@
+#include <talus/common/constants.hpp>
+#include <talus/common/input_error.hpp>
+#include <talus/maps/terrain/place.hpp>
+
+namespace talus::maps {
+namespace {
+
+using testing::HasSubstr;
+
+std::string refusal(const auto& call) {
+  try {
+    call();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+ElevationMap localMap() {
+  return {.elevation_m =
+              Raster<float>(Grid{.width = 10, .height = 20, .resolution_m = 2.0, .south_west = {100, -50}}),
+          .georeference = std::nullopt,
+          .source = "yard.tif",
+          .notes = {}};
+}
+
+TEST(Place, MetresOrDegrees) {
+  EXPECT_EQ(std::get<Point>(parsePlace("12.5,-3e2")), (Point{12.5, -300}));
+  EXPECT_EQ(std::get<Point>(parsePlace(" +1 , 2")), (Point{1, 2}));
+  const GeoPoint place = std::get<GeoPoint>(parsePlace("-4.59d,137.44d"));
+  EXPECT_DOUBLE_EQ(place.latitude_rad, -4.59 * kDegree);
+  EXPECT_DOUBLE_EQ(place.longitude_rad, 137.44 * kDegree);
+}
+
+TEST(Place, BadTextIsQuoted) {
+  for (const char* text : {"", "1", "1,2,3", "a,b", "1,", "nan,1", "1d,2", "91d,0d", "0d,361d", "1,2x",
+                           "inf,0", "1;2", "010,1", "1d,-007d"}) {
+    const std::string line = refusal([&] { parsePlace(text); });
+    EXPECT_THAT(line, testing::AllOf(testing::StartsWith("'"), HasSubstr(text)));
+    EXPECT_THAT(line, HasSubstr("write x,y in map metres"));
+  }
+}
+
+TEST(Place, OutsideSaysWhereTheMapIs) {
+  EXPECT_EQ(locate(Point{119.9, -50}, localMap(), "--start"), (Point{119.9, -50}));
+  EXPECT_THAT(refusal([] {
+                locate(Point{5, 900}, localMap(), "--start 5,900");
+              }),
+              HasSubstr("--start 5,900: x 5 m, y 900 m lies outside the map; the map spans x 100 to 120 m, y "
+                        "-50 to -10 m"));
+  EXPECT_THAT(refusal([] { locate(GeoPoint{}, localMap(), "--goal"); }), HasSubstr("'yard.tif' has no CRS"));
+}
+
+TEST(Place, DegreesThroughTheMapsGeoreference) {
+  ElevationMap map = localMap();
+  map.georeference.emplace(CoordinateSystem{.name = "Moon", .ellipsoid = kMoon});
+  const GeoPoint place = map.georeference->reverse({110, -30});
+  const Point point = locate(place, map, "--goal");
+  EXPECT_NEAR(point.x_m, 110, 1e-6);
+  EXPECT_NEAR(point.y_m, -30, 1e-6);
+  EXPECT_EQ(describe(point, map), "x 110.00 m, y -30.00 m (-0.000989d,0.003628d)");
+  EXPECT_THAT(refusal([&] {
+                locate(GeoPoint{0.5, 0.5}, map, "--goal");
+              }),
+              HasSubstr("at 28.647890d,28.647890d lies outside"));
+}
+
+TEST(Place, WindowHasFourNumbers) {
+  const Window window = parseWindow("1,2,3,4");
+  EXPECT_EQ(std::get<Point>(window.second), (Point{3, 4}));
+  for (const char* mixed : {"5,5,65d,65d", "5d,5d,65,65"})
+    EXPECT_THAT(refusal([&] { parseWindow(mixed); }), HasSubstr("one corner is in metres")) << mixed;
+  EXPECT_THAT(refusal([] { parseWindow("1,2,3"); }), HasSubstr("has not 4 numbers"));
+}
+
+}  // namespace
+}  // namespace talus::maps

@@ -1,0 +1,157 @@
+#include <algorithm>
+#include <memory>
+
+#include <site_fixture.hpp>
+
+#include <talus/planner/simulation/drive/traverse_simulation.hpp>
+
+namespace talus::planner {
+namespace {
+
+using costmap::testDust;
+using costmap::testRover;
+using costmap::testSand;
+
+maps::Grid grid() {
+  return {.width = 60, .height = 40, .resolution_m = 1.0, .south_west = {}};
+}
+
+// A plane that rises eastwards, taken for sand, which is known well as a class: else the planner goes to and fro up a
+// slope, for its risk grows faster with the gradient than its length, and never meets a trap on the straight line.
+costmap::TraversabilityMap planeMap(double rise) {
+  costmap::MapLayers layers;
+  layers.elevation.elevation_m = maps::Raster<float>(grid());
+  for (int row = 0; row < grid().height; ++row)
+    for (int column = 0; column < grid().width; ++column)
+      layers.elevation.elevation_m[{column, row}] = static_cast<float>(rise * column);
+  costmap::GroundModel::Parts parts = costmap::testGround()->parts();
+  for (costmap::GroundClass& ground : parts.classes) ground.mean_std = 0.01;
+  return {std::move(layers), std::make_shared<const costmap::GroundModel>(parts), {}};
+}
+
+struct Site {
+  WorldSoils soils;
+  double rise = 0.0;
+  maps::Point start{5.5, 20.5}, goal{54.5, 20.5};
+};
+
+TraverseSimulation over(const Site& site, bool senses, const SensorOptions& sensors = {.pose_drift = 0.0}) {
+  const TrueWorld world(site.soils, testRover(), maps::Raster<std::uint8_t>(grid(), 0));
+  costmap::TraversabilityMap map = planeMap(site.rise);
+  SimulationOptions options;
+  options.start = site.start;
+  options.goal = site.goal;
+  options.senses = senses;
+  options.sensors = sensors;
+  return simulateTraverse(map, world, options);
+}
+
+Site trapped(double rise = 0.0) {
+  return {{.classes = {testSand()}, .patches = {{{30.0, 20.5}, 4.0, testDust()}}}, rise};
+}
+
+TEST(TraverseSimulation, GroundThatIsAsBelievedIsDrivenAtOnce) {
+  const TraverseSimulation drive = over({{.classes = {testSand()}, .patches = {}}}, true);
+  EXPECT_EQ(drive.outcome, Outcome::Reached);
+  EXPECT_EQ(drive.alarms, 0);
+  EXPECT_NEAR(drive.length_m, 49.0, 0.5);  // Closed form: straight over flat ground, to the goal
+}
+
+TEST(TraverseSimulation, AnUndeclaredTrapHoldsWhoDrivesInBlindly) {
+  EXPECT_EQ(over(trapped(), false).outcome, Outcome::Immobilised);
+}
+
+TEST(TraverseSimulation, WhoWatchesItsWheelsBacksOutAndGoesRound) {
+  for (const double rise : {0.0, 0.03, -0.06}) {
+    const TraverseSimulation drive = over(trapped(rise), true);
+    EXPECT_EQ(drive.outcome, Outcome::Reached) << rise;
+    EXPECT_GE(drive.alarms, 1) << rise;
+    EXPECT_GE(drive.replans, drive.alarms) << rise;
+    EXPECT_GT(drive.length_m, 50.0) << rise;
+    EXPECT_LT(drive.length_m, 85.0) << rise;
+  }
+}
+
+// Property: a pose that drifts costs detours about ground that was noted in the wrong place, never the rover.
+TEST(TraverseSimulation, ADriftingPoseLosesNoRover) {
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    const TraverseSimulation drive = over(trapped(), true, {.pose_drift = 0.01, .seed = seed});
+    EXPECT_NE(drive.outcome, Outcome::Immobilised) << seed;
+    EXPECT_NE(drive.outcome, Outcome::Tipped) << seed;
+    EXPECT_GE(drive.alarms, 1) << seed;
+  }
+}
+
+// A plane that rises to the right of the way, with ground on it that pulls but does not hold it across.
+TEST(TraverseSimulation, WhoWatchesItsWayDoesNotSlideOffASlope) {
+  terramech::Soil slippery = testSand();
+  slippery.cohesion_Pa = 100.0;
+  slippery.friction_angle_rad = 0.45;
+  const WorldSoils soils{.classes = {testSand()}, .patches = {{{30.0, 20.5}, 3.0, slippery}}};
+  const double rise = 0.25;
+  const Site site{soils, rise, {30.5, 2.5}, {30.5, 37.5}};
+  EXPECT_EQ(over(site, false).outcome, Outcome::Slid);
+  const TraverseSimulation drive = over(site, true);
+  EXPECT_NE(drive.outcome, Outcome::Slid);
+  EXPECT_NE(drive.outcome, Outcome::Immobilised);
+  EXPECT_GE(drive.replans, 1);  // by an alarm, or since the soil shows itself weaker on the way
+}
+
+TEST(TraverseSimulation, NoWayRoundIsGivenUpNotTriedToDeath) {
+  const Site wall{{.classes = {testSand()}, .patches = {{{1030.0, 20.5}, 1000.0, testDust()}}}, 0.0};
+  const TraverseSimulation drive = over(wall, true);
+  EXPECT_EQ(drive.outcome, Outcome::GaveUp);
+  for (const TrackPoint& at : drive.track) EXPECT_LT(at.place.x_m, 30.5);  // at most the front wheels were in
+}
+
+// Ground that slips more but holds, and a trap behind it: who backs out of the trap by its own length alone
+// would turn on ground that it has just felt to be weak.
+TEST(TraverseSimulation, BacksOutUntilItStandsOnSoundGround) {
+  terramech::Soil weak = testSand();
+  weak.friction_angle_rad = 0.44;
+  const Site site{
+      {.classes = {testSand()}, .patches = {{{30.0, 20.5}, 8.0, weak}, {{30.0, 20.5}, 4.0, testDust()}}},
+      0.0};
+  const TraverseSimulation drive = over(site, true);
+  EXPECT_EQ(drive.outcome, Outcome::Reached);
+  ASSERT_GE(drive.replans, 1);  // the weak ground shows before the trap does
+  const auto out = std::find_if(drive.events.begin(), drive.events.end(),
+                                [](const DriveEvent& e) { return e.text == "reversed"; });
+  ASSERT_NE(out, drive.events.end());
+  const auto at = std::find_if(drive.track.begin(), drive.track.end(),
+                               [&](const TrackPoint& t) { return t.time_s >= out->time_s; });
+  ASSERT_NE(at, drive.track.end());
+  // Closed form: the weak ground begins 8 m, the trap 4 m before its middle at x = 30; a rover of 0.8 m by
+  // 0.6 m that stands before the former has its middle at least half a metre off.
+  EXPECT_LT(at->place.x_m, 23.0);
+}
+
+TEST(TraverseSimulation, FarTooSteepTips) {
+  EXPECT_EQ(over({{.classes = {testSand()}, .patches = {}}, 0.9}, false).outcome, Outcome::GaveUp);
+}
+
+TEST(TraverseSimulation, TheTrackTellsTheDrive) {
+  const TraverseSimulation drive = over(trapped(), true);
+  ASSERT_GT(drive.track.size(), 10U);
+  double length_m = 0.0;
+  for (std::size_t i = 1; i < drive.track.size(); ++i) {
+    const TrackPoint &a = drive.track[i - 1], &b = drive.track[i];
+    length_m += std::hypot(b.place.x_m - a.place.x_m, b.place.y_m - a.place.y_m);
+    EXPECT_GE(b.time_s, a.time_s);
+    EXPECT_GE(b.energy_J, a.energy_J);
+  }
+  EXPECT_NEAR(length_m, drive.length_m, 1e-6);
+  EXPECT_EQ(drive.events.front().text, "planned");
+  EXPECT_EQ(drive.events.back().text, "reached");
+  EXPECT_GE(drive.events.front().route.size(), 2U);
+}
+
+TEST(TraverseSimulation, SameSeedSameDrive) {
+  const TraverseSimulation a = over(trapped(), true), b = over(trapped(), true);
+  EXPECT_EQ(a.energy_J, b.energy_J);
+  EXPECT_EQ(a.length_m, b.length_m);
+  EXPECT_EQ(a.track.size(), b.track.size());
+}
+
+}  // namespace
+}  // namespace talus::planner

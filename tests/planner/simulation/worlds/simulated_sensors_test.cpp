@@ -1,0 +1,119 @@
+#include <cmath>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <site_fixture.hpp>
+
+#include <talus/planner/simulation/worlds/simulated_sensors.hpp>
+
+namespace talus::planner {
+namespace {
+
+using costmap::testRover;
+
+// A rover of four wheels that slips 0.3 and sinks 0.2 of its radius.
+TrueWorld::Step step() {
+  TrueWorld::Step made;
+  made.slip = 0.3;
+  for (int w = 0; w < 4; ++w)
+    made.wheels.push_back({.place = {10.0 + w, 20.0}, .load_N = 50.0, .passes = w / 2, .forces = {}});
+  for (auto& wheel : made.wheels) wheel.forces = {.pull = 0.1, .torque = 0.4, .sinkage = 0.2};
+  return made;
+}
+
+WheelLook lookOf(SimulatedSensors& sensors, double time_s = 5.0) {
+  return sensors.look(step(), {.time_s = time_s, .heading = {0.0, 1.0}, .gradient = 0.1});
+}
+
+SensorOptions exact(SensorFault fault = SensorFault::None) {
+  return {.noise = false, .pose_drift = 0.0, .fault = fault, .seed = 3};
+}
+
+TEST(SimulatedSensors, WithoutNoiseAndFaultTheyReadTheTruth) {
+  SimulatedSensors sensors(exact(), testRover());
+  const WheelLook look = lookOf(sensors);
+  const double radius_m = testRover().wheel.radius_m;
+  ASSERT_EQ(look.wheels.size(), 4U);
+  for (std::size_t w = 0; w < 4; ++w) {
+    // Closed form: the step itself.
+    EXPECT_DOUBLE_EQ(look.wheels[w].slip, 0.3);
+    EXPECT_DOUBLE_EQ(look.wheels[w].torque_Nm, 0.4 * 50.0 * radius_m);
+    EXPECT_DOUBLE_EQ(look.wheels[w].sinkage_m, 0.2 * radius_m);
+    EXPECT_DOUBLE_EQ(look.wheels[w].place.x_m, 10.0 + static_cast<double>(w));
+    EXPECT_EQ(look.wheels[w].pass, static_cast<int>(w) / 2 + 1);
+  }
+}
+
+TEST(SimulatedSensors, NoiseIsWhatItSays) {
+  SensorOptions options = exact();
+  options.noise = true;
+  SimulatedSensors sensors(options, testRover());
+  double squares = 0.0;
+  std::size_t missing = 0;
+  constexpr int kLooks = 2000;
+  for (int k = 0; k < kLooks; ++k) {
+    const WheelLook look = lookOf(sensors);
+    squares += std::pow(look.wheels[0].slip - 0.3, 2);
+    for (const auto& wheel : look.wheels) missing += std::isnan(wheel.torque_Nm) ? 1U : 0U;
+  }
+  // Property: 0.02 of the rover and 0.005 of the wheel; four standard errors of 2000 draws.
+  EXPECT_NEAR(std::sqrt(squares / kLooks), std::hypot(0.02, 0.005), 0.0014);
+  EXPECT_NEAR(static_cast<double>(missing) / (4.0 * kLooks), 0.02, 0.0063);
+}
+
+TEST(SimulatedSensors, ThePoseDriftsWithTheWay) {
+  SensorOptions options = exact();
+  options.pose_drift = 0.02;
+  SimulatedSensors sensors(options, testRover());
+  for (int k = 0; k < 100; ++k) sensors.moved(0.5);
+  const maps::Point there = sensors.believed({7.0, 8.0});
+  EXPECT_NEAR(std::hypot(there.x_m - 7.0, there.y_m - 8.0), 1.0, 1e-9);  // Closed form: 2 % of 50 m
+}
+
+// What a fault changes at the faulty wheel and at the others.
+TEST(SimulatedSensors, AFaultIsOfOneSensor) {
+  const double radius_m = testRover().wheel.radius_m;
+  for (const SensorFault fault : {SensorFault::SlipBiased, SensorFault::TorqueOffset,
+                                  SensorFault::SinkageDatum, SensorFault::Silent, SensorFault::SlipStuck}) {
+    SimulatedSensors sensors(exact(fault), testRover());
+    const WheelLook look = lookOf(sensors);
+    for (std::size_t w = 0; w < 4; ++w) {
+      const bool faulty = w == sensors.faultyWheel();
+      const auto& read = look.wheels[w];
+      EXPECT_EQ(std::isnan(read.slip), faulty && fault == SensorFault::Silent);
+      if (faulty && fault == SensorFault::Silent) continue;
+      EXPECT_NEAR(read.slip, faulty && fault == SensorFault::SlipBiased ? 0.1 : 0.3, 1e-12);
+      EXPECT_NEAR(read.torque_Nm / (50.0 * radius_m),
+                  faulty && fault == SensorFault::TorqueOffset ? 0.55 : 0.4, 1e-12);
+      EXPECT_NEAR(read.sinkage_m / radius_m, faulty && fault == SensorFault::SinkageDatum ? 0.1 : 0.2, 1e-12);
+    }
+  }
+}
+
+TEST(SimulatedSensors, AStuckSlipStaysWhatItFirstWas) {
+  SensorOptions options = exact(SensorFault::OdometryStuck);
+  options.noise = true;
+  SimulatedSensors sensors(options, testRover());
+  const double first = lookOf(sensors).wheels[0].slip;
+  for (int k = 0; k < 5; ++k)
+    for (const auto& wheel : lookOf(sensors).wheels) EXPECT_EQ(wheel.slip, first);
+}
+
+TEST(TelemetryOf, HasARowForEachWheelThatReadSlip) {
+  SimulatedSensors sensors(exact(SensorFault::Silent), testRover());
+  const terramech::Telemetry rows = telemetryOf(lookOf(sensors, 7.5));
+  ASSERT_EQ(rows.size(), 3U);
+  EXPECT_THAT(rows.at("slip"), testing::Each(0.3));
+  EXPECT_THAT(rows.at("time_s"), testing::Each(7.5));
+  EXPECT_NEAR(rows.at("slope_rad")[0], std::atan(0.1), 1e-12);
+  EXPECT_EQ(rows.findWords("wheel")->size(), 3U);
+}
+
+// With a drift of 1 a rover that drives to its goal never takes itself to be there: the simulation did not end.
+TEST(SimulatedSensors, ADriftThatNoOdometryHasIsRefused) {
+  for (const double drift : {-0.1, 0.6, 1.0, std::nan("")})
+    EXPECT_THROW(SimulatedSensors({.pose_drift = drift}, testRover()), std::invalid_argument) << drift;
+}
+
+}  // namespace
+}  // namespace talus::planner

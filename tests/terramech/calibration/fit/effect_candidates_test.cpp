@@ -1,0 +1,116 @@
+#include <algorithm>
+#include <functional>
+#include <set>
+#include <string>
+
+#include <talus/terramech/calibration/fit/effect_candidates.hpp>
+
+#include "made_rows.hpp"
+
+namespace talus::terramech {
+namespace {
+
+// Telemetry of a wheel at several slips and loads, with further columns that each row sets.
+Trial trialWith(const std::vector<std::string>& more, const std::function<std::vector<double>(int)>& values,
+                double least_slip = 0.1, const std::string& groups = "") {
+  std::vector<std::string> columns = wheelColumns();
+  columns.insert(columns.end(), more.begin(), more.end());
+  MadeRows rows(columns);
+  std::mt19937_64 random(2);
+  for (int k = 0; k < 40; ++k) {
+    std::vector<double> row = wheelRow(madeSand(), 50.0 + k, least_slip + 0.015 * k, 0.02, random);
+    for (const double v : values(k)) row.push_back(v);
+    rows.add(row, k % 2 ? "left" : "right");
+  }
+  RefinedModel model;
+  model.soil = madeSand();
+  return makeTrial(rows.telemetry(groups), model);
+}
+
+std::vector<double> nothing(int) {
+  return {};
+}
+
+std::vector<Candidate> offered(const Trial& trial) {
+  return libraryCandidates(trial, Eigen::VectorXd::LinSpaced(trial.rows(), 0.005, 0.02));
+}
+
+std::set<std::string> names(const std::vector<Candidate>& candidates) {
+  std::set<std::string> all;
+  for (const Candidate& c : candidates)
+    if (c.parts.size() == 1) all.insert(c.parts[0].name);
+  return all;
+}
+
+TEST(EffectCandidates, OnlyWhatTheColumnsAllow) {
+  const auto plain = names(offered(trialWith({}, nothing)));
+  EXPECT_TRUE(plain.contains("slip_sinkage_ding"));
+  EXPECT_TRUE(plain.contains("torque_offset"));
+  for (const char* name :
+       {"multipass_stiffness", "rate_shear", "grouser_thrust", "wheel_diameter", "skid_sinkage",
+        "side_bulldozing", "slope_load_transfer", "moisture_drift_cohesion"})
+    EXPECT_FALSE(plain.contains(name)) << name;
+  const auto passes =
+      names(offered(trialWith({"pass_index"}, [](int k) { return std::vector{1.0 + k % 4}; })));
+  EXPECT_TRUE(passes.contains("multipass_stiffness"));
+  const auto lugs =
+      names(offered(trialWith({"grouser_height_m"}, [](int k) { return std::vector{0.01 * (k % 2)}; })));
+  EXPECT_TRUE(lugs.contains("grouser_thrust"));
+  const auto slopes = names(offered(trialWith({"slope_rad"}, [](int k) { return std::vector{0.01 * k}; })));
+  EXPECT_TRUE(slopes.contains("slope_load_transfer"));
+}
+
+// Property: every offer is a form of the library with all its parameters, within their bounds.
+TEST(EffectCandidates, OffersAreWholeForms) {
+  const auto all = offered(trialWith(
+      {"time_s"}, [](int k) { return std::vector{10.0 * k}; }, -0.3));
+  EXPECT_TRUE(names(all).contains("skid_sinkage"));
+  EXPECT_TRUE(names(all).contains("moisture_drift_cohesion_diurnal"));
+  for (const Candidate& c : all) {
+    int fitted = 0;
+    for (const Effect& e : c.parts) {
+      const EffectForm* form = findEffect(e.name);
+      ASSERT_NE(form, nullptr) << e.name;
+      ASSERT_EQ(e.parameters.size(), form->parameters.size()) << e.name;
+      for (std::size_t k = 0; k < e.parameters.size(); ++k) {
+        fitted += form->parameters[k].fitted;
+        EXPECT_GE(e.parameters[k], form->parameters[k].low) << e.name;
+        EXPECT_LE(e.parameters[k], form->parameters[k].high) << e.name;
+      }
+    }
+    EXPECT_EQ(c.parameters, fitted) << c.parts[0].name;
+  }
+}
+
+TEST(EffectCandidates, FaultsOfASensorMayBeOfOneGroup) {
+  const auto all = offered(trialWith({}, nothing, 0.1, "side"));
+  const auto of = [&](const std::string& name) {
+    std::multiset<std::string> values;
+    for (const Candidate& c : all)
+      if (c.parts.size() == 1 && c.parts[0].name == name) values.insert(c.parts[0].only_value);
+    return values;
+  };
+  EXPECT_EQ(of("torque_offset"), (std::multiset<std::string>{"", "left", "right"}));
+  EXPECT_EQ(of("slip_sinkage_ding"), std::multiset<std::string>{""});
+}
+
+TEST(EffectCandidates, CurvesAreFlatAndOfMeasuredChannels) {
+  const Trial trial = trialWith({}, nothing);
+  const auto all = empiricalCandidates(trial, Eigen::VectorXd::LinSpaced(40, 0.005, 0.02));
+  ASSERT_FALSE(all.empty());
+  for (const Candidate& c : all) {
+    EXPECT_EQ(c.family, "empirical");
+    EXPECT_TRUE(c.empirical());
+    for (const Effect& e : c.parts) {
+      EXPECT_TRUE(trial.has(e.channel)) << e.covariate;
+      EXPECT_EQ(e.knots.size(), e.parameters.size());
+      EXPECT_TRUE(std::is_sorted(e.knots.begin(), e.knots.end()));
+      for (const double p : e.parameters) EXPECT_EQ(p, 0.0);
+      // A curve of the sinkage in the sinkage would explain it by itself.
+      EXPECT_FALSE(e.covariate == "sinkage_m" && e.channel == Channel::Sinkage);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace talus::terramech

@@ -1,0 +1,112 @@
+#include <gtest/gtest.h>
+
+#include "calibration/synthetic_table.hpp"
+
+namespace talus::terramech {
+namespace {
+
+TEST(GainDistribution, OneTableOfTwentyWithoutAnEffectRaisesAnAlarm) {
+  // Property: of 120 tables with errors by run, 6 exceed their own threshold of 5 %; 13 or more have
+  // probability 0.006.
+  int alarms = 0;
+  for (std::uint64_t seed = 1; seed <= 120; ++seed) {
+    SyntheticTable table(12, 8, 1.5, seed);
+    std::vector<std::vector<double>> columns;
+    for (int k = 0; k < 8; ++k) columns.push_back(k % 2 ? table.byRow() : table.byRun());
+    const GainDistribution d = table.contest(columns, seed);
+    alarms += *std::max_element(d.gain.begin(), d.gain.end()) > d.threshold(0.05);
+  }
+  EXPECT_LE(alarms, 12);
+}
+
+TEST(GainDistribution, AnEffectFixedWithinEachRunIsFoundThoughRunsErr) {
+  // Property: the covariance of the runs' error is found again with the effect in the model.
+  int found = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    SyntheticTable table(16, 10, 0.3, seed);
+    const auto cause = table.byRun(), other = table.byRun(), noise = table.byRow();
+    table.hide(cause, 1.0);
+    const GainDistribution d = table.contest({other, cause, noise}, seed);
+    found += d.gain[1] > d.threshold(0.05) && d.gain[1] > d.gain[0] && d.gain[1] > d.gain[2];
+  }
+  EXPECT_GE(found, 19);
+}
+
+TEST(GainDistribution, AnErrorOfRunsIsNoEvidenceForWhatVariesWithThem) {
+  // Property: with an error of runs five times the noise of rows, one run in twelve that stands out is no cause.
+  int alarms = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    SyntheticTable table(12, 20, 5.0, seed);
+    const GainDistribution d = table.contest({table.byRun(), table.byRun(), table.byRun()}, seed);
+    alarms += *std::max_element(d.gain.begin(), d.gain.end()) > d.threshold(0.05);
+  }
+  EXPECT_LE(alarms, 6);  // 2 expected; 7 or more have probability 0.004
+}
+
+TEST(GainDistribution, WhatReturnsTheSoilToItsPriorIsCredited) {
+  // Closed form: a constant of 3 that a known number took, eight of its standard deviations from its prior. A
+  // contender of the same shape lets it return: that alone is worth 32.
+  SyntheticTable table(10, 10, 0.0, 7);
+  table.null.unit.clear();
+  const std::vector<double> constant(100, 1.0);
+  table.null.known.prior = {Eigen::VectorXd::Constant(1, -3.0), Eigen::VectorXd::Constant(1, 64.0 / 9.0)};
+  const GainDistribution d = table.contest({constant});
+  EXPECT_NEAR(d.gain[0], 32.0, 4.0);
+}
+
+TEST(GainDistribution, TablesWithoutAnEffectHaveASoilFromItsPrior) {
+  // Property: how far the rows moved the soil changes what they gain, not what a table without an effect would.
+  SyntheticTable table(10, 10, 0.0, 7);
+  table.null.unit.clear();
+  table.null.soil = 1;
+  const std::vector<double> constant(100, 1.0);
+  const auto threshold = [&](double prior) {
+    table.null.known.prior = {Eigen::VectorXd::Constant(1, prior), Eigen::VectorXd::Constant(1, 64.0 / 9.0)};
+    return table.contest({constant, table.byRow()}).threshold(0.05);
+  };
+  const double here = threshold(0.0);
+  EXPECT_NEAR(threshold(-30.0), here, 0.5 + 0.2 * here);
+  EXPECT_LT(here, 10.0);  // 32 and more were soils drawn where the rows moved them
+}
+
+TEST(GainDistribution, AFirstStepThatMayNotBeNegativeGainsNothingThere) {
+  SyntheticTable table(10, 10, 0.0, 9);
+  const auto cause = table.byRow();
+  table.hide(cause, -1.0);
+  const auto contest = [&](bool positive) {
+    return gainDistribution(table.null,
+                            {1,
+                             [&](std::size_t) {
+                               Contender c = SyntheticTable::added(cause);
+                               c.positive = positive;
+                               return c;
+                             }},
+                            0, 1, [](double) { return true; })
+        .gain[0];
+  };
+  EXPECT_GT(contest(false), 20.0);
+  EXPECT_EQ(contest(true), 0.0);
+}
+
+TEST(GainDistribution, PValuesCountTheTableItself) {
+  GainDistribution d;
+  d.greatest = {0.0, 1.0, 2.0, 3.0};
+  EXPECT_EQ(d.pValue(9.0), 0.2);  // Closed form: (0 + 1) / (4 + 1)
+  EXPECT_EQ(d.pValue(2.0), 0.6);
+  EXPECT_EQ(d.pValue(-1.0), 1.0);
+  EXPECT_EQ(d.threshold(0.2), 3.0);
+}
+
+TEST(GainDistribution, AStoppedWatchEndsIt) {
+  SyntheticTable table(10, 10, 0.0, 9);
+  int asked = 0;
+  const auto column = table.byRow();
+  const GainDistribution d =
+      gainDistribution(table.null, {50, [&](std::size_t) { return SyntheticTable::added(column); }}, 99, 1,
+                       [&](double) { return ++asked < 4; });
+  EXPECT_EQ(asked, 4);
+  EXPECT_TRUE(d.greatest.empty());
+}
+
+}  // namespace
+}  // namespace talus::terramech

@@ -1,0 +1,85 @@
+#include <cmath>
+
+#include <talus/terramech/calibration/noise/input_calibration.hpp>
+
+#include "calibration/slip_rows.hpp"
+
+namespace talus::terramech {
+namespace {
+
+TEST(InputCalibration, OneLevelOfSlipIsNotSeenToVary) {
+  EXPECT_FALSE(slipIsSeen(trialOf(scattered(0.3, 0.01, 200)), slipNoise(0.03)));
+  // Property: scatter beyond twice the error is seen, however large an error is claimed.
+  EXPECT_TRUE(slipIsSeen(trialOf(scattered(0.3, 0.025, 200)), slipNoise(0.03)));
+  EXPECT_TRUE(slipIsSeen(trialOf(scattered(0.3, 0.1, 200)), slipNoise(0.9)));
+}
+
+TEST(InputCalibration, ErrorsAboutOneLevelAreTakenOut) {
+  // Closed form: scatter equal to the error keeps nothing of it; the speed over ground, had from the slip,
+  // follows.
+  const std::vector<double> measured = scattered(0.4, 0.012, 400);
+  Trial trial = trialOf(measured);
+  double mean = 0.0;
+  for (double slip : measured) mean += slip / 400.0;
+  calibrateInputs(trial, slipNoise(0.05));
+  for (const WheelState& s : trial.states) {
+    EXPECT_NEAR(s.slip, mean, 1e-12);
+    EXPECT_NEAR(s.speed_mps, 0.1 * (1.0 - mean), 1e-12);
+  }
+}
+
+TEST(InputCalibration, OnlyASpeedThatAgreesWithTheSlipFollowsIt) {
+  WheelState own{.slip = 0.2, .speed_mps = 0.05, .rim_speed_mps = 0.1};
+  setSlip(own, 0.3);
+  EXPECT_EQ(own.speed_mps, 0.05);
+  WheelState tied{.slip = 0.2, .speed_mps = 0.08, .rim_speed_mps = 0.1};
+  setSlip(tied, 0.3);
+  EXPECT_NEAR(tied.speed_mps, 0.07, 1e-15);
+  EXPECT_EQ(tied.slip, 0.3);
+}
+
+TEST(InputCalibration, TheirMeanErrsLess) {
+  // Closed form: sigma / sqrt(n).
+  const Eigen::VectorXd shared = sharedSlipStd(trialOf(std::vector<double>(100, 0.5)), slipNoise(0.04));
+  ASSERT_EQ(shared.size(), 100);
+  EXPECT_NEAR(shared[7], 0.02 / 10.0, 1e-12);
+}
+
+/// True slips over a range, rims that make one travel speed of them; measured slips err by `relative`.
+Trial atOneSpeed(double relative, double speed_scatter) {
+  const std::vector<double> error = scattered(0.0, 1.0, 120), other = scattered(0.0, speed_scatter, 120);
+  std::vector<double> slips;
+  for (int k = 0; k < 120; ++k)
+    slips.push_back((0.1 + 0.005 * k) * (1.0 + relative * error[static_cast<std::size_t>(k)]));
+  Trial trial = trialOf(slips);
+  for (std::size_t k = 0; k < 120; ++k) {
+    WheelState& s = trial.states[k];
+    s.rim_speed_mps = 0.02 * std::exp(other[119 - k]) / (0.9 - 0.005 * static_cast<double>(k));
+    s.speed_mps = s.rim_speed_mps * (1.0 - s.slip);
+  }
+  return trial;
+}
+
+TEST(InputCalibration, OneSpeedOfTravelTellsTheSlips) {
+  Trial trial = atOneSpeed(0.04, 0.0);
+  ASSERT_TRUE(slipIsSeen(trial, slipNoise(0.04)));
+  EXPECT_FALSE(speedIsSeen(trial, slipNoise(0.04)));
+  EXPECT_GT(sharedSlipStd(trial, slipNoise(0.04)).size(), 0);
+  calibrateInputs(trial, slipNoise(0.04));
+  double worst = 0.0;
+  for (std::size_t k = 0; k < 120; ++k)
+    worst = std::max(worst, std::abs(trial.states[k].slip - (0.1 + 0.005 * static_cast<double>(k))));
+  // Property: errors of 0.004 to 0.03 become what is left of them in the mean speed.
+  EXPECT_LT(worst, 0.003);
+}
+
+TEST(InputCalibration, SpeedsThatVaryTellNoSlips) {
+  EXPECT_TRUE(speedIsSeen(atOneSpeed(0.04, 0.3), slipNoise(0.04)));
+  Trial own = atOneSpeed(0.04, 0.0);
+  own.states[3].speed_mps *= 1.1;
+  EXPECT_TRUE(speedIsSeen(own, slipNoise(0.04)));
+  EXPECT_EQ(sharedSlipStd(own, slipNoise(0.04)).size(), 0);
+}
+
+}  // namespace
+}  // namespace talus::terramech

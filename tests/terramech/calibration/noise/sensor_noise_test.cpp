@@ -1,0 +1,85 @@
+#include <cmath>
+
+#include <talus/terramech/calibration/noise/sensor_noise.hpp>
+
+#include "calibration/slip_rows.hpp"
+
+namespace talus::terramech {
+namespace {
+
+using testing::ElementsAre;
+
+// Rows of slips from 0.1 to 0.6 that measure the pull alone.
+Trial pullAlone(int rows) {
+  std::vector<double> slips;
+  for (int k = 0; k < rows; ++k) slips.push_back(0.1 + 0.5 * ((k * 37) % rows) / rows);
+  Trial trial = trialOf(slips);
+  trial.covariates = {"slip"};
+  trial.measured.rightCols(kChannels - 1).setConstant(std::nan(""));
+  return trial;
+}
+
+// A normal error of the pull over load.
+Eigen::MatrixXd pullError(const Trial& trial, double std) {
+  Eigen::MatrixXd residual = trial.measured;
+  const std::vector<double> error = scattered(0.0, std, trial.rows());
+  for (int row = 0; row < trial.rows(); ++row) residual(row, 0) = error[static_cast<std::size_t>(row)];
+  return residual;
+}
+
+TEST(SensorNoise, ItIsFoundWhereNothingElseIs) {
+  const Trial trial = pullAlone(400);
+  const Eigen::MatrixXd level = Eigen::MatrixXd::Constant(400, kChannels, 0.2);
+  const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(400, kChannels);
+  for (const double std : {0.01, 0.04}) {
+    const SensorNoise noise = fitNoise(trial, pullError(trial, std), level, {none, none}, {});
+    // Closed form: absolute and relative parts of a level of 0.2 of 50 N add in squares. Tolerance: 400 values
+    // know their standard deviation to 3.5 %.
+    EXPECT_NEAR(std::hypot(noise.absolute[0] / 50.0, 0.2 * noise.relative[0]), std, 0.12 * std);
+  }
+}
+
+TEST(SensorNoise, WhatIsStatedIsBelievedWhereRowsAreFew) {
+  const Trial trial = pullAlone(8);
+  const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(8, kChannels);
+  const SensorNoise noise =
+      fitNoise(trial, pullError(trial, 0.02), none, {none, none}, {.drawbar_pull_N = 1.0});
+  // Property: within three times the 25 % by which a stated number is believed.
+  EXPECT_NEAR(std::log(noise.absolute[0] / 1.0), 0.0, 0.75);
+}
+
+TEST(SensorNoise, WithoutASmoothOnlyNoiseIsLeft) {
+  const Trial trial = pullAlone(200);
+  Eigen::MatrixXd line = trial.measured;
+  for (int row = 0; row < 200; ++row) line(row, 0) = 3.0 - 4.0 * trial.slip[static_cast<std::size_t>(row)];
+  // Closed form: a spline holds lines.
+  EXPECT_LT(withoutSmooth(trial, line, {"slip"}).col(0).norm(), 1e-9);
+  EXPECT_TRUE(std::isnan(withoutSmooth(trial, line, {"slip"})(0, 1)));
+}
+
+// Property: of noise the mean square stays, for the freedom that was taken is made up for. Tolerance: four
+// standard errors of the ratio over 300 tables, for which four columns of forty rows make a tenth.
+TEST(SensorNoise, ASmoothTakesNoNoiseAway) {
+  const Trial trial = pullAlone(40);
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal;
+  double before = 0.0, after = 0.0;
+  for (int table = 0; table < 300; ++table) {
+    Eigen::MatrixXd error = trial.measured;
+    for (int row = 0; row < 40; ++row) error(row, 0) = normal(random);
+    before += error.col(0).squaredNorm();
+    after += withoutSmooth(trial, error, {"slip"}).col(0).squaredNorm();
+  }
+  EXPECT_NEAR(after / before, 1.0, 0.02);
+}
+
+TEST(SensorNoise, SpeedsTellTheSlipTogetherWithTheRims) {
+  Trial trial;
+  trial.covariates = {"slip", "load_N", "speed_mps"};
+  EXPECT_THAT(allButSlip(trial), ElementsAre("load_N", "speed_mps"));
+  trial.covariates.emplace_back("rim_speed_mps");
+  EXPECT_THAT(allButSlip(trial), ElementsAre("load_N", "rim_speed_mps"));
+}
+
+}  // namespace
+}  // namespace talus::terramech

@@ -1,0 +1,88 @@
+#include <cmath>
+#include <random>
+
+#include <Eigen/LU>
+#include <gtest/gtest.h>
+
+#include <talus/terramech/calibration/noise/whitening.hpp>
+
+namespace talus::terramech {
+namespace {
+
+constexpr int kUnits = 40, kRows = 6;
+
+std::vector<int> units() {
+  std::vector<int> unit;
+  for (int row = 0; row < kUnits * kRows; ++row) unit.push_back(row / kRows);
+  return unit;
+}
+
+/// Rows of unit noise in one channel, each unit with an offset of its own.
+Eigen::MatrixXd residual(double offset_std, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  Eigen::MatrixXd r = Eigen::MatrixXd::Constant(kUnits * kRows, kChannels, std::nan(""));
+  for (int u = 0; u < kUnits; ++u) {
+    const double offset = offset_std * normal(random);
+    for (int k = 0; k < kRows; ++k) r(u * kRows + k, 0) = offset + normal(random);
+  }
+  return r;
+}
+
+Whitening plain() {
+  Whitening w;
+  w.factor.assign(kUnits * kRows, Eigen::Matrix4d(Eigen::Vector4d(1, 0, 0, 0).asDiagonal()));
+  w.std = Eigen::MatrixXd::Ones(kUnits * kRows, kChannels);
+  return w;
+}
+
+TEST(Whitening, AMeanThatRowsShareWeighsWhatItIsWorth) {
+  // Closed form: with variance q shared and 1 of its own, the mean of m rows has variance q + 1/m, so that a
+  // constant of 1 is worth units / (q + 1/m) in chi-squared.
+  Whitening w = plain();
+  w.unit = units();
+  w.run(0, 0) = 4.0;
+  const Eigen::MatrixXd one = Eigen::MatrixXd::Ones(kUnits * kRows, kChannels);
+  EXPECT_NEAR(w.apply(one).squaredNorm(), kUnits / (4.0 + 1.0 / kRows), 1e-9);
+}
+
+TEST(Whitening, RowsThatShareNothingAreLeftAlone) {
+  Whitening w = plain();
+  const Eigen::MatrixXd r = residual(0.0, 3);
+  double sum = 0.0;
+  for (double v : r.col(0)) sum += v * v;
+  EXPECT_NEAR(w.apply(r).squaredNorm(), sum, 1e-9);
+}
+
+TEST(Whitening, IsTheInverseRootOfTheWholeCovariance) {
+  // Independent derivation: r^T V^-1 r with the covariance of the rows written out.
+  Whitening w;
+  std::mt19937_64 random(4);
+  std::normal_distribution<double> normal;
+  const auto noise = [&] {
+    return Eigen::Matrix4d(Eigen::Matrix4d::NullaryExpr([&] { return normal(random); }));
+  };
+  constexpr int kCount = 9;
+  Eigen::MatrixXd v = Eigen::MatrixXd::Zero(4 * kCount, 4 * kCount);
+  const Eigen::Matrix4d root = noise();
+  w.run = root * root.transpose();
+  w.std = Eigen::MatrixXd::Ones(kCount, kChannels);
+  for (int row = 0; row < kCount; ++row) {
+    Eigen::Matrix4d f = noise().triangularView<Eigen::Lower>();
+    f.diagonal() = f.diagonal().cwiseAbs().array() + 0.5;
+    w.factor.push_back(f);
+    w.unit.push_back(row / 3);
+    v.block<4, 4>(4 * row, 4 * row) = (f.transpose() * f).inverse();
+  }
+  for (int a = 0; a < kCount; ++a)
+    for (int b = 0; b < kCount; ++b)
+      if (a / 3 == b / 3) v.block<4, 4>(4 * a, 4 * b) += w.run;
+  Eigen::MatrixXd r(kCount, kChannels);
+  Eigen::VectorXd stacked(4 * kCount);
+  for (int row = 0; row < kCount; ++row)
+    for (int c = 0; c < kChannels; ++c) stacked[4 * row + c] = r(row, c) = normal(random);
+  EXPECT_NEAR(w.apply(r).squaredNorm(), stacked.dot(v.inverse() * stacked), 1e-8);
+}
+
+}  // namespace
+}  // namespace talus::terramech

@@ -1,0 +1,30 @@
+#include <cmath>
+
+#include <talus/terramech/calibration/search/trace_result.hpp>
+
+#include "made_rows.hpp"
+
+namespace talus::terramech {
+namespace {
+
+TEST(TraceResult, ErrorsAreRootMeanSquaresOfEachChannel) {
+  RefinedModel model;
+  model.soil = madeSand();
+  MadeRows rows(wheelColumns());
+  std::mt19937_64 random(1);
+  for (int k = 0; k < 4; ++k) {
+    std::vector<double> row = wheelRow(model.soil, 60.0 + 10.0 * k, 0.2 + 0.1 * k, 0.0, random);
+    row[4] += (k % 2 ? 0.03 : -0.04) * row[0];  // pull
+    if (k == 0) row[2] = std::nan("");          // torque, not measured
+    rows.add(row);
+  }
+  const ChannelErrors errors = rmseOf(model, makeTrial(rows.telemetry(), model));
+  // Closed form: sqrt((0.03^2 + 0.04^2) / 2) in DP/W, nothing in the others; NaN where nothing is measured.
+  EXPECT_NEAR(errors[0], std::sqrt(0.00125), 1e-6);
+  EXPECT_NEAR(errors[1], 0.0, 1e-6);
+  EXPECT_NEAR(errors[2], 0.0, 1e-6);
+  EXPECT_TRUE(std::isnan(errors[3]));
+}
+
+}  // namespace
+}  // namespace talus::terramech

@@ -1,0 +1,120 @@
+#include <cmath>
+#include <set>
+
+#include <talus/terramech/calibration/search/trace_search.hpp>
+
+#include "made_rows.hpp"
+
+namespace talus::terramech {
+namespace {
+
+RefinedModel sand() {
+  RefinedModel model;
+  model.soil = madeSand();
+  return model;
+}
+
+// Rows of the made sand with 2 % errors, the torque 0.8 Nm more.
+Trial offsetTrial() {
+  MadeRows rows(wheelColumns());
+  std::mt19937_64 random(6);
+  for (int k = 0; k < 120; ++k) {
+    std::vector<double> row =
+        wheelRow(madeSand(), 40.0 + (k * 7) % 80, 0.05 + 0.05 * ((k * 11) % 16), 0.02, random);
+    row[2] += 0.8;
+    rows.add(row);
+  }
+  return makeTrial(rows.telemetry(), sand());
+}
+
+Candidate torqueOffset() {
+  return {{{.name = "torque_offset", .covariate = "load_N", .channel = Channel::Torque, .parameters = {0.2}}},
+          "torque_sensor",
+          1};
+}
+
+TEST(TraceSearch, ScreeningPutsWhatTheRowsHideFirst) {
+  TraceSearch search(sand(), offsetTrial(), {});
+  const auto screening = search.screen(19);
+  ASSERT_FALSE(screening.promises.empty());
+  EXPECT_EQ(screening.promises.front().candidate.family, "torque_sensor");
+  EXPECT_GT(screening.promises.front().gain, screening.threshold);
+  EXPECT_EQ(screening.promises.front().p_value, 0.05);  // Closed form: 1 / (19 + 1)
+  for (std::size_t k = 1; k < screening.promises.size(); ++k)
+    EXPECT_LE(screening.promises[k].gain, screening.promises[k - 1].gain);
+}
+
+TEST(TraceSearch, APromiseIsWhatTheFitKeeps) {
+  // Property: an offset is linear, so that what it gains to first order it gains when fitted, up to the noise of
+  // slip and load that its relative part moves.
+  TraceSearch search(sand(), offsetTrial(), {});
+  const Promise promise = search.screen(0).promises.front();
+  EXPECT_NEAR(search.fitted(promise.candidate).gain, promise.gain, 0.02 * promise.gain);
+}
+
+TEST(TraceSearch, WhatIsAcceptedIsFittedAndWhatIsLeftOutIsGone) {
+  TraceSearch search(sand(), offsetTrial(), {});
+  const double before = search.chi2();
+  search.accept(torqueOffset());
+  // Property: the number that made the rows, within three standard deviations of a mean of 120 errors of 0.05 Nm
+  // and the slip's share.
+  ASSERT_EQ(search.parts(0).size(), 1U);
+  EXPECT_NEAR(search.parts(0)[0].parameters[0], 0.8, 0.05);
+  EXPECT_LT(search.chi2(), before);
+  EXPECT_GT(search.gainOf(0), 100.0);
+  search.leaveOut(0);
+  search.settleAll();
+  EXPECT_TRUE(search.model().effects.empty());
+  EXPECT_NEAR(search.chi2(), before, 1e-6 * before);
+}
+
+TEST(TraceSearch, LeavingOutKeepsTheNoiseAsItIs) {
+  TraceSearch search(sand(), offsetTrial(), {});
+  search.accept(torqueOffset());
+  const double with = search.chi2();
+  const SensorNoise noise = search.model().noise;
+  search.leaveOut(0);
+  EXPECT_GT(search.chi2(), 3.0 * with);  // 0.8 Nm against errors of 0.05 Nm
+  EXPECT_EQ(search.model().noise.absolute, noise.absolute);
+}
+
+TEST(TraceSearch, ATrustedPriorHoldsTheFirstParameter) {
+  TraceSearch search(sand(), offsetTrial(), {});
+  search.trust(Estimate{.value = 0.3, .std = 1e-4});
+  search.accept(torqueOffset());
+  EXPECT_NEAR(search.parts(0)[0].parameters[0], 0.3, 0.01);
+}
+
+TEST(TraceSearch, PairsTellTwoFaultsApart) {
+  // Property: a torque off by 0.8 Nm and a pull by 0.05 W; no single candidate carries both.
+  MadeRows rows(wheelColumns());
+  std::mt19937_64 random(8);
+  for (int k = 0; k < 80; ++k) {
+    std::vector<double> row =
+        wheelRow(madeSand(), 40.0 + (k * 7) % 80, 0.05 + 0.05 * ((k * 11) % 16), 0.02, random);
+    row[2] += 0.8;
+    row[4] += 0.05 * row[0];
+    rows.add(row);
+  }
+  TraceSearch search(sand(), makeTrial(rows.telemetry(), sand()), {});
+  const auto ranked = search.pairs();
+  ASSERT_FALSE(ranked.empty());
+  std::set<Channel> channels;
+  for (const Effect& part : ranked.front().candidate.parts) channels.insert(part.channel);
+  EXPECT_EQ(channels, (std::set{Channel::Torque, Channel::DrawbarPull}));
+  for (const Promise& single : search.screen(0).promises)
+    EXPECT_GT(ranked.front().gain, single.gain + closeGain({}));
+}
+
+TEST(TraceSearch, OfFormsTakenTogetherOnlyThoseThatPayStay) {
+  TraceSearch search(sand(), offsetTrial(), {});
+  Candidate both = torqueOffset();
+  both.parts.push_back({.name = "elastic_rebound", .covariate = "sinkage_m", .parameters = {0.1}});
+  search.accept(both);
+  search.thin(0);
+  ASSERT_EQ(search.parts(0).size(), 1U);
+  EXPECT_EQ(search.parts(0)[0].name, "torque_offset");
+}
+
+}  // namespace
+}  // namespace talus::terramech

@@ -1,0 +1,99 @@
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include <talus/terramech/calibration/table/trial.hpp>
+
+#include "made_rows.hpp"
+
+namespace talus::terramech {
+namespace {
+
+constexpr double kMissing = WheelState::kUnknown;
+
+// Two wheels, the front one's load `front_N`, at three moments on rising slopes.
+Telemetry drive(double front_N, double pull_N = kMissing) {
+  Telemetry t;
+  t.source = "drive.csv";
+  t.numbers = {{"load_N", {}},         {"slip", {}},          {"sinkage_m", {}},
+               {"slope_rad", {}},      {"time_s", {}},        {"pass_index", {}},
+               {"wheel_radius_m", {}}, {"wheel_width_m", {}}, {"drawbar_pull_N", {}}};
+  t.words = {{"run", {}}, {"wheel", {}}};
+  for (int moment = 0; moment < 3; ++moment)
+    for (int wheel = 0; wheel < 2; ++wheel) {
+      const std::vector<double> row{wheel == 0 ? front_N : 100.0,
+                                    0.1 + 0.05 * moment,
+                                    0.01,
+                                    0.05 * (moment + 1),
+                                    10.0 * moment,
+                                    1.0 + wheel,
+                                    0.1,
+                                    0.1,
+                                    pull_N};
+      for (std::size_t k = 0; k < row.size(); ++k) t.numbers[k].values.push_back(row[k]);
+      t.words[0].values.push_back("one");
+      t.words[1].values.push_back(wheel == 0 ? "front" : "rear");
+      t.lines.push_back(t.lines.size() + 2);
+    }
+  return t;
+}
+
+TEST(Trial, ARoversPullIsWhatTheSlopeAsks) {
+  const Trial trial = makeTrial(drive(80.0), RefinedModel{});
+  ASSERT_EQ(trial.moment, (std::vector<int>{0, 0, 1, 1, 2, 2}));
+  EXPECT_EQ(trial.run, trial.moment);
+  for (int row = 0; row < 6; ++row) {
+    // Closed form: steady motion, sum(DP) = tan(slope) sum(W), said of the first wheel of each moment.
+    if (row % 2 == 0)
+      EXPECT_NEAR(trial.measured(row, 0), std::tan(0.05 * (row / 2 + 1)), 1e-15);
+    else
+      EXPECT_TRUE(std::isnan(trial.measured(row, 0)));
+  }
+  // What the pull was had from is no cause of it.
+  EXPECT_EQ(std::count(trial.covariates.begin(), trial.covariates.end(), "slope_rad"), 0);
+  EXPECT_EQ(std::count(trial.covariates.begin(), trial.covariates.end(), "pass_index"), 1);
+}
+
+TEST(Trial, ItsModelledPullIsThatOfAllWheelsUnderTheirLoads) {
+  const Trial trial = makeTrial(drive(60.0), RefinedModel{});
+  RefinedModel model;
+  model.soil = {
+      .cohesion_Pa = 800.0, .friction_angle_rad = 0.5, .frictional_modulus = 1e6, .shear_modulus_m = 0.015};
+  SolvedContacts solved;
+  const Eigen::MatrixXd level = predictRows(model, trial, solved);
+  for (int row = 0; row < 6; row += 2) {
+    const auto r = static_cast<std::size_t>(row);
+    const double pull_N =
+        predict(model, trial.states[r]).drawbar_pull_N + predict(model, trial.states[r + 1]).drawbar_pull_N;
+    EXPECT_NEAR(level(row, 0), pull_N / 160.0, 1e-9);  // Closed form: each wheel alone
+    EXPECT_NEAR(level(row, 1), predict(model, trial.states[r]).sinkage_m / 0.1, 1e-9);
+  }
+}
+
+TEST(Trial, WithoutAllItsWheelsTheRoversPullIsNotKnown) {
+  const Trial part = subset(makeTrial(drive(80.0), RefinedModel{}), {1, 1, 1, 0, 1, 1});
+  EXPECT_TRUE(std::isfinite(part.measured(0, 0)));
+  EXPECT_TRUE(std::isnan(part.measured(2, 0)));
+  EXPECT_TRUE(std::isfinite(part.measured(3, 0)));
+}
+
+TEST(Trial, RowsThatAreNoDriveShareNothing) {
+  EXPECT_TRUE(makeTrial(drive(80.0, 5.0), RefinedModel{}).moment.empty());  // the pull is measured
+  Telemetry same = drive(80.0);
+  same.words[1].values.assign(6, "front");  // repeats of one wheel
+  EXPECT_TRUE(makeTrial(same, RefinedModel{}).moment.empty());
+  Telemetry unnamed = drive(80.0);
+  unnamed.words.pop_back();
+  EXPECT_TRUE(makeTrial(unnamed, RefinedModel{}).moment.empty());
+}
+
+TEST(Trial, AWheelSunkToItsAxleIsBeyondItAndUnknownSinkageIsNot) {
+  MadeRows rows(wheelColumns());
+  for (const double z : {0.05, 0.0999, 0.1, 0.15}) rows.add({60.0, 0.2, 2.0, z, 5.0, 0.1, 0.1});
+  rows.add({60.0, 0.2, 2.0, std::nan(""), 5.0, 0.1, 0.1});
+  // Closed form: z >= r = 0.1 m.
+  EXPECT_EQ(beyondAxle(makeTrial(rows.telemetry(), {})), (std::vector<char>{0, 0, 1, 1, 0}));
+}
+
+}  // namespace
+}  // namespace talus::terramech

@@ -1,0 +1,79 @@
+#include <cmath>
+#include <stdexcept>
+
+#include <talus/common/input_error.hpp>
+#include <talus/terramech/calibration/tables/assessment.hpp>
+
+#include "calibration/wheel_table.hpp"
+
+namespace talus::terramech {
+namespace {
+
+WheelForces forcesOf(std::size_t line) {
+  return equilibrium(kMadeSoil, kMadeWheel, madeOperation(static_cast<int>(line) - 2));
+}
+
+TEST(Assessment, GivesThePullOfEachRow) {
+  const WheelTable table;
+  const AssessedTable assessed = assessTable({.table = table.path()}, {});
+  ASSERT_EQ(assessed.rows.size(), 12U);
+  for (const Assessment& row : assessed.rows) {
+    const double load_N = madeOperation(static_cast<int>(row.line) - 2).load_N;
+    // Tolerance: our estimator's error is 0.002 to 0.007 (drawbar_pull.hpp).
+    EXPECT_NEAR(row.pull.value, forcesOf(row.line).drawbar_pull_N / load_N, 0.01);
+    EXPECT_NEAR(row.torque_over_load_radius, forcesOf(row.line).torque_Nm / (load_N * 0.15), 1e-12);
+    EXPECT_NEAR(row.sinkage_over_radius.value, forcesOf(row.line).sinkage_m / 0.15, 1e-12);
+    EXPECT_NEAR(row.sinkage_over_radius.std, 0.05 * row.sinkage_over_radius.value, 1e-12);
+    EXPECT_FALSE(row.forecast);
+  }
+}
+
+TEST(Assessment, AModelOfTheSoilGivesItsOwnPull) {
+  const WheelTable table;
+  const test::TemporaryFile model{kMadeSoilText, ".yaml"};
+  const AssessedTable assessed = assessTable({.table = table.path(), .model = model.path()}, {});
+  ASSERT_EQ(assessed.rows.size(), 12U);
+  for (const Assessment& row : assessed.rows) {
+    const double load_N = madeOperation(static_cast<int>(row.line) - 2).load_N;
+    EXPECT_NEAR(row.pull.value, forcesOf(row.line).drawbar_pull_N / load_N, 1e-6);
+  }
+}
+
+// Closed form: above its threshold the sinkage costs one category, above the critical one it is dangerous.
+TEST(Assessment, SinkageAboveItsBoundsIsWorse) {
+  const WheelTable table;
+  const auto category = [&](double threshold, double critical) {
+    return assessTable(
+               {.table = table.path(), .slope_rad = 0.0, .z_threshold = threshold, .z_critical = critical},
+               {})
+        .rows.back()
+        .category;
+  };
+  ASSERT_EQ(category(0.9, 0.95), Category::Safe);
+  EXPECT_EQ(category(1e-6, 0.95), Category::Marginal);
+  EXPECT_EQ(category(1e-6, 2e-6), Category::Dangerous);
+}
+
+TEST(Assessment, ForecastsOfTheReferenceSlipAreNearTheTruth) {
+  const WheelTable table;
+  const AssessedTable assessed = assessTable({.table = table.path(), .noise = 0.01, .extrapolate = true}, {});
+  for (const Assessment& row : assessed.rows) {
+    ASSERT_TRUE(row.forecast);
+    const double load_N = madeOperation(static_cast<int>(row.line) - 2).load_N;
+    const WheelForces at = equilibrium(kMadeSoil, kMadeWheel, {.load_N = load_N, .slip = 0.5});
+    EXPECT_NEAR(row.forecast->at_reference.value, at.drawbar_pull_N / load_N, 0.02);
+  }
+}
+
+TEST(Assessment, WhatCannotBeJudgedIsRefused) {
+  const WheelTable table;
+  EXPECT_THROW(assessTable({.table = table.path(), .formula = "no-such"}, {}), std::invalid_argument);
+  EXPECT_THROW(assessTable({.table = table.path(), .z_threshold = 0.8, .z_critical = 0.5}, {}),
+               std::invalid_argument);
+  const test::TemporaryFile soilless{"model: wong-reece\n", ".yaml"};
+  EXPECT_THROW(assessTable({.table = table.path(), .model = soilless.path()}, {}), InputError);
+  EXPECT_THROW(assessTable({.table = "no_such_table.csv"}, {}), InputError);
+}
+
+}  // namespace
+}  // namespace talus::terramech

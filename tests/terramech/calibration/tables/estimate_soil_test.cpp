@@ -1,0 +1,116 @@
+#include <cmath>
+
+#include <talus/common/input_error.hpp>
+#include <talus/terramech/calibration/tables/estimate_soil.hpp>
+#include <talus/terramech/effects/refined_model.hpp>
+
+#include "calibration/wheel_table.hpp"
+
+namespace talus::terramech {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+TEST(EstimateSoil, ExactRowsGiveTheSoilThatMadeThem) {
+  const WheelTable table;
+  const SoilEstimate found =
+      estimateSoil({.table = table.path(), .method = "wong-reece", .noise = 0.005}, {});
+  EXPECT_EQ(found.rows_used, 12U);
+  EXPECT_NEAR(found.cohesion_Pa, kMadeSoil.cohesion_Pa, 150.0);
+  EXPECT_NEAR(found.friction_angle_rad, kMadeSoil.friction_angle_rad, 0.02);
+}
+
+// Rows of the made soil at slip angles to either side, with or without what the wheel holds.
+std::string angledRows(bool side_force, double times = 1.0) {
+  RefinedModel model;
+  model.soil = kMadeSoil;
+  std::string text = kWheelHead + ",slip_angle_rad" + (side_force ? ",side_force_N" : "") + "\n";
+  for (int k = 0; k < 24; ++k) {
+    const WheelState s{.wheel = kMadeWheel,
+                       .load_N = 100.0 + 10.0 * (k % 5),
+                       .slip = 0.05 + 0.02 * k,
+                       .slip_angle_rad = 0.2 * (k % 4 - 1)};
+    const Reading r = predict(model, s);
+    text += wheelLine({s.load_N, r.torque_Nm, r.sinkage_m, s.slip}, kMadeWheel) + "," +
+            std::to_string(s.slip_angle_rad);
+    text += (side_force ? "," + std::to_string(times * r.side_force_N) : "") + "\n";
+  }
+  return text;
+}
+
+TEST(EstimateSoil, SideForcesAreHeldAgainstTheWholeModel) {
+  const test::TemporaryFile with{angledRows(true)}, without{angledRows(false)};
+  const SoilEstimate found = estimateSoil({.table = with.path(), .method = "wong-reece", .noise = 0.01}, {});
+  EXPECT_EQ(found.rows_used, 24U);
+  EXPECT_NEAR(found.cohesion_Pa, kMadeSoil.cohesion_Pa, 3.0 * std::sqrt(found.covariance(0, 0)));
+  EXPECT_NEAR(found.tan_friction, std::tan(0.45), 3.0 * std::sqrt(found.covariance(1, 1)));
+  EXPECT_LT(std::sqrt(found.covariance(1, 1)), 0.05);
+  // Without their side force, or by a line, only the six straight rows say something.
+  EXPECT_EQ(estimateSoil({.table = without.path(), .method = "wong-reece", .noise = 0.01}, {}).rows_used, 6U);
+  EXPECT_EQ(estimateSoil({.table = with.path(), .method = "linear-offset"}, {}).rejected.size(), 18U);
+  EXPECT_THAT([&] { estimateSoil({.table = with.path(), .method = "wong-reece", .recursive = true}, {}); },
+              ThrowsMessage<InputError>(HasSubstr("side forces, which are fitted all at once")));
+}
+
+// Property: side forces of another unit are those of no soil, whatever the bounds of the search make of them; the column is named.
+TEST(EstimateSoil, SideForcesThatNoSoilGivesEndInNone) {
+  for (const double times : {100.0, 1000.0}) {
+    const test::TemporaryFile table{angledRows(true, times)};
+    EXPECT_THAT([&] { estimateSoil({.table = table.path(), .method = "wong-reece"}, {}); },
+                ThrowsMessage<std::domain_error>(testing::AllOf(
+                    HasSubstr(table.path() + ": no soil explains the rows"),
+                    HasSubstr("check unit, sign and sensor of column side_force_N, without which"))))
+        << times;
+  }
+}
+
+// Rows of the made soil at one slip angle, with pull and a side force of so much of the load.
+std::string heldRows(double slip_angle_rad, double side_over_load) {
+  RefinedModel model;
+  model.soil = kMadeSoil;
+  std::string text = kWheelHead + ",drawbar_pull_N,slip_angle_rad,side_force_N\n";
+  for (int k = 0; k < 20; ++k) {
+    const WheelState s{.wheel = kMadeWheel,
+                       .load_N = 90.0 + 10.0 * (k % 5),
+                       .slip = 0.1 + 0.025 * k,
+                       .slip_angle_rad = slip_angle_rad};
+    const Reading r = predict(model, s);
+    text += wheelLine({s.load_N, r.torque_Nm, r.sinkage_m, s.slip}, kMadeWheel) + "," +
+            std::to_string(r.drawbar_pull_N) + "," + std::to_string(slip_angle_rad) + "," +
+            std::to_string(side_over_load * s.load_N) + "\n";
+  }
+  return text;
+}
+
+// Property: a wheel that runs straight holds nothing across, and one at an angle something; what reads otherwise is named, and no
+// soil is bent to it, be the misfit small.
+TEST(EstimateSoil, AColumnThatContradictsTheOthersEndsInNone) {
+  for (const auto& [angle, side] : {std::pair{0.0, 0.5}, {0.3, 0.0}, {0.3, 0.5}, {0.3, -1.5}}) {
+    const test::TemporaryFile table{heldRows(angle, side)};
+    EXPECT_THAT([&] { estimateSoil({.table = table.path(), .method = "wong-reece"}, {}); },
+                ThrowsMessage<std::domain_error>(testing::AllOf(
+                    HasSubstr(table.path() + ": no soil "),
+                    HasSubstr("check unit, sign and sensor of column side_force_N, without which"))))
+        << angle << ' ' << side;
+  }
+}
+
+// Property: a sensor's offset across is no side force of the soil.
+TEST(EstimateSoil, ALittleSideForceOfStraightWheelsChangesNothing) {
+  const test::TemporaryFile none{heldRows(0.0, 0.0)}, little{heldRows(0.0, 0.05)};
+  EXPECT_EQ(estimateSoil({.table = none.path(), .method = "wong-reece"}, {}).cohesion_Pa,
+            estimateSoil({.table = little.path(), .method = "wong-reece"}, {}).cohesion_Pa);
+}
+
+TEST(EstimateSoil, NamesThatAreNotOnOfferAreRefused) {
+  const WheelTable table;
+  EXPECT_THAT([&] { estimateSoil({.table = table.path(), .method = "wong-rece"}, {}); },
+              ThrowsMessage<InputError>(HasSubstr("'wong-rece': is unknown; there are bevameter")));
+  EXPECT_THAT(
+      [&] { estimateSoil({.table = table.path(), .method = "iagnemma", .shear_modulus = "jointly"}, {}); },
+      ThrowsMessage<InputError>(HasSubstr("'jointly': is unknown")));
+}
+
+}  // namespace
+}  // namespace talus::terramech

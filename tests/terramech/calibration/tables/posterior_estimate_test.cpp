@@ -1,0 +1,79 @@
+#include <cmath>
+
+#include <talus/terramech/calibration/tables/posterior_estimate.hpp>
+
+#include "calibration/wheel_table.hpp"
+
+namespace talus::terramech {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+
+TEST(PosteriorEstimate, IsThePosteriorInTheFormOfAllMethods) {
+  const WheelTable table;
+  const SoilEstimate found =
+      posteriorEstimate({.table = table.path(), .method = "wong-reece", .noise = 0.01}, {});
+  ASSERT_TRUE(found.posterior);
+  EXPECT_EQ(found.cohesion_Pa, found.posterior->mean.cohesion_Pa);
+  EXPECT_EQ(found.frictional_modulus, found.posterior->mean.sinkage_modulus);
+  EXPECT_EQ(found.class_names.size(), found.posterior->class_probabilities.size());
+  // Property: the soil that made the rows lies within three of the standard deviations told.
+  EXPECT_NEAR(found.cohesion_Pa, kMadeSoil.cohesion_Pa, 3.0 * std::sqrt(found.covariance(0, 0)));
+  EXPECT_NEAR(found.tan_friction, std::tan(kMadeSoil.friction_angle_rad),
+              3.0 * std::sqrt(found.covariance(1, 1)));
+  EXPECT_TRUE(found.warnings.empty());
+}
+
+TEST(PosteriorEstimate, AStatedModulusIsKept) {
+  const WheelTable table;
+  EXPECT_NEAR(posteriorEstimate({.table = table.path(), .shear_modulus = "0.02"}, {}).shear_modulus_m, 0.02,
+              1e-12);
+}
+
+TEST(PosteriorEstimate, RowByRowThereIsAnAnswerAfterEach) {
+  const WheelTable table;
+  const EstimateOptions options{.table = table.path(), .recursive = true, .noise = 0.02};
+  const SoilEstimate found = posteriorEstimate(options, {});
+  ASSERT_EQ(found.running.size(), 12U);
+  EXPECT_EQ(found.running.front().line, 2U);
+  EXPECT_EQ(found.running.back().cohesion_Pa, found.cohesion_Pa);
+  // Property: rows add knowledge.
+  EXPECT_LT(found.running.back().covariance(1, 1), found.running.front().covariance(1, 1));
+}
+
+// Rows of one load whose torque changes by so much [N m] from each to the next.
+std::string torqueRows(double first_Nm, double step_Nm) {
+  std::string text = kWheelHead + "\n";
+  for (int k = 0; k < 12; ++k)
+    text += wheelLine({100.0, first_Nm + step_Nm * k, 0.01, 0.1 + 0.05 * k}, kMadeWheel) + "\n";
+  return text;
+}
+
+TEST(PosteriorEstimate, DoubtsAreSaid) {
+  std::string widths = kWheelHead + "\n";
+  for (int k = 0; k < 12; ++k) {
+    const Wheel wheel{.radius_m = 0.15, .width_m = k % 2 ? 0.1 : 0.15};
+    const WheelForces f = equilibrium(kMadeSoil, wheel, madeOperation(k));
+    widths +=
+        wheelLine({madeOperation(k).load_N, f.torque_Nm, f.sinkage_m, madeOperation(k).slip}, wheel) + "\n";
+  }
+  const test::TemporaryFile two{widths};
+  EXPECT_THAT(posteriorEstimate({.table = two.path()}, {}).warnings,
+              Contains(HasSubstr("0.1 to 0.15 m wide")));
+  // A torque that falls by half over the slips, which that of no soil does, but of the size of one.
+  const test::TemporaryFile falling{torqueRows(15.0, -0.6)};
+  EXPECT_THAT(posteriorEstimate({.table = falling.path(), .noise = 0.02}, {}).warnings,
+              Contains(HasSubstr("no soil of the prior")));
+}
+
+// Property: a torque three times that of any soil under the load is no reading of one, and no estimate comes of it.
+TEST(PosteriorEstimate, ATorqueBeyondAnySoilEndsInNone) {
+  const test::TemporaryFile none{torqueRows(45.0, 1.0)};
+  EXPECT_THAT([&] { posteriorEstimate({.table = none.path()}, {}); },
+              testing::ThrowsMessage<std::domain_error>(testing::AllOf(
+                  HasSubstr(none.path() + ": no soil explains the rows"), HasSubstr("torque_Nm"))));
+}
+
+}  // namespace
+}  // namespace talus::terramech

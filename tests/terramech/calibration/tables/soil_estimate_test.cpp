@@ -1,0 +1,72 @@
+#include <cmath>
+
+#include <talus/common/input_error.hpp>
+#include <talus/terramech/calibration/tables/soil_estimate.hpp>
+
+namespace talus::terramech {
+namespace {
+
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+TEST(SoilEstimate, AStatedModulusIsANumberAboveZero) {
+  EXPECT_EQ(statedModulus({.shear_modulus = "0.02"}), 0.02);
+  EXPECT_EQ(statedModulus({.shear_modulus = "2e-2"}), 0.02);
+  for (const char* word : {"", "joint", "0.02m", "0.02 ", "effective-torque"})
+    EXPECT_FALSE(statedModulus({.shear_modulus = word})) << word;
+  for (const char* word : {"0", "-0.02", "inf", "nan"})
+    EXPECT_THAT([&] { statedModulus({.shear_modulus = word}); },
+                ThrowsMessage<InputError>(HasSubstr("must be > 0 [m]")))
+        << word;
+}
+
+TEST(SoilEstimate, StdOfTheAngleIsThatOfItsTangentByTheSlope) {
+  // Closed form: d(phi) = d(tan phi) cos^2(phi); a quarter at 60 deg.
+  Eigen::Matrix2d covariance;
+  covariance << 1e4, 3.0, 3.0, 0.01;
+  EXPECT_NEAR(frictionStd_rad(covariance, M_PI / 3), 0.025, 1e-12);
+}
+
+TEST(SoilEstimate, BeforeAnyFitNothingIsKnown) {
+  const SoilEstimate estimate;
+  EXPECT_TRUE(std::isnan(estimate.cohesion_Pa));
+  EXPECT_TRUE(std::isnan(estimate.friction_angle_rad));
+  EXPECT_TRUE(std::isnan(estimate.covariance(0, 0)));
+  EXPECT_FALSE(estimate.cohesive_modulus);
+}
+
+TEST(SoilEstimate, TakesAFittedLine) {
+  SoilEstimate estimate;
+  estimate.unseen = {"before"};
+  ShearStrength fit;
+  fit.cohesion_Pa = 700.0;
+  fit.tan_friction = 1.0;
+  fit.covariance << 4.0, 0.0, 0.0, 0.01;
+  fit.unseen = {"after"};
+  estimate.take(fit);
+  EXPECT_EQ(estimate.cohesion_Pa, 700.0);
+  EXPECT_NEAR(estimate.friction_angle_rad, M_PI / 4, 1e-12);
+  EXPECT_EQ(estimate.covariance(1, 1), 0.01);
+  EXPECT_THAT(estimate.unseen, testing::ElementsAre("before", "after"));
+}
+
+TEST(SoilEstimate, OnlyWhatIsFarFromAnySoilIsImplausible) {
+  SoilEstimate estimate;
+  estimate.covariance << 1e4, 0.0, 0.0, 0.01;  // 100 Pa, 0.1
+  const auto said = [&](double cohesion_Pa, double tan_friction) {
+    estimate.cohesion_Pa = cohesion_Pa;
+    estimate.tan_friction = tan_friction;
+    return estimate.implausible();
+  };
+  // Closed form: two standard deviations either way, 200 Pa and 0.2.
+  EXPECT_EQ(said(-199.0, 0.5), "");
+  EXPECT_THAT(said(-201.0, 0.5), testing::StartsWith("a cohesion outside"));
+  EXPECT_EQ(said(0.0, -0.19), "");
+  EXPECT_THAT(said(0.0, -0.21), testing::StartsWith("a friction angle"));
+  EXPECT_EQ(said(0.0, std::tan(M_PI / 3) + 0.19), "");
+  EXPECT_THAT(said(0.0, std::tan(M_PI / 3) + 0.21), testing::StartsWith("a friction angle"));
+  EXPECT_THAT(said(-201.0, -0.21), testing::StartsWith("a cohesion and a friction angle"));
+}
+
+}  // namespace
+}  // namespace talus::terramech

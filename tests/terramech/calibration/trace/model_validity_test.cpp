@@ -1,0 +1,58 @@
+#include <cmath>
+
+#include <talus/terramech/calibration/trace/model_validity.hpp>
+#include <talus/terramech/io/model_file.hpp>
+
+#include "made_rows.hpp"
+
+namespace talus::terramech {
+namespace {
+
+Applicability judged(const Telemetry& telemetry) {
+  const RefinedModel base = unknownSoil().model;
+  TraceOptions options{.fit_soil = true};
+  return applicability(traceResiduals(base, makeTrial(telemetry, base), options), options);
+}
+
+TEST(ModelValidity, SandThatTheModelCanBeIsNotRefused) {
+  const Soil sand{.name = "sand",
+                  .cohesion_Pa = 500.0,
+                  .friction_angle_rad = 0.55,
+                  .sinkage_exponent = 1.0,
+                  .frictional_modulus = 1.0e6,
+                  .shear_modulus_m = 0.02};
+  MadeRows rows(wheelColumns());
+  std::mt19937_64 random{2};
+  for (int k = 0; k < 60; ++k)
+    rows.add(wheelRow(sand, 20.0 + 15.0 * (k % 5), 0.05 + 0.014 * k, 0.03, random));
+  const Applicability a = judged(rows.telemetry());
+  EXPECT_TRUE(a.applies) << a.reason;
+}
+
+TEST(ModelValidity, SnowThatNoCohesionAndFrictionExplainIsRefused) {
+  // Made up after snow: it is strongest unsheared and breaks with slip, is compacted to a stop whatever the
+  // load, and the wheel is pulled harder than its torque could.
+  MadeRows rows(wheelColumns());
+  std::mt19937_64 random{3};
+  std::normal_distribution<double> noise(1.0, 0.03);
+  for (int k = 0; k < 80; ++k) {
+    const double load = 100.0 + 40.0 * (k % 4), slip = 0.02 + 0.012 * k;
+    rows.add({load, slip, (0.2 + 0.3 * std::exp(-slip / 0.15)) * load * 0.1 * noise(random),
+              0.03 * noise(random), (0.75 * std::exp(-slip / 0.2) - 0.2) * load * noise(random), 0.1, 0.1});
+  }
+  const Applicability a = judged(rows.telemetry());
+  EXPECT_FALSE(a.applies);
+  EXPECT_FALSE(a.reason.empty());
+}
+
+TEST(ModelValidity, TorqueThatFollowsNothingIsRefused) {
+  MadeRows rows({"load_N", "slip", "torque_Nm", "wheel_radius_m", "wheel_width_m"});
+  std::mt19937_64 random{4};
+  std::normal_distribution<double> scatter(0.0, 0.08);
+  for (int k = 0; k < 120; ++k)
+    rows.add({200.0, 0.05 + 0.0075 * k, 200.0 * 0.1 * (0.3 - 0.1 * (k % 2) + scatter(random)), 0.1, 0.1});
+  EXPECT_FALSE(judged(rows.telemetry()).applies);
+}
+
+}  // namespace
+}  // namespace talus::terramech

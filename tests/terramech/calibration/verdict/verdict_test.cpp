@@ -1,0 +1,92 @@
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include <talus/terramech/calibration/verdict/verdict.hpp>
+
+namespace talus::terramech {
+namespace {
+
+/// A hundred rows in runs of ten of drawbar pull alone, with these errors of the base and the refined model.
+TraceResult resultOf(double base, double refined, double floor, std::size_t effects) {
+  TraceResult result;
+  for (int row = 0; row < 100; ++row) {
+    WheelState s{.load_N = 50.0, .slip = 0.01 * row, .pass_index = 1.0 + row / 10 % 3};
+    result.trial.states.push_back(s);
+    result.trial.load_N.push_back(50.0);
+    result.trial.run.push_back(row / 10);
+  }
+  result.trial.measured = Eigen::MatrixXd::Constant(100, kChannels, std::nan(""));
+  result.trial.measured.col(0).setZero();
+  result.base_rmse[0] = base;
+  result.refined_rmse[0] = refined;
+  result.noise_floor[0] = floor;
+  result.effects.resize(effects);
+  result.threshold = 6.0;
+  Candidate curve{{{.name = "empirical", .covariate = "slip"}}, "empirical", 2};
+  result.last_promises.push_back({curve, 2.5, 0.4});
+  return result;
+}
+
+TEST(Verdict, IsOneOfThree) {
+  // Closed form: a variance of 100 values may exceed its floor by 3 sqrt(2/100) = 42 %, an rms by 19 %.
+  EXPECT_EQ(answerOf(resultOf(0.0165, 0.0165, 0.0141, 0)).verdict, Verdict::NothingMissing);
+  EXPECT_EQ(answerOf(resultOf(0.0170, 0.0170, 0.0141, 0)).verdict, Verdict::Unexplained);
+  EXPECT_EQ(answerOf(resultOf(0.0345, 0.0150, 0.0141, 1)).verdict, Verdict::Explained);
+  EXPECT_EQ(answerOf(resultOf(0.0345, 0.0330, 0.0141, 1)).verdict, Verdict::Unexplained);
+}
+
+TEST(Verdict, AnUnexplainedRestIsNamedWithWhatWouldDecide) {
+  TraceResult result = resultOf(0.0345, 0.0345, 0.0141, 0);
+  Answer a = answerOf(result);
+  EXPECT_EQ(a.channel, Channel::DrawbarPull);
+  EXPECT_EQ(a.rest, 0.0345);
+  EXPECT_EQ(a.column, "slip");
+  EXPECT_EQ(a.measure,
+            "rows over a wider range of slip, the other columns the same, or about 3 times as many");
+  result.last_promises[0].candidate.parts[0].covariate = "pass_index";
+  EXPECT_EQ(answerOf(result).measure,
+            "further runs at other values of pass_index, now 3, the other columns the same");
+}
+
+TEST(Verdict, ASoilFarFromItsPriorIsReported) {
+  TraceResult result = resultOf(0.01, 0.01, 0.01, 0);
+  RefinedModel& model = result.refined;
+  result.given = model.soil = {.cohesion_Pa = 1900.0, .cohesive_modulus = 0.0, .frictional_modulus = 1e6};
+  model.soil_prior_mean = {{"cohesion_Pa", 1000.0}, {"log_stiffness", 0.0}};
+  model.soil_prior_std = {{"cohesion_Pa", 100.0}, {"log_stiffness", 0.1}};
+  ASSERT_EQ(movedSoil(result).size(), 1U);
+  EXPECT_NEAR(movedSoil(result)[0].away(), 9.0, 1e-12);  // Closed form: (1900 - 1000) / 100
+  model.soil.frictional_modulus *= std::exp(-0.5);
+  ASSERT_EQ(movedSoil(result).size(), 2U);
+  EXPECT_NEAR(movedSoil(result)[1].away(), -5.0, 1e-9);
+}
+
+TEST(Verdict, ValuesAtABoundAreMarked) {
+  Effect effect{.name = "rear_fill", .covariate = "slip", .parameters = {1.0}};
+  EXPECT_EQ(atBounds(effect), std::vector<std::string>{"a"});
+  effect.parameters = {0.99};
+  EXPECT_TRUE(atBounds(effect).empty());
+}
+
+TEST(Verdict, PredictionsCarryWhatANewRunWouldShare) {
+  // Closed form: hypot(0.3 N, 0.008 * 50 N) = 0.5 N.
+  TraceResult result = resultOf(0.01, 0.01, 0.01, 0);
+  result.refined.noise.absolute[0] = 0.3;
+  result.shared.run(0, 0) = 0.008 * 0.008;
+  EXPECT_NEAR(forPrediction(result).noise.absolute[0], 0.5, 1e-12);
+}
+
+TEST(Verdict, PredictionsCarryWhatNothingExplains) {
+  TraceResult result = resultOf(0.05, 0.05, 0.03, 0);
+  result.refined.noise.absolute[0] = 0.03 * 50.0;
+  result.held_out.refined_rmse[0] = 0.05;
+  EXPECT_EQ(answerOf(result).verdict, Verdict::Unexplained);
+  // Closed form: the floor of 0.03 and the 0.04 above it are 0.05 of the load of 50 N.
+  EXPECT_NEAR(forPrediction(result).noise.absolute[0], 2.5, 1e-12);
+  result.held_out.refined_rmse[0] = 0.035;  // 36 % more variance, within three standard errors
+  EXPECT_NEAR(forPrediction(result).noise.absolute[0], 1.5, 1e-12);
+}
+
+}  // namespace
+}  // namespace talus::terramech

@@ -1,0 +1,132 @@
+#include <cmath>
+#include <random>
+#include <stdexcept>
+
+#include <talus/terramech/strength/bevameter.hpp>
+
+namespace talus::terramech {
+namespace {
+
+PressureSinkageFit pressed(std::initializer_list<double> widths, double noise = 0.0) {
+  std::mt19937_64 random(11);
+  std::normal_distribution<double> normal;
+  PressureSinkageFit fit;
+  for (const double b : widths) {
+    for (int i = 1; i <= 400; ++i) {
+      const double z = 1e-4 * i;
+      fit.add({b, z, (13190.0 / b + 692150.0) * std::pow(z, 0.5) * (1.0 + noise * normal(random))});
+    }
+  }
+  return fit;
+}
+
+TEST(PressureSinkageFit, GivesBackTheSoilThatMadeTheReadings) {
+  // Printed in: thesis Table A.1, clayey soil: n = 0.5, k_c = 13.19, k_phi = 692.15 (kN).
+  const PressureSinkage fit = pressed({0.05, 0.1, 0.2}).estimate();
+  EXPECT_NEAR(fit.sinkage_exponent, 0.5, 1e-12);
+  ASSERT_TRUE(fit.cohesive_modulus && fit.frictional_modulus);
+  EXPECT_NEAR(*fit.cohesive_modulus, 13190.0, 1e-5);
+  EXPECT_NEAR(*fit.frictional_modulus, 692150.0, 1e-4);
+  EXPECT_LT(fit.residual_std, 1e-7);
+}
+
+TEST(PressureSinkageFit, RefusesToSeparateModuliWithOneOrAlikePlates) {
+  for (const auto& fit : {pressed({0.05}).estimate(), pressed({0.05, 0.055}).estimate()}) {
+    EXPECT_FALSE(fit.cohesive_modulus);
+    EXPECT_FALSE(fit.frictional_modulus);
+    EXPECT_THAT(fit.refused, testing::HasSubstr("not identifiable separately"));
+    EXPECT_NEAR(fit.plates.front().sinkage_modulus, 13190.0 / 0.05 + 692150.0, 1e-4);
+  }
+}
+
+TEST(PressureSinkageFit, ScatterIsWhatWasPutIn) {
+  // Property: 5 % of noise on each pressure shows as a scatter of 0.05 (1200 readings: +- 4 %, two standard
+  // deviations).
+  const PressureSinkage fit = pressed({0.05, 0.1, 0.2}, 0.05).estimate();
+  EXPECT_NEAR(fit.residual_std, 0.05, 0.002);
+  EXPECT_NEAR(fit.sinkage_exponent, 0.5, 0.01);
+}
+
+TEST(PressureSinkageFit, IsTheLeastOfWongsCriterion) {
+  // Property: any step from the answer makes the sum of sigma^2 (ln sigma - ln k - n ln z)^2 larger
+  // (wong_1980).
+  std::mt19937_64 random(13);
+  std::normal_distribution<double> normal;
+  PressureSinkageFit fitter;
+  std::vector<PlateReading> readings;
+  for (int i = 1; i <= 40; ++i) {
+    const double z = 1e-3 * i;
+    readings.push_back({0.1, z, 8e5 * std::pow(z, 0.7) * (1.0 + 0.2 * normal(random))});
+    fitter.add(readings.back());
+  }
+  const PressureSinkage fit = fitter.estimate();
+  const auto cost = [&](double k, double n) {
+    double sum = 0.0;
+    for (const PlateReading& r : readings) {
+      const double away = std::log(r.pressure_Pa) - std::log(k) - n * std::log(r.sinkage_m);
+      sum += r.pressure_Pa * r.pressure_Pa * away * away;
+    }
+    return sum;
+  };
+  const double k = fit.plates.front().sinkage_modulus, n = fit.sinkage_exponent;
+  for (const double step : {-0.001, 0.001}) {
+    EXPECT_GT(cost(k * (1.0 + step), n), cost(k, n));
+    EXPECT_GT(cost(k, n + step), cost(k, n));
+  }
+}
+
+TEST(PressureSinkageFit, RefusesWhatIsNoReading) {
+  PressureSinkageFit fit;
+  EXPECT_THROW(fit.add({0.05, 0.0, 1000.0}), std::invalid_argument);
+  EXPECT_THROW(fit.add({0.05, 0.01, std::nan("")}), std::invalid_argument);
+  fit.add({0.05, 0.01, 1000.0});
+  EXPECT_THROW((void)fit.estimate(), std::domain_error);
+}
+
+std::vector<ShearReading> sheared(double modulus, double furthest_m) {
+  std::vector<ShearReading> readings;
+  for (const double sigma : {5000.0, 10000.0, 20000.0}) {
+    for (int i = 1; i <= 15; ++i) {
+      const double j = furthest_m * i / 15.0;
+      readings.push_back({sigma, (740.0 + sigma * 0.62) * (1.0 - std::exp(-j / modulus)), j});
+    }
+  }
+  return readings;
+}
+
+TEST(FitShear, GivesBackAllThreeParameters) {
+  // Closed form: Eq. A.4.
+  const ShearFit fit = fitShear(sheared(0.013, 0.05));
+  EXPECT_NEAR(fit.shear_modulus_m, 0.013, 1e-8);
+  EXPECT_NEAR(fit.strength.cohesion_Pa, 740.0, 1e-2);
+  EXPECT_NEAR(fit.strength.tan_friction, 0.62, 1e-6);
+  EXPECT_FALSE(fit.modulus_at_bound);
+}
+
+TEST(FitShear, IsTheLeastOfTheSquaredStresses) {
+  // Property: any step from the answer makes the sum of squares of tau - (c + sigma t)(1 - e^(-j/K)) larger.
+  std::mt19937_64 random(12);
+  std::normal_distribution<double> normal;
+  auto readings = sheared(0.013, 0.05);
+  for (ShearReading& r : readings) r.shear_Pa *= 1.0 + 0.05 * normal(random);
+  const ShearFit fit = fitShear(readings);
+  const auto cost = [&](double c, double t, double k) {
+    double sum = 0.0;
+    for (const ShearReading& r : readings)
+      sum += std::pow(r.shear_Pa - (c + r.normal_Pa * t) * (1.0 - std::exp(-r.displacement_m / k)), 2);
+    return sum;
+  };
+  const double c = fit.strength.cohesion_Pa, t = fit.strength.tan_friction, k = fit.shear_modulus_m;
+  for (const double step : {-0.01, 0.01}) {
+    EXPECT_GT(cost(c * (1.0 + step), t, k), cost(c, t, k));
+    EXPECT_GT(cost(c, t * (1.0 + step), k), cost(c, t, k));
+    EXPECT_GT(cost(c, t, k * (1.0 + step)), cost(c, t, k));
+  }
+}
+
+TEST(FitShear, RefusesOneNormalStress) {
+  EXPECT_THROW((void)fitShear(std::vector<ShearReading>(5, {1e4, 6e3, 0.05})), std::domain_error);
+}
+
+}  // namespace
+}  // namespace talus::terramech

@@ -1,0 +1,67 @@
+#include <cmath>
+#include <stdexcept>
+
+#include <talus/terramech/strength/linear_offset.hpp>
+
+#include "linear_world.hpp"
+
+namespace talus::terramech {
+namespace {
+
+const Wheel kWheel{.radius_m = 0.1, .width_m = 0.08};
+
+TEST(LinearOffset, WholeEquationIsExactWhereStressesAreLinear) {
+  // Property: Eq. 2.9 follows from Eqs. 2.1 to 2.8 without further approximation (only with 2.3 corrected).
+  const LinearWorld world{.cohesion_Pa = 5000.0, .tan_friction = 0.45};
+  LinearOffsetFit fit;
+  for (const WheelSample& s : linearSamples(kWheel, world)) {
+    const LinearOffsetCoefficients m = linearOffset(kWheel, s, world.shear_modulus_m);
+    const double left = m.m1 * 5000.0 * 0.45 + 5000.0 + m.m3_Pa * 0.45;
+    EXPECT_NEAR(left, m.m4_Pa, 1e-5 * m.m4_Pa);  // the world's midpoint rule
+    fit.add(m);
+  }
+  EXPECT_NEAR(fit.estimate().cohesion_Pa, 5000.0, 1.0);
+  EXPECT_NEAR(fit.estimate().tan_friction, 0.45, 1e-4);
+}
+
+TEST(LinearOffset, StressesComeBackFromLoadAndTorque) {
+  // Property: the inverse of the world.
+  const LinearWorld world;
+  const WheelSample s = sampleOf(kWheel, world, {.sinkage_m = 0.02, .slip = 0.5});
+  const ShearSoil soil{.cohesion_Pa = world.cohesion_Pa, .shear_modulus_m = world.shear_modulus_m};
+  const LinearOffsetStresses stress = linearOffsetStresses(kWheel, s, soil);
+  EXPECT_NEAR(stress.sigma_m_Pa, world.sigma_m_Pa, 1e-5 * world.sigma_m_Pa);
+  const double a = mobilisation(kWheel, s, world.shear_modulus_m).peak;
+  EXPECT_NEAR(stress.tau_m_Pa, (world.cohesion_Pa + world.sigma_m_Pa * world.tan_friction) * a, 0.5);
+}
+
+TEST(LinearOffset, FirstCoefficientFollowsItsSmallAngleForm) {
+  // Closed form: M1 ~ (theta_1/6) B / (1 + B/2A) > 0 at small contact.
+  const WheelSample s{.load_N = 10.0, .torque_Nm = 0.2, .sinkage_m = 1e-6, .slip = 0.5};
+  const auto [a, b] = mobilisation(kWheel, s, 1e-4);
+  const double theta_1 = entryAngle_rad(kWheel, s.sinkage_m);
+  EXPECT_NEAR(linearOffset(kWheel, s, 1e-4).m1 / (theta_1 / 6.0 * b / (1.0 + b / (2.0 * a))), 1.0, 1e-5);
+}
+
+TEST(LinearOffset, RecursiveFitEqualsTheFitOfAllSamplesInAnyOrder) {
+  // Property.
+  auto samples = linearSamples(kWheel, {});
+  LinearOffsetFit forward;
+  for (const auto& s : samples) forward.add(linearOffset(kWheel, s, 0.015));
+  LinearOffsetFit backward;
+  for (auto s = samples.rbegin(); s != samples.rend(); ++s) backward.add(linearOffset(kWheel, *s, 0.015));
+  EXPECT_NEAR(forward.estimate().cohesion_Pa, backward.estimate().cohesion_Pa, 1e-6);
+  EXPECT_GT(forward.estimate().residual_std_Pa, 0.0);
+}
+
+TEST(LinearOffset, RefusesAWheelThatMobilisesNothing) {
+  EXPECT_THROW(
+      (void)linearOffset(kWheel, {.load_N = 80, .torque_Nm = 1, .sinkage_m = 0.01, .slip = -0.5}, 0.02),
+      std::domain_error);
+  EXPECT_THROW(
+      (void)linearOffset(kWheel, {.load_N = 80, .torque_Nm = 1, .sinkage_m = 0.0, .slip = 0.5}, 0.02),
+      std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace talus::terramech

@@ -1,0 +1,114 @@
+#include <cmath>
+#include <random>
+#include <stdexcept>
+
+#include <Eigen/LU>
+
+#include <talus/terramech/strength/mohr_coulomb_line.hpp>
+
+namespace talus::terramech {
+namespace {
+
+std::vector<StressPair> noisyLine(int count, double spread) {
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> normal;
+  std::vector<StressPair> pairs;
+  for (int i = 0; i < count; ++i) {
+    const double x = 15000.0 * (1.0 + spread * normal(random));
+    pairs.push_back({.normal_Pa = x, .shear_Pa = 2000.0 + 0.6 * x + 100.0 * normal(random)});
+  }
+  return pairs;
+}
+
+ShearStrength fitOf(const std::vector<StressPair>& pairs) {
+  MohrCoulombLine line;
+  for (const StressPair& p : pairs) line.add(p);
+  return line.estimate();
+}
+
+TEST(MohrCoulombLine, RecursionEqualsTheBatchNormalEquations) {
+  // Closed form: Eqs. 2.16 / B.10, (K1' K1)^-1 K1' K2, and s^2 (K1' K1)^-1.
+  const auto pairs = noisyLine(40, 0.2);
+  Eigen::MatrixX2d k1(pairs.size(), 2);
+  Eigen::VectorXd k2(pairs.size());
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    k1.row(static_cast<Eigen::Index>(i)) << 1.0, pairs[i].normal_Pa;
+    k2[static_cast<Eigen::Index>(i)] = pairs[i].shear_Pa;
+  }
+  const Eigen::Matrix2d inverse = (k1.transpose() * k1).inverse();
+  const Eigen::Vector2d solution = inverse * (k1.transpose() * k2);
+  const double variance = (k2 - k1 * solution).squaredNorm() / (static_cast<double>(pairs.size()) - 2.0);
+  const ShearStrength fit = fitOf(pairs);
+  // Normal equations lose about half the digits: 1e-8 relative.
+  EXPECT_NEAR(fit.cohesion_Pa, solution[0], 1e-8 * std::abs(solution[0]));
+  EXPECT_NEAR(fit.tan_friction, solution[1], 1e-8);
+  EXPECT_LT((fit.covariance - variance * inverse).norm(), 1e-8 * fit.covariance.norm());
+  EXPECT_TRUE(fit.unseen.empty());
+}
+
+TEST(MohrCoulombLine, CovarianceCoversTheTruthAsOftenAsItSays) {
+  // Property: over repeated noise the error, scaled by its standard deviation, has unit variance (400
+  // repeats: +- 10 %).
+  double square_c = 0.0;
+  double square_t = 0.0;
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal;
+  constexpr int kRepeats = 400;
+  for (int k = 0; k < kRepeats; ++k) {
+    MohrCoulombLine line;
+    for (int i = 0; i < 30; ++i) {
+      const double x = 10000.0 + 300.0 * i;
+      line.add({.normal_Pa = x, .shear_Pa = 1000.0 + 0.5 * x + 200.0 * normal(random)});
+    }
+    const ShearStrength fit = line.estimate();
+    square_c += std::pow(fit.cohesion_Pa - 1000.0, 2) / fit.covariance(0, 0);
+    square_t += std::pow(fit.tan_friction - 0.5, 2) / fit.covariance(1, 1);
+  }
+  // The ratio follows Student's t with 28 degrees of freedom, whose variance is 28/26.
+  EXPECT_NEAR(square_c / kRepeats, 28.0 / 26.0, 0.2);
+  EXPECT_NEAR(square_t / kRepeats, 28.0 / 26.0, 0.2);
+}
+
+TEST(MohrCoulombLine, WeightTwoIsTheSampleTwice) {
+  // Property.
+  MohrCoulombLine weighted;
+  MohrCoulombLine repeated;
+  for (const StressPair& p : noisyLine(10, 0.1)) {
+    weighted.add(p, 2.0);
+    repeated.add(p);
+    repeated.add(p);
+  }
+  EXPECT_NEAR(weighted.estimate().cohesion_Pa, repeated.estimate().cohesion_Pa, 1e-6);
+  EXPECT_NEAR(weighted.estimate().condition, repeated.estimate().condition, 1e-6);
+}
+
+TEST(MohrCoulombLine, ConditionIsThatOfTheScaledMatrix) {
+  // Closed form: singular values of [1, x] with unit columns.
+  const auto pairs = noisyLine(20, 0.1);
+  Eigen::MatrixX2d k1(pairs.size(), 2);
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    k1.row(static_cast<Eigen::Index>(i)) << 1.0, pairs[i].normal_Pa;
+  }
+  k1.col(0).normalize();
+  k1.col(1).normalize();
+  const double q = k1.col(0).dot(k1.col(1));
+  EXPECT_NEAR(fitOf(pairs).condition, std::sqrt((1.0 + q) / (1.0 - q)), 1e-6);
+}
+
+TEST(MohrCoulombLine, SaysThatAlikeSamplesCannotTellFrictionFromCohesion) {
+  const ShearStrength fit = fitOf(noisyLine(10, 0.001));
+  ASSERT_EQ(fit.unseen.size(), 2u);
+  EXPECT_THAT(fit.unseen[0], testing::StartsWith("friction_angle_rad: "));
+  EXPECT_THAT(fit.unseen[1], testing::StartsWith("cohesion_Pa: "));
+}
+
+TEST(MohrCoulombLine, RefusesOneSampleAndEqualStresses) {
+  MohrCoulombLine line;
+  line.add({.normal_Pa = 1e4, .shear_Pa = 6e3});
+  EXPECT_THROW((void)line.estimate(), std::domain_error);
+  line.add({.normal_Pa = 1e4, .shear_Pa = 7e3});
+  EXPECT_THROW((void)line.estimate(), std::domain_error);
+}
+
+}  // namespace
+}  // namespace talus::terramech
