@@ -4,7 +4,7 @@
 #include "bad_input.hpp"
 
 namespace talus::cli {
-namespace {
+namespace bad_map_test {
 
 TEST(BadInput, ElevationMaps) {
   const BadFiles files;
@@ -63,5 +63,5 @@ TEST(BadInput, FifosAreRefused) {
                  {{"bench", "pipe"}, 2, "FIFO"}});
 }
 
-}  // namespace
+}  // namespace bad_map_test
 }  // namespace talus::cli

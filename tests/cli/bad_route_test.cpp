@@ -2,7 +2,7 @@
 #include "bad_input.hpp"
 
 namespace talus::cli {
-namespace {
+namespace bad_route_test {
 
 using Words = std::vector<std::string>;
 
@@ -128,5 +128,5 @@ TEST(BadInput, View) {
                 });
 }
 
-}  // namespace
+}  // namespace bad_route_test
 }  // namespace talus::cli

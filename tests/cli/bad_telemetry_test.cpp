@@ -8,7 +8,7 @@
 #include "run_program.hpp"
 
 namespace talus::cli {
-namespace {
+namespace bad_telemetry_test {
 
 TEST(BadInput, Telemetry) {
   std::vector<BadCall> calls{
@@ -98,5 +98,5 @@ TEST(BadInput, SitesAndPlugins) {
                 });
 }
 
-}  // namespace
+}  // namespace bad_telemetry_test
 }  // namespace talus::cli

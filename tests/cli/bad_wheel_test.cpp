@@ -2,7 +2,7 @@
 #include "bad_input.hpp"
 
 namespace talus::cli {
-namespace {
+namespace bad_wheel_test {
 
 TEST(BadInput, Wheel) {
   const auto wheel = [](const std::vector<std::string>& more) {
@@ -27,5 +27,5 @@ TEST(BadInput, Wheel) {
   expectRefused(BadFiles(), calls);
 }
 
-}  // namespace
+}  // namespace bad_wheel_test
 }  // namespace talus::cli

@@ -14,7 +14,7 @@
 #include "run_program.hpp"
 
 namespace talus::cli {
-namespace {
+namespace danger_kept_test {
 
 using nlohmann::json;
 
@@ -287,5 +287,5 @@ TEST_P(DangerKept, ARoverThatStoodProvesNoStrength) {
   }
 }
 
-}  // namespace
+}  // namespace danger_kept_test
 }  // namespace talus::cli

@@ -9,7 +9,7 @@
 #include "run_program.hpp"
 
 namespace talus::cli {
-namespace {
+namespace estimate_tables_test {
 
 using nlohmann::json;
 using terramech::Soil;
@@ -122,5 +122,5 @@ TEST(EstimateTables, PlatesWithoutAWidthAreRoundByTheirForce) {
   EXPECT_THAT(wrong.err, HasSubstr("--plate-width"));
 }
 
-}  // namespace
+}  // namespace estimate_tables_test
 }  // namespace talus::cli

@@ -12,7 +12,7 @@
 #include "run_program.hpp"
 
 namespace talus::cli {
-namespace {
+namespace interface_test {
 
 using nlohmann::json;
 
@@ -199,5 +199,5 @@ TEST(Interface, AnInterruptEndsLongWorkWith130AndNoFile) {
   }
 }
 
-}  // namespace
+}  // namespace interface_test
 }  // namespace talus::cli

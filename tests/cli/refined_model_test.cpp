@@ -6,7 +6,7 @@
 #include "run_program.hpp"
 
 namespace talus::cli {
-namespace {
+namespace refined_model_test {
 
 constexpr const char* kSoil =
     "soil: {name: site sand, cohesion_Pa: 600, friction_angle_rad: 0.6, sinkage_exponent: 1.0, "
@@ -131,5 +131,5 @@ TEST_F(RefinedModelCommands, RefusesModelsThatCannotPlan) {
             2);
 }
 
-}  // namespace
+}  // namespace refined_model_test
 }  // namespace talus::cli

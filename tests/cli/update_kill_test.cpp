@@ -17,7 +17,7 @@
 #include "run_program.hpp"
 
 namespace talus::cli {
-namespace {
+namespace update_kill_test {
 
 // A site in its own folder, its map, and a drive of sixty rows.
 class Site {
@@ -173,5 +173,5 @@ TEST(UpdateCommand, TwoAtOnceShareAJournal) {
   EXPECT_EQ(site.content("a.ot"), site.content("c.ot"));
 }
 
-}  // namespace
+}  // namespace update_kill_test
 }  // namespace talus::cli

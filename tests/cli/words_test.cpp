@@ -9,7 +9,7 @@
 #include "string_literals.hpp"
 
 namespace talus::cli {
-namespace {
+namespace words_test {
 
 namespace fs = std::filesystem;
 
@@ -159,5 +159,5 @@ TEST(Words, HelpFitsThePageAndShowsTwoExamples) {
   for (const std::string& call : names) expectHelp(runTalus({call, "--help"}).out, call);
 }
 
-}  // namespace
+}  // namespace words_test
 }  // namespace talus::cli

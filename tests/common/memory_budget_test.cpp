@@ -2,7 +2,7 @@
 #include <talus/common/memory_budget.hpp>
 
 namespace talus {
-namespace {
+namespace memory_budget_test {
 
 TEST(MemoryBudget, RefusesWhatExceedsItAndSaysHowMuch) {
   setMemoryBudget(std::uint64_t{2} << 30U);
@@ -23,5 +23,5 @@ TEST(MemoryBudget, UnsetItIsHalfOfWhatIsFree) {
   EXPECT_THROW(requireMemory(1e15, "no machine has this"), InputError);
 }
 
-}  // namespace
+}  // namespace memory_budget_test
 }  // namespace talus

@@ -1,7 +1,7 @@
 #include <talus/common/nearest_name.hpp>
 
 namespace talus {
-namespace {
+namespace nearest_name_test {
 
 const std::vector<std::string> kKnown{"plan", "plugins", "explain", "estimate"};
 
@@ -27,5 +27,5 @@ TEST(NearestName, SaysNothingWhenNothingIsNear) {
   EXPECT_EQ(nearestName("plan", {}), "");
 }
 
-}  // namespace
+}  // namespace nearest_name_test
 }  // namespace talus

@@ -11,7 +11,7 @@
 #include <talus/common/output_file.hpp>
 
 namespace talus {
-namespace {
+namespace output_file_test {
 
 namespace fs = std::filesystem;
 using testing::ElementsAre;
@@ -122,5 +122,5 @@ TEST(OutputFile, RefusalSaysWhereAndWhy) {
   EXPECT_THAT(refusal("/dev/full"), HasSubstr("No space left on device"));
 }
 
-}  // namespace
+}  // namespace output_file_test
 }  // namespace talus

@@ -5,7 +5,7 @@
 #include <talus/common/parallel_for.hpp>
 
 namespace talus {
-namespace {
+namespace parallel_for_test {
 
 TEST(ParallelFor, CallsEachOnceWhateverTheThreads) {
   for (std::size_t count : {0U, 1U, 5U, 1000U})
@@ -31,5 +31,5 @@ TEST(ParallelFor, ThrowsHereWhatACallThrows) {
   }
 }
 
-}  // namespace
+}  // namespace parallel_for_test
 }  // namespace talus

@@ -5,7 +5,7 @@
 #include <talus/common/parallel_rows.hpp>
 
 namespace talus {
-namespace {
+namespace parallel_rows_test {
 
 TEST(ParallelRows, EveryRowOnceWhateverTheThreads) {
   for (int rows : {0, 1, 64, 65, 1000})
@@ -33,5 +33,5 @@ TEST(ParallelRows, ReportsFromTheCallersThreadAndStops) {
   EXPECT_EQ(strips, 1);
 }
 
-}  // namespace
+}  // namespace parallel_rows_test
 }  // namespace talus

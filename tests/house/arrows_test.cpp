@@ -8,7 +8,7 @@
 #include "source_files.hpp"
 
 namespace talus::house {
-namespace {
+namespace arrows_test {
 
 using Rooms = std::map<std::string, std::set<std::string>>;
 
@@ -125,5 +125,5 @@ TEST(House, FilesHaveOneIdea) {
     }
 }
 
-}  // namespace
+}  // namespace arrows_test
 }  // namespace talus::house

@@ -6,7 +6,7 @@
 #include "source_files.hpp"
 
 namespace talus::house {
-namespace {
+namespace doors_test {
 
 TEST(House, ExamplesAndConsumersIncludeEntryHeadersOnly) {
   const std::set<std::string> entries{"talus.hpp",
@@ -50,5 +50,5 @@ TEST(House, NoHeaderIncludesItselfByOthers) {
   for (const auto& [header, below] : left) ADD_FAILURE() << header << " stands in a circle of includes";
 }
 
-}  // namespace
+}  // namespace doors_test
 }  // namespace talus::house

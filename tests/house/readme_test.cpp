@@ -6,7 +6,7 @@
 #include "source_files.hpp"
 
 namespace talus::house {
-namespace {
+namespace readme_test {
 
 namespace fs = std::filesystem;
 
@@ -88,5 +88,5 @@ TEST(Documents, LinkOnlyToFilesThatExist) {
   }
 }
 
-}  // namespace
+}  // namespace readme_test
 }  // namespace talus::house

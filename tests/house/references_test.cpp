@@ -6,7 +6,7 @@
 #include "source_files.hpp"
 
 namespace talus::house {
-namespace {
+namespace references_test {
 
 std::set<std::string> matches(const std::string& where, const std::regex& pattern) {
   std::set<std::string> found;
@@ -29,5 +29,5 @@ TEST(References, EveryCitedKeyIsKnown) {
             << file << " cites " << key << ", which REFERENCES.bib does not hold";
 }
 
-}  // namespace
+}  // namespace references_test
 }  // namespace talus::house

@@ -5,7 +5,7 @@
 #include <gtest/gtest-spi.h>
 
 namespace talus::test {
-namespace {
+namespace requirement_test {
 
 /// What a test that lacks something comes to with CI set to this.
 testing::TestPartResult::Type outcome(const char* ci) {
@@ -32,5 +32,5 @@ TEST(Requirement, FindsProgramsOnThePath) {
   EXPECT_FALSE(installed("no-such-program"));
 }
 
-}  // namespace
+}  // namespace requirement_test
 }  // namespace talus::test

@@ -5,7 +5,7 @@
 #include "source_files.hpp"
 
 namespace talus::house {
-namespace {
+namespace safety_page_test {
 
 std::set<std::string> testNames() {
   const std::regex pattern(R"(TEST(?:_P|_F)?\((\w+), (\w+)\))");
@@ -31,5 +31,5 @@ TEST(SafetyPage, EveryTestThatItNamesExists) {
   EXPECT_GT(named, 5U);
 }
 
-}  // namespace
+}  // namespace safety_page_test
 }  // namespace talus::house

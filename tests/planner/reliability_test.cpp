@@ -9,7 +9,7 @@
 #include <talus/planner/simulation/drive/simulation_site.hpp>
 
 namespace talus::planner {
-namespace {
+namespace reliability_test {
 
 using terramech::Category;
 
@@ -95,5 +95,5 @@ TEST(Reliability, OfCellsSaidToBeOfACategory) {
   EXPECT_LT(tables[1].worstBoast(500.0), 0.05);
 }
 
-}  // namespace
+}  // namespace reliability_test
 }  // namespace talus::planner

@@ -18,7 +18,7 @@
 #include "site_fixture.hpp"
 
 namespace talus::planner {
-namespace {
+namespace risk_worlds_test {
 
 constexpr double kCorrelation_m = 5.0;
 
@@ -206,5 +206,5 @@ TEST(RiskWorlds, TheChanceConstraintHoldsInDrawnWorlds) {
   EXPECT_LE(kept - spread(kept, kWorlds), kLimit);
 }
 
-}  // namespace
+}  // namespace risk_worlds_test
 }  // namespace talus::planner

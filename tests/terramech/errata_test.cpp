@@ -15,7 +15,7 @@
 #include <talus/terramech/strength/linear_offset.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace errata_test {
 
 constexpr double kTheta1 = 0.8;
 constexpr double kThetaM = 0.4;
@@ -126,5 +126,5 @@ TEST(Errata, TopsoilOfSection35IsNotSafeByEquation321) {
   }
 }
 
-}  // namespace
+}  // namespace errata_test
 }  // namespace talus::terramech

@@ -5,7 +5,7 @@
 #include <talus/cli/app/campaign.hpp>
 
 namespace talus::cli {
-namespace {
+namespace campaign_test {
 
 TEST(Campaign, OutsideMpiOneProcessLeads) {
   const Campaign campaign;
@@ -70,5 +70,5 @@ TEST(Campaign, NoJobsHaveNoOutcomes) {
   EXPECT_TRUE(Campaign().run(0, [](std::size_t) { return std::string("x"); }).empty());
 }
 
-}  // namespace
+}  // namespace campaign_test
 }  // namespace talus::cli

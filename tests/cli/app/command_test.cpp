@@ -3,7 +3,7 @@
 #include <talus/cli/app/command.hpp>
 
 namespace talus::cli {
-namespace {
+namespace command_test {
 
 struct Options {
   std::string name;
@@ -61,5 +61,5 @@ TEST(Command, AnOldNameWorksWithAWarning) {
   EXPECT_EQ(program.context.exit_code, 27);
 }
 
-}  // namespace
+}  // namespace command_test
 }  // namespace talus::cli

@@ -4,7 +4,7 @@
 #include <talus/cli/app/commands.hpp>
 
 namespace talus::cli {
-namespace {
+namespace commands_test {
 
 // Property: every subcommand has a name of its own, a group that --help knows, and parses its own --help.
 TEST(Commands, EachHasANameAGroupAndExamples) {
@@ -24,5 +24,5 @@ TEST(Commands, EachHasANameAGroupAndExamples) {
     EXPECT_TRUE(names.contains(promised)) << promised;
 }
 
-}  // namespace
+}  // namespace commands_test
 }  // namespace talus::cli

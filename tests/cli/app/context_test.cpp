@@ -6,7 +6,7 @@
 #include <talus/cli/app/context.hpp>
 
 namespace talus::cli {
-namespace {
+namespace context_test {
 
 TEST(Context, AnyTextIsOneLine) {
   EXPECT_EQ(oneLine("first\nsecond"), "first; second");
@@ -65,5 +65,5 @@ TEST(Context, TheWatchPassesTheStopOn) {
   EXPECT_TRUE(watch.stopped());
 }
 
-}  // namespace
+}  // namespace context_test
 }  // namespace talus::cli

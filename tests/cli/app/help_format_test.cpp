@@ -5,7 +5,7 @@
 #include "run_program.hpp"
 
 namespace talus::cli {
-namespace {
+namespace help_format_test {
 
 using testing::HasSubstr;
 
@@ -66,5 +66,5 @@ TEST(HelpFormat, OldNamesOfOptionsAreAcceptedWithAWarning) {
   EXPECT_NE(old.out, runTalus({"assess", table}).out);
 }
 
-}  // namespace
+}  // namespace help_format_test
 }  // namespace talus::cli

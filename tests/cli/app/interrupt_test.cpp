@@ -11,7 +11,7 @@
 #include <talus/cli/app/interrupt.hpp>
 
 namespace talus::cli {
-namespace {
+namespace interrupt_test {
 
 void waitFor(const Interrupt& interrupt) {
   while (!interrupt.requested()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -95,5 +95,5 @@ TEST(InterruptDeathTest, ItsOwnEndIsNoInterrupt) {
       testing::ExitedWithCode(9), "");
 }
 
-}  // namespace
+}  // namespace interrupt_test
 }  // namespace talus::cli

@@ -9,7 +9,7 @@
 #include "mpi_ranks.hpp"
 
 namespace talus::cli {
-namespace {
+namespace mpi_launch_test {
 
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -63,5 +63,5 @@ TEST(MpiLaunch, MpirunOfAProgramWithoutMpiIsRefused) {
 }
 #endif
 
-}  // namespace
+}  // namespace mpi_launch_test
 }  // namespace talus::cli

@@ -4,7 +4,7 @@
 #include <talus/common/input_error.hpp>
 
 namespace talus::cli {
-namespace {
+namespace number_check_test {
 
 TEST(NumberCheck, RefusesNaNInfinityAndWhatLiesOutside) {
   CLI::Validator slip = within(-1.0, 1.0);
@@ -95,5 +95,5 @@ TEST(NumberCheck, EndsThatDoNotBind) {
   EXPECT_EQ(finite()(none), "nan, must be a finite number");
 }
 
-}  // namespace
+}  // namespace number_check_test
 }  // namespace talus::cli

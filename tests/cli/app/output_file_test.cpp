@@ -11,7 +11,7 @@
 #include "run_program.hpp"
 
 namespace talus::cli {
-namespace {
+namespace output_file_test {
 
 namespace fs = std::filesystem;
 
@@ -209,5 +209,5 @@ TEST(CheckOutput, AFullDiskIsToldAndKeepsTheOldFile) {
   EXPECT_EQ(fileContent(files.folder() / "old.csv"), "old");
 }
 
-}  // namespace
+}  // namespace output_file_test
 }  // namespace talus::cli

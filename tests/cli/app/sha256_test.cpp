@@ -5,7 +5,7 @@
 #include "run_program.hpp"
 
 namespace talus::cli {
-namespace {
+namespace sha256_test {
 
 TEST(Sha256, OfKnownMessages) {
   const Folder folder;
@@ -19,5 +19,5 @@ TEST(Sha256, OfKnownMessages) {
   EXPECT_EQ(sha256OfFile(folder / "none"), "");
 }
 
-}  // namespace
+}  // namespace sha256_test
 }  // namespace talus::cli

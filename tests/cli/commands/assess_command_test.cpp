@@ -5,7 +5,7 @@
 #include "run_program.hpp"
 
 namespace talus::cli {
-namespace {
+namespace assess_command_test {
 
 using nlohmann::json;
 using testing::HasSubstr;
@@ -152,5 +152,5 @@ TEST(AssessCommand, MistakesAreOneLineWithTheirExitCode) {
   }
 }
 
-}  // namespace
+}  // namespace assess_command_test
 }  // namespace talus::cli

@@ -8,7 +8,7 @@
 #include "run_program.hpp"
 
 namespace talus::cli {
-namespace {
+namespace bench_command_test {
 
 using testing::HasSubstr;
 
@@ -150,5 +150,5 @@ TEST(BenchCommand, MistakesAreOneLineWithTwo) {
   }
 }
 
-}  // namespace
+}  // namespace bench_command_test
 }  // namespace talus::cli

@@ -3,7 +3,7 @@
 #include "bad_input.hpp"
 
 namespace talus::cli {
-namespace {
+namespace costmap_command_test {
 
 using nlohmann::json;
 
@@ -63,5 +63,5 @@ TEST(CostmapCommand, MistakesAreOneLineAndLeaveNoFile) {
   expectRefused(BadFiles(), calls);
 }
 
-}  // namespace
+}  // namespace costmap_command_test
 }  // namespace talus::cli

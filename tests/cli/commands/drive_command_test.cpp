@@ -6,7 +6,7 @@
 #include "run_program.hpp"
 
 namespace talus::cli {
-namespace {
+namespace drive_command_test {
 
 using nlohmann::json;
 
@@ -176,5 +176,5 @@ TEST(BadInput, Rehearsals) {
                        });
 }
 
-}  // namespace
+}  // namespace drive_command_test
 }  // namespace talus::cli

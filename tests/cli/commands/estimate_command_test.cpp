@@ -8,7 +8,7 @@
 #include "run_program.hpp"
 
 namespace talus::cli {
-namespace {
+namespace estimate_command_test {
 
 using nlohmann::json;
 using testing::HasSubstr;
@@ -317,5 +317,5 @@ TEST(EstimateCommand, AModelGoesWithWongReeceAlone) {
   EXPECT_EQ(runTalus({"estimate", table, "--method", "wong-reece", "--model", formula}).code, 2);
 }
 
-}  // namespace
+}  // namespace estimate_command_test
 }  // namespace talus::cli

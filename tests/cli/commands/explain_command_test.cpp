@@ -5,7 +5,7 @@
 #include "bad_input.hpp"
 
 namespace talus::cli {
-namespace {
+namespace explain_command_test {
 
 using nlohmann::json;
 using testing::HasSubstr;
@@ -68,5 +68,5 @@ TEST(ExplainCommand, MistakesAreOneLineWithTheirExitCode) {
                              {with({"--at", "5,5", "--heading", "nan"}), 2, "--heading"}});
 }
 
-}  // namespace
+}  // namespace explain_command_test
 }  // namespace talus::cli

@@ -5,7 +5,7 @@
 #include "run_program.hpp"
 
 namespace talus::cli {
-namespace {
+namespace generate_command_test {
 
 using testing::HasSubstr;
 
@@ -67,5 +67,5 @@ TEST(GenerateCommand, BadInputIsOneLineAndCodeTwo) {
   }
 }
 
-}  // namespace
+}  // namespace generate_command_test
 }  // namespace talus::cli

@@ -6,7 +6,7 @@
 #include "run_program.hpp"
 
 namespace talus::cli {
-namespace {
+namespace info_command_test {
 
 using testing::HasSubstr;
 
@@ -93,5 +93,5 @@ TEST(InfoCommand, BadInputIsOneLineAndCodeTwo) {
   }
 }
 
-}  // namespace
+}  // namespace info_command_test
 }  // namespace talus::cli

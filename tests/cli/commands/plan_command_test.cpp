@@ -7,7 +7,7 @@
 #include "run_program.hpp"
 
 namespace talus::cli {
-namespace {
+namespace plan_command_test {
 
 using nlohmann::json;
 using ::testing::HasSubstr;
@@ -234,5 +234,5 @@ TEST(PlanCommand, AParetoSetThatIsCancelledIsNotDrawn) {
             0u);
 }
 
-}  // namespace
+}  // namespace plan_command_test
 }  // namespace talus::cli

@@ -6,7 +6,7 @@
 #include "run_program.hpp"
 
 namespace talus::cli {
-namespace {
+namespace plugin_routes_test {
 
 using nlohmann::json;
 using testing::HasSubstr;
@@ -149,5 +149,5 @@ TEST_F(PluginRoutes, AreComparedAndDriven) {
   EXPECT_EQ(walled.code, 1) << walled.err;
 }
 
-}  // namespace
+}  // namespace plugin_routes_test
 }  // namespace talus::cli

@@ -3,7 +3,7 @@
 #include "run_program.hpp"
 
 namespace talus::cli {
-namespace {
+namespace plugins_command_test {
 
 using testing::HasSubstr;
 
@@ -30,5 +30,5 @@ TEST(PluginsCommand, WhatIsNoPluginIsOneLineAndTwo) {
   }
 }
 
-}  // namespace
+}  // namespace plugins_command_test
 }  // namespace talus::cli

@@ -5,7 +5,7 @@
 #include "bad_input.hpp"
 
 namespace talus::cli {
-namespace {
+namespace predict_command_test {
 
 using nlohmann::json;
 
@@ -73,5 +73,5 @@ TEST(PredictCommand, MistakesAreOneLineAndLeaveNoFile) {
                  {{"predict", "missing.csv", "--model", "sandy_loam", "-o", "o.csv"}, 2, "missing.csv"}});
 }
 
-}  // namespace
+}  // namespace predict_command_test
 }  // namespace talus::cli

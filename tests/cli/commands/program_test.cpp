@@ -3,7 +3,7 @@
 #include "run_program.hpp"
 
 namespace talus::cli {
-namespace {
+namespace program_test {
 
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -52,5 +52,5 @@ TEST(Program, HelpAndVersionGoToStandardOutput) {
   EXPECT_THAT(help.err, IsEmpty());
 }
 
-}  // namespace
+}  // namespace program_test
 }  // namespace talus::cli

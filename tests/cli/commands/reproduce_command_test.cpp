@@ -3,7 +3,7 @@
 #include "run_program.hpp"
 
 namespace talus::cli {
-namespace {
+namespace reproduce_command_test {
 
 using nlohmann::json;
 using testing::HasSubstr;
@@ -45,5 +45,5 @@ TEST(ReproduceCommand, RefusesAFolderThatCannotBeMade) {
   EXPECT_EQ(ran.code, 2);
 }
 
-}  // namespace
+}  // namespace reproduce_command_test
 }  // namespace talus::cli

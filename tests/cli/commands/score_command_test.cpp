@@ -5,7 +5,7 @@
 #include "bad_input.hpp"
 
 namespace talus::cli {
-namespace {
+namespace score_command_test {
 
 using nlohmann::json;
 using testing::HasSubstr;
@@ -79,5 +79,5 @@ TEST(ScoreCommand, MistakesAreOneLineWithTheirExitCode) {
                        });
 }
 
-}  // namespace
+}  // namespace score_command_test
 }  // namespace talus::cli

@@ -12,7 +12,7 @@
 #include "run_program.hpp"
 
 namespace talus::cli {
-namespace {
+namespace trace_command_test {
 
 // Rows of four wheels by the forward model, two percent off; the load cell of wheel 2 pulls 6 N short.
 std::string oneWheelShort() {
@@ -146,5 +146,5 @@ TEST(TraceCommand, AnAlternativeIsAnotherFormOrColumnAndNamedOnce) {
   }
 }
 
-}  // namespace
+}  // namespace trace_command_test
 }  // namespace talus::cli

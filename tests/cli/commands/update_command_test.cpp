@@ -13,7 +13,7 @@
 #include "run_program.hpp"
 
 namespace talus::cli {
-namespace {
+namespace update_command_test {
 
 using nlohmann::json;
 
@@ -261,5 +261,5 @@ TEST(BadInput, Updates) {
                 });
 }
 
-}  // namespace
+}  // namespace update_command_test
 }  // namespace talus::cli

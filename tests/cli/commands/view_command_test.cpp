@@ -6,7 +6,7 @@
 #include "run_program.hpp"
 
 namespace talus::cli {
-namespace {
+namespace view_command_test {
 
 using nlohmann::json;
 using testing::HasSubstr;
@@ -52,5 +52,5 @@ TEST(ViewCommand, ShowsAnElevationMap) {
   EXPECT_THAT(fileContent(folder / "map.png"), StartsWith("\x89PNG"));
 }
 
-}  // namespace
+}  // namespace view_command_test
 }  // namespace talus::cli

@@ -3,7 +3,7 @@
 #include "run_program.hpp"
 
 namespace talus::cli {
-namespace {
+namespace wheel_command_test {
 
 using testing::HasSubstr;
 using testing::StartsWith;
@@ -87,5 +87,5 @@ TEST(WheelCommand, MistakesAreOneLineWithTheirExitCode) {
   }
 }
 
-}  // namespace
+}  // namespace wheel_command_test
 }  // namespace talus::cli

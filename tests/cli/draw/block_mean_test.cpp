@@ -4,7 +4,7 @@
 #include <talus/cli/draw/block_mean.hpp>
 
 namespace talus::cli {
-namespace {
+namespace block_mean_test {
 
 TEST(Blocks, CoverTheMapAndLeaveOutNoData) {
   maps::Raster<float> fine({5, 4, 2.0, {10.0, 20.0}}, 1.0F);
@@ -53,5 +53,5 @@ TEST(Blocks, AreAsSmallAsFitsAndTheirMeanIsTheCells) {
   }
 }
 
-}  // namespace
+}  // namespace block_mean_test
 }  // namespace talus::cli

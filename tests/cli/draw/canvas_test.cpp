@@ -6,7 +6,7 @@
 #include <talus/cli/draw/image.hpp>
 
 namespace talus::cli {
-namespace {
+namespace canvas_test {
 
 using testing::HasSubstr;
 using testing::StartsWith;
@@ -73,5 +73,5 @@ TEST(Canvas, ASizeThatCannotBeDrawnIsAnError) {
   EXPECT_THROW(Canvas({.width = 1'000'000, .height = 1'000'000}), std::runtime_error);
 }
 
-}  // namespace
+}  // namespace canvas_test
 }  // namespace talus::cli

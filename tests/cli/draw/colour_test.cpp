@@ -3,7 +3,7 @@
 #include <talus/cli/draw/colour.hpp>
 
 namespace talus::cli {
-namespace {
+namespace colour_test {
 
 // CIE 1976 lightness L* of a colour of sRGB (IEC 61966-2-1), white being 100.
 double lightness(Colour c) {
@@ -52,5 +52,5 @@ TEST(Colour, SeriesRepeatAfterEight) {
   }
 }
 
-}  // namespace
+}  // namespace colour_test
 }  // namespace talus::cli

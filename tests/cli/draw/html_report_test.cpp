@@ -1,7 +1,7 @@
 #include <talus/cli/draw/html_report.hpp>
 
 namespace talus::cli {
-namespace {
+namespace html_report_test {
 
 using testing::HasSubstr;
 using testing::Not;
@@ -38,5 +38,5 @@ TEST(HtmlReport, NumbersAreSetRight) {
   for (const char* cell : {"", "sand", "2nd pass", "-"}) EXPECT_FALSE(number(cell)) << cell;
 }
 
-}  // namespace
+}  // namespace html_report_test
 }  // namespace talus::cli

@@ -1,7 +1,7 @@
 #include <talus/cli/draw/image.hpp>
 
 namespace talus::cli {
-namespace {
+namespace image_test {
 
 TEST(Base64, OfTheTestVectors) {
   // Printed in: RFC 4648, section 10.
@@ -14,5 +14,5 @@ TEST(Base64, OfTheTestVectors) {
   EXPECT_EQ(base64("foobar"), "Zm9vYmFy");
 }
 
-}  // namespace
+}  // namespace image_test
 }  // namespace talus::cli

@@ -3,7 +3,7 @@
 #include <talus/cli/draw/map_image.hpp>
 
 namespace talus::cli {
-namespace {
+namespace map_image_test {
 
 maps::Raster<float> plane(double per_column, double per_row) {
   maps::Raster<float> z({8, 8, 1.0, {0.0, 0.0}});
@@ -57,5 +57,5 @@ TEST(MapImage, NoValueIsTransparent) {
   EXPECT_EQ(image.at(7, 0), pixel(viridis().back()));
 }
 
-}  // namespace
+}  // namespace map_image_test
 }  // namespace talus::cli

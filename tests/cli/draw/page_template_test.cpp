@@ -5,7 +5,7 @@
 #include <talus/cli/draw/page_template.hpp>
 
 namespace talus::cli {
-namespace {
+namespace page_template_test {
 
 std::size_t count(std::string_view text, std::string_view part) {
   std::size_t found = 0;
@@ -33,5 +33,5 @@ TEST(PageTemplate, NeedsNothingFromElsewhere) {
   EXPECT_EQ(count(page, "@import"), 0U);
 }
 
-}  // namespace
+}  // namespace page_template_test
 }  // namespace talus::cli

@@ -7,7 +7,7 @@
 #include "run_program.hpp"
 
 namespace talus::cli {
-namespace {
+namespace page_test {
 
 using testing::HasSubstr;
 using testing::Not;
@@ -132,5 +132,5 @@ TEST(Page, OfAMapWithoutARouteHasNoProfiles) {
   EXPECT_TRUE(bodyMatches(shown, "id=\"profiles\"[^>]*hidden"));
 }
 
-}  // namespace
+}  // namespace page_test
 }  // namespace talus::cli

@@ -6,7 +6,7 @@
 #include "run_program.hpp"
 
 namespace talus::cli {
-namespace {
+namespace pareto_chart_test {
 
 using testing::HasSubstr;
 
@@ -44,5 +44,5 @@ TEST(ParetoChart, JsonHasTheDemandsAndThePrices) {
   EXPECT_EQ(json[1]["risk_weight_J"], 1e6);
 }
 
-}  // namespace
+}  // namespace pareto_chart_test
 }  // namespace talus::cli

@@ -4,7 +4,7 @@
 #include "run_program.hpp"
 
 namespace talus::cli {
-namespace {
+namespace picture_test {
 
 using testing::StartsWith;
 
@@ -30,5 +30,5 @@ TEST(Picture, IsTheSameTwice) {
   EXPECT_EQ(drawPicture(exampleScene()), drawPicture(exampleScene()));
 }
 
-}  // namespace
+}  // namespace picture_test
 }  // namespace talus::cli

@@ -7,7 +7,7 @@
 #include "run_program.hpp"
 
 namespace talus::cli {
-namespace {
+namespace plot_test {
 
 using testing::HasSubstr;
 using testing::StartsWith;
@@ -54,5 +54,5 @@ TEST(Plot, IsWrittenByItsExtension) {
   EXPECT_THAT(fileContent(folder / "a.png"), StartsWith("\x89PNG"));
 }
 
-}  // namespace
+}  // namespace plot_test
 }  // namespace talus::cli

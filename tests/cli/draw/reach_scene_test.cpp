@@ -6,7 +6,7 @@
 #include <talus/cli/draw/reach_scene.hpp>
 
 namespace talus::cli {
-namespace {
+namespace reach_scene_test {
 
 // Flat ground, and a wall that no heading enters: the west is reached from the start, the east leads to the goal.
 TEST(ReachScene, ShowsBothSetsAndTheGapBetween) {
@@ -38,5 +38,5 @@ TEST(ReachScene, ShowsBothSetsAndTheGapBetween) {
   EXPECT_NE(drawPicture(scene), drawPicture(unmarked));
 }
 
-}  // namespace
+}  // namespace reach_scene_test
 }  // namespace talus::cli

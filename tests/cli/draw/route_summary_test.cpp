@@ -5,7 +5,7 @@
 #include "example_scene.hpp"
 
 namespace talus::cli {
-namespace {
+namespace route_summary_test {
 
 using testing::Contains;
 using testing::HasSubstr;
@@ -60,5 +60,5 @@ TEST(RouteSummary, Durations) {
   EXPECT_EQ(durationText(3.0 * 86400.0 + 4.0 * 3600.0), "3 d 04 h");
 }
 
-}  // namespace
+}  // namespace route_summary_test
 }  // namespace talus::cli

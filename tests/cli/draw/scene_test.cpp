@@ -6,7 +6,7 @@
 #include "example_scene.hpp"
 
 namespace talus::cli {
-namespace {
+namespace scene_test {
 
 TEST(Scene, SlopeOfAPlaneIsItsAngle) {
   maps::ElevationMap map;
@@ -34,5 +34,5 @@ TEST(Scene, ARouteAloneLiesInsideItsGround) {
   for (const planner::RouteVertex& v : route.vertices) EXPECT_TRUE(scene.grid().cellAt({v.x_m, v.y_m}));
 }
 
-}  // namespace
+}  // namespace scene_test
 }  // namespace talus::cli

@@ -6,7 +6,7 @@
 #include "run_program.hpp"
 
 namespace talus::cli {
-namespace {
+namespace slope_rose_test {
 
 using testing::HasSubstr;
 using testing::StartsWith;
@@ -48,5 +48,5 @@ TEST(SlopeRose, StandsHeadingsThatAreAllRefused) {
   EXPECT_THAT(draw(rose, Canvas::Kind::Png), StartsWith("\x89PNG"));
 }
 
-}  // namespace
+}  // namespace slope_rose_test
 }  // namespace talus::cli

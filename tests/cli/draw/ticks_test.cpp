@@ -4,7 +4,7 @@
 #include <talus/cli/draw/ticks.hpp>
 
 namespace talus::cli {
-namespace {
+namespace ticks_test {
 
 using testing::ElementsAre;
 
@@ -44,5 +44,5 @@ TEST(Ticks, RoundBelowIsTheLargestRoundNumber) {
   EXPECT_DOUBLE_EQ(roundBelow(1000.0), 1000.0);
 }
 
-}  // namespace
+}  // namespace ticks_test
 }  // namespace talus::cli

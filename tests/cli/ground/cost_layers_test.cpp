@@ -9,7 +9,7 @@
 #include "beyond_memory.hpp"
 
 namespace talus::cli {
-namespace {
+namespace cost_layers_test {
 
 using nlohmann::json;
 using testing::HasSubstr;
@@ -184,5 +184,5 @@ TEST_F(CostLayers, MistakesAreOneLine) {
   }
 }
 
-}  // namespace
+}  // namespace cost_layers_test
 }  // namespace talus::cli

@@ -6,7 +6,7 @@
 #include <talus/cli/ground/drive_options.hpp>
 
 namespace talus::cli {
-namespace {
+namespace drive_options_test {
 
 DriveOptions parsed(const std::string& line) {
   CLI::App app;
@@ -49,5 +49,5 @@ TEST(DriveOptions, TheChassisIsOfTheKindNamed) {
   EXPECT_THROW(chassisOf("rocker-bogie", map), std::invalid_argument);  // four wheels
 }
 
-}  // namespace
+}  // namespace drive_options_test
 }  // namespace talus::cli

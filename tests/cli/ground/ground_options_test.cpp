@@ -9,7 +9,7 @@
 #include "bad_input.hpp"
 
 namespace talus::cli {
-namespace {
+namespace ground_options_test {
 
 using testing::HasSubstr;
 using testing::ThrowsMessage;
@@ -194,5 +194,5 @@ TEST(GroundOptions, WhatReachesIntoACellCounts) {
   }
 }
 
-}  // namespace
+}  // namespace ground_options_test
 }  // namespace talus::cli

@@ -9,7 +9,7 @@
 #include "bad_input.hpp"
 
 namespace talus::cli {
-namespace {
+namespace map_options_test {
 
 using testing::HasSubstr;
 using testing::ThrowsMessage;
@@ -79,5 +79,5 @@ TEST(MapOptions, SeveralKeepOutFilesAddUp) {
       EXPECT_EQ((layers.keep_out[{column, row}]) != 0, row == 1 && (column == 2 || column == 7));
 }
 
-}  // namespace
+}  // namespace map_options_test
 }  // namespace talus::cli

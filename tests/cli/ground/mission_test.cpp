@@ -5,7 +5,7 @@
 #include "run_program.hpp"
 
 namespace talus::cli {
-namespace {
+namespace mission_test {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -110,5 +110,5 @@ TEST(Mission, MistakesNameTheFileAndTheField) {
   EXPECT_THAT(refused("rover: mer\n"), ThrowsMessage<InputError>(HasSubstr("maps")));
 }
 
-}  // namespace
+}  // namespace mission_test
 }  // namespace talus::cli

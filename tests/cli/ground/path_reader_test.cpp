@@ -5,7 +5,7 @@
 #include "run_program.hpp"
 
 namespace talus::cli {
-namespace {
+namespace path_reader_test {
 
 using maps::Point;
 using testing::ElementsAre;
@@ -82,5 +82,5 @@ TEST(PathReader, WhatIsNoPathIsOneLine) {
     EXPECT_THAT([&] { read(c.name, c.content); }, ThrowsMessage<InputError>(HasSubstr(c.says))) << c.name;
 }
 
-}  // namespace
+}  // namespace path_reader_test
 }  // namespace talus::cli

@@ -4,7 +4,7 @@
 #include "run_program.hpp"
 
 namespace talus::cli {
-namespace {
+namespace site_description_test {
 
 using testing::HasSubstr;
 using testing::ThrowsMessage;
@@ -44,5 +44,5 @@ TEST(SiteDescription, MistakesNameFileAndField) {
   EXPECT_THROW(loaded("site: {width: 8}\n"), InputError);
 }
 
-}  // namespace
+}  // namespace site_description_test
 }  // namespace talus::cli

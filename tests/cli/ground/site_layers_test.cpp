@@ -6,7 +6,7 @@
 #include <talus/cli/ground/site_layers.hpp>
 
 namespace talus::cli {
-namespace {
+namespace site_layers_test {
 
 std::map<std::string, maps::Raster<float>> layersOf(const costmap::TraversabilityMap& map) {
   std::map<std::string, maps::Raster<float>> layers;
@@ -56,5 +56,5 @@ TEST(SiteLayers, SayWhatTheMapSays) {
   EXPECT_TRUE(std::isnan(layers["energy_per_metre_uphill"][{11, 1}]));  // kept out
 }
 
-}  // namespace
+}  // namespace site_layers_test
 }  // namespace talus::cli

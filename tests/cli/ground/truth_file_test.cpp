@@ -5,7 +5,7 @@
 #include "run_program.hpp"
 
 namespace talus::cli {
-namespace {
+namespace truth_file_test {
 
 using testing::HasSubstr;
 using testing::ThrowsMessage;
@@ -59,5 +59,5 @@ TEST(TruthFile, MistakesNameTheField) {
     EXPECT_THAT([&] { read(each.first); }, ThrowsMessage<InputError>(HasSubstr(each.second))) << each.first;
 }
 
-}  // namespace
+}  // namespace truth_file_test
 }  // namespace talus::cli

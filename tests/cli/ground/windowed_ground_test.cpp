@@ -6,7 +6,7 @@
 #include "bad_input.hpp"
 
 namespace talus::cli {
-namespace {
+namespace windowed_ground_test {
 
 double rolling(int column, int row) {
   return 2.0 * std::sin(column / 9.0) * std::cos(row / 7.0);
@@ -57,5 +57,5 @@ TEST(WindowedGround, WindowsAreTheWholeGroundBitByBit) {
   EXPECT_GT(same, 3'000);
 }
 
-}  // namespace
+}  // namespace windowed_ground_test
 }  // namespace talus::cli

@@ -3,7 +3,7 @@
 #include <talus/cli/route/drive_report.hpp>
 
 namespace talus::cli {
-namespace {
+namespace drive_report_test {
 
 using planner::Belief;
 using planner::Outcome;
@@ -73,5 +73,5 @@ TEST(DriveReport, BeliefsAreComparedWhereARouteExists) {
   EXPECT_THAT(asText(beliefs), HasSubstr("2 worlds; perfect knowledge reaches the goal in 1 of them"));
 }
 
-}  // namespace
+}  // namespace drive_report_test
 }  // namespace talus::cli

@@ -7,7 +7,7 @@
 #include "run_program.hpp"
 
 namespace talus::cli {
-namespace {
+namespace drive_telemetry_test {
 
 // Property: what the reader of telemetry takes is what the wheels read, to nine digits; a slope is the angle of
 // its gradient, and what is not known is missing.
@@ -44,5 +44,5 @@ TEST(DriveTelemetry, AFolderThatIsMissingIsAnError) {
   EXPECT_THROW(saveTelemetry("/no/such/folder/t.csv", {}, {}), InputError);
 }
 
-}  // namespace
+}  // namespace drive_telemetry_test
 }  // namespace talus::cli

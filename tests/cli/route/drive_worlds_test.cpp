@@ -10,7 +10,7 @@
 #include "mpi_ranks.hpp"
 
 namespace talus::cli {
-namespace {
+namespace drive_worlds_test {
 
 using testing::HasSubstr;
 
@@ -80,5 +80,5 @@ TEST(DriveWorlds, RanksOfMpiGiveWhatOneProcessGives) {
   expectRanksAgree(answer, one);
 }
 
-}  // namespace
+}  // namespace drive_worlds_test
 }  // namespace talus::cli

@@ -6,7 +6,7 @@
 #include "mpi_ranks.hpp"
 
 namespace talus::cli {
-namespace {
+namespace plan_pairs_test {
 
 using testing::HasSubstr;
 
@@ -103,5 +103,5 @@ TEST(PlanPairs, MistakesAreOneLine) {
   }
 }
 
-}  // namespace
+}  // namespace plan_pairs_test
 }  // namespace talus::cli

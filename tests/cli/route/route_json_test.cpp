@@ -6,7 +6,7 @@
 #include "run_program.hpp"
 
 namespace talus::cli {
-namespace {
+namespace route_json_test {
 
 // The fields that the interface promises of a route.
 constexpr const char* kSummary[] = {"status",   "cost",          "energy_J",    "time_s", "length_m",
@@ -80,5 +80,5 @@ TEST(RouteJson, DrivesHaveTheirShape) {
             route.vertices.size());
 }
 
-}  // namespace
+}  // namespace route_json_test
 }  // namespace talus::cli

@@ -10,7 +10,7 @@
 #include "run_program.hpp"
 
 namespace talus::cli {
-namespace {
+namespace route_reader_test {
 
 using testing::HasSubstr;
 
@@ -103,5 +103,5 @@ TEST(RouteReader, StandsAnyFieldOfAnotherKind) {
   }
 }
 
-}  // namespace
+}  // namespace route_reader_test
 }  // namespace talus::cli

@@ -4,7 +4,7 @@
 #include <talus/terramech/io/soil_library.hpp>
 
 namespace talus::cli {
-namespace {
+namespace trace_answer_test {
 
 using terramech::TraceResult;
 
@@ -82,5 +82,5 @@ TEST(TraceAnswer, AnEffectOfSizeZeroTakesBackTheTermOfTheBase) {
   EXPECT_EQ(roleText(roles[3]), "");
 }
 
-}  // namespace
+}  // namespace trace_answer_test
 }  // namespace talus::cli

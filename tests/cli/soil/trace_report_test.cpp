@@ -4,7 +4,7 @@
 #include <talus/cli/soil/trace_report.hpp>
 
 namespace talus::cli {
-namespace {
+namespace trace_report_test {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -72,5 +72,5 @@ TEST(TraceReport, RowsBeyondTheAxleAreSaidWithTheirErrors) {
               testing::EndsWith("drawbar_pull_over_load 0.125, torque_over_load_radius 0.500"));
 }
 
-}  // namespace
+}  // namespace trace_report_test
 }  // namespace talus::cli

@@ -7,7 +7,7 @@
 #include <talus/terramech/io/soil_library.hpp>
 
 namespace talus::cli {
-namespace {
+namespace wheel_report_test {
 
 using testing::HasSubstr;
 using testing::Not;
@@ -45,5 +45,5 @@ TEST(WheelReport, ALoadThatSinksTheWheelHasNoPage) {
   EXPECT_THROW(wheelReport(at), std::domain_error);
 }
 
-}  // namespace
+}  // namespace wheel_report_test
 }  // namespace talus::cli

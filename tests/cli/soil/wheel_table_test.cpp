@@ -9,7 +9,7 @@
 #include "run_program.hpp"
 
 namespace talus::cli {
-namespace {
+namespace wheel_table_test {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -137,5 +137,5 @@ TEST(WheelTable, LoadsThatNoWheelCarriesAreRefused) {
   EXPECT_THAT(table.refused[0].reason, HasSubstr("load_N = 1e12, must be at most 1e+07"));
 }
 
-}  // namespace
+}  // namespace wheel_table_test
 }  // namespace talus::cli

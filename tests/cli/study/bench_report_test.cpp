@@ -6,7 +6,7 @@
 #include <talus/costmap/cost/cost_grid.hpp>
 
 namespace talus::cli {
-namespace {
+namespace bench_report_test {
 
 using planner::BenchmarkPlan;
 using planner::BenchmarkRun;
@@ -71,5 +71,5 @@ TEST(BenchReport, SaysThatItWasCutShort) {
   EXPECT_THAT(asPage(plan(), runs()), Not(HasSubstr("Cancelled")));
 }
 
-}  // namespace
+}  // namespace bench_report_test
 }  // namespace talus::cli

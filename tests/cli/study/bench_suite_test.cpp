@@ -9,7 +9,7 @@
 #include "bad_input.hpp"
 
 namespace talus::cli {
-namespace {
+namespace bench_suite_test {
 
 using testing::HasSubstr;
 using testing::ThrowsMessage;
@@ -74,5 +74,5 @@ TEST(BenchSuite, GroundWithoutAMapIsRefused) {
               ThrowsMessage<InputError>(HasSubstr("without an elevation map")));
 }
 
-}  // namespace
+}  // namespace bench_suite_test
 }  // namespace talus::cli

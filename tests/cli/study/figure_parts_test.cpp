@@ -3,7 +3,7 @@
 #include <talus/cli/study/figure_parts.hpp>
 
 namespace talus::cli {
-namespace {
+namespace figure_parts_test {
 
 // Closed form: mean and standard deviation of 2, 4, 4, 4, 5, 5, 7, 9 are 5 and 2.
 TEST(FigureParts, MeanAndStandardDeviation) {
@@ -55,5 +55,5 @@ TEST(FigureParts, AClayRunHasMuchCohesion) {
   EXPECT_EQ(run.soil.cohesion_Pa, clayRun(3, 0.05).soil.cohesion_Pa);
 }
 
-}  // namespace
+}  // namespace figure_parts_test
 }  // namespace talus::cli

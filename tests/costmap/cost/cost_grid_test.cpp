@@ -6,7 +6,7 @@
 #include <talus/costmap/cost/cost_grid.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace cost_grid_test {
 
 CostGrid plain(int side) {
   const maps::Grid grid{.width = side, .height = side, .resolution_m = 1.0, .south_west = {}};
@@ -69,5 +69,5 @@ TEST(TileTable, CopiesShareAndDoNotInterfere) {
   }
 }
 
-}  // namespace
+}  // namespace cost_grid_test
 }  // namespace talus::costmap

@@ -6,7 +6,7 @@
 #include <talus/costmap/cost/cost_weights.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace cost_weights_test {
 
 CostGrid oneGround() {
   const auto model = testGround();
@@ -52,5 +52,5 @@ TEST(CostWeights, RefusesNegativeWeightsAndMapsWithoutNumbers) {
   EXPECT_THROW(reweighted(bare, {}), std::domain_error);
 }
 
-}  // namespace
+}  // namespace cost_weights_test
 }  // namespace talus::costmap

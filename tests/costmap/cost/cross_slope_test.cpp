@@ -8,7 +8,7 @@
 #include <talus/costmap/ground/ground_model.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace cross_slope_test {
 
 GroundBelief certain(const GroundModel& model) {
   GroundBelief belief = model.prior(0);
@@ -191,5 +191,5 @@ TEST(CrossSlope, OfTwoGroundsTheHarderCounts) {
     }
 }
 
-}  // namespace
+}  // namespace cross_slope_test
 }  // namespace talus::costmap

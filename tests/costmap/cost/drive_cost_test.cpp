@@ -8,7 +8,7 @@
 #include <talus/costmap/ground/ground_model.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace drive_cost_test {
 
 // A curve whose cost names its own bin, so that what was looked up can be read off.
 DriveCurve numbered() {
@@ -99,5 +99,5 @@ TEST(DriveCost, RefusesMoreCurvesThanCellsCanName) {
   EXPECT_THROW(DriveCost({}, std::vector<DriveCurve>(255)), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace drive_cost_test
 }  // namespace talus::costmap

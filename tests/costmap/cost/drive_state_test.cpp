@@ -4,7 +4,7 @@
 #include <talus/costmap/cost/drive_state.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace drive_state_test {
 
 TEST(DriveState, EveryRefusalHasWordsOfItsOwn) {
   std::set<std::string> texts;
@@ -14,5 +14,5 @@ TEST(DriveState, EveryRefusalHasWordsOfItsOwn) {
   EXPECT_FALSE(texts.contains(""));
 }
 
-}  // namespace
+}  // namespace drive_state_test
 }  // namespace talus::costmap

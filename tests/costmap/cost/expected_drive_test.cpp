@@ -7,7 +7,7 @@
 #include <talus/costmap/ground/ground_model.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace expected_drive_test {
 
 double drawn(std::mt19937_64& random, double low, double high) {
   return std::uniform_real_distribution<double>(low, high)(random);
@@ -116,5 +116,5 @@ TEST(ExpectedDrive, SteeperIsNeverCheaper) {
   EXPECT_GT(compared, 2000);
 }
 
-}  // namespace
+}  // namespace expected_drive_test
 }  // namespace talus::costmap

@@ -3,7 +3,7 @@
 #include <talus/costmap/cost/learned_cells.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace learned_cells_test {
 
 TEST(LearnedCells, KeepsWordsAndTellsChanges) {
   LearnedCells cells({.width = 200, .height = 100, .resolution_m = 1.0, .south_west = {}});
@@ -20,5 +20,5 @@ TEST(LearnedCells, KeepsWordsAndTellsChanges) {
   EXPECT_EQ(cells.boxes()[0].last, (maps::Cell{75, 9}));
 }
 
-}  // namespace
+}  // namespace learned_cells_test
 }  // namespace talus::costmap

@@ -8,7 +8,7 @@
 #include <talus/costmap/evidence/block_evidence.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace block_evidence_test {
 
 const Estimate kPrior{0.2, 0.05};
 
@@ -79,5 +79,5 @@ TEST(BlockEvidence, SamplesWeighByCertainty) {
               1e-9);
 }
 
-}  // namespace
+}  // namespace block_evidence_test
 }  // namespace talus::costmap

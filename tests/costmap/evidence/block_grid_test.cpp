@@ -3,7 +3,7 @@
 #include <talus/costmap/evidence/block_grid.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace block_grid_test {
 
 std::shared_ptr<const GroundSite> siteOf(const std::vector<std::string>& rows, double correlation_length_m) {
   MapLayers layers = drawn(rows);
@@ -47,5 +47,5 @@ TEST(BlockGrid, TopIsTheFirstKnownCellOfABlock) {
   EXPECT_EQ(blocks.topKey(blocks.blockOf({6, 7})), blocks.keyOf(1000.0F));
 }
 
-}  // namespace
+}  // namespace block_grid_test
 }  // namespace talus::costmap

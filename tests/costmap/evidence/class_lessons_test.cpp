@@ -5,7 +5,7 @@
 #include <talus/costmap/evidence/class_lessons.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace class_lessons_test {
 
 GroundClass sand() {
   return {.number = 1, .soil = testSand(), .pull_std = 0.05, .mean_std = 0.05};
@@ -88,5 +88,5 @@ TEST(ClassLessons, ForgetsToTheBit) {
   EXPECT_EQ(lessons.posterior().pull.std, before.pull.std);
 }
 
-}  // namespace
+}  // namespace class_lessons_test
 }  // namespace talus::costmap

@@ -5,7 +5,7 @@
 #include <talus/costmap/evidence/evidence_bricks.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace evidence_bricks_test {
 
 using Key = std::tuple<int, int, std::uint16_t, std::uint8_t>;
 using Readings = std::map<std::tuple<std::uint8_t, std::uint8_t>, unsigned>;
@@ -77,5 +77,5 @@ TEST(EvidenceBricks, CountsStopAtTheirMost) {
   EXPECT_EQ(bricks.counts({1, 1})[0].count, 65535);
 }
 
-}  // namespace
+}  // namespace evidence_bricks_test
 }  // namespace talus::costmap

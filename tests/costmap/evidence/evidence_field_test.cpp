@@ -8,7 +8,7 @@
 #include <talus/costmap/map/map_file.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace evidence_field_test {
 
 std::vector<std::string> wide() {
   return std::vector<std::string>(60, std::string(60, '1'));
@@ -142,5 +142,5 @@ TEST(TraversabilityMap, RefusedGroundStaysRefused) {
   EXPECT_NO_THROW(map.refuse({-500.0, 1e9}, 3.0));
 }
 
-}  // namespace
+}  // namespace evidence_field_test
 }  // namespace talus::costmap

@@ -9,7 +9,7 @@
 #include <talus/costmap/map/map_file.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace evidence_properties_test {
 
 constexpr int kSide = 30;
 
@@ -246,5 +246,5 @@ TEST(Evidence, PoseErrorSpreadsDangerAndHoldsStrengthBack) {
   EXPECT_TRUE(std::isnan(map.evidence().evidence({13, 15})->pull)) << "it may have stood on dust";
 }
 
-}  // namespace
+}  // namespace evidence_properties_test
 }  // namespace talus::costmap

@@ -3,7 +3,7 @@
 #include <talus/costmap/evidence/spreading.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace spreading_test {
 
 constexpr Variation kVariation{.pull_std = 0.05, .sinkage_std = 0.1, .correlation_length_m = 4.0};
 
@@ -38,5 +38,5 @@ TEST(KernelInference, OnePlaceIsTheConjugateUpdate) {
   EXPECT_NEAR(kernelInference(one, kVariation, {0, 0}).pull.value, 0.05, 1e-12);
 }
 
-}  // namespace
+}  // namespace spreading_test
 }  // namespace talus::costmap

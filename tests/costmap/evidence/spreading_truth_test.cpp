@@ -9,7 +9,7 @@
 #include <talus/costmap/evidence/spreading.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace spreading_truth_test {
 
 constexpr Variation kVariation{.pull_std = 0.05, .sinkage_std = 0.1, .correlation_length_m = 5.0};
 
@@ -195,5 +195,5 @@ TEST(Spreading, OnGroundOfAnotherKindItErrsOnTheSideOfDoubt) {
   fitted.expectWithin({0.02, 0.1}, "waves, 7.5 m");
 }
 
-}  // namespace
+}  // namespace spreading_truth_test
 }  // namespace talus::costmap

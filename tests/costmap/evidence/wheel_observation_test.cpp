@@ -9,7 +9,7 @@
 #include <talus/terramech/mobility/rut.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace wheel_observation_test {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
@@ -215,5 +215,5 @@ TEST(WheelObserver, ARoverThatMayHaveStoodGivesAnUpperBound) {
     }
 }
 
-}  // namespace
+}  // namespace wheel_observation_test
 }  // namespace talus::costmap

@@ -7,7 +7,7 @@
 #include <talus/costmap/ground/category_table.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace category_table_test {
 
 TEST(CategoryTable, IsTheModelsCategoryOfTheWorstHeading) {
   const auto model = testGround();
@@ -53,5 +53,5 @@ TEST(CategoryTable, HoldsTheSteepestGradientThatACellCanHold) {
             static_cast<std::uint8_t>(terramech::Category::Dangerous));
 }
 
-}  // namespace
+}  // namespace category_table_test
 }  // namespace talus::costmap

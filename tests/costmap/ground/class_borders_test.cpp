@@ -5,7 +5,7 @@
 #include <talus/costmap/ground/class_borders.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace class_borders_test {
 
 // Brute force: every cell against every cell around it.
 TEST(ClassBorders, AreCellsWithAnotherClassInReach) {
@@ -34,5 +34,5 @@ TEST(ClassBorders, AreCellsWithAnotherClassInReach) {
   EXPECT_TRUE(classBorders({}, 2).empty());
 }
 
-}  // namespace
+}  // namespace class_borders_test
 }  // namespace talus::costmap

@@ -6,7 +6,7 @@
 #include <talus/costmap/ground/cost_curve_table.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace cost_curve_table_test {
 
 // Property: what a belief costs does not depend on which like it was asked for first.
 TEST(CostCurveTable, OrderDoesNotMatter) {
@@ -108,5 +108,5 @@ TEST(CostCurveTable, APriorThatComesBackIsTheSame) {
   EXPECT_NE(between, first);
 }
 
-}  // namespace
+}  // namespace cost_curve_table_test
 }  // namespace talus::costmap

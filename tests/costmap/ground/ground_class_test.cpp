@@ -5,7 +5,7 @@
 #include <talus/costmap/ground/ground_class.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace ground_class_test {
 
 double pull(const terramech::Soil& soil) {
   return terramech::MobilityCurve(soil, testRover()).reference().drawbar_pull_over_load;
@@ -63,5 +63,5 @@ TEST(GroundClass, DoubtOfARefinedModelIsItsCovariance) {
   EXPECT_NEAR(groundClass(3, digging(), testRover()).mean_std, expected, 0.02 * expected);
 }
 
-}  // namespace
+}  // namespace ground_class_test
 }  // namespace talus::costmap

@@ -6,7 +6,7 @@
 #include <talus/costmap/ground/ground_kind.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace ground_kind_test {
 
 GroundBelief anyBelief(std::mt19937_64& random) {
   const auto drawn = [&](double low, double high) {
@@ -54,5 +54,5 @@ TEST(GroundKind, StepsAreThoseStated) {
   EXPECT_NEAR(coarse.sinkage.value, 0.8, 1e-12);
 }
 
-}  // namespace
+}  // namespace ground_kind_test
 }  // namespace talus::costmap

@@ -11,7 +11,7 @@
 #include <talus/terramech/contact/wong_reece.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace ground_model_test {
 
 using terramech::Category;
 
@@ -269,5 +269,5 @@ TEST(GroundModel, CategoryEdgesAreTheTangentsOfSlopeAndMargin) {
   }
 }
 
-}  // namespace
+}  // namespace ground_model_test
 }  // namespace talus::costmap

@@ -8,7 +8,7 @@
 #include <talus/costmap/ground/wheel_swath.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace wheel_swath_test {
 
 using Around = std::vector<WheelSwath::Ground>;
 
@@ -111,5 +111,5 @@ TEST(WheelSwath, IsTheLeastOfAllStandings) {
   EXPECT_LT(missed / standings, 0.01);
 }
 
-}  // namespace
+}  // namespace wheel_swath_test
 }  // namespace talus::costmap

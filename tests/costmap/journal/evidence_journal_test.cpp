@@ -13,7 +13,7 @@
 #include <talus/costmap/journal/evidence_journal.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace evidence_journal_test {
 
 class EvidenceJournalTest : public ::testing::Test {
  protected:
@@ -359,5 +359,5 @@ TEST_F(EvidenceJournalTest, TwoWritersDoNotCorruptIt) {
   EXPECT_EQ(EvidenceJournal(path()).size(), 200);
 }
 
-}  // namespace
+}  // namespace evidence_journal_test
 }  // namespace talus::costmap

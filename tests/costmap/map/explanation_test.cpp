@@ -7,7 +7,7 @@
 #include <talus/costmap/telemetry/telemetry_processor.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace explanation_test {
 
 using terramech::Category;
 
@@ -82,5 +82,5 @@ TEST(Explain, UnseenGroundThatHeldAWheelIsSaidToBeRefused) {
   EXPECT_EQ(cause(held, "evidence_samples").remark.find("prior only"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace explanation_test
 }  // namespace talus::costmap

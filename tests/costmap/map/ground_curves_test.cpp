@@ -7,7 +7,7 @@
 #include <talus/costmap/map/traversability_map.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace ground_curves_test {
 
 using terramech::Category;
 
@@ -273,5 +273,5 @@ TEST(GroundCurves, GroundWithoutAClassUnderAWheelIsUnknown) {
   EXPECT_LT(closed.code({18, 12}).curve(), CellCode::kUnknown);
 }
 
-}  // namespace
+}  // namespace ground_curves_test
 }  // namespace talus::costmap

@@ -8,7 +8,7 @@
 #include <talus/costmap/map/map_file.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace map_file_test {
 
 TraversabilityMap site() {
   return mapOf({"1122", "1?22", "11#2", "1111"}, 0.05);
@@ -183,5 +183,5 @@ TEST(MapFile, SaysWhatIsMissing) {
   EXPECT_THROW(writeMap(site(), "/nonexistent/map.ot"), InputError);
 }
 
-}  // namespace
+}  // namespace map_file_test
 }  // namespace talus::costmap

@@ -12,7 +12,7 @@
 #include <talus/costmap/surface/cell_boxes.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace map_move_test {
 
 using maps::Cell;
 using testing::HasSubstr;
@@ -129,5 +129,5 @@ TEST(MapMove, WhatLeavesNothingIsRefused) {
   }
 }
 
-}  // namespace
+}  // namespace map_move_test
 }  // namespace talus::costmap

@@ -11,7 +11,7 @@
 #include <talus/costmap/surface/cell_boxes.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace map_surface_test {
 
 using maps::Cell;
 using maps::CellBox;
@@ -212,5 +212,5 @@ TEST(MapSurface, PatchedEqualsBuiltAtOnceWhereTheUnseenIsOpen) {
     patchedIsAtOnce({.seed = seed, .policy = {.allow_unknown = true}});
 }
 
-}  // namespace
+}  // namespace map_surface_test
 }  // namespace talus::costmap

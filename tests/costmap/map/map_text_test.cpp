@@ -6,7 +6,7 @@
 #include <talus/costmap/map/map_text.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace map_text_test {
 
 using testing::HasSubstr;
 
@@ -116,5 +116,5 @@ TEST(MapText, ALineMissingUnknownOrNoNumberIsRefused) {
   EXPECT_THAT(refusal(replaced(lines, "effects 1\n", "effects 100000\n")), HasSubstr("is 100000"));
 }
 
-}  // namespace
+}  // namespace map_text_test
 }  // namespace talus::costmap

@@ -14,7 +14,7 @@
 #include <talus/costmap/surface/cell_boxes.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace publish_order_test {
 
 using maps::Cell;
 
@@ -252,5 +252,5 @@ TEST(PublishOrder, IsNotCheaperWhereCurvesRunOut) {
          1);
 }
 
-}  // namespace
+}  // namespace publish_order_test
 }  // namespace talus::costmap

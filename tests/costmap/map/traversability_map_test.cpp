@@ -8,7 +8,7 @@
 #include <talus/costmap/map/traversability_map.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace traversability_map_test {
 
 using terramech::Category;
 
@@ -138,5 +138,5 @@ TEST(TraversabilityMap, ReadersSeeWholeVersionsInOrder) {
   EXPECT_EQ(changed, 0);
 }
 
-}  // namespace
+}  // namespace traversability_map_test
 }  // namespace talus::costmap

@@ -13,7 +13,7 @@
 #include <talus/costmap/surface/cell_boxes.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace added_cost_test {
 
 using maps::Cell;
 using testing::HasSubstr;
@@ -288,5 +288,5 @@ TEST(AddedCost, WhatCannotBeIsOneLine) {
   EXPECT_THAT(refusal(doubt), HasSubstr("unseen_J_per_m"));
 }
 
-}  // namespace
+}  // namespace added_cost_test
 }  // namespace talus::costmap

@@ -8,7 +8,7 @@
 #include <talus/costmap/site/surface_patch.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace surface_patch_test {
 
 const maps::Grid kMap{.width = 40, .height = 30, .resolution_m = 0.5, .south_west = {10.0, 20.0}};
 
@@ -282,5 +282,5 @@ TEST(SurfacePatch, OfTwoThreadsAtOnceIsTakenOrRefusedWhole) {
       ASSERT_EQ(map.code({column, row}), one.code({column, row})) << column << ' ' << row;
 }
 
-}  // namespace
+}  // namespace surface_patch_test
 }  // namespace talus::costmap

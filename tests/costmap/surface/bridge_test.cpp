@@ -15,7 +15,7 @@
 #include <talus/costmap/telemetry/drive_evidence.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace bridge_test {
 
 constexpr double kVoxel_m = 0.5;
 constexpr double kRoad_m = 0.25, kDeck_m = 3.25;  // middles of voxels
@@ -225,5 +225,5 @@ TEST(Bridge, IsExplained) {
   EXPECT_EQ(value("evidence_samples"), 0.0);
 }
 
-}  // namespace
+}  // namespace bridge_test
 }  // namespace talus::costmap

@@ -1,7 +1,7 @@
 #include <talus/costmap/surface/cell_belief.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace cell_belief_test {
 
 constexpr Hazard kAll[] = {Hazard::Unknown, Hazard::Slope,   Hazard::Step,     Hazard::Roughness,
                            Hazard::Rocks,   Hazard::KeepOut, Hazard::Obstacle, Hazard::Near};
@@ -32,5 +32,5 @@ TEST(CellBelief, NothingIsBelievedOfACellBeforeAnyData) {
   EXPECT_FALSE(ofFloor(none));
 }
 
-}  // namespace
+}  // namespace cell_belief_test
 }  // namespace talus::costmap

@@ -5,7 +5,7 @@
 #include <talus/costmap/surface/floors.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace floors_test {
 
 TEST(Floors, AWheelStandsOnTheNearest) {
   const Floors floors({{5, 3.0F}, {2, 1.0F}, {5, -2.0F}}, 9);
@@ -26,5 +26,5 @@ TEST(Floors, RefuseWhatLiesOutside) {
   EXPECT_THROW(Floors({{1, std::numeric_limits<float>::infinity()}}, 9), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace floors_test
 }  // namespace talus::costmap

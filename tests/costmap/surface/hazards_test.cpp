@@ -8,7 +8,7 @@
 #include <talus/costmap/surface/hazards.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace hazards_test {
 
 maps::Grid grid(int side, double resolution_m) {
   return {.width = side, .height = side, .resolution_m = resolution_m, .south_west = {}};
@@ -106,5 +106,5 @@ TEST(Hazards, InflatedInABoxIsAsEverywhere) {
   }
 }
 
-}  // namespace
+}  // namespace hazards_test
 }  // namespace talus::costmap

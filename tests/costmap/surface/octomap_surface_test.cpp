@@ -9,7 +9,7 @@
 #include <talus/costmap/surface/octomap_surface.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace octomap_surface_test {
 
 // A slope of voxels with a slab above part of it and free space between.
 template <typename Tree>
@@ -140,5 +140,5 @@ TEST(OctomapSurface, NamesAForeignTree) {
   EXPECT_FALSE(octomapType("/dev/null").has_value());
 }
 
-}  // namespace
+}  // namespace octomap_surface_test
 }  // namespace talus::costmap

@@ -5,7 +5,7 @@
 #include <talus/costmap/surface/rock_hazard.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace rock_hazard_test {
 
 // Rocks a square metre wider than d, by brute force from the definition.
 double rocksByQuadrature(double k, double d) {
@@ -44,5 +44,5 @@ TEST(RockHazard, NeverFallsWithTheShareOfRocks) {
   EXPECT_EQ(rockHazard(0.51, fido), 1.0);
 }
 
-}  // namespace
+}  // namespace rock_hazard_test
 }  // namespace talus::costmap

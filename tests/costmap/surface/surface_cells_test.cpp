@@ -5,7 +5,7 @@
 #include <talus/costmap/surface/surface_cells.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace surface_cells_test {
 
 constexpr maps::Grid kGrid{.width = 21, .height = 13, .resolution_m = 0.5, .south_west = {3.0, -7.0}};
 
@@ -63,5 +63,5 @@ TEST(SurfacePyramid, BlocksHoldTheRangeOfTheirCells) {
   }
 }
 
-}  // namespace
+}  // namespace surface_cells_test
 }  // namespace talus::costmap

@@ -6,7 +6,7 @@
 #include <talus/costmap/surface/surface_shape.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace surface_shape_test {
 
 // Property: what is measured in a box is, bit by bit, what terrainMetrics() measures of the whole; each cell of the
 // box comes once, and a height changes no cell beyond reach().
@@ -55,5 +55,5 @@ TEST(SurfaceShape, AHeightReachesNoFurtherThanSaid) {
   }
 }
 
-}  // namespace
+}  // namespace surface_shape_test
 }  // namespace talus::costmap

@@ -10,7 +10,7 @@
 #include <talus/costmap/surface/surface_tree.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace surface_tree_test {
 
 // A step of five cells, so that the surface leaves cubes out between.
 MapLayers cliff() {
@@ -97,5 +97,5 @@ TEST(SurfaceTree, NoElevationNoTree) {
             0U);
 }
 
-}  // namespace
+}  // namespace surface_tree_test
 }  // namespace talus::costmap

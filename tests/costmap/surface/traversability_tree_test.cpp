@@ -5,7 +5,7 @@
 #include <talus/costmap/surface/traversability_tree.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace traversability_tree_test {
 
 using octomap::OcTreeKey;
 
@@ -99,5 +99,5 @@ TEST(TraversabilityTree, NamesAForeignTree) {
   }
 }
 
-}  // namespace
+}  // namespace traversability_tree_test
 }  // namespace talus::costmap

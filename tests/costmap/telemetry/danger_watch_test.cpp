@@ -8,7 +8,7 @@
 #include <talus/costmap/telemetry/danger_watch.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace danger_watch_test {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
@@ -103,5 +103,5 @@ TEST(DangerWatch, IsMonotone) {
 
 // A log of one wheel or several; columns that are NaN in every row are left out of the table.
 
-}  // namespace
+}  // namespace danger_watch_test
 }  // namespace talus::costmap

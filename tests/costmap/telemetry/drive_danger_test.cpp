@@ -14,7 +14,7 @@
 #include <talus/costmap/telemetry/drive_evidence.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace drive_danger_test {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
@@ -392,5 +392,5 @@ TEST(Danger, OfAChannelIsHeardWhateverElseTheRowSays) {
   }
 }
 
-}  // namespace
+}  // namespace drive_danger_test
 }  // namespace talus::costmap

@@ -13,7 +13,7 @@
 #include <talus/terramech/contact/wong_reece.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace drive_evidence_test {
 
 std::vector<std::string> wide() {
   return std::vector<std::string>(60, std::string(60, '1'));
@@ -194,5 +194,5 @@ TEST(Replay, RebuildsTheMapFromTheJournalToTheBit) {
   std::filesystem::remove_all(folder);
 }
 
-}  // namespace
+}  // namespace drive_evidence_test
 }  // namespace talus::costmap

@@ -9,7 +9,7 @@
 #include <talus/costmap/telemetry/telemetry_rows.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace drive_id_test {
 
 // Every used column; two rows, and a rejected one between them.
 terramech::Telemetry table() {
@@ -101,5 +101,5 @@ TEST(DriveId, RecognisesWhatAMapHoldsByItsFormerId) {
   EXPECT_EQ(addDrive(map, drive).repeated, 2U);
 }
 
-}  // namespace
+}  // namespace drive_id_test
 }  // namespace talus::costmap

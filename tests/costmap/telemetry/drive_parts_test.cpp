@@ -17,7 +17,7 @@
 #include <talus/costmap/telemetry/drive_evidence.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace drive_parts_test {
 
 constexpr double kHeight_m = 1.0;
 constexpr std::size_t kWheels = 4;
@@ -120,5 +120,5 @@ TEST(DriveParts, RowsThatAreNotKeptAreNotSettled) {
   EXPECT_THROW(intake.settle(), std::logic_error);
 }
 
-}  // namespace
+}  // namespace drive_parts_test
 }  // namespace talus::costmap

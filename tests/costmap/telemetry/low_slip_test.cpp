@@ -13,7 +13,7 @@
 #include <talus/terramech/contact/wong_reece.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace low_slip_test {
 
 constexpr double kReferenceSlip = 0.5;
 constexpr double kTwelveDegrees = 0.2126;  // tangent of 12 deg
@@ -256,5 +256,5 @@ TEST(LowSlip, WhatTellsLittleLowersNoRisk) {
     }
 }
 
-}  // namespace
+}  // namespace low_slip_test
 }  // namespace talus::costmap

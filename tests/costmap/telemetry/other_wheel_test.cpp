@@ -7,7 +7,7 @@
 #include <talus/costmap/telemetry/drive_evidence.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace other_wheel_test {
 
 constexpr double kHeight_m = 1.0;
 
@@ -101,5 +101,5 @@ TEST(OtherJournal, RaisesNothing) {
   std::filesystem::remove_all(folder);
 }
 
-}  // namespace
+}  // namespace other_wheel_test
 }  // namespace talus::costmap

@@ -6,7 +6,7 @@
 #include <talus/costmap/telemetry/response.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace response_test {
 
 const Response::Claim kClaim{.least = 0.1, .variation = 0.05};
 
@@ -61,5 +61,5 @@ TEST(ResponseSeries, GoesBackUntilTheCauseVaries) {
   EXPECT_GT(series.recent(0.02).size(), 60U);
 }
 
-}  // namespace
+}  // namespace response_test
 }  // namespace talus::costmap

@@ -10,7 +10,7 @@
 #include <talus/costmap/telemetry/drive_evidence.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace rover_fault_test {
 
 // Cells and headings, up a slope or along it, that were refused and are allowed now. (Downhill a drive over weaker
 // ground brakes less by the model of GroundModel, and may be allowed for it.)
@@ -146,5 +146,5 @@ TEST(SoundRover, LearnsThatGroundIsWeaker) {
   EXPECT_EQ(freed(before, after), 0);
 }
 
-}  // namespace
+}  // namespace rover_fault_test
 }  // namespace talus::costmap

@@ -9,7 +9,7 @@
 #include <talus/costmap/telemetry/drive_evidence.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace sensor_fault_test {
 
 // Ground stronger than the class by about what classes differ.
 terramech::Soil firmerSand() {
@@ -267,5 +267,5 @@ TEST(FaultyDrive, DeepWheelsAtLittleSlipCount) {
   EXPECT_EQ(raised(before, after), 0);
 }
 
-}  // namespace
+}  // namespace sensor_fault_test
 }  // namespace talus::costmap

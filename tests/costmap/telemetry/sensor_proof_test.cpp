@@ -7,7 +7,7 @@
 #include <talus/costmap/telemetry/sensor_proof.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace sensor_proof_test {
 
 using Row = SensorProof::Row;
 
@@ -77,5 +77,5 @@ TEST(SensorProof, AJumpCountsUntilThePoseIsBack) {
       proofOf([](Row& r, int i) { r.reading.place.y_m += i > 60 && i < 90 ? 8.0 : 0.0; }).displaced("a"));
 }
 
-}  // namespace
+}  // namespace sensor_proof_test
 }  // namespace talus::costmap

@@ -6,7 +6,7 @@
 #include <talus/costmap/telemetry/sensor_watch.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace sensor_watch_test {
 
 WheelReading at(double time_s, double slip) {
   return {.time_s = time_s,
@@ -161,5 +161,5 @@ TEST(SensorWatch, WhatJumpsAtAllWheelsIsTheRover) {
   EXPECT_TRUE(three[2].has_value());
 }
 
-}  // namespace
+}  // namespace sensor_watch_test
 }  // namespace talus::costmap

@@ -13,7 +13,7 @@
 #include <talus/costmap/telemetry/drive_evidence.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace shared_error_test {
 
 constexpr double kHeight_m = 1.0;
 constexpr double kGradient = 0.15;
@@ -191,5 +191,5 @@ TEST(SharedError, LeavesDrivenGroundNoLessSureThanItsClass) {
   }
 }
 
-}  // namespace
+}  // namespace shared_error_test
 }  // namespace talus::costmap

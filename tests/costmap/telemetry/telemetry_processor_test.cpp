@@ -5,7 +5,7 @@
 #include <talus/costmap/telemetry/telemetry_processor.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace telemetry_processor_test {
 
 // One wheel that creeps east on the level; column by column.
 terramech::Telemetry quiet(int count) {
@@ -109,5 +109,5 @@ TEST(TelemetryProcessor, SaysWhatIsMissing) {
   }
 }
 
-}  // namespace
+}  // namespace telemetry_processor_test
 }  // namespace talus::costmap

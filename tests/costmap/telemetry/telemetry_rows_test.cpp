@@ -7,7 +7,7 @@
 #include <talus/costmap/telemetry/telemetry_rows.hpp>
 
 namespace talus::costmap {
-namespace {
+namespace telemetry_rows_test {
 
 TraversabilityMap ramp() {
   return mapOf(std::vector<std::string>(20, std::string(20, '1')), 0.1);
@@ -134,5 +134,5 @@ TEST(TelemetryRows, NamesAColumnThatIsMissing) {
   EXPECT_THROW(TelemetryRows(t, map, 0.5), InputError);
 }
 
-}  // namespace
+}  // namespace telemetry_rows_test
 }  // namespace talus::costmap

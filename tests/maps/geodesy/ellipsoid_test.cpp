@@ -3,7 +3,7 @@
 #include <talus/maps/geodesy/ellipsoid.hpp>
 
 namespace talus::maps {
-namespace {
+namespace ellipsoid_test {
 
 TEST(Ellipsoid, BodiesByTheirRadius) {
   EXPECT_EQ(bodyName(kEarth), "Earth");
@@ -29,5 +29,5 @@ TEST(Ellipsoid, OnASphereBothLatitudesAreOne) {
   EXPECT_NEAR(geographicLatitude(kMoon, -0.7), -0.7, 1e-15);
 }
 
-}  // namespace
+}  // namespace ellipsoid_test
 }  // namespace talus::maps

@@ -6,7 +6,7 @@
 #include <talus/maps/geodesy/georeference.hpp>
 
 namespace talus::maps {
-namespace {
+namespace georeference_test {
 
 CoordinateSystem lunarPole() {
   return {.name = "lunar south pole",
@@ -75,5 +75,5 @@ TEST(Georeference, RefusesParametersOutOfRange) {
   EXPECT_THROW(Georeference{system}, std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace georeference_test
 }  // namespace talus::maps

@@ -4,7 +4,7 @@
 #include <talus/maps/geodesy/transform.hpp>
 
 namespace talus::maps {
-namespace {
+namespace plain_projection_test {
 
 // Clarke 1866 with the e^2 of snyder1987's examples.
 const Ellipsoid kClarke{6378206.4, 1 - std::sqrt(1 - 0.00676866)};
@@ -78,5 +78,5 @@ TEST(PlainProjection, OthersAreNotMadeHere) {
   EXPECT_EQ(makePlainTransform(kMars, {.method = ProjectionMethod::Mercator}), nullptr);
 }
 
-}  // namespace
+}  // namespace plain_projection_test
 }  // namespace talus::maps

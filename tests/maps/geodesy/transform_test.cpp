@@ -7,7 +7,7 @@
 #include <talus/maps/geodesy/transform.hpp>
 
 namespace talus::maps {
-namespace {
+namespace transform_test {
 
 using enum ProjectionMethod;
 
@@ -143,5 +143,5 @@ TEST(Transform, ConicsAreTrueAlongTheirParallels) {
     }
 }
 
-}  // namespace
+}  // namespace transform_test
 }  // namespace talus::maps

@@ -4,7 +4,7 @@
 #include <talus/maps/grid/grid.hpp>
 
 namespace talus::maps {
-namespace {
+namespace grid_test {
 
 constexpr Grid kGrid{.width = 7, .height = 4, .resolution_m = 0.5, .south_west = {10.0, -20.0}};
 
@@ -46,5 +46,5 @@ TEST(Raster, TakesOneValueACellAndNothingElse) {
   EXPECT_EQ(raster.row(1), raster.values().data() + 7);
 }
 
-}  // namespace
+}  // namespace grid_test
 }  // namespace talus::maps

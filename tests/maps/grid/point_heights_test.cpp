@@ -11,7 +11,7 @@
 #include <talus/maps/grid/point_heights.hpp>
 
 namespace talus::maps {
-namespace {
+namespace point_heights_test {
 
 using testing::HasSubstr;
 
@@ -79,5 +79,5 @@ TEST(PointHeights, WhatGivesNoHeightIsRefused) {
   EXPECT_THAT(refusal({}, {}), HasSubstr("0 points"));
 }
 
-}  // namespace
+}  // namespace point_heights_test
 }  // namespace talus::maps

@@ -8,7 +8,7 @@
 #include <talus/maps/grid/polygon_cover.hpp>
 
 namespace talus::maps {
-namespace {
+namespace polygon_cover_test {
 
 const Grid kGrid{.width = 12, .height = 9, .resolution_m = 2.0, .south_west = {100, -50}};
 
@@ -163,5 +163,5 @@ TEST(PolygonCover, RingsWithoutGroundAreKnown) {
   EXPECT_FALSE(enclosesGround({}));
 }
 
-}  // namespace
+}  // namespace polygon_cover_test
 }  // namespace talus::maps

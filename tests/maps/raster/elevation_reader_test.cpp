@@ -7,7 +7,7 @@
 #include "requirement.hpp"
 
 namespace talus::maps {
-namespace {
+namespace elevation_reader_test {
 
 using testing::Contains;
 using testing::HasSubstr;
@@ -249,5 +249,5 @@ TEST(ElevationReader, ReadsEveryRealMap) {
   EXPECT_GT(count, 0);
 }
 
-}  // namespace
+}  // namespace elevation_reader_test
 }  // namespace talus::maps

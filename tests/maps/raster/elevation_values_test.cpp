@@ -7,7 +7,7 @@
 #include "raster_fixture.hpp"
 
 namespace talus::maps {
-namespace {
+namespace elevation_values_test {
 
 using testing::Contains;
 using testing::HasSubstr;
@@ -95,5 +95,5 @@ TEST(ElevationValues, ADeepPlaceIsNoMark) {
   EXPECT_THAT(notes, testing::ElementsAre(HasSubstr("2 cells of -32768")));
 }
 
-}  // namespace
+}  // namespace elevation_values_test
 }  // namespace talus::maps

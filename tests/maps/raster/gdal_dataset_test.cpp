@@ -5,7 +5,7 @@
 #include "raster_fixture.hpp"
 
 namespace talus::maps {
-namespace {
+namespace gdal_dataset_test {
 
 using testing::HasSubstr;
 
@@ -83,5 +83,5 @@ TEST(GdalDataset, ADriverThatIsMissingIsTold) {
   EXPECT_THAT(refusal([] { driverNamed("NoSuchDriver"); }), HasSubstr("driver NoSuchDriver: is missing"));
 }
 
-}  // namespace
+}  // namespace gdal_dataset_test
 }  // namespace talus::maps

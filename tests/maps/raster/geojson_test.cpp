@@ -10,7 +10,7 @@
 #include "raster_fixture.hpp"
 
 namespace talus::maps {
-namespace {
+namespace geojson_test {
 
 using nlohmann::json;
 using testing::HasSubstr;
@@ -137,5 +137,5 @@ TEST(GeoJson, TheBudgetIsAskedBeforeTheFileIsParsed) {
   setMemoryBudget(0);
 }
 
-}  // namespace
+}  // namespace geojson_test
 }  // namespace talus::maps

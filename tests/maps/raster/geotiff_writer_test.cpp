@@ -5,7 +5,7 @@
 #include "layer_fixture.hpp"
 
 namespace talus::maps {
-namespace {
+namespace geotiff_writer_test {
 
 using testing::HasSubstr;
 
@@ -46,5 +46,5 @@ TEST(GeoTiffWriter, RefusesWhatCannotBeWritten) {
                std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace geotiff_writer_test
 }  // namespace talus::maps

@@ -4,7 +4,7 @@
 #include "layer_fixture.hpp"
 
 namespace talus::maps {
-namespace {
+namespace keep_out_reader_test {
 
 using testing::HasSubstr;
 
@@ -128,5 +128,5 @@ TEST(KeepOutReader, AFeatureBesideTheMapIsTold) {
           .notes.empty());
 }
 
-}  // namespace
+}  // namespace keep_out_reader_test
 }  // namespace talus::maps

@@ -4,7 +4,7 @@
 #include "layer_fixture.hpp"
 
 namespace talus::maps {
-namespace {
+namespace layer_reader_test {
 
 using testing::HasSubstr;
 
@@ -282,5 +282,5 @@ TEST(LayerReader, BadLayersAreRefused) {
               HasSubstr("no such band"));
 }
 
-}  // namespace
+}  // namespace layer_reader_test
 }  // namespace talus::maps

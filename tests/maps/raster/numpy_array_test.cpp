@@ -2,7 +2,7 @@
 #include <talus/maps/raster/numpy_array.hpp>
 
 namespace talus::maps {
-namespace {
+namespace numpy_array_test {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -103,5 +103,5 @@ TEST(NumpyArray, VersionOrderAndLengthAreThoseOfTheFormat) {
         InputError);
 }
 
-}  // namespace
+}  // namespace numpy_array_test
 }  // namespace talus::maps

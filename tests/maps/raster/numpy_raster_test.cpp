@@ -10,7 +10,7 @@
 #include "requirement.hpp"
 
 namespace talus::maps {
-namespace {
+namespace numpy_raster_test {
 
 using testing::Contains;
 using testing::HasSubstr;
@@ -132,5 +132,5 @@ TEST(NumpyRaster, AChangedByteOfAnArchiveIsRefused) {
   EXPECT_THAT(changed(directory, 1), HasSubstr("directory of files is damaged"));
 }
 
-}  // namespace
+}  // namespace numpy_raster_test
 }  // namespace talus::maps

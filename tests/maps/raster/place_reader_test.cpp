@@ -3,7 +3,7 @@
 #include "layer_fixture.hpp"
 
 namespace talus::maps {
-namespace {
+namespace place_reader_test {
 
 using testing::HasSubstr;
 
@@ -39,5 +39,5 @@ TEST(PlaceReader, OfSeveralPointsItIsTheFirst) {
   EXPECT_THAT(refusal([&] { readPlace(empty, dem, "--start"); }), HasSubstr("holds no Point"));
 }
 
-}  // namespace
+}  // namespace place_reader_test
 }  // namespace talus::maps

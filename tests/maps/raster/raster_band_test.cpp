@@ -7,7 +7,7 @@
 #include "raster_fixture.hpp"
 
 namespace talus::maps {
-namespace {
+namespace raster_band_test {
 
 using testing::Contains;
 using testing::HasSubstr;
@@ -90,5 +90,5 @@ TEST(RasterBand, NorthUpTurnsTheRows) {
   EXPECT_THAT(northUp(grid, {1, 2, 3, 4, 5, 6}).values(), testing::ElementsAre(5, 6, 3, 4, 1, 2));
 }
 
-}  // namespace
+}  // namespace raster_band_test
 }  // namespace talus::maps

@@ -8,7 +8,7 @@
 #include "raster_fixture.hpp"
 
 namespace talus::maps {
-namespace {
+namespace raster_frame_test {
 
 using testing::Contains;
 using testing::HasSubstr;
@@ -121,5 +121,5 @@ TEST(RasterFrame, FeetAndRowsFromTheSouth) {
   EXPECT_TRUE(notes.empty());
 }
 
-}  // namespace
+}  // namespace raster_frame_test
 }  // namespace talus::maps

@@ -9,7 +9,7 @@
 #include "raster_fixture.hpp"
 
 namespace talus::maps {
-namespace {
+namespace referenced_files_test {
 
 using testing::HasSubstr;
 
@@ -159,5 +159,5 @@ TEST_F(ReferencedFiles, WhatLiesBesideIsAFileOfTheFolder) {
   EXPECT_EQ(checked("map.tif"), "");
 }
 
-}  // namespace
+}  // namespace referenced_files_test
 }  // namespace talus::maps

@@ -13,7 +13,7 @@
 #include <talus/maps/raster/spatial_reference.hpp>
 
 namespace talus::maps {
-namespace {
+namespace spatial_reference_test {
 
 OGRSpatialReference reference(const std::string& definition) {
   OGRSpatialReference out;
@@ -148,5 +148,5 @@ TEST(SpatialReference, LocalProjectionIsTrueAtItsCentre) {
     }
 }
 
-}  // namespace
+}  // namespace spatial_reference_test
 }  // namespace talus::maps

@@ -6,7 +6,7 @@
 #include "layer_fixture.hpp"
 
 namespace talus::maps {
-namespace {
+namespace text_grid_test {
 
 using testing::HasSubstr;
 
@@ -63,5 +63,5 @@ TEST(TextGrid, ClassesAndRocksAreHeldToTheSame) {
   EXPECT_THROW(readRockAbundance({.path = junk}, dem), InputError);
 }
 
-}  // namespace
+}  // namespace text_grid_test
 }  // namespace talus::maps

@@ -6,7 +6,7 @@
 #include "raster_fixture.hpp"
 
 namespace talus::maps {
-namespace {
+namespace warp_test {
 
 using testing::HasSubstr;
 
@@ -94,5 +94,5 @@ TEST(Warp, WhatCannotBeResampledIsRefused) {
               HasSubstr("a.tif: cannot be resampled"));
 }
 
-}  // namespace
+}  // namespace warp_test
 }  // namespace talus::maps

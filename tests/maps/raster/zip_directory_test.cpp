@@ -4,7 +4,7 @@
 #include "raster_fixture.hpp"
 
 namespace talus::maps {
-namespace {
+namespace zip_directory_test {
 
 // Printed in: every catalogue of CRCs, the check value of CRC-32/ISO-HDLC.
 TEST(ZipDirectory, TheChecksumIsThatOfZip) {
@@ -19,5 +19,5 @@ TEST(ZipDirectory, WhatHasNoneIsRefused) {
     EXPECT_THROW(zipDirectory(folder.write("a.npz", bytes)), InputError);
 }
 
-}  // namespace
+}  // namespace zip_directory_test
 }  // namespace talus::maps

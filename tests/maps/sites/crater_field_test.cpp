@@ -6,7 +6,7 @@
 #include <talus/maps/sites/crater_field.hpp>
 
 namespace talus::maps {
-namespace {
+namespace crater_field_test {
 
 TEST(CraterField, SizesFollowTheLaw) {
   const Grid grid{.width = 3000, .height = 3000, .resolution_m = 1.0};
@@ -38,5 +38,5 @@ TEST(CraterField, FreshCraterHasTheProportionsOfFreshOnes) {
   EXPECT_LT(worn.height_m(10) - worn.height_m(0), 0.06 * 20);
 }
 
-}  // namespace
+}  // namespace crater_field_test
 }  // namespace talus::maps

@@ -5,7 +5,7 @@
 #include <talus/maps/sites/dune_field.hpp>
 
 namespace talus::maps {
-namespace {
+namespace dune_field_test {
 
 TEST(DuneField, SlipFacesLieAtTheAngleOfRepose) {
   const DuneField dunes({.seed = 3, .wavelength_m = 60, .height_m = 4, .repose_rad = 0.576, .wind_rad = 0.0});
@@ -29,5 +29,5 @@ TEST(DuneField, SandIsContinuousExceptNowhere) {
       ASSERT_LT(std::abs(dunes.at(x + 0.1, y).height_m - dunes.at(x, y).height_m), 0.12) << x << "," << y;
 }
 
-}  // namespace
+}  // namespace dune_field_test
 }  // namespace talus::maps

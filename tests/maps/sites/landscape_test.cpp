@@ -6,7 +6,7 @@
 #include <talus/maps/sites/landscape.hpp>
 
 namespace talus::maps {
-namespace {
+namespace landscape_test {
 
 constexpr Grid kGrid{.width = 200, .height = 160, .resolution_m = 1.0};
 constexpr SiteKind kKinds[] = {SiteKind::Craters, SiteKind::Dunes, SiteKind::Rocks};
@@ -70,5 +70,5 @@ TEST(Landscape, AnUnknownKindIsRefused) {
   EXPECT_THROW(makeLandscape(kGrid, {.kind = static_cast<SiteKind>(9)}), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace landscape_test
 }  // namespace talus::maps

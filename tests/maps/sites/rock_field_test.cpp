@@ -6,7 +6,7 @@
 #include <talus/maps/sites/rock_field.hpp>
 
 namespace talus::maps {
-namespace {
+namespace rock_field_test {
 
 TEST(Rock, IsHalfASphere) {
   const Rock rock{{0, 0}, 2.0};
@@ -51,5 +51,5 @@ TEST(RockField, LeavesBareGroundAloneAndRepeatsWithItsSeed) {
   EXPECT_TRUE(other.size() != first.size() || other[0].centre.x_m != first[0].centre.x_m);
 }
 
-}  // namespace
+}  // namespace rock_field_test
 }  // namespace talus::maps

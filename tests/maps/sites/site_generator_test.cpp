@@ -8,7 +8,7 @@
 #include <talus/maps/terrain/terrain_metrics.hpp>
 
 namespace talus::maps {
-namespace {
+namespace site_generator_test {
 
 constexpr SiteKind kKinds[] = {SiteKind::Craters, SiteKind::Dunes, SiteKind::Rocks};
 
@@ -78,5 +78,5 @@ TEST(SiteGenerator, RockClassCoversTheBoulders) {
   EXPECT_NEAR(share / abundance, 1.0, 0.2);
 }
 
-}  // namespace
+}  // namespace site_generator_test
 }  // namespace talus::maps

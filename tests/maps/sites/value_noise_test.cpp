@@ -5,7 +5,7 @@
 #include <talus/maps/sites/value_noise.hpp>
 
 namespace talus::maps {
-namespace {
+namespace value_noise_test {
 
 TEST(ValueNoise, MixedIsSplitMix64) {
   // Printed in: Vigna's splitmix64.c run from the states 0 and 1234567, whose increment is in `mixed`.
@@ -73,5 +73,5 @@ TEST(ValueNoise, AnOctaveIsHalfAsLongAndLowerByTheHurstExponent) {
   EXPECT_GT(greatest, 0.5);
 }
 
-}  // namespace
+}  // namespace value_noise_test
 }  // namespace talus::maps

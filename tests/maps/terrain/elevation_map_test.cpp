@@ -4,7 +4,7 @@
 #include <talus/maps/terrain/elevation_map.hpp>
 
 namespace talus::maps {
-namespace {
+namespace elevation_map_test {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
@@ -54,5 +54,5 @@ TEST(ElevationMap, NoElevationOutsideTheMapOrBesideAHole) {
   EXPECT_EQ(elevationOf(z)({3.2, 3.2}), 5.0);
 }
 
-}  // namespace
+}  // namespace elevation_map_test
 }  // namespace talus::maps

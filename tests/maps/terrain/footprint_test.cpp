@@ -5,7 +5,7 @@
 #include <talus/maps/terrain/footprint.hpp>
 
 namespace talus::maps {
-namespace {
+namespace footprint_test {
 
 TEST(Footprint, HoldsTheCellsWhoseCentresLieWithinTheRadius) {
   for (const double radius : {1.5, 2.0, 2.9, 5.0, 7.3}) {
@@ -45,5 +45,5 @@ TEST(Footprint, ItsSumsAreThoseOfTheOffsets) {
   }
 }
 
-}  // namespace
+}  // namespace footprint_test
 }  // namespace talus::maps

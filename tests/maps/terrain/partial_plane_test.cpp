@@ -6,7 +6,7 @@
 #include <talus/maps/terrain/partial_plane.hpp>
 
 namespace talus::maps {
-namespace {
+namespace partial_plane_test {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
@@ -58,5 +58,5 @@ TEST(PartialPlane, NothingWhereTooLittleIsKnown) {
   EXPECT_FALSE(fitPartialPlane(z, disc, {2, 3})) << "the middle has no data";
 }
 
-}  // namespace
+}  // namespace partial_plane_test
 }  // namespace talus::maps

@@ -3,7 +3,7 @@
 #include <talus/maps/terrain/place.hpp>
 
 namespace talus::maps {
-namespace {
+namespace place_test {
 
 using testing::HasSubstr;
 
@@ -73,5 +73,5 @@ TEST(Place, WindowHasFourNumbers) {
   EXPECT_THAT(refusal([] { parseWindow("1,2,3"); }), HasSubstr("has not 4 numbers"));
 }
 
-}  // namespace
+}  // namespace place_test
 }  // namespace talus::maps

@@ -8,7 +8,7 @@
 #include <talus/maps/terrain/plane_kernel.hpp>
 
 namespace talus::maps {
-namespace {
+namespace plane_kernel_test {
 
 struct Fitted {
   std::vector<float> dz_dx, dz_dy, roughness_m, relief_m;
@@ -110,5 +110,5 @@ TEST(PlaneKernel, BothTwinsGiveTheSameBitsFarFromTheDatum) {
 }
 #endif
 
-}  // namespace
+}  // namespace plane_kernel_test
 }  // namespace talus::maps

@@ -13,7 +13,7 @@
 #include <talus/maps/terrain/terrain_metrics.hpp>
 
 namespace talus::maps {
-namespace {
+namespace step_height_test {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
@@ -181,5 +181,5 @@ TEST(StepHeight, EveryKernelGivesTheSameBits) {
     }
 }
 
-}  // namespace
+}  // namespace step_height_test
 }  // namespace talus::maps

@@ -7,7 +7,7 @@
 #include <talus/maps/terrain/terrain_metrics.hpp>
 
 namespace talus::maps {
-namespace {
+namespace terrain_metrics_test {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
@@ -176,5 +176,5 @@ TEST(TerrainMetrics, RefusesNonsense) {
   EXPECT_THROW(terrainMetrics(z, {.threads = 0}), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace terrain_metrics_test
 }  // namespace talus::maps

@@ -10,7 +10,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace benchmark_log_test {
 
 // A reader of its own for the grammar that OMPL's ompl_benchmark_statistics.py (1.6) takes apart line by line
 // for Planner Arena. It throws where that script would.
@@ -177,5 +177,5 @@ TEST(BenchmarkLog, FailuresAndEqualTimesCanBeReadToo) {
   EXPECT_DOUBLE_EQ(planner.progress[2][0].second, 60.0);
 }
 
-}  // namespace
+}  // namespace benchmark_log_test
 }  // namespace talus::planner

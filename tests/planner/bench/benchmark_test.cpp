@@ -8,7 +8,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace benchmark_test {
 
 using ::testing::HasSubstr;
 
@@ -85,5 +85,5 @@ TEST(Benchmark, AStopEndsTheRunInWork) {
   EXPECT_TRUE(runBenchmark(plan, watch).empty());  // else the test takes ten minutes
 }
 
-}  // namespace
+}  // namespace benchmark_test
 }  // namespace talus::planner

@@ -10,7 +10,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace grid_suite_test {
 
 using testing::drawn;
 
@@ -80,5 +80,5 @@ TEST(GridSuite, RefusesOptionsOutOfRange) {
   EXPECT_THROW(gridCases(32, 0, 1), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace grid_suite_test
 }  // namespace talus::planner

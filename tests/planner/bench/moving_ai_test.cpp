@@ -8,7 +8,7 @@
 #include <talus/planner/grid/field_planner.hpp>
 
 namespace talus::planner {
-namespace {
+namespace moving_ai_test {
 
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
@@ -80,5 +80,5 @@ TEST_F(MovingAi, TheMapLiesInTheScenariosFolder) {
   EXPECT_NO_THROW(scenario("below/room.map")());
 }
 
-}  // namespace
+}  // namespace moving_ai_test
 }  // namespace talus::planner

@@ -8,7 +8,7 @@
 #include <talus/planner/route/motion_cost.hpp>
 
 namespace talus::planner {
-namespace {
+namespace slip_world_test {
 
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
@@ -119,5 +119,5 @@ TEST(SlipWorld, RefusesOptionsOutOfRange) {
   EXPECT_THAT([] { slipWorld({.tail = 0.0}); }, ThrowsMessage<std::invalid_argument>(HasSubstr("tail")));
 }
 
-}  // namespace
+}  // namespace slip_world_test
 }  // namespace talus::planner

@@ -10,7 +10,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace admissible_edges_test {
 
 using testing::drawn;
 using testing::randomMap;
@@ -104,5 +104,5 @@ TEST(AdmissibleEdges, NoneWhereGroundCostsNothing) {
   EXPECT_EQ(admissibleEdges(std::make_shared<costmap::CostGrid>(costmap::flattened(cells, cost))), nullptr);
 }
 
-}  // namespace
+}  // namespace admissible_edges_test
 }  // namespace talus::planner

@@ -3,7 +3,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace cheapest_metre_test {
 
 using testing::drawn;
 
@@ -14,5 +14,5 @@ TEST(CheapestMetre, IsOfTheCurvesInUse) {
   EXPECT_EQ(cheapestMetre_J(*drawn({"#?"})), 0.0);
 }
 
-}  // namespace
+}  // namespace cheapest_metre_test
 }  // namespace talus::planner

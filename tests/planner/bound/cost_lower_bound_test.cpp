@@ -6,7 +6,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace cost_lower_bound_test {
 
 // Property: no allowed metre in any heading costs less than the line says.
 TEST(CostLowerBounds, StayBelowTheCost) {
@@ -28,5 +28,5 @@ TEST(CostLowerBounds, StayBelowTheCost) {
   }
 }
 
-}  // namespace
+}  // namespace cost_lower_bound_test
 }  // namespace talus::planner

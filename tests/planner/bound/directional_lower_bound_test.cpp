@@ -6,7 +6,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace directional_lower_bound_test {
 
 // Curves of many shapes: bends, jumps and holes, not only valleys.
 std::shared_ptr<const costmap::DriveCost> jaggedCost() {
@@ -81,5 +81,5 @@ TEST(DirectionalLowerBounds, AreFiniteWhereverAHeadingIsAllowed) {
   }
 }
 
-}  // namespace
+}  // namespace directional_lower_bound_test
 }  // namespace talus::planner

@@ -5,7 +5,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace improvable_region_test {
 
 using testing::drawn;
 using testing::randomMap;
@@ -77,5 +77,5 @@ TEST(ImprovableRegion, NoSampleWhereNothingCanBeBetter) {
   EXPECT_FALSE(around(250.0).sample(engine, 199.0, place));  // Closed form: 20 m at 10 J
 }
 
-}  // namespace
+}  // namespace improvable_region_test
 }  // namespace talus::planner

@@ -7,7 +7,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace lower_bound_test {
 
 using testing::drawn;
 using testing::randomMap;
@@ -130,5 +130,5 @@ TEST(LowerBound, KnowsTheTrackWhoseSlopesOutweighItsRolling) {
   EXPECT_LE(LowerBound()(map, ends, 0.0), 50.0);
 }
 
-}  // namespace
+}  // namespace lower_bound_test
 }  // namespace talus::planner

@@ -9,7 +9,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace straight_bound_test {
 
 using testing::drawn;
 
@@ -83,5 +83,5 @@ TEST(StraightBound, IsBelowEveryMotionWhateverRouteIsKnown) {
   EXPECT_GT(tried, 500U);
 }
 
-}  // namespace
+}  // namespace straight_bound_test
 }  // namespace talus::planner

@@ -7,7 +7,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace annotation_test {
 
 // Flat and sloping ground whose states say what a metre is like.
 std::shared_ptr<const costmap::CostGrid> mapWithStates() {
@@ -67,5 +67,5 @@ TEST(Annotation, AStandstillHasOneVertex) {
   EXPECT_EQ(route.summary.gap, 0.0);
 }
 
-}  // namespace
+}  // namespace annotation_test
 }  // namespace talus::planner

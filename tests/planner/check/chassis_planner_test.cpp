@@ -6,7 +6,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace chassis_planner_test {
 
 terramech::Rover rover(int wheels) {
   terramech::Rover made{.name = "cart",
@@ -60,5 +60,5 @@ TEST(ChassisPlanner, AStopIsNoAnswer) {
   EXPECT_EQ(rounds, 1);
 }
 
-}  // namespace
+}  // namespace chassis_planner_test
 }  // namespace talus::planner

@@ -12,7 +12,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace chassis_test {
 
 terramech::Rover rover(int wheels) {
   terramech::Rover made{.name = "cart",
@@ -265,5 +265,5 @@ TEST(Chassis, ARockerBogieHasThreeAxles) {
   EXPECT_THROW(Chassis(flat, rover(4), Suspension::RockerBogie), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace chassis_test
 }  // namespace talus::planner

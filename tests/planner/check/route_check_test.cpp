@@ -13,7 +13,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace route_check_test {
 
 using testing::drawn;
 using testing::randomMap;
@@ -209,5 +209,5 @@ TEST(RouteMonitor, RefusesWhatIsNoQuantileAndNoPlace) {
   EXPECT_TRUE(dangers(*map, {}).empty());
 }
 
-}  // namespace
+}  // namespace route_check_test
 }  // namespace talus::planner

@@ -10,7 +10,7 @@
 #include <talus/planner/check/route_risk.hpp>
 
 namespace talus::planner {
-namespace {
+namespace route_risk_test {
 
 // A straight route of stretches of one length, each with its own probability of failing per correlation
 // length.
@@ -210,5 +210,5 @@ TEST(RouteRisk, RefusesOptionsOutOfRange) {
   EXPECT_THROW(routeRisk(Route{}, {.worlds = 0}), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace route_risk_test
 }  // namespace talus::planner

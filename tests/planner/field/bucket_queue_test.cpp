@@ -6,7 +6,7 @@
 #include <talus/planner/field/bucket_queue.hpp>
 
 namespace talus::planner {
-namespace {
+namespace bucket_queue_test {
 
 constexpr auto kAlways = [](std::uint64_t) { return true; };
 
@@ -65,5 +65,5 @@ TEST(BucketQueue, RestsWhereItIsToldAndGoesOn) {
   EXPECT_EQ(taken, (std::vector<std::uint32_t>{0, 9, 21}));
 }
 
-}  // namespace
+}  // namespace bucket_queue_test
 }  // namespace talus::planner

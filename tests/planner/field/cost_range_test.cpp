@@ -5,7 +5,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace cost_range_test {
 
 // Closed form: 10 J on the flat, and going down 10 + 400 g^2 never below that; the dearest is five times the
 // steepest climb in the table, 76/256, crossed in the last row that the fifth curve allows, the twelfth.
@@ -18,5 +18,5 @@ TEST(CostRange, IsOfAllAllowedMetres) {
       std::isinf(costRange(costmap::DriveCost({}, std::vector<costmap::DriveCurve>{})).least_J_per_m));
 }
 
-}  // namespace
+}  // namespace cost_range_test
 }  // namespace talus::planner

@@ -5,7 +5,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace cost_to_go_repair_test {
 
 using testing::randomMap;
 
@@ -50,5 +50,5 @@ TEST(CostToGo, RepairedIsFoundAnew) {
   }
 }
 
-}  // namespace
+}  // namespace cost_to_go_repair_test
 }  // namespace talus::planner

@@ -9,7 +9,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace cost_to_go_test {
 
 using testing::drawn;
 using testing::randomMap;
@@ -138,5 +138,5 @@ TEST(CostToGo, VectorsAndScalarsAgree) {
       ASSERT_EQ(one.units({column, row}), other.units({column, row}));
 }
 
-}  // namespace
+}  // namespace cost_to_go_test
 }  // namespace talus::planner

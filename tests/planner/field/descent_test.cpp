@@ -4,7 +4,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace descent_test {
 
 using testing::drawn;
 using testing::randomMap;
@@ -62,5 +62,5 @@ TEST(Descent, OfAFieldThatIsNotSettledIsEmpty) {
   EXPECT_TRUE(descent(field.edges(), {4, 0}, flat, [](std::size_t) { return 0U; }).empty());
 }
 
-}  // namespace
+}  // namespace descent_test
 }  // namespace talus::planner

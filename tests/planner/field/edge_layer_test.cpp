@@ -8,7 +8,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace edge_layer_test {
 
 using testing::randomMap;
 
@@ -77,5 +77,5 @@ TEST(EdgeLayer, SameForAnyNumberOfThreads) {
     for (int k = 0; k < 8; ++k) ASSERT_EQ(one->into(i)[k], three->into(i)[k]);
 }
 
-}  // namespace
+}  // namespace edge_layer_test
 }  // namespace talus::planner

@@ -7,7 +7,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace edge_units_test {
 
 std::vector<costmap::CellCode> randomCells(unsigned count) {
   std::mt19937 random(5);
@@ -70,5 +70,5 @@ TEST(EdgeUnits, ExtendWhereCurvesWereOnlyAdded) {
   EXPECT_FALSE(EdgeUnits(costmap::DriveCost({}, two), 2.0).extends(of(two)));
 }
 
-}  // namespace
+}  // namespace edge_units_test
 }  // namespace talus::planner

@@ -6,7 +6,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace grid_links_test {
 
 using testing::drawn;
 using testing::randomMap;
@@ -72,5 +72,5 @@ TEST(GridLinks, AFieldBeginsAtEveryAllowedCellWithinTheTolerance) {
     }
 }
 
-}  // namespace
+}  // namespace grid_links_test
 }  // namespace talus::planner

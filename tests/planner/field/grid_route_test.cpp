@@ -8,7 +8,7 @@
 #include "changed_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace grid_route_test {
 
 using testing::drawn;
 using testing::randomMap;
@@ -69,5 +69,5 @@ TEST(GridRoute, AfterAChangeIsThatOfTheNewField) {
   EXPECT_GT(moved, 2);
 }
 
-}  // namespace
+}  // namespace grid_route_test
 }  // namespace talus::planner

@@ -3,7 +3,7 @@
 #include "changed_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace map_change_test {
 
 using costmap::CellCode;
 using testing::randomMap;
@@ -43,5 +43,5 @@ TEST(MapChange, NoneWhereNoCellDiffers) {
   EXPECT_FALSE(changedCells(*map, *with(*map, {{5, 5}, {68, 2}})));  // written anew, as before
 }
 
-}  // namespace
+}  // namespace map_change_test
 }  // namespace talus::planner

@@ -3,7 +3,7 @@
 #include <talus/planner/field/padded_grid.hpp>
 
 namespace talus::planner {
-namespace {
+namespace padded_grid_test {
 
 // Property: each cell has an index of its own off the border, and its neighbours lie one offset away.
 TEST(PaddedGrid, IndexAndCellAreInverse) {
@@ -36,5 +36,5 @@ TEST(PaddedGrid, BoxesGrowToTheGridsEdge) {
   EXPECT_EQ(all.last, (maps::Cell{9, 5}));
 }
 
-}  // namespace
+}  // namespace padded_grid_test
 }  // namespace talus::planner

@@ -3,7 +3,7 @@
 #include "changed_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace patch_bound_test {
 
 using testing::Change;
 using testing::drawn;
@@ -44,5 +44,5 @@ TEST(PatchBound, SaysWhenItDoesNotHold) {
   EXPECT_FALSE(PatchBound(trial.before, trial.box).holds());
 }
 
-}  // namespace
+}  // namespace patch_bound_test
 }  // namespace talus::planner

@@ -4,7 +4,7 @@
 #include "changed_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace patched_field_test {
 
 using testing::Change;
 using testing::randomTrial;
@@ -65,5 +65,5 @@ TEST(PatchedField, GivesUpAfterSoManyCellsAndWhenStopped) {
       PatchedField::Outcome::Stopped);
 }
 
-}  // namespace
+}  // namespace patched_field_test
 }  // namespace talus::planner

@@ -5,7 +5,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace pooled_grid_test {
 
 using testing::drawn;
 using testing::randomMap;
@@ -61,5 +61,5 @@ TEST(PooledGrid, RepooledIsPooledAnew) {
   EXPECT_TRUE(differs);
 }
 
-}  // namespace
+}  // namespace pooled_grid_test
 }  // namespace talus::planner

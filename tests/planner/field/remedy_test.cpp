@@ -3,7 +3,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace remedy_test {
 
 using testing::drawn;
 
@@ -33,5 +33,5 @@ TEST(Remedy, AGoalMayEndWithinItsTolerance) {
   EXPECT_TRUE(mayEnd(cost, {2.5, 0.5}, 0.6));
 }
 
-}  // namespace
+}  // namespace remedy_test
 }  // namespace talus::planner

@@ -8,7 +8,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace field_planner_test {
 
 using testing::drawn;
 using ::testing::HasSubstr;
@@ -192,5 +192,5 @@ TEST(FieldPlanner, CancelAndTimeLimitAreStatuses) {
   EXPECT_EQ(planner.plan(asked).status, RouteStatus::TimedOut);
 }
 
-}  // namespace
+}  // namespace field_planner_test
 }  // namespace talus::planner

@@ -8,7 +8,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace goal_choice_test {
 
 using testing::drawn;
 using testing::randomMap;
@@ -101,5 +101,5 @@ TEST(GoalChoice, StopsWhenAsked) {
   EXPECT_EQ(asked, 1);
 }
 
-}  // namespace
+}  // namespace goal_choice_test
 }  // namespace talus::planner

@@ -15,7 +15,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace other_corridors_test {
 
 // Corridors of free ground through a wall that no heading enters, their beginnings and ends open.
 std::vector<std::string> wallWithGaps(int width, int height, std::initializer_list<int> gaps) {
@@ -113,5 +113,5 @@ TEST(OtherCorridors, MakeNoRouteDearer) {
   EXPECT_GT(cheaper, 0);
 }
 
-}  // namespace
+}  // namespace other_corridors_test
 }  // namespace talus::planner

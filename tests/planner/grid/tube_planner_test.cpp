@@ -6,7 +6,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace tube_planner_test {
 
 using testing::drawn;
 using testing::randomMap;
@@ -90,5 +90,5 @@ TEST(TubePlanner, SaysWhatIsWrongWithAPlace) {
   EXPECT_EQ(TubePlanner().plan(back).status, RouteStatus::GoalInvalid);
 }
 
-}  // namespace
+}  // namespace tube_planner_test
 }  // namespace talus::planner

@@ -9,7 +9,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace tube_search_test {
 
 using testing::drawn;
 using testing::randomMap;
@@ -113,5 +113,5 @@ TEST(TubeSearch, StoppedGivesNothing) {
   EXPECT_TRUE(tubeRoute(problem, {problem.start, problem.goal}, {}, StopCheck(watch)).empty());
 }
 
-}  // namespace
+}  // namespace tube_search_test
 }  // namespace talus::planner

@@ -3,7 +3,7 @@
 #include "rolling_ground.hpp"
 
 namespace talus::planner {
-namespace {
+namespace windowed_map_test {
 
 using namespace testing;
 
@@ -48,5 +48,5 @@ TEST(WindowedMap, SaysWhatItCannotDo) {
   EXPECT_THROW(shifted.around({{250.0, 100.0}}, 10.0), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace windowed_map_test
 }  // namespace talus::planner

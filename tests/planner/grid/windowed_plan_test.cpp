@@ -6,7 +6,7 @@
 #include "rolling_ground.hpp"
 
 namespace talus::planner {
-namespace {
+namespace windowed_plan_test {
 
 using namespace testing;
 using ::testing::HasSubstr;
@@ -52,5 +52,5 @@ TEST(WindowedPlan, WhereTheOverviewShowsNoWayItSaysWhatToDo) {
   EXPECT_EQ(asked, 0);
 }
 
-}  // namespace
+}  // namespace windowed_plan_test
 }  // namespace talus::planner

@@ -7,7 +7,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace make_planner_test {
 
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
@@ -102,5 +102,5 @@ TEST(MakePlanner, AChassisAndARiskLimitAreKept) {
   EXPECT_EQ(planner->plan(request).status, RouteStatus::Found);
 }
 
-}  // namespace
+}  // namespace make_planner_test
 }  // namespace talus::planner

@@ -7,7 +7,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace named_planner_test {
 
 using testing::drawn;
 using testing::randomMap;
@@ -81,5 +81,5 @@ TEST(NamedPlanner, MarksARouteOfWorkThatWasStopped) {
   EXPECT_TRUE(plan.interrupted);
 }
 
-}  // namespace
+}  // namespace named_planner_test
 }  // namespace talus::planner

@@ -6,7 +6,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace own_planner_test {
 
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
@@ -92,5 +92,5 @@ TEST(OwnPlanner, KeepsItsSettingsWhereNewOnesAreRefused) {
   EXPECT_EQ(planner.capabilities().planner, "hybrid");
 }
 
-}  // namespace
+}  // namespace own_planner_test
 }  // namespace talus::planner

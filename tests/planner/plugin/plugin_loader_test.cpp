@@ -17,7 +17,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace plugin_loader_test {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
@@ -143,5 +143,5 @@ TEST(PluginLoader, WhatIsNoPluginIsRefusedByName) {
               ThrowsMessage<InputError>(HasSubstr("exports no talus_planner")));
 }
 
-}  // namespace
+}  // namespace plugin_loader_test
 }  // namespace talus::planner

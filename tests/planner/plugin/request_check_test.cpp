@@ -3,7 +3,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace request_check_test {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
@@ -91,5 +91,5 @@ TEST(RequestCheck, ValuesOutOfRangeAreRefusedWithTheirBound) {
   EXPECT_THAT(refused(request), ThrowsMessage<std::invalid_argument>(HasSubstr("above 0 and below 1")));
 }
 
-}  // namespace
+}  // namespace request_check_test
 }  // namespace talus::planner

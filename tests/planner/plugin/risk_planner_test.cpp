@@ -8,7 +8,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace risk_planner_test {
 
 using ::testing::HasSubstr;
 
@@ -144,5 +144,5 @@ TEST(RiskPlanner, AMapWithoutNumbersToWeighSaysSo) {
   EXPECT_THROW(paretoSet(problem, planning(planner), 2), std::domain_error);
 }
 
-}  // namespace
+}  // namespace risk_planner_test
 }  // namespace talus::planner

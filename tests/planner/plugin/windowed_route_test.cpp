@@ -7,7 +7,7 @@
 #include "rolling_ground.hpp"
 
 namespace talus::planner {
-namespace {
+namespace windowed_route_test {
 
 using namespace testing;
 using ::testing::HasSubstr;
@@ -43,5 +43,5 @@ TEST(WindowedRoute, SaysWhatItCannotDo) {
   EXPECT_EQ(asked, 0);  // nothing was built for a request that is refused
 }
 
-}  // namespace
+}  // namespace windowed_route_test
 }  // namespace talus::planner

@@ -9,7 +9,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace drive_planner_test {
 
 using testing::randomMap;
 
@@ -268,5 +268,5 @@ TEST(DrivePlanner, EndsWithinTheGoalTolerance) {
   EXPECT_EQ(DrivePlanner().plan(blocked).status, RouteStatus::Found);
 }
 
-}  // namespace
+}  // namespace drive_planner_test
 }  // namespace talus::planner

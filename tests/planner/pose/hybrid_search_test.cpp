@@ -5,7 +5,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace hybrid_search_test {
 
 using testing::drawn;
 using testing::randomMap;
@@ -154,5 +154,5 @@ TEST(HybridSearch, RefusesWhatCannotStart) {
   EXPECT_EQ(search.plan(outside).status, RouteStatus::GoalInvalid);
 }
 
-}  // namespace
+}  // namespace hybrid_search_test
 }  // namespace talus::planner

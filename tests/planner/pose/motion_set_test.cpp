@@ -5,7 +5,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace motion_set_test {
 
 using testing::drawn;
 using testing::randomMap;
@@ -112,5 +112,5 @@ TEST(MotionSet, QuickCostIsNearTheExactOne) {
     }
 }
 
-}  // namespace
+}  // namespace motion_set_test
 }  // namespace talus::planner

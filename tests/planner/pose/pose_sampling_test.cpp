@@ -5,7 +5,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace pose_sampling_test {
 
 PoseProblem across(unsigned seed, const Kinematics& kinematics) {
   return {.map = testing::randomMap(
@@ -42,5 +42,5 @@ TEST(PoseSampling, NeverDearerNeverRefusedAndTheSameAgain) {
   EXPECT_GT(gained, 0.0);
 }
 
-}  // namespace
+}  // namespace pose_sampling_test
 }  // namespace talus::planner

@@ -6,7 +6,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace pose_shortcut_test {
 
 using testing::drawn;
 using testing::randomMap;
@@ -66,5 +66,5 @@ TEST(PoseShortcut, KeepsTheEndsAndNeverCostsMore) {
   EXPECT_GT(cheaper, 30);
 }
 
-}  // namespace
+}  // namespace pose_shortcut_test
 }  // namespace talus::planner

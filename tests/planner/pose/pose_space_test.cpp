@@ -5,7 +5,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace pose_space_test {
 
 TEST(PoseSpace, WalksItsOwnCurves) {
   const auto map = testing::drawn(std::vector<std::string>(20, std::string(20, '.')));
@@ -26,5 +26,5 @@ TEST(PoseSpace, WalksItsOwnCurves) {
   }
 }
 
-}  // namespace
+}  // namespace pose_space_test
 }  // namespace talus::planner

@@ -7,7 +7,7 @@
 #include <talus/planner/pose/pose_table.hpp>
 
 namespace talus::planner {
-namespace {
+namespace pose_table_test {
 
 // Property: behaves as a map from cell and heading that is infinite where nothing was set.
 TEST(PoseTable, IsAMapFromCellAndHeading) {
@@ -31,5 +31,5 @@ TEST(PoseTable, IsAMapFromCellAndHeading) {
   EXPECT_GT(unknown, 1'000);
 }
 
-}  // namespace
+}  // namespace pose_table_test
 }  // namespace talus::planner

@@ -5,7 +5,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace turning_drive_test {
 
 std::shared_ptr<const costmap::CostGrid> plain() {
   return testing::drawn(std::vector<std::string>(20, std::string(20, '.')));
@@ -57,5 +57,5 @@ TEST(TurningDrive, NoneWhereNoneIsAllowed) {
   EXPECT_TRUE(turningDrive({{0.5, 0.5}, {2.5, 0.5}}, {}, PoseCost(motion, {})).legs.empty());
 }
 
-}  // namespace
+}  // namespace turning_drive_test
 }  // namespace talus::planner

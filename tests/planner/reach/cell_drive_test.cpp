@@ -5,7 +5,7 @@
 #include <talus/planner/reach/cell_drive.hpp>
 
 namespace talus::planner {
-namespace {
+namespace cell_drive_test {
 
 // Whether every leg of a drive has a heading of the set and every turn lies within the cell.
 bool keeps(const HeadingSet& headings, const std::vector<InCell>& way) {
@@ -37,5 +37,5 @@ TEST(CellDrive, GoesInTurnsWhereHeadingsAddUp) {
                   .empty());
 }
 
-}  // namespace
+}  // namespace cell_drive_test
 }  // namespace talus::planner

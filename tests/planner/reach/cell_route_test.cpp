@@ -11,7 +11,7 @@
 #include "steered_ground.hpp"
 
 namespace talus::planner {
-namespace {
+namespace cell_route_test {
 
 Polyline routed(const std::shared_ptr<const costmap::CostGrid>& map, const Segment& places,
                 double tolerance_m = 0.0) {
@@ -184,5 +184,5 @@ TEST(CellRoute, EndsWithinTheTolerance) {
   EXPECT_TRUE(violations(*map, way).empty());
 }
 
-}  // namespace
+}  // namespace cell_route_test
 }  // namespace talus::planner

@@ -7,7 +7,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace obstruction_search_test {
 
 using testing::drawn;
 
@@ -64,5 +64,5 @@ TEST(ObstructionSearch, AStopEndsIt) {
   EXPECT_EQ(found.first, places.to);
 }
 
-}  // namespace
+}  // namespace obstruction_search_test
 }  // namespace talus::planner

@@ -10,7 +10,7 @@
 #include "steered_ground.hpp"
 
 namespace talus::planner {
-namespace {
+namespace reach_test {
 
 using testing::drawn;
 using testing::randomMap;
@@ -127,5 +127,5 @@ TEST(Reach, NoDescentIsProvenWrongly) {
   EXPECT_GT(tally.proven, 2000);
 }
 
-}  // namespace
+}  // namespace reach_test
 }  // namespace talus::planner

@@ -3,7 +3,7 @@
 #include <talus/planner/reach/side_cover.hpp>
 
 namespace talus::planner {
-namespace {
+namespace side_cover_test {
 
 // Closed form: what is left of a range behind two parts.
 TEST(SideCover, GivesEachPartOnce) {
@@ -31,5 +31,5 @@ TEST(SideCover, HearsSmallGrowthWhenItAddsUp) {
   EXPECT_DOUBLE_EQ(rest[0].from, 0.4);
 }
 
-}  // namespace
+}  // namespace side_cover_test
 }  // namespace talus::planner

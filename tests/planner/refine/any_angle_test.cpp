@@ -5,7 +5,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace any_angle_test {
 
 using testing::drawn;
 using testing::randomMap;
@@ -46,5 +46,5 @@ TEST(AnyAngle, NeverWorse) {
   }
 }
 
-}  // namespace
+}  // namespace any_angle_test
 }  // namespace talus::planner

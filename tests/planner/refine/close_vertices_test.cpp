@@ -5,7 +5,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace close_vertices_test {
 
 TEST(CloseVertices, OfAPairNearerThanAHundredthOfACellOneIsLeft) {
   const auto map = testing::drawn({".....", ".....", "....."});
@@ -32,5 +32,5 @@ TEST(CloseVertices, WhatStaysIsAllowed) {
   }
 }
 
-}  // namespace
+}  // namespace close_vertices_test
 }  // namespace talus::planner

@@ -6,7 +6,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace corridor_search_test {
 
 using maps::Point;
 using testing::drawn;
@@ -147,5 +147,5 @@ TEST(CorridorSearch, StaysBesideTheWay) {
   for (const maps::Cell cell : path.cells) EXPECT_LE(std::abs(cell.row - 10), 2);
 }
 
-}  // namespace
+}  // namespace corridor_search_test
 }  // namespace talus::planner

@@ -6,7 +6,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace corridor_test {
 
 using maps::Cell;
 using testing::randomMap;
@@ -79,5 +79,5 @@ TEST(Corridor, NumbersItsCellsAndTheHoldersOfTheirEdges) {
   EXPECT_GT(holders.size(), 50U);
 }
 
-}  // namespace
+}  // namespace corridor_test
 }  // namespace talus::planner

@@ -6,7 +6,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace edge_crossings_test {
 
 using costmap::CellCode;
 
@@ -86,5 +86,5 @@ TEST(EdgeCrossings, FreeCellsAllowEveryHeading) {
   EXPECT_FALSE(crossings.free(CellCode({.curve = CellCode::kUnknown})));
 }
 
-}  // namespace
+}  // namespace edge_crossings_test
 }  // namespace talus::planner

@@ -6,7 +6,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace edge_path_test {
 
 using maps::Point;
 using testing::drawn;
@@ -58,5 +58,5 @@ TEST(EdgePath, SlidesToWhereItIsCheaper) {
   EXPECT_LT(after, best * 1.01);
 }
 
-}  // namespace
+}  // namespace edge_path_test
 }  // namespace talus::planner

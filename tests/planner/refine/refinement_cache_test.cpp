@@ -3,7 +3,7 @@
 #include <talus/planner/refine/refinement_cache.hpp>
 
 namespace talus::planner {
-namespace {
+namespace refinement_cache_test {
 
 const Polyline kWindow{{0.0, 0.0}, {10.0, 4.0}}, kResult{{0.0, 0.0}, {5.0, 1.0}, {10.0, 4.0}};
 
@@ -52,5 +52,5 @@ TEST(RefinementCache, WhatIsNotUsedForARoundIsDropped) {
   EXPECT_FALSE(cache.find(kWindow));
 }
 
-}  // namespace
+}  // namespace refinement_cache_test
 }  // namespace talus::planner

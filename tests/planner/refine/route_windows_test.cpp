@@ -7,7 +7,7 @@
 #include <talus/planner/refine/route_windows.hpp>
 
 namespace talus::planner {
-namespace {
+namespace route_windows_test {
 
 Polyline wave(double from_m, double to_m) {
   Polyline line;
@@ -74,5 +74,5 @@ TEST(RouteWindows, StoppedLeavesTheRoute) {
   EXPECT_NEAR(length_m(made), length_m(route), 1e-9);
 }
 
-}  // namespace
+}  // namespace route_windows_test
 }  // namespace talus::planner

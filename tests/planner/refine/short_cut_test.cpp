@@ -7,7 +7,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace short_cut_test {
 
 using testing::drawn;
 using testing::randomMap;
@@ -59,5 +59,5 @@ TEST(ShortCut, DropsIdleTurns) {
   EXPECT_EQ(route.size(), 3U);
 }
 
-}  // namespace
+}  // namespace short_cut_test
 }  // namespace talus::planner

@@ -7,7 +7,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace station_shift_test {
 
 using testing::drawn;
 using testing::randomMap;
@@ -57,5 +57,5 @@ TEST(StationShift, AStraightLineOnEvenGroundStaysAndSoDoesAStoppedOne) {
   EXPECT_EQ(shifted(cost, bent, 8.0, {}, ProgressMonitor{.progress = {}, .stop = source.get_token()}), bent);
 }
 
-}  // namespace
+}  // namespace station_shift_test
 }  // namespace talus::planner

@@ -6,7 +6,7 @@
 #include <talus/planner/route/arc.hpp>
 
 namespace talus::planner {
-namespace {
+namespace arc_test {
 
 TEST(Arc, AQuarterCircleEndsWhereItShould) {
   const Pose left = after({{0.0, 0.0}, 0.0}, Arc{M_PI, 0.5});
@@ -42,5 +42,5 @@ TEST(Arc, IsTheIntegralOfItsHeading) {
   }
 }
 
-}  // namespace
+}  // namespace arc_test
 }  // namespace talus::planner

@@ -6,7 +6,7 @@
 #include <talus/planner/route/cells_within.hpp>
 
 namespace talus::planner {
-namespace {
+namespace cells_within_test {
 
 constexpr maps::Grid kGrid{.width = 7, .height = 5, .resolution_m = 0.5, .south_west = {10.0, 20.0}};
 
@@ -35,5 +35,5 @@ TEST(CellsWithin, NowhereIsNoCellAndFarAwayIsNone) {
   EXPECT_EQ(cellsWithin(kGrid, {11.0, 21.0}, 1e300).size(), kGrid.size());
 }
 
-}  // namespace
+}  // namespace cells_within_test
 }  // namespace talus::planner

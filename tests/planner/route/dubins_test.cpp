@@ -8,7 +8,7 @@
 #include <talus/planner/route/dubins.hpp>
 
 namespace talus::planner {
-namespace {
+namespace dubins_test {
 
 Pose end(Pose pose, const std::vector<Arc>& arcs) {
   for (const Arc& arc : arcs) pose = after(pose, arc);
@@ -71,5 +71,5 @@ TEST(Dubins, StraightAheadIsOneArc) {
   EXPECT_NEAR(length_m(shortestForward({{0.0, 0.0}, heading}, to, 1.0)), 1e5, 1e-3);
 }
 
-}  // namespace
+}  // namespace dubins_test
 }  // namespace talus::planner

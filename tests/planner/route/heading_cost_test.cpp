@@ -6,7 +6,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace heading_cost_test {
 
 // Property: same bits as DriveCost for random cells and headings, ties between bins among them.
 TEST(HeadingCost, SameBitsAsDriveCost) {
@@ -24,5 +24,5 @@ TEST(HeadingCost, SameBitsAsDriveCost) {
   }
 }
 
-}  // namespace
+}  // namespace heading_cost_test
 }  // namespace talus::planner

@@ -6,7 +6,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace heading_set_test {
 
 constexpr double kPi = 3.141592653589793;
 
@@ -59,5 +59,5 @@ TEST(HeadingSet, SharedHeadingsAreThoseOfBoth) {
   }
 }
 
-}  // namespace
+}  // namespace heading_set_test
 }  // namespace talus::planner

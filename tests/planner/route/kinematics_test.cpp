@@ -5,7 +5,7 @@
 #include <talus/planner/route/kinematics.hpp>
 
 namespace talus::planner {
-namespace {
+namespace kinematics_test {
 
 Pose end(Pose pose, const std::vector<Arc>& arcs) {
   for (const Arc& arc : arcs) pose = after(pose, arc);
@@ -53,5 +53,5 @@ TEST(Kinematics, ARadiusHasALeast) {
   }
 }
 
-}  // namespace
+}  // namespace kinematics_test
 }  // namespace talus::planner

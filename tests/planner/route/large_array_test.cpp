@@ -6,7 +6,7 @@
 #include <talus/planner/route/large_array.hpp>
 
 namespace talus::planner {
-namespace {
+namespace large_array_test {
 
 // Property: every element can be written, arrays of a cache line and more begin on one, and from two huge
 // pages on they begin on a huge page of 2 MiB.
@@ -28,5 +28,5 @@ TEST(LargeArray, WhatCannotBeHadIsBadAlloc) {
   EXPECT_THROW(makeLargeArray<std::uint64_t>(std::size_t{1} << 58), std::bad_alloc);
 }
 
-}  // namespace
+}  // namespace large_array_test
 }  // namespace talus::planner

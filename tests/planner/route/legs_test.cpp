@@ -5,7 +5,7 @@
 #include <talus/planner/route/legs.hpp>
 
 namespace talus::planner {
-namespace {
+namespace legs_test {
 
 Problem threeLegs() {
   Problem problem;
@@ -78,5 +78,5 @@ TEST(Legs, AViaPointIsNamedAsOne) {
   EXPECT_EQ(reason(3, "goal 2,2 lies outside the map"), "goal 2,2 lies outside the map");
 }
 
-}  // namespace
+}  // namespace legs_test
 }  // namespace talus::planner

@@ -6,7 +6,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace motion_cost_test {
 
 using testing::drawn;
 using testing::randomMap;
@@ -103,5 +103,5 @@ TEST(MotionCost, AddsUpOverParts) {
   EXPECT_NEAR(whole, cost({{0.3, 0.7}, middle}) + cost({middle, {18.1, 13.9}}), 1e-9 * whole);
 }
 
-}  // namespace
+}  // namespace motion_cost_test
 }  // namespace talus::planner

@@ -7,7 +7,7 @@
 #include <talus/planner/route/plan_end.hpp>
 
 namespace talus::planner {
-namespace {
+namespace plan_end_test {
 
 TEST(PlanEnd, AFailedPlanHasItsReasonAndNoRoute) {
   const Plan plan = failedPlan(RouteStatus::NoRoute, "walled in");
@@ -30,5 +30,5 @@ TEST(PlanEnd, StoppedWorkSaysByWhat) {
   EXPECT_THAT(cancelled.reason, ::testing::HasSubstr("cancelled"));
 }
 
-}  // namespace
+}  // namespace plan_end_test
 }  // namespace talus::planner

@@ -3,7 +3,7 @@
 #include <talus/planner/route/planner_names.hpp>
 
 namespace talus::planner {
-namespace {
+namespace planner_names_test {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
@@ -33,5 +33,5 @@ TEST(PlannerNames, AnUnknownOneNamesTheNearest) {
               ThrowsMessage<std::invalid_argument>(HasSubstr("nearest is 'BITstar'")));
 }
 
-}  // namespace
+}  // namespace planner_names_test
 }  // namespace talus::planner

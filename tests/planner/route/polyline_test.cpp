@@ -7,7 +7,7 @@
 #include <talus/planner/route/polyline.hpp>
 
 namespace talus::planner {
-namespace {
+namespace polyline_test {
 
 using maps::Point;
 
@@ -102,5 +102,5 @@ TEST(Polyline, MarksAreWhereTheNeighbourhoodSaysSo) {
   EXPECT_GE(common, all - 20 * 4);
 }
 
-}  // namespace
+}  // namespace polyline_test
 }  // namespace talus::planner

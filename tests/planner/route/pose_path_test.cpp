@@ -6,7 +6,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace pose_path_test {
 
 using testing::drawn;
 
@@ -65,5 +65,5 @@ TEST(PosePath, SamplesEndWhereTheDriveEnds) {
         0.1 + 1e-9);
 }
 
-}  // namespace
+}  // namespace pose_path_test
 }  // namespace talus::planner

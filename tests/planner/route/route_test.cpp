@@ -7,7 +7,7 @@
 #include <talus/planner/route/route.hpp>
 
 namespace talus::planner {
-namespace {
+namespace route_test {
 
 // The spellings are a promise to programs that read the output.
 TEST(Route, EveryStatusHasTheNameThatFilesPromise) {
@@ -32,5 +32,5 @@ TEST(Route, WhatIsNotKnownIsNoNumber) {
   EXPECT_EQ(Route{}.status, RouteStatus::NoneFound);
 }
 
-}  // namespace
+}  // namespace route_test
 }  // namespace talus::planner

@@ -7,7 +7,7 @@
 #include <talus/planner/route/stop_check.hpp>
 
 namespace talus::planner {
-namespace {
+namespace stop_check_test {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
@@ -34,5 +34,5 @@ TEST(StopCheck, ALimitThatHasPassedIsNoCancel) {
   EXPECT_EQ(cancelledPlan(check).status, RouteStatus::TimedOut);
 }
 
-}  // namespace
+}  // namespace stop_check_test
 }  // namespace talus::planner

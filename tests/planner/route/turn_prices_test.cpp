@@ -6,7 +6,7 @@
 #include <talus/planner/route/turn_prices.hpp>
 
 namespace talus::planner {
-namespace {
+namespace turn_prices_test {
 
 terramech::Rover fourWheels(terramech::Steering steering) {
   terramech::Rover rover{.name = "cart",
@@ -69,5 +69,5 @@ TEST(TurnPrices, AnAckermannRoverNeedsARadius) {
   EXPECT_THROW(kinematicsOf(fourWheels(terramech::Steering::Ackermann), {}), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace turn_prices_test
 }  // namespace talus::planner

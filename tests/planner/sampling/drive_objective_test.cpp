@@ -6,7 +6,7 @@
 #include "ompl_ground.hpp"
 
 namespace talus::planner {
-namespace {
+namespace drive_objective_test {
 
 // Closed form: up at 51/256 (drawn_map.hpp) costs 100 g more a metre than down; a wall costs the most there is.
 TEST(DriveObjective, ThereAndBackDiffer) {
@@ -42,5 +42,5 @@ TEST(DriveObjective, HeuristicsNeverExceedTheCost) {
   EXPECT_GT(tried, 100);
 }
 
-}  // namespace
+}  // namespace drive_objective_test
 }  // namespace talus::planner

@@ -11,7 +11,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace field_ompl_planner_test {
 
 namespace ob = ompl::base;
 namespace og = ompl::geometric;
@@ -75,5 +75,5 @@ TEST(FieldOmplPlanner, EndsWhenTold) {
   EXPECT_TRUE(status == ob::PlannerStatus::TIMEOUT || status == ob::PlannerStatus::EXACT_SOLUTION);
 }
 
-}  // namespace
+}  // namespace field_ompl_planner_test
 }  // namespace talus::planner

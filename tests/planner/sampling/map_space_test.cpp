@@ -7,7 +7,7 @@
 #include <talus/planner/sampling/map_space.hpp>
 
 namespace talus::planner {
-namespace {
+namespace map_space_test {
 
 const maps::Grid kGrid{.width = 40, .height = 30, .resolution_m = 2.5, .south_west = {-7.0, 1000.0}};
 
@@ -39,5 +39,5 @@ TEST(MapSpace, DistancesAreMetresAndProjectionsSixteenCells) {
   EXPECT_EQ(space->getDefaultProjection()->getCellSizes(), (std::vector<double>{40.0, 40.0}));
 }
 
-}  // namespace
+}  // namespace map_space_test
 }  // namespace talus::planner

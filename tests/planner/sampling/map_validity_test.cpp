@@ -7,7 +7,7 @@
 #include "ompl_ground.hpp"
 
 namespace talus::planner {
-namespace {
+namespace map_validity_test {
 
 namespace ob = ompl::base;
 
@@ -48,5 +48,5 @@ TEST(MapValidity, TheLastValidStateIsFoundByBisection) {
   EXPECT_TRUE(ground.space->checkMotion(from.get(), before.get(), reached));
 }
 
-}  // namespace
+}  // namespace map_validity_test
 }  // namespace talus::planner

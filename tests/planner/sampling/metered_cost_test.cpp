@@ -6,7 +6,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace metered_cost_test {
 
 using testing::drawn;
 using testing::randomMap;
@@ -61,5 +61,5 @@ TEST(MeteredCost, StartAndGoalNeedNotBeTurns) {
   EXPECT_EQ(MeteredCost(map, {up.from, up.to})(up), MotionCost(map)(up));
 }
 
-}  // namespace
+}  // namespace metered_cost_test
 }  // namespace talus::planner

@@ -8,7 +8,7 @@
 #include <talus/planner/sampling/ompl_guard.hpp>
 
 namespace talus::planner {
-namespace {
+namespace ompl_guard_test {
 
 class Counter : public ompl::msg::OutputHandler {
  public:
@@ -57,5 +57,5 @@ TEST(OmplGuard, WhatIsMadeHasTheSameNumbersWhateverRanBefore) {
   EXPECT_EQ(first, drawnWith(1));  // not locked for ever
 }
 
-}  // namespace
+}  // namespace ompl_guard_test
 }  // namespace talus::planner

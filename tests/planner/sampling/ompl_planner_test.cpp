@@ -6,7 +6,7 @@
 #include "ompl_ground.hpp"
 
 namespace talus::planner {
-namespace {
+namespace ompl_planner_test {
 
 const Segment kEnds{{2.5, 10.5}, {27.5, 10.5}};
 
@@ -45,5 +45,5 @@ TEST(OmplPlanner, FmtGoesOnUntilItFindsTheGap) {
   EXPECT_TRUE(ground.definition->hasExactSolution());
 }
 
-}  // namespace
+}  // namespace ompl_planner_test
 }  // namespace talus::planner

@@ -5,7 +5,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace ompl_run_test {
 
 using testing::drawn;
 using ::testing::HasSubstr;
@@ -56,5 +56,5 @@ TEST(OmplRun, WithoutARouteItsReasonSaysWhatEndedTheWork) {
   EXPECT_THAT(late.reason, HasSubstr("within the time limit"));
 }
 
-}  // namespace
+}  // namespace ompl_run_test
 }  // namespace talus::planner

@@ -8,7 +8,7 @@
 #include "ompl_ground.hpp"
 
 namespace talus::planner {
-namespace {
+namespace region_sampler_test {
 
 namespace ob = ompl::base;
 
@@ -92,5 +92,5 @@ TEST(RegionSampler, InformedSamplesLieBetweenTheCostsAskedFor) {
   EXPECT_FALSE(sampler.sampleUniform(state.get(), ob::Cost(199.0)));
 }
 
-}  // namespace
+}  // namespace region_sampler_test
 }  // namespace talus::planner

@@ -9,7 +9,7 @@
 #include "drawn_map.hpp"
 
 namespace talus::planner {
-namespace {
+namespace sampling_planner_test {
 
 using testing::drawn;
 
@@ -187,5 +187,5 @@ TEST(SamplingPlanner, RefusesSettingsOutOfRange) {
   EXPECT_THROW(planBySampling(across(wall()), {.planner = "field"}), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace sampling_planner_test
 }  // namespace talus::planner

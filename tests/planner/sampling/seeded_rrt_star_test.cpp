@@ -9,7 +9,7 @@
 #include "ompl_ground.hpp"
 
 namespace talus::planner {
-namespace {
+namespace seeded_rrt_star_test {
 
 namespace ob = ompl::base;
 
@@ -55,5 +55,5 @@ TEST(SeededRRTstar, ASeedThatEndsEarlyIsNoAnswer) {
   EXPECT_TRUE(std::isinf(costAfter(1, {.route = {kEnds.from, {20.5, 10.5}}, .spacing_m = 2.0})));
 }
 
-}  // namespace
+}  // namespace seeded_rrt_star_test
 }  // namespace talus::planner

@@ -5,7 +5,7 @@
 #include <talus/terramech/contact/contact_geometry.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace contact_geometry_test {
 
 const Wheel kWheel{.radius_m = 0.1, .width_m = 0.1};
 
@@ -40,5 +40,5 @@ TEST(ContactGeometry, RefusesASinkageNoWheelCanHave) {
   EXPECT_THROW((void)entryAngle_rad(kWheel, std::nan("")), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace contact_geometry_test
 }  // namespace talus::terramech

@@ -4,7 +4,7 @@
 #include <talus/terramech/contact/wong_reece.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace contact_response_test {
 
 const Wheel kWheel{.radius_m = 0.1, .width_m = 0.1};
 
@@ -69,5 +69,5 @@ TEST(ContactResponse, DerivativeIsThatOfTheForces) {
   }
 }
 
-}  // namespace
+}  // namespace contact_response_test
 }  // namespace talus::terramech

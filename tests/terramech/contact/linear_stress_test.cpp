@@ -4,7 +4,7 @@
 #include <talus/terramech/contact/linear_stress.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace linear_stress_test {
 
 // Simpson's rule over [a, b], 400 intervals: error below 1e-11 for these integrands.
 template <class F>
@@ -55,5 +55,5 @@ TEST(Mobilisation, IsJanosiHanamotoAtTheMiddleAndTheBottom) {
   EXPECT_NEAR(mobilisation(wheel, sample, 0.02).bottom, share(0.0), 1e-14);
 }
 
-}  // namespace
+}  // namespace linear_stress_test
 }  // namespace talus::terramech

@@ -4,7 +4,7 @@
 #include <talus/terramech/contact/load_transfer.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace load_transfer_test {
 
 Rover rover() {
   Rover r;
@@ -45,5 +45,5 @@ TEST(WheelLoads, NoAxleLiftsOff) {
   EXPECT_EQ(wheelLoads_N(rover(), 0.1, {0.0}).size(), 1U);
 }
 
-}  // namespace
+}  // namespace load_transfer_test
 }  // namespace talus::terramech

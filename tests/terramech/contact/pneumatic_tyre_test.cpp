@@ -5,7 +5,7 @@
 #include <talus/terramech/contact/wong_reece.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace pneumatic_tyre_test {
 
 Soil loam() {
   return {.name = "loam",
@@ -119,5 +119,5 @@ TEST(PneumaticTyre, RefusesWhatHasNoAnswer) {
   EXPECT_THROW(criticalPressure_Pa(soil, {}, 100.0), std::domain_error);
 }
 
-}  // namespace
+}  // namespace pneumatic_tyre_test
 }  // namespace talus::terramech

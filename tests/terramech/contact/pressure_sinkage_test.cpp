@@ -5,7 +5,7 @@
 #include <talus/terramech/contact/wong_reece.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace pressure_sinkage_test {
 
 Soil drySand() {
   return {.name = "dry sand",
@@ -73,5 +73,5 @@ TEST(PressureSinkage, RefusesASoilThatCarriesNothing) {
   EXPECT_THROW(bekkerDepth_m(drySand(), 0.1, -1.0), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace pressure_sinkage_test
 }  // namespace talus::terramech

@@ -3,7 +3,7 @@
 #include <talus/terramech/contact/rigid_ground.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace rigid_ground_test {
 
 TEST(RigidGround, PullsTorqueOverRadiusUntilItSlips) {
   const Wheel wheel{.radius_m = 0.2, .width_m = 0.1};
@@ -22,5 +22,5 @@ TEST(RigidGround, RefusesBadInput) {
                std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace rigid_ground_test
 }  // namespace talus::terramech

@@ -5,7 +5,7 @@
 #include <talus/terramech/contact/rim_contact.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace rim_contact_test {
 
 /// Even pressure, no shear, contact from theta_1 to theta_2 = -theta_1: everything has a closed form.
 struct EvenPressure {
@@ -46,5 +46,5 @@ TEST(RimContact, RefusesALoadBeyondTheAxle) {
   EXPECT_THROW(rimEquilibrium(EvenPressure{}, kWheel, {.load_N = 1.001 * most}), std::domain_error);
 }
 
-}  // namespace
+}  // namespace rim_contact_test
 }  // namespace talus::terramech

@@ -4,7 +4,7 @@
 #include <talus/terramech/contact/rover.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace rover_test {
 
 using testing::HasSubstr;
 using testing::ThrowsMessage;
@@ -75,5 +75,5 @@ TEST(Rover, RefusalNamesRoverAndField) {
   EXPECT_THAT([&] { validate(flat); }, ThrowsMessage<std::invalid_argument>(HasSubstr("wheels.width_m = 0")));
 }
 
-}  // namespace
+}  // namespace rover_test
 }  // namespace talus::terramech

@@ -3,7 +3,7 @@
 #include <talus/terramech/contact/shear_displacement.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace shear_displacement_test {
 
 ShearDisplacement at(double slip, double entry = 0.6) {
   return ShearDisplacement{{0.2, slip, entry}};
@@ -46,5 +46,5 @@ TEST(ShearDisplacement, ChangesItsSignOnlyWhereATowedRimOvertakesTheSoil) {
   EXPECT_LT(at(-0.1).at_m(zero - 0.05), 0.0);
 }
 
-}  // namespace
+}  // namespace shear_displacement_test
 }  // namespace talus::terramech

@@ -5,7 +5,7 @@
 #include <talus/terramech/contact/wong_reece.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace shear_stress_test {
 
 Soil loam() {
   return {.name = "loam",
@@ -70,5 +70,5 @@ TEST(ShearStress, ThreeKIsWhereNinetyFivePerCentOfTheStrengthIsReached) {
   EXPECT_NEAR(janosiHanamoto_Pa(soil, 8000.0, 0.039) / shearStrength_Pa(soil, 8000.0), 0.95, 0.001);
 }
 
-}  // namespace
+}  // namespace shear_stress_test
 }  // namespace talus::terramech

@@ -4,7 +4,7 @@
 #include <talus/terramech/contact/side_bulldozing.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace side_bulldozing_test {
 
 TEST(SideBulldozing, WithoutFrictionIsTwiceTheCohesionAndTheWeight) {
   // Closed form: phi = 0 gives X = 45 deg, D1 = 2, D2 = 1, R = 2 c h + gamma h^2.
@@ -38,5 +38,5 @@ TEST(SideBulldozing, OfAFaceIsTheSumOverItsChord) {
   }
 }
 
-}  // namespace
+}  // namespace side_bulldozing_test
 }  // namespace talus::terramech

@@ -9,7 +9,7 @@
 
 /// wong_reece.hpp of a wheel that travels at an angle to its plane.
 namespace talus::terramech {
-namespace {
+namespace side_slip_test {
 
 constexpr double kRight = 0.5 * std::numbers::pi;
 
@@ -169,5 +169,5 @@ TEST(SideSlip, RefusesAnglesBeyondARightOne) {
   }
 }
 
-}  // namespace
+}  // namespace side_slip_test
 }  // namespace talus::terramech

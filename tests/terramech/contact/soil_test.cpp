@@ -4,7 +4,7 @@
 #include <talus/terramech/contact/soil.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace soil_test {
 
 using testing::HasSubstr;
 using testing::Property;
@@ -51,5 +51,5 @@ TEST(Soil, NotANumberIsRefusedInEveryField) {
   }
 }
 
-}  // namespace
+}  // namespace soil_test
 }  // namespace talus::terramech

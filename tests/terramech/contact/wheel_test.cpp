@@ -4,7 +4,7 @@
 #include <talus/terramech/contact/wheel.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace wheel_test {
 
 TEST(Wheel, SizesAreAboveZeroAndLugsMayBeNone) {
   EXPECT_NO_THROW(validate(Wheel{}));
@@ -18,5 +18,5 @@ TEST(Wheel, SizesAreAboveZeroAndLugsMayBeNone) {
   EXPECT_THROW(validate({.grouser_count = -1}), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace wheel_test
 }  // namespace talus::terramech

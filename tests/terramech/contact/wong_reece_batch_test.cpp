@@ -10,7 +10,7 @@
 #include "reference/reference_table.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace wong_reece_batch_test {
 
 class Random {
  public:
@@ -169,5 +169,5 @@ TEST(WongReeceBatch, WhatHasNoAnswerIsNan) {
   EXPECT_THROW(equilibria(cases, too_few), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace wong_reece_batch_test
 }  // namespace talus::terramech

@@ -4,7 +4,7 @@
 #include <talus/terramech/contact/wong_reece_kernel.hpp>
 
 namespace talus::terramech::lanes {
-namespace {
+namespace wong_reece_kernel_test {
 
 // Closed form: int_0^1 s^k ds = 1/(k + 1). A rule of N points in t is exact while s^k ds is of degree 2 N - 1.
 TEST(WongReeceKernel, RulesAreExactForPolynomials) {
@@ -80,5 +80,5 @@ TEST(WongReeceKernel, SolveFindsTheEntryThatCarriesTheLoad) {
   }
 }
 
-}  // namespace
+}  // namespace wong_reece_kernel_test
 }  // namespace talus::terramech::lanes

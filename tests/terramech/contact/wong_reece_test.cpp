@@ -10,7 +10,7 @@
 #include "reference/reference_table.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace wong_reece_test {
 
 Soil soilOf(const test::ReferenceRow& row) {
   return {.name = "case",
@@ -274,5 +274,5 @@ TEST(WongReece, RefusesWhatHasNoAnswer) {
   EXPECT_THROW(equilibrium(soil, wheel, {.load_N = 50.0, .slip = 0.8}), std::domain_error);
 }
 
-}  // namespace
+}  // namespace wong_reece_test
 }  // namespace talus::terramech

@@ -5,7 +5,7 @@
 #include <talus/terramech/effects/channel_reading.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace channel_reading_test {
 
 constexpr std::array kAll{Channel::DrawbarPull, Channel::Sinkage, Channel::Torque, Channel::SideForce};
 
@@ -45,5 +45,5 @@ TEST(ChannelReading, EachHasANameOfItsOwn) {
   EXPECT_EQ(names.size(), kAll.size());
 }
 
-}  // namespace
+}  // namespace channel_reading_test
 }  // namespace talus::terramech

@@ -3,7 +3,7 @@
 #include "effects_fixture.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace effects_contact_test {
 
 TEST(EffectsContact, LyaskoSinkageFollowsItsLaw) {
   // Closed form: (1 + i)/(1 - 0.5 i) = 2 at i = 0.5.
@@ -104,5 +104,5 @@ TEST(EffectsContact, GroundThatReboundsOrIsLayered) {
   EXPECT_EQ(layered.hard_modulus_Pa_m, 1e7);
 }
 
-}  // namespace
+}  // namespace effects_contact_test
 }  // namespace talus::terramech

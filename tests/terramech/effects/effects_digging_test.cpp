@@ -3,7 +3,7 @@
 #include "effects_fixture.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace effects_digging_test {
 
 TEST(EffectsDigging, ADraggedWheelSinksByTheSquareOfWhatItDoesNotRoll) {
   // Closed form: 0.3 r (1 - r omega/v)^2 with r omega/v = 1 + slip; none where the wheel drives.
@@ -87,5 +87,5 @@ TEST(EffectsDigging, PloughingGrowsWithThePathAcross) {
   EXPECT_EQ(locked.ploughed_m, 0.0);
 }
 
-}  // namespace
+}  // namespace effects_digging_test
 }  // namespace talus::terramech

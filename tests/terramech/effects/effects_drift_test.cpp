@@ -4,7 +4,7 @@
 #include "effects_fixture.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace effects_drift_test {
 
 // A drift from time 100 s on, over a span of 50 s.
 constexpr double kStart = 100.0, kSpan = 50.0;
@@ -73,5 +73,5 @@ TEST(EffectsDrift, OnlyZerosAreFaultsOfASensor) {
   EXPECT_EQ(forms, 18);  // three targets of soil and three of sensors, in three shapes
 }
 
-}  // namespace
+}  // namespace effects_drift_test
 }  // namespace talus::terramech

@@ -5,7 +5,7 @@
 #include "effects_fixture.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace effects_force_test {
 
 TEST(EffectsForce, SoilMovedInFrontWeighsWhatItDoesWhereTheRoverDrives) {
   RefinedModel model = base();
@@ -141,5 +141,5 @@ TEST(EffectsForce, TheBaseAtASlipAngleIsTheWheelOfTheLiterature) {
   }
 }
 
-}  // namespace
+}  // namespace effects_force_test
 }  // namespace talus::terramech

@@ -3,7 +3,7 @@
 #include "effects_fixture.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace effects_sensor_test {
 
 const Reading kRead{
     .load_N = 100.0, .radius_m = 0.2, .sinkage_m = 0.01, .torque_Nm = 6.0, .drawbar_pull_N = 20.0};
@@ -46,5 +46,5 @@ TEST(EffectsSensor, AllAreFaultsOfASensor) {
   for (const EffectForm& form : detail::contactEffects()) EXPECT_FALSE(form.of_sensor) << form.name;
 }
 
-}  // namespace
+}  // namespace effects_sensor_test
 }  // namespace talus::terramech

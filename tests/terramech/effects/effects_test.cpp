@@ -5,7 +5,7 @@
 #include "effects_fixture.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace effects_test {
 
 TEST(Effects, NamesAreUniqueAndEveryFormSaysWhatItIs) {
   std::set<std::string> seen;
@@ -35,5 +35,5 @@ TEST(Effects, EveryFormActsAtItsTypicalSize) {
   }
 }
 
-}  // namespace
+}  // namespace effects_test
 }  // namespace talus::terramech

@@ -3,7 +3,7 @@
 #include "effects_fixture.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace refined_model_test {
 
 TEST(RefinedModel, AnUnknownCovariateLeavesTheModelNeutral) {
   for (const EffectForm& form : effectLibrary()) {
@@ -175,5 +175,5 @@ TEST(RefinedModel, StdHoldsWhatParametersShare) {
   EXPECT_NEAR(predictWithStd(model, state()).scaled_std[0], 3.0 / 80.0, 1e-9);
 }
 
-}  // namespace
+}  // namespace refined_model_test
 }  // namespace talus::terramech

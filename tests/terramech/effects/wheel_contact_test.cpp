@@ -6,7 +6,7 @@
 #include "made_rows.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace wheel_contact_test {
 
 WheelContact loaded(double load_N, double slip) {
   WheelContact contact = contactOf(madeSand(), Wheel{});
@@ -111,5 +111,5 @@ TEST(WheelContact, WhatIsDugAlongAndPloughedAcrossAddAsPaths) {
   EXPECT_NEAR(forces.dug_m, 0.005 * 9.0 / 25.0, 1e-12);      // Closed form: its share of the square.
 }
 
-}  // namespace
+}  // namespace wheel_contact_test
 }  // namespace talus::terramech

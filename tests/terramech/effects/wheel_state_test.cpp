@@ -4,7 +4,7 @@
 #include <talus/terramech/effects/wheel_state.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace wheel_state_test {
 
 TEST(WheelState, ColumnsByTheirNameInTelemetryFiles) {
   const WheelState s{.wheel = {.radius_m = 0.1, .width_m = 0.2, .grouser_height_m = 0.3, .grouser_count = 4},
@@ -40,5 +40,5 @@ TEST(WheelState, FurtherColumnsGroupsAndWhatIsNotThere) {
   EXPECT_TRUE(std::isnan(s.covariate("speed_mps")));  // not known unless it is set
 }
 
-}  // namespace
+}  // namespace wheel_state_test
 }  // namespace talus::terramech

@@ -7,7 +7,7 @@
 #include "linear_world.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace drawbar_pull_test {
 
 const WheelSample kSample{.load_N = 80, .torque_Nm = 3.2, .sinkage_m = 0.02, .slip = 0.5};
 
@@ -166,5 +166,5 @@ TEST(DrawbarPull, RefusesAnUnloadedWheel) {
   EXPECT_THROW((void)pullOverLoad(kThesisWheel, s), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace drawbar_pull_test
 }  // namespace talus::terramech

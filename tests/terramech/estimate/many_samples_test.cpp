@@ -6,7 +6,7 @@
 #include <talus/terramech/estimate/thesis_runs.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace many_samples_test {
 
 std::vector<WheelReading> numbered(std::size_t count) {
   std::vector<WheelReading> readings;
@@ -106,5 +106,5 @@ TEST(ManySamples, AreSpreadEvenlyWithoutABeat) {
   EXPECT_EQ(spreadEvenly(numbered(10), 512).size(), 10u);
 }
 
-}  // namespace
+}  // namespace many_samples_test
 }  // namespace talus::terramech

@@ -7,7 +7,7 @@
 #include <talus/terramech/estimate/model_pull.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace model_pull_test {
 
 const Wheel kWheel{.radius_m = 0.1, .width_m = 0.1};
 const WheelState kState{.wheel = kWheel, .load_N = 80.0, .slip = 0.3};
@@ -117,5 +117,5 @@ TEST(ModelPull, ForecastsTheReferenceSlipAndTheGreatestPull) {
   EXPECT_THROW((void)forecastPull(truth, kState, 1.5), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace model_pull_test
 }  // namespace talus::terramech

@@ -5,7 +5,7 @@
 #include <talus/terramech/estimate/thesis_runs.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace pull_forecast_test {
 
 TEST(PullForecast, PullAtTheSamplesIsNearTheTruth) {
   // Property: with 2 % errors the rms over 12 soils stays below 0.012 (goal over 500 soils 0.008).
@@ -55,5 +55,5 @@ TEST(PullForecast, ReachesSlipsThatWereNotDriven) {
   EXPECT_NEAR(f.climbable_slope_rad.value, std::atan(f.most.value), 1e-12);
 }
 
-}  // namespace
+}  // namespace pull_forecast_test
 }  // namespace talus::terramech

@@ -2,7 +2,7 @@
 #include <talus/terramech/estimate/thesis_runs.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace pull_forecasts_test {
 
 TEST(PullForecasts, AreThoseOfEachLoadAndWheel) {
   // Property: a line between loads 1 % apart leaves less than 1e-4; another wheel has forecasts of its own.
@@ -25,5 +25,5 @@ TEST(PullForecasts, AreThoseOfEachLoadAndWheel) {
   }
 }
 
-}  // namespace
+}  // namespace pull_forecasts_test
 }  // namespace talus::terramech

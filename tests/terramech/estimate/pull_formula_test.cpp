@@ -3,7 +3,7 @@
 #include <talus/terramech/estimate/pull_formula.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace pull_formula_test {
 
 TEST(PullFormula, EachNameIsItsFormula) {
   const Wheel wheel{.radius_m = 0.15, .width_m = 0.15};
@@ -22,5 +22,5 @@ TEST(PullFormula, EachNameIsItsFormula) {
   for (const std::string& name : pullFormulas()) EXPECT_NO_THROW(by(name.c_str()));
 }
 
-}  // namespace
+}  // namespace pull_formula_test
 }  // namespace talus::terramech

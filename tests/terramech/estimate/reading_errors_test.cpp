@@ -1,7 +1,7 @@
 #include <talus/terramech/estimate/reading_errors.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace reading_errors_test {
 
 TEST(ReadingErrors, PartsAddInQuadrature) {
   // Closed form: hypot(0.03 x 100, 4) = 5; the sign of a reading does not matter.
@@ -18,5 +18,5 @@ TEST(ReadingErrors, OneShareForAllFour) {
   EXPECT_DOUBLE_EQ(ReadingErrors{}.slip.std(0.4), 0.02);  // Printed in: the thesis, 5 % on everything
 }
 
-}  // namespace
+}  // namespace reading_errors_test
 }  // namespace talus::terramech

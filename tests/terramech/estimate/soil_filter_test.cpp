@@ -4,7 +4,7 @@
 #include <talus/terramech/estimate/thesis_runs.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace soil_filter_test {
 
 TEST(SoilFilter, EqualsTheBatchWhileTheWindowHoldsAll) {
   // Property: same modes to the tolerance of the search, hence almost the same draws.
@@ -74,5 +74,5 @@ TEST(SoilFilter, RemembersWhatLeftItsWindow) {
   EXPECT_LT(all(kFriction, kFriction), 0.5 * window(kFriction, kFriction));
 }
 
-}  // namespace
+}  // namespace soil_filter_test
 }  // namespace talus::terramech

@@ -5,7 +5,7 @@
 #include <talus/terramech/estimate/soil_mixture.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace soil_mixture_test {
 
 TEST(SoilMixture, ThesisSoilsSpanTable21) {
   // Printed in: thesis Table 2.1.
@@ -49,5 +49,5 @@ TEST(Marginal, RefusesBoundsOutOfOrder) {
   EXPECT_THROW((void)Marginal::normal(0.0, 0.0, -1.0), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace soil_mixture_test
 }  // namespace talus::terramech

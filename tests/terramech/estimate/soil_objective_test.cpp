@@ -6,7 +6,7 @@
 #include "exact_likelihood.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace soil_objective_test {
 
 // A class of one soil.
 SoilClass known(const ContactSoil& soil) {
@@ -88,5 +88,5 @@ TEST(SoilObjective, OutliersWeighLess) {
   EXPECT_LT(objective.misfit(SoilVector::Zero(), {kThesisWheel, s}).weight, 0.02);
 }
 
-}  // namespace
+}  // namespace soil_objective_test
 }  // namespace talus::terramech

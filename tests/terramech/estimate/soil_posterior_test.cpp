@@ -12,7 +12,7 @@
 #include "exact_likelihood.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace soil_posterior_test {
 
 TEST(SoilPosterior, EqualsBruteForce) {
   // Property: means, standard deviations and class probabilities are those of soils drawn from the prior and
@@ -190,5 +190,5 @@ TEST(SoilPosterior, RefusesWhatIsNoDrivenWheel) {
   EXPECT_THROW((void)fitSoil(kThesisWheel, std::vector<WheelSample>{}, thesisSoils()), std::domain_error);
 }
 
-}  // namespace
+}  // namespace soil_posterior_test
 }  // namespace talus::terramech

@@ -4,7 +4,7 @@
 #include <talus/terramech/numerics/normal_distribution.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace state_population_test {
 
 const ReadingErrors kErrors = ReadingErrors::relative(0.05);
 
@@ -51,5 +51,5 @@ TEST(StatePopulation, CombinesAReadingWithItsPopulation) {
   EXPECT_LT(std::sqrt(slip_squares), 0.005);  // one slip, read with 0.02
 }
 
-}  // namespace
+}  // namespace state_population_test
 }  // namespace talus::terramech

@@ -8,7 +8,7 @@
 #include <talus/terramech/estimate/strength_prior.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace strength_prior_test {
 
 ShearStrength fitOf(double cohesion_Pa, double tan_friction, const Eigen::Vector2d& std, double correlation) {
   ShearStrength fit{.cohesion_Pa = cohesion_Pa, .tan_friction = tan_friction};
@@ -97,5 +97,5 @@ TEST(StrengthPrior, RefusesAFitWithoutScatterAndNoPrior) {
   EXPECT_THROW((void)withPrior(fitOf(1.0, 0.5, {1.0, 1.0}, 0.0), {}), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace strength_prior_test
 }  // namespace talus::terramech

@@ -2,7 +2,7 @@
 #include <talus/terramech/estimate/telemetry.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace telemetry_test {
 
 Telemetry small() {
   Telemetry t;
@@ -32,5 +32,5 @@ TEST(Telemetry, KnowsItsColumnsByUnit) {
   EXPECT_THAT(knownTelemetryColumns(), testing::Not(testing::Contains("run")));
 }
 
-}  // namespace
+}  // namespace telemetry_test
 }  // namespace talus::terramech

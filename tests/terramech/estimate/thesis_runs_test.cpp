@@ -3,7 +3,7 @@
 #include <talus/terramech/estimate/thesis_runs.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace thesis_runs_test {
 
 TEST(ThesisRuns, FollowTheThesisPattern) {
   // Printed in: thesis 2.3: slip 0.2 to 0.8 and back by 0.1, loads 60 to 100 N, Table 2.1.
@@ -40,5 +40,5 @@ TEST(ThesisRuns, SameSeedSameNumbers) {
   EXPECT_EQ(one.next().samples[7].torque_Nm, other.next().samples[7].torque_Nm);
 }
 
-}  // namespace
+}  // namespace thesis_runs_test
 }  // namespace talus::terramech

@@ -5,7 +5,7 @@
 #include <talus/terramech/numerics/normal_distribution.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace truncated_gaussian_test {
 
 const SoilBox kUnit{SoilVector::Zero(), SoilVector::Ones()};
 
@@ -47,5 +47,5 @@ TEST(TruncatedGaussian, WithoutSidesItIsTheGaussian) {
   EXPECT_NEAR(log_density, -0.5 * at.squaredNorm() - 2.5 * std::log(2.0 * 3.14159265358979), 1e-9);
 }
 
-}  // namespace
+}  // namespace truncated_gaussian_test
 }  // namespace talus::terramech

@@ -8,7 +8,7 @@
 #include "temporary_file.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace bevameter_table_test {
 
 using testing::HasSubstr;
 using testing::ThrowsMessage;
@@ -85,5 +85,5 @@ TEST(BevameterTable, ATableOfNeitherTestIsRefused) {
               ThrowsMessage<InputError>(HasSubstr("lacks the columns of a plate test or a shear test")));
 }
 
-}  // namespace
+}  // namespace bevameter_table_test
 }  // namespace talus::terramech

@@ -11,7 +11,7 @@
 #include "temporary_file.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace column_units_test {
 
 using testing::HasSubstr;
 
@@ -176,5 +176,5 @@ TEST(ColumnUnits, MeasuredFilesPass) {
   EXPECT_GE(files, 8);
 }
 
-}  // namespace
+}  // namespace column_units_test
 }  // namespace talus::terramech

@@ -6,7 +6,7 @@
 #include "temporary_file.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace csv_reader_test {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -129,5 +129,5 @@ TEST(CsvField, QuotesOnlyWhereNeeded) {
   EXPECT_EQ(csvField(" x"), "\" x\"");
 }
 
-}  // namespace
+}  // namespace csv_reader_test
 }  // namespace talus::terramech

@@ -7,7 +7,7 @@
 #include <talus/terramech/io/model_file.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace model_file_test {
 
 using testing::HasSubstr;
 
@@ -144,5 +144,5 @@ TEST(ModelFile, RefusesWhatIsGivenTwiceOrBeyondItsBounds) {
               HasSubstr(":3: slip_sinkage_ding: "));
 }
 
-}  // namespace
+}  // namespace model_file_test
 }  // namespace talus::terramech

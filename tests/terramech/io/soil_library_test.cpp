@@ -9,7 +9,7 @@
 #include "temporary_file.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace soil_library_test {
 
 using testing::Contains;
 using testing::HasSubstr;
@@ -251,5 +251,5 @@ TEST(TerrainClasses, MistakesAreToldWithTheirLine) {
   EXPECT_THAT(error("classes: {1: sand}\nclases: {2: sand}\n"), HasSubstr(":2: unknown key 'clases'"));
 }
 
-}  // namespace
+}  // namespace soil_library_test
 }  // namespace talus::terramech

@@ -7,7 +7,7 @@
 #include "temporary_file.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace soil_priors_test {
 
 const char* const kTwoSoils = R"(soils:
   - {name: a, cohesion_Pa: {mean: 1000, std: 100}, friction_angle_rad: 0.5, sinkage_exponent: 1.0, cohesive_modulus: {mean: 500, std: 30},
@@ -53,5 +53,5 @@ TEST(SoilPriors, StrengthsAndTheMeanShearModulus) {
   EXPECT_DOUBLE_EQ(meanModulus(soils), 0.02);
 }
 
-}  // namespace
+}  // namespace soil_priors_test
 }  // namespace talus::terramech

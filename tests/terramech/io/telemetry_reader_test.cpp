@@ -7,7 +7,7 @@
 #include "temporary_file.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace telemetry_reader_test {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -194,5 +194,5 @@ TEST(TelemetryReader, MeasuredFilesAreRead) {
   EXPECT_EQ(cmu.size() + cmu.rejected.size(), 216U);
 }
 
-}  // namespace
+}  // namespace telemetry_reader_test
 }  // namespace talus::terramech

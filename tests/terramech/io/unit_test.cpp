@@ -3,7 +3,7 @@
 #include <talus/terramech/io/unit.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace unit_test {
 
 TEST(Unit, ConvertsWithinAKindOnly) {
   EXPECT_DOUBLE_EQ(conversion("deg", "rad").value(), std::numbers::pi / 180.0);  // Closed form.
@@ -21,5 +21,5 @@ TEST(Unit, FindsTheLongestSuffix) {
   EXPECT_EQ(unitOf("m"), "");
 }
 
-}  // namespace
+}  // namespace unit_test
 }  // namespace talus::terramech

@@ -7,7 +7,7 @@
 #include "temporary_file.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace wheel_rows_test {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -89,5 +89,5 @@ TEST(WheelRows, WhatIsMissingIsNamed) {
   EXPECT_THROW(read(kHead), InputError);
 }
 
-}  // namespace
+}  // namespace wheel_rows_test
 }  // namespace talus::terramech

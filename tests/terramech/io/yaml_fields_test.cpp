@@ -6,7 +6,7 @@
 #include <talus/terramech/io/yaml_fields.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace yaml_fields_test {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -142,5 +142,5 @@ TEST(YamlFields, AFieldIsGivenOnce) {
               ThrowsMessage<InputError>(HasSubstr("f.yaml:1: a_m: mean appears twice")));
 }
 
-}  // namespace
+}  // namespace yaml_fields_test
 }  // namespace talus::terramech

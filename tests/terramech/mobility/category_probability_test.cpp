@@ -7,7 +7,7 @@
 #include <talus/terramech/mobility/category_probability.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace category_probability_test {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -76,5 +76,5 @@ TEST(CategoryProbability, RefusesBadBeliefs) {
   EXPECT_THROW(categoryProbability(belief, kLimits), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace category_probability_test
 }  // namespace talus::terramech

@@ -6,7 +6,7 @@
 #include <talus/terramech/mobility/category.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace category_test {
 
 const CategoryThresholds kLimits{.dp_low = 0.125,
                                  .dp_high = 0.375,
@@ -97,5 +97,5 @@ TEST(Category, DisorderedThresholdsAreRefused) {
   EXPECT_NO_THROW(validate(kLimits));
 }
 
-}  // namespace
+}  // namespace category_test
 }  // namespace talus::terramech

@@ -6,7 +6,7 @@
 #include <talus/terramech/mobility/mobility.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace mobility_test {
 
 Soil loam() {
   return {.name = "loam",
@@ -269,5 +269,5 @@ TEST(Mobility, ALinearFormulaCannotSayWhatASlopeAsks) {
   EXPECT_THROW(MobilityCurve(model, rover()), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace mobility_test
 }  // namespace talus::terramech

@@ -6,7 +6,7 @@
 #include <talus/terramech/mobility/rover_stance.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace rover_stance_test {
 
 Rover rover(int wheels = 4) {
   return {.name = "box",
@@ -92,5 +92,5 @@ TEST(RoverStance, RefusesWhatCannotStand) {
   EXPECT_NE(refusal(rover(3)).find("must be even, 4 to 12"), std::string::npos) << refusal(rover(3));
 }
 
-}  // namespace
+}  // namespace rover_stance_test
 }  // namespace talus::terramech

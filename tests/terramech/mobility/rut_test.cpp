@@ -2,7 +2,7 @@
 #include <talus/terramech/mobility/rut.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace rut_test {
 
 TEST(Rut, TheSecondWheelSinksLessAndPullsMore) {
   const Soil sand{.name = "sand",
@@ -22,5 +22,5 @@ TEST(Rut, TheSecondWheelSinksLessAndPullsMore) {
   }
 }
 
-}  // namespace
+}  // namespace rut_test
 }  // namespace talus::terramech

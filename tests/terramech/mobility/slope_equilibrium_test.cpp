@@ -8,7 +8,7 @@
 #include <talus/terramech/mobility/slope_equilibrium.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace slope_equilibrium_test {
 
 Soil sand() {
   return {.name = "sand",
@@ -257,5 +257,5 @@ TEST(SlopeEquilibrium, SaysWhatItAssumes) {
             std::string::npos);
 }
 
-}  // namespace
+}  // namespace slope_equilibrium_test
 }  // namespace talus::terramech

@@ -7,7 +7,7 @@
 #include <talus/terramech/mobility/slope_table.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace slope_table_test {
 
 Soil sand() {
   return {.name = "sand",
@@ -83,5 +83,5 @@ TEST(SlopeTable, RefusesAStepOfNothing) {
   EXPECT_THROW(SlopeTable(equilibrium, {.slope = {}, .step = 0.0}), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace slope_table_test
 }  // namespace talus::terramech

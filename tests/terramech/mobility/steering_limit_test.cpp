@@ -4,7 +4,7 @@
 #include <talus/terramech/mobility/steering_limit.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace steering_limit_test {
 
 Soil sand() {
   return {.name = "sand",
@@ -41,5 +41,5 @@ TEST(SteeringLimit, RefusesBadDemands) {
   EXPECT_THROW(steeringSlipLimit(sand(), Wheel{}, {.load_N = -1.0}), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace steering_limit_test
 }  // namespace talus::terramech

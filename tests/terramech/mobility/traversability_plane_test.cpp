@@ -4,7 +4,7 @@
 #include <talus/terramech/mobility/traversability_plane.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace traversability_plane_test {
 
 double eq321(double torque, double sinkage) {
   return torque - sinkage - 0.1;
@@ -44,5 +44,5 @@ TEST(TraversabilityPlane, RefusesAnEmptyPicture) {
   EXPECT_THROW(traversabilityPlane(eq321, kFig312, {.columns = 0}), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace traversability_plane_test
 }  // namespace talus::terramech

@@ -7,7 +7,7 @@
 #include <talus/terramech/mobility/wheel_forces_table.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace wheel_forces_table_test {
 
 Rover rover() {
   return {.name = "box",
@@ -88,5 +88,5 @@ TEST(WheelForcesTable, OfAModelWithoutEffectsIsThatOfItsSoil) {
         EXPECT_NEAR(a.at({30.0, slip, angle}).value[c], b.at({30.0, slip, angle}).value[c], 1e-4);
 }
 
-}  // namespace
+}  // namespace wheel_forces_table_test
 }  // namespace talus::terramech

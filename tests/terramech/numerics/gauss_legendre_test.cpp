@@ -4,7 +4,7 @@
 #include <talus/terramech/numerics/gauss_legendre.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace gauss_legendre_test {
 
 template <std::size_t N>
 double integralOfPower(int power) {
@@ -29,5 +29,5 @@ TEST(GaussLegendre, NodesAscendInsideTheInterval) {
   EXPECT_NEAR(std::accumulate(rule.weight.begin(), rule.weight.end(), 0.0), 1.0, 1e-15);
 }
 
-}  // namespace
+}  // namespace gauss_legendre_test
 }  // namespace talus::terramech

@@ -4,7 +4,7 @@
 #include <talus/terramech/numerics/lane_math.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace lane_math_test {
 
 class Random {
  public:
@@ -41,5 +41,5 @@ TEST(LaneMath, FourLanesGiveTheBitsOfOne) {
   }
 }
 
-}  // namespace
+}  // namespace lane_math_test
 }  // namespace talus::terramech

@@ -4,7 +4,7 @@
 #include <talus/terramech/numerics/monotone_curve.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace monotone_curve_test {
 
 TEST(MonotoneCurve, PassesThroughItsPointsAndKeepsItsEnds) {
   const MonotoneCurve curve{{0.0, 1.0, 3.0}, {1.0, 2.0, 2.5}};
@@ -33,5 +33,5 @@ TEST(MonotoneCurve, RefusesPointsOutOfOrder) {
   EXPECT_THROW(MonotoneCurve({0.0, 1.0}, {1.0}), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace monotone_curve_test
 }  // namespace talus::terramech

@@ -3,7 +3,7 @@
 #include <talus/terramech/numerics/natural_spline.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace natural_spline_test {
 
 TEST(NaturalSpline, IsNaturalAndConstantOutside) {
   const std::vector<double> x{0.0, 1.0, 2.0}, y{0.0, 1.0, 0.0};
@@ -22,5 +22,5 @@ TEST(NaturalSpline, KeepsLinesAndTakesFewKnots) {
   EXPECT_EQ(NaturalSpline()(7.0), 0.0);
 }
 
-}  // namespace
+}  // namespace natural_spline_test
 }  // namespace talus::terramech

@@ -4,7 +4,7 @@
 #include <talus/terramech/numerics/normal_distribution.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace normal_distribution_test {
 
 TEST(NormalDistribution, QuantileInvertsTheDistribution) {
   // Property, over the whole range down to the far tail.
@@ -30,5 +30,5 @@ TEST(EvenPoints, FillTheCubeEvenly) {
   EXPECT_LT(points.maxCoeff(), 1.0);
 }
 
-}  // namespace
+}  // namespace normal_distribution_test
 }  // namespace talus::terramech

@@ -6,7 +6,7 @@
 #include <talus/terramech/numerics/range.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace range_test {
 
 std::string refusal(const std::function<void(const RangeCheck&)>& check) {
   try {
@@ -49,5 +49,5 @@ TEST(Range, WhatIsNotFiniteIsRefusedByEveryCheck) {
   }
 }
 
-}  // namespace
+}  // namespace range_test
 }  // namespace talus::terramech

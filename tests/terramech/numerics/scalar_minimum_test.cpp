@@ -3,7 +3,7 @@
 #include <talus/terramech/numerics/scalar_minimum.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace scalar_minimum_test {
 
 TEST(ScalarMinimum, FindsTheDeepestOfSeveral) {
   // Closed form: with u = ln x the slope is 0 where 6 sin(6 u) = (u - 1)/5.
@@ -23,5 +23,5 @@ TEST(ScalarMinimum, KeepsAnEndThatIsLowest) {
   EXPECT_EQ(least.at, 2.0);
 }
 
-}  // namespace
+}  // namespace scalar_minimum_test
 }  // namespace talus::terramech

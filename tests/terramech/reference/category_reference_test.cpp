@@ -3,7 +3,7 @@
 #include "reference_table.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace category_reference_test {
 
 std::optional<double> numberOrNone(const test::ReferenceRow& row, const std::string& column) {
   return row.has(column) ? std::optional{row[column]} : std::nullopt;
@@ -28,5 +28,5 @@ TEST(CategoryReference, AgreesOnEveryEdge) {
   }
 }
 
-}  // namespace
+}  // namespace category_reference_test
 }  // namespace talus::terramech

@@ -10,7 +10,7 @@
 // Closed form: every intermediate and result of the linear estimators by an independent implementation.
 // Tolerance: the coefficients are closed forms, 1e-10; least squares loses digits by its condition, 1e-7.
 namespace talus::terramech {
-namespace {
+namespace estimator_reference_test {
 
 using test::estimatorCases;
 using test::sampleOf;
@@ -101,5 +101,5 @@ TEST(EstimatorReference, EightSoilsOfTenReadings) {
   for (const auto& c : cases) EXPECT_EQ(c.rows.size() + c.modulus_errors.size(), 19u);
 }
 
-}  // namespace
+}  // namespace estimator_reference_test
 }  // namespace talus::terramech

@@ -5,7 +5,7 @@
 #include <talus/terramech/strength/bevameter.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace bevameter_test {
 
 PressureSinkageFit pressed(std::initializer_list<double> widths, double noise = 0.0) {
   std::mt19937_64 random(11);
@@ -128,5 +128,5 @@ TEST(FitShear, RefusesOneNormalStress) {
   EXPECT_THROW((void)fitShear(std::vector<ShearReading>(5, {1e4, 6e3, 0.05})), std::domain_error);
 }
 
-}  // namespace
+}  // namespace bevameter_test
 }  // namespace talus::terramech

@@ -5,7 +5,7 @@
 #include "linear_world.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace iagnemma_test {
 
 const Wheel kWheel{.radius_m = 0.12, .width_m = 0.09};
 
@@ -34,5 +34,5 @@ TEST(Iagnemma, RefusesABrakedWheel) {
       std::domain_error);
 }
 
-}  // namespace
+}  // namespace iagnemma_test
 }  // namespace talus::terramech

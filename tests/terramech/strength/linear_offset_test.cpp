@@ -6,7 +6,7 @@
 #include "linear_world.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace linear_offset_test {
 
 const Wheel kWheel{.radius_m = 0.1, .width_m = 0.08};
 
@@ -63,5 +63,5 @@ TEST(LinearOffset, RefusesAWheelThatMobilisesNothing) {
       std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace linear_offset_test
 }  // namespace talus::terramech

@@ -7,7 +7,7 @@
 #include <talus/terramech/strength/mohr_coulomb_line.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace mohr_coulomb_line_test {
 
 std::vector<StressPair> noisyLine(int count, double spread) {
   std::mt19937_64 random(7);
@@ -110,5 +110,5 @@ TEST(MohrCoulombLine, RefusesOneSampleAndEqualStresses) {
   EXPECT_THROW((void)line.estimate(), std::domain_error);
 }
 
-}  // namespace
+}  // namespace mohr_coulomb_line_test
 }  // namespace talus::terramech

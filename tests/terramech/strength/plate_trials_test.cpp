@@ -8,7 +8,7 @@
 #include <talus/terramech/strength/plate_trials.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace plate_trials_test {
 
 /// sigma = k z^n from z_low to z_high, without noise.
 PlateTrial trial(const std::string& soil, double k, double n, double z_low, double z_high,
@@ -84,5 +84,5 @@ TEST(RandomEffect, FindsMeanAndSpread) {
   EXPECT_NEAR(randomEffect(equal).mean.std, 0.1, 1e-9);
 }
 
-}  // namespace
+}  // namespace plate_trials_test
 }  // namespace talus::terramech

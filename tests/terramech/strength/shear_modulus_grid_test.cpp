@@ -8,7 +8,7 @@
 #include "linear_world.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace shear_modulus_grid_test {
 
 const Wheel kWheel{.radius_m = 0.1, .width_m = 0.1};
 
@@ -112,5 +112,5 @@ TEST(ShearModulusGrid, LeavesOutWhatHasNoEquationAndAsksForFourSamples) {
   EXPECT_THROW((void)ladder.strength(), std::domain_error);
 }
 
-}  // namespace
+}  // namespace shear_modulus_grid_test
 }  // namespace talus::terramech

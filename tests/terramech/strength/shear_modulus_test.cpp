@@ -5,7 +5,7 @@
 #include "linear_world.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace shear_modulus_test {
 
 const Wheel kWheel{.radius_m = 0.1, .width_m = 0.1};
 
@@ -52,5 +52,5 @@ TEST(ShearModulus, SaysSoWhenTheSlipDoesNotVary) {
   EXPECT_THROW((void)modulusByEffectiveTorque(kWheel, same), std::domain_error);
 }
 
-}  // namespace
+}  // namespace shear_modulus_test
 }  // namespace talus::terramech

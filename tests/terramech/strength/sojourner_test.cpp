@@ -3,7 +3,7 @@
 #include <talus/terramech/strength/sojourner.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace sojourner_test {
 
 TEST(Sojourner, UniformStressesOverTheChordGiveTheSoilBack) {
   // Closed form: W = sigma A, T = r A (c + sigma tan phi) with A = 2 b r sin(theta_1).
@@ -21,5 +21,5 @@ TEST(Sojourner, UniformStressesOverTheChordGiveTheSoilBack) {
   EXPECT_NEAR(line.estimate().tan_friction, 0.7, 1e-12);
 }
 
-}  // namespace
+}  // namespace sojourner_test
 }  // namespace talus::terramech

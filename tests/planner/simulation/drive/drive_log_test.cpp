@@ -3,7 +3,7 @@
 #include <talus/planner/simulation/drive/drive_log.hpp>
 
 namespace talus::planner {
-namespace {
+namespace drive_log_test {
 
 DriveStep step(double expected_slip, double slip, double expected_J_per_m, double J_per_m) {
   DriveStep s;
@@ -29,5 +29,5 @@ TEST(DriveLog, ErrorsAreThoseOfTheSteps) {
   EXPECT_EQ(DriveLog{}.errors().steps, 0);
 }
 
-}  // namespace
+}  // namespace drive_log_test
 }  // namespace talus::planner

@@ -7,7 +7,7 @@
 #include <talus/terramech/mobility/slope_equilibrium.hpp>
 
 namespace talus::planner {
-namespace {
+namespace map_expectation_test {
 
 using costmap::testRover;
 using costmap::testSand;
@@ -53,5 +53,5 @@ TEST(MapExpectation, RefusedGroundIsThatOfItsClass) {
   EXPECT_EQ(before.at({-5.0, 0.0}, {1.0, 0.0}).slip, 0.0F);
 }
 
-}  // namespace
+}  // namespace map_expectation_test
 }  // namespace talus::planner

@@ -6,7 +6,7 @@
 #include <talus/planner/simulation/drive/simulation_rates.hpp>
 
 namespace talus::planner {
-namespace {
+namespace simulation_rates_test {
 
 TEST(Share, IsWilsons) {
   // Closed form: Wilson (1927) for 0 and 10 of 10, 5 of 10, worked out by hand
@@ -47,5 +47,5 @@ TEST(Compared, CountsWhereTheClairvoyantGotThrough) {
   EXPECT_THROW(compared(mine, {}), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace simulation_rates_test
 }  // namespace talus::planner

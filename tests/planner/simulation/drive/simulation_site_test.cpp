@@ -5,7 +5,7 @@
 #include <talus/planner/simulation/drive/simulation_site.hpp>
 
 namespace talus::planner {
-namespace {
+namespace simulation_site_test {
 
 using costmap::testDust;
 using costmap::testSand;
@@ -102,5 +102,5 @@ TEST(SimulationSite, KeepOutStaysUnderEveryBelief) {
         << name(belief);
 }
 
-}  // namespace
+}  // namespace simulation_site_test
 }  // namespace talus::planner

@@ -6,7 +6,7 @@
 #include <talus/planner/simulation/drive/traverse_simulation.hpp>
 
 namespace talus::planner {
-namespace {
+namespace traverse_simulation_test {
 
 using costmap::testDust;
 using costmap::testRover;
@@ -153,5 +153,5 @@ TEST(TraverseSimulation, SameSeedSameDrive) {
   EXPECT_EQ(a.track.size(), b.track.size());
 }
 
-}  // namespace
+}  // namespace traverse_simulation_test
 }  // namespace talus::planner

@@ -3,7 +3,7 @@
 #include <talus/planner/simulation/drive/wheel_alarm.hpp>
 
 namespace talus::planner {
-namespace {
+namespace wheel_alarm_test {
 
 constexpr double kRadius_m = 0.1;
 
@@ -78,5 +78,5 @@ TEST(WheelAlarm, ADatumThatWasOffAllTheWayIsTakenOffAndAJumpIsStillHeard) {
   }
 }
 
-}  // namespace
+}  // namespace wheel_alarm_test
 }  // namespace talus::planner

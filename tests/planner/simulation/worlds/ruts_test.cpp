@@ -1,7 +1,7 @@
 #include <talus/planner/simulation/worlds/ruts.hpp>
 
 namespace talus::planner {
-namespace {
+namespace ruts_test {
 
 TEST(Ruts, AWheelDoesNotFollowItself) {
   Ruts ruts(0.1);
@@ -40,5 +40,5 @@ TEST(Ruts, BelowZeroToo) {
   EXPECT_EQ(ruts.passes({0.05, -123.45}), 0);
 }
 
-}  // namespace
+}  // namespace ruts_test
 }  // namespace talus::planner

@@ -7,7 +7,7 @@
 #include <talus/planner/simulation/worlds/simulated_sensors.hpp>
 
 namespace talus::planner {
-namespace {
+namespace simulated_sensors_test {
 
 using costmap::testRover;
 
@@ -115,5 +115,5 @@ TEST(SimulatedSensors, ADriftThatNoOdometryHasIsRefused) {
     EXPECT_THROW(SimulatedSensors({.pose_drift = drift}, testRover()), std::invalid_argument) << drift;
 }
 
-}  // namespace
+}  // namespace simulated_sensors_test
 }  // namespace talus::planner

@@ -8,7 +8,7 @@
 #include <talus/terramech/mobility/slope_equilibrium.hpp>
 
 namespace talus::planner {
-namespace {
+namespace true_world_test {
 
 using costmap::testDust;
 using costmap::testRover;
@@ -167,5 +167,5 @@ TEST(TrueWorld, EnergyIsWorkAgainstSlipAndHotel) {
       1e-9);
 }
 
-}  // namespace
+}  // namespace true_world_test
 }  // namespace talus::planner

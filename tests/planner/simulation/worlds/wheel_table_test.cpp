@@ -6,7 +6,7 @@
 #include <talus/terramech/contact/wong_reece.hpp>
 
 namespace talus::planner {
-namespace {
+namespace wheel_table_test {
 
 using costmap::testRover;
 using costmap::testSand;
@@ -80,5 +80,5 @@ TEST(WheelTable, ASoilThatCannotCarryTheWheelPullsNothing) {
   for (const double slip : {0.1, 0.5, 0.9}) EXPECT_LE(table.at(slip, 1.0).pull, 0.0) << slip;
 }
 
-}  // namespace
+}  // namespace wheel_table_test
 }  // namespace talus::planner

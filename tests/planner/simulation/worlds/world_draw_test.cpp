@@ -6,7 +6,7 @@
 #include <talus/planner/simulation/worlds/world_draw.hpp>
 
 namespace talus::planner {
-namespace {
+namespace world_draw_test {
 
 using costmap::testDust;
 using costmap::testSand;
@@ -103,5 +103,5 @@ TEST(DrawWorld, AClassIsDrawnByItsNumber) {
             world.classes[1].cohesion_Pa / testDust().cohesion_Pa);
 }
 
-}  // namespace
+}  // namespace world_draw_test
 }  // namespace talus::planner

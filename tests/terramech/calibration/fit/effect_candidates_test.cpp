@@ -8,7 +8,7 @@
 #include "made_rows.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace effect_candidates_test {
 
 // Telemetry of a wheel at several slips and loads, with further columns that each row sets.
 Trial trialWith(const std::vector<std::string>& more, const std::function<std::vector<double>(int)>& values,
@@ -112,5 +112,5 @@ TEST(EffectCandidates, CurvesAreFlatAndOfMeasuredChannels) {
   }
 }
 
-}  // namespace
+}  // namespace effect_candidates_test
 }  // namespace talus::terramech

@@ -5,7 +5,7 @@
 #include "made_rows.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace model_fit_test {
 
 // Rows of the made sand whose pull reads `offset_N` more, with a standard deviation of 1 N by its side.
 struct OffsetRows {
@@ -141,5 +141,5 @@ TEST(ModelFit, ASoilWithoutDeviationsIsFreeAndOneWithThemAsStated) {
   EXPECT_EQ(stated.soil_prior_std.size(), 1U);
 }
 
-}  // namespace
+}  // namespace model_fit_test
 }  // namespace talus::terramech

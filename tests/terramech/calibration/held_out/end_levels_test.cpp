@@ -7,7 +7,7 @@
 #include "temporary_file.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace end_levels_test {
 
 /// Rows that `truth` makes at these slips and loads, three each, and a result whose refined model is the truth.
 TraceResult resultOf(const RefinedModel& base, const RefinedModel& truth, const std::vector<double>& slips) {
@@ -126,5 +126,5 @@ TEST(EndLevels, TwoLevelsHaveNoEnds) {
   EXPECT_TRUE(std::none_of(ends.begin(), ends.end(), [](const EndLevel& e) { return e.column == "slip"; }));
 }
 
-}  // namespace
+}  // namespace end_levels_test
 }  // namespace talus::terramech

@@ -5,7 +5,7 @@
 #include "made_rows.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace held_out_test {
 
 TEST(HeldOut, WholeBandsAreHeldOut) {
   const blind::World world = blind::makeWorld({.seed = 10, .effects = 1, .library = true});
@@ -55,31 +55,6 @@ TraceResult moistRuns(unsigned seed) {
   return traceResiduals(base, makeTrial(rows.telemetry("run"), base), options);
 }
 
-TEST(HeldOut, TheBaseKeepsWhatRunsShareBesideIt) {
-  // Property: offsets in the pull of runs that are known to have some do not bend the soil; as errors of rows they would.
-  MadeRows rows(wheelColumns());
-  std::mt19937_64 random(7);
-  TraceResult result;
-  for (int run = 0; run < 10; ++run)
-    for (int k = 0; k < 8; ++k) {
-      std::vector<double> row = wheelRow(madeSand(), 60.0 + 5.0 * k, 0.05 + 0.06 * run, 0.01, random);
-      row[4] -= 0.025 * run * row[0];
-      rows.add(row);
-      result.base_shared.unit.push_back(run);
-    }
-  result.base.soil = madeSand();
-  result.base.noise.absolute = {0.8, 0.0005, 0.1, 0.0};
-  result.base_shared.run(0, 0) = 0.1 * 0.1;
-  result.trial = makeTrial(rows.telemetry(), result.base);
-  const std::vector<char> all(80, 1);
-  TraceOptions options;
-  options.fit_soil = true;
-  const double sinkage = rmseAsMeasured(refittedBase(result, options, all), result.trial)[1];
-  EXPECT_LT(sinkage, 0.01);
-  result.base_shared = {};
-  EXPECT_GT(rmseAsMeasured(refittedBase(result, options, all), result.trial)[1], 3.0 * sinkage);
-}
-
 TEST(HeldOut, NoEffectStaysWhereHeldOutRowsSpeakAgainstItAndWhatIsStatedIsWhatPredicts) {
   for (const unsigned seed : {1U, 5U}) {
     const TraceResult result = moistRuns(seed);
@@ -95,5 +70,5 @@ TEST(HeldOut, NoEffectStaysWhereHeldOutRowsSpeakAgainstItAndWhatIsStatedIsWhatPr
   }
 }
 
-}  // namespace
+}  // namespace held_out_test
 }  // namespace talus::terramech

@@ -9,7 +9,7 @@
 #include "temporary_file.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace model_scope_test {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
@@ -126,5 +126,5 @@ TEST(ModelScope, PredictionsReturnToTheBaseAndTheFileSaysSo) {
   EXPECT_NEAR(inside(0, 2), predictRows(result.base, far, beside)(0, 2), 1e-12);
 }
 
-}  // namespace
+}  // namespace model_scope_test
 }  // namespace talus::terramech

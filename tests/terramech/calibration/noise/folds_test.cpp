@@ -6,7 +6,7 @@
 #include "made_rows.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace folds_test {
 
 Trial trialOf(const MadeRows& rows, const std::string& column = "") {
   return makeTrial(rows.telemetry(column), RefinedModel{});
@@ -71,5 +71,5 @@ TEST(Folds, HeldAndSeenRowsAreEachOthersComplement) {
   EXPECT_EQ(rowsOf(folds, 0, false), (std::vector<char>{0, 1, 0, 1}));
 }
 
-}  // namespace
+}  // namespace folds_test
 }  // namespace talus::terramech

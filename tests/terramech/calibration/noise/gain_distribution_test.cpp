@@ -3,7 +3,7 @@
 #include "calibration/synthetic_table.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace gain_distribution_test {
 
 TEST(GainDistribution, OneTableOfTwentyWithoutAnEffectRaisesAnAlarm) {
   // Property: of 120 tables with errors by run, 6 exceed their own threshold of 5 %; 13 or more have
@@ -108,5 +108,5 @@ TEST(GainDistribution, AStoppedWatchEndsIt) {
   EXPECT_TRUE(d.greatest.empty());
 }
 
-}  // namespace
+}  // namespace gain_distribution_test
 }  // namespace talus::terramech

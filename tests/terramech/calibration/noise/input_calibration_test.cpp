@@ -5,7 +5,7 @@
 #include "calibration/slip_rows.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace input_calibration_test {
 
 TEST(InputCalibration, OneLevelOfSlipIsNotSeenToVary) {
   EXPECT_FALSE(slipIsSeen(trialOf(scattered(0.3, 0.01, 200)), slipNoise(0.03)));
@@ -81,5 +81,5 @@ TEST(InputCalibration, SpeedsThatVaryTellNoSlips) {
   EXPECT_EQ(sharedSlipStd(own, slipNoise(0.04)).size(), 0);
 }
 
-}  // namespace
+}  // namespace input_calibration_test
 }  // namespace talus::terramech

@@ -3,7 +3,7 @@
 #include <talus/terramech/calibration/noise/nelder_mead.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace nelder_mead_test {
 
 TEST(NelderMead, FindsTheBottomOfABowl) {
   // Closed form: (x - 1)^2 + 3 (y + 2)^2 + (x - 1)(y + 2) is least at (1, -2).
@@ -45,5 +45,5 @@ TEST(NelderMead, AFlatFunctionEndsAtOnce) {
   EXPECT_EQ(calls, 3);  // the corners of the first simplex
 }
 
-}  // namespace
+}  // namespace nelder_mead_test
 }  // namespace talus::terramech

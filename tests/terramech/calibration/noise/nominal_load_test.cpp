@@ -5,7 +5,7 @@
 #include "calibration/slip_rows.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace nominal_load_test {
 
 /// Twenty runs of ten rows, each at a load of its own, read with 3 % error; z/r follows the load that a share of the
 /// deviation of the reading is not error of, and has an error of its own.
@@ -79,5 +79,5 @@ TEST(NominalLoad, LoadsAllOverAndDrivesHaveNone) {
   EXPECT_FALSE(drive.found());
 }
 
-}  // namespace
+}  // namespace nominal_load_test
 }  // namespace talus::terramech

@@ -7,7 +7,7 @@
 #include <talus/terramech/calibration/noise/run_likelihood.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace run_likelihood_test {
 
 constexpr int kRuns = 6, kRows = 4;
 
@@ -134,5 +134,5 @@ TEST(RunLikelihood, RowsWithoutRunsShareNothing) {
   EXPECT_NEAR(likelihood.logLikelihood(made.run, 0), -0.5 * made.table.squaredNorm(), 1e-9);
 }
 
-}  // namespace
+}  // namespace run_likelihood_test
 }  // namespace talus::terramech

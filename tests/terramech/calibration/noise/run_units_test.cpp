@@ -6,7 +6,7 @@
 #include <talus/terramech/calibration/noise/run_units.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace run_units_test {
 
 struct Rows {
   Trial trial;
@@ -98,5 +98,5 @@ TEST(RunUnits, MeansAreWeightedAndGapsAreNought) {
   EXPECT_EQ(mean(2, 1), 0.0);
 }
 
-}  // namespace
+}  // namespace run_units_test
 }  // namespace talus::terramech

@@ -5,7 +5,7 @@
 #include "calibration/slip_rows.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace sensor_noise_test {
 
 using testing::ElementsAre;
 
@@ -81,5 +81,5 @@ TEST(SensorNoise, SpeedsTellTheSlipTogetherWithTheRims) {
   EXPECT_THAT(allButSlip(trial), ElementsAre("load_N", "rim_speed_mps"));
 }
 
-}  // namespace
+}  // namespace sensor_noise_test
 }  // namespace talus::terramech

@@ -3,7 +3,7 @@
 #include <talus/terramech/calibration/noise/spline_basis.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace spline_basis_test {
 
 using testing::ElementsAre;
 
@@ -52,5 +52,5 @@ TEST(SplineBasis, OrthonormalColumnsSpanTheSame) {
   EXPECT_EQ(orthonormal(Eigen::MatrixXd(5, 0)).cols(), 0);
 }
 
-}  // namespace
+}  // namespace spline_basis_test
 }  // namespace talus::terramech

@@ -7,7 +7,7 @@
 #include <talus/terramech/calibration/noise/whitening.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace whitening_test {
 
 constexpr int kUnits = 40, kRows = 6;
 
@@ -84,5 +84,5 @@ TEST(Whitening, IsTheInverseRootOfTheWholeCovariance) {
   EXPECT_NEAR(w.apply(r).squaredNorm(), stacked.dot(v.inverse() * stacked), 1e-8);
 }
 
-}  // namespace
+}  // namespace whitening_test
 }  // namespace talus::terramech

@@ -9,7 +9,7 @@
 #include "made_rows.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace column_screening_test {
 
 RefinedModel base() {
   RefinedModel model;
@@ -115,5 +115,5 @@ TEST(ColumnScreening, WhatIsTakenInAndLeftOut) {
   EXPECT_TRUE(traceResiduals(base(), none).effects.empty());
 }
 
-}  // namespace
+}  // namespace column_screening_test
 }  // namespace talus::terramech

@@ -5,7 +5,7 @@
 #include "made_rows.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace trace_noise_test {
 
 // Rows of the made sand with errors of a share of each reading; the pull of run number k off by `run_offset`.
 Trial noisyTrial(const RefinedModel& model, double noise, double run_offset = 0.0) {
@@ -59,5 +59,5 @@ TEST(TraceNoise, WhatRunsShareIsNoNoiseOfTheirRows) {
   EXPECT_LT(std::sqrt(alone.shared.run(0, 0)), 0.01);
 }
 
-}  // namespace
+}  // namespace trace_noise_test
 }  // namespace talus::terramech

@@ -5,7 +5,7 @@
 #include "made_rows.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace trace_result_test {
 
 TEST(TraceResult, ErrorsAreRootMeanSquaresOfEachChannel) {
   RefinedModel model;
@@ -26,5 +26,5 @@ TEST(TraceResult, ErrorsAreRootMeanSquaresOfEachChannel) {
   EXPECT_TRUE(std::isnan(errors[3]));
 }
 
-}  // namespace
+}  // namespace trace_result_test
 }  // namespace talus::terramech

@@ -6,7 +6,7 @@
 #include "made_rows.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace trace_search_test {
 
 RefinedModel sand() {
   RefinedModel model;
@@ -116,5 +116,5 @@ TEST(TraceSearch, OfFormsTakenTogetherOnlyThoseThatPayStay) {
   EXPECT_EQ(search.parts(0)[0].name, "torque_offset");
 }
 
-}  // namespace
+}  // namespace trace_search_test
 }  // namespace talus::terramech

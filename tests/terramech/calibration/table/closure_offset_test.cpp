@@ -4,7 +4,7 @@
 #include "made_rows.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace closure_offset_test {
 
 Soil sand(double cohesion_Pa, double friction_rad) {
   return {.name = "sand",
@@ -57,5 +57,5 @@ TEST(ClosureOffset, TheRelationHoldsForAnySoil) {
     EXPECT_LT(std::abs(error), 0.03);
 }
 
-}  // namespace
+}  // namespace closure_offset_test
 }  // namespace talus::terramech

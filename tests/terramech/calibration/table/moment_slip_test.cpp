@@ -7,7 +7,7 @@
 #include <talus/terramech/calibration/table/moment_slip.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace moment_slip_test {
 
 // Seven rows of two channels in three moments, one of them of a single row that nothing moves.
 MomentSlip someSlip() {
@@ -60,5 +60,5 @@ TEST(MomentSlip, ASubsetKeepsTheMomentsOfItsRows) {
   EXPECT_TRUE(subset(MomentSlip{}, {1, 0}).moment.empty());
 }
 
-}  // namespace
+}  // namespace moment_slip_test
 }  // namespace talus::terramech

@@ -10,7 +10,7 @@
 #include "temporary_file.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace prediction_table_test {
 
 using testing::HasSubstr;
 
@@ -112,5 +112,5 @@ TEST(PredictionTable, OlderPredictionsAreReplacedAndOtherColumnsKept) {
   EXPECT_EQ(table.text.find("predicted_sinkage_m,"), table.text.rfind("predicted_sinkage_m,"));
 }
 
-}  // namespace
+}  // namespace prediction_table_test
 }  // namespace talus::terramech

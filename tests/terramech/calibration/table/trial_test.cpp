@@ -7,7 +7,7 @@
 #include "made_rows.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace trial_test {
 
 constexpr double kMissing = WheelState::kUnknown;
 
@@ -95,5 +95,5 @@ TEST(Trial, AWheelSunkToItsAxleIsBeyondItAndUnknownSinkageIsNot) {
   EXPECT_EQ(beyondAxle(makeTrial(rows.telemetry(), {})), (std::vector<char>{0, 0, 1, 1, 0}));
 }
 
-}  // namespace
+}  // namespace trial_test
 }  // namespace talus::terramech

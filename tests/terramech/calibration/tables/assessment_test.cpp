@@ -7,7 +7,7 @@
 #include "calibration/wheel_table.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace assessment_test {
 
 WheelForces forcesOf(std::size_t line) {
   return equilibrium(kMadeSoil, kMadeWheel, madeOperation(static_cast<int>(line) - 2));
@@ -75,5 +75,5 @@ TEST(Assessment, WhatCannotBeJudgedIsRefused) {
   EXPECT_THROW(assessTable({.table = "no_such_table.csv"}, {}), InputError);
 }
 
-}  // namespace
+}  // namespace assessment_test
 }  // namespace talus::terramech

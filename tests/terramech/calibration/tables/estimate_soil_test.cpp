@@ -7,7 +7,7 @@
 #include "calibration/wheel_table.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace estimate_soil_test {
 
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
@@ -112,5 +112,5 @@ TEST(EstimateSoil, NamesThatAreNotOnOfferAreRefused) {
       ThrowsMessage<InputError>(HasSubstr("'jointly': is unknown")));
 }
 
-}  // namespace
+}  // namespace estimate_soil_test
 }  // namespace talus::terramech

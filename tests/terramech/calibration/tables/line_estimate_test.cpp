@@ -7,7 +7,7 @@
 #include "linear_world.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace line_estimate_test {
 
 using testing::HasSubstr;
 using testing::ThrowsMessage;
@@ -90,5 +90,5 @@ TEST(LineEstimate, WhatCannotBeComparedIsRefused) {
       ThrowsMessage<InputError>(HasSubstr("--keep-m1: --recursive requires a known K")));
 }
 
-}  // namespace
+}  // namespace line_estimate_test
 }  // namespace talus::terramech

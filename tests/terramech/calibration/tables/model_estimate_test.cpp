@@ -7,7 +7,7 @@
 #include "calibration/wheel_table.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace model_estimate_test {
 
 using testing::HasSubstr;
 using testing::ThrowsMessage;
@@ -75,5 +75,5 @@ TEST(ModelEstimate, WhatDoesNotGoTogetherIsRefused) {
               ThrowsMessage<InputError>(HasSubstr("no parameter is free")));
 }
 
-}  // namespace
+}  // namespace model_estimate_test
 }  // namespace talus::terramech

@@ -3,7 +3,7 @@
 #include "requirement.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace no_soil_test {
 
 using testing::HasSubstr;
 
@@ -61,5 +61,5 @@ TEST(NoSoil, AStrengthBeyondAnySoilIsNone) {
       << "however near it comes";
 }
 
-}  // namespace
+}  // namespace no_soil_test
 }  // namespace talus::terramech

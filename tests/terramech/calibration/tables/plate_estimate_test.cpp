@@ -7,7 +7,7 @@
 #include "temporary_file.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace plate_estimate_test {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -86,5 +86,5 @@ TEST(PlateEstimate, APriorHoldsOfShearTestsAlone) {
               ThrowsMessage<InputError>(HasSubstr("the table has no shear test")));
 }
 
-}  // namespace
+}  // namespace plate_estimate_test
 }  // namespace talus::terramech

@@ -5,7 +5,7 @@
 #include "calibration/wheel_table.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace posterior_estimate_test {
 
 using testing::Contains;
 using testing::HasSubstr;
@@ -75,5 +75,5 @@ TEST(PosteriorEstimate, ATorqueBeyondAnySoilEndsInNone) {
                   HasSubstr(none.path() + ": no soil explains the rows"), HasSubstr("torque_Nm"))));
 }
 
-}  // namespace
+}  // namespace posterior_estimate_test
 }  // namespace talus::terramech

@@ -4,7 +4,7 @@
 #include <talus/terramech/calibration/tables/soil_estimate.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace soil_estimate_test {
 
 using testing::HasSubstr;
 using testing::ThrowsMessage;
@@ -68,5 +68,5 @@ TEST(SoilEstimate, OnlyWhatIsFarFromAnySoilIsImplausible) {
   EXPECT_THAT(said(-201.0, -0.21), testing::StartsWith("a cohesion and a friction angle"));
 }
 
-}  // namespace
+}  // namespace soil_estimate_test
 }  // namespace talus::terramech

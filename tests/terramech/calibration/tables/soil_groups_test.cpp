@@ -7,7 +7,7 @@
 #include "calibration/wheel_table.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace soil_groups_test {
 
 using testing::HasSubstr;
 
@@ -59,5 +59,5 @@ TEST(SoilGroups, AColumnOfOneRowAGroupTellsNothing) {
   EXPECT_EQ(groupsThatDisagree(rows, truth(), ReadingErrors::relative(0.05)), "");
 }
 
-}  // namespace
+}  // namespace soil_groups_test
 }  // namespace talus::terramech

@@ -10,7 +10,7 @@
 #include "temporary_file.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace table_applicability_test {
 
 /// A table of 60 rows: readings of a wheel on sand, or, shuffled, of a wheel that no soil explains.
 std::string tableOf(bool shuffled) {
@@ -54,5 +54,5 @@ TEST(TableApplicability, WhereNothingCanBeJudgedItApplies) {
   EXPECT_TRUE(tableApplicability(bare.path(), "", "").applies);
 }
 
-}  // namespace
+}  // namespace table_applicability_test
 }  // namespace talus::terramech

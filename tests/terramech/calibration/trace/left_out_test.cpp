@@ -6,7 +6,7 @@
 #include "made_rows.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace left_out_test {
 
 using testing::HasSubstr;
 
@@ -102,5 +102,5 @@ TEST(LeftOut, RowsThatTheSearchNeverSawAreForetold) {
   EXPECT_GT(errors.regression[1], 0.5 * errors.refined[1]);
 }
 
-}  // namespace
+}  // namespace left_out_test
 }  // namespace talus::terramech

@@ -6,7 +6,7 @@
 #include "made_rows.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace model_validity_test {
 
 Applicability judged(const Telemetry& telemetry) {
   const RefinedModel base = unknownSoil().model;
@@ -54,5 +54,5 @@ TEST(ModelValidity, TorqueThatFollowsNothingIsRefused) {
   EXPECT_FALSE(judged(rows.telemetry()).applies);
 }
 
-}  // namespace
+}  // namespace model_validity_test
 }  // namespace talus::terramech

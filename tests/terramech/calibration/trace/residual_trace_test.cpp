@@ -1,7 +1,7 @@
 #include "calibration/traced_world.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace residual_trace_test {
 
 Explanation explanation(double gain) {
   Explanation e;
@@ -95,5 +95,5 @@ TEST(ResidualTrace, SameSeedSameAnswer) {
             b.effects[0].chosen.candidate.parts[0].parameters);
 }
 
-}  // namespace
+}  // namespace residual_trace_test
 }  // namespace talus::terramech

@@ -8,7 +8,7 @@
 #include "made_rows.hpp"
 
 namespace talus::terramech {
-namespace {
+namespace model_soil_test {
 
 RefinedModel digging() {
   RefinedModel model;
@@ -96,5 +96,5 @@ TEST(ModelSoil, WhatThePriorFixesStays) {
   EXPECT_GT(found.strength_covariance(1, 1), 0.0);
 }
 
-}  // namespace
+}  // namespace model_soil_test
 }  // namespace talus::terramech

@@ -5,7 +5,7 @@
 #include <talus/terramech/calibration/verdict/verdict.hpp>
 
 namespace talus::terramech {
-namespace {
+namespace verdict_test {
 
 /// A hundred rows in runs of ten of drawbar pull alone, with these errors of the base and the refined model.
 TraceResult resultOf(double base, double refined, double floor, std::size_t effects) {
@@ -88,5 +88,5 @@ TEST(Verdict, PredictionsCarryWhatNothingExplains) {
   EXPECT_NEAR(forPrediction(result).noise.absolute[0], 1.5, 1e-12);
 }
 
-}  // namespace
+}  // namespace verdict_test
 }  // namespace talus::terramech

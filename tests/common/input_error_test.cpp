@@ -1,0 +1,12 @@
+#include <talus/common/input_error.hpp>
+
+namespace talus {
+namespace input_error_test {
+
+TEST(InputError, IsOneLineOfWhereReasonAndRemedy) {
+  EXPECT_STREQ(InputError({"a.csv:3", "no slip", "add it"}).what(), "a.csv:3: no slip; add it");
+  EXPECT_STREQ(InputError({"a.csv", "is empty", ""}).what(), "a.csv: is empty");
+}
+
+}  // namespace input_error_test
+}  // namespace talus
