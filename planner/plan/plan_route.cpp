@@ -22,11 +22,11 @@ Route planRoute(WindowedMap& map, const PlanRequest& request, const PlannerSetti
   requireHonoured(request, {.name = "talus, in windows", .planner = name, .via_points = true});
   Problem problem = problemOf(map.overview(), request, settings);
   const Plan plan = planInWindows(problem, map);
-  const AnnotationInput input{.map = *problem.map,
-                              .elevation_m = [&map](maps::Point p) { return map.elevation_m(p); },
-                              .planner = name,
-                              .watch = request.watch};
-  return checkedRoute(plan, input);
+  return checkedRoute(plan, {.map = *problem.map,
+                             .elevation_m = [&map](maps::Point p) { return map.elevation_m(p); },
+                             .planner = name,
+                             .kinematics = problem.kinematics,
+                             .watch = request.watch});
 }
 
 }  // namespace talus::planner

@@ -21,8 +21,11 @@ PlanRequest overTheYard() {
 
 // A step across the map with a gap in the north, which the cost of the map does not know.
 std::shared_ptr<const Chassis> stepped(const costmap::TraversabilityMap& map) {
-  maps::Raster<float> steps(kYard, 0.0F);
-  for (int row = 0; row < 45; ++row) steps[{30, row}] = 1.0F;
+  static const maps::Raster<float> steps = [] {
+    maps::Raster<float> made(kYard, 0.0F);
+    for (int row = 0; row < 45; ++row) made[{30, row}] = 1.0F;
+    return made;
+  }();
   return std::make_shared<const Chassis>(steps, map.model().rover(), Suspension::Rigid);
 }
 
