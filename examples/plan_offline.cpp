@@ -34,14 +34,12 @@ int run(const char* file) {
   const talus::costmap::TraversabilityMap map(
       std::move(layers), std::make_shared<const talus::costmap::GroundModel>(std::move(ground)), {});
 
-  const auto planner = talus::planner::makePlanner("field");
-  planner->set_map(map.published());
   talus::PlanRequest request;
   request.start = map.grid().centre({4, 10});
   request.goal = map.grid().centre({35, 22});
-  const Route there = planner->plan(request);
+  const Route there = talus::planner::planRoute(map.published(), request);
   std::swap(request.start, request.goal);
-  const Route back = planner->plan(request);
+  const Route back = talus::planner::planRoute(map.published(), request);
   if (there.status != talus::planner::RouteStatus::Found ||
       back.status != talus::planner::RouteStatus::Found) {
     std::printf("no route: %s%s\n", there.reason.c_str(), back.reason.c_str());

@@ -6,7 +6,7 @@
 #include <talus/costmap/costmap.hpp>
 #include <talus/planner/check/chassis.hpp>
 #include <talus/planner/check/route_check.hpp>
-#include <talus/planner/plugin/make_planner.hpp>
+#include <talus/planner/plan/make_planner.hpp>
+#include <talus/planner/plan/plan_route.hpp>
 #include <talus/planner/plugin/plugin_loader.hpp>
-#include <talus/planner/plugin/windowed_route.hpp>
 #include <talus/planner/route/turn_prices.hpp>

@@ -181,9 +181,9 @@ int runOne(const planner::SimulationSite& site, const DriveCommandOptions& optio
                           {"energy_error", drive.prediction.energy_error}};
     printJson(json);
   } else {
-    print(asText(drive.result) +
-          fmt::format("{:<24} slip error {:.3f} rms, total energy error {:+.1f} %\n", "predicted",
-                      drive.prediction.slip_rmse, 100.0 * drive.prediction.energy_error));
+    print(asText(drive.result) + fmt::format("{:<24} slip error {:.3f} rms, total energy error {:+.1f} %\n",
+                                             "predicted", drive.prediction.slip_rmse,
+                                             100.0 * drive.prediction.energy_error));
   }
   return drive.result.drive.outcome == planner::Outcome::Reached ? Exit::kDone : Exit::kNo;
 }

@@ -45,7 +45,7 @@ void bind(CLI::App& command, ExplainOptions& options) {
 }
 
 nlohmann::ordered_json explainJson(const costmap::Explanation& why, const maps::Point& point,
-                              const maps::Cell& cell) {
+                                   const maps::Cell& cell) {
   nlohmann::ordered_json causes = nlohmann::ordered_json::array();
   for (const costmap::Cause& cause : why.causes)
     causes.push_back({{"name", cause.name},

@@ -1,11 +1,10 @@
 // talus plan DEM --start P --goal P: a route.
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <memory>
-#include <optional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -29,13 +28,10 @@
 #include <talus/cli/route/route_json.hpp>
 #include <talus/common/input_error.hpp>
 #include <talus/maps/raster/place_reader.hpp>
-#include <talus/planner/check/annotation.hpp>
-#include <talus/planner/check/chassis_planner.hpp>
-#include <talus/planner/check/route_check.hpp>
 #include <talus/planner/check/route_risk.hpp>
-#include <talus/planner/grid/windowed_plan.hpp>
-#include <talus/planner/plugin/named_planner.hpp>
-#include <talus/planner/plugin/risk_planner.hpp>
+#include <talus/planner/plan/plan_route.hpp>
+#include <talus/planner/plan/risk_planner.hpp>
+#include <talus/planner/plan/route_planner.hpp>
 
 namespace talus::cli {
 namespace {
@@ -50,81 +46,53 @@ struct Timing {
   double load_s, costmap_s, plan_s;
 };
 
-planner::Problem problemOf(const PlanOptions& options, const Ground& ground, const Context& context) {
-  const maps::ElevationMap& map = ground.map.elevation();
-  planner::Problem problem;
-  problem.map = ground.map.published();
-  if (options.pairs.empty()) {
-    problem.start = maps::readPlace(options.start, map, "--start");
-    problem.goal = maps::readPlace(options.goals.front(), map, "--goal");
-    for (auto goal = options.goals.begin() + 1; goal != options.goals.end(); ++goal)
-      problem.other_goals.push_back(maps::readPlace(*goal, map, "--goal"));
-  }
-  for (const std::string& place : options.via) problem.via.push_back(maps::readPlace(place, map, "--via"));
-  problem.goal_tolerance_m = options.tolerance_m;
-  if (options.time_limit_s > 0.0) problem.time_limit_s = options.time_limit_s;
-  problem.seed = context.seed;
-  problem.threads = context.workers();
-  problem.start_heading_rad = options.drive.start_heading_rad;
-  problem.goal_heading_rad = options.drive.goal_heading_rad;
-  problem.kinematics = kinematicsOf(options.drive, ground.map);
-  problem.whole_field = options.whole_field;
-  problem.watch = context.watch("plan");
-  if (options.plugin.empty()) context.answerStop();  // a plugin's route is whole or none
-  return problem;
-}
-
-// A planner of the program's own, or one of --plugin.
-struct Chosen {
-  std::unique_ptr<planner::NamedPlanner> own;
-  std::optional<planner::PluginPlanner> plugin;
-
-  const std::string& name() const { return plugin ? plugin->name() : own->name(); }
-};
-
-Chosen choose(const PlanOptions& options) {
-  Chosen chosen{.own = {}, .plugin = {}};
-  if (!options.plugin.empty()) {
-    chosen.plugin.emplace(pluginOf(options.plugin, options.planner));
-    return chosen;
-  }
-  chosen.own = std::make_unique<planner::NamedPlanner>(options.planner);
-  if (options.drive.any() && !chosen.own->drives())
-    throw InputError({"planner '" + chosen.name() + "'", "supports neither headings nor a turning radius",
+planner::RoutePlanner plannerOf(const PlanOptions& options) {
+  if (!options.plugin.empty()) return planner::RoutePlanner(pluginOf(options.plugin, options.planner));
+  planner::RoutePlanner own(options.planner);
+  if (options.drive.any() && !own.capabilities().headings)
+    throw InputError({"planner '" + own.name() + "'", "supports neither headings nor a turning radius",
                       "pass --planner hybrid, or remove --start-heading, --goal-heading, --turning-radius "
                       "and --no-reverse"});
-  return chosen;
+  return own;
 }
 
-// How the soil is drawn along a route.
-planner::RouteRiskOptions soilOf(const planner::Problem& problem) {
-  planner::RouteRiskOptions options = planner::riskOptions(*problem.map);
-  options.seed = problem.seed;
-  return options;
+PlanRequest requestOf(const PlanOptions& options, const PlannerCapabilities& offers, const Ground& ground,
+                      const Context& context) {
+  const maps::ElevationMap& map = ground.map.elevation();
+  PlanRequest request;
+  if (options.pairs.empty()) {
+    request.start = maps::readPlace(options.start, map, "--start");
+    request.goal = maps::readPlace(options.goals.front(), map, "--goal");
+    for (auto goal = options.goals.begin() + 1; goal != options.goals.end(); ++goal)
+      request.other_goals.push_back(maps::readPlace(*goal, map, "--goal"));
+  }
+  for (const std::string& place : options.via) request.via.push_back(maps::readPlace(place, map, "--via"));
+  request.tolerance_m = options.tolerance_m;
+  request.start_heading_rad = options.drive.start_heading_rad;
+  request.goal_heading_rad = options.drive.goal_heading_rad;
+  if (offers.turning_radius) request.kinematics = kinematicsOf(options.drive, ground.map);
+  if (auto chassis = chassisOf(options.drive.chassis, ground.map))
+    request.chassis = std::make_shared<const planner::Chassis>(*std::move(chassis));
+  if (options.max_risk > 0.0) request.risk_limit = RiskLimit{.immobilisation = options.max_risk};
+  request.watch = context.watch("plan");
+  if (options.plugin.empty()) context.answerStop();  // a plugin's route is whole or none
+  return request;
 }
 
-using Planning = std::function<planner::Plan(const planner::Problem&)>;
-
-// `once`, repeated until the chassis that is asked for may stand all along the route.
-Planning forChassis(const PlanOptions& options, const Ground& ground, const Planning& once) {
-  const auto chassis = chassisOf(options.drive.chassis, ground.map);
-  if (!chassis) return once;
-  return [=](const planner::Problem& p) { return planner::planOnChassis(p, *chassis, once); };
-}
-
-Planning planningOf(Chosen& planner, const PlanOptions& options) {
-  return [&](const planner::Problem& p) {
-    if (planner.plugin) return planner.plugin->plan(p);
-    return options.max_risk > 0.0 ? planner::planWithinRisk(p, *planner.own, options.max_risk, soilOf(p))
-                                  : planner.own->plan(p);
-  };
+PlannerSettings settingsOf(const PlanOptions& options, const Context& context) {
+  PlannerSettings settings{.planner = options.plugin.empty() ? options.planner : std::string(),
+                           .seed = context.seed,
+                           .threads = context.workers(),
+                           .whole_field = options.whole_field};
+  if (options.time_limit_s > 0.0) settings.time_limit_s = options.time_limit_s;
+  return settings;
 }
 
 // Which of several goals the route ends at.
-std::string goalText(const PlanOptions& options, const planner::Plan& plan) {
+std::string goalText(const PlanOptions& options, const Route& route) {
   if (options.goals.size() < 2) return "";
   return summaryLine("goal", fmt::format("{}, number {} of {}: the goal of least cost",
-                                         options.goals[plan.goal], plan.goal + 1, options.goals.size()));
+                                         options.goals[route.goal], route.goal + 1, options.goals.size()));
 }
 
 std::string planText(const Route& route, const Timing& seconds) {
@@ -147,22 +115,6 @@ void writeFiles(const PlanOptions& options, const Ground& ground, const Route& r
   addRoute(scene, route);
   if (!options.png.empty()) savePicture(options.png, scene);
   if (!options.html.empty()) savePage(options.html, scene);
-}
-
-// The risk once more, with soil that is alike nearby.
-nlohmann::ordered_json riskJson(const Route& route, const PlanOptions& options,
-                                const planner::Problem& problem) {
-  const planner::RouteRiskOptions drawn = soilOf(problem);
-  const planner::RouteRisk risk = planner::routeRisk(route, drawn, problem.watch);
-  return {{"limit", options.max_risk},
-          {"immobilisation", route.vertices.back().immobilisation_risk},
-          {"correlated_soil",
-           {{"immobilisation", risk.immobilisation},
-            {"standard_error", risk.standard_error},
-            {"cvar_reserve_std", risk.cvar},
-            {"tail", drawn.tail},
-            {"worst_x_m", risk.worst_x_m},
-            {"worst_y_m", risk.worst_y_m}}}};
 }
 
 int exitOf(RouteStatus status) {
@@ -190,36 +142,51 @@ int refuse(const Route& route, const Context& context) {
   return exitOf(route.status);
 }
 
-// A plan, and the ground that it was made on.
+// A route, and the ground that it was planned on.
 struct Planned {
-  Ground ground;             // of large maps the overview
-  planner::Problem problem;  // its map holds the tiles that were read
-  planner::Plan plan;
+  Ground ground;  // of large maps the overview
+  PlanRequest request;
+  Route route;
   double plan_s = 0.0;
 };
 
-double since_s(std::chrono::steady_clock::time_point begin) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+Planned timedPlan(Ground ground, PlanRequest request, const std::function<Route(const PlanRequest&)>& plan) {
+  const auto begin = std::chrono::steady_clock::now();
+  Route route = plan(request);
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
+  return {std::move(ground), std::move(request), std::move(route), seconds.count()};
 }
 
-Planned planWhole(const PlanOptions& options, Chosen& planner, const Context& context) {
-  Planned planned{.ground = readGround(options.ground, context), .problem = {}, .plan = {}};
-  planned.problem = problemOf(options, planned.ground, context);
-  const Planning plan = forChassis(options, planned.ground, planningOf(planner, options));
-  const auto begin = std::chrono::steady_clock::now();
-  planned.plan = plan(planned.problem);
-  planned.plan_s = since_s(begin);
-  return planned;
+// The risk once more, with soil that is alike nearby.
+nlohmann::ordered_json riskJson(const Planned& planned, const Context& context) {
+  const Route& route = planned.route;
+  const RiskLimit& limit = *planned.request.risk_limit;
+  const planner::RouteRiskOptions drawn =
+      planner::riskOptions(*planned.ground.map.published(), limit, context.seed);
+  const planner::RouteRisk risk = planner::routeRisk(route, drawn, planned.request.watch);
+  return {{"limit", limit.immobilisation},
+          {"immobilisation", route.vertices.back().immobilisation_risk},
+          {"correlated_soil",
+           {{"immobilisation", risk.immobilisation},
+            {"standard_error", risk.standard_error},
+            {"cvar_reserve_std", risk.cvar},
+            {"tail", drawn.tail},
+            {"worst_x_m", risk.worst_x_m},
+            {"worst_y_m", risk.worst_y_m}}}};
 }
 
 // Many routes over one map, over all ranks of an MPI run.
-int runPairs(const PlanOptions& options, Context& context) {
+int runPairs(const PlanOptions& options, planner::RoutePlanner& planner, Context& context) {
   const Campaign campaign;
   if (!campaign.leads()) context.quiet = true;
   const auto pairs = readPairs(options.pairs);
   const Ground ground = readGround(options.ground, context);
   if (context.stop.stop_requested()) return Exit::kCancelled;
-  const auto lines = planPairs(pairs, problemOf(options, ground, context), options.planner, campaign);
+  const auto lines = planPairs(pairs,
+                               {.map = ground.map.published(),
+                                .request = requestOf(options, planner.capabilities(), ground, context),
+                                .settings = settingsOf(options, context)},
+                               planner, campaign);
   if (!campaign.leads()) return Exit::kDone;
   if (context.stop.stop_requested()) return Exit::kCancelled;
   if (!options.output.empty()) writeFile(options.output, pairsCsv(lines));
@@ -231,60 +198,51 @@ int runPairs(const PlanOptions& options, Context& context) {
 }
 
 // A route of ours that the check refuses is an error of ours: it is kept to be sent, and none is handed out.
-int refuseOwn(const PlanOptions& options, const Planned& planned, const Route& route,
-              const planner::Violation& violation, const Context& context) {
+int refuseOwn(const PlanOptions& options, const Planned& planned, const Context& context) {
   const std::string file = options.output.empty() ? "refused.geojson" : options.output + ".refused.geojson";
-  const auto document = routeGeoJson(route, planned.ground.map.elevation(),
+  const auto document = routeGeoJson(*planned.route.refused, planned.ground.map.elevation(),
                                      {.files = planned.ground.files, .seed = context.seed});
   writeFile(file, jsonText(document) + "\n");
-  Route none;
-  none.status = RouteStatus::NoneFound;
-  none.summary.planner = route.summary.planner;
-  none.reason = fmt::format(
-      "no route: the check refuses the one that '{}' found at {:.2f},{:.2f}: {}; please "
-      "report it with {} and the call",
-      route.summary.planner, violation.place.x_m, violation.place.y_m, violation.reason, file);
+  Route none = planned.route;
+  none.reason += fmt::format(" with {} and the call", file);
   return refuse(none, context);
 }
 
 // Both sets of cells that a proof of no route rests on.
 void drawSevered(const PlanOptions& options, const Planned& planned) {
-  const planner::Problem& problem = planned.problem;
+  const PlanRequest& request = planned.request;
   const maps::ElevationMap& map = planned.ground.map.elevation();
   const bool pictured = !options.png.empty() || !options.html.empty();
-  const bool one_leg = problem.via.empty() && problem.other_goals.empty();
-  if (!pictured || !one_leg || !planned.plan.obstruction || !(map.grid() == problem.map->grid())) return;
-  const Scene scene = reachScene(
-      map, *problem.map, {{problem.start, problem.goal}, problem.goal_tolerance_m, planned.plan.reason},
-      {.title = "No route across " + std::filesystem::path(map.source).filename().string()});
+  const bool one_leg = request.via.empty() && request.other_goals.empty();
+  if (!pictured || !one_leg || !planned.route.obstruction) return;
+  const Scene scene =
+      reachScene(map, *planned.ground.map.published(),
+                 {{request.start, request.goal}, request.tolerance_m, planned.route.reason},
+                 {.title = "No route across " + std::filesystem::path(map.source).filename().string()});
   if (!options.png.empty()) savePicture(options.png, scene);
   if (!options.html.empty()) savePage(options.html, scene);
 }
 
-int finish(const PlanOptions& options, const Planned& planned, const planner::AnnotationInput& input,
-           const Context& context) {
-  Route route = annotated(planned.plan, input);
-  if (planned.plan.status == RouteStatus::Found)
-    if (const auto refused =
-            planner::refusal(planned.plan, *planned.problem.map, planned.problem.kinematics.turning_radius_m))
-      return refuseOwn(options, planned, route, *refused, context);
-  if (planned.plan.status == RouteStatus::NoRoute) drawSevered(options, planned);
-  if (planned.plan.status != RouteStatus::Found) return refuse(route, context);
+int finish(const PlanOptions& options, Planned& planned, const Context& context) {
+  Route& route = planned.route;
+  if (route.refused) return refuseOwn(options, planned, context);
+  if (route.status == RouteStatus::NoRoute) drawSevered(options, planned);
+  if (route.status != RouteStatus::Found) return refuse(route, context);
   writeFiles(options, planned.ground, route, context);
   const Timing seconds{planned.ground.load_s, planned.ground.build_s, planned.plan_s};
   if (context.json) {
     nlohmann::ordered_json risk;
-    if (options.max_risk > 0.0) {
-      risk = riskJson(route, options, planned.problem);
+    if (planned.request.risk_limit) {
+      risk = riskJson(planned, context);
       route.interrupted |= context.stop.stop_requested();  // the numbers may be missing
     }
     auto json = summaryJson(route);
-    if (options.goals.size() > 1) json["goal"] = options.goals[planned.plan.goal];
+    if (options.goals.size() > 1) json["goal"] = options.goals[route.goal];
     if (!risk.is_null()) json["risk"] = std::move(risk);
     json["seconds"] = {{"load", seconds.load_s}, {"costmap", seconds.costmap_s}, {"plan", seconds.plan_s}};
     printJson(json);
   } else {
-    print(goalText(options, planned.plan) + planText(route, seconds));
+    print(goalText(options, route) + planText(route, seconds));
   }
   if (!route.interrupted) return Exit::kDone;
   fmt::print(stderr,
@@ -303,21 +261,17 @@ void refuseInWindows(const PlanOptions& options) {
                     "read a part with --window, or the whole with --whole-field"});
 }
 
-int runInWindows(const PlanOptions& options, const Context& context) {
+int runInWindows(const PlanOptions& options, const PlannerCapabilities& offers, const Context& context) {
   refuseInWindows(options);
   Ground overview = readOverview(options.ground, context);
   if (context.stop.stop_requested()) return Exit::kCancelled;
   planner::WindowedMap map = windowsOn(options.ground, overview, context);
-  planner::Problem problem = problemOf(options, overview, context);
-  const auto begin = std::chrono::steady_clock::now();
-  planner::Plan plan = planner::planInWindows(problem, map);
-  const double plan_s = since_s(begin);
-  if (context.stop.stop_requested() && plan.points.empty()) return Exit::kCancelled;
-  const planner::AnnotationInput input{.map = *problem.map,
-                                       .elevation_m = [&](maps::Point p) { return map.elevation_m(p); },
-                                       .planner = options.planner,
-                                       .watch = problem.watch};
-  return finish(options, {std::move(overview), problem, std::move(plan), plan_s}, input, context);
+  PlanRequest request = requestOf(options, offers, overview, context);
+  Planned route = timedPlan(std::move(overview), std::move(request), [&](const PlanRequest& asked) {
+    return planner::planRoute(map, asked, settingsOf(options, context));
+  });
+  if (context.stop.stop_requested() && route.route.vertices.empty()) return Exit::kCancelled;
+  return finish(options, route, context);
 }
 
 // A stopped call has handed out what it has: what it still does may be ended.
@@ -326,10 +280,10 @@ void letEnd(const Context& context) {
   if (context.answers_stop) *context.answers_stop = false;
 }
 
-int drawPareto(const PlanOptions& options, const Planned& planned, Chosen& planner, const Context& context) {
-  const auto once = [&](const planner::Problem& p) { return planner.own->plan(p); };
-  const auto front =
-      planner::paretoSet(planned.problem, forChassis(options, planned.ground, once), kParetoSteps);
+int drawPareto(const PlanOptions& options, const Planned& planned, planner::RoutePlanner& planner,
+               const Context& context) {
+  const auto front = planner.paretoRoutes(planned.ground.map.published(), planned.request,
+                                          settingsOf(options, context), kParetoSteps);
   if (context.stop.stop_requested()) {
     fmt::print(stderr, "talus: {} is not written: the Pareto set was cancelled; the route is whole\n",
                oneLine(options.pareto));
@@ -338,6 +292,20 @@ int drawPareto(const PlanOptions& options, const Planned& planned, Chosen& plann
   }
   saveParetoChart(options.pareto, front);
   return Exit::kDone;
+}
+
+int runWhole(const PlanOptions& options, planner::RoutePlanner& planner, const Context& context) {
+  Ground ground = readGround(options.ground, context);
+  PlanRequest request = requestOf(options, planner.capabilities(), ground, context);
+  const auto map = ground.map.published();
+  Planned route = timedPlan(std::move(ground), std::move(request), [&](const PlanRequest& asked) {
+    return planner.plan(map, asked, settingsOf(options, context));
+  });
+  if (context.stop.stop_requested() && route.route.vertices.empty()) return Exit::kCancelled;
+  const int code = finish(options, route, context);
+  if (code != Exit::kDone && context.stop.stop_requested()) letEnd(context);
+  if (code == Exit::kDone && !options.pareto.empty()) return drawPareto(options, route, planner, context);
+  return code;
 }
 
 // A mission may come from elsewhere: of what exists, it replaces routes only.
@@ -365,23 +333,10 @@ int run(const PlanOptions& asked, Context& context) {
   }
   if (!context.force) checkFormat(options.output, options.pairs.empty() ? "ROUTE.geojson" : "FILE.csv");
   requirePlaces(options);
-  Chosen planner = choose(options);
+  planner::RoutePlanner planner = plannerOf(options);
   if (!options.whole_field && needsWindows(options.ground, options.in_memory))
-    return runInWindows(options, context);
-  if (!options.pairs.empty()) return runPairs(options, context);
-  const Planned planned = planWhole(options, planner, context);
-  if (context.stop.stop_requested() && planned.plan.points.empty()) return Exit::kCancelled;
-  const maps::Raster<float>& heights = planned.ground.map.elevation().elevation_m;
-  const int code = finish(options, planned,
-                          {.map = *planned.problem.map,
-                           .elevation_m = maps::elevationOf(heights),
-                           .planner = planner.name(),
-                           .kinematics = planned.problem.kinematics,
-                           .watch = planned.problem.watch},
-                          context);
-  if (code != Exit::kDone && context.stop.stop_requested()) letEnd(context);
-  if (code == Exit::kDone && !options.pareto.empty()) return drawPareto(options, planned, planner, context);
-  return code;
+    return runInWindows(options, planner.capabilities(), context);
+  return options.pairs.empty() ? runWhole(options, planner, context) : runPairs(options, planner, context);
 }
 
 }  // namespace

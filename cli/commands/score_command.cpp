@@ -112,9 +112,7 @@ int run(const ScoreOptions& options, Context& context) {
   const planner::Segment ends{plan.points.front(), plan.points.back()};
   plan.lower_bound_J = std::min(plan.cost_J, planner::LowerBound()(map, ends, 0.0, context.watch("bound")));
   if (context.stop.stop_requested()) return Exit::kCancelled;
-  const planner::Route route = annotated(
-      plan,
-      {.map = *map, .elevation_m = maps::elevationOf(ground.map.elevation().elevation_m), .planner = "none"});
+  const planner::Route route = annotated(plan, {.map = *map, .planner = "none"});
   if (context.json) {
     auto json = summaryJson(route);
     if (!violations.empty()) json["status"] = "infeasible";

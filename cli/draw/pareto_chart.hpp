@@ -5,7 +5,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include <talus/planner/plugin/risk_planner.hpp>
+#include <talus/planner/plan/risk_planner.hpp>
 
 namespace talus::cli {
 

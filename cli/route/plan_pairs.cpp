@@ -9,9 +9,6 @@
 #include <talus/cli/route/plan_pairs.hpp>
 #include <talus/cli/route/route_json.hpp>
 #include <talus/common/input_error.hpp>
-#include <talus/planner/check/annotation.hpp>
-#include <talus/planner/check/route_check.hpp>
-#include <talus/planner/plugin/named_planner.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
 
 namespace talus::cli {
@@ -38,19 +35,17 @@ std::array<std::optional<std::size_t>, kColumns.size()> columnsOf(const std::str
   return found;
 }
 
-Json planned(const PlacePair& pair, planner::Problem problem, planner::NamedPlanner& planner) {
-  problem.start = pair.start;
-  problem.goal = pair.goal;
-  if (pair.start_heading_rad) problem.start_heading_rad = pair.start_heading_rad;
-  if (pair.goal_heading_rad) problem.goal_heading_rad = pair.goal_heading_rad;
-  const planner::Plan plan =
-      planner::checkedPlan(planner.plan(problem), *problem.map, problem.kinematics.turning_radius_m);
-  const planner::Route route = annotated(plan, {.map = *problem.map,
-                                                .elevation_m = nullptr,
-                                                .planner = planner.name(),
-                                                .kinematics = problem.kinematics});
+Json planned(const PlacePair& pair, const PairedRequest& common, planner::RoutePlanner& planner) {
+  PlanRequest request = common.request;
+  request.watch.progress = {};
+  request.start = pair.start;
+  request.goal = pair.goal;
+  const bool headings = planner.capabilities().headings;
+  if (headings && pair.start_heading_rad) request.start_heading_rad = pair.start_heading_rad;
+  if (headings && pair.goal_heading_rad) request.goal_heading_rad = pair.goal_heading_rad;
+  const planner::Route route = planner.plan(common.map, request, common.settings);
   Json line = summaryJson(route);
-  if (plan.status != planner::RouteStatus::Found) line["reason"] = plan.reason;
+  if (route.status != planner::RouteStatus::Found) line["reason"] = route.reason;
   return line;
 }
 
@@ -90,13 +85,11 @@ std::vector<PlacePair> readPairs(const std::string& path) {
   return pairs;
 }
 
-std::vector<Json> planPairs(const std::vector<PlacePair>& pairs, const planner::Problem& problem,
-                            const std::string& planner, const Campaign& campaign) {
-  planner::NamedPlanner named(planner);
-  planner::Problem quiet = problem;
-  quiet.watch.progress = {};
+std::vector<Json> planPairs(const std::vector<PlacePair>& pairs, const PairedRequest& common,
+                            planner::RoutePlanner& planner, const Campaign& campaign) {
   const auto outcomes = campaign.run(
-      pairs.size(), [&](std::size_t i) { return jsonText(planned(pairs[i], quiet, named)); }, problem.watch);
+      pairs.size(), [&](std::size_t i) { return jsonText(planned(pairs[i], common, planner)); },
+      common.request.watch);
   std::vector<Json> lines;
   for (std::size_t i = 0; i < outcomes.size(); ++i) {
     Json line{{"pair", i + 1}};

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <cstddef>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,7 +8,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include <talus/maps/terrain/elevation_map.hpp>
-#include <talus/planner/route/problem.hpp>
+#include <talus/planner/plan/route_planner.hpp>
 
 namespace talus::cli {
 
@@ -26,12 +26,18 @@ struct PlacePair {
 /// goal_heading_rad. @throws InputError naming file, line and column
 std::vector<PlacePair> readPairs(const std::string& path);
 
-/// Plans them all over the problem's map with the named planner, over the ranks of the campaign: a line of
-/// JSON each, in order, as `talus plan --json` prints it with `pair`, and status, planner and `reason` alone
+/// What all of them have in common.
+struct PairedRequest {
+  std::shared_ptr<const costmap::CostGrid> map;
+  PlanRequest request;  ///< but start and goal; a heading of a pair replaces its own
+  PlannerSettings settings{};
+};
+
+/// Plans them all, over the ranks of the campaign: a line of JSON each, in order, as `talus plan --json` prints it with `pair`, and status, planner and `reason` alone
 /// where there is no route. What went wrong with one pair is its line's reason and stops no other. Empty but
 /// on the leading rank.
 std::vector<nlohmann::ordered_json> planPairs(const std::vector<PlacePair>& pairs,
-                                              const planner::Problem& problem, const std::string& planner,
+                                              const PairedRequest& common, planner::RoutePlanner& planner,
                                               const Campaign& campaign);
 
 /// The lines as CSV: pair, status, planner, cost, energy_J, time_s, length_m, max_slip, max_slope_rad,

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include <talus/costmap/cost/cost_grid.hpp>
+#include <talus/maps/terrain/elevation_map.hpp>
 
 namespace talus::costmap {
 namespace {
@@ -12,8 +13,9 @@ int tilesAcross(int cells) {
   return (cells + CostTile::kSide - 1) / CostTile::kSide;
 }
 
-std::shared_ptr<const CostTile> cutTile(const maps::Raster<CellCode>& cells, maps::Cell first) {
-  auto tile = std::make_shared<CostTile>();
+template <typename T>
+std::shared_ptr<const Tile<T>> cutTile(const maps::Raster<T>& cells, maps::Cell first) {
+  auto tile = std::make_shared<Tile<T>>();
   for (int r = 0; r < CostTile::kSide; ++r)
     for (int c = 0; c < CostTile::kSide; ++c) {
       const maps::Cell cell{first.column + c, first.row + r};
@@ -23,11 +25,23 @@ std::shared_ptr<const CostTile> cutTile(const maps::Raster<CellCode>& cells, map
   return tile;
 }
 
+template <typename T>
+SharedTiles<T> cut(const maps::Raster<T>& cells) {
+  std::vector<typename SharedTiles<T>::Shared> tiles;
+  for (int row = 0; row < cells.grid().height; row += CostTile::kSide)
+    for (int column = 0; column < cells.grid().width; column += CostTile::kSide)
+      tiles.push_back(cutTile(cells, {column, row}));
+  return SharedTiles<T>(tiles);
+}
+
 }  // namespace
 
-TileTable::TileTable(std::size_t tiles, const Shared& each) : TileTable(std::vector<Shared>(tiles, each)) {}
+template <typename T>
+SharedTiles<T>::SharedTiles(std::size_t tiles, const Shared& each)
+    : SharedTiles(std::vector<Shared>(tiles, each)) {}
 
-TileTable::TileTable(const std::vector<Shared>& tiles) {
+template <typename T>
+SharedTiles<T>::SharedTiles(const std::vector<Shared>& tiles) {
   for (std::size_t first = 0; first < tiles.size(); first += kPage) {
     auto page = std::make_shared<Page>();
     for (std::size_t i = first; i < std::min(first + kPage, tiles.size()); ++i) {
@@ -38,11 +52,28 @@ TileTable::TileTable(const std::vector<Shared>& tiles) {
   }
 }
 
-void TileTable::set(std::size_t i, Shared tile) {
+template <typename T>
+void SharedTiles<T>::set(std::size_t i, Shared tile) {
   auto page = std::make_shared<Page>(*pages_[i / kPage]);
   raw_[i] = tile.get();
   (*page)[i % kPage] = std::move(tile);
   pages_[i / kPage] = std::move(page);
+}
+
+template class SharedTiles<CellCode>;
+template class SharedTiles<float>;
+
+HeightTable tiled(const maps::Raster<float>& elevation_m) {
+  return cut(elevation_m);
+}
+
+HeightTable retiled(HeightTable table, const maps::Raster<float>& elevation_m, const maps::CellBox& box) {
+  const int columns = tilesAcross(elevation_m.grid().width);
+  for (int row = box.first.row >> 6; row <= box.last.row >> 6; ++row)
+    for (int column = box.first.column >> 6; column <= box.last.column >> 6; ++column)
+      table.set(static_cast<std::size_t>(row * columns + column),
+                cutTile(elevation_m, {column << 6, row << 6}));
+  return table;
 }
 
 CostGrid::CostGrid(Content content)
@@ -53,14 +84,22 @@ CostGrid::CostGrid(Content content)
     throw std::invalid_argument("CostGrid: " + std::to_string(content_.tiles.size()) + " tiles, must be " +
                                 std::to_string(expected));
   if (!content_.cost) throw std::invalid_argument("CostGrid: no cost function");
+  if (const std::size_t heights = content_.elevation_m.size(); heights != 0 && heights != expected)
+    throw std::invalid_argument("CostGrid: " + std::to_string(heights) +
+                                " tiles of elevation, must be 0 or " + std::to_string(expected));
+}
+
+std::optional<double> CostGrid::elevation_m(maps::Point point) const {
+  if (content_.elevation_m.size() == 0) return std::nullopt;
+  return maps::elevationAt(content_.grid, point, [&](maps::Cell c) {
+    const auto tile = static_cast<std::size_t>((c.row >> 6) * tile_columns_ + (c.column >> 6));
+    return content_.elevation_m.tile(tile)
+        .cells[static_cast<std::size_t>((c.row & 63) << 6 | (c.column & 63))];
+  });
 }
 
 CostGrid flattened(const maps::Raster<CellCode>& cells, std::shared_ptr<const DriveCost> cost) {
-  std::vector<TileTable::Shared> tiles;
-  for (int row = 0; row < cells.grid().height; row += CostTile::kSide)
-    for (int column = 0; column < cells.grid().width; column += CostTile::kSide)
-      tiles.push_back(cutTile(cells, {column, row}));
-  return CostGrid({.grid = cells.grid(), .tiles = TileTable(tiles), .cost = std::move(cost), .version = 1});
+  return CostGrid({.grid = cells.grid(), .tiles = cut(cells), .cost = std::move(cost), .version = 1});
 }
 
 CostGrid revised(const CostGrid& grid, const Revision& revision) {
@@ -87,6 +126,7 @@ CostGrid revised(const CostGrid& grid, const Revision& revision) {
           }
       }
   next.cost = revision.cost();
+  if (revision.elevation_m) next.elevation_m = *revision.elevation_m;
   ++next.version;
   return CostGrid(std::move(next));
 }

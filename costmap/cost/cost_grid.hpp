@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <talus/costmap/cost/drive_cost.hpp>
@@ -12,23 +13,28 @@
 namespace talus::costmap {
 
 /// 64x64 cells, row-major from the south-west corner.
-struct CostTile {
+template <typename T>
+struct Tile {
   static constexpr int kSide = 64;
-  std::array<CellCode, kSide * kSide> cells;
+  std::array<T, kSide * kSide> cells;
 };
+
+using CostTile = Tile<CellCode>;
+using HeightTile = Tile<float>;
 
 /// The tiles of a map, row-major. Copies share them by pages of 64, so that a copy costs next to nothing
 /// whatever the size of the map; changing one tile of a copy takes over its page alone.
-class TileTable {
+template <typename T>
+class SharedTiles {
  public:
-  using Shared = std::shared_ptr<const CostTile>;
+  using Shared = std::shared_ptr<const Tile<T>>;
 
-  TileTable() = default;
-  TileTable(std::size_t tiles, const Shared& each);
-  explicit TileTable(const std::vector<Shared>& tiles);
+  SharedTiles() = default;
+  SharedTiles(std::size_t tiles, const Shared& each);
+  explicit SharedTiles(const std::vector<Shared>& tiles);
 
   std::size_t size() const noexcept { return raw_.size(); }
-  const CostTile& tile(std::size_t i) const noexcept { return *raw_[i]; }
+  const Tile<T>& tile(std::size_t i) const noexcept { return *raw_[i]; }
   const Shared& operator[](std::size_t i) const noexcept { return (*pages_[i / kPage])[i % kPage]; }
   void set(std::size_t i, Shared tile);
 
@@ -36,9 +42,18 @@ class TileTable {
   static constexpr std::size_t kPage = 64;
   using Page = std::array<Shared, kPage>;
 
-  std::vector<const CostTile*> raw_;                // what readers follow
+  std::vector<const Tile<T>*> raw_;                 // what readers follow
   std::vector<std::shared_ptr<const Page>> pages_;  // what keeps them alive
 };
+
+using TileTable = SharedTiles<CellCode>;
+using HeightTable = SharedTiles<float>;
+
+/// A raster cut into tiles; those over the east and north edge are padded.
+HeightTable tiled(const maps::Raster<float>& elevation_m);
+
+/// The table with the tiles that a box of cells touches cut anew; the others are shared.
+HeightTable retiled(HeightTable table, const maps::Raster<float>& elevation_m, const maps::CellBox& box);
 
 /// One version of the map as planners read it: immutable, so readers never wait and writers never wait for
 /// readers. Versions share the tiles that did not change.
@@ -50,6 +65,7 @@ class CostGrid {
     TileTable tiles;  ///< those over the east and north edge are padded
     std::shared_ptr<const DriveCost> cost;
     std::uint64_t version = 0;
+    HeightTable elevation_m{};  ///< NaN where not observed; no tiles: not known
   };
 
   explicit CostGrid(Content content);
@@ -66,6 +82,9 @@ class CostGrid {
     return content_.tiles.tile(tile).cells[static_cast<std::size_t>((c.row & 63) << 6 | (c.column & 63))];
   }
 
+  /// Elevation of the ground [m] as maps::elevationAt() has it; nothing where it is not known.
+  std::optional<double> elevation_m(maps::Point point) const;
+
  private:
   Content content_;
   int tile_columns_;
@@ -81,6 +100,7 @@ struct Revision {
   std::function<CellCode(maps::Cell, CellCode)> code;
   /// Of the new version, asked once all codes are known.
   std::function<std::shared_ptr<const DriveCost>()> cost;
+  std::optional<HeightTable> elevation_m{};  ///< of the new version; none: those of the old one
 };
 
 /// The next version: copies the tiles that the ranges touch and shares the others.

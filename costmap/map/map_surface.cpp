@@ -154,7 +154,10 @@ maps::CellBox TraversabilityMap::measureAgain(const maps::CellBox& window) {
   maps::Grid part = grid();
   part.width = shaped.width();
   part.height = shaped.height();
-  measured_ = {.box = shaped, .codes = maps::Raster<CellCode>(part)};
+  measured_ = {
+      .box = shaped,
+      .codes = maps::Raster<CellCode>(part),
+      .elevation_m = retiled(published()->content().elevation_m, site_->elevation.elevation_m, window)};
   shapes.measure(
       site_->elevation.elevation_m, shaped, limits_,
       [&](maps::Cell cell, const GroundShape& shape, Hazard found) {

@@ -112,8 +112,12 @@ TraversabilityMap::TraversabilityMap(MapLayers layers, std::shared_ptr<const Gro
   requireGrid(layers.declared, grid(), "declared");
   any_height_ = !site_->floors.empty() || std::ranges::any_of(site_->elevation.elevation_m.values(),
                                                               [](float e) { return !std::isnan(e); });
-  published_->grid.store(std::make_shared<CostGrid>(CostGrid::Content{
-      .grid = grid(), .tiles = measure(layers, watch), .cost = curves_->table().cost(), .version = 1}));
+  published_->grid.store(
+      std::make_shared<CostGrid>(CostGrid::Content{.grid = grid(),
+                                                   .tiles = measure(layers, watch),
+                                                   .cost = curves_->table().cost(),
+                                                   .version = 1,
+                                                   .elevation_m = tiled(site_->elevation.elevation_m)}));
   if (curves_->table().overflowed()) published_->grid.store(renumbered());
 }
 
@@ -284,10 +288,11 @@ std::shared_ptr<const CostGrid> TraversabilityMap::renumbered() {
 
 // The cost is asked for after the codes are made: they may bring new curves.
 std::shared_ptr<const CostGrid> TraversabilityMap::rewritten(const std::vector<maps::CellBox>& ranges) {
-  return std::make_shared<CostGrid>(
-      revised(*published(), {.ranges = ranges,
-                             .code = [&](maps::Cell cell, CellCode code) { return coded(cell, code); },
-                             .cost = [&] { return curves_->table().cost(); }}));
+  return std::make_shared<CostGrid>(revised(
+      *published(), {.ranges = ranges,
+                     .code = [&](maps::Cell cell, CellCode code) { return coded(cell, code); },
+                     .cost = [&] { return curves_->table().cost(); },
+                     .elevation_m = measured_ ? std::optional(measured_->elevation_m) : std::nullopt}));
 }
 
 std::vector<FloorLeaf> TraversabilityMap::floorLeaves() const {

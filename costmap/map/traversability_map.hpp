@@ -32,7 +32,7 @@ struct CategoryCounts {
 };
 
 /// Everything that is believed of a site: its surface, the prior of each cell's ground, the evidence that the
-/// wheels brought, and the cost grid that planners read. Eleven bytes a cell and some sixty a block that was driven.
+/// wheels brought, and the cost grid that planners read. Fifteen bytes a cell and some sixty a block that was driven.
 ///
 /// One thread changes a map: a second that calls learn(), refuse(), patch() or publish() meanwhile gets a
 /// std::logic_error. published() may be called from any thread at any time and never waits.
@@ -168,10 +168,11 @@ class TraversabilityMap {
   const SurfaceKeys& keys() const noexcept { return site_->keys; }
 
  private:
-  // New codes of the cells of a box, on a grid of its own, with their gradients alone.
+  // New codes of the cells of a box, on a grid of its own, with their gradients alone; elevation of the whole map.
   struct Measured {
     maps::CellBox box;
     maps::Raster<CellCode> codes;
+    HeightTable elevation_m;
   };
 
   TileTable measure(const MapLayers& layers, const ProgressMonitor& watch);

@@ -146,7 +146,6 @@ struct Navigator::State {
   std::optional<talus::costmap::EvidenceJournal> journal;
   std::optional<talus::costmap::DriveIntake> intake;
   std::unique_ptr<talus::GlobalPlanner> planner;
-  std::mutex surface;        // plan() reads the heights that see() changes
   bool changed = false;      // heights, since they were saved
   mutable std::mutex mutex;  // of what follows
   std::stop_source stop;
@@ -194,7 +193,6 @@ std::size_t Navigator::see(const std::vector<CloudPoint>& points) {
       talus::maps::heightsOf(cloud, *window,
                              {.percentile = state_->settings.percentile,
                               .least_points = static_cast<std::size_t>(state_->settings.least_points)});
-  const std::lock_guard lock(state_->surface);
   state_->map.patch(patch);
   state_->changed = true;
   return static_cast<std::size_t>(std::count_if(cloud.begin(), cloud.end(), [&](const auto& p) {
@@ -249,13 +247,7 @@ Outcome Navigator::plan(const Place& start, const Place& goal) {
     request.watch.stop = state_->stop.get_token();
   }
   state_->planner->update(state_->map.published());
-  talus::planner::Route route = state_->planner->plan(request);
-  {
-    const std::lock_guard lock(state_->surface);
-    for (auto& v : route.vertices)  // planners know no heights
-      if (const auto z_m = talus::maps::elevationAt(state_->map.elevation().elevation_m, {v.x_m, v.y_m}))
-        v.elevation_m = *z_m;
-  }
+  const talus::planner::Route route = state_->planner->plan(request);
   Outcome outcome;
   outcome.found = route.status == RouteStatus::Found;
   outcome.cancelled = route.status == RouteStatus::Cancelled || route.interrupted;

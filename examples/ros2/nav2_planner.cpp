@@ -174,12 +174,6 @@ nav_msgs::msg::Path Nav2Planner::createPlan(const PoseStamped& start, const Pose
   if (route.status != RouteStatus::Found)
     refuse(route, published->grid().cellAt(request.start).has_value(),
            published->grid().cellAt(request.goal).has_value());
-  {
-    const std::lock_guard lock(changing_);
-    for (auto& v : route.vertices)  // planners know no heights
-      if (const auto z_m = talus::maps::elevationAt(map_->elevation().elevation_m, {v.x_m, v.y_m}))
-        v.elevation_m = *z_m;
-  }
   return pathOf(route);
 }
 

@@ -13,7 +13,11 @@ double validFraction(const Raster<float>& elevation_m) {
 }
 
 std::optional<double> elevationAt(const Raster<float>& elevation_m, Point point) {
-  const Grid& grid = elevation_m.grid();
+  return elevationAt(elevation_m.grid(), point, [&](Cell cell) { return elevation_m[cell]; });
+}
+
+std::optional<double> elevationAt(const Grid& grid, Point point,
+                                  const std::function<float(Cell)>& elevation_m) {
   if (!grid.cellAt(point)) return std::nullopt;
   // Position in cells from the centre of cell (0, 0); the half cell along the border takes the border's
   // value.
@@ -25,7 +29,7 @@ std::optional<double> elevationAt(const Raster<float>& elevation_m, Point point)
   const Cell ne{std::min(sw.column + 1, grid.width - 1), std::min(sw.row + 1, grid.height - 1)};
   const double u = column - sw.column;
   const double v = row - sw.row;
-  const auto z = [&](int c, int r) { return static_cast<double>(elevation_m[{c, r}]); };
+  const auto z = [&](int c, int r) { return static_cast<double>(elevation_m({c, r})); };
   // A corner of weight 0 may be nodata.
   const auto mix = [](double a, double b, double t) { return t == 0 ? a : a + (b - a) * t; };
   const double south = mix(z(sw.column, sw.row), z(ne.column, sw.row), u);

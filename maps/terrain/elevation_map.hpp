@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,9 +26,8 @@ double validFraction(const Raster<float>& elevation_m);
 /// Elevation [m] at a point, bilinear between cell centres; nothing outside the map or beside nodata.
 std::optional<double> elevationAt(const Raster<float>& elevation_m, Point point);
 
-/// elevationAt() as a function; the raster must outlive it.
-inline auto elevationOf(const Raster<float>& elevation_m) {
-  return [&elevation_m](Point point) { return elevationAt(elevation_m, point); };
-}
+/// The same of a grid whose cells have the elevations that the function returns.
+std::optional<double> elevationAt(const Grid& grid, Point point,
+                                  const std::function<float(Cell)>& elevation_m);
 
 }  // namespace talus::maps

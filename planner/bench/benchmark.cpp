@@ -7,8 +7,8 @@
 #include <talus/planner/bench/benchmark.hpp>
 #include <talus/planner/bench/slip_world.hpp>
 #include <talus/planner/check/route_check.hpp>
+#include <talus/planner/plan/named_planner.hpp>
 #include <talus/planner/plugin/child_process.hpp>
-#include <talus/planner/plugin/named_planner.hpp>
 #include <talus/planner/plugin/plugin_planner.hpp>
 #include <talus/planner/route/polyline.hpp>
 

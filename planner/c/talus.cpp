@@ -8,7 +8,7 @@
 #include <talus.h>
 
 #include <talus/planner/c/border.hpp>
-#include <talus/planner/plugin/make_planner.hpp>
+#include <talus/planner/plan/make_planner.hpp>
 
 namespace {
 
@@ -317,8 +317,8 @@ talus_code talus_read_route(talus_session session, size_t first, talus_vertex* b
     *written = first < vertices.size() ? std::min(capacity, vertices.size() - first) : 0;
     for (std::size_t i = 0; i < *written; ++i) {
       const talus::planner::RouteVertex& v = vertices[first + i];
-      buffer[i] = {v.x_m,       v.y_m,       v.heading_rad, v.slope_along_rad, v.slip,
-                   v.sinkage_m, v.torque_Nm, v.energy_J,    v.time_s,          v.immobilisation_risk};
+      buffer[i] = {v.x_m,       v.y_m,      v.heading_rad, v.slope_along_rad,     v.slip,       v.sinkage_m,
+                   v.torque_Nm, v.energy_J, v.time_s,      v.immobilisation_risk, v.elevation_m};
     }
     return TALUS_OK;
   });

@@ -125,6 +125,7 @@ typedef struct talus_vertex {
   double x_m, y_m, heading_rad;
   double slope_along_rad, slip, sinkage_m, torque_Nm;
   double energy_J, time_s, immobilisation_risk; /* from the start to here */
+  double elevation_m; /* of the ground; NaN: not observed */
 } talus_vertex;
 
 typedef struct talus_cell {

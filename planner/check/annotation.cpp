@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -7,6 +9,7 @@
 #include <talus/costmap/cost/drive_state.hpp>
 #include <talus/maps/terrain/elevation_map.hpp>
 #include <talus/planner/check/annotation.hpp>
+#include <talus/planner/check/route_check.hpp>
 #include <talus/planner/check/route_risk.hpp>
 #include <talus/planner/route/motion_cost.hpp>
 
@@ -231,8 +234,7 @@ class Annotator {
   }
 
   double elevation(Point p) const {
-    if (!input_.elevation_m) return kNotKnown;
-    return input_.elevation_m(p).value_or(kNotKnown);
+    return (input_.elevation_m ? input_.elevation_m(p) : input_.map.elevation_m(p)).value_or(kNotKnown);
   }
 
   const AnnotationInput& input_;
@@ -285,6 +287,13 @@ void tellRisk(Route& route, const costmap::CostGrid& map, const ProgressMonitor&
   for (std::size_t i = 0; i < risk.size(); ++i) route.vertices[i].immobilisation_risk = risk[i];
 }
 
+std::string refusalText(const Violation& violation, const std::string& planner) {
+  std::array<char, 64> place{};
+  std::snprintf(place.data(), place.size(), "%.2f,%.2f", violation.place.x_m, violation.place.y_m);
+  return "no route: the check refuses the one that '" + planner + "' found at " + place.data() + ": " +
+         violation.reason + "; please report it";
+}
+
 }  // namespace
 
 double gapOf(double cost, double lower_bound) noexcept {
@@ -298,6 +307,7 @@ Route annotated(const Plan& plan, const AnnotationInput& input) {
   route.reason = plan.reason;
   route.obstruction = plan.obstruction;
   route.interrupted = plan.interrupted;
+  route.goal = plan.goal;
   route.summary.planner = input.planner;
   if (plan.points.empty()) return route;
   Annotator annotator(input);
@@ -314,6 +324,20 @@ Route annotated(const Plan& plan, const AnnotationInput& input) {
   route.vertices = std::move(annotator.vertices);
   tellRisk(route, input.map, input.watch);
   return route;
+}
+
+Route checkedRoute(const Plan& plan, const AnnotationInput& input) {
+  Route route = annotated(plan, input);
+  if (plan.status != RouteStatus::Found) return route;
+  auto found = violations(input.map, plan.points);
+  if (found.empty() && !plan.drive.legs.empty())
+    found = violations(input.map, plan.drive, input.kinematics.turning_radius_m);
+  if (found.empty()) return route;
+  Route none;
+  none.summary.planner = input.planner;
+  none.reason = refusalText(found.front(), input.planner);
+  none.refused = std::make_shared<const Route>(std::move(route));
+  return none;
 }
 
 }  // namespace talus::planner

@@ -16,7 +16,7 @@ namespace talus::planner {
 /// What a bare polyline is annotated from.
 struct AnnotationInput {
   const costmap::CostGrid& map;
-  std::function<std::optional<double>(maps::Point)> elevation_m = nullptr;  ///< none: vertices have none
+  std::function<std::optional<double>(maps::Point)> elevation_m = nullptr;  ///< none: the map's own
   std::string planner = {};                                                 ///< its name, for the summary
   Kinematics kinematics = {};                                               ///< prices of turning, for drives
   ProgressMonitor watch = {};  ///< when stopped, the risk of a long route is not drawn
@@ -32,6 +32,10 @@ struct AnnotationInput {
 /// less than a hundredth of a cell where the way past it may be driven, and two where the rover turns in place; turning
 /// counts. Status and reason are the plan's.
 Route annotated(const Plan& plan, const AnnotationInput& input);
+
+/// annotated(), once what was found has no violations(), neither of its line nor of its drive where it has one; else NoneFound
+/// with the first of them, and the route as Route::refused.
+Route checkedRoute(const Plan& plan, const AnnotationInput& input);
 
 /// cost / lower bound - 1; 0 where both are 0, infinite for a bound of 0.
 double gapOf(double cost, double lower_bound) noexcept;

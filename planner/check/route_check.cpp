@@ -8,7 +8,6 @@
 #include <talus/costmap/cost/drive_state.hpp>
 #include <talus/planner/check/route_check.hpp>
 #include <talus/planner/route/pose_path.hpp>
-#include <talus/planner/route/problem.hpp>
 
 namespace talus::planner {
 namespace {
@@ -285,23 +284,6 @@ std::vector<Violation> violations(const CostGrid& map, const PosePath& drive, do
     pose = after(pose, leg);
   }
   return checker.found;
-}
-
-std::optional<Violation> refusal(const Plan& plan, const CostGrid& map, double turning_radius_m) {
-  auto found = violations(map, plan.points);
-  if (found.empty() && !plan.drive.legs.empty()) found = violations(map, plan.drive, turning_radius_m);
-  if (found.empty()) return std::nullopt;
-  return found.front();
-}
-
-Plan checkedPlan(Plan plan, const CostGrid& map, double turning_radius_m) {
-  if (plan.status != RouteStatus::Found) return plan;
-  const auto refused = refusal(plan, map, turning_radius_m);
-  if (!refused) return plan;
-  Plan none;
-  none.reason = "no route: the check refuses the one found at " + std::to_string(refused->place.x_m) + ',' +
-                std::to_string(refused->place.y_m) + " m: " + refused->reason + "; please report it";
-  return none;
 }
 
 }  // namespace talus::planner

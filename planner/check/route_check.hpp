@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,7 +9,6 @@
 
 namespace talus::planner {
 
-struct Plan;
 struct PosePath;
 
 /// A place on a route that a constraint forbids.
@@ -50,12 +48,5 @@ struct Danger {
 /// violations() alone. Empty for a route that may be driven. Throws std::invalid_argument for a quantile out of range.
 std::vector<Danger> dangers(const costmap::CostGrid& map, const std::vector<maps::Point>& route,
                             double quantile = 0.05);
-
-/// Holds what a planner answered against violations(), along its drive where it has one: the first of them.
-std::optional<Violation> refusal(const Plan& plan, const costmap::CostGrid& map, double turning_radius_m);
-
-/// The plan where it found a route that refusal() has nothing against, or found none; else NoneFound, with where and
-/// why the check refuses the planner's route.
-Plan checkedPlan(Plan plan, const costmap::CostGrid& map, double turning_radius_m);
 
 }  // namespace talus::planner

@@ -14,13 +14,13 @@
 #include <talus/planner/route/kinematics.hpp>
 #include <talus/planner/route/route.hpp>
 
-/// The one way to ask for a route: of Talus' own planners (plugin/make_planner.hpp) and of those in a shared
+/// The one way to ask for a route: of Talus' own planners (plan/make_planner.hpp, plan/plan_route.hpp) and of those in a shared
 /// library, which exports one object named `talus_planner` (plugin/plugin_export.hpp) for
 /// plugin/plugin_loader.hpp to load. One page on purpose.
 namespace talus {
 
 /// Grows with every change below that an older plugin or program would misread.
-inline constexpr int kPlannerInterfaceVersion = 3;
+inline constexpr int kPlannerInterfaceVersion = 4;
 
 /// What a plugin is, and what the planner that it is configured for can do.
 struct PlannerCapabilities {
@@ -48,6 +48,7 @@ struct PlannerSettings {
   std::uint64_t seed = 1;  ///< of planners that sample
   int threads = 1;         ///< >= 1; the route does not depend on it
   double time_limit_s = std::numeric_limits<double>::infinity();  ///< > 0; stop and give the best so far
+  bool whole_field = false;  ///< search the whole map at full resolution even where it is large
 };
 
 /// A chance constraint on the rover's immobilisation.

@@ -62,4 +62,14 @@ void requireHonoured(const PlanRequest& request, const PlannerCapabilities& offe
   requireRanges(request);
 }
 
+const PlannerSettings& validated(const PlannerSettings& settings) {
+  if (settings.threads < 1)
+    throw std::invalid_argument("PlannerSettings: threads = " + std::to_string(settings.threads) +
+                                ", must be >= 1");
+  if (!(settings.time_limit_s > 0))
+    throw std::invalid_argument("PlannerSettings: time_limit_s = " + std::to_string(settings.time_limit_s) +
+                                ", must be > 0");
+  return settings;
+}
+
 }  // namespace talus::planner

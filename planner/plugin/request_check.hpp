@@ -9,4 +9,7 @@ namespace talus::planner {
 /// gives is asked through it.
 void requireHonoured(const PlanRequest& request, const PlannerCapabilities& offers);
 
+/// The settings, once they keep their ranges. Throws std::invalid_argument naming field, value and bound.
+const PlannerSettings& validated(const PlannerSettings& settings);
+
 }  // namespace talus::planner

@@ -14,7 +14,7 @@
 #include <talus/common/input_error.hpp>
 #include <talus/common/progress_monitor.hpp>
 #include <talus/costmap/ground/ground_class.hpp>
-#include <talus/planner/plugin/make_planner.hpp>
+#include <talus/planner/plan/make_planner.hpp>
 #include <talus/planner/python/arrays.hpp>
 #include <talus/planner/python/background.hpp>
 #include <talus/planner/python/python_map.hpp>
@@ -215,9 +215,6 @@ Route PythonMap::plan(const PlannerSettings& settings, const PlanRequest& reques
         route = planner->plan(asked);
       },
       progress);
-  for (RouteVertex& vertex : route.vertices)  // planners know no heights
-    if (const auto height_m = maps::elevationAt(map().elevation().elevation_m, {vertex.x_m, vertex.y_m}))
-      vertex.elevation_m = *height_m;
   return route;
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -112,9 +113,11 @@ struct Route {
   std::string reason;        ///< why there is no route and what to do about it, one line; empty when Found
   bool interrupted = false;  ///< a stop was requested before the work was done: the best route so far
   std::optional<Obstruction>
-      obstruction{};  ///< of NoRoute, where two required places are cut off from each other
+      obstruction{};     ///< of NoRoute, where two required places are cut off from each other
+  std::size_t goal = 0;  ///< where it ends: 0 is PlanRequest::goal, then the other goals in order
   std::vector<RouteVertex> vertices;
   RouteSummary summary;
+  std::shared_ptr<const Route> refused{};  ///< what was found but failed the check: an error of the planner
 };
 
 }  // namespace talus::planner

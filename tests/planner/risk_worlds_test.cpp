@@ -10,8 +10,8 @@
 #include <talus/costmap/ground/ground_model.hpp>
 #include <talus/planner/check/annotation.hpp>
 #include <talus/planner/check/route_risk.hpp>
-#include <talus/planner/plugin/named_planner.hpp>
-#include <talus/planner/plugin/risk_planner.hpp>
+#include <talus/planner/plan/named_planner.hpp>
+#include <talus/planner/plan/risk_planner.hpp>
 #include <talus/planner/route/polyline.hpp>
 #include <talus/terramech/mobility/slope_equilibrium.hpp>
 
@@ -177,7 +177,7 @@ TEST(RiskWorlds, PlannedRiskIsTheShareOfRoversStuck) {
     NamedPlanner planner;
     const Plan plan = planner.plan(acrossSwells(ground));
     ASSERT_EQ(plan.status, RouteStatus::Found);
-    const Route route = annotated(plan, {.map = *ground.map, .elevation_m = nullptr, .planner = "field"});
+    const Route route = annotated(plan, {.map = *ground.map, .planner = "field"});
     RouteRiskOptions options = riskOptions(*ground.map);
     options.worlds = 20000;
     const RouteRisk risk = routeRisk(route, options);

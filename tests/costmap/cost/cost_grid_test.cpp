@@ -4,6 +4,7 @@
 #include <vector>
 
 #include <talus/costmap/cost/cost_grid.hpp>
+#include <talus/maps/terrain/elevation_map.hpp>
 
 namespace talus::costmap {
 namespace cost_grid_test {
@@ -39,6 +40,33 @@ TEST(CostGrid, ARevisionSharesTheTilesItDoesNotTouch) {
   for (std::size_t i = 0; i < before.content().tiles.size(); ++i)
     shared += before.content().tiles[i] == after.content().tiles[i] ? 1 : 0;
   EXPECT_EQ(shared, 15);  // Closed form: 4x4 tiles, one touched
+}
+
+TEST(CostGrid, ElevationIsThatOfTheRasterItWasCutFrom) {
+  maps::Raster<float> heights(plain(150).grid());
+  for (int row = 0; row < 150; ++row)
+    for (int column = 0; column < 150; ++column)
+      heights[{column, row}] = static_cast<float>((7 * column + 3 * row) % 11);
+  CostGrid::Content content = plain(150).content();
+  EXPECT_FALSE(CostGrid(content).elevation_m({1.0, 1.0})) << "not known";
+  content.elevation_m = tiled(heights);
+  const CostGrid grid(content);
+  for (const maps::Point p :
+       {maps::Point{0.1, 0.1}, {63.9, 64.2}, {64.0, 127.7}, {149.9, 149.9}, {31.4, 15.9}})
+    EXPECT_EQ(grid.elevation_m(p), maps::elevationAt(heights, p)) << p.x_m << ' ' << p.y_m;
+  EXPECT_FALSE(grid.elevation_m({150.5, 1.0}));
+  content.elevation_m = HeightTable(1, grid.content().elevation_m[0]);
+  EXPECT_THROW(CostGrid{content}, std::invalid_argument);
+}
+
+TEST(CostGrid, ElevationCutAnewInABoxLeavesEarlierVersionsAsTheyWere) {
+  maps::Raster<float> heights(plain(150).grid(), 1.0F);
+  const HeightTable before = tiled(heights);
+  heights[{70, 10}] = 5.0F;
+  const HeightTable after = retiled(before, heights, {{70, 10}, {71, 10}});
+  EXPECT_EQ(before.tile(1).cells[10 * 64 + 6], 1.0F);
+  EXPECT_EQ(after.tile(1).cells[10 * 64 + 6], 5.0F);
+  for (const std::size_t other : {0U, 2U, 3U, 8U}) EXPECT_EQ(after[other], before[other]) << "shared";
 }
 
 // Property: whatever tiles of copies are set, each table holds what a plain list of its own would.

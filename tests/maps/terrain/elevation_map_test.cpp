@@ -51,7 +51,6 @@ TEST(ElevationMap, NoElevationOutsideTheMapOrBesideAHole) {
   EXPECT_FALSE(elevationAt(z, {2.0, 4.1}));
   EXPECT_FALSE(elevationAt(z, {1.6, 1.6}));
   EXPECT_EQ(elevationAt(z, {3.2, 3.2}), 5.0);
-  EXPECT_EQ(elevationOf(z)({3.2, 3.2}), 5.0);
 }
 
 }  // namespace elevation_map_test

@@ -51,6 +51,27 @@ TEST(Annotation, VerticesWhereCellsChange) {
   EXPECT_NEAR(route.summary.gap, 1.0, 1e-12);
 }
 
+TEST(Annotation, ARouteWithAViolationIsNotHandedOut) {
+  const auto map = testing::drawn({".#."});
+  const AnnotationInput input{.map = *map, .planner = "field"};
+  Plan plan{RouteStatus::Found, {}, {{0.5, 0.5}, {0.9, 0.5}}, 4.0, 4.0};
+  EXPECT_EQ(checkedRoute(plan, input).status, RouteStatus::Found);
+  plan.drive = {.start = {{0.5, 0.5}, 0.0}, .legs = {{{1.0, 0.0}, 0.0}}};  // the drive goes on into the wall
+  EXPECT_EQ(checkedRoute(plan, input).status, RouteStatus::NoneFound);
+  plan.drive = {};
+  plan.points.push_back({2.5, 0.5});
+  const Route route = checkedRoute(plan, input);
+  EXPECT_EQ(route.status, RouteStatus::NoneFound);
+  EXPECT_TRUE(route.vertices.empty());
+  EXPECT_EQ(route.reason,
+            "no route: the check refuses the one that 'field' found at 1.50,0.50: blocked for any heading; "
+            "please report it");
+  ASSERT_TRUE(route.refused);
+  EXPECT_EQ(route.refused->vertices.back().x_m, 2.5);
+  plan.status = RouteStatus::TimedOut;
+  EXPECT_EQ(checkedRoute(plan, input).status, RouteStatus::TimedOut) << "no route to check";
+}
+
 TEST(Annotation, DrivingBackDescends) {
   const auto map = mapWithStates();
   const Plan back{RouteStatus::Found, {}, {{3.5, 0.5}, {0.5, 0.5}}, 40.0, 20.0};

@@ -29,18 +29,6 @@ TEST(RouteCheck, NamesPlaceAndReason) {
   EXPECT_EQ(found[1], (Violation{{3.5, 0.5}, "unobserved cell"}));
 }
 
-TEST(RouteCheck, WhatIsNotAllowedIsNotHandedOut) {
-  const auto map = drawn({".#."});
-  Plan plan;
-  plan.points = {{0.5, 0.5}, {0.9, 0.5}};
-  EXPECT_FALSE(refusal(plan, *map, 0.0));
-  plan.drive = {.start = {{0.5, 0.5}, 0.0}, .legs = {{{1.0, 0.0}, 0.0}}};  // the drive goes on into the wall
-  EXPECT_TRUE(refusal(plan, *map, 0.0));
-  plan.drive = {};
-  plan.points.push_back({2.5, 0.5});
-  EXPECT_EQ(refusal(plan, *map, 0.0), (Violation{{1.5, 0.5}, "blocked for any heading"}));
-}
-
 // A corner belongs to the cell north-east of it: a route may end there whatever lies in the others.
 TEST(RouteCheck, ARouteMayEndOnACornerOfCells) {
   const auto map = drawn({"...", "...", "#.."});

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include <talus/planner/grid/goal_choice.hpp>
-#include <talus/planner/plugin/named_planner.hpp>
+#include <talus/planner/plan/named_planner.hpp>
 
 #include "drawn_map.hpp"
 

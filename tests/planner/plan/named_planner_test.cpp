@@ -1,7 +1,7 @@
 #include <cmath>
 #include <stop_token>
 
-#include <talus/planner/plugin/named_planner.hpp>
+#include <talus/planner/plan/named_planner.hpp>
 #include <talus/planner/route/planner_names.hpp>
 
 #include "drawn_map.hpp"

@@ -1,5 +1,5 @@
-#include <talus/planner/plugin/make_planner.hpp>
-#include <talus/planner/plugin/own_planner.hpp>
+#include <talus/planner/plan/make_planner.hpp>
+#include <talus/planner/plan/own_planner.hpp>
 
 namespace talus::planner {
 

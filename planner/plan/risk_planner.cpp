@@ -6,7 +6,7 @@
 
 #include <talus/common/progress_monitor.hpp>
 #include <talus/planner/check/annotation.hpp>
-#include <talus/planner/plugin/risk_planner.hpp>
+#include <talus/planner/plan/risk_planner.hpp>
 #include <talus/planner/route/motion_cost.hpp>
 
 namespace talus::planner {
@@ -36,7 +36,7 @@ std::string inWords(double probability) {
 // 1 where `watch` was stopped before it was known.
 double riskOf(const costmap::CostGrid& map, const Plan& plan, const RouteRiskOptions& soil,
               const ProgressMonitor& watch) {
-  const Route route = annotated(plan, {.map = map, .elevation_m = nullptr, .planner = {}});
+  const Route route = annotated(plan, {.map = map, .planner = {}});
   if (route.vertices.empty()) return 0.0;
   const RouteRisk drawn = routeRisk(route, soil, watch);
   if (std::isnan(drawn.immobilisation)) return 1.0;
@@ -119,10 +119,18 @@ void keep(std::vector<ParetoRoute>& front, ParetoRoute route) {
 }  // namespace
 
 RouteDemand demandOf(const costmap::CostGrid& map, const Plan& plan) {
-  const Route route = annotated(plan, {.map = map, .elevation_m = nullptr, .planner = {}});
+  const Route route = annotated(plan, {.map = map, .planner = {}});
   return {.energy_J = route.summary.energy_J,
           .time_s = route.summary.time_s,
           .risk = route.vertices.empty() ? 0.0 : route.vertices.back().immobilisation_risk};
+}
+
+RouteRiskOptions riskOptions(const costmap::CostGrid& map, const RiskLimit& limit, std::uint64_t seed) {
+  RouteRiskOptions options = riskOptions(map);
+  if (!(map.cost().doubt().correlation_length_m > 0.0))
+    options.correlation_length_m = limit.correlation_length_m;
+  options.seed = seed;
+  return options;
 }
 
 Plan planWithinRisk(const Problem& problem, NamedPlanner& planner, double max_risk,

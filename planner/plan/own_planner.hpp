@@ -3,12 +3,12 @@
 #include <memory>
 #include <optional>
 
+#include <talus/planner/plan/route_planner.hpp>
 #include <talus/planner/plugin/global_planner.hpp>
-#include <talus/planner/plugin/named_planner.hpp>
 
 namespace talus::planner {
 
-/// Talus' own planners behind the interface that embedders use. What leaves has passed checkedPlan().
+/// Talus' own planners behind the interface that embedders use. Its routes are those of planRoute().
 class OwnPlanner final : public GlobalPlanner {
  public:
   PlannerCapabilities capabilities() const override;
@@ -19,14 +19,9 @@ class OwnPlanner final : public GlobalPlanner {
   std::unique_ptr<GlobalPlanner> create() const override { return std::make_unique<OwnPlanner>(); }
 
  private:
-  Problem problemOf(const PlanRequest& request) const;
-
-  std::optional<NamedPlanner> planner_;  // none: the default, made when first asked
+  std::optional<RoutePlanner> planner_;  // none: the default, made when first asked
   PlannerSettings settings_;
   std::shared_ptr<const costmap::CostGrid> map_;
 };
-
-/// The settings, once they keep their ranges. Throws std::invalid_argument naming field, value and bound.
-const PlannerSettings& validated(const PlannerSettings& settings);
 
 }  // namespace talus::planner

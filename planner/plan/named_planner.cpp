@@ -1,5 +1,5 @@
 #include <talus/planner/grid/goal_choice.hpp>
-#include <talus/planner/plugin/named_planner.hpp>
+#include <talus/planner/plan/named_planner.hpp>
 #include <talus/planner/route/planner_names.hpp>
 
 namespace talus::planner {

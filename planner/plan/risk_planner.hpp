@@ -1,11 +1,13 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <vector>
 
 #include <talus/costmap/cost/cost_weights.hpp>
 #include <talus/planner/check/route_risk.hpp>
-#include <talus/planner/plugin/named_planner.hpp>
+#include <talus/planner/plan/named_planner.hpp>
+#include <talus/planner/plugin/global_planner.hpp>
 #include <talus/planner/route/problem.hpp>
 
 namespace talus::planner {
@@ -20,6 +22,9 @@ struct RouteDemand {
 
 /// The demand of a plan on a map, integrated along it.
 RouteDemand demandOf(const costmap::CostGrid& map, const Plan& plan);
+
+/// riskOptions() of a map for a limit and a seed: the limit's correlation length counts where the map's cost states none.
+RouteRiskOptions riskOptions(const costmap::CostGrid& map, const RiskLimit& limit, std::uint64_t seed);
 
 /// Plans under a chance constraint: the cheapest route found whose probability of immobilisation is at most
 /// max_risk, in (0, 1), by routeRisk() over spatially correlated soil whose class is uncertain as a whole, with

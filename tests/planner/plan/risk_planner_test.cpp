@@ -2,7 +2,7 @@
 #include <stdexcept>
 #include <stop_token>
 
-#include <talus/planner/plugin/risk_planner.hpp>
+#include <talus/planner/plan/risk_planner.hpp>
 #include <talus/planner/route/motion_cost.hpp>
 
 #include "drawn_map.hpp"

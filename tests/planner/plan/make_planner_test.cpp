@@ -1,8 +1,8 @@
 #include <cmath>
 
 #include <talus/planner/check/route_check.hpp>
-#include <talus/planner/plugin/make_planner.hpp>
-#include <talus/planner/plugin/named_planner.hpp>
+#include <talus/planner/plan/make_planner.hpp>
+#include <talus/planner/plan/named_planner.hpp>
 
 #include "drawn_map.hpp"
 

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <stop_token>
 
-#include <talus/planner/plugin/own_planner.hpp>
+#include <talus/planner/plan/own_planner.hpp>
 
 #include "drawn_map.hpp"
 
