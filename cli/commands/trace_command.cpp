@@ -8,14 +8,9 @@
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/soil/left_out_report.hpp>
 #include <talus/cli/soil/trace_report.hpp>
-#include <talus/common/input_error.hpp>
 #include <talus/common/progress_monitor.hpp>
-#include <talus/terramech/calibration/held_out/held_out.hpp>
 #include <talus/terramech/calibration/trace/left_out.hpp>
-#include <talus/terramech/io/model_file.hpp>
-#include <talus/terramech/io/soil_library.hpp>
-#include <talus/terramech/io/telemetry_reader.hpp>
-#include <talus/terramech/io/wheel_rows.hpp>
+#include <talus/terramech/calibration/trace/trace_input.hpp>
 
 namespace talus::cli {
 namespace {
@@ -53,14 +48,6 @@ void bind(CLI::App& command, TraceCommandOptions& options) {
   groupOptions(command, "Output");
 }
 
-terramech::ModelFile baseOf(const TraceCommandOptions& options) {
-  terramech::ModelFile file;
-  if (!options.base.empty()) file = terramech::loadModel(options.base);
-  if (options.base.empty()) file = terramech::unknownSoil();
-  if (!options.rover.empty()) file.model.takeRover(terramech::loadRover(options.rover));
-  return file;
-}
-
 void warnOfRejected(const terramech::Telemetry& telemetry, const Context& context) {
   constexpr std::size_t kShown = 20;
   for (std::size_t k = 0; k < telemetry.rejected.size() && k < kShown; ++k)
@@ -71,18 +58,14 @@ void warnOfRejected(const terramech::Telemetry& telemetry, const Context& contex
         fmt::format("{}: {} more rows rejected", telemetry.source, telemetry.rejected.size() - kShown));
 }
 
-std::vector<char> without(std::vector<char> rows) {
-  for (char& row : rows) row = !row;
-  return rows;
-}
-
 /// The loop on rows that the search never saw.
-int holdOutRows(const TraceCommandOptions& options, const terramech::RefinedModel& base,
-                const terramech::Trial& trial, const terramech::TraceOptions& how, Context& context) {
+int holdOutRows(const TraceCommandOptions& options, const terramech::Telemetry& table,
+                const terramech::TableTraceOptions& how, Context& context) {
+  const auto [rows, search] = terramech::traceInput(table, how);
   std::vector<terramech::LeftOutErrors> all;
-  for (const terramech::LeftOut& left : terramech::leftOut(trial, options.hold_out, options.telemetry)) {
+  for (const terramech::LeftOut& left : terramech::leftOut(rows.trial, options.hold_out, options.telemetry)) {
     const ProgressMonitor watch = context.watch("tracing without " + left.what);
-    all.push_back(terramech::traceWithout(base, trial, left, how, watch));
+    all.push_back(terramech::traceWithout(rows.model, rows.trial, left, search, watch));
     if (watch.stopped()) return Exit::kCancelled;
   }
   if (!options.html.empty()) writeFile(options.html, leftOutPage(all, options.hold_out, options.telemetry));
@@ -93,56 +76,32 @@ int holdOutRows(const TraceCommandOptions& options, const terramech::RefinedMode
   return Exit::kDone;
 }
 
+void writeModel(const std::string& path, const terramech::TableTrace& trace, const Context& context) {
+  writeFile(path, trace.modelText());
+  const terramech::Soil& soil = trace.result.refined.soil;
+  if (soil.c1 + std::abs(soil.c2) > 1.0 || soil.c1 < std::abs(soil.c2))
+    context.warn(path +
+                 ": its stress peak c1 + c2 slip leaves the contact at slip -1 or 1: predict and assess read "
+                 "it, plan and costmap refuse it");
+}
+
 int run(const TraceCommandOptions& options, Context& context) {
-  terramech::ModelFile base = baseOf(options);
-  terramech::Telemetry telemetry =
-      terramech::readTelemetry(options.telemetry, {.required = {"load_N", "slip"}});
-  terramech::leaveOutWithoutSlipAngle(telemetry);
-  warnOfRejected(telemetry, context);
-  const terramech::Trial all = terramech::makeTrial(telemetry, base.model);
-  const std::vector<char> sunk = terramech::beyondAxle(all);
-  const terramech::Trial trial = terramech::subset(all, without(sunk));
-  if (trial.rows() < 6)
-    throw InputError(
-        {options.telemetry,
-         fmt::format("{} usable rows with sinkage below the wheel radius; tracing needs at least 6",
-                     trial.rows()),
-         ""});
-  base.model.slip_along_travel |= terramech::slipIsAlongTravel(trial.states);
-  // A drive has not the information for soil and effects at once.
-  if (base.soil_given && trial.moment.empty()) terramech::giveDefaultDeviations(base.model);
-  terramech::TraceOptions how{.significance = options.significance};
-  how.fit_soil = !base.soil_given;
-  how.seed = context.seed;
-  if (!options.hold_out.empty()) return holdOutRows(options, base.model, trial, how, context);
+  const terramech::TableTraceOptions how{.base = terramech::baseModel(options.base, options.rover),
+                                         .significance = options.significance,
+                                         .seed = context.seed};
+  const terramech::Telemetry table = terramech::readTraceTable(options.telemetry);
+  warnOfRejected(table, context);
+  if (!options.hold_out.empty()) return holdOutRows(options, table, how, context);
   const ProgressMonitor watch = context.watch("tracing");
-  TraceStory story{options.telemetry,
-                   telemetry.rejected.size(),
-                   terramech::traceResiduals(base.model, trial, how, watch),
-                   {},
-                   {}};
+  const terramech::TableTrace trace = terramech::traceTable(table, how, watch);
   if (watch.stopped()) return Exit::kCancelled;
-  story.held_out = terramech::holdOutLevels(story.result, how);
-  story.held_out.insert(story.held_out.begin(), story.result.held_out);
-  story.beyond_axle = all.rows() - trial.rows();
-  if (story.beyond_axle > 0)
-    story.beyond_axle_rmse = terramech::rmseOf(story.result.refined, terramech::subset(all, sunk));
-  story.applies = terramech::applicability(story.result, how);
-  if (!options.model_out.empty()) {
-    const terramech::RefinedModel model = terramech::forPrediction(story.result);
-    writeFile(options.model_out, terramech::modelText(model, story.result.scope));
-    if (model.soil.c1 + std::abs(model.soil.c2) > 1.0 || model.soil.c1 < std::abs(model.soil.c2))
-      context.warn(
-          options.model_out +
-          ": its stress peak c1 + c2 slip leaves the contact at slip -1 or 1: predict and assess read "
-          "it, plan and costmap refuse it");
-  }
-  if (!options.html.empty()) writeFile(options.html, tracePage(story));
+  if (!options.model_out.empty()) writeModel(options.model_out, trace, context);
+  if (!options.html.empty()) writeFile(options.html, tracePage(trace));
   if (context.json)
-    printJson(traceJson(story));
+    printJson(traceJson(trace));
   else
-    print(traceText(story));
-  return story.applies.applies ? Exit::kDone : Exit::kNo;
+    print(traceText(trace));
+  return trace.applies.applies ? Exit::kDone : Exit::kNo;
 }
 
 }  // namespace

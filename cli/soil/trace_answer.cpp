@@ -77,8 +77,7 @@ std::string refusal(const TraceResult& result) {
   return fmt::format("{}, {:.1f} when fitted: {}", first, fitted->gain, refusal(result, *fitted));
 }
 
-std::string verdictText(const TraceResult& result) {
-  const Answer a = answerOf(result);
+std::string verdictText(const TraceResult& result, const Answer& a) {
   const std::string rest =
       fmt::format("rms of {} {:.4f}, of the sensors alone {:.4f}", name(a.channel), a.rest, a.floor);
   if (a.verdict == Verdict::NothingMissing)

@@ -15,7 +15,7 @@ std::string refusal(const terramech::TraceResult& result);
 std::string refusal(const terramech::TraceResult& result, const terramech::Explanation& rejected);
 
 /// The answer in one line: what is left, in which channel, over which column, which rows would decide.
-std::string verdictText(const terramech::TraceResult& result);
+std::string verdictText(const terramech::TraceResult& result, const terramech::Answer& answer);
 
 /// What an effect of the refined model changes there.
 struct EffectRole {

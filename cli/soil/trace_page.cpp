@@ -120,16 +120,16 @@ std::string rivals(const TracedEffect& effect) {
   return text.empty() ? "no close alternative" : text;
 }
 
-void effects(HtmlReport& page, const TraceStory& story) {
+void effects(HtmlReport& page, const TableTrace& trace) {
   page.heading("Effects missing from the base model");
-  if (story.result.effects.empty()) {
+  if (trace.result.effects.empty()) {
     page.paragraph("No effect found: no candidate gains more than noise would.");
     return;
   }
   std::vector<std::vector<std::string>> found, forms;
-  const std::vector<EffectRole> roles = rolesOf(story.result);
+  const std::vector<EffectRole> roles = rolesOf(trace.result);
   for (std::size_t k = 0; k < roles.size(); ++k) {
-    const TracedEffect& e = story.result.effects[k];
+    const TracedEffect& e = trace.result.effects[k];
     const Effect& part = e.chosen.candidate.parts.front();
     const EffectForm* form = findEffect(part.name);
     found.push_back({part.name, covariateOf(part) + (part.only_column.empty() ? "" : " = " + part.only_value),
@@ -139,7 +139,7 @@ void effects(HtmlReport& page, const TraceStory& story) {
     forms.push_back({part.name,
                      std::string(form ? form->formula : "curve fitted to the residual") +
                          (role.empty() ? "" : "; it " + role),
-                     rivals(e), separatingMeasurement(story.result.trial, e)});
+                     rivals(e), separatingMeasurement(trace.result.trial, e)});
   }
   page.table({"effect", "covariate", "channel", "parameters (standard deviation)", "p (all tests)",
               "log-likelihood gain"},
@@ -147,9 +147,9 @@ void effects(HtmlReport& page, const TraceStory& story) {
   page.table({"effect", "form", "alternatives", "how to discriminate"}, forms);
 }
 
-void errors(HtmlReport& page, const TraceStory& story) {
+void errors(HtmlReport& page, const TableTrace& trace) {
   page.heading("Error of the base and the refined model");
-  const TraceResult& r = story.result;
+  const TraceResult& r = trace.result;
   const auto row = [&](const char* rows, Channel c, const ChannelErrors& base, const ChannelErrors& refined) {
     const auto k = static_cast<std::size_t>(c);
     return std::vector<std::string>{rows, name(c), fmt::format("{:.4f}", base[k]),
@@ -157,7 +157,7 @@ void errors(HtmlReport& page, const TraceStory& story) {
                                     fmt::format("{:.4f}", r.noise_floor[k])};
   };
   std::vector<std::vector<std::string>> rows;
-  for (const HeldOut& held : story.held_out)
+  for (const HeldOut& held : trace.held_out)
     for (Channel c : kAllChannels)
       if (r.trial.has(c)) rows.push_back(row(held.scheme.c_str(), c, held.base_rmse, held.refined_rmse));
   for (Channel c : kAllChannels)
@@ -184,15 +184,15 @@ void tests(HtmlReport& page, const TraceResult& r) {
 
 }  // namespace
 
-std::string tracePage(const TraceStory& story) {
-  const TraceResult& r = story.result;
-  HtmlReport page("Residuals of " + story.source);
-  page.paragraph("Verdict: " + verdictText(r) + ".");
+std::string tracePage(const TableTrace& trace) {
+  const TraceResult& r = trace.result;
+  HtmlReport page("Residuals of " + trace.source);
+  page.paragraph("Verdict: " + verdictText(r, trace.answer) + ".");
   for (const MovedParameter& p : movedSoil(r)) page.paragraph(movedText(p) + ".");
-  page.paragraph(fmt::format("{} rows used, {} rejected.", r.trial.rows(), story.rows_rejected));
+  page.paragraph(fmt::format("{} rows used, {} rejected.", trace.rowsUsed(), trace.rejected.size()));
   if (const std::string searched = searchedText(r); !searched.empty()) page.paragraph(searched);
-  if (story.beyond_axle > 0) page.paragraph(beyondAxleText(story) + ".");
-  if (!story.applies.applies) page.paragraph("The model does not apply here: " + story.applies.reason + ".");
+  if (trace.beyond_axle > 0) page.paragraph(beyondAxleText(trace) + ".");
+  if (!trace.applies.applies) page.paragraph("The model does not apply here: " + trace.applies.reason + ".");
   terramech::SolvedContacts solved;
   const Eigen::MatrixXd before = r.trial.measured - predictRows(r.base, r.trial, solved);
   const Eigen::MatrixXd level = predictRows(r.refined, r.trial, solved), after = r.trial.measured - level;
@@ -200,8 +200,8 @@ std::string tracePage(const TraceStory& story) {
   for (int row = 0; row < r.trial.rows(); ++row)
     sinkage[row] = level(row, 1) * r.trial.denominator(row, Channel::Sinkage);
   curves(page, r, level, sinkage);
-  errors(page, story);
-  effects(page, story);
+  errors(page, trace);
+  effects(page, trace);
   page.heading("Residuals over each covariate, base and refined model");
   std::vector<Plot> plots;
   for (const std::string& covariate : shown(r))

@@ -49,10 +49,10 @@ ordered_json rivalJson(const Explanation& e) {
   return out;
 }
 
-ordered_json evidenceJson(const TraceStory& story, const TracedEffect& effect) {
+ordered_json evidenceJson(const TableTrace& trace, const TracedEffect& effect) {
   ordered_json by_channel = ordered_json::object();
   for (Channel c : kAllChannels)
-    if (story.result.trial.has(c))
+    if (trace.result.trial.has(c))
       by_channel[name(c)] = effect.chosen.by_channel[static_cast<std::size_t>(c)];
   ordered_json rivals = ordered_json::array();
   for (const Explanation& e : effect.alternatives) rivals.push_back(rivalJson(e));
@@ -60,11 +60,11 @@ ordered_json evidenceJson(const TraceStory& story, const TracedEffect& effect) {
           {"gain", effect.chosen.gain},
           {"chi2_gain_by_channel", by_channel},
           {"alternatives", rivals},
-          {"confounded_with", confounded(story.result.trial, effect.chosen.candidate.covariate())},
-          {"to_tell_apart", separatingMeasurement(story.result.trial, effect)}};
+          {"confounded_with", confounded(trace.result.trial, effect.chosen.candidate.covariate())},
+          {"to_tell_apart", separatingMeasurement(trace.result.trial, effect)}};
 }
 
-ordered_json effectJson(const TraceStory& story, const TracedEffect& effect, const EffectRole& role) {
+ordered_json effectJson(const TableTrace& trace, const TracedEffect& effect, const EffectRole& role) {
   const Effect& part = effect.chosen.candidate.parts.front();
   ordered_json out{{"name", part.name},
                    {"family", effect.chosen.candidate.family},
@@ -77,7 +77,7 @@ ordered_json effectJson(const TraceStory& story, const TracedEffect& effect, con
   out["adds"] = role.adds;
   out["takes_back"] = role.takes_back;
   out["p_value"] = effect.p_value;
-  out["evidence"] = evidenceJson(story, effect);
+  out["evidence"] = evidenceJson(trace, effect);
   if (const EffectForm* form = findEffect(part.name)) {
     out["formula"] = form->formula;
     out["source"] = form->source;
@@ -204,25 +204,25 @@ ordered_json schemeJson(const HeldOut& held) {
   return out;
 }
 
-std::string groupLines(const TraceStory& story, const HeldOut& held) {
+std::string groupLines(const TableTrace& trace, const HeldOut& held) {
   std::string out;
   for (const GroupErrors& g : held.groups) {
     out += fmt::format("  {} = {}, {} rows\n", g.column, g.value, g.rows);
     for (Channel c : kAllChannels)
-      if (const auto k = static_cast<std::size_t>(c); story.result.trial.has(c))
+      if (const auto k = static_cast<std::size_t>(c); trace.result.trial.has(c))
         out += fmt::format("  {:26s} {:10.4f} {:10.4f}\n", name(c), g.base_rmse[k], g.refined_rmse[k]);
   }
   return out;
 }
 
-ordered_json heldOutJson(const TraceStory& story) {
-  ordered_json out = schemeJson(story.held_out.front());
-  out["noise_floor"] = errorsJson(story.result.noise_floor);
+ordered_json heldOutJson(const TableTrace& trace) {
+  ordered_json out = schemeJson(trace.held_out.front());
+  out["noise_floor"] = errorsJson(trace.result.noise_floor);
   ordered_json others = ordered_json::array();
-  for (std::size_t k = 1; k < story.held_out.size(); ++k) others.push_back(schemeJson(story.held_out[k]));
+  for (std::size_t k = 1; k < trace.held_out.size(); ++k) others.push_back(schemeJson(trace.held_out[k]));
   out["others"] = others;
   ordered_json ends = ordered_json::array();
-  for (const EndLevel& end : story.result.ends)
+  for (const EndLevel& end : trace.result.ends)
     ends.push_back({{"column", end.column},
                     {"end", end.high ? "high" : "low"},
                     {"rows", end.rows},
@@ -248,8 +248,7 @@ std::string endLines(const TraceResult& r) {
   return out;
 }
 
-ordered_json answerJson(const TraceResult& result) {
-  const Answer a = answerOf(result);
+ordered_json answerJson(const TraceResult& result, const Answer& a) {
   ordered_json moved = ordered_json::array();
   for (const MovedParameter& p : movedSoil(result))
     moved.push_back({{"name", p.name},
@@ -269,9 +268,9 @@ ordered_json answerJson(const TraceResult& result) {
           {"soil_at_bound", soilAtBounds(result.refined)}};
 }
 
-ordered_json beyondAxleJson(const TraceStory& story) {
-  if (story.beyond_axle == 0) return {{"rows", 0}};
-  return {{"rows", story.beyond_axle}, {"refined_rmse", errorsJson(story.beyond_axle_rmse)}};
+ordered_json beyondAxleJson(const TableTrace& trace) {
+  if (trace.beyond_axle == 0) return {{"rows", 0}};
+  return {{"rows", trace.beyond_axle}, {"refined_rmse", errorsJson(trace.beyond_axle_rmse)}};
 }
 
 }  // namespace
@@ -283,11 +282,11 @@ ordered_json errorsJson(const ChannelErrors& errors) {
   return out;
 }
 
-ordered_json traceJson(const TraceStory& story) {
-  const TraceResult& r = story.result;
+ordered_json traceJson(const TableTrace& trace) {
+  const TraceResult& r = trace.result;
   ordered_json effects = ordered_json::array();
   const std::vector<EffectRole> roles = rolesOf(r);
-  for (std::size_t k = 0; k < roles.size(); ++k) effects.push_back(effectJson(story, r.effects[k], roles[k]));
+  for (std::size_t k = 0; k < roles.size(); ++k) effects.push_back(effectJson(trace, r.effects[k], roles[k]));
   ordered_json tests = ordered_json::array();
   for (std::size_t k = 0; k < r.first_promises.size() && k < 12; ++k) {
     const Promise& p = r.first_promises[k];
@@ -298,31 +297,31 @@ ordered_json traceJson(const TraceStory& story) {
                      {"gain", p.gain},
                      {"p_value", p.p_value}});
   }
-  return {{"verdict", name(answerOf(r).verdict)},
-          {"answer", answerJson(r)},
+  return {{"verdict", name(trace.answer.verdict)},
+          {"answer", answerJson(r, trace.answer)},
           {"base", {{"rmse", errorsJson(r.base_rmse)}}},
           {"effects", effects},
           {"rejected", rejectedJson(r)},
           {"refined", {{"rmse", errorsJson(r.refined_rmse)}}},
-          {"held_out", heldOutJson(story)},
+          {"held_out", heldOutJson(trace)},
           {"tests", tests},
-          {"applies", story.applies.applies},
-          {"applies_reason", story.applies.reason},
-          {"rows_used", r.trial.rows() + r.unsearched.rows},
-          {"rows_rejected", story.rows_rejected},
+          {"applies", trace.applies.applies},
+          {"applies_reason", trace.applies.reason},
+          {"rows_used", trace.rowsUsed()},
+          {"rows_rejected", trace.rejected.size()},
           {"searched", searchedJson(r)},
-          {"beyond_axle", beyondAxleJson(story)}};
+          {"beyond_axle", beyondAxleJson(trace)}};
 }
 
-std::string beyondAxleText(const TraceStory& story) {
+std::string beyondAxleText(const TableTrace& trace) {
   std::string errors;
   for (Channel c : kAllChannels)
-    if (const double e = story.beyond_axle_rmse[static_cast<std::size_t>(c)]; std::isfinite(e))
+    if (const double e = trace.beyond_axle_rmse[static_cast<std::size_t>(c)]; std::isfinite(e))
       errors += fmt::format("{}{} {:.3f}", errors.empty() ? "" : ", ", name(c), e);
   return fmt::format(
       "{} rows with sinkage at or above the axle are excluded, outside the range of the contact model; rmse "
       "of the refined model on them: {}",
-      story.beyond_axle, errors);
+      trace.beyond_axle, errors);
 }
 
 std::string movedText(const MovedParameter& p) {
@@ -332,18 +331,18 @@ std::string movedText(const MovedParameter& p) {
       p.name, p.away(), p.value, p.prior, p.prior_std);
 }
 
-std::string traceText(const TraceStory& story) {
-  const TraceResult& r = story.result;
-  std::string out = verdictText(r) + "\n" +
-                    fmt::format("{}: {} rows used, {} rejected\n", story.source,
-                                r.trial.rows() + r.unsearched.rows, story.rows_rejected) +
-                    searchedText(r);
+std::string traceText(const TableTrace& trace) {
+  const TraceResult& r = trace.result;
+  std::string out =
+      verdictText(r, trace.answer) + "\n" +
+      fmt::format("{}: {} rows used, {} rejected\n", trace.source, trace.rowsUsed(), trace.rejected.size()) +
+      searchedText(r);
   for (const MovedParameter& p : movedSoil(r)) out += movedText(p) + "\n";
   for (const std::string& name : soilAtBounds(r.refined))
     out += "warning: " + name + " of the soil is at the bound of its range\n";
   const std::vector<EffectRole> roles = rolesOf(r);
   for (std::size_t k = 0; k < roles.size(); ++k) out += effectLine(r.effects[k], roles[k]);
-  for (const HeldOut& held : story.held_out) {
+  for (const HeldOut& held : trace.held_out) {
     out += fmt::format(
         "held out: {}\n"
         "  {:26s} {:>10s} {:>10s} {:>12s}\n",
@@ -354,11 +353,11 @@ std::string traceText(const TraceStory& story) {
       out += fmt::format("  {:26s} {:10.4f} {:10.4f} {:12.4f}\n", name(c), held.base_rmse[k],
                          held.refined_rmse[k], r.noise_floor[k]);
     }
-    out += groupLines(story, held);
+    out += groupLines(trace, held);
   }
   out += endLines(r);
-  if (story.beyond_axle > 0) out += beyondAxleText(story) + '\n';
-  if (!story.applies.applies) out += "the model does not apply: " + story.applies.reason + "\n";
+  if (trace.beyond_axle > 0) out += beyondAxleText(trace) + '\n';
+  if (!trace.applies.applies) out += "the model does not apply: " + trace.applies.reason + "\n";
   return out;
 }
 

@@ -4,23 +4,9 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include <talus/terramech/calibration/held_out/held_out.hpp>
-#include <talus/terramech/calibration/trace/model_validity.hpp>
-#include <talus/terramech/calibration/trace/residual_trace.hpp>
-#include <talus/terramech/calibration/verdict/verdict.hpp>
+#include <talus/terramech/calibration/trace/trace_table.hpp>
 
 namespace talus::cli {
-
-/// The results of residual tracing.
-struct TraceStory {
-  std::string source;  ///< the file
-  std::size_t rows_rejected = 0;
-  terramech::TraceResult result;
-  std::vector<terramech::HeldOut> held_out;  ///< the first is the one that counts
-  terramech::Applicability applies;
-  int beyond_axle = 0;                          ///< rows left out: terramech::beyondAxle()
-  terramech::ChannelErrors beyond_axle_rmse{};  ///< of the refined model there
-};
 
 /// Columns that move with a covariate so closely (|correlation| above 0.9) that the rows cannot tell them
 /// apart.
@@ -36,7 +22,7 @@ std::string pText(double p);
 std::string separatingMeasurement(const terramech::Trial& trial, const terramech::TracedEffect& effect);
 
 /// One line about the rows left out because the wheel is sunk to its axle; there must be some.
-std::string beyondAxleText(const TraceStory& story);
+std::string beyondAxleText(const terramech::TableTrace& trace);
 
 /// One line about a parameter of the soil far from its prior.
 std::string movedText(const terramech::MovedParameter& parameter);
@@ -44,8 +30,8 @@ std::string movedText(const terramech::MovedParameter& parameter);
 /// The errors of the channels that have any, by name.
 nlohmann::ordered_json errorsJson(const terramech::ChannelErrors& errors);
 
-nlohmann::ordered_json traceJson(const TraceStory& story);
-std::string traceText(const TraceStory& story);
-std::string tracePage(const TraceStory& story);
+nlohmann::ordered_json traceJson(const terramech::TableTrace& trace);
+std::string traceText(const terramech::TableTrace& trace);
+std::string tracePage(const terramech::TableTrace& trace);
 
 }  // namespace talus::cli

@@ -2,22 +2,16 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include <talus/common/input_error.hpp>
 #include <talus/common/progress_monitor.hpp>
 #include <talus/planner/python/background.hpp>
 #include <talus/planner/python/bindings.hpp>
-#include <talus/terramech/calibration/trace/model_validity.hpp>
-#include <talus/terramech/calibration/trace/residual_trace.hpp>
-#include <talus/terramech/calibration/verdict/verdict.hpp>
-#include <talus/terramech/io/model_file.hpp>
-#include <talus/terramech/io/soil_library.hpp>
-#include <talus/terramech/io/telemetry_reader.hpp>
+#include <talus/terramech/calibration/table/model_rows.hpp>
+#include <talus/terramech/calibration/trace/trace_table.hpp>
 
 namespace py = pybind11;
 
@@ -33,45 +27,18 @@ struct Asked {
   std::uint64_t seed = 1;
 };
 
-struct Trace {
-  TraceResult result;
-  Applicability applies;
-  std::size_t rows_rejected = 0;
-  int beyond_axle = 0;
-};
-
-// As `talus trace`.
-Trace traced(const Asked& asked, const ProgressMonitor& watch) {
-  ModelFile base = asked.base.empty() ? unknownSoil() : loadModel(asked.base);
-  if (!asked.rover.empty()) base.model.takeRover(loadRover(asked.rover));
-  const Telemetry telemetry = readTelemetry(asked.table, {.required = {"load_N", "slip"}});
-  const Trial all = makeTrial(telemetry, base.model);
-  std::vector<char> keep = beyondAxle(all);
-  for (char& row : keep) row = !row;
-  const Trial trial = subset(all, keep);
-  if (trial.rows() < 6)
-    throw InputError({asked.table.string(),
-                      std::to_string(trial.rows()) +
-                          " usable rows with sinkage below the wheel radius; tracing needs at least 6",
-                      ""});
-  base.model.slip_along_travel |= slipIsAlongTravel(trial.states);
-  if (base.soil_given && trial.moment.empty()) giveDefaultDeviations(base.model);
-  TraceOptions how{.significance = asked.significance};
-  how.fit_soil = !base.soil_given;
-  how.seed = asked.seed;
-  Trace trace{.result = traceResiduals(base.model, trial, how, watch)};
-  if (watch.stopped()) return trace;
-  trace.applies = applicability(trace.result, how);
-  trace.rows_rejected = telemetry.rejected.size();
-  trace.beyond_axle = all.rows() - trial.rows();
-  return trace;
-}
-
-Trace trace(const Asked& asked, const py::object& progress) {
+TableTrace trace(const Asked& asked, const py::object& progress) {
   if (!(asked.significance >= 1e-3 && asked.significance <= 0.5))
     throw py::value_error("significance = " + std::to_string(asked.significance) + ", must be 0.001 to 0.5");
-  Trace found;
-  inBackground([&](const ProgressMonitor& watch) { found = traced(asked, watch); }, progress);
+  TableTrace found;
+  inBackground(
+      [&](const ProgressMonitor& watch) {
+        const TableTraceOptions how{.base = baseModel(asked.base, asked.rover),
+                                    .significance = asked.significance,
+                                    .seed = asked.seed};
+        found = traceTable(readTraceTable(asked.table), how, watch);
+      },
+      progress);
   return found;
 }
 
@@ -135,44 +102,46 @@ void bindEffect(py::module_& module) {
                              "names of others that explain it about as well");
 }
 
-void bindErrors(py::class_<Trace>& trace) {
-  trace.def_property_readonly("base_rmse", [](const Trace& t) { return byChannel(t.result.base_rmse); })
-      .def_property_readonly("refined_rmse", [](const Trace& t) { return byChannel(t.result.refined_rmse); })
-      .def_property_readonly("noise_floor", [](const Trace& t) { return byChannel(t.result.noise_floor); })
+void bindErrors(py::class_<TableTrace>& trace) {
+  trace.def_property_readonly("base_rmse", [](const TableTrace& t) { return byChannel(t.result.base_rmse); })
+      .def_property_readonly("refined_rmse",
+                             [](const TableTrace& t) { return byChannel(t.result.refined_rmse); })
+      .def_property_readonly("noise_floor",
+                             [](const TableTrace& t) { return byChannel(t.result.noise_floor); })
       .def_property_readonly(
-          "held_out_scheme", [](const Trace& t) { return t.result.held_out.scheme; },
+          "held_out_scheme", [](const TableTrace& t) { return t.result.held_out.scheme; },
           "what was held out together")
       .def_property_readonly("held_out_base_rmse",
-                             [](const Trace& t) { return byChannel(t.result.held_out.base_rmse); })
+                             [](const TableTrace& t) { return byChannel(t.result.held_out.base_rmse); })
       .def_property_readonly("held_out_refined_rmse",
-                             [](const Trace& t) { return byChannel(t.result.held_out.refined_rmse); });
+                             [](const TableTrace& t) { return byChannel(t.result.held_out.refined_rmse); });
 }
 
 }  // namespace
 
 void bindTrace(py::module_& module) {
   bindEffect(module);
-  py::class_<Trace> trace_class(
+  py::class_<TableTrace> trace_class(
       module, "Trace",
       "What a wheel model lacks. Errors are root mean squares by channel, as shares of load, of load times\n"
       "radius (torque) or of radius (sinkage).");
   trace_class
       .def_property_readonly(
-          "verdict", [](const Trace& t) { return std::string(name(answerOf(t.result).verdict)); },
+          "verdict", [](const TableTrace& t) { return std::string(name(t.answer.verdict)); },
           "explained, nothing_missing or unexplained")
-      .def_property_readonly("effects", [](const Trace& t) { return t.result.effects; })
+      .def_property_readonly("effects", [](const TableTrace& t) { return t.result.effects; })
       .def_property_readonly(
-          "applies", [](const Trace& t) { return t.applies.applies; },
+          "applies", [](const TableTrace& t) { return t.applies.applies; },
           "whether a rigid wheel on soil, with physical effects, describes the rows")
-      .def_property_readonly("applies_reason", [](const Trace& t) { return t.applies.reason; })
-      .def_property_readonly("rows_used", [](const Trace& t) { return t.result.trial.rows(); })
-      .def_readonly("rows_rejected", &Trace::rows_rejected)
-      .def_readonly("beyond_axle", &Trace::beyond_axle, "rows left out because the wheel is sunk to its axle")
-      .def(
-          "model_text", [](const Trace& t) { return modelText(forPrediction(t.result), t.result.scope); },
-          "The refined model as a YAML file has it, for base= and `talus predict --model`.")
-      .def("__repr__", [](const Trace& t) {
-        return "<talus.Trace " + std::string(name(answerOf(t.result).verdict)) + ", " +
+      .def_property_readonly("applies_reason", [](const TableTrace& t) { return t.applies.reason; })
+      .def_property_readonly("rows_used", [](const TableTrace& t) { return t.rowsUsed(); })
+      .def_property_readonly("rows_rejected", [](const TableTrace& t) { return t.rejected.size(); })
+      .def_readonly("beyond_axle", &TableTrace::beyond_axle,
+                    "rows left out because the wheel is sunk to its axle")
+      .def("model_text", &TableTrace::modelText,
+           "The refined model as a YAML file has it, for base= and `talus predict --model`.")
+      .def("__repr__", [](const TableTrace& t) {
+        return "<talus.Trace " + std::string(name(t.answer.verdict)) + ", " +
                std::to_string(t.result.effects.size()) + " effects>";
       });
   bindErrors(trace_class);

@@ -5,24 +5,10 @@
 
 #include <Eigen/Core>
 
+#include <talus/terramech/calibration/fit/candidate.hpp>
 #include <talus/terramech/calibration/table/trial.hpp>
 
 namespace talus::terramech {
-
-/// One explanation that may be added to a model: an effect of the library, or curves of one covariate in some
-/// channels.
-struct Candidate {
-  std::vector<Effect> parts;  ///< one, or one curve a channel
-  std::string family;         ///< "empirical" for curves
-  int parameters = 0;         ///< fitted numbers
-
-  bool empirical() const { return parts.front().empirical(); }
-  /// The column that explains: of what acts on one group of rows, the column of the group.
-  const std::string& covariate() const {
-    const Effect& front = parts.front();
-    return front.only_column.empty() ? front.covariate : front.only_column;
-  }
-};
 
 /// Every effect of the library that the columns of a trial allow, at its typical size, with starts where it
 /// is nonlinear; sensor effects also for one group of a text column. `sinkage_m` is the model's.

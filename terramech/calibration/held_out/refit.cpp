@@ -1,7 +1,9 @@
 #include <cmath>
 
 #include <talus/common/constants.hpp>
+#include <talus/terramech/calibration/fit/model_fit.hpp>
 #include <talus/terramech/calibration/held_out/refit.hpp>
+#include <talus/terramech/calibration/noise/whitening.hpp>
 
 namespace talus::terramech {
 namespace {

@@ -3,6 +3,7 @@
 #include <numeric>
 #include <random>
 
+#include <talus/terramech/calibration/fit/effect_candidates.hpp>
 #include <talus/terramech/calibration/search/column_screening.hpp>
 #include <talus/terramech/calibration/search/trace_search.hpp>
 

@@ -3,15 +3,14 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include <talus/terramech/calibration/fit/effect_candidates.hpp>
-#include <talus/terramech/calibration/fit/model_fit.hpp>
+#include <talus/terramech/calibration/fit/candidate.hpp>
 #include <talus/terramech/calibration/table/trial.hpp>
 #include <talus/terramech/io/model_file.hpp>
+#include <talus/terramech/numerics/estimate.hpp>
 
 namespace talus::terramech {
 

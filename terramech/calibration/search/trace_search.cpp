@@ -4,8 +4,8 @@
 #include <numeric>
 #include <set>
 
-#include <talus/terramech/calibration/noise/input_calibration.hpp>
-#include <talus/terramech/calibration/noise/run_units.hpp>
+#include <talus/terramech/calibration/fit/candidate_columns.hpp>
+#include <talus/terramech/calibration/fit/effect_candidates.hpp>
 #include <talus/terramech/calibration/noise/spline_basis.hpp>
 #include <talus/terramech/calibration/search/trace_search.hpp>
 #include <talus/terramech/numerics/natural_spline.hpp>
@@ -36,89 +36,24 @@ TraceSearch::TraceSearch(const RefinedModel& base, const Trial& trial, const Tra
                          std::function<bool(double)> go_on)
     : options_(options),
       go_on_(std::move(go_on)),
-      model_(base),
-      prior_modulus_(base.soil.cohesive_modulus + base.soil.frictional_modulus),
-      trial_(trial),
-      folds_(foldsOf(trial)),
-      given_effects_(base.effects.size()) {
-  refresh();
-  if (!planFor(model_).free.empty()) fitSoil();
+      fit_(base, trial, options.fit_soil, go_on_),
+      given_effects_(base.effects.size()) {}
+
+void TraceSearch::trust(const std::optional<Estimate>& prior) {
+  first_prior_ = prior;
+  fit_.trust(prior);
 }
 
-FitPlan TraceSearch::planFor(const RefinedModel& model) const {
-  FitPlan plan = fitPlan(model, options_.fit_soil);
-  plan.prior_modulus = prior_modulus_;
-  if (first_prior_) plan.effect_prior[0] = *first_prior_;
-  plan.misfit = misfit_;
-  return plan;
-}
-
-Fit TraceSearch::fit(const RefinedModel& model, int iterations, SolvedContacts& solved) const {
-  FitPlan plan = planFor(model);
-  plan.iterations = iterations;
-  return fitModel(model, trial_, whitening_, plan, solved);
-}
-
-void TraceSearch::fitSoil() {
-  const Trial all = trial_;
-  const std::vector<char> rows = rowsOfSoil(all);
-  const bool part = std::find(rows.begin(), rows.end(), 0) != rows.end();
-  if (part) {
-    trial_ = subset(all, rows);
-    folds_ = foldsOf(trial_);
-    solved_ = {};
-    refresh();
-  }
-  for (int round = 0; round < 3 && go_on_(0.0); ++round) {
-    model_ = fit(model_, 30, solved_).model;
-    refresh();
-  }
-  if (!part) return;
-  trial_ = all;
-  folds_ = foldsOf(trial_);
-  solved_ = {};
-  refresh();
-}
-
-Eigen::VectorXd TraceSearch::sinkages() const {
-  Eigen::VectorXd z(level_.rows());
-  for (int row = 0; row < trial_.rows(); ++row)
-    z[row] = level_(row, static_cast<int>(Channel::Sinkage)) * trial_.denominator(row, Channel::Sinkage);
-  return z;
-}
-
-NullModel TraceSearch::standing(const RefinedModel& model, const Eigen::MatrixXd& residual,
-                                SolvedContacts& solved) const {
-  NullModel null{whitening_.shared(),
-                 whitening_.unit,
-                 folds_,
-                 whitening_.rowByRow(residual),
-                 linearised(model, trial_, whitening_, planFor(model), solved),
-                 whitening_.run,
-                 static_cast<Eigen::Index>(planFor(model).soil_prior.size())};
-  if (!by_slip_) return null;
-  // The error that all slips share is one more number, known to be 0 give or take one.
-  LinearModel& known = null.known;
-  const Eigen::Index at = known.columns.cols();
-  known.columns.conservativeResize(null.residual.size(), at + 1);
-  known.columns.col(at) =
-      whitening_.rowByRow(trial_.measured.array().isFinite().select(*by_slip_, 0.0).matrix());
-  known.prior.mean.conservativeResize(at + 1);
-  known.prior.precision.conservativeResize(at + 1);
-  known.prior.mean[at] = 0.0;
-  known.prior.precision[at] = 1.0;
-  return null;
-}
-
-GainDistribution TraceSearch::distributionOf(const std::vector<Candidate>& candidates, int draws) {
-  const Eigen::VectorXd sinkage_m = sinkages();
-  SolvedContacts solved = solved_;
-  const NullModel null = standing(model_, residual_, solved);
-  const ModelOnRows here{model_, trial_, whitening_, level_, sinkage_m, solved_};
+GainDistribution TraceSearch::distributionOf(const std::vector<Candidate>& candidates, int draws) const {
+  const CalibratedRows& rows = fit_.rows();
+  const Eigen::VectorXd sinkage_m = rows.sinkages_m();
+  SolvedContacts solved = fit_.solved();
+  const NullModel null = fit_.standing(model(), rows.residual(), solved);
+  const ModelOnRows here{model(), rows.trial(), rows.whitening(), rows.level(), sinkage_m, fit_.solved()};
   GainDistribution found = gainDistribution(
       null, {candidates.size(), [&](std::size_t k) { return contenderOf(candidates[k], here); }}, draws,
       options_.seed, go_on_);
-  found.further_questions = furtherQuestions(trial_);
+  found.further_questions = furtherQuestions(rows.trial());
   return found;
 }
 
@@ -127,16 +62,17 @@ std::vector<double> TraceSearch::gainsOf(const std::vector<Candidate>& candidate
 }
 
 TraceSearch::Screening TraceSearch::screen(int draws) {
-  const Eigen::VectorXd sinkage_m = sinkages();
+  const Trial& trial = fit_.rows().trial();
+  const Eigen::VectorXd sinkage_m = fit_.rows().sinkages_m();
   std::vector<Candidate> all;
   // On a drive slip, load, heading and time go together: a curve of one stands for any, and only forms that say
   // what every channel does can be told apart.
-  const bool drive = !trial_.moment.empty();
-  for (Candidate& c : libraryCandidates(trial_, sinkage_m))
-    if ((c.parts.size() == 1 || !shares(model_, c)) && !(drive && c.family == "drift"))
+  const bool drive = !trial.moment.empty();
+  for (Candidate& c : libraryCandidates(trial, sinkage_m))
+    if ((c.parts.size() == 1 || !shares(model(), c)) && !(drive && c.family == "drift"))
       all.push_back(std::move(c));
   if (!drive)
-    for (Candidate& c : empiricalCandidates(trial_, sinkage_m)) all.push_back(std::move(c));
+    for (Candidate& c : empiricalCandidates(trial, sinkage_m)) all.push_back(std::move(c));
   Screening screening;
   screening.noise = distributionOf(all, draws);
   screening.threshold = screening.noise.threshold(options_.significance);
@@ -170,31 +106,26 @@ std::vector<Explanation> TraceSearch::fitBest(const std::vector<Promise>& promis
   return ranked;
 }
 
-double TraceSearch::scoreOf(const RefinedModel& fitted) const {
-  SolvedContacts solved = solved_;
-  const Eigen::MatrixXd residual = trial_.measured - predictRows(fitted, trial_, solved);
-  return fittedScore(standing(fitted, residual, solved));
-}
-
 Explanation TraceSearch::fitted(const Candidate& candidate) {
-  const RefinedModel grown = withCandidate(model_, candidate);
-  SolvedContacts solved = solved_;
-  const Fit found = fit(grown,
-                        candidate.parts.size() > 2   ? 30
-                        : candidate.parts.size() > 1 ? 15
-                                                     : 10,
-                        solved);
+  const CalibratedRows& rows = fit_.rows();
+  SolvedContacts solved = fit_.solved();
+  const Fit found = fit_.fit(withCandidate(model(), candidate),
+                             candidate.parts.size() > 2   ? 30
+                             : candidate.parts.size() > 1 ? 15
+                                                          : 10,
+                             solved);
   Explanation e;
   e.candidate = candidate;
   for (std::size_t k = 0; k < candidate.parts.size(); ++k)
-    e.candidate.parts[k] = found.model.effects[model_.effects.size() + k];
-  e.chi2_gain = white_.squaredNorm() - found.chi2 - found.prior_chi2;
-  const Eigen::MatrixXd left = trial_.measured - predictRows(found.model, trial_, solved);
-  SolvedContacts before_solved = solved_;
-  const NullModel before = standing(model_, residual_, before_solved),
-                  after = standing(found.model, left, solved);
+    e.candidate.parts[k] = found.model.effects[model().effects.size() + k];
+  e.chi2_gain = chi2() - found.chi2 - found.prior_chi2;
+  const Eigen::MatrixXd left = rows.trial().measured - predictRows(found.model, rows.trial(), solved);
+  SolvedContacts before_solved = fit_.solved();
+  const NullModel before = fit_.standing(model(), rows.residual(), before_solved),
+                  after = fit_.standing(found.model, left, solved);
   e.gain = fittedScore(after) - fittedScore(before);
-  const Eigen::VectorXd was = whitening_.marginal(residual_), is = whitening_.marginal(left);
+  const Eigen::VectorXd was = rows.whitening().marginal(rows.residual()),
+                        is = rows.whitening().marginal(left);
   for (Eigen::Index i = 0; i < was.size(); ++i)
     e.by_channel[static_cast<std::size_t>(i % kChannels)] += was[i] * was[i] - is[i] * is[i];
   // What explains leaves the readings themselves less to explain. Beside a soil that is known, one that moves them
@@ -214,8 +145,7 @@ std::vector<Explanation> TraceSearch::pairs() {
     if (p.candidate.parts.size() > 1 || !columns.insert(kindOf(p.candidate)).second) continue;
     const Explanation first = fitted(p.candidate);
     TraceSearch beside = *this;
-    SolvedContacts solved = solved_;
-    beside.setModel(fit(withCandidate(model_, first.candidate), 3, solved).model);
+    beside.fit_.setModel(fit_.fitted(withCandidate(model(), first.candidate), 3));
     std::set<bool> seconds;  // the best curve and the best known form
     for (const Promise& q : beside.screen(0).promises) {
       if (seconds.size() == 2) break;
@@ -241,92 +171,113 @@ std::vector<Explanation> TraceSearch::pairs() {
 }
 
 void TraceSearch::settleAll() {
-  for (int round = 0; round < 2; ++round) {
-    model_ = fit(model_, 12, solved_).model;
-    refresh();
-  }
+  fit_.settle(model());
 }
 
 void TraceSearch::accept(const Candidate& candidate) {
   part_count_.push_back(candidate.parts.size());
-  model_ = withCandidate(model_, candidate);
-  settleAll();
+  fit_.settle(withCandidate(model(), candidate));
 }
 
 std::size_t TraceSearch::firstPart(std::size_t k) const {
   return std::accumulate(part_count_.begin(), part_count_.begin() + static_cast<long>(k), given_effects_);
 }
 
-void TraceSearch::setModel(const RefinedModel& model) {
-  model_ = model;
-  level_ = predictRows(model_, trial_, solved_);
-  residual_ = trial_.measured - level_;
-  white_ = whitening_.apply(residual_);
-}
-
 void TraceSearch::leaveOut(std::size_t k) {
-  const std::size_t first = firstPart(k);
-  const auto begin = model_.effects.begin() + static_cast<long>(first);
-  model_.effects.erase(begin, begin + static_cast<long>(part_count_[k]));
+  RefinedModel without = model();
+  const auto begin = without.effects.begin() + static_cast<long>(firstPart(k));
+  without.effects.erase(begin, begin + static_cast<long>(part_count_[k]));
   part_count_.erase(part_count_.begin() + static_cast<long>(k));
-  SolvedContacts solved = solved_;
-  setModel(fit(model_, 12, solved).model);
+  fit_.setModel(fit_.fitted(without, 12));
 }
 
 double TraceSearch::gainOf(std::size_t k) {
   TraceSearch without = *this;
   without.leaveOut(k);
-  return scoreOf(model_) - without.scoreOf(without.model_);
+  return fit_.scoreOf(model()) - without.fit_.scoreOf(without.model());
 }
 
 void TraceSearch::thin(std::size_t k) {
   const std::size_t first = firstPart(k);
-  double score = scoreOf(model_);
+  double score = fit_.scoreOf(model());
   for (std::size_t part = part_count_[k]; part-- > 0 && part_count_[k] > 1;) {
-    RefinedModel without = model_;
+    RefinedModel without = model();
     without.effects.erase(without.effects.begin() + static_cast<long>(first + part));
-    SolvedContacts solved = solved_;
-    without = fit(without, 12, solved).model;
-    const double now = scoreOf(without);
+    without = fit_.fitted(without, 12);
+    const double now = fit_.scoreOf(without);
     if (now < score) continue;
     score = now;
     --part_count_[k];
-    setModel(without);
+    fit_.setModel(without);
   }
   settleAll();
 }
 
 std::vector<Effect> TraceSearch::parts(std::size_t k) const {
-  const std::size_t first = firstPart(k);
-  const auto begin = model_.effects.begin() + static_cast<long>(first);
+  const auto begin = model().effects.begin() + static_cast<long>(firstPart(k));
   return {begin, begin + static_cast<long>(part_count_[k])};
 }
 
 void TraceSearch::refineCurves() {
   bool refined = false;
-  for (std::size_t k = 0; k < model_.effects.size(); ++k) {
-    if (!model_.effects[k].empirical() || model_.effects[k].knots.size() < 3) continue;
-    const Eigen::VectorXd x = covariateValues(trial_, model_.effects[k].covariate, sinkages());
-    double score = scoreOf(model_);
-    for (const int most : {9, 13}) {
-      const Effect coarse = model_.effects[k];
-      const auto knots = quantileKnots(x, std::min(most, trial_.rows() / 10));
-      if (knots.size() <= coarse.knots.size()) continue;
-      RefinedModel finer = model_;
-      finer.effects[k].knots = knots;
-      finer.effects[k].parameters.clear();
-      const NaturalSpline curve{coarse.knots, coarse.parameters};
-      for (const double knot : knots) finer.effects[k].parameters.push_back(curve(knot));
-      SolvedContacts solved = solved_;
-      finer = fit(finer, 8, solved).model;
-      const double now = scoreOf(finer);
-      if (now <= score) continue;
-      score = now;
-      setModel(finer);
-      refined = true;
+  for (std::size_t k = 0; k < model().effects.size(); ++k)
+    if (model().effects[k].empirical() && model().effects[k].knots.size() >= 3) refined |= refineCurve(k);
+  if (refined) fit_.refresh();
+}
+
+/// Whether effect number k of the model got more knots.
+bool TraceSearch::refineCurve(std::size_t k) {
+  const Trial& trial = fit_.rows().trial();
+  const Eigen::VectorXd x = covariateValues(trial, model().effects[k].covariate, fit_.rows().sinkages_m());
+  double score = fit_.scoreOf(model());
+  bool refined = false;
+  for (const int most : {9, 13}) {
+    const Effect coarse = model().effects[k];
+    const auto knots = quantileKnots(x, std::min(most, trial.rows() / 10));
+    if (knots.size() <= coarse.knots.size()) continue;
+    RefinedModel finer = model();
+    finer.effects[k].knots = knots;
+    finer.effects[k].parameters.clear();
+    const NaturalSpline curve{coarse.knots, coarse.parameters};
+    for (const double knot : knots) finer.effects[k].parameters.push_back(curve(knot));
+    finer = fit_.fitted(finer, 8);
+    const double now = fit_.scoreOf(finer);
+    if (now <= score) continue;
+    score = now;
+    fit_.setModel(finer);
+    refined = true;
+  }
+  return refined;
+}
+
+void TraceSearch::describe(std::vector<TracedEffect>& effects, const Eigen::MatrixXd& covariance) const {
+  std::size_t at = given_effects_;
+  for (std::size_t k = 0; k < effects.size(); ++k) {
+    TracedEffect& effect = effects[k];
+    if (part_count_[k] == 1) effect.channel = fit_.strongest(at);
+    for (Effect& part : effect.chosen.candidate.parts) part = model().effects[at++];
+    effect.parameter_std.clear();
+    for (std::size_t j = 0; j < model().fitted.size(); ++j) {
+      const int e = model().fitted[j].effect;
+      if (e >= static_cast<int>(at - part_count_[k]) && e < static_cast<int>(at))
+        effect.parameter_std.push_back(
+            std::sqrt(std::max(0.0, covariance(static_cast<long>(j), static_cast<long>(j)))));
     }
   }
-  if (refined) refresh();
+}
+
+void TraceSearch::finish(TraceResult& result) {
+  // Without an effect the refined model is the base.
+  const Eigen::MatrixXd covariance = fit_.finish(!result.effects.empty());
+  describe(result.effects, covariance);
+  result.refined = model();
+  result.first_prior = first_prior_;
+  result.trial = fit_.rows().trial();
+  const Trial measured = asMeasured(result.trial);
+  result.base_rmse = rmseOf(result.base, measured);
+  result.refined_rmse = rmseOf(result.refined, measured);
+  result.noise_floor = fit_.noiseFloor();
+  result.shared = sharedError();
 }
 
 }  // namespace talus::terramech

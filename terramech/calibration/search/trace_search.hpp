@@ -5,14 +5,12 @@
 #include <string>
 #include <vector>
 
-#include <talus/terramech/calibration/fit/candidate_columns.hpp>
-#include <talus/terramech/calibration/noise/nominal_load.hpp>
 #include <talus/terramech/calibration/search/trace_result.hpp>
+#include <talus/terramech/calibration/search/trial_fit.hpp>
 
 namespace talus::terramech {
 
-/// The state of one search: a model that grows, the rows, and what is known of their noise. Used by
-/// traceResiduals().
+/// One search: candidates compared beside a model that grows by those accepted. Used by traceResiduals().
 class TraceSearch {
  public:
   /// `go_on` is asked between pieces of work with the share that is done; false ends each call early.
@@ -20,7 +18,7 @@ class TraceSearch {
       const RefinedModel& base, const Trial& trial, const TraceOptions& options,
       std::function<bool(double)> go_on = [](double) { return true; });
 
-  const RefinedModel& model() const { return model_; }
+  const RefinedModel& model() const { return fit_.model(); }
 
   /// All candidates to first order, and what tables drawn from the model would promise.
   struct Screening {
@@ -47,7 +45,7 @@ class TraceSearch {
   void accept(const Candidate& candidate);
 
   /// Keeps the first parameter of the effect accepted first near what was known of it before.
-  void trust(const std::optional<Estimate>& prior) { first_prior_ = prior; }
+  void trust(const std::optional<Estimate>& prior);
 
   /// Takes accepted candidate number k out and fits the others again, the noise as it is.
   void leaveOut(std::size_t k);
@@ -66,10 +64,10 @@ class TraceSearch {
   std::vector<Effect> parts(std::size_t k) const;
 
   /// What the rows of a run have in common beside the model.
-  SharedError sharedError() const { return {whitening_.unit, whitening_.run}; }
+  SharedError sharedError() const { return {fit_.rows().whitening().unit, fit_.rows().whitening().run}; }
 
   /// Squared length of the whitened residuals.
-  double chi2() const { return white_.squaredNorm(); }
+  double chi2() const { return fit_.rows().white().squaredNorm(); }
 
   /// Gives curves more knots where that gains.
   void refineCurves();
@@ -78,45 +76,15 @@ class TraceSearch {
   void finish(TraceResult& result);
 
  private:
-  void refresh();
-  GainDistribution distributionOf(const std::vector<Candidate>& candidates, int draws);
-  void backToMeasured();
-  void findSetLoads(const Eigen::MatrixXd& measured, const InputSlopes& slopes);
-  StatedSensors knownSensors() const;  ///< the load cell's error where the set loads show it
-  /// Fits the noise to residuals that hold nothing else, at the measured inputs, and all that follows from
-  /// it.
-  void settle(const Eigen::MatrixXd& noise_alone, const Eigen::MatrixXd& level,
-              const InputSlopes& measured_slopes);
-  /// Finds what rows of a run or of a stretch of time share, and the noise without it.
-  void shareWithin(Eigen::MatrixXd smooth, const Eigen::MatrixXd& level, const InputSlopes& measured_slopes);
-  Channel strongest(std::size_t effect);  ///< where taking it out, all else left, changes most [noise]
-
-  void fitSoil();
-  FitPlan planFor(const RefinedModel& model) const;
-  Fit fit(const RefinedModel& model, int iterations, SolvedContacts& solved) const;
+  GainDistribution distributionOf(const std::vector<Candidate>& candidates, int draws) const;
+  bool refineCurve(std::size_t k);
   std::size_t firstPart(std::size_t k) const;  ///< of accepted candidate number k among the model's effects
-  Eigen::VectorXd sinkages() const;
-  void setModel(const RefinedModel& model);  ///< the noise as it is
-  /// A model as it stands on the rows, to first order.
-  NullModel standing(const RefinedModel& model, const Eigen::MatrixXd& residual,
-                     SolvedContacts& solved) const;
-  /// The score of a fitted model under the noise as it is.
-  double scoreOf(const RefinedModel& fitted) const;
+  /// Sets the parameters, their standard deviations and the channel of each effect.
+  void describe(std::vector<TracedEffect>& effects, const Eigen::MatrixXd& covariance) const;
 
   TraceOptions options_;
   std::function<bool(double)> go_on_;
-  RefinedModel model_;
-  double prior_modulus_;  ///< k_c + k_phi of the base, that its log_stiffness counts from
-  Trial trial_;
-  Folds folds_;
-  SolvedContacts solved_;
-  Eigen::MatrixXd level_, residual_;
-  std::optional<Eigen::MatrixXd> by_slip_;  ///< change by one std of the error that all slips share, where
-                                            ///< there is one level of slip or one speed
-  std::optional<NominalLoad> set_load_;
-  Whitening whitening_;
-  Eigen::VectorXd white_;
-  double misfit_ = 1.0;                  ///< as FitPlan's
+  TrialFit fit_;
   std::optional<Estimate> first_prior_;  ///< of a correction that is never taken out
   std::size_t given_effects_;            ///< of the base, in front; fitted, never taken out
   std::vector<std::size_t> part_count_;  ///< effects in the model of each accepted candidate

@@ -6,11 +6,11 @@
 #include <fmt/format.h>
 
 #include <talus/common/input_error.hpp>
+#include <talus/terramech/calibration/table/model_rows.hpp>
 #include <talus/terramech/calibration/tables/model_estimate.hpp>
 #include <talus/terramech/calibration/tables/no_soil.hpp>
 #include <talus/terramech/calibration/verdict/model_soil.hpp>
 #include <talus/terramech/io/model_file.hpp>
-#include <talus/terramech/io/soil_library.hpp>
 #include <talus/terramech/io/telemetry_reader.hpp>
 #include <talus/terramech/io/wheel_rows.hpp>
 
@@ -18,12 +18,11 @@ namespace talus::terramech {
 namespace {
 
 RefinedModel modelOf(const EstimateOptions& options) {
-  RefinedModel model = (options.model.empty() ? unknownSoil() : loadModel(options.model)).model;
+  const RefinedModel model = baseModel(options.model, options.rover).model;
   if (model.base != BaseModel::WongReece)
     throw InputError({.where = options.model,
                       .reason = "its base is linear-formula, which has no soil",
                       .remedy = "use a model with the base wong-reece"});
-  if (!options.rover.empty()) model.takeRover(loadRover(options.rover));
   return model;
 }
 
@@ -145,29 +144,24 @@ bool measuresSideForce(const std::string& table) {
 
 SoilEstimate modelEstimate(const EstimateOptions& options, const ProgressMonitor& watch) {
   refuseWhatDoesNotGo(options);
-  RefinedModel model = modelOf(options);
+  const RefinedModel given = modelOf(options);
   TelemetryOptions reading{.required = {"load_N", "slip"}};
-  if (model.wheel) reading.wheel_radius_m = model.wheel->radius_m;
-  Telemetry telemetry = readTelemetry(options.table, reading, watch);
-  leaveOutWithoutSlipAngle(telemetry);
-  const Trial all = makeTrial(telemetry, model);
-  std::vector<char> above = beyondAxle(all);
-  for (char& row : above) row = !row;
-  const Trial trial = subset(all, above);
+  if (given.wheel) reading.wheel_radius_m = given.wheel->radius_m;
+  const auto [model, trial, beyond_axle, rejected] =
+      modelRows(readTelemetry(options.table, reading, watch), given);
   if (trial.rows() == 0)
     throw InputError(
         {.where = options.table, .reason = "in every row the sinkage reaches the axle", .remedy = ""});
-  model.slip_along_travel |= slipIsAlongTravel(trial.states);
   const ModelSoil found = soilUnder(model, trial, howOf(options));
   SoilEstimate estimate = soilOf(found);
-  estimate.rejected = telemetry.rejected;
+  estimate.rejected = rejected;
   std::ranges::stable_sort(estimate.rejected, {}, &RejectedRow::line);
   estimate.rows_used = static_cast<std::size_t>(trial.rows());
   for (const Effect& effect : model.effects) estimate.effects.push_back(effect.name);
   judgeFit(options, model, trial, found, estimate);
-  if (trial.rows() < all.rows())
+  if (beyond_axle.rows() > 0)
     estimate.warnings.push_back(
-        fmt::format("{} rows with sinkage at or above the axle were excluded", all.rows() - trial.rows()));
+        fmt::format("{} rows with sinkage at or above the axle were excluded", beyond_axle.rows()));
   return estimate;
 }
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include <talus/terramech/calibration/trace/residual_trace.hpp>
+#include <talus/terramech/calibration/search/trace_result.hpp>
 
 namespace talus::terramech {
 

@@ -30,7 +30,9 @@ TEST(TraceAnswer, SaysWhichNumberFellShort) {
   EXPECT_EQ(refusal(resultOf(2.5, 2.0)), "gain 2.5, below the 6.0 that would be evidence");
   EXPECT_EQ(refusal(resultOf(7.7, 5.1)),
             "gain 7.7 to first order, 5.1 when fitted, below the 6.0 that would be evidence");
-  EXPECT_THAT(verdictText(resultOf(7.7, 5.1)), testing::HasSubstr("varies most with slip (gain 7.7 to"));
+  const TraceResult result = resultOf(7.7, 5.1);
+  EXPECT_THAT(verdictText(result, answerOf(result)),
+              testing::HasSubstr("varies most with slip (gain 7.7 to"));
 }
 
 TEST(TraceAnswer, NamesTheOtherCheckThatRefused) {

@@ -64,11 +64,11 @@ TEST(TraceReport, TheMeasurementSeparatesTheNearestAlternative) {
 }
 
 TEST(TraceReport, RowsBeyondTheAxleAreSaidWithTheirErrors) {
-  TraceStory story;
-  story.beyond_axle = 3;
-  story.beyond_axle_rmse = {0.125, NAN, 0.5, NAN};
-  EXPECT_THAT(beyondAxleText(story), HasSubstr("3 rows with sinkage at or above the axle are excluded"));
-  EXPECT_THAT(beyondAxleText(story),
+  terramech::TableTrace trace;
+  trace.beyond_axle = 3;
+  trace.beyond_axle_rmse = {0.125, NAN, 0.5, NAN};
+  EXPECT_THAT(beyondAxleText(trace), HasSubstr("3 rows with sinkage at or above the axle are excluded"));
+  EXPECT_THAT(beyondAxleText(trace),
               testing::EndsWith("drawbar_pull_over_load 0.125, torque_over_load_radius 0.500"));
 }
 

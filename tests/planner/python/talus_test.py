@@ -379,7 +379,9 @@ class SoilTest(Refusals):
         self.refused(talus.InputError, "method", lambda: talus.estimate("missing.csv", method="guess"))
 
     def test_a_trace_is_that_of_the_program(self):
-        """Four wheels by the forward model, two percent off; wheel 2 pulls 6 N less than it should."""
+        """Four wheels by the forward model, two percent off; wheel 2 pulls 6 N less than it should.
+
+        Three rows have a side force and no slip angle, one is sunk to the axle, one has no load."""
         program = os.environ["TALUS_PROGRAM"]
         soil = talus.Soil("sandy_loam")
         sinkage_modulus = soil.cohesive_modulus / 0.1 + soil.frictional_modulus
@@ -393,28 +395,40 @@ class SoilTest(Refusals):
             subprocess.run([program, "wheel", "--cases", folder / "cases.csv", "-o", folder / "forces.csv", "--quiet"], check=True)
             rows = [line.split(",") for line in (folder / "forces.csv").read_text().splitlines()]
             at = {column: k for k, column in enumerate(rows[0])}
-            table = ["run,wheel,load_N,slip,torque_Nm,sinkage_m,drawbar_pull_N,wheel_radius_m,wheel_width_m"]
+            table = ["run,wheel,load_N,slip,torque_Nm,sinkage_m,drawbar_pull_N,wheel_radius_m,wheel_width_m,side_force_N"]
             for i, row in enumerate(rows[1:]):
                 get = lambda column: float(row[at[column]])
                 off = [1.0 + 0.02 * math.sin(12.9 * i * i + phase) for phase in (1, 2, 3)]
                 pull_N = get("drawbar_pull_N") + get("load_N") * (off[2] - 1.0) - (6.0 if i % 4 == 2 else 0.0)
                 table.append(
                     f"{i // 12},{i % 4},{get('load_N')},{get('slip')},{get('torque_Nm') * off[0]},"
-                    f"{get('sinkage_m') * off[1]},{pull_N},0.1,0.1"
+                    f"{get('sinkage_m') * off[1]},{pull_N},0.1,0.1,"
                 )
+            for load_N, sinkage_m, force_N in ((80, 0.02, 15), (90, 0.02, 20), (70, 0.02, -9), (80, 0.11, ""), (-1, 0.02, "")):
+                table.append(f"20,1,{load_N},0.3,2,{sinkage_m},9,0.1,0.1,{force_N}")
             path, base = folder / "runs.csv", folder / "base.yaml"
             path.write_text("\n".join(table) + "\n")
             base.write_text("{soil: sandy_loam, model: wong-reece}\n")
             shares = []
             found = talus.trace(path, base=str(base), progress=shares.append)
             said = json.loads(
-                subprocess.run([program, "trace", path, "--base", base, "--json", "--quiet"], capture_output=True, check=True).stdout
+                subprocess.run(
+                    [program, "trace", path, "--base", base, "--model-out", folder / "written.yaml", "--json", "--quiet"],
+                    capture_output=True,
+                    check=True,
+                ).stdout
             )
+            self.assertEqual(found.model_text(), (folder / "written.yaml").read_text())
             (folder / "refined.yaml").write_text(found.model_text())
             call = [program, "predict", path, "--model", folder / "refined.yaml", "-o", folder / "predicted.csv", "--quiet"]
             subprocess.run(call, check=True)
         self.assertEqual(found.verdict, said["verdict"])
-        self.assertEqual(found.rows_used, said["rows_used"])
+        self.assertEqual((found.rows_used, found.rows_rejected, found.beyond_axle), (120, 4, 1))
+        self.assertEqual(
+            (found.rows_used, found.rows_rejected, found.beyond_axle),
+            (said["rows_used"], said["rows_rejected"], said["beyond_axle"]["rows"]),
+        )
+        self.assertEqual((found.applies, found.applies_reason), (said["applies"], said["applies_reason"]))
         self.assertEqual(len(found.effects), len(said["effects"]))
         self.assertEqual(found.effects[0].covariate, "wheel")
         for mine, other in zip(found.effects, said["effects"]):

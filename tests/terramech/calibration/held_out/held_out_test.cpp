@@ -1,5 +1,6 @@
 #include <talus/terramech/calibration/held_out/held_out.hpp>
 #include <talus/terramech/calibration/held_out/model_scope.hpp>
+#include <talus/terramech/calibration/held_out/refit.hpp>
 
 #include "calibration/traced_world.hpp"
 #include "made_rows.hpp"

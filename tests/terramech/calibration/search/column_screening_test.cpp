@@ -2,6 +2,7 @@
 #include <numeric>
 #include <set>
 
+#include <talus/terramech/calibration/fit/effect_candidates.hpp>
 #include <talus/terramech/calibration/search/column_screening.hpp>
 #include <talus/terramech/calibration/trace/left_out.hpp>
 

@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include <talus/terramech/calibration/trace/model_validity.hpp>
+#include <talus/terramech/calibration/trace/residual_trace.hpp>
 #include <talus/terramech/io/model_file.hpp>
 
 #include "made_rows.hpp"

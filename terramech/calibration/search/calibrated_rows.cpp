@@ -1,0 +1,108 @@
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include <talus/terramech/calibration/noise/input_calibration.hpp>
+#include <talus/terramech/calibration/noise/run_units.hpp>
+#include <talus/terramech/calibration/noise/sensor_noise.hpp>
+#include <talus/terramech/calibration/search/calibrated_rows.hpp>
+
+namespace talus::terramech {
+
+Eigen::VectorXd CalibratedRows::sinkages_m() const {
+  Eigen::VectorXd z(level_.rows());
+  for (int row = 0; row < trial_.rows(); ++row)
+    z[row] = level_(row, static_cast<int>(Channel::Sinkage)) * trial_.denominator(row, Channel::Sinkage);
+  return z;
+}
+
+void CalibratedRows::backToMeasured() {
+  for (std::size_t row = 0; row < trial_.states.size(); ++row) {
+    setSlip(trial_.states[row], trial_.slip[row]);
+    trial_.states[row].load_N = trial_.load_N[row];
+  }
+}
+
+/// The stated errors, and the load cell's where the set loads show it.
+StatedSensors CalibratedRows::knownSensors(const RefinedModel& model) const {
+  StatedSensors sensors = model.stated;
+  if (!set_load_ || sensors.load_N) return sensors;
+  std::vector<double> load = trial_.load_N;
+  std::nth_element(load.begin(), load.begin() + static_cast<long>(load.size() / 2), load.end());
+  sensors.load_N = set_load_->errorStd() * load[load.size() / 2];
+  return sensors;
+}
+
+void CalibratedRows::settle(const Eigen::MatrixXd& noise_alone, const Eigen::MatrixXd& level,
+                            const InputSlopes& measured_slopes, RefinedModel& model, SolvedContacts& solved) {
+  backToMeasured();
+  model.noise = fitNoise(trial_, noise_alone, level, measured_slopes, knownSensors(model));
+  calibrateInputs(trial_, model.noise, set_load_);
+  level_ = predictRows(model, trial_, solved);
+  residual_ = trial_.measured - level_;
+  const InputSlopes slopes = inputSlopes(model, trial_, solved);
+  by_slip_.reset();
+  const Eigen::VectorXd shared = sharedSlipStd(trial_, model.noise);
+  if (shared.size() > 0) by_slip_ = shared.asDiagonal() * slopes.by_slip;
+  whitening_ = terramech::whitening(trial_, level_, slopes, model.noise);
+}
+
+void CalibratedRows::shareWithin(Eigen::MatrixXd smooth, const Eigen::MatrixXd& level,
+                                 const InputSlopes& measured_slopes, RefinedModel& model,
+                                 SolvedContacts& solved) {
+  std::vector<std::string> timeless;
+  for (const std::string& column : noiseColumns(trial_))
+    if (column != "time_s") timeless.push_back(column);
+  const std::vector<int> unit = runUnits(trial_, whitening_, withoutSmooth(trial_, residual_, timeless));
+  if (!unit.empty()) {  // what rows share is no noise of theirs
+    const double rows = trial_.rows(), kept = rows - (*std::max_element(unit.begin(), unit.end()) + 1);
+    smooth -= unitMeans(smooth, whitening_.std, unit);
+    if (kept > 4.0) settle(std::sqrt(rows / kept) * smooth, level, measured_slopes, model, solved);
+  }
+  whitening_.unit = unit;
+  if (!unit.empty()) whitening_.run = roughRunError(whitening_);
+}
+
+/// A smooth of measured loads would follow the errors about the set ones, and the noise would miss them: it is had from
+/// the set loads.
+void CalibratedRows::findSetLoads(const Eigen::MatrixXd& measured, const InputSlopes& slopes) {
+  std::vector<std::string> others = noiseColumns(trial_);
+  std::erase(others, "load_N");
+  set_load_ = nominalLoad(trial_, withoutSmooth(trial_, measured, others), slopes);
+  for (int row = 0; set_load_ && row < trial_.rows(); ++row) {
+    const auto r = static_cast<std::size_t>(row);
+    trial_.states[r].load_N = set_load_->load_N(row, trial_.load_N[r]);
+  }
+}
+
+void CalibratedRows::calibrate(RefinedModel& model, SolvedContacts& solved) {
+  backToMeasured();
+  const Eigen::MatrixXd level = predictRows(model, trial_, solved);
+  const InputSlopes slopes = inputSlopes(model, trial_, solved);
+  const Eigen::MatrixXd measured = trial_.measured - level;
+  // Whatever its error, a slip that varies much is seen; only where that is in doubt must the error be known.
+  const SensorNoise unlimited{.slip_relative = 1.0};
+  const auto isSeen = [&](const SensorNoise& n) { return slipIsSeen(trial_, n) && speedIsSeen(trial_, n); };
+  findSetLoads(measured, slopes);
+  Eigen::MatrixXd smooth = withoutSmooth(trial_, measured, noiseColumns(trial_));
+  if (!isSeen(unlimited)) {
+    const Eigen::MatrixXd left = withoutSmooth(trial_, measured, allButSlip(trial_));
+    if (!isSeen(fitNoise(trial_, left, level, slopes, model.stated))) smooth = left;
+  }
+  settle(smooth, level, slopes, model, solved);
+  shareWithin(smooth, level, slopes, model, solved);
+  white_ = whitening_.apply(residual_);
+}
+
+void CalibratedRows::setRunError(const Eigen::Matrix4d& run) {
+  whitening_.run = run;
+  white_ = whitening_.apply(residual_);
+}
+
+void CalibratedRows::compare(const RefinedModel& model, SolvedContacts& solved) {
+  level_ = predictRows(model, trial_, solved);
+  residual_ = trial_.measured - level_;
+  white_ = whitening_.apply(residual_);
+}
+
+}  // namespace talus::terramech

@@ -1,0 +1,26 @@
+#include <string>
+
+#include <talus/common/input_error.hpp>
+#include <talus/terramech/calibration/fit/model_fit.hpp>
+#include <talus/terramech/calibration/trace/trace_input.hpp>
+
+namespace talus::terramech {
+
+TraceInput traceInput(const Telemetry& table, const TableTraceOptions& options) {
+  constexpr int kFewest = 6;
+  TraceInput input{
+      .rows = modelRows(table, options.base.model),
+      .options = {
+          .significance = options.significance, .fit_soil = !options.base.soil_given, .seed = options.seed}};
+  const Trial& trial = input.rows.trial;
+  if (trial.rows() < kFewest)
+    throw InputError({table.source,
+                      std::to_string(trial.rows()) +
+                          " usable rows with sinkage below the wheel radius; tracing needs at least 6",
+                      ""});
+  // A drive has not the information for soil and effects at once.
+  if (options.base.soil_given && trial.moment.empty()) giveDefaultDeviations(input.rows.model);
+  return input;
+}
+
+}  // namespace talus::terramech
