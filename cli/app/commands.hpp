@@ -8,8 +8,8 @@ namespace talus::cli {
 
 struct Context;
 
-// One function a subcommand, in cli/NAME_command.cpp, built on addCommand() of cli/command.hpp.
-// Alphabetical; a subcommand stands here only once it does its job.
+// One function per subcommand, in alphabetical order; each is in cli/commands/NAME_command.cpp and is built on addCommand() of
+// cli/app/command.hpp.
 void addAssess(CLI::App& app, Context& context);
 void addBench(CLI::App& app, Context& context);
 void addCostmap(CLI::App& app, Context& context);

@@ -30,6 +30,7 @@ struct Context {
   bool force = false;                         ///< overwrites what checkOutput() would keep
   std::uint64_t seed = 1;                     ///< of every random number
   int threads = 0;                            ///< at most so many; 0: one a core
+  const char* const* argv = nullptr;          ///< the words of the call, ended by a null pointer
   std::stop_token stop;                       ///< set by Ctrl-C
   std::atomic<bool>* answers_stop = nullptr;  ///< see answerStop()
   int exit_code = Exit::kDone;

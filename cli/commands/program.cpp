@@ -21,7 +21,6 @@
 #include <unistd.h>
 #include <yaml-cpp/exceptions.h>
 
-#include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/context.hpp>
 #include <talus/cli/app/help_format.hpp>
 #include <talus/cli/app/interrupt.hpp>
@@ -216,11 +215,12 @@ int parseAndRun(CLI::App& app, const Context& context, std::vector<std::string> 
 
 }  // namespace
 
-int run(int argc, const char* const* argv) {
+int run(int argc, const char* const* argv, void (*add)(CLI::App&, Context&)) {
   keepStandardStreams();
   Interrupt interrupt;
   silenceLibraries();
   Context context;
+  context.argv = argv;
   context.stop = interrupt.token();
   context.answers_stop = &interrupt.answered();
   int code = Exit::kDone;
@@ -229,7 +229,7 @@ int run(int argc, const char* const* argv) {
     CLI::App app("Plan safe routes for rovers over soft, sloping ground.", "talus");
     app.formatter(std::make_shared<HelpFormat>());
     addGlobalOptions(app, context);
-    addCommands(app, context);
+    add(app, context);
     refuseEmptyValues(app);
     code = parseAndRun(app, context, words(argc, argv));
   } catch (...) {

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 #include <talus/maps/terrain/elevation_map.hpp>
@@ -280,7 +281,7 @@ std::vector<Violation> Chassis::violations(const std::vector<maps::Point>& route
     if (drive.legs.empty())
       drive.start = {route[i - 1], ahead};
     else
-      drive.legs.push_back({{}, std::remainder(ahead - heading, 2.0 * M_PI)});
+      drive.legs.push_back({{}, std::remainder(ahead - heading, 2.0 * std::numbers::pi)});
     drive.legs.push_back({{std::hypot(dx, dy), 0.0}, 0.0});
     heading = ahead;
   }

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -70,7 +71,7 @@ class Checker {
     const Pose end = after(from, arc);
     if (std::abs(arc.curvature_1_m * arc.length_m) < 1e-9) return segment(from.place, end.place);
     const std::vector<double> cuts = crossings(from, arc);
-    const double way = arc.length_m > 0.0 ? 0.0 : M_PI;
+    const double way = arc.length_m > 0.0 ? 0.0 : std::numbers::pi;
     for (std::size_t i = 1; i < cuts.size(); ++i) {
       if ((cuts[i] - cuts[i - 1]) * std::abs(arc.length_m) <= kOn * side_m_) continue;
       const double bend = std::abs(arc.curvature_1_m * arc.length_m) * (cuts[i] - cuts[i - 1]);
@@ -153,9 +154,10 @@ class Checker {
                        from.place.y_m + r * std::cos(from.heading_rad)};
     std::vector<double> cuts{0.0, 1.0};
     const auto atHeading = [&](double heading) {
-      for (double full = std::floor((std::min(0.0, turn) - heading + from.heading_rad) / (2 * M_PI));;
-           ++full) {
-        const double turned = heading + 2 * M_PI * full - from.heading_rad;
+      for (double full =
+               std::floor((std::min(0.0, turn) - heading + from.heading_rad) / (2 * std::numbers::pi));
+           ; ++full) {
+        const double turned = heading + 2 * std::numbers::pi * full - from.heading_rad;
         if (turned > std::max(0.0, turn)) return;
         if (turned >= std::min(0.0, turn)) cuts.push_back(turned / turn);
       }
@@ -169,7 +171,7 @@ class Checker {
     const Point& corner = map_.grid().south_west;
     lines(centre.x_m, corner.x_m, map_.grid().width, [&](double sine) {
       atHeading(std::asin(sine));
-      atHeading(M_PI - std::asin(sine));
+      atHeading(std::numbers::pi - std::asin(sine));
     });
     lines(centre.y_m, corner.y_m, map_.grid().height, [&](double minus_cosine) {
       atHeading(std::acos(-minus_cosine));

@@ -3,6 +3,7 @@
 #include <cstring>
 #include <exception>
 #include <new>
+#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -170,8 +171,8 @@ std::string motionAgainst(const Problem& problem, const std::vector<Point>& poin
   constexpr double kRounding_rad = 0.02;
   const bool reverse = problem.kinematics.may_reverse;
   const auto off = [reverse](double a, double b) {
-    const double apart = std::abs(std::remainder(a - b, 2.0 * M_PI));
-    return reverse ? std::min(apart, M_PI - apart) : apart;
+    const double apart = std::abs(std::remainder(a - b, 2.0 * std::numbers::pi));
+    return reverse ? std::min(apart, std::numbers::pi - apart) : apart;
   };
   const auto wrong = [&](const Chord& chord, const std::optional<double>& wanted) {
     return wanted && off(chord.heading_rad, *wanted) > chord.bend_rad(radius_m) + kRounding_rad;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <utility>
 
@@ -52,7 +53,7 @@ std::vector<Pose> posesAlong(const std::vector<maps::Point>& points, const PoseP
   };
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double out = heading(std::min(i, points.size() - 2)), in = heading(i == 0 ? 0 : i - 1);
-    poses.push_back({points[i], in + 0.5 * std::remainder(out - in, 2.0 * M_PI)});
+    poses.push_back({points[i], in + 0.5 * std::remainder(out - in, 2.0 * std::numbers::pi)});
   }
   poses.front().heading_rad = asked.start_heading_rad.value_or(poses.front().heading_rad);
   poses.back().heading_rad = asked.goal_heading_rad.value_or(poses.back().heading_rad);

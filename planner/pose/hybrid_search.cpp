@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <queue>
 #include <stdexcept>
@@ -177,7 +178,7 @@ class HybridAStar {
     if (problem_.goal_heading_rad) return finish(index, *problem_.goal_heading_rad);
     const double facing = std::atan2(goal.y_m - place.y_m, goal.x_m - place.x_m);
     finish(index, facing);
-    if (problem_.kinematics.may_reverse) finish(index, facing + M_PI);
+    if (problem_.kinematics.may_reverse) finish(index, facing + std::numbers::pi);
   }
 
   void finish(std::uint32_t index, double goal_heading_rad) {

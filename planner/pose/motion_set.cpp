@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include <talus/common/constants.hpp>
 #include <talus/planner/pose/motion_set.hpp>
@@ -16,7 +17,7 @@ MotionSet::MotionSet(const costmap::CostGrid& map, const Kinematics& kinematics,
     : map_(map),
       kinematics_(kinematics),
       options_(options),
-      bin_rad_(2.0 * M_PI / options.headings),
+      bin_rad_(2.0 * std::numbers::pi / options.headings),
       inverse_resolution_(1.0 / map.grid().resolution_m),
       motions_(static_cast<std::size_t>(options.headings)) {
   const auto all = legs();

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include <ompl/base/MotionValidator.h>
@@ -116,7 +117,7 @@ class Sampler : public ob::StateSampler {
     } else {
       pose.place = parts_.known.front().place;
       parts_.region.sample(engine_, parts_.region.parts().known_cost_J, pose.place);
-      pose.heading_rad = 2.0 * M_PI * unit();
+      pose.heading_rad = 2.0 * std::numbers::pi * unit();
     }
     PoseSpace::setPose(state, pose);
     space_->enforceBounds(state);

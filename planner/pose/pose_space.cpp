@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include <ompl/base/ProjectionEvaluator.h>
 
@@ -52,7 +53,7 @@ Pose PoseSpace::pose(const ob::State* state) noexcept {
 void PoseSpace::setPose(ob::State* state, const Pose& pose) noexcept {
   auto* s = state->as<StateType>();
   s->setXY(pose.place.x_m, pose.place.y_m);
-  s->setYaw(std::remainder(pose.heading_rad, 2.0 * M_PI));
+  s->setYaw(std::remainder(pose.heading_rad, 2.0 * std::numbers::pi));
 }
 
 double PoseSpace::weight_m(const PosePath::Leg& leg) const noexcept {

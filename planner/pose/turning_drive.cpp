@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include <talus/common/constants.hpp>
 #include <talus/planner/pose/turning_drive.hpp>
@@ -52,14 +53,14 @@ class Turning {
 
  private:
   static void turn(PosePath& path, double& heading, double next) {
-    const double by = std::remainder(next - heading, 2.0 * M_PI);
+    const double by = std::remainder(next - heading, 2.0 * std::numbers::pi);
     if (std::abs(by) > kNoTurn_rad) path.legs.push_back({{}, by});
     heading = next;
   }
 
   double turnPrice(maps::Point at, double from_rad, const std::optional<double>& to_rad) const {
     if (!to_rad) return 0.0;
-    const double by = std::remainder(*to_rad - from_rad, 2.0 * M_PI);
+    const double by = std::remainder(*to_rad - from_rad, 2.0 * std::numbers::pi);
     return std::abs(by) > kNoTurn_rad ? cost_({at, from_rad}, PosePath::Leg{{}, by}) : 0.0;
   }
 
@@ -81,7 +82,7 @@ class Turning {
     for (const bool reverse : {false, true}) {
       if (reverse && !cost_.kinematics().may_reverse) break;
       Arrival made{.from = from,
-                   .heading_rad = ahead + (reverse ? M_PI : 0.0),
+                   .heading_rad = ahead + (reverse ? std::numbers::pi : 0.0),
                    .length_m = reverse ? -length : length};
       if (from == 0) {
         made.price = ends_.start_rad ? turnPrice(a, *ends_.start_rad, made.heading_rad) : 0.0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -30,7 +31,8 @@ constexpr maps::Cell beyond(maps::Cell cell, int side) noexcept {
 
 /// The heading straight out of a side.
 constexpr double outwards_rad(int side) noexcept {
-  constexpr std::array<double, 4> kHeadings{3.141592653589793, 0.0, 4.71238898038469, 1.5707963267948966};
+  constexpr std::array<double, 4> kHeadings{std::numbers::pi, 0.0, 1.5 * std::numbers::pi,
+                                            0.5 * std::numbers::pi};
   return kHeadings[static_cast<std::size_t>(side)];
 }
 

@@ -1,6 +1,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include <talus/planner/route/dubins.hpp>
 
@@ -9,7 +10,7 @@ namespace {
 
 // An angle in [0, 2 pi); what rounding leaves just below a full turn is none.
 double turned(double angle) noexcept {
-  const double full = 2.0 * M_PI;
+  const double full = 2.0 * std::numbers::pi;
   const double rest = angle - full * std::floor(angle / full);
   return full - rest < 1e-9 ? 0.0 : rest;
 }
@@ -54,10 +55,10 @@ Word threeTurns(const Ends& e, int side) noexcept {
   if (apart > 4.0) return none;
   // The middle circle touches both, on the side that makes the middle turn more than half a circle.
   const double corner = side * std::acos(apart / 4.0), heading = std::atan2(across, along);
-  const double to_middle = heading + corner, from_last = heading + M_PI - corner;
-  const double first = turned(side * (to_middle - e.alpha) + M_PI / 2);
+  const double to_middle = heading + corner, from_last = heading + std::numbers::pi - corner;
+  const double first = turned(side * (to_middle - e.alpha) + std::numbers::pi / 2);
   const double middle = turned(side * (to_middle - from_last));
-  const double last = turned(side * (e.beta - from_last) - M_PI / 2);
+  const double last = turned(side * (e.beta - from_last) - std::numbers::pi / 2);
   return {.length = {first, middle, last}, .side = {side, -side, side}};
 }
 

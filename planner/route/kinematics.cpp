@@ -1,4 +1,5 @@
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -18,7 +19,7 @@ namespace ob = ompl::base;
 void set(ob::State* state, const Pose& pose) {
   auto* se2 = state->as<ob::SE2StateSpace::StateType>();
   se2->setXY(pose.place.x_m, pose.place.y_m);
-  se2->setYaw(std::remainder(pose.heading_rad, 2.0 * M_PI));
+  se2->setYaw(std::remainder(pose.heading_rad, 2.0 * std::numbers::pi));
 }
 
 // Both ends as states of a space, freed with it.

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include <talus/common/constants.hpp>
@@ -21,12 +22,12 @@ std::vector<PosePath::Leg> turnDriveTurn(const Pose& from, const Pose& to, bool 
   const double length = std::hypot(dx, dy);
   const double ahead = length > 0.0 ? std::atan2(dy, dx) : to.heading_rad;
   const auto turns = [&](double drive) {
-    return std::pair{std::remainder(drive - from.heading_rad, 2.0 * M_PI),
-                     std::remainder(to.heading_rad - drive, 2.0 * M_PI)};
+    return std::pair{std::remainder(drive - from.heading_rad, 2.0 * std::numbers::pi),
+                     std::remainder(to.heading_rad - drive, 2.0 * std::numbers::pi)};
   };
   auto [first, last] = turns(ahead);
   double signed_length = length;
-  if (const auto [f, l] = turns(ahead + M_PI);
+  if (const auto [f, l] = turns(ahead + std::numbers::pi);
       may_reverse && std::abs(f) + std::abs(l) < std::abs(first) + std::abs(last)) {
     first = f, last = l;
     signed_length = -length;

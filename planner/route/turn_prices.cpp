@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 #include <talus/planner/route/turn_prices.hpp>
@@ -45,7 +46,7 @@ TurningGround groundOf(const costmap::GroundModel& model, const terramech::Soil&
 }
 
 double passivePressure(const terramech::Soil& soil) noexcept {
-  const double t = std::tan(M_PI / 4 + soil.friction_angle_rad / 2);
+  const double t = std::tan(std::numbers::pi / 4 + soil.friction_angle_rad / 2);
   return t * t;
 }
 

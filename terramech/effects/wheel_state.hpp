@@ -33,9 +33,8 @@ struct WheelState {
   std::vector<std::pair<std::string, double>> extra;       ///< further numeric columns
   std::vector<std::pair<std::string, std::string>> group;  ///< text columns: wheel, session, source, ...
 
-  /// Value of a column by its name in telemetry files (INTERFACE: slip, load_N, grouser_height_m, ...); NaN
-  /// when unknown. "constant" and the name of
-  /// a grouping column are 1.
+  /// Value of a numeric column by its name in telemetry files: one of stateColumns() or of `extra`; NaN when unknown. "constant" and
+  /// the name of a grouping column have the value 1.
   double covariate(std::string_view name) const;
 
   /// Text of a grouping column; empty when there is none of that name.

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <numbers>
 
 namespace talus::terramech {
 
@@ -44,10 +45,10 @@ constexpr LegendreValue legendre(std::size_t order, double x) {
 template <std::size_t N>
 constexpr GaussLegendre<N> gaussLegendre() {
   static_assert(N >= 2);
-  constexpr double kPi = 3.14159265358979323846;
   GaussLegendre<N> rule;
   for (std::size_t k = 0; k < N; ++k) {
-    double x = detail::cosine(kPi * (static_cast<double>(k) + 0.75) / (static_cast<double>(N) + 0.5));
+    double x =
+        detail::cosine(std::numbers::pi * (static_cast<double>(k) + 0.75) / (static_cast<double>(N) + 0.5));
     for (int step = 0; step < 8; ++step) {
       const auto p = detail::legendre(N, x);
       x -= p.value / p.slope;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <random>
 #include <vector>
 
@@ -55,8 +56,8 @@ std::vector<PoseProblem> problemsOn(const MapPointer& map, int count) {
     PoseProblem asked{.map = map,
                       .start = {side_m * unit(), side_m * unit()},
                       .goal = {side_m * unit(), side_m * unit()},
-                      .start_heading_rad = 2.0 * M_PI * unit(),
-                      .goal_heading_rad = 2.0 * M_PI * unit(),
+                      .start_heading_rad = 2.0 * std::numbers::pi * unit(),
+                      .goal_heading_rad = 2.0 * std::numbers::pi * unit(),
                       .kinematics = {.turning_radius_m = 1.0},
                       .watch = {}};
     const double apart_m = std::hypot(asked.goal.x_m - asked.start.x_m, asked.goal.y_m - asked.start.y_m);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -177,7 +178,7 @@ std::string rowOf(const Ground& ground, const Reading& r, double time_s, double 
 
 // Up or down a slope of 14 degrees: no ground of the map becomes better by slip that hardly changes.
 TEST_P(DangerKept, ASlipSensorStuckNearZeroOnAClimb) {
-  const double gradient = std::tan(14.0 * M_PI / 180.0);
+  const double gradient = std::tan(14.0 * std::numbers::pi / 180.0);
   const Ground ground(GetParam(), gradient);
   for (const double slip : {0.0, 0.02, -0.01})
     for (const bool with_torque : {false, true}) {
@@ -219,7 +220,7 @@ TEST_P(DangerKept, AWheelInATrap) {
 // Wheels sunk nearly to the axle at little slip, everywhere: a datum that is off, or drift.
 TEST_P(DangerKept, DeepWheelsAtLittleSlip) {
   const Ground ground(GetParam(), 0.0);
-  for (const double heading : {0.0, M_PI})
+  for (const double heading : {0.0, std::numbers::pi})
     for (const double torque : {0.15, kSilent}) {
       std::string text = kDrive;
       for (int i = 0; i < 60; ++i)

@@ -110,7 +110,7 @@ TEST(Words, TheListIsSearchedAsAPersonWouldRead) {
 }
 
 TEST(Words, OfMessagesArePlain) {
-  for (const std::string room : {"terramech", "maps", "costmap", "planner", "cli"})
+  for (const std::string room : {"terramech", "maps", "costmap", "planner", "cli", "tests/reproduce"})
     for (const fs::path& file : filesBelow(room, {".cpp", ".hpp"}))
       for (const std::string& literal : stringLiterals(fileContent(file)))
         EXPECT_EQ(promised().contains(literal) ? "" : complaint(literal), "") << file;

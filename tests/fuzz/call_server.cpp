@@ -15,6 +15,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <talus/cli/app/commands.hpp>
 #include <talus/cli/commands/program.hpp>
 
 namespace {
@@ -40,7 +41,7 @@ void redirect(int stream, const char* path, int flags) {
   std::vector<const char*> arguments{"talus"};
   for (const std::string& word : words) arguments.push_back(word.c_str());
   arguments.push_back(nullptr);
-  std::exit(talus::cli::run(static_cast<int>(words.size()) + 1, arguments.data()));
+  std::exit(talus::cli::run(static_cast<int>(words.size()) + 1, arguments.data(), talus::cli::addCommands));
 }
 
 double seconds(const timeval& time) {

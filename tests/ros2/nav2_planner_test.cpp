@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <numbers>
 #include <string>
 
 #include <nav2_core/planner_exceptions.hpp>
@@ -72,7 +73,7 @@ TEST_F(Nav2, PlansAroundAWallWithHeadings) {
     const double dx = b.position.x - a.position.x, dy = b.position.y - a.position.y;
     EXPECT_LE(std::hypot(dx, dy), 0.5 + 1e-9);
     const double heading = 2.0 * std::atan2(a.orientation.z, a.orientation.w);
-    EXPECT_NEAR(std::remainder(heading - std::atan2(dy, dx), 2.0 * M_PI), 0.0, 1e-6);
+    EXPECT_NEAR(std::remainder(heading - std::atan2(dy, dx), 2.0 * std::numbers::pi), 0.0, 1e-6);
     north_m = std::fmax(north_m, b.position.y);
   }
   EXPECT_GT(north_m, 18.0);  // where the wall is open

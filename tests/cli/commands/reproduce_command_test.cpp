@@ -1,3 +1,5 @@
+#include <cstdlib>
+
 #include <nlohmann/json.hpp>
 
 #include "run_program.hpp"
@@ -43,6 +45,19 @@ TEST(ReproduceCommand, RefusesAFolderThatCannotBeMade) {
   const std::string file = folder.write("file", "x");
   const Ran ran = runTalus({"reproduce", "--soils", "8", "-o", file + "/below"});
   EXPECT_EQ(ran.code, 2);
+}
+
+TEST(ReproduceCommand, NamesTheRemedyWhereTheValidationProgramIsMissing) {
+  const Folder folder;
+  std::filesystem::copy_file(TALUS_PROGRAM, folder / "talus");
+  const std::string line = "cd '" + folder.path().string() + "' && ./talus reproduce --goals >out 2>err";
+  const int status = std::system(line.c_str());  // NOLINT(cert-env33-c): a shell gives redirection for free
+  EXPECT_EQ(WEXITSTATUS(status), 2);
+  EXPECT_EQ(fileContent(folder / "out"), "");
+  EXPECT_EQ(fileContent(folder / "err"),
+            "talus: " + (folder / "talus-reproduce") +
+                ": the program that reproduces the thesis is not there; build the target talus_reproduce, or "
+                "install talus again\n");
 }
 
 }  // namespace reproduce_command_test

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <numbers>
 
 #include <nlohmann/json.hpp>
 
@@ -18,9 +19,10 @@ TEST(ScoreCommand, HoldsARouteAgainstTheChassis) {
   std::string text = "ncols 60\nnrows 50\nxllcorner 0\nyllcorner 0\ncellsize 0.2\nNODATA_value -9999\n";
   for (int row = 0; row < 50; ++row) {
     for (int column = 0; column < 60; ++column)
-      text +=
-          std::to_string(column >= 20 && column < 38 && row > 14 ? 0.03 * std::sin(M_PI * column / 6) : 0.0) +
-          " ";
+      text += std::to_string(column >= 20 && column < 38 && row > 14
+                                 ? 0.03 * std::sin(std::numbers::pi * column / 6)
+                                 : 0.0) +
+              " ";
     text += "\n";
   }
   folder.write("swells.asc", text);

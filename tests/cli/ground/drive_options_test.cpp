@@ -1,4 +1,5 @@
 #include <cmath>
+#include <numbers>
 
 #include <CLI/CLI.hpp>
 #include <site_map.hpp>
@@ -19,7 +20,7 @@ DriveOptions parsed(const std::string& line) {
 // Closed form: degrees as radians.
 TEST(DriveOptions, HeadingsInRadiansOrDegrees) {
   EXPECT_EQ(*parsed("--start-heading 1.5").start_heading_rad, 1.5);
-  EXPECT_NEAR(*parsed("--goal-heading-deg 90").goal_heading_rad, M_PI / 2, 1e-12);
+  EXPECT_NEAR(*parsed("--goal-heading-deg 90").goal_heading_rad, std::numbers::pi / 2, 1e-12);
   EXPECT_FALSE(parsed("").any());
   EXPECT_THROW(parsed("--start-heading 1 --start-heading-deg 2"), CLI::ExcludesError);
   EXPECT_THROW(parsed("--start-heading nan"), CLI::ValidationError);

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include <site_fixture.hpp>
@@ -36,7 +37,7 @@ TEST(CategoryTable, NoHeadingIsWorse) {
   const DriveCost cost(model->limits(), std::vector<DriveGround>{model->ground(0, model->prior(0))});
   for (double gradient = 0.01; gradient < 0.45; gradient += 0.0137)
     for (int k = 0; k < 24; ++k) {
-      const double heading = k * M_PI / 24;
+      const double heading = k * std::numbers::pi / 24;
       const CellCode cell({.dz_dx = gradient, .dz_dy = 0.0, .curve = 0});
       const DriveState state = cost.detail(cell, {std::cos(heading), std::sin(heading)});
       const CellCode steeper({.dz_dx = gradient + 0.002, .dz_dy = 0.0, .curve = 0});

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include <site_map.hpp>
@@ -48,7 +49,7 @@ void learnSomething(TraversabilityMap& map, std::mt19937_64& random, int reading
 }
 
 Direction heading(int step) {
-  const double angle = step * 2.0 * M_PI / 16.0;
+  const double angle = step * 2.0 * std::numbers::pi / 16.0;
   return {std::cos(angle), std::sin(angle)};
 }
 

@@ -3,6 +3,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <random>
 #include <utility>
@@ -166,7 +167,7 @@ void Sequence::publishedIsAtOnce() {
     const CellCode mine = a->at(c), its = b->at(c);
     different += mine.stepsX() != its.stepsX() || mine.stepsY() != its.stepsY();
     for (int k = 0; k < 16; ++k) {
-      const Direction heading{std::cos(k * M_PI / 8.0), std::sin(k * M_PI / 8.0)};
+      const Direction heading{std::cos(k * std::numbers::pi / 8.0), std::sin(k * std::numbers::pi / 8.0)};
       const float x = a->cost().costPerMetre(mine, heading), y = b->cost().costPerMetre(its, heading);
       different += std::bit_cast<std::uint32_t>(x) != std::bit_cast<std::uint32_t>(y);
       cheaper += x < y;

@@ -1,5 +1,6 @@
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include <site_map.hpp>
 
@@ -22,7 +23,7 @@ terramech::Telemetry table() {
                  {"load_N", {50, 50, 50, 50, 50}},
                  {"slip", {0.1, 0.2, 0.3, 0.4, 0.5}},
                  {"time_s", {1, 1, 2, 2, 3}},
-                 {"heading_rad", {0, 0, 0, 0, M_PI}},
+                 {"heading_rad", {0, 0, 0, 0, std::numbers::pi}},
                  {"slope_rad", {0.2, 0.2, NAN, NAN, NAN}},
                  {"pose_std_m", {NAN, 0.3, -1, 2, 1e14}}};
   out.words = {{"wheel", {"a", "b", "a", "b", "a"}}, {"run", {"r", "r", "r", "r", "r"}}};

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 #include <string>
 
@@ -41,7 +42,7 @@ int windings(const Ring& ring, Point p) {
     const double ax = a.x_m - p.x_m, ay = a.y_m - p.y_m, bx = b.x_m - p.x_m, by = b.y_m - p.y_m;
     turned += std::atan2(ax * by - ay * bx, ax * bx + ay * by);
   }
-  return static_cast<int>(std::lround(turned / (2.0 * 3.14159265358979)));
+  return static_cast<int>(std::lround(turned / (2.0 * std::numbers::pi)));
 }
 
 bool isGround(const Polygon& polygon, Point p) {

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <numbers>
 #include <random>
 
 #include "layer_fixture.hpp"
@@ -189,7 +190,7 @@ TEST(LayerReader, ClassesInAnotherCrsAreCarriedOver) {
   const ElevationMap dem = map(folder);
   const Georeference& g = *dem.georeference;
   // Degrees: a split between 1 and 2 along the meridian through x = 500020, which is not quite upright.
-  const double middle_deg = g.reverse({500020, 4999985}).longitude_rad * 180 / 3.14159265358979;
+  const double middle_deg = g.reverse({500020, 4999985}).longitude_rad * 180 / std::numbers::pi;
   const std::string path =
       write({.rows = drawn({"12", "12"}),
              .crs = "EPSG:4326",

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <numbers>
 
 #include <talus/costmap/cost/drive_state.hpp>
 #include <talus/planner/check/annotation.hpp>
@@ -77,7 +78,7 @@ TEST(Annotation, DrivingBackDescends) {
   const Plan back{RouteStatus::Found, {}, {{3.5, 0.5}, {0.5, 0.5}}, 40.0, 20.0};
   const Route route = annotated(back, {.map = *map});
   EXPECT_NEAR(route.vertices[1].slope_along_rad, -std::atan(0.25), 1e-12);
-  EXPECT_NEAR(route.vertices[1].heading_rad, std::acos(-1.0), 1e-12);
+  EXPECT_NEAR(route.vertices[1].heading_rad, std::numbers::pi, 1e-12);
   EXPECT_NEAR(route.summary.energy_J, 30.0, 1e-5);
 }
 

@@ -1,5 +1,6 @@
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include <Eigen/Dense>
@@ -255,9 +256,10 @@ TEST(Chassis, ATurnInPlaceSweepsEveryWheelsCircle) {
   auto cart = rover(4);
   cart.max_pitch_rad = cart.max_roll_rad = 0.2;  // hardly any tilting: the wheels' boxes are small
   const Chassis chassis(flat, cart, Suspension::Rigid);
-  for (const double heading : {0.0, M_PI / 4, M_PI / 2})
+  for (const double heading : {0.0, std::numbers::pi / 4, std::numbers::pi / 2})
     EXPECT_EQ(chassis.refusal({{4.0, 4.0}, heading}), "") << heading;
-  EXPECT_FALSE(chassis.violations(PosePath{.start = {{4.0, 4.0}, 0.0}, .legs = {{{}, M_PI / 2}}}).empty());
+  EXPECT_FALSE(
+      chassis.violations(PosePath{.start = {{4.0, 4.0}, 0.0}, .legs = {{{}, std::numbers::pi / 2}}}).empty());
 }
 
 TEST(Chassis, ARockerBogieHasThreeAxles) {

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <numbers>
 
 #include <talus/planner/check/route_check.hpp>
 #include <talus/planner/plan/make_planner.hpp>
@@ -31,7 +32,7 @@ TEST(MakePlanner, GivesThePlannerOfThatNameWithoutALibrary) {
 
 TEST(MakePlanner, HeadingsAndATurningRadiusAreKeptOrRefused) {
   PlanRequest request = across();
-  request.start_heading_rad = request.goal_heading_rad = M_PI / 2;
+  request.start_heading_rad = request.goal_heading_rad = std::numbers::pi / 2;
   request.kinematics = Kinematics{.turning_radius_m = 3.0, .may_reverse = false};
   const auto field = makePlanner("field");
   field->set_map(testing::drawn(kOpen));
@@ -43,8 +44,8 @@ TEST(MakePlanner, HeadingsAndATurningRadiusAreKeptOrRefused) {
   hybrid->set_map(testing::drawn(kOpen));
   const Route route = hybrid->plan(request);
   ASSERT_EQ(route.status, RouteStatus::Found) << route.reason;
-  EXPECT_NEAR(route.vertices.front().heading_rad, M_PI / 2, 0.1);
-  EXPECT_NEAR(route.vertices.back().heading_rad, M_PI / 2, 0.1);
+  EXPECT_NEAR(route.vertices.front().heading_rad, std::numbers::pi / 2, 0.1);
+  EXPECT_NEAR(route.vertices.back().heading_rad, std::numbers::pi / 2, 0.1);
   ASSERT_TRUE(route.summary.drive);
   EXPECT_LE(route.summary.drive->max_curvature_1_m, 1.0 / 3.0 + 1e-9);
   EXPECT_EQ(route.summary.drive->cusps, 0);

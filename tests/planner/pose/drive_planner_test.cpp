@@ -1,4 +1,5 @@
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include <talus/planner/bench/slip_world.hpp>
@@ -28,7 +29,7 @@ bool drivable(const costmap::CostGrid& map, const PosePath& drive) {
   Pose pose = drive.start;
   for (const auto& leg : drive.legs) {
     const int steps = 1 + static_cast<int>(std::abs(leg.arc.length_m) / 0.01 + std::abs(leg.turn_rad) / 0.01);
-    const double side = leg.arc.length_m < 0.0 ? M_PI : 0.0;
+    const double side = leg.arc.length_m < 0.0 ? std::numbers::pi : 0.0;
     for (int k = 0; k < steps; ++k) {
       const double share = (k + 0.5) / steps;
       const Pose at =
@@ -62,7 +63,8 @@ TEST(DrivePlanner, NeverHandsOutADriveThatMayNotBeDriven) {
         EXPECT_EQ(plan.points.front(), problem.start);
         EXPECT_NEAR(plan.points.back().x_m, 37.5, 1e-6);
         EXPECT_NEAR(plan.points.back().y_m, 35.5, 1e-6);
-        EXPECT_NEAR(std::remainder(plan.drive.start.heading_rad - 0.3 * seed, 2 * M_PI), 0.0, 1e-9);
+        EXPECT_NEAR(std::remainder(plan.drive.start.heading_rad - 0.3 * seed, 2 * std::numbers::pi), 0.0,
+                    1e-9);
         EXPECT_GE(plan.cost_J, plan.lower_bound_J);
         const DriveShape made = shape(plan.drive);
         if (radius_m > 0.0) {
@@ -125,20 +127,21 @@ TEST(DrivePlanner, TheReportCountsTurning) {
   const auto map = testing::drawn(std::vector<std::string>(12, std::string(20, '.')));
   Problem problem = across(map, 0.0);
   problem.goal = {12.5, 2.5};
-  problem.start_heading_rad = M_PI / 2;
+  problem.start_heading_rad = std::numbers::pi / 2;
   problem.kinematics.may_reverse = false;
   problem.kinematics.stop = {.cost_J = 7.0, .energy_J = 6.0, .time_s = 2.0};  // and for the stop
   problem.kinematics.turns.on_arc.cost_J = 50.0;                              // so that no arc is worth it
   const Plan plan = DrivePlanner().plan(problem);
   ASSERT_EQ(plan.status, RouteStatus::Found) << plan.reason;
-  EXPECT_NEAR(plan.cost_J, 107.0 + 5.0 * M_PI / 2, 1e-3);
+  EXPECT_NEAR(plan.cost_J, 107.0 + 5.0 * std::numbers::pi / 2, 1e-3);
   const Route route = annotated(plan, {.map = *map, .kinematics = problem.kinematics});
-  EXPECT_NEAR(route.summary.energy_J, 6.0 + 4.0 * M_PI / 2, 1e-9);  // the drawn map has no table of energies
-  EXPECT_NEAR(route.summary.time_s, 2.0 + M_PI / 2, 1e-9);
+  EXPECT_NEAR(route.summary.energy_J, 6.0 + 4.0 * std::numbers::pi / 2,
+              1e-9);  // the drawn map has no table of energies
+  EXPECT_NEAR(route.summary.time_s, 2.0 + std::numbers::pi / 2, 1e-9);
   ASSERT_TRUE(route.summary.drive.has_value());
   EXPECT_EQ(route.summary.drive->turns_in_place, 1);
-  EXPECT_NEAR(route.vertices.front().turn_rad, -M_PI / 2, 1e-9);
-  EXPECT_NEAR(route.vertices.front().heading_rad, M_PI / 2, 1e-9);
+  EXPECT_NEAR(route.vertices.front().turn_rad, -std::numbers::pi / 2, 1e-9);
+  EXPECT_NEAR(route.vertices.front().heading_rad, std::numbers::pi / 2, 1e-9);
   EXPECT_NEAR(route.vertices[1].heading_rad, 0.0, 1e-9);
 }
 
@@ -169,7 +172,7 @@ TEST(DrivePlanner, AVertexInReverseLooksTheOtherWay) {
   ASSERT_EQ(plan.status, RouteStatus::Found) << plan.reason;
   const Route route = annotated(plan, {.map = *map});
   EXPECT_TRUE(route.vertices.front().reverse);
-  EXPECT_NEAR(std::remainder(route.vertices.front().heading_rad, 2 * M_PI), 0.0, 1e-9);
+  EXPECT_NEAR(std::remainder(route.vertices.front().heading_rad, 2 * std::numbers::pi), 0.0, 1e-9);
 }
 
 TEST(RouteCheckOfDrives, AgreesWithDenseSamplingOfRandomArcs) {
@@ -202,7 +205,8 @@ TEST(RouteCheckOfDrives, FindsWhatAnArcGrazes) {
   // The chord of this quarter circle of radius 3 about (4, 1) runs through (1.9, 3.1); the arc bulges into
   // the blocked corner cell that the chord misses.
   const auto map = testing::drawn({".....", ".#...", ".....", ".....", "....."});
-  const PosePath arc{.start = {{1.0, 1.0}, M_PI / 2}, .legs = {{{3.0 * M_PI / 2, -1.0 / 3.0}, 0.0}}};
+  const PosePath arc{.start = {{1.0, 1.0}, std::numbers::pi / 2},
+                     .legs = {{{3.0 * std::numbers::pi / 2, -1.0 / 3.0}, 0.0}}};
   EXPECT_TRUE(violations(*map, std::vector<maps::Point>{{1.0, 1.0}, {4.0, 4.0}}).empty());
   EXPECT_FALSE(violations(*map, arc, 3.0).empty());
   EXPECT_NE(violations(*map, arc, 4.0).front().reason.find("below the minimum turning radius"),
@@ -216,7 +220,8 @@ TEST(RouteCheckOfDrives, ATurnInPlaceNeedsEveryHeading) {
                                 .cost = testing::driveCost({.max_along = 0.3, .max_across = 0.1}),
                                 .version = 1});
   EXPECT_TRUE(violations(grid, PosePath{.start = {{0.5, 0.5}, 0.0}, .legs = {{{}, 0.2}}}, 0.0).empty());
-  EXPECT_FALSE(violations(grid, PosePath{.start = {{0.5, 0.5}, 0.0}, .legs = {{{}, M_PI}}}, 0.0).empty());
+  EXPECT_FALSE(
+      violations(grid, PosePath{.start = {{0.5, 0.5}, 0.0}, .legs = {{{}, std::numbers::pi}}}, 0.0).empty());
   EXPECT_FALSE(violations(grid, PosePath{.start = {{0.5, 0.5}, 0.0}, .legs = {{{}, 0.2}}}, 1.0).empty());
 }
 

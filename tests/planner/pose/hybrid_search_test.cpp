@@ -1,4 +1,5 @@
 #include <cmath>
+#include <numbers>
 
 #include <talus/planner/pose/hybrid_search.hpp>
 
@@ -43,7 +44,7 @@ TEST(HybridSearch, ArrivesLookingAsAsked) {
   auto turned = problem(drawn(room(20, 12)));
   turned.start = {3.5, 6.5};
   turned.start_heading_rad = 0.0;
-  turned.goal_heading_rad = M_PI;
+  turned.goal_heading_rad = std::numbers::pi;
   turned.goal = {15.5, 6.5};
   for (const bool reverse : {true, false}) {
     turned.kinematics.may_reverse = reverse;
@@ -52,7 +53,7 @@ TEST(HybridSearch, ArrivesLookingAsAsked) {
     const Pose last = end(plan.path);
     EXPECT_NEAR(last.place.x_m, 15.5, 1e-6);
     EXPECT_NEAR(last.place.y_m, 6.5, 1e-6);
-    EXPECT_NEAR(std::remainder(last.heading_rad - M_PI, 2 * M_PI), 0.0, 1e-6);
+    EXPECT_NEAR(std::remainder(last.heading_rad - std::numbers::pi, 2 * std::numbers::pi), 0.0, 1e-6);
     EXPECT_LE(shape(plan.path).max_curvature_1_m, 0.5 + 1e-9);
     if (!reverse) {
       EXPECT_EQ(shape(plan.path).cusps, 0);

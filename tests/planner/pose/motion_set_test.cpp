@@ -1,4 +1,5 @@
 #include <cmath>
+#include <numbers>
 
 #include <talus/planner/pose/motion_set.hpp>
 
@@ -25,7 +26,8 @@ TEST(MotionSet, MotionsEndWhereTheirLegsLead) {
           const Pose end = after(Pose{{0.0, 0.0}, set.heading_rad(k)}, motion.leg);
           EXPECT_NEAR(end.place.x_m, motion.dx_m, 1e-12);
           EXPECT_NEAR(end.place.y_m, motion.dy_m, 1e-12);
-          EXPECT_NEAR(std::remainder(end.heading_rad - set.heading_rad(motion.heading), 2 * M_PI), 0.0, 1e-9);
+          EXPECT_NEAR(std::remainder(end.heading_rad - set.heading_rad(motion.heading), 2 * std::numbers::pi),
+                      0.0, 1e-9);
           if (radius_m > 0.0) {
             EXPECT_LE(std::abs(motion.leg.arc.curvature_1_m), 1 / radius_m + 1e-12);
             EXPECT_EQ(motion.leg.turn_rad, 0.0);

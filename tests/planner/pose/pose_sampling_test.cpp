@@ -1,4 +1,5 @@
 #include <cmath>
+#include <numbers>
 
 #include <talus/planner/pose/pose_sampling.hpp>
 
@@ -35,7 +36,7 @@ TEST(PoseSampling, NeverDearerNeverRefusedAndTheSameAgain) {
       const Pose end = chords(better.path, *problem.map).back(),
                  asked = chords(known.path, *problem.map).back();
       EXPECT_NEAR(end.place.x_m, asked.place.x_m, 1e-5);
-      EXPECT_NEAR(std::remainder(end.heading_rad - asked.heading_rad, 2 * M_PI), 0.0, 1e-5);
+      EXPECT_NEAR(std::remainder(end.heading_rad - asked.heading_rad, 2 * std::numbers::pi), 0.0, 1e-5);
       EXPECT_EQ(improvedBySampling(problem, known, settings).cost_J, better.cost_J);
       gained += known.cost_J - better.cost_J;
     }

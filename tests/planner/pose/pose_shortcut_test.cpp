@@ -1,4 +1,5 @@
 #include <cmath>
+#include <numbers>
 
 #include <talus/planner/check/route_check.hpp>
 #include <talus/planner/pose/pose_shortcut.hpp>
@@ -56,7 +57,8 @@ TEST(PoseShortcut, KeepsTheEndsAndNeverCostsMore) {
       EXPECT_LE(cost(made), cost(drive)) << seed;
       EXPECT_NEAR(end(made).place.x_m, end(drive).place.x_m, 1e-6);
       EXPECT_NEAR(end(made).place.y_m, end(drive).place.y_m, 1e-6);
-      EXPECT_NEAR(std::remainder(end(made).heading_rad - end(drive).heading_rad, 2 * M_PI), 0.0, 1e-6);
+      EXPECT_NEAR(std::remainder(end(made).heading_rad - end(drive).heading_rad, 2 * std::numbers::pi), 0.0,
+                  1e-6);
       EXPECT_LE(shape(made).max_curvature_1_m, 0.5 + 1e-9);
       if (!reverse) {
         EXPECT_EQ(shape(made).cusps, 0) << seed;

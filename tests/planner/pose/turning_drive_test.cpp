@@ -1,4 +1,5 @@
 #include <cmath>
+#include <numbers>
 
 #include <talus/planner/pose/turning_drive.hpp>
 
@@ -36,7 +37,7 @@ TEST(TurningDrive, TurnsWhereItMust) {
   Pose end = drive.start;
   for (const auto& leg : drive.legs) end = after(end, leg);
   EXPECT_NEAR(end.place.x_m, 15.5, 1e-9);
-  EXPECT_NEAR(std::remainder(end.heading_rad, 2 * M_PI), 0.0, 1e-9);
+  EXPECT_NEAR(std::remainder(end.heading_rad, 2 * std::numbers::pi), 0.0, 1e-9);
 }
 
 TEST(TurningDrive, BacksOutWhenTurningIsDearer) {
@@ -49,7 +50,7 @@ TEST(TurningDrive, BacksOutWhenTurningIsDearer) {
   kinematics.may_reverse = false;
   const PosePath turned =
       turningDrive(west, {.start_rad = 0.0, .goal_rad = {}}, PoseCost(motion, kinematics));
-  EXPECT_NEAR(std::abs(turned.legs.front().turn_rad), M_PI, 1e-9);
+  EXPECT_NEAR(std::abs(turned.legs.front().turn_rad), std::numbers::pi, 1e-9);
 }
 
 TEST(TurningDrive, NoneWhereNoneIsAllowed) {

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include <talus/planner/refine/edge_crossings.hpp>
@@ -72,8 +73,8 @@ TEST(EdgeCrossings, FreeCellsAllowEveryHeading) {
   for (const CellCode cell : randomCells()) {
     bool every = true;
     for (int d = 0; d < 720; ++d)
-      every = every &&
-              std::isfinite(cost->costPerMetre(cell, {std::cos(d * M_PI / 360), std::sin(d * M_PI / 360)}));
+      every = every && std::isfinite(cost->costPerMetre(cell, {std::cos(d * std::numbers::pi / 360),
+                                                               std::sin(d * std::numbers::pi / 360)}));
     if (crossings.free(cell)) {
       EXPECT_TRUE(every);
     }

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -9,11 +10,11 @@ namespace talus::planner {
 namespace arc_test {
 
 TEST(Arc, AQuarterCircleEndsWhereItShould) {
-  const Pose left = after({{0.0, 0.0}, 0.0}, Arc{M_PI, 0.5});
+  const Pose left = after({{0.0, 0.0}, 0.0}, Arc{std::numbers::pi, 0.5});
   // Closed form: radius 2 about (0, 2).
   EXPECT_NEAR(left.place.x_m, 2.0, 1e-12);
   EXPECT_NEAR(left.place.y_m, 2.0, 1e-12);
-  EXPECT_NEAR(left.heading_rad, M_PI / 2, 1e-12);
+  EXPECT_NEAR(left.heading_rad, std::numbers::pi / 2, 1e-12);
 }
 
 // Property: the end is where short straight steps along the turning heading lead (midpoint rule: the error of

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -41,7 +42,7 @@ TEST(Dubins, ArrivesNearAndFarWithoutReversing) {
       const Pose last = end(b.from, arcs);
       EXPECT_NEAR(last.place.x_m, b.to.place.x_m, 1e-8 * reach_m + 1e-8);
       EXPECT_NEAR(last.place.y_m, b.to.place.y_m, 1e-8 * reach_m + 1e-8);
-      EXPECT_NEAR(std::remainder(last.heading_rad - b.to.heading_rad, 2 * M_PI), 0.0, 1e-8);
+      EXPECT_NEAR(std::remainder(last.heading_rad - b.to.heading_rad, 2 * std::numbers::pi), 0.0, 1e-8);
       for (const Arc& arc : arcs) {
         EXPECT_GT(arc.length_m, 0.0);
         EXPECT_LE(std::abs(arc.curvature_1_m), 1.0 / 1.5 + 1e-12);
@@ -57,9 +58,9 @@ TEST(Dubins, IsAsShortAsAnotherImplementation) {
   for (int k = 0; k < 3000; ++k) {
     const Between ends = drawn(random, k % 2 ? 3.0 : 8.0);
     a->setXY(ends.from.place.x_m, ends.from.place.y_m);
-    a->setYaw(std::remainder(ends.from.heading_rad, 2 * M_PI));
+    a->setYaw(std::remainder(ends.from.heading_rad, 2 * std::numbers::pi));
     b->setXY(ends.to.place.x_m, ends.to.place.y_m);
-    b->setYaw(std::remainder(ends.to.heading_rad, 2 * M_PI));
+    b->setYaw(std::remainder(ends.to.heading_rad, 2 * std::numbers::pi));
     EXPECT_NEAR(length_m(shortestForward(ends.from, ends.to, 1.5)), space->distance(a.get(), b.get()), 1e-5);
   }
 }

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include <talus/planner/route/heading_cost.hpp>
@@ -14,7 +15,7 @@ TEST(HeadingCost, SameBitsAsDriveCost) {
   std::mt19937 random(3);
   for (int k = 0; k < 200'000; ++k) {
     const int eighth = static_cast<int>(random() % 64);
-    const double angle = k % 2 == 0 ? eighth * std::acos(-1.0) / 4 : static_cast<double>(random()) * 1.5e-9;
+    const double angle = k % 2 == 0 ? eighth * std::numbers::pi / 4 : static_cast<double>(random()) * 1.5e-9;
     const costmap::Direction heading =
         eighth == 0 ? costmap::Direction{0.0, -1.0} : costmap::Direction{std::cos(angle), std::sin(angle)};
     const costmap::CellCode cell({.dz_dx = (static_cast<int>(random() % 700) - 350) / 1024.0,

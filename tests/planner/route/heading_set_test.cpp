@@ -1,4 +1,5 @@
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include <talus/planner/route/heading_set.hpp>
@@ -7,8 +8,6 @@
 
 namespace talus::planner {
 namespace heading_set_test {
-
-constexpr double kPi = 3.141592653589793;
 
 bool holds(const HeadingSet& set, double heading) {
   return !set.empty() &&
@@ -54,7 +53,7 @@ TEST(HeadingSet, SharedHeadingsAreThoseOfBoth) {
     for (int drawn = 0; drawn < 50; ++drawn) {
       const double heading = angle(random);
       EXPECT_EQ(holds(both, heading), holds(a, heading) && holds(b, heading));
-      EXPECT_EQ(holds(a.reversed(), heading), holds(a, heading + kPi));
+      EXPECT_EQ(holds(a.reversed(), heading), holds(a, heading + std::numbers::pi));
     }
   }
 }

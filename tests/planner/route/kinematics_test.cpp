@@ -1,4 +1,5 @@
 #include <cmath>
+#include <numbers>
 #include <random>
 #include <stdexcept>
 
@@ -25,7 +26,7 @@ TEST(Kinematics, ShortestCurvesArriveAndKeepTheRadius) {
       const Pose reached = end(from, arcs);
       EXPECT_NEAR(reached.place.x_m, to.place.x_m, 1e-6);
       EXPECT_NEAR(reached.place.y_m, to.place.y_m, 1e-6);
-      EXPECT_NEAR(std::remainder(reached.heading_rad - to.heading_rad, 2 * M_PI), 0.0, 1e-6);
+      EXPECT_NEAR(std::remainder(reached.heading_rad - to.heading_rad, 2 * std::numbers::pi), 0.0, 1e-6);
       for (const Arc& arc : arcs) {
         EXPECT_LE(std::abs(arc.curvature_1_m), 1.0 / 1.5 + 1e-12);
         if (!reverse) {

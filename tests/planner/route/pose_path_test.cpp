@@ -1,5 +1,6 @@
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include <talus/planner/route/pose_path.hpp>
 
@@ -28,7 +29,8 @@ TEST(PosePath, AnArcOnEvenGroundCostsItsLengthAndItsTurn) {
   const PoseCost cost(motion,
                       {.turning_radius_m = 2.0, .turns = {.on_arc = {.cost_J = 7.0}, .in_place = {}}});
   // Closed form: 10 J/m; chords of 0.1 rad are shorter than their arc by 0.1^2/24.
-  EXPECT_NEAR(cost({{0.5, 0.5}, 0.0}, {{M_PI, 0.5}, 0.0}), 10.0 * M_PI + 7.0 * M_PI / 2, 10.0 * M_PI * 5e-4);
+  EXPECT_NEAR(cost({{0.5, 0.5}, 0.0}, {{std::numbers::pi, 0.5}, 0.0}),
+              10.0 * std::numbers::pi + 7.0 * std::numbers::pi / 2, 10.0 * std::numbers::pi * 5e-4);
 }
 
 TEST(PosePath, TurningInPlaceNeedsEveryHeadingOnTheWay) {
@@ -40,7 +42,7 @@ TEST(PosePath, TurningInPlaceNeedsEveryHeadingOnTheWay) {
                                 .version = 1});
   const MotionCost motion(std::make_shared<const costmap::CostGrid>(grid));
   const PoseCost cost(motion, {.turns = {.on_arc = {}, .in_place = {.cost_J = 3.0}}});
-  EXPECT_TRUE(std::isinf(cost({{0.5, 0.5}, 0.0}, {{}, M_PI / 2})));
+  EXPECT_TRUE(std::isinf(cost({{0.5, 0.5}, 0.0}, {{}, std::numbers::pi / 2})));
   EXPECT_DOUBLE_EQ(cost({{0.5, 0.5}, 0.0}, {{}, 0.2}), 0.6);
 }
 
@@ -53,7 +55,8 @@ TEST(PosePath, CuspsAreCountedAndPriced) {
 }
 
 TEST(PosePath, SamplesEndWhereTheDriveEnds) {
-  const PosePath path{.start = {{0.0, 0.0}, 0.0}, .legs = {{{M_PI, 0.5}, 0.0}, {{}, 1.0}, {{1.0, 0.0}, 0.0}}};
+  const PosePath path{.start = {{0.0, 0.0}, 0.0},
+                      .legs = {{{std::numbers::pi, 0.5}, 0.0}, {{}, 1.0}, {{1.0, 0.0}, 0.0}}};
   const auto poses = sampled(path, 0.1);
   Pose end = path.start;
   for (const auto& leg : path.legs) end = after(end, leg);

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 #include <gtest/gtest.h>
@@ -54,7 +55,7 @@ TEST(TurnPrices, NoWheelIsFasterThanItMay) {
 TEST(TurnPrices, SunkWheelsPushTheSoilBesideThem) {
   const auto rover = fourWheels(terramech::Steering::Skid);
   terramech::Soil sand;
-  sand.friction_angle_rad = M_PI / 6;  // K_p = tan^2(60 deg) = 3
+  sand.friction_angle_rad = std::numbers::pi / 6;  // K_p = tan^2(60 deg) = 3
   sand.density_kg_m3 = 1500.0;
   // Closed form: z = 2 cm of a wheel of 10 cm: chord 2 sqrt(0.004 - 0.0004) = 0.12 m.
   EXPECT_NEAR(bulldozing_N(sand, rover, 0.02), 0.5 * 1500.0 * 2.0 * 0.0004 * 3.0 * 0.12, 1e-12);

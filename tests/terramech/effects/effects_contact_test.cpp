@@ -1,4 +1,5 @@
 #include <cmath>
+#include <numbers>
 
 #include "effects_fixture.hpp"
 
@@ -21,7 +22,7 @@ TEST(EffectsContact, SideForceIsSteadyThroughNinetyDegrees) {
     WheelState s = state(slip);
     s.slip_angle_rad = 1.55;
     const double before = predict(model, s).scaled(Channel::SideForce);
-    s.slip_angle_rad = 0.5 * M_PI + 0.003;  // as a test bed reads its 90 deg
+    s.slip_angle_rad = 0.5 * std::numbers::pi + 0.003;  // as a test bed reads its 90 deg
     const double at = predict(model, s).scaled(Channel::SideForce);
     // Property: the travel across shears the soil where there is none along.
     EXPECT_LT(at, -0.1) << slip;
@@ -68,7 +69,8 @@ TEST(EffectsContact, LugsAndSizeOfTheWheel) {
   EXPECT_NEAR(acted("grouser_shear_radius", {0.7}, 0.01).shear_radius_m, 0.207, 1e-12);
   // Closed form: at h = b the factor is 1 + 0.64 atan(1).
   const WheelState square{.wheel = {.width_m = 0.1, .grouser_height_m = 0.1}};
-  EXPECT_NEAR(acted("grouser_thrust", {1.0}, 0.1, square).tan_friction, 0.5 * (1.0 + 0.16 * M_PI), 1e-12);
+  EXPECT_NEAR(acted("grouser_thrust", {1.0}, 0.1, square).tan_friction, 0.5 * (1.0 + 0.16 * std::numbers::pi),
+              1e-12);
   EXPECT_EQ(acted("grouser_thrust", {1.0}, 0.0, {}), plainContact());
   // Closed form: 1 + W/S = 1.1; (D/D0)^m = 2.
   const WheelContact soft = acted("wheel_flexibility", {0.001}, 100.0);
@@ -79,10 +81,11 @@ TEST(EffectsContact, LugsAndSizeOfTheWheel) {
 
 TEST(EffectsContact, SlopeMovesLoadAndSideSlipDeepens) {
   // Closed form: N = W (cos a - (h/L) sin a), at 30 deg with h/L = 1; never below a twentieth of W.
-  EXPECT_NEAR(acted("slope_load_transfer", {1.0}, M_PI / 6).load_N, 50.0 * (std::sqrt(3.0) - 1.0), 1e-9);
+  EXPECT_NEAR(acted("slope_load_transfer", {1.0}, std::numbers::pi / 6).load_N, 50.0 * (std::sqrt(3.0) - 1.0),
+              1e-9);
   EXPECT_NEAR(acted("slope_load_transfer", {2.0}, 1.4).load_N, 5.0, 1e-12);
-  EXPECT_NEAR(acted("side_slip_sinkage", {0.6}, -M_PI / 6).sinkage_exponent, 1.3, 1e-12);
-  const WheelContact both = acted("side_slip", {2.0, 0.6}, -M_PI / 6);
+  EXPECT_NEAR(acted("side_slip_sinkage", {0.6}, -std::numbers::pi / 6).sinkage_exponent, 1.3, 1e-12);
+  const WheelContact both = acted("side_slip", {2.0, 0.6}, -std::numbers::pi / 6);
   EXPECT_NEAR(both.sinkage_exponent, 1.3, 1e-12);
   EXPECT_NEAR(both.shear_modulus_m, 0.04, 1e-12);
 }

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <numbers>
 
 #include "effects_fixture.hpp"
 
@@ -65,7 +66,8 @@ TEST(EffectsDigging, SoilBehindADiggingWheelPushesItAndItDoesNotBulldozeWhatItDu
   EXPECT_EQ(filled.sinkage_m, digs.sinkage_m);
   EXPECT_NEAR(filled.dug_m, 0.6 / 1.6 * filled.sinkage_m, 1e-12);  // Closed form: z0 (1 + a i).
   model.effects.push_back(with("bulldozing_ahead", {2.0}));
-  const double pushed = filled.sinkage_m - filled.dug_m, kp = std::pow(std::tan(0.25 * M_PI + 0.275), 2);
+  const double pushed = filled.sinkage_m - filled.dug_m,
+               kp = std::pow(std::tan(0.25 * std::numbers::pi + 0.275), 2);
   // Closed form: a b gamma z_p^2 Kp / 2, gamma = 1600 kg/m^3 x 9.80665 m/s^2.
   EXPECT_NEAR(filled.drawbar_pull_N - predict(model, straightOn(0.6)).drawbar_pull_N,
               2.0 * state().wheel.width_m * 0.5 * 1600.0 * 9.80665 * pushed * pushed * kp, 1e-6);
@@ -74,8 +76,8 @@ TEST(EffectsDigging, SoilBehindADiggingWheelPushesItAndItDoesNotBulldozeWhatItDu
 TEST(EffectsDigging, PloughingGrowsWithThePathAcross) {
   // Closed form: J = sin b / (sin b + m cos b) at 45 deg is 1/2 for m = 1 and 1/4 for m = 3; a r J^2 with
   // a r = 0.1 m, and contact behind 1 - (1 - J). A locked wheel only drags.
-  const WheelContact one = acted("side_ploughing", {0.5, 1.0}, M_PI / 4),
-                     three = acted("side_ploughing", {0.5, 3.0}, -M_PI / 4);
+  const WheelContact one = acted("side_ploughing", {0.5, 1.0}, std::numbers::pi / 4),
+                     three = acted("side_ploughing", {0.5, 3.0}, -std::numbers::pi / 4);
   EXPECT_NEAR(one.ploughed_m, 0.1 / 4, 1e-12);
   EXPECT_NEAR(one.rebound, 0.5, 1e-12);
   EXPECT_NEAR(three.ploughed_m, 0.1 / 16, 1e-12);
@@ -83,7 +85,7 @@ TEST(EffectsDigging, PloughingGrowsWithThePathAcross) {
   WheelContact locked = plainContact();
   locked.rolling = 0.0;
   const double parameters[] = {0.5, 1.0};
-  findEffect("side_ploughing")->act({parameters, {}, M_PI / 4}, locked);
+  findEffect("side_ploughing")->act({parameters, {}, std::numbers::pi / 4}, locked);
   EXPECT_EQ(locked.ploughed_m, 0.0);
 }
 

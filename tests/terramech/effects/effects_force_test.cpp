@@ -1,4 +1,5 @@
 #include <cmath>
+#include <numbers>
 
 #include <talus/terramech/contact/wong_reece.hpp>
 
@@ -59,7 +60,7 @@ TEST(EffectsForce, BulldozingIsThePassiveWedge) {
   // Closed form: Kp = 3 at 30 deg; b (gamma z^2 Kp / 2 + 2 c z sqrt(Kp)), b = 0.1 m, z = 0.02 m.
   const double friction = 0.1 * 15000.0 * 0.0004 * 3.0 / 2.0,
                cohesion = 0.1 * 2.0 * 1000.0 * 0.02 * std::sqrt(3.0);
-  const WheelContact c = soilOf(M_PI / 6);
+  const WheelContact c = soilOf(std::numbers::pi / 6);
   EXPECT_NEAR(readWith("bulldozing", {2.0}, 0.02, {}, c, sunk(0.02)).drawbar_pull_N,
               -2.0 * (friction + cohesion), 1e-9);
   EXPECT_NEAR(readWith("bulldozing_two_term", {3.0, 0.5}, 0.02, {}, c, sunk(0.02)).drawbar_pull_N,
@@ -71,7 +72,7 @@ TEST(EffectsForce, BulldozingIsThePassiveWedge) {
 
 // Property: a wheel that moves across its plane pushes nothing ahead of itself.
 TEST(EffectsForce, NothingIsPushedAheadAtNinetyDegrees) {
-  const WheelState across{.slip_angle_rad = M_PI / 2};
+  const WheelState across{.slip_angle_rad = std::numbers::pi / 2};
   for (const char* name : {"bulldozing", "bulldozing_hegedus", "bulldozing_ahead"})
     EXPECT_NEAR(readWith(name, {1.0}, 0.02, across, soilOf(0.5), sunk(0.02)).drawbar_pull_N, 0.0, 1e-9)
         << name;
@@ -90,25 +91,27 @@ TEST(EffectsForce, ASmoothFaceHasRankinesPressureUnderCoulombsLaw) {
 }
 
 TEST(EffectsForce, PilesAndTheSlopesShareOfTheWeight) {
-  const WheelContact c = soilOf(M_PI / 6);
+  const WheelContact c = soilOf(std::numbers::pi / 6);
   // Closed form: a W (i - i0)^2 = 0.5 x 100 x 0.04; gamma b h^2 Kp / 2 with h = 0.5 x 0.2; nothing below i0.
   EXPECT_NEAR(readWith("rear_pile", {0.5, 0.4}, 0.6, {}, c, sunk(0.01)).drawbar_pull_N, 2.0, 1e-12);
   EXPECT_EQ(readWith("rear_pile", {0.5, 0.4}, 0.3, {}, c, sunk(0.01)).drawbar_pull_N, 0.0);
   EXPECT_NEAR(readWith("rear_pile_passive", {0.5, 0.4}, 0.6, {}, c, sunk(0.01)).drawbar_pull_N,
               15000.0 * 0.1 * 0.01 * 3.0 / 2.0, 1e-9);
-  EXPECT_NEAR(readWith("slope_weight_component", {0.5}, M_PI / 6, {}, c, sunk(0.01)).drawbar_pull_N, -25.0,
-              1e-12);
+  EXPECT_NEAR(
+      readWith("slope_weight_component", {0.5}, std::numbers::pi / 6, {}, c, sunk(0.01)).drawbar_pull_N,
+      -25.0, 1e-12);
 }
 
 TEST(EffectsForce, ARoughFaceHasCoulombsPressure) {
   // Closed form: phi = delta = 30 deg gives Kp = cos 30 deg / (1 - sqrt(1/2))^2 = 10.095. A locked wheel at
   // 90 deg slides along its face upwards alone, so that all friction counts and none pulls or brakes.
-  WheelContact c = soilOf(M_PI / 6);
+  WheelContact c = soilOf(std::numbers::pi / 6);
   c.cohesion_Pa = 0.0;
   c.rolling = 0.0;
-  const double kp = std::cos(M_PI / 6) / std::pow(1.0 - std::sqrt(0.5), 2);
+  const double kp = std::cos(std::numbers::pi / 6) / std::pow(1.0 - std::sqrt(0.5), 2);
   const double z = 0.02, chord = 2.0 * std::sqrt(z * (0.4 - z));
-  const Reading r = readWith("side_bulldozing_rough", {1.0, std::tan(M_PI / 6)}, M_PI / 2, {}, c, sunk(z));
+  const Reading r = readWith("side_bulldozing_rough", {1.0, std::tan(std::numbers::pi / 6)},
+                             std::numbers::pi / 2, {}, c, sunk(z));
   EXPECT_NEAR(r.side_force_N, -chord * 0.5 * 15000.0 * z * z * kp, 1e-9);
   EXPECT_NEAR(r.drawbar_pull_N, 0.0, 1e-9);
 }

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <numbers>
 
 #include "effects_fixture.hpp"
 
@@ -23,7 +24,8 @@ TEST(EffectsSensor, ZerosOfTheOtherSensors) {
   EXPECT_DOUBLE_EQ(read("drawbar_zero", {-3.0}).drawbar_pull_N, 17.0);
   EXPECT_DOUBLE_EQ(read("sinkage_datum", {0.002}).sinkage_m, 0.012);
   // Closed form: DP cos e + W sin e at 30 deg.
-  EXPECT_NEAR(read("load_cell_tilt", {M_PI / 6}).drawbar_pull_N, 10.0 * std::sqrt(3.0) + 50.0, 1e-12);
+  EXPECT_NEAR(read("load_cell_tilt", {std::numbers::pi / 6}).drawbar_pull_N, 10.0 * std::sqrt(3.0) + 50.0,
+              1e-12);
 }
 
 // Closed form: 1 - i = (1 - i_m)/(1 + e); a radius read 25 % too small turns 0.2 into 0.36 of slip.

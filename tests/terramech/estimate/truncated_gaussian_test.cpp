@@ -1,5 +1,6 @@
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include <talus/terramech/estimate/truncated_gaussian.hpp>
 #include <talus/terramech/numerics/normal_distribution.hpp>
@@ -44,7 +45,7 @@ TEST(TruncatedGaussian, WithoutSidesItIsTheGaussian) {
   const TruncatedGaussian g(SoilVector::Zero(), SoilMatrix::Identity(),
                             {SoilVector::Constant(-kInfinity), SoilVector::Constant(kInfinity)});
   const auto [at, log_density] = g.draw(SoilVector::Constant(0.3));
-  EXPECT_NEAR(log_density, -0.5 * at.squaredNorm() - 2.5 * std::log(2.0 * 3.14159265358979), 1e-9);
+  EXPECT_NEAR(log_density, -0.5 * at.squaredNorm() - 2.5 * std::log(2.0 * std::numbers::pi), 1e-9);
 }
 
 }  // namespace truncated_gaussian_test

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <numbers>
 
 #include <talus/common/input_error.hpp>
 #include <talus/terramech/calibration/tables/soil_estimate.hpp>
@@ -24,7 +25,7 @@ TEST(SoilEstimate, StdOfTheAngleIsThatOfItsTangentByTheSlope) {
   // Closed form: d(phi) = d(tan phi) cos^2(phi); a quarter at 60 deg.
   Eigen::Matrix2d covariance;
   covariance << 1e4, 3.0, 3.0, 0.01;
-  EXPECT_NEAR(frictionStd_rad(covariance, M_PI / 3), 0.025, 1e-12);
+  EXPECT_NEAR(frictionStd_rad(covariance, std::numbers::pi / 3), 0.025, 1e-12);
 }
 
 TEST(SoilEstimate, BeforeAnyFitNothingIsKnown) {
@@ -45,7 +46,7 @@ TEST(SoilEstimate, TakesAFittedLine) {
   fit.unseen = {"after"};
   estimate.take(fit);
   EXPECT_EQ(estimate.cohesion_Pa, 700.0);
-  EXPECT_NEAR(estimate.friction_angle_rad, M_PI / 4, 1e-12);
+  EXPECT_NEAR(estimate.friction_angle_rad, std::numbers::pi / 4, 1e-12);
   EXPECT_EQ(estimate.covariance(1, 1), 0.01);
   EXPECT_THAT(estimate.unseen, testing::ElementsAre("before", "after"));
 }
@@ -63,8 +64,8 @@ TEST(SoilEstimate, OnlyWhatIsFarFromAnySoilIsImplausible) {
   EXPECT_THAT(said(-201.0, 0.5), testing::StartsWith("a cohesion outside"));
   EXPECT_EQ(said(0.0, -0.19), "");
   EXPECT_THAT(said(0.0, -0.21), testing::StartsWith("a friction angle"));
-  EXPECT_EQ(said(0.0, std::tan(M_PI / 3) + 0.19), "");
-  EXPECT_THAT(said(0.0, std::tan(M_PI / 3) + 0.21), testing::StartsWith("a friction angle"));
+  EXPECT_EQ(said(0.0, std::tan(std::numbers::pi / 3) + 0.19), "");
+  EXPECT_THAT(said(0.0, std::tan(std::numbers::pi / 3) + 0.21), testing::StartsWith("a friction angle"));
   EXPECT_THAT(said(-201.0, -0.21), testing::StartsWith("a cohesion and a friction angle"));
 }
 

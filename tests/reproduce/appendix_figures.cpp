@@ -4,16 +4,18 @@
 
 #include <fmt/format.h>
 
-#include <talus/cli/study/figure_parts.hpp>
 #include <talus/common/constants.hpp>
 #include <talus/terramech/contact/shear_stress.hpp>
 #include <talus/terramech/contact/wong_reece.hpp>
 #include <talus/terramech/strength/linear_offset.hpp>
 #include <talus/terramech/strength/shear_modulus.hpp>
 
-namespace talus::cli {
+#include "figure_parts.hpp"
+
+namespace talus::reproduce {
 namespace {
 
+using namespace cli;
 using namespace terramech;
 
 ThesisFigure shearCurve() {
@@ -198,4 +200,4 @@ std::vector<ThesisFigure> appendixFigures(std::uint64_t seed) {
   return {shearCurve(), stresses(), trialModulus(seed), modulusErrors(seed), sinkageOverSlip()};
 }
 
-}  // namespace talus::cli
+}  // namespace talus::reproduce

@@ -4,16 +4,18 @@
 
 #include <fmt/format.h>
 
-#include <talus/cli/study/thesis_figures.hpp>
 #include <talus/common/constants.hpp>
 #include <talus/terramech/contact/wong_reece.hpp>
 #include <talus/terramech/estimate/drawbar_pull.hpp>
 #include <talus/terramech/estimate/thesis_runs.hpp>
 #include <talus/terramech/mobility/category.hpp>
 
-namespace talus::cli {
+#include "thesis_figures.hpp"
+
+namespace talus::reproduce {
 namespace {
 
+using namespace cli;
 using namespace terramech;
 
 // One simulated state of the wheel.
@@ -232,4 +234,4 @@ std::vector<ThesisFigure> traversabilityFigures(std::uint64_t seed) {
   return {sameReadings(all), dimensionless(all), pullOverSlip(seed), traversabilityMap()};
 }
 
-}  // namespace talus::cli
+}  // namespace talus::reproduce

@@ -3,15 +3,17 @@
 
 #include <fmt/format.h>
 
-#include <talus/cli/study/figure_parts.hpp>
 #include <talus/common/constants.hpp>
 #include <talus/terramech/estimate/soil_filter.hpp>
 #include <talus/terramech/estimate/thesis_runs.hpp>
 #include <talus/terramech/strength/linear_offset.hpp>
 
-namespace talus::cli {
+#include "figure_parts.hpp"
+
+namespace talus::reproduce {
 namespace {
 
+using namespace cli;
 using namespace terramech;
 
 ThesisFigure coefficients(std::uint64_t seed) {
@@ -181,4 +183,4 @@ std::vector<ThesisFigure> estimationFigures(std::uint64_t seed) {
   return figures;
 }
 
-}  // namespace talus::cli
+}  // namespace talus::reproduce

@@ -6,7 +6,7 @@
 
 #include <talus/common/progress_monitor.hpp>
 
-namespace talus::cli {
+namespace talus::reproduce {
 
 /// One line of the table of what the estimators reach.
 struct GoalLine {
@@ -26,4 +26,4 @@ struct GoalOptions {
 /// numbers for the same seed, the times apart.
 std::vector<GoalLine> measureGoals(const GoalOptions& options, const ProgressMonitor& watch);
 
-}  // namespace talus::cli
+}  // namespace talus::reproduce

@@ -1,9 +1,11 @@
+#include "figure_parts.hpp"
+
 #include <cmath>
 
-#include <talus/cli/study/figure_parts.hpp>
-
-namespace talus::cli {
+namespace talus::reproduce {
 namespace figure_parts_test {
+
+using namespace cli;
 
 // Closed form: mean and standard deviation of 2, 4, 4, 4, 5, 5, 7, 9 are 5 and 2.
 TEST(FigureParts, MeanAndStandardDeviation) {
@@ -56,4 +58,4 @@ TEST(FigureParts, AClayRunHasMuchCohesion) {
 }
 
 }  // namespace figure_parts_test
-}  // namespace talus::cli
+}  // namespace talus::reproduce

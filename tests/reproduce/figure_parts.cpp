@@ -1,11 +1,13 @@
+#include "figure_parts.hpp"
+
 #include <cmath>
 
-#include <talus/cli/study/figure_parts.hpp>
 #include <talus/terramech/contact/wong_reece.hpp>
 #include <talus/terramech/strength/linear_offset.hpp>
 
-namespace talus::cli {
+namespace talus::reproduce {
 
+using namespace cli;
 using namespace terramech;
 
 ContactSoil middle(std::size_t soil_class) {
@@ -64,4 +66,4 @@ double MeanAndStd::std() const {
   return std::sqrt(squares_ / count_ - mean() * mean());
 }
 
-}  // namespace talus::cli
+}  // namespace talus::reproduce

@@ -6,7 +6,7 @@
 
 #include <talus/cli/draw/plot.hpp>
 
-namespace talus::cli {
+namespace talus::reproduce {
 
 /// A reproduced figure of the thesis: its claim and the result.
 struct ThesisFigure {
@@ -15,7 +15,7 @@ struct ThesisFigure {
   std::string claim;    ///< the statement of the thesis
   std::string found;    ///< what we get, with its numbers
   std::string verdict;  ///< "reproduced", "in part: why", "not reproduced: why"
-  std::vector<Plot> plots;
+  std::vector<cli::Plot> plots;
 };
 
 /// A verdict that follows from what was found: "reproduced" and what else is to be said of it, or the other.
@@ -32,4 +32,4 @@ std::vector<ThesisFigure> appendixFigures(std::uint64_t seed);
 /// Figures of chapter 3 (3.5, 3.6, 3.8, 3.12).
 std::vector<ThesisFigure> traversabilityFigures(std::uint64_t seed);
 
-}  // namespace talus::cli
+}  // namespace talus::reproduce

@@ -4,12 +4,13 @@
 #include <string>
 #include <vector>
 
-#include <talus/cli/study/thesis_figures.hpp>
 #include <talus/terramech/estimate/thesis_runs.hpp>
 #include <talus/terramech/strength/mohr_coulomb_line.hpp>
 
+#include "thesis_figures.hpp"
+
 /// What the figures of the thesis are drawn with.
-namespace talus::cli {
+namespace talus::reproduce {
 
 /// A soil in the middle of a class of Table 2.1; the thesis does not state which soil it used.
 terramech::ContactSoil middle(std::size_t soil_class);
@@ -18,13 +19,13 @@ terramech::ContactSoil middle(std::size_t soil_class);
 terramech::WheelSample drive(const terramech::ContactSoil& soil, double load_N, double slip);
 
 /// An empty line, several, an empty cloud of points; and a point more.
-Series line(const std::string& name);
-std::vector<Series> lines(std::initializer_list<const char*> names);
-Series points(const std::string& name);
-void put(Series& series, double x, double y);
+cli::Series line(const std::string& name);
+std::vector<cli::Series> lines(std::initializer_list<const char*> names);
+cli::Series points(const std::string& name);
+void put(cli::Series& series, double x, double y);
 
 /// Straight line y = offset + slope x over [0, most].
-Series straight(const std::string& name, double offset, double slope, double most);
+cli::Series straight(const std::string& name, double offset, double slope, double most);
 
 /// Of values added one at a time.
 class MeanAndStd {
@@ -39,7 +40,7 @@ class MeanAndStd {
 
 /// The points (M3, M4) of a run at a shear modulus [m] and the line fitted to them.
 struct FittedPoints {
-  Series cloud;
+  cli::Series cloud;
   terramech::ShearStrength fit;
 };
 FittedPoints fittedPoints(const terramech::ThesisRun& run, double shear_modulus_m, const std::string& name);
@@ -47,4 +48,4 @@ FittedPoints fittedPoints(const terramech::ThesisRun& run, double shear_modulus_
 /// A clay run with the most cohesion that the seed gives.
 terramech::ThesisRun clayRun(std::uint64_t seed, double noise);
 
-}  // namespace talus::cli
+}  // namespace talus::reproduce

@@ -1,10 +1,11 @@
+#include "goal_study.hpp"
+
 #include <cmath>
 #include <ctime>
 #include <map>
 
 #include <fmt/format.h>
 
-#include <talus/cli/study/goal_study.hpp>
 #include <talus/common/constants.hpp>
 #include <talus/terramech/estimate/drawbar_pull.hpp>
 #include <talus/terramech/estimate/pull_forecast.hpp>
@@ -15,9 +16,10 @@
 #include <talus/terramech/strength/linear_offset.hpp>
 #include <talus/terramech/strength/shear_modulus_grid.hpp>
 
-namespace talus::cli {
+namespace talus::reproduce {
 namespace {
 
+using namespace cli;
 using namespace terramech;
 
 // Root mean square, one error at a time.
@@ -274,4 +276,4 @@ std::vector<GoalLine> measureGoals(const GoalOptions& options, const ProgressMon
   return lines;
 }
 
-}  // namespace talus::cli
+}  // namespace talus::reproduce

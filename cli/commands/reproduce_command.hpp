@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+
+namespace CLI {
+class App;
+}
+
+namespace talus::cli {
+
+struct Context;
+
+/// Options of `talus reproduce`.
+struct ReproduceOptions {
+  std::string output = ".";
+  std::string measured;
+  bool goals_only = false;
+  int soils = 500;
+};
+
+/// Registers `reproduce` with a function that runs it: addReproduce() of commands.hpp starts the program talus-reproduce, and that
+/// program draws and measures itself.
+void addReproduce(CLI::App& app, Context& context, int (*run)(const ReproduceOptions&, Context&));
+
+}  // namespace talus::cli
