@@ -38,7 +38,7 @@ void bind(CLI::App& command, CostmapOptions& options) {
 void writeOctovis(const costmap::TraversabilityMap& map, const std::string& path) {
   OutputFile file(path);
   std::ofstream stream(file.temporary(), std::ios::binary);
-  const auto tree = costmap::colorTree({map.elevation().elevation_m, map.keys()},
+  const auto tree = costmap::colorTree({map.elevation().elevation_m, map.surface().keys()},
                                        [&](maps::Cell cell) { return map.belief(cell); });
   tree->write(stream);
   stream.close();
@@ -64,7 +64,7 @@ std::string costmapText(const Ground& site, const costmap::CategoryCounts& count
   };
   return fmt::format("cells       {} x {} of {:.6g} m, footprint diameter {:.3g} m\n", site.map.grid().width,
                      site.map.grid().height, site.map.grid().resolution_m,
-                     2.0 * site.map.footprintRadius_m()) +
+                     2.0 * site.map.surface().footprintRadius_m()) +
          fmt::format("rover       {}\n", site.map.model().rover().name) +
          fmt::format(
              "safe        {:.1f} %\nmarginal    {:.1f} %\ndangerous   {:.1f} %\nunknown     {:.1f} %\n",
@@ -88,7 +88,7 @@ nlohmann::ordered_json costmapJson(const Ground& site, const costmap::CategoryCo
 int run(const CostmapOptions& options, Context& context) {
   const Ground site = readGround(options.ground, context);
   if (context.stop.stop_requested()) return Exit::kCancelled;
-  const costmap::CategoryCounts counts = site.map.countCategories();
+  const costmap::CategoryCounts counts = site.map.costs().countCategories();
   writeFiles(options, site.map, context);
   if (context.json)
     printJson(costmapJson(site, counts));

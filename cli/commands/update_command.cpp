@@ -62,7 +62,7 @@ Snapshot snapshotOf(const costmap::TraversabilityMap& map) {
   snapshot.categories.reserve(map.grid().size());
   for (int row = 0; row < map.grid().height; ++row)
     for (int column = 0; column < map.grid().width; ++column)
-      snapshot.categories.push_back(map.category({column, row}));
+      snapshot.categories.push_back(map.costs().category({column, row}));
   return snapshot;
 }
 

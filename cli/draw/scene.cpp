@@ -134,7 +134,7 @@ Scene sceneOf(const costmap::TraversabilityMap& map, const SceneOptions& options
   ValueLayer slope{.name = "slope",
                    .unit = "deg",
                    .values = blocks.mean([&](Cell cell) {
-                     if (has(map.hazards(cell), costmap::Hazard::Unknown)) return std::nan("");
+                     if (has(map.surface().hazards(cell), costmap::Hazard::Unknown)) return std::nan("");
                      const costmap::CellCode code = version->at(cell);
                      return std::atan(std::hypot(code.dzDx(), code.dzDy())) / kDegree;
                    }),

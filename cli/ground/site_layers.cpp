@@ -74,10 +74,11 @@ class BestHeading {
 
 std::vector<maps::Layer> siteLayers(const TraversabilityMap& map, int threads) {
   const maps::Grid& grid = map.grid();
-  maps::TerrainMetrics metrics = maps::terrainMetrics(map.elevation().elevation_m, map.footprint(threads));
+  maps::TerrainMetrics metrics =
+      maps::terrainMetrics(map.elevation().elevation_m, map.surface().footprint(threads));
   const auto published = map.published();
   const auto known = [&](maps::Cell cell, float value) {
-    return map.classIndex(cell) < 0 ? kNoValue : value;
+    return map.surface().classIndex(cell) < 0 ? kNoValue : value;
   };
   std::vector<maps::Layer> layers;
   layers.push_back({"elevation", "m", map.elevation().elevation_m});
@@ -85,8 +86,8 @@ std::vector<maps::Layer> siteLayers(const TraversabilityMap& map, int threads) {
   layers.push_back(layer(grid, "aspect", "rad", [&](maps::Cell c) { return metrics.aspect_rad(c); }));
   layers.push_back({"roughness", "m", std::move(metrics.roughness_m)});
   layers.push_back({"step", "m", std::move(metrics.step_m)});
-  layers.push_back(
-      layer(grid, "class", "", [&](maps::Cell c) { return static_cast<float>(map.classNumber(c)); }));
+  layers.push_back(layer(grid, "class", "",
+                         [&](maps::Cell c) { return static_cast<float>(map.surface().classNumber(c)); }));
   layers.push_back(
       layer(grid, "category", "", [&](maps::Cell c) { return static_cast<float>(map.belief(c).category); }));
   layers.push_back(layer(grid, "drawbar_pull_over_load", "",

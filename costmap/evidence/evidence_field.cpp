@@ -6,15 +6,13 @@
 
 #include <talus/costmap/evidence/evidence_field.hpp>
 #include <talus/costmap/evidence/evidence_store.hpp>
+#include <talus/costmap/evidence/ground_inference.hpp>
 
 namespace talus::costmap {
 namespace {
 
-constexpr std::size_t kMostNeighbours = 64;
 constexpr double kFarthestReach_m = 25.5;  // as BlockEvidence keeps it
 constexpr double kPlaceStd = 0.06;         // a place is known that is known so well: by some readings
-constexpr double kSteepest =
-    0.6;  // gradient of ground that joins places of one floor: more than rovers drive
 
 std::uint32_t secondsOf(double time_s) noexcept {
   return time_s > 0.0 && time_s < 4294967295.0 ? static_cast<std::uint32_t>(time_s) : 0U;
@@ -37,14 +35,9 @@ int EvidenceField::blockCells() const noexcept {
   return store_->blocks.side();
 }
 
-BlockLevel EvidenceField::topOf(maps::Cell cell, int class_index) const noexcept {
-  return {store_->blocks.columnOf(cell), store_->blocks.rowOf(cell), BlockEvidence::kTop,
-          static_cast<std::uint8_t>(groundOf(class_index).number)};
-}
-
 // The block's level of a floor: one that is known within half the headroom, else a new one.
 BlockLevel EvidenceField::levelOf(maps::Cell cell, const Floor& floor) const {
-  BlockLevel out = topOf(cell, 0);
+  BlockLevel out = store_->topOf(cell, 0);
   out.level = store_->blocks.keyOf(floor.height_m);
   const int same = std::max(1, static_cast<int>(0.5 * Floors::kHeadroom_m / site_->grid().resolution_m));
   store_->bricks.visitLevels(out.column, out.row, [&](const BlockLevel& known, const BlockEvidence&) {
@@ -55,19 +48,12 @@ BlockLevel EvidenceField::levelOf(maps::Cell cell, const Floor& floor) const {
   return out;
 }
 
-Variation EvidenceField::variationOf(int class_index) const noexcept {
-  const GroundClass& ground = groundOf(class_index);
-  return {.pull_std = ground.pull_std,
-          .sinkage_std = ground.sinkage_std,
-          .correlation_length_m = site_->model->parts().policy.correlation_length_m};
-}
-
 // One block speaks for as many independent places as its length holds integral scales (2/3 of the correlation
 // length), and for no departure beyond what its class explains: what is more is other ground that no class
 // raster shows.
 std::optional<BlockLesson> EvidenceField::lessonOf(const BlockEvidence& block, int class_index) const {
   if (!teachesClass(block.level) || std::isnan(block.weak_pull)) return std::nullopt;
-  const GroundClass& ground = groundOf(class_index);
+  const GroundClass& ground = store_->groundClass(class_index);
   const GroundBelief prior = site_->model->prior(class_index);
   const bool raises = !std::isnan(block.pull);
   const double measured = static_cast<double>(raises ? block.variance : block.weak_variance);
@@ -97,7 +83,7 @@ std::optional<float> EvidenceField::squareStrength(const IndependentPlaces::Squa
   const double prior = site_->model->prior(class_index).pull.value;
   bool driven = false, raises = false;
   double least = std::numeric_limits<double>::infinity();
-  const int number = groundOf(class_index).number;
+  const int number = store_->groundClass(class_index).number;
   const auto take = [&](const BlockLevel& at, const BlockEvidence& e) {
     if (at.terrain_class != number || !teachesClass(at.level) || std::isnan(e.weak_pull)) return;
     driven = true;
@@ -125,10 +111,9 @@ maps::CellBox EvidenceField::hear(const BlockLevel& where, const SavedBlock& hea
   BlockEvidence& block = store_->bricks.at(where);
   block.updated_s = std::max(block.updated_s, heard.updated_s);
   block.reach = std::max(block.reach, heard.reach);
-  farthest_reach_m_ = std::max(farthest_reach_m_, block.reach_m());
   summarise(store_->bricks.counts(where),
-            {site_->model->prior(class_index).pull.value, groundOf(class_index).pull_std}, block);
-  const maps::CellBox reached = patchesReachedFrom(where, block.reach_m());
+            {site_->model->prior(class_index).pull.value, store_->groundClass(class_index).pull_std}, block);
+  const maps::CellBox reached = store_->reach.add(where, block.reach_m());
   const auto lesson = lessonOf(block, class_index);
   if (!lesson && how == Count::Add) return reached;
   if (lesson) lessons.add(*lesson);
@@ -180,7 +165,7 @@ std::optional<SavedBlock> EvidenceField::heardOf(const WheelObservation& observa
   if (class_index < 0 || !(observation.estimates() || observation.here.any())) return std::nullopt;
   const bool sure = floor || observation.pose_std_m <= 0.0 || standsOnOneClass(observation, class_index);
   const double correlation_length_m = site_->model->parts().policy.correlation_length_m;
-  SavedBlock heard{.block = floor ? levelOf(*cell, *floor) : topOf(*cell, class_index),
+  SavedBlock heard{.block = floor ? levelOf(*cell, *floor) : store_->topOf(*cell, class_index),
                    .updated_s = secondsOf(observation.time_s),
                    .reach = static_cast<std::uint8_t>(
                        std::clamp(std::ceil(10.0 * kPoseReach * observation.pose_std_m - 1e-9), 0.0, 255.0)),
@@ -190,7 +175,8 @@ std::optional<SavedBlock> EvidenceField::heardOf(const WheelObservation& observa
   const double alike = sparseKernel(observation.pose_std_m, correlation_length_m);
   const bool raises = sure && observation.pull_may_raise;
   if (raises)
-    pull.std = std::hypot(pull.std, groundOf(class_index).pull_std * std::sqrt(1.0 - alike * alike));
+    pull.std =
+        std::hypot(pull.std, store_->groundClass(class_index).pull_std * std::sqrt(1.0 - alike * alike));
   if (observation.estimates()) heard.heard.push_back(pullReading(pull, raises, observation.shared_std));
   if (std::isfinite(observation.sinkage.std))
     heard.heard.push_back(sinkageReading(observation.sinkage.value, sure && observation.sinkage_may_raise));
@@ -212,7 +198,7 @@ std::optional<maps::CellBox> EvidenceField::restore(const SavedBlock& saved) {
 
 const BlockEvidence* EvidenceField::evidence(maps::Cell cell) const noexcept {
   const int class_index = site_->classIndex(cell);
-  return class_index < 0 ? nullptr : store_->bricks.find(topOf(cell, class_index));
+  return class_index < 0 ? nullptr : store_->bricks.find(store_->topOf(cell, class_index));
 }
 
 const BlockEvidence* EvidenceField::evidence(maps::Cell cell, const Floor& floor) const {
@@ -221,7 +207,7 @@ const BlockEvidence* EvidenceField::evidence(maps::Cell cell, const Floor& floor
 
 double EvidenceField::samplesOf(maps::Cell cell) const {
   const int class_index = site_->classIndex(cell);
-  return class_index < 0 ? 0.0 : samples(store_->bricks.counts(topOf(cell, class_index)));
+  return class_index < 0 ? 0.0 : samples(store_->bricks.counts(store_->topOf(cell, class_index)));
 }
 
 double EvidenceField::samplesOf(maps::Cell cell, const Floor& floor) const {
@@ -240,116 +226,31 @@ std::vector<EvidenceField::FloorEvidence> EvidenceField::floorEvidence() const {
   return out;
 }
 
-// What may raise goes into the process; what is weaker than its class explains, and what may only lower, speaks
-// for itself. Ground of other classes says something only as far as it may have been this.
-void EvidenceField::place(const BlockLevel& block, const BlockEvidence& e, NearbyEvidence& nearby) const {
-  const int own = site_->model->classIndex(block.terrain_class);
-  const GroundBelief mean = awayFromEvidence(nearby.class_index, nearby.state),
-                     prior = site_->model->prior(nearby.class_index);
-  const GroundClass& ground = groundOf(own);
-  const maps::Point middle = store_->blocks.middleOf(store_->blocks.blockAt(block.column, block.row));
-  const bool alike = own == nearby.class_index;
-  const double variance = static_cast<double>(e.weak_variance);
-  const double below = static_cast<double>(e.weak_pull) - site_->model->prior(own).pull.value;
-  const double deeper = static_cast<double>(e.sinkage) - site_->model->prior(own).sinkage.value;
-  const bool weak = below < -kOrdinary * std::sqrt(ground.pull_std * ground.pull_std + variance);
-  const bool own_lowers = alike && e.lowers;
-  const bool deep = deeper > (own_lowers ? 0.0 : kOrdinary * ground.sinkage_std);
-  if (alike && !std::isnan(e.pull)) {
-    const double sinkage = static_cast<double>(e.sinkage) - mean.sinkage.value;
-    nearby.places.push_back(
-        {.place = middle,
-         .pull = static_cast<double>(e.pull) - mean.pull.value,
-         .sinkage = e.sinkage_raises || std::isnan(sinkage) ? sinkage : std::fmax(sinkage, 0.0),
-         .variance = static_cast<double>(e.variance),
-         .shared = static_cast<double>(e.shared)});
-  }
-  const bool may_be_here = alike || e.reach > 0;
-  if (!may_be_here) return;
-  if (!std::isnan(e.most_pull) || !std::isnan(e.least_sinkage))
-    nearby.bounds.push_back(
-        {middle, e.reach_m(), static_cast<double>(e.most_pull), static_cast<double>(e.least_sinkage)});
-  const double pull = static_cast<double>(e.weak_pull) - prior.pull.value;
-  const double sinkage = static_cast<double>(e.sinkage) - prior.sinkage.value;
-  const WeakPlace place{.place = middle,
-                        .pull = weak ? std::fmin(pull, 0.0) : 0.0,
-                        .variance = variance,
-                        .sinkage = std::isnan(sinkage) ? 0.0 : std::fmax(sinkage, 0.0),
-                        .reach_m = e.reach_m() + (alike ? 0.0 : 0.5 * store_->blocks.side_m()),
-                        .beyond_reach = alike};
-  if (weak || deep) nearby.weak.push_back(place);
-  if (!own_lowers || !(below < 0.0)) return;
-  nearby.lower.push_back(place);
-  nearby.lower.back().pull = below;
-}
-
-// Evidence on top that can reach a patch of blocks. The process has that alone which lies within a correlation length,
-// however far off places elsewhere may be: these matter by what they bound.
-LocalGround EvidenceField::around(const BlockLevel& patch, int class_index, const ClassState& state) const {
-  const int reach =
-      store_->blocks.reach() + static_cast<int>(std::ceil(farthest_reach_m_ / store_->blocks.side_m()));
-  NearbyEvidence nearby{.class_index = class_index, .state = state};
-  const auto isNear = [&](int blocks) {
-    return blocks >= -store_->blocks.reach() && blocks < kPatchBlocks + store_->blocks.reach();
-  };
-  store_->bricks.visitTop({patch.column - reach, patch.row - reach, patch.column + kPatchBlocks + reach - 1,
-                           patch.row + kPatchBlocks + reach - 1},
-                          [&](const BlockLevel& at, const BlockEvidence& e) {
-                            const std::size_t known = nearby.places.size();
-                            place(at, e, nearby);
-                            if (!isNear(at.column - patch.column) || !isNear(at.row - patch.row))
-                              nearby.places.resize(known);
-                          });
-  const maps::Point low = store_->blocks.middleOf(store_->blocks.blockAt(patch.column, patch.row));
-  const double half_m = 0.5 * (kPatchBlocks - 1) * store_->blocks.side_m();
-  return grounded(std::move(nearby), {low.x_m + half_m, low.y_m + half_m});
-}
-
-// Where there is more than enough the nearest count, those of the patch itself among them; what is weak of the
-// others speaks for itself.
-LocalGround EvidenceField::grounded(NearbyEvidence nearby, const maps::Point& middle) const {
-  std::vector<PlaceEvidence>& places = nearby.places;
-  if (places.size() > kMostNeighbours) {
-    const auto far = [&](const PlaceEvidence& e) {
-      return std::fmax(std::abs(e.place.x_m - middle.x_m), std::abs(e.place.y_m - middle.y_m));
-    };
-    std::stable_sort(places.begin(), places.end(),
-                     [&](const PlaceEvidence& a, const PlaceEvidence& b) { return far(a) < far(b); });
-    for (std::size_t i = kMostNeighbours; i < places.size(); ++i)
-      nearby.lower.push_back({.place = places[i].place,
-                              .pull = std::fmin(places[i].pull + nearby.state.pull, 0.0),
-                              .variance = places[i].variance,
-                              .sinkage = std::fmax(places[i].sinkage + nearby.state.sinkage, 0.0)});
-    places.resize(kMostNeighbours);
-  }
-  return {GaussianProcess(std::move(places), variationOf(nearby.class_index)), std::move(nearby.weak),
-          std::move(nearby.lower), std::move(nearby.bounds)};
-}
-
-// Evidence of ground, on top or not, that one can drive to from a floor without climbing.
-LocalGround EvidenceField::levelWith(maps::Cell block, std::uint16_t level) const {
-  const int side = store_->blocks.side();
-  const int reach = store_->blocks.reach() * side;
-  const double resolution_m = site_->grid().resolution_m;
-  NearbyEvidence nearby{.class_index = 0, .state = stateOf(0)};
-  for (int row = block.row - reach; row <= block.row + reach; row += side)
-    for (int column = block.column - reach; column <= block.column + reach; column += side) {
-      const BlockLevel there = topOf({column, row}, 0);
-      const double away_m = resolution_m * std::hypot(column - block.column, row - block.row);
-      store_->bricks.visitLevels(there.column, there.row, [&](const BlockLevel& at, const BlockEvidence& e) {
-        const auto key = e.level == BlockEvidence::kTop ? store_->blocks.topKey({column, row}) : e.level;
-        const bool near =
-            key && std::abs(*key - level) * resolution_m <= 0.5 * Floors::kHeadroom_m + kSteepest * away_m;
-        if (near && e.terrain_class == groundOf(0).number) place(at, e, nearby);
-      });
-    }
-  return grounded(std::move(nearby), store_->blocks.middleOf(block));
-}
-
 GroundBelief EvidenceField::floorBelief(maps::Cell cell, const Floor& floor) const {
   const maps::Cell block = store_->blocks.blockOf(cell);
-  return believed(levelWith(block, levelOf(cell, floor).level), 0, stateOf(0), store_->blocks.middleOf(block))
-      .ground;
+  const GroundOfClass of{0, stateOf(0)};
+  const LocalGround local = groundLevelWith(*store_, block, levelOf(cell, floor).level, of);
+  return inferredGround(*store_, local, of, store_->blocks.middleOf(block)).ground;
+}
+
+std::vector<ClassState> EvidenceField::states(Classes classes) const {
+  std::vector<ClassState> all;
+  for (int i = 0; i < static_cast<int>(store_->lessons.size()); ++i) all.push_back(stateOf(i, classes));
+  return all;
+}
+
+ClassState EvidenceField::stateOf(int class_index, Classes classes) const {
+  const ClassLessons& lessons = store_->lessons[static_cast<std::size_t>(class_index)];
+  return classes == Classes::InSteps ? lessons.stateInSteps(site_->model->prior(class_index).pull.value)
+                                     : lessons.state();
+}
+
+GroundBelief EvidenceField::classBelief(int class_index, Classes classes) const {
+  return classGround(*site_->model, {class_index, stateOf(class_index, classes)});
+}
+
+std::vector<maps::CellBox> EvidenceField::reached() const {
+  return store_->reach.boxes();
 }
 
 }  // namespace talus::costmap

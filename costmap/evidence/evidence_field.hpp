@@ -2,10 +2,8 @@
 
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <memory>
 #include <optional>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -16,8 +14,8 @@
 
 namespace talus::costmap {
 
-/// What a file keeps of a block: its south-west cell counted from the map's, its level and class, and all that
-/// it heard.
+/// What a file keeps of a block: its south-west cell counted from the map's, its level and class, and all its
+/// readings.
 struct SavedBlock {
   BlockLevel block;
   std::uint32_t updated_s = 0;
@@ -29,22 +27,18 @@ struct BlockLesson;
 struct ClassPosterior;
 struct ClassState;
 struct EvidenceStore;
-struct LocalGround;
-struct LearnedPlace;
-struct NearbyEvidence;
-struct Variation;
 
-/// What the wheels told, where: blocks of ground, each class of ground in a block with its own evidence, spread
+/// What the wheels measured, by place: blocks of ground, each class of ground in a block with its own evidence, spread
 /// to neighbours of the same class by a Gaussian process over the class mean, and a posterior of each class.
 ///
 /// A block is the largest power of two of cells no wider than a quarter of the correlation length, on the
 /// octree's own lines, so that a sample's work does not depend on the map's resolution. What was driven
-/// beneath an overhang stays on its floor: it tells nothing about the top, and about the first class of
+/// beneath an overhang stays on its floor: it is no evidence of the top surface, and of the first class of
 /// ground only where no raster names classes. Same evidence in any order, same bits. Not thread-safe
 /// while changed.
 ///
 /// Evidence lowers a belief at once and for all: around each place that is weaker than its class explains, or
-/// that may only lower, no ground is believed to be better than that place by itself leaves it. Evidence raises
+/// that may only lower, no ground is estimated better than that place alone implies. Evidence raises
 /// it, or makes it surer, only where at least three independent places of the class may raise, and by no more
 /// than each of them reaches; until then no belief is better than that of the class away from any evidence.
 class EvidenceField {
@@ -64,43 +58,9 @@ class EvidenceField {
   /// no evidence.
   std::optional<maps::CellBox> forget(const SavedBlock& heard);
 
-  static constexpr int kPatchBlocks = 8;
-
-  /// What is believed of a piece of ground.
-  struct Belief {
-    GroundBelief ground;
-    bool learned = false;  ///< evidence nearby moved it away from its class
-  };
-
   /// What beliefs have of the classes: all that is known of them, or that in steps rounded towards danger
   /// (ClassLessons::stateInSteps()), from which a map is published.
   enum class Classes : std::uint8_t { AsKnown, InSteps };
-
-  /// Asked cell by cell: evidence is gathered once a patch of 8x8 blocks and class, a belief is worked out
-  /// once a block and class. Depends on the states of the classes and the evidence that can reach its patch alone.
-  /// Valid until the field changes.
-  class Beliefs {
-   public:
-    explicit Beliefs(const EvidenceField& field, Classes classes = Classes::AsKnown);
-    ~Beliefs();
-    Beliefs(const Beliefs&) = delete;
-    Beliefs& operator=(const Beliefs&) = delete;
-    const Belief& at(maps::Cell cell, int class_index);
-
-   private:
-    struct Patch;
-    using Key = std::tuple<int, int, int>;
-
-    Patch& patchAt(const BlockLevel& block, int class_index);
-    const Belief& away(int class_index);
-
-    const EvidenceField& field_;
-    std::vector<ClassState> states_;
-    std::map<Key, std::shared_ptr<Patch>> patches_;
-    Key last_key_{0, 0, -1};
-    Patch* last_ = nullptr;
-    std::map<int, Belief> away_;  // from any evidence, a class each
-  };
 
   /// Own evidence, of the cell's class, of the block that holds the cell, on top; null where nobody drove.
   const BlockEvidence* evidence(maps::Cell cell) const noexcept;
@@ -138,38 +98,23 @@ class EvidenceField {
   void visit(const std::function<void(const SavedBlock&)>& visit) const;
   std::optional<maps::CellBox> restore(const SavedBlock& saved);
 
+  /// What it is made of, for EvidenceBeliefs.
+  const EvidenceStore& store() const noexcept { return *store_; }
+
  private:
-  const GroundClass& groundOf(int class_index) const noexcept {
-    return site_->model->parts().classes[static_cast<std::size_t>(class_index)];
-  }
   bool teachesClass(std::uint16_t level) const noexcept {
     return level == BlockEvidence::kTop || site_->classes.empty();
   }
-  BlockLevel topOf(maps::Cell cell, int class_index) const noexcept;
   BlockLevel levelOf(maps::Cell cell, const Floor& floor) const;
   bool standsOnOneClass(const WheelObservation& observation, int class_index) const;
   enum class Count { Add, TakeOff };
   maps::CellBox hear(const BlockLevel& where, const SavedBlock& heard, Count how = Count::Add);
-  maps::CellBox patchesReachedFrom(const BlockLevel& block, double reach_m);
-  maps::CellBox cellsOf(const maps::CellBox& blocks) const noexcept;
   std::optional<BlockLesson> lessonOf(const BlockEvidence& block, int class_index) const;
   std::optional<float> squareStrength(const std::pair<int, int>& square, int class_index) const;
-  LocalGround around(const BlockLevel& patch, int class_index, const ClassState& state) const;
-  LocalGround levelWith(maps::Cell block, std::uint16_t level) const;
-  void place(const BlockLevel& block, const BlockEvidence& evidence, NearbyEvidence& nearby) const;
-  LocalGround grounded(NearbyEvidence nearby, const maps::Point& middle) const;
-  Variation variationOf(int class_index) const noexcept;
-  Belief believed(const LocalGround& ground, int class_index, const ClassState& state,
-                  const maps::Point& at) const;
   ClassState stateOf(int class_index, Classes classes = Classes::AsKnown) const;
-  GroundBelief awayFromEvidence(int class_index, const ClassState& state) const;
-  GroundBelief left(const GroundBelief& weak, const GroundBelief& mean, int class_index,
-                    double mean_std) const noexcept;
-  GroundBelief combined(int class_index, const ClassState& state, const LearnedPlace& learned) const;
 
   std::shared_ptr<const GroundSite> site_;
   std::unique_ptr<EvidenceStore> store_;
-  double farthest_reach_m_ = 0.0;  // of any weak place
 };
 
 }  // namespace talus::costmap

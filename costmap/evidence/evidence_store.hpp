@@ -1,55 +1,42 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
-#include <set>
-#include <utility>
 #include <vector>
 
 #include <talus/costmap/evidence/block_grid.hpp>
 #include <talus/costmap/evidence/class_lessons.hpp>
 #include <talus/costmap/evidence/evidence_bricks.hpp>
-#include <talus/costmap/evidence/spreading.hpp>
+#include <talus/costmap/evidence/evidence_reach.hpp>
+#include <talus/costmap/site/ground_site.hpp>
 
-/// What an EvidenceField is made of; not for its users.
 namespace talus::costmap {
 
-/// What bounds the ground of a block, whatever else is known of it. NaN: not bounded.
-struct PlaceBound {
-  maps::Point block;           ///< its middle
-  double reach_m = 0.0;        ///< how far off the place may be
-  double most_pull = 0.0;      ///< drawbar pull over load [-]
-  double least_sinkage = 0.0;  ///< sinkage over radius [-]
-};
-
-/// Evidence that can reach a piece of ground of one class.
-struct NearbyEvidence {
-  int class_index = 0;
-  ClassState state{};                   ///< of that class
-  std::vector<PlaceEvidence> places{};  ///< departures from the class's posterior mean, of what may raise
-  std::vector<WeakPlace> weak{};        ///< departures from the class's prior
-  std::vector<WeakPlace> lower{};       ///< likewise, of ordinary ground that may only lower
-  std::vector<PlaceBound> bounds{};
-};
-
-/// The same, ready to be asked.
-struct LocalGround {
-  GaussianProcess process;
-  std::vector<WeakPlace> weak, lower;
-  std::vector<PlaceBound> bounds;
-  bool empty() const noexcept { return process.empty() && weak.empty() && lower.empty() && bounds.empty(); }
-};
-
-/// Blocks, what they heard, and what that teaches of classes.
+/// What an EvidenceField is made of: blocks, their readings, what these teach of classes, and how far they count. Not for
+/// users of EvidenceField.
 struct EvidenceStore {
-  explicit EvidenceStore(const std::shared_ptr<const GroundSite>& site)
-      : blocks(site),
+  explicit EvidenceStore(std::shared_ptr<const GroundSite> of)
+      : site(std::move(of)),
+        blocks(site),
         bricks(blocks.columns(), blocks.rows()),
+        reach(site),
         lessons(site->model->parts().classes.begin(), site->model->parts().classes.end()) {}
 
+  std::shared_ptr<const GroundSite> site;
   BlockGrid blocks;
   EvidenceBricks bricks;
-  std::vector<ClassLessons> lessons;        // a class each
-  std::set<std::pair<int, int>> reached{};  // patches of blocks, by row and column, where evidence may count
+  EvidenceReach reach;
+  std::vector<ClassLessons> lessons;  ///< one a class
+
+  const GroundModel& model() const noexcept { return *site->model; }
+  const GroundClass& groundClass(int class_index) const noexcept {
+    return model().parts().classes[static_cast<std::size_t>(class_index)];
+  }
+  /// A class on the top surface of the block that holds a cell.
+  BlockLevel topOf(maps::Cell cell, int class_index) const noexcept {
+    return {blocks.columnOf(cell), blocks.rowOf(cell), BlockEvidence::kTop,
+            static_cast<std::uint8_t>(groundClass(class_index).number)};
+  }
 };
 
 }  // namespace talus::costmap

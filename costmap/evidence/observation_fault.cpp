@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <string>
 
+#include <talus/costmap/evidence/observation_fault.hpp>
 #include <talus/costmap/evidence/wheel_observation.hpp>
 
 namespace talus::costmap {

@@ -172,8 +172,4 @@ struct JournalRow {
   DrivenBy wheel{};              ///< by which it was read
 };
 
-/// Why no wheel can have given an observation, "pull = inf, must be ..."; empty where one can. |pull|, its standard
-/// deviation and sinkage over radius are within 100, places within 1e9 m.
-std::string fault(const WheelObservation& observation);
-
 }  // namespace talus::costmap

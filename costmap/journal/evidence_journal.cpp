@@ -4,6 +4,7 @@
 #include <sqlite3.h>
 
 #include <talus/common/input_error.hpp>
+#include <talus/costmap/evidence/observation_fault.hpp>
 #include <talus/costmap/journal/evidence_journal.hpp>
 #include <talus/costmap/journal/journal_database.hpp>
 #include <talus/costmap/journal/journal_rows.hpp>

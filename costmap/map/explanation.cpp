@@ -15,7 +15,7 @@ constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
 // The metrics of one cell, from a window around it just large enough.
 maps::TerrainMetrics measuredAround(const TraversabilityMap& map, maps::Cell cell, maps::Cell& inside) {
   const maps::Grid& grid = map.grid();
-  const int halo = maps::metricsReach(map.footprint(1), grid.resolution_m) + 1;
+  const int halo = maps::metricsReach(map.surface().footprint(1), grid.resolution_m) + 1;
   const maps::Cell from{std::max(0, cell.column - halo), std::max(0, cell.row - halo)};
   const maps::Cell to{std::min(grid.width, cell.column + halo + 1),
                       std::min(grid.height, cell.row + halo + 1)};
@@ -27,7 +27,7 @@ maps::TerrainMetrics measuredAround(const TraversabilityMap& map, maps::Cell cel
     for (int column = from.column; column < to.column; ++column)
       window[{column - from.column, row - from.row}] = map.elevation().elevation_m[{column, row}];
   inside = {cell.column - from.column, cell.row - from.row};
-  return maps::terrainMetrics(window, map.footprint(1));
+  return maps::terrainMetrics(window, map.surface().footprint(1));
 }
 
 std::string limitRemark(double value, double limit) {
@@ -67,31 +67,32 @@ void addShape(const TraversabilityMap& map, maps::Cell cell, Explanation& out) {
   maps::Cell inside;
   const maps::TerrainMetrics m = measuredAround(map, cell, inside);
   const double roughness = static_cast<double>(m.roughness_m[inside]);
-  const double footprint_m = m.fell_back ? 2.0 * map.grid().resolution_m : 2.0 * map.footprintRadius_m();
-  const double share = reliefShare(map.hazardLimits(), footprint_m);
+  const double footprint_m =
+      m.fell_back ? 2.0 * map.grid().resolution_m : 2.0 * map.surface().footprintRadius_m();
+  const double share = reliefShare(map.surface().limits(), footprint_m);
   const std::string plane =
       "plane through " + std::to_string(m.footprint_cells) + " cells of " + map.elevation().source;
   out.causes.push_back({"elevation_m", static_cast<double>(map.elevation().elevation_m[cell]), kNotKnown,
                         map.elevation().source, ""});
   const double slope = static_cast<double>(m.slope_rad(inside));
   out.causes.push_back({"slope_rad", slope, m.gradient_std_per_roughness * roughness, plane,
-                        limitRemark(slope, std::atan(map.hazardLimits().max_gradient))});
+                        limitRemark(slope, std::atan(map.surface().limits().max_gradient))});
   out.causes.push_back({"aspect_rad", static_cast<double>(m.aspect_rad(inside)), kNotKnown, plane, ""});
   out.causes.push_back({"roughness_m", share * roughness, kNotKnown, plane + ", within one wheelbase",
-                        limitRemark(share * roughness, map.hazardLimits().max_roughness_m)});
+                        limitRemark(share * roughness, map.surface().limits().max_roughness_m)});
   const double relief = share * static_cast<double>(m.relief_m[inside]);
   out.causes.push_back({"relief_m", relief, kNotKnown, plane + ", within one wheelbase",
-                        limitRemark(relief, map.hazardLimits().max_step_m)});
+                        limitRemark(relief, map.surface().limits().max_step_m)});
   const double step =
-      reliefShare(map.hazardLimits(), map.grid().resolution_m) * static_cast<double>(m.step_m[inside]);
+      reliefShare(map.surface().limits(), map.grid().resolution_m) * static_cast<double>(m.step_m[inside]);
   out.causes.push_back(
       {"step_m", step, kNotKnown,
        "differences of heights in " + map.elevation().source + " beyond the slope on both sides",
-       limitRemark(step, map.hazardLimits().max_step_m)});
+       limitRemark(step, map.surface().limits().max_step_m)});
 }
 
 void addLayers(const TraversabilityMap& map, maps::Cell cell, Explanation& out) {
-  for (const CostLayer& layer : map.costLayers()) {
+  for (const CostLayer& layer : map.surface().costLayers()) {
     const auto added = static_cast<double>(layer.added_J_per_m[cell]);
     const bool open = map.model().parts().policy.allow_unknown;
     out.causes.push_back({"layer_" + layer.name + "_J_per_m",
@@ -106,22 +107,23 @@ void addLayers(const TraversabilityMap& map, maps::Cell cell, Explanation& out) 
 
 // What excludes a cell, and the layer where one does.
 std::string hazardText(const TraversabilityMap& map, maps::Cell cell, Hazard hazard) {
-  for (const CostLayer& layer : map.costLayers()) {
+  for (const CostLayer& layer : map.surface().costLayers()) {
     const float added = layer.added_J_per_m[cell];
     if (hazard == Hazard::KeepOut && std::isinf(added)) return "refused by layer '" + layer.name + "'";
     if (hazard == Hazard::Unknown && std::isnan(added) && !map.model().parts().policy.allow_unknown)
       return "no data in layer '" + layer.name + "'";
   }
-  const bool opened = map.hazards(cell) == Hazard::Unknown && map.model().parts().policy.allow_unknown;
+  const bool opened =
+      map.surface().hazards(cell) == Hazard::Unknown && map.model().parts().policy.allow_unknown;
   if (opened)
     return std::string("elevation or terrain class unknown; allowed on request as level ground of ") +
-           (map.classIndex(cell) >= 0 ? "its class" : "the first class");
+           (map.surface().classIndex(cell) >= 0 ? "its class" : "the first class");
   return hazardText(hazard);
 }
 
 void addSoil(const TraversabilityMap& map, maps::Cell cell, Explanation& out) {
-  const int index = map.classIndex(cell);
-  out.causes.push_back({"terrain_class", static_cast<double>(map.classNumber(cell)), kNotKnown,
+  const int index = map.surface().classIndex(cell);
+  out.causes.push_back({"terrain_class", static_cast<double>(map.surface().classNumber(cell)), kNotKnown,
                         "class raster", index < 0 ? "no soil defined for this class" : ""});
   if (index < 0) return;
   const GroundClass& ground = map.model().parts().classes[static_cast<std::size_t>(index)];
@@ -144,7 +146,7 @@ void addSoil(const TraversabilityMap& map, maps::Cell cell, Explanation& out) {
                         static_cast<double>(belief.pull_std), wheels, ""});
   out.causes.push_back({"sinkage_over_radius", static_cast<double>(belief.sinkage_mean),
                         static_cast<double>(belief.sinkage_std), wheels, ""});
-  const auto published = map.publishedGround(cell);
+  const auto published = map.costs().ground(cell);
   if (!published) return;
   const std::string swath = "weakest standing of the wheels about the cell, rounded towards danger";
   out.causes.push_back({"swath_drawbar_pull_over_load", published->pull.value, published->pull.std, swath,
@@ -155,7 +157,7 @@ void addSoil(const TraversabilityMap& map, maps::Cell cell, Explanation& out) {
 
 // The other levels of a cell: what is believed there does not mix with its top.
 void addFloors(const TraversabilityMap& map, maps::Cell cell, Explanation& out) {
-  for (const Floor& floor : map.floors().of(map.grid().index(cell))) {
+  for (const Floor& floor : map.surface().floors().of(map.grid().index(cell))) {
     const CellBelief belief = map.belief(cell, floor);
     const std::string there = "other level of this cell, below or above its surface";
     out.causes.push_back(
@@ -237,7 +239,7 @@ void addDrive(const TraversabilityMap& map, maps::Cell cell, const Direction& he
 }
 
 void judge(const TraversabilityMap& map, maps::Cell cell, const Direction& heading, Explanation& out) {
-  const Hazard hazards = map.hazards(cell);
+  const Hazard hazards = map.surface().hazards(cell);
   const bool opened = hazards == Hazard::Unknown && map.model().parts().policy.allow_unknown;
   for (const Hazard one : kHazards)
     if (has(hazards, one))
@@ -252,15 +254,15 @@ void judge(const TraversabilityMap& map, maps::Cell cell, const Direction& headi
       out.verdict += ": " + hazardText(map, cell, one);
       return;
     }
-  const auto ground = map.publishedGround(cell);
+  const auto ground = map.costs().ground(cell);
   if (!ground) {
-    out.verdict += map.code(cell).curve() == CellCode::kUnknown
+    out.verdict += map.published()->at(cell).curve() == CellCode::kUnknown
                        ? ": a wheel may touch ground without a soil class"
                        : ": no cost curve is left for this ground";
     return;
   }
   // What is said is what planners read, at the gradient that they read it at.
-  const CellCode code = map.code(cell);
+  const CellCode code = map.published()->at(cell);
   const double along = seenBy(code, heading).along, climb = climbAt(map.published()->cost(), code, heading);
   const DriveState state = map.published()->cost().detail(code, heading);
   out.category = state.category;
@@ -278,7 +280,7 @@ void judge(const TraversabilityMap& map, maps::Cell cell, const Direction& headi
 
 Explanation explain(const TraversabilityMap& map, maps::Cell cell, const std::optional<Direction>& heading) {
   Explanation out;
-  const Direction direction = heading.value_or(worst(map.published()->cost(), map.code(cell)));
+  const Direction direction = heading.value_or(worst(map.published()->cost(), map.published()->at(cell)));
   judge(map, cell, direction, out);
   addShape(map, cell, out);
   addLayers(map, cell, out);

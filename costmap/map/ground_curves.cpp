@@ -134,7 +134,7 @@ GroundCurves::ClassChange GroundCurves::learnClasses(const EvidenceField& field)
   return changed;
 }
 
-std::vector<maps::CellBox> GroundCurves::learn(EvidenceField::Beliefs& beliefs,
+std::vector<maps::CellBox> GroundCurves::learn(EvidenceBeliefs& beliefs,
                                                const std::vector<maps::CellBox>& ranges) {
   std::vector<maps::CellBox> changed;
   for (const maps::CellBox& range : ranges)
@@ -144,7 +144,7 @@ std::vector<maps::CellBox> GroundCurves::learn(EvidenceField::Beliefs& beliefs,
         const int index = site_->classIndex(cell);
         std::uint32_t word = 0;
         if (index >= 0)
-          if (const EvidenceField::Belief& belief = beliefs.at(cell, index); belief.learned)
+          if (const InferredGround& belief = beliefs.at(cell, index); belief.learned)
             word = packed(GroundKind::of(index, index, belief.ground));
         if (!learned_.set(cell, word)) continue;
         any_learned_ = true;

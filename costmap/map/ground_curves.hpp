@@ -8,6 +8,7 @@
 
 #include <talus/costmap/cost/learned_cells.hpp>
 #include <talus/costmap/evidence/class_lessons.hpp>
+#include <talus/costmap/evidence/evidence_beliefs.hpp>
 #include <talus/costmap/evidence/evidence_field.hpp>
 #include <talus/costmap/ground/cost_curve_table.hpp>
 #include <talus/costmap/ground/wheel_swath.hpp>
@@ -39,7 +40,7 @@ class GroundCurves {
   ClassChange learnClasses(const EvidenceField& field);
   /// Takes over what is believed of the cells of the ranges, with classes in steps. The ranges in which numbers may have
   /// changed.
-  std::vector<maps::CellBox> learn(EvidenceField::Beliefs& beliefs, const std::vector<maps::CellBox>& ranges);
+  std::vector<maps::CellBox> learn(EvidenceBeliefs& beliefs, const std::vector<maps::CellBox>& ranges);
 
   /// Takes over the site's classes in a box, which have changed. The box in which numbers may have, too.
   maps::CellBox takeClasses(const maps::CellBox& box);

@@ -20,6 +20,7 @@
 #include <talus/common/output_file.hpp>
 #include <talus/costmap/map/map_file.hpp>
 #include <talus/costmap/map/map_text.hpp>
+#include <talus/costmap/map/map_tree.hpp>
 
 namespace talus::costmap {
 namespace {
@@ -172,7 +173,8 @@ maps::Raster<Hazard> declared(const TraversabilityMap& map) {
   maps::Raster<Hazard> hazards(map.grid());
   constexpr auto kept = static_cast<std::uint8_t>(Hazard::Rocks | Hazard::KeepOut);
   for (std::size_t i = 0; i < hazards.values().size(); ++i)
-    hazards.values()[i] = static_cast<Hazard>(static_cast<std::uint8_t>(map.hazards().values()[i]) & kept);
+    hazards.values()[i] =
+        static_cast<Hazard>(static_cast<std::uint8_t>(map.surface().hazards().values()[i]) & kept);
   return hazards;
 }
 
@@ -251,9 +253,9 @@ MapText textOf(const TraversabilityMap& map) {
   MapText text{.grid = map.grid(),
                .coordinate_system = {},
                .source = map.elevation().source,
-               .footprint_radius_m = map.footprintRadius_m(),
+               .footprint_radius_m = map.surface().footprintRadius_m(),
                .ground = map.model().parts(),
-               .refused = map.refused()};
+               .refused = map.surface().refused()};
   if (map.elevation().georeference) text.coordinate_system = map.elevation().georeference->system();
   return text;
 }
@@ -267,14 +269,14 @@ void requireSane(const maps::Grid& grid, const std::string& name) {
 }  // namespace
 
 void writeMap(const TraversabilityMap& map, std::iostream& stream) {
-  map.writeTree(stream);
-  const std::vector<Floor>& floors = map.floors().all();
+  writeTree(map, stream);
+  const std::vector<Floor>& floors = map.surface().floors().all();
   TrailerWriter trailer(stream);
   const std::string text = written(textOf(map));
   trailer.section("TEXT", text.data(), text.size());
   const auto& elevation = map.elevation().elevation_m.values();
   trailer.section("ELEV", elevation.data(), elevation.size() * sizeof(float));
-  trailer.section("CLAS", map.classes().values().data(), map.classes().values().size());
+  trailer.section("CLAS", map.surface().classes().values().data(), map.surface().classes().values().size());
   const maps::Raster<Hazard> hazards = declared(map);
   trailer.section("HAZD", hazards.values().data(), hazards.values().size());
   trailer.section("FLOR", floors.data(), floors.size() * sizeof(Floor));
@@ -283,7 +285,7 @@ void writeMap(const TraversabilityMap& map, std::iostream& stream) {
   std::string drives;
   for (const std::string& drive : map.drives()) drives += drive + '\n';
   trailer.section("DRIV", drives.data(), drives.size());
-  for (const CostLayer& layer : map.costLayers()) {
+  for (const CostLayer& layer : map.surface().costLayers()) {
     const std::string bytes = bytesOf(layer);
     trailer.section("COST", bytes.data(), bytes.size());
   }

@@ -1,28 +1,56 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
-#include <talus/common/progress_monitor.hpp>
-#include <talus/costmap/cost/published_map.hpp>
-#include <talus/costmap/map/ground_curves.hpp>
-#include <talus/costmap/map/traversability_map.hpp>
+#include <talus/costmap/map/map_surface.hpp>
 #include <talus/costmap/site/surface_patch.hpp>
 #include <talus/costmap/surface/cell_boxes.hpp>
 #include <talus/costmap/surface/rock_hazard.hpp>
 #include <talus/costmap/surface/surface_shape.hpp>
 
-// The surface of a map, built at once and window by window: shape, layers, and what the rover keeps clear of.
 namespace talus::costmap {
 namespace {
 
-std::vector<std::shared_ptr<CostTile>> emptyTiles(const maps::Grid& grid) {
-  const auto across = [](int cells) {
-    return static_cast<std::size_t>((cells + CostTile::kSide - 1) / CostTile::kSide);
-  };
-  std::vector<std::shared_ptr<CostTile>> tiles(across(grid.width) * across(grid.height));
-  for (auto& tile : tiles) tile = std::make_shared<CostTile>();
-  return tiles;
+template <typename T>
+void requireGrid(const maps::Raster<T>& layer, const maps::Grid& grid, const char* name) {
+  if (!layer.empty() && layer.grid() != grid)
+    throw std::invalid_argument(std::string("TraversabilityMap: ") + name +
+                                " lies on another grid than the elevation");
+}
+
+void requireCosts(const std::vector<CostLayer>& costs, const maps::Grid& grid) {
+  if (costs.size() > CostLayer::kMostLayers)
+    throw std::invalid_argument("TraversabilityMap: " + std::to_string(costs.size()) +
+                                " cost layers, must be <= " + std::to_string(CostLayer::kMostLayers));
+  for (const CostLayer& layer : costs) {
+    const std::string who = "layer '" + layer.name + "'";
+    if (layer.added_J_per_m.empty() || layer.added_J_per_m.grid() != grid)
+      throw std::invalid_argument("TraversabilityMap: " + who + " lies on another grid than the elevation");
+    const auto possible = [](float v) {
+      return v >= 0.0F && (v <= CostLayer::kMost_J_per_m || std::isinf(v));
+    };
+    for (const float v : layer.added_J_per_m.values())
+      if (!std::isnan(v) && !possible(v))
+        throw std::invalid_argument("TraversabilityMap: " + who + ": " + std::to_string(v) +
+                                    " J/m, must be 0 to 1e6, infinite or NaN");
+    if (!(layer.unseen_J_per_m >= 0.0F && layer.unseen_J_per_m <= CostLayer::kMost_J_per_m))
+      throw std::invalid_argument("TraversabilityMap: " + who + ": unseen_J_per_m must be 0 to 1e6");
+  }
+}
+
+std::shared_ptr<GroundSite> siteOf(MapLayers& layers, std::shared_ptr<const GroundModel> model) {
+  requireCosts(layers.costs, layers.elevation.grid());
+  requirePossible(layers);
+  const double base_m = layers.base_elevation_m.value_or(middleElevation(layers.elevation.elevation_m));
+  const SurfaceKeys keys(layers.elevation.grid(), base_m);
+  return std::make_shared<GroundSite>(GroundSite{.elevation = std::move(layers.elevation),
+                                                 .classes = std::move(layers.classes),
+                                                 .keys = keys,
+                                                 .model = std::move(model),
+                                                 .floors = std::move(layers.floors),
+                                                 .costs = std::move(layers.costs)});
 }
 
 Hazard without(Hazard set, Hazard one) noexcept {
@@ -48,19 +76,106 @@ void forEachGiven(const maps::Raster<T>& layer, const maps::CellBox& window, con
 
 }  // namespace
 
-Hazard TraversabilityMap::rocksOn(float abundance) const {
+MapSurface::MapSurface(MapLayers layers, std::shared_ptr<const GroundModel> model,
+                       const ShapeOptions& options)
+    : site_(siteOf(layers, std::move(model))),
+      limits_(HazardLimits::of(site_->model->rover())),
+      options_(options),
+      declared_(std::move(layers.declared)),
+      hazards_(grid(), Hazard::None) {
+  requireGrid(site_->classes, grid(), "classes");
+  requireGrid(layers.rock_abundance, grid(), "rock_abundance");
+  requireGrid(layers.keep_out, grid(), "keep_out");
+  requireGrid(declared_, grid(), "declared");
+  any_height_ = !site_->floors.empty() || std::ranges::any_of(site_->elevation.elevation_m.values(),
+                                                              [](float e) { return !std::isnan(e); });
+  takeHazards({.elevation_m = {},
+               .rock_abundance = std::move(layers.rock_abundance),
+               .classes = {},
+               .keep_out = std::move(layers.keep_out)},
+              allOf(grid()));
+}
+
+void MapSurface::measure(const TakeShape& take, const ProgressMonitor& watch) {
+  const SurfaceShape shapes(footprint(options_.threads));
+  shapes.measure(
+      site_->elevation.elevation_m, allOf(grid()), limits_,
+      [&](maps::Cell cell, const GroundShape& shape, Hazard found) {
+        hazards_[cell] = found | layerHazards(cell);
+        take(cell, flatCode(shape));
+      },
+      watch);
+  inflate(hazards_, limits_, spreading());
+}
+
+// A changed cell changes the shape of those whose footprint it lies in; these may begin or cease to be kept clear of,
+// or to lie at the edge of what is. Refused places were never kept clear of: they are left out meanwhile.
+MapSurface::PatchEffect MapSurface::take(const SurfacePatch& patch) {
+  const maps::CellBox window = placeOf(patch, *site_, any_height_);
+  takeHazards(patch, window);
+  takeGround(patch, window);
+  const SurfaceShape shapes(footprint(options_.threads));
+  const maps::CellBox shaped = grown(window, shapes.reach(grid()), grid());
+  const maps::CellBox judged = grown(shaped, inflationReach(limits_, grid().resolution_m) + 1, grid());
+  for (const RefusedPlace& place : refused_) mark(place, false);
+  forEachCell(judged, [&](maps::Cell cell) {
+    hazards_[cell] = without(hazards_[cell], Hazard::Near) | layerHazards(cell);
+  });
+  maps::Grid part = grid();
+  part.width = shaped.width();
+  part.height = shaped.height();
+  Gradients gradients{.box = shaped, .codes = maps::Raster<CellCode>(part)};
+  shapes.measure(
+      site_->elevation.elevation_m, shaped, limits_,
+      [&](maps::Cell cell, const GroundShape& shape, Hazard found) {
+        hazards_[cell] = found | layerHazards(cell);
+        gradients.codes[{cell.column - shaped.first.column, cell.row - shaped.first.row}] = flatCode(shape);
+      },
+      {});
+  inflate(hazards_, limits_, spreading(), judged);
+  for (const RefusedPlace& place : refused_) mark(place, true);
+  return {window, judged, std::move(gradients)};
+}
+
+void MapSurface::takeGround(const SurfacePatch& patch, const maps::CellBox& window) {
+  bool any = any_height_;
+  forEachGiven(patch.elevation_m, window, [&](maps::Cell cell, float height_m) {
+    if (std::isnan(height_m)) return;
+    site_->elevation.elevation_m[cell] = height_m;
+    any = true;
+  });
+  if (any && !any_height_) site_->keys = SurfaceKeys(grid(), middleElevation(patch.elevation_m));
+  any_height_ = any;
+  forEachGiven(patch.classes, window, [&](maps::Cell cell, std::uint8_t number) {
+    if (number != GroundSite::kNoClass) site_->classes[cell] = number;
+  });
+}
+
+void MapSurface::takeHazards(const SurfacePatch& patch, const maps::CellBox& window) {
+  if (patch.rock_abundance.empty() && patch.keep_out.empty()) return;
+  if (declared_.empty()) declared_ = maps::Raster<Hazard>(grid(), Hazard::None);
+  forEachGiven(patch.rock_abundance, window, [&](maps::Cell cell, float abundance) {
+    if (!std::isnan(abundance))
+      declared_[cell] = without(declared_[cell], Hazard::Rocks) | rocksOn(abundance);
+  });
+  forEachGiven(patch.keep_out, window, [&](maps::Cell cell, std::uint8_t keep_out) {
+    declared_[cell] = with(declared_[cell], Hazard::KeepOut, keep_out != 0);
+  });
+}
+
+Hazard MapSurface::rocksOn(float abundance) const {
   const RockCrossing crossing{.diameter_m = limits_.rock_diameter_m, .area_m2 = limits_.rock_area_m2};
   const bool refused = rockHazard(static_cast<double>(abundance), crossing) > limits_.max_rock_probability;
   return refused ? Hazard::Rocks : Hazard::None;
 }
 
-Hazard TraversabilityMap::spreading() const noexcept {
+Hazard MapSurface::spreading() const noexcept {
   return site_->model->parts().policy.allow_unknown ? Hazard::KeepOut | Hazard::Obstacle | Hazard::Rocks
                                                     : kKeptClearOf;
 }
 
-Hazard TraversabilityMap::layerHazards(maps::Cell cell) const {
-  Hazard found = given_.empty() ? Hazard::None : given_[cell];
+Hazard MapSurface::layerHazards(maps::Cell cell) const {
+  Hazard found = declared_.empty() ? Hazard::None : declared_[cell];
   if (std::isnan(site_->elevation.elevation_m[cell])) found |= Hazard::Unknown;
   if (!site_->classes.empty()) {
     const std::uint8_t number = site_->classes[cell];
@@ -77,120 +192,13 @@ Hazard TraversabilityMap::layerHazards(maps::Cell cell) const {
   return found;
 }
 
-TileTable TraversabilityMap::measure(const MapLayers& layers, const ProgressMonitor& watch) {
-  if (!layers.declared.empty()) given_ = layers.declared;
-  takeHazards({.elevation_m = {},
-               .rock_abundance = layers.rock_abundance,
-               .classes = {},
-               .keep_out = layers.keep_out},
-              allOf(grid()));
-  const std::vector<std::shared_ptr<CostTile>> tiles = emptyTiles(grid());
-  const int tile_columns = (grid().width + CostTile::kSide - 1) / CostTile::kSide;
-  const auto slot = [&](maps::Cell c) -> CellCode& {
-    auto& tile = *tiles[static_cast<std::size_t>((c.row >> 6) * tile_columns + (c.column >> 6))];
-    return tile.cells[static_cast<std::size_t>((c.row & 63) << 6 | (c.column & 63))];
-  };
-  const SurfaceShape shapes(footprint(threads_));
-  shapes.measure(
-      site_->elevation.elevation_m, allOf(grid()), limits_,
-      [&](maps::Cell cell, const GroundShape& shape, Hazard found) {
-        hazards_[cell] = found | layerHazards(cell);
-        slot(cell) = flatCode(shape);
-      },
-      watch);
-  inflate(hazards_, limits_, spreading());
-  forEachCell(allOf(grid()), [&](maps::Cell cell) { slot(cell) = coded(cell, slot(cell)); });
-  return TileTable(std::vector<TileTable::Shared>(tiles.begin(), tiles.end()));
+maps::CellBox MapSurface::refuse(const RefusedPlace& place) {
+  refused_.push_back(place);
+  return mark(place, true);
 }
 
-void TraversabilityMap::patch(const SurfacePatch& patch) {
-  const MapChange change(*published_, "patch");
-  const maps::CellBox window = placeOf(patch, *site_, any_height_);
-  take(patch, window);
-  changed_.push_back(measureAgain(window));
-  if (!patch.classes.empty()) {
-    changed_.push_back(curves_->takeClasses(window));
-    learned_.push_back(window);
-  }
-  publish(std::exchange(learned_, {}));
-}
-
-void TraversabilityMap::take(const SurfacePatch& patch, const maps::CellBox& window) {
-  takeHazards(patch, window);
-  bool any = any_height_;
-  forEachGiven(patch.elevation_m, window, [&](maps::Cell cell, float height_m) {
-    if (std::isnan(height_m)) return;
-    site_->elevation.elevation_m[cell] = height_m;
-    any = true;
-  });
-  if (any && !any_height_) site_->keys = SurfaceKeys(grid(), middleElevation(patch.elevation_m));
-  any_height_ = any;
-  forEachGiven(patch.classes, window, [&](maps::Cell cell, std::uint8_t number) {
-    if (number != GroundSite::kNoClass) site_->classes[cell] = number;
-  });
-}
-
-void TraversabilityMap::takeHazards(const SurfacePatch& patch, const maps::CellBox& window) {
-  if (patch.rock_abundance.empty() && patch.keep_out.empty()) return;
-  if (given_.empty()) given_ = maps::Raster<Hazard>(grid(), Hazard::None);
-  forEachGiven(patch.rock_abundance, window, [&](maps::Cell cell, float abundance) {
-    if (!std::isnan(abundance)) given_[cell] = without(given_[cell], Hazard::Rocks) | rocksOn(abundance);
-  });
-  forEachGiven(patch.keep_out, window, [&](maps::Cell cell, std::uint8_t keep_out) {
-    given_[cell] = with(given_[cell], Hazard::KeepOut, keep_out != 0);
-  });
-}
-
-// A changed cell changes the shape of those whose footprint it lies in; these may begin or cease to be kept clear of,
-// or to lie at the edge of what is. Refused places were never kept clear of: they are left out meanwhile.
-maps::CellBox TraversabilityMap::measureAgain(const maps::CellBox& window) {
-  const SurfaceShape shapes(footprint(threads_));
-  const maps::CellBox shaped = grown(window, shapes.reach(grid()), grid());
-  const maps::CellBox judged = grown(shaped, inflationReach(limits_, grid().resolution_m) + 1, grid());
-  for (const RefusedPlace& refusal : refusals_) mark(refusal, false);
-  forEachCell(judged, [&](maps::Cell cell) {
-    hazards_[cell] = without(hazards_[cell], Hazard::Near) | layerHazards(cell);
-  });
-  maps::Grid part = grid();
-  part.width = shaped.width();
-  part.height = shaped.height();
-  measured_ = {
-      .box = shaped,
-      .codes = maps::Raster<CellCode>(part),
-      .elevation_m = retiled(published()->content().elevation_m, site_->elevation.elevation_m, window)};
-  shapes.measure(
-      site_->elevation.elevation_m, shaped, limits_,
-      [&](maps::Cell cell, const GroundShape& shape, Hazard found) {
-        hazards_[cell] = found | layerHazards(cell);
-        measured_->codes[{cell.column - shaped.first.column, cell.row - shaped.first.row}] = flatCode(shape);
-      },
-      {});
-  inflate(hazards_, limits_, spreading(), judged);
-  for (const RefusedPlace& refusal : refusals_) mark(refusal, true);
-  return judged;
-}
-
-CellCode TraversabilityMap::coded(maps::Cell cell, CellCode code) {
-  if (measured_ && contains(measured_->box, cell))
-    code = measured_->codes[{cell.column - measured_->box.first.column, cell.row - measured_->box.first.row}];
-  const Hazard found = hazards_[cell];
-  if (found == Hazard::None) return code.withCurve(curves_->number(cell));
-  if (found != Hazard::Unknown) return code.withCurve(CellCode::kBlocked);
-  if (!model().parts().policy.allow_unknown) return code.withCurve(CellCode::kUnknown);
-  // Shape that cannot be measured is no reason to forget what is known of the soil.
-  return code.withCurve(classIndex(cell) >= 0 ? curves_->number(cell) : curves_->numberOfUnseen(cell));
-}
-
-void TraversabilityMap::refuse(const maps::Point& place, double radius_m) {
-  if (!std::isfinite(place.x_m) || !std::isfinite(place.y_m) || !std::isfinite(radius_m) || radius_m <= 0.0)
-    throw std::invalid_argument("refuse: the place must be finite, the radius finite and > 0");
-  const MapChange change(*published_, "refuse");
-  refusals_.push_back({place, radius_m});
-  changed_.push_back(mark(refusals_.back(), true));
-}
-
-// Marks the cells of a refusal, or gives them back to their layers. The box around them.
-maps::CellBox TraversabilityMap::mark(const RefusedPlace& refusal, bool refused) {
+// Marks the cells of a place as obstacles, or takes the marks off again. Returns the box around them.
+maps::CellBox MapSurface::mark(const RefusedPlace& refusal, bool refused) {
   const double cell_m = grid().resolution_m;
   const auto clamped = [](double value, int cells) {
     return static_cast<int>(std::clamp(std::floor(value), 0.0, static_cast<double>(cells - 1)));

@@ -36,6 +36,8 @@ struct MapLayers {
   maps::Raster<Hazard> declared;        ///< hazards judged elsewhere, as when a map is read back
   Floors floors;                        ///< ground beneath overhangs, where the source is a point cloud
   std::vector<CostLayer> costs{};       ///< what comes on top of the rover's own cost; a name each
+  /// From which the keys of heights count [m]; nothing: the middle of the range of heights.
+  std::optional<double> base_elevation_m{};
 };
 
 /// A window of ground observed anew, as from the rover's own cameras: layers on one grid whose cells are cells of the

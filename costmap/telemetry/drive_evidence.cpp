@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include <talus/costmap/evidence/observation_fault.hpp>
 #include <talus/costmap/telemetry/drive_evidence.hpp>
 #include <talus/costmap/telemetry/drive_id.hpp>
 #include <talus/costmap/telemetry/telemetry_processor.hpp>
@@ -152,7 +153,7 @@ void DriveIntake::State::learn(const terramech::Telemetry& telemetry, const Tele
 void DriveIntake::State::put(const terramech::Telemetry& telemetry, const DriveVerdict& verdict,
                              const DriveBeginning& known) {
   const TelemetryRows readings(telemetry, map, options.pose_std_m);
-  const std::size_t refused = map.refused().size();
+  const std::size_t refused = map.surface().refused().size();
   const std::string before = id;
   sum.add(telemetry);
   id = sum.text();
@@ -168,7 +169,7 @@ void DriveIntake::State::put(const terramech::Telemetry& telemetry, const DriveV
   hearRejected(telemetry, known.rejected);
   if (options.settles)
     of_rejected.insert(of_rejected.end(), rows.begin() + static_cast<std::ptrdiff_t>(read), rows.end());
-  report.unobserved += map.refused().size() - refused;
+  report.unobserved += map.surface().refused().size() - refused;
   if (journal) journal->append(id, rows, before);
   map.noteDrive(id, before);
 }
@@ -271,7 +272,7 @@ DriveReport addDrive(TraversabilityMap& map, const terramech::Telemetry& telemet
 
 DriveReport replay(TraversabilityMap& map, const EvidenceJournal& journal) {
   DriveReport report;
-  const std::size_t refused = map.refused().size();
+  const std::size_t refused = map.surface().refused().size();
   std::size_t lacking = map.drives().size();
   for (const std::string& drive : journal.drives()) {
     if (map.drives().contains(drive)) {
@@ -290,7 +291,7 @@ DriveReport replay(TraversabilityMap& map, const EvidenceJournal& journal) {
     }
     map.noteDrive(drive);
   }
-  report.unobserved = map.refused().size() - refused;
+  report.unobserved = map.surface().refused().size() - refused;
   if (lacking > 0) report.findings.push_back(lackingFinding(lacking));
   if (report.unobserved > 0) report.findings.push_back(unobservedFinding(report.unobserved));
   if (report.others > 0) report.findings.push_back(othersFinding(report.others));

@@ -14,7 +14,7 @@ constexpr double kLittleSlip =
 
 std::optional<int> classAt(const TraversabilityMap& map, const WheelReading& reading) {
   const auto cell = map.grid().cellAt(reading.place);
-  const int index = cell ? map.classIndex(*cell, reading.z_m) : -1;
+  const int index = cell ? map.surface().classIndex(*cell, reading.z_m) : -1;
   return index < 0 ? std::nullopt : std::optional(index);
 }
 

@@ -110,9 +110,9 @@ double TelemetryRows::measuredGradient(std::size_t i) const {
 // Of the top surface: that of a floor beneath it is not known.
 double TelemetryRows::mapGradient(const WheelReading& r, double direction_rad) const {
   const auto cell = map_.grid().cellAt(r.place);
-  if (!cell || std::isnan(direction_rad) || map_.floorAt(*cell, r.z_m))
+  if (!cell || std::isnan(direction_rad) || map_.surface().floorAt(*cell, r.z_m))
     return std::numeric_limits<double>::quiet_NaN();
-  const CellCode code = map_.code(*cell);
+  const CellCode code = map_.published()->at(*cell);
   return code.dzDx() * std::cos(direction_rad) + code.dzDy() * std::sin(direction_rad);
 }
 
@@ -126,8 +126,8 @@ double TelemetryRows::steepestDescent(std::size_t i) const {
   const WheelReading r = reading(i);
   const double measured = measuredSlope(i);
   const auto cell = map_.grid().cellAt(r.place);
-  if (!cell || map_.floorAt(*cell, r.z_m)) return std::fmin(measured, 0.0);
-  const CellCode code = map_.code(*cell);
+  if (!cell || map_.surface().floorAt(*cell, r.z_m)) return std::fmin(measured, 0.0);
+  const CellCode code = map_.published()->at(*cell);
   return std::fmin(measured, -std::hypot(code.dzDx(), code.dzDy()));
 }
 

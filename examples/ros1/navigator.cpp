@@ -277,7 +277,7 @@ std::vector<signed char> Navigator::occupancy() const {
   cells.reserve(grid.size());
   for (int row = 0; row < grid.height; ++row)
     for (int column = 0; column < grid.width; ++column) {
-      const int category = state_->map.category({column, row});
+      const int category = state_->map.costs().category({column, row});
       const bool unknown = category == 3 || std::isnan(heights[{column, row}]);
       cells.push_back(static_cast<signed char>(category == 2 ? 100 : unknown ? -1 : 50 * category));
     }

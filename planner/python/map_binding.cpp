@@ -60,7 +60,7 @@ py::dict beliefs(const py::object& self) {
 }
 
 py::array layerOf(const py::object& self, const std::string& name) {
-  for (const costmap::CostLayer& layer : mapOf(self).costLayers())
+  for (const costmap::CostLayer& layer : mapOf(self).surface().costLayers())
     if (layer.name == name) return viewOf(layer.added_J_per_m, self);
   throw py::key_error("the map has no layer '" + name + "'");
 }
@@ -130,7 +130,8 @@ void bindViews(py::class_<PythonMap>& map) {
           },
           "Heights [m], row 0 in the south; a read-only view that shows later patches.")
       .def_property_readonly(
-          "classes", [](const py::object& self) -> py::array { return viewOf(mapOf(self).classes(), self); },
+          "classes",
+          [](const py::object& self) -> py::array { return viewOf(mapOf(self).surface().classes(), self); },
           "Class numbers, 255 where unknown; a read-only view, of shape (0, 0) where the map has no classes.")
       .def("layer", &layerOf, py::arg("name"), "Joules a metre that a layer adds; a read-only view.")
       .def("beliefs", &beliefs,

@@ -61,10 +61,11 @@ Refused refusedOn(const TraversabilityMap& map, const Route& route) {
       const double t = (k + 0.5) / steps;
       const auto cell = map.grid().cellAt({a.x_m + t * (b.x_m - a.x_m), a.y_m + t * (b.y_m - a.y_m)});
       if (!cell) continue;
-      const Refusal why = map.published()
-                              ->cost()
-                              .detail(map.code(*cell), {(b.x_m - a.x_m) / metres, (b.y_m - a.y_m) / metres})
-                              .refusal;
+      const Refusal why =
+          map.published()
+              ->cost()
+              .detail(map.published()->at(*cell), {(b.x_m - a.x_m) / metres, (b.y_m - a.y_m) / metres})
+              .refusal;
       sum.side += why == Refusal::SideForce ? metres / steps : 0.0;
       sum.pull += why == Refusal::Pull ? metres / steps : 0.0;
       sum.any += why != Refusal::None ? metres / steps : 0.0;

@@ -88,7 +88,7 @@ inline Drive driveOver(const TraversabilityMap& map, const terramech::Soil& soil
     const double way = line++ % 2 == 0 ? 1.0 : -1.0;
     for (int i = 0; i < 180; ++i) {
       const double x_m = 36.0 + way * (0.35 * i - 31.0);
-      const double gradient = way * map.code(*map.grid().cellAt({x_m, y_m})).dzDx();
+      const double gradient = way * map.published()->at(*map.grid().cellAt({x_m, y_m})).dzDx();
       double low = -0.5, high = 0.95;
       while (high - low > 1e-4) (pullAt(0.5 * (low + high)) < gradient ? low : high) = 0.5 * (low + high);
       const double slip = low + 0.015 * noise(random);

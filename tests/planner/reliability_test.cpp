@@ -79,10 +79,10 @@ TEST(Reliability, OfCellsSaidToBeOfACategory) {
       for (int column = 0; column < 60; ++column) {
         const maps::Cell cell{column, row};
         const costmap::CellBelief said = learned.belief(cell);
-        if (said.category > 2 || learned.hazards(cell) != costmap::Hazard::None ||
+        if (said.category > 2 || learned.surface().hazards(cell) != costmap::Hazard::None ||
             !nearTrack(drive, learned.grid().centre(cell)))
           continue;
-        tables[said.category].add(said.confidence / 16.0, known.category(cell) <= said.category);
+        tables[said.category].add(said.confidence / 16.0, known.costs().category(cell) <= said.category);
       }
   }
   tables[0].print("safe");

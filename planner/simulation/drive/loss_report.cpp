@@ -22,7 +22,7 @@ std::string believedThere(const LossScene& scene) {
     const auto ground = cell ? scene.map.ground(*cell) : std::nullopt;
     if (!ground || (weakest && ground->pull.value >= weakest->pull.value)) continue;
     weakest = ground;
-    category = scene.map.category(*cell);
+    category = scene.map.costs().category(*cell);
   }
   if (!weakest) return "no ground on the map there";
   return std::string("category on the map: ") + terramech::name(static_cast<terramech::Category>(category)) +

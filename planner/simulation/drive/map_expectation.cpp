@@ -42,7 +42,7 @@ costmap::CellCode MapExpectation::onSlope(std::uint8_t curve) const {
 }
 
 std::uint8_t MapExpectation::classCurve(maps::Cell cell) const noexcept {
-  return static_cast<std::uint8_t>(std::max(map_.classIndex(cell), 0));
+  return static_cast<std::uint8_t>(std::max(map_.surface().classIndex(cell), 0));
 }
 
 }  // namespace talus::planner

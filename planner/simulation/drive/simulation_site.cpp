@@ -14,14 +14,14 @@ maps::Raster<std::uint8_t> classIndices(const costmap::TraversabilityMap& map) {
   maps::Raster<std::uint8_t> index(map.grid());
   for (int row = 0; row < map.grid().height; ++row)
     for (int column = 0; column < map.grid().width; ++column)
-      index[{column, row}] = static_cast<std::uint8_t>(std::max(map.classIndex({column, row}), 0));
+      index[{column, row}] = static_cast<std::uint8_t>(std::max(map.surface().classIndex({column, row}), 0));
   return index;
 }
 
 // Hazards that the layers declared; those of the surface are measured anew.
 maps::Raster<Hazard> declaredHazards(const costmap::TraversabilityMap& map) {
   constexpr auto kDeclared = static_cast<std::uint8_t>(Hazard::Rocks | Hazard::KeepOut | Hazard::Obstacle);
-  maps::Raster<Hazard> hazards = map.hazards();
+  maps::Raster<Hazard> hazards = map.surface().hazards();
   for (Hazard& h : hazards.values()) h = static_cast<Hazard>(static_cast<std::uint8_t>(h) & kDeclared);
   return hazards;
 }
@@ -65,18 +65,18 @@ TrueWorld SimulationSite::trueWorld(std::size_t i) const {
 
 costmap::TraversabilityMap SimulationSite::believed(Belief belief, const TrueWorld& world) const {
   costmap::GroundModel::Parts parts = map_.model().parts();
-  costmap::MapLayers layers{map_.elevation(), map_.classes(), {}, {}, declaredHazards(map_)};
-  layers.costs = map_.costLayers();
+  costmap::MapLayers layers{map_.elevation(), map_.surface().classes(), {}, {}, declaredHazards(map_)};
+  layers.costs = map_.surface().costLayers();
   if (belief == Belief::Geometry)
     for (costmap::GroundClass& ground : parts.classes) {
       ground.soil = parts_.firm;
       ground.effects.clear();
     }
   parts.prices_crossing = belief != Belief::AlongOnly;
-  if (belief == Belief::PerfectKnowledge) tellTruth(world, map_.footprintRadius_m(), layers, parts);
+  if (belief == Belief::PerfectKnowledge) tellTruth(world, map_.surface().footprintRadius_m(), layers, parts);
   return {std::move(layers),
           std::make_shared<costmap::GroundModel>(std::move(parts)),
-          {.footprint_radius_m = map_.footprintRadius_m(), .threads = 1}};
+          {.footprint_radius_m = map_.surface().footprintRadius_m(), .threads = 1}};
 }
 
 SimulationOptions SimulationSite::options(Belief belief, std::size_t i) const {
@@ -118,7 +118,7 @@ std::vector<std::uint8_t> categoriesOf(const costmap::TraversabilityMap& map) {
   categories.reserve(map.grid().size());
   for (int row = 0; row < map.grid().height; ++row)
     for (int column = 0; column < map.grid().width; ++column)
-      categories.push_back(map.category({column, row}));
+      categories.push_back(map.costs().category({column, row}));
   return categories;
 }
 

@@ -175,7 +175,7 @@ class Drive {
   // Of the ground under the rover's middle.
   costmap::CellCode ground() const {
     const auto cell = map_.grid().cellAt(here_);
-    return cell ? map_.code(*cell) : costmap::CellCode();
+    return cell ? map_.published()->at(*cell) : costmap::CellCode();
   }
   double gradient(const Direction& heading) const {
     const costmap::CellCode code = ground();
@@ -288,7 +288,7 @@ class Drive {
       const auto cell = map_.grid().cellAt({believed().x_m + x * reach_m, believed().y_m + y * reach_m});
       const auto ground = cell ? map_.ground(*cell) : std::nullopt;
       if (!ground) continue;
-      const int index = map_.classIndex(*cell);
+      const int index = map_.surface().classIndex(*cell);
       const double ordinary = map_.evidence().classBelief(index).pull.value -
                               model.parts().classes[static_cast<std::size_t>(index)].pull_std;
       if (ground->pull.value < ordinary) return false;

@@ -53,7 +53,7 @@ TEST(GroundOptions, GroundIsOfTheSoilAndRoverNamed) {
       readGround(parsed(dem + " --resolution 1 --soil sandy_loam --rover fido --footprint 1.5"), quiet());
   EXPECT_EQ(ground.map.model().rover().name, "fido");
   ASSERT_EQ(ground.map.model().parts().classes.size(), 1U);
-  EXPECT_EQ(ground.map.footprintRadius_m(), 1.5);
+  EXPECT_EQ(ground.map.surface().footprintRadius_m(), 1.5);
   EXPECT_EQ(ground.files.front(), dem);
   // Property: a map that was built is taken for what it is, whichever way it is named.
   const std::string built = folder / "map.ot";
@@ -61,7 +61,7 @@ TEST(GroundOptions, GroundIsOfTheSoilAndRoverNamed) {
   for (const std::string& line : {built, "any.tif --map " + built}) {
     const Ground again = readGround(parsed(line), quiet());
     EXPECT_EQ(again.map.model().rover().name, "fido");
-    EXPECT_EQ(again.map.countCategories().safe, ground.map.countCategories().safe);
+    EXPECT_EQ(again.map.costs().countCategories().safe, ground.map.costs().countCategories().safe);
   }
   EXPECT_NO_THROW(readGround(parsed(built + " --rover fido"), quiet()));
   // Property: nothing that a call says of a built map is ignored.
@@ -187,9 +187,11 @@ TEST(GroundOptions, WhatReachesIntoACellCounts) {
     for (int row = 2; row < 8; ++row)
       for (int column = 1; column < 9; ++column) {
         const maps::Cell cell{column, row};
-        EXPECT_EQ(ground.map.classNumber(cell), column == 2 ? weak : 3 - weak) << column;
-        EXPECT_EQ(costmap::has(ground.map.hazards(cell), costmap::Hazard::Unknown), column == 4) << column;
-        EXPECT_EQ(costmap::has(ground.map.hazards(cell), costmap::Hazard::Rocks), column == 6) << column;
+        EXPECT_EQ(ground.map.surface().classNumber(cell), column == 2 ? weak : 3 - weak) << column;
+        EXPECT_EQ(costmap::has(ground.map.surface().hazards(cell), costmap::Hazard::Unknown), column == 4)
+            << column;
+        EXPECT_EQ(costmap::has(ground.map.surface().hazards(cell), costmap::Hazard::Rocks), column == 6)
+            << column;
       }
   }
 }

@@ -133,12 +133,13 @@ TEST(TraversabilityMap, RefusedGroundStaysRefused) {
   for (int row = 25; row <= 35; ++row)
     for (int column = 25; column <= 35; ++column) {
       const bool inside = std::hypot(column - 30, row - 30) <= 2.0;
-      EXPECT_EQ(has(map.hazards({column, row}), Hazard::Obstacle), inside) << column << ' ' << row;
-      EXPECT_EQ(map.code({column, row}).curve() == CellCode::kBlocked, inside) << column << ' ' << row;
+      EXPECT_EQ(has(map.surface().hazards({column, row}), Hazard::Obstacle), inside) << column << ' ' << row;
+      EXPECT_EQ(map.published()->at({column, row}).curve() == CellCode::kBlocked, inside)
+          << column << ' ' << row;
     }
   for (int i = 0; i < 20; ++i) map.learn(weaker(30.5, 30.5, -0.1));
   map.publish();
-  EXPECT_EQ(map.code({30, 30}).curve(), CellCode::kBlocked);
+  EXPECT_EQ(map.published()->at({30, 30}).curve(), CellCode::kBlocked);
   EXPECT_NO_THROW(map.refuse({-500.0, 1e9}, 3.0));
 }
 

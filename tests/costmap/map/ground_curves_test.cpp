@@ -170,8 +170,8 @@ TEST(GroundCurves, AHazardLowersNoCost) {
       for (int column = 0; column < kSide; ++column)
         for (int k = 0; k < 16; ++k) {
           const maps::Cell cell{column, row};
-          EXPECT_GE(after.published()->cost().costPerMetre(after.code(cell), heading(k)),
-                    before.published()->cost().costPerMetre(before.code(cell), heading(k)))
+          EXPECT_GE(after.published()->cost().costPerMetre(after.published()->at(cell), heading(k)),
+                    before.published()->cost().costPerMetre(before.published()->at(cell), heading(k)))
               << trial << ' ' << column << ' ' << row;
         }
   }
@@ -182,14 +182,14 @@ TEST(GroundCurves, GroundBesideATrapIsJudgedByItsWheels) {
   std::vector<std::string> rows(kSide, std::string(kSide, '1'));
   for (std::string& row : rows) row.replace(12, 6, 6, '2');
   const TraversabilityMap map = mapOf(rows);
-  const GroundBelief sand = *map.publishedGround({5, 12}), dust = *map.publishedGround({15, 12});
-  const GroundBelief beside = *map.publishedGround({11, 12});
+  const GroundBelief sand = *map.costs().ground({5, 12}), dust = *map.costs().ground({15, 12});
+  const GroundBelief beside = *map.costs().ground({11, 12});
   // Closed form: at least two wheels of four on the weaker, at most three; rounded down to 0.02.
   EXPECT_LE(beside.pull.value, 0.5 * (sand.pull.value + dust.pull.value));
   EXPECT_GT(beside.pull.value, 0.25 * sand.pull.value + 0.75 * dust.pull.value - 0.0201);
-  EXPECT_EQ(map.publishedGround({9, 12})->pull.value, sand.pull.value) << "out of reach";
-  EXPECT_GT(map.published()->cost().detail(map.code({11, 12}), {0, 1}).risk_per_m,
-            map.published()->cost().detail(map.code({5, 12}), {0, 1}).risk_per_m);
+  EXPECT_EQ(map.costs().ground({9, 12})->pull.value, sand.pull.value) << "out of reach";
+  EXPECT_GT(map.published()->cost().detail(map.published()->at({11, 12}), {0, 1}).risk_per_m,
+            map.published()->cost().detail(map.published()->at({5, 12}), {0, 1}).risk_per_m);
 }
 
 // Property: ground of more kinds than there are curves is refused or costs more than it need, never less.
@@ -212,12 +212,12 @@ TEST(GroundCurves, RunningOutOfCurvesErrsTowardsDanger) {
   for (int row = 0; row < kSide; ++row)
     for (int column = 0; column < kSide; ++column) {
       const maps::Cell cell{column, row};
-      const CellCode code = map.code(cell);
-      blocked += code.curve() == CellCode::kBlocked && map.hazards(cell) == Hazard::None;
+      const CellCode code = map.published()->at(cell);
+      blocked += code.curve() == CellCode::kBlocked && map.surface().hazards(cell) == Hazard::None;
       for (int k = 0; k < 16; ++k) {
         const double along = code.dzDx() * heading(k).x + code.dzDy() * heading(k).y;
-        const double exact = model->cost_J_per_m(model->state(map.classIndex(cell), *map.ground(cell),
-                                                              DriveCurve::gradient(DriveCurve::bin(along))));
+        const double exact = model->cost_J_per_m(model->state(
+            map.surface().classIndex(cell), *map.ground(cell), DriveCurve::gradient(DriveCurve::bin(along))));
         cheaper += static_cast<double>(map.published()->cost().costPerMetre(code, heading(k))) <
                    (1.0 - 1e-6) * exact;
       }
@@ -240,7 +240,7 @@ TEST(GroundCurves, CoarserStepsMakeRoom) {
   int blocked = 0, cheaper = 0;  // but for the edge of the map, which is blocked
   for (int row = 1; row < 79; ++row)
     for (int column = 1; column < 79; ++column) {
-      const CellCode code = map.code({column, row});
+      const CellCode code = map.published()->at({column, row});
       blocked += code.curve() >= CellCode::kUnknown;
       const double exact = map.model().cost_J_per_m(map.model().state(0, *map.ground({column, row}), 0.0));
       cheaper +=
@@ -266,12 +266,12 @@ TEST(GroundCurves, GroundWithoutAClassUnderAWheelIsUnknown) {
                              {});
   };
   const TraversabilityMap closed = mapUnder(false), open = mapUnder(true);
-  ASSERT_EQ(closed.hazards({14, 12}), Hazard::None);
-  EXPECT_EQ(closed.code({14, 12}).curve(), CellCode::kUnknown);
+  ASSERT_EQ(closed.surface().hazards({14, 12}), Hazard::None);
+  EXPECT_EQ(closed.published()->at({14, 12}).curve(), CellCode::kUnknown);
   EXPECT_NE(explain(closed, {14, 12}, std::nullopt).verdict.find("without a soil class"), std::string::npos);
-  EXPECT_LT(open.publishedGround({14, 12})->pull.value, open.publishedGround({18, 12})->pull.value - 0.02)
+  EXPECT_LT(open.costs().ground({14, 12})->pull.value, open.costs().ground({18, 12})->pull.value - 0.02)
       << "as ground of the first class";
-  EXPECT_LT(closed.code({18, 12}).curve(), CellCode::kUnknown);
+  EXPECT_LT(closed.published()->at({18, 12}).curve(), CellCode::kUnknown);
 }
 
 }  // namespace ground_curves_test

@@ -32,8 +32,9 @@ TEST(MapFile, ComesBackWithTheSameCostGridAndBytes) {
   EXPECT_EQ(bytesOf(back), bytes);
   ASSERT_EQ(back.grid(), map.grid());
   for (int row = 0; row < 4; ++row)
-    for (int column = 0; column < 4; ++column) EXPECT_EQ(back.code({column, row}), map.code({column, row}));
-  const CellCode cell = map.code({0, 0});
+    for (int column = 0; column < 4; ++column)
+      EXPECT_EQ(back.published()->at({column, row}), map.published()->at({column, row}));
+  const CellCode cell = map.published()->at({0, 0});
   EXPECT_EQ(back.published()->cost().costPerMetre(cell, {0.6, 0.8}),
             map.published()->cost().costPerMetre(cell, {0.6, 0.8}));
 }
@@ -49,13 +50,13 @@ TEST(MapFile, KeepsCostLayers) {
   const TraversabilityMap map(std::move(layers), testGround(), {});
   const TraversabilityMap back = fromBytes(bytesOf(map));
   EXPECT_EQ(bytesOf(back), bytesOf(map));
-  ASSERT_EQ(back.costLayers().size(), 2U);
-  EXPECT_EQ(back.costLayers()[1].name, "radio");
-  EXPECT_EQ(back.costLayers()[1].unseen_J_per_m, 9.0F);
-  const CellCode cell = map.code({1, 1});
-  EXPECT_EQ(back.published()->cost().costPerMetre(back.code({1, 1}), {}),
+  ASSERT_EQ(back.surface().costLayers().size(), 2U);
+  EXPECT_EQ(back.surface().costLayers()[1].name, "radio");
+  EXPECT_EQ(back.surface().costLayers()[1].unseen_J_per_m, 9.0F);
+  const CellCode cell = map.published()->at({1, 1});
+  EXPECT_EQ(back.published()->cost().costPerMetre(back.published()->at({1, 1}), {}),
             map.published()->cost().costPerMetre(cell, {}));
-  EXPECT_EQ(back.hazards({0, 0}), map.hazards({0, 0}));
+  EXPECT_EQ(back.surface().hazards({0, 0}), map.surface().hazards({0, 0}));
 }
 
 TEST(MapFile, KeepsTheCoordinateSystem) {
@@ -121,9 +122,9 @@ TEST(MapFile, KeepsRefusedPlaces) {
   int refused = 0;
   for (int row = 0; row < 12; ++row)
     for (int column = 0; column < 12; ++column) {
-      EXPECT_EQ(back.code({column, row}), map.code({column, row}));
-      EXPECT_EQ(back.hazards({column, row}), map.hazards({column, row}));
-      refused += has(back.hazards({column, row}), Hazard::Obstacle) ? 1 : 0;
+      EXPECT_EQ(back.published()->at({column, row}), map.published()->at({column, row}));
+      EXPECT_EQ(back.surface().hazards({column, row}), map.surface().hazards({column, row}));
+      refused += has(back.surface().hazards({column, row}), Hazard::Obstacle) ? 1 : 0;
     }
   EXPECT_GT(refused, 10);
   for (const double bad : {0.0, -1.0, static_cast<double>(NAN), static_cast<double>(INFINITY)})

@@ -88,7 +88,7 @@ TEST(MapMove, MovedEqualsBuiltAtOnce) {
     at_once.refuse(stuck, 1.5);
     at_once.publishAll();
     forEachCell(allOf(after), [&](Cell c) {
-      ASSERT_EQ(moved.hazards(c), at_once.hazards(c)) << c.column << ' ' << c.row;
+      ASSERT_EQ(moved.surface().hazards(c), at_once.surface().hazards(c)) << c.column << ' ' << c.row;
       ASSERT_EQ(moved.belief(c), at_once.belief(c)) << c.column << ' ' << c.row;
       ASSERT_EQ(costs(*moved.published(), c), costs(*at_once.published(), c)) << c.column << ' ' << c.row;
     });
@@ -100,7 +100,7 @@ TEST(MapMove, MovedEqualsBuiltAtOnce) {
       if (old) {
         ASSERT_EQ(moved.belief(c).evidence, map.belief(*old).evidence);
       } else {
-        ASSERT_TRUE(has(moved.hazards(c), Hazard::Unknown));
+        ASSERT_TRUE(has(moved.surface().hazards(c), Hazard::Unknown));
       }
     });
     EXPECT_GT(blocks, 0U);

@@ -129,7 +129,7 @@ void expectSame(const TraversabilityMap& patched, const TraversabilityMap& at_on
   const auto a = patched.published(), b = at_once.published();
   forEachCell(allOf(patched.grid()), [&](Cell c) {
     const std::string where = std::to_string(c.column) + ' ' + std::to_string(c.row);
-    ASSERT_EQ(patched.hazards(c), at_once.hazards(c)) << where;
+    ASSERT_EQ(patched.surface().hazards(c), at_once.surface().hazards(c)) << where;
     ASSERT_EQ(patched.belief(c), at_once.belief(c)) << where;
     ASSERT_EQ(a->at(c).stepsX(), b->at(c).stepsX()) << where;
     ASSERT_EQ(a->at(c).stepsY(), b->at(c).stepsY()) << where;

@@ -136,7 +136,7 @@ void Sequence::patch() {
                      grid.south_west.y_m + first.row * grid.resolution_m};
   SurfacePatch seen;
   seen.elevation_m = maps::Raster<float>(part, kNaN);
-  if (!map_->classes().empty()) seen.classes = maps::Raster<std::uint8_t>(part, 255);
+  if (!map_->surface().classes().empty()) seen.classes = maps::Raster<std::uint8_t>(part, 255);
   const int by = whole(0, 20);
   forEachCell(allOf(part), [&](Cell c) {
     const Cell there{first.column + c.column, first.row + c.row};
@@ -150,7 +150,7 @@ void Sequence::patch() {
 // beyond a step by a millionth of it at most.
 bool Sequence::isBetterThanBelieved(Cell cell) const {
   constexpr double kRounded = 1e-6, kTail = 6.0;
-  const auto known = map_->ground(cell), published = map_->publishedGround(cell);
+  const auto known = map_->ground(cell), published = map_->costs().ground(cell);
   if (!known || !published) return false;
   const auto low = [](const Estimate& e) { return e.value - kTail * e.std; };
   return published->pull.value > known->pull.value + kRounded ||

@@ -24,10 +24,10 @@ TEST(TraversabilityMap, EachCellIsWhatTheDrawingSays) {
   const TraversabilityMap map = mapOf(kSite);
   EXPECT_EQ(categoryOf(map, {3, 1}), Category::Safe);
   EXPECT_EQ(categoryOf(map, {2, 3}), Category::Unknown);
-  EXPECT_TRUE(has(map.hazards({0, 5}), Hazard::Near)) << "beside the edge of the map";
-  EXPECT_TRUE(has(map.hazards({5, 2}), Hazard::KeepOut));
-  EXPECT_TRUE(has(map.hazards({0, 0}), Hazard::Obstacle)) << "class 3 has no soil";
-  EXPECT_TRUE(has(map.hazards({1, 0}), Hazard::Obstacle)) << "class 0 has no soil";
+  EXPECT_TRUE(has(map.surface().hazards({0, 5}), Hazard::Near)) << "beside the edge of the map";
+  EXPECT_TRUE(has(map.surface().hazards({5, 2}), Hazard::KeepOut));
+  EXPECT_TRUE(has(map.surface().hazards({0, 0}), Hazard::Obstacle)) << "class 3 has no soil";
+  EXPECT_TRUE(has(map.surface().hazards({1, 0}), Hazard::Obstacle)) << "class 0 has no soil";
   EXPECT_GT(map.belief({3, 1}).pull_mean, map.belief({6, 4}).pull_mean) << "sand pulls better than dust";
 }
 
@@ -77,25 +77,11 @@ TEST(TraversabilityMap, BandsAndThreadsDoNotShow) {
   for (int row = 0; row < grid.height; ++row)
     for (int column = 0; column < grid.width; ++column) {
       const maps::Cell cell{column, row};
-      ASSERT_EQ(one.code(cell), two.code(cell));
+      ASSERT_EQ(one.published()->at(cell), two.published()->at(cell));
       const CellCode expected({.dz_dx = static_cast<double>(whole.dz_dx[cell]),
                                .dz_dy = static_cast<double>(whole.dz_dy[cell]),
-                               .curve = one.code(cell).curve()});
-      ASSERT_EQ(one.code(cell), expected) << column << ' ' << row;
-    }
-}
-
-TEST(TraversabilityMap, TreeHoldsEveryCellAtItsHeight) {
-  const TraversabilityMap map = mapOf(kSite, 0.3);
-  const TraversabilityTree tree = map.tree();
-  for (int row = 0; row < map.grid().height; ++row)
-    for (int column = 0; column < map.grid().width; ++column) {
-      const maps::Cell cell{column, row};
-      const double elevation = static_cast<double>(map.elevation().elevation_m[cell]);
-      if (std::isnan(elevation)) continue;
-      const CellBelief* found = tree.find(map.keys().key(cell, elevation));
-      ASSERT_NE(found, nullptr);
-      EXPECT_EQ(*found, map.belief(cell)) << column << ' ' << row;
+                               .curve = one.published()->at(cell).curve()});
+      ASSERT_EQ(one.published()->at(cell), expected) << column << ' ' << row;
     }
 }
 

@@ -47,8 +47,8 @@ TraversabilityMap with(MapLayers layers, std::vector<CostLayer> costs, const Dri
 
 double costAt(const TraversabilityMap& map, Cell cell, int k) {
   const double heading = 0.3926990817 * k;
-  return static_cast<double>(
-      map.published()->cost().costPerMetre(map.code(cell), {std::cos(heading), std::sin(heading)}));
+  return static_cast<double>(map.published()->cost().costPerMetre(map.published()->at(cell),
+                                                                  {std::cos(heading), std::sin(heading)}));
 }
 
 template <typename Check>

@@ -163,7 +163,7 @@ TEST(SurfacePatch, BringsAClassThatTheMapDidNotHave) {
   patched.patch(patch);
   EXPECT_EQ(cost(patched), cost(begun));
   EXPECT_NE(cost(patched), sand);
-  EXPECT_EQ(patched.category(inside), begun.category(inside));
+  EXPECT_EQ(patched.costs().category(inside), begun.costs().category(inside));
 }
 
 // Property: only tiles that the change reaches are new; the others are shared with the version before.
@@ -187,12 +187,12 @@ TEST(SurfacePatch, BeginsAMapThatNobodyHasSeen) {
   const maps::Grid grid{.width = 60, .height = 60, .resolution_m = 0.05, .south_west = {}};
   layers.elevation.elevation_m = maps::Raster<float>(grid, NAN);
   TraversabilityMap map(std::move(layers), testGround(), {});
-  EXPECT_EQ(map.countCategories().unknown, grid.size());
+  EXPECT_EQ(map.costs().countCategories().unknown, grid.size());
   SurfacePatch patch;
   patch.elevation_m = maps::Raster<float>(grid, -4500.0F);
   map.patch(patch);
-  EXPECT_GT(map.countCategories().safe, 1000U);
-  EXPECT_DOUBLE_EQ(map.keys().baseElevation_m(), -4500.0);
+  EXPECT_GT(map.costs().countCategories().safe, 1000U);
+  EXPECT_DOUBLE_EQ(map.surface().keys().baseElevation_m(), -4500.0);
   patch.elevation_m = maps::Raster<float>(grid, 4500.0F);
   EXPECT_NE(refusal(map, patch).find("within 1638.35 m of -4500 m"), std::string::npos);
 }
@@ -245,7 +245,7 @@ TEST(SurfacePatch, OfGroundThatWasDrivenBeforeItWasSeenLosesNoEvidence) {
         const maps::Cell cell{column, row};
         ASSERT_EQ(patched.ground(cell)->pull.value, begun.ground(cell)->pull.value) << seed;
         ASSERT_EQ(patched.ground(cell)->sinkage.value, begun.ground(cell)->sinkage.value) << seed;
-        ASSERT_EQ(patched.category(cell), begun.category(cell)) << seed;
+        ASSERT_EQ(patched.costs().category(cell), begun.costs().category(cell)) << seed;
         const auto a = patched.published(), b = begun.published();
         for (const Direction heading : {Direction{1.0, 0.0}, {0.6, -0.8}, {0.0, 1.0}})
           ASSERT_EQ(a->cost().costPerMetre(a->at(cell), heading),
@@ -279,7 +279,8 @@ TEST(SurfacePatch, OfTwoThreadsAtOnceIsTakenOrRefusedWhole) {
   EXPECT_EQ(map.published()->version(), 81U);
   for (int row = 0; row < kMap.height; ++row)
     for (int column = 0; column < kMap.width; ++column)
-      ASSERT_EQ(map.code({column, row}), one.code({column, row})) << column << ' ' << row;
+      ASSERT_EQ(map.published()->at({column, row}), one.published()->at({column, row}))
+          << column << ' ' << row;
 }
 
 }  // namespace surface_patch_test

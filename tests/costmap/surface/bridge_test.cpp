@@ -71,7 +71,7 @@ maps::Cell cellAt(const TraversabilityMap& map, double x) {
 
 CellBelief roadBelief(const TraversabilityMap& map, double x) {
   const maps::Cell cell = cellAt(map, x);
-  return map.belief(cell, map.floors().of(map.grid().index(cell))[0]);
+  return map.belief(cell, map.surface().floors().of(map.grid().index(cell))[0]);
 }
 
 TEST(Bridge, WhatIsDrivenBeneathTellsNothingAboutTheDeck) {
@@ -181,7 +181,7 @@ TEST(Bridge, ARowWithoutASlopeTakesThatOfItsOwnLevel) {
 
 TEST(Bridge, BelowACeilingTheRoadIsTheMap) {
   TraversabilityMap map = mapOf(bridge(2.0));
-  EXPECT_EQ(map.hazards(cellAt(map, 20.0)), Hazard::None);
+  EXPECT_EQ(map.surface().hazards(cellAt(map, 20.0)), Hazard::None);
   addDrive(map, drive(kDeck_m, 17.0, 23.0), nullptr);
   EXPECT_EQ(map.belief(cellAt(map, 20.0)).evidence, 0.0F) << "the deck is the other floor";
   addDrive(map, drive(kRoad_m, 17.0, 23.0), nullptr);

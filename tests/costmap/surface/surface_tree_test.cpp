@@ -7,6 +7,7 @@
 #include <octomap/ColorOcTree.h>
 #include <site_map.hpp>
 
+#include <talus/costmap/map/map_tree.hpp>
 #include <talus/costmap/surface/surface_tree.hpp>
 
 namespace talus::costmap {
@@ -21,28 +22,28 @@ MapLayers cliff() {
 
 TEST(SurfaceTree, ColourTreeHasALeafACellAndStockReadsIt) {
   const TraversabilityMap map(cliff(), testGround(), {});
-  const auto tree =
-      colorTree({map.elevation().elevation_m, map.keys()}, [&](maps::Cell c) { return map.belief(c); });
+  const auto tree = colorTree({map.elevation().elevation_m, map.surface().keys()},
+                              [&](maps::Cell c) { return map.belief(c); });
   EXPECT_EQ(tree->getNumLeafNodes(), 15U);  // Closed form: 16 cells, one without elevation
   std::stringstream stream;
   tree->write(stream);
   const std::unique_ptr<octomap::AbstractOcTree> back(octomap::AbstractOcTree::read(stream));
   const auto* colour = dynamic_cast<octomap::ColorOcTree*>(back.get());
   ASSERT_NE(colour, nullptr);
-  const auto* cell = colour->search(map.keys().key({0, 0}, 1000.0));
+  const auto* cell = colour->search(map.surface().keys().key({0, 0}, 1000.0));
   ASSERT_NE(cell, nullptr);
   EXPECT_GT(cell->getColor().r, cell->getColor().g) << "at the edge of the map, refused: red";
 }
 
 std::string held(const TraversabilityMap& map) {
   std::ostringstream stream;
-  writeTree(map.tree(), stream);
+  writeTree(treeOf(map), stream);
   return stream.str();
 }
 
 std::string streamed(const TraversabilityMap& map) {
   std::ostringstream stream;
-  map.writeTree(stream);
+  writeTree(map, stream);
   return stream.str();
 }
 
@@ -77,7 +78,7 @@ TEST(SurfaceTree, LeavesOfTheStreamAreThoseOfTheTree) {
   TraversabilityMap map = mapOf(std::vector<std::string>(20, std::string(33, '1')), 0.2);
   map.learn({.time_s = 1.0, .place = {110.0, 210.0}, .pull = {0.1, 0.05}, .sinkage = {0.2, 0.05}});
   map.publish();
-  const TraversabilityTree tree = map.tree();
+  const TraversabilityTree tree = treeOf(map);
   std::istringstream stream(streamed(map));
   std::size_t leaves = 0;
   readLeaves(stream, "map.ot", [&](const TreeLeaf& leaf) {
@@ -91,8 +92,9 @@ TEST(SurfaceTree, LeavesOfTheStreamAreThoseOfTheTree) {
 TEST(SurfaceTree, NoElevationNoTree) {
   MapLayers layers = drawn({"??", "??"});
   const TraversabilityMap map(std::move(layers), testGround(), {});
-  EXPECT_EQ(map.tree().size(), 0U);
-  EXPECT_EQ(colorTree({map.elevation().elevation_m, map.keys()}, [&](maps::Cell c) { return map.belief(c); })
+  EXPECT_EQ(treeOf(map).size(), 0U);
+  EXPECT_EQ(colorTree({map.elevation().elevation_m, map.surface().keys()},
+                      [&](maps::Cell c) { return map.belief(c); })
                 ->size(),
             0U);
 }

@@ -266,7 +266,7 @@ TEST(Danger, TheOrderOfAMomentsRowsDoesNotShow) {
   for (int row = 0; row < kSide; ++row)
     for (int column = 0; column < kSide; ++column) {
       EXPECT_EQ(a.ground({column, row})->pull.value, b.ground({column, row})->pull.value);
-      EXPECT_EQ(a.code({column, row}), b.code({column, row}));
+      EXPECT_EQ(a.published()->at({column, row}), b.published()->at({column, row}));
     }
 }
 

@@ -50,7 +50,7 @@ std::vector<Row> driveOver(const TraversabilityMap& map, const terramech::Soil& 
   for (const double y_m : {10.5, 30.5, 60.5})
     for (int i = 0; i < 180; ++i) {
       const double x_m = 5.0 + 0.25 * i;
-      const double gradient = map.code(*map.grid().cellAt({x_m, y_m})).dzDx();
+      const double gradient = map.published()->at(*map.grid().cellAt({x_m, y_m})).dzDx();
       const terramech::MobilityState s = curve.at(std::atan(gradient));
       rows.push_back({2.5 * i, x_m, y_m, 0.0, std::atan(gradient) + 0.005 * noise(random),
                       s.slip + 0.01 * noise(random), s.torque_Nm * (1.0 + 0.02 * noise(random)),

@@ -129,7 +129,7 @@ TEST(RouteMonitor, TellsWhereTheQuantileOfTheBeliefFallsShort) {
   EXPECT_GT(first->probability, 0.02);
   EXPECT_LT(first->probability, 0.03);  // one cell of a few thousandths of gradient further
   EXPECT_NEAR(first->along_m, first->place.x_m - 2.0, 1e-9);
-  const double std = map.publishedGround({60, 10})->pull.std;
+  const double std = map.costs().ground({60, 10})->pull.std;
   const double steepness =
       (deviations(last->probability) - deviations(first->probability)) / (gradient(*last) - gradient(*first));
   EXPECT_NEAR(steepness * std, 1.0, 0.15);  // bins of gradient are 1/256 wide, and 0.05 apart at most here

@@ -98,7 +98,7 @@ TEST(SimulationSite, KeepOutStaysUnderEveryBelief) {
   const SimulationSite site(map, across({}));
   const TrueWorld world = site.trueWorld(0);
   for (const Belief belief : kBeliefs)
-    EXPECT_TRUE(has(site.believed(belief, world).hazards({20, 19}), costmap::Hazard::KeepOut))
+    EXPECT_TRUE(has(site.believed(belief, world).surface().hazards({20, 19}), costmap::Hazard::KeepOut))
         << name(belief);
 }
 

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <tuple>
+#include <vector>
+
+#include <talus/costmap/evidence/evidence_field.hpp>
+#include <talus/costmap/evidence/ground_inference.hpp>
+
+namespace talus::costmap {
+
+/// Estimates of ground cell by cell: evidence is gathered once a patch of 8x8 blocks and class, an estimate is computed
+/// once a block and class. Depends on the states of the classes and the evidence that can reach the patch alone.
+/// Valid until the field changes. Not thread-safe.
+class EvidenceBeliefs {
+ public:
+  explicit EvidenceBeliefs(const EvidenceField& field,
+                           EvidenceField::Classes classes = EvidenceField::Classes::AsKnown);
+  ~EvidenceBeliefs();
+  EvidenceBeliefs(const EvidenceBeliefs&) = delete;
+  EvidenceBeliefs& operator=(const EvidenceBeliefs&) = delete;
+
+  /// The top surface of a cell as ground of a class. The reference holds until the next call.
+  const InferredGround& at(maps::Cell cell, int class_index);
+
+ private:
+  struct Patch;
+  using Key = std::tuple<int, int, int>;
+
+  GroundOfClass groundOf(int class_index) const;
+  Patch& patchAt(const BlockLevel& block, int class_index);
+  const InferredGround& away(int class_index);
+
+  const EvidenceStore& store_;
+  std::vector<ClassState> states_;
+  std::map<Key, std::shared_ptr<Patch>> patches_;
+  Key last_key_{0, 0, -1};
+  Patch* last_ = nullptr;
+  std::map<int, InferredGround> away_;  // from any evidence, a class each
+};
+
+}  // namespace talus::costmap

@@ -1,0 +1,142 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <talus/costmap/evidence/evidence_store.hpp>
+#include <talus/costmap/evidence/ground_inference.hpp>
+#include <talus/costmap/evidence/local_ground.hpp>
+#include <talus/costmap/surface/floors.hpp>
+
+namespace talus::costmap {
+namespace {
+
+constexpr int kPatchBlocks = EvidenceReach::kPatchBlocks;
+constexpr std::size_t kMostNeighbours = 64;
+constexpr double kSteepest =
+    0.6;  // gradient of ground that joins places of one floor: more than rovers drive
+
+// The same as LocalGround, while it is gathered.
+struct NearbyEvidence {
+  GroundOfClass of;
+  std::vector<PlaceEvidence> places{};
+  std::vector<WeakPlace> weak{}, lower{};
+  std::vector<PlaceBound> bounds{};
+};
+
+// What may raise goes into the process; each place that is weaker than its class explains, or that may only lower, is a bound
+// of its own. Ground of other classes counts only as far as it may have been this.
+void place(const EvidenceStore& store, const BlockLevel& block, const BlockEvidence& e,
+           NearbyEvidence& nearby) {
+  const int own = store.model().classIndex(block.terrain_class);
+  const GroundBelief mean = classGround(store.model(), nearby.of),
+                     prior = store.model().prior(nearby.of.class_index);
+  const GroundClass& ground = store.groundClass(own);
+  const maps::Point middle = store.blocks.middleOf(store.blocks.blockAt(block.column, block.row));
+  const bool alike = own == nearby.of.class_index;
+  const double variance = static_cast<double>(e.weak_variance);
+  const double below = static_cast<double>(e.weak_pull) - store.model().prior(own).pull.value;
+  const double deeper = static_cast<double>(e.sinkage) - store.model().prior(own).sinkage.value;
+  const bool weak = below < -kOrdinary * std::sqrt(ground.pull_std * ground.pull_std + variance);
+  const bool own_lowers = alike && e.lowers;
+  const bool deep = deeper > (own_lowers ? 0.0 : kOrdinary * ground.sinkage_std);
+  if (alike && !std::isnan(e.pull)) {
+    const double sinkage = static_cast<double>(e.sinkage) - mean.sinkage.value;
+    nearby.places.push_back(
+        {.place = middle,
+         .pull = static_cast<double>(e.pull) - mean.pull.value,
+         .sinkage = e.sinkage_raises || std::isnan(sinkage) ? sinkage : std::fmax(sinkage, 0.0),
+         .variance = static_cast<double>(e.variance),
+         .shared = static_cast<double>(e.shared)});
+  }
+  const bool may_be_here = alike || e.reach > 0;
+  if (!may_be_here) return;
+  if (!std::isnan(e.most_pull) || !std::isnan(e.least_sinkage))
+    nearby.bounds.push_back(
+        {middle, e.reach_m(), static_cast<double>(e.most_pull), static_cast<double>(e.least_sinkage)});
+  const double pull = static_cast<double>(e.weak_pull) - prior.pull.value;
+  const double sinkage = static_cast<double>(e.sinkage) - prior.sinkage.value;
+  const WeakPlace place{.place = middle,
+                        .pull = weak ? std::fmin(pull, 0.0) : 0.0,
+                        .variance = variance,
+                        .sinkage = std::isnan(sinkage) ? 0.0 : std::fmax(sinkage, 0.0),
+                        .reach_m = e.reach_m() + (alike ? 0.0 : 0.5 * store.blocks.side_m()),
+                        .beyond_reach = alike};
+  if (weak || deep) nearby.weak.push_back(place);
+  if (!own_lowers || !(below < 0.0)) return;
+  nearby.lower.push_back(place);
+  nearby.lower.back().pull = below;
+}
+
+// Takes the kMostNeighbours nearest places into the process, those of the patch itself among them. Of the others each that
+// is weaker than its class is kept as a bound.
+LocalGround grounded(const EvidenceStore& store, NearbyEvidence nearby, const maps::Point& middle) {
+  std::vector<PlaceEvidence>& places = nearby.places;
+  if (places.size() > kMostNeighbours) {
+    const auto far = [&](const PlaceEvidence& e) {
+      return std::fmax(std::abs(e.place.x_m - middle.x_m), std::abs(e.place.y_m - middle.y_m));
+    };
+    std::stable_sort(places.begin(), places.end(),
+                     [&](const PlaceEvidence& a, const PlaceEvidence& b) { return far(a) < far(b); });
+    for (std::size_t i = kMostNeighbours; i < places.size(); ++i)
+      nearby.lower.push_back({.place = places[i].place,
+                              .pull = std::fmin(places[i].pull + nearby.of.state.pull, 0.0),
+                              .variance = places[i].variance,
+                              .sinkage = std::fmax(places[i].sinkage + nearby.of.state.sinkage, 0.0)});
+    places.resize(kMostNeighbours);
+  }
+  return {GaussianProcess(std::move(places), variationOf(store, nearby.of.class_index)),
+          std::move(nearby.weak), std::move(nearby.lower), std::move(nearby.bounds)};
+}
+
+}  // namespace
+
+Variation variationOf(const EvidenceStore& store, int class_index) noexcept {
+  const GroundClass& ground = store.groundClass(class_index);
+  return {.pull_std = ground.pull_std,
+          .sinkage_std = ground.sinkage_std,
+          .correlation_length_m = store.model().parts().policy.correlation_length_m};
+}
+
+// The process has only what lies within a correlation length; places further off, whose position may be wrong by more, are
+// bounds alone.
+LocalGround groundAround(const EvidenceStore& store, const BlockLevel& patch, const GroundOfClass& of) {
+  const int reach =
+      store.blocks.reach() + static_cast<int>(std::ceil(store.reach.farthest_m() / store.blocks.side_m()));
+  NearbyEvidence nearby{.of = of};
+  const auto isNear = [&](int blocks) {
+    return blocks >= -store.blocks.reach() && blocks < kPatchBlocks + store.blocks.reach();
+  };
+  store.bricks.visitTop({patch.column - reach, patch.row - reach, patch.column + kPatchBlocks + reach - 1,
+                         patch.row + kPatchBlocks + reach - 1},
+                        [&](const BlockLevel& at, const BlockEvidence& e) {
+                          const std::size_t known = nearby.places.size();
+                          place(store, at, e, nearby);
+                          if (!isNear(at.column - patch.column) || !isNear(at.row - patch.row))
+                            nearby.places.resize(known);
+                        });
+  const maps::Point low = store.blocks.middleOf(store.blocks.blockAt(patch.column, patch.row));
+  const double half_m = 0.5 * (kPatchBlocks - 1) * store.blocks.side_m();
+  return grounded(store, std::move(nearby), {low.x_m + half_m, low.y_m + half_m});
+}
+
+LocalGround groundLevelWith(const EvidenceStore& store, maps::Cell block, std::uint16_t level,
+                            const GroundOfClass& of) {
+  const int side = store.blocks.side();
+  const int reach = store.blocks.reach() * side;
+  const double resolution_m = store.site->grid().resolution_m;
+  NearbyEvidence nearby{.of = of};
+  for (int row = block.row - reach; row <= block.row + reach; row += side)
+    for (int column = block.column - reach; column <= block.column + reach; column += side) {
+      const BlockLevel there = store.topOf({column, row}, of.class_index);
+      const double away_m = resolution_m * std::hypot(column - block.column, row - block.row);
+      store.bricks.visitLevels(there.column, there.row, [&](const BlockLevel& at, const BlockEvidence& e) {
+        const auto key = e.level == BlockEvidence::kTop ? store.blocks.topKey({column, row}) : e.level;
+        const bool near =
+            key && std::abs(*key - level) * resolution_m <= 0.5 * Floors::kHeadroom_m + kSteepest * away_m;
+        if (near && e.terrain_class == store.groundClass(of.class_index).number) place(store, at, e, nearby);
+      });
+    }
+  return grounded(store, std::move(nearby), store.blocks.middleOf(block));
+}
+
+}  // namespace talus::costmap

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <atomic>
+#include <stdexcept>
+#include <string>
+
+namespace talus::costmap {
+
+/// Held by each call that changes a map: a second thread that changes it meanwhile gets an exception instead of a data race.
+class MapChange {
+ public:
+  /// Throws std::logic_error that names the call when another thread is changing the map.
+  MapChange(std::atomic_flag& changing, const char* call) : changing_(changing) {
+    if (changing_.test_and_set(std::memory_order_acquire))
+      throw std::logic_error(std::string("TraversabilityMap: ") + call +
+                             "() while another thread changes the map; let one thread change it");
+  }
+  MapChange(const MapChange&) = delete;
+  MapChange& operator=(const MapChange&) = delete;
+  ~MapChange() { changing_.clear(std::memory_order_release); }
+
+ private:
+  std::atomic_flag& changing_;
+};
+
+}  // namespace talus::costmap

@@ -1,0 +1,195 @@
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include <talus/costmap/cost/published_grid.hpp>
+#include <talus/costmap/evidence/evidence_beliefs.hpp>
+#include <talus/costmap/map/ground_curves.hpp>
+#include <talus/costmap/map/map_costs.hpp>
+#include <talus/costmap/surface/cell_boxes.hpp>
+
+namespace talus::costmap {
+namespace {
+
+constexpr double kFull = 0.75;  // share of the curves' numbers from which on there is no room for more
+
+std::vector<std::shared_ptr<CostTile>> emptyTiles(const maps::Grid& grid) {
+  const auto across = [](int cells) {
+    return static_cast<std::size_t>((cells + CostTile::kSide - 1) / CostTile::kSide);
+  };
+  std::vector<std::shared_ptr<CostTile>> tiles(across(grid.width) * across(grid.height));
+  for (auto& tile : tiles) tile = std::make_shared<CostTile>();
+  return tiles;
+}
+
+// Ranges of a drive overlap: neighbours in time are joined where that covers little more than both.
+std::vector<maps::CellBox> joined(std::vector<maps::CellBox> ranges, const maps::CellBox& range) {
+  const auto area = [](const maps::CellBox& r) {
+    return static_cast<double>(r.last.column - r.first.column + 1) * (r.last.row - r.first.row + 1);
+  };
+  if (!ranges.empty()) {
+    maps::CellBox& last = ranges.back();
+    const maps::CellBox both = around(last, range);
+    if (area(both) < 1.3 * std::max(area(last), area(range))) {
+      last = both;
+      return ranges;
+    }
+  }
+  ranges.push_back(range);
+  return ranges;
+}
+
+}  // namespace
+
+MapCosts::MapCosts(std::shared_ptr<MapSurface> surface, const ProgressMonitor& watch)
+    : surface_(std::move(surface)),
+      curves_(std::make_unique<GroundCurves>(surface_->site())),
+      published_(std::make_unique<PublishedGrid>()) {
+  published_->store(measured(watch));
+  if (curves_->table().overflowed()) published_->store(renumbered());
+}
+
+MapCosts::~MapCosts() = default;
+
+std::shared_ptr<const CostGrid> MapCosts::measured(const ProgressMonitor& watch) {
+  const maps::Grid& grid = surface_->grid();
+  const std::vector<std::shared_ptr<CostTile>> tiles = emptyTiles(grid);
+  const int tile_columns = (grid.width + CostTile::kSide - 1) / CostTile::kSide;
+  const auto slot = [&](maps::Cell c) -> CellCode& {
+    auto& tile = *tiles[static_cast<std::size_t>((c.row >> 6) * tile_columns + (c.column >> 6))];
+    return tile.cells[static_cast<std::size_t>((c.row & 63) << 6 | (c.column & 63))];
+  };
+  surface_->measure([&](maps::Cell cell, CellCode code) { slot(cell) = code; }, watch);
+  forEachCell(allOf(grid), [&](maps::Cell cell) { slot(cell) = coded(cell, slot(cell)); });
+  return std::make_shared<CostGrid>(
+      CostGrid::Content{.grid = grid,
+                        .tiles = TileTable(std::vector<TileTable::Shared>(tiles.begin(), tiles.end())),
+                        .cost = curves_->table().cost(),
+                        .version = 1,
+                        .elevation_m = tiled(surface_->site()->elevation.elevation_m)});
+}
+
+std::shared_ptr<const CostGrid> MapCosts::published() const noexcept {
+  return published_->load();
+}
+
+std::optional<GroundBelief> MapCosts::ground(maps::Cell cell) const {
+  const std::uint8_t number = published()->at(cell).curve();
+  if (number >= CellCode::kUnknown) return std::nullopt;
+  return curves_->table().belief(number);
+}
+
+std::optional<CellCategory> MapCosts::ranked(maps::Cell cell) const {
+  const CellCode code = published()->at(cell);
+  if (code.curve() >= CellCode::kUnknown) return std::nullopt;
+  const auto entry = curves_->table().categories(code.curve()).at(code);
+  return CellCategory{entry.category, entry.confidence};
+}
+
+CategoryCounts MapCosts::countCategories() const {
+  std::array<std::size_t, 4> counts{};
+  const auto published = this->published();
+  for (int row = 0; row < surface_->grid().height; ++row)
+    for (int column = 0; column < surface_->grid().width; ++column)
+      ++counts[categoryOf(*published, {column, row})];
+  return {counts[0], counts[1], counts[2], counts[3]};
+}
+
+std::uint8_t MapCosts::categoryOf(const CostGrid& grid, maps::Cell cell) const noexcept {
+  const CellCode code = grid.at(cell);
+  if (code.curve() < CellCode::kUnknown) return curves_->table().categories(code.curve()).at(code).category;
+  return static_cast<std::uint8_t>(has(surface_->hazards(cell), Hazard::Unknown)
+                                       ? terramech::Category::Unknown
+                                       : terramech::Category::Dangerous);
+}
+
+void MapCosts::noteLearned(const maps::CellBox& box) {
+  learned_ = joined(std::move(learned_), box);
+}
+
+void MapCosts::notePatched(MapSurface::PatchEffect effect, bool classes) {
+  heights_m_ =
+      retiled(published()->content().elevation_m, surface_->site()->elevation.elevation_m, effect.window);
+  gradients_ = std::move(effect.gradients);
+  changed_.push_back(effect.judged);
+  if (!classes) return;
+  changed_.push_back(curves_->takeClasses(effect.window));
+  learned_.push_back(effect.window);
+}
+
+void MapCosts::publish(const EvidenceField& field) {
+  publish(field, false);
+}
+
+void MapCosts::publishAll(const EvidenceField& field) {
+  curves_->restart(0);
+  learned_ = changed_ = {allOf(surface_->grid())};
+  publish(field, true);
+}
+
+void MapCosts::republishAs(std::uint64_t version) {
+  CostGrid::Content content = published()->content();
+  content.version = version;
+  published_->store(std::make_shared<CostGrid>(std::move(content)));
+}
+
+void MapCosts::publish(const EvidenceField& field, bool whole) {
+  std::vector<maps::CellBox> learned = std::exchange(learned_, {});
+  std::vector<maps::CellBox> changed = std::exchange(changed_, {});
+  const bool any = !learned.empty() || !changed.empty();
+  const auto append = [](std::vector<maps::CellBox>& to, const std::vector<maps::CellBox>& more) {
+    to.insert(to.end(), more.begin(), more.end());
+  };
+  const GroundCurves::ClassChange moved = curves_->learnClasses(field);
+  if (moved.learned && !whole) append(learned, field.reached());
+  if (!any && !moved.priors && learned.empty()) return;
+  EvidenceBeliefs beliefs(field, EvidenceField::Classes::InSteps);
+  append(changed, curves_->learn(beliefs, learned));
+  if (moved.priors) append(changed, curves_->mixedRanges());
+  published_->store(costed(changed));
+  gradients_.reset();
+  heights_m_.reset();
+}
+
+// No cheaper than all of it at once. At the finest level each curve is that of its kind, whatever came before; at a coarser
+// one that leaves room, all at once would take that level or a finer one. What is left cannot be compared: all of it anew.
+std::shared_ptr<const CostGrid> MapCosts::costed(const std::vector<maps::CellBox>& changed) {
+  std::shared_ptr<const CostGrid> next = rewritten(changed);
+  const bool extreme = curves_->level() == 0 || curves_->level() == curves_->coarsest();
+  const bool room = extreme || curves_->table().used() <= kFull;
+  return curves_->table().overflowed() || !room ? renumbered() : next;
+}
+
+// In the finest steps that leave room for what is yet to be learned.
+std::shared_ptr<const CostGrid> MapCosts::renumbered() {
+  for (int level = 0;; ++level) {
+    curves_->restart(level);
+    auto next = rewritten({allOf(surface_->grid())});
+    const bool room = !curves_->table().overflowed() && curves_->table().used() <= kFull;
+    if (room || level == curves_->coarsest()) return next;
+  }
+}
+
+// The cost is asked for after the codes are made: they may bring new curves.
+std::shared_ptr<const CostGrid> MapCosts::rewritten(const std::vector<maps::CellBox>& ranges) {
+  return std::make_shared<CostGrid>(
+      revised(*published(), {.ranges = ranges,
+                             .code = [&](maps::Cell cell, CellCode code) { return coded(cell, code); },
+                             .cost = [&] { return curves_->table().cost(); },
+                             .elevation_m = heights_m_}));
+}
+
+CellCode MapCosts::coded(maps::Cell cell, CellCode code) {
+  if (gradients_ && contains(gradients_->box, cell))
+    code =
+        gradients_->codes[{cell.column - gradients_->box.first.column, cell.row - gradients_->box.first.row}];
+  const Hazard found = surface_->hazards(cell);
+  if (found == Hazard::None) return code.withCurve(curves_->number(cell));
+  if (found != Hazard::Unknown) return code.withCurve(CellCode::kBlocked);
+  if (!surface_->model().parts().policy.allow_unknown) return code.withCurve(CellCode::kUnknown);
+  // Shape that cannot be measured is no reason to forget what is known of the soil.
+  return code.withCurve(surface_->classIndex(cell) >= 0 ? curves_->number(cell)
+                                                        : curves_->numberOfUnseen(cell));
+}
+
+}  // namespace talus::costmap
