@@ -21,7 +21,7 @@ struct GroundKind {
   int pull_std = 0;  ///< quarters of an octave above 0.02
   int sinkage = 0;
 
-  auto operator<=>(const GroundKind&) const = default;
+  auto operator<=>(const GroundKind&) const = default;  // NOLINT(modernize-use-nullptr): of clang 14
 
   static GroundKind of(int class_index, int other_class, const GroundBelief& belief, int level = 0) noexcept;
 

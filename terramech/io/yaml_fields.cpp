@@ -38,7 +38,7 @@ namespace {
 }
 
 /// A value of the mapping and the factor from the unit that it is stated in.
-struct Found {
+struct Found {  // NOLINT(bugprone-exception-escape): of YAML::Node
   YAML::Node value;
   double factor = 1.0;
 };

@@ -150,7 +150,8 @@ Eigen::MatrixXd features(const Trial& trial, const Trial& seen) {
 /// Ridge regression whose strength minimises n |y - H y|^2 / (n - tr H)^2.
 Eigen::VectorXd ridge(const Eigen::MatrixXd& x, const Eigen::VectorXd& y) {
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(x, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  const Eigen::VectorXd s = svd.singularValues(), u = svd.matrixU().transpose() * y;
+  const Eigen::VectorXd& s = svd.singularValues();
+  const Eigen::VectorXd u = svd.matrixU().transpose() * y;
   double best = 1e300;
   Eigen::VectorXd weights = Eigen::VectorXd::Zero(x.cols());
   for (double lambda = 1e-4; lambda < 1e5; lambda *= 3.0) {
