@@ -11,6 +11,7 @@
 #include <talus/common/progress_monitor.hpp>
 #include <talus/terramech/calibration/trace/left_out.hpp>
 #include <talus/terramech/calibration/trace/trace_input.hpp>
+#include <talus/terramech/calibration/trace/trace_table.hpp>
 
 namespace talus::cli {
 namespace {
@@ -61,7 +62,7 @@ void warnOfRejected(const terramech::Telemetry& telemetry, const Context& contex
 /// The loop on rows that the search never saw.
 int holdOutRows(const TraceCommandOptions& options, const terramech::Telemetry& table,
                 const terramech::TableTraceOptions& how, Context& context) {
-  const auto [rows, search] = terramech::traceInput(table, how);
+  const auto [rows, search] = terramech::traceInput(table, how.base, how.search);
   std::vector<terramech::LeftOutErrors> all;
   for (const terramech::LeftOut& left : terramech::leftOut(rows.trial, options.hold_out, options.telemetry)) {
     const ProgressMonitor watch = context.watch("tracing without " + left.what);
@@ -86,9 +87,9 @@ void writeModel(const std::string& path, const terramech::TableTrace& trace, con
 }
 
 int run(const TraceCommandOptions& options, Context& context) {
-  const terramech::TableTraceOptions how{.base = terramech::baseModel(options.base, options.rover),
-                                         .significance = options.significance,
-                                         .seed = context.seed};
+  const terramech::TableTraceOptions how{
+      .base = terramech::baseModel(options.base, options.rover),
+      .search = {.significance = options.significance, .seed = context.seed}};
   const terramech::Telemetry table = terramech::readTraceTable(options.telemetry);
   warnOfRejected(table, context);
   if (!options.hold_out.empty()) return holdOutRows(options, table, how, context);

@@ -4,8 +4,8 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include <talus/cli/soil/channel_errors.hpp>
 #include <talus/cli/soil/left_out_report.hpp>
-#include <talus/cli/soil/trace_report.hpp>
 
 namespace talus::cli {
 namespace {

@@ -1,21 +1,20 @@
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include <talus/cli/soil/channel_errors.hpp>
 #include <talus/cli/soil/searched_report.hpp>
-#include <talus/cli/soil/trace_report.hpp>
 
 namespace talus::cli {
 namespace {
 
-using nlohmann::ordered_json;
 using namespace terramech;
+
 }  // namespace
 
-ordered_json searchedJson(const TraceResult& r) {
+nlohmann::ordered_json searchedJson(const TraceResult& r) {
   return {{"rows", r.trial.rows()},
           {"rows_not_searched", r.unsearched.rows},
           {"base_rmse_there", errorsJson(r.unsearched.base_rmse)},
@@ -26,12 +25,9 @@ ordered_json searchedJson(const TraceResult& r) {
 std::string searchedText(const TraceResult& result) {
   std::string text;
   if (const UnsearchedRows& rest = result.unsearched; rest.rows > 0) {
-    text += fmt::format("searched a sample of {} of {} rows; rmse on the {} others (base -> refined):",
-                        result.trial.rows(), result.trial.rows() + rest.rows, rest.rows);
-    for (Channel c : kAllChannels)
-      if (const auto k = static_cast<std::size_t>(c); std::isfinite(rest.base_rmse[k]))
-        text += fmt::format(" {} {:.4f} -> {:.4f}", name(c), rest.base_rmse[k], rest.refined_rmse[k]);
-    text += "\n";
+    text += fmt::format("searched a sample of {} of {} rows; rmse on the {} others (base -> refined):{}\n",
+                        result.trial.rows(), result.trial.rows() + rest.rows, rest.rows,
+                        changeText(rest.base_rmse, rest.refined_rmse));
   }
   if (const auto& dropped = result.trial.dropped; !dropped.empty()) {
     constexpr std::size_t kShown = 5;

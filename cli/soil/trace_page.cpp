@@ -93,20 +93,11 @@ void curves(HtmlReport& page, const TraceResult& r, const Eigen::MatrixXd& level
 
 // The fitted parameters, each with its standard deviation.
 std::string sizes(const TracedEffect& effect) {
-  const Effect& part = effect.chosen.candidate.parts.front();
-  const EffectForm* form = findEffect(part.name);
   std::string text;
-  const std::vector<std::string> bounds = atBounds(part);
-  std::size_t at = 0;
-  for (std::size_t k = 0; form && k < form->parameters.size(); ++k) {
-    const EffectParameter& parameter = form->parameters[k];
-    if (!parameter.fitted) continue;
-    const double std = at < effect.parameter_std.size() ? effect.parameter_std[at] : 0.0;
-    ++at;
-    text += fmt::format("{}{} = {:.4g} ± {:.2g}", text.empty() ? "" : "; ", parameter.name,
-                        part.parameters[k], std);
-    if (parameter.unit != std::string("-")) text += fmt::format(" {}", parameter.unit);
-    if (std::find(bounds.begin(), bounds.end(), parameter.name) != bounds.end()) text += ", at its bound";
+  for (const FittedNumber& p : fittedNumbers(effect)) {
+    text += fmt::format("{}{} = {:.4g} ± {:.2g}", text.empty() ? "" : "; ", p.name, p.value, p.std);
+    if (p.unit != "-") text += " " + p.unit;
+    if (p.at_bound) text += ", at its bound";
   }
   return text;
 }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <talus/cli/soil/channel_errors.hpp>
 #include <talus/cli/soil/searched_report.hpp>
 #include <talus/cli/soil/trace_answer.hpp>
 #include <talus/cli/soil/trace_report.hpp>
@@ -121,17 +122,9 @@ std::string effectLine(const TracedEffect& effect, const EffectRole& role) {
   if (!role.adds) line += ": " + roleText(role);
   if (const EffectForm* form = findEffect(part.name)) {
     line += fmt::format("\n    {}   [{}]", form->formula, form->source);
-    const std::vector<std::string> bounds = atBounds(part);
-    std::size_t at = 0;
-    for (std::size_t k = 0; k < form->parameters.size(); ++k) {
-      const EffectParameter& p = form->parameters[k];
-      if (!p.fitted) continue;
-      const bool bound = std::find(bounds.begin(), bounds.end(), p.name) != bounds.end();
-      line += fmt::format("\n    {} = {:.4g} +- {:.2g} [{}]{}", p.name, part.parameters[k],
-                          at < effect.parameter_std.size() ? effect.parameter_std[at] : 0.0, p.unit,
-                          bound ? ", at its bound" : "");
-      ++at;
-    }
+    for (const FittedNumber& p : fittedNumbers(effect))
+      line += fmt::format("\n    {} = {:.4g} +- {:.2g} [{}]{}", p.name, p.value, p.std, p.unit,
+                          p.at_bound ? ", at its bound" : "");
   } else {
     line +=
         "\n"
@@ -155,6 +148,24 @@ std::string pText(double p) {
   const double least = 1.0 / (TraceOptions{}.draws + 1.0);
   if (p <= least * (1.0 + 1e-9)) return fmt::format("< {:.2g}", std::max(0.001, 1.01 * least));
   return fmt::format("= {:.2g}", p);
+}
+
+std::vector<FittedNumber> fittedNumbers(const TracedEffect& effect) {
+  const Effect& part = effect.chosen.candidate.parts.front();
+  const EffectForm* form = findEffect(part.name);
+  const std::vector<std::string> bounds = atBounds(part);
+  std::vector<FittedNumber> numbers;
+  for (std::size_t k = 0; form && k < form->parameters.size(); ++k) {
+    const EffectParameter& p = form->parameters[k];
+    if (!p.fitted) continue;
+    const std::size_t at = numbers.size();
+    numbers.push_back({.name = p.name,
+                       .unit = p.unit,
+                       .value = part.parameters[k],
+                       .std = at < effect.parameter_std.size() ? effect.parameter_std[at] : 0.0,
+                       .at_bound = std::find(bounds.begin(), bounds.end(), p.name) != bounds.end()});
+  }
+  return numbers;
 }
 
 const std::string& covariateOf(const Effect& effect) {
@@ -239,11 +250,8 @@ std::string endLines(const TraceResult& r) {
   if (r.ends.empty()) return "";
   std::string out = "held out: end levels, predicted from the others (base -> refined)\n";
   for (const EndLevel& end : r.ends) {
-    out += fmt::format("  {:26s} {:3d} rows:", (end.high ? "greatest " : "least ") + end.column, end.rows);
-    for (Channel c : kAllChannels)
-      if (const auto k = static_cast<std::size_t>(c); std::isfinite(end.base_rmse[k]))
-        out += fmt::format(" {} {:.4f} -> {:.4f}", name(c), end.base_rmse[k], end.refined_rmse[k]);
-    out += "\n";
+    out += fmt::format("  {:26s} {:3d} rows:{}\n", (end.high ? "greatest " : "least ") + end.column, end.rows,
+                       changeText(end.base_rmse, end.refined_rmse));
   }
   return out;
 }
@@ -274,13 +282,6 @@ ordered_json beyondAxleJson(const TableTrace& trace) {
 }
 
 }  // namespace
-
-ordered_json errorsJson(const ChannelErrors& errors) {
-  ordered_json out = ordered_json::object();
-  for (Channel c : kAllChannels)
-    if (const double e = errors[static_cast<std::size_t>(c)]; std::isfinite(e)) out[name(c)] = e;
-  return out;
-}
 
 ordered_json traceJson(const TableTrace& trace) {
   const TraceResult& r = trace.result;

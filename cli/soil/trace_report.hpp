@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -15,6 +16,16 @@ std::vector<std::string> confounded(const terramech::Trial& trial, const std::st
 /// The column that explains an effect: of one on a single group of rows, the column of the group.
 const std::string& covariateOf(const terramech::Effect& effect);
 
+/// A fitted parameter of an effect.
+struct FittedNumber {
+  std::string name, unit;  ///< unit "-": dimensionless
+  double value = 0.0, std = 0.0;
+  bool at_bound = false;  ///< at a bound of its range
+};
+
+/// The fitted parameters of an effect of known form, in its order; empty for a curve.
+std::vector<FittedNumber> fittedNumbers(const terramech::TracedEffect& effect);
+
 /// A p-value as text: below 0.001, and below what the drawn tables can tell, as a bound.
 std::string pText(double p);
 
@@ -26,9 +37,6 @@ std::string beyondAxleText(const terramech::TableTrace& trace);
 
 /// One line about a parameter of the soil far from its prior.
 std::string movedText(const terramech::MovedParameter& parameter);
-
-/// The errors of the channels that have any, by name.
-nlohmann::ordered_json errorsJson(const terramech::ChannelErrors& errors);
 
 nlohmann::ordered_json traceJson(const terramech::TableTrace& trace);
 std::string traceText(const terramech::TableTrace& trace);

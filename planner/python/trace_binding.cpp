@@ -34,8 +34,7 @@ TableTrace trace(const Asked& asked, const py::object& progress) {
   inBackground(
       [&](const ProgressMonitor& watch) {
         const TableTraceOptions how{.base = baseModel(asked.base, asked.rover),
-                                    .significance = asked.significance,
-                                    .seed = asked.seed};
+                                    .search = {.significance = asked.significance, .seed = asked.seed}};
         found = traceTable(readTraceTable(asked.table), how, watch);
       },
       progress);

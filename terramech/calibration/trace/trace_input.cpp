@@ -6,12 +6,10 @@
 
 namespace talus::terramech {
 
-TraceInput traceInput(const Telemetry& table, const TableTraceOptions& options) {
+TraceInput traceInput(const Telemetry& table, const ModelFile& base, const TraceOptions& options) {
   constexpr int kFewest = 6;
-  TraceInput input{
-      .rows = modelRows(table, options.base.model),
-      .options = {
-          .significance = options.significance, .fit_soil = !options.base.soil_given, .seed = options.seed}};
+  TraceInput input{.rows = modelRows(table, base.model), .options = options};
+  input.options.fit_soil = !base.soil_given;
   const Trial& trial = input.rows.trial;
   if (trial.rows() < kFewest)
     throw InputError({table.source,
@@ -19,7 +17,7 @@ TraceInput traceInput(const Telemetry& table, const TableTraceOptions& options) 
                           " usable rows with sinkage below the wheel radius; tracing needs at least 6",
                       ""});
   // A drive has not the information for soil and effects at once.
-  if (options.base.soil_given && trial.moment.empty()) giveDefaultDeviations(input.rows.model);
+  if (base.soil_given && trial.moment.empty()) giveDefaultDeviations(input.rows.model);
   return input;
 }
 

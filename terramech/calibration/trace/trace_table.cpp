@@ -15,7 +15,7 @@ Telemetry readTraceTable(const std::filesystem::path& path) {
 
 TableTrace traceTable(const Telemetry& table, const TableTraceOptions& options,
                       const ProgressMonitor& watch) {
-  const TraceInput input = traceInput(table, options);
+  const TraceInput input = traceInput(table, options.base, options.search);
   const ModelRows& rows = input.rows;
   TableTrace trace{.source = table.source,
                    .rejected = rows.rejected,

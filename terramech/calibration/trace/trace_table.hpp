@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -16,8 +15,7 @@ namespace talus::terramech {
 /// How the residuals of a table are traced.
 struct TableTraceOptions {
   ModelFile base = unknownSoil();  ///< model whose residuals are traced; unknownSoil(): its soil is fitted
-  double significance = TraceOptions{}.significance;  ///< as TraceOptions
-  std::uint64_t seed = 1;                             ///< as TraceOptions
+  TraceOptions search;             ///< fit_soil follows from the base
 };
 
 /// What a table shows of a model.
@@ -42,9 +40,9 @@ struct TableTrace {
 /// and named in Telemetry::rejected. Throws InputError as readTelemetry(), and when no row is left.
 Telemetry readTraceTable(const std::filesystem::path& path);
 
-/// Traces the residuals of a base model on a table. A soil stated without standard deviations gets default ones
-/// (giveDefaultDeviations()) unless the table is a rover's own drive. Deterministic for a seed. A stopped watch ends the search
-/// early; of the result only `result` is then filled. Throws InputError when fewer than 6 rows can be used.
+/// Traces the residuals of a base model on a table. A given soil without standard deviations gets default ones unless the table
+/// is a rover's own drive. Deterministic for a seed. A stopped watch ends the search early with what was found so far, without
+/// held-out errors, answer and applicability. Throws InputError when fewer than 6 rows can be used.
 TableTrace traceTable(const Telemetry& table, const TableTraceOptions& options = {},
                       const ProgressMonitor& watch = {});
 

@@ -63,6 +63,19 @@ TEST(TraceReport, TheMeasurementSeparatesTheNearestAlternative) {
   EXPECT_EQ(separatingMeasurement(trial(), effect), "no close alternative");
 }
 
+TEST(TraceReport, FittedNumbersAreThoseOfTheFormInItsOrder) {
+  terramech::TracedEffect effect;
+  effect.chosen.candidate.parts = {{.name = "torque_offset", .covariate = "load_N", .parameters = {0.5}}};
+  effect.parameter_std = {0.1};
+  const std::vector<FittedNumber> numbers = fittedNumbers(effect);
+  ASSERT_EQ(numbers.size(), 1U);
+  EXPECT_EQ(numbers[0].value, 0.5);
+  EXPECT_EQ(numbers[0].std, 0.1);
+  EXPECT_FALSE(numbers[0].at_bound);
+  effect.chosen.candidate.parts = {{.name = "empirical", .parameters = {1.0, 2.0}, .knots = {0.0, 1.0}}};
+  EXPECT_TRUE(fittedNumbers(effect).empty());
+}
+
 TEST(TraceReport, RowsBeyondTheAxleAreSaidWithTheirErrors) {
   terramech::TableTrace trace;
   trace.beyond_axle = 3;

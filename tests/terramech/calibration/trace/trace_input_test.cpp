@@ -16,19 +16,19 @@ Telemetry table(int count) {
 TEST(TraceInput, AGivenSoilGetsDefaultDeviationsAndAnUnknownOneIsFitted) {
   ModelFile given;
   given.model.soil = madeSand();
-  const TraceInput of_given = traceInput(table(12), {.base = given, .significance = 0.1, .seed = 7});
+  const TraceInput of_given = traceInput(table(12), given, {.significance = 0.1, .seed = 7});
   EXPECT_FALSE(of_given.options.fit_soil);
   EXPECT_FALSE(of_given.rows.model.soil_prior_std.empty());
   EXPECT_EQ(of_given.options.significance, 0.1);
   EXPECT_EQ(of_given.options.seed, 7U);
-  const TraceInput of_unknown = traceInput(table(12), {});
+  const TraceInput of_unknown = traceInput(table(12), unknownSoil(), {});
   EXPECT_TRUE(of_unknown.options.fit_soil);
   EXPECT_EQ(of_unknown.rows.model.soil_prior_std, unknownSoil().model.soil_prior_std);
 }
 
 TEST(TraceInput, FiveRowsAreTooFew) {
-  EXPECT_EQ(traceInput(table(6), {}).rows.trial.rows(), 6);
-  EXPECT_THAT([] { traceInput(table(5), {}); },
+  EXPECT_EQ(traceInput(table(6), unknownSoil(), {}).rows.trial.rows(), 6);
+  EXPECT_THAT([] { traceInput(table(5), unknownSoil(), {}); },
               testing::ThrowsMessage<InputError>(testing::HasSubstr(
                   "made: 5 usable rows with sinkage below the wheel radius; tracing needs at least 6")));
 }
