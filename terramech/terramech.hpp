@@ -3,6 +3,7 @@
 /// Entry header of talus::terramech: forces on a wheel, what a slope costs a rover, categories, and the soil
 /// and the pull from what wheels read.
 
+#include <talus/common/constants.hpp>
 #include <talus/terramech/contact/rover.hpp>
 #include <talus/terramech/contact/wong_reece.hpp>
 #include <talus/terramech/estimate/drawbar_pull.hpp>

@@ -19,7 +19,6 @@
 namespace talus::reproduce {
 namespace {
 
-using namespace cli;
 using namespace terramech;
 
 // Root mean square, one error at a time.

@@ -25,7 +25,9 @@ TEST(PlaceBeliefs, EqualsAskingTheMapCellByCell) {
       ASSERT_EQ(beliefs.at(cell), map.belief(cell)) << column << ' ' << row;
       const auto one = beliefs.ground(cell), other = map.ground(cell);
       ASSERT_EQ(one.has_value(), other.has_value());
-      if (one) ASSERT_EQ(one->pull.value, other->pull.value);
+      if (one) {
+        ASSERT_EQ(one->pull.value, other->pull.value);
+      }
     }
   EXPECT_LT(beliefs.ground({10, 20})->pull.value, beliefs.ground({0, 0})->pull.value);
 }
