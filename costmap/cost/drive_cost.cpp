@@ -4,8 +4,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include <talus/costmap/cost/cross_slope.hpp>
 #include <talus/costmap/cost/drive_cost.hpp>
+#include <talus/terramech/mobility/slope_equilibrium.hpp>
 
 namespace talus::costmap {
 
@@ -23,12 +23,6 @@ namespace {
 terramech::Gradient seenBy(CellCode cell, Direction heading) noexcept {
   return {cell.dzDx() * heading.x + cell.dzDy() * heading.y,
           cell.dzDy() * heading.x - cell.dzDx() * heading.y};
-}
-
-DriveState refused(Refusal reason) noexcept {
-  DriveState state;
-  state.refusal = reason;
-  return state;
 }
 
 std::vector<DriveCurve> curvesOf(const std::vector<DriveGround>& grounds) {
@@ -64,28 +58,6 @@ float DriveCost::costPerMetre(CellCode cell, Direction heading) const noexcept {
   if (bin < 0 || bin >= DriveCurve::kBins) return blocked;
   const DriveCurve& curve = curves_[cell.curve()];
   return curve.rows()[std::min(DriveCurve::row(d.across), curve.lastRow()) * DriveCurve::kBins + bin];
-}
-
-DriveState DriveCost::detail(CellCode cell, Direction heading) const noexcept {
-  if (cell.curve() == CellCode::kBlocked) return refused(Refusal::Blocked);
-  if (cell.curve() >= curves_.size()) return refused(Refusal::Unknown);
-  const terramech::Gradient d = seenBy(cell, heading);
-  const int bin = std::clamp(DriveCurve::bin(d.along), 0, DriveCurve::kBins - 1);
-  const auto& table = states_[cell.curve()];
-  const auto& crossing = crossings_[cell.curve()];
-  DriveState state = !table     ? DriveState{}
-                     : crossing ? crossing->state(*table, DriveCurve::row(d.across), bin)
-                                : (*table)[static_cast<std::size_t>(bin)];
-  if (std::abs(d.across) > limits_.max_across) state.refusal = Refusal::Roll;
-  if (std::abs(d.along) > limits_.max_along || bin != DriveCurve::bin(d.along))
-    state.refusal = Refusal::Pitch;
-  return state;
-}
-
-SlopeHold DriveCost::hold(CellCode cell, Direction heading) const noexcept {
-  if (cell.curve() >= curves_.size() || !crossings_[cell.curve()]) return {};
-  const terramech::Gradient d = seenBy(cell, heading);
-  return crossings_[cell.curve()]->hold(d);
 }
 
 }  // namespace talus::costmap

@@ -51,14 +51,6 @@ GroundBelief combined(const GroundModel& model, const GroundOfClass& of, const L
 
 }  // namespace
 
-GroundBelief classGround(const GroundModel& model, const GroundOfClass& of) {
-  const GroundClass& ground = model.parts().classes[static_cast<std::size_t>(of.class_index)];
-  const ClassState& state = of.state;
-  const GroundBelief prior = model.prior(of.class_index);
-  return {.pull = {prior.pull.value + state.pull, std::hypot(ground.pull_std, state.pull_std)},
-          .sinkage = {std::max(prior.sinkage.value + state.sinkage, 0.0), ground.sinkage_std}};
-}
-
 InferredGround inferredGround(const EvidenceStore& store, const LocalGround& local, const GroundOfClass& of,
                               const maps::Point& at) {
   const ClassState& state = of.state;

@@ -12,9 +12,6 @@ struct InferredGround {
   bool learned = false;  ///< evidence nearby moved it away from its class
 };
 
-/// The estimate of ground of a class away from any evidence.
-GroundBelief classGround(const GroundModel& model, const GroundOfClass& of);
-
 /// The estimate of a place: no better than the class away from evidence until enough places agree, never better than any
 /// single weak place implies, and within the bounds of its block. Equal to classGround() to the bit where no evidence
 /// reaches it.

@@ -3,7 +3,6 @@
 #include <utility>
 
 #include <talus/costmap/evidence/evidence_store.hpp>
-#include <talus/costmap/evidence/ground_inference.hpp>
 #include <talus/costmap/evidence/local_ground.hpp>
 #include <talus/costmap/surface/floors.hpp>
 
@@ -89,6 +88,14 @@ LocalGround grounded(const EvidenceStore& store, NearbyEvidence nearby, const ma
 }
 
 }  // namespace
+
+GroundBelief classGround(const GroundModel& model, const GroundOfClass& of) {
+  const GroundClass& ground = model.parts().classes[static_cast<std::size_t>(of.class_index)];
+  const ClassState& state = of.state;
+  const GroundBelief prior = model.prior(of.class_index);
+  return {.pull = {prior.pull.value + state.pull, std::hypot(ground.pull_std, state.pull_std)},
+          .sinkage = {std::max(prior.sinkage.value + state.sinkage, 0.0), ground.sinkage_std}};
+}
 
 Variation variationOf(const EvidenceStore& store, int class_index) noexcept {
   const GroundClass& ground = store.groundClass(class_index);

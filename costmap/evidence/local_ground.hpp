@@ -35,6 +35,9 @@ struct LocalGround {
   bool empty() const noexcept { return process.empty() && weak.empty() && lower.empty() && bounds.empty(); }
 };
 
+/// The estimate of ground of a class away from any evidence.
+GroundBelief classGround(const GroundModel& model, const GroundOfClass& of);
+
 /// How ground of a class varies over distance.
 Variation variationOf(const EvidenceStore& store, int class_index) noexcept;
 

@@ -63,4 +63,16 @@ std::optional<GroundBelief> PlaceBeliefs::ground(maps::Cell cell) {
   return beliefs_.at(cell, index).ground;
 }
 
+CellBelief TraversabilityMap::belief(maps::Cell cell) const {
+  return PlaceBeliefs(*this).at(cell);
+}
+
+CellBelief TraversabilityMap::belief(maps::Cell cell, const Floor& floor) const {
+  return PlaceBeliefs(*this).at(cell, floor);
+}
+
+std::optional<GroundBelief> TraversabilityMap::ground(maps::Cell cell) const {
+  return PlaceBeliefs(*this).ground(cell);
+}
+
 }  // namespace talus::costmap

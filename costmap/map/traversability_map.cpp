@@ -5,7 +5,6 @@
 
 #include <talus/costmap/map/map_change.hpp>
 #include <talus/costmap/map/map_move.hpp>
-#include <talus/costmap/map/place_beliefs.hpp>
 #include <talus/costmap/map/traversability_map.hpp>
 
 namespace talus::costmap {
@@ -52,18 +51,6 @@ TraversabilityMap::TraversabilityMap(MapLayers layers, std::shared_ptr<const Gro
       field_(surface_->site()),
       costs_(std::make_unique<MapCosts>(surface_, watch)),
       changing_(std::make_unique<std::atomic_flag>()) {}
-
-CellBelief TraversabilityMap::belief(maps::Cell cell) const {
-  return PlaceBeliefs(*this).at(cell);
-}
-
-CellBelief TraversabilityMap::belief(maps::Cell cell, const Floor& floor) const {
-  return PlaceBeliefs(*this).at(cell, floor);
-}
-
-std::optional<GroundBelief> TraversabilityMap::ground(maps::Cell cell) const {
-  return PlaceBeliefs(*this).ground(cell);
-}
 
 bool TraversabilityMap::learn(const WheelObservation& observation) {
   const MapChange change(*changing_, "learn");
