@@ -9,6 +9,8 @@ find_package(octomap 1.9 REQUIRED)
 find_package(GeographicLib REQUIRED)
 find_package(Boost 1.74 REQUIRED COMPONENTS filesystem system serialization)
 find_package(SQLite3 REQUIRED)
+# Its header alone, which checksum.cpp compiles: no dependency of what is installed.
+find_path(XXHASH_INCLUDE_DIR xxhash.h REQUIRED)
 # OMPL 1.5.2 exports variables only.
 find_package(ompl 1.5 REQUIRED)
 add_library(talus::ompl INTERFACE IMPORTED GLOBAL)

@@ -30,9 +30,9 @@ class EvidenceJournal {
     EvidenceJournal* journal_;  // null once committed
   };
 
-  /// Opens or creates a file of that very name: no URI, no database in memory. Journals of older formats become of the
-  /// present one. Throws InputError when the file is no journal, has tables, columns, triggers or views that a journal has
-  /// not, or cannot be written.
+  /// Opens or creates a file of that very name: no URI, no database in memory. A journal of Talus 0.1.0 becomes of the
+  /// present format. Throws InputError when the file is no journal, is of another format, has tables, columns, triggers or
+  /// views that a journal has not, or cannot be written.
   explicit EvidenceJournal(const std::string& path);
   ~EvidenceJournal();
   EvidenceJournal(const EvidenceJournal&) = delete;

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -69,7 +70,6 @@ JournalRow readRow(sqlite3_stmt* row) {
                      .pull_may_raise = sqlite3_column_int(row, 20) != 0,
                      .sinkage_may_raise = sqlite3_column_int(row, 21) != 0,
                      .here = {number(row, 22), number(row, 23)}};
-  if (std::isnan(out.observation.share)) out.observation.shared_std = out.observation.share;
   out.wheel = {number(row, 25), number(row, 26), number(row, 27)};
   return out;
 }
@@ -98,20 +98,23 @@ void bindRow(sqlite3_stmt* s, const JournalRow& row, std::int64_t drive) {
   sqlite3_bind_int64(s, at, drive);
 }
 
-// Column by column with its kind; NULL is left out, so that a column added later, NULL in older rows, changes nothing.
-void addTo(Checksum& sum, sqlite3_stmt* row) {
+template <typename T>
+void append(std::string& bytes, const T& value) {
+  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+// Column by column with its kind; NULL is left out.
+void append(std::string& bytes, sqlite3_stmt* row) {
   for (int column = 0; column < sqlite3_column_count(row); ++column) {
-    const std::int32_t mark[2] = {column, sqlite3_column_type(row, column)};
-    if (mark[1] == SQLITE_NULL) continue;
-    sum.add(mark, sizeof mark);
-    const double real = sqlite3_column_double(row, column);
-    const std::int64_t integer = sqlite3_column_int64(row, column);
-    if (mark[1] == SQLITE_FLOAT)
-      sum.add(&real, sizeof real);
-    else if (mark[1] == SQLITE_INTEGER)
-      sum.add(&integer, sizeof integer);
+    const int type = sqlite3_column_type(row, column);
+    if (type == SQLITE_NULL) continue;
+    append(bytes, std::array<std::int32_t, 2>{column, type});
+    if (type == SQLITE_FLOAT)
+      append(bytes, sqlite3_column_double(row, column));
+    else if (type == SQLITE_INTEGER)
+      append(bytes, static_cast<std::int64_t>(sqlite3_column_int64(row, column)));
     else
-      sum.add(journalText(row, column).data(), static_cast<std::size_t>(sqlite3_column_bytes(row, column)));
+      bytes += journalText(row, column);
   }
 }
 
@@ -145,10 +148,13 @@ std::uint64_t rowsChecksum(const JournalDatabase& database, std::int64_t drive, 
   const auto rows = database.prepare(kSelect);
   sqlite3_bind_int64(rows.get(), 1, drive);
   sqlite3_bind_int64(rows.get(), 2, after);
+  std::string bytes;
   while (database.step(rows)) {
+    bytes.clear();
+    append(bytes, before);
+    append(bytes, rows.get());
     Checksum sum;
-    sum.add(&before, sizeof before);
-    addTo(sum, rows.get());
+    sum.add(bytes.data(), bytes.size());
     before = sum.value();
   }
   return before;

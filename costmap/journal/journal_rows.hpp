@@ -38,7 +38,7 @@ struct DriveEntry {
 /// The checksum as it is stored, and back: both are one function.
 std::uint64_t sealed(const DriveEntry& entry);
 
-/// Whether it is 16 hexadecimal digits, as driveId() gives, or "source NAME", as rows of journals without drives have.
+/// Whether it is 16 hexadecimal digits, as driveId() gives, or "source NAME", as the rows of Talus 0.1.0 have.
 bool isDriveId(const std::string& id);
 
 }  // namespace talus::costmap

@@ -1,6 +1,6 @@
 #include <algorithm>
-#include <array>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <sqlite3.h>
@@ -12,135 +12,85 @@
 namespace talus::costmap {
 namespace {
 
-// 1 had no z_m, 2 no pose_std_m nor what may raise, 3 no drives, 4 no bounds, 5 no shared errors nor wheels, 6 no share of
-// the thrust: a pull that was read at little slip counted as if it had been read at the reference slip. 7 had checksums of
-// rows without their drive's id, and could do without
-constexpr int kFormat = 8;
-constexpr int kFirstWithDrives = 4, kFirstSealed = 8;
+constexpr int kFormat = 9;
+constexpr int kFormat010 = 3;             // of Talus 0.1.0, the only other one that a release wrote
 constexpr int kApplication = 0x54414c55;  // "TALU"
 
-constexpr const char* kEvidence =
-    "CREATE TABLE evidence(id INTEGER PRIMARY KEY AUTOINCREMENT, source TEXT NOT NULL, line INTEGER NOT NULL,"
+// Columns that 0.1.0 has, too.
+const std::string kColumns010 =
+    "id INTEGER PRIMARY KEY AUTOINCREMENT, source TEXT NOT NULL, line INTEGER NOT NULL,"
     " accepted INTEGER NOT NULL, reason TEXT NOT NULL, time_s REAL, x_m REAL, y_m REAL, load_N REAL, slip "
     "REAL,"
     " torque_Nm REAL, sinkage_m REAL, gradient REAL, drawbar_pull_N REAL, pass_index INTEGER,"
     " pull REAL, pull_std REAL, sinkage REAL, sinkage_std REAL, z_m REAL,"
     " pose_std_m REAL NOT NULL DEFAULT 0, pull_may_raise INTEGER NOT NULL DEFAULT 0,"
-    " sinkage_may_raise INTEGER NOT NULL DEFAULT 0, drive INTEGER, pull_here REAL, sinkage_here REAL,"
-    " pull_shared_std REAL, wheel_radius_m REAL, wheel_width_m REAL, wheel_weight_N REAL, thrust_share REAL)";
-constexpr const char* kDrive =
-    "CREATE TABLE drive(number INTEGER PRIMARY KEY, id TEXT NOT NULL UNIQUE, checksum INTEGER)";
-constexpr const char* kIndex = "CREATE INDEX of_drive ON evidence(drive)";
+    " sinkage_may_raise INTEGER NOT NULL DEFAULT 0";
+constexpr const char* kNames010 =
+    "id, source, line, accepted, reason, time_s, x_m, y_m, load_N, slip, torque_Nm, sinkage_m, gradient, "
+    "drawbar_pull_N, pass_index, pull, pull_std, sinkage, sinkage_std, z_m, pose_std_m, pull_may_raise, "
+    "sinkage_may_raise";
+
+// A table or index, by type and name, and how it was made.
+struct Entry {
+  std::string type, name, sql;
+  friend bool operator==(const Entry&, const Entry&) = default;
+};
+const Entry kSequence{"table", "sqlite_sequence", "CREATE TABLE sqlite_sequence(name,seq)"};
 
 // All that a journal has, by name.
-struct Entry {
-  const char* type;
-  const char* name;
-  const char* sql;
-};
-constexpr std::array<Entry, 5> kEntries{
-    {{"table", "drive", kDrive},
-     {"table", "evidence", kEvidence},
-     {"index", "of_drive", kIndex},
-     {"index", "sqlite_autoindex_drive_1", ""},
-     {"table", "sqlite_sequence", "CREATE TABLE sqlite_sequence(name,seq)"}}};
+const std::vector<Entry>& entriesOfJournal() {
+  static const std::vector<Entry> entries{
+      {"table", "drive",
+       "CREATE TABLE drive(number INTEGER PRIMARY KEY, id TEXT NOT NULL UNIQUE, checksum INTEGER)"},
+      {"table", "evidence",
+       "CREATE TABLE evidence(" + kColumns010 +
+           ", drive INTEGER, pull_here REAL, sinkage_here REAL, pull_shared_std REAL, wheel_radius_m REAL, "
+           "wheel_width_m REAL, wheel_weight_N REAL, thrust_share REAL)"},
+      {"index", "of_drive", "CREATE INDEX of_drive ON evidence(drive)"},
+      {"index", "sqlite_autoindex_drive_1", ""},
+      kSequence};
+  return entries;
+}
 
-struct Found {
-  std::string type, name, sql;
-};
+const std::vector<Entry>& entriesOf010() {
+  static const std::vector<Entry> entries{{"table", "evidence", "CREATE TABLE evidence(" + kColumns010 + ')'},
+                                          kSequence};
+  return entries;
+}
 
-std::vector<Found> entriesOf(const JournalDatabase& database) {
-  std::vector<Found> found;
+std::vector<Entry> entriesOf(const JournalDatabase& database) {
+  std::vector<Entry> found;
   const auto rows = database.prepare("SELECT type, name, sql FROM sqlite_master ORDER BY name");
   while (database.step(rows))
     found.push_back({journalText(rows.get(), 0), journalText(rows.get(), 1), journalText(rows.get(), 2)});
   return found;
 }
 
-bool isExact(const std::vector<Found>& found) {
-  return std::ranges::equal(found, kEntries, [](const Found& a, const Entry& b) {
-    return a.type == b.type && a.name == b.name && a.sql == b.sql;
-  });
-}
-
-bool has(const std::vector<Found>& found, const char* name) {
-  return std::ranges::find(found, name, &Found::name) != found.end();
-}
-
-[[noreturn]] void refuseForeign(const JournalDatabase& database, const std::string& what) {
+void requireExact(const JournalDatabase& database, const std::vector<Entry>& known) {
+  const std::vector<Entry> found = entriesOf(database);
+  if (found == known) return;
+  const auto foreign =
+      std::ranges::find_if(found, [&](const Entry& e) { return std::ranges::find(known, e) == known.end(); });
+  const std::string what = foreign == found.end()
+                               ? "a table is missing in it"
+                               : "its " + foreign->type + ' ' + foreign->name + " is not as Talus made it";
   throw InputError({database.path(), what + ": it was changed, or is no evidence journal",
                     "restore the journal from a copy"});
 }
 
-void requireKnown(const JournalDatabase& database, const std::vector<Found>& found) {
-  for (const Found& entry : found)
-    if (std::ranges::none_of(kEntries, [&](const Entry& known) {
-          return entry.type == known.type && entry.name == known.name;
-        }))
-      refuseForeign(database, "holds a " + entry.type + " that Talus did not make");
-}
-
-std::vector<std::string> columnsOf(const JournalDatabase& database, const std::string& table) {
-  std::vector<std::string> names;
-  const auto rows =
-      database.prepare(("SELECT name, hidden FROM pragma_table_xinfo('" + table + "')").c_str());
-  while (database.step(rows)) {
-    if (sqlite3_column_int(rows.get(), 1) != 0)
-      refuseForeign(database, "table " + table + " has a computed column");
-    names.push_back(journalText(rows.get(), 0));
-  }
-  return names;
-}
-
-// Puts the rows of a table of an older format into that of the present one, and drops it.
-void moveRows(const JournalDatabase& database, const std::string& from, const std::string& to) {
-  const std::vector<std::string> known = columnsOf(database, to);
-  std::string names;
-  for (const std::string& column : columnsOf(database, from)) {
-    if (std::ranges::find(known, column) == known.end())
-      refuseForeign(database, "table " + to + " has a column that Talus did not make");
-    names += (names.empty() ? "" : ", ") + column;
-  }
-  database.run("INSERT INTO " + to + '(' + names + ") SELECT " + names + " FROM " + from);
-  database.run("DROP TABLE " + from);
-}
-
 void makeTables(const JournalDatabase& database) {
-  for (const char* sql : {kEvidence, kDrive, kIndex}) database.run(sql);
+  for (const Entry& entry : entriesOfJournal())
+    if (!entry.sql.empty() && entry != kSequence) database.run(entry.sql);
 }
 
-void remakeTables(const JournalDatabase& database, const std::vector<Found>& found) {
-  database.run("DROP INDEX IF EXISTS of_drive");
-  database.run("ALTER TABLE evidence RENAME TO old_evidence");
-  if (has(found, "drive")) database.run("ALTER TABLE drive RENAME TO old_drive");
-  makeTables(database);
-  moveRows(database, "old_evidence", "evidence");
-  if (has(found, "drive")) moveRows(database, "old_drive", "drive");
-}
-
-// Rows from before there were drives: what one source gave counts as one drive.
-void adopt(const JournalDatabase& database) {
-  database.run(
-      "INSERT INTO drive(id) SELECT 'source ' || source FROM evidence WHERE drive IS NULL GROUP BY source "
-      "ORDER BY min(id)");
-  database.run(
-      "UPDATE evidence SET drive = (SELECT number FROM drive WHERE drive.id = 'source ' || evidence.source) "
-      "WHERE drive IS NULL");
-}
-
-// Adopted drives had no checksum; all others have, of their rows.
+// Writes the checksum of each drive.
 void sealDrives(const JournalDatabase& database) {
   std::vector<DriveEntry> drives;
-  const auto rows = database.prepare("SELECT number, id, checksum FROM drive");
+  const auto rows = database.prepare("SELECT number, id FROM drive");
   while (database.step(rows)) {
     DriveEntry drive{sqlite3_column_int64(rows.get(), 0), journalText(rows.get(), 1), 0};
-    if (!isDriveId(drive.id)) database.refuse("holds a drive whose id is none: the journal was changed");
-    if (sqlite3_column_type(rows.get(), 2) != SQLITE_NULL)
-      drive.checksum = static_cast<std::uint64_t>(sqlite3_column_int64(rows.get(), 2));
-    else if (drive.id.starts_with("source "))
-      drive.checksum = rowsChecksum(database, drive.number, 0, kBeforeAllRows);
-    else
-      database.refuse("drive " + drive.id + " has no checksum: the journal was changed");
+    if (!isDriveId(drive.id)) database.refuse("holds a source whose name is none: the journal was changed");
+    drive.checksum = rowsChecksum(database, drive.number, 0, kBeforeAllRows);
     drives.push_back(drive);
   }
   const auto seal = database.prepare("UPDATE drive SET checksum = ? WHERE number = ?");
@@ -150,6 +100,29 @@ void sealDrives(const JournalDatabase& database) {
     database.step(seal);
     sqlite3_reset(seal.get());
   }
+}
+
+// 0.1.0 has no drives: the rows of one source count as one drive.
+void takeOver010(const JournalDatabase& database) {
+  requireExact(database, entriesOf010());
+  database.run("ALTER TABLE evidence RENAME TO evidence_010");
+  makeTables(database);
+  database.run(
+      "INSERT INTO drive(id) SELECT 'source ' || source FROM evidence_010 GROUP BY source ORDER BY min(id)");
+  database.run("INSERT INTO evidence(" + std::string(kNames010) + ", drive) SELECT " + kNames010 +
+               ", (SELECT number FROM drive WHERE drive.id = 'source ' || source) FROM evidence_010");
+  database.run("DROP TABLE evidence_010");
+  sealDrives(database);
+}
+
+[[noreturn]] void refuseFormat(const JournalDatabase& database, std::int64_t format) {
+  const std::string what = "an evidence journal of format " + std::to_string(format);
+  if (format > kFormat)
+    throw InputError(
+        {database.path(), what + ", newer than " + std::to_string(kFormat), "use the program that wrote it"});
+  throw InputError({database.path(),
+                    what + ", which no release wrote; this program reads " + std::to_string(kFormat),
+                    "name another journal and put the telemetry into it again with talus update"});
 }
 
 }  // namespace
@@ -166,25 +139,13 @@ void beginJournal(const JournalDatabase& database) {
 
 void bringUpToDate(const JournalDatabase& database) {
   const std::int64_t format = database.single("PRAGMA user_version");
-  if (format > kFormat)
-    throw InputError({database.path(),
-                      "an evidence journal of format " + std::to_string(format) + ", newer than " +
-                          std::to_string(kFormat),
-                      "use the program that wrote it"});
-  const std::vector<Found> found = entriesOf(database);
-  const bool made = format == 0 && found.empty();
-  requireKnown(database, found);
-  if (!made && !has(found, "evidence")) refuseForeign(database, "holds no table evidence");
-  if (!isExact(found)) {
-    if (format == kFormat) refuseForeign(database, "its tables are not those of a journal");
-    if (made)
-      makeTables(database);
-    else
-      remakeTables(database, found);
-  }
-  if (format == kFormat) return;
-  if (format < kFirstWithDrives) adopt(database);
-  if (format < kFirstSealed) sealDrives(database);
+  if (format == kFormat) return requireExact(database, entriesOfJournal());
+  if (format == kFormat010)
+    takeOver010(database);
+  else if (format == 0 && entriesOf(database).empty())
+    makeTables(database);
+  else
+    refuseFormat(database, format);
   database.run("PRAGMA user_version = " + std::to_string(kFormat));
 }
 

@@ -28,8 +28,13 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "map files require a little-endian machine");
 
 constexpr std::array<char, 8> kMagic{'T', 'A', 'L', 'U', 'S', 'M', 'A', 'P'};
-constexpr std::uint32_t kVersion = 6;
+constexpr std::uint32_t kVersion = 7;
 constexpr std::array<char, 4> kEnd{'E', 'N', 'D', ' '};
+
+std::string versionFault(std::uint32_t version) {
+  return "a map of version " + std::to_string(version) + "; this program reads version " +
+         std::to_string(kVersion);
+}
 
 class TrailerWriter {
  public:
@@ -90,8 +95,8 @@ void requireWhole(std::istream& stream, const std::string& name) {
   const auto refuse = [&](const std::string& reason) {
     throw InputError({name, reason, "write the map again with talus costmap"});
   };
-  if (end.tag != kEnd || end.version != kVersion)
-    refuse("no traversability map, truncated, or of another version than " + std::to_string(kVersion));
+  if (end.tag != kEnd) refuse("no traversability map, truncated, or of a version before 4");
+  if (end.version != kVersion) refuse(versionFault(end.version));
   if (checksumOf(stream, size - sizeof end) != end.checksum) refuse("damaged: checksum mismatch");
   stream.seekg(0);
 }
@@ -104,9 +109,7 @@ class TrailerReader {
     if (magic != kMagic) fail("an octree without the trailer of a map");
     std::uint32_t version = 0;
     raw(&version, sizeof version);
-    if (version != kVersion)
-      fail("version " + std::to_string(version) + " of the format; this program reads " +
-           std::to_string(kVersion));
+    if (version != kVersion) fail(versionFault(version));
   }
 
   std::vector<Floor> floors(const char (&tag)[5]) {

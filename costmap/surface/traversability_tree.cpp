@@ -236,7 +236,7 @@ std::string sizeField(std::size_t nodes) {
 std::streampos writeHeader(std::ostream& stream, double resolution_m, std::size_t nodes) {
   std::array<char, 32> resolution{};
   const auto end = std::to_chars(resolution.begin(), resolution.end(), resolution_m).ptr;
-  stream << "# Octomap OcTree file\n# payload and trailer: costmap/README.md of Talus\nid "
+  stream << "# Octomap OcTree file\n# payload and trailer: docs/map_file.md of Talus\nid "
             "TraversabilityTree\nsize ";
   const std::streampos size_at = stream.tellp();
   stream << sizeField(nodes) << "\nres " << std::string(resolution.begin(), end) << "\ndata\n";

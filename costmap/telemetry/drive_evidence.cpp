@@ -255,7 +255,7 @@ DriveReport addDrive(TraversabilityMap& map, const terramech::Telemetry& telemet
                      const IntakeOptions& options) {
   const DriveBeginning known = knownBeginning(telemetry, map.drives());
   const bool whole = known.rows == telemetry.size() && known.rejected == telemetry.rejected.size();
-  if (whole || map.drives().contains(formerDriveId(telemetry))) {
+  if (whole) {
     DriveReport report;
     report.repeated = telemetry.size();
     return report;

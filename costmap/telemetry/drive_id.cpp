@@ -92,20 +92,6 @@ std::string DriveId::text() const {
   return hexadecimal(sum_);
 }
 
-std::string formerDriveId(const terramech::Telemetry& telemetry) {
-  Checksum sum;
-  eachRow(
-      telemetry,
-      [&](std::size_t i) {
-        for (const auto& column : telemetry.numbers) sum.add(&column.values[i], sizeof(double));
-        for (const auto& column : telemetry.words) addWord(sum, column.values[i]);
-      },
-      [&](std::size_t i) {
-        for (const auto& column : telemetry.rejected_numbers) sum.add(&column.values[i], sizeof(double));
-      });
-  return hexadecimal(sum);
-}
-
 DriveBeginning knownBeginning(const terramech::Telemetry& telemetry, const std::set<std::string>& drives) {
   DriveBeginning here, known;
   Checksum sum;

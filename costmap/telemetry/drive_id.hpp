@@ -20,10 +20,6 @@ class DriveId {
   Checksum sum_{};
 };
 
-/// The id that a drive had in maps and journals of Talus up to 0.1, over all columns in the order of their file: what
-/// holds it already is recognised by it.
-std::string formerDriveId(const terramech::Telemetry& telemetry);
-
 /// Rows of a drive from its beginning on: those that its file's reader left in, and those that it left out.
 struct DriveBeginning {
   std::size_t rows = 0, rejected = 0;

@@ -71,28 +71,55 @@ void change(const std::string& path, const char* sql) {
   sqlite3_close(database);
 }
 
-// What makes a journal of one drive one of format 7 that was upgraded from 3.
-const std::string kWithoutChecksum =
-    "PRAGMA user_version = 7; UPDATE drive SET id = 'source drive.csv', checksum = NULL; ";
+// Printed in: costmap/evidence_journal.cpp of Talus 0.1.0, which wrote format 3; a row of a drive and one of another.
+const char* const kJournal010 =
+    "CREATE TABLE IF NOT EXISTS evidence(id INTEGER PRIMARY KEY AUTOINCREMENT, source TEXT NOT NULL, line "
+    "INTEGER NOT NULL,"
+    " accepted INTEGER NOT NULL, reason TEXT NOT NULL, time_s REAL, x_m REAL, y_m REAL, load_N REAL, slip "
+    "REAL,"
+    " torque_Nm REAL, sinkage_m REAL, gradient REAL, drawbar_pull_N REAL, pass_index INTEGER,"
+    " pull REAL, pull_std REAL, sinkage REAL, sinkage_std REAL, z_m REAL,"
+    " pose_std_m REAL NOT NULL DEFAULT 0, pull_may_raise INTEGER NOT NULL DEFAULT 0,"
+    " sinkage_may_raise INTEGER NOT NULL DEFAULT 0);"
+    "INSERT INTO evidence(source, line, accepted, reason, x_m, y_m, load_N, slip, pull, pull_std, sinkage, "
+    "sinkage_std, z_m, pull_may_raise) VALUES('b.csv', 7, 1, '', 0.5, 2, 40, 0.2, 0.1, 0.05, 0.2, 9e999, "
+    "-2500.5, 1), ('a.csv', 3, 1, '', 1.5, 2, 40, 0.2, 0.1, 0.05, 0.2, 9e999, NULL, 0);"
+    "PRAGMA application_id = 1413565525; PRAGMA user_version = 3; ";
 
-// Rows of a journal without heights are on top: theirs is not known.
-TEST_F(EvidenceJournalTest, TakesOverJournalsWithoutHeights) {
-  { EvidenceJournal(path()).append(kIdA, {row(7)}); }
-  change(path(),
-         "ALTER TABLE evidence DROP COLUMN z_m; DROP INDEX of_drive; ALTER TABLE evidence DROP COLUMN drive;"
-         "DROP TABLE drive; PRAGMA user_version = 1");
-  EvidenceJournal journal(path());
-  JournalRow high = row(8);
-  high.reading.z_m = -2500.0 / 3.0;
-  journal.append(kIdB, {high});
-  // What has no drive belongs to its source's.
-  ASSERT_THAT(journal.drives(), testing::ElementsAre("source drive.csv", kIdB));
-  const auto old = journal.rows("source drive.csv"), added = journal.rows(kIdB);
-  ASSERT_EQ(old.size(), 1U);
-  EXPECT_TRUE(std::isnan(old[0].reading.z_m));
-  EXPECT_TRUE(std::isnan(old[0].observation.z_m));
-  ASSERT_EQ(added.size(), 1U);
-  EXPECT_EQ(added[0].observation.z_m, -2500.0 / 3.0);
+TEST_F(EvidenceJournalTest, TakesOverAJournalOfTheRelease010) {
+  change(path(), kJournal010);
+  for (int opening = 0; opening < 2; ++opening) {
+    EvidenceJournal journal(path());
+    if (opening == 0) journal.append(kIdB, {row(8)});
+    ASSERT_THAT(journal.drives(), testing::ElementsAre("source b.csv", "source a.csv", kIdB));
+    const auto b = journal.rows("source b.csv"), a = journal.rows("source a.csv");
+    ASSERT_EQ(b.size(), 1U);
+    EXPECT_EQ(b[0].line, 7);
+    EXPECT_EQ(b[0].observation.z_m, -2500.5);
+    EXPECT_TRUE(b[0].observation.pull_may_raise);
+    // Property: it does not state which error the readings share, so that they can only lower an estimate.
+    EXPECT_TRUE(std::isnan(b[0].observation.shared_std));
+    ASSERT_EQ(a.size(), 1U);
+    EXPECT_TRUE(std::isnan(a[0].observation.z_m));
+  }
+}
+
+// Formats 1, 2 and 4 to 8 were written by no release.
+TEST_F(EvidenceJournalTest, RefusesOtherFormatsByOneLine) {
+  for (const int format : {1, 2, 4, 5, 6, 7, 8}) {
+    std::filesystem::remove(path());
+    { EvidenceJournal(path()).append(kIdA, {row(7)}); }
+    change(path(), ("PRAGMA user_version = " + std::to_string(format)).c_str());
+    try {
+      const EvidenceJournal journal(path());
+      ADD_FAILURE() << format;
+    } catch (const InputError& error) {
+      EXPECT_EQ(error.what(),
+                path() + ": an evidence journal of format " + std::to_string(format) +
+                    ", which no release wrote; this program reads 9; name another journal and put the "
+                    "telemetry into it again with talus update");
+    }
+  }
 }
 
 TEST_F(EvidenceJournalTest, ADriveCountsOnce) {
@@ -160,7 +187,6 @@ TEST_F(EvidenceJournalTest, RefusesDrivesThatWereChanged) {
         "UPDATE drive SET checksum = NULL WHERE number = 1",
         "UPDATE drive SET checksum = 'x' WHERE number = 1", "UPDATE drive SET checksum = 0 WHERE number = 1",
         "UPDATE drive SET number = 3 WHERE number = 1",
-        "UPDATE drive SET checksum = NULL; PRAGMA user_version = 7", "PRAGMA user_version = 7",
         "UPDATE drive SET number = 9 WHERE number = 1; UPDATE drive SET number = 1 WHERE number = 2;"
         "UPDATE drive SET number = 2 WHERE number = 9",
         "UPDATE evidence SET drive = NULL WHERE drive = 1", "UPDATE evidence SET drive = 2 WHERE drive = 1",
@@ -183,7 +209,7 @@ TEST_F(EvidenceJournalTest, RefusesDrivesThatWereChanged) {
 
 // A trigger that deletes, and a view in the place of a table, lost rows in silence.
 TEST_F(EvidenceJournalTest, RefusesWhatItDidNotMake) {
-  for (const char* format : {"", "; PRAGMA user_version = 7", "; PRAGMA user_version = 3"})
+  for (const char* format : {"", "; PRAGMA user_version = 3", "; PRAGMA user_version = 0"})
     for (const char* sql :
          {"CREATE TRIGGER t AFTER INSERT ON evidence BEGIN DELETE FROM evidence; END",
           "CREATE TRIGGER t BEFORE INSERT ON drive BEGIN SELECT raise(IGNORE); END",
@@ -201,27 +227,6 @@ TEST_F(EvidenceJournalTest, RefusesWhatItDidNotMake) {
     }
 }
 
-// What the program wrote before drives were sealed: the same tables, the checksum of the rows alone.
-TEST_F(EvidenceJournalTest, TakesOverJournalsOfFormat7) {
-  {
-    EvidenceJournal journal(path());
-    journal.append(kIdA, {row(7)});
-    journal.append(kIdB, {row(8), row(9)});
-  }
-  // Pinned: what format 7 stored for these rows, by a computation of its own that gave the checksum of a journal of then.
-  change(path(),
-         "PRAGMA user_version = 7; UPDATE drive SET checksum = -7429760973718788829 WHERE number = 1; UPDATE "
-         "drive SET "
-         "checksum = -5691790308916202592 "
-         "WHERE number = 2");
-  for (int opening = 0; opening < 2; ++opening) {
-    EvidenceJournal journal(path());
-    EXPECT_THAT(journal.drives(), testing::ElementsAre(kIdA, kIdB));
-    EXPECT_EQ(journal.rows(kIdA).size(), 1U);
-    EXPECT_EQ(journal.rows(kIdB).size(), 2U);
-  }
-}
-
 // SQLite takes these for databases that are in no file: rows in them are gone with the process.
 TEST_F(EvidenceJournalTest, RefusesNamesThatAreNoFiles) {
   for (const char* name : {"", ":memory:", "file:zz.db?mode=memory", "file:zz.db", "folder/"})
@@ -237,18 +242,13 @@ TEST_F(EvidenceJournalTest, RefusesRowsOfADriveThatIsNotListed) {
   EXPECT_THROW(static_cast<void>(EvidenceJournal(path()).drives()), InputError);
 }
 
-// Rows of older formats have no checksum: their values are judged by themselves.
+// Rows of 0.1.0 have no checksum: their values are judged by themselves.
 TEST_F(EvidenceJournalTest, RefusesValuesThatNoWheelGives) {
-  for (const char* sql :
-       {"pull = 9e999", "pull = NULL", "pull = 1e300", "sinkage = NULL", "pull_std = -1", "x_m = 9e999",
-        "y_m = NULL", "pull_std = NULL", "pose_std_m = 9e999", "z_m = 9e999", "pull_here = 9e999",
-        "pull_here = -9e999", "pull_here = 101", "pull_here = 'x'", "sinkage_here = 9e999",
-        "sinkage_here = -0.1", "sinkage_here = x'00'", "pull = 'x'", "thrust_share = 9e999"}) {
+  for (const char* sql : {"pull = 9e999", "pull = NULL", "x_m = 9e999", "pull = 'x'"}) {
     std::filesystem::remove(path());
-    { EvidenceJournal(path()).append(kIdA, {row(7)}); }
-    change(path(), (kWithoutChecksum + ("UPDATE evidence SET " + std::string(sql))).c_str());
+    change(path(), (kJournal010 + ("UPDATE evidence SET " + std::string(sql))).c_str());
     const EvidenceJournal journal(path());
-    EXPECT_THROW(static_cast<void>(journal.rows("source drive.csv")), InputError) << sql;
+    EXPECT_THROW(static_cast<void>(journal.rows("source b.csv")), InputError) << sql;
   }
 }
 
@@ -266,20 +266,6 @@ TEST_F(EvidenceJournalTest, BoundsComeBackToTheBit) {
   EXPECT_EQ(back[1].observation.here.least_sinkage, 2.0 / 3.0);
   EXPECT_FALSE(back[2].observation.estimates());
   EXPECT_EQ(back[2].observation.here.most_pull, -0.1 / 3.0);
-}
-
-// Property: rows that do not state at which share of the thrust they were read come back as such that may only lower.
-TEST_F(EvidenceJournalTest, WithoutAShareOfTheThrustNothingRaises) {
-  JournalRow raises = row(2);
-  raises.observation.shared_std = 0.03;
-  raises.observation.share = 1.0 / 3.0;
-  raises.observation.pull_may_raise = true;
-  { EvidenceJournal(path()).append(kIdA, {raises}); }
-  const WheelObservation back = EvidenceJournal(path()).rows(kIdA)[0].observation;
-  EXPECT_EQ(back.share, 1.0 / 3.0);
-  EXPECT_EQ(back.shared_std, 0.03);
-  change(path(), (kWithoutChecksum + "UPDATE evidence SET thrust_share = NULL").c_str());
-  EXPECT_TRUE(std::isnan(EvidenceJournal(path()).rows("source drive.csv")[0].observation.shared_std));
 }
 
 TEST_F(EvidenceJournalTest, RefusesAFormatOfTheFuture) {

@@ -167,7 +167,7 @@ TEST(MapFile, KeepsTheDrivesThatWentIn) {
   EXPECT_THAT(fromBytes(bytesOf(map)).drives(), testing::ElementsAre("a", "b"));
 }
 
-// A map of the version before: one line that says so and what to do.
+// A map of another version is refused by one line that states the version and the remedy.
 TEST(MapFile, NamesTheVersionThatItReads) {
   std::string bytes = bytesOf(site());
   bytes[bytes.size() - 12] = 3;
@@ -175,7 +175,8 @@ TEST(MapFile, NamesTheVersionThatItReads) {
     fromBytes(bytes);
     ADD_FAILURE();
   } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("of another version than 6; write the map again"));
+    EXPECT_THAT(error.what(),
+                testing::HasSubstr("map of version 3; this program reads version 7; write the map again"));
   }
 }
 

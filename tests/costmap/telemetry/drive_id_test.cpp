@@ -91,15 +91,5 @@ TEST(DriveId, IsTheSameHoweverDivided) {
   EXPECT_EQ(id.text(), driveId(table()));
 }
 
-// Property: what a map holds by the id of before is not counted again.
-TEST(DriveId, RecognisesWhatAMapHoldsByItsFormerId) {
-  TraversabilityMap map = mapOf(std::vector<std::string>(20, std::string(20, '1')), 0.1);
-  terramech::Telemetry drive = table();
-  std::ranges::reverse(drive.numbers);
-  ASSERT_NE(formerDriveId(drive), driveId(drive));
-  map.noteDrive(formerDriveId(drive));
-  EXPECT_EQ(addDrive(map, drive).repeated, 2U);
-}
-
 }  // namespace drive_id_test
 }  // namespace talus::costmap
