@@ -60,7 +60,7 @@ class MapSurface {
   const maps::Raster<Hazard>& hazards() const noexcept { return hazards_; }
   Hazard hazards(maps::Cell cell) const noexcept { return hazards_[cell]; }
   const HazardLimits& limits() const noexcept { return limits_; }
-  /// Hazards by rocks, keep-out and declaration, before they are spread; empty where there are none.
+  /// Hazards by rocks, keep-out areas and declared places, without the clearance around them; an empty raster if the map has none.
   const maps::Raster<Hazard>& declared() const noexcept { return declared_; }
   /// Places that were declared impassable, in order.
   const std::vector<RefusedPlace>& refused() const noexcept { return refused_; }

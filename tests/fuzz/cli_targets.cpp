@@ -19,13 +19,6 @@
 namespace talus::fuzz {
 namespace {
 
-maps::ElevationMap flat() {
-  maps::ElevationMap map;
-  map.elevation_m =
-      maps::Raster<float>({.width = 20, .height = 20, .resolution_m = 1.0, .south_west = {0, 0}}, 0.0F);
-  return map;
-}
-
 // A call of one word a line, up to the work: nothing is read or written.
 void readOptions(const std::string& bytes) {
   CLI::App app;
@@ -78,7 +71,7 @@ std::vector<Target> cliTargets() {
       {"path",
        {"x_m,y_m\n5,2\n15,2\n", R"({"type":"LineString","crs":"local","coordinates":[[1,1],[5,1]]})"},
        [](const std::string& bytes) {
-         cli::readPath(fileOf(bytes, bytes.starts_with('{') ? ".geojson" : ".csv"), flat());
+         cli::readPath(fileOf(bytes, bytes.starts_with('{') ? ".geojson" : ".csv"), flatMap());
        }},
       {"route",
        {},

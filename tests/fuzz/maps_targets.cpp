@@ -60,16 +60,9 @@ std::string numpyArchive() {
                   {"ymax.npy", one}});
 }
 
-maps::ElevationMap flat() {
-  maps::ElevationMap map;
-  map.elevation_m =
-      maps::Raster<float>({.width = 20, .height = 20, .resolution_m = 1.0, .south_west = {0, 0}}, 0.0F);
-  return map;
-}
-
 void readGeoJson(const std::string& bytes) {
   const std::string path = fileOf(bytes, ".geojson");
-  maps::readKeepOut(path, flat());
+  maps::readKeepOut(path, flatMap());
 }
 
 void readNumpyArchive(const std::string& bytes) {

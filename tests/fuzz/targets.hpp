@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include <talus/maps/terrain/elevation_map.hpp>
+
 namespace talus::fuzz {
 
 /// A reader of bytes from elsewhere. It may refuse them by the exceptions that the program turns into exit 2; all else
@@ -32,5 +34,13 @@ std::string fileOf(const std::string& bytes, const std::string& ending);
 /// What a target may take as memory, as --max-memory has it: few bytes of a file can state much, and what is within the
 /// budget is computed.
 void limitMemory();
+
+/// A level map of 20 x 20 cells of a metre.
+inline maps::ElevationMap flatMap() {
+  maps::ElevationMap map;
+  map.elevation_m =
+      maps::Raster<float>({.width = 20, .height = 20, .resolution_m = 1.0, .south_west = {0, 0}}, 0.0F);
+  return map;
+}
 
 }  // namespace talus::fuzz

@@ -63,8 +63,8 @@ void CalibratedRows::shareWithin(Eigen::MatrixXd smooth, const Eigen::MatrixXd& 
   if (!unit.empty()) whitening_.run = roughRunError(whitening_);
 }
 
-/// A smooth of measured loads would follow the errors about the set ones, and the noise would miss them: it is had from
-/// the set loads.
+/// Estimates the set load of each row. A smooth of the measured loads would follow their errors about the set loads, so
+/// that the noise would be estimated too small; the noise is therefore estimated from the set loads.
 void CalibratedRows::findSetLoads(const Eigen::MatrixXd& measured, const InputSlopes& slopes) {
   std::vector<std::string> others = noiseColumns(trial_);
   std::erase(others, "load_N");
