@@ -1,4 +1,4 @@
-# talus_warnings(TARGET): warnings and instrumentation, on our own targets only.
+# talus_warnings(TARGET): warnings, instrumentation and hardening, on our own targets only.
 function(talus_warnings target)
   target_compile_options(${target} PRIVATE
     -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wnon-virtual-dtor -Wold-style-cast
@@ -15,6 +15,21 @@ function(talus_warnings target)
   if(TALUS_COVERAGE)
     target_compile_options(${target} PRIVATE --coverage)
     target_link_options(${target} PUBLIC --coverage)
+  endif()
+  talus_hardening(${target})
+endfunction()
+
+# Whether targets are hardened: optimised builds without sanitizers, which check the same and more.
+if(CMAKE_BUILD_TYPE MATCHES "^(Release|RelWithDebInfo|MinSizeRel)$" AND NOT TALUS_SANITIZE)
+  set(TALUS_HARDENED ON)
+endif()
+
+# talus_hardening(TARGET): files from outside are parsed, so that an overflow of a buffer on the stack or in a C library call ends
+# the program, and no table of function addresses can be written once it runs (docs/security.md).
+function(talus_hardening target)
+  if(TALUS_HARDENED)
+    target_compile_options(${target} PRIVATE -fstack-protector-strong -U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=2)
+    target_link_options(${target} PRIVATE -Wl,-z,relro,-z,now)
   endif()
 endfunction()
 

@@ -1,0 +1,11 @@
+cmake_policy(VERSION 3.25)
+# Programs and shared libraries bind all functions at their start into tables that are then read-only, and call the check of the stack.
+find_program(READELF readelf REQUIRED)
+foreach(file ${FILES})
+  execute_process(COMMAND ${READELF} --wide --dynamic --segments --dyn-syms ${file} OUTPUT_VARIABLE text COMMAND_ERROR_IS_FATAL ANY)
+  foreach(mark BIND_NOW GNU_RELRO __stack_chk_fail)
+    if(NOT text MATCHES ${mark})
+      message(SEND_ERROR "${file} has no ${mark}")
+    endif()
+  endforeach()
+endforeach()
