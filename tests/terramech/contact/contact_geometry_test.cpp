@@ -2,6 +2,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include <refused.hpp>
+
 #include <talus/terramech/contact/contact_geometry.hpp>
 
 namespace talus::terramech {
@@ -35,9 +37,11 @@ TEST(ContactGeometry, ChordSpansTheContactForeAndAft) {
 }
 
 TEST(ContactGeometry, RefusesASinkageNoWheelCanHave) {
-  EXPECT_THROW((void)entryAngle_rad(kWheel, -1e-6), std::invalid_argument);
-  EXPECT_THROW((void)entryAngle_rad(kWheel, 0.2), std::invalid_argument);
-  EXPECT_THROW((void)entryAngle_rad(kWheel, std::nan("")), std::invalid_argument);
+  EXPECT_REFUSED(entryAngle_rad(kWheel, -1e-6), std::invalid_argument,
+                 "sinkage_m = -1e-06, must be in [0, 0.2]");
+  EXPECT_REFUSED(entryAngle_rad(kWheel, 0.2), std::invalid_argument, "sinkage_m = 0.2, must be in [0, 0.2]");
+  EXPECT_REFUSED(entryAngle_rad(kWheel, std::nan("")), std::invalid_argument,
+                 "sinkage_m = nan, must be finite");
 }
 
 }  // namespace contact_geometry_test

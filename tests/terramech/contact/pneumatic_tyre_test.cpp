@@ -1,6 +1,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include <refused.hpp>
+
 #include <talus/terramech/contact/pneumatic_tyre.hpp>
 #include <talus/terramech/contact/wong_reece.hpp>
 
@@ -111,12 +113,16 @@ TEST(PneumaticTyre, CriticalPressureIsThatUnderARigidWheelByBekker) {
 }
 
 TEST(PneumaticTyre, RefusesWhatHasNoAnswer) {
-  EXPECT_THROW(tyreOnRigidGround(tyre(1e3), {.load_N = 1e5, .slip = 0.1}), std::domain_error);
-  EXPECT_THROW(tyreOnSoftGround(tyre(-1.0), loam(), {.load_N = 100.0}), std::invalid_argument);
-  EXPECT_THROW(tyreOnSoftGround(tyre(1e3), loam(), {.load_N = 1e6, .slip = 0.2}), std::domain_error);
+  EXPECT_REFUSED(tyreOnRigidGround(tyre(1e3), {.load_N = 1e5, .slip = 0.1}), std::domain_error,
+                 "the tyre flattens over its whole diameter");
+  EXPECT_REFUSED(tyreOnSoftGround(tyre(-1.0), loam(), {.load_N = 100.0}), std::invalid_argument,
+                 "inflation_Pa = -1, must be >= 0");
+  EXPECT_REFUSED(tyreOnSoftGround(tyre(1e3), loam(), {.load_N = 1e6, .slip = 0.2}), std::domain_error,
+                 "the tyre sinks and flattens to its axle");
   Soil soil = loam();
   soil.sinkage_exponent = 3.0;
-  EXPECT_THROW(criticalPressure_Pa(soil, {}, 100.0), std::domain_error);
+  EXPECT_REFUSED(criticalPressure_Pa(soil, {}, 100.0), std::domain_error,
+                 "the critical pressure is known for n < 3 only");
 }
 
 }  // namespace pneumatic_tyre_test

@@ -1,6 +1,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include <refused.hpp>
+
 #include <talus/terramech/contact/pressure_sinkage.hpp>
 #include <talus/terramech/contact/wong_reece.hpp>
 
@@ -69,8 +71,9 @@ TEST(PressureSinkage, AReeceSoilEntersTheWheelAsItsBekkerTwin) {
 TEST(PressureSinkage, RefusesASoilThatCarriesNothing) {
   Soil soil = drySand();
   soil.cohesive_modulus = -1e6;
-  EXPECT_THROW(bekkerDepth_m(soil, 0.1, 100.0), std::domain_error);
-  EXPECT_THROW(bekkerDepth_m(drySand(), 0.1, -1.0), std::invalid_argument);
+  EXPECT_REFUSED(bekkerDepth_m(soil, 0.1, 100.0), std::domain_error, "a soil with modulus -8471570");
+  EXPECT_REFUSED(bekkerDepth_m(drySand(), 0.1, -1.0), std::invalid_argument,
+                 "pressure_Pa = -1, must be >= 0");
 }
 
 }  // namespace pressure_sinkage_test

@@ -1,5 +1,7 @@
 #include <stdexcept>
 
+#include <refused.hpp>
+
 #include <talus/terramech/contact/rigid_ground.hpp>
 
 namespace talus::terramech {
@@ -17,9 +19,9 @@ TEST(RigidGround, PullsTorqueOverRadiusUntilItSlips) {
 }
 
 TEST(RigidGround, RefusesBadInput) {
-  EXPECT_THROW(rigidGroundForces({}, {}, 0.0, 1.0), std::invalid_argument);
-  EXPECT_THROW(rigidGroundForces({}, {.static_coefficient = 0.1, .kinetic_coefficient = 0.5}, 1.0, 1.0),
-               std::invalid_argument);
+  EXPECT_REFUSED(rigidGroundForces({}, {}, 0.0, 1.0), std::invalid_argument, "load_N = 0, must be > 0");
+  EXPECT_REFUSED(rigidGroundForces({}, {.static_coefficient = 0.1, .kinetic_coefficient = 0.5}, 1.0, 1.0),
+                 std::invalid_argument, "static_coefficient = 0.1, must be >= 0.5");
 }
 
 }  // namespace rigid_ground_test

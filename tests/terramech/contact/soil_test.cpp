@@ -1,5 +1,10 @@
 #include <cmath>
 #include <stdexcept>
+#include <string>
+#include <tuple>
+#include <utility>
+
+#include <refused.hpp>
 
 #include <talus/terramech/contact/soil.hpp>
 
@@ -29,25 +34,32 @@ TEST(Soil, RefusalNamesSoilFieldValueAndBound) {
 
 // Property: magnitudes that no ground has are refused, be they in range of a formula or not.
 TEST(Soil, ImpossibleMagnitudesAreRefused) {
-  for (const auto& [field, value] : {std::pair{&Soil::cohesion_Pa, 1e15},
-                                     {&Soil::shear_modulus_m, 1e-15},
-                                     {&Soil::shear_modulus_m, 1e15},
-                                     {&Soil::sinkage_exponent, 1e-15},
-                                     {&Soil::density_kg_m3, 1e-15},
-                                     {&Soil::density_kg_m3, 1e15}}) {
+  for (const auto& [field, value, text] :
+       {std::tuple{&Soil::cohesion_Pa, 1e15, "cohesion_Pa = 1e+15, must be in [0, 1e+09]"},
+        {&Soil::shear_modulus_m, 1e-15, "shear_modulus_m = 1e-15, must be in [1e-09, 1000]"},
+        {&Soil::shear_modulus_m, 1e15, "shear_modulus_m = 1e+15, must be in [1e-09, 1000]"},
+        {&Soil::sinkage_exponent, 1e-15, "sinkage_exponent = 1e-15, must be in [0.001, 100]"},
+        {&Soil::density_kg_m3, 1e-15, "density_kg_m3 = 1e-15, must be in [0.1, 1e+06]"},
+        {&Soil::density_kg_m3, 1e15, "density_kg_m3 = 1e+15, must be in [0.1, 1e+06]"}}) {
     Soil soil = sand();
     soil.*field = value;
-    EXPECT_THROW(validate(soil), std::invalid_argument) << value;
+    EXPECT_REFUSED(validate(soil), std::invalid_argument, text);
   }
 }
 
 TEST(Soil, NotANumberIsRefusedInEveryField) {
-  for (double Soil::*field :
-       {&Soil::cohesion_Pa, &Soil::friction_angle_rad, &Soil::sinkage_exponent, &Soil::cohesive_modulus,
-        &Soil::frictional_modulus, &Soil::shear_modulus_m, &Soil::c1, &Soil::c2, &Soil::density_kg_m3}) {
+  for (const auto& [name, field] : {std::pair{"cohesion_Pa", &Soil::cohesion_Pa},
+                                    {"friction_angle_rad", &Soil::friction_angle_rad},
+                                    {"sinkage_exponent", &Soil::sinkage_exponent},
+                                    {"cohesive_modulus", &Soil::cohesive_modulus},
+                                    {"frictional_modulus", &Soil::frictional_modulus},
+                                    {"shear_modulus_m", &Soil::shear_modulus_m},
+                                    {"c1", &Soil::c1},
+                                    {"c2", &Soil::c2},
+                                    {"density_kg_m3", &Soil::density_kg_m3}}) {
     Soil soil = sand();
     soil.*field = std::nan("");
-    EXPECT_THROW(validate(soil), std::invalid_argument);
+    EXPECT_REFUSED(validate(soil), std::invalid_argument, name + std::string(" = nan, must be finite"));
   }
 }
 

@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include <boost/math/quadrature/tanh_sinh.hpp>
+#include <refused.hpp>
 
 #include <talus/terramech/contact/shear_displacement.hpp>
 #include <talus/terramech/contact/wong_reece.hpp>
@@ -259,19 +260,26 @@ TEST(WongReece, MoreSlipPullsMoreWhereThePeakStays) {
 
 TEST(WongReece, RefusesWhatHasNoAnswer) {
   const Wheel wheel{};
-  EXPECT_THROW(equilibrium(sand(), wheel, {.load_N = 1e6, .slip = 0.2}), std::domain_error);
-  EXPECT_THROW(equilibrium(sand(), wheel, {.load_N = 0.0, .slip = 0.2}), std::invalid_argument);
-  EXPECT_THROW(equilibrium(sand(), wheel, {.load_N = 50.0, .slip = 1.1}), std::invalid_argument);
-  EXPECT_THROW(equilibrium(sand(), wheel, {.load_N = 50.0, .slip = std::nan("")}), std::invalid_argument);
-  for (const double rebound : {-0.1, 1.0})
-    EXPECT_THROW(equilibrium(sand(), wheel, {.load_N = 50.0, .slip = 0.2, .rebound = rebound}),
-                 std::invalid_argument);
+  EXPECT_REFUSED(equilibrium(sand(), wheel, {.load_N = 1e6, .slip = 0.2}), std::domain_error,
+                 "sinks to its axle before the soil carries 1000000.000000 N");
+  const auto on_sand = [&](const WheelOperation& operation) { return equilibrium(sand(), wheel, operation); };
+  EXPECT_REFUSED(on_sand({.load_N = 0.0, .slip = 0.2}), std::invalid_argument, "load_N = 0, must be > 0");
+  EXPECT_REFUSED(on_sand({.load_N = 50.0, .slip = 1.1}), std::invalid_argument,
+                 "slip = 1.1, must be in [-1, 1]");
+  EXPECT_REFUSED(on_sand({.load_N = 50.0, .slip = std::nan("")}), std::invalid_argument,
+                 "slip = nan, must be finite");
+  EXPECT_REFUSED(on_sand({.load_N = 50.0, .slip = 0.2, .rebound = -0.1}), std::invalid_argument,
+                 "rebound = -0.1, must be in [0, 0.999]");
+  EXPECT_REFUSED(on_sand({.load_N = 50.0, .slip = 0.2, .rebound = 1.0}), std::invalid_argument,
+                 "rebound = 1, must be in [0, 0.999]");
   Soil soil = sand();
   soil.frictional_modulus = -1.0;
-  EXPECT_THROW(equilibrium(soil, wheel, {.load_N = 50.0, .slip = 0.2}), std::invalid_argument);
+  EXPECT_REFUSED(equilibrium(soil, wheel, {.load_N = 50.0, .slip = 0.2}), std::invalid_argument,
+                 "cohesive_modulus / width_m + frictional_modulus = -1, must be > 0");
   soil = sand();
   soil.c2 = 0.9;
-  EXPECT_THROW(equilibrium(soil, wheel, {.load_N = 50.0, .slip = 0.8}), std::domain_error);
+  EXPECT_REFUSED(equilibrium(soil, wheel, {.load_N = 50.0, .slip = 0.8}), std::domain_error,
+                 "the stress peak c1 + c2 slip = 1.150000 lies outside the contact, [0, 1]");
 }
 
 }  // namespace wong_reece_test

@@ -1,6 +1,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include <refused.hpp>
+
 #include <talus/common/constants.hpp>
 #include <talus/terramech/estimate/soil_mixture.hpp>
 
@@ -44,9 +46,9 @@ TEST(Marginal, FixedDoesNotMoveAndNormalKeepsToItsLeast) {
 }
 
 TEST(Marginal, RefusesBoundsOutOfOrder) {
-  EXPECT_THROW((void)Marginal::uniform(2.0, 2.0), std::invalid_argument);
-  EXPECT_THROW((void)Marginal::logUniform(0.0, 2.0), std::invalid_argument);
-  EXPECT_THROW((void)Marginal::normal(0.0, 0.0, -1.0), std::invalid_argument);
+  EXPECT_REFUSED(Marginal::uniform(2.0, 2.0), std::invalid_argument, "upper bound = 2, must be > 2");
+  EXPECT_REFUSED(Marginal::logUniform(0.0, 2.0), std::invalid_argument, "lower bound = 0, must be > 0");
+  EXPECT_REFUSED(Marginal::normal(0.0, 0.0, -1.0), std::invalid_argument, "std = 0, must be > 0");
 }
 
 }  // namespace soil_mixture_test

@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include <Eigen/LU>
+#include <refused.hpp>
 
 #include <talus/common/constants.hpp>
 #include <talus/terramech/estimate/soil_posterior.hpp>
@@ -185,9 +186,12 @@ TEST(SoilPosterior, RefusesWhatIsNoDrivenWheel) {
   braked.slip = -0.1;
   WheelSample buried = good;
   buried.sinkage_m = 0.15;
-  EXPECT_THROW((void)fitSoil(kThesisWheel, std::vector{braked}, thesisSoils()), std::invalid_argument);
-  EXPECT_THROW((void)fitSoil(kThesisWheel, std::vector{buried}, thesisSoils()), std::invalid_argument);
-  EXPECT_THROW((void)fitSoil(kThesisWheel, std::vector<WheelSample>{}, thesisSoils()), std::domain_error);
+  EXPECT_REFUSED(fitSoil(kThesisWheel, std::vector{braked}, thesisSoils()), std::invalid_argument,
+                 "slip = -0.1, must be in [0, 1]");
+  EXPECT_REFUSED(fitSoil(kThesisWheel, std::vector{buried}, thesisSoils()), std::invalid_argument,
+                 "sinkage_m = 0.15, must be in [0, 0.1]");
+  EXPECT_REFUSED(fitSoil(kThesisWheel, std::vector<WheelSample>{}, thesisSoils()), std::domain_error,
+                 "no sample, or no class of soil");
 }
 
 }  // namespace soil_posterior_test

@@ -4,6 +4,7 @@
 
 #include <Eigen/LU>
 #include <gtest/gtest.h>
+#include <refused.hpp>
 
 #include <talus/terramech/estimate/strength_prior.hpp>
 
@@ -93,8 +94,9 @@ TEST(StrengthPrior, RefusesAFitWithoutScatterAndNoPrior) {
   ShearStrength two = fitOf(1.0, 0.5, {1.0, 1.0}, 0.0);
   two.covariance.setConstant(std::numeric_limits<double>::quiet_NaN());
   const std::vector<StrengthPrior> prior{priorOf(1000.0, 0.6, {400.0, 0.05})};
-  EXPECT_THROW((void)withPrior(two, prior), std::domain_error);
-  EXPECT_THROW((void)withPrior(fitOf(1.0, 0.5, {1.0, 1.0}, 0.0), {}), std::invalid_argument);
+  EXPECT_REFUSED(withPrior(two, prior), std::domain_error,
+                 "at least three samples are required to estimate the scatter");
+  EXPECT_REFUSED(withPrior(fitOf(1.0, 0.5, {1.0, 1.0}, 0.0), {}), std::invalid_argument, "no kind of soil");
 }
 
 }  // namespace strength_prior_test

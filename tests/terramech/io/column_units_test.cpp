@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <filesystem>
 
+#include <refused.hpp>
+
 #include <talus/common/input_error.hpp>
 #include <talus/terramech/estimate/telemetry.hpp>
 #include <talus/terramech/io/column_units.hpp>
@@ -161,7 +163,8 @@ TEST(ColumnUnits, OwnColumnsPass) {
 
 TEST(ColumnUnits, TheReaderOfTelemetryRefuses) {
   const test::TemporaryFile file{"load_N,slip,sinkage_mm\n80,0.1,12\n"};
-  EXPECT_THROW(readTelemetry(file.path(), {.required = {"load_N", "slip"}}), InputError);
+  EXPECT_REFUSED(readTelemetry(file.path(), {.required = {"load_N", "slip"}}), InputError,
+                 "column sinkage_mm is in another unit than it is read in; write column sinkage_m, in m");
 }
 
 TEST(ColumnUnits, MeasuredFilesPass) {

@@ -4,6 +4,8 @@
 #include <random>
 #include <stdexcept>
 
+#include <refused.hpp>
+
 #include <talus/terramech/mobility/category_probability.hpp>
 
 namespace talus::terramech {
@@ -70,10 +72,12 @@ TEST(CategoryProbability, TorqueAndSteeringLimitsCount) {
 TEST(CategoryProbability, RefusesBadBeliefs) {
   ConditionBelief belief;
   belief.drawbar_pull_over_load_std = -0.1;
-  EXPECT_THROW(categoryProbability(belief, kLimits), std::invalid_argument);
+  EXPECT_REFUSED(categoryProbability(belief, kLimits), std::invalid_argument,
+                 "drawbar_pull_over_load_std = -0.1, must be >= 0");
   belief = {};
   belief.mean.sinkage_over_radius = std::nan("");
-  EXPECT_THROW(categoryProbability(belief, kLimits), std::invalid_argument);
+  EXPECT_REFUSED(categoryProbability(belief, kLimits), std::invalid_argument,
+                 "sinkage_over_radius = nan, must be finite");
 }
 
 }  // namespace category_probability_test

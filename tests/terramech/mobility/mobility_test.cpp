@@ -2,6 +2,8 @@
 #include <random>
 #include <stdexcept>
 
+#include <refused.hpp>
+
 #include <talus/terramech/contact/wong_reece.hpp>
 #include <talus/terramech/mobility/mobility.hpp>
 
@@ -169,8 +171,9 @@ TEST(Mobility, OnABottomlessSoilNothingIsFeasible) {
 TEST(Mobility, RefusesABadRover) {
   Rover bad = rover();
   bad.mass_kg = -1.0;
-  EXPECT_THROW((MobilityCurve{loam(), bad}), std::invalid_argument);
-  EXPECT_THROW((MobilityCurve{loam(), rover(), {.max_slip = 0.0}}), std::invalid_argument);
+  EXPECT_REFUSED((MobilityCurve{loam(), bad}), std::invalid_argument, "mass_kg = -1, must be > 0");
+  EXPECT_REFUSED((MobilityCurve{loam(), rover(), {.max_slip = 0.0}}), std::invalid_argument,
+                 "max_slip = 0, must be in [1e-06, 1]");
 }
 
 RefinedModel withEffect(const char* name, std::vector<double> parameters) {
@@ -266,7 +269,8 @@ TEST(Mobility, ALinearFormulaCannotSayWhatASlopeAsks) {
   RefinedModel model;
   model.soil = loam();
   model.base = BaseModel::LinearFormula;
-  EXPECT_THROW(MobilityCurve(model, rover()), std::invalid_argument);
+  EXPECT_REFUSED(MobilityCurve(model, rover()), std::invalid_argument,
+                 "cannot predict slip on a slope; trace the data with model: wong-reece");
 }
 
 }  // namespace mobility_test

@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include <refused.hpp>
+
 #include <talus/terramech/mobility/slope_table.hpp>
 
 namespace talus::terramech {
@@ -80,7 +82,8 @@ TEST(SlopeTable, SaysNothingHoldsBeyondItself) {
 
 TEST(SlopeTable, RefusesAStepOfNothing) {
   const SlopeEquilibrium equilibrium{sand(), rover()};
-  EXPECT_THROW(SlopeTable(equilibrium, {.slope = {}, .step = 0.0}), std::invalid_argument);
+  EXPECT_REFUSED(SlopeTable(equilibrium, {.slope = {}, .step = 0.0}), std::invalid_argument,
+                 "step = 0, must be in [0.001, 0.5]");
 }
 
 }  // namespace slope_table_test

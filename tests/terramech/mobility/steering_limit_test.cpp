@@ -1,5 +1,7 @@
 #include <stdexcept>
 
+#include <refused.hpp>
+
 #include <talus/terramech/effects/wheel_contact.hpp>
 #include <talus/terramech/mobility/steering_limit.hpp>
 
@@ -38,7 +40,8 @@ TEST(SteeringLimit, FallsWithTheDemandAndRisesWithTheAngle) {
 }
 
 TEST(SteeringLimit, RefusesBadDemands) {
-  EXPECT_THROW(steeringSlipLimit(sand(), Wheel{}, {.load_N = -1.0}), std::invalid_argument);
+  EXPECT_REFUSED(steeringSlipLimit(sand(), Wheel{}, {.load_N = -1.0}), std::invalid_argument,
+                 "load_N = -1, must be > 0");
 }
 
 }  // namespace steering_limit_test

@@ -1,6 +1,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include <refused.hpp>
+
 #include <talus/terramech/mobility/traversability_plane.hpp>
 
 namespace talus::terramech {
@@ -41,7 +43,8 @@ TEST(TraversabilityPlane, FindsTheLineBetweenCategories) {
 }
 
 TEST(TraversabilityPlane, RefusesAnEmptyPicture) {
-  EXPECT_THROW(traversabilityPlane(eq321, kFig312, {.columns = 0}), std::invalid_argument);
+  EXPECT_REFUSED(traversabilityPlane(eq321, kFig312, {.columns = 0}), std::invalid_argument,
+                 "columns = 0, must be in [1, 10000]");
 }
 
 }  // namespace traversability_plane_test

@@ -1,5 +1,7 @@
 #include <stdexcept>
 
+#include <refused.hpp>
+
 #include <talus/terramech/strength/iagnemma.hpp>
 
 #include "linear_world.hpp"
@@ -29,9 +31,8 @@ TEST(Iagnemma, OverEstimatesCohesionWhereItActsAtTheBottomToo) {
 }
 
 TEST(Iagnemma, RefusesABrakedWheel) {
-  EXPECT_THROW(
-      (void)iagnemmaPair(kWheel, {.load_N = 80, .torque_Nm = -1, .sinkage_m = 0.01, .slip = -0.4}, 0.02),
-      std::domain_error);
+  EXPECT_REFUSED(iagnemmaPair(kWheel, {.load_N = 80, .torque_Nm = -1, .sinkage_m = 0.01, .slip = -0.4}, 0.02),
+                 std::domain_error, "no shear mobilised at theta_m; it needs a driven, slipping wheel");
 }
 
 }  // namespace iagnemma_test

@@ -1,6 +1,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include <refused.hpp>
+
 #include <talus/terramech/strength/linear_offset.hpp>
 
 #include "linear_world.hpp"
@@ -55,12 +57,10 @@ TEST(LinearOffset, RecursiveFitEqualsTheFitOfAllSamplesInAnyOrder) {
 }
 
 TEST(LinearOffset, RefusesAWheelThatMobilisesNothing) {
-  EXPECT_THROW(
-      (void)linearOffset(kWheel, {.load_N = 80, .torque_Nm = 1, .sinkage_m = 0.01, .slip = -0.5}, 0.02),
-      std::domain_error);
-  EXPECT_THROW(
-      (void)linearOffset(kWheel, {.load_N = 80, .torque_Nm = 1, .sinkage_m = 0.0, .slip = 0.5}, 0.02),
-      std::invalid_argument);
+  EXPECT_REFUSED(linearOffset(kWheel, {.load_N = 80, .torque_Nm = 1, .sinkage_m = 0.01, .slip = -0.5}, 0.02),
+                 std::domain_error, "no shear mobilised at theta_m; it needs a driven, slipping wheel");
+  EXPECT_REFUSED(linearOffset(kWheel, {.load_N = 80, .torque_Nm = 1, .sinkage_m = 0.0, .slip = 0.5}, 0.02),
+                 std::invalid_argument, "sinkage_m = 0, must be > 0");
 }
 
 }  // namespace linear_offset_test

@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include <Eigen/LU>
+#include <refused.hpp>
 
 #include <talus/terramech/strength/mohr_coulomb_line.hpp>
 
@@ -105,9 +106,9 @@ TEST(MohrCoulombLine, SaysThatAlikeSamplesCannotTellFrictionFromCohesion) {
 TEST(MohrCoulombLine, RefusesOneSampleAndEqualStresses) {
   MohrCoulombLine line;
   line.add({.normal_Pa = 1e4, .shear_Pa = 6e3});
-  EXPECT_THROW((void)line.estimate(), std::domain_error);
+  EXPECT_REFUSED(line.estimate(), std::domain_error, "at least two samples are required, got 1");
   line.add({.normal_Pa = 1e4, .shear_Pa = 7e3});
-  EXPECT_THROW((void)line.estimate(), std::domain_error);
+  EXPECT_REFUSED(line.estimate(), std::domain_error, "all samples have the same normal stress");
 }
 
 }  // namespace mohr_coulomb_line_test

@@ -1,5 +1,7 @@
 #include <stdexcept>
 
+#include <refused.hpp>
+
 #include <talus/terramech/strength/shear_modulus.hpp>
 
 #include "linear_world.hpp"
@@ -48,8 +50,10 @@ TEST(ShearModulus, JointFitFindsTheTruthWhereStressesAreLinear) {
 TEST(ShearModulus, SaysSoWhenTheSlipDoesNotVary) {
   const auto run = steadyRun(0.02);
   const std::vector<WheelSample> same(5, run.front());
-  EXPECT_THROW((void)modulusByTorqueRatio(kWheel, same), std::domain_error);
-  EXPECT_THROW((void)modulusByEffectiveTorque(kWheel, same), std::domain_error);
+  EXPECT_REFUSED(modulusByTorqueRatio(kWheel, same), std::domain_error,
+                 "no sample has less slip and less torque per load");
+  EXPECT_REFUSED(modulusByEffectiveTorque(kWheel, same), std::domain_error,
+                 "no sample has less slip and less torque per load");
 }
 
 }  // namespace shear_modulus_test

@@ -1,6 +1,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include <refused.hpp>
+
 #include <talus/common/input_error.hpp>
 #include <talus/terramech/calibration/tables/assessment.hpp>
 
@@ -67,12 +69,15 @@ TEST(Assessment, ForecastsOfTheReferenceSlipAreNearTheTruth) {
 
 TEST(Assessment, WhatCannotBeJudgedIsRefused) {
   const WheelTable table;
-  EXPECT_THROW(assessTable({.table = table.path(), .formula = "no-such"}, {}), std::invalid_argument);
-  EXPECT_THROW(assessTable({.table = table.path(), .z_threshold = 0.8, .z_critical = 0.5}, {}),
-               std::invalid_argument);
+  EXPECT_REFUSED(assessTable({.table = table.path(), .formula = "no-such"}, {}), std::invalid_argument,
+                 "formula 'no-such' is unknown, must be single-force, small-angle, triangular or plane");
+  EXPECT_REFUSED(assessTable({.table = table.path(), .z_threshold = 0.8, .z_critical = 0.5}, {}),
+                 std::invalid_argument, "z_threshold = 0.800000, must be <= 0.500000");
   const test::TemporaryFile soilless{"model: wong-reece\n", ".yaml"};
-  EXPECT_THROW(assessTable({.table = table.path(), .model = soilless.path()}, {}), InputError);
-  EXPECT_THROW(assessTable({.table = "no_such_table.csv"}, {}), InputError);
+  EXPECT_REFUSED(assessTable({.table = table.path(), .model = soilless.path()}, {}), InputError,
+                 "defines no soil; fit one first");
+  EXPECT_REFUSED(assessTable({.table = "no_such_table.csv"}, {}), InputError,
+                 "no_such_table.csv: No such file or directory");
 }
 
 }  // namespace assessment_test
