@@ -2,6 +2,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include <refused.hpp>
+
 #include <talus/common/constants.hpp>
 #include <talus/maps/geodesy/georeference.hpp>
 
@@ -69,10 +71,10 @@ TEST(Georeference, NotANumberWhereTheProjectionDoesNotReach) {
 TEST(Georeference, RefusesParametersOutOfRange) {
   CoordinateSystem system = lunarPole();
   system.projection.scale = 0.0;
-  EXPECT_THROW(Georeference{system}, std::invalid_argument);
+  EXPECT_REFUSED(Georeference{system}, std::invalid_argument, "scale must be > 0");
   system = lunarPole();
   system.ellipsoid.flattening = 1.0;
-  EXPECT_THROW(Georeference{system}, std::invalid_argument);
+  EXPECT_REFUSED(Georeference{system}, std::invalid_argument, "flattening must be in [0, 1)");
 }
 
 }  // namespace georeference_test

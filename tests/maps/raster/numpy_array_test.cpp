@@ -1,3 +1,7 @@
+#include <utility>
+
+#include <refused.hpp>
+
 #include <talus/common/input_error.hpp>
 #include <talus/maps/raster/numpy_array.hpp>
 
@@ -35,21 +39,25 @@ TEST(NumpyArray, FortranOrderAndSingleNumbers) {
 }
 
 TEST(NumpyArray, ANumberWithoutDataIsRefused) {
-  EXPECT_THROW(parseNumpy(file("{'descr': '<f8', 'fortran_order': False, 'shape': (), }\n", ""), "a"),
-               InputError);
-  EXPECT_THROW(
+  EXPECT_REFUSED(parseNumpy(file("{'descr': '<f8', 'fortran_order': False, 'shape': (), }\n", ""), "a"),
+                 InputError, "the file is cut short");
+  EXPECT_REFUSED(
       parseNumpy(file("{'descr': '<f8', 'fortran_order': False, 'shape': (3,), }\n", "1234567"), "a"),
-      InputError);
+      InputError, "the file is cut short");
 }
 
 TEST(NumpyArray, AnExtentIsAWholeNumber) {
-  for (const char* shape : {"(-1, 3)", "(1.5, 2)", "(3e0,)", "(0x3,)", "(two,)", "(4294967296,)"})
-    EXPECT_THROW(
+  for (const auto& [shape, text] : {std::pair{"(-1, 3)", "has the extent '-1'"},
+                                    {"(1.5, 2)", "has the extent '1.5'"},
+                                    {"(3e0,)", "has the extent '3e0'"},
+                                    {"(0x3,)", "has the extent '0x3'"},
+                                    {"(two,)", "has the extent 'two'"},
+                                    {"(4294967296,)", "array is too large"}})
+    EXPECT_REFUSED(
         parseNumpy(file("{'descr': '<f8', 'fortran_order': False, 'shape': " + std::string(shape) + ", }\n",
                         std::string(24, '\0')),
                    "a"),
-        InputError)
-        << shape;
+        InputError, text);
 }
 
 // Matching takes stack for each character: a header of version 2 may have 4 GB of them.
@@ -60,7 +68,9 @@ TEST(NumpyArray, ALongHeaderIsRefused) {
     const std::string header = "{'descr': '<f8', 'fortran_order': False, 'shape': (" + shape + "), }\n";
     std::string bytes("\x93NUMPY\x02\x00", 8);
     for (std::size_t k = 0; k < 4; ++k) bytes += static_cast<char>(header.size() >> (8 * k) & 0xFFU);
-    EXPECT_THROW(parseNumpy(bytes + header + std::string(8, '\0'), "a"), InputError) << filling;
+    EXPECT_REFUSED(parseNumpy(bytes + header + std::string(8, '\0'), "a"), InputError,
+                   "the NumPy header is longer than 10000 characters")
+        << filling;
   }
 }
 

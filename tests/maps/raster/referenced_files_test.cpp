@@ -1,5 +1,6 @@
 #include <filesystem>
 
+#include <refused.hpp>
 #include <sys/stat.h>
 
 #include <talus/common/input_error.hpp>
@@ -77,9 +78,12 @@ TEST_F(ReferencedFiles, PlainNamesAndOtherFilesPass) {
 // A GeoTIFF that is none, which GDAL by itself would follow.
 TEST_F(ReferencedFiles, OpeningFollowsNone) {
   const std::string path = folder_.write("label", virtualRaster("/etc/passwd"));
-  EXPECT_THROW(openRaster(path), InputError);
-  EXPECT_THROW(openRaster(path, true), InputError);
-  EXPECT_THROW(openRaster("/vsicurl/http://127.0.0.1:9/a.tif"), InputError);
+  EXPECT_REFUSED(openRaster(path), InputError,
+                 "is a virtual raster, which names other files; pass --allow-vrt");
+  EXPECT_REFUSED(openRaster(path, true), InputError,
+                 "names '/etc/passwd', which is no file of its own folder");
+  EXPECT_REFUSED(openRaster("/vsicurl/http://127.0.0.1:9/a.tif"), InputError,
+                 "/vsicurl/http://127.0.0.1:9/a.tif: no such file");
 }
 
 // Each way in which XML writes a text, and each in which a keyword's value may stand apart from it.

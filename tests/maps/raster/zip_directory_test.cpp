@@ -1,3 +1,5 @@
+#include <refused.hpp>
+
 #include <talus/common/input_error.hpp>
 #include <talus/maps/raster/zip_directory.hpp>
 
@@ -16,7 +18,8 @@ TEST(ZipDirectory, WhatHasNoneIsRefused) {
   const TemporaryFolder folder;
   for (const std::string& bytes :
        {std::string("x"), std::string(100, 'x'), "PK\5\6" + std::string(18, '\xff')})
-    EXPECT_THROW(zipDirectory(folder.write("a.npz", bytes)), InputError);
+    EXPECT_REFUSED(zipDirectory(folder.write("a.npz", bytes)), InputError,
+                   "its directory of files is damaged or missing");
 }
 
 }  // namespace zip_directory_test

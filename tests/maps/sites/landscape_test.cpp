@@ -3,6 +3,8 @@
 #include <random>
 #include <stdexcept>
 
+#include <refused.hpp>
+
 #include <talus/maps/sites/landscape.hpp>
 
 namespace talus::maps {
@@ -67,7 +69,8 @@ TEST(Landscape, RollingGroundStaysWithinItsAmplitude) {
 }
 
 TEST(Landscape, AnUnknownKindIsRefused) {
-  EXPECT_THROW(makeLandscape(kGrid, {.kind = static_cast<SiteKind>(9)}), std::invalid_argument);
+  EXPECT_REFUSED(makeLandscape(kGrid, {.kind = static_cast<SiteKind>(9)}), std::invalid_argument,
+                 "unknown kind");
 }
 
 }  // namespace landscape_test

@@ -4,6 +4,8 @@
 #include <map>
 #include <stdexcept>
 
+#include <refused.hpp>
+
 #include <talus/maps/sites/site_generator.hpp>
 #include <talus/maps/terrain/terrain_metrics.hpp>
 
@@ -54,10 +56,13 @@ TEST(SiteGenerator, EverySiteIsWholeAndVaried) {
 }
 
 TEST(SiteGenerator, RefusesNonsense) {
-  EXPECT_THROW(generateSite({.width = 4}), std::invalid_argument);
-  EXPECT_THROW(generateSite({.height = 30000}), std::invalid_argument);
-  EXPECT_THROW(generateSite({.resolution_m = std::nan("")}), std::invalid_argument);
-  EXPECT_THROW(generateSite({.threads = 0}), std::invalid_argument);
+  EXPECT_REFUSED(generateSite({.width = 4}), std::invalid_argument,
+                 "width = 4.000000, must be 8 to 20000 cells");
+  EXPECT_REFUSED(generateSite({.height = 30000}), std::invalid_argument,
+                 "height = 30000.000000, must be 8 to 20000 cells");
+  EXPECT_REFUSED(generateSite({.resolution_m = std::nan("")}), std::invalid_argument,
+                 "resolution_m = nan, must be 0.01 to 1000");
+  EXPECT_REFUSED(generateSite({.threads = 0}), std::invalid_argument, "threads = 0.000000, must be >= 1");
 }
 
 // Property: outside the blocky ground (abundance over 0.2) what the classes call rock is what boulders cover.

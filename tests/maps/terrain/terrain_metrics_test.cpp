@@ -3,6 +3,7 @@
 #include <random>
 
 #include <Eigen/Dense>
+#include <refused.hpp>
 
 #include <talus/maps/terrain/terrain_metrics.hpp>
 
@@ -170,10 +171,13 @@ TEST(TerrainMetrics, StopsWhenToldTo) {
 
 TEST(TerrainMetrics, RefusesNonsense) {
   const Raster<float> z(Grid{.width = 4, .height = 4});
-  EXPECT_THROW(terrainMetrics(z, {.radius_m = -1}), std::invalid_argument);
-  EXPECT_THROW(terrainMetrics(z, {.radius_m = std::nan("")}), std::invalid_argument);
-  EXPECT_THROW(terrainMetrics(z, {.step_span_m = -1}), std::invalid_argument);
-  EXPECT_THROW(terrainMetrics(z, {.threads = 0}), std::invalid_argument);
+  EXPECT_REFUSED(terrainMetrics(z, {.radius_m = -1}), std::invalid_argument,
+                 "radius_m = -1.000000, must be finite and >= 0");
+  EXPECT_REFUSED(terrainMetrics(z, {.radius_m = std::nan("")}), std::invalid_argument,
+                 "radius_m = nan, must be finite and >= 0");
+  EXPECT_REFUSED(terrainMetrics(z, {.step_span_m = -1}), std::invalid_argument,
+                 "step_span_m = -1.000000, must be finite and >= 0");
+  EXPECT_REFUSED(terrainMetrics(z, {.threads = 0}), std::invalid_argument, "threads = 0, must be >= 1");
 }
 
 }  // namespace terrain_metrics_test
