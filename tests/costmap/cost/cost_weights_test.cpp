@@ -1,6 +1,7 @@
 #include <cmath>
 #include <memory>
 
+#include <refused.hpp>
 #include <site_fixture.hpp>
 
 #include <talus/costmap/cost/cost_weights.hpp>
@@ -43,13 +44,15 @@ TEST(CostWeights, WhatIsRefusedStaysRefusedAndTilesAreShared) {
 }
 
 TEST(CostWeights, RefusesNegativeWeightsAndMapsWithoutNumbers) {
-  EXPECT_THROW(reweighted(oneGround(), {.energy = -1.0}), std::invalid_argument);
-  EXPECT_THROW(reweighted(oneGround(), {.risk_J = std::nan("")}), std::invalid_argument);
+  EXPECT_REFUSED(reweighted(oneGround(), {.energy = -1.0}), std::invalid_argument,
+                 "energy, time_W and risk_J must be >= 0");
+  EXPECT_REFUSED(reweighted(oneGround(), {.risk_J = std::nan("")}), std::invalid_argument,
+                 "energy, time_W and risk_J must be >= 0");
   const maps::Grid grid{.width = 4, .height = 4, .resolution_m = 1.0, .south_west = {}};
   const CostGrid bare =
       flattened(maps::Raster<CellCode>(grid),
                 std::make_shared<DriveCost>(DriveCost::Limits{}, std::vector<DriveCurve>(1)));
-  EXPECT_THROW(reweighted(bare, {}), std::domain_error);
+  EXPECT_REFUSED(reweighted(bare, {}), std::domain_error, "holds no energy, time and risk to weigh");
 }
 
 }  // namespace cost_weights_test

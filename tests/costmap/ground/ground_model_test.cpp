@@ -4,6 +4,7 @@
 #include <random>
 #include <thread>
 
+#include <refused.hpp>
 #include <site_fixture.hpp>
 
 #include <talus/costmap/ground/ground_class.hpp>
@@ -201,10 +202,10 @@ TEST(GroundModel, DriveCostGivesFiniteCostExactlyWhereNothingRefuses) {
 
 TEST(GroundModel, NamesWhatIsWrong) {
   GroundModel::Parts parts{.rover = testRover(), .classes = {}, .policy = {}};
-  EXPECT_THROW(GroundModel{parts}, std::invalid_argument);
+  EXPECT_REFUSED(GroundModel{parts}, std::invalid_argument, "classes is empty, must hold at least one");
   parts.classes = {GroundClass{.number = 1, .soil = testSand()},
                    GroundClass{.number = 1, .soil = testDust()}};
-  EXPECT_THROW(GroundModel{parts}, std::invalid_argument);
+  EXPECT_REFUSED(GroundModel{parts}, std::invalid_argument, "class 1 is declared twice");
 }
 
 // Property: threads that ask together for what is worked out when it is first asked for get one answer, that of one thread alone.
@@ -233,7 +234,8 @@ TEST(GroundModel, RefusesASoilOutOfRangeThatNoCellHas) {
   GroundModel::Parts parts = testGround()->parts();
   parts.classes.push_back({.number = 9, .soil = testSand()});
   parts.classes.back().soil.friction_angle_rad = -1.0;
-  EXPECT_THROW(GroundModel{parts}, std::invalid_argument);
+  EXPECT_REFUSED(GroundModel{parts}, std::invalid_argument,
+                 "friction_angle_rad = -1, must be in [0, 1.5708]");
 }
 
 TEST(GroundModel, SteadyWheelsAreThoseOfTheForwardModel) {

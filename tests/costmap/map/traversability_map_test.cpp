@@ -3,6 +3,7 @@
 #include <cmath>
 #include <thread>
 
+#include <refused.hpp>
 #include <site_map.hpp>
 
 #include <talus/costmap/map/traversability_map.hpp>
@@ -53,7 +54,8 @@ TEST(TraversabilityMap, RefusesLayersOfAnotherGrid) {
   MapLayers layers = drawn(kSite);
   layers.classes =
       maps::Raster<std::uint8_t>(maps::Grid{.width = 2, .height = 2, .resolution_m = 1.0, .south_west = {}});
-  EXPECT_THROW(TraversabilityMap(std::move(layers), testGround(), {}), std::invalid_argument);
+  EXPECT_REFUSED(TraversabilityMap(std::move(layers), testGround(), {}), std::invalid_argument,
+                 "classes lies on another grid than the elevation");
 }
 
 TEST(TraversabilityMap, UnknownOpensOnlyWhenAsked) {

@@ -3,6 +3,7 @@
 #include <string>
 #include <thread>
 
+#include <refused.hpp>
 #include <site_map.hpp>
 
 #include <talus/costmap/site/surface_patch.hpp>
@@ -118,19 +119,25 @@ TEST(SurfacePatch, MapsAreHeldToTheSame) {
   for (const float bad : {1e30F, INFINITY, -INFINITY}) {
     MapLayers layers = flat();
     layers.elevation.elevation_m[{1, 2}] = bad;
-    EXPECT_THROW(TraversabilityMap(std::move(layers), testGround(), {}), std::invalid_argument) << bad;
+    EXPECT_REFUSED(TraversabilityMap(std::move(layers), testGround(), {}), std::invalid_argument,
+                   "column 1, row 2, must be NaN or -131072 to 131072")
+        << bad;
   }
   for (const float bad : {-9999.0F, -INFINITY, 2.0F}) {
     MapLayers layers = flat();
     layers.rock_abundance = maps::Raster<float>(layers.elevation.grid(), 0.0F);
     layers.rock_abundance[{1, 2}] = bad;
-    EXPECT_THROW(TraversabilityMap(std::move(layers), testGround(), {}), std::invalid_argument) << bad;
+    EXPECT_REFUSED(TraversabilityMap(std::move(layers), testGround(), {}), std::invalid_argument,
+                   "column 1, row 2, must be NaN or 0 to 1")
+        << bad;
   }
   for (const double bad : {1e-9, 1e9, static_cast<double>(NAN)}) {
     MapLayers layers;
     const maps::Grid grid{.width = 4, .height = 4, .resolution_m = bad, .south_west = {}};
     layers.elevation.elevation_m = maps::Raster<float>(grid, 0.0F);
-    EXPECT_THROW(TraversabilityMap(std::move(layers), testGround(), {}), std::invalid_argument) << bad;
+    EXPECT_REFUSED(TraversabilityMap(std::move(layers), testGround(), {}), std::invalid_argument,
+                   "must be finite, of 0.001 m to 1000 km")
+        << bad;
   }
 }
 

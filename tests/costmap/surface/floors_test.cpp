@@ -2,6 +2,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include <refused.hpp>
+
 #include <talus/costmap/surface/floors.hpp>
 
 namespace talus::costmap {
@@ -22,8 +24,10 @@ TEST(Floors, AWheelStandsOnTheNearest) {
 }
 
 TEST(Floors, RefuseWhatLiesOutside) {
-  EXPECT_THROW(Floors({{9, 1.0F}}, 9), std::invalid_argument);
-  EXPECT_THROW(Floors({{1, std::numeric_limits<float>::infinity()}}, 9), std::invalid_argument);
+  EXPECT_REFUSED(Floors({{9, 1.0F}}, 9), std::invalid_argument,
+                 "a floor of cell 9 at 1.000000 m, must be a height in one of 9 cells");
+  EXPECT_REFUSED(Floors({{1, std::numeric_limits<float>::infinity()}}, 9), std::invalid_argument,
+                 "a floor of cell 1 at inf m, must be a height in one of 9 cells");
 }
 
 }  // namespace floors_test

@@ -4,6 +4,7 @@
 
 #include <octomap/ColorOcTree.h>
 #include <octomap/OcTree.h>
+#include <refused.hpp>
 
 #include <talus/common/input_error.hpp>
 #include <talus/costmap/surface/octomap_surface.hpp>
@@ -123,14 +124,18 @@ TEST(OctomapSurface, ACubeIsAFloorAsWideAsItself) {
 TEST(OctomapSurface, CubesAsLargeAsTheTreeAreRefused) {
   for (const int depth : {0, 1}) {
     std::istringstream stream(oneCube(depth, "0.1"));
-    EXPECT_THROW(octomapGround(stream, "cube.ot"), InputError) << depth;
+    EXPECT_REFUSED(octomapGround(stream, "cube.ot"), InputError, "columns, more than 4e8") << depth;
   }
 }
 
 TEST(OctomapSurface, VoxelsOfImpossibleSizeAreRefused) {
-  for (const char* resolution : {"1e-300", "1e-4", "1e7", "1e308", "nan", "inf", "-0.1", ""}) {
+  for (const char* resolution : {"1e-300", "1e-4", "1e7", "1e308"}) {
     std::istringstream stream(oneCube(16, resolution));
-    EXPECT_THROW(octomapGround(stream, "cube.ot"), InputError) << resolution;
+    EXPECT_REFUSED(octomapGround(stream, "cube.ot"), InputError, "must be 0.001 m to 1000 km") << resolution;
+  }
+  for (const char* resolution : {"nan", "inf", "-0.1", ""}) {
+    std::istringstream stream(oneCube(16, resolution));
+    EXPECT_REFUSED(octomapGround(stream, "cube.ot"), InputError, "not an OctoMap file") << resolution;
   }
 }
 

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include <refused.hpp>
 #include <rover_drive.hpp>
 #include <unistd.h>
 
@@ -117,7 +118,7 @@ TEST(DriveParts, UnsettledTheyTeachTheSameHoweverDivided) {
 TEST(DriveParts, RowsThatAreNotKeptAreNotSettled) {
   TraversabilityMap map = sand();
   DriveIntake intake(map);
-  EXPECT_THROW(intake.settle(), std::logic_error);
+  EXPECT_REFUSED(intake.settle(), std::logic_error, "IntakeOptions::settles = false, must be true to settle");
 }
 
 }  // namespace drive_parts_test

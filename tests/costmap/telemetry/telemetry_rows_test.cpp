@@ -2,6 +2,7 @@
 #include <limits>
 #include <numbers>
 
+#include <refused.hpp>
 #include <site_map.hpp>
 
 #include <talus/common/input_error.hpp>
@@ -132,7 +133,7 @@ TEST(TelemetryRows, NamesAColumnThatIsMissing) {
   const TraversabilityMap map = ramp();
   terramech::Telemetry t = table();
   t.numbers.erase(t.numbers.begin() + 3);
-  EXPECT_THROW(TelemetryRows(t, map, 0.5), InputError);
+  EXPECT_REFUSED(TelemetryRows(t, map, 0.5), InputError, "no column slip");
 }
 
 }  // namespace telemetry_rows_test
