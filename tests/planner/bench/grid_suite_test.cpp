@@ -3,6 +3,8 @@
 #include <queue>
 #include <vector>
 
+#include <refused.hpp>
+
 #include <talus/planner/bench/grid_suite.hpp>
 #include <talus/planner/bench/moving_ai.hpp>
 #include <talus/planner/grid/field_planner.hpp>
@@ -76,8 +78,8 @@ TEST(GridSuite, TheFieldReachesTheOptimum) {
 }
 
 TEST(GridSuite, RefusesOptionsOutOfRange) {
-  EXPECT_THROW(gridCases(8, 1, 1), std::invalid_argument);
-  EXPECT_THROW(gridCases(32, 0, 1), std::invalid_argument);
+  EXPECT_REFUSED(gridCases(8, 1, 1), std::invalid_argument, "side = 8, must be >= 16");
+  EXPECT_REFUSED(gridCases(32, 0, 1), std::invalid_argument, "pairs = 0, must be > 0");
 }
 
 }  // namespace grid_suite_test

@@ -4,6 +4,7 @@
 #include <random>
 
 #include <Eigen/Dense>
+#include <refused.hpp>
 
 #include <talus/common/constants.hpp>
 #include <talus/maps/terrain/elevation_map.hpp>
@@ -264,7 +265,8 @@ TEST(Chassis, ATurnInPlaceSweepsEveryWheelsCircle) {
 
 TEST(Chassis, ARockerBogieHasThreeAxles) {
   const maps::Raster<float> flat({.width = 8, .height = 8, .resolution_m = 1.0, .south_west = {}});
-  EXPECT_THROW(Chassis(flat, rover(4), Suspension::RockerBogie), std::invalid_argument);
+  EXPECT_REFUSED(Chassis(flat, rover(4), Suspension::RockerBogie), std::invalid_argument,
+                 "wheels.count = 4, must be 6 for a rocker-bogie");
 }
 
 }  // namespace chassis_test

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <boost/math/special_functions/erf.hpp>
+#include <refused.hpp>
 
 #include <talus/planner/check/route_risk.hpp>
 
@@ -205,9 +206,10 @@ TEST(RouteRisk, SameSeedSameBits) {
 }
 
 TEST(RouteRisk, RefusesOptionsOutOfRange) {
-  EXPECT_THROW(routeRisk(Route{}, {.correlation_length_m = 0.0}), std::invalid_argument);
-  EXPECT_THROW(routeRisk(Route{}, {.tail = 0.0}), std::invalid_argument);
-  EXPECT_THROW(routeRisk(Route{}, {.worlds = 0}), std::invalid_argument);
+  EXPECT_REFUSED(routeRisk(Route{}, {.correlation_length_m = 0.0}), std::invalid_argument,
+                 "correlation_length_m must be > 0");
+  EXPECT_REFUSED(routeRisk(Route{}, {.tail = 0.0}), std::invalid_argument, "tail must be in (0, 1]");
+  EXPECT_REFUSED(routeRisk(Route{}, {.worlds = 0}), std::invalid_argument, "worlds must be > 0");
 }
 
 }  // namespace route_risk_test

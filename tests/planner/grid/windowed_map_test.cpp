@@ -1,5 +1,7 @@
 #include <cmath>
 
+#include <refused.hpp>
+
 #include "rolling_ground.hpp"
 
 namespace talus::planner {
@@ -37,7 +39,7 @@ TEST(WindowedMap, TilesBesideALineAreThoseOfTheWholeMapToTheBit) {
 }
 
 TEST(WindowedMap, SaysWhatItCannotDo) {
-  EXPECT_THROW(WindowedMap({.grid = kWhole}), std::invalid_argument);
+  EXPECT_REFUSED(WindowedMap({.grid = kWhole}), std::invalid_argument, "no overview");
   int asked = 0;
   WindowedMap map = windows(asked);
   WindowedMap shifted({.grid = kWhole, .overview = map.overview(), .build = [](const MapBox& box) {
@@ -45,7 +47,8 @@ TEST(WindowedMap, SaysWhatItCannotDo) {
                          grid.south_west.x_m += 1.0;
                          return std::optional(built(grid));
                        }});
-  EXPECT_THROW(shifted.around({{250.0, 100.0}}, 10.0), std::invalid_argument);
+  EXPECT_REFUSED(shifted.around({{250.0, 100.0}}, 10.0), std::invalid_argument,
+                 "what was built is not the cells of the box");
 }
 
 }  // namespace windowed_map_test

@@ -2,6 +2,8 @@
 #include <stdexcept>
 #include <stop_token>
 
+#include <refused.hpp>
+
 #include <talus/planner/plan/risk_planner.hpp>
 #include <talus/planner/route/motion_cost.hpp>
 
@@ -141,7 +143,8 @@ TEST(RiskPlanner, AMapWithoutNumbersToWeighSaysSo) {
   Problem problem = acrossRisk();
   problem.map = testing::drawn({"...", "..."});
   NamedPlanner planner;
-  EXPECT_THROW(paretoSet(problem, planning(planner), 2), std::domain_error);
+  EXPECT_REFUSED(paretoSet(problem, planning(planner), 2), std::domain_error,
+                 "holds no energy, time and risk to weigh");
 }
 
 }  // namespace risk_planner_test

@@ -8,6 +8,7 @@
 #include <string>
 
 #include <poll.h>
+#include <refused.hpp>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -123,7 +124,8 @@ TEST(PluginLoader, ATruncatedLibraryIsRefused) {
   for (const auto size : {whole / 100, whole / 30, whole / 10}) {
     std::filesystem::copy_file(TALUS_PLUGIN, cut, std::filesystem::copy_options::overwrite_existing);
     std::filesystem::resize_file(cut, size);
-    EXPECT_THROW(loadPlugin(cut.string()), InputError) << size;
+    EXPECT_REFUSED(loadPlugin(cut.string()), InputError, "it is truncated, damaged or of another machine")
+        << size;
   }
   std::filesystem::remove(cut);
 }

@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include <gtest/gtest.h>
+#include <refused.hpp>
 
 #include <talus/planner/route/turn_prices.hpp>
 
@@ -67,7 +68,8 @@ TEST(TurnPrices, SunkWheelsPushTheSoilBesideThem) {
 }
 
 TEST(TurnPrices, AnAckermannRoverNeedsARadius) {
-  EXPECT_THROW(kinematicsOf(fourWheels(terramech::Steering::Ackermann), {}), std::invalid_argument);
+  EXPECT_REFUSED(kinematicsOf(fourWheels(terramech::Steering::Ackermann), {}), std::invalid_argument,
+                 "turning_radius_m = 0, must be > 0 with steering ackermann");
 }
 
 }  // namespace turn_prices_test

@@ -1,5 +1,7 @@
 #include <cmath>
 
+#include <refused.hpp>
+
 #include <talus/planner/bench/slip_world.hpp>
 #include <talus/planner/grid/field_planner.hpp>
 #include <talus/planner/route/motion_cost.hpp>
@@ -182,9 +184,11 @@ TEST(SamplingPlanner, HandsOutTheCostThatItReports) {
 }
 
 TEST(SamplingPlanner, RefusesSettingsOutOfRange) {
-  EXPECT_THROW(planBySampling(across(wall()), {.work = 0}), std::invalid_argument);
-  EXPECT_THROW(planBySampling(across(wall()), {.range_cells = -1}), std::invalid_argument);
-  EXPECT_THROW(planBySampling(across(wall()), {.planner = "field"}), std::invalid_argument);
+  EXPECT_REFUSED(planBySampling(across(wall()), {.work = 0}), std::invalid_argument, "work = 0, must be > 0");
+  EXPECT_REFUSED(planBySampling(across(wall()), {.range_cells = -1}), std::invalid_argument,
+                 "range_cells = -1.000000, must be > 0");
+  EXPECT_REFUSED(planBySampling(across(wall()), {.planner = "field"}), std::invalid_argument,
+                 "planner 'field' does not sample");
 }
 
 }  // namespace sampling_planner_test

@@ -1,7 +1,9 @@
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include <gmock/gmock.h>
+#include <refused.hpp>
 #include <site_fixture.hpp>
 
 #include <talus/planner/simulation/worlds/simulated_sensors.hpp>
@@ -112,7 +114,8 @@ TEST(TelemetryOf, HasARowForEachWheelThatReadSlip) {
 // With a drift of 1 a rover that drives to its goal never takes itself to be there: the simulation did not end.
 TEST(SimulatedSensors, ADriftThatNoOdometryHasIsRefused) {
   for (const double drift : {-0.1, 0.6, 1.0, std::nan("")})
-    EXPECT_THROW(SimulatedSensors({.pose_drift = drift}, testRover()), std::invalid_argument) << drift;
+    EXPECT_REFUSED(SimulatedSensors({.pose_drift = drift}, testRover()), std::invalid_argument,
+                   "pose_drift = " + std::to_string(drift) + ", must be 0 to 0.500000");
 }
 
 }  // namespace simulated_sensors_test
