@@ -2,6 +2,8 @@
 #include <cstdint>
 #include <stdexcept>
 
+#include <refused.hpp>
+
 #include <talus/cli/draw/canvas.hpp>
 #include <talus/cli/draw/image.hpp>
 
@@ -69,8 +71,9 @@ TEST(Canvas, TextWidthAddsUp) {
 }
 
 TEST(Canvas, ASizeThatCannotBeDrawnIsAnError) {
-  EXPECT_THROW(Canvas({.width = -1, .height = 5}), std::runtime_error);
-  EXPECT_THROW(Canvas({.width = 1'000'000, .height = 1'000'000}), std::runtime_error);
+  EXPECT_REFUSED(Canvas({.width = -1, .height = 5}), std::runtime_error, "invalid value (typically too big)");
+  EXPECT_REFUSED(Canvas({.width = 1'000'000, .height = 1'000'000}), std::runtime_error,
+                 "invalid value (typically too big)");
 }
 
 }  // namespace canvas_test

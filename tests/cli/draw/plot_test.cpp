@@ -1,6 +1,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include <refused.hpp>
+
 #include <talus/cli/draw/plot.hpp>
 
 #include "example_scene.hpp"
@@ -43,7 +45,8 @@ TEST(Plot, StandsEmptySeriesAndNothingFinite) {
 
 TEST(Plot, RefusesColumnsOfDifferentLength) {
   const Plot plot{.title = "", .x = {}, .y = {}, .series = {{.name = "a", .x = {1.0, 2.0}, .y = {1.0}}}};
-  EXPECT_THROW(draw({plot}, Canvas::Kind::Png), std::invalid_argument);
+  EXPECT_REFUSED(draw({plot}, Canvas::Kind::Png), std::invalid_argument,
+                 "x, y, y_std have 2, 1, 0 values, must be as many");
 }
 
 TEST(Plot, IsWrittenByItsExtension) {

@@ -1,5 +1,7 @@
 #include <cmath>
 
+#include <refused.hpp>
+
 #include <talus/cli/route/drive_telemetry.hpp>
 #include <talus/common/input_error.hpp>
 #include <talus/terramech/io/telemetry_reader.hpp>
@@ -41,7 +43,8 @@ TEST(DriveTelemetry, IsReadBackAsTheWheelsReadIt) {
 }
 
 TEST(DriveTelemetry, AFolderThatIsMissingIsAnError) {
-  EXPECT_THROW(saveTelemetry("/no/such/folder/t.csv", {}, {}), InputError);
+  EXPECT_REFUSED(saveTelemetry("/no/such/folder/t.csv", {}, {}), InputError,
+                 "folder /no/such/folder does not exist");
 }
 
 }  // namespace drive_telemetry_test

@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include <nlohmann/json.hpp>
+#include <refused.hpp>
 
 #include <talus/cli/route/route_json.hpp>
 #include <talus/cli/route/route_reader.hpp>
@@ -80,8 +81,10 @@ TEST(RouteReader, StandsAnyCutOfAFile) {
   // Property: a route cut anywhere is refused, never half read. Every 97th length, the file being long.
   const Folder folder;
   const std::string whole = written().dump();
-  for (std::size_t length = 0; length < whole.size(); length += 97)
-    EXPECT_THROW(readRoute(folder.write("cut.geojson", whole.substr(0, length))), InputError);
+  EXPECT_REFUSED(readRoute(folder.write("cut.geojson", "")), InputError, "is empty");
+  for (std::size_t length = 97; length < whole.size(); length += 97)
+    EXPECT_REFUSED(readRoute(folder.write("cut.geojson", whole.substr(0, length))), InputError,
+                   "is not valid JSON");
 }
 
 TEST(RouteReader, StandsAnyFieldOfAnotherKind) {

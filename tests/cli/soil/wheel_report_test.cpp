@@ -1,6 +1,7 @@
 #include <stdexcept>
 
 #include <fmt/format.h>
+#include <refused.hpp>
 
 #include <talus/cli/soil/wheel_report.hpp>
 #include <talus/terramech/contact/wong_reece.hpp>
@@ -42,7 +43,8 @@ TEST(WheelReport, NamesAreNoMarkup) {
 TEST(WheelReport, ALoadThatSinksTheWheelHasNoPage) {
   WheelAtWork at = work();
   at.load_N = 1e9;
-  EXPECT_THROW(wheelReport(at), std::domain_error);
+  EXPECT_REFUSED(wheelReport(at), std::domain_error,
+                 "the wheel sinks to its axle before the soil carries 1000000000.000000 N");
 }
 
 }  // namespace wheel_report_test
