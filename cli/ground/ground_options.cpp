@@ -20,6 +20,7 @@
 #include <talus/costmap/ground/ground_class.hpp>
 #include <talus/costmap/map/map_file.hpp>
 #include <talus/costmap/surface/octomap_surface.hpp>
+#include <talus/terramech/mobility/slope_equilibrium.hpp>
 #include <talus/terramech/io/model_file.hpp>
 #include <talus/terramech/io/soil_library.hpp>
 
@@ -250,6 +251,10 @@ std::optional<maps::ElevationMap> siteOf(const GroundOptions& options, const std
   }
 }
 
+void warnOfRover(const terramech::Rover& rover, const Context& context) {
+  for (const std::string& assumed : terramech::slopeAssumptions(rover)) context.warn(assumed);
+}
+
 Ground fromMapFile(const GroundOptions& options, const std::string& path, const Context& context) {
   checkAgainstMap(options, path, context);
   const auto begin = Clock::now();
@@ -257,6 +262,7 @@ Ground fromMapFile(const GroundOptions& options, const std::string& path, const 
   checkSameRover(options, ground.map.model().rover(), path);
   if (const auto dem = siteOf(options, path, context)) checkSameSite(*dem, ground.map, path);
   ground.load_s = since_s(begin);
+  warnOfRover(ground.map.model().rover(), context);
   return ground;
 }
 
@@ -336,6 +342,7 @@ Ground readGround(const GroundOptions& options, const Context& context) {
   warnOfAssumptions(options, assumed, context);
   costmap::GroundModel::Parts parts;
   parts.rover = terramech::loadRover(options.rover.empty() ? assumed.rover : options.rover);
+  warnOfRover(parts.rover, context);
   parts.classes = blamingFiles(options, [&] { return groundClasses(options, assumed, parts.rover); });
   parts.policy = options.policy;
   Layers layers = readLayers(options.layers, dem, weakestLast(parts.classes, parts.rover));

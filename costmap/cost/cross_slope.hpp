@@ -1,6 +1,6 @@
 #pragma once
 
-#include <cstdint>
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -17,19 +17,20 @@ struct CostWeights {
   double risk_J = 1e7;  ///< joules that the loss of the rover is worth, >= 0
 };
 
-/// What crossing a slope is worth on the ground of one class, as climbs straight up (ours): for every gradient
-/// along (bins of DriveCurve) and across (rows of 1/64, DriveCurve::row())
+/// What a slope is worth on the ground of one class, as climbs straight up under even loads (ours): for every gradient
+/// along and across at the nodes of DriveCurve, row 0 included,
 /// - the climb that costs as much: on it SlopeEquilibrium finds no less energy and time a metre;
 /// - the climb that leaves as little: the strength that the ground may lose until nothing holds is the same. A
 ///   loss d takes d of the pull and the share d / thrust of the side force, thrust the gross thrust over load
 ///   at the reference slip;
 /// - the descent that is braked as hard, where it fails no more than 0.16 below the limit of pitch.
 /// None is less steep than the gradient along, and none gets gentler from row to row, so cost, risk and refusal never
-/// fall as the gradient across grows. All three are the class's own: a belief moves them as it moves the climbs.
+/// fall as the gradient across grows. All three are the class's own: a belief moves them as it moves the climbs. Nodes
+/// at which the rover tips are refused on any ground: how its body lies is that on the class's ground.
 ///
-/// Errors: the boundary of what holds is solved for each row; a row stands for all gentler ones down to the one
-/// before, so that up to 1/64 of gradient across is given up; along, half a bin is lost or gained, as without
-/// crossing. Where the gradients that hold fall apart into several ranges the longest counts. Immutable.
+/// Both equilibria read one table of wheel forces, so that its errors cancel: a rover whose slopes move no load costs on
+/// row 0 what the mobility curve says. Along, equilibria are solved 1/32 apart, linear between. Where the gradients
+/// that hold fall apart into several ranges the longest counts. Immutable.
 class CrossSlope {
  public:
   /// What the class's ground gives without crossing.
@@ -50,42 +51,47 @@ class CrossSlope {
   /// Rows that differ, the level one included; the last refuses every heading unless the limits come first.
   int rows() const noexcept { return static_cast<int>(climbs_.size()) / DriveCurve::kBins; }
 
-  /// The state in a row and bin: energy and time of the climbs up to that which costs as much, risk and refusal
-  /// of those up to that which leaves as little, with category and margin there.
+  /// The state at a node: energy and time of the climbs up to that which costs as much, risk and refusal
+  /// of those up to that which leaves as little, with category and margin there. Rows beyond the last are as the last.
   DriveState state(const DriveTable& states, int row, int bin) const noexcept;
 
-  /// Costs of all rows and bins, row by row: of state() each.
+  /// Costs of all nodes, row by row: of state() each.
   std::shared_ptr<const std::vector<float>> costs(const DriveTable& states, const CostWeights& weights) const;
 
-  /// How the rover holds a slope, in the row of the gradient across; of two grounds on the first.
+  /// How the rover holds a slope, linear between equilibria; of two grounds on the first.
   SlopeHold hold(const terramech::Gradient& gradient) const noexcept;
 
-  /// The climb that leaves as little as a slope, in its row and bin; 4 where it holds on no ground.
+  /// The climb that leaves as little as a slope; 4 where it holds on no ground.
   double climb(const terramech::Gradient& gradient) const noexcept;
   /// The steepest of these climbs over the headings on a plane of this gradient, never below that.
   double steepest(double gradient) const noexcept;
 
  private:
-  // Bins; kBins where nothing holds, whatever the strength.
+  // Places between bins; `refused` where nothing holds, whatever the strength.
   struct Climbs {
-    std::int16_t costs = DriveCurve::kBins, leaves = DriveCurve::kBins, brakes = 0;
+    float costs = 0.0F, leaves = 0.0F, brakes = 0.0F;
+    float more_slip = 0.0F;  // than on the climb that costs as much
+    Refusal refused = Refusal::None;
   };
-  // How a row is held on the lattice of gradients along.
+  // What the equilibrium says at one of the gradients along of a row.
   struct Held {
-    int first_node = 0;
-    std::vector<SlopeHold> nodes;
+    SlopeHold hold;
+    terramech::SlopeFailure grip = terramech::SlopeFailure::None;
   };
   CrossSlope() = default;
   void addLevelRow();
   static Climbs harder(const Climbs& a, const Climbs& b) noexcept;
   void tabulateSteepest();
   const Climbs& at(int row, int bin) const noexcept {
-    return climbs_[static_cast<std::size_t>(row * DriveCurve::kBins + bin)];
+    return climbs_[static_cast<std::size_t>(std::min(row, rows() - 1) * DriveCurve::kBins + bin)];
   }
+  SlopeHold holdInRow(int row, double along) const noexcept;
+  Refusal reasonAt(int row, int bin) const noexcept;
 
   std::vector<Climbs> climbs_;
-  std::vector<Held> held_;       // by row, as far as any gradient holds
-  std::vector<float> steepest_;  // by gradient in steps of CellCode, up to 1
+  std::vector<std::vector<Held>> held_;  // by row, as far as any gradient holds
+  int first_along_ = 0;                  // of their first, in steps between equilibria
+  std::vector<float> steepest_;          // by gradient in steps of CellCode, up to 1
 };
 
 /// What a metre costs on ground with these states, under these weights, across slopes too.

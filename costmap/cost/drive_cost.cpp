@@ -15,7 +15,7 @@ std::uint32_t CellCode::quantised(double gradient) noexcept {
 }
 
 int DriveCurve::bin(double gradient) noexcept {
-  return static_cast<int>(std::lround(gradient * 256.0)) + kBins / 2;
+  return static_cast<int>(std::lround(gradient * kBinsPerUnit)) + kBins / 2;
 }
 
 namespace {
@@ -54,10 +54,7 @@ float DriveCost::costPerMetre(CellCode cell, Direction heading) const noexcept {
   if (cell.curve() >= curves_.size()) return blocked;
   const terramech::Gradient d = seenBy(cell, heading);
   if (std::abs(d.along) > limits_.max_along || std::abs(d.across) > limits_.max_across) return blocked;
-  const int bin = DriveCurve::bin(d.along);
-  if (bin < 0 || bin >= DriveCurve::kBins) return blocked;
-  const DriveCurve& curve = curves_[cell.curve()];
-  return curve.rows()[std::min(DriveCurve::row(d.across), curve.lastRow()) * DriveCurve::kBins + bin];
+  return curves_[cell.curve()].price(d.along, d.across);
 }
 
 }  // namespace talus::costmap

@@ -58,34 +58,61 @@ class CellCode {
   std::uint32_t bits_;
 };
 
-/// What one horizontal metre costs on one kind of ground, tabulated over the gradient along the heading
-/// (rise over run, climbing > 0) in kBins bins of width 1/256 centred on k/256, k = -256..255, and over the size
-/// of the gradient across in rows of 1/64, each standing for what is gentler down to the row before; infinite
-/// where the motion is not allowed.
+/// What one horizontal metre costs on one kind of ground, at nodes over the gradient along the heading (rise over run,
+/// climbing > 0), kBins of them at k/256, k = -256..255, and over the size of the gradient across, in rows at every
+/// 1/64; between them linear in both. Infinite where the motion is not allowed. Nothing is allowed that one of the nodes
+/// about it refuses: price() is finite only where every node of positive weight is.
 struct DriveCurve {
   static constexpr int kBins = 512;
+  static constexpr int kBinsPerUnit = 256;
   static constexpr int kRowsPerUnit = 64;
-  static constexpr double kSame = 1e-9;  ///< of a row: rounding alone does not lead to the next
+  static constexpr double kSame = 1e-9;  ///< of a bin or row: nearer to a node is on it
   /// Row 0, nothing across: energy + weighted time + weighted risk, in joules.
   std::array<float, kBins> cost_J_per_m;
   /// All rows, row 0 first; the last stands for all beyond. None: crossing costs nothing more. In no bin may
   /// costs fall from row to row: lower bounds rely on it.
   std::shared_ptr<const std::vector<float>> crossing{};
 
-  /// The bin of a gradient; outside 0..kBins-1 when the gradient leaves the table.
+  /// The bin whose node is nearest to a gradient; outside 0..kBins-1 when the gradient leaves the table.
   static int bin(double gradient) noexcept;
-  /// The gradient at the middle of a bin.
-  static constexpr double gradient(int bin) noexcept { return (bin - 0.5 * kBins) / 256.0; }
-  /// The row of a gradient across.
+  /// The gradient at a node, or at a place between nodes.
+  static constexpr double gradient(double bin) noexcept { return (bin - 0.5 * kBins) / kBinsPerUnit; }
+  /// The first row that is not gentler than a gradient across.
   static int row(double across) noexcept {
-    const double rows = (across < 0.0 ? -across : across) * kRowsPerUnit - kSame;
-    const int whole = static_cast<int>(rows);
-    return whole + static_cast<int>(rows > whole);
+    const Between at = between((across < 0.0 ? -across : across) * kRowsPerUnit);
+    return at.whole + static_cast<int>(at.share > 0.0F);
+  }
+
+  /// The node at or before a place that is counted in nodes, >= 0, and how far the place is on its way to the next.
+  struct Between {
+    int whole;
+    float share;  ///< [0, 1]
+  };
+  static Between between(double place) noexcept {
+    const int whole = static_cast<int>(place + kSame);
+    const double rest = place - whole;
+    return {whole, rest > kSame ? static_cast<float>(rest) : 0.0F};
   }
 
   /// Costs of all rows, and the number of the last.
   const float* rows() const noexcept { return crossing ? crossing->data() : cost_J_per_m.data(); }
   int lastRow() const noexcept { return crossing ? static_cast<int>(crossing->size()) / kBins - 1 : 0; }
+
+  /// The cost at gradients along and across, both |g| <= 2; infinite outside the table.
+  float price(double along, double across) const noexcept {
+    constexpr float blocked = std::numeric_limits<float>::infinity();
+    const double place = along * kBinsPerUnit + kBins / 2;
+    if (!(place >= 0.0 && place <= kBins - 1)) return blocked;
+    const Between bin = between(place), row = between((across < 0.0 ? -across : across) * kRowsPerUnit);
+    const int last = lastRow(), next_bin = bin.share > 0.0F ? 1 : 0,
+              next_row = row.whole + (row.share > 0.0F ? 1 : 0);
+    const float* low = rows() + (row.whole < last ? row.whole : last) * kBins + bin.whole;
+    const float* high = rows() + (next_row < last ? next_row : last) * kBins + bin.whole;
+    const float a = low[0], b = low[next_bin], c = high[0], d = high[next_bin];
+    if (!(a < blocked && b < blocked && c < blocked && d < blocked)) return blocked;
+    const float below = a + bin.share * (b - a), above = c + bin.share * (d - c);
+    return below + row.share * (above - below);
+  }
 };
 
 class CrossSlope;
@@ -103,7 +130,9 @@ struct DriveGround {
 struct SlopeHold {
   double slip_angle_rad = std::numeric_limits<double>::quiet_NaN();  ///< to the way made good, left positive
   double side_force_over_load = std::numeric_limits<double>::quiet_NaN();  ///< greatest |F|/N of a wheel
-  double stability_margin_rad = std::numeric_limits<double>::quiet_NaN();  ///< further tilt until it tips
+  double stability_margin_rad =
+      std::numeric_limits<double>::quiet_NaN();  ///< further tilt until it tips; NaN, too,
+                                                 ///< of a rover without a height
 };
 
 /// How the doubts about the soil of two places hang together, and what a place does whose soil is too weak.
@@ -146,6 +175,8 @@ class DriveCost {
   const std::vector<std::shared_ptr<const CrossSlope>>& crossings() const noexcept { return crossings_; }
 
  private:
+  DriveState detailAt(std::size_t curve, double place, double across) const noexcept;
+
   Limits limits_;
   std::vector<DriveCurve> curves_;
   std::vector<std::shared_ptr<const DriveTable>> states_;

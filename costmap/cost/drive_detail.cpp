@@ -25,16 +25,29 @@ DriveState DriveCost::detail(CellCode cell, Direction heading) const noexcept {
   if (cell.curve() == CellCode::kBlocked) return refused(Refusal::Blocked);
   if (cell.curve() >= curves_.size()) return refused(Refusal::Unknown);
   const terramech::Gradient d = gradientSeen(cell, heading);
-  const int bin = std::clamp(DriveCurve::bin(d.along), 0, DriveCurve::kBins - 1);
-  const auto& table = states_[cell.curve()];
-  const auto& crossing = crossings_[cell.curve()];
-  DriveState state = !table     ? DriveState{}
-                     : crossing ? crossing->state(*table, DriveCurve::row(d.across), bin)
-                                : (*table)[static_cast<std::size_t>(bin)];
+  const double place = d.along * DriveCurve::kBinsPerUnit + DriveCurve::kBins / 2;
+  const double inside = std::clamp(place, 0.0, DriveCurve::kBins - 1.0);
+  DriveState state = states_[cell.curve()] ? detailAt(cell.curve(), inside, d.across) : DriveState{};
   if (std::abs(d.across) > limits_.max_across) state.refusal = Refusal::Roll;
-  if (std::abs(d.along) > limits_.max_along || bin != DriveCurve::bin(d.along))
-    state.refusal = Refusal::Pitch;
+  if (std::abs(d.along) > limits_.max_along || inside != place) state.refusal = Refusal::Pitch;
   return state;
+}
+
+// Between the nodes that DriveCurve::price() reads.
+DriveState DriveCost::detailAt(std::size_t curve, double place, double across) const noexcept {
+  const DriveTable& table = *states_[curve];
+  const auto& crossing = crossings_[curve];
+  const auto bin = DriveCurve::between(place),
+             row = DriveCurve::between(std::abs(across) * DriveCurve::kRowsPerUnit);
+  const auto inRow = [&](int at) {
+    const auto node = [&](int k) {
+      return crossing ? crossing->state(table, at, k) : table[static_cast<std::size_t>(k)];
+    };
+    const DriveState here = node(bin.whole);
+    return bin.share > 0.0F ? between(here, node(bin.whole + 1), bin.share) : here;
+  };
+  const DriveState below = inRow(row.whole);
+  return crossing && row.share > 0.0F ? between(below, inRow(row.whole + 1), row.share) : below;
 }
 
 SlopeHold DriveCost::hold(CellCode cell, Direction heading) const noexcept {

@@ -27,6 +27,8 @@ const char* toText(Refusal refusal) noexcept {
       return "sinkage above the ground clearance";
     case Refusal::Category:
       return "category at this slope excluded by the policy";
+    case Refusal::Tips:
+      return "tips: centre of mass past the wheels";
   }
   return "";
 }
@@ -44,6 +46,17 @@ DriveState worse(const DriveState& a, const DriveState& b) noexcept {
           .category = std::max(a.category, b.category),
           .refusal = a.refusal != Refusal::None ? a.refusal : b.refusal,
           .class_index = a.class_index};
+}
+
+DriveState between(const DriveState& a, const DriveState& b, float share) noexcept {
+  DriveState out = a;
+  for (const auto number :
+       {&DriveState::slip, &DriveState::sinkage_m, &DriveState::torque_Nm, &DriveState::energy_J_per_m,
+        &DriveState::time_s_per_m, &DriveState::risk_per_m, &DriveState::weak, &DriveState::pull_margin})
+    out.*number = a.*number + share * (b.*number - a.*number);
+  out.category = std::max(a.category, b.category);
+  if (out.refusal == Refusal::None) out.refusal = b.refusal;
+  return out;
 }
 
 }  // namespace talus::costmap

@@ -20,6 +20,7 @@ enum class Refusal : std::uint8_t {
   Torque,     ///< the motors cannot give the torque
   Sinkage,    ///< the wheels sink to where the belly touches
   Category,   ///< the category at this slope is refused by the policy
+  Tips,       ///< the centre of mass passes over the wheels
 };
 
 /// The reason of a refusal as text: "required drawbar pull above the available drawbar pull".
@@ -43,6 +44,10 @@ struct DriveState {
 
 /// The worse of two states in each of their numbers; the first refusal of the two.
 DriveState worse(const DriveState& a, const DriveState& b) noexcept;
+
+/// A state on the way from one to another, share in [0, 1]: numbers linear between both, the worse category, the first
+/// refusal of the two.
+DriveState between(const DriveState& a, const DriveState& b, float share) noexcept;
 
 /// A curve's numbers over the gradient, the bins of DriveCurve.
 using DriveTable = std::array<DriveState, 512>;

@@ -225,7 +225,8 @@ void addDrive(const TraversabilityMap& map, maps::Cell cell, const Direction& he
   const std::string balance = "rover equilibrium on the soil of the class";
   out.causes.push_back({"slip_angle_rad", hold.slip_angle_rad, kNotKnown, balance, ""});
   out.causes.push_back({"side_force_over_load", hold.side_force_over_load, kNotKnown, balance, ""});
-  out.causes.push_back({"stability_margin_rad", hold.stability_margin_rad, kNotKnown, balance, ""});
+  if (std::isfinite(hold.stability_margin_rad))
+    out.causes.push_back({"stability_margin_rad", hold.stability_margin_rad, kNotKnown, balance, ""});
   out.causes.push_back({"sinkage_m", static_cast<double>(state.sinkage_m), kNotKnown, drives,
                         limitRemark(static_cast<double>(state.sinkage_m), map.model().rover().clearance_m)});
   out.causes.push_back(
@@ -236,6 +237,11 @@ void addDrive(const TraversabilityMap& map, maps::Cell cell, const Direction& he
                         "estimated DP/W compared with required DP/W", ""});
   out.causes.push_back({"cost_J_per_m", static_cast<double>(grid->cost().costPerMetre(code, heading)),
                         kNotKnown, "weighted sum of energy, time and risk", toText(state.refusal)});
+}
+
+// Whether doubt about the pull of the ground may lift it.
+bool isOfSoil(Refusal refusal) {
+  return refusal == Refusal::Pull || refusal == Refusal::SideForce;
 }
 
 void judge(const TraversabilityMap& map, maps::Cell cell, const Direction& heading, Explanation& out) {
@@ -266,7 +272,12 @@ void judge(const TraversabilityMap& map, maps::Cell cell, const Direction& headi
   const double along = seenBy(code, heading).along, climb = climbAt(map.published()->cost(), code, heading);
   const DriveState state = map.published()->cost().detail(code, heading);
   out.category = state.category;
-  out.probability = map.model().category(*ground, DriveCurve::gradient(DriveCurve::bin(climb))).probability;
+  out.probability = map.model().category(*ground, climb).probability;
+  if (state.refusal != Refusal::None && state.refusal != Refusal::Category) {  // whatever the pull, it is not driven
+    if (out.category != terramech::Category::Dangerous)
+      out.probability = isOfSoil(state.refusal) ? static_cast<double>(state.weak) : 1.0;
+    out.category = terramech::Category::Dangerous;
+  }
   out.verdict = std::string(terramech::name(out.category)) + ": available DP/W " +
                 std::to_string(ground->pull.value) + ", required DP/W " + std::to_string(along);
   if (climb > along + 1.0 / 256)

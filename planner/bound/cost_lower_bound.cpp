@@ -21,11 +21,11 @@ double valueAt(const DriveCurve& curve, int bin) noexcept {
              : kInfinity;
 }
 
-// The highest level that a line of this tilt can have below the curve, over whole bins.
+// The highest level that a line of this tilt can have below the curve, which is linear between nodes.
 double levelUnder(const DriveCurve& curve, int reach, double tilt) noexcept {
   double level = kInfinity;
   for (int bin = -reach; bin <= reach; ++bin)
-    level = std::min(level, valueAt(curve, bin) - tilt * bin * kBinWidth - std::abs(tilt) * kBinWidth / 2);
+    level = std::min(level, valueAt(curve, bin) - tilt * bin * kBinWidth);
   return level;
 }
 
@@ -38,7 +38,7 @@ double tiltOf(const DriveCurve& curve) noexcept {
 CostLowerBound lineUnder(const DriveCurve& curve, int reach) noexcept {
   CostLowerBound best{std::max(levelUnder(curve, reach, 0.0), 0.0), 0.0};
   if (!std::isfinite(best.level_J_per_m)) return best;
-  const double steepest = (reach + 0.5) * kBinWidth;
+  const double steepest = reach * kBinWidth;
   for (double share = 1.0; share > 0.1; share /= 2) {
     const double tilt = share * tiltOf(curve), level = levelUnder(curve, reach, tilt);
     if (level * (1.0 - kLeastShare) * 0.92 < std::abs(tilt) * steepest) continue;
@@ -60,7 +60,7 @@ CostLowerBounds::CostLowerBounds(const costmap::DriveCost& cost)
 
 int CostLowerBounds::reachOf(costmap::CellCode cell) noexcept {
   const double steepest = std::hypot(cell.dzDx(), cell.dzDy());
-  return std::min(static_cast<int>(std::ceil(steepest / kBinWidth + 0.5)), kReach);
+  return std::min(static_cast<int>(std::ceil(steepest / kBinWidth)), kReach);
 }
 
 CostLowerBound CostLowerBounds::of(costmap::CellCode cell) const noexcept {

@@ -28,13 +28,14 @@ double priceAt(const DriveCurve& curve, int bin, int row = 0) noexcept {
                                            : kInfinity;
 }
 
-// A lower bound of cost less tilt * gradient, over all gradients along of a range and across from one on.
+// A lower bound of cost less tilt * gradient, over all gradients along of a range and across from one on: linear between
+// nodes, it is least at one, and rows never get cheaper.
 double leastIn(const DriveCurve& curve, double tilt, double from, double to, double across) noexcept {
   double least = kInfinity;
-  const int row = std::min(DriveCurve::row(across), curve.lastRow());
+  const int row = std::min(static_cast<int>(across * DriveCurve::kRowsPerUnit), curve.lastRow());
   for (int bin = static_cast<int>(std::floor(from / kBin)); bin <= static_cast<int>(std::ceil(to / kBin));
        ++bin)
-    least = std::min(least, priceAt(curve, bin, row) - tilt * bin * kBin - std::abs(tilt) * kBin / 2);
+    least = std::min(least, priceAt(curve, bin, row) - tilt * bin * kBin);
   return least;
 }
 

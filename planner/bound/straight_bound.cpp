@@ -39,7 +39,8 @@ class CheapestMetres {
   double operator()(CellCode cell) const noexcept {
     if (cell.curve() >= least_.size()) return kInfinity;
     const double steepest = std::hypot(cell.dzDx(), cell.dzDy()) * (1.0 + 1e-9);  // headings are rounded
-    const int reach = std::clamp(DriveCurve::bin(steepest) - kMiddle, 0, kMiddle);
+    const int reach =
+        static_cast<int>(std::min(std::ceil(steepest * DriveCurve::kBinsPerUnit), double{kMiddle}));
     return least_[cell.curve()][static_cast<std::size_t>(reach)];
   }
 

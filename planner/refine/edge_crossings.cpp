@@ -40,37 +40,55 @@ __attribute__((target("avx2"))) void pricesByVector(const DriveCost& cost, CellC
   const __m256d most_along = _mm256_set1_pd(cost.limits().max_along),
                 most_across = _mm256_set1_pd(cost.limits().max_across);
   const __m256d no_sign = _mm256_castsi256_pd(_mm256_set1_epi64x(0x7fffffffffffffff));
-  const __m256d half = _mm256_set1_pd(0.5), minus_half = _mm256_set1_pd(-0.5), one = _mm256_set1_pd(1.0);
   const __m256i evens = _mm256_setr_epi32(0, 2, 4, 6, 0, 2, 4, 6);
   const DriveCurve& curve = cost.curves()[cell.curve()];
   const float* prices = curve.rows();
   const __m128i last_row = _mm_set1_epi32(curve.lastRow());
-  const __m256d rows_per_unit = _mm256_set1_pd(DriveCurve::kRowsPerUnit),
-                same = _mm256_set1_pd(DriveCurve::kSame);
+  const __m256d bins_per_unit = _mm256_set1_pd(DriveCurve::kBinsPerUnit),
+                rows_per_unit = _mm256_set1_pd(DriveCurve::kRowsPerUnit),
+                same = _mm256_set1_pd(DriveCurve::kSame), middle = _mm256_set1_pd(DriveCurve::kBins / 2),
+                last_place = _mm256_set1_pd(DriveCurve::kBins - 1);
+  const __m128 no_cost = _mm_set1_ps(kNoCost);
+  const auto lanes = [&](__m256d mask) __attribute__((target("avx2"))) {
+    return _mm256_castsi256_si128(_mm256_permutevar8x32_epi32(_mm256_castpd_si256(mask), evens));
+  };
+  // DriveCurve::between(): the node before, whether the place is off it (-1), and the share of the next.
+  struct Betweens {
+    __m128i whole, off;
+    __m128 share;
+  };
+  const auto betweens = [&](__m256d place) __attribute__((target("avx2"))) {
+    const __m128i whole = _mm256_cvttpd_epi32(_mm256_add_pd(place, same));
+    const __m256d rest = _mm256_sub_pd(place, _mm256_cvtepi32_pd(whole));
+    const __m128i off = lanes(_mm256_cmp_pd(rest, same, _CMP_GT_OQ));
+    return Betweens{whole, off, _mm_and_ps(_mm256_cvtpd_ps(rest), _mm_castsi128_ps(off))};
+  };
   for (int i = 0; i < count; i += EdgeCrossings::kVector) {
     const __m256d x = _mm256_loadu_pd(motions.x + i), y = _mm256_loadu_pd(motions.y + i);
     const __m256d along = _mm256_add_pd(_mm256_mul_pd(steps_x, x), _mm256_mul_pd(steps_y, y));
     const __m256d across =
         _mm256_and_pd(_mm256_sub_pd(_mm256_mul_pd(steps_y, x), _mm256_mul_pd(steps_x, y)), no_sign);
+    const __m256d place = _mm256_add_pd(_mm256_mul_pd(along, bins_per_unit), middle);
     const __m256d allowed =
-        _mm256_and_pd(_mm256_cmp_pd(_mm256_and_pd(along, no_sign), most_along, _CMP_LE_OQ),
-                      _mm256_cmp_pd(across, most_across, _CMP_LE_OQ));
-    const __m256d bins = _mm256_mul_pd(along, _mm256_set1_pd(256.0));
-    const __m256d whole = _mm256_cvtepi32_pd(_mm256_cvttpd_epi32(bins)), rest = _mm256_sub_pd(bins, whole);
-    const __m256d up = _mm256_and_pd(_mm256_cmp_pd(rest, half, _CMP_GE_OQ), one),
-                  down = _mm256_and_pd(_mm256_cmp_pd(rest, minus_half, _CMP_LE_OQ), one);
-    const __m128i bin = _mm_add_epi32(_mm256_cvttpd_epi32(_mm256_sub_pd(_mm256_add_pd(whole, up), down)),
-                                      _mm_set1_epi32(DriveCurve::kBins / 2));
-    const __m128i in_table = _mm_and_si128(_mm_cmpgt_epi32(bin, _mm_set1_epi32(-1)),
-                                           _mm_cmpgt_epi32(_mm_set1_epi32(DriveCurve::kBins), bin));
-    const __m128i lanes =
-        _mm256_castsi256_si128(_mm256_permutevar8x32_epi32(_mm256_castpd_si256(allowed), evens));
-    const __m128 known = _mm_castsi128_ps(_mm_and_si128(lanes, in_table));
-    const __m128i row = _mm_min_epi32(
-        _mm256_cvttpd_epi32(_mm256_ceil_pd(_mm256_sub_pd(_mm256_mul_pd(across, rows_per_unit), same))),
-        last_row);
-    const __m128i at = _mm_add_epi32(bin, _mm_slli_epi32(row, kBinBits));
-    const __m128 price = _mm_mask_i32gather_ps(_mm_set1_ps(kNoCost), prices, at, known, 4);
+        _mm256_and_pd(_mm256_and_pd(_mm256_cmp_pd(_mm256_and_pd(along, no_sign), most_along, _CMP_LE_OQ),
+                                    _mm256_cmp_pd(across, most_across, _CMP_LE_OQ)),
+                      _mm256_and_pd(_mm256_cmp_pd(place, _mm256_setzero_pd(), _CMP_GE_OQ),
+                                    _mm256_cmp_pd(place, last_place, _CMP_LE_OQ)));
+    const __m128 known = _mm_castsi128_ps(lanes(allowed));
+    const Betweens bin = betweens(place), row = betweens(_mm256_mul_pd(across, rows_per_unit));
+    const auto nodes = [&](__m128i of_row, __m128i of_bin) __attribute__((target("avx2"))) {
+      const __m128i at = _mm_add_epi32(of_bin, _mm_slli_epi32(_mm_min_epi32(of_row, last_row), kBinBits));
+      return _mm_mask_i32gather_ps(no_cost, prices, at, known, 4);
+    };
+    const __m128i next_bin = _mm_sub_epi32(bin.whole, bin.off), next_row = _mm_sub_epi32(row.whole, row.off);
+    const __m128 a = nodes(row.whole, bin.whole), b = nodes(row.whole, next_bin),
+                 c = nodes(next_row, bin.whole), d = nodes(next_row, next_bin);
+    const __m128 free = _mm_and_ps(_mm_and_ps(_mm_cmplt_ps(a, no_cost), _mm_cmplt_ps(b, no_cost)),
+                                   _mm_and_ps(_mm_cmplt_ps(c, no_cost), _mm_cmplt_ps(d, no_cost)));
+    const __m128 below = _mm_add_ps(a, _mm_mul_ps(bin.share, _mm_sub_ps(b, a))),
+                 above = _mm_add_ps(c, _mm_mul_ps(bin.share, _mm_sub_ps(d, c)));
+    const __m128 price =
+        _mm_blendv_ps(no_cost, _mm_add_ps(below, _mm_mul_ps(row.share, _mm_sub_ps(above, below))), free);
     _mm_storeu_ps(paid + i,
                   _mm_add_ps(_mm_set1_ps(here), _mm_mul_ps(price, _mm_loadu_ps(motions.length + i))));
   }

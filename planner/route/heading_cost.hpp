@@ -31,21 +31,10 @@ class HeadingCost {
     const double along = cell.stepsX() * x_ + cell.stepsY() * y_;
     const double across = cell.stepsY() * x_ - cell.stepsX() * y_;
     if (!(std::abs(along) <= max_along_ && std::abs(across) <= max_across_)) return kBlocked;
-    const int bin = rounded(along * 256.0) + costmap::DriveCurve::kBins / 2;
-    if (static_cast<unsigned>(bin) >= costmap::DriveCurve::kBins) return kBlocked;
-    const costmap::DriveCurve& curve = curves_[cell.curve()];
-    const int row = std::min(costmap::DriveCurve::row(across), curve.lastRow());
-    return curve.rows()[row * costmap::DriveCurve::kBins + bin];
+    return curves_[cell.curve()].price(along, across);
   }
 
  private:
-  // lround, halves away from zero, without the call.
-  static int rounded(double value) noexcept {
-    const int whole = static_cast<int>(value);
-    const double rest = value - whole;
-    return whole + static_cast<int>(rest >= 0.5) - static_cast<int>(rest <= -0.5);
-  }
-
   static constexpr float kBlocked = std::numeric_limits<float>::infinity();
 
   const costmap::DriveCurve* curves_;

@@ -17,18 +17,20 @@ double wrapped(double angle_rad) noexcept {
 
 using costmap::DriveCurve;
 
-// Gradients along the heading at which the cost becomes finite or infinite in some row: between bins, and at the limit.
+// Gradients along the heading at which the cost becomes finite or infinite in some row: the nodes to both sides, and the limit.
 std::vector<double> limitsAlong(const costmap::DriveCost& cost, const DriveCurve& curve) {
-  std::vector<double> limits{cost.limits().max_along, -cost.limits().max_along};
+  std::vector<double> limits{cost.limits().max_along, -cost.limits().max_along, DriveCurve::gradient(0),
+                             DriveCurve::gradient(DriveCurve::kBins - 1)};
   const auto finite = [&](int row, int bin) {
     return std::isfinite(curve.rows()[static_cast<std::size_t>(row * DriveCurve::kBins + bin)]);
   };
   for (int bin = 1; bin < DriveCurve::kBins; ++bin) {
-    const double edge = DriveCurve::gradient(bin) - 0.5 / 256.0;
     bool changes = false;
     for (int row = 0; row <= curve.lastRow(); ++row)
       changes = changes || finite(row, bin) != finite(row, bin - 1);
-    if (changes) limits.push_back(edge);
+    if (!changes) continue;
+    limits.push_back(DriveCurve::gradient(bin - 1));
+    limits.push_back(DriveCurve::gradient(bin));
   }
   return limits;
 }
@@ -42,7 +44,8 @@ std::vector<double> limitsAcross(const costmap::DriveCost& cost, const DriveCurv
     if (std::equal(here, here + DriveCurve::kBins, here + DriveCurve::kBins,
                    [&](float a, float b) { return finite(a) == finite(b); }))
       continue;
-    limits.push_back((row + DriveCurve::kSame) / DriveCurve::kRowsPerUnit);
+    limits.push_back(static_cast<double>(row) / DriveCurve::kRowsPerUnit);
+    limits.push_back((row + 1.0) / DriveCurve::kRowsPerUnit);
   }
   return limits;
 }

@@ -101,7 +101,7 @@ class HeadingSets {
 };
 
 /// Every heading for which the drive cost of a cell is finite. Between two neighbouring headings at which the gradient
-/// along or across passes from one entry of the cost's table to another, the cost is one number; so it is enough to ask
+/// along or across passes a node of the cost's table, the cost is finite or infinite throughout; so it is enough to ask
 /// once between each two, and at each. Arcs are widened by 1e-7 rad: no heading is missed by rounding.
 HeadingSet allowedHeadings(const costmap::DriveCost& cost, costmap::CellCode cell);
 HeadingSet allowedHeadings(const costmap::DriveCost& cost, costmap::CellCode cell,

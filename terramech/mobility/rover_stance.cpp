@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/Dense>
 
@@ -79,6 +80,7 @@ RoverStance::Loads RoverStance::lifted(const Planar& at, Loads shares) const {
 }
 
 double RoverStance::stabilityMargin_rad(const Planar& demand) const {
+  if (height_m_ == 0.0) return std::numeric_limits<double>::quiet_NaN();
   const auto margin = [&](double reach_m, double demand_towards) {
     return std::atan2(reach_m, height_m_) - std::atan(demand_towards);
   };

@@ -41,8 +41,8 @@ class RoverStance {
   Loads shares(const Planar& demand) const;
 
   /// The angle [rad] by which the plane may still tilt, to the edge that is nearest, before the centre of
-  /// mass passes over it; < 0: the rover has tipped (static stability). pi/2 less the tilt where the height
-  /// is 0, which counts as unknown.
+  /// mass passes over it; < 0: the rover has tipped (static stability). NaN where the height is 0, which
+  /// counts as unknown.
   double stabilityMargin_rad(const Planar& demand) const;
 
  private:

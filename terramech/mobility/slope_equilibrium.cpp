@@ -48,6 +48,11 @@ class SlopeEquilibrium::Solver {
     return wheel({wheelLoad_N(rover_), slip, slip_angle_rad});
   }
   const RoverStance& stance() const { return stance_; }
+  Solver withEvenLoads() const {
+    Rover even = rover_;
+    even.centre_of_mass_height_m = even.centre_of_mass_ahead_m = even.centre_of_mass_left_m = 0.0;
+    return {forces_, even, options_};
+  }
 
  private:
   /// What is sought: slip, slip angle, and the difference that takes the yaw moment.
@@ -73,6 +78,7 @@ class SlopeEquilibrium::Solver {
   Balance balance(const Planar& demand, double normal_N, const Unknowns& u) const noexcept;
   Scan scan(const Planar& demand) const noexcept;
   bool solve(const Planar& demand, double normal_N, Unknowns& u) const noexcept;
+  SlopeFailure gripOf(const SlopeState& state, const Unknowns& u) const noexcept;
   void fill(const Planar& demand, double normal_N, const Unknowns& u, SlopeState& state) const noexcept;
   WheelMotion motionOf(int wheel, const Unknowns& u) const noexcept;
   double normal_N(const Gradient& gradient) const noexcept;
@@ -221,7 +227,9 @@ void SlopeEquilibrium::Solver::fill(const Planar& demand, double normal, const U
   (skids ? state.slip_difference : state.steering_rad) = u.difference;
   state.body_turn_rad = crabs ? 0.0 : 0.0 - u.angle_rad;
   const double turn = -state.body_turn_rad, c = std::cos(turn), s = std::sin(turn);
-  const auto shares = stance_.shares({demand.x * c - demand.y * s, demand.x * s + demand.y * c});
+  const Planar of_body{demand.x * c - demand.y * s, demand.x * s + demand.y * c};
+  state.stability_margin_rad = stance_.stabilityMargin_rad(of_body);
+  const auto shares = stance_.shares(of_body);
   const double radius = rover_.wheel.radius_m;
   // All rims turn at the greatest speed that the fastest may have.
   double power_W_per_mps = 0.0, fastest = 0.0;
@@ -253,38 +261,33 @@ void SlopeEquilibrium::Solver::fill(const Planar& demand, double normal, const U
   state.pull_reserve = std::min(most - demand.x, demand.x - least);
 }
 
+SlopeFailure SlopeEquilibrium::Solver::gripOf(const SlopeState& state, const Unknowns& u) const noexcept {
+  if (state.sinkage_m > kSunk * rover_.wheel.radius_m) return SlopeFailure::Sinks;
+  if (state.slip + 0.5 * std::abs(state.slip_difference) > options_.max_slip) return SlopeFailure::CannotPull;
+  if (std::abs(u.angle_rad) > options_.max_slip_angle_rad) return SlopeFailure::Slides;
+  if (std::abs(state.torque_Nm) > rover_.max_torque_Nm) return SlopeFailure::Torque;
+  return SlopeFailure::None;
+}
+
 SlopeState SlopeEquilibrium::Solver::at(const Gradient& gradient) const noexcept {
   const Planar demand = demandOf(gradient);
   const double normal = normal_N(gradient);
   SlopeState state;
-  state.stability_margin_rad = stance_.stabilityMargin_rad(demand);
-  if (state.stability_margin_rad < 0.0) {
-    state.failure = SlopeFailure::Tips;
-    return state;
-  }
   const Scan scanned = scan(demand);
   state.side_reserve = scanned.most_side - std::abs(demand.y);
   Unknowns u = scanned.start;
-  const bool solved = scanned.found && solve(demand, normal, u);
-  if (!solved) {
+  if (scanned.found && solve(demand, normal, u)) {
+    fill(demand, normal, u, state);
+    state.grip = gripOf(state, u);
+  } else {
     const bool sunk = forces_.atNode(kSinkageRatio, (WheelForcesTable::kSlips - 1) / 2, 0) > kSunk;
-    state.failure = sunk                                     ? SlopeFailure::Sinks
-                    : !scanned.pulls && gradient.along > 0.0 ? SlopeFailure::CannotPull
-                                                             : SlopeFailure::Slides;
+    state.stability_margin_rad = stance_.stabilityMargin_rad(demand);  // no turn of the body is known
+    state.grip = sunk                                     ? SlopeFailure::Sinks
+                 : !scanned.pulls && gradient.along > 0.0 ? SlopeFailure::CannotPull
+                                                          : SlopeFailure::Slides;
     state.side_reserve = std::min(state.side_reserve, 0.0);
-    return state;
   }
-  fill(demand, normal, u, state);
-  if (state.stability_margin_rad < 0.0)
-    state.failure = SlopeFailure::Tips;
-  else if (state.sinkage_m > kSunk * rover_.wheel.radius_m)
-    state.failure = SlopeFailure::Sinks;
-  else if (state.slip + 0.5 * std::abs(state.slip_difference) > options_.max_slip)
-    state.failure = SlopeFailure::CannotPull;
-  else if (std::abs(u.angle_rad) > options_.max_slip_angle_rad)
-    state.failure = SlopeFailure::Slides;
-  else if (std::abs(state.torque_Nm) > rover_.max_torque_Nm)
-    state.failure = SlopeFailure::Torque;
+  state.failure = state.stability_margin_rad < 0.0 ? SlopeFailure::Tips : state.grip;
   return state;
 }
 
@@ -323,6 +326,12 @@ SlopeEquilibrium::SlopeEquilibrium(const Soil& soil, const Rover& rover, const S
 
 SlopeEquilibrium::SlopeEquilibrium(const RefinedModel& model, const Rover& rover, const SlopeOptions& options)
     : solver_(std::make_shared<const Solver>(WheelForcesTable(model, rover), rover, options)) {}
+
+SlopeEquilibrium::SlopeEquilibrium(std::shared_ptr<const Solver> solver) : solver_(std::move(solver)) {}
+
+SlopeEquilibrium SlopeEquilibrium::withEvenLoads() const {
+  return SlopeEquilibrium(std::make_shared<const Solver>(solver_->withEvenLoads()));
+}
 
 SlopeState SlopeEquilibrium::at(const Gradient& gradient) const noexcept {
   return solver_->at(gradient);

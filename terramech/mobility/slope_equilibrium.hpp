@@ -43,7 +43,10 @@ const char* name(SlopeFailure failure);
 /// then what was found until it failed.
 struct SlopeState {
   SlopeFailure failure = SlopeFailure::None;
-  double stability_margin_rad = 0.0;  ///< RoverStance::stabilityMargin_rad()
+  SlopeFailure grip =
+      SlopeFailure::None;  ///< the same of a rover that cannot tip: loads beyond stay on the last edge
+  double stability_margin_rad =
+      0.0;            ///< RoverStance::stabilityMargin_rad() of the body as it lies on the plane
   double slip = 0.0;  ///< of the wheels along their planes; the mean of left and right of a skid rover
   double slip_angle_rad =
       0.0;  ///< from the wheels' planes to the way made good, left positive; the mean of the axles
@@ -104,8 +107,12 @@ class SlopeEquilibrium {
   /// Whether the rover is alike on its left and right.
   bool symmetric() const noexcept;
 
+  /// The same wheels on a rover that no slope moves load in: its centre of mass on the ground, in the middle.
+  SlopeEquilibrium withEvenLoads() const;
+
  private:
   class Solver;
+  explicit SlopeEquilibrium(std::shared_ptr<const Solver> solver);
   std::shared_ptr<const Solver> solver_;
 };
 

@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <vector>
 
 #include <site_fixture.hpp>
 
@@ -91,30 +93,94 @@ TEST(CrossSlope, AllowsNothingThatTheEquilibriumRefuses) {
   EXPECT_LE(given_up, held / 50);
 }
 
-// Property: a metre costs no less, against straight driving, than in the equilibrium. Tolerance: straight driving has
-// even loads, the equilibrium moves them.
-TEST(CrossSlope, CostsWhatTheEquilibriumAdds) {
+// Property: away from failure a metre costs and slips what the equilibrium says at that gradient, row 0 included, whatever the
+// steering. Tolerance: linear between nodes and equilibria.
+TEST(CrossSlope, CostsAndSlipsAsTheEquilibrium) {
   std::mt19937 random(2);
-  int seen = 0;
-  for (int soils = 0; soils < 4; ++soils) {
-    const terramech::Soil soil = drawn(random);
-    const GroundModel model = modelOf(soil);
-    const terramech::SlopeEquilibrium exact(soil, testRover());
-    const DriveCost cost = costOf(model, certain(model));
-    for (double along = -0.2; along <= 0.2; along += 0.023)
-      for (double across = 0.013; across <= 0.3; across += 0.02) {
-        const DriveState crossing = cost.detail(plane(along, across), {});
-        const DriveState straight = cost.detail(plane(along, 0.0), {});
-        const auto exact_crossing = exact.at({along, across}), exact_straight = exact.at({along, 0.0});
-        if (crossing.refusal != Refusal::None || !exact_crossing.holds() || !exact_straight.holds()) continue;
-        ++seen;
-        const double ratio = exact_crossing.energy_J_per_m / exact_straight.energy_J_per_m;
-        EXPECT_GE(static_cast<double>(crossing.energy_J_per_m / straight.energy_J_per_m),
-                  0.96 * std::min(ratio, 3.0))
-            << soils << ' ' << along << ' ' << across;
+  std::vector<double> ratios;
+  for (const auto steering :
+       {terramech::Steering::AllWheel, terramech::Steering::Skid, terramech::Steering::Ackermann})
+    for (int soils = 0; soils < 2; ++soils) {
+      const terramech::Soil soil = drawn(random);
+      terramech::Rover rover = testRover();
+      rover.steering = steering;
+      const GroundModel model(
+          {.rover = rover, .classes = {{.number = 0, .soil = soil}}, .policy = {.allow_dangerous = true}});
+      const terramech::SlopeEquilibrium exact(soil, rover);
+      const DriveCost cost = costOf(model, certain(model));
+      for (double along = -0.2; along <= 0.2; along += 0.023)
+        for (double across = 0.0; across <= 0.3; across += 0.02) {
+          const CellCode cell = plane(along, across);
+          const DriveState state = cost.detail(cell, {});
+          const auto want = exact.at({cell.dzDx(), cell.dzDy()});
+          if (!want.holds() || want.pull_reserve < 0.03 || want.side_reserve < 0.03) continue;
+          ASSERT_EQ(state.refusal, Refusal::None) << soils << ' ' << along << ' ' << across;
+          const double metre_J = want.energy_J_per_m * std::hypot(1.0, along);
+          ratios.push_back(static_cast<double>(state.energy_J_per_m) / metre_J);
+          EXPECT_NEAR(static_cast<double>(state.slip), want.slip, 0.02) << along << ' ' << across;
+        }
+    }
+  ASSERT_GT(ratios.size(), 500u);
+  std::ranges::sort(ratios);
+  EXPECT_GT(ratios.front(), 0.93);
+  EXPECT_NEAR(ratios[ratios.size() / 2], 1.0, 0.01);
+  EXPECT_LT(ratios.back(), 1.10);
+}
+
+// Property: from heading to heading a degree apart the cost on a plane changes as the equilibrium's energy does, without steps.
+TEST(CrossSlope, CostOverHeadingIsSmooth) {
+  const GroundModel model = modelOf(testSand());
+  const terramech::SlopeEquilibrium exact(testSand(), testRover());
+  const DriveCost cost = costOf(model, certain(model));
+  int compared = 0;
+  for (double steepness = 0.04; steepness < 0.34; steepness += 0.03) {
+    const CellCode cell = plane(steepness, 0.0);
+    double before_J = 0.0, exact_J = 0.0;
+    for (int degree = 0; degree <= 180; ++degree) {
+      const double heading = degree * std::numbers::pi / 180.0;
+      const double along = cell.dzDx() * std::cos(heading);
+      const double now_J =
+          static_cast<double>(cost.costPerMetre(cell, {std::cos(heading), std::sin(heading)}));
+      const auto state = exact.at({along, cell.dzDx() * std::sin(heading)});
+      const bool away = state.holds() && state.pull_reserve > 0.03 && state.side_reserve > 0.03;
+      const double metre_J = away ? state.energy_J_per_m * std::hypot(1.0, along) : 0.0;
+      if (away && exact_J > 0.0) {
+        ++compared;
+        EXPECT_NEAR(now_J / before_J, metre_J / exact_J, 0.015) << steepness << ' ' << degree;
       }
+      before_J = now_J;
+      exact_J = metre_J;
+    }
   }
-  EXPECT_GT(seen, 200);
+  EXPECT_GT(compared, 800);
+}
+
+// A skid rover as tall as it is dangerous: base and track 0.9 m, centre of mass 1.2 m high, tips at atan(0.45 / 1.2) = 20.6 degrees on
+// ground that holds far more.
+TEST(CrossSlope, RefusesWhatTipsAndNothingFarFromIt) {
+  terramech::Soil clay = testSand();
+  clay.cohesion_Pa = 20000.0;
+  terramech::Rover tall = testRover();
+  tall.steering = terramech::Steering::Skid;
+  tall.wheelbase_m = tall.track_m = 0.9;
+  tall.centre_of_mass_height_m = 1.2;
+  tall.max_pitch_rad = tall.max_roll_rad = 0.6;
+  tall.max_torque_Nm = 200.0;
+  const GroundModel model({.rover = tall, .classes = {{.number = 0, .soil = clay}}});
+  const DriveCost cost = costOf(model, certain(model));
+  const double tips = 0.45 / 1.2;
+  for (int degree = 0; degree < 360; degree += 5) {
+    const double heading = degree * std::numbers::pi / 180.0;
+    const Direction towards{std::cos(heading), std::sin(heading)};
+    // Closed form: over a side or an end by its own share of the tilt.
+    const double over = (tips + 0.02) * std::max(std::abs(towards.x), std::abs(towards.y));
+    if (over > tips)
+      EXPECT_EQ(cost.detail(plane(tips + 0.02, 0.0), towards).refusal, Refusal::Tips) << degree;
+    EXPECT_EQ(cost.detail(plane(0.3, 0.0), towards).refusal, Refusal::None) << degree;
+    EXPECT_EQ(cost.detail(plane(0.02, 0.0), towards).refusal, Refusal::None) << degree;
+  }
+  EXPECT_FALSE(cost.hold(plane(0.3, 0.0), {}).stability_margin_rad < 0.05);
+  EXPECT_STREQ(toText(Refusal::Tips), "tips: centre of mass past the wheels");
 }
 
 // Property: cost, risk and refusal never fall as the slope across grows, nor when the rover crosses it the other

@@ -51,9 +51,48 @@ TEST(DriveCost, LooksUpTheGradientAlongTheHeading) {
     const float seen = cost.costPerMetre(cell, towards(heading));
     if (std::abs(along) > 0.9 || std::abs(across) > 0.9)
       EXPECT_TRUE(std::isinf(seen));
-    else  // Closed form: bins of 1/256 centred on k/256.
-      EXPECT_EQ(seen, std::round(along * 256.0) + 256.0);
+    else  // Closed form: linear between nodes at k/256, each of which costs its number; single precision.
+      EXPECT_NEAR(static_cast<double>(seen), along * 256.0 + 256.0, 1e-4);
   }
+}
+
+// Brute force: the four nodes about a gradient, in double precision; refused where one of them that counts is.
+TEST(DriveCost, IsLinearBetweenFourNodesAndRefusesWhatOneOfThemDoes) {
+  std::mt19937 random(7);
+  constexpr int kRows = 30;
+  auto rows = std::make_shared<std::vector<float>>();
+  for (int i = 0; i < kRows * DriveCurve::kBins; ++i)
+    rows->push_back(random() % 20 == 0 ? std::numeric_limits<float>::infinity()
+                                       : static_cast<float>(random() % 1000));
+  DriveCurve curve = numbered();
+  curve.crossing = rows;
+  std::uniform_real_distribution<double> gradient(-0.9, 0.9);
+  int refused = 0, allowed = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const double snap = i % 3 == 0 ? 256.0 : 1e6;  // on nodes, too
+    const double along = std::round(gradient(random) * snap) / snap,
+                 across = std::round(gradient(random) * snap) / snap;
+    const double x = along * 256.0 + 256.0, y = std::abs(across) * 64.0;
+    double want = 0.0;
+    for (const int dx : {0, 1})
+      for (const int dy : {0, 1}) {
+        const double fx = x - std::floor(x), fy = y - std::floor(y);
+        const double weight = (dx == 1 ? fx : 1.0 - fx) * (dy == 1 ? fy : 1.0 - fy);
+        if (weight <= 0.0) continue;
+        const int row = std::min(static_cast<int>(std::floor(y)) + dy, kRows - 1);
+        want += weight *
+                static_cast<double>(
+                    (*rows)[static_cast<std::size_t>(row * DriveCurve::kBins + static_cast<int>(x) + dx)]);
+      }
+    const float price = curve.price(along, across);
+    ASSERT_EQ(std::isinf(price), std::isinf(want)) << along << ' ' << across;
+    ++(std::isinf(want) ? refused : allowed);
+    if (std::isfinite(want)) ASSERT_NEAR(static_cast<double>(price), want, 1e-3);
+  }
+  EXPECT_GT(refused, 2000);
+  EXPECT_GT(allowed, 8000);
+  EXPECT_TRUE(std::isinf(curve.price(1.0, 0.0)));
+  EXPECT_TRUE(std::isinf(curve.price(-1.001, 0.0)));
 }
 
 TEST(DriveCost, UnknownAndBlockedGroundIsRefusedInEveryHeading) {

@@ -127,7 +127,7 @@ TEST(CellRoute, ThreadsNarrowCones) {
     ask(testing::randomBand(seed, -0.20, -0.19), seed, kSide * (kSide / 2) + kSide / 2, arcs);
   }
   for (unsigned seed = 1; seed <= 10; ++seed)
-    ask(testing::randomBand(seed, -0.31, 0.002), seed, kSide * (kSide / 2) + kSide / 2, contours);
+    ask(testing::randomBand(seed, -0.31, 1.0 / 256.0), seed, kSide * (kSide / 2) + kSide / 2, contours);
   for (const Answers& answers : {descents, arcs, contours}) {
     EXPECT_EQ(answers.wrong, 0);
     EXPECT_GT(answers.found, 100);

@@ -63,7 +63,8 @@ TEST(Reach, DescendingAlongAContourReachesWhatLiesBelow) {
   EXPECT_FALSE(reaches(map, {6.0, 5.5}, {6.0, 7.5}));
   EXPECT_TRUE(reaches(map, {6.0, 5.5}, {6.0, 3.5}));
   EXPECT_FALSE(reaches(map, {1.0, 5.5}, {11.0, 5.5}));
-  EXPECT_TRUE(reaches(map, {1.0, 5.5}, {11.0, 5.4}));
+  // By 0.3 * 0.2 / 10: the first node of the curve that is allowed lies at 1/256.
+  EXPECT_TRUE(reaches(map, {1.0, 5.5}, {11.0, 5.3}));
 }
 
 // What brute force reaches from the middle of a map: every motion by MotionCost between the points of a lattice, four to a

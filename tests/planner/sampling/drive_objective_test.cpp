@@ -8,13 +8,13 @@
 namespace talus::planner {
 namespace drive_objective_test {
 
-// Closed form: up at 51/256 (drawn_map.hpp) costs 100 g more a metre than down; a wall costs the most there is.
+// Closed form: up at 205/1024 (drawn_map.hpp), where a parabola of 400 is off by 400 / 4 / 256^2 between nodes, costs 100 g more a metre than down; a wall costs the most there is.
 TEST(DriveObjective, ThereAndBackDiffer) {
   const testing::OmplGround ramp(testing::drawn({">>>>#", ">>>>#"}), {{0.5, 0.5}, {3.5, 0.5}});
   const auto low = ramp.at({0.5, 0.5}), high = ramp.at({2.5, 0.5}), wall = ramp.at({4.5, 0.5});
-  const double g = 51.0 / 256, down_J = 2 * (10 + 400 * g * g);
-  EXPECT_NEAR(ramp.objective->motionCost(low.get(), high.get()).value(), down_J + 200 * g, 1e-4);
-  EXPECT_NEAR(ramp.objective->motionCost(high.get(), low.get()).value(), down_J, 1e-4);
+  const double g = 205.0 / 1024, down_J = 2 * (10 + 400 * g * g);
+  EXPECT_NEAR(ramp.objective->motionCost(low.get(), high.get()).value(), down_J + 200 * g, 0.0032);
+  EXPECT_NEAR(ramp.objective->motionCost(high.get(), low.get()).value(), down_J, 0.0032);
   EXPECT_EQ(ramp.objective->motionCost(low.get(), wall.get()).value(), kBlockedMotionCost_J);
   EXPECT_FALSE(ramp.objective->isSymmetric());
   EXPECT_EQ(ramp.objective->stateCost(low.get()).value(), 0.0);

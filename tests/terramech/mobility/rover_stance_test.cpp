@@ -64,12 +64,12 @@ TEST(RoverStance, TipsWhereTheWeightLeavesTheWheels) {
   EXPECT_LT(stance.stabilityMargin_rad({0.0, 1.1}), 0.0);
 }
 
-TEST(RoverStance, WithoutAHeightNoLoadMovesAndNothingTips) {
+TEST(RoverStance, WithoutAHeightNoLoadMovesAndNoMarginIsKnown) {
   Rover r = rover();
   r.centre_of_mass_height_m = 0.0;
   const RoverStance stance{r};
   EXPECT_EQ(stance.shares({0.4, 0.3})[0], 0.25);  // Closed form
-  EXPECT_GT(stance.stabilityMargin_rad({5.0, 5.0}), 0.0);
+  EXPECT_TRUE(std::isnan(stance.stabilityMargin_rad({0.1, 0.0})));
 }
 
 std::string refusal(const Rover& r) {

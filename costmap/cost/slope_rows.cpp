@@ -1,0 +1,77 @@
+#include <algorithm>
+#include <cmath>
+
+#include <talus/common/constants.hpp>
+#include <talus/costmap/cost/slope_rows.hpp>
+
+namespace talus::costmap {
+
+using terramech::SlopeFailure;
+using terramech::SlopeState;
+
+// Beyond the equilibria a gradient of one more is an angle of at most one more.
+double SlopeRow::margin_rad(double along) const {
+  if (margins_rad.empty()) return kNaN;
+  if (along <= margins_rad.front().first)
+    return margins_rad.front().second - (margins_rad.front().first - along);
+  if (along >= margins_rad.back().first)
+    return margins_rad.back().second - (along - margins_rad.back().first);
+  const auto next = std::ranges::upper_bound(margins_rad, along, {}, &std::pair<double, double>::first);
+  const auto& [a, at_a] = *(next - 1);
+  const auto& [b, at_b] = *next;
+  return at_a + (along - a) / (b - a) * (at_b - at_a);
+}
+
+SlopeRows::SlopeRows(const terramech::SlopeEquilibrium& equilibrium, double low, double high, double step)
+    : equilibrium_(equilibrium),
+      step_(step),
+      low_(static_cast<int>(std::floor(low / step))),
+      high_(static_cast<int>(std::ceil(high / step))) {}
+
+SlopeRow SlopeRows::solved(double across) const {
+  SlopeRow row{.step = step_};
+  std::size_t begin = 0, length = 0, most = 0;
+  for (int node = low_; node <= high_; ++node) {
+    row.all.push_back(at(node * step_, across));
+    length = row.all.back().grip == SlopeFailure::None ? length + 1 : 0;
+    if (length <= most) continue;
+    most = length;
+    begin = row.all.size() - length;
+  }
+  if (most == 0) return row;
+  row.first_node = low_ + static_cast<int>(begin);
+  const int last_node = row.first_node + static_cast<int>(most) - 1;
+  row.states.assign(row.all.begin() + static_cast<std::ptrdiff_t>(begin),
+                    row.all.begin() + static_cast<std::ptrdiff_t>(begin + most));
+  row.first = row.first_node > low_ ? edge(row.first_node, -1, across) : -kInfinity;
+  row.last = last_node < high_ ? edge(last_node, 1, across) : kInfinity;
+  const auto add = [&](double along, const SlopeState& state) {
+    row.margins_rad.emplace_back(along, state.stability_margin_rad);
+  };
+  if (std::isfinite(row.first) && row.first < row.first_node * step_) add(row.first, at(row.first, across));
+  for (std::size_t k = 0; k < most; ++k) add((row.first_node + static_cast<int>(k)) * step_, row.states[k]);
+  if (std::isfinite(row.last) && row.last > last_node * step_) add(row.last, at(row.last, across));
+  return row;
+}
+
+SlopeState SlopeRows::at(double along, double across) const {
+  SlopeState left = equilibrium_.at({along, across});
+  if (equilibrium_.symmetric()) return left;
+  SlopeState right = equilibrium_.at({along, -across});
+  left.stability_margin_rad = right.stability_margin_rad =
+      std::min(left.stability_margin_rad, right.stability_margin_rad);
+  if (left.grip != SlopeFailure::None) return left;
+  return right.grip == SlopeFailure::None && right.energy_J_per_m < left.energy_J_per_m ? left : right;
+}
+
+// The last gradient that holds from a node towards its neighbour, which does not.
+double SlopeRows::edge(int node, int towards, double across) const {
+  double holds = node * step_, fails = (node + towards) * step_;
+  for (int halving = 0; halving < 7; ++halving) {
+    const double middle = 0.5 * (holds + fails);
+    (at(middle, across).grip == SlopeFailure::None ? holds : fails) = middle;
+  }
+  return holds;
+}
+
+}  // namespace talus::costmap
