@@ -177,16 +177,18 @@ CrossSlope::CrossSlope(const terramech::SlopeEquilibrium& equilibrium, const Lev
     for (int bin = 0; bin < kBins; ++bin) {
       const double along = DriveCurve::gradient(bin), node = along / kAlongStep - here.first_node;
       Climbs climbs;
-      if (std::abs(along) > limits.max_along + 2.0 / DriveCurve::kBinsPerUnit || along - gain < -1.0)
+      if (std::abs(along) > limits.max_along + 2.0 / DriveCurve::kBinsPerUnit)
         climbs.refused = Refusal::Pitch;
+      else if (here.margin_rad(along) < kUpright_rad)
+        climbs.refused = Refusal::Tips;
+      else if (along - gain < -1.0)
+        climbs.refused = reasonAt(row, bin);
       else
         climbs = {.costs = placeOf(along + interpolated(dearer.climb, node)),
                   .leaves = placeOf(
                       level.last - strengthToLose(along, row * kRowStep, {level.last, level.thrust}, losses)),
                   .brakes = placeOf(along - gain),
                   .more_slip = static_cast<float>(interpolated(dearer.slip, node))};
-      if (climbs.refused == Refusal::None && here.margin_rad(along) < kUpright_rad)
-        climbs.refused = Refusal::Tips;
       climbs_.push_back(row == 0 ? climbs : harder(climbs, at(row - 1, bin)));
     }
   }
@@ -281,7 +283,7 @@ void CrossSlope::tabulateSteepest() {
 
 double CrossSlope::climb(const Gradient& gradient) const noexcept {
   const double place = gradient.along * DriveCurve::kBinsPerUnit + kBins / 2;
-  if (!(place >= 0.0 && place <= kBins - 1.0)) return kNowhere;
+  if (!(place >= 0.0 && place < DriveCurve::kLastPlace)) return kNowhere;
   const auto bin = DriveCurve::between(place),
              row = DriveCurve::between(std::abs(gradient.across) * DriveCurve::kRowsPerUnit);
   bool refused = false;

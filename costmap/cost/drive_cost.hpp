@@ -67,6 +67,8 @@ struct DriveCurve {
   static constexpr int kBinsPerUnit = 256;
   static constexpr int kRowsPerUnit = 64;
   static constexpr double kSame = 1e-9;  ///< of a bin or row: nearer to a node is on it
+  static constexpr double kLastPlace =
+      kBins - 1 - kSame;  ///< along, counted in bins; what is read ends before it
   /// Row 0, nothing across: energy + weighted time + weighted risk, in joules.
   std::array<float, kBins> cost_J_per_m;
   /// All rows, row 0 first; the last stands for all beyond. None: crossing costs nothing more. In no bin may
@@ -102,7 +104,7 @@ struct DriveCurve {
   float price(double along, double across) const noexcept {
     constexpr float blocked = std::numeric_limits<float>::infinity();
     const double place = along * kBinsPerUnit + kBins / 2;
-    if (!(place >= 0.0 && place <= kBins - 1)) return blocked;
+    if (!(place >= 0.0 && place < kLastPlace)) return blocked;
     const Between bin = between(place), row = between((across < 0.0 ? -across : across) * kRowsPerUnit);
     const int last = lastRow(), next_bin = bin.share > 0.0F ? 1 : 0,
               next_row = row.whole + (row.share > 0.0F ? 1 : 0);

@@ -26,10 +26,11 @@ DriveState DriveCost::detail(CellCode cell, Direction heading) const noexcept {
   if (cell.curve() >= curves_.size()) return refused(Refusal::Unknown);
   const terramech::Gradient d = gradientSeen(cell, heading);
   const double place = d.along * DriveCurve::kBinsPerUnit + DriveCurve::kBins / 2;
-  const double inside = std::clamp(place, 0.0, DriveCurve::kBins - 1.0);
+  const double inside = std::clamp(place, 0.0, DriveCurve::kBins - 1.5);
   DriveState state = states_[cell.curve()] ? detailAt(cell.curve(), inside, d.across) : DriveState{};
   if (std::abs(d.across) > limits_.max_across) state.refusal = Refusal::Roll;
-  if (std::abs(d.along) > limits_.max_along || inside != place) state.refusal = Refusal::Pitch;
+  if (std::abs(d.along) > limits_.max_along || !(place >= 0.0 && place < DriveCurve::kLastPlace))
+    state.refusal = Refusal::Pitch;
   return state;
 }
 

@@ -55,7 +55,7 @@ DriveState between(const DriveState& a, const DriveState& b, float share) noexce
         &DriveState::time_s_per_m, &DriveState::risk_per_m, &DriveState::weak, &DriveState::pull_margin})
     out.*number = a.*number + share * (b.*number - a.*number);
   out.category = std::max(a.category, b.category);
-  if (out.refusal == Refusal::None) out.refusal = b.refusal;
+  if (out.refusal == Refusal::None || b.refusal == Refusal::Tips) out.refusal = b.refusal;
   return out;
 }
 

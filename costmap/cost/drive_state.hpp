@@ -46,7 +46,7 @@ struct DriveState {
 DriveState worse(const DriveState& a, const DriveState& b) noexcept;
 
 /// A state on the way from one to another, share in [0, 1]: numbers linear between both, the worse category, the first
-/// refusal of the two.
+/// refusal of the two but for tipping, which no ground mends.
 DriveState between(const DriveState& a, const DriveState& b, float share) noexcept;
 
 /// A curve's numbers over the gradient, the bins of DriveCurve.

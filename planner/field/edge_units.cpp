@@ -47,29 +47,53 @@ int stepsWithin(double limit, double per_step) {
   return steps;
 }
 
+// A place counted in nodes, >= 0, in an offset and a share of 16 bits.
+std::uint64_t placed(double place, int stride, int shift) {
+  const DriveCurve::Between at = DriveCurve::between(place);
+  constexpr int kShares = 128;
+  const int share = std::clamp(static_cast<int>(std::lround(at.share * kShares)), 1, kShares - 1);
+  return static_cast<std::uint64_t>(at.whole * stride) |
+         static_cast<std::uint64_t>(at.share > 0.0F ? share : 0) << shift;
+}
+
 }  // namespace
+
+EdgeUnits::Places EdgeUnits::places(const DriveCost::Limits& limits, double per_step, int shift) const {
+  const int most = per_step == 1.0 ? 2048 : 4096;  // of CellCode
+  const int along = stepsWithin(limits.max_along, per_step),
+            across = stepsWithin(limits.max_across, per_step);
+  Places all{.along = {}, .across = {}, .middle = most};
+  for (int steps = -most; steps <= most; ++steps) {
+    const double bin = steps * per_step / 4.0 + reach_, row = std::abs(steps) * per_step / 16.0;
+    const auto offset = static_cast<Place>(shift);
+    all.along.push_back(std::abs(steps) <= along ? offset + placed(bin, 1, 32) : offset | kRefusedAlong);
+    all.across.push_back(std::abs(steps) <= across ? placed(row, 2 * width(), 48) : kRefusedAcross);
+  }
+  return all;
+}
 
 EdgeUnits::EdgeUnits(const DriveCost& cost, double resolution_m, double coarsening) {
   const CostRange range = costRange(cost);
   const auto& limits = cost.limits();
   unit_J_ = unitFor(range, resolution_m) * coarsening;
-  const auto scale = [&limits](double per_step) {
-    return Scale{.bins = per_step / 4.0,
-                 .rows = per_step / 16.0,
-                 .along = stepsWithin(limits.max_along, per_step),
-                 .across = stepsWithin(limits.max_across, per_step)};
+  const auto most = [](double limit, double per_unit) {
+    return static_cast<int>(std::ceil(std::min(limit, 2.0) * per_unit));
   };
-  straight_ = scale(1.0);
-  diagonal_ = scale(kDiagonal);
-  const auto most = [](double a, double b) { return static_cast<int>(std::ceil(std::max(a, b))); };
-  reach_ = most(straight_.along * straight_.bins, diagonal_.along * diagonal_.bins);
-  const int rows = most(straight_.across * straight_.rows, diagonal_.across * diagonal_.rows);
+  reach_ = most(limits.max_along, DriveCurve::kBinsPerUnit);
+  straight_ = places(limits, 1.0, 0);
+  diagonal_ = places(limits, kDiagonal, width());
+  const int rows = most(limits.max_across, DriveCurve::kRowsPerUnit) + 1;
   const double straight_units = 0.5 * resolution_m / unit_J_;
   std::vector<std::uint16_t> halves(static_cast<std::size_t>(2 * reach_ + 1));
   for (const auto& curve : cost.curves()) {
-    first_.push_back(static_cast<std::int32_t>(pairs_.size()));
-    last_row_.push_back(std::min(curve.lastRow(), rows));
-    for (int row = 0; row <= last_row_.back(); ++row)
+    first_.push_back(static_cast<std::uint32_t>(pairs_.size()));
+    for (int row = 0; row <= rows; ++row) {
+      if (row > curve.lastRow()) {  // as the last
+        const auto stride = static_cast<std::ptrdiff_t>(2 * width());
+        pairs_.resize(pairs_.size() + static_cast<std::size_t>(stride));
+        std::copy_n(pairs_.end() - 2 * stride, stride, pairs_.end() - stride);
+        continue;
+      }
       for (const double units : {straight_units, straight_units * std::numbers::sqrt2}) {
         for (std::size_t i = 0; i < halves.size(); ++i) {
           const int bin = static_cast<int>(i) - reach_ + DriveCurve::kBins / 2;
@@ -80,6 +104,7 @@ EdgeUnits::EdgeUnits(const DriveCost& cost, double resolution_m, double coarseni
           pairs_.push_back(halves[i] | static_cast<std::uint32_t>(halves[halves.size() - 1 - i]) << 16);
         pairs_.push_back(~std::uint32_t{0});
       }
+    }
   }
   cheapest_edge_ = std::isfinite(range.least_J_per_m)
                        ? std::max(2U, 2U * static_cast<unsigned>(inUnits(
@@ -94,79 +119,51 @@ void EdgeUnits::halves(const CellCode* cells, std::size_t count, Halves* out,
 }
 
 #if defined(__x86_64__)
-namespace {
-
-// Places of four lanes between nodes, as EdgeUnits::between().
-struct Betweens {
-  __m128i whole, share;
-};
-__attribute__((target("avx2"))) inline Betweens betweens(__m256d place, int shares) noexcept {
-  const __m256d same = _mm256_set1_pd(DriveCurve::kSame);
-  const __m128i whole = _mm256_cvttpd_epi32(_mm256_add_pd(place, same));
-  const __m256d rest = _mm256_sub_pd(place, _mm256_cvtepi32_pd(whole));
-  const __m128i nearest =
-      _mm256_cvttpd_epi32(_mm256_add_pd(_mm256_mul_pd(rest, _mm256_set1_pd(shares)), _mm256_set1_pd(0.5)));
-  const __m128i share = _mm_min_epi32(_mm_max_epi32(nearest, _mm_set1_epi32(1)), _mm_set1_epi32(shares - 1));
-  const __m256i evens = _mm256_setr_epi32(0, 2, 4, 6, 0, 2, 4, 6);
-  const __m256d off = _mm256_cmp_pd(rest, same, _CMP_GT_OQ);
-  return {whole, _mm_and_si128(share, _mm256_castsi256_si128(
-                                          _mm256_permutevar8x32_epi32(_mm256_castpd_si256(off), evens)))};
-}
-
-// Two weights of 16 bits in each lane, twice.
-__attribute__((target("avx2"))) inline __m256i twice(__m128i first, __m128i second) noexcept {
-  const __m256i both = _mm256_cvtepu32_epi64(_mm_or_si128(first, _mm_slli_epi32(second, 16)));
-  return _mm256_or_si256(both, _mm256_slli_epi64(both, 32));
-}
-
-}  // namespace
-
-// Four lanes: the headings from east to north-west, each with its opposite.
+// Four lanes of 64 bits: the headings from east to north-west, each with its opposite; in each, numbers of 16 bits.
 __attribute__((target("avx2"))) void EdgeUnits::halvesByVector(const CellCode* cells, std::size_t count,
                                                                Halves* out) const noexcept {
-  const __m128i blocked = _mm_set1_epi32(-1), width_twice = _mm_set1_epi32(2 * width()),
-                whole_share = _mm_set1_epi32(kShares), one = _mm_set1_epi32(1);
-  const __m128i most_along =
-                    _mm_setr_epi32(straight_.along, diagonal_.along, straight_.along, diagonal_.along),
-                most_across =
-                    _mm_setr_epi32(straight_.across, diagonal_.across, straight_.across, diagonal_.across);
-  const __m256d bins = _mm256_setr_pd(straight_.bins, diagonal_.bins, straight_.bins, diagonal_.bins),
-                rows = _mm256_setr_pd(straight_.rows, diagonal_.rows, straight_.rows, diagonal_.rows),
-                reach = _mm256_set1_pd(reach_);
-  const __m128i shift = _mm_setr_epi32(0, width(), 0, width());
+  const __m128i blocked = _mm_set1_epi32(-1);
   const __m128i headings_first = _mm_setr_epi8(0, 1, 4, 5, 8, 9, 12, 13, 2, 3, 6, 7, 10, 11, 14, 15);
-  // From (ahead, back) of a node and of the next one to both ahead, both back.
-  const __m256i by_direction = _mm256_setr_epi8(0, 1, 4, 5, 2, 3, 6, 7, 8, 9, 12, 13, 10, 11, 14, 15, 0, 1, 4,
-                                                5, 2, 3, 6, 7, 8, 9, 12, 13, 10, 11, 14, 15);
-  const __m256i none = _mm256_setzero_si256(), half = _mm256_set1_epi32(1 << (2 * kShareBits - 1));
-  const auto* pairs = reinterpret_cast<const long long*>(pairs_.data());
+  // From (ahead, back) of a node and of the next one to both ahead, both back; the shares of bin and row four times.
+  const __m256i by_direction = _mm256_broadcastsi128_si256(
+                    _mm_setr_epi8(0, 1, 4, 5, 2, 3, 6, 7, 8, 9, 12, 13, 10, 11, 14, 15)),
+                of_bin = _mm256_broadcastsi128_si256(
+                    _mm_setr_epi8(4, 5, 4, 5, 4, 5, 4, 5, 12, 13, 12, 13, 12, 13, 12, 13)),
+                of_row = _mm256_broadcastsi128_si256(
+                    _mm_setr_epi8(6, 7, 6, 7, 6, 7, 6, 7, 14, 15, 14, 15, 14, 15, 14, 15));
+  const __m256i none = _mm256_setzero_si256(), all = _mm256_set1_epi16(kShares),
+                here = _mm256_set1_epi32(kShares), to_next = _mm256_set1_epi32(0x0001ffff),
+                half = _mm256_set1_epi32(1 << (2 * kShareBits - 1)), stopped = _mm256_set1_epi32(0xffff);
+  const std::size_t next_row = 2 * static_cast<std::size_t>(width());
   for (std::size_t i = 0; i < count; ++i) {
     const CellCode cell = cells[i];
     __m128i made = blocked;
     if (cell.curve() < first_.size()) {
-      const int x = cell.stepsX(), y = cell.stepsY();
-      const __m128i along = _mm_setr_epi32(x, x + y, y, y - x),
-                    across = _mm_abs_epi32(_mm_setr_epi32(y, y - x, x, x + y));
-      const __m128i refused = _mm_or_si128(_mm_cmpgt_epi32(across, most_across),
-                                           _mm_cmpgt_epi32(_mm_abs_epi32(along), most_along));
-      const __m256i refused_twice = _mm256_cvtepi32_epi64(refused),
-                    read = _mm256_xor_si256(refused_twice, _mm256_set1_epi32(-1));
-      const Betweens bin =
-          betweens(_mm256_add_pd(_mm256_mul_pd(_mm256_cvtepi32_pd(along), bins), reach), kShares);
-      const Betweens row = betweens(_mm256_mul_pd(_mm256_cvtepi32_pd(across), rows), kShares);
-      const __m128i last = _mm_set1_epi32(last_row_[cell.curve()]);
-      const __m128i base =
-          _mm_add_epi32(_mm_add_epi32(bin.whole, shift), _mm_set1_epi32(first_[cell.curve()]));
-      const auto nodes = [&](__m128i of_row) __attribute__((target("avx2"))) {
-        const __m128i at = _mm_add_epi32(base, _mm_mullo_epi32(_mm_min_epi32(of_row, last), width_twice));
-        return _mm256_shuffle_epi8(_mm256_mask_i32gather_epi64(none, pairs, at, read, 4), by_direction);
+      const std::uint32_t* curve = pairs_.data() + first_[cell.curve()];
+      const std::array<Place, 4> places = placesOf(cell);
+      const auto nodes = [&](std::size_t row) __attribute__((target("avx2"))) {
+        const auto two = [&](std::size_t k) __attribute__((target("avx2"))) {
+          const auto at = [&](std::size_t lane) __attribute__((target("avx2"))) {
+            return _mm_loadl_epi64(
+                reinterpret_cast<const __m128i*>(curve + static_cast<std::uint32_t>(places[lane]) + row));
+          };
+          return _mm_unpacklo_epi64(at(k), at(k + 1));
+        };
+        return _mm256_shuffle_epi8(_mm256_inserti128_si256(_mm256_castsi128_si256(two(0)), two(2), 1),
+                                   by_direction);
       };
-      const __m256i low = nodes(row.whole), high = nodes(_mm_add_epi32(row.whole, one));
-      const __m128i left = _mm_sub_epi32(whole_share, bin.share),
-                    below = _mm_sub_epi32(whole_share, row.share);
-      const __m256i low_weights = twice(_mm_mullo_epi32(left, below), _mm_mullo_epi32(bin.share, below)),
-                    high_weights =
-                        twice(_mm_mullo_epi32(left, row.share), _mm_mullo_epi32(bin.share, row.share));
+      const __m256i low = nodes(0), high = nodes(next_row);
+      const auto two = [&](std::size_t k)
+          __attribute__((target("avx2"))) {  // not from memory: it waits for both
+        return _mm_unpacklo_epi64(_mm_cvtsi64_si128(static_cast<long long>(places[k])),
+                                  _mm_cvtsi64_si128(static_cast<long long>(places[k + 1])));
+      };
+      const __m256i place = _mm256_inserti128_si256(_mm256_castsi128_si256(two(0)), two(2), 1);
+      const __m256i bin = _mm256_shuffle_epi8(place, of_bin), row = _mm256_shuffle_epi8(place, of_row);
+      // This node's share and the next one's, twice.
+      const __m256i bins = _mm256_add_epi16(here, _mm256_sign_epi16(bin, to_next));
+      const __m256i low_weights = _mm256_mullo_epi16(bins, _mm256_sub_epi16(all, row)),
+                    high_weights = _mm256_mullo_epi16(bins, row);
       const __m256i sum = _mm256_srli_epi32(
           _mm256_add_epi32(
               _mm256_add_epi32(_mm256_madd_epi16(low, low_weights), _mm256_madd_epi16(high, high_weights)),
@@ -176,9 +173,9 @@ __attribute__((target("avx2"))) void EdgeUnits::halvesByVector(const CellCode* c
       const __m256i stops = _mm256_or_si256(
           _mm256_and_si256(_mm256_cmpgt_epi16(none, low), _mm256_cmpgt_epi16(low_weights, none)),
           _mm256_and_si256(_mm256_cmpgt_epi16(none, high), _mm256_cmpgt_epi16(high_weights, none)));
-      const __m256i free = _mm256_andnot_si256(refused_twice, _mm256_cmpeq_epi32(stops, none));
-      const __m256i priced =
-          _mm256_or_si256(_mm256_and_si256(sum, free), _mm256_andnot_si256(free, _mm256_set1_epi32(0xffff)));
+      const __m256i refused = _mm256_srai_epi16(_mm256_or_si256(bin, row), 15);
+      const __m256i free = _mm256_cmpeq_epi32(_mm256_or_si256(stops, refused), none);
+      const __m256i priced = _mm256_blendv_epi8(stopped, sum, free);
       const __m256i packed = _mm256_packus_epi32(priced, priced);
       made = _mm_unpacklo_epi64(_mm256_castsi256_si128(packed), _mm256_extracti128_si256(packed, 1));
     }
@@ -195,10 +192,9 @@ bool EdgeUnits::extends(const EdgeUnits& older) const noexcept {
   const auto begins = [](const auto& longer, const auto& shorter) {
     return longer.size() >= shorter.size() && std::equal(shorter.begin(), shorter.end(), longer.begin());
   };
-  const auto same = [](const Scale& a, const Scale& b) { return a.along == b.along && a.across == b.across; };
   return unit_J_ == older.unit_J_ && reach_ == older.reach_ && cheapest_edge_ == older.cheapest_edge_ &&
-         same(straight_, older.straight_) && same(diagonal_, older.diagonal_) &&
-         begins(pairs_, older.pairs_) && begins(first_, older.first_) && begins(last_row_, older.last_row_);
+         straight_.along == older.straight_.along && straight_.across == older.straight_.across &&
+         begins(pairs_, older.pairs_) && begins(first_, older.first_);
 }
 
 }  // namespace talus::planner

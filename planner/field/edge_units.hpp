@@ -48,30 +48,36 @@ class EdgeUnits {
  private:
   void halvesByVector(const costmap::CellCode* cells, std::size_t count, Halves* out) const noexcept;
 
-  // Steps of CellCode, as the sums and differences of dz/dx and dz/dy along a diagonal, to bins and rows of a curve.
-  struct Scale {
-    double bins, rows;  // of a step
-    int along, across;  // most steps that the limits allow
-  };
-  // A place between nodes, its share in 1/kShares; between nodes it is never on one.
+  // Shares of a place between nodes, in 1/kShares; between nodes it is never on one.
   static constexpr int kShareBits = 7, kShares = 1 << kShareBits;
-  struct Between {
-    int whole, share;
+  // Where gradients lie among the nodes: an offset into pairs_ in the lower half; above it in 16 bits each the shares of the next bin
+  // and row. What the limits refuse has the highest bit of its share. Those of along and across add up.
+  using Place = std::uint64_t;
+  static constexpr Place kRefusedAlong = Place{1} << 47, kRefusedAcross = Place{1} << 63;
+  struct Places {
+    std::vector<Place> along, across;  // by steps of CellCode, the middle is none
+    int middle = 0;
   };
-  static Between between(double place) noexcept {
-    const int whole = static_cast<int>(place + costmap::DriveCurve::kSame);
-    const double rest = place - whole;
-    const int share = std::clamp(static_cast<int>(rest * kShares + 0.5), 1, kShares - 1);
-    return {whole, rest > costmap::DriveCurve::kSame ? share : 0};
-  }
+  Places places(const costmap::DriveCost::Limits& limits, double per_step, int shift) const;
   int width() const noexcept { return 2 * reach_ + 2; }
 
+  // The steps along and across of the headings from east to north-west.
+  std::array<Place, 4> placesOf(costmap::CellCode cell) const noexcept {
+    const int x = cell.stepsX(), y = cell.stepsY();
+    const Place* straight_along = straight_.along.data() + straight_.middle;
+    const Place* straight_across = straight_.across.data() + straight_.middle;
+    const Place* diagonal_along = diagonal_.along.data() + diagonal_.middle;
+    const Place* diagonal_across = diagonal_.across.data() + diagonal_.middle;
+    return {straight_along[x] + straight_across[y], diagonal_along[x + y] + diagonal_across[y - x],
+            straight_along[y] + straight_across[x], diagonal_along[y - x] + diagonal_across[x + y]};
+  }
+
   // Of each curve, by row: halves of a straight step by bin from -reach_ to reach_, each with its opposite in the
-  // upper half, and a blocked one; then those of a diagonal step.
+  // upper half, and a blocked one; then those of a diagonal step. The last row of a curve is there once more.
   std::vector<std::uint32_t> pairs_;
-  std::vector<std::int32_t> first_, last_row_;  // by curve
+  std::vector<std::uint32_t> first_;  // by curve
   int reach_ = 0;
-  Scale straight_{}, diagonal_{};
+  Places straight_, diagonal_;
   double unit_J_ = 1.0;
   std::uint32_t cheapest_edge_ = 1;
 };
@@ -80,39 +86,34 @@ inline EdgeUnits::Halves EdgeUnits::halves(costmap::CellCode cell) const noexcep
   Halves halves;
   halves.fill(kBlocked);
   if (cell.curve() >= first_.size()) return halves;
-  const int x = cell.stepsX(), y = cell.stepsY();
-  const int last = last_row_[cell.curve()];
-  const std::uint32_t* first = pairs_.data() + first_[cell.curve()];
-  const auto fill = [&](const Scale& scale, int shift, GridHeading heading, int along, int across) {
-    if (std::abs(across) > scale.across || std::abs(along) > scale.along) return;
-    const Between bin = between(along * scale.bins + reach_), row = between(std::abs(across) * scale.rows);
+  const std::uint32_t* curve = pairs_.data() + first_[cell.curve()];
+  const std::array<Place, 4> places = placesOf(cell);
+  constexpr std::array<GridHeading, 4> kHeadings{kEast, kNorthEast, kNorth, kNorthWest};
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    if ((places[k] & (kRefusedAlong | kRefusedAcross)) != 0) continue;
+    const std::uint32_t* pair = curve + static_cast<std::uint32_t>(places[k]);
+    const auto of_bin = static_cast<std::uint32_t>(places[k] >> 32) & 0xffffU,
+               of_row = static_cast<std::uint32_t>(places[k] >> 48);
     std::uint32_t ahead = 0, back = 0;
-    bool blocked = false, opposite_blocked = false;
-    for (const int next : {0, 1}) {
-      const std::uint32_t* pair = first + std::min(row.whole + next, last) * 2 * width() + shift + bin.whole;
-      const int of_row = next == 1 ? row.share : kShares - row.share;
-      for (const int right : {0, 1}) {
-        const auto weight =
-            static_cast<std::uint32_t>(of_row * (right == 1 ? bin.share : kShares - bin.share));
+    bool blocked = false, back_blocked = false;
+    for (const std::uint32_t up : {0U, 1U})
+      for (const std::uint32_t right : {0U, 1U}) {
+        const std::uint32_t weight =
+            (up == 1 ? of_row : kShares - of_row) * (right == 1 ? of_bin : kShares - of_bin);
         if (weight == 0) continue;
-        const std::uint32_t to = pair[right] & 0xffffU, from = pair[right] >> 16;
-        blocked = blocked || to == kBlocked;
-        ahead += weight * to;
-        back += weight * from;
-        opposite_blocked = opposite_blocked || from == kBlocked;
+        const std::uint32_t node = pair[2 * static_cast<std::uint32_t>(width()) * up + right];
+        ahead += weight * (node & 0xffffU);
+        back += weight * (node >> 16);
+        blocked = blocked || (node & 0xffffU) == kBlocked;
+        back_blocked = back_blocked || node >> 16 == kBlocked;
       }
-    }
     constexpr int kBits = 2 * kShareBits;
     constexpr std::uint32_t kHalf = 1U << (kBits - 1);
-    if (!blocked) halves[heading] = static_cast<std::uint16_t>((ahead + kHalf) >> kBits);
-    if (!opposite_blocked)
-      halves[static_cast<std::size_t>(opposite(heading))] =
+    if (!blocked) halves[kHeadings[k]] = static_cast<std::uint16_t>((ahead + kHalf) >> kBits);
+    if (!back_blocked)
+      halves[static_cast<std::size_t>(opposite(kHeadings[k]))] =
           static_cast<std::uint16_t>((back + kHalf) >> kBits);
-  };
-  fill(straight_, 0, kEast, x, y);
-  fill(straight_, 0, kNorth, y, x);
-  fill(diagonal_, width(), kNorthEast, x + y, y - x);
-  fill(diagonal_, width(), kNorthWest, y - x, x + y);
+  }
   return halves;
 }
 

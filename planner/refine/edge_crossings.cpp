@@ -1,6 +1,9 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <utility>
 
 #if defined(__x86_64__)
 #include <immintrin.h>
@@ -47,7 +50,7 @@ __attribute__((target("avx2"))) void pricesByVector(const DriveCost& cost, CellC
   const __m256d bins_per_unit = _mm256_set1_pd(DriveCurve::kBinsPerUnit),
                 rows_per_unit = _mm256_set1_pd(DriveCurve::kRowsPerUnit),
                 same = _mm256_set1_pd(DriveCurve::kSame), middle = _mm256_set1_pd(DriveCurve::kBins / 2),
-                last_place = _mm256_set1_pd(DriveCurve::kBins - 1);
+                last_place = _mm256_set1_pd(DriveCurve::kLastPlace);
   const __m128 no_cost = _mm_set1_ps(kNoCost);
   const auto lanes = [&](__m256d mask) __attribute__((target("avx2"))) {
     return _mm256_castsi256_si128(_mm256_permutevar8x32_epi32(_mm256_castpd_si256(mask), evens));
@@ -73,22 +76,31 @@ __attribute__((target("avx2"))) void pricesByVector(const DriveCost& cost, CellC
         _mm256_and_pd(_mm256_and_pd(_mm256_cmp_pd(_mm256_and_pd(along, no_sign), most_along, _CMP_LE_OQ),
                                     _mm256_cmp_pd(across, most_across, _CMP_LE_OQ)),
                       _mm256_and_pd(_mm256_cmp_pd(place, _mm256_setzero_pd(), _CMP_GE_OQ),
-                                    _mm256_cmp_pd(place, last_place, _CMP_LE_OQ)));
-    const __m128 known = _mm_castsi128_ps(lanes(allowed));
+                                    _mm256_cmp_pd(place, last_place, _CMP_LT_OQ)));
+    const __m128i known = lanes(allowed);
     const Betweens bin = betweens(place), row = betweens(_mm256_mul_pd(across, rows_per_unit));
-    const auto nodes = [&](__m128i of_row, __m128i of_bin) __attribute__((target("avx2"))) {
-      const __m128i at = _mm_add_epi32(of_bin, _mm_slli_epi32(_mm_min_epi32(of_row, last_row), kBinBits));
-      return _mm_mask_i32gather_ps(no_cost, prices, at, known, 4);
+    // Prices of a row at four nodes and the ones after them; of a place on a node the next is the node itself.
+    const auto nodes = [&](__m128i of_row) __attribute__((target("avx2"))) {
+      const __m128i at = _mm_and_si128(
+          _mm_add_epi32(bin.whole, _mm_slli_epi32(_mm_min_epi32(of_row, last_row), kBinBits)), known);
+      alignas(16) std::array<std::int32_t, 4> lane;
+      _mm_store_si128(reinterpret_cast<__m128i*>(lane.data()), at);
+      const auto pair = [&](std::size_t k) __attribute__((target("avx2"))) {
+        return _mm_castsi128_ps(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(prices + lane[k])));
+      };
+      const __m128 first = _mm_unpacklo_ps(pair(0), pair(1)), second = _mm_unpacklo_ps(pair(2), pair(3));
+      const __m128 here_ps = _mm_movelh_ps(first, second), next = _mm_movehl_ps(second, first);
+      return std::pair{here_ps, _mm_blendv_ps(here_ps, next, _mm_castsi128_ps(bin.off))};
     };
-    const __m128i next_bin = _mm_sub_epi32(bin.whole, bin.off), next_row = _mm_sub_epi32(row.whole, row.off);
-    const __m128 a = nodes(row.whole, bin.whole), b = nodes(row.whole, next_bin),
-                 c = nodes(next_row, bin.whole), d = nodes(next_row, next_bin);
+    const auto [a, b] = nodes(row.whole);
+    const auto [c, d] = nodes(_mm_sub_epi32(row.whole, row.off));
     const __m128 free = _mm_and_ps(_mm_and_ps(_mm_cmplt_ps(a, no_cost), _mm_cmplt_ps(b, no_cost)),
                                    _mm_and_ps(_mm_cmplt_ps(c, no_cost), _mm_cmplt_ps(d, no_cost)));
+    const __m128 allowed_ps = _mm_and_ps(free, _mm_castsi128_ps(known));
     const __m128 below = _mm_add_ps(a, _mm_mul_ps(bin.share, _mm_sub_ps(b, a))),
                  above = _mm_add_ps(c, _mm_mul_ps(bin.share, _mm_sub_ps(d, c)));
-    const __m128 price =
-        _mm_blendv_ps(no_cost, _mm_add_ps(below, _mm_mul_ps(row.share, _mm_sub_ps(above, below))), free);
+    const __m128 price = _mm_blendv_ps(
+        no_cost, _mm_add_ps(below, _mm_mul_ps(row.share, _mm_sub_ps(above, below))), allowed_ps);
     _mm_storeu_ps(paid + i,
                   _mm_add_ps(_mm_set1_ps(here), _mm_mul_ps(price, _mm_loadu_ps(motions.length + i))));
   }

@@ -174,8 +174,9 @@ TEST(CrossSlope, RefusesWhatTipsAndNothingFarFromIt) {
     const Direction towards{std::cos(heading), std::sin(heading)};
     // Closed form: over a side or an end by its own share of the tilt.
     const double over = (tips + 0.02) * std::max(std::abs(towards.x), std::abs(towards.y));
-    if (over > tips)
+    if (over > tips) {
       EXPECT_EQ(cost.detail(plane(tips + 0.02, 0.0), towards).refusal, Refusal::Tips) << degree;
+    }
     EXPECT_EQ(cost.detail(plane(0.3, 0.0), towards).refusal, Refusal::None) << degree;
     EXPECT_EQ(cost.detail(plane(0.02, 0.0), towards).refusal, Refusal::None) << degree;
   }

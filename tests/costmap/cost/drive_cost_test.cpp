@@ -87,7 +87,9 @@ TEST(DriveCost, IsLinearBetweenFourNodesAndRefusesWhatOneOfThemDoes) {
     const float price = curve.price(along, across);
     ASSERT_EQ(std::isinf(price), std::isinf(want)) << along << ' ' << across;
     ++(std::isinf(want) ? refused : allowed);
-    if (std::isfinite(want)) ASSERT_NEAR(static_cast<double>(price), want, 1e-3);
+    if (std::isfinite(want)) {
+      ASSERT_NEAR(static_cast<double>(price), want, 1e-3);
+    }
   }
   EXPECT_GT(refused, 2000);
   EXPECT_GT(allowed, 8000);
