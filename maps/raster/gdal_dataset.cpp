@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <filesystem>
 #include <iterator>
 #include <mutex>
 #include <new>
@@ -9,6 +8,7 @@
 #include <gdal_priv.h>
 
 #include <talus/common/input_error.hpp>
+#include <talus/maps/raster/complete_file.hpp>
 #include <talus/maps/raster/file_text.hpp>
 #include <talus/maps/raster/gdal_dataset.hpp>
 #include <talus/maps/raster/referenced_files.hpp>
@@ -21,25 +21,6 @@ namespace {
 constexpr const char* kDrivers[] = {"GTiff",   "COG",    "PDS4",        "PDS", "ISIS3", "ENVI",
                                     "AAIGrid", "netCDF", "JP2OpenJPEG", "PNG", "JPEG",  "USGSDEM",
                                     "SRTMHGT", "EHdr",   "GSAG",        "XYZ", "VICAR", nullptr};
-
-// GDAL takes what is missing from the end of an ENVI file for zeros.
-void refuseShortEnvi(GDALDataset& dataset, const std::string& path) {
-  const GDALDriver* driver = dataset.GetDriver();
-  if (driver == nullptr ||
-      std::string_view(GDALGetDriverShortName(const_cast<GDALDriver*>(driver))) != "ENVI")
-    return;
-  const auto bytes =
-      static_cast<std::uintmax_t>(GDALGetDataTypeSizeBytes(dataset.GetRasterBand(1)->GetRasterDataType()));
-  const std::uintmax_t needed = bytes * static_cast<std::uintmax_t>(dataset.GetRasterXSize()) *
-                                static_cast<std::uintmax_t>(dataset.GetRasterYSize()) *
-                                static_cast<std::uintmax_t>(dataset.GetRasterCount());
-  std::error_code error;
-  const std::uintmax_t size = std::filesystem::file_size(path, error);
-  if (!error && size < needed)
-    throw InputError({path,
-                      "is cut short: " + std::to_string(size) + " of " + std::to_string(needed) + " bytes",
-                      "fetch it again"});
-}
 
 // Metadata inside of a GeoTIFF may name them, too; GDAL opens them when it is asked for overviews.
 void refuseForeignOverviews(GDALDataset& dataset, const std::string& path) {
@@ -70,6 +51,7 @@ void registerDrivers() {
     CPLSetConfigOption("CPL_DEBUG", "OFF");
     CPLSetConfigOption("GDAL_CONFIG_FILE", "");
     CPLSetConfigOption("GDAL_CACHEMAX", "5%");
+    CPLSetConfigOption("GDAL_ERROR_ON_LIBJPEG_WARNING", "TRUE");  // a cut picture is grey behind the cut
     GDALAllRegister();
     // What GDAL opens by itself, such as an overview that a file names, stays within the list, too.
     GDALDriverManager& manager = *GetGDALDriverManager();
@@ -83,6 +65,10 @@ void registerDrivers() {
     }
     CPLSetConfigOption("CPL_VSIL_CURL_ALLOWED_FILENAME", "none");
   });
+}
+
+std::vector<std::string> rasterFormats() {
+  return {std::begin(kDrivers), std::end(kDrivers) - 1};
 }
 
 void CloseDataset::operator()(GDALDataset* dataset) const noexcept {
@@ -108,7 +94,7 @@ Dataset openRaster(const std::string& path, bool allow_vrt) {
   if (dataset->GetRasterCount() == 0 || dataset->GetRasterXSize() == 0 || dataset->GetRasterYSize() == 0)
     throw InputError({path, "holds no raster band", "name one of its subdatasets (gdalinfo lists them)"});
   refuseForeignOverviews(*dataset, path);
-  refuseShortEnvi(*dataset, path);
+  refuseCutShort(*dataset, path);
   return withFractions(std::move(dataset), path);
 }
 

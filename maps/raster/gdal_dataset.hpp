@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <talus/maps/raster/gdal_errors.hpp>
 
@@ -22,7 +23,10 @@ using Dataset = std::unique_ptr<GDALDataset, CloseDataset>;
 /// Makes the allowed drivers known to GDAL, once, and takes the others away.
 void registerDrivers();
 
-/// Opens a raster file for reading by a driver of the list in gdal_dataset.cpp; nothing from the network or an archive,
+/// The names of the drivers that openRaster() tries.
+std::vector<std::string> rasterFormats();
+
+/// Opens a raster file for reading by a driver of that list; nothing from the network or an archive,
 /// no file that names others (referenced_files.hpp). @throws InputError: missing, a directory, unreadable, not a
 /// raster, no cells
 Dataset openRaster(const std::string& path, bool allow_vrt = false);

@@ -25,6 +25,9 @@ using Arrays = std::map<std::string, NumpyArray>;
 // Largest .npy read: a raster beyond this belongs into a GeoTIFF.
 constexpr vsi_l_offset kMostBytes = vsi_l_offset{2} << 30;
 
+// Content of a large array over its bytes in the archive: heights that were measured are never packed so small.
+constexpr std::uint64_t kMostPacked = 500, kLarge = std::uint64_t{64} << 20;
+
 struct Limits {
   double west, east, south, north;
 
@@ -58,6 +61,11 @@ Arrays readArchive(const std::string& path) {
       throw InputError({path + ", " + name, "is not in the directory", "fetch it again"});
     if (entry->second.encrypted)
       throw InputError({path + ", " + name, "is encrypted", "save it with numpy.savez"});
+    if (const ZipEntry& e = entry->second; e.size > kLarge && e.size / kMostPacked > e.stored)
+      throw InputError({path + ", " + name,
+                        "states " + std::to_string(e.size) + " bytes in " + std::to_string(e.stored) +
+                            ": more cells than such a file holds",
+                        "fetch it again; a map of one height is better written as GeoTIFF"});
     const std::string content = slurp(archive + "/" + name, path);
     if (crc32(content) != entry->second.crc)
       throw InputError({path + ", " + name, "is damaged: its checksum is another", "fetch it again"});

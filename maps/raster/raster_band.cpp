@@ -6,6 +6,7 @@
 #include <gdal_priv.h>
 
 #include <talus/common/input_error.hpp>
+#include <talus/maps/raster/complete_file.hpp>
 #include <talus/maps/raster/gdal_dataset.hpp>
 #include <talus/maps/raster/raster_band.hpp>
 
@@ -57,7 +58,10 @@ void applyMask(GDALRasterBand& band, const PixelBox& box, std::vector<float>& va
 int chooseBand(GDALDataset& file, const BandWish& wish, std::vector<std::string>& notes) {
   const int count = file.GetRasterCount();
   if (wish.band) {
-    if (*wish.band >= 1 && *wish.band <= count) return *wish.band;
+    if (*wish.band >= 1 && *wish.band <= count) {
+      refuseLostBlocks(file, *wish.band, wish.path);
+      return *wish.band;
+    }
     throw InputError({wish.path + ", band " + std::to_string(*wish.band), "no such band",
                       "it has " + std::to_string(count) + (count == 1 ? " band" : " bands, from 1")});
   }
@@ -69,6 +73,7 @@ int chooseBand(GDALDataset& file, const BandWish& wish, std::vector<std::string>
   if (isPicture(*file.GetRasterBand(chosen)))
     throw InputError({wish.path, "is a colour image without elevations or classes",
                       "select a band with --band if it is intended"});
+  refuseLostBlocks(file, chosen, wish.path);
   if (count > 1) notes.push_back("took " + description(file, chosen) + " of " + std::to_string(count));
   return chosen;
 }

@@ -63,7 +63,8 @@ std::map<std::string, ZipEntry> zipDirectory(const std::string& path) {
     const std::size_t name = littleEndian(directory, at + 28, 2);
     if (directory.size() - at - kEntry < name) refuse(path);
     const bool encrypted = (littleEndian(directory, at + 8, 2) & 1U) != 0;
-    const ZipEntry entry{static_cast<std::uint32_t>(littleEndian(directory, at + 16, 4)), encrypted};
+    const ZipEntry entry{static_cast<std::uint32_t>(littleEndian(directory, at + 16, 4)), encrypted,
+                         littleEndian(directory, at + 20, 4), littleEndian(directory, at + 24, 4)};
     if (!entries.emplace(directory.substr(at + kEntry, name), entry).second) refuse(path);
     at += kEntry + name + littleEndian(directory, at + 30, 2) + littleEndian(directory, at + 32, 2);
   }

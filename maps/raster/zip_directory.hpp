@@ -10,6 +10,8 @@ namespace talus::maps {
 struct ZipEntry {
   std::uint32_t crc = 0;  ///< CRC-32 of its content
   bool encrypted = false;
+  std::uint64_t stored = 0;  ///< bytes in the archive
+  std::uint64_t size = 0;    ///< bytes of its content, as stated
 };
 
 /// The files of a zip archive by name. Throws InputError when its directory is damaged or missing.

@@ -1,0 +1,216 @@
+#include <algorithm>
+#include <cctype>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include <gdal_priv.h>
+
+#include <talus/common/input_error.hpp>
+#include <talus/maps/raster/complete_file.hpp>
+
+namespace talus::maps {
+namespace {
+
+std::string_view driverOf(GDALDataset& dataset) {
+  GDALDriver* driver = dataset.GetDriver();
+  return driver == nullptr ? std::string_view() : GDALGetDriverShortName(driver);
+}
+
+std::uintmax_t cellsOf(GDALDataset& dataset) {
+  return static_cast<std::uintmax_t>(dataset.GetRasterXSize()) *
+         static_cast<std::uintmax_t>(dataset.GetRasterYSize());
+}
+
+void refuseFewerBytes(const std::string& path, std::uintmax_t needed) {
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  if (!error && size < needed)
+    throw InputError({path,
+                      "is cut short: " + std::to_string(size) + " of " + std::to_string(needed) + " bytes",
+                      "fetch it again"});
+}
+
+// GDAL takes what is missing from the end of an ENVI file for zeros.
+std::uintmax_t bytesOfEnvi(GDALDataset& dataset) {
+  const auto bytes =
+      static_cast<std::uintmax_t>(GDALGetDataTypeSizeBytes(dataset.GetRasterBand(1)->GetRasterDataType()));
+  return bytes * cellsOf(dataset) * static_cast<std::uintmax_t>(dataset.GetRasterCount());
+}
+
+// The header of a netCDF-3 file ("The NetCDF Classic Format Specification", Unidata): where its last variable ends. Reading
+// beyond the end of the file fails.
+class ClassicHeader {
+ public:
+  explicit ClassicHeader(const std::string& path) : path_(path), file_(path, std::ios::binary) {}
+
+  // None of a file that is no netCDF-3.
+  std::optional<std::uintmax_t> end() {
+    char magic[4] = {};
+    file_.read(magic, 4);
+    if (!file_ || std::string_view(magic, 3) != "CDF" || (magic[3] != 1 && magic[3] != 2 && magic[3] != 5))
+      return std::nullopt;
+    wide_ = magic[3] == 5;
+    offset_bytes_ = magic[3] == 1 ? 4 : 8;
+    const std::uintmax_t stated = number(countBytes());
+    const bool streamed =
+        stated == (wide_ ? UINTMAX_MAX : UINTMAX_C(0xffffffff));  // not known when it was written
+    readDimensions();
+    skipAttributes();
+    readVariables();
+    if (!file_) throw InputError({path_, "is cut short within its header", "fetch it again"});
+    std::uintmax_t end = static_cast<std::uintmax_t>(file_.tellg());
+    const std::uintmax_t records = streamed ? 0 : stated;
+    const std::uintmax_t of_records = recordBytes();
+    for (const Variable& v : variables_) {
+      if (!v.by_record)
+        end = std::max(end, v.begin + v.bytes);
+      else if (records > 0)
+        end = std::max(end, v.begin + (records - 1) * of_records + v.bytes);
+    }
+    return end;
+  }
+
+ private:
+  struct Variable {
+    std::uintmax_t begin, bytes;  // bytes of all of it, or of a record of it
+    bool by_record;
+  };
+  static constexpr std::uintmax_t kMost = 1'000'000;  // dimensions, attributes or variables
+
+  int countBytes() const { return wide_ ? 8 : 4; }
+  static std::uintmax_t padded(std::uintmax_t bytes) { return (bytes + 3) / 4 * 4; }
+
+  std::uintmax_t number(int bytes) {
+    std::uintmax_t value = 0;
+    for (int i = 0; i < bytes; ++i)
+      value = value << 8 | static_cast<unsigned char>(static_cast<char>(file_.get()));
+    return file_ ? value : 0;
+  }
+  // Of a list; a number that no file has ends the reading.
+  std::uintmax_t length() {
+    number(4);  // its tag
+    const std::uintmax_t count = number(countBytes());
+    if (count > kMost) file_.setstate(std::ios::failbit);
+    return file_ ? count : 0;
+  }
+  void skip(std::uintmax_t bytes) { file_.seekg(static_cast<std::streamoff>(padded(bytes)), std::ios::cur); }
+  void skipName() { skip(number(countBytes())); }
+
+  static std::uintmax_t bytesOfType(std::uintmax_t type) {
+    constexpr std::uintmax_t kBytes[] = {0, 1, 1, 2, 4, 4, 8, 1, 2, 4, 8, 8};
+    return type < std::size(kBytes) ? kBytes[type] : 0;
+  }
+
+  void readDimensions() {
+    for (std::uintmax_t n = length(); n > 0 && file_; --n) {
+      skipName();
+      dimensions_.push_back(number(countBytes()));
+    }
+  }
+  void skipAttributes() {
+    for (std::uintmax_t n = length(); n > 0 && file_; --n) {
+      skipName();
+      const std::uintmax_t bytes = bytesOfType(number(4));
+      skip(bytes * number(countBytes()));
+    }
+  }
+  void readVariables() {
+    for (std::uintmax_t n = length(); n > 0 && file_; --n) {
+      skipName();
+      std::uintmax_t axes = number(countBytes()), count = 1;
+      bool by_record = false;
+      if (axes > kMost) file_.setstate(std::ios::failbit);
+      for (; axes > 0 && file_; --axes) {
+        const std::uintmax_t id = number(countBytes());
+        const std::uintmax_t extent = id < dimensions_.size() ? dimensions_[id] : 0;
+        by_record = by_record || extent == 0;
+        count *= std::max<std::uintmax_t>(extent, 1);
+      }
+      skipAttributes();
+      const std::uintmax_t bytes = bytesOfType(number(4)) * count;
+      number(countBytes());  // vsize, which does not hold of large variables
+      variables_.push_back({number(offset_bytes_), bytes, by_record});
+    }
+  }
+  // Records are padded unless one variable alone has them.
+  std::uintmax_t recordBytes() const {
+    std::uintmax_t sum = 0, own = 0, count = 0;
+    for (const Variable& v : variables_)
+      if (v.by_record) {
+        sum += padded(v.bytes);
+        own = v.bytes;
+        ++count;
+      }
+    return count == 1 ? own : sum;
+  }
+
+  const std::string& path_;
+  std::ifstream file_;
+  bool wide_ = false;
+  int offset_bytes_ = 4;
+  std::vector<std::uintmax_t> dimensions_;
+  std::vector<Variable> variables_;
+};
+
+// Whether a text's last number is whole is not known where nothing ends it.
+void refuseOpenEnd(const std::string& path) {
+  std::ifstream file(path, std::ios::binary | std::ios::ate);
+  file.seekg(-1, std::ios::cur);
+  const int last = file.get();
+  if (file && std::isdigit(last) == 0 && last != '.') return;
+  throw InputError({path, "ends within a number, as a file that is cut short does",
+                    "fetch it again; if it is whole, end its last line"});
+}
+
+// What stands behind a VRT.
+template <typename Each>
+void forSources(GDALDataset& dataset, const std::string& path, Each each) {
+  char** files = dataset.GetFileList();
+  for (char** file = files; file != nullptr && *file != nullptr; ++file)
+    if (std::string_view(*file) != path)
+      if (const Dataset source{GDALDataset::Open(*file, GDAL_OF_RASTER | GDAL_OF_READONLY)})
+        each(*source, *file);
+  CSLDestroy(files);
+}
+
+bool lost(GDALRasterBand& band) {
+  if (int stated = 0; band.GetNoDataValue(&stated), stated != 0) return false;
+  return (band.GetDataCoverageStatus(0, 0, band.GetXSize(), band.GetYSize(), 0, nullptr) &
+          GDAL_DATA_COVERAGE_STATUS_EMPTY) != 0;
+}
+
+}  // namespace
+
+void refuseCutShort(GDALDataset& dataset, const std::string& path) {
+  const std::string_view driver = driverOf(dataset);
+  if (driver == "ENVI") refuseFewerBytes(path, bytesOfEnvi(dataset));
+  if (driver == "netCDF")
+    if (const auto end = ClassicHeader(path).end()) refuseFewerBytes(path, *end);
+  // A digit and a space for each number.
+  if (driver == "AAIGrid" || driver == "GSAG") refuseFewerBytes(path, 2 * cellsOf(dataset));
+  if (driver == "AAIGrid" || driver == "GSAG" || driver == "XYZ") refuseOpenEnd(path);
+  if (driver == "VRT")
+    forSources(dataset, path, [](GDALDataset& source, const std::string& of) { refuseCutShort(source, of); });
+}
+
+void refuseLostBlocks(GDALDataset& dataset, int band, const std::string& path) {
+  if (driverOf(dataset) == "VRT")
+    return forSources(dataset, path, [](GDALDataset& source, const std::string& of) {
+      for (int own = 1; own <= source.GetRasterCount(); ++own) refuseLostBlocks(source, own, of);
+    });
+  GDALRasterBand& of = *dataset.GetRasterBand(band);
+  bool any = lost(of);
+  for (int i = 0; i < of.GetOverviewCount(); ++i) any = any || lost(*of.GetOverview(i));
+  if (any)
+    throw InputError(
+        {path, "is cut short or half written: blocks are missing, and no value stands for no data",
+         "write it again, or state one with gdal_edit.py -a_nodata if they are meant to be empty"});
+}
+
+}  // namespace talus::maps

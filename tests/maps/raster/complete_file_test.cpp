@@ -1,0 +1,219 @@
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <set>
+
+#include <talus/maps/raster/complete_file.hpp>
+#include <talus/maps/raster/elevation_reader.hpp>
+#include <talus/maps/raster/layer_reader.hpp>
+
+#include "raster_fixture.hpp"
+
+namespace talus::maps {
+namespace complete_file_test {
+
+using testing::HasSubstr;
+
+constexpr int kSide = 48;
+
+// Heights from 100 to 200 m that are whole numbers, so that every format holds them, and differ from their neighbours.
+std::vector<std::vector<double>> heights() {
+  std::vector<std::vector<double>> rows;
+  for (int row = 0; row < kSide; ++row) {
+    rows.emplace_back();
+    for (int column = 0; column < kSide; ++column)
+      rows.back().push_back(150 + std::round(40 * std::sin(0.3 * column) + 9 * std::cos(0.7 * row)));
+  }
+  return rows;
+}
+
+std::string slurped(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+void spill(const std::string& path, const std::string& bytes) {
+  std::ofstream(path, std::ios::binary) << bytes;
+}
+
+// A format: how a file of it is made, and which file holds its cells. Written as label and numbers where GDAL does not write it.
+struct Format {
+  std::string driver, name;
+  std::function<void(const std::string& path)> make;
+  std::string data{};  // beside the label; else the file itself
+  ReadOptions options{};
+};
+
+Format written(const std::string& driver, const std::string& name, GDALDataType type = GDT_Float32,
+               const std::string& data = "") {
+  return {driver,
+          name,
+          [=](const std::string& path) { write({.rows = heights(), .driver = driver, .type = type}, path); },
+          data,
+          {}};
+}
+
+std::vector<Format> formats() {
+  std::vector<Format> all{written("GTiff", "a.tif"),         written("COG", "b.tif"),
+                          written("ENVI", "c.img"),          written("PDS4", "d.xml", GDT_Float32, "d.img"),
+                          written("ISIS3", "e.cub"),         written("AAIGrid", "f.asc"),
+                          written("netCDF", "g.nc"),         written("JP2OpenJPEG", "h.jp2", GDT_Int16),
+                          written("PNG", "i.png", GDT_Byte), written("JPEG", "j.jpg", GDT_Byte),
+                          written("EHdr", "k.bil"),          written("GSAG", "l.grd"),
+                          written("XYZ", "m.xyz"),           written("VICAR", "n.vic")};
+  for (Format& format : all)
+    if (format.driver == "GSAG" || format.driver == "XYZ" || format.driver == "VICAR")
+      format.options.resolution_m = 10.0;
+  all.push_back(
+      {"PDS",
+       "o.img",
+       [](const std::string& path) {
+         std::string text =
+             "PDS_VERSION_ID = PDS3\r\nRECORD_TYPE = FIXED_LENGTH\r\nRECORD_BYTES = 192\r\nFILE_RECORDS = "
+             "52\r\n"
+             "LABEL_RECORDS = 4\r\n^IMAGE = 5\r\nOBJECT = IMAGE\r\nLINES = 48\r\nLINE_SAMPLES = 48\r\n"
+             "SAMPLE_TYPE = PC_REAL\r\nSAMPLE_BITS = 32\r\nEND_OBJECT = IMAGE\r\nEND\r\n";
+         text.resize(768, ' ');
+         for (const auto& row : heights())
+           for (const double z : row) {
+             const auto value = static_cast<float>(z);
+             text.append(reinterpret_cast<const char*>(&value), sizeof value);
+           }
+         spill(path, text);
+       },
+       "",
+       {.resolution_m = 10.0}});
+  all.push_back({"SRTMHGT",
+                 "N20E020.hgt",
+                 [](const std::string& path) {
+                   std::string bytes;
+                   for (int k = 0; k < 1201 * 1201; ++k) {
+                     const int z = 100 + k % 1201 / 12 + k / 1201 / 30;
+                     bytes += {static_cast<char>(z >> 8), static_cast<char>(z & 255)};
+                   }
+                   spill(path, bytes);
+                 },
+                 "",
+                 {.resolution_m = 90.0}});
+  return all;
+}
+
+// What is read of a damaged file: refused, or heights of which none differs from those of the whole one. Its grid may be
+// smaller, by whole rows from one end.
+::testing::AssertionResult refusedOrUnknown(const std::string& path, const ReadOptions& options,
+                                            const ElevationMap& whole) {
+  ElevationMap map;
+  const std::string line = refusal([&] { map = readElevation(path, options); });
+  if (line.starts_with("another error")) return ::testing::AssertionFailure() << line;
+  if (line != "accepted") return ::testing::AssertionSuccess() << "refused";
+  const Grid &grid = map.grid(), &full = whole.grid();
+  const int up =
+      static_cast<int>(std::lround((grid.south_west.y_m - full.south_west.y_m) / full.resolution_m));
+  for (int row = 0; row < grid.height; ++row)
+    for (int column = 0; column < grid.width; ++column) {
+      const float z = map.elevation_m[{column, row}];
+      if (std::isnan(z)) continue;
+      if (row + up < 0 || row + up >= full.height || z != whole.elevation_m[{column, row + up}])
+        return ::testing::AssertionFailure() << z << " m in column " << column << ", row " << row;
+    }
+  return ::testing::AssertionSuccess() << "unknown";
+}
+
+// Brute force: every format that is opened, cut at twenty places and before its last bytes.
+TEST(CompleteFile, NoFormatMakesHeightsOfWhatIsCutOff) {
+  for (const Format& format : formats()) {
+    const TemporaryFolder folder;
+    const std::string path = folder / format.name, data = format.data.empty() ? path : folder / format.data;
+    format.make(path);
+    const ElevationMap whole = readElevation(path, format.options);
+    const std::string bytes = slurped(data);
+    ASSERT_GT(bytes.size(), 100U) << format.driver;
+    std::vector<std::size_t> cuts{bytes.size() - 40, bytes.size() - 3};
+    for (std::size_t k = 1; k <= 20; ++k) cuts.push_back(bytes.size() * k / 21);
+    for (const std::size_t cut : cuts) {
+      spill(data, bytes.substr(0, cut));
+      EXPECT_TRUE(refusedOrUnknown(path, format.options, whole)) << format.driver << " cut to " << cut;
+    }
+  }
+}
+
+// A driver that is allowed has its row above. USGSDEM: GDAL writes none that it reads; profiles it does not find are no data
+// (usgsdemdataset.cpp fills them first).
+TEST(CompleteFile, EveryFormatIsCut) {
+  std::set<std::string> cut{"USGSDEM"};
+  for (const Format& format : formats()) cut.insert(format.driver);
+  const std::vector<std::string> allowed = rasterFormats();
+  EXPECT_EQ(cut, std::set<std::string>(allowed.begin(), allowed.end()));
+}
+
+// Blocks of a GeoTIFF that were never written, as where its writer was killed.
+void writeHalf(const std::string& path, std::optional<double> nodata, GDALDataType type = GDT_Float32) {
+  registerDrivers();
+  const char* const options[] = {"SPARSE_OK=TRUE", "TILED=YES", "BLOCKXSIZE=16", "BLOCKYSIZE=16", nullptr};
+  const std::unique_ptr<GDALDataset> file(
+      driverNamed("GTiff").Create(path.c_str(), kSide, kSide, 1, type, const_cast<char**>(options)));
+  std::array<double, 6> place{500000, 10, 0, 5000000, 0, -10};
+  file->SetGeoTransform(place.data());
+  OGRSpatialReference crs;
+  crs.importFromEPSG(32610);
+  file->SetSpatialRef(&crs);
+  if (nodata) file->GetRasterBand(1)->SetNoDataValue(*nodata);
+  std::vector<double> half(kSide * kSide / 3, 1.0);
+  ASSERT_EQ(file->GetRasterBand(1)->RasterIO(GF_Write, 0, 0, kSide, kSide / 3, half.data(), kSide, kSide / 3,
+                                             GDT_Float64, 0, 0, nullptr),
+            CE_None);
+}
+
+TEST(CompleteFile, BlocksThatWereNeverWrittenAreRefusedOrNoData) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "half.tif";
+  writeHalf(path, std::nullopt);
+  EXPECT_THAT(refusal([&] { readElevation(path); }), HasSubstr("is cut short or half written"));
+  EXPECT_THAT(refusal([&] { readElevation(path, {.band = 1}); }), HasSubstr("is cut short or half written"));
+  folder.write(
+      "half.vrt",
+      "<VRTDataset rasterXSize=\"48\" "
+      "rasterYSize=\"48\"><GeoTransform>500000,10,0,5000000,0,-10</GeoTransform>"
+      "<VRTRasterBand dataType=\"Float32\" band=\"1\"><SimpleSource><SourceFilename relativeToVRT=\"1\">"
+      "half.tif</SourceFilename><SourceBand>1</SourceBand></SimpleSource></VRTRasterBand></VRTDataset>");
+  EXPECT_THAT(refusal([&] { readElevation(folder / "half.vrt", {.resolution_m = 10.0, .allow_vrt = true}); }),
+              HasSubstr("half.tif: is cut short or half written"));
+  writeHalf(path, -9999.0);
+  const ElevationMap map = readElevation(path);
+  EXPECT_DOUBLE_EQ(validFraction(map.elevation_m), 1.0 / 3.0);
+  const ElevationMap flat = readElevation(write({.rows = heights()}, folder / "whole.tif"));
+  writeHalf(folder / "classes.tif", std::nullopt, GDT_Byte);
+  EXPECT_THAT(refusal([&] { readRockAbundance({.path = folder / "classes.tif"}, flat); }),
+              HasSubstr("is cut short or half written"));
+}
+
+TEST(CompleteFile, ATextOrArchiveSmallerThanItsCellsIsRefusedBeforeItIsRead) {
+  const TemporaryFolder folder;
+  EXPECT_THAT(
+      refusal([&] {
+        readElevation(
+            folder.write("huge.asc", "ncols 20000\nnrows 20000\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2\n"),
+            {.resolution_m = 1.0});
+      }),
+      HasSubstr("is cut short: 63 of 800000000 bytes"));
+}
+
+TEST(CompleteFile, APointFileThatEndsWithinANumberIsRefused) {
+  const TemporaryFolder folder;
+  std::string text;
+  for (int row = 0; row < 4; ++row)
+    for (int column = 0; column < 4; ++column)
+      text += std::to_string(column) + " " + std::to_string(row) + " " + std::to_string(column + 0.25 * row) +
+              "\n";
+  const auto line = [&](const std::string& points) {
+    return refusal([&] { readElevation(folder.write("p.xyz", points), {.resolution_m = 1.0}); });
+  };
+  EXPECT_EQ(line(text), "accepted");
+  for (const std::size_t cut :
+       {1U, 2U, 4U})  // the end of the line alone, too: whether digits are missing is not known
+    EXPECT_THAT(line(text.substr(0, text.size() - cut)), HasSubstr("ends within a number"));
+}
+
+}  // namespace complete_file_test
+}  // namespace talus::maps
