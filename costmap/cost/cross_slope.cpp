@@ -155,24 +155,29 @@ CrossSlope::CrossSlope(const terramech::SlopeEquilibrium& equilibrium, const Lev
   }
   const double first = std::isfinite(even.first) ? even.first : level.first,
                last = std::isfinite(even.last) ? even.last : level.last;
-  const SlopeRows lattice(equilibrium, low, high, kAlongStep);
+  const SlopeRows lattice(equilibrium, low, high, kAlongStep),
+      even_lattice(even_equilibrium, low, high, kAlongStep);
   first_along_ = lattice.low();
   std::vector<SlopeRow> solved;
-  std::vector<double> losses;
+  std::vector<double> losses, gains;
   for (int row = 0; row <= static_cast<int>(kSpare * needed); ++row) {
     solved.push_back(lattice.solved(row * kRowStep));
+    const SlopeRow &here = solved.back(), even_here = even_lattice.solved(row * kRowStep);
     std::vector<Held>& kept = held_.emplace_back();
-    for (const SlopeState& s : solved.back().all)
+    for (const SlopeState& s : here.all)
       kept.push_back({{s.slip_angle_rad, s.side_force_over_load, s.stability_margin_rad}, s.grip});
-    if (solved.back().states.empty()) break;
-    losses.push_back(std::max(losses.empty() ? 0.0 : losses.back(), last - solved.back().last));
+    if (here.states.empty() || even_here.states.empty()) break;
+    // Where a rover that is about to tip ends it, what strength there is to lose is that under even loads.
+    const double strong_to = here.tips_behind ? even_here.last : here.last,
+                 strong_from = here.tips_before ? even_here.first : here.first;
+    losses.push_back(std::max(losses.empty() ? 0.0 : losses.back(), last - strong_to));
+    gains.push_back(std::max(gains.empty() ? 0.0 : gains.back(), strong_from - first));
   }
   const LevelClimbs level_climbs(even, level.last);
-  double gain = 0.0;
   for (int row = 0; row <= needed; ++row) {
     if (row >= static_cast<int>(losses.size()) || row > DriveCurve::kRowsPerUnit + 1) break;
     const SlopeRow& here = solved[static_cast<std::size_t>(row)];
-    gain = std::max(gain, here.first - first);
+    const double gain = gains[static_cast<std::size_t>(row)];
     const LevelClimbs::Surcharges dearer = level_climbs.surcharges(here);
     for (int bin = 0; bin < kBins; ++bin) {
       const double along = DriveCurve::gradient(bin), node = along / kAlongStep - here.first_node;
@@ -181,7 +186,8 @@ CrossSlope::CrossSlope(const terramech::SlopeEquilibrium& equilibrium, const Lev
         climbs.refused = Refusal::Pitch;
       else if (here.margin_rad(along) < kUpright_rad)
         climbs.refused = Refusal::Tips;
-      else if (along - gain < -1.0)
+      else if (along - gain < -1.0 || (here.tips_before && along < here.first) ||
+               (here.tips_behind && along > here.last))
         climbs.refused = reasonAt(row, bin);
       else
         climbs = {.costs = placeOf(along + interpolated(dearer.climb, node)),

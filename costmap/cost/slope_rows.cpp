@@ -9,6 +9,12 @@ namespace talus::costmap {
 using terramech::SlopeFailure;
 using terramech::SlopeState;
 
+namespace {
+
+constexpr double kNear_rad = 0.1;  // to tipping: an axle or side then carries nearly all (ours)
+
+}  // namespace
+
 // Beyond the equilibria a gradient of one more is an angle of at most one more.
 double SlopeRow::margin_rad(double along) const {
   if (margins_rad.empty()) return kNaN;
@@ -51,6 +57,8 @@ SlopeRow SlopeRows::solved(double across) const {
   if (std::isfinite(row.first) && row.first < row.first_node * step_) add(row.first, at(row.first, across));
   for (std::size_t k = 0; k < most; ++k) add((row.first_node + static_cast<int>(k)) * step_, row.states[k]);
   if (std::isfinite(row.last) && row.last > last_node * step_) add(row.last, at(row.last, across));
+  row.tips_before = std::isfinite(row.first) && row.margins_rad.front().second < kNear_rad;
+  row.tips_behind = std::isfinite(row.last) && row.margins_rad.back().second < kNear_rad;
   return row;
 }
 

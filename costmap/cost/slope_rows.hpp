@@ -12,9 +12,10 @@ struct SlopeRow {
   double step = 1.0;  ///< of the lattice
   double first = 0.0,
          last = -1.0;  ///< gradients that the ground holds; infinite where they lie beyond the lattice
-  int first_node = 0;  ///< the first of `states`, in steps
-  std::vector<terramech::SlopeState> states{};  ///< the longest range that the ground holds, tipping apart
-  std::vector<terramech::SlopeState> all{};     ///< of the whole lattice
+  bool tips_before = false, tips_behind = false;  ///< ends so near to tipping that loads end it, not strength
+  int first_node = 0;                             ///< the first of `states`, in steps
+  std::vector<terramech::SlopeState> states{};    ///< the longest range that the ground holds, tipping apart
+  std::vector<terramech::SlopeState> all{};       ///< of the whole lattice
   std::vector<std::pair<double, double>>
       margins_rad{};  ///< against tipping, by gradient along, over that range
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include <talus/maps/raster/gdal_dataset.hpp>
+class GDALDataset;
 
 namespace talus::maps {
 
@@ -14,5 +14,9 @@ void refuseCutShort(GDALDataset& dataset, const std::string& path);
 /// Throws InputError where blocks of a band, or of its overviews, were never written and no value stands for that: GDAL
 /// would read zeros.
 void refuseLostBlocks(GDALDataset& dataset, int band, const std::string& path);
+
+/// Refuses an Arc/Info ASCII grid with a word among its values that is no number: GDAL takes it for 0, which is ground.
+/// nan, inf and what ESRI's programs write for them are numbers here. Throws InputError with file, line and word.
+void refuseWordsInGrid(const std::string& path);
 
 }  // namespace talus::maps

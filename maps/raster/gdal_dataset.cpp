@@ -12,7 +12,6 @@
 #include <talus/maps/raster/file_text.hpp>
 #include <talus/maps/raster/gdal_dataset.hpp>
 #include <talus/maps/raster/referenced_files.hpp>
-#include <talus/maps/raster/text_grid.hpp>
 
 namespace talus::maps {
 namespace {

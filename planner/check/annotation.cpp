@@ -275,7 +275,7 @@ namespace {
 
 // Vertices hold the additive hazard until here: right where nothing is known of how doubts hang together.
 void tellRisk(Route& route, const costmap::CostGrid& map, const ProgressMonitor& watch) {
-  constexpr int kWorlds = 400;  // a few per cent of the risk
+  constexpr int kWorlds = 400;  // some ten per cent of the risk
   if (!(map.cost().doubt().correlation_length_m > 0.0)) return;
   RouteRiskOptions options = riskOptions(map);
   options.worlds = kWorlds;

@@ -39,7 +39,7 @@ bool sameSize(const Wheel& a, const Wheel& b) {
   return a.radius_m == b.radius_m && a.width_m == b.width_m;
 }
 
-std::optional<std::string> unusable(const WheelSample& s, double slip_angle_rad,
+std::optional<std::string> unusable(const WheelSample& s, const Wheel& wheel, double slip_angle_rad,
                                     const WheelRowOptions& options) {
   if (std::abs(slip_angle_rad) > kStraightUpTo_rad)
     return fmt::format(
@@ -47,6 +47,9 @@ std::optional<std::string> unusable(const WheelSample& s, double slip_angle_rad,
         "side_force_N",
         slip_angle_rad);
   if (!(s.sinkage_m > 0.0)) return "sinkage_m = 0: no contact area to infer stresses from";
+  if (s.sinkage_m >= options.deepest * wheel.radius_m)
+    return fmt::format("sinkage_m = {:g}, must be < {:g}: the wheel model ends at the axle", s.sinkage_m,
+                       options.deepest * wheel.radius_m);
   if (options.needs_slip && !(s.slip > 0.0))
     return fmt::format("slip = {:g}, must be > 0 (driven wheel)", s.slip);
   return std::nullopt;
@@ -125,7 +128,8 @@ WheelRows readWheelRows(const std::filesystem::path& path, const WheelRowOptions
                              .torque_Nm = table.at("torque_Nm")[k],
                              .sinkage_m = table.at("sinkage_m")[k],
                              .slip = slip == nullptr || std::isnan((*slip)[k]) ? 0.0 : (*slip)[k]};
-    if (const auto reason = unusable(sample, slip_angle == nullptr ? 0.0 : (*slip_angle)[k], options)) {
+    if (const auto reason =
+            unusable(sample, wheels[k], slip_angle == nullptr ? 0.0 : (*slip_angle)[k], options)) {
       rows.rejected.push_back({.line = table.lines[k], .reason = *reason});
       continue;
     }

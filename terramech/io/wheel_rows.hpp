@@ -30,6 +30,8 @@ struct WheelRows {
 struct WheelRowOptions {
   std::string rover;       ///< whose wheel it is, where the file has no wheel_radius_m and wheel_width_m
   bool needs_slip = true;  ///< slip > 0: the method needs a driven wheel that slips
+  double deepest =
+      2.0;  ///< over the radius: rows of wheels that sank as deep, or deeper, are left out, (0, 2]
 };
 
 /// A wheel counts as straight up to this slip angle [rad]: torque and sinkage of sandy_loam under mer then differ by less
@@ -41,7 +43,8 @@ inline constexpr double kStraightUpTo_rad = 0.1;
 void leaveOutWithoutSlipAngle(Telemetry& telemetry);
 
 /// Reads load_N, torque_Nm, sinkage_m and, where needed, slip. Leaves out rows without contact (sinkage 0), of a wheel at a
-/// slip angle (what reads these rows knows straight wheels), with a side force and no slip angle, or of one that is not driven where slip is needed. Throws InputError when a column is missing, a row
+/// slip angle (what reads these rows knows straight wheels), with a side force and no slip angle, of one that sank too deep, or of
+/// one that is not driven where slip is needed. Throws InputError when a column is missing, a row
 /// has no wheel, or no row is left.
 WheelRows readWheelRows(const std::filesystem::path& path, const WheelRowOptions& options,
                         const ProgressMonitor& watch);

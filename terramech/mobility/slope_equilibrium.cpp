@@ -81,6 +81,7 @@ class SlopeEquilibrium::Solver {
   SlopeFailure gripOf(const SlopeState& state, const Unknowns& u) const noexcept;
   void fill(const Planar& demand, double normal_N, const Unknowns& u, SlopeState& state) const noexcept;
   WheelMotion motionOf(int wheel, const Unknowns& u) const noexcept;
+  RoverStance::Loads shares(const Planar& demand) const noexcept;
   double normal_N(const Gradient& gradient) const noexcept;
 
   WheelForcesTable forces_;
@@ -96,6 +97,22 @@ const char* name(SlopeFailure failure) {
 
 double SlopeEquilibrium::Solver::normal_N(const Gradient& g) const noexcept {
   return rover_.mass_kg * rover_.gravity_m_s2 / std::sqrt(1.0 + g.along * g.along + g.across * g.across);
+}
+
+/// Of a demand in the body's axes. Beyond 0.97 of the way to tipping they stay: with all weight on one axle or side nothing would
+/// tell whether the ground holds.
+RoverStance::Loads SlopeEquilibrium::Solver::shares(const Planar& demand) const noexcept {
+  constexpr double kMost = 0.97;
+  const Planar centre = stance_.centre_m();
+  const double half_base = stance_.position_m(0).x, half_track = stance_.position_m(0).y,
+               height = rover_.centre_of_mass_height_m;
+  const auto within = [&](double half, double ahead, double towards) {
+    const double moved = height * std::abs(towards),
+                 room = kMost * (towards < 0.0 ? half - ahead : half + ahead);
+    return moved > room ? room / moved : 1.0;
+  };
+  const double part = std::min(within(half_base, centre.x, demand.x), within(half_track, centre.y, demand.y));
+  return stance_.shares({part * demand.x, part * demand.y});
 }
 
 /// How a wheel's slip and slip angle follow from the difference.
@@ -117,7 +134,7 @@ SlopeEquilibrium::Solver::Balance SlopeEquilibrium::Solver::balance(const Planar
   const bool crabs = rover_.steering == Steering::AllWheel, skids = rover_.steering == Steering::Skid;
   // The body lies `turn` to the right of the way, with its own wheels.
   const double turn = crabs ? 0.0 : u.angle_rad, c = std::cos(turn), s = std::sin(turn);
-  const auto shares = stance_.shares({demand.x * c - demand.y * s, demand.x * s + demand.y * c});
+  const auto shares = this->shares({demand.x * c - demand.y * s, demand.x * s + demand.y * c});
   const double lever = 1.0 / stance_.position_m(0).x;
   Balance b;
   b.rest << -demand.x, -demand.y, 0.0;
@@ -229,7 +246,7 @@ void SlopeEquilibrium::Solver::fill(const Planar& demand, double normal, const U
   const double turn = -state.body_turn_rad, c = std::cos(turn), s = std::sin(turn);
   const Planar of_body{demand.x * c - demand.y * s, demand.x * s + demand.y * c};
   state.stability_margin_rad = stance_.stabilityMargin_rad(of_body);
-  const auto shares = stance_.shares(of_body);
+  const auto shares = this->shares(of_body);
   const double radius = rover_.wheel.radius_m;
   // All rims turn at the greatest speed that the fastest may have.
   double power_W_per_mps = 0.0, fastest = 0.0;
@@ -296,7 +313,7 @@ std::vector<WheelOnSlope> SlopeEquilibrium::Solver::wheels(const Gradient& gradi
   const Planar demand = demandOf(gradient);
   const double normal = normal_N(gradient), turn = -state.body_turn_rad, c = std::cos(turn),
                s = std::sin(turn);
-  const auto shares = stance_.shares({demand.x * c - demand.y * s, demand.x * s + demand.y * c});
+  const auto shares = this->shares({demand.x * c - demand.y * s, demand.x * s + demand.y * c});
   const bool ackermann = rover_.steering == Steering::Ackermann;
   const Unknowns u{state.slip, ackermann ? -state.body_turn_rad : state.slip_angle_rad,
                    rover_.steering == Steering::Skid ? state.slip_difference : state.steering_rad};

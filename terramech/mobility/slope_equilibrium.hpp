@@ -44,7 +44,7 @@ const char* name(SlopeFailure failure);
 struct SlopeState {
   SlopeFailure failure = SlopeFailure::None;
   SlopeFailure grip =
-      SlopeFailure::None;  ///< the same of a rover that cannot tip: loads beyond stay on the last edge
+      SlopeFailure::None;  ///< the same of a rover that cannot tip: loads beyond are those shortly before
   double stability_margin_rad =
       0.0;            ///< RoverStance::stabilityMargin_rad() of the body as it lies on the plane
   double slip = 0.0;  ///< of the wheels along their planes; the mean of left and right of a skid rover

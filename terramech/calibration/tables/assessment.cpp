@@ -28,7 +28,12 @@ void judge(Assessment& a, const CategoryThresholds& limits) {
 void extrapolate(const AssessOptions& options, const WheelRows& rows, const ProgressMonitor& watch,
                  std::vector<Assessment>& result) {
   SoilFitOptions fit{.noise = ReadingErrors::relative(std::max(options.noise, 1e-3)), .watch = watch};
-  PullForecasts forecasts(fitSoil(rows.readings(), thesisSoilsOrOther(), fit), options.reference_slip);
+  std::vector<WheelReading> readings = rows.readings();
+  std::erase_if(readings, [](const WheelReading& r) { return r.sample.sinkage_m >= r.wheel.radius_m; });
+  if (readings.empty())
+    throw InputError({rows.source, "all wheels sank to the axle or deeper, where the wheel model ends",
+                      "leave out --extrapolate"});
+  PullForecasts forecasts(fitSoil(readings, thesisSoilsOrOther(), fit), options.reference_slip);
   for (std::size_t k = 0; k < result.size() && !watch.stopped(); ++k) {
     result[k].forecast = forecasts.at(rows.wheels[k], rows.samples[k].load_N);
     watch.report(static_cast<double>(k) / static_cast<double>(result.size()));

@@ -106,7 +106,8 @@ void sayWhatIsDoubtful(const WheelRows& rows, const SoilPosterior& posterior, co
 }  // namespace
 
 SoilEstimate posteriorEstimate(const EstimateOptions& options, const ProgressMonitor& watch) {
-  const WheelRows rows = readWheelRows(options.table, {.rover = options.rover, .needs_slip = true}, watch);
+  const WheelRows rows =
+      readWheelRows(options.table, {.rover = options.rover, .needs_slip = true, .deepest = 1.0}, watch);
   const SoilMixture prior = priorOf(options, rows.wheel.width_m);
   SoilEstimate estimate;
   estimate.rejected = rows.rejected;

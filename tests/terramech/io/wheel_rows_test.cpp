@@ -47,6 +47,18 @@ TEST(WheelRows, ABrakedWheelCountsOnlyWhereNoSlipIsNeeded) {
             0.0);
 }
 
+TEST(WheelRows, AWheelThatSankTooDeepIsLeftOutWithItsLine) {
+  const std::string content =
+      kHead + "80,2,0.01,0.3,0.1,0.2,a\n80,2,0.13,0.3,0.1,0.2,a\n80,2,0.1,0.3,0.1,0.2,a\n";
+  EXPECT_EQ(read(content).samples.size(), 3U);
+  const WheelRows rows = read(content, {.deepest = 1.0});
+  EXPECT_EQ(rows.samples.size(), 1U);
+  ASSERT_EQ(rows.rejected.size(), 2U);
+  EXPECT_EQ(rows.rejected[0].line, 3U);
+  EXPECT_EQ(rows.rejected[0].reason, "sinkage_m = 0.13, must be < 0.1: the wheel model ends at the axle");
+  EXPECT_EQ(rows.rejected[1].line, 4U);
+}
+
 TEST(WheelRows, AWheelAtASlipAngleIsNoStraightOne) {
   const WheelRows rows =
       read("slip_angle_rad," + kHead +

@@ -253,13 +253,14 @@ TEST(SlopeEquilibrium, ALockedRoverHoldsDownhillUntilItSlides) {
 TEST(SlopeEquilibrium, HoldsOnlyWithTheCentreOfMassBetweenTheWheelsOfTheBody) {
   Soil firm = sand();
   firm.cohesion_Pa = 4000.0;
+  int tipped = 0;
   for (const Steering steering : kSteerings) {
     Rover r = rover(steering);
     r.wheelbase_m = 0.5;
     r.track_m = 1.5;
     r.centre_of_mass_height_m = 0.9;
     const SlopeEquilibrium equilibrium{firm, r};
-    int held = 0, tipped = 0;
+    int held = 0;
     for (double a = -0.5; a <= 0.51; a += 0.05)
       for (double c = -0.5; c <= 0.51; c += 0.05) {
         const SlopeState state = equilibrium.at({a, c});
@@ -279,8 +280,8 @@ TEST(SlopeEquilibrium, HoldsOnlyWithTheCentreOfMassBetweenTheWheelsOfTheBody) {
         }
       }
     EXPECT_GT(held, 30);
-    EXPECT_GT(tipped, 20);
   }
+  EXPECT_GT(tipped, 20);
 }
 
 TEST(SlopeEquilibrium, SaysWhatItAssumes) {

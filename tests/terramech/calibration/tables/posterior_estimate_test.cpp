@@ -50,6 +50,17 @@ std::string torqueRows(double first_Nm, double step_Nm) {
   return text;
 }
 
+TEST(PosteriorEstimate, ARowBeyondTheAxleIsLeftOutWithItsLine) {
+  const std::string rows = torqueRows(5.0, 0.2);
+  const test::TemporaryFile sound{rows}, deep{rows + wheelLine({100.0, 8.0, 0.17, 0.6}, kMadeWheel) + "\n"};
+  const SoilEstimate of_sound = posteriorEstimate({.table = sound.path()}, {}),
+                     of_deep = posteriorEstimate({.table = deep.path()}, {});
+  EXPECT_EQ(of_deep.cohesion_Pa, of_sound.cohesion_Pa);
+  ASSERT_EQ(of_deep.rejected.size(), 1U);
+  EXPECT_EQ(of_deep.rejected[0].line, 14U);
+  EXPECT_THAT(of_deep.rejected[0].reason, HasSubstr("sinkage_m = 0.17, must be < 0.15"));
+}
+
 TEST(PosteriorEstimate, DoubtsAreSaid) {
   std::string widths = kWheelHead + "\n";
   for (int k = 0; k < 12; ++k) {
