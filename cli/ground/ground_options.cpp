@@ -20,9 +20,9 @@
 #include <talus/costmap/ground/ground_class.hpp>
 #include <talus/costmap/map/map_file.hpp>
 #include <talus/costmap/surface/octomap_surface.hpp>
-#include <talus/terramech/mobility/slope_equilibrium.hpp>
 #include <talus/terramech/io/model_file.hpp>
 #include <talus/terramech/io/soil_library.hpp>
+#include <talus/terramech/mobility/slope_equilibrium.hpp>
 
 namespace talus::cli {
 namespace {
@@ -62,7 +62,8 @@ void addPolicy(CLI::App& command, costmap::DrivePolicy& policy) {
   command.add_flag("--no-marginal{false}", policy.allow_marginal, "exclude marginal cells");
   command.add_flag("--allow-dangerous", policy.allow_dangerous,
                    "allow dangerous cells where the drawbar pull is sufficient");
-  command.add_flag("--allow-unknown", policy.allow_unknown, "treat cells without data as flat ground");
+  command.add_flag("--allow-unknown", policy.allow_unknown,
+                   "drive over cells without data, at the slope between the heights beside them");
   const auto uncertainty = [&policy](double deg) { policy.slope_margin_rad = deg * kDegree; };
   command
       .add_option_function<double>("--slope-uncertainty-deg", uncertainty,

@@ -8,7 +8,9 @@ namespace talus::costmap {
 struct DrivePolicy {
   bool allow_marginal = true;    ///< drive ground whose category at the slope along the heading is marginal
   bool allow_dangerous = false;  ///< drive dangerous ground too, as long as the soil can give the pull
-  bool allow_unknown = false;    ///< treat cells without elevation as flat ground of the default class
+  /// Drive over cells without elevation, as ground of the default class that is flat, or slopes as the nearest heights to both
+  /// sides do (unseenSlope()); refused where that is too steep.
+  bool allow_unknown = false;
 
   double slope_margin_rad = 5.0 * kDegree;  ///< category edges: tan(slope -+ margin), thesis 3.5: 5 deg
   double sinkage_threshold = 0.5;  ///< sinkage over radius below which the category stays, thesis 3.5 [-]

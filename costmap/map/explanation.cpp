@@ -116,7 +116,9 @@ std::string hazardText(const TraversabilityMap& map, maps::Cell cell, Hazard haz
   const bool opened =
       map.surface().hazards(cell) == Hazard::Unknown && map.model().parts().policy.allow_unknown;
   if (opened)
-    return std::string("elevation or terrain class unknown; allowed on request as level ground of ") +
+    return std::string(
+               "elevation or terrain class unknown; allowed on request, at the slope between the heights "
+               "beside it, as ") +
            (map.surface().classIndex(cell) >= 0 ? "its class" : "the first class");
   return hazardText(hazard);
 }
@@ -255,8 +257,10 @@ void judge(const TraversabilityMap& map, maps::Cell cell, const Direction& headi
   out.category = static_cast<terramech::Category>(belief.category);
   out.probability = out.category == terramech::Category::Unknown ? kNotKnown : belief.confidence / 16.0;
   out.verdict = std::string(terramech::name(out.category));
+  // Where what is not seen is opened, something else excludes the cell.
+  const bool unseen = map.model().parts().policy.allow_unknown;
   for (const Hazard one : kHazards)
-    if (has(hazards, one) && !opened) {
+    if (has(hazards, one) && !opened && !(unseen && one == Hazard::Unknown)) {
       out.verdict += ": " + hazardText(map, cell, one);
       return;
     }
@@ -273,7 +277,8 @@ void judge(const TraversabilityMap& map, maps::Cell cell, const Direction& headi
   const DriveState state = map.published()->cost().detail(code, heading);
   out.category = state.category;
   out.probability = map.model().category(*ground, climb).probability;
-  if (state.refusal != Refusal::None && state.refusal != Refusal::Category) {  // whatever the pull, it is not driven
+  if (state.refusal != Refusal::None &&
+      state.refusal != Refusal::Category) {  // whatever the pull, it is not driven
     if (out.category != terramech::Category::Dangerous)
       out.probability = isOfSoil(state.refusal) ? static_cast<double>(state.weak) : 1.0;
     out.category = terramech::Category::Dangerous;

@@ -9,6 +9,7 @@
 #include <talus/costmap/surface/cell_boxes.hpp>
 #include <talus/costmap/surface/rock_hazard.hpp>
 #include <talus/costmap/surface/surface_shape.hpp>
+#include <talus/costmap/surface/unseen_slope.hpp>
 
 namespace talus::costmap {
 namespace {
@@ -101,21 +102,34 @@ void MapSurface::measure(const TakeShape& take, const ProgressMonitor& watch) {
   shapes.measure(
       site_->elevation.elevation_m, allOf(grid()), limits_,
       [&](maps::Cell cell, const GroundShape& shape, Hazard found) {
-        hazards_[cell] = found | layerHazards(cell);
-        take(cell, flatCode(shape));
+        const Ground ground = grounded(cell, shape, found);
+        hazards_[cell] = ground.hazards | layerHazards(cell);
+        take(cell, ground.code);
       },
       watch);
   inflate(hazards_, limits_, spreading());
 }
 
-// A changed cell changes the shape of those whose footprint it lies in; these may begin or cease to be kept clear of,
+// A shape that is not known is the slope that the heights around it allow, where the policy opens it.
+MapSurface::Ground MapSurface::grounded(maps::Cell cell, const GroundShape& shape, Hazard found) const {
+  if (!std::isnan(shape.dz_dx) || !site_->model->parts().policy.allow_unknown)
+    return {flatCode(shape), found};
+  const UnseenSlope slope = unseenSlope(site_->elevation.elevation_m, cell);
+  const bool steep = std::hypot(slope.dz_dx, slope.dz_dy) > limits_.max_gradient;
+  return {CellCode({.dz_dx = slope.dz_dx, .dz_dy = slope.dz_dy}), steep ? found | Hazard::Slope : found};
+}
+
+// A changed cell changes the shape of those whose footprint it lies in, and the slope that is possible between it and the next
+// height; these may begin or cease to be kept clear of,
 // or to lie at the edge of what is. Refused places were never kept clear of: they are left out meanwhile.
 MapSurface::PatchEffect MapSurface::take(const SurfacePatch& patch) {
   const maps::CellBox window = placeOf(patch, *site_, any_height_);
   takeHazards(patch, window);
   takeGround(patch, window);
   const SurfaceShape shapes(footprint(options_.threads));
-  const maps::CellBox shaped = grown(window, shapes.reach(grid()), grid());
+  const bool bounded = site_->model->parts().policy.allow_unknown;
+  const maps::CellBox shaped =
+      grown(window, std::max(shapes.reach(grid()), bounded ? kUnseenReach : 0), grid());
   const maps::CellBox judged = grown(shaped, inflationReach(limits_, grid().resolution_m) + 1, grid());
   for (const RefusedPlace& place : refused_) mark(place, false);
   forEachCell(judged, [&](maps::Cell cell) {
@@ -128,8 +142,9 @@ MapSurface::PatchEffect MapSurface::take(const SurfacePatch& patch) {
   shapes.measure(
       site_->elevation.elevation_m, shaped, limits_,
       [&](maps::Cell cell, const GroundShape& shape, Hazard found) {
-        hazards_[cell] = found | layerHazards(cell);
-        gradients.codes[{cell.column - shaped.first.column, cell.row - shaped.first.row}] = flatCode(shape);
+        const Ground ground = grounded(cell, shape, found);
+        hazards_[cell] = ground.hazards | layerHazards(cell);
+        gradients.codes[{cell.column - shaped.first.column, cell.row - shaped.first.row}] = ground.code;
       },
       {});
   inflate(hazards_, limits_, spreading(), judged);

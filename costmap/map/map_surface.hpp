@@ -97,6 +97,12 @@ class MapSurface {
   maps::CellBox refuse(const RefusedPlace& place);
 
  private:
+  // What a shape is to planners.
+  struct Ground {
+    CellCode code;
+    Hazard hazards;
+  };
+  Ground grounded(maps::Cell cell, const GroundShape& shape, Hazard found) const;
   maps::CellBox mark(const RefusedPlace& refusal, bool refused);
   void takeHazards(const SurfacePatch& patch, const maps::CellBox& window);
   void takeGround(const SurfacePatch& patch, const maps::CellBox& window);

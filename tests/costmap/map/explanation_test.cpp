@@ -61,7 +61,8 @@ TEST(Explain, UnseenGroundThatThePolicyOpensIsSaidToBe) {
   site[5][6] = '?';
   const Explanation open = explain(mapOf(site, 0.0, {.allow_unknown = true}), {6, 6});
   EXPECT_NE(open.category, Category::Unknown);
-  EXPECT_NE(open.verdict.find("unknown; allowed on request as level ground of"), std::string::npos)
+  EXPECT_NE(open.verdict.find("unknown; allowed on request, at the slope between the heights beside it, as"),
+            std::string::npos)
       << open.verdict;
   EXPECT_EQ(cause(open, "hazard").remark, "not excluded");
 }

@@ -212,5 +212,28 @@ TEST(MapSurface, PatchedEqualsBuiltAtOnceWhereTheUnseenIsOpen) {
     patchedIsAtOnce({.seed = seed, .policy = {.allow_unknown = true}});
 }
 
+// A strip of two metres without data between heights that differ: open where the slope between them is, whatever lies in it no cliff
+// that it could be is.
+TEST(MapSurface, WhatIsNotSeenBetweenTwoHeightsIsAsSteepAsTheyAllow) {
+  for (const double fall_m : {0.2, 5.0}) {
+    MapLayers layers;
+    layers.elevation.elevation_m =
+        maps::Raster<float>({.width = 40, .height = 40, .resolution_m = 0.5, .south_west = {}}, 0.0F);
+    for (int row = 0; row < 40; ++row)
+      for (int column = 18; column < 40; ++column)
+        layers.elevation.elevation_m[{column, row}] = column < 22 ? kNaN : static_cast<float>(-fall_m);
+    const TraversabilityMap map(std::move(layers), testGround({.allow_unknown = true}), {});
+    const auto grid = map.published();
+    for (int column = 18; column < 22; ++column) {
+      const CellCode code = grid->at({column, 20});
+      EXPECT_EQ(code.curve() == CellCode::kBlocked, fall_m > 1.0) << column;
+      // Closed form: five cells of half a metre apart; to half a step.
+      if (fall_m < 1.0) {
+        EXPECT_NEAR(code.dzDx(), -fall_m / 2.5, 0.5 * CellCode::kStep);
+      }
+    }
+  }
+}
+
 }  // namespace map_surface_test
 }  // namespace talus::costmap
