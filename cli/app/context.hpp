@@ -21,6 +21,7 @@ struct Exit {
   static constexpr int kInput = 2;        ///< the call or an input is wrong
   static constexpr int kInternal = 3;     ///< our failure
   static constexpr int kCancelled = 130;  ///< stopped by the user; 143 by SIGTERM
+  static constexpr int kReaderGone = 141;  ///< nobody reads the output any more; without a word, as SIGPIPE
 };
 
 /// What every subcommand shares: the global options, and the way to the terminal.

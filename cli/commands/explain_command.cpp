@@ -69,7 +69,8 @@ std::string explainText(const costmap::Explanation& why, const std::string& plac
   std::string text = fmt::format("{}\n{}{}\n", place, why.verdict, sure);
   for (const costmap::Cause& cause : why.causes) {
     const std::string std = std::isnan(cause.std) ? "" : fmt::format(" +- {:.3g}", cause.std);
-    text += fmt::format("  {:<28} {:>12.5g}{:<12} {}{}{}\n", cause.name, cause.value, std, cause.source,
+    const std::string value = std::isnan(cause.value) ? "not known" : fmt::format("{:.5g}", cause.value);
+    text += fmt::format("  {:<28} {:>12}{:<12} {}{}{}\n", cause.name, value, std, cause.source,
                         cause.remark.empty() ? "" : "; ", cause.remark);
   }
   return text;

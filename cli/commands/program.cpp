@@ -17,6 +17,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <ompl/util/Console.h>
+#include <poll.h>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 #include <yaml-cpp/exceptions.h>
@@ -105,6 +106,12 @@ void keepStandardStreams() {
       std::abort();
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit is a failed write, as on a full disk
+}
+
+/// Whether what standard output leads into was closed at its other end, as by `head`.
+bool readerIsGone() {
+  pollfd out{.fd = STDOUT_FILENO, .events = POLLOUT, .revents = 0};
+  return ::poll(&out, 1, 0) > 0 && (out.revents & POLLERR) != 0;
 }
 
 using Names = std::vector<std::string>;
@@ -236,8 +243,9 @@ int run(int argc, const char* const* argv, void (*add)(CLI::App&, Context&)) {
     code = interrupt.requested() ? interrupt.code() : failure();
   }
   if (code != Exit::kDone && interrupt.requested()) return fail(interrupt.code(), "cancelled");
-  if (std::fflush(stdout) != 0 || !std::cout.flush())
-    return fail(Exit::kInput, "standard output: cannot be written; check where it leads");
+  const bool written = std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && !!std::cout.flush();
+  if (!written && readerIsGone()) return Exit::kReaderGone;
+  if (!written) return fail(Exit::kInput, "standard output: cannot be written; check where it leads");
   return code;
 }
 

@@ -1,3 +1,7 @@
+#include <cstdlib>
+
+#include <sys/wait.h>
+
 #include <talus/cli/commands/program.hpp>
 
 #include "run_program.hpp"
@@ -50,6 +54,20 @@ TEST(Program, HelpAndVersionGoToStandardOutput) {
   EXPECT_EQ(help.code, 0);
   EXPECT_THAT(help.out, HasSubstr("Usage: talus"));
   EXPECT_THAT(help.err, IsEmpty());
+}
+
+// The reader has gone before the first word is written, as behind `head`, and it is no full disk.
+TEST(Program, AReaderThatIsGoneIsNoError) {
+  const Folder folder;
+  const std::string call = "cd '" + folder.path().string() + "' && { sleep 0.3; '" + TALUS_PROGRAM +
+                           "' plan --help 2>err; echo $? >code; } | true; sleep 1";
+  EXPECT_EQ(std::system(("bash -c \"" + call + "\"").c_str()), 0);
+  EXPECT_EQ(fileContent(folder / "code"), "141\n");
+  EXPECT_EQ(fileContent(folder / "err"), "");
+  const std::string full =
+      "'" + std::string(TALUS_PROGRAM) + "' plan --help >/dev/full 2>'" + (folder / "full") + "'";
+  EXPECT_EQ(WEXITSTATUS(std::system(full.c_str())), 2);
+  EXPECT_THAT(fileContent(folder / "full"), HasSubstr("standard output: cannot be written"));
 }
 
 }  // namespace program_test
