@@ -56,6 +56,8 @@ INSTANTIATE_TEST_SUITE_P(Ompl, EveryPlanner,
                          ::testing::Values("RRTstar", "InformedRRTstar", "BITstar", "ABITstar", "SST",
                                            "FMT"));
 
+const std::string kLevel(20, '.');
+
 TEST_P(EveryPlanner, RoundsTheWallExactly) {
   const Problem problem = across(wall());
   const Plan plan = planBySampling(problem, {.planner = GetParam(), .work = 1'000'000});
@@ -101,8 +103,7 @@ TEST_P(EveryPlanner, TakesTheTimeItIsGiven) {
 
 TEST_P(EveryPlanner, NeverClimbsWhereClimbingIsForbidden) {
   // Ground that rises eastwards and may be driven down but not up: west to east there is no route.
-  const auto map = drivenDownOnly(
-      drawn(std::vector<std::string>(20, std::string(20, '.') + ">>>>" + std::string(20, '.'))));
+  const auto map = drivenDownOnly(drawn(std::vector<std::string>(20, kLevel + ">>>>" + kLevel)));
   Problem up{.map = map, .start = {5.5, 10.5}, .goal = {38.5, 10.5}};
   Problem down{.map = map, .start = {38.5, 10.5}, .goal = {5.5, 10.5}};
   const SamplingSettings settings{.planner = GetParam(), .work = 1'000'000, .range_cells = 10};
@@ -111,7 +112,7 @@ TEST_P(EveryPlanner, NeverClimbsWhereClimbingIsForbidden) {
 }
 
 TEST_P(EveryPlanner, EndsWhereTheFieldHasProvenThatThereIsNoRoute) {
-  const auto walled = drawn(std::vector<std::string>(20, std::string(20, '.') + "#" + std::string(20, '.')));
+  const auto walled = drawn(std::vector<std::string>(20, kLevel + "#" + kLevel));
   const Problem across{.map = walled, .start = {5.5, 10.5}, .goal = {38.5, 10.5}};
   const auto proof = [](const Problem& leg) { return FieldPlanner().plan(leg); };
   EXPECT_EQ(planBySampling(across, {.planner = GetParam()}, proof).status, RouteStatus::NoRoute);
