@@ -16,11 +16,11 @@ namespace talus::cli {
 
 /// Exit codes that other programs rely on.
 struct Exit {
-  static constexpr int kDone = 0;         ///< done
-  static constexpr int kNo = 1;           ///< a well-posed question with the answer no: no route, no fit
-  static constexpr int kInput = 2;        ///< the call or an input is wrong
-  static constexpr int kInternal = 3;     ///< our failure
-  static constexpr int kCancelled = 130;  ///< stopped by the user; 143 by SIGTERM
+  static constexpr int kDone = 0;          ///< done
+  static constexpr int kNo = 1;            ///< a well-posed question with the answer no: no route, no fit
+  static constexpr int kInput = 2;         ///< the call or an input is wrong
+  static constexpr int kInternal = 3;      ///< our failure
+  static constexpr int kCancelled = 130;   ///< stopped by the user; 143 by SIGTERM
   static constexpr int kReaderGone = 141;  ///< nobody reads the output any more; without a word, as SIGPIPE
 };
 
