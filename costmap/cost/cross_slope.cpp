@@ -139,6 +139,52 @@ double riskOf(const DriveState& state) noexcept {
 
 }  // namespace
 
+struct CrossSlope::Strengths {
+  std::vector<SlopeRow> rows;         // the last may hold nothing
+  std::vector<double> losses, gains;  // of the steepest climb and of the steepest descent, by row that holds
+};
+
+CrossSlope::Strengths CrossSlope::solvedRows(const SlopeRows& lattice, const SlopeRows& even_lattice,
+                                             const Ends& even, int last_row) {
+  Strengths all;
+  for (int row = 0; row <= last_row; ++row) {
+    all.rows.push_back(lattice.solved(row * kRowStep));
+    const SlopeRow &here = all.rows.back(), even_here = even_lattice.solved(row * kRowStep);
+    if (here.states.empty() || even_here.states.empty()) break;
+    // Where a rover that is about to tip ends it, what strength there is to lose is that under even loads.
+    const double strong_to = here.tips_behind ? even_here.last : here.last,
+                 strong_from = here.tips_before ? even_here.first : here.first;
+    all.losses.push_back(std::max(all.losses.empty() ? 0.0 : all.losses.back(), even.last - strong_to));
+    all.gains.push_back(std::max(all.gains.empty() ? 0.0 : all.gains.back(), strong_from - even.first));
+  }
+  return all;
+}
+
+void CrossSlope::addRow(int row, const Strengths& strengths, const LevelClimbs& level_climbs,
+                        const Level& level, const DriveCost::Limits& limits) {
+  const SlopeRow& here = strengths.rows[static_cast<std::size_t>(row)];
+  const double gain = strengths.gains[static_cast<std::size_t>(row)];
+  const LevelClimbs::Surcharges dearer = level_climbs.surcharges(here);
+  for (int bin = 0; bin < kBins; ++bin) {
+    const double along = DriveCurve::gradient(bin), node = along / kAlongStep - here.first_node;
+    Climbs climbs;
+    if (std::abs(along) > limits.max_along + 2.0 / DriveCurve::kBinsPerUnit)
+      climbs.refused = Refusal::Pitch;
+    else if (here.margin_rad(along) < kUpright_rad)
+      climbs.refused = Refusal::Tips;
+    else if (along - gain < -1.0 || (here.tips_before && along < here.first) ||
+             (here.tips_behind && along > here.last))
+      climbs.refused = reasonAt(row, bin);
+    else
+      climbs = {.costs = placeOf(along + interpolated(dearer.climb, node)),
+                .leaves = placeOf(level.last - strengthToLose(along, row * kRowStep,
+                                                              {level.last, level.thrust}, strengths.losses)),
+                .brakes = placeOf(along - gain),
+                .more_slip = static_cast<float>(interpolated(dearer.slip, node))};
+    climbs_.push_back(row == 0 ? climbs : harder(climbs, at(row - 1, bin)));
+  }
+}
+
 CrossSlope::CrossSlope(const terramech::SlopeEquilibrium& equilibrium, const Level& level,
                        const DriveCost::Limits& limits) {
   // Up to the row beyond the limit, which gradients at the limit read; beyond 45 degrees across nothing is said to hold.
@@ -158,46 +204,16 @@ CrossSlope::CrossSlope(const terramech::SlopeEquilibrium& equilibrium, const Lev
   const SlopeRows lattice(equilibrium, low, high, kAlongStep),
       even_lattice(even_equilibrium, low, high, kAlongStep);
   first_along_ = lattice.low();
-  std::vector<SlopeRow> solved;
-  std::vector<double> losses, gains;
-  for (int row = 0; row <= static_cast<int>(kSpare * needed); ++row) {
-    solved.push_back(lattice.solved(row * kRowStep));
-    const SlopeRow &here = solved.back(), even_here = even_lattice.solved(row * kRowStep);
+  const Strengths strengths =
+      solvedRows(lattice, even_lattice, {first, last}, static_cast<int>(kSpare * needed));
+  for (const SlopeRow& row : strengths.rows) {
     std::vector<Held>& kept = held_.emplace_back();
-    for (const SlopeState& s : here.all)
+    for (const SlopeState& s : row.all)
       kept.push_back({{s.slip_angle_rad, s.side_force_over_load, s.stability_margin_rad}, s.grip});
-    if (here.states.empty() || even_here.states.empty()) break;
-    // Where a rover that is about to tip ends it, what strength there is to lose is that under even loads.
-    const double strong_to = here.tips_behind ? even_here.last : here.last,
-                 strong_from = here.tips_before ? even_here.first : here.first;
-    losses.push_back(std::max(losses.empty() ? 0.0 : losses.back(), last - strong_to));
-    gains.push_back(std::max(gains.empty() ? 0.0 : gains.back(), strong_from - first));
   }
   const LevelClimbs level_climbs(even, level.last);
-  for (int row = 0; row <= needed; ++row) {
-    if (row >= static_cast<int>(losses.size()) || row > DriveCurve::kRowsPerUnit + 1) break;
-    const SlopeRow& here = solved[static_cast<std::size_t>(row)];
-    const double gain = gains[static_cast<std::size_t>(row)];
-    const LevelClimbs::Surcharges dearer = level_climbs.surcharges(here);
-    for (int bin = 0; bin < kBins; ++bin) {
-      const double along = DriveCurve::gradient(bin), node = along / kAlongStep - here.first_node;
-      Climbs climbs;
-      if (std::abs(along) > limits.max_along + 2.0 / DriveCurve::kBinsPerUnit)
-        climbs.refused = Refusal::Pitch;
-      else if (here.margin_rad(along) < kUpright_rad)
-        climbs.refused = Refusal::Tips;
-      else if (along - gain < -1.0 || (here.tips_before && along < here.first) ||
-               (here.tips_behind && along > here.last))
-        climbs.refused = reasonAt(row, bin);
-      else
-        climbs = {.costs = placeOf(along + interpolated(dearer.climb, node)),
-                  .leaves = placeOf(
-                      level.last - strengthToLose(along, row * kRowStep, {level.last, level.thrust}, losses)),
-                  .brakes = placeOf(along - gain),
-                  .more_slip = static_cast<float>(interpolated(dearer.slip, node))};
-      climbs_.push_back(row == 0 ? climbs : harder(climbs, at(row - 1, bin)));
-    }
-  }
+  for (int row = 0; row <= std::min(needed, DriveCurve::kRowsPerUnit + 1); ++row)
+    if (row < static_cast<int>(strengths.losses.size())) addRow(row, strengths, level_climbs, level, limits);
   if (rows() <= needed) {
     const int row = rows();
     for (int bin = 0; bin < kBins; ++bin) {

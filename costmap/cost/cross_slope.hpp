@@ -9,6 +9,9 @@
 
 namespace talus::costmap {
 
+class LevelClimbs;
+class SlopeRows;
+
 /// What the parts of the one cost function count: cost = energy_J * energy + time_s * time_W + hazard *
 /// risk_J.
 struct CostWeights {
@@ -78,7 +81,16 @@ class CrossSlope {
     SlopeHold hold;
     terramech::SlopeFailure grip = terramech::SlopeFailure::None;
   };
+  // The gradients along between which level ground holds under even loads.
+  struct Ends {
+    double first, last;
+  };
+  struct Strengths;
   CrossSlope() = default;
+  static Strengths solvedRows(const SlopeRows& lattice, const SlopeRows& even_lattice, const Ends& even,
+                              int last_row);
+  void addRow(int row, const Strengths& strengths, const LevelClimbs& level_climbs, const Level& level,
+              const DriveCost::Limits& limits);
   void addLevelRow();
   static Climbs harder(const Climbs& a, const Climbs& b) noexcept;
   void tabulateSteepest();

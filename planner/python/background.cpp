@@ -30,8 +30,8 @@ void inBackground(const std::function<void(const ProgressMonitor&)>& work, const
     try {
       if (PyErr_CheckSignals() != 0) throw py::error_already_set();
       if (const double now = done; !progress.is_none() && now > told) progress(told = now);
-    } catch (py::error_already_set& error) {
-      raised = std::move(error);
+    } catch (const py::error_already_set& error) {
+      raised.emplace(error);
       stop.request_stop();
     }
   }

@@ -140,6 +140,31 @@ void bindViews(py::class_<PythonMap>& map) {
            "Where a path of shape (n, 2) is not safe: (x_m, y_m, along_m, probability, reason) each.");
 }
 
+// Routes over it.
+void addPlan(py::class_<PythonMap>& map) {
+  map.def(
+      "plan",
+      [](PythonMap& m, const Pair& start, const Pair& goal, const std::string& planner, double tolerance_m,
+         const std::vector<Pair>& via, std::optional<double> start_heading_rad,
+         std::optional<double> goal_heading_rad, std::optional<double> max_risk,
+         std::optional<double> time_limit_s, std::uint64_t seed, int threads, const py::object& progress) {
+        PlannerSettings settings{.planner = planner, .seed = seed, .threads = threads};
+        if (time_limit_s) settings.time_limit_s = *time_limit_s;
+        return m.plan(
+            settings,
+            requestOf(start, goal,
+                      {start_heading_rad, goal_heading_rad, max_risk, time_limit_s, via, tolerance_m}),
+            progress);
+      },
+      "A route over all that is known now; the GIL is released, Ctrl-C ends it. progress: called with 0 "
+      "to 1.",
+      py::arg("start"), py::arg("goal"), py::kw_only(), py::arg("planner") = "", py::arg("tolerance_m") = 0.0,
+      py::arg("via") = std::vector<Pair>{}, py::arg("start_heading_rad") = py::none(),
+      py::arg("goal_heading_rad") = py::none(), py::arg("max_risk") = py::none(),
+      py::arg("time_limit_s") = py::none(), py::arg("seed") = 1, py::arg("threads") = 1,
+      py::arg("progress") = py::none());
+}
+
 }  // namespace
 
 void bindMap(py::module_& module) {
@@ -180,28 +205,6 @@ void bindMap(py::module_& module) {
            "of time, NaN\n"
            "where not measured. Returns how many rows taught something.")
       .def(
-          "plan",
-          [](PythonMap& m, const Pair& start, const Pair& goal, const std::string& planner,
-             double tolerance_m, const std::vector<Pair>& via, std::optional<double> start_heading_rad,
-             std::optional<double> goal_heading_rad, std::optional<double> max_risk,
-             std::optional<double> time_limit_s, std::uint64_t seed, int threads,
-             const py::object& progress) {
-            PlannerSettings settings{.planner = planner, .seed = seed, .threads = threads};
-            if (time_limit_s) settings.time_limit_s = *time_limit_s;
-            return m.plan(
-                settings,
-                requestOf(start, goal,
-                          {start_heading_rad, goal_heading_rad, max_risk, time_limit_s, via, tolerance_m}),
-                progress);
-          },
-          "A route over all that is known now; the GIL is released, Ctrl-C ends it. progress: called with 0 "
-          "to 1.",
-          py::arg("start"), py::arg("goal"), py::kw_only(), py::arg("planner") = "",
-          py::arg("tolerance_m") = 0.0, py::arg("via") = std::vector<Pair>{},
-          py::arg("start_heading_rad") = py::none(), py::arg("goal_heading_rad") = py::none(),
-          py::arg("max_risk") = py::none(), py::arg("time_limit_s") = py::none(), py::arg("seed") = 1,
-          py::arg("threads") = 1, py::arg("progress") = py::none())
-      .def(
           "moved",
           [](const PythonMap& m, int east, int north) {
             return m.moved({east, north});
@@ -213,6 +216,7 @@ void bindMap(py::module_& module) {
         return "<talus.Map " + std::to_string(g.height) + " x " + std::to_string(g.width) + " cells of " +
                std::to_string(g.resolution_m) + " m>";
       });
+  addPlan(map);
   bindViews(map);
   module.def(
       "heights_from_points",

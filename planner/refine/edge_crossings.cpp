@@ -3,7 +3,6 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <utility>
 
 #if defined(__x86_64__)
 #include <immintrin.h>
@@ -36,6 +35,41 @@ void pricesByScalar(const DriveCost& cost, CellCode cell, float here, const Moti
 }
 
 #if defined(__x86_64__)
+// 32 bits of each mask of 64.
+__attribute__((target("avx2"))) inline __m128i lanes(__m256d mask) noexcept {
+  const __m256i evens = _mm256_setr_epi32(0, 2, 4, 6, 0, 2, 4, 6);
+  return _mm256_castsi256_si128(_mm256_permutevar8x32_epi32(_mm256_castpd_si256(mask), evens));
+}
+
+// DriveCurve::between(): the node before, whether the place is off it (-1), and the share of the next.
+struct Betweens {
+  __m128i whole, off;
+  __m128 share;
+};
+__attribute__((target("avx2"))) inline Betweens betweens(__m256d place) noexcept {
+  const __m256d same = _mm256_set1_pd(DriveCurve::kSame);
+  const __m128i whole = _mm256_cvttpd_epi32(_mm256_add_pd(place, same));
+  const __m256d rest = _mm256_sub_pd(place, _mm256_cvtepi32_pd(whole));
+  const __m128i off = lanes(_mm256_cmp_pd(rest, same, _CMP_GT_OQ));
+  return {whole, off, _mm_and_ps(_mm256_cvtpd_ps(rest), _mm_castsi128_ps(off))};
+}
+
+struct Prices {
+  __m128 here, next;
+};
+
+// Prices at four nodes and the ones after them; of a place that is on its node the next is the node itself.
+__attribute__((target("avx2"))) inline Prices pairsAt(const float* prices, __m128i at, __m128i off) noexcept {
+  alignas(16) std::array<std::int32_t, 4> lane;
+  _mm_store_si128(reinterpret_cast<__m128i*>(lane.data()), at);
+  const auto pair = [&](std::size_t k) __attribute__((target("avx2"))) {
+    return _mm_castsi128_ps(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(prices + lane[k])));
+  };
+  const __m128 first = _mm_unpacklo_ps(pair(0), pair(1)), second = _mm_unpacklo_ps(pair(2), pair(3));
+  const __m128 here = _mm_movelh_ps(first, second), next = _mm_movehl_ps(second, first);
+  return {here, _mm_blendv_ps(here, next, _mm_castsi128_ps(off))};
+}
+
 // The same four at a time: the operations of HeadingCost, lane by lane.
 __attribute__((target("avx2"))) void pricesByVector(const DriveCost& cost, CellCode cell, float here,
                                                     const Motions& motions, int count, float* paid) noexcept {
@@ -43,29 +77,14 @@ __attribute__((target("avx2"))) void pricesByVector(const DriveCost& cost, CellC
   const __m256d most_along = _mm256_set1_pd(cost.limits().max_along),
                 most_across = _mm256_set1_pd(cost.limits().max_across);
   const __m256d no_sign = _mm256_castsi256_pd(_mm256_set1_epi64x(0x7fffffffffffffff));
-  const __m256i evens = _mm256_setr_epi32(0, 2, 4, 6, 0, 2, 4, 6);
   const DriveCurve& curve = cost.curves()[cell.curve()];
   const float* prices = curve.rows();
   const __m128i last_row = _mm_set1_epi32(curve.lastRow());
   const __m256d bins_per_unit = _mm256_set1_pd(DriveCurve::kBinsPerUnit),
                 rows_per_unit = _mm256_set1_pd(DriveCurve::kRowsPerUnit),
-                same = _mm256_set1_pd(DriveCurve::kSame), middle = _mm256_set1_pd(DriveCurve::kBins / 2),
+                middle = _mm256_set1_pd(DriveCurve::kBins / 2),
                 last_place = _mm256_set1_pd(DriveCurve::kLastPlace);
   const __m128 no_cost = _mm_set1_ps(kNoCost);
-  const auto lanes = [&](__m256d mask) __attribute__((target("avx2"))) {
-    return _mm256_castsi256_si128(_mm256_permutevar8x32_epi32(_mm256_castpd_si256(mask), evens));
-  };
-  // DriveCurve::between(): the node before, whether the place is off it (-1), and the share of the next.
-  struct Betweens {
-    __m128i whole, off;
-    __m128 share;
-  };
-  const auto betweens = [&](__m256d place) __attribute__((target("avx2"))) {
-    const __m128i whole = _mm256_cvttpd_epi32(_mm256_add_pd(place, same));
-    const __m256d rest = _mm256_sub_pd(place, _mm256_cvtepi32_pd(whole));
-    const __m128i off = lanes(_mm256_cmp_pd(rest, same, _CMP_GT_OQ));
-    return Betweens{whole, off, _mm_and_ps(_mm256_cvtpd_ps(rest), _mm_castsi128_ps(off))};
-  };
   for (int i = 0; i < count; i += EdgeCrossings::kVector) {
     const __m256d x = _mm256_loadu_pd(motions.x + i), y = _mm256_loadu_pd(motions.y + i);
     const __m256d along = _mm256_add_pd(_mm256_mul_pd(steps_x, x), _mm256_mul_pd(steps_y, y));
@@ -79,18 +98,9 @@ __attribute__((target("avx2"))) void pricesByVector(const DriveCost& cost, CellC
                                     _mm256_cmp_pd(place, last_place, _CMP_LT_OQ)));
     const __m128i known = lanes(allowed);
     const Betweens bin = betweens(place), row = betweens(_mm256_mul_pd(across, rows_per_unit));
-    // Prices of a row at four nodes and the ones after them; of a place on a node the next is the node itself.
     const auto nodes = [&](__m128i of_row) __attribute__((target("avx2"))) {
-      const __m128i at = _mm_and_si128(
-          _mm_add_epi32(bin.whole, _mm_slli_epi32(_mm_min_epi32(of_row, last_row), kBinBits)), known);
-      alignas(16) std::array<std::int32_t, 4> lane;
-      _mm_store_si128(reinterpret_cast<__m128i*>(lane.data()), at);
-      const auto pair = [&](std::size_t k) __attribute__((target("avx2"))) {
-        return _mm_castsi128_ps(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(prices + lane[k])));
-      };
-      const __m128 first = _mm_unpacklo_ps(pair(0), pair(1)), second = _mm_unpacklo_ps(pair(2), pair(3));
-      const __m128 here_ps = _mm_movelh_ps(first, second), next = _mm_movehl_ps(second, first);
-      return std::pair{here_ps, _mm_blendv_ps(here_ps, next, _mm_castsi128_ps(bin.off))};
+      const __m128i at = _mm_add_epi32(bin.whole, _mm_slli_epi32(_mm_min_epi32(of_row, last_row), kBinBits));
+      return pairsAt(prices, _mm_and_si128(at, known), bin.off);
     };
     const auto [a, b] = nodes(row.whole);
     const auto [c, d] = nodes(_mm_sub_epi32(row.whole, row.off));
