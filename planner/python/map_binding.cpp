@@ -165,6 +165,20 @@ void addPlan(py::class_<PythonMap>& map) {
       py::arg("progress") = py::none());
 }
 
+void addHeights(py::module_& module) {
+  module.def(
+      "heights_from_points",
+      [](const py::object& points, std::pair<int, int> shape, double resolution_m, const Pair& south_west,
+         double percentile, std::size_t least_points) {
+        return heightsFrom(points, shape, resolution_m, south_west, {percentile, least_points});
+      },
+      "Heights on a grid from a point cloud of shape (n, 3): in each cell the percentile of its points by "
+      "height, NaN\n"
+      "where it has fewer than least_points.",
+      py::arg("points"), py::arg("shape"), py::kw_only(), py::arg("resolution_m"), py::arg("south_west"),
+      py::arg("percentile") = 1.0, py::arg("least_points") = 1);
+}
+
 }  // namespace
 
 void bindMap(py::module_& module) {
@@ -218,17 +232,7 @@ void bindMap(py::module_& module) {
       });
   addPlan(map);
   bindViews(map);
-  module.def(
-      "heights_from_points",
-      [](const py::object& points, std::pair<int, int> shape, double resolution_m, const Pair& south_west,
-         double percentile, std::size_t least_points) {
-        return heightsFrom(points, shape, resolution_m, south_west, {percentile, least_points});
-      },
-      "Heights on a grid from a point cloud of shape (n, 3): in each cell the percentile of its points by "
-      "height, NaN\n"
-      "where it has fewer than least_points.",
-      py::arg("points"), py::arg("shape"), py::kw_only(), py::arg("resolution_m"), py::arg("south_west"),
-      py::arg("percentile") = 1.0, py::arg("least_points") = 1);
+  addHeights(module);
 }
 
 }  // namespace talus::planner
