@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <utility>
 
 #include <talus/terramech/contact/wong_reece.hpp>
 #include <talus/terramech/mobility/mobility.hpp>
@@ -251,37 +252,46 @@ TEST(SlopeEquilibrium, ALockedRoverHoldsDownhillUntilItSlides) {
 // Independent: the point where the weight meets the plane, in the body's own axes and in three dimensions, against the rectangle of the
 // wheels. A rover that is short, wide and tall, and turns uphill where the slope pushes it aside.
 TEST(SlopeEquilibrium, HoldsOnlyWithTheCentreOfMassBetweenTheWheelsOfTheBody) {
-  Soil firm = sand();
-  firm.cohesion_Pa = 4000.0;
-  int tipped = 0;
-  for (const Steering steering : kSteerings) {
+  int tipped = 0, turned = 0;  // the turn of the body alone tips these
+  for (const auto& [steering, cohesion_Pa] : {std::pair{Steering::Skid, 4000.0},
+                                              {Steering::Ackermann, 4000.0},
+                                              {Steering::AllWheel, 4000.0},
+                                              {Steering::Skid, 600.0},
+                                              {Steering::Ackermann, 600.0}}) {
+    Soil soil = sand();
+    soil.cohesion_Pa = cohesion_Pa;
     Rover r = rover(steering);
     r.wheelbase_m = 0.5;
     r.track_m = 1.5;
-    r.centre_of_mass_height_m = 0.9;
-    const SlopeEquilibrium equilibrium{firm, r};
+    r.centre_of_mass_height_m = 2.0;
+    const SlopeEquilibrium equilibrium{soil, r};
     int held = 0;
-    for (double a = -0.5; a <= 0.51; a += 0.05)
-      for (double c = -0.5; c <= 0.51; c += 0.05) {
+    for (double a = -0.5; a <= 0.51; a += 0.02)
+      for (double c = -0.5; c <= 0.51; c += 0.02) {
         const SlopeState state = equilibrium.at({a, c});
         const Vec ahead = unit({1.0, 0.0, a}), up = unit({-a, -c, 1.0}), left = cross(up, ahead);
         const double turn = state.body_turn_rad;
         const Vec body = std::cos(turn) * ahead + std::sin(turn) * left, side = cross(up, body);
         // From the centre of mass straight down to the plane: h / up.z metres.
         const Vec down{0.0, 0.0, -r.centre_of_mass_height_m / up.z};
-        const double off = std::max(std::abs(dot(down, body)) - 0.25, std::abs(dot(down, side)) - 0.75);
+        const auto beyond = [&](const Vec& x, const Vec& y) {
+          return std::max(std::abs(dot(down, x)) - 0.25, std::abs(dot(down, y)) - 0.75);
+        };
+        const double off = beyond(body, side);
         if (state.holds()) {
           ++held;
           EXPECT_LT(off, 1e-9) << name(state.failure) << ' ' << a << ' ' << c;
         }
         if (state.grip == SlopeFailure::None && off > 1e-9) {
           ++tipped;
+          turned += beyond(ahead, left) < -0.005 ? 1 : 0;
           EXPECT_EQ(state.failure, SlopeFailure::Tips) << a << ' ' << c;
         }
       }
     EXPECT_GT(held, 30);
   }
   EXPECT_GT(tipped, 20);
+  EXPECT_GT(turned, 5);
 }
 
 TEST(SlopeEquilibrium, SaysWhatItAssumes) {
