@@ -9,4 +9,4 @@
 #include <talus/planner/plan/make_planner.hpp>
 #include <talus/planner/plan/plan_route.hpp>
 #include <talus/planner/plugin/plugin_loader.hpp>
-#include <talus/planner/route/turn_prices.hpp>
+#include <talus/planner/route/rover_kinematics.hpp>

@@ -74,6 +74,7 @@ PlanRequest requestOf(const PlanOptions& options, const PlannerCapabilities& off
   if (auto chassis = chassisOf(options.drive.chassis, ground.map))
     request.chassis = std::make_shared<const planner::Chassis>(*std::move(chassis));
   if (options.max_risk > 0.0) request.risk_limit = RiskLimit{.immobilisation = options.max_risk};
+  request.prove = !options.no_proof;
   request.watch = context.watch("plan");
   if (options.plugin.empty()) context.answerStop();  // a plugin's route is whole or none
   return request;
@@ -152,7 +153,9 @@ struct Planned {
 
 Planned timedPlan(Ground ground, PlanRequest request, const std::function<Route(const PlanRequest&)>& plan) {
   const auto begin = std::chrono::steady_clock::now();
+  request.hazards = [&map = ground.map](maps::Cell cell) { return map.surface().hazards(cell); };
   Route route = plan(request);
+  request.hazards = {};  // the map moves on
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
   return {std::move(ground), std::move(request), std::move(route), seconds.count()};
 }

@@ -118,10 +118,10 @@ std::string slipText(const Route& route) {
   return text;
 }
 
-/// The planner and the optimality gap, where a useful bound is known.
+/// The planner and the optimality gap.
 std::string statusText(const Route& route) {
   const planner::RouteSummary& s = route.summary;
-  if (!(s.gap < 1.0)) return fmt::format("found by {}; optimality gap not known", s.planner);
+  if (!std::isfinite(s.gap)) return fmt::format("found by {}; no lower bound", s.planner);
   return fmt::format("found by {}; proven optimality gap <= {:.1f} %", s.planner, 100.0 * s.gap);
 }
 

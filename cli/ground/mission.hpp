@@ -33,6 +33,7 @@ struct PlanOptions {
   double max_risk = 0.0;               ///< chance constraint on immobilisation, 0: none
   std::size_t in_memory = 40'000'000;  ///< cells; larger maps are read in windows along an overview's route
   bool whole_field = false;            ///< even on large maps
+  bool no_proof = false;               ///< no best lower bound, no other corridors
   std::string pareto;                  ///< chart to draw; empty: none
   double time_limit_s = 0.0;           ///< 0: none
   std::string output;

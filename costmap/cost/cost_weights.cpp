@@ -12,7 +12,8 @@ std::shared_ptr<const CostGrid> reweighted(const CostGrid& map, const CostWeight
     if (!states)
       throw std::domain_error("cost weights: the map's cost holds no energy, time and risk to weigh");
     const auto& crossing = map.cost().crossings()[i];
-    grounds.push_back({priced(*states, crossing.get(), weights), states, crossing});
+    grounds.push_back({priced(*states, crossing.get(), weights), states, crossing,
+                       reweighted(map.cost().turns()[i], weights.energy, weights.time_W)});
   }
   CostGrid::Content content = map.content();
   content.cost = std::make_shared<const DriveCost>(map.cost().limits(), grounds, map.cost().doubt());

@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <stdexcept>
 #include <utility>
 
+#include <talus/common/constants.hpp>
 #include <talus/costmap/cost/drive_cost.hpp>
 #include <talus/terramech/mobility/slope_equilibrium.hpp>
 
@@ -31,10 +33,21 @@ std::vector<DriveCurve> curvesOf(const std::vector<DriveGround>& grounds) {
   return curves;
 }
 
+// The angle is least towards one of the wheels' four sides.
+double steadyGradient(const std::optional<terramech::RoverStance>& stance) {
+  const double margin_rad = stance ? stance->stabilityMargin_rad({}) : kInfinity;
+  return margin_rad < 0.5 * std::numbers::pi ? std::tan(margin_rad) : kInfinity;
+}
+
 }  // namespace
 
 DriveCost::DriveCost(const Limits& limits, std::vector<DriveCurve> curves)
-    : limits_(limits), curves_(std::move(curves)), states_(curves_.size()), crossings_(curves_.size()) {
+    : limits_(limits),
+      curves_(std::move(curves)),
+      states_(curves_.size()),
+      crossings_(curves_.size()),
+      turns_(curves_.size()),
+      steady_gradient_(steadyGradient(limits.stance)) {
   if (curves_.size() > CellCode::kUnknown)
     throw std::invalid_argument("DriveCost: " + std::to_string(curves_.size()) +
                                 " drive curves, must be <= 254");
@@ -46,6 +59,7 @@ DriveCost::DriveCost(const Limits& limits, const std::vector<DriveGround>& groun
   for (std::size_t i = 0; i < grounds.size(); ++i) {
     states_[i] = grounds[i].states;
     crossings_[i] = grounds[i].crossing;
+    turns_[i] = grounds[i].turns;
   }
 }
 
@@ -55,6 +69,14 @@ float DriveCost::costPerMetre(CellCode cell, Direction heading) const noexcept {
   const terramech::Gradient d = seenBy(cell, heading);
   if (std::abs(d.along) > limits_.max_along || std::abs(d.across) > limits_.max_across) return blocked;
   return curves_[cell.curve()].price(d.along, d.across);
+}
+
+bool DriveCost::tips(CellCode cell, Direction heading) const noexcept {
+  return mayTip(cell) && limits_.stance->stabilityMargin_rad(demandOf(seenBy(cell, heading))) < 0.0;
+}
+
+bool DriveCost::mayTip(CellCode cell) const noexcept {
+  return std::hypot(cell.dzDx(), cell.dzDy()) > steady_gradient_;
 }
 
 }  // namespace talus::costmap

@@ -4,9 +4,12 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <talus/costmap/cost/drive_state.hpp>
+#include <talus/costmap/cost/turn_price.hpp>
+#include <talus/terramech/mobility/rover_stance.hpp>
 
 namespace talus::costmap {
 
@@ -124,7 +127,8 @@ struct DriveGround {
   DriveCurve curve;
   std::shared_ptr<const DriveTable> states;  ///< may be null where details are not needed (tests)
   std::shared_ptr<const CrossSlope>
-      crossing{};  ///< what the curve's rows are made by; null where it has none
+      crossing{};      ///< what the curve's rows are made by; null where it has none
+  TurnPrices turns{};  ///< a radian on the flat; zeros where turning is free (tests)
 };
 
 /// How a rover holds a slope on the soil of its class, by the row and bin of the cost; NaN where nothing holds or is
@@ -150,8 +154,9 @@ class DriveCost {
  public:
   /// Limits that hold on every ground, as rise over run.
   struct Limits {
-    double max_along = 0.36;   ///< steepest gradient along the heading, tan(max pitch)
-    double max_across = 0.36;  ///< steepest gradient across the heading, tan(max roll)
+    double max_along = 0.36;                         ///< steepest gradient along the heading, tan(max pitch)
+    double max_across = 0.36;                        ///< steepest gradient across the heading, tan(max roll)
+    std::optional<terramech::RoverStance> stance{};  ///< beyond which the rover tips; none: it never does
   };
 
   /// Throws std::invalid_argument for more than 254 curves.
@@ -168,6 +173,17 @@ class DriveCost {
   /// How the rover holds the slope there.
   SlopeHold hold(CellCode cell, Direction heading) const noexcept;
 
+  /// What a radian of heading takes at a vertex on this cell, and of each curve; free on cells without a curve.
+  TurnPrice turn(CellCode cell) const noexcept {
+    return cell.curve() < turns_.size() ? turns_[cell.curve()].at_vertex : TurnPrice{};
+  }
+  const std::vector<TurnPrices>& turns() const noexcept { return turns_; }
+
+  /// Whether a rover whose body points this way tips on the cell, standing or turning in place, on any soil.
+  bool tips(CellCode cell, Direction heading) const noexcept;
+  /// Whether it does in some heading.
+  bool mayTip(CellCode cell) const noexcept;
+
   const Limits& limits() const noexcept { return limits_; }
   /// What the risk of a whole route follows from, beside the hazard of each metre.
   const SoilDoubt& doubt() const noexcept { return doubt_; }
@@ -183,6 +199,8 @@ class DriveCost {
   std::vector<DriveCurve> curves_;
   std::vector<std::shared_ptr<const DriveTable>> states_;
   std::vector<std::shared_ptr<const CrossSlope>> crossings_;
+  std::vector<TurnPrices> turns_;
+  double steady_gradient_;  // the steepest plane on which no heading tips
   SoilDoubt doubt_;
 };
 

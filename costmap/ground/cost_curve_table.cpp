@@ -112,7 +112,10 @@ DriveGround CostCurveTable::dearer(const DriveGround& ground, double added_J_per
   const DrivePolicy& policy = model_->parts().policy;
   DriveCurve curve = priced(*states, ground.crossing.get(),
                             {.energy = 1.0, .time_W = policy.time_weight_W, .risk_J = policy.risk_weight_J});
-  return {.curve = std::move(curve), .states = std::move(states), .crossing = ground.crossing};
+  return {.curve = std::move(curve),
+          .states = std::move(states),
+          .crossing = ground.crossing,
+          .turns = ground.turns};
 }
 
 std::uint8_t CostCurveTable::dearer(std::uint8_t number, int step, double added_J_per_m) {

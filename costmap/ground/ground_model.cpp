@@ -363,12 +363,32 @@ DriveGround GroundModel::ground(int class_index, int other_class, const GroundBe
       priced(*states, ground.crossing.get(),
              {.energy = 1.0, .time_W = parts_.policy.time_weight_W, .risk_J = parts_.policy.risk_weight_J});
   ground.states = std::move(states);
+  const DriveState& flat = (*ground.states)[DriveCurve::kBins / 2];
+  ground.turns = turns(class_index, flat);
+  if (other_class != class_index) ground.turns = costmap::dearer(ground.turns, turns(other_class, flat));
   return ground;
 }
 
+// Of ground of a class on which the flat costs so much.
+TurnPrices GroundModel::turns(int class_index, const DriveState& flat) const {
+  const terramech::Soil& soil = parts_.classes[static_cast<std::size_t>(class_index)].soil;
+  const terramech::Rover& rover = parts_.rover;
+  const double hotel_J_per_m = rover.hotel_power_W * static_cast<double>(flat.time_s_per_m);
+  const terramech::TurnEfforts efforts = terramech::turnEfforts(
+      rover, {.lateral_resistance = std::tan(soil.friction_angle_rad),
+              .bulldozing_N = terramech::bulldozing_N(soil, rover, static_cast<double>(flat.sinkage_m)),
+              .rolling_J_per_m = std::max(0.0, static_cast<double>(flat.energy_J_per_m) - hotel_J_per_m)});
+  const double time_W = parts_.policy.time_weight_W;
+  const TurnPrice on_arc = costmap::priced(efforts.on_arc, 1.0, time_W),
+                  in_place = costmap::priced(efforts.in_place, 1.0, time_W);
+  return {on_arc, in_place, rover.turning_radius_m > 0.0 ? on_arc : in_place};
+}
+
 DriveCost::Limits GroundModel::limits() const {
-  return {.max_along = std::tan(parts_.rover.max_pitch_rad),
-          .max_across = std::tan(parts_.rover.max_roll_rad)};
+  DriveCost::Limits limits{.max_along = std::tan(parts_.rover.max_pitch_rad),
+                           .max_across = std::tan(parts_.rover.max_roll_rad)};
+  if (parts_.rover.centre_of_mass_height_m > 0.0) limits.stance.emplace(parts_.rover);
+  return limits;
 }
 
 }  // namespace talus::costmap

@@ -149,6 +149,7 @@ class GroundModel {
     double low, high;
   };
   Edges edges(double gradient) const noexcept;
+  TurnPrices turns(int class_index, const DriveState& flat) const;
   double criticalSinkage() const noexcept;
   Estimate demand(int class_index, const Estimate& pull, double gradient) const noexcept;
   static double weakProbability(const ClassGround& ground, const Estimate& pull, double gradient) noexcept;

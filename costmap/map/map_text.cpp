@@ -177,6 +177,7 @@ void visitRover(V& v, R& rover) {
   v("rover.wheel.width_m", rover.wheel.width_m);
   v("rover.wheel.grouser_height_m", rover.wheel.grouser_height_m);
   v("rover.wheel.grouser_count", rover.wheel.grouser_count);
+  v.added("rover.wheel.lug_thrust", rover.wheel.lug_thrust);
   v("rover.wheelbase_m", rover.wheelbase_m);
   v("rover.track_m", rover.track_m);
   v("rover.clearance_m", rover.clearance_m);

@@ -278,6 +278,7 @@ talus_code talus_plan(talus_session session, const talus_request* request, talus
                               .goal = {asked.goal_x_m, asked.goal_y_m},
                               .tolerance_m = asked.tolerance_m};
     wanted.watch.stop = held->begin();
+    wanted.hazards = [&map = held->map](talus::maps::Cell cell) { return map.surface().hazards(cell); };
     held->planner->update(held->map.published());
     held->route = {};
     held->route = held->planner->plan(wanted);

@@ -12,6 +12,7 @@
 #include <talus/planner/check/route_check.hpp>
 #include <talus/planner/check/route_risk.hpp>
 #include <talus/planner/route/motion_cost.hpp>
+#include <talus/planner/route/polyline.hpp>
 
 namespace talus::planner {
 namespace {
@@ -106,6 +107,14 @@ class Annotator {
     turns_ = vertices.size();
     spend(input_.kinematics.stop, 1.0);
     turn(turn_rad, pose.place);
+  }
+
+  // Between two legs of a polyline.
+  void vertex(Point at, Direction from, Direction to) {
+    const auto cell = grid_.cellAt(at);
+    if (!cell) return;
+    const double turn_rad = std::atan2(from.x * to.y - from.y * to.x, from.x * to.x + from.y * to.y);
+    spend(input_.map.cost().turn(input_.map.at(*cell)), std::abs(turn_rad));
   }
 
   void cusp() { spend(input_.kinematics.cusp, 1.0); }
@@ -269,6 +278,18 @@ void driveAlong(const PosePath& drive, const costmap::CostGrid& map, Annotator& 
   }
 }
 
+void polylineAlong(const Polyline& points, Annotator& annotator) {
+  std::optional<Direction> before;
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const Segment leg{points[i - 1], points[i]};
+    if (leg.from == leg.to) continue;
+    const Direction heading = directionOf(leg);
+    if (before) annotator.vertex(leg.from, *before, heading);
+    annotator.drive(leg);
+    before = heading;
+  }
+}
+
 }  // namespace
 
 namespace {
@@ -312,8 +333,7 @@ Route annotated(const Plan& plan, const AnnotationInput& input) {
   if (plan.points.empty()) return route;
   Annotator annotator(input);
   driveAlong(plan.drive, input.map, annotator);
-  for (std::size_t i = 1; i < plan.points.size() && plan.drive.legs.empty(); ++i)
-    annotator.drive({plan.points[i - 1], plan.points[i]});
+  if (plan.drive.legs.empty()) polylineAlong(plan.points, annotator);
   annotator.arrive(plan.points.back());
   route.summary = annotator.summary();
   route.summary.planner = input.planner;

@@ -99,6 +99,22 @@ class Checker {
     }
   }
 
+  // The headings between two legs, the shorter way round: the rover passes them without driving, so that it may not tip.
+  void pivot(Point at, Point before, Point next) {
+    const double in_rad = std::atan2(at.y_m - before.y_m, at.x_m - before.x_m),
+                 turn_rad = std::remainder(std::atan2(next.y_m - at.y_m, next.x_m - at.x_m) - in_rad,
+                                           2.0 * std::numbers::pi);
+    const auto cell = map_.grid().cellAt(at);
+    if (!cell || at == before || at == next) return;
+    const int parts = static_cast<int>(std::ceil(std::abs(turn_rad) / kApart_rad));
+    for (int k = 1; k < parts; ++k) {
+      look(in_rad + turn_rad * k / parts);
+      if (map_.cost().tips(map_.at(*cell), heading_))
+        return report(cell, at,
+                      std::string("turn through a heading that ") + costmap::toText(costmap::Refusal::Tips));
+    }
+  }
+
   void report(std::optional<Cell> cell, Point where, std::string reason, double probability = 1.0) {
     if (!found.empty() && cell == last_ && found.back().reason == reason) return;
     last_ = cell;
@@ -241,6 +257,7 @@ void check(Checker& checker, const std::vector<Point>& route, const ProgressMoni
     checker.segment(route[i - 1], route[i]);
     if (i > 1) checker.touch(route[i - 1]);
     if (i + 1 < route.size()) checker.touch(route[i]);
+    if (i > 1) checker.pivot(route[i - 1], route[i - 2], route[i]);
     along_m += std::hypot(route[i].x_m - route[i - 1].x_m, route[i].y_m - route[i - 1].y_m);
   }
   checker.goOn(route.back(), along_m);

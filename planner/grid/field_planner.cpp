@@ -9,6 +9,7 @@
 #include <talus/planner/field/map_change.hpp>
 #include <talus/planner/field/remedy.hpp>
 #include <talus/planner/grid/field_planner.hpp>
+#include <talus/planner/grid/many_headings.hpp>
 #include <talus/planner/grid/other_corridors.hpp>
 #include <talus/planner/reach/cell_route.hpp>
 #include <talus/planner/reach/obstruction_search.hpp>
@@ -120,7 +121,7 @@ Plan FieldPlanner::beyondTheGrid(const Problem& problem, const Stage& stage, con
   if (!reach.complete()) return cancelledPlan(stop);
   if (!reach.reaches(stage.to, stage.tolerance_m)) {
     const Obstruction why =
-        obstructionBetween(*problem.map, headings, reach, places, stage.tolerance_m, stop);
+        obstructionBetween(*problem.map, headings, reach, places, stage.tolerance_m, problem.hazards, stop);
     Plan none = failedPlan(RouteStatus::NoRoute, text(why, places));
     none.obstruction = why;
     return none;
@@ -164,8 +165,12 @@ void FieldPlanner::tryOtherCorridors(const Problem& problem, const Stage& stage,
   if (problem.map->grid().size() > kCorridorCells || stop()) return;
   if (plan.lower_bound_J >= (1.0 - kProven) * plan.cost_J) return;
   const MotionCost cost(problem.map);
-  for (Polyline& rough :
-       otherCorridors(cost, problem.map, *field_, {stage.from, stage.to}, plan.points, {}, stop)) {
+  std::vector<Polyline> others =
+      otherCorridors(cost, problem.map, *field_, {stage.from, stage.to}, plan.points, {}, stop);
+  if (problem.map->grid().size() <= kManyHeadingsCells)
+    others.push_back(manyHeadingsRoute(cost, {stage.from, stage.to}, stage.tolerance_m, plan.cost_J, stop));
+  for (Polyline& rough : others) {
+    if (rough.size() < 2) continue;
     Polyline points = refined(problem, stage, std::move(rough), stop);
     const double cost_J = cost.along(points);
     if (!(cost_J < plan.cost_J)) continue;

@@ -17,7 +17,8 @@ namespace talus::planner {
 /// (Reach), NoneFound is not.
 ///
 /// Where a bound is requested and leaves room (Problem::prove), other corridors are refined as well and the cheapest route
-/// is taken (otherCorridors), on maps of up to kCorridorCells.
+/// is taken (otherCorridors), on maps of up to kCorridorCells, and the cheapest way in 32 headings (manyHeadingsRoute) on those
+/// of up to kManyHeadingsCells.
 ///
 /// What it worked out for a map and a goal is kept: another start to the same goal costs a walk down the
 /// field and the refinement only. Deterministic, for any number of threads, as long as no time limit cuts the
@@ -49,7 +50,8 @@ class FieldPlanner {
   void tryOtherCorridors(const Problem& problem, const Stage& stage, const StopCheck& stop, Plan& plan);
   Polyline roughRoute(const Problem& problem, const Segment& places, const StopCheck& stop);
 
-  static constexpr std::size_t kCorridorCells = 4'000'000;  // larger maps are searched for one corridor
+  static constexpr std::size_t kCorridorCells = 4'000'000;      // larger maps are searched for one corridor
+  static constexpr std::size_t kManyHeadingsCells = 1'000'000;  // larger ones in eight headings only
   static constexpr double kProven = 1e-3;  // of the cost: a gap that no corridor is sought for
 
   Refiner refine_;

@@ -84,9 +84,9 @@ class RiskBoundedSearch {
       none.reason = "planning was cancelled before a route within the risk limit was found";
       return none;
     }
-    none.reason = "no route keeps the risk of immobilisation within " + inWords(max_risk_) +
+    none.reason = "no route found that keeps the risk of immobilisation within " + inWords(max_risk_) +
                   ": the safest route found has " + inWords(least_risk_) +
-                  "; increase the limit or choose another goal";
+                  ", which proves nothing of others; increase the limit or choose another goal";
     return none;
   }
 

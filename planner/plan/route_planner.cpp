@@ -48,6 +48,8 @@ Problem problemOf(MapPointer map, const PlanRequest& request, const PlannerSetti
           .time_limit_s = settings.time_limit_s,
           .seed = settings.seed,
           .threads = settings.threads,
+          .prove = request.prove,
+          .hazards = request.hazards,
           .whole_field = settings.whole_field,
           .watch = request.watch,
           .start_heading_rad = request.start_heading_rad,

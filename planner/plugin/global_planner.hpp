@@ -20,7 +20,7 @@
 namespace talus {
 
 /// Grows with every change below that an older plugin or program would misread.
-inline constexpr int kPlannerInterfaceVersion = 5;
+inline constexpr int kPlannerInterfaceVersion = 6;
 
 /// What a plugin is, and what the planner that it is configured for can do.
 struct PlannerCapabilities {
@@ -72,6 +72,9 @@ struct PlanRequest {
   std::optional<planner::Kinematics> kinematics{};
   /// Clearance, pitch and roll are kept along the whole motion; none: the cost map's own judgement holds.
   std::shared_ptr<const planner::Chassis> chassis{};
+  /// Why cells are refused whole, to name what closes a way: of the map that is planned on, TraversabilityMap::surface().hazards().
+  planner::HazardsOf hazards{};
+  bool prove = true;  ///< also work out the best lower bound, and look for other corridors
   std::optional<RiskLimit> risk_limit{};  ///< none: risk counts by its price alone
   ProgressMonitor watch{};  ///< progress, and the cancel check: request a stop and plan() ends Cancelled
 };

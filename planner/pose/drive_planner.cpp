@@ -11,8 +11,8 @@
 #include <talus/planner/pose/pose_shortcut.hpp>
 #include <talus/planner/pose/turning_drive.hpp>
 #include <talus/planner/route/polyline.hpp>
+#include <talus/planner/route/rover_kinematics.hpp>
 #include <talus/planner/route/time_left.hpp>
-#include <talus/planner/route/turn_prices.hpp>
 #include <talus/terramech/contact/turning_radius.hpp>
 #include <talus/terramech/numerics/range.hpp>
 

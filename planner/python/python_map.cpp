@@ -211,6 +211,7 @@ Route PythonMap::plan(const PlannerSettings& settings, const PlanRequest& reques
       [&](const ProgressMonitor& watch) {
         PlanRequest asked = request;
         asked.watch = watch;
+        asked.hazards = [&at = map()](maps::Cell cell) { return at.surface().hazards(cell); };
         planner->update(map().published());
         route = planner->plan(asked);
       },

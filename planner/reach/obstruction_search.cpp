@@ -2,42 +2,20 @@
 #include <limits>
 #include <optional>
 
+#include <talus/planner/reach/lifted_ground.hpp>
 #include <talus/planner/reach/obstruction_search.hpp>
 
 namespace talus::planner {
 namespace {
 
-using costmap::CellCode;
-using costmap::DriveCost;
 using maps::Cell;
 using maps::Point;
 
-// The cost without one of its constraints.
-DriveCost without(Constraint constraint, const DriveCost& cost) {
-  constexpr double kNone = std::numeric_limits<double>::max();
-  DriveCost::Limits limits = cost.limits();
-  if (constraint == Constraint::Pitch) limits.max_along = kNone;
-  if (constraint == Constraint::Roll) limits.max_across = kNone;
-  std::vector<costmap::DriveCurve> curves = cost.curves();
-  if (constraint == Constraint::Soil)
-    for (costmap::DriveCurve& curve : curves) {
-      curve.cost_J_per_m.fill(1.0F);
-      curve.crossing.reset();
-    }
-  return DriveCost(limits, std::move(curves));
-}
-
-std::optional<std::uint8_t> freed(Constraint constraint) {
-  if (constraint == Constraint::Hazard) return CellCode::kBlocked;
-  if (constraint == Constraint::Unknown) return CellCode::kUnknown;
-  return std::nullopt;
-}
-
-bool opens(Constraint constraint, const costmap::CostGrid& map, const Segment& places, double tolerance_m,
+bool opens(Constraint constraint, const LiftedGround& ground, const Segment& places, double tolerance_m,
            const StopCheck& stop) {
-  const DriveCost cost = without(constraint, map.cost());
-  HeadingSets headings(cost, freed(constraint));
-  Reach reach(map, headings, Reach::Sense::From, places.from, 0.0, stop);
+  const auto map = ground.without(constraint);
+  HeadingSets headings(map->cost());
+  Reach reach(*map, headings, Reach::Sense::From, places.from, 0.0, stop);
   return reach.complete() && reach.reaches(places.to, tolerance_m);
 }
 
@@ -99,7 +77,8 @@ const char* remedy(Constraint constraint) noexcept {
 }  // namespace
 
 Obstruction obstructionBetween(const costmap::CostGrid& map, HeadingSets& headings, const Reach& from_start,
-                               const Segment& places, double tolerance_m, const StopCheck& stop) {
+                               const Segment& places, double tolerance_m, const HazardsOf& hazards,
+                               const StopCheck& stop) {
   Obstruction found{.last = places.from, .first = places.to};
   found.cells_from_start = from_start.cells();
   const Reach to_goal(map, headings, Reach::Sense::To, places.to, tolerance_m, stop);
@@ -111,24 +90,28 @@ Obstruction obstructionBetween(const costmap::CostGrid& map, HeadingSets& headin
   }
   if (stop()) return found;
   if (map.grid().size() > kTriedCells) return found;
+  const LiftedGround ground(map, hazards);
   for (const Constraint constraint :
        {Constraint::Unknown, Constraint::Hazard, Constraint::Soil, Constraint::Pitch, Constraint::Roll})
-    if (!found.lifting && !stop() && opens(constraint, map, places, tolerance_m, stop))
+    if (!found.lifting && !stop() && opens(constraint, ground, places, tolerance_m, stop))
       found.lifting = constraint;
   found.tried = !stop();
   return found;
 }
 
 std::string text(const Obstruction& obstruction, const Segment& places) {
+  const double apart_m =
+      std::hypot(obstruction.last.x_m - obstruction.first.x_m, obstruction.last.y_m - obstruction.first.y_m);
   char apart[64];
-  std::snprintf(
-      apart, sizeof apart, " (%.1f m apart)",
-      std::hypot(obstruction.last.x_m - obstruction.first.x_m, obstruction.last.y_m - obstruction.first.y_m));
+  std::snprintf(apart, sizeof apart, " (%.1f m apart)", apart_m);
+  const std::string where =
+      apart_m > 0.0
+          ? "closest at " + text(obstruction.last) + " and " + text(obstruction.first) + apart
+          : "both touch the cell at " + text(obstruction.last) + ", through which no heading leads on";
   std::string line = "no route from " + text(places.from) + " to " + text(places.to) +
                      ", whatever the headings: " + std::to_string(obstruction.cells_from_start) +
                      " cells are reachable from the start, " + std::to_string(obstruction.cells_to_goal) +
-                     " lead to the goal; closest at " + text(obstruction.last) + " and " +
-                     text(obstruction.first) + apart;
+                     " lead to the goal; " + where;
   if (obstruction.lifting) return line + "; " + remedy(*obstruction.lifting);
   return line + (obstruction.tried ? "; more than one constraint closes every way: choose another goal"
                                    : "; choose another goal");

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include <talus/planner/refine/any_angle.hpp>
+#include <talus/planner/refine/fewer_turns.hpp>
 #include <talus/planner/refine/route_windows.hpp>
 
 namespace talus::planner {

@@ -4,24 +4,15 @@
 #include <memory>
 #include <vector>
 
+#include <talus/costmap/cost/turn_price.hpp>
 #include <talus/planner/route/arc.hpp>
 #include <talus/terramech/contact/rover.hpp>
 
 /// How a rover may move in the plane, and what turning takes.
 namespace talus::planner {
 
-/// What a radian of heading, or a change of direction, takes beside the path's own length.
-struct TurnPrice {
-  double cost_J = 0.0;    ///< under the one cost function, >= 0
-  double energy_J = 0.0;  ///< >= 0
-  double time_s = 0.0;    ///< >= 0
-};
-
-/// A radian of heading on one ground.
-struct TurnPrices {
-  TurnPrice on_arc;
-  TurnPrice in_place;
-};
+using costmap::TurnPrice;
+using costmap::TurnPrices;
 
 /// What bends a route. The defaults are a rover that may do anything for free.
 struct Kinematics {

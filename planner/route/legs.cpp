@@ -1,6 +1,7 @@
 #include <string>
 
 #include <talus/planner/route/legs.hpp>
+#include <talus/planner/route/motion_cost.hpp>
 #include <talus/planner/route/polyline.hpp>
 
 namespace talus::planner {
@@ -14,6 +15,13 @@ std::string ofTheWhole(std::string reason, std::size_t leg, std::size_t legs) {
   if (leg > 0) rename("start", leg);
   if (leg + 1 < legs) rename("goal", leg + 1);
   return reason;
+}
+
+// At a via point.
+double turnBetween(const Problem& problem, const Polyline& a, const Polyline& b) {
+  if (!problem.map || a.size() < 2 || b.size() < 2) return 0.0;
+  return MotionCost(problem.map)
+      .turn(b.front(), directionOf({a[a.size() - 2], a.back()}), directionOf({b[0], b[1]}));
 }
 
 }  // namespace
@@ -33,8 +41,8 @@ Plan planByLegs(const Problem& problem, const std::function<Plan(const Problem& 
       part.reason = ofTheWhole(std::move(part.reason), i, stops.size());
       return part;
     }
+    whole.cost_J += part.cost_J + turnBetween(problem, whole.points, part.points);
     append(whole.points, part.points);
-    whole.cost_J += part.cost_J;
     whole.lower_bound_J += part.lower_bound_J;
     problem.watch.report(static_cast<double>(i + 1) / static_cast<double>(stops.size()));
   }

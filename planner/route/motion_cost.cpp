@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include <talus/common/constants.hpp>
@@ -160,13 +161,50 @@ bool MotionCost::turnAllowed(const Segment& motion, maps::Point end) const noexc
   return length == 0.0 || touchesOnlyAllowed(*map_, p, {dx / length, dy / length});
 }
 
+costmap::Direction directionOf(const Segment& motion) noexcept {
+  const double dx = motion.to.x_m - motion.from.x_m, dy = motion.to.y_m - motion.from.y_m;
+  const double length = std::hypot(dx, dy);
+  return length > 0.0 ? costmap::Direction{dx / length, dy / length} : costmap::Direction{};
+}
+
+namespace {
+
+constexpr double kApart_rad = 0.02;  // headings looked at in a turn
+
+bool tipsBetween(const costmap::DriveCost& cost, costmap::CellCode cell, costmap::Direction from,
+                 double turn_rad) {
+  const int parts = static_cast<int>(std::ceil(std::abs(turn_rad) / kApart_rad));
+  for (int k = 1; k < parts; ++k) {
+    const double by = turn_rad * k / parts, c = std::cos(by), s = std::sin(by);
+    if (cost.tips(cell, {from.x * c - from.y * s, from.x * s + from.y * c})) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+double MotionCost::turn(maps::Point place, costmap::Direction from, costmap::Direction to) const noexcept {
+  const auto cell = map_->grid().cellAt(place);
+  if (!cell) return 0.0;
+  const double by_rad = std::atan2(from.x * to.y - from.y * to.x, from.x * to.x + from.y * to.y);
+  const costmap::DriveCost& cost = map_->cost();
+  const costmap::CellCode code = map_->at(*cell);
+  if (cost.mayTip(code) && tipsBetween(cost, code, from, by_rad)) return kInfinity;
+  return cost.turn(code).cost_J * std::abs(by_rad);
+}
+
 double MotionCost::along(const std::vector<maps::Point>& points) const noexcept {
   double sum = 0.0;
+  std::optional<costmap::Direction> before;
   for (std::size_t i = 1; i < points.size(); ++i) {
     const Segment motion{points[i - 1], points[i]};
     if (i > 1 && !turnAllowed(motion, motion.from)) return kInfinity;
     if (i + 1 < points.size() && !turnAllowed(motion, motion.to)) return kInfinity;
     sum += (*this)(motion);
+    if (motion.from == motion.to) continue;
+    const costmap::Direction heading = directionOf(motion);
+    if (before) sum += turn(motion.from, *before, heading);
+    before = heading;
   }
   return sum;
 }

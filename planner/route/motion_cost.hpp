@@ -14,6 +14,9 @@ struct Segment {
   maps::Point to;
 };
 
+/// The direction of a motion; east where it has no length.
+costmap::Direction directionOf(const Segment& motion) noexcept;
+
 /// Exact cost of straight motions: the integral of DriveCost along the segment, constant within each cell.
 ///
 /// A motion is not allowed (infinite) where it leaves the map or enters a cell that the heading may not
@@ -29,11 +32,16 @@ class MotionCost {
   /// an allowed cell.
   double operator()(const Segment& motion) const noexcept;
 
-  /// Cost of a polyline in joules; infinite when any part is not allowed. Zero for fewer than two points.
+  /// Cost of a polyline in joules, turns between its legs included; infinite when any part is not allowed. Zero for fewer than
+  /// two points.
   double along(const std::vector<maps::Point>& points) const noexcept;
 
-  /// Sum of the costs of a polyline's legs in joules, without the check of its turns.
+  /// Sum of the costs of a polyline's legs in joules, without its turns.
   double ofLegs(const std::vector<maps::Point>& points) const noexcept;
+
+  /// Cost in joules of turning at a place from one heading to another the shorter way, DriveCost::turn() a radian; infinite where
+  /// the rover tips in a heading between them. Free beside the map.
+  double turn(maps::Point place, costmap::Direction from, costmap::Direction to) const noexcept;
 
   /// Whether a polyline may turn at an end of this motion as it begins or ends there: on an edge or a corner
   /// its heading must be allowed in every cell touched. The check of along() at each turn.

@@ -28,6 +28,8 @@ struct Problem {
   int threads = 1;                                                ///< >= 1; the answer does not depend on it
   /// Also work out the best lower bound, for about the time of a field; else a simple one.
   bool prove = true;
+  /// Why cells are refused whole, to name what closes a way; none: all of it counts as hazards. Planned only as long as it lives.
+  HazardsOf hazards{};
   bool whole_field = false;  ///< settle the whole map even where it is large (NamedPlanner)
   ProgressMonitor watch{};
   /// Which way the rover looks; for planners of drives, any if none.

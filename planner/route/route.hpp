@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -8,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include <talus/costmap/surface/cell_belief.hpp>
 #include <talus/maps/grid/grid.hpp>
 #include <talus/terramech/mobility/category.hpp>
 
@@ -39,6 +41,9 @@ enum class Constraint {
 
 /// A constraint as files and JSON spell it: "pitch", "roll", "soil", "hazard", "unknown".
 const char* name(Constraint constraint) noexcept;
+
+/// Why no heading may enter a cell: costmap::MapSurface::hazards() of the map that the costs were made from.
+using HazardsOf = std::function<costmap::Hazard(maps::Cell)>;
 
 /// Why nothing connects two places.
 struct Obstruction {

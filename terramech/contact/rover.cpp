@@ -19,6 +19,9 @@ void validate(const Rover& rover) {
   check.above("wheels.width_m", rover.wheel.width_m, 0.0);
   check.atLeast("wheels.grouser_height_m", rover.wheel.grouser_height_m, 0.0);
   check.atLeast("wheels.grouser_count", rover.wheel.grouser_count, 0.0);
+  check.within("wheels.grouser_height_m", rover.wheel.grouser_height_m, {0.0, rover.wheel.radius_m});
+  check.within("wheels.grouser_count", rover.wheel.grouser_count, {0.0, 1000.0});
+  check.within("wheels.lug_thrust", rover.wheel.lug_thrust, {0.0, 5.0});
   check.above("wheelbase_m", rover.wheelbase_m, 0.0);
   check.above("track_m", rover.track_m, 0.0);
   check.above("clearance_m", rover.clearance_m, 0.0);

@@ -20,6 +20,8 @@ struct WheelCase {
   double gravity_m_s2 = 9.80665;    ///< > 0
   double digging_exponent = 0.4;    ///< >= 0, as Soil
   double side_bulldozing = 1.0;     ///< >= 0, as Soil
+  double grouser_height_m = 0.0;    ///< >= 0, as Wheel
+  double lug_thrust = 0.0;          ///< >= 0, as Wheel
 };
 
 }  // namespace talus::terramech

@@ -76,8 +76,8 @@ RimLoad wantedLoad(const WongReece& law, double exponent, const WheelOperation& 
 WongReece::WongReece(const Soil& soil, const Wheel& wheel, const WheelOperation& operation)
     : modulus_(checkedModulus(soil, wheel)),
       exponent_(soil.sinkage_exponent + digging(soil, operation)),
-      cohesion_Pa_(soil.cohesion_Pa),
-      tan_friction_(std::tan(soil.friction_angle_rad)),
+      cohesion_Pa_(shearGain(wheel) * soil.cohesion_Pa),
+      tan_friction_(shearGain(wheel) * std::tan(soil.friction_angle_rad)),
       shear_modulus_m_(soil.shear_modulus_m),
       peak_fraction_(checkedPeak(soil, operation.slip)),
       rebound_(operation.rebound),

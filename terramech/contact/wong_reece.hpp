@@ -37,7 +37,7 @@ struct WheelForces {
 /// Bekker pressure, Wong-Reece peak, Janosi-Hanamoto shear: the ContactLaw of rim_contact.hpp.
 ///   sigma(h) = (k_c/b + k_phi) h^n                        (thesis C.4)
 ///   theta_m = (c1 + c2 i) theta_1                         (C.2)
-///   tau(sigma, j) = (c + sigma tan phi)(1 - e^{-j/K})     (C.7), odd in j
+///   tau(sigma, j) = (c + sigma tan phi)(1 - e^{-j/K})     (C.7), odd in j; c and tan phi times shearGain() of lugs
 /// and of a wheel that slides sideways tau along the resultant displacement j = hypot(j_x, j_y)
 /// (ishigami_2007 takes the two apart, which can exceed the strength), n raised by Soil::digging_exponent.
 class WongReece {

@@ -115,7 +115,8 @@ bool isFastCase(const WheelCase& c) {
          c.sinkage_exponent <= 2.0 && ordinary(c.sinkage_modulus) && ordinary(c.shear_modulus_m) &&
          ordinary(c.wheel_radius_m) && ordinary(c.wheel_width_m) && ordinary(c.load_N) &&
          ordinary(c.density_kg_m3) && ordinary(c.gravity_m_s2) && c.digging_exponent >= 0.0 &&
-         c.digging_exponent <= 2.0 && c.side_bulldozing >= 0.0 && c.side_bulldozing < 1e6;
+         c.digging_exponent <= 2.0 && c.side_bulldozing >= 0.0 && c.side_bulldozing < 1e6 &&
+         c.lug_thrust >= 0.0 && c.lug_thrust <= 5.0 && c.grouser_height_m >= 0.0 && c.grouser_height_m <= 1.0;
 }
 
 WheelCase wheelCase(const Soil& soil, const Wheel& wheel, const WheelOperation& operation) {
@@ -134,7 +135,9 @@ WheelCase wheelCase(const Soil& soil, const Wheel& wheel, const WheelOperation& 
           .density_kg_m3 = soil.density_kg_m3,
           .gravity_m_s2 = operation.gravity_m_s2,
           .digging_exponent = soil.digging_exponent,
-          .side_bulldozing = soil.side_bulldozing};
+          .side_bulldozing = soil.side_bulldozing,
+          .grouser_height_m = wheel.grouser_height_m,
+          .lug_thrust = wheel.lug_thrust};
 }
 
 WheelForces equilibrium(const WheelCase& c) {
@@ -149,7 +152,10 @@ WheelForces equilibrium(const WheelCase& c) {
                   .density_kg_m3 = c.density_kg_m3,
                   .digging_exponent = c.digging_exponent,
                   .side_bulldozing = c.side_bulldozing};
-  const Wheel wheel{.radius_m = c.wheel_radius_m, .width_m = c.wheel_width_m};
+  const Wheel wheel{.radius_m = c.wheel_radius_m,
+                    .width_m = c.wheel_width_m,
+                    .grouser_height_m = c.grouser_height_m,
+                    .lug_thrust = c.lug_thrust};
   return equilibrium(soil, wheel,
                      {.load_N = c.load_N,
                       .slip = c.slip,

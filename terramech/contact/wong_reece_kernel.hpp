@@ -224,6 +224,20 @@ TALUS_LANES T gather(const WheelCase* cases, double WheelCase::*field) {
   }
 }
 
+/// shearGain() of the lanes' wheels.
+template <class T>
+TALUS_LANES T gatherGain(const WheelCase* cases) {
+  const auto of = [](const WheelCase& c) {
+    return shearGain(
+        {.width_m = c.wheel_width_m, .grouser_height_m = c.grouser_height_m, .lug_thrust = c.lug_thrust});
+  };
+  if constexpr (Traits<T>::kLanes == 1) {
+    return of(cases[0]);
+  } else {
+    return T{of(cases[0]), of(cases[1]), of(cases[2]), of(cases[3])};
+  }
+}
+
 template <class T>
 TALUS_LANES T tangent(T x) {
   return sine(x) / (1.0 - versine(x));
@@ -309,11 +323,11 @@ TALUS_LANES void solveGroup(const WheelCase* cases, WheelForces* forces, bool* l
   const T log_r = logarithm(r);
   const T r_over_k = r / gather<T>(cases, &WheelCase::shear_modulus_m);
   const T log_modulus = logarithm(gather<T>(cases, &WheelCase::sinkage_modulus)) + n * log_r;
-  const T log_load = logarithm(load / (r * b));
+  const T log_load = logarithm(load / (r * b)), gain = gatherGain<T>(cases);
   const Constants<T> c{n,
                        log_modulus,
-                       gather<T>(cases, &WheelCase::cohesion_Pa),
-                       tangent(gather<T>(cases, &WheelCase::friction_angle_rad)),
+                       gain * gather<T>(cases, &WheelCase::cohesion_Pa),
+                       gain * tangent(gather<T>(cases, &WheelCase::friction_angle_rad)),
                        r_over_k,
                        travel,
                        peak,

@@ -14,8 +14,9 @@ double grown(double start, double scale, double x) {  // 0 at the start, towards
 
 /// Factor on shear strength of lugs' side faces, H' = H (1 + 0.64 (h/b) atan(b/h)).
 double lugSides(const Wheel& wheel) {
-  const double h = wheel.grouser_height_m, b = wheel.width_m;
-  return h > 0.0 ? 0.64 * h / b * std::atan(b / h) : 0.0;
+  return shearGain(
+             {.width_m = wheel.width_m, .grouser_height_m = wheel.grouser_height_m, .lug_thrust = 1.0}) -
+         1.0;
 }
 
 void strengthen(WheelContact& c, double factor) {

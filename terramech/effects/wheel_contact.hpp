@@ -62,7 +62,7 @@ struct ContactForces {
   double side_force_N = 0.0;  ///< signed against the sideways motion: negative for slip_angle > 0
 };
 
-/// The contact of a smooth rigid wheel without effects.
+/// The contact of a smooth rigid wheel without effects: what lugs do, effects say, whatever Wheel::lug_thrust.
 WheelContact contactOf(const Soil& soil, const Wheel& wheel);
 
 /// Forces on the wheel at the sinkage that carries its load; `entry_guess_rad` and `growth`, ContactForces of a contact like

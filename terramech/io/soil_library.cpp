@@ -125,12 +125,14 @@ Steering steeringOf(const YamlFields& fields) {
 }
 
 void readWheels(const YamlFields& fields, Rover& rover) {
-  fields.only({"count", "radius_m", "width_m", "grouser_height_m", "grouser_count"});
+  fields.only({"count", "radius_m", "width_m", "grouser_height_m", "grouser_count", "lug_thrust"});
   rover.wheel_count = fields.integer("count");
   rover.wheel.radius_m = fields.number("radius_m");
   rover.wheel.width_m = fields.number("width_m");
   rover.wheel.grouser_height_m = fields.number("grouser_height_m", 0.0);
   rover.wheel.grouser_count = fields.integer("grouser_count", 0);
+  const bool lugs = rover.wheel.grouser_height_m > 0.0 && rover.wheel.grouser_count > 0;
+  rover.wheel.lug_thrust = fields.number("lug_thrust", lugs ? kLugThrust : 0.0);
 }
 
 }  // namespace

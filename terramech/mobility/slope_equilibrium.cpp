@@ -22,11 +22,6 @@ Planar turned(double along_wheel, double across_wheel, double beta) {
   return {along_wheel * c + across_wheel * s, across_wheel * c - along_wheel * s};
 }
 
-Planar demandOf(const Gradient& g) {
-  const double run = std::sqrt(1.0 + g.along * g.along);
-  return {g.along * std::sqrt(1.0 + g.along * g.along + g.across * g.across) / run, g.across / run};
-}
-
 const SlopeOptions& checked(const SlopeOptions& options) {
   const RangeCheck check{"slope options"};
   check.within("max_slip", options.max_slip, {1e-6, 1.0});
@@ -35,6 +30,11 @@ const SlopeOptions& checked(const SlopeOptions& options) {
 }
 
 }  // namespace
+
+Planar demandOf(const Gradient& g) noexcept {
+  const double run = std::sqrt(1.0 + g.along * g.along);
+  return {g.along * std::sqrt(1.0 + g.along * g.along + g.across * g.across) / run, g.across / run};
+}
 
 class SlopeEquilibrium::Solver {
  public:

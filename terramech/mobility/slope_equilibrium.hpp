@@ -6,6 +6,7 @@
 
 #include <talus/terramech/contact/rover.hpp>
 #include <talus/terramech/contact/soil.hpp>
+#include <talus/terramech/mobility/rover_stance.hpp>
 
 /// A rover that drives steadily over an inclined plane in any direction: the slip and the slip angle at which
 /// its wheels hold it.
@@ -18,6 +19,10 @@ struct Gradient {
   double along = 0.0;   ///< uphill > 0
   double across = 0.0;  ///< rising to the left > 0
 };
+
+/// What a rover must hold per unit of the force normal to the plane, along and across: a sqrt(1 + a^2 + c^2) / sqrt(1 + a^2) and
+/// c / sqrt(1 + a^2), for gradients a along and c across.
+Planar demandOf(const Gradient& gradient) noexcept;
 
 /// Choices behind an equilibrium.
 struct SlopeOptions {

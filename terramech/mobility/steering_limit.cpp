@@ -16,6 +16,8 @@ double steeringSlipLimit(const Soil& soil, const Wheel& wheel, const SteeringDem
   WheelContact contact = contactOf(soil, wheel);
   contact.load_N = demand.load_N;
   contact.slip_angle_rad = demand.slip_angle_rad;
+  contact.cohesion_Pa *= shearGain(wheel);
+  contact.tan_friction *= shearGain(wheel);
   const auto steers = [&](double slip) {
     contact.slip = slip;
     return std::abs(solveContact(contact).side_force_N) >= demand.side_force_over_load * demand.load_N;

@@ -4,8 +4,10 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <talus/costmap/cost/cost_grid.hpp>
@@ -75,6 +77,21 @@ inline std::shared_ptr<const costmap::CostGrid> drawn(const std::vector<std::str
       cells[{c, r}] = costmap::CellCode(parts);
     }
   return std::make_shared<costmap::CostGrid>(costmap::flattened(cells, driveCost()));
+}
+
+/// A plane of a gradient on which every metre costs 10 J and every radian turned at a vertex so much, of a rover that stands so.
+inline std::shared_ptr<const costmap::CostGrid> plane(int side, costmap::Direction gradient, double turn_J,
+                                                      std::optional<terramech::RoverStance> stance = {}) {
+  maps::Raster<costmap::CellCode> cells(
+      {.width = side, .height = side, .resolution_m = 1.0, .south_west = {}},
+      costmap::CellCode({gradient.x, gradient.y, 0}));
+  costmap::DriveGround ground{.curve = {}, .states = {}};
+  ground.curve.cost_J_per_m.fill(10.0F);
+  ground.turns.at_vertex.cost_J = turn_J;
+  return std::make_shared<costmap::CostGrid>(costmap::flattened(
+      cells, std::make_shared<costmap::DriveCost>(
+                 costmap::DriveCost::Limits{.max_along = 0.9, .max_across = 0.9, .stance = std::move(stance)},
+                 std::vector{ground})));
 }
 
 /// What a random map is made of.

@@ -135,6 +135,35 @@ TEST(DriveCost, NamesTheLimitThatRefuses) {
   EXPECT_EQ(cost.detail(CellCode({0.0, -0.25, 0}), {1.0, 0.0}).refusal, Refusal::Roll);
 }
 
+// Independent derivation: the centre of mass, plumbed onto the plane in three dimensions, against the wheels' rectangle.
+TEST(DriveCost, TipsWhereThePlumbLineLeavesTheWheels) {
+  terramech::Rover rover = testRover();
+  rover.wheelbase_m = 0.8;
+  rover.track_m = 1.1;
+  rover.centre_of_mass_height_m = 0.9;
+  const DriveCost cost({.stance = terramech::RoverStance(rover)}, std::vector<DriveCurve>(1));
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> gradient(-0.9, 0.9), angle(-3.2, 3.2);
+  int tipped = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const CellCode cell({gradient(random), gradient(random), 0});
+    const Direction heading = towards(angle(random));
+    const double size = std::sqrt(1.0 + cell.dzDx() * cell.dzDx() + cell.dzDy() * cell.dzDy());
+    const double rise = cell.dzDx() * heading.x + cell.dzDy() * heading.y, run = std::hypot(1.0, rise);
+    const double ahead_z =
+        rise / run;  // of the unit vector ahead on the plane; the one to the left is normal x ahead
+    const double left_z = (-cell.dzDx() * heading.y + cell.dzDy() * heading.x) / (size * run);
+    const double plumb = rover.centre_of_mass_height_m * size;
+    const double off = std::max(plumb * std::abs(ahead_z) - 0.5 * rover.wheelbase_m,
+                                plumb * std::abs(left_z) - 0.5 * rover.track_m);
+    if (std::abs(off) < 1e-9) continue;
+    ASSERT_EQ(cost.tips(cell, heading), off > 0.0) << off;
+    tipped += off > 0.0 ? 1 : 0;
+  }
+  EXPECT_GT(tipped, 500);
+  EXPECT_LT(tipped, 2500);
+}
+
 TEST(DriveCost, RefusesMoreCurvesThanCellsCanName) {
   EXPECT_NO_THROW(DriveCost({}, std::vector<DriveCurve>(254)));
   EXPECT_THROW(DriveCost({}, std::vector<DriveCurve>(255)), std::invalid_argument);

@@ -50,6 +50,20 @@ TEST(RouteCheck, CornersCount) {
   EXPECT_FALSE(violations(*map, {{0.5, 0.5}, {1.0, 1.0}, {1.5, 1.2}}).empty());
 }
 
+TEST(RouteCheck, ATurnMayNotPassHeadingsThatTip) {
+  terramech::Rover rover = costmap::testRover();
+  rover.wheelbase_m = rover.track_m = 1.0;
+  rover.centre_of_mass_height_m = 1.0;
+  const auto map = testing::plane(20, {0.0, 0.6}, 0.0, terramech::RoverStance(rover));
+  EXPECT_TRUE(violations(*map, {{2.5, 2.5}, {6.5, 6.5}, {10.5, 9.5}}).empty());
+  for (const maps::Point next : {maps::Point{2.5, 10.5}, maps::Point{10.5, 2.5}}) {
+    const auto found = violations(*map, {{2.5, 2.5}, {6.5, 6.5}, next});
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_EQ(found[0],
+              (Violation{{6.5, 6.5}, "turn through a heading that tips: centre of mass past the wheels"}));
+  }
+}
+
 TEST(RouteCheck, TiltDependsOnTheHeading) {
   // A slope of 0.2 eastwards under limits of 0.3 along and 0.1 across: up and down it, not across it.
   maps::Raster<costmap::CellCode> cells({.width = 3, .height = 3, .resolution_m = 1.0, .south_west = {}},

@@ -227,7 +227,7 @@ TEST(RouteCheckOfDrives, ATurnInPlaceNeedsEveryHeading) {
 
 // Property: on worlds of steep, slippery ground (slip_world.hpp), where a cell may be left in two narrow
 // cones of headings only, a rover that turns in place for free drives whatever route the field finds, and
-// pays no more for it.
+// pays hardly more for it: the field's turns may pass headings in which nothing holds, the drive's may not.
 TEST(DrivePlanner, DrivesWhatTheFieldFindsWhereHeadingsAreFew) {
   for (const std::uint64_t seed : {1001u, 1008u, 1010u, 1012u, 1014u}) {
     const SlipWorld world = slipWorld({.seed = seed});
@@ -236,7 +236,7 @@ TEST(DrivePlanner, DrivesWhatTheFieldFindsWhereHeadingsAreFew) {
     ASSERT_EQ(route.status, RouteStatus::Found);
     const Plan plan = DrivePlanner().plan(problem);
     ASSERT_EQ(plan.status, RouteStatus::Found) << seed << ": " << plan.reason;
-    EXPECT_LE(plan.cost_J, (1.0 + 1e-9) * route.cost_J) << seed;
+    EXPECT_LE(plan.cost_J, 1.005 * route.cost_J) << seed;
     EXPECT_TRUE(drivable(*world.map, plan.drive)) << seed;
     EXPECT_TRUE(violations(*world.map, plan.drive, 0.0).empty()) << seed;
     EXPECT_TRUE(violations(*world.map, plan.points).empty()) << seed;

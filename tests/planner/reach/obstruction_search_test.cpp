@@ -56,7 +56,7 @@ TEST(ObstructionSearch, AStopEndsIt) {
   const Reach reach(*map, headings, Reach::Sense::From, places.from);
   std::stop_source source;
   source.request_stop();
-  const Obstruction found = obstructionBetween(*map, headings, reach, places, 0.0,
+  const Obstruction found = obstructionBetween(*map, headings, reach, places, 0.0, {},
                                                ProgressMonitor{.progress = {}, .stop = source.get_token()});
   EXPECT_FALSE(found.tried);
   EXPECT_FALSE(found.lifting);

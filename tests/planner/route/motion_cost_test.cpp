@@ -1,6 +1,10 @@
 #include <cmath>
+#include <numbers>
 #include <random>
 
+#include <site_fixture.hpp>
+
+#include <talus/common/constants.hpp>
 #include <talus/planner/route/motion_cost.hpp>
 
 #include "drawn_map.hpp"
@@ -8,6 +12,7 @@
 namespace talus::planner {
 namespace motion_cost_test {
 
+using costmap::testRover;
 using testing::drawn;
 using testing::randomMap;
 
@@ -50,6 +55,30 @@ TEST(MotionCost, AlongAnEdgeTheDearerSideCounts) {
   EXPECT_NEAR(cost({{0.5, 2.0}, {2.5, 2.0}}), 60.0, 1e-6);
   EXPECT_TRUE(std::isinf(cost({{0.5, 1.0}, {2.5, 1.0}})));
   EXPECT_NEAR(cost({{0.5, 3.0}, {2.5, 3.0}}), 60.0, 1e-6);
+}
+
+TEST(MotionCost, ATurnCostsByItsAngle) {
+  const MotionCost cost(testing::plane(8, {0.0, 0.0}, 7.0));
+  const std::vector<maps::Point> bent{{1.5, 1.5}, {4.5, 1.5}, {4.5, 5.5}, {2.5, 5.5}};
+  // Closed form: nine metres at 10 J and two quarter turns at 7 J a radian.
+  EXPECT_NEAR(cost.along(bent), 90.0 + 7.0 * std::numbers::pi, 1e-4);
+  EXPECT_NEAR(cost.ofLegs(bent), 90.0, 1e-4);
+  EXPECT_NEAR(cost.along({{1.5, 1.5}, {4.5, 1.5}, {4.5, 1.5}, {6.5, 1.5}}), 50.0, 1e-4)
+      << "a point given twice";
+}
+
+// A square rover that holds a plane of 0.6 diagonally tips in the headings between: its limit is half / height = 0.5 by an axis.
+TEST(MotionCost, NoTurnThroughHeadingsThatTip) {
+  terramech::Rover rover = testRover();
+  rover.wheelbase_m = rover.track_m = 1.0;
+  rover.centre_of_mass_height_m = 1.0;
+  const MotionCost cost(testing::plane(20, {0.0, 0.6}, 0.0, terramech::RoverStance(rover)));
+  EXPECT_NEAR(cost.along({{2.5, 2.5}, {6.5, 6.5}, {10.5, 10.5}}), 80.0 * std::numbers::sqrt2, 1e-3)
+      << "straight on";
+  EXPECT_NEAR(cost.along({{2.5, 2.5}, {6.5, 6.5}, {10.5, 9.5}}), 10.0 * (std::hypot(4, 4) + std::hypot(4, 3)),
+              1e-3);
+  EXPECT_EQ(cost.along({{2.5, 2.5}, {6.5, 6.5}, {2.5, 10.5}}), kInfinity) << "past straight up";
+  EXPECT_EQ(cost.along({{2.5, 2.5}, {6.5, 6.5}, {10.5, 2.5}}), kInfinity) << "past across";
 }
 
 TEST(MotionCost, EndsOnTheMap) {

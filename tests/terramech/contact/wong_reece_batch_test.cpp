@@ -37,6 +37,9 @@ std::vector<WheelCase> wideCases(std::size_t count) {
          .wheel_width_m = random.between(0.03, 0.4),
          .load_N = random.between(1.0, 300.0),
          .slip = random.between(-0.2, 1.0)};
+    if (&c - cases.data() < static_cast<std::ptrdiff_t>(count / 2)) continue;
+    c.grouser_height_m = random.between(0.0, 0.5 * c.wheel_radius_m);
+    c.lug_thrust = random.between(0.0, 3.0);
   }
   return cases;
 }

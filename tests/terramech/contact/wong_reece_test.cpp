@@ -33,6 +33,29 @@ Soil sand() {
           .shear_modulus_m = 0.018};
 }
 
+// Property: lugs of a straight wheel are a soil with c and tan phi so much greater, by Bekker's formula for the sides of what they hold.
+TEST(WongReece, LugsShearAlongTheirSidesToo) {
+  const Wheel smooth{.radius_m = 0.13, .width_m = 0.2};
+  Wheel lugged = smooth;
+  lugged.grouser_height_m = 0.025;
+  lugged.lug_thrust = 0.7;
+  const double gain = 1.0 + 0.7 * 0.64 * 0.125 * std::atan(8.0);
+  EXPECT_DOUBLE_EQ(shearGain(lugged), gain);
+  Soil stronger = sand();
+  stronger.cohesion_Pa *= gain;
+  stronger.friction_angle_rad = std::atan(gain * std::tan(stronger.friction_angle_rad));
+  for (const double slip : {-0.5, 0.0, 0.1, 0.4, 0.9}) {
+    const WheelForces a = equilibrium(sand(), lugged, {.load_N = 120.0, .slip = slip}),
+                      b = equilibrium(stronger, smooth, {.load_N = 120.0, .slip = slip});
+    EXPECT_NEAR(a.drawbar_pull_N, b.drawbar_pull_N, 1e-9);
+    EXPECT_NEAR(a.torque_Nm, b.torque_Nm, 1e-9);
+    EXPECT_NEAR(a.sinkage_m, b.sinkage_m, 1e-12);
+  }
+  lugged.lug_thrust = 0.0;
+  EXPECT_EQ(equilibrium(sand(), lugged, {.load_N = 120.0, .slip = 0.3}).drawbar_pull_N,
+            equilibrium(sand(), smooth, {.load_N = 120.0, .slip = 0.3}).drawbar_pull_N);
+}
+
 // Independent of the code under test: C.4 to C.10 as printed, adaptive quadrature over the angle itself.
 ImposedContact adaptive(const Soil& soil, const Wheel& wheel, const WheelOperation& operation, double entry) {
   const double r = wheel.radius_m, k = soil.cohesive_modulus / wheel.width_m + soil.frictional_modulus;

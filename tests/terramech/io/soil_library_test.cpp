@@ -109,6 +109,9 @@ TEST(SoilLibrary, RoverMistakesAreToldWithTheirLine) {
               HasSubstr(":8: steering = 'crab'; write skid, ackermann"));
   EXPECT_THAT(errorOf(with("count: 4", "count: 4.5"), true), HasSubstr("count must be a whole number"));
   EXPECT_THAT(errorOf(with("mass_kg: 50\n", ""), true), HasSubstr("lacks mass_kg"));
+  EXPECT_THAT(errorOf(with("count: 4", "grouser_height_m: 0.2, count: 4"), true),
+              HasSubstr("wheels.grouser_height_m = 0.2, must be in [0, 0.125]"));
+  EXPECT_THAT(errorOf(with("count: 4", "lug_thrust: 7, count: 4"), true), HasSubstr("wheels.lug_thrust = 7"));
 }
 
 TEST(SoilLibrary, ReadsARover) {
@@ -119,6 +122,20 @@ TEST(SoilLibrary, ReadsARover) {
   EXPECT_DOUBLE_EQ(rover.max_pitch_rad, 20.0 * kDegree);
   EXPECT_EQ(rover.steering, Steering::Ackermann);
   EXPECT_DOUBLE_EQ(rover.gravity_m_s2, 9.80665);
+  EXPECT_EQ(rover.wheel.lug_thrust, 0.0) << "a smooth wheel";
+}
+
+TEST(SoilLibrary, LugsPullUnlessTheFileSwitchesThemOff) {
+  const auto thrustOf = [](const std::string& lugs) {
+    std::string yaml = kRover;
+    yaml.replace(yaml.find("count: 4"), 8, lugs + "count: 4");
+    const test::TemporaryFile file{yaml, ".yaml"};
+    return loadRover(file.path()).wheel.lug_thrust;
+  };
+  EXPECT_EQ(thrustOf("grouser_height_m: 0.01, grouser_count: 20, "), kLugThrust);
+  EXPECT_EQ(thrustOf("grouser_height_m: 0.01, grouser_count: 20, lug_thrust: 0, "), 0.0);
+  EXPECT_EQ(thrustOf("grouser_height_m: 0.01, grouser_count: 20, lug_thrust: 0.4, "), 0.4);
+  EXPECT_EQ(thrustOf("grouser_height_m: 0.01, "), 0.0) << "no lug is stated";
 }
 
 TEST(SoilLibrary, NamesTheNearestEntry) {

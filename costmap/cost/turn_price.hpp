@@ -1,0 +1,46 @@
+#pragma once
+
+#include <algorithm>
+
+#include <talus/terramech/mobility/turning.hpp>
+
+namespace talus::costmap {
+
+/// What a radian of heading, or a change of direction, takes beside the path's own length.
+struct TurnPrice {
+  double cost_J = 0.0;    ///< under the one cost function, >= 0
+  double energy_J = 0.0;  ///< >= 0
+  double time_s = 0.0;    ///< >= 0
+};
+
+/// A radian of heading on one ground.
+struct TurnPrices {
+  TurnPrice on_arc;
+  TurnPrice in_place;
+  TurnPrice at_vertex;  ///< of a polyline: in place for a rover that turns in place, else on an arc
+};
+
+/// An effort under weights of energy [-] and time [W].
+inline TurnPrice priced(const terramech::TurnEffort& effort, double energy, double time_W) noexcept {
+  return {.cost_J = energy * effort.energy_J + time_W * effort.time_s,
+          .energy_J = effort.energy_J,
+          .time_s = effort.time_s};
+}
+
+/// The same turns under other weights.
+inline TurnPrices reweighted(TurnPrices turns, double energy, double time_W) noexcept {
+  for (TurnPrice* price : {&turns.on_arc, &turns.in_place, &turns.at_vertex})
+    *price = priced({price->energy_J, price->time_s}, energy, time_W);
+  return turns;
+}
+
+/// The dearer in everything.
+inline TurnPrices dearer(const TurnPrices& a, const TurnPrices& b) noexcept {
+  const auto of = [](const TurnPrice& x, const TurnPrice& y) {
+    return TurnPrice{std::max(x.cost_J, y.cost_J), std::max(x.energy_J, y.energy_J),
+                     std::max(x.time_s, y.time_s)};
+  };
+  return {of(a.on_arc, b.on_arc), of(a.in_place, b.in_place), of(a.at_vertex, b.at_vertex)};
+}
+
+}  // namespace talus::costmap

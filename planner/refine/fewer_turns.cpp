@@ -1,0 +1,88 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <talus/common/constants.hpp>
+#include <talus/planner/refine/fewer_turns.hpp>
+
+namespace talus::planner {
+namespace {
+
+constexpr std::array<std::size_t, 8> kSpans{1, 2, 3, 4, 6, 8, 12, 16};
+constexpr double kApart_rad = 0.1;  // headings looked at in a turn
+constexpr double kVertex = 1e-12;   // of a route's cost: what a vertex less is worth where turns are free
+
+// A leg into a point from the point `from`, and the cheapest way to its end.
+struct Arrival {
+  std::size_t from;
+  bool merged;  // it leaves out points
+  costmap::Direction heading;
+  double cost_J;
+  const Arrival* before;  // null at the start
+};
+
+class FewerTurns {
+ public:
+  FewerTurns(const MotionCost& cost, const Polyline& route)
+      : cost_(cost), route_(route), vertex_J_(kVertex * cost.along(route)), arrivals_(route.size()) {
+    for (std::size_t to = 1; to < route.size(); ++to)
+      for (const std::size_t span : kSpans)
+        if (span <= to) arrive(to, to - span);
+  }
+
+  Polyline best() const {
+    const auto& last = arrivals_.back();
+    if (last.empty()) return route_;
+    Polyline points{route_.back()};
+    for (const Arrival* at = &*std::ranges::min_element(last, {}, &Arrival::cost_J); at; at = at->before)
+      points.push_back(route_[at->from]);
+    std::ranges::reverse(points);
+    return points;
+  }
+
+ private:
+  void arrive(std::size_t to, std::size_t from) {
+    const Segment leg{route_[from], route_[to]};
+    if ((from > 0 && !cost_.turnAllowed(leg, leg.from)) ||
+        (to + 1 < route_.size() && !cost_.turnAllowed(leg, leg.to)))
+      return;
+    const double straight_J = cost_(leg) + vertex_J_;
+    Arrival made{from, to - from > 1, directionOf(leg), from == 0 ? straight_J : kInfinity, nullptr};
+    for (const Arrival& before : arrivals_[from]) {
+      const double so_far_J = before.cost_J + straight_J;
+      if (!(so_far_J < made.cost_J)) continue;
+      const double through_J = so_far_J + cost_.turn(leg.from, before.heading, made.heading);
+      if (!(through_J < made.cost_J) || !mayTurn(leg.from, before, made)) continue;
+      made.cost_J = through_J;
+      made.before = &before;
+    }
+    if (made.cost_J < kInfinity) arrivals_[to].push_back(made);
+  }
+
+  // A turn that the route did not have passes allowed headings only, so that what drives may turn as the route does.
+  bool mayTurn(maps::Point at, const Arrival& before, const Arrival& next) const {
+    if (!before.merged && !next.merged) return true;
+    const costmap::Direction a = before.heading, b = next.heading;
+    const double turn_rad = std::atan2(a.x * b.y - a.y * b.x, a.x * b.x + a.y * b.y);
+    const int parts = static_cast<int>(std::ceil(std::abs(turn_rad) / kApart_rad));
+    for (int k = 1; k < parts; ++k) {
+      const double by = turn_rad * k / parts, c = std::cos(by), s = std::sin(by);
+      if (!cost_.headingAllowed(at, {a.x * c - a.y * s, a.x * s + a.y * c})) return false;
+    }
+    return true;
+  }
+
+  const MotionCost& cost_;
+  const Polyline& route_;
+  double vertex_J_;
+  std::vector<std::vector<Arrival>> arrivals_;  // of a point; complete before another looks at them
+};
+
+}  // namespace
+
+Polyline withoutIdleTurns(const MotionCost& cost, const Polyline& route) {
+  if (route.size() < 3 || !(cost.along(route) < kInfinity)) return route;
+  return FewerTurns(cost, route).best();
+}
+
+}  // namespace talus::planner

@@ -1,0 +1,50 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <talus/terramech/mobility/turning.hpp>
+
+namespace talus::terramech {
+namespace {
+
+// Sum over the wheels of a force a wheel times its distance from the middle along the heading [N m].
+double scrubLever_Nm(const Rover& rover, double force_N) noexcept {
+  const int axles = std::max(1, rover.wheel_count / 2);
+  double lever = 0.0;
+  for (int k = 0; k < axles; ++k) {
+    const double x = axles == 1 ? 0.0 : rover.wheelbase_m * (static_cast<double>(k) / (axles - 1) - 0.5);
+    lever += 2.0 * force_N * std::abs(x);
+  }
+  return lever;
+}
+
+double passivePressure(const Soil& soil) noexcept {
+  const double t = std::tan(std::numbers::pi / 4 + soil.friction_angle_rad / 2);
+  return t * t;
+}
+
+}  // namespace
+
+double bulldozing_N(const Soil& soil, const Rover& rover, double sinkage_m) noexcept {
+  const double z = std::clamp(sinkage_m, 0.0, rover.wheel.radius_m);
+  const double chord_m = 2.0 * std::sqrt(2.0 * rover.wheel.radius_m * z - z * z);
+  const double k = passivePressure(soil);
+  return (0.5 * soil.density_kg_m3 * rover.gravity_m_s2 * z * z * k +
+          2.0 * soil.cohesion_Pa * z * std::sqrt(k)) *
+         chord_m;
+}
+
+TurnEfforts turnEfforts(const Rover& rover, const TurningGround& ground) noexcept {
+  const double rho_m = 0.5 * std::hypot(rover.wheelbase_m, rover.track_m), row_m = 0.5 * rover.track_m;
+  const bool skids = rover.steering == Steering::Skid;
+  const double dragged_N = ground.lateral_resistance * wheelLoad_N(rover) + ground.bulldozing_N;
+  const double scrub_J = skids ? scrubLever_Nm(rover, dragged_N) : 0.0;
+  const double swept_m = skids ? row_m : rho_m;
+  const auto effort = [&](double drive_J, double time_s) {
+    return TurnEffort{.energy_J = drive_J + rover.hotel_power_W * time_s, .time_s = time_s};
+  };
+  return {.on_arc = effort(scrub_J, row_m / rover.max_speed_mps),
+          .in_place = effort(scrub_J + ground.rolling_J_per_m * swept_m, swept_m / rover.max_speed_mps)};
+}
+
+}  // namespace talus::terramech

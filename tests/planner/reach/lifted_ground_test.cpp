@@ -1,0 +1,103 @@
+#include <map>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <talus/planner/reach/lifted_ground.hpp>
+#include <talus/planner/reach/obstruction_search.hpp>
+
+#include "drawn_map.hpp"
+
+namespace talus::planner {
+namespace lifted_ground_test {
+
+using costmap::Hazard;
+
+// A map as drawn(), with more: 's' steeper than any heading may stand, 'k' keep-out, 'r' rocks, 'n' kept clear, 'e' an edge,
+// 'w' ground of curve 5, whose soil holds nothing.
+struct Site {
+  std::shared_ptr<const costmap::CostGrid> map;
+  HazardsOf hazards;
+};
+
+costmap::DriveCurve upTo(double steepest, double cost_J) {
+  costmap::DriveCurve made = testing::curve({.factor = cost_J / 10.0, .steepest = steepest});
+  return made;
+}
+
+Site site(const std::vector<std::string>& rows, double gradient = 0.0, double pitch = 0.3,
+          double soil = 0.31) {
+  static const std::map<char, Hazard> kinds{{'s', Hazard::Slope | Hazard::Roughness},
+                                            {'k', Hazard::KeepOut},
+                                            {'r', Hazard::Rocks | Hazard::Slope},
+                                            {'n', Hazard::Near},
+                                            {'e', Hazard::Step}};
+  const maps::Grid grid{.width = static_cast<int>(rows[0].size()),
+                        .height = static_cast<int>(rows.size()),
+                        .resolution_m = 1.0,
+                        .south_west = {}};
+  maps::Raster<costmap::CellCode> cells(grid);
+  auto hazards = std::make_shared<maps::Raster<Hazard>>(grid, Hazard::None);
+  for (int r = 0; r < grid.height; ++r)
+    for (int c = 0; c < grid.width; ++c) {
+      const char drawing = rows[static_cast<std::size_t>(grid.height - 1 - r)][static_cast<std::size_t>(c)];
+      costmap::CellCode::Parts parts{.dz_dx = gradient, .curve = 0};
+      if (drawing == 's') parts.dz_dx = 0.3;
+      if (drawing == '?') parts.curve = costmap::CellCode::kUnknown;
+      if (drawing == 'w') parts.curve = 1;
+      if (kinds.contains(drawing)) {
+        parts.curve = costmap::CellCode::kBlocked;
+        (*hazards)[{c, r}] = kinds.at(drawing);
+      }
+      cells[{c, r}] = costmap::CellCode(parts);
+    }
+  const costmap::DriveCurve nothing = upTo(-1.0, 10.0);
+  return {std::make_shared<costmap::CostGrid>(costmap::flattened(
+              cells, std::make_shared<costmap::DriveCost>(
+                         costmap::DriveCost::Limits{.max_along = pitch, .max_across = 0.05},
+                         std::vector{upTo(soil, 10.0), nothing}))),
+          [hazards](maps::Cell cell) { return (*hazards)[cell]; }};
+}
+
+std::optional<Constraint> causeOf(const Site& ground, const Segment& places = {{1.5, 2.5}, {7.5, 2.5}}) {
+  HeadingSets headings(ground.map->cost());
+  const Reach reach(*ground.map, headings, Reach::Sense::From, places.from);
+  return obstructionBetween(*ground.map, headings, reach, places, 0.0, ground.hazards).lifting;
+}
+
+std::vector<std::string> wall(char of) {
+  std::vector<std::string> rows(5, "nnnnnnnnn");
+  for (int r = 1; r < 4; ++r) rows[static_cast<std::size_t>(r)] = std::string("n...") + of + "...n";
+  return rows;
+}
+
+TEST(LiftedGround, EachCauseIsTold) {
+  EXPECT_EQ(causeOf(site(wall('k'))), Constraint::Hazard);
+  EXPECT_EQ(causeOf(site(wall('r'))), Constraint::Hazard);
+  EXPECT_EQ(causeOf(site(wall('e'))), Constraint::Hazard);
+  EXPECT_EQ(causeOf(site(wall('s'))), Constraint::Pitch);
+  EXPECT_EQ(causeOf(site(wall('?'))), Constraint::Unknown);
+  EXPECT_EQ(causeOf(site(wall('w'))), Constraint::Soil);
+}
+
+// The rim's clearance around a field of weak soil is no way: without it "hazards" would be told.
+TEST(LiftedGround, TheRimIsNoWay) {
+  std::vector<std::string> rows = wall('w');
+  EXPECT_EQ(causeOf(site(rows)), Constraint::Soil);
+  for (std::string& row : rows) row[4] = 'w';
+  EXPECT_EQ(causeOf(site(rows)), Constraint::Soil);
+}
+
+// A slope as steep as the limit refuses, of soil that ends where the table ends; and one whose soil ends before.
+TEST(LiftedGround, ALimitIsToldWhereSoilHoldsUpToIt) {
+  const std::vector<std::string> plain(5, ".........");
+  EXPECT_EQ(causeOf(site(plain, 0.2, 0.1, 0.102)), Constraint::Pitch);
+  EXPECT_EQ(causeOf(site(plain, 0.2, 0.1, 0.25)), Constraint::Pitch);
+  EXPECT_EQ(causeOf(site(plain, 0.2, 0.3, 0.1)), Constraint::Soil);
+  EXPECT_EQ(causeOf(site(plain, 0.2, 0.1, 0.05)), Constraint::Roll)
+      << "straight up soil and limit refuse it, in turns they do not";
+}
+
+}  // namespace lifted_ground_test
+}  // namespace talus::planner

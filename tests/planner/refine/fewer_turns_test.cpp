@@ -1,0 +1,67 @@
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include <talus/planner/refine/fewer_turns.hpp>
+
+#include "drawn_map.hpp"
+
+namespace talus::planner {
+namespace fewer_turns_test {
+
+using testing::drawn;
+
+TEST(FewerTurns, DropsIdleTurns) {
+  const MotionCost cost(drawn({".....", ".#...", "....."}));
+  const auto route = withoutIdleTurns(cost, {{0.5, 0.5}, {1.5, 0.5}, {2.5, 0.5}, {2.5, 2.5}});
+  EXPECT_EQ(route.size(), 3U);
+}
+
+// Every other point of a way around a dear field: what the least of all choices of points costs, by brute force.
+TEST(FewerTurns, AsCheapAsTheBestChoiceOfPoints) {
+  std::mt19937 random(9);
+  std::uniform_real_distribution<double> place(0.6, 19.4);
+  int fewer = 0;
+  for (int trial = 0; trial < 60; ++trial) {
+    const MotionCost cost(testing::plane(20, {0.0, 0.0}, trial % 3 * 8.0));
+    Polyline route;
+    for (int k = 0; k < 4; ++k) route.push_back({place(random), place(random)});
+    double least = std::numeric_limits<double>::infinity();
+    for (int kept = 0; kept < 4; ++kept) {
+      Polyline chosen{route[0]};
+      if (kept & 1) chosen.push_back(route[1]);
+      if (kept & 2) chosen.push_back(route[2]);
+      chosen.push_back(route[3]);
+      least = std::min(least, cost.along(chosen));
+    }
+    const Polyline made = withoutIdleTurns(cost, route);
+    EXPECT_NEAR(cost.along(made), least, 1e-6);
+    fewer += made.size() < route.size() ? 1 : 0;
+  }
+  EXPECT_EQ(fewer, 60) << "on even ground the straight line is best";
+}
+
+// A detour that saves less than its turns cost is left out, one that saves more is kept.
+TEST(FewerTurns, ADetourHasToPayForItsTurns) {
+  std::vector<std::string> rows(5, std::string(20, '.'));
+  rows[4].replace(8, 4, "2222");
+  const Polyline around{{0.5, 0.5}, {8.0, 1.5}, {12.0, 1.5}, {19.5, 0.5}};
+  const auto priced = [&](double turn_J) {
+    const auto map = drawn(rows);
+    std::vector<costmap::DriveGround> grounds;
+    for (const auto& curve : map->cost().curves()) {
+      grounds.push_back({.curve = curve, .states = {}});
+      grounds.back().turns.at_vertex.cost_J = turn_J;
+    }
+    costmap::CostGrid::Content content = map->content();
+    content.cost = std::make_shared<costmap::DriveCost>(map->cost().limits(), grounds);
+    return std::make_shared<const costmap::CostGrid>(std::move(content));
+  };
+  EXPECT_EQ(withoutIdleTurns(MotionCost(priced(1.0)), around).size(), 3U) << "past one corner of the field";
+  EXPECT_EQ(withoutIdleTurns(MotionCost(priced(2000.0)), around).size(), 2U);
+}
+
+}  // namespace fewer_turns_test
+}  // namespace talus::planner
