@@ -104,7 +104,7 @@ Plan FieldPlanner::planStage(const Problem& problem, const Stage& stage, const S
   }
   Plan plan = finished(problem, stage, std::move(rough), stop);
   if (on_grid && problem.prove) tryOtherCorridors(problem, stage, stop, plan);
-  return plan;
+  return withoutTipping(std::move(plan));
 }
 
 // What any heading can do where the eight of the grid cannot: a rough route, a proof that there is none, or neither.

@@ -91,7 +91,7 @@ Plan TubePlanner::finished(const Problem& leg, Polyline way, const StopCheck& st
   plan.lower_bound_J = std::min(
       plan.cost_J, leg.prove ? straightBoundOver_J(*leg.map, ends, leg.goal_tolerance_m, plan.cost_J, stop)
                              : straightBound_J(*leg.map, ends, leg.goal_tolerance_m));
-  return plan;
+  return withoutTipping(std::move(plan));
 }
 
 // Pools the map, or what changed of it since the last time.

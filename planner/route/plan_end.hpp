@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -20,6 +21,15 @@ inline Plan failedPlan(RouteStatus status, std::string reason) {
 inline Plan cancelledPlan(const StopCheck& stop) {
   if (stop.cancelled()) return failedPlan(RouteStatus::Cancelled, "cancelled before a route was found");
   return failedPlan(RouteStatus::TimedOut, "the time limit passed before a route was found; increase it");
+}
+
+/// The plan, or NoneFound where a turn between its legs tips the rover: its cost is infinite then.
+inline Plan withoutTipping(Plan plan) {
+  if (plan.status != RouteStatus::Found || std::isfinite(plan.cost_J)) return plan;
+  return failedPlan(RouteStatus::NoneFound,
+                    "no route found, nor a proof that there is none: on the one found, turns pass headings "
+                    "in which the rover tips; "
+                    "choose other places, or a rover with a lower centre of mass");
 }
 
 }  // namespace talus::planner
