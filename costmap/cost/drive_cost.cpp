@@ -76,7 +76,7 @@ bool DriveCost::tips(CellCode cell, Direction heading) const noexcept {
 }
 
 bool DriveCost::mayTip(CellCode cell) const noexcept {
-  return std::hypot(cell.dzDx(), cell.dzDy()) > steady_gradient_;
+  return cell.dzDx() * cell.dzDx() + cell.dzDy() * cell.dzDy() > steady_gradient_ * steady_gradient_;
 }
 
 }  // namespace talus::costmap

@@ -50,6 +50,7 @@ Polyline Refiner::refinedStretch(const MotionCost& cost, const CorridorSearch& s
   take(byWindows(
       stretch, {kWindow * cell_m, kAround * cell_m},
       [&](const Polyline& window) { return acrossEdges(cost, search, window); }, none, 1, stop));
+  take(withFewerTurns(cost, stretch));
   return stretch;
 }
 

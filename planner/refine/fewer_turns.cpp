@@ -8,7 +8,7 @@
 namespace talus::planner {
 namespace {
 
-constexpr std::array<std::size_t, 8> kSpans{1, 2, 3, 4, 6, 8, 12, 16};
+constexpr std::array<std::size_t, 5> kSpans{1, 2, 3, 5, 8};
 constexpr double kApart_rad = 0.1;  // headings looked at in a turn
 constexpr double kVertex = 1e-12;   // of a route's cost: what a vertex less is worth where turns are free
 
@@ -80,7 +80,7 @@ class FewerTurns {
 
 }  // namespace
 
-Polyline withoutIdleTurns(const MotionCost& cost, const Polyline& route) {
+Polyline withFewerTurns(const MotionCost& cost, const Polyline& route) {
   if (route.size() < 3 || !(cost.along(route) < kInfinity)) return route;
   return FewerTurns(cost, route).best();
 }

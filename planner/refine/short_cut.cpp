@@ -72,4 +72,15 @@ Polyline shortCut(const MotionCost& cost, const Polyline& route, double piece_m,
   return made;
 }
 
+Polyline withoutIdleTurns(const MotionCost& cost, const Polyline& route) {
+  if (route.size() < 3) return route;
+  Polyline kept{route.front()};
+  for (std::size_t i = 1; i + 1 < route.size(); ++i) {
+    const double bent = cost({kept.back(), route[i]}) + cost({route[i], route[i + 1]});
+    if (cost({kept.back(), route[i + 1]}) > bent * (1.0 + 1e-12)) kept.push_back(route[i]);
+  }
+  kept.push_back(route.back());
+  return kept;
+}
+
 }  // namespace talus::planner

@@ -12,4 +12,7 @@ namespace talus::planner {
 /// programming. Ours. The route itself when stopped.
 Polyline shortCut(const MotionCost& cost, const Polyline& route, double piece_m, const StopCheck& stop = {});
 
+/// The same route without the points that a straight motion can leave out at no cost.
+Polyline withoutIdleTurns(const MotionCost& cost, const Polyline& route);
+
 }  // namespace talus::planner

@@ -163,7 +163,7 @@ bool MotionCost::turnAllowed(const Segment& motion, maps::Point end) const noexc
 
 costmap::Direction directionOf(const Segment& motion) noexcept {
   const double dx = motion.to.x_m - motion.from.x_m, dy = motion.to.y_m - motion.from.y_m;
-  const double length = std::hypot(dx, dy);
+  const double length = std::sqrt(dx * dx + dy * dy);
   return length > 0.0 ? costmap::Direction{dx / length, dy / length} : costmap::Direction{};
 }
 
@@ -186,11 +186,13 @@ bool tipsBetween(const costmap::DriveCost& cost, costmap::CellCode cell, costmap
 double MotionCost::turn(maps::Point place, costmap::Direction from, costmap::Direction to) const noexcept {
   const auto cell = map_->grid().cellAt(place);
   if (!cell) return 0.0;
-  const double by_rad = std::atan2(from.x * to.y - from.y * to.x, from.x * to.x + from.y * to.y);
   const costmap::DriveCost& cost = map_->cost();
   const costmap::CellCode code = map_->at(*cell);
+  const double radian_J = cost.turn(code).cost_J;
+  if (radian_J == 0.0 && !cost.mayTip(code)) return 0.0;
+  const double by_rad = std::atan2(from.x * to.y - from.y * to.x, from.x * to.x + from.y * to.y);
   if (cost.mayTip(code) && tipsBetween(cost, code, from, by_rad)) return kInfinity;
-  return cost.turn(code).cost_J * std::abs(by_rad);
+  return radian_J * std::abs(by_rad);
 }
 
 double MotionCost::along(const std::vector<maps::Point>& points) const noexcept {

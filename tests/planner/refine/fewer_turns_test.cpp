@@ -15,7 +15,7 @@ using testing::drawn;
 
 TEST(FewerTurns, DropsIdleTurns) {
   const MotionCost cost(drawn({".....", ".#...", "....."}));
-  const auto route = withoutIdleTurns(cost, {{0.5, 0.5}, {1.5, 0.5}, {2.5, 0.5}, {2.5, 2.5}});
+  const auto route = withFewerTurns(cost, {{0.5, 0.5}, {1.5, 0.5}, {2.5, 0.5}, {2.5, 2.5}});
   EXPECT_EQ(route.size(), 3U);
 }
 
@@ -36,7 +36,7 @@ TEST(FewerTurns, AsCheapAsTheBestChoiceOfPoints) {
       chosen.push_back(route[3]);
       least = std::min(least, cost.along(chosen));
     }
-    const Polyline made = withoutIdleTurns(cost, route);
+    const Polyline made = withFewerTurns(cost, route);
     EXPECT_NEAR(cost.along(made), least, 1e-6);
     fewer += made.size() < route.size() ? 1 : 0;
   }
@@ -59,8 +59,8 @@ TEST(FewerTurns, ADetourHasToPayForItsTurns) {
     content.cost = std::make_shared<costmap::DriveCost>(map->cost().limits(), grounds);
     return std::make_shared<const costmap::CostGrid>(std::move(content));
   };
-  EXPECT_EQ(withoutIdleTurns(MotionCost(priced(1.0)), around).size(), 3U) << "past one corner of the field";
-  EXPECT_EQ(withoutIdleTurns(MotionCost(priced(2000.0)), around).size(), 2U);
+  EXPECT_EQ(withFewerTurns(MotionCost(priced(1.0)), around).size(), 3U) << "past one corner of the field";
+  EXPECT_EQ(withFewerTurns(MotionCost(priced(2000.0)), around).size(), 2U);
 }
 
 }  // namespace fewer_turns_test

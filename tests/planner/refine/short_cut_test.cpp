@@ -53,5 +53,11 @@ TEST(ShortCut, StoppedLeavesTheRoute) {
   EXPECT_EQ(shortCut(cost, route, 1.0, ProgressMonitor{.progress = {}, .stop = source.get_token()}), route);
 }
 
+TEST(ShortCut, DropsIdleTurns) {
+  const MotionCost cost(drawn({".....", ".#...", "....."}));
+  const auto route = withoutIdleTurns(cost, {{0.5, 0.5}, {1.5, 0.5}, {2.5, 0.5}, {2.5, 2.5}});
+  EXPECT_EQ(route.size(), 3U);
+}
+
 }  // namespace short_cut_test
 }  // namespace talus::planner
