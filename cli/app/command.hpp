@@ -17,6 +17,7 @@ struct Group {
   static constexpr const char* kRoutes = "Routes";
   static constexpr const char* kMaps = "Maps";
   static constexpr const char* kSoil = "Wheels and soil";
+  static constexpr const char* kHelp = "Help";
 };
 
 /// The text of a subcommand in --help.

@@ -10,6 +10,7 @@ void addCommands(CLI::App& app, Context& context) {
   addEstimate(app, context);
   addExplain(app, context);
   addGenerate(app, context);
+  addHelp(app, context);
   addInfo(app, context);
   addPlan(app, context);
   addPlugins(app, context);

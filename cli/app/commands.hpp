@@ -17,6 +17,7 @@ void addDrive(CLI::App& app, Context& context);
 void addEstimate(CLI::App& app, Context& context);
 void addExplain(CLI::App& app, Context& context);
 void addGenerate(CLI::App& app, Context& context);
+void addHelp(CLI::App& app, Context& context);
 void addInfo(CLI::App& app, Context& context);
 void addPlan(CLI::App& app, Context& context);
 void addPlugins(CLI::App& app, Context& context);

@@ -76,7 +76,8 @@ std::string oneLine(std::string_view text) {
     else
       line += std::iscntrl(static_cast<unsigned char>(c)) != 0 ? ' ' : c;
   }
-  return line;
+  // A byte that is no UTF-8 becomes U+FFFD, as in JSON.
+  return nlohmann::json::parse(jsonText(line)).get<std::string>();
 }
 
 }  // namespace talus::cli

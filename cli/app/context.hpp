@@ -65,7 +65,7 @@ void print(std::string_view text);
 /// Writes to stderr. Where nobody listens, the text is lost and nothing else happens.
 void printError(std::string_view text) noexcept;
 
-/// The text on one line: line breaks become "; ", other control characters blanks.
+/// The text on one line: line breaks become "; ", other control characters blanks, and bytes that are no UTF-8 U+FFFD.
 std::string oneLine(std::string_view text);
 
 }  // namespace talus::cli

@@ -1,6 +1,7 @@
 // talus view ROUTE|MAP: one page to look at.
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -36,9 +37,10 @@ void bind(CLI::App& command, ViewOptions& options) {
   addMapOptions(command, options.file, "FILE");
   command.get_option("FILE")->description("route from `talus plan`, traversability map, or elevation map");
   command
-      .add_option("--map", options.map,
-                  "map of a route (default: the map it was planned on, searched in the folder of the route "
-                  "and in the current folder)")
+      .add_option(
+          "--map", options.map,
+          "map of a route (default: the map it was planned on, searched by its path and its name from the "
+          "folder of the route and from the current folder)")
       ->type_name("MAP");
   command.add_option("--title", options.title, "title of the page")->type_name("TEXT");
   addOutput(command, "-o,--html", options.html,
@@ -58,19 +60,35 @@ Scene mapScene(const ViewOptions& options, const std::string& path, const Contex
   return sceneOf(readMap(dem, context), scene);
 }
 
-/// The first input of the route that lies beside it or in this folder and is a map; its name has to be that
-/// of a DEM or a map of beliefs, which come first.
+// Where the map may lie: by its path as it was given to `talus plan`, here, from the route's folder and from those above it; by
+// its name beside the route and here.
+std::vector<fs::path> placesOf(const RouteInput& map, const fs::path& route) {
+  std::error_code error;
+  const fs::path folder = fs::absolute(route, error).parent_path();
+  std::vector<fs::path> places{folder / map.file, fs::path(".") / map.file};
+  if (map.path.empty()) return places;
+  places.emplace_back(map.path);
+  for (fs::path above = folder;; above = above.parent_path()) {
+    places.push_back(above / map.path);
+    if (above == above.parent_path()) return places;
+  }
+}
+
+/// The first input of the route, where a file is the same; its name has to be that of a DEM or a traversability map, which come
+/// first.
 std::optional<std::string> findMap(const RouteFile& file, const std::string& route_path,
                                    const Context& context) {
   if (file.inputs.empty()) return std::nullopt;
   const RouteInput& input = file.inputs.front();
-  for (const fs::path& folder : {fs::path(route_path).parent_path(), fs::path(".")}) {
-    const fs::path path = folder / input.file;
+  std::string other;
+  for (const fs::path& path : placesOf(input, route_path)) {
     std::error_code error;
     if (!fs::is_regular_file(path, error)) continue;
     if (sha256OfFile(path.string()) == input.sha256) return path.string();
-    context.warn(path.string() + " is not the file that the route was planned on: its checksum differs");
+    if (other.empty()) other = path.string();
   }
+  if (!other.empty())
+    context.warn(other + " is not the file that the route was planned on: its checksum differs");
   context.warn("the map " + input.file + " of the route was not found; the page shows no map; pass --map");
   return std::nullopt;
 }

@@ -36,6 +36,8 @@ void addReadOptions(CLI::App& command, MapOptions& options) {
                   "read only this window: x0,y0,x1,y1, or lat,lon,lat,lon with the suffix d on each")
       ->type_name("BOX");
   command.add_option("--nodata", read.nodata, "value of cells without data")->type_name("VALUE");
+  command.add_flag("--keep-zeros", read.keep_zeros,
+                   "take a region of exactly 0 for ground although the elevation around it is not near 0");
   command.add_option("--vertical-scale", read.vertical_scale, "metres per unit of elevation")
       ->type_name("FACTOR");
   command.add_flag("--ignore-crs", read.ignore_crs,
@@ -60,6 +62,7 @@ void refuseReadOptions(const MapOptions& options) {
       {"--resolution", read.resolution_m.has_value()},
       {"--window", !options.window.empty()},
       {"--nodata", read.nodata.has_value()},
+      {"--keep-zeros", read.keep_zeros},
       {"--vertical-scale", read.vertical_scale != maps::ReadOptions{}.vertical_scale},
       {"--ignore-crs", read.ignore_crs},
       {"--max-cells", read.max_cells != maps::ReadOptions{}.max_cells}};
@@ -160,6 +163,7 @@ Layers readLayers(const LayerOptions& options, const maps::ElevationMap& map,
     layers.classes = maps::readTerrainClasses({options.terrain, options.terrain_band}, map, weakest_last);
   if (!options.rocks.empty()) {
     maps::RockAbundance rocks = maps::readRockAbundance({options.rocks, options.rocks_band}, map);
+    for (const std::string& note : rocks.notes) layers.notes.push_back(options.rocks + ": " + note);
     layers.rock_abundance = std::move(rocks.share);
     if (std::ranges::count(rocks.unseen.values(), 0) != std::ssize(rocks.unseen.values()))
       layers.costs.push_back(unseenRocks(rocks.unseen));

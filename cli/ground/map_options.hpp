@@ -26,7 +26,7 @@ struct MapOptions {
   maps::ReadOptions read;
 };
 
-/// Declares --band, --resolution, --window, --nodata, --vertical-scale, --ignore-crs, --max-cells,
+/// Declares --band, --resolution, --window, --nodata, --keep-zeros, --vertical-scale, --ignore-crs, --max-cells,
 /// --allow-vrt, --below.
 void addReadOptions(CLI::App& command, MapOptions& options);
 

@@ -12,6 +12,7 @@
 namespace talus::cli {
 namespace {
 
+using terramech::FileKey;
 using terramech::YamlFields;
 
 // A path as the mission means it: relative to the mission's folder; a library name stays as it is.
@@ -55,7 +56,7 @@ std::vector<std::string> places(const YamlFields& fields, const std::string& nam
 }
 
 void readMaps(const YamlFields& maps, GroundOptions& ground, const std::filesystem::path& folder) {
-  maps.only({"dem", "map", "terrain", "rocks", "keep_out", "resolution_m", "ignore_crs"});
+  maps.only(namesOf(missionMapKeys()));
   ground.dem.path = resolved(maps.word("dem", ""), folder);
   take(ground.map_file, maps, "map");
   take(ground.layers.terrain, maps, "terrain");
@@ -73,8 +74,7 @@ void readMaps(const YamlFields& maps, GroundOptions& ground, const std::filesyst
 
 // What differs from its default was said on the command line and holds.
 void readThresholds(const YamlFields& fields, costmap::DrivePolicy& policy) {
-  fields.only({"slope_margin_rad", "sinkage_threshold", "sinkage_critical", "max_immobilisation",
-               "allow_marginal", "allow_dangerous", "allow_unknown", "time_weight_W", "risk_weight_J"});
+  fields.only(namesOf(thresholdKeys()));
   const costmap::DrivePolicy defaults;
   const auto number = [&](double costmap::DrivePolicy::*field, const char* name) {
     const double said = fields.number(name, policy.*field);
@@ -97,6 +97,57 @@ void readThresholds(const YamlFields& fields, costmap::DrivePolicy& policy) {
 
 }  // namespace
 
+std::span<const FileKey> missionKeys() {
+  static constexpr FileKey kKeys[] = {
+      {"maps", "a mapping, see below, required"},
+      {"rover", "library rover or YAML file"},
+      {"soil", "library soil or YAML file, of ground without a class"},
+      {"model", "refined wheel-soil model, YAML file of `talus trace`"},
+      {"soils", "YAML file of terrain classes and their soils"},
+      {"thresholds", "a mapping, see below"},
+      {"planner", "field (default), hybrid or a name of `talus plugins`"},
+      {"start", "x,y in map metres, [x, y], lat,lon with the suffix d on each, or a GeoJSON point"},
+      {"goal", "as start; a list of them: the goal of least cost is chosen"},
+      {"via", "as goal: places to pass in that order"},
+      {"tolerance_m", "distance from the goal that is near enough, default 0"},
+      {"time_s", "planning time of sampling planners, above 0"},
+      {"start_heading_rad", "counter-clockwise from east"},
+      {"goal_heading_rad", "counter-clockwise from east"},
+      {"reverse", "true (default) or false: whether the rover may drive backwards"},
+      {"output", "route to write, GeoJSON"},
+  };
+  return kKeys;
+}
+
+std::span<const FileKey> missionMapKeys() {
+  static constexpr FileKey kKeys[] = {
+      {"dem", "elevation map; it or map is required"},
+      {"map", "traversability map of `talus costmap`"},
+      {"terrain", "raster of terrain classes"},
+      {"rocks", "raster of rock abundance, 0 to 1"},
+      {"keep_out", "GeoJSON polygons"},
+      {"resolution_m", "cell size of a raster without a coordinate system"},
+      {"ignore_crs", "true: read as local metres; default false"},
+  };
+  return kKeys;
+}
+
+std::span<const FileKey> thresholdKeys() {
+  static constexpr FileKey kKeys[] = {
+      {"slope_margin_rad", "category edges at the slope -+ this, default 5 degrees"},
+      {"sinkage_threshold", "sinkage over radius below which a category stays, default 0.5"},
+      {"sinkage_critical",
+       "sinkage over radius above which ground is dangerous; default 0: clearance over radius"},
+      {"max_immobilisation", "greatest immobilisation probability of allowed ground, default 0.5"},
+      {"allow_marginal", "default true"},
+      {"allow_dangerous", "default false"},
+      {"allow_unknown", "default false"},
+      {"time_weight_W", "joules that a second counts, default 1"},
+      {"risk_weight_J", "joules that the loss of the rover counts, default 1e8"},
+  };
+  return kKeys;
+}
+
 bool isMission(const std::string& path) {
   const std::string extension = std::filesystem::path(path).extension().string();
   return extension == ".yaml" || extension == ".yml";
@@ -106,8 +157,7 @@ void readMission(PlanOptions& options) {
   const std::filesystem::path path = options.ground.dem.path;
   const std::filesystem::path folder = path.parent_path();
   const YamlFields fields = YamlFields::file(path.string());
-  fields.only({"maps", "rover", "soil", "model", "soils", "thresholds", "planner", "start", "goal", "via",
-               "tolerance_m", "time_s", "start_heading_rad", "goal_heading_rad", "reverse", "output"});
+  fields.only(namesOf(missionKeys()));
   readMaps(fields.fields("maps"), options.ground, folder);
   take(options.ground.rover, fields, "rover");
   take(options.ground.soil, fields, "soil");

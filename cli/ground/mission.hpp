@@ -1,10 +1,12 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include <talus/cli/ground/ground_options.hpp>
+#include <talus/terramech/io/file_keys.hpp>
 
 namespace talus::cli {
 
@@ -40,6 +42,11 @@ struct PlanOptions {
   std::string html;  ///< page to write; empty: none
   std::string png;   ///< picture to write; empty: none
 };
+
+/// The keys of a mission file, of its `maps` and of its `thresholds`.
+std::span<const terramech::FileKey> missionKeys();
+std::span<const terramech::FileKey> missionMapKeys();
+std::span<const terramech::FileKey> thresholdKeys();
 
 /// Whether the path names a mission file by its extension, .yaml or .yml.
 bool isMission(const std::string& path);

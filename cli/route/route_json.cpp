@@ -65,8 +65,9 @@ void addVertices(Json& properties, const Route& route) {
 Json originJson(const RouteOrigin& origin) {
   Json files = Json::array();
   for (const std::string& path : origin.files)
-    files.push_back(
-        {{"file", std::filesystem::path(path).filename().string()}, {"sha256", sha256OfFile(path)}});
+    files.push_back({{"file", std::filesystem::path(path).filename().string()},
+                     {"path", path},
+                     {"sha256", sha256OfFile(path)}});
   return {{"files", files}, {"seed", origin.seed}, {"version", TALUS_VERSION}};
 }
 

@@ -195,8 +195,10 @@ std::vector<RouteInput> inputsOf(const json& properties) {
   for (const json& file : member(member(properties, "inputs"), "files")) {
     const json name = member(file, "file");
     const json sha256 = member(file, "sha256");
-    if (name.is_string() && sha256.is_string())
-      inputs.push_back({name.get<std::string>(), sha256.get<std::string>()});
+    if (!name.is_string() || !sha256.is_string()) continue;
+    const json path = member(file, "path");
+    inputs.push_back({name.get<std::string>(), path.is_string() ? path.get<std::string>() : "",
+                      sha256.get<std::string>()});
   }
   return inputs;
 }

@@ -9,7 +9,9 @@ namespace talus::cli {
 
 /// A file that a route was made from.
 struct RouteInput {
-  std::string file;    ///< its name without the folder
+  std::string file;  ///< its name without the folder
+  std::string
+      path;  ///< as it was given to the planner, relative to its folder; empty where the route has none
   std::string sha256;  ///< of its content, hexadecimal
 };
 

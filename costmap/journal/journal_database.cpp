@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <fstream>
@@ -34,6 +35,13 @@ void requireJournalOrNothing(const std::string& path) {
   if (std::string_view(start.data(), start.size()) != kStart)
     throw InputError(
         {path, "is no evidence journal, or was cut", "name the journal, or a file that does not exist"});
+}
+
+// SQLite's words hold names as a damaged file has them: any bytes.
+std::string printable(std::string text) {
+  std::ranges::replace_if(
+      text, [](unsigned char c) { return c < 0x20 || c > 0x7e; }, '?');
+  return text;
 }
 
 }  // namespace
@@ -96,7 +104,7 @@ void JournalDatabase::refuse(const std::string& reason) const {
 
 void JournalDatabase::fail() const {
   throw InputError(
-      {path_, std::string("evidence journal: ") + (database_ ? sqlite3_errmsg(database_.get()) : "no memory"),
+      {path_, "evidence journal: " + printable(database_ ? sqlite3_errmsg(database_.get()) : "no memory"),
        "check that it is a journal and that its folder can be written"});
 }
 

@@ -19,6 +19,8 @@
 namespace talus::maps {
 namespace {
 
+constexpr std::size_t kPiece = std::size_t{1} << 20;
+
 std::string_view driverOf(GDALDataset& dataset) {
   GDALDriver* driver = dataset.GetDriver();
   return driver == nullptr ? std::string_view() : GDALGetDriverShortName(driver);
@@ -170,6 +172,23 @@ void refuseOpenEnd(const std::string& path) {
                     "fetch it again; if it is whole, end its last line"});
 }
 
+// Neither a zero byte nor one beyond ASCII is in a table of numbers that is whole.
+void refuseForeignBytes(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string piece(kPiece, '\0');
+  std::size_t line = 1;
+  while (file.read(piece.data(), static_cast<std::streamsize>(piece.size())), file.gcount() > 0)
+    for (const char c : std::string_view(piece.data(), static_cast<std::size_t>(file.gcount()))) {
+      line += c == '\n' ? 1U : 0U;
+      const auto byte = static_cast<unsigned char>(c);
+      if (byte >= 0x80 || (byte < 0x20 && std::isspace(byte) == 0))
+        throw InputError(
+            {path + ":" + std::to_string(line),
+             "holds the byte " + std::to_string(byte) + " among its numbers, as a damaged file does",
+             "fetch it again"});
+    }
+}
+
 // What stands behind a VRT.
 template <typename Each>
 void forSources(GDALDataset& dataset, const std::string& path, Each each) {
@@ -188,7 +207,6 @@ bool lost(GDALRasterBand& band) {
           GDAL_DATA_COVERAGE_STATUS_EMPTY) != 0;
 }
 
-constexpr std::size_t kPiece = std::size_t{1} << 20;
 constexpr std::size_t kLongest = 400;  // no number is so long
 
 // Decimal commas are GDAL's, too.
@@ -243,7 +261,10 @@ void refuseCutShort(GDALDataset& dataset, const std::string& path) {
     if (const auto end = ClassicHeader(path).end()) refuseFewerBytes(path, *end);
   // A digit and a space for each number.
   if (driver == "AAIGrid" || driver == "GSAG") refuseFewerBytes(path, 2 * cellsOf(dataset));
-  if (driver == "AAIGrid" || driver == "GSAG" || driver == "XYZ") refuseOpenEnd(path);
+  if (driver == "AAIGrid" || driver == "GSAG" || driver == "XYZ") {
+    refuseForeignBytes(path);
+    refuseOpenEnd(path);
+  }
   if (driver == "VRT")
     forSources(dataset, path, [](GDALDataset& source, const std::string& of) { refuseCutShort(source, of); });
 }

@@ -1,8 +1,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <system_error>
 #include <utility>
 
+#include <cpl_string.h>
 #include <gdal_priv.h>
 
 #include <talus/common/input_error.hpp>
@@ -95,7 +104,11 @@ struct Selection {
   FramedRaster from;
   HeightCode code;
   CellBox box;
-  Grid grid;  // of the result
+  Grid grid;            // of the result
+  GDALDataset* pixels;  // the file's own, which `from` keeps open
+  int band;             // of them
+
+  bool resampled() const { return from.raster.get() != pixels; }
 };
 
 int overviewCells(int cells, int overview) {
@@ -115,6 +128,7 @@ Selection select(const std::string& path, const ReadOptions& options, std::vecto
   if (options.nodata) code.nodata = options.nodata;
   code.scale *= options.vertical_scale;
   code.offset_m *= options.vertical_scale;
+  GDALDataset* const pixels = file.get();
   FramedRaster from = frame(std::move(file), band, options, path, notes);
   const CellBox whole{{0, 0}, {from.grid.width - 1, from.grid.height - 1}};
   const CellBox box = options.window ? cellsOf(*options.window, from, path) : whole;
@@ -122,13 +136,92 @@ Selection select(const std::string& path, const ReadOptions& options, std::vecto
   grid.width = overviewCells(grid.width, options.overview);
   grid.height = overviewCells(grid.height, options.overview);
   grid.resolution_m *= options.overview;
-  return {std::move(from), code, box, grid};
+  return {std::move(from), code, box, grid, pixels, band};
+}
+
+// Larger files are searched near what is read of them alone.
+constexpr double kSearchedWhole = 1e8;  // pixels
+
+PixelBox wholeOf(GDALDataset& pixels) {
+  return {0, 0, pixels.GetRasterXSize(), pixels.GetRasterYSize()};
+}
+
+bool isSearchedWhole(GDALDataset& pixels) {
+  return static_cast<double>(pixels.GetRasterXSize()) * pixels.GetRasterYSize() <= kSearchedWhole;
+}
+
+// The file as a whole, or what is read of it with as much around it.
+PixelBox searched(const Selection& chosen, const PixelBox& read) {
+  const PixelBox whole = wholeOf(*chosen.pixels);
+  if (isSearchedWhole(*chosen.pixels)) return whole;
+  const int column = std::max(read.column - read.width, 0), row = std::max(read.row - read.height, 0);
+  return {column, row,
+          static_cast<int>(
+              std::min(std::int64_t{whole.width}, std::int64_t{read.column} + 2 * std::int64_t{read.width})) -
+              column,
+          static_cast<int>(
+              std::min(std::int64_t{whole.height}, std::int64_t{read.row} + 2 * std::int64_t{read.height})) -
+              row};
+}
+
+// Names, sizes and times of a raster's files: its label may not change where its data do.
+std::string stateOf(GDALDataset& pixels) {
+  std::ostringstream state;
+  char** files = pixels.GetFileList();
+  for (char** file = files; file != nullptr && *file != nullptr; ++file) {
+    std::error_code error;
+    state << *file << ' ' << std::filesystem::file_size(*file, error) << ' '
+          << std::filesystem::last_write_time(*file, error).time_since_epoch().count() << '\n';
+  }
+  CSLDestroy(files);
+  return state.str();
+}
+
+// In the file's own pixels. The last answer is kept: a map in windows is opened for each of them.
+std::shared_ptr<const LostCells> lostOf(const Selection& chosen, const PixelBox& box,
+                                        const std::string& path) {
+  struct Known {
+    std::string files;
+    int band = 0;
+    PixelBox box;
+    std::optional<double> nodata;
+    bool operator==(const Known&) const = default;
+  };
+  static std::mutex mutex;
+  static Known last;
+  static std::shared_ptr<const LostCells> lost;
+  const Known asked{stateOf(*chosen.pixels), chosen.band, box, chosen.code.nodata};
+  const std::lock_guard lock(mutex);
+  if (!lost || asked.files.empty() || asked != last) {
+    lost = std::make_shared<const LostCells>(
+        lostCells(*chosen.pixels, chosen.band, box, chosen.code.nodata, path));
+    last = asked;
+  }
+  return lost;
+}
+
+// Resampled cells would be mixtures of what is lost and the ground beside it.
+void refuseLostToResample(const Selection& chosen, const std::string& path) {
+  if (!isSearchedWhole(*chosen.pixels) || chosen.code.nodata == 0.0) return;
+  const auto lost = lostOf(chosen, wholeOf(*chosen.pixels), path);
+  if (lost->count > 0)
+    throw InputError(
+        {path,
+         std::to_string(lost->count) +
+             " pixels are exactly 0 and what surrounds them does not come down to 0, as where a part "
+             "of the file was lost; they cannot be resampled",
+         "fetch it again, or pass --nodata 0, or --keep-zeros if 0 is their elevation"});
 }
 
 // Rows as in the file. The overview cells in the north and east that the box fills in part only are the means of that
 // part: the overview covers the box.
-std::vector<float> pixelsOf(const Selection& chosen, int overview, const std::string& path) {
-  const auto& [from, code, box, grid] = chosen;
+std::vector<float> pixelsOf(const Selection& chosen, const ReadOptions& options, const std::string& path,
+                            std::vector<std::string>& notes) {
+  const auto& [from, code, box, grid, pixels, band] = chosen;
+  const int overview = options.overview;
+  const bool may_be_lost = !options.keep_zeros && !chosen.resampled() && code.nodata != 0.0 &&
+                           (overview == 1 || isSearchedWhole(*pixels));
+  std::shared_ptr<const LostCells> lost;
   std::vector<float> values(grid.size());
   const auto parts = [overview](int cells) {
     const int whole = cells / overview * overview;
@@ -139,14 +232,19 @@ std::vector<float> pixelsOf(const Selection& chosen, int overview, const std::st
       if (rows == 0 || columns == 0) continue;
       const int south = box.first.row + row;
       const int first_row = from.north_up ? from.grid.height - south - rows : south;
-      const std::vector<float> part = readPixels(
-          *from.raster, from.band, {box.first.column + column, first_row, columns, rows}, path, overview);
+      const PixelBox from_file{box.first.column + column, first_row, columns, rows};
+      std::vector<float> part = readPixels(*from.raster, from.band, from_file, path, overview);
+      if (may_be_lost && std::ranges::count(part, 0.0F) > 0) {
+        lost = lostOf(chosen, searched(chosen, from_file), path);
+        blank(*lost, from_file, overview, part);
+      }
       const int width = overviewCells(columns, overview), height = overviewCells(rows, overview);
       const int to_row = from.north_up ? grid.height - row / overview - height : row / overview;
       for (int r = 0; r < height; ++r)
         std::copy_n(part.begin() + std::ptrdiff_t{r} * width, width,
                     values.begin() + std::ptrdiff_t{to_row + r} * grid.width + column / overview);
     }
+  if (lost && lost->count > 0) notes.push_back(lostNote(*lost, "--keep-zeros"));
   return values;
 }
 
@@ -160,9 +258,10 @@ ElevationMap readElevation(const std::string& path, const ReadOptions& options) 
   ElevationMap map;
   map.source = path;
   const Selection chosen = select(path, options, map.notes);
-  const auto& [from, code, box, grid] = chosen;
+  const auto& [from, code, box, grid, pixels, band] = chosen;
   refuseSize(grid, options, path);
-  std::vector<float> values = pixelsOf(chosen, options.overview, path);
+  if (chosen.resampled() && !options.keep_zeros) refuseLostToResample(chosen, path);
+  std::vector<float> values = pixelsOf(chosen, options, path, map.notes);
   decodeHeights(values, code, map.notes);
   const auto farthest =
       std::find_if(values.begin(), values.end(), [](float z) { return std::abs(z) > kFarthest_m; });

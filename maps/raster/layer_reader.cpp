@@ -272,6 +272,22 @@ AddedJoules readAddedJoules(const LayerSource& source, const ElevationMap& map) 
   return added;
 }
 
+namespace {
+
+// In a copy with a rim of a pixel.
+void makeUnknown(GDALDataset& copy, const LostCells& lost, const std::string& path) {
+  std::vector<float> unknown(static_cast<std::size_t>(copy.GetRasterXSize()),
+                             std::numeric_limits<float>::quiet_NaN());
+  for (const CellRun& run : lost.runs) {
+    const int count = run.last - run.first + 1;
+    if (copy.GetRasterBand(1)->RasterIO(GF_Write, run.first + 1, run.row + 1, count, 1, unknown.data(), count,
+                                        1, GDT_Float32, 0, 0, nullptr) != CE_None)
+      throw InputError({path, "cannot be held in memory", ""});
+  }
+}
+
+}  // namespace
+
 RockAbundance readRockAbundance(const LayerSource& source, const ElevationMap& map) {
   const GdalErrors quiet;
   Dataset file = openRaster(source.path);
@@ -283,6 +299,10 @@ RockAbundance readRockAbundance(const LayerSource& source, const ElevationMap& m
                                          .others = {"slope", "dem"}},
                                         notes);
   Dataset band = inMemory(*file, number_of_band, map, source.path);
+  const LostCells lost =
+      lostCells(*file, number_of_band, {0, 0, file->GetRasterXSize(), file->GetRasterYSize()}, std::nullopt,
+                source.path);
+  makeUnknown(*band, lost, source.path);
   changePixels(*band, source.path, [&](float v) {
     if (v < 0 || v > 1)
       throw InputError({source.path + ", band " + std::to_string(number_of_band),
@@ -291,6 +311,7 @@ RockAbundance readRockAbundance(const LayerSource& source, const ElevationMap& m
     return v;
   });
   RockAbundance rocks{.share = greatest(*band, map, source.path), .unseen = Raster<std::uint8_t>(map.grid())};
+  if (lost.count > 0) rocks.notes.push_back(lostNote(lost, "state a value of no data"));
   requireOverlap(std::ranges::any_of(rocks.share.values(), [](float v) { return !std::isnan(v); }), map,
                  source.path);
   changePixels(*band, source.path, [](float v) { return std::isnan(v) ? 1.0F : 0.0F; });

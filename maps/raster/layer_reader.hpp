@@ -30,6 +30,7 @@ Raster<std::uint8_t> readTerrainClasses(const LayerSource& source, const Elevati
 struct RockAbundance {
   Raster<float> share;          ///< of the ground covered by rocks [-], 0 to 1; NaN where nothing is known
   Raster<std::uint8_t> unseen;  ///< not 0: the file has no data in a part of the cell
+  std::vector<std::string> notes{};  ///< what the reader decided, a sentence each
 };
 
 /// @throws InputError, also when the file and the map do not overlap or a value lies outside 0 to 1

@@ -2,6 +2,7 @@
 #include <cctype>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include <gdal_priv.h>
 
@@ -98,6 +99,47 @@ std::vector<float> readPixels(GDALDataset& raster, int band, const PixelBox& box
   for (float& v : values)
     if (!std::isfinite(v)) v = kNoValue;
   return values;
+}
+
+LostCells lostCells(GDALDataset& raster, int band, const PixelBox& box, std::optional<double> nodata,
+                    const std::string& where) {
+  constexpr int kCellsAtOnce = 1 << 20;
+  const int rows = std::max(1, kCellsAtOnce / box.width);
+  LostZeros search(box.width);
+  for (int row = 0; row < box.height; row += rows) {
+    const int count = std::min(rows, box.height - row);
+    std::vector<float> values =
+        readPixels(raster, band, {box.column, box.row + row, box.width, count}, where);
+    if (nodata) std::ranges::replace(values, static_cast<float>(*nodata), kNoValue);
+    const auto width = static_cast<std::size_t>(box.width);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k)
+      search.add(std::span(values).subspan(k * width, width));
+  }
+  LostCells lost = search.finish();
+  for (CellRun& run : lost.runs) run = {run.row + box.row, run.first + box.column, run.last + box.column};
+  return lost;
+}
+
+void blank(const LostCells& lost, const PixelBox& box, int overview, std::vector<float>& values) {
+  const int width = shared(box.width, overview);
+  for (const CellRun& run : lost.runs) {
+    const int first = std::max(run.first - box.column, 0),
+              last = std::min(run.last - box.column, box.width - 1);
+    const int row = run.row - box.row;
+    if (row < 0 || row >= box.height || first > last) continue;
+    const auto begin =
+        values.begin() + std::ptrdiff_t{std::min(row / overview, shared(box.height, overview) - 1)} * width;
+    std::fill(begin + std::min(first / overview, width - 1), begin + std::min(last / overview, width - 1) + 1,
+              kNoValue);
+  }
+}
+
+std::string lostNote(const LostCells& lost, const std::string& remedy) {
+  return std::to_string(lost.count) +
+         " cells of exactly 0 treated as no data: what surrounds them does not come down to 0, as where a "
+         "part of the "
+         "file was lost (" +
+         remedy + " if 0 is their value)";
 }
 
 Raster<float> northUp(const Grid& grid, std::vector<float> values) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <talus/maps/grid/grid.hpp>
+#include <talus/maps/grid/lost_zeros.hpp>
 
 class GDALDataset;
 
@@ -34,6 +35,8 @@ struct PixelBox {
   int row = 0;
   int width = 0;
   int height = 0;
+
+  friend bool operator==(const PixelBox&, const PixelBox&) = default;
 };
 
 /// Reads pixels of a band as they stand into rows of floats, first row first; masked pixels and infinities
@@ -42,6 +45,17 @@ struct PixelBox {
 /// @throws InputError with GDAL's words
 std::vector<float> readPixels(GDALDataset& raster, int band, const PixelBox& box, const std::string& where,
                               int overview = 1);
+
+/// Cells of a box of a band that were overwritten by zeros, as LostZeros finds them in that box; `nodata`: a value that stands for
+/// no data. @throws InputError
+LostCells lostCells(GDALDataset& raster, int band, const PixelBox& box, std::optional<double> nodata,
+                    const std::string& where);
+
+/// Makes NaN of the values of a box, in rows of cells of overview x overview pixels, that lost cells reach into.
+void blank(const LostCells& lost, const PixelBox& box, int overview, std::vector<float>& values);
+
+/// The line that is said of lost cells; `remedy`: what to do where 0 is their value.
+std::string lostNote(const LostCells& lost, const std::string& remedy);
 
 /// Values of a file that begins in the north, as a raster that begins in the south.
 Raster<float> northUp(const Grid& grid, std::vector<float> values);

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,11 +16,30 @@ namespace {
 
 using namespace talus::border;
 
+// Ranges of what is read from files hold here, too.
+constexpr double kFarthest_m = 1e9, kFinest_m = 1e-3, kCoarsest_m = 1e6;
+constexpr std::int64_t kMostCells = 400'000'000;
+
+std::string shown(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
+void requirePlace(double metres, const std::string& name) {
+  require(std::abs(metres) <= kFarthest_m, name + " = " + shown(metres) + ", must be -1e9 to 1e9");
+}
+
 talus::maps::Grid gridOf(const talus_grid* given) {
   const talus_grid& grid = read(given, "grid");
   require(grid.width > 0 && grid.height > 0, "grid: width and height must be > 0");
-  require(std::isfinite(grid.resolution_m) && grid.resolution_m > 0.0, "grid: resolution_m must be > 0");
-  require(std::isfinite(grid.x_m) && std::isfinite(grid.y_m), "grid: x_m and y_m must be finite");
+  require(grid.width <= kMostCells / grid.height,
+          "grid: " + std::to_string(grid.width) + " x " + std::to_string(grid.height) +
+              " cells, must be at most " + std::to_string(kMostCells));
+  require(grid.resolution_m >= kFinest_m && grid.resolution_m <= kCoarsest_m,
+          "grid: resolution_m = " + shown(grid.resolution_m) + ", must be 0.001 to 1e6");
+  requirePlace(grid.x_m, "grid: x_m");
+  requirePlace(grid.y_m, "grid: y_m");
   return {.width = grid.width,
           .height = grid.height,
           .resolution_m = grid.resolution_m,
@@ -213,6 +234,11 @@ talus_code talus_patch(talus_session session, const talus_grid* grid, const talu
     const Held held(session);
     const talus::maps::Grid cells = gridOf(grid);
     const talus_layers& given = layersOf(layers, cells);
+    const talus::maps::Grid& map = held->map.grid();
+    require(cells.width <= map.width && cells.height <= map.height,
+            "a patch of " + std::to_string(cells.width) + " x " + std::to_string(cells.height) +
+                " cells reaches off the map of " + std::to_string(map.width) + " x " +
+                std::to_string(map.height) + "; cut it to the map");
     held->map.patch({.elevation_m = rasterOf(given.elevation_m, cells),
                      .rock_abundance = rasterOf(given.rock_abundance, cells),
                      .classes = rasterOf(given.classes, cells),
@@ -274,6 +300,10 @@ talus_code talus_plan(talus_session session, const talus_request* request, talus
     const Held held(session);
     const talus_request& asked = read(request, "request");
     if (summary != nullptr) read(summary, "summary");
+    requirePlace(asked.start_x_m, "request: start_x_m");
+    requirePlace(asked.start_y_m, "request: start_y_m");
+    requirePlace(asked.goal_x_m, "request: goal_x_m");
+    requirePlace(asked.goal_y_m, "request: goal_y_m");
     talus::PlanRequest wanted{.start = {asked.start_x_m, asked.start_y_m},
                               .goal = {asked.goal_x_m, asked.goal_y_m},
                               .tolerance_m = asked.tolerance_m};

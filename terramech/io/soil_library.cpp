@@ -5,6 +5,7 @@
 
 #include <talus/common/input_error.hpp>
 #include <talus/common/nearest_name.hpp>
+#include <talus/terramech/io/file_keys.hpp>
 #include <talus/terramech/io/library_text.hpp>
 #include <talus/terramech/io/soil_library.hpp>
 #include <talus/terramech/io/yaml_fields.hpp>
@@ -25,7 +26,7 @@ const std::string* findText(const std::map<std::string, std::string>& texts, con
   return found == texts.end() ? nullptr : &found->second;
 }
 
-std::vector<std::string> namesOf(const std::map<std::string, std::string>& texts) {
+std::vector<std::string> libraryNames(const std::map<std::string, std::string>& texts) {
   std::vector<std::string> names;
   names.reserve(texts.size());
   for (const auto& [name, text] : texts) names.push_back(name);
@@ -38,7 +39,7 @@ YamlFields open(const std::string& name, const std::map<std::string, std::string
                 const std::string& what) {
   if (const auto* text = findText(texts, name)) return YamlFields::text(*text, "talus library, " + name);
   if (isFile(name)) return YamlFields::file(name);
-  const std::string nearest = nearestName(name, namesOf(texts));
+  const std::string nearest = nearestName(name, libraryNames(texts));
   throw InputError({.where = name,
                     .reason = "no such file, and no " + what + " of this name in the library",
                     .remedy = nearest.empty() ? "name a YAML file" : "did you mean " + nearest + "?"});
@@ -125,7 +126,7 @@ Steering steeringOf(const YamlFields& fields) {
 }
 
 void readWheels(const YamlFields& fields, Rover& rover) {
-  fields.only({"count", "radius_m", "width_m", "grouser_height_m", "grouser_count", "lug_thrust"});
+  fields.only(namesOf(wheelKeys()));
   rover.wheel_count = fields.integer("count");
   rover.wheel.radius_m = fields.number("radius_m");
   rover.wheel.width_m = fields.number("width_m");
@@ -138,20 +139,9 @@ void readWheels(const YamlFields& fields, Rover& rover) {
 }  // namespace
 
 SoilPrior readSoil(const YamlFields& fields) {
-  const std::vector<std::string> known{"name",
-                                       "cohesion_Pa",
-                                       "friction_angle_rad",
-                                       "sinkage_exponent",
-                                       "cohesive_modulus",
-                                       "frictional_modulus",
-                                       "shear_modulus_m",
-                                       "c1",
-                                       "c2",
-                                       "density_kg_m3",
-                                       "digging_exponent",
-                                       "side_bulldozing"};
+  const std::vector<std::string> known = namesOf(soilKeys());
   // What another file holds is none of the message's, but for a misspelt field.
-  const auto foreign = [&](const std::string& key) { return nearestName(key, known).empty(); };
+  const auto foreign = [&](const std::string& key) { return meantKey(key, known).empty(); };
   if (std::ranges::none_of(known, [&](const std::string& name) { return fields.has(name); }) &&
       std::ranges::all_of(fields.names(), foreign))
     fields.refuse("", "has no field of a soil", "name a file of soils (terramech/README.md)");
@@ -194,10 +184,7 @@ SoilPrior readSoil(const YamlFields& fields) {
 }
 
 Rover readRover(const YamlFields& fields) {
-  fields.only({"name", "mass_kg", "gravity_m_s2", "wheels", "wheelbase_m", "track_m", "clearance_m",
-               "centre_of_mass_height_m", "centre_of_mass_ahead_m", "centre_of_mass_left_m", "max_pitch_rad",
-               "max_roll_rad", "max_torque_Nm", "max_speed_mps", "turning_radius_m", "hotel_power_W",
-               "steering"});
+  fields.only(namesOf(roverKeys()));
   Rover rover;
   rover.name = fields.word("name", "unnamed");
   rover.mass_kg = fields.number("mass_kg");
@@ -269,11 +256,11 @@ TerrainClasses loadTerrainClasses(const std::string& path, const std::vector<std
 }
 
 std::vector<std::string> librarySoils() {
-  return namesOf(librarySoilTexts());
+  return libraryNames(librarySoilTexts());
 }
 
 std::vector<std::string> libraryRovers() {
-  return namesOf(libraryRoverTexts());
+  return libraryNames(libraryRoverTexts());
 }
 
 }  // namespace talus::terramech

@@ -349,6 +349,29 @@ std::vector<std::string> YamlFields::names() const {
   return names;
 }
 
+namespace {
+
+std::string stemOf(std::string_view name) {
+  const std::string_view unit = unitOf(name);
+  return std::string(unit.empty() ? name : name.substr(0, name.size() - unit.size() - 1));
+}
+
+std::string remedyFor(const std::string& key, const std::vector<std::string>& known) {
+  const std::string meant = meantKey(key, known);
+  if (!meant.empty()) return "did you mean " + meant + "?";
+  std::string all;
+  for (const std::string& name : known) all += (all.empty() ? "" : ", ") + name;
+  return "remove it; known are " + all;
+}
+
+}  // namespace
+
+std::string meantKey(const std::string& key, const std::vector<std::string>& known) {
+  for (const std::string& name : known)
+    if (stemOf(name) == key || stemOf(name) == stemOf(key)) return name;
+  return nearestName(key, known);
+}
+
 void YamlFields::only(const std::vector<std::string>& known) const {
   std::set<std::string> stated;
   for (const auto& entry : state_->node) {
@@ -359,9 +382,8 @@ void YamlFields::only(const std::vector<std::string>& known) const {
         fail(state_->where(entry.first.Mark().line), *found + " is given twice", "keep one unit");
       continue;
     }
-    const std::string nearest = nearestName(key, known);
     fail(state_->where(entry.first.Mark().line), "unknown key '" + shortened(key) + "'",
-         nearest.empty() ? "remove it" : "did you mean " + nearest + "?");
+         remedyFor(key, known));
   }
 }
 

@@ -11,7 +11,7 @@ TEST(Commands, EachHasANameAGroupAndExamples) {
   CLI::App app("talus");
   Context context;
   addCommands(app, context);
-  const std::set<std::string> groups{Group::kRoutes, Group::kMaps, Group::kSoil};
+  const std::set<std::string> groups{Group::kRoutes, Group::kMaps, Group::kSoil, Group::kHelp};
   std::set<std::string> names;
   for (const CLI::App* command : app.get_subcommands({})) {
     EXPECT_TRUE(names.insert(command->get_name()).second) << command->get_name();

@@ -45,6 +45,13 @@ TEST(Context, JsonTextHoldsNoByteThatIsNoText) {
   EXPECT_EQ(jsonText({{"file", "\xc3\xa9"}}, 1), "{\n \"file\": \"\xc3\xa9\"\n}");
 }
 
+TEST(Context, ALineOfAnErrorIsText) {
+  EXPECT_EQ(oneLine("a\xEF"
+                    "b\nc\xc3\xa9\x07\n"),
+            "a\xEF\xBF\xBD"
+            "b; c\xc3\xa9 ");
+}
+
 TEST(Context, WorkersAreAsManyAsAllowedAndAtLeastOne) {
   Context context;
   EXPECT_GE(context.workers(), 1);

@@ -42,6 +42,35 @@ TEST(ViewCommand, ShowsTheRouteThatPlanWroteOnItsMap) {
   EXPECT_THAT(alone.err, HasSubstr("dem.asc of the route was not found"));
 }
 
+// The map in a folder of its own, the route in another, the call from a third.
+TEST(ViewCommand, FindsTheMapFromAnotherFolder) {
+  const Folder folder;
+  for (const char* name : {"maps", "routes", "elsewhere"})
+    std::filesystem::create_directory(folder.path() / name);
+  folder.write("maps/dem.asc", asciiGrid(40, 40, hills));
+  const Ran plan = runTalus({"plan", "maps/dem.asc", "--resolution", "1", "--soil", "sandy_loam", "--rover",
+                             "fido", "--start", "3,3", "--goal", "35,30", "-o", "routes/route.geojson"},
+                            folder.path());
+  ASSERT_EQ(plan.code, 0) << plan.err;
+  const auto route = json::parse(fileContent(folder / "routes/route.geojson"));
+  EXPECT_EQ(route["features"][0]["properties"]["inputs"]["files"][0]["path"], "maps/dem.asc");
+  for (const char* from : {"elsewhere", "routes", "."}) {
+    const Ran view =
+        runTalus({"view", folder / "routes/route.geojson", "--resolution", "1", "-o", "page.html"},
+                 folder.path() / from);
+    EXPECT_EQ(view.code, 0) << view.err;
+    EXPECT_THAT(view.err, Not(HasSubstr("was not found"))) << from;
+    EXPECT_THAT(fileContent(folder.path() / from / "page.html"), HasSubstr("\"name\":\"slope\"")) << from;
+  }
+  // Another file at that place is not the map.
+  folder.write("maps/dem.asc", asciiGrid(40, 40, [](int, int) { return 1.0; }));
+  const Ran other =
+      runTalus({"view", folder / "routes/route.geojson", "--resolution", "1", "-o", "page.html"},
+               folder.path() / "elsewhere");
+  EXPECT_EQ(other.code, 0);
+  EXPECT_THAT(other.err, HasSubstr("its checksum differs"));
+}
+
 TEST(ViewCommand, ShowsAnElevationMap) {
   const Folder folder;
   folder.write("dem.asc", asciiGrid(40, 40, hills));

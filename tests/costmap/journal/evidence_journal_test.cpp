@@ -268,6 +268,33 @@ TEST_F(EvidenceJournalTest, BoundsComeBackToTheBit) {
   EXPECT_EQ(back[2].observation.here.most_pull, -0.1 / 3.0);
 }
 
+// SQLite's message quotes the damaged schema: the line holds no byte that is no text.
+TEST_F(EvidenceJournalTest, ADamagedSchemaIsOnePrintableLine) {
+  { EvidenceJournal(path()).append(kIdA, {row(1)}); }
+  const auto read = [](const std::string& name) {
+    std::ifstream file(name, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(file), {});
+  };
+  const std::string whole = read(path());
+  int quoted = 0;
+  for (std::size_t at = whole.find("CREATE TABLE"); at != std::string::npos;
+       at = whole.find("CREATE TABLE", at + 1))
+    for (const std::size_t within : {0U, 3U, 7U, 13U, 16U, 30U}) {
+      std::string damaged = whole;
+      damaged[at + within] = '\xEF';
+      std::ofstream(path("damaged.db"), std::ios::binary) << damaged;
+      try {
+        EvidenceJournal journal(path("damaged.db"));
+        ADD_FAILURE() << "accepted with byte " << within;
+      } catch (const InputError& error) {
+        const std::string line = error.what();
+        quoted += line.find('?') != std::string::npos ? 1 : 0;
+        for (const char c : line) EXPECT_TRUE(c >= ' ' && c <= '~') << line;
+      }
+    }
+  EXPECT_GT(quoted, 0);
+}
+
 TEST_F(EvidenceJournalTest, RefusesAFormatOfTheFuture) {
   { EvidenceJournal(path()).append(kIdA, {row(7)}); }
   change(path(), "PRAGMA user_version = 99");

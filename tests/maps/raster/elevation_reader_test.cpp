@@ -68,6 +68,39 @@ TEST(ElevationReader, AnOverviewCoversTheWholeMap) {
   }
 }
 
+// Ground of some 30 m with cells 200 to 327 of the file zeroed, 40 a row.
+RasterFile zeroedFile() {
+  RasterFile file;
+  for (int row = 0; row < 40; ++row) {
+    file.rows.emplace_back();
+    for (int column = 0; column < 40; ++column) {
+      const int at = 40 * row + column;
+      file.rows.back().push_back(at >= 200 && at < 328 ? 0.0 : 30.0 + 0.3 * std::sin(column) + 0.2 * row);
+    }
+  }
+  return file;
+}
+
+TEST(ElevationReader, AZeroedPartIsNoDataUnlessItIsKept) {
+  const TemporaryFolder folder;
+  const std::string path = write(zeroedFile(), folder / "zeroed.tif");
+  const ElevationMap map = readElevation(path);
+  EXPECT_THAT(map.notes, Contains(HasSubstr("128 cells of exactly 0 treated as no data")));
+  for (const float z : map.elevation_m.values()) EXPECT_TRUE(std::isnan(z) || z > 29.0F) << z;
+  EXPECT_TRUE(std::isnan(map.elevation_m[{5, 33}]));
+  const ElevationMap kept = readElevation(path, {.keep_zeros = true});
+  EXPECT_EQ((kept.elevation_m[{5, 33}]), 0.0F);
+  EXPECT_THAT(kept.notes, testing::Not(Contains(HasSubstr("exactly 0"))));
+  // A window that lies within what was lost, means of cells, and cells of another size.
+  const Window inside{Point{500020, 4999920}, Point{500300, 4999940}};
+  EXPECT_THAT(refusal([&] { readElevation(path, {.window = inside}); }), HasSubstr("no data in any cell"));
+  const ElevationMap means = readElevation(path, {.overview = 2});
+  for (const float z : means.elevation_m.values()) EXPECT_TRUE(std::isnan(z) || z > 28.0F) << z;
+  EXPECT_THAT(refusal([&] { readElevation(path, {.resolution_m = 7.0}); }),
+              HasSubstr("128 pixels are exactly 0 and what surrounds them does not come down to 0"));
+  EXPECT_EQ(validFraction(readElevation(path, {.nodata = 0.0}).elevation_m), 1.0 - 128.0 / 1600);
+}
+
 // What windows are planned on is held to the same limit as what is read whole: 6.4e9 cells were planned on for minutes.
 TEST(ElevationReader, TheGridOfAMapIsHeldToMaxCells) {
   const TemporaryFolder folder;

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <random>
 
@@ -26,6 +27,25 @@ TEST(LayerReader, ComplexNumbersAreRefused) {
     EXPECT_THAT(refusal([&] { readAddedJoules({.path = path}, dem); }), HasSubstr("complex"));
     EXPECT_THAT(refusal([&] { readRockAbundance({.path = path}, dem); }), HasSubstr("complex"));
   }
+}
+
+// Rock abundance of some 0.3, a part of it zeroed: whether rocks lie there is not known.
+TEST(LayerReader, AZeroedPartOfRocksIsUnseen) {
+  const TemporaryFolder folder;
+  RasterFile dem, rocks;
+  for (int row = 0; row < 20; ++row) {
+    dem.rows.emplace_back(20, 5.0);
+    rocks.rows.emplace_back();
+    for (int column = 0; column < 20; ++column)
+      rocks.rows.back().push_back(row == 9 && column > 3 ? 0.0 : 0.3 + 0.02 * std::sin(column + 2 * row));
+  }
+  const ElevationMap map = readElevation(write(dem, folder / "dem.tif"));
+  const RockAbundance read = readRockAbundance({.path = write(rocks, folder / "rocks.tif")}, map);
+  EXPECT_THAT(read.notes, testing::ElementsAre(HasSubstr("16 cells of exactly 0")));
+  EXPECT_TRUE(std::isnan(read.share[{10, 10}]));
+  EXPECT_NE((read.unseen[{10, 10}]), 0);
+  EXPECT_NEAR((read.share[{10, 2}]), 0.3, 0.03);
+  EXPECT_EQ((read.unseen[{10, 2}]), 0);
 }
 
 TEST(LayerReader, FinerShiftedClassesLieWhereTheyAre) {

@@ -1,4 +1,5 @@
 /* The C interface from C: what it refuses, buffers with sizes, two threads. Ends with 0, or with the line that failed. */
+#include <limits.h>
 #include <math.h>
 #include <pthread.h>
 #include <stdatomic.h>
@@ -95,6 +96,43 @@ static void refusesWhatCannotBe(void) {
   flat.width = 0;
   REFUSED(talus_create(&rover, &soil, 1, &flat, &layers, &options, &session, &error), "width");
   CHECK(session == 77);
+}
+
+/* Numbers that no file may hold are refused here, too, before any value is read. */
+static void keepsTheRangesOfFiles(void) {
+  talus_session session = 77, open_session;
+  talus_grid wrong = grid;
+  talus_layers many = layers;
+  talus_request far = {sizeof far, 5.0, 10.0, 25.0, 10.0, 0.0};
+  talus_wheel row = {sizeof row};
+  size_t used = 7;
+  wrong.width = wrong.height = INT_MAX;
+  many.cells = (size_t)INT_MAX * INT_MAX;
+  REFUSED(talus_create(&rover, &soil, 1, &wrong, &many, &options, &session, &error),
+          "grid: 2147483647 x 2147483647 cells, must be at most 400000000");
+  wrong = grid;
+  wrong.x_m = 1e300;
+  REFUSED(talus_create(&rover, &soil, 1, &wrong, &layers, &options, &session, &error),
+          "grid: x_m = 1e+300, must be -1e9 to 1e9");
+  wrong = grid;
+  wrong.resolution_m = 1e300;
+  REFUSED(talus_create(&rover, &soil, 1, &wrong, &layers, &options, &session, &error), "must be 0.001 to 1e6");
+  CHECK(session == 77);
+  open_session = made();
+  wrong = grid;
+  wrong.width = wrong.height = INT_MAX;
+  REFUSED(talus_patch(open_session, &wrong, &many, &error), "must be at most 400000000");
+  wrong.width = wrong.height = 20000;
+  many.cells = 400000000;
+  REFUSED(talus_patch(open_session, &wrong, &many, &error), "off the map");
+  far.goal_x_m = 1e300;
+  REFUSED(talus_plan(open_session, &far, NULL, &error), "request: goal_x_m = 1e+300, must be -1e9 to 1e9");
+  row.x_m = 1e300;
+  row.y_m = 10.0;
+  row.load_N = 36.0;
+  row.slip = 0.95;
+  CHECK(talus_learn(open_session, &row, 1, &used, &error) == TALUS_OK && used == 0);
+  CHECK(talus_destroy(open_session, &error) == TALUS_OK);
 }
 
 static void patchesPlansAndReadsBack(void) {
@@ -312,6 +350,7 @@ static void servesTwoThreads(void) {
 int main(void) {
   describe();
   refusesWhatCannotBe();
+  keepsTheRangesOfFiles();
   patchesPlansAndReadsBack();
   learnsFromWheels();
   countsCostLayers();

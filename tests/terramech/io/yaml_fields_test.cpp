@@ -48,8 +48,24 @@ TEST(YamlFields, RefusesUnknownNamesWithTheNearest) {
       },
       ThrowsMessage<InputError>("f.yaml:2: unknown key 'raduis_m'; did you mean radius_m?"));
   EXPECT_THAT([] { of("zzz: 1").only({"mass_kg"}); },
-              ThrowsMessage<InputError>("f.yaml:1: unknown key 'zzz'; remove it"));
+              ThrowsMessage<InputError>("f.yaml:1: unknown key 'zzz'; remove it; known are mass_kg"));
   EXPECT_NO_THROW(of("mass_g: 1\nradius_cm: 2").only({"mass_kg", "radius_m"}));
+}
+
+TEST(YamlFields, AKeyWithoutItsUnitOrInAnotherKindNamesTheKeyThatIsMeant) {
+  const std::vector<std::string> known{"name", "cohesion_Pa", "shear_modulus_m", "mass_kg", "c1"};
+  for (const auto& [key, meant] : {std::pair{"cohesion", "cohesion_Pa"},
+                                   {"cohesion_N", "cohesion_Pa"},
+                                   {"mass", "mass_kg"},
+                                   {"shear_modulus_kPa", "shear_modulus_m"},
+                                   {"shear_modulus", "shear_modulus_m"},
+                                   {"coheson_Pa", "cohesion_Pa"}}) {
+    EXPECT_EQ(meantKey(key, known), meant);
+    const YamlFields fields = of(std::string(key) + ": 1");
+    const std::string expected = "did you mean " + std::string(meant) + "?";
+    EXPECT_THAT([&] { fields.only(known); }, ThrowsMessage<InputError>(HasSubstr(expected)));
+  }
+  EXPECT_EQ(meantKey("permeability", known), "");
 }
 
 TEST(YamlFields, ErrorsHaveFileAndLine) {

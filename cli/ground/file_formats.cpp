@@ -1,0 +1,67 @@
+#include <algorithm>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include <talus/cli/ground/file_formats.hpp>
+#include <talus/cli/ground/mission.hpp>
+
+namespace talus::cli {
+namespace {
+
+using terramech::FileKey;
+
+// Number of the class and its soil, in the place of a name.
+std::span<const FileKey> classKeys() {
+  static constexpr FileKey kKeys[] = {
+      {"terrain_classes", "mapping of class numbers, 0 to 254, to soils; classes is the same"},
+      {"soils", "list of soils that the classes name"},
+  };
+  return kKeys;
+}
+
+}  // namespace
+
+std::vector<FileFormat> fileFormats() {
+  return {
+      {"Mission", "YAML file of `talus plan MISSION.yaml`; paths are relative to it.", missionKeys()},
+      {"Mission: maps", "Mapping under `maps`.", missionMapKeys()},
+      {"Mission: thresholds", "Mapping under `thresholds`.", thresholdKeys()},
+      {"Soil",
+       "YAML file, the keys at its root, under `soil`, or in each item of a list `soils`; a number or {mean: "
+       ", std: }.",
+       terramech::soilKeys()},
+      {"Terrain classes",
+       "YAML file of `--soils`; a soil is a name of the library, a file, or the keys of one.", classKeys()},
+      {"Rover", "YAML file, the keys at its root or under `rover`.", terramech::roverKeys()},
+      {"Rover: wheels", "Mapping under `wheels`; all wheels are equal.", terramech::wheelKeys()},
+      {"Telemetry", "CSV with a header row, columns in any order; others are kept as they are.",
+       terramech::telemetryKeys()},
+  };
+}
+
+std::string formatsText() {
+  std::string text =
+      "A key or column has its unit as suffix; YAML files may use another of the same kind (cohesion_kPa).\n";
+  for (const FileFormat& format : fileFormats()) {
+    text += fmt::format("\n{}\n  {}\n", format.title, format.about);
+    std::size_t width = 0;
+    for (const FileKey& key : format.keys) width = std::max(width, std::string_view(key.name).size());
+    for (const FileKey& key : format.keys)
+      text += fmt::format("  {:<{}}  {}\n", key.name, width, key.meaning);
+  }
+  return text;
+}
+
+std::string formatsMarkdown() {
+  std::string text;
+  for (const FileFormat& format : fileFormats()) {
+    text += fmt::format("## {}\n\n{}\n\n| name | meaning |\n|---|---|\n", format.title, format.about);
+    for (const FileKey& key : format.keys) text += fmt::format("| `{}` | {} |\n", key.name, key.meaning);
+    text += "\n";
+  }
+  text.pop_back();
+  return text;
+}
+
+}  // namespace talus::cli

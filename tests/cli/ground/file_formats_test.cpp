@@ -1,0 +1,66 @@
+#include <algorithm>
+
+#include <talus/cli/ground/file_formats.hpp>
+#include <talus/cli/ground/mission.hpp>
+#include <talus/terramech/estimate/telemetry.hpp>
+
+#include "run_program.hpp"
+
+namespace talus::cli {
+namespace file_formats_test {
+
+using terramech::FileKey;
+using testing::HasSubstr;
+
+TEST(FileFormats, TheDocumentHoldsWhatTheReadersTake) {
+  const std::string document = fileContent(std::string(TALUS_SOURCE_DIR) + "/docs/formats.md");
+  EXPECT_EQ(document.substr(std::min(document.find("## "), document.size())), formatsMarkdown());
+}
+
+// Beside what the readers of telemetry know there are two columns of words.
+TEST(FileFormats, TelemetryHasTheColumnsThatItsReaderKnows) {
+  std::vector<std::string> expected{"run", "wheel"};
+  const auto& known = terramech::knownTelemetryColumns();
+  expected.insert(expected.end(), known.begin(), known.end());
+  EXPECT_EQ(terramech::namesOf(terramech::telemetryKeys()), expected);
+}
+
+// Property: every key is taken where it is listed: what is refused is never its name.
+TEST(FileFormats, EveryKeyIsRead) {
+  const Folder folder;
+  const auto refusal = [&](const std::string& yaml, const std::vector<std::string>& call) {
+    folder.write("file.yaml", yaml);
+    return runTalus(call, folder.path()).err;
+  };
+  for (const FileKey& key : missionKeys())
+    EXPECT_THAT(refusal(std::string(key.name) + ": 1\n", {"plan", "file.yaml"}),
+                Not(HasSubstr("unknown key")))
+        << key.name;
+  for (const FileKey& key : missionMapKeys())
+    EXPECT_THAT(refusal("maps: {" + std::string(key.name) + ": 1}\n", {"plan", "file.yaml"}),
+                Not(HasSubstr("unknown key")))
+        << key.name;
+  for (const FileKey& key : thresholdKeys())
+    EXPECT_THAT(
+        refusal("maps: {dem: x}\nthresholds: {" + std::string(key.name) + ": 1}\n", {"plan", "file.yaml"}),
+        Not(HasSubstr("unknown key")))
+        << key.name;
+  EXPECT_THAT(refusal("maps: {dem: x}\nthresholds: {sinkage: 1}\n", {"plan", "file.yaml"}),
+              HasSubstr("unknown key"));
+}
+
+TEST(FileFormats, AKeyWithoutItsUnitNamesTheOneThatIsMeant) {
+  const Folder folder;
+  folder.write("soil.yaml", "cohesion: 1000\nfriction_angle: 30\n");
+  folder.write("rover.yaml", "mass: 100\n");
+  folder.write("mission.yaml", "maps: {dem: x.tif, resolution: 1}\n");
+  EXPECT_THAT(runTalus({"wheel", "--soil", "soil.yaml", "--rover", "mer"}, folder.path()).err,
+              HasSubstr("soil.yaml:1: unknown key 'cohesion'; did you mean cohesion_Pa?"));
+  EXPECT_THAT(runTalus({"wheel", "--soil", "dry_sand", "--rover", "rover.yaml"}, folder.path()).err,
+              HasSubstr("rover.yaml:1: unknown key 'mass'; did you mean mass_kg?"));
+  EXPECT_THAT(runTalus({"plan", "mission.yaml"}, folder.path()).err,
+              HasSubstr("mission.yaml:1: unknown key 'resolution'; did you mean resolution_m?"));
+}
+
+}  // namespace file_formats_test
+}  // namespace talus::cli
