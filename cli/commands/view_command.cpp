@@ -63,7 +63,7 @@ Scene mapScene(const ViewOptions& options, const std::string& path, const Contex
 std::optional<std::string> findMap(const RouteFile& file, const std::string& route_path,
                                    const Context& context) {
   if (file.inputs.empty()) return std::nullopt;
-  const RouteInput& input = file.inputs.front();
+  const planner::RouteInput& input = file.inputs.front();
   for (const fs::path& folder : {fs::path(route_path).parent_path(), fs::path(".")}) {
     const fs::path path = folder / input.file;
     std::error_code error;
