@@ -4,6 +4,7 @@
 /// independent check of a route.
 
 #include <talus/costmap/costmap.hpp>
+#include <talus/planner/check/cell_judge.hpp>
 #include <talus/planner/check/chassis.hpp>
 #include <talus/planner/check/route_check.hpp>
 #include <talus/planner/plan/make_planner.hpp>

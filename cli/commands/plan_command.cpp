@@ -13,6 +13,7 @@
 #include <talus/cli/app/command.hpp>
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/output_file.hpp>
+#include <talus/cli/app/sha256.hpp>
 #include <talus/cli/draw/page.hpp>
 #include <talus/cli/draw/pareto_chart.hpp>
 #include <talus/cli/draw/picture.hpp>
@@ -25,13 +26,13 @@
 #include <talus/cli/ground/plugin_option.hpp>
 #include <talus/cli/ground/windowed_ground.hpp>
 #include <talus/cli/route/plan_pairs.hpp>
-#include <talus/cli/route/route_json.hpp>
 #include <talus/common/input_error.hpp>
 #include <talus/maps/raster/place_reader.hpp>
 #include <talus/planner/check/route_risk.hpp>
 #include <talus/planner/plan/plan_route.hpp>
 #include <talus/planner/plan/risk_planner.hpp>
 #include <talus/planner/plan/route_planner.hpp>
+#include <talus/planner/route/route_json.hpp>
 
 namespace talus::cli {
 namespace {
@@ -102,11 +103,17 @@ std::string planText(const Route& route, const Timing& seconds) {
                                              seconds.costmap_s, seconds.plan_s));
 }
 
+planner::RouteOrigin originOf(const Ground& ground, const Context& context) {
+  planner::RouteOrigin origin{.files = {}, .seed = context.seed};
+  for (const std::string& path : ground.files)
+    origin.files.push_back({std::filesystem::path(path).filename().string(), path, sha256OfFile(path)});
+  return origin;
+}
+
 void writeFiles(const PlanOptions& options, const Ground& ground, const Route& route,
                 const Context& context) {
   if (!options.output.empty()) {
-    const auto document =
-        routeGeoJson(route, ground.map.elevation(), {.files = ground.files, .seed = context.seed});
+    const auto document = routeGeoJson(route, ground.map.elevation(), originOf(ground, context));
     writeFile(options.output, jsonText(document) + "\n");
   }
   if (options.html.empty() && options.png.empty()) return;
@@ -203,8 +210,8 @@ int runPairs(const PlanOptions& options, planner::RoutePlanner& planner, Context
 // A route of ours that the check refuses is an error of ours: it is kept to be sent, and none is handed out.
 int refuseOwn(const PlanOptions& options, const Planned& planned, const Context& context) {
   const std::string file = options.output.empty() ? "refused.geojson" : options.output + ".refused.geojson";
-  const auto document = routeGeoJson(*planned.route.refused, planned.ground.map.elevation(),
-                                     {.files = planned.ground.files, .seed = context.seed});
+  const auto document =
+      routeGeoJson(*planned.route.refused, planned.ground.map.elevation(), originOf(planned.ground, context));
   writeFile(file, jsonText(document) + "\n");
   Route none = planned.route;
   none.reason += fmt::format(" with {} and the call", file);

@@ -11,13 +11,13 @@
 #include <talus/cli/ground/ground_options.hpp>
 #include <talus/cli/ground/path_reader.hpp>
 #include <talus/cli/ground/plugin_option.hpp>
-#include <talus/cli/route/route_json.hpp>
 #include <talus/common/input_error.hpp>
 #include <talus/maps/raster/place_reader.hpp>
 #include <talus/planner/bound/lower_bound.hpp>
 #include <talus/planner/check/annotation.hpp>
 #include <talus/planner/check/route_check.hpp>
 #include <talus/planner/route/motion_cost.hpp>
+#include <talus/planner/route/route_json.hpp>
 
 namespace talus::cli {
 namespace {

@@ -62,7 +62,7 @@ Scene mapScene(const ViewOptions& options, const std::string& path, const Contex
 
 // Where the map may lie: by its path as it was given to `talus plan`, here, from the route's folder and from those above it; by
 // its name beside the route and here.
-std::vector<fs::path> placesOf(const RouteInput& map, const fs::path& route) {
+std::vector<fs::path> placesOf(const planner::RouteInput& map, const fs::path& route) {
   std::error_code error;
   const fs::path folder = fs::absolute(route, error).parent_path();
   std::vector<fs::path> places{folder / map.file, fs::path(".") / map.file};
@@ -79,7 +79,7 @@ std::vector<fs::path> placesOf(const RouteInput& map, const fs::path& route) {
 std::optional<std::string> findMap(const RouteFile& file, const std::string& route_path,
                                    const Context& context) {
   if (file.inputs.empty()) return std::nullopt;
-  const RouteInput& input = file.inputs.front();
+  const planner::RouteInput& input = file.inputs.front();
   std::string other;
   for (const fs::path& path : placesOf(input, route_path)) {
     std::error_code error;

@@ -7,8 +7,8 @@
 #include <talus/cli/app/campaign.hpp>
 #include <talus/cli/app/context.hpp>
 #include <talus/cli/route/plan_pairs.hpp>
-#include <talus/cli/route/route_json.hpp>
 #include <talus/common/input_error.hpp>
+#include <talus/planner/route/route_json.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
 
 namespace talus::cli {

@@ -190,8 +190,8 @@ json member(const json& object, const char* key) {
   return object.is_object() && object.contains(key) ? object.at(key) : json();
 }
 
-std::vector<RouteInput> inputsOf(const json& properties) {
-  std::vector<RouteInput> inputs;
+std::vector<planner::RouteInput> inputsOf(const json& properties) {
+  std::vector<planner::RouteInput> inputs;
   for (const json& file : member(member(properties, "inputs"), "files")) {
     const json name = member(file, "file");
     const json sha256 = member(file, "sha256");

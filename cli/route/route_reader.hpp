@@ -3,22 +3,14 @@
 #include <string>
 #include <vector>
 
-#include <talus/planner/route/route.hpp>
+#include <talus/planner/route/route_json.hpp>
 
 namespace talus::cli {
-
-/// A file that a route was made from.
-struct RouteInput {
-  std::string file;  ///< its name without the folder
-  std::string
-      path;  ///< as it was given to the planner, relative to its folder; empty where the route has none
-  std::string sha256;  ///< of its content, hexadecimal
-};
 
 /// A route as `talus plan` wrote it.
 struct RouteFile {
   planner::Route route;
-  std::vector<RouteInput> inputs;
+  std::vector<planner::RouteInput> inputs;
 };
 
 /// Whether the file starts like JSON, as a route does and no map.

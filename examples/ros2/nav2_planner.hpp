@@ -1,20 +1,20 @@
 // Shows   Talus as a global planner of Nav2.
-// Needs   talus::planner, nav2_core (Jazzy or later), grid_map_ros.  Parameters: README.md.
+// Needs   talus::planner, nav2_core (Jazzy or later), grid_map_core, grid_map_msgs.  Parameters: README.md.
 #pragma once
 
 #include <functional>
 #include <memory>
 #include <mutex>
-#include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
 #include <geometry_msgs/msg/pose_stamped.hpp>
-#include <grid_map_msgs/msg/grid_map.hpp>
 #include <nav2_core/global_planner.hpp>
 #include <nav_msgs/msg/path.hpp>
+#include <visualization_msgs/msg/marker.hpp>
 
-#include <talus/planner/planner.hpp>
+#include "patched_map.hpp"
 
 namespace talus_ros2 {
 
@@ -26,8 +26,9 @@ struct FirstParameter<void (Class::*)(const First&, Others...)> {
   using type = First;
 };
 
-/// Plans on a Talus map that was read from a file and that patches of a grid map may change while it runs. createPlan() and
-/// the subscription may run in two threads. Throws the typed exceptions of nav2_core, each with one line.
+/// Plans on a Talus map that was read from a file and that patches of a grid map may change while it runs. createPlan(), the
+/// subscription and deactivate() may run in three threads; a second createPlan() waits for the first. Throws the typed
+/// exceptions of nav2_core, each with one line.
 class Nav2Planner : public nav2_core::GlobalPlanner {
  public:
   using Poses = std::vector<geometry_msgs::msg::PoseStamped>;
@@ -36,8 +37,9 @@ class Nav2Planner : public nav2_core::GlobalPlanner {
   void configure(const Parent& parent, std::string name, std::shared_ptr<tf2_ros::Buffer> tf,
                  std::shared_ptr<nav2_costmap_2d::Costmap2DROS> costmap) override;
   void cleanup() override;
-  void activate() override {}
-  void deactivate() override {}
+  void activate() override;
+  /// Cancels the plan that runs.
+  void deactivate() override;
 
   // One of the two overrides what Nav2 declares, depending on its release; neither can be marked.
   nav_msgs::msg::Path createPlan(const geometry_msgs::msg::PoseStamped& start,
@@ -48,19 +50,25 @@ class Nav2Planner : public nav2_core::GlobalPlanner {
                                  std::function<bool()> cancel_checker);
 
  private:
-  void see(const grid_map_msgs::msg::GridMap& message);
+  std::stop_source begin();
+  talus::PlanRequest requestOf(const geometry_msgs::msg::PoseStamped& start,
+                               const geometry_msgs::msg::PoseStamped& goal, const Poses& viapoints) const;
   talus::maps::Point placeOf(const geometry_msgs::msg::PoseStamped& pose, const char* which) const;
-  nav_msgs::msg::Path pathOf(const talus::planner::Route& route) const;
+  nav_msgs::msg::Path answer(const talus::planner::Route& route) const;
 
   Parent parent_;
-  std::string frame_, layer_;
+  std::string frame_;
   double tolerance_m_ = 0.5;
   double spacing_m_ = 0.5;
   bool headings_ = false;
-  std::mutex changing_;  // of the map
-  std::optional<talus::costmap::TraversabilityMap> map_;
+  std::unique_ptr<PatchedMap> map_;
+  std::shared_ptr<void> subscription_;  // refers to the map
+  std::shared_ptr<rclcpp::Publisher<visualization_msgs::msg::Marker>> categories_;
+  std::mutex planning_;  // one plan at a time
   std::unique_ptr<talus::GlobalPlanner> planner_;
-  std::shared_ptr<void> subscription_;
+  std::mutex stopping_;  // of what follows
+  std::stop_source stop_;
+  bool active_ = false;
 };
 
 }  // namespace talus_ros2

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -9,6 +10,7 @@
 
 #include <talus.h>
 
+#include <talus/costmap/map/map_file.hpp>
 #include <talus/planner/c/border.hpp>
 #include <talus/planner/plan/make_planner.hpp>
 
@@ -104,6 +106,19 @@ talus::PlannerSettings settingsOf(const talus_options& options) {
                                   .threads = options.threads};
   if (options.time_limit_s > 0.0) settings.time_limit_s = options.time_limit_s;
   return settings;
+}
+
+std::unique_ptr<talus::GlobalPlanner> plannerOf(const talus::PlannerSettings& settings) {
+  auto planner = talus::planner::makePlanner(settings.planner);
+  planner->configure(settings);
+  return planner;
+}
+
+talus_session opened(talus::costmap::TraversabilityMap map, std::unique_ptr<talus::GlobalPlanner> planner) {
+  auto made = std::make_shared<Session>(std::move(map));
+  made->planner = std::move(planner);
+  made->planner->set_map(made->map.published());
+  return sessions().add(std::move(made));
 }
 
 // A channel that is dead or says the impossible is judged with the moment that it belongs to: its neighbours may speak
@@ -206,8 +221,7 @@ talus_code talus_create_with_costs(const talus_rover* rover, const talus_soil* s
     const talus::maps::Grid cells = gridOf(grid);
     const talus_layers& given = layersOf(layers, cells);
     requirePointer(given.elevation_m, "layers.elevation_m");
-    auto planner = talus::planner::makePlanner(settings.planner);
-    planner->configure(settings);
+    auto planner = plannerOf(settings);
     talus::costmap::MapLayers built;
     built.elevation.elevation_m = rasterOf(given.elevation_m, cells);
     built.classes = rasterOf(given.classes, cells);
@@ -218,12 +232,33 @@ talus_code talus_create_with_costs(const talus_rover* rover, const talus_soil* s
             "cost_count = " + std::to_string(cost_count) +
                 ", must be <= " + std::to_string(talus::costmap::CostLayer::kMostLayers));
     for (std::size_t i = 0; i < cost_count; ++i) built.costs.push_back(costOf(costs[i], cells));
-    auto made = std::make_shared<Session>(talus::costmap::TraversabilityMap(
-        std::move(built), std::make_shared<const talus::costmap::GroundModel>(std::move(parts)),
-        {.threads = how.threads}));
-    made->planner = std::move(planner);
-    made->planner->set_map(made->map.published());
-    *session = sessions().add(std::move(made));
+    *session =
+        opened(talus::costmap::TraversabilityMap(
+                   std::move(built), std::make_shared<const talus::costmap::GroundModel>(std::move(parts)),
+                   {.threads = how.threads}),
+               std::move(planner));
+    return TALUS_OK;
+  });
+}
+
+talus_code talus_open(const char* path, const talus_options* options, talus_session* session,
+                      talus_error* error) {
+  return guarded(error, [&] {
+    requirePointer(path, "path");
+    requirePointer(session, "session");
+    const talus_options& how = read(options, "options");
+    require(how.allow_unknown == 0, "options: allow_unknown is the map file's own here; set it to 0");
+    auto planner = plannerOf(settingsOf(how));
+    *session = opened(talus::costmap::readMap(path, how.threads), std::move(planner));
+    return TALUS_OK;
+  });
+}
+
+talus_code talus_save(talus_session session, const char* path, talus_error* error) {
+  return guarded(error, [&] {
+    const Held held(session);
+    requirePointer(path, "path");
+    talus::costmap::writeMap(held->map, path);
     return TALUS_OK;
   });
 }

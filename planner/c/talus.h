@@ -150,6 +150,14 @@ TALUS_API talus_code talus_create_with_costs(const talus_rover* rover, const tal
                             const talus_grid* grid, const talus_layers* layers, const talus_cost_layer* costs,
                             size_t cost_count, const talus_options* options, talus_session* session, talus_error* error);
 
+/* A map from a file that `talus costmap` or talus_save() wrote, with its rover, soils and what wheels taught, and a planner. Of the
+   options, allow_unknown must be 0: the file has its own. */
+TALUS_API talus_code talus_open(const char* path, const talus_options* options, talus_session* session, talus_error* error);
+
+/* Writes the map, rover, soils and what wheels taught into a file that talus_open() and `talus plan --map` read: the whole file or
+   none. Rows that talus_settle() judges again are not in it. */
+TALUS_API talus_code talus_save(talus_session session, const char* path, talus_error* error);
+
 /* Moves the map with the rover, by whole tiles of 64 cells east and north (negative: west, south): what lies in both windows
    keeps what is known and estimated of it, what comes in is unseen, what falls off is forgotten. No route is left to be read,
    and the wheels' sensors prove themselves from the start before they raise an estimate. */

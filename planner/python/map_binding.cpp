@@ -1,10 +1,12 @@
 #include <algorithm>
 #include <cstddef>
+#include <filesystem>
 #include <memory>
 #include <utility>
 #include <vector>
 
 #include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
 
 #include <talus/maps/grid/point_heights.hpp>
 #include <talus/planner/check/route_check.hpp>
@@ -140,6 +142,31 @@ void bindViews(py::class_<PythonMap>& map) {
            "Where a path of shape (n, 2) is not safe: (x_m, y_m, along_m, probability, reason) each.");
 }
 
+// Map and routes as files.
+void addFiles(py::class_<PythonMap>& map) {
+  using Path = std::filesystem::path;
+  map.def_static(
+         "read", [](const Path& path, int threads) { return PythonMap::read(path.string(), threads); },
+         "A map that `talus costmap`, `talus update` or save() wrote, with its rover, soils and what wheels "
+         "taught.",
+         py::arg("path"), py::kw_only(), py::arg("threads") = 1)
+      .def(
+          "save", [](const PythonMap& m, const Path& path) { m.save(path.string()); },
+          "Writes the map for read() and `talus plan --map`: the whole file or none.", py::arg("path"))
+      .def("settle", &PythonMap::settle,
+           "Judges all rows learned since the map was made or read again, by what all of them say of the "
+           "sensors: the "
+           "map\n"
+           "is then that of one file of these rows.")
+      .def(
+          "write_route",
+          [](const PythonMap& m, const Route& route, const Path& path) {
+            m.writeRoute(route, path.string());
+          },
+          "Writes a route that plan() found here, as the GeoJSON of `talus plan`.", py::arg("route"),
+          py::arg("path"));
+}
+
 // Routes over it.
 void addPlan(py::class_<PythonMap>& map) {
   map.def(
@@ -230,6 +257,7 @@ void bindMap(py::module_& module) {
         return "<talus.Map " + std::to_string(g.height) + " x " + std::to_string(g.width) + " cells of " +
                std::to_string(g.resolution_m) + " m>";
       });
+  addFiles(map);
   addPlan(map);
   bindViews(map);
   addHeights(module);

@@ -8,12 +8,15 @@
 #include <utility>
 #include <vector>
 
+#include <nlohmann/json.hpp>
 #include <pybind11/stl/filesystem.h>
 #include <unistd.h>
 
 #include <talus/common/input_error.hpp>
+#include <talus/common/output_file.hpp>
 #include <talus/common/progress_monitor.hpp>
 #include <talus/costmap/ground/ground_class.hpp>
+#include <talus/costmap/map/map_file.hpp>
 #include <talus/planner/plan/make_planner.hpp>
 #include <talus/planner/python/arrays.hpp>
 #include <talus/planner/python/background.hpp>
@@ -193,6 +196,41 @@ std::size_t PythonMap::learn(const py::object& given) {
   return session_->intake.report().used - before;
 }
 
+void PythonMap::settle() {
+  const auto lock = held(*session_);
+  const py::gil_scoped_release released;
+  session_->intake.settle();
+  session_->map.publish();
+}
+
+std::unique_ptr<PythonMap> PythonMap::read(const std::string& path, int threads) {
+  if (threads < 1) throw py::value_error("threads = " + std::to_string(threads) + ", must be >= 1");
+  std::unique_ptr<PythonMap> map;
+  {
+    const py::gil_scoped_release released;
+    map = std::make_unique<PythonMap>(costmap::readMap(path, threads));
+  }
+  const py::object file = py::module_::import("builtins").attr("open")(path, "rb");
+  const py::object digest = py::module_::import("hashlib").attr("file_digest")(file, "sha256");
+  file.attr("close")();
+  map->files_ = {
+      {std::filesystem::path(path).filename().string(), digest.attr("hexdigest")().cast<std::string>()}};
+  return map;
+}
+
+void PythonMap::save(const std::string& path) const {
+  const auto lock = held(*session_);
+  const py::gil_scoped_release released;
+  costmap::writeMap(map(), path);
+}
+
+void PythonMap::writeRoute(const Route& route, const std::string& path) const {
+  if (route.status != RouteStatus::Found)
+    throw py::value_error("route: its status is " + std::string(name(route.status)) + ", must be found");
+  const auto document = routeGeoJson(route, map().elevation(), {.files = files_, .seed = settings_.seed});
+  writeFile(path, document.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+}
+
 Route PythonMap::plan(const PlannerSettings& settings, const PlanRequest& request,
                       const py::object& progress) {
   const auto lock = held(*session_);
@@ -222,7 +260,9 @@ Route PythonMap::plan(const PlannerSettings& settings, const PlanRequest& reques
 PythonMap PythonMap::moved(maps::Cell tiles) const {
   const auto lock = held(*session_);
   const py::gil_scoped_release released;
-  return PythonMap(map().moved(tiles));
+  PythonMap next(map().moved(tiles));
+  next.files_ = files_;
+  return next;
 }
 
 }  // namespace talus::planner

@@ -3,11 +3,13 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
 #include <talus/planner/c/session.hpp>
+#include <talus/planner/route/route_json.hpp>
 
 namespace talus::planner {
 
@@ -29,6 +31,8 @@ class PythonMap {
   };
   PythonMap(const Layers& layers, const Ground& ground);
   explicit PythonMap(costmap::TraversabilityMap map) : session_(std::make_shared<Session>(std::move(map))) {}
+  /// A map file.
+  static std::unique_ptr<PythonMap> read(const std::string& path, int threads);
 
   const costmap::TraversabilityMap& map() const noexcept { return session_->map; }
 
@@ -36,12 +40,18 @@ class PythonMap {
   void patch(const Layers& layers, maps::Point south_west);
   /// Columns of telemetry, or the path of a file. Rows that taught something.
   std::size_t learn(const pybind11::object& telemetry);
+  /// What all rows since the map was made or read say of the sensors (DriveIntake::settle()).
+  void settle();
+  void save(const std::string& path) const;
+  /// The GeoJSON of `talus plan`.
+  void writeRoute(const Route& route, const std::string& path) const;
   Route plan(const PlannerSettings& settings, const PlanRequest& request, const pybind11::object& progress);
   PythonMap moved(maps::Cell tiles) const;
 
  private:
   std::shared_ptr<Session> session_;
   PlannerSettings settings_{};
+  std::vector<RouteInput> files_;  // that the map was read from
 };
 
 }  // namespace talus::planner

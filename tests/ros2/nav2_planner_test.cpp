@@ -6,12 +6,14 @@
 #include <filesystem>
 #include <numbers>
 #include <string>
+#include <thread>
 
 #include <nav2_core/planner_exceptions.hpp>
 
+#include "elevation_message.hpp"
 #include "small_site.hpp"
 
-#ifdef TALUS_VIAPOINTS
+#ifdef TALUS_NAV2_MAIN
 #define Nav2 Nav2WithViaPoints  // the same tests, by another name
 #endif
 
@@ -19,7 +21,9 @@ namespace talus_ros2 {
 namespace {
 
 using geometry_msgs::msg::PoseStamped;
-using rclcpp_lifecycle::LifecycleNode;
+using Node = nav2_core::GlobalPlanner::Node;
+using Message = grid_map_msgs::msg::GridMap;
+using visualization_msgs::msg::Marker;
 
 PoseStamped pose(double x_m, double y_m, const std::string& frame = "map") {
   PoseStamped at;
@@ -43,18 +47,23 @@ class Nav2 : public testing::Test {
 
   nav_msgs::msg::Path plan(
       const PoseStamped& from, const PoseStamped& to, std::function<bool()> cancel = [] { return false; }) {
-#ifdef TALUS_VIAPOINTS
+#ifdef TALUS_NAV2_MAIN
     return planner_->createPlan(from, to, via_, std::move(cancel));
 #else
     return planner_->createPlan(from, to, std::move(cancel));
 #endif
   }
 
+  void hear(const Message& message) {
+    const auto known = node_->subscribers.at("elevation_map").lock();
+    std::dynamic_pointer_cast<rclcpp::Subscription<Message>>(known)->hear(message);
+  }
+
   const std::string file_ = (std::filesystem::temp_directory_path() /
                              ("talus-nav2-" + std::to_string(::getpid()) +
                               testing::UnitTest::GetInstance()->current_test_info()->name()))
                                 .string();
-  std::shared_ptr<LifecycleNode> node_ = std::make_shared<LifecycleNode>();
+  std::shared_ptr<Node> node_ = std::make_shared<Node>();
   std::unique_ptr<nav2_core::GlobalPlanner> planner_ = std::make_unique<Nav2Planner>();
   std::vector<PoseStamped> via_;
 };
@@ -79,7 +88,7 @@ TEST_F(Nav2, PlansAroundAWallWithHeadings) {
   EXPECT_GT(north_m, 18.0);  // where the wall is open
 }
 
-#ifdef TALUS_VIAPOINTS
+#ifdef TALUS_NAV2_MAIN
 TEST_F(Nav2, PassesViaPointsInOrder) {
   start();
   via_ = {pose(3.0, 20.0), pose(20.0, 20.0)};
@@ -119,7 +128,7 @@ TEST_F(Nav2, EachFailureHasItsTypedException) {
                                       "cancelled");
   expect<nav2_core::PlannerException>([&] { plan(pose(NAN, 8.0), pose(5.0, 8.0)); }, "");
   planner_->cleanup();
-  expect<nav2_core::PlannerException>([&] { plan(pose(0.0, 8.0), pose(5.0, 8.0)); }, "not configured");
+  expect<nav2_core::PlannerException>([&] { plan(pose(0.0, 8.0), pose(5.0, 8.0)); }, "not active");
 }
 
 TEST_F(Nav2, ACancelEndsAPlanThatHasNoEnd) {
@@ -155,25 +164,68 @@ TEST_F(Nav2, HeightsThatArriveChangeTheNextPlan) {
   const auto before = plan(pose(15.0, 8.0), pose(25.0, 8.0));
   EXPECT_LE(before.poses.size(), 22U);  // straight
   EXPECT_EQ(before.poses.back().pose.position.z, 0.0);
-  grid_map_msgs::msg::GridMap message{grid_map::GridMap({"elevation"})};
-  message.map.setFrameId("map");
-  message.map.setGeometry({2.0, 12.0}, 0.5, {20.0, 9.0});
-  message.map.get("elevation").setConstant(1.0F);  // a wall from y = 3 to y = 15
-  auto& hear = std::any_cast<std::function<void(const grid_map_msgs::msg::GridMap&)>&>(
-      node_->subscribers.at("elevation_map"));
-  hear(message);
+  hear(plateau({2.0, 12.0}, {20.0, 9.0}, 1.0F));  // a wall from y = 3 to y = 15
   const auto after = plan(pose(15.0, 8.0), pose(25.0, 8.0));
   EXPECT_TRUE(node_->log.empty());
   EXPECT_GT(after.poses.size(), before.poses.size() + 10);
-  message.map.setGeometry({6.0, 6.0}, 0.5, {24.0, 8.0});
-  message.map.get("elevation").setConstant(0.05F);
-  hear(message);
+  hear(plateau({6.0, 6.0}, {24.0, 8.0}, 0.05F));
   EXPECT_FLOAT_EQ(static_cast<float>(plan(pose(15.0, 8.0), pose(25.0, 8.0)).poses.back().pose.position.z),
                   0.05F);
-  message.map.setFrameId("odom");
-  hear(message);
+  auto elsewhere = plateau({6.0, 6.0}, {24.0, 8.0}, 0.1F);
+  elsewhere.header.frame_id = "odom";
+  hear(elsewhere);
   ASSERT_EQ(node_->log.size(), 1U);
-  EXPECT_THAT(node_->log.front(), testing::HasSubstr("frame 'odom', must be 'map'"));
+  EXPECT_EQ(node_->log.front(), "talus: grid map: frame 'odom', must be 'map'");
+}
+
+TEST_F(Nav2, ARouteIsDrawnInTheColoursOfItsCategories) {
+  start();
+  const auto path = plan(pose(0.0, 8.0), pose(25.0, 8.0));
+  const auto& sent =
+      std::any_cast<std::shared_ptr<rclcpp::Publisher<Marker>>>(node_->publishers.at("talus/categories"))
+          ->sent;
+  ASSERT_EQ(sent.size(), 1U);
+  EXPECT_EQ(sent[0].type, Marker::LINE_STRIP);
+  EXPECT_EQ(sent[0].header.frame_id, "map");
+  ASSERT_EQ(sent[0].points.size(), path.poses.size());
+  ASSERT_EQ(sent[0].colors.size(), path.poses.size());
+  EXPECT_EQ(sent[0].points.back().x, path.poses.back().pose.position.x);
+  for (const auto& colour : sent[0].colors) EXPECT_GT(colour.g, colour.r);  // level ground is safe
+}
+
+TEST_F(Nav2, GoalsInQuickSuccessionWhileTheMapChangesEachHaveAnAnswer) {
+  start();
+  std::atomic<bool> over{false};
+  std::jthread messages([&] {
+    for (int k = 0; !over; ++k) hear(plateau({6.0, 6.0}, {24.0, 8.0}, k % 2 == 0 ? 0.0F : 0.05F));
+  });
+  for (int k = 0; k < 100; ++k)
+    EXPECT_NEAR(plan(pose(15.0, 8.0), pose(25.0, 8.0)).poses.back().pose.position.x, 25.0, 0.5);
+  over = true;
+  messages.join();
+  EXPECT_TRUE(node_->log.empty());
+}
+
+TEST_F(Nav2, DeactivatingEndsThePlanThatRuns) {
+  node_->parameters["talus.planner"] = std::string("RRTstar");
+  node_->parameters["talus.time_limit_s"] = 86400.0;
+  start();
+  std::atomic<bool> planning{false};
+  std::jthread server([&] {
+    while (!planning) std::this_thread::yield();
+    planner_->deactivate();
+    planner_->cleanup();
+  });
+  expect<nav2_core::PlannerCancelled>(
+      [&] {
+        plan(pose(0.0, 8.0), pose(25.0, 8.0), [&] {
+          planning = true;
+          return false;
+        });
+      },
+      "cancelled");
+  server.join();
+  expect<nav2_core::PlannerException>([&] { plan(pose(0.0, 8.0), pose(5.0, 8.0)); }, "not active");
 }
 
 }  // namespace

@@ -3,9 +3,9 @@
 #include <nlohmann/json.hpp>
 #include <refused.hpp>
 
-#include <talus/cli/route/route_json.hpp>
 #include <talus/cli/route/route_reader.hpp>
 #include <talus/common/input_error.hpp>
+#include <talus/planner/route/route_json.hpp>
 
 #include "example_scene.hpp"
 #include "run_program.hpp"

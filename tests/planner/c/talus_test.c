@@ -1,4 +1,5 @@
 /* The C interface from C: what it refuses, buffers with sizes, two threads. Ends with 0, or with the line that failed. */
+#define _POSIX_C_SOURCE 200809L /* mkstemp */
 #include <limits.h>
 #include <math.h>
 #include <pthread.h>
@@ -7,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include <talus.h>
 
@@ -207,6 +209,42 @@ static void learnsFromWheels(void) {
   REFUSED(talus_settle(session, &error), "is not open");
 }
 
+/* Property: a map that was saved and opened has the same cells and the same route, what wheels taught included. */
+static void savesAndOpens(void) {
+  const talus_session session = made();
+  const talus_wheel row = {sizeof row, 0, 0.0, 10.0, 10.0, 36.5, 0.5, NAN, 0.1, 0.0, 0.0, 0.1};
+  const talus_request request = {sizeof request, 5.0, 10.0, 25.0, 10.0, 0.0};
+  static talus_cell before[CELLS], after[CELLS];
+  talus_summary first, second;
+  talus_session opened = 0;
+  char path[] = "/tmp/talus-c-XXXXXX";
+  FILE *file;
+  const int descriptor = mkstemp(path);
+  CHECK(descriptor >= 0 && close(descriptor) == 0);
+  first.size = second.size = sizeof first;
+  CHECK(talus_learn(session, &row, 1, NULL, &error) == TALUS_OK);
+  CHECK(talus_save(session, path, &error) == TALUS_OK);
+  CHECK(talus_open(path, &options, &opened, &error) == TALUS_OK && opened != session);
+  CHECK(talus_read_cells(session, 0, 0, grid.width, grid.height, before, CELLS, &error) == TALUS_OK);
+  CHECK(talus_read_cells(opened, 0, 0, grid.width, grid.height, after, CELLS, &error) == TALUS_OK);
+  CHECK(memcmp(before, after, sizeof before) == 0);
+  CHECK(talus_plan(session, &request, &first, &error) == TALUS_OK);
+  CHECK(talus_plan(opened, &request, &second, &error) == TALUS_OK);
+  CHECK(memcmp(&first, &second, sizeof first) == 0);
+  options.allow_unknown = 1;
+  REFUSED(talus_open(path, &options, &opened, &error), "allow_unknown is the map file's own");
+  options.allow_unknown = 0;
+  REFUSED(talus_open("/nowhere/site.ot", &options, &opened, &error), "/nowhere/site.ot");
+  REFUSED(talus_open(NULL, &options, &opened, &error), "path is NULL");
+  REFUSED(talus_save(session, "/nowhere/site.ot", &error), "/nowhere");
+  file = fopen(path, "r+b");
+  CHECK(file != NULL && fseek(file, 100, SEEK_SET) == 0 && fputc('?', file) == '?' && fclose(file) == 0);
+  REFUSED(talus_open(path, &options, &opened, &error), path);
+  CHECK(remove(path) == 0);
+  CHECK(talus_destroy(session, &error) == TALUS_OK && talus_destroy(opened, &error) == TALUS_OK);
+  REFUSED(talus_save(session, path, &error), "is not open");
+}
+
 /* A layer refuses a wall and makes the rest dearer; what a layer cannot be is one line. */
 static void countsCostLayers(void) {
   static float radio[CELLS];
@@ -353,6 +391,7 @@ int main(void) {
   keepsTheRangesOfFiles();
   patchesPlansAndReadsBack();
   learnsFromWheels();
+  savesAndOpens();
   countsCostLayers();
   movesWithTheRover();
   hearsDangerBesideADeadSensor();

@@ -2,6 +2,7 @@
 
 import ast
 import gc
+import hashlib
 import json
 import math
 import os
@@ -129,6 +130,58 @@ class MapTest(Refusals):
             table.write_text("\n".join(rows) + "\n")
             ground.learn(table)
         self.assertLess(ground.beliefs()["pull_mean"][40, 40], before)
+
+    def test_files_and_settling_are_those_of_the_program(self):
+        """Property: a drive learned in two parts and settled is the map of `talus update`, and the route that of `talus plan`."""
+        program = os.environ["TALUS_PROGRAM"]
+        hill = pathlib.Path(__file__).resolve().parents[3] / "examples" / "hill.asc"
+        # Four wheels over slopes that come and go, with ever less slip than the soil's class has: the whole proves the sensors.
+        moment, wheel = np.repeat(np.arange(80.0), 4), np.tile(np.arange(4.0), 80)
+        slope = 0.15 * np.sin(moment / 7.0)
+        slip = 0.05 + 0.2 * (slope + 0.15) + np.random.default_rng(3).normal(0.0, 0.003, moment.size)
+        columns = {"time_s": moment, "wheel": wheel, "x_m": 5.0 + 0.35 * moment, "y_m": 15.5 + 0.0 * moment, "load_N": 36.5 + 0.0 * moment}
+        columns.update(slip=slip, slope_rad=slope, heading_rad=0.0 * moment, sinkage_m=0.01 + 0.0 * moment, torque_Nm=3.65 * (0.2 + slope))
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            run = lambda *words: subprocess.run([program, *map(str, words), "--quiet"], check=True, stdout=subprocess.DEVNULL)
+            run("costmap", hill, "--ignore-crs", "--resolution", 1, "--rover", "lunar_micro", "--soil", "lunar_nominal", "-o", folder / "map.ot")
+            rows = [",".join(columns)] + [",".join(repr(float(v)) for v in row) for row in zip(*columns.values())]
+            (folder / "drive.csv").write_text("\n".join(rows) + "\n")
+            run("update", folder / "map.ot", folder / "drive.csv", "-o", folder / "driven.ot")
+            parts = talus.Map.read(folder / "map.ot")
+            untaught = parts.beliefs()["pull_mean"]
+            for half in (slice(0, 160), slice(160, 320)):
+                parts.learn({column: values[half] for column, values in columns.items()})
+            unsettled = parts.beliefs()["pull_mean"]
+            parts.settle()
+            self.assertTrue(np.any(parts.beliefs()["pull_mean"] != unsettled))
+            driven = talus.Map.read(folder / "driven.ot", threads=2)
+            for column, values in driven.beliefs().items():
+                np.testing.assert_array_equal(parts.beliefs()[column], values, err_msg=column)
+            self.assertTrue(np.any(driven.beliefs()["pull_mean"] != untaught))
+            driven.save(folder / "saved.ot")
+            self.assertEqual((folder / "saved.ot").read_bytes(), (folder / "driven.ot").read_bytes())
+            route = driven.plan((5.5, 15.5), (35.5, 15.5))
+            driven.write_route(route, folder / "ours.geojson")
+            run("plan", hill, "--ignore-crs", "--resolution", 1, "--map", folder / "driven.ot", "--start", "5.5,15.5", "--goal", "35.5,15.5", "-o", folder / "its.geojson")
+            ours, its = (json.loads((folder / f).read_text())["features"][0] for f in ("ours.geojson", "its.geojson"))
+            self.assertEqual(ours["geometry"], its["geometry"])
+            for key, values in its["properties"].items():
+                if key != "inputs":
+                    self.assertEqual(ours["properties"][key], values, key)
+            read = {"file": "driven.ot", "sha256": hashlib.sha256((folder / "driven.ot").read_bytes()).hexdigest()}
+            self.assertEqual(ours["properties"]["inputs"]["files"], [read])
+            run("view", folder / "ours.geojson", "-o", folder / "ours.html")
+
+    def test_files_that_cannot_be_are_one_line(self):
+        self.refused(talus.InputError, "missing.ot", lambda: talus.Map.read("missing.ot"))
+        self.refused(ValueError, "threads = 0", lambda: talus.Map.read("missing.ot", threads=0))
+        self.refused(talus.InputError, "/nowhere", lambda: level().save("/nowhere/map.ot"))
+        ground = level()
+        self.refused(ValueError, "must be found", lambda: ground.write_route(ground.plan((5.0, 10.0), (500.0, 10.0)), "r.geojson"))
+        before = ground.beliefs()["pull_mean"]
+        ground.settle()  # nothing was learned
+        np.testing.assert_array_equal(ground.beliefs()["pull_mean"], before)
 
     def test_a_moved_map_keeps_what_it_knows(self):
         ground = level(rows=130, columns=200)

@@ -1,5 +1,5 @@
-// A stand-in of our own for tests: the names that examples/ros2 uses, and nothing else. A ring of cells as in grid_map: index
-// (0, 0) after unwrapping has the greatest x and y.
+// A stand-in of our own for tests: the names that examples/ros2 uses, declared as declarations_test.cpp lists them.
+// A ring of cells as in grid_map: index (0, 0) after unwrapping has the greatest x and y.
 #pragma once
 
 #include <map>

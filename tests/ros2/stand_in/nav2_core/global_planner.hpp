@@ -1,5 +1,5 @@
-// A stand-in of our own for tests: the names that examples/ros2 uses, and nothing else. TALUS_VIAPOINTS: as in releases of
-// Nav2 that have via points, without it as in Jazzy.
+// A stand-in of our own for tests: the names that examples/ros2 uses, declared as declarations_test.cpp lists them.
+// TALUS_NAV2_MAIN: as in releases of Nav2 after Kilted, without it as in Jazzy and Kilted.
 #pragma once
 
 #include <functional>
@@ -8,31 +8,36 @@
 #include <vector>
 
 #include <nav_msgs/msg/path.hpp>
-#include <rclcpp/rclcpp.hpp>
-
-namespace tf2_ros {
-class Buffer {};
-}  // namespace tf2_ros
+#include <tf2_ros/buffer.h>
+#ifdef TALUS_NAV2_MAIN
+#include <nav2_ros_common/lifecycle_node.hpp>
+#else
+#include <nav2_util/lifecycle_node.hpp>
+#endif
 
 namespace nav2_costmap_2d {
 struct Costmap2DROS {
-  std::string getGlobalFrameID() const { return "map"; }
+  std::string getGlobalFrameID() { return "map"; }
 };
 }  // namespace nav2_costmap_2d
 
 namespace nav2_core {
 class GlobalPlanner {
  public:
-  virtual ~GlobalPlanner() = default;
-  virtual void configure(const rclcpp_lifecycle::LifecycleNode::WeakPtr& parent, std::string name,
-                         std::shared_ptr<tf2_ros::Buffer> tf,
-                         std::shared_ptr<nav2_costmap_2d::Costmap2DROS> costmap) = 0;
+#ifdef TALUS_NAV2_MAIN
+  using Node = nav2::LifecycleNode;
+#else
+  using Node = rclcpp_lifecycle::LifecycleNode;
+#endif
+  virtual ~GlobalPlanner() {}
+  virtual void configure(const Node::WeakPtr& parent, std::string name, std::shared_ptr<tf2_ros::Buffer> tf,
+                         std::shared_ptr<nav2_costmap_2d::Costmap2DROS> costmap_ros) = 0;
   virtual void cleanup() = 0;
   virtual void activate() = 0;
   virtual void deactivate() = 0;
   virtual nav_msgs::msg::Path createPlan(const geometry_msgs::msg::PoseStamped& start,
                                          const geometry_msgs::msg::PoseStamped& goal,
-#ifdef TALUS_VIAPOINTS
+#ifdef TALUS_NAV2_MAIN
                                          const std::vector<geometry_msgs::msg::PoseStamped>& viapoints,
 #endif
                                          std::function<bool()> cancel_checker) = 0;

@@ -1,15 +1,18 @@
-// A stand-in of our own for tests: the names that examples/ros2 uses, and nothing else.
+// A stand-in of our own for tests: the names that examples/ros2 uses, declared as declarations_test.cpp lists them.
 #pragma once
 
 #include <stdexcept>
+#include <string>
 
 namespace nav2_core {
-struct PlannerException : std::runtime_error {
-  using std::runtime_error::runtime_error;
+class PlannerException : public std::runtime_error {
+ public:
+  explicit PlannerException(const std::string& description) : std::runtime_error(description) {}
 };
-#define TALUS_STAND_IN(Name)                  \
-  struct Name : PlannerException {            \
-    using PlannerException::PlannerException; \
+#define TALUS_STAND_IN(Name)                                                         \
+  class Name : public PlannerException {                                             \
+   public:                                                                           \
+    explicit Name(const std::string& description) : PlannerException(description) {} \
   }
 TALUS_STAND_IN(StartOccupied);
 TALUS_STAND_IN(GoalOccupied);

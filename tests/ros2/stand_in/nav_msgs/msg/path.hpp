@@ -1,4 +1,4 @@
-// A stand-in of our own for tests: the names that examples/ros2 uses, and nothing else.
+// A stand-in of our own for tests: the names that examples/ros2 uses, declared as declarations_test.cpp lists them.
 #pragma once
 
 #include <vector>

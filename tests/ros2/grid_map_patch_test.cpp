@@ -1,6 +1,7 @@
+#include "grid_map_patch.hpp"
+
 #include <cmath>
 
-#include "grid_map_patch.hpp"
 #include "small_site.hpp"
 
 namespace talus_ros2 {

@@ -1,18 +1,14 @@
 #include <cmath>
-#include <filesystem>
 
 #include <nlohmann/json.hpp>
 
-#include <talus/cli/app/sha256.hpp>
-#include <talus/cli/route/route_json.hpp>
 #include <talus/common/constants.hpp>
+#include <talus/planner/route/route_json.hpp>
 
-namespace talus::cli {
+namespace talus::planner {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using planner::Route;
-using planner::RouteVertex;
 
 Json position(const RouteVertex& vertex, const maps::ElevationMap& map) {
   Json made = Json::array();
@@ -64,29 +60,27 @@ void addVertices(Json& properties, const Route& route) {
 
 Json originJson(const RouteOrigin& origin) {
   Json files = Json::array();
-  for (const std::string& path : origin.files)
-    files.push_back({{"file", std::filesystem::path(path).filename().string()},
-                     {"path", path},
-                     {"sha256", sha256OfFile(path)}});
+  for (const RouteInput& input : origin.files)
+    files.push_back({{"file", input.file}, {"path", input.path}, {"sha256", input.sha256}});
   return {{"files", files}, {"seed", origin.seed}, {"version", TALUS_VERSION}};
 }
 
-Json obstructionJson(const planner::Obstruction& why) {
+Json obstructionJson(const Obstruction& why) {
   const auto place = [](maps::Point p) { return Json{{"x_m", p.x_m}, {"y_m", p.y_m}}; };
   Json made{{"cells_from_start", why.cells_from_start},
             {"cells_to_goal", why.cells_to_goal},
             {"last", place(why.last)},
             {"first", place(why.first)}};
-  made["lifting"] = why.lifting ? Json(planner::name(*why.lifting)) : Json(nullptr);
+  made["lifting"] = why.lifting ? Json(name(*why.lifting)) : Json(nullptr);
   return made;
 }
 
 }  // namespace
 
 Json summaryJson(const Route& route) {
-  const planner::RouteSummary& s = route.summary;
+  const RouteSummary& s = route.summary;
   Json made;
-  made["status"] = std::string(planner::name(route.status));
+  made["status"] = std::string(name(route.status));
   if (route.vertices.empty()) {
     for (const char* key : {"cost", "energy_J", "time_s", "length_m", "max_slip", "max_slope_rad",
                             "lower_bound", "gap", "immobilisation_risk"})
@@ -138,4 +132,4 @@ Json routeGeoJson(const Route& route, const maps::ElevationMap& map, const Route
   return made;
 }
 
-}  // namespace talus::cli
+}  // namespace talus::planner

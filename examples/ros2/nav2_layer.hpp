@@ -1,0 +1,52 @@
+// Shows   Talus' judgement of the ground as a layer of Nav2's 2D costmap, for planners and controllers that know no headings.
+// Needs   talus::planner, nav2_costmap_2d (Jazzy or later), grid_map_core, grid_map_msgs.  Parameters: README.md.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <nav2_costmap_2d/layer.hpp>
+
+#include "patched_map.hpp"
+
+namespace talus_ros2 {
+
+/// Writes, by the greatest of what stands there: what Talus refuses in every heading as lethal, what it refuses in some as the
+/// dearest that is not an obstacle (252), other ground by its dearest heading. Cells off Talus' map stay as they are. The
+/// costmap calls it in one thread, the subscription may run in another.
+class Nav2Layer : public nav2_costmap_2d::Layer {
+ public:
+  ~Nav2Layer() override;
+  void onInitialize() override;
+  void updateBounds(double robot_x, double robot_y, double robot_yaw, double* min_x, double* min_y,
+                    double* max_x, double* max_y) override;
+  void updateCosts(nav2_costmap_2d::Costmap2D& master, int min_i, int min_j, int max_i, int max_j) override;
+  void matchSize() override;
+  void reset() override;
+  bool isClearable() override { return false; }
+
+ private:
+  using Version = std::shared_ptr<const talus::costmap::CostGrid>;
+
+  std::vector<talus::maps::CellBox> changedSince(const Version& before) const;
+  std::uint8_t judged(talus::maps::Cell cell);
+  std::uint8_t worstIn(const talus::maps::CellBox& box);
+
+  std::unique_ptr<PatchedMap> map_;
+  std::shared_ptr<void> subscription_;  // refers to the map
+  double full_cost_ratio_ = 20.0;
+  bool refuse_unknown_ = true;
+  std::atomic<bool> redraw_ = true;  // everything, at the next update
+  Version now_;                      // what is drawn
+  // What its cells cost, by the code that they had when they were asked.
+  struct Judged {
+    talus::costmap::CellCode code;
+    std::uint8_t cost;
+  };
+  std::unique_ptr<talus::planner::CellJudge> judge_;
+  std::vector<Judged> cells_;
+};
+
+}  // namespace talus_ros2

@@ -1,0 +1,50 @@
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include <talus/planner/check/cell_judge.hpp>
+#include <talus/planner/route/heading_cost.hpp>
+#include <talus/planner/route/heading_set.hpp>
+
+namespace talus::planner {
+
+class CellJudge::Headings {
+ public:
+  explicit Headings(const costmap::DriveCost& cost) : allowed(cost) {
+    constexpr int kHeadings = 64;
+    for (int k = 0; k < kHeadings; ++k) {
+      const double heading_rad = k * HeadingSet::kTurn / kHeadings;
+      costs.emplace_back(cost, costmap::Direction{std::cos(heading_rad), std::sin(heading_rad)});
+    }
+  }
+
+  HeadingSets allowed;
+  std::vector<HeadingCost> costs;
+};
+
+CellJudge::CellJudge(std::shared_ptr<const costmap::DriveCost> cost)
+    : cost_(std::move(cost)), level_J_per_m_(std::numeric_limits<float>::infinity()) {
+  if (!cost_) throw std::invalid_argument("CellJudge: needs a drive cost");
+  for (const costmap::DriveCurve& curve : cost_->curves())
+    level_J_per_m_ = std::min(level_J_per_m_, curve.price(0.0, 0.0));
+  headings_ = std::make_unique<Headings>(*cost_);
+}
+
+CellJudge::~CellJudge() = default;
+
+CellJudgement CellJudge::of(costmap::CellCode cell) {
+  using Kind = CellJudgement::Kind;
+  if (cell.curve() == costmap::CellCode::kUnknown) return {.kind = Kind::Unknown};
+  const HeadingSet& allowed = headings_->allowed.of(cell);
+  if (allowed.empty()) return {.kind = Kind::Refused};
+  if (!allowed.all()) return {.kind = Kind::Restricted};
+  float dearest = 0.0F;
+  for (const HeadingCost& cost : headings_->costs) dearest = std::max(dearest, cost(cell));
+  // A heading that is refused by itself, within the rounding by which arcs are widened.
+  if (!std::isfinite(dearest)) return {.kind = Kind::Restricted};
+  return {.kind = Kind::Open, .dearest_J_per_m = dearest};
+}
+
+}  // namespace talus::planner

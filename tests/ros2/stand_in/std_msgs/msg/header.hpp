@@ -1,0 +1,13 @@
+// A stand-in of our own for tests: the names that examples/ros2 uses, declared as declarations_test.cpp lists them.
+#pragma once
+
+#include <string>
+
+#include <builtin_interfaces/msg/time.hpp>
+
+namespace std_msgs::msg {
+struct Header {
+  builtin_interfaces::msg::Time stamp;
+  std::string frame_id;
+};
+}  // namespace std_msgs::msg
