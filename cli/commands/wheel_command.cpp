@@ -12,6 +12,8 @@
 #include <talus/cli/soil/wheel_table.hpp>
 #include <talus/common/constants.hpp>
 #include <talus/common/input_error.hpp>
+#include <talus/terramech/contact/pneumatic_tyre.hpp>
+#include <talus/terramech/contact/rigid_ground.hpp>
 #include <talus/terramech/contact/wong_reece.hpp>
 #include <talus/terramech/io/soil_library.hpp>
 
@@ -22,6 +24,8 @@ struct WheelOptions {
   std::string soil, rover;
   double load_N = std::nan(""), slip = std::nan(""), slip_angle_rad = 0.0;
   std::string html;
+  double inflation_Pa = std::nan(""), carcass_Pa = 0.0, torque_Nm = std::nan("");
+  bool hard_ground = false;
   std::string cases, output;
 };
 
@@ -45,12 +49,36 @@ void bind(CLI::App& command, WheelOptions& options) {
   auto* html = addOutput(command, "--html", options.html, "page to write, with stresses and curves over slip")
                    ->type_name("FILE.html");
   groupOptions(command, "One wheel");
+  auto* inflation = command
+                        .add_option("--inflation", options.inflation_Pa,
+                                    "inflation pressure of a pneumatic tyre of the wheel's size [Pa]")
+                        ->type_name("PA")
+                        ->check(notNegative());
+  auto* carcass = command
+                      .add_option("--carcass", options.carcass_Pa,
+                                  "stiffness of its carcass as a pressure [Pa] (default: 0)")
+                      ->type_name("PA")
+                      ->check(notNegative())
+                      ->needs(inflation);
+  auto* hard =
+      command.add_flag("--hard-ground", options.hard_ground, "on rigid flat ground instead of a soil");
+  auto* torque = command
+                     .add_option("--torque", options.torque_Nm,
+                                 "torque of a rigid wheel on hard ground [Nm], in place of --slip")
+                     ->type_name("NM")
+                     ->check(finite())
+                     ->needs(hard)
+                     ->excludes(slip);
+  for (auto* straight : {inflation, hard}) straight->excludes(angle)->excludes(html);
+  hard->excludes(soil);
+  groupOptions(command, "Tyres and hard ground (thesis C.2)");
   auto* cases =
       command.add_option("--cases", options.cases, "solve each row of a CSV file")->type_name("IN.csv");
   addOutput(command, "-o,--output", options.output, "results of --cases to write")
       ->type_name("OUT.csv")
       ->needs(cases);
-  for (auto* single : {soil, rover, load, slip, angle, html}) cases->excludes(single);
+  for (auto* single : {soil, rover, load, slip, angle, html, inflation, carcass, hard, torque})
+    cases->excludes(single);
   groupOptions(command, "A table of wheels");
 }
 
@@ -133,7 +161,68 @@ int runOne(const WheelOptions& options, const Context& context) {
   return Exit::kDone;
 }
 
+double loadOf(const WheelOptions& options, const terramech::Rover& rover) {
+  return std::isnan(options.load_N) ? terramech::wheelLoad_N(rover) : options.load_N;
+}
+
+int runTyre(const WheelOptions& options, const Context& context) {
+  if (options.rover.empty()) lacking("--rover");
+  if (std::isnan(options.slip)) lacking("--slip");
+  if (!options.hard_ground && options.soil.empty()) lacking("--soil");
+  const terramech::Rover rover = terramech::loadRover(options.rover);
+  const terramech::Tyre tyre{
+      .wheel = rover.wheel, .inflation_Pa = options.inflation_Pa, .carcass_Pa = options.carcass_Pa};
+  const terramech::TyreOperation operation{loadOf(options, rover), options.slip};
+  const terramech::TyreForces forces =
+      options.hard_ground ? tyreOnRigidGround(tyre, operation)
+                          : tyreOnSoftGround(tyre, terramech::loadSoil(options.soil), operation);
+  const std::string mode = forces.mode == terramech::TyreMode::Rigid ? "rigid" : "flattened";
+  if (context.json)
+    printJson({{"rover", rover.name},
+               {"load_N", operation.load_N},
+               {"slip", options.slip},
+               {"mode", mode},
+               {"critical_pressure_Pa", forces.critical_pressure_Pa},
+               {"sinkage_m", forces.sinkage_m},
+               {"deflection_m", forces.deflection_m},
+               {"flat_length_m", forces.flat_length_m},
+               {"torque_Nm", forces.torque_Nm},
+               {"drawbar_pull_N", forces.drawbar_pull_N}});
+  else
+    print(
+        fmt::format("tyre          {}\n"
+                    "sinkage       {:10.3f} mm\n"
+                    "deflection    {:10.3f} mm\n"
+                    "flat length   {:10.3f} mm\n"
+                    "torque        {:10.3f} Nm\n"
+                    "drawbar pull  {:10.3f} N    DP/W {:.3f}\n",
+                    mode, 1e3 * forces.sinkage_m, 1e3 * forces.deflection_m, 1e3 * forces.flat_length_m,
+                    forces.torque_Nm, forces.drawbar_pull_N, forces.drawbar_pull_N / operation.load_N));
+  return Exit::kDone;
+}
+
+int runHardGround(const WheelOptions& options, const Context& context) {
+  if (options.rover.empty()) lacking("--rover");
+  if (std::isnan(options.torque_Nm)) lacking("--torque, or --inflation and --slip for a tyre");
+  const terramech::Rover rover = terramech::loadRover(options.rover);
+  const double load_N = loadOf(options, rover);
+  const terramech::RigidGroundForces forces =
+      terramech::rigidGroundForces(rover.wheel, {}, load_N, options.torque_Nm);
+  if (context.json)
+    printJson({{"rover", rover.name},
+               {"load_N", load_N},
+               {"torque_Nm", options.torque_Nm},
+               {"drawbar_pull_N", forces.drawbar_pull_N},
+               {"slips", forces.slips}});
+  else
+    print(fmt::format("drawbar pull  {:10.3f} N    DP/W {:.3f}{}\n", forces.drawbar_pull_N,
+                      forces.drawbar_pull_N / load_N, forces.slips ? "   the wheel slips" : ""));
+  return Exit::kDone;
+}
+
 int run(const WheelOptions& options, Context& context) {
+  if (!std::isnan(options.inflation_Pa)) return runTyre(options, context);
+  if (options.hard_ground) return runHardGround(options, context);
   return options.cases.empty() ? runOne(options, context) : runTable(options, context);
 }
 
@@ -152,6 +241,7 @@ void addWheel(CLI::App& app, Context& context) {
                             .group = Group::kSoil,
                             .description = "compute sinkage, torque, drawbar pull and side force of a wheel",
                             .examples = "  talus wheel --soil lunar_nominal --rover lunar_micro --slip 0.3\n"
+                                        "  talus wheel --soil sand --rover mer --slip 0.2 --inflation 3000\n"
                                         "  talus wheel --cases cases.csv -o forces.csv\n\n" +
                                         libraryText()},
                            bind, run);

@@ -142,19 +142,23 @@ void LiftedGround::findGround() {
   });
 }
 
+bool LiftedGround::isFreed(Constraint constraint, Kind kind) noexcept {
+  return (constraint == Constraint::Pitch && kind == Kind::Steep) ||
+         (constraint == Constraint::Hazard && (kind == Kind::Fixed || kind == Kind::Near)) ||
+         (constraint == Constraint::Unknown && kind == Kind::Unseen);
+}
+
 std::shared_ptr<const costmap::CostGrid> LiftedGround::without(Constraint constraint) const {
-  const auto isFreed = [&](Kind kind) {
-    return (constraint == Constraint::Pitch && kind == Kind::Steep) ||
-           (constraint == Constraint::Hazard && (kind == Kind::Fixed || kind == Kind::Near)) ||
-           (constraint == Constraint::Unknown && kind == Kind::Unseen);
-  };
   const maps::Grid& grid = map_.grid();
+  const bool of_cells = constraint == Constraint::Hazard || constraint == Constraint::Unknown;
+  if (of_cells && std::ranges::none_of(kinds_, [&](Kind kind) { return isFreed(constraint, kind); }))
+    return nullptr;
   return std::make_shared<const costmap::CostGrid>(
       revised(map_, {.ranges = {{{0, 0}, {grid.width - 1, grid.height - 1}}},
                      .code =
                          [&](Cell cell, CellCode code) {
                            const std::size_t i = grid.index(cell);
-                           return isFreed(kinds_[i]) ? code.withCurve(ground_[i]) : code;
+                           return isFreed(constraint, kinds_[i]) ? code.withCurve(ground_[i]) : code;
                          },
                      .cost = [&] { return costWithout(constraint, map_.cost()); }}));
 }

@@ -23,11 +23,13 @@ class LiftedGround {
   /// Without hazards every cell refused whole counts to Hazard.
   LiftedGround(const costmap::CostGrid& map, const HazardsOf& hazards);
 
+  /// Null where the constraint refuses no cell whole and no heading.
   std::shared_ptr<const costmap::CostGrid> without(Constraint constraint) const;
 
  private:
   enum class Kind : std::uint8_t { Open, Steep, Fixed, Unseen, Rim, Near };
   Kind kindOf(maps::Cell cell, const HazardsOf& hazards) const;
+  static bool isFreed(Constraint constraint, Kind kind) noexcept;
   void settleNear();
   void findGround();
 

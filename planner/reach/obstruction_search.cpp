@@ -14,6 +14,7 @@ using maps::Point;
 bool opens(Constraint constraint, const LiftedGround& ground, const Segment& places, double tolerance_m,
            const StopCheck& stop) {
   const auto map = ground.without(constraint);
+  if (!map) return false;
   HeadingSets headings(map->cost());
   Reach reach(*map, headings, Reach::Sense::From, places.from, 0.0, stop);
   return reach.complete() && reach.reaches(places.to, tolerance_m);

@@ -46,6 +46,32 @@ TEST(WheelCommand, TakesALockedWheelAndTheRoversOwnLoad) {
   EXPECT_NEAR(json["load_N"].get<double>(), 176.0 * 3.71 / 6.0, 1e-9);
 }
 
+TEST(WheelCommand, TyresAndHardGroundAreReachable) {
+  const std::vector<std::string> soft{"wheel", "--json", "--soil", "sand",   "--rover",
+                                      "mer",   "--load", "100",    "--slip", "0.2"};
+  const auto with = [](std::vector<std::string> call, const std::vector<std::string>& more) {
+    call.insert(call.end(), more.begin(), more.end());
+    return runTalus(call);
+  };
+  const auto rigid = nlohmann::json::parse(with(soft, {}).out);
+  const auto stiff = nlohmann::json::parse(with(soft, {"--inflation", "1e7"}).out);
+  EXPECT_EQ(stiff["mode"], "rigid");
+  EXPECT_EQ(stiff["drawbar_pull_N"], rigid["drawbar_pull_N"]) << "stiffer than the ground: the rigid wheel";
+  const auto limp = nlohmann::json::parse(with(soft, {"--inflation", "3000", "--carcass", "500"}).out);
+  EXPECT_EQ(limp["mode"], "flattened");
+  EXPECT_LT(limp["sinkage_m"].get<double>(), rigid["sinkage_m"].get<double>());
+  // Closed form (thesis C.11): DP = T/r up to mu_s W, then mu_k W with 0.7 and 0.6.
+  const std::vector<std::string> hard{"wheel", "--json", "--hard-ground", "--rover",
+                                      "mer",   "--load", "100",           "--torque"};
+  const auto grips = nlohmann::json::parse(with(hard, {"2.5"}).out),
+             slips = nlohmann::json::parse(with(hard, {"20"}).out);
+  EXPECT_FALSE(grips["slips"]);
+  EXPECT_NEAR(grips["drawbar_pull_N"].get<double>(), 2.5 / 0.125, 1e-9);
+  EXPECT_TRUE(slips["slips"]);
+  EXPECT_NEAR(slips["drawbar_pull_N"].get<double>(), 60.0, 1e-9);
+  EXPECT_EQ(with({"wheel", "--hard-ground", "--rover", "mer"}, {}).code, 2);
+}
+
 TEST(WheelCommand, WritesAPageThatNeedsNothingElse) {
   const Folder folder;
   const Ran ran = runTalus(
