@@ -106,7 +106,7 @@ static void keepsTheRangesOfFiles(void) {
   talus_grid wrong = grid;
   talus_layers many = layers;
   talus_request far = {sizeof far, 5.0, 10.0, 25.0, 10.0, 0.0};
-  talus_wheel row = {sizeof row};
+  talus_wheel row = {sizeof row, 0, 0.0, 1e300, 10.0, 36.5, 0.95, NAN, 0.1, 0.0, 0.0, 0.1};
   size_t used = 7;
   wrong.width = wrong.height = INT_MAX;
   many.cells = (size_t)INT_MAX * INT_MAX;
@@ -129,10 +129,6 @@ static void keepsTheRangesOfFiles(void) {
   REFUSED(talus_patch(open_session, &wrong, &many, &error), "off the map");
   far.goal_x_m = 1e300;
   REFUSED(talus_plan(open_session, &far, NULL, &error), "request: goal_x_m = 1e+300, must be -1e9 to 1e9");
-  row.x_m = 1e300;
-  row.y_m = 10.0;
-  row.load_N = 36.0;
-  row.slip = 0.95;
   CHECK(talus_learn(open_session, &row, 1, &used, &error) == TALUS_OK && used == 0);
   CHECK(talus_destroy(open_session, &error) == TALUS_OK);
 }
