@@ -1,8 +1,8 @@
 // What examples/ros2 takes as given of ROS 2: each name with its declaration and the version that it was read from. The stand-ins
-// of these tests must compile with it, and so did the real headers of the same versions (README.md of examples/ros2). Nothing
+// of these tests must compile with it, and so did the real headers of Jazzy and main (docs/embedding.md). Nothing
 // runs here: what differs does not compile.
 //
-//   Nav2       Jazzy 1.3.13 and Kilted 1.4.2 without TALUS_NAV2_MAIN, main 1.5.0 of 2026-08-21 with it
+//   Nav2       Jazzy 1.3.13 (Kilted 1.4.2 reads the same) without TALUS_NAV2_MAIN, main 1.5.0 of 2026-08-21 with it
 //   rclcpp     Jazzy 28.1.6, rolling 29.3.0          messages   common_interfaces of Jazzy 5.3.5 and of 2024-11-27
 //   grid_map   Jazzy 2.2.1                           pluginlib  5.4.2
 #include <concepts>
