@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <talus/common/input_error.hpp>
+#include <talus/common/nearest_name.hpp>
 #include <talus/terramech/io/column_units.hpp>
 #include <talus/terramech/io/unit.hpp>
 
@@ -116,7 +117,9 @@ std::string faultOf(const std::string& name, const KnownColumn& column) {
   // A time may be a date, and a letter an axis or anything.
   const bool of_time = kindOf(column.unit) == Kind::Time;
   if (small == stem) return of_time || stem.size() < 2 ? "" : "names no unit";
-  if (!small.starts_with(stem + '_')) return {};
+  if (!small.starts_with(stem + '_'))  // one letter in eight: drawbar_pul_N
+    return 8 * editDistance(small, lower(column.name)) <= small.size() + 1 ? "is not spelled as it is read"
+                                                                           : "";
   const std::string_view suffix = std::string_view(text).substr(stem.size() + 1);
   const auto kind = kindOf(suffix);
   if (column.takes(suffix, kind)) return "is in another unit than it is read in";

@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include <talus/common/nearest_name.hpp>
+#include <talus/common/plausible.hpp>
 #include <talus/terramech/io/model_file.hpp>
 #include <talus/terramech/io/model_fit_fields.hpp>
 #include <talus/terramech/io/soil_library.hpp>
@@ -262,19 +263,27 @@ std::string quoted(const std::string& text) {
   return out + "\"";
 }
 
+/// The number, or 0 where it is less in magnitude than a file may hold.
+double readable(double value) {
+  return std::abs(value) < 1.0 && !plausible(value) ? 0.0 : value;
+}
+
 class Writer {
  public:
   Writer() { out_.precision(17); }
 
   template <class T>
   Writer& operator<<(const T& value) {
-    out_ << value;
+    if constexpr (std::is_same_v<T, double>)
+      out_ << readable(value);
+    else
+      out_ << value;
     return *this;
   }
 
   void list(const char* key, const std::vector<double>& values) {
     out_ << key << ": [";
-    for (std::size_t k = 0; k < values.size(); ++k) out_ << (k ? ", " : "") << values[k];
+    for (std::size_t k = 0; k < values.size(); ++k) out_ << (k ? ", " : "") << readable(values[k]);
     out_ << "]";
   }
 
@@ -283,6 +292,14 @@ class Writer {
  private:
   std::ostringstream out_;
 };
+
+/// A variance below what a file may hold is that of a number that is exact, and shares nothing with others.
+std::vector<double> readableCovariance(std::vector<double> covariance, std::size_t count) {
+  for (std::size_t k = 0; k < count; ++k)
+    if (readable(covariance[k * count + k]) == 0.0)
+      for (std::size_t j = 0; j < count; ++j) covariance[k * count + j] = covariance[j * count + k] = 0.0;
+  return covariance;
+}
 
 void writeSoil(Writer& w, const Soil& s, const std::string& indent = "") {
   w << indent << "soil:\n" << indent << "  name: " << quoted(s.name) << "\n";
@@ -376,7 +393,7 @@ std::string modelText(const RefinedModel& model, const ModelScope& scope) {
   w << "fitted:\n";
   for (const FittedParameter& p : model.fitted)
     w << "  - {effect: " << p.effect << ", index: " << p.index << "}\n";
-  w.list("covariance", model.covariance);
+  w.list("covariance", readableCovariance(model.covariance, model.fitted.size()));
   w << "\n";
   return w.text();
 }

@@ -25,8 +25,19 @@ bool isLogStiffness(const FittedParameter& p) {
          std::string_view(soilParameters()[static_cast<std::size_t>(p.index)].name) == "log_stiffness";
 }
 
+bool isOfPeak(const FittedParameter& p) {
+  const std::string_view name = p.effect < 0 ? soilParameters()[static_cast<std::size_t>(p.index)].name : "";
+  return name == "c1" || name == "c2";
+}
+
 double modulusOf(const Soil& soil) {
   return soil.cohesive_modulus + soil.frictional_modulus;
+}
+
+/// The stress peak (c1 + c2 i) theta_1 stays in the contact at every slip in [-1, 1]: a soil that no other call takes is no fit.
+void keepPeakInside(Soil& soil) {
+  const double room = std::max(0.0, std::min(soil.c1, 1.0 - soil.c1));
+  soil.c2 = std::clamp(soil.c2, -room, room);
 }
 
 /// A point of the search: the model, its whitened residuals and how far priors are left.
@@ -79,6 +90,7 @@ class FitPoint {
       setValue(moved, p, now);
       if (isLogStiffness(p)) stiffness += now;
     }
+    if (std::any_of(plan_.free.begin(), plan_.free.end(), isOfPeak)) keepPeakInside(moved.soil);
     SolvedContacts solved = solved_;
     const Eigen::VectorXd residual = residualOf(moved, solved);
     const double cost_moved = residual.squaredNorm() + priorResidual(moved, stiffness).squaredNorm();

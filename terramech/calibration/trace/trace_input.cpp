@@ -7,14 +7,14 @@
 namespace talus::terramech {
 
 TraceInput traceInput(const Telemetry& table, const ModelFile& base, const TraceOptions& options) {
-  constexpr int kFewest = 6;
+  constexpr int kFewest = 5;
   TraceInput input{.rows = modelRows(table, base.model), .options = options};
   input.options.fit_soil = !base.soil_given;
   const Trial& trial = input.rows.trial;
   if (trial.rows() < kFewest)
     throw InputError({table.source,
                       std::to_string(trial.rows()) +
-                          " usable rows with sinkage below the wheel radius; tracing needs at least 6",
+                          " usable rows with sinkage below the wheel radius; tracing needs at least 5",
                       ""});
   // A drive has not the information for soil and effects at once.
   if (base.soil_given && trial.moment.empty()) giveDefaultDeviations(input.rows.model);

@@ -42,7 +42,7 @@ Telemetry readTraceTable(const std::filesystem::path& path);
 
 /// Traces the residuals of a base model on a table. A given soil without standard deviations gets default ones unless the table
 /// is a rover's own drive. Deterministic for a seed. A stopped watch ends the search early with what was found so far, without
-/// held-out errors, answer and applicability. Throws InputError when fewer than 6 rows can be used.
+/// held-out errors, answer and applicability. Throws InputError when fewer than 5 rows can be used.
 TableTrace traceTable(const Telemetry& table, const TableTraceOptions& options = {},
                       const ProgressMonitor& watch = {});
 

@@ -26,6 +26,14 @@ std::string errorOf(const std::vector<std::string>& header) {
   return "";
 }
 
+// Property: nor for a letter; another word is the user's own.
+TEST(ColumnUnits, AKnownColumnMisspeltByALetterIsRefused) {
+  EXPECT_THAT(errorOf({"drawbar_pul_N"}), HasSubstr("write column drawbar_pull_N"));
+  EXPECT_THAT(errorOf({"torqe_Nm"}), HasSubstr("write column torque_Nm"));
+  EXPECT_EQ(errorOf({"drawbar_pul_N", "drawbar_pull_N"}), "");
+  EXPECT_EQ(errorOf({"draw_bar_tension_N", "Fx", "dust_index"}), "");
+}
+
 // Property: what a file measured is never dropped for its unit.
 TEST(ColumnUnits, AKnownColumnInAnotherUnitIsRefused) {
   for (const auto& [name, write] : std::initializer_list<std::pair<const char*, const char*>>{

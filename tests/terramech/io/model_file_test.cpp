@@ -44,6 +44,17 @@ RefinedModel refined() {
   return model;
 }
 
+// Property: a fit that leaves a parameter or a variance at next to nothing is read back, as nothing.
+TEST(ModelFile, NumbersLessThanAFileMayHoldAreWrittenAsZero) {
+  RefinedModel model = refined();
+  model.effects[0].parameters = {1.6e-115};
+  model.fitted = {{0, 0}, {1, 0}};
+  model.covariance = {1e-230, 1e-116, 1e-116, 0.04};
+  const RefinedModel back = loadModel(written("tiny.yaml", modelText(model))).model;
+  EXPECT_EQ(back.effects[0].parameters, std::vector<double>{0.0});
+  EXPECT_EQ(back.covariance, (std::vector<double>{0.0, 0.0, 0.0, 0.04}));
+}
+
 TEST(ModelFile, ReadsBackToTheSameBits) {
   const auto path = written("model.yaml", modelText(refined()));
   const RefinedModel back = loadModel(path).model;

@@ -26,11 +26,11 @@ TEST(TraceInput, AGivenSoilGetsDefaultDeviationsAndAnUnknownOneIsFitted) {
   EXPECT_EQ(of_unknown.rows.model.soil_prior_std, unknownSoil().model.soil_prior_std);
 }
 
-TEST(TraceInput, FiveRowsAreTooFew) {
-  EXPECT_EQ(traceInput(table(6), unknownSoil(), {}).rows.trial.rows(), 6);
-  EXPECT_THAT([] { traceInput(table(5), unknownSoil(), {}); },
+TEST(TraceInput, FourRowsAreTooFew) {
+  EXPECT_EQ(traceInput(table(5), unknownSoil(), {}).rows.trial.rows(), 5);
+  EXPECT_THAT([] { traceInput(table(4), unknownSoil(), {}); },
               testing::ThrowsMessage<InputError>(testing::HasSubstr(
-                  "made: 5 usable rows with sinkage below the wheel radius; tracing needs at least 6")));
+                  "made: 4 usable rows with sinkage below the wheel radius; tracing needs at least 5")));
 }
 
 }  // namespace trace_input_test
