@@ -1,4 +1,4 @@
-// Blind trials of residual tracing: blind_trials FIRST_SEED COUNT [library|other|double|none] [wide|campaign] [scan].
+// Blind trials of residual tracing: blind_trials FIRST_SEED COUNT [library|other|double|none|scatter10|scatter20|site] [wide|campaign] [scan].
 // Prints a line a world and the rates that matter; with scan, of the plain scan (plain_scan.hpp) by column alone. Development seeds are 1 to 9999; 100000 and above are for
 // judging, reported once.
 #include <algorithm>
@@ -29,6 +29,7 @@ Telemetry telemetryOf(const blind::World& world, const std::vector<std::vector<d
     t.words.push_back({"run", {}});
     for (int run : world.run) t.words.back().values.push_back("run" + std::to_string(run));
   }
+  if (world.site.size() == rows.size() && !rows.empty()) t.words.push_back({"site", world.site});
   for (std::size_t row = 0; row < rows.size(); ++row) t.lines.push_back(row + 2);
   return t;
 }
@@ -85,7 +86,11 @@ int main(int argc, char** argv) {
   std::vector<double> pull_ratio, z_ratio;
   for (int seed = first; seed < first + count; ++seed) {
     blind::WorldPlan plan{.seed = static_cast<std::uint64_t>(seed)};
-    plan.effects = mode == "none" ? 0 : mode == "double" ? 2 : 1;
+    plan.effects = mode == "none" || mode.starts_with("scatter") || mode == "site" ? 0
+                   : mode == "double"                                              ? 2
+                                                                                   : 1;
+    plan.scatter = mode == "scatter10" ? 0.1 : mode == "scatter20" ? 0.2 : 0.0;
+    plan.sites = mode == "site";
     plan.library = mode != "other";
     plan.wide = argc > 4 && std::string(argv[4]) == "wide";
     plan.campaign = argc > 4 && std::string(argv[4]) == "campaign";

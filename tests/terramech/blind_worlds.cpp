@@ -11,6 +11,7 @@ constexpr double kPi = 3.14159265358979;
 
 struct Conditions {
   double load, slip, speed, rim, pass, time, slope, grouser, temperature, dust, battery, radius, width;
+  double strength = 1.0, stiffness = 1.0;  // of the soil there, over that of the world
 };
 
 struct Answer {
@@ -78,6 +79,9 @@ bool has(const World& w, const char* kind, double& size) {
 Answer truth(const World& world, const Conditions& at) {
   const Ground& g = world.ground;
   Wheel m{g.n, g.k, g.cohesion, std::tan(g.phi), g.shear_k, g.c1, g.c2, at.radius, at.width, at.radius};
+  m.c *= at.strength;
+  m.t *= at.strength;
+  m.k *= at.stiffness;
   double load = at.load, slip = at.slip, a = 0.0, dig = 1.0;
   if (has(world, "slip_sinkage_ding", a)) m.n += a * slip;
   if (has(world, "slip_sinkage_lyasko", a)) dig = (1.0 + slip) / (1.0 - 0.5 * slip);
@@ -348,6 +352,7 @@ World makeWorld(const WorldPlan& plan) {
   const Design design = plan.campaign ? campaignDesign(random)
                         : plan.wide   ? wideDesign(random)
                                       : plainDesign(random);
+  if (plan.sites) w.hidden = {{"another_soil", "empirical", {"site"}, {kPull, kSink, kTorque}, 0.8}};
   for (Hidden& h : w.hidden)
     while (!shows(h, design)) h = draw(plan.library ? libraryKinds() : otherKinds(), random);
   if (design.tied_speed)  // nobody can tell these apart
@@ -363,7 +368,15 @@ World makeWorld(const WorldPlan& plan) {
       w.run.push_back(row / design.rows_a_run);
     }
     Conditions c = conditions(random, row, design);
-    if (design.campaign) c = within(row % design.rows_a_run == 0 ? run = c : run, c);
+    if (design.campaign) {
+      if (row % design.rows_a_run == 0) {
+        run = c;
+        if (plan.scatter > 0.0) run.strength = std::max(0.3, 1.0 + plan.scatter * random.normal());
+        if (plan.sites && w.run.back() % 3 == 2) run.strength = 0.8, run.stiffness = 0.6;
+      }
+      c = within(run, c);
+      if (plan.sites) w.site.push_back(std::string(1, static_cast<char>('A' + w.run.back() % 3)));
+    }
     w.rows.push_back(measure(w, design, c, truth(w, c), offset, random));
   }
   for (int row = 0; row < 80; ++row) {

@@ -33,8 +33,9 @@ struct World {
   std::vector<std::vector<double>> rows;  ///< training rows, noisy
   std::vector<std::vector<double>> held;  ///< rows of conditions that training has too, noisy
   std::vector<double> floor_pull,
-      floor_z;           ///< noise-free truth less measured of held rows: what nobody can predict
-  std::vector<int> run;  ///< number of the run of each training row; empty: there are no runs
+      floor_z;                    ///< noise-free truth less measured of held rows: what nobody can predict
+  std::vector<int> run;           ///< number of the run of each training row; empty: there are no runs
+  std::vector<std::string> site;  ///< of each training row; empty: they are not recorded
   std::vector<Hidden> hidden;
   Ground ground{};
   double noise = 0.03;
@@ -69,6 +70,9 @@ struct WorldPlan {
   bool wide =
       false;  ///< designs and noise of many kinds: one slip level, a rim speed tied to slip, runs with
               ///< offsets of their own, columns that mean nothing, drifting or heavy-tailed noise
+  double scatter = 0.0;  ///< standard deviation by which tan phi and c differ from run to run, relative
+  bool sites =
+      false;  ///< runs at three sites, the soil of the third weaker by a fifth and softer by two fifths
 };
 World makeWorld(const WorldPlan& plan);
 

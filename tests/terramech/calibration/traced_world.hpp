@@ -21,6 +21,7 @@ inline Telemetry telemetryOf(const blind::World& world) {
     t.words.push_back({"run", {}});
     for (int run : world.run) t.words.back().values.push_back("run" + std::to_string(run));
   }
+  if (!world.site.empty()) t.words.push_back({"site", world.site});
   for (std::size_t row = 0; row < world.rows.size(); ++row) t.lines.push_back(row + 2);
   return t;
 }
