@@ -13,7 +13,7 @@ using terramech::FileKey;
 using testing::HasSubstr;
 
 TEST(FileFormats, TheDocumentHoldsWhatTheReadersTake) {
-  const std::string document = fileContent(std::string(TALUS_SOURCE_DIR) + "/docs/formats.md");
+  const std::string document = fileContent(TALUS_SOURCE_DIR "/docs/formats.md");
   EXPECT_EQ(document.substr(std::min(document.find("## "), document.size())), formatsMarkdown());
 }
 
