@@ -213,8 +213,8 @@ std::unique_ptr<PythonMap> PythonMap::read(const std::string& path, int threads)
   const py::object file = py::module_::import("builtins").attr("open")(path, "rb");
   const py::object digest = py::module_::import("hashlib").attr("file_digest")(file, "sha256");
   file.attr("close")();
-  map->files_ = {
-      {std::filesystem::path(path).filename().string(), digest.attr("hexdigest")().cast<std::string>()}};
+  map->files_ = {{std::filesystem::path(path).filename().string(), path,
+                  digest.attr("hexdigest")().cast<std::string>()}};
   return map;
 }
 

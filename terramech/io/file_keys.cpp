@@ -1,4 +1,6 @@
+#include <talus/common/nearest_name.hpp>
 #include <talus/terramech/io/file_keys.hpp>
+#include <talus/terramech/io/unit.hpp>
 
 namespace talus::terramech {
 
@@ -91,6 +93,21 @@ std::vector<std::string> namesOf(std::span<const FileKey> keys) {
   names.reserve(keys.size());
   for (const FileKey& key : keys) names.emplace_back(key.name);
   return names;
+}
+
+namespace {
+
+std::string stemOf(std::string_view name) {
+  const std::string_view unit = unitOf(name);
+  return std::string(unit.empty() ? name : name.substr(0, name.size() - unit.size() - 1));
+}
+
+}  // namespace
+
+std::string meantKey(const std::string& key, const std::vector<std::string>& known) {
+  for (const std::string& name : known)
+    if (stemOf(name) == key || stemOf(name) == stemOf(key)) return name;
+  return nearestName(key, known);
 }
 
 }  // namespace talus::terramech

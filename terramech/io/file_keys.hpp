@@ -24,4 +24,8 @@ std::span<const FileKey> telemetryKeys();
 /// Their names, in order.
 std::vector<std::string> namesOf(std::span<const FileKey> keys);
 
+/// The known key that an unknown one means: the same without its unit or with one of another kind (`cohesion`, `mass_N`), else the
+/// nearest in spelling; empty where none is near.
+std::string meantKey(const std::string& key, const std::vector<std::string>& known);
+
 }  // namespace talus::terramech

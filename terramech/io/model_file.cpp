@@ -274,10 +274,8 @@ class Writer {
 
   template <class T>
   Writer& operator<<(const T& value) {
-    if constexpr (std::is_same_v<T, double>)
-      out_ << readable(value);
-    else
-      out_ << value;
+    if constexpr (std::is_same_v<T, double>) return out_ << readable(value), *this;
+    out_ << value;
     return *this;
   }
 

@@ -10,9 +10,9 @@
 #include <yaml-cpp/yaml.h>
 
 #include <talus/common/input_error.hpp>
-#include <talus/common/nearest_name.hpp>
 #include <talus/common/plausible.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
+#include <talus/terramech/io/file_keys.hpp>
 #include <talus/terramech/io/unit.hpp>
 #include <talus/terramech/io/yaml_fields.hpp>
 
@@ -351,11 +351,6 @@ std::vector<std::string> YamlFields::names() const {
 
 namespace {
 
-std::string stemOf(std::string_view name) {
-  const std::string_view unit = unitOf(name);
-  return std::string(unit.empty() ? name : name.substr(0, name.size() - unit.size() - 1));
-}
-
 std::string remedyFor(const std::string& key, const std::vector<std::string>& known) {
   const std::string meant = meantKey(key, known);
   if (!meant.empty()) return "did you mean " + meant + "?";
@@ -365,12 +360,6 @@ std::string remedyFor(const std::string& key, const std::vector<std::string>& kn
 }
 
 }  // namespace
-
-std::string meantKey(const std::string& key, const std::vector<std::string>& known) {
-  for (const std::string& name : known)
-    if (stemOf(name) == key || stemOf(name) == stemOf(key)) return name;
-  return nearestName(key, known);
-}
 
 void YamlFields::only(const std::vector<std::string>& known) const {
   std::set<std::string> stated;

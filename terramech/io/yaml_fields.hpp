@@ -18,10 +18,6 @@ namespace talus::terramech {
 /// A word of a file as a message shows it: its first forty bytes.
 std::string shortened(const std::string& word);
 
-/// The known key that an unknown one means: the same without its unit or with one of another kind (`cohesion`, `mass_N`), else the
-/// nearest in spelling; empty where none is near.
-std::string meantKey(const std::string& key, const std::vector<std::string>& known);
-
 /// One mapping of a YAML file. A field is read by its name with SI unit suffix (`cohesion_Pa`); the file
 /// may state it in another unit of the same kind (`cohesion_kPa`), which is converted. only() refuses names
 /// that are not known and names the nearest that is. Every error is an InputError with file and line.

@@ -54,10 +54,12 @@ TEST(FileFormats, AKeyWithoutItsUnitNamesTheOneThatIsMeant) {
   folder.write("soil.yaml", "cohesion: 1000\nfriction_angle: 30\n");
   folder.write("rover.yaml", "mass: 100\n");
   folder.write("mission.yaml", "maps: {dem: x.tif, resolution: 1}\n");
-  EXPECT_THAT(runTalus({"wheel", "--soil", "soil.yaml", "--rover", "mer"}, folder.path()).err,
-              HasSubstr("soil.yaml:1: unknown key 'cohesion'; did you mean cohesion_Pa?"));
-  EXPECT_THAT(runTalus({"wheel", "--soil", "dry_sand", "--rover", "rover.yaml"}, folder.path()).err,
-              HasSubstr("rover.yaml:1: unknown key 'mass'; did you mean mass_kg?"));
+  EXPECT_THAT(
+      runTalus({"wheel", "--soil", "soil.yaml", "--rover", "mer", "--slip", "0.1"}, folder.path()).err,
+      HasSubstr("soil.yaml:1: unknown key 'cohesion'; did you mean cohesion_Pa?"));
+  EXPECT_THAT(
+      runTalus({"wheel", "--soil", "dry_sand", "--rover", "rover.yaml", "--slip", "0.1"}, folder.path()).err,
+      HasSubstr("rover.yaml:1: unknown key 'mass'; did you mean mass_kg?"));
   EXPECT_THAT(runTalus({"plan", "mission.yaml"}, folder.path()).err,
               HasSubstr("mission.yaml:1: unknown key 'resolution'; did you mean resolution_m?"));
 }

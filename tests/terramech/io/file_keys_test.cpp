@@ -21,14 +21,16 @@ TEST(FileKeys, EachHasANameOfItsOwnAndAMeaning) {
 
 // Property: a rover and a soil with every key are read.
 TEST(FileKeys, AllOfARoverAndOfASoilAreRead) {
-  const std::string wheels = "{count: 6, radius_m: 0.1, width_m: 0.1, grouser_height_m: 0, grouser_count: 0}";
+  const std::string wheels =
+      "{count: 6, radius_m: 0.1, width_m: 0.1, grouser_height_m: 0, grouser_count: 0, lug_thrust: 0}";
   std::string rover, soil;
   for (const std::string& name : namesOf(roverKeys()))
     rover += name + ": " +
-             (name == "name"       ? "r"
-              : name == "steering" ? "ackermann"
-              : name == "wheels"   ? wheels
-                                   : "0.2") +
+             (name == "name"                        ? "r"
+              : name == "steering"                  ? "ackermann"
+              : name == "wheels"                    ? wheels
+              : name.starts_with("centre_of_mass_") ? "0.05"
+                                                    : "0.2") +
              "\n";
   for (const std::string& name : namesOf(soilKeys()))
     soil += name + ": " + (name == "name" ? "s" : "0.3") + "\n";

@@ -3,6 +3,7 @@
 
 #include <talus/common/input_error.hpp>
 #include <talus/common/nearest_name.hpp>
+#include <talus/terramech/io/file_keys.hpp>
 #include <talus/terramech/io/yaml_fields.hpp>
 
 namespace talus::terramech {
