@@ -21,10 +21,11 @@ void bind(CLI::App& command, HelpOptions& options) {
 }
 
 std::string helpOf(const std::string& topic, const CLI::App& app) {
-  if (topic.empty()) return app.help();
+  // app.help() is that of the call in hand.
+  if (topic.empty()) return app.get_formatter()->make_help(&app, "talus", CLI::AppFormatMode::Normal);
   std::vector<std::string> known{"formats"};
   for (const CLI::App* call : app.get_subcommands({})) {
-    if (call->get_name() == topic) return call->help("talus " + topic);
+    if (call->get_name() == topic) return call->help("talus");
     known.push_back(call->get_name());
   }
   const std::string near = nearestName(topic, known);

@@ -349,9 +349,9 @@ Route annotated(const Plan& plan, const AnnotationInput& input) {
 Route checkedRoute(const Plan& plan, const AnnotationInput& input) {
   Route route = annotated(plan, input);
   if (plan.status != RouteStatus::Found) return route;
-  auto found = violations(input.map, plan.points);
-  if (found.empty() && !plan.drive.legs.empty())
-    found = violations(input.map, plan.drive, input.kinematics.turning_radius_m);
+  const bool drives = !plan.drive.legs.empty();
+  auto found = drives ? violationsOfChords(input.map, plan.points) : violations(input.map, plan.points);
+  if (found.empty() && drives) found = violations(input.map, plan.drive, input.kinematics.turning_radius_m);
   if (found.empty()) return route;
   Route none;
   none.summary.planner = input.planner;

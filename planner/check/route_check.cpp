@@ -245,7 +245,8 @@ class Checker {
 
 namespace {
 
-void check(Checker& checker, const std::vector<Point>& route, const ProgressMonitor& watch = {}) {
+void check(Checker& checker, const std::vector<Point>& route, const ProgressMonitor& watch = {},
+           bool turns = true) {
   if (route.empty()) return;
   checker.goOn(route.front(), 0.0);
   checker.end(route.front());
@@ -257,7 +258,7 @@ void check(Checker& checker, const std::vector<Point>& route, const ProgressMoni
     checker.segment(route[i - 1], route[i]);
     if (i > 1) checker.touch(route[i - 1]);
     if (i + 1 < route.size()) checker.touch(route[i]);
-    if (i > 1) checker.pivot(route[i - 1], route[i - 2], route[i]);
+    if (turns && i > 1) checker.pivot(route[i - 1], route[i - 2], route[i]);
     along_m += std::hypot(route[i].x_m - route[i - 1].x_m, route[i].y_m - route[i - 1].y_m);
   }
   checker.goOn(route.back(), along_m);
@@ -270,6 +271,12 @@ std::vector<Violation> violations(const CostGrid& map, const std::vector<Point>&
                                   const ProgressMonitor& watch) {
   Checker checker(map);
   check(checker, route, watch);
+  return checker.found;
+}
+
+std::vector<Violation> violationsOfChords(const CostGrid& map, const std::vector<Point>& chords) {
+  Checker checker(map);
+  check(checker, chords, {}, false);
   return checker.found;
 }
 

@@ -28,6 +28,10 @@ struct Violation {
 std::vector<Violation> violations(const costmap::CostGrid& map, const std::vector<maps::Point>& route,
                                   const ProgressMonitor& watch = {});
 
+/// The same of the chords of a drive, which may reverse between two of them: turns are those of the drive.
+std::vector<Violation> violationsOfChords(const costmap::CostGrid& map,
+                                          const std::vector<maps::Point>& chords);
+
 /// The same of a drive, along its arcs themselves: where each crosses the lines between cells is found in
 /// closed form, and every cell is checked for headings no more than 0.01 rad apart, those passed in a turn in
 /// place included. Also reported: an arc that bends more than the radius allows.

@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include <talus/common/constants.hpp>
 #include <talus/planner/field/grid_links.hpp>
 #include <talus/planner/field/grid_route.hpp>
 #include <talus/planner/field/map_change.hpp>
@@ -140,6 +141,12 @@ Plan FieldPlanner::beyondTheGrid(const Problem& problem, const Stage& stage, con
                         .cells_to_goal = to_goal.cells(),
                         .last = found.last,
                         .first = stage.to};
+    // Reach takes both sets for joined: what joins them is a way in many headings.
+    const auto opens = [&](const costmap::CostGrid& lifted) {
+      const MotionCost free(std::shared_ptr<const costmap::CostGrid>(std::shared_ptr<const void>(), &lifted));
+      return !manyHeadingsRoute(free, places, stage.tolerance_m, kInfinity, stop).empty();
+    };
+    tryLifting(*plan.obstruction, *problem.map, problem.hazards, opens, stop);
     plan.reason = text(*plan.obstruction, places);
     return plan;
   }

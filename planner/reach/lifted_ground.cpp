@@ -5,6 +5,8 @@
 #include <utility>
 
 #include <talus/planner/reach/lifted_ground.hpp>
+#include <talus/terramech/mobility/rover_stance.hpp>
+#include <talus/terramech/mobility/slope_equilibrium.hpp>
 
 namespace talus::planner {
 namespace {
@@ -64,15 +66,31 @@ DriveCurve withoutRoll(DriveCurve curve, double limit) {
   return curve;
 }
 
+// Ground of any strength: every node costs as much, but those at which the rover tips.
+DriveCurve withoutSoil(const DriveCost::Limits& limits) {
+  const int rows =
+      limits.stance ? static_cast<int>(std::min(limits.max_across, 1.0) * DriveCurve::kRowsPerUnit) + 2 : 1;
+  auto costs = std::make_shared<std::vector<float>>();
+  for (int row = 0; row < rows; ++row)
+    for (int bin = 0; bin < DriveCurve::kBins; ++bin) {
+      const terramech::Gradient gradient{DriveCurve::gradient(bin),
+                                         static_cast<double>(row) / DriveCurve::kRowsPerUnit};
+      const bool tips = limits.stance && limits.stance->stabilityMargin_rad(demandOf(gradient)) < 0.0;
+      costs->push_back(tips ? kBlocked : 1.0F);
+    }
+  DriveCurve curve;
+  std::copy_n(costs->begin(), DriveCurve::kBins, curve.cost_J_per_m.begin());
+  if (rows > 1) curve.crossing = std::move(costs);
+  return curve;
+}
+
 std::shared_ptr<const DriveCost> costWithout(Constraint constraint, const DriveCost& cost) {
   DriveCost::Limits limits = cost.limits();
   std::vector<DriveCurve> curves = cost.curves();
   for (DriveCurve& curve : curves) {
     if (constraint == Constraint::Pitch) curve = withoutPitch(std::move(curve), limits.max_along);
     if (constraint == Constraint::Roll) curve = withoutRoll(std::move(curve), limits.max_across);
-    if (constraint != Constraint::Soil) continue;
-    curve.cost_J_per_m.fill(1.0F);
-    curve.crossing.reset();
+    if (constraint == Constraint::Soil) curve = withoutSoil(limits);
   }
   if (constraint == Constraint::Pitch) limits.max_along = kNone;
   if (constraint == Constraint::Roll) limits.max_across = kNone;

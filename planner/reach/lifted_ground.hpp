@@ -13,7 +13,7 @@ namespace talus::planner {
 ///   Pitch    ground steeper than any heading may stand, with the edges and roughness of the same cells; and what the limit
 ///            along the heading refuses, as far as soil holds at the limit
 ///   Roll     what the limit across the heading refuses, likewise
-///   Soil     what soil, motors and policy refuse within both limits
+///   Soil     what soil, motors and policy refuse within both limits, where the rover does not tip
 ///   Hazard   rocks, keep-out areas, impassable classes, edges, rough ground, and the clearance around them
 ///   Unknown  unobserved ground and the clearance around it
 /// The clearance kept from the map's rim counts to none: beyond it there is nothing to drive on. Cells freed are ground as the

@@ -11,15 +11,6 @@ namespace {
 using maps::Cell;
 using maps::Point;
 
-bool opens(Constraint constraint, const LiftedGround& ground, const Segment& places, double tolerance_m,
-           const StopCheck& stop) {
-  const auto map = ground.without(constraint);
-  if (!map) return false;
-  HeadingSets headings(map->cost());
-  Reach reach(*map, headings, Reach::Sense::From, places.from, 0.0, stop);
-  return reach.complete() && reach.reaches(places.to, tolerance_m);
-}
-
 // The cells of two sets that the fewest king's moves part, by a flood from the first over the whole map; none where a
 // set is empty, or when stopped.
 std::optional<std::pair<Cell, Cell>> closest(const maps::Grid& grid, const Reach& from, const Reach& to,
@@ -89,15 +80,26 @@ Obstruction obstructionBetween(const costmap::CostGrid& map, HeadingSets& headin
     found.last = map.grid().centre(gap->first);
     found.first = map.grid().centre(gap->second);
   }
-  if (stop()) return found;
-  if (map.grid().size() > kTriedCells) return found;
+  const auto opens = [&](const costmap::CostGrid& lifted) {
+    HeadingSets free(lifted.cost());
+    Reach reach(lifted, free, Reach::Sense::From, places.from, 0.0, stop);
+    return reach.complete() && reach.reaches(places.to, tolerance_m);
+  };
+  tryLifting(found, map, hazards, opens, stop);
+  return found;
+}
+
+void tryLifting(Obstruction& found, const costmap::CostGrid& map, const HazardsOf& hazards,
+                const OpensOn& opens, const StopCheck& stop) {
+  if (stop() || map.grid().size() > kTriedCells) return;
   const LiftedGround ground(map, hazards);
   for (const Constraint constraint :
-       {Constraint::Unknown, Constraint::Hazard, Constraint::Soil, Constraint::Pitch, Constraint::Roll})
-    if (!found.lifting && !stop() && opens(constraint, ground, places, tolerance_m, stop))
-      found.lifting = constraint;
+       {Constraint::Unknown, Constraint::Hazard, Constraint::Soil, Constraint::Pitch, Constraint::Roll}) {
+    if (found.lifting || stop()) break;
+    const auto lifted = ground.without(constraint);
+    if (lifted && opens(*lifted)) found.lifting = constraint;
+  }
   found.tried = !stop();
-  return found;
 }
 
 std::string text(const Obstruction& obstruction, const Segment& places) {

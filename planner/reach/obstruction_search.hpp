@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include <talus/planner/reach/lifted_ground.hpp>
@@ -15,6 +16,13 @@ namespace talus::planner {
 Obstruction obstructionBetween(const costmap::CostGrid& map, HeadingSets& headings, const Reach& from_start,
                                const Segment& places, double tolerance_m, const HazardsOf& hazards = {},
                                const StopCheck& stop = {});
+
+/// Whether a map joins the two places.
+using OpensOn = std::function<bool(const costmap::CostGrid& map)>;
+
+/// Only the search for the constraint, on an obstruction whose sets are known. Stopped, or on maps above kTriedCells, none is tried.
+void tryLifting(Obstruction& found, const costmap::CostGrid& map, const HazardsOf& hazards,
+                const OpensOn& opens, const StopCheck& stop = {});
 
 /// One line: how many cells, where they come closest, what to change.
 std::string text(const Obstruction& obstruction, const Segment& places);

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <site_fixture.hpp>
 
 #include <talus/planner/reach/lifted_ground.hpp>
 #include <talus/planner/reach/obstruction_search.hpp>
@@ -97,6 +98,28 @@ TEST(LiftedGround, ALimitIsToldWhereSoilHoldsUpToIt) {
   EXPECT_EQ(causeOf(site(plain, 0.2, 0.3, 0.1)), Constraint::Soil);
   EXPECT_EQ(causeOf(site(plain, 0.2, 0.1, 0.05)), Constraint::Roll)
       << "straight up soil and limit refuse it, in turns they do not";
+}
+
+// Of a rover that tips across the slope a slope straight up within its strength, but above its pitch limit: not for the soil's sake.
+TEST(LiftedGround, TippingIsNotOfTheSoil) {
+  terramech::Rover rover = costmap::testRover();
+  rover.wheelbase_m = 2.0;
+  rover.track_m = 0.6;
+  rover.centre_of_mass_height_m = 1.2;
+  const costmap::DriveCost::Limits limits{
+      .max_along = 0.15, .max_across = 0.9, .stance = terramech::RoverStance(rover)};
+  Site ground = site(std::vector<std::string>(9, "........."), 0.3, 0.15, 0.6);
+  costmap::CostGrid::Content content = ground.map->content();
+  costmap::DriveCurve curve = upTo(0.155, 10.0);
+  const costmap::DriveCurve level = curve;
+  auto rows = std::make_shared<std::vector<float>>();
+  for (int row = 0; row < 60; ++row)  // refused across from 0.25 on, where the rover tips
+    for (const float cost : level.cost_J_per_m)
+      rows->push_back(row < 16 ? cost : std::numeric_limits<float>::infinity());
+  curve.crossing = rows;
+  content.cost = std::make_shared<costmap::DriveCost>(limits, std::vector{curve});
+  ground.map = std::make_shared<costmap::CostGrid>(std::move(content));
+  EXPECT_EQ(causeOf(ground, {{1.5, 4.5}, {7.5, 4.5}}), Constraint::Pitch);
 }
 
 }  // namespace lifted_ground_test

@@ -62,7 +62,8 @@ TEST(RouteJson, AStandstillIsALineAndTheUnknownIsNull) {
 }
 
 TEST(RouteJson, TheInputsAreNamedWithTheirDigest) {
-  const auto document = routeGeoJson(exampleRoute(), exampleMap(), {.files = {{"dem.tif", "ba7816bf"}}});
+  const auto document =
+      routeGeoJson(exampleRoute(), exampleMap(), {.files = {{.file = "dem.tif", .sha256 = "ba7816bf"}}});
   const auto& file = document["features"][0]["properties"]["inputs"]["files"][0];
   EXPECT_EQ(file["file"], "dem.tif");
   EXPECT_EQ(file["sha256"], "ba7816bf");
