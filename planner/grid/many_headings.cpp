@@ -149,7 +149,7 @@ class Search {
           grid_.centre({static_cast<int>(at) % grid_.width, static_cast<int>(at) / grid_.width}));
     points.push_back(start);
     std::ranges::reverse(points);
-    points.erase(std::ranges::unique(points).begin(), points.end());
+    points.erase(std::unique(points.begin(), points.end()), points.end());
     return points;
   }
 
