@@ -19,7 +19,6 @@
 #include <talus/planner/route/plan_end.hpp>
 
 namespace talus::planner {
-using maps::Point;
 
 Plan FieldPlanner::plan(const Problem& problem) {
   if (!problem.map) throw std::invalid_argument("FieldPlanner: no map");

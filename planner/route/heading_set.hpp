@@ -69,8 +69,10 @@ class HeadingSets {
   HeadingSets& operator=(const HeadingSets&) = delete;
   const HeadingSet& of(costmap::CellCode cell) {
     Recent& recent = recent_[(cell.bits() * 2654435761U) >> 20];  // multiplicative hashing, kRecent values
-    if (recent.set == nullptr || recent.bits != cell.bits()) recent = {cell.bits(), &known(cell)};
-    return *recent.set;
+    if (recent.set != nullptr && recent.bits == cell.bits()) return *recent.set;
+    const HeadingSet& set = known(cell);
+    recent = {cell.bits(), &set};
+    return set;
   }
 
   /// Gradients along, and sizes of gradients across, at which a curve's cost may become finite or infinite.
