@@ -21,11 +21,11 @@ struct LostCells {
   std::size_t count = 0;        ///< cells of exactly 0 among them
 };
 
-/// Finds the regions of exact zeros that stand for no ground, as a disk block of zero bytes leaves them in a file of numbers. Where
-/// ground comes down to a plain or a sea of height 0, the step from 0 to the first cell is like the steps behind it. A region
-/// is lost where more than half of the steps at its border are greater than three times the greatest of the three steps behind
-/// them (ours, not from the literature). Ground that is level behind a step (a wall that somebody drew) speaks for the zeros, and so
-/// does a step behind which no cell is known. Zeros without a border, as of a level map, are ground.
+/// Finds connected regions of exact zeros that are lost data: a disk block of zero bytes leaves such a region in a file of numbers.
+/// At a border step from 0 to the first cell outside, the three steps behind it are compared. The border step is abrupt if it exceeds
+/// three times the greatest of them. A region is lost if more than half of its border steps are abrupt (ours, not from the
+/// literature). Where terrain descends to a plain or a sea of height 0, border steps are not abrupt. A border step counts as not
+/// abrupt, too, if the cells behind it are level (a drawn wall) or unknown. A region without a border (a level map) is ground.
 class LostZeros {
  public:
   explicit LostZeros(int width);

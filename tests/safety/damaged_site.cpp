@@ -76,7 +76,7 @@ std::optional<Route> lineOf(const fs::path& path) {
   return route;
 }
 
-// Lines that are none of the program's, or more than one error.
+// The first printed line that lacks the prefix "talus: "; else a count of error lines other than 1 for exit 2; else empty.
 std::string complaintOf(const std::string& printed, int exit) {
   std::istringstream lines(printed);
   int errors = 0;
