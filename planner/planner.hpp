@@ -10,4 +10,4 @@
 #include <talus/planner/plan/make_planner.hpp>
 #include <talus/planner/plan/plan_route.hpp>
 #include <talus/planner/plugin/plugin_loader.hpp>
-#include <talus/planner/route/rover_kinematics.hpp>
+#include <talus/planner/route/kinematics.hpp>

@@ -5,7 +5,7 @@
 #include <talus/cli/app/number_check.hpp>
 #include <talus/cli/ground/drive_options.hpp>
 #include <talus/common/constants.hpp>
-#include <talus/planner/route/rover_kinematics.hpp>
+#include <talus/planner/route/kinematics.hpp>
 #include <talus/terramech/contact/turning_radius.hpp>
 
 namespace talus::cli {

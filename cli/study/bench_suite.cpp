@@ -14,7 +14,7 @@
 #include <talus/planner/bench/moving_ai.hpp>
 #include <talus/planner/bench/slip_world.hpp>
 #include <talus/planner/grid/field_planner.hpp>
-#include <talus/planner/route/rover_kinematics.hpp>
+#include <talus/planner/route/kinematics.hpp>
 #include <talus/terramech/io/soil_library.hpp>
 
 namespace talus::cli {

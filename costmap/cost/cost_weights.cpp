@@ -1,6 +1,7 @@
 #include <stdexcept>
 
 #include <talus/costmap/cost/cost_weights.hpp>
+#include <talus/costmap/cost/turn_price.hpp>
 
 namespace talus::costmap {
 std::shared_ptr<const CostGrid> reweighted(const CostGrid& map, const CostWeights& weights) {

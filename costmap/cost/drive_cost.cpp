@@ -7,6 +7,7 @@
 
 #include <talus/common/constants.hpp>
 #include <talus/costmap/cost/drive_cost.hpp>
+#include <talus/terramech/mobility/rover_stance.hpp>
 #include <talus/terramech/mobility/slope_equilibrium.hpp>
 
 namespace talus::costmap {
@@ -34,7 +35,7 @@ std::vector<DriveCurve> curvesOf(const std::vector<DriveGround>& grounds) {
 }
 
 // The angle is least towards one of the wheels' four sides.
-double steadyGradient(const std::optional<terramech::RoverStance>& stance) {
+double steadyGradient(const terramech::RoverStance* stance) {
   const double margin_rad = stance ? stance->stabilityMargin_rad({}) : kInfinity;
   return margin_rad < 0.5 * std::numbers::pi ? std::tan(margin_rad) : kInfinity;
 }
@@ -47,7 +48,7 @@ DriveCost::DriveCost(const Limits& limits, std::vector<DriveCurve> curves)
       states_(curves_.size()),
       crossings_(curves_.size()),
       turns_(curves_.size()),
-      steady_gradient_(steadyGradient(limits.stance)) {
+      steady_gradient_(steadyGradient(limits.stance.get())) {
   if (curves_.size() > CellCode::kUnknown)
     throw std::invalid_argument("DriveCost: " + std::to_string(curves_.size()) +
                                 " drive curves, must be <= 254");

@@ -4,12 +4,13 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include <talus/costmap/cost/drive_state.hpp>
-#include <talus/costmap/cost/turn_price.hpp>
-#include <talus/terramech/mobility/rover_stance.hpp>
+
+namespace talus::terramech {
+class RoverStance;
+}
 
 namespace talus::costmap {
 
@@ -122,6 +123,20 @@ struct DriveCurve {
 
 class CrossSlope;
 
+/// What a radian of heading, or a change of direction, takes beside the path's own length.
+struct TurnPrice {
+  double cost_J = 0.0;    ///< under the one cost function, >= 0
+  double energy_J = 0.0;  ///< >= 0
+  double time_s = 0.0;    ///< >= 0
+};
+
+/// A radian of heading on one ground.
+struct TurnPrices {
+  TurnPrice on_arc;
+  TurnPrice in_place;
+  TurnPrice at_vertex;  ///< of a polyline: in place for a rover that turns in place, else on an arc
+};
+
 /// One kind of ground: what a metre costs for the hot loop, and the numbers behind it.
 struct DriveGround {
   DriveCurve curve;
@@ -154,9 +169,10 @@ class DriveCost {
  public:
   /// Limits that hold on every ground, as rise over run.
   struct Limits {
-    double max_along = 0.36;                         ///< steepest gradient along the heading, tan(max pitch)
-    double max_across = 0.36;                        ///< steepest gradient across the heading, tan(max roll)
-    std::optional<terramech::RoverStance> stance{};  ///< beyond which the rover tips; none: it never does
+    double max_along = 0.36;   ///< steepest gradient along the heading, tan(max pitch)
+    double max_across = 0.36;  ///< steepest gradient across the heading, tan(max roll)
+    std::shared_ptr<const terramech::RoverStance>
+        stance{};  ///< beyond which the rover tips; none: it never does
   };
 
   /// Throws std::invalid_argument for more than 254 curves.

@@ -2,23 +2,10 @@
 
 #include <algorithm>
 
+#include <talus/costmap/cost/drive_cost.hpp>
 #include <talus/terramech/mobility/turning.hpp>
 
 namespace talus::costmap {
-
-/// What a radian of heading, or a change of direction, takes beside the path's own length.
-struct TurnPrice {
-  double cost_J = 0.0;    ///< under the one cost function, >= 0
-  double energy_J = 0.0;  ///< >= 0
-  double time_s = 0.0;    ///< >= 0
-};
-
-/// A radian of heading on one ground.
-struct TurnPrices {
-  TurnPrice on_arc;
-  TurnPrice in_place;
-  TurnPrice at_vertex;  ///< of a polyline: in place for a rover that turns in place, else on an arc
-};
 
 /// An effort under weights of energy [-] and time [W].
 inline TurnPrice priced(const terramech::TurnEffort& effort, double energy, double time_W) noexcept {

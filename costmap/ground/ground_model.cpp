@@ -2,13 +2,16 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <stdexcept>
 #include <utility>
 
 #include <talus/costmap/cost/cross_slope.hpp>
+#include <talus/costmap/cost/turn_price.hpp>
 #include <talus/costmap/ground/ground_model.hpp>
+#include <talus/terramech/mobility/rover_stance.hpp>
 #include <talus/terramech/mobility/rut.hpp>
 #include <talus/terramech/mobility/slope_equilibrium.hpp>
 #include <talus/terramech/numerics/normal_distribution.hpp>
@@ -387,7 +390,8 @@ TurnPrices GroundModel::turns(int class_index, const DriveState& flat) const {
 DriveCost::Limits GroundModel::limits() const {
   DriveCost::Limits limits{.max_along = std::tan(parts_.rover.max_pitch_rad),
                            .max_across = std::tan(parts_.rover.max_roll_rad)};
-  if (parts_.rover.centre_of_mass_height_m > 0.0) limits.stance.emplace(parts_.rover);
+  if (parts_.rover.centre_of_mass_height_m > 0.0)
+    limits.stance = std::make_shared<const terramech::RoverStance>(parts_.rover);
   return limits;
 }
 

@@ -11,6 +11,7 @@
 #include <talus/planner/check/annotation.hpp>
 #include <talus/planner/check/route_check.hpp>
 #include <talus/planner/check/route_risk.hpp>
+#include <talus/planner/route/heading_sweep.hpp>
 #include <talus/planner/route/motion_cost.hpp>
 #include <talus/planner/route/polyline.hpp>
 
@@ -113,8 +114,7 @@ class Annotator {
   void vertex(Point at, Direction from, Direction to) {
     const auto cell = grid_.cellAt(at);
     if (!cell) return;
-    const double turn_rad = std::atan2(from.x * to.y - from.y * to.x, from.x * to.x + from.y * to.y);
-    spend(input_.map.cost().turn(input_.map.at(*cell)), std::abs(turn_rad));
+    spend(input_.map.cost().turn(input_.map.at(*cell)), std::abs(turnBetween_rad(from, to)));
   }
 
   void cusp() { spend(input_.kinematics.cusp, 1.0); }

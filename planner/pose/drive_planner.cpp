@@ -10,8 +10,8 @@
 #include <talus/planner/pose/drive_planner.hpp>
 #include <talus/planner/pose/pose_shortcut.hpp>
 #include <talus/planner/pose/turning_drive.hpp>
+#include <talus/planner/route/kinematics.hpp>
 #include <talus/planner/route/polyline.hpp>
-#include <talus/planner/route/rover_kinematics.hpp>
 #include <talus/planner/route/time_left.hpp>
 #include <talus/terramech/contact/turning_radius.hpp>
 #include <talus/terramech/numerics/range.hpp>

@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include <talus/common/constants.hpp>
 #include <talus/planner/refine/fewer_turns.hpp>
+#include <talus/planner/route/heading_sweep.hpp>
 
 namespace talus::planner {
 namespace {
@@ -62,14 +62,8 @@ class FewerTurns {
   // A turn that the route did not have passes allowed headings only, so that what drives may turn as the route does.
   bool mayTurn(maps::Point at, const Arrival& before, const Arrival& next) const {
     if (!before.merged && !next.merged) return true;
-    const costmap::Direction a = before.heading, b = next.heading;
-    const double turn_rad = std::atan2(a.x * b.y - a.y * b.x, a.x * b.x + a.y * b.y);
-    const int parts = static_cast<int>(std::ceil(std::abs(turn_rad) / kApart_rad));
-    for (int k = 1; k < parts; ++k) {
-      const double by = turn_rad * k / parts, c = std::cos(by), s = std::sin(by);
-      if (!cost_.headingAllowed(at, {a.x * c - a.y * s, a.x * s + a.y * c})) return false;
-    }
-    return true;
+    return holdsBetween(before.heading, next.heading, kApart_rad,
+                        [&](costmap::Direction heading) { return cost_.headingAllowed(at, heading); });
   }
 
   const MotionCost& cost_;

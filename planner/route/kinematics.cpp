@@ -6,6 +6,8 @@
 
 #include <ompl/base/spaces/ReedsSheppStateSpace.h>
 
+#include <talus/costmap/cost/turn_price.hpp>
+#include <talus/costmap/ground/ground_model.hpp>
 #include <talus/planner/route/dubins.hpp>
 #include <talus/planner/route/kinematics.hpp>
 #include <talus/terramech/contact/turning_radius.hpp>
@@ -15,6 +17,8 @@ namespace talus::planner {
 namespace {
 
 namespace ob = ompl::base;
+
+constexpr double kStop_s = 20.0;  // ours, not from the literature
 
 void set(ob::State* state, const Pose& pose) {
   auto* se2 = state->as<ob::SE2StateSpace::StateType>();
@@ -95,6 +99,21 @@ Pose after(const Pose& from, const Arc& arc) noexcept {
 
 std::vector<Arc> shortestArcs(const Pose& from, const Pose& to, const Kinematics& kinematics) {
   return ShortestCurves(kinematics)(from, to);
+}
+
+Kinematics kinematicsOn(const costmap::GroundModel& model, const costmap::DriveCost& cost) {
+  const terramech::Rover& rover = model.rover();
+  if (rover.steering == terramech::Steering::Ackermann && rover.turning_radius_m <= 0.0)
+    throw std::invalid_argument("rover '" + rover.name +
+                                "': turning_radius_m = 0, must be > 0 with steering ackermann");
+  const auto lasting = [&](double time_s) {
+    return costmap::priced(terramech::TurnEffort{rover.hotel_power_W * time_s, time_s}, 1.0,
+                           model.parts().policy.time_weight_W);
+  };
+  return {.turning_radius_m = rover.turning_radius_m,
+          .turns_by_curve = cost.turns(),
+          .cusp = lasting(rover.wheel.radius_m / rover.max_speed_mps),
+          .stop = lasting(kStop_s)};
 }
 
 }  // namespace talus::planner

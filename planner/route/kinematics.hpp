@@ -4,9 +4,13 @@
 #include <memory>
 #include <vector>
 
-#include <talus/costmap/cost/turn_price.hpp>
+#include <talus/costmap/cost/drive_cost.hpp>
 #include <talus/planner/route/arc.hpp>
 #include <talus/terramech/contact/rover.hpp>
+
+namespace talus::costmap {
+class GroundModel;
+}
 
 /// How a rover may move in the plane, and what turning takes.
 namespace talus::planner {
@@ -28,6 +32,11 @@ struct Kinematics {
     return curve < turns_by_curve.size() ? turns_by_curve[curve] : turns;
   }
 };
+
+/// Kinematics of a rover, turning priced by the curves of a cost function. A change of direction takes the time to drive a
+/// wheel radius, a stop to turn in place twenty seconds (ours): that is what keeps a drive from turning at every cell. An
+/// Ackermann rover of no stated radius is refused: std::invalid_argument.
+Kinematics kinematicsOn(const costmap::GroundModel& model, const costmap::DriveCost& cost);
 
 /// The shortest ways between poses for a turning radius > 0: Reeds-Shepp with reversing, else Dubins
 /// (reeds_shepp_1990, by OMPL; dubins.hpp). Immutable, safe to share between threads.

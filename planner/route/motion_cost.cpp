@@ -6,6 +6,7 @@
 #include <talus/common/constants.hpp>
 #include <talus/planner/route/heading_cost.hpp>
 #include <talus/planner/route/heading_set.hpp>
+#include <talus/planner/route/heading_sweep.hpp>
 #include <talus/planner/route/motion_cost.hpp>
 
 namespace talus::planner {
@@ -167,22 +168,6 @@ costmap::Direction directionOf(const Segment& motion) noexcept {
   return length > 0.0 ? costmap::Direction{dx / length, dy / length} : costmap::Direction{};
 }
 
-namespace {
-
-constexpr double kApart_rad = 0.02;  // headings looked at in a turn
-
-bool tipsBetween(const costmap::DriveCost& cost, costmap::CellCode cell, costmap::Direction from,
-                 double turn_rad) {
-  const int parts = static_cast<int>(std::ceil(std::abs(turn_rad) / kApart_rad));
-  for (int k = 1; k < parts; ++k) {
-    const double by = turn_rad * k / parts, c = std::cos(by), s = std::sin(by);
-    if (cost.tips(cell, {from.x * c - from.y * s, from.x * s + from.y * c})) return true;
-  }
-  return false;
-}
-
-}  // namespace
-
 double MotionCost::turn(maps::Point place, costmap::Direction from, costmap::Direction to) const noexcept {
   const auto cell = map_->grid().cellAt(place);
   if (!cell) return 0.0;
@@ -190,9 +175,10 @@ double MotionCost::turn(maps::Point place, costmap::Direction from, costmap::Dir
   const costmap::CellCode code = map_->at(*cell);
   const double radian_J = cost.turn(code).cost_J;
   if (radian_J == 0.0 && !cost.mayTip(code)) return 0.0;
-  const double by_rad = std::atan2(from.x * to.y - from.y * to.x, from.x * to.x + from.y * to.y);
-  if (cost.mayTip(code) && tipsBetween(cost, code, from, by_rad)) return kInfinity;
-  return radian_J * std::abs(by_rad);
+  constexpr double kApart_rad = 0.02;
+  const auto stands = [&](costmap::Direction heading) { return !cost.tips(code, heading); };
+  if (cost.mayTip(code) && !holdsBetween(from, to, kApart_rad, stands)) return kInfinity;
+  return radian_J * std::abs(turnBetween_rad(from, to));
 }
 
 double MotionCost::along(const std::vector<maps::Point>& points) const noexcept {

@@ -6,12 +6,12 @@
 
 #include <talus/terramech/contact/rover.hpp>
 #include <talus/terramech/contact/soil.hpp>
-#include <talus/terramech/mobility/rover_stance.hpp>
 
 /// A rover that drives steadily over an inclined plane in any direction: the slip and the slip angle at which
 /// its wheels hold it.
 namespace talus::terramech {
 
+struct Planar;
 struct RefinedModel;
 
 /// The plane as the way over it sees it: rise over horizontal run [-].

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
-#include <optional>
 #include <random>
 #include <string>
 #include <utility>
@@ -80,8 +79,9 @@ inline std::shared_ptr<const costmap::CostGrid> drawn(const std::vector<std::str
 }
 
 /// A plane of a gradient on which every metre costs 10 J and every radian turned at a vertex so much, of a rover that stands so.
-inline std::shared_ptr<const costmap::CostGrid> plane(int side, costmap::Direction gradient, double turn_J,
-                                                      std::optional<terramech::RoverStance> stance = {}) {
+inline std::shared_ptr<const costmap::CostGrid> plane(
+    int side, costmap::Direction gradient, double turn_J,
+    std::shared_ptr<const terramech::RoverStance> stance = {}) {
   maps::Raster<costmap::CellCode> cells(
       {.width = side, .height = side, .resolution_m = 1.0, .south_west = {}},
       costmap::CellCode({gradient.x, gradient.y, 0}));

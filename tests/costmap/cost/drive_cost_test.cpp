@@ -1,11 +1,13 @@
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <random>
 
 #include <site_fixture.hpp>
 
 #include <talus/costmap/cost/drive_cost.hpp>
 #include <talus/costmap/ground/ground_model.hpp>
+#include <talus/terramech/mobility/rover_stance.hpp>
 
 namespace talus::costmap {
 namespace drive_cost_test {
@@ -141,7 +143,8 @@ TEST(DriveCost, TipsWhereThePlumbLineLeavesTheWheels) {
   rover.wheelbase_m = 0.8;
   rover.track_m = 1.1;
   rover.centre_of_mass_height_m = 0.9;
-  const DriveCost cost({.stance = terramech::RoverStance(rover)}, std::vector<DriveCurve>(1));
+  const DriveCost cost({.stance = std::make_shared<const terramech::RoverStance>(rover)},
+                       std::vector<DriveCurve>(1));
   std::mt19937 random(5);
   std::uniform_real_distribution<double> gradient(-0.9, 0.9), angle(-3.2, 3.2);
   int tipped = 0;

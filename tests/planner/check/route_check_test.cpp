@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <random>
 
 #include <gmock/gmock.h>
@@ -9,6 +10,7 @@
 #include <talus/planner/check/route_check.hpp>
 #include <talus/planner/route/motion_cost.hpp>
 #include <talus/planner/route/problem.hpp>
+#include <talus/terramech/mobility/rover_stance.hpp>
 
 #include "drawn_map.hpp"
 
@@ -54,7 +56,7 @@ TEST(RouteCheck, ATurnMayNotPassHeadingsThatTip) {
   terramech::Rover rover = costmap::testRover();
   rover.wheelbase_m = rover.track_m = 1.0;
   rover.centre_of_mass_height_m = 1.0;
-  const auto map = testing::plane(20, {0.0, 0.6}, 0.0, terramech::RoverStance(rover));
+  const auto map = testing::plane(20, {0.0, 0.6}, 0.0, std::make_shared<const terramech::RoverStance>(rover));
   EXPECT_TRUE(violations(*map, {{2.5, 2.5}, {6.5, 6.5}, {10.5, 9.5}}).empty());
   for (const maps::Point next : {maps::Point{2.5, 10.5}, maps::Point{10.5, 2.5}}) {
     const auto found = violations(*map, {{2.5, 2.5}, {6.5, 6.5}, next});

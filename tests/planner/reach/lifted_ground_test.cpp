@@ -1,4 +1,5 @@
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -7,6 +8,7 @@
 
 #include <talus/planner/reach/lifted_ground.hpp>
 #include <talus/planner/reach/obstruction_search.hpp>
+#include <talus/terramech/mobility/rover_stance.hpp>
 
 #include "drawn_map.hpp"
 
@@ -107,7 +109,7 @@ TEST(LiftedGround, TippingIsNotOfTheSoil) {
   rover.track_m = 0.6;
   rover.centre_of_mass_height_m = 1.2;
   const costmap::DriveCost::Limits limits{
-      .max_along = 0.15, .max_across = 0.9, .stance = terramech::RoverStance(rover)};
+      .max_along = 0.15, .max_across = 0.9, .stance = std::make_shared<const terramech::RoverStance>(rover)};
   Site ground = site(std::vector<std::string>(9, "........."), 0.3, 0.15, 0.6);
   costmap::CostGrid::Content content = ground.map->content();
   costmap::DriveCurve curve = upTo(0.155, 10.0);

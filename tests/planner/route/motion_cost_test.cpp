@@ -1,4 +1,5 @@
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <random>
 
@@ -6,6 +7,7 @@
 
 #include <talus/common/constants.hpp>
 #include <talus/planner/route/motion_cost.hpp>
+#include <talus/terramech/mobility/rover_stance.hpp>
 
 #include "drawn_map.hpp"
 
@@ -72,7 +74,8 @@ TEST(MotionCost, NoTurnThroughHeadingsThatTip) {
   terramech::Rover rover = testRover();
   rover.wheelbase_m = rover.track_m = 1.0;
   rover.centre_of_mass_height_m = 1.0;
-  const MotionCost cost(testing::plane(20, {0.0, 0.6}, 0.0, terramech::RoverStance(rover)));
+  const MotionCost cost(
+      testing::plane(20, {0.0, 0.6}, 0.0, std::make_shared<const terramech::RoverStance>(rover)));
   EXPECT_NEAR(cost.along({{2.5, 2.5}, {6.5, 6.5}, {10.5, 10.5}}), 80.0 * std::numbers::sqrt2, 1e-3)
       << "straight on";
   EXPECT_NEAR(cost.along({{2.5, 2.5}, {6.5, 6.5}, {10.5, 9.5}}), 10.0 * (std::hypot(4, 4) + std::hypot(4, 3)),
