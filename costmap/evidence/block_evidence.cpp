@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <tuple>
 
 #include <talus/costmap/evidence/block_evidence.hpp>
 #include <talus/costmap/evidence/spreading.hpp>
@@ -63,6 +65,8 @@ void addWeakest(std::span<const ReadingCount> counts, double std, double sign, V
     const ReadingCount& c = counts[sign > 0.0 ? i : counts.size() - 1 - i];
     lowest += c.count;
     sum += c.count * sign * value(c.step);
+    const bool last = i + 1 == counts.size();
+    if (!last && counts[sign > 0.0 ? i + 1 : counts.size() - 2 - i].step == c.step) continue;
     part.value = std::min(part.value, sum / lowest + std * tailMean(lowest / all));
   }
   part.value *= sign;
@@ -128,7 +132,7 @@ std::span<const ReadingCount> raisingOf(std::span<const ReadingCount> counts, st
   }
   if (merged.empty()) return only;
   std::sort(merged.begin(), merged.end(), [](const ReadingCount& a, const ReadingCount& b) {
-    return a.step != b.step ? a.step < b.step : a.kind < b.kind;
+    return std::tuple(a.step, a.kind, a.drive) < std::tuple(b.step, b.kind, b.drive);
   });
   return merged;
 }
@@ -145,11 +149,16 @@ double sharedOf(std::span<const ReadingCount> counts) noexcept {
   return weight > 0.0 ? sum / weight : 0.0;
 }
 
-void summarisePull(std::span<const ReadingCount> counts, const Estimate& prior, BlockEvidence& block) {
+// What readings say together, and those of them that may raise.
+struct Pulls {
   Weighed raising, all;
-  double least = std::numeric_limits<double>::infinity();
+};
+
+// Takes the weakest part of each certainty; `least`: what is left where the weakest of all that was taken before stands alone.
+Pulls weighPulls(std::span<const ReadingCount> counts, const Estimate& prior, BlockEvidence& block,
+                 double& least) {
+  Pulls out;
   std::vector<ReadingCount> merged;
-  block.lowers = false;
   for (std::size_t grade = 0; grade < kind::kGrades; ++grade) {
     const double std = stdOf(grade);
     for (const std::uint8_t first : {kind::kPull, kind::kPullLowers}) {
@@ -159,16 +168,62 @@ void summarisePull(std::span<const ReadingCount> counts, const Estimate& prior, 
       Part part;
       addWeakest(heard, std, 1.0, pullOf, part);
       keepWeakest(part.value, variance(part.count / (std * std)), prior, block, least);
-      all.add(part, std);
-      if (first == kind::kPull) raising.add(part, std);
+      out.all.add(part, std);
+      if (first == kind::kPull) out.raising.add(part, std);
       block.lowers |= first == kind::kPullLowers;
     }
   }
-  if (all.weight > 0.0) keepWeakest(all.sum / all.weight, variance(all.weight), prior, block, least);
+  if (out.all.weight > 0.0)
+    keepWeakest(out.all.sum / out.all.weight, variance(out.all.weight), prior, block, least);
+  return out;
+}
+
+// Standard error of the mean of readings that may raise, by their own scatter and the step that they are kept in.
+double scatterOfMean(std::span<const ReadingCount> counts) noexcept {
+  double n = 0.0, sum = 0.0, squares = 0.0;
+  for (const ReadingCount& c : counts) {
+    if (c.kind >= kind::kPullLowers) break;
+    n += c.count;
+    sum += c.count * pullOf(c.step);
+    squares += c.count * pullOf(c.step) * pullOf(c.step);
+  }
+  if (n < 2.0) return std::numeric_limits<double>::infinity();
+  return std::sqrt((std::max(squares - sum * sum / n, 0.0) / (n - 1.0) + kStep * kStep) / n);
+}
+
+// By the drive that shows least: as it is where it is known as well as the model knows any place, else beyond what its readings
+// scatter by.
+void boundByDrives(std::span<const ReadingCount> counts, const Estimate& prior, BlockEvidence& block,
+                   double& least) {
+  constexpr double kBeyond = 2.0;
+  std::vector<std::uint16_t> drives;
+  for (const ReadingCount& c : counts) drives.push_back(c.drive);
+  std::ranges::sort(drives);
+  drives.erase(std::unique(drives.begin(), drives.end()), drives.end());
+  if (drives.size() < 2) return;
+  std::vector<ReadingCount> own;
+  for (const std::uint16_t drive : drives) {
+    own.clear();
+    std::ranges::copy_if(counts, std::back_inserter(own), [&](const auto& c) { return c.drive == drive; });
+    const Weighed raising = weighPulls(own, prior, block, least).raising;
+    if (raising.weight <= 0.0) continue;
+    const double beyond = kBeyond * scatterOfMean(own);
+    const auto most = static_cast<float>(raising.sum / raising.weight + (beyond > kModel ? beyond : 0.0));
+    if (most >= block.pull) continue;
+    block.pull = most;
+    block.variance = static_cast<float>(variance(raising.weight));
+  }
+}
+
+void summarisePull(std::span<const ReadingCount> counts, const Estimate& prior, BlockEvidence& block) {
+  double least = std::numeric_limits<double>::infinity();
+  block.lowers = false;
+  const auto [raising, all] = weighPulls(counts, prior, block, least);
   if (all.weight <= 0.0) block.weak_pull = block.weak_variance = kNone;
   block.pull = raising.weight > 0.0 ? static_cast<float>(raising.sum / raising.weight) : kNone;
   block.variance = raising.weight > 0.0 ? static_cast<float>(variance(raising.weight)) : kNone;
   block.shared = static_cast<float>(sharedOf(counts));
+  boundByDrives(counts, prior, block, least);
 }
 
 }  // namespace

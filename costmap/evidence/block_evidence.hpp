@@ -11,11 +11,12 @@
 /// order: the same readings in any order are the same evidence, to the bit.
 namespace talus::costmap {
 
-/// How often a block heard one quantised reading; stops at 65535.
+/// How often a block heard one quantised reading of one drive; stops at 65535.
 struct ReadingCount {
   std::uint8_t kind = 0;  ///< what it measures and how surely: see kindOf
   std::uint8_t step = 0;  ///< its value, rounded towards danger
   std::uint16_t count = 0;
+  std::uint16_t drive = 0;  ///< WheelObservation::drive
 
   friend bool operator==(const ReadingCount&, const ReadingCount&) = default;
 };
@@ -78,7 +79,8 @@ static_assert(sizeof(BlockEvidence) == 44);
 /// Readings of one certainty are as weak as their weakest part: the least of m_k + sigma c(k/n), m_k the mean
 /// of the k lowest of n and -sigma c(k/n) what it would be by noise alone (mean of the lower tail of a normal,
 /// c(p) = phi(Phi^-1(p))/p; ours). No number of readings makes the pull surer than the model, 0.02 in DP/W:
-/// what one place says is wrong in one way. The shared error of the pull is the mean of that of its readings, each
+/// what one place says is wrong in one way. Of several drives none makes the place stronger than another shows it, beyond two
+/// standard deviations of what that one's readings scatter by: the sensors of one may be faulty, and which is not known. The shared error of the pull is the mean of that of its readings, each
 /// weighed by its certainty: no number of readings makes it smaller.
 void summarise(std::span<const ReadingCount> counts, const Estimate& prior, BlockEvidence& block);
 

@@ -79,8 +79,9 @@ std::vector<ReadingCount> EvidenceBricks::counts(const BlockLevel& block) const 
 }
 
 std::uint64_t EvidenceBricks::orderOf(const Heard& heard) noexcept {
-  return static_cast<std::uint64_t>(heard.block) << 16 | static_cast<unsigned>(heard.reading.kind) << 8 |
-         heard.reading.step;
+  return static_cast<std::uint64_t>(heard.block) << 32 |
+         static_cast<std::uint64_t>(heard.reading.kind) << 24 |
+         static_cast<std::uint64_t>(heard.reading.step) << 16 | heard.reading.drive;
 }
 
 // Where a count stands, or would.

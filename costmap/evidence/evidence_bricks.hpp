@@ -17,7 +17,7 @@ struct BlockLevel {
 };
 
 /// The evidence of a map: bricks of 8x8 blocks, each with a sorted list of those that wheels spoke for and one
-/// of what each of them heard, so that a block costs 32 bytes and 8 for each distinct reading, and one where
+/// of what each of them heard, so that a block costs 44 bytes and 12 for each distinct reading of a drive, and one where
 /// nobody drove less than one. (A leaf of an OctoMap tree costs 64 with its allocation, and its parents as much
 /// again.) Not thread-safe while changed; pointers hold until the next change.
 class EvidenceBricks {
@@ -28,7 +28,7 @@ class EvidenceBricks {
   const BlockEvidence* find(const BlockLevel& block) const noexcept;
   /// The same for change, made where there is none; the block must lie inside.
   BlockEvidence& at(const BlockLevel& block);
-  /// What it heard, kind by kind, values ascending; empty where there is none.
+  /// What it heard, kind by kind, values ascending, of each drive by itself; empty where there is none.
   std::vector<ReadingCount> counts(const BlockLevel& block) const;
   /// Adds so many readings of a kind and value to a block that at() made.
   void count(const BlockLevel& block, const ReadingCount& reading);

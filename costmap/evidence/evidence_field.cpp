@@ -180,6 +180,7 @@ std::optional<SavedBlock> EvidenceField::heardOf(const WheelObservation& observa
   if (observation.estimates()) heard.heard.push_back(pullReading(pull, raises, observation.shared_std));
   if (std::isfinite(observation.sinkage.std))
     heard.heard.push_back(sinkageReading(observation.sinkage.value, sure && observation.sinkage_may_raise));
+  for (ReadingCount& count : heard.heard) count.drive = observation.drive;
   return heard;
 }
 

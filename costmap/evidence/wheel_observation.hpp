@@ -78,6 +78,7 @@ struct WheelObservation {
   bool pull_may_raise =
       false;  ///< whether the sensors behind the pull are known to be sound; else it can only lower the belief
   bool sinkage_may_raise = false;  ///< the same of the sinkage
+  std::uint16_t drive = 0;  ///< tells drives apart, whose sensors may be off in different ways (driveTag())
   GroundBound here{};
 
   /// Whether it estimates the pull.

@@ -16,13 +16,14 @@ constexpr const char* kInsert =
     "sinkage_m, gradient,"
     " drawbar_pull_N, pass_index, pull, pull_std, sinkage, sinkage_std, z_m, pose_std_m,"
     " pull_may_raise, sinkage_may_raise, pull_here, sinkage_here, pull_shared_std, wheel_radius_m, "
-    "wheel_width_m, wheel_weight_N, thrust_share, drive) "
-    "VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)";
+    "wheel_width_m, wheel_weight_N, thrust_share, drive_tag, drive) "
+    "VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)";
 constexpr const char* kSelect =
     "SELECT source, line, accepted, reason, time_s, x_m, y_m, load_N, slip, torque_Nm, sinkage_m, gradient,"
     " drawbar_pull_N, pass_index, pull, pull_std, sinkage, sinkage_std, z_m, pose_std_m,"
     " pull_may_raise, sinkage_may_raise, pull_here, sinkage_here, pull_shared_std, wheel_radius_m, "
-    "wheel_width_m, wheel_weight_N, thrust_share FROM evidence WHERE drive = ? AND id > ? ORDER BY id";
+    "wheel_width_m, wheel_weight_N, thrust_share, drive_tag FROM evidence WHERE drive = ? AND id > ? ORDER "
+    "BY id";
 
 // NULL stands for NaN: SQLite has none. What is no number, "0" for SQLite, is refused by fault().
 double number(sqlite3_stmt* row, int column) {
@@ -69,6 +70,7 @@ JournalRow readRow(sqlite3_stmt* row) {
                      .pose_std_m = out.reading.pose_std_m,
                      .pull_may_raise = sqlite3_column_int(row, 20) != 0,
                      .sinkage_may_raise = sqlite3_column_int(row, 21) != 0,
+                     .drive = static_cast<std::uint16_t>(sqlite3_column_int(row, 29)),
                      .here = {number(row, 22), number(row, 23)}};
   out.wheel = {number(row, 25), number(row, 26), number(row, 27)};
   return out;
@@ -95,6 +97,7 @@ void bindRow(sqlite3_stmt* s, const JournalRow& row, std::int64_t drive) {
   for (const double value :
        {o.shared_std, row.wheel.radius_m, row.wheel.width_m, row.wheel.weight_N, o.share})
     bind(s, at++, value);
+  sqlite3_bind_int(s, at++, o.drive);
   sqlite3_bind_int64(s, at, drive);
 }
 

@@ -12,7 +12,7 @@
 namespace talus::costmap {
 namespace {
 
-constexpr int kFormat = 9;
+constexpr int kFormat = 10;
 constexpr int kFormat010 = 3;             // of Talus 0.1.0, the only other one that a release wrote
 constexpr int kApplication = 0x54414c55;  // "TALU"
 
@@ -45,7 +45,7 @@ const std::vector<Entry>& entriesOfJournal() {
       {"table", "evidence",
        "CREATE TABLE evidence(" + kColumns010 +
            ", drive INTEGER, pull_here REAL, sinkage_here REAL, pull_shared_std REAL, wheel_radius_m REAL, "
-           "wheel_width_m REAL, wheel_weight_N REAL, thrust_share REAL)"},
+           "wheel_width_m REAL, wheel_weight_N REAL, thrust_share REAL, drive_tag INTEGER)"},
       {"index", "of_drive", "CREATE INDEX of_drive ON evidence(drive)"},
       {"index", "sqlite_autoindex_drive_1", ""},
       kSequence};

@@ -28,7 +28,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "map files require a little-endian machine");
 
 constexpr std::array<char, 8> kMagic{'T', 'A', 'L', 'U', 'S', 'M', 'A', 'P'};
-constexpr std::uint32_t kVersion = 7;
+constexpr std::uint32_t kVersion = 8;
 constexpr std::array<char, 4> kEnd{'E', 'N', 'D', ' '};
 
 std::string versionFault(std::uint32_t version) {
@@ -189,7 +189,7 @@ struct BlockHeader {
   std::uint8_t terrain_class = 0, reach = 0;
   std::uint32_t readings = 0;
 };
-static_assert(sizeof(BlockHeader) == 20 && sizeof(ReadingCount) == 4);
+static_assert(sizeof(BlockHeader) == 20 && sizeof(ReadingCount) == 6);
 
 std::string evidenceOf(const TraversabilityMap& map) {
   std::string bytes;

@@ -3,6 +3,7 @@
 #include <functional>
 #include <iterator>
 #include <limits>
+#include <optional>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -92,9 +93,10 @@ struct DriveIntake::State {
   IntakeOptions options;
   std::unique_ptr<TelemetryProcessor> processor;
   DriveReport report{};
-  DriveId sum{};                   // of the parts so far
-  std::string id{};                // by that
-  std::vector<JournalRow> rows{};  // of a part
+  DriveId sum{};                       // of the parts so far
+  std::string id{};                    // by that
+  std::optional<std::uint16_t> tag{};  // of the first part that had a row
+  std::vector<JournalRow> rows{};      // of a part
   // Of all parts, where they may be settled: what was read, what the map counted of it, which of it bounds a place, and what
   // rejected rows said.
   using Place = std::tuple<double, double, double>;
@@ -130,6 +132,7 @@ void DriveIntake::State::learn(const terramech::Telemetry& telemetry, const Tele
     result.reason = wrong;
     result.observation = boundAlone(*result.observation);
   }
+  if (result.observation) result.observation->drive = tag.value_or(0);
   bool accepted = result.observation.has_value() && fault(*result.observation).empty();
   if (accepted && !take(*result.observation)) {
     accepted = false;
@@ -155,6 +158,7 @@ void DriveIntake::State::put(const terramech::Telemetry& telemetry, const DriveV
   const TelemetryRows readings(telemetry, map, options.pose_std_m);
   const std::size_t refused = map.surface().refused().size();
   const std::string before = id;
+  if (!tag && telemetry.size() + telemetry.rejected.size() > 0) tag = driveTag(telemetry);
   sum.add(telemetry);
   id = sum.text();
   rows.clear();
@@ -208,7 +212,8 @@ void DriveIntake::State::hearRejected(const terramech::Telemetry& telemetry, std
     return;
   const TelemetryRows readings(left, map, options.pose_std_m);
   for (std::size_t i = from; i < readings.size(); ++i) {
-    const auto heard = processor->rejected(readings, i);
+    auto heard = processor->rejected(readings, i);
+    if (heard) heard->drive = tag.value_or(0);
     if (!heard || !map.learn(*heard)) continue;
     ++report.heard;
     rows.push_back({.source = telemetry.source,
@@ -242,6 +247,9 @@ DriveReport DriveIntake::report() const {
     report.findings.push_back(std::to_string(rows) +
                               " rows: load_N is an equal share of the weight on a slope; the load transfer "
                               "was computed from the wheel positions");
+  if (const std::string why = state_->processor->whyNoneRaises();
+      report.used > 0 && report.raising == 0 && !why.empty())
+    report.findings.push_back("no row may raise an estimate: " + why);
   report.others = state_->processor->others();
   if (report.others > 0) report.findings.push_back(othersFinding(report.others));
   if (report.heard > 0)

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include <talus/costmap/telemetry/drive_id.hpp>
@@ -90,6 +91,15 @@ void DriveId::add(const terramech::Telemetry& telemetry) {
 
 std::string DriveId::text() const {
   return hexadecimal(sum_);
+}
+
+std::uint16_t driveTag(const terramech::Telemetry& telemetry) {
+  std::optional<std::uint16_t> tag;
+  Checksum sum;
+  addRows(sum, telemetry, [&](bool) {
+    if (!tag) tag = static_cast<std::uint16_t>(sum.value());
+  });
+  return tag.value_or(0);
 }
 
 DriveBeginning knownBeginning(const terramech::Telemetry& telemetry, const std::set<std::string>& drives) {

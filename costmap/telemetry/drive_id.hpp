@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <set>
 #include <string>
 
@@ -19,6 +20,10 @@ class DriveId {
  private:
   Checksum sum_{};
 };
+
+/// What tells drives apart in a map, WheelObservation::drive: of the first row, so that what follows, in a file that grew or in
+/// parts, is of the same drive. Two of some 65 000 drives may share one: they then count as one.
+std::uint16_t driveTag(const terramech::Telemetry& telemetry);
 
 /// Rows of a drive from its beginning on: those that its file's reader left in, and those that it left out.
 struct DriveBeginning {

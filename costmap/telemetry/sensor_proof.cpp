@@ -57,6 +57,7 @@ void SensorProof::takeLevel(Wheel& wheel, const Row& row) {
   if (!(std::abs(row.measured_gradient) <= kLevel) || !std::isfinite(row.class_slip)) return;
   const double excess = row.reading.slip - row.class_slip;
   ++wheel.level_rows;
+  level_steps_.try_emplace(row.wheel, kLevelStep).first->second.add(excess);
   wheel.level_sum += excess;
   wheel.level_last.push_back(excess);
   if (wheel.level_last.size() > kLevelRows) wheel.level_last.pop_front();
@@ -103,12 +104,51 @@ std::size_t SensorProof::wheels(const std::string& run) const {
   return r ? r->wheels.size() : 0;
 }
 
-bool SensorProof::pullSound(const std::string& run, const std::string& wheel) const {
+SensorProof::Lack SensorProof::lack(const std::string& run, const std::string& wheel) const {
   const Run* r = find(run);
   const Wheel* w = r ? find(*r, wheel) : nullptr;
-  if (!w || isOff(r->off)) return false;
-  return follows(r->slope, kPerGradient) && std::abs(r->slope.whole().meanDifference()) <= kSlopeBias &&
-         follows(w->slip, kSlipPerGradient) && w->level_rows >= kLevelRows;
+  if (!w) return Lack::SlopeRows;
+  if (isOff(r->off)) return Lack::Pose;
+  const Response& slope = r->slope.whole();
+  if (slope.size() < Response::kEnough) return Lack::SlopeRows;
+  if (slope.causeVariance() < kGradientVariation * kGradientVariation) return Lack::Slopes;
+  if (!follows(r->slope, kPerGradient)) return Lack::Slope;
+  if (std::abs(slope.meanDifference()) > kSlopeBias) return Lack::SlopeBias;
+  if (!follows(w->slip, kSlipPerGradient)) return Lack::Slip;
+  if (w->level_rows < kLevelRows) return Lack::LevelRows;
+  const auto steps = level_steps_.find(wheel);
+  return steps != level_steps_.end() && steps->second.step() != 0.0 ? Lack::SlipStep : Lack::Nothing;
+}
+
+SensorProof::Lack SensorProof::lack() const {
+  for (const auto& [run, of] : runs_)
+    for (const auto& [wheel, own] : of.wheels)
+      if (const Lack what = lack(run, wheel); what != Lack::Nothing) return what;
+  return Lack::Nothing;
+}
+
+const char* SensorProof::text(Lack lack) noexcept {
+  switch (lack) {
+    case Lack::Nothing:
+      return "";
+    case Lack::Pose:
+      return "the pose jumps and does not return; leave out the rows behind the jump";
+    case Lack::SlopeRows:
+      return "fewer than 12 rows half a metre apart have slope_rad and heading_rad; add both columns";
+    case Lack::Slopes:
+      return "slopes vary by less than 0.03 (standard deviation of the gradient); drive over steeper ground";
+    case Lack::Slope:
+      return "measured slopes do not follow those of the map; check pose, heading_rad and slope_rad";
+    case Lack::SlopeBias:
+      return "measured slopes differ from those of the map by more than 0.03; level the sensor";
+    case Lack::Slip:
+      return "slip does not follow the slope; check the slip of each wheel";
+    case Lack::LevelRows:
+      return "fewer than 6 rows half a metre apart on level ground; include level ground";
+    case Lack::SlipStep:
+      return "slip on level ground steps on the way; give the rows before and behind the step as two files";
+  }
+  return "";
 }
 
 bool SensorProof::torqueSound(const std::string& run, const std::string& wheel) const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <deque>
 #include <map>
 #include <optional>
@@ -8,6 +9,7 @@
 
 #include <talus/costmap/evidence/wheel_observation.hpp>
 #include <talus/costmap/telemetry/response.hpp>
+#include <talus/costmap/telemetry/step_watch.hpp>
 
 namespace talus::costmap {
 
@@ -16,7 +18,7 @@ namespace talus::costmap {
 /// give; without it there is none (all limits ours):
 ///
 /// slip        rises with the slope that is climbed; on level ground it may be low, by a bias or by firm ground, and
-///             counts as if it were by a bias
+///             counts as if it were by a bias; where it steps on the way, either side may be the wrong one
 /// slope       as the rover measured it follows the map's where the rover says it is, and is not off it
 /// torque,     taken together as pull, follow the slope and are not off it
 /// sinkage
@@ -38,6 +40,8 @@ class SensorProof {
 
   /// How far the mean of slip on level ground may be off by noise [-].
   static constexpr double kLevelSlip = 0.01;
+  /// By how much it may step on the way [-].
+  static constexpr double kLevelStep = 0.04;
   /// By how much the slip of all wheels may be off together in spite of all proofs: by a constant and by a share of itself,
   /// one standard deviation each [-].
   static constexpr double kSlipBias = 0.03;
@@ -46,7 +50,26 @@ class SensorProof {
   void take(const Row& row);
 
   /// Whether the pull that the wheel read may raise a belief: by all rows so far.
-  bool pullSound(const std::string& run, const std::string& wheel) const;
+  bool pullSound(const std::string& run, const std::string& wheel) const {
+    return lack(run, wheel) == Lack::Nothing;
+  }
+  /// What keeps it from that, the first of them.
+  enum class Lack : std::uint8_t {
+    Nothing,
+    Pose,
+    SlopeRows,
+    Slopes,
+    Slope,
+    SlopeBias,
+    Slip,
+    LevelRows,
+    SlipStep
+  };
+  Lack lack(const std::string& run, const std::string& wheel) const;
+  /// Of any wheel.
+  Lack lack() const;
+  /// In words, with what would mend it.
+  static const char* text(Lack lack) noexcept;
   /// Whether torque and sinkage are proven too.
   bool torqueSound(const std::string& run, const std::string& wheel) const;
   /// Whether the last rows contradict what the rows before proved.
@@ -80,11 +103,12 @@ class SensorProof {
   };
 
   static void follow(Run& run, const Wheel& wheel, const WheelReading& reading);
-  static void takeLevel(Wheel& wheel, const Row& row);
+  void takeLevel(Wheel& wheel, const Row& row);
   const Run* find(const std::string& run) const;
   static const Wheel* find(const Run& run, const std::string& wheel);
 
   std::map<std::string, Run> runs_;
+  std::map<std::string, StepWatch> level_steps_;  // of each wheel, of all runs: its sensor is one
 };
 
 }  // namespace talus::costmap

@@ -182,6 +182,14 @@ bool TelemetryProcessor::mayRaise(const TelemetryRows& rows, const Moment& momen
   });
 }
 
+std::string TelemetryProcessor::whyNoneRaises() const {
+  if (watch_.clockWentBack() || watch_.biased() || others_ > 0) return {};
+  const SensorProof::Lack lack = proof_.lack();
+  return lack != SensorProof::Lack::Nothing ? SensorProof::text(lack)
+                                            : "no moment has sound rows of all wheels of the rover, or of "
+                                              "the only one of the file; give them all";
+}
+
 // What the readings of all wheels say where each slips otherwise.
 std::vector<std::optional<WheelObservation>> TelemetryProcessor::withSlip(
     std::vector<ClassReading> together, const std::function<double(double)>& slip) const {

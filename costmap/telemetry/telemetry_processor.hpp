@@ -52,6 +52,8 @@ class TelemetryProcessor {
 
   DriveVerdict verdict() const { return {watch_.biased(), watch_.clockWentBack() ? nullptr : &proof_}; }
   const SensorWatch& watch() const noexcept { return watch_; }
+  /// Where no row may raise an estimate: what keeps the drive from it, and what would mend it; empty where other findings say so.
+  std::string whyNoneRaises() const;
   /// Rows whose loads were computed.
   std::size_t transferred() const noexcept { return transferred_; }
   /// Rows of another wheel than the rover's, or under another weight.

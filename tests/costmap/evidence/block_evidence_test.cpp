@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <utility>
 #include <vector>
 
@@ -43,6 +44,42 @@ TEST(BlockEvidence, IsAsWeakAsItsWeakestPart) {
   EXPECT_LT(block.weak_pull, -0.05F);
   const BlockEvidence even = summed({times(pullReading({0.3, 0.05}, true), 63)});
   EXPECT_NEAR(even.weak_pull, 0.3F, 0.011F);
+}
+
+ReadingCount of(ReadingCount reading, std::uint16_t drive) {
+  reading.drive = drive;
+  return reading;
+}
+
+// Property: of two drives that disagree the place is as the weaker alone says, whichever has more readings; a drive of few readings
+// that scatter lowers nothing beyond what all of them say.
+TEST(BlockEvidence, IsAsWeakAsTheDriveThatShowsLeast) {
+  const ReadingCount weak = pullReading({0.10, 0.05}, true), strong = pullReading({0.20, 0.05}, true);
+  const BlockEvidence alone = summed({of(times(weak, 40), 1)});
+  const BlockEvidence both = summed({of(times(weak, 40), 1), of(times(strong, 900), 2)});
+  EXPECT_EQ(both.pull, alone.pull);
+  EXPECT_EQ(both.variance, alone.variance);
+  EXPECT_GT(summed({times(weak, 40), times(strong, 900)}).pull, alone.pull + 0.05F);
+  const ReadingCount low = pullReading({0.15, 0.05}, true), high = pullReading({0.25, 0.05}, true);
+  const std::vector<ReadingCount> few{of(low, 1), of(times(strong, 900), 2), of(high, 1)};
+  EXPECT_NEAR(summed(few).pull, summed({low, times(strong, 900), high}).pull, 1e-6F);
+}
+
+// Property: readings of one drive say the same, whatever its number and however often equal ones are counted apart.
+TEST(BlockEvidence, ADrivesNumberDoesNotShow) {
+  std::mt19937_64 random(5);
+  for (int round = 0; round < 40; ++round) {
+    std::vector<ReadingCount> one, other;
+    for (std::uint8_t step = 130; step < 150; ++step)
+      if (const auto count = static_cast<std::uint16_t>(random() % 30)) {
+        one.push_back({reading_kind::kPull, step, count, 0});
+        other.push_back({reading_kind::kPull, step, count, 7});
+      }
+    const BlockEvidence a = summed(one), b = summed(other);
+    EXPECT_EQ(a.pull, b.pull);
+    EXPECT_EQ(a.weak_pull, b.weak_pull);
+    EXPECT_EQ(a.variance, b.variance);
+  }
 }
 
 TEST(BlockEvidence, WhatMayOnlyLowerGivesNoPull) {

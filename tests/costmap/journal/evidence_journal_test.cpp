@@ -116,7 +116,7 @@ TEST_F(EvidenceJournalTest, RefusesOtherFormatsByOneLine) {
     } catch (const InputError& error) {
       EXPECT_EQ(error.what(),
                 path() + ": an evidence journal of format " + std::to_string(format) +
-                    ", which no release wrote; this program reads 9; name another journal and put the "
+                    ", which no release wrote; this program reads 10; name another journal and put the "
                     "telemetry into it again with talus update");
     }
   }
@@ -168,7 +168,7 @@ TEST_F(EvidenceJournalTest, RefusesRowsThatWereChanged) {
         " sinkage_m, gradient, drawbar_pull_N, pass_index, pull, pull_std, sinkage, sinkage_std, z_m, "
         "pose_std_m,"
         " pull_may_raise, sinkage_may_raise, drive, pull_here, sinkage_here, pull_shared_std, wheel_radius_m,"
-        " wheel_width_m, wheel_weight_N, thrust_share FROM evidence"}) {
+        " wheel_width_m, wheel_weight_N, thrust_share, drive_tag FROM evidence"}) {
     std::filesystem::remove(path());
     { EvidenceJournal(path()).append(kIdA, {row(7)}); }
     change(path(), sql);

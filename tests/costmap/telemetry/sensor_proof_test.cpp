@@ -11,12 +11,12 @@ namespace sensor_proof_test {
 
 using Row = SensorProof::Row;
 
-// Sixty metres over waves of slopes, with the noise of good sensors; `change` spoils a row.
-SensorProof proofOf(const std::function<void(Row&, int)>& change = {}) {
+// Over waves of slopes, 0.6 m from row to row, with the noise of good sensors; `change` spoils a row.
+SensorProof proofOf(const std::function<void(Row&, int)>& change = {}, int rows = 120) {
   std::mt19937_64 random(2);
   std::normal_distribution<double> noise;
   SensorProof proof;
-  for (int i = 0; i < 120; ++i) {
+  for (int i = 0; i < rows; ++i) {
     const double gradient = 0.2 * std::sin(0.15 * i);
     Row row{.run = "a",
             .wheel = "w",
@@ -44,6 +44,30 @@ TEST(SensorProof, SoundSensorsAreProven) {
   EXPECT_NEAR(proof.gradientExcess("a"), 0.0, 0.005);
   EXPECT_FALSE(proof.pullSound("b", "w"));
   EXPECT_FALSE(proof.pullSound("a", "v"));
+}
+
+// Each proof that fails is named, the first of them.
+TEST(SensorProof, SaysWhatIsLacking) {
+  using Lack = SensorProof::Lack;
+  const double kSilent = std::nan("");
+  const auto lackOf = [](const std::function<void(Row&, int)>& change) { return proofOf(change).lack(); };
+  EXPECT_EQ(proofOf().lack(), Lack::Nothing);
+  EXPECT_EQ(lackOf([](Row& r, int i) { r.reading.place.x_m += i < 60 ? 0.0 : 12.0; }), Lack::Pose);
+  EXPECT_EQ(lackOf([&](Row& r, int) { r.measured_gradient = kSilent; }), Lack::SlopeRows);
+  EXPECT_EQ(lackOf([](Row& r, int) { r.map_gradient = r.measured_gradient *= 0.1; }), Lack::Slopes);
+  EXPECT_EQ(lackOf([](Row& r, int i) { r.measured_gradient = 0.2 * std::cos(0.4 * i); }), Lack::Slope);
+  EXPECT_EQ(lackOf([](Row& r, int) { r.measured_gradient += 0.06; }), Lack::SlopeBias);
+  EXPECT_EQ(lackOf([](Row& r, int) { r.reading.slip = 0.05; }), Lack::Slip);
+  EXPECT_EQ(lackOf([&](Row& r, int) { r.class_slip = kSilent; }), Lack::LevelRows);
+  const auto step = [](Row& r, int i) { r.reading.slip -= i < 200 ? 0.0 : 0.1; };
+  EXPECT_EQ(proofOf({}, 400).lack(), Lack::Nothing);
+  EXPECT_EQ(proofOf(step, 400).lack(), Lack::SlipStep);
+  // A sensor is one, whatever runs its rows are of.
+  const auto in_runs = [&](Row& r, int i) {
+    r.run = i < 200 ? "a" : "b";
+    step(r, i);
+  };
+  EXPECT_EQ(proofOf(in_runs, 400).lack(), Lack::SlipStep);
 }
 
 TEST(SensorProof, NothingIsProvenByWhatIsStuckSilentOrOff) {
