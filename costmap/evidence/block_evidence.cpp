@@ -196,11 +196,12 @@ double scatterOfMean(std::span<const ReadingCount> counts) noexcept {
 void boundByDrives(std::span<const ReadingCount> counts, const Estimate& prior, BlockEvidence& block,
                    double& least) {
   constexpr double kBeyond = 2.0;
+  const auto isOfFirst = [&](const ReadingCount& c) { return c.drive == counts.front().drive; };
+  if (counts.empty() || std::ranges::all_of(counts, isOfFirst)) return;
   std::vector<std::uint16_t> drives;
   for (const ReadingCount& c : counts) drives.push_back(c.drive);
   std::ranges::sort(drives);
   drives.erase(std::unique(drives.begin(), drives.end()), drives.end());
-  if (drives.size() < 2) return;
   std::vector<ReadingCount> own;
   for (const std::uint16_t drive : drives) {
     own.clear();

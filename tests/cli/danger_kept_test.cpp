@@ -2,8 +2,11 @@
 // was, and takes danger from the file where the file shows it. Several rovers, soils, orders and missing columns.
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <functional>
 #include <numbers>
+#include <string>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -144,6 +147,23 @@ TEST_P(DangerKept, ASecondClassInOneBlockHasItsOwnReadings) {
   }
 }
 
+// Of a map file (docs/map_file.md): blocks of 20 bytes, the last four their number of counts, then counts of 6, the last two their
+// drive.
+void clearDrives(std::string& map) {
+  const auto number = [&](std::size_t at, auto zero) {
+    std::memcpy(&zero, map.data() + at, sizeof zero);
+    return zero;
+  };
+  std::size_t at = map.rfind("EVID") + 4;
+  const std::size_t end = at + 8 + number(at, std::uint64_t{0});
+  for (at += 8; at < end;) {
+    const std::uint32_t counts = number(at + 16, std::uint32_t{0});
+    at += 20;
+    for (std::uint32_t i = 0; i < counts; ++i, at += 6) map[at + 4] = map[at + 5] = 0;
+  }
+  ASSERT_EQ(at, end);
+}
+
 TEST_P(DangerKept, ThreeWeakAndSixtyStrongInEitherOrder) {
   const Ground ground(GetParam(), 0.0);
   std::string files[2];
@@ -156,7 +176,8 @@ TEST_P(DangerKept, ThreeWeakAndSixtyStrongInEitherOrder) {
     ground.update(text);
     EXPECT_EQ(ground.said("new.ot", "20.5,20.5").category, "dangerous") << first;
     files[first] = fileContent(ground.folder / "new.ot");
-    // The drive's id and the checksum over all, which name the file that was read: tag, size, 16 digits and a line end.
+    // What names the file that was read: the drive of each count; its id (tag, size, 16 digits and a line end); the checksum.
+    clearDrives(files[first]);
     files[first].erase(files[first].rfind("DRIV"), 4 + 8 + 17);
     files[first].resize(files[first].size() - 8);
   }
