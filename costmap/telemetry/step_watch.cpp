@@ -6,9 +6,9 @@
 namespace talus::costmap {
 namespace {
 
-constexpr std::size_t kSide = 4;           // places on either side
+constexpr std::size_t kOnEitherSide = 4;   // places on either side
 constexpr double kLeastScatter = 0.2;      // of a place, in the least step: more than any few of them show
-constexpr std::size_t kRemembered = 1000;  // places
+constexpr std::size_t kMostPlaces = 1000;  // places
 
 }  // namespace
 
@@ -19,14 +19,14 @@ void StepWatch::add(double value) {
   places_.push_back(sum_ / static_cast<double>(kRows));
   sum_ = 0.0;
   count_ = 0;
-  if (places_.size() > kRemembered) places_.erase(places_.begin());
+  if (places_.size() > kMostPlaces) places_.erase(places_.begin());
   look();
 }
 
 void StepWatch::look() {
   step_ = 0.0;
   const std::size_t n = places_.size();
-  if (n < 2 * kSide) return;
+  if (n < 2 * kOnEitherSide) return;
   double all = 0.0, squares = 0.0;
   for (const double p : places_) {
     all += p;
@@ -35,7 +35,7 @@ void StepWatch::look() {
   double before = 0.0, most = kCertain;
   for (std::size_t i = 0; i < n; ++i) {
     const double left = static_cast<double>(i), right = static_cast<double>(n - i);
-    if (i >= kSide && n - i >= kSide) {
+    if (i >= kOnEitherSide && n - i >= kOnEitherSide) {
       const double after = all - before;
       const double within = std::max(squares - before * before / left - after * after / right, 0.0);
       const double scatter = std::max(std::sqrt(within / static_cast<double>(n - 2)), kLeastScatter * least_);
