@@ -24,7 +24,7 @@ void addAround(const CellRun& run, int width, int height, std::vector<CellRun>& 
 
 }  // namespace
 
-LostZeros::LostZeros(int width) : width_(width) {}
+LostZeros::LostZeros(int width, bool zero_is_ordinary) : width_(width), zero_is_ordinary_(zero_is_ordinary) {}
 
 float LostZeros::at(int row, int column) const {
   const int oldest = rows_ - static_cast<int>(near_.size());
@@ -102,12 +102,36 @@ void LostZeros::search(int row) {
   }
 }
 
+// From west to east in every row, but for where it begins and ends.
+void LostZeros::boundRegions() {
+  std::vector<bool> seen(regions_.size());
+  for (const Run& run : runs_) {
+    const std::uint32_t own = root(run.region);
+    Region& region = regions_[own];
+    if (!seen[own]) region.first_row = run.cells.row, region.west = run.cells.first;
+    region.last_row = run.cells.row;
+    region.west = std::min(region.west, run.cells.first);
+    region.east = seen[own] ? std::max(region.east, run.cells.last) : run.cells.last;
+    seen[own] = true;
+  }
+  std::vector<int> row_before(regions_.size(), -1);
+  for (const Run& run : runs_) {
+    const std::uint32_t own = root(run.region);
+    Region& region = regions_[own];
+    const bool begins = run.cells.row == region.first_row || run.cells.first == region.west,
+               ends = run.cells.row == region.last_row || run.cells.last == region.east;
+    region.follows &= begins && ends && row_before[own] != run.cells.row;
+    row_before[own] = run.cells.row;
+  }
+}
+
 LostCells LostZeros::finish() {
   for (int row = std::max(rows_ - kBehind, 0); row < rows_; ++row) search(row);
+  if (zero_is_ordinary_) boundRegions();
   LostCells lost;
   for (const Run& run : runs_) {
     const Region& region = regions_[root(run.region)];
-    if (2 * region.abrupt <= region.steps) continue;
+    if (2 * region.abrupt <= region.steps || !region.follows) continue;
     addAround(run.cells, width_, rows_, lost.runs);
     lost.count += static_cast<std::size_t>(run.cells.last - run.cells.first) + 1;
   }

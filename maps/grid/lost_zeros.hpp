@@ -26,9 +26,12 @@ struct LostCells {
 /// three times the greatest of them. A region is lost if more than half of its border steps are abrupt (ours, not from the
 /// literature). Where terrain descends to a plain or a sea of height 0, border steps are not abrupt. A border step counts as not
 /// abrupt, too, if the cells behind it are level (a drawn wall) or unknown. A region without a border (a level map) is ground.
+/// Where 0 is an ordinary value, as of rock abundance, a region must also have the shape that a file loses: cells that follow
+/// each other in rows of equal width, of a strip or a tile.
 class LostZeros {
  public:
-  explicit LostZeros(int width);
+  /// `zero_is_ordinary`: whether only regions of the shape that a file loses are lost.
+  explicit LostZeros(int width, bool zero_is_ordinary = false);
 
   /// The next row of `width` values, NaN where there is none; from either end of the raster.
   void add(std::span<const float> row);
@@ -42,6 +45,8 @@ class LostZeros {
   struct Region {
     std::uint32_t parent = 0;
     std::size_t steps = 0, abrupt = 0;  // of its border
+    int first_row = 0, last_row = 0, west = 0, east = 0;
+    bool follows = true;  // whether its cells follow each other in rows
   };
   struct Run {
     CellRun cells;
@@ -55,9 +60,11 @@ class LostZeros {
   void join(std::size_t run);
   void look(const Step& step, Region& region) const;
   float at(int row, int column) const;
+  void boundRegions();
   std::uint32_t root(std::uint32_t region);
 
   int width_ = 0;
+  bool zero_is_ordinary_ = false;
   int rows_ = 0;                         // that were added
   std::deque<std::vector<float>> near_;  // the last rows
   std::vector<Run> runs_;

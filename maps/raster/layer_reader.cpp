@@ -301,7 +301,7 @@ RockAbundance readRockAbundance(const LayerSource& source, const ElevationMap& m
   Dataset band = inMemory(*file, number_of_band, map, source.path);
   const LostCells lost =
       lostCells(*file, number_of_band, {0, 0, file->GetRasterXSize(), file->GetRasterYSize()}, std::nullopt,
-                source.path);
+                source.path, true);
   makeUnknown(*band, lost, source.path);
   changePixels(*band, source.path, [&](float v) {
     if (v < 0 || v > 1)

@@ -102,10 +102,10 @@ std::vector<float> readPixels(GDALDataset& raster, int band, const PixelBox& box
 }
 
 LostCells lostCells(GDALDataset& raster, int band, const PixelBox& box, std::optional<double> nodata,
-                    const std::string& where) {
+                    const std::string& where, bool zero_is_ordinary) {
   constexpr int kCellsAtOnce = 1 << 20;
   const int rows = std::max(1, kCellsAtOnce / box.width);
-  LostZeros search(box.width);
+  LostZeros search(box.width, zero_is_ordinary);
   for (int row = 0; row < box.height; row += rows) {
     const int count = std::min(rows, box.height - row);
     std::vector<float> values =

@@ -47,9 +47,9 @@ std::vector<float> readPixels(GDALDataset& raster, int band, const PixelBox& box
                               int overview = 1);
 
 /// Cells of a box of a band that were overwritten by zeros, as LostZeros finds them in that box; `nodata`: a value that stands for
-/// no data. @throws InputError
+/// no data, `zero_is_ordinary` as there. @throws InputError
 LostCells lostCells(GDALDataset& raster, int band, const PixelBox& box, std::optional<double> nodata,
-                    const std::string& where);
+                    const std::string& where, bool zero_is_ordinary = false);
 
 /// Makes NaN of the values of a box, in rows of cells of overview x overview pixels, that lost cells reach into.
 void blank(const LostCells& lost, const PixelBox& box, int overview, std::vector<float>& values);

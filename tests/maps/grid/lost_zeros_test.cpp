@@ -106,5 +106,35 @@ TEST(LostZeros, OneRegionIsLostAndAnotherIsASea) {
   EXPECT_EQ(drawing[40].find('#'), std::string::npos);
 }
 
+// Share of cells that hold rocks, 0 in between: round fields of some cells.
+double rockFields(int column, int row) {
+  const double x = column % 15 - 7.0, y = row % 12 - 6.0, away = std::hypot(x, y);
+  return away < 5.5 ? 0.4 + 0.01 * std::sin(3.0 * column + row) : 0.0;
+}
+
+std::size_t lostRocks(const Height& share) {
+  LostZeros search(kWidth, true);
+  for (int row = 0; row < kHeight; ++row) {
+    std::vector<float> values;
+    for (int column = 0; column < kWidth; ++column) values.push_back(static_cast<float>(share(column, row)));
+    search.add(values);
+  }
+  return search.finish().count;
+}
+
+// Property: where 0 is an ordinary value, ground between fields of rocks is ground, whatever its border; cells that follow each
+// other in the rows of a file are lost where rocks lie all around.
+TEST(LostZeros, WhereZeroIsOrdinaryOnlyWhatFilesLoseIsLost) {
+  EXPECT_GT(lostCount(rockFields), 1000U);
+  EXPECT_EQ(lostRocks(rockFields), 0U);
+  EXPECT_EQ(lostRocks([](int c, int r) { return r < 20 ? 0.0 : rockFields(c, r); }), 0U);
+  const Height dense = [](int c, int r) { return 0.5 + rough(c, r); };
+  for (const int cells : {1, 7, 59, 60, 61, 128, 1024})
+    for (int begin = 0; begin + cells <= kWidth * kHeight; begin += 331)
+      EXPECT_EQ(lostRocks(zeroed([&](int c, int r) { return 2.0 + dense(c, r); }, begin, begin + cells)),
+                static_cast<std::size_t>(cells))
+          << begin << ' ' << cells;
+}
+
 }  // namespace lost_zeros_test
 }  // namespace talus::maps
