@@ -79,9 +79,10 @@ static_assert(sizeof(BlockEvidence) == 44);
 /// Readings of one certainty are as weak as their weakest part: the least of m_k + sigma c(k/n), m_k the mean
 /// of the k lowest of n and -sigma c(k/n) what it would be by noise alone (mean of the lower tail of a normal,
 /// c(p) = phi(Phi^-1(p))/p; ours). No number of readings makes the pull surer than the model, 0.02 in DP/W:
-/// what one place says is wrong in one way. Of several drives none makes the place stronger than another shows it, beyond two
-/// standard deviations of what that one's readings scatter by: the sensors of one may be faulty, and which is not known. The shared error of the pull is the mean of that of its readings, each
-/// weighed by its certainty: no number of readings makes it smaller.
+/// what one place says is wrong in one way. Of several drives none makes the place stronger than another shows it:
+/// the sensors of one may be faulty, and which is not known. A drive whose mean is known no better than to within 0.02, by two
+/// standard errors of its own scatter, bounds it by so much more. The shared error of the pull is the mean of that of its
+/// readings, each weighed by its certainty: no number of readings makes it smaller.
 void summarise(std::span<const ReadingCount> counts, const Estimate& prior, BlockEvidence& block);
 
 /// Readings behind the pull, each weighed by its certainty: one of standard deviation 0.05 counts one.

@@ -65,7 +65,7 @@ TEST(BlockEvidence, IsAsWeakAsTheDriveThatShowsLeast) {
   EXPECT_NEAR(summed(few).pull, summed({low, times(strong, 900), high}).pull, 1e-6F);
 }
 
-// Property: readings of one drive say the same, whatever its number and however often equal ones are counted apart.
+// Property: readings of one drive say the same, whatever its number.
 TEST(BlockEvidence, ADrivesNumberDoesNotShow) {
   std::mt19937_64 random(5);
   for (int round = 0; round < 40; ++round) {
