@@ -192,10 +192,11 @@ double scatterOfMean(std::span<const ReadingCount> counts) noexcept {
 }
 
 // By the drive that shows least: as it is where it is known as well as the model knows any place, else beyond what its readings
-// scatter by.
+// scatter by; beyond that by how much the least of so many sound drives lies lower than the least of two.
 void boundByDrives(std::span<const ReadingCount> counts, const Estimate& prior, BlockEvidence& block,
                    double& least) {
   constexpr double kBeyond = 2.0;
+  constexpr double kSound = 0.02;  // by which sound drives differ in a block, one standard deviation (ours)
   const auto isOfFirst = [&](const ReadingCount& c) { return c.drive == counts.front().drive; };
   if (counts.empty() || std::ranges::all_of(counts, isOfFirst)) return;
   std::vector<std::uint16_t> drives;
@@ -203,17 +204,24 @@ void boundByDrives(std::span<const ReadingCount> counts, const Estimate& prior, 
   std::ranges::sort(drives);
   drives.erase(std::unique(drives.begin(), drives.end()), drives.end());
   std::vector<ReadingCount> own;
+  double raising_drives = 0.0, most = std::numeric_limits<double>::infinity(), of_variance = 0.0;
   for (const std::uint16_t drive : drives) {
     own.clear();
     std::ranges::copy_if(counts, std::back_inserter(own), [&](const auto& c) { return c.drive == drive; });
     const Weighed raising = weighPulls(own, prior, block, least).raising;
     if (raising.weight <= 0.0) continue;
+    raising_drives += 1.0;
     const double beyond = kBeyond * scatterOfMean(own);
-    const auto most = static_cast<float>(raising.sum / raising.weight + (beyond > kModel ? beyond : 0.0));
-    if (most >= block.pull) continue;
-    block.pull = most;
-    block.variance = static_cast<float>(variance(raising.weight));
+    const double bound = raising.sum / raising.weight + (beyond > kModel ? beyond : 0.0);
+    if (bound >= most) continue;
+    most = bound;
+    of_variance = variance(raising.weight);
   }
+  if (raising_drives < 2.0) return;
+  most += kSound * (tailMean(1.0 / raising_drives) - tailMean(0.5));
+  if (most >= static_cast<double>(block.pull)) return;
+  block.pull = static_cast<float>(most);
+  block.variance = static_cast<float>(of_variance);
 }
 
 void summarisePull(std::span<const ReadingCount> counts, const Estimate& prior, BlockEvidence& block) {

@@ -81,7 +81,8 @@ static_assert(sizeof(BlockEvidence) == 44);
 /// c(p) = phi(Phi^-1(p))/p; ours). No number of readings makes the pull surer than the model, 0.02 in DP/W:
 /// what one place says is wrong in one way. Of several drives none makes the place stronger than another shows it:
 /// the sensors of one may be faulty, and which is not known. A drive whose mean is known no better than to within 0.02, by two
-/// standard errors of its own scatter, bounds it by so much more. The shared error of the pull is the mean of that of its
+/// standard errors of its own scatter, bounds it by so much more, and of n drives each by 0.02 (c(1/n) - c(1/2)) more, so that the
+/// least of many sound ones is no lower than all of them. The shared error of the pull is the mean of that of its
 /// readings, each weighed by its certainty: no number of readings makes it smaller.
 void summarise(std::span<const ReadingCount> counts, const Estimate& prior, BlockEvidence& block);
 

@@ -132,9 +132,12 @@ const char* SensorProof::text(Lack lack) noexcept {
     case Lack::Nothing:
       return "";
     case Lack::Pose:
-      return "the pose jumps and does not return; leave out the rows behind the jump";
+      return "the pose moves further between two rows than the rover can have driven, and does not return; "
+             "leave out the "
+             "rows behind that, or read rows closer together";
     case Lack::SlopeRows:
-      return "fewer than 12 rows half a metre apart have slope_rad and heading_rad; add both columns";
+      return "fewer than 12 rows half a metre apart have slope_rad and heading_rad; drive further, or add "
+             "what lacks";
     case Lack::Slopes:
       return "slopes vary by less than 0.03 (standard deviation of the gradient); drive over steeper ground";
     case Lack::Slope:

@@ -6,7 +6,7 @@
 namespace talus::costmap {
 namespace {
 
-constexpr std::size_t kOnEitherSide = 4;   // places on either side
+constexpr std::size_t kOnEitherSide = 3;   // places on either side
 constexpr double kLeastScatter = 0.2;      // of a place, in the least step: more than any few of them show
 constexpr std::size_t kMostPlaces = 1000;  // places
 

@@ -14,12 +14,12 @@ class StepWatch {
 
   /// What is not finite is left out.
   void add(double value);
-  /// From where on to the end it differs, less what it was before; 0 where it has not stepped: fewer than four places of
+  /// From where on to the end it differs, less what it was before; 0 where it has not stepped: fewer than three places of
   /// kRows values on either side, less than the least, or less than kCertain standard errors.
   double step() const noexcept { return step_; }
 
-  static constexpr std::size_t kRows = 5;  ///< values of one place, which share their error
-  static constexpr double kCertain = 6.0;  ///< standard errors
+  static constexpr std::size_t kRows = 10;  ///< values of one place, which share their error
+  static constexpr double kCertain = 6.0;   ///< standard errors
 
  private:
   void look();

@@ -52,6 +52,7 @@ TelemetryProcessor::TelemetryProcessor(const TraversabilityMap& map)
 std::vector<TelemetryProcessor::Result> TelemetryProcessor::process(const TelemetryRows& rows,
                                                                     const Moment& moment,
                                                                     const DriveVerdict& verdict) {
+  read_ += moment.readings.size();
   transferred_ += moment.transferred ? moment.readings.size() : 0;
   std::vector<SensorWatch::Named> named;
   for (std::size_t w = 0; w < moment.readings.size(); ++w)
@@ -183,11 +184,11 @@ bool TelemetryProcessor::mayRaise(const TelemetryRows& rows, const Moment& momen
 }
 
 std::string TelemetryProcessor::whyNoneRaises() const {
-  if (watch_.clockWentBack() || watch_.biased() || others_ > 0) return {};
+  if (watch_.clockWentBack() || watch_.biased() || others_ == read_) return {};
   const SensorProof::Lack lack = proof_.lack();
   return lack != SensorProof::Lack::Nothing ? SensorProof::text(lack)
                                             : "no moment has sound rows of all wheels of the rover, or of "
-                                              "the only one of the file; give them all";
+                                              "the only one of the file; give them all, and time_s";
 }
 
 // What the readings of all wheels say where each slips otherwise.

@@ -87,7 +87,7 @@ class TelemetryProcessor {
   SensorWatch watch_;
   SensorProof proof_;
   WheelObserver observer_;
-  std::size_t transferred_ = 0, others_ = 0;
+  std::size_t read_ = 0, transferred_ = 0, others_ = 0;
 };
 
 }  // namespace talus::costmap

@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace talus::blind {
 namespace {
-
-constexpr double kPi = 3.14159265358979;
 
 struct Wheel {
   double n, k, c, t, K, c1, c2, r, b, rs, kappa = 0.0, hard = 1e9, hard_k = 0.0;
@@ -53,7 +52,7 @@ double entryFor(const Wheel& m, double slip, double load) {
 }
 
 double kp(double tan_phi) {
-  const double t = std::tan(kPi / 4.0 + 0.5 * std::atan(tan_phi));
+  const double t = std::tan(std::numbers::pi / 4.0 + 0.5 * std::atan(tan_phi));
   return t * t;
 }
 

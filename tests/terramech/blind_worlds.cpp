@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "blind_truth.hpp"
 
 namespace talus::blind {
 namespace {
-
-constexpr double kPi = 3.14159265358979;
 
 struct Kind {
   const char *kind, *family;
@@ -117,7 +116,7 @@ Conditions conditions(Random& random, int row, const Design& design) {
   c.time = 3600.0 * (row + random.uniform(0.0, 1.0)) / design.count;
   c.slope = random.uniform(-0.25, 0.25);
   c.grouser = random.below(2) * 0.01;
-  c.temperature = 15.0 + 8.0 * std::sin(2.0 * kPi * c.time / 5000.0) + 2.0 * random.normal();
+  c.temperature = 15.0 + 8.0 * std::sin(2.0 * std::numbers::pi * c.time / 5000.0) + 2.0 * random.normal();
   c.dust = random.uniform(0.0, 1.0);
   c.battery = 24.0 + random.uniform(0.0, 4.0);
   c.radius = design.campaign ? std::array{0.1, 0.125, 0.15}[static_cast<std::size_t>(random.below(3))] : 0.1;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -63,6 +64,34 @@ TEST(BlockEvidence, IsAsWeakAsTheDriveThatShowsLeast) {
   const ReadingCount low = pullReading({0.15, 0.05}, true), high = pullReading({0.25, 0.05}, true);
   const std::vector<ReadingCount> few{of(low, 1), of(times(strong, 900), 2), of(high, 1)};
   EXPECT_NEAR(summed(few).pull, summed({low, times(strong, 900), high}).pull, 1e-6F);
+}
+
+// Strength of places, on average, where so many drives read twelve times each; what their sensors are off by scatters by 0.01.
+double meanOfSound(int drives) {
+  constexpr int kPlaces = 400;
+  std::mt19937_64 random(11);
+  std::normal_distribution<double> noise;
+  double sum = 0.0;
+  for (int place = 0; place < kPlaces; ++place) {
+    std::vector<ReadingCount> counts;
+    for (std::uint16_t drive = 0; drive < drives; ++drive) {
+      const double off = 0.01 * noise(random);
+      for (int i = 0; i < 12; ++i)
+        counts.push_back(of(pullReading({0.2 + off + 0.02 * noise(random), 0.05}, true), drive));
+    }
+    std::ranges::sort(counts, {}, [](const ReadingCount& c) { return std::tuple(c.kind, c.step, c.drive); });
+    sum += static_cast<double>(summed(counts).pull);
+  }
+  return sum / kPlaces;
+}
+
+// Property: drives that are all sound do not take each other down, however many. (The least of eight lies 0.014 lower.)
+TEST(BlockEvidence, SoundDrivesDoNotLowerEachOther) {
+  const double one = meanOfSound(1);
+  for (const int drives : {2, 3, 4, 8, 16}) {
+    EXPECT_GT(meanOfSound(drives), one - 0.007) << drives;
+    EXPECT_LT(meanOfSound(drives), one + 0.007) << drives;
+  }
 }
 
 // Property: readings of one drive say the same, whatever its number.

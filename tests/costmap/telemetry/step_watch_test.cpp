@@ -37,15 +37,15 @@ TEST(StepWatch, ScatterIsNoStep) {
   std::mt19937_64 random(2);
   int found = 0;
   for (int round = 0; round < 2000; ++round)
-    found += watchOf(random, 8 + round % 60, 0.01 + 0.001 * (round % 80), 0.0, 1.0).step() != 0.0 ? 1 : 0;
+    found += watchOf(random, 6 + round % 60, 0.01 + 0.001 * (round % 80), 0.0, 1.0).step() != 0.0 ? 1 : 0;
   EXPECT_LE(found, 2);
   EXPECT_EQ(watchOf(random, 200, 0.005, 0.02, 0.5).step(), 0.0);
 }
 
-TEST(StepWatch, NeedsFourPlacesOnEitherSide) {
+TEST(StepWatch, NeedsThreePlacesOnEitherSide) {
   StepWatch watch(kLeast);
-  for (std::size_t i = 0; i < 4 * StepWatch::kRows; ++i) watch.add(0.0);
-  for (std::size_t i = 0; i < 4 * StepWatch::kRows - 1; ++i) watch.add(0.2);
+  for (std::size_t i = 0; i < 3 * StepWatch::kRows; ++i) watch.add(0.0);
+  for (std::size_t i = 0; i < 3 * StepWatch::kRows - 1; ++i) watch.add(0.2);
   EXPECT_EQ(watch.step(), 0.0);
   watch.add(std::numeric_limits<double>::quiet_NaN());
   EXPECT_EQ(watch.step(), 0.0);
