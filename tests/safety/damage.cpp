@@ -48,9 +48,9 @@ std::optional<DamageResult> parsed(const std::string& text) {
 
 const std::vector<std::string>& damagedFiles() {
   static const std::vector<std::string> files{
-      "dem.img",     "dem.tif",     "dem_deflate.tif", "dem.nc",           "dem.asc",
-      "classes.asc", "classes.img", "rocks.img",       "keep_out.geojson", "drive.csv",
-      "evidence.db", "learned.ot",  "model.yaml",      "route.geojson"};
+      "dem.img",     "dem.tif",       "dem_deflate.tif",  "dem.nc",    "dem.asc",     "classes.asc",
+      "classes.img", "rocks.img",     "keep_out.geojson", "drive.csv", "evidence.db", "learned.ot",
+      "model.yaml",  "route.geojson", "patch.f32",        "patch.u8"};
   return files;
 }
 

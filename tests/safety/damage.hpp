@@ -15,7 +15,8 @@
 
 namespace safety {
 
-/// Files that are damaged: elevation and classes in several formats, rocks, areas to keep out of, telemetry, journal, map, model, route.
+/// Files that are damaged: elevation and classes in several formats, rocks, areas to keep out of, telemetry, journal, map, model, route, and
+/// the arrays of heights and classes that a program in C puts into a map.
 const std::vector<std::string>& damagedFiles();
 
 /// The bytes of a file with a part removed, cut off, or overwritten by zeros, by other bytes, by a single byte or by another part of

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <sstream>
 #include <stdexcept>
+#include <tuple>
 
 #include <gdal.h>
 #include <nlohmann/json.hpp>
@@ -113,9 +114,12 @@ DamagedSite::DamagedSite(const Places& places, std::uint64_t number)
   write(in / "model.yaml", kModel);
   for (const char* old : {"evidence.db", "evidence.db-wal", "evidence.db-shm", "learned.ot"})
     fs::remove(in / old);
+  writeUnseen();
   std::string complaint;
-  if (call("costmap " + ground("dem.asc", "classes.asc") + " -o base.ot", complaint) != 0)
-    throw std::runtime_error(in.string() + ": no map: " + complaint);
+  for (const auto& [dem, classes, map] : {std::tuple{"dem.asc", "classes.asc", "base.ot"},
+                                          std::tuple{"unseen.asc", "unseen_classes.asc", "unseen.ot"}})
+    if (call("costmap " + ground(dem, classes) + " -o " + map, complaint) != 0)
+      throw std::runtime_error(in.string() + ": no map: " + complaint);
   if (!fs::exists(in / "drive.csv") ||
       call("update base.ot drive.csv -o learned.ot --journal evidence.db", complaint) != 0) {
     fs::remove(in / "drive.csv");
@@ -126,6 +130,34 @@ DamagedSite::DamagedSite(const Places& places, std::uint64_t number)
       ground_.site, fs::exists(in / "evidence.db") ? readJournal(in / "evidence.db") : none_);
   fs::remove(in / "route.geojson");
   call("plan " + ground("dem.asc", "classes.asc") + errand(0) + " -o route.geojson", complaint);
+}
+
+// A map whose middle nobody has seen yet, and the heights and classes of that window, from the south-west on.
+void DamagedSite::writeUnseen() {
+  Raster heights = ground_.site.elevation_m, classes = *ground_.site.classes;
+  const Cell corner{heights.width / 8, heights.height / 8};
+  const int width = heights.width - 2 * corner.column, height = heights.height - 2 * corner.row;
+  std::string numbers, bytes;
+  for (int row = corner.row; row < corner.row + height; ++row)
+    for (int column = corner.column; column < corner.column + width; ++column) {
+      const auto at = static_cast<std::size_t>(row) * static_cast<std::size_t>(heights.width) +
+                      static_cast<std::size_t>(column);
+      const auto z = static_cast<float>(heights.values[at]);
+      const double of = classes.values[at];
+      numbers.append(reinterpret_cast<const char*>(&z), sizeof z);
+      bytes += static_cast<char>(std::isnan(of) ? 255 : static_cast<unsigned char>(of));
+      heights.values[at] = classes.values[at] = std::nan("");
+    }
+  writeAscii(heights, folder() / "unseen.asc");
+  writeAscii(classes, folder() / "unseen_classes.asc");
+  write(folder() / "patch.f32", numbers);
+  write(folder() / "patch.u8", bytes);
+  std::ostringstream window;
+  window.precision(17);
+  window << heights.west_m + corner.column * heights.cell_m << ' '
+         << heights.south_m + corner.row * heights.cell_m << ' ' << width << ' ' << height << ' '
+         << heights.cell_m;
+  window_ = window.str();
 }
 
 std::string DamagedSite::whole(const std::string& file) const {
@@ -148,8 +180,11 @@ std::string DamagedSite::errand(std::size_t pair) const {
 }
 
 int DamagedSite::call(const std::string& words, std::string& complaint) const {
-  const std::string command =
-      "cd '" + folder().string() + "' && '" + places_.program + "' " + words + " >out.txt 2>err.txt";
+  return run("'" + places_.program + "' " + words, complaint);
+}
+
+int DamagedSite::run(const std::string& words, std::string& complaint) const {
+  const std::string command = "cd '" + folder().string() + "' && " + words + " >out.txt 2>err.txt";
   const int status = std::system(command.c_str());
   const int exit = status < 0 || (status & 0x7f) != 0 ? 128 : (status >> 8) & 0xff;
   if (const std::string printed = complaintOf(content(folder() / "err.txt"), exit); complaint.empty())
@@ -229,6 +264,19 @@ void DamagedSite::score(const std::string& file, DamageResult& result) const {
   if (result.exit == 0) judgeOn("damaged/" + file, {prior_.get()}, result);
 }
 
+// A program in C opens the map whose middle is unseen, and puts both arrays into it.
+void DamagedSite::patch(const std::string& file, std::size_t pair, DamageResult& result) const {
+  const auto part = [&](const std::string& name) { return (file == name ? "damaged/" : "") + name; };
+  const auto& [start, goal] = ground_.pairs[pair];
+  std::ostringstream words;
+  words.precision(9);
+  words << "'" SAFETY_PATCH_ROUTE "' unseen.ot " << part("patch.f32") << ' ' << part("patch.u8") << ' '
+        << window_ << ' ' << start.x_m << ' ' << start.y_m << ' ' << goal.x_m << ' ' << goal.y_m
+        << " damaged/route.geojson";
+  result.exit = run(words.str(), result.complaint);
+  if (result.exit == 0) judgeOn("damaged/route.geojson", {prior_.get()}, result);
+}
+
 DamageResult DamagedSite::tried(const std::string& file, const std::string& bytes, std::size_t pair) {
   DamageResult result;
   result.file = file;
@@ -242,6 +290,8 @@ DamageResult DamagedSite::tried(const std::string& file, const std::string& byte
   write(damaged / file, bytes);
   if (file == "route.geojson")
     score(file, result);
+  else if (file.starts_with("patch."))
+    patch(file, pair, result);
   else if (file == "drive.csv" || file == "evidence.db" || file == "learned.ot")
     planLearned(file, pair, result);
   else

@@ -27,6 +27,7 @@ class DamagedSite {
 
  private:
   int call(const std::string& words, std::string& complaint) const;
+  int run(const std::string& words, std::string& complaint) const;
   std::string ground(const std::string& dem, const std::string& classes,
                      const std::string& areas = "keep_out.geojson") const;
   std::string errand(std::size_t pair) const;
@@ -36,9 +37,12 @@ class DamagedSite {
   void plan(const std::string& file, std::size_t pair, DamageResult& result) const;
   void planLearned(const std::string& file, std::size_t pair, DamageResult& result) const;
   void score(const std::string& file, DamageResult& result) const;
+  void patch(const std::string& file, std::size_t pair, DamageResult& result) const;
+  void writeUnseen();
 
   Places places_;
   ProvingGround ground_;
+  std::string window_;  ///< what a program in C sees later: west, south, width, height, resolution
   std::vector<JournalRow> none_;
   std::unique_ptr<Belief> prior_, learned_;
 };
