@@ -84,6 +84,11 @@ struct SideRange {
   }
 };
 
+/// Whether a drive that turns within a set of headings gets everywhere on free ground of one kind. The set must not be empty.
+inline bool leadsEverywhere(const HeadingSet& headings) noexcept {
+  return headings.all() || 0.5 * HeadingSet::kTurn - headings.widestGap().width_rad > 0.0;
+}
+
 /// Where a drive that turns within a set of headings gets from a place on free ground of one kind: everywhere, or into a
 /// cone of directions no wider than half a turn. The set must not be empty.
 class DriveCone {

@@ -38,7 +38,7 @@ Reach::Reach(const costmap::CostGrid& map, HeadingSets& headings, Sense sense, m
 const HeadingSet& Reach::headingsOf(Cell cell) {
   const costmap::CellCode code = map_.at(cell);
   const HeadingSet& own = headings_.of(code);
-  if (sense_ == Sense::From) return own;
+  if (sense_ == Sense::From || own.all()) return own;
   const auto known = reversed_.find(code.bits());
   return known != reversed_.end() ? known->second
                                   : reversed_.emplace(code.bits(), own.reversed()).first->second;
@@ -56,7 +56,7 @@ void Reach::begin(Cell cell, const InCell* place) {
   const HeadingSet& own = headingsOf(cell);
   if (own.empty()) return;
   const std::size_t index = map_.grid().index(cell);
-  if (!DriveCone(own).everywhere()) {
+  if (!leadsEverywhere(own)) {
     Entries& entries = cones_[index];
     entries.has_place = place != nullptr;
     entries.anywhere = place == nullptr;
@@ -89,13 +89,12 @@ bool Reach::mayCross(Cell cell, const HeadingSet& own, int side) {
 
 void Reach::spread(Cell cell) {
   const HeadingSet& own = headingsOf(cell);
-  const DriveCone cone(own);
   const auto found = cones_.find(map_.grid().index(cell));
   const Entries* entries =
       found == cones_.end() ? nullptr : &found->second;  // stays where it is when others come
   for (int side = 0; side < 4; ++side) {
     if (!map_.grid().contains(beyond(cell, side)) || !mayCross(cell, own, side)) continue;
-    const SideRange range = entries == nullptr ? SideRange{0.0, 1.0} : exits(*entries, cone, side);
+    const SideRange range = entries == nullptr ? SideRange{0.0, 1.0} : exits(*entries, DriveCone(own), side);
     if (!range.empty()) enter(beyond(cell, side), otherSide(side), range);
   }
 }
@@ -103,7 +102,7 @@ void Reach::spread(Cell cell) {
 void Reach::enter(Cell cell, int side, const SideRange& range) {
   const std::size_t index = map_.grid().index(cell);
   if (seen_[index] != 0 && !cones_.contains(index)) return;  // entered before, and free to go everywhere
-  if (DriveCone(headingsOf(cell)).everywhere()) return enqueue(index);
+  if (leadsEverywhere(headingsOf(cell))) return enqueue(index);
   Entries& entries = cones_[index];
   SideRange& known = entries.sides[static_cast<std::size_t>(side)];
   if (!known.empty() && known.from <= range.from + kRounding && range.to <= known.to + kRounding) return;

@@ -50,6 +50,21 @@ std::vector<double> limitsAcross(const costmap::DriveCost& cost, const DriveCurv
   return limits;
 }
 
+// How near to the flat, as a gradient, some pair of gradients along and across is refused: a node that is refuses all pairs less than a
+// node's distance away, and the limits and the end of the table what lies beyond them.
+double gentlest(const costmap::DriveCost& cost, const DriveCurve& curve) {
+  constexpr double kBin = 1.0 / DriveCurve::kBinsPerUnit, kRow = 1.0 / DriveCurve::kRowsPerUnit;
+  double least = std::min({cost.limits().max_along, cost.limits().max_across,
+                           DriveCurve::gradient(DriveCurve::kBins - 1) - kBin});
+  for (int row = 0; row <= curve.lastRow(); ++row)
+    for (int bin = 0; bin < DriveCurve::kBins; ++bin) {
+      if (std::isfinite(curve.rows()[row * DriveCurve::kBins + bin])) continue;
+      least = std::min(least, std::hypot(std::max(0.0, std::abs(DriveCurve::gradient(bin)) - kBin),
+                                         std::max(0.0, (row - 1) * kRow)));
+    }
+  return least;
+}
+
 // Headings at which the gradient along or across takes one of these values.
 std::vector<double> turningPoints(const HeadingSets::Limits& limits, costmap::CellCode cell) {
   const double steepest = std::hypot(cell.dzDx(), cell.dzDy()), up = std::atan2(cell.dzDy(), cell.dzDx());
@@ -141,7 +156,7 @@ HeadingSet HeadingSet::reversed() const {
 }
 
 HeadingSets::Limits::Limits(const costmap::DriveCost& cost, const costmap::DriveCurve& curve)
-    : along(limitsAlong(cost, curve)), across(limitsAcross(cost, curve)) {}
+    : along(limitsAlong(cost, curve)), across(limitsAcross(cost, curve)), gentle(gentlest(cost, curve)) {}
 
 HeadingSet allowedHeadings(const costmap::DriveCost& cost, costmap::CellCode cell) {
   if (cell.curve() >= cost.curves().size()) return {};
@@ -178,7 +193,10 @@ const HeadingSet& HeadingSets::known(costmap::CellCode cell) {
     set = HeadingSet({{0.0, HeadingSet::kTurn}});
   } else if (cell.curve() < cost_.curves().size()) {
     auto& limits = limits_[cell.curve()];
-    if (!limits) limits.emplace(cost_, cost_.curves()[cell.curve()]);
+    if (!limits) {
+      limits.emplace(cost_, cost_.curves()[cell.curve()]);
+      gentle_[cell.curve()] = limits->gentle * limits->gentle;
+    }
     set = allowedHeadings(cost_, cell, *limits);
   }
   return sets_.try_emplace(cell.bits(), set, &arena_).first->second;

@@ -64,10 +64,14 @@ class HeadingSets {
         free_(free),
         sets_(*new (arena_.allocate(sizeof(Sets), alignof(Sets))) Sets(&arena_)),
         limits_(cost.curves().size()),
+        gentle_(cost.curves().size()),
         recent_(kRecent) {}
   HeadingSets(const HeadingSets&) = delete;
   HeadingSets& operator=(const HeadingSets&) = delete;
   const HeadingSet& of(costmap::CellCode cell) {
+    if (cell.curve() < gentle_.size() &&
+        cell.dzDx() * cell.dzDx() + cell.dzDy() * cell.dzDy() < gentle_[cell.curve()])
+      return all_;
     Recent& recent = recent_[(cell.bits() * 2654435761U) >> 20];  // multiplicative hashing, kRecent values
     if (recent.set != nullptr && recent.bits == cell.bits()) return *recent.set;
     const HeadingSet& set = known(cell);
@@ -79,6 +83,8 @@ class HeadingSets {
   struct Limits {
     Limits(const costmap::DriveCost& cost, const costmap::DriveCurve& curve);
     std::vector<double> along, across;
+    /// On cells less steep than this all headings are allowed; 0: on none.
+    double gentle;
   };
 
  private:
@@ -99,6 +105,8 @@ class HeadingSets {
   Sets&
       sets_;  // with all that it holds in the arena, and never destroyed: that took 0.5 s of a plan that was stopped
   std::vector<std::optional<Limits>> limits_;
+  std::vector<double> gentle_;  // Limits::gentle of each curve, squared; 0 until the curve was asked for
+  const HeadingSet all_{{{0.0, HeadingSet::kTurn}}};
   std::vector<Recent> recent_;
 };
 
