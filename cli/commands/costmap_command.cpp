@@ -12,6 +12,7 @@
 #include <talus/cli/ground/ground_options.hpp>
 #include <talus/cli/ground/site_layers.hpp>
 #include <talus/costmap/map/map_file.hpp>
+#include <talus/costmap/map/place_beliefs.hpp>
 #include <talus/costmap/surface/surface_tree.hpp>
 
 namespace talus::cli {
@@ -38,8 +39,9 @@ void bind(CLI::App& command, CostmapOptions& options) {
 void writeOctovis(const costmap::TraversabilityMap& map, const std::string& path) {
   OutputFile file(path);
   std::ofstream stream(file.temporary(), std::ios::binary);
+  costmap::PlaceBeliefs beliefs(map);
   const auto tree = costmap::colorTree({map.elevation().elevation_m, map.surface().keys()},
-                                       [&](maps::Cell cell) { return map.belief(cell); });
+                                       [&](maps::Cell cell) { return beliefs.at(cell); });
   tree->write(stream);
   stream.close();
   if (!stream) file.fail("the stream failed");

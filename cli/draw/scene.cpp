@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -7,6 +8,7 @@
 #include <talus/cli/draw/route_summary.hpp>
 #include <talus/cli/draw/scene.hpp>
 #include <talus/common/constants.hpp>
+#include <talus/costmap/map/place_beliefs.hpp>
 #include <talus/costmap/map/traversability_map.hpp>
 
 namespace talus::cli {
@@ -48,40 +50,42 @@ Raster<float> slope_deg(const Raster<float>& z) {
   return out;
 }
 
-Raster<CategoryShares> categoryShares(const costmap::TraversabilityMap& map, const Blocks& blocks) {
-  Raster<CategoryShares> out(blocks.coarse());
+/// What the map believes of each block, on average over its cells; NaN where none has a category.
+struct BlockBeliefs {
+  Raster<CategoryShares> categories;
+  Raster<float> pull, pull_std, sinkage;
+};
+
+BlockBeliefs beliefsOf(const costmap::TraversabilityMap& map, const Blocks& blocks) {
+  const Raster<float> nothing(blocks.coarse(), std::nanf(""));
+  BlockBeliefs out{Raster<CategoryShares>(blocks.coarse()), nothing, nothing, nothing};
+  costmap::PlaceBeliefs beliefs(map);
   for (int row = 0; row < blocks.coarse().height; ++row) {
     for (int column = 0; column < blocks.coarse().width; ++column) {
-      CategoryShares& shares = out[{column, row}];
-      blocks.forEach({column, row}, [&](Cell cell) { ++shares.count[map.belief(cell).category & 3U]; });
+      const Cell block{column, row};
+      double pull = 0.0, pull_std = 0.0, sinkage = 0.0, count = 0.0;
+      blocks.forEach(block, [&](Cell cell) {
+        const costmap::CellBelief belief = beliefs.at(cell);
+        ++out.categories[block].count[belief.category & 3U];
+        if (belief.category > 2) return;
+        pull += static_cast<double>(belief.pull_mean);
+        pull_std += static_cast<double>(belief.pull_std);
+        sinkage += static_cast<double>(belief.sinkage_mean);
+        count += 1.0;
+      });
+      if (!(count > 0.0)) continue;
+      out.pull[block] = static_cast<float>(pull / count);
+      out.pull_std[block] = static_cast<float>(pull_std / count);
+      out.sinkage[block] = static_cast<float>(sinkage / count);
     }
   }
   return out;
 }
 
-void addBeliefLayers(Scene& scene, const costmap::TraversabilityMap& map, const Blocks& blocks) {
-  const auto mean = [&](float costmap::CellBelief::*field) {
-    return blocks.mean([&map, field](Cell cell) {
-      const costmap::CellBelief belief = map.belief(cell);
-      return belief.category < 3 ? belief.*field : std::nanf("");
-    });
-  };
-  const auto add = [&scene](ValueLayer layer) {
-    layer.range = inner(layer.values);
-    scene.layers.push_back(std::move(layer));
-  };
-  add({.name = "DP/W (drawbar pull / load)",
-       .unit = "",
-       .values = mean(&costmap::CellBelief::pull_mean),
-       .range = {}});
-  add({.name = "DP/W standard deviation",
-       .unit = "",
-       .values = mean(&costmap::CellBelief::pull_std),
-       .range = {}});
-  add({.name = "z/r (sinkage / wheel radius)",
-       .unit = "",
-       .values = mean(&costmap::CellBelief::sinkage_mean),
-       .range = {}});
+void addLayer(Scene& scene, std::string name, Raster<float> values) {
+  ValueLayer layer{.name = std::move(name), .unit = "", .values = std::move(values), .range = {}};
+  layer.range = inner(layer.values);
+  scene.layers.push_back(std::move(layer));
 }
 
 /// Names of the soils that the map's classes stand for.
@@ -129,7 +133,8 @@ Scene sceneOf(const maps::ElevationMap& map, const SceneOptions& options) {
 Scene sceneOf(const costmap::TraversabilityMap& map, const SceneOptions& options) {
   const Blocks blocks(map.grid(), options.max_side);
   Scene scene = ground(map.elevation(), blocks, options);
-  scene.categories = categoryShares(map, blocks);
+  BlockBeliefs beliefs = beliefsOf(map, blocks);
+  scene.categories = std::move(beliefs.categories);
   const auto version = map.published();
   ValueLayer slope{.name = "slope",
                    .unit = "deg",
@@ -141,7 +146,9 @@ Scene sceneOf(const costmap::TraversabilityMap& map, const SceneOptions& options
                    .range = {}};
   slope.range = {0.0, std::max(1.0, inner(slope.values).high)};
   scene.layers.push_back(std::move(slope));
-  addBeliefLayers(scene, map, blocks);
+  addLayer(scene, "DP/W (drawbar pull / load)", std::move(beliefs.pull));
+  addLayer(scene, "DP/W standard deviation", std::move(beliefs.pull_std));
+  addLayer(scene, "z/r (sinkage / wheel radius)", std::move(beliefs.sinkage));
   scene.facts.emplace_back("rover", map.model().rover().name);
   scene.facts.emplace_back("soil", soilNames(map));
   return scene;

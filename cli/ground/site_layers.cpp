@@ -8,6 +8,7 @@
 #include <utility>
 
 #include <talus/cli/ground/site_layers.hpp>
+#include <talus/costmap/map/place_beliefs.hpp>
 #include <talus/maps/terrain/terrain_metrics.hpp>
 
 namespace talus::cli {
@@ -80,6 +81,7 @@ std::vector<maps::Layer> siteLayers(const TraversabilityMap& map, int threads) {
   const auto known = [&](maps::Cell cell, float value) {
     return map.surface().classIndex(cell) < 0 ? kNoValue : value;
   };
+  costmap::PlaceBeliefs beliefs(map);
   std::vector<maps::Layer> layers;
   layers.push_back({"elevation", "m", map.elevation().elevation_m});
   layers.push_back(layer(grid, "slope", "rad", [&](maps::Cell c) { return metrics.slope_rad(c); }));
@@ -89,13 +91,13 @@ std::vector<maps::Layer> siteLayers(const TraversabilityMap& map, int threads) {
   layers.push_back(layer(grid, "class", "",
                          [&](maps::Cell c) { return static_cast<float>(map.surface().classNumber(c)); }));
   layers.push_back(
-      layer(grid, "category", "", [&](maps::Cell c) { return static_cast<float>(map.belief(c).category); }));
+      layer(grid, "category", "", [&](maps::Cell c) { return static_cast<float>(beliefs.at(c).category); }));
   layers.push_back(layer(grid, "drawbar_pull_over_load", "",
-                         [&](maps::Cell c) { return known(c, map.belief(c).pull_mean); }));
+                         [&](maps::Cell c) { return known(c, beliefs.at(c).pull_mean); }));
   layers.push_back(layer(grid, "drawbar_pull_over_load_std", "",
-                         [&](maps::Cell c) { return known(c, map.belief(c).pull_std); }));
+                         [&](maps::Cell c) { return known(c, beliefs.at(c).pull_std); }));
   layers.push_back(layer(grid, "sinkage_over_radius", "",
-                         [&](maps::Cell c) { return known(c, map.belief(c).sinkage_mean); }));
+                         [&](maps::Cell c) { return known(c, beliefs.at(c).sinkage_mean); }));
   layers.push_back(layer(grid, "energy_per_metre_uphill", "J/m",
                          [&](maps::Cell c) { return energyAlong(*published, c, 1.0); }));
   layers.push_back(layer(grid, "energy_per_metre_downhill", "J/m",
@@ -104,7 +106,7 @@ std::vector<maps::Layer> siteLayers(const TraversabilityMap& map, int threads) {
   layers.push_back(layer(grid, "category_best_heading", "", [&](maps::Cell c) {
     const CellCode code = published->at(c);
     return code.curve() < CellCode::kUnknown ? best.category(code)
-                                             : static_cast<float>(map.belief(c).category);
+                                             : static_cast<float>(beliefs.at(c).category);
   }));
   return layers;
 }

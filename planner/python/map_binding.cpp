@@ -8,6 +8,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <talus/costmap/map/place_beliefs.hpp>
 #include <talus/maps/grid/point_heights.hpp>
 #include <talus/planner/check/route_check.hpp>
 #include <talus/planner/python/arrays.hpp>
@@ -40,8 +41,9 @@ py::dict beliefs(const py::object& self) {
   {
     const py::gil_scoped_release released;
     cells->reserve(grid.size());
+    costmap::PlaceBeliefs place(map);
     for (int row = 0; row < grid.height; ++row)
-      for (int column = 0; column < grid.width; ++column) cells->push_back(map.belief({column, row}));
+      for (int column = 0; column < grid.width; ++column) cells->push_back(place.at({column, row}));
   }
   const costmap::CellBelief* first = cells->data();
   const py::capsule owner(cells.release(),
