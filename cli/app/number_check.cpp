@@ -69,14 +69,21 @@ void refuseEmptyValues(CLI::App& program) {
   for (CLI::App* command : program.get_subcommands({})) refuseEmptyValues(*command);
 }
 
+// Whether the option's values may be files: a number of such a name can be meant.
+bool takesFiles(const CLI::Option& option) {
+  const std::string type = option.get_type_name();
+  return option.get_positional() || type == "TEXT" || type.find("FILE") != type.npos ||
+         type.find('.') != type.npos;
+}
+
 void checkNumbers(const CLI::App& command) {
   if (command.get_parent() != nullptr) checkNumbers(*command.get_parent());
   for (const CLI::Option* option : command.get_options()) {
     if (option->empty()) continue;
     for (const std::string& result : option->results()) {
       const auto refuse = [&](const std::string& word, const char* reason) {
-        throw InputError(
-            {fmt::format("{} {}", option->get_name(), result), reason, "a file of that name is ./" + word});
+        throw InputError({fmt::format("{} {}", option->get_name(), result), reason,
+                          takesFiles(*option) ? "a file of that name is ./" + word : "give another number"});
       };
       std::istringstream words(result);
       for (std::string word; std::getline(words, word, ',');) {

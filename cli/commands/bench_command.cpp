@@ -1,7 +1,9 @@
 // talus bench SUITE: planners compared on the same questions.
 #include <algorithm>
+#include <ctime>
 #include <filesystem>
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -17,7 +19,7 @@
 #include <talus/common/input_error.hpp>
 #include <talus/common/progress_monitor.hpp>
 #include <talus/planner/bench/benchmark_log.hpp>
-#include <talus/planner/route/planner_names.hpp>
+#include <talus/planner/sampling/sampling_settings.hpp>
 
 namespace talus::cli {
 namespace {
@@ -38,7 +40,10 @@ void bind(CLI::App& command, BenchOptions& options) {
                   ".scen beside its .map")
       ->capture_default_str();
   command
-      .add_option("--planners", options.planners, "planners to compare, separated by commas (default: all)")
+      .add_option("--planners", options.planners,
+                  "planners to compare, separated by commas (default: all). OMPL's begin with the field's "
+                  "route, but those with "
+                  ":cold; NAME:range=20 sets a parameter by OMPL's name")
       ->delimiter(',');
   command.add_option("--plugin", options.plugins, "planner plugin to compare, too; may be repeated")
       ->type_name("FILE.so");
@@ -97,7 +102,8 @@ void refuseTwice(const std::string& what, std::vector<std::string> names) {
 std::string benchText(const planner::BenchmarkPlan& plan, const std::vector<planner::BenchmarkRun>& runs) {
   const std::size_t asked = planner::jobsOf(plan).size();
   return (runs.size() < asked ? fmt::format("cancelled: {} of {} runs\n", runs.size(), asked) : "") +
-         asText(compared(plan, runs)) + asText(drivesOf(plan, runs));
+         asText(compared(plan, runs)) + asText(drivesOf(plan, runs)) +
+         "OMPL's planners begin with the field's route, those with :cold with nothing\n";
 }
 
 void write(const std::filesystem::path& folder, const planner::BenchmarkPlan& plan,
@@ -143,8 +149,8 @@ int run(const BenchOptions& options, Context& context) {
   if (!campaign.leads()) context.quiet = true;
   planner::BenchmarkPlan plan;
   refuseTwice("suite", options.suite.names);
-  for (const std::string& name : options.planners.empty() ? planner::plannerNames() : options.planners)
-    plan.planners.push_back(planner::plannerName(name));
+  for (const std::string& words : options.planners.empty() ? planner::warmAndCold() : options.planners)
+    plan.planners.push_back(planner::wordsOf(planner::samplingSettings(words)));
   for (const std::string& file : options.plugins) {
     const std::string name = pluginOf(file).name();
     plan.planners.push_back(name);
@@ -158,6 +164,7 @@ int run(const BenchOptions& options, Context& context) {
   const bool made = campaign.leads() && makeFolder(options.folder);
   plan.seeds = options.runs;
   plan.time_limit_s = options.time_limit_s;
+  plan.began = fmt::format("{:%Y-%m-%d %H:%M:%S}", fmt::gmtime(std::time(nullptr)));
   const auto runs = allRuns(plan, campaign, context);
   if (!campaign.leads()) return context.stop.stop_requested() ? Exit::kCancelled : Exit::kDone;
   if (runs.size() < planner::jobsOf(plan).size()) return cancelled(options, plan, runs, made, context);
@@ -178,7 +185,7 @@ void addBench(CLI::App& app, Context& context) {
       {.name = "bench",
        .group = Group::kRoutes,
        .description = "compare planners on the same cases; write logs, a table and a page",
-       .examples = "  talus bench --planners field,RRTstar --time 5\n"
+       .examples = "  talus bench --planners field,RRTstar:cold --time 5\n"
                    "  talus bench gale.tif --pairs 10 -o gale_bench\n"
                    "  talus bench room.scen --planners field\n"
                    "  talus bench generated slip grids maps/*.tif --pairs 4\n"},

@@ -226,7 +226,9 @@ std::string asPage(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& r
   page.paragraph(fmt::format(
       "{} cases, {} runs per case and planner, time limit {} s per run, each run in its own process. Gap: "
       "relative to the known optimum, or to the best of all runs. Invalid: the independent check rejects the "
-      "route; its gap, curvature and clearance are not counted. Clearance is in cells.",
+      "route; its gap, curvature and clearance are not counted. Clearance is in cells. OMPL's planners begin "
+      "with the field's "
+      "route, those with :cold with nothing.",
       plan.cases.size(), plan.seeds, plan.time_limit_s));
   if (const std::size_t asked = planner::jobsOf(plan).size(); runs.size() < asked)
     page.paragraph(fmt::format("Cancelled after {} of {} runs.", runs.size(), asked));

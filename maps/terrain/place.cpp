@@ -87,13 +87,26 @@ Window parseWindow(std::string_view text) {
   return {toPlace(numbers[0], numbers[1], text), toPlace(numbers[2], numbers[3], text)};
 }
 
+namespace {
+
+// A cell holds its western and southern side; the map's eastern and northern border belongs to its last cells.
+double withinBorder(double at_m, double from_m, int cells, double resolution_m) {
+  const double border_m = from_m + cells * resolution_m;
+  return at_m == border_m ? border_m - 1e-6 * resolution_m : at_m;
+}
+
+}  // namespace
+
 Point locate(const Place& place, const ElevationMap& map, const std::string& name) {
   const auto* geographic = std::get_if<GeoPoint>(&place);
   if (geographic != nullptr && !map.georeference)
     throw InputError(
         {name, "map '" + map.source + "' has no CRS for a latitude and longitude", "give x,y in map metres"});
-  const Point point = geographic != nullptr ? map.georeference->forward(*geographic) : std::get<Point>(place);
-  if (map.grid().cellAt(point)) return point;
+  const Grid& grid = map.grid();
+  const Point given = geographic != nullptr ? map.georeference->forward(*geographic) : std::get<Point>(place);
+  const Point point{withinBorder(given.x_m, grid.south_west.x_m, grid.width, grid.resolution_m),
+                    withinBorder(given.y_m, grid.south_west.y_m, grid.height, grid.resolution_m)};
+  if (grid.cellAt(point)) return point;
   const std::string where = geographic != nullptr ? " at " + degrees(*geographic) : "";
   throw InputError({name,
                     format("x %.10g m, y %.10g m", point.x_m, point.y_m) + where + " lies outside the map",

@@ -65,6 +65,7 @@ struct BenchmarkPlan {
   std::map<std::string, std::string> plugins{};  ///< shared libraries of those, by name
   int seeds = 1;                                 ///< runs a case and planner: seeds 1 to so many
   double time_limit_s = 1.0;                     ///< a run
+  std::string began = "1970-01-01 00:00:00";     ///< for the logs, in UTC
 };
 
 /// One run to be made.

@@ -97,13 +97,12 @@ std::string benchmarkLog(const BenchmarkPlan& plan, const std::vector<BenchmarkR
   const BenchmarkCase& asked = plan.cases[case_index];
   const maps::Grid& grid = asked.map->grid();
   std::ostringstream log;
-  // No clock and no host: the same runs give the same log but for their measured seconds and megabytes.
+  // No host: the same runs give the same log but for their date and measured seconds and megabytes.
   log << "OMPL version 1.5.2\nExperiment " << oneWord(asked.name)
       << "\n3 experiment properties\nwidth INTEGER = " << grid.width << "\nheight INTEGER = " << grid.height
-      << "\nresolution_m REAL = " << grid.resolution_m
-      << "\nRunning on talus\nStarting at 1970-01-01 00:00:00\n<<<|\nfrom " << asked.start.x_m << ","
-      << asked.start.y_m << " to " << asked.goal.x_m << "," << asked.goal.y_m
-      << cutShort(plan, runs, case_index) << "\n|>>>\n1 is the random seed\n"
+      << "\nresolution_m REAL = " << grid.resolution_m << "\nRunning on talus\nStarting at " << plan.began
+      << "\n<<<|\nfrom " << asked.start.x_m << "," << asked.start.y_m << " to " << asked.goal.x_m << ","
+      << asked.goal.y_m << cutShort(plan, runs, case_index) << "\n|>>>\n1 is the random seed\n"
       << plan.time_limit_s << " seconds per run\n0 MB per run\n"
       << plan.seeds << " runs per planner\n";
   double total_s = 0.0;

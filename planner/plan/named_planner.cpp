@@ -5,7 +5,7 @@
 namespace talus::planner {
 
 NamedPlanner::NamedPlanner(const std::string& name) {
-  settings_.planner = plannerName(name);
+  settings_ = samplingSettings(name);
 }
 
 Plan NamedPlanner::planField(const Problem& problem) {
@@ -27,7 +27,8 @@ Plan NamedPlanner::planOne(const Problem& problem) {
     if (name() == DrivePlanner::kSampling) drive_.sample({.better = settings_.better});
     return drive_.plan(problem);
   }
-  return planBySampling(problem, settings_, [this](const Problem& leg) { return planField(leg); });
+  const auto field = [this](const Problem& leg) { return planField(leg); };
+  return planBySampling(problem, settings_, settings_.cold ? InitialPathProvider() : field);
 }
 
 }  // namespace talus::planner

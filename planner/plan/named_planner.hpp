@@ -17,7 +17,7 @@ namespace talus::planner {
 /// thread-safe: one object a thread; they may share a map.
 class NamedPlanner {
  public:
-  /// Throws std::invalid_argument for a name that is not on offer (planner_names.hpp).
+  /// By samplingSettings(): a name of planner_names.hpp, of OMPL's also "NAME:cold:range=20". Throws std::invalid_argument as it does.
   explicit NamedPlanner(const std::string& name = {});
 
   /// Whether it keeps headings and a turning radius.

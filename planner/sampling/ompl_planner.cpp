@@ -1,4 +1,7 @@
+#include <stdexcept>
+
 #include <ompl/base/SpaceInformation.h>
+#include <ompl/base/spaces/RealVectorStateSpace.h>
 #include <ompl/geometric/planners/fmt/FMT.h>
 #include <ompl/geometric/planners/informedtrees/ABITstar.h>
 #include <ompl/geometric/planners/sst/SST.h>
@@ -78,13 +81,56 @@ ob::PlannerPtr named(const std::string& name, const PlannerParts& parts) {
   return nullptr;
 }
 
+void setParameters(ob::Planner& planner, const std::string& name,
+                   const std::map<std::string, std::string>& parameters) {
+  for (const auto& [key, value] : parameters) {
+    if (!planner.params().hasParam(key)) {
+      std::vector<std::string> known;
+      planner.params().getParamNames(known);
+      std::string list;
+      for (const std::string& k : known) list += (list.empty() ? "" : ", ") + k;
+      throw std::invalid_argument("planner '" + name + "' has no parameter '" + key + "'; it has " + list);
+    }
+    bool taken = false;
+    try {
+      taken = planner.params().setParam(key, value);
+    } catch (const std::exception&) {  // what is no number
+    }
+    if (!taken)
+      throw std::invalid_argument("planner '" + name + "': parameter " + key + " does not take '" + value +
+                                  "'");
+  }
+}
+
+// On a plane of its own.
+ob::PlannerPtr unbound(const std::string& name) {
+  const auto plane = std::make_shared<ob::RealVectorStateSpace>(2);
+  plane->setBounds(0.0, 1.0);
+  return named(name,
+               {.space = std::make_shared<ob::SpaceInformation>(plane), .definition = {}, .known_route = {}});
+}
+
 }  // namespace
+
+bool isOmpls(const std::string& name) {
+  return unbound(name) != nullptr;
+}
+
+void checkParameters(const std::string& name, const std::map<std::string, std::string>& parameters) {
+  const QuietOmpl quiet;
+  const ob::PlannerPtr planner = unbound(name);
+  if (!planner)
+    throw std::invalid_argument("planner '" + name +
+                                "' is none of OMPL's that begin cold or have parameters");
+  setParameters(*planner, name, parameters);
+}
 
 ob::PlannerPtr makeOmplPlanner(const std::string& name, const PlannerParts& parts) {
   ob::PlannerPtr planner;
   withOmplSeed(parts.seed, [&] {
     planner = named(name, parts);
     if (!planner) return;
+    setParameters(*planner, name, parts.parameters);
     planner->setProblemDefinition(parts.definition);
     planner->setup();
   });

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -17,9 +18,16 @@ struct PlannerParts {
   std::vector<maps::Point> known_route;  ///< may be empty
   double range_m = 1.0;                  ///< longest motion, > 0
   std::uint64_t seed = 1;
+  std::map<std::string, std::string> parameters{};  ///< checkParameters() takes them
 };
 
 /// A planner of plannerNames(), set up with the settings that suit this ground; a null pointer for "field".
 ompl::base::PlannerPtr makeOmplPlanner(const std::string& name, const PlannerParts& parts);
+
+/// Whether a name is that of one of OMPL's planners.
+bool isOmpls(const std::string& name);
+
+/// Throws std::invalid_argument where the planner is none of OMPL's, has no parameter of a name, or does not take its value.
+void checkParameters(const std::string& name, const std::map<std::string, std::string>& parameters);
 
 }  // namespace talus::planner

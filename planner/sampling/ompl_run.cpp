@@ -121,7 +121,8 @@ Plan runOmpl(const Problem& leg, const SamplingSettings& settings, const Plan& k
                            .definition = definition,
                            .known_route = region->parts().known_route,
                            .range_m = range_m,
-                           .seed = leg.seed};
+                           .seed = leg.seed,
+                           .parameters = settings.parameters};
   const ob::PlannerPtr planner = makeOmplPlanner(settings.planner, parts);
   if (settings.better)
     definition->setIntermediateSolutionCallback(

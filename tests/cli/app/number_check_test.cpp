@@ -40,6 +40,26 @@ TEST(NumberCheck, NoOptionTakesAnImpossibleNumber) {
     EXPECT_EQ(said(good), "") << good;
 }
 
+// A number where a number is wanted is no file's name.
+TEST(NumberCheck, TheRemedyIsThatOfTheOption) {
+  const auto said = [](const std::string& option) -> std::string {
+    CLI::App app;
+    double weight = 0.0;
+    std::string map;
+    app.add_option("--time-weight", weight);
+    app.add_option("--map", map)->type_name("MAP.ot");
+    app.parse(option);
+    try {
+      checkNumbers(app);
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(said("--time-weight 1e300"), testing::EndsWith("give another number"));
+  EXPECT_THAT(said("--map 1e300"), testing::EndsWith("a file of that name is ./1e300"));
+}
+
 // Property: `--risk-weight ""` was 0 to the parser, and `--map ""` as if no map had been named.
 TEST(NumberCheck, NoOptionOfAnySubcommandTakesAnEmptyValue) {
   using Words = std::vector<std::string>;

@@ -34,8 +34,8 @@ nlohmann::json lasting(const std::string& text) {
 
 TEST(BenchCommand, ComparesPlannersAndWritesLogsTableAndPage) {
   const Folder folder;
-  const Ran ran = runTalus({"bench", room(folder), "--planners", "field,BIT*", "--runs", "2", "--time", "0.2",
-                            "-o", folder / "out", "--json"});
+  const Ran ran = runTalus({"bench", room(folder), "--planners", "field,BIT*:cold", "--runs", "2", "--time",
+                            "0.2", "-o", folder / "out", "--json"});
   ASSERT_EQ(ran.code, 0) << ran.err;
   const auto json = nlohmann::json::parse(ran.out);
   ASSERT_EQ(json.size(), 2u);
@@ -43,8 +43,9 @@ TEST(BenchCommand, ComparesPlannersAndWritesLogsTableAndPage) {
   EXPECT_EQ(json[0]["runs"], 6);
   EXPECT_EQ(json[0]["found"], 6);
   EXPECT_EQ(json[0]["breached"], 0);
-  EXPECT_EQ(json[1]["planner"], "BITstar");
-  EXPECT_THAT(fileContent(folder / "out/room_1.log"), HasSubstr("OMPL version"));
+  EXPECT_EQ(json[1]["planner"], "BITstar:cold");
+  EXPECT_THAT(fileContent(folder / "out/room_1.log"),
+              testing::AllOf(HasSubstr("OMPL version"), HasSubstr("Starting at 20")));
   EXPECT_THAT(fileContent(folder / "out/index.html"), HasSubstr("or to the best of all runs"));
   EXPECT_THAT(fileContent(folder / "out/table.txt"), HasSubstr("field"));
 }
@@ -142,6 +143,8 @@ TEST(BenchCommand, MistakesAreOneLineWithTwo) {
   for (const auto& words : std::vector<std::vector<std::string>>{{"bench", folder / "none.scen"},
                                                                  {"bench", folder / "none.tif"},
                                                                  {"bench", "--planners", "PRM*"},
+                                                                 {"bench", "--planners", "field:cold"},
+                                                                 {"bench", "--planners", "RRT*:speed=3"},
                                                                  {"bench", "--runs", "0"}}) {
     const Ran ran = runTalus(words, folder.path());
     EXPECT_EQ(ran.code, 2) << ran.err;

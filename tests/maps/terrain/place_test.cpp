@@ -51,6 +51,21 @@ TEST(Place, OutsideSaysWhereTheMapIs) {
   EXPECT_THAT(refusal([] { locate(GeoPoint{}, localMap(), "--goal"); }), HasSubstr("'yard.tif' has no CRS"));
 }
 
+// The line that says what the map spans names its border: that is a place of the map.
+TEST(Place, TheBorderBelongsToTheMap) {
+  const ElevationMap map = localMap();
+  for (const Point corner : {Point{100, -50}, Point{120, -50}, Point{100, -10}, Point{120, -10}}) {
+    const Point at = locate(corner, map, "--goal");
+    EXPECT_TRUE(map.grid().cellAt(at));
+    EXPECT_NEAR(at.x_m, corner.x_m, 1e-5);
+    EXPECT_NEAR(at.y_m, corner.y_m, 1e-5);
+  }
+  EXPECT_THAT(refusal([&] {
+                locate(Point{120.0001, -20}, map, "--goal");
+              }),
+              HasSubstr("lies outside the map"));
+}
+
 TEST(Place, DegreesThroughTheMapsGeoreference) {
   ElevationMap map = localMap();
   map.georeference.emplace(CoordinateSystem{.name = "Moon", .ellipsoid = kMoon});
