@@ -135,8 +135,8 @@ int runOne(const WheelOptions& options, const Context& context) {
   if (options.soil.empty()) lacking("--soil");
   if (options.rover.empty()) lacking("--rover");
   if (std::isnan(options.slip)) lacking("--slip");
-  const terramech::Soil soil = terramech::loadSoil(options.soil);
   const terramech::Rover rover = terramech::loadRover(options.rover);
+  const terramech::Soil soil = terramech::underGravity(terramech::loadSoil(options.soil), rover.gravity_m_s2);
   const double load_N = std::isnan(options.load_N) ? terramech::wheelLoad_N(rover) : options.load_N;
   const auto forces = terramech::equilibrium(soil, rover.wheel,
                                              {.load_N = load_N,

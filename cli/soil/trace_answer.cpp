@@ -29,7 +29,8 @@ struct Term {
 };
 
 /// Terms of the base model that a form of the library may stand in place of.
-constexpr Term kTerms[] = {{"digging_exponent", &Soil::digging_exponent},
+constexpr Term kTerms[] = {{"slip_sinkage_exponent", &Soil::slip_sinkage_exponent},
+                           {"digging_exponent", &Soil::digging_exponent},
                            {"side_bulldozing", &Soil::side_bulldozing}};
 
 EffectRole roleOf(const RefinedModel& refined, std::size_t effect, const Trial& trial) {

@@ -47,7 +47,8 @@ constexpr InputColumn kInputs[] = {{"cohesion_Pa", &WheelCase::cohesion_Pa},
                                    {"density_kg_m3", &WheelCase::density_kg_m3, true},
                                    {"gravity_m_s2", &WheelCase::gravity_m_s2, true},
                                    {"digging_exponent", &WheelCase::digging_exponent, true},
-                                   {"side_bulldozing", &WheelCase::side_bulldozing, true}};
+                                   {"side_bulldozing", &WheelCase::side_bulldozing, true},
+                                   {"slip_sinkage_exponent", &WheelCase::slip_sinkage_exponent, true}};
 
 constexpr const char* kResults[] = {"sinkage_m", "entry_angle_rad", "torque_Nm", "drawbar_pull_N",
                                     "side_force_N"};

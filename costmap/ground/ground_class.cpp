@@ -14,24 +14,49 @@ namespace {
 using terramech::Soil;
 using terramech::SoilDeviation;
 
-constexpr std::array<std::pair<double Soil::*, double SoilDeviation::*>, 6> kFields{
+constexpr std::array<std::pair<double Soil::*, double SoilDeviation::*>, 7> kFields{
     {{&Soil::cohesion_Pa, &SoilDeviation::cohesion_Pa},
      {&Soil::friction_angle_rad, &SoilDeviation::friction_angle_rad},
      {&Soil::sinkage_exponent, &SoilDeviation::sinkage_exponent},
      {&Soil::cohesive_modulus, &SoilDeviation::cohesive_modulus},
      {&Soil::frictional_modulus, &SoilDeviation::frictional_modulus},
-     {&Soil::shear_modulus_m, &SoilDeviation::shear_modulus_m}}};
+     {&Soil::shear_modulus_m, &SoilDeviation::shear_modulus_m},
+     {&Soil::slip_sinkage_exponent, &SoilDeviation::slip_sinkage_exponent}}};
 
 // Half the deviation each way keeps parameters in range that are a few deviations from their bound.
 constexpr double kStep = 0.5;
+
+// Of the exponent of underGravity(), one standard deviation: ours.
+constexpr double kGravityExponentStd = 0.5;
 
 double pullOf(const Soil& soil, const terramech::Rover& rover) {
   return terramech::mobilityReference(soil, rover).drawbar_pull_over_load;
 }
 
+bool isStiffer(const Soil& tested, const terramech::Rover& rover) {
+  return tested.test_gravity_m_s2 > rover.gravity_m_s2;
+}
+
+// The soil where the rover drives, if gravity matters less by one standard deviation.
+Soil lessAffected(const Soil& tested, const terramech::Rover& rover) {
+  return underGravity(tested, rover.gravity_m_s2, 1.0 - kGravityExponentStd);
+}
+
+// The prior where the rover drives.
+terramech::SoilPrior onBody(terramech::SoilPrior prior, const terramech::Rover& rover) {
+  if (!isStiffer(prior.mean, rover)) return prior;
+  const double width = rover.wheel.width_m, tested = sinkageModulus(prior.mean, width);
+  prior.mean = underGravity(prior.mean, rover.gravity_m_s2);
+  const double factor = sinkageModulus(prior.mean, width) / tested;
+  prior.deviation.cohesive_modulus *= factor;
+  prior.deviation.frictional_modulus *= factor;
+  return prior;
+}
+
 }  // namespace
 
-GroundClass groundClass(int number, const terramech::SoilPrior& prior, const terramech::Rover& rover) {
+GroundClass groundClass(int number, const terramech::SoilPrior& tested, const terramech::Rover& rover) {
+  const terramech::SoilPrior prior = onBody(tested, rover);
   GroundClass ground;
   ground.number = number;
   ground.soil = prior.mean;
@@ -52,10 +77,15 @@ GroundClass groundClass(int number, const terramech::SoilPrior& prior, const ter
     }
   }
   if (variance > 0.0) ground.mean_std = std::sqrt(variance);
+  if (isStiffer(tested.mean, rover))
+    ground.mean_std = std::hypot(ground.mean_std,
+                                 pullOf(lessAffected(tested.mean, rover), rover) - pullOf(prior.mean, rover));
   return ground;
 }
 
-GroundClass groundClass(int number, const terramech::RefinedModel& model, const terramech::Rover& rover) {
+GroundClass groundClass(int number, const terramech::RefinedModel& tested, const terramech::Rover& rover) {
+  terramech::RefinedModel model = tested;
+  model.soil = underGravity(tested.soil, rover.gravity_m_s2);
   const auto pull = [&](const terramech::RefinedModel& m) {
     return terramech::mobilityReference(m, rover).drawbar_pull_over_load;
   };
@@ -76,6 +106,8 @@ GroundClass groundClass(int number, const terramech::RefinedModel& model, const 
   for (std::size_t i = 0; i < count; ++i)
     for (std::size_t j = 0; j < count; ++j) variance += slope[i] * model.covariance[i * count + j] * slope[j];
   if (variance > 0.0) ground.mean_std = std::sqrt(variance);
+  model.soil = lessAffected(tested.soil, rover);
+  if (isStiffer(tested.soil, rover)) ground.mean_std = std::hypot(ground.mean_std, pull(model) - here);
   return ground;
 }
 

@@ -227,6 +227,7 @@ void visitClass(V& v, C& c, const std::string& at) {
   v(at + "soil.c1", soil.c1);
   v(at + "soil.c2", soil.c2);
   v(at + "soil.density_kg_m3", soil.density_kg_m3);
+  v.added(at + "soil.slip_sinkage_exponent", soil.slip_sinkage_exponent);
   v.added(at + "soil.digging_exponent", soil.digging_exponent);
   v.added(at + "soil.side_bulldozing", soil.side_bulldozing);
   v.count(at + "effects", c.effects);

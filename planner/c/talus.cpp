@@ -10,7 +10,9 @@
 
 #include <talus.h>
 
+#include <talus/costmap/ground/ground_class.hpp>
 #include <talus/costmap/map/map_file.hpp>
+#include <talus/costmap/map/place_beliefs.hpp>
 #include <talus/planner/c/border.hpp>
 #include <talus/planner/plan/make_planner.hpp>
 
@@ -82,20 +84,20 @@ talus::terramech::Rover roverOf(const talus_rover* given) {
   return rover;
 }
 
-talus::costmap::GroundClass classOf(const talus_soil& given) {
+talus::costmap::GroundClass classOf(const talus_soil& given, const talus::terramech::Rover& rover) {
   const talus_soil& s = read(&given, "soil");
   require(s.class_number >= 0 && s.class_number < 255,
           "soil: class_number = " + std::to_string(s.class_number) + ", must be 0 to 254");
-  talus::costmap::GroundClass ground;
-  ground.number = s.class_number;
-  ground.soil.name = "soil of class " + std::to_string(s.class_number);
-  ground.soil.cohesion_Pa = s.cohesion_Pa;
-  ground.soil.friction_angle_rad = s.friction_angle_rad;
-  ground.soil.sinkage_exponent = s.sinkage_exponent;
-  ground.soil.cohesive_modulus = s.cohesive_modulus;
-  ground.soil.frictional_modulus = s.frictional_modulus;
-  ground.soil.shear_modulus_m = s.shear_modulus_m;
-  return ground;
+  const talus::terramech::Soil soil{.name = "soil of class " + std::to_string(s.class_number),
+                                    .cohesion_Pa = s.cohesion_Pa,
+                                    .friction_angle_rad = s.friction_angle_rad,
+                                    .sinkage_exponent = s.sinkage_exponent,
+                                    .cohesive_modulus = s.cohesive_modulus,
+                                    .frictional_modulus = s.frictional_modulus,
+                                    .shear_modulus_m = s.shear_modulus_m,
+                                    .slip_sinkage_exponent = s.slip_sinkage_exponent,
+                                    .test_gravity_m_s2 = s.test_gravity_m_s2};
+  return talus::costmap::groundClass(s.class_number, {.mean = soil, .deviation = {}}, rover);
 }
 
 talus::PlannerSettings settingsOf(const talus_options& options) {
@@ -187,7 +189,7 @@ talus_code talus_create_with_costs(const talus_rover* rover, const talus_soil* s
     const talus_options& how = read(options, "options");
     const talus::PlannerSettings settings = settingsOf(how);
     talus::costmap::GroundModel::Parts parts{.rover = roverOf(rover), .classes = {}, .policy = {}};
-    for (std::size_t i = 0; i < soil_count; ++i) parts.classes.push_back(classOf(soils[i]));
+    for (std::size_t i = 0; i < soil_count; ++i) parts.classes.push_back(classOf(soils[i], parts.rover));
     parts.policy.allow_unknown = how.allow_unknown != 0;
     const talus::maps::Grid cells = gridOf(grid);
     const talus_layers& given = layersOf(layers, cells);
@@ -374,9 +376,10 @@ talus_code talus_read_cells(talus_session session, int column, int row, int widt
     const std::size_t cells = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
     require(capacity >= cells,
             "capacity = " + std::to_string(capacity) + ", must be >= " + std::to_string(cells));
+    talus::costmap::PlaceBeliefs beliefs(held->map);
     for (int r = 0; r < height; ++r)
       for (int c = 0; c < width; ++c) {
-        const talus::costmap::CellBelief b = held->map.belief({column + c, row + r});
+        const talus::costmap::CellBelief b = beliefs.at({column + c, row + r});
         *buffer++ = {b.pull_mean,   b.pull_std, b.sinkage_mean,
                      b.sinkage_std, b.category, static_cast<uint8_t>(b.hazards)};
       }

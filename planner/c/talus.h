@@ -59,6 +59,8 @@ typedef struct talus_soil {
   double cohesion_Pa, friction_angle_rad;
   double sinkage_exponent, cohesive_modulus, frictional_modulus; /* Bekker's n, k_c, k_phi in SI */
   double shear_modulus_m;
+  double slip_sinkage_exponent; /* growth of the exponent with slip, 0 to 2; 0: none */
+  double test_gravity_m_s2;     /* where the moduli were measured; in less gravity they are less by as much; 0: here */
 } talus_soil;
 
 typedef struct talus_grid {

@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include <talus/terramech/contact/soil.hpp>
 #include <talus/terramech/numerics/range.hpp>
 
@@ -5,6 +7,15 @@ namespace talus::terramech {
 
 double sinkageModulus(const Soil& soil, double width_m) {
   return soil.cohesive_modulus / width_m + soil.frictional_modulus;
+}
+
+Soil underGravity(Soil soil, double gravity_m_s2, double exponent) {
+  if (soil.test_gravity_m_s2 <= gravity_m_s2) return soil;
+  const double factor = std::pow(gravity_m_s2 / soil.test_gravity_m_s2, exponent);
+  soil.cohesive_modulus *= factor;
+  soil.frictional_modulus *= factor;
+  soil.test_gravity_m_s2 = 0.0;
+  return soil;
 }
 
 void validate(const Soil& soil) {
@@ -18,8 +29,10 @@ void validate(const Soil& soil) {
   check.finite("c1", soil.c1);
   check.finite("c2", soil.c2);
   check.above("density_kg_m3", soil.density_kg_m3, 0.0);
+  check.within("slip_sinkage_exponent", soil.slip_sinkage_exponent, {0.0, 2.0});
   check.atLeast("digging_exponent", soil.digging_exponent, 0.0);
   check.atLeast("side_bulldozing", soil.side_bulldozing, 0.0);
+  check.within("test_gravity_m_s2", soil.test_gravity_m_s2, {0.0, 1e3});
   // Beyond these no ground is known, by a factor of a hundred or more.
   check.within("cohesion_Pa", soil.cohesion_Pa, {0.0, 1e9});
   check.within("sinkage_exponent", soil.sinkage_exponent, {1e-3, 100.0});

@@ -16,13 +16,22 @@ struct Soil {
   double c1 = 0.43;                 ///< theta_m / theta_1 at no slip [-] (Wong and Reece; wong_reece_1967a)
   double c2 = 0.32;                 ///< its growth with slip [-]
   double density_kg_m3 = 1600.0;    ///< bulk density in [0.1, 1e6], of soil that is moved
+  /// n1 in [0, 2] [-]: slip sinkage, n = n0 + n1 |i| (ding_2010: 0.2 to 0.6, number unverified); 0: none, as the thesis.
+  double slip_sinkage_exponent = 0.0;
   /// n_d >= 0 [-] of a wheel that slides sideways: n = n0 + n_d (s_R - |i|), s_R = resultantSlip(). The form
   /// and size of ding_2010's growth with slip (n1 0.2 to 0.6, number unverified), taken over the resultant:
   /// ours.
   double digging_exponent = 0.4;
   /// Share >= 0 of Hegedus' pressure on the side of a wheel that slides sideways, 1 as ishigami_2007 [-].
   double side_bulldozing = 1.0;
+  /// Gravity under which the moduli were measured, >= 0; 0: that of the body driven on. See underGravity().
+  double test_gravity_m_s2 = 0.0;
 };
+
+/// The soil as it is where a wheel weighs less than where it was tested: k_c and k_phi times (g / g_test)^exponent, for under the same mass
+/// the sinkage is the same in 1/6 to 2 times the Earth's gravity (kobayashi_2010, wong_kobayashi_2012), that is exponent 1. Never
+/// stiffer than tested: of greater gravity less is known (ours). Cohesion, friction angle and K stay.
+Soil underGravity(Soil soil, double gravity_m_s2, double exponent = 1.0);
 
 /// k = k_c/b + k_phi [N/m^(n+2)] for a wheel or plate of smaller dimension width_m (thesis Eq. A.1).
 double sinkageModulus(const Soil& soil, double width_m);

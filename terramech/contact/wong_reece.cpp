@@ -42,9 +42,9 @@ WheelForces wheelForces(const Wheel& wheel, const RimEquilibrium& rim) {
 }
 
 double digging(const Soil& soil, const WheelOperation& operation) {
-  if (operation.slip_angle_rad == 0.0) return 0.0;
-  return soil.digging_exponent *
-         (resultantSlip(operation.slip, operation.slip_angle_rad) - std::abs(operation.slip));
+  const double along = std::abs(operation.slip), grown = soil.slip_sinkage_exponent * along;
+  if (operation.slip_angle_rad == 0.0) return grown;
+  return grown + soil.digging_exponent * (resultantSlip(operation.slip, operation.slip_angle_rad) - along);
 }
 
 /// What the soil beside the wheel adds to the side force [N].

@@ -39,7 +39,7 @@ struct WheelForces {
 ///   theta_m = (c1 + c2 i) theta_1                         (C.2)
 ///   tau(sigma, j) = (c + sigma tan phi)(1 - e^{-j/K})     (C.7), odd in j; c and tan phi times shearGain() of lugs
 /// and of a wheel that slides sideways tau along the resultant displacement j = hypot(j_x, j_y)
-/// (ishigami_2007 takes the two apart, which can exceed the strength), n raised by Soil::digging_exponent.
+/// (ishigami_2007 takes the two apart, which can exceed the strength), n raised by Soil::digging_exponent; with slip by Soil::slip_sinkage_exponent.
 class WongReece {
  public:
   /// Throws std::invalid_argument when a field or k_c/b + k_phi leaves its range; std::domain_error when the

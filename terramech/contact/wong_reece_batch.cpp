@@ -116,7 +116,8 @@ bool isFastCase(const WheelCase& c) {
          ordinary(c.wheel_radius_m) && ordinary(c.wheel_width_m) && ordinary(c.load_N) &&
          ordinary(c.density_kg_m3) && ordinary(c.gravity_m_s2) && c.digging_exponent >= 0.0 &&
          c.digging_exponent <= 2.0 && c.side_bulldozing >= 0.0 && c.side_bulldozing < 1e6 &&
-         c.lug_thrust >= 0.0 && c.lug_thrust <= 5.0 && c.grouser_height_m >= 0.0 && c.grouser_height_m <= 1.0;
+         c.slip_sinkage_exponent >= 0.0 && c.slip_sinkage_exponent <= 2.0 && c.lug_thrust >= 0.0 &&
+         c.lug_thrust <= 5.0 && c.grouser_height_m >= 0.0 && c.grouser_height_m <= 1.0;
 }
 
 WheelCase wheelCase(const Soil& soil, const Wheel& wheel, const WheelOperation& operation) {
@@ -137,7 +138,8 @@ WheelCase wheelCase(const Soil& soil, const Wheel& wheel, const WheelOperation& 
           .digging_exponent = soil.digging_exponent,
           .side_bulldozing = soil.side_bulldozing,
           .grouser_height_m = wheel.grouser_height_m,
-          .lug_thrust = wheel.lug_thrust};
+          .lug_thrust = wheel.lug_thrust,
+          .slip_sinkage_exponent = soil.slip_sinkage_exponent};
 }
 
 WheelForces equilibrium(const WheelCase& c) {
@@ -150,6 +152,7 @@ WheelForces equilibrium(const WheelCase& c) {
                   .c1 = c.c1,
                   .c2 = c.c2,
                   .density_kg_m3 = c.density_kg_m3,
+                  .slip_sinkage_exponent = c.slip_sinkage_exponent,
                   .digging_exponent = c.digging_exponent,
                   .side_bulldozing = c.side_bulldozing};
   const Wheel wheel{.radius_m = c.wheel_radius_m,

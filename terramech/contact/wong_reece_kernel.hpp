@@ -313,10 +313,13 @@ TALUS_LANES void solveGroup(const WheelCase* cases, WheelForces* forces, bool* l
   const T r = gather<T>(cases, &WheelCase::wheel_radius_m), b = gather<T>(cases, &WheelCase::wheel_width_m);
   const T load = gather<T>(cases, &WheelCase::load_N), slip = gather<T>(cases, &WheelCase::slip);
   const T beta = gather<T>(cases, &WheelCase::slip_angle_rad), travel = travelOf<Sideways>(slip);
-  T n = gather<T>(cases, &WheelCase::sinkage_exponent), across{};
+  const T size = pick(slip < T{}, -slip, slip);
+  T n = gather<T>(cases, &WheelCase::sinkage_exponent) +
+        gather<T>(cases, &WheelCase::slip_sinkage_exponent) * size;
+  T across{};
   if constexpr (Sideways) {
     const SideMotion<T> motion = sideMotion(slip, travel, beta);
-    n = n + gather<T>(cases, &WheelCase::digging_exponent) * (motion.slip - pick(slip < T{}, -slip, slip));
+    n = n + gather<T>(cases, &WheelCase::digging_exponent) * (motion.slip - size);
     across = motion.across;
   }
   const T peak = gather<T>(cases, &WheelCase::c1) + gather<T>(cases, &WheelCase::c2) * slip;

@@ -150,11 +150,13 @@ WheelCase caseOf(const WheelContact& c) {
           .density_kg_m3 = c.density_kg_m3,
           .gravity_m_s2 = c.gravity_m_s2,
           .digging_exponent = c.digging_exponent,
-          .side_bulldozing = c.side_bulldozing};
+          .side_bulldozing = c.side_bulldozing,
+          .slip_sinkage_exponent = c.slip_sinkage_exponent};
 }
 
-/// The contact with the sinkage exponent of its resultant slip.
-WheelContact dugSideways(WheelContact c) {
+/// The contact with the sinkage exponent of its slip.
+WheelContact dug(WheelContact c) {
+  c.sinkage_exponent += c.slip_sinkage_exponent * std::abs(c.slip);
   if (c.slip_angle_rad != 0.0)
     c.sinkage_exponent += c.digging_exponent * (resultantSlip(c.slip, c.slip_angle_rad) - std::abs(c.slip));
   return c;
@@ -202,6 +204,7 @@ WheelContact contactOf(const Soil& soil, const Wheel& wheel) {
   c.tan_friction = std::tan(soil.friction_angle_rad);
   c.shear_modulus_m = soil.shear_modulus_m;
   c.density_kg_m3 = soil.density_kg_m3;
+  c.slip_sinkage_exponent = soil.slip_sinkage_exponent;
   c.digging_exponent = soil.digging_exponent;
   c.side_bulldozing = soil.side_bulldozing;
   c.c1 = soil.c1;
@@ -210,7 +213,7 @@ WheelContact contactOf(const Soil& soil, const Wheel& wheel) {
 }
 
 ContactForces solveContact(const WheelContact& contact, double entry_guess_rad, double growth) {
-  ContactForces forces = solveRim(dugSideways(contact), entry_guess_rad, growth);
+  ContactForces forces = solveRim(dug(contact), entry_guess_rad, growth);
   if (contact.slip_angle_rad != 0.0) forces.side_force_N += bulldozing_N(contact, forces.entry_angle_rad);
   return forces;
 }

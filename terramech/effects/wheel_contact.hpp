@@ -30,6 +30,7 @@ struct WheelContact {
   double density_kg_m3 = 1600.0;  ///< for forces that move soil
   double gravity_m_s2 = 9.80665;  ///< the same
   /// As Soil, of a wheel that slides sideways; an effect with a law of its own takes either out.
+  double slip_sinkage_exponent = 0.0;
   double digging_exponent = 0.0;
   double side_bulldozing = 0.0;
   double c1 = 0.43;  ///< theta_m = (c1 + c2 i) theta_1

@@ -15,6 +15,7 @@ struct SoilDeviation {
   double c1 = 0.0;
   double c2 = 0.0;
   double density_kg_m3 = 0.0;
+  double slip_sinkage_exponent = 0.0;
   double digging_exponent = 0.0;
   double side_bulldozing = 0.0;
 };

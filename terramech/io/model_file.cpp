@@ -310,6 +310,7 @@ void writeSoil(Writer& w, const Soil& s, const std::string& indent = "") {
                                                    {"c1", s.c1},
                                                    {"c2", s.c2},
                                                    {"density_kg_m3", s.density_kg_m3},
+                                                   {"slip_sinkage_exponent", s.slip_sinkage_exponent},
                                                    {"digging_exponent", s.digging_exponent},
                                                    {"side_bulldozing", s.side_bulldozing}};
   for (const auto& [field, value] : fields) w << indent << "  " << field << ": " << value << "\n";

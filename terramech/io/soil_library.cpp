@@ -169,10 +169,13 @@ SoilPrior readSoil(const YamlFields& fields) {
     fields.refuse("c2", "c2 must be -1 to 1: the peak of the stress lies in the contact", "check it");
   take(&Soil::density_kg_m3, &SoilDeviation::density_kg_m3,
        fields.stated("density_kg_m3", defaults.density_kg_m3));
+  take(&Soil::slip_sinkage_exponent, &SoilDeviation::slip_sinkage_exponent,
+       fields.stated("slip_sinkage_exponent", defaults.slip_sinkage_exponent));
   take(&Soil::digging_exponent, &SoilDeviation::digging_exponent,
        fields.stated("digging_exponent", defaults.digging_exponent));
   take(&Soil::side_bulldozing, &SoilDeviation::side_bulldozing,
        fields.stated("side_bulldozing", defaults.side_bulldozing));
+  soil.mean.test_gravity_m_s2 = fields.number("test_gravity_m_s2", defaults.test_gravity_m_s2);
   if (soil.mean.cohesive_modulus == 0.0 && soil.mean.frictional_modulus == 0.0)
     fields.refuse("", "lacks cohesive_modulus and frictional_modulus", "add at least one, above 0");
   try {

@@ -10,7 +10,7 @@
 /// Soils and rovers by name from the library that is built in, or from a YAML file.
 ///
 /// A soil file is a mapping of the fields of Soil (name, cohesion_Pa, friction_angle_rad, sinkage_exponent,
-/// cohesive_modulus, frictional_modulus, shear_modulus_m, c1, c2, density_kg_m3, digging_exponent,
+/// cohesive_modulus, frictional_modulus, shear_modulus_m, c1, c2, density_kg_m3, slip_sinkage_exponent, test_gravity_m_s2, digging_exponent,
 /// side_bulldozing), bare or under `soil:`, each a number or {mean: M, std: S}; or a list of them under
 /// `soils:`, of which PATH#NAME picks one. A rover file is a mapping of the fields of Rover, bare or under
 /// `rover:`. Units and strictness: yaml_fields.hpp.

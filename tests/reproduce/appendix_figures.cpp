@@ -46,6 +46,40 @@ ThesisFigure shearCurve() {
         .series = {janosi, plastic}}}};
 }
 
+ThesisFigure bekkerStress() {
+  const Soil soil = soilOf(middle(0));
+  Series wong = line("Wong and Reece (C.2, C.3)"), bekker = line("Bekker (C.1)");
+  bekker.dashed = true;
+  double above = 0.0;
+  RimStress peak;
+  const auto stress = stressDistribution(soil, kThesisWheel, {.load_N = 80.0, .slip = 0.2}, 201);
+  const double theta_1 = stress.back().angle_rad, r = kThesisWheel.radius_m;
+  for (const RimStress& at : stress) {
+    const double depth_m = r * (std::cos(at.angle_rad) - std::cos(theta_1));
+    put(wong, at.angle_rad / kDegree, 1e-3 * at.normal_Pa);
+    put(bekker, at.angle_rad / kDegree,
+        1e-3 * sinkageModulus(soil, kThesisWheel.width_m) *
+            std::pow(std::max(depth_m, 0.0), soil.sinkage_exponent));
+    above = std::max(above, bekker.y.back() - wong.y.back());
+    if (at.normal_Pa > peak.normal_Pa) peak = at;
+  }
+  return {"C.1",
+          "Normal stress under the wheel by Bekker's approximation",
+          "it departs from the measured stress at one end of the contact, where it is greatest and the "
+          "measured stress falls to nothing",
+          fmt::format("at one sinkage both agree ahead of {:.0f} % of the entry angle; behind, C.1 rises to "
+                      "{:.1f} kPa above the Wong-Reece "
+                      "stress, which falls to {:.1f} kPa under the axle",
+                      100.0 * peak.angle_rad / theta_1, above, wong.y.front()),
+          verdictOf(above > 0.5 * 1e-3 * peak.normal_Pa && wong.y.front() < 0.01 * 1e-3 * peak.normal_Pa,
+                    "not reproduced",
+                    " as to the two models; the measured stresses are printed as a picture only"),
+          {{.title = "Sand, 80 N, slip 0.2",
+            .x = {.label = "theta [deg]"},
+            .y = {.label = "normal stress [kPa]"},
+            .series = {wong, bekker}}}};
+}
+
 ThesisFigure stresses() {
   std::vector<Plot> plots;
   double worst = 0.0;
@@ -197,7 +231,8 @@ ThesisFigure sinkageOverSlip() {
 }  // namespace
 
 std::vector<ThesisFigure> appendixFigures(std::uint64_t seed) {
-  return {shearCurve(), stresses(), trialModulus(seed), modulusErrors(seed), sinkageOverSlip()};
+  return {shearCurve(),       bekkerStress(),      stresses(),
+          trialModulus(seed), modulusErrors(seed), sinkageOverSlip()};
 }
 
 }  // namespace talus::reproduce

@@ -6,6 +6,7 @@
 #include <talus/common/constants.hpp>
 #include <talus/terramech/estimate/soil_filter.hpp>
 #include <talus/terramech/estimate/thesis_runs.hpp>
+#include <talus/terramech/strength/iagnemma.hpp>
 #include <talus/terramech/strength/linear_offset.hpp>
 
 #include "figure_parts.hpp"
@@ -15,6 +16,42 @@ namespace {
 
 using namespace cli;
 using namespace terramech;
+
+ThesisFigure straightStresses(std::uint64_t seed) {
+  constexpr int kSoils = 100;
+  Series truth = points("truth"), found = points("estimate");
+  MeanAndStd off_c, off_phi;
+  int as_claimed = 0;
+  ThesisRuns runs(seed);
+  for (int count = 0; count < kSoils;) {
+    const ThesisRun run = runs.next({.noise = 0.0});
+    if (thesisSoils()[static_cast<std::size_t>(run.soil_class)].name != "clay") continue;
+    ++count;
+    MohrCoulombLine through;
+    for (const WheelSample& s : run.samples)
+      through.add(iagnemmaPair(kThesisWheel, s, run.soil.shear_modulus_m));
+    const ShearStrength fit = through.estimate();
+    const double c = 1e-3 * (fit.cohesion_Pa - run.soil.cohesion_Pa),
+                 phi = (fit.frictionAngle_rad() - run.soil.friction_angle_rad) / kDegree;
+    off_c.add(c);
+    off_phi.add(phi);
+    as_claimed += c > 0.0 && phi < 0.0;
+    put(truth, 1e-3 * run.soil.cohesion_Pa, run.soil.friction_angle_rad / kDegree);
+    put(found, 1e-3 * fit.cohesion_Pa, fit.frictionAngle_rad() / kDegree);
+  }
+  return {"2.3",
+          "Straight stresses on cohesive soil",
+          "Iagnemma's method gives a greater cohesion and a smaller friction angle than is true",
+          fmt::format("{} of {} clays, noise-free, K given; cohesion off by {:.2f} +- {:.2f} kPa, friction "
+                      "angle by {:.1f} +- {:.1f} "
+                      "deg",
+                      as_claimed, kSoils, off_c.mean(), off_c.std(), off_phi.mean(), off_phi.std()),
+          verdictOf(as_claimed > 0.9 * kSoils, "not reproduced"),
+          {{.title = "Clays of Table 2.1",
+            .x = {.label = "c [kPa]", .low = 0.0},
+            .y = {.label = "phi [deg]", .low = 0.0},
+            .series = {truth, found}}}};
+}
 
 ThesisFigure coefficients(std::uint64_t seed) {
   const ContactSoil soil = middle(2);
@@ -178,7 +215,7 @@ ThesisFigure window(std::uint64_t seed) {
 
 std::vector<ThesisFigure> estimationFigures(std::uint64_t seed) {
   std::vector<ThesisFigure> figures;
-  for (const auto make : {coefficients, simplification, representative, window})
+  for (const auto make : {straightStresses, coefficients, simplification, representative, window})
     figures.push_back(make(seed));
   return figures;
 }

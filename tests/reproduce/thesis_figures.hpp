@@ -23,13 +23,13 @@ inline std::string verdictOf(bool holds, const std::string& otherwise, const std
   return holds ? "reproduced" + remark : otherwise;
 }
 
-/// Figures of chapter 2 (2.5, 2.6, 2.7, 2.9).
+/// Figures of chapter 2 (2.3, 2.5, 2.6, 2.7, 2.9).
 std::vector<ThesisFigure> estimationFigures(std::uint64_t seed);
 
-/// Figures of appendices A, C and D (A.4, C.4, D.1, D.2, D.3).
+/// Figures of appendices A, C and D (A.4, C.1, C.4, D.1, D.2, D.3).
 std::vector<ThesisFigure> appendixFigures(std::uint64_t seed);
 
-/// Figures of chapter 3 (3.5, 3.6, 3.8, 3.12).
+/// Figures of chapter 3 (3.5, 3.6, 3.7, 3.8, 3.12).
 std::vector<ThesisFigure> traversabilityFigures(std::uint64_t seed);
 
 }  // namespace talus::reproduce

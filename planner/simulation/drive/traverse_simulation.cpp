@@ -9,6 +9,7 @@
 #include <talus/planner/simulation/drive/loss_report.hpp>
 #include <talus/planner/simulation/drive/map_expectation.hpp>
 #include <talus/planner/simulation/drive/traverse_simulation.hpp>
+#include <talus/terramech/mobility/turning.hpp>
 
 namespace talus::planner {
 namespace {
@@ -143,6 +144,9 @@ class Drive {
     if (step.stuck) return dig(step);
     if (learned && routeTurnedDear()) return retreat(step, {"soil weaker than estimated", {}});
     report(step, heading, length_m);
+    const terramech::TurnEffort turn = world_.turn(std::exchange(heading_, heading), motion(heading, 0.0));
+    result_.energy_J += turn.energy_J;
+    result_.time_s += turn.time_s;
     advance(step, heading, length_m);
     return std::nullopt;
   }
@@ -364,6 +368,7 @@ class Drive {
   FieldPlanner planner_;
   Ruts ruts_;
   maps::Point here_;
+  Direction heading_{};  // of the step before; 0 at first
   std::vector<maps::Point> way_back_;
   std::vector<maps::Point> route_;
   std::size_t next_ = 1;

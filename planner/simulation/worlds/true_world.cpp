@@ -6,6 +6,7 @@
 #include <talus/planner/simulation/worlds/true_world.hpp>
 #include <talus/terramech/contact/load_transfer.hpp>
 #include <talus/terramech/mobility/rut.hpp>
+#include <talus/terramech/mobility/turning.hpp>
 
 namespace talus::planner {
 namespace {
@@ -16,7 +17,7 @@ bool sameSoil(const terramech::Soil& a, const terramech::Soil& b) {
   return a.cohesion_Pa == b.cohesion_Pa && a.friction_angle_rad == b.friction_angle_rad &&
          a.sinkage_exponent == b.sinkage_exponent && a.cohesive_modulus == b.cohesive_modulus &&
          a.frictional_modulus == b.frictional_modulus && a.shear_modulus_m == b.shear_modulus_m &&
-         a.c1 == b.c1 && a.c2 == b.c2;
+         a.c1 == b.c1 && a.c2 == b.c2 && a.slip_sinkage_exponent == b.slip_sinkage_exponent;
 }
 
 // A wheel in a hole of its own shape, d deep, rises by d over sqrt(2 r d): the mean slope out of it (ours).
@@ -109,6 +110,8 @@ TrueWorld::TrueWorld(const WorldSoils& soils, const terramech::Rover& rover,
       soils_(soils.classes),
       effects_(soils.effects),
       patches_(soils.patches) {
+  for (terramech::Soil& soil : soils_) soil = underGravity(soil, rover.gravity_m_s2);
+  for (SoilPatch& patch : patches_) patch.soil = underGravity(patch.soil, rover.gravity_m_s2);
   for (const SoilPatch& patch : patches_) {
     const auto alike = std::find_if(soils_.begin() + static_cast<std::ptrdiff_t>(classes_), soils_.end(),
                                     [&](const auto& soil) { return sameSoil(soil, patch.soil); });
@@ -193,6 +196,24 @@ TrueWorld::Step TrueWorld::drive(const Motion& motion) const {
   step.energy_J_per_m = std::max(step.torque_Nm, 0.0) / (rover_.wheel.radius_m * moving) +
                         rover_.hotel_power_W / step.speed_mps;
   return step;
+}
+
+terramech::TurnEffort TrueWorld::turn(const costmap::Direction& from, const Motion& motion) const {
+  const costmap::Direction& to = motion.heading;
+  const double turned_rad =
+      std::abs(std::atan2(from.x * to.y - from.y * to.x, from.x * to.x + from.y * to.y));
+  if (!(turned_rad > 1e-6)) return {};
+  const terramech::Soil& soil = soils_[soilAt(motion.place)];
+  const Step flat = drive({.place = motion.place, .heading = to, .ruts = motion.ruts});
+  double sinkage = 0.0;
+  for (const WheelState& w : flat.wheels) sinkage = std::max(sinkage, w.forces.sinkage);
+  const double rolling = flat.stuck ? 0.0 : flat.energy_J_per_m - rover_.hotel_power_W / flat.speed_mps;
+  const terramech::TurnEfforts efforts = terramech::turnEfforts(
+      rover_, {.lateral_resistance = std::tan(soil.friction_angle_rad),
+               .bulldozing_N = terramech::bulldozing_N(soil, rover_, sinkage * rover_.wheel.radius_m),
+               .rolling_J_per_m = std::max(0.0, rolling)});
+  const terramech::TurnEffort radian = rover_.turning_radius_m > 0.0 ? efforts.on_arc : efforts.in_place;
+  return {.energy_J = turned_rad * radian.energy_J, .time_s = turned_rad * radian.time_s};
 }
 
 }  // namespace talus::planner

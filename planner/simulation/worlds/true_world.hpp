@@ -12,6 +12,10 @@
 #include <talus/terramech/contact/soil.hpp>
 #include <talus/terramech/effects/effects.hpp>
 
+namespace talus::terramech {
+struct TurnEffort;
+}
+
 namespace talus::planner {
 
 /// A disc of ground whose soil no class map shows.
@@ -70,6 +74,9 @@ class TrueWorld {
   };
 
   Step drive(const Motion& motion) const;
+  /// What it takes to turn from a heading to that of a step, where that is taken (terramech::turnEfforts), on the soil under the rover's
+  /// middle; nothing from a heading (0, 0).
+  terramech::TurnEffort turn(const costmap::Direction& from, const Motion& to) const;
 
   /// Which of soils() lies at a place; patches reach `margin_m` further than they do.
   std::size_t soilAt(const maps::Point& place, double margin_m = 0.0) const noexcept;

@@ -33,6 +33,24 @@ TEST(GroundClass, WithoutStatedDeviationsKeepsTheDefault) {
             GroundClass{}.mean_std);
 }
 
+// Property: an Earth's test says less of the Moon: weaker ground, and more doubt; of the gravity that it was tested in, all.
+TEST(GroundClass, GravityOfTheTestCounts) {
+  terramech::SoilPrior prior{.mean = testSand(), .deviation = {}};
+  terramech::Rover rover = testRover();
+  const GroundClass as_stated = groundClass(1, prior, rover);
+  prior.mean.test_gravity_m_s2 = rover.gravity_m_s2;
+  EXPECT_EQ(groundClass(1, prior, rover).mean_std, as_stated.mean_std);
+  EXPECT_EQ(groundClass(1, prior, rover).soil.frictional_modulus, as_stated.soil.frictional_modulus);
+  prior.mean.test_gravity_m_s2 = 4.0 * rover.gravity_m_s2;
+  const GroundClass weaker = groundClass(1, prior, rover);
+  EXPECT_DOUBLE_EQ(weaker.soil.frictional_modulus, 0.25 * as_stated.soil.frictional_modulus);
+  EXPECT_LT(pull(weaker.soil), pull(as_stated.soil));
+  terramech::Soil half = testSand();
+  half.frictional_modulus *= 0.5;
+  half.cohesive_modulus *= 0.5;
+  EXPECT_NEAR(weaker.mean_std, std::hypot(as_stated.mean_std, pull(half) - pull(weaker.soil)), 1e-12);
+}
+
 terramech::RefinedModel digging() {
   terramech::RefinedModel model;
   model.soil = testSand();

@@ -98,6 +98,7 @@ TEST(MapFile, KeepsTheEffectsOfItsGround) {
 TEST(MapFile, KeepsWhatSoilAndRoverNeedAcrossASlope) {
   GroundModel::Parts parts = testGround()->parts();
   parts.classes[0].soil.digging_exponent = 0.1;
+  parts.classes[0].soil.slip_sinkage_exponent = 0.3;
   parts.classes[0].soil.side_bulldozing = 0.0;
   parts.rover.centre_of_mass_ahead_m = 0.1;
   parts.rover.centre_of_mass_left_m = -0.05;
@@ -106,6 +107,7 @@ TEST(MapFile, KeepsWhatSoilAndRoverNeedAcrossASlope) {
   EXPECT_EQ(bytesOf(back), bytesOf(map));
   const GroundModel::Parts& read = back.model().parts();
   EXPECT_EQ(read.classes[0].soil.digging_exponent, 0.1);
+  EXPECT_EQ(read.classes[0].soil.slip_sinkage_exponent, 0.3);
   EXPECT_EQ(read.classes[0].soil.side_bulldozing, 0.0);
   EXPECT_EQ(read.rover.centre_of_mass_ahead_m, 0.1);
   EXPECT_EQ(read.rover.centre_of_mass_left_m, -0.05);

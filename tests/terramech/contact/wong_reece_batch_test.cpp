@@ -40,6 +40,7 @@ std::vector<WheelCase> wideCases(std::size_t count) {
     if (&c - cases.data() < static_cast<std::ptrdiff_t>(count / 2)) continue;
     c.grouser_height_m = random.between(0.0, 0.5 * c.wheel_radius_m);
     c.lug_thrust = random.between(0.0, 3.0);
+    c.slip_sinkage_exponent = random.between(0.0, 0.6);
   }
   return cases;
 }

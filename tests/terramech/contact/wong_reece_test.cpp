@@ -56,6 +56,43 @@ TEST(WongReece, LugsShearAlongTheirSidesToo) {
             equilibrium(sand(), smooth, {.load_N = 120.0, .slip = 0.3}).drawbar_pull_N);
 }
 
+// Property: at each slip the wheel stands on a soil whose exponent has grown by so much, straight on and at an angle.
+TEST(WongReece, SinksWithSlip) {
+  const Wheel wheel{.radius_m = 0.13, .width_m = 0.2};
+  Soil digging = sand();
+  digging.slip_sinkage_exponent = 0.4;
+  for (const double slip : {-1.0, -0.5, 0.0, 0.1, 0.4, 0.9})
+    for (const double beta : {0.0, 0.3}) {
+      Soil grown = sand();
+      grown.sinkage_exponent += 0.4 * std::abs(slip);
+      const WheelOperation operation{.load_N = 60.0, .slip = slip, .slip_angle_rad = beta};
+      const WheelForces a = equilibrium(digging, wheel, operation), b = equilibrium(grown, wheel, operation);
+      EXPECT_NEAR(a.sinkage_m, b.sinkage_m, 1e-10);
+      EXPECT_NEAR(a.drawbar_pull_N, b.drawbar_pull_N, 1e-6);
+      EXPECT_NEAR(a.side_force_N, b.side_force_N, 1e-6);
+    }
+}
+
+// Property (kobayashi_2010, wong_kobayashi_2012): the same mass sinks as deep under any gravity, on ground without cohesion with the same
+// pull over weight; with cohesion, which does not weigh, with more.
+TEST(WongReece, TheSameMassSinksAsDeepUnderLessGravity) {
+  const Wheel wheel{.radius_m = 0.13, .width_m = 0.2};
+  Soil tested = sand();
+  tested.cohesion_Pa = 0.0;
+  tested.test_gravity_m_s2 = 9.81;
+  for (const double gravity : {1.62, 3.71, 9.81}) {
+    const Soil here = underGravity(tested, gravity);
+    for (const double slip : {0.1, 0.5}) {
+      const WheelForces there = equilibrium(tested, wheel, {.load_N = 7.0 * 9.81, .slip = slip}),
+                        now = equilibrium(here, wheel, {.load_N = 7.0 * gravity, .slip = slip});
+      EXPECT_NEAR(now.sinkage_m / there.sinkage_m, 1.0, 1e-7);
+      EXPECT_NEAR(now.drawbar_pull_N / gravity, there.drawbar_pull_N / 9.81, 1e-6);
+    }
+  }
+  EXPECT_EQ(underGravity(tested, 20.0).frictional_modulus, tested.frictional_modulus);
+  EXPECT_EQ(underGravity(sand(), 1.62).frictional_modulus, sand().frictional_modulus);
+}
+
 // Independent of the code under test: C.4 to C.10 as printed, adaptive quadrature over the angle itself.
 ImposedContact adaptive(const Soil& soil, const Wheel& wheel, const WheelOperation& operation, double entry) {
   const double r = wheel.radius_m, k = soil.cohesive_modulus / wheel.width_m + soil.frictional_modulus;

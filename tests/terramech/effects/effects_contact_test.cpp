@@ -100,6 +100,23 @@ TEST(EffectsContact, DingsExponentGrowsWithSlipEitherWay) {
   EXPECT_EQ(acted("slip_sinkage_ding_quadratic", {-1.0, -3.0}, 1.0, {.slip = 1.0}).sinkage_exponent, 0.1);
 }
 
+// Property: the base's slip sinkage and Ding's effect are one law, and both together have the sum of their sizes.
+TEST(EffectsContact, TheBaseSinksWithSlipAsDingsEffectDoes) {
+  for (const double slip : {-0.4, 0.2, 0.7}) {
+    RefinedModel effect = base(), soil = base(), both = base();
+    effect.effects = {with("slip_sinkage_ding", {0.5})};
+    soil.soil.slip_sinkage_exponent = 0.5;
+    both.effects = {with("slip_sinkage_ding", {0.3})};
+    both.soil.slip_sinkage_exponent = 0.2;
+    const Reading a = predict(effect, state(slip)), b = predict(soil, state(slip)),
+                  c = predict(both, state(slip));
+    EXPECT_GT(a.sinkage_m, predict(base(), state(slip)).sinkage_m);
+    EXPECT_NEAR(a.sinkage_m, b.sinkage_m, 1e-9);
+    EXPECT_NEAR(a.drawbar_pull_N, b.drawbar_pull_N, 1e-5);
+    EXPECT_NEAR(a.sinkage_m, c.sinkage_m, 1e-9);
+  }
+}
+
 TEST(EffectsContact, GroundThatReboundsOrIsLayered) {
   EXPECT_EQ(acted("elastic_rebound", {0.3}, 0.01).rebound, 0.3);
   const WheelContact layered = acted("layered_hardpan", {0.01, 1e7}, 0.01);

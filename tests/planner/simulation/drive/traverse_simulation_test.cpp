@@ -1,9 +1,15 @@
 #include <algorithm>
+#include <cmath>
 #include <memory>
+#include <numbers>
+#include <vector>
 
 #include <site_fixture.hpp>
 
+#include <talus/planner/route/problem.hpp>
 #include <talus/planner/simulation/drive/traverse_simulation.hpp>
+#include <talus/terramech/mobility/mobility.hpp>
+#include <talus/terramech/mobility/turning.hpp>
 
 namespace talus::planner {
 namespace traverse_simulation_test {
@@ -144,6 +150,41 @@ TEST(TraverseSimulation, TheTrackTellsTheDrive) {
   EXPECT_EQ(drive.events.front().text, "planned");
   EXPECT_EQ(drive.events.back().text, "reached");
   EXPECT_GE(drive.events.front().route.size(), 2U);
+}
+
+TraverseSimulation along(const std::vector<maps::Point>& route) {
+  const TrueWorld world({.classes = {testSand()}, .patches = {}}, testRover(),
+                        maps::Raster<std::uint8_t>(grid(), 0));
+  costmap::TraversabilityMap map = planeMap(0.0);
+  SimulationOptions options;
+  options.start = route.front();
+  options.goal = route.back();
+  options.sensors = {.pose_drift = 0.0};
+  options.planner = [&](const Problem&) { return Plan{.status = RouteStatus::Found, .points = route}; };
+  return simulateTraverse(map, world, options);
+}
+
+// Independent derivation: the formula of turning.hpp with what the mobility curve of the true soil, not the wheel table, says of the flat.
+TEST(TraverseSimulation, ATurnIsPaidOnTheTrueGround) {
+  const TraverseSimulation straight = along({{5.5, 20.5}, {15.5, 20.5}, {25.5, 20.5}}),
+                           bent = along({{5.5, 20.5}, {15.5, 20.5}, {15.5, 30.5}});
+  ASSERT_EQ(straight.outcome, Outcome::Reached);
+  ASSERT_EQ(bent.outcome, Outcome::Reached);
+  const terramech::Rover rover = testRover();
+  const terramech::MobilityState flat = terramech::MobilityCurve(testSand(), rover).at(0.0);
+  const terramech::TurnEfforts efforts = terramech::turnEfforts(
+      rover, {.lateral_resistance = std::tan(testSand().friction_angle_rad),
+              .bulldozing_N = terramech::bulldozing_N(testSand(), rover, flat.sinkage_m),
+              .rolling_J_per_m = flat.energy_J_per_m - rover.hotel_power_W / flat.speed_mps});
+  const terramech::TurnEffort radian = rover.turning_radius_m > 0.0 ? efforts.on_arc : efforts.in_place;
+  const double quarter = 0.5 * std::numbers::pi;
+  // Behind the turn the rear wheels leave the ruts of the front ones for the rover's own length.
+  const double energy = (bent.energy_J - straight.energy_J) / (quarter * radian.energy_J),
+               time = (bent.time_s - straight.time_s) / (quarter * radian.time_s);
+  EXPECT_GE(energy, 0.99);
+  EXPECT_LE(energy, 1.1);
+  EXPECT_GE(time, 0.99);
+  EXPECT_LE(time, 1.1);
 }
 
 TEST(TraverseSimulation, SameSeedSameDrive) {
