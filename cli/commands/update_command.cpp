@@ -178,8 +178,7 @@ int run(const UpdateOptions& options, Context& context) {
   checkJournal(options, context.force);
   const FileLock lock({options.map, options.output}, context.stop);
   OutputFile output(options.output);
-  costmap::TraversabilityMap map =
-      costmap::readMap(options.map, context.workers(), context.watch("reading the map"));
+  costmap::TraversabilityMap map = readBuiltMap(options.map, context);
   std::optional<terramech::Telemetry> telemetry;
   if (!options.replay) telemetry = readDrive(options, map, context);
   if (context.stop.stop_requested()) return Exit::kCancelled;

@@ -53,8 +53,7 @@ void bind(CLI::App& command, ViewOptions& options) {
 Scene mapScene(const ViewOptions& options, const std::string& path, const Context& context) {
   const SceneOptions scene{.title =
                                options.title.empty() ? fs::path(path).filename().string() : options.title};
-  if (costmap::octomapType(path) == "TraversabilityTree")
-    return sceneOf(costmap::readMap(path, context.workers(), context.watch("read map")), scene);
+  if (costmap::octomapType(path) == "TraversabilityTree") return sceneOf(readBuiltMap(path, context), scene);
   MapOptions dem = options.file;
   dem.path = path;
   return sceneOf(readMap(dem, context), scene);

@@ -259,7 +259,7 @@ void warnOfRover(const terramech::Rover& rover, const Context& context) {
 Ground fromMapFile(const GroundOptions& options, const std::string& path, const Context& context) {
   checkAgainstMap(options, path, context);
   const auto begin = Clock::now();
-  Ground ground{costmap::readMap(path, context.workers(), context.watch("read map")), filesOf(options)};
+  Ground ground{readBuiltMap(path, context), filesOf(options)};
   checkSameRover(options, ground.map.model().rover(), path);
   if (const auto dem = siteOf(options, path, context)) checkSameSite(*dem, ground.map, path);
   ground.load_s = since_s(begin);

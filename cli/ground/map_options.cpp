@@ -14,6 +14,7 @@
 #include <talus/common/memory_budget.hpp>
 #include <talus/costmap/map/map_file.hpp>
 #include <talus/costmap/surface/octomap_surface.hpp>
+#include <talus/maps/raster/spatial_reference.hpp>
 #include <talus/planner/plugin/layer_plugin.hpp>
 
 namespace talus::cli {
@@ -73,6 +74,11 @@ void refuseReadOptions(const MapOptions& options) {
                         std::string("remove ") + name});
 }
 
+costmap::TraversabilityMap readBuiltMap(const std::string& path, const Context& context) {
+  return costmap::readMap({.name = path, .threads = context.workers(), .georeference = maps::georeferenceOn},
+                          context.watch("read map"));
+}
+
 namespace {
 
 MapWithFloors fromOctomap(const MapOptions& options, const std::string& type, const Context& context) {
@@ -80,8 +86,7 @@ MapWithFloors fromOctomap(const MapOptions& options, const std::string& type, co
   if (type == "TraversabilityTree" && options.below_m)
     throw InputError({options.path, "--below selects a level of a point cloud, and this is a built map",
                       "give --below to talus costmap"});
-  if (type == "TraversabilityTree")
-    return {costmap::readMap(options.path, context.workers(), context.watch("read map")).elevation(), {}};
+  if (type == "TraversabilityTree") return {readBuiltMap(options.path, context).elevation(), {}};
   auto ground =
       costmap::octomapGround(options.path, options.below_m.value_or(std::numeric_limits<double>::infinity()));
   return {std::move(ground.surface), std::move(ground.floors)};

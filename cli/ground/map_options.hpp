@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include <talus/costmap/map/traversability_map.hpp>
 #include <talus/costmap/site/ground_site.hpp>
 #include <talus/maps/raster/elevation_reader.hpp>
 #include <talus/maps/raster/layer_reader.hpp>
@@ -35,6 +36,9 @@ void addMapOptions(CLI::App& command, MapOptions& options, const std::string& na
 
 /// Refuses what says how to read a raster: an OctoMap and a built map bring their own grid. @throws InputError
 void refuseReadOptions(const MapOptions& options);
+
+/// Reads a map that `talus costmap` wrote. @throws InputError
+costmap::TraversabilityMap readBuiltMap(const std::string& path, const Context& context);
 
 /// Reads the map; what the reader decided goes to stderr as warnings. @throws InputError
 maps::ElevationMap readMap(const MapOptions& options, const Context& context);

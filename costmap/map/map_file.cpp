@@ -333,7 +333,10 @@ TraversabilityMap readMap(std::istream& stream, const MapReading& reading, const
   try {
     for (const std::string& bytes : costs) layers.costs.push_back(costLayerOf(bytes, text.grid));
     layers.floors = Floors(std::move(floors), text.grid.size());
-    if (text.coordinate_system) layers.elevation.georeference.emplace(*text.coordinate_system);
+    if (text.coordinate_system)
+      layers.elevation.georeference = reading.georeference
+                                          ? reading.georeference(*text.coordinate_system, text.grid)
+                                          : maps::Georeference(*text.coordinate_system);
     auto model = std::make_shared<GroundModel>(std::move(text.ground));
     TraversabilityMap map(std::move(layers), std::move(model),
                           {.footprint_radius_m = text.footprint_radius_m, .threads = reading.threads}, watch);
@@ -352,12 +355,17 @@ TraversabilityMap readMap(std::istream& stream, const MapReading& reading, const
 }
 
 TraversabilityMap readMap(const std::string& path, int threads, const ProgressMonitor& watch) {
+  return readMap({.name = path, .threads = threads}, watch);
+}
+
+TraversabilityMap readMap(const MapReading& reading, const ProgressMonitor& watch) {
+  const std::string& path = reading.name;
   std::error_code error;
   if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error))
     throw InputError({path, "is a folder, a device, a FIFO or a socket", "give a file"});
   std::ifstream stream(path, std::ios::binary);
   if (!stream) throw InputError({path, "cannot be opened", "check the path"});
-  return readMap(stream, {.name = path, .threads = threads}, watch);
+  return readMap(stream, reading, watch);
 }
 
 }  // namespace talus::costmap

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <iosfwd>
 #include <string>
 
@@ -21,13 +22,17 @@ void writeMap(const TraversabilityMap& map, const std::string& path);
 struct MapReading {
   std::string name;  ///< of the file, for messages
   int threads = 1;   ///< >= 1
+  /// Of a coordinate system that the file names, on its grid; without one GeographicLib's, which reaches no latitude
+  /// and longitude where PROJ is needed (maps::ElevationMap::places). talus::maps_io has one that uses PROJ.
+  std::function<maps::Georeference(const maps::CoordinateSystem&, const maps::Grid&)> georeference{};
 };
 
 /// Reads a map from a stream that can seek and builds its cost grid. Throws InputError for a file that is truncated,
 /// damaged in any bit, or no such map.
 TraversabilityMap readMap(std::istream& stream, const MapReading& reading, const ProgressMonitor& watch = {});
 
-/// Opens and reads. Throws InputError also when it cannot be opened.
+/// Opens the file of that name and reads. Throws InputError also when it cannot be opened.
+TraversabilityMap readMap(const MapReading& reading, const ProgressMonitor& watch = {});
 TraversabilityMap readMap(const std::string& path, int threads = 1, const ProgressMonitor& watch = {});
 
 }  // namespace talus::costmap

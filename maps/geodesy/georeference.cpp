@@ -45,6 +45,11 @@ Georeference::Georeference(CoordinateSystem system) : system_(std::move(system))
   }
 }
 
+Georeference::Georeference(CoordinateSystem system, std::shared_ptr<const Transform> transform)
+    : system_(std::move(system)), transform_(std::move(transform)) {
+  check(system_);
+}
+
 const CoordinateSystem& Georeference::system() const noexcept {
   return system_;
 }
@@ -53,12 +58,14 @@ Point Georeference::forward(GeoPoint place) const {
   const Projection& p = system_.projection;
   const double latitude =
       system_.planetocentric ? geographicLatitude(system_.ellipsoid, place.latitude_rad) : place.latitude_rad;
-  if (!(std::abs(latitude) <= kQuarterTurn) || !std::isfinite(place.longitude_rad)) return {kNaN, kNaN};
+  if (!transform_ || !(std::abs(latitude) <= kQuarterTurn) || !std::isfinite(place.longitude_rad))
+    return {kNaN, kNaN};
   const Point raw = transform_->forward({latitude, wrapped(place.longitude_rad - p.central_meridian_rad)});
   return {raw.x_m + p.false_easting_m, raw.y_m + p.false_northing_m};
 }
 
 GeoPoint Georeference::geographic(Point point) const {
+  if (!transform_) return {kNaN, kNaN};
   const Projection& p = system_.projection;
   const GeoPoint raw = transform_->reverse({point.x_m - p.false_easting_m, point.y_m - p.false_northing_m});
   return {raw.latitude_rad, wrapped(raw.longitude_rad + p.central_meridian_rad)};

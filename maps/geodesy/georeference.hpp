@@ -21,14 +21,20 @@ struct CoordinateSystem {
 
 class Transform;
 
-/// Carries places between map metres and latitude, longitude on the body's own ellipsoid, the latitude of the
-/// kind that the coordinate system has (planetocentric or geographic; the same on a sphere). Through
-/// GeographicLib [karney2013] where it has the projection; agrees with PROJ to a millimetre. Immutable, cheap
-/// to copy, safe to share between threads.
+/// Carries places between map metres and latitude, longitude on the body's own ellipsoid (WGS 84 on Earth), the
+/// latitude of the kind that the coordinate system has (planetocentric or geographic; the same on a sphere).
+/// Through GeographicLib [karney2013] where it has the projection, which agrees with PROJ to a millimetre, or a
+/// transform that is handed in. Immutable, cheap to copy, safe to share between threads.
 class Georeference {
  public:
   /// @throws std::invalid_argument when a parameter is out of its range
   explicit Georeference(CoordinateSystem system);
+
+  /// The same by a transform from elsewhere, such as PROJ's (maps_io).
+  Georeference(CoordinateSystem system, std::shared_ptr<const Transform> transform);
+
+  /// Whether places are known: not for ProjectionMethod::Foreign without a transform. All that follows is NaN then.
+  bool reachesPlaces() const noexcept { return transform_ != nullptr; }
 
   const CoordinateSystem& system() const noexcept;
 

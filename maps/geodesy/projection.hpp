@@ -2,21 +2,15 @@
 
 namespace talus::maps {
 
-/// The map projections that are known.
+/// The map projections of the maps that rovers are driven by; map files have the numbers.
 enum class ProjectionMethod {
-  TransverseMercator,
-  Mercator,               ///< one standard parallel (standard_parallel_1_rad), scale there
-  Equirectangular,        ///< on the sphere of the equatorial radius, as PROJ has it; true along
-                          ///< standard_parallel_1_rad
-  PolarStereographic,     ///< scale along standard_parallel_1_rad, whose sign picks the pole
-  Stereographic,          ///< oblique, on the conformal sphere [snyder1987]
-  LambertConformalConic,  ///< standard parallels 1 and 2 (equal for one)
-  AlbersEqualArea,        ///< standard parallels 1 and 2
-  CylindricalEqualArea,   ///< standard_parallel_1_rad
-  LambertAzimuthalEqualArea,
-  AzimuthalEquidistant,
-  Orthographic,
-  Sinusoidal,
+  TransverseMercator = 0,
+  Mercator = 1,               ///< one standard parallel (standard_parallel_1_rad), scale there
+  Equirectangular = 2,        ///< on the sphere of the equatorial radius, as PROJ has it; true along
+                              ///< standard_parallel_1_rad
+  PolarStereographic = 3,     ///< scale along standard_parallel_1_rad, whose sign picks the pole
+  LambertConformalConic = 5,  ///< standard parallels 1 and 2 (equal for one)
+  Foreign = 12,               ///< by the WKT alone: another projection, or another datum of Earth than WGS 84
 };
 
 /// A projection's parameters; those that the method does not use are ignored.

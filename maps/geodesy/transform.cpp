@@ -1,7 +1,6 @@
 #include <cmath>
+#include <numbers>
 
-#include <GeographicLib/AlbersEqualArea.hpp>
-#include <GeographicLib/AzimuthalEquidistant.hpp>
 #include <GeographicLib/LambertConformalConic.hpp>
 #include <GeographicLib/PolarStereographic.hpp>
 #include <GeographicLib/TransverseMercator.hpp>
@@ -65,28 +64,28 @@ class PolarStereographic final : public Transform {
   bool north_;
 };
 
-class AzimuthalEquidistant final : public Transform {
+// x = a cos(phi_1) lambda, y = a (phi - phi_0): PROJ's eqc, spherical also on an ellipsoid.
+class Equirectangular final : public Transform {
  public:
-  AzimuthalEquidistant(const Ellipsoid& e, const Projection& p)
-      : engine_(GeographicLib::Geodesic(e.equatorial_radius_m, e.flattening)),
-        origin_deg_(p.latitude_of_origin_rad / kDegree) {}
+  Equirectangular(const Ellipsoid& e, const Projection& p)
+      : radius_m_(e.equatorial_radius_m),
+        parallel_radius_m_(radius_m_ * std::cos(p.standard_parallel_1_rad)),
+        origin_rad_(p.latitude_of_origin_rad) {}
 
   Point forward(GeoPoint p) const override {
-    Point out;
-    engine_.Forward(origin_deg_, 0.0, p.latitude_rad / kDegree, p.longitude_rad / kDegree, out.x_m, out.y_m);
-    return out;
+    return {parallel_radius_m_ * p.longitude_rad, radius_m_ * (p.latitude_rad - origin_rad_)};
   }
 
   GeoPoint reverse(Point p) const override {
-    double latitude = 0;
-    double longitude = 0;
-    engine_.Reverse(origin_deg_, 0.0, p.x_m, p.y_m, latitude, longitude);
-    return {latitude * kDegree, longitude * kDegree};
+    const double latitude = p.y_m / radius_m_ + origin_rad_;
+    if (!(std::abs(latitude) <= std::numbers::pi / 2)) return {kNaN, kNaN};
+    return {latitude, p.x_m / parallel_radius_m_};
   }
 
  private:
-  GeographicLib::AzimuthalEquidistant engine_;
-  double origin_deg_;
+  double radius_m_;
+  double parallel_radius_m_;
+  double origin_rad_;
 };
 
 template <typename Engine>
@@ -100,36 +99,6 @@ double equatorScale(const Ellipsoid& e, const Projection& p) {
   const double sine = std::sin(p.standard_parallel_1_rad);
   const double e2 = e.flattening * (2 - e.flattening);
   return p.scale * std::cos(p.standard_parallel_1_rad) / std::sqrt(1 - e2 * sine * sine);
-}
-
-// North and south exchanged: GeographicLib 2.1 errs in Albers' projection of parallels in the south.
-class Mirrored final : public Transform {
- public:
-  explicit Mirrored(std::unique_ptr<const Transform> inner) : inner_(std::move(inner)) {}
-
-  Point forward(GeoPoint p) const override {
-    const Point out = inner_->forward({-p.latitude_rad, p.longitude_rad});
-    return {out.x_m, -out.y_m};
-  }
-
-  GeoPoint reverse(Point p) const override {
-    const GeoPoint out = inner_->reverse({p.x_m, -p.y_m});
-    return {-out.latitude_rad, out.longitude_rad};
-  }
-
- private:
-  std::unique_ptr<const Transform> inner_;
-};
-
-std::unique_ptr<const Transform> albers(const Ellipsoid& e, const Projection& p) {
-  const bool south = p.standard_parallel_1_rad + p.standard_parallel_2_rad < 0;
-  const double sign = south ? -1.0 : 1.0;
-  auto northern =
-      fromEngine(GeographicLib::AlbersEqualArea(e.equatorial_radius_m, e.flattening,
-                                                sign * p.standard_parallel_1_rad / kDegree,
-                                                sign * p.standard_parallel_2_rad / kDegree, p.scale),
-                 sign * p.latitude_of_origin_rad);
-  return south ? std::make_unique<Mirrored>(std::move(northern)) : std::move(northern);
 }
 
 }  // namespace
@@ -150,18 +119,12 @@ std::unique_ptr<const Transform> makeTransform(const Ellipsoid& e, const Project
     case LambertConformalConic:
       return fromEngine(GeographicLib::LambertConformalConic(a, f, parallel_1, parallel_2, p.scale),
                         p.latitude_of_origin_rad);
-    case AlbersEqualArea:
-      return albers(e, p);
-    case CylindricalEqualArea:
-      // Albers' conic on the equator.
-      return fromEngine(GeographicLib::AlbersEqualArea(a, f, 0.0, equatorScale(e, p)),
-                        p.latitude_of_origin_rad);
     case PolarStereographic:
       return std::make_unique<talus::maps::PolarStereographic>(e, p);
-    case AzimuthalEquidistant:
-      return std::make_unique<talus::maps::AzimuthalEquidistant>(e, p);
+    case Equirectangular:
+      return std::make_unique<talus::maps::Equirectangular>(e, p);
     default:
-      return makePlainTransform(e, p);
+      return nullptr;
   }
 }
 

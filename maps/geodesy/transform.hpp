@@ -21,10 +21,7 @@ class Transform {
   virtual GeoPoint reverse(Point point) const = 0;
 };
 
-/// The transform of a method; parameters are taken as checked.
+/// The transform of a method, null for Foreign; parameters are taken as checked.
 std::unique_ptr<const Transform> makeTransform(const Ellipsoid& ellipsoid, const Projection& projection);
-
-/// Those that GeographicLib lacks. Same contract; null for a method that is not among them.
-std::unique_ptr<const Transform> makePlainTransform(const Ellipsoid& ellipsoid, const Projection& projection);
 
 }  // namespace talus::maps

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <gdal_priv.h>
+#include <ogr_srs_api.h>
 
 #include <talus/common/input_error.hpp>
 #include <talus/maps/raster/complete_file.hpp>
@@ -51,6 +52,7 @@ void registerDrivers() {
     CPLSetConfigOption("GDAL_CONFIG_FILE", "");
     CPLSetConfigOption("GDAL_CACHEMAX", "5%");
     CPLSetConfigOption("GDAL_ERROR_ON_LIBJPEG_WARNING", "TRUE");  // a cut picture is grey behind the cut
+    OSRSetPROJEnableNetwork(FALSE);  // PROJ would fetch grids of datum shifts
     GDALAllRegister();
     // What GDAL opens by itself, such as an overview that a file names, stays within the list, too.
     GDALDriverManager& manager = *GetGDALDriverManager();

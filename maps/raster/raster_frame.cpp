@@ -124,25 +124,28 @@ void refuseBeyondBody(const Pixels& p, const std::string& path) {
 }
 
 struct Resampling {
-  OGRSpatialReference target;
+  Georeference target;
   double resolution_m = 0.0;
   double finest_m = 0.0;  ///< about the side of the source's pixels
 };
 
+Georeference localGeoreference(const OGRSpatialReference& crs, GeoPoint centre, const std::string& path) {
+  return georeferenceAt(coordinateSystem(localProjection(crs, centre), path), std::array{Point{}});
+}
+
 FramedRaster resampled(Dataset file, int band, const Resampling& to, const ReadOptions& options,
                        const std::string& path) {
-  const CoordinateSystem system = coordinateSystem(to.target, path);
   const bool coarser = to.resolution_m > 1.5 * to.finest_m;
   Dataset raster = warp(*file,
                         {.band = band,
-                         .wkt = system.wkt,
+                         .wkt = to.target.system().wkt,
                          .resolution = to.resolution_m,
                          .grid = std::nullopt,
                          .method = coarser ? "average" : "cubic",
                          .nodata = options.nodata},
                         path);
   FramedRaster out = upright(std::move(raster), 1, 1.0);
-  out.georeference.emplace(system);
+  out.georeference = to.target;
   return out;
 }
 
@@ -157,37 +160,42 @@ FramedRaster geographic(Dataset file, int band, const OGRSpatialReference& crs, 
   notes.push_back("degrees resampled to cells of " + number(resolution_m) +
                   " m in a local projection around " + number(centre.latitude_rad / kDegree) + "d," +
                   number(centre.longitude_rad / kDegree) + "d");
-  return resampled(std::move(file), band, {localProjection(crs, centre), resolution_m, finest_m}, options,
-                   path);
+  return resampled(std::move(file), band, {localGeoreference(crs, centre, path), resolution_m, finest_m},
+                   options, path);
 }
 
 FramedRaster projected(Dataset file, int band, const OGRSpatialReference& crs, const ReadOptions& options,
                        const std::string& path, std::vector<std::string>& notes) {
   const Pixels p(*file);
   const double metres = crs.GetLinearUnits();
-  Georeference georeference(coordinateSystem(crs, path));
-  const Point middle = p.at(p.width / 2.0, p.height / 2.0);
-  const Point ground = georeference.groundScale({middle.x_m * metres, middle.y_m * metres});
+  const auto at = [&](double right, double down) {
+    const Point point = p.at(right * p.width, down * p.height);
+    return Point{point.x_m * metres, point.y_m * metres};
+  };
+  const Point middle = at(0.5, 0.5);
+  Georeference georeference =
+      georeferenceAt(coordinateSystem(crs, path), std::array{middle, at(0, 0), at(1, 0), at(0, 1), at(1, 1)});
+  const Point ground = georeference.groundScale(middle);
   if (!std::isfinite(ground.x_m) || !std::isfinite(ground.y_m))
     throw InputError({path, "lies outside the range of its CRS '" + georeference.system().name + "'",
                       "correct the CRS or read with --ignore-crs --resolution METRES"});
   const double finest_m = p.meanSide() * metres * std::sqrt(ground.x_m * ground.y_m);
   const double stretch = std::max(std::abs(ground.x_m - 1), std::abs(ground.y_m - 1));
   if (stretch > kMostStretch) {
-    const GeoPoint centre = georeference.reverse({middle.x_m * metres, middle.y_m * metres});
+    const GeoPoint centre = georeference.reverse(middle);
     const double resolution_m = options.resolution_m.value_or(finest_m);
     notes.push_back("one metre of its CRS is " + number(ground.x_m) + " m of ground eastward, " +
                     number(ground.y_m) +
                     " m northward: resampled to true metres in a local projection, cells of " +
                     number(resolution_m) + " m");
-    return resampled(std::move(file), band, {localProjection(crs, centre), resolution_m, finest_m}, options,
-                     path);
+    return resampled(std::move(file), band, {localGeoreference(crs, centre, path), resolution_m, finest_m},
+                     options, path);
   }
   const double pixel_m = p.meanSide() * metres;
   const double resolution_m = options.resolution_m.value_or(pixel_m);
   if (!p.areSquare() || !near(resolution_m, pixel_m)) {
     notes.push_back("pixels resampled to square cells of " + number(resolution_m) + " m");
-    return resampled(std::move(file), band, {crs, resolution_m, pixel_m}, options, path);
+    return resampled(std::move(file), band, {std::move(georeference), resolution_m, pixel_m}, options, path);
   }
   FramedRaster out = upright(std::move(file), band, metres);
   out.georeference.emplace(std::move(georeference));

@@ -1,10 +1,12 @@
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <numbers>
-#include <optional>
+#include <numeric>
 #include <string_view>
 #include <utility>
 
@@ -13,6 +15,8 @@
 
 #include <talus/common/constants.hpp>
 #include <talus/common/input_error.hpp>
+#include <talus/maps/geodesy/transform.hpp>
+#include <talus/maps/raster/gdal_dataset.hpp>
 #include <talus/maps/raster/spatial_reference.hpp>
 
 namespace talus::maps {
@@ -45,26 +49,11 @@ Projection common(ProjectionMethod method, const Parameters& p) {
           .false_northing_m = p.length(SRS_PP_FALSE_NORTHING)};
 }
 
-// Azimuthal projections name their origin "centre".
-Projection centred(ProjectionMethod method, const Parameters& p) {
-  Projection out = common(method, p);
-  out.latitude_of_origin_rad =
-      p.angle(SRS_PP_LATITUDE_OF_CENTER, p.angle(SRS_PP_LATITUDE_OF_ORIGIN) / kDegree);
-  out.central_meridian_rad = p.angle(SRS_PP_LONGITUDE_OF_CENTER, p.angle(SRS_PP_CENTRAL_MERIDIAN) / kDegree);
-  return out;
-}
-
 // One standard parallel where the origin is, with a scale there.
 Projection trueAtOrigin(ProjectionMethod method, const Parameters& p) {
   Projection out = common(method, p);
   out.standard_parallel_1_rad = out.standard_parallel_2_rad = out.latitude_of_origin_rad;
   return out;
-}
-
-Projection stereographic(const Parameters& p) {
-  const Projection out = common(ProjectionMethod::Stereographic, p);
-  const bool polar = std::abs(out.latitude_of_origin_rad) > std::numbers::pi / 2 - 1e-9;
-  return polar ? trueAtOrigin(ProjectionMethod::PolarStereographic, p) : out;
 }
 
 Projection mercatorFromEquator(const Parameters& p) {
@@ -74,7 +63,14 @@ Projection mercatorFromEquator(const Parameters& p) {
   return out;
 }
 
-std::optional<Projection> projectionOf(std::string_view name, const Parameters& p) {
+// Of a pole alone.
+Projection stereographic(const Parameters& p) {
+  const bool polar = std::abs(p.angle(SRS_PP_LATITUDE_OF_ORIGIN)) > std::numbers::pi / 2 - 1e-9;
+  return polar ? trueAtOrigin(ProjectionMethod::PolarStereographic, p)
+               : Projection{.method = ProjectionMethod::Foreign};
+}
+
+Projection projectionOf(std::string_view name, const Parameters& p) {
   using enum ProjectionMethod;
   const std::pair<std::string_view, std::function<Projection()>> known[] = {
       {SRS_PT_TRANSVERSE_MERCATOR, [&] { return common(TransverseMercator, p); }},
@@ -85,16 +81,10 @@ std::optional<Projection> projectionOf(std::string_view name, const Parameters& 
       {SRS_PT_STEREOGRAPHIC, [&] { return stereographic(p); }},
       {SRS_PT_LAMBERT_CONFORMAL_CONIC_1SP, [&] { return trueAtOrigin(LambertConformalConic, p); }},
       {SRS_PT_LAMBERT_CONFORMAL_CONIC_2SP, [&] { return common(LambertConformalConic, p); }},
-      {SRS_PT_ALBERS_CONIC_EQUAL_AREA, [&] { return centred(AlbersEqualArea, p); }},
-      {SRS_PT_CYLINDRICAL_EQUAL_AREA, [&] { return common(CylindricalEqualArea, p); }},
-      {SRS_PT_LAMBERT_AZIMUTHAL_EQUAL_AREA, [&] { return centred(LambertAzimuthalEqualArea, p); }},
-      {SRS_PT_AZIMUTHAL_EQUIDISTANT, [&] { return centred(AzimuthalEquidistant, p); }},
-      {SRS_PT_ORTHOGRAPHIC, [&] { return common(Orthographic, p); }},
-      {SRS_PT_SINUSOIDAL, [&] { return centred(Sinusoidal, p); }},
   };
   for (const auto& [word, make] : known)
     if (word == name) return make();
-  return std::nullopt;
+  return {.method = Foreign};
 }
 
 std::string text(const char* words) {
@@ -125,8 +115,15 @@ bool isOcentric(const OGRSpatialReference& reference) {
   return reference.GetInvFlattening() > 0 && holdsNoCase(text(reference.GetAttrValue("GEOGCS")), "ocentric");
 }
 
-// The geographic part of a CRS with longitudes eastward and geographic latitudes on the same ellipsoid.
-OGRSpatialReference eastward(const OGRSpatialReference& reference) {
+// The geographic system of places: on Earth WGS 84, elsewhere the geographic part of a CRS with longitudes eastward and
+// geographic latitudes on the same ellipsoid.
+OGRSpatialReference placesOf(const OGRSpatialReference& reference) {
+  if (bodyName({reference.GetSemiMajor(), 0.0}) == bodyName(kEarth)) {
+    OGRSpatialReference out;
+    out.SetWellKnownGeogCS("WGS84");
+    out.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    return out;
+  }
   const std::unique_ptr<OGRSpatialReference> base(reference.CloneGeogCS());
   OGRSpatialReference out(*base);
   if (countsWestward(*base) || isOcentric(*base)) {
@@ -139,6 +136,48 @@ OGRSpatialReference eastward(const OGRSpatialReference& reference) {
   }
   out.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
   return out;
+}
+
+// A projected CRS by PROJ, places as above.
+class ProjTransform final : public Transform {
+ public:
+  explicit ProjTransform(const OGRSpatialReference& projected) {
+    registerDrivers();
+    const OGRSpatialReference places = placesOf(projected);
+    to_map_.reset(OGRCreateCoordinateTransformation(&places, &projected));
+    to_place_.reset(OGRCreateCoordinateTransformation(&projected, &places));
+  }
+
+  Point forward(GeoPoint p) const override {
+    return changed(to_map_.get(), {p.longitude_rad / kDegree, p.latitude_rad / kDegree});
+  }
+
+  GeoPoint reverse(Point p) const override {
+    const Point degrees = changed(to_place_.get(), p);
+    return {degrees.y_m * kDegree, degrees.x_m * kDegree};
+  }
+
+ private:
+  // GDAL's transformations serve one thread at a time.
+  Point changed(OGRCoordinateTransformation* change, Point p) const {
+    const std::scoped_lock lock(mutex_);
+    const GdalErrors quiet;
+    const bool done = change != nullptr && change->Transform(1, &p.x_m, &p.y_m) != FALSE;
+    return done && std::isfinite(p.x_m) && std::isfinite(p.y_m) ? p : Point{kNaN, kNaN};
+  }
+
+  mutable std::mutex mutex_;
+  std::unique_ptr<OGRCoordinateTransformation> to_map_, to_place_;
+};
+
+constexpr double kAgreement_m = 0.01;  // our projections differ from PROJ's by a millimetre, datums by metres
+
+bool agree(GeoPoint ours, GeoPoint theirs, double radius_m) {
+  if (std::isnan(ours.latitude_rad) && std::isnan(theirs.latitude_rad))
+    return true;  // beyond the body's edge
+  const double north_m = (ours.latitude_rad - theirs.latitude_rad) * radius_m;
+  const double turn = std::remainder(ours.longitude_rad - theirs.longitude_rad, 2 * std::numbers::pi);
+  return std::hypot(north_m, turn * std::cos(ours.latitude_rad) * radius_m) <= kAgreement_m;
 }
 
 void setFromNumbers(OGRSpatialReference& out, const Projection& p) {
@@ -162,30 +201,11 @@ void setFromNumbers(OGRSpatialReference& out, const Projection& p) {
     case PolarStereographic:
       out.SetPS(sp1, lon0, p.scale, fe, fn);
       break;
-    case Stereographic:
-      out.SetStereographic(lat0, lon0, p.scale, fe, fn);
-      break;
     case LambertConformalConic:
       sp1 == lat0&& sp2 == lat0 ? out.SetLCC1SP(lat0, lon0, p.scale, fe, fn)
                                 : out.SetLCC(sp1, sp2, lat0, lon0, fe, fn);
       break;
-    case AlbersEqualArea:
-      out.SetACEA(sp1, sp2, lat0, lon0, fe, fn);
-      break;
-    case CylindricalEqualArea:
-      out.SetCEA(sp1, lon0, fe, fn);
-      break;
-    case LambertAzimuthalEqualArea:
-      out.SetLAEA(lat0, lon0, fe, fn);
-      break;
-    case AzimuthalEquidistant:
-      out.SetAE(lat0, lon0, fe, fn);
-      break;
-    case Orthographic:
-      out.SetOrthographic(lat0, lon0, fe, fn);
-      break;
-    case Sinusoidal:
-      out.SetSinusoidal(lon0, fe, fn);
+    case Foreign:
       break;
   }
 }
@@ -199,18 +219,15 @@ CoordinateSystem coordinateSystem(const OGRSpatialReference& reference, const st
     throw InputError({where, "CRS '" + name + "' has a westward x axis",
                       "gdalwarp -t_srs to a CRS whose x axis points east"});
   const std::string method = text(reference.GetAttrValue("PROJECTION"));
-  std::optional<Projection> projection = projectionOf(method, Parameters(reference));
-  if (!projection)
-    throw InputError(
-        {where, "projection '" + method + "' of CRS '" + name + "' is not known to Talus",
-         "resample it with gdalwarp -t_srs to transverse Mercator or another common projection"});
-  projection->central_meridian_rad += reference.GetPrimeMeridian() * kDegree;
+  Projection projection = projectionOf(method, Parameters(reference));
+  if (projection.method != ProjectionMethod::Foreign)
+    projection.central_meridian_rad += reference.GetPrimeMeridian() * kDegree;
   const double inverse_flattening = reference.GetInvFlattening();
   const Ellipsoid ellipsoid{reference.GetSemiMajor(), inverse_flattening > 0 ? 1 / inverse_flattening : 0.0};
   OGRSpatialReference in_metres(reference);
   in_metres.StripVertical();
   in_metres.SetLinearUnitsAndUpdateParameters(SRS_UL_METER, 1.0);
-  return {name, ellipsoid, *projection, isOcentric(reference), wkt(in_metres)};
+  return {name, ellipsoid, projection, isOcentric(reference), wkt(in_metres)};
 }
 
 OGRSpatialReference spatialReference(const CoordinateSystem& system) {
@@ -227,8 +244,30 @@ OGRSpatialReference spatialReference(const CoordinateSystem& system) {
   return out;
 }
 
+Georeference georeferenceAt(CoordinateSystem system, std::span<const Point> points) {
+  if (system.wkt.empty()) return Georeference(std::move(system));
+  const auto proj = std::make_shared<const ProjTransform>(spatialReference(system));
+  CoordinateSystem geographic = system;
+  geographic.planetocentric = false;  // as PROJ's places are here
+  const Georeference own(std::move(geographic));
+  const double radius_m = system.ellipsoid.equatorial_radius_m;
+  if (own.reachesPlaces() &&
+      std::ranges::all_of(points, [&](Point p) { return agree(own.reverse(p), proj->reverse(p), radius_m); }))
+    return Georeference(std::move(system));
+  system.projection = {.method = ProjectionMethod::Foreign};
+  if (bodyName(system.ellipsoid) == bodyName(kEarth)) system.ellipsoid = kEarth;
+  return {std::move(system), proj};
+}
+
+Georeference georeferenceOn(const CoordinateSystem& system, const Grid& grid) {
+  const Point a = grid.south_west;
+  const Point b{a.x_m + grid.width * grid.resolution_m, a.y_m + grid.height * grid.resolution_m};
+  return georeferenceAt(system, std::array{a, b, Point{a.x_m, b.y_m}, Point{b.x_m, a.y_m},
+                                           Point{std::midpoint(a.x_m, b.x_m), std::midpoint(a.y_m, b.y_m)}});
+}
+
 OGRSpatialReference localProjection(const OGRSpatialReference& geographic, GeoPoint centre) {
-  OGRSpatialReference out = eastward(geographic);
+  OGRSpatialReference out = placesOf(geographic);
   const double latitude = centre.latitude_rad / kDegree;
   if (std::abs(latitude) > 80)
     out.SetPS(std::copysign(90.0, latitude), 0.0, 1.0, 0.0, 0.0);

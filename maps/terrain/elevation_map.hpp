@@ -17,6 +17,10 @@ struct ElevationMap {
   std::string source{};                        ///< the file it came from, as the user named it
   std::vector<std::string> notes{};  ///< what the reader decided that a person should know, a line each
 
+  /// The georeference where it reaches latitude and longitude, else null.
+  const Georeference* places() const noexcept {
+    return georeference && georeference->reachesPlaces() ? &*georeference : nullptr;
+  }
   const Grid& grid() const noexcept { return elevation_m.grid(); }
 };
 

@@ -99,11 +99,14 @@ double withinBorder(double at_m, double from_m, int cells, double resolution_m) 
 
 Point locate(const Place& place, const ElevationMap& map, const std::string& name) {
   const auto* geographic = std::get_if<GeoPoint>(&place);
-  if (geographic != nullptr && !map.georeference)
-    throw InputError(
-        {name, "map '" + map.source + "' has no CRS for a latitude and longitude", "give x,y in map metres"});
+  const Georeference* places = map.places();
+  if (geographic != nullptr && places == nullptr)
+    throw InputError({name,
+                      "map '" + map.source + "' has no CRS for a latitude and longitude" +
+                          (map.georeference ? " that is known without PROJ" : ""),
+                      "give x,y in map metres"});
   const Grid& grid = map.grid();
-  const Point given = geographic != nullptr ? map.georeference->forward(*geographic) : std::get<Point>(place);
+  const Point given = geographic != nullptr ? places->forward(*geographic) : std::get<Point>(place);
   const Point point{withinBorder(given.x_m, grid.south_west.x_m, grid.width, grid.resolution_m),
                     withinBorder(given.y_m, grid.south_west.y_m, grid.height, grid.resolution_m)};
   if (grid.cellAt(point)) return point;
@@ -121,7 +124,8 @@ std::string extent(const Grid& grid) {
 
 std::string describe(Point point, const ElevationMap& map) {
   const std::string metres = format("x %.2f m, y %.2f m", point.x_m, point.y_m);
-  return map.georeference ? metres + " (" + degrees(map.georeference->reverse(point)) + ")" : metres;
+  const Georeference* places = map.places();
+  return places != nullptr ? metres + " (" + degrees(places->reverse(point)) + ")" : metres;
 }
 
 }  // namespace talus::maps

@@ -12,8 +12,8 @@ using Json = nlohmann::ordered_json;
 
 Json position(const RouteVertex& vertex, const maps::ElevationMap& map) {
   Json made = Json::array();
-  if (map.georeference) {
-    const maps::GeoPoint place = map.georeference->reverse({vertex.x_m, vertex.y_m});
+  if (const maps::Georeference* places = map.places()) {
+    const maps::GeoPoint place = places->reverse({vertex.x_m, vertex.y_m});
     made = {place.longitude_rad / kDegree, place.latitude_rad / kDegree};
   } else {
     made = {vertex.x_m, vertex.y_m};
@@ -120,14 +120,14 @@ Json routeGeoJson(const Route& route, const maps::ElevationMap& map, const Route
   properties["inputs"] = originJson(origin);
   properties["seed"] = origin.seed;
   properties["version"] = TALUS_VERSION;
-  if (!map.georeference) properties["crs"] = "local";
+  if (map.places() == nullptr) properties["crs"] = "local";
   Json feature;
   feature["type"] = "Feature";
   feature["geometry"] = {{"type", "LineString"}, {"coordinates", line}};
   feature["properties"] = properties;
   Json made;
   made["type"] = "FeatureCollection";
-  if (!map.georeference) made["crs"] = "local";
+  if (map.places() == nullptr) made["crs"] = "local";
   made["features"] = Json::array({feature});
   return made;
 }

@@ -72,6 +72,29 @@ TEST(MapFile, KeepsTheCoordinateSystem) {
   EXPECT_EQ(back.elevation().georeference->system().ellipsoid, moon.ellipsoid);
 }
 
+// Without PROJ such a map has metres alone, and keeps its coordinate system for machines that have it.
+TEST(MapFile, AForeignSystemHasNoPlacesUnlessSomebodyKnowsThem) {
+  MapLayers layers = drawn({"11", "11"});
+  layers.elevation.georeference.emplace(
+      maps::CoordinateSystem{.name = "CH1903 / LV03",
+                             .ellipsoid = maps::kEarth,
+                             .projection = {.method = maps::ProjectionMethod::Foreign},
+                             .wkt = "W"});
+  const std::string bytes = bytesOf(TraversabilityMap(std::move(layers), testGround(), {}));
+  const TraversabilityMap bare = fromBytes(bytes);
+  EXPECT_EQ(bare.elevation().places(), nullptr);
+  EXPECT_EQ(bytesOf(bare), bytes);
+  std::istringstream stream(bytes);
+  const TraversabilityMap known = readMap(
+      stream,
+      {.name = "map.ot", .georeference = [](const maps::CoordinateSystem& read, const maps::Grid& on) {
+         EXPECT_EQ(read.wkt, "W");
+         EXPECT_EQ(on.width, 2);
+         return maps::Georeference({.name = read.name, .ellipsoid = maps::kEarth});
+       }});
+  EXPECT_NE(known.elevation().places(), nullptr);
+}
+
 TEST(MapFile, KeepsTheEffectsOfItsGround) {
   GroundModel::Parts parts = testGround()->parts();
   terramech::Effect curve{.name = "empirical",

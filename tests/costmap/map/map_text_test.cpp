@@ -70,7 +70,7 @@ TEST(MapText, KeepsTheWholeCoordinateSystem) {
     MapText text = example();
     text.coordinate_system = {.name = "Mars / Ocentric",
                               .ellipsoid = maps::kMars,
-                              .projection = {.method = maps::ProjectionMethod::AlbersEqualArea,
+                              .projection = {.method = maps::ProjectionMethod::LambertConformalConic,
                                              .latitude_of_origin_rad = 0.1,
                                              .central_meridian_rad = 0.2,
                                              .standard_parallel_1_rad = 0.3,

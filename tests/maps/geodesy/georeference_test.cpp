@@ -61,11 +61,21 @@ TEST(Georeference, DistanceIsAlongTheBody) {
 }
 
 TEST(Georeference, NotANumberWhereTheProjectionDoesNotReach) {
-  const Georeference disc(
-      {.name = "near side", .ellipsoid = kMoon, .projection = {.method = ProjectionMethod::Orthographic}});
-  EXPECT_TRUE(std::isnan(disc.forward({0.0, 120 * kDegree}).x_m));
-  EXPECT_TRUE(std::isnan(disc.reverse({2e6, 0}).latitude_rad));
-  EXPECT_TRUE(std::isnan(disc.forward({2.0, 0.0}).x_m));
+  const Georeference plate(
+      {.name = "plate", .ellipsoid = kMoon, .projection = {.method = ProjectionMethod::Equirectangular}});
+  EXPECT_TRUE(std::isnan(plate.reverse({0, 3e6}).latitude_rad));
+  EXPECT_TRUE(std::isnan(plate.forward({2.0, 0.0}).x_m));
+}
+
+// Of such a map only metres are known until PROJ is there.
+TEST(Georeference, AForeignSystemReachesNoPlaces) {
+  const Georeference swiss(
+      {.name = "LV03", .ellipsoid = kEarth, .projection = {.method = ProjectionMethod::Foreign}, .wkt = "A"});
+  EXPECT_FALSE(swiss.reachesPlaces());
+  EXPECT_EQ(swiss.system().wkt, "A");
+  EXPECT_TRUE(std::isnan(swiss.reverse({600000, 200000}).latitude_rad));
+  EXPECT_TRUE(std::isnan(swiss.forward({0.8, 0.1}).x_m));
+  EXPECT_TRUE(std::isnan(swiss.distance_m({0, 0}, {1, 0})));
 }
 
 TEST(Georeference, RefusesParametersOutOfRange) {

@@ -55,9 +55,7 @@ std::vector<GeoPoint> places(ProjectionMethod method) {
 
 TEST(Transform, EveryMethodComesBack) {
   for (ProjectionMethod method :
-       {TransverseMercator, Mercator, Equirectangular, PolarStereographic, Stereographic,
-        LambertConformalConic, AlbersEqualArea, CylindricalEqualArea, LambertAzimuthalEqualArea,
-        AzimuthalEquidistant, Orthographic, Sinusoidal}) {
+       {TransverseMercator, Mercator, Equirectangular, PolarStereographic, LambertConformalConic}) {
     const auto transform = makeTransform(kFlat, projection(method));
     for (const GeoPoint& p : places(method)) {
       const GeoPoint back = transform->reverse(transform->forward(p));
@@ -69,25 +67,12 @@ TEST(Transform, EveryMethodComesBack) {
 
 // Property: angles are kept, so east and north stay square and equally long. Tolerance: differences of 1e-6.
 TEST(Transform, ConformalMethodsKeepAngles) {
-  for (ProjectionMethod method :
-       {TransverseMercator, Mercator, PolarStereographic, Stereographic, LambertConformalConic}) {
+  for (ProjectionMethod method : {TransverseMercator, Mercator, PolarStereographic, LambertConformalConic}) {
     const auto transform = makeTransform(kFlat, projection(method));
     for (const GeoPoint& p : places(method)) {
       const Jacobian j = jacobian(*transform, kFlat, p);
       EXPECT_NEAR(j.east.x_m, j.north.y_m, 1e-7) << static_cast<int>(method);
       EXPECT_NEAR(j.east.y_m, -j.north.x_m, 1e-7) << static_cast<int>(method);
-    }
-  }
-}
-
-// Property: a square metre of ground is one of the map.
-TEST(Transform, EqualAreaMethodsKeepAreas) {
-  for (ProjectionMethod method :
-       {AlbersEqualArea, CylindricalEqualArea, LambertAzimuthalEqualArea, Sinusoidal}) {
-    const auto transform = makeTransform(kFlat, projection(method));
-    for (const GeoPoint& p : places(method)) {
-      const Jacobian j = jacobian(*transform, kFlat, p);
-      EXPECT_NEAR(j.east.x_m * j.north.y_m - j.east.y_m * j.north.x_m, 1.0, 1e-7) << static_cast<int>(method);
     }
   }
 }
@@ -98,49 +83,24 @@ TEST(Transform, ClosedFormsOfTheSphere) {
   // Closed form: y = R ln tan(pi/4 + phi/2) on Mercator's map.
   EXPECT_NEAR(at({.method = Mercator}).y_m,
               1000 * std::log(std::tan(std::numbers::pi / 4 + p.latitude_rad / 2)), 1e-9);
-  // Closed form: y = R sin(phi) / cos(phi_1) on Lambert's cylinder.
-  EXPECT_NEAR(at({.method = CylindricalEqualArea, .standard_parallel_1_rad = 0.5}).y_m,
-              1000 * std::sin(p.latitude_rad) / std::cos(0.5), 1e-9);
   // Closed form: x = R artanh(cos(phi) sin(lambda)) of the transverse Mercator projection.
   EXPECT_NEAR(at({.method = TransverseMercator}).x_m,
               1000 * std::atanh(std::cos(p.latitude_rad) * std::sin(p.longitude_rad)), 1e-9);
-  // Closed form: the distance from the origin is R times the angle there.
-  const Point azimuthal = at({.method = AzimuthalEquidistant});
-  EXPECT_NEAR(std::hypot(azimuthal.x_m, azimuthal.y_m),
-              1000 * std::acos(std::cos(p.latitude_rad) * std::cos(p.longitude_rad)), 1e-9);
-}
-
-// Property: south of the equator Albers' map is the mirror image of that in the north.
-TEST(Transform, AlbersInTheSouthMirrorsTheNorth) {
-  const Projection north = projection(AlbersEqualArea);
-  const Projection south{.method = AlbersEqualArea,
-                         .latitude_of_origin_rad = -north.latitude_of_origin_rad,
-                         .standard_parallel_1_rad = -north.standard_parallel_1_rad,
-                         .standard_parallel_2_rad = -north.standard_parallel_2_rad};
-  const auto up = makeTransform(kFlat, north);
-  const auto down = makeTransform(kFlat, south);
-  for (const GeoPoint& p : places(AlbersEqualArea)) {
-    const Point a = up->forward(p);
-    const Point b = down->forward({-p.latitude_rad, p.longitude_rad});
-    EXPECT_NEAR(a.x_m, b.x_m, 1e-6);
-    EXPECT_NEAR(a.y_m, -b.y_m, 1e-6);
-  }
 }
 
 // Property: a conic is true along its standard parallels, on either half of the body.
-TEST(Transform, ConicsAreTrueAlongTheirParallels) {
-  for (ProjectionMethod method : {LambertConformalConic, AlbersEqualArea})
-    for (const double half : {1.0, -1.0}) {
-      const auto transform = makeTransform(kFlat, {.method = method,
-                                                   .latitude_of_origin_rad = half * 35 * kDegree,
-                                                   .standard_parallel_1_rad = half * 30 * kDegree,
-                                                   .standard_parallel_2_rad = half * 50 * kDegree});
-      EXPECT_NEAR(transform->forward({half * 35 * kDegree, 0.0}).y_m, 0.0, 1e-6);
-      for (const double parallel : {30.0, 50.0}) {
-        const Jacobian j = jacobian(*transform, kFlat, {half * parallel * kDegree, 0.1});
-        EXPECT_NEAR(std::hypot(j.east.x_m, j.east.y_m), 1.0, 1e-7) << static_cast<int>(method) << half;
-      }
+TEST(Transform, TheConicIsTrueAlongItsParallels) {
+  for (const double half : {1.0, -1.0}) {
+    const auto transform = makeTransform(kFlat, {.method = LambertConformalConic,
+                                                 .latitude_of_origin_rad = half * 35 * kDegree,
+                                                 .standard_parallel_1_rad = half * 30 * kDegree,
+                                                 .standard_parallel_2_rad = half * 50 * kDegree});
+    EXPECT_NEAR(transform->forward({half * 35 * kDegree, 0.0}).y_m, 0.0, 1e-6);
+    for (const double parallel : {30.0, 50.0}) {
+      const Jacobian j = jacobian(*transform, kFlat, {half * parallel * kDegree, 0.1});
+      EXPECT_NEAR(std::hypot(j.east.x_m, j.east.y_m), 1.0, 1e-7) << half;
     }
+  }
 }
 
 }  // namespace transform_test

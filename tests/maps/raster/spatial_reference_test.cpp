@@ -1,4 +1,5 @@
 // Georeference against PROJ's own transform of the same CRS, as GDAL calls it.
+#include <array>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -40,8 +41,10 @@ TEST_P(AgainstProj, ForwardToAMillimetreAndBack) {
   const std::unique_ptr<OGRCoordinateTransformation> proj(
       OGRCreateCoordinateTransformation(degrees.get(), &crs));
   ASSERT_TRUE(proj);
-  const Georeference ours(coordinateSystem(crs, "test"));
+  const Georeference ours = georeferenceAt(coordinateSystem(crs, "test"), {});
   const double metres = crs.GetLinearUnits();
+  // PROJ's series of the authalic latitude comes back to a millimetre.
+  const double back_rad = ours.system().projection.method == ProjectionMethod::Foreign ? 2e-10 : 1e-11;
   for (const GeoPoint& place : GetParam().places_deg) {
     const double unit = crs.GetAngularUnits() / kDegree;
     double x = (place.longitude_rad - crs.GetPrimeMeridian()) / unit;
@@ -53,14 +56,16 @@ TEST_P(AgainstProj, ForwardToAMillimetreAndBack) {
     EXPECT_NEAR(p.x_m, x * metres, 1e-3) << place.latitude_rad << "," << place.longitude_rad;
     EXPECT_NEAR(p.y_m, y * metres, 1e-3) << place.latitude_rad << "," << place.longitude_rad;
     const GeoPoint back = ours.reverse(p);
-    EXPECT_NEAR(back.latitude_rad, radians.latitude_rad, 1e-11);
-    EXPECT_NEAR(std::remainder(back.longitude_rad - radians.longitude_rad, 2 * std::numbers::pi), 0.0, 1e-11);
+    EXPECT_NEAR(back.latitude_rad, radians.latitude_rad, back_rad);
+    EXPECT_NEAR(std::remainder(back.longitude_rad - radians.longitude_rad, 2 * std::numbers::pi), 0.0,
+                back_rad);
   }
 }
 
 // The same system once more, from its numbers alone.
 TEST_P(AgainstProj, SurvivesBeingWrittenAndReadBack) {
   const CoordinateSystem first = coordinateSystem(reference(GetParam().definition), "test");
+  if (first.projection.method == ProjectionMethod::Foreign) GTEST_SKIP() << "lives by its WKT";
   CoordinateSystem bare = first;
   bare.wkt.clear();
   const Georeference a(first);
@@ -121,7 +126,7 @@ TEST(SpatialReference, PlanetocentricLatitudesOnAnEllipsoid) {
   EXPECT_NEAR(place.longitude_rad / kDegree, 134.964838864922, 1e-10);
 }
 
-TEST(SpatialReference, RefusesWhatItCannotProject) {
+TEST(SpatialReference, RefusesWhatHasNoMetresEastAndNorth) {
   const auto refusal = [](const char* definition) {
     try {
       coordinateSystem(reference(definition), "map.tif");
@@ -130,17 +135,75 @@ TEST(SpatialReference, RefusesWhatItCannotProject) {
     }
     return std::string("accepted");
   };
-  EXPECT_THAT(refusal("+proj=robin +R=3396190"), testing::HasSubstr("map.tif: projection 'Robinson'"));
-  EXPECT_THAT(refusal("+proj=robin +R=3396190"), testing::HasSubstr("gdalwarp"));
   EXPECT_THAT(refusal("EPSG:4326"), testing::HasSubstr("is not projected"));
   EXPECT_THAT(refusal("IAU_2015:49911"), testing::HasSubstr("has a westward x axis"));
 }
 
+Georeference at(const char* definition, Point point) {
+  return georeferenceAt(coordinateSystem(reference(definition), "test"), std::array{point});
+}
+
+double off_m(const Georeference& georeference, Point point, GeoPoint stated_deg) {
+  const GeoPoint place = georeference.reverse(point);
+  return std::hypot(
+             place.latitude_rad - stated_deg.latitude_rad * kDegree,
+             (place.longitude_rad - stated_deg.longitude_rad * kDegree) * std::cos(place.latitude_rad)) *
+         kEarth.equatorial_radius_m;
+}
+
+// A latitude and longitude on Earth is what a receiver of GPS shows, whatever the datum of the map.
+TEST(SpatialReference, PlacesOnEarthAreThoseOfWgs84) {
+  struct Known {
+    const char* definition;
+    Point point;
+    GeoPoint wgs84_deg;
+    double most_m;
+  };
+  // Printed in: swisstopo, "Formeln und Konstanten", origin of LV03 and LV95 in CHTRS95; Kadaster, RDNAPTRANS, its origin;
+  // Ordnance Survey, "A guide to coordinate systems in Great Britain", example C.1 on its own datum, whose WGS 84 position
+  // the transformation of seven parameters gives to 5 m.
+  for (const Known& known : {Known{"EPSG:21781", {600000, 200000}, {46.951082877, 7.438632495}, 2.0},
+                             Known{"EPSG:2056", {2600000, 1200000}, {46.951082877, 7.438632495}, 2.0},
+                             Known{"EPSG:28992", {155000, 463000}, {52.15517440, 5.38720621}, 2.0},
+                             Known{"EPSG:27700", {651409.903, 313177.270}, {52.657978, 1.716053}, 5.0}}) {
+    const Georeference georeference = at(known.definition, known.point);
+    EXPECT_EQ(georeference.system().projection.method, ProjectionMethod::Foreign) << known.definition;
+    EXPECT_LE(off_m(georeference, known.point, known.wgs84_deg), known.most_m) << known.definition;
+    // Tolerance: seven parameters and their inverse, as EPSG has them, differ by a millimetre.
+    const Point back = georeference.forward(georeference.reverse(known.point));
+    EXPECT_NEAR(back.x_m, known.point.x_m, 2e-3) << known.definition;
+    EXPECT_NEAR(back.y_m, known.point.y_m, 2e-3) << known.definition;
+  }
+  for (const char* other : {"EPSG:5514", "EPSG:31467", "EPSG:3857", "ESRI:54030"})
+    EXPECT_TRUE(at(other, {}).reachesPlaces()) << other;
+}
+
+// Closed form: x = R lambda, y = R asinh(tan phi) on the sphere of the equatorial radius.
+TEST(SpatialReference, WebMercatorIsSpherical) {
+  const Point point{9e5, 6e6};
+  const double r = kEarth.equatorial_radius_m;
+  EXPECT_LE(off_m(at("EPSG:3857", point), point,
+                  {std::atan(std::sinh(point.y_m / r)) / kDegree, point.x_m / r / kDegree}),
+            1e-3);
+}
+
+// Property: what is kept as numbers, for machines without PROJ, is what PROJ says at the place of the map.
+TEST(SpatialReference, KeepsNumbersWhereTheyAreRight) {
+  for (const char* own : {"EPSG:32610", "EPSG:3031", "EPSG:3413", "IAU_2015:49910", "IAU_2015:30135"})
+    EXPECT_NE(at(own, {500000, 500000}).system().projection.method, ProjectionMethod::Foreign) << own;
+  const Georeference pole = at("IAU_2015:49912", {8000000, -300000});
+  EXPECT_TRUE(pole.system().planetocentric);
+  EXPECT_NE(pole.system().projection.method, ProjectionMethod::Foreign);
+}
+
 TEST(SpatialReference, LocalProjectionIsTrueAtItsCentre) {
-  for (const char* definition : {"EPSG:4326", "IAU_2015:49901", "IAU_2015:49902", "IAU_2015:30100"})
+  for (const char* definition :
+       {"EPSG:4326", "EPSG:4277", "IAU_2015:49901", "IAU_2015:49902", "IAU_2015:30100"})
     for (double latitude_deg : {-88.0, -30.0, 0.0, 62.0}) {
       const GeoPoint centre{latitude_deg * kDegree, 100 * kDegree};
-      const Georeference local(coordinateSystem(localProjection(reference(definition), centre), "test"));
+      const Georeference local = georeferenceAt(
+          coordinateSystem(localProjection(reference(definition), centre), "test"), std::array{Point{}});
+      EXPECT_NE(local.system().projection.method, ProjectionMethod::Foreign);
       const Point ground = local.groundScale(local.forward(centre));
       EXPECT_NEAR(ground.x_m, 1.0, 1e-3) << definition << latitude_deg;
       EXPECT_NEAR(ground.y_m, 1.0, 1e-3) << definition << latitude_deg;
