@@ -6,4 +6,4 @@
 #include <talus/maps/raster/elevation_reader.hpp>
 #include <talus/maps/raster/geotiff_writer.hpp>
 #include <talus/maps/raster/layer_reader.hpp>
-#include <talus/maps/raster/place_reader.hpp>
+#include <talus/maps/vector/place_reader.hpp>

@@ -21,7 +21,7 @@
 #include <talus/cli/route/drive_worlds.hpp>
 #include <talus/common/input_error.hpp>
 #include <talus/common/progress_monitor.hpp>
-#include <talus/maps/raster/place_reader.hpp>
+#include <talus/maps/vector/place_reader.hpp>
 #include <talus/planner/simulation/drive/simulation_site.hpp>
 #include <talus/terramech/io/soil_library.hpp>
 

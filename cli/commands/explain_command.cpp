@@ -14,7 +14,7 @@
 #include <talus/cli/draw/slope_rose.hpp>
 #include <talus/cli/ground/ground_options.hpp>
 #include <talus/costmap/map/explanation.hpp>
-#include <talus/maps/raster/place_reader.hpp>
+#include <talus/maps/vector/place_reader.hpp>
 
 namespace talus::cli {
 namespace {
@@ -30,7 +30,7 @@ void bind(CLI::App& command, ExplainOptions& options) {
   addGroundOptions(command, options.ground);
   command
       .add_option("--at", options.at,
-                  "place: x,y in map metres; lat,lon with the suffix d on each; or a GeoJSON point file")
+                  "place: x,y in map metres; lat,lon with the suffix d on each; or a vector file")
       ->required()
       ->type_name("P");
   command

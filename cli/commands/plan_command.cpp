@@ -27,7 +27,7 @@
 #include <talus/cli/ground/windowed_ground.hpp>
 #include <talus/cli/route/plan_pairs.hpp>
 #include <talus/common/input_error.hpp>
-#include <talus/maps/raster/place_reader.hpp>
+#include <talus/maps/vector/place_reader.hpp>
 #include <talus/planner/check/route_risk.hpp>
 #include <talus/planner/plan/plan_route.hpp>
 #include <talus/planner/plan/risk_planner.hpp>

@@ -12,7 +12,7 @@
 #include <talus/cli/ground/path_reader.hpp>
 #include <talus/cli/ground/plugin_option.hpp>
 #include <talus/common/input_error.hpp>
-#include <talus/maps/raster/place_reader.hpp>
+#include <talus/maps/vector/place_reader.hpp>
 #include <talus/planner/bound/lower_bound.hpp>
 #include <talus/planner/check/annotation.hpp>
 #include <talus/planner/check/route_check.hpp>
@@ -50,7 +50,7 @@ std::string scoreText(const planner::Route& route, const std::vector<planner::Vi
 
 void bind(CLI::App& command, ScoreOptions& options) {
   addGroundOptions(command, options.ground);
-  command.add_option("--path", options.path, "polyline: GeoJSON LineString, or CSV with x_m, y_m")
+  command.add_option("--path", options.path, "polyline: a line of a vector file, or CSV with x_m, y_m")
       ->type_name("FILE");
   addPluginOption(command, options.plugin);
   command

@@ -56,7 +56,7 @@ struct LayerOptions {
   std::optional<int> terrain_band;
   std::string rocks;  ///< rock-abundance raster
   std::optional<int> rocks_band;
-  std::vector<std::string> keep_out;  ///< GeoJSON polygons
+  std::vector<std::string> keep_out;  ///< vector files of polygons
   std::vector<std::string> costs;     ///< NAME=FILE: joules a metre on top
 };
 

@@ -106,7 +106,7 @@ std::span<const FileKey> missionKeys() {
       {"soils", "YAML file of terrain classes and their soils"},
       {"thresholds", "a mapping, see below"},
       {"planner", "field (default), hybrid or a name of `talus plugins`"},
-      {"start", "x,y in map metres, [x, y], lat,lon with the suffix d on each, or a GeoJSON point"},
+      {"start", "x,y in map metres, [x, y], lat,lon with the suffix d on each, or a vector file"},
       {"goal", "as start; a list of them: the goal of least cost is chosen"},
       {"via", "as goal: places to pass in that order"},
       {"tolerance_m", "distance from the goal that is near enough, default 0"},
@@ -125,7 +125,7 @@ std::span<const FileKey> missionMapKeys() {
       {"map", "traversability map of `talus costmap`"},
       {"terrain", "raster of terrain classes"},
       {"rocks", "raster of rock abundance, 0 to 1"},
-      {"keep_out", "GeoJSON polygons"},
+      {"keep_out", "polygons of a vector file"},
       {"resolution_m", "cell size of a raster without a coordinate system"},
       {"ignore_crs", "true: read as local metres; default false"},
   };

@@ -8,7 +8,8 @@
 #include <talus/cli/ground/path_reader.hpp>
 #include <talus/common/input_error.hpp>
 #include <talus/common/plausible.hpp>
-#include <talus/maps/raster/geojson.hpp>
+#include <talus/maps/vector/geojson.hpp>
+#include <talus/maps/vector/vector_reader.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
 
 namespace talus::cli {
@@ -22,7 +23,7 @@ std::size_t columnOf(const terramech::CsvReader& reader, const std::string& name
   const auto found = std::find(header.begin(), header.end(), name);
   if (found == header.end())
     throw InputError(
-        {path, fmt::format("no column {}", name), "a path needs the columns x_m and y_m, or GeoJSON"});
+        {path, fmt::format("no column {}", name), "a path needs the columns x_m and y_m, or a vector file"});
   return static_cast<std::size_t>(found - header.begin());
 }
 
@@ -60,15 +61,28 @@ std::vector<Point> ownMetres(const json& document) {
   return points;
 }
 
+// Positions of a line; a track in one part counts as one.
+const json* positionsOf(const json& geometry, const std::string& path) {
+  const json& positions = geometry["coordinates"];
+  const std::string type = geometry.value("type", "");
+  if (!positions.is_array() || (type != "LineString" && type != "MultiLineString")) return nullptr;
+  if (type == "LineString") return &positions;
+  if (positions.size() != 1 || !positions.front().is_array())
+    throw InputError(
+        {path, fmt::format("contains a line of {} parts", positions.size()), "join them to one"});
+  return &positions.front();
+}
+
 std::vector<Point> lineOf(const json& document, const maps::ElevationMap& map, const std::string& path) {
   const maps::PositionReader read(document, map, path);
   for (const json& geometry : maps::geometries(document)) {
-    if (geometry.value("type", "") != "LineString" || !geometry["coordinates"].is_array()) continue;
+    const json* positions = positionsOf(geometry, path);
+    if (positions == nullptr) continue;
     std::vector<Point> points;
-    for (const json& position : geometry["coordinates"]) points.push_back(read(position));
+    for (const json& position : *positions) points.push_back(read(position));
     return points;
   }
-  throw InputError({path, "contains no LineString", "a path is a GeoJSON LineString, or CSV with x_m, y_m"});
+  throw InputError({path, "contains no line", "a path is a line of a vector file, or CSV with x_m, y_m"});
 }
 
 // What a line that was not edited may lie off its own metres: programs write degrees with few digits.
@@ -95,7 +109,7 @@ void requireSame(const std::vector<Point>& line, const std::vector<Point>& own, 
 }
 
 std::vector<Point> readLine(const std::string& path, const maps::ElevationMap& map) {
-  const json document = maps::readGeoJson(path);
+  const json document = maps::readVector(path, map);
   std::vector<Point> line = lineOf(document, map, path), own = ownMetres(document);
   if (own.empty()) return line;
   requireSame(line, own, map.grid(), path);

@@ -28,7 +28,7 @@ void bindPlan(CLI::App& command, PlanOptions& options) {
   addGroundOptions(command, options.ground);
   command
       .add_option("--start", options.start,
-                  "start: x,y in map metres; lat,lon with the suffix d on each; or a GeoJSON point file")
+                  "start: x,y in map metres; lat,lon with the suffix d on each; or a vector file")
       ->type_name("PLACE");
   command
       .add_option("--goal", options.goals,

@@ -20,7 +20,7 @@ void requireReadableFile(const std::string& path) {
   if (!std::filesystem::is_regular_file(status) && !std::filesystem::is_directory(status))
     throw InputError({path, "is a device, a FIFO or a socket", "give a file"});
   if (std::filesystem::is_directory(status))
-    throw InputError({path, "is a directory, not a raster file", "name the file inside it"});
+    throw InputError({path, "is a directory, not a file", "name the file inside it"});
   if (::access(path.c_str(), R_OK) != 0)
     throw InputError({path, std::string("cannot be read: ") + std::strerror(errno), "check its permissions"});
   if (std::filesystem::is_regular_file(status) && std::filesystem::file_size(path, error) == 0)

@@ -22,6 +22,16 @@ constexpr const char* kDrivers[] = {"GTiff",   "COG",    "PDS4",        "PDS", "
                                     "AAIGrid", "netCDF", "JP2OpenJPEG", "PNG", "JPEG",  "USGSDEM",
                                     "SRTMHGT", "EHdr",   "GSAG",        "XYZ", "VICAR", nullptr};
 
+// Formats of places, lines and areas: files of their own, without schemas or styles from elsewhere.
+constexpr const char* kVectorDrivers[] = {"GPKG", "ESRI Shapefile", "FlatGeobuf", "GPX",
+                                          "KML",  "MapInfo File",   "GeoJSON",    nullptr};
+
+bool holdsName(const char* const* drivers, std::string_view name) {
+  for (; *drivers != nullptr; ++drivers)
+    if (name == *drivers) return true;
+  return false;
+}
+
 // Metadata inside of a GeoTIFF may name them, too; GDAL opens them when it is asked for overviews.
 void refuseForeignOverviews(GDALDataset& dataset, const std::string& path) {
   const char* name = dataset.GetMetadataItem("OVERVIEW_FILE", "OVERVIEWS");
@@ -52,15 +62,15 @@ void registerDrivers() {
     CPLSetConfigOption("GDAL_CONFIG_FILE", "");
     CPLSetConfigOption("GDAL_CACHEMAX", "5%");
     CPLSetConfigOption("GDAL_ERROR_ON_LIBJPEG_WARNING", "TRUE");  // a cut picture is grey behind the cut
-    OSRSetPROJEnableNetwork(FALSE);  // PROJ would fetch grids of datum shifts
+    OSRSetPROJEnableNetwork(FALSE);                               // PROJ would fetch grids of datum shifts
     GDALAllRegister();
     // What GDAL opens by itself, such as an overview that a file names, stays within the list, too.
     GDALDriverManager& manager = *GetGDALDriverManager();
     for (int i = manager.GetDriverCount() - 1; i >= 0; --i) {
       GDALDriver* driver = manager.GetDriver(i);
       const std::string_view name = GDALGetDriverShortName(driver);
-      const auto is = [&](const char* allowed) { return allowed && name == allowed; };
-      if (std::any_of(std::begin(kDrivers), std::end(kDrivers), is) || is("MEM") || is("VRT")) continue;
+      const bool ours = name == "MEM" || name == "VRT";
+      if (ours || holdsName(kDrivers, name) || holdsName(kVectorDrivers, name)) continue;
       manager.DeregisterDriver(driver);
       GDALDestroyDriver(driver);
     }
@@ -70,6 +80,10 @@ void registerDrivers() {
 
 std::vector<std::string> rasterFormats() {
   return {std::begin(kDrivers), std::end(kDrivers) - 1};
+}
+
+std::vector<std::string> vectorFormats() {
+  return {std::begin(kVectorDrivers), std::end(kVectorDrivers) - 1};
 }
 
 void CloseDataset::operator()(GDALDataset* dataset) const noexcept {
@@ -97,6 +111,19 @@ Dataset openRaster(const std::string& path, bool allow_vrt) {
   refuseForeignOverviews(*dataset, path);
   refuseCutShort(*dataset, path);
   return withFractions(std::move(dataset), path);
+}
+
+Dataset openVector(const std::string& path) {
+  registerDrivers();
+  requireReadableFile(path);
+  refuseForeignReferences(path, false);
+  const GdalErrors errors;
+  constexpr unsigned kHow = GDAL_OF_VECTOR | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR;
+  Dataset dataset(GDALDataset::Open(path.c_str(), kHow, kVectorDrivers));
+  if (!dataset)
+    throw InputError({path, "GDAL opens no vector file of the allowed formats: " + errors.last(),
+                      "give a GeoPackage, GeoJSON, GPX, KML or shapefile"});
+  return dataset;
 }
 
 GDALDriver& driverNamed(const char* name) {

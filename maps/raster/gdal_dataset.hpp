@@ -31,6 +31,12 @@ std::vector<std::string> rasterFormats();
 /// raster, no cells
 Dataset openRaster(const std::string& path, bool allow_vrt = false);
 
+/// The names of the drivers that openVector() tries.
+std::vector<std::string> vectorFormats();
+
+/// Opens a vector file by a driver of that list, with the same care. @throws InputError
+Dataset openVector(const std::string& path);
+
 /// Pixels that GDAL keeps in memory in the whole process, in bytes; left alone a twentieth of the machine's
 /// memory.
 void limitPixelCache(std::int64_t bytes);

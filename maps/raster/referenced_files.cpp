@@ -39,7 +39,8 @@ bool isAuxiliary(const std::string& name) {
   const std::string ending = lower(fs::path(name).extension().string());
   constexpr const char* kEndings[] = {".xml", ".aux", ".ovr", ".msk", ".prj", ".hdr",  ".wld", ".clr",
                                       ".stx", ".rep", ".sch", ".imd", ".rpb", ".pvl",  ".rpc", ".txt",
-                                      ".lbl", ".img", ".tab", ".rrd", ".eph", ".pass", ".met"};
+                                      ".lbl", ".img", ".tab", ".rrd", ".eph", ".pass", ".met", ".dbf",
+                                      ".shx", ".cpg", ".dat", ".map", ".id",  ".mid"};
   const auto is = [&](const char* other) { return ending == other; };
   return std::any_of(std::begin(kEndings), std::end(kEndings), is) ||
          (ending.size() >= 2 && ending.size() <= 5 && (ending.back() == 'w' || endsWith(ending, "wx")));

@@ -65,6 +65,12 @@ void readGeoJson(const std::string& bytes) {
   maps::readKeepOut(path, flatMap());
 }
 
+void readVectorFile(const std::string& bytes) {
+  maps::ElevationMap map = flatMap();
+  map.georeference.emplace(maps::CoordinateSystem{.name = "around 0,0", .ellipsoid = maps::kEarth});
+  maps::readKeepOut(fileOf(bytes, ".kml"), map);
+}
+
 void readNumpyArchive(const std::string& bytes) {
   maps::readElevation(fileOf(bytes, ".npz"), {.resolution_m = 10'000.0, .max_cells = 10'000});
 }
@@ -78,6 +84,13 @@ std::vector<Target> mapsTargets() {
         R"("coordinates":[[[1,1],[5,1],[5,5],[1,1]]]}}]})",
         R"({"type":"GeometryCollection","geometries":[{"type":"MultiPolygon","coordinates":[[[[1,1],[9,1],[9,9],[1,1]]]]}]})"},
        readGeoJson},
+      {"vector",
+       {R"(<?xml version="1.0"?><kml xmlns="http://www.opengis.net/kml/2.2"><Document><Placemark><Polygon><outerBoundaryIs>)"
+        R"(<LinearRing><coordinates>0.00001,0.00001 0.00005,0.00001 0.00005,0.00005 0.00001,0.00001</coordinates>)"
+        R"(</LinearRing></outerBoundaryIs></Polygon></Placemark>)"
+        R"(</Document></kml>)"},
+       readVectorFile,
+       {R"(<?xml version="1.0"?><gpx version="1.1" xmlns="http://www.topografix.com/GPX/1/1"><wpt lat="1" lon="2"/></gpx>)"}},
       {"npy",
        {numpy("2, 3", 6), numpy("", 1)},
        [](const std::string& bytes) { maps::parseNumpy(bytes, "npy"); }},

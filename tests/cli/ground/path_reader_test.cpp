@@ -71,14 +71,14 @@ TEST(PathReader, WhatIsNoPathIsOneLine) {
        {Case{"a.csv", "x_m,z_m\n1,2\n", "no column y_m"},
         {"b.csv", "x_m,y_m\n1,2\n3,inf\n", "b.csv:3"},
         {"c.csv", "x_m,y_m\n", "contains no point"},
-        {"d.json", R"({"type":"FeatureCollection","features":[]})", "contains no LineString"},
+        {"d.json", R"({"type":"FeatureCollection","features":[]})", "contains no line"},
         {"e.json", R"({"type":"FeatureCollection","features":[7,{"properties":[]}]})",
-         "contains no LineString"},
-        {"f.json", R"({"type":"LineString"})", "contains no LineString"},
+         "contains no line"},
+        {"f.json", R"({"type":"LineString"})", "contains no line"},
         {"g.json", R"({"type":"LineString","crs":"local","coordinates":[["a",2]]})", "g.json"},
         {"h.json", R"({"type":"FeatureCollection","features":[{"type":"Feature","properties":
             {"x_m":[1,"b"],"y_m":[1,2]},"geometry":null}]})",
-         "contains no LineString"}})
+         "contains no line"}})
     EXPECT_THAT([&] { read(c.name, c.content); }, ThrowsMessage<InputError>(HasSubstr(c.says))) << c.name;
 }
 

@@ -1,4 +1,4 @@
-#include <talus/maps/raster/place_reader.hpp>
+#include <talus/maps/vector/place_reader.hpp>
 
 #include "layer_fixture.hpp"
 

@@ -3,18 +3,19 @@
 #include <nlohmann/json.hpp>
 
 #include <talus/common/input_error.hpp>
-#include <talus/maps/raster/geojson.hpp>
-#include <talus/maps/raster/place_reader.hpp>
+#include <talus/maps/vector/geojson.hpp>
+#include <talus/maps/vector/place_reader.hpp>
+#include <talus/maps/vector/vector_reader.hpp>
 
 namespace talus::maps {
 namespace {
 
 bool namesAFile(const std::string& text) {
-  return text.ends_with(".geojson") || text.ends_with(".json") || std::filesystem::exists(text);
+  return isNamedAsVector(text) || std::filesystem::exists(text);
 }
 
 Point firstPoint(const std::string& path, const ElevationMap& map) {
-  const nlohmann::json document = readGeoJson(path);
+  const nlohmann::json document = readVector(path, map);
   const PositionReader read(document, map, path);
   for (const nlohmann::json& geometry : geometries(document)) {
     const nlohmann::json& coordinates = geometry["coordinates"];

@@ -14,6 +14,9 @@ namespace talus::maps {
 /// bytes for each of the file)
 nlohmann::json readGeoJson(const std::string& path);
 
+/// Whether its "crs", as GeoJSON had it before RFC 7946, is one in metres.
+bool namesProjectedCrs(const nlohmann::json& document);
+
 /// The geometries of a FeatureCollection, Feature, GeometryCollection or geometry, in order; they refer to the
 /// document.
 std::vector<std::reference_wrapper<const nlohmann::json>> geometries(const nlohmann::json& document);

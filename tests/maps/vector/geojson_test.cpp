@@ -5,7 +5,7 @@
 #include <talus/common/constants.hpp>
 #include <talus/common/input_error.hpp>
 #include <talus/common/memory_budget.hpp>
-#include <talus/maps/raster/geojson.hpp>
+#include <talus/maps/vector/geojson.hpp>
 
 #include "raster_fixture.hpp"
 
@@ -79,7 +79,7 @@ TEST(GeoJson, ACrsIsKeptOrRefused) {
                 HasSubstr("and the map has none"));
   }
   EXPECT_THAT(refusal([&] { PositionReader(named("urn:ogc:def:crs:EPSG::32633"), map, "p.geojson"); }),
-              HasSubstr("longitude and latitude only"));
+              HasSubstr("not longitude and latitude"));
   const std::string file = testing::TempDir() + "crs.prj";
   std::ofstream(file)
       << R"(GEOGCS["x",DATUM["d",SPHEROID["s",1737400,0]],PRIMEM["p",0],UNIT["degree",0.0174533]])";

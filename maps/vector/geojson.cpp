@@ -16,7 +16,7 @@
 #include <talus/common/plausible.hpp>
 #include <talus/maps/raster/file_text.hpp>
 #include <talus/maps/raster/gdal_dataset.hpp>
-#include <talus/maps/raster/geojson.hpp>
+#include <talus/maps/vector/geojson.hpp>
 
 namespace talus::maps {
 namespace {
@@ -79,25 +79,37 @@ std::optional<std::string> crsName(const json& document) {
   return name != nullptr && name->is_string() ? name->get<std::string>() : crs->dump();
 }
 
-// Its positions are longitude and latitude then; the name comes from a file: no file and no network is asked for it.
-bool isGeographic(const std::string& crs) {
+// The name comes from a file: no file and no network is asked for it.
+OGRSpatialReference systemNamed(const std::string& crs) {
   const GdalErrors errors;
   OGRSpatialReference system;
-  return system.SetFromUserInput(crs.c_str(), OGRSpatialReference::SET_FROM_USER_INPUT_LIMITATIONS) ==
-             OGRERR_NONE &&
-         system.IsGeographic() != 0;
+  if (system.SetFromUserInput(crs.c_str(), OGRSpatialReference::SET_FROM_USER_INPUT_LIMITATIONS) !=
+      OGRERR_NONE)
+    system.Clear();
+  return system;
 }
 
-void checkCrs(const json& document, bool map_has_crs, const std::string& path) {
+// Files name WGS 84 on any body, since RFC 7946 has no other word.
+void checkBody(const OGRSpatialReference& system, const std::string& of_map, const std::string& named,
+               const std::string& path) {
+  const std::string body = bodyName({system.GetSemiMajor(), 0.0});
+  if (body != of_map && body != bodyName(kEarth))
+    throw InputError(
+        {path, named + " of " + body + ", and the map is of " + of_map, "draw it on the map's body"});
+}
+
+void checkCrs(const json& document, const std::optional<Georeference>& of_map, const std::string& path) {
   if (saysLocal(document)) return;
   const auto crs = crsName(document);
   if (!crs) return;
   const std::string named = "its crs is '" + crs->substr(0, 80) + "'";
-  if (!map_has_crs)
+  if (!of_map)
     throw InputError({path, named + ", and the map has none", "write map metres and \"crs\": \"local\""});
-  if (!isGeographic(*crs))
-    throw InputError({path, named + ", positions are read as longitude and latitude only",
+  const OGRSpatialReference system = systemNamed(*crs);
+  if (system.IsGeographic() == 0)
+    throw InputError({path, named + ", not longitude and latitude",
                       "transform it, or write map metres and \"crs\": \"local\""});
+  checkBody(system, of_map->body(), named, path);
 }
 
 // The last of two members of one name would silently win.
@@ -137,6 +149,11 @@ json readGeoJson(const std::string& path) {
   return document;
 }
 
+bool namesProjectedCrs(const json& document) {
+  const auto crs = saysLocal(document) ? std::nullopt : crsName(document);
+  return crs && systemNamed(*crs).IsProjected() != 0;
+}
+
 std::vector<std::reference_wrapper<const json>> geometries(const json& document) {
   std::vector<std::reference_wrapper<const json>> out;
   collect(document, out);
@@ -144,9 +161,8 @@ std::vector<std::reference_wrapper<const json>> geometries(const json& document)
 }
 
 PositionReader::PositionReader(const json& document, const ElevationMap& map, std::string path)
-    : georeference_(map.georeference && !saysLocal(document) ? &*map.georeference : nullptr),
-      path_(std::move(path)) {
-  checkCrs(document, map.georeference.has_value(), path_);
+    : georeference_(saysLocal(document) ? nullptr : map.places()), path_(std::move(path)) {
+  checkCrs(document, map.georeference, path_);
 }
 
 Point PositionReader::operator()(const json& position) const {

@@ -7,9 +7,10 @@
 
 #include <talus/common/input_error.hpp>
 #include <talus/maps/grid/polygon_cover.hpp>
-#include <talus/maps/raster/geojson.hpp>
 #include <talus/maps/raster/layer_reader.hpp>
 #include <talus/maps/terrain/place.hpp>
+#include <talus/maps/vector/geojson.hpp>
+#include <talus/maps/vector/vector_reader.hpp>
 
 namespace talus::maps {
 namespace {
@@ -125,7 +126,7 @@ class KeepOutReader {
 }  // namespace
 
 KeepOut readKeepOut(const std::string& path, const ElevationMap& map) {
-  const json document = readGeoJson(path);
+  const json document = readVector(path, map);
   return KeepOutReader(path, document, map).drawn(document, map.source);
 }
 

@@ -1,0 +1,154 @@
+#include <algorithm>
+#include <cctype>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <string_view>
+
+#include <cpl_conv.h>
+#include <gdal_priv.h>
+#include <nlohmann/json.hpp>
+#include <ogr_api.h>
+#include <ogrsf_frmts.h>
+
+#include <talus/common/input_error.hpp>
+#include <talus/common/memory_budget.hpp>
+#include <talus/maps/raster/file_text.hpp>
+#include <talus/maps/raster/gdal_dataset.hpp>
+#include <talus/maps/raster/spatial_reference.hpp>
+#include <talus/maps/vector/geojson.hpp>
+#include <talus/maps/vector/vector_reader.hpp>
+
+namespace talus::maps {
+namespace {
+
+using nlohmann::json;
+
+// A position of 16 bytes takes some 120 as JSON, and its text for a while.
+constexpr double kMemoryPerWkbByte = 12.0;
+
+bool beginsAsJson(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  char c = ' ';
+  while (std::isspace(static_cast<unsigned char>(c)) != 0 && file.get(c)) continue;
+  return c == '{' || c == '[';
+}
+
+// GDAL's driver of GPX lists the points of routes and tracks once more.
+bool isCopy(const std::string& layer) {
+  return layer == "route_points" || layer == "track_points";
+}
+
+// Reads layers of one file, each from its own CRS into the map's.
+class FeatureReader {
+ public:
+  FeatureReader(const ElevationMap& map, const std::string& path, const GdalErrors& errors)
+      : map_(map), path_(path), errors_(errors) {}
+
+  void read(OGRLayer& layer) {
+    if (layer.GetGeomType() == wkbNone) return;
+    const auto to_map = transformationOf(layer);
+    for (const auto& feature : layer) {
+      const OGRGeometry* drawn = feature->GetGeometryRef();
+      features_.push_back({{"type", "Feature"},
+                           {"properties", {{"name", nameOf(*feature)}}},
+                           {"geometry", drawn == nullptr ? json() : inMetres(*drawn, to_map.get())}});
+      refuseDamage();
+    }
+    refuseDamage();
+  }
+
+  json document() && {
+    if (features_.empty())
+      throw InputError({path_, "contains no feature", "draw the places, lines or areas in it"});
+    return {{"type", "FeatureCollection"}, {"crs", "local"}, {"features", std::move(features_)}};
+  }
+
+ private:
+  void refuseDamage() const {
+    if (errors_.any()) throw InputError({path_, "is damaged: " + errors_.last(), "write it again"});
+  }
+
+  using Transformation = std::unique_ptr<OGRCoordinateTransformation>;
+
+  static std::string nameOf(const OGRFeature& feature) {
+    const int field = feature.GetFieldIndex("name");
+    return field < 0 ? "" : feature.GetFieldAsString(field);
+  }
+
+  // None where both are local metres.
+  Transformation transformationOf(const OGRLayer& layer) const {
+    const OGRSpatialReference* stated = const_cast<OGRLayer&>(layer).GetSpatialRef();
+    const std::string name = stated != nullptr && stated->GetName() != nullptr ? stated->GetName() : "";
+    // GeoPackages without a CRS have an "Undefined geographic SRS".
+    const bool usable = stated != nullptr && (stated->IsProjected() != 0 || stated->IsGeographic() != 0) &&
+                        !name.starts_with("Undefined ");
+    const std::string owner =
+        "layer '" + std::string(const_cast<OGRLayer&>(layer).GetName()).substr(0, 80) + "' ";
+    if (!map_.georeference && !usable) return nullptr;
+    if (!usable)
+      throw InputError(
+          {path_, owner + "has no CRS, and the map has one", "state it with ogr2ogr -a_srs CRS"});
+    if (!map_.georeference)
+      throw InputError(
+          {path_, owner + "is in '" + name + "', and the map has no CRS", "draw it in map metres"});
+    const std::string body = bodyName({stated->GetSemiMajor(), 0.0});
+    if (body != map_.georeference->body())
+      throw InputError(
+          {path_,
+           owner + "is in '" + name + "' of " + body + ", and the map is of " + map_.georeference->body(),
+           "draw it in the CRS of the map; GPX and KML have places of Earth alone"});
+    OGRSpatialReference from(*stated);
+    from.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    const OGRSpatialReference to = spatialReference(map_.georeference->system());
+    Transformation made(OGRCreateCoordinateTransformation(&from, &to));
+    if (!made)
+      throw InputError(
+          {path_, owner + "cannot be brought from '" + name + "' to the map's CRS", "transform it"});
+    return made;
+  }
+
+  json inMetres(const OGRGeometry& drawn, OGRCoordinateTransformation* to_map) {
+    bytes_ += static_cast<double>(drawn.WkbSize());
+    requireMemory(kMemoryPerWkbByte * bytes_, path_);
+    const std::unique_ptr<OGRGeometry> geometry(drawn.getLinearGeometry());
+    geometry->flattenTo2D();
+    if (to_map != nullptr && geometry->transform(to_map) != OGRERR_NONE)
+      throw InputError({path_, "has a position outside the range of the map's CRS: " + errors_.last(),
+                        "check its CRS"});
+    const char* options[] = {"COORDINATE_PRECISION=17", nullptr};
+    const std::unique_ptr<char, decltype(&CPLFree)> text(
+        OGR_G_ExportToJsonEx(OGRGeometry::ToHandle(geometry.get()), const_cast<char**>(options)), CPLFree);
+    return text ? json::parse(text.get(), nullptr, false) : json();
+  }
+
+  const ElevationMap& map_;
+  const std::string& path_;
+  const GdalErrors& errors_;
+  json features_ = json::array();
+  double bytes_ = 0.0;
+};
+
+}  // namespace
+
+json readVector(const std::string& path, const ElevationMap& map) {
+  requireReadableFile(path);
+  if (beginsAsJson(path))
+    if (json document = readGeoJson(path); !map.georeference || !namesProjectedCrs(document)) return document;
+  const Dataset file = openVector(path);
+  const GdalErrors errors;
+  FeatureReader reader(map, path, errors);
+  for (OGRLayer* layer : file->GetLayers())
+    if (!isCopy(layer->GetName())) reader.read(*layer);
+  return std::move(reader).document();
+}
+
+bool isNamedAsVector(const std::string& path) {
+  constexpr std::string_view kEndings[] = {".geojson", ".json", ".gpkg", ".shp", ".fgb",
+                                           ".gpx",     ".kml",  ".tab",  ".mif"};
+  const std::string name = lower(path);
+  return std::ranges::any_of(kEndings, [&](std::string_view ending) { return name.ends_with(ending); });
+}
+
+}  // namespace talus::maps
