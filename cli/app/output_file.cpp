@@ -38,9 +38,11 @@ bool same(const fs::path& a, const fs::path& b) {
 }
 
 bool isJournal(const fs::path& path) {
-  std::array<char, 15> start{};
+  std::array<char, 72> start{};
   std::ifstream(path, std::ios::binary).read(start.data(), start.size());
-  return std::string_view(start.data(), start.size()) == "SQLite format 3";
+  const std::string_view read(start.data(), start.size());
+  return read.starts_with("SQLite format 3") &&
+         !read.ends_with("GPKG");  // SQLite's application id: a GeoPackage
 }
 
 // What SQLite keeps beside a database: what is committed, but not yet in the database itself, is there alone.
@@ -68,13 +70,16 @@ fs::path journalBehind(const fs::path& path) {
 
 // Formats that are written, by the endings that a file's name may have; those in a row mean the same.
 using Names = std::vector<std::string_view>;
-const std::array<Names, 12> kFormats{{{".tif", ".tiff"},
+const std::array<Names, 15> kFormats{{{".tif", ".tiff"},
                                       {".asc"},
                                       {".png"},
                                       {".jpg", ".jpeg"},
                                       {".svg"},
                                       {".html", ".htm"},
                                       {".geojson", ".json"},
+                                      {".gpkg"},
+                                      {".gpx"},
+                                      {".kml"},
                                       {".csv"},
                                       {".yaml", ".yml"},
                                       {".ot"},
@@ -82,13 +87,12 @@ const std::array<Names, 12> kFormats{{{".tif", ".tiff"},
                                       {".npz"}}};
 
 // Endings of formats that no call writes.
-const Names kForeign{".db",  ".sqlite", ".sqlite3", ".gpkg", ".shp", ".kml",  ".kmz", ".gpx", ".xml",
-                     ".vrt", ".img",    ".lbl",     ".nc",   ".h5",  ".hdf5", ".mat", ".npy", ".parquet",
-                     ".las", ".laz",    ".ply",     ".pcd",  ".obj", ".stl",  ".bag", ".pdf", ".ps",
-                     ".eps", ".gif",    ".bmp",     ".webp", ".pgm", ".ppm",  ".pnm", ".jp2", ".zip",
-                     ".gz",  ".tgz",    ".bz2",     ".xz",   ".zst", ".7z",   ".tar", ".xls", ".xlsx",
-                     ".ods", ".doc",    ".docx",    ".odt",  ".tex", ".md",   ".c",   ".h",   ".cpp",
-                     ".hpp", ".py",     ".js",      ".so",   ".a",   ".o",    ".exe", ".deb"};
+const Names kForeign{
+    ".db",  ".sqlite", ".sqlite3", ".shp",  ".kmz", ".xml",  ".vrt", ".img", ".lbl",  ".nc",  ".h5",  ".hdf5",
+    ".mat", ".npy",    ".parquet", ".las",  ".laz", ".ply",  ".pcd", ".obj", ".stl",  ".bag", ".pdf", ".ps",
+    ".eps", ".gif",    ".bmp",     ".webp", ".pgm", ".ppm",  ".pnm", ".jp2", ".zip",  ".gz",  ".tgz", ".bz2",
+    ".xz",  ".zst",    ".7z",      ".tar",  ".xls", ".xlsx", ".ods", ".doc", ".docx", ".odt", ".tex", ".md",
+    ".c",   ".h",      ".cpp",     ".hpp",  ".py",  ".js",   ".so",  ".a",   ".o",    ".exe", ".deb"};
 
 const Names* formatOf(const std::string& name) {
   std::string extension = fs::path(name).extension().string();

@@ -26,6 +26,7 @@
 #include <talus/cli/ground/plugin_option.hpp>
 #include <talus/cli/ground/windowed_ground.hpp>
 #include <talus/cli/route/plan_pairs.hpp>
+#include <talus/cli/route/route_writer.hpp>
 #include <talus/common/input_error.hpp>
 #include <talus/maps/vector/place_reader.hpp>
 #include <talus/planner/check/route_risk.hpp>
@@ -61,6 +62,7 @@ PlanRequest requestOf(const PlanOptions& options, const PlannerCapabilities& off
                       const Context& context) {
   const maps::ElevationMap& map = ground.map.elevation();
   PlanRequest request;
+  requireRouteFormat(options.output, map);
   if (options.pairs.empty()) {
     request.start = maps::readPlace(options.start, map, "--start");
     request.goal = maps::readPlace(options.goals.front(), map, "--goal");
@@ -114,7 +116,7 @@ void writeFiles(const PlanOptions& options, const Ground& ground, const Route& r
                 const Context& context) {
   if (!options.output.empty()) {
     const auto document = routeGeoJson(route, ground.map.elevation(), originOf(ground, context));
-    writeFile(options.output, jsonText(document) + "\n");
+    writeRoute(options.output, document, ground.map.elevation(), context);
   }
   if (options.html.empty() && options.png.empty()) return;
   const std::string name = std::filesystem::path(ground.map.elevation().source).filename().string();
@@ -341,7 +343,7 @@ int run(const PlanOptions& asked, Context& context) {
     readMission(options);
     if (asked.output.empty() && !options.output.empty()) checkMissionOutput(options, asked, context.force);
   }
-  if (!context.force) checkFormat(options.output, options.pairs.empty() ? "ROUTE.geojson" : "FILE.csv");
+  if (!context.force) checkFormat(options.output, options.pairs.empty() ? kRouteFiles : "FILE.csv");
   requirePlaces(options);
   planner::RoutePlanner planner = plannerOf(options);
   if (!options.whole_field && needsWindows(options.ground, options.in_memory))

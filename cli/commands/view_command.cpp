@@ -111,7 +111,7 @@ Scene routeScene(const ViewOptions& options, const Context& context) {
 int run(const ViewOptions& options, Context& context) {
   const fs::path named(options.html);
   const fs::path html = named.empty() ? fs::path(options.file.path).stem().concat(".html") : named;
-  const Scene scene = looksLikeJson(options.file.path) ? routeScene(options, context)
+  const Scene scene = looksLikeRoute(options.file.path) ? routeScene(options, context)
                                                        : mapScene(options, options.file.path, context);
   if (context.stop.stop_requested()) return Exit::kCancelled;
   if (!options.png.empty()) savePicture(options.png, scene);

@@ -20,6 +20,21 @@ std::span<const FileKey> classKeys() {
   return kKeys;
 }
 
+std::span<const FileKey> vectorFileKeys() {
+  static constexpr FileKey kKeys[] = {
+      {"GPKG",
+       "GeoPackage, .gpkg: read, and written in the map's CRS with layers route, vertices and segments"},
+      {"ESRI Shapefile", ".shp with what lies beside it: read"},
+      {"FlatGeobuf", ".fgb: read"},
+      {"GPX", ".gpx: read, and written of maps of Earth"},
+      {"KML", ".kml: read, and written of maps of Earth"},
+      {"MapInfo File", ".tab, .mif: read"},
+      {"GeoJSON", ".geojson: read, and written in longitude and latitude of the map's body"},
+      {"CSV", ".csv: columns x_m, y_m, read as a path; written with a row for each vertex"},
+  };
+  return kKeys;
+}
+
 }  // namespace
 
 std::vector<FileFormat> fileFormats() {
@@ -35,6 +50,9 @@ std::vector<FileFormat> fileFormats() {
        "YAML file of `--soils`; a soil is a name of the library, a file, or the keys of one.", classKeys()},
       {"Rover", "YAML file, the keys at its root or under `rover`.", terramech::roverKeys()},
       {"Rover: wheels", "Mapping under `wheels`; all wheels are equal.", terramech::wheelKeys()},
+      {"Vector file",
+       "Places, paths, keep-out areas and routes, by the driver of GDAL; read in any CRS of the map's body.",
+       vectorFileKeys()},
       {"Telemetry", "CSV with a header row, columns in any order; others are kept as they are.",
        terramech::telemetryKeys()},
   };

@@ -114,7 +114,7 @@ std::span<const FileKey> missionKeys() {
       {"start_heading_rad", "counter-clockwise from east"},
       {"goal_heading_rad", "counter-clockwise from east"},
       {"reverse", "true (default) or false: whether the rover may drive backwards"},
-      {"output", "route to write, GeoJSON"},
+      {"output", "route to write, in the format that its name ends in"},
   };
   return kKeys;
 }

@@ -12,8 +12,9 @@ namespace talus::cli {
 namespace {
 
 void addOutputs(CLI::App& command, PlanOptions& options) {
-  addOutput(command, "-o,--output", options.output, "route to write, as GeoJSON; CSV with --pairs")
-      ->type_name("ROUTE.geojson|FILE.csv");
+  addOutput(command, "-o,--output", options.output,
+            "route to write; GPX and KML of Earth alone; CSV with --pairs")
+      ->type_name("ROUTE.geojson|ROUTE.gpkg|ROUTE.gpx|ROUTE.kml|FILE.csv");
   addOutput(command, "--html", options.html, "page to write: map, route and profiles")
       ->type_name("PAGE.html");
   addOutput(command, "--png", options.png, "picture to write")->type_name("FILE.png");

@@ -12,10 +12,14 @@
 #include <talus/cli/route/route_reader.hpp>
 #include <talus/common/input_error.hpp>
 #include <talus/maps/raster/file_text.hpp>
-#include <talus/maps/raster/gdal_dataset.hpp>
+#include <talus/maps/vector/vector_writer.hpp>
 
 namespace talus::cli {
 namespace {
+
+bool isGeoPackage(const std::string& path) {
+  return maps::lower(path).ends_with(".gpkg");
+}
 
 using nlohmann::json;
 using planner::RouteVertex;
@@ -83,7 +87,21 @@ class Fields {
   const json& object_;
 };
 
+// The document that a GeoPackage carries, with the line as it was drawn there.
+json fromGeoPackage(const std::string& path) {
+  const maps::StoredDocument stored = maps::storedDocument(path);
+  json document = json::parse(stored.document, nullptr, false);
+  const auto place = json::json_pointer("/features/0/geometry/coordinates");
+  if (document.is_discarded() || !document.contains(place))
+    throw InputError({.where = path, .reason = "contains no route", .remedy = kRemedy});
+  json& line = document[place] = json::array();
+  for (const maps::Point& point : stored.line) line.push_back({point.x_m, point.y_m});
+  document["crs"] = "local";
+  return document;
+}
+
 json parsed(const std::string& path) {
+  if (isGeoPackage(path)) return fromGeoPackage(path);
   maps::requireReadableFile(path);
   std::ifstream stream(path, std::ios::binary);
   json document = json::parse(stream, nullptr, false);
@@ -205,7 +223,8 @@ std::vector<planner::RouteInput> inputsOf(const json& properties) {
 
 }  // namespace
 
-bool looksLikeJson(const std::string& path) {
+bool looksLikeRoute(const std::string& path) {
+  if (isGeoPackage(path)) return true;
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) return false;  // a FIFO would wait
   std::ifstream stream(path, std::ios::binary);

@@ -13,10 +13,10 @@ struct RouteFile {
   std::vector<planner::RouteInput> inputs;
 };
 
-/// Whether the file starts like JSON, as a route does and no map.
-bool looksLikeJson(const std::string& path);
+/// Whether the file starts like JSON or is named as a GeoPackage, as a route does and no map.
+bool looksLikeRoute(const std::string& path);
 
-/// Reads a route back. @throws InputError naming file and field when it is no such GeoJSON
+/// Reads a route back. @throws InputError naming file and field when it is no such GeoJSON or GeoPackage
 RouteFile readRoute(const std::string& path);
 
 }  // namespace talus::cli

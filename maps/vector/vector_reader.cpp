@@ -115,8 +115,8 @@ class FeatureReader {
     const std::unique_ptr<OGRGeometry> geometry(drawn.getLinearGeometry());
     geometry->flattenTo2D();
     if (to_map != nullptr && geometry->transform(to_map) != OGRERR_NONE)
-      throw InputError({path_, "has a position outside the range of the map's CRS: " + errors_.last(),
-                        "check its CRS"});
+      throw InputError(
+          {path_, "has a position outside the range of the map's CRS: " + errors_.last(), "check its CRS"});
     const char* options[] = {"COORDINATE_PRECISION=17", nullptr};
     const std::unique_ptr<char, decltype(&CPLFree)> text(
         OGR_G_ExportToJsonEx(OGRGeometry::ToHandle(geometry.get()), const_cast<char**>(options)), CPLFree);

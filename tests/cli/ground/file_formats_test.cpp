@@ -2,6 +2,7 @@
 
 #include <talus/cli/ground/file_formats.hpp>
 #include <talus/cli/ground/mission.hpp>
+#include <talus/maps/raster/gdal_dataset.hpp>
 #include <talus/terramech/estimate/telemetry.hpp>
 
 #include "run_program.hpp"
@@ -23,6 +24,14 @@ TEST(FileFormats, TelemetryHasTheColumnsThatItsReaderKnows) {
   const auto& known = terramech::knownTelemetryColumns();
   expected.insert(expected.end(), known.begin(), known.end());
   EXPECT_EQ(terramech::namesOf(terramech::telemetryKeys()), expected);
+}
+
+// And a table of x_m, y_m beside them.
+TEST(FileFormats, VectorFilesHaveTheDriversThatAreOpened) {
+  std::vector<std::string> expected = maps::vectorFormats();
+  expected.emplace_back("CSV");
+  for (const FileFormat& format : fileFormats())
+    if (format.title == "Vector file") EXPECT_EQ(terramech::namesOf(format.keys), expected);
 }
 
 // Property: every key is taken where it is listed: what is refused is never its name.

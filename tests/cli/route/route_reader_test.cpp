@@ -36,7 +36,7 @@ TEST(RouteReader, ReadsBackWhatPlanWrites) {
   route.vertices[3].slip = planner::kNotKnown;
   const std::string path =
       folder.write("r.geojson", routeGeoJson(route, exampleMap(), {.files = {}, .seed = 7}).dump());
-  EXPECT_TRUE(looksLikeJson(path));
+  EXPECT_TRUE(looksLikeRoute(path));
   const planner::Route back = readRoute(path).route;
   ASSERT_EQ(back.vertices.size(), route.vertices.size());
   EXPECT_TRUE(std::isnan(back.vertices[3].slip));

@@ -1,0 +1,90 @@
+#include <nlohmann/json.hpp>
+#include <refused.hpp>
+
+#include <talus/cli/ground/path_reader.hpp>
+#include <talus/cli/route/route_reader.hpp>
+#include <talus/cli/route/route_writer.hpp>
+#include <talus/common/constants.hpp>
+#include <talus/common/input_error.hpp>
+#include <talus/maps/vector/vector_reader.hpp>
+
+#include "example_scene.hpp"
+#include "run_program.hpp"
+
+namespace talus::cli {
+namespace route_writer_test {
+
+using testing::HasSubstr;
+
+maps::ElevationMap mapOf(const maps::Ellipsoid& body) {
+  maps::ElevationMap map = exampleMap();
+  map.georeference.emplace(maps::CoordinateSystem{.name = "site", .ellipsoid = body});
+  return map;
+}
+
+std::string write(const Folder& folder, const std::string& name, const maps::ElevationMap& map) {
+  Context context;
+  writeRoute(folder / name, routeGeoJson(exampleRoute(), map, {.files = {}, .seed = 7}), map, context);
+  return folder / name;
+}
+
+// Property: what another program gets is what `talus score --path` reads: the same metres, to rounding of degrees.
+TEST(RouteWriter, EveryFormatComesBackAsThePath) {
+  const Folder folder;
+  const maps::ElevationMap map = mapOf(maps::kEarth);
+  const planner::Route route = exampleRoute();
+  for (const auto& [name, most_m] :
+       {std::pair{"r.geojson", 0.0}, {"r.gpkg", 0.0}, {"r.csv", 0.0}, {"r.gpx", 2e-3}, {"r.kml", 1e-6}}) {
+    const auto points = readPath(write(folder, name, map), map);
+    ASSERT_EQ(points.size(), route.vertices.size()) << name;
+    for (std::size_t i = 0; i < points.size(); ++i)
+      EXPECT_LE(std::hypot(points[i].x_m - route.vertices[i].x_m, points[i].y_m - route.vertices[i].y_m),
+                most_m)
+          << name;
+  }
+}
+
+TEST(RouteWriter, AGeoPackageIsARouteAgain) {
+  const Folder folder;
+  const planner::Route route = exampleRoute();
+  const std::string path = write(folder, "r.gpkg", mapOf(maps::kMoon));
+  ASSERT_TRUE(looksLikeRoute(path));
+  const RouteFile back = readRoute(path);
+  ASSERT_EQ(back.route.vertices.size(), route.vertices.size());
+  EXPECT_EQ(back.route.vertices[5].slip, route.vertices[5].slip);
+  EXPECT_EQ(back.route.summary.energy_J, route.summary.energy_J);
+  const nlohmann::json drawn = maps::readVector(path, mapOf(maps::kMoon));
+  std::map<std::string, int> types;
+  for (const auto& feature : drawn["features"]) ++types[feature["geometry"]["type"]];
+  const int vertices = static_cast<int>(route.vertices.size());
+  EXPECT_EQ(types, (std::map<std::string, int>{{"LineString", vertices}, {"Point", vertices}}));
+}
+
+TEST(RouteWriter, SaysWhereTheBodyIsLost) {
+  const Folder folder;
+  testing::internal::CaptureStderr();
+  write(folder, "r.geojson", mapOf(maps::kMars));
+  EXPECT_THAT(testing::internal::GetCapturedStderr(),
+              HasSubstr("GeoJSON does not say that its longitudes and latitudes are of Mars"));
+  testing::internal::CaptureStderr();
+  write(folder, "r.gpkg", mapOf(maps::kMars));
+  write(folder, "e.geojson", mapOf(maps::kEarth));
+  write(folder, "l.geojson", exampleMap());
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_REFUSED(write(folder, "r.gpx", mapOf(maps::kMars)), InputError,
+                 "has places of Earth in WGS 84 alone");
+  EXPECT_EQ(fileContent(folder / "r.gpx"), "");
+}
+
+TEST(RouteWriter, TheTableHasARowForEachVertex) {
+  const Folder folder;
+  const std::string table = fileContent(write(folder, "r.csv", mapOf(maps::kMoon)));
+  EXPECT_TRUE(table.starts_with("x_m,y_m,elevation_m,heading_rad,")) << table.substr(0, 80);
+  EXPECT_THAT(table.substr(0, table.find('\n')), testing::EndsWith(",latitude_deg,longitude_deg"));
+  EXPECT_EQ(std::ranges::count(table, '\n'), static_cast<std::ptrdiff_t>(exampleRoute().vertices.size()) + 1);
+  const std::string local = fileContent(write(folder, "l.csv", exampleMap()));
+  EXPECT_THAT(local.substr(0, local.find('\n')), testing::Not(testing::EndsWith(",")));
+}
+
+}  // namespace route_writer_test
+}  // namespace talus::cli
