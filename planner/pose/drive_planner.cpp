@@ -119,6 +119,12 @@ PosePlan DrivePlanner::alongRoute(const PoseProblem& asked, const Problem& probl
   free.time_limit_s = asked.time_limit_s;
   free.prove = false;
   const Plan route = field_.plan(free);
+  if (route.status == RouteStatus::NoRoute) {  // whatever the headings: no drive either
+    PosePlan none;
+    none.status = route.status;
+    none.reason = route.reason;
+    return none;
+  }
   if (route.status != RouteStatus::Found || route.points.size() < 2) return {};
   return cheapestAlong(route.points, asked, stop);
 }
@@ -127,6 +133,7 @@ PosePlan DrivePlanner::drivenTo(PoseProblem asked, const Problem& problem, maps:
   const TimeLeft time(asked.time_limit_s);
   asked.goal = end;
   PosePlan along = alongRoute(asked, problem);
+  if (along.status == RouteStatus::NoRoute) return along;
   const bool known = along.status == RouteStatus::Found;
   if (known) asked.most_expanded = kBeside;
   asked.time_limit_s = time.share_s();

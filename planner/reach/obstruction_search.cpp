@@ -1,6 +1,7 @@
 #include <cstdio>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include <talus/planner/reach/lifted_ground.hpp>
 #include <talus/planner/reach/obstruction_search.hpp>
@@ -75,15 +76,22 @@ Obstruction obstructionBetween(const costmap::CostGrid& map, HeadingSets& headin
   found.cells_from_start = from_start.cells();
   const Reach to_goal(map, headings, Reach::Sense::To, places.to, tolerance_m, stop);
   found.cells_to_goal = to_goal.cells();
-  const auto gap = closest(map.grid(), from_start, to_goal, stop);
+  const bool backwards = to_goal.cells() < from_start.cells();
+  auto gap = backwards ? closest(map.grid(), to_goal, from_start, stop)
+                       : closest(map.grid(), from_start, to_goal, stop);
   if (gap) {
+    if (backwards) std::swap(gap->first, gap->second);
     found.last = map.grid().centre(gap->first);
     found.first = map.grid().centre(gap->second);
   }
+  // From the side that fewer cells lead to, until it meets the other.
   const auto opens = [&](const costmap::CostGrid& lifted) {
     HeadingSets free(lifted.cost());
-    Reach reach(lifted, free, Reach::Sense::From, places.from, 0.0, stop);
-    return reach.complete() && reach.reaches(places.to, tolerance_m);
+    Reach reach = backwards ? Reach(lifted, free, Reach::Sense::To, places.to, tolerance_m, stop, &from_start)
+                            : Reach(lifted, free, Reach::Sense::From, places.from, 0.0, stop, &to_goal);
+    if (reach.joined()) return true;
+    return reach.complete() &&
+           (backwards ? reach.reaches(places.from, 0.0) : reach.reaches(places.to, tolerance_m));
   };
   tryLifting(found, map, hazards, opens, stop);
   return found;

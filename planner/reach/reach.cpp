@@ -15,14 +15,14 @@ enum : std::uint8_t { kSeen = 1, kOpen = 2 };
 }  // namespace
 
 Reach::Reach(const costmap::CostGrid& map, HeadingSets& headings, Sense sense, maps::Point place,
-             double tolerance_m, const StopCheck& stop)
-    : map_(map), headings_(headings), sense_(sense), seen_(map.grid().size(), 0) {
+             double tolerance_m, const StopCheck& stop, const Reach* other)
+    : map_(map), headings_(headings), sense_(sense), seen_(map.grid().size(), 0), other_(other) {
   for (const Cell cell : cellsWithin(map.grid(), place, tolerance_m)) {
     const InCell at = inCell(map.grid(), cell, place);
     begin(cell, tolerance_m > 0.0 ? nullptr : &at);
   }
   std::size_t steps = 0;
-  while (!open_.empty()) {
+  while (!open_.empty() && !joined_) {
     if ((++steps & 0xfffU) == 0 && stop()) {
       complete_ = false;
       return;
@@ -46,6 +46,8 @@ const HeadingSet& Reach::headingsOf(Cell cell) {
 
 void Reach::enqueue(std::size_t index) {
   if (seen_[index] == 0) ++cells_;
+  joined_ = joined_ || (other_ != nullptr && other_->seen_[index] != 0 && !cones_.contains(index) &&
+                        !other_->cones_.contains(index));
   if ((seen_[index] & kOpen) != 0) return;
   seen_[index] = kSeen | kOpen;
   open_.push_back(index);

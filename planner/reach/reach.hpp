@@ -27,8 +27,9 @@ class Reach {
   enum class Sense { From, To };
 
   /// From a place inside the map, or to it and all places within the tolerance.
+  /// With `other`, of the opposite sense over the same cells or fewer, it ends where a cell of both joins their ways.
   Reach(const costmap::CostGrid& map, HeadingSets& headings, Sense sense, maps::Point place,
-        double tolerance_m = 0.0, const StopCheck& stop = {});
+        double tolerance_m = 0.0, const StopCheck& stop = {}, const Reach* other = nullptr);
 
   /// Whether a drive may enter the cell.
   bool holds(maps::Cell cell) const noexcept {
@@ -39,6 +40,8 @@ class Reach {
   bool reaches(maps::Point place, double tolerance_m);
 
   std::size_t cells() const noexcept { return cells_; }
+  /// Whether some drive gets from the one's place to the other's: through a cell that both hold and in which it turns at will.
+  bool joined() const noexcept { return joined_; }
   /// False where it was stopped: it proves nothing then.
   bool complete() const noexcept { return complete_; }
 
@@ -69,7 +72,9 @@ class Reach {
   std::vector<std::uint8_t> seen_;
   std::unordered_map<std::size_t, Entries> cones_;
   std::deque<std::size_t> open_;
+  const Reach* other_;
   std::size_t cells_ = 0;
+  bool joined_ = false;
   bool complete_ = true;
 };
 

@@ -243,6 +243,23 @@ TEST(DrivePlanner, DrivesWhatTheFieldFindsWhereHeadingsAreFew) {
   }
 }
 
+// What no route joins, whatever the headings, no drive joins: the answer is the field's, not to try another heading.
+TEST(DrivePlanner, AProofThatThereIsNoRouteHoldsForDrives) {
+  Problem problem{.map = testing::drawn({"......#......", "......#......", "......#......"}),
+                  .start = {1.5, 1.5},
+                  .goal = {11.5, 1.5},
+                  .kinematics = {.turning_radius_m = 0.5}};
+  const Plan field = FieldPlanner().plan(problem);
+  ASSERT_EQ(field.status, RouteStatus::NoRoute);
+  for (const double tolerance_m : {0.0, 1.0}) {
+    problem.goal_tolerance_m = tolerance_m;
+    DrivePlanner planner;
+    const Plan drive = planner.plan(problem);
+    EXPECT_EQ(drive.status, RouteStatus::NoRoute);
+    EXPECT_EQ(drive.reason, FieldPlanner().plan(problem).reason);
+  }
+}
+
 // Property: with a tolerance the drive ends within it, costs no more than to the goal itself, and a goal that
 // nobody may stand on is no hindrance.
 TEST(DrivePlanner, EndsWithinTheGoalTolerance) {
