@@ -9,6 +9,7 @@
 #include <fmt/ranges.h>
 
 #include <talus/cli/app/output_file.hpp>
+#include <talus/cli/app/sha256.hpp>
 #include <talus/common/input_error.hpp>
 
 namespace talus::cli {
@@ -165,6 +166,16 @@ void checkFormat(const fs::path& path, const std::string& written) {
                     fmt::format("is named {}, but a {} file is written", path.extension().string(),
                                 fmt::join(endings, " or ")),
                     "name it " + stem.string() + endings.front() + ", or pass --force"});
+}
+
+void checkInputs(const CLI::App& command) {
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->empty() || isOutput(*option)) continue;
+    for (const std::string& word : option->results()) {
+      compareChecksum(word);
+      if (const auto equals = word.find('='); equals != word.npos) compareChecksum(word.substr(equals + 1));
+    }
+  }
 }
 
 void checkOutputs(const CLI::App& command, bool force) {

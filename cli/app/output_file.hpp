@@ -33,4 +33,7 @@ void checkFormat(const std::filesystem::path& path, const std::string& written);
 /// format than the option's type name (FILE.tif) does; each is also tried, so that a bad place is told before the work.
 void checkOutputs(const CLI::App& command, bool force);
 
+/// compareChecksum() of every file that an option of the call other than those of addOutput() names, alone or as NAME=FILE.
+void checkInputs(const CLI::App& command);
+
 }  // namespace talus::cli

@@ -8,4 +8,7 @@ namespace talus::cli {
 /// read.
 std::string sha256OfFile(const std::string& path);
 
+/// Where a file PATH.sha256 lies beside a file, as sha256sum writes it, both must agree. Throws InputError where they do not.
+void compareChecksum(const std::string& path);
+
 }  // namespace talus::cli

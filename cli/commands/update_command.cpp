@@ -16,6 +16,7 @@
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/file_lock.hpp>
 #include <talus/cli/app/output_file.hpp>
+#include <talus/cli/ground/map_options.hpp>
 #include <talus/common/input_error.hpp>
 #include <talus/costmap/map/map_file.hpp>
 #include <talus/costmap/telemetry/drive_evidence.hpp>

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <talus/cli/app/number_check.hpp>
+#include <talus/cli/app/sha256.hpp>
 #include <talus/cli/ground/mission.hpp>
 #include <talus/common/input_error.hpp>
 #include <talus/terramech/io/yaml_fields.hpp>
@@ -18,7 +19,9 @@ using terramech::YamlFields;
 // A path as the mission means it: relative to the mission's folder; a library name stays as it is.
 std::string resolved(const std::string& path, const std::filesystem::path& folder) {
   const std::filesystem::path beside = folder / path;
-  return !path.empty() && std::filesystem::exists(beside) ? beside.string() : path;
+  const std::string found = !path.empty() && std::filesystem::exists(beside) ? beside.string() : path;
+  compareChecksum(found);
+  return found;
 }
 
 void take(std::string& option, const YamlFields& fields, const std::string& name) {

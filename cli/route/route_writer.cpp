@@ -30,7 +30,7 @@ maps::VectorPosition positionOf(const Json& vertex) {
 
 // The lists of a route, vertex by vertex.
 std::vector<Json> verticesOf(const Json& properties) {
-  std::vector<Json> vertices(properties["x_m"].size());
+  std::vector<Json> vertices(properties["x_m"].size(), {{"x_m", 0.0}, {"y_m", 0.0}});  // these come first
   for (const auto& [name, values] : properties.items())
     if (values.is_array() && values.size() == vertices.size())
       for (std::size_t i = 0; i < vertices.size(); ++i) vertices[i][name] = values[i];

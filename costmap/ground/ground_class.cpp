@@ -48,6 +48,7 @@ terramech::SoilPrior onBody(terramech::SoilPrior prior, const terramech::Rover& 
   const double width = rover.wheel.width_m, tested = sinkageModulus(prior.mean, width);
   prior.mean = underGravity(prior.mean, rover.gravity_m_s2);
   const double factor = sinkageModulus(prior.mean, width) / tested;
+  prior.deviation.cohesion_Pa *= factor;
   prior.deviation.cohesive_modulus *= factor;
   prior.deviation.frictional_modulus *= factor;
   return prior;

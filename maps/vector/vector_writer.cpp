@@ -19,7 +19,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kDocument = "TALUS_DOCUMENT";
+constexpr const char* kDocument = "DOCUMENT";
+constexpr const char* kDomain = "TALUS";  // of metadata: programs list the default one
 
 // A file in memory, removed in the end.
 struct MemoryFile {
@@ -143,7 +144,7 @@ std::string vectorFile(const std::string& driver, const ElevationMap& map,
                                                   driver == "KML" ? const_cast<char**>(options) : nullptr));
     for (const VectorLayer& layer : layers)
       if (file && !layer.features.empty()) writeLayer(*file, layer, placed, driver != "GPX");
-    if (file && !document.empty()) file->SetMetadataItem(kDocument, document.c_str());
+    if (file && !document.empty()) file->SetMetadataItem(kDocument, document.c_str(), kDomain);
   }
   if (errors.any()) throw InputError({path, "GDAL cannot write it: " + errors.last(), "write GeoJSON"});
   return memory.bytes();
@@ -152,7 +153,7 @@ std::string vectorFile(const std::string& driver, const ElevationMap& map,
 StoredDocument storedDocument(const std::string& path) {
   const Dataset file = openVector(path);
   const GdalErrors errors;
-  const char* document = file->GetMetadataItem(kDocument);
+  const char* document = file->GetMetadataItem(kDocument, kDomain);
   if (document == nullptr || file->GetLayerCount() == 0)
     throw InputError({path, "contains no route of talus plan", "pass a route from `talus plan -o`"});
   StoredDocument out{.document = document, .line = {}};

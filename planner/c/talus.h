@@ -60,7 +60,7 @@ typedef struct talus_soil {
   double sinkage_exponent, cohesive_modulus, frictional_modulus; /* Bekker's n, k_c, k_phi in SI */
   double shear_modulus_m;
   double slip_sinkage_exponent; /* growth of the exponent with slip, 0 to 2; 0: none */
-  double test_gravity_m_s2;     /* where the moduli were measured; in less gravity they are less by as much; 0: here */
+  double test_gravity_m_s2;     /* of the soil's test; in less, cohesion and moduli are less by as much; 0: that of the rover */
 } talus_soil;
 
 typedef struct talus_grid {

@@ -12,6 +12,7 @@ double sinkageModulus(const Soil& soil, double width_m) {
 Soil underGravity(Soil soil, double gravity_m_s2, double exponent) {
   if (soil.test_gravity_m_s2 <= gravity_m_s2) return soil;
   const double factor = std::pow(gravity_m_s2 / soil.test_gravity_m_s2, exponent);
+  soil.cohesion_Pa *= factor;
   soil.cohesive_modulus *= factor;
   soil.frictional_modulus *= factor;
   soil.test_gravity_m_s2 = 0.0;

@@ -24,13 +24,14 @@ struct Soil {
   double digging_exponent = 0.4;
   /// Share >= 0 of Hegedus' pressure on the side of a wheel that slides sideways, 1 as ishigami_2007 [-].
   double side_bulldozing = 1.0;
-  /// Gravity under which the moduli were measured, >= 0; 0: that of the body driven on. See underGravity().
+  /// Gravity in which the soil was tested, >= 0; 0: that of the body driven on. See underGravity().
   double test_gravity_m_s2 = 0.0;
 };
 
-/// The soil as it is where a wheel weighs less than where it was tested: k_c and k_phi times (g / g_test)^exponent, for under the same mass
-/// the sinkage is the same in 1/6 to 2 times the Earth's gravity (kobayashi_2010, wong_kobayashi_2012), that is exponent 1. Never
-/// stiffer than tested: of greater gravity less is known (ours). Cohesion, friction angle and K stay.
+/// The soil as it is where a wheel weighs less than where it was tested: c, k_c and k_phi times (g / g_test)^exponent. With exponent 1 a rover
+/// of the same mass sinks as deep and pulls as large a part of its weight as there: that of sinkage was measured in 1/6 to 2 times
+/// the Earth's gravity (kobayashi_2010, wong_kobayashi_2012), that of the cohesion, which does not weigh, errs towards danger (ours).
+/// Never stronger than tested; friction angle and K stay.
 Soil underGravity(Soil soil, double gravity_m_s2, double exponent = 1.0);
 
 /// k = k_c/b + k_phi [N/m^(n+2)] for a wheel or plate of smaller dimension width_m (thesis Eq. A.1).

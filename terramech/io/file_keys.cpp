@@ -20,7 +20,7 @@ std::span<const FileKey> soilKeys() {
       {"digging_exponent", "growth of the sinkage exponent with sideways slip, >= 0, default 0.4"},
       {"side_bulldozing", "share of Hegedus' pressure on the side of a wheel, >= 0, default 1"},
       {"test_gravity_m_s2",
-       "gravity where the moduli were measured; in less they are less by as much; default 0: that of the "
+       "gravity of the soil's test; in less, cohesion and moduli are less by as much; default 0: that of the "
        "rover"},
   };
   return kKeys;

@@ -126,7 +126,7 @@ TEST(CheckOutput, RefusesANameOfAnotherFormat) {
        {{"plan", "good.asc", "--start", "5,5", "--goal", "9,9", "--pareto", "p.tif"},
         2,
         "a .png or .svg or .html file is written; name it p.png"},
-       {{"plan", "good.asc", "--start", "5,5", "--goal", "9,9", "-o", "q.csv"}, 2, "name it q.geojson"},
+       {{"plan", "good.asc", "--start", "5,5", "--goal", "9,9", "-o", "q.npz"}, 2, "name it q.geojson"},
        {{"plan", "good.asc", "--start", "5,5", "--goal", "9,9", "-o", "q.geojson.gz"},
         2,
         "name it q.geojson,"},

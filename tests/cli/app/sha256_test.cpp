@@ -1,4 +1,7 @@
+#include <algorithm>
 #include <fstream>
+#include <string>
+#include <vector>
 
 #include <talus/cli/app/sha256.hpp>
 
@@ -17,6 +20,29 @@ TEST(Sha256, OfKnownMessages) {
   EXPECT_EQ(sha256OfFile(folder.write("long", std::string(1000000, 'a'))),
             "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
   EXPECT_EQ(sha256OfFile(folder / "none"), "");
+}
+
+// A file with a checksum beside it is the file that was summed, whichever option names it, and in a mission.
+TEST(Sha256, AFileThatDiffersFromTheSumBesideItIsRefused) {
+  const Folder folder;
+  const std::string dem = folder.write(
+      "hill.asc", "ncols 3\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 1\n0 0 0\n0 0 0\n0 0 0\n");
+  const auto ends = [&](const std::vector<std::string>& words) { return runTalus(words, folder.path()); };
+  folder.write("mission.yaml",
+               "maps: {dem: hill.asc}\nrover: mer\nsoil: sand\nstart: 1.5,1.5\ngoal: 1.5,1.5\n");
+  const int plain = ends({"info", dem}).code;
+  folder.write("hill.asc.sha256", sha256OfFile(dem) + "  hill.asc\n");
+  EXPECT_EQ(ends({"info", dem}).code, plain);
+  folder.write("hill.asc", fileContent(dem) + "\n");
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"info", dem}, {"plan", "mission.yaml", "-o", "route.geojson"}}) {
+    const Ran ran = ends(words);
+    EXPECT_EQ(ran.code, 2) << ran.err;
+    EXPECT_THAT(ran.err, testing::HasSubstr("changed or damaged since; get it again"));
+    EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
+  }
+  folder.write("hill.asc.sha256", "deadbeef  hill.asc\n");
+  EXPECT_THAT(ends({"info", dem}).err, testing::HasSubstr("does not begin with a SHA-256"));
 }
 
 }  // namespace sha256_test

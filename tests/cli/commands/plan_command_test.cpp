@@ -107,7 +107,7 @@ TEST(PlanCommand, EveryBadCallIsOneLineAndACode) {
       {{"plan", "mission.yaml"}, 2, "start"},
       {{"score", "dem.asc", "--resolution", "1", "--path", "empty.csv"}, 2, "empty.csv"},
       {{"score", "dem.asc", "--resolution", "1", "--path", "nan.csv"}, 2, "nan.csv:2"},
-      {{"score", "dem.asc", "--resolution", "1", "--path", "point.geojson"}, 2, "LineString"},
+      {{"score", "dem.asc", "--resolution", "1", "--path", "point.geojson"}, 2, "contains no line"},
   };
   for (const Refused& row : table) {
     std::vector<std::string> words = row.words;

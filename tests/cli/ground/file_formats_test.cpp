@@ -31,7 +31,9 @@ TEST(FileFormats, VectorFilesHaveTheDriversThatAreOpened) {
   std::vector<std::string> expected = maps::vectorFormats();
   expected.emplace_back("CSV");
   for (const FileFormat& format : fileFormats())
-    if (format.title == "Vector file") EXPECT_EQ(terramech::namesOf(format.keys), expected);
+    if (format.title == "Vector file") {
+      EXPECT_EQ(terramech::namesOf(format.keys), expected);
+    }
 }
 
 // Property: every key is taken where it is listed: what is refused is never its name.

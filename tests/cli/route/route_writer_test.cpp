@@ -3,6 +3,7 @@
 
 #include <talus/cli/ground/path_reader.hpp>
 #include <talus/cli/route/route_reader.hpp>
+#include <talus/cli/app/context.hpp>
 #include <talus/cli/route/route_writer.hpp>
 #include <talus/common/constants.hpp>
 #include <talus/common/input_error.hpp>

@@ -73,12 +73,10 @@ TEST(WongReece, SinksWithSlip) {
     }
 }
 
-// Property (kobayashi_2010, wong_kobayashi_2012): the same mass sinks as deep under any gravity, on ground without cohesion with the same
-// pull over weight; with cohesion, which does not weigh, with more.
+// Property (kobayashi_2010, wong_kobayashi_2012): the same mass sinks as deep, and pulls as large a part of its weight, under any gravity.
 TEST(WongReece, TheSameMassSinksAsDeepUnderLessGravity) {
   const Wheel wheel{.radius_m = 0.13, .width_m = 0.2};
   Soil tested = sand();
-  tested.cohesion_Pa = 0.0;
   tested.test_gravity_m_s2 = 9.81;
   for (const double gravity : {1.62, 3.71, 9.81}) {
     const Soil here = underGravity(tested, gravity);
