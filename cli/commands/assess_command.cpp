@@ -8,6 +8,7 @@
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/draw/html_report.hpp>
+#include <talus/cli/soil/table_options.hpp>
 #include <talus/common/constants.hpp>
 #include <talus/terramech/calibration/tables/assessment.hpp>
 #include <talus/terramech/calibration/tables/table_applicability.hpp>
@@ -21,10 +22,11 @@ using Json = nlohmann::ordered_json;
 
 struct AssessCommand : AssessOptions {
   std::string html;  // page to write; empty: none
+  TableOptions columns;
 };
 
 void bind(CLI::App& command, AssessCommand& options) {
-  command.add_option("table", options.table, "wheel telemetry, one row per wheel and moment")
+  command.add_option("table", options.table.path, "wheel telemetry, one row per wheel and moment")
       ->required()
       ->type_name("T.csv");
   command.add_option("--slope", options.slope_rad, "slope to climb")->type_name("RAD")->capture_default_str();
@@ -60,6 +62,7 @@ void bind(CLI::App& command, AssessCommand& options) {
       ->check(CLI::Range(0.0, 0.5))
       ->capture_default_str();
   groupOptions(command, "Drawbar pull");
+  addTableOptions(command, options.columns);
   addOutput(command, "--html", options.html, "page to write, with the traversability diagram")
       ->type_name("R.html");
   groupOptions(command, "Output");
@@ -152,7 +155,7 @@ Plot mapOf(const std::vector<Assessment>& rows) {
 }
 
 void writePage(const AssessCommand& options, const std::vector<Assessment>& rows) {
-  HtmlReport page("Traversability of " + options.table);
+  HtmlReport page("Traversability of " + options.table.path);
   page.paragraph(fmt::format(
       "Slope to climb: {:.1f} +- {:.1f} deg. Above z/r = {:.2f} the category drops one level; above {:.2f} "
       "it is dangerous.",
@@ -169,12 +172,14 @@ void writePage(const AssessCommand& options, const std::vector<Assessment>& rows
   writeFile(options.html, page.html());
 }
 
-int run(const AssessCommand& options, Context& context) {
+int run(const AssessCommand& asked, Context& context) {
+  AssessCommand options = asked;
+  options.table = tableFile(asked.table.path, asked.columns, context);
   const AssessedTable table = assessTable(options, context.watch("assessing"));
   if (context.stop.stop_requested()) return Exit::kCancelled;
   if (!table.rejected.empty()) {
     const auto& first = table.rejected.front();
-    context.warn(fmt::format("{}:{}: {} ({} rows rejected)", options.table, first.line, first.reason,
+    context.warn(fmt::format("{}:{}: {} ({} rows rejected)", options.table.path, first.line, first.reason,
                              table.rejected.size()));
   }
   for (const std::string& name : table.left_out) {
@@ -192,7 +197,7 @@ int run(const AssessCommand& options, Context& context) {
     print(textOf(options, table.rows));
   }
   if (applies.applies) return Exit::kDone;
-  context.warn(options.table + ": the model does not apply: " + applies.reason);
+  context.warn(options.table.path + ": the model does not apply: " + applies.reason);
   return Exit::kNo;
 }
 

@@ -8,6 +8,7 @@
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/draw/html_report.hpp>
+#include <talus/cli/soil/table_options.hpp>
 #include <talus/common/constants.hpp>
 #include <talus/terramech/calibration/tables/estimate_soil.hpp>
 #include <talus/terramech/calibration/tables/table_applicability.hpp>
@@ -21,10 +22,11 @@ using namespace terramech;
 
 struct EstimateCommand : EstimateOptions {
   std::string html;  // page to write; empty: none
+  TableOptions columns;
 };
 
 void bind(CLI::App& command, EstimateCommand& options) {
-  command.add_option("table", options.table, "wheel telemetry, or plate and shear tests for bevameter")
+  command.add_option("table", options.table.path, "wheel telemetry, or plate and shear tests for bevameter")
       ->required()
       ->type_name("T.csv");
   command.add_option("--method", options.method, "estimation method")
@@ -67,6 +69,7 @@ void bind(CLI::App& command, EstimateCommand& options) {
   command.add_flag("--recursive", options.recursive,
                    "process the rows one by one in constant memory; print the estimate after each row");
   groupOptions(command, "Method");
+  addTableOptions(command, options.columns);
   addOutput(command, "--html", options.html, "page to write, with the fit")->type_name("R.html");
   groupOptions(command, "Output");
 }
@@ -155,6 +158,7 @@ Json jsonOf(const std::string& method, const SoilEstimate& e) {
             {"well_conditioned", e.unseen.empty()},
             {"unseen", e.unseen},
             {"warnings", e.warnings},
+            {"ignored", e.ignored},
             {"plausible", e.implausible().empty()},
             {"rejected", rejectedRows(e)}};
   if (std::isfinite(e.sinkage_exponent)) json["sinkage_exponent"] = e.sinkage_exponent;
@@ -247,7 +251,7 @@ Plot posteriorPlot(const SoilEstimate& e) {
 }
 
 void writePage(const EstimateCommand& options, const SoilEstimate& e) {
-  HtmlReport page("Soil estimated from " + options.table);
+  HtmlReport page("Soil estimated from " + options.table.path);
   page.paragraph(
       fmt::format("Method {}, {} rows used, {} rejected.", options.method, e.rows_used, e.rejected.size()));
   page.table({"quantity", "value", "standard deviation"},
@@ -262,14 +266,19 @@ void writePage(const EstimateCommand& options, const SoilEstimate& e) {
   writeFile(options.html, page.html());
 }
 
-int run(const EstimateCommand& options, Context& context) {
+int run(const EstimateCommand& asked, Context& context) {
+  EstimateCommand options = asked;
+  options.table = tableFile(asked.table.path, asked.columns, context);
   const SoilEstimate estimate = estimateSoil(options, context.watch("estimating"));
   if (context.stop.stop_requested()) return Exit::kCancelled;
   if (!estimate.rejected.empty()) {
     const auto& first = estimate.rejected.front();
-    context.warn(fmt::format("{}:{}: {} ({} rows rejected; --json lists them)", options.table, first.line,
-                             first.reason, estimate.rejected.size()));
+    context.warn(fmt::format("{}:{}: {} ({} rows rejected; --json lists them)", options.table.path,
+                             first.line, first.reason, estimate.rejected.size()));
   }
+  if (!estimate.ignored.empty())
+    context.warn(fmt::format("{}: --method {} does not read {}", options.table.path, options.method,
+                             fmt::join(estimate.ignored, ", ")));
   for (const std::string& text : estimate.unseen) context.warn("ill-conditioned: " + text);
   if (const std::string why = estimate.implausible(); !why.empty()) context.warn(why);
   for (const std::string& text : estimate.warnings) context.warn(text);
@@ -279,7 +288,7 @@ int run(const EstimateCommand& options, Context& context) {
                                                          context.watch("checking the model"));
   if (context.stop.stop_requested()) return Exit::kCancelled;
   if (!options.html.empty()) writePage(options, estimate);
-  if (!applies.applies) context.warn(options.table + ": the model does not apply: " + applies.reason);
+  if (!applies.applies) context.warn(options.table.path + ": the model does not apply: " + applies.reason);
   if (context.json) {
     Json json = jsonOf(options.method, estimate);
     json["applies"] = applies.applies;

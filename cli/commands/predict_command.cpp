@@ -4,6 +4,7 @@
 #include <talus/cli/app/command.hpp>
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/output_file.hpp>
+#include <talus/cli/soil/table_options.hpp>
 #include <talus/common/input_error.hpp>
 #include <talus/terramech/calibration/table/prediction_table.hpp>
 #include <talus/terramech/io/model_file.hpp>
@@ -14,6 +15,7 @@ namespace {
 
 struct PredictOptions {
   std::string table, model, rover, output;
+  TableOptions columns;
 };
 
 void bind(CLI::App& command, PredictOptions& options) {
@@ -25,6 +27,8 @@ void bind(CLI::App& command, PredictOptions& options) {
       ->type_name("M.yaml");
   command.add_option("--rover", options.rover, "rover that supplies wheel dimensions missing from the file")
       ->type_name("NAME|FILE");
+  groupOptions(command, "Model");
+  addTableOptions(command, options.columns);
   addOutput(command, "-o,--output", options.output, "rows to write, with predictions appended")
       ->required()
       ->type_name("OUT.csv");
@@ -35,8 +39,8 @@ int run(const PredictOptions& options, Context& context) {
   if (!file.soil_given)
     throw InputError({options.model, "defines no soil", "fit one first: talus trace --model-out"});
   if (!options.rover.empty()) file.model.takeRover(terramech::loadRover(options.rover));
-  const auto table =
-      terramech::predictTable(options.table, file.model, file.scope, context.watch("predicting"));
+  const auto table = terramech::predictTable(tableFile(options.table, options.columns, context), file.model,
+                                             file.scope, context.watch("predicting"));
   if (context.stop.stop_requested()) return Exit::kCancelled;
   if (table.predicted == 0)
     throw InputError(

@@ -7,6 +7,7 @@
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/soil/left_out_report.hpp>
+#include <talus/cli/soil/table_options.hpp>
 #include <talus/cli/soil/trace_report.hpp>
 #include <talus/common/progress_monitor.hpp>
 #include <talus/terramech/calibration/trace/left_out.hpp>
@@ -19,6 +20,7 @@ namespace {
 struct TraceCommandOptions {
   std::string telemetry, base, rover, model_out, html, hold_out;
   double significance = terramech::TraceOptions{}.significance;
+  TableOptions columns;
 };
 
 void bind(CLI::App& command, TraceCommandOptions& options) {
@@ -42,6 +44,7 @@ void bind(CLI::App& command, TraceCommandOptions& options) {
               "V,V or LOW..HIGH; a value that holds a comma in double quotes")
           ->type_name("COLUMN[=VALUES]");
   groupOptions(command, "Analysis");
+  addTableOptions(command, options.columns);
   addOutput(command, "--model-out", options.model_out, "refined model to write")
       ->excludes(hold_out)
       ->type_name("M.yaml");
@@ -90,7 +93,8 @@ int run(const TraceCommandOptions& options, Context& context) {
   const terramech::TableTraceOptions how{
       .base = terramech::baseModel(options.base, options.rover),
       .search = {.significance = options.significance, .seed = context.seed}};
-  const terramech::Telemetry table = terramech::readTraceTable(options.telemetry);
+  const terramech::Telemetry table =
+      terramech::readTraceTable(tableFile(options.telemetry, options.columns, context));
   warnOfRejected(table, context);
   if (!options.hold_out.empty()) return holdOutRows(options, table, how, context);
   const ProgressMonitor watch = context.watch("tracing");

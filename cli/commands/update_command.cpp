@@ -17,6 +17,7 @@
 #include <talus/cli/app/file_lock.hpp>
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/ground/map_options.hpp>
+#include <talus/cli/soil/table_options.hpp>
 #include <talus/common/input_error.hpp>
 #include <talus/costmap/map/map_file.hpp>
 #include <talus/costmap/telemetry/drive_evidence.hpp>
@@ -32,6 +33,7 @@ struct UpdateOptions {
   std::string journal;
   bool replay = false;
   costmap::IntakeOptions intake;
+  TableOptions columns;
 };
 
 void bind(CLI::App& command, UpdateOptions& options) {
@@ -50,6 +52,8 @@ void bind(CLI::App& command, UpdateOptions& options) {
       ->capture_default_str();
   command.add_flag("--replay", options.replay, "replay the whole journal instead of a telemetry file")
       ->needs(journal);
+  groupOptions(command, "Evidence");
+  addTableOptions(command, options.columns);
 }
 
 // What a cell costs and is, before and after.
@@ -125,7 +129,7 @@ void checkCall(const UpdateOptions& options) {
 
 terramech::Telemetry readDrive(const UpdateOptions& options, const costmap::TraversabilityMap& map,
                                const Context& context) {
-  auto telemetry = terramech::readTelemetry(options.telemetry,
+  auto telemetry = terramech::readTelemetry(tableFile(options.telemetry, options.columns, context),
                                             {.required = {"x_m", "y_m", "load_N", "slip"},
                                              .wheel_radius_m = map.model().rover().wheel.radius_m,
                                              .once = true},

@@ -8,6 +8,7 @@
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/number_check.hpp>
 #include <talus/cli/app/output_file.hpp>
+#include <talus/cli/soil/table_options.hpp>
 #include <talus/cli/soil/wheel_report.hpp>
 #include <talus/cli/soil/wheel_table.hpp>
 #include <talus/common/constants.hpp>
@@ -27,6 +28,7 @@ struct WheelOptions {
   double inflation_Pa = std::nan(""), carcass_Pa = 0.0, torque_Nm = std::nan("");
   bool hard_ground = false;
   std::string cases, output;
+  TableOptions columns;
 };
 
 void bind(CLI::App& command, WheelOptions& options) {
@@ -80,6 +82,9 @@ void bind(CLI::App& command, WheelOptions& options) {
   for (auto* single : {soil, rover, load, slip, angle, html, inflation, carcass, hard, torque})
     cases->excludes(single);
   groupOptions(command, "A table of wheels");
+  addTableOptions(command, options.columns);
+  for (const char* column : {"--column", "--columns", "--radius", "--width"})
+    command.get_option(column)->needs(cases);
 }
 
 [[noreturn]] void lacking(const std::string& option) {
@@ -106,7 +111,8 @@ void warnOfRefused(const WheelTable& table, const std::string& path, const Conte
 int runTable(const WheelOptions& options, Context& context) {
   if (options.output.empty()) lacking("-o OUT.csv");
   const WheelTable table =
-      solveWheelTable(options.cases, options.output, context.workers(), context.watch("wheels"));
+      solveWheelTable(tableFile(options.cases, options.columns, context, wheelCaseColumns()), options.output,
+                      context.workers(), context.watch("wheels"));
   if (table.replaced) context.warn(options.cases + ": contains result columns; they are replaced");
   warnOfRefused(table, options.cases, context);
   if (context.json)

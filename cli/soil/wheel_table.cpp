@@ -66,9 +66,7 @@ bool isResult(const std::string& name) {
 
 /// Where in a row each input stands.
 std::vector<std::optional<std::size_t>> positions(const CsvReader& reader, const std::string& path) {
-  std::vector<std::string> known;
-  for (const InputColumn& input : kInputs) known.emplace_back(input.name);
-  terramech::checkColumnUnits(reader.header(), known, path);
+  terramech::checkColumnUnits(reader.header(), wheelCaseColumns(), path);
   std::vector<std::optional<std::size_t>> at;
   std::string missing;
   for (const InputColumn& input : kInputs) {
@@ -204,11 +202,17 @@ void checkSolved(const WheelTable& table, const std::string& path) {
 
 }  // namespace
 
-WheelTable solveWheelTable(const std::filesystem::path& input, const std::filesystem::path& output,
+std::vector<std::string> wheelCaseColumns() {
+  std::vector<std::string> names;
+  for (const InputColumn& input : kInputs) names.emplace_back(input.name);
+  return names;
+}
+
+WheelTable solveWheelTable(const terramech::TableFile& input, const std::filesystem::path& output,
                            int threads, const ProgressMonitor& watch) {
   constexpr std::size_t kBlock = 16384;
   CsvReader reader{input};
-  const auto at = positions(reader, input.string());
+  const auto at = positions(reader, input.path);
   Writer writer{output, reader.header()};
   WheelTable table;
   table.replaced = std::any_of(reader.header().begin(), reader.header().end(), isResult);
@@ -222,7 +226,7 @@ WheelTable solveWheelTable(const std::filesystem::path& input, const std::filesy
     if (watch.stopped()) throw std::runtime_error("cancelled");
     watch.report(reader.fraction());
   }
-  checkSolved(table, input.string());
+  checkSolved(table, input.path);
   writer.commit();
   return table;
 }

@@ -1,12 +1,41 @@
 #pragma once
 
+#include <concepts>
 #include <cstddef>
+#include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 /// Measured wheel data, as columns. Reading it from a file: telemetry_reader.hpp.
 namespace talus::terramech {
+
+/// A column of a table under another name than Talus knows.
+struct MappedColumn {
+  std::string known;  ///< "load_N"
+  std::string name;   ///< in the file: "Fz"
+  std::string
+      unit{};  ///< of the file: "kN", "percent"; empty: that of a suffix of the name, else that of `known`
+};
+
+/// A CSV file and how its columns are read; converts from the path alone.
+struct TableFile {
+  TableFile() = default;
+  template <typename Name>
+  requires std::convertible_to<Name, std::filesystem::path> TableFile(const Name& file)
+      : path(std::filesystem::path(file).string()) {}  // NOLINT(google-explicit-constructor)
+
+  std::string path;
+  std::vector<MappedColumn> columns{};
+  std::vector<std::pair<std::string, double>>
+      constants{};                  ///< columns that the file lacks, the same in each row
+  std::vector<std::string> also{};  ///< columns that the caller knows besides those of telemetry
+  /// Is told what was done to columns, a sentence each. With it, a known column in another unit (`sinkage_mm`) is
+  /// converted; without, it is refused.
+  std::function<void(const std::string&)> note{};
+};
 
 /// A row that was left out, and why.
 struct RejectedRow {

@@ -63,9 +63,8 @@ std::vector<double> widthsOfRoundPlates(const Telemetry& table, const std::vecto
 
 }  // namespace
 
-BevameterTable readBevameterTable(const std::filesystem::path& path, double plate_width_m,
-                                  const ProgressMonitor& watch) {
-  const Telemetry table = readTelemetry(path, {}, watch);
+BevameterTable readBevameterTable(const TableFile& file, double plate_width_m, const ProgressMonitor& watch) {
+  const Telemetry table = readTelemetry(file, {}, watch);
   const auto* normal = table.find("normal_stress_Pa");
   const auto* shear = table.find("shear_stress_Pa");
   const auto* moved = table.find("shear_displacement_m");

@@ -25,7 +25,6 @@ struct BevameterTable {
 
 /// A stated plate width [m] holds for all rows, 0: none stated. Throws InputError when the file has the
 /// columns of neither test, or no usable row.
-BevameterTable readBevameterTable(const std::filesystem::path& path, double plate_width_m,
-                                  const ProgressMonitor& watch);
+BevameterTable readBevameterTable(const TableFile& file, double plate_width_m, const ProgressMonitor& watch);
 
 }  // namespace talus::terramech

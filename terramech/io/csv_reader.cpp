@@ -1,27 +1,38 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 #include <deque>
 #include <fstream>
 #include <new>
+#include <optional>
 
 #include <csv.h>
 
 #include <talus/common/input_error.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
+#include <talus/terramech/io/table_columns.hpp>
 
 namespace talus::terramech {
 namespace {
 
 constexpr std::size_t kMostColumns = 1000;
 
+// What parts the fields of the first line that has any.
+char separatorOf(std::string_view text) {
+  text.remove_prefix(std::min(text.size(), text.find_first_not_of("\r\n ")));
+  const std::string_view line = text.substr(0, text.find_first_of("\r\n"));
+  char most = ',';
+  for (const char c : {';', '\t'})
+    if (std::ranges::count(line, c) > std::ranges::count(line, most)) most = c;
+  return most;
+}
+
 }  // namespace
 
 /// libcsv hands out fields and record ends through callbacks; finished records wait in a queue.
 struct CsvReader::Parser {
-  explicit Parser(const std::filesystem::path& file_path);
+  explicit Parser(const TableFile& table);
   ~Parser() { csv_free(&csv); }
   Parser(const Parser&) = delete;
   Parser& operator=(const Parser&) = delete;
@@ -34,7 +45,10 @@ struct CsvReader::Parser {
   std::string faultOf(const CsvRow& row) const;
   [[noreturn]] void refuse(const std::string& reason, const std::string& remedy) const;
 
+  TableFile table;
   std::filesystem::path path;
+  std::optional<TableColumns> columns;
+  char separator = ',';
   std::ifstream file;
   std::uintmax_t size = 0, read = 0;
   csv_parser csv{};
@@ -47,7 +61,7 @@ struct CsvReader::Parser {
   bool done = false;
 };
 
-CsvReader::Parser::Parser(const std::filesystem::path& file_path) : path(file_path) {
+CsvReader::Parser::Parser(const TableFile& asked) : table(asked), path(asked.path) {
   if (csv_init(&csv, CSV_REPALL_NL) != 0) throw std::bad_alloc();
 }
 
@@ -68,8 +82,6 @@ void CsvReader::Parser::readHeader() {
   CsvRow row;
   if (!pop(row)) refuse("is empty", "the first row names the columns");
   header = row.fields;
-  if (header.size() == 1 && header[0].find(';') != std::string::npos)
-    refuse("fields are separated by ';'", "separate them by commas");
   if (header.size() > kMostColumns)
     refuse("has " + std::to_string(header.size()) + " columns, at most 1000 can be read",
            "keep those that are needed");
@@ -79,6 +91,7 @@ void CsvReader::Parser::readHeader() {
       throw InputError({.where = path.string() + ":" + std::to_string(row.line),
                         .reason = "column " + header[k] + " appears twice in the header",
                         .remedy = "rename one"});
+  columns.emplace(header, table, separator != ',');
 }
 
 bool CsvReader::Parser::pop(CsvRow& row) {
@@ -86,7 +99,9 @@ bool CsvReader::Parser::pop(CsvRow& row) {
   if (ready.empty()) return false;
   row = std::move(ready.front());
   ready.pop_front();
-  if (!header.empty()) row.fault = row.fault.empty() ? faultOf(row) : row.fault;
+  if (!columns) return true;
+  if (row.fault.empty()) row.fault = faultOf(row);
+  columns->apply(row.fields, row.fault.empty());
   return true;
 }
 
@@ -99,6 +114,10 @@ void CsvReader::Parser::feed() {
   std::size_t skip = 0;  // byte order marks: one that is left would belong to the first column's name
   while (read == 0 && std::string_view(buffer.data() + skip, count - skip).starts_with("\xEF\xBB\xBF"))
     skip += 3;
+  if (read == 0) {
+    separator = separatorOf(std::string_view(buffer.data() + skip, count - skip));
+    csv_set_delim(&csv, static_cast<unsigned char>(separator));
+  }
   read += count;
   const auto field = [](void* text, std::size_t length, void* parser) {
     static_cast<Parser*>(parser)->current.fields.emplace_back(static_cast<const char*>(text), length);
@@ -127,8 +146,8 @@ void CsvReader::Parser::endRecord(int terminator) {
   }
   after_return = terminator == '\r';
   current.line = line;
-  const auto holds_rows = [](const std::string& f) {
-    return f.find(',') != std::string::npos && f.find_first_of("\r\n") != std::string::npos;
+  const auto holds_rows = [this](const std::string& f) {
+    return f.find(separator) != std::string::npos && f.find_first_of("\r\n") != std::string::npos;
   };
   if (swallowed == 0 && std::ranges::any_of(current.fields, holds_rows)) swallowed = line;
   for (const auto& f : current.fields) line += static_cast<std::size_t>(std::count(f.begin(), f.end(), '\n'));
@@ -147,14 +166,14 @@ std::string CsvReader::Parser::faultOf(const CsvRow& row) const {
   return "has " + std::to_string(row.fields.size()) + " fields, the header " + std::to_string(header.size());
 }
 
-CsvReader::CsvReader(const std::filesystem::path& path) : parser_(std::make_unique<Parser>(path)) {
+CsvReader::CsvReader(const TableFile& table) : parser_(std::make_unique<Parser>(table)) {
   parser_->open();
 }
 
 CsvReader::~CsvReader() = default;
 
 const std::vector<std::string>& CsvReader::header() const noexcept {
-  return parser_->header;
+  return parser_->columns->header();
 }
 
 bool CsvReader::next(CsvRow& row) {
@@ -163,12 +182,6 @@ bool CsvReader::next(CsvRow& row) {
 
 double CsvReader::fraction() const noexcept {
   return parser_->size ? static_cast<double>(parser_->read) / static_cast<double>(parser_->size) : 1.0;
-}
-
-bool parseNumber(std::string_view field, double& value) noexcept {
-  if (field.starts_with('+')) field.remove_prefix(1);
-  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-  return error == std::errc{} && end == field.data() + field.size();
 }
 
 std::string csvField(std::string_view text) {

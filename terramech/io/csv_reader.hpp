@@ -7,6 +7,9 @@
 #include <string_view>
 #include <vector>
 
+#include <talus/terramech/estimate/telemetry.hpp>
+#include <talus/terramech/io/field_number.hpp>
+
 namespace talus::terramech {
 
 /// One record of a CSV file.
@@ -17,12 +20,14 @@ struct CsvRow {
 };
 
 /// Streams a CSV file with a header row, through libcsv, 64 KiB at a time. Skips blank lines and UTF-8 byte
-/// order marks, takes LF, CRLF and CR. Not copyable; use from one thread.
+/// order marks, takes LF, CRLF and CR; fields are parted by commas or, where the header has more of them, by semicolons or
+/// tabs, and numbers may then have a decimal comma. Columns are named and in the unit that the TableFile asks for. Not
+/// copyable; use from one thread.
 class CsvReader {
  public:
-  /// Throws InputError when the file cannot be read, is not text, has no header, or a name stands twice in
-  /// it.
-  explicit CsvReader(const std::filesystem::path& path);
+  /// Throws InputError when the file cannot be read, is not text, has no header, a name stands twice in it, or a column
+  /// cannot be mapped.
+  explicit CsvReader(const TableFile& table);
   ~CsvReader();
   CsvReader(const CsvReader&) = delete;
   CsvReader& operator=(const CsvReader&) = delete;
@@ -42,10 +47,6 @@ class CsvReader {
   struct Parser;
   std::unique_ptr<Parser> parser_;
 };
-
-/// The number that a whole field states ("1", "-2.5e3", "+4", "nan", "inf"), or false. `.` decimals whatever
-/// the locale.
-bool parseNumber(std::string_view field, double& value) noexcept;
 
 /// A field as it stands in a CSV file: in quotes where it holds a comma, a quote, a line break or outer
 /// blanks.

@@ -234,9 +234,10 @@ void checkColumns(const std::vector<std::string>& header, const std::vector<std:
   for (const auto& name : required)
     if (!contains(header, name)) missing += (missing.empty() ? "" : ", ") + name;
   if (missing.empty()) return;
-  throw InputError({.where = where + ":1",
-                    .reason = "no column " + missing,
-                    .remedy = "name it in the header row, with its unit as suffix"});
+  throw InputError(
+      {.where = where + ":1",
+       .reason = "no column " + missing,
+       .remedy = "name it in the header row, with its unit as suffix, or pass --column load_N=NAME"});
 }
 
 void checkUsable(const Telemetry& telemetry) {
@@ -253,11 +254,11 @@ void checkUsable(const Telemetry& telemetry) {
 
 }  // namespace
 
-Telemetry readTelemetry(const std::filesystem::path& path, const TelemetryOptions& options,
+Telemetry readTelemetry(const TableFile& file, const TelemetryOptions& options,
                         const ProgressMonitor& watch) {
-  CsvReader reader{path};
+  CsvReader reader{file};
   Telemetry telemetry;
-  telemetry.source = path.string();
+  telemetry.source = file.path;
   checkColumnUnits(reader.header(), knownTelemetryColumns(), telemetry.source);
   checkColumns(reader.header(), options.required, telemetry.source);
   Table table{reader.header(), options};

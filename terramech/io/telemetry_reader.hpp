@@ -27,7 +27,7 @@ struct TelemetryOptions {
 /// columns, never the file. Throws InputError when the file cannot be read, has no header or one with a name
 /// twice or with a known column in another unit than it is read in (column_units.hpp), lacks a required column,
 /// or no row can be used.
-Telemetry readTelemetry(const std::filesystem::path& path, const TelemetryOptions& options = {},
+Telemetry readTelemetry(const TableFile& table, const TelemetryOptions& options = {},
                         const ProgressMonitor& watch = {});
 
 }  // namespace talus::terramech

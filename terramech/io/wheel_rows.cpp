@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -86,6 +88,17 @@ void leaveOut(Telemetry& t, const std::vector<std::string>& faults) {
   keep(t.lines);
 }
 
+// Of a reader of load, torque, sinkage and slip of straight wheels; a shear modulus is the caller's.
+std::vector<std::string> ignoredOf(const Telemetry& table) {
+  constexpr std::string_view kRead[] = {"load_N",         "torque_Nm",      "sinkage_m",
+                                        "slip",           "slip_angle_rad", "side_force_N",
+                                        "wheel_radius_m", "wheel_width_m",  "shear_modulus_m"};
+  std::vector<std::string> ignored;
+  for (const Telemetry::Numbers& column : table.numbers)
+    if (std::ranges::find(kRead, column.name) == std::end(kRead)) ignored.push_back(column.name);
+  return ignored;
+}
+
 }  // namespace
 
 void leaveOutWithoutSlipAngle(Telemetry& telemetry) {
@@ -105,12 +118,11 @@ std::vector<WheelReading> WheelRows::readings() const {
   return readings;
 }
 
-WheelRows readWheelRows(const std::filesystem::path& path, const WheelRowOptions& options,
-                        const ProgressMonitor& watch) {
+WheelRows readWheelRows(const TableFile& file, const WheelRowOptions& options, const ProgressMonitor& watch) {
   TelemetryOptions reading{.required = {"load_N", "torque_Nm", "sinkage_m"}};
   if (options.needs_slip) reading.required.emplace_back("slip");
   if (!options.rover.empty()) reading.wheel_radius_m = loadRover(options.rover).wheel.radius_m;
-  Telemetry table = readTelemetry(path, reading, watch);
+  Telemetry table = readTelemetry(file, reading, watch);
   leaveOutWithoutSlipAngle(table);
   const std::vector<Wheel> wheels = wheelsOf(table, options);
   WheelRows rows{.source = table.source,
@@ -119,6 +131,7 @@ WheelRows readWheelRows(const std::filesystem::path& path, const WheelRowOptions
                  .wheels = {},
                  .lines = {},
                  .words = {},
+                 .ignored = ignoredOf(table),
                  .rejected = table.rejected};
   for (const auto& column : table.words) rows.words.push_back({.name = column.name, .values = {}});
   const auto* slip = table.find("slip");

@@ -19,6 +19,7 @@ struct WheelRows {
   std::vector<Wheel> wheels;            ///< of each sample
   std::vector<std::size_t> lines;       ///< of each sample in the file
   std::vector<Telemetry::Words> words;  ///< the file's columns of words, of each sample
+  std::vector<std::string> ignored;     ///< the file's columns of numbers that are not read
   std::vector<RejectedRow> rejected;    ///< by the reader or by the method, in the file's order
   /// The samples with their wheels.
   std::vector<WheelReading> readings() const;
@@ -46,7 +47,6 @@ void leaveOutWithoutSlipAngle(Telemetry& telemetry);
 /// slip angle (what reads these rows knows straight wheels), with a side force and no slip angle, of one that sank too deep, or of
 /// one that is not driven where slip is needed. Throws InputError when a column is missing, a row
 /// has no wheel, or no row is left.
-WheelRows readWheelRows(const std::filesystem::path& path, const WheelRowOptions& options,
-                        const ProgressMonitor& watch);
+WheelRows readWheelRows(const TableFile& file, const WheelRowOptions& options, const ProgressMonitor& watch);
 
 }  // namespace talus::terramech

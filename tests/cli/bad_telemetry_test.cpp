@@ -28,30 +28,57 @@ TEST(BadInput, Telemetry) {
   expectRefused(BadFiles(), calls);
 }
 
-// Property: every table of wheels is held to the units of its columns; nothing is written of one that is not.
+// Property: every table of wheels is read in the units of its columns, and says so; nothing is written of one that cannot be.
 TEST(BadInput, AKnownColumnInAnotherUnit) {
   const Folder folder;
-  const std::string rows = "\n80,0.2,2,12,0.1,0.1\n90,0.3,3,15,0.1,0.1\n";
-  folder.write("t.csv", "load_N,slip,torque_Nm,sinkage_mm,wheel_radius_m,wheel_width_m" + rows);
-  folder.write("c.csv", "cohesion_Pa,friction_angle_deg\n800,30\n");
-  for (const std::vector<std::string>& call : {std::vector<std::string>{"trace", "t.csv", "--html", "out"},
-                                               {"estimate", "t.csv", "--method", "wong-reece"},
-                                               {"estimate", "t.csv", "--method", "bevameter"},
-                                               {"assess", "t.csv", "--html", "out"},
-                                               {"assess", "t.csv", "--model", "sandy_loam"},
-                                               {"predict", "t.csv", "--model", "sandy_loam", "-o", "out"}}) {
-    const Ran ran = runTalus(call, folder.path());
+  folder.write("t.csv",
+               "load_N,slip,torque_Nm,sinkage_mm,wheel_radius_m,wheel_width_m\n80,0.2,2,12,0.1,0.1\n");
+  folder.write("g.csv",
+               "load_kg,slip,torque_Nm,sinkage_mm,wheel_radius_m,wheel_width_m\n80,0.2,2,12,0.1,0.1\n");
+  for (const std::vector<std::string>& call : {std::vector<std::string>{"trace", "FILE", "--html", "out"},
+                                               {"estimate", "FILE", "--method", "wong-reece"},
+                                               {"estimate", "FILE", "--method", "bevameter"},
+                                               {"assess", "FILE", "--html", "out"},
+                                               {"assess", "FILE", "--model", "sandy_loam"},
+                                               {"predict", "FILE", "--model", "sandy_loam", "-o", "out"}}) {
+    const auto of = [&](const std::string& file) {
+      std::vector<std::string> words = call;
+      words[1] = file;
+      return runTalus(words, folder.path());
+    };
+    EXPECT_THAT(of("t.csv").err,
+                testing::HasSubstr("t.csv: column sinkage_mm is read as sinkage_m, times 0.001\n"))
+        << call[0];
+    std::filesystem::remove(folder / "out");
+    const Ran ran = of("g.csv");
     EXPECT_EQ(ran.code, 2) << call[0];
-    EXPECT_THAT(ran.err,
-                testing::HasSubstr("t.csv:1: column sinkage_mm is in another unit than it is read in; write "
-                                   "column sinkage_m, in m (sinkage_mm times 0.001)"))
+    EXPECT_THAT(ran.err, testing::HasSubstr("g.csv:1: column load_kg is in another unit than it is read in"))
         << call[0];
     EXPECT_EQ(ran.out, "");
+    EXPECT_FALSE(std::filesystem::exists(folder / "out"));
   }
-  const Ran ran = runTalus({"wheel", "--cases", "c.csv", "-o", "out"}, folder.path());
-  EXPECT_EQ(ran.code, 2);
-  EXPECT_THAT(ran.err, testing::HasSubstr("c.csv:1: column friction_angle_deg"));
-  EXPECT_FALSE(std::filesystem::exists(folder / "out"));
+}
+
+TEST(BadInput, ColumnsOfTables) {
+  const Folder folder;
+  folder.write("t.csv", "Fz;slip_pct;T;z\n80;20;2;0,012\n");
+  folder.write("columns", "load_N=Fz\n\n# remark\nslip=slip_pct:percent\nload_N=T\n");
+  const auto line = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words{"assess", "t.csv"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Ran ran = runTalus(words, folder.path());
+    EXPECT_EQ(ran.code, 2) << ran.out;
+    return ran.err;
+  };
+  EXPECT_THAT(line({"--column", "load_N"}), testing::HasSubstr("'load_N' is not KNOWN=NAME[:UNIT]"));
+  EXPECT_THAT(line({"--column", "load=Fz"}), testing::HasSubstr("did you mean load_N?"));
+  EXPECT_THAT(line({"--column", "load_N=Fz", "--column", "load_N=T"}),
+              testing::HasSubstr("load_N is mapped twice"));
+  EXPECT_THAT(line({"--column", "load_N=Fz:deg"}), testing::HasSubstr("'deg' is no unit of load_N"));
+  EXPECT_THAT(line({"--columns", "columns"}), testing::HasSubstr("load_N is mapped twice"));
+  EXPECT_THAT(line({"--columns", "missing"}), testing::HasSubstr("missing: cannot be opened"));
+  EXPECT_THAT(line({"--radius", "0"}), testing::HasSubstr("--radius"));
+  EXPECT_THAT(line({}), testing::HasSubstr("no column load_N"));
 }
 
 TEST(BadInput, MapsOfBeliefs) {

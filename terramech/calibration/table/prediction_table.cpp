@@ -25,9 +25,9 @@ struct Rows {
   std::vector<CsvRow> rows;
 };
 
-Rows readRows(const std::filesystem::path& path, const std::stop_token& stop) {
-  CsvReader reader(path);
-  checkColumnUnits(reader.header(), knownTelemetryColumns(), path.string());
+Rows readRows(const TableFile& table, const std::stop_token& stop) {
+  CsvReader reader(table);
+  checkColumnUnits(reader.header(), knownTelemetryColumns(), table.path);
   Rows all{reader.header(), {}};
   for (CsvRow row; !stop.stop_requested() && reader.next(row);) {
     row.fields.resize(all.header.size());
@@ -115,10 +115,10 @@ void append(std::string& text, double value) {
 
 }  // namespace
 
-PredictionTable predictTable(const std::filesystem::path& path, const RefinedModel& model,
-                             const ModelScope& scope, const ProgressMonitor& watch) {
-  const Rows all = readRows(path, watch.stop);
-  const auto states = statesOf(conditionsOf(all, path.string()), model);
+PredictionTable predictTable(const TableFile& file, const RefinedModel& model, const ModelScope& scope,
+                             const ProgressMonitor& watch) {
+  const Rows all = readRows(file, watch.stop);
+  const auto states = statesOf(conditionsOf(all, file.path), model);
   PredictionTable table;
   for (std::size_t k = 0; k < all.header.size(); ++k) {
     if (isPrediction(all.header[k])) {

@@ -26,7 +26,7 @@ struct PredictionTable {
 /// the scope takes corrections back the predictions return to the base model's. What was measured (drawbar_pull_N, sinkage_m, torque_Nm,
 /// side_force_N) is copied, never used. Throws InputError when the file cannot be read or has no load_N, slip
 /// or wheel. Stopped by its watch it ends early, the text unfinished.
-PredictionTable predictTable(const std::filesystem::path& path, const RefinedModel& model,
-                             const ModelScope& scope = {}, const ProgressMonitor& watch = {});
+PredictionTable predictTable(const TableFile& file, const RefinedModel& model, const ModelScope& scope = {},
+                             const ProgressMonitor& watch = {});
 
 }  // namespace talus::terramech

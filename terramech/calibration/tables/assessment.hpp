@@ -14,7 +14,7 @@ namespace talus::terramech {
 
 /// How rows of a table are judged.
 struct AssessOptions {
-  std::string table;                     ///< path of the CSV
+  TableFile table;                       ///< the CSV
   std::string formula = "single-force";  ///< one of pullFormulas(), where there is no model
   std::string model;  ///< file of a base or refined model; empty: the pull follows from T, z and i as read
   std::string rover;  ///< library name or file: whose wheel, where the table has no wheel size; may be empty

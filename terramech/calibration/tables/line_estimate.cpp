@@ -204,6 +204,7 @@ SoilEstimate lineEstimate(const EstimateOptions& options, const ProgressMonitor&
   }
   SoilEstimate estimate;
   estimate.rejected = rows.rejected;
+  estimate.ignored = rows.ignored;
   estimate.rows_used = rows.samples.size();
   (options.recursive ? fitRecursively : fitTogether)(options, rows, priors, watch, estimate);
   return estimate;

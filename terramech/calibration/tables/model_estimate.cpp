@@ -118,7 +118,7 @@ void judgeFit(const EstimateOptions& options, const RefinedModel& model, const T
         fmt::format("no soil explains the rows (misfit {:.1f}, 1 expected): {} contradicts the other columns",
                     found.misfit, odd.column);
   if (!why.empty())
-    throw std::domain_error(fmt::format("{}: {}{}; {}", options.table, effects, why, remedyFor(odd)));
+    throw std::domain_error(fmt::format("{}: {}{}; {}", options.table.path, effects, why, remedyFor(odd)));
   estimate.warnings.push_back(fmt::format(
       "{}no soil explains the readings (misfit {:.1f}, 1 expected); trace these rows, or increase --noise",
       effects, found.misfit));
@@ -126,7 +126,7 @@ void judgeFit(const EstimateOptions& options, const RefinedModel& model, const T
 
 }  // namespace
 
-bool measuresSideForce(const std::string& table) {
+bool measuresSideForce(const TableFile& table) {
   const Telemetry rows = readTelemetry(table);
   const auto* angle = rows.find("slip_angle_rad");
   const auto* force = rows.find("side_force_N");
@@ -151,7 +151,7 @@ SoilEstimate modelEstimate(const EstimateOptions& options, const ProgressMonitor
       modelRows(readTelemetry(options.table, reading, watch), given);
   if (trial.rows() == 0)
     throw InputError(
-        {.where = options.table, .reason = "in every row the sinkage reaches the axle", .remedy = ""});
+        {.where = options.table.path, .reason = "in every row the sinkage reaches the axle", .remedy = ""});
   const ModelSoil found = soilUnder(model, trial, howOf(options));
   SoilEstimate estimate = soilOf(found);
   estimate.rejected = rejected;

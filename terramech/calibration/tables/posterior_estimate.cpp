@@ -111,6 +111,7 @@ SoilEstimate posteriorEstimate(const EstimateOptions& options, const ProgressMon
   const SoilMixture prior = priorOf(options, rows.wheel.width_m);
   SoilEstimate estimate;
   estimate.rejected = rows.rejected;
+  estimate.ignored = rows.ignored;
   estimate.rows_used = rows.samples.size();
   SoilFitOptions fit;
   fit.noise = ReadingErrors::relative(options.noise);
@@ -126,7 +127,7 @@ SoilEstimate posteriorEstimate(const EstimateOptions& options, const ProgressMon
       groups.empty() && !why.empty())
     throw std::domain_error(
         fmt::format("{}: {}; check unit, sign and sensor of torque_Nm and sinkage_m, or widen --prior",
-                    options.table, why));
+                    options.table.path, why));
   sayWhatIsDoubtful(rows, *estimate.posterior, groups, estimate.warnings);
   for (const SoilClass& soil : prior) estimate.class_names.push_back(soil.name);
   return estimate;

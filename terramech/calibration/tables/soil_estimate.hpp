@@ -19,7 +19,7 @@ namespace talus::terramech {
 ///   sojourner, iagnemma, linear-offset   straight lines in (sigma, tau) (line_estimate.hpp)
 ///   wong-reece      the posterior by the wheel's equilibrium (posterior_estimate.hpp, model_estimate.hpp)
 struct EstimateOptions {
-  std::string table;   ///< path of the CSV
+  TableFile table;     ///< the CSV
   std::string method;  ///< one of estimateMethods()
   std::string
       shear_modulus;  ///< K: a number [m], or one of modulusMethods(); empty: the file's column, else the prior's, else joint
@@ -63,6 +63,7 @@ struct SoilEstimate {
   std::vector<TrialSoil> soils;      ///< of bevameter: each soil of the table by its trials
   std::size_t rows_used = 0;
   std::vector<RejectedRow> rejected;
+  std::vector<std::string> ignored;        ///< the table's columns of numbers that the method does not read
   std::vector<std::string> unseen;         ///< parameters that the data do not show, with the reason
   std::vector<std::string> warnings;       ///< what the user should know of how it was fitted
   std::vector<std::string> effects;        ///< that acted, of --model

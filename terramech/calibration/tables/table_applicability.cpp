@@ -21,7 +21,7 @@ Trial evenRows(const Trial& trial) {
 
 }  // namespace
 
-Applicability tableApplicability(const std::string& table, const std::string& base, const std::string& rover,
+Applicability tableApplicability(const TableFile& table, const std::string& base, const std::string& rover,
                                  const ProgressMonitor& watch) {
   const ModelFile file = baseModel(base, rover);
   const Telemetry telemetry = readTelemetry(table, {});

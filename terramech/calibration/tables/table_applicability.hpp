@@ -11,7 +11,7 @@ namespace talus::terramech {
 /// the soil alone, and where that fails with the effects that tracing finds. Of at most 400 rows, evenly taken. `base`: a soil or
 /// model that is given, empty: the soil is fitted. Applies, too, where there is nothing to judge by: fewer than 20 rows,
 /// or no load, slip or wheel. Throws InputError for files that cannot be read.
-Applicability tableApplicability(const std::string& table, const std::string& base, const std::string& rover,
+Applicability tableApplicability(const TableFile& table, const std::string& base, const std::string& rover,
                                  const ProgressMonitor& watch = {});
 
 }  // namespace talus::terramech

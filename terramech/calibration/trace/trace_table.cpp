@@ -7,8 +7,8 @@
 
 namespace talus::terramech {
 
-Telemetry readTraceTable(const std::filesystem::path& path) {
-  Telemetry table = readTelemetry(path, {.required = {"load_N", "slip"}});
+Telemetry readTraceTable(const TableFile& file) {
+  Telemetry table = readTelemetry(file, {.required = {"load_N", "slip"}});
   leaveOutWithoutSlipAngle(table);
   return table;
 }

@@ -38,7 +38,7 @@ struct TableTrace {
 
 /// Reads a table for tracing: columns load_N and slip are required. Rows with a side force and no slip angle are left out
 /// and named in Telemetry::rejected. Throws InputError as readTelemetry(), and when no row is left.
-Telemetry readTraceTable(const std::filesystem::path& path);
+Telemetry readTraceTable(const TableFile& file);
 
 /// Traces the residuals of a base model on a table. A given soil without standard deviations gets default ones unless the table
 /// is a rover's own drive. Deterministic for a seed. A stopped watch ends the search early with what was found so far, without

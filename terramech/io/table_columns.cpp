@@ -1,0 +1,144 @@
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <talus/common/input_error.hpp>
+#include <talus/common/nearest_name.hpp>
+#include <talus/terramech/io/field_number.hpp>
+#include <talus/terramech/io/table_columns.hpp>
+#include <talus/terramech/io/unit.hpp>
+
+namespace talus::terramech {
+namespace {
+
+constexpr std::pair<std::string_view, double> kShares[] = {
+    {"percent", 0.01}, {"pct", 0.01}, {"%", 0.01}, {"permille", 0.001}};
+
+// Symbols of the field that stand for known columns.
+constexpr std::pair<std::string_view, const char*> kSymbols[] = {
+    {"Fz", "load_N"},       {"Fn", "load_N"},    {"Fx", "drawbar_pull_N"}, {"DP", "drawbar_pull_N"},
+    {"Fy", "side_force_N"}, {"Mx", "torque_Nm"}, {"My", "torque_Nm"},      {"Mt", "torque_Nm"}};
+
+// The unit at the end of a name, percent among them; empty where it has none.
+std::string suffixOf(const std::string& name) {
+  for (const auto& [share, factor] : kShares)
+    if (name.ends_with("_" + std::string(share))) return std::string(share);
+  return std::string(unitOf(name));
+}
+
+std::string stemOf(const std::string& name) {
+  const std::string unit = suffixOf(name);
+  return unit.empty() ? name : name.substr(0, name.size() - unit.size() - 1);
+}
+
+std::string shortest(double value) {
+  std::array<char, 32> digits{};
+  return {digits.data(), std::to_chars(digits.begin(), digits.end(), value).ptr};
+}
+
+// "1,5" is 1.5 where commas part no fields.
+void withPoint(std::string& field) {
+  const std::size_t comma = field.find(',');
+  if (comma == std::string::npos || field.find(',', comma + 1) != std::string::npos) return;
+  std::string pointed = field;
+  pointed[comma] = '.';
+  if (double value = 0.0; field.find('.') == std::string::npos && parseNumber(pointed, value))
+    field = pointed;
+}
+
+}  // namespace
+
+std::optional<double> columnFactor(const std::string& unit, const std::string& known) {
+  const std::string_view own = unitOf(known);
+  if (unit == own) return 1.0;
+  if (!own.empty()) return conversion(unit, own);
+  for (const auto& [share, factor] : kShares)
+    if (unit == share) return factor;
+  return std::nullopt;
+}
+
+TableColumns::TableColumns(std::vector<std::string> header, const TableFile& table, bool decimal_commas)
+    : header_(std::move(header)), own_(header_.size()), decimal_commas_(decimal_commas) {
+  for (const MappedColumn& mapped : table.columns) map(mapped, table);
+  if (table.note) {
+    convertUnits(table);
+    nameLookalikes(table);
+  }
+  for (const auto& [name, value] : table.constants) {
+    if (has(name))
+      throw InputError(
+          {table.path + ":1", "has column " + name + ", which is also given by an option", "remove one"});
+    header_.push_back(name);
+    constants_.push_back(shortest(value));
+  }
+}
+
+bool TableColumns::has(const std::string& name) const {
+  return std::ranges::find(header_, name) != header_.end();
+}
+
+void TableColumns::map(const MappedColumn& mapped, const TableFile& table) {
+  const std::string asked = fmt::format("--column {}={}", mapped.known, mapped.name);
+  const auto column = std::ranges::find(header_, mapped.name);
+  if (column == header_.end()) {
+    const std::string near = nearestName(mapped.name, header_);
+    throw InputError({table.path + ":1",
+                      fmt::format("no column {} ({}), or it is mapped twice", mapped.name, asked),
+                      near.empty() ? "name a column of its header" : "the nearest is '" + near + "'"});
+  }
+  if (mapped.name != mapped.known && has(mapped.known))
+    throw InputError(
+        {table.path + ":1", fmt::format("has column {} already ({})", mapped.known, asked), "remove one"});
+  const std::string suffix = suffixOf(mapped.name);
+  const std::string unit = !mapped.unit.empty() ? mapped.unit
+                           : columnFactor(suffix, mapped.known).has_value()
+                               ? suffix
+                               : std::string(unitOf(mapped.known));
+  const auto factor = columnFactor(unit, mapped.known);
+  if (!factor)
+    throw InputError({table.path + ":1", fmt::format("{}: '{}' is no unit of {}", asked, unit, mapped.known),
+                      "name a unit of its kind, such as mm, kN, deg, kmph or percent"});
+  *column = mapped.known;
+  if (*factor != 1.0) conversions_.push_back({static_cast<std::size_t>(column - header_.begin()), *factor});
+  if (table.note)
+    table.note(fmt::format("column {} is read as {}{}", mapped.name, mapped.known,
+                           *factor == 1.0 ? "" : fmt::format(", times {:g}", *factor)));
+}
+
+// `sinkage_mm`: the unit is stated, so that nothing is guessed.
+void TableColumns::convertUnits(const TableFile& table) {
+  std::vector<std::string> all = knownTelemetryColumns();
+  all.insert(all.end(), table.also.begin(), table.also.end());
+  for (const std::string& known : all) {
+    if (has(known) || stemOf(known).size() < 2) continue;  // z_mm may be anything
+    for (const std::string& name : std::vector<std::string>(header_)) {
+      if (name.empty() || has(known) || stemOf(name) != stemOf(known) || suffixOf(name).empty()) continue;
+      if (columnFactor(suffixOf(name), known)) map({.known = known, .name = name}, table);
+    }
+  }
+}
+
+void TableColumns::nameLookalikes(const TableFile& table) const {
+  for (const auto& [symbol, known] : kSymbols)
+    if (has(std::string(symbol)) && !has(known))
+      table.note(fmt::format(
+          "column {0} is kept as a column of your own; if it is {1}, pass --column {1}={0}", symbol, known));
+}
+
+void TableColumns::apply(std::vector<std::string>& fields, bool whole) const {
+  if (decimal_commas_)
+    for (std::string& field : fields) withPoint(field);
+  for (const Conversion& c : conversions_)
+    if (double value = 0.0; c.column < fields.size() && parseNumber(fields[c.column], value))
+      fields[c.column] = shortest(value * c.factor);
+  if (constants_.empty()) return;
+  if (whole) fields.resize(own_);
+  fields.insert(fields.end(), constants_.begin(), constants_.end());
+}
+
+}  // namespace talus::terramech
