@@ -42,10 +42,14 @@ void setMemoryBudget(std::uint64_t bytes) noexcept {
   budget_bytes = bytes;
 }
 
-void requireMemory(double bytes, const std::string& where) {
+double memoryBudget() {
   static const double half = halfOfTheFree();
   const std::uint64_t set = budget_bytes;
-  const double budget = set > 0 ? static_cast<double>(set) : half;
+  return set > 0 ? static_cast<double>(set) : half;
+}
+
+void requireMemory(double bytes, const std::string& where) {
+  const double budget = memoryBudget();
   // What small files take is not worth the question.
   constexpr double kSmall = 1e6;
   if (bytes < kSmall || bytes + inUse() <= budget) return;

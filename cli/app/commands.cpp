@@ -6,12 +6,14 @@ void addCommands(CLI::App& app, Context& context) {
   addAssess(app, context);
   addBench(app, context);
   addCostmap(app, context);
+  addDoctor(app, context);
   addDrive(app, context);
   addEstimate(app, context);
   addExplain(app, context);
   addGenerate(app, context);
   addHelp(app, context);
   addInfo(app, context);
+  addInit(app, context);
   addPlan(app, context);
   addPlugins(app, context);
   addPredict(app, context);

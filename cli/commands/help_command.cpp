@@ -1,11 +1,16 @@
 // talus help [TOPIC]: formats of files, or the help of a call.
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <talus/cli/app/command.hpp>
 #include <talus/cli/app/commands.hpp>
+#include <talus/cli/app/option_pages.hpp>
 #include <talus/cli/ground/file_formats.hpp>
+#include <talus/cli/ground/mission_text.hpp>
+#include <talus/common/constants.hpp>
 #include <talus/common/input_error.hpp>
 #include <talus/common/nearest_name.hpp>
+#include <talus/terramech/io/soil_library.hpp>
 
 namespace talus::cli {
 namespace {
@@ -15,15 +20,60 @@ struct HelpOptions {
   const CLI::App* command = nullptr;
 };
 
+struct Topic {
+  const char* name;
+  const char* about;
+  std::string (*text)(const CLI::App& app);
+};
+
+std::string librarySoilsText() {
+  std::string text = fmt::format("{:24} {:>8} {:>8} {:>6} {:>8}\n", "soil", "c kPa", "phi deg", "n", "K mm");
+  for (const std::string& name : terramech::librarySoils()) {
+    const terramech::Soil soil = terramech::loadSoil(name);
+    text += fmt::format("{:24} {:8.3g} {:8.3g} {:6.3g} {:8.3g}\n", name, 1e-3 * soil.cohesion_Pa,
+                        soil.friction_angle_rad / kDegree, soil.sinkage_exponent, 1e3 * soil.shear_modulus_m);
+  }
+  return text +
+         "\nKeys of a soil file: talus help formats. A wheel on one: talus wheel --soil NAME --rover NAME "
+         "--slip 0.3\n";
+}
+
+std::string libraryRoversText() {
+  std::string text =
+      fmt::format("{:24} {:>8} {:>8} {:>6} {:>14}\n", "rover", "mass kg", "g m/s2", "wheels", "wheel r, b m");
+  for (const std::string& name : terramech::libraryRovers()) {
+    const terramech::Rover rover = terramech::loadRover(name);
+    text +=
+        fmt::format("{:24} {:8.4g} {:8.3g} {:6} {:>14}\n", name, rover.mass_kg, rover.gravity_m_s2,
+                    rover.wheel_count, fmt::format("{:g}, {:g}", rover.wheel.radius_m, rover.wheel.width_m));
+  }
+  return text + "\nKeys of a rover file: talus help formats\n";
+}
+
+constexpr Topic kTopics[] = {
+    {"formats", "keys and columns of files", [](const CLI::App&) { return formatsText(); }},
+    {"soils", "soils of the library", [](const CLI::App&) { return librarySoilsText(); }},
+    {"rovers", "rovers of the library", [](const CLI::App&) { return libraryRoversText(); }},
+    {"missions", "a mission file with every key", [](const CLI::App&) { return missionText({}); }},
+    {"man", "manual page, for man", manualPage},
+    {"bash-completion", "script for bash", bashCompletion},
+};
+
 void bind(CLI::App& command, HelpOptions& options) {
-  command.add_option("TOPIC", options.topic, "formats: keys and columns of files; or the name of a call");
+  std::string topics;
+  for (const Topic& topic : kTopics) topics += fmt::format("{} ({}), ", topic.name, topic.about);
+  command.add_option("TOPIC", options.topic, topics + "or the name of a call");
   options.command = &command;
 }
 
 std::string helpOf(const std::string& topic, const CLI::App& app) {
   // app.help() is that of the call in hand.
   if (topic.empty()) return app.get_formatter()->make_help(&app, "talus", CLI::AppFormatMode::Normal);
-  std::vector<std::string> known{"formats"};
+  std::vector<std::string> known;
+  for (const Topic& one : kTopics) {
+    if (topic == one.name) return one.text(app);
+    known.emplace_back(one.name);
+  }
   for (const CLI::App* call : app.get_subcommands({})) {
     if (call->get_name() == topic) return call->help("talus");
     known.push_back(call->get_name());
@@ -42,12 +92,10 @@ nlohmann::ordered_json formatsJson() {
 }
 
 int run(const HelpOptions& options, Context& context) {
-  if (options.topic != "formats")
-    print(helpOf(options.topic, *options.command->get_parent()));
-  else if (context.json)
+  if (options.topic == "formats" && context.json)
     printJson(formatsJson());
   else
-    print(formatsText());
+    print(helpOf(options.topic, *options.command->get_parent()));
   return Exit::kDone;
 }
 
@@ -57,8 +105,8 @@ void addHelp(CLI::App& app, Context& context) {
   addCommand<HelpOptions>(app, context,
                           {.name = "help",
                            .group = Group::kHelp,
-                           .description = "print the keys and columns of files, or the help of a call",
-                           .examples = "  talus help formats\n  talus help plan\n"},
+                           .description = "print keys of files, soils, rovers, or the help of a call",
+                           .examples = "  talus help formats\n  talus help soils\n  talus help plan\n"},
                           bind, run);
 }
 

@@ -305,6 +305,11 @@ std::vector<int> weakestLast(const std::vector<costmap::GroundClass>& classes,
 
 }  // namespace
 
+std::pair<std::string, std::string> assumedGround(const maps::ElevationMap& map) {
+  const Assumed& one = assumedOn(map);
+  return {one.soil, one.rover};
+}
+
 void addGroundOptions(CLI::App& command, GroundOptions& options) {
   addMapOptions(command, options.dem);
   command.add_option("--map", options.map_file, "traversability map from `talus costmap` or `talus update`")

@@ -42,6 +42,9 @@ struct Ground {
   double build_s = 0.0;
 };
 
+/// Soil and rover that are assumed on a map where none is named, by its body.
+std::pair<std::string, std::string> assumedGround(const maps::ElevationMap& map);
+
 /// Reads and builds. A DEM that is itself a map made by `talus costmap` is taken as --map. @throws InputError
 Ground readGround(const GroundOptions& options, const Context& context);
 

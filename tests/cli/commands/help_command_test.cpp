@@ -1,6 +1,9 @@
+#include <cstdlib>
+
 #include <nlohmann/json.hpp>
 
 #include <talus/cli/ground/file_formats.hpp>
+#include <talus/terramech/io/soil_library.hpp>
 
 #include "run_program.hpp"
 
@@ -19,6 +22,33 @@ TEST(HelpCommand, FormatsAreTheKeysOfTheReaders) {
   const auto formats = nlohmann::json::parse(json.out)["formats"];
   for (const FileFormat& format : fileFormats())
     EXPECT_EQ(formats[format.title].size(), format.keys.size()) << format.title;
+}
+
+TEST(HelpCommand, SoilsAndRoversAreThoseOfTheLibrary) {
+  const std::string soils = runTalus({"help", "soils"}).out, rovers = runTalus({"help", "rovers"}).out;
+  for (const std::string& name : terramech::librarySoils())
+    EXPECT_THAT(soils, HasSubstr("\n" + name + " ")) << name;
+  for (const std::string& name : terramech::libraryRovers())
+    EXPECT_THAT(rovers, HasSubstr("\n" + name + " ")) << name;
+}
+
+// Property: what the option tree has is in both, and bash takes the script.
+TEST(HelpCommand, ManualAndCompletionHaveEveryCall) {
+  const Folder folder;
+  const std::string manual = runTalus({"help", "man"}).out,
+                    script = runTalus({"help", "bash-completion"}).out;
+  for (const char* call : {"plan", "doctor", "wheel", "help"}) {
+    EXPECT_THAT(manual, HasSubstr(std::string("\n.SS talus ") + call + "\n")) << call;
+    EXPECT_THAT(script, HasSubstr(std::string("\n    ") + call + ") options='--")) << call;
+  }
+  EXPECT_THAT(manual, HasSubstr("\\fB\\-\\-keep\\-out\\fR \\fIFILE\\fR\n"));
+  folder.write("talus.bash", script +
+                                 "COMP_WORDS=(talus estimate t.csv --method soj) COMP_CWORD=4\n_talus\n"
+                                 "echo \"${COMPREPLY[*]}\"\nCOMP_WORDS=(talus pl) COMP_CWORD=1\n_talus\n"
+                                 "echo \"${COMPREPLY[*]}\"\n");
+  const std::string command = "bash " + (folder / "talus.bash") + " > " + (folder / "out");
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  EXPECT_EQ(fileContent(folder / "out"), "sojourner\nplan plugins\n");
 }
 
 TEST(HelpCommand, ACallsHelpIsThatOfTheCallAndAnUnknownTopicOneLine) {

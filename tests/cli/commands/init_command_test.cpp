@@ -1,0 +1,40 @@
+#include <nlohmann/json.hpp>
+
+#include <talus/cli/ground/mission.hpp>
+#include <talus/cli/ground/mission_text.hpp>
+
+#include "bad_input.hpp"
+#include "run_program.hpp"
+
+namespace talus::cli {
+namespace init_command_test {
+
+using testing::HasSubstr;
+
+TEST(InitCommand, ItsMissionIsPlannedAsItStands) {
+  const Folder folder;
+  folder.write("flat ground.asc", asciiGrid(20, 20, [](int column, int) { return 0.01 * column; }));
+  std::filesystem::create_directory(folder / "m");
+  const Ran made =
+      runTalus({"init", "flat ground.asc", "--resolution", "1", "-o", "m/site.yaml"}, folder.path());
+  ASSERT_EQ(made.code, 0) << made.err;
+  const Ran planned = runTalus({"plan", "m/site.yaml", "--quiet"}, folder.path());
+  EXPECT_EQ(planned.code, 0) << planned.err;
+  EXPECT_THAT(fileContent(folder / "m/route.geojson"), HasSubstr("\"FeatureCollection\""));
+  const Ran again =
+      runTalus({"init", "flat ground.asc", "--resolution", "1", "-o", "m/site.yaml"}, folder.path());
+  EXPECT_EQ(again.code, 2);
+  EXPECT_THAT(again.err, HasSubstr("m/site.yaml: exists; name another file with -o, or pass --force"));
+}
+
+// Property: every key of the reader stands in the text, once.
+TEST(InitCommand, HasEveryKeyOfAMission) {
+  const std::string text = missionText({});
+  for (const auto keys : {missionKeys(), missionMapKeys(), thresholdKeys()})
+    for (const terramech::FileKey& key : keys)
+      EXPECT_THAT(text, HasSubstr(std::string(key.name) + ":")) << key.name;
+  EXPECT_EQ(runTalus({"help", "missions"}).out, text);
+}
+
+}  // namespace init_command_test
+}  // namespace talus::cli
