@@ -128,7 +128,7 @@ void addDoctor(CLI::App& app, Context& context) {
       {.name = "doctor",
        .group = Group::kHelp,
        .description = "print the values in force, drivers, planners and what is missing",
-       .examples = "  talus doctor\n  talus --threads 1 doctor --json\n"},
+       .examples = "  talus doctor\n  talus doctor --json\n"},
       bind, run);
 }
 
