@@ -9,6 +9,7 @@
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/draw/picture.hpp>
+#include <talus/cli/ground/category_files.hpp>
 #include <talus/cli/ground/ground_options.hpp>
 #include <talus/cli/ground/site_layers.hpp>
 #include <talus/costmap/map/map_file.hpp>
@@ -22,6 +23,8 @@ struct CostmapOptions {
   GroundOptions ground;
   std::string output;
   std::string geotiff;
+  std::string categories;
+  std::string nav2;
   std::string png;
   std::string octovis;
 };
@@ -30,6 +33,13 @@ void bind(CLI::App& command, CostmapOptions& options) {
   addGroundOptions(command, options.ground);
   addOutput(command, "-o,--output", options.output, "traversability map to write")->type_name("MAP.ot");
   addOutput(command, "--geotiff", options.geotiff, "GeoTIFF of layers to write")->type_name("FILE.tif");
+  addOutput(command, "--categories", options.categories,
+            "GeoTIFF of the categories to write, with names, colours and overviews")
+      ->type_name("FILE.tif");
+  addOutput(
+      command, "--nav2", options.nav2,
+      "map of ROS' map_server to write, and FILE.pgm beside it: free where safe, or marginal and allowed")
+      ->type_name("FILE.yaml");
   addOutput(command, "--png", options.png, "picture to write")->type_name("FILE.png");
   addOutput(command, "--octovis", options.octovis, "ColorOcTree to write, for display in octovis")
       ->type_name("FILE.ot");
@@ -56,6 +66,8 @@ void writeFiles(const CostmapOptions& options, const costmap::TraversabilityMap&
     maps::writeGeoTiff({.path = options.geotiff, .georeference = georeference ? &*georeference : nullptr},
                        siteLayers(map, context.workers()));
   }
+  if (!options.categories.empty()) writeCategories(map, options.categories);
+  if (!options.nav2.empty()) writeNav2Map(map, options.nav2);
   if (!options.png.empty()) savePicture(options.png, sceneOf(map, {.title = map.elevation().source}));
   if (!options.octovis.empty()) writeOctovis(map, options.octovis);
 }
@@ -88,6 +100,8 @@ nlohmann::ordered_json costmapJson(const Ground& site, const costmap::CategoryCo
 }
 
 int run(const CostmapOptions& options, Context& context) {
+  if (!options.nav2.empty() && !context.force)
+    checkOutput(nav2Picture(options.nav2), {options.ground.dem.path});
   const Ground site = readGround(options.ground, context);
   if (context.stop.stop_requested()) return Exit::kCancelled;
   const costmap::CategoryCounts counts = site.map.costs().countCategories();

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -67,6 +68,27 @@ void finish(Dataset dataset, OutputFile& file, const std::string& path, const Gd
   file.commit();
 }
 
+void describe(GDALRasterBand& band, const std::vector<NamedClass>& classes) {
+  GDALColorTable colours;
+  for (std::size_t i = 0; i < classes.size(); ++i) {
+    const auto& [red, green, blue] = classes[i].colour;
+    const GDALColorEntry entry{red, green, blue, 255};
+    colours.SetColorEntry(static_cast<int>(i), &entry);
+    band.SetMetadataItem(("CLASS_" + std::to_string(i)).c_str(), classes[i].name.c_str());
+  }
+  band.SetColorTable(&colours);
+}
+
+// Halves until the whole fits a screen.
+bool addOverviews(GDALDataset& file, const Grid& grid) {
+  constexpr int kScreen = 512;
+  std::vector<int> levels;
+  for (int level = 2; std::max(grid.width, grid.height) * 2 > kScreen * level; level *= 2)
+    levels.push_back(level);
+  return levels.empty() || file.BuildOverviews("MODE", static_cast<int>(levels.size()), levels.data(), 0,
+                                               nullptr, nullptr, nullptr) == CE_None;
+}
+
 void checkGrids(const std::vector<Layer>& layers) {
   if (layers.empty()) throw std::invalid_argument("GeoTIFF: no layer");
   for (const Layer& layer : layers)
@@ -95,7 +117,7 @@ void writeGeoTiff(const GeoTiff& file, const std::vector<Layer>& layers) {
 }
 
 void writeGeoTiff(const GeoTiff& file, const std::string& name, const Raster<std::uint8_t>& values,
-                  std::optional<std::uint8_t> nodata) {
+                  std::optional<std::uint8_t> nodata, const std::vector<NamedClass>& classes) {
   if (values.empty()) throw std::invalid_argument("GeoTIFF: layer '" + name + "' is empty");
   const GdalErrors errors;
   OutputFile output(file.path);
@@ -105,7 +127,9 @@ void writeGeoTiff(const GeoTiff& file, const std::string& name, const Raster<std
   GDALRasterBand& band = *dataset->GetRasterBand(1);
   band.SetDescription(name.c_str());
   if (nodata) band.SetNoDataValue(*nodata);
+  if (!classes.empty()) describe(band, classes);
   if (writeBand(band, values, GDT_Byte) != CE_None) output.fail(errors.last());
+  if (!classes.empty() && !addOverviews(*dataset, values.grid())) output.fail(errors.last());
   finish(std::move(dataset), output, file.path, errors);
 }
 

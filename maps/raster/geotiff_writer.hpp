@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -27,8 +28,15 @@ struct GeoTiff {
 /// @throws InputError when it cannot be written, std::invalid_argument when grids differ or none is given
 void writeGeoTiff(const GeoTiff& file, const std::vector<Layer>& layers);
 
-/// The same for whole numbers (classes, masks) in one band; `nodata` cells are marked.
+/// A class of a raster of whole numbers, as programs list and draw it.
+struct NamedClass {
+  std::string name{};
+  std::array<std::uint8_t, 3> colour{};  ///< red, green, blue
+};
+
+/// The same for whole numbers (classes, masks) in one band; `nodata` cells are marked. With `classes`, those of 0, 1 ... have a
+/// colour table and names (items CLASS_0 ... of the band), and the file has overviews, each cell the most frequent class.
 void writeGeoTiff(const GeoTiff& file, const std::string& name, const Raster<std::uint8_t>& values,
-                  std::optional<std::uint8_t> nodata);
+                  std::optional<std::uint8_t> nodata, const std::vector<NamedClass>& classes = {});
 
 }  // namespace talus::maps

@@ -1,0 +1,73 @@
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <talus/cli/draw/colour.hpp>
+#include <talus/cli/ground/category_files.hpp>
+#include <talus/common/output_file.hpp>
+#include <talus/maps/raster/geotiff_writer.hpp>
+
+namespace talus::cli {
+namespace {
+
+using terramech::Category;
+
+constexpr std::array kCategories{Category::Safe, Category::Marginal, Category::Dangerous, Category::Unknown};
+
+maps::Raster<std::uint8_t> categoriesOf(const costmap::TraversabilityMap& map) {
+  maps::Raster<std::uint8_t> categories(map.grid());
+  for (int row = 0; row < map.grid().height; ++row)
+    for (int column = 0; column < map.grid().width; ++column)
+      categories[{column, row}] = static_cast<std::uint8_t>(map.belief({column, row}).category);
+  return categories;
+}
+
+std::uint8_t byteOf(double part) {
+  return static_cast<std::uint8_t>(std::lround(255.0 * part));
+}
+
+// Grey of map_server's trinary mode: free above 0.9, occupied below 0.35.
+char greyOf(Category category, bool allow_marginal) {
+  constexpr char kFree = '\xFE', kOccupied = '\x00', kUnknown = '\x80';
+  if (category == Category::Safe || (category == Category::Marginal && allow_marginal)) return kFree;
+  return category == Category::Unknown ? kUnknown : kOccupied;
+}
+
+}  // namespace
+
+void writeCategories(const costmap::TraversabilityMap& map, const std::string& path) {
+  std::vector<maps::NamedClass> classes;
+  for (const Category category : kCategories) {
+    const Colour colour = colourOf(category);
+    classes.push_back({.name = terramech::name(category),
+                       .colour = {byteOf(colour.red), byteOf(colour.green), byteOf(colour.blue)}});
+  }
+  const auto& georeference = map.elevation().georeference;
+  maps::writeGeoTiff({.path = path, .georeference = georeference ? &*georeference : nullptr}, "category",
+                     categoriesOf(map), std::nullopt, classes);
+}
+
+std::filesystem::path nav2Picture(const std::filesystem::path& yaml) {
+  return std::filesystem::path(yaml).replace_extension(".pgm");
+}
+
+void writeNav2Map(const costmap::TraversabilityMap& map, const std::string& yaml) {
+  const maps::Grid& grid = map.grid();
+  const maps::Raster<std::uint8_t> categories = categoriesOf(map);
+  const bool allow_marginal = map.model().policy().allow_marginal;
+  std::string picture = fmt::format("P5\n{} {}\n255\n", grid.width, grid.height);
+  for (int row = grid.height - 1; row >= 0; --row)
+    for (int column = 0; column < grid.width; ++column)
+      picture += greyOf(static_cast<Category>(categories[{column, row}]), allow_marginal);
+  writeFile(nav2Picture(yaml), picture);
+  writeFile(yaml, fmt::format("image: {}\nresolution: {:.17g}\norigin: [{:.17g}, {:.17g}, 0.0]\nnegate: 0\n"
+                              "occupied_thresh: 0.65\nfree_thresh: 0.1\nmode: trinary\n",
+                              nlohmann::json(nav2Picture(yaml).filename().string()).dump(), grid.resolution_m,
+                              grid.south_west.x_m, grid.south_west.y_m));
+}
+
+}  // namespace talus::cli

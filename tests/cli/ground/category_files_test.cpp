@@ -1,0 +1,61 @@
+#include <gdal_priv.h>
+#include <yaml-cpp/yaml.h>
+
+#include <talus/maps/raster/gdal_dataset.hpp>
+
+#include "bad_input.hpp"
+#include "run_program.hpp"
+
+namespace talus::cli {
+namespace category_files_test {
+
+constexpr int kWidth = 700, kHeight = 600;
+
+// Flat, with a wall and a hole.
+std::string site() {
+  return asciiGrid(kWidth, kHeight, [](int column, int row) {
+    return column < 200 && row < 150 ? -9999.0 : column == 300 ? 9.0 : 0.0;
+  });
+}
+
+// Property: both files have the category that explain gives, at each of three places.
+TEST(CategoryFiles, ColoursNamesOverviewsAndNav2) {
+  const Folder folder;
+  folder.write("site.asc", site());
+  const Ran ran = runTalus({"costmap", "site.asc", "--resolution", "1", "--soil", "sandy_loam", "--rover",
+                            "fido", "--categories", "c.tif", "--nav2", "n.yaml", "--quiet"},
+                           folder.path());
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_EQ(folder.names(), (std::vector<std::string>{"c.tif", "n.pgm", "n.yaml", "site.asc"}));
+  const maps::Dataset file = maps::openRaster(folder / "c.tif");
+  GDALRasterBand& band = *file->GetRasterBand(1);
+  EXPECT_STREQ(band.GetMetadataItem("CLASS_2"), "dangerous");
+  ASSERT_NE(band.GetColorTable(), nullptr);
+  EXPECT_GT(band.GetColorTable()->GetColorEntry(0)->c2, band.GetColorTable()->GetColorEntry(0)->c1)
+      << "green";
+  EXPECT_EQ(band.GetOverviewCount(), 1);
+  const std::string picture = fileContent(folder / "n.pgm");
+  const std::string head = "P5\n700 600\n255\n";
+  ASSERT_EQ(picture.size(), head.size() + kWidth * kHeight);
+  EXPECT_TRUE(picture.starts_with(head));
+  for (const auto& [column, from_north, category, grey] :
+       {std::tuple{600, 100, 0, 0xFE}, {300, 300, 2, 0x00}, {50, kHeight - 50, 3, 0x80}}) {
+    std::uint8_t value = 99;
+    ASSERT_EQ(band.RasterIO(GF_Read, column, from_north, 1, 1, &value, 1, 1, GDT_Byte, 0, 0, nullptr),
+              CE_None);
+    EXPECT_EQ(value, category) << column;
+    const auto at = head.size() + static_cast<std::size_t>(from_north * kWidth + column);
+    EXPECT_EQ(static_cast<unsigned char>(picture[at]), grey) << column;
+  }
+  const YAML::Node yaml = YAML::LoadFile(folder / "n.yaml");
+  EXPECT_EQ(yaml["image"].as<std::string>(), "n.pgm");
+  EXPECT_EQ(yaml["resolution"].as<double>(), 1.0);
+  // Closed form: of map_server's trinary mode; nothing but free cells is free.
+  const double free = yaml["free_thresh"].as<double>(), occupied = yaml["occupied_thresh"].as<double>();
+  EXPECT_LT((255 - 0xFE) / 255.0, free);
+  EXPECT_GT((255 - 0x80) / 255.0, free);
+  EXPECT_LT((255 - 0x80) / 255.0, occupied);
+}
+
+}  // namespace category_files_test
+}  // namespace talus::cli
