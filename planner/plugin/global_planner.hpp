@@ -74,7 +74,7 @@ struct PlanRequest {
   std::shared_ptr<const planner::Chassis> chassis{};
   /// Why cells are refused whole, to name what closes a way: of the map that is planned on, TraversabilityMap::surface().hazards().
   planner::HazardsOf hazards{};
-  bool prove = true;  ///< also work out the best lower bound, and look for other corridors
+  bool prove = false;  ///< also work out the best lower bound and look for other corridors: not for a loop
   std::optional<RiskLimit> risk_limit{};  ///< none: risk counts by its price alone
   ProgressMonitor watch{};  ///< progress, and the cancel check: request a stop and plan() ends Cancelled
 };

@@ -121,6 +121,7 @@ PlanRequest requestOf(const Problem& problem, const ProgressMonitor& watch) {
                       .via = problem.via,
                       .start_heading_rad = problem.start_heading_rad,
                       .goal_heading_rad = problem.goal_heading_rad,
+                      .prove = problem.prove,
                       .watch = watch};
   if (problem.kinematics.turning_radius_m > 0.0 || !problem.kinematics.may_reverse)
     request.kinematics = problem.kinematics;

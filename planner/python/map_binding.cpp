@@ -105,6 +105,7 @@ struct Asked {
   std::optional<double> start_heading_rad, goal_heading_rad, max_risk, time_limit_s;
   std::vector<Pair> via;
   double tolerance_m;
+  bool prove;
 };
 
 PlanRequest requestOf(const Pair& start, const Pair& goal, const Asked& asked) {
@@ -112,7 +113,8 @@ PlanRequest requestOf(const Pair& start, const Pair& goal, const Asked& asked) {
                       .goal = {goal.first, goal.second},
                       .tolerance_m = asked.tolerance_m,
                       .start_heading_rad = asked.start_heading_rad,
-                      .goal_heading_rad = asked.goal_heading_rad};
+                      .goal_heading_rad = asked.goal_heading_rad,
+                      .prove = asked.prove};
   for (const auto& [x, y] : asked.via) request.via.push_back({x, y});
   if (asked.max_risk) request.risk_limit = RiskLimit{.immobilisation = *asked.max_risk};
   return request;
@@ -176,22 +178,23 @@ void addPlan(py::class_<PythonMap>& map) {
       [](PythonMap& m, const Pair& start, const Pair& goal, const std::string& planner, double tolerance_m,
          const std::vector<Pair>& via, std::optional<double> start_heading_rad,
          std::optional<double> goal_heading_rad, std::optional<double> max_risk,
-         std::optional<double> time_limit_s, std::uint64_t seed, int threads, const py::object& progress) {
+         std::optional<double> time_limit_s, bool prove, std::uint64_t seed, int threads,
+         const py::object& progress) {
         PlannerSettings settings{.planner = planner, .seed = seed, .threads = threads};
         if (time_limit_s) settings.time_limit_s = *time_limit_s;
         return m.plan(
             settings,
             requestOf(start, goal,
-                      {start_heading_rad, goal_heading_rad, max_risk, time_limit_s, via, tolerance_m}),
+                      {start_heading_rad, goal_heading_rad, max_risk, time_limit_s, via, tolerance_m, prove}),
             progress);
       },
       "A route over all that is known now; the GIL is released, Ctrl-C ends it. progress: called with 0 "
-      "to 1.",
+      "to 1. prove: also the best lower bound and other corridors, which takes longer.",
       py::arg("start"), py::arg("goal"), py::kw_only(), py::arg("planner") = "", py::arg("tolerance_m") = 0.0,
       py::arg("via") = std::vector<Pair>{}, py::arg("start_heading_rad") = py::none(),
       py::arg("goal_heading_rad") = py::none(), py::arg("max_risk") = py::none(),
-      py::arg("time_limit_s") = py::none(), py::arg("seed") = 1, py::arg("threads") = 1,
-      py::arg("progress") = py::none());
+      py::arg("time_limit_s") = py::none(), py::arg("prove") = false, py::arg("seed") = 1,
+      py::arg("threads") = 1, py::arg("progress") = py::none());
 }
 
 void addHeights(py::module_& module) {

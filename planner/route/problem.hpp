@@ -26,8 +26,8 @@ struct Problem {
   double time_limit_s = std::numeric_limits<double>::infinity();  ///< > 0
   std::uint64_t seed = 1;                                         ///< same seed, same route
   int threads = 1;                                                ///< >= 1; the answer does not depend on it
-  /// Also work out the best lower bound, for about the time of a field; else a simple one.
-  bool prove = true;
+  /// Also work out the best lower bound and look for other corridors, for some times the time of a field; else a simple bound.
+  bool prove = false;
   /// Why cells are refused whole, to name what closes a way; none: all of it counts as hazards. Planned only as long as it lives.
   HazardsOf hazards{};
   bool whole_field = false;  ///< settle the whole map even where it is large (NamedPlanner)

@@ -178,6 +178,7 @@ class Map:
         goal_heading_rad: Optional[float] = None,
         max_risk: Optional[float] = None,
         time_limit_s: Optional[float] = None,
+        prove: bool = False,
         seed: int = 1,
         threads: int = 1,
         progress: _Progress = None,
