@@ -1,9 +1,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <unordered_set>
 
+#include <talus/common/constants.hpp>
 #include <talus/planner/bound/admissible_edges.hpp>
+#include <talus/planner/bound/cheapest_metre.hpp>
 #include <talus/planner/bound/lower_bound.hpp>
+#include <talus/planner/bound/sub_solution_check.hpp>
 
 namespace talus::planner {
 namespace {
@@ -22,6 +26,44 @@ std::vector<maps::Cell> cornersWithin(const maps::Grid& grid, maps::Point place,
   return found;
 }
 
+// The least that the way costs at limits that hold in all cells of the map: those of a plane, on a plane, where a
+// function that
+// falls evenly is the best. No more is looked at once it is below `enough_J`.
+double planeBound_J(const costmap::CostGrid& map, const Segment& places, double tolerance_m,
+                    double enough_J) {
+  constexpr int kHeadings = HeadingLimits::kHeadings;
+  const double length_m = std::max(0.0, distance_m(places.from, places.to) - tolerance_m);
+  const costmap::Direction way = directionOf(places);
+  HeadingLimits of(map.cost());
+  HeadingLimits::Limits limits, least;
+  least.fill(std::numeric_limits<float>::infinity());
+  // The way's price between two headings; infinite for those that do not enclose it.
+  const auto price = [&](int i, int j) {
+    const costmap::Direction a = HeadingLimits::heading(i), b = HeadingLimits::heading(j);
+    const double det = a.x * b.y - a.y * b.x, p = way.x * b.y - way.y * b.x, q = a.x * way.y - a.y * way.x;
+    if (!(det > 1e-9) || p < 0.0 || q < 0.0) return kInfinity;
+    return (p * static_cast<double>(least[static_cast<std::size_t>(i)]) +
+            q * static_cast<double>(least[static_cast<std::size_t>(j)])) /
+           det;
+  };
+  const auto over = [&] {
+    double all = kInfinity;
+    for (int i = 0; i < kHeadings; ++i)
+      for (int j = 0; j < kHeadings; ++j) all = std::min(all, price(i, j));
+    return all;
+  };
+  std::unordered_set<std::uint32_t> seen;
+  for (int row = 0; row < map.grid().height; ++row)
+    for (int column = 0; column < map.grid().width; ++column) {
+      const costmap::CellCode code = map.at({column, row});
+      if (!seen.insert(code.bits()).second || !of.of(code, limits)) continue;
+      for (std::size_t k = 0; k < limits.size(); ++k) least[k] = std::min(least[k], limits[k]);
+      if (!(over() * length_m > enough_J)) return 0.0;
+    }
+  const double metre_J = over();
+  return std::isfinite(metre_J) ? metre_J * length_m : 0.0;
+}
+
 // The corners of a place's cell, of both its cells where it lies on an edge, are no farther away.
 constexpr double kSquare = 1.001;
 
@@ -29,15 +71,29 @@ constexpr double kSquare = 1.001;
 
 double LowerBound::operator()(const std::shared_ptr<const costmap::CostGrid>& map, const Segment& places,
                               double goal_tolerance_m, const StopCheck& stop, double known_J) {
-  const maps::Grid& grid = map->grid();
   const double straight_J = straightBoundOver_J(*map, places, goal_tolerance_m, known_J, stop);
   if (straight_J >= (1.0 - kEven) * known_J) return straight_J;
+  double bound_J = 0.0;
+  if (map->grid().size() > kSmall) {
+    bound_J = overEdges_J(map, places, goal_tolerance_m, stop);
+  } else if (const double cheapest_J = cheapestMetre_J(*map); cheapest_J > 0.0) {
+    const SubSolution::Parts parts{map, places, goal_tolerance_m, known_J, cheapest_J};
+    bound_J = provenBy(SubSolution(parts, stop), parts).bound_J;
+    bound_J = std::max(bound_J, planeBound_J(*map, places, goal_tolerance_m, std::max(bound_J, straight_J)));
+  }
+  return std::min(known_J, std::max(bound_J, straight_J));
+}
+
+// 0 when stopped, or where some ground costs nothing.
+double LowerBound::overEdges_J(const std::shared_ptr<const costmap::CostGrid>& map, const Segment& places,
+                               double goal_tolerance_m, const StopCheck& stop) {
+  const maps::Grid& grid = map->grid();
   if (map != map_ || !edges_) {
     field_.reset();
     map_ = map;
     edges_ = admissibleEdges(map, stop);
   }
-  if (!edges_) return straight_J;
+  if (!edges_) return 0.0;
   if (!field_ || !(goal_ == places.to) || tolerance_m_ != goal_tolerance_m) {
     std::vector<FieldGoal> goals;
     for (const maps::Cell corner :
@@ -49,10 +105,10 @@ double LowerBound::operator()(const std::shared_ptr<const costmap::CostGrid>& ma
   }
   double least_J = std::numeric_limits<double>::infinity();
   for (const maps::Cell corner : cornersWithin(grid, places.from, kSquare)) {
-    if (!field_->settle(corner, stop)) return straight_J;
+    if (!field_->settle(corner, stop)) return 0.0;
     least_J = std::min(least_J, field_->cost_J(corner).value_or(least_J));
   }
-  return std::isfinite(least_J) ? std::min(known_J, std::max(least_J, straight_J)) : straight_J;
+  return std::isfinite(least_J) ? least_J : 0.0;
 }
 
 }  // namespace talus::planner

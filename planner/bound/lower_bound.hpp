@@ -10,20 +10,27 @@
 
 namespace talus::planner {
 
-/// What no route to a goal costs less than, whatever its shape and headings: the field over admissibleEdges(),
-/// or straightBoundOver_J() where that is higher. Kept for a map and a goal, so that another start is answered at
-/// once.
+/// What no route to a goal costs less than, whatever its shape and headings: what a SubSolution proves on maps of up
+/// to
+/// kSmall cells, the field over admissibleEdges() on larger ones, kept for a map and a goal, or
+/// straightBoundOver_J() where
+/// that is higher.
 class LowerBound {
  public:
-  /// Joules, >= 0 and no more than the cost of a known route; the straight bound alone when stopped, or where it shows
+  /// Joules, >= 0 and no more than the cost of a known route; the straight bound alone when stopped, or where it
+  /// shows
   /// that the known route is the best within kEven.
   double operator()(const std::shared_ptr<const costmap::CostGrid>& map, const Segment& places,
                     double goal_tolerance_m, const StopCheck& stop = {},
                     double known_J = std::numeric_limits<double>::infinity());
 
   static constexpr double kEven = 1e-4;
+  static constexpr std::size_t kSmall = 250'000;  ///< cells: some 15 microseconds each
 
  private:
+  double overEdges_J(const std::shared_ptr<const costmap::CostGrid>& map, const Segment& places,
+                     double goal_tolerance_m, const StopCheck& stop);
+
   std::shared_ptr<const costmap::CostGrid> map_;
   std::shared_ptr<const EdgeLayer> edges_;
   std::optional<CostToGo> field_;

@@ -23,6 +23,8 @@ class BucketQueue {
   /// The bucket whose turn it is.
   std::uint64_t current() const noexcept { return current_; }
 
+  std::uint64_t queued() const noexcept { return queued_; }
+
   void startAt(std::uint64_t key) noexcept { current_ = bucketOf(key); }
 
   void push(std::uint64_t key, std::uint32_t index) {

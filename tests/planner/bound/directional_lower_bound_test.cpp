@@ -4,29 +4,16 @@
 #include <talus/planner/bound/directional_lower_bound.hpp>
 
 #include "drawn_map.hpp"
+#include "jagged_cost.hpp"
 
 namespace talus::planner {
 namespace directional_lower_bound_test {
 
-// Curves of many shapes: bends, jumps and holes, not only valleys.
-std::shared_ptr<const costmap::DriveCost> jaggedCost() {
-  std::mt19937 random(7);
-  const auto unit = [&random] { return static_cast<double>(random()) / 4294967296.0; };
-  std::vector<costmap::DriveCurve> curves;
-  for (int k = 0; k < 6; ++k) {
-    costmap::DriveCurve made = testing::curve({.factor = 1.0 + k, .steepest = 0.1 + 0.1 * k});
-    for (float& value : made.cost_J_per_m) value *= static_cast<float>(1.0 + 0.3 * k * unit());
-    if (k > 3) made.cost_J_per_m[static_cast<std::size_t>(costmap::DriveCurve::kBins / 2 + 7 * k)] = INFINITY;
-    curves.push_back(k % 2 == 0 ? made : testing::crossed(made, 0.05 * k, 22 - k));
-  }
-  return std::make_shared<costmap::DriveCost>(costmap::DriveCost::Limits{.max_along = 0.5, .max_across = 0.4},
-                                              curves);
-}
-
 // Property: the gauge between the prices of neighbouring headings is nowhere above the cost, in any
 // direction, and every heading has a price.
 TEST(DirectionalLowerBounds, TheirGaugeStaysBelowTheCost) {
-  for (const auto& cost : {testing::driveCost({.max_along = 0.4, .max_across = 0.4}), jaggedCost()}) {
+  for (const auto& cost :
+       {testing::driveCost({.max_along = 0.4, .max_across = 0.4}), testing::jaggedCost()}) {
     DirectionalLowerBounds headings(*cost);
     std::mt19937 random(3);
     for (int n = 0; n < 4'000; ++n) {

@@ -38,7 +38,8 @@ TEST(StraightBound, LeavesOutCheapGroundOutOfReach) {
   EXPECT_NEAR(straightBoundOver_J(*map, ends, 0.0), cost_J, 1e-6 * cost_J);
 }
 
-// Closed form: a track of 10 J/m that begins 3 m behind the start and ends 3 m behind the goal makes the way round, over
+// Closed form: a track of 10 J/m that begins 3 m behind the start and ends 3 m behind the goal makes the way round,
+// over
 // ground of 50 J/m at both ends, cheaper than the straight line of 1000 J.
 TEST(StraightBound, CountsATrackThatBeginsBehindTheStart) {
   std::vector<std::string> rows(60, std::string(100, '4'));
