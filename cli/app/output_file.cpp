@@ -39,11 +39,9 @@ bool same(const fs::path& a, const fs::path& b) {
 }
 
 bool isJournal(const fs::path& path) {
-  std::array<char, 72> start{};
+  std::array<char, 15> start{};
   std::ifstream(path, std::ios::binary).read(start.data(), start.size());
-  const std::string_view read(start.data(), start.size());
-  return read.starts_with("SQLite format 3") &&
-         !read.ends_with("GPKG");  // SQLite's application id: a GeoPackage
+  return std::string_view(start.data(), start.size()) == "SQLite format 3";
 }
 
 // What SQLite keeps beside a database: what is committed, but not yet in the database itself, is there alone.

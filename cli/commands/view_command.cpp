@@ -112,7 +112,7 @@ int run(const ViewOptions& options, Context& context) {
   const fs::path named(options.html);
   const fs::path html = named.empty() ? fs::path(options.file.path).stem().concat(".html") : named;
   const Scene scene = looksLikeRoute(options.file.path) ? routeScene(options, context)
-                                                       : mapScene(options, options.file.path, context);
+                                                        : mapScene(options, options.file.path, context);
   if (context.stop.stop_requested()) return Exit::kCancelled;
   if (!options.png.empty()) savePicture(options.png, scene);
   savePage(html, scene);

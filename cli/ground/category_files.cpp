@@ -58,7 +58,7 @@ std::filesystem::path nav2Picture(const std::filesystem::path& yaml) {
 void writeNav2Map(const costmap::TraversabilityMap& map, const std::string& yaml) {
   const maps::Grid& grid = map.grid();
   const maps::Raster<std::uint8_t> categories = categoriesOf(map);
-  const bool allow_marginal = map.model().policy().allow_marginal;
+  const bool allow_marginal = map.model().parts().policy.allow_marginal;
   std::string picture = fmt::format("P5\n{} {}\n255\n", grid.width, grid.height);
   for (int row = grid.height - 1; row >= 0; --row)
     for (int column = 0; column < grid.width; ++column)

@@ -120,7 +120,8 @@ void addLayerOptions(CLI::App& command, LayerOptions& options) {
   command.add_option("--rocks", options.rocks, "raster of rock abundance, 0 to 1")->type_name("FILE");
   command.add_option("--rocks-band", options.rocks_band, "band of the raster, counted from 1")
       ->type_name("N");
-  command.add_option("--keep-out", options.keep_out, "polygons of a vector file to keep out of; may be repeated")
+  command
+      .add_option("--keep-out", options.keep_out, "polygons of a vector file to keep out of; may be repeated")
       ->type_name("FILE");
   command
       .add_option(

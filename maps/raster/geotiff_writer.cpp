@@ -79,14 +79,42 @@ void describe(GDALRasterBand& band, const std::vector<NamedClass>& classes) {
   band.SetColorTable(&colours);
 }
 
+// From the north on; GDAL's own ways of resampling would hide a single cell of a greater class.
+std::vector<std::uint8_t> greatestOf(const Raster<std::uint8_t>& values, int level, int width, int height) {
+  const Grid& grid = values.grid();
+  std::vector<std::uint8_t> coarse(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0);
+  for (int row = 0; row < grid.height; ++row)
+    for (int column = 0; column < grid.width; ++column) {
+      const int from_north = std::min((grid.height - 1 - row) / level, height - 1),
+                at = std::min(column / level, width - 1);
+      std::uint8_t& block = coarse[static_cast<std::size_t>(from_north) * static_cast<std::size_t>(width) +
+                                   static_cast<std::size_t>(at)];
+      block = std::max(block, values[{column, row}]);
+    }
+  return coarse;
+}
+
 // Halves until the whole fits a screen.
-bool addOverviews(GDALDataset& file, const Grid& grid) {
+bool addOverviews(GDALDataset& file, const Raster<std::uint8_t>& values) {
+  const Grid& grid = values.grid();
   constexpr int kScreen = 512;
   std::vector<int> levels;
   for (int level = 2; std::max(grid.width, grid.height) * 2 > kScreen * level; level *= 2)
     levels.push_back(level);
-  return levels.empty() || file.BuildOverviews("MODE", static_cast<int>(levels.size()), levels.data(), 0,
-                                               nullptr, nullptr, nullptr) == CE_None;
+  if (levels.empty()) return true;
+  if (file.BuildOverviews("NONE", static_cast<int>(levels.size()), levels.data(), 0, nullptr, nullptr,
+                          nullptr) != CE_None)
+    return false;
+  for (std::size_t k = 0; k < levels.size(); ++k) {
+    GDALRasterBand* band = file.GetRasterBand(1)->GetOverview(static_cast<int>(k));
+    if (band == nullptr) return false;
+    const int width = band->GetXSize(), height = band->GetYSize();
+    std::vector<std::uint8_t> coarse = greatestOf(values, levels[k], width, height);
+    if (band->RasterIO(GF_Write, 0, 0, width, height, coarse.data(), width, height, GDT_Byte, 0, 0,
+                       nullptr) != CE_None)
+      return false;
+  }
+  return true;
 }
 
 void checkGrids(const std::vector<Layer>& layers) {
@@ -129,7 +157,7 @@ void writeGeoTiff(const GeoTiff& file, const std::string& name, const Raster<std
   if (nodata) band.SetNoDataValue(*nodata);
   if (!classes.empty()) describe(band, classes);
   if (writeBand(band, values, GDT_Byte) != CE_None) output.fail(errors.last());
-  if (!classes.empty() && !addOverviews(*dataset, values.grid())) output.fail(errors.last());
+  if (!classes.empty() && !addOverviews(*dataset, values)) output.fail(errors.last());
   finish(std::move(dataset), output, file.path, errors);
 }
 

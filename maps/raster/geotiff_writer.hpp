@@ -35,7 +35,7 @@ struct NamedClass {
 };
 
 /// The same for whole numbers (classes, masks) in one band; `nodata` cells are marked. With `classes`, those of 0, 1 ... have a
-/// colour table and names (items CLASS_0 ... of the band), and the file has overviews, each cell the most frequent class.
+/// colour table and names (items CLASS_0 ... of the band), and the file has overviews, each cell the greatest class under it.
 void writeGeoTiff(const GeoTiff& file, const std::string& name, const Raster<std::uint8_t>& values,
                   std::optional<std::uint8_t> nodata, const std::vector<NamedClass>& classes = {});
 

@@ -9,8 +9,7 @@
 namespace talus::planner {
 
 /// A grid cut into triangles: each cell into four, between two neighbouring corners and its middle. Nodes are the
-/// corners,
-/// row by row from the south-west, then the middles.
+/// corners, row by row from the south-west, then the middles.
 class CellMesh {
  public:
   explicit CellMesh(const maps::Grid& grid) noexcept

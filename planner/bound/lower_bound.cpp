@@ -26,9 +26,8 @@ std::vector<maps::Cell> cornersWithin(const maps::Grid& grid, maps::Point place,
   return found;
 }
 
-// The least that the way costs at limits that hold in all cells of the map: those of a plane, on a plane, where a
-// function that
-// falls evenly is the best. No more is looked at once it is below `enough_J`.
+// The least that the way costs at limits that hold in all cells of the map: those of a plane, on a plane, where a function
+// that falls evenly is the best. No more is looked at once it is below `enough_J`.
 double planeBound_J(const costmap::CostGrid& map, const Segment& places, double tolerance_m,
                     double enough_J) {
   constexpr int kHeadings = HeadingLimits::kHeadings;
@@ -57,8 +56,12 @@ double planeBound_J(const costmap::CostGrid& map, const Segment& places, double 
     for (int column = 0; column < map.grid().width; ++column) {
       const costmap::CellCode code = map.at({column, row});
       if (!seen.insert(code.bits()).second || !of.of(code, limits)) continue;
-      for (std::size_t k = 0; k < limits.size(); ++k) least[k] = std::min(least[k], limits[k]);
-      if (!(over() * length_m > enough_J)) return 0.0;
+      bool lower = false;
+      for (std::size_t k = 0; k < limits.size(); ++k) {
+        lower = lower || limits[k] < least[k];
+        least[k] = std::min(least[k], limits[k]);
+      }
+      if (lower && !(over() * length_m > enough_J)) return 0.0;
     }
   const double metre_J = over();
   return std::isfinite(metre_J) ? metre_J * length_m : 0.0;

@@ -10,15 +10,11 @@
 
 namespace talus::planner {
 
-/// What no route to a goal costs less than, whatever its shape and headings: what a SubSolution proves on maps of up
-/// to
-/// kSmall cells, the field over admissibleEdges() on larger ones, kept for a map and a goal, or
-/// straightBoundOver_J() where
-/// that is higher.
+/// What no route to a goal costs less than, whatever its shape and headings: what a SubSolution proves on maps of up to kSmall cells,
+/// the field over admissibleEdges() on larger ones, kept for a map and a goal, or straightBoundOver_J() where that is higher.
 class LowerBound {
  public:
-  /// Joules, >= 0 and no more than the cost of a known route; the straight bound alone when stopped, or where it
-  /// shows
+  /// Joules, >= 0 and no more than the cost of a known route; the straight bound alone when stopped, or where it shows
   /// that the known route is the best within kEven.
   double operator()(const std::shared_ptr<const costmap::CostGrid>& map, const Segment& places,
                     double goal_tolerance_m, const StopCheck& stop = {},

@@ -16,21 +16,16 @@
 namespace talus::planner {
 
 /// A function over the nodes of a CellMesh, linear on each triangle, that comes close to the cost to the goal from
-/// below:
-/// no metre along any heading takes more of it than the HeadingLimits of its cell. Then no route between two places,
-/// of any
-/// shape, costs less than the function falls between them. What it proves, provenBy() verifies.
+/// below: no metre along any heading takes more of it than the HeadingLimits of its cell. Then no route between two
+/// places, of any shape, costs less than the function falls between them. What it proves, provenBy() verifies.
 ///
 /// How (ours). A search from the goal gives each node the least that the triangles about it allow, over the headings
-/// to the
-/// side opposite of the node (the update of Tsitsiklis 1995 [tsitsiklis_1995], label correcting, since costs depend
-/// on headings).
-/// Where the function rises from a node to two sides at once, as it does around the goal, around corners of
-/// obstacles and
-/// beside ways that are cheaper than the ground about them, it exceeds the limits of headings that lead to the node.
-/// There the
-/// prices of the triangle are lowered by the excess, and what follows from them is searched again. This is done
-/// behind the front, every kBand nodes, so that what lies ahead is searched from values that hold.
+/// to the side opposite of the node (the update of Tsitsiklis 1995 [tsitsiklis_1995], label correcting, since costs
+/// depend on headings). Where the function rises from a node to two sides at once, as it does around the goal, around
+/// corners of obstacles and beside ways that are cheaper than the ground about them, it exceeds the limits of
+/// headings that lead to the node. There the prices of the triangle are lowered by the excess, and what follows from
+/// them is searched again. This is done behind the front, every kBand nodes, so that what lies ahead is searched from
+/// values that hold.
 class SubSolution {
  public:
   struct Parts {

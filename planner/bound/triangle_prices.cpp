@@ -12,8 +12,7 @@ constexpr std::size_t kQuarter = kHeadingCount / 4;
 constexpr std::size_t kEighth = kHeadingCount / 8;
 
 // Along the headings of an angle of a triangle: how far the opposite side is, in sides of a cell, and at which share
-// of that
-// side it is met.
+// of that side it is met.
 template <std::size_t kCount>
 struct Fan {
   std::array<float, kCount> share, length;

@@ -8,8 +8,7 @@
 namespace talus::planner {
 
 /// What a side's length of a cell costs at least by heading, and what follows for a function that is linear on each
-/// of the
-/// cell's triangles (CellMesh). Triangles are numbered by their first corner.
+/// of the cell's triangles (CellMesh). Triangles are numbered by their first corner.
 struct TrianglePrices {
   static constexpr std::size_t kStored = HeadingLimits::kHeadings + 12;
   std::array<float, kStored> prices;  ///< the first ones again at the end
@@ -22,8 +21,7 @@ struct TrianglePrices {
   };
 
   /// The most that one node may have, the other two being as they are: the least over the headings from it to the
-  /// side
-  /// opposite, both ends included, of the value there and `share` of the way's price.
+  /// side opposite, both ends included, of the value there and `share` of the way's price.
   float first(std::size_t triangle, float share, const Values& values) const noexcept;
   float second(std::size_t triangle, float share, const Values& values) const noexcept;
   float middle(std::size_t triangle, float share, const Values& values) const noexcept;

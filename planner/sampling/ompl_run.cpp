@@ -67,14 +67,28 @@ bool spent(const Problem& leg, const SamplingSettings& settings, const MeteredCo
   return std::isinf(leg.time_limit_s) && cost.work() >= settings.work;
 }
 
-// Stops after the allotted work or at the time limit, and when asked to.
+// Of the time, or of the work where no time is set.
+double shareDone(const Problem& leg, const SamplingSettings& settings, const MeteredCost& cost,
+                 double elapsed_s) {
+  const double share = std::isinf(leg.time_limit_s)
+                           ? static_cast<double>(cost.work()) / static_cast<double>(settings.work)
+                           : elapsed_s / leg.time_limit_s;
+  return std::clamp(share, 0.0, 1.0);
+}
+
+// Stops after the allotted work or at the time limit, and when asked to; tells ten times a second how far it is.
 ob::PlannerTerminationCondition doneWhen(const Problem& leg, const SamplingSettings& settings,
                                          const std::shared_ptr<const MeteredCost>& cost) {
   const auto begin = Clock::now();
+  const auto told_s = std::make_shared<double>(-1.0);
   return ob::PlannerTerminationCondition([=, &leg] {
     cost->iterated();
-    if (spent(leg, settings, *cost) || leg.watch.stopped()) return true;
-    return std::chrono::duration<double>(Clock::now() - begin).count() > leg.time_limit_s;
+    const double elapsed_s = std::chrono::duration<double>(Clock::now() - begin).count();
+    if (elapsed_s > *told_s + 0.1) {
+      *told_s = elapsed_s;
+      leg.watch.report(shareDone(leg, settings, *cost, elapsed_s));
+    }
+    return spent(leg, settings, *cost) || leg.watch.stopped() || elapsed_s > leg.time_limit_s;
   });
 }
 

@@ -45,7 +45,9 @@ Plan planLeg(Problem leg, const SamplingSettings& settings, const InitialPathPro
   if (Plan ends = checkEnds(leg); ends.status != RouteStatus::Found) return ends;
   const double apart_m = std::hypot(leg.goal.x_m - leg.start.x_m, leg.goal.y_m - leg.start.y_m);
   if (apart_m <= leg.goal_tolerance_m) return arrived(leg);
-  Plan known = scout ? scout(leg) : Plan{};
+  Problem scouted = leg;
+  scouted.watch.progress = {};  // only the planner tells how far it is
+  Plan known = scout ? scout(scouted) : Plan{};
   if (known.status == RouteStatus::Cancelled || known.status == RouteStatus::NoRoute) return known;
   if (settings.better && known.status == RouteStatus::Found) settings.better(known.cost_J);
   const bool seeded = known.status == RouteStatus::Found;

@@ -22,7 +22,7 @@ std::string site() {
 TEST(CategoryFiles, ColoursNamesOverviewsAndNav2) {
   const Folder folder;
   folder.write("site.asc", site());
-  const Ran ran = runTalus({"costmap", "site.asc", "--resolution", "1", "--soil", "sandy_loam", "--rover",
+  const Ran ran = runTalus({"costmap", "site.asc", "--resolution", "1", "--soil", "bedrock", "--rover",
                             "fido", "--categories", "c.tif", "--nav2", "n.yaml", "--quiet"},
                            folder.path());
   ASSERT_EQ(ran.code, 0) << ran.err;
@@ -33,7 +33,19 @@ TEST(CategoryFiles, ColoursNamesOverviewsAndNav2) {
   ASSERT_NE(band.GetColorTable(), nullptr);
   EXPECT_GT(band.GetColorTable()->GetColorEntry(0)->c2, band.GetColorTable()->GetColorEntry(0)->c1)
       << "green";
-  EXPECT_EQ(band.GetOverviewCount(), 1);
+  ASSERT_EQ(band.GetOverviewCount(), 1);
+  // Property: no cell of an overview is of a lesser category than one under it.
+  std::vector<std::uint8_t> fine(kWidth * kHeight), coarse(kWidth * kHeight / 4);
+  ASSERT_EQ(
+      band.RasterIO(GF_Read, 0, 0, kWidth, kHeight, fine.data(), kWidth, kHeight, GDT_Byte, 0, 0, nullptr),
+      CE_None);
+  ASSERT_EQ(band.GetOverview(0)->RasterIO(GF_Read, 0, 0, kWidth / 2, kHeight / 2, coarse.data(), kWidth / 2,
+                                          kHeight / 2, GDT_Byte, 0, 0, nullptr),
+            CE_None);
+  for (int row = 0; row < kHeight; ++row)
+    for (int column = 0; column < kWidth; ++column)
+      ASSERT_GE(coarse[static_cast<std::size_t>(row / 2 * (kWidth / 2) + column / 2)],
+                fine[static_cast<std::size_t>(row * kWidth + column)]);
   const std::string picture = fileContent(folder / "n.pgm");
   const std::string head = "P5\n700 600\n255\n";
   ASSERT_EQ(picture.size(), head.size() + kWidth * kHeight);

@@ -72,8 +72,7 @@ TEST(PathReader, WhatIsNoPathIsOneLine) {
         {"b.csv", "x_m,y_m\n1,2\n3,inf\n", "b.csv:3"},
         {"c.csv", "x_m,y_m\n", "contains no point"},
         {"d.json", R"({"type":"FeatureCollection","features":[]})", "contains no line"},
-        {"e.json", R"({"type":"FeatureCollection","features":[7,{"properties":[]}]})",
-         "contains no line"},
+        {"e.json", R"({"type":"FeatureCollection","features":[7,{"properties":[]}]})", "contains no line"},
         {"f.json", R"({"type":"LineString"})", "contains no line"},
         {"g.json", R"({"type":"LineString","crs":"local","coordinates":[["a",2]]})", "g.json"},
         {"h.json", R"({"type":"FeatureCollection","features":[{"type":"Feature","properties":

@@ -30,8 +30,7 @@ costmap::CellCode randomCell(std::mt19937& random, int most, std::size_t curves)
 }
 
 // Property: between the headings, too, no limit is above the cost of the heading, also at the very headings at which
-// the
-// cost's table has its nodes, and where only single headings are allowed.
+// the cost's table has its nodes, and where only single headings are allowed.
 TEST(HeadingLimits, TheirGaugeStaysBelowTheCost) {
   for (const auto& cost :
        {testing::driveCost({.max_along = 0.4, .max_across = 0.4}), testing::jaggedCost()}) {
@@ -61,8 +60,7 @@ TEST(HeadingLimits, TheirGaugeStaysBelowTheCost) {
 }
 
 // Closed form: on level ground a metre costs 10 J in all directions, and the chords of 64 sectors are below by the
-// cosine of half
-// a sector.
+// cosine of half a sector.
 TEST(HeadingLimits, LevelGroundLosesHalfASector) {
   const auto cost = testing::driveCost();
   HeadingLimits::Limits limits;

@@ -34,8 +34,7 @@ MapPointer randomGround(unsigned seed, const std::shared_ptr<const costmap::Driv
 }
 
 // Property: in each triangle, along random headings, a metre takes no more of the solution over its excess than it
-// costs to
-// drive. The gradient is that of a plane through three nodes, from their places.
+// costs to drive. The gradient is that of a plane through three nodes, from their places.
 TEST(SubSolution, KeepsToTheCostInAllHeadings) {
   for (unsigned seed = 1; seed <= 12; ++seed) {
     const auto map = randomGround(seed, seed % 2 == 0 ? testing::jaggedCost() : testing::driveCost());
@@ -95,8 +94,7 @@ double leastOnPlane_J(const costmap::DriveCost& cost, costmap::CellCode code, co
 }
 
 // Property: on a plane, whose metre costs the same everywhere but not in all headings, the best drive costs no more
-// than half a
-// percent above the bound, and never less than the bound.
+// than half a percent above the bound, and never less than the bound.
 TEST(LowerBound, IsSharpOnPlanes) {
   std::mt19937 random(11);
   for (int n = 0; n < 12; ++n) {
@@ -119,8 +117,7 @@ TEST(LowerBound, IsSharpOnPlanes) {
 }
 
 // Property: what is pruned by the cost of a known route does not make the bound higher than that of the whole map,
-// but for what it
-// may, the known cost.
+// but for what it may, the known cost.
 TEST(SubSolution, KnownRoutesOnlyCutTheSearchShort) {
   for (unsigned seed = 1; seed <= 8; ++seed) {
     const auto map = randomGround(seed, testing::driveCost());

@@ -161,7 +161,7 @@ class MapTest(Refusals):
             self.assertTrue(np.any(driven.beliefs()["pull_mean"] != untaught))
             driven.save(folder / "saved.ot")
             self.assertEqual((folder / "saved.ot").read_bytes(), (folder / "driven.ot").read_bytes())
-            route = driven.plan((5.5, 15.5), (35.5, 15.5))
+            route = driven.plan((5.5, 15.5), (35.5, 15.5), prove=True)
             driven.write_route(route, folder / "ours.geojson")
             run("plan", hill, "--ignore-crs", "--resolution", 1, "--map", folder / "driven.ot", "--start", "5.5,15.5", "--goal", "35.5,15.5", "-o", folder / "its.geojson")
             ours, its = (json.loads((folder / f).read_text())["features"][0] for f in ("ours.geojson", "its.geojson"))
