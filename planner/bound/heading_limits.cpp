@@ -14,7 +14,7 @@ using costmap::DriveCurve;
 
 constexpr int kHeadings = HeadingLimits::kHeadings;
 constexpr double kSector = 2.0 * std::numbers::pi / kHeadings;
-constexpr double kRounding = 1.0 - 1e-6;  // limits and drive costs are floats
+constexpr double kLimitRounding = 1.0 - 1e-6;  // limits and drive costs are floats
 constexpr double kRefused = 3.0;  // of the dearest limit: that of a heading that nothing near it allows
 
 using ByHeading = std::array<double, kHeadings>;
@@ -277,7 +277,7 @@ bool HeadingLimits::of(CellCode cell, Limits& limits) {
   for (std::size_t k = 0; k < kHeadings; ++k)
     lowered[k] = gauge[k] * std::clamp(std::min(kept(k), kept((k + kHeadings - 1) % kHeadings)), 0.0, 1.0);
   if (*std::ranges::min_element(lowered) > 1e-6 * *std::ranges::max_element(lowered)) makeConvex(lowered);
-  for (std::size_t k = 0; k < kHeadings; ++k) limits[k] = static_cast<float>(lowered[k] * kRounding);
+  for (std::size_t k = 0; k < kHeadings; ++k) limits[k] = static_cast<float>(lowered[k] * kLimitRounding);
   return true;
 }
 

@@ -12,7 +12,7 @@ constexpr std::uint32_t kClosed = 0xfffffffeU;  // slot of a cell that no headin
 constexpr std::size_t kCodes = std::size_t{1} << 14;
 constexpr std::uint64_t kEnd = ~std::uint64_t{0};
 constexpr std::size_t kBand = 256;  // nodes of the search between two looks at what exceeds its limits
-constexpr int kRounds = 60;         // of lowering prices behind the front; more are for the check to see
+constexpr int kMostRounds = 60;     // of lowering prices behind the front; more are for the check to see
 constexpr float kSlack = 5e-4F;     // that a triangle may exceed its limits by
 constexpr double kWithin = 1.02;    // of the cost known: the nodes that are searched lie within it
 constexpr unsigned kUnits = 4;      // of the queue: 2^kUnits to half a side at the cheapest metre
@@ -197,7 +197,7 @@ void SubSolution::changeAround(std::uint32_t node) {
 bool SubSolution::settle(std::uint64_t end) {
   for (const std::uint32_t slot : ahead_) change(slot);
   ahead_.clear();
-  for (int round = 0; round < kRounds && lowerPrices(end == kEnd); ++round)
+  for (int round = 0; round < kMostRounds && lowerPrices(end == kEnd); ++round)
     if (!search(end, ~std::size_t{0})) return false;
   return true;
 }
