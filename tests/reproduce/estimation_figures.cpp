@@ -21,7 +21,7 @@ ThesisFigure straightStresses(std::uint64_t seed) {
   constexpr int kSoils = 100;
   Series truth = points("truth"), found = points("estimate");
   MeanAndStd off_c, off_phi;
-  int as_claimed = 0;
+  int greater = 0, smaller = 0;  // cohesion, friction angle
   ThesisRuns runs(seed);
   for (int count = 0; count < kSoils;) {
     const ThesisRun run = runs.next({.noise = 0.0});
@@ -35,22 +35,26 @@ ThesisFigure straightStresses(std::uint64_t seed) {
                  phi = (fit.frictionAngle_rad() - run.soil.friction_angle_rad) / kDegree;
     off_c.add(c);
     off_phi.add(phi);
-    as_claimed += c > 0.0 && phi < 0.0;
+    greater += c > 0.0 ? 1 : 0;
+    smaller += phi < 0.0 ? 1 : 0;
     put(truth, 1e-3 * run.soil.cohesion_Pa, run.soil.friction_angle_rad / kDegree);
     put(found, 1e-3 * fit.cohesion_Pa, fit.frictionAngle_rad() / kDegree);
   }
-  return {"2.3",
-          "Straight stresses on cohesive soil",
-          "Iagnemma's method gives a greater cohesion and a smaller friction angle than is true",
-          fmt::format("{} of {} clays, noise-free, K given; cohesion off by {:.2f} +- {:.2f} kPa, friction "
-                      "angle by {:.1f} +- {:.1f} "
-                      "deg",
-                      as_claimed, kSoils, off_c.mean(), off_c.std(), off_phi.mean(), off_phi.std()),
-          verdictOf(as_claimed > 0.9 * kSoils, "not reproduced"),
-          {{.title = "Clays of Table 2.1",
-            .x = {.label = "c [kPa]", .low = 0.0},
-            .y = {.label = "phi [deg]", .low = 0.0},
-            .series = {truth, found}}}};
+  return {
+      "2.3",
+      "Straight stresses on cohesive soil",
+      "Iagnemma's method gives a greater cohesion and a smaller friction angle than is true",
+      fmt::format("of {} clays, noise-free, K given, {} have a greater cohesion and {} a smaller friction "
+                  "angle; off by {:.2f} +- {:.2f} kPa and "
+                  "{:.1f} +- {:.1f} deg",
+                  kSoils, greater, smaller, off_c.mean(), off_c.std(), off_phi.mean(), off_phi.std()),
+      verdictOf(greater > 0.9 * kSoils && smaller > 0.9 * kSoils,
+                greater > 0.9 * kSoils ? "in part: the cohesion is greater, the friction angle not smaller"
+                                       : "not reproduced"),
+      {{.title = "Clays of Table 2.1",
+        .x = {.label = "c [kPa]", .low = 0.0},
+        .y = {.label = "phi [deg]", .low = 0.0},
+        .series = {truth, found}}}};
 }
 
 ThesisFigure coefficients(std::uint64_t seed) {
