@@ -96,7 +96,7 @@ std::string csvOf(const std::vector<Json>& vertices, const maps::ElevationMap& m
     }
     text.back() = '\n';
   }
-  if (places == nullptr) text.erase(text.find("\n") - 1, 1);
+  if (places == nullptr) text.erase(text.find('\n') - 1, 1);
   return text;
 }
 

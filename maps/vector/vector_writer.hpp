@@ -16,7 +16,7 @@ struct VectorPosition {
 };
 
 /// A point, or a line of two positions and more, with its fields: words, numbers (NaN and null: none) and yes or no.
-struct VectorFeature {
+struct VectorFeature {  // NOLINT(bugprone-exception-escape): moving ordered_json does not throw
   std::vector<VectorPosition> positions;
   nlohmann::ordered_json fields;
 };
