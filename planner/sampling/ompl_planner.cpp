@@ -121,7 +121,7 @@ void checkParameters(const std::string& name, const std::map<std::string, std::s
   const ob::PlannerPtr planner = unbound(name);
   if (!planner)
     throw std::invalid_argument("planner '" + name +
-                                "' is none of OMPL's that begin cold or have parameters");
+                                "' is not an OMPL planner; only those begin cold or take parameters");
   setParameters(*planner, name, parameters);
 }
 

@@ -27,7 +27,7 @@ ompl::base::PlannerPtr makeOmplPlanner(const std::string& name, const PlannerPar
 /// Whether a name is that of one of OMPL's planners.
 bool isOmpls(const std::string& name);
 
-/// Throws std::invalid_argument where the planner is none of OMPL's, has no parameter of a name, or does not take its value.
+/// Throws std::invalid_argument for a planner that is not OMPL's, for an unknown parameter, and for a value out of its range.
 void checkParameters(const std::string& name, const std::map<std::string, std::string>& parameters);
 
 }  // namespace talus::planner

@@ -46,7 +46,7 @@ Plan planLeg(Problem leg, const SamplingSettings& settings, const InitialPathPro
   const double apart_m = std::hypot(leg.goal.x_m - leg.start.x_m, leg.goal.y_m - leg.start.y_m);
   if (apart_m <= leg.goal_tolerance_m) return arrived(leg);
   Problem scouted = leg;
-  scouted.watch.progress = {};  // only the planner tells how far it is
+  scouted.watch.progress = {};  // the sampling planner alone reports progress
   Plan known = scout ? scout(scouted) : Plan{};
   if (known.status == RouteStatus::Cancelled || known.status == RouteStatus::NoRoute) return known;
   if (settings.better && known.status == RouteStatus::Found) settings.better(known.cost_J);

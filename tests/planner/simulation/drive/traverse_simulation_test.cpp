@@ -164,7 +164,7 @@ TraverseSimulation along(const std::vector<maps::Point>& route) {
   return simulateTraverse(map, world, options);
 }
 
-// Independent derivation: the formula of turning.hpp with what the mobility curve of the true soil, not the wheel table, says of the flat.
+// Independent derivation: turning.hpp with sinkage and rolling resistance from the mobility curve; the simulation takes them from its wheel table.
 TEST(TraverseSimulation, ATurnIsPaidOnTheTrueGround) {
   const TraverseSimulation straight = along({{5.5, 20.5}, {15.5, 20.5}, {25.5, 20.5}}),
                            bent = along({{5.5, 20.5}, {15.5, 20.5}, {15.5, 30.5}});
