@@ -74,6 +74,7 @@ constexpr double kSquare = 1.001;
 
 double LowerBound::operator()(const std::shared_ptr<const costmap::CostGrid>& map, const Segment& places,
                               double goal_tolerance_m, const StopCheck& stop, double known_J) {
+  way_.clear();
   const double straight_J = straightBoundOver_J(*map, places, goal_tolerance_m, known_J, stop);
   if (straight_J >= (1.0 - kEven) * known_J) return straight_J;
   double bound_J = 0.0;
@@ -81,7 +82,9 @@ double LowerBound::operator()(const std::shared_ptr<const costmap::CostGrid>& ma
     bound_J = overEdges_J(map, places, goal_tolerance_m, stop);
   } else if (const double cheapest_J = cheapestMetre_J(*map); cheapest_J > 0.0) {
     const SubSolution::Parts parts{map, places, goal_tolerance_m, known_J, cheapest_J};
-    bound_J = provenBy(SubSolution(parts, stop), parts).bound_J;
+    const SubSolution solution(parts, stop);
+    bound_J = provenBy(solution, parts).bound_J;
+    way_ = solution.way();
     bound_J = std::max(bound_J, planeBound_J(*map, places, goal_tolerance_m, std::max(bound_J, straight_J)));
   }
   return std::min(known_J, std::max(bound_J, straight_J));

@@ -7,6 +7,7 @@
 #include <talus/planner/bound/straight_bound.hpp>
 #include <talus/planner/field/cost_to_go.hpp>
 #include <talus/planner/route/motion_cost.hpp>
+#include <talus/planner/route/polyline.hpp>
 
 namespace talus::planner {
 
@@ -20,6 +21,9 @@ class LowerBound {
                     double goal_tolerance_m, const StopCheck& stop = {},
                     double known_J = std::numeric_limits<double>::infinity());
 
+  /// Near the cheapest way in all headings, from the search for the last bound; to be refined. Empty where there was none.
+  const Polyline& way() const noexcept { return way_; }
+
   static constexpr double kEven = 1e-4;
   static constexpr std::size_t kSmall = 250'000;  ///< cells: some 15 microseconds each
 
@@ -30,6 +34,7 @@ class LowerBound {
   std::shared_ptr<const costmap::CostGrid> map_;
   std::shared_ptr<const EdgeLayer> edges_;
   std::optional<CostToGo> field_;
+  Polyline way_;
   maps::Point goal_;
   double tolerance_m_ = 0.0;
 };

@@ -51,6 +51,11 @@ const Fan<kQuarter + 1>& middleFan() noexcept {
   return fan;
 }
 
+// From the headings out of a node to those into it.
+constexpr std::size_t turnOf(TrianglePrices::Way way) noexcept {
+  return way == TrianglePrices::Way::FromNode ? 0 : kHeadingCount / 2;
+}
+
 constexpr std::size_t headingOf(std::size_t triangle, std::size_t k) noexcept {
   return (kQuarter * triangle + k) % kHeadingCount;
 }
@@ -88,37 +93,67 @@ TrianglePrices::TrianglePrices(const HeadingLimits::Limits& limits, double side_
     prices[k] = static_cast<float>(side_m) * limits[k % kHeadingCount];
 }
 
-float TrianglePrices::first(std::size_t triangle, float share, const Values& values) const noexcept {
+float TrianglePrices::first(std::size_t triangle, const Values& values, Way way) const noexcept {
   const auto& fan = cornerFan();
-  const float* price = prices.data() + headingOf(triangle, 0);
+  const float* price = prices.data() + headingOf(triangle, turnOf(way));
   const float rise = values.middle - values.second;
   std::array<float, kEighth> least;
   for (std::size_t i = 0; i < kEighth; ++i)
-    least[i] = values.second + fan.share[i] * rise + price[i] * fan.length[i] * share;
-  return less(leastOf(least), values.middle + price[kEighth] * fan.length[kEighth] * share);
+    least[i] = values.second + fan.share[i] * rise + price[i] * fan.length[i];
+  return less(leastOf(least), values.middle + price[kEighth] * fan.length[kEighth]);
 }
 
-float TrianglePrices::second(std::size_t triangle, float share, const Values& values) const noexcept {
+float TrianglePrices::second(std::size_t triangle, const Values& values, Way way) const noexcept {
   const auto& fan = cornerFan();
-  const float* price = prices.data() + headingOf(triangle, 3 * kEighth);
+  const float* price = prices.data() + headingOf(triangle, 3 * kEighth + turnOf(way));
   const float rise = values.middle - values.first;
   std::array<float, kEighth> least;
   for (std::size_t i = 0; i < kEighth; ++i)
-    least[i] = values.first + fan.share[i] * rise + price[kEighth - i] * fan.length[i] * share;
-  return less(leastOf(least), values.middle + price[0] * fan.length[kEighth] * share);
+    least[i] = values.first + fan.share[i] * rise + price[kEighth - i] * fan.length[i];
+  return less(leastOf(least), values.middle + price[0] * fan.length[kEighth]);
 }
 
-float TrianglePrices::middle(std::size_t triangle, float share, const Values& values) const noexcept {
+float TrianglePrices::middle(std::size_t triangle, const Values& values, Way way) const noexcept {
   const auto& fan = middleFan();
-  const float* price = prices.data() + headingOf(triangle, 5 * kEighth);
+  const float* price = prices.data() + headingOf(triangle, 5 * kEighth + turnOf(way));
   const float rise = values.second - values.first;
   std::array<float, kEighth> least;
   for (std::size_t i = 0; i < kEighth; ++i) {
     const std::size_t j = i + kEighth;
-    least[i] = less(values.first + fan.share[i] * rise + price[i] * fan.length[i] * share,
-                    values.first + fan.share[j] * rise + price[j] * fan.length[j] * share);
+    least[i] = less(values.first + fan.share[i] * rise + price[i] * fan.length[i],
+                    values.first + fan.share[j] * rise + price[j] * fan.length[j]);
   }
-  return less(leastOf(least), values.second + price[kQuarter] * fan.length[kQuarter] * share);
+  return less(leastOf(least), values.second + price[kQuarter] * fan.length[kQuarter]);
+}
+
+std::optional<TrianglePrices::Rise> TrianglePrices::lowered(std::size_t triangle, std::size_t node,
+                                                            const Values& values, float wanted,
+                                                            float slack) const noexcept {
+  const auto look = [&](const auto& fan, std::size_t begin, bool back, Rise now) -> std::optional<Rise> {
+    const std::size_t last = fan.share.size() - 1;
+    const float* price = prices.data() + headingOf(triangle, begin + turnOf(Way::ToNode));
+    const auto limit = [&](std::size_t i) { return price[back ? last - i : i] * fan.length[i]; };
+    bool over = false;
+    for (std::size_t i = 0; i <= last; ++i)
+      over = over || now.a + fan.share[i] * (now.b - now.a) > limit(i) * (1.0F + slack);
+    if (!over) return std::nullopt;
+    float least = now.a, most = now.a;
+    for (std::size_t i = 0; i < last; ++i) {
+      const float rest = 1.0F - fan.share[i];
+      least = less(least, (limit(i) - fan.share[i] * now.b) / rest);
+      if (now.b >= 0.0F) most = less(most, limit(i) / rest);
+    }
+    Rise to{now.b < 0.0F ? least : std::clamp(wanted, least, std::max(least, most)), now.b};
+    for (std::size_t i = 1; i <= last; ++i)
+      to.b = less(to.b, (limit(i) - (1.0F - fan.share[i]) * to.a) / fan.share[i]);
+    return to;
+  };
+  if (node == 0)
+    return look(cornerFan(), 0, false, {values.second - values.first, values.middle - values.first});
+  if (node == 1)
+    return look(cornerFan(), 3 * kEighth, true,
+                {values.first - values.second, values.middle - values.second});
+  return look(middleFan(), 5 * kEighth, false, {values.first - values.middle, values.second - values.middle});
 }
 
 costmap::Direction TrianglePrices::fall(std::size_t triangle, const Values& values) noexcept {
@@ -147,31 +182,6 @@ bool TrianglePrices::exceeds(const costmap::Direction& fall, float share) const 
       most[i] = most[i] > over ? most[i] : over;
     }
   return *std::ranges::max_element(most) > 0.0F;
-}
-
-float TrianglePrices::excess(const costmap::Direction& fall) const noexcept {
-  const Headings& h = headingColumns();
-  const auto x = static_cast<float>(fall.x), y = static_cast<float>(fall.y);
-  float most = 0.0F;
-  for (std::size_t k = 0; k < kHeadingCount; ++k)
-    most = std::max(most, (x * h.x[k] + y * h.y[k]) / prices[k]);
-  return most;
-}
-
-float TrianglePrices::excessFromNodes(std::size_t triangle, const costmap::Direction& fall) const noexcept {
-  const Headings& h = headingColumns();
-  const auto x = static_cast<float>(fall.x), y = static_cast<float>(fall.y);
-  float most = 0.0F;
-  const auto look = [&](std::size_t from, std::size_t to) {
-    for (std::size_t i = from; i <= to; ++i) {
-      const std::size_t k = headingOf(triangle, i);
-      most = std::max(most, (x * h.x[k] + y * h.y[k]) / prices[k]);
-    }
-  };
-  look(0, kEighth);
-  look(3 * kEighth, 4 * kEighth);
-  look(5 * kEighth, 7 * kEighth);
-  return most;
 }
 
 }  // namespace talus::planner

@@ -1,6 +1,9 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
 
 #include <talus/planner/bound/cell_mesh.hpp>
 #include <talus/planner/bound/heading_limits.hpp>
@@ -13,6 +16,8 @@ struct TrianglePrices {
   static constexpr std::size_t kStored = HeadingLimits::kHeadings + 12;
   std::array<float, kStored> prices;  ///< the first ones again at the end
 
+  enum class Way : std::uint8_t { FromNode, ToNode };
+
   TrianglePrices(const HeadingLimits::Limits& limits, double side_m) noexcept;
 
   /// Values of a triangle's nodes.
@@ -20,20 +25,27 @@ struct TrianglePrices {
     float first, second, middle;
   };
 
-  /// The most that one node may have, the other two being as they are: the least over the headings from it to the
-  /// side opposite, both ends included, of the value there and `share` of the way's price.
-  float first(std::size_t triangle, float share, const Values& values) const noexcept;
-  float second(std::size_t triangle, float share, const Values& values) const noexcept;
-  float middle(std::size_t triangle, float share, const Values& values) const noexcept;
+  /// The most that one node may have, the other two being as they are: the least over the ways between it and the
+  /// side opposite, both ends included, of the value there and the way's price; from the node to the side, or, with
+  /// Way::ToNode, from the side to the node.
+  float first(std::size_t triangle, const Values& values, Way way = Way::FromNode) const noexcept;
+  float second(std::size_t triangle, const Values& values, Way way = Way::FromNode) const noexcept;
+  float middle(std::size_t triangle, const Values& values, Way way = Way::FromNode) const noexcept;
+
+  /// Of the two nodes opposite of a node: the most that they may lie above it.
+  struct Rise {
+    float a, b;
+  };
+  /// Where some way from the side opposite to a node falls by more than its price: what the side's ends, in the order of
+  /// Values, may lie above the node so that none does, no more than they do; of all such pairs the one in which the first
+  /// end comes nearest to `wanted` of it.
+  std::optional<Rise> lowered(std::size_t triangle, std::size_t node, const Values& values, float wanted,
+                              float slack) const noexcept;
 
   /// By how much a side's length falls along x and y.
   static costmap::Direction fall(std::size_t triangle, const Values& values) noexcept;
   /// Whether some heading falls more than `share` of its price.
   bool exceeds(const costmap::Direction& fall, float share) const noexcept;
-  /// The largest ratio of a heading's fall and its price, of all headings.
-  float excess(const costmap::Direction& fall) const noexcept;
-  /// The same of those from a node of the triangle to the side opposite.
-  float excessFromNodes(std::size_t triangle, const costmap::Direction& fall) const noexcept;
 };
 
 }  // namespace talus::planner

@@ -166,6 +166,29 @@ Polyline FieldPlanner::refined(const Problem& problem, const Stage& stage, Polyl
       cost, cutWithin(refine_(cost, std::move(rough), problem.threads, stop), stage.to, stage.tolerance_m));
 }
 
+// Ways near the cheapest of all headings: that of the bound's search where it may be driven. Where it may not, as far as it
+// may and on in 32 headings, and the cheapest in these alone.
+std::vector<Polyline> FieldPlanner::manyHeadings(const Problem& problem, const Stage& stage, double most_J,
+                                                 const StopCheck& stop) const {
+  if (problem.map->grid().size() > kManyHeadingsCells) return {};
+  const MotionCost cost(problem.map);
+  Polyline way = bound_.way();
+  std::size_t last = 0;
+  while (last + 2 < way.size() && std::isfinite(cost.along({way[last], way[last + 1], way[last + 2]})))
+    ++last;
+  if (way.size() > 1 && last + 2 == way.size()) return {std::move(way)};
+  std::vector<Polyline> ways{
+      manyHeadingsRoute(cost, {stage.from, stage.to}, stage.tolerance_m, most_J, stop)};
+  if (last == 0) return ways;
+  way.resize(last + 1);
+  const Polyline rest =
+      manyHeadingsRoute(cost, {way.back(), stage.to}, stage.tolerance_m, most_J - cost.along(way), stop);
+  if (rest.size() < 2) return ways;
+  way.insert(way.end(), rest.begin() + 1, rest.end());
+  ways.push_back(std::move(way));
+  return ways;
+}
+
 void FieldPlanner::tryOtherCorridors(const Problem& problem, const Stage& stage, const StopCheck& stop,
                                      Plan& plan) {
   if (problem.map->grid().size() > kCorridorCells || stop()) return;
@@ -173,8 +196,7 @@ void FieldPlanner::tryOtherCorridors(const Problem& problem, const Stage& stage,
   const MotionCost cost(problem.map);
   std::vector<Polyline> others =
       otherCorridors(cost, problem.map, *field_, {stage.from, stage.to}, plan.points, {}, stop);
-  if (problem.map->grid().size() <= kManyHeadingsCells)
-    others.push_back(manyHeadingsRoute(cost, {stage.from, stage.to}, stage.tolerance_m, plan.cost_J, stop));
+  for (Polyline& way : manyHeadings(problem, stage, plan.cost_J, stop)) others.push_back(std::move(way));
   for (Polyline& rough : others) {
     if (rough.size() < 2) continue;
     Polyline points = refined(problem, stage, std::move(rough), stop);

@@ -48,6 +48,8 @@ class FieldPlanner {
   Plan finished(const Problem& problem, const Stage& stage, Polyline rough, const StopCheck& stop);
   Polyline refined(const Problem& problem, const Stage& stage, Polyline rough, const StopCheck& stop);
   void tryOtherCorridors(const Problem& problem, const Stage& stage, const StopCheck& stop, Plan& plan);
+  std::vector<Polyline> manyHeadings(const Problem& problem, const Stage& stage, double most_J,
+                                     const StopCheck& stop) const;
   Polyline roughRoute(const Problem& problem, const Segment& places, const StopCheck& stop);
 
   static constexpr std::size_t kCorridorCells = 4'000'000;      // larger maps are searched for one corridor

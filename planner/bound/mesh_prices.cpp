@@ -1,0 +1,53 @@
+#include <utility>
+
+#include <talus/planner/bound/mesh_prices.hpp>
+
+namespace talus::planner {
+namespace {
+
+constexpr std::uint32_t kClosed = 0xfffffffeU;  // slot of a cell that no heading may enter
+constexpr std::size_t kCodes = std::size_t{1} << 14;
+
+std::size_t indexIn(const maps::Grid& grid, maps::Cell cell) noexcept {
+  return static_cast<std::size_t>(cell.row) * static_cast<std::size_t>(grid.width) +
+         static_cast<std::size_t>(cell.column);
+}
+
+}  // namespace
+
+MeshPrices::MeshPrices(std::shared_ptr<const costmap::CostGrid> map)
+    : map_(std::move(map)),
+      mesh_(map_->grid()),
+      limits_(map_->cost()),
+      slot_of_(map_->grid().size(), kNone),
+      recent_(kCodes) {}
+
+std::uint32_t MeshPrices::newPrices(costmap::CellCode code) {
+  Recent& recent = recent_[(code.bits() * 2654435761U) >> 18];  // multiplicative hashing, kCodes values
+  if (recent.bits == code.bits() && recent.prices != kNone) return recent.prices;
+  recent = {code.bits(), kClosed};
+  HeadingLimits::Limits limits;
+  if (!limits_.of(code, limits)) return kClosed;
+  recent.prices = static_cast<std::uint32_t>(prices_.size());
+  prices_.emplace_back(limits, mesh_.grid().resolution_m);
+  return recent.prices;
+}
+
+std::uint32_t MeshPrices::slotOf(maps::Cell cell) {
+  if (!mesh_.grid().contains(cell)) return kNone;
+  std::uint32_t& slot = slot_of_[indexIn(mesh_.grid(), cell)];
+  if (slot == kNone) {
+    const std::uint32_t prices = newPrices(map_->at(cell));
+    slot = prices == kClosed ? kClosed : static_cast<std::uint32_t>(slots_.size());
+    if (slot != kClosed) slots_.push_back({prices, cell});
+  }
+  return slot == kClosed ? kNone : slot;
+}
+
+std::uint32_t MeshPrices::knownSlotOf(maps::Cell cell) const noexcept {
+  if (!mesh_.grid().contains(cell)) return kNone;
+  const std::uint32_t slot = slot_of_[indexIn(mesh_.grid(), cell)];
+  return slot == kClosed ? kNone : slot;
+}
+
+}  // namespace talus::planner

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <talus/costmap/cost/cost_grid.hpp>
+#include <talus/planner/bound/cell_mesh.hpp>
+#include <talus/planner/bound/heading_limits.hpp>
+#include <talus/planner/bound/triangle_prices.hpp>
+
+namespace talus::planner {
+
+/// The prices of a map's cells, made as they are asked for. A cell that some heading may enter has a slot, by which what else
+/// is known of it is numbered. Not thread-safe.
+class MeshPrices {
+ public:
+  explicit MeshPrices(std::shared_ptr<const costmap::CostGrid> map);
+
+  static constexpr std::uint32_t kNone = 0xffffffffU;
+
+  const CellMesh& mesh() const noexcept { return mesh_; }
+  /// Slot of a cell; kNone outside and where no heading is allowed.
+  std::uint32_t slotOf(maps::Cell cell);
+  /// The same if anybody asked before; else kNone.
+  std::uint32_t knownSlotOf(maps::Cell cell) const noexcept;
+  const TrianglePrices& of(std::uint32_t slot) const noexcept { return prices_[slots_[slot].prices]; }
+  maps::Cell cellOf(std::uint32_t slot) const noexcept { return slots_[slot].cell; }
+  std::size_t slots() const noexcept { return slots_.size(); }
+
+ private:
+  struct Slot {
+    std::uint32_t prices;
+    maps::Cell cell;
+  };
+  // A code and the prices of it, which neighbouring cells often share.
+  struct Recent {
+    std::uint32_t bits = 0, prices = kNone;
+  };
+
+  std::uint32_t newPrices(costmap::CellCode code);
+
+  std::shared_ptr<const costmap::CostGrid> map_;
+  CellMesh mesh_;
+  HeadingLimits limits_;
+  std::vector<std::uint32_t> slot_of_;  // by cell
+  std::vector<Slot> slots_;
+  std::vector<TrianglePrices> prices_;
+  std::vector<Recent> recent_;  // by hash
+};
+
+}  // namespace talus::planner
