@@ -171,7 +171,7 @@ void CrossSlope::addRow(int row, const Strengths& strengths, const LevelClimbs& 
     if (std::abs(along) > limits.max_along + 2.0 / DriveCurve::kBinsPerUnit)
       climbs.refused = Refusal::Pitch;
     else if (here.margin_rad(along) < kUpright_rad)
-      climbs.refused = Refusal::Tips;
+      climbs.refused = here.holds(along) ? Refusal::Tips : reasonAt(row, bin);
     else if (along - gain < -1.0 || (here.tips_before && along < here.first) ||
              (here.tips_behind && along > here.last))
       climbs.refused = reasonAt(row, bin);
@@ -256,16 +256,21 @@ CrossSlope CrossSlope::harder(const CrossSlope& a, const CrossSlope& b) {
   return both;
 }
 
-// What the equilibrium that is nearest says; where it holds, on ground of the class, what such a row lacks first.
+// What the equilibria about it say, the nearer one first; where they hold, on ground of the class, what such a row lacks first.
 Refusal CrossSlope::reasonAt(int row, int bin) const noexcept {
   const Refusal lacks = row == 0 ? Refusal::Pull : Refusal::SideForce;
   if (held_.empty()) return lacks;
   const std::vector<Held>& held = held_[std::min(static_cast<std::size_t>(row), held_.size() - 1)];
-  const double place = std::round(DriveCurve::gradient(bin) / kAlongStep) - first_along_;
-  const Held& at =
-      held[static_cast<std::size_t>(std::clamp(place, 0.0, static_cast<double>(held.size()) - 1.0))];
-  if (at.hold.stability_margin_rad < 0.0) return Refusal::Tips;
-  return at.grip == SlopeFailure::None ? lacks : reasonOf(at.grip);
+  const double most = static_cast<double>(held.size()) - 1.0,
+               place = std::clamp(DriveCurve::gradient(bin) / kAlongStep - first_along_, 0.0, most);
+  const auto k = static_cast<std::size_t>(place);
+  const Held &low = held[k], &high = held[std::min(k + 1, held.size() - 1)];
+  const double share = place - static_cast<double>(k);
+  if (mixed(low.hold, high.hold, share).stability_margin_rad < 0.0) return Refusal::Tips;
+  const Held &nearer = share < 0.5 ? low : high, &other = share < 0.5 ? high : low;
+  for (const Held* at : {&nearer, &other})
+    if (at->grip != SlopeFailure::None) return reasonOf(at->grip);
+  return lacks;
 }
 
 // Linear between the two equilibria about it, or as the one that holds.

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <talus/common/constants.hpp>
 #include <talus/costmap/cost/slope_rows.hpp>
@@ -36,11 +37,16 @@ SlopeRows::SlopeRows(const terramech::SlopeEquilibrium& equilibrium, double low,
 
 SlopeRow SlopeRows::solved(double across) const {
   SlopeRow row{.step = step_};
+  // Of several ranges the one nearest to level ground, of two as near the longer.
   std::size_t begin = 0, length = 0, most = 0;
+  int nearest = std::numeric_limits<int>::max();
   for (int node = low_; node <= high_; ++node) {
     row.all.push_back(at(node * step_, across));
     length = row.all.back().grip == SlopeFailure::None ? length + 1 : 0;
-    if (length <= most) continue;
+    if (length == 0) continue;
+    const int from = node - static_cast<int>(length) + 1, off = std::max({from, -node, 0});
+    if (off > nearest || (off == nearest && length <= most)) continue;
+    nearest = off;
     most = length;
     begin = row.all.size() - length;
   }

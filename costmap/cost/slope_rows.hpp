@@ -19,6 +19,9 @@ struct SlopeRow {
   std::vector<std::pair<double, double>>
       margins_rad{};  ///< against tipping, by gradient along, over that range
 
+  /// Whether it lies within the range that the ground holds.
+  bool holds(double along) const noexcept { return along >= first && along <= last; }
+
   /// Linear between equilibria; NaN where the ground holds nothing, or the rover's height is not known.
   double margin_rad(double along) const;
 };

@@ -199,7 +199,7 @@ SlopeEquilibrium::Solver::Scan SlopeEquilibrium::Solver::scan(const Planar& dema
       reached = true;
       break;
     }
-    if (a == 0) out.pulls = reached;
+    if (a == 0) out.pulls = reached && slip <= options_.max_slip;
     if (reached) {
       if (slip <= options_.max_slip && beta <= options_.max_slip_angle_rad + 1e-9)
         out.most_side = std::max(out.most_side, hold);
@@ -279,7 +279,8 @@ void SlopeEquilibrium::Solver::fill(const Planar& demand, double normal, const U
 }
 
 SlopeFailure SlopeEquilibrium::Solver::gripOf(const SlopeState& state, const Unknowns& u) const noexcept {
-  if (state.sinkage_m > kSunk * rover_.wheel.radius_m) return SlopeFailure::Sinks;
+  if (state.sinkage_m > kSunk * rover_.wheel.radius_m || state.sinkage_m >= rover_.clearance_m)
+    return SlopeFailure::Sinks;
   if (state.slip + 0.5 * std::abs(state.slip_difference) > options_.max_slip) return SlopeFailure::CannotPull;
   if (std::abs(u.angle_rad) > options_.max_slip_angle_rad) return SlopeFailure::Slides;
   if (std::abs(state.torque_Nm) > rover_.max_torque_Nm) return SlopeFailure::Torque;
@@ -297,11 +298,14 @@ SlopeState SlopeEquilibrium::Solver::at(const Gradient& gradient) const noexcept
     fill(demand, normal, u, state);
     state.grip = gripOf(state, u);
   } else {
-    const bool sunk = forces_.atNode(kSinkageRatio, (WheelForcesTable::kSlips - 1) / 2, 0) > kSunk;
+    const double rolling = forces_.atNode(kSinkageRatio, (WheelForcesTable::kSlips - 1) / 2, 0);
+    const bool sunk = rolling > kSunk || rolling * rover_.wheel.radius_m >= rover_.clearance_m;
     state.stability_margin_rad = stance_.stabilityMargin_rad(demand);  // no turn of the body is known
-    state.grip = sunk                                     ? SlopeFailure::Sinks
-                 : !scanned.pulls && gradient.along > 0.0 ? SlopeFailure::CannotPull
-                                                          : SlopeFailure::Slides;
+    // Even loads would hold it: what it asks most is what it lacks.
+    const bool lacks_pull = !scanned.pulls || (scanned.found && std::abs(gradient.across) <= gradient.along);
+    state.grip = sunk                                 ? SlopeFailure::Sinks
+                 : lacks_pull && gradient.along > 0.0 ? SlopeFailure::CannotPull
+                                                      : SlopeFailure::Slides;
     state.side_reserve = std::min(state.side_reserve, 0.0);
   }
   state.failure = state.stability_margin_rad < 0.0 ? SlopeFailure::Tips : state.grip;

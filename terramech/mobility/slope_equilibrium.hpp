@@ -35,7 +35,7 @@ struct SlopeOptions {
 enum class SlopeFailure {
   None,        ///< it holds
   Tips,        ///< the centre of mass passes over the wheels
-  Sinks,       ///< a wheel sinks to its axle
+  Sinks,       ///< a wheel sinks to its axle, or by the rover's clearance
   CannotPull,  ///< no slip up to max_slip pulls it up
   Slides,      ///< the wheels do not hold it down or across the slope
   Torque       ///< a wheel takes more torque than the rover has

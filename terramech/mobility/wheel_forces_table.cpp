@@ -11,8 +11,9 @@ namespace talus::terramech {
 namespace {
 
 constexpr double kRightAngle = 1.5707963267948966;
-// Loads over the even one: what transfer in pitch and roll makes of it, and less on a steep plane.
-constexpr std::array<double, WheelForcesTable::kLoads> kLoadShares{0.2, 0.6, 1.2, 2.4};
+// Loads over the even one: what transfer in pitch and roll makes of it, up to a corner wheel of eight near tipping, and less on
+// a steep plane.
+constexpr std::array<double, WheelForcesTable::kLoads> kLoadShares{0.2, 0.6, 1.2, 2.4, 4.8};
 
 using Node = std::array<double, kWheelChannels>;
 
@@ -59,7 +60,7 @@ CubicWeights cubic(double position, int nodes) {
   return w;
 }
 
-/// Lagrange's cubic in the logarithm of the load.
+/// Lagrange's polynomial in the logarithm of the load.
 std::array<double, WheelForcesTable::kLoads> loadWeights(double share) {
   static const std::array<double, WheelForcesTable::kLoads> logs = [] {
     std::array<double, WheelForcesTable::kLoads> l{};

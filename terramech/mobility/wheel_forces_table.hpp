@@ -37,7 +37,7 @@ struct WheelMotion {
 /// Immutable; thread-safe.
 class WheelForcesTable {
  public:
-  static constexpr int kSlips = 41, kAngles = 16, kLoads = 4;
+  static constexpr int kSlips = 41, kAngles = 16, kLoads = 5;
   static constexpr double kSlipStep = 0.05, kAngleStep_rad = 0.0698131700797732;  // 4 deg, to 60 deg
 
   /// Under loads about the even share of the rover's weight; throws std::invalid_argument as wong_reece.hpp.

@@ -8,6 +8,7 @@
 
 #include <talus/costmap/cost/cross_slope.hpp>
 #include <talus/costmap/ground/ground_model.hpp>
+#include <talus/terramech/contact/wong_reece.hpp>
 
 namespace talus::costmap {
 namespace cross_slope_test {
@@ -188,6 +189,44 @@ TEST(CrossSlope, RefusesWhatTipsAndNothingFarFromIt) {
     EXPECT_GT(tipped, 12);
     EXPECT_NEAR(cost.hold(plane(0.3, 0.0), {}).stability_margin_rad, std::atan(tips) - std::atan(0.3), 0.002);
   }
+}
+
+// Property: where a slope is allowed, the deepest wheel, solved anew under the load that it carries there, sinks by less than
+// the clearance (0.04 of it: the table of wheel forces and a bin of gradient). A rover near tipping, whose lower wheels carry far more than
+// their share.
+TEST(CrossSlope, TheDeepestWheelSinksByLessThanTheClearance) {
+  terramech::Rover tall = testRover();
+  tall.wheelbase_m = 0.8;
+  tall.centre_of_mass_height_m = 1.6;
+  tall.max_pitch_rad = tall.max_roll_rad = 0.4;
+  tall.max_torque_Nm = 200.0;
+  const terramech::Soil sand = testSand();
+  const double even_m = terramech::SlopeEquilibrium(sand, tall).at({}).sinkage_m;
+  tall.clearance_m = 1.6 * even_m;
+  const GroundModel model(
+      {.rover = tall, .classes = {{.number = 0, .soil = sand}}, .policy = {.allow_dangerous = true}});
+  const terramech::SlopeEquilibrium exact(sand, tall);
+  const DriveCost cost = costOf(model, certain(model));
+  int allowed = 0, sunk = 0;
+  for (double along = -0.25; along <= 0.25; along += 0.0125)
+    for (double across = 0.0; across <= 0.2; across += 0.025) {
+      const auto detail = cost.detail(plane(along, across), {});
+      sunk += detail.refusal == Refusal::Sinkage;
+      if (detail.refusal != Refusal::None) continue;
+      ++allowed;
+      const terramech::SlopeState state = exact.at({along, across});
+      for (const terramech::WheelOnSlope& wheel : exact.wheels({along, across}, state)) {
+        if (wheel.load_N <= 1.0) continue;
+        const terramech::WheelForces anew = terramech::equilibrium(sand, tall.wheel,
+                                                                   {.load_N = wheel.load_N,
+                                                                    .slip = wheel.slip,
+                                                                    .slip_angle_rad = wheel.slip_angle_rad,
+                                                                    .gravity_m_s2 = tall.gravity_m_s2});
+        EXPECT_LT(anew.sinkage_m, 1.04 * tall.clearance_m) << along << ' ' << across;
+      }
+    }
+  EXPECT_GT(allowed, 30);
+  EXPECT_GT(sunk, 30);
 }
 
 // Property: cost, risk and refusal never fall as the slope across grows, nor when the rover crosses it the other

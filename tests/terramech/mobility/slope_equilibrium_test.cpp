@@ -234,6 +234,16 @@ TEST(SlopeEquilibrium, SaysWhyNothingHolds) {
   Rover weak = rover();
   weak.max_torque_Nm = 0.5;
   EXPECT_EQ(SlopeEquilibrium(sand(), weak).at({0.05, 0.0}).failure, SlopeFailure::Torque);
+  Rover low = rover();
+  low.clearance_m = 0.9 * SlopeEquilibrium(sand(), rover()).at({}).sinkage_m;
+  EXPECT_EQ(SlopeEquilibrium(sand(), low).at({}).failure, SlopeFailure::Sinks);
+  // Straight up, where loads move so that no slip pulls it up though even loads would: nothing slides.
+  Rover tall = rover();
+  tall.centre_of_mass_height_m = 0.5 * tall.wheelbase_m / 0.3;
+  for (double along = 0.05; along < 0.5; along += 0.01) {
+    const SlopeState state = SlopeEquilibrium(sand(), tall).at({along, 0.0});
+    EXPECT_NE(state.grip, SlopeFailure::Slides) << along;
+  }
   Soil bog = sand();
   bog.frictional_modulus = 2e3;
   EXPECT_EQ(SlopeEquilibrium(bog, rover()).at({0.0, 0.0}).failure, SlopeFailure::Sinks);
