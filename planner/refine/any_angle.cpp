@@ -4,6 +4,7 @@
 
 #include <talus/planner/refine/any_angle.hpp>
 #include <talus/planner/refine/fewer_turns.hpp>
+#include <talus/planner/refine/longer_tacks.hpp>
 #include <talus/planner/refine/route_windows.hpp>
 
 namespace talus::planner {
@@ -73,6 +74,7 @@ Polyline Refiner::operator()(const MotionCost& cost, Polyline route, int threads
       cutAtMarks(route, cut.length_m), cut,
       [&](const Polyline& stretch) { return refinedStretch(cost, search, stretch, stop); }, memo_, threads,
       stop));
+  take(withFewerTurns(cost, withLongerTacks(cost, route)));
   const Polyline fewer = withoutIdleTurns(cost, route);
   return cost.along(fewer) <= best_J * (1.0 + 1e-9) ? fewer : route;
 }
