@@ -100,12 +100,6 @@ struct UnsearchedRows {
   ChannelErrors base_rmse{}, refined_rmse{};
 };
 
-/// An error that the rows of one unit (a run, a stretch of time) share.
-struct SharedError {
-  std::vector<int> unit;                          ///< of each row; empty: rows are on their own
-  Eigen::Matrix4d run = Eigen::Matrix4d::Zero();  ///< its covariance between the channels [-]
-};
-
 /// What tracing found.
 struct TraceResult {
   Soil given;            ///< of the base, before any fit

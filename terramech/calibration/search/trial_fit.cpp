@@ -25,7 +25,7 @@ void TrialFit::setRows(const Trial& trial) {
 
 void TrialFit::refresh() {
   rows_.calibrate(model_, solved_);
-  if (!rows_.whitening().unit.empty()) {
+  if (!rows_.whitening().common.unit.empty()) {
     SolvedContacts solved = solved_;
     rows_.setRunError(runErrorOf(standing(model_, rows_.residual(), solved)));
   }
@@ -76,11 +76,11 @@ NullModel TrialFit::standing(const RefinedModel& model, const Eigen::MatrixXd& r
   const Trial& trial = rows_.trial();
   const Whitening& whitening = rows_.whitening();
   NullModel null{whitening.shared(),
-                 whitening.unit,
+                 whitening.common.unit,
                  folds_,
                  whitening.rowByRow(residual),
                  linearised(model, trial, whitening, planFor(model), solved),
-                 whitening.run,
+                 whitening.common.run,
                  static_cast<Eigen::Index>(planFor(model).soil_prior.size())};
   const std::optional<Eigen::MatrixXd>& by_slip = rows_.bySharedSlip();
   if (!by_slip) return null;

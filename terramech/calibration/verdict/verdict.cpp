@@ -139,7 +139,7 @@ RefinedModel forPrediction(const TraceResult& result) {
   RefinedModel model = result.refined;
   for (int c = 0; c < kChannels; ++c) {
     if (!result.trial.has(static_cast<Channel>(c))) continue;
-    const double run = std::max(0.0, result.shared.run(c, c));
+    const double run = std::max(0.0, result.shared.variance(c));
     const double shared =
         run + excess(result.held_out.refined_rmse, result, static_cast<std::size_t>(c), run);
     double unit = 0.0;

@@ -79,6 +79,15 @@ TEST(ResidualTrace, ACampaignAtSetLoadsHasNoEffectOfLoad) {
   EXPECT_EQ(blind::judge(world, claims(result)).family, 1) << world.hidden[0].kind;
 }
 
+TEST(ResidualTrace, ASoilThatScattersFromRunToRunHasNoCause) {
+  // Property: tan phi and c scatter by 10 and 20 % from run to run and nothing else acts. With an offset of each channel as
+  // the only error that runs share these tables had a grouser's thrust and daily drifts at p = .005.
+  for (const auto& [seed, scatter] : {std::pair{501U, 0.1}, {509U, 0.1}, {604U, 0.2}})
+    EXPECT_TRUE(traced(blind::makeWorld({.seed = seed, .effects = 0, .campaign = true, .scatter = scatter}))
+                    .effects.empty())
+        << seed;
+}
+
 TEST(ResidualTrace, CallsAFormThatNoLibraryHoldsEmpirical) {
   const blind::World world = blind::makeWorld({.seed = 2, .effects = 1, .library = false});
   const blind::Marks marks = blind::judge(world, claims(traced(world)));
