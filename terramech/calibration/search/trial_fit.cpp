@@ -131,9 +131,9 @@ Channel TrialFit::strongest(std::size_t effect) const {
   return static_cast<Channel>(std::max_element(size.begin(), size.end()) - size.begin());
 }
 
-std::array<double, kChannels> TrialFit::noiseFloor() {
+std::array<double, kChannels> TrialFit::noiseFloor(const SensorNoise& noise) {
   const InputSlopes slopes = inputSlopes(model_, asMeasured(rows_.trial()), solved_);
-  return terramech::noiseFloor(rows_.trial(), rows_.level(), slopes, model_.noise);
+  return terramech::noiseFloor(rows_.trial(), rows_.level(), slopes, noise);
 }
 
 }  // namespace talus::terramech

@@ -48,7 +48,14 @@ struct SharedError {
   RunError run = RunError::Zero();    ///< its covariance
   std::vector<SoilFactor> by_soil{};  ///< of each row; empty: the soil does not vary
 
-  double variance(int channel) const;  ///< in one channel, mean over the rows [-]
+  double variance(int channel) const;      ///< in one channel, mean over the rows [-]
+  double soilVariance(int channel) const;  ///< the share of the soil's parts in it [-]
+};
+
+/// A sensor that errs more than is stated of it, if nothing else is to be missing.
+struct StrainedSensor {
+  std::string column;
+  double declared = 0.0, fitted = 0.0;  ///< standard deviations, in the unit of the column
 };
 
 /// Rows of telemetry as a trial. `fallback` is the wheel of rows without wheel dimensions. Throws InputError
