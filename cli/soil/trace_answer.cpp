@@ -47,6 +47,15 @@ EffectRole roleOf(const RefinedModel& refined, std::size_t effect, const Trial& 
   return {};
 }
 
+/// Empty without any.
+std::string strainedText(const Answer& a) {
+  std::string text;
+  for (const StrainedSensor& s : a.strained)
+    text += fmt::format("{}{} would have to err {:.1f} times as declared ({:.3g} in place of {:.3g})",
+                        text.empty() ? "" : "; ", s.column, s.fitted / s.declared, s.fitted, s.declared);
+  return text;
+}
+
 }  // namespace
 
 std::string refusal(const TraceResult& result, const Explanation& rejected) {
@@ -86,7 +95,18 @@ std::string verdictText(const TraceResult& result, const Answer& a) {
   if (a.verdict == Verdict::Explained)
     return fmt::format("explained by {} effect{}: {}{}", result.effects.size(),
                        result.effects.size() == 1 ? "" : "s", rest,
-                       a.open && !a.column.empty() ? ", of which most varies with " + a.column : "");
+                       !a.strained.empty()           ? "; " + strainedText(a)
+                       : a.open && !a.column.empty() ? ", of which most varies with " + a.column
+                                                     : "");
+  if (!a.inapplicable.empty())
+    return "unexplained: the model does not apply: " + a.inapplicable + "; " + rest;
+  if (!a.strained.empty()) return "unexplained: " + strainedText(a) + "; " + rest;
+  if (a.strength_scatter + a.stiffness_scatter > 0.0)
+    return fmt::format(
+        "unexplained: {}; the soil's strength scatters by {:.0f} % and its stiffness by {:.0f} % from run to "
+        "run; {} would "
+        "decide",
+        rest, 100.0 * a.strength_scatter, 100.0 * a.stiffness_scatter, a.measure);
   const std::string where = a.column.empty()
                                 ? "it follows no column"
                                 : fmt::format("it varies most with {} ({})", a.column, refusal(result));

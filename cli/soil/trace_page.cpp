@@ -183,7 +183,6 @@ std::string tracePage(const TableTrace& trace) {
   page.paragraph(fmt::format("{} rows used, {} rejected.", trace.rowsUsed(), trace.rejected.size()));
   if (const std::string searched = searchedText(r); !searched.empty()) page.paragraph(searched);
   if (trace.beyond_axle > 0) page.paragraph(beyondAxleText(trace) + ".");
-  if (!trace.applies.applies) page.paragraph("The model does not apply here: " + trace.applies.reason + ".");
   terramech::SolvedContacts solved;
   const Eigen::MatrixXd before = r.trial.measured - predictRows(r.base, r.trial, solved);
   const Eigen::MatrixXd level = predictRows(r.refined, r.trial, solved), after = r.trial.measured - level;

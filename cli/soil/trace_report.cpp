@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <talus/cli/soil/channel_errors.hpp>
@@ -264,6 +265,9 @@ ordered_json answerJson(const TraceResult& result, const Answer& a) {
                      {"prior", p.prior},
                      {"prior_std", p.prior_std},
                      {"standard_deviations", p.away()}});
+  ordered_json strained = ordered_json::array();
+  for (const StrainedSensor& s : a.strained)
+    strained.push_back({{"column", s.column}, {"declared", s.declared}, {"fitted", s.fitted}});
   return {{"channel", name(a.channel)},
           {"rmse", a.rest},
           {"noise_floor", a.floor},
@@ -272,6 +276,9 @@ ordered_json answerJson(const TraceResult& result, const Answer& a) {
           {"threshold", result.threshold},
           {"refused", refusal(result)},
           {"rows_that_decide", a.measure},
+          {"soil_scatter", {{"strength", a.strength_scatter}, {"stiffness", a.stiffness_scatter}}},
+          {"sensors_beyond_declared", strained},
+          {"sensors_undeclared", a.unstated},
           {"soil_off_prior", moved},
           {"soil_at_bound", soilAtBounds(result.refined)}};
 }
@@ -338,6 +345,9 @@ std::string traceText(const TableTrace& trace) {
       verdictText(r, trace.answer) + "\n" +
       fmt::format("{}: {} rows used, {} rejected\n", trace.source, trace.rowsUsed(), trace.rejected.size()) +
       searchedText(r);
+  if (!trace.answer.unstated.empty())
+    out += fmt::format("no error declared (sensors: in the base file), the fitted one is used: {}\n",
+                       fmt::join(trace.answer.unstated, ", "));
   for (const MovedParameter& p : movedSoil(r)) out += movedText(p) + "\n";
   for (const std::string& name : soilAtBounds(r.refined))
     out += "warning: " + name + " of the soil is at the bound of its range\n";
@@ -358,7 +368,6 @@ std::string traceText(const TableTrace& trace) {
   }
   out += endLines(r);
   if (trace.beyond_axle > 0) out += beyondAxleText(trace) + '\n';
-  if (!trace.applies.applies) out += "the model does not apply: " + trace.applies.reason + "\n";
   return out;
 }
 

@@ -80,7 +80,7 @@ void addShape(std::vector<EffectForm>& all, int shape, std::initializer_list<con
                    .channel = channel,
                    .formula = formula,
                    .source = "fredlund_1978",
-                   .signature = "every channel drifts with time, temperature or moisture",
+                   .signature = "every channel drifts with a column",
                    .parameters = shapeParameters(target, shape),
                    .act = act});
   };
@@ -109,18 +109,16 @@ void addShape(std::vector<EffectForm>& all, int shape, std::initializer_list<con
 
 std::vector<EffectForm> driftEffects() {
   std::vector<EffectForm> all;
-  addShape<linear>(
-      all, 0,
-      {"moisture_drift_cohesion", "moisture_drift_friction", "moisture_drift_stiffness",
-       "temperature_drift_drawbar_zero", "temperature_drift_torque_zero", "temperature_drift_sinkage_zero"});
-  addShape<relaxing>(all, 1,
-                     {"moisture_drift_cohesion_relaxing", "moisture_drift_friction_relaxing",
-                      "moisture_drift_stiffness_relaxing", "temperature_drift_drawbar_zero_relaxing",
-                      "temperature_drift_torque_zero_relaxing", "temperature_drift_sinkage_zero_relaxing"});
+  addShape<linear>(all, 0,
+                   {"drift_cohesion", "drift_friction", "drift_stiffness", "drift_drawbar_zero",
+                    "drift_torque_zero", "drift_sinkage_zero"});
+  addShape<relaxing>(
+      all, 1,
+      {"drift_cohesion_relaxing", "drift_friction_relaxing", "drift_stiffness_relaxing",
+       "drift_drawbar_zero_relaxing", "drift_torque_zero_relaxing", "drift_sinkage_zero_relaxing"});
   addShape<wave>(all, 2,
-                 {"moisture_drift_cohesion_diurnal", "moisture_drift_friction_diurnal",
-                  "moisture_drift_stiffness_diurnal", "temperature_drift_drawbar_zero_diurnal",
-                  "temperature_drift_torque_zero_diurnal", "temperature_drift_sinkage_zero_diurnal"});
+                 {"drift_cohesion_diurnal", "drift_friction_diurnal", "drift_stiffness_diurnal",
+                  "drift_drawbar_zero_diurnal", "drift_torque_zero_diurnal", "drift_sinkage_zero_diurnal"});
   return all;
 }
 

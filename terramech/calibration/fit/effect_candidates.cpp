@@ -162,32 +162,21 @@ void lugs(Collector& to, const EffectForm& form) {
   if (to.extent("grouser_height_m").high > 0.0) to.add(form, form.covariate);
 }
 
-/// Columns along which a soil or a sensor may drift: time, and what the weather does.
-std::vector<std::string> driftColumns(const Collector& c, const std::vector<std::string>& covariates) {
-  std::vector<std::string> columns;
-  for (const std::string& name : covariates) {
-    bool drifts = name == "time_s";
-    for (const char* word : {"temp", "moist", "humid", "water", "hour", "suction"})
-      drifts |= name.find(word) != std::string::npos;
-    if (drifts && c.varies(name)) columns.push_back(name);
-  }
-  return columns;
-}
-
 void drift(Collector& to, const EffectForm& form) {
   if (form.parameters.size() == 5 && to.varies("heading_rad"))  // once and twice a turn
     for (double period : {1.0, 0.5})
       for (double phase : {0.0, 1.57})
         to.add(form, "heading_rad",
                {{"start", 0.0}, {"span", 2.0 * std::numbers::pi}, {"period", period}, {"phase", phase}});
-  for (const std::string& column : driftColumns(to, to.covariates())) {
+  // Time may change a soil or a sensor in any of these ways, whatever a column of one's own holds in proportion.
+  for (const std::string& column : to.covariates()) {
+    if (column != "time_s" && !(isOwnColumn(column) && form.parameters.size() == 3)) continue;
     const Extent x = to.extent(column);
     const double span = x.high - x.low;
     if (form.parameters.size() < 5) {
       to.add(form, column, {{"start", x.low}, {"span", span}});
       continue;
     }
-    if (column != "time_s") continue;  // a wave needs a clock
     for (double period : {0.6, 1.0, 2.0})
       for (double phase : {0.0, 1.57})
         to.add(form, column, {{"start", x.low}, {"span", span}, {"period", period}, {"phase", phase}});

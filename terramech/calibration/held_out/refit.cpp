@@ -14,8 +14,7 @@ Whitening whiteningOf(const RefinedModel& model, const SharedError& shared, cons
   SolvedContacts solved;
   Whitening all = whitening(result.trial, predictRows(model, result.trial, solved),
                             inputSlopes(model, result.trial, solved), model.noise);
-  all.unit = shared.unit;
-  all.run = shared.run;
+  all.common = shared;
   return all;
 }
 

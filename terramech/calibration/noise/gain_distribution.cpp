@@ -15,13 +15,12 @@ namespace {
 constexpr int kFirstSteps = 60, kFurtherSteps = 4;
 
 /// Errors of independent rows and of runs of this covariance.
-Eigen::VectorXd drawn(const std::vector<Eigen::Matrix4d>& factor, const std::vector<int>& unit,
-                      const Eigen::Matrix4d& run, std::mt19937_64& random) {
+Eigen::VectorXd drawn(const std::vector<SharedFactor>& factor, const std::vector<int>& unit,
+                      const RunError& run, std::mt19937_64& random) {
   std::normal_distribution<double> normal;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> eigen(run);
-  const Eigen::Matrix4d root =
-      eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
-  std::map<int, Eigen::Vector4d> of_unit;
+  const Eigen::SelfAdjointEigenSolver<RunError> eigen(run);
+  const RunError root = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  std::map<int, SharedVector> of_unit;
   Eigen::VectorXd out(static_cast<Eigen::Index>(factor.size()) * kChannels);
   for (std::size_t row = 0; row < factor.size(); ++row) {
     Eigen::Vector4d error = Eigen::Vector4d::Zero();
@@ -50,7 +49,7 @@ Eigen::VectorXd drawnSoil(const NullModel& null, std::mt19937_64& random) {
 /// Scores of contenders against the null, table by table.
 class Contest {
  public:
-  Contest(const RunLikelihood& likelihood, const RunSums& known, const Eigen::Matrix4d& run)
+  Contest(const RunLikelihood& likelihood, const RunSums& known, const RunError& run)
       : likelihood_(likelihood), known_(known), run_(run) {}
 
   void setTables(Eigen::Index tables) { at_run_ = likelihood_.heldOut(known_, run_, 0, tables).score(); }
@@ -65,12 +64,12 @@ class Contest {
   }
 
   double nullScore(Eigen::Index table) const {
-    const Eigen::Matrix4d run = likelihood_.profile(known_, run_, table, kFurtherSteps);
+    const RunError run = likelihood_.profile(known_, run_, table, kFurtherSteps);
     return likelihood_.heldOut(known_, run, table, 1).score()[0];
   }
 
   double profiledGain(const RunSums& both, bool positive, Eigen::Index table, double null_score) const {
-    const Eigen::Matrix4d run = likelihood_.profile(both, run_, table, kFurtherSteps);
+    const RunError run = likelihood_.profile(both, run_, table, kFurtherSteps);
     const HeldOutFit fit = likelihood_.heldOut(both, run, table, 1);
     return allowed(fit.steps, 0, positive) ? fit.score()[0] - null_score : 0.0;
   }
@@ -82,7 +81,7 @@ class Contest {
 
   const RunLikelihood& likelihood_;
   const RunSums& known_;
-  Eigen::Matrix4d run_;
+  RunError run_;
   Eigen::VectorXd at_run_;
 };
 
@@ -152,7 +151,7 @@ GainDistribution gainDistribution(const NullModel& null, const Contenders& conte
   return out;
 }
 
-Eigen::Matrix4d runErrorOf(const NullModel& null) {
+RunError runErrorOf(const NullModel& null) {
   RunLikelihood likelihood(null.factor, null.unit, null.folds);
   likelihood.setTables(null.residual);
   return likelihood.profile(likelihood.sums(null.known), null.run_start, 0, kFirstSteps);
@@ -162,7 +161,7 @@ double fittedScore(const NullModel& fitted) {
   RunLikelihood likelihood(fitted.factor, fitted.unit, fitted.folds);
   likelihood.setTables(fitted.residual);
   const RunSums sums = likelihood.sums(fitted.known);
-  const Eigen::Matrix4d run = likelihood.profile(sums, fitted.run_start, 0, 2 * kFurtherSteps);
+  const RunError run = likelihood.profile(sums, fitted.run_start, 0, 2 * kFurtherSteps);
   return likelihood.heldOut(sums, run, 0, 1).score()[0];
 }
 

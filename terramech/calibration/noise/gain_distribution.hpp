@@ -20,10 +20,10 @@ inline constexpr int kProfiled = 12;
 
 /// The gain of every contender on the table, and the greatest gain on tables drawn from the null.
 struct GainDistribution {
-  std::vector<double> gain;      ///< of each contender, in their order
-  std::vector<double> greatest;  ///< of each drawn table, ascending
-  double null_score = 0.0;       ///< of the table under the null: log-likelihood held out and prior
-  Eigen::Matrix4d run = Eigen::Matrix4d::Zero();  ///< covariance of a run's error under the null
+  std::vector<double> gain;         ///< of each contender, in their order
+  std::vector<double> greatest;     ///< of each drawn table, ascending
+  double null_score = 0.0;          ///< of the table under the null: log-likelihood held out and prior
+  RunError run = RunError::Zero();  ///< covariance of a run's error under the null
   /// Logarithm of how many times more questions were put to the table than to the drawn ones. A log-likelihood ratio of
   /// noise exceeds x with probability of order e^-x (Wilks), so that N times the questions reach the gain x + ln N as
   /// often as one time reaches x (Bonferroni).
@@ -37,13 +37,13 @@ struct GainDistribution {
 
 /// What the gains are counted from: a model as it stands on whitened rows.
 struct NullModel {
-  std::vector<Eigen::Matrix4d> factor;  ///< what an error that rows share becomes in each: its whitening
-  std::vector<int> unit;                ///< run of each row, from 0; empty: rows share nothing
-  Folds folds;                          ///< held out together
-  Eigen::VectorXd residual;             ///< whitened, rows*kChannels
-  LinearModel known;                    ///< what the model lets a fit move
-  Eigen::Matrix4d run_start;            ///< of a run's error, where the search for its covariance starts
-  Eigen::Index soil = 0;                ///< steps of `known`, in front, that are the soil's
+  std::vector<SharedFactor> factor;  ///< what an error that rows share becomes in each
+  std::vector<int> unit;             ///< run of each row, from 0; empty: rows share nothing
+  Folds folds;                       ///< held out together
+  Eigen::VectorXd residual;          ///< whitened, rows*kChannels
+  LinearModel known;                 ///< what the model lets a fit move
+  RunError run_start;                ///< of a run's error, where the search for its covariance starts
+  Eigen::Index soil = 0;             ///< steps of `known`, in front, that are the soil's
 };
 
 /// Contenders by number, each asked for once.
@@ -60,7 +60,7 @@ GainDistribution gainDistribution(const NullModel& null, const Contenders& conte
                                   std::uint64_t seed, const std::function<bool(double)>& go_on);
 
 /// The most likely covariance of a run's error under a model.
-Eigen::Matrix4d runErrorOf(const NullModel& null);
+RunError runErrorOf(const NullModel& null);
 
 /// Score of a model that was fitted, comparable to null_score: its own residual and derivatives, the run's error
 /// profiled from that of the null.

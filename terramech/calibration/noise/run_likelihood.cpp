@@ -18,19 +18,23 @@ struct RunLikelihood::FoldSums {
 
 namespace {
 
-/// What belongs to one unit, or to one row, in a matrix of kChannels rows each.
+/// What belongs to one row in a matrix of kChannels rows each, and to one unit in one of kShared.
 template <typename Matrix>
-auto rowsOf(Matrix&& all, std::size_t which) {
-  return all.template middleRows<kChannels>(static_cast<Eigen::Index>(which) * kChannels);
+auto channelsOf(Matrix&& all, std::size_t row) {
+  return all.template middleRows<kChannels>(static_cast<Eigen::Index>(row) * kChannels);
+}
+template <typename Matrix>
+auto rowsOf(Matrix&& all, std::size_t unit) {
+  return all.template middleRows<kShared>(static_cast<Eigen::Index>(unit) * kShared);
 }
 
 /// Sum of F^T X over the rows of each unit, one below the other.
-Eigen::MatrixXd unitSums(const std::vector<Eigen::Matrix4d>& factor, const std::vector<int>& unit,
+Eigen::MatrixXd unitSums(const std::vector<SharedFactor>& factor, const std::vector<int>& unit,
                          std::size_t units, const Eigen::MatrixXd& columns) {
-  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(units) * kChannels, columns.cols());
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(units) * kShared, columns.cols());
   for (std::size_t row = 0; row < unit.size(); ++row)
     rowsOf(sum, static_cast<std::size_t>(unit[row])).noalias() +=
-        factor[row].transpose() * rowsOf(columns, row);
+        factor[row].transpose() * channelsOf(columns, row);
   return sum;
 }
 
@@ -57,6 +61,13 @@ StepPrior joined(const StepPrior& a, const StepPrior& b) {
   return both;
 }
 
+/// The covariance with strength and stiffness independent of each other and of the offsets.
+RunError withoutCoupling(const RunError& run) {
+  RunError r = RunError(run.diagonal().asDiagonal());
+  r.topLeftCorner<kChannels, kChannels>() = run.topLeftCorner<kChannels, kChannels>();
+  return r;
+}
+
 /// The normal equations of the steps, the prior among them.
 struct Normal {
   Normal(Eigen::MatrixXd gram, Eigen::MatrixXd cross, const StepPrior& prior) : right(std::move(cross)) {
@@ -73,7 +84,7 @@ struct Normal {
 
 }  // namespace
 
-RunLikelihood::RunLikelihood(const std::vector<Eigen::Matrix4d>& factor, const std::vector<int>& unit,
+RunLikelihood::RunLikelihood(const std::vector<SharedFactor>& factor, const std::vector<int>& unit,
                              const Folds& folds)
     : factor_(factor), fold_(folds.of_row), folds_(folds.count) {
   std::map<std::pair<int, int>, int> number;
@@ -82,7 +93,7 @@ RunLikelihood::RunLikelihood(const std::vector<Eigen::Matrix4d>& factor, const s
     unit_.push_back(at->second);
     if (!fresh) continue;
     fold_of_unit_.push_back(fold_[row]);
-    information_.emplace_back(Eigen::Matrix4d::Zero());
+    information_.emplace_back(RunError::Zero());
   }
   for (std::size_t row = 0; row < unit_.size(); ++row)
     information_[static_cast<std::size_t>(unit_[row])] += factor_[row].transpose() * factor_[row];
@@ -132,8 +143,8 @@ RunSums RunLikelihood::sums(const RunSums& of_known, const LinearModel& known,
 }
 
 /// K = (R^-1 + C)^-1 = R (1 + C R)^-1: covariance of a unit's error given its rows (Woodbury).
-Eigen::Matrix4d RunLikelihood::shrink(std::size_t unit, const Eigen::Matrix4d& run) const {
-  const Eigen::Matrix4d k = run * (Eigen::Matrix4d::Identity() + information_[unit] * run).inverse();
+RunError RunLikelihood::shrink(std::size_t unit, const RunError& run) const {
+  const RunError k = run * (RunError::Identity() + information_[unit] * run).inverse();
   return 0.5 * (k + k.transpose());
 }
 
@@ -148,7 +159,7 @@ RunLikelihood::FoldSums RunLikelihood::together(const std::vector<FoldSums>& fol
   return all;
 }
 
-std::vector<RunLikelihood::FoldSums> RunLikelihood::underRun(const RunSums& sums, const Eigen::Matrix4d& run,
+std::vector<RunLikelihood::FoldSums> RunLikelihood::underRun(const RunSums& sums, const RunError& run,
                                                              Eigen::Index first, Eigen::Index count) const {
   std::vector<FoldSums> fold;
   for (std::size_t f = 0; f < sums.gram.size(); ++f)
@@ -156,19 +167,19 @@ std::vector<RunLikelihood::FoldSums> RunLikelihood::underRun(const RunSums& sums
                     square_.row(static_cast<Eigen::Index>(f)).segment(first, count).transpose()});
   for (std::size_t u = 0; u < information_.size(); ++u) {
     FoldSums& own = fold[static_cast<std::size_t>(fold_of_unit_[u])];
-    const Eigen::Matrix4d k = shrink(u, run);
+    const RunError k = shrink(u, run);
     const auto x = rowsOf(sums.unit_column, u);
     const Eigen::MatrixXd kx = k * x;
     const auto y = rowsOf(unit_table_, u).middleCols(first, count);
     own.gram.noalias() -= x.transpose() * kx;
     own.cross.noalias() -= kx.transpose() * y;
     own.square -= y.cwiseProduct(k * y).colwise().sum().transpose();
-    own.log_determinant += std::log((Eigen::Matrix4d::Identity() + information_[u] * run).determinant());
+    own.log_determinant += std::log((RunError::Identity() + information_[u] * run).determinant());
   }
   return fold;
 }
 
-HeldOutFit RunLikelihood::heldOut(const RunSums& sums, const Eigen::Matrix4d& run, Eigen::Index first,
+HeldOutFit RunLikelihood::heldOut(const RunSums& sums, const RunError& run, Eigen::Index first,
                                   Eigen::Index count) const {
   const std::vector<FoldSums> fold = underRun(sums, run, first, count);
   const FoldSums all = together(fold);
@@ -184,8 +195,7 @@ HeldOutFit RunLikelihood::heldOut(const RunSums& sums, const Eigen::Matrix4d& ru
   return fit;
 }
 
-Eigen::Matrix4d RunLikelihood::profile(const RunSums& sums, Eigen::Matrix4d run, Eigen::Index table,
-                                       int steps) const {
+RunError RunLikelihood::profile(const RunSums& sums, RunError run, Eigen::Index table, int steps) const {
   if (!hasUnits()) return run;
   const auto units = information_.size();
   Eigen::MatrixXd of_rows = sums.gram.front();
@@ -196,7 +206,7 @@ Eigen::Matrix4d RunLikelihood::profile(const RunSums& sums, Eigen::Matrix4d run,
   }
   const Eigen::VectorXd y = unit_table_.col(table);
   Eigen::MatrixXd kx(sums.unit_column.rows(), sums.unit_column.cols());
-  std::vector<Eigen::Matrix4d> k(units);
+  std::vector<RunError> k(units);
   for (int step = 0; step < steps; ++step) {
     for (std::size_t u = 0; u < units; ++u) {
       k[u] = shrink(u, run);
@@ -206,23 +216,23 @@ Eigen::Matrix4d RunLikelihood::profile(const RunSums& sums, Eigen::Matrix4d run,
                         sums.prior);
     const Eigen::VectorXd at = normal.steps(), shared = kx * at;
     const Eigen::MatrixXd spread = normal.solver.solve(kx.transpose());
-    Eigen::Matrix4d next = Eigen::Matrix4d::Zero();
+    RunError next = RunError::Zero();
     for (std::size_t u = 0; u < units; ++u) {
-      const Eigen::Vector4d error = k[u] * rowsOf(y, u) - rowsOf(shared, u);
-      const auto first = static_cast<Eigen::Index>(u) * kChannels;
-      next += error * error.transpose() + k[u] + rowsOf(kx, u) * spread.middleCols<kChannels>(first);
+      const SharedVector error = k[u] * rowsOf(y, u) - rowsOf(shared, u);
+      const auto first = static_cast<Eigen::Index>(u) * kShared;
+      next += error * error.transpose() + k[u] + rowsOf(kx, u) * spread.middleCols<kShared>(first);
     }
-    run = next / static_cast<double>(units);
+    run = withoutCoupling(next / static_cast<double>(units));
   }
   return run;
 }
 
-double RunLikelihood::logLikelihood(const Eigen::Matrix4d& run, Eigen::Index table) const {
+double RunLikelihood::logLikelihood(const RunError& run, Eigen::Index table) const {
   double chi2 = square_.col(table).sum();
   for (std::size_t u = 0; u < information_.size(); ++u) {
-    const Eigen::Vector4d y = rowsOf(unit_table_, u).col(table);
-    chi2 += std::log((Eigen::Matrix4d::Identity() + information_[u] * run).determinant()) -
-            y.dot(shrink(u, run) * y);
+    const SharedVector y = rowsOf(unit_table_, u).col(table);
+    chi2 +=
+        std::log((RunError::Identity() + information_[u] * run).determinant()) - y.dot(shrink(u, run) * y);
   }
   return -0.5 * chi2;
 }

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 
 #include <talus/terramech/calibration/noise/folds.hpp>
+#include <talus/terramech/calibration/table/trial.hpp>
 
 /// The likelihood that tracing judges by: rows whitened each by itself, linear in the parameters about a fitted
 /// model, with a Gaussian prior, and an error that rows of one run share.
@@ -26,7 +27,7 @@ struct LinearModel {
 struct RunSums {
   std::vector<Eigen::MatrixXd> gram;   ///< X^T X, a fold
   std::vector<Eigen::MatrixXd> cross;  ///< X^T Y, a fold
-  Eigen::MatrixXd unit_column;         ///< sum of F^T X, a unit: channels x parameters, one below the other
+  Eigen::MatrixXd unit_column;         ///< sum of F^T X, a unit: kShared x parameters, one below the other
   StepPrior prior;
 };
 
@@ -39,13 +40,13 @@ struct HeldOutFit {
   Eigen::VectorXd score() const { return log_likelihood - 0.5 * prior_chi2; }
 };
 
-/// Covariance of a table's residuals Y = X step + e + F u: e independent of unit variance, F the whitening of a
-/// row, u ~ N(0, R) once a unit, a 4 x 4 block between the channels.
+/// Covariance of a table's residuals Y = X step + e + F u: e independent of unit variance, F what
+/// an error that rows share does to a whitened row, u ~ N(0, R) once a unit.
 class RunLikelihood {
  public:
-  /// `factor`: whitening of each row; `unit`: number of its run from 0, empty where rows share nothing. Rows of a
+  /// `factor`: F of each row; `unit`: number of its run from 0, empty where rows share nothing. Rows of a
   /// unit in different folds count as different units.
-  RunLikelihood(const std::vector<Eigen::Matrix4d>& factor, const std::vector<int>& unit, const Folds& folds);
+  RunLikelihood(const std::vector<SharedFactor>& factor, const std::vector<int>& unit, const Folds& folds);
 
   /// Takes the tables that are judged, whitened residuals rows*kChannels x tables.
   void setTables(const Eigen::MatrixXd& tables);
@@ -57,33 +58,32 @@ class RunLikelihood {
   RunSums sums(const RunSums& of_known, const LinearModel& known, const LinearModel& added) const;
 
   /// Each fold told by the parameters of the others, for `count` tables from `first` on.
-  HeldOutFit heldOut(const RunSums& sums, const Eigen::Matrix4d& run, Eigen::Index first,
-                     Eigen::Index count) const;
+  HeldOutFit heldOut(const RunSums& sums, const RunError& run, Eigen::Index first, Eigen::Index count) const;
 
-  /// Covariance R of a unit's error that is most likely with these columns in the model: expectation
-  /// maximisation of the restricted likelihood (laird_ware_1982) from `start`.
-  Eigen::Matrix4d profile(const RunSums& sums, Eigen::Matrix4d start, Eigen::Index table, int steps) const;
+  /// Covariance R of a unit's error that is most likely with these columns in the model, among those in which strength and
+  /// stiffness vary on their own: expectation maximisation of the restricted likelihood (laird_ware_1982) from `start`.
+  RunError profile(const RunSums& sums, RunError start, Eigen::Index table, int steps) const;
 
   bool hasUnits() const { return !information_.empty(); }
   int folds() const { return folds_; }
 
   /// Logarithm of the likelihood of a table under no parameters at all, for choosing units.
-  double logLikelihood(const Eigen::Matrix4d& run, Eigen::Index table) const;
+  double logLikelihood(const RunError& run, Eigen::Index table) const;
 
  private:
   struct FoldSums;
   static FoldSums together(const std::vector<FoldSums>& fold);
-  std::vector<FoldSums> underRun(const RunSums& sums, const Eigen::Matrix4d& run, Eigen::Index first,
+  std::vector<FoldSums> underRun(const RunSums& sums, const RunError& run, Eigen::Index first,
                                  Eigen::Index count) const;
-  Eigen::Matrix4d shrink(std::size_t unit, const Eigen::Matrix4d& run) const;
+  RunError shrink(std::size_t unit, const RunError& run) const;
 
-  std::vector<Eigen::Matrix4d> factor_;
+  std::vector<SharedFactor> factor_;
   std::vector<int> unit_, fold_, fold_of_unit_;
   int folds_;
-  std::vector<Eigen::Matrix4d> information_;  ///< sum of F^T F, a unit
-  std::vector<Eigen::MatrixXd> tables_;       ///< rows of each fold
-  Eigen::MatrixXd square_;                    ///< folds x tables
-  Eigen::MatrixXd unit_table_;  ///< sum of F^T Y, a unit: channels x tables, one below the other
+  std::vector<RunError> information_;    ///< sum of F^T F, a unit
+  std::vector<Eigen::MatrixXd> tables_;  ///< rows of each fold
+  Eigen::MatrixXd square_;               ///< folds x tables
+  Eigen::MatrixXd unit_table_;           ///< sum of F^T Y, a unit: kShared x tables, one below the other
 };
 
 }  // namespace talus::terramech

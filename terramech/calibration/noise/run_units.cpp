@@ -77,17 +77,21 @@ double logLikelihood(const Whitening& whitening, const std::vector<int>& unit, c
   const auto rows = whitening.factor.size();
   RunLikelihood likelihood(whitening.shared(), unit, {"", std::vector<int>(rows, 0), 1});
   likelihood.setTables(table);
-  if (unit.empty()) return likelihood.logLikelihood(Eigen::Matrix4d::Zero(), 0);
+  if (unit.empty()) return likelihood.logLikelihood(RunError::Zero(), 0);
   const LinearModel none{Eigen::MatrixXd::Zero(table.size(), 1),
                          {Eigen::VectorXd::Zero(1), Eigen::VectorXd::Ones(1)}};
-  const Eigen::Matrix4d run = likelihood.profile(likelihood.sums(none), roughRunError(whitening), 0, 30);
+  const RunError run = likelihood.profile(likelihood.sums(none), roughRunError(whitening), 0, 30);
   return likelihood.logLikelihood(run, 0);
 }
 
 }  // namespace
 
-Eigen::Matrix4d roughRunError(const Whitening& whitening) {
-  return whitening.std.cwiseAbs2().colwise().mean().transpose().asDiagonal();
+RunError roughRunError(const Whitening& whitening) {
+  constexpr double kSoil = 0.1;
+  SharedVector variance = SharedVector::Constant(kSoil * kSoil);
+  variance.head<kChannels>() = whitening.std.cwiseAbs2().colwise().mean().transpose();
+  if (whitening.common.by_soil.empty()) variance.tail<kShared - kChannels>().setZero();
+  return variance.asDiagonal();
 }
 
 std::vector<int> runUnits(const Trial& trial, const Whitening& whitening, const Eigen::MatrixXd& left) {

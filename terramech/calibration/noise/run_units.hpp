@@ -21,6 +21,6 @@ Eigen::MatrixXd unitMeans(const Eigen::MatrixXd& residual, const Eigen::MatrixXd
                           const std::vector<int>& unit);
 
 /// A covariance of a run's error to start a search from: that of independent errors as large as a row's.
-Eigen::Matrix4d roughRunError(const Whitening& whitening);
+RunError roughRunError(const Whitening& whitening);
 
 }  // namespace talus::terramech

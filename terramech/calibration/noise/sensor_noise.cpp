@@ -8,11 +8,15 @@
 #include <talus/terramech/calibration/noise/nelder_mead.hpp>
 #include <talus/terramech/calibration/noise/sensor_noise.hpp>
 #include <talus/terramech/calibration/noise/spline_basis.hpp>
+#include <talus/terramech/calibration/table/answer_columns.hpp>
 #include <talus/terramech/numerics/median.hpp>
 #include <talus/terramech/numerics/squared.hpp>
 
 namespace talus::terramech {
 namespace {
+
+/// Standard deviation of the logarithm of an error that a base file states.
+constexpr double kStatedSpread = 0.25;
 
 /// A positive number in a search on logarithms, with a log-normal prior.
 struct Scale {
@@ -49,20 +53,65 @@ std::vector<Scale> scales(const Trial& trial, const Eigen::MatrixXd& residual, c
     const auto given = statedOf(stated, static_cast<Channel>(c));
     all.push_back({&noise.absolute[k],
                    given.value_or(std::max(0.01 * medianOf(sizes), 0.1 * medianOf(left)) + 1e-9),
-                   given ? 0.25 : 1.0});
+                   given ? kStatedSpread : 1.0});
     all.push_back({&noise.relative[k], given ? 0.01 : 0.03, 1.0});
   }
   if (stated.slip)
-    all.push_back({&noise.slip_absolute, std::max(*stated.slip, 1e-5), 0.25});
+    all.push_back({&noise.slip_absolute, std::max(*stated.slip, 1e-5), kStatedSpread});
   else
     all.push_back({&noise.slip_relative, 0.02, 0.7});
   const double load = medianOf(trial.load_N);
   all.push_back({&noise.load_relative, stated.load_N ? std::max(*stated.load_N / load, 1e-5) : 0.02,
-                 stated.load_N ? 0.25 : 0.7});
+                 stated.load_N ? kStatedSpread : 0.7});
   return all;
 }
 
+/// Root mean square over all rows of the sensor's own error, in the unit of its column.
+double errorOf(const Trial& trial, const Eigen::MatrixXd& level, const SensorNoise& noise, int channel) {
+  const auto k = static_cast<std::size_t>(channel);
+  double sum = 0.0;
+  for (int row = 0; row < trial.rows(); ++row)
+    sum += squared(noise.absolute[k]) + squared(noise.relative[k] * level(row, channel) *
+                                                trial.denominator(row, static_cast<Channel>(channel)));
+  return std::sqrt(sum / std::max(1, trial.rows()));
+}
+
 }  // namespace
+
+std::vector<StrainedSensor> strainedSensors(const Trial& trial, const Eigen::MatrixXd& level,
+                                            const StatedSensors& stated, SensorNoise& noise) {
+  std::vector<StrainedSensor> all;
+  const auto isStrained = [&](const char* column, const std::optional<double>& declared, double fitted) {
+    if (!declared || !(fitted > *declared * std::exp(2.0 * kStatedSpread))) return false;
+    all.push_back({column, *declared, fitted});
+    return true;
+  };
+  for (int c = 0; c < kChannels; ++c) {
+    const auto channel = static_cast<Channel>(c);
+    // The pull of a drive is no sensor's.
+    if (!trial.has(channel) || (channel == Channel::DrawbarPull && !trial.moment.empty())) continue;
+    const auto declared = statedOf(stated, channel);
+    if (!isStrained(kAnswers[static_cast<std::size_t>(c)], declared, errorOf(trial, level, noise, c)))
+      continue;
+    noise.absolute[static_cast<std::size_t>(c)] = *declared;
+    noise.relative[static_cast<std::size_t>(c)] = 0.0;
+  }
+  if (isStrained("slip", stated.slip, noise.slip_absolute)) noise.slip_absolute = *stated.slip;
+  const double load_N = medianOf(trial.load_N);
+  if (isStrained("load_N", stated.load_N, noise.load_relative * load_N))
+    noise.load_relative = *stated.load_N / load_N;
+  return all;
+}
+
+std::vector<std::string> unstatedSensors(const Trial& trial, const StatedSensors& stated) {
+  std::vector<std::string> all;
+  for (int c = 0; c < kChannels; ++c)
+    if (const auto channel = static_cast<Channel>(c); trial.has(channel) && !statedOf(stated, channel))
+      all.emplace_back(kAnswers[static_cast<std::size_t>(c)]);
+  if (!stated.slip) all.emplace_back("slip");
+  if (!stated.load_N) all.emplace_back("load_N");
+  return all;
+}
 
 std::vector<std::string> noiseColumns(const Trial& trial) {
   std::vector<std::string> names;

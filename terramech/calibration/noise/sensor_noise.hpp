@@ -18,6 +18,14 @@ namespace talus::terramech {
 SensorNoise fitNoise(const Trial& trial, const Eigen::MatrixXd& residual, const Eigen::MatrixXd& level,
                      const InputSlopes& slopes, const StatedSensors& stated);
 
+/// Sensors that by the fitted noise err far more than is stated of them: by more than two standard deviations of that
+/// statement's own uncertainty, e^0.5. `noise` is left as it would be if they erred as stated.
+std::vector<StrainedSensor> strainedSensors(const Trial& trial, const Eigen::MatrixXd& level,
+                                            const StatedSensors& stated, SensorNoise& noise);
+
+/// Columns that are measured and of whose error nothing is stated.
+std::vector<std::string> unstatedSensors(const Trial& trial, const StatedSensors& stated);
+
 /// Residuals with an additive smooth of these columns taken out, scaled up for the freedom that it took. NaN
 /// stay.
 Eigen::MatrixXd withoutSmooth(const Trial& trial, const Eigen::MatrixXd& residual,

@@ -71,9 +71,12 @@ Whitening subset(const Whitening& whitening, const std::vector<char>& keep) {
   }
   part.std = whitening.std(rows, Eigen::all);
   part.slip = subset(whitening.slip, keep);
-  for (Eigen::Index row : rows)
-    if (!whitening.unit.empty()) part.unit.push_back(whitening.unit[static_cast<std::size_t>(row)]);
-  part.run = whitening.run;
+  part.common.run = whitening.common.run;
+  for (Eigen::Index row : rows) {
+    const auto r = static_cast<std::size_t>(row);
+    if (!whitening.common.unit.empty()) part.common.unit.push_back(whitening.common.unit[r]);
+    if (!whitening.common.by_soil.empty()) part.common.by_soil.push_back(whitening.common.by_soil[r]);
+  }
   return part;
 }
 
@@ -97,16 +100,21 @@ Eigen::VectorXd Whitening::marginal(const Eigen::MatrixXd& residual) const {
   return out;
 }
 
-std::vector<Eigen::Matrix4d> Whitening::shared() const {
-  std::vector<Eigen::Matrix4d> all = factor;
-  if (slip.moment.empty()) return all;
-  const auto rows = static_cast<Eigen::Index>(factor.size());
-  for (int c = 0; c < kChannels; ++c) {
-    Eigen::MatrixXd one = Eigen::MatrixXd::Zero(rows, kChannels);
-    one.col(c).setOnes();
-    const Eigen::VectorXd out = rowByRow(one);
-    for (Eigen::Index row = 0; row < rows; ++row)
-      all[static_cast<std::size_t>(row)].col(c) = out.segment<kChannels>(row * kChannels);
+std::vector<SharedFactor> Whitening::shared() const {
+  const std::size_t rows = factor.size();
+  std::vector<SharedFactor> all(rows, SharedFactor::Zero());
+  for (std::size_t row = 0; row < rows; ++row) {
+    all[row].leftCols<kChannels>() = factor[row];
+    if (!common.by_soil.empty())
+      all[row].rightCols<kShared - kChannels>() = factor[row] * common.by_soil[row];
+  }
+  for (int part = 0; part < kShared && !slip.moment.empty(); ++part) {
+    Eigen::VectorXd out(static_cast<Eigen::Index>(rows) * kChannels);
+    for (std::size_t row = 0; row < rows; ++row)
+      out.segment<kChannels>(static_cast<Eigen::Index>(row) * kChannels) = all[row].col(part);
+    slip.takeOut(out);
+    for (std::size_t row = 0; row < rows; ++row)
+      all[row].col(part) = out.segment<kChannels>(static_cast<Eigen::Index>(row) * kChannels);
   }
   return all;
 }
@@ -114,28 +122,28 @@ std::vector<Eigen::Matrix4d> Whitening::shared() const {
 // (I + B B^T)^(-1/2) of each run, B = F R^(1/2) stacked over its rows: with B^T B = Q S Q^T it is
 // I - B Q diag((1 - (1 + s)^(-1/2)) / s) Q^T B^T.
 void Whitening::settleRuns(Eigen::VectorXd& rows) const {
-  if (unit.empty() || run.isZero()) return;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> eigen(run);
-  const Eigen::Matrix4d root =
-      eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
-  const std::vector<Eigen::Matrix4d> common = shared();
-  std::map<int, std::pair<Eigen::Matrix4d, Eigen::Vector4d>> sums;
+  const std::vector<int>& unit = common.unit;
+  if (unit.empty() || common.run.isZero()) return;
+  const Eigen::SelfAdjointEigenSolver<RunError> eigen(common.run);
+  const RunError root = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  const std::vector<SharedFactor> all = shared();
+  std::map<int, std::pair<RunError, SharedVector>> sums;
   for (std::size_t row = 0; row < unit.size(); ++row) {
-    const auto [at, fresh] = sums.try_emplace(unit[row], Eigen::Matrix4d::Zero(), Eigen::Vector4d::Zero());
-    const Eigen::Matrix4d b = common[row] * root;
+    const auto [at, fresh] = sums.try_emplace(unit[row], RunError::Zero(), SharedVector::Zero());
+    const SharedFactor b = all[row] * root;
     at->second.first += b.transpose() * b;
     at->second.second += b.transpose() * rows.segment<kChannels>(static_cast<Eigen::Index>(row) * kChannels);
   }
-  std::map<int, Eigen::Vector4d> taken;
+  std::map<int, SharedVector> taken;
   for (const auto& [number, sum] : sums) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> own(sum.first);
-    const Eigen::Vector4d weight = own.eigenvalues().unaryExpr(
+    const Eigen::SelfAdjointEigenSolver<RunError> own(sum.first);
+    const SharedVector weight = own.eigenvalues().unaryExpr(
         [](double s) { return s > 1e-12 ? (1.0 - 1.0 / std::sqrt(1.0 + s)) / s : 0.5; });
     taken[number] =
         root * own.eigenvectors() * weight.asDiagonal() * own.eigenvectors().transpose() * sum.second;
   }
   for (std::size_t row = 0; row < unit.size(); ++row)
-    rows.segment<kChannels>(static_cast<Eigen::Index>(row) * kChannels) -= common[row] * taken[unit[row]];
+    rows.segment<kChannels>(static_cast<Eigen::Index>(row) * kChannels) -= all[row] * taken[unit[row]];
 }
 
 Eigen::VectorXd Whitening::apply(const Eigen::MatrixXd& residual) const {
@@ -163,6 +171,24 @@ Eigen::Vector4d leastVariance(const Trial& trial, const Eigen::MatrixXd& level, 
 }
 
 }  // namespace
+
+std::vector<SoilFactor> soilFactors(const RefinedModel& model, const Trial& trial,
+                                    const Eigen::MatrixXd& level, const SolvedContacts& solved) {
+  if (!trial.moment.empty()) return {};
+  constexpr double kStep = 0.02;
+  std::vector<SoilFactor> all(static_cast<std::size_t>(trial.rows()), SoilFactor::Zero());
+  int part = 0;
+  for (const char* kind : {"empirical_strength", "empirical_stiffness"}) {
+    RefinedModel moved = model;
+    moved.effects.push_back({.name = kind, .covariate = "slip", .parameters = {kStep}, .knots = {0.0}});
+    SolvedContacts beside = solved;
+    const Eigen::MatrixXd change = (predictRows(moved, trial, beside) - level) / kStep;
+    for (int row = 0; row < trial.rows(); ++row)
+      all[static_cast<std::size_t>(row)].col(part) = finiteOrZero(change, row);
+    ++part;
+  }
+  return all;
+}
 
 Whitening whitening(const Trial& trial, const Eigen::MatrixXd& level, const InputSlopes& slopes,
                     const SensorNoise& noise) {

@@ -32,15 +32,12 @@ Eigen::Vector4d finiteOrZero(const Eigen::MatrixXd& residual, int row);
 /// moment share of its slip's error taken out; then what rows of a run share.
 struct Whitening {
   std::vector<Eigen::Matrix4d> factor;
-  Eigen::MatrixXd std;    ///< marginal standard deviations of a row's own error, rows x kChannels
-  MomentSlip slip{};      ///< error of the slip that rows of a moment share
-  std::vector<int> unit;  ///< run of each row; empty: rows are on their own
-  /// Covariance of the error that the rows of a run share, between the channels [-]
-  Eigen::Matrix4d run = Eigen::Matrix4d::Zero();
+  Eigen::MatrixXd std;   ///< marginal standard deviations of a row's own error, rows x kChannels
+  MomentSlip slip{};     ///< error of the slip that rows of a moment share
+  SharedError common{};  ///< what the rows of a run share
 
-  /// What an error that all rows share becomes in each row of rowByRow(): its factor, less what the moments' slip
-  /// takes out.
-  std::vector<Eigen::Matrix4d> shared() const;
+  /// What each part of an error that rows share becomes in each row of rowByRow(), less what the moments' slip takes out.
+  std::vector<SharedFactor> shared() const;
 
   Eigen::VectorXd apply(const Eigen::MatrixXd& residual) const;     ///< rows*kChannels; 0 where missing
   Eigen::VectorXd rowByRow(const Eigen::MatrixXd& residual) const;  ///< the same without the runs' error
@@ -51,6 +48,11 @@ struct Whitening {
 };
 /// The rows that `keep` marks.
 Whitening subset(const Whitening& whitening, const std::vector<char>& keep);
+
+/// What strength and stiffness of the soil do to each row about a model's readings, to first order; nothing on a drive, whose
+/// soil changes along the way as its slip does.
+std::vector<SoilFactor> soilFactors(const RefinedModel& model, const Trial& trial,
+                                    const Eigen::MatrixXd& level, const SolvedContacts& solved);
 
 Whitening whitening(const Trial& trial, const Eigen::MatrixXd& level, const InputSlopes& slopes,
                     const SensorNoise& noise);

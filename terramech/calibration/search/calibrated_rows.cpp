@@ -59,8 +59,10 @@ void CalibratedRows::shareWithin(Eigen::MatrixXd smooth, const Eigen::MatrixXd& 
     smooth -= unitMeans(smooth, whitening_.std, unit);
     if (kept > 4.0) settle(std::sqrt(rows / kept) * smooth, level, measured_slopes, model, solved);
   }
-  whitening_.unit = unit;
-  if (!unit.empty()) whitening_.run = roughRunError(whitening_);
+  whitening_.common.unit = unit;
+  if (unit.empty()) return;
+  whitening_.common.by_soil = soilFactors(model, trial_, level_, solved);
+  whitening_.common.run = roughRunError(whitening_);
 }
 
 /// Estimates the set load of each row. A smooth of the measured loads would follow their errors about the set loads, so
@@ -94,8 +96,8 @@ void CalibratedRows::calibrate(RefinedModel& model, SolvedContacts& solved) {
   white_ = whitening_.apply(residual_);
 }
 
-void CalibratedRows::setRunError(const Eigen::Matrix4d& run) {
-  whitening_.run = run;
+void CalibratedRows::setRunError(const RunError& run) {
+  whitening_.common.run = run;
   white_ = whitening_.apply(residual_);
 }
 

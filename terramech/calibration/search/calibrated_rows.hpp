@@ -22,7 +22,7 @@ class CalibratedRows {
   void calibrate(RefinedModel& model, SolvedContacts& solved);
 
   /// Replaces the covariance of the error that rows of a unit share.
-  void setRunError(const Eigen::Matrix4d& run);
+  void setRunError(const RunError& run);
 
   /// Residuals of another model, the noise as it is.
   void compare(const RefinedModel& model, SolvedContacts& solved);

@@ -100,12 +100,6 @@ struct UnsearchedRows {
   ChannelErrors base_rmse{}, refined_rmse{};
 };
 
-/// An error that the rows of one unit (a run, a stretch of time) share.
-struct SharedError {
-  std::vector<int> unit;                          ///< of each row; empty: rows are on their own
-  Eigen::Matrix4d run = Eigen::Matrix4d::Zero();  ///< its covariance between the channels [-]
-};
-
 /// What tracing found.
 struct TraceResult {
   Soil given;            ///< of the base, before any fit
@@ -118,7 +112,9 @@ struct TraceResult {
   std::vector<Promise> first_promises, last_promises;  ///< of base and refined model, best first
   double threshold = 0.0;                              ///< gain that noise reaches in a share `significance`
   ChannelErrors base_rmse{}, refined_rmse{}, noise_floor{};
-  std::optional<Estimate> first_prior;  ///< of the first effect's first parameter, known beside the model
+  std::vector<StrainedSensor> strained;  ///< beside the refined model
+  ChannelErrors declared_floor{};        ///< noise_floor if these sensors erred as stated
+  std::optional<Estimate> first_prior;   ///< of the first effect's first parameter, known beside the model
   SharedError base_shared,
       shared;  ///< what the rows of a run have in common beside the base, and the refined model
   std::vector<EndLevel> ends;  ///< of the model beyond its rows

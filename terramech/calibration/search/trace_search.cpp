@@ -276,7 +276,10 @@ void TraceSearch::finish(TraceResult& result) {
   const Trial measured = asMeasured(result.trial);
   result.base_rmse = rmseOf(result.base, measured);
   result.refined_rmse = rmseOf(result.refined, measured);
-  result.noise_floor = fit_.noiseFloor();
+  result.noise_floor = fit_.noiseFloor(model().noise);
+  SensorNoise declared = model().noise;
+  result.strained = strainedSensors(result.trial, fit_.rows().level(), model().stated, declared);
+  result.declared_floor = fit_.noiseFloor(declared);
   result.shared = sharedError();
 }
 

@@ -64,7 +64,7 @@ class TraceSearch {
   std::vector<Effect> parts(std::size_t k) const;
 
   /// What the rows of a run have in common beside the model.
-  SharedError sharedError() const { return {fit_.rows().whitening().unit, fit_.rows().whitening().run}; }
+  const SharedError& sharedError() const { return fit_.rows().whitening().common; }
 
   /// Squared length of the whitened residuals.
   double chi2() const { return fit_.rows().white().squaredNorm(); }

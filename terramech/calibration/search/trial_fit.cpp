@@ -25,7 +25,7 @@ void TrialFit::setRows(const Trial& trial) {
 
 void TrialFit::refresh() {
   rows_.calibrate(model_, solved_);
-  if (!rows_.whitening().unit.empty()) {
+  if (!rows_.whitening().common.unit.empty()) {
     SolvedContacts solved = solved_;
     rows_.setRunError(runErrorOf(standing(model_, rows_.residual(), solved)));
   }
@@ -76,11 +76,11 @@ NullModel TrialFit::standing(const RefinedModel& model, const Eigen::MatrixXd& r
   const Trial& trial = rows_.trial();
   const Whitening& whitening = rows_.whitening();
   NullModel null{whitening.shared(),
-                 whitening.unit,
+                 whitening.common.unit,
                  folds_,
                  whitening.rowByRow(residual),
                  linearised(model, trial, whitening, planFor(model), solved),
-                 whitening.run,
+                 whitening.common.run,
                  static_cast<Eigen::Index>(planFor(model).soil_prior.size())};
   const std::optional<Eigen::MatrixXd>& by_slip = rows_.bySharedSlip();
   if (!by_slip) return null;
@@ -131,9 +131,9 @@ Channel TrialFit::strongest(std::size_t effect) const {
   return static_cast<Channel>(std::max_element(size.begin(), size.end()) - size.begin());
 }
 
-std::array<double, kChannels> TrialFit::noiseFloor() {
+std::array<double, kChannels> TrialFit::noiseFloor(const SensorNoise& noise) {
   const InputSlopes slopes = inputSlopes(model_, asMeasured(rows_.trial()), solved_);
-  return terramech::noiseFloor(rows_.trial(), rows_.level(), slopes, model_.noise);
+  return terramech::noiseFloor(rows_.trial(), rows_.level(), slopes, noise);
 }
 
 }  // namespace talus::terramech

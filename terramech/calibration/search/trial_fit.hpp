@@ -58,8 +58,8 @@ class TrialFit {
   /// The channel in which the rows change most, over their noise, when one effect of the model is taken out.
   Channel strongest(std::size_t effect) const;
 
-  /// noiseFloor() of the model at slip and load as measured.
-  std::array<double, kChannels> noiseFloor();
+  /// noiseFloor() of the model under this noise, at slip and load as measured.
+  std::array<double, kChannels> noiseFloor(const SensorNoise& noise);
 
  private:
   void refit(int iterations);

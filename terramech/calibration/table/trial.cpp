@@ -167,6 +167,17 @@ bool Trial::has(Channel channel) const {
   return measured.rows() > 0 && measured.col(static_cast<int>(channel)).array().isFinite().any();
 }
 
+double SharedError::soilVariance(int channel) const {
+  double sum = 0.0;
+  for (const SoilFactor& f : by_soil)
+    sum += f.row(channel).transpose().cwiseAbs2().dot(run.diagonal().tail<kShared - kChannels>());
+  return by_soil.empty() ? 0.0 : sum / static_cast<double>(by_soil.size());
+}
+
+double SharedError::variance(int channel) const {
+  return run(channel, channel) + soilVariance(channel);
+}
+
 double Trial::denominator(int row, Channel channel) const {
   const auto r = static_cast<std::size_t>(row);
   const Reading units{.load_N = load_N[r], .radius_m = states[r].wheel.radius_m};

@@ -33,6 +33,31 @@ struct Trial {
   double denominator(int row, Channel channel) const;
 };
 
+/// Parts of an error that the rows of one unit (a run, a stretch of time) share: an offset of each channel [-] and, since
+/// soils scatter from place to place, the logarithms of the soil's strength (c, tan phi) and stiffness (k).
+inline constexpr int kShared = kChannels + 2;
+
+using SharedVector = Eigen::Matrix<double, kShared, 1>;
+using SharedFactor = Eigen::Matrix<double, kChannels, kShared>;  ///< what one unit of each part does to a row
+using SoilFactor = Eigen::Matrix<double, kChannels, kShared - kChannels>;  ///< that of the soil's parts
+using RunError = Eigen::Matrix<double, kShared, kShared>;                  ///< covariance of the parts
+
+/// That error.
+struct SharedError {
+  std::vector<int> unit{};            ///< of each row; empty: rows are on their own
+  RunError run = RunError::Zero();    ///< its covariance
+  std::vector<SoilFactor> by_soil{};  ///< of each row; empty: the soil does not vary
+
+  double variance(int channel) const;      ///< in one channel, mean over the rows [-]
+  double soilVariance(int channel) const;  ///< the share of the soil's parts in it [-]
+};
+
+/// A sensor that errs more than is stated of it, if nothing else is to be missing.
+struct StrainedSensor {
+  std::string column;
+  double declared = 0.0, fitted = 0.0;  ///< standard deviations, in the unit of the column
+};
+
 /// Rows of telemetry as a trial. `fallback` is the wheel of rows without wheel dimensions. Throws InputError
 /// when no load, slip or answer is measured, or no wheel is known.
 Trial makeTrial(const Telemetry& telemetry, const RefinedModel& model);

@@ -25,6 +25,10 @@ TableTrace traceTable(const Telemetry& table, const TableTraceOptions& options,
   trace.held_out.insert(trace.held_out.begin(), trace.result.held_out);
   trace.answer = answerOf(trace.result);
   trace.applies = applicability(trace.result, input.options);
+  if (!trace.applies.applies) {
+    trace.answer.verdict = Verdict::Unexplained;
+    trace.answer.inapplicable = trace.applies.reason;
+  }
   trace.beyond_axle = rows.beyond_axle.rows();
   if (trace.beyond_axle > 0) trace.beyond_axle_rmse = rmseOf(trace.result.refined, rows.beyond_axle);
   return trace;

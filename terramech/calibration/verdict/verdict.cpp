@@ -2,14 +2,22 @@
 #include <cmath>
 #include <set>
 
+#include <talus/terramech/calibration/noise/sensor_noise.hpp>
 #include <talus/terramech/calibration/verdict/verdict.hpp>
+#include <talus/terramech/numerics/squared.hpp>
 
 namespace talus::terramech {
 namespace {
 
+/// Errors of the sensors as they are stated, where they are.
+const ChannelErrors& statedFloor(const TraceResult& result) {
+  return result.strained.empty() ? result.noise_floor : result.declared_floor;
+}
+
 /// Variance that a channel has above its floor and `known`; 0 where the excess is within three standard errors.
-double excess(const ChannelErrors& rmse, const TraceResult& result, std::size_t channel, double known = 0.0) {
-  const double floor = result.noise_floor[channel] * result.noise_floor[channel] + known;
+double excess(const ChannelErrors& rmse, const TraceResult& result, const ChannelErrors& of_sensors,
+              std::size_t channel, double known = 0.0) {
+  const double floor = of_sensors[channel] * of_sensors[channel] + known;
   const double variance = rmse[channel] * rmse[channel];
   const auto count = static_cast<double>(
       result.trial.measured.col(static_cast<Eigen::Index>(channel)).array().isFinite().count());
@@ -54,31 +62,41 @@ const char* name(Verdict verdict) {
 
 Answer answerOf(const TraceResult& result) {
   Answer answer;
+  const ChannelErrors& sensors = statedFloor(result);
   double before = 0.0, after = 0.0, most = 0.0;
   for (std::size_t c = 0; c < kChannels; ++c) {
     if (!result.trial.has(static_cast<Channel>(c))) continue;
-    const double floor = result.noise_floor[c] * result.noise_floor[c];
-    const double left = excess(result.refined_rmse, result, c);
-    before += excess(result.base_rmse, result, c) / floor;
+    const double floor = sensors[c] * sensors[c];
+    const double left = excess(result.refined_rmse, result, sensors, c);
+    before += excess(result.base_rmse, result, sensors, c) / floor;
     after += left / floor;
     if (answer.floor > 0.0 && left / floor <= most) continue;
     most = left / floor;
     answer.channel = static_cast<Channel>(c);
     answer.rest = result.refined_rmse[c];
-    answer.floor = result.noise_floor[c];
+    answer.floor = sensors[c];
   }
-  const bool open = after > 0.0 && (result.effects.empty() || after > 0.5 * before);
-  answer.open = after > 0.0;
+  const bool open =
+      (after > 0.0 || !result.strained.empty()) && (result.effects.empty() || after > 0.5 * before);
+  answer.open = after > 0.0 || !result.strained.empty();
+  answer.strained = result.strained;
+  answer.unstated = unstatedSensors(result.trial, result.refined.stated);
   answer.verdict = open                     ? Verdict::Unexplained
                    : result.effects.empty() ? Verdict::NothingMissing
                                             : Verdict::Explained;
+  const auto c = static_cast<int>(answer.channel);
+  if (after > 0.0 && 2.0 * result.shared.soilVariance(c) > squared(answer.rest) - squared(answer.floor)) {
+    answer.strength_scatter = std::sqrt(result.shared.run(kChannels, kChannels));
+    answer.stiffness_scatter = std::sqrt(result.shared.run(kChannels + 1, kChannels + 1));
+    answer.measure = "rows that record what else changed from run to run";
+  }
   for (const Promise& p : result.last_promises) {
     if (p.gain <= 0.0) break;
     answer.column = p.candidate.covariate();
     answer.gain = p.gain;
     break;
   }
-  if (answer.open) answer.measure = furtherRows(result, answer);
+  if (answer.open && answer.measure.empty()) answer.measure = furtherRows(result, answer);
   return answer;
 }
 
@@ -139,9 +157,9 @@ RefinedModel forPrediction(const TraceResult& result) {
   RefinedModel model = result.refined;
   for (int c = 0; c < kChannels; ++c) {
     if (!result.trial.has(static_cast<Channel>(c))) continue;
-    const double run = std::max(0.0, result.shared.run(c, c));
-    const double shared =
-        run + excess(result.held_out.refined_rmse, result, static_cast<std::size_t>(c), run);
+    const double run = std::max(0.0, result.shared.variance(c));
+    const double shared = run + excess(result.held_out.refined_rmse, result, result.noise_floor,
+                                       static_cast<std::size_t>(c), run);
     double unit = 0.0;
     for (int row = 0; row < result.trial.rows(); ++row)
       unit += std::pow(result.trial.denominator(row, static_cast<Channel>(c)), 2) / result.trial.rows();

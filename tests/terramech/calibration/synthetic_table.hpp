@@ -14,7 +14,8 @@ struct SyntheticTable {
 
   SyntheticTable(int runs, int rows, double run_std, std::uint64_t seed) : random_(seed) {
     const auto count = static_cast<std::size_t>(runs * rows);
-    null.factor.assign(count, Eigen::Matrix4d(Eigen::Vector4d(1, 0, 0, 0).asDiagonal()));
+    null.factor.assign(count, SharedFactor::Zero());
+    for (SharedFactor& f : null.factor) f(0, 0) = 1.0;
     null.residual = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(count) * kChannels);
     null.folds = {"whole runs", {}, 5};
     double offset = 0.0;
@@ -25,7 +26,7 @@ struct SyntheticTable {
       null.residual[static_cast<Eigen::Index>(row) * kChannels] = normal_(random_) + offset;
     }
     null.known = added(std::vector<double>(count, 1.0)).added;
-    null.run_start = Eigen::Matrix4d::Identity();
+    null.run_start = RunError::Identity();
   }
 
   std::vector<double> byRow() {

@@ -12,23 +12,23 @@ constexpr double kStart = 100.0, kSpan = 50.0;
 TEST(EffectsDrift, ALineRisesByItsSizeOverItsSpan) {
   // Closed form: 1 + a u with u = 1/2; k e^{a u}.
   const double middle = kStart + 0.5 * kSpan;
-  EXPECT_NEAR(acted("moisture_drift_cohesion", {0.4, kStart, kSpan}, middle).cohesion_Pa, 1200.0, 1e-9);
-  EXPECT_NEAR(acted("moisture_drift_friction", {0.4, kStart, kSpan}, middle).tan_friction, 0.6, 1e-12);
-  EXPECT_NEAR(acted("moisture_drift_stiffness", {std::log(4.0), kStart, kSpan}, middle).sinkage_modulus, 2e6,
+  EXPECT_NEAR(acted("drift_cohesion", {0.4, kStart, kSpan}, middle).cohesion_Pa, 1200.0, 1e-9);
+  EXPECT_NEAR(acted("drift_friction", {0.4, kStart, kSpan}, middle).tan_friction, 0.6, 1e-12);
+  EXPECT_NEAR(acted("drift_stiffness", {std::log(4.0), kStart, kSpan}, middle).sinkage_modulus, 2e6,
               1e-6);
-  EXPECT_EQ(acted("moisture_drift_cohesion", {0.4, kStart, kSpan}, kStart), plainContact());
+  EXPECT_EQ(acted("drift_cohesion", {0.4, kStart, kSpan}, kStart), plainContact());
 }
 
 TEST(EffectsDrift, ARelaxationReachesHalfItsSizeAfterLnTwoOfItsDecay) {
   const double x = kStart + kSpan * 0.4 * std::log(2.0);
-  EXPECT_NEAR(acted("moisture_drift_cohesion_relaxing", {0.4, kStart, kSpan, 0.4}, x).cohesion_Pa, 1200.0,
+  EXPECT_NEAR(acted("drift_cohesion_relaxing", {0.4, kStart, kSpan, 0.4}, x).cohesion_Pa, 1200.0,
               1e-9);
 }
 
 TEST(EffectsDrift, AWaveComesBackAfterItsPeriod) {
   const std::vector<double> wave{0.2, kStart, kSpan, 0.5, 0.0};  // period of half a span
   const auto cohesion = [&](double periods) {
-    return acted("moisture_drift_cohesion_diurnal", wave, kStart + 0.5 * kSpan * periods).cohesion_Pa;
+    return acted("drift_cohesion_diurnal", wave, kStart + 0.5 * kSpan * periods).cohesion_Pa;
   };
   // Closed form: the sine's values at quarters of its period.
   EXPECT_NEAR(cohesion(0.25), 1200.0, 1e-9);
@@ -42,9 +42,9 @@ TEST(EffectsDrift, AZeroMovesItsChannelAlone) {
   const auto moved = [&](const char* name) {
     return readWith(name, {3.0, kStart, kSpan}, kStart + kSpan, {}, plainContact(), before);
   };
-  const Reading pull = moved("temperature_drift_drawbar_zero"),
-                torque = moved("temperature_drift_torque_zero"),
-                sinkage = moved("temperature_drift_sinkage_zero");
+  const Reading pull = moved("drift_drawbar_zero"),
+                torque = moved("drift_torque_zero"),
+                sinkage = moved("drift_sinkage_zero");
   EXPECT_EQ(pull.drawbar_pull_N, 23.0);
   EXPECT_EQ(torque.torque_Nm, 8.0);
   EXPECT_EQ(sinkage.sinkage_m, 3.01);
@@ -56,9 +56,9 @@ TEST(EffectsDrift, AZeroMovesItsChannelAlone) {
 // Property: however far a line is followed, the soil keeps physical numbers.
 TEST(EffectsDrift, SoilStaysPhysical) {
   const double far = kStart + 1000 * kSpan;
-  EXPECT_EQ(acted("moisture_drift_cohesion", {-0.5, kStart, kSpan}, far).cohesion_Pa, 0.0);
-  EXPECT_GT(acted("moisture_drift_friction", {-0.5, kStart, kSpan}, far).tan_friction, 0.0);
-  EXPECT_LT(acted("moisture_drift_stiffness", {3.0, kStart, kSpan}, far).sinkage_modulus, 2e8);
+  EXPECT_EQ(acted("drift_cohesion", {-0.5, kStart, kSpan}, far).cohesion_Pa, 0.0);
+  EXPECT_GT(acted("drift_friction", {-0.5, kStart, kSpan}, far).tan_friction, 0.0);
+  EXPECT_LT(acted("drift_stiffness", {3.0, kStart, kSpan}, far).sinkage_modulus, 2e8);
 }
 
 TEST(EffectsDrift, OnlyZerosAreFaultsOfASensor) {

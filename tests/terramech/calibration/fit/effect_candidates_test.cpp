@@ -46,9 +46,8 @@ TEST(EffectCandidates, OnlyWhatTheColumnsAllow) {
   const auto plain = names(offered(trialWith({}, nothing)));
   EXPECT_TRUE(plain.contains("slip_sinkage_ding"));
   EXPECT_TRUE(plain.contains("torque_offset"));
-  for (const char* name :
-       {"multipass_stiffness", "rate_shear", "grouser_thrust", "wheel_diameter", "skid_sinkage",
-        "side_bulldozing", "slope_load_transfer", "moisture_drift_cohesion"})
+  for (const char* name : {"multipass_stiffness", "rate_shear", "grouser_thrust", "wheel_diameter",
+                           "skid_sinkage", "side_bulldozing", "slope_load_transfer", "drift_cohesion"})
     EXPECT_FALSE(plain.contains(name)) << name;
   const auto passes =
       names(offered(trialWith({"pass_index"}, [](int k) { return std::vector{1.0 + k % 4}; })));
@@ -60,12 +59,25 @@ TEST(EffectCandidates, OnlyWhatTheColumnsAllow) {
   EXPECT_TRUE(slopes.contains("slope_load_transfer"));
 }
 
+// Property: a drift in proportion is open to every column of one's own, whatever it is called.
+TEST(EffectCandidates, ADriftIsOpenToEveryColumnOfOnesOwn) {
+  const auto drifts = [](const std::string& column) {
+    std::set<std::string> all;
+    for (const Candidate& c : offered(trialWith({column}, [](int k) { return std::vector{k % 7 + 0.5}; })))
+      if (c.family == "drift" && c.covariate() == column) all.insert(c.parts[0].name);
+    return all;
+  };
+  EXPECT_EQ(drifts("gravel_fraction").size(), 6U);
+  EXPECT_EQ(drifts("gravel_fraction"), drifts("moisture_pct"));
+  EXPECT_TRUE(drifts("speed_mps").empty());
+}
+
 // Property: every offer is a form of the library with all its parameters, within their bounds.
 TEST(EffectCandidates, OffersAreWholeForms) {
   const auto all = offered(trialWith(
       {"time_s"}, [](int k) { return std::vector{10.0 * k}; }, -0.3));
   EXPECT_TRUE(names(all).contains("skid_sinkage"));
-  EXPECT_TRUE(names(all).contains("moisture_drift_cohesion_diurnal"));
+  EXPECT_TRUE(names(all).contains("drift_cohesion_diurnal"));
   for (const Candidate& c : all) {
     int fitted = 0;
     for (const Effect& e : c.parts) {

@@ -13,12 +13,12 @@ constexpr int kRuns = 6, kRows = 4;
 
 /// Rows of four channels, whitened by factors of their own; runs of four rows; folds of two runs.
 struct Made {
-  std::vector<Eigen::Matrix4d> factor;
+  std::vector<SharedFactor> factor;
   std::vector<int> unit;
   Folds folds{"", {}, 3};
   Eigen::VectorXd table;
   LinearModel model;
-  Eigen::Matrix4d run;
+  RunError run;
 
   explicit Made(std::uint64_t seed) {
     std::mt19937_64 random(seed);
@@ -29,14 +29,15 @@ struct Made {
     for (int row = 0; row < kRuns * kRows; ++row) {
       Eigen::Matrix4d f = noise(4, 4).triangularView<Eigen::Lower>();
       f.diagonal() = f.diagonal().cwiseAbs().array() + 0.5;
-      factor.push_back(f);
+      SharedFactor& all = factor.emplace_back();
+      all << f, noise(4, kShared - 4);
       unit.push_back(row / kRows);
       folds.of_row.push_back(row / kRows % 3);
     }
     const Eigen::Index values = static_cast<Eigen::Index>(factor.size()) * kChannels;
     table = noise(values, 1);
     model = {noise(values, 2), {noise(2, 1), Eigen::Vector2d(0.3, 2.0)}};
-    const Eigen::Matrix4d root = noise(4, 4);
+    const RunError root = noise(kShared, kShared);
     run = root * root.transpose();
   }
 
@@ -113,12 +114,11 @@ TEST(RunLikelihood, FindsTheErrorThatRunsShareAndBetweenWhichChannels) {
                                                                           : 0.0);
     }
   }
-  RunLikelihood likelihood(std::vector<Eigen::Matrix4d>(2000, Eigen::Matrix4d::Identity()), unit,
-                           {"", fold, 5});
+  RunLikelihood likelihood(std::vector<SharedFactor>(2000, SharedFactor::Identity()), unit, {"", fold, 5});
   likelihood.setTables(table);
   const LinearModel none{Eigen::MatrixXd::Zero(table.size(), 1),
                          {Eigen::VectorXd::Zero(1), Eigen::VectorXd::Ones(1)}};
-  const Eigen::Matrix4d run = likelihood.profile(likelihood.sums(none), Eigen::Matrix4d::Identity(), 0, 60);
+  const RunError run = likelihood.profile(likelihood.sums(none), RunError::Identity(), 0, 60);
   EXPECT_NEAR(run(0, 0), 0.64, 0.2);
   EXPECT_NEAR(run(0, 2), 0.32, 0.12);
   EXPECT_NEAR(run(2, 2), 0.16, 0.08);

@@ -48,6 +48,28 @@ TEST(SensorNoise, WhatIsStatedIsBelievedWhereRowsAreFew) {
   EXPECT_NEAR(std::log(noise.absolute[0] / 1.0), 0.0, 0.75);
 }
 
+TEST(SensorNoise, ASensorThatErrsFarMoreThanStatedIsNamed) {
+  // Closed form: 0.6 and 0.8 of 0.2 times 50 N add to 1 N in squares, 1.6 times and 1.7 times what is stated; e^0.5 = 1.65.
+  const Trial trial = pullAlone(20);
+  const Eigen::MatrixXd level = Eigen::MatrixXd::Constant(20, kChannels, 0.2);
+  SensorNoise fitted;
+  fitted.absolute[0] = 0.6;
+  fitted.relative[0] = 0.08;
+  fitted.slip_absolute = 0.01;
+  SensorNoise noise = fitted;
+  EXPECT_TRUE(strainedSensors(trial, level, {.slip = 0.01, .drawbar_pull_N = 1.0 / 1.6}, noise).empty());
+  EXPECT_EQ(noise.absolute[0], 0.6);
+  const auto strained = strainedSensors(trial, level, {.slip = 0.005, .drawbar_pull_N = 1.0 / 1.7}, noise);
+  ASSERT_EQ(strained.size(), 2U);
+  EXPECT_EQ(strained[0].column, "drawbar_pull_N");
+  EXPECT_NEAR(strained[0].fitted, 1.0, 1e-12);
+  EXPECT_EQ(strained[1].column, "slip");
+  EXPECT_EQ(noise.absolute[0], 1.0 / 1.7);
+  EXPECT_EQ(noise.relative[0], 0.0);
+  EXPECT_EQ(noise.slip_absolute, 0.005);
+  EXPECT_THAT(unstatedSensors(trial, {.slip = 0.005}), ElementsAre("drawbar_pull_N", "load_N"));
+}
+
 TEST(SensorNoise, WithoutASmoothOnlyNoiseIsLeft) {
   const Trial trial = pullAlone(200);
   Eigen::MatrixXd line = trial.measured;

@@ -40,8 +40,8 @@ TEST(Whitening, AMeanThatRowsShareWeighsWhatItIsWorth) {
   // Closed form: with variance q shared and 1 of its own, the mean of m rows has variance q + 1/m, so that a
   // constant of 1 is worth units / (q + 1/m) in chi-squared.
   Whitening w = plain();
-  w.unit = units();
-  w.run(0, 0) = 4.0;
+  w.common.unit = units();
+  w.common.run(0, 0) = 4.0;
   const Eigen::MatrixXd one = Eigen::MatrixXd::Ones(kUnits * kRows, kChannels);
   EXPECT_NEAR(w.apply(one).squaredNorm(), kUnits / (4.0 + 1.0 / kRows), 1e-9);
 }
@@ -59,24 +59,28 @@ TEST(Whitening, IsTheInverseRootOfTheWholeCovariance) {
   Whitening w;
   std::mt19937_64 random(4);
   std::normal_distribution<double> normal;
-  const auto noise = [&] {
-    return Eigen::Matrix4d(Eigen::Matrix4d::NullaryExpr([&] { return normal(random); }));
-  };
+  const auto noise = [&] { return RunError(RunError::NullaryExpr([&] { return normal(random); })); };
   constexpr int kCount = 9;
   Eigen::MatrixXd v = Eigen::MatrixXd::Zero(4 * kCount, 4 * kCount);
-  const Eigen::Matrix4d root = noise();
-  w.run = root * root.transpose();
+  const RunError root = noise();
+  w.common.run = root * root.transpose();
   w.std = Eigen::MatrixXd::Ones(kCount, kChannels);
   for (int row = 0; row < kCount; ++row) {
-    Eigen::Matrix4d f = noise().triangularView<Eigen::Lower>();
+    Eigen::Matrix4d f = noise().topLeftCorner<4, 4>().triangularView<Eigen::Lower>();
     f.diagonal() = f.diagonal().cwiseAbs().array() + 0.5;
     w.factor.push_back(f);
-    w.unit.push_back(row / 3);
+    w.common.unit.push_back(row / 3);
+    w.common.by_soil.emplace_back(noise().topRightCorner<4, kShared - 4>());
     v.block<4, 4>(4 * row, 4 * row) = (f.transpose() * f).inverse();
   }
+  const auto loading = [&](int row) {
+    SharedFactor f = SharedFactor::Identity();
+    f.rightCols<kShared - 4>() = w.common.by_soil[static_cast<std::size_t>(row)];
+    return f;
+  };
   for (int a = 0; a < kCount; ++a)
     for (int b = 0; b < kCount; ++b)
-      if (a / 3 == b / 3) v.block<4, 4>(4 * a, 4 * b) += w.run;
+      if (a / 3 == b / 3) v.block<4, 4>(4 * a, 4 * b) += loading(a) * w.common.run * loading(b).transpose();
   Eigen::MatrixXd r(kCount, kChannels);
   Eigen::VectorXd stacked(4 * kCount);
   for (int row = 0; row < kCount; ++row)

@@ -14,14 +14,14 @@ bool always(double) {
 TEST(TrialFit, WhatRunsShareIsNoNoiseOfTheirRows) {
   const TrialFit together(sand(), noisyTrial(sand(), 0.02, 0.1), false, always);
   const Whitening& whitening = together.rows().whitening();
-  ASSERT_EQ(whitening.unit.size(), 160U);
+  ASSERT_EQ(whitening.common.unit.size(), 160U);
   // Property: ten offsets of 0.1 know their own variance to 45 %.
-  EXPECT_NEAR(std::sqrt(whitening.run(0, 0)), 0.1, 0.05);
+  EXPECT_NEAR(std::sqrt(whitening.common.run(0, 0)), 0.1, 0.05);
   // Property: the offsets' 0.1 of the load is not taken for the sensor's 2 % of a pull of some 0.3 W.
   const SensorNoise& noise = together.model().noise;
   EXPECT_LT(std::hypot(noise.absolute[0] / 80.0, 0.3 * noise.relative[0]), 0.03);
   const TrialFit alone(sand(), noisyTrial(sand(), 0.02), false, always);
-  EXPECT_LT(std::sqrt(alone.rows().whitening().run(0, 0)), 0.01);
+  EXPECT_LT(std::sqrt(alone.rows().whitening().common.run(0, 0)), 0.01);
 }
 
 TEST(TrialFit, ASoilThatIsNotGivenIsFitted) {

@@ -36,6 +36,31 @@ TEST(Verdict, IsOneOfThree) {
   EXPECT_EQ(answerOf(resultOf(0.0345, 0.0330, 0.0141, 1)).verdict, Verdict::Unexplained);
 }
 
+TEST(Verdict, IsHeldAgainstTheDeclaredSensors) {
+  // Property: errors that a fitted noise of 0.0141 holds, where the load cell is declared at a tenth of it.
+  TraceResult result = resultOf(0.0141, 0.0141, 0.0141, 0);
+  EXPECT_EQ(answerOf(result).verdict, Verdict::NothingMissing);
+  result.strained = {{"drawbar_pull_N", 0.07, 0.7}};
+  result.declared_floor[0] = 0.00141;
+  const Answer a = answerOf(result);
+  EXPECT_EQ(a.verdict, Verdict::Unexplained);
+  EXPECT_EQ(a.floor, 0.00141);
+  ASSERT_EQ(a.strained.size(), 1U);
+  EXPECT_EQ(a.strained[0].column, "drawbar_pull_N");
+}
+
+TEST(Verdict, AScatterOfTheSoilIsSaidWhereItMakesMostOfTheRest) {
+  // Closed form: a strength that scatters by 0.1 moves DP/W by 0.03, of 0.0345^2 - 0.0141^2 = 0.0315^2 above the floor.
+  TraceResult result = resultOf(0.0345, 0.0345, 0.0141, 0);
+  result.shared.run(kChannels, kChannels) = 0.1 * 0.1;
+  result.shared.by_soil.assign(100, SoilFactor::Zero());
+  for (SoilFactor& f : result.shared.by_soil) f(0, 0) = 0.3;
+  EXPECT_NEAR(answerOf(result).strength_scatter, 0.1, 1e-12);
+  EXPECT_EQ(answerOf(result).measure, "rows that record what else changed from run to run");
+  for (SoilFactor& f : result.shared.by_soil) f(0, 0) = 0.2;
+  EXPECT_EQ(answerOf(result).strength_scatter, 0.0);
+}
+
 TEST(Verdict, AnUnexplainedRestIsNamedWithWhatWouldDecide) {
   TraceResult result = resultOf(0.0345, 0.0345, 0.0141, 0);
   Answer a = answerOf(result);
