@@ -19,6 +19,9 @@ class Blocks {
 
   const maps::Grid& coarse() const noexcept { return coarse_; }
 
+  /// Fine cells a side of a block.
+  int factor() const noexcept { return factor_; }
+
   /// Calls visit(cell) for a regular sample of at most 8 x 8 cells of the block.
   template <typename Visit>
   void forEach(maps::Cell block, Visit visit) const {

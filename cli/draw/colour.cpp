@@ -10,15 +10,15 @@ using terramech::Category;
 Colour colourOf(Category category) {
   switch (category) {
     case Category::Safe:
-      return rgb(0x2E9E6B);
+      return rgb(0xF2FFF8);
     case Category::Marginal:
-      return rgb(0xF2B134);
+      return rgb(0xE58E10);
     case Category::Dangerous:
-      return rgb(0xB3202C);
+      return rgb(0x9E1020);
     case Category::Unknown:
       break;
   }
-  return rgb(0xA6A6A6);
+  return rgb(0x000000);
 }
 
 Colour seriesColour(std::size_t i) {

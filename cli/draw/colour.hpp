@@ -27,9 +27,20 @@ constexpr Colour faded(Colour c, double alpha) {
   return c;
 }
 
-/// Green, amber, red, grey of a category. Their lightness differs (58, 76, 39, 68 of CIE L*), so that they
-/// stay apart for every kind of colour vision and in grey print.
+/// White with a trace of green, amber, dark red and black of a category: a ramp towards danger whose steps of lightness
+/// (99, 66, 33, 0 of CIE L*) stay apart for every kind of colour vision, in grey print and under the light of lit().
 Colour colourOf(terramech::Category category);
+
+/// Share of a colour that the light of the hillshade changes: of categories, whose colours are to differ by 30 of CIE
+/// L*a*b* under any light, and of other layers.
+inline constexpr double kCategoryRelief = 0.08;
+inline constexpr double kValueRelief = 0.3;
+
+/// A colour under light, 0 to 1: each part times 1 - relief + relief * light. The page multiplies images by the same share.
+constexpr Colour lit(Colour c, double light, double relief) {
+  const double f = 1.0 - relief + relief * light;
+  return {.red = f * c.red, .green = f * c.green, .blue = f * c.blue, .alpha = c.alpha};
+}
 
 /// Colour number i of eight that stay apart for every kind of colour vision (Okabe and Ito); repeats after
 /// eight.

@@ -83,6 +83,21 @@ Raster<float> hillshade(const Raster<float>& elevation_m) {
   return shade;
 }
 
+Range lightRange(const Raster<float>& shade) {
+  std::vector<float> known;
+  for (const float v : shade.values())
+    if (std::isfinite(v)) known.push_back(v);
+  if (known.empty()) return {};
+  const auto quantile = [&known](double share) {
+    const auto at =
+        known.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(known.size() - 1));
+    std::nth_element(known.begin(), at, known.end());
+    return static_cast<double>(*at);
+  };
+  const Range range{quantile(0.02), quantile(0.98)};
+  return range.high > range.low + 0.02 ? range : Range{range.low - 0.5, range.low + 0.5};
+}
+
 Image shadeImage(const Raster<float>& shade) {
   return imageOf(shade.grid(), [&](Cell c) {
     const auto v = static_cast<double>(shade[c]);
@@ -115,6 +130,7 @@ Image valueImage(const ValueLayer& layer) {
   return imageOf(layer.values.grid(), [&](Cell c) {
     const auto v = static_cast<double>(layer.values[c]);
     if (std::isnan(v)) return 0U;
+    if (!layer.classes.empty()) return pixel(layer.classes[static_cast<std::size_t>(v)].colour);
     return pixel(at(scale, (v - layer.range.low) / (layer.range.high - layer.range.low)));
   });
 }

@@ -9,6 +9,9 @@ namespace talus::cli {
 /// ground is shown steeper than it is, so that its shape can be seen.
 maps::Raster<float> hillshade(const maps::Raster<float>& elevation_m);
 
+/// Brightnesses that are no light and full light, 0 and 1, where colours are lit(): the 2 % and 98 % quantiles.
+Range lightRange(const maps::Raster<float>& shade);
+
 /// Brightness as grey; nodata transparent.
 Image shadeImage(const maps::Raster<float>& shade);
 

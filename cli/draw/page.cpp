@@ -1,15 +1,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <talus/cli/app/context.hpp>
 #include <talus/cli/app/output_file.hpp>
-#include <talus/cli/draw/canvas.hpp>
 #include <talus/cli/draw/html_report.hpp>
 #include <talus/cli/draw/map_image.hpp>
 #include <talus/cli/draw/page.hpp>
+#include <talus/cli/draw/page_layers.hpp>
 #include <talus/cli/draw/page_template.hpp>
 #include <talus/cli/draw/route_summary.hpp>
 #include <talus/common/constants.hpp>
@@ -18,52 +17,6 @@ namespace talus::cli {
 namespace {
 
 using nlohmann::ordered_json;
-
-std::string dataUri(const Image& image) {
-  return "data:image/png;base64," + base64(png(image));
-}
-
-std::string hex(Colour c) {
-  return fmt::format("#{:06x}", pixel(c) & 0xFFFFFFU);
-}
-
-ordered_json categoryLegend() {
-  ordered_json legend = ordered_json::array();
-  for (const auto category : {terramech::Category::Safe, terramech::Category::Marginal,
-                              terramech::Category::Dangerous, terramech::Category::Unknown})
-    legend.push_back({{"colour", hex(colourOf(category))}, {"label", terramech::name(category)}});
-  return legend;
-}
-
-ordered_json scaleLegend(const ValueLayer& layer) {
-  ordered_json legend = ordered_json::array();
-  constexpr int kSteps = 6;
-  for (int i = 0; i < kSteps; ++i) {
-    const double t = i / (kSteps - 1.0);
-    const double value = layer.range.low + t * (layer.range.high - layer.range.low);
-    legend.push_back(
-        {{"colour", hex(at(scaleOf(layer), t))}, {"label", fmt::format("{:.3g} {}", value, layer.unit)}});
-  }
-  return legend;
-}
-
-ordered_json layersOf(const Scene& scene) {
-  ordered_json layers = ordered_json::array();
-  if (!scene.categories.empty())
-    layers.push_back({{"name", "categories"},
-                      {"image", dataUri(categoryImage(scene.categories))},
-                      {"legend", categoryLegend()}});
-  for (const ValueLayer& layer : scene.layers)
-    layers.push_back(
-        {{"name", layer.name}, {"image", dataUri(valueImage(layer))}, {"legend", scaleLegend(layer)}});
-  return layers;
-}
-
-/// Shorter numbers for the page: nine significant digits; null for NaN.
-ordered_json number(double value) {
-  if (!std::isfinite(value)) return nullptr;
-  return std::stod(fmt::format("{:.9g}", value));
-}
 
 /// Every vertex, or for a very long route an even selection with both ends.
 std::vector<std::size_t> selection(std::size_t count) {
@@ -89,6 +42,7 @@ ordered_json routeOf(const planner::Route& route) {
                       {"angle", number(v.slip_angle_rad / kDegree)},
                       {"energy", number(v.energy_J / 1000.0)},
                       {"time", number(v.time_s)},
+                      {"risk", number(v.immobilisation_risk)},
                       {"category", terramech::name(v.category)}});
     if (v.reverse) points.back()["reverse"] = true;
     if (v.turn_rad != 0.0) points.back()["turn"] = number(v.turn_rad);
@@ -124,6 +78,23 @@ ordered_json storyOf(const DriveStory& story) {
   return out;
 }
 
+ordered_json marksOf(const Scene& scene) {
+  ordered_json marks = ordered_json::array();
+  for (const auto& [letter, place] : scene.marks)
+    marks.push_back({{"letter", letter}, {"x", number(place.x_m)}, {"y", number(place.y_m)}});
+  return marks;
+}
+
+ordered_json ringsOf(const Scene& scene) {
+  ordered_json rings = ordered_json::array();
+  for (const Ring& ring : scene.rings)
+    rings.push_back({{"x", number(ring.centre.x_m)},
+                     {"y", number(ring.centre.y_m)},
+                     {"radius", number(ring.radius_m)},
+                     {"label", ring.label}});
+  return rings;
+}
+
 ordered_json dataOf(const Scene& scene) {
   const maps::Grid& grid = scene.grid();
   ordered_json data;
@@ -131,9 +102,21 @@ ordered_json dataOf(const Scene& scene) {
                     {"south", grid.south_west.y_m},
                     {"east", grid.south_west.x_m + grid.width * grid.resolution_m},
                     {"north", grid.south_west.y_m + grid.height * grid.resolution_m}};
-  data["shade"] = dataUri(shadeImage(hillshade(scene.elevation_m)));
+  data["grid"] = {{"width", grid.width},
+                  {"height", grid.height},
+                  {"cell", grid.resolution_m},
+                  {"cells_per_pixel", scene.cells_per_pixel}};
+  data["places"] = latticeOf(scene);
+  const maps::Raster<float> shade = hillshade(scene.elevation_m);
+  const Range light = lightRange(shade);
+  data["shade"] = dataUri(shadeImage(shade));
+  data["light"] = {{"low", number(light.low)}, {"high", number(light.high)}};
   data["layers"] = layersOf(scene);
+  data["categories"] = categoryLegend();
+  data["scales"] = {{"magnitude", coloursOf(viridis())}, {"signed", coloursOf(blueRed())}};
   data["facts"] = scene.facts;
+  data["marks"] = marksOf(scene);
+  data["rings"] = ringsOf(scene);
   data["route"] = scene.route ? routeOf(*scene.route) : ordered_json::array();
   if (scene.story) data["story"] = storyOf(*scene.story);
   return data;

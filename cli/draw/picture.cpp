@@ -1,6 +1,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
+#include <sstream>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -15,26 +19,45 @@ namespace {
 
 constexpr double kMargin = 24.0;
 constexpr double kHead = 64.0;
+constexpr double kTitleLine = 24.0;
 constexpr double kLegend = 210.0;
 constexpr Colour kRoute = rgb(0x1B3FBF);
 constexpr Colour kReverse = rgb(0xB3202C);
+constexpr Colour kRing = rgb(0xD6006C);
 constexpr Colour kWhite = rgb(0xFFFFFF);
 constexpr Colour kInk = rgb(0x222222);
 
-/// Colours lit by the hillshade: shadow darkens them, light leaves them.
-Image lit(Image colours, const maps::Raster<float>& shade) {
+/// Colours under the light of the hillshade.
+Image underLight(Image colours, const maps::Raster<float>& shade, double relief) {
+  const Range range = lightRange(shade);
   for (int y = 0; y < colours.height; ++y) {
     for (int x = 0; x < colours.width; ++x) {
-      const float light = shade[{x, colours.height - 1 - y}];
+      const auto bright = static_cast<double>(shade[{x, colours.height - 1 - y}]);
+      const double light = std::clamp((bright - range.low) / (range.high - range.low), 0.0, 1.0);
       std::uint32_t& p = colours.at(x, y);
-      if (p == 0 || std::isnan(light)) continue;
-      const double f = 0.35 + 0.75 * static_cast<double>(light);
-      const auto part = [&](int shift) { return std::min(255.0, f * (p >> shift & 255U)) / 255.0; };
-      p = pixel({part(16), part(8), part(0), 1.0});
+      if (p == 0 || std::isnan(bright)) continue;
+      p = pixel(lit(rgb(p & 0xFFFFFFU), light, relief));
     }
   }
   return colours;
 }
+
+/// The title in lines that fit into the width; a word is not parted.
+std::vector<std::string> wrapped(const std::string& text, double width, const TextStyle& style) {
+  Canvas measure({.width = 1, .height = 1});
+  std::vector<std::string> lines{""};
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    const std::string longer = lines.back().empty() ? word : lines.back() + " " + word;
+    if (!lines.back().empty() && measure.textWidth(longer, style) > width)
+      lines.push_back(word);
+    else
+      lines.back() = longer;
+  }
+  return lines;
+}
+
+constexpr TextStyle kTitle{.size = 18, .bold = true};
 
 /// A picture being drawn.
 class Picture {
@@ -42,13 +65,16 @@ class Picture {
   explicit Picture(const Scene& scene)
       : scene_(scene),
         scale_(pixelsPerCell(scene.grid())),
-        map_{kMargin, kHead, scene.grid().width * scale_, scene.grid().height * scale_},
+        title_(wrapped(scene.title, scene.grid().width * scale_ + kLegend + kMargin, kTitle)),
+        head_(kHead + kTitleLine * static_cast<double>(title_.size() - 1)),
+        map_{kMargin, head_, scene.grid().width * scale_, scene.grid().height * scale_},
         canvas_({.width = static_cast<int>(std::ceil(map_.width + kLegend + 3 * kMargin)),
-                 .height = static_cast<int>(std::ceil(kHead + kMargin + std::max(map_.height, 420.0)))}) {}
+                 .height = static_cast<int>(std::ceil(head_ + kMargin + std::max(map_.height, 420.0)))}) {}
 
   std::string draw() {
-    canvas_.text(scene_.title, {kMargin, 30}, {.size = 18, .bold = true});
-    canvas_.text(scene_.subtitle, {kMargin, 50}, {.size = 12, .colour = rgb(0x555555)});
+    for (std::size_t i = 0; i < title_.size(); ++i)
+      canvas_.text(title_[i], {kMargin, 30 + kTitleLine * static_cast<double>(i)}, kTitle);
+    canvas_.text(scene_.subtitle, {kMargin, head_ - 14}, {.size = 12, .colour = rgb(0x555555)});
     canvas_.fill(map_, rgb(0xECECEC));
     ground();
     canvas_.clip(map_);
@@ -77,12 +103,15 @@ class Picture {
     const maps::Raster<float> shade = hillshade(scene_.elevation_m);
     canvas_.image(shadeImage(shade), map_);
     if (!scene_.categories.empty())
-      canvas_.image(lit(categoryImage(scene_.categories), shade), map_);
+      canvas_.image(underLight(categoryImage(scene_.categories), shade, kCategoryRelief), map_);
     else if (!scene_.layers.empty())
-      canvas_.image(lit(valueImage(scene_.layers.front()), shade), map_);
+      canvas_.image(underLight(valueImage(scene_.layers.front()), shade,
+                               scene_.layers.front().classes.empty() ? kValueRelief : kCategoryRelief),
+                    map_);
   }
 
   void route() {
+    for (const Ring& ring : scene_.rings) encircle(ring);
     for (const auto& [letter, place] : scene_.marks) mark(spot(place.x_m, place.y_m), letter);
     if (!scene_.route || scene_.route->vertices.empty()) return;
     std::vector<Spot> spots;
@@ -111,6 +140,18 @@ class Picture {
     canvas_.text(letter, {at.x, at.y + 4.5}, {.size = 12, .colour = kWhite, .bold = true, .anchor = 0.5});
   }
 
+  // Outside of the marks, however small what it surrounds is.
+  void encircle(const Ring& ring) {
+    const Spot centre = spot(ring.centre.x_m, ring.centre.y_m);
+    const double radius = std::max(18.0, ring.radius_m * scale_ / scene_.grid().resolution_m + 8.0);
+    std::vector<Spot> circle;
+    for (int k = 0; k <= 72; ++k)
+      circle.push_back({centre.x + radius * std::cos(k * std::numbers::pi / 36),
+                        centre.y + radius * std::sin(k * std::numbers::pi / 36)});
+    canvas_.line(circle, {.colour = kWhite, .width = 7});
+    canvas_.line(circle, {.colour = kRing, .width = 3.5});
+  }
+
   void scaleBar() {
     const double pixel_m = scene_.grid().resolution_m / scale_;
     const double length_m = roundBelow(0.25 * map_.width * pixel_m);
@@ -137,6 +178,11 @@ class Picture {
       categoryLegend(at);
     else if (!scene_.layers.empty())
       scaleLegend(at, scene_.layers.front());
+    if (!scene_.rings.empty()) {
+      canvas_.line(std::array{at, Spot{at.x + 26, at.y}}, {.colour = kRing, .width = 3.5});
+      canvas_.text("ring: the smaller set", {at.x + 36, at.y + 4}, {});
+      at.y += 24;
+    }
     if (scene_.route && !scene_.route->vertices.empty()) {
       canvas_.line(std::array{at, Spot{at.x + 26, at.y}}, {.colour = kRoute, .width = 3});
       canvas_.text("route, start S to goal G", {at.x + 36, at.y + 4}, {});
@@ -151,6 +197,11 @@ class Picture {
     northArrow({at.x + 12, at.y + 80});
   }
 
+  void swatch(Spot at, Colour colour) {
+    canvas_.fill({at.x, at.y - 8, 26, 16}, colour);
+    outline(canvas_, {at.x, at.y - 8, 26, 16}, {.colour = kInk, .width = 0.7});
+  }
+
   void categoryLegend(Spot& at) {
     std::array<double, 4> share{};
     double total = 0.0;
@@ -162,7 +213,7 @@ class Picture {
     }
     for (std::size_t i = 0; i < 4; ++i) {
       const auto category = static_cast<terramech::Category>(i);
-      canvas_.fill({at.x, at.y - 8, 26, 16}, colourOf(category));
+      swatch(at, colourOf(category));
       canvas_.text(
           fmt::format("{}, {:.1f} %", terramech::name(category), 100.0 * share[i] / std::max(1.0, total)),
           {at.x + 36, at.y + 4});
@@ -170,7 +221,19 @@ class Picture {
     }
   }
 
+  void classLegend(Spot& at, const ValueLayer& layer) {
+    for (const LayerClass& one : layer.classes) {
+      swatch(at, one.colour);
+      for (const std::string& line : wrapped(one.name, kLegend - 46, {.size = 12})) {
+        canvas_.text(line, {at.x + 36, at.y + 4}, {.size = 12});
+        at.y += 16;
+      }
+      at.y += 8;
+    }
+  }
+
   void scaleLegend(Spot& at, const ValueLayer& layer) {
+    if (!layer.classes.empty()) return classLegend(at, layer);
     canvas_.text(layer.name + (layer.unit.empty() ? "" : " [" + layer.unit + "]"), {at.x, at.y + 4},
                  {.bold = true});
     at.y += 16;
@@ -198,6 +261,8 @@ class Picture {
 
   const Scene& scene_;
   double scale_;
+  std::vector<std::string> title_;
+  double head_;
   Box map_;
   Canvas canvas_;
 };

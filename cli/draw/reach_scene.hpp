@@ -13,8 +13,8 @@ struct Severed {
   std::string reason;        ///< one line
 };
 
-/// A map whose first layer shows the cells that a drive from the start may reach, 0, and those that lead to the goal, 1;
-/// the others have no value. The cost grid is that of the map.
+/// A map whose first layer has two classes: the cells that a drive from the start may reach, and those that lead to the goal;
+/// the others have no value. A ring marks the smaller set, and the title ends with the reason. The cost grid is that of the map.
 Scene reachScene(const maps::ElevationMap& map, const costmap::CostGrid& cost, const Severed& severed,
                  const SceneOptions& options);
 

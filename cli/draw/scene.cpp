@@ -10,6 +10,7 @@
 #include <talus/common/constants.hpp>
 #include <talus/costmap/map/place_beliefs.hpp>
 #include <talus/costmap/map/traversability_map.hpp>
+#include <talus/maps/terrain/terrain_metrics.hpp>
 
 namespace talus::cli {
 namespace {
@@ -116,7 +117,36 @@ Scene ground(const maps::ElevationMap& map, const Blocks& blocks, const SceneOpt
   scene.title = options.title;
   scene.subtitle = sizeText(map.grid()) + ", " + frameText(map);
   scene.elevation_m = blocks.mean([&map](Cell cell) { return map.elevation_m[cell]; });
+  scene.georeference = map.georeference;
+  scene.cells_per_pixel = blocks.factor();
   return scene;
+}
+
+void addElevation(Scene& scene) {
+  addLayer(scene, "elevation", scene.elevation_m);
+  scene.layers.back().unit = "m";
+  scene.layers.back().decimals = 2;
+}
+
+/// Slope where every cell is drawn: of the plane that `talus explain` states; else the mean of those that routes are planned on.
+Raster<float> slope_deg(const costmap::TraversabilityMap& map, const Blocks& blocks) {
+  if (blocks.factor() == 1) {
+    const maps::TerrainMetrics metrics =
+        maps::terrainMetrics(map.elevation().elevation_m, map.surface().footprint(1));
+    return blocks.mean([&](Cell cell) { return static_cast<double>(metrics.slope_rad(cell)) / kDegree; });
+  }
+  const auto version = map.published();
+  return blocks.mean([&](Cell cell) {
+    if (has(map.surface().hazards(cell), costmap::Hazard::Unknown)) return std::nan("");
+    const costmap::CellCode code = version->at(cell);
+    return std::atan(std::hypot(code.dzDx(), code.dzDy())) / kDegree;
+  });
+}
+
+void addSlope(Scene& scene, Raster<float> values) {
+  ValueLayer slope{.name = "slope", .unit = "deg", .values = std::move(values), .range = {}, .decimals = 2};
+  slope.range = {0.0, std::max(1.0, inner(slope.values).high)};
+  scene.layers.push_back(std::move(slope));
 }
 
 }  // namespace
@@ -124,9 +154,8 @@ Scene ground(const maps::ElevationMap& map, const Blocks& blocks, const SceneOpt
 Scene sceneOf(const maps::ElevationMap& map, const SceneOptions& options) {
   const Blocks blocks(map.grid(), options.max_side);
   Scene scene = ground(map, blocks, options);
-  ValueLayer slope{.name = "slope", .unit = "deg", .values = slope_deg(scene.elevation_m), .range = {}};
-  slope.range = {0.0, std::max(1.0, inner(slope.values).high)};
-  scene.layers.push_back(std::move(slope));
+  addSlope(scene, slope_deg(scene.elevation_m));
+  addElevation(scene);
   return scene;
 }
 
@@ -135,20 +164,11 @@ Scene sceneOf(const costmap::TraversabilityMap& map, const SceneOptions& options
   Scene scene = ground(map.elevation(), blocks, options);
   BlockBeliefs beliefs = beliefsOf(map, blocks);
   scene.categories = std::move(beliefs.categories);
-  const auto version = map.published();
-  ValueLayer slope{.name = "slope",
-                   .unit = "deg",
-                   .values = blocks.mean([&](Cell cell) {
-                     if (has(map.surface().hazards(cell), costmap::Hazard::Unknown)) return std::nan("");
-                     const costmap::CellCode code = version->at(cell);
-                     return std::atan(std::hypot(code.dzDx(), code.dzDy())) / kDegree;
-                   }),
-                   .range = {}};
-  slope.range = {0.0, std::max(1.0, inner(slope.values).high)};
-  scene.layers.push_back(std::move(slope));
+  addSlope(scene, slope_deg(map, blocks));
   addLayer(scene, "DP/W (drawbar pull / load)", std::move(beliefs.pull));
   addLayer(scene, "DP/W standard deviation", std::move(beliefs.pull_std));
   addLayer(scene, "z/r (sinkage / wheel radius)", std::move(beliefs.sinkage));
+  addElevation(scene);
   scene.facts.emplace_back("rover", map.model().rover().name);
   scene.facts.emplace_back("soil", soilNames(map));
   return scene;

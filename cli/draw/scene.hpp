@@ -24,13 +24,28 @@ struct CategoryShares {
   std::array<std::uint8_t, 4> count{};
 };
 
+/// One of the classes of a layer that has classes in place of a scale.
+struct LayerClass {
+  std::string name;
+  Colour colour;
+};
+
 /// A quantity over the map that is shown in colours.
 struct ValueLayer {
-  std::string name;             ///< "slope"
-  std::string unit;             ///< "deg"; empty for a ratio
-  maps::Raster<float> values;   ///< NaN where there is none
-  Range range;                  ///< values at the two ends of the scale
-  bool zero_in_middle = false;  ///< colours diverge from the middle
+  std::string name;                   ///< "slope"
+  std::string unit;                   ///< "deg"; empty for a ratio
+  maps::Raster<float> values;         ///< NaN where there is none
+  Range range;                        ///< values at the two ends of the scale
+  bool zero_in_middle = false;        ///< colours diverge from the middle
+  int decimals = 4;                   ///< that a page keeps of a value
+  std::vector<LayerClass> classes{};  ///< values are indices of these; empty: a scale
+};
+
+/// A place that is easily overlooked, to be marked with a ring around it.
+struct Ring {
+  maps::Point centre;
+  double radius_m = 0.0;  ///< of what it surrounds
+  std::string label;
 };
 
 /// A line of a summary: what, and its value with unit.
@@ -47,7 +62,10 @@ struct Scene {
   std::vector<Fact> facts;
   std::optional<planner::Route> route;
   std::vector<std::pair<const char*, maps::Point>>
-      marks{};                      ///< places under a letter, where there is no route
+      marks{};  ///< places under a letter, where there is no route
+  std::vector<Ring> rings{};
+  std::optional<maps::Georeference> georeference{};  ///< where the map has one
+  int cells_per_pixel = 1;          ///< of the map, a side, that a cell of the scene stands for
   std::optional<DriveStory> story;  ///< a simulated drive, to be run through
 
   const maps::Grid& grid() const noexcept { return elevation_m.grid(); }

@@ -1,64 +1,149 @@
-// The map in metres (CRS.Simple): hillshade, one coloured layer, the route.
+// The map in metres (CRS.Simple): hillshade, a coloured layer under its light, north, scale, the place under the cursor.
 function drawMap(element, data) {
-  const b = data.bounds, at = p => [p.y, p.x];
-  const box = [[b.south, b.west], [b.north, b.east]];
-  const map = L.map(element, {crs: L.CRS.Simple, minZoom: -20, maxZoom: 8, zoomSnap: 0.25, attributionControl: false});
-  L.control.scale({imperial: false}).addTo(map);
-  L.imageOverlay(data.shade, box, {alt: "hillshade"}).addTo(map);
-  const layers = {};
-  for (const layer of data.layers) {
-    layers[layer.name] = L.imageOverlay(layer.image, box, {opacity: 0.6, alt: layer.name});
-    layers[layer.name].legend = layer.legend;
+  const b = data.bounds;
+  const box = L.latLngBounds([[b.south, b.west], [b.north, b.east]]);
+  const map = L.map(element, {crs: L.CRS.Simple, minZoom: -20, maxZoom: 8, zoomSnap: 0, attributionControl: false});
+  L.control.scale({imperial: false, maxWidth: 140}).addTo(map);
+  showNorth(map);
+  showCursor(map, data);
+  L.imageOverlay(data.shade, box, {alt: "hillshade", zIndex: 1}).addTo(map);
+  const way = wayOf(data).map(p => [p.y, p.x]);
+  fill(map, way.length ? L.latLngBounds(way).pad(0.05) : box, box);
+  chooseLayer(map, data, box);
+  for (const {letter, x, y} of data.marks) showEnd(map, [y, x], letter);
+  for (const {x, y, radius, label} of data.rings) {
+    const size = 2 * Math.max(18, radius * map.getZoomScale(map.getZoom(), 0) + 12);
+    L.marker([y, x], {interactive: false, icon: L.divIcon({className: "ring", iconSize: [size, size]})}).addTo(map)
+      .bindTooltip(document.createTextNode(label), {permanent: true, direction: "top", offset: [0, -size / 2]});
   }
-  layers["hillshade only"] = L.layerGroup();
-  const first = Object.keys(layers)[0];
-  layers[first].addTo(map);
-  showLegend(first, layers[first].legend);
-  map.on("baselayerchange", event => showLegend(event.name, event.layer.legend));
-  const narrow = element.clientWidth < 600;
-  L.control.layers(layers, {}, {collapsed: narrow}).addTo(map);
-  const way = data.story
-    ? [...data.story.track.map(([, x, y]) => ({x, y})), ...data.story.events.flatMap(e => e.route.map(([x, y]) => ({x, y})))]
-    : data.route;
-  const view = way.length ? L.latLngBounds(way.map(at)).pad(0.15) : L.latLngBounds(box);
-  map.fitBounds(view, {paddingBottomRight: [narrow ? 0 : 170, 0]});  // space for the list of layers
   return map;
 }
 
-function showLegend(name, entries) {
+// What the first view has to hold.
+function wayOf(data) {
+  if (!data.story) return data.route;
+  const planned = data.story.events.flatMap(event => event.route);
+  return [...data.story.track.map(([, x, y]) => ({x, y})), ...planned.map(([x, y]) => ({x, y}))];
+}
+
+// The view as near as it holds the way, and moved so that as little as can be lies beside the map.
+function fill(map, way, box) {
+  const zoom = map.getBoundsZoom(way), scale = map.getZoomScale(zoom, 0), size = map.getSize();
+  const within = (centre, low, high, half) =>
+    high - low <= 2 * half ? (low + high) / 2 : Math.min(Math.max(centre, low + half), high - half);
+  const centre = way.getCenter();
+  map.setView([within(centre.lat, box.getSouth(), box.getNorth(), size.y / scale / 2),
+               within(centre.lng, box.getWest(), box.getEast(), size.x / scale / 2)], zoom, {animate: false});
+}
+
+function showEnd(map, place, letter) {
+  const dot = document.createElement("span");
+  dot.textContent = letter;
+  const icon = L.divIcon({className: "end", html: dot, iconSize: [22, 22]});
+  L.marker(place, {interactive: false, keyboard: false, icon}).addTo(map);
+}
+
+// A box in a corner of the map, out of the map's own clicks.
+function cornerBox(map, position, className) {
+  const control = L.control({position});
+  control.onAdd = () => L.DomUtil.create("div", className);
+  control.addTo(map);
+  L.DomEvent.disableClickPropagation(control.getContainer());
+  return control.getContainer();
+}
+
+function showNorth(map) {
+  const box = cornerBox(map, "topright", "north");
+  box.title = "north of the map";
+  box.innerHTML = '<svg width="26" height="40" viewBox="0 0 26 40" role="img" aria-label="north is up">' +
+    '<path d="M13 14 L22 38 L13 32 L4 38 Z" fill="#222" stroke="#fff"/>' +
+    '<text x="13" y="12" text-anchor="middle">N</text></svg>';
+}
+
+// Latitude and longitude in degrees, between the points of a lattice whose directions from the body's centre are mixed.
+function geographic(places, bounds, x, y) {
+  if (!places) return null;
+  const n = places.intervals, rad = Math.PI / 180;
+  const u = (x - bounds.west) / (bounds.east - bounds.west) * n;
+  const v = (y - bounds.south) / (bounds.north - bounds.south) * n;
+  const i = Math.min(Math.max(Math.floor(u), 0), n - 1), j = Math.min(Math.max(Math.floor(v), 0), n - 1);
+  const sum = [0, 0, 0];
+  for (const [di, dj] of [[0, 0], [1, 0], [0, 1], [1, 1]]) {
+    const k = (j + dj) * (n + 1) + i + di, weight = (di ? u - i : 1 - u + i) * (dj ? v - j : 1 - v + j);
+    if (places.latitude[k] === null) return null;
+    const latitude = places.latitude[k] * rad, longitude = places.longitude[k] * rad;
+    sum[0] += weight * Math.cos(latitude) * Math.cos(longitude);
+    sum[1] += weight * Math.cos(latitude) * Math.sin(longitude);
+    sum[2] += weight * Math.sin(latitude);
+  }
+  return {latitude: Math.atan2(sum[2], Math.hypot(sum[0], sum[1])) / rad, longitude: Math.atan2(sum[1], sum[0]) / rad};
+}
+
+function placeText(data, x, y) {
+  const at = geographic(data.places, data.bounds, x, y);
+  const metres = `x ${x.toFixed(1)} m, y ${y.toFixed(1)} m`;
+  return at ? `${metres} · lat ${at.latitude.toFixed(5)}°, lon ${at.longitude.toFixed(5)}°` : metres;
+}
+
+function showCursor(map, data) {
+  const box = cornerBox(map, "bottomleft", "cursor");
+  box.hidden = true;
+  map.on("mousemove", ({latlng}) => {
+    box.hidden = false;
+    box.textContent = placeText(data, latlng.lng, latlng.lat);
+  });
+  map.on("mouseout", () => { box.hidden = true; });
+}
+
+// One layer at a time over the hillshade; the hillshade once more on top, multiplied into the colours by a share.
+function chooseLayer(map, data, box) {
+  const select = document.getElementById("layer"), opacity = document.getElementById("opacity");
+  const folded = cornerBox(map, "bottomright", "legend").appendChild(document.createElement("details"));
+  folded.open = map.getSize().x >= 600;
+  folded.appendChild(document.createElement("summary")).textContent = "legend";
+  folded.appendChild(document.createElement("div")).id = "legend";
+  const names = [...data.layers.map(layer => layer.name), "hillshade only"];
+  names.forEach((name, i) => select.add(new Option(name, i)));
+  // brightness() and contrast() together carry the darkest and the brightest of the hillshade to 0 and 1.
+  const gain = 1 / (data.light.high - data.light.low), contrast = 1 + 2 * gain * data.light.low;
+  let colours, light;
+  const show = () => {
+    for (const shown of [colours, light]) if (shown) shown.remove();
+    const layer = data.layers[select.value];
+    colours = light = null;
+    showLegend("layer", layer);
+    if (!layer) return;
+    colours = L.imageOverlay(layer.image, box, {alt: layer.name, zIndex: 2, opacity: opacity.value / 100}).addTo(map);
+    light = L.imageOverlay(data.shade, box, {alt: "", zIndex: 3, opacity: layer.relief, className: "light"}).addTo(map);
+    light.getElement().style.filter = `brightness(${gain / contrast}) contrast(${contrast})`;
+  };
+  select.addEventListener("change", show);
+  opacity.addEventListener("input", () => { if (colours) colours.setOpacity(opacity.value / 100); });
+  show();
+}
+
+// The legend of the layer or of the route: colours with names, or a bar with its ends and unit.
+function showLegend(part, shown) {
   const legend = document.getElementById("legend");
-  legend.replaceChildren();
-  if (!entries) return;
-  const title = legend.appendChild(document.createElement("strong"));
-  title.textContent = name;
-  for (const {colour, label} of entries) {
-    const item = legend.appendChild(document.createElement("span"));
+  let entry = legend.querySelector(`[data-part=${part}]`);
+  if (!entry) {
+    entry = legend.appendChild(document.createElement("div"));
+    entry.dataset.part = part;
+  }
+  entry.replaceChildren();
+  if (!shown) return;
+  const unit = shown.bar && shown.bar.unit ? ` [${shown.bar.unit}]` : "";
+  entry.appendChild(document.createElement("strong")).textContent = shown.name + unit;
+  for (const {colour, label} of shown.legend || []) {
+    const item = entry.appendChild(document.createElement("span"));
     item.appendChild(document.createElement("i")).style.background = colour;
     item.append(label);
   }
-}
-
-// Draws the route and returns {mark(point)}; calls onHover(point) when the pointer moves.
-function drawRoute(map, points, onHover) {
-  const line = points.map(p => [p.y, p.x]);
-  L.polyline(line, {color: "#fff", weight: 7, interactive: false}).addTo(map);
-  L.polyline(line, {color: "#1b3fbf", weight: 3.5, interactive: false}).addTo(map);
-  points.forEach((p, i) => {
-    const reverse = {color: "#b3202c", weight: 3.5, interactive: false};
-    if (p.reverse && i + 1 < line.length) L.polyline([line[i], line[i + 1]], reverse).addTo(map);
-    if (p.turn || (i > 0 && !!p.reverse !== !!points[i - 1].reverse))
-      L.circleMarker(line[i], {radius: 4, color: "#b3202c", fillColor: "#b3202c", fillOpacity: 1, interactive: false}).addTo(map);
-  });
-  const wide = L.polyline(line, {color: "#000", opacity: 0, weight: 34}).addTo(map);
-  const dot = L.circleMarker(line[0], {radius: 8, color: "#fff", weight: 3, fillColor: "#b3202c", fillOpacity: 1,
-                                       interactive: false, className: "here"});
-  for (const [place, letter] of [[line[0], "S"], [line[line.length - 1], "G"]])
-    L.marker(place, {interactive: false, icon: L.divIcon({className: "end", html: `<span>${letter}</span>`, iconSize: [22, 22]})})
-      .addTo(map);
-  const nearest = spot => points.reduce((best, p) => {
-    const d = (p.x - spot.lng) ** 2 + (p.y - spot.lat) ** 2;
-    return d < best.d ? {d, p} : best;
-  }, {d: Infinity}).p;
-  wide.on("mousemove click", event => onHover(nearest(event.latlng)));
-  return {mark(p) { dot.setLatLng([p.y, p.x]).addTo(map); }};
+  if (!shown.bar) return;
+  const {colours, low, high} = shown.bar;
+  entry.appendChild(document.createElement("b")).style.background = `linear-gradient(to right, ${colours.join()})`;
+  const ends = entry.appendChild(document.createElement("span"));
+  ends.className = "ends";
+  for (const value of [low, (low + high) / 2, high])
+    ends.appendChild(document.createElement("span")).textContent = Number(value.toPrecision(3)).toString();
 }

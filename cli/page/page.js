@@ -12,7 +12,8 @@ function reading(p) {
   const show = (value, digits, unit) => value === null ? "" : `${value.toFixed(digits)} ${unit}`;
   return [`${show(p.s, 1, "m")} from the start`, `at ${p.x.toFixed(1)}, ${p.y.toFixed(1)}`,
           show(p.elevation, 1, "m elevation"), show(p.slope, 1, "deg slope along"), show(p.across, 1, "deg slope across"),
-          p.slip === null ? "" : `slip ${p.slip.toFixed(2)}`, show(p.angle, 1, "deg slip angle"), show(p.energy, 2, "kJ"), p.category]
+          p.slip === null ? "" : `slip ${p.slip.toFixed(2)}`, show(p.angle, 1, "deg slip angle"), show(p.energy, 2, "kJ"),
+          p.risk === null ? "" : `risk ${p.risk.toPrecision(2)}`, p.category]
     .filter(text => text).join(" · ");
 }
 
@@ -29,6 +30,7 @@ function start() {
   const data = JSON.parse(document.getElementById("data").textContent);
   const map = drawMap(document.getElementById("map"), data);
   showFacts(data.facts);
+  probeCells(map, data);
   if (data.story) showStory(map, data.story);
   const points = data.route;
   if (points.length < 2) {
@@ -36,10 +38,10 @@ function start() {
     return;
   }
   const text = document.getElementById("reading");
-  text.textContent = "Hover over the profile or the route.";
+  text.textContent = "Hover over the profile or the route; click a cell of the map.";
   const here = p => { text.textContent = reading(p); route.mark(p); };
+  const route = drawRoute(map, data, p => { profiles.mark(p.s); here(p); });
   const profiles = drawProfiles(document.getElementById("charts"), points, s => here(pointAt(points, s)));
-  const route = drawRoute(map, points, p => { profiles.mark(p.s); here(p); });
 }
 
 try {

@@ -1,37 +1,41 @@
 // The profiles: one panel per quantity over the distance along the route, with one common rule at the pointer.
-const panels = [
+const allPanels = [
   {field: "elevation", title: "elevation [m]", zero: false},
-  {field: "slope", title: "slope along [deg]", zero: true},
+  {field: "slope", title: "slope [deg]", zero: true},
   {field: "slip", title: "slip [-]", zero: true},
   {field: "angle", title: "slip angle [deg]", zero: true},
   {field: "energy", title: "energy [kJ]", zero: true},
+  {field: "risk", title: "risk [-]", zero: true},
 ];
-const panelHeight = 92, panelStep = 118;
+const held = ["slope", "slip", "angle"];  // from one vertex to the next
 
-function panelMarks(panel, row) {
-  const scale = "y" + row;
+function panelMarks(panel, row, layout) {
+  const scale = "y" + row, height = layout.panelHeight;
   return {
     type: "group",
-    encode: {update: {y: {value: row * panelStep}, width: {signal: "width"}, height: {value: panelHeight},
+    encode: {update: {y: {value: row * layout.step}, width: {signal: "width"}, height: {value: height},
                       stroke: {value: "#ccc"}}},
     axes: [
-      {orient: "left", scale, title: panel.title, tickCount: 4, grid: true, gridColor: "#eee", titleFontWeight: 500,
-       titleX: -46, titleY: panelHeight / 2, titleAnchor: "middle"},
-      ...(row === panels.length - 1 ? [{orient: "bottom", scale: "x", title: {signal: "unitTitle"}, tickCount: 8}] : []),
+      {orient: "left", scale, title: panel.title, tickCount: height > 60 ? 4 : 2, grid: true, gridColor: "#e5e5e5",
+       titleFontWeight: 600,       titleAngle: 0, titleAlign: "left", titleX: 0, titleY: -3, titleBaseline: "bottom", titleAnchor: "start"},
+      ...(layout.panels.length - 1 === row
+        ? [{orient: "bottom", scale: "x", title: {signal: "unitTitle"}, tickCount: 8}] : []),
     ],
     marks: [
       {type: "line", clip: true, from: {data: "route"}, interactive: false,
        encode: {update: {x: {scale: "x", field: "d"}, y: {scale, field: panel.field}, stroke: {value: "#1b3fbf"},
                          strokeWidth: {value: 1.6},
-                         interpolate: {value: ["slope", "slip", "angle"].includes(panel.field) ? "step-after" : "linear"},
+                         interpolate: {value: held.includes(panel.field) ? "step-after" : "linear"},
                          defined: {signal: `isValid(datum['${panel.field}'])`}}}},
     ],
   };
 }
 
-function profileSpec(points, unit) {
+function profileSpec(points, unit, layout) {
+  const {panels, step, panelHeight} = layout;
   return {
-    width: 600, height: (panels.length - 1) * panelStep + panelHeight, padding: {left: 62, right: 14, top: 6, bottom: 42},
+    width: layout.width, height: (panels.length - 1) * step + panelHeight,
+    padding: {left: 48, right: 14, top: 16, bottom: 42},
     autosize: "none",
     data: [{name: "route", values: points.map(p => ({...p, d: p.s / unit.metres}))}],
     signals: [
@@ -46,12 +50,22 @@ function profileSpec(points, unit) {
                                       domain: {data: "route", field: panel.field}})),
     ],
     marks: [
-      ...panels.map(panelMarks),
+      ...panels.map((panel, row) => panelMarks(panel, row, layout)),
       {type: "rule", interactive: false, encode: {update: {
         x: {signal: "hover === null ? -1000 : scale('x', hover)"}, y: {value: 0}, y2: {signal: "height"},
         stroke: {value: "#b3202c"}, strokeWidth: {value: 1.2}}}},
     ],
   };
+}
+
+// What the element has room for: every panel, or the elevation and the quantity that colours the route.
+function layoutOf(element) {
+  const height = element.clientHeight - 58;
+  const chosen = ["slip", "slope", "energy", "risk", "slip"][document.getElementById("quantity").value];
+  const panels = height / allPanels.length >= 44 ? allPanels
+    : allPanels.filter(({field}) => field === "elevation" || field === chosen);
+  const step = Math.max(44, (height + 17) / panels.length);
+  return {panels, step, panelHeight: step - 17, width: Math.max(200, element.clientWidth - 62)};
 }
 
 // Draws the profiles and returns {mark(s)}; calls onHover(s) when the pointer moves; s in metres from the start.
@@ -60,12 +74,16 @@ function drawProfiles(element, points, onHover) {
   for (const kind of ["transforms", "view-transforms", "encode"]) Object.assign(need("dataflow").transforms, need(kind));
   const length = points[points.length - 1].s;
   const unit = length >= 2000 ? {name: "km", metres: 1000} : {name: "m", metres: 1};
-  const view = new (need("view").View)(need("parser").parse(profileSpec(points, unit)),
-                                       {renderer: "svg", container: element, hover: false});
-  const resize = () => view.width(Math.max(200, element.clientWidth - 76)).resize().run();
-  resize();
-  addEventListener("resize", resize);
-  let quiet = false;
-  view.addSignalListener("hover", (_, value) => { if (!quiet) onHover(value * unit.metres); });
+  let view = null, quiet = false;
+  const draw = () => {
+    if (view) view.finalize();
+    view = new (need("view").View)(need("parser").parse(profileSpec(points, unit, layoutOf(element))),
+                                   {renderer: "svg", container: element, hover: false});
+    view.run();
+    view.addSignalListener("hover", (_, value) => { if (!quiet) onHover(value * unit.metres); });
+  };
+  draw();
+  addEventListener("resize", draw);
+  document.getElementById("quantity").addEventListener("change", draw);
   return {mark(s) { quiet = true; view.signal("hover", s / unit.metres).run(); quiet = false; }};
 }

@@ -7,7 +7,8 @@ add_custom_command(OUTPUT ${page_template}
   COMMAND ${CMAKE_COMMAND} -DOUTPUT=${page_template} -DPAGE=${page_dir} -DLEAFLET=${LEAFLET_DIR} -DVEGA=${VEGA_DIR}
           -P ${page_dir}/assemble.cmake
   DEPENDS ${page_dir}/assemble.cmake ${page_dir}/body.html ${page_dir}/head.html ${page_dir}/map.js
-          ${page_dir}/modules.js ${page_dir}/page.css ${page_dir}/page.js ${page_dir}/profiles.js
+          ${page_dir}/modules.js ${page_dir}/page.css ${page_dir}/page.js ${page_dir}/probe.js ${page_dir}/profiles.js
+          ${page_dir}/route.js ${page_dir}/story.js
   VERBATIM)
 set_source_files_properties(draw/page_template.cpp PROPERTIES OBJECT_DEPENDS ${page_template}
                             COMPILE_DEFINITIONS TALUS_PAGE_TEMPLATE="${page_template}")

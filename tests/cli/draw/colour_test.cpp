@@ -1,15 +1,56 @@
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <string>
+#include <utility>
 
 #include <talus/cli/draw/colour.hpp>
 
 namespace talus::cli {
 namespace colour_test {
 
-// CIE 1976 lightness L* of a colour of sRGB (IEC 61966-2-1), white being 100.
+using Lab = std::array<double, 3>;
+
+// Parts of sRGB in linear light (IEC 61966-2-1).
+std::array<double, 3> linear(Colour c) {
+  const auto part = [](double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); };
+  return {part(c.red), part(c.green), part(c.blue)};
+}
+
+// CIE 1976 L*a*b* of linear sRGB, white D65.
+Lab labOf(const std::array<double, 3>& l) {
+  const auto f = [](double t) {
+    return t > 216.0 / 24389.0 ? std::cbrt(t) : (24389.0 / 27.0 * t + 16.0) / 116.0;
+  };
+  const double x = f((0.4124564 * l[0] + 0.3575761 * l[1] + 0.1804375 * l[2]) / 0.95047);
+  const double y = f(0.2126729 * l[0] + 0.7151522 * l[1] + 0.0721750 * l[2]);
+  const double z = f((0.0193339 * l[0] + 0.1191920 * l[1] + 0.9503041 * l[2]) / 1.08883);
+  return {116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)};
+}
+
+Lab seenByAll(Colour c) {
+  return labOf(linear(c));
+}
+
+// A deuteranope: the matrix of severity 1.0 of Machado, Oliveira and Fernandes (2009).
+Lab seenByADeuteranope(Colour c) {
+  const auto [r, g, b] = linear(c);
+  const auto inside = [](double v) { return std::clamp(v, 0.0, 1.0); };
+  return labOf({inside(0.367322 * r + 0.860646 * g - 0.227968 * b),
+                inside(0.280085 * r + 0.672501 * g + 0.047413 * b),
+                inside(-0.011820 * r + 0.042940 * g + 0.968881 * b)});
+}
+
+Lab printedInGrey(Colour c) {
+  return {seenByAll(c)[0], 0.0, 0.0};
+}
+
 double lightness(Colour c) {
-  const auto linear = [](double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); };
-  const double y = 0.2126 * linear(c.red) + 0.7152 * linear(c.green) + 0.0722 * linear(c.blue);
-  return y > 0.008856 ? 116.0 * std::cbrt(y) - 16.0 : 903.3 * y;
+  return seenByAll(c)[0];
+}
+
+double difference(const Lab& a, const Lab& b) {
+  return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
 
 TEST(Colour, HexIsRedGreenBlue) {
@@ -20,12 +61,39 @@ TEST(Colour, HexIsRedGreenBlue) {
   EXPECT_EQ(faded(c, 0.25).alpha, 0.25);
 }
 
-// Closed form: the lightness that the header states, so that categories differ in grey print.
-TEST(Colour, CategoriesDifferInLightness) {
-  using terramech::Category;
-  const std::pair<Category, double> stated[] = {
-      {Category::Safe, 58}, {Category::Marginal, 76}, {Category::Dangerous, 39}, {Category::Unknown, 68}};
-  for (const auto& [category, value] : stated) EXPECT_NEAR(lightness(colourOf(category)), value, 0.5);
+using terramech::Category;
+constexpr std::array kCategories{Category::Safe, Category::Marginal, Category::Dangerous, Category::Unknown};
+
+// Closed form: the lightness that the header states.
+TEST(Colour, CategoriesAreARampOfLightness) {
+  const double stated[] = {99, 66, 33, 0};
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(lightness(colourOf(kCategories[i])), stated[i], 1.0) << i;
+}
+
+// Closed form: CIE L*a*b* of each two categories under the same light of the hillshade, for three kinds of sight.
+TEST(Colour, CategoriesDifferByThirtyUnderAnyLight) {
+  for (const auto& [sight, seen] :
+       {std::pair{"colour", &seenByAll}, {"deuteranope", &seenByADeuteranope}, {"grey", &printedInGrey}}) {
+    double least = INFINITY;
+    for (int light = 0; light <= 20; ++light)
+      for (std::size_t i = 0; i < 4; ++i)
+        for (std::size_t j = 0; j < i; ++j) {
+          const auto under = [&](Category c) {
+            return seen(lit(colourOf(c), light / 20.0, kCategoryRelief));
+          };
+          least = std::min(least, difference(under(kCategories[i]), under(kCategories[j])));
+        }
+    EXPECT_GE(least, 30.0) << sight;
+    testing::Test::RecordProperty(sight, std::to_string(least));
+  }
+}
+
+// The light takes from each part the same share; full light takes nothing.
+TEST(Colour, LightScalesAColour) {
+  const Colour c = lit(rgb(0x804020), 0.5, 0.2);
+  EXPECT_DOUBLE_EQ(c.red, 0.9 * 0x80 / 255.0);
+  EXPECT_DOUBLE_EQ(c.blue, 0.9 * 0x20 / 255.0);
+  EXPECT_EQ(lit(rgb(0x804020), 1.0, 0.2).green, rgb(0x804020).green);
 }
 
 // Property: viridis grows lighter all the way; blue to red is lightest in the middle; 32 steps, ends beyond.

@@ -30,6 +30,18 @@ TEST(Hillshade, NoDataStaysAndDoesNotSpread) {
   EXPECT_NEAR((shade[{5, 4}]), whole, 1e-6);  // float rounding of the elevations
 }
 
+// Property: a few outliers do not take the contrast of the others; a plain has a range around its one brightness.
+TEST(Hillshade, LightRangeIsThatOfMostOfTheMap) {
+  maps::Raster<float> shade({10, 10, 1.0, {0.0, 0.0}}, 0.4F);
+  shade[{0, 0}] = 0.0F;
+  shade[{1, 0}] = std::nanf("");
+  for (int column = 0; column < 10; ++column) shade[{column, 5}] = 0.6F;
+  EXPECT_FLOAT_EQ(static_cast<float>(lightRange(shade).low), 0.4F);
+  EXPECT_FLOAT_EQ(static_cast<float>(lightRange(shade).high), 0.6F);
+  const Range flat = lightRange(maps::Raster<float>({3, 3, 1.0, {0.0, 0.0}}, 0.7F));
+  EXPECT_GT(flat.high, flat.low);
+}
+
 TEST(MapImage, TopRowIsNorth) {
   maps::Raster<CategoryShares> categories({1, 2, 1.0, {0.0, 0.0}});
   categories[{0, 0}].count[2] = 1;  // south: dangerous
@@ -46,6 +58,15 @@ TEST(MapImage, MixesTheCategoriesOfABlock) {
   const Colour b = colourOf(terramech::Category::Dangerous);
   EXPECT_EQ(categoryImage(categories).at(0, 0),
             pixel({(a.red + b.red) / 2, (a.green + b.green) / 2, (a.blue + b.blue) / 2, 1.0}));
+}
+
+TEST(MapImage, ClassesHaveTheirColours) {
+  ValueLayer layer{.name = "sets", .unit = "", .values = plane(0.0, 0.0), .range = {0.0, 1.0}};
+  layer.classes = {{"one", rgb(0x0072B2)}, {"two", rgb(0xE69F00)}};
+  layer.values[{7, 7}] = 1.0F;
+  Image image = valueImage(layer);
+  EXPECT_EQ(image.at(0, 0), pixel(rgb(0x0072B2)));
+  EXPECT_EQ(image.at(7, 0), pixel(rgb(0xE69F00)));
 }
 
 TEST(MapImage, NoValueIsTransparent) {

@@ -1,7 +1,15 @@
+#include <cmath>
 #include <regex>
+#include <set>
 
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <talus/cli/draw/html_report.hpp>
 #include <talus/cli/draw/page.hpp>
+#include <talus/common/constants.hpp>
 
+#include "bad_input.hpp"
 #include "example_scene.hpp"
 #include "requirement.hpp"
 #include "run_program.hpp"
@@ -122,6 +130,143 @@ TEST(Page, PointingAtTheRouteMarksTheProfile) {
     }, 200);)"));
   EXPECT_TRUE(bodyMatches(shown, "data-reading=\"2[0-9][0-9]\\.[0-9] m from the start")) << shown.console;
   EXPECT_TRUE(bodyMatches(shown, "data-rule=\"translate\\([1-9]"));
+}
+
+// The page of a plan, played by a script, and the folder that it was planned in.
+std::string planned(const Folder& folder, const std::string& script) {
+  folder.write("dem.asc", asciiGrid(60, 50, [](int column, int row) {
+                 return 1.5 * std::sin(column / 7.0) + 0.9 * std::cos(row / 6.0);
+               }));
+  const Ran plan = runTalus({"plan", "dem.asc", "--resolution", "1", "--soil", "sandy_loam", "--rover",
+                             "fido", "--start", "3,3", "--goal", "55,45", "--html", "plan.html"},
+                            folder.path());
+  EXPECT_EQ(plan.code, 0) << plan.err;
+  std::string html = fileContent(folder / "plan.html");
+  return html.insert(html.rfind("</body>"), "<script>" + script + "</script>\n");
+}
+
+// Property: what a cell shows is what `talus explain` states of it, to the last decimal that is shown; cells are
+// reached by Enter and the arrow keys.
+TEST(Page, CellsShowWhatExplainStates) {
+  TALUS_REQUIRE(test::installed("chromium"), "chromium is not installed");
+  const Folder folder;
+  const Shown shown = show(planned(folder, R"(
+    const map = document.getElementById("map"), root = document.documentElement.dataset;
+    const keys = ["Enter", "ArrowRight", "ArrowRight", "ArrowUp", "ArrowUp", "ArrowLeft", "ArrowDown"];
+    const press = key => map.dispatchEvent(new KeyboardEvent("keydown", {key, bubbles: true}));
+    const said = [];
+    (async () => {
+      map.focus();
+      for (const key of keys) {
+        press(key);
+        await new Promise(done => setTimeout(done, 150));
+        said.push([...document.querySelectorAll(".leaflet-popup-content tr")].map(row => row.textContent).join("|"));
+      }
+      root.said = said.join(";");
+      document.querySelector(".leaflet-popup-close-button").click();
+      root.chosen = document.querySelectorAll("path.chosen").length;
+    })();)"));
+  std::smatch said;
+  const std::string body = shown.dom.substr(0, 20000);
+  ASSERT_TRUE(std::regex_search(body, said, std::regex("data-said=\"([^\"]*)\""))) << shown.console;
+  EXPECT_TRUE(bodyHas(shown, "data-chosen=\"0\""));
+  EXPECT_THAT(shown.console, Not(HasSubstr("CONSOLE")));
+  const std::regex cell(
+      "categories([a-z]+)\\|slope([-0-9.]+) deg\\|[^|0-9]*([-0-9.]+)\\|DP/W standard deviation([-0-9.]+)"
+      "\\|[^|0-9]*([-0-9.]+)\\|elevation([-0-9.]+) m\\|centrex ([-0-9.]+) m, y ([-0-9.]+) m");
+  const std::string text = said[1];
+  std::set<std::string> places;
+  for (std::sregex_iterator it(text.begin(), text.end(), cell), end; it != end; ++it) {
+    const std::smatch& m = *it;
+    const std::string place = m[7].str() + "," + m[8].str();
+    places.insert(place);
+    const Ran why = runTalus({"explain", "dem.asc", "--resolution", "1", "--soil", "sandy_loam", "--rover",
+                              "fido", "--at", place, "--json"},
+                             folder.path());
+    ASSERT_EQ(why.code, 0) << why.err;
+    const auto answer = nlohmann::json::parse(why.out);
+    const auto cause = [&](const std::string& name, const char* field) {
+      for (const auto& one : answer["causes"])
+        if (one["name"] == name) return one[field].get<double>();
+      return std::nan("");
+    };
+    // Half a unit of the last decimal, and the rounding of a float.
+    EXPECT_NEAR(std::stod(m[2]), cause("slope_rad", "value") / kDegree, 0.00501) << place;
+    EXPECT_NEAR(std::stod(m[3]), cause("drawbar_pull_over_load", "value"), 0.0000501) << place;
+    EXPECT_NEAR(std::stod(m[4]), cause("drawbar_pull_over_load", "std"), 0.0000501) << place;
+    EXPECT_NEAR(std::stod(m[5]), cause("sinkage_over_radius", "value"), 0.0000501) << place;
+    EXPECT_NEAR(std::stod(m[6]), cause("elevation_m", "value"), 0.00501) << place;
+  }
+  EXPECT_EQ(places.size(), 7U) << text;
+}
+
+// Property: on a screen of 1400 x 900 and on a phone, map and profile are seen without scrolling, and the map is more than the
+// third of the screen.
+TEST(Page, MapAndProfileAreOnOneScreen) {
+  TALUS_REQUIRE(test::installed("chromium"), "chromium is not installed");
+  for (const auto& [width, height] : {std::pair{1400, 900}, {390, 844}}) {
+    // Chromium's own window is at least 500 wide: a frame is not.
+    const std::string frame =
+        "<!doctype html><html data-state='ready'><body style='margin:0'><iframe style='border:0' width=" +
+        std::to_string(width) + " height=" + std::to_string(height) + " srcdoc=\"" +
+        escaped(played(exampleScene(), R"(
+      const of = id => document.getElementById(id).getBoundingClientRect();
+      const map = of("map"), charts = document.querySelector("#charts svg").getBoundingClientRect();
+      parent.document.body.dataset.fits = map.top >= 0 && charts.top >= 0 && map.bottom <= innerHeight &&
+        charts.bottom <= innerHeight + 1 && map.right <= innerWidth && charts.right <= innerWidth &&
+        document.documentElement.scrollWidth <= innerWidth;
+      parent.document.body.dataset.share = map.width * map.height > innerWidth * innerHeight / 3;)")) +
+        "\"></iframe></body></html>";
+    const Shown shown = show(frame);
+    EXPECT_THAT(shown.dom, HasSubstr("data-fits=\"true\"")) << width << shown.console;
+    EXPECT_THAT(shown.dom, HasSubstr("data-share=\"true\"")) << width;
+  }
+}
+
+// Property: each quantity colours the route in more than one colour where it varies, and names its unit beside its bar; the
+// opacity reaches the layer; another layer takes the place of the first.
+TEST(Page, QuantityLayerAndOpacityAreChosen) {
+  TALUS_REQUIRE(test::installed("chromium"), "chromium is not installed");
+  const Shown shown = show(played(exampleScene(), R"(
+    const pick = (id, value) => {
+      const input = document.getElementById(id);
+      input.value = value;
+      input.dispatchEvent(new Event(input.type === "range" ? "input" : "change"));
+    };
+    const seen = [];
+    for (let i = 0; i < 5; ++i) {
+      pick("quantity", i);
+      const colours = new Set([...document.querySelectorAll("path.piece")].map(path => path.getAttribute("stroke")));
+      seen.push(document.querySelector("#legend [data-part=route] strong").textContent + " " + (colours.size > 1));
+    }
+    pick("opacity", 40);
+    seen.push(document.querySelector("img[alt=categories]").style.opacity);
+    pick("layer", 1);
+    seen.push(document.querySelectorAll("img[alt=categories]").length + document.querySelector("#legend [data-part=layer] strong").textContent);
+    document.documentElement.dataset.seen = seen.join();)"));
+  EXPECT_THAT(
+      shown.dom,
+      HasSubstr("data-seen=\"route: slip [-] true,route: slope along [deg] true,route: energy [J/m] false,"
+                "route: immobilisation risk [1/km] true,route: category true,0.4,0slope [deg]\""))
+      << shown.console;
+}
+
+// Closed form: latitude and longitude between the points of the lattice are those of the projection, beside the pole too.
+TEST(Page, CursorHasLatitudeAndLongitude) {
+  TALUS_REQUIRE(test::installed("chromium"), "chromium is not installed");
+  Scene scene = exampleScene();
+  scene.georeference.emplace(
+      maps::CoordinateSystem{.name = "polar",
+                             .ellipsoid = maps::kMoon,
+                             .projection = {.method = maps::ProjectionMethod::PolarStereographic,
+                                            .standard_parallel_1_rad = -90.0 * kDegree}});
+  const maps::GeoPoint place = scene.georeference->reverse({1237.0, 2211.0});
+  const Shown shown = show(played(scene, R"(
+    const data = JSON.parse(document.getElementById("data").textContent);
+    document.documentElement.dataset.place = placeText(data, 1237, 2211);)"));
+  EXPECT_THAT(shown.dom,
+              HasSubstr(fmt::format("data-place=\"x 1237.0 m, y 2211.0 m · lat {:.5f}°, lon {:.5f}°\"",
+                                    place.latitude_rad / kDegree, place.longitude_rad / kDegree)));
 }
 
 TEST(Page, OfAMapWithoutARouteHasNoProfiles) {

@@ -32,6 +32,16 @@ TEST(ReachScene, ShowsBothSetsAndTheGapBetween) {
       else
         EXPECT_EQ(value, column < 12 ? 0.0F : 1.0F) << column << ' ' << row;
     }
+  // The smaller set, 12 columns of 20 cells, has the ring around it; the title has the reason.
+  ASSERT_EQ(scene.layers.front().classes.size(), 2U);
+  EXPECT_EQ(scene.layers.front().classes[0].name, "reached from the start: 240 cells");
+  EXPECT_EQ(scene.layers.front().classes[1].name, "leading to the goal: 340 cells");
+  ASSERT_EQ(scene.rings.size(), 1U);
+  EXPECT_EQ(scene.rings[0].label, scene.layers.front().classes[0].name);
+  EXPECT_EQ(scene.rings[0].centre.x_m, 6.0);
+  EXPECT_EQ(scene.rings[0].centre.y_m, 10.0);
+  EXPECT_DOUBLE_EQ(scene.rings[0].radius_m, 0.5 * std::hypot(11.0, 19.0));
+  EXPECT_EQ(scene.title, "severed: a wall");
   EXPECT_FALSE(drawPicture(scene).empty());
   Scene unmarked = scene;
   unmarked.marks.clear();

@@ -15,7 +15,8 @@ TEST(Scene, SlopeOfAPlaneIsItsAngle) {
     for (int column = 0; column < 20; ++column)
       map.elevation_m[{column, row}] = static_cast<float>(2.0 * row * std::tan(0.3));
   const Scene scene = sceneOf(map, {.title = "plane"});
-  ASSERT_EQ(scene.layers.size(), 1U);
+  ASSERT_EQ(scene.layers.size(), 2U);
+  EXPECT_EQ(scene.layers[1].name, "elevation");
   // Closed form: atan of the gradient; 1e-4 deg for elevations stored as float.
   EXPECT_NEAR((scene.layers[0].values[{10, 10}]), 0.3 / kDegree, 1e-4);
 }

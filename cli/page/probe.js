@@ -1,0 +1,70 @@
+// What is known of a cell: a click, or Enter for the cell in the middle of the map; arrow keys then take those beside it.
+// A layer's values are whole numbers of its last decimal in the red, green and blue of an image; zero is no value.
+function words(uri, width, height) {
+  return new Promise(done => {
+    const image = new Image();
+    image.onload = () => {
+      const canvas = document.createElement("canvas");
+      canvas.width = width;
+      canvas.height = height;
+      const context = canvas.getContext("2d", {willReadFrequently: true});
+      context.drawImage(image, 0, 0);
+      const bytes = context.getImageData(0, 0, width, height).data;
+      const word = (_, i) => bytes[4 * i] << 16 | bytes[4 * i + 1] << 8 | bytes[4 * i + 2];
+      done(Uint32Array.from({length: width * height}, word));
+    };
+    image.src = uri;
+  });
+}
+
+function valueText(layer, word) {
+  if (layer.shares) {
+    const all = [word >> 18 & 63, word >> 12 & 63, word >> 6 & 63, word & 63], sum = all.reduce((a, b) => a + b);
+    const share = ({label}, i) => all[i] === sum ? label : all[i] ? `${label} ${Math.round(100 * all[i] / sum)} %` : "";
+    return layer.legend.map(share).filter(text => text).join(", ");
+  }
+  if (word === 0) return "no data";
+  if (layer.legend) return layer.legend[word - 1 + layer.low].label;
+  const value = ((layer.low + word - 1) / 10 ** layer.decimals).toFixed(Math.max(0, layer.decimals));
+  return layer.bar.unit ? `${value} ${layer.bar.unit}` : value;
+}
+
+function probeCells(map, data) {
+  const {width, height, cell, cells_per_pixel: block} = data.grid, b = data.bounds;
+  const style = {color: "#000", weight: 2, fill: false, interactive: false, className: "chosen"};
+  const frame = L.rectangle([[0, 0], [0, 0]], style);
+  const popup = L.popup({maxWidth: 330, className: "probe"});
+  let chosen = null, values = null;
+  map.on("popupclose", () => { chosen = null; frame.remove(); });
+
+  async function explain(column, row) {
+    if (column < 0 || row < 0 || column >= width || row >= height) return;
+    values = values || Promise.all(data.layers.map(layer => words(layer.values || layer.shares, width, height)));
+    const west = b.west + column * cell, south = b.south + row * cell;
+    const x = west + cell / 2, y = south + cell / 2;
+    const read = await values, index = (height - 1 - row) * width + column;
+    const table = document.createElement("table");
+    const add = (name, value) => {
+      const line = table.insertRow();
+      line.appendChild(document.createElement("th")).textContent = name;
+      line.insertCell().textContent = value;
+    };
+    data.layers.forEach((layer, i) => add(layer.name, valueText(layer, read[i][index])));
+    add("centre", placeText(data, x, y));
+    add("cell", block > 1 ? `mean of ${block} x ${block} cells` : `column ${column}, row ${row}`);
+    popup.setLatLng([y, x]).setContent(table).openOn(map);
+    chosen = {column, row};
+    frame.setBounds([[south, west], [south + cell, west + cell]]).addTo(map);
+  }
+  const at = ({lng, lat}) => explain(Math.floor((lng - b.west) / cell), Math.floor((lat - b.south) / cell));
+  map.on("click", event => at(event.latlng));
+  const steps = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1]};
+  map.getContainer().addEventListener("keydown", event => {
+    const step = chosen && steps[event.key];
+    if (event.key === "Enter" && event.target === map.getContainer()) at(map.getCenter());
+    else if (step) explain(chosen.column + step[0], chosen.row + step[1]);
+    else return;
+    event.preventDefault();
+    event.stopPropagation();
+  }, true);
+}
