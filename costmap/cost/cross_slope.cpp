@@ -23,11 +23,10 @@ constexpr double kLevelStep = 1.0 / 128.0;  // the same of the level row under e
 constexpr double kRowStep = 1.0 / DriveCurve::kRowsPerUnit;
 constexpr double kSpare = 1.25;  // rows beyond the limit, to know how far off failure is
 constexpr int kBins = DriveCurve::kBins;
-constexpr double kBelow = 0.16;   // gradients downhill beyond the limit, to know how far off failure is
-constexpr double kNowhere = 4.0;  // steeper than any cell
-constexpr double kUpright_rad =
-    2e-4;                            // of the margin against tipping: by more its straight pieces are not off
-constexpr float kSamePlace = 0.02F;  // of a bin
+constexpr double kBelow = 0.16;        // gradients downhill beyond the limit, to know how far off failure is
+constexpr double kNowhere = 4.0;       // steeper than any cell
+constexpr double kUpright_rad = 2e-4;  // of the margin against tipping: by more its pieces are not off
+constexpr float kSamePlace = 0.02F;    // of a bin
 
 // The place of a gradient among the bins, within the table.
 float placeOf(double gradient) {
@@ -261,16 +260,15 @@ Refusal CrossSlope::reasonAt(int row, int bin) const noexcept {
   const Refusal lacks = row == 0 ? Refusal::Pull : Refusal::SideForce;
   if (held_.empty()) return lacks;
   const std::vector<Held>& held = held_[std::min(static_cast<std::size_t>(row), held_.size() - 1)];
-  const double most = static_cast<double>(held.size()) - 1.0,
-               place = std::clamp(DriveCurve::gradient(bin) / kAlongStep - first_along_, 0.0, most);
+  const double place = std::clamp(DriveCurve::gradient(bin) / kAlongStep - first_along_, 0.0,
+                                  static_cast<double>(held.size()) - 1.0);
   const auto k = static_cast<std::size_t>(place);
   const Held &low = held[k], &high = held[std::min(k + 1, held.size() - 1)];
   const double share = place - static_cast<double>(k);
   if (mixed(low.hold, high.hold, share).stability_margin_rad < 0.0) return Refusal::Tips;
-  const Held &nearer = share < 0.5 ? low : high, &other = share < 0.5 ? high : low;
-  for (const Held* at : {&nearer, &other})
-    if (at->grip != SlopeFailure::None) return reasonOf(at->grip);
-  return lacks;
+  const SlopeFailure nearer = (share < 0.5 ? low : high).grip, other = (share < 0.5 ? high : low).grip;
+  if (nearer != SlopeFailure::None) return reasonOf(nearer);
+  return other != SlopeFailure::None ? reasonOf(other) : lacks;
 }
 
 // Linear between the two equilibria about it, or as the one that holds.

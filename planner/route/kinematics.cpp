@@ -104,8 +104,9 @@ std::vector<Arc> shortestArcs(const Pose& from, const Pose& to, const Kinematics
 Kinematics kinematicsOn(const costmap::GroundModel& model, const costmap::DriveCost& cost) {
   const terramech::Rover& rover = model.rover();
   if (rover.steering == terramech::Steering::Ackermann && rover.turning_radius_m <= 0.0)
-    throw std::invalid_argument("rover '" + rover.name +
-                                "': turning_radius_m = 0, must be > 0 with steering ackermann");
+    throw std::invalid_argument(
+        "rover '" + rover.name +
+        "': turning_radius_m = 0, must be > 0 with steering ackermann; state it in the rover's file");
   const auto lasting = [&](double time_s) {
     return costmap::priced(terramech::TurnEffort{rover.hotel_power_W * time_s, time_s}, 1.0,
                            model.parts().policy.time_weight_W);

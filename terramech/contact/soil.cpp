@@ -31,7 +31,7 @@ void validate(const Soil& soil) {
   check.finite("c2", soil.c2);
   check.above("density_kg_m3", soil.density_kg_m3, 0.0);
   check.within("slip_sinkage_exponent", soil.slip_sinkage_exponent, {0.0, 2.0});
-  check.atLeast("digging_exponent", soil.digging_exponent, 0.0);
+  check.within("digging_exponent", soil.digging_exponent, {0.0, 2.0});
   check.atLeast("side_bulldozing", soil.side_bulldozing, 0.0);
   check.within("test_gravity_m_s2", soil.test_gravity_m_s2, {0.0, 1e3});
   // Beyond these no ground is known, by a factor of a hundred or more.

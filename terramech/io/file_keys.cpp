@@ -17,7 +17,7 @@ std::span<const FileKey> soilKeys() {
       {"c2", "growth of c1 with slip, -1 to 1, default 0.32"},
       {"density_kg_m3", "bulk density, 0.1 to 1e6, default 1600"},
       {"slip_sinkage_exponent", "growth of the sinkage exponent with slip, 0 to 2, default 0"},
-      {"digging_exponent", "growth of the sinkage exponent with sideways slip, >= 0, default 0.4"},
+      {"digging_exponent", "growth of the sinkage exponent with sideways slip, 0 to 2, default 0.4"},
       {"side_bulldozing", "share of Hegedus' pressure on the side of a wheel, >= 0, default 1"},
       {"test_gravity_m_s2",
        "gravity of the soil's test; in less, cohesion and moduli are less by as much; default 0: that of the "

@@ -7,15 +7,14 @@
 namespace talus::terramech {
 namespace {
 
-// Sum over the wheels of a force a wheel times its distance from the middle along the heading [N m].
-double scrubLever_Nm(const Rover& rover, double force_N) noexcept {
+// Of a wheel's place, over the wheels.
+template <typename Number>
+double meanOverAxles(const Rover& rover, Number number) noexcept {
   const int axles = std::max(1, rover.wheel_count / 2);
-  double lever = 0.0;
-  for (int k = 0; k < axles; ++k) {
-    const double x = axles == 1 ? 0.0 : rover.wheelbase_m * (static_cast<double>(k) / (axles - 1) - 0.5);
-    lever += 2.0 * force_N * std::abs(x);
-  }
-  return lever;
+  double sum = 0.0;
+  for (int k = 0; k < axles; ++k)
+    sum += number(axles == 1 ? 0.0 : rover.wheelbase_m * (static_cast<double>(k) / (axles - 1) - 0.5));
+  return sum / axles;
 }
 
 double passivePressure(const Soil& soil) noexcept {
@@ -38,13 +37,17 @@ TurnEfforts turnEfforts(const Rover& rover, const TurningGround& ground) noexcep
   const double rho_m = 0.5 * std::hypot(rover.wheelbase_m, rover.track_m), row_m = 0.5 * rover.track_m;
   const bool skids = rover.steering == Steering::Skid;
   const double dragged_N = ground.lateral_resistance * wheelLoad_N(rover) + ground.bulldozing_N;
-  const double scrub_J = skids ? scrubLever_Nm(rover, dragged_N) : 0.0;
-  const double swept_m = skids ? row_m : rho_m;
+  const double scrub_J = skids ? 2.0 * std::max(1, rover.wheel_count / 2) * dragged_N *
+                                     meanOverAxles(rover, [](double x_m) { return std::abs(x_m); })
+                               : 0.0;
+  const double swept_m = skids ? row_m : rho_m,
+               rolled_m =
+                   skids ? row_m : meanOverAxles(rover, [&](double x_m) { return std::hypot(x_m, row_m); });
   const auto effort = [&](double drive_J, double time_s) {
     return TurnEffort{.energy_J = drive_J + rover.hotel_power_W * time_s, .time_s = time_s};
   };
   return {.on_arc = effort(scrub_J, row_m / rover.max_speed_mps),
-          .in_place = effort(scrub_J + ground.rolling_J_per_m * swept_m, swept_m / rover.max_speed_mps)};
+          .in_place = effort(scrub_J + ground.rolling_J_per_m * rolled_m, swept_m / rover.max_speed_mps)};
 }
 
 }  // namespace talus::terramech

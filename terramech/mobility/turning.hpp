@@ -34,10 +34,10 @@ double bulldozing_N(const Soil& soil, const Rover& rover, double sinkage_m) noex
 ///   Skid:                sum_k (mu N_k + B) |x_k|   each axle dragged sideways through |x_k| (wong_2001,
 ///                                                   ch. 6, for wheels), on an arc as in place; in place
 ///                                                   the rows also roll against each other, R_m b / 2
-///   Ackermann, AllWheel: R_m rho in place           each wheel rolls a circle about the centre, rho half
-///                                                   the diagonal; nothing on an arc
+///   Ackermann, AllWheel: R_m mean rho_k in place    each wheel rolls a circle about the centre, rho_k its distance from
+///                                                   that; nothing on an arc
 /// Time: no wheel exceeds max_speed_mps, so that on an arc the outer row takes (b/2) / v longer a radian, and
-/// in place rho / v (Skid: (b/2) / v); the hotel's power is drawn meanwhile.
+/// in place max rho_k / v (Skid: (b/2) / v); the hotel's power is drawn meanwhile.
 TurnEfforts turnEfforts(const Rover& rover, const TurningGround& ground) noexcept;
 
 }  // namespace talus::terramech

@@ -144,9 +144,11 @@ class Drive {
     if (step.stuck) return dig(step);
     if (learned && routeTurnedDear()) return retreat(step, {"soil weaker than estimated", {}});
     report(step, heading, length_m);
-    const terramech::TurnEffort turn = world_.turn(std::exchange(heading_, heading), motion(heading, 0.0));
-    result_.energy_J += turn.energy_J;
-    result_.time_s += turn.time_s;
+    if (const auto before = std::exchange(heading_, heading)) {
+      const terramech::TurnEffort turn = world_.turn(*before, motion(heading, 0.0));
+      result_.energy_J += turn.energy_J;
+      result_.time_s += turn.time_s;
+    }
     advance(step, heading, length_m);
     return std::nullopt;
   }
@@ -368,7 +370,7 @@ class Drive {
   FieldPlanner planner_;
   Ruts ruts_;
   maps::Point here_;
-  Direction heading_{};  // of the step before; 0 at first
+  std::optional<Direction> heading_;  // of the step before
   std::vector<maps::Point> way_back_;
   std::vector<maps::Point> route_;
   std::size_t next_ = 1;

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <random>
 
 #include <refused.hpp>
 
@@ -72,6 +73,44 @@ TEST_P(EveryPlanner, RoundsTheWallExactly) {
   // Asymptotically optimal planners stopped early; SST is so only up to its pruning radius.
   EXPECT_LE(plan.cost_J, best_J * (GetParam() == "SST" ? 1.3 : 1.1));
   EXPECT_LE(plan.lower_bound_J, best_J);
+}
+
+// Property: on hills whose crossing costs, no planner and no random polyline is cheaper than what is proven.
+TEST(SamplingPlanner, NothingIsCheaperThanTheBound) {
+  int routes = 0;
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    std::mt19937 random(seed);
+    const auto unit = [&random] { return static_cast<double>(random()) / 4294967296.0; };
+    maps::Raster<costmap::CellCode> cells({.width = 40, .height = 30, .resolution_m = 1.0, .south_west = {}});
+    const double p = 6.0 * unit(), q = 6.0 * unit(), steep = 0.1 + 0.1 * unit();
+    for (int row = 0; row < 30; ++row)
+      for (int column = 0; column < 40; ++column)
+        cells[{column, row}] = costmap::CellCode({.dz_dx = steep * std::sin(0.45 * column + 0.2 * row + p),
+                                                  .dz_dy = steep * std::cos(0.6 * row - 0.3 * column + q),
+                                                  .curve = static_cast<std::uint8_t>(1 + 3 * unit())});
+    Problem problem;
+    problem.map = std::make_shared<costmap::CostGrid>(costmap::flattened(cells, testing::driveCost()));
+    problem.start = {3.5, 4.5};
+    problem.goal = {36.5, 24.5};
+    problem.prove = true;
+    const Plan best = FieldPlanner().plan(problem);
+    if (best.status != RouteStatus::Found) continue;
+    EXPECT_GT(best.lower_bound_J, 0.8 * best.cost_J);  // cells have little to do with each other
+    for (const char* name : {"RRTstar", "BITstar"}) {
+      const Plan plan = planBySampling(problem, {.planner = name, .work = 2'000'000});
+      if (plan.status != RouteStatus::Found) continue;
+      EXPECT_GE(plan.cost_J, best.lower_bound_J) << name << ' ' << seed;
+      ++routes;
+    }
+    for (int trial = 0; trial < 400; ++trial) {
+      Polyline points{problem.start};
+      for (int k = 1; k < 5; ++k)
+        points.push_back({3.5 + 6.6 * k + 3.0 * unit() - 1.5, 4.5 + 4.0 * k + 6.0 * unit() - 3.0});
+      points.push_back(problem.goal);
+      EXPECT_GE(MotionCost(problem.map).along(points), best.lower_bound_J);
+    }
+  }
+  EXPECT_GE(routes, 8);
 }
 
 TEST_P(EveryPlanner, ImprovesOnTheRouteItIsGiven) {

@@ -38,6 +38,11 @@ TEST(Turning, ASteeredRoverRollsAroundItsMiddle) {
   EXPECT_DOUBLE_EQ(efforts.in_place.energy_J,
                    30.0);  // Closed form: half the diagonal of 1.2 by 0.9 m is 0.75 m.
   EXPECT_DOUBLE_EQ(efforts.on_arc.energy_J, 0.0);
+  // Closed form: of six wheels the middle ones roll half the track.
+  Rover six = fourWheels(Steering::AllWheel);
+  six.wheel_count = 6;
+  EXPECT_DOUBLE_EQ(turnEfforts(six, {.rolling_J_per_m = 40.0}).in_place.energy_J,
+                   40.0 * (2.0 * 0.75 + 0.45) / 3.0);
 }
 
 TEST(Turning, NoWheelIsFasterThanItMay) {

@@ -170,6 +170,10 @@ TEST(TraverseSimulation, ATurnIsPaidOnTheTrueGround) {
                            bent = along({{5.5, 20.5}, {15.5, 20.5}, {15.5, 30.5}});
   ASSERT_EQ(straight.outcome, Outcome::Reached);
   ASSERT_EQ(bent.outcome, Outcome::Reached);
+  // Whichever way it sets off, the first heading is no turn.
+  const TraverseSimulation north = along({{15.5, 5.5}, {15.5, 15.5}, {15.5, 25.5}});
+  EXPECT_NEAR(north.time_s, straight.time_s, 0.01 * straight.time_s);
+  EXPECT_NEAR(north.energy_J, straight.energy_J, 0.01 * straight.energy_J);
   const terramech::Rover rover = testRover();
   const terramech::MobilityState flat = terramech::MobilityCurve(testSand(), rover).at(0.0);
   const terramech::TurnEfforts efforts = terramech::turnEfforts(
