@@ -26,6 +26,7 @@
 #include <talus/cli/ground/plugin_option.hpp>
 #include <talus/cli/ground/windowed_ground.hpp>
 #include <talus/cli/route/plan_pairs.hpp>
+#include <talus/cli/route/provenance.hpp>
 #include <talus/cli/route/route_writer.hpp>
 #include <talus/common/input_error.hpp>
 #include <talus/maps/vector/place_reader.hpp>
@@ -106,23 +107,34 @@ std::string planText(const Route& route, const Timing& seconds) {
 }
 
 planner::RouteOrigin originOf(const Ground& ground, const Context& context) {
-  planner::RouteOrigin origin{.files = {}, .seed = context.seed};
+  planner::RouteOrigin origin{.files = {},
+                              .seed = context.seed,
+                              .rover = ground.map.model().rover().name,
+                              .soils = {},
+                              .command = callText(context.argv)};
+  for (const costmap::GroundClass& one : ground.map.model().parts().classes)
+    origin.soils.push_back(one.soil.name);
   for (const std::string& path : ground.files)
     origin.files.push_back({std::filesystem::path(path).filename().string(), path, sha256OfFile(path)});
   return origin;
 }
 
+// The page states what it takes to make the route again, as the route's file does.
+void addProvenance(Scene& scene, const nlohmann::ordered_json& document) {
+  scene.provenance = provenanceOf(document["features"][0]["properties"]["inputs"]);
+  std::erase_if(scene.facts, [](const Fact& fact) { return fact.first == "rover" || fact.first == "soil"; });
+}
+
 void writeFiles(const PlanOptions& options, const Ground& ground, const Route& route,
                 const Context& context) {
-  if (!options.output.empty()) {
-    const auto document = routeGeoJson(route, ground.map.elevation(), originOf(ground, context));
-    writeRoute(options.output, document, ground.map.elevation(), context);
-  }
+  const auto document = routeGeoJson(route, ground.map.elevation(), originOf(ground, context));
+  if (!options.output.empty()) writeRoute(options.output, document, ground.map.elevation(), context);
   if (options.html.empty() && options.png.empty()) return;
   const std::string name = std::filesystem::path(ground.map.elevation().source).filename().string();
   const std::string cut = route.interrupted ? " (interrupted: best route so far)" : "";
   Scene scene = sceneOf(ground.map, {.title = "Route across " + name + cut});
   addRoute(scene, route);
+  addProvenance(scene, document);
   if (!options.png.empty()) savePicture(options.png, scene);
   if (!options.html.empty()) savePage(options.html, scene);
 }
@@ -221,16 +233,17 @@ int refuseOwn(const PlanOptions& options, const Planned& planned, const Context&
 }
 
 // Both sets of cells that a proof of no route rests on.
-void drawSevered(const PlanOptions& options, const Planned& planned) {
+void drawSevered(const PlanOptions& options, const Planned& planned, const Context& context) {
   const PlanRequest& request = planned.request;
   const maps::ElevationMap& map = planned.ground.map.elevation();
   const bool pictured = !options.png.empty() || !options.html.empty();
   const bool one_leg = request.via.empty() && request.other_goals.empty();
   if (!pictured || !one_leg || !planned.route.obstruction) return;
-  const Scene scene =
+  Scene scene =
       reachScene(map, *planned.ground.map.published(),
                  {{request.start, request.goal}, request.tolerance_m, planned.route.reason},
                  {.title = "No route across " + std::filesystem::path(map.source).filename().string()});
+  addProvenance(scene, routeGeoJson(planned.route, map, originOf(planned.ground, context)));
   if (!options.png.empty()) savePicture(options.png, scene);
   if (!options.html.empty()) savePage(options.html, scene);
 }
@@ -238,7 +251,7 @@ void drawSevered(const PlanOptions& options, const Planned& planned) {
 int finish(const PlanOptions& options, Planned& planned, const Context& context) {
   Route& route = planned.route;
   if (route.refused) return refuseOwn(options, planned, context);
-  if (route.status == RouteStatus::NoRoute) drawSevered(options, planned);
+  if (route.status == RouteStatus::NoRoute) drawSevered(options, planned, context);
   if (route.status != RouteStatus::Found) return refuse(route, context);
   writeFiles(options, planned.ground, route, context);
   const Timing seconds{planned.ground.load_s, planned.ground.build_s, planned.plan_s};

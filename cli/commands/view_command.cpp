@@ -1,6 +1,9 @@
-// talus view ROUTE|MAP: one page to look at.
+// talus view ROUTE|MAP [ROUTE ...]: one page to look at.
+#include <algorithm>
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -12,6 +15,8 @@
 #include <talus/cli/app/sha256.hpp>
 #include <talus/cli/draw/page.hpp>
 #include <talus/cli/draw/picture.hpp>
+#include <talus/cli/draw/route_comparison.hpp>
+#include <talus/cli/draw/route_summary.hpp>
 #include <talus/cli/draw/scene.hpp>
 #include <talus/cli/ground/map_options.hpp>
 #include <talus/cli/route/route_reader.hpp>
@@ -27,6 +32,7 @@ namespace fs = std::filesystem;
 
 struct ViewOptions {
   MapOptions file;
+  std::vector<std::string> others;  ///< routes that are compared with the first
   std::string map;
   std::string title;
   std::string html;
@@ -36,6 +42,8 @@ struct ViewOptions {
 void bind(CLI::App& command, ViewOptions& options) {
   addMapOptions(command, options.file, "FILE");
   command.get_option("FILE")->description("route from `talus plan`, traversability map, or elevation map");
+  command.add_option("ROUTE", options.others, "further routes, compared with the first one")
+      ->type_name("ROUTE ...");
   command
       .add_option(
           "--map", options.map,
@@ -92,34 +100,77 @@ std::optional<std::string> findMap(const RouteFile& file, const std::string& rou
   return std::nullopt;
 }
 
+void requireInside(const Scene& scene, const planner::Route& route, const std::string& map,
+                   const std::string& path) {
+  if (scene.grid().cellAt({route.vertices.front().x_m, route.vertices.front().y_m})) return;
+  throw InputError(
+      {map, "does not contain the start of the route " + path, "pass the map that the route was planned on"});
+}
+
+std::string nameOf(const std::string& path) {
+  return fs::path(path).filename().string();
+}
+
+void compareWithOthers(Scene& scene, const ViewOptions& options, const RouteFile& first,
+                       const std::string& map) {
+  std::vector<NamedRoute> routes{{nameOf(options.file.path), first.route, first.provenance}};
+  for (const std::string& path : options.others) {
+    const RouteFile other = readRoute(path);
+    if (!map.empty()) requireInside(scene, other.route, map, path);
+    const std::string name = nameOf(path);
+    const bool taken =
+        std::any_of(routes.begin(), routes.end(), [&](const NamedRoute& r) { return r.name == name; });
+    routes.push_back({taken ? path : name, other.route, other.provenance});
+  }
+  compare(scene, std::move(routes));
+}
+
 Scene routeScene(const ViewOptions& options, const Context& context) {
   const RouteFile file = readRoute(options.file.path);
-  const std::string name = fs::path(options.file.path).filename().string();
   ViewOptions titled = options;
-  if (titled.title.empty()) titled.title = name;
+  if (titled.title.empty()) {
+    titled.title = nameOf(options.file.path);
+    for (const std::string& other : options.others) titled.title += " and " + nameOf(other);
+  }
   const std::optional<std::string> map =
       options.map.empty() ? findMap(file, options.file.path, context) : std::optional(options.map);
-  if (!map) return sceneOf(file.route, {.title = titled.title});
-  Scene scene = mapScene(titled, *map, context);
-  if (!scene.grid().cellAt({file.route.vertices.front().x_m, file.route.vertices.front().y_m}))
-    throw InputError(
-        {*map, "does not contain the start of the route", "pass the map that the route was planned on"});
-  addRoute(scene, file.route);
+  Scene scene = map ? mapScene(titled, *map, context) : sceneOf(file.route, {.title = titled.title});
+  if (map) requireInside(scene, file.route, *map, options.file.path);
+  if (!options.others.empty()) {
+    if (!map) scene.facts.clear();
+    compareWithOthers(scene, options, file, map.value_or(""));
+  } else {
+    if (map) addRoute(scene, file.route);
+    scene.provenance = file.provenance;
+  }
   return scene;
+}
+
+std::string comparisonText(const Scene& scene) {
+  std::string text;
+  for (const ComparedFact& fact : scene.comparison)
+    text += summaryLine(fact.name, fmt::format("{}", fmt::join(fact.values, " | ")));
+  return text;
 }
 
 int run(const ViewOptions& options, Context& context) {
   const fs::path named(options.html);
   const fs::path html = named.empty() ? fs::path(options.file.path).stem().concat(".html") : named;
-  const Scene scene = looksLikeRoute(options.file.path) ? routeScene(options, context)
-                                                        : mapScene(options, options.file.path, context);
+  const bool of_route = looksLikeRoute(options.file.path);
+  if (!of_route && !options.others.empty())
+    throw InputError({options.file.path, "is no route, and is to be compared with routes",
+                      "pass routes, and the map as --map"});
+  const Scene scene = of_route ? routeScene(options, context) : mapScene(options, options.file.path, context);
   if (context.stop.stop_requested()) return Exit::kCancelled;
   if (!options.png.empty()) savePicture(options.png, scene);
   savePage(html, scene);
-  if (context.json)
-    printJson({{"html", html.string()}, {"facts", nlohmann::ordered_json(scene.facts)}});
-  else
-    print(fmt::format("page        {}\n", html.string()));
+  if (!context.json) {
+    print(comparisonText(scene) + fmt::format("page        {}\n", html.string()));
+    return Exit::kDone;
+  }
+  nlohmann::ordered_json json{{"html", html.string()}, {"facts", nlohmann::ordered_json(scene.facts)}};
+  for (const ComparedFact& fact : scene.comparison) json["comparison"][fact.name] = fact.values;
+  printJson(json);
   return Exit::kDone;
 }
 
@@ -131,6 +182,7 @@ void addView(CLI::App& app, Context& context) {
                            .group = Group::kRoutes,
                            .description = "write a self-contained HTML page: map layers, route and profiles",
                            .examples = "  talus view route.geojson\n"
+                                       "  talus view careful.geojson fast.geojson -o both.html\n"
                                        "  talus view gale.ot -o gale.html --png gale.png\n"},
                           bind, run);
 }

@@ -95,6 +95,31 @@ ordered_json ringsOf(const Scene& scene) {
   return rings;
 }
 
+ordered_json routesOf(const Scene& scene) {
+  ordered_json routes = ordered_json::array();
+  for (std::size_t i = 0; i < scene.routes.size(); ++i)
+    routes.push_back({{"name", scene.routes[i].name},
+                      {"colour", hex(seriesColour(i))},
+                      {"points", routeOf(scene.routes[i].route)}});
+  if (routes.empty() && scene.route)
+    routes.push_back({{"name", ""}, {"colour", "#1b3fbf"}, {"points", routeOf(*scene.route)}});
+  return routes;
+}
+
+ordered_json comparisonOf(const Scene& scene) {
+  ordered_json rows = ordered_json::array();
+  for (const ComparedFact& fact : scene.comparison)
+    rows.push_back({{"name", fact.name}, {"values", fact.values}});
+  return rows;
+}
+
+ordered_json partingsOf(const Scene& scene) {
+  ordered_json out = ordered_json::array();
+  for (const auto& [place, text] : scene.partings)
+    out.push_back({{"x", number(place.x_m)}, {"y", number(place.y_m)}, {"text", text}});
+  return out;
+}
+
 ordered_json dataOf(const Scene& scene) {
   const maps::Grid& grid = scene.grid();
   ordered_json data;
@@ -117,7 +142,10 @@ ordered_json dataOf(const Scene& scene) {
   data["facts"] = scene.facts;
   data["marks"] = marksOf(scene);
   data["rings"] = ringsOf(scene);
-  data["route"] = scene.route ? routeOf(*scene.route) : ordered_json::array();
+  data["provenance"] = scene.provenance;
+  data["routes"] = routesOf(scene);
+  data["comparison"] = comparisonOf(scene);
+  data["partings"] = partingsOf(scene);
   if (scene.story) data["story"] = storyOf(*scene.story);
   return data;
 }

@@ -114,6 +114,13 @@ class Picture {
     for (const Ring& ring : scene_.rings) encircle(ring);
     for (const auto& [letter, place] : scene_.marks) mark(spot(place.x_m, place.y_m), letter);
     if (!scene_.route || scene_.route->vertices.empty()) return;
+    for (std::size_t i = scene_.routes.size(); i-- > 1;) {
+      std::vector<Spot> other;
+      for (const planner::RouteVertex& v : scene_.routes[i].route.vertices)
+        other.push_back(spot(v.x_m, v.y_m));
+      canvas_.line(other, {.colour = kWhite, .width = 5.5});
+      canvas_.line(other, {.colour = seriesColour(i), .width = 2.8});
+    }
     std::vector<Spot> spots;
     for (const planner::RouteVertex& v : scene_.route->vertices) spots.push_back(spot(v.x_m, v.y_m));
     canvas_.line(spots, {.colour = kWhite, .width = 5.5});
@@ -192,6 +199,11 @@ class Picture {
         canvas_.text("reverse; dots: turns in place", {at.x + 36, at.y + 4}, {});
         at.y += 24;
       }
+    }
+    for (std::size_t i = 1; i < scene_.routes.size(); ++i) {
+      canvas_.line(std::array{at, Spot{at.x + 26, at.y}}, {.colour = seriesColour(i), .width = 3});
+      canvas_.text(scene_.routes[i].name, {at.x + 36, at.y + 4}, {});
+      at.y += 24;
     }
     elevations(at);
     northArrow({at.x + 12, at.y + 80});

@@ -51,6 +51,19 @@ struct Ring {
 /// A line of a summary: what, and its value with unit.
 using Fact = std::pair<std::string, std::string>;
 
+/// A route that is compared with others.
+struct NamedRoute {
+  std::string name;
+  planner::Route route;
+  std::vector<Fact> provenance{};
+};
+
+/// A quantity of several routes: its name, and the value of each.
+struct ComparedFact {
+  std::string name;
+  std::vector<std::string> values;
+};
+
 /// All that a picture or a page shows, at the scale it is shown: rasters share one grid, at most a few
 /// pixels' worth of cells a side.
 struct Scene {
@@ -60,7 +73,11 @@ struct Scene {
   maps::Raster<CategoryShares> categories;  ///< empty: not known
   std::vector<ValueLayer> layers;
   std::vector<Fact> facts;
+  std::vector<Fact> provenance{};  ///< what it takes to make it again
   std::optional<planner::Route> route;
+  std::vector<NamedRoute> routes{};        ///< where several are compared: the first, and the others
+  std::vector<ComparedFact> comparison{};  ///< of these
+  std::vector<std::pair<maps::Point, std::string>> partings{};  ///< where they part and meet again
   std::vector<std::pair<const char*, maps::Point>>
       marks{};  ///< places under a letter, where there is no route
   std::vector<Ring> rings{};

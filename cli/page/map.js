@@ -7,8 +7,7 @@ function drawMap(element, data) {
   showNorth(map);
   showCursor(map, data);
   L.imageOverlay(data.shade, box, {alt: "hillshade", zIndex: 1}).addTo(map);
-  const way = wayOf(data).map(p => [p.y, p.x]);
-  fill(map, way.length ? L.latLngBounds(way).pad(0.05) : box, box);
+  firstView(map, data);
   chooseLayer(map, data, box);
   for (const {letter, x, y} of data.marks) showEnd(map, [y, x], letter);
   for (const {x, y, radius, label} of data.rings) {
@@ -21,13 +20,15 @@ function drawMap(element, data) {
 
 // What the first view has to hold.
 function wayOf(data) {
-  if (!data.story) return data.route;
+  if (!data.story) return data.routes.flatMap(route => route.points);
   const planned = data.story.events.flatMap(event => event.route);
   return [...data.story.track.map(([, x, y]) => ({x, y})), ...planned.map(([x, y]) => ({x, y}))];
 }
 
 // The view as near as it holds the way, and moved so that as little as can be lies beside the map.
-function fill(map, way, box) {
+function firstView(map, data) {
+  const b = data.bounds, box = L.latLngBounds([[b.south, b.west], [b.north, b.east]]);
+  const points = wayOf(data).map(p => [p.y, p.x]), way = points.length ? L.latLngBounds(points).pad(0.05) : box;
   const zoom = map.getBoundsZoom(way), scale = map.getZoomScale(zoom, 0), size = map.getSize();
   const within = (centre, low, high, half) =>
     high - low <= 2 * half ? (low + high) / 2 : Math.min(Math.max(centre, low + half), high - half);

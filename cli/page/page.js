@@ -17,31 +17,66 @@ function reading(p) {
     .filter(text => text).join(" · ");
 }
 
-function showFacts(facts) {
-  const table = document.getElementById("facts");
-  for (const [name, value] of facts) {
-    const row = table.insertRow();
-    row.appendChild(document.createElement("th")).textContent = name;
-    row.insertCell().textContent = value;
-  }
+function addRow(table, name, values) {
+  const row = table.insertRow();
+  row.appendChild(document.createElement("th")).textContent = name;
+  for (const value of values) row.insertCell().textContent = value;
+}
+
+function showFacts(data) {
+  const comparison = document.getElementById("comparison");
+  if (data.comparison.length) addRow(comparison, "what differs", data.routes.map(route => route.name));
+  for (const {name, values} of data.comparison) addRow(comparison, name, values);
+  for (const [name, value] of data.facts) addRow(document.getElementById("facts"), name, [value]);
+  for (const [name, value] of data.provenance) addRow(document.getElementById("provenance"), name, [value]);
+}
+
+// For a printer the page is laid out as a sheet of paper, and the map with it.
+function printable(map, data, profiles) {
+  const lay = paper => {
+    document.documentElement.classList.toggle("paper", paper);
+    map.invalidateSize({animate: false});
+    firstView(map, data);
+    if (profiles) profiles.draw();
+  };
+  let view = null;
+  addEventListener("beforeprint", () => {
+    view = [map.getCenter(), map.getZoom()];
+    lay(true);
+  });
+  addEventListener("afterprint", () => {
+    lay(false);
+    if (view) map.setView(...view, {animate: false});
+  });
 }
 
 function start() {
   const data = JSON.parse(document.getElementById("data").textContent);
   const map = drawMap(document.getElementById("map"), data);
-  showFacts(data.facts);
+  showFacts(data);
   probeCells(map, data);
   if (data.story) showStory(map, data.story);
-  const points = data.route;
-  if (points.length < 2) {
+  const routes = data.routes;
+  if (!routes.length || routes.some(({points}) => points.length < 2)) {
     document.getElementById("profiles").hidden = true;
+    printable(map, data, null);
     return;
   }
   const text = document.getElementById("reading");
-  text.textContent = "Hover over the profile or the route; click a cell of the map.";
-  const here = p => { text.textContent = reading(p); route.mark(p); };
-  const route = drawRoute(map, data, p => { profiles.mark(p.s); here(p); });
-  const profiles = drawProfiles(document.getElementById("charts"), points, s => here(pointAt(points, s)));
+  text.style.setProperty("--routes", Math.min(routes.length, 3));
+  text.textContent = "Hover over the profile or a route; click a cell of the map.";
+  const here = points => {
+    const named = (p, k) => p ? (routes[k].name ? `${routes[k].name}: ` : "") + reading(p) : "";
+    text.textContent = points.map(named).filter(line => line).join("\n");
+    drawn.mark(points);
+  };
+  const drawn = drawRoutes(map, data, (k, p) => {
+    profiles.mark(p.s);
+    here(routes.map((_, i) => i === k ? p : null));
+  });
+  const charts = document.getElementById("charts");
+  const profiles = drawProfiles(charts, routes, s => here(routes.map(({points}) => pointAt(points, s))));
+  printable(map, data, profiles);
 }
 
 try {

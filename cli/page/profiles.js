@@ -9,7 +9,7 @@ const allPanels = [
 ];
 const held = ["slope", "slip", "angle"];  // from one vertex to the next
 
-function panelMarks(panel, row, layout) {
+function panelMarks(panel, row, routes, layout) {
   const scale = "y" + row, height = layout.panelHeight;
   return {
     type: "group",
@@ -21,23 +21,24 @@ function panelMarks(panel, row, layout) {
       ...(layout.panels.length - 1 === row
         ? [{orient: "bottom", scale: "x", title: {signal: "unitTitle"}, tickCount: 8}] : []),
     ],
-    marks: [
-      {type: "line", clip: true, from: {data: "route"}, interactive: false,
-       encode: {update: {x: {scale: "x", field: "d"}, y: {scale, field: panel.field}, stroke: {value: "#1b3fbf"},
-                         strokeWidth: {value: 1.6},
-                         interpolate: {value: held.includes(panel.field) ? "step-after" : "linear"},
-                         defined: {signal: `isValid(datum['${panel.field}'])`}}}},
-    ],
+    marks: routes.map(({colour}, k) => ({
+      type: "line", clip: true, from: {data: "route" + k}, interactive: false,
+      encode: {update: {x: {scale: "x", field: "d"}, y: {scale, field: panel.field}, stroke: {value: colour},
+                        strokeWidth: {value: 1.6},
+                        interpolate: {value: held.includes(panel.field) ? "step-after" : "linear"},
+                        defined: {signal: `isValid(datum['${panel.field}'])`}}},
+    })),
   };
 }
 
-function profileSpec(points, unit, layout) {
+function profileSpec(routes, unit, layout) {
   const {panels, step, panelHeight} = layout;
+  const domain = field => ({fields: routes.map((_, k) => ({data: "route" + k, field}))});
   return {
     width: layout.width, height: (panels.length - 1) * step + panelHeight,
     padding: {left: 48, right: 14, top: 16, bottom: 42},
     autosize: "none",
-    data: [{name: "route", values: points.map(p => ({...p, d: p.s / unit.metres}))}],
+    data: routes.map(({points}, k) => ({name: "route" + k, values: points.map(p => ({...p, d: p.s / unit.metres}))})),
     signals: [
       {name: "unitTitle", value: `distance along the route [${unit.name}]`},
       {name: "hover", value: null, on: [
@@ -45,12 +46,12 @@ function profileSpec(points, unit, layout) {
       ]},
     ],
     scales: [
-      {name: "x", type: "linear", domain: {data: "route", field: "d"}, range: "width", zero: true, nice: false},
+      {name: "x", type: "linear", domain: domain("d"), range: "width", zero: true, nice: false},
       ...panels.map((panel, row) => ({name: "y" + row, type: "linear", range: [panelHeight, 0], nice: true, zero: panel.zero,
-                                      domain: {data: "route", field: panel.field}})),
+                                      domain: domain(panel.field)})),
     ],
     marks: [
-      ...panels.map((panel, row) => panelMarks(panel, row, layout)),
+      ...panels.map((panel, row) => panelMarks(panel, row, routes, layout)),
       {type: "rule", interactive: false, encode: {update: {
         x: {signal: "hover === null ? -1000 : scale('x', hover)"}, y: {value: 0}, y2: {signal: "height"},
         stroke: {value: "#b3202c"}, strokeWidth: {value: 1.2}}}},
@@ -68,16 +69,16 @@ function layoutOf(element) {
   return {panels, step, panelHeight: step - 17, width: Math.max(200, element.clientWidth - 62)};
 }
 
-// Draws the profiles and returns {mark(s)}; calls onHover(s) when the pointer moves; s in metres from the start.
-function drawProfiles(element, points, onHover) {
+// Draws the profiles and returns {mark(s), draw()}; calls onHover(s) when the pointer moves; s in metres from the start.
+function drawProfiles(element, routes, onHover) {
   const need = name => vegaModules["vega-" + name];
   for (const kind of ["transforms", "view-transforms", "encode"]) Object.assign(need("dataflow").transforms, need(kind));
-  const length = points[points.length - 1].s;
+  const length = Math.max(...routes.map(({points}) => points[points.length - 1].s));
   const unit = length >= 2000 ? {name: "km", metres: 1000} : {name: "m", metres: 1};
   let view = null, quiet = false;
   const draw = () => {
     if (view) view.finalize();
-    view = new (need("view").View)(need("parser").parse(profileSpec(points, unit, layoutOf(element))),
+    view = new (need("view").View)(need("parser").parse(profileSpec(routes, unit, layoutOf(element))),
                                    {renderer: "svg", container: element, hover: false});
     view.run();
     view.addSignalListener("hover", (_, value) => { if (!quiet) onHover(value * unit.metres); });
@@ -85,5 +86,5 @@ function drawProfiles(element, points, onHover) {
   draw();
   addEventListener("resize", draw);
   document.getElementById("quantity").addEventListener("change", draw);
-  return {mark(s) { quiet = true; view.signal("hover", s / unit.metres).run(); quiet = false; }};
+  return {draw, mark(s) { quiet = true; view.signal("hover", s / unit.metres).run(); quiet = false; }};
 }

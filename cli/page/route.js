@@ -1,4 +1,4 @@
-// The route in the colours of a quantity; each has a value at every vertex that holds to the next one.
+// Routes in the colours of a quantity; each has a value at every vertex that holds to the next one.
 const perMetre = (points, i, key) => i + 1 < points.length && points[i + 1].s > points[i].s
   ? (points[i + 1][key] - points[i][key]) / (points[i + 1].s - points[i].s) : null;
 const quantities = [
@@ -15,60 +15,84 @@ const quantities = [
   {name: "category", value: (points, i) => points[i].category},
 ];
 
-// The colour of each vertex and the legend of them all.
-function coloursOf(quantity, points, data) {
-  const values = points.map((_, i) => quantity.value(points, i));
+// The colours of the vertices of each route on one scale, and its legend.
+function coloursOf(quantity, data) {
+  const values = data.routes.map(({points}) => points.map((_, i) => quantity.value(points, i)));
   if (!quantity.unit) {
     const colours = Object.fromEntries(data.categories.map(({colour, label}) => [label, colour]));
-    return {colours: values.map(value => colours[value]),
+    return {colours: values.map(line => line.map(value => colours[value])),
             legend: {name: "route: " + quantity.name, legend: data.categories}};
   }
-  const known = values.filter(value => value !== null);
-  let low = Math.min(...known), high = Math.max(...known);
-  if (!known.length) low = high = 0;
+  let low = Infinity, high = -Infinity;
+  for (const value of values.flat())
+    if (value !== null) { low = Math.min(low, value); high = Math.max(high, value); }
+  if (!(low <= high)) low = high = 0;
   if (quantity.signed) { high = Math.max(Math.abs(low), Math.abs(high)); low = -high; }
   if (!(high - low > 1e-6 * Math.max(Math.abs(low), Math.abs(high)))) high = low + 1;  // all the same but for rounding
   const scale = quantity.signed ? data.scales.signed : data.scales.magnitude;
-  const colours = values.map(value => value === null ? "#888"
-    : scale[Math.min(scale.length - 1, Math.floor((value - low) / (high - low) * scale.length))]);
+  const step = value => Math.min(scale.length - 1, Math.floor((value - low) / (high - low) * scale.length));
+  const colours = values.map(line => line.map(value => value === null ? "#888" : scale[step(value)]));
   return {colours, legend: {name: "route: " + quantity.name, bar: {colours: scale, low, high, unit: quantity.unit}}};
 }
 
-// Draws the route and returns {mark(point)}; calls onHover(point) when the pointer moves.
-function drawRoute(map, data, onHover) {
-  const points = data.route, line = points.map(p => [p.y, p.x]);
+// Draws the routes and returns {mark(points)}; calls onHover(route, point) when the pointer moves over one.
+function drawRoutes(map, data, onHover) {
+  const routes = data.routes, lines = routes.map(({points}) => points.map(p => [p.y, p.x]));
   const select = document.getElementById("quantity");
   document.getElementById("by").hidden = false;
   quantities.forEach(({name}, i) => select.add(new Option(name, i)));
-  L.polyline(line, {color: "#1b3fbf", weight: 11, interactive: false}).addTo(map);
-  L.polyline(line, {color: "#fff", weight: 8, interactive: false}).addTo(map);
+  const rim = {weight: 11, interactive: false, className: "rim"};
+  const white = {color: "#fff", weight: 8, interactive: false};
+  routes.forEach(({colour}, k) => {
+    L.polyline(lines[k], {...rim, color: colour}).addTo(map);
+    L.polyline(lines[k], white).addTo(map);
+  });
+  if (routes.length > 1)
+    showLegend("routes", {name: "rim of each route", legend: routes.map(({colour, name}) => ({colour, label: name}))});
   const pieces = L.layerGroup().addTo(map);
   const paint = () => {
-    const {colours, legend} = coloursOf(quantities[select.value], points, data);
+    const {colours, legend} = coloursOf(quantities[select.value], data);
     pieces.clearLayers();
-    for (let from = 0; from + 1 < line.length;) {
-      let to = from + 1;
-      while (to + 1 < line.length && colours[to] === colours[from]) ++to;
-      const style = {color: colours[from], weight: 5, lineCap: "butt", interactive: false, className: "piece"};
-      L.polyline(line.slice(from, to + 1), style).addTo(pieces);
-      from = to;
-    }
-    manoeuvres(points, line, pieces);
+    lines.forEach((line, k) => {
+      paintLine(line, colours[k], pieces);
+      manoeuvres(routes[k].points, line, pieces);
+    });
     showLegend("route", legend);
   };
   select.addEventListener("change", paint);
   paint();
-  const wide = L.polyline(line, {color: "#000", opacity: 0, weight: 34}).addTo(map);
-  const dot = L.circleMarker(line[0], {radius: 8, color: "#fff", weight: 3, fillColor: "#1b3fbf", fillOpacity: 1,
-                                       interactive: false, className: "here"});
-  showEnd(map, line[0], "S");
-  showEnd(map, line[line.length - 1], "G");
-  const nearest = spot => points.reduce((best, p) => {
+  const part = {radius: 6, color: "#000", weight: 2, fillColor: "#fff", fillOpacity: 1, className: "parting"};
+  for (const {x, y, text} of data.partings)
+    L.circleMarker([y, x], part).addTo(map).bindTooltip(document.createTextNode(text), {sticky: true});
+  const dots = routes.map(({colour}) => L.circleMarker([0, 0], {radius: 8, color: "#fff", weight: 3, fillColor: colour,
+                                                                fillOpacity: 1, interactive: false, className: "here"}));
+  lines.forEach((line, k) => {
+    const wide = L.polyline(line, {color: "#000", opacity: 0, weight: 34}).addTo(map);
+    wide.on("mousemove click", event => onHover(k, nearest(routes[k].points, event.latlng)));
+    showEnd(map, line[0], "S");
+    showEnd(map, line[line.length - 1], "G");
+  });
+  return {mark(points) {
+    points.forEach((p, k) => { if (p) dots[k].setLatLng([p.y, p.x]).addTo(map); else dots[k].remove(); });
+  }};
+}
+
+function nearest(points, spot) {
+  return points.reduce((best, p) => {
     const d = (p.x - spot.lng) ** 2 + (p.y - spot.lat) ** 2;
     return d < best.d ? {d, p} : best;
   }, {d: Infinity}).p;
-  wide.on("mousemove click", event => onHover(nearest(event.latlng)));
-  return {mark(p) { dot.setLatLng([p.y, p.x]).addTo(map); }};
+}
+
+// A line in pieces of one colour each.
+function paintLine(line, colours, group) {
+  for (let from = 0; from + 1 < line.length;) {
+    let to = from + 1;
+    while (to + 1 < line.length && colours[to] === colours[from]) ++to;
+    const style = {color: colours[from], weight: 5, lineCap: "butt", interactive: false, className: "piece"};
+    L.polyline(line.slice(from, to + 1), style).addTo(group);
+    from = to;
+  }
 }
 
 // Where the rover drives backwards, dashed; dots where it changes direction or turns in place.

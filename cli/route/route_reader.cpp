@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <talus/cli/route/provenance.hpp>
 #include <talus/cli/route/route_reader.hpp>
 #include <talus/common/input_error.hpp>
 #include <talus/maps/raster/file_text.hpp>
@@ -249,6 +250,7 @@ RouteFile readRoute(const std::string& path) {
     file.route.summary.drive = shapeFrom(Fields(path, drive));
   }
   file.inputs = inputsOf(properties);
+  file.provenance = provenanceOf(member(properties, "inputs"));
   return file;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <talus/planner/route/route_json.hpp>
@@ -11,6 +12,7 @@ namespace talus::cli {
 struct RouteFile {
   planner::Route route;
   std::vector<planner::RouteInput> inputs;
+  std::vector<std::pair<std::string, std::string>> provenance{};  ///< as provenanceOf() states it
 };
 
 /// Whether the file starts like JSON or is named as a GeoPackage, as a route does and no map.

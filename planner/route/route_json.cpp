@@ -62,7 +62,11 @@ Json originJson(const RouteOrigin& origin) {
   Json files = Json::array();
   for (const RouteInput& input : origin.files)
     files.push_back({{"file", input.file}, {"path", input.path}, {"sha256", input.sha256}});
-  return {{"files", files}, {"seed", origin.seed}, {"version", TALUS_VERSION}};
+  Json made{{"files", files}, {"seed", origin.seed}, {"version", TALUS_VERSION}};
+  if (!origin.rover.empty()) made["rover"] = origin.rover;
+  if (!origin.soils.empty()) made["soils"] = origin.soils;
+  if (!origin.command.empty()) made["command"] = origin.command;
+  return made;
 }
 
 Json obstructionJson(const Obstruction& why) {

@@ -23,6 +23,9 @@ struct RouteInput {
 struct RouteOrigin {
   std::vector<RouteInput> files;  ///< that were read
   std::uint64_t seed = 1;
+  std::string rover{};               ///< its name
+  std::vector<std::string> soils{};  ///< names of those that the map's classes stand for
+  std::string command{};  ///< the call that makes the route, for a shell; empty where there is none
 };
 
 /// The summary fields of a route, with its status; null where there is no route, with why ("obstruction") where that is

@@ -61,6 +61,9 @@ TEST(PlanCommand, PlansWritesAndScoresTheSame) {
                           "time_s", "immobilisation_risk"})
     EXPECT_EQ(feature["properties"][key].size(), count) << key;
   EXPECT_EQ(feature["properties"]["inputs"]["files"][0]["file"], "dem.asc");
+  EXPECT_EQ(feature["properties"]["inputs"]["rover"], "fido");
+  EXPECT_THAT(feature["properties"]["inputs"]["command"].get<std::string>(),
+              testing::StartsWith("talus plan "));
   EXPECT_EQ(feature["properties"]["inputs"]["files"][0]["sha256"].get<std::string>().size(), 64U);
 
   const Ran score = runTalus(with({"score", "--json"}, {"--path", "route.geojson"}), folder.path());

@@ -71,6 +71,40 @@ TEST(ViewCommand, FindsTheMapFromAnotherFolder) {
   EXPECT_THAT(other.err, HasSubstr("its checksum differs"));
 }
 
+// Property: of two routes to the same goal the page has both, what differs between them, and what each was made from.
+TEST(ViewCommand, ComparesRoutes) {
+  const Folder folder;
+  folder.write("dem.asc", asciiGrid(40, 40, hills));
+  const std::vector<std::string> call{"plan",    "dem.asc", "--resolution", "1",   "--soil", "sandy_loam",
+                                      "--rover", "fido",    "--start",      "3,3", "--goal", "35,30",
+                                      "-o"};
+  std::vector<std::string> direct = call, detour = call;
+  direct.emplace_back("direct.geojson");
+  detour.insert(detour.end(), {"<img src=x>.geojson", "--via", "5,30"});
+  ASSERT_EQ(runTalus(direct, folder.path()).code, 0);
+  ASSERT_EQ(runTalus(detour, folder.path()).code, 0);
+  const Ran view = runTalus({"view", "direct.geojson", "<img src=x>.geojson", "--resolution", "1", "--json"},
+                            folder.path());
+  ASSERT_EQ(view.code, 0) << view.err;
+  const auto answer = json::parse(view.out);
+  EXPECT_EQ(answer["html"], "direct.html");
+  ASSERT_TRUE(answer["comparison"].contains("length"));
+  EXPECT_THAT(answer["comparison"]["command"][1].get<std::string>(), HasSubstr("--via 5,30"));
+  EXPECT_FALSE(answer["comparison"].contains("rover"));
+  EXPECT_THAT(answer["comparison"]["parts (> 2 m)"][1].get<std::string>(),
+              HasSubstr("of the first, at most"));
+  EXPECT_THAT(fileContent(folder / "direct.html"), HasSubstr("\"name\":\"\\u003cimg src=x>.geojson\""));
+
+  const Ran map = runTalus({"view", "dem.asc", "direct.geojson", "--resolution", "1"}, folder.path());
+  EXPECT_EQ(map.code, 2);
+  EXPECT_THAT(map.err, HasSubstr("dem.asc: is no route, and is to be compared with routes"));
+  folder.write("far.asc", asciiGrid(2, 2, hills));
+  const Ran far = runTalus(
+      {"view", "direct.geojson", "direct.geojson", "--map", "far.asc", "--resolution", "1"}, folder.path());
+  EXPECT_EQ(far.code, 2);
+  EXPECT_THAT(far.err, HasSubstr("does not contain the start of the route direct.geojson"));
+}
+
 TEST(ViewCommand, ShowsAnElevationMap) {
   const Folder folder;
   folder.write("dem.asc", asciiGrid(40, 40, hills));

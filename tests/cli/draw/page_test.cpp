@@ -7,6 +7,7 @@
 
 #include <talus/cli/draw/html_report.hpp>
 #include <talus/cli/draw/page.hpp>
+#include <talus/cli/draw/route_comparison.hpp>
 #include <talus/common/constants.hpp>
 
 #include "bad_input.hpp"
@@ -267,6 +268,46 @@ TEST(Page, CursorHasLatitudeAndLongitude) {
   EXPECT_THAT(shown.dom,
               HasSubstr(fmt::format("data-place=\"x 1237.0 m, y 2211.0 m · lat {:.5f}°, lon {:.5f}°\"",
                                     place.latitude_rad / kDegree, place.longitude_rad / kDegree)));
+}
+
+// Property: before it is printed the page is laid out on one sheet of A4 less its margins, with the map on it, and afterwards as
+// before.
+TEST(Page, PrintsOnOneSheet) {
+  TALUS_REQUIRE(test::installed("chromium"), "chromium is not installed");
+  const Shown shown = show(played(exampleScene(), R"(
+    const size = () => { const b = document.body.getBoundingClientRect(); return `${b.width}x${b.height}`; };
+    const before = size();
+    dispatchEvent(new Event("beforeprint"));
+    const paper = document.body.getBoundingClientRect(), mm = 96 / 25.4, seen = [];
+    seen.push(paper.width <= 194 * mm && paper.height <= 281 * mm && document.body.scrollHeight <= 281 * mm);
+    for (const id of ["map", "charts", "facts"]) {
+      const box = document.getElementById(id).getBoundingClientRect();
+      seen.push(box.width > 200 && box.height > 50 && box.bottom <= paper.bottom && box.right <= paper.right + 1);
+    }
+    dispatchEvent(new Event("afterprint"));
+    seen.push(size() === before);
+    document.documentElement.dataset.seen = seen.join();)"));
+  EXPECT_THAT(shown.dom, HasSubstr("data-seen=\"true,true,true,true,true\"")) << shown.console;
+}
+
+TEST(Page, ComparesRoutes) {
+  TALUS_REQUIRE(test::installed("chromium"), "chromium is not installed");
+  Scene scene = sceneOf(exampleMap(), {.title = "two"});
+  NamedRoute first{"<b>one", exampleRoute(), {}}, second{"two", exampleRoute(), {}};
+  for (std::size_t i = 20; i < 40; ++i) second.route.vertices[i].y_m += 40.0;
+  second.route.summary.length_m *= 1.1;
+  compare(scene, {first, second});
+  const Shown shown = show(played(scene, R"(
+    const svg = document.querySelector("#charts svg"), box = svg.getBoundingClientRect();
+    svg.dispatchEvent(new MouseEvent("mousemove", {bubbles: true, clientX: box.left + box.width / 2, clientY: box.top + 60}));
+    setTimeout(() => {
+      const rims = new Set([...document.querySelectorAll("path.rim")].map(path => path.getAttribute("stroke")));
+      document.documentElement.dataset.seen = [rims.size, document.querySelectorAll("path.here").length,
+        document.querySelectorAll("path.parting").length, document.getElementById("comparison").rows[0].cells[1].textContent,
+        document.getElementById("reading").textContent.split("\n").length].join();
+    }, 200);)"));
+  EXPECT_THAT(shown.dom, HasSubstr("data-seen=\"2,2,2,&lt;b&gt;one,2\"")) << shown.console;
+  EXPECT_THAT(shown.console, Not(HasSubstr("CONSOLE")));
 }
 
 TEST(Page, OfAMapWithoutARouteHasNoProfiles) {
