@@ -15,7 +15,9 @@ using costmap::DriveCurve;
 constexpr int kHeadings = HeadingLimits::kHeadings;
 constexpr double kSector = 2.0 * std::numbers::pi / kHeadings;
 constexpr double kLimitRounding = 1.0 - 1e-6;  // limits and drive costs are floats
-constexpr double kRefused = 3.0;  // of the dearest limit: that of a heading that nothing near it allows
+constexpr double kLittle = 1e-3;               // of a heading: less of it is none
+constexpr double kFalls = 0.25;                // of a cost: what is left at least of it within a sector
+constexpr double kRefused = 300.0;  // of the dearest limit: that of a heading that nothing near it allows
 
 using ByHeading = std::array<double, kHeadings>;
 
@@ -215,25 +217,39 @@ void HeadingLimits::forEachPart(const Direction& climb, Each each) const {
   for (const Piece& piece : pieces_) whole(piece, turned(piece.from, 1.0), turned(piece.to, 1.0));
 }
 
-// The cost along each heading. A heading that is refused has the least of what is allowed beside it, as if that went
-// on.
+// The cost along each heading. A heading that is refused has the most with which the gauge, linear from an allowed neighbour
+// to it, is nowhere above the cost of what is allowed between them.
 HeadingLimits::Gauge HeadingLimits::gaugeOf(CellCode cell, const Direction& climb) const {
-  Gauge gauge, beside;
-  beside.fill(kInfinity);
+  Gauge gauge, most;
+  most.fill(kInfinity);
   double dearest = 0.0;
   for (std::size_t k = 0; k < kHeadings; ++k) {
     gauge[k] = static_cast<double>(cost_.costPerMetre(cell, headings()[k]));
     if (std::isfinite(gauge[k])) dearest = std::max(dearest, gauge[k]);
   }
   if (std::ranges::none_of(gauge, [](double limit) { return std::isinf(limit); })) return gauge;
-  forEachPart(climb, [&](int sector, const Direction&, const Direction&, double from_J, double to_J, double) {
-    double& least = beside[static_cast<std::size_t>(sector)];
-    least = std::min({least, from_J, to_J});
-    dearest = std::max(dearest, least);
-  });
+  forEachPart(
+      climb, [&](int sector, const Direction& from, const Direction& to, double from_J, double to_J, double) {
+        const auto k = static_cast<std::size_t>(sector), next = (k + 1) % kHeadings;
+        const bool low = std::isinf(gauge[k]), high = std::isinf(gauge[next]);
+        const auto keepBelow = [&](const Direction& d, double cost_J) {
+          dearest = std::max(dearest, cost_J);
+          // d is a sum of the headings about it.
+          const double of_next = cross(headings()[k], d) / std::sin(kSector),
+                       of_k = cross(d, headings()[k + 1]) / std::sin(kSector);
+          const auto lower = [cost_J](double& limit, double share, double rest_J) {
+            if (share > kLittle)
+              limit = std::min(limit, std::max((cost_J - rest_J) / share, kFalls * cost_J));
+          };
+          if (low) lower(most[k], high ? 1.0 : of_k, high ? 0.0 : of_next * gauge[next]);
+          if (high) lower(most[next], low ? 1.0 : of_next, low ? 0.0 : of_k * gauge[k]);
+        };
+        if (!low && !high) return;
+        keepBelow(from, from_J);
+        keepBelow(to, to_J);
+      });
   for (std::size_t k = 0; k < kHeadings; ++k)
-    if (std::isinf(gauge[k]))
-      gauge[k] = std::min({kRefused * dearest, beside[k], beside[(k + kHeadings - 1) % kHeadings]});
+    if (std::isinf(gauge[k])) gauge[k] = std::min(kRefused * dearest, most[k]);
   return gauge;
 }
 

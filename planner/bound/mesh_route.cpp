@@ -112,20 +112,26 @@ class Descent {
     };
     const double to_x = reach(x, back.x), to_y = reach(y, back.y), most = std::min(to_x, to_y);
     if (!(most > kEdge)) return;
-    // Corners and sides, at which other cells have a say, are passed beside.
-    const auto inside = [](double share) { return std::clamp(share, kBeside, 1.0 - kBeside); };
-    const Point out = to_x < to_y ? Point{back.x > 0.0 ? 1.0 : 0.0, inside(y + most * back.y)}
-                                  : Point{inside(x + most * back.x), back.y > 0.0 ? 1.0 : 0.0};
-    const double value = valueOn(cell, out), dx = out.x_m - x, dy = out.y_m - y, length = std::hypot(dx, dy);
-    if (!(length > kEdge)) return;
+    const bool to_side = to_x < to_y;
+    const double side = (to_side ? back.x : back.y) > 0.0 ? 1.0 : 0.0,
+                 met = std::clamp(to_side ? y + most * back.y : x + most * back.x, 0.0, 1.0);
+    // Corners and sides, at which other cells have a say, are passed beside, if that heading is allowed.
+    for (const double along : {std::clamp(met, kBeside, 1.0 - kBeside), met})
+      if (step(cell, {x, y}, to_side ? Point{side, along} : Point{along, side}, below, best)) return;
+  }
+
+  // Whether it may be driven.
+  bool step(Cell cell, Point from, Point out, double below, std::optional<Step>& best) const {
+    const double dx = out.x_m - from.x_m, dy = out.y_m - from.y_m, length = std::hypot(dx, dy);
+    if (!(length > kEdge)) return false;
     const auto price =
         static_cast<double>(map_.cost().costPerMetre(map_.at(cell), {-dx / length, -dy / length}));
-    const double through = value + price * length * side_m_;
-    if (!std::isfinite(through) || !(value < below) ||
-        visited_.contains(keyOf({cell.column + out.x_m, cell.row + out.y_m})) ||
-        (best && !(through < best->through)))
-      return;
-    best = Step{{cell.column + out.x_m, cell.row + out.y_m}, value, through};
+    if (!std::isfinite(price)) return false;
+    const Point at{cell.column + out.x_m, cell.row + out.y_m};
+    const double value = valueOn(cell, out), through = value + price * length * side_m_;
+    if (value < below && !(best && best->through <= through) && !visited_.contains(keyOf(at)))
+      best = Step{at, value, through};
+    return true;
   }
 
   // On the border of a cell.
