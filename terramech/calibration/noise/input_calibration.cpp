@@ -1,13 +1,14 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
+#include <set>
 #include <vector>
 
 #include <talus/terramech/calibration/noise/input_calibration.hpp>
 #include <talus/terramech/numerics/squared.hpp>
 
 namespace talus::terramech {
-namespace {}  // namespace
 
 bool slipIsSeen(const Trial& trial, const SensorNoise& noise) {
   const Eigen::Map<const Eigen::ArrayXd> slip(trial.slip.data(), trial.rows());
@@ -23,35 +24,66 @@ bool isTied(const WheelState& s) {
   return std::abs(s.speed_mps - ground) <= 1e-3 * std::abs(s.rim_speed_mps);
 }
 
-/// Speeds over ground with the errors that they have from their slips.
+/// Speeds over ground with the errors that they have from their slips, and the mean of each group.
 struct Speeds {
-  Eigen::ArrayXd value, variance;
-  double mean = 0.0, mean_variance = 0.0;
+  Eigen::ArrayXd value, variance, mean, mean_variance;
+  double groups = 0.0;
+
+  /// Mean square of the deviations from the means over their errors.
+  double scatter() const {
+    const auto n = static_cast<double>(value.size());
+    return ((value - mean).square() / variance).sum() / std::max(1.0, n - groups);
+  }
 };
 
-Speeds speedsOf(const Trial& trial, const std::function<double(double)>& slip_std) {
+Speeds speedsOf(const Trial& trial, const std::vector<int>& group,
+                const std::function<double(double)>& slip_std) {
   const auto n = static_cast<Eigen::Index>(trial.states.size());
-  Speeds v{Eigen::ArrayXd(n), Eigen::ArrayXd(n)};
+  Speeds v{Eigen::ArrayXd(n), Eigen::ArrayXd(n), Eigen::ArrayXd(n), Eigen::ArrayXd(n)};
+  std::map<int, std::pair<double, double>> sums;  // of weights, of weighted speeds
   for (Eigen::Index i = 0; i < n; ++i) {
     const auto row = static_cast<std::size_t>(i);
     const double rim = trial.states[row].rim_speed_mps;
     v.value[i] = rim * (1.0 - trial.slip[row]);
     v.variance[i] = squared(rim * slip_std(trial.slip[row])) + squared(1e-6 * rim);
+    auto& [weight, sum] = sums[group[row]];
+    weight += 1.0 / v.variance[i];
+    sum += v.value[i] / v.variance[i];
   }
-  const Eigen::ArrayXd weight = v.variance.inverse();
-  v.mean_variance = 1.0 / weight.sum();
-  v.mean = (weight * v.value).sum() * v.mean_variance;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto& [weight, sum] = sums[group[static_cast<std::size_t>(i)]];
+    v.mean[i] = sum / weight;
+    v.mean_variance[i] = 1.0 / weight;
+  }
+  v.groups = static_cast<double>(sums.size());
   return v;
 }
 
 }  // namespace
 
-bool speedIsSeen(const Trial& trial, const SensorNoise& noise) {
+std::vector<int> setSpeeds(const Trial& trial, const SensorNoise& noise) {
   const auto tied = std::count_if(trial.states.begin(), trial.states.end(), isTied);
-  if (tied < trial.rows() || trial.rows() < 3) return true;
-  const Speeds v =
-      speedsOf(trial, [&](double slip) { return std::min(noise.slipStd(slip), 0.1 * std::abs(slip)); });
-  return ((v.value - v.mean).square() / v.variance).mean() > 4.0;
+  if (tied < trial.rows() || trial.rows() < 3 || !slipIsSeen(trial, noise)) return {};
+  const std::vector<int> one(trial.states.size(), 0);
+  for (const std::vector<int>& group : {one, trial.run}) {
+    if (2 * std::set<int>(group.begin(), group.end()).size() > group.size()) continue;
+    const Speeds v = speedsOf(
+        trial, group, [&](double slip) { return std::min(noise.slipStd(slip), 0.1 * std::abs(slip)); });
+    if (v.scatter() <= 4.0) return group;
+  }
+  return {};
+}
+
+namespace {
+
+bool isOne(const std::vector<int>& group) {
+  return !group.empty() && std::all_of(group.begin(), group.end(), [&](int g) { return g == group.front(); });
+}
+
+}  // namespace
+
+bool inputsAreSeen(const Trial& trial, const SensorNoise& noise) {
+  return slipIsSeen(trial, noise) && !isOne(setSpeeds(trial, noise));
 }
 
 Eigen::VectorXd sharedSlipStd(const Trial& trial, const SensorNoise& noise) {
@@ -60,11 +92,12 @@ Eigen::VectorXd sharedSlipStd(const Trial& trial, const SensorNoise& noise) {
     for (double slip : trial.slip) sum += squared(noise.slipStd(slip));
     return Eigen::VectorXd::Constant(trial.rows(), std::sqrt(sum) / trial.rows());
   }
-  if (speedIsSeen(trial, noise)) return {};
-  const Speeds v = speedsOf(trial, [&](double slip) { return noise.slipStd(slip); });
+  const std::vector<int> group = setSpeeds(trial, noise);
+  if (!isOne(group)) return {};
+  const Speeds v = speedsOf(trial, group, [&](double slip) { return noise.slipStd(slip); });
   Eigen::VectorXd shared(trial.rows());
   for (int row = 0; row < trial.rows(); ++row)
-    shared[row] = std::sqrt(v.mean_variance) / trial.states[static_cast<std::size_t>(row)].rim_speed_mps;
+    shared[row] = std::sqrt(v.mean_variance[row]) / trial.states[static_cast<std::size_t>(row)].rim_speed_mps;
   return shared;
 }
 
@@ -125,17 +158,22 @@ std::vector<Posterior> shrink(const std::vector<double>& measured, const std::ve
   return out;
 }
 
-/// Slips at one speed over ground: the share of the speeds' scatter that is not error is kept.
-std::vector<Posterior> slipsAtOneSpeed(const Trial& trial, const SensorNoise& noise) {
-  const Speeds v = speedsOf(trial, [&](double slip) { return noise.slipStd(slip); });
+/// Slips at set speeds over ground: the share of the speeds' scatter that is not error is kept. The error of the mean of a
+/// run is each row's; that of one mean is sharedSlipStd().
+std::vector<Posterior> slipsAtSetSpeeds(const Trial& trial, const std::vector<int>& group,
+                                        const SensorNoise& noise) {
+  const Speeds v = speedsOf(trial, group, [&](double slip) { return noise.slipStd(slip); });
   const Eigen::ArrayXd weight = v.variance.inverse();
-  const double excess = (weight * (v.value - v.mean).square()).sum() - static_cast<double>(trial.rows() - 1);
+  const double freedom = static_cast<double>(trial.rows()) - v.groups;
+  const double excess = (weight * (v.value - v.mean).square()).sum() - freedom;
   const double scatter = std::max(0.0, excess / (weight.sum() - weight.square().sum() / weight.sum()));
+  const bool one = isOne(group);
   std::vector<Posterior> out;
   for (Eigen::Index i = 0; i < v.value.size(); ++i) {
     const double rim = trial.states[static_cast<std::size_t>(i)].rim_speed_mps;
     const double kept = scatter / (scatter + v.variance[i]);
-    out.push_back({1.0 - (v.mean + kept * (v.value[i] - v.mean)) / rim, kept * v.variance[i] / (rim * rim)});
+    const double own = kept * v.variance[i] + (one ? 0.0 : squared(1.0 - kept) * v.mean_variance[i]);
+    out.push_back({1.0 - (v.mean[i] + kept * (v.value[i] - v.mean[i])) / rim, own / (rim * rim)});
   }
   return out;
 }
@@ -149,9 +187,9 @@ void calibrateInputs(Trial& trial, const SensorNoise& noise, const std::optional
     slip_std[i] = noise.slipStd(trial.slip[i]);
     log_load[i] = std::log(trial.load_N[i]);
   }
-  const bool one_speed = slipIsSeen(trial, noise) && !speedIsSeen(trial, noise);
+  const std::vector<int> speed = setSpeeds(trial, noise);
   // The mixture takes long to see that one level is one; nothing is lost where the scatter is mostly error.
-  const auto slips = one_speed ? slipsAtOneSpeed(trial, noise)
+  const auto slips = !speed.empty() ? slipsAtSetSpeeds(trial, speed, noise)
                      : !slipIsSeen(trial, noise)
                          ? shrink(trial.slip, slip_std)
                          : deconvolve(trial.slip, [&](double slip) { return noise.slipStd(slip); });
@@ -162,7 +200,7 @@ void calibrateInputs(Trial& trial, const SensorNoise& noise, const std::optional
     const auto row = static_cast<Eigen::Index>(i);
     const double trust = squared(slip_std[i]), trust_load = squared(load_std[i]);
     setSlip(trial.states[i], std::clamp(slips[i].mean, -1.0, 1.0));
-    trial.slip_variance[row] = std::clamp(slips[i].variance, (one_speed ? 0.02 : 0.3) * trust, trust);
+    trial.slip_variance[row] = std::clamp(slips[i].variance, (speed.empty() ? 0.3 : 0.02) * trust, trust);
     if (set) {
       trial.states[i].load_N = set->load_N(static_cast<int>(i), trial.load_N[i]);
       trial.load_variance[row] = (1.0 - set->error_share + 1.0 / set->rows[row]) * trust_load;

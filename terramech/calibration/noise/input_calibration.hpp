@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -15,11 +16,14 @@ namespace talus::terramech {
 /// not taken for error.
 bool slipIsSeen(const Trial& trial, const SensorNoise& noise);
 
-/// Whether the speed over ground, had from slip and rim speed, varies by more than twice what the slip's
-/// error makes of it. Where it does not, a campaign was driven at one speed, whose mean tells each row's slip
-/// better than its own reading: 1 - v / (r omega). True where the three columns are not tied. `noise` as
-/// above.
-bool speedIsSeen(const Trial& trial, const SensorNoise& noise);
+/// Number of the set speed over ground of each row: one of the whole table where its speeds, had from slip and rim speed, vary by
+/// no more than twice what the slips' error makes of them, else one of each run where those within runs do. The mean speed tells
+/// each row's slip better than its own reading then: 1 - v / (r omega). Empty where speeds vary by more, where the three
+/// columns are not tied, or where slips are not seen. `noise` as above.
+std::vector<int> setSpeeds(const Trial& trial, const SensorNoise& noise);
+
+/// Whether slips are seen to vary, and speeds beyond one of the whole table.
+bool inputsAreSeen(const Trial& trial, const SensorNoise& noise);
 
 /// Standard deviation of the error that all rows' slips share: that of the mean where there is one level of
 /// slip, or of the mean speed where there is one speed; empty where rows err each by themselves.

@@ -84,12 +84,11 @@ void CalibratedRows::calibrate(RefinedModel& model, SolvedContacts& solved) {
   const Eigen::MatrixXd measured = trial_.measured - level;
   // Whatever its error, a slip that varies much is seen; only where that is in doubt must the error be known.
   const SensorNoise unlimited{.slip_relative = 1.0};
-  const auto isSeen = [&](const SensorNoise& n) { return slipIsSeen(trial_, n) && speedIsSeen(trial_, n); };
   findSetLoads(measured, slopes);
   Eigen::MatrixXd smooth = withoutSmooth(trial_, measured, noiseColumns(trial_));
-  if (!isSeen(unlimited)) {
+  if (!inputsAreSeen(trial_, unlimited)) {
     const Eigen::MatrixXd left = withoutSmooth(trial_, measured, allButSlip(trial_));
-    if (!isSeen(fitNoise(trial_, left, level, slopes, model.stated))) smooth = left;
+    if (!inputsAreSeen(trial_, fitNoise(trial_, left, level, slopes, model.stated))) smooth = left;
   }
   settle(smooth, level, slopes, model, solved);
   shareWithin(smooth, level, slopes, model, solved);
