@@ -14,6 +14,8 @@ using planner::Reach;
 
 namespace {
 
+constexpr double kSmall = 0.15;  // of the map's diagonal: a smaller set is easily overlooked
+
 /// How many cells of the scene, and the circle about them.
 struct Extent {
   std::size_t count = 0;
@@ -62,7 +64,8 @@ Scene reachScene(const maps::ElevationMap& map, const costmap::CostGrid& cost, c
   layer.classes = {{first, seriesColour(0)}, {second, seriesColour(4)}};
   const bool start_is_small = reached.count <= leading.count;
   const Extent& small = start_is_small ? reached : leading;
-  if (small.count > 0)
+  const maps::Grid& grid = scene.grid();
+  if (small.count > 0 && small.radius_m() < kSmall * std::hypot(grid.width, grid.height) * grid.resolution_m)
     scene.rings.push_back({small.centre(), small.radius_m(), start_is_small ? first : second});
   scene.layers.insert(scene.layers.begin(), std::move(layer));
   scene.title += ": " + severed.reason;

@@ -32,20 +32,38 @@ TEST(ReachScene, ShowsBothSetsAndTheGapBetween) {
       else
         EXPECT_EQ(value, column < 12 ? 0.0F : 1.0F) << column << ' ' << row;
     }
-  // The smaller set, 12 columns of 20 cells, has the ring around it; the title has the reason.
+  // Both sets are seen at a glance, no ring is needed; the title has the reason.
   ASSERT_EQ(scene.layers.front().classes.size(), 2U);
   EXPECT_EQ(scene.layers.front().classes[0].name, "reached from the start: 240 cells");
   EXPECT_EQ(scene.layers.front().classes[1].name, "leading to the goal: 340 cells");
-  ASSERT_EQ(scene.rings.size(), 1U);
-  EXPECT_EQ(scene.rings[0].label, scene.layers.front().classes[0].name);
-  EXPECT_EQ(scene.rings[0].centre.x_m, 6.0);
-  EXPECT_EQ(scene.rings[0].centre.y_m, 10.0);
-  EXPECT_DOUBLE_EQ(scene.rings[0].radius_m, 0.5 * std::hypot(11.0, 19.0));
+  EXPECT_TRUE(scene.rings.empty());
   EXPECT_EQ(scene.title, "severed: a wall");
   EXPECT_FALSE(drawPicture(scene).empty());
   Scene unmarked = scene;
   unmarked.marks.clear();
   EXPECT_NE(drawPicture(scene), drawPicture(unmarked));
+}
+
+// A set that is easily overlooked, 5 columns of 6 cells in a corner, has a ring around it.
+TEST(ReachScene, MarksASmallSet) {
+  maps::ElevationMap map;
+  map.elevation_m =
+      maps::Raster<float>({.width = 30, .height = 20, .resolution_m = 1.0, .south_west = {}}, 5.0F);
+  maps::Raster<costmap::CellCode> cells(map.grid(), costmap::CellCode({.curve = 0}));
+  const costmap::CellCode blocked({.curve = costmap::CellCode::kBlocked});
+  for (int row = 0; row <= 6; ++row) cells[{5, row}] = blocked;
+  for (int column = 0; column <= 5; ++column) cells[{column, 6}] = blocked;
+  costmap::DriveCurve curve;
+  curve.cost_J_per_m.fill(1.0F);
+  const costmap::CostGrid cost = costmap::flattened(
+      cells, std::make_shared<costmap::DriveCost>(costmap::DriveCost::Limits{}, std::vector{curve}));
+  const Scene scene =
+      reachScene(map, cost, {{{2.5, 3.5}, {27.5, 16.5}}, 0.0, "a wall"}, {.title = "severed"});
+  ASSERT_EQ(scene.rings.size(), 1U);
+  EXPECT_EQ(scene.rings[0].label, "reached from the start: 30 cells");
+  EXPECT_EQ(scene.rings[0].centre.x_m, 2.5);
+  EXPECT_EQ(scene.rings[0].centre.y_m, 3.0);
+  EXPECT_DOUBLE_EQ(scene.rings[0].radius_m, 0.5 * std::hypot(4.0, 5.0));
 }
 
 }  // namespace reach_scene_test
