@@ -84,14 +84,14 @@ ClassState ClassLessons::state() const noexcept {
           .most_rise = mostRise()};
 }
 
-ClassState ClassLessons::stateInSteps(double prior_pull) const noexcept {
+ClassState ClassLessons::stateInSteps() const noexcept {
   ClassState s = state();
   s.pull = below(s.pull, kPullStep);
   s.pull_std = std::min(above(s.pull_std, kPullStep), ground_.mean_std);
   s.own_std = std::min(above(s.own_std, kPullStep), ground_.mean_std);
   s.shared = above(s.shared, kPullStep);
   s.sinkage = above(s.sinkage, kSinkageStep);
-  s.most_rise = below(prior_pull + s.most_rise, GroundKind::kPullStep) - prior_pull;
+  s.most_rise = below(s.most_rise, GroundKind::kPullStep);
   s.pull_step = kPullStep;
   s.sinkage_step = kSinkageStep;
   return s;

@@ -88,8 +88,8 @@ class ClassLessons {
   ClassState state() const noexcept;
   /// The same in steps of 0.005 (sinkage: 0.02), each number rounded towards danger and no deviation beyond the prior's:
   /// it stays what it is while the class moves within a step, and depends on nothing but the class. The greatest rise
-  /// ends on a step of cost curves, which says no less than any rise up to the next; `prior_pull`: of the class [-].
-  ClassState stateInSteps(double prior_pull) const noexcept;
+  /// ends on a step of cost curves, which says no less than any rise up to the next.
+  ClassState stateInSteps() const noexcept;
   /// Whether enough places may raise that the belief in ground of the class may rise at all.
   bool mayRaise() const noexcept { return std::isfinite(places_.agreed(kPlaces)); }
   /// The most by which it may: what as many places agree on; >= 0.

@@ -242,8 +242,7 @@ std::vector<ClassState> EvidenceField::states(Classes classes) const {
 
 ClassState EvidenceField::stateOf(int class_index, Classes classes) const {
   const ClassLessons& lessons = store_->lessons[static_cast<std::size_t>(class_index)];
-  return classes == Classes::InSteps ? lessons.stateInSteps(site_->model->prior(class_index).pull.value)
-                                     : lessons.state();
+  return classes == Classes::InSteps ? lessons.stateInSteps() : lessons.state();
 }
 
 GroundBelief EvidenceField::classBelief(int class_index, Classes classes) const {

@@ -55,7 +55,7 @@ std::uint8_t CostCurveTable::prior(int class_index) {
   if (slots_[i] == Slot::Own) return static_cast<std::uint8_t>(class_index);
   slots_[i] = Slot::Wanted;
   overflowed_ = true;
-  return standIn(GroundKind::of(class_index, class_index, priors_[i], level_));
+  return standIn(GroundKind::of(model_->prior(class_index), class_index, class_index, priors_[i], level_));
 }
 
 // Grows by one, or lends the last number that no class has.
@@ -73,7 +73,8 @@ std::optional<std::uint8_t> CostCurveTable::freeNumber() {
 }
 
 std::uint8_t CostCurveTable::learned(int class_index, int other_class, const GroundBelief& belief) {
-  const GroundKind kind = GroundKind::of(class_index, other_class, belief, level_);
+  const GroundKind kind =
+      GroundKind::of(model_->prior(class_index), class_index, other_class, belief, level_);
   if (const auto known = numbers_.find(kind); known != numbers_.end()) return known->second;
   const auto number = freeNumber();
   if (!number) {
@@ -81,7 +82,8 @@ std::uint8_t CostCurveTable::learned(int class_index, int other_class, const Gro
     return standIn(kind);
   }
   // All of the kind, so that a curve does not depend on who asked for it first.
-  const GroundBelief worst = kind.belief(model_->parts().classes[static_cast<std::size_t>(class_index)]);
+  const GroundBelief worst =
+      kind.belief(model_->prior(class_index), model_->parts().classes[static_cast<std::size_t>(class_index)]);
   grounds_[*number] = model_->ground(class_index, other_class, worst);
   beliefs_[*number] = worst;
   categories_[*number] = CategoryTable(*model_, worst, *grounds_[*number].crossing);

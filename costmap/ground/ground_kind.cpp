@@ -6,11 +6,11 @@
 namespace talus::costmap {
 namespace {
 
-constexpr double kPullStdUnit = 0.02;
+constexpr double kLeastStd = 0.01;  // of a prior that is surer
 constexpr double kSinkageStep = 0.1;
 constexpr double kSame = 1e-6;  // of a step: what has been rounded stays
 constexpr double kOctaveStep = 0.25;
-constexpr double kMostOctaves = 8.0;
+constexpr double kLeastOctaves = -6.0, kMostOctaves = 8.0;
 constexpr double kMostSteps = 1e6;
 
 int bounded(double steps) {
@@ -27,26 +27,33 @@ int stepsAbove(double value, double step, int level) {
   return -stepsBelow(-value, step, level);
 }
 
-// Steps of the logarithm; less than half the unit counts as that.
-int logStepsAbove(double value, int level) {
-  const double octaves = std::log2(std::clamp(value / kPullStdUnit, 0.5, std::exp2(kMostOctaves)));
+double unitOf(const GroundBelief& prior) noexcept {
+  return std::max(prior.pull.std, kLeastStd);
+}
+
+// Steps of the logarithm.
+int logStepsAbove(double share, int level) {
+  const double octaves = std::log2(std::clamp(share, std::exp2(kLeastOctaves), std::exp2(kMostOctaves)));
   return stepsAbove(octaves, kOctaveStep, level);
 }
 
 }  // namespace
 
-GroundKind GroundKind::of(int class_index, int other_class, const GroundBelief& belief, int level) noexcept {
-  return {.class_index = class_index,
-          .other_class = other_class,
-          .pull = stepsBelow(belief.pull.value, kPullStep, level),
-          .pull_std = logStepsAbove(belief.pull.std, level),
-          .sinkage = std::max(stepsAbove(belief.sinkage.value, kSinkageStep, level), 0)};
+GroundKind GroundKind::of(const GroundBelief& prior, int class_index, int other_class,
+                          const GroundBelief& belief, int level) noexcept {
+  return {
+      .class_index = class_index,
+      .other_class = other_class,
+      .pull = stepsBelow(belief.pull.value - prior.pull.value, kPullStep, level),
+      .pull_std = logStepsAbove(belief.pull.std / unitOf(prior), level),
+      .sinkage = stepsAbove(std::max(belief.sinkage.value, 0.0) - prior.sinkage.value, kSinkageStep, level)};
 }
 
-GroundBelief GroundKind::belief(const GroundClass& ground) const noexcept {
-  const double std = kPullStdUnit * std::exp2(kOctaveStep * pull_std);
-  return {.pull = {pull * kPullStep, std},
-          .sinkage = {sinkage * kSinkageStep, std::min(std / ground.pull_std, 1.0) * ground.sinkage_std}};
+GroundBelief GroundKind::belief(const GroundBelief& prior, const GroundClass& ground) const noexcept {
+  const double std = unitOf(prior) * std::exp2(kOctaveStep * pull_std);
+  return {.pull = {prior.pull.value + pull * kPullStep, std},
+          .sinkage = {std::max(prior.sinkage.value + sinkage * kSinkageStep, 0.0),
+                      std::min(std / ground.pull_std, 1.0) * ground.sinkage_std}};
 }
 
 bool noBetter(const GroundBelief& belief, const GroundBelief& than) noexcept {

@@ -10,15 +10,16 @@ namespace {
 
 constexpr int kPullBits = 10, kStdBits = 6, kSinkageBits = 9;
 constexpr int kFew = 4;  // cells that a box may hold in vain for a new one
-constexpr int kPullZero = 1 << (kPullBits - 1), kStdZero = 4;
+constexpr int kPullZero = 1 << (kPullBits - 1), kStdZero = 24, kSinkageZero = 64;
 
-// A kind as a word that is not 0; drawbar pull over load within +-10 and sinkage up to 51 radii.
+// A kind as a word that is not 0; drawbar pull over load within 10 of the prior's and sinkage up to 44 radii above.
 std::uint32_t packed(const GroundKind& kind) {
   const auto field = [](int value, int bits) {
     return static_cast<std::uint32_t>(std::clamp(value, 0, (1 << bits) - 1));
   };
   return 1U << 31 | field(kind.pull + kPullZero, kPullBits) << (kStdBits + kSinkageBits) |
-         field(kind.pull_std + kStdZero, kStdBits) << kSinkageBits | field(kind.sinkage, kSinkageBits);
+         field(kind.pull_std + kStdZero, kStdBits) << kSinkageBits |
+         field(kind.sinkage + kSinkageZero, kSinkageBits);
 }
 
 GroundKind unpacked(std::uint32_t word, int class_index) {
@@ -27,7 +28,7 @@ GroundKind unpacked(std::uint32_t word, int class_index) {
           .other_class = class_index,
           .pull = field(kStdBits + kSinkageBits, kPullBits) - kPullZero,
           .pull_std = field(kSinkageBits, kStdBits) - kStdZero,
-          .sinkage = field(0, kSinkageBits)};
+          .sinkage = field(0, kSinkageBits) - kSinkageZero};
 }
 
 // Boxes in which most cells changed: a cell that lies beside the last box grows it, where that adds few others.
@@ -65,8 +66,9 @@ WheelSwath::Ground GroundCurves::ground(maps::Cell cell) const {
   if (index < 0) return {.belief = {}, .unseen = true};
   const std::uint32_t word = any_learned_ ? learned_[cell] : 0U;
   if (word == 0) return {index, table_.priorBelief(index)};
-  return {index,
-          unpacked(word, index).belief(site_->model->parts().classes[static_cast<std::size_t>(index)])};
+  return {index, unpacked(word, index)
+                     .belief(site_->model->prior(index),
+                             site_->model->parts().classes[static_cast<std::size_t>(index)])};
 }
 
 maps::CellBox GroundCurves::within(const maps::CellBox& range) const noexcept {
@@ -145,7 +147,7 @@ std::vector<maps::CellBox> GroundCurves::learn(EvidenceBeliefs& beliefs,
         std::uint32_t word = 0;
         if (index >= 0)
           if (const InferredGround& belief = beliefs.at(cell, index); belief.learned)
-            word = packed(GroundKind::of(index, index, belief.ground));
+            word = packed(GroundKind::of(site_->model->prior(index), index, index, belief.ground));
         if (!learned_.set(cell, word)) continue;
         any_learned_ = true;
         join(changed, cell);

@@ -52,13 +52,12 @@ TEST(ClassLessons, RisesOnlyAsFarAsThreePlacesReach) {
 
 // Property: each number is rounded towards danger by less than a step, none beyond the prior, and what is untaught stays.
 TEST(ClassLessons, StepsErrTowardsDanger) {
-  constexpr double kPrior = 0.213;
-  EXPECT_EQ(ClassLessons(sand()).stateInSteps(kPrior).pull, 0.0);
-  EXPECT_EQ(ClassLessons(sand()).stateInSteps(kPrior).pull_std, 0.05);
+  EXPECT_EQ(ClassLessons(sand()).stateInSteps().pull, 0.0);
+  EXPECT_EQ(ClassLessons(sand()).stateInSteps().pull_std, 0.05);
   for (int i = 0; i < 200; ++i) {
     const double y = -0.2 + 0.0021 * i;
     const ClassLessons lessons = taught({y, y + 0.013, y - 0.007, y}, i % 3 > 0);
-    const ClassState exact = lessons.state(), steps = lessons.stateInSteps(kPrior);
+    const ClassState exact = lessons.state(), steps = lessons.stateInSteps();
     EXPECT_LE(steps.pull, exact.pull + 1e-8);
     EXPECT_GT(steps.pull, exact.pull - steps.pull_step);
     EXPECT_GE(steps.pull_std, exact.pull_std - 1e-8);

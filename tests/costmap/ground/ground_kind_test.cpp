@@ -15,6 +15,8 @@ GroundBelief anyBelief(std::mt19937_64& random) {
   return {.pull = {drawn(-1.0, 1.0), drawn(0.0, 3.0)}, .sinkage = {drawn(0.0, 2.0), 0.1}};
 }
 
+const GroundBelief kPrior{.pull = {0.137, 0.09}, .sinkage = {0.23, 0.1}};
+
 // Property: at every level what stands for a belief is no better than it in anything, and is its own kind.
 TEST(GroundKind, RoundsTowardsDanger) {
   std::mt19937_64 random(3);
@@ -22,18 +24,18 @@ TEST(GroundKind, RoundsTowardsDanger) {
   for (int i = 0; i < 5000; ++i) {
     const GroundBelief belief = anyBelief(random);
     for (int level = 0; level <= GroundKind::kCoarsest; ++level) {
-      const GroundKind kind = GroundKind::of(0, 0, belief, level);
-      const GroundBelief worst = kind.belief(ground);
+      const GroundKind kind = GroundKind::of(kPrior, 0, 0, belief, level);
+      const GroundBelief worst = kind.belief(kPrior, ground);
       // A millionth of a step is rounding of numbers, not of beliefs.
       GroundBelief a_little_better = belief;
       a_little_better.pull.value += 1e-6;
       a_little_better.pull.std -= 1e-5;
       a_little_better.sinkage.value -= 1e-6;
       ASSERT_TRUE(noBetter(worst, a_little_better)) << i << " level " << level;
-      ASSERT_EQ(GroundKind::of(0, 0, worst, level), kind);
+      ASSERT_EQ(GroundKind::of(kPrior, 0, 0, worst, level), kind);
       if (level > 0) {
-        const GroundBelief finer = GroundKind::of(0, 0, belief, level - 1).belief(ground);
-        ASSERT_EQ(GroundKind::of(0, 0, finer, level), kind) << "rounded twice";
+        const GroundBelief finer = GroundKind::of(kPrior, 0, 0, belief, level - 1).belief(kPrior, ground);
+        ASSERT_EQ(GroundKind::of(kPrior, 0, 0, finer, level), kind) << "rounded twice";
       }
     }
   }
@@ -41,17 +43,32 @@ TEST(GroundKind, RoundsTowardsDanger) {
 
 TEST(GroundKind, StepsAreThoseStated) {
   const GroundClass ground{.soil = testSand()};
-  // Closed form: 0.117 down to 0.10, 0.03 up to 0.02 * 2^(3/4), 0.41 up to 0.5; at level 2 steps of 0.08, an
-  // octave and 0.4.
-  const GroundBelief belief{.pull = {0.117, 0.03}, .sinkage = {0.41, 0.1}};
-  const GroundBelief fine = GroundKind::of(0, 0, belief).belief(ground);
-  EXPECT_DOUBLE_EQ(fine.pull.value, 0.10);
-  EXPECT_DOUBLE_EQ(fine.pull.std, 0.02 * std::pow(2.0, 0.75));
-  EXPECT_DOUBLE_EQ(fine.sinkage.value, 0.5);
-  const GroundBelief coarse = GroundKind::of(0, 0, belief, 2).belief(ground);
-  EXPECT_DOUBLE_EQ(coarse.pull.value, 0.08);
-  EXPECT_DOUBLE_EQ(coarse.pull.std, 0.04);
-  EXPECT_NEAR(coarse.sinkage.value, 0.8, 1e-12);
+  // Closed form: from 0.137 down two steps of 0.02 to 0.097, 0.03 up to 0.09 * 2^(-6/4), from 0.23 up two steps of 0.1; at
+  // level 2 steps of 0.08, an octave and 0.4.
+  const GroundBelief belief{.pull = {0.108, 0.03}, .sinkage = {0.41, 0.1}};
+  const GroundBelief fine = GroundKind::of(kPrior, 0, 0, belief).belief(kPrior, ground);
+  EXPECT_DOUBLE_EQ(fine.pull.value, 0.097);
+  EXPECT_DOUBLE_EQ(fine.pull.std, 0.09 * std::pow(2.0, -1.5));
+  EXPECT_DOUBLE_EQ(fine.sinkage.value, 0.43);
+  const GroundBelief coarse = GroundKind::of(kPrior, 0, 0, belief, 2).belief(kPrior, ground);
+  EXPECT_DOUBLE_EQ(coarse.pull.value, 0.057);
+  EXPECT_DOUBLE_EQ(coarse.pull.std, 0.045);
+  EXPECT_NEAR(coarse.sinkage.value, 0.63, 1e-12);
+}
+
+// Property: what is no worse than the prior of its class is rounded to nothing worse, at any level.
+TEST(GroundKind, LittleEvidenceMakesNothingDearer) {
+  std::mt19937_64 random(4);
+  const GroundClass ground{.soil = testSand()};
+  for (int i = 0; i < 2000; ++i) {
+    const auto better = [&](double most) {
+      return std::uniform_real_distribution<double>(0.0, most)(random);
+    };
+    const GroundBelief belief{.pull = {kPrior.pull.value + better(0.1), kPrior.pull.std - better(0.05)},
+                              .sinkage = {kPrior.sinkage.value - better(0.2), 0.1}};
+    for (int level = 0; level <= GroundKind::kCoarsest; ++level)
+      ASSERT_TRUE(noBetter(kPrior, GroundKind::of(kPrior, 0, 0, belief, level).belief(kPrior, ground)));
+  }
 }
 
 }  // namespace ground_kind_test
