@@ -17,7 +17,7 @@ namespace {
 constexpr double kSmall = 0.15;  // of the map's diagonal: a smaller set is easily overlooked
 
 /// How many cells of the scene, and the circle about them.
-struct Extent {
+struct ReachedExtent {
   std::size_t count = 0;
   double west = INFINITY, east = -INFINITY, south = INFINITY, north = -INFINITY;
 
@@ -45,7 +45,7 @@ Scene reachScene(const maps::ElevationMap& map, const costmap::CostGrid& cost, c
                    .values = maps::Raster<float>(scene.grid(), std::nanf("")),
                    .range = {0.0, 1.0},
                    .decimals = 0};
-  Extent reached, leading;
+  ReachedExtent reached, leading;
   for (int row = 0; row < scene.grid().height; ++row)
     for (int column = 0; column < scene.grid().width; ++column) {
       const maps::Point centre = scene.grid().centre({column, row});
@@ -63,7 +63,7 @@ Scene reachScene(const maps::ElevationMap& map, const costmap::CostGrid& cost, c
   const std::string second = fmt::format("leading to the goal: {} cells", leading.count);
   layer.classes = {{first, seriesColour(0)}, {second, seriesColour(4)}};
   const bool start_is_small = reached.count <= leading.count;
-  const Extent& small = start_is_small ? reached : leading;
+  const ReachedExtent& small = start_is_small ? reached : leading;
   const maps::Grid& grid = scene.grid();
   if (small.count > 0 && small.radius_m() < kSmall * std::hypot(grid.width, grid.height) * grid.resolution_m)
     scene.rings.push_back({small.centre(), small.radius_m(), start_is_small ? first : second});
