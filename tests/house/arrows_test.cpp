@@ -125,5 +125,32 @@ TEST(House, FilesHaveOneIdea) {
     }
 }
 
+// Types and constants of anonymous namespaces, by source: what TALUS_UNITY compiles together may have each but once.
+TEST(House, SourcesOfAFolderShareNoNames) {
+  const std::regex type(R"(^(?:struct|class|enum class|enum) (\w+)[^;]*$)"),
+      constant(R"(^constexpr [^(]*?\b(k[A-Z]\w*)\s*[={\[])");
+  std::map<std::string, std::string> first;  // folder and name -> source
+  std::size_t names = 0;
+  for (const auto& [room, below] : roomsBelow())
+    for (const auto& file : files(room, {".cpp"})) {
+      if (file.parent_path().filename() == "python") continue;  // each compiled alone
+      std::istringstream lines(text(file));
+      bool inside = false;
+      for (std::string line; std::getline(lines, line);) {
+        if (line == "namespace {") inside = true;
+        if (line == "}  // namespace") inside = false;
+        std::smatch found;
+        if (!inside || !(std::regex_search(line, found, type) || std::regex_search(line, found, constant)))
+          continue;
+        ++names;
+        const auto [at, is_new] =
+            first.emplace(file.parent_path().generic_string() + ' ' + found[1].str(), file.string());
+        EXPECT_TRUE(is_new || at->second == file.string())
+            << found[1] << " in " << file << " and " << at->second << ": rename one";
+      }
+    }
+  EXPECT_GT(names, 500U);
+}
+
 }  // namespace arrows_test
 }  // namespace talus::house
