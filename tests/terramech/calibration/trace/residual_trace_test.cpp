@@ -1,7 +1,9 @@
 #include <map>
+#include <set>
 #include <string>
 
 #include "calibration/traced_world.hpp"
+#include "made_rows.hpp"
 
 namespace talus::terramech {
 namespace residual_trace_test {
@@ -80,6 +82,37 @@ TEST(ResidualTrace, ACampaignAtSetLoadsHasNoEffectOfLoad) {
   const TraceResult result = traced(world);
   ASSERT_EQ(result.effects.size(), 1U);
   EXPECT_EQ(blind::judge(world, claims(result)).family, 1) << world.hidden[0].kind;
+}
+
+TEST(ResidualTrace, TwoFaultsAreToldApart) {
+  // Property: a torque off by 0.8 Nm and a pull by 0.05 W; no single candidate carries both.
+  MadeRows rows(wheelColumns());
+  std::mt19937_64 random(8);
+  for (int k = 0; k < 80; ++k) {
+    std::vector<double> row =
+        wheelRow(madeSand(), 40.0 + (k * 7) % 80, 0.05 + 0.05 * ((k * 11) % 16), 0.02, random);
+    row[2] += 0.8;
+    row[4] += 0.05 * row[0];
+    rows.add(row);
+  }
+  RefinedModel base;
+  base.soil = madeSand();
+  std::set<Channel> channels;
+  for (const TracedEffect& e : traceResiduals(base, makeTrial(rows.telemetry(), base)).effects)
+    channels.insert(e.channel);
+  EXPECT_EQ(channels, (std::set{Channel::Torque, Channel::DrawbarPull}));
+}
+
+TEST(ResidualTrace, ACampaignWithTwoEffectsHasBothNamed) {
+  // Property: a pile behind the wheel or a wheel that yields, and load shifted by the slope of the run. While a speed set for a
+  // run held the error of its slips, a rate effect took the place of the slope.
+  for (const std::uint64_t seed : {1400U, 1405U}) {
+    const blind::World world =
+        blind::makeWorld({.seed = seed, .effects = 2, .library = true, .campaign = true});
+    const blind::Marks marks = blind::judge(world, claims(traced(world)));
+    EXPECT_EQ(marks.family, 2) << seed;
+    EXPECT_EQ(marks.claimed, 2) << seed;
+  }
 }
 
 TEST(ResidualTrace, ASoilThatScattersFromRunToRunHasNoCause) {
