@@ -1,5 +1,5 @@
-# cmake -DOUTPUT=FILE -DPAGE=DIR -DLEAFLET=DIR -DVEGA=DIR -P assemble.cmake
-# Puts the page's template together from its parts and the two libraries.
+# cmake -DOUTPUT=FILE -DPAGE=DIR -DLEAFLET=DIR -DVEGA=DIR [-DTHREE=DIR] -P assemble.cmake
+# Puts the page's template together from its parts and the libraries. Without THREE the page has no relief in three dimensions.
 function(put text)
   file(APPEND "${OUTPUT}" "${text}")
 endfunction()
@@ -28,6 +28,13 @@ put_style("${LEAFLET}/leaflet.css")
 put_style("${PAGE}/page.css")
 put("</style>\n")
 put_script("${PAGE}/body.html")
+# Text until relief.js makes a script of it: most readers of a page never look at it.
+if(THREE)
+  put("<script type=\"text/plain\" id=\"three\">\n")
+  put_script("${THREE}/three.min.js")
+  put_script("${THREE}/examples/js/controls/OrbitControls.js")
+  put("</script>\n")
+endif()
 put("<script>\n")
 put_script("${LEAFLET}/leaflet.min.js")
 put_script("${PAGE}/modules.js")
@@ -36,7 +43,7 @@ foreach(name IN LISTS vega_modules)
   put_script("${VEGA}/vega-${name}.min.js")
   put("});\n")
 endforeach()
-foreach(name map route probe profiles story page)
+foreach(name map route probe profiles relief story page)
   put_script("${PAGE}/${name}.js")
 endforeach()
 put("</script>\n</body>\n</html>\n")

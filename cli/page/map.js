@@ -96,6 +96,12 @@ function showCursor(map, data) {
   map.on("mouseout", () => { box.hidden = true; });
 }
 
+// Brightness and contrast of the hillshade that carry its darkest and its brightest to 0 and 1.
+function lightFilter({low, high}) {
+  const gain = 1 / (high - low), contrast = 1 + 2 * gain * low;
+  return `brightness(${gain / contrast}) contrast(${contrast})`;
+}
+
 // One layer at a time over the hillshade; the hillshade once more on top, multiplied into the colours by a share.
 function chooseLayer(map, data, box) {
   const select = document.getElementById("layer"), opacity = document.getElementById("opacity");
@@ -105,8 +111,6 @@ function chooseLayer(map, data, box) {
   folded.appendChild(document.createElement("div")).id = "legend";
   const names = [...data.layers.map(layer => layer.name), "hillshade only"];
   names.forEach((name, i) => select.add(new Option(name, i)));
-  // brightness() and contrast() together carry the darkest and the brightest of the hillshade to 0 and 1.
-  const gain = 1 / (data.light.high - data.light.low), contrast = 1 + 2 * gain * data.light.low;
   let colours, light;
   const show = () => {
     for (const shown of [colours, light]) if (shown) shown.remove();
@@ -116,7 +120,7 @@ function chooseLayer(map, data, box) {
     if (!layer) return;
     colours = L.imageOverlay(layer.image, box, {alt: layer.name, zIndex: 2, opacity: opacity.value / 100}).addTo(map);
     light = L.imageOverlay(data.shade, box, {alt: "", zIndex: 3, opacity: layer.relief, className: "light"}).addTo(map);
-    light.getElement().style.filter = `brightness(${gain / contrast}) contrast(${contrast})`;
+    light.getElement().style.filter = lightFilter(data.light);
   };
   select.addEventListener("change", show);
   opacity.addEventListener("input", () => { if (colours) colours.setOpacity(opacity.value / 100); });

@@ -55,6 +55,7 @@ function start() {
   const map = drawMap(document.getElementById("map"), data);
   showFacts(data);
   probeCells(map, data);
+  offerRelief(data);
   if (data.story) showStory(map, data.story);
   const routes = data.routes;
   if (!routes.length || routes.some(({points}) => points.length < 2)) {

@@ -9,6 +9,25 @@ const allPanels = [
 ];
 const held = ["slope", "slip", "angle"];  // from one vertex to the next
 
+// The least and the greatest value of each stretch three pixels wide: more points are not seen and take long to draw.
+function thinned(points, field, width) {
+  const stretch = points[points.length - 1].s / Math.max(1, width / 3), kept = [];
+  for (let from = 0; from < points.length;) {
+    let to = from, least = from, most = from;
+    const end = (Math.floor(points[from].s / stretch) + 1) * stretch;
+    for (; to < points.length && (to === from || points[to].s < end); ++to) {
+      if (points[to][field] === null) break;
+      if (points[to][field] < points[least][field]) least = to;
+      if (points[to][field] > points[most][field]) most = to;
+    }
+    const chosen = to === from ? [from] : [...new Set([least, most])].sort((a, b) => a - b);
+    kept.push(...chosen.map(i => points[i]));
+    from = Math.max(to, from + 1);
+  }
+  if (kept[kept.length - 1] !== points[points.length - 1]) kept.push(points[points.length - 1]);
+  return kept;
+}
+
 function panelMarks(panel, row, routes, layout) {
   const scale = "y" + row, height = layout.panelHeight;
   return {
@@ -22,7 +41,7 @@ function panelMarks(panel, row, routes, layout) {
         ? [{orient: "bottom", scale: "x", title: {signal: "unitTitle"}, tickCount: 8}] : []),
     ],
     marks: routes.map(({colour}, k) => ({
-      type: "line", clip: true, from: {data: "route" + k}, interactive: false,
+      type: "line", clip: true, from: {data: panel.field + k}, interactive: false,
       encode: {update: {x: {scale: "x", field: "d"}, y: {scale, field: panel.field}, stroke: {value: colour},
                         strokeWidth: {value: 1.6},
                         interpolate: {value: held.includes(panel.field) ? "step-after" : "linear"},
@@ -33,12 +52,14 @@ function panelMarks(panel, row, routes, layout) {
 
 function profileSpec(routes, unit, layout) {
   const {panels, step, panelHeight} = layout;
-  const domain = field => ({fields: routes.map((_, k) => ({data: "route" + k, field}))});
+  const domain = (data, field) => ({fields: routes.map((_, k) => ({data: data + k, field}))});
   return {
     width: layout.width, height: (panels.length - 1) * step + panelHeight,
     padding: {left: 48, right: 14, top: 16, bottom: 42},
     autosize: "none",
-    data: routes.map(({points}, k) => ({name: "route" + k, values: points.map(p => ({...p, d: p.s / unit.metres}))})),
+    data: panels.flatMap(({field}) => routes.map(({points}, k) => (
+      {name: field + k,
+       values: thinned(points, field, layout.width).map(p => ({d: p.s / unit.metres, [field]: p[field]}))}))),
     signals: [
       {name: "unitTitle", value: `distance along the route [${unit.name}]`},
       {name: "hover", value: null, on: [
@@ -46,9 +67,9 @@ function profileSpec(routes, unit, layout) {
       ]},
     ],
     scales: [
-      {name: "x", type: "linear", domain: domain("d"), range: "width", zero: true, nice: false},
+      {name: "x", type: "linear", domain: domain("elevation", "d"), range: "width", zero: true, nice: false},
       ...panels.map((panel, row) => ({name: "y" + row, type: "linear", range: [panelHeight, 0], nice: true, zero: panel.zero,
-                                      domain: domain(panel.field)})),
+                                      domain: domain(panel.field, panel.field)})),
     ],
     marks: [
       ...panels.map((panel, row) => panelMarks(panel, row, routes, layout)),

@@ -84,15 +84,18 @@ function nearest(points, spot) {
   }, {d: Infinity}).p;
 }
 
-// A line in pieces of one colour each.
+// A line in its colours: all pieces of one colour are one path, so that a browser has few to draw.
 function paintLine(line, colours, group) {
+  const pieces = new Map();
   for (let from = 0; from + 1 < line.length;) {
     let to = from + 1;
     while (to + 1 < line.length && colours[to] === colours[from]) ++to;
-    const style = {color: colours[from], weight: 5, lineCap: "butt", interactive: false, className: "piece"};
-    L.polyline(line.slice(from, to + 1), style).addTo(group);
+    if (!pieces.has(colours[from])) pieces.set(colours[from], []);
+    pieces.get(colours[from]).push(line.slice(from, to + 1));
     from = to;
   }
+  for (const [color, parts] of pieces)
+    L.polyline(parts, {color, weight: 5, lineCap: "butt", interactive: false, className: "piece"}).addTo(group);
 }
 
 // Where the rover drives backwards, dashed; dots where it changes direction or turns in place.

@@ -7,6 +7,7 @@
 
 #include <talus/cli/draw/html_report.hpp>
 #include <talus/cli/draw/page.hpp>
+#include <talus/cli/draw/page_template.hpp>
 #include <talus/cli/draw/route_comparison.hpp>
 #include <talus/common/constants.hpp>
 
@@ -27,11 +28,12 @@ struct Shown {
   std::string console;
 };
 
-Shown show(const std::string& html) {
+Shown show(const std::string& html, const std::string& graphics = "--disable-gpu") {
   const Folder folder;
   const std::string path = folder.write("page.html", html);
   const std::string line = std::string("HOME='") + folder.path().string() + "' chromium" +
-                           " --headless --no-sandbox --disable-gpu --disable-quic --no-first-run"
+                           " --headless --no-sandbox " + graphics +
+                           " --disable-quic --no-first-run"
                            " --disable-background-networking --disable-component-update --disable-sync"
                            " --disable-dev-shm-usage --enable-logging=stderr --virtual-time-budget=4000"
                            " --window-size=1200,900 --user-data-dir='" +
@@ -268,6 +270,46 @@ TEST(Page, CursorHasLatitudeAndLongitude) {
   EXPECT_THAT(shown.dom,
               HasSubstr(fmt::format("data-place=\"x 1237.0 m, y 2211.0 m · lat {:.5f}°, lon {:.5f}°\"",
                                     place.latitude_rad / kDegree, place.longitude_rad / kDegree)));
+}
+
+// A script that opens the relief and counts its colours once it is drawn.
+constexpr const char* kOpenRelief = R"(
+  const root = document.documentElement.dataset, place = document.getElementById("relief");
+  document.getElementById("solid").click();
+  const timer = setInterval(() => {
+    if (!place.dataset.state || (place.dataset.state === "ready" && !place.dataset.drawn)) return;
+    clearInterval(timer);
+    root.relief = place.dataset.state + "|" + document.querySelector("#relief p").textContent;
+    const shown = place.querySelector("canvas");
+    if (!shown) return;
+    const flat = document.createElement("canvas"), context = flat.getContext("2d");
+    flat.width = flat.height = 100;
+    context.drawImage(shown, 0, 0, 100, 100);
+    const bytes = context.getImageData(0, 0, 100, 100).data, colours = new Set();
+    for (let i = 0; i < bytes.length; i += 4) colours.add(bytes[i] << 16 | bytes[i + 1] << 8 | bytes[i + 2]);
+    root.colours = colours.size > 100;
+  }, 50);)";
+
+// Property: the relief is drawn, not blank, states by how much it is higher, and the console is silent.
+TEST(Page, ShowsARelief) {
+  TALUS_REQUIRE(test::installed("chromium"), "chromium is not installed");
+  TALUS_REQUIRE(pageTemplate().find("id=\"three\"") != std::string_view::npos,
+                "libjs-three was not there at the build");
+  const Shown shown = show(played(exampleScene(), kOpenRelief), "--disable-gpu --enable-unsafe-swiftshader");
+  EXPECT_THAT(shown.dom, HasSubstr("data-relief=\"ready|vertical exaggeration 1 ×")) << shown.console;
+  EXPECT_THAT(shown.dom, HasSubstr("data-colours=\"true\""));
+  // Chromium's own driver notes that the drawing is read back where there is no graphics card.
+  const std::regex driver("[^\n]*GL Driver Message[^\n]*ReadPixels[^\n]*");
+  EXPECT_THAT(std::regex_replace(shown.console, driver, ""), Not(HasSubstr("CONSOLE")));
+}
+
+TEST(Page, StatesThatThereIsNoWebGL) {
+  TALUS_REQUIRE(test::installed("chromium"), "chromium is not installed");
+  TALUS_REQUIRE(pageTemplate().find("id=\"three\"") != std::string_view::npos,
+                "libjs-three was not there at the build");
+  const Shown shown = show(played(exampleScene(), kOpenRelief), "--disable-gpu --disable-3d-apis");
+  EXPECT_THAT(shown.dom, HasSubstr("data-relief=\"no WebGL|No relief: this browser has no WebGL."))
+      << shown.console;
 }
 
 // Property: before it is printed the page is laid out on one sheet of A4 less its margins, with the map on it, and afterwards as
