@@ -55,6 +55,14 @@ ModelScope scopeOf(const TraceResult& result) {
   return scope;
 }
 
+std::optional<std::size_t> lastRefuted(const TraceResult& result) {
+  for (std::size_t k = result.effects.size(); k-- > 0;) {
+    const auto c = static_cast<std::size_t>(result.effects[k].channel);
+    if (result.held_out.refined_rmse[c] > result.held_out.base_rmse[c]) return k;
+  }
+  return std::nullopt;
+}
+
 void keepConfirmed(HeldOut& held, const ModelScope& scope) {
   keep(held.refined_rmse, held.base_rmse, scope);
   for (GroupErrors& g : held.groups) keep(g.refined_rmse, g.base_rmse, scope);

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstddef>
+#include <optional>
+
 #include <talus/terramech/calibration/search/trace_result.hpp>
 
 /// What was traced is used where, and as far as, held-out rows do not speak against it.
@@ -12,6 +15,9 @@ ModelScope scopeOf(const TraceResult& result);
 /// Errors as the refined model predicts: those of the base where the scope takes the corrections back.
 void keepConfirmed(HeldOut& held, const ModelScope& scope);
 void keepConfirmed(std::vector<EndLevel>& ends, const ChannelErrors& floor);
+
+/// The last effect that was found in a channel whose held-out rows err more with the effects than with the base.
+std::optional<std::size_t> lastRefuted(const TraceResult& result);
 
 /// What the refined model predicts within its scope, rows x kChannels.
 Eigen::MatrixXd predictInScope(const TraceResult& result, const Trial& rows);

@@ -158,8 +158,8 @@ std::vector<Posterior> shrink(const std::vector<double>& measured, const std::ve
   return out;
 }
 
-/// Slips at set speeds over ground: the share of the speeds' scatter that is not error is kept. The error of the mean of a
-/// run is each row's; that of one mean is sharedSlipStd().
+/// Slips at set speeds over ground: the share of the speeds' scatter that is not error is kept. The error of the
+/// mean of a run is each row's; that of one mean is sharedSlipStd().
 std::vector<Posterior> slipsAtSetSpeeds(const Trial& trial, const std::vector<int>& group,
                                         const SensorNoise& noise) {
   const Speeds v = speedsOf(trial, group, [&](double slip) { return noise.slipStd(slip); });

@@ -16,10 +16,10 @@ namespace talus::terramech {
 /// not taken for error.
 bool slipIsSeen(const Trial& trial, const SensorNoise& noise);
 
-/// Number of the set speed over ground of each row: one of the whole table where its speeds, had from slip and rim speed, vary by
-/// no more than twice what the slips' error makes of them, else one of each run where those within runs do. The mean speed tells
-/// each row's slip better than its own reading then: 1 - v / (r omega). Empty where speeds vary by more, where the three
-/// columns are not tied, or where slips are not seen. `noise` as above.
+/// Number of the set speed over ground of each row: one of the whole table where its speeds, had from slip and rim
+/// speed, vary by no more than twice what the slips' error makes of them, else one of each run where those within
+/// runs do. The mean speed tells each row's slip better than its own reading then: 1 - v / (r omega). Empty where
+/// speeds vary by more, where the three columns are not tied, or where slips are not seen. `noise` as above.
 std::vector<int> setSpeeds(const Trial& trial, const SensorNoise& noise);
 
 /// Whether slips are seen to vary, and speeds beyond one of the whole table.

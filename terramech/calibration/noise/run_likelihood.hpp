@@ -60,8 +60,9 @@ class RunLikelihood {
   /// Each fold told by the parameters of the others, for `count` tables from `first` on.
   HeldOutFit heldOut(const RunSums& sums, const RunError& run, Eigen::Index first, Eigen::Index count) const;
 
-  /// Covariance R of a unit's error that is most likely with these columns in the model, among those in which strength and
-  /// stiffness vary on their own: expectation maximisation of the restricted likelihood (laird_ware_1982) from `start`.
+  /// Covariance R of a unit's error that is most likely with these columns in the model, among those in which
+  /// strength and stiffness vary on their own: expectation maximisation of the restricted likelihood
+  /// (laird_ware_1982) from `start`.
   RunError profile(const RunSums& sums, RunError start, Eigen::Index table, int steps) const;
 
   bool hasUnits() const { return !information_.empty(); }

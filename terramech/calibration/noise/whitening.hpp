@@ -36,7 +36,8 @@ struct Whitening {
   MomentSlip slip{};     ///< error of the slip that rows of a moment share
   SharedError common{};  ///< what the rows of a run share
 
-  /// What each part of an error that rows share becomes in each row of rowByRow(), less what the moments' slip takes out.
+  /// What each part of an error that rows share becomes in each row of rowByRow(), less what the moments' slip
+  /// takes out.
   std::vector<SharedFactor> shared() const;
 
   Eigen::VectorXd apply(const Eigen::MatrixXd& residual) const;     ///< rows*kChannels; 0 where missing
@@ -49,8 +50,8 @@ struct Whitening {
 /// The rows that `keep` marks.
 Whitening subset(const Whitening& whitening, const std::vector<char>& keep);
 
-/// What strength and stiffness of the soil do to each row about a model's readings, to first order; nothing on a drive, whose
-/// soil changes along the way as its slip does.
+/// What strength and stiffness of the soil do to each row about a model's readings, to first order; nothing on a
+/// drive, whose soil changes along the way as its slip does.
 std::vector<SoilFactor> soilFactors(const RefinedModel& model, const Trial& trial,
                                     const Eigen::MatrixXd& level, const SolvedContacts& solved);
 

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <set>
 
 #include <talus/terramech/calibration/fit/candidate_columns.hpp>
 #include <talus/terramech/calibration/fit/effect_candidates.hpp>
@@ -22,6 +23,11 @@ bool shares(const RefinedModel& model, const Candidate& candidate) {
 
 std::string keyOf(const Effect& e) {
   return e.name + '|' + e.covariate + '|' + (e.empirical() ? name(e.channel) : "") + '|' + e.only_value;
+}
+
+/// A column, and whether by a known form or a curve.
+std::string kindOf(const Candidate& candidate) {
+  return candidate.covariate() + (candidate.empirical() ? " curve" : " form");
 }
 
 }  // namespace
@@ -127,6 +133,41 @@ Explanation TraceSearch::fitted(const Candidate& candidate) {
   if (before.soil == 0 && is.squaredNorm() - was.squaredNorm() > 2.0 * std::max(0.0, e.gain))
     e.gain = std::min(0.0, e.gain);
   return e;
+}
+
+std::vector<Explanation> TraceSearch::pairs() {
+  constexpr int kFirsts = 8, kPairs = 5;
+  std::vector<std::pair<double, Candidate>> promised;
+  const Screening screening = screen(0);
+  std::set<std::string> columns;
+  for (const Promise& p : screening.promises) {
+    if (static_cast<int>(columns.size()) == kFirsts || p.gain <= 0.0 || !go_on_(0.0)) break;
+    if (p.candidate.parts.size() > 1 || !columns.insert(kindOf(p.candidate)).second) continue;
+    const Explanation first = fitted(p.candidate);
+    TraceSearch beside = *this;
+    beside.fit_.setModel(fit_.fitted(withCandidate(model(), first.candidate), 3));
+    std::set<bool> seconds;  // the best curve and the best known form
+    for (const Promise& q : beside.screen(0).promises) {
+      if (seconds.size() == 2) break;
+      if (q.candidate.parts.size() > 1 || q.candidate.covariate() == p.candidate.covariate()) continue;
+      if (!seconds.insert(q.candidate.empirical()).second) continue;
+      Candidate both = first.candidate;
+      both.parts.push_back(q.candidate.parts.front());
+      both.parameters += q.candidate.parameters;
+      promised.emplace_back(first.gain + q.gain, std::move(both));
+    }
+  }
+  std::stable_sort(promised.begin(), promised.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<Explanation> ranked;
+  std::set<std::set<std::string>> tried;
+  for (const auto& [gain, pair] : promised)
+    if (static_cast<int>(ranked.size()) < kPairs &&
+        tried.insert({keyOf(pair.parts.front()), keyOf(pair.parts.back())}).second)
+      ranked.push_back(fitted(pair));
+  std::stable_sort(ranked.begin(), ranked.end(),
+                   [](const Explanation& a, const Explanation& b) { return a.gain > b.gain; });
+  return ranked;
 }
 
 void TraceSearch::settleAll() {

@@ -38,6 +38,9 @@ class TraceSearch {
   /// A candidate fitted together with everything else.
   Explanation fitted(const Candidate& candidate);
 
+  /// What two candidates together gain, the first fitted before the second is sought, best first.
+  std::vector<Explanation> pairs();
+
   /// Puts a candidate into the model, fits everything again and estimates the noise again.
   void accept(const Candidate& candidate);
 

@@ -33,8 +33,8 @@ struct Trial {
   double denominator(int row, Channel channel) const;
 };
 
-/// Parts of an error that the rows of one unit (a run, a stretch of time) share: an offset of each channel [-] and, since
-/// soils scatter from place to place, the logarithms of the soil's strength (c, tan phi) and stiffness (k).
+/// Parts of an error that the rows of one unit (a run, a stretch of time) share: an offset of each channel [-] and,
+/// since soils scatter from place to place, the logarithms of the soil's strength (c, tan phi) and stiffness (k).
 inline constexpr int kShared = kChannels + 2;
 
 using SharedVector = Eigen::Matrix<double, kShared, 1>;

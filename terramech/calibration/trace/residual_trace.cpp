@@ -89,6 +89,17 @@ void take(Path& path, const std::vector<Explanation>& ranked, double p_value) {
   taken.chosen.candidate.parts = path.search.parts(path.effects.size() - 1);
 }
 
+long curves(const std::vector<Effect>& effects) {
+  return std::count_if(effects.begin(), effects.end(), [](const Effect& e) { return e.empirical(); });
+}
+
+/// What an account must gain more to take another's place: nothing where it names what the other leaves to curves; where
+/// it leaves to them what the other names, more than noise gives to some curve.
+double margin(const Path& path, const std::vector<Effect>& present, const std::vector<Effect>& other) {
+  const long more = curves(other) - curves(present);
+  return more < 0 ? 0.0 : more > 0 ? std::max(path.close, path.threshold) : path.close;
+}
+
 /// Takes out, last first, what beside the others gains no more than noise would.
 void check(Path& path) {
   for (std::size_t k = path.effects.size(); k-- > path.pinned;) {
@@ -96,6 +107,44 @@ void check(Path& path) {
     path.search.leaveOut(k);
     path.search.settleAll();
     path.effects.erase(path.effects.begin() + static_cast<long>(k));
+  }
+}
+
+/// Finishes the result. While effects make the rows held out of some channel worse, the last of them that was found there
+/// goes out.
+void finishConfirmed(Path& path, TraceResult& result, const TraceOptions& options,
+                     const std::function<bool(double)>& go_on) {
+  while (true) {
+    result.effects = path.effects;
+    path.search.finish(result);
+    result.held_out = holdOut(result, options, foldsOf(result.trial));
+    const auto last = lastRefuted(result);
+    if (!last || *last < path.pinned || !go_on(0.0)) return;
+    path.search.leaveOut(*last);
+    path.search.settleAll();
+    path.effects.erase(path.effects.begin() + static_cast<long>(*last));
+  }
+}
+
+/// Looks at the earlier effects again once another is in: what they explained beside a gap may be the other's, and
+/// each gives way to what explains clearly more beside the others. One that is left over would bend the search for more.
+void reconsider(Path& path) {
+  if (path.effects.size() > path.pinned + 1) check(path);
+  for (std::size_t k = path.pinned; k + 1 < path.effects.size(); ++k) {
+    TraceSearch without = path.search;
+    without.leaveOut(k);
+    auto ranked = without.fitBest(without.screen(0).promises);
+    preferSimple(ranked, path.threshold);
+    if (!accepted(ranked, 0.0)) continue;
+    const Explanation& best = ranked.front();
+    if (same(best.candidate, path.effects[k].chosen.candidate) ||
+        best.gain < path.search.gainOf(k) + margin(path, path.search.parts(k), best.candidate.parts))
+      continue;
+    const double p_value = path.effects[k].p_value;
+    path.search.leaveOut(k);
+    path.effects.erase(path.effects.begin() + static_cast<long>(k));
+    take(path, ranked, p_value);
+    return;
   }
 }
 
@@ -126,7 +175,39 @@ void grow(Path& path, const Trial& trial, const TraceOptions& options,
     if (!accepted(path.rejected, std::max(screening.threshold, least))) return;
     take(path, path.rejected, screening.noise.pValue(path.rejected.front().gain));
     path.rejected.erase(path.rejected.begin());
-    if (path.effects.size() > path.pinned + 1) check(path);
+    reconsider(path);
+  }
+}
+
+/// Tries two in place of the one or two that were found: one may stand for both. Two for one must gain more than
+/// one more would under noise; two for two clearly more; curves for what has a name as much again.
+void reconsiderPair(Path& path) {
+  const std::size_t found = path.effects.size() - path.pinned;
+  if (found < 1 || found > 2) return;
+  TraceSearch without = path.search;
+  Candidate present;
+  for (std::size_t k = path.effects.size(); k-- > path.pinned;) {
+    for (const Effect& part : path.search.parts(k)) present.parts.push_back(part);
+    without.leaveOut(k);
+  }
+  const auto ranked = without.pairs();
+  if (!accepted(ranked, 0.0)) return;
+  const Explanation& best = ranked.front();
+  const double other = margin(path, present.parts, best.candidate.parts);
+  const double further = found == 1 ? path.threshold : 0.0;
+  const bool more_curves = curves(best.candidate.parts) > curves(present.parts);
+  if (best.gain < without.fitted(present).gain + (more_curves ? further + other : std::max(further, other)))
+    return;
+  const double p_value = path.effects.back().p_value;
+  for (std::size_t k = path.effects.size(); k-- > path.pinned;) {
+    path.search.leaveOut(k);
+    path.effects.pop_back();
+  }
+  for (const Effect& part : best.candidate.parts) {
+    Explanation one = best;
+    const EffectForm* form = findEffect(part.name);
+    one.candidate = {{part}, form ? form->family : "empirical", static_cast<int>(part.parameters.size())};
+    take(path, {one}, p_value);
   }
 }
 
@@ -243,15 +324,14 @@ TraceResult searched(const RefinedModel& base, const Trial& trial, const TraceOp
   if (options.fit_soil && trial.moment.empty())
     path.pinned = correctOffset(path.search, screened, options.seed, path.effects) ? 1 : 0;
   grow(path, trial, options, go_on);
+  if (trial.moment.empty() && go_on(0.0)) reconsiderPair(path);
   if (go_on(0.0)) check(path);
   if (go_on(0.0)) path.search.refineCurves();
   result.rejected = path.rejected;
   result.first_promises = path.first;
   result.last_promises = path.last;
   result.threshold = path.threshold;
-  result.effects = path.effects;
-  path.search.finish(result);
-  result.held_out = holdOut(result, options, foldsOf(result.trial));
+  finishConfirmed(path, result, options, go_on);
   result.ends = endLevels(result, options, watch);
   boundEffects(result.refined, result.trial, result.ends);
   result.scope = scopeOf(result);

@@ -27,17 +27,17 @@ struct Answer {
   double gain = 0.0;                     ///< what that column promises, against TraceResult::threshold
   std::vector<StrainedSensor> strained;  ///< sensors that would have to err far more than stated
   std::vector<std::string> unstated;     ///< columns of whose error nothing is stated: it is the fitted one
-  /// Standard deviations from run to run of the logarithms of the soil's strength and stiffness, where they make most of what
-  /// is left; 0 elsewhere.
+  /// Standard deviations from run to run of the logarithms of the soil's strength and stiffness, where they make
+  /// most of what is left; 0 elsewhere.
   double strength_scatter = 0.0, stiffness_scatter = 0.0;
   std::string inapplicable;  ///< why the model does not apply; empty where it does
   std::string measure;       ///< rows that would decide; empty where nothing exceeds its floor
 };
 
 /// The floor is that of the sensors as they are stated, where they would have to err far more than that; without a
-/// statement that of the fitted noise. A channel's rest exceeds its floor where its variance does by more than three standard errors of the variance of as
-/// many normal errors. Found effects explain where they carry more than half of what the base model leaves above
-/// the floor.
+/// statement that of the fitted noise. A channel's rest exceeds its floor where its variance does by more than
+/// three standard errors of the variance of as many normal errors. Found effects explain where they carry more than
+/// half of what the base model leaves above the floor.
 Answer answerOf(const TraceResult& result);
 
 /// A parameter of the soil that the rows moved far from what was known of it.

@@ -14,15 +14,13 @@ TEST(EffectsDrift, ALineRisesByItsSizeOverItsSpan) {
   const double middle = kStart + 0.5 * kSpan;
   EXPECT_NEAR(acted("drift_cohesion", {0.4, kStart, kSpan}, middle).cohesion_Pa, 1200.0, 1e-9);
   EXPECT_NEAR(acted("drift_friction", {0.4, kStart, kSpan}, middle).tan_friction, 0.6, 1e-12);
-  EXPECT_NEAR(acted("drift_stiffness", {std::log(4.0), kStart, kSpan}, middle).sinkage_modulus, 2e6,
-              1e-6);
+  EXPECT_NEAR(acted("drift_stiffness", {std::log(4.0), kStart, kSpan}, middle).sinkage_modulus, 2e6, 1e-6);
   EXPECT_EQ(acted("drift_cohesion", {0.4, kStart, kSpan}, kStart), plainContact());
 }
 
 TEST(EffectsDrift, ARelaxationReachesHalfItsSizeAfterLnTwoOfItsDecay) {
   const double x = kStart + kSpan * 0.4 * std::log(2.0);
-  EXPECT_NEAR(acted("drift_cohesion_relaxing", {0.4, kStart, kSpan, 0.4}, x).cohesion_Pa, 1200.0,
-              1e-9);
+  EXPECT_NEAR(acted("drift_cohesion_relaxing", {0.4, kStart, kSpan, 0.4}, x).cohesion_Pa, 1200.0, 1e-9);
 }
 
 TEST(EffectsDrift, AWaveComesBackAfterItsPeriod) {
@@ -42,8 +40,7 @@ TEST(EffectsDrift, AZeroMovesItsChannelAlone) {
   const auto moved = [&](const char* name) {
     return readWith(name, {3.0, kStart, kSpan}, kStart + kSpan, {}, plainContact(), before);
   };
-  const Reading pull = moved("drift_drawbar_zero"),
-                torque = moved("drift_torque_zero"),
+  const Reading pull = moved("drift_drawbar_zero"), torque = moved("drift_torque_zero"),
                 sinkage = moved("drift_sinkage_zero");
   EXPECT_EQ(pull.drawbar_pull_N, 23.0);
   EXPECT_EQ(torque.torque_Nm, 8.0);

@@ -46,6 +46,20 @@ WheelState stateAt(double slip) {
   return {.wheel = {.radius_m = 0.1, .width_m = 0.1}, .load_N = 60.0, .slip = slip};
 }
 
+TEST(ModelScope, TheLastEffectThatHeldOutRowsSpeakAgainstIsFound) {
+  TraceResult result = resultOf();  // torque errs more than with the base
+  EXPECT_EQ(lastRefuted(result), std::nullopt);
+  for (const Channel c : {Channel::Torque, Channel::Torque, Channel::Sinkage, Channel::SideForce}) {
+    result.effects.emplace_back();
+    result.effects.back().channel = c;
+  }
+  EXPECT_EQ(lastRefuted(result), 1U);
+  result.held_out.refined_rmse[1] = 0.2;
+  EXPECT_EQ(lastRefuted(result), 2U);
+  result.held_out.base_rmse = {1.0, 1.0, 1.0, kNan};
+  EXPECT_EQ(lastRefuted(result), std::nullopt);
+}
+
 TEST(ModelScope, CorrectionsHoldAsFarAsHeldOutRowsConfirmThem) {
   const ModelScope scope = scopeOf(resultOf());
   // Closed form: drawbar pull fails at 0.25 after 0.1: none from 0.175 beyond on, all to half of that.

@@ -49,7 +49,8 @@ TEST(SensorNoise, WhatIsStatedIsBelievedWhereRowsAreFew) {
 }
 
 TEST(SensorNoise, ASensorThatErrsFarMoreThanStatedIsNamed) {
-  // Closed form: 0.6 and 0.8 of 0.2 times 50 N add to 1 N in squares, 1.6 times and 1.7 times what is stated; e^0.5 = 1.65.
+  // Closed form: 0.6 and 0.8 of 0.2 times 50 N add to 1 N in squares, 1.6 times and 1.7 times what is stated;
+  // e^0.5 = 1.65.
   const Trial trial = pullAlone(20);
   const Eigen::MatrixXd level = Eigen::MatrixXd::Constant(20, kChannels, 0.2);
   SensorNoise fitted;

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <set>
 
 #include <talus/terramech/calibration/search/trace_search.hpp>
 
@@ -82,6 +83,27 @@ TEST(TraceSearch, ATrustedPriorHoldsTheFirstParameter) {
   search.trust(Estimate{.value = 0.3, .std = 1e-4});
   search.accept(torqueOffset());
   EXPECT_NEAR(search.parts(0)[0].parameters[0], 0.3, 0.01);
+}
+
+TEST(TraceSearch, PairsTellTwoFaultsApart) {
+  // Property: a torque off by 0.8 Nm and a pull by 0.05 W; no single candidate carries both.
+  MadeRows rows(wheelColumns());
+  std::mt19937_64 random(8);
+  for (int k = 0; k < 80; ++k) {
+    std::vector<double> row =
+        wheelRow(madeSand(), 40.0 + (k * 7) % 80, 0.05 + 0.05 * ((k * 11) % 16), 0.02, random);
+    row[2] += 0.8;
+    row[4] += 0.05 * row[0];
+    rows.add(row);
+  }
+  TraceSearch search(sand(), makeTrial(rows.telemetry(), sand()), {});
+  const auto ranked = search.pairs();
+  ASSERT_FALSE(ranked.empty());
+  std::set<Channel> channels;
+  for (const Effect& part : ranked.front().candidate.parts) channels.insert(part.channel);
+  EXPECT_EQ(channels, (std::set{Channel::Torque, Channel::DrawbarPull}));
+  for (const Promise& single : search.screen(0).promises)
+    EXPECT_GT(ranked.front().gain, single.gain + closeGain({}));
 }
 
 TEST(TraceSearch, OfFormsTakenTogetherOnlyThoseThatPayStay) {

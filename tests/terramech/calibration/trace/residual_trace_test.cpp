@@ -104,8 +104,8 @@ TEST(ResidualTrace, TwoFaultsAreToldApart) {
 }
 
 TEST(ResidualTrace, ACampaignWithTwoEffectsHasBothNamed) {
-  // Property: a pile behind the wheel or a wheel that yields, and load shifted by the slope of the run. While a speed set for a
-  // run held the error of its slips, a rate effect took the place of the slope.
+  // Property: a pile behind the wheel or a wheel that yields, and load shifted by the slope of the run. While a
+  // speed set for a run held the error of its slips, a rate effect took the place of the slope.
   for (const std::uint64_t seed : {1400U, 1405U}) {
     const blind::World world =
         blind::makeWorld({.seed = seed, .effects = 2, .library = true, .campaign = true});
@@ -116,8 +116,8 @@ TEST(ResidualTrace, ACampaignWithTwoEffectsHasBothNamed) {
 }
 
 TEST(ResidualTrace, ASoilThatScattersFromRunToRunHasNoCause) {
-  // Property: tan phi and c scatter by 10 and 20 % from run to run and nothing else acts. With an offset of each channel as
-  // the only error that runs share these tables had a grouser's thrust and daily drifts at p = .005.
+  // Property: tan phi and c scatter by 10 and 20 % from run to run and nothing else acts. With an offset of each
+  // channel as the only error that runs share these tables had a grouser's thrust and daily drifts at p = .005.
   for (const auto& [seed, scatter] : {std::pair{501U, 0.1}, {509U, 0.1}, {604U, 0.2}})
     EXPECT_TRUE(traced(blind::makeWorld({.seed = seed, .effects = 0, .campaign = true, .scatter = scatter}))
                     .effects.empty())

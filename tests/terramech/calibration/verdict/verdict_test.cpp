@@ -50,7 +50,8 @@ TEST(Verdict, IsHeldAgainstTheDeclaredSensors) {
 }
 
 TEST(Verdict, AScatterOfTheSoilIsSaidWhereItMakesMostOfTheRest) {
-  // Closed form: a strength that scatters by 0.1 moves DP/W by 0.03, of 0.0345^2 - 0.0141^2 = 0.0315^2 above the floor.
+  // Closed form: a strength that scatters by 0.1 moves DP/W by 0.03, of 0.0345^2 - 0.0141^2 = 0.0315^2 above the
+  // floor.
   TraceResult result = resultOf(0.0345, 0.0345, 0.0141, 0);
   result.shared.run(kChannels, kChannels) = 0.1 * 0.1;
   result.shared.by_soil.assign(100, SoilFactor::Zero());
