@@ -11,7 +11,9 @@ function showStory(map, story) {
   const cells = L.layerGroup().addTo(map);
   const canvas = L.canvas({padding: 0.5});
   for (const [x, y, radius] of story.patches)
-    L.circle([y, x], {radius, color: "#7a1fa2", weight: 2, dashArray: "5 4", fill: false, interactive: false}).addTo(map);
+    for (const style of [{color: "#fff", weight: 5}, {color: "#7a1fa2", weight: 2, dashArray: "5 4"}])
+      L.circle([y, x], {radius, fill: false, interactive: false, ...style}).addTo(map);
+  const rim = L.polyline([], {color: "#fff", weight: 6, interactive: false}).addTo(map);
   const planned = L.polyline([], {color: "#1b3fbf", weight: 3, dashArray: "7 6", interactive: false}).addTo(map);
   const halo = L.polyline([], {color: "#fff", weight: 7, interactive: false}).addTo(map);
   const driven = L.polyline([], {color: "#222", weight: 3.5, interactive: false}).addTo(map);
@@ -25,7 +27,7 @@ function showStory(map, story) {
     while (drawn.length < story.changes.length && story.changes[drawn.length][0] <= time) {
       const [, x, y, colour] = story.changes[drawn.length], h = story.cell / 2;
       drawn.push(L.rectangle([[y - h, x - h], [y + h, x + h]], {renderer: canvas, stroke: false, fillColor: colour,
-                                                               fillOpacity: 0.85, interactive: false}).addTo(cells));
+                                                               fillOpacity: 1, interactive: false}).addTo(cells));
     }
   }
 
@@ -34,7 +36,7 @@ function showStory(map, story) {
     const past = story.events.filter(event => event.time <= now.time);
     const plan = past.filter(event => event.route.length).pop();
     const line = track.slice(0, index + 1).map(p => [p.y, p.x]);
-    planned.setLatLngs(plan ? plan.route.map(at) : []);
+    for (const shown of [rim, planned]) shown.setLatLngs(plan ? plan.route.map(at) : []);
     halo.setLatLngs(line);
     driven.setLatLngs(line);
     rover.setLatLng([now.y, now.x]);
