@@ -9,10 +9,10 @@
 namespace talus::planner {
 namespace {
 
-constexpr std::size_t kBand = 256;  // nodes of the search between two looks at what exceeds its limits
-constexpr int kMostRounds = 60;   // of lowering what exceeds behind the front; more are for the check to see
-constexpr float kSlack = 5e-4F;   // that a triangle may exceed its limits by
-constexpr double kWithin = 1.02;  // of the cost known: the nodes that are searched lie within it
+constexpr std::size_t kBand = 16;  // nodes of the search between two looks at what exceeds its limits
+constexpr int kMostRounds = 60;    // of lowering what exceeds behind the front; more are for the check to see
+constexpr float kSlack = 5e-4F;    // that a triangle may exceed its limits by
+constexpr double kWithin = 1.02;   // of the cost known: the nodes that are searched lie within it
 
 MeshSearch::Options optionsOf(const SubSolution::Parts& parts, MeshSearch::Way way) {
   return {.way = way,
@@ -83,29 +83,29 @@ void SubSolution::seedPlane() {
 
 // Caps what exceeds behind the front until nothing does; false when stopped.
 bool SubSolution::settle(bool all) {
-  for (const std::uint32_t slot : std::exchange(ahead_, {})) to_goal_.change(slot);
+  // Triangles that the front has not passed change when it does; those that it never will are for the end.
+  if (all)
+    for (std::size_t slot = 0; slot < prices_.slots(); ++slot)
+      to_goal_.change(static_cast<std::uint32_t>(slot));
   const std::uint64_t end = all ? MeshSearch::kEnd : to_goal_.front();
   for (int round = 0; round < kMostRounds && lowerExcess(all); ++round)
     if (!to_goal_.run(end, ~std::size_t{0}, stop_)) return false;
   return true;
 }
 
-// Whether anything was lowered, where a triangle exceeded a limit. Of triangles that the front has not passed only if all are asked for.
+// Whether anything was lowered, where a triangle exceeded a limit. Of triangles that the front has not passed only if all
+// are asked for.
 bool SubSolution::lowerExcess(bool all) {
   std::vector<std::pair<std::uint32_t, std::size_t>> over;
   for (const std::uint32_t slot : to_goal_.takeChanged()) {
     const CellMesh::Nodes nodes = mesh().nodesOf(prices_.cellOf(slot));
-    bool is_ahead = false;
     for (std::size_t k = 0; k < 4; ++k) {
       const std::uint32_t first = nodes[k], second = nodes[CellMesh::next(k)],
                           middle = nodes[CellMesh::kMiddle];
-      const int inners = inner(first) + inner(second) + inner(middle);
-      is_ahead = is_ahead || (!all && inners < 3);
-      if (inners < (all ? 1 : 3)) continue;
+      if (inner(first) + inner(second) + inner(middle) < (all ? 1 : 3)) continue;
       const auto fall = TrianglePrices::fall(k, {at(first), at(second), at(middle)});
       if (prices_.of(slot).exceeds(fall, 1.0F + kSlack)) over.emplace_back(slot, k);
     }
-    if (is_ahead) ahead_.push_back(slot);
   }
   bool lowered = false;
   for (const auto& [slot, triangle] : over) {

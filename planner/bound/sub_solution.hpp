@@ -63,7 +63,6 @@ class SubSolution {
   StopCheck stop_;
   MeshPrices prices_;
   MeshSearch from_start_, to_goal_;
-  std::vector<std::uint32_t> ahead_;  // slots with triangles ahead of the front
   bool complete_ = false;
 };
 
