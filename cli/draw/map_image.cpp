@@ -84,18 +84,9 @@ Raster<float> hillshade(const Raster<float>& elevation_m) {
 }
 
 Range lightRange(const Raster<float>& shade) {
-  std::vector<float> known;
-  for (const float v : shade.values())
-    if (std::isfinite(v)) known.push_back(v);
-  if (known.empty()) return {};
-  const auto quantile = [&known](double share) {
-    const auto at =
-        known.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(known.size() - 1));
-    std::nth_element(known.begin(), at, known.end());
-    return static_cast<double>(*at);
-  };
-  const Range range{quantile(0.02), quantile(0.98)};
-  return range.high > range.low + 0.02 ? range : Range{range.low - 0.5, range.low + 0.5};
+  const auto range = innerRange(shade);
+  if (!range) return {};
+  return range->high > range->low + 0.02 ? *range : Range{range->low - 0.5, range->low + 0.5};
 }
 
 Image shadeImage(const Raster<float>& shade) {

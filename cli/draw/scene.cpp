@@ -18,20 +18,8 @@ namespace {
 using maps::Cell;
 using maps::Raster;
 
-/// Smallest and largest of the values between their 2 % and 98 % quantiles, so that a few outliers do not
-/// take all colours.
-Range inner(const Raster<float>& values) {
-  std::vector<float> finite;
-  for (const float v : values.values())
-    if (std::isfinite(v)) finite.push_back(v);
-  if (finite.empty()) return {0.0, 1.0};
-  const auto quantile = [&finite](double share) {
-    const auto at =
-        finite.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(finite.size() - 1));
-    std::nth_element(finite.begin(), at, finite.end());
-    return static_cast<double>(*at);
-  };
-  const Range range{quantile(0.02), quantile(0.98)};
+Range scaleRange(const Raster<float>& values) {
+  const Range range = innerRange(values).value_or(Range{0.0, 1.0});
   return range.high > range.low ? range : Range{range.low, range.low + 1.0};
 }
 
@@ -85,7 +73,7 @@ BlockBeliefs beliefsOf(const costmap::TraversabilityMap& map, const Blocks& bloc
 
 void addLayer(Scene& scene, std::string name, Raster<float> values) {
   ValueLayer layer{.name = std::move(name), .unit = "", .values = std::move(values), .range = {}};
-  layer.range = inner(layer.values);
+  layer.range = scaleRange(layer.values);
   scene.layers.push_back(std::move(layer));
 }
 
@@ -145,11 +133,25 @@ Raster<float> slope_deg(const costmap::TraversabilityMap& map, const Blocks& blo
 
 void addSlope(Scene& scene, Raster<float> values) {
   ValueLayer slope{.name = "slope", .unit = "deg", .values = std::move(values), .range = {}, .decimals = 2};
-  slope.range = {0.0, std::max(1.0, inner(slope.values).high)};
+  slope.range = {0.0, std::max(1.0, scaleRange(slope.values).high)};
   scene.layers.push_back(std::move(slope));
 }
 
 }  // namespace
+
+std::optional<Range> innerRange(const Raster<float>& values) {
+  std::vector<float> finite;
+  for (const float v : values.values())
+    if (std::isfinite(v)) finite.push_back(v);
+  if (finite.empty()) return std::nullopt;
+  const auto quantile = [&finite](double share) {
+    const auto at =
+        finite.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(finite.size() - 1));
+    std::nth_element(finite.begin(), at, finite.end());
+    return static_cast<double>(*at);
+  };
+  return Range{quantile(0.02), quantile(0.98)};
+}
 
 Scene sceneOf(const maps::ElevationMap& map, const SceneOptions& options) {
   const Blocks blocks(map.grid(), options.max_side);

@@ -30,6 +30,10 @@ struct LayerClass {
   Colour colour;
 };
 
+/// The values between which all but the lowest and the highest 2 % lie, so that outliers do not take all colours; nothing
+/// where none is finite.
+std::optional<Range> innerRange(const maps::Raster<float>& values);
+
 /// A quantity over the map that is shown in colours.
 struct ValueLayer {
   std::string name;                   ///< "slope"

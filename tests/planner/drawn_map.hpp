@@ -94,6 +94,19 @@ inline std::shared_ptr<const costmap::CostGrid> plane(
                  std::vector{ground})));
 }
 
+/// The same map where a radian at a vertex costs so much.
+inline std::shared_ptr<const costmap::CostGrid> withTurns(const std::shared_ptr<const costmap::CostGrid>& map,
+                                                          double turn_J) {
+  std::vector<costmap::DriveGround> grounds;
+  for (const auto& curve : map->cost().curves()) {
+    grounds.push_back({.curve = curve, .states = {}});
+    grounds.back().turns.at_vertex.cost_J = turn_J;
+  }
+  costmap::CostGrid::Content content = map->content();
+  content.cost = std::make_shared<costmap::DriveCost>(map->cost().limits(), grounds);
+  return std::make_shared<const costmap::CostGrid>(std::move(content));
+}
+
 /// What a random map is made of.
 struct RandomGround {
   int width = 20;

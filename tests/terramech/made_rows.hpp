@@ -68,4 +68,18 @@ inline std::vector<double> wheelRow(const Soil& soil, double load_N, double slip
           0.1};
 }
 
+/// Readings of a torque that is off by 0.8 Nm and a pull that is off by 0.05 W.
+inline Telemetry twoFaults(const Soil& soil) {
+  MadeRows rows(wheelColumns());
+  std::mt19937_64 random(8);
+  for (int k = 0; k < 80; ++k) {
+    std::vector<double> row =
+        wheelRow(soil, 40.0 + (k * 7) % 80, 0.05 + 0.05 * ((k * 11) % 16), 0.02, random);
+    row[2] += 0.8;
+    row[4] += 0.05 * row[0];
+    rows.add(row);
+  }
+  return rows.telemetry();
+}
+
 }  // namespace talus::terramech

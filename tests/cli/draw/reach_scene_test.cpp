@@ -9,19 +9,28 @@ namespace talus::cli {
 namespace reach_scene_test {
 
 // Flat ground, and a wall that no heading enters: the west is reached from the start, the east leads to the goal.
-TEST(ReachScene, ShowsBothSetsAndTheGapBetween) {
+maps::ElevationMap level() {
   maps::ElevationMap map;
   map.elevation_m =
       maps::Raster<float>({.width = 30, .height = 20, .resolution_m = 1.0, .south_west = {}}, 5.0F);
-  maps::Raster<costmap::CellCode> cells(map.grid(), costmap::CellCode({.curve = 0}));
-  for (int row = 0; row < 20; ++row)
-    cells[{12, row}] = costmap::CellCode({.curve = costmap::CellCode::kBlocked});
+  return map;
+}
+
+// Of places that no way over the cells connects.
+Scene severed(const maps::ElevationMap& map, const maps::Raster<costmap::CellCode>& cells) {
   costmap::DriveCurve curve;
   curve.cost_J_per_m.fill(1.0F);
   const costmap::CostGrid cost = costmap::flattened(
       cells, std::make_shared<costmap::DriveCost>(costmap::DriveCost::Limits{}, std::vector{curve}));
-  const Scene scene =
-      reachScene(map, cost, {{{2.5, 3.5}, {27.5, 16.5}}, 0.0, "a wall"}, {.title = "severed"});
+  return reachScene(map, cost, {{{2.5, 3.5}, {27.5, 16.5}}, 0.0, "a wall"}, {.title = "severed"});
+}
+
+TEST(ReachScene, ShowsBothSetsAndTheGapBetween) {
+  const maps::ElevationMap map = level();
+  maps::Raster<costmap::CellCode> cells(map.grid(), costmap::CellCode({.curve = 0}));
+  for (int row = 0; row < 20; ++row)
+    cells[{12, row}] = costmap::CellCode({.curve = costmap::CellCode::kBlocked});
+  const Scene scene = severed(map, cells);
   ASSERT_FALSE(scene.layers.empty());
   const auto& reached = scene.layers.front().values;
   for (int row = 0; row < 20; ++row)
@@ -46,19 +55,12 @@ TEST(ReachScene, ShowsBothSetsAndTheGapBetween) {
 
 // A set that is easily overlooked, 5 columns of 6 cells in a corner, has a ring around it.
 TEST(ReachScene, MarksASmallSet) {
-  maps::ElevationMap map;
-  map.elevation_m =
-      maps::Raster<float>({.width = 30, .height = 20, .resolution_m = 1.0, .south_west = {}}, 5.0F);
+  const maps::ElevationMap map = level();
   maps::Raster<costmap::CellCode> cells(map.grid(), costmap::CellCode({.curve = 0}));
   const costmap::CellCode blocked({.curve = costmap::CellCode::kBlocked});
   for (int row = 0; row <= 6; ++row) cells[{5, row}] = blocked;
   for (int column = 0; column <= 5; ++column) cells[{column, 6}] = blocked;
-  costmap::DriveCurve curve;
-  curve.cost_J_per_m.fill(1.0F);
-  const costmap::CostGrid cost = costmap::flattened(
-      cells, std::make_shared<costmap::DriveCost>(costmap::DriveCost::Limits{}, std::vector{curve}));
-  const Scene scene =
-      reachScene(map, cost, {{{2.5, 3.5}, {27.5, 16.5}}, 0.0, "a wall"}, {.title = "severed"});
+  const Scene scene = severed(map, cells);
   ASSERT_EQ(scene.rings.size(), 1U);
   EXPECT_EQ(scene.rings[0].label, "reached from the start: 30 cells");
   EXPECT_EQ(scene.rings[0].centre.x_m, 2.5);

@@ -48,17 +48,7 @@ TEST(FewerTurns, ADetourHasToPayForItsTurns) {
   std::vector<std::string> rows(5, std::string(20, '.'));
   rows[4].replace(8, 4, "2222");
   const Polyline around{{0.5, 0.5}, {8.0, 1.5}, {12.0, 1.5}, {19.5, 0.5}};
-  const auto priced = [&](double turn_J) {
-    const auto map = drawn(rows);
-    std::vector<costmap::DriveGround> grounds;
-    for (const auto& curve : map->cost().curves()) {
-      grounds.push_back({.curve = curve, .states = {}});
-      grounds.back().turns.at_vertex.cost_J = turn_J;
-    }
-    costmap::CostGrid::Content content = map->content();
-    content.cost = std::make_shared<costmap::DriveCost>(map->cost().limits(), grounds);
-    return std::make_shared<const costmap::CostGrid>(std::move(content));
-  };
+  const auto priced = [&](double turn_J) { return testing::withTurns(drawn(rows), turn_J); };
   EXPECT_EQ(withFewerTurns(MotionCost(priced(1.0)), around).size(), 3U) << "past one corner of the field";
   EXPECT_EQ(withFewerTurns(MotionCost(priced(2000.0)), around).size(), 2U);
 }

@@ -11,19 +11,7 @@ namespace talus::planner {
 namespace longer_tacks_test {
 
 using testing::drawn;
-
-// The drawn map with turns that cost so much a radian at vertices.
-std::shared_ptr<const costmap::CostGrid> withTurns(const std::vector<std::string>& rows, double turn_J) {
-  const auto map = drawn(rows);
-  std::vector<costmap::DriveGround> grounds;
-  for (const auto& curve : map->cost().curves()) {
-    grounds.push_back({.curve = curve, .states = {}});
-    grounds.back().turns.at_vertex.cost_J = turn_J;
-  }
-  costmap::CostGrid::Content content = map->content();
-  content.cost = std::make_shared<costmap::DriveCost>(map->cost().limits(), grounds);
-  return std::make_shared<const costmap::CostGrid>(std::move(content));
-}
+using testing::withTurns;
 
 Polyline zigzag(int tacks) {
   Polyline points{{1.3, 1.2}};
@@ -34,7 +22,7 @@ Polyline zigzag(int tacks) {
 
 // Closed form: on even ground two legs that add up to the zigzag's own remain, and one turn; length is unchanged.
 TEST(LongerTacks, OneTurnRemainsOfAZigzagOnEvenGround) {
-  const MotionCost cost(withTurns(std::vector<std::string>(20, std::string(30, '.')), 5.0));
+  const MotionCost cost(withTurns(drawn(std::vector<std::string>(20, std::string(30, '.'))), 5.0));
   const Polyline route = zigzag(24), made = withLongerTacks(cost, route);
   ASSERT_EQ(made.size(), 3U);
   EXPECT_EQ(made.front(), route.front());
@@ -55,7 +43,7 @@ TEST(LongerTacks, NeverDearer) {
     for (auto& row : rows)
       for (char& cell : row)
         if (unit() < 0.15) cell = unit() < 0.2 ? '#' : '2';
-    const MotionCost cost(withTurns(rows, 10.0 * unit()));
+    const MotionCost cost(withTurns(drawn(rows), 10.0 * unit()));
     Polyline route{{1.5, 10.5}};
     while (route.back().x_m < 27.0)
       route.push_back(

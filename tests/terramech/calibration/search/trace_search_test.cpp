@@ -87,16 +87,7 @@ TEST(TraceSearch, ATrustedPriorHoldsTheFirstParameter) {
 
 TEST(TraceSearch, PairsTellTwoFaultsApart) {
   // Property: a torque off by 0.8 Nm and a pull by 0.05 W; no single candidate carries both.
-  MadeRows rows(wheelColumns());
-  std::mt19937_64 random(8);
-  for (int k = 0; k < 80; ++k) {
-    std::vector<double> row =
-        wheelRow(madeSand(), 40.0 + (k * 7) % 80, 0.05 + 0.05 * ((k * 11) % 16), 0.02, random);
-    row[2] += 0.8;
-    row[4] += 0.05 * row[0];
-    rows.add(row);
-  }
-  TraceSearch search(sand(), makeTrial(rows.telemetry(), sand()), {});
+  TraceSearch search(sand(), makeTrial(twoFaults(madeSand()), sand()), {});
   const auto ranked = search.pairs();
   ASSERT_FALSE(ranked.empty());
   std::set<Channel> channels;

@@ -86,19 +86,10 @@ TEST(ResidualTrace, ACampaignAtSetLoadsHasNoEffectOfLoad) {
 
 TEST(ResidualTrace, TwoFaultsAreToldApart) {
   // Property: a torque off by 0.8 Nm and a pull by 0.05 W; no single candidate carries both.
-  MadeRows rows(wheelColumns());
-  std::mt19937_64 random(8);
-  for (int k = 0; k < 80; ++k) {
-    std::vector<double> row =
-        wheelRow(madeSand(), 40.0 + (k * 7) % 80, 0.05 + 0.05 * ((k * 11) % 16), 0.02, random);
-    row[2] += 0.8;
-    row[4] += 0.05 * row[0];
-    rows.add(row);
-  }
   RefinedModel base;
   base.soil = madeSand();
   std::set<Channel> channels;
-  for (const TracedEffect& e : traceResiduals(base, makeTrial(rows.telemetry(), base)).effects)
+  for (const TracedEffect& e : traceResiduals(base, makeTrial(twoFaults(madeSand()), base)).effects)
     channels.insert(e.channel);
   EXPECT_EQ(channels, (std::set{Channel::Torque, Channel::DrawbarPull}));
 }
