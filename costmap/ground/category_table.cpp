@@ -2,7 +2,6 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <ranges>
 #include <utility>
 
 #include <talus/costmap/cost/cross_slope.hpp>
@@ -13,8 +12,9 @@ namespace {
 
 using terramech::Category;
 
-constexpr int kHeadings = 24;  // over half a turn, as CrossSlope::steepest(): left and right count alike
-constexpr int kSteps = 2898;   // of the steepest gradient that CellCode holds, 2048 sqrt(2)
+constexpr int kJudgedHeadings =
+    24;                       // over half a turn, as CrossSlope::steepest(): left and right count alike
+constexpr int kSteps = 2898;  // of the steepest gradient that CellCode holds, 2048 sqrt(2)
 
 // Whether doubt about the pull of the ground may lift it.
 bool isOfSoil(Refusal refusal) {
@@ -43,8 +43,8 @@ CellCode planeOf(int step) {
 // The state in the worst heading, with the worst category of any.
 DriveState stateOn(const DriveCost& cost, CellCode plane) {
   DriveState state = cost.detail(plane, worstHeading(cost, plane));
-  for (int k = 0; k < kHeadings; ++k) {
-    const double heading = k * std::numbers::pi / kHeadings;
+  for (int k = 0; k < kJudgedHeadings; ++k) {
+    const double heading = k * std::numbers::pi / kJudgedHeadings;
     state.category =
         std::max(state.category, cost.detail(plane, {std::cos(heading), std::sin(heading)}).category);
   }
@@ -67,9 +67,9 @@ Direction worstHeading(const DriveCost& cost, CellCode cell) noexcept {
   constexpr double kClearly = 1.0 / 32.0;  // of gradient: two rows across
   Direction found = up;
   double most = climbAt(cost, cell, up) + kClearly;
-  for (int k = 1; k < kHeadings; ++k) {
-    const double c = std::cos(k * std::numbers::pi / kHeadings),
-                 s = std::sin(k * std::numbers::pi / kHeadings);
+  for (int k = 1; k < kJudgedHeadings; ++k) {
+    const double c = std::cos(k * std::numbers::pi / kJudgedHeadings),
+                 s = std::sin(k * std::numbers::pi / kJudgedHeadings);
     const Direction tried{c * up.x - s * up.y, s * up.x + c * up.y};
     if (const double climb = climbAt(cost, cell, tried); climb > most) {
       most = climb;
@@ -97,9 +97,14 @@ CategoryTable::CategoryTable(const GroundModel& model, const GroundBelief& belie
   };
   // The first step that is no better: a steeper plane is not.
   const auto boundOf = [&](Category least) {
-    const auto steps = std::views::iota(0, kSteps - 1);
-    const int from =
-        *std::ranges::partition_point(steps, [&](int k) { return judgedAt(k).category < least; });
+    int from = 0;
+    for (int beyond = kSteps - 1; from < beyond;) {
+      const int middle = (from + beyond) / 2;
+      if (judgedAt(middle).category < least)
+        from = middle + 1;
+      else
+        beyond = middle;
+    }
     return std::pair(from, judgedAt(from));
   };
   const std::array bounds{boundOf(Category::Marginal), boundOf(Category::Dangerous)};
