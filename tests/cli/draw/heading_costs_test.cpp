@@ -85,7 +85,7 @@ TEST(HeadingCosts, OfThePageAreThoseOfExplain) {
         ASSERT_NEAR(answer.at(k + 1).get<double>() / cost, 1.0, 1e-5) << i << ' ' << k;
       }
     }
-    EXPECT_GE(categories.size(), side == 60 ? 4U : 2U) << side;
+    EXPECT_GE(categories.size(), side == 60 ? 3U : 2U) << side;
     EXPECT_GT(refused, 50) << side;
   }
 }
