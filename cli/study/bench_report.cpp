@@ -223,13 +223,6 @@ std::vector<Plot> gapsOverTime(const BenchmarkPlan& plan, const std::vector<Benc
 
 std::string asPage(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& runs) {
   HtmlReport page("Planner benchmark");
-  page.paragraph(fmt::format(
-      "{} cases, {} runs per case and planner, time limit {} s per run, each run in its own process. Gap: "
-      "relative to the known optimum, or to the best of all runs. Invalid: the independent check rejects the "
-      "route; its gap, curvature and clearance are not counted. Clearance is in cells. OMPL's planners begin "
-      "with the field's "
-      "route, those with :cold with nothing.",
-      plan.cases.size(), plan.seeds, plan.time_limit_s));
   if (const std::size_t asked = planner::jobsOf(plan).size(); runs.size() < asked)
     page.paragraph(fmt::format("Cancelled after {} of {} runs.", runs.size(), asked));
   std::vector<std::vector<std::string>> rows;
@@ -239,11 +232,18 @@ std::string asPage(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& r
     page.heading("Simulated drives over the true slip");
     page.table(drives.front(), {drives.begin() + 1, drives.end()});
   }
-  page.heading("Cost over time");
-  page.paragraph(
-      "The first seed of each planner whose final route passes the check. Intermediate costs are those that "
-      "the planner reports; none is drawn below the cost of the final route.");
   page.charts(gapsOverTime(plan, runs));
+  page.paragraph(fmt::format(
+      "{} cases, {} runs per case and planner, time limit {} s per run, each run in its own process. Gap: "
+      "relative to the known optimum, or to the best of all runs. Invalid: the independent check rejects the "
+      "route; its gap, curvature and clearance are not counted. Clearance is in cells. OMPL's planners begin "
+      "with the field's "
+      "route, those with :cold with nothing.",
+      plan.cases.size(), plan.seeds, plan.time_limit_s));
+  page.paragraph(
+      "The curves are those of the first seed of each planner whose final route passes the check. "
+      "Intermediate costs are those that "
+      "the planner reports; none is drawn below the cost of the final route.");
   return page.html();
 }
 
