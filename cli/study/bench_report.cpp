@@ -58,8 +58,8 @@ BenchmarkLine lineOf(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>&
   return line;
 }
 
-std::string percent(double share) {
-  return std::isfinite(share) ? fmt::format("{:.2f}", 100 * share) : "-";
+std::string hundredths(double value) {
+  return std::isfinite(value) ? fmt::format("{:.2f}", value) : "-";
 }
 
 const std::vector<std::string>& header() {
@@ -75,13 +75,13 @@ std::vector<std::string> words(const BenchmarkLine& line) {
           std::to_string(line.found),
           std::to_string(line.breached),
           std::to_string(line.crashed),
-          percent(line.median_gap),
-          percent(line.worst_gap),
+          hundredths(100.0 * line.median_gap),
+          hundredths(100.0 * line.worst_gap),
           fmt::format("{:.4f}", line.median_seconds),
           fmt::format("{:.0f}", line.worst_megabytes),
           fmt::format("{:.2f}", line.mean_cusps),
           fmt::format("{:.3g}", line.max_curvature_1_m),
-          fmt::format("{:.2f}", line.least_clearance_cells)};
+          hundredths(line.least_clearance_cells)};
 }
 
 Plot gapOverTime(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& runs, std::size_t case_index) {
