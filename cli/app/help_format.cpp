@@ -56,7 +56,7 @@ std::string remarks(const CLI::Option* option) {
     if (!text.empty()) parts.push_back(before + text);
   };
   const std::string type = option->get_type_name();
-  const auto colon = type.find(':');
+  const auto colon = endOfTypeName(type);
   if (option->get_required()) add("required", " ");
   if (colon != std::string::npos) add("", checkText(type.substr(colon + 1)));
   add("default: ", option->get_default_str());
@@ -71,6 +71,12 @@ std::string remarks(const CLI::Option* option) {
 }
 
 }  // namespace
+
+std::size_t endOfTypeName(const std::string& type) {
+  std::size_t at = type.find(':');
+  while (at != std::string::npos && at > 0 && type[at - 1] == '[') at = type.find(':', at + 1);
+  return at;
+}
 
 std::string wrapped(std::string_view text, std::size_t width) {
   std::string out;
@@ -109,7 +115,7 @@ std::string HelpFormat::make_option(const CLI::Option* option, bool is_positiona
   std::string name = make_option_name(option, is_positional);
   if (const auto brace = name.find('{'); brace != std::string::npos) name.resize(brace);  // --no-x{false}
   const std::string type = option->get_type_name();
-  if (!is_positional && option->get_type_size() != 0) name += " " + type.substr(0, type.find(':'));
+  if (!is_positional && option->get_type_size() != 0) name += " " + type.substr(0, endOfTypeName(type));
   if (option->get_expected_max() == CLI::detail::expected_max_vector_size) name += " ...";
   return entry(name, make_option_desc(option) + remarks(option));
 }

@@ -11,6 +11,9 @@ namespace talus::cli {
 /// Widest line of --help, in characters.
 inline constexpr std::size_t kHelpWidth = 100;
 
+/// Where a type's name ends: the first colon, behind which CLI11 has the checks, but none in "[:UNIT]".
+std::size_t endOfTypeName(const std::string& type);
+
 /// The text broken at blanks into lines of at most `width` characters; a longer word has a line of its own.
 std::string wrapped(std::string_view text, std::size_t width);
 

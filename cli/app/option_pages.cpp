@@ -4,16 +4,22 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <talus/cli/app/help_format.hpp>
 #include <talus/cli/app/option_pages.hpp>
 
 namespace talus::cli {
 namespace {
 
-// Text of a page: no line of it is a request of roff.
+// Text of a page: no line of it is a request of roff or longer than a terminal is wide.
 std::string roff(std::string_view text) {
+  constexpr std::size_t kWidth = 72;
   std::string out;
+  std::size_t line = 0;
   for (const char c : text) {
-    if (c == '\\')
+    if (out.ends_with('\n')) line = out.size();
+    if (c == ' ' && out.size() - line >= kWidth - 16)
+      out += '\n';
+    else if (c == '\\')
       out += "\\e";
     else if (c == '-')
       out += "\\-";
@@ -27,7 +33,7 @@ std::string roff(std::string_view text) {
 
 std::string valueOf(const CLI::Option& option) {
   const std::string type = option.get_type_name();
-  return option.get_type_size() == 0 ? "" : type.substr(0, type.find(':'));
+  return option.get_type_size() == 0 ? "" : type.substr(0, endOfTypeName(type));
 }
 
 // {a,b} of CLI11's check of members; empty where the option takes other words.
@@ -80,7 +86,8 @@ std::string memberCases(const CLI::App& app, const std::string& call) {
 }  // namespace
 
 std::string manualPage(const CLI::App& app) {
-  std::string text = ".TH TALUS 1 \"\" \"talus " TALUS_VERSION "\" \"User Commands\"\n.SH NAME\ntalus \\- " +
+  std::string text = ".TH TALUS 1 2026-11-01 \"talus " TALUS_VERSION
+                     "\" \"User Commands\"\n.SH NAME\ntalus \\- " +
                      roff(app.get_description()) +
                      "\n.SH SYNOPSIS\n.B talus\n.I call\n.RI [ options ]\n.SH OPTIONS\nOf every call:\n" +
                      optionsText(app) + ".SH CALLS\n";
@@ -88,9 +95,8 @@ std::string manualPage(const CLI::App& app) {
     text += fmt::format(".SS talus {}\n{}.\n{}", roff(call->get_name()), roff(call->get_description()),
                         optionsText(*call));
   return text +
-         ".SH EXIT STATUS\n0 done; 1 no (no route, no fit); 2 the call or an input is wrong; 3 an internal "
-         "failure; 130 "
-         "cancelled.\n.SH FILES\nKeys and columns of all files: \\fBtalus help formats\\fR.\n";
+         ".SH EXIT STATUS\n0 done; 1 no (no route, no fit);\n2 the call or an input is wrong; 3 an internal "
+         "failure; 130 cancelled.\n.SH FILES\nKeys and columns of all files: \\fBtalus help formats\\fR.\n";
 }
 
 std::string bashCompletion(const CLI::App& app) {

@@ -1,5 +1,6 @@
 #include <array>
 #include <cmath>
+#include <filesystem>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -137,13 +138,12 @@ Plot mapOf(const std::vector<Assessment>& rows) {
             .x = {.label = "T/(rW) [-]"},
             .y = {.label = "z/r [-]"},
             .series = {}};
-  constexpr std::array kColours{rgb(0x2e9e4f), rgb(0xe0a020), rgb(0xc83030)};
   for (const Category c : {Category::Safe, Category::Marginal, Category::Dangerous}) {
     Series cloud{.name = name(c),
                  .x = {},
                  .y = {},
                  .mark = Series::Mark::Points,
-                 .colour = kColours[static_cast<std::size_t>(c)]};
+                 .colour = c == Category::Safe ? rgb(0x1b6fbf) : colourOf(c)};
     for (const Assessment& a : rows) {
       if (a.category != c) continue;
       cloud.x.push_back(a.torque_over_load_radius);
@@ -154,13 +154,31 @@ Plot mapOf(const std::vector<Assessment>& rows) {
   return plot;
 }
 
+// Each row's drawbar pull with its standard deviation beside what the slope requires.
+Plot pullsOf(const AssessCommand& options, const std::vector<Assessment>& rows) {
+  Series pulls{.name = "available, one standard deviation", .x = {}, .y = {}, .mark = Series::Mark::Points};
+  for (const Assessment& a : rows) {
+    pulls.x.push_back(static_cast<double>(a.line));
+    pulls.y.push_back(a.pull.value);
+    pulls.y_std.push_back(a.pull.std);
+  }
+  const double asked = std::tan(options.slope_rad);
+  const std::vector<double> ends =
+      rows.empty() ? std::vector<double>{} : std::vector{pulls.x.front(), pulls.x.back()};
+  return {
+      .title = "Drawbar pull over load, row by row",
+      .x = {.label = "line of the table"},
+      .y = {.label = "DP/W [-]"},
+      .series = {pulls, {.name = "required by the slope", .x = ends, .y = std::vector(ends.size(), asked)}}};
+}
+
 void writePage(const AssessCommand& options, const std::vector<Assessment>& rows) {
-  HtmlReport page("Traversability of " + options.table.path);
+  HtmlReport page("Traversability of " + std::filesystem::path(options.table.path).filename().string());
   page.paragraph(fmt::format(
       "Slope to climb: {:.1f} +- {:.1f} deg. Above z/r = {:.2f} the category drops one level; above {:.2f} "
       "it is dangerous.",
       options.slope_rad / kDegree, options.margin_rad / kDegree, options.z_threshold, options.z_critical));
-  page.charts({mapOf(rows)});
+  page.charts({mapOf(rows), pullsOf(options, rows)});
   std::vector<std::vector<std::string>> cells;
   cells.reserve(rows.size());
   for (const Assessment& a : rows) {

@@ -34,7 +34,8 @@ void bind(CLI::App& command, CostmapOptions& options) {
   addOutput(command, "-o,--output", options.output, "traversability map to write")->type_name("MAP.ot");
   addOutput(command, "--geotiff", options.geotiff, "GeoTIFF of layers to write")->type_name("FILE.tif");
   addOutput(command, "--categories", options.categories,
-            "GeoTIFF of the categories to write, with names, colours and overviews")
+            "GeoTIFF of the categories to write, with names, colours and overviews, and FILE.qml beside it: "
+            "the style that QGIS reads by itself")
       ->type_name("FILE.tif");
   addOutput(
       command, "--nav2", options.nav2,
@@ -102,6 +103,8 @@ nlohmann::ordered_json costmapJson(const Ground& site, const costmap::CategoryCo
 int run(const CostmapOptions& options, Context& context) {
   if (!options.nav2.empty() && !context.force)
     checkOutput(nav2Picture(options.nav2), {options.ground.dem.path});
+  if (!options.categories.empty() && !context.force)
+    checkOutput(categoryStyle(options.categories), {options.ground.dem.path});
   const Ground site = readGround(options.ground, context);
   if (context.stop.stop_requested()) return Exit::kCancelled;
   const costmap::CategoryCounts counts = site.map.costs().countCategories();

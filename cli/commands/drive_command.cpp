@@ -19,6 +19,7 @@
 #include <talus/cli/route/drive_report.hpp>
 #include <talus/cli/route/drive_telemetry.hpp>
 #include <talus/cli/route/drive_worlds.hpp>
+#include <talus/cli/route/provenance.hpp>
 #include <talus/common/input_error.hpp>
 #include <talus/common/progress_monitor.hpp>
 #include <talus/maps/vector/place_reader.hpp>
@@ -166,13 +167,14 @@ int runMany(const Campaigning& on, const DriveCommandOptions& options) {
 }
 
 int runOne(const planner::SimulationSite& site, const DriveCommandOptions& options, const Context& context,
-           const terramech::Rover& rover) {
+           const Ground& ground) {
   const Belief belief = *findBelief(options.belief);
   context.answerStop();
   const WatchedDrive drive = watchedDrive(site, belief, context.watch("simulating"));
   if (context.stop.stop_requested()) return Exit::kCancelled;
-  if (!options.html.empty()) saveDrivePage(options.html, site, belief, drive);
-  if (!options.telemetry.empty()) saveTelemetry(options.telemetry, drive.result.drive, rover);
+  if (!options.html.empty()) saveDrivePage(options.html, site, belief, drive, originOf(ground, context));
+  if (!options.telemetry.empty())
+    saveTelemetry(options.telemetry, drive.result.drive, ground.map.model().rover());
   if (context.json) {
     nlohmann::ordered_json json = asJson(drive.result);
     json["prediction"] = {{"steps", drive.prediction.steps},
@@ -204,7 +206,8 @@ planner::Truth truthFor(const costmap::GroundModel& model, const std::string& pa
 int run(const DriveCommandOptions& options, Context& context) {
   const Campaign campaign;
   if (!campaign.leads()) context.quiet = true;
-  const Ground ground = readGround(options.ground, context);
+  Ground ground = readGround(options.ground, context);
+  ground.files.push_back(options.truth);
   if (context.stop.stop_requested()) return Exit::kCancelled;
   std::optional<planner::PluginPlanner> plugin;
   if (!options.plugin.empty()) {
@@ -227,7 +230,7 @@ int run(const DriveCommandOptions& options, Context& context) {
   const Campaigning on{site, campaign, context};
   if (options.belief == "all") return runAll(on, options);
   if (options.worlds > 1) return runMany(on, options);
-  return campaign.leads() ? runOne(site, options, context, ground.map.model().rover()) : Exit::kDone;
+  return campaign.leads() ? runOne(site, options, context, ground) : Exit::kDone;
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -8,10 +9,14 @@
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/draw/html_report.hpp>
+#include <talus/cli/soil/agreement_plot.hpp>
 #include <talus/cli/soil/table_options.hpp>
 #include <talus/common/constants.hpp>
+#include <talus/terramech/calibration/table/model_rows.hpp>
 #include <talus/terramech/calibration/tables/estimate_soil.hpp>
 #include <talus/terramech/calibration/tables/table_applicability.hpp>
+#include <talus/terramech/estimate/thesis_runs.hpp>
+#include <talus/terramech/io/telemetry_reader.hpp>
 
 namespace talus::cli {
 namespace {
@@ -250,8 +255,22 @@ Plot posteriorPlot(const SoilEstimate& e) {
   return plot;
 }
 
+// The table's rows over those of the model on the estimated soil, channel by channel; none where a method gives no whole soil.
+std::vector<Plot> fitPlots(const EstimateCommand& options, const SoilEstimate& e) {
+  std::vector<Plot> plots;
+  if (!e.posterior) return plots;
+  RefinedModel model = baseModel(options.model, options.rover).model;
+  model.soil = soilOf(e.posterior->mean);
+  const ModelRows rows = modelRows(readTelemetry(options.table, {}), model);
+  SolvedContacts solved;
+  const Eigen::MatrixXd told = predictRows(rows.model, rows.trial, solved);
+  for (const Channel c : kAllChannels)
+    if (rows.trial.has(c)) plots.push_back(agreementPlot(c, rows.trial.measured, {{"estimated soil", told}}));
+  return plots;
+}
+
 void writePage(const EstimateCommand& options, const SoilEstimate& e) {
-  HtmlReport page("Soil estimated from " + options.table.path);
+  HtmlReport page("Soil estimated from " + std::filesystem::path(options.table.path).filename().string());
   page.paragraph(
       fmt::format("Method {}, {} rows used, {} rejected.", options.method, e.rows_used, e.rejected.size()));
   page.table({"quantity", "value", "standard deviation"},
@@ -261,8 +280,10 @@ void writePage(const EstimateCommand& options, const SoilEstimate& e) {
                fmt::format("{:.4f}", std::sqrt(e.covariance(1, 1)))},
               {"shear modulus [mm]", fmt::format("{:.2f}", 1e3 * e.shear_modulus_m), ""}});
   for (const std::string& text : e.unseen) page.paragraph("Not identifiable from these data: " + text);
-  if (!e.points.empty()) page.charts({strengthPlot(e)});
-  if (e.posterior) page.charts({posteriorPlot(e)});
+  std::vector<Plot> plots = fitPlots(options, e);
+  if (!e.points.empty()) plots.push_back(strengthPlot(e));
+  if (e.posterior) plots.push_back(posteriorPlot(e));
+  page.charts(plots);
   writeFile(options.html, page.html());
 }
 

@@ -13,7 +13,6 @@
 #include <talus/cli/app/command.hpp>
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/output_file.hpp>
-#include <talus/cli/app/sha256.hpp>
 #include <talus/cli/draw/page.hpp>
 #include <talus/cli/draw/pareto_chart.hpp>
 #include <talus/cli/draw/picture.hpp>
@@ -106,35 +105,17 @@ std::string planText(const Route& route, const Timing& seconds) {
                                              seconds.costmap_s, seconds.plan_s));
 }
 
-planner::RouteOrigin originOf(const Ground& ground, const Context& context) {
-  planner::RouteOrigin origin{.files = {},
-                              .seed = context.seed,
-                              .rover = ground.map.model().rover().name,
-                              .soils = {},
-                              .command = callText(context.argv)};
-  for (const costmap::GroundClass& one : ground.map.model().parts().classes)
-    origin.soils.push_back(one.soil.name);
-  for (const std::string& path : ground.files)
-    origin.files.push_back({std::filesystem::path(path).filename().string(), path, sha256OfFile(path)});
-  return origin;
-}
-
-// The page states what it takes to make the route again, as the route's file does.
-void addProvenance(Scene& scene, const nlohmann::ordered_json& document) {
-  scene.provenance = provenanceOf(document["features"][0]["properties"]["inputs"]);
-  std::erase_if(scene.facts, [](const Fact& fact) { return fact.first == "rover" || fact.first == "soil"; });
-}
-
 void writeFiles(const PlanOptions& options, const Ground& ground, const Route& route,
                 const Context& context) {
-  const auto document = routeGeoJson(route, ground.map.elevation(), originOf(ground, context));
+  const planner::RouteOrigin origin = originOf(ground, context);
+  const auto document = routeGeoJson(route, ground.map.elevation(), origin);
   if (!options.output.empty()) writeRoute(options.output, document, ground.map.elevation(), context);
   if (options.html.empty() && options.png.empty()) return;
   const std::string name = std::filesystem::path(ground.map.elevation().source).filename().string();
   const std::string cut = route.interrupted ? " (interrupted: best route so far)" : "";
   Scene scene = sceneOf(ground.map, {.title = "Route across " + name + cut});
   addRoute(scene, route);
-  addProvenance(scene, document);
+  addProvenance(scene, origin);
   if (!options.png.empty()) savePicture(options.png, scene);
   if (!options.html.empty()) savePage(options.html, scene);
 }
@@ -243,7 +224,7 @@ void drawSevered(const PlanOptions& options, const Planned& planned, const Conte
       reachScene(map, *planned.ground.map.published(),
                  {{request.start, request.goal}, request.tolerance_m, planned.route.reason},
                  {.title = "No route across " + std::filesystem::path(map.source).filename().string()});
-  addProvenance(scene, routeGeoJson(planned.route, map, originOf(planned.ground, context)));
+  addProvenance(scene, originOf(planned.ground, context));
   if (!options.png.empty()) savePicture(options.png, scene);
   if (!options.html.empty()) savePage(options.html, scene);
 }

@@ -43,8 +43,12 @@ std::string scoreText(const planner::Route& route, const std::vector<planner::Vi
                      fmt::format("energy      {:.6g} J\ntime        {:.6g} s\nlength      {:.6g} m\n",
                                  s.energy_J, s.time_s, s.length_m) +
                      fmt::format("violations  {}\n", violations.size());
-  for (const auto& v : violations)
-    text += fmt::format("  {:.2f},{:.2f}: {}\n", v.place.x_m, v.place.y_m, v.reason);
+  std::string last;
+  for (const auto& v : violations) {
+    const std::string line = fmt::format("  {:.2f},{:.2f}: {}\n", v.place.x_m, v.place.y_m, v.reason);
+    if (line != last) text += line;  // pieces of one cell have one place
+    last = line;
+  }
   return text;
 }
 

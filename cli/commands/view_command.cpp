@@ -24,6 +24,7 @@
 #include <talus/costmap/map/map_file.hpp>
 #include <talus/costmap/map/traversability_map.hpp>
 #include <talus/costmap/surface/octomap_surface.hpp>
+#include <talus/maps/raster/file_text.hpp>
 
 namespace talus::cli {
 namespace {
@@ -157,6 +158,7 @@ int run(const ViewOptions& options, Context& context) {
   const fs::path named(options.html);
   const fs::path html = named.empty() ? fs::path(options.file.path).stem().concat(".html") : named;
   const bool of_route = looksLikeRoute(options.file.path);
+  maps::requireReadableFile(options.file.path);
   if (!of_route && !options.others.empty())
     throw InputError({options.file.path, "is no route, and is to be compared with routes",
                       "pass routes, and the map as --map"});

@@ -25,6 +25,7 @@ struct WheelOptions {
   std::string soil, rover;
   double load_N = std::nan(""), slip = std::nan(""), slip_angle_rad = 0.0;
   std::string html;
+  std::vector<std::string> others;
   double inflation_Pa = std::nan(""), carcass_Pa = 0.0, torque_Nm = std::nan("");
   bool hard_ground = false;
   std::string cases, output;
@@ -50,6 +51,11 @@ void bind(CLI::App& command, WheelOptions& options) {
                     ->check(within(-0.5 * std::numbers::pi, 0.5 * std::numbers::pi));
   auto* html = addOutput(command, "--html", options.html, "page to write, with stresses and curves over slip")
                    ->type_name("FILE.html");
+  auto* others =
+      command
+          .add_option("--compare", options.others, "further soils, drawn with it over slip; may be repeated")
+          ->type_name("NAME|FILE")
+          ->needs(html);
   groupOptions(command, "One wheel");
   auto* inflation = command
                         .add_option("--inflation", options.inflation_Pa,
@@ -79,7 +85,7 @@ void bind(CLI::App& command, WheelOptions& options) {
   addOutput(command, "-o,--output", options.output, "results of --cases to write")
       ->type_name("OUT.csv")
       ->needs(cases);
-  for (auto* single : {soil, rover, load, slip, angle, html, inflation, carcass, hard, torque})
+  for (auto* single : {soil, rover, load, slip, angle, html, others, inflation, carcass, hard, torque})
     cases->excludes(single);
   groupOptions(command, "A table of wheels");
   addTableOptions(command, options.columns);
@@ -149,8 +155,11 @@ int runOne(const WheelOptions& options, const Context& context) {
                                               .slip = options.slip,
                                               .slip_angle_rad = options.slip_angle_rad,
                                               .gravity_m_s2 = rover.gravity_m_s2});
+  std::vector<terramech::Soil> others;
+  for (const std::string& name : options.others)
+    others.push_back(terramech::underGravity(terramech::loadSoil(name), rover.gravity_m_s2));
   if (!options.html.empty())
-    writeFile(options.html, wheelReport({soil, rover, load_N, options.slip, options.slip_angle_rad}));
+    writeFile(options.html, wheelReport({soil, rover, load_N, options.slip, options.slip_angle_rad, others}));
   if (context.json)
     printJson({{"soil", soil.name},
                {"rover", rover.name},

@@ -22,6 +22,12 @@ class Blocks {
   /// Fine cells a side of a block.
   int factor() const noexcept { return factor_; }
 
+  /// The fine cell that holds the middle of a block.
+  maps::Cell middle(maps::Cell block) const noexcept {
+    return {std::min(fine_.width - 1, block.column * factor_ + factor_ / 2),
+            std::min(fine_.height - 1, block.row * factor_ + factor_ / 2)};
+  }
+
   /// Calls visit(cell) for a regular sample of at most 8 x 8 cells of the block.
   template <typename Visit>
   void forEach(maps::Cell block, Visit visit) const {

@@ -31,6 +31,19 @@ void setFont(cairo_t* cairo, const TextStyle& style) {
   cairo_set_font_size(cairo, style.size);
 }
 
+// Numbers cut to hundredths: of an SVG most bytes are the outlines of its letters, to a millionth of a pixel.
+std::string shortened(const std::string& svg) {
+  std::string out;
+  const auto digit = [](char c) { return c >= '0' && c <= '9'; };
+  std::size_t decimals = 0;  // behind a point, the point included; 0: before one
+  for (std::size_t i = 0; i < svg.size(); ++i) {
+    const bool point = svg[i] == '.' && i > 0 && digit(svg[i - 1]);
+    decimals = point ? 1 : decimals > 0 && digit(svg[i]) ? decimals + 1 : 0;
+    if (decimals <= 3) out += svg[i];
+  }
+  return out;
+}
+
 }  // namespace
 
 struct Canvas::Surface {
@@ -91,6 +104,22 @@ void Canvas::disc(Spot centre, double radius, Colour colour) {
   cairo_new_path(surface_->cairo);
   cairo_arc(surface_->cairo, centre.x, centre.y, radius, 0.0, 2.0 * std::numbers::pi);
   cairo_fill(surface_->cairo);
+}
+
+void Canvas::discs(std::span<const Spot> centres, double radius, Colour colour) {
+  cairo_t* c = surface_->cairo;
+  setColour(c, colour);
+  cairo_set_dash(c, nullptr, 0, 0.0);
+  cairo_set_line_width(c, 2.0 * radius);
+  cairo_save(c);
+  cairo_set_line_cap(c, CAIRO_LINE_CAP_ROUND);
+  cairo_new_path(c);
+  for (const Spot& centre : centres) {
+    cairo_move_to(c, centre.x, centre.y);
+    cairo_line_to(c, centre.x, centre.y);
+  }
+  cairo_stroke(c);
+  cairo_restore(c);
 }
 
 void Canvas::text(const std::string& text, Spot spot, const TextStyle& style) {
@@ -155,7 +184,7 @@ std::string Canvas::bytes() {
     return bytes;
   }
   cairo_surface_finish(surface_->surface);
-  return surface_->svg;
+  return shortened(surface_->svg);
 }
 
 std::string png(const Image& image) {

@@ -60,6 +60,8 @@ class Canvas {
   void line(std::span<const Spot> spots, const Stroke& stroke);
   void polygon(std::span<const Spot> spots, Colour colour);
   void disc(Spot centre, double radius, Colour colour);
+  /// Many of one colour as one shape: where they overlap they are no darker.
+  void discs(std::span<const Spot> centres, double radius, Colour colour);
   void text(const std::string& text, Spot spot, const TextStyle& style = {});
   double textWidth(const std::string& text, const TextStyle& style = {});
 

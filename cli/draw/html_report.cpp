@@ -9,12 +9,14 @@ namespace talus::cli {
 namespace {
 
 constexpr const char* kStyle = R"(
-body { font: 16px/1.5 system-ui, sans-serif; color: #222; max-width: 66rem; margin: 0 auto; padding: 1rem; }
-h1 { font-size: 1.5rem; } h2 { font-size: 1.15rem; margin-top: 2rem; }
-img { max-width: 100%; height: auto; }
+body { font: 15px/1.4 system-ui, sans-serif; color: #222; max-width: 1400px; margin: 0 auto; padding: .6rem .8rem; box-sizing: border-box; }
+h1 { font-size: 1.25rem; margin: 0 0 .4rem; overflow-wrap: anywhere; } h2 { font-size: 1.05rem; margin: 1rem 0 .3rem; }
+p { margin: .3rem 0; max-width: 60rem; overflow-wrap: anywhere; }
+div.charts { display: flex; flex-wrap: wrap; gap: .3rem; margin: .4rem 0; }
+div.charts img { flex: 1 1 20rem; min-width: 0; max-width: 30rem; height: auto; }
 div.table { overflow-x: auto; }
-table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
-th, td { padding: .25rem .75rem; border-bottom: 1px solid #ddd; text-align: left; }
+table { border-collapse: collapse; font-size: .85rem; font-variant-numeric: tabular-nums; }
+th, td { padding: .12rem .7rem .12rem 0; border-bottom: 1px solid #ddd; text-align: left; }
 td.number { text-align: right; })";
 
 bool isNumber(const std::string& text) {
@@ -73,10 +75,13 @@ void HtmlReport::table(const std::vector<std::string>& header,
   body_ += "</table></div>\n";
 }
 
-void HtmlReport::charts(const std::vector<Plot>& plots, const PlotLayout& layout) {
-  body_ += fmt::format("<p><img alt=\"{}\" src=\"data:image/svg+xml;base64,{}\"></p>\n",
-                       escaped(plots.empty() ? "" : plots.front().title),
-                       base64(draw(plots, Canvas::Kind::Svg, layout)));
+void HtmlReport::charts(const std::vector<Plot>& plots) {
+  body_ += "<div class=\"charts\">\n";
+  for (const Plot& plot : plots)
+    body_ += fmt::format(
+        "<img alt=\"{}\" src=\"data:image/svg+xml;base64,{}\">\n", escaped(plot.title),
+        base64(draw({plot}, Canvas::Kind::Svg, {.columns = 1, .panel_width = 400, .panel_height = 270})));
+  body_ += "</div>\n";
 }
 
 std::string HtmlReport::html() const {

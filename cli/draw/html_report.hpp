@@ -19,7 +19,8 @@ class HtmlReport {
   void paragraph(const std::string& text);
   /// Cells that read as a number are set right.
   void table(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows);
-  void charts(const std::vector<Plot>& plots, const PlotLayout& layout = {});
+  /// Beside each other as far as the screen is wide.
+  void charts(const std::vector<Plot>& plots);
 
   /// The finished page.
   std::string html() const;

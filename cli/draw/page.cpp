@@ -5,6 +5,7 @@
 
 #include <talus/cli/app/context.hpp>
 #include <talus/cli/app/output_file.hpp>
+#include <talus/cli/draw/heading_costs.hpp>
 #include <talus/cli/draw/html_report.hpp>
 #include <talus/cli/draw/map_image.hpp>
 #include <talus/cli/draw/page.hpp>
@@ -137,6 +138,7 @@ ordered_json dataOf(const Scene& scene) {
   data["shade"] = dataUri(shadeImage(shade));
   data["light"] = {{"low", number(light.low)}, {"high", number(light.high)}};
   data["layers"] = layersOf(scene);
+  data["headings"] = headingCostsOf(scene);
   data["categories"] = categoryLegend();
   data["scales"] = {{"magnitude", coloursOf(viridis())}, {"signed", coloursOf(blueRed())}};
   data["facts"] = scene.facts;

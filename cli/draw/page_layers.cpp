@@ -15,16 +15,6 @@ namespace {
 using maps::Cell;
 using nlohmann::ordered_json;
 
-/// 24 bits of each cell as red, green and blue, the top row north.
-template <typename Word>
-std::string wordsUri(const maps::Grid& grid, Word word) {
-  Image image(grid.width, grid.height);
-  for (int row = 0; row < grid.height; ++row)
-    for (int column = 0; column < grid.width; ++column)
-      image.at(column, grid.height - 1 - row) = 0xFF000000U | word(Cell{column, row});
-  return dataUri(image);
-}
-
 /// Adds the values as whole numbers of the layer's decimals, fewer where 24 bits do not hold them: 0 for none, else 1 more
 /// than the number above the lowest.
 void addValues(ordered_json& json, const ValueLayer& layer) {
@@ -107,6 +97,14 @@ ordered_json number(double value) {
 
 std::string dataUri(const Image& image) {
   return "data:image/png;base64," + base64(png(image));
+}
+
+std::string wordsUri(const maps::Grid& grid, const std::function<std::uint32_t(maps::Cell)>& word) {
+  Image image(grid.width, grid.height);
+  for (int row = 0; row < grid.height; ++row)
+    for (int column = 0; column < grid.width; ++column)
+      image.at(column, grid.height - 1 - row) = 0xFF000000U | word(maps::Cell{column, row});
+  return dataUri(image);
 }
 
 std::string hex(Colour c) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <string>
 
 #include <nlohmann/json.hpp>
@@ -15,6 +17,9 @@ nlohmann::ordered_json number(double value);
 
 /// The image as a PNG in a URI.
 std::string dataUri(const Image& image);
+
+/// 24 bits of each cell as the red, green and blue of an image, the top row north.
+std::string wordsUri(const maps::Grid& grid, const std::function<std::uint32_t(maps::Cell)>& word);
 
 /// "#rrggbb".
 std::string hex(Colour colour);

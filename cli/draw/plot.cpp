@@ -105,14 +105,16 @@ class Panel {
       runs(s, c);
       return;
     }
+    std::vector<Spot> spots;
     for (std::size_t i = 0; i < s.x.size(); ++i) {
       if (!std::isfinite(s.x[i]) || !std::isfinite(s.y[i])) continue;
       if (!s.y_std.empty() && std::isfinite(s.y_std[i]))
         canvas_.line(std::array{spot(s.x[i], s.y[i] - s.y_std[i]), spot(s.x[i], s.y[i] + s.y_std[i])},
                      {.colour = faded(c, 0.5)});
-      canvas_.disc(spot(s.x[i], s.y[i]), s.x.size() > 400 ? 1.6 : 2.8,
-                   faded(c, s.x.size() > 400 ? 0.5 : 0.85));
+      spots.push_back(spot(s.x[i], s.y[i]));
     }
+    const bool many = spots.size() > 400;
+    canvas_.discs(spots, many ? 1.6 : 2.8, faded(c, many ? 0.5 : 0.85));
   }
 
   /// A line between each pair of breaks.

@@ -71,6 +71,19 @@ BlockBeliefs beliefsOf(const costmap::TraversabilityMap& map, const Blocks& bloc
   return out;
 }
 
+HeadingCosts headingCosts(const costmap::TraversabilityMap& map, const Blocks& blocks) {
+  const auto version = map.published();
+  HeadingCosts out{Raster<costmap::CellCode>(blocks.coarse()), Raster<std::uint8_t>(blocks.coarse()),
+                   std::shared_ptr<const costmap::DriveCost>(version, &version->cost())};
+  for (int row = 0; row < blocks.coarse().height; ++row)
+    for (int column = 0; column < blocks.coarse().width; ++column) {
+      const Cell cell = blocks.middle({column, row});
+      out.codes[{column, row}] = version->at(cell);
+      out.categories[{column, row}] = map.costs().category(cell);
+    }
+  return out;
+}
+
 void addLayer(Scene& scene, std::string name, Raster<float> values) {
   ValueLayer layer{.name = std::move(name), .unit = "", .values = std::move(values), .range = {}};
   layer.range = scaleRange(layer.values);
@@ -166,6 +179,7 @@ Scene sceneOf(const costmap::TraversabilityMap& map, const SceneOptions& options
   Scene scene = ground(map.elevation(), blocks, options);
   BlockBeliefs beliefs = beliefsOf(map, blocks);
   scene.categories = std::move(beliefs.categories);
+  scene.costs = headingCosts(map, blocks);
   addSlope(scene, slope_deg(map, blocks));
   addLayer(scene, "DP/W (drawbar pull / load)", std::move(beliefs.pull));
   addLayer(scene, "DP/W standard deviation", std::move(beliefs.pull_std));

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -10,6 +11,7 @@
 #include <talus/cli/draw/colour.hpp>
 #include <talus/cli/draw/drive_story.hpp>
 #include <talus/cli/draw/ticks.hpp>
+#include <talus/costmap/cost/drive_cost.hpp>
 #include <talus/maps/terrain/elevation_map.hpp>
 #include <talus/planner/route/route.hpp>
 
@@ -43,6 +45,13 @@ struct ValueLayer {
   bool zero_in_middle = false;        ///< colours diverge from the middle
   int decimals = 4;                   ///< that a page keeps of a value
   std::vector<LayerClass> classes{};  ///< values are indices of these; empty: a scale
+};
+
+/// What driving costs in each heading: of the cell in the middle of each block.
+struct HeadingCosts {
+  maps::Raster<costmap::CellCode> codes;
+  maps::Raster<std::uint8_t> categories;  ///< terramech::Category by its number, as `talus explain` states it
+  std::shared_ptr<const costmap::DriveCost> cost;
 };
 
 /// A place that is easily overlooked, to be marked with a ring around it.
@@ -86,8 +95,9 @@ struct Scene {
       marks{};  ///< places under a letter, where there is no route
   std::vector<Ring> rings{};
   std::optional<maps::Georeference> georeference{};  ///< where the map has one
-  int cells_per_pixel = 1;          ///< of the map, a side, that a cell of the scene stands for
-  std::optional<DriveStory> story;  ///< a simulated drive, to be run through
+  int cells_per_pixel = 1;              ///< of the map, a side, that a cell of the scene stands for
+  std::optional<HeadingCosts> costs{};  ///< of a map of beliefs
+  std::optional<DriveStory> story;      ///< a simulated drive, to be run through
 
   const maps::Grid& grid() const noexcept { return elevation_m.grid(); }
 };

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <talus/cli/draw/colour.hpp>
+#include <talus/cli/draw/image.hpp>
 #include <talus/cli/ground/category_files.hpp>
 #include <talus/common/output_file.hpp>
 #include <talus/maps/raster/geotiff_writer.hpp>
@@ -37,7 +38,23 @@ char greyOf(Category category, bool allow_marginal) {
   return category == Category::Unknown ? kUnknown : kOccupied;
 }
 
+// Of a palette of bytes QGIS lists 256 numbers; by the style beside the file, which it reads by itself, four names.
+std::string qgisStyle() {
+  std::string entries;
+  for (const Category category : kCategories)
+    entries += fmt::format("<paletteEntry value=\"{}\" color=\"#{:06x}\" alpha=\"255\" label=\"{}\"/>\n",
+                           static_cast<int>(category), pixel(colourOf(category)) & 0xFFFFFFU,
+                           terramech::name(category));
+  return "<!DOCTYPE qgis PUBLIC 'http://mrcc.com/qgis.dtd' 'SYSTEM'>\n<qgis version=\"3.22\">\n<pipe>\n"
+         "<rasterrenderer type=\"paletted\" band=\"1\" opacity=\"1\" alphaBand=\"-1\">\n<colorPalette>\n" +
+         entries + "</colorPalette>\n</rasterrenderer>\n</pipe>\n</qgis>\n";
+}
+
 }  // namespace
+
+std::filesystem::path categoryStyle(const std::filesystem::path& tif) {
+  return std::filesystem::path(tif).replace_extension(".qml");
+}
 
 void writeCategories(const costmap::TraversabilityMap& map, const std::string& path) {
   std::vector<maps::NamedClass> classes;
@@ -49,6 +66,7 @@ void writeCategories(const costmap::TraversabilityMap& map, const std::string& p
   const auto& georeference = map.elevation().georeference;
   maps::writeGeoTiff({.path = path, .georeference = georeference ? &*georeference : nullptr}, "category",
                      categoriesOf(map), std::nullopt, classes);
+  writeFile(categoryStyle(path), qgisStyle());
 }
 
 std::filesystem::path nav2Picture(const std::filesystem::path& yaml) {

@@ -7,8 +7,11 @@
 
 namespace talus::cli {
 
+/// The style for QGIS that lies beside a GeoTIFF of categories.
+std::filesystem::path categoryStyle(const std::filesystem::path& tif);
+
 /// Writes the category of each cell, of the worst heading, as a GeoTIFF of whole numbers with names, a colour table and
-/// overviews. @throws InputError
+/// overviews, and its style for QGIS. @throws InputError
 void writeCategories(const costmap::TraversabilityMap& map, const std::string& path);
 
 /// The picture of a map of ROS' map_server that lies beside its YAML file.

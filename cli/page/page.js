@@ -54,7 +54,7 @@ function start() {
   const data = JSON.parse(document.getElementById("data").textContent);
   const map = drawMap(document.getElementById("map"), data);
   showFacts(data);
-  probeCells(map, data);
+  probeCells(map, data, offerRuler(map, data));
   offerRelief(data);
   if (data.story) showStory(map, data.story);
   const routes = data.routes;

@@ -29,20 +29,14 @@ function valueText(layer, word) {
   return layer.bar.unit ? `${value} ${layer.bar.unit}` : value;
 }
 
-function probeCells(map, data) {
+// Returns explain(column, row): what is known of a cell, in a table with the rose of its headings.
+function cellReader(data) {
   const {width, height, cell, cells_per_pixel: block} = data.grid, b = data.bounds;
-  const style = {color: "#000", weight: 2, fill: false, interactive: false, className: "chosen"};
-  const frame = L.rectangle([[0, 0], [0, 0]], style);
-  const popup = L.popup({maxWidth: 330, className: "probe"});
-  let chosen = null, values = null;
-  map.on("popupclose", () => { chosen = null; frame.remove(); });
-
-  async function explain(column, row) {
-    if (column < 0 || row < 0 || column >= width || row >= height) return;
+  let values = null, headings = null;
+  return async (column, row) => {
     values = values || Promise.all(data.layers.map(layer => words(layer.values || layer.shares, width, height)));
-    const west = b.west + column * cell, south = b.south + row * cell;
-    const x = west + cell / 2, y = south + cell / 2;
-    const read = await values, index = (height - 1 - row) * width + column;
+    headings = headings || readHeadings(data);
+    const read = await values, costs = await headings, index = (height - 1 - row) * width + column;
     const table = document.createElement("table");
     const add = (name, value) => {
       const line = table.insertRow();
@@ -50,14 +44,36 @@ function probeCells(map, data) {
       line.insertCell().textContent = value;
     };
     data.layers.forEach((layer, i) => add(layer.name, valueText(layer, read[i][index])));
-    add("centre", placeText(data, x, y));
+    add("centre", placeText(data, b.west + (column + 0.5) * cell, b.south + (row + 0.5) * cell));
     add("cell", block > 1 ? `mean of ${block} x ${block} cells` : `column ${column}, row ${row}`);
-    popup.setLatLng([y, x]).setContent(table).openOn(map);
+    const parts = [table];
+    if (costs) {
+      if (block > 1) add("cell in its middle", data.categories[costs.kinds[index] >> 8].label);
+      parts.push(drawRose(costs, index));
+    }
+    const box = document.createElement("div");
+    box.append(...parts);
+    return box;
+  };
+}
+
+function probeCells(map, data, ruler) {
+  const {width, height, cell} = data.grid, b = data.bounds;
+  const style = {color: "#000", weight: 2, fill: false, interactive: false, className: "chosen"};
+  const frame = L.rectangle([[0, 0], [0, 0]], style);
+  const popup = L.popup({maxWidth: 330, className: "probe"}), read = cellReader(data);
+  let chosen = null;
+  map.on("popupclose", () => { chosen = null; frame.remove(); });
+
+  async function explain(column, row) {
+    if (column < 0 || row < 0 || column >= width || row >= height) return;
+    const west = b.west + column * cell, south = b.south + row * cell;
+    popup.setLatLng([south + cell / 2, west + cell / 2]).setContent(await read(column, row)).openOn(map);
     chosen = {column, row};
     frame.setBounds([[south, west], [south + cell, west + cell]]).addTo(map);
   }
   const at = ({lng, lat}) => explain(Math.floor((lng - b.west) / cell), Math.floor((lat - b.south) / cell));
-  map.on("click", event => at(event.latlng));
+  map.on("click", ({latlng}) => { if (!ruler.click(latlng)) at(latlng); });
   const steps = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1]};
   map.getContainer().addEventListener("keydown", event => {
     const step = chosen && steps[event.key];

@@ -150,6 +150,23 @@ function routeInSpace({points, colour: rim}, colours, spot, extent) {
   return group;
 }
 
+// A click that turns nothing explains the cell under it, as on the map.
+function explainOnClick(place, data, {renderer, camera, ground}) {
+  const box = place.querySelector(".probe"), read = cellReader(data), {west, south, east, north} = data.bounds;
+  let from = null;
+  renderer.domElement.addEventListener("pointerdown", event => { from = event; });
+  renderer.domElement.addEventListener("click", async event => {
+    if (from && Math.hypot(event.clientX - from.clientX, event.clientY - from.clientY) > 4) return;
+    const view = renderer.domElement.getBoundingClientRect(), ray = new THREE.Raycaster();
+    ray.setFromCamera({x: 2 * (event.clientX - view.left) / view.width - 1, y: 1 - 2 * (event.clientY - view.top) / view.height}, camera);
+    const [hit] = ray.intersectObject(ground);
+    box.hidden = !hit;
+    if (!hit) return;
+    const {cell, width, height} = data.grid, inside = (at, count) => Math.min(Math.max(Math.floor(at / cell), 0), count - 1);
+    box.replaceChildren(await read(inside(hit.point.x + (east - west) / 2, width), inside((north - south) / 2 - hit.point.z, height)));
+  });
+}
+
 // Builds the view and returns {fit()}, which takes the size of its place.
 async function makeRelief(place, data, heights, surface) {
   const {west, south, east, north} = data.bounds;
@@ -209,6 +226,7 @@ async function makeRelief(place, data, heights, surface) {
   document.getElementById("quantity").addEventListener("change", raise);
   for (const id of ["layer", "opacity"]) document.getElementById(id).addEventListener("change", paint);
   addEventListener("resize", fit);
+  explainOnClick(place, data, {renderer, camera, ground});
   const away = 1.7 * extent / Math.min(1, place.clientWidth / place.clientHeight);  // the whole width is seen
   camera.position.set(0, 0.6 * away, 0.8 * away);
   controls.update();

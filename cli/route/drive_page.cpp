@@ -6,6 +6,7 @@
 #include <talus/cli/draw/page.hpp>
 #include <talus/cli/route/drive_page.hpp>
 #include <talus/cli/route/drive_report.hpp>
+#include <talus/cli/route/provenance.hpp>
 
 namespace talus::cli {
 namespace {
@@ -59,9 +60,10 @@ WatchedDrive watchedDrive(const planner::SimulationSite& site, planner::Belief b
 }
 
 void saveDrivePage(const std::filesystem::path& path, const planner::SimulationSite& site,
-                   planner::Belief belief, const WatchedDrive& drive) {
+                   planner::Belief belief, const WatchedDrive& drive, const planner::RouteOrigin& origin) {
   Scene scene = sceneBefore(site.believed(belief, site.trueWorld(0)), drive.result, belief);
   scene.story = drive.story;
+  addProvenance(scene, origin);
   savePage(path, scene);
 }
 

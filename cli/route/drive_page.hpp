@@ -4,6 +4,7 @@
 
 #include <talus/cli/draw/drive_story.hpp>
 #include <talus/common/progress_monitor.hpp>
+#include <talus/planner/route/route_json.hpp>
 #include <talus/planner/simulation/drive/drive_log.hpp>
 #include <talus/planner/simulation/drive/simulation_site.hpp>
 
@@ -20,8 +21,8 @@ WatchedDrive watchedDrive(const planner::SimulationSite& site, planner::Belief b
                           const ProgressMonitor& watch);
 
 /// Writes a page on which a slider runs through the drive: track, plan in force, cells that changed their
-/// category, what happened. @throws InputError when the file cannot be written
+/// category, what happened, and what the drive is made from. @throws InputError when the file cannot be written
 void saveDrivePage(const std::filesystem::path& path, const planner::SimulationSite& site,
-                   planner::Belief belief, const WatchedDrive& drive);
+                   planner::Belief belief, const WatchedDrive& drive, const planner::RouteOrigin& origin);
 
 }  // namespace talus::cli

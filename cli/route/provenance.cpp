@@ -1,9 +1,14 @@
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <string_view>
 
 #include <nlohmann/json.hpp>
 
+#include <talus/cli/app/context.hpp>
+#include <talus/cli/app/sha256.hpp>
+#include <talus/cli/draw/scene.hpp>
+#include <talus/cli/ground/ground_options.hpp>
 #include <talus/cli/route/provenance.hpp>
 
 namespace talus::cli {
@@ -26,8 +31,8 @@ bool decidesNothing(std::string_view word) {
 }
 
 bool namesOutput(std::string_view word) {
-  constexpr std::array<std::string_view, 6> kOptions{"-o",    "--output", "--html",
-                                                     "--png", "--pareto", "--threads"};
+  constexpr std::array<std::string_view, 7> kOptions{"-o",       "--output",  "--html",     "--png",
+                                                     "--pareto", "--threads", "--telemetry"};
   return std::find(kOptions.begin(), kOptions.end(), word) != kOptions.end();
 }
 
@@ -71,6 +76,24 @@ std::vector<std::pair<std::string, std::string>> provenanceOf(const ordered_json
       if (file.is_object() && file.contains("file") && file.contains("sha256"))
         facts.emplace_back("SHA-256", textOf(file.at("file")) + " " + textOf(file.at("sha256")));
   return facts;
+}
+
+planner::RouteOrigin originOf(const Ground& ground, const Context& context) {
+  planner::RouteOrigin origin{.files = {},
+                              .seed = context.seed,
+                              .rover = ground.map.model().rover().name,
+                              .soils = {},
+                              .command = callText(context.argv)};
+  for (const costmap::GroundClass& one : ground.map.model().parts().classes)
+    origin.soils.push_back(one.soil.name);
+  for (const std::string& path : ground.files)
+    origin.files.push_back({std::filesystem::path(path).filename().string(), path, sha256OfFile(path)});
+  return origin;
+}
+
+void addProvenance(Scene& scene, const planner::RouteOrigin& origin) {
+  scene.provenance = provenanceOf(planner::originJson(origin));
+  std::erase_if(scene.facts, [](const Fact& fact) { return fact.first == "rover" || fact.first == "soil"; });
 }
 
 }  // namespace talus::cli

@@ -115,7 +115,7 @@ std::string leftOutPage(const std::vector<LeftOutErrors>& all, const std::string
     plots.push_back(overColumn(all, request.substr(0, request.find('=')), c));
     plots.push_back(againstMeasured(all, c));
   }
-  page.charts(plots, {.columns = 2, .panel_width = 560, .panel_height = 340});
+  page.charts(plots);
   table(page, all);
   return page.html();
 }

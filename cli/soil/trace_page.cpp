@@ -1,10 +1,12 @@
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <set>
 
 #include <fmt/format.h>
 
 #include <talus/cli/draw/html_report.hpp>
+#include <talus/cli/soil/agreement_plot.hpp>
 #include <talus/cli/soil/searched_report.hpp>
 #include <talus/cli/soil/trace_answer.hpp>
 #include <talus/cli/soil/trace_report.hpp>
@@ -26,9 +28,9 @@ std::vector<std::string> shown(const TraceResult& r) {
   add("slip");
   add("load_N");
   for (const Promise& p : r.first_promises)
-    if (names.size() < 8) add(p.candidate.covariate());
+    if (names.size() < 6) add(p.candidate.covariate());
   for (const std::string& name : r.trial.covariates)
-    if (names.size() < 8) add(name);
+    if (names.size() < 6) add(name);
   return names;
 }
 
@@ -88,7 +90,7 @@ void curves(HtmlReport& page, const TraceResult& r, const Eigen::MatrixXd& level
     if (at < r.refined.effects.size()) plots.push_back(effectPlot(r, effect, at, level, sinkage));
     at += effect.chosen.candidate.parts.size();
   }
-  if (!plots.empty()) page.charts(plots, {.columns = 3, .panel_width = 420, .panel_height = 280});
+  if (!plots.empty()) page.charts(plots);
 }
 
 // The fitted parameters, each with its standard deviation.
@@ -138,23 +140,43 @@ void effects(HtmlReport& page, const TableTrace& trace) {
   page.table({"effect", "form", "alternatives", "how to discriminate"}, forms);
 }
 
-void errors(HtmlReport& page, const TableTrace& trace) {
-  page.heading("Error of the base and the refined model");
+std::vector<std::string> errorRow(const std::string& rows, Channel c, const ChannelErrors& base,
+                                  const ChannelErrors& refined, const ChannelErrors& floor) {
+  const auto k = static_cast<std::size_t>(c);
+  return {rows, name(c), fmt::format("{:.4f}", base[k]), fmt::format("{:.4f}", refined[k]),
+          fmt::format("{:.4f}", floor[k])};
+}
+
+const std::vector<std::string> kErrorColumns{"rows", "channel", "base", "refined", "noise floor"};
+
+void errors(HtmlReport& page, const TraceResult& r) {
+  std::vector<std::vector<std::string>> rows;
+  for (Channel c : kAllChannels)
+    if (r.trial.has(c)) rows.push_back(errorRow("of the fit", c, r.base_rmse, r.refined_rmse, r.noise_floor));
+  page.table(kErrorColumns, rows);
+}
+
+void heldOut(HtmlReport& page, const TableTrace& trace) {
+  if (trace.held_out.empty()) return;
+  page.heading("Error of the base and the refined model on rows that are held out");
   const TraceResult& r = trace.result;
-  const auto row = [&](const char* rows, Channel c, const ChannelErrors& base, const ChannelErrors& refined) {
-    const auto k = static_cast<std::size_t>(c);
-    return std::vector<std::string>{rows, name(c), fmt::format("{:.4f}", base[k]),
-                                    fmt::format("{:.4f}", refined[k]),
-                                    fmt::format("{:.4f}", r.noise_floor[k])};
-  };
   std::vector<std::vector<std::string>> rows;
   for (const HeldOut& held : trace.held_out)
     for (Channel c : kAllChannels)
-      if (r.trial.has(c)) rows.push_back(row(held.scheme.c_str(), c, held.base_rmse, held.refined_rmse));
-  for (Channel c : kAllChannels)
-    if (r.trial.has(c)) rows.push_back(row("none (rows of the fit)", c, r.base_rmse, r.refined_rmse));
+      if (r.trial.has(c))
+        rows.push_back(errorRow(held.scheme, c, held.base_rmse, held.refined_rmse, r.noise_floor));
   page.paragraph("Root mean square errors. The noise floor is the error from sensor noise alone.");
-  page.table({"held out", "channel", "base", "refined", "noise floor"}, rows);
+  page.table(kErrorColumns, rows);
+}
+
+// Measurement and model before and after, channel by channel.
+void agreement(HtmlReport& page, const Trial& trial, const Eigen::MatrixXd& base,
+               const Eigen::MatrixXd& refined) {
+  std::vector<Plot> plots;
+  for (Channel c : kAllChannels)
+    if (trial.has(c))
+      plots.push_back(agreementPlot(c, trial.measured, {{"base", base}, {"refined", refined}}));
+  page.charts(plots);
 }
 
 void tests(HtmlReport& page, const TraceResult& r) {
@@ -177,27 +199,29 @@ void tests(HtmlReport& page, const TraceResult& r) {
 
 std::string tracePage(const TableTrace& trace) {
   const TraceResult& r = trace.result;
-  HtmlReport page("Residuals of " + trace.source);
+  HtmlReport page("Residuals of " + std::filesystem::path(trace.source).filename().string());
   page.paragraph("Verdict: " + verdictText(r, trace.answer) + ".");
   for (const MovedParameter& p : movedSoil(r)) page.paragraph(movedText(p) + ".");
   page.paragraph(fmt::format("{} rows used, {} rejected.", trace.rowsUsed(), trace.rejected.size()));
   if (const std::string searched = searchedText(r); !searched.empty()) page.paragraph(searched);
   if (trace.beyond_axle > 0) page.paragraph(beyondAxleText(trace) + ".");
   terramech::SolvedContacts solved;
-  const Eigen::MatrixXd before = r.trial.measured - predictRows(r.base, r.trial, solved);
+  const Eigen::MatrixXd base = predictRows(r.base, r.trial, solved), before = r.trial.measured - base;
   const Eigen::MatrixXd level = predictRows(r.refined, r.trial, solved), after = r.trial.measured - level;
   Eigen::VectorXd sinkage(level.rows());
   for (int row = 0; row < r.trial.rows(); ++row)
     sinkage[row] = level(row, 1) * r.trial.denominator(row, Channel::Sinkage);
+  errors(page, r);
+  agreement(page, r.trial, base, level);
   curves(page, r, level, sinkage);
-  errors(page, trace);
   effects(page, trace);
+  heldOut(page, trace);
   page.heading("Residuals over each covariate, base and refined model");
   std::vector<Plot> plots;
   for (const std::string& covariate : shown(r))
     for (Channel c : kAllChannels)
       if (r.trial.has(c)) plots.push_back(residualPlot(r, covariate, c, before, after, sinkage));
-  page.charts(plots, {.columns = 3, .panel_width = 420, .panel_height = 300});
+  page.charts(plots);
   tests(page, r);
   return page.html();
 }

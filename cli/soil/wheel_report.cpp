@@ -38,18 +38,23 @@ Plot stressPlot(const WheelAtWork& work) {
 /// A quantity over slip, braked to driven; breaks where the soil cannot carry the wheel.
 template <class Quantity>
 Plot overSlip(const WheelAtWork& work, const std::string& title, const Quantity& quantity) {
-  Series curve{.x = {}, .y = {}};
-  for (int k = -100; k <= 100; ++k) {
-    const double slip = 0.01 * k;
-    curve.x.push_back(slip);
-    try {
-      curve.y.push_back(
-          quantity(terramech::equilibrium(work.soil, work.rover.wheel, operationOf(work, slip))));
-    } catch (const std::domain_error&) {
-      curve.y.push_back(std::numeric_limits<double>::quiet_NaN());
+  Plot plot{title, {.label = "slip [-], negative: braked"}, {.label = title + " [-]"}, {}};
+  std::vector<terramech::Soil> soils{work.soil};
+  soils.insert(soils.end(), work.others.begin(), work.others.end());
+  for (const terramech::Soil& soil : soils) {
+    Series curve{.name = work.others.empty() ? "" : soil.name, .x = {}, .y = {}};
+    for (int k = -100; k <= 100; ++k) {
+      const double slip = 0.01 * k;
+      curve.x.push_back(slip);
+      try {
+        curve.y.push_back(quantity(terramech::equilibrium(soil, work.rover.wheel, operationOf(work, slip))));
+      } catch (const std::domain_error&) {
+        curve.y.push_back(std::numeric_limits<double>::quiet_NaN());
+      }
     }
+    plot.series.push_back(std::move(curve));
   }
-  return {title, {.label = "slip [-], negative: braked"}, {.label = title + " [-]"}, {curve}};
+  return plot;
 }
 
 std::vector<std::vector<std::string>> forceRows(const WheelAtWork& work) {

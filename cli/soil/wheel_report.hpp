@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <talus/terramech/contact/rover.hpp>
 #include <talus/terramech/contact/soil.hpp>
@@ -14,6 +15,7 @@ struct WheelAtWork {
   double load_N = 0.0;
   double slip = 0.0;
   double slip_angle_rad = 0.0;
+  std::vector<terramech::Soil> others{};  ///< compared with the soil over slip
 };
 
 /// A self-contained HTML page on it: its forces, the stresses along its rim (thesis Fig. C.4), and drawbar

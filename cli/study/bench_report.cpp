@@ -58,8 +58,8 @@ BenchmarkLine lineOf(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>&
   return line;
 }
 
-std::string percent(double share) {
-  return std::isfinite(share) ? fmt::format("{:.2f}", 100 * share) : "-";
+std::string hundredths(double value) {
+  return std::isfinite(value) ? fmt::format("{:.2f}", value) : "-";
 }
 
 const std::vector<std::string>& header() {
@@ -75,13 +75,13 @@ std::vector<std::string> words(const BenchmarkLine& line) {
           std::to_string(line.found),
           std::to_string(line.breached),
           std::to_string(line.crashed),
-          percent(line.median_gap),
-          percent(line.worst_gap),
+          hundredths(100.0 * line.median_gap),
+          hundredths(100.0 * line.worst_gap),
           fmt::format("{:.4f}", line.median_seconds),
           fmt::format("{:.0f}", line.worst_megabytes),
           fmt::format("{:.2f}", line.mean_cusps),
           fmt::format("{:.3g}", line.max_curvature_1_m),
-          fmt::format("{:.2f}", line.least_clearance_cells)};
+          hundredths(line.least_clearance_cells)};
 }
 
 Plot gapOverTime(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& runs, std::size_t case_index) {
@@ -223,13 +223,6 @@ std::vector<Plot> gapsOverTime(const BenchmarkPlan& plan, const std::vector<Benc
 
 std::string asPage(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& runs) {
   HtmlReport page("Planner benchmark");
-  page.paragraph(fmt::format(
-      "{} cases, {} runs per case and planner, time limit {} s per run, each run in its own process. Gap: "
-      "relative to the known optimum, or to the best of all runs. Invalid: the independent check rejects the "
-      "route; its gap, curvature and clearance are not counted. Clearance is in cells. OMPL's planners begin "
-      "with the field's "
-      "route, those with :cold with nothing.",
-      plan.cases.size(), plan.seeds, plan.time_limit_s));
   if (const std::size_t asked = planner::jobsOf(plan).size(); runs.size() < asked)
     page.paragraph(fmt::format("Cancelled after {} of {} runs.", runs.size(), asked));
   std::vector<std::vector<std::string>> rows;
@@ -239,11 +232,18 @@ std::string asPage(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& r
     page.heading("Simulated drives over the true slip");
     page.table(drives.front(), {drives.begin() + 1, drives.end()});
   }
-  page.heading("Cost over time");
-  page.paragraph(
-      "The first seed of each planner whose final route passes the check. Intermediate costs are those that "
-      "the planner reports; none is drawn below the cost of the final route.");
   page.charts(gapsOverTime(plan, runs));
+  page.paragraph(fmt::format(
+      "{} cases, {} runs per case and planner, time limit {} s per run, each run in its own process. Gap: "
+      "relative to the known optimum, or to the best of all runs. Invalid: the independent check rejects the "
+      "route; its gap, curvature and clearance are not counted. Clearance is in cells. OMPL's planners begin "
+      "with the field's "
+      "route, those with :cold with nothing.",
+      plan.cases.size(), plan.seeds, plan.time_limit_s));
+  page.paragraph(
+      "The curves are those of the first seed of each planner whose final route passes the check. "
+      "Intermediate costs are those that "
+      "the planner reports; none is drawn below the cost of the final route.");
   return page.html();
 }
 

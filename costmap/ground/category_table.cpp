@@ -1,4 +1,8 @@
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
+#include <utility>
 
 #include <talus/costmap/cost/cross_slope.hpp>
 #include <talus/costmap/ground/category_table.hpp>
@@ -6,27 +10,117 @@
 namespace talus::costmap {
 namespace {
 
-constexpr int kSteps = 2897;  // of the steepest gradient that CellCode holds, 2048 sqrt(2)
+using terramech::Category;
+
+constexpr int kJudgedHeadings =
+    24;                       // over half a turn, as CrossSlope::steepest(): left and right count alike
+constexpr int kSteps = 2898;  // of the steepest gradient that CellCode holds, 2048 sqrt(2)
+
+// Whether doubt about the pull of the ground may lift it.
+bool isOfSoil(Refusal refusal) {
+  return refusal == Refusal::Pull || refusal == Refusal::SideForce;
+}
+
+CategoryTable::Entry entryOf(const Ranked& ranked) {
+  // Of danger the nearest step, of all else the one below: no more is promised than is believed.
+  const double steps = 16.0 * ranked.probability;
+  const double told = ranked.category == Category::Dangerous ? std::round(steps) : std::floor(steps);
+  return {static_cast<std::uint8_t>(ranked.category), static_cast<std::uint8_t>(told)};
+}
+
+// The model's category at the first climb from this one on at which it is no better.
+Ranked atLeast(const GroundModel& model, const GroundBelief& belief, Category least, double climb) {
+  Ranked ranked = model.category(belief, climb);
+  while (ranked.category < least && climb < 4.0)
+    ranked = model.category(belief, climb += 1.0 / DriveCurve::kBinsPerUnit);
+  return ranked;
+}
+
+CellCode planeOf(int step) {
+  return CellCode({.dz_dx = step * CellCode::kStep, .dz_dy = 0.0, .curve = 0});
+}
+
+// The state in the worst heading, with the worst category of any.
+DriveState stateOn(const DriveCost& cost, CellCode plane) {
+  DriveState state = cost.detail(plane, worstHeading(cost, plane));
+  for (int k = 0; k < kJudgedHeadings; ++k) {
+    const double heading = k * std::numbers::pi / kJudgedHeadings;
+    state.category =
+        std::max(state.category, cost.detail(plane, {std::cos(heading), std::sin(heading)}).category);
+  }
+  return state;
+}
 
 }  // namespace
 
+double climbAt(const DriveCost& cost, CellCode cell, const Direction& heading) noexcept {
+  const terramech::Gradient gradient{cell.dzDx() * heading.x + cell.dzDy() * heading.y,
+                                     cell.dzDy() * heading.x - cell.dzDx() * heading.y};
+  const bool known = cell.curve() < cost.crossings().size() && cost.crossings()[cell.curve()];
+  return known ? cost.crossings()[cell.curve()]->climb(gradient) : gradient.along;
+}
+
+Direction worstHeading(const DriveCost& cost, CellCode cell) noexcept {
+  const double length = std::hypot(cell.dzDx(), cell.dzDy());
+  if (!(length > 0.0)) return {};
+  const Direction up{cell.dzDx() / length, cell.dzDy() / length};
+  constexpr double kClearly = 1.0 / 32.0;  // of gradient: two rows across
+  Direction found = up;
+  double most = climbAt(cost, cell, up) + kClearly;
+  for (int k = 1; k < kJudgedHeadings; ++k) {
+    const double c = std::cos(k * std::numbers::pi / kJudgedHeadings),
+                 s = std::sin(k * std::numbers::pi / kJudgedHeadings);
+    const Direction tried{c * up.x - s * up.y, s * up.x + c * up.y};
+    if (const double climb = climbAt(cost, cell, tried); climb > most) {
+      most = climb;
+      found = tried;
+    }
+  }
+  return found;
+}
+
+Ranked judged(const GroundModel& model, const GroundBelief& belief, const DriveState& state, double climb) {
+  const Ranked ranked = atLeast(model, belief, state.category, climb);
+  const bool driven = state.refusal == Refusal::None || state.refusal == Refusal::Category;
+  if (driven || ranked.category == Category::Dangerous) return ranked;
+  return {Category::Dangerous, isOfSoil(state.refusal) ? static_cast<double>(state.weak) : 1.0};
+}
+
 CategoryTable::CategoryTable(const GroundModel& model, const GroundBelief& belief,
-                             const CrossSlope& crossing) {
+                             const DriveGround& ground) {
+  DriveCost::Limits limits = model.limits();
+  limits.stance.reset();  // asked by DriveCost::tips() alone
+  const DriveCost cost(limits, std::vector{ground});
+  const auto judgedAt = [&](int step) {
+    return judged(model, belief, stateOn(cost, planeOf(step)),
+                  ground.crossing->steepest(step * CellCode::kStep));
+  };
+  // The first step that is no better: a steeper plane is not.
+  const auto boundOf = [&](Category least) {
+    int from = 0;
+    for (int beyond = kSteps - 1; from < beyond;) {
+      const int middle = (from + beyond) / 2;
+      if (judgedAt(middle).category < least)
+        from = middle + 1;
+      else
+        beyond = middle;
+    }
+    return std::pair(from, judgedAt(from));
+  };
+  const std::array bounds{boundOf(Category::Marginal), boundOf(Category::Dangerous)};
   entries_.reserve(kSteps);
   for (int step = 0; step < kSteps; ++step) {
-    const Ranked ranked = model.category(belief, crossing.steepest(step * CellCode::kStep));
-    // Of danger the nearest step, of all else the one below: no more is promised than is believed.
-    const double steps = 16.0 * ranked.probability;
-    const double told =
-        ranked.category == terramech::Category::Dangerous ? std::round(steps) : std::floor(steps);
-    entries_.push_back({static_cast<std::uint8_t>(ranked.category), static_cast<std::uint8_t>(told)});
+    Ranked now = model.category(belief, ground.crossing->steepest(step * CellCode::kStep));
+    for (const auto& [from, ranked] : bounds)
+      if (step >= from && now.category < ranked.category) now = ranked;
+    entries_.push_back(entryOf(now));
   }
 }
 
 CategoryTable::Entry CategoryTable::at(CellCode cell) const noexcept {
-  if (entries_.empty()) return {static_cast<std::uint8_t>(terramech::Category::Dangerous), 16};
+  if (entries_.empty()) return {static_cast<std::uint8_t>(Category::Dangerous), 16};
   const auto x = static_cast<float>(cell.stepsX()), y = static_cast<float>(cell.stepsY());
-  return entries_[static_cast<std::size_t>(std::sqrt(x * x + y * y) + 0.5F)];
+  return entries_[static_cast<std::size_t>(std::ceil(std::sqrt(x * x + y * y)))];
 }
 
 }  // namespace talus::costmap

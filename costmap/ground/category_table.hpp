@@ -8,8 +8,19 @@
 
 namespace talus::costmap {
 
-/// The category of one kind of ground over the steepness of its plane: that of the worst heading, which climbs
-/// straight up or crosses (CrossSlope::steepest). Tabulated in CellCode's own steps, so it is exact for coded gradients rounded to 1/1024.
+/// The gradient straight up that leaves as little as a cell's plane does in a heading; that along where its ground has no soil.
+double climbAt(const DriveCost& cost, CellCode cell, const Direction& heading) noexcept;
+
+/// The heading that a cell is judged by where none is asked for: straight up its plane, or that across which clearly
+/// leaves less.
+Direction worstHeading(const DriveCost& cost, CellCode cell) noexcept;
+
+/// Category of ground in a heading as planners read it, and its probability: `state` is DriveCost::detail() there, `climb`
+/// climbAt(). What is refused for another reason than its category is dangerous.
+Ranked judged(const GroundModel& model, const GroundBelief& belief, const DriveState& state, double climb);
+
+/// The category of one kind of ground over the steepness of its plane, in CellCode's own steps: the worst that planners read
+/// of any heading, and dangerous where worstHeading() is refused. A cell has that of the next whole step.
 class CategoryTable {
  public:
   /// A row of the table.
@@ -20,7 +31,8 @@ class CategoryTable {
 
   /// Dangerous at every gradient.
   CategoryTable() = default;
-  CategoryTable(const GroundModel& model, const GroundBelief& belief, const CrossSlope& crossing);
+  /// Of ground that was made from the belief.
+  CategoryTable(const GroundModel& model, const GroundBelief& belief, const DriveGround& ground);
 
   /// The entry for the gradient of a cell.
   Entry at(CellCode cell) const noexcept;

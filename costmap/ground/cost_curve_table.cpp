@@ -86,7 +86,7 @@ std::uint8_t CostCurveTable::learned(int class_index, int other_class, const Gro
       kind.belief(model_->prior(class_index), model_->parts().classes[static_cast<std::size_t>(class_index)]);
   grounds_[*number] = model_->ground(class_index, other_class, worst);
   beliefs_[*number] = worst;
-  categories_[*number] = CategoryTable(*model_, worst, *grounds_[*number].crossing);
+  categories_[*number] = CategoryTable(*model_, worst, grounds_[*number]);
   numbers_.emplace(kind, *number);
   cost_.reset();
   return *number;
@@ -186,7 +186,7 @@ const CostCurveTable::Worked& CostCurveTable::worked(int class_index, const Grou
   if (const auto known = worked_.find(key); known != worked_.end()) return known->second;
   if (worked_.size() >= kRemembered) worked_.clear();
   DriveGround ground = model_->ground(class_index, prior);
-  CategoryTable categories(*model_, prior, *ground.crossing);
+  CategoryTable categories(*model_, prior, ground);
   return worked_.emplace(key, Worked{std::move(ground), std::move(categories)}).first->second;
 }
 

@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include <talus/costmap/cost/cross_slope.hpp>
+#include <talus/costmap/ground/category_table.hpp>
 #include <talus/costmap/map/explanation.hpp>
 
 namespace talus::costmap {
@@ -177,34 +177,6 @@ terramech::Gradient seenBy(CellCode code, const Direction& heading) {
           code.dzDy() * heading.x - code.dzDx() * heading.y};
 }
 
-// What crosses and climbs as hard as a straight climb, where the ground has a soil.
-double climbAt(const DriveCost& cost, CellCode code, const Direction& heading) {
-  const terramech::Gradient gradient = seenBy(code, heading);
-  const bool known = code.curve() < cost.crossings().size() && cost.crossings()[code.curve()];
-  return known ? cost.crossings()[code.curve()]->climb(gradient) : gradient.along;
-}
-
-// Straight up the slope, or the heading across that clearly leaves less.
-Direction worst(const DriveCost& cost, CellCode code) {
-  const double length = std::hypot(code.dzDx(), code.dzDy());
-  if (!(length > 0.0)) return {};
-  const Direction up{code.dzDx() / length, code.dzDy() / length};
-  constexpr int kHeadings = 24;            // to either side, as CrossSlope::steepest()
-  constexpr double kClearly = 1.0 / 32.0;  // of gradient: two rows across
-  Direction found = up;
-  double most = climbAt(cost, code, up) + kClearly;
-  for (int k = 1; k < kHeadings; ++k) {
-    const double c = std::cos(k * std::numbers::pi / kHeadings),
-                 s = std::sin(k * std::numbers::pi / kHeadings);
-    const Direction tried{c * up.x - s * up.y, s * up.x + c * up.y};
-    if (const double climb = climbAt(cost, code, tried); climb > most) {
-      most = climb;
-      found = tried;
-    }
-  }
-  return found;
-}
-
 void addDrive(const TraversabilityMap& map, maps::Cell cell, const Direction& heading, Explanation& out) {
   const auto grid = map.published();
   const CellCode code = grid->at(cell);
@@ -241,12 +213,9 @@ void addDrive(const TraversabilityMap& map, maps::Cell cell, const Direction& he
                         kNotKnown, "weighted sum of energy, time and risk", toText(state.refusal)});
 }
 
-// Whether doubt about the pull of the ground may lift it.
-bool isOfSoil(Refusal refusal) {
-  return refusal == Refusal::Pull || refusal == Refusal::SideForce;
-}
-
-void judge(const TraversabilityMap& map, maps::Cell cell, const Direction& heading, Explanation& out) {
+// The category of the map holds for the worst heading; asked for one, that of the heading counts.
+void judge(const TraversabilityMap& map, maps::Cell cell, const Direction& heading, bool asked,
+           Explanation& out) {
   const Hazard hazards = map.surface().hazards(cell);
   const bool opened = hazards == Hazard::Unknown && map.model().parts().policy.allow_unknown;
   for (const Hazard one : kHazards)
@@ -275,14 +244,9 @@ void judge(const TraversabilityMap& map, maps::Cell cell, const Direction& headi
   const CellCode code = map.published()->at(cell);
   const double along = seenBy(code, heading).along, climb = climbAt(map.published()->cost(), code, heading);
   const DriveState state = map.published()->cost().detail(code, heading);
-  out.category = state.category;
-  out.probability = map.model().category(*ground, climb).probability;
-  if (state.refusal != Refusal::None &&
-      state.refusal != Refusal::Category) {  // whatever the pull, it is not driven
-    if (out.category != terramech::Category::Dangerous)
-      out.probability = isOfSoil(state.refusal) ? static_cast<double>(state.weak) : 1.0;
-    out.category = terramech::Category::Dangerous;
-  }
+  const Ranked here = judged(map.model(), *ground, state, climb);
+  if (asked) out.category = here.category;
+  if (here.category == out.category) out.probability = here.probability;
   out.verdict = std::string(terramech::name(out.category)) + ": available DP/W " +
                 std::to_string(ground->pull.value) + ", required DP/W " + std::to_string(along);
   if (climb > along + 1.0 / 256)
@@ -296,8 +260,9 @@ void judge(const TraversabilityMap& map, maps::Cell cell, const Direction& headi
 
 Explanation explain(const TraversabilityMap& map, maps::Cell cell, const std::optional<Direction>& heading) {
   Explanation out;
-  const Direction direction = heading.value_or(worst(map.published()->cost(), map.published()->at(cell)));
-  judge(map, cell, direction, out);
+  const Direction direction =
+      heading.value_or(worstHeading(map.published()->cost(), map.published()->at(cell)));
+  judge(map, cell, direction, heading.has_value(), out);
   addShape(map, cell, out);
   addLayers(map, cell, out);
   addSoil(map, cell, out);

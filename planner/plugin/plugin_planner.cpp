@@ -217,7 +217,8 @@ PluginPlanner::PluginPlanner(std::string file, std::string planner)
           throw InputError({file_, "has no planner '" + planner_ + "'", "it offers " + all});
         }
         loaded->configure({.planner = planner_});
-        return kText + oneLine(loaded->capabilities().planner + " of " + offers.name);
+        const std::string chosen = loaded->capabilities().planner;
+        return kText + oneLine(chosen.empty() ? offers.name : chosen + " of " + offers.name);
       },
       {.seconds = 10.0, .bytes = 10 * kLongestPluginText, .memory = kMostPluginMemory}, {});
   name_ = bytes.substr(1);

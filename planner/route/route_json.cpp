@@ -58,17 +58,6 @@ void addVertices(Json& properties, const Route& route) {
   properties["reverse"] = values(route, [](const RouteVertex& vertex) { return vertex.reverse; });
 }
 
-Json originJson(const RouteOrigin& origin) {
-  Json files = Json::array();
-  for (const RouteInput& input : origin.files)
-    files.push_back({{"file", input.file}, {"path", input.path}, {"sha256", input.sha256}});
-  Json made{{"files", files}, {"seed", origin.seed}, {"version", TALUS_VERSION}};
-  if (!origin.rover.empty()) made["rover"] = origin.rover;
-  if (!origin.soils.empty()) made["soils"] = origin.soils;
-  if (!origin.command.empty()) made["command"] = origin.command;
-  return made;
-}
-
 Json obstructionJson(const Obstruction& why) {
   const auto place = [](maps::Point p) { return Json{{"x_m", p.x_m}, {"y_m", p.y_m}}; };
   Json made{{"cells_from_start", why.cells_from_start},
@@ -80,6 +69,17 @@ Json obstructionJson(const Obstruction& why) {
 }
 
 }  // namespace
+
+Json originJson(const RouteOrigin& origin) {
+  Json files = Json::array();
+  for (const RouteInput& input : origin.files)
+    files.push_back({{"file", input.file}, {"path", input.path}, {"sha256", input.sha256}});
+  Json made{{"files", files}, {"seed", origin.seed}, {"version", TALUS_VERSION}};
+  if (!origin.rover.empty()) made["rover"] = origin.rover;
+  if (!origin.soils.empty()) made["soils"] = origin.soils;
+  if (!origin.command.empty()) made["command"] = origin.command;
+  return made;
+}
 
 Json summaryJson(const Route& route) {
   const RouteSummary& s = route.summary;

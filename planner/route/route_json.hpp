@@ -28,6 +28,9 @@ struct RouteOrigin {
   std::string command{};  ///< the call that makes the route, for a shell; empty where there is none
 };
 
+/// The origin as the "inputs" of a route's file.
+nlohmann::ordered_json originJson(const RouteOrigin& origin);
+
 /// The summary fields of a route, with its status; null where there is no route, with why ("obstruction") where that is
 /// known.
 nlohmann::ordered_json summaryJson(const Route& route);

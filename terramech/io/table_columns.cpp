@@ -100,9 +100,11 @@ void TableColumns::map(const MappedColumn& mapped, const TableFile& table) {
                                ? suffix
                                : std::string(unitOf(mapped.known));
   const auto factor = columnFactor(unit, mapped.known);
-  if (!factor)
+  if (!factor) {
+    const std::string units = unitsLike(unitOf(mapped.known));
     throw InputError({table.path + ":1", fmt::format("{}: '{}' is no unit of {}", asked, unit, mapped.known),
-                      "name a unit of its kind, such as mm, kN, deg, kmph or percent"});
+                      "its units are " + (units.empty() ? "none or percent" : units)});
+  }
   *column = mapped.known;
   if (*factor != 1.0) conversions_.push_back({static_cast<std::size_t>(column - header_.begin()), *factor});
   if (table.note)

@@ -44,6 +44,14 @@ std::optional<double> conversion(std::string_view from, std::string_view to) {
   return a->factor / b->factor;
 }
 
+std::string unitsLike(std::string_view unit) {
+  std::string names;
+  if (const Unit* known = find(unit))
+    for (const Unit& one : kUnits)
+      if (one.kind == known->kind) names += (names.empty() ? "" : ", ") + std::string(one.name);
+  return names;
+}
+
 std::string_view unitOf(std::string_view name) {
   std::string_view longest;
   for (const Unit& unit : kUnits) {

@@ -1,4 +1,6 @@
 #include <cstdlib>
+#include <regex>
+#include <sstream>
 
 #include <nlohmann/json.hpp>
 
@@ -41,6 +43,11 @@ TEST(HelpCommand, ManualAndCompletionHaveEveryCall) {
     EXPECT_THAT(manual, HasSubstr(std::string("\n.SS talus ") + call + "\n")) << call;
     EXPECT_THAT(script, HasSubstr(std::string("\n    ") + call + ") options='--")) << call;
   }
+  // What mandoc -Tlint objects to: no date, and lines longer than 80 bytes.
+  EXPECT_TRUE(std::regex_search(manual, std::regex("^\\.TH TALUS 1 [0-9]{4}-[0-9]{2}-[0-9]{2} ")));
+  std::istringstream lines(manual);
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 80U) << line;
+  EXPECT_THAT(manual, HasSubstr("\\fIKNOWN=NAME[:UNIT]"));
   EXPECT_THAT(manual, HasSubstr("\\fB\\-\\-keep\\-out\\fR \\fIFILE\\fR\n"));
   folder.write("talus.bash", script +
                                  "COMP_WORDS=(talus estimate t.csv --method soj) COMP_CWORD=4\n_talus\n"

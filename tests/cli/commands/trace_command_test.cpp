@@ -47,7 +47,7 @@ TEST(TraceCommand, AnEffectOfOneGroupIsSaidOfTheColumnThatTellsTheGroup) {
   EXPECT_EQ(effects[0]["channel"], "drawbar_pull_over_load");
 }
 
-// Verdict, each effect over its data, errors, then the rest; numbers as in the text.
+// Verdict, errors before and after, measurements and model, each effect over its data, then the rest; numbers as in the text.
 TEST(TraceCommand, ThePageShowsEachEffectWithItsDataAndTheNumbersOfTheText) {
   const Folder folder;
   folder.write("t.csv", oneWheelShort());
@@ -58,8 +58,8 @@ TEST(TraceCommand, ThePageShowsEachEffectWithItsDataAndTheNumbersOfTheText) {
   const std::string page{std::istreambuf_iterator<char>(file), {}};
   std::size_t last = 0;
   for (const char* part :
-       {"Verdict: explained by 1 effect", "load_cell_tilt: drawbar_pull_over_load",
-        "Error of the base and the refined model", "Effects missing from the base model"}) {
+       {"Verdict: explained by 1 effect", "<td>of the fit</td>", "alt=\"drawbar_pull_over_load\"",
+        "load_cell_tilt: drawbar_pull_over_load", "Effects missing from the base model"}) {
     const std::size_t at = page.find(part);
     ASSERT_NE(at, std::string::npos) << part;
     EXPECT_GT(at, last) << part;

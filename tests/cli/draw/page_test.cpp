@@ -12,6 +12,7 @@
 #include <talus/common/constants.hpp>
 
 #include "bad_input.hpp"
+#include "browser.hpp"
 #include "example_scene.hpp"
 #include "requirement.hpp"
 #include "run_program.hpp"
@@ -22,31 +23,6 @@ namespace page_test {
 using testing::HasSubstr;
 using testing::Not;
 
-/// What the browser makes of a page: its DOM after the scripts ran, and what it wrote on its console.
-struct Shown {
-  std::string dom;
-  std::string console;
-};
-
-Shown show(const std::string& html, const std::string& graphics = "--disable-gpu") {
-  const Folder folder;
-  const std::string path = folder.write("page.html", html);
-  const std::string line = std::string("HOME='") + folder.path().string() + "' chromium" +
-                           " --headless --no-sandbox " + graphics +
-                           " --disable-quic --no-first-run"
-                           " --disable-background-networking --disable-component-update --disable-sync"
-                           " --disable-dev-shm-usage --enable-logging=stderr --virtual-time-budget=4000"
-                           " --window-size=1200,900 --user-data-dir='" +
-                           (folder / "profile") + "' --dump-dom 'file://" + path + "' >'" + (folder / "dom") +
-                           "' 2>'" + (folder / "console") + "'";
-  EXPECT_EQ(std::system(line.c_str()), 0);  // NOLINT(cert-env33-c)
-  return {fileContent(folder / "dom"), fileContent(folder / "console")};
-}
-
-bool ready(const Shown& shown) {
-  return shown.dom.find("data-state=\"ready\"") != std::string::npos;
-}
-
 /// Whether the page's body, its scripts left out, matches.
 bool bodyHas(const Shown& shown, const std::string& text) {
   return shown.dom.rfind(text, shown.dom.find("id=\"data\"")) != std::string::npos;
@@ -55,12 +31,6 @@ bool bodyHas(const Shown& shown, const std::string& text) {
 /// The same for a pattern.
 bool bodyMatches(const Shown& shown, const std::string& pattern) {
   return std::regex_search(shown.dom.substr(0, shown.dom.find("id=\"data\"")), std::regex(pattern));
-}
-
-/// The page with a script behind it that plays the user.
-std::string played(const Scene& scene, const std::string& script) {
-  std::string html = page(scene);
-  return html.insert(html.rfind("</body>"), "<script>" + script + "</script>\n");
 }
 
 TEST(Page, NeedsNothingFromElsewhere) {
@@ -144,8 +114,7 @@ std::string planned(const Folder& folder, const std::string& script) {
                              "fido", "--start", "3,3", "--goal", "55,45", "--html", "plan.html"},
                             folder.path());
   EXPECT_EQ(plan.code, 0) << plan.err;
-  std::string html = fileContent(folder / "plan.html");
-  return html.insert(html.rfind("</body>"), "<script>" + script + "</script>\n");
+  return played(fileContent(folder / "plan.html"), script);
 }
 
 // Property: what a cell shows is what `talus explain` states of it, to the last decimal that is shown; cells are
@@ -193,6 +162,7 @@ TEST(Page, CellsShowWhatExplainStates) {
         if (one["name"] == name) return one[field].get<double>();
       return std::nan("");
     };
+    EXPECT_EQ(m[1], answer["category"]) << place;
     // Half a unit of the last decimal, and the rounding of a float.
     EXPECT_NEAR(std::stod(m[2]), cause("slope_rad", "value") / kDegree, 0.00501) << place;
     EXPECT_NEAR(std::stod(m[3]), cause("drawbar_pull_over_load", "value"), 0.0000501) << place;
@@ -201,6 +171,29 @@ TEST(Page, CellsShowWhatExplainStates) {
     EXPECT_NEAR(std::stod(m[6]), cause("elevation_m", "value"), 0.00501) << place;
   }
   EXPECT_EQ(places.size(), 7U) << text;
+}
+
+TEST(Page, RulerMeasuresOnTheMap) {
+  TALUS_REQUIRE(test::installed("chromium"), "chromium is not installed");
+  const Shown shown = show(played(exampleScene(), R"(
+    const map = document.getElementById("map"), box = map.getBoundingClientRect(), root = document.documentElement.dataset;
+    const click = (x, y) => map.dispatchEvent(new MouseEvent("click", {bubbles: true, clientX: box.left + x, clientY: box.top + y}));
+    const bar = document.querySelector(".leaflet-control-scale-line");
+    document.getElementById("ruler").click();
+    click(100, 300);
+    click(100 + parseFloat(bar.style.width), 300);
+    root.measured = document.querySelector(".leaflet-tooltip").textContent + "|" + bar.textContent;
+    root.popups = document.querySelectorAll(".leaflet-popup").length;
+    map.dispatchEvent(new KeyboardEvent("keydown", {key: "Escape", bubbles: true}));
+    root.left = document.querySelectorAll("path.ruler, .leaflet-tooltip").length;)"));
+  std::smatch said;
+  const std::string head = shown.dom.substr(0, 2000);
+  ASSERT_TRUE(std::regex_search(
+      head, said, std::regex("data-measured=\"([0-9.]+) m, last leg 90° from north\\|([0-9]+) m")))
+      << head.substr(0, 300) << shown.console;
+  // The bar is as long as its number says, to a pixel.
+  EXPECT_NEAR(std::stod(said[1]) / std::stod(said[2]), 1.0, 0.03);
+  EXPECT_THAT(head, HasSubstr("data-popups=\"0\""));
 }
 
 // Property: on a screen of 1400 x 900 and on a phone, map and profile are seen without scrolling, and the map is more than the
@@ -288,6 +281,11 @@ constexpr const char* kOpenRelief = R"(
     const bytes = context.getImageData(0, 0, 100, 100).data, colours = new Set();
     for (let i = 0; i < bytes.length; i += 4) colours.add(bytes[i] << 16 | bytes[i + 1] << 8 | bytes[i + 2]);
     root.colours = colours.size > 100;
+    const box = shown.getBoundingClientRect();
+    const spot = {bubbles: true, clientX: box.left + box.width / 2, clientY: box.top + box.height * 0.55};
+    shown.dispatchEvent(new PointerEvent("pointerdown", spot));
+    shown.dispatchEvent(new MouseEvent("click", spot));
+    setTimeout(() => { root.probed = document.querySelector("#relief .probe").textContent; }, 300);
   }, 50);)";
 
 // Property: the relief is drawn, not blank, states by how much it is higher, and the console is silent.
@@ -298,6 +296,7 @@ TEST(Page, ShowsARelief) {
   const Shown shown = show(played(exampleScene(), kOpenRelief), "--disable-gpu --enable-unsafe-swiftshader");
   EXPECT_THAT(shown.dom, HasSubstr("data-relief=\"ready|vertical exaggeration 1 ×")) << shown.console;
   EXPECT_THAT(shown.dom, HasSubstr("data-colours=\"true\""));
+  EXPECT_TRUE(bodyMatches(shown, "data-probed=\"categories[a-z]+slope[0-9.]+ deg"));
   // Chromium's own driver notes that the drawing is read back where there is no graphics card.
   const std::regex driver("[^\n]*GL Driver Message[^\n]*ReadPixels[^\n]*");
   EXPECT_THAT(std::regex_replace(shown.console, driver, ""), Not(HasSubstr("CONSOLE")));

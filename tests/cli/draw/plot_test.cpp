@@ -37,6 +37,19 @@ TEST(Plot, IsAPngOrAnSvg) {
   keep("plot.png", bytes);
 }
 
+// Property: points cost some 30 bytes each of an SVG: a page of many charts stays below 3 MB.
+TEST(Plot, OfManyPointsIsSmall) {
+  Plot many = example();
+  Series cloud{.name = "", .x = {}, .y = {}, .mark = Series::Mark::Points};
+  for (int i = 0; i < 2000; ++i) {
+    cloud.x.push_back(std::fmod(0.618 * i, 1.0));
+    cloud.y.push_back(std::sin(i));
+  }
+  const std::size_t few = draw({many}, Canvas::Kind::Svg).size();
+  many.series.push_back(cloud);
+  EXPECT_LT(draw({many}, Canvas::Kind::Svg).size() - few, 2000U * 40U);
+}
+
 TEST(Plot, StandsEmptySeriesAndNothingFinite) {
   Plot plot{.title = "", .x = {}, .y = {}, .series = {{.x = {}, .y = {}}, {.x = {1.0}, .y = {std::nan("")}}}};
   EXPECT_THAT(draw({plot}, Canvas::Kind::Png), StartsWith("\x89PNG"));

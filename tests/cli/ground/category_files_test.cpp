@@ -26,13 +26,15 @@ TEST(CategoryFiles, ColoursNamesOverviewsAndNav2) {
                             "fido", "--categories", "c.tif", "--nav2", "n.yaml", "--quiet"},
                            folder.path());
   ASSERT_EQ(ran.code, 0) << ran.err;
-  EXPECT_EQ(folder.names(), (std::vector<std::string>{"c.tif", "n.pgm", "n.yaml", "site.asc"}));
+  EXPECT_EQ(folder.names(), (std::vector<std::string>{"c.qml", "c.tif", "n.pgm", "n.yaml", "site.asc"}));
   const maps::Dataset file = maps::openRaster(folder / "c.tif");
   GDALRasterBand& band = *file->GetRasterBand(1);
   EXPECT_STREQ(band.GetMetadataItem("CLASS_2"), "dangerous");
   ASSERT_NE(band.GetColorTable(), nullptr);
   EXPECT_GT(band.GetColorTable()->GetColorEntry(0)->c2, band.GetColorTable()->GetColorEntry(0)->c1)
       << "green";
+  EXPECT_THAT(fileContent(folder / "c.qml"),
+              testing::HasSubstr("value=\"2\" color=\"#9e1020\" alpha=\"255\" label=\"dangerous\""));
   ASSERT_EQ(band.GetOverviewCount(), 1);
   // Property: no cell of an overview is of a lesser category than one under it.
   std::vector<std::uint8_t> fine(kWidth * kHeight), coarse(kWidth * kHeight / 4);

@@ -34,6 +34,14 @@ TEST(WheelReport, StatesTheForcesOfTheEquilibrium) {
   EXPECT_THAT(page, HasSubstr("data:image/svg+xml;base64,"));
 }
 
+// Property: soils that are compared have a curve each.
+TEST(WheelReport, ComparesSoils) {
+  WheelAtWork at = work();
+  const std::size_t alone = wheelReport(at).size();
+  at.others = {terramech::loadSoil("dry_sand"), terramech::loadSoil("clay")};
+  EXPECT_GT(wheelReport(at).size(), alone + 3U * 2U * 1000U);
+}
+
 TEST(WheelReport, NamesAreNoMarkup) {
   WheelAtWork at = work();
   at.soil.name = "<b>sand</b>";

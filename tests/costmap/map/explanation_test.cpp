@@ -3,6 +3,7 @@
 
 #include <site_map.hpp>
 
+#include <talus/costmap/ground/category_table.hpp>
 #include <talus/costmap/map/explanation.hpp>
 #include <talus/costmap/telemetry/telemetry_processor.hpp>
 
@@ -37,6 +38,20 @@ TEST(Explain, HeadingDecides) {
   EXPECT_LT(cause(down, "energy_J_per_m").value, cause(up, "energy_J_per_m").value);
   EXPECT_NE(up.category, Category::Safe);
   EXPECT_EQ(down.category, Category::Safe);
+}
+
+// Property: without a heading the category is that of the map, refusals included, and no better than in the worst heading.
+TEST(Explain, CategoryIsThatOfTheMapAndOfTheWorstHeading) {
+  for (int k = 0; k < 30; ++k) {
+    const TraversabilityMap map = mapOf(kPlain, 0.0133 * k);
+    const Explanation cell = explain(map, {6, 6});
+    const Direction worst = worstHeading(map.published()->cost(), map.published()->at({6, 6}));
+    EXPECT_EQ(static_cast<std::uint8_t>(cell.category), map.costs().category({6, 6})) << k;
+    EXPECT_GE(cell.category, explain(map, {6, 6}, worst).category) << k;
+    EXPECT_EQ(cell.verdict.find(terramech::name(cell.category)), 0U) << cell.verdict;
+    const bool refused = cell.verdict.find("; refused") != std::string::npos;
+    EXPECT_TRUE(!refused || cell.category == Category::Dangerous) << cell.verdict;
+  }
 }
 
 TEST(Explain, SaysWhichHazardRefuses) {

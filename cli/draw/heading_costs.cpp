@@ -1,0 +1,90 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include <talus/cli/draw/heading_costs.hpp>
+#include <talus/cli/draw/page_layers.hpp>
+
+namespace talus::cli {
+namespace {
+
+using costmap::CellCode;
+using costmap::DriveCurve;
+
+constexpr std::uint32_t kNoCurve = 255;
+constexpr double kMostWord = 16777214.0;  // of 24 bits, less one for "refused"
+
+/// The nodes within the limits, the bins of a row from the steepest descent on, the rows of a curve from the level one on.
+struct Nodes {
+  int first_bin, bins, rows;
+
+  explicit Nodes(const costmap::DriveCost::Limits& limits) {
+    const auto bin = [](double along) {
+      return static_cast<int>(std::floor(along * DriveCurve::kBinsPerUnit)) + DriveCurve::kBins / 2;
+    };
+    first_bin = std::max(0, bin(-limits.max_along));
+    bins = std::min(DriveCurve::kBins - 1, bin(limits.max_along) + 1) - first_bin + 1;
+    rows = static_cast<int>(limits.max_across * DriveCurve::kRowsPerUnit) + 2;
+  }
+};
+
+/// Costs on a logarithmic scale, so that a word is right to a few millionths; 0 for what is refused.
+nlohmann::ordered_json tableOf(const std::vector<const DriveCurve*>& curves, const Nodes& nodes) {
+  std::vector<double> costs;
+  double low = INFINITY, high = 0.0;
+  for (const DriveCurve* curve : curves)
+    for (int row = 0; row < nodes.rows; ++row)
+      for (int bin = 0; bin < nodes.bins; ++bin) {
+        const float* its = curve->rows() + std::min(row, curve->lastRow()) * DriveCurve::kBins;
+        const double cost = std::max(1e-6, static_cast<double>(its[nodes.first_bin + bin]));
+        costs.push_back(cost);
+        if (!std::isfinite(cost)) continue;
+        low = std::min(low, cost);
+        high = std::max(high, cost);
+      }
+  const double span = low < high ? std::log(high / low) : 1.0;
+  Image image(nodes.bins, nodes.rows * static_cast<int>(curves.size()));
+  for (std::size_t i = 0; i < costs.size(); ++i) image.argb[i] = 0xFF000000U;
+  for (std::size_t i = 0; i < costs.size(); ++i)
+    if (std::isfinite(costs[i]))
+      image.argb[i] |=
+          1U + static_cast<std::uint32_t>(std::round(std::log(costs[i] / low) / span * kMostWord));
+  return {{"image", dataUri(image)},
+          {"width", image.width},
+          {"height", image.height},
+          {"first", nodes.first_bin},
+          {"bins", nodes.bins},
+          {"rows", nodes.rows},
+          {"low", std::isfinite(low) ? low : 1.0},
+          {"span", span / kMostWord}};
+}
+
+}  // namespace
+
+nlohmann::ordered_json headingCostsOf(const Scene& scene) {
+  if (!scene.costs) return nullptr;
+  const costmap::DriveCost& cost = *scene.costs->cost;
+  std::map<std::uint32_t, std::uint32_t> numbers;
+  std::vector<const DriveCurve*> curves;
+  const auto numberOf = [&](CellCode code) {
+    if (code.curve() >= cost.curves().size()) return kNoCurve;
+    const auto [known, added] = numbers.try_emplace(code.curve(), static_cast<std::uint32_t>(curves.size()));
+    if (added) curves.push_back(&cost.curves()[code.curve()]);
+    return known->second;
+  };
+  const auto gradient = [&](maps::Cell cell) { return scene.costs->codes[cell].bits() >> 8U; };
+  const auto kind = [&](maps::Cell cell) {
+    return numberOf(scene.costs->codes[cell]) | static_cast<std::uint32_t>(scene.costs->categories[cell])
+                                                    << 8U;
+  };
+  nlohmann::ordered_json json{{"gradients", wordsUri(scene.grid(), gradient)},
+                              {"kinds", wordsUri(scene.grid(), kind)}};
+  json["table"] = tableOf(curves, Nodes(cost.limits()));
+  json["most"] = {{"along", cost.limits().max_along}, {"across", cost.limits().max_across}};
+  return json;
+}
+
+}  // namespace talus::cli

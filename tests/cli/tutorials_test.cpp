@@ -1,0 +1,113 @@
+// The pages of docs/tutorials, run as a reader would: a block "LANGUAGE NAME" is a file, a block "console" commands behind "$ "
+// with lines that their output must have, in that order; "exit N" where a command fails.
+#include <filesystem>
+#include <map>
+#include <regex>
+#include <sstream>
+
+#include <fmt/format.h>
+
+#include "run_program.hpp"
+
+namespace talus::cli {
+namespace tutorials_test {
+
+namespace fs = std::filesystem;
+
+struct Command {
+  std::string line;
+  std::vector<std::string> says;
+};
+
+/// Writes the files of a page and gives its commands.
+std::vector<Command> commandsOf(const fs::path& page, const Folder& folder) {
+  std::vector<Command> commands;
+  std::istringstream text(fileContent(page.string()));
+  std::string line, file, content;
+  bool console = false;
+  while (std::getline(text, line)) {
+    if (line.starts_with("```")) {
+      if (!file.empty()) folder.write(file, content);
+      console = line == "```console";
+      const auto blank = line.find(' ');
+      file = blank == std::string::npos ? "" : line.substr(blank + 1);
+      content.clear();
+    } else if (!file.empty()) {
+      content += line + "\n";
+    } else if (console && line.starts_with("$ ")) {
+      commands.push_back({line.substr(2), {}});
+    } else if (console && !commands.empty() && line != "...") {
+      commands.back().says.push_back(line);
+    }
+  }
+  return commands;
+}
+
+/// What a command writes, and "exit N" where it fails.
+std::string outputOf(const Command& command, const Folder& folder) {
+  folder.write("command.sh", "cd '" + folder.path().string() + "'\nexport PATH='" + folder.path().string() +
+                                 "/bin':$PATH PKG_CONFIG_PATH='" + folder.path().string() + "/bin'\n" +
+                                 command.line + "\n");
+  const std::string call = "bash '" + (folder / "command.sh") + "' >'" + (folder / "output") + "' 2>&1";
+  const int code = std::system(call.c_str());  // NOLINT(cert-env33-c)
+  return fileContent(folder / "output") + (code == 0 ? "" : fmt::format("\nexit {}\n", WEXITSTATUS(code)));
+}
+
+class Tutorial : public testing::TestWithParam<std::string> {};
+
+TEST_P(Tutorial, DoesWhatItStates) {
+  const fs::path source = TALUS_SOURCE_DIR;
+  const Folder folder;
+  fs::create_directory(folder.path() / "bin");
+  fs::create_symlink(TALUS_PROGRAM, folder.path() / "bin/talus");
+  fs::copy_file(source / "examples/hill.asc", folder.path() / "hill.asc");
+  folder.write("bin/talus.pc",
+               "Name: talus\nDescription: of this build\nVersion: 0\nCflags: -I" TALUS_HEADERS "\n");
+  const std::vector<Command> commands = commandsOf(source / "docs/tutorials" / (GetParam() + ".md"), folder);
+  ASSERT_GE(commands.size(), 3U);
+  for (const Command& command : commands) {
+    const std::string output = outputOf(command, folder);
+    std::size_t from = 0;
+    for (const std::string& line : command.says) {
+      const std::size_t at = output.find(line, from);
+      ASSERT_NE(at, std::string::npos) << command.line << "\nlacks\n" << line << "\nin\n" << output;
+      from = at + line.size();
+    }
+    const bool fails = !command.says.empty() && command.says.back().starts_with("exit ");
+    EXPECT_EQ(output.find("\nexit ") != std::string::npos, fails) << command.line << "\n" << output;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Docs, Tutorial,
+                         testing::Values("five_minutes", "three_sites", "wheel_data", "own_planner",
+                                         "own_layer", "teaching"),
+                         [](const auto& one) { return one.param; });
+
+// Property: each option that a page of the repository gives a call of the program is one that the call's --help has.
+TEST(Documents, NameOnlyOptionsThatExist) {
+  const std::regex call("talus ([a-z]+)( [^`\n]*)?"), option("--[a-z][a-z-]*");
+  std::map<std::string, std::string> helps;
+  int options = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(TALUS_SOURCE_DIR)) {
+    if (entry.path().extension() != ".md" || entry.path().string().find("/build/") != std::string::npos)
+      continue;
+    const std::string page = fileContent(entry.path().string());
+    for (std::sregex_iterator found(page.begin(), page.end(), call), end; found != end; ++found) {
+      const std::string name = (*found)[1], words = (*found)[2];
+      if (!helps.contains(name)) helps[name] = runTalus({name, "--help"}).out + runTalus({"--help"}).out;
+      if (helps[name].find("talus " + name) == std::string::npos)
+        continue;  // no call: "talus is", "talus program"
+      for (std::sregex_iterator one(words.begin(), words.end(), option); one != end; ++one, ++options)
+        EXPECT_NE(helps[name].find(one->str()), std::string::npos) << entry.path() << ": " << found->str();
+    }
+  }
+  EXPECT_GT(options, 100);
+}
+
+// Property: no page of docs/tutorials is left out.
+TEST(Tutorials, AreAllRun) {
+  EXPECT_EQ(std::distance(fs::directory_iterator(fs::path(TALUS_SOURCE_DIR) / "docs/tutorials"), {}), 6);
+}
+
+}  // namespace tutorials_test
+}  // namespace talus::cli
