@@ -56,6 +56,16 @@ std::string strainedText(const Answer& a) {
   return text;
 }
 
+/// Of effects whose cause is one of several; empty where each has one.
+std::string equalCauses(const TraceResult& result) {
+  std::string text;
+  for (const TracedEffect& e : result.effects)
+    if (!e.equal.empty())
+      text += fmt::format("; the cause of {} is one of {}", e.chosen.candidate.parts.front().name,
+                          e.equal.size() + 1);
+  return text;
+}
+
 }  // namespace
 
 std::string refusal(const TraceResult& result, const Explanation& rejected) {
@@ -93,8 +103,8 @@ std::string verdictText(const TraceResult& result, const Answer& a) {
   if (a.verdict == Verdict::NothingMissing)
     return "nothing missing: the residuals are consistent with noise; " + rest;
   if (a.verdict == Verdict::Explained)
-    return fmt::format("explained by {} effect{}: {}{}", result.effects.size(),
-                       result.effects.size() == 1 ? "" : "s", rest,
+    return fmt::format("explained by {} effect{}{}: {}{}", result.effects.size(),
+                       result.effects.size() == 1 ? "" : "s", equalCauses(result), rest,
                        !a.strained.empty()           ? "; " + strainedText(a)
                        : a.open && !a.column.empty() ? ", of which most varies with " + a.column
                                                      : "");

@@ -135,6 +135,28 @@ Explanation TraceSearch::fitted(const Candidate& candidate) {
   return e;
 }
 
+RefinedModel TraceSearch::modelWith(const Candidate& candidate) const {
+  TrialFit other = fit_;
+  other.setModel(withCandidate(model(), candidate));
+  other.finish(true);
+  return other.model();
+}
+
+bool TraceSearch::dependsOn(const RefinedModel& model, const std::string& column) const {
+  const Trial& trial = fit_.rows().trial();
+  if (column == "sinkage_m" ||
+      std::find(trial.covariates.begin(), trial.covariates.end(), column) == trial.covariates.end())
+    return true;
+  Trial exchanged = trial;
+  const std::size_t rows = trial.states.size();
+  for (std::size_t row = 0; row < rows; ++row)
+    exchanged.states[row].setCovariate(column, trial.states[(row + rows / 2) % rows].covariate(column));
+  SolvedContacts solved, solved_exchanged;
+  const Eigen::VectorXd moved = fit_.rows().whitening().marginal(trial.measured.array().isFinite().select(
+      predictRows(model, exchanged, solved_exchanged) - predictRows(model, trial, solved), 0.0));
+  return 0.5 * moved.squaredNorm() > closeGain(options_);
+}
+
 std::vector<Explanation> TraceSearch::pairs() {
   constexpr int kFirsts = 8, kPairs = 5;
   std::vector<std::pair<double, Candidate>> promised;
@@ -191,7 +213,7 @@ void TraceSearch::leaveOut(std::size_t k) {
   fit_.setModel(fit_.fitted(without, 12));
 }
 
-double TraceSearch::gainOf(std::size_t k) {
+double TraceSearch::gainOf(std::size_t k) const {
   TraceSearch without = *this;
   without.leaveOut(k);
   return fit_.scoreOf(model()) - without.fit_.scoreOf(without.model());

@@ -38,6 +38,13 @@ class TraceSearch {
   /// A candidate fitted together with everything else.
   Explanation fitted(const Candidate& candidate);
 
+  /// The model with a candidate, fitted, with the covariance of its parameters.
+  RefinedModel modelWith(const Candidate& candidate) const;
+
+  /// Whether what a model predicts depends on a column: rows that exchange their values of it (the first with that in the
+  /// middle, and so on) differ by more than closeGain() in log-likelihood.
+  bool dependsOn(const RefinedModel& model, const std::string& column) const;
+
   /// What two candidates together gain, the first fitted before the second is sought, best first.
   std::vector<Explanation> pairs();
 
@@ -54,7 +61,7 @@ class TraceSearch {
   void settleAll();
 
   /// What accepted candidate number k gains beside the others, the noise as it is.
-  double gainOf(std::size_t k);
+  double gainOf(std::size_t k) const;
 
   /// Takes those parts out of accepted candidate number k, last first, without which the score is no worse; one
   /// stays.

@@ -9,6 +9,7 @@
 #include <talus/terramech/calibration/held_out/model_scope.hpp>
 #include <talus/terramech/calibration/noise/folds.hpp>
 #include <talus/terramech/calibration/search/column_screening.hpp>
+#include <talus/terramech/calibration/search/rival_causes.hpp>
 #include <talus/terramech/calibration/search/trace_search.hpp>
 #include <talus/terramech/calibration/table/closure_offset.hpp>
 #include <talus/terramech/calibration/trace/residual_trace.hpp>
@@ -27,19 +28,8 @@ bool same(const Candidate& a, const Candidate& b) {
          a.covariate() == b.covariate() && a.parts.front().only_value == b.parts.front().only_value;
 }
 
-// Explanations by the same form from several starts count once.
-TracedEffect traced(const std::vector<Explanation>& ranked, double p_value, double close) {
-  TracedEffect effect;
-  effect.chosen = ranked.front();
-  effect.channel = strongest(ranked.front());
-  effect.p_value = p_value;
-  for (const Explanation& e : ranked) {
-    const auto like = [&e](const Explanation& other) { return same(e.candidate, other.candidate); };
-    if (e.gain > ranked.front().gain - close && effect.alternatives.size() < 6 && !like(effect.chosen) &&
-        std::none_of(effect.alternatives.begin(), effect.alternatives.end(), like))
-      effect.alternatives.push_back(e);
-  }
-  return effect;
+TracedEffect traced(const Explanation& chosen, double p_value) {
+  return {.chosen = chosen, .channel = strongest(chosen), .parameter_std = {}, .p_value = p_value};
 }
 
 /// Puts in the offset of a force sensor that its group's own torque and sinkage betray, unless it makes held-out rows
@@ -82,7 +72,7 @@ struct Path {
 /// Takes the first of explanations in.
 void take(Path& path, const std::vector<Explanation>& ranked, double p_value) {
   path.search.accept(ranked.front().candidate);
-  path.effects.push_back(traced(ranked, p_value, path.close));
+  path.effects.push_back(traced(ranked.front(), p_value));
   TracedEffect& taken = path.effects.back();
   if (taken.chosen.candidate.parts.size() < 2) return;
   path.search.thin(path.effects.size() - 1);
@@ -146,6 +136,19 @@ void reconsider(Path& path) {
     take(path, ranked, p_value);
     return;
   }
+}
+
+/// Looks for other causes in the place of each effect.
+void findRivals(const Path& path, TraceResult& result, const std::function<bool(double)>& go_on) {
+  for (std::size_t k = path.pinned; k < result.effects.size() && go_on(0.0); ++k) {
+    TracedEffect& effect = result.effects[k];
+    const double least = path.search.gainOf(k) - path.close;
+    for (RivalCause& rival : rivalsOf(path.search, k)) {
+      if (rival.explanation.gain >= least) effect.equal.push_back(rival.explanation);
+      result.rivals.push_back(std::move(rival));
+    }
+  }
+  if (result.effects.empty()) result.rivals = rivalsOf(path.search, result.rejected);
 }
 
 /// What was taken in, whatever the order.
@@ -332,6 +335,7 @@ TraceResult searched(const RefinedModel& base, const Trial& trial, const TraceOp
   result.last_promises = path.last;
   result.threshold = path.threshold;
   finishConfirmed(path, result, options, go_on);
+  findRivals(path, result, go_on);
   result.ends = endLevels(result, options, watch);
   boundEffects(result.refined, result.trial, result.ends);
   result.scope = scopeOf(result);

@@ -109,7 +109,7 @@ TEST(TraceCommand, HoldingOutRowsWritesItsPageAndNoModel) {
               testing::AllOf(testing::HasSubstr("--model-out"), testing::HasSubstr("--hold-out")));
 }
 
-TEST(TraceCommand, AnAlternativeIsAnotherFormOrColumnAndNamedOnce) {
+TEST(TraceCommand, AnEqualCauseIsAnotherOneAndNamedOnce) {
   const Folder folder;
   std::string table =
       "run,pass_index,load_N,slip,torque_Nm,sinkage_m,drawbar_pull_N,wheel_radius_m,wheel_width_m\n";
@@ -139,7 +139,7 @@ TEST(TraceCommand, AnAlternativeIsAnotherFormOrColumnAndNamedOnce) {
   EXPECT_EQ(effects[0]["family"], "multipass");
   for (const auto& effect : effects) {
     std::set<std::string> named{effect["name"].get<std::string>() + effect["covariate"].get<std::string>()};
-    for (const auto& other : effect["evidence"]["alternatives"]) {
+    for (const auto& other : effect["equal_to"]) {
       const std::string one = other["name"].get<std::string>() + other["covariate"].get<std::string>();
       EXPECT_TRUE(named.insert(one).second) << one;
     }
