@@ -113,10 +113,10 @@ std::string verdictText(const TraceResult& result, const Answer& a) {
   if (!a.strained.empty()) return "unexplained: " + strainedText(a) + "; " + rest;
   if (a.strength_scatter + a.stiffness_scatter > 0.0)
     return fmt::format(
-        "unexplained: {}; the soil's strength scatters by {:.0f} % and its stiffness by {:.0f} % from run to "
-        "run; {} would "
+        "unexplained: {}; the soil's strength scatters by {:.0f} % and its stiffness by {:.0f} % from {} to "
+        "{}; {} would "
         "decide",
-        rest, 100.0 * a.strength_scatter, 100.0 * a.stiffness_scatter, a.measure);
+        rest, 100.0 * a.strength_scatter, 100.0 * a.stiffness_scatter, a.unit, a.unit, a.measure);
   const std::string where = a.column.empty()
                                 ? "it follows no column"
                                 : fmt::format("it varies most with {} ({})", a.column, refusal(result));

@@ -219,15 +219,38 @@ double TraceSearch::gainOf(std::size_t k) const {
   return fit_.scoreOf(model()) - without.fit_.scoreOf(without.model());
 }
 
+RefinedModel TraceSearch::withoutPart(std::size_t k, std::size_t part) const {
+  RefinedModel without = model();
+  without.effects.erase(without.effects.begin() + static_cast<long>(firstPart(k) + part));
+  return without;
+}
+
+double TraceSearch::gainOfPart(std::size_t k, std::size_t part) const {
+  return fit_.scoreOf(model()) - fit_.scoreOf(fit_.fitted(withoutPart(k, part), 12));
+}
+
+bool TraceSearch::acts(std::size_t k) const {
+  const CalibratedRows& rows = fit_.rows();
+  RefinedModel without = model();
+  const auto begin = without.effects.begin() + static_cast<long>(firstPart(k));
+  without.effects.erase(begin, begin + static_cast<long>(part_count_[k]));
+  SolvedContacts solved;
+  const Eigen::VectorXd moved = rows.whitening().marginal(rows.trial().measured.array().isFinite().select(
+      predictRows(without, rows.trial(), solved) - rows.level(), 0.0));
+  constexpr double kShare = 0.02;
+  for (int c = 0; c < kChannels; ++c)
+    if (moved(Eigen::seq(c, Eigen::last, Eigen::fix<kChannels>)).norm() >
+        kShare * std::sqrt(static_cast<double>(rows.trial().rows())))
+      return true;
+  return false;
+}
+
 void TraceSearch::thin(std::size_t k) {
-  const std::size_t first = firstPart(k);
   double score = fit_.scoreOf(model());
   for (std::size_t part = part_count_[k]; part-- > 0 && part_count_[k] > 1;) {
-    RefinedModel without = model();
-    without.effects.erase(without.effects.begin() + static_cast<long>(first + part));
-    without = fit_.fitted(without, 12);
+    const RefinedModel without = fit_.fitted(withoutPart(k, part), 12);
     const double now = fit_.scoreOf(without);
-    if (now < score) continue;
+    if (now < score - closeGain(options_)) continue;
     score = now;
     --part_count_[k];
     fit_.setModel(without);

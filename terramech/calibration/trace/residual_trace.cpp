@@ -66,6 +66,7 @@ struct Path {
   std::vector<Explanation> rejected{};
   std::vector<Promise> first{}, last{};
   double threshold = 0.0;
+  GainDistribution noise{};
   std::size_t pinned = 0;  ///< effects at the front that stay
 };
 
@@ -100,11 +101,24 @@ void check(Path& path) {
   }
 }
 
+/// Takes out what ended at a size that moves nothing.
+void dropIdle(Path& path) {
+  for (std::size_t k = path.effects.size(); k-- > 0;) {
+    if (path.search.acts(k)) continue;
+    path.search.leaveOut(k);
+    path.effects.erase(path.effects.begin() + static_cast<long>(k));
+    if (k >= path.pinned) continue;
+    path.pinned = 0;
+    path.search.trust(std::nullopt);
+  }
+}
+
 /// Finishes the result. While effects make the rows held out of some channel worse, the last of them that was found there
 /// goes out.
 void finishConfirmed(Path& path, TraceResult& result, const TraceOptions& options,
                      const std::function<bool(double)>& go_on) {
   while (true) {
+    dropIdle(path);
     result.effects = path.effects;
     path.search.finish(result);
     result.held_out = holdOut(result, options, foldsOf(result.trial));
@@ -171,6 +185,7 @@ void grow(Path& path, const Trial& trial, const TraceOptions& options,
     if (path.first.empty()) path.first = screening.promises;
     path.last = screening.promises;
     path.threshold = screening.threshold;
+    path.noise = screening.noise;
     path.rejected = path.search.fitBest(screening.promises);
     preferSimple(path.rejected, screening.threshold);
     const double least =
@@ -214,17 +229,20 @@ void reconsiderPair(Path& path) {
   }
 }
 
-/// Forms that were found together, each told for itself.
-std::vector<TracedEffect> apart(const std::vector<TracedEffect>& effects) {
+/// Forms that were found together, each told for itself, by what noise alone would give it.
+std::vector<TracedEffect> apart(const Path& path, const std::vector<TracedEffect>& effects) {
   std::vector<TracedEffect> all;
-  for (const TracedEffect& e : effects) {
+  for (std::size_t k = 0; k < effects.size(); ++k) {
+    const TracedEffect& e = effects[k];
     if (e.chosen.candidate.empirical() || e.chosen.candidate.parts.size() == 1) {
       all.push_back(e);
       continue;
     }
     std::size_t at = 0;
-    for (const Effect& part : e.chosen.candidate.parts) {
+    for (std::size_t own = 0; own < e.chosen.candidate.parts.size(); ++own) {
+      const Effect& part = e.chosen.candidate.parts[own];
       TracedEffect one = e;
+      one.p_value = path.noise.pValue(path.search.gainOfPart(k, own));
       const EffectForm& form = *findEffect(part.name);
       one.chosen.candidate = {{part}, form.family, 0};
       one.channel = form.channel;
@@ -342,7 +360,7 @@ TraceResult searched(const RefinedModel& base, const Trial& trial, const TraceOp
   keepConfirmed(result.held_out, result.scope);
   keepConfirmed(result.ends, result.noise_floor);
   result.refined_rmse = rmseOf(predictInScope(result, asMeasured(result.trial)), result.trial);
-  result.effects = apart(result.effects);
+  result.effects = apart(path, result.effects);
   return result;
 }
 
