@@ -229,11 +229,8 @@ double TraceSearch::gainOfPart(std::size_t k, std::size_t part) const {
   return fit_.scoreOf(model()) - fit_.scoreOf(fit_.fitted(withoutPart(k, part), 12));
 }
 
-bool TraceSearch::acts(std::size_t k) const {
+bool TraceSearch::differs(const RefinedModel& without) const {
   const CalibratedRows& rows = fit_.rows();
-  RefinedModel without = model();
-  const auto begin = without.effects.begin() + static_cast<long>(firstPart(k));
-  without.effects.erase(begin, begin + static_cast<long>(part_count_[k]));
   SolvedContacts solved;
   const Eigen::VectorXd moved = rows.whitening().marginal(rows.trial().measured.array().isFinite().select(
       predictRows(without, rows.trial(), solved) - rows.level(), 0.0));
@@ -245,12 +242,20 @@ bool TraceSearch::acts(std::size_t k) const {
   return false;
 }
 
-void TraceSearch::thin(std::size_t k) {
+bool TraceSearch::acts(std::size_t k) const {
+  RefinedModel without = model();
+  const auto begin = without.effects.begin() + static_cast<long>(firstPart(k));
+  without.effects.erase(begin, begin + static_cast<long>(part_count_[k]));
+  return differs(without);
+}
+
+void TraceSearch::thin(std::size_t k, double least) {
   double score = fit_.scoreOf(model());
   for (std::size_t part = part_count_[k]; part-- > 0 && part_count_[k] > 1;) {
-    const RefinedModel without = fit_.fitted(withoutPart(k, part), 12);
+    const RefinedModel less = withoutPart(k, part), without = fit_.fitted(less, 12);
     const double now = fit_.scoreOf(without);
-    if (now < score - closeGain(options_)) continue;
+    // A form at its bound may gain by what it would do beyond it.
+    if (now < score - least && differs(less)) continue;
     score = now;
     --part_count_[k];
     fit_.setModel(without);

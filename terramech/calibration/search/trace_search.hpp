@@ -66,12 +66,13 @@ class TraceSearch {
   /// What part `part` of accepted candidate number k gains beside everything else, the noise as it is.
   double gainOfPart(std::size_t k, std::size_t part) const;
 
-  /// Whether any part of accepted candidate number k moves the readings of the rows, in any channel by a fiftieth of their
+  /// Whether accepted candidate number k moves the readings of the rows, in any channel by a fiftieth of their
   /// noise, root mean square: less would gain closeGain() in no table that is searched.
   bool acts(std::size_t k) const;
 
-  /// Takes those parts out of accepted candidate number k, last first, that gain no more than closeGain(); one stays.
-  void thin(std::size_t k);
+  /// Takes those parts out of accepted candidate number k, last first, that gain no more than `least` or move
+  /// nothing, as acts(); one stays.
+  void thin(std::size_t k, double least);
 
   /// The effects of accepted candidate number k as they are now in the model.
   std::vector<Effect> parts(std::size_t k) const;
@@ -92,6 +93,8 @@ class TraceSearch {
   GainDistribution distributionOf(const std::vector<Candidate>& candidates, int draws) const;
   bool refineCurve(std::size_t k);
   RefinedModel withoutPart(std::size_t k, std::size_t part) const;
+  /// Whether the readings of the rows differ without an effect, as acts().
+  bool differs(const RefinedModel& without) const;
   std::size_t firstPart(std::size_t k) const;  ///< of accepted candidate number k among the model's effects
   /// Sets the parameters, their standard deviations and the channel of each effect.
   void describe(std::vector<TracedEffect>& effects, const Eigen::MatrixXd& covariance) const;

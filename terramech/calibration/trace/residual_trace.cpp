@@ -76,7 +76,7 @@ void take(Path& path, const std::vector<Explanation>& ranked, double p_value) {
   path.effects.push_back(traced(ranked.front(), p_value));
   TracedEffect& taken = path.effects.back();
   if (taken.chosen.candidate.parts.size() < 2) return;
-  path.search.thin(path.effects.size() - 1);
+  path.search.thin(path.effects.size() - 1, path.close);
   taken.chosen.candidate.parts = path.search.parts(path.effects.size() - 1);
 }
 
@@ -101,8 +101,15 @@ void check(Path& path) {
   }
 }
 
-/// Takes out what ended at a size that moves nothing.
+/// Takes out what ended at a size that moves nothing; of forms found together those stay that gain more than noise would.
 void dropIdle(Path& path) {
+  for (std::size_t k = path.pinned; k < path.effects.size(); ++k) {
+    TracedEffect& effect = path.effects[k];
+    if (effect.chosen.candidate.parts.size() < 2 || effect.chosen.candidate.empirical()) continue;
+    path.search.thin(k, path.threshold);
+    effect.chosen.candidate.parts = path.search.parts(k);
+  }
+  check(path);
   for (std::size_t k = path.effects.size(); k-- > 0;) {
     if (path.search.acts(k)) continue;
     path.search.leaveOut(k);

@@ -112,7 +112,7 @@ TEST(TraceSearch, OfFormsTakenTogetherOnlyThoseThatPayStay) {
   Candidate both = torqueOffset();
   both.parts.push_back({.name = "elastic_rebound", .covariate = "sinkage_m", .parameters = {0.1}});
   search.accept(both);
-  search.thin(0);
+  search.thin(0, closeGain({}));
   ASSERT_EQ(search.parts(0).size(), 1U);
   EXPECT_EQ(search.parts(0)[0].name, "torque_offset");
 }
