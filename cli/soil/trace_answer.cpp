@@ -59,10 +59,13 @@ std::string strainedText(const Answer& a) {
 /// Of effects whose cause is one of several; empty where each has one.
 std::string equalCauses(const TraceResult& result) {
   std::string text;
-  for (const TracedEffect& e : result.effects)
-    if (!e.equal.empty())
-      text += fmt::format("; the cause of {} is one of {}", e.chosen.candidate.parts.front().name,
-                          e.equal.size() + 1);
+  for (const TracedEffect& e : result.effects) {
+    if (e.equal.empty()) continue;
+    text += fmt::format("; {} causes are equal: {} ({})", e.equal.size() + 1,
+                        e.chosen.candidate.parts.front().name, e.chosen.candidate.covariate());
+    for (const Explanation& other : e.equal)
+      text += fmt::format(", {} ({})", other.candidate.parts.front().name, other.candidate.covariate());
+  }
   return text;
 }
 
