@@ -45,6 +45,8 @@ double WheelState::covariate(std::string_view name) const {
     if (key == name) return value;
   for (const auto& [key, text] : group)
     if (key == name) return 1.0;
+  if (const auto star = name.find('*'); star != std::string_view::npos)
+    return covariate(name.substr(0, star)) * covariate(name.substr(star + 1));
   return name == "constant" ? 1.0 : kUnknown;
 }
 

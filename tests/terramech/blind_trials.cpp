@@ -1,4 +1,4 @@
-// Blind trials of residual tracing: blind_trials FIRST_SEED COUNT [library|other|double|none|scatter10|scatter20|site|tied|few|patch] [wide|campaign] [scan].
+// Blind trials of residual tracing: blind_trials FIRST_SEED COUNT [library|other|double|none|scatter10|scatter20|site|tied|few|patch|product] [wide|campaign] [scan].
 // Prints a line a world and the rates that matter; with scan, of the plain scan (plain_scan.hpp) by column alone. Development seeds are 1 to 9999; 100000 and above are for
 // judging, reported once.
 #include <algorithm>
@@ -87,6 +87,7 @@ int main(int argc, char** argv) {
   std::vector<double> pull_ratio, z_ratio;
   for (int seed = first; seed < first + count; ++seed) {
     blind::WorldPlan plan{.seed = static_cast<std::uint64_t>(seed)};
+    plan.product = mode == "product";
     plan.untold = mode == "tied" || mode == "few" || mode == "patch" ? mode : "";
     plan.effects = mode == "none" || mode.starts_with("scatter") || mode == "site" || mode == "patch" ? 0
                    : mode == "double"                                                                 ? 2

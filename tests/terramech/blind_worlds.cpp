@@ -248,6 +248,10 @@ World makeWorld(const WorldPlan& plan) {
     for (Hidden& h : w.hidden)
       if (std::find(h.covariates.begin(), h.covariates.end(), "slip") != h.covariates.end())
         h.covariates.push_back("rim_speed_mps");
+  if (plan.product && plan.seed % 2 == 0)
+    w.hidden = {{"form:pull_dust_temperature", "empirical", {"temperature_C*dust_index"}, {kPull}, -0.12}};
+  else if (plan.product)
+    w.hidden = {{"form:torque_dust_load", "empirical", {"dust_index*load_N"}, {kTorque}, 0.15}};
   RunOffset offset;
   Conditions run{};
   for (int row = 0; row < design.count; ++row) {

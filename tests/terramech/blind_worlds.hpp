@@ -74,6 +74,7 @@ struct WorldPlan {
   /// What nobody can tell: "tied", the column of each effect goes with another; "few", eight rows; "patch", the last third
   /// of the runs on another soil, not recorded.
   std::string untold{};
+  bool product = false;  ///< in place of other effects: a product of two columns
   bool sites =
       false;  ///< runs at three sites, the soil of the third weaker by a fifth and softer by two fifths
 };

@@ -3,6 +3,7 @@
 #include <string>
 #include <string_view>
 
+#include <talus/terramech/calibration/fit/effect_candidates.hpp>
 #include <talus/terramech/calibration/search/rival_causes.hpp>
 
 namespace talus::terramech {
@@ -34,7 +35,10 @@ bool holdsOffset(const Candidate& other, const Effect& own) {
          other.parts.front().channel == own.channel && (other.empirical() || other.family == "drift");
 }
 
+/// Whether the other is another cause than these parts. A product stands for either of its columns, so that only the columns
+/// of another product are causes beside one.
 bool isOther(const Candidate& other, const std::vector<Effect>& own) {
+  if (isProduct(other.covariate()) && !isProduct(own.front().covariate)) return false;
   return std::none_of(own.begin(), own.end(), [&](const Effect& part) {
     return isOneCause(other.parts.front(), part) || holdsOffset(other, part);
   });

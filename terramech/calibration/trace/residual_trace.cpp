@@ -4,6 +4,7 @@
 #include <set>
 #include <string>
 
+#include <talus/terramech/calibration/fit/effect_candidates.hpp>
 #include <talus/terramech/calibration/held_out/end_levels.hpp>
 #include <talus/terramech/calibration/held_out/held_out.hpp>
 #include <talus/terramech/calibration/held_out/model_scope.hpp>
@@ -289,9 +290,12 @@ RefinedModel asDriven(RefinedModel model, const Trial& trial) {
 namespace {
 
 /// How much a kind of account can take up that is not its own: a drift in time or weather holds a constant, a curve
-/// holds any of both.
+/// holds any of both; a product stands for either of its columns.
 int freedom(const Candidate& candidate) {
-  return candidate.empirical() ? 2 : candidate.family == "drift" ? 1 : 0;
+  return isProduct(candidate.covariate()) ? 3
+         : candidate.empirical()          ? 2
+         : candidate.family == "drift"    ? 1
+                                          : 0;
 }
 
 /// Of a lesser kind, or a form of the same family with fewer numbers: one that grows with speed holds a constant, too.

@@ -123,8 +123,12 @@ bool varies(const Trial& trial, const std::string& column) {
 std::vector<std::string> columnsToSet(const TraceResult& result) {
   std::set<std::string> columns{"load_N"};
   const auto add = [&](const Candidate& c) {
-    for (const Effect& part : c.parts)
-      columns.insert(part.only_column.empty() ? part.covariate : part.only_column);
+    for (const Effect& part : c.parts) {
+      const std::string& column = part.only_column.empty() ? part.covariate : part.only_column;
+      const auto star = column.find('*');
+      columns.insert(column.substr(0, star));
+      if (star != std::string::npos) columns.insert(column.substr(star + 1));
+    }
   };
   for (const TracedEffect& e : result.effects) add(e.chosen.candidate);
   for (const RivalCause& r : result.rivals) add(r.explanation.candidate);
