@@ -1,5 +1,6 @@
-// Blind trials of residual tracing: blind_trials FIRST_SEED COUNT [library|other|double|none|scatter10|scatter20|site|tied|few|patch|product] [wide|campaign] [scan].
-// Prints a line a world and the rates that matter; with scan, of the plain scan (plain_scan.hpp) by column alone. Development seeds are 1 to 9999; 100000 and above are for
+// Blind trials of residual tracing: blind_trials FIRST_SEED COUNT [library|other|double|none|scatter10|scatter20|site|tied|few|patch|product] [wide|campaign] [scan|renamed].
+// Prints a line a world and the rates that matter; with scan, of the plain scan (plain_scan.hpp) by column alone; with renamed, whether other
+// names of columns change the answer. Development seeds are 1 to 9999; 100000 and above are for
 // judging, reported once.
 #include <algorithm>
 #include <cmath>
@@ -75,6 +76,25 @@ Named named(const blind::World& world, const std::vector<std::string>& columns) 
   return n;
 }
 
+/// What a trace names, own columns by their number.
+std::string answerWith(blind::World world, const std::vector<std::string>& names) {
+  const std::vector<std::string> own{"temperature_C", "dust_index", "battery_V"};
+  for (std::string& column : world.columns)
+    for (std::size_t k = 0; k < own.size(); ++k)
+      if (column == own[k]) column = names[k];
+  const RefinedModel base = baseOf(world);
+  std::string answer;
+  for (const TracedEffect& e :
+       traceResiduals(base, makeTrial(telemetryOf(world, world.rows), base)).effects) {
+    std::string column = e.chosen.candidate.covariate();
+    for (std::size_t k = 0; k < own.size(); ++k)
+      if (const auto at = column.find(names[k]); at != std::string::npos)
+        column.replace(at, names[k].size(), std::to_string(k));
+    answer += e.chosen.candidate.parts.front().name + '(' + column + ") ";
+  }
+  return answer;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -100,6 +120,14 @@ int main(int argc, char** argv) {
     const blind::World world = blind::makeWorld(plan);
     const double start = cpu();
     const RefinedModel base = baseOf(world);
+    if (argc > 5 && std::string(argv[5]) == "renamed") {
+      const std::string a = answerWith(world, {"temperature_C", "dust_index", "battery_V"}),
+                        b = answerWith(world, {"operator_id", "hours_since_rain", "moisture_pct"});
+      std::printf("%6d %s: %s| %s\n", seed, a == b ? "same" : "DIFFERS", a.c_str(), b.c_str());
+      std::fflush(stdout);
+      alarms += a != b;
+      continue;
+    }
     if (argc > 5) {
       const Named n = named(world, plainScan(base, makeTrial(telemetryOf(world, world.rows), base)));
       hidden += static_cast<int>(world.hidden.size());

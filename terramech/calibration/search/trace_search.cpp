@@ -252,15 +252,23 @@ bool TraceSearch::acts(std::size_t k) const {
 void TraceSearch::thin(std::size_t k, double least) {
   double score = fit_.scoreOf(model());
   for (std::size_t part = part_count_[k]; part-- > 0 && part_count_[k] > 1;) {
-    const RefinedModel less = withoutPart(k, part), without = fit_.fitted(less, 12);
+    const RefinedModel without = fit_.fitted(withoutPart(k, part), 12);
     const double now = fit_.scoreOf(without);
-    // A form at its bound may gain by what it would do beyond it.
-    if (now < score - least && differs(less)) continue;
+    if (now < score - least) continue;
     score = now;
     --part_count_[k];
     fit_.setModel(without);
   }
   settleAll();
+}
+
+void TraceSearch::dropIdleParts(std::size_t k) {
+  for (std::size_t part = part_count_[k]; part-- > 0 && part_count_[k] > 1;) {
+    const RefinedModel without = withoutPart(k, part);
+    if (differs(without)) continue;
+    --part_count_[k];
+    fit_.setModel(without);
+  }
 }
 
 std::vector<Effect> TraceSearch::parts(std::size_t k) const {

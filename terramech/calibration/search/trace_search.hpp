@@ -70,9 +70,12 @@ class TraceSearch {
   /// noise, root mean square: less would gain closeGain() in no table that is searched.
   bool acts(std::size_t k) const;
 
-  /// Takes those parts out of accepted candidate number k, last first, that gain no more than `least` or move
-  /// nothing, as acts(); one stays.
+  /// Takes those parts out of accepted candidate number k, last first, that gain no more than `least`; one stays.
   void thin(std::size_t k, double least);
+
+  /// Takes those parts out of it that move nothing, as acts(), whatever they gain: a form at its bound may gain by what it
+  /// would do beyond it, to first order. One stays.
+  void dropIdleParts(std::size_t k);
 
   /// The effects of accepted candidate number k as they are now in the model.
   std::vector<Effect> parts(std::size_t k) const;

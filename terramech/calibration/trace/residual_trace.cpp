@@ -108,6 +108,7 @@ void dropIdle(Path& path) {
     TracedEffect& effect = path.effects[k];
     if (effect.chosen.candidate.parts.size() < 2 || effect.chosen.candidate.empirical()) continue;
     path.search.thin(k, path.threshold);
+    path.search.dropIdleParts(k);
     effect.chosen.candidate.parts = path.search.parts(k);
   }
   check(path);

@@ -117,5 +117,15 @@ TEST(TraceSearch, OfFormsTakenTogetherOnlyThoseThatPayStay) {
   EXPECT_EQ(search.parts(0)[0].name, "torque_offset");
 }
 
+TEST(TraceSearch, OfFormsTakenTogetherOneOfSizeZeroLeaves) {
+  TraceSearch search(sand(), offsetTrial(), {});
+  Candidate both = torqueOffset();
+  both.parts.push_back({.name = "elastic_rebound", .covariate = "sinkage_m", .parameters = {0.0}});
+  search.accept(both);
+  search.dropIdleParts(0);
+  ASSERT_EQ(search.parts(0).size(), 1U);
+  EXPECT_EQ(search.parts(0)[0].name, "torque_offset");
+}
+
 }  // namespace trace_search_test
 }  // namespace talus::terramech
