@@ -7,10 +7,12 @@
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/soil/left_out_report.hpp>
+#include <talus/cli/soil/proposal_report.hpp>
 #include <talus/cli/soil/table_options.hpp>
 #include <talus/cli/soil/trace_report.hpp>
 #include <talus/common/progress_monitor.hpp>
 #include <talus/terramech/calibration/trace/left_out.hpp>
+#include <talus/terramech/calibration/trace/run_proposal.hpp>
 #include <talus/terramech/calibration/trace/trace_input.hpp>
 #include <talus/terramech/calibration/trace/trace_table.hpp>
 
@@ -18,7 +20,8 @@ namespace talus::cli {
 namespace {
 
 struct TraceCommandOptions {
-  std::string telemetry, base, rover, model_out, html, hold_out;
+  std::string telemetry, base, rover, model_out, html, hold_out, runs_out, score;
+  int propose = 0;
   double significance = terramech::TraceOptions{}.significance;
   TableOptions columns;
 };
@@ -43,12 +46,27 @@ void bind(CLI::App& command, TraceCommandOptions& options) {
               "trace without these rows, then predict them: each level of a column in turn, or its values "
               "V,V or LOW..HIGH; a value that holds a comma in double quotes")
           ->type_name("COLUMN[=VALUES]");
+  auto* propose = command
+                      .add_option("--propose", options.propose,
+                                  "runs to make next: where the causes that are left predict most apart")
+                      ->check(CLI::Range(1, 20))
+                      ->excludes(hold_out)
+                      ->type_name("N");
+  command
+      .add_option("--score", options.score,
+                  "measured runs, such as a proposed table with its empty columns filled: what they say of "
+                  "each cause")
+      ->excludes(hold_out)
+      ->type_name("RUNS.csv");
   groupOptions(command, "Analysis");
   addTableOptions(command, options.columns);
   addOutput(command, "--model-out", options.model_out, "refined model to write")
       ->excludes(hold_out)
       ->type_name("M.yaml");
   addOutput(command, "--html", options.html, "page to write, with charts")->type_name("R.html");
+  addOutput(command, "-o,--output", options.runs_out, "proposed runs to write, with what each cause predicts")
+      ->needs(propose)
+      ->type_name("RUNS.csv");
   groupOptions(command, "Output");
 }
 
@@ -89,6 +107,15 @@ void writeModel(const std::string& path, const terramech::TableTrace& trace, con
                  "it, plan and costmap refuse it");
 }
 
+/// What measured runs say of the causes that a trace leaves.
+std::vector<terramech::CauseScore> scored(const TraceCommandOptions& options,
+                                          const terramech::TableTrace& trace, const Context& context) {
+  const terramech::Telemetry measured =
+      terramech::readTraceTable(tableFile(options.score, options.columns, context));
+  warnOfRejected(measured, context);
+  return terramech::scoreCauses(trace.result, terramech::makeTrial(measured, trace.result.refined));
+}
+
 int run(const TraceCommandOptions& options, Context& context) {
   const terramech::TableTraceOptions how{
       .base = terramech::baseModel(options.base, options.rover),
@@ -102,10 +129,21 @@ int run(const TraceCommandOptions& options, Context& context) {
   if (watch.stopped()) return Exit::kCancelled;
   if (!options.model_out.empty()) writeModel(options.model_out, trace, context);
   if (!options.html.empty()) writeFile(options.html, tracePage(trace));
-  if (context.json)
-    printJson(traceJson(trace));
-  else
-    print(traceText(trace));
+  const auto runs = options.propose > 0 ? terramech::proposeRuns(trace.result, options.propose)
+                                        : std::vector<terramech::ProposedRun>{};
+  if (!options.runs_out.empty() && !runs.empty())
+    writeFile(options.runs_out, proposalTable(runs, trace.result));
+  const auto scores =
+      options.score.empty() ? std::vector<terramech::CauseScore>{} : scored(options, trace, context);
+  if (context.json) {
+    nlohmann::ordered_json answer = traceJson(trace);
+    if (options.propose > 0) answer["proposals"] = proposalsJson(runs);
+    if (!scores.empty()) answer["scores"] = scoresJson(scores);
+    printJson(answer);
+  } else {
+    print(traceText(trace) + (options.propose > 0 ? proposalText(runs, trace.result.trial) : "") +
+          scoreText(scores));
+  }
   return trace.applies.applies ? Exit::kDone : Exit::kNo;
 }
 
@@ -119,7 +157,9 @@ void addTrace(CLI::App& app, Context& context) {
        .description = "find effects missing from a wheel model; write the refined model",
        .examples = "  talus trace drive.csv --base soil.yaml --model-out refined.yaml --html residuals.html\n"
                    "  talus trace drive.csv --json\n"
-                   "  talus trace runs.csv --hold-out slip=0.5..1\n"},
+                   "  talus trace runs.csv --hold-out slip=0.5..1\n"
+                   "  talus trace runs.csv --propose 3 -o next.csv\n"
+                   "  talus trace runs.csv --score next.csv\n"},
       bind, run);
 }
 

@@ -56,6 +56,19 @@ std::string strainedText(const Answer& a) {
   return text;
 }
 
+/// Of effects whose cause is one of several; empty where each has one.
+std::string equalCauses(const TraceResult& result) {
+  std::string text;
+  for (const TracedEffect& e : result.effects) {
+    if (e.equal.empty()) continue;
+    text += fmt::format("; {} causes are equal: {} ({})", e.equal.size() + 1,
+                        e.chosen.candidate.parts.front().name, e.chosen.candidate.covariate());
+    for (const Explanation& other : e.equal)
+      text += fmt::format(", {} ({})", other.candidate.parts.front().name, other.candidate.covariate());
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string refusal(const TraceResult& result, const Explanation& rejected) {
@@ -93,8 +106,8 @@ std::string verdictText(const TraceResult& result, const Answer& a) {
   if (a.verdict == Verdict::NothingMissing)
     return "nothing missing: the residuals are consistent with noise; " + rest;
   if (a.verdict == Verdict::Explained)
-    return fmt::format("explained by {} effect{}: {}{}", result.effects.size(),
-                       result.effects.size() == 1 ? "" : "s", rest,
+    return fmt::format("explained by {} effect{}{}: {}{}", result.effects.size(),
+                       result.effects.size() == 1 ? "" : "s", equalCauses(result), rest,
                        !a.strained.empty()           ? "; " + strainedText(a)
                        : a.open && !a.column.empty() ? ", of which most varies with " + a.column
                                                      : "");
@@ -103,10 +116,10 @@ std::string verdictText(const TraceResult& result, const Answer& a) {
   if (!a.strained.empty()) return "unexplained: " + strainedText(a) + "; " + rest;
   if (a.strength_scatter + a.stiffness_scatter > 0.0)
     return fmt::format(
-        "unexplained: {}; the soil's strength scatters by {:.0f} % and its stiffness by {:.0f} % from run to "
-        "run; {} would "
+        "unexplained: {}; the soil's strength scatters by {:.0f} % and its stiffness by {:.0f} % from {} to "
+        "{}; {} would "
         "decide",
-        rest, 100.0 * a.strength_scatter, 100.0 * a.stiffness_scatter, a.measure);
+        rest, 100.0 * a.strength_scatter, 100.0 * a.stiffness_scatter, a.unit, a.unit, a.measure);
   const std::string where = a.column.empty()
                                 ? "it follows no column"
                                 : fmt::format("it varies most with {} ({})", a.column, refusal(result));

@@ -104,15 +104,6 @@ std::string sizes(const TracedEffect& effect) {
   return text;
 }
 
-std::string rivals(const TracedEffect& effect) {
-  std::string text;
-  for (const Explanation& rival : effect.alternatives)
-    text += fmt::format("{}{} ({}; lower by {:.1f})", text.empty() ? "" : ", ",
-                        rival.candidate.parts.front().name, rival.candidate.covariate(),
-                        effect.chosen.gain - rival.gain);
-  return text.empty() ? "no close alternative" : text;
-}
-
 void effects(HtmlReport& page, const TableTrace& trace) {
   page.heading("Effects missing from the base model");
   if (trace.result.effects.empty()) {
@@ -132,12 +123,12 @@ void effects(HtmlReport& page, const TableTrace& trace) {
     forms.push_back({part.name,
                      std::string(form ? form->formula : "curve fitted to the residual") +
                          (role.empty() ? "" : "; it " + role),
-                     rivals(e), separatingMeasurement(trace.result.trial, e)});
+                     e.equal.empty() ? "" : equalText(e), separatingMeasurement(trace.result.trial, e)});
   }
   page.table({"effect", "covariate", "channel", "parameters (standard deviation)", "p (all tests)",
               "log-likelihood gain"},
              found);
-  page.table({"effect", "form", "alternatives", "how to discriminate"}, forms);
+  page.table({"effect", "form", "equal causes", "how to discriminate"}, forms);
 }
 
 std::vector<std::string> errorRow(const std::string& rows, Channel c, const ChannelErrors& base,

@@ -57,7 +57,7 @@ ordered_json evidenceJson(const TableTrace& trace, const TracedEffect& effect) {
     if (trace.result.trial.has(c))
       by_channel[name(c)] = effect.chosen.by_channel[static_cast<std::size_t>(c)];
   ordered_json rivals = ordered_json::array();
-  for (const Explanation& e : effect.alternatives) rivals.push_back(rivalJson(e));
+  for (const Explanation& e : effect.equal) rivals.push_back(rivalJson(e));
   return {{"log_likelihood_gain", 0.5 * effect.chosen.chi2_gain},
           {"gain", effect.chosen.gain},
           {"chi2_gain_by_channel", by_channel},
@@ -79,6 +79,10 @@ ordered_json effectJson(const TableTrace& trace, const TracedEffect& effect, con
   out["adds"] = role.adds;
   out["takes_back"] = role.takes_back;
   out["p_value"] = effect.p_value;
+  out["equal_to"] = ordered_json::array();
+  for (const Explanation& e : effect.equal)
+    out["equal_to"].push_back(
+        {{"name", e.candidate.parts.front().name}, {"covariate", e.candidate.covariate()}});
   out["evidence"] = evidenceJson(trace, effect);
   if (const EffectForm* form = findEffect(part.name)) {
     out["formula"] = form->formula;
@@ -115,7 +119,7 @@ double correlation(const Eigen::VectorXd& x, const Eigen::VectorXd& y) {
   return xx > 0.0 && yy > 0.0 ? xy / std::sqrt(xx * yy) : 0.0;
 }
 
-std::string effectLine(const TracedEffect& effect, const EffectRole& role) {
+std::string effectLine(const Trial& trial, const TracedEffect& effect, const EffectRole& role) {
   const Effect& part = effect.chosen.candidate.parts.front();
   std::string line =
       fmt::format("  {} in {} (covariate {}{})", part.name, name(effect.channel), covariateOf(part),
@@ -135,11 +139,8 @@ std::string effectLine(const TracedEffect& effect, const EffectRole& role) {
       "\n"
       "    {}, log-likelihood gain {:.1f}",
       "p " + pText(effect.p_value), 0.5 * effect.chosen.chi2_gain);
-  for (const Explanation& e : effect.alternatives)
-    line += fmt::format(
-        "\n"
-        "    alternative: {} ({}), log-likelihood lower by {:.1f}",
-        e.candidate.parts.front().name, e.candidate.covariate(), effect.chosen.gain - e.gain);
+  if (!effect.equal.empty())
+    line += fmt::format("\n    {}: {}", equalText(effect), separatingMeasurement(trial, effect));
   return line + "\n";
 }
 
@@ -169,6 +170,14 @@ std::vector<FittedNumber> fittedNumbers(const TracedEffect& effect) {
   return numbers;
 }
 
+std::string equalText(const TracedEffect& effect) {
+  std::string causes;
+  for (const Explanation& e : effect.equal)
+    causes += fmt::format("{}{} ({})", causes.empty() ? "" : " or ", e.candidate.parts.front().name,
+                          e.candidate.covariate());
+  return "these rows cannot separate it from " + causes;
+}
+
 const std::string& covariateOf(const Effect& effect) {
   return effect.only_column.empty() ? effect.covariate : effect.only_column;
 }
@@ -185,7 +194,7 @@ std::vector<std::string> confounded(const Trial& trial, const std::string& covar
 
 std::string separatingMeasurement(const Trial& trial, const TracedEffect& effect) {
   const std::string& own = effect.chosen.candidate.covariate();
-  for (const Explanation& rival : effect.alternatives)
+  for (const Explanation& rival : effect.equal)
     if (rival.candidate.covariate() != own)
       return "measure rows in which " + own + " and " + rival.candidate.covariate() +
              " vary independently, to discriminate " + effect.chosen.candidate.parts.front().name + " from " +
@@ -194,10 +203,10 @@ std::string separatingMeasurement(const Trial& trial, const TracedEffect& effect
   if (!close.empty())
     return own + " is correlated with " + close.front() +
            " in these rows; vary one and keep the other constant";
-  if (!effect.alternatives.empty())
+  if (!effect.equal.empty())
     return "measure rows over a wider range of " + own + ", to discriminate " +
            effect.chosen.candidate.parts.front().name + " from " +
-           effect.alternatives.front().candidate.parts.front().name;
+           effect.equal.front().candidate.parts.front().name;
   return "no close alternative";
 }
 
@@ -352,7 +361,7 @@ std::string traceText(const TableTrace& trace) {
   for (const std::string& name : soilAtBounds(r.refined))
     out += "warning: " + name + " of the soil is at the bound of its range\n";
   const std::vector<EffectRole> roles = rolesOf(r);
-  for (std::size_t k = 0; k < roles.size(); ++k) out += effectLine(r.effects[k], roles[k]);
+  for (std::size_t k = 0; k < roles.size(); ++k) out += effectLine(r.trial, r.effects[k], roles[k]);
   for (const HeldOut& held : trace.held_out) {
     out += fmt::format(
         "held out: {}\n"

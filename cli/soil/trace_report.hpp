@@ -29,6 +29,9 @@ std::vector<FittedNumber> fittedNumbers(const terramech::TracedEffect& effect);
 /// A p-value as text: below 0.001, and below what the drawn tables can tell, as a bound.
 std::string pText(double p);
 
+/// One line about the other causes that the rows cannot separate from an effect; there must be some.
+std::string equalText(const terramech::TracedEffect& effect);
+
 /// The measurement that would discriminate between an effect and its closest alternative.
 std::string separatingMeasurement(const terramech::Trial& trial, const terramech::TracedEffect& effect);
 

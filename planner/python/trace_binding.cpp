@@ -71,7 +71,7 @@ py::tuple curveOf(const TracedEffect& effect) {
 
 std::vector<std::string> alternativesOf(const TracedEffect& effect) {
   std::vector<std::string> names;
-  for (const Explanation& e : effect.alternatives) names.push_back(e.candidate.parts.front().name);
+  for (const Explanation& e : effect.equal) names.push_back(e.candidate.parts.front().name);
   return names;
 }
 

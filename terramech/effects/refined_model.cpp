@@ -9,24 +9,6 @@
 namespace talus::terramech {
 namespace {
 
-/// A column as if it had been measured so; one that is only text or unknown stays.
-void setCovariate(WheelState& state, std::string_view name, double value) {
-  static constexpr std::pair<const char*, double WheelState::*> kOwn[] = {
-      {"slip", &WheelState::slip},
-      {"slip_angle_rad", &WheelState::slip_angle_rad},
-      {"load_N", &WheelState::load_N},
-      {"speed_mps", &WheelState::speed_mps},
-      {"rim_speed_mps", &WheelState::rim_speed_mps},
-      {"time_s", &WheelState::time_s},
-      {"pass_index", &WheelState::pass_index},
-      {"slope_rad", &WheelState::slope_rad}};
-  for (const auto& [own, member] : kOwn)
-    if (name == own) state.*member = value;
-  if (name == "grouser_height_m") state.wheel.grouser_height_m = value;
-  for (auto& [key, number] : state.extra)
-    if (key == name) number = value;
-}
-
 /// The effects of a model with their forms looked up.
 class Bound {
  public:
@@ -59,7 +41,7 @@ class Bound {
   static WheelState atEdge(const BoundEffect& e, WheelState state) {
     const auto& ends = e.effect->knots;
     const std::string& column = e.effect->covariate;
-    setCovariate(state, column, std::clamp(state.covariate(column), ends.front(), ends.back()));
+    state.setCovariate(column, std::clamp(state.covariate(column), ends.front(), ends.back()));
     return state;
   }
 

@@ -37,6 +37,9 @@ struct WheelState {
   /// the name of a grouping column have the value 1.
   double covariate(std::string_view name) const;
 
+  /// Sets a numeric column that covariate() finds, as if it had been measured so; a count is rounded, other names are ignored.
+  void setCovariate(std::string_view name, double value);
+
   /// Text of a grouping column; empty when there is none of that name.
   std::string_view label(std::string_view column) const;
 };

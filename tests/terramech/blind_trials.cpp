@@ -1,5 +1,6 @@
-// Blind trials of residual tracing: blind_trials FIRST_SEED COUNT [library|other|double|none|scatter10|scatter20|site] [wide|campaign] [scan].
-// Prints a line a world and the rates that matter; with scan, of the plain scan (plain_scan.hpp) by column alone. Development seeds are 1 to 9999; 100000 and above are for
+// Blind trials of residual tracing: blind_trials FIRST_SEED COUNT [library|other|double|none|scatter10|scatter20|site|tied|few|patch|product] [wide|campaign] [scan|renamed].
+// Prints a line a world and the rates that matter; with scan, of the plain scan (plain_scan.hpp) by column alone; with renamed, whether other
+// names of columns change the answer. Development seeds are 1 to 9999; 100000 and above are for
 // judging, reported once.
 #include <algorithm>
 #include <cmath>
@@ -75,20 +76,42 @@ Named named(const blind::World& world, const std::vector<std::string>& columns) 
   return n;
 }
 
+/// What a trace names, own columns by their number.
+std::string answerWith(blind::World world, const std::vector<std::string>& names) {
+  const std::vector<std::string> own{"temperature_C", "dust_index", "battery_V"};
+  for (std::string& column : world.columns)
+    for (std::size_t k = 0; k < own.size(); ++k)
+      if (column == own[k]) column = names[k];
+  const RefinedModel base = baseOf(world);
+  std::string answer;
+  for (const TracedEffect& e :
+       traceResiduals(base, makeTrial(telemetryOf(world, world.rows), base)).effects) {
+    std::string column = e.chosen.candidate.covariate();
+    for (std::size_t k = 0; k < own.size(); ++k)
+      if (const auto at = column.find(names[k]); at != std::string::npos)
+        column.replace(at, names[k].size(), std::to_string(k));
+    answer += e.chosen.candidate.parts.front().name + '(' + column + ") ";
+  }
+  return answer;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   const std::string mode = argc > 3 ? argv[3] : "library";
   const int first = argc > 1 ? std::atoi(argv[1]) : 1, count = argc > 2 ? std::atoi(argv[2]) : 10;
   const auto cpu = [] { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; };
+  int sure = 0, equal_said = 0, claimed = 0;
   int located = 0, family = 0, hidden = 0, all_found = 0, alarms = 0;
   double slowest = 0.0;
   std::vector<double> pull_ratio, z_ratio;
   for (int seed = first; seed < first + count; ++seed) {
     blind::WorldPlan plan{.seed = static_cast<std::uint64_t>(seed)};
-    plan.effects = mode == "none" || mode.starts_with("scatter") || mode == "site" ? 0
-                   : mode == "double"                                              ? 2
-                                                                                   : 1;
+    plan.product = mode == "product";
+    plan.untold = mode == "tied" || mode == "few" || mode == "patch" ? mode : "";
+    plan.effects = mode == "none" || mode.starts_with("scatter") || mode == "site" || mode == "patch" ? 0
+                   : mode == "double"                                                                 ? 2
+                                                                                                      : 1;
     plan.scatter = mode == "scatter10" ? 0.1 : mode == "scatter20" ? 0.2 : 0.0;
     plan.sites = mode == "site";
     plan.library = mode != "other";
@@ -97,6 +120,14 @@ int main(int argc, char** argv) {
     const blind::World world = blind::makeWorld(plan);
     const double start = cpu();
     const RefinedModel base = baseOf(world);
+    if (argc > 5 && std::string(argv[5]) == "renamed") {
+      const std::string a = answerWith(world, {"temperature_C", "dust_index", "battery_V"}),
+                        b = answerWith(world, {"operator_id", "hours_since_rain", "moisture_pct"});
+      std::printf("%6d %s: %s| %s\n", seed, a == b ? "same" : "DIFFERS", a.c_str(), b.c_str());
+      std::fflush(stdout);
+      alarms += a != b;
+      continue;
+    }
     if (argc > 5) {
       const Named n = named(world, plainScan(base, makeTrial(telemetryOf(world, world.rows), base)));
       hidden += static_cast<int>(world.hidden.size());
@@ -113,6 +144,13 @@ int main(int argc, char** argv) {
       claims.push_back(
           {e.chosen.candidate.parts.front().name, e.chosen.candidate.covariate(), name(e.channel)});
     const blind::Marks marks = blind::judge(world, claims);
+    for (const TracedEffect& e : result.effects) {
+      std::vector<std::string> columns{e.chosen.candidate.covariate()};
+      for (const Explanation& other : e.equal) columns.push_back(other.candidate.covariate());
+      sure += named(world, columns).found == 0 && e.equal.empty();
+      equal_said += !e.equal.empty();
+      ++claimed;
+    }
     const ChannelErrors held = rmseOf(result.refined, makeTrial(telemetryOf(world, world.held), base));
     pull_ratio.push_back(held[0] / rms(world.floor_pull));
     z_ratio.push_back(held[1] / rms(world.floor_z));
@@ -131,6 +169,9 @@ int main(int argc, char** argv) {
                   e.chosen.candidate.covariate().c_str(), name(e.channel));
       for (double p : e.chosen.candidate.parts.front().parameters) std::printf(" %.3g", p);
       std::printf("] %.2f", e.chosen.chi2_gain / (3.0 * static_cast<double>(world.rows.size())));
+      for (const Explanation& other : e.equal)
+        std::printf(" = %s(%s)", other.candidate.parts.front().name.c_str(),
+                    other.candidate.covariate().c_str());
     }
     std::printf(" %s%s\n", marks.located == marks.hidden ? "" : "MISSED ",
                 marks.claimed > marks.located ? "EXTRA" : "");
@@ -144,6 +185,8 @@ int main(int argc, char** argv) {
       "located %d/%d, family %d/%d, all found %d/%d, sets with an extra %d/%d, slowest %.1f s of one core\n",
       located, hidden, family, hidden, all_found, count, alarms, count, slowest);
   if (pull_ratio.empty()) return 0;
+  std::printf("of %d causes named %d with others equal; wrong and without any: %d\n", claimed, equal_said,
+              sure);
   std::printf("held-out rmse over floor: pull");
   show(pull_ratio);
   std::printf(", sinkage");

@@ -122,6 +122,9 @@ Answer truth(const World& world, const Conditions& at) {
   if (has(world, "form:torque_battery_parabola", a))
     out.torque += at.load * at.radius * a * std::pow((at.battery - 26.0) / 3.0, 2);
   if (has(world, "form:pull_dust_saturating", a)) out.pull += at.load * a * (1.0 - std::exp(-3.0 * at.dust));
+  if (has(world, "form:pull_dust_temperature", a)) out.pull += at.load * a * at.dust * at.temperature / 20.0;
+  if (has(world, "form:torque_dust_load", a))
+    out.torque += at.load * at.radius * a * at.dust * at.load / 100.0;
   if (has(world, "form:pull_speed_peak", a))
     out.pull += at.load * a * std::exp(-std::pow(std::log(at.speed / 0.05) / 0.4, 2));
   return out;

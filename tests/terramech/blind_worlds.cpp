@@ -196,6 +196,19 @@ void addIdleColumns(const Design& design, std::vector<std::string>& columns,
   }
 }
 
+/// A column that goes with that of each effect.
+void addTied(World& w, Random& random) {
+  for (std::size_t h = 0; h < w.hidden.size(); ++h) {
+    const std::string& own = w.hidden[h].covariates.front();
+    const auto at =
+        static_cast<std::size_t>(std::find(w.columns.begin(), w.columns.end(), own) - w.columns.begin());
+    const double factor = random.uniform(0.5, 2.0), offset = random.uniform(0.0, 10.0);
+    w.columns.push_back("tied_" + std::to_string(h));
+    for (auto* rows : {&w.rows, &w.held})
+      for (auto& row : *rows) row.push_back(at < row.size() ? offset + factor * row[at] : random.normal());
+  }
+}
+
 }  // namespace
 
 World makeWorld(const WorldPlan& plan) {
@@ -223,9 +236,11 @@ World makeWorld(const WorldPlan& plan) {
       h = draw(plan.library ? libraryKinds() : otherKinds(), random);
     w.hidden.push_back(h);
   }
-  const Design design = plan.campaign ? campaignDesign(random)
-                        : plan.wide   ? wideDesign(random)
-                                      : plainDesign(random);
+  Design design = plan.campaign ? campaignDesign(random)
+                  : plan.wide   ? wideDesign(random)
+                                : plainDesign(random);
+  if (plan.untold == "few") design.rows_a_run = 1, design.count = 8;
+  if (plan.untold == "patch") w.hidden = {{"patch", "empirical", {"time_s"}, {kPull, kSink, kTorque}, 0.8}};
   if (plan.sites) w.hidden = {{"another_soil", "empirical", {"site"}, {kPull, kSink, kTorque}, 0.8}};
   for (Hidden& h : w.hidden)
     while (!shows(h, design)) h = draw(plan.library ? libraryKinds() : otherKinds(), random);
@@ -233,6 +248,10 @@ World makeWorld(const WorldPlan& plan) {
     for (Hidden& h : w.hidden)
       if (std::find(h.covariates.begin(), h.covariates.end(), "slip") != h.covariates.end())
         h.covariates.push_back("rim_speed_mps");
+  if (plan.product && plan.seed % 2 == 0)
+    w.hidden = {{"form:pull_dust_temperature", "empirical", {"temperature_C*dust_index"}, {kPull}, -0.12}};
+  else if (plan.product)
+    w.hidden = {{"form:torque_dust_load", "empirical", {"dust_index*load_N"}, {kTorque}, 0.15}};
   RunOffset offset;
   Conditions run{};
   for (int row = 0; row < design.count; ++row) {
@@ -246,7 +265,9 @@ World makeWorld(const WorldPlan& plan) {
       if (row % design.rows_a_run == 0) {
         run = c;
         if (plan.scatter > 0.0) run.strength = std::max(0.3, 1.0 + plan.scatter * random.normal());
-        if (plan.sites && w.run.back() % 3 == 2) run.strength = 0.8, run.stiffness = 0.6;
+        const bool other =
+            plan.sites ? w.run.back() % 3 == 2 : plan.untold == "patch" && 3 * row >= 2 * design.count;
+        if (other) run.strength = 0.8, run.stiffness = 0.6;
       }
       c = within(run, c);
       if (plan.sites) w.site.push_back(std::string(1, static_cast<char>('A' + w.run.back() % 3)));
@@ -273,6 +294,7 @@ World makeWorld(const WorldPlan& plan) {
     for (auto* rows : {&w.rows, &w.held})
       for (auto& row : *rows) row.erase(row.begin() + at);
   }
+  if (plan.untold == "tied") addTied(w, random);
   std::vector<std::string> held_columns = w.columns;
   addIdleColumns(design, held_columns, w.held, random);
   addIdleColumns(design, w.columns, w.rows, random);

@@ -71,6 +71,10 @@ struct WorldPlan {
       false;  ///< designs and noise of many kinds: one slip level, a rim speed tied to slip, runs with
               ///< offsets of their own, columns that mean nothing, drifting or heavy-tailed noise
   double scatter = 0.0;  ///< standard deviation by which tan phi and c differ from run to run, relative
+  /// What nobody can tell: "tied", the column of each effect goes with another; "few", eight rows; "patch", the last third
+  /// of the runs on another soil, not recorded.
+  std::string untold{};
+  bool product = false;  ///< in place of other effects: a product of two columns
   bool sites =
       false;  ///< runs at three sites, the soil of the third weaker by a fifth and softer by two fifths
 };

@@ -267,6 +267,14 @@ void addCurves(const Trial& trial, const std::string& covariate, const std::vect
     all.push_back({{std::move(curve)}, "empirical", static_cast<int>(knots.size())});
 }
 
+/// Of the rows, values of a run that are equal counted once: what is fixed in runs has as many as there are runs.
+std::size_t independentValues(const Trial& trial, const Eigen::VectorXd& x) {
+  std::set<std::pair<int, double>> values;
+  for (Eigen::Index row = 0; row < x.size(); ++row)
+    if (std::isfinite(x[row])) values.insert({trial.run[static_cast<std::size_t>(row)], x[row]});
+  return values.size();
+}
+
 /// Where a step may lie: up to nine gaps between values, at even shares of the rows, each the widest within a
 /// twentieth of them.
 std::vector<std::vector<double>> stepsOf(const Eigen::VectorXd& x) {
@@ -305,7 +313,33 @@ void addGroups(const Trial& trial, const std::string& column, std::vector<Candid
   }
 }
 
+/// Lines over products of a column of one's own with another, or with what a run sets.
+void addProducts(const Trial& trial, std::vector<Candidate>& all) {
+  constexpr std::size_t kMostOwn =
+      6;  // of more, whose pairs would outnumber all other candidates, none with each other
+  std::vector<std::string> own, set;
+  for (const std::string& column : trial.covariates)
+    if (isOwnColumn(column) && !isProduct(column)) own.push_back(column);
+  for (const char* column : {"slip", "load_N", "speed_mps"})
+    if (std::find(trial.covariates.begin(), trial.covariates.end(), column) != trial.covariates.end())
+      set.emplace_back(column);
+  for (std::size_t a = 0; a < own.size(); ++a) {
+    std::vector<std::string> others = set;
+    if (own.size() <= kMostOwn)
+      others.insert(others.end(), own.begin() + static_cast<long>(a) + 1, own.end());
+    for (const std::string& other : others) {
+      const std::string product = own[a] + '*' + other;
+      const auto knots = quantileKnots(covariateValues(trial, product, {}), 2);
+      if (knots.size() == 2) addCurves(trial, product, knots, all);
+    }
+  }
+}
+
 }  // namespace
+
+bool isProduct(const std::string& covariate) {
+  return covariate.find('*') != std::string::npos;
+}
 
 bool isOwnColumn(const std::string& column) {
   const auto& known = stateColumns();
@@ -337,10 +371,13 @@ std::vector<Candidate> empiricalCandidates(const Trial& trial, const Eigen::Vect
   for (const std::string& name : names) {
     if (isTwin(trial, name)) continue;
     const Eigen::VectorXd x = covariateValues(trial, name, sinkage_m);
+    const std::size_t independent = independentValues(trial, x);
     std::size_t coarser = 1;
     for (int most : {2, 4, 7}) {
       const auto knots = quantileKnots(x, most);
-      if (knots.size() <= coarser || 4 * static_cast<int>(knots.size()) > trial.rows()) continue;
+      if (knots.size() <= coarser || 4 * static_cast<int>(knots.size()) > trial.rows() ||
+          3 * knots.size() > independent)
+        continue;
       coarser = knots.size();
       addCurves(trial, name, knots, all);
     }
@@ -348,6 +385,7 @@ std::vector<Candidate> empiricalCandidates(const Trial& trial, const Eigen::Vect
       for (const auto& knots : stepsOf(x))
         if (coarser > 2) addCurves(trial, name, knots, all);
   }
+  addProducts(trial, all);
   for (const std::string& column : trial.groupings) addGroups(trial, column, all);
   return all;
 }

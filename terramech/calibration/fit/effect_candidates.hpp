@@ -15,9 +15,12 @@ namespace talus::terramech {
 std::vector<Candidate> libraryCandidates(const Trial& trial, const Eigen::VectorXd& sinkage_m);
 
 /// Flat curves of every covariate in each measured channel alone, through stiffness and through strength: a line,
-/// splines of 4 and 7 knots; of time, heading and columns of one's own steps; of text columns a constant for each
-/// group.
+/// splines of 4 and 7 knots, of what is fixed in runs with three runs a knot at least; of time, heading and columns of one's own steps; of text columns a constant for each
+/// group; lines over products of a column of one's own with another, with slip, load or speed ("A*B").
 std::vector<Candidate> empiricalCandidates(const Trial& trial, const Eigen::VectorXd& sinkage_m);
+
+/// Whether a covariate is the product of two columns.
+bool isProduct(const std::string& covariate);
 
 /// Whether a numeric column is none that every table may have (stateColumns()).
 bool isOwnColumn(const std::string& column);

@@ -168,12 +168,18 @@ std::vector<TrainedRange> trainedRanges(const Trial& trial, const std::vector<En
     const Values x = valuesOf(trial, column);
     const auto [low, high] = rangeOver(x, std::vector<char>(x.size(), 1), 1);
     TrainedRange range{.column = column, .low = low, .high = high};
-    for (const EndLevel& end : ends)
-      for (std::size_t c = 0; c < kChannels && end.column == column; ++c) {
-        const double rmse = std::fmin(end.refined_rmse[c], end.base_rmse[c]);
-        const double excess = rmse * rmse - floor[c] * floor[c];
-        double& rate = (end.high ? range.above : range.below)[c];
-        if (excess > 0.0 && end.distance > 0.0) rate = std::max(rate, std::sqrt(excess) / end.distance);
+    // Least squares through 0, each end counted by its rows.
+    for (const bool high_end : {false, true})
+      for (std::size_t c = 0; c < kChannels; ++c) {
+        double excess = 0.0, distance = 0.0;
+        for (const EndLevel& end : ends) {
+          const double rmse = std::fmin(end.refined_rmse[c], end.base_rmse[c]);
+          if (end.column != column || end.high != high_end || !std::isfinite(rmse)) continue;
+          excess += end.rows * (rmse * rmse - floor[c] * floor[c]);
+          distance += end.rows * end.distance * end.distance;
+        }
+        if (excess > 0.0 && distance > 0.0)
+          (high_end ? range.above : range.below)[c] = std::sqrt(excess / distance);
       }
     all.push_back(range);
   }

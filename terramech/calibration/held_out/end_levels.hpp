@@ -25,7 +25,8 @@ std::vector<EndLevel> endLevels(const TraceResult& result, const TraceOptions& o
 void boundEffects(RefinedModel& model, const Trial& trial, const std::vector<EndLevel>& ends);
 
 /// What predictions need to know of the rows: the range of each column, and by how much the error grows beyond it,
-/// at the rate that the end levels showed above the floor (in proportion to the distance; ours).
+/// at the rate that the end levels showed above the floor (in proportion to the distance, by least squares over the rows of
+/// the ends of a side; ours).
 std::vector<TrainedRange> trainedRanges(const Trial& trial, const std::vector<EndLevel>& ends,
                                         const ChannelErrors& floor);
 

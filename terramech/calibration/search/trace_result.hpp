@@ -60,8 +60,17 @@ struct TracedEffect {
   Channel channel = Channel::DrawbarPull;  ///< where it shows most
   std::vector<double> parameter_std;       ///< of the fitted model's parameters of chosen.candidate, in order
   double p_value = 1.0;                    ///< how often a table without it gives any candidate its gain
-  std::vector<Explanation> alternatives;   ///< others within closeGain() of its gain, best first
-  std::vector<Effect> correction;          ///< curves that carry what its form leaves in the same covariate
+  /// Other causes that the rows cannot separate from it: in its place each gains no less, or less by no more than
+  /// closeGain(), best first.
+  std::vector<Explanation> equal;
+  std::vector<Effect> correction;  ///< curves that carry what its form leaves in the same covariate
+};
+
+/// Another cause, and the model with it.
+struct RivalCause {
+  std::string in_place_of;  ///< name of the traced effect; empty: beside those that there are
+  Explanation explanation;
+  RefinedModel model;  ///< with the covariance of its parameters
 };
 
 /// The outermost rows of a column, predicted by a model that was fitted to the others.
@@ -108,6 +117,7 @@ struct TraceResult {
   Trial trial;           ///< the rows that were searched, inputs calibrated
   UnsearchedRows unsearched;
   std::vector<TracedEffect> effects;
+  std::vector<RivalCause> rivals;     ///< of each effect the next best, of no effect what was rejected
   std::vector<Explanation> rejected;  ///< fitted and not chosen in the last round, or less likely than noise
   std::vector<Promise> first_promises, last_promises;  ///< of base and refined model, best first
   double threshold = 0.0;                              ///< gain that noise reaches in a share `significance`

@@ -135,6 +135,28 @@ Explanation TraceSearch::fitted(const Candidate& candidate) {
   return e;
 }
 
+RefinedModel TraceSearch::modelWith(const Candidate& candidate) const {
+  TrialFit other = fit_;
+  other.setModel(withCandidate(model(), candidate));
+  other.finish(true);
+  return other.model();
+}
+
+bool TraceSearch::dependsOn(const RefinedModel& model, const std::string& column) const {
+  const Trial& trial = fit_.rows().trial();
+  if (column == "sinkage_m" ||
+      std::find(trial.covariates.begin(), trial.covariates.end(), column) == trial.covariates.end())
+    return true;
+  Trial exchanged = trial;
+  const std::size_t rows = trial.states.size();
+  for (std::size_t row = 0; row < rows; ++row)
+    exchanged.states[row].setCovariate(column, trial.states[(row + rows / 2) % rows].covariate(column));
+  SolvedContacts solved, solved_exchanged;
+  const Eigen::VectorXd moved = fit_.rows().whitening().marginal(trial.measured.array().isFinite().select(
+      predictRows(model, exchanged, solved_exchanged) - predictRows(model, trial, solved), 0.0));
+  return 0.5 * moved.squaredNorm() > closeGain(options_);
+}
+
 std::vector<Explanation> TraceSearch::pairs() {
   constexpr int kFirsts = 8, kPairs = 5;
   std::vector<std::pair<double, Candidate>> promised;
@@ -191,26 +213,62 @@ void TraceSearch::leaveOut(std::size_t k) {
   fit_.setModel(fit_.fitted(without, 12));
 }
 
-double TraceSearch::gainOf(std::size_t k) {
+double TraceSearch::gainOf(std::size_t k) const {
   TraceSearch without = *this;
   without.leaveOut(k);
   return fit_.scoreOf(model()) - without.fit_.scoreOf(without.model());
 }
 
-void TraceSearch::thin(std::size_t k) {
-  const std::size_t first = firstPart(k);
+RefinedModel TraceSearch::withoutPart(std::size_t k, std::size_t part) const {
+  RefinedModel without = model();
+  without.effects.erase(without.effects.begin() + static_cast<long>(firstPart(k) + part));
+  return without;
+}
+
+double TraceSearch::gainOfPart(std::size_t k, std::size_t part) const {
+  return fit_.scoreOf(model()) - fit_.scoreOf(fit_.fitted(withoutPart(k, part), 12));
+}
+
+bool TraceSearch::differs(const RefinedModel& without) const {
+  const CalibratedRows& rows = fit_.rows();
+  SolvedContacts solved;
+  const Eigen::VectorXd moved = rows.whitening().marginal(rows.trial().measured.array().isFinite().select(
+      predictRows(without, rows.trial(), solved) - rows.level(), 0.0));
+  constexpr double kShare = 0.02;
+  for (int c = 0; c < kChannels; ++c)
+    if (moved(Eigen::seq(c, Eigen::last, Eigen::fix<kChannels>)).norm() >
+        kShare * std::sqrt(static_cast<double>(rows.trial().rows())))
+      return true;
+  return false;
+}
+
+bool TraceSearch::acts(std::size_t k) const {
+  RefinedModel without = model();
+  const auto begin = without.effects.begin() + static_cast<long>(firstPart(k));
+  without.effects.erase(begin, begin + static_cast<long>(part_count_[k]));
+  return differs(without);
+}
+
+void TraceSearch::thin(std::size_t k, double least) {
   double score = fit_.scoreOf(model());
   for (std::size_t part = part_count_[k]; part-- > 0 && part_count_[k] > 1;) {
-    RefinedModel without = model();
-    without.effects.erase(without.effects.begin() + static_cast<long>(first + part));
-    without = fit_.fitted(without, 12);
+    const RefinedModel without = fit_.fitted(withoutPart(k, part), 12);
     const double now = fit_.scoreOf(without);
-    if (now < score) continue;
+    if (now < score - least) continue;
     score = now;
     --part_count_[k];
     fit_.setModel(without);
   }
   settleAll();
+}
+
+void TraceSearch::dropIdleParts(std::size_t k) {
+  for (std::size_t part = part_count_[k]; part-- > 0 && part_count_[k] > 1;) {
+    const RefinedModel without = withoutPart(k, part);
+    if (differs(without)) continue;
+    --part_count_[k];
+    fit_.setModel(without);
+  }
 }
 
 std::vector<Effect> TraceSearch::parts(std::size_t k) const {

@@ -38,6 +38,13 @@ class TraceSearch {
   /// A candidate fitted together with everything else.
   Explanation fitted(const Candidate& candidate);
 
+  /// The model with a candidate, fitted, with the covariance of its parameters.
+  RefinedModel modelWith(const Candidate& candidate) const;
+
+  /// Whether what a model predicts depends on a column: rows that exchange their values of it (the first with that in the
+  /// middle, and so on) differ by more than closeGain() in log-likelihood.
+  bool dependsOn(const RefinedModel& model, const std::string& column) const;
+
   /// What two candidates together gain, the first fitted before the second is sought, best first.
   std::vector<Explanation> pairs();
 
@@ -54,11 +61,21 @@ class TraceSearch {
   void settleAll();
 
   /// What accepted candidate number k gains beside the others, the noise as it is.
-  double gainOf(std::size_t k);
+  double gainOf(std::size_t k) const;
 
-  /// Takes those parts out of accepted candidate number k, last first, without which the score is no worse; one
-  /// stays.
-  void thin(std::size_t k);
+  /// What part `part` of accepted candidate number k gains beside everything else, the noise as it is.
+  double gainOfPart(std::size_t k, std::size_t part) const;
+
+  /// Whether accepted candidate number k moves the readings of the rows, in any channel by a fiftieth of their
+  /// noise, root mean square: less would gain closeGain() in no table that is searched.
+  bool acts(std::size_t k) const;
+
+  /// Takes those parts out of accepted candidate number k, last first, that gain no more than `least`; one stays.
+  void thin(std::size_t k, double least);
+
+  /// Takes those parts out of it that move nothing, as acts(), whatever they gain: a form at its bound may gain by what it
+  /// would do beyond it, to first order. One stays.
+  void dropIdleParts(std::size_t k);
 
   /// The effects of accepted candidate number k as they are now in the model.
   std::vector<Effect> parts(std::size_t k) const;
@@ -78,6 +95,9 @@ class TraceSearch {
  private:
   GainDistribution distributionOf(const std::vector<Candidate>& candidates, int draws) const;
   bool refineCurve(std::size_t k);
+  RefinedModel withoutPart(std::size_t k, std::size_t part) const;
+  /// Whether the readings of the rows differ without an effect, as acts().
+  bool differs(const RefinedModel& without) const;
   std::size_t firstPart(std::size_t k) const;  ///< of accepted candidate number k among the model's effects
   /// Sets the parameters, their standard deviations and the channel of each effect.
   void describe(std::vector<TracedEffect>& effects, const Eigen::MatrixXd& covariance) const;

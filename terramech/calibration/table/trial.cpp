@@ -45,9 +45,10 @@ WheelState stateAt(const Telemetry& t, std::size_t row, const RefinedModel& mode
   s.measured_torque_Nm = numberAt(t.find("torque_Nm"), row, kUnknown);
   s.measured_sinkage_m = numberAt(t.find("sinkage_m"), row, kUnknown);
   for (const auto& column : t.numbers)
-    if (!isStateColumn(column.name) && !isAnswer(column.name))
+    if (!isStateColumn(column.name) && !isAnswer(column.name) && !column.name.starts_with("predicted_"))
       s.extra.emplace_back(column.name, column.values[row]);
-  for (const auto& column : t.words) s.group.emplace_back(column.name, column.values[row]);
+  for (const auto& column : t.words)
+    if (!column.name.starts_with("predicted_")) s.group.emplace_back(column.name, column.values[row]);
   return s;
 }
 

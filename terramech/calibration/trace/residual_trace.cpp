@@ -4,11 +4,13 @@
 #include <set>
 #include <string>
 
+#include <talus/terramech/calibration/fit/effect_candidates.hpp>
 #include <talus/terramech/calibration/held_out/end_levels.hpp>
 #include <talus/terramech/calibration/held_out/held_out.hpp>
 #include <talus/terramech/calibration/held_out/model_scope.hpp>
 #include <talus/terramech/calibration/noise/folds.hpp>
 #include <talus/terramech/calibration/search/column_screening.hpp>
+#include <talus/terramech/calibration/search/rival_causes.hpp>
 #include <talus/terramech/calibration/search/trace_search.hpp>
 #include <talus/terramech/calibration/table/closure_offset.hpp>
 #include <talus/terramech/calibration/trace/residual_trace.hpp>
@@ -27,19 +29,8 @@ bool same(const Candidate& a, const Candidate& b) {
          a.covariate() == b.covariate() && a.parts.front().only_value == b.parts.front().only_value;
 }
 
-// Explanations by the same form from several starts count once.
-TracedEffect traced(const std::vector<Explanation>& ranked, double p_value, double close) {
-  TracedEffect effect;
-  effect.chosen = ranked.front();
-  effect.channel = strongest(ranked.front());
-  effect.p_value = p_value;
-  for (const Explanation& e : ranked) {
-    const auto like = [&e](const Explanation& other) { return same(e.candidate, other.candidate); };
-    if (e.gain > ranked.front().gain - close && effect.alternatives.size() < 6 && !like(effect.chosen) &&
-        std::none_of(effect.alternatives.begin(), effect.alternatives.end(), like))
-      effect.alternatives.push_back(e);
-  }
-  return effect;
+TracedEffect traced(const Explanation& chosen, double p_value) {
+  return {.chosen = chosen, .channel = strongest(chosen), .parameter_std = {}, .p_value = p_value};
 }
 
 /// Puts in the offset of a force sensor that its group's own torque and sinkage betray, unless it makes held-out rows
@@ -76,16 +67,17 @@ struct Path {
   std::vector<Explanation> rejected{};
   std::vector<Promise> first{}, last{};
   double threshold = 0.0;
+  GainDistribution noise{};
   std::size_t pinned = 0;  ///< effects at the front that stay
 };
 
 /// Takes the first of explanations in.
 void take(Path& path, const std::vector<Explanation>& ranked, double p_value) {
   path.search.accept(ranked.front().candidate);
-  path.effects.push_back(traced(ranked, p_value, path.close));
+  path.effects.push_back(traced(ranked.front(), p_value));
   TracedEffect& taken = path.effects.back();
   if (taken.chosen.candidate.parts.size() < 2) return;
-  path.search.thin(path.effects.size() - 1);
+  path.search.thin(path.effects.size() - 1, path.close);
   taken.chosen.candidate.parts = path.search.parts(path.effects.size() - 1);
 }
 
@@ -110,11 +102,32 @@ void check(Path& path) {
   }
 }
 
+/// Takes out what ended at a size that moves nothing; of forms found together those stay that gain more than noise would.
+void dropIdle(Path& path) {
+  for (std::size_t k = path.pinned; k < path.effects.size(); ++k) {
+    TracedEffect& effect = path.effects[k];
+    if (effect.chosen.candidate.parts.size() < 2 || effect.chosen.candidate.empirical()) continue;
+    path.search.thin(k, path.threshold);
+    path.search.dropIdleParts(k);
+    effect.chosen.candidate.parts = path.search.parts(k);
+  }
+  check(path);
+  for (std::size_t k = path.effects.size(); k-- > 0;) {
+    if (path.search.acts(k)) continue;
+    path.search.leaveOut(k);
+    path.effects.erase(path.effects.begin() + static_cast<long>(k));
+    if (k >= path.pinned) continue;
+    path.pinned = 0;
+    path.search.trust(std::nullopt);
+  }
+}
+
 /// Finishes the result. While effects make the rows held out of some channel worse, the last of them that was found there
 /// goes out.
 void finishConfirmed(Path& path, TraceResult& result, const TraceOptions& options,
                      const std::function<bool(double)>& go_on) {
   while (true) {
+    dropIdle(path);
     result.effects = path.effects;
     path.search.finish(result);
     result.held_out = holdOut(result, options, foldsOf(result.trial));
@@ -148,6 +161,19 @@ void reconsider(Path& path) {
   }
 }
 
+/// Looks for other causes in the place of each effect.
+void findRivals(const Path& path, TraceResult& result, const std::function<bool(double)>& go_on) {
+  for (std::size_t k = path.pinned; k < result.effects.size() && go_on(0.0); ++k) {
+    TracedEffect& effect = result.effects[k];
+    const double least = path.search.gainOf(k) - path.close;
+    for (RivalCause& rival : rivalsOf(path.search, k)) {
+      if (rival.explanation.gain >= least) effect.equal.push_back(rival.explanation);
+      result.rivals.push_back(std::move(rival));
+    }
+  }
+  if (result.effects.empty()) result.rivals = rivalsOf(path.search, result.rejected);
+}
+
 /// What was taken in, whatever the order.
 std::multiset<std::string> takenIn(const Path& path) {
   std::multiset<std::string> all;
@@ -168,6 +194,7 @@ void grow(Path& path, const Trial& trial, const TraceOptions& options,
     if (path.first.empty()) path.first = screening.promises;
     path.last = screening.promises;
     path.threshold = screening.threshold;
+    path.noise = screening.noise;
     path.rejected = path.search.fitBest(screening.promises);
     preferSimple(path.rejected, screening.threshold);
     const double least =
@@ -211,17 +238,20 @@ void reconsiderPair(Path& path) {
   }
 }
 
-/// Forms that were found together, each told for itself.
-std::vector<TracedEffect> apart(const std::vector<TracedEffect>& effects) {
+/// Forms that were found together, each told for itself, by what noise alone would give it.
+std::vector<TracedEffect> apart(const Path& path, const std::vector<TracedEffect>& effects) {
   std::vector<TracedEffect> all;
-  for (const TracedEffect& e : effects) {
+  for (std::size_t k = 0; k < effects.size(); ++k) {
+    const TracedEffect& e = effects[k];
     if (e.chosen.candidate.empirical() || e.chosen.candidate.parts.size() == 1) {
       all.push_back(e);
       continue;
     }
     std::size_t at = 0;
-    for (const Effect& part : e.chosen.candidate.parts) {
+    for (std::size_t own = 0; own < e.chosen.candidate.parts.size(); ++own) {
+      const Effect& part = e.chosen.candidate.parts[own];
       TracedEffect one = e;
+      one.p_value = path.noise.pValue(path.search.gainOfPart(k, own));
       const EffectForm& form = *findEffect(part.name);
       one.chosen.candidate = {{part}, form.family, 0};
       one.channel = form.channel;
@@ -261,9 +291,12 @@ RefinedModel asDriven(RefinedModel model, const Trial& trial) {
 namespace {
 
 /// How much a kind of account can take up that is not its own: a drift in time or weather holds a constant, a curve
-/// holds any of both.
+/// holds any of both; a product stands for either of its columns.
 int freedom(const Candidate& candidate) {
-  return candidate.empirical() ? 2 : candidate.family == "drift" ? 1 : 0;
+  return isProduct(candidate.covariate()) ? 3
+         : candidate.empirical()          ? 2
+         : candidate.family == "drift"    ? 1
+                                          : 0;
 }
 
 /// Of a lesser kind, or a form of the same family with fewer numbers: one that grows with speed holds a constant, too.
@@ -332,13 +365,14 @@ TraceResult searched(const RefinedModel& base, const Trial& trial, const TraceOp
   result.last_promises = path.last;
   result.threshold = path.threshold;
   finishConfirmed(path, result, options, go_on);
+  findRivals(path, result, go_on);
   result.ends = endLevels(result, options, watch);
   boundEffects(result.refined, result.trial, result.ends);
   result.scope = scopeOf(result);
   keepConfirmed(result.held_out, result.scope);
   keepConfirmed(result.ends, result.noise_floor);
   result.refined_rmse = rmseOf(predictInScope(result, asMeasured(result.trial)), result.trial);
-  result.effects = apart(result.effects);
+  result.effects = apart(path, result.effects);
   return result;
 }
 

@@ -40,8 +40,20 @@ bool isFixedByRun(const Trial& trial, const std::string& column) {
   return 2 * runs.size() <= trial.states.size() && pairs.size() <= runs.size();
 }
 
+/// Whether each unit that shares an error is a run.
+bool unitsAreRuns(const TraceResult& result) {
+  const std::vector<int>&unit = result.shared.unit, &run = result.trial.run;
+  std::set<std::pair<int, int>> pairs;
+  for (std::size_t row = 0; row < unit.size(); ++row) pairs.insert({unit[row], run[row]});
+  return pairs.size() == std::set<int>(run.begin(), run.end()).size();
+}
+
+std::string unrecorded(const Answer& answer) {
+  return "rows that record what else changed from " + answer.unit + " to " + answer.unit;
+}
+
 std::string furtherRows(const TraceResult& result, const Answer& answer) {
-  if (answer.column.empty()) return "rows that record what else changed from run to run";
+  if (answer.column.empty()) return unrecorded(answer);
   if (isFixedByRun(result.trial, answer.column))
     return "further runs at other values of " + answer.column + ", now " +
            std::to_string(valuesOf(result.trial, answer.column)) + ", the other columns the same";
@@ -84,11 +96,12 @@ Answer answerOf(const TraceResult& result) {
   answer.verdict = open                     ? Verdict::Unexplained
                    : result.effects.empty() ? Verdict::NothingMissing
                                             : Verdict::Explained;
+  if (!result.shared.unit.empty() && !unitsAreRuns(result)) answer.unit = "stretch of time";
   const auto c = static_cast<int>(answer.channel);
   if (after > 0.0 && 2.0 * result.shared.soilVariance(c) > squared(answer.rest) - squared(answer.floor)) {
     answer.strength_scatter = std::sqrt(result.shared.run(kChannels, kChannels));
     answer.stiffness_scatter = std::sqrt(result.shared.run(kChannels + 1, kChannels + 1));
-    answer.measure = "rows that record what else changed from run to run";
+    answer.measure = unrecorded(answer);
   }
   for (const Promise& p : result.last_promises) {
     if (p.gain <= 0.0) break;

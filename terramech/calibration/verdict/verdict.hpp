@@ -30,6 +30,7 @@ struct Answer {
   /// Standard deviations from run to run of the logarithms of the soil's strength and stiffness, where they make
   /// most of what is left; 0 elsewhere.
   double strength_scatter = 0.0, stiffness_scatter = 0.0;
+  std::string unit = "run";  ///< what rows share that error in: a run, or a stretch of time
   std::string inapplicable;  ///< why the model does not apply; empty where it does
   std::string measure;       ///< rows that would decide; empty where nothing exceeds its floor
 };

@@ -3,11 +3,13 @@
 #include <regex>
 #include <set>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
 #include <talus/terramech/contact/wong_reece.hpp>
 #include <talus/terramech/io/soil_library.hpp>
+#include <talus/terramech/io/telemetry_reader.hpp>
 
 #include "run_program.hpp"
 
@@ -109,7 +111,7 @@ TEST(TraceCommand, HoldingOutRowsWritesItsPageAndNoModel) {
               testing::AllOf(testing::HasSubstr("--model-out"), testing::HasSubstr("--hold-out")));
 }
 
-TEST(TraceCommand, AnAlternativeIsAnotherFormOrColumnAndNamedOnce) {
+TEST(TraceCommand, AnEqualCauseIsAnotherOneAndNamedOnce) {
   const Folder folder;
   std::string table =
       "run,pass_index,load_N,slip,torque_Nm,sinkage_m,drawbar_pull_N,wheel_radius_m,wheel_width_m\n";
@@ -139,11 +141,61 @@ TEST(TraceCommand, AnAlternativeIsAnotherFormOrColumnAndNamedOnce) {
   EXPECT_EQ(effects[0]["family"], "multipass");
   for (const auto& effect : effects) {
     std::set<std::string> named{effect["name"].get<std::string>() + effect["covariate"].get<std::string>()};
-    for (const auto& other : effect["evidence"]["alternatives"]) {
+    for (const auto& other : effect["equal_to"]) {
       const std::string one = other["name"].get<std::string>() + other["covariate"].get<std::string>();
       EXPECT_TRUE(named.insert(one).second) << one;
     }
   }
+}
+
+/// 90 rows whose pull a column takes, beside one that goes with it.
+std::string tiedTable() {
+  std::string table = "run,load_N,slip,dust,humid,torque_Nm,sinkage_m,drawbar_pull_N\n";
+  const terramech::Soil soil = terramech::loadSoil("sandy_loam");
+  for (int row = 0; row < 90; ++row) {
+    const double load_N = 60.0 + 8.0 * (row % 5), slip = 0.1 + 0.05 * (row % 11), dust = 0.1 * (row * 7 % 11);
+    const terramech::WheelForces forces =
+        equilibrium(soil, {.radius_m = 0.1, .width_m = 0.1}, {.load_N = load_N, .slip = slip});
+    const auto off = [row](double phase) { return 1.0 + 0.02 * std::sin(12.9 * row * row + phase); };
+    table += fmt::format("r{},{},{},{},{},{},{},{}\n", row / 6, load_N, slip, dust, 3.0 + 2.0 * dust,
+                         forces.torque_Nm * off(1), forces.sinkage_m * off(2),
+                         forces.drawbar_pull_N + load_N * (off(3) - 1.0 - 0.08 * dust));
+  }
+  return table;
+}
+
+TEST(TraceCommand, ProposedRunsAreScoredOnceMeasured) {
+  const Folder folder;
+  folder.write("t.csv", tiedTable());
+  folder.write("base.yaml", "{soil: sandy_loam, model: wong-reece, wheel: {radius_m: 0.1, width_m: 0.1}}\n");
+  const auto trace = [&](std::vector<std::string> more) {
+    std::vector<std::string> call{"trace", "t.csv", "--base", "base.yaml", "--json", "--quiet"};
+    call.insert(call.end(), more.begin(), more.end());
+    return runTalus(call, folder.path());
+  };
+  const Ran proposed = trace({"--propose", "2", "-o", "next.csv"});
+  ASSERT_EQ(proposed.code, 0) << proposed.err;
+  const auto proposals = nlohmann::json::parse(proposed.out)["proposals"];
+  ASSERT_EQ(proposals.size(), 2U);
+  ASSERT_GE(proposals[0]["predictions"].size(), 2U);
+  const auto &a = proposals[0]["predictions"][0], &b = proposals[0]["predictions"][1];
+  EXPECT_GT(std::abs(a["drawbar_pull_N"].get<double>() - b["drawbar_pull_N"].get<double>()),
+            3.0 * a["std"].get<double>());
+  // Runs that measure what the second cause predicts.
+  const terramech::Telemetry next = terramech::readTelemetry((folder.path() / "next.csv").string());
+  std::string measured = "run,load_N,slip,dust,humid,drawbar_pull_N\n";
+  for (std::size_t row = 0; row < next.size(); ++row)
+    measured +=
+        fmt::format("next,{},{},{},{},{}\n", next.at("load_N")[row], next.at("slip")[row],
+                    next.at("dust")[row], next.at("humid")[row], next.at("predicted_2_drawbar_pull_N")[row]);
+  folder.write("measured.csv", measured);
+  const Ran ran = trace({"--score", "measured.csv"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const auto scores = nlohmann::json::parse(ran.out)["scores"];
+  ASSERT_EQ(scores.size(), proposals[0]["predictions"].size());
+  EXPECT_EQ(scores[1]["cause"], b["cause"]);
+  EXPECT_GT(scores[1]["probability"].get<double>(), 0.5);
+  EXPECT_LT(scores[0]["probability"].get<double>(), 0.01);
 }
 
 }  // namespace trace_command_test

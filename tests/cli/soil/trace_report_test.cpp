@@ -52,14 +52,14 @@ TEST(TraceReport, AnEffectOfOneGroupIsOfTheColumnOfTheGroup) {
 TEST(TraceReport, TheMeasurementSeparatesTheNearestAlternative) {
   terramech::TracedEffect effect;
   effect.chosen = explanation("ding", "depth");
-  effect.alternatives = {explanation("lyasko", "depth"), explanation("drift", "noise")};
+  effect.equal = {explanation("lyasko", "depth"), explanation("drift", "noise")};
   EXPECT_THAT(separatingMeasurement(trial(), effect), HasSubstr("depth and noise vary independently"));
-  effect.alternatives.resize(1);
+  effect.equal.resize(1);
   EXPECT_THAT(separatingMeasurement(trial(), effect), HasSubstr("depth is correlated with temperature"));
   effect.chosen = explanation("ding", "noise");
-  effect.alternatives = {explanation("lyasko", "noise")};
+  effect.equal = {explanation("lyasko", "noise")};
   EXPECT_THAT(separatingMeasurement(trial(), effect), HasSubstr("over a wider range of noise"));
-  effect.alternatives.clear();
+  effect.equal.clear();
   EXPECT_EQ(separatingMeasurement(trial(), effect), "no close alternative");
 }
 

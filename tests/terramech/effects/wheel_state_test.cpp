@@ -40,5 +40,27 @@ TEST(WheelState, FurtherColumnsGroupsAndWhatIsNotThere) {
   EXPECT_TRUE(std::isnan(s.covariate("speed_mps")));  // not known unless it is set
 }
 
+TEST(WheelState, AProductOfTwoColumnsIsACovariate) {
+  WheelState s{.load_N = 40.0};
+  s.extra = {{"moisture", 3.5}, {"a*b", 7.0}};
+  EXPECT_EQ(s.covariate("moisture*load_N"), 140.0);
+  EXPECT_EQ(s.covariate("a*b"), 7.0);  // a column of that name comes first
+  EXPECT_TRUE(std::isnan(s.covariate("moisture*no_such_column")));
+}
+
+TEST(WheelState, ASetColumnReadsBack) {
+  // Property: every column, and no other.
+  WheelState s;
+  s.extra = {{"moisture", 3.5}};
+  double value = 1.0;
+  for (const std::string& column : stateColumns()) s.setCovariate(column, value += 1.0);
+  value = 1.0;
+  for (const std::string& column : stateColumns()) EXPECT_EQ(s.covariate(column), value += 1.0) << column;
+  s.setCovariate("moisture", 4.5);
+  s.setCovariate("no_such_column", 1.0);
+  EXPECT_EQ(s.covariate("moisture"), 4.5);
+  EXPECT_TRUE(std::isnan(s.covariate("no_such_column")));
+}
+
 }  // namespace wheel_state_test
 }  // namespace talus::terramech

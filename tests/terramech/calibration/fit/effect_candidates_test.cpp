@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <functional>
+#include <map>
 #include <set>
 #include <string>
 
@@ -122,6 +123,28 @@ TEST(EffectCandidates, CurvesAreFlatAndOfMeasuredChannels) {
       EXPECT_FALSE(e.covariate == "sinkage_m" && e.channel == Channel::Sinkage);
     }
   }
+}
+
+TEST(EffectCandidates, ProductsAreOfAColumnOfOnesOwn) {
+  const Trial trial = trialWith({"dust", "humid"}, [](int k) {
+    return std::vector{0.1 * (k % 7), 1.0 + k % 5};
+  });
+  std::set<std::string> products;
+  for (const Candidate& c : empiricalCandidates(trial, Eigen::VectorXd::LinSpaced(40, 0.005, 0.02)))
+    if (isProduct(c.covariate())) products.insert(c.covariate());
+  EXPECT_EQ(products,
+            (std::set<std::string>{"dust*humid", "dust*load_N", "dust*slip", "humid*load_N", "humid*slip"}));
+}
+
+TEST(EffectCandidates, ACurveHasThreeRunsAKnot) {
+  // Property: of ten runs a column that is fixed in them has three knots' worth, the slip of forty rows seven.
+  Trial trial = trialWith({"dust"}, [](int k) { return std::vector{0.1 * (k / 4)}; });
+  for (int row = 0; row < trial.rows(); ++row) trial.run[static_cast<std::size_t>(row)] = row / 4;
+  std::map<std::string, std::size_t> most;
+  for (const Candidate& c : empiricalCandidates(trial, Eigen::VectorXd::LinSpaced(40, 0.005, 0.02)))
+    most[c.covariate()] = std::max(most[c.covariate()], c.parts[0].knots.size());
+  EXPECT_EQ(most.at("dust"), 2U);
+  EXPECT_EQ(most.at("slip"), 7U);
 }
 
 }  // namespace effect_candidates_test

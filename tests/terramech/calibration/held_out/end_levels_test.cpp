@@ -105,6 +105,13 @@ TEST(EndLevels, DeviationsGrowByWhatTheEndShowedAboveTheFloor) {
   EXPECT_NEAR(slip->above[0], 0.04 / 0.2, 1e-12);  // Closed form: sqrt(0.05^2 - 0.03^2) over the distance
   EXPECT_EQ(slip->above[1], 0.0);
   EXPECT_EQ(slip->below[0], 0.0);
+  // Closed form: a farther end that shows nothing counts by its rows: 4 (0.05^2 - 0.03^2) over 4 0.2^2 + 12 0.4^2.
+  EndLevel half{.column = "slip", .high = true, .distance = 0.4, .rows = 12};
+  half.base_rmse = half.refined_rmse = {0.03, 0.002, NAN, NAN};
+  EXPECT_NEAR(trainedRanges(result.trial, {end, half},
+                            {0.03, 0.002, NAN, NAN})[static_cast<std::size_t>(slip - ranges.begin())]
+                  .above[0],
+              std::sqrt(4.0 * 0.0016 / (4.0 * 0.04 + 12.0 * 0.16)), 1e-12);
   EXPECT_EQ(slip->low, 0.1);
   EXPECT_EQ(slip->high, 0.3);
 }

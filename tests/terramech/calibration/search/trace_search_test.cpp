@@ -97,12 +97,32 @@ TEST(TraceSearch, PairsTellTwoFaultsApart) {
     EXPECT_GT(ranked.front().gain, single.gain + closeGain({}));
 }
 
+TEST(TraceSearch, AnEffectOfSizeZeroDoesNotAct) {
+  TraceSearch search(sand(), offsetTrial(), {});
+  search.accept(torqueOffset());
+  EXPECT_TRUE(search.acts(0));
+  EXPECT_NEAR(search.gainOfPart(0, 0), search.gainOf(0), 1e-6 * search.gainOf(0));
+  // Nothing yields, so that the fit ends at the bound of a rebound.
+  search.accept({{{.name = "elastic_rebound", .covariate = "sinkage_m", .parameters = {0.0}}}, "rebound", 1});
+  EXPECT_FALSE(search.acts(1));
+}
+
 TEST(TraceSearch, OfFormsTakenTogetherOnlyThoseThatPayStay) {
   TraceSearch search(sand(), offsetTrial(), {});
   Candidate both = torqueOffset();
   both.parts.push_back({.name = "elastic_rebound", .covariate = "sinkage_m", .parameters = {0.1}});
   search.accept(both);
-  search.thin(0);
+  search.thin(0, closeGain({}));
+  ASSERT_EQ(search.parts(0).size(), 1U);
+  EXPECT_EQ(search.parts(0)[0].name, "torque_offset");
+}
+
+TEST(TraceSearch, OfFormsTakenTogetherOneOfSizeZeroLeaves) {
+  TraceSearch search(sand(), offsetTrial(), {});
+  Candidate both = torqueOffset();
+  both.parts.push_back({.name = "elastic_rebound", .covariate = "sinkage_m", .parameters = {0.0}});
+  search.accept(both);
+  search.dropIdleParts(0);
   ASSERT_EQ(search.parts(0).size(), 1U);
   EXPECT_EQ(search.parts(0)[0].name, "torque_offset");
 }

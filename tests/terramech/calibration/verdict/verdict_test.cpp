@@ -58,6 +58,12 @@ TEST(Verdict, AScatterOfTheSoilIsSaidWhereItMakesMostOfTheRest) {
   for (SoilFactor& f : result.shared.by_soil) f(0, 0) = 0.3;
   EXPECT_NEAR(answerOf(result).strength_scatter, 0.1, 1e-12);
   EXPECT_EQ(answerOf(result).measure, "rows that record what else changed from run to run");
+  // Stretches of five rows are no runs, runs of ten are.
+  for (int row = 0; row < 100; ++row) result.shared.unit.push_back(row / 5);
+  EXPECT_EQ(answerOf(result).measure,
+            "rows that record what else changed from stretch of time to stretch of time");
+  result.shared.unit = result.trial.run;
+  EXPECT_EQ(answerOf(result).unit, "run");
   for (SoilFactor& f : result.shared.by_soil) f(0, 0) = 0.2;
   EXPECT_EQ(answerOf(result).strength_scatter, 0.0);
 }

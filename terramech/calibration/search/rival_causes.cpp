@@ -1,0 +1,87 @@
+#include <algorithm>
+#include <set>
+#include <string>
+#include <string_view>
+
+#include <talus/terramech/calibration/fit/effect_candidates.hpp>
+#include <talus/terramech/calibration/search/rival_causes.hpp>
+
+namespace talus::terramech {
+namespace {
+
+constexpr std::size_t kRivals = 3;
+
+/// What an answer calls a cause.
+std::string causeOf(const Candidate& c) {
+  return c.parts.front().name + '|' + c.covariate() + '|' + c.parts.front().only_value;
+}
+
+/// Whether two parts are of one cause: of one column, a curve or forms of one family; drifts of one column are one cause
+/// where they differ in their course alone.
+bool isOneCause(const Effect& other, const Effect& own) {
+  const Candidate a{{other}, "", 0}, b{{own}, "", 0};
+  if (a.covariate() != b.covariate()) return false;
+  const EffectForm *of_other = findEffect(other.name), *of_own = findEffect(own.name);
+  if (!of_other || !of_own) return true;
+  return std::string_view(of_other->family) == of_own->family &&
+         (std::string_view(of_own->family) != "drift" || other.name.starts_with(own.name) ||
+          own.name.starts_with(other.name));
+}
+
+/// Whether the other holds the constant offset of a sensor that a part is: a curve or a drift of what that sensor reads.
+bool holdsOffset(const Candidate& other, const Effect& own) {
+  const EffectForm* form = findEffect(own.name);
+  return form && form->of_sensor && own.parameters.size() == 1 &&
+         other.parts.front().channel == own.channel && (other.empirical() || other.family == "drift");
+}
+
+/// Whether the other is another cause than these parts. A product stands for either of its columns, so that only the columns
+/// of another product are causes beside one.
+bool isOther(const Candidate& other, const std::vector<Effect>& own) {
+  if (isProduct(other.covariate()) && !isProduct(own.front().covariate)) return false;
+  return std::none_of(own.begin(), own.end(), [&](const Effect& part) {
+    return isOneCause(other.parts.front(), part) || holdsOffset(other, part);
+  });
+}
+
+std::vector<RivalCause> best(const TraceSearch& search, std::vector<Explanation> ranked,
+                             const std::string& in_place_of) {
+  std::stable_sort(ranked.begin(), ranked.end(),
+                   [](const Explanation& a, const Explanation& b) { return a.gain > b.gain; });
+  std::vector<RivalCause> rivals;
+  std::set<std::string> seen;
+  for (Explanation& e : ranked) {
+    if (rivals.size() == kRivals || e.gain <= 0.0) break;
+    if (!seen.insert(causeOf(e.candidate)).second) continue;
+    RefinedModel model = search.modelWith(e.candidate);
+    // A curve that is level is a constant, of whatever column.
+    if (search.dependsOn(model, e.candidate.covariate()))
+      rivals.push_back({in_place_of, e, std::move(model)});
+  }
+  return rivals;
+}
+
+}  // namespace
+
+std::vector<RivalCause> rivalsOf(const TraceSearch& search, std::size_t k) {
+  constexpr std::size_t kFits = 6;
+  const std::vector<Effect> own = search.parts(k);
+  TraceSearch without = search;
+  without.leaveOut(k);
+  std::set<std::string> tried;
+  std::vector<Explanation> ranked;
+  for (const Promise& p : without.screen(0).promises) {
+    if (tried.size() == kFits || p.gain <= 0.0) break;
+    if ((p.candidate.parts.size() > 1 && !p.candidate.empirical()) || !isOther(p.candidate, own)) continue;
+    // Of a column the best curve; of its named forms each.
+    const std::string kind = p.candidate.empirical() ? p.candidate.covariate() : causeOf(p.candidate);
+    if (tried.insert(kind).second) ranked.push_back(without.fitted(p.candidate));
+  }
+  return best(without, std::move(ranked), own.front().name);
+}
+
+std::vector<RivalCause> rivalsOf(const TraceSearch& search, const std::vector<Explanation>& ranked) {
+  return best(search, ranked, "");
+}
+
+}  // namespace talus::terramech
