@@ -159,7 +159,34 @@ void addTelemetry(const UpdateOptions& options, costmap::TraversabilityMap& map,
   report.raising += drive.raising;
   report.rejected += drive.rejected + telemetry.rejected.size();
   report.repeated = drive.repeated + telemetry.repeated;
+  report.learned = drive.learned;
+  report.slip_offset = drive.slip_offset;
+  report.slip_scale = drive.slip_scale;
   report.findings.insert(report.findings.end(), drive.findings.begin(), drive.findings.end());
+}
+
+nlohmann::json learnedJson(const costmap::DriveReport& report) {
+  nlohmann::json all = nlohmann::json::array();
+  for (const costmap::LearnedClass& one : report.learned)
+    all.push_back({{"class", one.class_number},
+                   {"drawbar_pull_over_load", one.pull.value},
+                   {"std", one.pull.std},
+                   {"if_sensor_sound", one.if_sound.value},
+                   {"if_sensor_sound_std", one.if_sound.std},
+                   {"counted_on", one.counted_on}});
+  return all;
+}
+
+std::string learnedText(const costmap::DriveReport& report) {
+  if (report.learned.empty()) return {};
+  std::string text =
+      fmt::format("slip        offset {:+.3f}, scale {:.2f}\n", report.slip_offset, report.slip_scale);
+  for (const costmap::LearnedClass& one : report.learned)
+    text += fmt::format(
+        "class {:<5} DP/W {:.3f} +- {:.3f} ({:.3f} +- {:.3f} if the slip is sound); decisions count on "
+        "{:.3f}\n",
+        one.class_number, one.pull.value, one.pull.std, one.if_sound.value, one.if_sound.std, one.counted_on);
+  return text;
 }
 
 void tell(const costmap::DriveReport& report, const Difference& difference, const Context& context) {
@@ -170,12 +197,16 @@ void tell(const costmap::DriveReport& report, const Difference& difference, cons
                {"rows_counted_before", report.repeated},
                {"cells_changed", difference.cells},
                {"categories_changed", difference.categories},
+               {"slip_offset", report.slip_offset},
+               {"slip_scale", report.slip_scale},
+               {"learned", learnedJson(report)},
                {"findings", report.findings}});
   else
     print(
         fmt::format("rows        {} used, {} rejected; {} may raise the estimate\n"
-                    "cells       {} changed, {} with a new category\n",
-                    report.used, report.rejected, report.raising, difference.cells, difference.categories));
+                    "cells       {} changed, {} with a new category\n{}",
+                    report.used, report.rejected, report.raising, difference.cells, difference.categories,
+                    learnedText(report)));
 }
 
 int run(const UpdateOptions& options, Context& context) {

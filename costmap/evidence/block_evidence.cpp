@@ -249,7 +249,7 @@ ReadingCount pullReading(const Estimate& pull, bool may_raise, double shared_std
   const bool raises = may_raise && shared < kind::kSharedGrades;
   const auto kind = static_cast<std::uint8_t>(
       (raises ? kind::kPull + static_cast<double>(shared * kind::kGrades) : kind::kPullLowers) + clamped);
-  return {kind, stepped(std::floor((pull.value - kLowest) / kStep + 1e-6)), 1};
+  return {kind, stepped(std::floor((pull.value - kLowest) / kStep + (raises ? 0.5 : 1e-6))), 1};
 }
 
 ReadingCount sinkageReading(double sinkage_over_radius, bool may_raise) noexcept {

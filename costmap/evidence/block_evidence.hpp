@@ -40,7 +40,7 @@ inline constexpr std::uint8_t kCount = kSinkage + 4;
 /// to the power of 0 to 6.
 double sharedStd(std::size_t grade) noexcept;
 
-/// The count that a drawbar pull over load goes into: steps of 0.01 from -1.28, rounded down. `shared_std`: of the
+/// The count that a drawbar pull over load goes into: steps of 0.01 from -1.28, of one that may only lower rounded down. `shared_std`: of the
 /// error that it shares with all other readings, >= 0 [-], rounded up; a reading beyond the greatest grade, or of an
 /// error that is not known (NaN), may only lower.
 ReadingCount pullReading(const Estimate& pull, bool may_raise, double shared_std = 0.0) noexcept;

@@ -76,13 +76,15 @@ struct WheelObserver::Wheel {
   double share = 1.0;  // of the class's thrust at the reference slip that it has at its own, straight ahead
   double asked = 0.0;  // pull over load that the slope asks in the wheel's plane
   double held = 0.0;   // what it asks across the wheel, over load
+  double known = 0.0;  // departure of the ground at the reference slip that is known by other means
   double from_torque = std::numeric_limits<double>::quiet_NaN();     // pull at its slip
   Estimate by_torque{0.0, std::numeric_limits<double>::infinity()};  // departure at the reference slip
   double torque_std =
       0.0;  // of that by the torque there, of which the class's stands in for what is not felt
 };
 
-WheelObserver::Wheel WheelObserver::expected(const ClassReading& read) const {
+WheelObserver::Wheel WheelObserver::expected(const ClassReading& read,
+                                             std::span<const double> departures) const {
   const WheelReading& r = read.reading;
   const double radius_m = model_.rover().wheel.radius_m;
   const bool rut = r.pass > 1;
@@ -108,6 +110,11 @@ WheelObserver::Wheel WheelObserver::expected(const ClassReading& read) const {
       const double error = 0.5 * (more.torque_over_load_radius - less.torque_over_load_radius) / thrust;
       w.share = of_class + beyondError(w.share - of_class, error);
     }
+  }
+  if (!departures.empty() && w.reference.torque_over_load_radius > 0.0) {
+    w.known = departures[static_cast<std::size_t>(read.class_index)];
+    w.expected.gradient +=
+        w.known * std::max(straight.torque_over_load_radius / w.reference.torque_over_load_radius, 0.0);
   }
   const double z = r.sinkage_m / radius_m, t = r.torque_Nm / (radius_m * r.load_N);
   if (!known(t) || !(z >= 0.0 && z < 1.0)) return w;
@@ -160,7 +167,7 @@ Estimate WheelObserver::bySlope(const Wheel& w, const Balance& all, double own) 
   const double there = all.departure + own;
   const double error = std::hypot(noise_.gradient, noise_.model_pull, std::hypot(0.5 * own, w.steepness));
   const double grown = there + (growth(there, all.share) - 1.0) * beyondError(there, error);
-  const double mean = std::min(grown, all.across + own);
+  const double mean = std::min(w.known + grown, all.across + own);
   return {mean, std::hypot(growth(-1.0, all.share) * error, miss(w, all, mean))};
 }
 
@@ -234,14 +241,14 @@ std::optional<WheelObservation> WheelObserver::observe(int class_index, const Wh
 }
 
 std::vector<std::optional<WheelObservation>> WheelObserver::observe(
-    const std::vector<ClassReading>& together) const {
+    const std::vector<ClassReading>& together, std::span<const double> departures) const {
   const auto usable = [](const ClassReading& c) { return known(c.reading.slip) && c.reading.load_N > 0.0; };
   std::vector<Wheel> wheels;
   double load = 0.0, felt_load = 0.0, felt = 0.0;
   Balance all{.departure = 0.0, .across = 0.0, .share = 0.0};
   for (const ClassReading& read : together) {
     if (!usable(read)) continue;
-    const Wheel& w = wheels.emplace_back(expected(read));
+    const Wheel& w = wheels.emplace_back(expected(read, departures));
     const double load_N = read.reading.load_N;
     load += load_N;
     all.standing |= read.reading.slip >= kStanding;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -124,8 +125,10 @@ class WheelObserver {
   /// torque nor drawbar pull).
   std::optional<WheelObservation> observe(int class_index, const WheelReading& reading) const;
 
-  /// The same for wheels of one rover read at one moment, in their order.
-  std::vector<std::optional<WheelObservation>> observe(const std::vector<ClassReading>& together) const;
+  /// The same for wheels of one rover read at one moment, in their order. `departures`: by which ground of each class is known to
+  /// depart from its class at the reference slip, by other means; what the readings say is then the rest. Empty: none is.
+  std::vector<std::optional<WheelObservation>> observe(const std::vector<ClassReading>& together,
+                                                       std::span<const double> departures = {}) const;
 
  private:
   struct Wheel;
@@ -139,7 +142,7 @@ class WheelObserver {
     bool standing = false;
   };
 
-  Wheel expected(const ClassReading& read) const;
+  Wheel expected(const ClassReading& read, std::span<const double> departures) const;
   double miss(const Wheel& wheel, const Balance& all, double carried) const;
   Estimate bySlope(const Wheel& wheel, const Balance& all, double own) const;
   Estimate upperBound(const Wheel& wheel, const Balance& all) const;

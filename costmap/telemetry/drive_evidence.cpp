@@ -74,6 +74,19 @@ std::string lackingFinding(std::size_t drives) {
          " that the map holds: it cannot rebuild this map";
 }
 
+void tellDrive(const FittedDrive& drive, const GroundModel& model, DriveReport& report) {
+  report.slip_offset = drive.slip_bias;
+  report.slip_scale = drive.slip_scale;
+  for (std::size_t c = 0; c < drive.departure.size(); ++c) {
+    if (!std::isfinite(drive.departure[c].std)) continue;
+    const double of_class = model.prior(static_cast<int>(c)).pull.value;
+    report.learned.push_back({model.parts().classes[c].number,
+                              {of_class + drive.learned[c].value, drive.learned[c].std},
+                              {of_class + drive.if_sound[c].value, drive.if_sound[c].std},
+                              of_class + drive.learned[c].value - drive.caution[c]});
+  }
+}
+
 std::string othersFinding(std::size_t rows) {
   return std::to_string(rows) +
          " rows: of another wheel or load than the map's rover has; they only lower estimates";
@@ -233,7 +246,7 @@ DriveIntake::DriveIntake(TraversabilityMap& map, EvidenceJournal* journal, const
 DriveIntake::~DriveIntake() = default;
 
 void DriveIntake::add(const terramech::Telemetry& telemetry) {
-  state_->put(telemetry, state_->processor->verdict());
+  state_->put(telemetry, state_->processor->soFar());
 }
 
 void DriveIntake::settle() {
@@ -273,9 +286,12 @@ DriveReport addDrive(TraversabilityMap& map, const terramech::Telemetry& telemet
   processRows(TelemetryRows(telemetry, map, options.pose_std_m), map, first_pass, {},
               [](std::size_t, TelemetryProcessor::Result&&) {});
   DriveIntake intake(map, journal, options);
-  intake.state_->put(telemetry, first_pass.verdict(), known);
+  const DriveVerdict verdict = first_pass.verdict();
+  intake.state_->put(telemetry, verdict, known);
   map.publishAll();
-  return intake.report();
+  DriveReport report = intake.report();
+  if (verdict.drive && report.raising > 0) tellDrive(*verdict.drive, map.model(), report);
+  return report;
 }
 
 DriveReport replay(TraversabilityMap& map, const EvidenceJournal& journal) {

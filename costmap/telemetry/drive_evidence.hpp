@@ -11,6 +11,14 @@
 
 namespace talus::costmap {
 
+/// What the slips of a drive say of the ground of one class, on average (SlipFit): drawbar pull over load at slip 0.5 [-].
+struct LearnedClass {
+  int class_number = 0;
+  Estimate pull;            ///< whatever the slip sensor's offset and scale
+  Estimate if_sound;        ///< of a sensor that is off by 0.03 and 5 % (standard deviations)
+  double counted_on = 0.0;  ///< by decisions
+};
+
 /// What putting a drive into a map came to.
 struct DriveReport {
   std::size_t used = 0;
@@ -23,6 +31,9 @@ struct DriveReport {
   std::size_t others = 0;    ///< rows of another wheel or load than the map's rover's: they raise nothing
   std::string first_reason;  ///< of the first row rejected; empty when none was
   std::vector<std::string> findings;  ///< what the sensors' watch saw, a line each
+  std::vector<LearnedClass> learned;  ///< of the classes driven; none where nothing may raise
+  double slip_offset = 0.0;           ///< of the slip sensor, as its rows show it [-]
+  double slip_scale = 1.0;            ///< likewise
 };
 
 /// What a telemetry file does not say about itself.

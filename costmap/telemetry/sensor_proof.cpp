@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include <talus/costmap/telemetry/sensor_proof.hpp>
 
@@ -55,12 +54,8 @@ void SensorProof::follow(Run& run, const Wheel& wheel, const WheelReading& readi
 
 void SensorProof::takeLevel(Wheel& wheel, const Row& row) {
   if (!(std::abs(row.measured_gradient) <= kLevel) || !std::isfinite(row.class_slip)) return;
-  const double excess = row.reading.slip - row.class_slip;
   ++wheel.level_rows;
-  level_steps_.try_emplace(row.wheel, kLevelStep).first->second.add(excess);
-  wheel.level_sum += excess;
-  wheel.level_last.push_back(excess);
-  if (wheel.level_last.size() > kLevelRows) wheel.level_last.pop_front();
+  level_steps_.try_emplace(row.wheel, kLevelStep).first->second.add(row.reading.slip - row.class_slip);
 }
 
 void SensorProof::take(const Row& row) {
@@ -171,15 +166,6 @@ bool SensorProof::felt(const std::string& run, const std::string& wheel) const {
   const Run* r = find(run);
   const Wheel* w = r ? find(*r, wheel) : nullptr;
   return w && w->felt_rows >= kLevelRows;
-}
-
-double SensorProof::lowSlip(const std::string& run, const std::string& wheel) const {
-  const Run* r = find(run);
-  const Wheel* w = r ? find(*r, wheel) : nullptr;
-  if (!w || w->level_rows < kLevelRows) return 0.0;
-  const double last = std::accumulate(w->level_last.begin(), w->level_last.end(), 0.0);
-  return std::max(
-      {-w->level_sum / static_cast<double>(w->level_rows), -last / static_cast<double>(kLevelRows), 0.0});
 }
 
 }  // namespace talus::costmap

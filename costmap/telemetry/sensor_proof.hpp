@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <map>
 #include <optional>
 #include <string>
@@ -38,15 +37,8 @@ class SensorProof {
     bool danger = false;             ///< it points to danger: it proves nothing but where the rover is
   };
 
-  /// How far the mean of slip on level ground may be off by noise [-].
-  static constexpr double kLevelSlip = 0.01;
   /// By how much it may step on the way [-].
   static constexpr double kLevelStep = 0.04;
-  /// By how much the slip of all wheels may be off together in spite of all proofs: by a constant and by a share of itself,
-  /// one standard deviation each [-].
-  static constexpr double kSlipBias = 0.03;
-  static constexpr double kSlipScale = 0.2;
-
   void take(const Row& row);
 
   /// Whether the pull that the wheel read may raise a belief: by all rows so far.
@@ -79,9 +71,6 @@ class SensorProof {
   /// Whether it drove at slips at which most of the thrust of its class is felt, so that what it read at little slip was
   /// not all that it read.
   bool felt(const std::string& run, const std::string& wheel) const;
-  /// By how much the wheel slips less on level ground than the class does, on average of all rows or of the last;
-  /// >= 0.
-  double lowSlip(const std::string& run, const std::string& wheel) const;
   /// By how much the rover measures slopes that are steeper than the map's, on average.
   double gradientExcess(const std::string& run) const;
   /// Wheels that read anything.
@@ -92,8 +81,6 @@ class SensorProof {
     std::optional<WheelReading> last, last_counted;
     ResponseSeries slip, torque;
     std::size_t level_rows = 0, felt_rows = 0;
-    double level_sum = 0.0;         // of slip on level ground beyond the class's
-    std::deque<double> level_last;  // of that
   };
   struct Run {
     ResponseSeries slope;

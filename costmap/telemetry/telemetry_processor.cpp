@@ -9,6 +9,12 @@ namespace talus::costmap {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kLeastTold =
+    2.0;  // of the class's deviation: a drive that leaves more open raises nothing (ours)
+constexpr std::size_t kFirstFit = 32;  // moments
+constexpr double kCrabbing = 0.1;      // slip angle from which a wheel does not go straight ahead [rad]
+constexpr double kSlipOfResistance =
+    0.03;  // on level ground, that ground may make which resists more than its class (ours)
 constexpr double kLittleSlip =
     0.5;  // of the class's deviation: what a reading at little slip leaves open (ours)
 
@@ -47,7 +53,7 @@ WheelObservation boundAlone(const WheelObservation& observation) {
 }
 
 TelemetryProcessor::TelemetryProcessor(const TraversabilityMap& map)
-    : map_(map), danger_(map.model()), watch_(map.model()), observer_(map.model()) {}
+    : map_(map), danger_(map.model()), watch_(map.model()), fit_(map.model()), observer_(map.model()) {}
 
 std::vector<TelemetryProcessor::Result> TelemetryProcessor::process(const TelemetryRows& rows,
                                                                     const Moment& moment,
@@ -83,6 +89,7 @@ std::vector<TelemetryProcessor::Result> TelemetryProcessor::process(const Teleme
   }
   auto seen = observed(sound, verdict);
   prove(rows, sound, seen);
+  if (verdict.proof && !verdict.drive) refit();
   for (std::size_t i = 0; i < seen.size(); ++i)
     if (seen[i] && !torqueSound(rows, sound.row[i], verdict)) weakerBySlope(*seen[i]);
   const bool of_rover =
@@ -131,15 +138,31 @@ GroundBound TelemetryProcessor::bound(const ClassReading& read, double least_gra
   return here;
 }
 
+// slipOfClasses() of the wheels of a moment, which mostly stand on one slope.
+struct TelemetryProcessor::SlipOfClasses {
+  const TelemetryProcessor& processor;
+  const std::vector<ClassReading>& together;
+  double gradient = kNone, slip = kNone;
+
+  double on(double of_gradient) {
+    if (of_gradient != gradient) {
+      gradient = of_gradient;
+      slip = processor.slipOfClasses(together, gradient);
+    }
+    return slip;
+  }
+};
+
 // Of sound wheels together; where torque and sinkage are off, without them. What points to danger is no measure of a
 // sensor.
 std::vector<std::optional<WheelObservation>> TelemetryProcessor::observed(const Sound& sound,
                                                                           const DriveVerdict& verdict) {
   auto whole = observer_.observe(sound.read);
+  SlipOfClasses of_classes{*this, sound.read};
   for (std::size_t i = 0; i < whole.size(); ++i) {
     if (sound.danger[i]) continue;
     if (whole[i]) watch_.compare(*whole[i]);
-    watch_.compareSlip(sound.read[i].reading.slip - asked(sound.read[i]));
+    watch_.compareSlip(sound.read[i].reading.slip - of_classes.on(sound.read[i].reading.gradient));
   }
   if (!verdict.without_torque) return whole;
   std::vector<ClassReading> without;
@@ -147,8 +170,46 @@ std::vector<std::optional<WheelObservation>> TelemetryProcessor::observed(const 
   return observer_.observe(without);
 }
 
+// Moments whose wheels stand on one class and go straight ahead.
+void TelemetryProcessor::fit(const TelemetryRows& rows, const Sound& sound) {
+  if (sound.read.empty() || std::find(sound.danger.begin(), sound.danger.end(), true) != sound.danger.end())
+    return;
+  SlipFit::Moment moment{.run = rows.run(sound.row.front()),
+                         .class_index = sound.read.front().class_index,
+                         .wheels = static_cast<int>(sound.read.size()),
+                         .place = sound.read.front().reading.place,
+                         .gradient = rows.measuredGradient(sound.row.front())};
+  for (const std::size_t row : sound.row)
+    if (proof_.doubted(moment.run, rows.wheel(row))) return;
+  for (const ClassReading& read : sound.read) {
+    if (read.class_index != moment.class_index || std::abs(read.reading.slip_angle_rad) > kCrabbing) return;
+    moment.rutted += read.reading.pass > 1 ? 1 : 0;
+    moment.slip += read.reading.slip / moment.wheels;
+  }
+  fit_.take(moment);
+}
+
+// Where the drive is not known as a whole: again each time that it has grown by a quarter.
+void TelemetryProcessor::refit() {
+  if (fit_.moments() < std::max(next_fit_, kFirstFit)) return;
+  fitted_ = fitted();
+  next_fit_ = fit_.moments() + fit_.moments() / 4;
+}
+
+std::shared_ptr<const FittedDrive> TelemetryProcessor::fitted() const {
+  return fit_.fitted([&](const std::string& run) { return proof_.gradientExcess(run); });
+}
+
+DriveVerdict TelemetryProcessor::verdict() const {
+  DriveVerdict verdict = soFar();
+  if (verdict.proof) verdict.drive = fitted();
+  return verdict;
+}
+
 void TelemetryProcessor::prove(const TelemetryRows& rows, const Sound& sound,
                                const std::vector<std::optional<WheelObservation>>& seen) {
+  fit(rows, sound);
+  SlipOfClasses of_classes{*this, sound.read};
   for (std::size_t i = 0; i < sound.read.size(); ++i) {
     const std::size_t row = sound.row[i];
     const double gradient = rows.measuredGradient(row);
@@ -157,7 +218,7 @@ void TelemetryProcessor::prove(const TelemetryRows& rows, const Sound& sound,
                  .reading = sound.read[i].reading,
                  .measured_gradient = gradient,
                  .map_gradient = rows.mapGradient(row),
-                 .class_slip = slipOfClasses(sound.read, gradient),
+                 .class_slip = of_classes.on(gradient),
                  .torque_pull = seen[i] ? seen[i]->from_torque : kNone,
                  .share = seen[i] ? seen[i]->share : 0.0,
                  .danger = sound.danger[i]});
@@ -173,8 +234,8 @@ bool TelemetryProcessor::mayRaise(const TelemetryRows& rows, const Moment& momen
                                   const DriveVerdict& verdict) const {
   const std::string run = rows.run(moment.rows.front());
   const std::size_t wheels = moment.readings.size();
-  if (!verdict.proof || verdict.without_torque || proof_.displaced(run) || sound.read.size() != wheels ||
-      verdict.proof->wheels(run) != wheels ||
+  if (!verdict.proof || !(verdict.drive || fitted_) || verdict.without_torque || proof_.displaced(run) ||
+      sound.read.size() != wheels || verdict.proof->wheels(run) != wheels ||
       (wheels != 1 && wheels != static_cast<std::size_t>(map_.model().rover().wheel_count)))
     return false;
   if (std::find(sound.danger.begin(), sound.danger.end(), true) != sound.danger.end()) return false;
@@ -191,51 +252,37 @@ std::string TelemetryProcessor::whyNoneRaises() const {
                                               "the only one of the file; give them all, and time_s";
 }
 
-// What the readings of all wheels say where each slips otherwise.
-std::vector<std::optional<WheelObservation>> TelemetryProcessor::withSlip(
-    std::vector<ClassReading> together, const std::function<double(double)>& slip) const {
-  for (ClassReading& read : together) read.reading.slip = std::clamp(slip(read.reading.slip), -1.0, 1.0);
-  return observer_.observe(together);
-}
-
-// What is left of more strength than the class's if sensors are off by what passes as sound; the rest is doubt, and
-// what one error of the slip of all wheels makes of it is shared by all readings.
+// By the sensor of the drive, and about the strength of its ground.
 void TelemetryProcessor::allow(const TelemetryRows& rows, const Sound& sound, const DriveVerdict& verdict,
                                std::vector<std::optional<WheelObservation>>& seen) const {
-  std::vector<ClassReading> off;
-  for (std::size_t i = 0; i < sound.read.size(); ++i) {
-    ClassReading& read = off.emplace_back(sound.read[i]);
-    const double low = std::max(verdict.proof->lowSlip(rows.run(sound.row[i]), rows.wheel(sound.row[i])),
-                                proof_.lowSlip(rows.run(sound.row[i]), rows.wheel(sound.row[i])));
-    read.reading.slip = std::min(read.reading.slip + low + SensorProof::kLevelSlip, 1.0);
-    read.reading.gradient -= std::max(verdict.proof->gradientExcess(rows.run(sound.row[i])), 0.0);
+  const FittedDrive& drive = verdict.drive ? *verdict.drive : *fitted_;
+  const double bias = std::min(drive.slip_bias, std::max(drive.slip_bias - kSlipOfResistance, 0.0));
+  std::vector<ClassReading> read = sound.read;
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    WheelReading& reading = read[i].reading;
+    reading.slip = std::clamp((reading.slip - bias) / drive.slip_scale, -1.0, 1.0);
+    reading.gradient -= std::max(verdict.proof->gradientExcess(rows.run(sound.row[i])), 0.0);
   }
-  const auto least = observer_.observe(off);
-  const auto biased = withSlip(sound.read, [](double slip) { return slip + SensorProof::kSlipBias; });
-  const auto scaled =
-      withSlip(sound.read, [](double slip) { return slip * (1.0 + SensorProof::kSlipScale); });
+  std::vector<double> departures;
+  for (const Estimate& departure : drive.departure) departures.push_back(departure.value);
+  const auto fitted = observer_.observe(read, departures);
   for (std::size_t i = 0; i < seen.size(); ++i) {
-    const bool near_limit = off[i].reading.slip >= kDangerSlip;
-    if (!seen[i] || !least[i] || near_limit || seen[i]->bound ||
-        std::isfinite(sound.read[i].reading.drawbar_pull_N))
+    const Estimate& of_drive = drive.departure[static_cast<std::size_t>(read[i].class_index)];
+    const double doubt =
+        kLeastTold * map_.model().parts().classes[static_cast<std::size_t>(read[i].class_index)].mean_std;
+    if (!seen[i] || !fitted[i] || read[i].reading.slip >= kDangerSlip || seen[i]->bound ||
+        !(of_drive.std <= doubt) || std::isfinite(read[i].reading.drawbar_pull_N))
       continue;
     WheelObservation& one = *seen[i];
     const bool torque_sound = torqueSound(rows, sound.row[i], verdict);
-    const auto pullOf = [&](const std::optional<WheelObservation>& other) {
-      if (!other) return kNone;
-      return torque_sound ? other->pull.value : std::fmin(other->pull.value, other->by_slope.value);
-    };
-    const double prior = map_.model().prior(sound.read[i].class_index).pull.value;
-    double left = pullOf(least[i]);
-    if (left > prior) left = prior + (left - prior) * std::clamp(least[i]->share, 1.0 / 3.0, 1.0);
-    const double most = off[i].reading.gradient > 0.0 ? std::max(prior, left) : prior;
-    const double kept = std::min(one.pull.value, most);
+    one.pull = fitted[i]->pull;
+    if (!torque_sound && fitted[i]->by_slope.value < one.pull.value) one.pull = fitted[i]->by_slope;
+    one.pull.value -= drive.caution[static_cast<std::size_t>(read[i].class_index)];
+    one.shared_std = fitted[i]->shared_std;
     // At little slip nothing is raised by a drive that never felt most of the thrust.
     if (std::isnan(one.shared_std) && verdict.proof->felt(rows.run(sound.row[i]), rows.wheel(sound.row[i])))
-      one.shared_std = kLittleSlip * map_.model().prior(sound.read[i].class_index).pull.std;
-    one.shared_std = std::hypot(std::hypot(one.shared_std, std::fmax(kept - left, 0.0)),
-                                one.pull.value - pullOf(biased[i]), one.pull.value - pullOf(scaled[i]));
-    one.pull = {kept, std::hypot(one.pull.std, one.pull.value - kept)};
+      one.shared_std = kLittleSlip * map_.model().prior(read[i].class_index).pull.std;
+    one.shared_std = std::hypot(one.shared_std, of_drive.std);
     one.pull_may_raise = std::isfinite(one.shared_std);
     one.sinkage_may_raise = torque_sound;
   }
@@ -260,15 +307,6 @@ double TelemetryProcessor::slipOfClasses(const std::vector<ClassReading>& togeth
     (pull(middle) < gradient ? low : high) = middle;
   }
   return 0.5 * (low + high);
-}
-
-// Slip of fresh ground of the class on the reading's slope; NaN where none is known or none holds it.
-double TelemetryProcessor::asked(const ClassReading& read) const {
-  const GroundModel& model = map_.model();
-  if (std::isnan(read.reading.gradient) || read.reading.pass > 1) return kNone;
-  const DriveState state =
-      model.state(read.class_index, model.prior(read.class_index), read.reading.gradient);
-  return state.refusal == Refusal::Pull ? kNone : static_cast<double>(state.slip);
 }
 
 }  // namespace talus::costmap

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,6 +9,7 @@
 #include <talus/costmap/telemetry/danger_watch.hpp>
 #include <talus/costmap/telemetry/sensor_proof.hpp>
 #include <talus/costmap/telemetry/sensor_watch.hpp>
+#include <talus/costmap/telemetry/slip_fit.hpp>
 #include <talus/costmap/telemetry/telemetry_rows.hpp>
 
 namespace talus::costmap {
@@ -17,6 +18,8 @@ namespace talus::costmap {
 struct DriveVerdict {
   bool without_torque = false;  ///< torque and sinkage are off: they count only where they point to danger
   const SensorProof* proof = nullptr;  ///< null: nothing may raise a belief
+  /// Its slip sensor and its ground; null: as the processor knows them by the rows so far.
+  std::shared_ptr<const FittedDrive> drive{};
 };
 
 /// What is left of an observation when nothing but the bound of its place is believed.
@@ -29,8 +32,8 @@ WheelObservation boundAlone(const WheelObservation& observation);
 /// sensor. A reading that is suspected says nothing more.
 ///
 /// A moment may raise a belief only where each of its wheels, all of the rover's or the only one of the
-/// file, is proven sound. It then raises by what is left when slip is taken relative to level ground, as if whatever
-/// it is low there were a bias, and slopes relative to the map's; a wheel that does not climb raises nothing. It raises
+/// file, is proven sound. Its slips are then read by the sensor of the drive as SlipFit has it, as far as that makes them greater, its
+/// slopes relative to the map's, and the wheels are held against ground of the strength that the drive has on average. It raises
 /// nothing by a wheel of another radius, width or load than the rover's, nor by one that then slips 0.7, nor by a drawbar pull that nothing else confirms, nor where torque and
 /// sinkage are off.
 class TelemetryProcessor {
@@ -50,7 +53,9 @@ class TelemetryProcessor {
   /// What a row that is no reading bounds; nothing where it does not, or has no place.
   std::optional<WheelObservation> rejected(const TelemetryRows& rows, std::size_t row) const;
 
-  DriveVerdict verdict() const { return {watch_.biased(), watch_.clockWentBack() ? nullptr : &proof_}; }
+  /// By all rows so far; soFar() leaves the slip sensor to what is known at each row.
+  DriveVerdict verdict() const;
+  DriveVerdict soFar() const { return {watch_.biased(), watch_.clockWentBack() ? nullptr : &proof_}; }
   const SensorWatch& watch() const noexcept { return watch_; }
   /// Where no row may raise an estimate: what keeps the drive from it, and what would mend it; empty where other findings say so.
   std::string whyNoneRaises() const;
@@ -72,20 +77,24 @@ class TelemetryProcessor {
   std::vector<std::optional<WheelObservation>> observed(const Sound& sound, const DriveVerdict& verdict);
   void prove(const TelemetryRows& rows, const Sound& sound,
              const std::vector<std::optional<WheelObservation>>& seen);
+  void fit(const TelemetryRows& rows, const Sound& sound);
+  void refit();
+  std::shared_ptr<const FittedDrive> fitted() const;
   static bool torqueSound(const TelemetryRows& rows, std::size_t row, const DriveVerdict& verdict);
   bool mayRaise(const TelemetryRows& rows, const Moment& moment, const Sound& sound,
                 const DriveVerdict& verdict) const;
   void allow(const TelemetryRows& rows, const Sound& sound, const DriveVerdict& verdict,
              std::vector<std::optional<WheelObservation>>& seen) const;
-  std::vector<std::optional<WheelObservation>> withSlip(std::vector<ClassReading> together,
-                                                        const std::function<double(double)>& slip) const;
+  struct SlipOfClasses;
   double slipOfClasses(const std::vector<ClassReading>& together, double gradient) const;
-  double asked(const ClassReading& read) const;
 
   const TraversabilityMap& map_;
   DangerWatch danger_;
   SensorWatch watch_;
   SensorProof proof_;
+  SlipFit fit_;
+  std::shared_ptr<const FittedDrive> fitted_;  // by some of the moments so far
+  std::size_t next_fit_ = 0;                   // moments from which it is worked out again
   WheelObserver observer_;
   std::size_t read_ = 0, transferred_ = 0, others_ = 0;
 };

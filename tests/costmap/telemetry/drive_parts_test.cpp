@@ -91,7 +91,8 @@ TEST(DriveParts, SettledTheyTeachWhatTheWholeDoes) {
 }
 
 // Property: where nothing is settled, no sensor is biased and time does not decrease, how a drive is divided does not show.
-// Pinned: by what comes to be known of the sensors later it lies up to 0.02 in DP/W from the whole, to either side.
+// Pinned: by what comes to be known of the sensors, and of the strength of all ground, later it lies up to 0.035 in DP/W from the whole, to
+// either side.
 TEST(DriveParts, UnsettledTheyTeachTheSameHoweverDivided) {
   for (const unsigned seed : {1U, 2U, 3U}) {
     std::mt19937_64 random(seed);
@@ -111,7 +112,7 @@ TEST(DriveParts, UnsettledTheyTeachTheSameHoweverDivided) {
     EXPECT_TRUE(bytesOf(few) == bytesOf(many)) << seed;
     for (int row = 0; row < kRoverSide; ++row)
       for (int column = 0; column < kRoverSide; ++column)
-        EXPECT_NEAR(few.ground({column, row})->pull.value, whole.ground({column, row})->pull.value, 0.02);
+        EXPECT_NEAR(few.ground({column, row})->pull.value, whole.ground({column, row})->pull.value, 0.035);
   }
 }
 

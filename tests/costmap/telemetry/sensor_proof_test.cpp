@@ -40,7 +40,6 @@ TEST(SensorProof, SoundSensorsAreProven) {
   EXPECT_FALSE(proof.doubted("a", "w"));
   EXPECT_FALSE(proof.displaced("a"));
   EXPECT_EQ(proof.wheels("a"), 1U);
-  EXPECT_LT(proof.lowSlip("a", "w"), 0.01);
   EXPECT_NEAR(proof.gradientExcess("a"), 0.0, 0.005);
   EXPECT_FALSE(proof.pullSound("b", "w"));
   EXPECT_FALSE(proof.pullSound("a", "v"));
@@ -80,14 +79,6 @@ TEST(SensorProof, NothingIsProvenByWhatIsStuckSilentOrOff) {
   EXPECT_FALSE(proofOf([](Row& r, int) { r.reading.place = {1.0, 1.0}; }).pullSound("a", "w")) << "it stood";
   EXPECT_FALSE(proofOf([](Row& r, int) { r.torque_pull = 0.3; }).torqueSound("a", "w"));
   EXPECT_FALSE(proofOf([](Row& r, int) { r.torque_pull += 0.1; }).torqueSound("a", "w"));
-}
-
-TEST(SensorProof, ABiasOfSlipShowsOnLevelGround) {
-  EXPECT_NEAR(proofOf([](Row& r, int) { r.reading.slip -= 0.08; }).lowSlip("a", "w"), 0.08, 0.01);
-  EXPECT_NEAR(proofOf([](Row& r, int i) { r.reading.slip -= i > 60 ? 0.08 : 0.0; }).lowSlip("a", "w"), 0.08,
-              0.015)
-      << "of late";
-  EXPECT_LT(proofOf([](Row& r, int) { r.reading.slip += 0.08; }).lowSlip("a", "w"), 1e-9);
 }
 
 TEST(SensorProof, DoubtsWhatSticksOnTheWay) {

@@ -3,14 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <random>
 #include <string>
+#include <utility>
 
 #include <rover_drive.hpp>
 #include <site_map.hpp>
 
 #include <talus/costmap/evidence/class_lessons.hpp>
 #include <talus/costmap/telemetry/drive_evidence.hpp>
+#include <talus/costmap/telemetry/slip_fit.hpp>
 
 namespace talus::costmap {
 namespace shared_error_test {
@@ -60,23 +63,43 @@ double pullStd(const TraversabilityMap& map, maps::Cell cell) {
   return map.ground(cell)->pull.std;
 }
 
-// Standard deviation by what all readings at one slip of ground that is as its class share, by the mobility curve: g' is its
-// slope, k = H(0.5)/H(s) the growth of a departure on its way to slip 0.5, in [1, 3].
-//   (g')^2 (0.03^2 + (0.2 s)^2 + 0.01^2) + (0.4 (k - 1) p)^2 + (0.06 (0.5 - s))^2, 0.5 - s at most 0.25
-// of an error of all slips, of a share of them and of what level ground shows; of soils of a class of deviation p that differ
-// otherwise than in strength; of the curve's form. Kept in steps of 1.5 from 0.02 on, rounded up.
-double sharedAt(const GroundModel& model, double slip, bool in_rut) {
+// What a reading at one slip of ground that is as its class leaves open in all readings likewise, and its weight 1/v, k = H(0.5)/H(s) the
+// growth of a departure on its way to slip 0.5, in [1, 3]: what grows by more raises nothing, g' the slope of the mobility curve.
+//   m^2 = (0.4 (k - 1) p)^2 + (0.06 (0.5 - s))^2, 0.5 - s at most 0.25: what soils differ in otherwise
+//   shared^2 = m^2 + of_sensor^2, kept in steps of 1.5 from 0.02 on, rounded up; of_sensor: what the drive leaves open of its sensor
+//   v = m^2 + k^2 (0.01^2 + 0.02^2 + (0.03 g')^2), its root rounded up to 0.025 2^(i/2)
+struct Shared {
+  double std, weight;
+};
+
+Shared sharedAt(const GroundModel& model, double slip, bool in_rut, double of_sensor) {
   const auto at = [&](double there) { return model.steady(0, {.slip = there, .in_rut = in_rut}); };
-  const double steepness = (at(slip + 0.01).gradient - at(slip - 0.01).gradient) / 0.02;
   const double thrust = at(slip).torque_over_load_radius;
-  const double k =
-      thrust > 0.0 ? std::clamp(model.reference(0, in_rut).torque_over_load_radius / thrust, 1.0, 3.0) : 3.0;
-  const double by_slip = steepness * std::hypot(0.03, 0.2 * slip, 0.01);
+  const double k = model.reference(0, in_rut).torque_over_load_radius / thrust;
+  if (!(k >= 1.0 && k <= 3.0)) return {0.0, 0.0};
   const double by_soil =
       std::hypot(0.4 * (k - 1.0) * model.prior(0).pull.std, 0.06 * std::min(std::abs(0.5 - slip), 0.25));
   double kept = 0.02;
-  while (kept < std::hypot(by_slip, by_soil)) kept *= 1.5;
-  return kept;
+  while (kept < std::hypot(of_sensor, by_soil)) kept *= 1.5;
+  const double own = k * std::hypot(0.01, 0.02, 0.5 * (at(slip + 0.03).gradient - at(slip - 0.03).gradient));
+  const double grade = std::max(std::ceil(2.0 * std::log2(std::hypot(own, by_soil) / 0.025)), 0.0);
+  const double counted = 0.025 * std::exp2(0.5 * grade);
+  return {kept, 1.0 / (counted * counted)};
+}
+
+// The slip sensor of a drive (SlipFit, which is tested by itself).
+std::shared_ptr<const FittedDrive> sensorOf(const GroundModel& model, const Drive& drive) {
+  SlipFit fit(model);
+  for (std::size_t i = 0; i < drive.rows.size(); i += 4) {
+    SlipFit::Moment moment{.run = drive.run[i],
+                           .rutted = 2,
+                           .wheels = 4,
+                           .place = {drive.rows[i][kX], drive.rows[i][kY]},
+                           .gradient = std::tan(drive.rows[i][kSlope])};
+    for (std::size_t w = i; w < i + 4; ++w) moment.slip += 0.25 * drive.rows[w][kSlip];
+    fit.take(moment);
+  }
+  return fit.fitted([](const std::string&) { return 0.0; });
 }
 
 // Closed form: numbers take the deviation m of the class as a whole to m c / sqrt(m^2 + c^2), c the mean of the error that
@@ -87,12 +110,23 @@ TEST(SharedError, LeavesOfADriveAtLittleSlipWhatItsSlipsTell) {
   TraversabilityMap after = sand();
   const Drive drive = driveOver(after, testSand(), 1, {8.5, 23.5, 38.5});
   addDrive(after, tableOf(drive, false));
+  const auto sensor = sensorOf(after.model(), drive);
+  ASSERT_LT(std::abs(sensor->slip_bias), 0.01);
+  std::map<std::pair<int, int>, std::pair<double, double>>
+      blocks;  // of a metre: weights, and what they weigh
   double shared = 0.0, slip = 0.0;
-  const auto rows = static_cast<double>(drive.rows.size());
   for (const auto& row : drive.rows) {
-    shared += sharedAt(after.model(), row[kSlip], row[kPass] > 1.0) / rows;
-    slip += row[kSlip] / rows;
+    const Shared read =
+        sharedAt(after.model(), row[kSlip] / sensor->slip_scale, row[kPass] > 1.0, sensor->departure[0].std);
+    auto& [weight, sum] = blocks[{static_cast<int>(row[kX]), static_cast<int>(row[kY])}];
+    weight += read.weight;
+    sum += read.weight * read.std;
+    slip += row[kSlip] / static_cast<double>(drive.rows.size());
   }
+  double told = 0.0;
+  for (const auto& [where, of] : blocks)
+    if (of.first > 0.0) shared += of.second / of.first, told += 1.0;
+  shared /= told;
   ASSERT_LT(slip, 0.15);
   const GroundClass& ground = after.model().parts().classes[0];
   const double of_class = ground.mean_std * shared / std::hypot(ground.mean_std, shared);
