@@ -2,16 +2,15 @@
 // TALUS_FAULT_WORLDS="FIRST COUNT" in place of the 200 of each run; a campaign is made of such parts.
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <iostream>
 #include <map>
 #include <numbers>
 #include <optional>
 #include <random>
-#include <sstream>
 #include <string>
 #include <vector>
 
+#include <campaign_part.hpp>
 #include <rover_drive.hpp>
 
 #include <talus/costmap/telemetry/drive_evidence.hpp>
@@ -190,13 +189,12 @@ Allowed allowedOn(const TraversabilityMap& map, const World& world) {
 // Property: faulty drives, one to three of one kind, by themselves or behind a sound one, leave no more cells allowed that do not hold
 // than there were before them, but for three in a thousand cells of one world in a hundred; and sound ones neither.
 TEST(FaultWorlds, AFaultFreesNothingThatDoesNotHold) {
-  unsigned first = 1, count = 200;
-  if (const char* const part = std::getenv("TALUS_FAULT_WORLDS")) std::istringstream(part) >> first >> count;
+  const CampaignPart part = campaignPart("TALUS_FAULT_WORLDS", 200);
   const auto class_model = groundOf(testSand(), kWheels);
   const Pull of_class(*class_model);
   std::map<std::string, std::vector<int>> freed;  // cells, by fault, of each world
   unsigned worse = 0;
-  for (unsigned seed = first; seed < first + count; ++seed) {
+  for (unsigned seed = part.first; seed < part.end(); ++seed) {
     World world(seed);
     const std::string fault = kFaults[seed % std::size(kFaults)];
     TraversabilityMap map(world.layers(), class_model, {});
@@ -215,7 +213,7 @@ TEST(FaultWorlds, AFaultFreesNothingThatDoesNotHold) {
               << " with more cells allowed that do not hold, most " << *std::ranges::max_element(cells)
               << '\n';
   }
-  EXPECT_LE(worse, std::max(count / 100, 1U));
+  EXPECT_LE(worse, std::max(part.count / 100, 1U));
 }
 
 }  // namespace fault_worlds_test
