@@ -24,6 +24,9 @@ using maps::Point;
 // Vertices nearer together than this share of a cell are one.
 constexpr double kTogether = 1e-2;
 
+// Of a cell: shorter pieces are rounding, of a vertex on a side, and tell nothing of the cell that follows.
+constexpr double kRounding = 1e-9;
+
 // Shares of a segment at which it passes from cell to cell, both ends included, sorted.
 std::vector<double> passages(const maps::Grid& grid, const Segment& motion) {
   std::vector<double> shares{0.0, 1.0};
@@ -66,10 +69,13 @@ class Annotator {
     double emitted = -1.0;
     for (std::size_t i = 1; i < shares.size(); ++i) {
       const double metres = (shares[i] - shares[i - 1]) * length_m;
-      if (!(metres > 0.0)) continue;
+      if (!(metres > kRounding * std::min(length_m, grid_.resolution_m))) continue;
       const auto at = [&](double share) {
-        return Point{motion.from.x_m + share * (motion.to.x_m - motion.from.x_m),
-                     motion.from.y_m + share * (motion.to.y_m - motion.from.y_m)};
+        const auto between = [&](double from, double to) {
+          const double x_m = from + share * (to - from);
+          return std::abs(x_m) < kRounding * grid_.resolution_m ? 0.0 : x_m;
+        };
+        return Point{between(motion.from.x_m, motion.to.x_m), between(motion.from.y_m, motion.to.y_m)};
       };
       const RouteVertex vertex = looked(at((shares[i] + shares[i - 1]) / 2), at(shares[i - 1]), heading);
       const bool first = emitted < 0.0;

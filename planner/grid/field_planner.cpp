@@ -12,9 +12,11 @@
 #include <talus/planner/grid/field_planner.hpp>
 #include <talus/planner/grid/many_headings.hpp>
 #include <talus/planner/grid/other_corridors.hpp>
+#include <talus/planner/grid/point_route.hpp>
 #include <talus/planner/reach/cell_route.hpp>
 #include <talus/planner/reach/obstruction_search.hpp>
 #include <talus/planner/refine/close_vertices.hpp>
+#include <talus/planner/refine/settled_vertices.hpp>
 #include <talus/planner/route/legs.hpp>
 #include <talus/planner/route/plan_end.hpp>
 
@@ -103,7 +105,7 @@ Plan FieldPlanner::planStage(const Problem& problem, const Stage& stage, const S
     rough = std::move(beyond.points);
   }
   Plan plan = finished(problem, stage, std::move(rough), stop);
-  if (on_grid && problem.prove) tryOtherCorridors(problem, stage, stop, plan);
+  if (problem.prove) tryOtherCorridors(problem, stage, stop, on_grid, plan);
   return withoutTipping(std::move(plan));
 }
 
@@ -190,20 +192,27 @@ std::vector<Polyline> FieldPlanner::manyHeadings(const Problem& problem, const S
 }
 
 void FieldPlanner::tryOtherCorridors(const Problem& problem, const Stage& stage, const StopCheck& stop,
-                                     Plan& plan) {
+                                     bool on_grid, Plan& plan) {
   if (problem.map->grid().size() > kCorridorCells || stop()) return;
-  if (plan.lower_bound_J >= (1.0 - kProven) * plan.cost_J) return;
+  const auto leaves = [&plan](double gap) { return plan.lower_bound_J < (1.0 - gap) * plan.cost_J; };
+  if (!leaves(kProven)) return;
   const MotionCost cost(problem.map);
-  std::vector<Polyline> others =
-      otherCorridors(cost, problem.map, *field_, {stage.from, stage.to}, plan.points, {}, stop);
-  for (Polyline& way : manyHeadings(problem, stage, plan.cost_J, stop)) others.push_back(std::move(way));
-  for (Polyline& rough : others) {
-    if (rough.size() < 2) continue;
-    Polyline points = refined(problem, stage, std::move(rough), stop);
+  const Segment places{stage.from, stage.to};
+  const auto take = [&](Polyline points) {
     const double cost_J = cost.along(points);
-    if (!(cost_J < plan.cost_J)) continue;
+    if (points.size() < 2 || !(cost_J < plan.cost_J)) return;
     plan.points = std::move(points);
     plan.cost_J = cost_J;
+  };
+  std::vector<Polyline> others;
+  if (on_grid) others = otherCorridors(cost, problem.map, *field_, places, plan.points, {}, stop);
+  for (Polyline& way : manyHeadings(problem, stage, plan.cost_J, stop)) others.push_back(std::move(way));
+  for (Polyline& rough : others)
+    if (rough.size() > 1) take(refined(problem, stage, std::move(rough), stop));
+  if (leaves(kLarge) && problem.map->grid().size() <= kPointCells) {
+    Polyline way = pointRoute(cost, places, stage.tolerance_m, kSettled * plan.cost_J, stop);
+    if (way.size() > 1) take(refined(problem, stage, withSettledVertices(cost, std::move(way), stop), stop));
+    take(withoutCloseVertices(cost, withSettledVertices(cost, plan.points, stop)));
   }
   plan.lower_bound_J = std::min(plan.lower_bound_J, plan.cost_J);
 }

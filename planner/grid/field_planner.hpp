@@ -18,7 +18,7 @@ namespace talus::planner {
 ///
 /// Where a bound is requested and leaves room (Problem::prove), other corridors are refined as well and the cheapest route
 /// is taken (otherCorridors), on maps of up to kCorridorCells, and the cheapest way in 32 headings (manyHeadingsRoute) on those
-/// of up to kManyHeadingsCells.
+/// of up to kManyHeadingsCells. Where more than kLarge is left, the cheapest way over points of cells (pointRoute) is tried, too.
 ///
 /// What it worked out for a map and a goal is kept: another start to the same goal costs a walk down the
 /// field and the refinement only. Deterministic, for any number of threads, as long as no time limit cuts the
@@ -47,14 +47,20 @@ class FieldPlanner {
   Plan beyondTheGrid(const Problem& problem, const Stage& stage, const StopCheck& stop);
   Plan finished(const Problem& problem, const Stage& stage, Polyline rough, const StopCheck& stop);
   Polyline refined(const Problem& problem, const Stage& stage, Polyline rough, const StopCheck& stop);
-  void tryOtherCorridors(const Problem& problem, const Stage& stage, const StopCheck& stop, Plan& plan);
+  void tryOtherCorridors(const Problem& problem, const Stage& stage, const StopCheck& stop, bool on_grid,
+                         Plan& plan);
   std::vector<Polyline> manyHeadings(const Problem& problem, const Stage& stage, double most_J,
                                      const StopCheck& stop) const;
   Polyline roughRoute(const Problem& problem, const Segment& places, const StopCheck& stop);
 
   static constexpr std::size_t kCorridorCells = 4'000'000;      // larger maps are searched for one corridor
   static constexpr std::size_t kManyHeadingsCells = 1'000'000;  // larger ones in eight headings only
+  static constexpr std::size_t kPointCells = 250'000;           // larger ones not over points of cells
   static constexpr double kProven = 1e-3;  // of the cost: a gap that no corridor is sought for
+  static constexpr double kLarge =
+      0.05;  // of the cost: from this gap on a way over points of cells is sought
+  static constexpr double kSettled =
+      1.05;  // of the cost: what such a way may cost before its vertices are settled
 
   Refiner refine_;
   LowerBound bound_;

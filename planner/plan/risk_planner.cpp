@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <optional>
 #include <sstream>
@@ -16,6 +17,7 @@ namespace {
 constexpr double kLeastPrice_J = 1e3;
 constexpr double kHighestPrice_J = 1e13;
 constexpr int kHalvings = 8;
+constexpr double kTime_s = 2.0;  // for all prices, where no time limit is set
 
 Plan planUnder(const Problem& problem, const std::function<Plan(const Problem&)>& planner,
                const costmap::CostWeights& weights) {
@@ -26,78 +28,104 @@ Plan planUnder(const Problem& problem, const std::function<Plan(const Problem&)>
   return plan;
 }
 
-std::string inWords(double probability) {
+std::string inWords(double probability, int digits = 3) {
   std::ostringstream text;
-  text.precision(3);
+  text.precision(digits);
   text << probability;
   return text.str();
 }
 
-// 1 where `watch` was stopped before it was known.
-double riskOf(const costmap::CostGrid& map, const Plan& plan, const RouteRiskOptions& soil,
-              const ProgressMonitor& watch) {
-  const Route route = annotated(plan, {.map = map, .planner = {}});
-  if (route.vertices.empty()) return 0.0;
-  const RouteRisk drawn = routeRisk(route, soil, watch);
-  if (std::isnan(drawn.immobilisation)) return 1.0;
-  return drawn.immobilisation + 2.0 * drawn.standard_error;
+double riskOf(const Route& route) {
+  return route.vertices.empty() ? 0.0 : route.vertices.back().immobilisation_risk;
 }
 
 // Keeps the cheapest of the plans within the limit, and the least risk of all.
 class RiskBoundedSearch {
  public:
-  RiskBoundedSearch(const Problem& problem, NamedPlanner& planner, double max_risk,
-                    const RouteRiskOptions& soil)
-      : problem_(problem), planner_(planner), max_risk_(max_risk), soil_(soil) {}
+  RiskBoundedSearch(const Problem& problem, NamedPlanner& planner, double max_risk)
+      : problem_(problem), planner_(planner), max_risk_(max_risk) {}
 
-  // Whether the price brings the risk within the limit; nothing when planning did not find a route.
-  std::optional<bool> tried(double price_J) {
-    const auto plan = [this](const Problem& problem) { return planner_.plan(problem); };
-    return taken(planUnder(problem_, plan, {.energy = 1.0, .time_W = 1.0, .risk_J = price_J}));
-  }
-
-  std::optional<bool> taken(Plan plan) {
-    if (plan.status != RouteStatus::Found) {
-      failure_ = std::move(plan);
-      return std::nullopt;
-    }
-    const double risk = riskOf(*problem_.map, plan, soil_, problem_.watch);
+  // Whether the plan keeps the limit, by more worlds than its own number is drawn from, too; nothing where it found no route.
+  std::optional<bool> taken(const Plan& plan) {
+    if (plan.status != RouteStatus::Found) return std::nullopt;
+    AnnotationInput input{.map = *problem_.map};
+    input.watch = problem_.watch;
+    const Route route = annotated(plan, input);
+    const double risk = riskOf(route);
     least_risk_ = std::min(least_risk_, risk);
     if (risk > max_risk_) return false;
-    if (!best_ || plan.cost_J < best_->cost_J) best_ = std::move(plan);
-    return true;
+    const bool surely = surelyKeeps(route);
+    std::optional<Plan>& best = surely ? best_ : doubtful_;
+    if (!best || plan.cost_J < best->cost_J) best = plan;
+    return surely;
   }
+
+  // Whether a route under a price on risk keeps the limit, of the field alone and, where asked for, of all corridors. In the time
+  // that is left; a first route is always sought.
+  bool tried(double price_J) {
+    bool kept = false;
+    for (const bool prove : {false, true}) {
+      const double left_s = leftSeconds();
+      if ((prove && !problem_.prove) || (any_ && !(left_s > 0.0)) || problem_.watch.stopped()) break;
+      Problem asked = problem_;
+      asked.prove = prove;
+      asked.time_limit_s = any_ ? left_s : std::max(left_s, problem_.time_limit_s);
+      any_ = true;
+      const auto plan = [this](const Problem& problem) { return planner_.plan(problem); };
+      kept =
+          taken(planUnder(asked, plan, {.energy = 1.0, .time_W = 1.0, .risk_J = price_J})).value_or(false) ||
+          kept;
+    }
+    return kept;
+  }
+  bool late() const { return problem_.watch.stopped() || !(leftSeconds() > 0.0); }
 
   // A search that a stop cut short has tried too few prices to say that none does.
   Plan result(double lower_bound_J) const {
     const bool stopped = problem_.watch.stopped();
-    if (best_) {
-      Plan plan = *best_;
+    if (best_ || doubtful_) {
+      Plan plan = best_ ? *best_ : *doubtful_;
       plan.lower_bound_J = std::min(lower_bound_J, plan.cost_J);
       plan.interrupted |= stopped;
       return plan;
     }
-    if (failure_) return *failure_;
     Plan none;
     if (stopped) {
       none.status = RouteStatus::Cancelled;
       none.reason = "planning was cancelled before a route within the risk limit was found";
       return none;
     }
-    none.reason = "no route found that keeps the risk of immobilisation within " + inWords(max_risk_) +
-                  ": the safest route found has " + inWords(least_risk_) +
+    int digits = 3;
+    while (digits < 17 && inWords(max_risk_, digits) == inWords(least_risk_, digits)) ++digits;
+    none.reason = "no route found that keeps the risk of immobilisation within " +
+                  inWords(max_risk_, digits) + ": the safest route found has " +
+                  inWords(least_risk_, digits) +
                   ", which proves nothing of others; increase the limit or choose another goal";
     return none;
   }
 
  private:
+  // With two standard errors to spare, so that the cheapest of many is not one whose number happens to be low.
+  bool surelyKeeps(const Route& route) const {
+    if (!(problem_.map->cost().doubt().correlation_length_m > 0.0)) return true;  // nothing is drawn
+    const RouteRisk drawn = routeRisk(route, riskOptions(*problem_.map), problem_.watch);
+    return drawn.immobilisation + 2.0 * drawn.standard_error <= max_risk_;
+  }
+
+  // Of the time limit, from the beginning; without one, of kTime_s.
+  double leftSeconds() const {
+    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begun_;
+    return (std::isfinite(problem_.time_limit_s) ? problem_.time_limit_s : kTime_s) - spent.count();
+  }
+
   const Problem& problem_;
   NamedPlanner& planner_;
   double max_risk_;
-  RouteRiskOptions soil_;
+  std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
+  bool any_ = false;
   double least_risk_ = 1.0;
   std::optional<Plan> best_;
-  std::optional<Plan> failure_;
+  std::optional<Plan> doubtful_;  // within the limit by their own number only
 };
 
 bool dominates(const RouteDemand& a, const RouteDemand& b) {
@@ -120,9 +148,7 @@ void keep(std::vector<ParetoRoute>& front, ParetoRoute route) {
 
 RouteDemand demandOf(const costmap::CostGrid& map, const Plan& plan) {
   const Route route = annotated(plan, {.map = map, .planner = {}});
-  return {.energy_J = route.summary.energy_J,
-          .time_s = route.summary.time_s,
-          .risk = route.vertices.empty() ? 0.0 : route.vertices.back().immobilisation_risk};
+  return {.energy_J = route.summary.energy_J, .time_s = route.summary.time_s, .risk = riskOf(route)};
 }
 
 RouteRiskOptions riskOptions(const costmap::CostGrid& map, const RiskLimit& limit, std::uint64_t seed) {
@@ -133,22 +159,21 @@ RouteRiskOptions riskOptions(const costmap::CostGrid& map, const RiskLimit& limi
   return options;
 }
 
-Plan planWithinRisk(const Problem& problem, NamedPlanner& planner, double max_risk,
-                    const RouteRiskOptions& soil) {
+Plan planWithinRisk(const Problem& problem, NamedPlanner& planner, double max_risk) {
   if (!(max_risk > 0 && max_risk < 1))
     throw std::invalid_argument("risk: " + inWords(max_risk) + ", must be above 0 and below 1");
-  RiskBoundedSearch search(problem, planner, max_risk, soil);
   const Plan own = planner.plan(problem);
-  if (search.taken(own).value_or(true)) return search.result(own.lower_bound_J);
-  // The lowest price that is known to do and the highest that is known not to, in powers of ten.
+  if (own.status != RouteStatus::Found) return own;
+  RiskBoundedSearch search(problem, planner, max_risk);
+  if (*search.taken(own)) return search.result(own.lower_bound_J);
+  // The lowest price that is known to do and the highest that is known not to, in powers of ten. Where the highest does not do, a lower
+  // one may: the price counts all metres alike, the risk those together that fail together.
   double enough = std::log10(kHighestPrice_J);
   double too_low = std::log10(kLeastPrice_J);
-  if (!search.tried(kHighestPrice_J).value_or(false)) return search.result(own.lower_bound_J);
-  for (int i = 0; i < kHalvings && !problem.watch.stopped(); ++i) {
+  search.tried(kHighestPrice_J);
+  for (int i = 0; i < kHalvings && !search.late(); ++i) {
     const double middle = (enough + too_low) / 2;
-    const auto kept = search.tried(std::pow(10.0, middle));
-    if (!kept) break;
-    (*kept ? enough : too_low) = middle;
+    (search.tried(std::pow(10.0, middle)) ? enough : too_low) = middle;
     problem.watch.report((i + 1.0) / kHalvings);
   }
   return search.result(own.lower_bound_J);

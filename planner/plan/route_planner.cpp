@@ -69,8 +69,7 @@ Plan RoutePlanner::search(const Problem& problem, const PlanRequest& request) {
     if (const auto* plugin = std::get_if<PluginPlanner>(&planner_)) return plugin->plan(asked);
     NamedPlanner& own = *std::get<0>(planner_);
     if (!request.risk_limit) return own.plan(asked);
-    return planWithinRisk(asked, own, request.risk_limit->immobilisation,
-                          riskOptions(*asked.map, *request.risk_limit, asked.seed));
+    return planWithinRisk(asked, own, request.risk_limit->immobilisation);
   };
   return request.chassis ? planOnChassis(problem, *request.chassis, once) : once(problem);
 }

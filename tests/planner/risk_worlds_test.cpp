@@ -203,7 +203,7 @@ TEST(RiskWorlds, TheChanceConstraintHoldsInDrawnWorlds) {
   const Problem problem = acrossSwells(ground);
   const double free = stuckShare(ground, planner.plan(problem).points, kWorlds);
   EXPECT_GT(free - spread(free, kWorlds), kLimit);
-  const Plan safe = planWithinRisk(problem, planner, kLimit, riskOptions(*ground.map));
+  const Plan safe = planWithinRisk(problem, planner, kLimit);
   ASSERT_EQ(safe.status, RouteStatus::Found) << safe.reason;
   const double kept = stuckShare(ground, safe.points, kWorlds);
   EXPECT_LE(kept - spread(kept, kWorlds), kLimit);

@@ -1,5 +1,6 @@
 #include <cmath>
 #include <numbers>
+#include <random>
 
 #include <talus/costmap/cost/drive_state.hpp>
 #include <talus/planner/check/annotation.hpp>
@@ -50,6 +51,26 @@ TEST(Annotation, VerticesWhereCellsChange) {
   EXPECT_EQ(route.summary.length_m, 3.0);
   EXPECT_NEAR(route.summary.max_slip, 0.25, 1e-6);
   EXPECT_NEAR(route.summary.gap, 1.0, 1e-12);
+}
+
+// Property: the vertices of a route, read again as a polyline, make the same route, though they lie on sides of cells to rounding only.
+TEST(Annotation, ARouteReadAgainIsTheSame) {
+  std::mt19937 random(3);
+  const auto unit = [&random] { return static_cast<double>(random()) / 4294967296.0; };
+  for (unsigned seed = 1; seed <= 50; ++seed) {
+    const auto map = testing::randomMap({.width = 20, .height = 20, .seed = seed, .roughness = 0.2});
+    Plan plan{RouteStatus::Found, {}, {{1.0 + unit(), 1.0 + unit()}}, 1.0, 1.0};
+    for (int k = 0; k < 8; ++k)
+      plan.points.push_back({plan.points.back().x_m + 2.0 * unit(), plan.points.back().y_m + 2.0 * unit()});
+    const Route route = annotated(plan, {.map = *map});
+    plan.points.clear();
+    for (const RouteVertex& v : route.vertices) plan.points.push_back({v.x_m, v.y_m});
+    const Route again = annotated(plan, {.map = *map});
+    ASSERT_EQ(again.vertices.size(), route.vertices.size()) << seed;
+    for (std::size_t i = 0; i < route.vertices.size(); ++i)
+      EXPECT_NEAR(again.vertices[i].slope_along_rad, route.vertices[i].slope_along_rad, 1e-9)
+          << seed << ' ' << i;
+  }
 }
 
 TEST(Annotation, ARouteWithAViolationIsNotHandedOut) {

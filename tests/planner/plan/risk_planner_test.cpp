@@ -15,7 +15,8 @@ namespace risk_planner_test {
 using ::testing::HasSubstr;
 
 // Ground 0: dear and safe; 1: cheap and risky; 2: as cheap, slower, half as risky.
-std::shared_ptr<const costmap::CostGrid> withRisk(const std::vector<std::string>& rows) {
+std::shared_ptr<const costmap::CostGrid> withRisk(const std::vector<std::string>& rows,
+                                                  const costmap::SoilDoubt& doubt = {}) {
   const auto ground = [](double energy, double time, double risk) {
     costmap::DriveState state;
     state.energy_J_per_m = static_cast<float>(energy);
@@ -28,7 +29,7 @@ std::shared_ptr<const costmap::CostGrid> withRisk(const std::vector<std::string>
   auto content = testing::drawn(rows)->content();
   content.cost = std::make_shared<costmap::DriveCost>(
       costmap::DriveCost::Limits{},
-      std::vector{ground(20, 5, 1e-6), ground(10, 5, 1e-2), ground(10, 9, 5e-3)});
+      std::vector{ground(20, 5, 1e-6), ground(10, 5, 1e-2), ground(10, 9, 5e-3)}, doubt);
   return costmap::reweighted(costmap::CostGrid(content), {.energy = 1.0, .time_W = 1.0, .risk_J = 1.0});
 }
 
@@ -74,6 +75,26 @@ TEST(RiskPlanner, ALimitThatNothingKeepsFindsNone) {
   EXPECT_THAT(plan.reason, HasSubstr("the safest route found has 0.5"));
   EXPECT_THROW(planWithinRisk(problem, planner, 0.0), std::invalid_argument);
   EXPECT_THROW(planWithinRisk(problem, planner, 1.0), std::invalid_argument);
+}
+
+// Property: the risk that is told of the route is what is compared, and the plain route is a candidate: whatever it has is within reach.
+TEST(RiskPlanner, TheRiskOfThePlainRouteIsAlwaysWithinReach) {
+  for (const int columns : {3, 8, 20, 31}) {
+    std::vector<std::string> rows(20, std::string(40, '1'));
+    for (auto& row : rows)
+      row.replace(4, static_cast<std::size_t>(columns), static_cast<std::size_t>(columns), '2');
+    Problem problem = acrossRisk();
+    problem.map = withRisk(rows, {.correlation_length_m = 5.0, .entrapment = 1.0, .shared = {0.3, 0.3, 0.3}});
+    NamedPlanner planner;
+    const Plan own = planner.plan(problem);
+    const double risk = demandOf(*problem.map, own).risk;
+    ASSERT_GT(risk, 0.05);
+    const Plan kept = planWithinRisk(problem, planner, risk);
+    ASSERT_EQ(kept.status, RouteStatus::Found) << kept.reason;
+    EXPECT_LE(demandOf(*problem.map, kept).risk, risk);
+    const Plan less = planWithinRisk(problem, planner, 0.999 * risk);
+    if (less.status == RouteStatus::Found) EXPECT_LE(demandOf(*problem.map, less).risk, 0.999 * risk);
+  }
 }
 
 std::function<Plan(const Problem&)> planning(NamedPlanner& planner) {

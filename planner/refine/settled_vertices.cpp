@@ -1,0 +1,76 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include <talus/common/constants.hpp>
+#include <talus/planner/refine/settled_vertices.hpp>
+
+namespace talus::planner {
+namespace {
+
+constexpr std::array kSteps{0.2, 0.1, 0.05, 0.025, 0.0125};  // cells
+constexpr int kSweeps = 4;                                   // with each step, at most
+constexpr std::array kOff{0.02, 0.005, 0.001, 2e-4};         // cells from a side
+constexpr double kGain = 1e-9;                               // of the cost around: less is rounding
+
+// What a vertex changes: its legs, and the turns at both ends of them.
+double around_J(const MotionCost& cost, const Polyline& points, std::size_t i) {
+  const std::size_t first = i > 1 ? i - 2 : 0, last = std::min(i + 2, points.size() - 1);
+  return cost.along({points.begin() + static_cast<std::ptrdiff_t>(first),
+                     points.begin() + static_cast<std::ptrdiff_t>(last) + 1});
+}
+
+// Whether some place a step away is cheaper; the vertex is there then.
+bool moved(const MotionCost& cost, Polyline& points, std::size_t i, double step_m) {
+  const double before_J = around_J(cost, points, i);
+  const maps::Point here = points[i];
+  maps::Point best = here;
+  double best_J = before_J * (1.0 - kGain);
+  for (int x = -1; x <= 1; ++x)
+    for (int y = -1; y <= 1; ++y) {
+      if (x == 0 && y == 0) continue;
+      points[i] = {here.x_m + x * step_m, here.y_m + y * step_m};
+      const double tried_J = around_J(cost, points, i);
+      if (tried_J < best_J) best_J = tried_J, best = points[i];
+    }
+  points[i] = best;
+  return !(best == here);
+}
+
+}  // namespace
+
+Polyline withSettledVertices(const MotionCost& cost, Polyline points, const StopCheck& stop) {
+  if (!(cost.along(points) < kInfinity)) return points;
+  for (const double cells : kSteps) {
+    bool any = true;
+    for (int sweep = 0; sweep < kSweeps && any && !stop(); ++sweep) {
+      any = false;
+      for (std::size_t i = 1; i + 1 < points.size(); ++i)
+        any = moved(cost, points, i, cells * cost.map().grid().resolution_m) || any;
+    }
+  }
+  return points;
+}
+
+Polyline offSides(const MotionCost& cost, Polyline points) {
+  for (std::size_t i = 1; i + 1 < points.size(); ++i) {
+    const maps::Point here = points[i];
+    double best_J = cost.along({points[i - 1], here, points[i + 1]});
+    if (best_J < kInfinity) continue;
+    for (const std::size_t to : {i - 1, i + 1})
+      for (const double cells : kOff)
+        for (const double sense : {1.0, -1.0}) {
+          const maps::Point end = points[to];
+          const double share =
+              sense * std::min(cells * cost.map().grid().resolution_m / distance_m(here, end), 0.5);
+          const maps::Point tried{here.x_m + share * (end.x_m - here.x_m),
+                                  here.y_m + share * (end.y_m - here.y_m)};
+          const double tried_J = cost.along({points[i - 1], tried, points[i + 1]});
+          if (tried_J < best_J) best_J = tried_J, points[i] = tried;
+        }
+  }
+  return points;
+}
+
+}  // namespace talus::planner
