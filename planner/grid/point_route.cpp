@@ -22,13 +22,13 @@ using costmap::CellCode;
 using maps::Cell;
 using maps::Point;
 
-// Points of a side, and of a row within a cell; fewer on maps of more than kFineCells, more where these find nothing on
-// maps of up to kFinestCells.
+// Points of a side, and of a row within a cell; fewer on maps of more than kFineCells, more on those of up to
+// kTinyCells, and where these find nothing on those of up to kFinestCells.
 struct Fineness {
   int side, inner;
 };
 constexpr Fineness kFinest{15, 5}, kFine{7, 3}, kCoarse{3, 1};
-constexpr std::size_t kFinestCells = 5'000, kFineCells = 20'000;
+constexpr std::size_t kTinyCells = 1'000, kFinestCells = 5'000, kFineCells = 20'000;
 
 constexpr float kFar = std::numeric_limits<float>::infinity();
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
@@ -279,8 +279,8 @@ Polyline pointRoute(const MotionCost& cost, const Segment& places, double tolera
     return std::isfinite(cost.along(way)) ? way : Polyline{};
   };
   if (cells > kFineCells) return found(kCoarse);
-  Polyline way = found(kFine);
-  return way.empty() && cells <= kFinestCells ? found(kFinest) : way;
+  Polyline way = found(cells > kTinyCells ? kFine : kFinest);
+  return way.empty() && cells > kTinyCells && cells <= kFinestCells ? found(kFinest) : way;
 }
 
 }  // namespace talus::planner
