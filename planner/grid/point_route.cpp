@@ -22,12 +22,13 @@ using costmap::CellCode;
 using maps::Cell;
 using maps::Point;
 
-// Points of a side, and of a row within a cell; fewer on maps of more than kFineCells.
+// Points of a side, and of a row within a cell; fewer on maps of more than kFineCells, more on those of up to
+// kTinyCells, and where these find nothing on those of up to kFinestCells.
 struct Fineness {
   int side, inner;
 };
-constexpr Fineness kFine{7, 3}, kCoarse{3, 1};
-constexpr std::size_t kFineCells = 20'000;
+constexpr Fineness kFinest{15, 5}, kFine{7, 3}, kCoarse{3, 1};
+constexpr std::size_t kTinyCells = 1'000, kFinestCells = 5'000, kFineCells = 20'000;
 
 constexpr float kFar = std::numeric_limits<float>::infinity();
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
@@ -272,9 +273,14 @@ class PointSearch {
 
 Polyline pointRoute(const MotionCost& cost, const Segment& places, double tolerance_m, double most_J,
                     const StopCheck& stop) {
-  const Fineness fineness = cost.map().grid().size() > kFineCells ? kCoarse : kFine;
-  Polyline way = offSides(cost, PointSearch(cost, fineness, most_J).between(places, tolerance_m, stop));
-  return std::isfinite(cost.along(way)) ? way : Polyline{};
+  const std::size_t cells = cost.map().grid().size();
+  const auto found = [&](Fineness fineness) {
+    Polyline way = offSides(cost, PointSearch(cost, fineness, most_J).between(places, tolerance_m, stop));
+    return std::isfinite(cost.along(way)) ? way : Polyline{};
+  };
+  if (cells > kFineCells) return found(kCoarse);
+  Polyline way = found(cells > kTinyCells ? kFine : kFinest);
+  return way.empty() && cells > kTinyCells && cells <= kFinestCells ? found(kFinest) : way;
 }
 
 }  // namespace talus::planner

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::array kSteps{0.2, 0.1, 0.05, 0.025, 0.0125};  // cells
 constexpr int kSweeps = 4;                                   // with each step, at most
-constexpr std::array kOff{0.02, 0.005, 0.001, 2e-4};         // cells from a side
+constexpr std::array kOff{0.02, 0.005, 0.001, 2e-4, 2e-5};   // cells from a side
 constexpr double kGain = 1e-9;                               // of the cost around: less is rounding
 
 // What a vertex changes: its legs, and the turns at both ends of them.
@@ -56,8 +56,15 @@ Polyline withSettledVertices(const MotionCost& cost, Polyline points, const Stop
 Polyline offSides(const MotionCost& cost, Polyline points) {
   for (std::size_t i = 1; i + 1 < points.size(); ++i) {
     const maps::Point here = points[i];
-    double best_J = cost.along({points[i - 1], here, points[i + 1]});
+    // Turns before it are allowed and must remain so; those behind it come next.
+    const auto until = points.begin() + static_cast<std::ptrdiff_t>(i) + 2;
+    const auto with_J = [&](maps::Point place) {
+      points[i] = place;
+      return cost.along({until - std::min<std::ptrdiff_t>(4, until - points.begin()), until});
+    };
+    double best_J = with_J(here);
     if (best_J < kInfinity) continue;
+    maps::Point best = here;
     for (const std::size_t to : {i - 1, i + 1})
       for (const double cells : kOff)
         for (const double sense : {1.0, -1.0}) {
@@ -66,9 +73,10 @@ Polyline offSides(const MotionCost& cost, Polyline points) {
               sense * std::min(cells * cost.map().grid().resolution_m / distance_m(here, end), 0.5);
           const maps::Point tried{here.x_m + share * (end.x_m - here.x_m),
                                   here.y_m + share * (end.y_m - here.y_m)};
-          const double tried_J = cost.along({points[i - 1], tried, points[i + 1]});
-          if (tried_J < best_J) best_J = tried_J, points[i] = tried;
+          const double tried_J = with_J(tried);
+          if (tried_J < best_J) best_J = tried_J, best = tried;
         }
+    points[i] = best;
   }
   return points;
 }
