@@ -93,7 +93,9 @@ TEST(RiskPlanner, TheRiskOfThePlainRouteIsAlwaysWithinReach) {
     ASSERT_EQ(kept.status, RouteStatus::Found) << kept.reason;
     EXPECT_LE(demandOf(*problem.map, kept).risk, risk);
     const Plan less = planWithinRisk(problem, planner, 0.999 * risk);
-    if (less.status == RouteStatus::Found) EXPECT_LE(demandOf(*problem.map, less).risk, 0.999 * risk);
+    if (less.status == RouteStatus::Found) {
+      EXPECT_LE(demandOf(*problem.map, less).risk, 0.999 * risk);
+    }
   }
 }
 
