@@ -12,7 +12,7 @@ namespace {
 constexpr std::array kSteps{0.2, 0.1, 0.05, 0.025, 0.0125};  // cells
 constexpr int kSweeps = 4;                                   // with each step, at most
 constexpr std::array kOff{0.02, 0.005, 0.001, 2e-4, 2e-5};   // cells from a side
-constexpr double kGain = 1e-9;                               // of the cost around: less is rounding
+constexpr double kLeastGain = 1e-9;                          // of the cost around: less is rounding
 
 // What a vertex changes: its legs, and the turns at both ends of them.
 double around_J(const MotionCost& cost, const Polyline& points, std::size_t i) {
@@ -26,7 +26,7 @@ bool moved(const MotionCost& cost, Polyline& points, std::size_t i, double step_
   const double before_J = around_J(cost, points, i);
   const maps::Point here = points[i];
   maps::Point best = here;
-  double best_J = before_J * (1.0 - kGain);
+  double best_J = before_J * (1.0 - kLeastGain);
   for (int x = -1; x <= 1; ++x)
     for (int y = -1; y <= 1; ++y) {
       if (x == 0 && y == 0) continue;

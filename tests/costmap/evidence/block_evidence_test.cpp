@@ -26,8 +26,10 @@ ReadingCount times(ReadingCount reading, std::uint16_t count) {
 }
 
 TEST(ReadingCount, RoundsTowardsDanger) {
-  // Closed form: steps of 0.01 from -1.28, down for pull, up for sinkage
-  EXPECT_EQ(pullReading({0.109, 0.05}, true).step, 138);
+  // Closed form: steps of 0.01 from -1.28, for a pull that may only lower down, else to the nearest, up for sinkage
+  EXPECT_EQ(pullReading({0.109, 0.05}, false).step, 138);
+  EXPECT_EQ(pullReading({0.109, 0.05}, true).step, 139);
+  EXPECT_EQ(pullReading({0.104, 0.05}, true).step, 138);
   EXPECT_EQ(pullReading({-5.0, 0.05}, true).step, 0);
   EXPECT_EQ(sinkageReading(0.301, true).step, 31);
   EXPECT_NE(pullReading({0.1, 0.05}, true).kind, pullReading({0.1, 0.05}, false).kind);
