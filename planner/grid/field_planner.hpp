@@ -44,6 +44,9 @@ class FieldPlanner {
   static EdgeUnits unitsFor(const costmap::CostGrid& map);
   bool repairTo(const Problem& problem);
   bool prepareField(const MotionCost& cost, const Stage& stage);
+  HeadingSets& headingsOf(const Problem& problem);
+  Plan misplaced(const Problem& problem, const Stage& stage, bool from_there, bool to_there,
+                 const StopCheck& stop);
   Plan beyondTheGrid(const Problem& problem, const Stage& stage, const StopCheck& stop);
   Plan finished(const Problem& problem, const Stage& stage, Polyline rough, const StopCheck& stop);
   Polyline refined(const Problem& problem, const Stage& stage, Polyline rough, const StopCheck& stop);
