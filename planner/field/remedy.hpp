@@ -14,8 +14,8 @@ struct PlaceHelp {
   std::function<bool(maps::Cell)> joined{};  ///< whether the other end and a cell are joined; none: not known
 };
 
-/// One line for a place that no route may begin or end at: why, and the nearest place that will do, from which the other end can
-/// be reached where there is one. `which` is "start" or "goal".
+/// One line for a place that no route may begin or end at: why, and the nearest place that will do, from which the
+/// other end can be reached where there is one. `which` is "start" or "goal".
 std::string invalidPlace(const costmap::CostGrid& map, const std::string& which, maps::Point place,
                          const PlaceHelp& help = {});
 

@@ -190,15 +190,16 @@ Polyline FieldPlanner::refined(const Problem& problem, const Stage& stage, Polyl
   };
   Polyline points = cut(std::move(rough));
   if (!(stage.tolerance_m > 0.0)) return points;
-  // Refinement keeps ends; where the route enters the tolerance is chosen after it, and the rest for that end once more.
+  // Refinement keeps ends; where the route enters the tolerance is chosen after it, and the rest for that end once
+  // more.
   Polyline ended = withSettledEnd(cost, points, stage.to, stage.tolerance_m);
   if (ended.back() == points.back()) return points;
   Polyline again = cut(ended);
   return cost.along(again) <= cost.along(ended) ? again : ended;
 }
 
-// Ways near the cheapest of all headings: that of the bound's search where it may be driven. Where it may not, as far as it
-// may and on in 32 headings, and the cheapest in these alone.
+// Ways near the cheapest of all headings: that of the bound's search where it may be driven. Where it may not, as far
+// as it may and on in 32 headings, and the cheapest in these alone.
 std::vector<Polyline> FieldPlanner::manyHeadings(const Problem& problem, const Stage& stage, double most_J,
                                                  const StopCheck& stop) const {
   if (problem.map->grid().size() > kManyHeadingsCells) return {};

@@ -16,9 +16,10 @@ namespace talus::planner {
 /// cost. Where the eight headings of the grid join start and goal nowhere, any heading is tried: NoRoute is a proof
 /// (Reach), NoneFound is not.
 ///
-/// Where a bound is requested and leaves room (Problem::prove), other corridors are refined as well and the cheapest route
-/// is taken (otherCorridors), on maps of up to kCorridorCells, and the cheapest way in 32 headings (manyHeadingsRoute) on those
-/// of up to kManyHeadingsCells. Where more than kLarge is left, the cheapest way over points of cells (pointRoute) is tried, too.
+/// Where a bound is requested and leaves room (Problem::prove), other corridors are refined as well and the cheapest
+/// route is taken (otherCorridors), on maps of up to kCorridorCells, and the cheapest way in 32 headings
+/// (manyHeadingsRoute) on those of up to kManyHeadingsCells. Where more than kLarge is left, the cheapest way over
+/// points of cells (pointRoute) is tried, too.
 ///
 /// What it worked out for a map and a goal is kept: another start to the same goal costs a walk down the
 /// field and the refinement only. Deterministic, for any number of threads, as long as no time limit cuts the

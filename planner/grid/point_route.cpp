@@ -30,8 +30,8 @@ struct Fineness {
 constexpr Fineness kFinest{15, 5}, kFine{7, 3}, kCoarse{3, 1};
 constexpr std::size_t kTinyCells = 1'000, kFinestCells = 5'000, kFineCells = 20'000;
 
-constexpr float kFar = std::numeric_limits<float>::infinity();
-constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+constexpr float kNotReached = std::numeric_limits<float>::infinity();
+constexpr std::uint32_t kNoNode = std::numeric_limits<std::uint32_t>::max();
 
 // A point of a cell: on one of its sides, or within (side -1).
 struct Spot {
@@ -55,7 +55,7 @@ std::vector<Spot> allSpots(Fineness fineness) {
 }
 
 // A straight leg from one spot of a cell to another.
-struct Leg {
+struct SpotLeg {
   std::size_t to;
   float length;  // sides of a cell
   costmap::Direction heading;
@@ -76,8 +76,8 @@ class PointSearch {
         crossings_(map_.cost(), side_points_),
         inner_(4 * static_cast<std::size_t>(side_points_) * static_cast<std::size_t>(grid_.width + 1) *
                static_cast<std::size_t>(grid_.height + 1)),
-        labels_(inner_ + grid_.size() * static_cast<std::size_t>(inner_points_), kFar),
-        from_(labels_.size(), kNone) {
+        labels_(inner_ + grid_.size() * static_cast<std::size_t>(inner_points_), kNotReached),
+        from_(labels_.size(), kNoNode) {
     for (const Spot& from : spots_) addLegs(from);
   }
 
@@ -89,7 +89,7 @@ class PointSearch {
         if (!insideMap(cell, spot)) continue;
         const Segment leg{places.from, placeOf(cell, spot)};
         const bool strict = spot.side < 0 || cost_.turnAllowed(leg, leg.to);
-        reach(nodeOf(cell, spot) + (strict ? 0 : loose()), cost_(leg), kNone, leg.to);
+        reach(nodeOf(cell, spot) + (strict ? 0 : loose()), cost_(leg), kNoNode, leg.to);
       }
     std::size_t taken = 0;
     while (!open_.empty()) {
@@ -105,7 +105,7 @@ class PointSearch {
 
  private:
   void addLegs(const Spot& from) {
-    std::vector<Leg>& legs = legs_.emplace_back();
+    std::vector<SpotLeg>& legs = legs_.emplace_back();
     for (std::size_t to = 0; to < spots_.size(); ++to) {
       const double dx = spots_[to].x - from.x, dy = spots_[to].y - from.y, length = std::hypot(dx, dy);
       if (length == 0.0 || (from.side >= 0 && from.side == spots_[to].side)) continue;
@@ -117,8 +117,8 @@ class PointSearch {
   float rest(Point at) const {
     return static_cast<float>(std::max(0.0, distance_m(at, places_.to) - tolerance_m_) * cheapest_J_ * 0.999);
   }
-  // Nodes of sides come twice: reached on a heading that both cells allow, and on one that only the cell that it crosses does, which may
-  // only be left on a heading of both.
+  // Nodes of sides come twice: reached on a heading that both cells allow, and on one that only the cell that it
+  // crosses does, which may only be left on a heading of both.
   std::uint32_t loose() const { return static_cast<std::uint32_t>(inner_ / 2); }
   std::size_t held(Cell cell) const {
     return static_cast<std::size_t>(cell.row) * static_cast<std::size_t>(grid_.width + 1) +
@@ -180,7 +180,7 @@ class PointSearch {
   void expand(std::uint32_t node) {
     const auto [cell, spot] = whereIs(node);
     const Point here = placeOf(cell, spots_[spot]);
-    const Point before = from_[node] == kNone ? places_.from : place(from_[node]);
+    const Point before = from_[node] == kNoNode ? places_.from : place(from_[node]);
     const costmap::Direction heading = directionOf({before, here});
     end(node, here, heading);
     if (spots_[spot].side < 0) return cross(node, cell, spot, heading);
@@ -212,13 +212,13 @@ class PointSearch {
     const double turn_J = map_.cost().turn(code).cost_J;
     const float label = labels_[node];
     const bool must_share = node >= loose() && node < inner_;
-    for (const Leg& leg : legs_[spot]) {
+    for (const SpotLeg& leg : legs_[spot]) {
       const Spot& to = spots_[leg.to];
       if (to.side < 0 ? free : !grid_.contains(beyond(cell, to.side))) continue;
       std::uint32_t next = nodeOf(cell, to);
       if (!(label < labels_[next]) && (to.side < 0 || !(label < labels_[next + loose()]))) continue;
       const float price = leg.cost(code);
-      if (!(price < kFar)) continue;
+      if (!(price < kNotReached)) continue;
       double through =
           static_cast<double>(label) + static_cast<double>(price * leg.length) * grid_.resolution_m;
       const float most = to.side < 0 ? labels_[next] : std::max(labels_[next], labels_[next + loose()]);
@@ -233,16 +233,16 @@ class PointSearch {
   }
 
   // A turn on a side touches both its cells.
-  bool mayLeave(Cell cell, int side, const Leg& leg) const {
+  bool mayLeave(Cell cell, int side, const SpotLeg& leg) const {
     if (side < 0) return true;
     const Cell other = beyond(cell, side);
-    return !grid_.contains(other) || leg.cost(map_.at(other)) < kFar;
+    return !grid_.contains(other) || leg.cost(map_.at(other)) < kNotReached;
   }
 
   Polyline route() const {
-    if (last_ == kNone) return {};
+    if (last_ == kNoNode) return {};
     Polyline points{goal_};
-    for (std::uint32_t at = last_; at != kNone; at = from_[at]) points.push_back(place(at));
+    for (std::uint32_t at = last_; at != kNoNode; at = from_[at]) points.push_back(place(at));
     points.push_back(places_.from);
     std::ranges::reverse(points);
     points.erase(std::unique(points.begin(), points.end()), points.end());
@@ -256,8 +256,8 @@ class PointSearch {
   int side_points_, inner_points_;
   std::vector<Spot> spots_;
   EdgeCrossings crossings_;
-  std::vector<std::vector<Leg>> legs_;  // of a spot
-  std::size_t inner_;                   // the first node within a cell
+  std::vector<std::vector<SpotLeg>> legs_;  // of a spot
+  std::size_t inner_;                       // the first node within a cell
   std::vector<float> labels_;
   std::vector<std::uint32_t> from_;
   std::priority_queue<std::pair<float, std::uint32_t>, std::vector<std::pair<float, std::uint32_t>>,
@@ -265,7 +265,7 @@ class PointSearch {
       open_;
   Segment places_{};
   double tolerance_m_ = 0.0;
-  std::uint32_t last_ = kNone;
+  std::uint32_t last_ = kNoNode;
   Point goal_{};
 };
 

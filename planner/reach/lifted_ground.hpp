@@ -18,14 +18,15 @@ namespace talus::planner {
 ///   Slope    what Pitch, Roll and Soil refuse
 ///   Hazard   rocks, keep-out areas, impassable classes, edges, rough ground, and the clearance around them
 ///   Unknown  unobserved ground and the clearance around it
-/// Where the limit along the heading is lifted, soil is taken to hold as far as its pull exceeds the slope's demand at the limit. Cells freed are ground as the
-/// nearest that is not refused whole, on their own slope. Ours.
+/// Where the limit along the heading is lifted, soil is taken to hold as far as its pull exceeds the slope's demand
+/// at the limit. Cells freed are ground as the nearest that is not refused whole, on their own slope. Ours.
 class LiftedGround {
  public:
   /// Without hazards every cell refused whole counts to Hazard.
   LiftedGround(const costmap::CostGrid& map, const HazardsOf& hazards);
 
-  /// Null where the constraint refuses no cell whole and no heading. Of Hazard only cells of these kinds alone, and their clearance.
+  /// Null where the constraint refuses no cell whole and no heading. Of Hazard only cells of these kinds alone, and
+  /// their clearance.
   std::shared_ptr<const costmap::CostGrid> without(Constraint constraint,
                                                    costmap::Hazard kinds = kSolid) const;
 

@@ -13,7 +13,7 @@ constexpr std::array kSteps{0.2, 0.1, 0.05, 0.025, 0.0125};  // cells
 constexpr int kSweeps = 4;                                   // with each step, at most
 constexpr std::array kOff{0.02, 0.005, 0.001, 2e-4, 2e-5};   // cells from a side
 constexpr double kOnCircle = 1e-6, kInside = 1.0 - 1e-9;     // of the tolerance
-constexpr double kGain = 1e-9;                               // of the cost around: less is rounding
+constexpr double kLeastGain = 1e-9;                               // of the cost around: less is rounding
 
 // What a vertex changes: its legs, and the turns at both ends of them.
 double around_J(const MotionCost& cost, const Polyline& points, std::size_t i) {
@@ -27,7 +27,7 @@ bool moved(const MotionCost& cost, Polyline& points, std::size_t i, double step_
   const double before_J = around_J(cost, points, i);
   const maps::Point here = points[i];
   maps::Point best = here;
-  double best_J = before_J * (1.0 - kGain);
+  double best_J = before_J * (1.0 - kLeastGain);
   for (int x = -1; x <= 1; ++x)
     for (int y = -1; y <= 1; ++y) {
       if (x == 0 && y == 0) continue;
@@ -72,7 +72,7 @@ Polyline withSettledEnd(const MotionCost& cost, Polyline points, maps::Point goa
         points.back() = {goal.x_m + kInside * tolerance_m * std::cos(tried),
                          goal.y_m + kInside * tolerance_m * std::sin(tried)};
         const double tried_J = end_J();
-        if (tried_J < best_J * (1.0 - kGain))
+        if (tried_J < best_J * (1.0 - kLeastGain))
           best_J = tried_J, angle = tried;
         else
           points.back() = kept;

@@ -26,8 +26,8 @@ enum class RouteStatus {
   Cancelled,     ///< the caller requested a stop
 };
 
-/// The status as files and JSON spell it: "found", "no_route", "none_found", "start_invalid", "goal_invalid", "timed_out",
-/// "cancelled".
+/// The status as files and JSON spell it: "found", "no_route", "none_found", "start_invalid", "goal_invalid",
+/// "timed_out", "cancelled".
 std::string_view name(RouteStatus status) noexcept;
 
 /// What a mission may do without, or change, to open a way.
@@ -44,7 +44,8 @@ enum class Constraint {
 /// A constraint as files and JSON spell it: "pitch", "roll", "soil", "hazard", "unknown", "rim", "slope".
 const char* name(Constraint constraint) noexcept;
 
-/// A hazard as files and JSON spell it: "keep_out" (or refused by a layer), "impassable_class", "rocks", "step", "roughness", else "".
+/// A hazard as files and JSON spell it: "keep_out" (or refused by a layer), "impassable_class", "rocks", "step",
+/// "roughness", else "".
 const char* name(costmap::Hazard hazard) noexcept;
 
 /// Why no heading may enter a cell: costmap::MapSurface::hazards() of the map that the costs were made from.

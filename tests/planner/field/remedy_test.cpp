@@ -17,7 +17,8 @@ TEST(Remedy, APlaceIsNamedWithItsFaultAndTheNearestGround) {
             "goal 9.00,0.50 lies outside the map; the nearest traversable cell is 4.50,0.50");
 }
 
-// The cause is named: what stands in the cell, what it is kept clear of, or the rim; and a cell that is joined to the other end is offered.
+// The cause is named: what stands in the cell, what it is kept clear of, or the rim; and a cell that is joined to the
+// other end is offered.
 TEST(Remedy, TheCauseIsNamed) {
   using costmap::Hazard;
   const auto map = drawn({"######", "#..#.#", "#....#", "######"});

@@ -17,8 +17,8 @@ namespace lifted_ground_test {
 
 using costmap::Hazard;
 
-// A map as drawn(), with more: 's' steeper than any heading may stand, 'k' keep-out, 'r' rocks, 'n' kept clear, 'e' an edge,
-// 'w' ground of curve 5, whose soil holds nothing.
+// A map as drawn(), with more: 's' steeper than any heading may stand, 'k' keep-out, 'r' rocks, 'n' kept clear, 'e'
+// an edge, 'w' ground of curve 5, whose soil holds nothing.
 struct Site {
   std::shared_ptr<const costmap::CostGrid> map;
   HazardsOf hazards;
@@ -88,7 +88,8 @@ TEST(LiftedGround, EachCauseIsTold) {
   EXPECT_EQ(causeOf(site(wall('w'))), Constraint::Soil);
 }
 
-// The kind of hazard that closes the way alone, also where another stands beside the way; none where each wall is of another kind.
+// The kind of hazard that closes the way alone, also where another stands beside the way; none where each wall is of
+// another kind.
 TEST(LiftedGround, TheHazardAloneIsTold) {
   EXPECT_EQ(between(site(wall('k'))).hazard, Hazard::KeepOut);
   EXPECT_EQ(between(site(wall('r'))).hazard, Hazard::Rocks);
@@ -151,7 +152,8 @@ TEST(LiftedGround, ALimitIsToldWhereSoilHoldsUpToIt) {
       << "straight up soil and limit refuse it, in turns they do not";
 }
 
-// Of a rover that tips across the slope a slope straight up within its strength, but above its pitch limit: not for the soil's sake.
+// Of a rover that tips across the slope a slope straight up within its strength, but above its pitch limit: not for
+// the soil's sake.
 TEST(LiftedGround, TippingIsNotOfTheSoil) {
   terramech::Rover rover = costmap::testRover();
   rover.wheelbase_m = 2.0;

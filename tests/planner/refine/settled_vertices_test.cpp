@@ -57,8 +57,8 @@ TEST(SettledVertices, TheEndIsTheNearestPlaceOfTheTolerance) {
   EXPECT_EQ(withSettledEnd(cost, elsewhere, goal, 3.0), elsewhere);
 }
 
-// A slope in the east that may be driven down only, southwards: the leg in the cell before it turns on its side, where both cells must allow
-// both headings; just off the side only one must be allowed by both.
+// A slope in the east that may be driven down only, southwards: the leg in the cell before it turns on its side,
+// where both cells must allow both headings; just off the side only one must be allowed by both.
 TEST(SettledVertices, TurnsAreMovedOffSides) {
   maps::Raster<costmap::CellCode> cells({.width = 2, .height = 2, .resolution_m = 1.0, .south_west = {}},
                                         costmap::CellCode({.dz_dx = 0.0, .dz_dy = 0.0, .curve = 0}));
