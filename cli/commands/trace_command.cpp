@@ -142,7 +142,7 @@ int run(const TraceCommandOptions& options, Context& context) {
     printJson(answer);
   } else {
     print(traceText(trace) + (options.propose > 0 ? proposalText(runs, trace.result.trial) : "") +
-          scoreText(scores));
+          causeScoreText(scores));
   }
   return trace.applies.applies ? Exit::kDone : Exit::kNo;
 }

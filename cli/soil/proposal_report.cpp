@@ -107,7 +107,7 @@ std::string proposalText(const std::vector<ProposedRun>& runs, const Trial& tria
   return text;
 }
 
-std::string scoreText(const std::vector<CauseScore>& scores) {
+std::string causeScoreText(const std::vector<CauseScore>& scores) {
   std::string text;
   for (const CauseScore& s : scores)
     text += fmt::format("{}: log-likelihood {:.1f} of the measured runs, probability {:.3g}\n", s.cause,

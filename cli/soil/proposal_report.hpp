@@ -21,6 +21,6 @@ nlohmann::ordered_json scoresJson(const std::vector<terramech::CauseScore>& scor
 std::string proposalText(const std::vector<terramech::ProposedRun>& runs, const terramech::Trial& trial);
 
 /// A line each cause.
-std::string scoreText(const std::vector<terramech::CauseScore>& scores);
+std::string causeScoreText(const std::vector<terramech::CauseScore>& scores);
 
 }  // namespace talus::cli

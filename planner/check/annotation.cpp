@@ -46,7 +46,8 @@ std::vector<double> passages(const maps::Grid& grid, const Segment& motion) {
   return shares;
 }
 
-// How a straight piece belongs to a drive. `heading`: of the pose on it, since the ends of the least of chords tell none.
+// How a straight piece belongs to a drive. `heading`: of the pose on it, since the ends of the least of chords tell
+// none.
 struct Motion {
   bool reverse = false;
   double curvature_1_m = 0.0;

@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -38,21 +40,56 @@ std::optional<Cell> nearest(const maps::Grid& grid, Point place, Wanted wanted) 
   return best;
 }
 
-std::string whyInvalid(const costmap::CostGrid& map, Point place) {
+// What stands in a cell; empty where nothing does but what it is kept clear of.
+const char* inWords(costmap::Hazard found) noexcept {
+  using costmap::Hazard;
+  if (has(found, Hazard::KeepOut)) return "a keep-out area, or where a layer refuses";
+  if (has(found, Hazard::Obstacle)) return "a terrain class declared impassable";
+  if (has(found, Hazard::Rocks)) return "rocks";
+  if (has(found, Hazard::Step)) return "a step higher than the wheels climb";
+  if (has(found, Hazard::Slope)) return "ground steeper than the rover may stand";
+  if (has(found, Hazard::Roughness)) return "ground too rough for the rover's belly";
+  return has(found, Hazard::Unknown) ? "unobserved ground" : "";
+}
+
+// What the rover keeps clear of in a cell: the nearest cell in which something stands, or the rim of the map.
+std::string clearOf(const maps::Grid& grid, Cell cell, const HazardsOf& hazards) {
+  const int to_rim =
+      std::min({cell.column, cell.row, grid.width - 1 - cell.column, grid.height - 1 - cell.row}) + 1;
+  const auto near = nearest(grid, grid.centre(cell), [&](Cell c) {
+    return std::max(std::abs(c.column - cell.column), std::abs(c.row - cell.row)) <= to_rim &&
+           *inWords(hazards(c)) != '\0';
+  });
+  return near ? inWords(hazards(*near)) : "the rim of the map";
+}
+
+std::string whyInvalid(const costmap::CostGrid& map, Point place, const HazardsOf& hazards) {
   const auto cell = map.grid().cellAt(place);
   if (!cell) return "lies outside the map";
   const auto curve = map.at(*cell).curve();
   if (curve == costmap::CellCode::kUnknown) return "lies on an unobserved cell";
-  if (curve == costmap::CellCode::kBlocked) return "lies on a blocked cell";
-  return "lies on a dangerous cell: no heading is allowed there";
+  if (curve != costmap::CellCode::kBlocked) return "lies on a dangerous cell: no heading is allowed there";
+  if (!hazards) return "lies on a blocked cell";
+  const std::string found = inWords(hazards(*cell));
+  return found.empty() ? "lies on a blocked cell, too near to " + clearOf(map.grid(), *cell, hazards)
+                       : "lies on a blocked cell: " + found;
 }
 
 }  // namespace
 
-std::string invalidPlace(const costmap::CostGrid& map, const std::string& which, Point place) {
-  std::string line = which + " " + text(place) + " " + whyInvalid(map, place);
+std::string invalidPlace(const costmap::CostGrid& map, const std::string& which, Point place,
+                         const PlaceHelp& help) {
+  const std::string line = which + " " + text(place) + " " + whyInvalid(map, place, help.hazards);
   const MotionCost cost(std::make_shared<costmap::CostGrid>(map));
-  const auto cell = nearest(map.grid(), place, [&](Cell c) { return cost.allowed(map.grid().centre(c)); });
+  const auto allowed = [&](Cell c) { return cost.allowed(map.grid().centre(c)); };
+  if (help.joined) {
+    const auto joined = nearest(map.grid(), place, [&](Cell c) { return help.joined(c) && allowed(c); });
+    if (joined)
+      return line + "; the nearest traversable cell is " + text(map.grid().centre(*joined)) +
+             (which == "start" ? ", from which the goal can be reached"
+                               : ", which can be reached from the start");
+  }
+  const auto cell = nearest(map.grid(), place, allowed);
   if (!cell) return line + "; no cell of this map is traversable";
   return line + "; the nearest traversable cell is " + text(map.grid().centre(*cell));
 }

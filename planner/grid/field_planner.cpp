@@ -91,11 +91,9 @@ Polyline FieldPlanner::roughRoute(const Problem& problem, const Segment& places,
 
 Plan FieldPlanner::planStage(const Problem& problem, const Stage& stage, const StopCheck& stop) {
   const MotionCost cost(problem.map);
-  if (!cost.allowed(stage.from))
-    return failedPlan(RouteStatus::StartInvalid, invalidPlace(*problem.map, "start", stage.from));
+  const bool from_there = cost.allowed(stage.from), to_there = mayEnd(cost, stage.to, stage.tolerance_m);
+  if (!from_there || !to_there) return misplaced(problem, stage, from_there, to_there, stop);
   if (!prepareEdges(problem, stop)) return cancelledPlan(stop);
-  if (!mayEnd(cost, stage.to, stage.tolerance_m))
-    return failedPlan(RouteStatus::GoalInvalid, invalidPlace(*problem.map, "goal", stage.to));
   Polyline rough;
   if (prepareField(cost, stage)) rough = roughRoute(problem, {stage.from, stage.to}, stop);
   const bool on_grid = !rough.empty();
@@ -109,16 +107,38 @@ Plan FieldPlanner::planStage(const Problem& problem, const Stage& stage, const S
   return withoutTipping(std::move(plan));
 }
 
+HeadingSets& FieldPlanner::headingsOf(const Problem& problem) {
+  if (headings_map_ != problem.map) {
+    headings_ = std::make_unique<HeadingSets>(problem.map->cost());
+    headings_map_ = problem.map;
+  }
+  return *headings_;
+}
+
+// A place that no route may begin or end at, and, where the other is one, the nearest that is joined to it.
+Plan FieldPlanner::misplaced(const Problem& problem, const Stage& stage, bool from_there, bool to_there,
+                             const StopCheck& stop) {
+  PlaceHelp help{.hazards = problem.hazards};
+  std::optional<Reach> other;
+  if (from_there != to_there && problem.map->grid().size() <= kTriedCells) {
+    HeadingSets& headings = headingsOf(problem);
+    if (from_there)
+      other.emplace(*problem.map, headings, Reach::Sense::From, stage.from, 0.0, stop);
+    else
+      other.emplace(*problem.map, headings, Reach::Sense::To, stage.to, stage.tolerance_m, stop);
+    if (other->complete()) help.joined = [&other](maps::Cell cell) { return other->holds(cell); };
+  }
+  if (!from_there)
+    return failedPlan(RouteStatus::StartInvalid, invalidPlace(*problem.map, "start", stage.from, help));
+  return failedPlan(RouteStatus::GoalInvalid, invalidPlace(*problem.map, "goal", stage.to, help));
+}
+
 // What any heading can do where the eight of the grid cannot: a rough route, a proof that there is none, or neither.
 Plan FieldPlanner::beyondTheGrid(const Problem& problem, const Stage& stage, const StopCheck& stop) {
   if (stop()) return cancelledPlan(stop);
   const MotionCost cost(problem.map);
   const Segment places{stage.from, stage.to};
-  if (headings_map_ != problem.map) {
-    headings_ = std::make_unique<HeadingSets>(problem.map->cost());
-    headings_map_ = problem.map;
-  }
-  HeadingSets& headings = *headings_;
+  HeadingSets& headings = headingsOf(problem);
   Reach reach(*problem.map, headings, Reach::Sense::From, stage.from, 0.0, stop);
   if (!reach.complete()) return cancelledPlan(stop);
   if (!reach.reaches(stage.to, stage.tolerance_m)) {
@@ -164,12 +184,22 @@ Plan FieldPlanner::beyondTheGrid(const Problem& problem, const Stage& stage, con
 Polyline FieldPlanner::refined(const Problem& problem, const Stage& stage, Polyline rough,
                                const StopCheck& stop) {
   const MotionCost cost(problem.map);
-  return withoutCloseVertices(
-      cost, cutWithin(refine_(cost, std::move(rough), problem.threads, stop), stage.to, stage.tolerance_m));
+  const auto cut = [&](Polyline way) {
+    return withoutCloseVertices(
+        cost, cutWithin(refine_(cost, std::move(way), problem.threads, stop), stage.to, stage.tolerance_m));
+  };
+  Polyline points = cut(std::move(rough));
+  if (!(stage.tolerance_m > 0.0)) return points;
+  // Refinement keeps ends; where the route enters the tolerance is chosen after it, and the rest for that end once
+  // more.
+  Polyline ended = withSettledEnd(cost, points, stage.to, stage.tolerance_m);
+  if (ended.back() == points.back()) return points;
+  Polyline again = cut(ended);
+  return cost.along(again) <= cost.along(ended) ? again : ended;
 }
 
-// Ways near the cheapest of all headings: that of the bound's search where it may be driven. Where it may not, as far as it
-// may and on in 32 headings, and the cheapest in these alone.
+// Ways near the cheapest of all headings: that of the bound's search where it may be driven. Where it may not, as far
+// as it may and on in 32 headings, and the cheapest in these alone.
 std::vector<Polyline> FieldPlanner::manyHeadings(const Problem& problem, const Stage& stage, double most_J,
                                                  const StopCheck& stop) const {
   if (problem.map->grid().size() > kManyHeadingsCells) return {};

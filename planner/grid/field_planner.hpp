@@ -16,9 +16,10 @@ namespace talus::planner {
 /// cost. Where the eight headings of the grid join start and goal nowhere, any heading is tried: NoRoute is a proof
 /// (Reach), NoneFound is not.
 ///
-/// Where a bound is requested and leaves room (Problem::prove), other corridors are refined as well and the cheapest route
-/// is taken (otherCorridors), on maps of up to kCorridorCells, and the cheapest way in 32 headings (manyHeadingsRoute) on those
-/// of up to kManyHeadingsCells. Where more than kLarge is left, the cheapest way over points of cells (pointRoute) is tried, too.
+/// Where a bound is requested and leaves room (Problem::prove), other corridors are refined as well and the cheapest
+/// route is taken (otherCorridors), on maps of up to kCorridorCells, and the cheapest way in 32 headings
+/// (manyHeadingsRoute) on those of up to kManyHeadingsCells. Where more than kLarge is left, the cheapest way over
+/// points of cells (pointRoute) is tried, too.
 ///
 /// What it worked out for a map and a goal is kept: another start to the same goal costs a walk down the
 /// field and the refinement only. Deterministic, for any number of threads, as long as no time limit cuts the
@@ -44,6 +45,9 @@ class FieldPlanner {
   static EdgeUnits unitsFor(const costmap::CostGrid& map);
   bool repairTo(const Problem& problem);
   bool prepareField(const MotionCost& cost, const Stage& stage);
+  HeadingSets& headingsOf(const Problem& problem);
+  Plan misplaced(const Problem& problem, const Stage& stage, bool from_there, bool to_there,
+                 const StopCheck& stop);
   Plan beyondTheGrid(const Problem& problem, const Stage& stage, const StopCheck& stop);
   Plan finished(const Problem& problem, const Stage& stage, Polyline rough, const StopCheck& stop);
   Polyline refined(const Problem& problem, const Stage& stage, Polyline rough, const StopCheck& stop);

@@ -30,7 +30,7 @@ struct Fineness {
 constexpr Fineness kFinest{15, 5}, kFine{7, 3}, kCoarse{3, 1};
 constexpr std::size_t kTinyCells = 1'000, kFinestCells = 5'000, kFineCells = 20'000;
 
-constexpr float kUnreached = std::numeric_limits<float>::infinity();
+constexpr float kNotReached = std::numeric_limits<float>::infinity();
 constexpr std::uint32_t kNoNode = std::numeric_limits<std::uint32_t>::max();
 
 // A point of a cell: on one of its sides, or within (side -1).
@@ -76,7 +76,7 @@ class PointSearch {
         crossings_(map_.cost(), side_points_),
         inner_(4 * static_cast<std::size_t>(side_points_) * static_cast<std::size_t>(grid_.width + 1) *
                static_cast<std::size_t>(grid_.height + 1)),
-        labels_(inner_ + grid_.size() * static_cast<std::size_t>(inner_points_), kUnreached),
+        labels_(inner_ + grid_.size() * static_cast<std::size_t>(inner_points_), kNotReached),
         from_(labels_.size(), kNoNode) {
     for (const Spot& from : spots_) addLegs(from);
   }
@@ -117,8 +117,8 @@ class PointSearch {
   float rest(Point at) const {
     return static_cast<float>(std::max(0.0, distance_m(at, places_.to) - tolerance_m_) * cheapest_J_ * 0.999);
   }
-  // Nodes of sides come twice: reached on a heading that both cells allow, and on one that only the cell that it crosses does, which may
-  // only be left on a heading of both.
+  // Nodes of sides come twice: reached on a heading that both cells allow, and on one that only the cell that it
+  // crosses does, which may only be left on a heading of both.
   std::uint32_t loose() const { return static_cast<std::uint32_t>(inner_ / 2); }
   std::size_t held(Cell cell) const {
     return static_cast<std::size_t>(cell.row) * static_cast<std::size_t>(grid_.width + 1) +
@@ -218,7 +218,7 @@ class PointSearch {
       std::uint32_t next = nodeOf(cell, to);
       if (!(label < labels_[next]) && (to.side < 0 || !(label < labels_[next + loose()]))) continue;
       const float price = leg.cost(code);
-      if (!(price < kUnreached)) continue;
+      if (!(price < kNotReached)) continue;
       double through =
           static_cast<double>(label) + static_cast<double>(price * leg.length) * grid_.resolution_m;
       const float most = to.side < 0 ? labels_[next] : std::max(labels_[next], labels_[next + loose()]);
@@ -236,7 +236,7 @@ class PointSearch {
   bool mayLeave(Cell cell, int side, const SpotLeg& leg) const {
     if (side < 0) return true;
     const Cell other = beyond(cell, side);
-    return !grid_.contains(other) || leg.cost(map_.at(other)) < kUnreached;
+    return !grid_.contains(other) || leg.cost(map_.at(other)) < kNotReached;
   }
 
   Polyline route() const {

@@ -45,7 +45,8 @@ class RiskBoundedSearch {
   RiskBoundedSearch(const Problem& problem, NamedPlanner& planner, double max_risk)
       : problem_(problem), planner_(planner), max_risk_(max_risk) {}
 
-  // Whether the plan keeps the limit, by more worlds than its own number is drawn from, too; nothing where it found no route.
+  // Whether the plan keeps the limit, by more worlds than its own number is drawn from, too; nothing where it found
+  // no route.
   std::optional<bool> taken(const Plan& plan) {
     if (plan.status != RouteStatus::Found) return std::nullopt;
     AnnotationInput input{.map = *problem_.map};
@@ -60,8 +61,8 @@ class RiskBoundedSearch {
     return surely;
   }
 
-  // Whether a route under a price on risk keeps the limit, of the field alone and, where asked for, of all corridors. In the time
-  // that is left; a first route is always sought.
+  // Whether a route under a price on risk keeps the limit, of the field alone and, where asked for, of all corridors.
+  // In the time that is left; a first route is always sought.
   bool tried(double price_J) {
     bool kept = false;
     for (const bool prove : {false, true}) {
@@ -166,8 +167,8 @@ Plan planWithinRisk(const Problem& problem, NamedPlanner& planner, double max_ri
   if (own.status != RouteStatus::Found) return own;
   RiskBoundedSearch search(problem, planner, max_risk);
   if (*search.taken(own)) return search.result(own.lower_bound_J);
-  // The lowest price that is known to do and the highest that is known not to, in powers of ten. Where the highest does not do, a lower
-  // one may: the price counts all metres alike, the risk those together that fail together.
+  // The lowest price that is known to do and the highest that is known not to, in powers of ten. Where the highest
+  // does not do, a lower one may: the price counts all metres alike, the risk those together that fail together.
   double enough = std::log10(kHighestPrice_J);
   double too_low = std::log10(kLeastPrice_J);
   search.tried(kHighestPrice_J);

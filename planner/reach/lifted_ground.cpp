@@ -32,13 +32,14 @@ void flood(const maps::Grid& grid, std::deque<Cell> open, Next next) {
 }
 
 // A row that ends where the limit along the heading ends it goes on as it ends, uphill and downhill; one that the soil ends does not.
-void levelBeyond(float* row, double limit) {
+void levelBeyond(float* row, double limit, double most) {
   constexpr int kMiddle = DriveCurve::kBins / 2, kCut = 4;  // nodes: tables end so near to their limit
   const int at_limit = static_cast<int>(limit * DriveCurve::kBinsPerUnit);
   for (const int way : {-1, 1}) {
     int last = 0;
     const auto inside = [&](int k) {
-      return kMiddle + way * k >= 0 && kMiddle + way * k < DriveCurve::kBins;
+      return kMiddle + way * k >= 0 && kMiddle + way * k < DriveCurve::kBins &&
+             k <= most * DriveCurve::kBinsPerUnit;
     };
     while (inside(last + 1) && row[kMiddle + way * (last + 1)] < kBlocked) ++last;
     if (last < at_limit || last > at_limit + kCut || !(row[kMiddle] < kBlocked)) continue;
@@ -46,12 +47,12 @@ void levelBeyond(float* row, double limit) {
   }
 }
 
-DriveCurve withoutPitch(DriveCurve curve, double limit) {
-  levelBeyond(curve.cost_J_per_m.data(), limit);
+DriveCurve withoutPitch(DriveCurve curve, double limit, double most) {
+  levelBeyond(curve.cost_J_per_m.data(), limit, most);
   if (!curve.crossing) return curve;
   auto rows = std::make_shared<std::vector<float>>(*curve.crossing);
   for (std::size_t row = 0; row < rows->size(); row += DriveCurve::kBins)
-    levelBeyond(rows->data() + row, limit);
+    levelBeyond(rows->data() + row, limit, most);
   curve.crossing = std::move(rows);
   return curve;
 }
@@ -84,26 +85,46 @@ DriveCurve withoutSoil(const DriveCost::Limits& limits) {
   return curve;
 }
 
+// The gradient at which the slope asks for all that the soil gives at the limit; any where states are not kept.
+double soilHoldsTo(const DriveCost& cost, std::size_t curve) {
+  if (curve >= cost.states().size() || !cost.states()[curve]) return kNone;
+  const auto at = static_cast<std::size_t>(
+      std::clamp(DriveCurve::kBins / 2 + static_cast<int>(cost.limits().max_along * DriveCurve::kBinsPerUnit),
+                 0, DriveCurve::kBins - 1));
+  const auto margin = static_cast<double>((*cost.states()[curve])[at].pull_margin);
+  return std::isfinite(margin) ? cost.limits().max_along + std::max(margin, 0.0) : kNone;
+}
+
 std::shared_ptr<const DriveCost> costWithout(Constraint constraint, const DriveCost& cost) {
   DriveCost::Limits limits = cost.limits();
   std::vector<DriveCurve> curves = cost.curves();
-  for (DriveCurve& curve : curves) {
-    if (constraint == Constraint::Pitch) curve = withoutPitch(std::move(curve), limits.max_along);
+  for (std::size_t k = 0; k < curves.size(); ++k) {
+    DriveCurve& curve = curves[k];
+    if (constraint == Constraint::Pitch)
+      curve = withoutPitch(std::move(curve), limits.max_along, soilHoldsTo(cost, k));
     if (constraint == Constraint::Roll) curve = withoutRoll(std::move(curve), limits.max_across);
     if (constraint == Constraint::Soil) curve = withoutSoil(limits);
+    if (constraint == Constraint::Slope) curve = withoutSoil({.stance = limits.stance});
   }
-  if (constraint == Constraint::Pitch) limits.max_along = kNone;
-  if (constraint == Constraint::Roll) limits.max_across = kNone;
+  if (constraint == Constraint::Pitch || constraint == Constraint::Slope) limits.max_along = kNone;
+  if (constraint == Constraint::Roll || constraint == Constraint::Slope) limits.max_across = kNone;
   return std::make_shared<const DriveCost>(limits, std::move(curves));
 }
 
 }  // namespace
 
 LiftedGround::LiftedGround(const costmap::CostGrid& map, const HazardsOf& hazards)
-    : map_(map), kinds_(map.grid().size()), ground_(map.grid().size()) {
-  for (std::size_t i = 0; i < kinds_.size(); ++i)
-    kinds_[i] =
-        kindOf({static_cast<int>(i) % map.grid().width, static_cast<int>(i) / map.grid().width}, hazards);
+    : map_(map),
+      kinds_(map.grid().size()),
+      solid_(map.grid().size(), Hazard::None),
+      ground_(map.grid().size()) {
+  for (std::size_t i = 0; i < kinds_.size(); ++i) {
+    const Cell cell{static_cast<int>(i) % map.grid().width, static_cast<int>(i) / map.grid().width};
+    kinds_[i] = kindOf(cell, hazards);
+    if (kinds_[i] == Kind::Fixed && hazards)
+      solid_[i] =
+          static_cast<Hazard>(static_cast<std::uint8_t>(hazards(cell)) & static_cast<std::uint8_t>(kSolid));
+  }
   settleNear();
   findGround();
 }
@@ -135,6 +156,7 @@ void LiftedGround::settleNear() {
     Kind& kind = kinds_[grid.index(to)];
     if (kind != Kind::Near) return false;
     kind = kinds_[grid.index(from)];
+    solid_[grid.index(to)] = solid_[grid.index(from)];
     return true;
   });
 }
@@ -160,23 +182,39 @@ void LiftedGround::findGround() {
   });
 }
 
-bool LiftedGround::isFreed(Constraint constraint, Kind kind) noexcept {
-  return (constraint == Constraint::Pitch && kind == Kind::Steep) ||
-         (constraint == Constraint::Hazard && (kind == Kind::Fixed || kind == Kind::Near)) ||
-         (constraint == Constraint::Unknown && kind == Kind::Unseen);
+bool LiftedGround::isFreed(Constraint constraint, Hazard kinds, std::size_t cell) const noexcept {
+  const Kind kind = kinds_[cell];
+  switch (constraint) {
+    case Constraint::Pitch:
+    case Constraint::Slope:
+      return kind == Kind::Steep;
+    case Constraint::Hazard:
+      return (kind == Kind::Fixed || kind == Kind::Near) &&
+             (static_cast<std::uint8_t>(solid_[cell]) & ~static_cast<unsigned>(kinds)) == 0U;
+    case Constraint::Unknown:
+      return kind == Kind::Unseen;
+    case Constraint::Rim:
+      return kind == Kind::Rim;
+    case Constraint::Roll:
+    case Constraint::Soil:
+      return false;
+  }
+  return false;
 }
 
-std::shared_ptr<const costmap::CostGrid> LiftedGround::without(Constraint constraint) const {
+std::shared_ptr<const costmap::CostGrid> LiftedGround::without(Constraint constraint, Hazard kinds) const {
   const maps::Grid& grid = map_.grid();
-  const bool of_cells = constraint == Constraint::Hazard || constraint == Constraint::Unknown;
-  if (of_cells && std::ranges::none_of(kinds_, [&](Kind kind) { return isFreed(constraint, kind); }))
-    return nullptr;
+  const bool of_cells =
+      constraint == Constraint::Hazard || constraint == Constraint::Unknown || constraint == Constraint::Rim;
+  bool any = false;
+  for (std::size_t i = 0; i < kinds_.size() && !any; ++i) any = isFreed(constraint, kinds, i);
+  if (of_cells && !any) return nullptr;
   return std::make_shared<const costmap::CostGrid>(
       revised(map_, {.ranges = {{{0, 0}, {grid.width - 1, grid.height - 1}}},
                      .code =
                          [&](Cell cell, CellCode code) {
                            const std::size_t i = grid.index(cell);
-                           return isFreed(constraint, kinds_[i]) ? code.withCurve(ground_[i]) : code;
+                           return isFreed(constraint, kinds, i) ? code.withCurve(ground_[i]) : code;
                          },
                      .cost = [&] { return costWithout(constraint, map_.cost()); }}));
 }

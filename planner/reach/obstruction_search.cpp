@@ -50,6 +50,28 @@ std::string text(Point p) {
   return buffer;
 }
 
+const char* remedy(costmap::Hazard hazard) noexcept {
+  using costmap::Hazard;
+  switch (hazard) {
+    case Hazard::KeepOut:
+      return "keep-out areas, or cells that a layer refuses, and their clearance close every way: reduce "
+             "them, or choose "
+             "another goal";
+    case Hazard::Obstacle:
+      return "terrain classes declared impassable and their clearance close every way: check the classes, or "
+             "choose "
+             "another goal";
+    case Hazard::Rocks:
+      return "rocks (the layer of their abundance) and their clearance close every way: observe them, or "
+             "choose another "
+             "goal";
+    case Hazard::Step:
+      return "steps higher than the wheels climb and their clearance close every way: choose another goal";
+    default:
+      return "ground too rough for the rover's belly and its clearance close every way: choose another goal";
+  }
+}
+
 const char* remedy(Constraint constraint) noexcept {
   switch (constraint) {
     case Constraint::Pitch:
@@ -63,6 +85,11 @@ const char* remedy(Constraint constraint) noexcept {
              "goal";
     case Constraint::Unknown:
       return "unobserved ground closes every way: observe it, or choose another goal";
+    case Constraint::Rim:
+      return "the rim of the map closes every way, from which the rover keeps half its width: use a larger "
+             "map";
+    case Constraint::Slope:
+      return "slopes close every way, which both the rover's limits and the soil refuse: choose another goal";
   }
   return "";
 }
@@ -102,10 +129,20 @@ void tryLifting(Obstruction& found, const costmap::CostGrid& map, const HazardsO
   if (stop() || map.grid().size() > kTriedCells) return;
   const LiftedGround ground(map, hazards);
   for (const Constraint constraint :
-       {Constraint::Unknown, Constraint::Hazard, Constraint::Soil, Constraint::Pitch, Constraint::Roll}) {
+       {Constraint::Unknown, Constraint::Hazard, Constraint::Soil, Constraint::Pitch, Constraint::Roll,
+        Constraint::Rim, Constraint::Slope}) {
     if (found.lifting || stop()) break;
     const auto lifted = ground.without(constraint);
     if (lifted && opens(*lifted)) found.lifting = constraint;
+  }
+  if (found.lifting == Constraint::Hazard && hazards) {
+    using costmap::Hazard;
+    for (const Hazard kind :
+         {Hazard::KeepOut, Hazard::Obstacle, Hazard::Rocks, Hazard::Step, Hazard::Roughness}) {
+      if (found.hazard || stop()) break;
+      const auto lifted = ground.without(Constraint::Hazard, kind);
+      if (lifted && opens(*lifted)) found.hazard = kind;
+    }
   }
   found.tried = !stop();
 }
@@ -123,6 +160,7 @@ std::string text(const Obstruction& obstruction, const Segment& places) {
                      ", whatever the headings: " + std::to_string(obstruction.cells_from_start) +
                      " cells are reachable from the start, " + std::to_string(obstruction.cells_to_goal) +
                      " lead to the goal; " + where;
+  if (obstruction.hazard) return line + "; " + remedy(*obstruction.hazard);
   if (obstruction.lifting) return line + "; " + remedy(*obstruction.lifting);
   return line + (obstruction.tried ? "; more than one constraint closes every way: choose another goal"
                                    : "; choose another goal");

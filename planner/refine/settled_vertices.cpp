@@ -12,7 +12,8 @@ namespace {
 constexpr std::array kSteps{0.2, 0.1, 0.05, 0.025, 0.0125};  // cells
 constexpr int kSweeps = 4;                                   // with each step, at most
 constexpr std::array kOff{0.02, 0.005, 0.001, 2e-4, 2e-5};   // cells from a side
-constexpr double kLeastGain = 1e-9;                          // of the cost around: less is rounding
+constexpr double kOnCircle = 1e-6, kInside = 1.0 - 1e-9;     // of the tolerance
+constexpr double kLeastGain = 1e-9;                               // of the cost around: less is rounding
 
 // What a vertex changes: its legs, and the turns at both ends of them.
 double around_J(const MotionCost& cost, const Polyline& points, std::size_t i) {
@@ -50,6 +51,34 @@ Polyline withSettledVertices(const MotionCost& cost, Polyline points, const Stop
         any = moved(cost, points, i, cells * cost.map().grid().resolution_m) || any;
     }
   }
+  return points;
+}
+
+Polyline withSettledEnd(const MotionCost& cost, Polyline points, maps::Point goal, double tolerance_m) {
+  if (points.size() < 2 || std::abs(distance_m(points.back(), goal) - tolerance_m) > kOnCircle * tolerance_m)
+    return points;
+  const std::size_t first = points.size() > 2 ? points.size() - 3 : 0;
+  const auto end_J = [&] {
+    return cost.along({points.begin() + static_cast<std::ptrdiff_t>(first), points.end()});
+  };
+  double angle = std::atan2(points.back().y_m - goal.y_m, points.back().x_m - goal.x_m), best_J = end_J();
+  const double most_rad = cost.map().grid().resolution_m / tolerance_m;
+  for (const double cells : {1.6, 0.8, 0.4, 0.2, 0.1, 0.05, 0.025})
+    for (int tries = 0; tries < kSweeps; ++tries) {
+      const double before = angle;
+      for (const double way : {-1.0, 1.0}) {
+        const double tried = before + way * std::min(cells * most_rad, 1.0);
+        const maps::Point kept = points.back();
+        points.back() = {goal.x_m + kInside * tolerance_m * std::cos(tried),
+                         goal.y_m + kInside * tolerance_m * std::sin(tried)};
+        const double tried_J = end_J();
+        if (tried_J < best_J * (1.0 - kLeastGain))
+          best_J = tried_J, angle = tried;
+        else
+          points.back() = kept;
+      }
+      if (angle == before) break;
+    }
   return points;
 }
 

@@ -34,8 +34,21 @@ const char* name(Constraint constraint) noexcept {
       return "hazard";
     case Constraint::Unknown:
       return "unknown";
+    case Constraint::Rim:
+      return "rim";
+    case Constraint::Slope:
+      return "slope";
   }
   return "";
+}
+
+const char* name(costmap::Hazard hazard) noexcept {
+  using costmap::Hazard;
+  if (hazard == Hazard::KeepOut) return "keep_out";
+  if (hazard == Hazard::Obstacle) return "impassable_class";
+  if (hazard == Hazard::Rocks) return "rocks";
+  if (hazard == Hazard::Step) return "step";
+  return hazard == Hazard::Roughness ? "roughness" : "";
 }
 
 }  // namespace talus::planner

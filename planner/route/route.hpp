@@ -26,8 +26,8 @@ enum class RouteStatus {
   Cancelled,     ///< the caller requested a stop
 };
 
-/// The status as files and JSON spell it: "found", "no_route", "none_found", "start_invalid", "goal_invalid", "timed_out",
-/// "cancelled".
+/// The status as files and JSON spell it: "found", "no_route", "none_found", "start_invalid", "goal_invalid",
+/// "timed_out", "cancelled".
 std::string_view name(RouteStatus status) noexcept;
 
 /// What a mission may do without, or change, to open a way.
@@ -37,10 +37,16 @@ enum class Constraint {
   Soil,     ///< what the soil, the motors or the policy give at a slope
   Hazard,   ///< hazards, keep-out areas and the clearance around them
   Unknown,  ///< unobserved ground
+  Rim,      ///< what is kept clear along the rim of the map
+  Slope,    ///< slope that both the rover's limits and the soil refuse: neither alone opens a way
 };
 
-/// A constraint as files and JSON spell it: "pitch", "roll", "soil", "hazard", "unknown".
+/// A constraint as files and JSON spell it: "pitch", "roll", "soil", "hazard", "unknown", "rim", "slope".
 const char* name(Constraint constraint) noexcept;
+
+/// A hazard as files and JSON spell it: "keep_out" (or refused by a layer), "impassable_class", "rocks", "step",
+/// "roughness", else "".
+const char* name(costmap::Hazard hazard) noexcept;
 
 /// Why no heading may enter a cell: costmap::MapSurface::hazards() of the map that the costs were made from.
 using HazardsOf = std::function<costmap::Hazard(maps::Cell)>;
@@ -54,6 +60,8 @@ struct Obstruction {
   bool tried = false;   ///< whether constraints were lifted one by one
   std::optional<Constraint>
       lifting{};  ///< the first of them without which a way is open; none if no single one is enough
+  std::optional<costmap::Hazard>
+      hazard{};  ///< of Constraint::Hazard: the kind that is enough alone, with its clearance; none if it takes several
 };
 
 /// A value that is not known: a layer that the map does not have.

@@ -65,6 +65,7 @@ Json obstructionJson(const Obstruction& why) {
             {"last", place(why.last)},
             {"first", place(why.first)}};
   made["lifting"] = why.lifting ? Json(name(*why.lifting)) : Json(nullptr);
+  if (why.hazard) made["hazard"] = name(*why.hazard);
   return made;
 }
 

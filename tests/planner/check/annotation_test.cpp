@@ -53,7 +53,8 @@ TEST(Annotation, VerticesWhereCellsChange) {
   EXPECT_NEAR(route.summary.gap, 1.0, 1e-12);
 }
 
-// Property: the vertices of a route, read again as a polyline, make the same route, though they lie on sides of cells to rounding only.
+// Property: the vertices of a route, read again as a polyline, make the same route, though they lie on sides of cells
+// to rounding only.
 TEST(Annotation, ARouteReadAgainIsTheSame) {
   std::mt19937 random(3);
   const auto unit = [&random] { return static_cast<double>(random()) / 4294967296.0; };

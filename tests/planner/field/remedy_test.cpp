@@ -17,6 +17,25 @@ TEST(Remedy, APlaceIsNamedWithItsFaultAndTheNearestGround) {
             "goal 9.00,0.50 lies outside the map; the nearest traversable cell is 4.50,0.50");
 }
 
+// The cause is named: what stands in the cell, what it is kept clear of, or the rim; and a cell that is joined to the
+// other end is offered.
+TEST(Remedy, TheCauseIsNamed) {
+  using costmap::Hazard;
+  const auto map = drawn({"######", "#..#.#", "#....#", "######"});
+  const auto rocks = [](maps::Cell c) { return c == maps::Cell{3, 2} ? Hazard::Rocks : Hazard::Near; };
+  EXPECT_EQ(invalidPlace(*map, "start", {3.5, 2.5}, {.hazards = rocks}),
+            "start 3.50,2.50 lies on a blocked cell: rocks; the nearest traversable cell is 3.50,1.50");
+  EXPECT_THAT(invalidPlace(*map, "start", {0.5, 0.5}, {.hazards = rocks}),
+              ::testing::HasSubstr("too near to the rim of the map"));
+  EXPECT_THAT(invalidPlace(*map, "goal", {4.5, 3.2}, {.hazards = rocks}),
+              ::testing::HasSubstr("too near to rocks"));
+  const auto west = [](maps::Cell c) { return c.column < 2; };
+  EXPECT_EQ(invalidPlace(*map, "start", {3.5, 2.5}, {.hazards = rocks, .joined = west}),
+            "start 3.50,2.50 lies on a blocked cell: rocks; the nearest traversable cell is 1.50,2.50, from "
+            "which the goal "
+            "can be reached");
+}
+
 TEST(Remedy, GroundTooSteepForEveryHeadingIsDangerous) {
   maps::Raster<costmap::CellCode> steep({.width = 2, .height = 1, .resolution_m = 1.0, .south_west = {}},
                                         costmap::CellCode({.dz_dx = 0.9, .dz_dy = 0.9, .curve = 0}));

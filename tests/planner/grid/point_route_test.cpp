@@ -19,7 +19,8 @@ using testing::drawn;
 using testing::randomBand;
 using testing::randomMap;
 
-// Property: allowed, from end to end, above the lower bound, and no dearer than the cheapest way in 32 headings by much.
+// Property: allowed, from end to end, above the lower bound, and no dearer than the cheapest way in 32 headings by
+// much.
 TEST(PointRoute, NearTheCheapest) {
   int found = 0;
   for (unsigned seed = 1; seed <= 30; ++seed) {
@@ -52,8 +53,8 @@ TEST(PointRoute, EndsWithinTheTolerance) {
   EXPECT_TRUE(std::isfinite(cost.along(route)));
 }
 
-// Property: on ground of two narrow arcs of headings, whose routes tack, no place on the way that is prescribed makes the route
-// that is found cheaper by much.
+// Property: on ground of two narrow arcs of headings, whose routes tack, no place on the way that is prescribed makes
+// the route that is found cheaper by much.
 TEST(PointRoute, NoViaMakesARouteOfFewHeadingsCheaper) {
   int compared = 0;
   double worst = 1.0;

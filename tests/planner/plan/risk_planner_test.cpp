@@ -78,7 +78,8 @@ TEST(RiskPlanner, ALimitThatNothingKeepsFindsNone) {
   EXPECT_THROW(planWithinRisk(problem, planner, 1.0), std::invalid_argument);
 }
 
-// Property: the risk that is told of the route is what is compared, and the plain route is a candidate: whatever it has is within reach.
+// Property: the risk that is told of the route is what is compared, and the plain route is a candidate: whatever it
+// has is within reach.
 TEST(RiskPlanner, TheRiskOfThePlainRouteIsAlwaysWithinReach) {
   for (const int columns : {3, 8, 20, 31}) {
     std::vector<std::string> rows(20, std::string(40, '1'));

@@ -17,8 +17,8 @@ namespace lifted_ground_test {
 
 using costmap::Hazard;
 
-// A map as drawn(), with more: 's' steeper than any heading may stand, 'k' keep-out, 'r' rocks, 'n' kept clear, 'e' an edge,
-// 'w' ground of curve 5, whose soil holds nothing.
+// A map as drawn(), with more: 's' steeper than any heading may stand, 'k' keep-out, 'r' rocks, 'n' kept clear, 'e'
+// an edge, 'w' ground of curve 5, whose soil holds nothing.
 struct Site {
   std::shared_ptr<const costmap::CostGrid> map;
   HazardsOf hazards;
@@ -63,10 +63,14 @@ Site site(const std::vector<std::string>& rows, double gradient = 0.0, double pi
           [hazards](maps::Cell cell) { return (*hazards)[cell]; }};
 }
 
-std::optional<Constraint> causeOf(const Site& ground, const Segment& places = {{1.5, 2.5}, {7.5, 2.5}}) {
+Obstruction between(const Site& ground, const Segment& places = {{1.5, 2.5}, {7.5, 2.5}}) {
   HeadingSets headings(ground.map->cost());
   const Reach reach(*ground.map, headings, Reach::Sense::From, places.from);
-  return obstructionBetween(*ground.map, headings, reach, places, 0.0, ground.hazards).lifting;
+  return obstructionBetween(*ground.map, headings, reach, places, 0.0, ground.hazards);
+}
+
+std::optional<Constraint> causeOf(const Site& ground, const Segment& places = {{1.5, 2.5}, {7.5, 2.5}}) {
+  return between(ground, places).lifting;
 }
 
 std::vector<std::string> wall(char of) {
@@ -82,6 +86,52 @@ TEST(LiftedGround, EachCauseIsTold) {
   EXPECT_EQ(causeOf(site(wall('s'))), Constraint::Pitch);
   EXPECT_EQ(causeOf(site(wall('?'))), Constraint::Unknown);
   EXPECT_EQ(causeOf(site(wall('w'))), Constraint::Soil);
+}
+
+// The kind of hazard that closes the way alone, also where another stands beside the way; none where each wall is of
+// another kind.
+TEST(LiftedGround, TheHazardAloneIsTold) {
+  EXPECT_EQ(between(site(wall('k'))).hazard, Hazard::KeepOut);
+  EXPECT_EQ(between(site(wall('r'))).hazard, Hazard::Rocks);
+  EXPECT_EQ(between(site(wall('e'))).hazard, Hazard::Step);
+  EXPECT_FALSE(between(site(wall('s'))).hazard);
+  std::vector<std::string> rows = wall('k');
+  rows[1][2] = 'r';
+  const Obstruction found = between(site(rows));
+  EXPECT_EQ(found.hazard, Hazard::KeepOut);
+  EXPECT_THAT(text(found, {{1.5, 2.5}, {7.5, 2.5}}),
+              ::testing::HasSubstr("keep-out areas, or cells that a layer"));
+  for (std::string& row : rows)
+    if (row[1] != 'n') row[5] = 'r';
+  EXPECT_EQ(between(site(rows)).lifting, Constraint::Hazard);
+  EXPECT_FALSE(between(site(rows)).hazard);
+}
+
+// A strip so narrow that all of it in the middle is kept clear of the rim.
+TEST(LiftedGround, TheRimIsTold) {
+  EXPECT_EQ(causeOf(site({"..nnnnn..", "..nnnnn.."}), {{0.5, 0.5}, {8.5, 0.5}}), Constraint::Rim);
+}
+
+// Both the limit and the soil refuse a slope: neither alone opens a way.
+TEST(LiftedGround, ASlopeOfBothIsTold) {
+  const std::vector<std::string> plain(5, ".........");
+  const Site steep = site(plain, 0.5, 0.1, 0.102);
+  costmap::CostGrid::Content content = steep.map->content();
+  const auto weak = [&](double margin) {
+    costmap::DriveState state;
+    state.energy_J_per_m = 10.0F;
+    state.pull_margin = static_cast<float>(margin);
+    auto table = std::make_shared<costmap::DriveTable>();
+    table->fill(state);
+    auto made = content;
+    made.cost = std::make_shared<costmap::DriveCost>(
+        costmap::DriveCost::Limits{.max_along = 0.1, .max_across = 0.05},
+        std::vector<costmap::DriveGround>{
+            {.curve = testing::crossed(upTo(0.102, 10.0), 0.02, 2), .states = table}});
+    return Site{std::make_shared<costmap::CostGrid>(std::move(made)), steep.hazards};
+  };
+  EXPECT_EQ(causeOf(weak(0.5)), Constraint::Pitch) << "the soil gives enough beyond the limit";
+  EXPECT_EQ(causeOf(weak(0.2)), Constraint::Slope);
 }
 
 // The rim's clearance around a field of weak soil is no way: without it "hazards" would be told.
@@ -102,7 +152,8 @@ TEST(LiftedGround, ALimitIsToldWhereSoilHoldsUpToIt) {
       << "straight up soil and limit refuse it, in turns they do not";
 }
 
-// Of a rover that tips across the slope a slope straight up within its strength, but above its pitch limit: not for the soil's sake.
+// Of a rover that tips across the slope a slope straight up within its strength, but above its pitch limit: not for
+// the soil's sake.
 TEST(LiftedGround, TippingIsNotOfTheSoil) {
   terramech::Rover rover = costmap::testRover();
   rover.wheelbase_m = 2.0;

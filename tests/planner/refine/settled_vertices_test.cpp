@@ -44,8 +44,21 @@ TEST(SettledVertices, NeverDearer) {
   EXPECT_GT(cheaper, 10);
 }
 
-// A slope in the east that may be driven down only, southwards: the leg in the cell before it turns on its side, where both cells must allow
-// both headings; just off the side only one must be allowed by both.
+// Closed form: on even ground the nearest place of a circle is on the line to its middle.
+TEST(SettledVertices, TheEndIsTheNearestPlaceOfTheTolerance) {
+  const MotionCost cost(drawn(std::vector<std::string>(12, std::string(20, '.'))));
+  const maps::Point goal{15.0, 6.0};
+  const double turned = 1.2;
+  const Polyline made = withSettledEnd(
+      cost, {{2.0, 6.0}, {goal.x_m - 3.0 * std::cos(turned), goal.y_m + 3.0 * std::sin(turned)}}, goal, 3.0);
+  EXPECT_NEAR(cost.along(made), 100.0, 0.02);
+  EXPECT_LE(distance_m(made.back(), goal), 3.0);
+  const Polyline elsewhere{{2.0, 6.0}, {14.0, 6.5}};
+  EXPECT_EQ(withSettledEnd(cost, elsewhere, goal, 3.0), elsewhere);
+}
+
+// A slope in the east that may be driven down only, southwards: the leg in the cell before it turns on its side,
+// where both cells must allow both headings; just off the side only one must be allowed by both.
 TEST(SettledVertices, TurnsAreMovedOffSides) {
   maps::Raster<costmap::CellCode> cells({.width = 2, .height = 2, .resolution_m = 1.0, .south_west = {}},
                                         costmap::CellCode({.dz_dx = 0.0, .dz_dy = 0.0, .curve = 0}));
