@@ -63,7 +63,12 @@ void ClassLessons::sum(const BlockLesson& lesson, std::int64_t sign) {
   pull_ += sign * fixed(lesson.weight * lesson.pull);
   if (lesson.raises) {
     raising_weight_ += sign * fixed(lesson.weight);
+    raising_pull_ += sign * fixed(lesson.weight * lesson.pull);
     shared_ += sign * fixed(lesson.weight * lesson.shared);
+    Told& told = by_drive_[lesson.drive];
+    told.weight += sign * fixed(lesson.weight);
+    told.pull += sign * fixed(lesson.weight * lesson.pull);
+    if (told.weight == 0) by_drive_.erase(lesson.drive);
   }
   if (!lesson.sinkage) return;
   sinkage_weight_ += sign * fixed(lesson.weight);
@@ -97,20 +102,36 @@ ClassState ClassLessons::stateInSteps() const noexcept {
   return s;
 }
 
+double ClassLessons::meanOf(const Told& told) const noexcept {
+  const double prior = ground_.mean_std * ground_.mean_std;
+  return prior * static_cast<double>(told.pull) / kUnit /
+         (prior * static_cast<double>(told.weight) / kUnit + ground_.pull_std * ground_.pull_std);
+}
+
+// Infinite of fewer than two drives.
+double ClassLessons::mostByDrives() const noexcept {
+  double most = std::numeric_limits<double>::infinity();
+  if (by_drive_.size() < 2) return most;
+  for (const auto& [drive, told] : by_drive_) {
+    const double weighed = ground_.mean_std * ground_.mean_std * static_cast<double>(told.weight) / kUnit /
+                           (ground_.pull_std * ground_.pull_std);
+    if (drive != 0) most = std::min(most, meanOf(told) + ground_.mean_std / std::sqrt(1.0 + weighed));
+  }
+  return most;
+}
+
 void ClassLessons::refresh() {
   const double variance = ground_.pull_std * ground_.pull_std;
   const double prior = ground_.mean_std * ground_.mean_std;
-  const auto mean = [&](std::int64_t weight, std::int64_t sum) {
-    return prior * static_cast<double>(sum) / kUnit /
-           (prior * static_cast<double>(weight) / kUnit + variance);
-  };
   const double heard = std::clamp(
       (static_cast<double>(places_.driven()) - 1.0) / (static_cast<double>(kPlaces) - 1.0), 0.0, 1.0);
   posterior_.places = static_cast<double>(weight_) / kUnit;
-  posterior_.pull = {std::min(heard * mean(weight_, pull_), mostRise()), ground_.mean_std};
+  double pull = heard * meanOf({weight_, pull_});
+  if (raising_weight_ > 0) pull = std::min(pull, heard * meanOf({raising_weight_, raising_pull_}));
+  posterior_.pull = {std::min({pull, mostByDrives(), mostRise()}), ground_.mean_std};
   posterior_.own_std = ground_.mean_std;
   posterior_.shared = 0.0;
-  posterior_.sinkage.value = heard * mean(sinkage_weight_, sinkage_);
+  posterior_.sinkage.value = heard * meanOf({sinkage_weight_, sinkage_});
   if (mayRaise()) {
     const double raising = static_cast<double>(raising_weight_) / kUnit;
     const double share = prior * raising / (prior * raising + variance);

@@ -63,7 +63,8 @@ struct BlockLesson {
   double pull = 0.0;              ///< departure from the prior [-]
   std::optional<double> sinkage;  ///< likewise; nothing where none was measured
   bool raises = false;            ///< whether it may raise, and make surer
-  double shared = 0.0;  ///< standard deviation by the error that it shares with all other lessons [-]
+  double shared = 0.0;      ///< standard deviation by the error that it shares with all other lessons [-]
+  std::uint16_t drive = 0;  ///< whose readings alone may raise it; 0: of none, or of several
 };
 
 /// What all blocks together tell of a class. Exact sums: a lesson can be taken out again, and the order in which
@@ -82,7 +83,9 @@ class ClassLessons {
   /// place moves it by nothing, two by half, three as told: what one place says it says of itself. It rises, and
   /// is surer, only where kPlaces places say so, and no higher than each of them. The error that all lessons share
   /// is one factor b of the regression, y_i = m + c_i b, b standard normal: of their mean, with the variance v of
-  /// what they do not share, the posterior variance is p (v + c^2) / (p + v + c^2), p of the prior, c the mean of c_i.
+  /// what they do not share, the posterior variance is p (v + c^2) / (p + v + c^2), p of the prior, c the mean of c_i. Lessons that may
+  /// not raise lower the mean and never lift it: it is at most that of the others alone. It is at most, too, what each drive by itself makes of
+  /// it and one of its standard deviations, without the shared error: the sensors of one may be faulty, and which is not known.
   const ClassPosterior& posterior() const noexcept { return posterior_; }
   /// What learned ground has of the class, as it is.
   ClassState state() const noexcept;
@@ -101,7 +104,16 @@ class ClassLessons {
   void sum(const BlockLesson& lesson, std::int64_t sign);
 
   GroundClass ground_;
-  std::int64_t weight_ = 0, raising_weight_ = 0, sinkage_weight_ = 0, pull_ = 0, sinkage_ = 0, shared_ = 0;
+  std::int64_t weight_ = 0, raising_weight_ = 0, sinkage_weight_ = 0, pull_ = 0, raising_pull_ = 0,
+               sinkage_ = 0, shared_ = 0;
+  // Sums of lessons that may raise.
+  struct Told {
+    std::int64_t weight = 0, pull = 0;
+  };
+  double meanOf(const Told& told) const noexcept;
+  double mostByDrives() const noexcept;
+
+  std::map<std::uint16_t, Told> by_drive_;
   IndependentPlaces places_;
   ClassPosterior posterior_;
 };

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <span>
 #include <utility>
 
 #include <talus/costmap/evidence/evidence_field.hpp>
@@ -13,6 +14,17 @@ namespace {
 
 constexpr double kFarthestReach_m = 25.5;  // as BlockEvidence keeps it
 constexpr double kPlaceStd = 0.06;         // a place is known that is known so well: by some readings
+
+// The drive of all readings that may raise; 0 where there are several or none.
+std::uint16_t driveOf(std::span<const ReadingCount> counts) noexcept {
+  std::uint16_t drive = 0;
+  for (const ReadingCount& c : counts) {
+    if (c.kind >= reading_kind::kPullLowers) continue;
+    if (drive != 0 && c.drive != drive) return 0;
+    drive = c.drive;
+  }
+  return drive;
+}
 
 std::uint32_t secondsOf(double time_s) noexcept {
   return time_s > 0.0 && time_s < 4294967295.0 ? static_cast<std::uint32_t>(time_s) : 0U;
@@ -105,7 +117,10 @@ maps::CellBox EvidenceField::hear(const BlockLevel& where, const SavedBlock& hea
   const int class_index = site_->model->classIndex(where.terrain_class);
   ClassLessons& lessons = store_->lessons[static_cast<std::size_t>(class_index)];
   if (const BlockEvidence* known = store_->bricks.find(where))
-    if (const auto before = lessonOf(*known, class_index)) lessons.remove(*before);
+    if (auto before = lessonOf(*known, class_index)) {
+      before->drive = driveOf(store_->bricks.counts(where));
+      lessons.remove(*before);
+    }
   for (const ReadingCount& reading : heard.heard)
     how == Count::Add ? store_->bricks.count(where, reading) : store_->bricks.uncount(where, reading);
   BlockEvidence& block = store_->bricks.at(where);
@@ -114,7 +129,8 @@ maps::CellBox EvidenceField::hear(const BlockLevel& where, const SavedBlock& hea
   summarise(store_->bricks.counts(where),
             {site_->model->prior(class_index).pull.value, store_->groundClass(class_index).pull_std}, block);
   const maps::CellBox reached = store_->reach.add(where, block.reach_m());
-  const auto lesson = lessonOf(block, class_index);
+  auto lesson = lessonOf(block, class_index);
+  if (lesson) lesson->drive = driveOf(store_->bricks.counts(where));
   if (!lesson && how == Count::Add) return reached;
   if (lesson) lessons.add(*lesson);
   const IndependentPlaces::Square square{where.column / store_->blocks.reach(),

@@ -24,9 +24,9 @@ constexpr double kLeastShare = 0.02, kLeastSteepness = 0.05;
 constexpr std::array<double, 5> kVariations{0.0, 0.35, 0.7, 1.0, 1.4};
 
 // The grid of the posterior.
-constexpr std::size_t kBiases = 101, kScales = 21;
+constexpr std::size_t kBiases = 101, kScales = 33;
 constexpr int kDepartures = 73;
-constexpr double kMostBias = 0.25, kMostLogScale = 1.0;
+constexpr double kMostBias = 0.25, kMostLogScale = 1.6;
 constexpr double kLeastDeparture = -6.0, kMostDeparture = 3.0;  // in mean_std
 
 constexpr int kSlips = 291;

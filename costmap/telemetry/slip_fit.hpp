@@ -16,7 +16,7 @@ namespace talus::costmap {
 /// What the slips of one drive say of their sensor and of the ground of each class, together.
 struct FittedDrive {
   double slip_bias = 0.0;   ///< b: what the sensor reads of a wheel that does not slip [-]
-  double slip_scale = 1.0;  ///< s: by which it multiplies slip, 0.36 to 1 [-]
+  double slip_scale = 1.0;  ///< s: by which it multiplies slip, 0.2 to 1 [-]
   /// By class: departure of drawbar pull over load at the reference slip from the class, on average of the drive, and what is
   /// left open of it by the sensor; an infinite deviation where the drive tells nothing [-].
   std::vector<Estimate> departure;

@@ -1,4 +1,6 @@
 #include <cmath>
+#include <cstdint>
+#include <random>
 
 #include <site_fixture.hpp>
 
@@ -48,6 +50,54 @@ TEST(ClassLessons, RisesOnlyAsFarAsThreePlacesReach) {
   EXPECT_NEAR(taught({0.2, 0.2, 0.01}, true).posterior().pull.value, 0.01, 1e-6);
   EXPECT_LE(taught({0.2, 0.2, 0.2, 0.2}, false).posterior().pull.value, 0.0) << "none may raise";
   EXPECT_EQ(taught({0.2, 0.2, 0.2, 0.2}, false).posterior().pull.std, 0.05);
+}
+
+// Property: whatever lessons may raise, one that may not never lifts the mean.
+TEST(ClassLessons, WhatMayNotRaiseNeverLifts) {
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> any(-0.2, 0.2);
+  for (int world = 0; world < 200; ++world) {
+    ClassLessons lessons = taught({any(random), any(random), any(random), any(random)}, true);
+    for (int i = 0; i < 10; ++i) {
+      const double before = lessons.posterior().pull.value;
+      lessons.add({.weight = 1.0, .pull = any(random), .sinkage = std::nullopt, .raises = false});
+      lessons.refresh();
+      EXPECT_LE(lessons.posterior().pull.value, before);
+    }
+  }
+}
+
+// Closed form: of two drives the mean is at most what the weaker makes of it, q^2 W y/(q^2 W + p^2), and its deviation, q/sqrt(1 + q^2 W/p^2), W = 40
+// lessons; in either order to the bit, and a drive that is left out again leaves nothing.
+TEST(ClassLessons, NoDriveLiftsWhatAnotherShows) {
+  const auto lessonOf = [](std::uint16_t drive) {
+    return BlockLesson{.weight = 1.0,
+                       .pull = drive == 1 ? -0.08 : 0.02,
+                       .sinkage = std::nullopt,
+                       .raises = true,
+                       .drive = drive};
+  };
+  ClassLessons one(sand()), other(sand());
+  for (int column = 0; column < 8; ++column)
+    for (ClassLessons* lessons : {&one, &other}) lessons->places().set({2 * column, 0}, 0.1F);
+  for (int i = 0; i < 40; ++i) {
+    one.add(lessonOf(1));
+    other.add(lessonOf(2));
+  }
+  one.refresh();
+  const ClassState alone = one.state();
+  EXPECT_NEAR(alone.pull, -0.08 * 40.0 / 41.0, 1e-5);
+  for (int i = 0; i < 40; ++i) {
+    one.add(lessonOf(2));
+    other.add(lessonOf(1));
+  }
+  one.refresh();
+  other.refresh();
+  EXPECT_NEAR(one.posterior().pull.value, -0.08 * 40.0 / 41.0 + 0.05 / std::sqrt(41.0), 1e-5);
+  EXPECT_EQ(one.state(), other.state());
+  for (int i = 0; i < 40; ++i) one.remove(lessonOf(2));
+  one.refresh();
+  EXPECT_EQ(one.state(), alone);
 }
 
 // Property: each number is rounded towards danger by less than a step, none beyond the prior, and what is untaught stays.
