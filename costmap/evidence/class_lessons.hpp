@@ -84,7 +84,7 @@ class ClassLessons {
   /// is surer, only where kPlaces places say so, and no higher than each of them. The error that all lessons share
   /// is one factor b of the regression, y_i = m + c_i b, b standard normal: of their mean, with the variance v of
   /// what they do not share, the posterior variance is p (v + c^2) / (p + v + c^2), p of the prior, c the mean of c_i. Lessons that may
-  /// not raise lower the mean and never lift it: it is at most that of the others alone. It is at most, too, what each drive by itself makes of
+  /// not raise never lift it above that of the others alone. It is at most, too, what each drive by itself makes of
   /// it and one of its standard deviations, without the shared error: the sensors of one may be faulty, and which is not known.
   const ClassPosterior& posterior() const noexcept { return posterior_; }
   /// What learned ground has of the class, as it is.
