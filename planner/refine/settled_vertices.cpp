@@ -13,7 +13,7 @@ constexpr std::array kSteps{0.2, 0.1, 0.05, 0.025, 0.0125};  // cells
 constexpr int kSweeps = 4;                                   // with each step, at most
 constexpr std::array kOff{0.02, 0.005, 0.001, 2e-4, 2e-5};   // cells from a side
 constexpr double kOnCircle = 1e-6, kInside = 1.0 - 1e-9;     // of the tolerance
-constexpr double kLeastGain = 1e-9;                               // of the cost around: less is rounding
+constexpr double kLeastGain = 1e-9;                          // of the cost around: less is rounding
 
 // What a vertex changes: its legs, and the turns at both ends of them.
 double around_J(const MotionCost& cost, const Polyline& points, std::size_t i) {
