@@ -16,8 +16,8 @@ struct Cause {
   RefinedModel model;
 };
 
-/// The refined model, then the rivals of its effects in their place: first those that the rows cannot separate from them,
-/// then, where there are none, the next best. One where nothing else gains anything.
+/// The refined model, followed by the same model with one effect replaced by a rival. Rivals are the causes that the rows cannot
+/// separate from the effect; if there are none, the candidate with the next greatest gain. Only the refined model if no candidate gains.
 std::vector<Cause> causesOf(const TraceResult& result);
 
 /// What a cause predicts of the mean of a run's rows, in the unit of each answer; NaN where the table does not measure it.

@@ -37,8 +37,8 @@ TEST(CategoryTable, IsTheModelsCategoryOfTheWorstHeadingOrWorse) {
   EXPECT_GT(same, 1600);  // nodes are 4 steps apart
 }
 
-// Property: no heading is worse than what the picture says of the cell, and none that it calls safe or marginal is refused in
-// the worst heading.
+// Property: the map's category of a cell is at least as bad as its category in any heading. A cell that the map shows as safe or
+// marginal is not refused in its worst heading.
 TEST(CategoryTable, NoHeadingIsWorse) {
   const auto model = testGround();
   const CategoryTable table = tableOf(*model);
