@@ -26,7 +26,7 @@ class Motion {
   CloudPoint t_;
 };
 
-/// Returns the finite points of a cloud with fields x, y and z. Throws if there is none.
+/// Returns the finite points of a cloud with fields x, y and z. Throws if no point is finite.
 std::vector<CloudPoint> pointsOf(const sensor_msgs::PointCloud2& cloud, const Motion& motion);
 
 /// Returns the pixels of a height image (32FC1, metres above the origin of the frame, NaN: not observed). The

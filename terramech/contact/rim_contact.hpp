@@ -47,7 +47,7 @@ struct RimRule {
   static_assert(Power == 2 || Power == 3);
 };
 using FineRimRule = RimRule<24, 3>;  ///< relative error <= 1e-9 for any n in use
-/// relative error 1e-6 for driven wheels; for fits, which solve the contact millions of times
+/// Relative error 1e-6 for driven wheels; for fits, which solve the contact millions of times.
 using QuickRimRule = RimRule<8, 2>;
 using BrakedRimRule = RimRule<20, 2>;  ///< relative error 1e-6 for slip >= -0.9
 

@@ -32,7 +32,7 @@ struct WheelForces {
   double torque_Nm = 0.0;        ///< drive torque at the given slip; negative when braking
   double drawbar_pull_N =
       0.0;  ///< along the wheel plane, available for slope and towing; negative if resistance exceeds thrust
-  /// across the wheel plane, opposite to the sideways motion: negative for slip_angle_rad > 0
+  /// Across the wheel plane, opposite to the sideways motion: negative for slip_angle_rad > 0.
   double side_force_N = 0.0;
 };
 
@@ -49,10 +49,15 @@ class WongReece {
   /// stress peak c1 + c2 i is outside the contact, [0, 1].
   WongReece(const Soil& soil, const Wheel& wheel, const WheelOperation& operation);
 
+  /// Returns sigma [Pa] at depth h >= 0 [m].
   double pressure_Pa(double depth_m) const;
+  /// Returns tau [Pa] at normal stress sigma [Pa] and shear displacement j [m], and its components for a
+  /// displacement with components.
   double shear_Pa(double normal_Pa, double displacement_m) const;
   Tangent shear_Pa(double normal_Pa, const Tangent& displacement_m) const;
+  /// Returns theta_m [rad] at entry angle theta_1 [rad].
   double peak_rad(double entry_rad) const { return peak_fraction_ * entry_rad; }
+  /// Returns theta_2 <= 0 [rad] at entry angle theta_1 [rad].
   double exit_rad(double entry_rad) const;
 
   /// Returns an initial entry angle [rad] for a search: carries the load to first order in the angle, without

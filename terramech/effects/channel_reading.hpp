@@ -4,6 +4,7 @@ namespace talus::terramech {
 
 /// Measured quantities of a wheel, as the sensors read them.
 enum class Channel { DrawbarPull, Sinkage, Torque, SideForce };
+/// Number of channels.
 inline constexpr int kChannels = 4;
 inline constexpr Channel kAllChannels[] = {Channel::DrawbarPull, Channel::Sinkage, Channel::Torque,
                                            Channel::SideForce};

@@ -25,9 +25,9 @@ struct EffectParameter {
 
 /// Arguments of an effect.
 struct EffectInput {
-  const double* parameter;
-  const WheelState& state;
-  double x;  ///< value of the covariate, finite
+  const double* parameter;  ///< parameter values in the order of the form
+  const WheelState& state;  ///< operating state of the wheel
+  double x;                 ///< value of the covariate, finite
 };
 
 /// Entry of the effect library. Plain data with static lifetime.
@@ -40,7 +40,9 @@ struct EffectForm {
   const char* source;     ///< keys of REFERENCES.bib, or "ours"
   const char* signature;  ///< description of the residual that indicates the effect
   std::vector<EffectParameter> parameters;
+  /// Changes the contact before it is solved; null: no change.
   void (*act)(const EffectInput&, WheelContact&) = nullptr;
+  /// Changes the readings after the contact is solved; null: no change.
   void (*read)(const EffectInput&, const WheelContact&, Reading&) = nullptr;
   bool of_sensor = false;  ///< true: sensor error, without influence on the ground or on routes
 };
@@ -57,11 +59,11 @@ const EffectForm* findEffect(std::string_view name);
 /// constant beyond its ends. In channel F/W the curve is multiplied by sin beta, because a mirrored wheel has
 /// the opposite side force and a straight wheel none.
 struct Effect {
-  std::string name{};
-  std::string covariate{};
+  std::string name{};       ///< of a library form, or with the prefix "empirical"
+  std::string covariate{};  ///< column on which the effect depends
   Channel channel = Channel::DrawbarPull;
   std::vector<double> parameters{};  ///< library form: its parameters; curve: values at the knots [-]
-  /// ascending [covariate]; library form: none, or the 2 limits to which the covariate is clamped
+  /// Ascending [covariate]; library form: none, or the 2 limits to which the covariate is clamped.
   std::vector<double> knots{};
   std::string only_column{};  ///< name of a grouping column that restricts the effect ...
   std::string only_value{};   ///< ... to rows with this text; empty: all rows
@@ -79,6 +81,7 @@ struct Effect {
 bool knowsPasses(std::span<const Effect> effects);
 
 namespace detail {
+/// Parts of the library by kind: contact, digging, forces, sensors, drifts.
 std::vector<EffectForm> contactEffects();
 std::vector<EffectForm> diggingEffects();
 std::vector<EffectForm> forceEffects();

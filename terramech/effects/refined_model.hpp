@@ -52,9 +52,9 @@ enum class BaseModel {
 struct RefinedModel {
   BaseModel base = BaseModel::WongReece;
   Soil soil;
-  /// prior means by field name, for the fields of soil_prior_std
+  /// Prior means by field name, for the fields of soil_prior_std.
   std::map<std::string, double> soil_prior_mean;
-  /// prior standard deviations by field name; fields without an entry are exact
+  /// Prior standard deviations by field name; fields without an entry are exact.
   std::map<std::string, double> soil_prior_std;
   std::vector<Effect> effects;  ///< applied in this order
   bool slip_along_travel =
@@ -89,6 +89,8 @@ struct Prediction {
   Reading mean;
   std::array<double, kChannels> scaled_std{};  ///< of DP/W, z/r, T/(rW), F/W
 };
+/// Returns the prediction with its standard deviation, by linear propagation of all errors. Never throws for
+/// a valid state.
 Prediction predictWithStd(const RefinedModel& model, const WheelState& state);
 
 /// Returns the model without effects that are sensor errors. `fitted` and `covariance` are cleared.
@@ -97,10 +99,11 @@ RefinedModel withoutSensors(RefinedModel model);
 /// Soil parameter that a fit may change.
 struct SoilParameter {
   const char* name;
-  double low, high, scale;  ///< bounds and typical step, in the unit of the parameter
-  double (*get)(const Soil&);
-  void (*set)(Soil&, double);
+  double low, high, scale;     ///< bounds and typical step, in the unit of the parameter
+  double (*get)(const Soil&);  ///< returns the value in a soil; 0 for log_stiffness
+  void (*set)(Soil&, double);  ///< sets the value; log_stiffness v multiplies k_c and k_phi by e^v
 };
+/// Returns all soil parameters that a fit may change.
 const std::vector<SoilParameter>& soilParameters();
 
 /// Value of a fitted parameter, and its assignment.

@@ -46,7 +46,7 @@ struct WheelContact {
   double dug_m = 0.0;            ///< along the wheel plane, by lugs
   double ploughed_m = 0.0;       ///< across the wheel plane
   double extra_sinkage_m = 0.0;  ///< by other causes
-  /// share of dug that lies behind: contact ends at theta_2 for kappa z + rear_fill dug
+  /// Share of dug that lies behind: contact ends at theta_2 for kappa z + rear_fill dug.
   double rear_fill = 0.0;
 
   bool operator==(const WheelContact&) const = default;

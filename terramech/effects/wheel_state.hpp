@@ -13,14 +13,15 @@ namespace talus::terramech {
 /// Operating state of one wheel, the input of a model. NaN means unknown; an effect that needs an unknown
 /// value does not act.
 struct WheelState {
+  /// Marks an unknown value.
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
   Wheel wheel;
-  double load_N = 0.0;          ///< > 0
-  double slip = 0.0;            ///< [-1, 1], as measured
-  double slip_angle_rad = 0.0;  ///< from the wheel plane to the travel direction
-  double speed_mps = kUnknown;
-  double rim_speed_mps = kUnknown;
+  double load_N = 0.0;              ///< > 0
+  double slip = 0.0;                ///< [-1, 1], as measured
+  double slip_angle_rad = 0.0;      ///< from the wheel plane to the travel direction
+  double speed_mps = kUnknown;      ///< travel speed of the wheel centre
+  double rim_speed_mps = kUnknown;  ///< r omega
   double time_s = kUnknown;
   double pass_index = kUnknown;   ///< number of passes over this track, including this pass
   double slope_rad = kUnknown;    ///< along the heading, positive uphill

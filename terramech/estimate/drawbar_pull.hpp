@@ -37,6 +37,7 @@ struct PullPlane {
   double c2 = -1.0;
   double c3 = -0.1;
 
+  /// Returns DP/W [-] of a sample.
   double at(const Wheel& wheel, const WheelSample& sample) const;
 };
 
@@ -75,6 +76,7 @@ struct PullAngleModel {
   double a3 = 0.0407;
   double std = 0.005;  ///< model error of DP/W with exact readings [-]
 
+  /// Returns theta [rad] of a sample.
   double angle_rad(const Wheel& wheel, const WheelSample& sample) const;
 };
 

@@ -11,6 +11,7 @@ struct ReadingError {
   double relative = 0.0;  ///< [-]
   double absolute = 0.0;  ///< in the unit of the reading
 
+  /// Returns the standard deviation at a value, in the unit of the reading.
   double std(double value) const { return std::hypot(relative * value, absolute); }
 };
 

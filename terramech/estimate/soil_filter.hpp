@@ -43,6 +43,7 @@ class SoilFilter {
   ContactSoil mode() const;
   std::vector<double> classProbabilities() const;
 
+  /// Returns the number of samples added.
   std::size_t samples() const;
 
  private:

@@ -15,7 +15,7 @@ namespace talus::terramech {
 
 /// Options of a soil fit.
 struct SoilFitOptions {
-  ReadingErrors noise = {};
+  ReadingErrors noise = {};     ///< errors of the readings
   double outlier_share = 0.01;  ///< expected fraction of samples with ten times the error, [0, 0.5]
   int draws = 256;              ///< importance samples per class, >= 16
   ProgressMonitor watch = {};   ///< progress and cancellation for many samples
@@ -36,7 +36,7 @@ struct CredibleInterval {
 
 /// Posterior of the soil: summary and weighted draws.
 struct SoilPosterior {
-  ContactSoil mean;
+  ContactSoil mean;  ///< mean of c, phi, n, k, K; c1 and c2 of the draw with the largest weight
   SoilMatrix covariance = SoilMatrix::Zero();                     ///< of (c, phi, n, k, K), SI
   double tan_friction = 0.0;                                      ///< mean of tan(phi) [-]
   Eigen::Matrix2d strength_covariance = Eigen::Matrix2d::Zero();  ///< of (c [Pa], tan phi)
@@ -48,7 +48,7 @@ struct SoilPosterior {
   CredibleInterval shear_modulus_m;
   std::vector<double> class_probabilities;  ///< in the order of the prior
   std::vector<SoilDraw> draws;
-  /// effective number of weighted draws; below about 20 the results are inaccurate
+  /// Effective number of weighted draws; below about 20 the results are inaccurate.
   double effective_draws = 0.0;
   /// Mean square of the whitened residuals of the best class; about 1 if model and noise are right.
   double misfit = 0.0;

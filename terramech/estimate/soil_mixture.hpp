@@ -22,6 +22,7 @@ class Marginal {
  public:
   Marginal() = default;  ///< fixed at 0
 
+  /// Exactly known value.
   static Marginal fixed(double value);
 
   /// Uniform between two bounds, low < high: value = low + (high - low) y. Throws std::invalid_argument
@@ -34,8 +35,10 @@ class Marginal {
   /// Gaussian; values below `least` are set to `least`. Throws std::invalid_argument unless std > 0.
   static Marginal normal(double mean, double std, double least);
 
+  /// Returns the parameter value at coordinate y.
   double at(double y) const;
   double slope(double y) const;  ///< d at(y) / dy
+  /// Returns whether y is in [0, 1]; otherwise y is standard normal.
   bool bounded() const { return shape_ != Shape::Normal; }
 
  private:
@@ -56,6 +59,7 @@ struct SoilClass {
   double c1 = 0.43;
   double c2 = 0.32;
 
+  /// Returns the soil at coordinates y, and the derivative of each parameter by its coordinate.
   ContactSoil at(const SoilVector& y) const;
   SoilVector slope(const SoilVector& y) const;
 };

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kOutlierScale = 10.0;  // standard deviation of an outlier, in units of the error
 constexpr int kMostPasses = 40;         // Gauss-Newton steps; 5 to 10 are usual
-// factor on the standard deviations of the proposal, so that its tails cover the posterior's
+// Factor on the standard deviations of the proposal, so that its tails cover the posterior's.
 constexpr double kWiden = 1.2;
 
 // The four readings with their errors; load and slip are combined with the population of all rows.

@@ -17,7 +17,7 @@ struct MappedColumn {
   std::string known;  ///< name in Talus: "load_N"
   std::string name;   ///< name in the file: "Fz"
   std::string
-      /// unit in the file: "kN", "percent"; empty: the suffix of the name, otherwise the unit of `known`
+      /// Unit in the file: "kN", "percent"; empty: the suffix of the name, otherwise the unit of `known`.
       unit{};
 };
 
@@ -29,7 +29,7 @@ struct TableFile {
       : path(std::filesystem::path(file).string()) {}  // NOLINT(google-explicit-constructor)
 
   std::string path;
-  std::vector<MappedColumn> columns{};
+  std::vector<MappedColumn> columns{};  ///< columns with another name or unit in the file
   std::vector<std::pair<std::string, double>>
       constants{};                  ///< columns missing in the file, with the same value in each row
   std::vector<std::string> also{};  ///< columns known to the caller in addition to those of telemetry

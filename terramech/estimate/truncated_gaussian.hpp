@@ -36,7 +36,7 @@ class TruncatedGaussian {
   SoilVector mean_;
   SoilBox box_;
   std::array<int, kSoilParameters> order_;
-  // rows: coordinates, columns: order of drawing; covariance = root root'
+  // Rows: coordinates, columns: order of drawing; covariance = root root'.
   SoilMatrix root_ = SoilMatrix::Zero();
 };
 

@@ -14,7 +14,7 @@ namespace talus::terramech {
 
 /// One record of a CSV file.
 struct CsvRow {
-  /// line on which the record begins; the header is line 1 unless blank lines precede it
+  /// Line on which the record begins; the header is line 1 unless blank lines precede it.
   std::size_t line = 0;
   std::vector<std::string> fields;  ///< without quotes and without leading or trailing blanks
   std::string fault;  ///< why the record is unusable, empty if usable: "has 3 fields, the header 7"

@@ -45,7 +45,7 @@ struct TrainedRange {
 struct ModelScope {
   std::vector<TrainedRange> trained;  ///< ranges of the rows of the fit; empty: unknown
   std::optional<RefinedModel> base;   ///< model without corrections; empty: nothing to revert
-  /// channels whose corrections held-out rows confirmed
+  /// Channels whose corrections held-out rows confirmed.
   std::array<bool, kChannels> kept{true, true, true, true};
 
   /// Returns the fraction of a channel's corrections to apply to a row, in [0, 1]; the base model has weight

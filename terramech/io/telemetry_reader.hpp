@@ -14,7 +14,7 @@ struct TelemetryOptions {
   /// Numeric columns that must exist and have a value in every used row.
   std::vector<std::string> required;
   double wheel_radius_m = 0.0;  ///< for the sinkage check if the file has no wheel_radius_m; 0: unknown
-  /// true: a row that equals an earlier one in every field, including time_s, is left out and counted in
+  /// True: a row that equals an earlier one in every field, including time_s, is left out and counted in
   /// Telemetry::repeated. Rows of the same moment are compared only if column `wheel` is given.
   bool once = false;
 };

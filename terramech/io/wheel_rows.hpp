@@ -20,7 +20,7 @@ struct WheelRows {
   std::vector<std::size_t> lines;       ///< line of each sample in the file
   std::vector<Telemetry::Words> words;  ///< text columns of the file, one value per sample
   std::vector<std::string> ignored;     ///< numeric columns of the file that are not used
-  /// rows rejected by the reader or by the method, in the order of the file
+  /// Rows rejected by the reader or by the method, in the order of the file.
   std::vector<RejectedRow> rejected;
   /// Returns the samples with their wheels.
   std::vector<WheelReading> readings() const;
@@ -30,7 +30,7 @@ struct WheelRows {
 
 /// Options of readWheelRows().
 struct WheelRowOptions {
-  /// rover whose wheel applies to all rows; empty: wheel_radius_m and wheel_width_m of the file
+  /// Rover that supplies the wheel of all rows; empty: wheel_radius_m and wheel_width_m of the file.
   std::string rover;
   bool needs_slip = true;  ///< true: rows without slip > 0 are rejected
   double deepest = 2.0;    ///< rows with z/r at or above this value are rejected, (0, 2]

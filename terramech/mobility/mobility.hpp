@@ -27,7 +27,7 @@ struct MobilityState {
   /// Drawbar-pull margin over load [-]: the smaller of DP/N at the reference slip minus tan(slope), and
   /// tan(slope) minus DP/N of a locked wheel. Negative: the slope is infeasible.
   double drawbar_pull_margin = 0.0;
-  /// slope in [minSlope_rad(), maxSlope_rad()], slip <= max_slip, |torque| <= max_torque_Nm
+  /// Slope in [minSlope_rad(), maxSlope_rad()], slip <= max_slip, |torque| <= max_torque_Nm.
   bool feasible = false;
 };
 
@@ -64,7 +64,7 @@ class MobilityCurve {
   /// slip, sinkage, torque, speed and energy are those of the nearest one, and `feasible` is false.
   MobilityState at(double slope_rad) const noexcept;
 
-  /// Steepest slopes [rad] at which the soil holds the rover, uphill (> 0 on firm soil) and downhill, without
+  /// Steepest slopes [rad] with a steady drive, uphill (> 0 on firm soil) and downhill, without
   /// the torque limit. max < min if the soil cannot carry the wheel.
   double maxSlope_rad() const noexcept { return max_slope_rad_; }
   double minSlope_rad() const noexcept { return min_slope_rad_; }

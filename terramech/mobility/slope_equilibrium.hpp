@@ -27,7 +27,7 @@ Planar demandOf(const Gradient& gradient) noexcept;
 struct SlopeOptions {
   double max_slip = 0.8;  ///< higher slip counts as immobilised, (0, 1], as MobilityOptions (ours)
   double max_slip_angle_rad =
-      /// larger angle counts as sliding, (0, 1.04]; wheel model compared with data up to 45 deg (ours)
+      /// Larger angle counts as sliding, (0, 1.04]; wheel model compared with data up to 45 deg (ours).
       0.7854;
 };
 
@@ -54,10 +54,10 @@ struct SlopeState {
   double slip = 0.0;                  ///< along the wheel planes; skid rover: mean of left and right
   double slip_angle_rad =
       0.0;  ///< from the wheel planes to the direction of travel, left positive; mean of the axles
-  /// angle of front wheels minus that of rear wheels, left positive; 0 for a skid rover
+  /// Angle of front wheels minus that of rear wheels, left positive; 0 for a skid rover.
   double steering_rad = 0.0;
   double slip_difference = 0.0;  ///< right minus left wheels of a skid rover
-  /// from the direction of travel to the body, left positive; 0 for an all-wheel-steered rover
+  /// From the direction of travel to the body, left positive; 0 for an all-wheel-steered rover.
   double body_turn_rad = 0.0;
   double sinkage_m = 0.0;             ///< of the deepest wheel
   double torque_Nm = 0.0;             ///< largest in magnitude of all wheels, signed
@@ -69,6 +69,7 @@ struct SlopeState {
   double side_reserve =
       0.0;  ///< [-] possible increase of the demand across at the same demand along; < 0: fails
 
+  /// Returns whether there is an equilibrium without failure.
   bool holds() const { return failure == SlopeFailure::None; }
 };
 
@@ -100,6 +101,7 @@ class SlopeEquilibrium {
   SlopeEquilibrium(const Soil& soil, const Rover& rover, const SlopeOptions& options = {});
   SlopeEquilibrium(const RefinedModel& model, const Rover& rover, const SlopeOptions& options = {});
 
+  /// Returns the steady motion over a plane, or the reason of failure.
   SlopeState at(const Gradient& gradient) const noexcept;
 
   /// Returns each wheel of a state that holds, front to rear, left before right.

@@ -79,7 +79,7 @@ struct TrialSoil {
   PressureSinkage fit;    ///< n and k of the mean trial
   RandomEffect exponent;  ///< n over the trials [-]
   double depth_m = 0.0;   ///< depth for the comparison of pressures: the pressure-weighted geometric mean
-  /// standard deviation of ln(sigma) at depth_m between trials with one plate [-]
+  /// Standard deviation of ln(sigma) at depth_m between trials with one plate [-].
   double pressure_spread = 0;
 };
 

@@ -21,7 +21,7 @@ struct ShearStrength {
   /// Covariance of (c [Pa], tan phi [-]) from the residuals: [Pa^2, Pa; Pa, -]. NaN with fewer than three
   /// samples.
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
-  /// standard deviation about the line [Pa]; NaN with fewer than three samples
+  /// Standard deviation about the line [Pa]; NaN with fewer than three samples.
   double residual_std_Pa = 0.0;
   double condition = 0.0;  ///< 2-norm condition number of K_1 with columns scaled to equal length [-]
   std::size_t samples = 0;

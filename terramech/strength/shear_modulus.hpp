@@ -24,7 +24,7 @@ struct ModulusEstimate {
   /// Criterion at K: [Pa] for D.1, relative torque [-] for the joint fit, median absolute deviation [m] for
   /// D.8.
   double error = 0.0;
-  /// true: the criterion has no minimum inside the range, and the data do not determine K
+  /// True: the criterion has no minimum inside the range, and the data do not determine K.
   bool at_bound = false;
 };
 

@@ -52,13 +52,13 @@ class ShearModulusGrid {
   std::size_t samples() const { return count_; }
 
  private:
-  // spacing 28 %: with the parabola a finer grid is slower and no more accurate
+  // Spacing 28 %: with the parabola a finer grid is slower and no more accurate.
   static constexpr std::size_t kValues = 17;
 
   struct GridValue {
     double modulus_m = 0.0;  // K
     MohrCoulombLine method;  // line of the linear method, c + x tan(phi) = y
-    // line of the criterion, linear-offset: weighted for Joint, plain for ErrorMinimisation
+    // Line of the criterion, linear-offset: weighted for Joint, plain for ErrorMinimisation.
     MohrCoulombLine telling;
     double torque_share = 0.0;   // sum of (T/W) A
     double share_squares = 0.0;  // sum of A^2
