@@ -52,7 +52,7 @@ enum class BaseModel {
 struct RefinedModel {
   BaseModel base = BaseModel::WongReece;
   Soil soil;
-  /// Prior means by field name, for the fields of soil_prior_std.
+  /// Prior means of soilParameters() by field name.
   std::map<std::string, double> soil_prior_mean;
   /// Prior standard deviations by field name; fields without an entry are exact.
   std::map<std::string, double> soil_prior_std;

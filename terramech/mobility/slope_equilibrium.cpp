@@ -250,7 +250,7 @@ void SlopeEquilibrium::Solver::fill(const Planar& demand, double normal, const U
   state.stability_margin_rad = stance_.stabilityMargin_rad(of_body);
   const auto shares = this->shares(of_body);
   const double radius = rover_.wheel.radius_m;
-  // All rims turn at the speed at which the fastest rim has its maximum.
+  // The travel speed is limited by the fastest rim, at max_speed_mps.
   double power_W_per_mps = 0.0, fastest = 0.0;
   for (int k = 0; k < stance_.wheels(); ++k) {
     WheelMotion motion = motionOf(k, u);

@@ -30,7 +30,7 @@ struct PressureSinkage {
   std::vector<PlateModulus> plates;  ///< k of each plate size
   /// k_c [N/m^(n+1)]; empty if the plate sizes do not separate k_c from k_phi.
   std::optional<double> cohesive_modulus;
-  std::optional<double> frictional_modulus;  ///< k_phi [N/m^(n+2)]; empty if k_c is
+  std::optional<double> frictional_modulus;  ///< k_phi [N/m^(n+2)]; empty if k_c is empty
   double residual_std = 0.0;                 ///< pressure-weighted rms residual of ln(sigma) [-]
   double exponent_std = 0.0;  ///< standard error of n, from residual_std with independent errors [-]
   std::string refused;        ///< reason if k_c and k_phi are empty
