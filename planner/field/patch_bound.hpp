@@ -17,20 +17,21 @@ namespace talus::planner {
 /// best gain, and pays no less than what is least on the rim where it gains.
 class PatchBound {
  public:
-  /// The field is the one before, its edge layer already updated. Both must outlive the bound.
+  /// `before` is the field before the change; its edge layer is already updated. The bound refers to
+  /// `before`, which must outlive the bound.
   PatchBound(const CostToGo& before, CellBox changed);
 
-  /// False where the change opens ground that had no way before: no bound is known then.
+  /// False if the change connects cells that had no path before; no bound exists then.
   bool holds() const noexcept { return holds_; }
 
-  /// Units, by padded index; kUnreached where there is surely no way.
+  /// Lower bound in units, by padded index; kUnreached if no path exists.
   std::uint32_t operator()(std::size_t index) const noexcept;
 
  private:
   struct RimCell {
     maps::Cell cell;
-    std::uint32_t before;  // no more than its cost before the change
-    bool exact;            // it is its cost
+    std::uint32_t before;  // lower bound of the cost before the change
+    bool exact;            // true if `before` is the cost itself
   };
 
   std::size_t local(maps::Cell c) const noexcept {
@@ -45,8 +46,8 @@ class PatchBound {
   std::size_t columns_;
   std::size_t first_index_, last_index_;        // padded
   std::vector<std::uint32_t> inside_;           // by local index
-  std::uint32_t gain_ = 0;                      // the best of the rim
-  std::uint32_t least_ = CostToGo::kUnreached;  // on the rim where it gains
+  std::uint32_t gain_ = 0;                      // largest improvement on the rim
+  std::uint32_t least_ = CostToGo::kUnreached;  // lowest cost of an improved rim cell
   bool holds_ = true;
 };
 

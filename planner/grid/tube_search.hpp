@@ -6,12 +6,12 @@
 
 namespace talus::planner {
 
-/// Distances in cells.
+/// Options of tubeRoute(); distances in cells.
 struct TubeOptions {
-  double margin_cells = 48.0;   ///< how far from the guide the tube reaches at first
-  double leg_cells = 384.0;     ///< the tube is searched leg by leg
-  double overlap_cells = 96.0;  ///< to each side of where two legs meet, searched once more
-  int widenings = 3;  ///< times that a leg's margin is doubled where its way touches the tube's wall
+  double margin_cells = 48.0;   ///< initial distance from the guide to the tube's border
+  double leg_cells = 384.0;     ///< length of the legs in which the tube is searched
+  double overlap_cells = 96.0;  ///< to either side of a joint of two legs, searched once more
+  int widenings = 3;  ///< times that a leg's margin is doubled if its route touches the tube's border
 };
 
 /// A way along the grid from start to goal near a guide: the field of one box of tiles around each leg of the
