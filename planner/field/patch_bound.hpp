@@ -7,14 +7,16 @@
 
 namespace talus::planner {
 
-/// What is at least left to pay from any cell after part of a map changed, from the field before the change:
-/// admissible, so a search that it leads finds the best way. Ours, not from the literature.
+/// Lower bound of the cost to go from any cell after an area of the map changed, computed from the field
+/// before the change. The bound is admissible, so A* with this bound finds the cheapest path. Ours, not from
+/// the literature.
 ///
-/// A box around the change holds every step that changed and is settled from its rim inwards. A cell of the
-/// rim has its old cost, or gains by a way through the box, or by one that leaves the box and enters it again
-/// elsewhere; such an excursion costs no less than what the old field drops by, nor than that many steps at
-/// the cheapest. A cell outside pays its old cost, or comes by the rim: then it gains no more than the rim's
-/// best gain, and pays no less than what is least on the rim where it gains.
+/// A box around the change contains every changed step and is settled from its rim inwards. A rim cell keeps
+/// its old cost, or improves by a path through the box, or improves by a path that leaves the box and enters
+/// again elsewhere. Such an excursion costs at least the drop of the old field and at least its number of
+/// steps times the cheapest edge. A cell outside the box keeps its old cost, or its path crosses the rim. In
+/// the second case the cell improves by at most the largest improvement on the rim, and its cost is at least
+/// the lowest cost of an improved rim cell.
 class PatchBound {
  public:
   /// `before` is the field before the change; its edge layer is already updated. The bound refers to

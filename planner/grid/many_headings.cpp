@@ -25,7 +25,7 @@ constexpr int kFar = 3;  // largest number of cells that a leg spans along an ax
 struct Leg {
   struct Crossed {
     Cell offset;
-    float length;  // 0: touched at a corner, which must allow the heading
+    float length;  // 0: touched at a corner; the cell must allow the heading
   };
   Cell offset;
   costmap::Direction heading;
