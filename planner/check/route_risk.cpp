@@ -16,16 +16,16 @@ namespace {
 // Largest magnitude of the reliability index; a stretch with this index fails in no simulated world.
 constexpr double kSafe = 8.0;
 
-// Section of the route between two vertices.
+// Stretch of the route between two vertices.
 struct Stretch {
-  std::size_t vertex;  // vertex at the end of the section
+  std::size_t vertex;  // vertex at the end of the stretch
   double metres;
   double weak;         // probability that the soil is too weak
   double beta;         // reliability index: P(u < -beta) = weak
   double shared;       // share of the variance common to the soil class
   std::size_t soil;    // class number in order of first occurrence on the route, so that other declared
                        // classes do not change the draws
-  double correlation;  // of the remaining variance with that of the previous section
+  double correlation;  // of the remaining variance with that of the previous stretch
 };
 
 double reliabilityIndex(double weak) {
@@ -77,7 +77,7 @@ void validate(const RouteRiskOptions& options) {
   if (options.worlds < 1) throw std::invalid_argument("route risk: worlds must be > 0");
 }
 
-// Draws u of every section of a route.
+// Draws u of every stretch of a route.
 class Worlds {
  public:
   Worlds(const std::vector<Stretch>& route, std::uint64_t seed)
@@ -88,7 +88,7 @@ class Worlds {
   // Draws an unconditional world.
   const std::vector<double>& any() { return around(0, gauss_(random_)); }
 
-  // A world in which the soil of a stretch is too weak.
+  // Draws a world in which the soil of stretch i is too weak.
   const std::vector<double>& weakAt(std::size_t i) {
     const double share = std::uniform_real_distribution<double>(1e-9, 1.0)(random_);
     return around(i, terramech::normalQuantile(share * route_[i].weak));
@@ -97,7 +97,7 @@ class Worlds {
   double uniform() { return std::uniform_real_distribution<double>(0.0, 1.0)(random_); }
 
  private:
-  // Draws a world with a given u of section i: first its shared and local components, then the other sections
+  // Draws a world with a given u of stretch i: first its shared and local components, then the other stretches
   // in both directions.
   const std::vector<double>& around(std::size_t i, double u) {
     const double shared = std::sqrt(route_[i].shared), own = std::sqrt(1.0 - route_[i].shared);
@@ -135,13 +135,13 @@ double heldAfter(double metres, const RouteRiskOptions& options) {
   return -std::expm1(metres / options.correlation_length_m * std::log1p(-options.entrapment));
 }
 
-// Mean over worlds at each section, and the variance of the mean at the last section.
+// Mean over worlds at each stretch, and the variance of the mean at the last stretch.
 struct Drawn {
   std::vector<double> risk;
   double variance = 0.0;
 };
 
-// Returns true if a stop ends the simulation after this many worlds. The first four million sections are
+// Returns true if a stop ends the simulation after this many worlds. The first four million stretches are
 // always simulated.
 bool endsAfter(int worlds, const std::vector<Stretch>& route, const ProgressMonitor& watch) {
   constexpr std::size_t kBrief = 4'000'000;
@@ -152,7 +152,7 @@ bool endsAfter(int worlds, const std::vector<Stretch>& route, const ProgressMoni
 Drawn drawn(const std::vector<Stretch>& route, const RouteRiskOptions& options,
             const ProgressMonitor& watch) {
   Drawn out{.risk = std::vector<double>(route.size(), 0.0)};
-  std::vector<double> share;  // expected length of too weak soil up to each section
+  std::vector<double> share;  // expected length of too weak soil up to each stretch
   for (const Stretch& s : route) share.push_back((share.empty() ? 0.0 : share.back()) + s.weak * s.metres);
   if (share.empty() || !(share.back() > 0.0)) return out;
   Worlds worlds(route, options.seed);
@@ -181,7 +181,7 @@ Drawn drawn(const std::vector<Stretch>& route, const RouteRiskOptions& options,
   return out;
 }
 
-// Assigns the values of sections to their end vertices; the result never decreases.
+// Assigns the values of stretches to their end vertices; the result never decreases.
 std::vector<double> alongVertices(const Route& route, const std::vector<Stretch>& way,
                                   const std::vector<double>& risk) {
   std::vector<double> along(route.vertices.size(), 0.0);
@@ -202,7 +202,7 @@ Least leastReserve(const std::vector<Stretch>& route, const std::vector<double>&
   return least;
 }
 
-// Computes the conditional value at risk, and the vertex before the section that most often has the smallest
+// Computes the conditional value at risk, and the vertex before the stretch that most often has the smallest
 // reserve. Returns false when stopped.
 bool drawTail(const std::vector<Stretch>& way, const Route& route, const RouteRiskOptions& options,
               const ProgressMonitor& watch, RouteRisk& risk) {

@@ -15,7 +15,7 @@ struct RouteRiskOptions {
   double entrapment = 1.0;  ///< share of the places with too weak soil that immobilise the rover, [0, 1], as
                             ///< in the hazard per metre
   double cell_m =
-      0.0;  ///< soil is uniform within a cell of this size: sections are treated as at least this far apart,
+      0.0;  ///< soil is uniform within a cell of this size: stretches are treated as at least this far apart,
             ///< >= 0
   double tail = 0.05;  ///< share of the worst worlds averaged by cvar, in (0, 1]
   int worlds = 4000;   ///< number of simulated worlds, > 0
@@ -37,21 +37,21 @@ struct RouteRisk {
 
 /// Probability of immobilisation from the start to each vertex.
 ///
-/// A section between two vertices is too weak if beta + u < 0. The reliability index beta follows from the
-/// section's hazard per metre. u is Gaussian with variance 1: the sum of a component shared by all ground of
+/// A stretch between two vertices is too weak if beta + u < 0. The reliability index beta follows from the
+/// stretch's hazard per metre. u is Gaussian with variance 1: the sum of a component shared by all ground of
 /// the class (RouteVertex::shared_doubt) and a process along the route with correlation exp(-d /
 /// correlation_length) within a class, independent across changes of the class. A world in which the soil is
 /// too weak over a length T immobilises the rover with probability 1 - (1 - entrapment)^(T /
-/// correlation_length). Worlds are drawn under the condition that one section fails, each section in
+/// correlation_length). Worlds are drawn under the condition that one stretch fails, each stretch in
 /// proportion to its expected length of too weak soil, and weighted by the inverse of the total length that
 /// fails with it. The estimate is unbiased and equally accurate for 1e-9 and 0.1 (importance sampling of a
 /// union of events, adler_blanchet_liu_2012). Deterministic. Throws std::invalid_argument if an option is out
 /// of range. Empty if `watch` was stopped before all worlds of a long route were simulated; four million
-/// sections (about 0.25 s) are always simulated.
+/// stretches (about 0.25 s) are always simulated.
 std::vector<double> riskAlong(const Route& route, const RouteRiskOptions& options,
                               const ProgressMonitor& watch = {});
 
-/// Upper bound of riskAlong() for any correlation of the soil: the sum of the sections' own risks, at most 1.
+/// Upper bound of riskAlong() for any correlation of the soil: the sum of the stretches' own risks, at most 1.
 /// Deterministic, without random draws. Throws std::invalid_argument if an option is out of range.
 std::vector<double> riskBoundAlong(const Route& route, const RouteRiskOptions& options);
 

@@ -9,7 +9,7 @@
 namespace talus::planner {
 namespace {
 
-constexpr double kStretch_cells = 0.5;  // longest section priced by a single cell
+constexpr double kStretch_cells = 0.5;  // longest stretch priced by a single cell
 
 }  // namespace
 
@@ -76,7 +76,7 @@ MotionSet::Motion MotionSet::made(const PosePath::Leg& leg, int heading, int tur
 }
 
 std::uint64_t MotionSet::work() const noexcept {
-  constexpr std::uint64_t kUsual = 80;  // number of sections for a radius of five cells
+  constexpr std::uint64_t kUsual = 80;  // number of stretches for a radius of five cells
   std::uint64_t stretches = 0;
   for (const Motion& motion : from(0)) stretches += motion.stretches.size();
   return std::max<std::uint64_t>(1, stretches / kUsual);

@@ -19,7 +19,7 @@ class MotionSet {
     double offset_rad = 0.0;  ///< heading number 0
   };
 
-  /// Section of a motion, priced by the cell at its centre.
+  /// Stretch of a motion, priced by the cell at its centre.
   struct Stretch {
     double dx_m, dy_m;  ///< centre relative to the pose
     double length_m;
@@ -48,8 +48,8 @@ class MotionSet {
   /// Relative effort of all motions from one heading: 1 for small turning radii, larger for longer motions.
   std::uint64_t work() const noexcept;
 
-  /// Approximate cost [J] of a motion from a place, from the cells at its sections' centres. Infinite if a
-  /// section is not allowed or leaves the map.
+  /// Approximate cost [J] of a motion from a place, from the cells at its stretches' centres. Infinite if a
+  /// stretch is not allowed or leaves the map.
   double quickCost(const Motion& motion, maps::Point from) const noexcept;
 
  private:

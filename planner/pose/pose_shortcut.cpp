@@ -38,10 +38,10 @@ Legs joined(const Legs& legs) {
   return long_legs;
 }
 
-// The drive divided into sections of about `apart_m` metres, also divided at cusps and turns in place.
+// The drive divided into stretches of about `apart_m` metres, also divided at cusps and turns in place.
 std::vector<Legs> divided(const PosePath& path, double apart_m) {
   std::vector<Legs> stretches;
-  double room_m = 0.0;  // remaining length of the last section
+  double room_m = 0.0;  // remaining length of the last stretch
   int way = 0;
   for (const auto& leg : joined(path.legs)) {
     if (direction(leg) != way || leg.turn_rad != 0.0) room_m = 0.0;

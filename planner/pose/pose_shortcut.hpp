@@ -12,7 +12,7 @@ struct ShortenOptions {
   StopCheck stop{};               ///< a stop keeps the rest of the drive as it is
 };
 
-/// Replaces sections of a drive by the direct curve between their ends if the curve is cheaper under the
+/// Replaces stretches of a drive by the direct curve between their ends if the curve is cheaper under the
 /// exact cost. Dynamic programming over joints along the drive, repeated while the cost decreases. The result
 /// never costs more than `path`.
 PosePath shortened(const PosePath& path, const PoseCost& cost, const ShortenOptions& options);
