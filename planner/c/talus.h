@@ -112,21 +112,21 @@ typedef struct talus_wheel {
 
 typedef struct talus_request {
   size_t size;
-  double start_x_m, start_y_m, goal_x_m, goal_y_m;
+  double start_x_m, start_y_m, goal_x_m, goal_y_m; /* -1e9 to 1e9 */
   double tolerance_m; /* largest distance of the route's end from the goal, >= 0 */
 } talus_request;
 
 typedef struct talus_summary {
   size_t size;
-  size_t vertices;
-  double cost_J, lower_bound_J, energy_J, time_s, length_m;
+  size_t vertices; /* number of vertices; 0 without a route */
+  double cost_J, lower_bound_J, energy_J, time_s, length_m; /* lower_bound_J: no route costs less */
   double max_slip, max_slope_rad;
-  double immobilisation_risk;
+  double immobilisation_risk; /* probability, 0 to 1 */
 } talus_summary;
 
 typedef struct talus_vertex {
   double x_m, y_m, heading_rad;
-  double slope_along_rad, slip, sinkage_m, torque_Nm;
+  double slope_along_rad, slip, sinkage_m, torque_Nm; /* up to the next vertex; torque per wheel */
   double energy_J, time_s, immobilisation_risk; /* accumulated from the start */
   double elevation_m; /* ground elevation; NaN: not observed */
 } talus_vertex;
@@ -139,6 +139,7 @@ typedef struct talus_cell {
   uint8_t reserved[2];             /* 0 */
 } talus_cell;
 
+/* Set a structure to default values and its size; NULL is ignored. */
 TALUS_API void talus_default_rover(talus_rover* rover);
 TALUS_API void talus_default_soil(talus_soil* soil);
 TALUS_API void talus_default_options(talus_options* options);

@@ -10,6 +10,7 @@ namespace talus::planner {
 
 /// Summary of a cell for a planner without headings.
 struct CellJudgement {
+  /// Restriction of the allowed headings.
   enum class Kind : std::uint8_t {
     Unknown,     ///< not observed, and not drivable under the map's policy
     Refused,     ///< no heading is allowed
@@ -29,6 +30,7 @@ class CellJudge {
   explicit CellJudge(std::shared_ptr<const costmap::DriveCost> cost);
   ~CellJudge();
 
+  /// Restriction and cost of a cell.
   CellJudgement of(costmap::CellCode cell);
 
   /// Lowest cost per metre on level ground over all curves [J/m]; infinite if level driving is not allowed.

@@ -44,22 +44,25 @@ struct Stance {
 /// bounds are valid for tilts within the rover's limits. Immutable; safe to share between threads.
 class Chassis {
  public:
-  /// Throws std::invalid_argument for a rocker-bogie without three axles. Keeps references to the raster.
+  /// Throws std::invalid_argument for a rocker-bogie without three axles. Keeps a reference to the raster.
+  /// The raster holds elevations [m]; NaN: unknown.
   Chassis(const maps::Raster<float>& elevation_m, const terramech::Rover& rover, Suspension suspension);
 
   /// Distance of the represented poses from a pose: a shift of the whole rover, and the displacement of its
   /// farthest wheel by a turn.
   struct Slack {
-    double shift_m = 0.0;
-    double turn_m = 0.0;
+    double shift_m = 0.0;  ///< >= 0
+    double turn_m = 0.0;   ///< >= 0
   };
 
   /// Bounds that apply to every pose within the slack; empty if the ground under the rover is not known.
   std::optional<Stance> stance(const Pose& pose, const Slack& slack) const;
+  /// Bounds at the pose itself.
   std::optional<Stance> stance(const Pose& pose) const { return stance(pose, {0.0, 0.0}); }
 
   /// Reason why the rover may not stand at the pose; empty if allowed.
   std::string_view refusal(const Pose& pose, const Slack& slack) const;
+  /// Reason for the pose itself.
   std::string_view refusal(const Pose& pose) const { return refusal(pose, {0.0, 0.0}); }
 
   /// Violations along a drive, including arcs and turns in place, and along a polyline with turns in place at

@@ -13,7 +13,7 @@ struct PosePath;
 
 /// A place on a route that violates a constraint.
 struct Violation {
-  maps::Point place;
+  maps::Point place;   ///< map coordinates [m]
   std::string reason;  ///< for example "required drawbar pull above the available drawbar pull"
 
   friend bool operator==(const Violation&, const Violation&) = default;
@@ -22,9 +22,10 @@ struct Violation {
 /// Checks every cell that the polyline crosses, touches at a corner or turns on, against every constraint of
 /// the map for its heading: category, slope along and across, hazards, unknown ground, the map's edge. An end
 /// of the route belongs to the cell given by Grid::cellAt(); other cells touched by an end need not be
-/// allowed, because the rover does not turn there. Returns one violation per cell; empty for a drivable
-/// route. The check shares no code with the planners or MotionCost: it sorts the crossings of cell sides and
-/// checks the centre of each section. Exact, not sampled. When stopped, returns the violations found so far.
+/// allowed, because the rover does not turn there. Consecutive violations of a cell for the same reason are
+/// returned once; empty for a drivable route. The check shares no code with the planners or MotionCost: it
+/// sorts the crossings of cell sides and checks the centre of each section. Exact, not sampled. When stopped,
+/// returns the violations found so far.
 std::vector<Violation> violations(const costmap::CostGrid& map, const std::vector<maps::Point>& route,
                                   const ProgressMonitor& watch = {});
 
@@ -39,9 +40,9 @@ std::vector<Violation> violationsOfChords(const costmap::CostGrid& map,
 std::vector<Violation> violations(const costmap::CostGrid& map, const PosePath& drive,
                                   double turning_radius_m);
 
-/// A place on a route that is not safe enough. Ordered along the route.
+/// A place on a route that is not safe enough. dangers() returns these places in order along the route.
 struct Danger {
-  maps::Point place;
+  maps::Point place;         ///< map coordinates [m]
   double along_m = 0.0;      ///< distance along the polyline to the place
   double probability = 1.0;  ///< that the rover cannot drive there: 1 for a constraint of the map
   std::string reason;        ///< as in Violation, or "the soil may give less drawbar pull than required"

@@ -18,14 +18,15 @@ namespace talus::planner {
 
 /// Box of cells in map coordinates [m], with sides on cell borders.
 struct MapBox {
-  maps::Point low;
-  maps::Point high;
+  maps::Point low;   ///< south-western corner
+  maps::Point high;  ///< north-eastern corner
 };
 
 /// Map that does not fit in memory: an overview of the whole map, and full-resolution tiles around a route,
 /// built box by box. Memory grows with the length of the route, not with the map. Not thread-safe.
 class WindowedMap {
  public:
+  /// Grid, overview and source of the full-resolution cells.
   struct Parts {
     maps::Grid grid;                                    ///< of the whole map at full resolution
     std::shared_ptr<const costmap::CostGrid> overview;  ///< of the whole map in larger cells
@@ -37,6 +38,7 @@ class WindowedMap {
   /// Throws std::invalid_argument if `overview` or `build` is missing.
   explicit WindowedMap(Parts parts);
 
+  /// Overview of the whole map.
   const std::shared_ptr<const costmap::CostGrid>& overview() const noexcept { return parts_.overview; }
 
   /// Map with the tiles within a margin [cells] of a line and all tiles built before; other tiles are
@@ -50,6 +52,7 @@ class WindowedMap {
 
   /// Grid of the whole map.
   const maps::Grid& grid() const noexcept { return parts_.grid; }
+  /// Number of cells built at full resolution so far, counted in whole tiles.
   std::size_t cellsBuilt() const noexcept;
 
  private:

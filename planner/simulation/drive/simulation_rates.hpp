@@ -10,8 +10,8 @@ namespace talus::planner {
 
 /// Estimate from a sample of worlds with its 95 % confidence interval.
 struct Sampled {
-  double value = 0.0;
-  std::array<double, 2> interval_95{};
+  double value = 0.0;                   ///< estimate
+  std::array<double, 2> interval_95{};  ///< lower and upper end
 };
 
 /// Share of worlds with Wilson's interval (wilson_1927); NaN if `all` is 0.
@@ -22,11 +22,12 @@ Sampled mean(const std::vector<double>& values);
 
 /// Outcomes of the drives of several worlds.
 struct Rates {
-  std::size_t worlds = 0;
+  std::size_t worlds = 0;            ///< number of worlds
   std::array<Sampled, 5> outcome{};  ///< shares, in the order of Outcome
   double energy_J = 0.0;             ///< mean of the drives that reached the goal; NaN if there are none
 };
 
+/// Outcome shares and mean energy of the results.
 Rates ratesOf(const std::vector<WorldResult>& results);
 
 /// Comparison of a soil knowledge with perfect knowledge in the same worlds, restricted to the worlds with a

@@ -32,15 +32,15 @@ std::string_view name(Belief belief) noexcept;
 
 /// Result of one world.
 struct WorldResult {
-  TraverseSimulation drive;
+  TraverseSimulation drive;            ///< the simulated drive
   std::size_t categories_changed = 0;  ///< cells whose category differs after the drive
 };
 
 /// Range of world numbers for one soil knowledge.
 struct WorldRange {
-  Belief belief = Belief::OnLine;
-  std::size_t first = 0;
-  std::size_t count = 1;
+  Belief belief = Belief::OnLine;  ///< soil knowledge of the planner
+  std::size_t first = 0;           ///< number of the first world
+  std::size_t count = 1;           ///< number of worlds
 };
 
 /// A site as mapped, its true soils, and a drive across the site; draws any number of random worlds.
@@ -49,9 +49,9 @@ class SimulationSite {
  public:
   /// Input common to all worlds.
   struct Parts {
-    Truth truth;
-    maps::Point start;
-    maps::Point goal;
+    Truth truth;              ///< true soils
+    maps::Point start;        ///< map coordinates [m]
+    maps::Point goal;         ///< map coordinates [m]
     terramech::Soil firm;     ///< soil of all ground with Belief::Geometry
     std::uint64_t seed = 1;   ///< world i is drawn with seed + i
     SensorOptions sensors{};  ///< sensors of the rover; their seed is replaced by that of the world

@@ -32,20 +32,20 @@ std::string_view name(Outcome outcome) noexcept;
 
 /// One step of a drive: the map's prediction and the true state.
 struct DriveStep {
-  double time_s = 0.0;
-  maps::Point place;
-  costmap::Direction heading;
-  double gradient = 0.0;
-  double length_m = 0.0;
-  double expected_slip = 0.0;
+  double time_s = 0.0;                   ///< at the beginning of the step
+  maps::Point place;                     ///< true position [m]
+  costmap::Direction heading;            ///< heading of the motion
+  double gradient = 0.0;                 ///< along the heading, rise over run
+  double length_m = 0.0;                 ///< in the map plane
+  double expected_slip = 0.0;            ///< slip predicted by the map [-]
   double expected_energy_J_per_m = 0.0;  ///< per metre of surface length
-  TrueWorld::Step truth;
+  TrueWorld::Step truth;                 ///< true state of the rover
 };
 
 /// Parameters of a traverse simulation.
 struct SimulationOptions {
-  maps::Point start;
-  maps::Point goal;
+  maps::Point start;              ///< map coordinates [m]
+  maps::Point goal;               ///< map coordinates [m]
   double goal_tolerance_m = 0.0;  ///< >= 0
   /// True: the rover monitors its wheels, updates the map and replans. False: it drives the first route
   /// without sensing.
@@ -65,15 +65,15 @@ struct SimulationOptions {
   std::function<void(const DriveStep&)> on_step = {};  ///< called before every step driven forward
   bool record = false;                                 ///< keep the wheels' readings
   std::function<void(double time_s)> on_learned = {};  ///< called after the map changed
-  ProgressMonitor watch = {};
-  std::function<Plan(const Problem&)> planner = {};  ///< called for every route; empty: FieldPlanner
+  ProgressMonitor watch = {};                          ///< stops the simulation
+  std::function<Plan(const Problem&)> planner = {};    ///< called for every route; empty: FieldPlanner
 };
 
 /// State at one point of a simulated drive.
 struct TrackPoint {
-  maps::Point place;
-  double time_s = 0.0;
-  double energy_J = 0.0;
+  maps::Point place;       ///< true position [m]
+  double time_s = 0.0;     ///< since the start
+  double energy_J = 0.0;   ///< since the start
   double slip = 0.0;       ///< of the step that ended here
   double sinkage_m = 0.0;  ///< of the deepest wheel in that step
 };
@@ -81,30 +81,30 @@ struct TrackPoint {
 /// Event of the drive: "planned", "reversed", "turned downhill", the reason of an alarm ("slips", "slides",
 /// "sinks"), "soil weaker than estimated", or the name of the outcome.
 struct DriveEvent {
-  double time_s = 0.0;
-  std::string text;
+  double time_s = 0.0;             ///< since the start
+  std::string text;                ///< name of the event
   std::vector<maps::Point> route;  ///< the planned route, of "planned" only
 };
 
 /// Reading of one wheel at one time, including noise and faults.
 struct WheelRecord {
-  std::size_t wheel = 0;  ///< foremost wheels first
-  double heading_rad = 0.0;
-  costmap::WheelReading reading;
+  std::size_t wheel = 0;          ///< foremost wheels first
+  double heading_rad = 0.0;       ///< of the rover
+  costmap::WheelReading reading;  ///< as given to the map
 };
 
 /// Result of a traverse simulation.
 struct TraverseSimulation {
   Outcome outcome = Outcome::GaveUp;
-  std::string cause;  ///< one line, for outcomes other than Reached and Tipped; else empty
-  double energy_J = 0.0;
-  double time_s = 0.0;
+  std::string cause;      ///< one line, for outcomes other than Reached and Tipped; else empty
+  double energy_J = 0.0;  ///< including turns and spinning on the spot
+  double time_s = 0.0;    ///< duration of the drive
   double length_m = 0.0;  ///< distance driven, including reversing
-  double max_slip = 0.0;
+  double max_slip = 0.0;  ///< largest slip of a forward step [-]
   int replans = 0;
-  int alarms = 0;  ///< alarms after which the rover reversed and refused ground
-  std::vector<TrackPoint> track;
-  std::vector<DriveEvent> events;
+  int alarms = 0;                    ///< alarms after which the rover reversed and refused ground
+  std::vector<TrackPoint> track;     ///< positions after every step
+  std::vector<DriveEvent> events;    ///< events in order of time
   std::vector<WheelRecord> records;  ///< if SimulationOptions::record is set
 };
 

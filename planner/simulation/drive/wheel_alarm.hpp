@@ -31,6 +31,7 @@ struct WheelExpectation {
 /// datum and is subtracted (ours: the median of its last 120 readings).
 class WheelAlarm {
  public:
+  /// The wheel radius [m] normalises sinkages, > 0.
   WheelAlarm(const AlarmLimits& limits, double wheel_radius_m) : limits_(limits), radius_m_(wheel_radius_m) {}
 
   /// Result of one set of readings.

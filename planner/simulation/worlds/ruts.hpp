@@ -11,6 +11,7 @@ namespace talus::planner {
 /// more than two squares or turned back, so a wheel does not follow itself.
 class Ruts {
  public:
+  /// The width of the squares is the wheel width [m], > 0.
   explicit Ruts(double wheel_width_m) : square_m_(wheel_width_m) {}
 
   /// Marks the square under a wheel.

@@ -17,13 +17,13 @@ namespace talus::planner {
 
 /// Fault of one sensor, present during the whole drive.
 enum class SensorFault {
-  None,
+  None,           ///< no fault
   SlipStuck,      ///< one wheel's slip stays at its first value
   SlipBiased,     ///< one wheel's slip reads 0.2 too low
   OdometryStuck,  ///< the slip of all wheels stays at its first value
   TorqueOffset,   ///< one wheel's torque reads too high by 0.15 of load times radius
   SinkageDatum,   ///< one wheel's sinkage reads too low by 0.1 of the radius
-  Silent,         ///< one wheel gives no slip, torque and sinkage
+  Silent,         ///< one wheel gives no slip, torque or sinkage
   PoseDisplaced,  ///< the logged position is wrong by 5 m over 10 m of the drive
 };
 
@@ -41,13 +41,13 @@ struct SensorOptions {
       true;  ///< of slip (0.02), slip angle (0.02 rad), torque (5 %) and sinkage (3 %), and missing values
   double dropout = 0.02;     ///< share of missing torque and sinkage values; only with noise
   double pose_drift = 0.01;  ///< drift of the estimated position per metre driven, in [0, kMostPoseDrift] [-]
-  SensorFault fault = SensorFault::None;
-  std::uint64_t seed = 1;
+  SensorFault fault = SensorFault::None;  ///< fault of one sensor
+  std::uint64_t seed = 1;                 ///< of noise, drift direction and faulty wheel
 };
 
 /// Readings of all wheels of a rover at one time.
 struct WheelLook {
-  double heading_rad = 0.0;
+  double heading_rad = 0.0;     ///< of the rover
   double slip_angle_rad = 0.0;  ///< from the wheels' planes to the direction of travel, as measured by visual
                                 ///< odometry
   std::vector<costmap::WheelReading> wheels;  ///< foremost wheels first, at estimated positions; NaN: missing
@@ -61,6 +61,7 @@ terramech::Telemetry telemetryOf(const WheelLook& look);
 /// wheel is drawn at random. Deterministic for a given seed.
 class SimulatedSensors {
  public:
+  /// Throws std::invalid_argument if pose_drift is out of range.
   SimulatedSensors(const SensorOptions& options, const terramech::Rover& rover);
 
   /// Estimated position of the rover at a true place.
@@ -70,11 +71,11 @@ class SimulatedSensors {
 
   /// State of the drive at one time.
   struct Moment {
-    double time_s = 0.0;
-    costmap::Direction heading;
-    double gradient = 0.0;  ///< along the heading, from the map
-    double across = 0.0;    ///< to the left of the heading, from the map
-    double dug_m = 0.0;     ///< depth of the holes dug on the spot
+    double time_s = 0.0;         ///< since the start
+    costmap::Direction heading;  ///< heading of the motion
+    double gradient = 0.0;       ///< along the heading, from the map
+    double across = 0.0;         ///< to the left of the heading, from the map
+    double dug_m = 0.0;          ///< depth of the holes dug on the spot
   };
   /// Readings of the wheels, including noise and faults.
   WheelLook look(const TrueWorld::Step& step, const Moment& moment);

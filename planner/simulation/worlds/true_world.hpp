@@ -20,9 +20,9 @@ namespace talus::planner {
 
 /// Disc of soil that the class map does not show.
 struct SoilPatch {
-  maps::Point centre;
-  double radius_m = 0.0;
-  terramech::Soil soil;
+  maps::Point centre;     ///< map coordinates [m]
+  double radius_m = 0.0;  ///< >= 0
+  terramech::Soil soil;   ///< soil within the disc
 };
 
 /// True soils of a simulated world, not known to the planner.
@@ -55,25 +55,26 @@ class TrueWorld {
 
   /// State of a wheel during a step.
   struct WheelState {
-    maps::Point place;
-    double load_N = 0.0;
-    int passes = 0;  ///< earlier wheel passes at the place
-    WheelTable::Row forces;
+    maps::Point place;       ///< position of the wheel [m]
+    double load_N = 0.0;     ///< normal load
+    int passes = 0;          ///< earlier wheel passes at the place
+    WheelTable::Row forces;  ///< normalised forces and sinkage
   };
 
   /// Steady state of the rover during one step.
   struct Step {
-    bool stuck = false;   ///< no slip gives the required pull, or the rover slides
-    bool slides = false;  ///< no slip angle up to 45 deg holds the rover on the slope
-    double slip = 0.0;
-    double slip_angle_rad = 0.0;  ///< from the wheels' planes to the direction of travel, left positive
-    double energy_J_per_m = 0.0;  ///< drive and hotel energy per metre of surface along the direction of
-                                  ///< travel
-    double speed_mps = 0.0;
+    bool stuck = false;              ///< no slip gives the required pull, or the rover slides
+    bool slides = false;             ///< no slip angle up to 45 deg holds the rover on the slope
+    double slip = 0.0;               ///< -1 to 0.98 [-]; 0.98 if stuck
+    double slip_angle_rad = 0.0;     ///< from the wheels' planes to the direction of travel, left positive
+    double energy_J_per_m = 0.0;     ///< drive and hotel energy per metre of surface along the direction of
+                                     ///< travel
+    double speed_mps = 0.0;          ///< speed of travel along the surface
     double torque_Nm = 0.0;          ///< sum over all wheels
     std::vector<WheelState> wheels;  ///< foremost wheels first
   };
 
+  /// Steady state of the rover for a motion.
   Step drive(const Motion& motion) const;
   /// Energy and time to turn from heading `from` to the heading of `to` at its place
   /// (terramech::turnEfforts()), on the soil under the rover's centre; zero if `from` is (0, 0).
@@ -87,6 +88,7 @@ class TrueWorld {
   const std::vector<terramech::Soil>& soils() const noexcept { return soils_; }
   /// Effects that act on all soils.
   const std::vector<terramech::Effect>& effects() const noexcept { return effects_; }
+  /// Patches of the world; later patches lie on top.
   const std::vector<SoilPatch>& patches() const noexcept { return patches_; }
 
  private:

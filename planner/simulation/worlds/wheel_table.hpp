@@ -21,9 +21,9 @@ class WheelTable {
     double hold = 0.0;     ///< side force against the wheel's lateral motion, over load [-]
   };
 
-  static constexpr std::size_t kRows = 81;
-  static constexpr std::size_t kLoads = 12;
-  static constexpr std::size_t kAngles = 9;
+  static constexpr std::size_t kRows = 81;   ///< number of slips
+  static constexpr std::size_t kLoads = 12;  ///< number of loads
+  static constexpr std::size_t kAngles = 9;  ///< number of slip angles
 
   /// Load of a layer relative to the load on level ground: 0.25 to 1.9.
   static constexpr double load(std::size_t layer) noexcept {

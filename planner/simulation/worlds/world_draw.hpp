@@ -24,9 +24,9 @@ struct Truth {
 
 /// Seed of a world, and the places kept free of random patches.
 struct WorldDraw {
-  std::uint64_t seed = 1;
-  maps::Point start;
-  maps::Point goal;
+  std::uint64_t seed = 1;  ///< world seed
+  maps::Point start;       ///< kept free of random patches [m]
+  maps::Point goal;        ///< kept free of random patches [m]
 };
 
 /// Soils of one world on a grid, in the order of the classes. Equal draws give equal worlds; the soils of a
