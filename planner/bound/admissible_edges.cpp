@@ -13,8 +13,8 @@ namespace {
 
 using Prices = DirectionalLowerBounds::Prices;
 
-constexpr float kNone = std::numeric_limits<float>::infinity();  // cost of a heading without an allowed
-                                                                 // motion
+// Cost of a heading without an allowed motion.
+constexpr float kNone = std::numeric_limits<float>::infinity();
 
 Prices nothing() noexcept {
   Prices prices{};

@@ -67,9 +67,8 @@ int CostLowerBounds::reachOf(costmap::CellCode cell) noexcept {
 
 CostLowerBound CostLowerBounds::of(costmap::CellCode cell) const noexcept {
   const int reach = reachOf(cell);
-  if (reach == kReach)
-    return level(cell);  // steeper than the curve's range: no tilt is proven to stay below
-                         // the cost
+  // Steeper than the curve's range: no tilt is proven to stay below the cost.
+  if (reach == kReach) return level(cell);
   return lines_[cell.curve()][static_cast<std::size_t>(reach)];
 }
 

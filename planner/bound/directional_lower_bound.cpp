@@ -16,11 +16,11 @@ using costmap::DriveCurve;
 constexpr double kBin = 1.0 / 256.0;  // gradient step of one bin of a curve
 constexpr int kMiddleBin = DriveCurve::kBins / 2;
 constexpr double kOctagon = 0.92387;  // cos(pi/8), rounded down by more than the float error
-constexpr int kRaises =
-    4;  // raising rounds: more rounds favour single headings and leave their neighbours cheap
+// Raising rounds: more rounds favour single headings and leave their neighbours cheap.
+constexpr int kRaises = 4;
 constexpr double kRounding = 1.0 - 1e-6;  // costs are stored as floats
-constexpr double kLeastPriceShare = 0.1;  // share of the lowest cost without tilt: every step has a positive
-                                          // cost
+// With tilt, each cost is at least this share of the lowest cost: every step has a positive cost.
+constexpr double kLeastPriceShare = 0.1;
 constexpr double kDiagonal = std::numbers::sqrt2 / 2;
 
 double priceAt(const DriveCurve& curve, int bin, int row = 0) noexcept {

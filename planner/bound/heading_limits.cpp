@@ -16,8 +16,8 @@ constexpr int kHeadings = HeadingLimits::kHeadings;
 constexpr double kSector = 2.0 * std::numbers::pi / kHeadings;
 constexpr double kLimitRounding = 1.0 - 1e-6;  // limits and drive costs are floats
 constexpr double kLittle = 1e-3;               // smallest coefficient of a heading that is taken into account
-constexpr double kFalls = 0.25;                // a refused heading's limit is at least this share of each
-                                               // cost within the sector
+// A refused heading's limit is at least this share of each cost within the sector.
+constexpr double kFalls = 0.25;
 constexpr double kRefused = 300.0;  // upper limit of a refused heading, as a multiple of the highest limit
 
 using ByHeading = std::array<double, kHeadings>;
@@ -198,9 +198,8 @@ void HeadingLimits::forEachPart(const Direction& climb, Each each) const {
       return piece.level_J + piece.x_J * x + (piece.y_J + piece.both_J * x) * y;
     };
     const double bend = std::max(piece.level_J, 0.0) + 1.5 * std::abs(piece.both_J);
-    if (last.x * from.x + last.y * from.y < 0.99)
-      sector = sectorOf(from);  // directions between two pieces
-                                // are refused
+    // Directions between two pieces are refused.
+    if (last.x * from.x + last.y * from.y < 0.99) sector = sectorOf(from);
     while (ahead(from, sector)) sector = (sector + 1) % kHeadings;
     Direction begin = from;
     double begin_J = cost(from);

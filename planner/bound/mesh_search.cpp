@@ -6,11 +6,11 @@
 namespace talus::planner {
 namespace {
 
-constexpr unsigned kUnits = 4;  // 2^kUnits queue units = cost of half a cell side at the lowest cost per
-                                // metre
-constexpr std::uint64_t kReach = std::uint64_t{1} << 20;    // largest spread of queued keys [units]
-constexpr std::size_t kFirst = 0, kSecond = 1, kThird = 2;  // nodes of a triangle; the cell's centre is the
-                                                            // third
+// 2^kUnits queue units = cost of half a cell side at the lowest cost per metre.
+constexpr unsigned kUnits = 4;
+constexpr std::uint64_t kReach = std::uint64_t{1} << 20;  // largest spread of queued keys [units]
+// Nodes of a triangle; the cell's centre is the third.
+constexpr std::size_t kFirst = 0, kSecond = 1, kThird = 2;
 
 }  // namespace
 

@@ -54,11 +54,8 @@ class CheapestMetres {
 double cheapestWithin(const costmap::CostGrid& map, const CheapestMetres& metres, const Segment& places,
                       double length_m, const StopCheck& stop) {
   const maps::Grid& grid = map.grid();
-  const double reach_m = length_m + std::numbers::sqrt2 * 1.001 * grid.resolution_m;  // margin of half a cell
-                                                                                      // diagonal per leg:
-                                                                                      // distances are
-                                                                                      // measured to cell
-                                                                                      // centres
+  // Margin of half a cell diagonal per leg: distances are measured to cell centres.
+  const double reach_m = length_m + std::numbers::sqrt2 * 1.001 * grid.resolution_m;
   const auto line = [&](double middle_m, double origin_m, double off_m, int count) {
     const double at = (middle_m + off_m - origin_m) / grid.resolution_m;
     return static_cast<int>(std::clamp(at, 0.0, count - 1.0));

@@ -10,10 +10,10 @@ namespace talus::planner {
 namespace {
 
 constexpr std::size_t kBand = 16;  // nodes taken by the search between two checks of the limits
-constexpr int kMostRounds = 60;    // rounds of lowering behind the front; remaining violations are left to
-                                   // provenBy()
-constexpr float kSlack = 5e-4F;    // relative tolerance of a triangle's limits
-constexpr double kWithin = 1.02;   // nodes within this multiple of the known cost are searched
+// Rounds of lowering behind the front; remaining violations are left to provenBy().
+constexpr int kMostRounds = 60;
+constexpr float kSlack = 5e-4F;   // relative tolerance of a triangle's limits
+constexpr double kWithin = 1.02;  // nodes within this multiple of the known cost are searched
 
 MeshSearch::Options optionsOf(const SubSolution::Parts& parts, MeshSearch::Way way) {
   return {.way = way,

@@ -221,8 +221,7 @@ class Annotator {
     vertex = next;
   }
 
-  // Removes vertices close to the new one, except turns, which replace an entry into another cell close to
-  // them.
+  // Removes vertices close to the new one, except turns: a turn replaces a nearby entry into another cell.
   void leaveOutNear(const RouteVertex& vertex) {
     const auto near = [&](const RouteVertex& other) {
       return std::hypot(vertex.x_m - other.x_m, vertex.y_m - other.y_m) < kTogether * grid_.resolution_m;
@@ -304,8 +303,8 @@ void polylineAlong(const Polyline& points, Annotator& annotator) {
 
 namespace {
 
-// Replaces the additive risk of the vertices, which is exact only if the correlation of the soil is not
-// known.
+// Replaces the additive risk of the vertices by the simulated risk if the cost has a correlation length of
+// the soil.
 void tellRisk(Route& route, const costmap::CostGrid& map, const ProgressMonitor& watch) {
   constexpr int kWorlds = 400;  // standard error of the risk about 10 %
   if (!(map.cost().doubt().correlation_length_m > 0.0)) return;

@@ -34,7 +34,7 @@ struct AnnotationInput {
 /// place; energy and time include turns. Status and reason are those of the plan.
 Route annotated(const Plan& plan, const AnnotationInput& input);
 
-/// annotated() plan if the plan has no violations(), neither of its polyline nor of its drive. Otherwise a
+/// Returns the annotated() route if the plan is not Found or has no violations(). Otherwise returns a
 /// route with status NoneFound, the first violation as reason, and the annotated route in Route::refused.
 Route checkedRoute(const Plan& plan, const AnnotationInput& input);
 

@@ -20,11 +20,12 @@ constexpr double kSafe = 8.0;
 struct Stretch {
   std::size_t vertex;  // vertex at the end of the stretch
   double metres;
-  double weak;         // probability that the soil is too weak
-  double beta;         // reliability index: P(u < -beta) = weak
-  double shared;       // share of the variance common to the soil class
-  std::size_t soil;    // class number in order of first occurrence on the route, so that other declared
-                       // classes do not change the draws
+  double weak;    // probability that the soil is too weak
+  double beta;    // reliability index: P(u < -beta) = weak
+  double shared;  // share of the variance common to the soil class
+  // Class number in order of first occurrence on the route, so that other declared classes do not change the
+  // draws.
+  std::size_t soil;
   double correlation;  // of the remaining variance with that of the previous stretch
 };
 

@@ -14,9 +14,8 @@ struct RouteRiskOptions {
   double correlation_length_m = 5.0;  ///< of the soil, as in DrivePolicy, > 0
   double entrapment = 1.0;  ///< share of the places with too weak soil that immobilise the rover, [0, 1], as
                             ///< in the hazard per metre
-  double cell_m =
-      0.0;  ///< soil is uniform within a cell of this size: stretches are treated as at least this far apart,
-            ///< >= 0
+  /// Soil is uniform within a cell of this size: stretches are treated as at least this far apart, >= 0.
+  double cell_m = 0.0;
   double tail = 0.05;  ///< share of the worst worlds averaged by cvar, in (0, 1]
   int worlds = 4000;   ///< number of simulated worlds, > 0
   std::uint64_t seed = 1;

@@ -95,9 +95,8 @@ void PatchBound::settleInwards(const std::vector<RimCell>& rim) {
                     EdgeLayer::kBlocked);
   constexpr std::uint32_t kInner = CostToGo::kUnreached;
   std::vector<std::uint32_t> on_rim(inside_.size(), kInner);  // index of the rim cell; kInner inside
-  std::vector<std::uint32_t> taken(inside_.size(),
-                                   CostToGo::kUnreached);  // cost at which the cell was taken last: each
-                                                           // queued cost is processed once
+  // Cost at which a cell was taken last: each queued cost is processed once.
+  std::vector<std::uint32_t> taken(inside_.size(), CostToGo::kUnreached);
   Excursions excursions(rim.size(), edges.units().cheapestEdge());
   const auto reach = [&](Cell c, std::uint32_t units) {
     const std::size_t at = local(c);

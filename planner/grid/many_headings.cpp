@@ -49,8 +49,8 @@ Leg legTo(Cell offset) {
       leg.cells.push_back({cellAt(middle * dx, middle * dy), static_cast<float>(share * length)});
       continue;
     }
-    for (const double side : {-0.25, 0.25})  // two cuts coincide at a corner: the other two cells at the
-                                             // corner
+    // Two cuts coincide at a corner: the other two cells at the corner.
+    for (const double side : {-0.25, 0.25})
       leg.cells.push_back(
           {cellAt(cuts[i] * dx - side * std::copysign(1.0, dx), cuts[i] * dy + side * std::copysign(1.0, dy)),
            0.0F});

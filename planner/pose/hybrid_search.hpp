@@ -38,9 +38,8 @@ struct HybridOptions {
   /// estimate in the queue, >= 1.
   double suboptimality_bound = 1.03;
   std::uint64_t improve = 500;  ///< poses expanded after the bound is reached
-  std::uint64_t most_expanded =
-      150'000;  ///< limit on expanded poses (long motions count more), about 2 s; NoneFound if no drive is
-                ///< known then
+  /// Limit on expanded poses (long motions count more), about 2 s; NoneFound if no drive is known then.
+  std::uint64_t most_expanded = 150'000;
 };
 
 /// Result of a search.

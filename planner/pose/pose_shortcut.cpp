@@ -10,11 +10,11 @@ namespace talus::planner {
 namespace {
 
 constexpr std::array<std::size_t, 8> kSpans{2, 3, 4, 6, 8, 12, 16, 24};
-constexpr std::array kSpacings{1.0, 0.35, 0.35};  // joint spacing per round, relative to joint_m: first
-                                                  // coarse, then fine
-constexpr double kWorthwhile = 2e-3;              // relative gain below which no further fine round is tried
-constexpr double kStraight = 1.1;  // a forward curve of at most this multiple of the straight distance is
-                                   // accepted
+// Joint spacing per round, relative to joint_m: first coarse, then fine.
+constexpr std::array kSpacings{1.0, 0.35, 0.35};
+constexpr double kWorthwhile = 2e-3;  // relative gain below which no further fine round is tried
+// A forward curve of at most this multiple of the straight distance is accepted.
+constexpr double kStraight = 1.1;
 
 double apart_m(const Pose& a, const Pose& b) noexcept {
   return std::hypot(b.place.x_m - a.place.x_m, b.place.y_m - a.place.y_m);

@@ -10,8 +10,8 @@ namespace {
 
 constexpr std::array<std::size_t, 5> kSpans{1, 2, 3, 5, 8};
 constexpr double kApart_rad = 0.1;  // spacing of the headings checked in a turn
-constexpr double kVertex = 1e-12;   // cost of a vertex relative to the route's cost; prefers fewer vertices
-                                    // if turns cost nothing
+// Cost of a vertex relative to the route's cost; prefers fewer vertices if turns cost nothing.
+constexpr double kVertex = 1e-12;
 
 // Leg from the point `from` into a point, and the cheapest path up to the end of the leg.
 struct Arrival {

@@ -13,8 +13,8 @@ constexpr std::array kSteps{0.2, 0.1, 0.05, 0.025, 0.0125};  // cells
 constexpr int kSweeps = 4;                                   // largest number of sweeps per step
 constexpr std::array kOff{0.02, 0.005, 0.001, 2e-4, 2e-5};   // distance from a side [cells]
 constexpr double kOnCircle = 1e-6, kInside = 1.0 - 1e-9;     // relative to the tolerance
-constexpr double kLeastGain = 1e-9;                          // relative to the local cost; smaller gains are
-                                                             // rounding
+// Smallest gain relative to the local cost; smaller gains are rounding.
+constexpr double kLeastGain = 1e-9;
 
 // Cost of the part of the route that depends on vertex i: its legs and the turns at both ends of them.
 double around_J(const MotionCost& cost, const Polyline& points, std::size_t i) {

@@ -11,9 +11,9 @@ namespace talus::planner {
 /// Settings of OMPL's planners. The defaults performed best on maps of 1000 x 1000 cells.
 struct SamplingSettings {
   std::string planner = "RRTstar";  ///< a name of plannerNames() except "field"
-  std::uint64_t work =
-      4'000'000;              ///< limit on the work [evaluated cell lengths], > 0, equal on every machine;
-                              ///< applies only to problems without a time limit
+  /// Limit on the work [evaluated cell lengths], > 0, equal on every machine; applies only to problems
+  /// without a time limit.
+  std::uint64_t work = 4'000'000;
   double range_cells = 40.0;  ///< longest motion added to a tree, > 0
   bool cold = false;          ///< true: no initial route; false: starts from the field planner's route
   std::map<std::string, std::string> parameters{};  ///< of OMPL's planner, with its own names and units

@@ -55,10 +55,10 @@ struct SimulationOptions {
   /// Smallest distance reversed after an alarm, and largest radius of the ground refused around a wheel after
   /// an alarm.
   double keep_out_radius_m = 1.0;
-  double stall_detection_m =
-      0.06;              ///< rim travel on the spot before the rover detects that it does not move (ours: a
-                         ///< quarter of a small wheel's diameter, the resolution of visual odometry)
-  double step_m = 0.03;  ///< distance between two readings of the wheels, > 0
+  /// Rim travel on the spot before the rover detects that it does not move (ours: a quarter of a small
+  /// wheel's diameter, the resolution of visual odometry).
+  double stall_detection_m = 0.06;
+  double step_m = 0.03;             ///< distance between two readings of the wheels, > 0
   double sensing_interval_m = 0.5;  ///< distance between two updates of the map from readings, > 0
   int max_replans = 60;             ///< more replans end the drive with GaveUp
   std::uint64_t seed = 1;           ///< not used; SensorOptions::seed seeds the sensors

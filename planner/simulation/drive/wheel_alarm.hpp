@@ -13,8 +13,8 @@ namespace talus::planner {
 /// Limits of the alarm of a rover that monitors its wheels.
 struct AlarmLimits {
   double slip = 0.2;  ///< slip above the larger of the expected slip and 0, at half of the wheels or more [-]
-  double sinkage =
-      0.08;  ///< sinkage of a wheel on fresh ground above the expected sinkage, over the wheel radius [-]
+  /// Sinkage of a wheel on fresh ground above the expected sinkage, over the wheel radius [-].
+  double sinkage = 0.08;
   double slip_angle_rad = 0.15;  ///< magnitude of the slip angle above the expected magnitude
 };
 

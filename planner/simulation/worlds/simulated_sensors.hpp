@@ -37,8 +37,8 @@ inline constexpr double kMostPoseDrift = 0.5;
 
 /// Quality of a simulated rover's sensors. Plain data.
 struct SensorOptions {
-  bool noise =
-      true;  ///< of slip (0.02), slip angle (0.02 rad), torque (5 %) and sinkage (3 %), and missing values
+  /// Noise of slip (0.02), slip angle (0.02 rad), torque (5 %) and sinkage (3 %), and missing values.
+  bool noise = true;
   double dropout = 0.02;     ///< share of missing torque and sinkage values; only with noise
   double pose_drift = 0.01;  ///< drift of the estimated position per metre driven, in [0, kMostPoseDrift] [-]
   SensorFault fault = SensorFault::None;  ///< fault of one sensor
