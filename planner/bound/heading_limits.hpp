@@ -25,7 +25,7 @@ class HeadingLimits {
   static constexpr int kHeadings = 64;
   using Limits = std::array<float, kHeadings>;  ///< joules per metre, > 0, counter-clockwise from east
 
-  /// The DriveCost must outlive it.
+  /// The DriveCost must outlive the HeadingLimits.
   explicit HeadingLimits(const costmap::DriveCost& cost) : cost_(cost) {}
 
   /// Computes the limits of a cell. Returns false if no heading is allowed.
