@@ -255,7 +255,7 @@ CrossSlope CrossSlope::harder(const CrossSlope& a, const CrossSlope& b) {
   return both;
 }
 
-// Failure of the nearer, else of the other adjacent equilibrium; if both hold, the usual reason in the row.
+// Failure of the nearer, else of the other adjacent equilibrium; else the usual reason in the row.
 Refusal CrossSlope::reasonAt(int row, int bin) const noexcept {
   const Refusal lacks = row == 0 ? Refusal::Pull : Refusal::SideForce;
   if (held_.empty()) return lacks;

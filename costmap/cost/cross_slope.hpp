@@ -72,7 +72,7 @@ class CrossSlope {
   double steepest(double gradient) const noexcept;
 
  private:
-  // Positions in bins of DriveCurve; `refused` holds for any strength.
+  // Positions in bins of DriveCurve; `refused` applies at any strength.
   struct Climbs {
     float costs = 0.0F, leaves = 0.0F, brakes = 0.0F;
     float more_slip = 0.0F;  // slip in addition to that of the climb `costs`

@@ -37,8 +37,8 @@ class CostCurveTable {
   }
 
   /// Number of the ground of `number` (not a result of dearer()) with an additional energy per metre. `step`
-  /// > 0 is the key of the energy and increases with it. If no number is left, the number of a greater step
-  /// of the same ground substitutes, else the ground is blocked.
+  /// > 0 is the key of the energy and increases with the energy. If no number is left, the number of a
+  /// greater step of the same ground substitutes, else the ground is blocked.
   std::uint8_t dearer(std::uint8_t number, int step, double added_J_per_m);
 
   /// Whether a substitute was needed since the last restart.

@@ -13,7 +13,8 @@ namespace talus::costmap {
 /// At level n, steps are 2^n times as large. An estimate no worse than the prior is rounded to no worse than
 /// the prior, so that little evidence never increases a cost. Rounding twice to equal or increasing levels
 /// equals rounding once. The standard deviation has the finest steps, because the probability of
-/// immobilisation with a reserve of z deviations is most sensitive to it: a step of one octave would halve z.
+/// immobilisation with a reserve of z deviations is most sensitive to the standard deviation: a step of one
+/// octave would halve z.
 struct GroundKind {
   static constexpr int kCoarsest = 3;        ///< highest level
   static constexpr double kPullStep = 0.02;  ///< at level 0 [-]

@@ -60,11 +60,11 @@ class TraversabilityMap {
   /// class.
   std::optional<GroundBelief> ground(maps::Cell cell) const;
 
-  /// Adds an observation; visible to planners after publish(). A cell with a known class learns before its
-  /// height is known, with the same result as if the height had been known first. Evidence of danger on a
-  /// cell without a class, or beyond the map's edge by less than the pose error, refuses the place like
-  /// refuse(): a block and two standard deviations of the pose around it, independently of later patches.
-  /// Returns false if the map has no ground at the place.
+  /// Adds an observation; visible to planners after publish(). A cell with a known class accumulates evidence
+  /// before its height is known, with the same result as if the height had been known first. Evidence of
+  /// danger on a cell without a class, or beyond the map's edge by less than the pose error, refuses the
+  /// place like refuse(): a block and two standard deviations of the pose around the place, independently of
+  /// later patches. Returns false if the map has no ground at the place.
   bool learn(const WheelObservation& observation);
   /// Removes pulls and sinkages that were learned, given as evidence().heardOf() returned them, in order to
   /// replace them. Bounds of the place remain. Visible to planners after publish().

@@ -26,10 +26,10 @@ struct LostCells {
 /// the next three steps outwards. The border step is abrupt if it exceeds three times the greatest of them. A
 /// region is lost if more than half of its border steps are abrupt (ours, not from the literature). Terrain
 /// that descends to a plain or a sea of height 0 has no abrupt border steps. A border step is not abrupt if
-/// the cells outside are level (a drawn wall) or unknown beyond the first. It is not counted if the first
-/// cell outside is unknown. A region without counted border steps (a level map) is ground.
-/// If 0 is an ordinary value, for example of rock abundance, a lost region must also have the shape of a lost
-/// byte range: consecutive cells in the rows of a strip or tile of constant width.
+/// the cells outside are level (a drawn wall) or unknown beyond the first. A border step is not counted if
+/// the first cell outside is unknown. A region without counted border steps (a level map) is ground. If 0 is
+/// an ordinary value, for example of rock abundance, a lost region must also have the shape of a lost byte
+/// range: consecutive cells in the rows of a strip or tile of constant width.
 class LostZeros {
  public:
   /// `zero_is_ordinary`: whether a lost region must also have the shape of a lost byte range.

@@ -34,9 +34,9 @@ inline constexpr int kStepLanes = 8;
 ///   |d - minmod(a, b)|,  minmod(a, b) = the lesser in magnitude if the signs agree, else 0,
 /// with d the rise between the two cells, and a and b the rises over the same distance before and after. The
 /// step is 0 on a plane and the full height for a vertical step on a plane; at a change of slope, the step is
-/// the rise d minus the rise of the gentler side. If one side has no data, the other side replaces it. If both sides
-/// have no data, minmod is 0 in rows and columns, and a diagonal pair is omitted. GESTALT and the step filter
-/// of grid maps use height differences within a window (goldberg_2002, wermelinger_2016).
+/// the rise d minus the rise of the gentler side. If one side has no data, the other side replaces it. If
+/// both sides have no data, minmod is 0 in rows and columns, and a diagonal pair is omitted. GESTALT and the
+/// step filter of grid maps use height differences within a window (goldberg_2002, wermelinger_2016).
 using StepKernel = void (*)(const StepReach& reach, const StepRows& rows);
 
 /// Kernels for any processor and for processors with AVX2; both give the same bits.
