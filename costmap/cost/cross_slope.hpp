@@ -19,21 +19,24 @@ struct CostWeights {
   double risk_J = 1e7;  ///< cost of the loss of the rover [J], >= 0
 };
 
-/// Equivalent straight climbs for slopes on the ground of one class (ours). For every node of DriveCurve, row
-/// 0 included, the class has three gradients of climbs without cross slope under even wheel loads:
-///   - costs: SlopeEquilibrium needs at least the energy and time per metre of the node;
-///   - leaves: the strength loss until failure is the same. A loss d reduces the pull by d and the side force
-///     by the fraction d / thrust, with thrust = gross thrust over load at the reference slip;
-///   - brakes: the descent that is braked as hard, if the descent fails at most 0.16 below the pitch limit.
-/// No climb is less steep than the node's gradient along or than the climb of the preceding row, so cost,
-/// risk and refusal never decrease with the gradient across. The gradients belong to the class; evidence
-/// about the ground enters through the climbs' states. Nodes at which the rover tips are refused on any
-/// ground; the attitude of the body is computed on the class's ground.
+/// Equivalent straight slopes for the ground of one class (ours). Each node of DriveCurve (gradient along,
+/// gradient across; row 0 included) is represented by three gradients without cross slope, under even wheel
+/// loads:
+///   - costs: a climb with at least the energy and time per metre that SlopeEquilibrium finds at the node;
+///   - leaves: the climb with the same strength reserve, the loss of strength until failure. A loss d reduces
+///     the pull by d and the side force by the fraction d / thrust, with thrust = gross thrust over load at
+///     the reference slip;
+///   - brakes: the descent with the same braking reserve, if descents fail at most 0.16 beyond the pitch
+///     limit.
+/// A climb is at least as steep as the node's gradient along, and no slope becomes less steep from row to
+/// row: cost, risk and refusal never decrease with the gradient across. The slopes follow from the class's
+/// soil alone; an estimate of the ground changes the states on these slopes. Nodes at which the rover tips
+/// are refused on any ground; the attitude of the body is computed on the class's ground.
 ///
-/// Both equilibria use one table of wheel forces, whose errors cancel: without load transfer, row 0 has the
-/// cost of the mobility curve. Equilibria are solved at gradients along 1/32 apart and interpolated linearly.
-/// If the gradients without failure form several intervals, the interval nearest to level ground counts, of
-/// equally near intervals the longest. Immutable.
+/// The equilibria with load transfer and under even loads use one table of wheel forces, so that its errors
+/// cancel: without load transfer, row 0 has the cost of the mobility curve. Equilibria are solved at
+/// gradients along 1/32 apart and interpolated linearly. If the gradients without failure form several
+/// intervals, the interval nearest to level ground counts, of equally near intervals the longest. Immutable.
 class CrossSlope {
  public:
   /// Limits and thrust of the class's ground without cross slope.

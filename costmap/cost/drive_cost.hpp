@@ -70,8 +70,7 @@ struct DriveCurve {
   static constexpr int kBins = 512;
   static constexpr int kBinsPerUnit = 256;
   static constexpr int kRowsPerUnit = 64;
-  static constexpr double kSame = 1e-9;  ///< tolerance in bins or rows: positions as near to a node are on
-                                         ///< the node
+  static constexpr double kSame = 1e-9;  ///< tolerance [bins or rows] for positions on a node
   static constexpr double kLastPlace =
       kBins - 1 - kSame;  ///< upper bound of positions along [bins], exclusive
   /// Row 0, without cross slope: energy + weighted time + weighted risk [J/m].

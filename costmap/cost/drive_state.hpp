@@ -32,7 +32,7 @@ struct DriveState {
   float slip = 0.0F;            ///< [-], driven > 0, braked < 0
   float sinkage_m = 0.0F;       ///< per wheel
   float torque_Nm = 0.0F;       ///< per wheel
-  float energy_J_per_m = 0.0F;  ///< drive and base power, expectation over the soil uncertainty
+  float energy_J_per_m = 0.0F;  ///< drive and hotel power, expectation over the soil uncertainty
   float time_s_per_m = 0.0F;    ///< expectation over the soil uncertainty
   float risk_per_m = 0.0F;      ///< hazard rate of immobilisation: P over d metres = 1 - exp(-risk_per_m d)
   float weak = 0.0F;            ///< probability that the available pull is below the required pull, 0 to 1

@@ -12,8 +12,7 @@ using terramech::SlopeState;
 
 namespace {
 
-constexpr double kNear_rad = 0.1;  // stability margin below which an axle or side carries nearly the whole
-                                   // load (ours)
+constexpr double kNear_rad = 0.1;  // below, an axle or side carries nearly the whole load (ours)
 
 }  // namespace
 

@@ -11,13 +11,10 @@ namespace talus::costmap {
 struct SlopeRow {
   double step = 1.0;  ///< step of the gradients along
   double first = 0.0,
-         last = -1.0;  ///< interval of gradients without failure; infinite if the interval extends beyond the
-                       ///< tabulated gradients
-  bool tips_before = false, tips_behind = false;  ///< whether tipping rather than strength limits the
-                                                  ///< interval at that end
+         last = -1.0;  ///< interval of gradients without failure; infinite beyond the tabulated gradients
+  bool tips_before = false, tips_behind = false;  ///< whether tipping, not strength, limits that end
   int first_node = 0;                             ///< gradient of states[0], in steps
-  std::vector<terramech::SlopeState> states{};    ///< states without failure (tipping excepted), in the
-                                                  ///< interval nearest to level ground
+  std::vector<terramech::SlopeState> states{};    ///< states in the interval, tipping ones included
   std::vector<terramech::SlopeState> all{};       ///< states at all tabulated gradients
   std::vector<std::pair<double, double>>
       margins_rad{};  ///< stability margin by gradient along, over the interval of `states`

@@ -17,7 +17,7 @@ double climbAt(const DriveCost& cost, CellCode cell, const Direction& heading) n
 Direction worstHeading(const DriveCost& cost, CellCode cell) noexcept;
 
 /// Category of ground in a heading and its probability: `state` is DriveCost::detail(), `climb` is climbAt()
-/// there. Ground that is refused for another reason than its category is dangerous.
+/// there. Ground that is refused for a reason other than its category is dangerous.
 Ranked judged(const GroundModel& model, const GroundBelief& belief, const DriveState& state, double climb);
 
 /// Category of one kind of ground over the gradient of its plane, in steps of CellCode: the worst category
@@ -27,8 +27,7 @@ class CategoryTable {
   /// Table entry for one gradient.
   struct Entry {
     std::uint8_t category;    ///< terramech::Category as a number
-    std::uint8_t confidence;  ///< probability in steps of 1/16: rounded to nearest for dangerous ground, else
-                              ///< down
+    std::uint8_t confidence;  ///< probability in steps of 1/16; dangerous: rounded to nearest, else down
   };
 
   /// Dangerous at every gradient.

@@ -20,8 +20,7 @@ struct GroundKind {
   static constexpr double kPullStep = 0.02;  ///< at level 0 [-]
 
   int class_index = 0;
-  int other_class = 0;  ///< second class of ground that may be of either; equals class_index for a single
-                        ///< class
+  int other_class = 0;  ///< second possible class of the ground; class_index if there is none
   int pull = 0;
   int pull_std = 0;  ///< quarter octaves relative to the prior's standard deviation
   int sinkage = 0;

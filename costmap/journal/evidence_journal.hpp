@@ -17,8 +17,8 @@ class JournalDatabase;
 /// other. One object per thread.
 class EvidenceJournal {
  public:
-  /// Exclusive access to the journal during the lifetime of the object; changes are undone unless commit() is
-  /// called. Throws InputError if another process keeps the access for more than 30 s.
+  /// Write lock of the journal during the lifetime of the object; changes are undone unless commit() is
+  /// called. Throws InputError if another process keeps the lock for more than 30 s.
   class Transaction {
    public:
     explicit Transaction(EvidenceJournal& journal);

@@ -25,8 +25,7 @@ struct CategoryCounts {
 /// Category of a cell and its probability.
 struct CellCategory {
   std::uint8_t category = 0;    ///< terramech::Category as a number
-  std::uint8_t confidence = 0;  ///< probability in steps of 1/16: rounded to nearest for dangerous ground,
-                                ///< else down
+  std::uint8_t confidence = 0;  ///< probability in steps of 1/16; dangerous: rounded to nearest, else down
 };
 
 /// The published cost grid and the changes since its newest version. published() may be called from any

@@ -24,8 +24,7 @@ struct CostLayer {
 
   std::string name;
   maps::Raster<float> added_J_per_m;
-  float unseen_J_per_m = 0.0F;  ///< at least the greatest known cost, so that missing data never lowers a
-                                ///< cost
+  float unseen_J_per_m = 0.0F;  ///< at least the greatest known cost: missing data never lowers a cost
 };
 
 /// Input of a map: layers on the grid of the elevation; empty layers are absent.

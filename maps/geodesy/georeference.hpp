@@ -14,10 +14,8 @@ struct CoordinateSystem {
   std::string name{};  ///< "WGS 84 / UTM zone 10N"
   Ellipsoid ellipsoid{};
   Projection projection{};
-  bool planetocentric =
-      false;          ///< whether latitudes are angles at the centre of the ellipsoid instead of angles of
-                      ///< its surface normal
-  std::string wkt{};  ///< WKT of the file, copied into layers derived from it; may be empty
+  bool planetocentric = false;  ///< whether latitudes are angles at the centre, not of the surface normal
+  std::string wkt{};            ///< WKT of the file, copied into layers derived from it; may be empty
 };
 
 class Transform;

@@ -6,10 +6,8 @@ namespace talus::maps {
 enum class ProjectionMethod {
   TransverseMercator = 0,
   Mercator = 1,  ///< one standard parallel (standard_parallel_1_rad); `scale` is the scale factor there
-  Equirectangular = 2,        ///< PROJ's eqc, on the sphere of the equatorial radius; lengths are true along
-                              ///< standard_parallel_1_rad
-  PolarStereographic = 3,     ///< `scale` is the scale factor along standard_parallel_1_rad, whose sign
-                              ///< selects the pole
+  Equirectangular = 2,        ///< PROJ's eqc on the equatorial sphere; true along standard_parallel_1_rad
+  PolarStereographic = 3,     ///< `scale` along standard_parallel_1_rad, whose sign selects the pole
   LambertConformalConic = 5,  ///< standard parallels 1 and 2 (equal for a single parallel)
   Foreign = 12,  ///< defined by the WKT alone: any other projection, or a datum of Earth other than WGS 84
 };

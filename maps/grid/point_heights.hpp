@@ -16,8 +16,7 @@ struct CloudPoint {
 
 /// Rule for the height of a cell from its points.
 struct HeightChoice {
-  double percentile = 1.0;  ///< percentile of the heights in (0, 1], rounded up to a point; 1: the highest
-                            ///< point
+  double percentile = 1.0;       ///< of the heights, (0, 1], rounded up to a point; 1: the highest point
   std::size_t least_points = 1;  ///< cells with fewer points are unobserved (NaN), >= 1
 };
 

@@ -87,8 +87,7 @@ class ClassicHeader {
     std::uintmax_t begin, bytes;  // size of the variable, or of one record of it
     bool by_record;
   };
-  static constexpr std::uintmax_t kMost = 1'000'000;  // limit for the number of dimensions, attributes or
-                                                      // variables
+  static constexpr std::uintmax_t kMost = 1'000'000;  // limit of dimensions, attributes or variables
 
   int countBytes() const { return wide_ ? 8 : 4; }
   static std::uintmax_t padded(std::uintmax_t bytes) { return (bytes + 3) / 4 * 4; }

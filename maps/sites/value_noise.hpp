@@ -13,8 +13,8 @@ constexpr std::uint64_t mixed(std::uint64_t x) noexcept {
   return x ^ (x >> 31);
 }
 
-/// Sequence of uniform random numbers in [0, 1) from a seed (SplitMix64). Each generator of a site has a
-/// sequence of its own.
+/// Sequence of uniform random numbers in [0, 1) from a seed: mixed() of a counter. Each generator of a site
+/// has a sequence of its own.
 class RandomRow {
  public:
   explicit RandomRow(std::uint64_t seed) noexcept : state_(seed) {}

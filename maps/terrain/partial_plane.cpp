@@ -52,9 +52,7 @@ std::optional<PlaneFit> fitPartialPlane(const Raster<float>& elevation_m, const 
   const double xh = s.xh - s.x * s.h / s.n;
   const double yh = s.yh - s.y * s.h / s.n;
   const double determinant = xx * yy - xy * xy;
-  if (determinant < 1e-9)
-    return std::nullopt;  // the sums are integers, so the determinant is 0 or at least
-                          // of the order 1
+  if (determinant < 1e-9) return std::nullopt;  // sums of integers: the determinant is 0 or of order 1
   const double east = (yy * xh - xy * yh) / determinant;
   const double north = (xx * yh - xy * xh) / determinant;
   const double base = (s.h - east * s.x - north * s.y) / s.n;

@@ -55,8 +55,7 @@ using Lanes = float __attribute__((vector_size(kPlaneLanes * sizeof(float))));
   }
   Lanes rms = squares / count;
   for (int lane = 0; lane < kPlaneLanes; ++lane) rms[lane] = std::sqrt(rms[lane]);
-  const Lanes range = highest - lowest + mean * 0.0F;  // comparisons ignore NaN; the mean propagates a NaN of
-                                                       // any cell
+  const Lanes range = highest - lowest + mean * 0.0F;  // comparisons ignore NaN; the mean propagates NaN
   const int lanes = std::min(kPlaneLanes, row.width - column);
   store(east * row.cells_per_metre, row.dz_dx + column, lanes);
   store(north * row.cells_per_metre, row.dz_dy + column, lanes);

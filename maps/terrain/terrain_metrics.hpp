@@ -10,8 +10,7 @@ struct FootprintOptions {
   double radius_m =
       0.0;  ///< radius of the disc under the rover; a disc without the diagonal neighbours is replaced by 3x3
             ///< cells
-  double step_span_m = 0.0;  ///< greatest distance of two heights that form a step, >= 0; adjacent cells
-                             ///< always do
+  double step_span_m = 0.0;  ///< greatest distance of heights that form a step, >= 0; at least one cell
   int threads = 1;           ///< >= 1; the result does not depend on the number of threads
 };
 
