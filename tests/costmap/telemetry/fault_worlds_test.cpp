@@ -215,7 +215,7 @@ TEST(FaultWorlds, AFaultFreesNothingThatDoesNotHold) {
     World world(seed);
     const std::string fault = kFaults[seed % std::size(kFaults)];
     TraversabilityMap map(world.layers(), class_model, {});
-    const unsigned first = seed / std::size(kFaults) % 3;
+    const std::size_t first = seed / std::size(kFaults) % 3;
     if (first > 0) addDrive(map, driven(world, of_class, map, "none", 0, first == 2));
     const std::vector<bool> before = allowedOn(map);
     const int times = 1 + static_cast<int>(seed % 3);
