@@ -156,6 +156,9 @@ void ClassLessons::refresh() {
   const double prior = ground_.mean_std * ground_.mean_std;
   const double heard = std::clamp(
       (static_cast<double>(places_.driven()) - 1.0) / (static_cast<double>(kPlaces) - 1.0), 0.0, 1.0);
+  std::int64_t weight = pull_.weight;
+  for (const auto& [drive, told] : lower_pull_) weight += told.weight;
+  posterior_.places = static_cast<double>(weight) / kUnit;
   posterior_.pull = {std::min({heard * leastMean(pull_, lower_pull_), mostByDrives(), mostRise()}),
                      ground_.mean_std};
   posterior_.own_std = ground_.mean_std;

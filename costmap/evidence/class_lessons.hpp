@@ -18,6 +18,7 @@ struct ClassPosterior {
   double own_std = 0.0;  ///< of that, if the readings shared no error [-]
   double shared = 0.0;   ///< what one standard deviation of the shared error moves the pull by [-]
   Estimate sinkage;      ///< departure of sinkage over radius [-]
+  double places = 0.0;   ///< sum of the weights of all lessons, in independent places [-]
 };
 
 /// What learned ground has of its class.
