@@ -89,7 +89,7 @@ void ClassLessons::sum(const BlockLesson& lesson, std::int64_t sign) {
 }
 
 double ClassLessons::mostRise() const noexcept {
-  return std::max(places_.agreed(kPlaces), 0.0);
+  return mayRaise() ? std::max(places_.agreed(kPlaces), 0.0) : 0.0;
 }
 
 ClassState ClassLessons::state() const noexcept {

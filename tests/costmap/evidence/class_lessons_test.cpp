@@ -53,6 +53,26 @@ TEST(ClassLessons, RisesOnlyAsFarAsThreePlacesReach) {
   EXPECT_EQ(taught({0.2, 0.2, 0.2, 0.2}, false).posterior().pull.std, 0.05);
 }
 
+// Property: of two drives, of 25 places each, whose means differ by less than 3 standard deviations of the difference the class may
+// rise; by more it may not, in either order. Closed form: of a mean over n places, variance q^2 p^2 / (n q^2 + p^2), q = p = 0.05.
+TEST(ClassLessons, DrivesThatContradictEachOtherRaiseNothing) {
+  const double apart =
+      3.0 * std::sqrt(2.0) * 0.05 / std::sqrt(26.0) * 26.0 / 25.0;  // in what the places show
+  for (const double times : {0.0, 0.9, 1.1, 2.0})
+    for (const double sign : {-1.0, 1.0}) {
+      ClassLessons lessons(sand());
+      for (std::uint16_t drive = 1; drive <= 2; ++drive)
+        for (int place = 0; place < 25; ++place) {
+          const double pull = drive == 1 ? 0.0 : sign * times * apart;
+          lessons.add({.weight = 1.0, .pull = pull, .sinkage = std::nullopt, .raises = true, .drive = drive});
+          lessons.places().set({2 * place, 2 * drive}, static_cast<float>(pull));
+        }
+      lessons.refresh();
+      EXPECT_EQ(lessons.mayRaise(), times < 1.0) << sign * times;
+      EXPECT_EQ(lessons.state().may_raise, times < 1.0) << sign * times;
+    }
+}
+
 // Property: lessons that may not raise leave the mean at most where those that may have it by themselves.
 TEST(ClassLessons, WhatMayNotRaiseNeverLifts) {
   std::mt19937_64 random(5);
