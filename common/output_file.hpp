@@ -21,11 +21,21 @@ class OutputFile {
   /// Where to write; it has the extension of the final name.
   const std::filesystem::path& temporary() const noexcept { return temporary_; }
 
+  /// Writes all of it there, onto the disk. Throws InputError when that fails.
+  void write(std::string_view content);
+
+  /// Puts onto the disk what was written there by other means, so that a power cut after commit() finds the whole file, and
+  /// of several files none is put in its place before all are on the disk. Throws InputError when that fails.
+  void sync() const;
+
   /// Puts what was written in its place. Throws InputError when that fails, and leaves what was there.
   void commit();
 
   /// Throws InputError: the file cannot be written, because of `reason`.
   [[noreturn]] void fail(const std::string& reason) const;
+
+  /// The same for the writing of a library, whose message lacks the system's reason: that one where the file cannot grow.
+  [[noreturn]] void failToGrow(const std::string& reason) const;
 
  private:
   std::filesystem::path path_;

@@ -8,6 +8,10 @@
 
 #include <talus/maps/terrain/elevation_map.hpp>
 
+namespace talus {
+class OutputFile;
+}
+
 namespace talus::maps {
 
 /// One band of a GeoTIFF.
@@ -21,6 +25,7 @@ struct Layer {
 struct GeoTiff {
   std::string path{};
   const Georeference* georeference = nullptr;  ///< none: local metres
+  OutputFile* into = nullptr;  ///< to be filled and left to the caller to put in its place, as one of several
 };
 
 /// Writes layers of one grid as a tiled, compressed GeoTIFF beside `path`, then renames it there: a reader
