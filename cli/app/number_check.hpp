@@ -18,10 +18,10 @@ void checkNumbers(const CLI::App& command);
 /// no bound.
 CLI::Validator within(double low, double high);
 
-/// Refuses what is not a finite number >= 0.
+/// Refuses values other than finite numbers >= 0.
 CLI::Validator notNegative();
 
-/// Refuses what is not a finite number > 0.
+/// Refuses values other than finite numbers > 0.
 CLI::Validator positive();
 
 /// Refuses NaN and infinity.

@@ -72,7 +72,7 @@ class Canvas {
   void clip(const Box& box);
   void unclip();
 
-  /// The finished file; nothing can be drawn afterwards.
+  /// Finishes the file and returns its bytes. Nothing can be drawn afterwards.
   std::string bytes();
 
  private:

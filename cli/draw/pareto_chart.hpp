@@ -13,7 +13,7 @@ namespace talus::cli {
 /// for .html, a page with the numbers. @throws InputError when the file cannot be written
 void saveParetoChart(const std::string& path, const std::vector<planner::ParetoRoute>& front);
 
-/// Energy_J, time_s and risk of the routes, and the weights with which the routes were planned.
+/// The energy_J, time_s and risk of the routes, and the weights with which the routes were planned.
 nlohmann::ordered_json paretoJson(const std::vector<planner::ParetoRoute>& front);
 
 }  // namespace talus::cli

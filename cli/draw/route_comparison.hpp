@@ -7,7 +7,7 @@
 
 namespace talus::cli {
 
-/// A stretch of a route that is farther than a tolerance from another route.
+/// A section of a route that deviates from another route by more than a tolerance.
 struct Parting {
   double from_m = 0.0;  ///< distance from the start, along the route
   double to_m = 0.0;

@@ -14,7 +14,7 @@ std::filesystem::path categoryStyle(const std::filesystem::path& tif);
 /// table and overviews, and a QGIS style. @throws InputError
 void writeCategories(const costmap::TraversabilityMap& map, const std::string& path);
 
-/// The picture of a map of ROS' map_server that lies beside its YAML file.
+/// Path of the image beside the YAML file of a ROS map_server map.
 std::filesystem::path nav2Picture(const std::filesystem::path& yaml);
 
 /// Writes a map for ROS map_server and Nav2: a YAML file and a PGM image. Free: safe cells, and marginal

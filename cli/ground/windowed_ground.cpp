@@ -42,7 +42,7 @@ planner::WindowedMap windowsOn(const GroundOptions& options, const Ground& overv
     part.dem.read.window = maps::Window{box.low, box.high};
     try {
       return readGround(part, quiet).map;
-    } catch (const InputError&) {  // no data in the window
+    } catch (const InputError&) {  // window without data
       return std::nullopt;
     }
   };
