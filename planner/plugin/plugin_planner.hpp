@@ -14,8 +14,9 @@ class PluginPlanner {
   static constexpr std::size_t kMostVertices = 100'000;
   static constexpr int kMostCells = 1'000'000;
 
-  /// Loads it once, in a child, to ask what it is. `planner`: one of those that it offers; empty: its default. Throws
-  /// InputError naming the file, as loadPlugin() does, and where it throws, crashes or has no such planner.
+  /// Loads the library once in a child process to read its capabilities. `planner`: one of the planners
+  /// offered; empty: the default. Throws InputError with the file name as loadPlugin(), and if the library
+  /// throws, crashes or has no such planner.
   explicit PluginPlanner(std::string file, std::string planner = {});
 
   /// "PLANNER of PLUGIN" for reports.
