@@ -21,7 +21,8 @@ struct ModelOnRows {
 /// derivatives by its other parameters, or the derivatives by a curve's values at its knots.
 Contender contenderOf(const Candidate& candidate, const ModelOnRows& at);
 
-/// What a plan lets a fit move, to first order about a model that was fitted, in steps of rangeOf().scale.
+/// Linearised change of the predictions by the free parameters of a plan at a fitted model, in steps of
+/// rangeOf().scale.
 LinearModel linearised(const RefinedModel& fitted, const Trial& trial, const Whitening& whitening,
                        const FitPlan& plan, SolvedContacts& solved);
 

@@ -21,8 +21,9 @@ bool hasCorrections(const TraceResult& result);
 std::vector<EndLevel> endLevels(const TraceResult& result, const TraceOptions& options,
                                 const ProgressMonitor& watch = {});
 
-/// An extrapolation is earned: beyond the trained rows an effect follows its law as far as that foretold held-out ends of
-/// its column, and acts from there on as it does there; at their edge where it foretold none.
+/// Limits the extrapolation of effects. Outside the trained rows an effect follows its formula as far as it
+/// predicted held-out ends of its column, and is constant beyond; without a predicted end it is constant from
+/// the edge of the rows.
 void boundEffects(RefinedModel& model, const Trial& trial, const std::vector<EndLevel>& ends);
 
 /// Ranges of the columns for predictions, and the growth of the error outside each range: the rate by which

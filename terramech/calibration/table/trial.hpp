@@ -52,7 +52,7 @@ struct SharedError {
   std::vector<SoilFactor> by_soil{};  ///< of each row; empty: the soil does not vary
 
   double variance(int channel) const;      ///< in one channel, mean over the rows [-]
-  double soilVariance(int channel) const;  ///< share of the soil components in variance() [-]
+  double soilVariance(int channel) const;  ///< contribution of the soil components to variance() [-]
 };
 
 /// A sensor whose error must be larger than stated if the model has no missing effect.

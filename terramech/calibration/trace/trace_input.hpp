@@ -13,7 +13,7 @@ struct TraceInput {
 
 /// Rows and base model of a search. The soil is fitted if the base specifies none. A specified soil without
 /// standard deviations gets default ones (giveDefaultDeviations()) unless the table is a rover's own drive.
-/// Throws InputError as modelRows(), and if fewer than 6 rows are usable.
+/// Throws InputError as modelRows(), and if fewer than 5 rows are usable.
 TraceInput traceInput(const Telemetry& table, const ModelFile& base, const TraceOptions& options);
 
 }  // namespace talus::terramech
