@@ -18,8 +18,7 @@ struct Series {
   std::string name = {};           ///< name in the legend; empty: no legend entry
   std::vector<double> x;           ///< in the unit of the axis
   std::vector<double> y;           ///< same length as x; a NaN interrupts the line
-  std::vector<double> y_std = {};  ///< standard deviations, empty or same length: a band (Line) or bars
-                                   ///< (Points)
+  std::vector<double> y_std = {};  ///< empty, or standard deviations: band (Line) or bars
   Mark mark = Mark::Line;
   bool dashed = false;
   std::optional<Colour> colour = {};  ///< none: next distinguishable colour

@@ -33,8 +33,7 @@ struct PlanOptions {
   std::string plugin;  ///< shared library of an external planner; empty: built-in planners
   DriveOptions drive;
   double max_risk = 0.0;               ///< upper bound of the immobilisation probability; 0: none
-  std::size_t in_memory = 40'000'000;  ///< cells; larger maps are read in windows along a route on an
-                                       ///< overview
+  std::size_t in_memory = 40'000'000;  ///< cells; larger maps are read window by window
   bool whole_field = false;            ///< also on large maps
   bool no_proof = false;               ///< computes no improved lower bound and no alternative corridors
   std::string pareto;                  ///< chart file; empty: none

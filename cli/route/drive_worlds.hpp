@@ -20,8 +20,7 @@ struct DrivenWorlds {
     std::string reason;
   };
 
-  std::vector<std::vector<planner::WorldResult>> results;  ///< by belief: worlds that succeeded under all
-                                                           ///< beliefs
+  std::vector<std::vector<planner::WorldResult>> results;  ///< by belief, without failed worlds
   std::vector<Failure> failures;
 };
 

@@ -14,8 +14,7 @@ namespace talus::planner {
 struct ChildLimits {
   double seconds = std::numeric_limits<double>::infinity();     ///< wall time, > 0
   std::size_t bytes = std::numeric_limits<std::size_t>::max();  ///< size of the result
-  std::uint64_t memory = 0;                                     ///< bytes in addition to the parent's; 0: no
-                                                                ///< limit
+  std::uint64_t memory = 0;                                     ///< bytes beyond the parent's; 0: no limit
 };
 
 /// Result of a child process.

@@ -16,6 +16,7 @@ inline constexpr int kLayerInterfaceVersion = 1;
 /// A cost layer from an external source, such as shadow, radio or hazards: see costmap::CostLayer.
 class CostSource {
  public:
+  /// Destroys the layer.
   virtual ~CostSource() = default;
 
   /// Additional cost [J/m] of each cell of a grid, row by row from the south-west: 0 to 1e6; infinite: must

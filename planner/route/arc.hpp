@@ -6,7 +6,7 @@ namespace talus::planner {
 
 /// Position and heading of the rover.
 struct Pose {
-  maps::Point place;
+  maps::Point place;         ///< [m]
   double heading_rad = 0.0;  ///< counter-clockwise from x
 };
 

@@ -48,6 +48,7 @@ class ShortestCurves {
   ~ShortestCurves();
   ShortestCurves(ShortestCurves&&) noexcept;
 
+  /// The shortest path between two poses; without reversing unless `may_reverse`.
   std::vector<Arc> operator()(const Pose& from, const Pose& to) const;
 
   /// The shortest path without reversing.

@@ -13,6 +13,7 @@ struct Candidate {
   std::string family;         ///< "empirical" for curves
   int parameters = 0;         ///< number of fitted parameters
 
+  /// Returns true for curves.
   bool empirical() const { return parts.front().empirical(); }
   /// The explaining column; for an effect on one group of rows, the column of the group.
   const std::string& covariate() const {

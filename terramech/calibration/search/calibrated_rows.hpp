@@ -28,10 +28,7 @@ class CalibratedRows {
   void compare(const RefinedModel& model, SolvedContacts& solved);
 
   const Trial& trial() const { return trial_; }
-  const Eigen::MatrixXd& level() const {
-    return level_;
-  }                                                              ///< predictions of the model, rows x
-                                                                 ///< kChannels
+  const Eigen::MatrixXd& level() const { return level_; }        ///< predictions, rows x kChannels
   const Eigen::MatrixXd& residual() const { return residual_; }  ///< measured - level
   const Whitening& whitening() const { return whitening_; }
   const Eigen::VectorXd& white() const { return white_; }  ///< whitened residuals, rows*kChannels

@@ -102,8 +102,7 @@ class TraceSearch {
   RefinedModel withoutPart(std::size_t k, std::size_t part) const;
   /// Returns true if the predictions change without an effect, by the criterion of acts().
   bool differs(const RefinedModel& without) const;
-  std::size_t firstPart(std::size_t k) const;  ///< index of the first effect of accepted candidate k in the
-                                               ///< model
+  std::size_t firstPart(std::size_t k) const;  ///< index of candidate k's first effect in the model
   /// Sets the parameters, their standard deviations and the channel of each effect.
   void describe(std::vector<TracedEffect>& effects, const Eigen::MatrixXd& covariance) const;
 

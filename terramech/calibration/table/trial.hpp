@@ -13,8 +13,7 @@ namespace talus::terramech {
 /// Measured rows for residual tracing. Columns of `measured` are the scaled channels in the order of Channel;
 /// NaN = missing.
 struct Trial {
-  std::vector<WheelState> states;  ///< slip and load are replaced by estimates during calibration of the
-                                   ///< inputs
+  std::vector<WheelState> states;  ///< slip and load are estimates after calibration of the inputs
   std::vector<double> load_N;      ///< as measured; denominator of every ratio
   std::vector<double> slip;        ///< as measured
   Eigen::MatrixXd measured;        ///< rows x kChannels [-]
@@ -29,8 +28,10 @@ struct Trial {
   std::vector<std::string> dropped;     ///< columns removed by the screening: column_screening.hpp
   std::vector<std::string> chance;      ///< covariates kept by the screening without significance
 
+  /// Number of rows.
   int rows() const { return static_cast<int>(states.size()); }
   bool has(Channel channel) const;  ///< returns true if any row measures the channel
+  /// Denominator of the scaled channel: r for sinkage, r W for torque, otherwise W, with the measured load W.
   double denominator(int row, Channel channel) const;
 };
 
@@ -39,9 +40,9 @@ struct Trial {
 /// (k).
 inline constexpr int kShared = kChannels + 2;
 
+/// One value per component.
 using SharedVector = Eigen::Matrix<double, kShared, 1>;
-using SharedFactor = Eigen::Matrix<double, kChannels, kShared>;  ///< effect of one unit of each component on
-                                                                 ///< a row
+using SharedFactor = Eigen::Matrix<double, kChannels, kShared>;  ///< effect of each component on a row
 using SoilFactor = Eigen::Matrix<double, kChannels, kShared - kChannels>;  ///< columns of the soil components
 using RunError = Eigen::Matrix<double, kShared, kShared>;                  ///< covariance of the components
 
@@ -57,7 +58,7 @@ struct SharedError {
 
 /// A sensor whose error must be larger than stated if the model has no missing effect.
 struct StrainedSensor {
-  std::string column;
+  std::string column;                   ///< column of the sensor
   double declared = 0.0, fitted = 0.0;  ///< standard deviations [unit of the column]
 };
 
@@ -84,7 +85,7 @@ Eigen::VectorXd covariateValues(const Trial& trial, const std::string& name,
 Trial subset(const Trial& trial, const std::vector<char>& keep);
 
 /// Marks the rows for fits of the soil: wheels without slip angle (|angle| < 0.1 rad) if there are at least
-/// 20 such rows, otherwise all rows. The base model is less reliable for wheels with a slip angle.
+/// 20 such rows, otherwise all rows.
 std::vector<char> rowsOfSoil(const Trial& trial);
 
 /// The trial with slip and load as measured, before calibration of the inputs.

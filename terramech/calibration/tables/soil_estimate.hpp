@@ -19,28 +19,27 @@ namespace talus::terramech {
 ///   sojourner, iagnemma, linear-offset   straight lines in (sigma, tau) (line_estimate.hpp)
 ///   wong-reece      posterior from the wheel's equilibrium (posterior_estimate.hpp, model_estimate.hpp)
 struct EstimateOptions {
-  TableFile table;            ///< the CSV
-  std::string method;         ///< one of estimateMethods()
-  std::string shear_modulus;  ///< K [m] or one of modulusMethods(); empty: column, else prior, else joint
-  std::string prior;          ///< soil file or name; empty: thesis Table 2.1 for wong-reece, otherwise none
-  std::string rover;  ///< library name or file; supplies wheel dimensions missing from the table; may be
-                      ///< empty
-  std::string model;  ///< wong-reece: refined model whose effects are applied; empty: none
+  TableFile table;              ///< the CSV
+  std::string method;           ///< one of estimateMethods()
+  std::string shear_modulus;    ///< K [m] or one of modulusMethods(); empty: column, else prior, else joint
+  std::string prior;            ///< soil file or name; empty: thesis Table 2.1 for wong-reece, otherwise none
+  std::string rover;            ///< library name or file; supplies missing wheel dimensions; may be empty
+  std::string model;            ///< wong-reece: refined model whose effects are applied; empty: none
   bool whole_equation = false;  ///< linear-offset: include M1 of Eq. 2.9
   bool recursive = false;       ///< process rows one by one and store each estimate
-  double plate_width_m = 0.0;   ///< bevameter: width of all plates [m] if the file has no such column; 0:
-                                ///< none
+  double plate_width_m = 0.0;   ///< bevameter: width of all plates [m] without such a column; 0: none
   double noise = 0.05;          ///< relative standard deviation of each reading [-]
 };
 
 /// Estimate after a row of the table; NaN if not available yet.
 struct RunningSoil {
+  /// No value.
   static constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-  std::size_t line = 0;  ///< line of the table
-  double cohesion_Pa = kNan;
-  double friction_angle_rad = kNan;
-  double shear_modulus_m = kNan;
+  std::size_t line = 0;                                          ///< line of the table
+  double cohesion_Pa = kNan;                                     ///< c
+  double friction_angle_rad = kNan;                              ///< phi
+  double shear_modulus_m = kNan;                                 ///< K
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Constant(kNan);  ///< of (c, tan phi)
 };
 
@@ -53,27 +52,28 @@ double frictionStd_rad(const Eigen::Matrix2d& covariance, double friction_angle_
 
 /// Result of any method; quantities that a method does not provide are NaN.
 struct SoilEstimate {
-  double cohesion_Pa;
-  double tan_friction;
-  double shear_modulus_m;
-  Eigen::Matrix2d covariance;  ///< of (c, tan phi)
-  double friction_angle_rad;
-  double sinkage_exponent;
-  std::optional<double> cohesive_modulus;
-  std::optional<double> frictional_modulus;
-  std::vector<PlateModulus> plates;  ///< bevameter, if the table contains one soil
-  std::vector<TrialSoil> soils;      ///< bevameter: each soil of the table from its trials
-  std::size_t rows_used = 0;
-  std::vector<RejectedRow> rejected;
-  std::vector<std::string> ignored;        ///< numeric columns that the method does not read
-  std::vector<std::string> unseen;         ///< parameters not determined by the data, with the reason
-  std::vector<std::string> warnings;       ///< warnings about the fit
-  std::vector<std::string> effects;        ///< effects applied, of --model
-  std::vector<StressPair> points;          ///< points of a line fit, for a plot
-  std::optional<SoilPosterior> posterior;  ///< wong-reece
-  std::vector<std::string> class_names;    ///< of the prior of wong-reece
-  std::vector<RunningSoil> running;        ///< per used row, if recursive
+  double cohesion_Pa;                        ///< c
+  double tan_friction;                       ///< tan(phi) [-]
+  double shear_modulus_m;                    ///< K
+  Eigen::Matrix2d covariance;                ///< of (c, tan phi)
+  double friction_angle_rad;                 ///< phi
+  double sinkage_exponent;                   ///< n [-]
+  std::optional<double> cohesive_modulus;    ///< k_c
+  std::optional<double> frictional_modulus;  ///< k_phi
+  std::vector<PlateModulus> plates;          ///< bevameter, if the table contains one soil
+  std::vector<TrialSoil> soils;              ///< bevameter: each soil of the table from its trials
+  std::size_t rows_used = 0;                 ///< number of readings in the fit
+  std::vector<RejectedRow> rejected;         ///< unusable rows with the reason
+  std::vector<std::string> ignored;          ///< numeric columns that the method does not read
+  std::vector<std::string> unseen;           ///< parameters not determined by the data, with the reason
+  std::vector<std::string> warnings;         ///< warnings about the fit
+  std::vector<std::string> effects;          ///< effects applied, of --model
+  std::vector<StressPair> points;            ///< points of a line fit, for a plot
+  std::optional<SoilPosterior> posterior;    ///< wong-reece
+  std::vector<std::string> class_names;      ///< of the prior of wong-reece
+  std::vector<RunningSoil> running;          ///< per used row, if recursive
 
+  /// Initialises the numbers to NaN.
   SoilEstimate();
 
   /// Copies c, tan(phi), their covariance and undetermined parameters from a line fit.

@@ -8,8 +8,8 @@ namespace talus::terramech {
 
 /// Applicability of the model of a rigid wheel on soil with physical effects.
 struct Applicability {
-  bool applies = true;
-  std::string reason;  ///< reason if the model does not apply
+  bool applies = true;  ///< true if the model describes the rows
+  std::string reason;   ///< reason if the model does not apply
 };
 
 /// Tests the physical model, without empirical curves and sensor faults, on held-out rows. Only channels that

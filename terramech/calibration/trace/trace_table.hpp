@@ -22,12 +22,12 @@ struct TableTraceOptions {
 struct TableTrace {
   std::string source;                 ///< path of the file
   std::vector<RejectedRow> rejected;  ///< rejected rows with the reason
-  TraceResult result;
-  std::vector<HeldOut> held_out;  ///< result.held_out, then held-out levels of the column of each effect
-  Answer answer;
-  Applicability applies;
-  int beyond_axle = 0;               ///< number of rows with z >= r, which were left out
-  ChannelErrors beyond_axle_rmse{};  ///< of the refined model on those rows
+  TraceResult result;                 ///< effects, refined model and errors
+  std::vector<HeldOut> held_out;      ///< result.held_out, then held-out levels of the column of each effect
+  Answer answer;                      ///< conclusion
+  Applicability applies;              ///< applicability of the model
+  int beyond_axle = 0;                ///< number of rows with z >= r, which were left out
+  ChannelErrors beyond_axle_rmse{};   ///< of the refined model on those rows
 
   /// Number of rows that the base was compared with; in a large table more than the number of searched rows.
   int rowsUsed() const { return result.trial.rows() + result.unsearched.rows; }

@@ -19,17 +19,14 @@ const char* name(Verdict verdict);
 
 /// Conclusion of a trace, with the largest remaining residual.
 struct Answer {
-  Verdict verdict = Verdict::NothingMissing;
-  Channel channel = Channel::DrawbarPull;  ///< channel whose residual exceeds its floor most
-  bool open = false;                       ///< some residual exceeds its floor
-  double rest = 0.0, floor = 0.0;          ///< rms in this channel of the refined model, and of the sensors
-                                           ///< alone [-]
-  std::string column;                      ///< column with the strongest variation of the residual; empty: no
-                                           ///< known column
-  double gain = 0.0;                       ///< gain of that column, to compare with TraceResult::threshold
-  std::vector<StrainedSensor> strained;    ///< sensors whose error would be far larger than stated
-  std::vector<std::string> unstated;       ///< measured columns without a stated error; the fitted error is
-                                           ///< used
+  Verdict verdict = Verdict::NothingMissing;  ///< the conclusion
+  Channel channel = Channel::DrawbarPull;     ///< channel whose residual exceeds its floor most
+  bool open = false;                          ///< some residual exceeds its floor
+  double rest = 0.0, floor = 0.0;             ///< rms there of the refined model, and of the sensors [-]
+  std::string column;                         ///< column over which the residual varies most; may be empty
+  double gain = 0.0;                          ///< gain of that column, to compare with TraceResult::threshold
+  std::vector<StrainedSensor> strained;       ///< sensors whose error would be far larger than stated
+  std::vector<std::string> unstated;          ///< measured columns without a stated error
   /// Standard deviations between runs of the logarithms of soil strength and stiffness, if they cause most of
   /// the residual; otherwise 0.
   double strength_scatter = 0.0, stiffness_scatter = 0.0;
@@ -46,9 +43,9 @@ Answer answerOf(const TraceResult& result);
 
 /// A soil parameter that the rows moved far from its prior.
 struct MovedParameter {
-  std::string name;
-  double value = 0.0, prior = 0.0, prior_std = 0.0;
-  double away() const;  ///< [prior standard deviations]
+  std::string name;                                  ///< as in soilParameters()
+  double value = 0.0, prior = 0.0, prior_std = 0.0;  ///< fitted value, and mean and std of the prior
+  double away() const;                               ///< (value - prior) / prior_std
 };
 
 /// Soil parameters of the refined model more than three standard deviations from their prior.
