@@ -57,7 +57,7 @@ fs::path followed(fs::path path) {
   return path;
 }
 
-// Journal to which a file of SQLite beside the journal belongs; empty if the name is not such a file.
+// The journal of which `path` is one of SQLite's side files; empty if `path` is no such file.
 fs::path journalBehind(const fs::path& path) {
   const std::string name = followed(path).string();
   for (const std::string_view end : kBesideJournal)

@@ -45,8 +45,9 @@ struct ParetoRoute {
 };
 
 /// Routes of which none is dominated in energy, time and risk, in order of increasing energy. The candidates
-/// are the routes of `planner` for a grid of `steps` x `steps` prices of time and risk. Empty if there is no
-/// route or if the problem's watch was stopped, because some of the prices alone give a different set.
+/// are the routes of `planner` for `steps` x `steps` prices of time and risk. Empty if there is no route or
+/// if the problem's watch was stopped, because a part of the prices gives a different set. Throws
+/// std::invalid_argument if steps < 2.
 std::vector<ParetoRoute> paretoSet(const Problem& problem, const std::function<Plan(const Problem&)>& planner,
                                    int steps);
 

@@ -79,8 +79,8 @@ class Layer {
   }
 
   // Chooses the crossing point on each side from the end backwards: the middle of the range from which the
-  // next point is reachable. In cells in which every direction is drivable, the point nearest to the straight
-  // line to the target, away from the ends of the side.
+  // next point is reachable. In cells in which every direction is drivable: the point straight across from
+  // the next point, limited to the middle half of the range.
   bool gates() {
     at_.assign(chain_.size(), 0.0);
     InCell target = end_;

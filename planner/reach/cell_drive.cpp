@@ -46,8 +46,8 @@ Sides around(const HeadingSet& set, double heading, double within) noexcept {
   return sides;
 }
 
-// Appends a zigzag from p to q, both inside the cell, and q. Returns false if more than kMostLegs legs were
-// needed.
+// Appends a zigzag from p to q, both inside the cell, and q. Returns false if no zigzag of at most kMostLegs
+// pairs of legs stays inside the cell.
 bool inTurns(const Sides& sides, InCell p, InCell q, std::vector<InCell>& way) {
   const InCell d = q - p;
   const double heading = std::atan2(d.y, d.x), length = std::hypot(d.x, d.y);

@@ -104,9 +104,7 @@ void Reach::spread(Cell cell) {
 
 void Reach::enter(Cell cell, int side, const SideRange& range) {
   const std::size_t index = map_.grid().index(cell);
-  if (seen_[index] != 0 && !cones_.contains(index))
-    return;  // entered before, and every direction is
-             // drivable
+  if (seen_[index] != 0 && !cones_.contains(index)) return;  // entered before, without restriction
   if (leadsEverywhere(headingsOf(cell))) return enqueue(index);
   Entries& entries = cones_[index];
   SideRange& known = entries.sides[static_cast<std::size_t>(side)];

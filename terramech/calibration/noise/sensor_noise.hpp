@@ -19,8 +19,8 @@ namespace talus::terramech {
 SensorNoise fitNoise(const Trial& trial, const Eigen::MatrixXd& residual, const Eigen::MatrixXd& level,
                      const InputSlopes& slopes, const StatedSensors& stated);
 
-/// Sensors whose fitted noise exceeds the stated noise by more than two standard deviations of the
-/// statement's uncertainty, e^0.5. `noise` is set to the fit under the stated errors.
+/// Sensors whose fitted noise exceeds the stated noise by a factor above e^0.5, two standard deviations of
+/// the uncertainty of a statement. Sets these sensors in `noise` to the stated values.
 std::vector<StrainedSensor> strainedSensors(const Trial& trial, const Eigen::MatrixXd& level,
                                             const StatedSensors& stated, SensorNoise& noise);
 
