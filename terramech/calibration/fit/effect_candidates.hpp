@@ -17,9 +17,9 @@ std::vector<Candidate> libraryCandidates(const Trial& trial, const Eigen::Vector
 
 /// Curves of every covariate, initially zero, in each measured channel alone, through stiffness and through
 /// strength: a line and splines of 4 and 7 knots. Columns constant within runs need at least three runs per
-/// knot. Further candidates are curves of time, heading and steps of additional columns; for text columns a
-/// constant per group; and lines over products ("A*B") of an additional column with slip, load, speed or, for
-/// at most six additional columns, another additional column.
+/// knot. Further candidates: steps of time, heading and additional columns; for text columns a constant per
+/// group; and lines over products ("A*B") of an additional column with slip, load, speed or, for at most six
+/// additional columns, another additional column.
 std::vector<Candidate> empiricalCandidates(const Trial& trial, const Eigen::VectorXd& sinkage_m);
 
 /// Returns true if a covariate is a product of two columns.
