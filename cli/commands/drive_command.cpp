@@ -1,4 +1,4 @@
-// talus drive DEM --truth TRUTH.yaml: a simulated traverse over soils that the planner does not know.
+// talus drive DEM --truth TRUTH.yaml: simulates a traverse over soils that are unknown to the planner.
 #include <algorithm>
 #include <functional>
 #include <optional>
@@ -37,7 +37,7 @@ struct DriveCommandOptions {
   std::string truth, start, goal, html, telemetry, plugin;
   std::string belief = "online";
   std::size_t worlds = 1;
-  double time_limit_s = 0.0;  ///< of a plugin for each plan; 0: none
+  double time_limit_s = 0.0;  ///< limit per plan of a plugin; 0: no limit
   planner::SensorOptions sensors;
   std::string fault = "none", noise = "on";
 };
@@ -49,7 +49,7 @@ const Belief* findBelief(const std::string& word) {
   return found == kBeliefs.end() ? nullptr : found;
 }
 
-// The check of --belief: a reason, or an empty text.
+// Validator of --belief: returns the reason of a refusal, or an empty text.
 std::string refusedBelief(const std::string& word) {
   if (word == "all" || findBelief(word) != nullptr) return "";
   return word + ", must be one of geometry, along-only, prior, online, perfect-knowledge, all";
@@ -116,7 +116,7 @@ void bind(CLI::App& command, DriveCommandOptions& options) {
   groupOptions(command, "Output");
 }
 
-// What was asked for and where it runs.
+// Site and execution of a campaign of simulations.
 struct Campaigning {
   const planner::SimulationSite& site;
   const Campaign& campaign;
@@ -137,7 +137,7 @@ DrivenWorlds simulated(const Campaigning& on, const std::vector<Belief>& beliefs
   return driven;
 }
 
-// The report, and which worlds failed.
+// Prints the report; JSON includes the failed worlds.
 template <typename Results>
 int show(const Results& results, const DrivenWorlds& driven, const Campaigning& on) {
   if (!on.campaign.leads()) return Exit::kDone;
@@ -190,7 +190,7 @@ int runOne(const planner::SimulationSite& site, const DriveCommandOptions& optio
   return drive.result.drive.outcome == planner::Outcome::Reached ? Exit::kDone : Exit::kNo;
 }
 
-// The truth, whose classes must be classes of the map.
+// Reads the truth and checks that its classes are classes of the map.
 planner::Truth truthFor(const costmap::GroundModel& model, const std::string& path) {
   planner::Truth truth = readTruth(path);
   std::string known;
@@ -212,7 +212,7 @@ int run(const DriveCommandOptions& options, Context& context) {
   std::optional<planner::PluginPlanner> plugin;
   if (!options.plugin.empty()) {
     plugin.emplace(pluginOf(options.plugin));
-    context.threads = 1;  // it plans in processes, which a program of several threads must not make
+    context.threads = 1;  // the plugin forks, which a multi-threaded program must not do
   }
   const auto byPlugin = [&](planner::Problem problem) {
     if (options.time_limit_s > 0.0)

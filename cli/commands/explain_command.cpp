@@ -1,4 +1,4 @@
-// talus explain DEM --at P [--heading RAD]: why a cell is what it is.
+// talus explain DEM --at P [--heading RAD]: explains the category and cost of a cell.
 #include <cmath>
 #include <numbers>
 #include <optional>

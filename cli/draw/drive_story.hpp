@@ -9,15 +9,15 @@
 
 namespace talus::cli {
 
-/// A cell whose category for people changed during a drive.
+/// A cell whose displayed category changed during a drive.
 struct CellChange {
   double time_s = 0.0;
   maps::Cell cell;
   std::uint8_t category = 0;  ///< terramech::Category as a number
 };
 
-/// a simulated drive as a page shows it: what happened when, what changed in the map, and what the rover
-/// could not know.
+/// Data of a simulated drive for a page: events, changes of the map, and the true soil patches unknown to the
+/// rover.
 struct DriveStory {
   planner::TraverseSimulation drive;
   std::vector<CellChange> changes;

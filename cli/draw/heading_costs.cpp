@@ -15,9 +15,10 @@ using costmap::CellCode;
 using costmap::DriveCurve;
 
 constexpr std::uint32_t kNoCurve = 255;
-constexpr double kMostWord = 16777214.0;  // of 24 bits, less one for "refused"
+constexpr double kMostWord = 16777214.0;  // largest 24-bit value, less one for "refused"
 
-/// The nodes within the limits, the bins of a row from the steepest descent on, the rows of a curve from the level one on.
+/// Nodes of the cost curves within the limits of pitch and roll: bins of a row from the steepest descent,
+/// rows from the level row.
 struct Nodes {
   int first_bin, bins, rows;
 
@@ -31,7 +32,7 @@ struct Nodes {
   }
 };
 
-/// Costs on a logarithmic scale, so that a word is right to a few millionths; 0 for what is refused.
+/// Costs on a logarithmic scale, with a relative error of a few millionths; 0 for refused headings.
 nlohmann::ordered_json tableOf(const std::vector<const DriveCurve*>& curves, const Nodes& nodes) {
   std::vector<double> costs;
   double low = INFINITY, high = 0.0;

@@ -19,7 +19,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// Every vertex, or for a very long route an even selection with both ends.
+/// Indices of all vertices, or of 4000 evenly selected vertices, including both ends, for a longer route.
 std::vector<std::size_t> selection(std::size_t count) {
   constexpr std::size_t kMost = 4000;
   std::vector<std::size_t> chosen;
@@ -57,7 +57,7 @@ ordered_json places(const std::vector<maps::Point>& points) {
   return out;
 }
 
-// Rows of plain numbers: a drive has thousands of moments.
+// Track points as rows of plain numbers, because a drive has thousands of points.
 ordered_json storyOf(const DriveStory& story) {
   ordered_json out{{"track", ordered_json::array()},
                    {"events", ordered_json::array()},
@@ -157,8 +157,8 @@ void replaceAll(std::string& text, const std::string& from, const std::string& t
     text.replace(at, from.size(), to);
 }
 
-/// JSON that may stand inside a script element: "<" occurs in strings only, and what begins with it, such as "</script"
-/// or "<!--<script", would change how the page is read.
+/// JSON for a script element. "<" occurs only inside strings and is escaped, because "</script" or
+/// "<!--<script" would change how the page is parsed.
 std::string embedded(const ordered_json& data) {
   std::string text = jsonText(data);
   replaceAll(text, "<", "\\u003c");
@@ -168,7 +168,8 @@ std::string embedded(const ordered_json& data) {
 }  // namespace
 
 std::string page(const Scene& scene) {
-  // The head is filled before the data are put in, so that no text of the user's is taken for a place-holder.
+  // The title is replaced before the data are inserted, so that user text in the data is never taken for a
+  // place-holder.
   std::string html(pageTemplate());
   replaceAll(html, "@TALUS_TITLE@", escaped(scene.title));
   replaceAll(html, "@TALUS_SUBTITLE@", escaped(scene.subtitle));

@@ -18,7 +18,7 @@ std::string lengthText(double metres) {
   return metres >= 2000.0 ? fmt::format("{:.2f} km", metres / 1000.0) : fmt::format("{:.4g} m", metres);
 }
 
-/// Largest and mean of a field over the motions, by length; not known where no motion has it.
+/// Extremes and length-weighted mean of a field over the motions; unknown if no motion has a value.
 struct Profile {
   double highest = -INFINITY;
   double lowest = INFINITY;

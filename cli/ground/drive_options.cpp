@@ -11,7 +11,7 @@
 namespace talus::cli {
 namespace {
 
-// A heading in radians, or in degrees under another name.
+// Declares a heading option in radians and a second option in degrees.
 void addHeading(CLI::App& command, const std::string& name, std::optional<double>& heading_rad) {
   auto* radians = command
                       .add_option_function<double>(

@@ -22,13 +22,14 @@ void addDriveOptions(CLI::App& command, DriveOptions& drive);
 /// Declares --chassis.
 void addChassisOption(CLI::App& command, std::string& chassis);
 
-/// Refuses a turning radius that no rover may have (terramech::isTurningRadius()).
+/// Refuses values that are not terramech::isTurningRadius().
 CLI::Validator turningRadius();
 
-/// What the rover keeps on the map, unless the call overrides it.
+/// Kinematics of the map's rover, overridden by the options of the call.
 planner::Kinematics kinematicsOf(const DriveOptions& drive, const costmap::TraversabilityMap& map);
 
-/// The chassis of that kind, "rigid" or "rocker-bogie"; none for an empty one. Keeps the map by reference.
+/// Chassis of the kind "rigid" or "rocker-bogie"; nothing if `kind` is empty. The chassis holds a reference
+/// to the map.
 std::optional<planner::Chassis> chassisOf(const std::string& kind, const costmap::TraversabilityMap& map);
 
 }  // namespace talus::cli

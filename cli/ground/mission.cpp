@@ -16,7 +16,7 @@ namespace {
 using terramech::FileKey;
 using terramech::YamlFields;
 
-// A path as the mission means it: relative to the mission's folder; a library name stays as it is.
+// Resolves a path relative to the folder of the mission; library names stay unchanged.
 std::string resolved(const std::string& path, const std::filesystem::path& folder) {
   const std::filesystem::path beside = folder / path;
   const std::string found = !path.empty() && std::filesystem::exists(beside) ? beside.string() : path;
@@ -29,7 +29,7 @@ void take(std::string& option, const YamlFields& fields, const std::string& name
   if (option.empty()) option = said;
 }
 
-// A number that its option takes, too.
+// A number checked with the validator of the corresponding option.
 double ranged(const YamlFields& fields, const std::string& name, const CLI::Validator& range) {
   const double value = fields.number(name);
   std::string text = fmt::format("{}", value);
@@ -38,7 +38,7 @@ double ranged(const YamlFields& fields, const std::string& name, const CLI::Vali
   return value;
 }
 
-// "x,y" from a text or from a list of two numbers.
+// A place as "x,y", from a text or a list of two numbers.
 std::string place(const YamlFields& fields, const std::string& name) {
   if (!fields.has(name)) return "";
   try {
@@ -49,7 +49,7 @@ std::string place(const YamlFields& fields, const std::string& name) {
   return fields.word(name);
 }
 
-// One place, or a list of them.
+// One place or a list of places.
 std::vector<std::string> places(const YamlFields& fields, const std::string& name) {
   try {
     if (fields.numbers(name).size() == 2) return {place(fields, name)};
@@ -75,7 +75,7 @@ void readMaps(const YamlFields& maps, GroundOptions& ground, const std::filesyst
   if (ground.dem.path.empty()) ground.dem.path = ground.map_file;
 }
 
-// What differs from its default was said on the command line and holds.
+// A policy value that differs from its default was set on the command line and is kept.
 void readThresholds(const YamlFields& fields, costmap::DrivePolicy& policy) {
   fields.only(namesOf(thresholdKeys()));
   const costmap::DrivePolicy defaults;

@@ -27,7 +27,7 @@ maps::Layer layer(const maps::Grid& grid, std::string name, std::string unit,
   return out;
 }
 
-// Energy straight up (sign 1) or down (-1) the cell's slope; NaN where that is refused.
+// Energy [J/m] straight up (sign 1) or down (-1) the slope of the cell; NaN if the direction is refused.
 float energyAlong(const costmap::CostGrid& grid, maps::Cell cell, double sign) {
   const CellCode code = grid.at(cell);
   const double steepness = std::hypot(code.dzDx(), code.dzDy());
@@ -38,7 +38,7 @@ float energyAlong(const costmap::CostGrid& grid, maps::Cell cell, double sign) {
   return grid.cost().detail(code, up).energy_J_per_m;
 }
 
-// The category of a cell in the heading that is best on its slope, which is that of its curve and steepness.
+// Category of a cell in its best heading, which depends only on the cost curve and the steepness; cached.
 class BestHeading {
  public:
   explicit BestHeading(const costmap::DriveCost& cost) : cost_(cost), known_(cost.curves().size()) {}

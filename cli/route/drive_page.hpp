@@ -10,18 +10,18 @@
 
 namespace talus::cli {
 
-/// World 0 of a site, watched: the same result as site.world(), with records of the wheels and what changed
-/// when.
+/// Simulation of world 0 of a site, with the same result as site.world() plus wheel records and the times of
+/// map changes.
 struct WatchedDrive {
   planner::WorldResult result;
   DriveStory story;
-  planner::PredictionErrors prediction{};  ///< of the map's prediction of each step
+  planner::PredictionErrors prediction{};  ///< errors of the map's prediction at each step
 };
 WatchedDrive watchedDrive(const planner::SimulationSite& site, planner::Belief belief,
                           const ProgressMonitor& watch);
 
-/// Writes a page on which a slider runs through the drive: track, plan in force, cells that changed their
-/// category, what happened, and what the drive is made from. @throws InputError when the file cannot be written
+/// Writes a page with a time slider for the drive: track, current plan, cells with a changed category, events
+/// and provenance. @throws InputError when the file cannot be written
 void saveDrivePage(const std::filesystem::path& path, const planner::SimulationSite& site,
                    planner::Belief belief, const WatchedDrive& drive, const planner::RouteOrigin& origin);
 

@@ -26,7 +26,7 @@ void addRates(ordered_json& out, const planner::Rates& rates) {
     out[std::string(planner::name(outcome))] = asJson(rates.outcome[static_cast<std::size_t>(outcome)]);
 }
 
-// "12.5 % [8.1, 18.7]"
+// A share with its 95 % interval, such as "12.5 % [8.1, 18.7]".
 std::string percent(const planner::Sampled& share) {
   if (std::isnan(share.value)) return "-";
   return fmt::format("{:.1f} % [{:.1f}, {:.1f}]", 100.0 * share.value, 100.0 * share.interval_95[0],

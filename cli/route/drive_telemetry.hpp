@@ -8,7 +8,7 @@
 
 namespace talus::cli {
 
-/// Writes what the wheels of a traverse simulation read as a telemetry CSV, which `talus update` takes.
+/// Writes the wheel telemetry of a traverse simulation as CSV, an input of `talus update`.
 /// @throws InputError when the file cannot be written
 void saveTelemetry(const std::filesystem::path& path, const planner::TraverseSimulation& drive,
                    const terramech::Rover& rover);

@@ -12,30 +12,30 @@ namespace talus::cli {
 
 class Campaign;
 
-/// What random worlds came to under one belief, or several in the same worlds.
+/// Results of random worlds under one or several beliefs.
 struct DrivenWorlds {
-  /// A world that could not be simulated.
+  /// A world whose simulation failed.
   struct Failure {
     std::size_t world = 0;
     std::string reason;
   };
 
-  std::vector<std::vector<planner::WorldResult>> results;  ///< of each belief, the worlds that none failed in
+  std::vector<std::vector<planner::WorldResult>> results;  ///< by belief, without failed worlds
   std::vector<Failure> failures;
 };
 
-/// World number i under belief number b.
+/// Simulates world i under belief b.
 using World = std::function<planner::WorldResult(std::size_t b, std::size_t i)>;
 
-/// How many of each, and how many at a time in a plain run.
+/// Number of beliefs and worlds, and of concurrent simulations without MPI.
 struct WorldCount {
   std::size_t beliefs = 1;
   std::size_t worlds = 1;
   std::size_t workers = 1;
 };
 
-/// Rehearses all worlds under all beliefs over the ranks of the campaign: the same results however many there
-/// are. A world that throws is a failure of that world alone. Empty but on the leading rank.
+/// Simulates all worlds under all beliefs, distributed over the ranks of the campaign; results do not depend
+/// on the number of ranks. An exception fails only its world. Empty except on rank 0.
 DrivenWorlds drivenWorlds(const WorldCount& count, const World& world, const Campaign& campaign,
                           const ProgressMonitor& watch);
 

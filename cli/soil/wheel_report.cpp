@@ -35,7 +35,7 @@ Plot stressPlot(const WheelAtWork& work) {
           {normal, shear}};
 }
 
-/// A quantity over slip, braked to driven; breaks where the soil cannot carry the wheel.
+/// A quantity over slip from -1 (braked) to 1; interrupted where the soil cannot carry the wheel.
 template <class Quantity>
 Plot overSlip(const WheelAtWork& work, const std::string& title, const Quantity& quantity) {
   Plot plot{title, {.label = "slip [-], negative: braked"}, {.label = title + " [-]"}, {}};

@@ -57,14 +57,15 @@ constexpr double WheelForces::*kResultFields[] = {&WheelForces::sinkage_m, &Whee
                                                   &WheelForces::torque_Nm, &WheelForces::drawbar_pull_N,
                                                   &WheelForces::side_force_N};
 
-// The load of a thousand tonnes: more is a slip of units, and the search for a wheel that carries it takes long to fail.
+// Weight of a thousand tonnes: larger loads indicate wrong units, and the equilibrium search takes long to
+// fail.
 constexpr double kHeaviest_N = 1e7;
 
 bool isResult(const std::string& name) {
   return std::find(std::begin(kResults), std::end(kResults), name) != std::end(kResults);
 }
 
-/// Where in a row each input stands.
+/// Index of each input in a row; nothing for a missing optional input.
 std::vector<std::optional<std::size_t>> positions(const CsvReader& reader, const std::string& path) {
   terramech::checkColumnUnits(reader.header(), wheelCaseColumns(), path);
   std::vector<std::optional<std::size_t>> at;
@@ -83,7 +84,7 @@ std::vector<std::optional<std::size_t>> positions(const CsvReader& reader, const
                     .remedy = "add it to the header row, in SI units"});
 }
 
-/// A row and its case; `fault` says why there is none.
+/// A row and its case; `fault` is the reason if the row contains no valid case.
 struct Entry {
   CsvRow row;
   WheelCase wheel_case;
@@ -116,7 +117,7 @@ std::string reasonOf(const WheelCase& wheel_case) {
   return "has no equilibrium";
 }
 
-/// Whether the table has wheels at an angle, which alone have a side force.
+/// Returns true if the table has a slip angle column; side forces are written only then.
 bool hasSlipAngle(const std::vector<std::string>& header) {
   return std::find(header.begin(), header.end(), "slip_angle_rad") != header.end();
 }
@@ -168,7 +169,8 @@ std::vector<WheelForces> solved(const std::vector<Entry>& entries, int threads) 
   cases.reserve(entries.size());
   for (const Entry& entry : entries) cases.push_back(entry.wheel_case);
   std::vector<WheelForces> forces(cases.size());
-  // Blocks of a multiple of four: a case's lane, and so nothing else, depends on them.
+  // Blocks of a multiple of four cases: the SIMD lane of a case, and thus its result, is independent of the
+  // number of threads.
   constexpr std::size_t kBlock = 256;
   parallelFor((cases.size() + kBlock - 1) / kBlock, threads, [&](std::size_t k) {
     const std::size_t first = k * kBlock, count = std::min(kBlock, cases.size() - first);

@@ -10,21 +10,21 @@
 
 namespace talus::cli {
 
-/// What became of a table of wheel cases.
+/// Result of processing a table of wheel cases.
 struct WheelTable {
   std::size_t solved = 0;
-  std::vector<terramech::RejectedRow> refused;  ///< kept in the output with empty results
-  bool replaced = false;                        ///< the input had result columns, which were replaced
+  std::vector<terramech::RejectedRow> refused;  ///< written with empty results
+  bool replaced = false;                        ///< the input had result columns, which were overwritten
 };
 
-/// The columns that cases have.
+/// Names of the input columns of a case.
 std::vector<std::string> wheelCaseColumns();
 
-/// Solves each row of a CSV of wheel cases and writes all its columns with sinkage_m, entry_angle_rad,
-/// torque_Nm and drawbar_pull_N after them, and side_force_N where the table has a column slip_angle_rad;
-/// without it every wheel rolls straight. Streams; solves on `threads` threads, >= 1; the same bytes whatever
-/// their number. The output appears whole or not at all. Throws InputError when the input cannot be read,
-/// lacks a column, or no row can be solved.
+/// Solves each row of a CSV of wheel cases. Writes all input columns, then sinkage_m, entry_angle_rad,
+/// torque_Nm, drawbar_pull_N, and side_force_N if the table has a column slip_angle_rad; without that column
+/// the slip angle is 0. Processes the file as a stream on `threads` >= 1 threads; the output does not depend
+/// on the number of threads. The output file appears complete or not at all. Throws InputError if the input
+/// cannot be read, lacks a column, or no row can be solved.
 WheelTable solveWheelTable(const terramech::TableFile& input, const std::filesystem::path& output,
                            int threads, const ProgressMonitor& watch);
 

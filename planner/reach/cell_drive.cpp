@@ -7,9 +7,9 @@
 namespace talus::planner {
 namespace {
 
-constexpr double kInside = 3e-6;  // sides: MotionCost takes what lies within 1e-6 of a side to lie on it
-constexpr int kMostLegs = 4096;   // of a zigzag within one cell
-constexpr double kLeast = 1e-9;   // sides: what is shorter is rounding
+constexpr double kInside = 3e-6;  // sides: MotionCost treats places within 1e-6 of a side as on the side
+constexpr int kMostLegs = 4096;   // legs of a zigzag within one cell
+constexpr double kLeast = 1e-9;   // sides: shorter distances are rounding
 
 InCell unit(double heading_rad) noexcept {
   return {std::cos(heading_rad), std::sin(heading_rad)};
@@ -19,7 +19,7 @@ bool inside(InCell p) noexcept {
   return p.x >= kInside && p.x <= 1.0 - kInside && p.y >= kInside && p.y <= 1.0 - kInside;
 }
 
-// The share of a unit step that stays well inside a cell.
+// Share of a unit step that stays inside a cell with a margin.
 double stepInside(InCell from, InCell step) noexcept {
   const auto room = [](double at, double by) {
     return by > 0.0 ? (1.0 - at) / by : by < 0.0 ? -at / by : 1.0;
@@ -27,7 +27,8 @@ double stepInside(InCell from, InCell step) noexcept {
   return 0.4 * std::min(room(from.x, step.x), room(from.y, step.y));
 }
 
-// The set's headings on both sides of one, `within` [rad] inside their arcs or in the middle, as turns to the left: right < 0.
+// Permitted headings nearest to a heading on both sides, at least `within` [rad] inside their arcs or at a
+// quarter of narrow arcs, as turns to the left; right < 0.
 struct Sides {
   double right, left;
 };
@@ -45,13 +46,14 @@ Sides around(const HeadingSet& set, double heading, double within) noexcept {
   return sides;
 }
 
-// Appends the turns from p to q, both within the cell, and q; false where that takes more legs than allowed.
+// Appends a zigzag from p to q, both inside the cell, and q. Returns false if no zigzag of at most kMostLegs
+// pairs of legs stays inside the cell.
 bool inTurns(const Sides& sides, InCell p, InCell q, std::vector<InCell>& way) {
   const InCell d = q - p;
   const double heading = std::atan2(d.y, d.x), length = std::hypot(d.x, d.y);
   const double between = std::sin(sides.left - sides.right);
   if (!(sides.left - sides.right < 0.5 * HeadingSet::kTurn) || !(between > 0.0)) return false;
-  // a, b >= 0 along each add up to the way.
+  // u + v = d with non-negative multiples of the two headings.
   const InCell u = length * std::sin(sides.left) / between * unit(heading + sides.right);
   const InCell v = length * std::sin(-sides.right) / between * unit(heading + sides.left);
   for (int legs = 1; legs <= kMostLegs; legs *= 2) {
@@ -85,7 +87,7 @@ bool connected(const HeadingSet& set, InCell p, InCell q, std::vector<InCell>& w
 }  // namespace
 
 std::vector<InCell> drivenThrough(const HeadingSet& headings, const CellGate& in, const CellGate& out) {
-  // Legs across the gates; the shorter, the less room they take of a narrow cone.
+  // Lengths of the straight legs at both gates; shorter legs use less of a narrow cone.
   constexpr std::array kSteps{0.2, 0.05, 0.01, 1e-3, 1e-4, 1e-5};
   constexpr int kMany = static_cast<int>(kSteps.size());
   const auto away = [](const CellGate& gate, double step, double sign) {

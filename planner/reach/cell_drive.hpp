@@ -8,18 +8,18 @@
 
 namespace talus::planner {
 
-/// A place on the border of a cell where a drive comes in or leaves on a heading; a place within it where it begins or
-/// ends, without one.
+/// Entry or exit of a drive on the border of a cell, with the heading of the crossing; or the start or end of
+/// a drive inside the cell, without heading.
 struct CellGate {
   InCell place{};
-  std::optional<double>
-      heading_rad{};  ///< of the crossing, inwards for one that comes in, outwards for one that leaves
+  std::optional<double> heading_rad{};  ///< into the cell at the entry, out of the cell at the exit
 };
 
-/// A drive through a cell by headings of a set, its turns at least 3e-6 of a side inside: straight where it may be, else the two
-/// allowed headings on both sides of where it has to go, in turns. Both gates are crossed on straight legs, as long as
-/// possible. The places after the first gate's up to the last one before the second gate's (a place within the cell is one of
-/// them); empty where it takes more than some thousand turns or there is none.
+/// Constructs a drive through a cell with headings of a set; turns are at least 3e-6 of a side away from the
+/// border. The drive is straight if permitted; otherwise it alternates between the permitted headings on both
+/// sides of the required direction. Both gates are crossed on straight legs, as long as possible. Returns the
+/// places after the entry up to the last place before the exit (including gates inside the cell); empty if
+/// more than kMostLegs legs were needed or no drive exists.
 std::vector<InCell> drivenThrough(const HeadingSet& headings, const CellGate& in, const CellGate& out);
 
 }  // namespace talus::planner

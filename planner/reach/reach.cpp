@@ -5,9 +5,10 @@ namespace {
 
 using maps::Cell;
 
-// In sides of a cell. MotionCost takes what lies within 1e-6 of a side to lie on it: ends are taken that wide.
+// In sides of a cell: margin at start and goal, because MotionCost treats places within 1e-6 of a side as on
+// the side.
 constexpr double kEnds = 1e-5;
-// Ranges that grow by less do not count as grown: rounding.
+// Smaller growth of a range is rounding.
 constexpr double kRounding = 1e-9;
 
 enum : std::uint8_t { kSeen = 1, kOpen = 2 };
@@ -93,7 +94,7 @@ void Reach::spread(Cell cell) {
   const HeadingSet& own = headingsOf(cell);
   const auto found = cones_.find(map_.grid().index(cell));
   const Entries* entries =
-      found == cones_.end() ? nullptr : &found->second;  // stays where it is when others come
+      found == cones_.end() ? nullptr : &found->second;  // the reference stays valid when entries are added
   for (int side = 0; side < 4; ++side) {
     if (!map_.grid().contains(beyond(cell, side)) || !mayCross(cell, own, side)) continue;
     const SideRange range = entries == nullptr ? SideRange{0.0, 1.0} : exits(*entries, DriveCone(own), side);
@@ -103,7 +104,7 @@ void Reach::spread(Cell cell) {
 
 void Reach::enter(Cell cell, int side, const SideRange& range) {
   const std::size_t index = map_.grid().index(cell);
-  if (seen_[index] != 0 && !cones_.contains(index)) return;  // entered before, and free to go everywhere
+  if (seen_[index] != 0 && !cones_.contains(index)) return;  // entered before, without restriction
   if (leadsEverywhere(headingsOf(cell))) return enqueue(index);
   Entries& entries = cones_[index];
   SideRange& known = entries.sides[static_cast<std::size_t>(side)];

@@ -9,14 +9,14 @@
 
 namespace talus::planner {
 
-/// DriveCost::costPerMetre with the heading fixed, for loops over many cells. Same bits as the original; it
-/// points into the DriveCost, which must outlive it.
+/// DriveCost::costPerMetre() for a fixed heading, for loops over many cells. Bit-identical to the original.
+/// Holds pointers into the DriveCost, which must outlive the object.
 class HeadingCost {
  public:
   HeadingCost(const costmap::DriveCost& cost, costmap::Direction heading) noexcept
       : HeadingCost(cost, heading.x * costmap::CellCode::kStep, heading.y * costmap::CellCode::kStep) {}
 
-  /// By the heading's unit vector times CellCode::kStep.
+  /// From the heading's unit vector times CellCode::kStep.
   HeadingCost(const costmap::DriveCost& cost, double x, double y) noexcept
       : curves_(cost.curves().data()),
         curve_count_(cost.curves().size()),
@@ -25,7 +25,7 @@ class HeadingCost {
         x_(x),
         y_(y) {}
 
-  /// Joules a horizontal metre; infinite when not allowed.
+  /// Cost per horizontal metre [J/m]; infinite if not permitted.
   float operator()(costmap::CellCode cell) const noexcept {
     if (cell.curve() >= curve_count_) return kBlocked;
     const double along = cell.stepsX() * x_ + cell.stepsY() * y_;

@@ -17,7 +17,8 @@ double wrapped(double angle_rad) noexcept {
 
 using costmap::DriveCurve;
 
-// Gradients along the heading at which the cost becomes finite or infinite in some row: the nodes to both sides, and the limit.
+// Gradients along the heading at which the cost becomes finite or infinite in some row: adjacent nodes, and
+// the limits.
 std::vector<double> limitsAlong(const costmap::DriveCost& cost, const DriveCurve& curve) {
   std::vector<double> limits{cost.limits().max_along, -cost.limits().max_along, DriveCurve::gradient(0),
                              DriveCurve::gradient(DriveCurve::kBins - 1)};
@@ -35,7 +36,8 @@ std::vector<double> limitsAlong(const costmap::DriveCost& cost, const DriveCurve
   return limits;
 }
 
-// Gradients across it, as magnitudes, beyond which fewer gradients along are allowed, and the limit.
+// Magnitudes of gradients across the heading at which the permitted gradients along the heading change, and
+// the limit.
 std::vector<double> limitsAcross(const costmap::DriveCost& cost, const DriveCurve& curve) {
   std::vector<double> limits{cost.limits().max_across};
   const auto finite = [](float value) { return std::isfinite(value); };
@@ -50,8 +52,9 @@ std::vector<double> limitsAcross(const costmap::DriveCost& cost, const DriveCurv
   return limits;
 }
 
-// How near to the flat, as a gradient, some pair of gradients along and across is refused: a node that is refuses all pairs less than a
-// node's distance away, and the limits and the end of the table what lies beyond them.
+// Least gradient at which some combination of gradients along and across is refused. A refused node refuses
+// all combinations within the distance of one node; the limits and the end of the table refuse all
+// combinations beyond them.
 double gentlest(const costmap::DriveCost& cost, const DriveCurve& curve) {
   constexpr double kBin = 1.0 / DriveCurve::kBinsPerUnit, kRow = 1.0 / DriveCurve::kRowsPerUnit;
   double least = std::min({cost.limits().max_along, cost.limits().max_across,
@@ -65,7 +68,7 @@ double gentlest(const costmap::DriveCost& cost, const DriveCurve& curve) {
   return least;
 }
 
-// Headings at which the gradient along or across takes one of these values.
+// Headings at which the gradient along or across equals one of the limits.
 std::vector<double> turningPoints(const HeadingSets::Limits& limits, costmap::CellCode cell) {
   const double steepest = std::hypot(cell.dzDx(), cell.dzDy()), up = std::atan2(cell.dzDy(), cell.dzDx());
   std::vector<double> angles;
@@ -100,7 +103,7 @@ HeadingSet::HeadingSet(std::vector<HeadingArc> arcs) {
     else
       arcs_.push_back(arc);
   }
-  // The last may reach round to the first ones.
+  // The last arc may overlap the first arcs across 2 pi.
   while (arcs_.size() > 1 &&
          arcs_.back().from_rad + arcs_.back().width_rad >= arcs_.front().from_rad + kTurn) {
     const double end = arcs_.front().from_rad + arcs_.front().width_rad + kTurn;
@@ -137,7 +140,7 @@ double HeadingSet::nearest(double heading_rad, double inside_rad) const noexcept
   for (const HeadingArc& arc : arcs_) {
     const double inside = std::min(inside_rad, 0.5 * arc.width_rad);
     const double ahead = wrapped(heading_rad - arc.from_rad);
-    // Between the ends, or the end that is nearer round the circle.
+    // Inside the arc, or its end that is nearer on the circle.
     double at = std::clamp(ahead, inside, arc.width_rad - inside);
     if (ahead > arc.width_rad && kTurn - ahead < ahead - arc.width_rad) at = inside;
     const double off = std::abs(std::remainder(arc.from_rad + at - heading_rad, kTurn));
