@@ -110,8 +110,8 @@ TEST(Words, TheListIsSearchedAsAPersonWouldRead) {
 }
 
 TEST(Words, OfMessagesArePlain) {
-  for (const std::string room : {"terramech", "maps", "costmap", "planner", "cli", "tests/reproduce"})
-    for (const fs::path& file : filesBelow(room, {".cpp", ".hpp"}))
+  for (const std::string module : {"terramech", "maps", "costmap", "planner", "cli", "tests/reproduce"})
+    for (const fs::path& file : filesBelow(module, {".cpp", ".hpp"}))
       for (const std::string& literal : stringLiterals(fileContent(file)))
         EXPECT_EQ(promised().contains(literal) ? "" : complaint(literal), "") << file;
 }
