@@ -19,7 +19,7 @@ struct TelemetryOptions {
   bool once = false;
 };
 
-/// Reads a telemetry CSV: header row, columns in any order, `.` decimals, UTF-8 with or without a byte order
+/// Reads a telemetry CSV: header row, columns in any order, decimal points, UTF-8 with or without a byte order
 /// mark, LF or CRLF, quoted fields, empty field = missing. A row is left out, with line and reason in
 /// Telemetry::rejected, when a known column holds NaN, infinity or words, when a required field is empty, the
 /// load is not above 0, the sinkage is outside [0, 2r), the slip outside [-1, 1], a wheel dimension out of
