@@ -66,6 +66,7 @@ constexpr Replaced kReplaced[] = {
     {"\\bworth\\b", "cost"},
     {"\\bwrong at\\b|\\bsure of wrong\\b|\\bunsure\\b", "overconfident; uncertain"},
     {"how far from (the )?(best|cheapest)", "optimality gap"},
+    {"\\bhouse\\b", "architecture"},
 };
 
 /// Promised names of JSON fields and of calls, which stay whatever the words around them.
